@@ -1,0 +1,114 @@
+# The only build. `make` leaves the program at build/cag; BUILD= chooses another folder.
+#
+#   make             program and libraries          make test            all suites, closing with `N passed, N failed`
+#   make test-sanitize  under ASan and UBSan        make bench           figures against peers
+#   make format      clang-format everything        make check-format / check-layers
+#   make install PREFIX=/usr/local DESTDIR=
+
+BUILD   ?= build
+PREFIX  ?= /usr/local
+DESTDIR ?=
+VERSION := 0.1.0
+CC      ?= cc
+OPT     ?= -O3
+WARN    := -Wall -Wextra -Werror
+SANITIZE ?=
+
+# Each: pkg-config name and the Debian package to install when it is missing.
+NEEDS := OpenEXR:libopenexr-dev lapacke:liblapacke-dev libedit:libedit-dev libcjson:libcjson-dev \
+         libpng:libpng-dev libutf8proc:libutf8proc-dev glu:libglu1-mesa-dev
+MODULES := $(foreach n,$(NEEDS),$(firstword $(subst :, ,$(n))))
+ifeq ($(filter clean format check-format check-layers,$(MAKECMDGOALS)),)
+MISSING := $(foreach n,$(NEEDS),$(shell pkg-config --exists $(firstword $(subst :, ,$(n))) || echo $(lastword $(subst :, ,$(n)))))
+ifneq ($(strip $(MISSING)),)
+$(error cag needs packages that are not here: apt-get install $(strip $(MISSING)))
+endif
+endif
+PKG_CFLAGS := $(shell pkg-config --cflags $(MODULES) 2>/dev/null)
+PKG_LIBS   := $(shell pkg-config --libs $(MODULES) 2>/dev/null)
+
+CFLAGS_ALL := -std=c17 -D_GNU_SOURCE $(OPT) -g $(WARN) -fno-math-errno -fno-trapping-math -ffp-contract=off \
+              -fPIC -fvisibility=hidden -MMD -MP -I. -Iinclude -I$(BUILD)/gen \
+              -DCAG_VERSION='"$(VERSION)"' $(PKG_CFLAGS) $(SANITIZE) $(CFLAGS)
+LDLIBS_ALL := $(PKG_LIBS) -lm -lpthread $(SANITIZE) $(LDFLAGS)
+
+LANG_SRC   := $(shell find lang -name '*.c' | sort)
+GEOM_SRC   := $(shell find geom -name '*.c' | sort)
+MAIN_SRC   := interp/main.c
+TOOL_SRC   := $(shell find interp/tool -name '*.c' | sort)
+INTERP_SRC := $(filter-out $(MAIN_SRC) $(TOOL_SRC),$(shell find interp -name '*.c' | sort))
+STDLIB     := $(shell find stdlib -name '*.cag' | sort)
+
+obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
+LANG_OBJ := $(call obj,$(LANG_SRC))
+GEOM_OBJ := $(call obj,$(GEOM_SRC))
+INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o
+TOOL_OBJ := $(call obj,$(TOOL_SRC) $(MAIN_SRC))
+
+.PHONY: all clean unit unit-lang unit-geom unit-interp test test-sanitize bench format check-format check-layers install
+.SECONDARY:
+all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
+
+$(BUILD)/obj/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) -c $< -o $@
+
+$(BUILD)/liblang.a: $(LANG_OBJ)
+	@rm -f $@; ar rcs $@ $^
+$(BUILD)/libgeom.a: $(GEOM_OBJ)
+	@rm -f $@; ar rcs $@ $^
+$(BUILD)/libcag.a: $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
+	@rm -f $@; ar rcs $@ $^
+$(BUILD)/libcag.so: $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
+	$(CC) -shared -Wl,-soname,libcag.so.0 $^ -o $@ $(LDLIBS_ALL)
+
+# The standard library, as C arrays.
+$(BUILD)/gen/stdlib.c: $(STDLIB) tools/embed.sh
+	@mkdir -p $(@D)
+	sh tools/embed.sh $(STDLIB) > $@.tmp && mv $@.tmp $@
+$(BUILD)/obj/gen/stdlib.o: $(BUILD)/gen/stdlib.c
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) -c $< -o $@
+
+$(BUILD)/cag: $(TOOL_OBJ) $(BUILD)/libcag.a
+	$(CC) $^ -o $@ $(LDLIBS_ALL)
+
+# C unit tests (cmocka): one program per file of tests/lang, tests/geom, tests/interp.
+UNIT = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/*_test.c))
+$(BUILD)/tests/lang/%: tests/lang/%.c $(BUILD)/liblang.a
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) $< $(BUILD)/liblang.a -o $@ -lcmocka $(LDLIBS_ALL)
+$(BUILD)/tests/geom/%: tests/geom/%.c $(BUILD)/libgeom.a
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) $< $(BUILD)/libgeom.a -o $@ -lcmocka $(LDLIBS_ALL)
+$(BUILD)/tests/interp/%: tests/interp/%.c $(BUILD)/libcag.a
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ -lcmocka $(LDLIBS_ALL)
+unit-lang: $(call UNIT,lang)
+	@for t in $^; do ./$$t || exit 1; done
+unit-geom: $(call UNIT,geom)
+	@for t in $^; do ./$$t || exit 1; done
+unit-interp: $(call UNIT,interp)
+	@for t in $^; do ./$$t || exit 1; done
+
+test: all $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp)
+	BUILD=$(BUILD) sh tests/run_all.sh
+
+test-sanitize:
+	$(MAKE) BUILD=$(BUILD)-sanitize OPT=-O1 SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" test
+
+bench: all
+	BUILD=$(BUILD) sh tests/bench/run.sh
+
+FORMATTED = $(shell find include lang geom interp tests -name '*.[ch]' | sort)
+format:
+	clang-format -i $(FORMATTED)
+check-format:
+	clang-format --dry-run -Werror $(FORMATTED)
+check-layers:
+	sh tools/check_layers.sh
+
+clean:
+	rm -rf $(BUILD) $(BUILD)-sanitize
+
+-include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
