@@ -1,0 +1,167 @@
+// Curves: immutable, reference counted values of several kinds behind one table of functions.
+//
+// A curve maps its domain [start, end] to points of the plane (dimension 2: z is 0) or of space
+// (3). Points are always CagVec3. The parameter is natural (knots, radians ...); `angular` says
+// that the language shows it as an angle. Derivatives are by the parameter. Every algorithm that
+// serves all kinds (tangent, curvature, length, bounds, closest ...) is written against
+// CagCurveKind; a kind answers the few questions of the table. A kind's data follow the header:
+// struct { CagCurve base; ... }.
+
+#ifndef CAG_GEOM_CURVE_H
+#define CAG_GEOM_CURVE_H
+
+#include "geom/linalg/transform.h"
+#include "geom/linalg/vec.h"
+#include "geom/status.h"
+
+typedef struct CagCurve CagCurve;
+
+// Which limit is meant where the curve is not smooth: a knot, a corner.
+typedef enum CagSide { CAG_SIDE_RIGHT, CAG_SIDE_LEFT } CagSide;
+
+// Highest derivative that any caller asks for.
+#define CAG_MAX_DERIVATIVE 16
+
+typedef struct CagCurveKind {
+  const char *name; // "line", "polyline", "arc", "helix", "bezier", "bspline", "nurbs" ...
+  // Point and derivatives 1..order at t (in the domain), limit from `side`: out[0..order].
+  CagStatus (*eval)(const CagCurve *c, double t, int order, CagSide side, CagVec3 *out,
+                    CagError *err);
+  // Same for n ascending or arbitrary parameters: out[i * (order + 1) + k]. NULL: eval is called
+  // for each.
+  CagStatus (*eval_many)(const CagCurve *c, const double *t, size_t n, int order, CagVec3 *out,
+                         CagError *err);
+  // Exact rational form; NULL: there is none.
+  CagStatus (*to_nurbs)(const CagCurve *c, CagCurve **out, CagError *err);
+  // Image under a transform; a kind that is not closed under it gives another kind.
+  CagStatus (*transform)(const CagCurve *c, const CagTransform *t, CagCurve **out, CagError *err);
+  // The same points run backwards over the same domain; the part over [a, b]; the same points over
+  // [a, b] (affine change of t).
+  CagStatus (*reverse)(const CagCurve *c, CagCurve **out, CagError *err);
+  CagStatus (*trim)(const CagCurve *c, double a, double b, CagCurve **out, CagError *err);
+  CagStatus (*reparametrize)(const CagCurve *c, double a, double b, CagCurve **out, CagError *err);
+  // A box that holds the curve over [a, b], cheap and not always tight (hull of control points).
+  CagBounds (*hull)(const CagCurve *c, double a, double b);
+  // Interior parameters where the curve is less smooth than C-infinity (distinct, ascending).
+  // Returns their number, writes up to `capacity`.
+  size_t (*breaks)(const CagCurve *c, double *out, size_t capacity);
+  // One line for the language: "degree 3, 5 points" (without kind and domain). Writes a
+  // NUL-terminated text.
+  void (*describe)(const CagCurve *c, char *buffer, size_t size);
+  void (*destroy)(
+      CagCurve *c); // frees what the kind took; the block itself is freed by cag_curve_release
+} CagCurveKind;
+
+struct CagCurve {
+  const CagCurveKind *kind;
+  int references;    // a curve belongs to one thread, or is shared read-only
+  int dimension;     // 2 or 3
+  double start, end; // domain; start < end
+  bool angular;      // the parameter is an angle
+  bool closed;       // the ends meet (to rounding), judged at construction
+};
+
+CagCurve *cag_curve_retain(const CagCurve *c);
+void cag_curve_release(CagCurve *c); // NULL is fine
+
+// --- Constructors (each fails with a reason and the argument; *out has one reference) ---
+CagStatus cag_curve_line(CagVec3 p, CagVec3 q, int dimension, CagCurve **out, CagError *err);
+CagStatus cag_curve_polyline(const CagVec3 *points, size_t n, bool closed, int dimension,
+                             CagCurve **out, CagError *err);
+// Points center + a cos(t) x + b sin(t) y for t in [start, end] radians. Circle: a == b. frame: x,
+// y, center as columns (planar: dimension 2).
+CagStatus cag_curve_arc(double a, double b, double start, double end, const CagTransform *frame,
+                        CagCurve **out, CagError *err);
+// [r cos t, r sin t, pitch t / 2 pi], r = radius + taper * t / 2 pi; t in 0..2 pi |turns|; negative
+// turns are left-handed.
+CagStatus cag_curve_helix(double radius, double pitch, double turns, double taper, CagCurve **out,
+                          CagError *err);
+// Kind "bezier": domain 0..1; weights NULL: polynomial.
+CagStatus cag_curve_bezier(const CagVec3 *points, const double *weights, size_t n, int dimension,
+                           CagCurve **out, CagError *err);
+// Kind "bspline" (weights NULL) or "nurbs". knots: n + degree + 1 numbers; domain
+// knots[degree]..knots[n].
+CagStatus cag_curve_nurbs(const CagVec3 *points, const double *weights, size_t n, int degree,
+                          const double *knots, int dimension, CagCurve **out, CagError *err);
+// Closed periodic B-spline of n distinct points: uniform knots, domain 0..n; `points` gives back
+// the n.
+CagStatus cag_curve_nurbs_closed(const CagVec3 *points, const double *weights, size_t n, int degree,
+                                 int dimension, CagCurve **out, CagError *err);
+// Curves one after the other, each starting where the one before ends; domain 0..(sum of the
+// domains' lengths) or natural where alike.
+CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagError *err);
+
+// Knot vectors of n control points: "open" uniform integer 0,0,..,1,..,m,m; "periodic" 0,1,2,...;
+// "chord" by the points (reference 05b, 1.6).
+CagStatus cag_knots_make(const char *type, size_t n, int degree, const CagVec3 *points,
+                         double *knots, CagError *err);
+
+// --- Access to the data of NURBS kinds (bezier, bspline, nurbs) ---
+typedef struct CagNurbsView {
+  int degree;
+  size_t count;              // control points as stored (a closed one repeats its first `degree`)
+  size_t distinct;           // control points as given
+  bool periodic;             // made by cag_curve_nurbs_closed
+  const double *knots;       // count + degree + 1
+  const double *homogeneous; // count x 4: w x, w y, w z, w
+  bool rational;
+} CagNurbsView;
+bool cag_curve_nurbs_view(const CagCurve *c, CagNurbsView *out); // false: not a NURBS kind
+// Vertices of a line or polyline (without the repeated first of a closed one); false: another kind.
+bool cag_curve_vertices(const CagCurve *c, const CagVec3 **points, size_t *n, bool *closed);
+// Data of an arc kind.
+bool cag_curve_arc_view(const CagCurve *c, double *a, double *b, CagTransform *frame);
+bool cag_curve_helix_view(const CagCurve *c, double *radius, double *pitch, double *turns,
+                          double *taper, CagTransform *frame);
+
+// --- Questions to any curve. t outside the domain fails with CAG_E_DOMAIN "parameter-range"; a few
+// ulp outside is snapped to the end. ---
+CagStatus cag_curve_eval(const CagCurve *c, double t, int order, CagSide side, CagVec3 *out,
+                         CagError *err);
+CagStatus cag_curve_eval_many(const CagCurve *c, const double *t, size_t n, int order, CagVec3 *out,
+                              CagError *err);
+CagStatus cag_curve_point(const CagCurve *c, double t, CagVec3 *out, CagError *err);
+
+typedef struct CagFrenet {
+  CagVec3 point, tangent, normal, binormal;
+  double curvature, torsion;
+  bool has_normal; // false where the curvature is 0 (normal and binormal are then zero vectors)
+} CagFrenet;
+CagStatus cag_curve_frenet(const CagCurve *c, double t, CagFrenet *out, CagError *err);
+CagStatus cag_curve_tangent(const CagCurve *c, double t, CagSide side, CagVec3 *out,
+                            CagError *err); // its limit where C' = 0
+
+// Arc length over [a, b] to 1e-10 relative (adaptive Gauss-Kronrod on the smooth pieces); the
+// parameter at arc length s from the start.
+CagStatus cag_curve_length(const CagCurve *c, double a, double b, double *out, CagError *err);
+CagStatus cag_curve_parameter_at_length(const CagCurve *c, double s, double *out, CagError *err);
+CagStatus cag_curve_bounds(const CagCurve *c, CagBounds *out,
+                           CagError *err); // tight to 1e-9 of its size
+// Signed area (counter-clockwise positive) and centroid of a closed plane curve, by Green's
+// theorem, 1e-10 relative.
+CagStatus cag_curve_area(const CagCurve *c, double *area, CagVec3 *centroid, CagError *err);
+bool cag_curve_is_planar(const CagCurve *c,
+                         CagPlane *plane); // to 1e-9 of its size; plane may be NULL
+bool cag_curve_is_straight(const CagCurve *c);
+CagStatus cag_curve_to_nurbs(const CagCurve *c, CagCurve **out,
+                             CagError *err); // "no-exact-form" where there is none
+CagStatus cag_curve_transform(const CagCurve *c, const CagTransform *t, CagCurve **out,
+                              CagError *err);
+CagStatus cag_curve_reverse(const CagCurve *c, CagCurve **out, CagError *err);
+CagStatus cag_curve_trim(const CagCurve *c, double a, double b, CagCurve **out, CagError *err);
+CagStatus cag_curve_reparametrize(const CagCurve *c, double a, double b, CagCurve **out,
+                                  CagError *err);
+// The curve as one of space (dimension 3), or its image under the map [x, y] -> [x, 0, y] used by
+// revolve.
+CagStatus cag_curve_to_space(const CagCurve *c, CagCurve **out, CagError *err);
+
+// Parameters of a polyline that stays within `tolerance` of the curve and turns by at most `angle`
+// (radians) a step; both ends and all breaks are in. *out is malloc'd.
+CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle, double **out,
+                               size_t *n, CagError *err);
+// Closest point of the curve (the global one); intersections and others live in headers of their
+// own.
+CagStatus cag_curve_closest(const CagCurve *c, CagVec3 p, double *t, CagVec3 *point,
+                            double *distance, CagError *err);
+
+#endif

@@ -1,0 +1,40 @@
+// Regions: pieces of the plane bounded by closed plane curves, with holes.
+//
+// Invariant: outer boundaries run counter-clockwise, holes clockwise; loops do not cross; each hole
+// lies in an outer loop. Reference counted.
+
+#ifndef CAG_GEOM_REGION_H
+#define CAG_GEOM_REGION_H
+
+#include "geom/curve/curve.h"
+
+typedef struct CagRegion {
+  int references;
+  size_t count;     // loops; loop 0 is the first outer one
+  CagCurve **loops; // closed, dimension 2
+  size_t *outer; // for a hole: index of the outer loop around it; for an outer loop: its own index
+} CagRegion;
+
+// outer: a closed plane curve; holes likewise, within it and disjoint (checked:
+// "region-not-closed", "region-crossing", "hole-outside", with the index).
+CagStatus cag_region_new(const CagCurve *outer, CagCurve *const *holes, size_t hole_count,
+                         CagRegion **out, CagError *err);
+// The region bounded by any set of non-crossing closed loops (even-odd rule).
+CagStatus cag_region_from_loops(CagCurve *const *loops, size_t n, CagRegion **out, CagError *err);
+CagRegion *cag_region_retain(const CagRegion *r);
+void cag_region_release(CagRegion *r);
+
+CagStatus cag_region_rectangle(double w, double h, double radius, CagRegion **out,
+                               CagError *err); // about the origin
+CagStatus cag_region_regular_polygon(size_t n, double radius, CagRegion **out,
+                                     CagError *err); // first vertex on +x
+CagStatus cag_region_area(const CagRegion *r, double *area, CagVec3 *centroid, CagError *err);
+CagStatus cag_region_perimeter(const CagRegion *r, double *out, CagError *err);
+CagStatus cag_region_bounds(const CagRegion *r, CagBounds *out, CagError *err);
+CagStatus cag_region_contains(const CagRegion *r, CagVec3 p, bool *out,
+                              CagError *err); // the boundary belongs to it
+// Image under a planar transform; mirrors keep the invariant.
+CagStatus cag_region_transform(const CagRegion *r, const CagTransform *t, CagRegion **out,
+                               CagError *err);
+
+#endif

@@ -1,0 +1,55 @@
+// Triangle meshes: shared vertices, normals from the exact surface, parameters kept.
+
+#ifndef CAG_GEOM_MESH_H
+#define CAG_GEOM_MESH_H
+
+#include <stdint.h>
+
+#include "geom/linalg/transform.h"
+#include "geom/linalg/vec.h"
+#include "geom/status.h"
+
+// Invariant: every index is below vertex_count; no triangle names a vertex twice. Corners carry
+// normals per vertex; where a solid has a sharp edge its vertices stand once per face for shading
+// (`normals`), and `weld` tells which vertices are one point of the closed surface: weld[i] <= i is
+// the first vertex with i's position (exactly the same bits). NULL weld: each vertex is its own.
+typedef struct CagMesh {
+  int references;
+  size_t vertex_count, triangle_count;
+  CagVec3 *positions;
+  CagVec3 *normals;    // unit, per vertex; NULL: flat shading
+  double *uv;          // 2 per vertex; NULL: none
+  uint32_t *triangles; // 3 per triangle, counter-clockwise seen from outside
+  uint32_t *weld;
+} CagMesh;
+
+CagStatus cag_mesh_new(size_t vertices, size_t triangles, bool normals, bool uv, bool weld,
+                       CagMesh **out, CagError *err); // contents unset
+CagMesh *cag_mesh_retain(const CagMesh *m);
+void cag_mesh_release(CagMesh *m);
+// Checked copy of lists; faces are polygons of 3 or more vertices, given by their counts and
+// indices (concave ones are triangulated).
+CagStatus cag_mesh_from_faces(const CagVec3 *vertices, size_t n, const uint32_t *indices,
+                              const uint32_t *counts, size_t faces, CagMesh **out, CagError *err);
+CagStatus cag_mesh_transform(const CagMesh *m, const CagTransform *t, CagMesh **out,
+                             CagError *err); // a mirror turns the triangles
+CagStatus cag_mesh_append(CagMesh *const *meshes, size_t n, CagMesh **out, CagError *err);
+CagBounds cag_mesh_bounds(const CagMesh *m);
+// Closed and consistently oriented: each edge (of welded vertices) lies in two triangles with
+// opposite senses. *edge: a failing one, as two positions.
+bool cag_mesh_is_watertight(const CagMesh *m, CagVec3 edge[2]);
+long cag_mesh_euler_characteristic(const CagMesh *m); // of the welded mesh
+double cag_mesh_area(const CagMesh *m);
+void cag_mesh_volume_terms(const CagMesh *m, double terms[10]); // as cag_surface_volume_terms
+CagStatus cag_mesh_weld(const CagMesh *m, double tolerance, CagMesh **out,
+                        CagError *err); // vertices nearer than tolerance become one
+CagStatus cag_mesh_flip(const CagMesh *m, CagMesh **out, CagError *err);
+
+// Triangulates polygons with holes in the plane (GLU tessellator, odd rule): loops of 2-D points
+// given by counts. No point is added: a self-crossing input fails
+// ("polygon-self-intersection"). *out malloc'd: 3 indices per triangle into the points as given;
+// counter-clockwise.
+CagStatus cag_triangulate(const double *xy, const size_t *counts, size_t loops, uint32_t **out,
+                          size_t *n, CagError *err);
+
+#endif

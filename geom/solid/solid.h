@@ -1,0 +1,70 @@
+// Solids: closed bodies, as a primitive with its exact parameters or as closed shells of surfaces.
+//
+// A solid keeps how it was made (so that exporters can use native objects) and answers as a
+// boundary: `faces`, surfaces whose normals point outward. Immutable, reference counted. A
+// transform is applied to faces and kept beside the primitive.
+
+#ifndef CAG_GEOM_SOLID_H
+#define CAG_GEOM_SOLID_H
+
+#include "geom/surface/quadric.h"
+#include "geom/surface/surface.h"
+
+typedef enum CagSolidKind {
+  CAG_SOLID_BOX,        // size: a corner in the origin, or centered
+  CAG_SOLID_SPHERE,     // radius
+  CAG_SOLID_CYLINDER,   // height, radius, top: a cylinder, frustum or cone standing on z = 0
+  CAG_SOLID_TORUS,      // major, minor, about Z
+  CAG_SOLID_EXTRUSION,  // region along a vector, with twist and scale
+  CAG_SOLID_REVOLUTION, // closed region or profile that meets the axis, turned about an axis (full,
+                        // or partial with caps)
+  CAG_SOLID_TUBE,       // tube along a path with its caps
+  CAG_SOLID_SHELL       // closed surfaces given
+} CagSolidKind;
+
+typedef struct CagSolid {
+  int references;
+  CagSolidKind kind;
+  double a, b, c; // BOX size; SPHERE a; CYLINDER a = height, b = radius, c = top; TORUS a, b
+  bool centered;  // BOX
+  CagTransform placement; // from the primitive's own coordinates to the world
+  size_t face_count;
+  CagSurface **faces; // in the world; normals outward
+  // Edges shared by faces, for the mesh: face f's side (0: u0, 1: u1, 2: v0, 3: v1) or, of a planar
+  // face, its loop number from 4 on.
+  size_t edge_count;
+  struct CagSolidEdge {
+    size_t face[2];
+    int side[2];
+    bool reversed; // the second runs against the first
+  } * edges;
+} CagSolid;
+
+CagStatus cag_solid_box(CagVec3 size, bool centered, CagSolid **out, CagError *err);
+CagStatus cag_solid_sphere(double radius, CagSolid **out, CagError *err);
+CagStatus cag_solid_cylinder(double height, double radius, double top, CagSolid **out,
+                             CagError *err); // radius or top 0: a cone
+CagStatus cag_solid_torus(double major, double minor, CagSolid **out, CagError *err);
+// Region (dimension 2, in z = 0) along v, twisted and scaled about the z axis; outward whatever the
+// sense of v.
+CagStatus cag_solid_extrude(const CagRegion *r, CagVec3 v, double twist, double scale,
+                            CagSolid **out, CagError *err);
+// Region in the half plane x >= 0 (its [x, y] meaning [x, 0, y]) turned about the axis; partial
+// turns get caps.
+CagStatus cag_solid_revolve(const CagRegion *r, CagVec3 axis, CagVec3 through, double from,
+                            double to, CagSolid **out, CagError *err);
+CagStatus cag_solid_tube(const CagCurve *path, double radius, CagSolid **out, CagError *err);
+// Surfaces that together have no boundary (edges matched to 1e-6 of the size; else "solid-open"
+// with the gap); turned outward.
+CagStatus cag_solid_shell(CagSurface *const *faces, size_t n, CagSolid **out, CagError *err);
+
+CagSolid *cag_solid_retain(const CagSolid *s);
+void cag_solid_release(CagSolid *s);
+CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid **out,
+                              CagError *err);
+CagStatus cag_solid_bounds(const CagSolid *s, CagBounds *out, CagError *err);
+CagStatus cag_solid_mass(const CagSolid *s, CagMassProperties *out,
+                         CagError *err); // closed forms of primitives, else integrals over faces
+void cag_solid_describe(const CagSolid *s, char *buffer, size_t size); // "sphere, radius 10"
+
+#endif

@@ -1,0 +1,46 @@
+// How the geometry core reports errors: a status, and a CagError that carries the argument and the
+// element at fault.
+//
+// A function that can fail returns CagStatus and takes `CagError *err` last (never NULL). Outputs
+// are initialised only on CAG_OK. Nothing in geom/ prints, exits or keeps global state.
+
+#ifndef CAG_GEOM_STATUS_H
+#define CAG_GEOM_STATUS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef enum CagStatus {
+  CAG_OK,
+  CAG_E_ARGUMENT,   // a value that no geometry has: negative radius, too few points, knots that
+                    // decrease
+  CAG_E_DOMAIN,     // a parameter outside the domain
+  CAG_E_DEGENERATE, // the data are valid but the question has no answer: tangent of a point, normal
+                    // at a cusp
+  CAG_E_UNSUPPORTED, // the question is not one for this kind: exact NURBS of a helix
+  CAG_E_CONVERGENCE, // an iteration met its limit
+  CAG_E_LIMIT,       // a limit of the run (triangles) would be crossed
+  CAG_E_MEMORY,
+  CAG_E_CALLBACK // a function of the caller failed; it keeps its own error
+} CagStatus;
+
+typedef struct CagError {
+  CagStatus status;
+  const char *reason; // short name, a literal: "parameter-range", "knots-not-monotone"
+  char argument[32];  // the argument's name as the language has it: "knots"; empty: none
+  long index;         // offending element; -1: none
+  char message[400];  // what was expected and what was found, without the function's name: "`knots`
+                      // must not decrease: knots[5] = ..."
+} CagError;
+
+// Fills err and gives status back: `return cag_fail(err, CAG_E_ARGUMENT, "knots-not-monotone",
+// "knots", i, "...", ...)`.
+CagStatus cag_fail(CagError *err, CagStatus status, const char *reason, const char *argument,
+                   long index, const char *format, ...) __attribute__((format(printf, 6, 7)));
+CagStatus cag_fail_memory(CagError *err);
+
+// Shortest text of a double that reads back the same, for messages: buffer of at least 32 bytes;
+// gives buffer.
+const char *cag_number_text(double x, char *buffer);
+
+#endif
