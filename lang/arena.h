@@ -10,7 +10,8 @@ typedef struct CagArena {
   CagArenaBlock *first;
 } CagArena;
 
-// Zeroed memory, aligned for any type. Ends the process with a message when memory is out: a syntax tree is small beside its limits.
+// Zeroed memory, aligned for any type. Ends the process with a message when memory is out: a syntax
+// tree is small beside its limits.
 void *cag_arena_alloc(CagArena *a, size_t size);
 char *cag_arena_copy(CagArena *a, const char *bytes, size_t length); // NUL-terminated copy
 void cag_arena_free(CagArena *a);

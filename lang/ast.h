@@ -1,8 +1,8 @@
 // The syntax tree, as the parser builds it and the resolver annotates it.
 //
-// Everything lives in the arena of its CagModuleAst and dies with it. Names are NFC and interned in that arena: two equal names
-// of one tree are the same pointer. The tree keeps what was written (pipes, parentheses, units), so that the formatter can
-// give it back; nothing is desugared here.
+// Everything lives in the arena of its CagModuleAst and dies with it. Names are NFC and interned in
+// that arena: two equal names of one tree are the same pointer. The tree keeps what was written
+// (pipes, parentheses, units), so that the formatter can give it back; nothing is desugared here.
 
 #ifndef CAG_LANG_AST_H
 #define CAG_LANG_AST_H
@@ -16,10 +16,10 @@ typedef struct CagDecl CagDecl;
 typedef struct CagFunctionAst CagFunctionAst;
 
 typedef enum CagExprKind {
-  CAG_EXPR_NUMBER,        // number (a length unit is multiplied in already: 2.5cm is 25)
-  CAG_EXPR_ANGLE,         // number: degrees
-  CAG_EXPR_TEXT,          // text
-  CAG_EXPR_TEMPLATE,      // list: texts and expressions in turn
+  CAG_EXPR_NUMBER,   // number (a length unit is multiplied in already: 2.5cm is 25)
+  CAG_EXPR_ANGLE,    // number: degrees
+  CAG_EXPR_TEXT,     // text
+  CAG_EXPR_TEMPLATE, // list: texts and expressions in turn
   CAG_EXPR_TRUE,
   CAG_EXPR_FALSE,
   CAG_EXPR_NONE,
@@ -46,32 +46,42 @@ typedef enum CagExprKind {
 } CagExprKind;
 
 typedef enum CagBinaryOp {
-  CAG_OP_ADD, CAG_OP_SUBTRACT, CAG_OP_MULTIPLY, CAG_OP_DIVIDE, CAG_OP_MODULO, CAG_OP_POWER,
+  CAG_OP_ADD,
+  CAG_OP_SUBTRACT,
+  CAG_OP_MULTIPLY,
+  CAG_OP_DIVIDE,
+  CAG_OP_MODULO,
+  CAG_OP_POWER,
   CAG_OP_UNION,        // |
   CAG_OP_INTERSECTION, // &
-  CAG_OP_EQUAL, CAG_OP_NOT_EQUAL, CAG_OP_LESS, CAG_OP_LESS_EQUAL, CAG_OP_GREATER, CAG_OP_GREATER_EQUAL,
+  CAG_OP_EQUAL,
+  CAG_OP_NOT_EQUAL,
+  CAG_OP_LESS,
+  CAG_OP_LESS_EQUAL,
+  CAG_OP_GREATER,
+  CAG_OP_GREATER_EQUAL,
   CAG_OP_IN
 } CagBinaryOp;
 
 typedef struct CagArgument {
-  const char *name;  // NULL: by position
+  const char *name; // NULL: by position
   CagSpan name_span;
   CagExpr *value;
 } CagArgument;
 
 typedef struct CagField {
-  const char *name;  // NULL: a spread, its operand in value
+  const char *name; // NULL: a spread, its operand in value
   CagSpan name_span;
   CagExpr *value;
 } CagField;
 
 // One `x in xs if c` or `[a, b] in xs if c` of a comprehension.
 typedef struct CagClause {
-  CagDecl **names;   // one, or the names of the pattern; NULL entries stand for `_`
+  CagDecl **names; // one, or the names of the pattern; NULL entries stand for `_`
   size_t name_count;
-  bool pattern;      // written with [ ]
+  bool pattern; // written with [ ]
   CagExpr *source;
-  CagExpr *filter;   // NULL: none
+  CagExpr *filter; // NULL: none
   CagSpan span;
 } CagClause;
 
@@ -92,27 +102,28 @@ struct CagDecl {
   CagDeclKind kind;
   const char *name;
   CagSpan span;            // of the name
-  CagFunctionAst *owner;   // innermost function around it; NULL at the top level of the module (set by the resolver)
+  CagFunctionAst *owner;   // innermost function around it; NULL at the top level of the module (set
+                           // by the resolver)
   CagStatement *statement; // TOP, BLOCK, IMPORT, IMPORTED: where it is said
-  size_t index;            // TOP: its number among the module's tops; free for the compiler's use otherwise
+  size_t index; // TOP: its number among the module's tops; free for the compiler's use otherwise
   bool used;
-  const char *doc;         // TOP: text of the /// lines before it; NULL: none
+  const char *doc; // TOP: text of the /// lines before it; NULL: none
 };
 
 typedef struct CagParameter {
-  CagDecl *decl;           // its name may be `_`
-  CagExpr *fallback;       // the default; NULL: none
+  CagDecl *decl;     // its name may be `_`
+  CagExpr *fallback; // the default; NULL: none
 } CagParameter;
 
 // The body of a lambda or of a definition with parameters.
 struct CagFunctionAst {
-  const char *name;        // of the definition; NULL: a lambda
+  const char *name; // of the definition; NULL: a lambda
   CagParameter *parameters;
   size_t parameter_count, required_count;
   CagExpr *body;
   CagSpan span;
-  CagFunctionAst *outer;   // innermost function around it (set by the resolver)
-  CagDecl *self;           // BLOCK function definitions: the name that the body may call; NULL otherwise
+  CagFunctionAst *outer; // innermost function around it (set by the resolver)
+  CagDecl *self; // BLOCK function definitions: the name that the body may call; NULL otherwise
 };
 
 // What a NAME was found to mean (set by the resolver).
@@ -128,25 +139,70 @@ struct CagExpr {
   CagSpan span;
   union {
     double number;
-    struct { const char *bytes; size_t length; } text;
-    struct { const char *id; CagBinding binding; CagDecl *decl; size_t index; } name;
-    struct { CagExpr **items; size_t count; } list;
-    struct { CagClause *clauses; size_t count; CagExpr *body; } comprehension;
-    struct { CagField *fields; size_t count; } record;
-    struct { CagStatement **statements; size_t count; CagExpr *value; } block;
+    struct {
+      const char *bytes;
+      size_t length;
+    } text;
+    struct {
+      const char *id;
+      CagBinding binding;
+      CagDecl *decl;
+      size_t index;
+    } name;
+    struct {
+      CagExpr **items;
+      size_t count;
+    } list;
+    struct {
+      CagClause *clauses;
+      size_t count;
+      CagExpr *body;
+    } comprehension;
+    struct {
+      CagField *fields;
+      size_t count;
+    } record;
+    struct {
+      CagStatement **statements;
+      size_t count;
+      CagExpr *value;
+    } block;
     CagFunctionAst *function;
-    struct { CagExpr *condition, *then, *otherwise; } branch;
-    struct { CagExpr *operand; } unary;
-    struct { CagBinaryOp op; CagSpan op_span; CagExpr *left, *right; } binary;
-    struct { CagExpr *low, *high, *step; bool open; } range;  // step NULL: none; open: ..<
-    struct { CagExpr *callee; CagArgument *arguments; size_t count; } call;
-    struct { CagExpr *object; const char *name; CagSpan name_span; } member;
+    struct {
+      CagExpr *condition, *then, *otherwise;
+    } branch;
+    struct {
+      CagExpr *operand;
+    } unary;
+    struct {
+      CagBinaryOp op;
+      CagSpan op_span;
+      CagExpr *left, *right;
+    } binary;
+    struct {
+      CagExpr *low, *high, *step;
+      bool open;
+    } range; // step NULL: none; open: ..<
+    struct {
+      CagExpr *callee;
+      CagArgument *arguments;
+      size_t count;
+    } call;
+    struct {
+      CagExpr *object;
+      const char *name;
+      CagSpan name_span;
+    } member;
   } as;
 };
 
 typedef enum CagStatementKind {
-  CAG_STATEMENT_IMPORT, CAG_STATEMENT_PARAM, CAG_STATEMENT_DEFINITION,
-  CAG_STATEMENT_SHOW, CAG_STATEMENT_PRINT, CAG_STATEMENT_ASSERT,
+  CAG_STATEMENT_IMPORT,
+  CAG_STATEMENT_PARAM,
+  CAG_STATEMENT_DEFINITION,
+  CAG_STATEMENT_SHOW,
+  CAG_STATEMENT_PRINT,
+  CAG_STATEMENT_ASSERT,
   CAG_STATEMENT_EXPRESSION // only where cag_parse is told to allow it: the REPL and `cag eval`
 } CagStatementKind;
 
@@ -161,19 +217,31 @@ struct CagStatement {
   const char *doc;
   union {
     struct {
-      const char *path;        // dotted name ("std.materials") or the text
+      const char *path; // dotted name ("std.materials") or the text
       bool is_text;
       CagSpan path_span;
-      CagDecl *decl;           // binds the module; NULL with `: a, b` and no `as`
-      const char *alias;       // the name after `as`; NULL: none
+      CagDecl *decl;     // binds the module; NULL with `: a, b` and no `as`
+      const char *alias; // the name after `as`; NULL: none
       CagImportName *names;
       size_t name_count;
-      size_t module;           // number of the imported module, set by the loader
+      size_t module; // number of the imported module, set by the loader
     } import;
-    struct { CagDecl *decl; CagExpr *value, *domain; const char *label; } param;  // domain: after `in`; may be NULL
-    struct { CagDecl *decl; CagExpr *value; } definition;  // with parameters: value is a LAMBDA whose function has a name
-    struct { CagExpr **items; size_t count; } list;        // SHOW, PRINT
-    struct { CagExpr *condition, *message; } assertion;    // message may be NULL
+    struct {
+      CagDecl *decl;
+      CagExpr *value, *domain;
+      const char *label;
+    } param; // domain: after `in`; may be NULL
+    struct {
+      CagDecl *decl;
+      CagExpr *value;
+    } definition; // with parameters: value is a LAMBDA whose function has a name
+    struct {
+      CagExpr **items;
+      size_t count;
+    } list; // SHOW, PRINT
+    struct {
+      CagExpr *condition, *message;
+    } assertion; // message may be NULL
     CagExpr *expression;
   } as;
 };
@@ -189,7 +257,7 @@ typedef struct CagModuleAst {
   const CagSource *source;
   CagStatement **statements;
   size_t count;
-  CagDecl **tops;           // definitions and params in the order of the file (set by the parser)
+  CagDecl **tops; // definitions and params in the order of the file (set by the parser)
   size_t top_count;
   CagComment *comments;
   size_t comment_count;

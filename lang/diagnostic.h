@@ -1,7 +1,8 @@
 // Diagnostics: what is said about a script, where, and how to mend it.
 //
-// Every kind of error is a row of errors.def: a stable code, a short name, and its explanation. A diagnostic is plain
-// data; `cag_diagnostic_render` makes the text a person reads, or one line of JSON.
+// Every kind of error is a row of errors.def: a stable code, a short name, and its explanation. A
+// diagnostic is plain data; `cag_diagnostic_render` makes the text a person reads, or one line of
+// JSON.
 
 #ifndef CAG_LANG_DIAGNOSTIC_H
 #define CAG_LANG_DIAGNOSTIC_H
@@ -31,29 +32,36 @@ const CagErrorInfo *cag_error_info(CagErrorId id);
 CagErrorId cag_error_by_code(const char *code);
 CagErrorId cag_error_by_reason(const char *reason);
 
-typedef enum CagSeverity { CAG_SEVERITY_ERROR, CAG_SEVERITY_WARNING, CAG_SEVERITY_NOTE } CagSeverity;
+typedef enum CagSeverity {
+  CAG_SEVERITY_ERROR,
+  CAG_SEVERITY_WARNING,
+  CAG_SEVERITY_NOTE
+} CagSeverity;
 
-// A further place: a call of the chain ("called from", in `text` the function's name) or a related definition.
+// A further place: a call of the chain ("called from", in `text` the function's name) or a related
+// definition.
 typedef struct CagNote {
   enum { CAG_NOTE_CALL, CAG_NOTE_TAIL_CALL, CAG_NOTE_RELATED, CAG_NOTE_OMITTED } kind;
   const CagSource *source; // NULL: no place
   CagSpan span;
-  char *text;              // CALL: the function; RELATED: "first defined here"; OMITTED: "9 980 more calls"
+  char *text; // CALL: the function; RELATED: "first defined here"; OMITTED: "9 980 more calls"
 } CagNote;
 
 typedef struct CagDiagnostic {
   CagSeverity severity;
   CagErrorId id;
-  char *message;           // "sin expects an angle, found the number 30"
-  char *help;              // the mend, shown behind the carets: "write 30deg or 30rad"; NULL: none
-  char *reason;            // short name of a geometry error where it differs from the table's row; NULL: the row's
+  char *message; // "sin expects an angle, found the number 30"
+  char *help;    // the mend, shown behind the carets: "write 30deg or 30rad"; NULL: none
+  char *reason;  // short name of a geometry error where it differs from the table's row; NULL: the
+                 // row's
   const CagSource *source; // NULL: the error has no place in a script
   CagSpan span;
   CagNote *notes;
   size_t note_count, note_capacity;
 } CagDiagnostic;
 
-// A list of diagnostics that a parse or a run fills. At most CAG_DIAGNOSTICS_MAX errors are kept; `dropped` counts the others.
+// A list of diagnostics that a parse or a run fills. At most CAG_DIAGNOSTICS_MAX errors are kept;
+// `dropped` counts the others.
 #define CAG_DIAGNOSTICS_MAX 20
 typedef struct CagDiagnostics {
   CagDiagnostic *items;
@@ -64,23 +72,30 @@ typedef struct CagDiagnostics {
 void cag_diagnostics_free(CagDiagnostics *d);
 void cag_diagnostics_clear(CagDiagnostics *d);
 
-// Adds an error with a printf-made message. The pointer stays valid until the next add. When the list is full or memory is out,
-// gives a scratch diagnostic that is thrown away, never NULL.
-CagDiagnostic *cag_diagnostics_add(CagDiagnostics *d, CagErrorId id, const CagSource *source, CagSpan span,
-                                   const char *format, ...) __attribute__((format(printf, 5, 6)));
-void cag_diagnostic_set_help(CagDiagnostic *d, const char *format, ...) __attribute__((format(printf, 2, 3)));
+// Adds an error with a printf-made message. The pointer stays valid until the next add. When the
+// list is full or memory is out, gives a scratch diagnostic that is thrown away, never NULL.
+CagDiagnostic *cag_diagnostics_add(CagDiagnostics *d, CagErrorId id, const CagSource *source,
+                                   CagSpan span, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+void cag_diagnostic_set_help(CagDiagnostic *d, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 void cag_diagnostic_add_note(CagDiagnostic *d, int kind, const CagSource *source, CagSpan span,
                              const char *format, ...) __attribute__((format(printf, 5, 6)));
 // Moves what `from` holds to the end of `to`, leaving `from` empty.
 void cag_diagnostics_move(CagDiagnostics *to, CagDiagnostics *from);
 
-typedef enum CagDiagnosticStyle { CAG_DIAGNOSTIC_TEXT, CAG_DIAGNOSTIC_COLOR, CAG_DIAGNOSTIC_JSON } CagDiagnosticStyle;
+typedef enum CagDiagnosticStyle {
+  CAG_DIAGNOSTIC_TEXT,
+  CAG_DIAGNOSTIC_COLOR,
+  CAG_DIAGNOSTIC_JSON
+} CagDiagnosticStyle;
 
 // Writes a diagnostic as in section 6 of the language, or as one JSON object on one line.
 void cag_diagnostic_render(const CagDiagnostic *d, CagDiagnosticStyle style, FILE *out);
 void cag_diagnostics_render(const CagDiagnostics *d, CagDiagnosticStyle style, FILE *out);
 
-// The candidate nearest to `name` by edit distance (at most a third of its length, one at least), or NULL.
+// The candidate nearest to `name` by edit distance (at most a third of its length, one at least),
+// or NULL.
 const char *cag_nearest_name(const char *name, const char *const *candidates, size_t count);
 
 #endif

@@ -13,12 +13,13 @@ typedef enum CagParseMode {
 // Brackets nest at most so deep (language, section 8).
 #define CAG_MAX_NESTING 1000
 
-// Parses a source. Always gives a tree (release with cag_module_ast_free); errors go to `errors`, up to 20 of them, and the tree then
-// has ERROR expressions where nothing could be read.
+// Parses a source. Always gives a tree (release with cag_module_ast_free); errors go to `errors`,
+// up to 20 of them, and the tree then has ERROR expressions where nothing could be read.
 CagModuleAst *cag_parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors);
 void cag_module_ast_free(CagModuleAst *m);
 
-// Whether a REPL text asks for another line: an open bracket, text or comment, or an operator at the end.
+// Whether a REPL text asks for another line: an open bracket, text or comment, or an operator at
+// the end.
 bool cag_parse_incomplete(const char *text, size_t length);
 
 // How the resolver learns names that are not in the file.
@@ -33,13 +34,15 @@ typedef struct CagResolveEnv {
   size_t (*find_outer)(void *context, const char *name);
   const char *const *outer_names;
   size_t outer_count;
-  // Whether the module that import statement s refers to defines the public name; `names` (may be NULL) receives all its public names
-  // for a hint. NULL: not checked.
-  bool (*module_has)(void *context, const CagStatement *s, const char *name, const char *const **names, size_t *count);
+  // Whether the module that import statement s refers to defines the public name; `names` (may be
+  // NULL) receives all its public names for a hint. NULL: not checked.
+  bool (*module_has)(void *context, const CagStatement *s, const char *name,
+                     const char *const **names, size_t *count);
 } CagResolveEnv;
 
-// Binds every NAME of the tree, sets owners and selves, and reports unknown names (with the nearest), names defined twice, names that hide
-// one of an inner scope around them, imported names that are not there, `m.x` of an imported module that has no x.
+// Binds every NAME of the tree, sets owners and selves, and reports unknown names (with the
+// nearest), names defined twice, names that hide one of an inner scope around them, imported names
+// that are not there, `m.x` of an imported module that has no x.
 void cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *errors);
 
 #endif

@@ -1,7 +1,7 @@
 // Source texts: the bytes of one script, and the way from a byte offset to line and column.
 //
-// A source is checked to be valid UTF-8 when it is made. Spans are byte offsets into it; lines and columns (code
-// points, from 1) are computed only when a message needs them.
+// A source is checked to be valid UTF-8 when it is made. Spans are byte offsets into it; lines and
+// columns (code points, from 1) are computed only when a message needs them.
 
 #ifndef CAG_LANG_SOURCE_H
 #define CAG_LANG_SOURCE_H
@@ -16,10 +16,10 @@ typedef struct CagSpan {
 } CagSpan;
 
 typedef struct CagSource {
-  char *name;       // as messages show it: the path as the user gave it, "<repl>", "std.materials"
-  char *text;       // NUL-terminated, `length` bytes before the NUL
-  size_t length;    // at most CAG_SOURCE_MAX
-  uint32_t *lines;  // offset of each line's first byte
+  char *name;      // as messages show it: the path as the user gave it, "<repl>", "std.materials"
+  char *text;      // NUL-terminated, `length` bytes before the NUL
+  size_t length;   // at most CAG_SOURCE_MAX
+  uint32_t *lines; // offset of each line's first byte
   size_t line_count;
 } CagSource;
 
@@ -30,7 +30,8 @@ typedef struct CagPosition {
   size_t line, column; // from 1; the column counts code points
 } CagPosition;
 
-// Makes a source of a copy of text. NULL when memory is out. Does not check UTF-8 (see cag_source_bad_utf8).
+// Makes a source of a copy of text. NULL when memory is out. Does not check UTF-8 (see
+// cag_source_bad_utf8).
 CagSource *cag_source_new(const char *name, const char *text, size_t length);
 void cag_source_free(CagSource *s);
 
