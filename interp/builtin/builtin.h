@@ -1,13 +1,18 @@
-// Built-in functions: one table row each, from which dispatch, arity checks, documentation, completion and `cag doc` are made.
+// Built-in functions: one table row each, from which dispatch, arity checks, documentation,
+// completion and `cag doc` are made.
 //
-// A row's signature is text in the language of the documentation and is parsed once when the machine starts:
+// A row's signature is text in the language of the documentation and is parsed once when the
+// machine starts:
 //
 //     "revolve(C, axis = Z, through = origin, angle = 0deg..360deg)"
 //
-// Parameters with `= default` may be left out; the function then sees CAG_UNSET and supplies the default that the text promises. A parameter named with a single capital (C,
-// P, V, T, G, S, A, B, Q, R) goes by position only; others by position or name. `...` as last parameter: any number of further positional arguments. One name
-// may serve several types of first argument: it then has several rows, and the first whose `accepts` takes the arguments is called. All built-ins of a family stand in
-// one file and are declared as an array `const CagBuiltin cag_builtins_NAME[]` ending with an empty row; builtins.c lists the arrays.
+// Parameters with `= default` may be left out; the function then sees CAG_UNSET and supplies the
+// default that the text promises. A parameter named with a single capital (C, P, V, T, G, S, A, B,
+// Q, R) goes by position only; others by position or name. `...` as last parameter: any number of
+// further positional arguments. One name may serve several types of first argument: it then has
+// several rows, and the first whose `accepts` takes the arguments is called. All built-ins of a
+// family stand in one file and are declared as an array `const CagBuiltin cag_builtins_NAME[]`
+// ending with an empty row; builtins.c lists the arrays.
 
 #ifndef CAG_INTERP_BUILTIN_H
 #define CAG_INTERP_BUILTIN_H
@@ -16,13 +21,13 @@
 #include "interp/value/value.h"
 #include "lang/diagnostic.h"
 
-// Arguments of one call. Given ones stand in `values` by parameter order; parameters left out are CAG_UNSET. With `...`, further ones follow: values[parameter_count ..
-// count).
+// Arguments of one call. Given ones stand in `values` by parameter order; parameters left out are
+// CAG_UNSET. With `...`, further ones follow: values[parameter_count .. count).
 typedef struct CagCall {
   CagVm *vm;
   const struct CagBuiltin *builtin;
   CagValue *values;
-  size_t count;      // at least the number of named parameters
+  size_t count; // at least the number of named parameters
 } CagCall;
 
 typedef bool (*CagBuiltinFunction)(CagCall *call, CagValue *result); // false: an error was set
@@ -30,26 +35,32 @@ typedef bool (*CagBuiltinFunction)(CagCall *call, CagValue *result); // false: a
 typedef struct CagBuiltin {
   const char *signature; // "sin(angle)"
   CagBuiltinFunction function;
-  const char *result;    // "number"
-  const char *summary;   // what it computes, units, errors: some sentences
-  const char *example;   // a script; lines with `// expect:` are checked by the tests
-  // Types of the first argument that this row serves, as bits (1 << CAG_NUMBER ...); 0: any. Rows of one name are tried in order.
+  const char *result;  // "number"
+  const char *summary; // what it computes, units, errors: some sentences
+  const char *example; // a script; lines with `// expect:` are checked by the tests
+  // Types of the first argument that this row serves, as bits (1 << CAG_NUMBER ...); 0: any. Rows
+  // of one name are tried in order.
   uint64_t first;
-  const char *family;    // heading of the documentation: "Numbers", "Curves"
+  const char *family; // heading of the documentation: "Numbers", "Curves"
 } CagBuiltin;
 
-// --- Errors: set the machine's error (the place is the call, or the argument where `argument` >= 0 and the call's source gives it) and give false ---
-// `message` begins after the function's name: cag_fail_call(call, 0, CAG_ERR_type, "expects an angle, found %s") makes "sin expects an angle, found the number 30".
+// --- Errors: set the machine's error (the place is the call, or the argument where `argument` >= 0
+// and the call's source gives it) and give false --- `message` begins after the function's name:
+// cag_fail_call(call, 0, CAG_ERR_type, "expects an angle, found %s") makes "sin expects an angle,
+// found the number 30".
 bool cag_fail_call(CagCall *call, int argument, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 // The same with the mend that stands behind the carets. Call after the failure was set.
 bool cag_fail_help(CagVm *vm, const char *format, ...) __attribute__((format(printf, 2, 3)));
-// A geometry error: "bspline: `knots` must not decrease: ...", code by its reason; underlines the argument that err names when the call has one.
+// A geometry error: "bspline: `knots` must not decrease: ...", code by its reason; underlines the
+// argument that err names when the call has one.
 bool cag_fail_geometry(CagCall *call, const CagError *err);
-// "NAME expects EXPECTED as `PARAMETER`, found FOUND" (of a first or only argument: "sin expects an angle, found the number 30"), code E0301 (type).
+// "NAME expects EXPECTED as `PARAMETER`, found FOUND" (of a first or only argument: "sin expects an
+// angle, found the number 30"), code E0301 (type).
 bool cag_fail_type(CagCall *call, int argument, const char *expected);
 
-// --- Reading arguments. Each gives false with the error set. `argument` is the parameter's index. Unset ones take the default given (…_or). ---
+// --- Reading arguments. Each gives false with the error set. `argument` is the parameter's index.
+// Unset ones take the default given (…_or). ---
 bool cag_given(const CagCall *call, int argument);
 bool cag_arg_number(CagCall *call, int argument, double *out);
 bool cag_arg_number_or(CagCall *call, int argument, double fallback, double *out);
@@ -57,7 +68,8 @@ bool cag_arg_finite(CagCall *call, int argument, double *out);
 bool cag_arg_positive(CagCall *call, int argument, double *out); // > 0 and finite
 bool cag_arg_integer(CagCall *call, int argument, long low, long high, long *out);
 bool cag_arg_integer_or(CagCall *call, int argument, long fallback, long low, long high, long *out);
-bool cag_arg_angle(CagCall *call, int argument, double *radians); // exact special angles survive cag_sincos
+bool cag_arg_angle(CagCall *call, int argument,
+                   double *radians); // exact special angles survive cag_sincos
 bool cag_arg_angle_or(CagCall *call, int argument, double fallback, double *radians);
 bool cag_arg_degrees(CagCall *call, int argument, double *degrees);
 bool cag_arg_bool_or(CagCall *call, int argument, bool fallback, bool *out);
@@ -72,7 +84,8 @@ bool cag_arg_vec(CagCall *call, int argument, CagVec3 *out, int *dimension);
 bool cag_arg_vec_or(CagCall *call, int argument, CagVec3 fallback, CagVec3 *out, int *dimension);
 // A list of points of one dimension; *out is malloc'd (n >= 1), to be freed by the caller.
 bool cag_arg_points(CagCall *call, int argument, CagVec3 **out, size_t *n, int *dimension);
-bool cag_arg_numbers(CagCall *call, int argument, const double **out, size_t *n); // a list of numbers; *out lives as long as the argument
+bool cag_arg_numbers(CagCall *call, int argument, const double **out,
+                     size_t *n); // a list of numbers; *out lives as long as the argument
 // An interval: numbers or angles (degrees); a range's start and end.
 bool cag_arg_interval(CagCall *call, int argument, double *start, double *end, bool *angle);
 bool cag_arg_transform(CagCall *call, int argument, CagTransform *out);
@@ -80,18 +93,53 @@ bool cag_arg_curve(CagCall *call, int argument, CagCurve **out);     // borrowed
 bool cag_arg_surface(CagCall *call, int argument, CagSurface **out); // borrowed
 bool cag_arg_shape(CagCall *call, int argument, CagShape **out);     // any shape
 
-// Calls a function of the script (or a built-in) from a built-in. A safe point: root what must survive.
+// Calls a function of the script (or a built-in) from a built-in. A safe point: root what must
+// survive.
 bool cag_call(CagVm *vm, CagValue function, const CagValue *arguments, size_t n, CagValue *result);
-// Call to be made in long loops of C code: false when interrupted or the time limit is crossed (error set).
+// Call to be made in long loops of C code: false when interrupted or the time limit is crossed
+// (error set).
 bool cag_keep_going(CagVm *vm);
 
 // --- The table ---
-size_t cag_builtin_count(void);                        // of names
-size_t cag_builtin_find(const char *name);             // (size_t)-1: none
+size_t cag_builtin_count(void);            // of names
+size_t cag_builtin_find(const char *name); // (size_t)-1: none
 const char *cag_builtin_name(size_t index);
 const CagBuiltin *cag_builtin_rows(size_t index, size_t *rows); // the rows of that name
 const char *const *cag_builtin_names(void);
-// Constants that are no functions: X Y Z origin identity pi tau inf deg rad turn mm cm ... ; CAG_UNSET when the built-in is a function.
+
+// A row's signature, parsed. All signatures are parsed together when the first is asked for and
+// never change afterwards.
+typedef struct CagSignature {
+  const char *name;
+  size_t count;            // parameters; `...` is not one of them
+  size_t required;         // parameters without default; they come first
+  const char **parameters; // names
+  const char **defaults;   // the default's text, NULL where there is none
+  bool *positional_only;   // a single capital: by position only
+  bool variadic;           // `...`: any number of further arguments by position
+} CagSignature;
+// NULL for a constant.
+const CagSignature *cag_builtin_signature(size_t index, size_t row);
+// The row that serves a call with this first argument by position (CAG_UNSET: none is by position)
+// and so many arguments by position: the first whose mask takes the type and that has room for so
+// many, else the first whose mask takes the type. (size_t)-1: no row serves the type.
+size_t cag_builtin_select(size_t index, CagType first, size_t positional);
+// Adds the types that a name serves, for messages: "a list, a curve or a transform".
+void cag_builtin_served(size_t index, CagString *out);
+
+// --- What the machine does for single built-ins ---
+// Reads a whole file below the allowed folders. *bytes is malloc'd, with a NUL behind its n bytes.
+// False: error set.
+bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **bytes, size_t *n);
+// Compiles one expression of built-in names, `(a, t) => a * t`, and gives its value.
+bool cag_vm_compile_lambda(CagVm *vm, const char *source, CagValue *out);
+// f(), or handler(err) when f stops with an error that is no limit of the run.
+bool cag_vm_attempt(CagCall *call, CagValue f, CagValue handler, CagValue *result);
+// Writes the value, with the call's place and the label where it is not empty, to standard error.
+void cag_vm_trace(CagCall *call, CagValue value, const char *label);
+
+// Constants that are no functions: X Y Z origin identity pi tau inf deg rad turn mm cm ... ;
+// CAG_UNSET when the built-in is a function.
 CagValue cag_builtin_constant(CagVm *vm, size_t index);
 
 #endif
