@@ -1,0 +1,135 @@
+// What a script shows, as plain data: the hand-over from the interpreter to exporters and
+// renderers.
+//
+// A scene owns what it points to: texts are copies, geometry is retained. Positions are world
+// coordinates in millimetres, Z up; angles radians; colours linear RGB. Nothing here knows of
+// values of the language.
+
+#ifndef CAG_INTERP_SCENE_H
+#define CAG_INTERP_SCENE_H
+
+#include "geom/curve/curve.h"
+#include "geom/curve/region.h"
+#include "geom/mesh/mesh.h"
+#include "geom/mesh/tessellate.h"
+#include "geom/solid/solid.h"
+#include "geom/surface/surface.h"
+
+typedef struct CagColor {
+  double r, g, b; // linear light
+} CagColor;
+
+// Colour from "teal" (CSS names), "#0a8", "#00aa88": sRGB, made linear. False: no such colour.
+bool cag_color_from_text(const char *text, CagColor *out);
+double cag_srgb_to_linear(double c);
+double cag_linear_to_srgb(double c);
+
+typedef struct CagMaterial {
+  char *name; // for .mtl and comments; never NULL
+  CagColor color;
+  double metallic;     // 0..1
+  double roughness;    // 0..1
+  double ior;          // 1.5
+  double transmission; // 0..1: share of light that passes
+  CagColor emission;
+  double coat;     // 0..1: clear glaze over the base
+  char *texture;   // "" | "wood" | "marble" | "concrete" | "clay" ...: procedural pattern of the
+                   // engines; never NULL
+  CagColor color2; // second colour of the pattern
+  double texture_scale; // mm
+  char *pov;            // POV-Ray texture text for that engine only; NULL: none
+} CagMaterial;
+
+typedef enum CagItemKind {
+  CAG_ITEM_CURVE,
+  CAG_ITEM_REGION,
+  CAG_ITEM_SURFACE,
+  CAG_ITEM_SOLID,
+  CAG_ITEM_MESH,
+  CAG_ITEM_GROUND
+} CagItemKind;
+
+// One thing to draw; groups are taken apart. Names are unique within the scene ("vase", "vase.2").
+typedef struct CagItem {
+  CagItemKind kind;
+  char *name;
+  union {
+    CagCurve *curve;
+    CagRegion *region;
+    CagSurface *surface;
+    CagSolid *solid;
+    CagMesh *mesh;
+  } as;
+  CagTransform placement;       // REGION only: where its plane lies
+  size_t material;              // index into materials
+  double tolerance;             // mm; 0: the scene's
+  double line_radius;           // CURVE: 0: by the size of the scene
+  double dash;                  // CURVE: length of dashes in mm; 0: none
+  double ground_z, ground_size; // GROUND; size may be infinite
+} CagItem;
+
+typedef struct CagCamera {
+  char *name;
+  CagVec3 eye, target, up; // up square to the view
+  bool orthographic;
+  double fov;             // horizontal, radians (perspective)
+  double width;           // mm (orthographic)
+  int size[2];            // pixels
+  double focus, aperture; // mm; aperture 0: everything is sharp
+} CagCamera;
+
+typedef enum CagLightKind {
+  CAG_LIGHT_SUN,
+  CAG_LIGHT_POINT,
+  CAG_LIGHT_SPOT,
+  CAG_LIGHT_AREA
+} CagLightKind;
+typedef struct CagLight {
+  CagLightKind kind;
+  CagVec3 position, direction; // direction: the way the light goes (unit)
+  double angle;                // SPOT: full cone, radians
+  double size;                 // AREA: side of its square, mm
+  CagColor color;
+  double strength; // 1: a white matte face square to it looks white
+} CagLight;
+
+typedef struct CagSky {
+  size_t color_count; // colours from below to above; 0: none
+  CagColor *colors;
+  char *image; // path of an EXR; NULL: none
+} CagSky;
+
+typedef struct CagScene {
+  CagItem *items;
+  size_t item_count;
+  CagMaterial *materials;
+  size_t material_count; // 0 is the default material
+  CagCamera *cameras;
+  size_t camera_count; // after cag_scene_complete at least one
+  CagLight *lights;
+  size_t light_count;
+  CagSky sky;
+  bool has_background;
+  CagColor background;
+  CagBounds bounds; // of all items except grounds
+  double tolerance; // mm: for items that say none; 0: by size of each
+  size_t max_triangles;
+  bool studio; // the studio set-up was added: no light was shown
+  bool automatic_camera;
+  char *script; // name of the script, for metadata
+  const volatile int *interrupt;
+} CagScene;
+
+void cag_scene_free(CagScene *s);
+// Adds what is missing: a camera that frames everything (unless there is one), the studio light
+// (unless there is a light or a sky that lights). Computes bounds.
+CagStatus cag_scene_complete(CagScene *s, CagError *err);
+// Camera to world: columns x (right), y (down), z (view), origin.
+CagTransform cag_camera_frame(const CagCamera *c);
+CagMaterial cag_material_default(void);
+
+// Mesh of one item at its tolerance (curves as tubes of their line radius, regions flat); *out has
+// one reference.
+CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err);
+
+#endif
