@@ -1,0 +1,27 @@
+// From the values that a script shows to a scene.
+
+#ifndef CAG_INTERP_SCENE_BUILD_H
+#define CAG_INTERP_SCENE_BUILD_H
+
+#include "interp/scene/scene.h"
+#include "interp/value/value.h"
+#include "lang/source.h"
+
+// One value of a `show` statement, in the order of the file.
+typedef struct CagShown {
+  CagValue value;
+  const char *name; // the shown expression when it is a name, else NULL
+  const CagSource *source;
+  CagSpan span;
+} CagShown;
+
+// Takes lists and groups apart into items, cameras, lights and settings. What was shown without a
+// name gets one of its kind ("curve", "box" ...); names are unique. The scene has neither automatic
+// camera nor studio light yet: see cag_scene_complete. False: error set (E0327 for a value that
+// cannot be shown), and *out is empty.
+bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene *out);
+
+// A value that can be shown: a shape, camera, light, setting, robot, or a list of these.
+bool cag_value_is_shown(CagValue v);
+
+#endif
