@@ -1,0 +1,92 @@
+// Facts in the header of an EXR file: the list of them.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/render/exr.h"
+
+// Attributes that describe how the file is stored: the library writes them.
+static const char *const RESERVED[] = {
+    "channels",           "chunkCount",         "compression", "dataWindow", "displayWindow",
+    "lineOrder",          "maxSamplesPerPixel", "name",        "preview",    "pixelAspectRatio",
+    "screenWindowCenter", "screenWindowWidth",  "tiles",       "type",       "version",
+};
+
+bool cag_exr_name_is_reserved(const char *name) {
+  for (size_t i = 0; i < sizeof RESERVED / sizeof *RESERVED; i++)
+    if (!strcmp(name, RESERVED[i])) return true;
+  return false;
+}
+
+// The entry of that name, made if it is not there, emptied if it is.
+static CagExrAttribute *entry(CagExrMetadata *m, const char *name, CagIoError *err) {
+  size_t length = strlen(name);
+  if (!length || length > CAG_IMAGE_NAME_MAX || cag_exr_name_is_reserved(name)) {
+    cag_io_error_set(err, CAG_EXIT_USAGE, "choose a name of 1 to 255 bytes that EXR does not use",
+                     "'%s' cannot be the name of an EXR attribute", name);
+    return NULL;
+  }
+  for (size_t i = 0; i < m->count; i++) {
+    if (strcmp(m->items[i].name, name) != 0) continue;
+    free(m->items[i].text);
+    m->items[i].text = NULL;
+    return &m->items[i];
+  }
+  if (m->count == m->capacity) {
+    size_t capacity = m->capacity ? 2 * m->capacity : 16;
+    CagExrAttribute *items = realloc(m->items, capacity * sizeof *items);
+    if (!items) {
+      cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
+      return NULL;
+    }
+    m->items = items;
+    m->capacity = capacity;
+  }
+  CagExrAttribute *a = &m->items[m->count++];
+  *a = (CagExrAttribute){0};
+  memcpy(a->name, name, length + 1);
+  return a;
+}
+
+bool cag_exr_metadata_text(CagExrMetadata *m, const char *name, const char *text, CagIoError *err) {
+  char *copy = strdup(text);
+  CagExrAttribute *a = copy ? entry(m, name, err) : NULL;
+  if (!a) {
+    if (!copy)
+      cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
+    free(copy);
+    return false;
+  }
+  a->kind = CAG_EXR_TEXT;
+  a->text = copy;
+  return true;
+}
+
+bool cag_exr_metadata_number(CagExrMetadata *m, const char *name, double number, CagIoError *err) {
+  CagExrAttribute *a = entry(m, name, err);
+  if (!a) return false;
+  a->kind = CAG_EXR_NUMBER;
+  a->number = number;
+  return true;
+}
+
+bool cag_exr_metadata_matrix(CagExrMetadata *m, const char *name, const double matrix[16],
+                             CagIoError *err) {
+  CagExrAttribute *a = entry(m, name, err);
+  if (!a) return false;
+  a->kind = CAG_EXR_MATRIX;
+  memcpy(a->matrix, matrix, sizeof a->matrix);
+  return true;
+}
+
+const CagExrAttribute *cag_exr_metadata_find(const CagExrMetadata *m, const char *name) {
+  for (size_t i = 0; i < m->count; i++)
+    if (!strcmp(m->items[i].name, name)) return &m->items[i];
+  return NULL;
+}
+
+void cag_exr_metadata_free(CagExrMetadata *m) {
+  for (size_t i = 0; i < m->count; i++) free(m->items[i].text);
+  free(m->items);
+  *m = (CagExrMetadata){0};
+}

@@ -1,0 +1,66 @@
+// Pictures in memory: allocation and channel names.
+
+#include "interp/render/image.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool cag_image_create(CagImage *out, size_t width, size_t height, size_t channel_count,
+                      CagIoError *err) {
+  if (!width || !height || !channel_count)
+    return cag_io_error_set(err, CAG_EXIT_LIMIT, NULL,
+                            "an image of %zu by %zu pixels with %zu channels has no samples", width,
+                            height, channel_count);
+  // The first three bounds keep the product below 2^64.
+  if (width > CAG_IMAGE_SIDE_MAX || height > CAG_IMAGE_SIDE_MAX ||
+      channel_count > CAG_IMAGE_CHANNELS_MAX ||
+      width * height * channel_count > CAG_IMAGE_SAMPLES_MAX)
+    return cag_io_error_set(err, CAG_EXIT_LIMIT, "make it smaller",
+                            "an image of %zu by %zu pixels with %zu channels is too large (at most "
+                            "%zu samples, %zu pixels on a side, %zu channels)",
+                            width, height, channel_count, CAG_IMAGE_SAMPLES_MAX, CAG_IMAGE_SIDE_MAX,
+                            CAG_IMAGE_CHANNELS_MAX);
+  CagImageChannel *channels = calloc(channel_count, sizeof *channels);
+  float *data = calloc(width * height * channel_count, sizeof *data);
+  if (!channels || !data) {
+    free(channels);
+    free(data);
+    return cag_io_error_set(err, CAG_EXIT_LIMIT, "make it smaller",
+                            "no memory for an image of %zu by %zu pixels with %zu channels", width,
+                            height, channel_count);
+  }
+  *out = (CagImage){width, height, channel_count, channels, data};
+  return true;
+}
+
+void cag_image_free(CagImage *image) {
+  free(image->channels);
+  free(image->data);
+  *image = (CagImage){0};
+}
+
+void cag_image_set_name(CagImage *image, size_t c, const char *name) {
+  snprintf(image->channels[c].name, sizeof image->channels[c].name, "%s", name);
+}
+
+bool cag_image_find(const CagImage *image, const char *name, size_t *index) {
+  for (size_t c = 0; c < image->channel_count; c++) {
+    if (strcmp(image->channels[c].name, name) != 0) continue;
+    *index = c;
+    return true;
+  }
+  return false;
+}
+
+bool cag_image_find_color(const CagImage *image, size_t rgb[3]) {
+  if (cag_image_find(image, "R", &rgb[0]) && cag_image_find(image, "G", &rgb[1]) &&
+      cag_image_find(image, "B", &rgb[2]))
+    return true;
+  if (!cag_image_find(image, "Y", &rgb[0])) {
+    if (image->channel_count != 1) return false;
+    rgb[0] = 0;
+  }
+  rgb[1] = rgb[2] = rgb[0];
+  return true;
+}

@@ -1,0 +1,57 @@
+// Pictures in memory: named channels of 32-bit floats.
+//
+// The samples are planar: channel c is one block of width * height floats, row after row from the
+// top, x fastest. Colour is linear light with the sRGB primaries unless a function says otherwise.
+// Channel names are those of EXR: R G B A Z, or `layer.name`.
+
+#ifndef CAG_INTERP_RENDER_IMAGE_H
+#define CAG_INTERP_RENDER_IMAGE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "interp/render/io_error.h"
+
+// Longest channel name, in bytes: the limit of EXR files with long names.
+#define CAG_IMAGE_NAME_MAX 255
+// Longest side in pixels, and most samples (pixels times channels) of an image: 4 GB of floats.
+// Larger sizes come from damaged files and slips of the pen.
+#define CAG_IMAGE_SIDE_MAX ((size_t)1 << 17)
+#define CAG_IMAGE_SAMPLES_MAX ((size_t)1 << 30)
+#define CAG_IMAGE_CHANNELS_MAX ((size_t)1024)
+
+typedef struct CagImageChannel {
+  char name[CAG_IMAGE_NAME_MAX + 1];
+} CagImageChannel;
+
+typedef struct CagImage {
+  size_t width, height;
+  size_t channel_count;
+  CagImageChannel *channels;
+  float *data; // channel_count planes of width * height samples
+} CagImage;
+
+// Makes an image of zeros with unnamed channels; release it with cag_image_free. A size of zero or
+// above the limits is an error of status CAG_EXIT_LIMIT.
+bool cag_image_create(CagImage *out, size_t width, size_t height, size_t channel_count,
+                      CagIoError *err);
+
+// Releases the image and makes it empty; an empty one ({0}) is allowed.
+void cag_image_free(CagImage *image);
+
+// Names channel c; a name too long is cut.
+void cag_image_set_name(CagImage *image, size_t c, const char *name);
+
+// The samples of channel c.
+static inline float *cag_image_plane(const CagImage *image, size_t c) {
+  return image->data + c * image->width * image->height;
+}
+
+// Finds a channel by its name.
+bool cag_image_find(const CagImage *image, const char *name, size_t *index);
+
+// Finds the colour: R, G and B, or a luminance Y (or an only channel) three times. False when there
+// is none.
+bool cag_image_find_color(const CagImage *image, size_t rgb[3]);
+
+#endif
