@@ -120,6 +120,7 @@ typedef struct CagSignature {
 } CagSignature;
 // NULL for a constant.
 const CagSignature *cag_builtin_signature(size_t index, size_t row);
+const CagSignature *cag_builtin_signature_of(const CagBuiltin *row); // row: of cag_builtin_rows
 // The row that serves a call with this first argument by position (CAG_UNSET: none is by position)
 // and so many arguments by position: the first whose mask takes the type and that has room for so
 // many, else the first whose mask takes the type. (size_t)-1: no row serves the type.

@@ -1,0 +1,327 @@
+// The table of all built-ins.
+//
+// Families declare arrays of rows; here they are gathered by name, so that the rows of one name
+// stand together in the order of the families, and their signatures are parsed. Both happen once,
+// when the table is first asked for, and nothing of it changes afterwards, so that any number of
+// machines may share it. The order of names is that of their first rows.
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/builtin/support.h"
+
+// All families. Where one name serves lists and shapes alike, shapes come first: their rows take
+// the lists that are points, and leave the others.
+#define FAMILIES(X)                                                                                \
+  X(constants)                                                                                     \
+  X(numbers) X(angles) X(vectors) X(lists) X(texts) X(records) X(control) X(random) X(calculus)    \
+      X(matrices) X(files) X(formula) X(transforms) X(curves) X(surfaces) X(solids) X(scene)
+
+#define X(family) extern const CagBuiltin cag_builtins_##family[];
+FAMILIES(X)
+#undef X
+
+// --- Constants ---
+
+const CagBuiltin cag_builtins_constants[] = {
+    {"X", NULL, "list", "The unit vector along x, [1, 0, 0].",
+     "print cross(X, Y) == Z // expect: true", 0, "Constants"},
+    {"Y", NULL, "list", "The unit vector along y, [0, 1, 0].", "print 2 * Y // expect: [0, 2, 0]",
+     0, "Constants"},
+    {"Z", NULL, "list", "The unit vector along z, [0, 0, 1]: the world's up.",
+     "print Z.z // expect: 1", 0, "Constants"},
+    {"origin", NULL, "list", "The point [0, 0, 0].", "print norm(origin) // expect: 0", 0,
+     "Constants"},
+    {"identity", NULL, "transform", "The transform that moves nothing.",
+     "print identity * [1, 2, 3] // expect: [1, 2, 3]", 0, "Constants"},
+    {"pi", NULL, "number",
+     "Half the circumference of the unit circle. An angle of pi radians is pi * rad.",
+     "print pi * rad // expect: 180deg", 0, "Constants"},
+    {"tau", NULL, "number", "Two pi, the circumference of the unit circle.",
+     "print tau == 2 * pi // expect: true", 0, "Constants"},
+    {"inf", NULL, "number",
+     "The number greater than all others, for the ends of intervals: 0..inf.",
+     "print 1e300 < inf // expect: true", 0, "Constants"},
+    {"deg", NULL, "angle", "The angle of one degree: n * deg.",
+     "print 3 * 15 * deg // expect: 45deg", 0, "Constants"},
+    {"rad", NULL, "angle", "The angle of one radian: x * rad.",
+     "print pi / 2 * rad // expect: 90deg", 0, "Constants"},
+    {"turn", NULL, "angle", "The angle of one full turn, 360deg.",
+     "print turn / 8 // expect: 45deg", 0, "Constants"},
+    {0}};
+
+static CagValue make_identity(CagVm *vm) {
+  CagTransform t = cag_transform_identity();
+  return cag_transform_value(vm, &t);
+}
+
+static CagValue make_constant(CagVm *vm, const char *name) {
+  static const struct {
+    const char *name;
+    double point[3];
+  } points[] = {{"X", {1, 0, 0}}, {"Y", {0, 1, 0}}, {"Z", {0, 0, 1}}, {"origin", {0, 0, 0}}};
+  static const struct {
+    const char *name;
+    CagType type;
+    double value;
+  } numbers[] = {{"pi", CAG_NUMBER, 3.141592653589793}, {"tau", CAG_NUMBER, 6.283185307179586},
+                 {"inf", CAG_NUMBER, HUGE_VAL},         {"deg", CAG_ANGLE, 1},
+                 {"rad", CAG_ANGLE, 57.29577951308232}, {"turn", CAG_ANGLE, 360}};
+  for (size_t i = 0; i < sizeof points / sizeof *points; i++)
+    if (strcmp(name, points[i].name) == 0) return cag_vector(vm, points[i].point, 3);
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+    if (strcmp(name, numbers[i].name) == 0)
+      return (CagValue){numbers[i].type, {.number = numbers[i].value}};
+  return strcmp(name, "identity") == 0 ? make_identity(vm) : cag_unset();
+}
+
+// --- The gathered table ---
+
+typedef struct Name {
+  const char *name;
+  size_t first, count; // its rows
+} Name;
+
+typedef struct Table {
+  size_t row_count, name_count, slot_count;
+  CagBuiltin *rows;         // grouped by name
+  CagSignature *signatures; // of the rows
+  Name *names;
+  const char **name_texts;
+  uint32_t *slots; // open addressing by hash of the name: index + 1, 0 where empty
+} Table;
+
+static Table table;
+static pthread_once_t table_once = PTHREAD_ONCE_INIT;
+
+// Memory of the table lives as long as the process; without it nothing can run.
+static void *take(size_t n, size_t size) {
+  void *p = calloc(n ? n : 1, size);
+  if (!p) abort();
+  return p;
+}
+
+static char *copy_text(const char *s, size_t n) {
+  char *copy = take(n + 1, 1);
+  memcpy(copy, s, n);
+  return copy;
+}
+
+static size_t hash_name(const char *s) {
+  uint64_t h = 14695981039346656037u; // FNV-1a
+  for (; *s; s++) h = (h ^ (unsigned char)*s) * 1099511628211u;
+  return (size_t)(h ^ (h >> 32));
+}
+
+// --- Signatures: name "(" parameter { "," parameter } [ "," "..." ] ")" ---
+
+static const char *skip_spaces(const char *s) {
+  while (*s == ' ' || *s == '\n') s++;
+  return s;
+}
+
+// The end of a parameter's text: the next `,` or `)` outside of brackets and texts.
+static const char *parameter_end(const char *s) {
+  int depth = 0;
+  bool quoted = false;
+  for (; *s; s++) {
+    if (*s == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (depth == 0 && (*s == ',' || *s == ')')) break;
+    if (*s == '(' || *s == '[' || *s == '{') depth++;
+    else if (*s == ')' || *s == ']' || *s == '}') depth--;
+  }
+  return s;
+}
+
+static size_t trimmed(const char *s, const char *end) {
+  while (end > s && end[-1] == ' ') end--;
+  return (size_t)(end - s);
+}
+
+static void parse_parameter(CagSignature *out, const char *s, const char *end) {
+  if (strncmp(s, "...", 3) == 0) {
+    out->variadic = true;
+    return;
+  }
+  const char *equals = memchr(s, '=', (size_t)(end - s));
+  size_t n = trimmed(s, equals ? equals : end);
+  size_t i = out->count++;
+  out->parameters[i] = copy_text(s, n);
+  out->positional_only[i] = n == 1 && s[0] >= 'A' && s[0] <= 'Z';
+  if (!equals) {
+    out->required = i + 1;
+    return;
+  }
+  const char *value = skip_spaces(equals + 1);
+  out->defaults[i] = copy_text(value, trimmed(value, end));
+}
+
+static void parse_signature(CagSignature *out, const char *text) {
+  const char *open = strchr(text, '(');
+  out->name = open ? copy_text(text, (size_t)(open - text)) : text;
+  if (!open) return;
+  // No signature has more parameters than commas, and one.
+  size_t most = 1;
+  for (const char *s = open; *s; s++) most += *s == ',';
+  out->parameters = take(most, sizeof *out->parameters);
+  out->defaults = take(most, sizeof *out->defaults);
+  out->positional_only = take(most, sizeof *out->positional_only);
+  const char *s = skip_spaces(open + 1);
+  while (*s && *s != ')') {
+    const char *end = parameter_end(s);
+    parse_parameter(out, s, end);
+    if (*end == 0) break;
+    s = *end == ',' ? skip_spaces(end + 1) : end;
+  }
+}
+
+// --- Building ---
+
+// The slot where a name of n bytes stands, or the empty one where it would.
+static size_t find_slot(const char *name) {
+  size_t slot = hash_name(name) & (table.slot_count - 1);
+  while (table.slots[slot] && strcmp(table.names[table.slots[slot] - 1].name, name) != 0)
+    slot = (slot + 1) & (table.slot_count - 1);
+  return slot;
+}
+
+static const CagBuiltin *const families[] = {
+#define X(family) cag_builtins_##family,
+    FAMILIES(X)
+#undef X
+};
+#define FAMILY_COUNT (sizeof families / sizeof *families)
+
+// Numbers the names in the order of their first rows and counts the rows of each.
+static size_t *number_names(CagSignature *signatures) {
+  size_t *name_of = take(table.row_count, sizeof *name_of);
+  for (size_t r = 0; r < table.row_count; r++) {
+    size_t slot = find_slot(signatures[r].name);
+    if (!table.slots[slot]) {
+      table.names[table.name_count].name = signatures[r].name;
+      table.slots[slot] = (uint32_t)++table.name_count;
+    }
+    name_of[r] = table.slots[slot] - 1;
+    table.names[name_of[r]].count++;
+  }
+  return name_of;
+}
+
+static void build_table(void) {
+  // Collect the rows in the order of the families.
+  for (size_t f = 0; f < FAMILY_COUNT; f++)
+    for (const CagBuiltin *b = families[f]; b->signature; b++) table.row_count++;
+  const CagBuiltin **all = take(table.row_count, sizeof *all);
+  CagSignature *parsed = take(table.row_count, sizeof *parsed);
+  size_t n = 0;
+  for (size_t f = 0; f < FAMILY_COUNT; f++)
+    for (const CagBuiltin *b = families[f]; b->signature; b++) {
+      parse_signature(&parsed[n], b->signature);
+      all[n++] = b;
+    }
+  // At most half of the slots are taken.
+  for (table.slot_count = 64; table.slot_count < 2 * table.row_count;) table.slot_count *= 2;
+  table.slots = take(table.slot_count, sizeof *table.slots);
+  table.names = take(table.row_count, sizeof *table.names);
+  size_t *name_of = number_names(parsed);
+  // Group by name.
+  table.name_texts = take(table.name_count, sizeof *table.name_texts);
+  size_t first = 0;
+  for (size_t i = 0; i < table.name_count; i++) {
+    table.name_texts[i] = table.names[i].name;
+    table.names[i].first = first;
+    first += table.names[i].count;
+  }
+  table.rows = take(table.row_count, sizeof *table.rows);
+  table.signatures = take(table.row_count, sizeof *table.signatures);
+  size_t *filled = take(table.name_count, sizeof *filled);
+  for (size_t r = 0; r < table.row_count; r++) {
+    size_t to = table.names[name_of[r]].first + filled[name_of[r]]++;
+    table.rows[to] = *all[r];
+    table.signatures[to] = parsed[r];
+  }
+  free(filled);
+  free(name_of);
+  free(parsed);
+  free(all);
+}
+
+static const Table *get_table(void) {
+  pthread_once(&table_once, build_table);
+  return &table;
+}
+
+// --- Questions ---
+
+size_t cag_builtin_count(void) { return get_table()->name_count; }
+
+size_t cag_builtin_find(const char *name) {
+  get_table();
+  uint32_t found = table.slots[find_slot(name)];
+  return found ? found - 1 : (size_t)-1;
+}
+
+const char *cag_builtin_name(size_t index) { return get_table()->names[index].name; }
+
+const CagBuiltin *cag_builtin_rows(size_t index, size_t *rows) {
+  const Name *name = &get_table()->names[index];
+  *rows = name->count;
+  return table.rows + name->first;
+}
+
+const char *const *cag_builtin_names(void) { return get_table()->name_texts; }
+
+const CagSignature *cag_builtin_signature(size_t index, size_t row) {
+  size_t at = get_table()->names[index].first + row;
+  return table.rows[at].function ? &table.signatures[at] : NULL;
+}
+
+const CagSignature *cag_builtin_signature_of(const CagBuiltin *row) {
+  return row->function ? &get_table()->signatures[row - table.rows] : NULL;
+}
+
+static bool row_serves(size_t at, CagType first) {
+  uint64_t mask = table.rows[at].first;
+  return mask == 0 || first == CAG_UNSET || (mask >> first & 1) != 0;
+}
+
+size_t cag_builtin_select(size_t index, CagType first, size_t positional) {
+  const Name *name = &get_table()->names[index];
+  size_t found = (size_t)-1;
+  for (size_t row = 0; row < name->count; row++) {
+    if (!row_serves(name->first + row, first)) continue;
+    const CagSignature *s = &table.signatures[name->first + row];
+    if (positional <= s->count || s->variadic) return row;
+    if (found == (size_t)-1) found = row;
+  }
+  return found;
+}
+
+void cag_builtin_served(size_t index, CagString *out) {
+  static const char *const articles[] = {
+#define X(tag, name, article) article,
+      CAG_VALUE_TYPES(X)
+#undef X
+  };
+  const Name *name = &get_table()->names[index];
+  uint64_t mask = 0;
+  for (size_t row = 0; row < name->count; row++) mask |= table.rows[name->first + row].first;
+  // Two tags are called a function.
+  if (mask & CAG_TYPE_BIT(CLOSURE)) mask &= ~CAG_TYPE_BIT(BUILTIN);
+  bool any = false;
+  for (size_t type = 0; mask >> type != 0 && type < CAG_TYPE_COUNT; type++) {
+    if ((mask >> type & 1) == 0) continue;
+    bool last = mask >> type == 1;
+    const char *between = !any ? "" : last ? " or " : ", ";
+    cag_string_printf(out, "%s%s", between, articles[type]);
+    any = true;
+  }
+  if (!any) cag_string_add(out, "any value", strlen("any value"));
+}
+
+CagValue cag_builtin_constant(CagVm *vm, size_t index) {
+  const Name *name = &get_table()->names[index];
+  return table.rows[name->first].function ? cag_unset() : make_constant(vm, name->name);
+}
