@@ -1,0 +1,156 @@
+// Welding: vertices nearer than a tolerance become one point.
+//
+// The vertices are taken in their order. Each joins the nearest point found so far within the
+// tolerance, or becomes a new point. Points are kept in a hash of cubes with the tolerance as side,
+// so that only the 27 cubes around a vertex are asked.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/mesh/mesh.h"
+
+#define NO_VERTEX UINT32_MAX
+
+typedef struct Welder {
+  const CagMesh *mesh;
+  double tolerance;
+  size_t mask;
+  uint32_t *heads; // hash of the cube -> the last point put there
+  uint32_t *next;  // of a point: the one put before it
+} Welder;
+
+static uint64_t mix(uint64_t h) {
+  h ^= h >> 33;
+  h *= 0xff51afd7ed558ccdu; // constants of MurmurHash3's finisher
+  h ^= h >> 33;
+  h *= 0xc4ceb9fe1a85ec53u;
+  return h ^ h >> 33;
+}
+
+// The cube's coordinate along an axis; with tolerance 0 the number itself (both zeros alike).
+static uint64_t cube(const Welder *w, double x, int step) {
+  double c = w->tolerance > 0 ? floor(x / w->tolerance) + step : x + 0.0;
+  uint64_t bits;
+  memcpy(&bits, &c, sizeof bits);
+  return c == 0 ? 0 : bits;
+}
+
+static size_t slot(const Welder *w, CagVec3 p, int i, int j, int k) {
+  uint64_t h = mix(cube(w, p.x, i) + 0x9e3779b97f4a7c15u);
+  h = mix(h ^ cube(w, p.y, j)) + 0x9e3779b97f4a7c15u;
+  return mix(h ^ cube(w, p.z, k)) & w->mask;
+}
+
+static uint32_t nearest_point(const Welder *w, CagVec3 p) {
+  int reach = w->tolerance > 0 ? 1 : 0;
+  uint32_t best = NO_VERTEX;
+  double best_distance = w->tolerance;
+  for (int i = -reach; i <= reach; i++)
+    for (int j = -reach; j <= reach; j++)
+      for (int k = -reach; k <= reach; k++)
+        for (uint32_t v = w->heads[slot(w, p, i, j, k)]; v != NO_VERTEX; v = w->next[v]) {
+          double d = cag_norm(cag_sub(w->mesh->positions[v], p));
+          bool nearer =
+              d < best_distance || (d == best_distance && (best == NO_VERTEX || v < best));
+          if (nearer) best = v, best_distance = d;
+        }
+  return best;
+}
+
+// first[v]: the vertex that is v's point.
+static bool find_points(const CagMesh *m, double tolerance, uint32_t *first) {
+  size_t size = 1024;
+  while (size < m->vertex_count) size *= 2;
+  Welder w = {m, tolerance, size - 1, malloc(size * sizeof *w.heads),
+              malloc((m->vertex_count + 1) * sizeof *w.next)};
+  bool done = w.heads && w.next;
+  for (size_t i = 0; done && i < size; i++) w.heads[i] = NO_VERTEX;
+  for (size_t v = 0; done && v < m->vertex_count; v++) {
+    first[v] = nearest_point(&w, m->positions[v]);
+    if (first[v] != NO_VERTEX) continue;
+    size_t at = slot(&w, m->positions[v], 0, 0, 0);
+    first[v] = (uint32_t)v;
+    w.next[v] = w.heads[at];
+    w.heads[at] = (uint32_t)v;
+  }
+  free(w.heads);
+  free(w.next);
+  return done;
+}
+
+// May v stand for `other` in all but position?
+static bool looks_alike(const CagMesh *m, size_t v, size_t other) {
+  const double same_direction = 1 - 1e-6; // cosine of 0.08 degrees: no shading shows it
+  if (m->normals && cag_dot(m->normals[v], m->normals[other]) < same_direction) return false;
+  return !m->uv || (m->uv[2 * v] == m->uv[2 * other] && m->uv[2 * v + 1] == m->uv[2 * other + 1]);
+}
+
+// kept[v]: v itself, or the earlier vertex of the same point that looks alike. `chain` links the
+// kept vertices of a point.
+static void find_kept(const CagMesh *m, const uint32_t *first, uint32_t *chain, uint32_t *kept) {
+  for (size_t v = 0; v < m->vertex_count; v++) {
+    chain[v] = NO_VERTEX;
+    kept[v] = (uint32_t)v;
+    if (first[v] == v) continue;
+    uint32_t last = first[v];
+    for (uint32_t k = first[v]; k != NO_VERTEX; last = k, k = chain[k])
+      if (looks_alike(m, v, k)) {
+        kept[v] = k;
+        break;
+      }
+    if (kept[v] == v) chain[last] = (uint32_t)v;
+  }
+}
+
+static CagStatus build_welded(const CagMesh *m, const uint32_t *first, const uint32_t *kept,
+                              uint32_t *number, CagMesh **out, CagError *err) {
+  size_t vertices = 0, triangles = 0;
+  bool doubled = false;
+  for (size_t v = 0; v < m->vertex_count; v++) {
+    if (kept[v] != v) continue;
+    number[v] = (uint32_t)vertices++;
+    doubled |= first[v] != v;
+  }
+  CagMesh *w = NULL;
+  CagStatus status = cag_mesh_new(vertices, m->triangle_count, m->normals != NULL, m->uv != NULL,
+                                  doubled, &w, err);
+  if (status != CAG_OK) return status;
+  for (size_t v = 0; v < m->vertex_count; v++) {
+    if (kept[v] != v) continue;
+    uint32_t to = number[v];
+    w->positions[to] = m->positions[first[v]];
+    if (w->normals) w->normals[to] = m->normals[v];
+    if (w->uv) memcpy(w->uv + 2 * to, m->uv + 2 * v, 2 * sizeof *w->uv);
+    if (w->weld) w->weld[to] = number[first[v]];
+  }
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    if (first[k[0]] == first[k[1]] || first[k[1]] == first[k[2]] || first[k[2]] == first[k[0]])
+      continue; // shrunk to an edge or a point
+    for (int j = 0; j < 3; j++) w->triangles[3 * triangles + j] = number[kept[k[j]]];
+    triangles++;
+  }
+  w->triangle_count = triangles;
+  *out = w;
+  return CAG_OK;
+}
+
+// Vertices of one point stay apart where their normals or parameters differ (sharp edges, seams);
+// they then have the same position and are told by `weld`.
+CagStatus cag_mesh_weld(const CagMesh *m, double tolerance, CagMesh **out, CagError *err) {
+  if (!(tolerance >= 0) || !isfinite(tolerance))
+    return cag_fail(err, CAG_E_ARGUMENT, "tolerance-negative", "tolerance", -1,
+                    "`tolerance` must be a length of 0 or more, not %g", tolerance);
+  size_t n = m->vertex_count + 1;
+  uint32_t *first = malloc(n * sizeof *first), *kept = malloc(n * sizeof *kept),
+           *chain = malloc(n * sizeof *chain);
+  CagStatus status = CAG_E_MEMORY;
+  if (first && kept && chain && find_points(m, tolerance, first)) {
+    find_kept(m, first, chain, kept);
+    status = build_welded(m, first, kept, chain, out, err);
+  } else cag_fail_memory(err);
+  free(first);
+  free(kept);
+  free(chain);
+  return status;
+}

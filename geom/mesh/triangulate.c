@@ -1,0 +1,292 @@
+// Triangulation of polygons with holes: the GLU tessellator cuts them into triangles, edge flips
+// then make these Delaunay within the boundary.
+//
+// GLU sweeps the plane and may leave triangles without area where boundary points lie on a line;
+// the flips remove them, so that caps keep every boundary point and have no slivers. All state is
+// in the tessellator object of the call.
+
+#include <GL/glu.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/mesh/edges.h"
+#include "geom/mesh/mesh.h"
+
+typedef struct Sweep {
+  const double *xy;
+  uint32_t *triangles;
+  size_t corners, capacity; // of triangles, in corners
+  GLenum error;
+  bool crossing, no_memory;
+  size_t near_crossing; // a point at an end of one of the edges that cross
+} Sweep;
+
+static void on_vertex(void *data, void *polygon) {
+  Sweep *s = polygon;
+  if (s->corners == s->capacity) {
+    s->no_memory = true;
+    return;
+  }
+  s->triangles[s->corners++] = (uint32_t)((uintptr_t)data - 1);
+}
+
+// Given, it makes GLU send separate triangles.
+static void on_edge_flag(GLboolean flag, void *polygon) { (void)flag, (void)polygon; }
+
+static void on_error(GLenum error, void *polygon) { ((Sweep *)polygon)->error = error; }
+
+// Called where boundaries cross, and where two given points are the same.
+static void on_combine(GLdouble at[3], void *data[4], GLfloat weights[4], void **out,
+                       void *polygon) {
+  (void)weights;
+  Sweep *s = polygon;
+  (void)at;
+  *out = data[0];
+  if (!s->crossing) s->near_crossing = (uintptr_t)data[0] - 1;
+  s->crossing = true;
+}
+
+typedef void (*GluCallback)(void);
+
+// GLU sweeps along x and searches the edges under the sweep line one by one: whether a quarter turn
+// leaves fewer there (mean number: the edges' extents in x, by the width).
+static bool is_faster_turned(const double *xy, const size_t *counts, size_t loops) {
+  double run[2] = {0, 0}, least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
+  for (size_t l = 0; l < loops; xy += 2 * counts[l++])
+    for (size_t k = 0; k < counts[l]; k++)
+      for (int axis = 0; axis < 2; axis++) {
+        double x = xy[2 * k + axis], next = xy[2 * ((k + 1) % counts[l]) + axis];
+        run[axis] += fabs(next - x);
+        least[axis] = fmin(least[axis], x);
+        most[axis] = fmax(most[axis], x);
+      }
+  return run[0] * (most[1] - least[1]) > run[1] * (most[0] - least[0]);
+}
+
+static bool run_sweep(const double *xy, const size_t *counts, size_t loops, Sweep *s) {
+  GLUtesselator *glu = gluNewTess();
+  if (!glu) return false;
+  size_t points = 0;
+  for (size_t l = 0; l < loops; l++) points += counts[l];
+  GLdouble(*coordinates)[3] = malloc((points + 1) * sizeof *coordinates);
+  if (!coordinates) {
+    gluDeleteTess(glu);
+    return false;
+  }
+  gluTessCallback(glu, GLU_TESS_VERTEX_DATA, (GluCallback)on_vertex);
+  gluTessCallback(glu, GLU_TESS_EDGE_FLAG_DATA, (GluCallback)on_edge_flag);
+  gluTessCallback(glu, GLU_TESS_COMBINE_DATA, (GluCallback)on_combine);
+  gluTessCallback(glu, GLU_TESS_ERROR_DATA, (GluCallback)on_error);
+  gluTessProperty(glu, GLU_TESS_WINDING_RULE, GLU_TESS_WINDING_ODD);
+  gluTessNormal(glu, 0, 0, 1);
+  bool turned = is_faster_turned(xy, counts, loops);
+  gluTessBeginPolygon(glu, s);
+  for (size_t l = 0, k = 0; l < loops; l++) {
+    gluTessBeginContour(glu);
+    for (size_t end = k + counts[l]; k < end; k++) {
+      coordinates[k][0] = turned ? xy[2 * k + 1] : xy[2 * k];
+      coordinates[k][1] = turned ? -xy[2 * k] : xy[2 * k + 1];
+      coordinates[k][2] = 0;
+      gluTessVertex(glu, coordinates[k], (void *)(uintptr_t)(k + 1));
+    }
+    gluTessEndContour(glu);
+  }
+  gluTessEndPolygon(glu);
+  gluDeleteTess(glu);
+  free(coordinates);
+  return true;
+}
+
+// --- Delaunay flips ---
+
+// Twice the signed area of a b c.
+static double turn(const double *a, const double *b, const double *c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+// Is d clearly within the circle through a b c (counter-clockwise)? Clearly: by more than the
+// rounding of the determinant, so that four points of a circle do not flip for ever.
+static bool in_circle(const double *a, const double *b, const double *c, const double *d) {
+  const double rounding = 1e-12;
+  double ax = a[0] - d[0], ay = a[1] - d[1], bx = b[0] - d[0], by = b[1] - d[1], cx = c[0] - d[0],
+         cy = c[1] - d[1];
+  double aa = ax * ax + ay * ay, bb = bx * bx + by * by, cc = cx * cx + cy * cy;
+  double p = aa * (bx * cy - by * cx), q = bb * (ax * cy - ay * cx), r = cc * (ax * by - ay * bx);
+  double size = aa * (fabs(bx * cy) + fabs(by * cx)) + bb * (fabs(ax * cy) + fabs(ay * cx)) +
+                cc * (fabs(ax * by) + fabs(ay * bx));
+  return p - q + r > rounding * size;
+}
+
+// Triangles with their neighbours: across[3 t + k] is the place 3 t' + k' at which the neighbour's
+// copy of the edge from corner k of t starts; NO_PLACE on the boundary.
+#define NO_PLACE SIZE_MAX
+typedef struct Flips {
+  const double *xy;
+  uint32_t *triangles;
+  size_t *across;
+  size_t *stack, depth, capacity; // places whose edges are to be looked at
+} Flips;
+
+// Without memory an edge is not looked at: the triangulation stays valid.
+static void push(Flips *f, size_t place) {
+  if (f->depth == f->capacity) {
+    size_t capacity = f->capacity ? 2 * f->capacity : 256;
+    size_t *stack = realloc(f->stack, capacity * sizeof *stack);
+    if (!stack) return;
+    f->stack = stack;
+    f->capacity = capacity;
+  }
+  f->stack[f->depth++] = place;
+}
+
+static size_t next_place(size_t p) { return p % 3 == 2 ? p - 2 : p + 1; }
+
+static void link_places(Flips *f, size_t p, size_t q) {
+  f->across[p] = q;
+  if (q != NO_PLACE) f->across[q] = p;
+}
+
+// The edge from a to b lies in triangles a b c and b a d; it becomes c d where that is better.
+static bool flip_edge(Flips *f, size_t p) {
+  const double no_area = 1e-12; // of the quadrilateral's area: a triangle of rounding errors
+  size_t q = f->across[p];
+  if (q == NO_PLACE) return false;
+  size_t pb = next_place(p), pc = next_place(pb), qa = next_place(q), qd = next_place(qa);
+  uint32_t *v = f->triangles;
+  const double *a = f->xy + 2 * v[p], *b = f->xy + 2 * v[q], *c = f->xy + 2 * v[pc],
+               *d = f->xy + 2 * v[qd];
+  double adc = turn(a, d, c), dbc = turn(d, b, c);
+  if (!(adc > 0 && dbc > 0)) return false;
+  double least_now = fmin(turn(a, b, c), turn(b, a, d)), least_then = fmin(adc, dbc);
+  bool no_triangle = least_now <= no_area * (adc + dbc);
+  if (no_triangle ? least_then <= least_now : !in_circle(a, b, c, d)) return false;
+  // The triangle of p becomes a d c (p: a d, pb: d c, pc: c a), that of q b c d.
+  size_t bc = f->across[pb], ad = f->across[qa];
+  v[pb] = v[qd];
+  v[qa] = v[pc];
+  link_places(f, p, ad);
+  link_places(f, q, bc);
+  link_places(f, pb, qa);
+  push(f, p);
+  push(f, q);
+  push(f, pc);
+  push(f, qd);
+  return true;
+}
+
+static void flip_to_delaunay(Flips *f, size_t corners) {
+  // Lawson's flips are at most some n^2, and a few n on sensible input. The limit only guards
+  // against a circle of flips by rounding.
+  size_t flips_left = 64 * corners + 1024;
+  for (size_t p = 0; p < corners; p++) {
+    push(f, p);
+    while (f->depth > 0 && flips_left > 0) flips_left -= flip_edge(f, f->stack[--f->depth]);
+    f->depth = 0;
+  }
+}
+
+// --- Checks ---
+
+// Fills `across`, and checks that the triangles are a triangulation of what was given: each edge of
+// a loop lies in one triangle, every other edge in two. *bad: a point at fault.
+static bool link_triangles(const uint32_t *triangles, size_t n, const size_t *counts, size_t loops,
+                           size_t points, size_t *across, size_t *bad, bool *no_memory) {
+  size_t used;
+  CagMeshEdge *e = cag_mesh_edges(triangles, n, NULL, points, &used);
+  uint32_t *follows = malloc((points + 1) * sizeof *follows); // the next point of the loop
+  *no_memory = !e || !follows;
+  bool good = !*no_memory;
+  for (size_t l = 0, k = 0; good && l < loops; l++)
+    for (size_t first = k, end = k + counts[l]; k < end; k++)
+      follows[k] = (uint32_t)(k + 1 < end ? k + 1 : first);
+  unsigned char *met = calloc(points + 1, 1); // the loop's edge that starts at the point was met
+  *no_memory |= !met;
+  good &= met != NULL;
+  for (size_t i = 0; good && i < used;) {
+    size_t last = i + 1;
+    while (last < used && e[last].low == e[i].low && e[last].high == e[i].high) last++;
+    size_t p = 3 * cag_mesh_edge_triangle(&e[i]) + cag_mesh_edge_corner(&e[i]);
+    bool of_loop = follows[e[i].low] == e[i].high || follows[e[i].high] == e[i].low;
+    across[p] = NO_PLACE;
+    if (of_loop) {
+      good = last - i == 1;
+      met[follows[e[i].low] == e[i].high ? e[i].low : e[i].high] = 1;
+    } else {
+      good = last - i == 2 && cag_mesh_edge_forward(&e[i]) != cag_mesh_edge_forward(&e[i + 1]);
+      if (good) {
+        size_t q = 3 * cag_mesh_edge_triangle(&e[i + 1]) + cag_mesh_edge_corner(&e[i + 1]);
+        across[p] = q;
+        across[q] = p;
+      }
+    }
+    if (!good) *bad = e[i].low;
+    i = last;
+  }
+  for (size_t k = 0; good && k < points; k++)
+    if (!met[k]) good = false, *bad = k;
+  free(met);
+  free(e);
+  free(follows);
+  return good;
+}
+
+static CagStatus check_loops(const double *xy, const size_t *counts, size_t loops, size_t *points,
+                             CagError *err) {
+  *points = 0;
+  for (size_t l = 0; l < loops; *points += counts[l++])
+    if (counts[l] < 3)
+      return cag_fail(err, CAG_E_ARGUMENT, "polygon-too-small", "points", (long)l,
+                      "a polygon needs 3 or more points: loop %zu has %zu", l, counts[l]);
+  for (size_t k = 0; k < *points; k++)
+    if (!isfinite(xy[2 * k]) || !isfinite(xy[2 * k + 1]))
+      return cag_fail(err, CAG_E_ARGUMENT, "vertex-not-finite", "points", (long)k,
+                      "`points` must be finite: points[%zu] = [%g, %g]", k, xy[2 * k],
+                      xy[2 * k + 1]);
+  if (loops == 0 || *points > UINT32_MAX / 4)
+    return cag_fail(err, CAG_E_ARGUMENT, "polygon-too-small", "points", -1,
+                    "a polygon needs at least one loop and at most %lu points",
+                    (unsigned long)UINT32_MAX / 4);
+  return CAG_OK;
+}
+
+static CagStatus crosses(const double *xy, size_t point, CagError *err) {
+  return cag_fail(err, CAG_E_ARGUMENT, "polygon-self-intersection", "points", (long)point,
+                  "the boundary of a polygon must not cross or touch itself: it does at or beside "
+                  "points[%zu] = [%g, %g]",
+                  point, xy[2 * point], xy[2 * point + 1]);
+}
+
+static CagStatus sweep_and_check(const double *xy, const size_t *counts, size_t loops,
+                                 size_t points, Sweep *s, size_t *across, CagError *err) {
+  if (!run_sweep(xy, counts, loops, s) || s->error == GLU_OUT_OF_MEMORY)
+    return cag_fail_memory(err);
+  if (s->crossing || s->no_memory || s->error) return crosses(xy, s->near_crossing, err);
+  size_t bad = 0;
+  bool no_memory;
+  if (!link_triangles(s->triangles, s->corners / 3, counts, loops, points, across, &bad,
+                      &no_memory))
+    return no_memory ? cag_fail_memory(err) : crosses(xy, bad, err);
+  return CAG_OK;
+}
+
+CagStatus cag_triangulate(const double *xy, const size_t *counts, size_t loops, uint32_t **out,
+                          size_t *n, CagError *err) {
+  size_t points;
+  CagStatus status = check_loops(xy, counts, loops, &points, err);
+  if (status != CAG_OK) return status;
+  // A triangulation has points + 2 (holes - outers) triangles: at most points + 2 loops.
+  Sweep s = {.xy = xy, .capacity = 3 * (points + 2 * loops)};
+  s.triangles = malloc(s.capacity * sizeof *s.triangles);
+  size_t *across = malloc(s.capacity * sizeof *across);
+  if (s.triangles && across) status = sweep_and_check(xy, counts, loops, points, &s, across, err);
+  else status = cag_fail_memory(err);
+  if (status == CAG_OK) {
+    Flips f = {.xy = xy, .triangles = s.triangles, .across = across};
+    flip_to_delaunay(&f, s.corners);
+    free(f.stack);
+    *out = s.triangles;
+    *n = s.corners / 3;
+  } else free(s.triangles);
+  free(across);
+  return status;
+}
