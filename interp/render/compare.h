@@ -1,0 +1,70 @@
+// How far two pictures of the same size and channels differ.
+//
+// Channels are matched by name, in any order. The numbers of a channel are over its samples that
+// are finite in both pictures; two NaN, or two equal infinities, count as equal, any other pair
+// with a NaN or infinity in it counts as differing by more than every threshold and is reported
+// apart.
+//
+// The perceptual figure is the colour difference CIEDE2000 (Sharma, Wu, Dalal, "The CIEDE2000
+// Color-Difference Formula: Implementation Notes, Supplementary Test Data, and Mathematical
+// Observations", Color Research and Application 30, 2005) of the colours as a screen shows them:
+// linear light clipped to 0..1, sRGB primaries, D65, CIELAB. Its unit: about 1 is just noticeable
+// side by side, 100 is black against white.
+
+#ifndef CAG_INTERP_RENDER_COMPARE_H
+#define CAG_INTERP_RENDER_COMPARE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "interp/render/image.h"
+#include "interp/render/io_error.h"
+
+typedef struct CagCompareChannel {
+  char name[CAG_IMAGE_NAME_MAX + 1];
+  double rmse;    // root of the mean square difference
+  double largest; // largest absolute difference, at (x, y); y goes down
+  size_t largest_x, largest_y;
+  double psnr;          // in dB: 20 log10(peak / rmse), infinite when rmse is 0
+  double peak;          // largest finite |value| of the first picture's channel, at least 1
+  size_t samples;       // that are finite in both
+  size_t not_finite[2]; // NaN and infinite samples of the first and the second picture
+  size_t unlike;        // samples of which one or both are not finite, and that are not equal
+} CagCompareChannel;
+
+typedef struct CagCompareReport {
+  size_t width, height;
+  size_t channel_count;
+  CagCompareChannel *channels; // in the order of the first picture
+  double threshold;
+  size_t differing_pixels; // with a channel that differs by more than the threshold, or is unlike
+  bool has_color;          // both have R G B (or Y): the figures below are there
+  double delta_e_mean, delta_e_largest;
+} CagCompareReport;
+
+// Compares `b` with the reference `a`. A pixel differs when a channel of it differs by more than
+// `threshold` (at least 0). The names are for messages. Pictures of different sizes or channels are
+// an error of status CAG_EXIT_SCRIPT. Release the report with cag_compare_report_free.
+bool cag_compare_images(const CagImage *a, const char *a_name, const CagImage *b,
+                        const char *b_name, double threshold, CagCompareReport *out,
+                        CagIoError *err);
+
+void cag_compare_report_free(CagCompareReport *report);
+
+// Writes the figures as a table for people.
+void cag_compare_print(const CagCompareReport *report, FILE *out);
+
+// Makes a picture of where two pictures, that can be compared, differ: R G B run from black over
+// red and yellow to white as the pixel's largest difference goes from 0 to that of the worst pixel,
+// magenta marks pixels that are unlike (see above), and the channel `difference` holds the number
+// itself (infinity for unlike ones). Release with cag_image_free.
+bool cag_compare_heatmap(const CagImage *a, const CagImage *b, CagImage *out, CagIoError *err);
+
+// CIEDE2000 of two CIELAB colours, all weights 1.
+double cag_compare_delta_e(const double lab1[3], const double lab2[3]);
+
+// CIELAB (D65) of a colour of linear sRGB, clipped to 0..1; NaN counts as 0.
+void cag_compare_lab(const double linear_rgb[3], double lab[3]);
+
+#endif

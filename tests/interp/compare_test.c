@@ -1,0 +1,187 @@
+// The figures of comparing pictures, on pictures small enough to compute them by hand.
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/render/compare.h"
+
+static CagImage picture(size_t width, size_t height, const char *const *names, size_t channels) {
+  CagImage image;
+  assert_true(cag_image_create(&image, width, height, channels, NULL));
+  for (size_t c = 0; c < channels; c++) cag_image_set_name(&image, c, names[c]);
+  return image;
+}
+
+static const char *const RGB[] = {"R", "G", "B"};
+static const char *const BGR[] = {"B", "G", "R"};
+static const char *const Z[] = {"Z"};
+
+static void equal_pictures_have_no_difference(void **state) {
+  (void)state;
+  CagImage a = picture(4, 3, RGB, 3), b = picture(4, 3, BGR, 3);
+  for (size_t i = 0; i < 12; i++) cag_image_plane(&a, 0)[i] = cag_image_plane(&b, 2)[i] = (float)i;
+  CagCompareReport r;
+  assert_true(cag_compare_images(&a, "a", &b, "b", 0, &r, NULL));
+  assert_int_equal(r.differing_pixels, 0);
+  assert_true(r.channels[0].rmse == 0 && r.channels[0].psnr == INFINITY);
+  assert_true(r.has_color && r.delta_e_mean == 0 && r.delta_e_largest == 0);
+  cag_compare_report_free(&r);
+  cag_image_free(&a);
+  cag_image_free(&b);
+}
+
+static void figures_are_those_of_hand_calculation(void **state) {
+  (void)state;
+  CagImage a = picture(2, 2, Z, 1), b = picture(2, 2, Z, 1);
+  const float x[4] = {0, 0.5f, 1, -0.25f}, y[4] = {0, 0.25f, 1.5f, -0.25f};
+  memcpy(a.data, x, sizeof x);
+  memcpy(b.data, y, sizeof y);
+  CagCompareReport r;
+  assert_true(cag_compare_images(&a, "a", &b, "b", 0.25, &r, NULL));
+  const CagCompareChannel *z = &r.channels[0];
+  // Squares: 0, 1/16, 1/4, 0; mean 5/64. Peak 1, so PSNR = -10 log10(5/64).
+  assert_true(fabs(z->rmse - sqrt(5.0 / 64)) < 1e-15);
+  assert_true(fabs(z->psnr - 10 * log10(64.0 / 5)) < 1e-12);
+  assert_true(z->largest == 0.5 && z->largest_x == 0 && z->largest_y == 1 && z->peak == 1);
+  assert_int_equal(r.differing_pixels, 1); // 0.25 is not more than 0.25
+  cag_compare_report_free(&r);
+  cag_image_free(&a);
+  cag_image_free(&b);
+}
+
+static void the_peak_of_bright_channels_is_their_largest_value(void **state) {
+  (void)state;
+  CagImage a = picture(1, 1, Z, 1), b = picture(1, 1, Z, 1);
+  a.data[0] = 100;
+  b.data[0] = 99;
+  CagCompareReport r;
+  assert_true(cag_compare_images(&a, "a", &b, "b", 0, &r, NULL));
+  assert_true(fabs(r.channels[0].psnr - 40) < 1e-12); // 20 log10(100 / 1)
+  cag_compare_report_free(&r);
+  cag_image_free(&a);
+  cag_image_free(&b);
+}
+
+static void nan_and_infinity_are_counted_apart(void **state) {
+  (void)state;
+  CagImage a = picture(6, 1, Z, 1), b = picture(6, 1, Z, 1);
+  const float x[6] = {NAN, NAN, INFINITY, INFINITY, 1, 2},
+              y[6] = {NAN, 1, INFINITY, -INFINITY, 1, 5};
+  memcpy(a.data, x, sizeof x);
+  memcpy(b.data, y, sizeof y);
+  CagCompareReport r;
+  assert_true(cag_compare_images(&a, "a", &b, "b", 100, &r, NULL));
+  const CagCompareChannel *z = &r.channels[0];
+  assert_int_equal(z->not_finite[0], 4);
+  assert_int_equal(z->not_finite[1], 3);
+  assert_int_equal(z->unlike, 2);
+  assert_int_equal(z->samples, 2);
+  assert_true(fabs(z->rmse - 3 / sqrt(2)) < 1e-15);
+  assert_int_equal(r.differing_pixels, 2);
+  CagImage map;
+  assert_true(cag_compare_heatmap(&a, &b, &map, NULL));
+  assert_true(cag_image_plane(&map, 0)[1] == 1 && cag_image_plane(&map, 1)[1] == 0 &&
+              cag_image_plane(&map, 2)[1] == 1 && isinf(cag_image_plane(&map, 3)[1]));
+  cag_image_free(&map);
+  cag_compare_report_free(&r);
+  cag_image_free(&a);
+  cag_image_free(&b);
+}
+
+static void pictures_of_other_shape_are_refused(void **state) {
+  (void)state;
+  CagImage a = picture(2, 2, RGB, 3), b = picture(2, 3, RGB, 3), c = picture(2, 2, Z, 1);
+  CagCompareReport r;
+  CagIoError err;
+  assert_false(cag_compare_images(&a, "a.exr", &b, "b.exr", 0, &r, &err));
+  assert_string_equal(err.message, "'a.exr' is 2 by 2 pixels, but 'b.exr' is 2 by 3");
+  assert_int_equal(err.exit_status, CAG_EXIT_SCRIPT);
+  assert_false(cag_compare_images(&a, "a.exr", &c, "c.exr", 0, &r, &err));
+  assert_non_null(strstr(err.message, "'a.exr' has a channel 'R', but 'c.exr' has none"));
+  cag_image_free(&a);
+  cag_image_free(&b);
+  cag_image_free(&c);
+}
+
+// Rows of the table of test data in Sharma, Wu, Dalal 2005.
+static void ciede2000_is_that_of_the_published_data(void **state) {
+  (void)state;
+  static const struct {
+    double lab1[3], lab2[3], expected;
+  } ROWS[] = {
+      {{50, 2.6772, -79.7751}, {50, 0, -82.7485}, 2.0425},
+      {{50, 3.1571, -77.2803}, {50, 0, -82.7485}, 2.8615},
+      {{50, 2.8361, -74.0200}, {50, 0, -82.7485}, 3.4412},
+      {{50, 0, 0}, {50, -1, 2}, 2.3669},
+      {{50, 2.5, 0}, {73, 25, -18}, 27.1492},
+      {{50, 2.5, 0}, {61, -5, 29}, 22.8977},
+      {{60.2574, -34.0099, 36.2677}, {60.4626, -34.1751, 39.4387}, 1.2644},
+      {{90.8027, -2.0831, 1.4410}, {91.1528, -1.6435, 0.0447}, 1.4441},
+      {{2.0776, 0.0795, -1.1350}, {0.9033, -0.0636, -0.5514}, 0.9082},
+  };
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+    // The table has four decimals.
+    assert_true(fabs(cag_compare_delta_e(ROWS[i].lab1, ROWS[i].lab2) - ROWS[i].expected) < 6e-5);
+    assert_true(fabs(cag_compare_delta_e(ROWS[i].lab2, ROWS[i].lab1) - ROWS[i].expected) < 6e-5);
+  }
+}
+
+static void black_against_white_is_a_hundred(void **state) {
+  (void)state;
+  CagImage a = picture(2, 1, RGB, 3), b = picture(2, 1, RGB, 3);
+  for (size_t c = 0; c < 3; c++) cag_image_plane(&b, c)[1] = 7; // clipped to white
+  CagCompareReport r;
+  assert_true(cag_compare_images(&a, "a", &b, "b", 0, &r, NULL));
+  assert_true(fabs(r.delta_e_largest - 100) < 1e-9 && fabs(r.delta_e_mean - 50) < 1e-9);
+  cag_compare_report_free(&r);
+  cag_image_free(&a);
+  cag_image_free(&b);
+}
+
+static void middle_gray_has_lightness_50(void **state) {
+  (void)state;
+  // L* = 50 is at Y = ((50 + 16) / 116)^3.
+  const double y = pow(66.0 / 116, 3), rgb[3] = {y, y, y};
+  double lab[3];
+  cag_compare_lab(rgb, lab);
+  assert_true(fabs(lab[0] - 50) < 1e-12 && fabs(lab[1]) < 1e-12 && fabs(lab[2]) < 1e-12);
+}
+
+static void the_heatmap_runs_to_white_at_the_worst_pixel(void **state) {
+  (void)state;
+  CagImage a = picture(4, 1, Z, 1), b = picture(4, 1, Z, 1), map;
+  const float y[4] = {0, 1, 2, 3};
+  memcpy(b.data, y, sizeof y);
+  assert_true(cag_compare_heatmap(&a, &b, &map, NULL));
+  static const float COLORS[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}};
+  for (size_t i = 0; i < 4; i++) {
+    for (size_t c = 0; c < 3; c++)
+      assert_true(fabsf(cag_image_plane(&map, c)[i] - COLORS[i][c]) < 1e-6f);
+    assert_true(cag_image_plane(&map, 3)[i] == y[i]);
+  }
+  cag_image_free(&map);
+  cag_image_free(&a);
+  cag_image_free(&b);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(equal_pictures_have_no_difference),
+      cmocka_unit_test(figures_are_those_of_hand_calculation),
+      cmocka_unit_test(the_peak_of_bright_channels_is_their_largest_value),
+      cmocka_unit_test(nan_and_infinity_are_counted_apart),
+      cmocka_unit_test(pictures_of_other_shape_are_refused),
+      cmocka_unit_test(ciede2000_is_that_of_the_published_data),
+      cmocka_unit_test(black_against_white_is_a_hundred),
+      cmocka_unit_test(middle_gray_has_lightness_50),
+      cmocka_unit_test(the_heatmap_runs_to_white_at_the_worst_pixel),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,225 @@
+// PNG pictures: exposure, roll-off, the sRGB transfer, transparency, and files that are no PNG.
+//
+// Expected values come from the formula of IEC 61966-2-1 worked out by hand.
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <png.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "interp/render/png.h"
+
+static char path[64];
+
+static int make_file(void **state) {
+  (void)state;
+  strcpy(path, "/tmp/cag-png-XXXXXX");
+  int fd = mkstemp(path);
+  return fd < 0 ? -1 : close(fd);
+}
+
+static int remove_file(void **state) {
+  (void)state;
+  return unlink(path);
+}
+
+// A picture of one row, R = G = B = the values.
+static CagImage gray_row(const float *values, size_t n) {
+  CagImage image;
+  assert_true(cag_image_create(&image, n, 1, 3, NULL));
+  for (size_t c = 0; c < 3; c++) {
+    cag_image_set_name(&image, c, (const char *[]){"R", "G", "B"}[c]);
+    memcpy(cag_image_plane(&image, c), values, n * sizeof *values);
+  }
+  return image;
+}
+
+// The bytes of the file as libpng's simple interface gives them, 8 bits RGBA; free them.
+static unsigned char *stored(size_t *width) {
+  png_image png = {.version = PNG_IMAGE_VERSION};
+  assert_true(png_image_begin_read_from_file(&png, path));
+  png.format = PNG_FORMAT_RGBA;
+  unsigned char *pixels = malloc(PNG_IMAGE_SIZE(png));
+  assert_true(png_image_finish_read(&png, NULL, pixels, 0, NULL));
+  *width = png.width;
+  return pixels;
+}
+
+static void linear_light_gets_the_srgb_transfer(void **state) {
+  (void)state;
+  // 0.5 -> 0.735357 -> 187.5; 0.18 -> 0.461356 -> 117.6; 0.002 -> 0.02584 -> 6.6; 0.8 -> 0.906332
+  // -> 231.1
+  const float light[4] = {0.5f, 0.18f, 0.002f, 0.8f};
+  const unsigned char expected[4] = {188, 118, 7, 231};
+  CagImage image = gray_row(light, 4);
+  assert_true(cag_png_write(path, &image, NULL, NULL, 0, NULL));
+  size_t width;
+  unsigned char *pixels = stored(&width);
+  assert_int_equal(width, 4);
+  for (size_t i = 0; i < 4; i++)
+    for (size_t c = 0; c < 3; c++) assert_int_equal(pixels[4 * i + c], expected[i]);
+  free(pixels);
+  cag_image_free(&image);
+}
+
+static void highlights_roll_off_and_odd_values_are_tamed(void **state) {
+  (void)state;
+  // 1 -> 0.8 + 0.2 (1 - 1/e) = 0.926424 -> sRGB 0.966918 -> 246.6; infinity -> 255; NaN and -1 -> 0
+  const float light[4] = {1, INFINITY, NAN, -1};
+  const unsigned char rolled[4] = {247, 255, 0, 0}, clipped[4] = {255, 255, 0, 0};
+  CagImage image = gray_row(light, 4);
+  for (int clip = 0; clip < 2; clip++) {
+    const CagPngOptions options = {.keep_linear = clip};
+    assert_true(cag_png_write(path, &image, &options, NULL, 0, NULL));
+    size_t width;
+    unsigned char *pixels = stored(&width);
+    for (size_t i = 0; i < 4; i++) assert_int_equal(pixels[4 * i], clip ? clipped[i] : rolled[i]);
+    free(pixels);
+  }
+  cag_image_free(&image);
+}
+
+static void the_roll_off_is_smooth(void **state) {
+  (void)state;
+  const double h = 1e-6, s = CAG_PNG_SHOULDER;
+  assert_true(cag_png_shoulder(s) == s);
+  // The slope is 1 on both sides, to the curvature 1 / 0.2 times h.
+  assert_true(fabs((cag_png_shoulder(s + h) - s) / h - 1) < 10 * h);
+  assert_true(cag_png_shoulder(INFINITY) == 1);
+}
+
+static void a_stop_doubles_the_light(void **state) {
+  (void)state;
+  const float light[1] = {0.125f};
+  CagImage image = gray_row(light, 1);
+  const CagPngOptions options = {.exposure = 2}; // 0.125 * 4 = 0.5
+  assert_true(cag_png_write(path, &image, &options, NULL, 0, NULL));
+  size_t width;
+  unsigned char *pixels = stored(&width);
+  assert_int_equal(pixels[0], 188);
+  free(pixels);
+  cag_image_free(&image);
+}
+
+static void sixteen_bits_come_back_as_light(void **state) {
+  (void)state;
+  float light[256];
+  for (int i = 0; i < 256; i++) light[i] = 0.8f * (float)i / 255;
+  CagImage image = gray_row(light, 256), again;
+  const CagPngOptions options = {.bits = 16};
+  assert_true(cag_png_write(path, &image, &options, NULL, 0, NULL));
+  assert_true(cag_png_read(path, &again, NULL));
+  assert_int_equal(again.channel_count, 3);
+  // Half a step of 1/65535, times the decoder's slope, which is below 2.3.
+  for (size_t i = 0; i < 256; i++)
+    assert_true(fabsf(again.data[i] - light[i]) < 1.2f * 2.3f / 65535);
+  cag_image_free(&image);
+  cag_image_free(&again);
+}
+
+static void alpha_is_kept_and_colours_are_unmultiplied(void **state) {
+  (void)state;
+  CagImage image, again;
+  assert_true(cag_image_create(&image, 2, 1, 4, NULL));
+  for (size_t c = 0; c < 4; c++) {
+    cag_image_set_name(&image, c, (const char *[]){"A", "B", "G", "R"}[c]);
+    cag_image_plane(&image, c)[0] = c ? 0.25f : 0.5f; // light 0.5 at coverage 0.5
+  }
+  assert_true(cag_png_write(path, &image, NULL, NULL, 0, NULL));
+  size_t width;
+  unsigned char *pixels = stored(&width);
+  assert_int_equal(pixels[0], 188);
+  assert_int_equal(pixels[3], 128);
+  assert_int_equal(pixels[7], 0);
+  free(pixels);
+  assert_true(cag_png_read(path, &again, NULL));
+  assert_int_equal(again.channel_count, 4);
+  // A step of 1/255 in the coverage and half of one in the colour.
+  assert_true(fabsf(again.data[0] - 0.25f) < 0.005f);
+  cag_image_free(&image);
+  cag_image_free(&again);
+}
+
+static void texts_are_stored(void **state) {
+  (void)state;
+  const float light[1] = {0};
+  const CagPngText texts[2] = {{"Software", "cag 0.1.0"}, {"Title", "Vase mit Öhr"}};
+  CagImage image = gray_row(light, 1);
+  assert_true(cag_png_write(path, &image, NULL, texts, 2, NULL));
+  FILE *f = fopen(path, "rb");
+  char bytes[1024] = {0};
+  size_t n = fread(bytes, 1, sizeof bytes, f);
+  fclose(f);
+  assert_non_null(memmem(bytes, n, "cag 0.1.0", 9));
+  assert_non_null(memmem(bytes, n, "Vase mit Öhr", strlen("Vase mit Öhr")));
+  cag_image_free(&image);
+}
+
+static void bad_requests_and_files_are_errors(void **state) {
+  (void)state;
+  CagImage image, out;
+  CagIoError err = {0};
+  assert_true(cag_image_create(&image, 2, 2, 2, NULL));
+  cag_image_set_name(&image, 0, "Z");
+  assert_false(cag_png_write(path, &image, NULL, NULL, 0, &err));
+  assert_non_null(strstr(err.message, "no colour channels"));
+  cag_image_set_name(&image, 0, "Y");
+  const CagPngOptions odd = {.bits = 12};
+  assert_false(cag_png_write(path, &image, &odd, NULL, 0, &err));
+  assert_int_equal(err.exit_status, CAG_EXIT_USAGE);
+  assert_false(cag_png_write("/dev/full", &image, NULL, NULL, 0, &err));
+  assert_non_null(strstr(err.message, "No space left"));
+  assert_false(cag_png_read("/nowhere.png", &out, &err));
+  assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+  assert_false(cag_png_read("/tmp", &out, &err));
+  FILE *f = fopen(path, "wb");
+  fputs("no picture at all", f);
+  fclose(f);
+  assert_false(cag_png_read(path, &out, &err));
+  assert_non_null(strstr(err.message, path));
+  cag_image_free(&image);
+}
+
+static void a_png_cut_anywhere_is_an_error(void **state) {
+  (void)state;
+  float light[50];
+  for (int i = 0; i < 50; i++) light[i] = (float)(i * i % 50) / 50;
+  CagImage image = gray_row(light, 50), out;
+  assert_true(cag_png_write(path, &image, NULL, NULL, 0, NULL));
+  unsigned char bytes[4096];
+  FILE *f = fopen(path, "rb");
+  size_t size = fread(bytes, 1, sizeof bytes, f);
+  fclose(f);
+  for (size_t n = 0; n < size; n += 3) {
+    f = fopen(path, "wb");
+    fwrite(bytes, 1, n, f);
+    fclose(f);
+    CagIoError err = {0};
+    assert_false(cag_png_read(path, &out, &err));
+    assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+  }
+  cag_image_free(&image);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(linear_light_gets_the_srgb_transfer),
+      cmocka_unit_test(highlights_roll_off_and_odd_values_are_tamed),
+      cmocka_unit_test(the_roll_off_is_smooth),
+      cmocka_unit_test(a_stop_doubles_the_light),
+      cmocka_unit_test(sixteen_bits_come_back_as_light),
+      cmocka_unit_test(alpha_is_kept_and_colours_are_unmultiplied),
+      cmocka_unit_test(texts_are_stored),
+      cmocka_unit_test(bad_requests_and_files_are_errors),
+      cmocka_unit_test(a_png_cut_anywhere_is_an_error),
+  };
+  return cmocka_run_group_tests(tests, make_file, remove_file);
+}
