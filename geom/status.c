@@ -1,0 +1,43 @@
+// Errors as values: filling a CagError, and numbers as messages show them.
+
+#include "geom/status.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+CagStatus cag_fail(CagError *err, CagStatus status, const char *reason, const char *argument,
+                   long index, const char *format, ...) {
+  err->status = status;
+  err->reason = reason;
+  snprintf(err->argument, sizeof err->argument, "%s", argument ? argument : "");
+  err->index = index;
+  va_list values;
+  va_start(values, format);
+  vsnprintf(err->message, sizeof err->message, format, values);
+  va_end(values);
+  return status;
+}
+
+CagStatus cag_fail_memory(CagError *err) {
+  return cag_fail(err, CAG_E_MEMORY, "out-of-memory", "", -1, "there is no memory left");
+}
+
+// 17 digits always read back the same, 15 often do and are what a person would write.
+const char *cag_number_text(double x, char *buffer) {
+  enum { SIZE = 32 };
+  if (isnan(x)) {
+    snprintf(buffer, SIZE, "nan");
+    return buffer;
+  }
+  if (isinf(x)) {
+    snprintf(buffer, SIZE, x > 0 ? "inf" : "-inf");
+    return buffer;
+  }
+  for (int digits = 15; digits <= 17; digits++) {
+    snprintf(buffer, SIZE, "%.*g", digits, x);
+    if (strtod(buffer, NULL) == x) break;
+  }
+  return buffer;
+}
