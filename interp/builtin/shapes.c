@@ -1,0 +1,276 @@
+// Shared by the built-ins of geometry: parameters that may be angles, points of plane or space,
+// results as records, and reading of shapes.
+
+#include "interp/builtin/shapes.h"
+
+#include <float.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Radians of degrees lose at most half an ulp, so the wanted decimal is within one ulp of the
+// stored double.
+static bool same_angle(double degrees, double radians) {
+  return fabs(degrees * CAG_RADIANS_PER_DEGREE - radians) <= DBL_EPSILON * fabs(radians);
+}
+
+double cag_degrees_shown(double radians) {
+  double degrees = radians / CAG_RADIANS_PER_DEGREE;
+  double whole = round(degrees);
+  if (same_angle(whole, radians)) return whole;
+  char text[40];
+  for (int digits = 6; digits <= 17; digits++) {
+    snprintf(text, sizeof text, "%.*g", digits, degrees);
+    double shown = strtod(text, NULL);
+    if (same_angle(shown, radians)) return shown;
+  }
+  return degrees;
+}
+
+CagValue cag_parameter_value(bool angular, double t) {
+  return angular ? cag_angle(cag_degrees_shown(t)) : cag_number(t);
+}
+
+CagValue cag_domain_value(CagVm *vm, bool angular, double start, double end) {
+  if (angular) {
+    start = cag_degrees_shown(start);
+    end = cag_degrees_shown(end);
+  }
+  return cag_range_new(vm, start, end, 1, angular, false, false);
+}
+
+bool cag_arg_parameter(CagCall *call, int argument, bool angular, double start, double end,
+                       bool unit, double *out) {
+  CagValue v = call->values[argument];
+  if (unit) {
+    double share;
+    if (!cag_arg_finite(call, argument, &share)) return false;
+    if (share < 0 || share > 1)
+      return cag_fail_call(call, argument, CAG_ERR_value,
+                           "takes a share in 0..1 with `unit: true`, found %.17g", share);
+    *out = share == 1 ? end : start + share * (end - start);
+    return true;
+  }
+  if (angular) {
+    if (v.type != CAG_ANGLE) {
+      cag_fail_type(call, argument, "an angle");
+      if (v.type == CAG_NUMBER)
+        cag_fail_help(call->vm,
+                      "this parameter is an angle: write 30deg, or `unit: true` for 0..1");
+      return false;
+    }
+    *out = v.as.number * CAG_RADIANS_PER_DEGREE;
+    return true;
+  }
+  return cag_arg_finite(call, argument, out);
+}
+
+bool cag_arg_parameter_range(CagCall *call, int argument, bool angular, double *from, double *to) {
+  bool angle;
+  if (!cag_arg_interval(call, argument, from, to, &angle)) return false;
+  if (angle != angular)
+    return cag_fail_type(call, argument, angular ? "a range of angles" : "a range of numbers");
+  if (angle) {
+    *from *= CAG_RADIANS_PER_DEGREE;
+    *to *= CAG_RADIANS_PER_DEGREE;
+  }
+  return true;
+}
+
+CagValue cag_numbers_value(CagVm *vm, const double *x, size_t n) {
+  double *numbers;
+  CagValue list = cag_list_numbers(vm, n, &numbers);
+  if (n > 0) memcpy(numbers, x, n * sizeof *x);
+  return list;
+}
+
+CagValue cag_points_value(CagVm *vm, const CagVec3 *points, size_t n, int dimension) {
+  double *numbers;
+  if (n == 0) return cag_list_values(vm, NULL, 0);
+  CagValue list = cag_list_vectors(vm, n, (size_t)dimension, &numbers);
+  for (size_t i = 0; i < n; i++) {
+    *numbers++ = points[i].x;
+    *numbers++ = points[i].y;
+    if (dimension == 3) *numbers++ = points[i].z;
+  }
+  return list;
+}
+
+CagValue cag_bounds_value(CagVm *vm, const CagBounds *b, int dimension) {
+  static const char *const names[] = {"min", "max", "size", "center"};
+  CagValue values[] = {cag_point(vm, b->min, dimension), cag_point(vm, b->max, dimension),
+                       cag_point(vm, cag_sub(b->max, b->min), dimension),
+                       cag_point(vm, cag_lerp(b->min, b->max, 0.5), dimension)};
+  return cag_record_new(vm, names, values, 4);
+}
+
+void cag_shape_say_alike(CagValue to, CagValue from) {
+  CagShape *a = CAG_AS_SHAPE(to);
+  const CagShape *b = CAG_AS_SHAPE(from);
+  a->material = b->material;
+  a->name = b->name;
+  a->style = b->style;
+  a->tolerance = b->tolerance;
+  a->hidden = b->hidden;
+}
+
+bool cag_arg_several(CagCall *call, int from, CagValue **items, size_t *n) {
+  size_t given = call->count - (size_t)from;
+  while (given > 0 && call->values[(size_t)from + given - 1].type == CAG_UNSET) given--;
+  CagValue first = given > 0 ? call->values[from] : cag_unset();
+  if (given != 1 || first.type != CAG_LIST) {
+    *items = call->values + from;
+    *n = given;
+    return true;
+  }
+  // A list's items stand in place unless it is packed, which lists of shapes never are.
+  CagList *list = CAG_AS_LIST(first);
+  if (list->dim != 0) return cag_fail_type(call, from, "shapes, or one list of them");
+  *items = list->as.items;
+  *n = list->length;
+  return true;
+}
+
+// What a group says holds for those of its shapes that say nothing of their own.
+static CagValue inherit(CagVm *vm, CagValue item, const CagShape *group) {
+  const CagShape *own = CAG_AS_SHAPE(item);
+  bool more = (!own->material && group->material) || (!own->name && group->name) ||
+              (own->tolerance == 0 && group->tolerance > 0) || (!own->style && group->style) ||
+              (!own->hidden && group->hidden);
+  if (!more) return item;
+  CagValue copy = cag_shape_copy(vm, item);
+  CagShape *s = CAG_AS_SHAPE(copy);
+  if (!s->material) s->material = group->material;
+  if (!s->name) s->name = group->name;
+  if (!s->style) s->style = group->style;
+  if (s->tolerance == 0) s->tolerance = group->tolerance;
+  s->hidden = s->hidden || group->hidden;
+  return copy;
+}
+
+bool cag_shapes_collect(CagCall *call, CagValue v, CagBuilder *into) {
+  if (v.type == CAG_LIST) {
+    CagList *list = CAG_AS_LIST(v);
+    for (size_t i = 0; i < list->length; i++)
+      if (!cag_shapes_collect(call, cag_list_get(call->vm, list, i), into)) return false;
+    return true;
+  }
+  if (v.type == CAG_GROUP) {
+    const CagShape *group = CAG_AS_SHAPE(v);
+    for (size_t i = 0; i < group->as.items->length; i++) {
+      CagValue item = inherit(call->vm, cag_list_get(call->vm, group->as.items, i), group);
+      if (!cag_shapes_collect(call, item, into)) return false;
+    }
+    return true;
+  }
+  if (!cag_is_shape(v)) {
+    CagString found = {0};
+    cag_describe_value(call->vm, &found, v);
+    cag_fail_call(call, -1, CAG_ERR_type, "expects shapes, or lists of shapes, found %s",
+                  found.bytes);
+    cag_string_free(&found);
+    return false;
+  }
+  return cag_builder_add(call->vm, into, v);
+}
+
+bool cag_arg_direction(CagCall *call, int argument, CagVec3 fallback, CagVec3 *out,
+                       int *dimension) {
+  if (!cag_arg_vec_or(call, argument, fallback, out, dimension)) return false;
+  if (out->x == 0 && out->y == 0 && out->z == 0)
+    return cag_fail_call(call, argument, CAG_ERR_value,
+                         "expects a direction, found the zero vector");
+  return true;
+}
+
+bool cag_arg_plane(CagCall *call, int argument, CagPlane *out) {
+  if (call->values[argument].type != CAG_PLANE) return cag_fail_type(call, argument, "a plane");
+  *out = CAG_AS_PLANE(call->values[argument])->plane;
+  return true;
+}
+
+bool cag_arg_region(CagCall *call, int argument, CagRegion **out, CagTransform *placement) {
+  CagValue v = call->values[argument];
+  CagError err;
+  *placement = cag_transform_identity();
+  if (v.type == CAG_REGION) {
+    *placement = CAG_AS_SHAPE(v)->placement;
+    *out = cag_region_retain(CAG_AS_SHAPE(v)->as.region);
+    return true;
+  }
+  if (v.type == CAG_CURVE)
+    return cag_geometry_ok(call, cag_region_new(CAG_AS_SHAPE(v)->as.curve, NULL, 0, out, &err),
+                           &err);
+  if (v.type != CAG_LIST)
+    return cag_fail_type(call, argument, "a region, a closed plane curve or a list of points");
+  CagVec3 *points;
+  size_t n;
+  int dimension;
+  if (!cag_arg_points(call, argument, &points, &n, &dimension)) return false;
+  CagCurve *outline = NULL;
+  bool ok =
+      cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, &outline, &err), &err);
+  free(points);
+  if (!ok) return false;
+  ok = cag_geometry_ok(call, cag_region_new(outline, NULL, 0, out, &err), &err);
+  cag_curve_release(outline);
+  return ok;
+}
+
+static void bounds_join(CagBounds *into, const CagBounds *b) {
+  if (b->min.x > b->max.x) return;
+  cag_bounds_add(into, b->min);
+  cag_bounds_add(into, b->max);
+}
+
+// Exact bounds of a placed region: those of its moved boundary.
+static CagStatus region_bounds(const CagShape *shape, CagBounds *out, int *dimension,
+                               CagError *err) {
+  const CagTransform *place = &shape->placement;
+  *dimension = place->planar ? 2 : 3;
+  *out = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; i < shape->as.region->count; i++) {
+    CagCurve *moved = NULL;
+    CagBounds loop;
+    CagStatus status = cag_curve_transform(shape->as.region->loops[i], place, &moved, err);
+    if (status == CAG_OK) status = cag_curve_bounds(moved, &loop, err);
+    cag_curve_release(moved);
+    if (status != CAG_OK) return status;
+    bounds_join(out, &loop);
+  }
+  return CAG_OK;
+}
+
+static bool shape_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  CagError err;
+  *dimension = 3;
+  switch (v.type) {
+  case CAG_CURVE:
+    *dimension = shape->as.curve->dimension;
+    return cag_geometry_ok(call, cag_curve_bounds(shape->as.curve, out, &err), &err);
+  case CAG_REGION: return cag_geometry_ok(call, region_bounds(shape, out, dimension, &err), &err);
+  case CAG_SURFACE:
+    return cag_geometry_ok(call, cag_surface_bounds(shape->as.surface, out, &err), &err);
+  case CAG_SOLID: return cag_geometry_ok(call, cag_solid_bounds(shape->as.solid, out, &err), &err);
+  default: *out = cag_mesh_bounds(shape->as.mesh); return true;
+  }
+}
+
+bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension) {
+  CagBuilder *shapes = cag_builder_new(call->vm);
+  if (!cag_shapes_collect(call, v, shapes)) return false;
+  CagValue list = cag_builder_finish(call->vm, shapes);
+  *out = CAG_BOUNDS_EMPTY;
+  *dimension = 2;
+  size_t n = CAG_AS_LIST(list)->length;
+  if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one shape");
+  for (size_t i = 0; i < n; i++) {
+    CagBounds one;
+    int d;
+    if (!shape_bounds(call, cag_list_get(call->vm, CAG_AS_LIST(list), i), &one, &d)) return false;
+    bounds_join(out, &one);
+    if (d == 3) *dimension = 3;
+  }
+  return true;
+}

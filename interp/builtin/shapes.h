@@ -1,0 +1,61 @@
+// Shared by the built-ins of geometry: parameters that may be angles, points of plane or space,
+// results as records, and reading of shapes.
+
+#ifndef CAG_INTERP_BUILTIN_SHAPES_H
+#define CAG_INTERP_BUILTIN_SHAPES_H
+
+#include "interp/builtin/apply.h"
+#include "interp/builtin/builtin.h"
+
+// Masks for CagBuiltin.first.
+#define CAG_TAKES(tag) ((uint64_t)1 << CAG_##tag)
+#define CAG_TAKES_LISTS (CAG_TAKES(LIST) | CAG_TAKES(RANGE))
+#define CAG_TAKES_SHAPES                                                                           \
+  (CAG_TAKES(CURVE) | CAG_TAKES(REGION) | CAG_TAKES(SURFACE) | CAG_TAKES(SOLID) |                  \
+   CAG_TAKES(MESH) | CAG_TAKES(GROUP))
+#define CAG_TAKES_MOVABLE                                                                          \
+  (CAG_TAKES_SHAPES | CAG_TAKES(CAMERA) | CAG_TAKES(LIGHT) | CAG_TAKES(PLANE) |                    \
+   CAG_TAKES(TRANSFORM))
+
+#define CAG_RADIANS_PER_DEGREE 0.017453292519943295
+
+// True when the core is content; else the machine's error is set.
+static inline bool cag_geometry_ok(CagCall *call, CagStatus status, const CagError *err) {
+  return status == CAG_OK || cag_fail_geometry(call, err);
+}
+
+// The degrees that a person would write for these radians: the shortest decimal whose radians are
+// the same double (or its neighbour), so that a full circle is 360deg and not
+// 360.00000000000006deg.
+double cag_degrees_shown(double radians);
+// A curve's or surface's parameter as the language has it.
+CagValue cag_parameter_value(bool angular, double t);
+CagValue cag_domain_value(CagVm *vm, bool angular, double start, double end);
+// Reads a parameter: an angle where `angular`, else a number; `unit`: 0..1 of [start, end].
+bool cag_arg_parameter(CagCall *call, int argument, bool angular, double start, double end,
+                       bool unit, double *out);
+// Reads a range of the parameter.
+bool cag_arg_parameter_range(CagCall *call, int argument, bool angular, double *from, double *to);
+
+CagValue cag_bounds_value(CagVm *vm, const CagBounds *b, int dimension);
+CagValue cag_numbers_value(CagVm *vm, const double *x, size_t n);
+// Points as a list of vectors of 2 or 3 numbers.
+CagValue cag_points_value(CagVm *vm, const CagVec3 *points, size_t n, int dimension);
+
+// Sets in `to` what was said about `from`: material, name, style, tolerance, hidden.
+void cag_shape_say_alike(CagValue to, CagValue from);
+// A list, or the arguments from `from` on, as one list of values: `join_curves(a, b)` and
+// `join_curves([a, b])`.
+bool cag_arg_several(CagCall *call, int from, CagValue **items, size_t *n);
+// A flat list of all shapes in a shape, a group or a list (groups taken apart, attributes
+// inherited). False: error set.
+bool cag_shapes_collect(CagCall *call, CagValue v, CagBuilder *into);
+// The unit vector and plane-ness of a direction that must not be zero.
+bool cag_arg_direction(CagCall *call, int argument, CagVec3 fallback, CagVec3 *out, int *dimension);
+bool cag_arg_plane(CagCall *call, int argument, CagPlane *out);
+// A region from a region, closed plane curve or list of points; *out has one reference of its own.
+bool cag_arg_region(CagCall *call, int argument, CagRegion **out, CagTransform *placement);
+// Bounds of a shape, group or list; `dimension` is 2 when everything is of the plane.
+bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension);
+
+#endif

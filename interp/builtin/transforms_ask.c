@@ -1,0 +1,168 @@
+// Questions to transforms: inverses, angles, classes, and homogeneous coordinates.
+
+#include <string.h>
+
+#include "interp/builtin/transforms.h"
+
+bool cag_transforms_inverse(CagCall *call, CagValue *result) {
+  CagTransform t, out;
+  CagError err;
+  if (!cag_arg_transform(call, 0, &t) ||
+      !cag_geometry_ok(call, cag_transform_inverse(&t, &out, &err), &err))
+    return false;
+  out.planar = t.planar;
+  *result = cag_transform_value(call->vm, &out);
+  return true;
+}
+
+bool cag_transforms_determinant(CagCall *call, CagValue *result) {
+  CagTransform t;
+  if (!cag_arg_transform(call, 0, &t)) return false;
+  *result = cag_number(cag_transform_determinant(&t));
+  return true;
+}
+
+bool cag_transforms_transpose(CagCall *call, CagValue *result) {
+  CagTransform t, out;
+  if (!cag_arg_transform(call, 0, &t)) return false;
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) out.m[i][j] = t.m[j][i];
+  out.planar = t.planar;
+  *result = cag_transform_value(call->vm, &out);
+  return true;
+}
+
+bool cag_transforms_position(CagCall *call, CagValue *result) {
+  CagTransform t;
+  if (!cag_arg_transform(call, 0, &t)) return false;
+  *result = cag_point(call->vm, cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]), t.planar ? 2 : 3);
+  return true;
+}
+
+bool cag_transforms_rotation(CagCall *call, CagValue *result) {
+  CagTransform t;
+  if (!cag_arg_transform(call, 0, &t)) return false;
+  for (int i = 0; i < 3; i++) t.m[i][3] = 0;
+  *result = cag_transform_value(call->vm, &t);
+  return true;
+}
+
+static CagValue shown_angle(double radians) { return cag_angle(cag_degrees_shown(radians)); }
+
+static bool give_angles(CagCall *call, const char *const *names, const double angles[3],
+                        bool singular, CagValue *result) {
+  CagValue values[] = {shown_angle(angles[0]), shown_angle(angles[1]), shown_angle(angles[2]),
+                       cag_bool(singular)};
+  *result = cag_record_new(call->vm, names, values, 4);
+  return true;
+}
+
+bool cag_transforms_euler_of(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"a", "b", "c", "singular"};
+  CagTransform t;
+  CagError err;
+  const char *order;
+  double angles[3];
+  bool singular;
+  if (!cag_arg_transform(call, 0, &t) || !cag_arg_text(call, 1, &order) ||
+      !cag_geometry_ok(call, cag_euler_of(&t, order, angles, &singular, &err), &err))
+    return false;
+  return give_angles(call, names, angles, singular, result);
+}
+
+bool cag_transforms_rpy_of(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"roll", "pitch", "yaw", "singular"};
+  CagTransform t;
+  CagError err;
+  double angles[3];
+  bool singular;
+  if (!cag_arg_transform(call, 0, &t) ||
+      !cag_geometry_ok(call, cag_rpy_of(&t, angles, &singular, &err), &err))
+    return false;
+  return give_angles(call, names, angles, singular, result);
+}
+
+bool cag_transforms_axis_angle_of(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"axis", "angle", "singular"};
+  CagTransform t;
+  CagError err;
+  CagVec3 axis;
+  double angle;
+  bool singular;
+  if (!cag_arg_transform(call, 0, &t) ||
+      !cag_geometry_ok(call, cag_axis_angle_of(&t, &axis, &angle, &singular, &err), &err))
+    return false;
+  CagValue values[] = {cag_point(call->vm, axis, 3), shown_angle(angle), cag_bool(singular)};
+  *result = cag_record_new(call->vm, names, values, 3);
+  return true;
+}
+
+bool cag_transforms_quaternion_of(CagCall *call, CagValue *result) {
+  CagTransform t;
+  CagError err;
+  double wxyz[4];
+  if (!cag_arg_transform(call, 0, &t) ||
+      !cag_geometry_ok(call, cag_quaternion_of(&t, wxyz, &err), &err))
+    return false;
+  *result = cag_vector(call->vm, wxyz, 4);
+  return true;
+}
+
+bool cag_transforms_classify(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"class", "scale",       "axis",           "angle",
+                                      "fixed", "fixed_point", "fixed_direction"};
+  CagTransform t;
+  CagError err;
+  CagTransformClass c;
+  if (!cag_arg_transform(call, 0, &t) ||
+      !cag_geometry_ok(call, cag_transform_classify(&t, &c, &err), &err))
+    return false;
+  bool has_point = strcmp(c.fixed, "none") != 0 && strcmp(c.fixed, "all") != 0;
+  bool has_direction = !strcmp(c.fixed, "line") || !strcmp(c.fixed, "plane");
+  CagValue values[] = {
+      cag_text_c(call->vm, c.name),
+      cag_number(c.scale),
+      c.has_rotation ? cag_point(call->vm, c.axis, 3) : cag_none(),
+      c.has_rotation ? shown_angle(c.angle) : cag_none(),
+      cag_text_c(call->vm, c.fixed),
+      has_point ? cag_point(call->vm, c.fixed_point, 3) : cag_none(),
+      has_direction ? cag_point(call->vm, c.fixed_direction, 3) : cag_none(),
+  };
+  *result = cag_record_new(call->vm, names, values, 7);
+  return true;
+}
+
+bool cag_transforms_homogeneous(CagCall *call, CagValue *result) {
+  CagVec3 p;
+  double w;
+  if (!cag_arg_vec(call, 0, &p, NULL) || !cag_arg_number_or(call, 1, 1, &w)) return false;
+  // A point at infinity keeps its direction; any other is scaled, so that dividing gives it back.
+  double scale = w == 0 ? 1 : w;
+  double h[] = {scale * p.x, scale * p.y, scale * p.z, w};
+  *result = cag_vector(call->vm, h, 4);
+  return true;
+}
+
+bool cag_transforms_dehomogenize(CagCall *call, CagValue *result) {
+  const double *h;
+  size_t n;
+  if (!cag_arg_numbers(call, 0, &h, &n)) return false;
+  if (n != 4)
+    return cag_fail_call(call, 0, CAG_ERR_value, "expects [x, y, z, w], found %zu numbers", n);
+  double w = h[3] == 0 ? 1 : h[3];
+  *result = cag_point(call->vm, cag_vec3(h[0] / w, h[1] / w, h[2] / w), 3);
+  return true;
+}
+
+bool cag_transforms_mix(CagCall *call, CagValue *result) {
+  CagTransform a, b, out;
+  CagError err;
+  double t;
+  if (!cag_arg_transform(call, 0, &a) || !cag_arg_transform(call, 1, &b) ||
+      !cag_arg_finite(call, 2, &t) ||
+      !cag_geometry_ok(call, cag_transform_mix(&a, &b, t, &out, &err), &err))
+    return false;
+  out.planar = a.planar && b.planar;
+  *result = cag_transform_value(call->vm, &out);
+  return true;
+}

@@ -1,0 +1,276 @@
+// Transforms made of their own data: frames, turns, links, rows of numbers, pairs of points.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/builtin/transforms.h"
+
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagTransform *t, bool planar,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  t->planar = planar;
+  *result = cag_transform_value(call->vm, t);
+  return true;
+}
+
+bool cag_transforms_reflect_line(CagCall *call, CagValue *result) {
+  CagVec3 p, q;
+  int dp, dq;
+  CagTransform t;
+  CagError err;
+  if (!cag_arg_vec(call, 0, &p, &dp) || !cag_arg_vec(call, 1, &q, &dq)) return false;
+  return give(call, cag_reflect_line(p, q, &t, &err), &err, &t, dp == 2 && dq == 2, result);
+}
+
+bool cag_transforms_reflect_point(CagCall *call, CagValue *result) {
+  CagVec3 p;
+  int dimension;
+  if (!cag_arg_vec(call, 0, &p, &dimension)) return false;
+  CagTransform t = cag_reflect_point(p);
+  return give(call, CAG_OK, NULL, &t, dimension == 2, result);
+}
+
+// Rows of numbers, 2 to 4 of 2 to 4; *columns and *count tell the shape.
+static bool read_rows(CagCall *call, double m[4][4], size_t *count, size_t *columns) {
+  CagList *list;
+  if (!cag_arg_list(call, 0, &list)) return false;
+  *count = list->length;
+  *columns = 0;
+  for (size_t i = 0; i < list->length && i < 4; i++) {
+    const double *x;
+    size_t n;
+    CagValue row = cag_list_get(call->vm, list, i);
+    if (!cag_as_vector(row, &x, &n) || n < 2 || n > 4 || (i > 0 && n != *columns))
+      return cag_fail_call(call, 0, CAG_ERR_type,
+                           "expects rows of numbers, all of one length in 2..4; rows[%zu] is none",
+                           i);
+    *columns = n;
+    memcpy(m[i], x, n * sizeof *x);
+  }
+  return true;
+}
+
+bool cag_transforms_from_rows(CagCall *call, CagValue *result) {
+  static const char *const kinds[] = {"plane", "linear", NULL};
+  double m[4][4];
+  size_t rows, columns;
+  int linear;
+  if (!read_rows(call, m, &rows, &columns) || !cag_arg_choice(call, 1, kinds, &linear))
+    return false;
+  CagTransform t = cag_transform_identity();
+  bool planar = rows <= 3 && columns == rows && !linear;
+  if (rows == 2 && columns == 2) {
+    for (int i = 0; i < 2; i++)
+      for (int j = 0; j < 2; j++) t.m[i][j] = m[i][j];
+    planar = true;
+  } else if (rows == 3 && columns == 3 && !linear) {
+    // Homogeneous in the plane: x, y and w; z stays as it is.
+    static const int place[3] = {0, 1, 3};
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) t.m[place[i]][place[j]] = m[i][j];
+  } else if ((rows == 3 && (columns == 3 || columns == 4)) || (rows == 4 && columns == 4)) {
+    for (size_t i = 0; i < rows; i++)
+      for (size_t j = 0; j < columns; j++) t.m[i][j] = m[i][j];
+  } else {
+    return cag_fail_call(call, 0, CAG_ERR_value,
+                         "expects 2x2, 3x3, 3x4 or 4x4 rows, found %zu rows of %zu", rows, columns);
+  }
+  return give(call, CAG_OK, NULL, &t, planar, result);
+}
+
+bool cag_transforms_axes(CagCall *call, CagValue *result) {
+  CagVec3 origin, x, y;
+  CagTransform t;
+  CagError err;
+  if (!cag_arg_vec(call, 0, &origin, NULL) || !cag_arg_vec(call, 1, &x, NULL) ||
+      !cag_arg_vec(call, 2, &y, NULL))
+    return false;
+  return give(call, cag_axes(origin, x, y, &t, &err), &err, &t, false, result);
+}
+
+bool cag_transforms_look_at(CagCall *call, CagValue *result) {
+  CagVec3 from, to, up;
+  CagTransform t;
+  CagError err;
+  if (!cag_arg_vec(call, 0, &from, NULL) || !cag_arg_vec(call, 1, &to, NULL) ||
+      !cag_arg_vec_or(call, 2, cag_vec3(0, 0, 1), &up, NULL))
+    return false;
+  return give(call, cag_look_at(from, to, up, &t, &err), &err, &t, false, result);
+}
+
+bool cag_transforms_euler(CagCall *call, CagValue *result) {
+  double a, b, c;
+  const char *order;
+  CagTransform t;
+  CagError err;
+  if (!cag_arg_angle(call, 0, &a) || !cag_arg_angle(call, 1, &b) || !cag_arg_angle(call, 2, &c) ||
+      !cag_arg_text(call, 3, &order))
+    return false;
+  return give(call, cag_euler(a, b, c, order, &t, &err), &err, &t, false, result);
+}
+
+bool cag_transforms_rpy(CagCall *call, CagValue *result) {
+  double roll, pitch, yaw;
+  if (!cag_arg_angle(call, 0, &roll) || !cag_arg_angle(call, 1, &pitch) ||
+      !cag_arg_angle(call, 2, &yaw))
+    return false;
+  CagTransform t = cag_rpy(roll, pitch, yaw);
+  return give(call, CAG_OK, NULL, &t, false, result);
+}
+
+bool cag_transforms_quaternion(CagCall *call, CagValue *result) {
+  double wxyz[4];
+  CagTransform t;
+  CagError err;
+  for (int i = 0; i < 4; i++)
+    if (!cag_arg_finite(call, i, &wxyz[i])) return false;
+  return give(call, cag_quaternion(wxyz, &t, &err), &err, &t, false, result);
+}
+
+bool cag_transforms_axis_angle(CagCall *call, CagValue *result) {
+  CagVec3 axis;
+  double angle;
+  CagTransform t;
+  CagError err;
+  if (!cag_arg_vec(call, 0, &axis, NULL) || !cag_arg_angle(call, 1, &angle)) return false;
+  return give(call, cag_rotate(axis, angle, cag_vec3(0, 0, 0), &t, &err), &err, &t, false, result);
+}
+
+// Turn about Z by the first angle, then about the turned Y by the second, then a step along the
+// turned axes; without `orient` only the position is kept.
+static bool give_position(CagCall *call, double turn, double tilt, CagVec3 step, bool orient,
+                          CagValue *result) {
+  CagTransform place = cag_translate(step), tilted = cag_rpy(0, tilt, turn);
+  CagTransform t = cag_transform_multiply(&tilted, &place);
+  if (!orient) t = cag_translate(cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]));
+  return give(call, CAG_OK, NULL, &t, false, result);
+}
+
+bool cag_transforms_cylindrical(CagCall *call, CagValue *result) {
+  double r, theta, z;
+  bool orient;
+  if (!cag_arg_finite(call, 0, &r) || !cag_arg_angle(call, 1, &theta) ||
+      !cag_arg_finite(call, 2, &z) || !cag_arg_bool_or(call, 3, false, &orient))
+    return false;
+  return give_position(call, theta, 0, cag_vec3(r, 0, z), orient, result);
+}
+
+bool cag_transforms_spherical(CagCall *call, CagValue *result) {
+  double r, azimuth, polar;
+  bool orient;
+  if (!cag_arg_finite(call, 0, &r) || !cag_arg_angle(call, 1, &azimuth) ||
+      !cag_arg_angle(call, 2, &polar) || !cag_arg_bool_or(call, 3, false, &orient))
+    return false;
+  return give_position(call, azimuth, polar, cag_vec3(0, 0, r), orient, result);
+}
+
+// theta, d, a, alpha
+static bool read_link(CagCall *call, double link[4]) {
+  return cag_arg_angle(call, 0, &link[0]) && cag_arg_finite(call, 1, &link[1]) &&
+         cag_arg_finite(call, 2, &link[2]) && cag_arg_angle(call, 3, &link[3]);
+}
+
+bool cag_transforms_dh(CagCall *call, CagValue *result) {
+  double link[4];
+  if (!read_link(call, link)) return false;
+  CagTransform t = cag_dh(link[0], link[1], link[2], link[3]);
+  return give(call, CAG_OK, NULL, &t, false, result);
+}
+
+bool cag_transforms_mdh(CagCall *call, CagValue *result) {
+  double link[4];
+  if (!read_link(call, link)) return false;
+  CagTransform t = cag_mdh(link[0], link[1], link[2], link[3]);
+  return give(call, CAG_OK, NULL, &t, false, result);
+}
+
+bool cag_transforms_from_pairs(CagCall *call, CagValue *result) {
+  CagVec3 *points, *images;
+  size_t n, m;
+  int d, e;
+  CagTransform t;
+  CagError err;
+  if (!cag_arg_points(call, 0, &points, &n, &d)) return false;
+  if (!cag_arg_points(call, 1, &images, &m, &e)) {
+    free(points);
+    return false;
+  }
+  bool planar = d == 2 && e == 2, ok;
+  if (n != m)
+    ok = cag_fail_call(call, 1, CAG_ERR_length,
+                       "expects one image for each of %zu points, found %zu", n, m);
+  else
+    ok = give(call, cag_transform_from(points, images, n, planar, &t, &err), &err, &t, planar,
+              result);
+  free(points);
+  free(images);
+  return ok;
+}
+
+// --- solve_frame ---
+
+typedef struct Unknown {
+  const char *name; // the frame that is not known; NULL: not met yet
+  int side;
+  size_t at;
+} Unknown;
+
+static bool read_side(CagCall *call, int side, const CagRecord *frames, Unknown *unknown) {
+  CagList *names;
+  if (!cag_arg_list(call, side, &names)) return false;
+  for (size_t i = 0; i < names->length; i++) {
+    CagValue name = cag_list_get(call->vm, names, i);
+    if (name.type != CAG_TEXT)
+      return cag_fail_call(call, side, CAG_ERR_type, "expects names of frames, as texts");
+    CagValue frame = cag_record_get_text(call->vm, frames, CAG_AS_TEXT(name));
+    if (frame.type == CAG_TRANSFORM) continue;
+    const char *bytes = CAG_AS_TEXT(name)->bytes;
+    if (frame.type != CAG_UNSET)
+      return cag_fail_call(call, 2, CAG_ERR_type, "expects a transform as the frame \"%s\"", bytes);
+    if (unknown->name)
+      return cag_fail_call(call, side, CAG_ERR_value,
+                           "expects one unknown frame that stands once, found \"%s\" and \"%s\"",
+                           unknown->name, bytes);
+    *unknown = (Unknown){bytes, side, i};
+  }
+  return true;
+}
+
+// Product of the frames of a side in [from, to).
+static CagTransform product(CagCall *call, int side, size_t from, size_t to,
+                            const CagRecord *frames) {
+  const CagList *names = CAG_AS_LIST(call->values[side]);
+  CagTransform t = cag_transform_identity();
+  for (size_t i = from; i < to; i++) {
+    CagValue name = cag_list_get(call->vm, names, i);
+    CagValue frame = cag_record_get_text(call->vm, frames, CAG_AS_TEXT(name));
+    t = cag_transform_multiply(&t, &CAG_AS_TRANSFORM(frame)->t);
+  }
+  return t;
+}
+
+bool cag_transforms_solve_frame(CagCall *call, CagValue *result) {
+  CagRecord *frames;
+  Unknown unknown = {0};
+  CagError err;
+  if (!cag_arg_record(call, 2, &frames) || !read_side(call, 0, frames, &unknown) ||
+      !read_side(call, 1, frames, &unknown))
+    return false;
+  if (!unknown.name)
+    return cag_fail_call(call, 2, CAG_ERR_value, "expects all frames but one: none is unknown");
+  // before * X * after = other
+  size_t length = CAG_AS_LIST(call->values[unknown.side])->length;
+  int other_side = 1 - unknown.side;
+  size_t other_length = CAG_AS_LIST(call->values[other_side])->length;
+  CagTransform before = product(call, unknown.side, 0, unknown.at, frames);
+  CagTransform after = product(call, unknown.side, unknown.at + 1, length, frames);
+  CagTransform other = product(call, other_side, 0, other_length, frames);
+  CagTransform undo_before, undo_after;
+  if (!cag_geometry_ok(call, cag_transform_inverse(&before, &undo_before, &err), &err) ||
+      !cag_geometry_ok(call, cag_transform_inverse(&after, &undo_after, &err), &err))
+    return false;
+  CagTransform t = cag_transform_multiply(&undo_before, &other);
+  t = cag_transform_multiply(&t, &undo_after);
+  *result = cag_transform_value(call->vm, &t);
+  return true;
+}

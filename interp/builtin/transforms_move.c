@@ -1,0 +1,183 @@
+// Transforms that also take first what they move: `translate(V)` is a transform, `translate(G, V)`
+// is `translate(V) * G`.
+//
+// Each name has two rows in the table: one that makes the transform, and one whose first parameter
+// is what is moved. A list as first argument may be a vector or a list of shapes, which the table
+// cannot tell apart; the first row then finds the shapes and reads its arguments as the second.
+
+#include <string.h>
+
+#include "interp/builtin/transforms.h"
+
+// Reads the arguments from parameter `at` on.
+typedef bool (*MakeTransform)(CagCall *call, int at, CagTransform *out);
+
+// Most parameters that a row here has, and one more for what is moved.
+#define PARAMETERS_MAX 8
+
+static bool holds_movables(CagVm *vm, CagValue v) {
+  if (v.type != CAG_LIST) return v.type < 64 && (CAG_TAKES_MOVABLE >> v.type & 1);
+  const CagList *list = CAG_AS_LIST(v);
+  return list->dim == 0 && list->length > 0 && holds_movables(vm, cag_list_get(vm, list, 0));
+}
+
+// The row of the same function that has what is moved as its first parameter.
+static const CagBuiltin *moving_row(const CagBuiltin *row) {
+  size_t n;
+  const CagBuiltin *rows =
+      cag_builtin_rows(cag_builtin_find(cag_builtin_signature_of(row)->name), &n);
+  for (size_t i = 0; i < n; i++)
+    if (rows[i].function == row->function && (rows[i].first & CAG_TAKES(CURVE))) return &rows[i];
+  return row;
+}
+
+static bool make_or_move(CagCall *call, CagValue *result, MakeTransform make) {
+  CagTransform t;
+  CagCall moving = *call;
+  CagValue values[PARAMETERS_MAX];
+  bool moves = (call->builtin->first & CAG_TAKES(CURVE)) != 0;
+  if (!moves && call->count > 1 && holds_movables(call->vm, call->values[0])) {
+    size_t n = call->count < PARAMETERS_MAX ? call->count : PARAMETERS_MAX - 1;
+    memcpy(values, call->values, n * sizeof *values);
+    for (size_t i = n; i < PARAMETERS_MAX; i++) values[i] = cag_unset();
+    moving.builtin = moving_row(call->builtin);
+    moving.values = values;
+    moving.count = PARAMETERS_MAX;
+    moves = true;
+  }
+  if (!make(&moving, moves ? 1 : 0, &t)) return false;
+  if (moves) return cag_transform_apply(call->vm, &t, moving.values[0], result);
+  *result = cag_transform_value(call->vm, &t);
+  return true;
+}
+
+static bool make_translate(CagCall *call, int at, CagTransform *out) {
+  CagVec3 v;
+  int dimension;
+  if (!cag_arg_vec(call, at, &v, &dimension)) return false;
+  *out = cag_translate(v);
+  out->planar = dimension == 2;
+  return true;
+}
+bool cag_transforms_translate(CagCall *call, CagValue *result) {
+  return make_or_move(call, result, make_translate);
+}
+
+static bool make_rotate(CagCall *call, int at, CagTransform *out) {
+  static const CagVec3 zero = {0, 0, 0};
+  CagError err;
+  CagVec3 axis = {0, 0, 1}, about;
+  int axis_dimension = 2, about_dimension = 2;
+  double angle;
+  // Without an axis the turn is about Z.
+  bool plain = call->values[at].type == CAG_ANGLE;
+  int next = plain ? at : at + 1;
+  if (!plain && !cag_arg_vec(call, at, &axis, &axis_dimension)) return false;
+  if (!cag_arg_angle(call, next, &angle)) return false;
+  if ((size_t)next + 1 < call->count && cag_given(call, next + 1)) {
+    if (!cag_arg_vec(call, next + 1, &about, &about_dimension)) return false;
+  } else {
+    about = zero;
+  }
+  if (!cag_geometry_ok(call, cag_rotate(axis, angle, about, out, &err), &err)) return false;
+  out->planar = plain && about_dimension == 2;
+  return true;
+}
+bool cag_transforms_rotate(CagCall *call, CagValue *result) {
+  return make_or_move(call, result, make_rotate);
+}
+
+static bool make_scale(CagCall *call, int at, CagTransform *out) {
+  CagError err;
+  CagVec3 factors, about;
+  int dimension = 2, about_dimension = 2;
+  if (call->values[at].type == CAG_NUMBER) {
+    double f;
+    if (!cag_arg_finite(call, at, &f)) return false;
+    factors = cag_vec3(f, f, f);
+  } else {
+    if (call->values[at].type != CAG_LIST)
+      return cag_fail_type(call, at, "a factor or a vector of factors");
+    if (!cag_arg_vec(call, at, &factors, &dimension)) return false;
+    if (dimension == 2) factors.z = 1;
+  }
+  if (!cag_arg_vec_or(call, at + 1, cag_vec3(0, 0, 0), &about, &about_dimension)) return false;
+  if (!cag_given(call, at + 1)) about_dimension = 2;
+  if (!cag_geometry_ok(call, cag_scale(factors, about, out, &err), &err)) return false;
+  out->planar = dimension == 2 && about_dimension == 2;
+  return true;
+}
+bool cag_transforms_scale(CagCall *call, CagValue *result) {
+  return make_or_move(call, result, make_scale);
+}
+
+static bool make_reflect(CagCall *call, int at, CagTransform *out) {
+  CagError err;
+  if (call->values[at].type == CAG_PLANE) {
+    const CagPlane *plane = &CAG_AS_PLANE(call->values[at])->plane;
+    if (cag_given(call, at + 1))
+      return cag_fail_call(call, at + 1, CAG_ERR_value,
+                           "takes no `through` beside a plane, which has its own point");
+    if (!cag_geometry_ok(call, cag_reflect(plane->normal, plane->point, out, &err), &err))
+      return false;
+    out->planar = false;
+    return true;
+  }
+  if (call->values[at].type != CAG_LIST) return cag_fail_type(call, at, "a normal or a plane");
+  CagVec3 normal, through;
+  int dimension, through_dimension = 2;
+  if (!cag_arg_vec(call, at, &normal, &dimension)) return false;
+  if (!cag_arg_vec_or(call, at + 1, cag_vec3(0, 0, 0), &through, &through_dimension)) return false;
+  if (!cag_given(call, at + 1)) through_dimension = dimension;
+  if (!cag_geometry_ok(call, cag_reflect(normal, through, out, &err), &err)) return false;
+  out->planar = dimension == 2 && through_dimension == 2;
+  return true;
+}
+bool cag_transforms_reflect(CagCall *call, CagValue *result) {
+  return make_or_move(call, result, make_reflect);
+}
+
+static bool make_shear(CagCall *call, int at, CagTransform *out) {
+  double k[6]; // xy xz yx yz zx zy
+  for (int i = 0; i < 6; i++)
+    if (!cag_arg_number_or(call, at + i, 0, &k[i])) return false;
+  *out = cag_shear(k[0], k[1], k[2], k[3], k[4], k[5]);
+  out->planar = k[1] == 0 && k[3] == 0 && k[4] == 0 && k[5] == 0;
+  return true;
+}
+bool cag_transforms_shear(CagCall *call, CagValue *result) {
+  return make_or_move(call, result, make_shear);
+}
+
+static bool make_project(CagCall *call, int at, CagTransform *out) {
+  CagError err;
+  CagPlane onto;
+  CagVec3 along = {0, 0, 0}, from;
+  int dimension;
+  bool parallel = cag_given(call, at + 1) && call->values[at + 1].type != CAG_NONE;
+  bool central = cag_given(call, at + 2) && call->values[at + 2].type != CAG_NONE;
+  if (!cag_arg_plane(call, at, &onto)) return false;
+  if (parallel && central)
+    return cag_fail_call(call, at + 2, CAG_ERR_value,
+                         "takes `along` (parallel) or `from` (central), not both");
+  CagStatus status;
+  if (central) {
+    if (!cag_arg_vec(call, at + 2, &from, &dimension)) return false;
+    status = cag_project_central(&onto, from, out, &err);
+  } else {
+    if (parallel && !cag_arg_direction(call, at + 1, along, &along, &dimension)) return false;
+    status = cag_project_parallel(&onto, along, out, &err);
+  }
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  out->planar = false;
+  return true;
+}
+bool cag_transforms_project(CagCall *call, CagValue *result) {
+  return make_or_move(call, result, make_project);
+}
+
+bool cag_transforms_moved(CagCall *call, CagValue *result) {
+  CagTransform t;
+  if (!cag_arg_transform(call, 1, &t)) return false;
+  return cag_transform_apply(call->vm, &t, call->values[0], result);
+}
