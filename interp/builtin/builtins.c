@@ -11,12 +11,12 @@
 
 #include "interp/builtin/support.h"
 
-// All families. Where one name serves lists and shapes alike, shapes come first: their rows take
-// the lists that are points, and leave the others.
+// All families, in the order in which the documentation lists them.
 #define FAMILIES(X)                                                                                \
   X(constants)                                                                                     \
-  X(numbers) X(angles) X(vectors) X(lists) X(texts) X(records) X(control) X(random) X(calculus)    \
-      X(matrices) X(files) X(formula) X(transforms) X(curves) X(surfaces) X(solids) X(scene)
+  X(numbers)                                                                                       \
+  X(angles) X(vectors) X(lists) X(texts) X(records) X(control) X(random) X(calculus) X(matrices)   \
+      X(files) X(formula) X(transforms) X(curves) X(surfaces) X(solids) X(scene)
 
 #define X(family) extern const CagBuiltin cag_builtins_##family[];
 FAMILIES(X)
