@@ -44,7 +44,8 @@ CagValue cag_text_from_string(CagVm *vm, CagString *s); // frees s
 // Order of two numbers, angles or texts: -1, 0, 1. False when they have none (no error is set).
 bool cag_order(CagValue a, CagValue b, int *order);
 bool cag_fail_order(CagCall *call, int argument, CagValue a, CagValue b);
-// (1 - t) a + t b of numbers, angles, transforms and lists of these. Error set by the call.
+double cag_mix_numbers(double a, double b, double t); // (1 - t) a + t b
+// The same of numbers, angles, transforms and lists of these. Error set by the call.
 bool cag_mix_values(CagCall *call, CagValue a, CagValue b, double t, CagValue *out);
 
 // x rounded at `digits` places after the point, halves away from 0. What is rounded is the shortest

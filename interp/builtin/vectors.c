@@ -1,0 +1,260 @@
+// Vectors: products, lengths, angles between, and comparison within a tolerance.
+//
+// A vector is a list of numbers of any length; 2-D and 3-D ones may meet where a space vector is
+// meant, and the 2-D one then has z = 0.
+
+#include "interp/builtin/support.h"
+
+static const char FAMILY[] = "Vectors";
+#define LISTS (CAG_TYPE_BIT(LIST) | CAG_TYPE_BIT(RANGE))
+
+// --- Reading ---
+
+typedef struct Vector {
+  const double *x;
+  size_t n;
+} Vector;
+
+static bool read_vector(CagCall *call, int argument, Vector *out) {
+  CagValue v = call->values[argument];
+  if (v.type != CAG_LIST) return cag_fail_type(call, argument, "a vector");
+  if (CAG_AS_LIST(v)->length == 0)
+    return cag_fail_value(call, argument, "a vector of at least one number");
+  return cag_arg_numbers(call, argument, &out->x, &out->n);
+}
+
+// Element i; behind the end of a plane vector 0.
+static double element(Vector v, size_t i) { return i < v.n ? v.x[i] : 0; }
+
+// The arguments 0 and 1 as vectors of one length, which *n gets.
+static bool read_two(CagCall *call, Vector *a, Vector *b, size_t *n) {
+  if (!read_vector(call, 0, a) || !read_vector(call, 1, b)) return false;
+  *n = a->n > b->n ? a->n : b->n;
+  bool plane_and_space = a->n >= 2 && a->n <= 3 && b->n >= 2 && b->n <= 3;
+  if (a->n == b->n || plane_and_space) return true;
+  return cag_fail_call(call, 1, CAG_ERR_length,
+                       "expects vectors of one length, found %zu and %zu numbers", a->n, b->n);
+}
+
+// Root of the sum of squares of n numbers x[i * stride], scaled so that it neither overflows nor
+// vanishes on the way.
+static double norm_of(const double *x, size_t n) {
+  double sum = 0, largest = 0;
+  for (size_t i = 0; i < n; i++) {
+    sum += x[i] * x[i];
+    if (fabs(x[i]) > largest) largest = fabs(x[i]);
+  }
+  // Squares of numbers between these bounds lose nothing.
+  static const double SMALL = 1e-140, LARGE = 1e140;
+  if ((largest > SMALL && largest < LARGE) || largest == 0 || isinf(largest)) return sqrt(sum);
+  sum = 0;
+  for (size_t i = 0; i < n; i++) sum += (x[i] / largest) * (x[i] / largest);
+  return largest * sqrt(sum);
+}
+
+// --- Functions ---
+
+static bool call_dot(CagCall *call, CagValue *result) {
+  Vector a, b;
+  size_t n;
+  if (!read_two(call, &a, &b, &n)) return false;
+  double sum = 0;
+  for (size_t i = 0; i < n; i++) sum += element(a, i) * element(b, i);
+  return cag_give_number(call, sum, result);
+}
+
+static bool call_cross(CagCall *call, CagValue *result) {
+  CagVec3 a, b;
+  int dimension;
+  if (!cag_arg_vec(call, 0, &a, &dimension) || !cag_arg_vec(call, 1, &b, &dimension)) return false;
+  *result = cag_point(call->vm, cag_cross(a, b), 3);
+  return true;
+}
+
+static bool call_norm(CagCall *call, CagValue *result) {
+  Vector v;
+  return read_vector(call, 0, &v) && cag_give_number(call, norm_of(v.x, v.n), result);
+}
+
+static bool call_unit(CagCall *call, CagValue *result) {
+  Vector v;
+  if (!read_vector(call, 0, &v)) return false;
+  double norm = norm_of(v.x, v.n);
+  if (norm == 0)
+    return cag_fail_call(call, 0, CAG_ERR_not_finite,
+                         "of a zero vector is undefined: it has no direction");
+  if (isinf(norm)) return cag_fail_value(call, 0, "a vector of finite length");
+  double *numbers;
+  CagValue unit = cag_list_numbers(call->vm, v.n, &numbers);
+  for (size_t i = 0; i < v.n; i++) numbers[i] = v.x[i] / norm + 0.0;
+  *result = unit;
+  return true;
+}
+
+// distance is the same from either side: when the second argument is a shape, the row for shapes
+// gets it first.
+static bool distance_to_shape(CagCall *call, CagValue *result) {
+  size_t index = cag_builtin_find("distance"), rows;
+  const CagBuiltin *row = cag_builtin_rows(index, &rows);
+  for (size_t i = 0; i < rows; i++) {
+    if ((row[i].first >> call->values[1].type & 1) == 0) continue;
+    CagValue swapped[] = {call->values[1], call->values[0]};
+    CagCall other = {call->vm, &row[i], swapped, 2};
+    return row[i].function(&other, result);
+  }
+  return cag_fail_type(call, 1, "a point");
+}
+
+static bool call_distance(CagCall *call, CagValue *result) {
+  Vector a, b;
+  size_t n;
+  if (cag_is_shape(call->values[1])) return distance_to_shape(call, result);
+  if (!read_two(call, &a, &b, &n)) return false;
+  if (n > CAG_MAX_PACKED) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++) sum = hypot(sum, a.x[i] - b.x[i]);
+    return cag_give_number(call, sum, result);
+  }
+  double difference[CAG_MAX_PACKED];
+  for (size_t i = 0; i < n; i++) difference[i] = element(a, i) - element(b, i);
+  return cag_give_number(call, norm_of(difference, n), result);
+}
+
+static bool fail_zero(CagCall *call, int argument) {
+  return cag_fail_call(call, argument, CAG_ERR_not_finite,
+                       "is undefined for a zero vector: it has no direction");
+}
+
+static bool call_angle_between(CagCall *call, CagValue *result) {
+  Vector a, b;
+  size_t n;
+  if (!read_two(call, &a, &b, &n)) return false;
+  double na = norm_of(a.x, a.n), nb = norm_of(b.x, b.n);
+  if (na == 0) return fail_zero(call, 0);
+  if (nb == 0) return fail_zero(call, 1);
+  if (isinf(na) || isinf(nb))
+    return cag_fail_value(call, isinf(na) ? 0 : 1, "a vector of finite length");
+  if (n == 2 || n == 3) {
+    // From sine and cosine: exact for multiples of 45deg, accurate near 0 and 180deg.
+    CagVec3 u = cag_vec3(a.x[0] / na, a.x[1] / na, element(a, 2) / na);
+    CagVec3 v = cag_vec3(b.x[0] / nb, b.x[1] / nb, element(b, 2) / nb);
+    *result = cag_angle(cag_atan2_degrees(cag_norm(cag_cross(u, v)), cag_dot(u, v)));
+    return true;
+  }
+  // Kahan: twice the angle in the triangle of the sum and the difference of the unit vectors.
+  double sum = 0, difference = 0;
+  for (size_t i = 0; i < n; i++) {
+    double u = a.x[i] / na, v = b.x[i] / nb;
+    sum += (u + v) * (u + v);
+    difference += (u - v) * (u - v);
+  }
+  *result = cag_angle(2 * cag_atan2_degrees(sqrt(difference), sqrt(sum)));
+  return true;
+}
+
+// --- near ---
+
+typedef struct Nearness {
+  CagCall *call;
+  double tolerance, relative;
+} Nearness;
+
+static bool near_numbers(const Nearness *by, double a, double b) {
+  return a == b || fabs(a - b) <= fmax(by->tolerance, by->relative * fabs(b));
+}
+
+static bool near_transforms(const Nearness *by, const CagTransform *a, const CagTransform *b) {
+  bool all = true;
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) all = all && near_numbers(by, a->m[i][j], b->m[i][j]);
+  return all;
+}
+
+// Compares two values into *out; false with the error set where they are nothing to compare.
+static bool near_values(const Nearness *by, CagValue a, CagValue b, bool *out);
+
+static bool near_lists(const Nearness *by, const CagList *a, const CagList *b, bool *out) {
+  if (a->length != b->length)
+    return cag_fail_call(by->call, 1, CAG_ERR_length,
+                         "expects lists of one length, found %zu and %zu elements", a->length,
+                         b->length);
+  *out = true;
+  if (a->dim > 0 && a->dim == b->dim) {
+    for (size_t i = 0; i < a->length * a->dim && *out; i++)
+      *out = near_numbers(by, a->as.numbers[i], b->as.numbers[i]);
+    return true;
+  }
+  for (size_t i = 0; i < a->length && *out; i++)
+    if (!near_values(by, cag_list_get(by->call->vm, a, i), cag_list_get(by->call->vm, b, i), out))
+      return false;
+  return true;
+}
+
+static bool near_values(const Nearness *by, CagValue a, CagValue b, bool *out) {
+  CagVm *vm = by->call->vm;
+  bool lists =
+      (a.type == CAG_LIST || a.type == CAG_RANGE) && (b.type == CAG_LIST || b.type == CAG_RANGE);
+  if (lists)
+    return cag_as_list(vm, a, &a) && cag_as_list(vm, b, &b) &&
+           near_lists(by, CAG_AS_LIST(a), CAG_AS_LIST(b), out);
+  if (a.type == b.type && (a.type == CAG_NUMBER || a.type == CAG_ANGLE)) {
+    *out = near_numbers(by, a.as.number, b.as.number);
+    return true;
+  }
+  if (a.type == b.type && a.type == CAG_TRANSFORM) {
+    *out = near_transforms(by, &CAG_AS_TRANSFORM(a)->t, &CAG_AS_TRANSFORM(b)->t);
+    return true;
+  }
+  char left[120], right[120];
+  return cag_fail_call(
+      by->call, 1, CAG_ERR_type,
+      "expects two numbers, angles, vectors, transforms or lists of these, found %s and %s",
+      cag_value_words(vm, a, left, sizeof left), cag_value_words(vm, b, right, sizeof right));
+}
+
+// A number of 0 or more; of angles also an angle.
+static bool read_tolerance(CagCall *call, int argument, double fallback, double *out) {
+  CagValue v = call->values[argument];
+  *out = fallback;
+  if (v.type == CAG_UNSET) return true;
+  if (v.type == CAG_ANGLE && call->values[0].type == CAG_ANGLE) *out = v.as.number;
+  else if (!cag_arg_number(call, argument, out)) return false;
+  return *out >= 0 || cag_fail_value(call, argument, "a tolerance of 0 or more");
+}
+
+static bool call_near(CagCall *call, CagValue *result) {
+  static const double TOLERANCE = 1e-9; // the default that the signature promises
+  Nearness by = {.call = call};
+  bool near;
+  if (!read_tolerance(call, 2, TOLERANCE, &by.tolerance) ||
+      !read_tolerance(call, 3, 0, &by.relative))
+    return false;
+  if (!near_values(&by, call->values[0], call->values[1], &near)) return false;
+  *result = cag_bool(near);
+  return true;
+}
+
+const CagBuiltin cag_builtins_vectors[] = {
+    {"dot(A, B)", call_dot, "number", "The scalar product of two vectors.",
+     "print dot([1, 2, 3], [4, 5, 6]) // expect: 32", 0, FAMILY},
+    {"cross(A, B)", call_cross, "list", "The vector product in space; plane vectors have z = 0.",
+     "print cross(X, Y), cross([2, 0], [0, 3]) // expect: [0, 0, 1] [0, 0, 6]", 0, FAMILY},
+    {"norm(V)", call_norm, "number", "The length of a vector: the root of the sum of its squares.",
+     "print norm([3, 4]), norm([2, 3, 6]) // expect: 5 7", 0, FAMILY},
+    {"unit(V)", call_unit, "list",
+     "The vector of length 1 in the direction of V. An error for a zero vector.",
+     "print unit([0, 5]) // expect: [0, 1]", 0, FAMILY},
+    {"distance(P, Q)", call_distance, "number", "The distance of two points.",
+     "print distance([1, 1], [4, 5]) // expect: 5", LISTS, FAMILY},
+    {"angle_between(A, B)", call_angle_between, "angle",
+     "The angle between two vectors, in 0deg..180deg, accurate for small angles too. An error for "
+     "a zero vector.",
+     "print angle_between(X, [1, 1, 0]) // expect: 45deg", 0, FAMILY},
+    {"near(a, b, tolerance = 1e-9, relative = 0)", call_near, "bool",
+     "Whether two numbers, angles, vectors, transforms, or lists of these, are equal element by "
+     "element within the larger of `tolerance` and "
+     "`relative` times the size of b's element. Angles are compared by their degrees.",
+     "print near(0.1 + 0.2, 0.3), near([1, 2], [1, 2.1]), near(99, 100, relative: 0.02) // expect: "
+     "true false true",
+     0, FAMILY},
+    {0}};
