@@ -1,0 +1,509 @@
+// Pictures by POV-Ray: the temporary folder, the process, and what its end means.
+
+#include "interp/render/povray.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <ftw.h>
+#include <limits.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "interp/render/image.h"
+#include "interp/render/povray_log.h"
+#include "interp/render/sandbox.h"
+
+// How often the flag, the clock and the process are looked at, in milliseconds.
+#define WATCH_INTERVAL 40
+// A run that asks for the version only is given this many seconds.
+#define VERSION_TIME_LIMIT 20.0
+// Largest picture file that is taken back: half floats of the largest image.
+#define PICTURE_SIZE_MAX ((size_t)1 << 33)
+// Exit status of the child when exec fails.
+#define EXEC_FAILED 127
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// Where POV-Ray is.
+
+static bool find_program(char path[PATH_MAX], CagIoError *err) {
+  const char *list = getenv("PATH");
+  if (!list || !*list) list = "/usr/local/bin:/usr/bin:/bin";
+  while (*list) {
+    const size_t n = strcspn(list, ":");
+    const int length = snprintf(path, PATH_MAX, "%.*s%spovray", (int)n, list, n ? "/" : "./");
+    struct stat st;
+    if (length < PATH_MAX && access(path, X_OK) == 0 && stat(path, &st) == 0 &&
+        S_ISREG(st.st_mode)) {
+      char real[PATH_MAX]; // the process starts in another folder
+      if (path[0] != '/' && realpath(path, real)) strcpy(path, real);
+      return true;
+    }
+    list += n + (list[n] == ':');
+  }
+  return cag_io_error_set(err, CAG_EXIT_RENDERER,
+                          "install it (apt-get install povray), or use --engine preview",
+                          "POV-Ray is not installed: no program povray on PATH");
+}
+
+// The temporary folder.
+
+static int remove_entry(const char *path, const struct stat *st, int type, struct FTW *at) {
+  (void)st, (void)type, (void)at;
+  remove(path);
+  return 0;
+}
+
+static void remove_folder(const char *folder) {
+  enum { OPEN_FOLDERS = 8 };
+  if (*folder) nftw(folder, remove_entry, OPEN_FOLDERS, FTW_DEPTH | FTW_PHYS);
+}
+
+static bool make_folder(char folder[PATH_MAX], CagIoError *err) {
+  const char *base = getenv("TMPDIR");
+  if (!base || *base != '/') base = "/tmp";
+  char pattern[PATH_MAX];
+  const int n = snprintf(pattern, sizeof pattern, "%s/cag-povray-XXXXXX", base);
+  // The real path: rules of file access do not see through links.
+  if (n < PATH_MAX && mkdtemp(pattern) && realpath(pattern, folder)) return true;
+  const int code = n < PATH_MAX ? errno : ENAMETOOLONG;
+  *folder = '\0';
+  return cag_io_error_set(err, CAG_EXIT_FILE, "set TMPDIR to a folder that you may write to",
+                          "no temporary folder for POV-Ray in '%s': %s", base, strerror(code));
+}
+
+static bool fail_temporary(CagIoError *err, const char *path, int code) {
+  return cag_io_error_set(err, CAG_EXIT_FILE,
+                          code == ENOSPC ? "free some space, or set TMPDIR to another disk" : NULL,
+                          "cannot write the temporary file '%s': %s", path, strerror(code));
+}
+
+// Writes `size` bytes to the file `name` of the folder.
+static bool put_file(const char *folder, const char *name, const void *bytes, size_t size,
+                     CagIoError *err) {
+  char path[PATH_MAX];
+  if (snprintf(path, sizeof path, "%s/%s", folder, name) >= PATH_MAX)
+    return fail_temporary(err, name, ENAMETOOLONG);
+  FILE *f = fopen(path, "wbe");
+  if (!f) return fail_temporary(err, path, errno);
+  bool ok = fwrite(bytes, 1, size, f) == size;
+  int code = errno;
+  if (fclose(f) != 0 && ok) {
+    ok = false;
+    code = errno;
+  }
+  return ok || fail_temporary(err, path, code);
+}
+
+static bool is_plain_name(const char *name) {
+  return *name && *name != '.' && !strchr(name, '/') && strlen(name) <= NAME_MAX;
+}
+
+static bool copy_file(const char *folder, const CagPovrayFile *file, CagIoError *err) {
+  if (!is_plain_name(file->name))
+    return cag_io_error_set(err, CAG_EXIT_USAGE, "use a name without folders",
+                            "'%s' cannot be the name of a file beside the POV-Ray scene",
+                            file->name);
+  FILE *in = fopen(file->source, "rbe");
+  char *bytes = NULL;
+  size_t size = 0;
+  struct stat st;
+  bool ok = in && fstat(fileno(in), &st) == 0 && S_ISREG(st.st_mode);
+  if (ok) {
+    bytes = malloc((size_t)st.st_size + 1);
+    ok = bytes != NULL;
+  }
+  if (ok) size = fread(bytes, 1, (size_t)st.st_size, in);
+  ok = ok && !ferror(in);
+  const int code = errno;
+  if (!ok)
+    cag_io_error_set(err, CAG_EXIT_FILE, NULL, "cannot read '%s', which the scene uses: %s",
+                     file->source, in && !bytes ? "it is not an ordinary file" : strerror(code));
+  // An include is part of the scene.
+  const char *ending = strrchr(file->name, '.');
+  if (ok && ending && !strcmp(ending, ".inc")) ok = cag_povray_check_files(bytes, size, err);
+  ok = ok && put_file(folder, file->name, bytes, size, err);
+  if (in) fclose(in);
+  free(bytes);
+  return ok;
+}
+
+// POV-Ray's library of includes beside the program: <prefix>/share/povray-3.7/include.
+static void library_path(const char *program, char out[PATH_MAX]) {
+  char real[PATH_MAX], probe[PATH_MAX + 64];
+  *out = '\0';
+  if (!realpath(program, real)) return;
+  for (int level = 0; level < 2; level++) {
+    char *slash = strrchr(real, '/');
+    if (!slash) return;
+    *slash = '\0';
+  }
+  snprintf(probe, sizeof probe, "%s/share/povray-3.7/include", real);
+  if (access(probe, R_OK) != 0) snprintf(probe, sizeof probe, "/usr/share/povray-3.7/include");
+  if (access(probe, R_OK) == 0 && strlen(probe) < PATH_MAX) strcpy(out, probe);
+}
+
+// The configuration that POV-Ray looks for in its user's home, which is the folder.
+static bool put_configuration(const char *folder, const char *library, CagIoError *err) {
+  char text[3 * PATH_MAX], path[PATH_MAX];
+  static const char *const LEVELS[] = {".povray", ".povray/3.7"};
+  for (size_t i = 0; i < 2; i++) {
+    if (snprintf(path, sizeof path, "%s/%s", folder, LEVELS[i]) >= PATH_MAX)
+      return fail_temporary(err, folder, ENAMETOOLONG);
+    if (mkdir(path, 0700) != 0) return fail_temporary(err, path, errno);
+  }
+  int n = snprintf(text, sizeof text,
+                   "[File I/O Security]\nrestricted\n\n[Shellout Security]\nforbidden\n\n"
+                   "[Permitted Paths]\nread* = %%INSTALLDIR%%/include\nread+write* = \"%s\"\n",
+                   folder);
+  if (*library) n += snprintf(text + n, sizeof text - (size_t)n, "read* = \"%s\"\n", library);
+  if (!put_file(folder, ".povray/3.7/povray.conf", text, (size_t)n, err)) return false;
+  n = *library ? snprintf(text, sizeof text, "Library_Path=\"%s\"\n", library) : 0;
+  return put_file(folder, ".povray/3.7/povray.ini", text, (size_t)n, err);
+}
+
+// The process.
+
+typedef struct {
+  const char *program;
+  char *const *arguments;
+  char *const *environment;
+  const char *folder; // the process starts in it
+  int ruleset;        // of the sandbox
+} Command;
+
+typedef struct {
+  double time_limit;
+  const volatile sig_atomic_t *interrupted;
+} Watch;
+
+typedef enum { END_EXITED, END_SIGNALED, END_INTERRUPTED, END_TIME, END_NO_START } EndKind;
+
+typedef struct {
+  EndKind kind;
+  int code; // exit status, signal, or errno
+} End;
+
+// In the child, after fork: only calls that are safe in a signal handler.
+static void become(const Command *c, int output) {
+  const struct rlimit no_core = {0, 0};
+  int null = open("/dev/null", O_RDONLY);
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL); // POV-Ray does not outlive a killed cag
+  setrlimit(RLIMIT_CORE, &no_core);
+  sigset_t none;
+  sigemptyset(&none);
+  signal(SIGINT, SIG_DFL);
+  signal(SIGTERM, SIG_DFL);
+  signal(SIGPIPE, SIG_DFL);
+  sigprocmask(SIG_SETMASK, &none, NULL);
+  if (null >= 0 && dup2(null, STDIN_FILENO) >= 0 && dup2(output, STDOUT_FILENO) >= 0 &&
+      dup2(output, STDERR_FILENO) >= 0 && chdir(c->folder) == 0 && cag_sandbox_enter(c->ruleset))
+    execve(c->program, c->arguments, c->environment);
+  _exit(EXEC_FAILED);
+}
+
+static bool should_end(const Watch *watch, double begun, EndKind *kind) {
+  if (watch->interrupted && *watch->interrupted) *kind = END_INTERRUPTED;
+  else if (watch->time_limit > 0 && now() - begun > watch->time_limit) *kind = END_TIME;
+  else return false;
+  return true;
+}
+
+// Reads what there is; false at the end of the output.
+static bool drain(int fd, CagPovrayLog *log) {
+  char bytes[4096];
+  ssize_t n = read(fd, bytes, sizeof bytes);
+  if (n < 0) return errno == EINTR || errno == EAGAIN;
+  if (n > 0) cag_povray_log_feed(log, bytes, (size_t)n);
+  return n > 0;
+}
+
+// Follows the process to its end, or ends it.
+static End follow(pid_t child, int output, const Watch *watch, CagPovrayLog *log) {
+  const double begun = now();
+  bool open_output = true, stopped = false;
+  End end = {END_EXITED, 0};
+  int status = 0;
+  // An exit is looked for even while the output is open: a child of the child may hold it.
+  for (;;) {
+    struct pollfd waiting = {.fd = open_output ? output : -1, .events = POLLIN};
+    if (poll(&waiting, 1, WATCH_INTERVAL) > 0 && waiting.revents) {
+      open_output = drain(output, log);
+      if (open_output && !should_end(watch, begun, &end.kind)) continue;
+    }
+    pid_t done = waitpid(child, &status, WNOHANG);
+    if (done == child || (done < 0 && errno == ECHILD)) break;
+    if (stopped || !should_end(watch, begun, &end.kind)) continue;
+    kill(-child, SIGKILL);
+    kill(child, SIGKILL);
+    stopped = true;
+  }
+  kill(-child, SIGKILL); // whatever it started
+  while (open_output && poll(&(struct pollfd){.fd = output, .events = POLLIN}, 1, 0) > 0)
+    open_output = drain(output, log);
+  cag_povray_log_finish(log);
+  if (stopped) return end;
+  if (WIFSIGNALED(status)) return (End){END_SIGNALED, WTERMSIG(status)};
+  return (End){END_EXITED, WEXITSTATUS(status)};
+}
+
+static End run(const Command *command, const Watch *watch, CagPovrayLog *log) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return (End){END_NO_START, errno};
+  pid_t child = fork();
+  if (child == 0) become(command, ends[1]);
+  const int code = errno;
+  close(ends[1]);
+  if (child < 0) {
+    close(ends[0]);
+    return (End){END_NO_START, code};
+  }
+  setpgid(child, child); // on both sides, so that no kill comes too early
+  fcntl(ends[0], F_SETFL, O_NONBLOCK);
+  End end = follow(child, ends[0], watch, log);
+  close(ends[0]);
+  return end;
+}
+
+// The folders that POV-Ray may read: system libraries, itself and its own library.
+static int prepare_sandbox(const char *program, const char *library, const char *folder) {
+  char own[PATH_MAX] = "/usr";
+  char *slash = realpath(program, own) ? strrchr(own, '/') : NULL;
+  if (slash) *slash = '\0';
+  // A script on PATH may stand for the program; the link itself must be readable too.
+  char named[PATH_MAX];
+  snprintf(named, sizeof named, "%s", program);
+  slash = strrchr(named, '/');
+  if (slash) *slash = '\0';
+  const char *readable[] = {"/usr",
+                            "/lib",
+                            "/lib32",
+                            "/lib64",
+                            "/bin",
+                            "/etc/ld.so.cache",
+                            "/etc/ld.so.preload",
+                            "/etc/localtime",
+                            "/etc/povray",
+                            "/dev/urandom",
+                            "/sys/devices/system/cpu",
+                            "/proc/stat",
+                            "/proc/cpuinfo",
+                            "/proc/meminfo",
+                            own,
+                            named,
+                            *library ? library : "/usr"};
+  return cag_sandbox_prepare(readable, sizeof readable / sizeof *readable, folder);
+}
+
+// Runs the program with the arguments in the folder.
+static End run_in_folder(const char *program, char *const *arguments, const char *folder,
+                         const char *library, const Watch *watch, CagPovrayLog *log) {
+  char home[PATH_MAX + 8], temporary[PATH_MAX + 8], path[PATH_MAX];
+  snprintf(home, sizeof home, "HOME=%s", folder);
+  snprintf(temporary, sizeof temporary, "TMPDIR=%s", folder);
+  const char *list = getenv("PATH");
+  snprintf(path, sizeof path, "PATH=%s", list ? list : "/usr/bin:/bin");
+  char *const environment[] = {home, temporary, path, "LC_ALL=C", NULL};
+  Command command = {program, arguments, environment, folder,
+                     prepare_sandbox(program, library, folder)};
+  End end = run(&command, watch, log);
+  if (command.ruleset >= 0) close(command.ruleset);
+  return end;
+}
+
+// What the end means.
+
+// The text of a line of the scene, without what surrounds it.
+static void scene_line(const CagPovrayJob *job, size_t line, char *out, size_t size) {
+  const char *at = job->scene, *end = job->scene + job->scene_size;
+  for (size_t i = 1; i < line && at < end; i++) {
+    const char *newline = memchr(at, '\n', (size_t)(end - at));
+    at = newline ? newline + 1 : end;
+  }
+  while (at < end && (*at == ' ' || *at == '\t')) at++;
+  size_t n = 0;
+  while (at + n < end && at[n] != '\n' && at[n] != '\r') n++;
+  snprintf(out, size, "%.*s", (int)(n < size ? n : size - 1), at);
+}
+
+static bool fail_scene(const CagPovrayJob *job, const CagPovrayLog *log, CagIoError *err) {
+  char text[121] = "";
+  if (!strcmp(log->error_file, "scene.pov")) scene_line(job, log->error_line, text, sizeof text);
+  return cag_io_error_set(
+      err, CAG_EXIT_RENDERER, "cag export -o scene.pov writes the scene to look at",
+      "POV-Ray refused the scene at line %zu of '%.80s': %.240s%s%s", log->error_line,
+      log->error_file, log->error_text, *text ? "\n" : "", text);
+}
+
+// Fills the error of a run that gave no picture.
+static bool fail_end(const CagPovrayJob *job, End end, const CagPovrayLog *log, CagIoError *err) {
+  char last[CAG_POVRAY_LAST_LINES * CAG_POVRAY_LINE_MAX];
+  cag_povray_log_last(log, last, sizeof last);
+  switch (end.kind) {
+  case END_INTERRUPTED: return cag_io_error_set(err, CAG_EXIT_INTERRUPTED, NULL, "interrupted");
+  case END_TIME:
+    return cag_io_error_set(err, CAG_EXIT_LIMIT, "raise --max-time, or use --quality draft",
+                            "POV-Ray was stopped after the time limit of %g s", job->time_limit);
+  case END_NO_START:
+    return cag_io_error_set(err, CAG_EXIT_RENDERER, NULL, "POV-Ray could not be started: %s",
+                            strerror(end.code));
+  case END_SIGNALED:
+    return cag_io_error_set(err, CAG_EXIT_RENDERER,
+                            end.code == SIGKILL
+                                ? "the system does so when memory runs out: try a coarser tolerance"
+                                : NULL,
+                            "POV-Ray was killed by signal %d (%s)%s%.380s", end.code,
+                            strsignal(end.code), *last ? "; its last lines were:" : "", last);
+  case END_EXITED: break;
+  }
+  if (log->error_line) return fail_scene(job, log, err);
+  if (end.code == EXEC_FAILED && !log->line_count)
+    return cag_io_error_set(err, CAG_EXIT_RENDERER,
+                            "check that povray on PATH is a program that runs",
+                            "POV-Ray could not be started");
+  if (end.code == 0)
+    return cag_io_error_set(err, CAG_EXIT_RENDERER, NULL,
+                            "POV-Ray ended without an error but wrote no picture%s%.380s",
+                            *last ? "; its last lines were:" : "", last);
+  return cag_io_error_set(err, CAG_EXIT_RENDERER, NULL, "POV-Ray failed (exit status %d)%s%.380s",
+                          end.code, *last ? "; its last lines were:" : "", last);
+}
+
+// Takes the picture into memory; false when there is none.
+static bool take_picture(const char *folder, CagPovrayResult *out) {
+  char path[PATH_MAX + 16];
+  snprintf(path, sizeof path, "%s/out.exr", folder);
+  FILE *f = fopen(path, "rbe");
+  struct stat st;
+  if (!f) return false;
+  bool ok = fstat(fileno(f), &st) == 0 && S_ISREG(st.st_mode) && st.st_size > 0 &&
+            (size_t)st.st_size < PICTURE_SIZE_MAX;
+  out->exr = ok ? malloc((size_t)st.st_size) : NULL;
+  ok = out->exr && fread(out->exr, 1, (size_t)st.st_size, f) == (size_t)st.st_size;
+  fclose(f);
+  if (ok) {
+    out->exr_size = (size_t)st.st_size;
+  } else {
+    free(out->exr);
+    out->exr = NULL;
+  }
+  return ok;
+}
+
+// Rendering.
+
+// What the qualities mean to POV-Ray. Antialiasing never jitters: a scene gives the same picture
+// twice.
+static const struct {
+  const char *quality, *antialias, *method, *depth;
+} QUALITIES[] = {
+    [CAG_POVRAY_DRAFT] = {"+Q8", "-A", "+AM1", "+R1"},
+    [CAG_POVRAY_NORMAL] = {"+Q9", "+A0.1", "+AM2", "+R2"},
+    [CAG_POVRAY_FINAL] = {"+Q9", "+A0.02", "+AM2", "+R4"},
+};
+
+static bool prepare_folder(const CagPovrayJob *job, const char *folder, const char *library,
+                           CagIoError *err) {
+  bool ok = put_configuration(folder, library, err) &&
+            put_file(folder, "scene.pov", job->scene, job->scene_size, err);
+  for (size_t i = 0; ok && i < job->file_count; i++) ok = copy_file(folder, &job->files[i], err);
+  return ok;
+}
+
+static End render_in_folder(const CagPovrayJob *job, const char *program, const char *folder,
+                            const char *library, CagPovrayLog *log) {
+  char width[24], height[24], threads[24];
+  snprintf(width, sizeof width, "+W%d", job->width);
+  snprintf(height, sizeof height, "+H%d", job->height);
+  long count = job->threads > 0 ? job->threads : sysconf(_SC_NPROCESSORS_ONLN);
+  enum { THREADS_MAX = 512 }; // POV-Ray's own bound
+  snprintf(threads, sizeof threads, "+WT%ld",
+           count < 1             ? 1
+           : count > THREADS_MAX ? THREADS_MAX
+                                 : count);
+  const int q = job->quality;
+  char *const arguments[] = {"povray",
+                             "+Iscene.pov",
+                             "+Oout.exr",
+                             "+FE",
+                             width,
+                             height,
+                             threads,
+                             (char *)QUALITIES[q].quality,
+                             (char *)QUALITIES[q].antialias,
+                             (char *)QUALITIES[q].method,
+                             (char *)QUALITIES[q].depth,
+                             "-J",
+                             job->alpha ? "+UA" : "-UA",
+                             "-D",
+                             "-P",
+                             "+V",
+                             NULL};
+  const Watch watch = {job->time_limit, job->interrupted};
+  return run_in_folder(program, arguments, folder, library, &watch, log);
+}
+
+bool cag_povray_render(const CagPovrayJob *job, CagPovrayResult *out, CagIoError *err) {
+  char program[PATH_MAX], library[PATH_MAX], folder[PATH_MAX] = "";
+  if (job->width < 1 || job->height < 1 || (size_t)job->width > CAG_IMAGE_SIDE_MAX ||
+      (size_t)job->height > CAG_IMAGE_SIDE_MAX)
+    return cag_io_error_set(err, CAG_EXIT_USAGE, "give --size as 1280x720",
+                            "a picture of %d by %d pixels cannot be rendered", job->width,
+                            job->height);
+  if (!cag_povray_check_files(job->scene, job->scene_size, err)) return false;
+  if (!find_program(program, err) || !make_folder(folder, err)) return false;
+  library_path(program, library);
+  const double begun = now();
+  CagPovrayLog log = {.progress = job->progress, .progress_user = job->progress_user};
+  *out = (CagPovrayResult){0};
+  bool ok = prepare_folder(job, folder, library, err);
+  if (ok) {
+    const End end = render_in_folder(job, program, folder, library, &log);
+    ok = end.kind == END_EXITED && end.code == 0 && take_picture(folder, out);
+    if (!ok) fail_end(job, end, &log, err);
+  }
+  remove_folder(folder);
+  out->seconds = now() - begun;
+  memcpy(out->version, log.version, sizeof out->version);
+  return ok;
+}
+
+void cag_povray_result_free(CagPovrayResult *result) {
+  free(result->exr);
+  *result = (CagPovrayResult){0};
+}
+
+bool cag_povray_find(char *path, size_t path_size, char version[64], CagIoError *err) {
+  char program[PATH_MAX], library[PATH_MAX], folder[PATH_MAX] = "";
+  if (!find_program(program, err)) return false;
+  if (path) snprintf(path, path_size, "%s", program);
+  if (!version) return true;
+  if (!make_folder(folder, err)) return false;
+  library_path(program, library);
+  char *const arguments[] = {"povray", "--version", NULL};
+  const Watch watch = {VERSION_TIME_LIMIT, NULL};
+  CagPovrayLog log = {0};
+  bool ok = put_configuration(folder, library, err);
+  if (ok) {
+    const CagPovrayJob no_job = {.time_limit = VERSION_TIME_LIMIT};
+    const End end = run_in_folder(program, arguments, folder, library, &watch, &log);
+    ok = end.kind == END_EXITED && log.version[0];
+    if (!ok) fail_end(&no_job, end, &log, err);
+  }
+  remove_folder(folder);
+  memcpy(version, log.version, sizeof log.version);
+  return ok;
+}
