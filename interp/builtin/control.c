@@ -1,0 +1,43 @@
+// Errors of the script's own, and what looks at values and errors on their way.
+
+#include "interp/builtin/support.h"
+#include "interp/eval/vm.h"
+
+static const char FAMILY[] = "Errors";
+
+static bool call_error(CagCall *call, CagValue *result) {
+  const char *message;
+  (void)result;
+  if (!cag_arg_text(call, 0, &message)) return false;
+  return cag_vm_fail(call->vm, CAG_ERR_user, "%s",
+                     message); // as it stands, without a name before it
+}
+
+static bool call_attempt(CagCall *call, CagValue *result) {
+  CagValue f, handler;
+  if (!cag_arg_function(call, 0, &f) || !cag_arg_function(call, 1, &handler)) return false;
+  return cag_vm_attempt(call, f, handler, result);
+}
+
+static bool call_trace(CagCall *call, CagValue *result) {
+  const char *label = "";
+  if (cag_given(call, 1) && !cag_arg_text(call, 1, &label)) return false;
+  cag_vm_trace(call, call->values[0], label);
+  *result = call->values[0];
+  return true;
+}
+
+const CagBuiltin cag_builtins_control[] = {
+    {"error(message)", call_error, "none",
+     "Stops the script with this message, or the attempt around it.",
+     "print attempt(() => error(\"no such size\"), err => err.message) // expect: no such size", 0,
+     FAMILY},
+    {"attempt(f, handler)", call_attempt, "any",
+     "f(), or handler(err) when f stops with an error. err is a record: message, code, reason, "
+     "file, line, column. The limits of a run (memory, time, depth) "
+     "pass through.",
+     "print attempt(() => 1/0, err => err.code) // expect: E0307", 0, FAMILY},
+    {"trace(x, label = \"\")", call_trace, "as x",
+     "Writes x with its place in the script to standard error, and gives x.",
+     "print trace(1 + 1, \"sum\") * 2 // expect: 4", 0, FAMILY},
+    {0}};

@@ -1,0 +1,114 @@
+// Records: their names and values, made from pairs and asked with a default; and the names of
+// types.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/builtin/support.h"
+
+static const char FAMILY[] = "Records";
+
+static bool call_keys(CagCall *call, CagValue *result) {
+  CagRecord *r;
+  if (!cag_arg_record(call, 0, &r)) return false;
+  CagBuilder *built = cag_builder_new(call->vm);
+  for (size_t i = 0; i < r->layout->count; i++)
+    if (!cag_builder_add(call->vm, built, cag_object(CAG_TEXT, r->layout->names[i]))) return false;
+  *result = cag_builder_finish(call->vm, built);
+  return true;
+}
+
+static bool call_values(CagCall *call, CagValue *result) {
+  CagRecord *r;
+  if (!cag_arg_record(call, 0, &r)) return false;
+  *result = cag_list_values(call->vm, r->fields, r->layout->count);
+  return true;
+}
+
+static bool call_get(CagCall *call, CagValue *result) {
+  CagRecord *r;
+  const char *key;
+  if (!cag_arg_record(call, 0, &r) || !cag_arg_text(call, 1, &key)) return false;
+  *result = cag_record_get_text(call->vm, r, CAG_AS_TEXT(call->values[1]));
+  if (result->type == CAG_UNSET) *result = cag_given(call, 2) ? call->values[2] : cag_none();
+  return true;
+}
+
+// --- record ---
+
+// The pair at index i: a list [name, value].
+static bool read_pair(CagCall *call, CagSequence *pairs, size_t i, CagText **name,
+                      CagValue *value) {
+  CagValue pair = cag_sequence_element(call->vm, pairs, i);
+  if (pair.type != CAG_LIST || CAG_AS_LIST(pair)->length != 2)
+    return cag_fail_element(call, 0, i, pair, "pairs [name, value]");
+  CagValue key = cag_list_get(call->vm, CAG_AS_LIST(pair), 0);
+  if (key.type != CAG_TEXT) {
+    char found[120];
+    return cag_fail_call(call, 0, CAG_ERR_record_key,
+                         "expects texts as names, found %s in pairs[%zu]",
+                         cag_value_words(call->vm, key, found, sizeof found), i);
+  }
+  *name = cag_intern(call->vm, CAG_AS_TEXT(key)->bytes, CAG_AS_TEXT(key)->length);
+  *value = cag_list_get(call->vm, CAG_AS_LIST(pair), 1);
+  return true;
+}
+
+static int compare_names(const void *a, const void *b) {
+  const CagText *s = *(CagText *const *)a, *t = *(CagText *const *)b;
+  return (s > t) - (s < t);
+}
+
+// A name that stands twice, or NULL; equal names are one interned text.
+static const CagText *name_given_twice(CagText *const *names, size_t n) {
+  if (n < 2) return NULL;
+  CagText **sorted = malloc(n * sizeof *sorted);
+  if (!sorted) return NULL;
+  memcpy(sorted, names, n * sizeof *sorted);
+  qsort(sorted, n, sizeof *sorted, compare_names);
+  const CagText *twice = NULL;
+  for (size_t i = 1; i < n && !twice; i++)
+    if (sorted[i] == sorted[i - 1]) twice = sorted[i];
+  free(sorted);
+  return twice;
+}
+
+static bool call_record(CagCall *call, CagValue *result) {
+  CagSequence pairs;
+  if (!cag_sequence_open(call, 0, false, &pairs)) return false;
+  size_t n = pairs.length;
+  CagText **names = malloc((n ? n : 1) * sizeof(CagText *));
+  CagValue *values = malloc((n ? n : 1) * sizeof *values);
+  bool good = names && values;
+  if (!good) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  for (size_t i = 0; i < n && good; i++) good = read_pair(call, &pairs, i, &names[i], &values[i]);
+  const CagText *twice = good ? name_given_twice(names, n) : NULL;
+  if (twice)
+    good =
+        cag_fail_call(call, 0, CAG_ERR_duplicate_field, "has the field \"%s\" twice", twice->bytes);
+  if (good) *result = cag_record_from_texts(call->vm, names, values, n);
+  free(names);
+  free(values);
+  return good;
+}
+
+static bool call_type_of(CagCall *call, CagValue *result) {
+  *result = cag_text_c(call->vm, cag_type_name(call->values[0]));
+  return true;
+}
+
+const CagBuiltin cag_builtins_records[] = {
+    {"keys(r)", call_keys, "list", "The names of a record's fields, in their order.",
+     "print keys({x: 1, y: 2}) // expect: [\"x\", \"y\"]", 0, FAMILY},
+    {"values(r)", call_values, "list", "The values of a record's fields, in their order.",
+     "print values({x: 1, y: 2}) // expect: [1, 2]", 0, FAMILY},
+    {"record(pairs)", call_record, "record",
+     "The record of a list of pairs [name, value]. A name may stand once.",
+     "print record([[\"x\", 1], [\"y\", 2]]) // expect: {x: 1, y: 2}", 0, FAMILY},
+    {"get(r, key, default = none)", call_get, "any",
+     "The field of this name, or the default where the record has none.",
+     "print get({x: 1}, \"x\", 0), get({x: 1}, \"y\", 0) // expect: 1 0", 0, FAMILY},
+    {"type_of(x)", call_type_of, "text",
+     "The name of the type of a value: \"number\", \"angle\", \"list\", \"curve\" ...",
+     "print type_of(3), type_of(30deg), type_of([]) // expect: number angle list", 0, FAMILY},
+    {0}};

@@ -1,0 +1,195 @@
+// Texts: printed forms, parts, and case.
+//
+// Positions count code points; case follows Unicode's simple mappings.
+
+#include <string.h>
+#include <utf8proc.h>
+
+#include "interp/builtin/support.h"
+
+static const char FAMILY[] = "Text";
+
+static bool read_text(CagCall *call, int argument, const CagText **out) {
+  const char *bytes;
+  if (!cag_arg_text(call, argument, &bytes)) return false;
+  *out = CAG_AS_TEXT(call->values[argument]);
+  return true;
+}
+
+// --- text ---
+
+static bool print_places(CagCall *call, CagString *s, CagValue v, int digits);
+
+static bool print_list(CagCall *call, CagString *s, const CagList *list, int digits) {
+  cag_string_add(s, "[", 1);
+  for (size_t i = 0; i < list->length; i++) {
+    if (i > 0) cag_string_add(s, ", ", 2);
+    if (!print_places(call, s, cag_list_get(call->vm, list, i), digits)) return false;
+  }
+  cag_string_add(s, "]", 1);
+  return true;
+}
+
+// Numbers and angles with so many places, alone or in lists.
+static bool print_places(CagCall *call, CagString *s, CagValue v, int digits) {
+  if (v.type == CAG_LIST) return print_list(call, s, CAG_AS_LIST(v), digits);
+  if (v.type != CAG_NUMBER && v.type != CAG_ANGLE) {
+    char found[120];
+    return cag_fail_call(call, 0, CAG_ERR_type,
+                         "with `digits` expects a number, an angle or a list of these, found %s",
+                         cag_value_words(call->vm, v, found, sizeof found));
+  }
+  cag_print_fixed(s, v.as.number, digits);
+  if (v.type == CAG_ANGLE) cag_string_add(s, "deg", strlen("deg"));
+  return true;
+}
+
+static bool call_text(CagCall *call, CagValue *result) {
+  enum { PLACES_MOST = 400 }; // no double has digits beyond these
+  CagString s = {0};
+  if (!cag_given(call, 1)) {
+    cag_print_value(call->vm, &s, call->values[0], false);
+    *result = cag_text_from_string(call->vm, &s);
+    return true;
+  }
+  long digits;
+  if (!cag_arg_integer(call, 1, 0, PLACES_MOST, &digits)) return false;
+  if (!print_places(call, &s, call->values[0], (int)digits)) {
+    cag_string_free(&s);
+    return false;
+  }
+  *result = cag_text_from_string(call->vm, &s);
+  return true;
+}
+
+static bool call_number_of(CagCall *call, CagValue *result) {
+  const CagText *t;
+  double x;
+  if (!read_text(call, 0, &t)) return false;
+  if (cag_read_number(t->bytes, t->length, &x)) {
+    *result = cag_number(x);
+    return true;
+  }
+  char found[200];
+  return cag_fail_call(call, 0, CAG_ERR_parse_text, "expects a text that is a number, found %s",
+                       cag_value_words(call->vm, call->values[0], found, sizeof found));
+}
+
+// --- Parts ---
+
+// Where `part` begins in [s, end), or NULL.
+static const char *find_part(const char *s, const char *end, const CagText *part) {
+  return memmem(s, (size_t)(end - s), part->bytes, part->length);
+}
+
+static bool call_split(CagCall *call, CagValue *result) {
+  const CagText *t, *separator;
+  if (!read_text(call, 0, &t) || !read_text(call, 1, &separator)) return false;
+  CagBuilder *built = cag_builder_new(call->vm);
+  const char *s = t->bytes, *end = t->bytes + t->length;
+  while (separator->length == 0 && s < end) {
+    size_t n = cag_character_size(s);
+    if (!cag_builder_add(call->vm, built, cag_text_new(call->vm, s, n))) return false;
+    s += n;
+  }
+  while (separator->length > 0) {
+    const char *found = find_part(s, end, separator);
+    const char *stop = found ? found : end;
+    if (!cag_builder_add(call->vm, built, cag_text_new(call->vm, s, (size_t)(stop - s))))
+      return false;
+    if (!found) break;
+    s = found + separator->length;
+  }
+  *result = cag_builder_finish(call->vm, built);
+  return true;
+}
+
+static bool call_join(CagCall *call, CagValue *result) {
+  const CagText *separator = NULL;
+  CagSequence xs;
+  if (cag_given(call, 1) && !read_text(call, 1, &separator)) return false;
+  if (!cag_sequence_open(call, 0, true, &xs)) return false;
+  CagString s = {0};
+  for (size_t i = 0; i < xs.length; i++) {
+    if (i > 0 && separator) cag_string_add(&s, separator->bytes, separator->length);
+    cag_print_value(call->vm, &s, cag_sequence_element(call->vm, &xs, i), false);
+  }
+  *result = cag_text_from_string(call->vm, &s);
+  return true;
+}
+
+static bool call_starts_with(CagCall *call, CagValue *result) {
+  const CagText *t, *part;
+  if (!read_text(call, 0, &t) || !read_text(call, 1, &part)) return false;
+  *result = cag_bool(t->length >= part->length && memcmp(t->bytes, part->bytes, part->length) == 0);
+  return true;
+}
+
+static bool call_replace(CagCall *call, CagValue *result) {
+  const CagText *t, *old, *new;
+  if (!read_text(call, 0, &t) || !read_text(call, 1, &old) || !read_text(call, 2, &new))
+    return false;
+  if (old->length == 0) return cag_fail_value(call, 1, "a text that is not empty");
+  CagString s = {0};
+  const char *from = t->bytes, *end = t->bytes + t->length, *found;
+  while ((found = find_part(from, end, old)) != NULL) {
+    cag_string_add(&s, from, (size_t)(found - from));
+    cag_string_add(&s, new->bytes, new->length);
+    from = found + old->length;
+  }
+  cag_string_add(&s, from, (size_t)(end - from));
+  *result = cag_text_from_string(call->vm, &s);
+  return true;
+}
+
+// --- Case ---
+
+static bool map_characters(CagCall *call, utf8proc_int32_t (*f)(utf8proc_int32_t),
+                           CagValue *result) {
+  const CagText *t;
+  if (!read_text(call, 0, &t)) return false;
+  CagString s = {0};
+  const char *end = t->bytes + t->length;
+  for (const char *at = t->bytes; at < end; at += cag_character_size(at)) {
+    utf8proc_int32_t c;
+    utf8proc_uint8_t mapped[4];
+    utf8proc_iterate((const utf8proc_uint8_t *)at, end - at, &c);
+    utf8proc_ssize_t n = utf8proc_encode_char(f(c), mapped);
+    cag_string_add(&s, (const char *)mapped, (size_t)n);
+  }
+  *result = cag_text_from_string(call->vm, &s);
+  return true;
+}
+static bool call_upper(CagCall *call, CagValue *result) {
+  return map_characters(call, utf8proc_toupper, result);
+}
+static bool call_lower(CagCall *call, CagValue *result) {
+  return map_characters(call, utf8proc_tolower, result);
+}
+
+const CagBuiltin cag_builtins_texts[] = {
+    {"text(x, digits = none)", call_text, "text",
+     "x as print shows it. With `digits`, numbers and angles, alone or in lists, have exactly so "
+     "many places after the point, halves rounded away from 0.",
+     "print text([1, \"a\"]), text(2/3, digits: 3), text(2, digits: 2) // expect: [1, \"a\"] 0.667 "
+     "2.00",
+     0, FAMILY},
+    {"split(t, separator)", call_split, "list",
+     "The parts of a text between the separators; with \"\" its characters.",
+     "print split(\"a,b,,c\", \",\") // expect: [\"a\", \"b\", \"\", \"c\"]", 0, FAMILY},
+    {"join(xs, separator = \"\")", call_join, "text",
+     "The elements, as print shows them, in one text with the separator between them.",
+     "print join([\"a\", \"b\", 3], \"-\") // expect: a-b-3", 0, FAMILY},
+    {"upper(t)", call_upper, "text", "The text in capital letters.",
+     "print upper(\"bézier θ\") // expect: BÉZIER Θ", 0, FAMILY},
+    {"lower(t)", call_lower, "text", "The text in small letters.",
+     "print lower(\"ABC Θ\") // expect: abc θ", 0, FAMILY},
+    {"starts_with(t, part)", call_starts_with, "bool", "Whether a text begins with another.",
+     "print starts_with(\"spring\", \"spr\") // expect: true", 0, FAMILY},
+    {"replace(t, old, new)", call_replace, "text",
+     "The text with `new` wherever `old` stood, from left to right.",
+     "print replace(\"a-b-c\", \"-\", \"+\") // expect: a+b+c", 0, FAMILY},
+    {"number_of(t)", call_number_of, "number",
+     "The number that a text is, spaces around it aside. An error where it is none, or has a unit.",
+     "print number_of(\"3.5\"), number_of(\" -2e3 \") // expect: 3.5 -2000", 0, FAMILY},
+    {0}};
