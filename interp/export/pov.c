@@ -1,0 +1,238 @@
+// The order of a POV-Ray file: what it is, settings, camera, light, sky, materials, things.
+
+#include "interp/export/pov.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/export/pov_write.h"
+
+static void heading(CagPovWriter *w, const char *text) {
+  pov_printf(w, "\n// ---------- %s ----------\n\n", text);
+}
+
+// --- What is drawn and of what ---
+
+static bool is_closed(const CagItem *item) {
+  switch (item->kind) {
+  case CAG_ITEM_CURVE:
+  case CAG_ITEM_SOLID:
+  case CAG_ITEM_GROUND: return true;
+  case CAG_ITEM_REGION: return false;
+  case CAG_ITEM_SURFACE: return cag_surface_is_closed(item->as.surface);
+  case CAG_ITEM_MESH: return cag_mesh_is_watertight(item->as.mesh, (CagVec3[2]){{0, 0, 0}});
+  }
+  return true;
+}
+
+static void write_materials(CagPovWriter *w, const bool *closed) {
+  const CagScene *s = w->scene;
+  enum { THIN = 1, CLOSED = 2 };
+  unsigned char *used = calloc(s->material_count + 1, 1);
+  if (!used) return; // the caller's next allocation reports it
+  for (size_t i = 0; i < s->item_count; i++)
+    used[s->items[i].material] |=
+        closed[i] || !(s->materials[s->items[i].material].transmission > 0) ? CLOSED : THIN;
+  for (size_t i = 0; i < s->material_count; i++) {
+    if (used[i] & CLOSED) pov_material(w, i, true);
+    if (used[i] & THIN) pov_material(w, i, false);
+  }
+  free(used);
+}
+
+// --- Settings ---
+
+static void write_radiosity(CagPovWriter *w) {
+  bool final = w->options->quality == CAG_POV_FINAL;
+  pov_text(w, "  radiosity { // light from everywhere\n");
+  pov_printf(w, "    pretrace_start 0.08 pretrace_end %s\n", final ? "0.005" : "0.02");
+  pov_printf(w, "    count %d nearest_count %d error_bound %s recursion_limit %d\n",
+             final ? 200 : 60, final ? 10 : 6, final ? "0.5" : "0.9", final ? 2 : 1);
+  pov_text(w, "    low_error_factor 0.6 gray_threshold 0 minimum_reuse 0.012 brightness 1\n  }\n");
+}
+
+static void write_settings(CagPovWriter *w) {
+  pov_text(w, "global_settings {\n  assumed_gamma 1.0 // colours are linear light\n");
+  pov_text(w, "  max_trace_level 12\n");
+  if (w->indirect) {
+    write_radiosity(w);
+  } else {
+    pov_text(w, "  ambient_light ");
+    pov_color(w, pov_ambient(w->scene));
+    pov_text(w, " // instead of light from everywhere\n");
+  }
+  pov_text(w, "}\n");
+}
+
+// --- Things ---
+
+static void write_ground(CagPovWriter *w, const CagItem *item) {
+  if (isinf(item->ground_size)) {
+    pov_text(w, "plane {\n  z, ");
+    pov_number(w, item->ground_z);
+    pov_text(w, "\n}");
+    return;
+  }
+  const double thickness = 1e-3; // of its size: a slab below its level
+  double half = item->ground_size / 2;
+  pov_text(w, "box {\n  ");
+  pov_vec(w, cag_vec3(-half, -half, item->ground_z - thickness * item->ground_size));
+  pov_text(w, ", ");
+  pov_vec(w, cag_vec3(half, half, item->ground_z));
+  pov_text(w, "\n}");
+}
+
+static bool try_native(CagPovWriter *w, const CagItem *item) {
+  if (item->kind == CAG_ITEM_GROUND) return write_ground(w, item), true;
+  if (w->options->meshes_only) return false;
+  switch (item->kind) {
+  case CAG_ITEM_SOLID: return pov_try_solid(w, item->as.solid);
+  case CAG_ITEM_SURFACE: return pov_try_surface(w, item->as.surface);
+  case CAG_ITEM_REGION: return pov_try_polygon(w, item->as.region, &item->placement);
+  default: return false;
+  }
+}
+
+static CagStatus write_mesh(CagPovWriter *w, const CagItem *item, CagError *err) {
+  CagMesh *mesh;
+  CagStatus status = cag_item_mesh(w->scene, item, &mesh, err);
+  if (status) return status;
+  status = pov_mesh(w, mesh, err);
+  cag_mesh_release(mesh);
+  return status;
+}
+
+static void describe(const CagItem *item, char *buffer, size_t size) {
+  buffer[0] = 0;
+  switch (item->kind) {
+  case CAG_ITEM_CURVE: item->as.curve->kind->describe(item->as.curve, buffer, size); break;
+  case CAG_ITEM_SURFACE: item->as.surface->kind->describe(item->as.surface, buffer, size); break;
+  case CAG_ITEM_SOLID: cag_solid_describe(item->as.solid, buffer, size); break;
+  default: break;
+  }
+}
+
+static const char *kind_name(const CagItem *item) {
+  switch (item->kind) {
+  case CAG_ITEM_CURVE: return item->as.curve->kind->name;
+  case CAG_ITEM_SURFACE: return item->as.surface->kind->name;
+  case CAG_ITEM_REGION: return "region";
+  case CAG_ITEM_MESH: return "mesh";
+  case CAG_ITEM_GROUND: return "ground";
+  case CAG_ITEM_SOLID: return "solid";
+  }
+  return "";
+}
+
+static void write_item_comment(CagPovWriter *w, const CagItem *item) {
+  char what[256], line[512];
+  describe(item, what, sizeof what);
+  snprintf(line, sizeof line, "%.150s: %s%s%s%s", item->name,
+           item->kind == CAG_ITEM_SOLID ? "" : kind_name(item),
+           item->kind == CAG_ITEM_SURFACE ? " surface"
+           : item->kind == CAG_ITEM_CURVE ? " curve"
+                                          : "",
+           what[0] && item->kind != CAG_ITEM_SOLID ? ", " : "", what);
+  pov_comment(w, "", line);
+}
+
+static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError *err) {
+  const CagItem *item = &w->scene->items[index];
+  const char *name = w->item_names[index];
+  char material[64];
+  CagStatus status = CAG_OK;
+  w->placement = cag_transform_identity();
+  write_item_comment(w, item);
+  if (item->kind == CAG_ITEM_CURVE && !w->options->meshes_only) {
+    status = pov_curve(w, item, name, err);
+  } else {
+    pov_printf(w, "#declare %s = ", name);
+    if (!try_native(w, item)) status = write_mesh(w, item, err);
+  }
+  if (status) return status;
+  pov_material_name(w, item->material, closed, material);
+  pov_printf(w, "\nobject {\n  %s\n  material { %s }\n", name, material);
+  pov_placement(w, "  ", &w->placement);
+  pov_text(w, "}\n\n");
+  return CAG_OK;
+}
+
+static CagStatus write_items(CagPovWriter *w, const bool *closed, CagError *err) {
+  for (size_t i = 0; i < w->scene->item_count; i++) {
+    if (w->scene->interrupt && *w->scene->interrupt)
+      return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the export was stopped");
+    if (cag_atomic_file_failed(w->file)) return CAG_OK; // its commit tells
+    CagStatus status = write_item(w, i, closed[i], err);
+    if (status) return status;
+  }
+  return CAG_OK;
+}
+
+// --- The whole ---
+
+static bool make_names(CagPovWriter *w) {
+  const CagScene *s = w->scene;
+  size_t n = s->item_count > s->material_count ? s->item_count : s->material_count;
+  const char **names = malloc((n ? n : 1) * sizeof *names);
+  if (!names) return false;
+  for (size_t i = 0; i < s->item_count; i++) names[i] = s->items[i].name;
+  bool ok = pov_names("", names, s->item_count, &w->item_names);
+  for (size_t i = 0; i < s->material_count; i++) names[i] = s->materials[i].name;
+  ok = ok && pov_names("M_", names, s->material_count, &w->material_names);
+  free(names);
+  return ok;
+}
+
+static void measure(CagPovWriter *w) {
+  const CagBounds *b = &w->scene->bounds;
+  bool empty = !(b->min.x <= b->max.x);
+  w->center = empty ? cag_vec3(0, 0, 0) : cag_lerp(b->min, b->max, 0.5);
+  w->radius = empty ? 0 : cag_norm(cag_sub(b->max, b->min)) / 2;
+  if (!(w->radius > 0)) w->radius = 100; // nothing but ground or points: any size will do
+}
+
+static CagStatus write_all(CagPovWriter *w, const bool *closed, CagError *err) {
+  const CagScene *s = w->scene;
+  pov_comment(w, "", s->script && s->script[0] ? s->script : "a scene");
+  pov_text(w, "// Written by cag " CAG_VERSION " for POV-Ray 3.7. Millimetres, Z up.\n\n");
+  pov_text(w, "#version 3.7;\n\n");
+  write_settings(w);
+  heading(w, "Camera");
+  pov_camera(w);
+  heading(w, "Light and sky");
+  pov_lights(w);
+  pov_sky(w);
+  heading(w, "Materials");
+  write_materials(w, closed);
+  heading(w, "Things");
+  return write_items(w, closed, err);
+}
+
+static bool lit_by_sky_alone(const CagScene *s) {
+  return s->light_count == 0 && (s->sky.color_count > 0 || s->sky.image);
+}
+
+CagStatus cag_export_pov(const CagScene *scene, const CagPovOptions *options, CagAtomicFile *file,
+                         CagError *err) {
+  CagPovWriter w = {.scene = scene, .options = options, .file = file};
+  if (scene->item_count == 0)
+    return cag_fail(err, CAG_E_ARGUMENT, "nothing-to-show", "", -1, "the script shows no shape");
+  if (options->camera >= scene->camera_count)
+    return cag_fail(err, CAG_E_ARGUMENT, "camera-unknown", "camera", (long)options->camera,
+                    "the scene has %zu cameras, there is none with the number %zu",
+                    scene->camera_count, options->camera);
+  w.camera = &scene->cameras[options->camera];
+  w.indirect = options->quality == CAG_POV_FINAL ||
+               (options->quality == CAG_POV_NORMAL && lit_by_sky_alone(scene));
+  measure(&w);
+  bool *closed = malloc(scene->item_count * sizeof *closed);
+  CagStatus status = CAG_OK;
+  if (!closed || !make_names(&w)) status = cag_fail_memory(err);
+  for (size_t i = 0; !status && i < scene->item_count; i++) closed[i] = is_closed(&scene->items[i]);
+  if (!status) status = write_all(&w, closed, err);
+  free(closed);
+  free(w.item_names);
+  free(w.material_names);
+  return status;
+}

@@ -1,0 +1,179 @@
+// Camera, lights and sky.
+
+#include "interp/export/pov_write.h"
+
+static CagVec3 column(const CagTransform *t, int j) {
+  return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
+}
+
+// A unit direction to 12 places: what is behind them is rounding, and 0 looks better than 6e-17.
+static CagVec3 tidy(CagVec3 v) {
+  const double unit = 1e-12;
+  return cag_vec3(pov_round(v.x, unit), pov_round(v.y, unit), pov_round(v.z, unit));
+}
+
+static void write_axis(CagPovWriter *w, const char *word, CagVec3 axis, double length) {
+  pov_printf(w, "  %-9s ", word);
+  if (length != 1) {
+    pov_number(w, length);
+    pov_text(w, "*");
+  }
+  pov_vec(w, tidy(axis));
+  pov_text(w, "\n");
+}
+
+static void write_focus(CagPovWriter *w, const CagCamera *c, CagVec3 view) {
+  if (!(c->aperture > 0) || w->options->quality == CAG_POV_DRAFT) return;
+  double focus = c->focus > 0 ? c->focus : cag_norm(cag_sub(c->target, c->eye));
+  bool final = w->options->quality == CAG_POV_FINAL;
+  pov_text(w, "  aperture ");
+  pov_number(w, c->aperture);
+  pov_text(w, "\n  focal_point ");
+  pov_vec(w, cag_madd(c->eye, focus, view));
+  pov_printf(w, "\n  blur_samples %d variance %s confidence %s\n", final ? 120 : 40,
+             final ? "1/20000" : "1/5000", final ? "0.98" : "0.95");
+}
+
+void pov_camera(CagPovWriter *w) {
+  const CagCamera *c = w->camera;
+  CagTransform frame = cag_camera_frame(c);
+  CagVec3 right = column(&frame, 0), up = cag_scaled(column(&frame, 1), -1);
+  CagVec3 view = column(&frame, 2), eye = column(&frame, 3);
+  const int *size = w->options->size[0] > 0 && w->options->size[1] > 0 ? w->options->size : c->size;
+  double aspect = (double)size[0] / size[1];
+
+  pov_comment(w, "", c->name ? c->name : "camera");
+  pov_printf(w,
+             "// For pictures of %d x %d pixels; right, up and direction make it right-handed.\n",
+             size[0], size[1]);
+  pov_text(w, "camera {\n");
+  pov_text(w, c->orthographic ? "  orthographic\n" : "  perspective\n");
+  pov_text(w, "  location  ");
+  pov_vec(w, eye);
+  pov_text(w, "\n");
+  if (c->orthographic) { // right and up span the picture
+    write_axis(w, "right", right, c->width);
+    write_axis(w, "up", up, c->width / aspect);
+    write_axis(w, "direction", view, 1);
+  } else { // a picture of height 1 at this distance
+    write_axis(w, "right", right, aspect);
+    write_axis(w, "up", up, 1);
+    write_axis(w, "direction", view, aspect / 2 / tan(c->fov / 2));
+  }
+  write_focus(w, c, view);
+  pov_text(w, "}\n");
+}
+
+// --- Lights ---
+
+// Distance of a sun in radii of the scene: its rays are parallel to 0.06 degrees.
+#define SUN_DISTANCE 1000.0
+// Its width as seen from the scene, radians; twice that of the real one, for shadows a little
+// softer.
+#define SUN_WIDTH 0.0175
+
+static void any_perpendicular(CagVec3 d, CagVec3 *a, CagVec3 *b) {
+  CagVec3 other = fabs(d.z) < 0.9 ? cag_vec3(0, 0, 1) : cag_vec3(1, 0, 0);
+  *a = cag_unit(cag_cross(d, other));
+  *b = cag_cross(d, *a);
+}
+
+static void write_area(CagPovWriter *w, CagVec3 direction, double size, bool round) {
+  if (w->options->quality == CAG_POV_DRAFT || !(size > 0)) return;
+  CagVec3 a, b;
+  any_perpendicular(direction, &a, &b);
+  int n = w->options->quality == CAG_POV_FINAL ? 9 : 5;
+  pov_text(w, "  area_light ");
+  pov_number(w, size);
+  pov_text(w, "*");
+  pov_vec(w, tidy(a));
+  pov_text(w, ", ");
+  pov_number(w, size);
+  pov_text(w, "*");
+  pov_vec(w, tidy(b));
+  pov_printf(w, ", %d, %d adaptive %d jitter%s\n", n, n, n > 5 ? 2 : 1, round ? " circular" : "");
+}
+
+static void write_light_head(CagPovWriter *w, const CagLight *l, const char *what, CagVec3 at) {
+  pov_printf(w, "light_source { // %s\n  ", what);
+  pov_vec(w, at);
+  pov_text(w, "\n  color ");
+  pov_color(
+      w, (CagColor){l->color.r * l->strength, l->color.g * l->strength, l->color.b * l->strength});
+  pov_text(w, "\n");
+}
+
+static void write_sun(CagPovWriter *w, const CagLight *l) {
+  double far = pov_round(SUN_DISTANCE * w->radius, 1);
+  CagVec3 direction = cag_unit(l->direction);
+  write_light_head(w, l, "sun", cag_madd(w->center, -far, direction));
+  write_area(w, direction, pov_round(far * SUN_WIDTH, 1e-3), true);
+}
+
+static void write_spot(CagPovWriter *w, const CagLight *l) {
+  const double soft_edge = 0.8; // the cone's inner part that has the full light
+  double half = l->angle / 2 * 180 / 3.14159265358979323846;
+  write_light_head(w, l, "spot", l->position);
+  pov_printf(w, "  spotlight radius %.6g falloff %.6g point_at ", soft_edge * half, half);
+  pov_vec(w, cag_add(l->position, l->direction));
+  pov_text(w, "\n");
+}
+
+void pov_lights(CagPovWriter *w) {
+  for (size_t i = 0; i < w->scene->light_count; i++) {
+    const CagLight *l = &w->scene->lights[i];
+    switch (l->kind) {
+    case CAG_LIGHT_SUN: write_sun(w, l); break;
+    case CAG_LIGHT_POINT: write_light_head(w, l, "point", l->position); break;
+    case CAG_LIGHT_SPOT: write_spot(w, l); break;
+    case CAG_LIGHT_AREA:
+      write_light_head(w, l, "area", l->position);
+      write_area(w, cag_unit(l->direction), l->size, false);
+      break;
+    }
+    pov_text(w, "}\n");
+  }
+}
+
+// --- Sky ---
+
+static void write_quoted(CagPovWriter *w, const char *path) {
+  pov_text(w, "\"");
+  for (const char *p = path; *p; p++) {
+    if (*p == '"' || *p == '\\') pov_text(w, "\\");
+    cag_atomic_file_write(w->file, p, 1);
+  }
+  pov_text(w, "\"");
+}
+
+// A panorama stands upright about Z and is seen from inside as it is in the file: POV-Ray's own is
+// about Y and left-handed, so y and z change places.
+static void write_sky_image(CagPovWriter *w, const char *path) {
+  pov_text(w, "sky_sphere {\n  pigment {\n    image_map { exr ");
+  write_quoted(w, path);
+  pov_text(w, " map_type 1 interpolate 2 }\n");
+  pov_text(w, "    matrix <1, 0, 0,  0, 0, 1,  0, 1, 0,  0, 0, 0>\n  }\n}\n");
+}
+
+static void write_sky_colors(CagPovWriter *w, const CagSky *sky) {
+  pov_text(w,
+           "sky_sphere { // from below to above\n  pigment {\n    gradient z\n    color_map {\n");
+  for (size_t i = 0; i < sky->color_count; i++) {
+    size_t steps = sky->color_count > 1 ? sky->color_count - 1 : 1;
+    pov_printf(w, "      [%.6g ", (double)i / (double)steps);
+    pov_color(w, sky->colors[i]);
+    pov_text(w, "]\n");
+  }
+  pov_text(w, "    }\n    scale 2\n    translate -1\n  }\n}\n");
+}
+
+void pov_sky(CagPovWriter *w) {
+  const CagScene *s = w->scene;
+  if (s->has_background) {
+    pov_text(w, "background { ");
+    pov_color(w, s->background);
+    pov_text(w, " }\n");
+  }
+  if (s->sky.image) write_sky_image(w, s->sky.image);
+  else if (s->sky.color_count > 0) write_sky_colors(w, &s->sky);
+}

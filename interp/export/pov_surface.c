@@ -1,0 +1,127 @@
+// Surfaces that POV-Ray has objects for: bicubic Bezier patches, quadrics, tori, spheres, lathes,
+// flat polygons.
+
+#include "interp/export/pov_write.h"
+
+// A sampled point fits a sphere or torus to this part of its size: rounding of the evaluation.
+#define FITS 1e-9
+
+#define FULL_TURN (2 * 3.14159265358979323846)
+
+static bool try_bicubic(CagPovWriter *w, const CagSurface *s) {
+  CagSurfaceNurbsView v;
+  if (!cag_surface_nurbs_view(s, &v) || v.rational || v.periodic_u || v.periodic_v) return false;
+  if (v.degree_u != 3 || v.degree_v != 3 || v.nu != 4 || v.nv != 4) return false;
+  // 2^steps cells each way; normals are exact at their corners.
+  int steps = w->options->quality == CAG_POV_DRAFT ? 3 : 5;
+  pov_printf(w, "bicubic_patch {\n  type 1 flatness 0 u_steps %d v_steps %d,\n", steps, steps);
+  for (int i = 0; i < 16; i++) {
+    const double *h = v.homogeneous + 4 * i;
+    pov_text(w, i % 4 == 0 ? "  " : " ");
+    pov_vec(w, cag_vec3(h[0], h[1], h[2]));
+    pov_text(w, i == 15 ? "\n" : i % 4 == 3 ? ",\n" : ",");
+  }
+  pov_text(w, "}");
+  return true;
+}
+
+// --- Tori, by sampling: R, r and the frame follow from a few points, and others must fit ---
+
+typedef struct Ring {
+  const CagSurface *s;
+  bool swapped; // u runs around the section
+} Ring;
+
+static CagVec3 ring_point(const Ring *r, double turn, double section) {
+  CagError err;
+  CagVec3 p;
+  double u = r->s->u0 + (r->swapped ? section : turn) * FULL_TURN;
+  double v = r->s->v0 + (r->swapped ? turn : section) * FULL_TURN;
+  if (cag_surface_point(r->s, fmin(u, r->s->u1), fmin(v, r->s->v1), &p, &err))
+    return cag_vec3(NAN, NAN, NAN);
+  return p;
+}
+
+static CagVec3 section_center(const Ring *r, double turn) {
+  return cag_lerp(ring_point(r, turn, 0), ring_point(r, turn, 0.5), 0.5);
+}
+
+static bool ring_fits(const Ring *r, const CagTransform *frame, double major, double minor) {
+  CagError err;
+  CagTransform inverse;
+  const int turns = 7, sections = 5;
+  if (cag_transform_inverse(frame, &inverse, &err)) return false;
+  for (int i = 0; i < turns * sections; i++) {
+    CagVec3 p = ring_point(r, (double)(i / sections) / turns, (double)(i % sections) / sections);
+    CagVec3 q = cag_transform_point(&inverse, p);
+    double off = hypot(hypot(q.x, q.y) - major, q.z) - minor;
+    if (!(fabs(off) <= FITS * (major + minor))) return false;
+  }
+  return true;
+}
+
+bool pov_try_torus(CagPovWriter *w, const CagSurface *s) {
+  if (fabs(s->u1 - s->u0 - FULL_TURN) > FITS || fabs(s->v1 - s->v0 - FULL_TURN) > FITS)
+    return false;
+  Ring r = {s, cag_surface_revolution_view(s, NULL, NULL, NULL, NULL, NULL)};
+  CagVec3 center = cag_lerp(section_center(&r, 0), section_center(&r, 0.5), 0.5);
+  CagVec3 x = cag_sub(section_center(&r, 0), center), y = cag_sub(section_center(&r, 0.25), center);
+  double major = cag_norm(x);
+  double minor = cag_norm(cag_sub(ring_point(&r, 0, 0), ring_point(&r, 0, 0.5))) / 2;
+  if (!(major > 0) || !(minor > 0)) return false;
+  x = cag_scaled(x, 1 / major);
+  y = cag_scaled(y, 1 / major);
+  CagVec3 z = r.swapped
+                  ? cag_cross(x, y)
+                  : cag_scaled(cag_sub(ring_point(&r, 0, 0.25), section_center(&r, 0)), 1 / minor);
+  CagTransform frame = {.m = {{x.x, y.x, z.x, center.x},
+                              {x.y, y.y, z.y, center.y},
+                              {x.z, y.z, z.z, center.z},
+                              {0, 0, 0, 1}}};
+  if (!ring_fits(&r, &frame, major, minor)) return false;
+  pov_text(w, "torus {\n  ");
+  pov_number(w, major);
+  pov_text(w, ", ");
+  pov_number(w, minor);
+  pov_text(w, "\n  rotate 90*x // POV-Ray's own lie about y\n");
+  pov_placement(w, "  ", &frame);
+  pov_text(w, "}");
+  return true;
+}
+
+// A half circle about a center on the axis, turned all round.
+static bool try_sphere(CagPovWriter *w, const CagSurface *s) {
+  const CagCurve *profile;
+  double from, to, a, b;
+  CagTransform frame;
+  if (!cag_surface_revolution_view(s, &profile, NULL, NULL, &from, &to)) return false;
+  if (fabs(fabs(to - from) - FULL_TURN) > FITS) return false;
+  if (!cag_curve_arc_view(profile, &a, &b, &frame) || a != b) return false;
+  CagError err;
+  CagVec3 low, high, side;
+  if (!(s->pole_u0 && s->pole_u1) || cag_surface_point(s, s->u0, s->v0, &low, &err) ||
+      cag_surface_point(s, s->u1, s->v0, &high, &err) ||
+      cag_surface_point(s, (s->u0 + s->u1) / 2, s->v0, &side, &err))
+    return false;
+  CagVec3 center = cag_lerp(low, high, 0.5);
+  double radius = cag_norm(cag_sub(high, low)) / 2;
+  if (fabs(cag_norm(cag_sub(side, center)) - radius) > FITS * radius) return false;
+  pov_text(w, "sphere { ");
+  pov_vec(w, center);
+  pov_text(w, ", ");
+  pov_number(w, radius);
+  pov_text(w, " }");
+  return true;
+}
+
+static bool try_planar(CagPovWriter *w, const CagSurface *s) {
+  const CagRegion *region;
+  CagTransform frame;
+  return cag_surface_planar_view(s, &region, &frame) && pov_try_polygon(w, region, &frame);
+}
+
+bool pov_try_surface(CagPovWriter *w, const CagSurface *s) {
+  const CagSurface *const one[] = {s};
+  return try_bicubic(w, s) || try_planar(w, s) || pov_try_quadric(w, one, 1) || try_sphere(w, s) ||
+         pov_try_torus(w, s) || pov_try_lathe(w, one, 1);
+}

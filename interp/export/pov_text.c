@@ -1,0 +1,172 @@
+// Numbers, vectors, comments and names of POV-Ray's language.
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/export/pov_write.h"
+
+void pov_text(CagPovWriter *w, const char *text) { cag_atomic_file_text(w->file, text); }
+
+void pov_printf(CagPovWriter *w, const char *format, ...) {
+  char text[1024]; // callers format names and short numbers
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  pov_text(w, text);
+}
+
+void pov_number(CagPovWriter *w, double x) {
+  char text[32];
+  pov_text(w, cag_number_text(x == 0 ? 0 : x, text)); // no -0
+}
+
+static void list_of_numbers(CagPovWriter *w, const double *x, size_t n) {
+  pov_text(w, "<");
+  for (size_t i = 0; i < n; i++) {
+    if (i > 0) pov_text(w, ", ");
+    pov_number(w, x[i]);
+  }
+  pov_text(w, ">");
+}
+
+void pov_vec(CagPovWriter *w, CagVec3 v) { list_of_numbers(w, (const double[]){v.x, v.y, v.z}, 3); }
+
+void pov_vec2(CagPovWriter *w, double x, double y) {
+  list_of_numbers(w, (const double[]){x, y}, 2);
+}
+
+double pov_round(double x, double unit) {
+  double rounded = round(x / unit);
+  // Dividing by the whole number 1/unit gives the double nearest to the decimal.
+  return unit < 1 ? rounded / round(1 / unit) : rounded * unit;
+}
+
+void pov_color(CagPovWriter *w, CagColor c) {
+  const double unit = 1e-5; // finer than any display's step
+  pov_text(w, "rgb ");
+  pov_vec(w, cag_vec3(pov_round(c.r, unit), pov_round(c.g, unit), pov_round(c.b, unit)));
+}
+
+void pov_comment(CagPovWriter *w, const char *indent, const char *text) {
+  pov_text(w, indent);
+  pov_text(w, "// ");
+  for (const char *at = text; *at; at++) {
+    char c = (unsigned char)*at < ' ' ? ' ' : *at;
+    cag_atomic_file_write(w->file, &c, 1);
+  }
+  pov_text(w, "\n");
+}
+
+static bool is_identity(const CagTransform *t, bool *moved) {
+  *moved = t->m[0][3] != 0 || t->m[1][3] != 0 || t->m[2][3] != 0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      if (t->m[i][j] != (i == j ? 1 : 0)) return false;
+  return true;
+}
+
+void pov_placement(CagPovWriter *w, const char *indent, const CagTransform *t) {
+  double scale = 1 / t->m[3][3]; // affine, but perhaps not normalised
+  CagTransform n = *t;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 4; j++) n.m[i][j] *= scale;
+  bool moved;
+  if (is_identity(&n, &moved)) {
+    if (!moved) return;
+    pov_text(w, indent);
+    pov_text(w, "translate ");
+    pov_vec(w, cag_vec3(n.m[0][3], n.m[1][3], n.m[2][3]));
+    pov_text(w, "\n");
+    return;
+  }
+  // POV-Ray writes the images of x, y, z and the origin, one after the other.
+  pov_text(w, indent);
+  pov_text(w, "matrix <");
+  for (int j = 0; j < 4; j++)
+    for (int i = 0; i < 3; i++) {
+      if (i + j > 0) pov_text(w, i == 0 ? ",  " : ", ");
+      pov_number(w, n.m[i][j]);
+    }
+  pov_text(w, ">\n");
+}
+
+// Words of POV-Ray 3.7 that are written in small letters, digits and _ only, sorted.
+static const char *const reserved[] = {
+#include "interp/export/pov_words.def"
+};
+
+static int compare_words(const void *a, const void *b) {
+  return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+static bool is_reserved(const char *name) {
+  return bsearch(&name, reserved, sizeof reserved / sizeof *reserved, sizeof *reserved,
+                 compare_words) != NULL;
+}
+
+static bool is_word_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+
+// Leaves room for a number that makes the name the only one of its kind.
+#define BASE_MAX 30
+
+static void make_identifier(const char *prefix, const char *name, CagPovName out) {
+  size_t n = 0;
+  for (const char *p = prefix; *p && n < BASE_MAX; p++) out[n++] = *p;
+  if (n == 0 && !((name[0] | 32) >= 'a' && (name[0] | 32) <= 'z')) out[n++] = '_';
+  for (const char *p = name; *p && n < BASE_MAX; p++) {
+    char c = is_word_character(*p) ? *p : '_';
+    if (c == '_' && n > 0 && out[n - 1] == '_') continue;
+    out[n++] = c;
+  }
+  out[n] = 0;
+  if (is_reserved(out)) strcpy(out + n, "_");
+}
+
+// Open-addressing table of the names so far, so that a million names are no trouble.
+typedef struct NameTable {
+  uint32_t *slots; // index + 1; 0: free
+  size_t size;     // a power of two, at least twice the names
+  CagPovName *names;
+} NameTable;
+
+static uint64_t hash_of(const char *s) {
+  uint64_t h = 14695981039346656037u; // FNV-1a
+  for (; *s; s++) h = (h ^ (unsigned char)*s) * 1099511628211u;
+  return h;
+}
+
+static bool table_insert(NameTable *t, uint32_t index) {
+  for (uint64_t at = hash_of(t->names[index]);; at++) {
+    uint32_t *slot = &t->slots[at & (t->size - 1)];
+    if (*slot && strcmp(t->names[*slot - 1], t->names[index]) == 0) return false;
+    if (*slot) continue;
+    *slot = index + 1;
+    return true;
+  }
+}
+
+bool pov_names(const char *prefix, const char *const *names, size_t n, CagPovName **out) {
+  NameTable t = {.size = 16};
+  while (t.size < 2 * n) t.size *= 2;
+  t.slots = calloc(t.size, sizeof *t.slots);
+  t.names = malloc((n ? n : 1) * sizeof *t.names);
+  if (!t.slots || !t.names) {
+    free(t.slots);
+    free(t.names);
+    return false;
+  }
+  for (uint32_t i = 0; i < n; i++) {
+    make_identifier(prefix, names[i], t.names[i]);
+    size_t base = strlen(t.names[i]);
+    for (unsigned k = 2; !table_insert(&t, i); k++)
+      snprintf(t.names[i] + base, sizeof t.names[i] - base, "_%u", i > 1000 ? i + k : k);
+  }
+  free(t.slots);
+  *out = t.names;
+  return true;
+}

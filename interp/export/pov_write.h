@@ -1,0 +1,73 @@
+// What the parts of the POV-Ray writer share. Not for other files.
+
+#ifndef CAG_INTERP_EXPORT_POV_WRITE_H
+#define CAG_INTERP_EXPORT_POV_WRITE_H
+
+#include "interp/export/pov.h"
+
+// Room for an identifier: POV-Ray takes up to 40 characters.
+#define CAG_POV_NAME_MAX 40
+typedef char CagPovName[CAG_POV_NAME_MAX + 1];
+
+typedef struct CagPovWriter {
+  const CagScene *scene;
+  const CagPovOptions *options;
+  CagAtomicFile *file;
+  const CagCamera *camera;
+  CagVec3 center; // of the scene
+  double radius;  // of a sphere about everything; positive
+  bool indirect;  // radiosity is on
+  CagPovName *item_names, *material_names;
+  // Where the thing just written stands, to be said behind its material, so that a pattern moves
+  // with it. Set by pov_try_solid, taken and reset by the caller.
+  CagTransform placement;
+} CagPovWriter;
+
+// --- Text (pov_text.c) ---
+void pov_text(CagPovWriter *w, const char *text);
+void pov_printf(CagPovWriter *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void pov_number(CagPovWriter *w, double x); // shortest that reads back the same
+void pov_vec(CagPovWriter *w, CagVec3 v);   // <x, y, z>
+void pov_vec2(CagPovWriter *w, double x, double y);
+void pov_color(CagPovWriter *w, CagColor c); // rgb <r, g, b>, rounded to 5 places
+double pov_round(double x, double unit);     // to a multiple of unit, for readable numbers
+// One line of comment: line breaks and control characters of `text` become spaces.
+void pov_comment(CagPovWriter *w, const char *indent, const char *text);
+// "  matrix <...>", or `translate` where that is all; nothing for the identity.
+void pov_placement(CagPovWriter *w, const char *indent, const CagTransform *t);
+// Identifiers for all names: letters, digits and _, no word of POV-Ray's own, each once. `prefix`
+// goes before each. *out is malloc'd.
+bool pov_names(const char *prefix, const char *const *names, size_t n, CagPovName **out);
+
+// --- Materials (pov_material.c) ---
+// #declare of material `index`, for closed bodies and (where light passes through) thin sheets.
+void pov_material(CagPovWriter *w, size_t index, bool closed);
+// The name to use for an item of it.
+void pov_material_name(const CagPovWriter *w, size_t index, bool closed, char out[64]);
+// Light from everywhere where there is no radiosity.
+CagColor pov_ambient(const CagScene *s);
+
+// --- Lights, camera, sky (pov_stage.c) ---
+void pov_camera(CagPovWriter *w);
+void pov_lights(CagPovWriter *w);
+void pov_sky(CagPovWriter *w);
+
+// --- Things. Each `try` writes one native object after "#declare name = ", without the final line
+// break, and says whether there was one. Nothing is written otherwise. ---
+bool pov_try_solid(CagPovWriter *w, const CagSolid *s);                      // pov_solid.c
+bool pov_try_surface(CagPovWriter *w, const CagSurface *s);                  // pov_surface.c
+bool pov_try_quadric(CagPovWriter *w, const CagSurface *const *s, size_t n); // pov_quadric.c
+bool pov_try_lathe(CagPovWriter *w, const CagSurface *const *s, size_t n);   // pov_lathe.c
+bool pov_try_prism(CagPovWriter *w, const CagSolid *s);                      // pov_lathe.c
+bool pov_try_torus(CagPovWriter *w, const CagSurface *s);                    // pov_surface.c
+bool pov_try_polygon(CagPovWriter *w, const CagRegion *r, const CagTransform *placement);
+// Declares the curve as a round line.
+CagStatus pov_curve(CagPovWriter *w, const CagItem *item, const char *name, CagError *err);
+CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err); // pov_mesh.c
+
+// --- Bezier pieces of a curve (pov_lathe.c) ---
+// The curve as cubic Bezier segments, four points each; exact for polynomials of degree up to 3,
+// else false. *out is malloc'd. `linear`: all of them are straight and evenly run.
+bool pov_cubic_pieces(const CagCurve *c, CagVec3 **out, size_t *n, bool *linear);
+
+#endif
