@@ -1,0 +1,225 @@
+// Bezier and B-spline curves, and their bases as data.
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/builtin/curves.h"
+
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve *c,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_curve_value(call->vm, c);
+  return true;
+}
+
+static bool is_set(CagCall *call, int argument) {
+  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
+}
+
+bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *out) {
+  long given;
+  if (is_set(call, order)) {
+    if (cag_given(call, degree))
+      return cag_fail_call(call, order, CAG_ERR_value,
+                           "takes `degree` or `order` (one more than the degree), not both");
+    if (!cag_arg_integer(call, order, 2, INT_MAX, &given)) return false;
+    *out = (int)given - 1;
+    return true;
+  }
+  if (!cag_arg_integer_or(call, degree, fallback, 0, INT_MAX - 1, &given)) return false;
+  *out = (int)given;
+  return true;
+}
+
+// Weights as many as points; NULL where there are none.
+static bool read_weights(CagCall *call, int argument, size_t n, const double **out) {
+  size_t count;
+  *out = NULL;
+  if (!is_set(call, argument)) return true;
+  if (!cag_arg_numbers(call, argument, out, &count)) return false;
+  if (count == n) return true;
+  return cag_fail_call(call, argument, CAG_ERR_length,
+                       "expects one of `weights` for each of %zu points, found %zu", n, count);
+}
+
+bool cag_curves_bezier(CagCall *call, CagValue *result) {
+  CagVec3 *points;
+  const double *weights;
+  size_t n;
+  int dimension;
+  CagCurve *c = NULL;
+  CagError err;
+  if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
+  bool ok = read_weights(call, 1, n, &weights);
+  CagStatus status = ok ? cag_curve_bezier(points, weights, n, dimension, &c, &err) : CAG_OK;
+  free(points);
+  return ok && give(call, status, &err, c, result);
+}
+
+// Knots from a name or a list; *own is to be freed.
+static bool read_knots(CagCall *call, int argument, size_t n, int degree, const CagVec3 *points,
+                       double **own, const double **knots) {
+  CagError err;
+  *own = NULL;
+  const char *type = "open";
+  if (cag_given(call, argument) && call->values[argument].type != CAG_TEXT) {
+    size_t count;
+    if (!cag_arg_numbers(call, argument, knots, &count)) return false;
+    if (count == n + (size_t)degree + 1) return true;
+    cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", -1,
+             "%zu points of degree %d want %zu `knots` (points + degree + 1), found %zu", n, degree,
+             n + (size_t)degree + 1, count);
+    return cag_fail_geometry(call, &err);
+  }
+  if (cag_given(call, argument) && !cag_arg_text(call, argument, &type)) return false;
+  if (n <= (size_t)degree || degree < 1) {
+    cag_fail(&err, CAG_E_ARGUMENT, "degree-too-high", "degree", -1,
+             "a degree of %d wants at least %d points, found %zu", degree, degree + 1, n);
+    return cag_fail_geometry(call, &err);
+  }
+  *own = malloc((n + (size_t)degree + 1) * sizeof **own);
+  if (!*own) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  *knots = *own;
+  return cag_geometry_ok(call, cag_knots_make(type, n, degree, points, *own, &err), &err);
+}
+
+// points, degree, knots, closed, weights, order
+static bool make_bspline(CagCall *call, const CagVec3 *points, size_t n, int dimension,
+                         CagValue *result) {
+  int degree = 0;
+  bool closed;
+  const double *weights, *knots = NULL;
+  double *own = NULL;
+  CagCurve *c = NULL;
+  CagError err;
+  CagStatus status;
+  if (!cag_arg_degree(call, 1, 5, 3, &degree) || !cag_arg_bool_or(call, 3, false, &closed) ||
+      !read_weights(call, 4, n, &weights))
+    return false;
+  if (closed) {
+    if (cag_given(call, 2) && call->values[2].type != CAG_TEXT)
+      return cag_fail_call(call, 2, CAG_ERR_value,
+                           "takes no list of `knots` for a closed curve: they are uniform");
+    status = cag_curve_nurbs_closed(points, weights, n, degree, dimension, &c, &err);
+    return give(call, status, &err, c, result);
+  }
+  bool ok = read_knots(call, 2, n, degree, points, &own, &knots);
+  status = ok ? cag_curve_nurbs(points, weights, n, degree, knots, dimension, &c, &err) : CAG_OK;
+  free(own);
+  return ok && give(call, status, &err, c, result);
+}
+
+bool cag_curves_bspline(CagCall *call, CagValue *result) {
+  CagVec3 *points;
+  size_t n;
+  int dimension;
+  if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
+  bool ok = make_bspline(call, points, n, dimension, result);
+  free(points);
+  return ok;
+}
+
+bool cag_curves_nurbs(CagCall *call, CagValue *result) {
+  if (is_set(call, 4)) return cag_curves_bspline(call, result);
+  cag_fail_call(call, -1, CAG_ERR_arity, "wants `weights`, one for each point");
+  cag_fail_help(call->vm, "without weights it is a `bspline`");
+  return false;
+}
+
+// --- Bases as data ---
+
+bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
+  long count;
+  int degree;
+  CagVec3 *points = NULL;
+  size_t n = 0;
+  const char *type = "chord";
+  CagError err;
+  if (!cag_arg_integer(call, 0, 2, INT_MAX, &count) || !cag_arg_degree(call, 1, 3, 3, &degree))
+    return false;
+  if (cag_given(call, 2) && call->values[2].type == CAG_LIST) {
+    if (!cag_arg_points(call, 2, &points, &n, NULL)) return false;
+    if (n != (size_t)count) {
+      free(points);
+      return cag_fail_call(call, 2, CAG_ERR_length, "expects %ld points, found %zu", count, n);
+    }
+  } else if (!cag_given(call, 2)) type = "open";
+  else if (!cag_arg_text(call, 2, &type)) return false;
+  bool ok = degree >= 1 && count > degree;
+  if (!ok)
+    cag_fail_call(call, 1, CAG_ERR_value, "wants a degree of at least 1 and less than the count");
+  double *knots = NULL;
+  if (ok) {
+    size_t size = (size_t)count + (size_t)degree + 1;
+    *result = cag_list_numbers(call->vm, size, &knots);
+    ok = cag_geometry_ok(call, cag_knots_make(type, (size_t)count, degree, points, knots, &err),
+                         &err);
+  }
+  free(points);
+  return ok;
+}
+
+// Values of basis functions are those of curves whose control points are 1 at one place and 0
+// elsewhere: three at a time, as x, y and z.
+static CagStatus basis_values(const double *knots, size_t n, int degree, double t, int derivative,
+                              double *out, CagError *err) {
+  CagVec3 *points = calloc(n, sizeof *points);
+  if (!points) return cag_fail_memory(err);
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; status == CAG_OK && i < n; i += 3) {
+    CagCurve *c = NULL;
+    CagVec3 values[CAG_MAX_DERIVATIVE + 1];
+    memset(points, 0, n * sizeof *points);
+    points[i].x = 1;
+    if (i + 1 < n) points[i + 1].y = 1;
+    if (i + 2 < n) points[i + 2].z = 1;
+    status = cag_curve_nurbs(points, NULL, n, degree, knots, 3, &c, err);
+    if (status == CAG_OK) status = cag_curve_eval(c, t, derivative, CAG_SIDE_RIGHT, values, err);
+    cag_curve_release(c);
+    if (status != CAG_OK) break;
+    out[i] = values[derivative].x;
+    if (i + 1 < n) out[i + 1] = values[derivative].y;
+    if (i + 2 < n) out[i + 2] = values[derivative].z;
+  }
+  free(points);
+  return status;
+}
+
+bool cag_curves_basis(CagCall *call, CagValue *result) {
+  const double *knots;
+  size_t count;
+  int degree;
+  long derivative;
+  double t, *out;
+  CagError err;
+  if (!cag_arg_numbers(call, 0, &knots, &count) || !cag_arg_degree(call, 1, 4, 3, &degree) ||
+      !cag_arg_finite(call, 2, &t) ||
+      !cag_arg_integer_or(call, 3, 0, 0, CAG_MAX_DERIVATIVE, &derivative))
+    return false;
+  if (degree < 1 || count < 2 * ((size_t)degree + 1))
+    return cag_fail_call(call, 0, CAG_ERR_value,
+                         "wants at least 2 (degree + 1) knots, found %zu of degree %d", count,
+                         degree);
+  size_t n = count - (size_t)degree - 1;
+  *result = cag_list_numbers(call->vm, n, &out);
+  return cag_geometry_ok(call, basis_values(knots, n, degree, t, (int)derivative, out, &err), &err);
+}
+
+// A higher degree has no values that a double can tell apart.
+#define BERNSTEIN_MAX 1000
+
+bool cag_curves_bernstein(CagCall *call, CagValue *result) {
+  long n;
+  double t, *b;
+  if (!cag_arg_integer(call, 0, 0, BERNSTEIN_MAX, &n) || !cag_arg_finite(call, 1, &t)) return false;
+  *result = cag_list_numbers(call->vm, (size_t)n + 1, &b);
+  // B(i, k) = (1 - t) B(i, k - 1) + t B(i - 1, k - 1)
+  b[0] = 1;
+  for (long k = 1; k <= n; k++) {
+    b[k] = t * b[k - 1];
+    for (long i = k - 1; i > 0; i--) b[i] = (1 - t) * b[i] + t * b[i - 1];
+    b[0] *= 1 - t;
+  }
+  return true;
+}
