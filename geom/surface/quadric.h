@@ -28,7 +28,10 @@ typedef enum CagQuadricClass {
   CAG_QUADRIC_IMAGINARY_INTERSECTING_PLANES,
   CAG_QUADRIC_PARALLEL_PLANES,
   CAG_QUADRIC_IMAGINARY_PARALLEL_PLANES,
-  CAG_QUADRIC_COINCIDENT_PLANES
+  CAG_QUADRIC_COINCIDENT_PLANES,
+  // Equations without terms of second degree, which the reference lists below its 17 classes.
+  CAG_QUADRIC_PLANE,
+  CAG_QUADRIC_EMPTY
 } CagQuadricClass;
 
 typedef struct CagQuadricForm {
@@ -52,12 +55,38 @@ CagStatus cag_quadric_transform(const CagQuadric *q, const CagTransform *t, CagQ
 
 // The real surface within a box (unbounded classes need one: "quadric-unbounded"), as parametric
 // patches in world coordinates: one sheet, two sheets or planes; each a CagSurface of kind
-// "quadric" (or planar), cut exactly at the box's z range in the canonical direction where
-// `z_only`, else at the box. *out is a malloc'd array of *n surfaces. An imaginary one has none
-// ("quadric-imaginary").
+// "quadric" (or planar). *out is a malloc'd array of *n surfaces. An imaginary one has none
+// ("quadric-imaginary"), nor has one that passes the box by ("quadric-outside").
+//
+// What is cut: planes exactly at the box. Everything else at a range of canonical coordinates,
+// those of the box's corners in the canonical frame (which is the box itself where the frame's axes
+// are the world's): ellipsoids, hyperboloids, cones, elliptic paraboloids and elliptic cylinders in
+// the direction of their axis alone, a hyperbolic paraboloid at its x and y range, a parabolic or
+// hyperbolic cylinder at the ranges of all three. With `z_only` the range is within->min.z to
+// within->max.z, measured from the world's origin along the axis (its sense that goes up), and the
+// classes that it does not bound are "quadric-unbounded".
 CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool z_only,
                               CagSurface ***out, size_t *n, CagError *err);
 // The equation behind a surface of kind "quadric"; false: another kind.
 bool cag_surface_quadric_view(const CagSurface *s, CagQuadric *equation);
+
+// The parametric forms of real quadrics (reference 06a, table of parametric forms), each in units
+// of its semi-axes: they are the lengths of the frame's columns.
+typedef enum CagQuadricShape {
+  CAG_SHAPE_ELLIPSOID,             // [cos u sin v, sin u sin v, cos v]
+  CAG_SHAPE_HYPERBOLOID_ONE,       // [cos u cosh v, sin u cosh v, sinh v]
+  CAG_SHAPE_HYPERBOLOID_TWO,       // [cos u sinh v, sin u sinh v, cosh v]: one sheet
+  CAG_SHAPE_CONE,                  // [v cos u, v sin u, v]
+  CAG_SHAPE_ELLIPTIC_PARABOLOID,   // [v cos u, v sin u, v^2]
+  CAG_SHAPE_HYPERBOLIC_PARABOLOID, // [u, v, u^2 - v^2]
+  CAG_SHAPE_ELLIPTIC_CYLINDER,     // [cos u, sin u, v]
+  CAG_SHAPE_PARABOLIC_CYLINDER,    // [u^2, 2 u, v]
+  CAG_SHAPE_HYPERBOLIC_CYLINDER    // [cosh u, sinh u, v]: one branch
+} CagQuadricShape;
+
+// A piece over [u0, u1] x [v0, v1]; frame: affine, unit form -> world. Kind "quadric". A frame that
+// mirrors turns the normals.
+CagStatus cag_surface_quadric(CagQuadricShape shape, const CagTransform *frame, double u0,
+                              double u1, double v0, double v1, CagSurface **out, CagError *err);
 
 #endif

@@ -1,0 +1,58 @@
+// What the kinds of surfaces share among themselves; users of surfaces do not need it.
+
+#ifndef CAG_GEOM_SURFACE_FAMILY_H
+#define CAG_GEOM_SURFACE_FAMILY_H
+
+#include "geom/surface/surface.h"
+
+// Two points are one when they are nearer than this part of the size of the data: rounding of a few
+// evaluations, far below any tolerance a user gives.
+#define CAG_SURFACE_SAME 1e-11
+
+// Zeroed block of `size` bytes (a struct that starts with CagSurface) with one reference.
+CagStatus cag_surface_block(size_t size, const CagSurfaceKind *kind, double u0, double u1,
+                            double v0, double v1, CagSurface **out, CagError *err);
+// Fills closed_u, closed_v and the poles by evaluation along the edges.
+void cag_surface_judge(CagSurface *s);
+
+// The same surface seen through an affine map, and with v run backwards where `flip`. Evaluates
+// exactly; knows no exact form of its own beyond that of `inner`.
+CagStatus cag_surface_placed(const CagSurface *inner, const CagTransform *t, bool flip,
+                             CagSurface **out, CagError *err);
+// For kinds that have no image of their own: affine maps give a placed surface, projective ones
+// need the exact NURBS form.
+CagStatus cag_surface_transform_placed(const CagSurface *s, const CagTransform *t, CagSurface **out,
+                                       CagError *err);
+
+// A curve as one of space, or retained as it is when it already is one.
+CagStatus cag_surface_space_curve(const CagCurve *c, CagCurve **out, CagError *err);
+
+// NURBS surface from homogeneous points (w x, w y, w z, w), nu x nv x 4.
+CagStatus cag_surface_from_homogeneous(const double *net, size_t nu, size_t nv, int degree_u,
+                                       int degree_v, const double *knots_u, const double *knots_v,
+                                       CagSurface **out, CagError *err);
+// NURBS surface whose parameters are exchanged: S'(u, v) = S(v, u).
+CagStatus cag_surface_nurbs_swapped(const CagSurface *s, CagSurface **out, CagError *err);
+
+// A piece of a conic or a polynomial as a NURBS curve in homogeneous coordinates (x, y, w): the
+// building stone of exact forms.
+typedef enum CagConicArc {
+  CAG_ARC_CIRCLE,    // cos t, sin t
+  CAG_ARC_HYPERBOLA, // cosh t, sinh t
+  CAG_ARC_PARABOLA,  // t^2, t
+  CAG_ARC_LINE       // 1, t
+} CagConicArc;
+#define CAG_CONIC_ARC_POINTS 19 // a circle turned twice, in pieces of at most 90 degrees
+#define CAG_CONIC_ARC_KNOTS (CAG_CONIC_ARC_POINTS + 3)
+typedef struct CagConicNurbs {
+  int degree;
+  size_t count;
+  double points[CAG_CONIC_ARC_POINTS][3];
+  double knots[CAG_CONIC_ARC_KNOTS]; // circle: 0, 1, .. per piece; else the parameter itself
+} CagConicNurbs;
+void cag_conic_nurbs(CagConicArc arc, double from, double to, CagConicNurbs *out);
+
+// Ascending, distinct values of a within (lo, hi), to `same`; returns their number.
+size_t cag_surface_tidy_breaks(double *a, size_t n, double lo, double hi);
+
+#endif

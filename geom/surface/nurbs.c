@@ -1,0 +1,812 @@
+// Tensor product NURBS surfaces: Bezier, B-spline and rational, open or closed in each direction.
+//
+// A point is N(u) B M(v) with homogeneous control points B, divided by its weight where rational.
+// The net is kept twice: as points (w x, w y, w z, w) for single evaluations and exporters, and as
+// one plane per coordinate for grids, where the inner loops run along v over contiguous numbers.
+//
+// The span of t is the index i with knots[i] <= t < knots[i + 1] (limit from the right) or
+// knots[i] < t <= knots[i + 1] (from the left), within the domain knots[degree]..knots[count]. A
+// closed direction stores its first `degree` lines again at the end, over knots -degree, ..., so
+// that nothing else knows of it.
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/surface/family.h"
+
+// Basis tables live on the stack; higher degrees serve nobody and lose all accuracy.
+#define MAX_DEGREE 63
+
+typedef struct Direction {
+  int degree;
+  size_t count, distinct;
+  bool periodic;
+  double *knots;
+} Direction;
+
+typedef struct Nurbs {
+  CagSurface base;
+  Direction u, v;
+  bool rational;
+  double *net;    // count_u x count_v x 4
+  double *planes; // 4 x count_u x count_v: x, y, z, w
+} Nurbs;
+
+static const CagSurfaceKind bezier_kind, bspline_kind, nurbs_kind;
+
+// --- Basis ---
+
+static size_t find_span(const Direction *d, double t, CagSide side) {
+  size_t low = (size_t)d->degree, high = d->count; // knots[low] <= t <= knots[high]
+  while (high - low > 1) {
+    size_t middle = (low + high) / 2;
+    bool above = side == CAG_SIDE_LEFT ? t > d->knots[middle] : t >= d->knots[middle];
+    if (above) low = middle;
+    else high = middle;
+  }
+  // At an end of the domain the bisection may stop at an empty span; the piece is the nearest one.
+  while (low > (size_t)d->degree && d->knots[low] >= d->knots[low + 1]) low--;
+  while (low + 1 < d->count && d->knots[low] >= d->knots[low + 1]) low++;
+  return low;
+}
+
+// Values of the degree + 1 basis functions on the span, by the triangular scheme of Cox and de
+// Boor; `lower` takes those of the degree below (degree of them) where it is not NULL.
+static void basis_values(const Direction *d, size_t span, double t, double *values, double *lower) {
+  double left[MAX_DEGREE + 1], right[MAX_DEGREE + 1];
+  values[0] = 1;
+  for (int j = 1; j <= d->degree; j++) {
+    if (lower && j == d->degree) memcpy(lower, values, (size_t)j * sizeof *values);
+    left[j] = t - d->knots[span + 1 - (size_t)j];
+    right[j] = d->knots[span + (size_t)j] - t;
+    double saved = 0;
+    for (int r = 0; r < j; r++) {
+      double part = values[r] / (right[r + 1] + left[j - r]);
+      values[r] = saved + right[r + 1] * part;
+      saved = left[j - r] * part;
+    }
+    values[j] = saved;
+  }
+}
+
+// Values and first derivatives.
+static void basis_first(const Direction *d, size_t span, double t, double *values, double *slopes) {
+  double lower[MAX_DEGREE + 1];
+  int p = d->degree;
+  basis_values(d, span, t, values, lower);
+  double before = 0;
+  for (int i = 0; i <= p; i++) {
+    double after = 0;
+    if (i < p) {
+      double width = d->knots[span + 1 + (size_t)i] - d->knots[span + 1 + (size_t)i - (size_t)p];
+      after = p * lower[i] / width;
+    }
+    slopes[i] = before - after;
+    before = after;
+  }
+}
+
+// Derivatives 0..n: out[k * (degree + 1) + i]. Derivatives of a B-spline are B-splines of the
+// differences of its control points, applied here to the unit control points.
+static void basis_derivatives(const Direction *d, size_t span, double t, int n, double *out) {
+  int p = d->degree, width = p + 1;
+  for (int k = 0; k <= n; k++) {
+    double *row = out + k * width;
+    for (int i = 0; i <= p; i++) row[i] = 0;
+    if (k > p) continue;
+    // Values of degree p - k on the span, then raised k times by the derivative formula.
+    Direction low = *d;
+    low.degree = p - k;
+    double values[MAX_DEGREE + 1];
+    basis_values(&low, span, t, values, NULL);
+    for (int i = 0; i <= p - k; i++) row[i] = values[i];
+    for (int q = p - k + 1; q <= p; q++) {
+      double before = 0;
+      for (int i = 0; i <= q; i++) {
+        double after = 0;
+        if (i < q) {
+          double span_width =
+              d->knots[span + 1 + (size_t)i] - d->knots[span + 1 + (size_t)i - (size_t)q];
+          after = q * row[i] / span_width;
+        }
+        row[i] = before - after;
+        before = after;
+      }
+    }
+  }
+}
+
+// --- One point ---
+
+// Quotient rule for all partials of total order <= n of A / w (reference 06b, 7.2).
+static CagStatus divide(int n, const double (*h)[4], CagVec3 *out, CagError *err) {
+  double w = h[0][3];
+  if (!(w > 0))
+    return cag_fail(
+        err, CAG_E_DEGENERATE, "zero-denominator", "weights", -1,
+        "all `weights` that act at this point are 0: give one of them a positive value");
+  double binomial[CAG_MAX_PARTIAL + 1][CAG_MAX_PARTIAL + 1];
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; j <= i; j++)
+      binomial[i][j] = j == 0 || j == i ? 1 : binomial[i - 1][j - 1] + binomial[i - 1][j];
+  for (int a = 0; a <= n; a++)
+    for (int b = 0; a + b <= n; b++) {
+      const double *top = h[cag_partial(n, a, b)];
+      CagVec3 sum = {top[0], top[1], top[2]};
+      for (int i = 0; i <= a; i++)
+        for (int j = 0; j <= b; j++)
+          if (i + j > 0)
+            sum = cag_madd(sum, -binomial[a][i] * binomial[b][j] * h[cag_partial(n, i, j)][3],
+                           out[cag_partial(n, a - i, b - j)]);
+      out[cag_partial(n, a, b)] = cag_scaled(sum, 1 / w);
+    }
+  return CAG_OK;
+}
+
+static CagStatus nurbs_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
+                            CagVec3 *out, CagError *err) {
+  const Nurbs *b = (const Nurbs *)s;
+  int p = b->u.degree, q = b->v.degree;
+  double bu[(CAG_MAX_PARTIAL + 1) * (MAX_DEGREE + 1)], bv[(CAG_MAX_PARTIAL + 1) * (MAX_DEGREE + 1)];
+  size_t iu = find_span(&b->u, u, su), iv = find_span(&b->v, v, sv);
+  basis_derivatives(&b->u, iu, u, n, bu);
+  basis_derivatives(&b->v, iv, v, n, bv);
+  double h[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)][4] = {{0, 0, 0, 1}};
+  double row[MAX_DEGREE + 1][4];
+  for (int i = 0; i <= n; i++) {
+    // The net contracted with the i-th derivatives by u.
+    memset(row, 0, (size_t)(q + 1) * sizeof *row);
+    for (int k = 0; k <= p && i <= p; k++) {
+      double f = bu[i * (p + 1) + k];
+      const double *net = b->net + 4 * ((iu - (size_t)p + (size_t)k) * b->v.count + iv - (size_t)q);
+      for (int l = 0; l <= q; l++)
+        for (int c = 0; c < 4; c++) row[l][c] += f * net[4 * l + c];
+    }
+    for (int j = 0; i + j <= n; j++) {
+      double *to = h[cag_partial(n, i, j)];
+      to[0] = to[1] = to[2] = to[3] = 0;
+      for (int l = 0; l <= q; l++)
+        for (int c = 0; c < 4; c++) to[c] += bv[j * (q + 1) + l] * row[l][c];
+      out[cag_partial(n, i, j)] = cag_vec3(to[0], to[1], to[2]);
+    }
+  }
+  return b->rational ? divide(n, (const double(*)[4])h, out, err) : CAG_OK;
+}
+
+// --- Grids ---
+
+// The widest vector unit of the machine is chosen when the program starts; the arithmetic is the
+// same in each (no contraction), so are the results.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
+    !defined(__SANITIZE_ADDRESS__)
+#define WIDEST __attribute__((target_clones("arch=x86-64-v3", "default")))
+#else
+#define WIDEST
+#endif
+#if defined(__GNUC__)
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
+
+// What is known of one row u and one run of columns in the same span of v.
+typedef struct Run {
+  size_t n;            // columns
+  const double *m, *d; // values and slopes by v: [l * stride + column]
+  size_t stride;       // columns of the whole grid
+  const double *a[4];  // row contracted with the values by u: x, y, z, w from the span's first on
+  const double *da[4]; // with the slopes
+  double *point, *du, *dv; // 3 numbers per column; du, dv may be NULL together
+} Run;
+
+INLINE void run_points(const Run *r, int q) {
+  const double *restrict m = r->m;
+  double *restrict point = r->point;
+  size_t stride = r->stride;
+  for (size_t j = 0; j < r->n; j++) {
+    double x = 0, y = 0, z = 0;
+    for (int l = 0; l <= q; l++) {
+      double f = m[(size_t)l * stride + j];
+      x += r->a[0][l] * f;
+      y += r->a[1][l] * f;
+      z += r->a[2][l] * f;
+    }
+    point[3 * j] = x;
+    point[3 * j + 1] = y;
+    point[3 * j + 2] = z;
+  }
+}
+
+// Columns worked on at a time: their nine rows of results stay in the first cache.
+#define CHUNK 64
+
+// sum_l a[l] f[l * stride + j] for all j of a chunk.
+INLINE void combine(double *restrict to, const double *restrict a, const double *restrict f,
+                    size_t stride, size_t n, int q) {
+  if (q == 3) {
+    const double a0 = a[0], a1 = a[1], a2 = a[2], a3 = a[3];
+    const double *restrict f1 = f + stride, *restrict f2 = f1 + stride, *restrict f3 = f2 + stride;
+    for (size_t j = 0; j < n; j++) to[j] = a0 * f[j] + a1 * f1[j] + a2 * f2[j] + a3 * f3[j];
+    return;
+  }
+  for (size_t j = 0; j < n; j++) to[j] = a[0] * f[j];
+  for (int l = 1; l <= q; l++) {
+    const double *restrict fl = f + (size_t)l * stride;
+    for (size_t j = 0; j < n; j++) to[j] += a[l] * fl[j];
+  }
+}
+
+INLINE void interleave(double *restrict to, const double *restrict x, const double *restrict y,
+                       const double *restrict z, size_t n) {
+  for (size_t j = 0; j < n; j++) {
+    to[3 * j] = x[j];
+    to[3 * j + 1] = y[j];
+    to[3 * j + 2] = z[j];
+  }
+}
+
+INLINE void run_polynomial(const Run *r, int q) {
+  double s[9][CHUNK];
+  for (size_t at = 0; at < r->n; at += CHUNK) {
+    size_t n = r->n - at < CHUNK ? r->n - at : CHUNK;
+    const double *m = r->m + at, *d = r->d + at;
+    for (int c = 0; c < 3; c++) {
+      combine(s[c], r->a[c], m, r->stride, n, q);
+      combine(s[3 + c], r->da[c], m, r->stride, n, q);
+      combine(s[6 + c], r->a[c], d, r->stride, n, q);
+    }
+    interleave(r->point + 3 * at, s[0], s[1], s[2], n);
+    interleave(r->du + 3 * at, s[3], s[4], s[5], n);
+    interleave(r->dv + 3 * at, s[6], s[7], s[8], n);
+  }
+}
+
+// False: a weight is not positive.
+INLINE bool run_rational(const Run *r, int q) {
+  double s[12][CHUNK]; // point, du, dv; x y z w each
+  double least = DBL_MAX;
+  for (size_t at = 0; at < r->n; at += CHUNK) {
+    size_t n = r->n - at < CHUNK ? r->n - at : CHUNK;
+    const double *m = r->m + at, *d = r->d + at;
+    for (int c = 0; c < 4; c++) {
+      combine(s[c], r->a[c], m, r->stride, n, q);
+      if (!r->du) continue;
+      combine(s[4 + c], r->da[c], m, r->stride, n, q);
+      combine(s[8 + c], r->a[c], d, r->stride, n, q);
+    }
+    for (size_t j = 0; j < n; j++) {
+      least = s[3][j] < least ? s[3][j] : least;
+      s[3][j] = 1 / s[3][j];
+    }
+    for (int c = 0; c < 3; c++) {
+      for (size_t j = 0; j < n; j++) s[c][j] *= s[3][j];
+      if (!r->du) continue;
+      for (size_t j = 0; j < n; j++) {
+        s[4 + c][j] = (s[4 + c][j] - s[7][j] * s[c][j]) * s[3][j];
+        s[8 + c][j] = (s[8 + c][j] - s[11][j] * s[c][j]) * s[3][j];
+      }
+    }
+    interleave(r->point + 3 * at, s[0], s[1], s[2], n);
+    if (!r->du) continue;
+    interleave(r->du + 3 * at, s[4], s[5], s[6], n);
+    interleave(r->dv + 3 * at, s[8], s[9], s[10], n);
+  }
+  return least > 0;
+}
+
+WIDEST static bool run_cubic(const Run *r, bool rational) {
+  if (rational) return run_rational(r, 3);
+  if (r->du) run_polynomial(r, 3);
+  else run_points(r, 3);
+  return true;
+}
+
+WIDEST static bool run_general(const Run *r, int q, bool rational) {
+  if (rational) return run_rational(r, q);
+  if (r->du) run_polynomial(r, q);
+  else run_points(r, q);
+  return true;
+}
+
+// Working memory of a grid: everything that does not depend on both parameters.
+typedef struct GridWork {
+  double *m, *d;   // basis by v, [l * nv + column]
+  size_t *span;    // by v, per column
+  double *row;     // 8 x count_v: planes contracted by u with values and slopes
+  double *du, *dv; // where the caller wants only one of them
+} GridWork;
+
+static CagStatus grid_prepare(const Nurbs *b, const double *vs, size_t nv, bool first, GridWork *w,
+                              CagError *err) {
+  size_t lines = (size_t)b->v.degree + 1;
+  w->m = malloc((2 * lines * nv + 1) * sizeof *w->m);
+  w->span = malloc((nv + 1) * sizeof *w->span);
+  w->row = malloc(8 * b->v.count * sizeof *w->row);
+  w->du = first ? malloc((3 * nv + 1) * sizeof *w->du) : NULL;
+  w->dv = first ? malloc((3 * nv + 1) * sizeof *w->dv) : NULL;
+  if (!w->m || !w->span || !w->row || (first && (!w->du || !w->dv))) return cag_fail_memory(err);
+  w->d = w->m + lines * nv;
+  double value[MAX_DEGREE + 1], slope[MAX_DEGREE + 1];
+  for (size_t j = 0; j < nv; j++) {
+    CagSide side = vs[j] >= b->base.v1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+    w->span[j] = find_span(&b->v, vs[j], side);
+    basis_first(&b->v, w->span[j], vs[j], value, slope);
+    for (size_t l = 0; l < lines; l++) {
+      w->m[l * nv + j] = value[l];
+      w->d[l * nv + j] = slope[l];
+    }
+  }
+  return CAG_OK;
+}
+
+// Contracts the columns lo..hi of the planes with the basis by u.
+WIDEST static void contract_row(const Nurbs *b, size_t span, const double *value,
+                                const double *slope, size_t lo, size_t hi, bool slopes,
+                                double *restrict row) {
+  size_t nv = b->v.count, plane = b->u.count * nv;
+  int planes = b->rational ? 4 : 3, p = b->u.degree;
+  for (int c = 0; c < planes; c++) {
+    const double *net = b->planes + (size_t)c * plane + (span - (size_t)p) * nv;
+    double *restrict a = row + (size_t)c * nv, *restrict da = row + (size_t)(4 + c) * nv;
+    for (size_t j = lo; j < hi; j++) a[j] = value[0] * net[j];
+    for (int k = 1; k <= p; k++)
+      for (size_t j = lo; j < hi; j++) a[j] += value[k] * net[(size_t)k * nv + j];
+    if (!slopes) continue;
+    for (size_t j = lo; j < hi; j++) da[j] = slope[0] * net[j];
+    for (int k = 1; k <= p; k++)
+      for (size_t j = lo; j < hi; j++) da[j] += slope[k] * net[(size_t)k * nv + j];
+  }
+}
+
+static CagStatus nurbs_grid(const CagSurface *s, const double *us, size_t nu, const double *vs,
+                            size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err) {
+  const Nurbs *b = (const Nurbs *)s;
+  if (nu == 0 || nv == 0) return CAG_OK;
+  bool first = du || dv, positive = true;
+  GridWork w = {0};
+  CagStatus status = grid_prepare(b, vs, nv, first && !(du && dv), &w, err);
+  size_t q = (size_t)b->v.degree, low = SIZE_MAX, high = 0;
+  for (size_t j = 0; !status && j < nv; j++) {
+    low = w.span[j] < low ? w.span[j] : low;
+    high = w.span[j] > high ? w.span[j] : high;
+  }
+  for (size_t i = 0; !status && i < nu; i++) {
+    double value[MAX_DEGREE + 1], slope[MAX_DEGREE + 1];
+    CagSide side = us[i] >= s->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+    size_t span = find_span(&b->u, us[i], side);
+    basis_first(&b->u, span, us[i], value, slope);
+    contract_row(b, span, value, slope, low - q, high + 1, first, w.row);
+    for (size_t start = 0, end; start < nv; start = end) {
+      for (end = start + 1; end < nv && w.span[end] == w.span[start];) end++;
+      size_t at = i * nv + start;
+      Run run = {.n = end - start,
+                 .m = w.m + start,
+                 .d = w.d + start,
+                 .stride = nv,
+                 .point = &points[at].x};
+      if (first) {
+        run.du = du ? &du[at].x : w.du;
+        run.dv = dv ? &dv[at].x : w.dv;
+      }
+      for (size_t c = 0; c < 4; c++) {
+        run.a[c] = w.row + c * b->v.count + w.span[start] - q;
+        run.da[c] = w.row + (4 + c) * b->v.count + w.span[start] - q;
+      }
+      bool good = q == 3 ? run_cubic(&run, b->rational) : run_general(&run, (int)q, b->rational);
+      positive = positive && good;
+    }
+  }
+  free(w.m);
+  free(w.span);
+  free(w.row);
+  free(w.du);
+  free(w.dv);
+  if (!status && !positive)
+    status = cag_fail(err, CAG_E_DEGENERATE, "zero-denominator", "weights", -1,
+                      "all `weights` that act at a point of the grid are 0: give one of them a "
+                      "positive value");
+  return status;
+}
+
+// --- Construction ---
+
+static CagStatus check_knots(const double *knots, size_t count, int degree, const char *name,
+                             CagError *err) {
+  char a[32], b[32];
+  size_t n = count + (size_t)degree + 1;
+  for (size_t i = 0; i < n; i++) {
+    if (!isfinite(knots[i]))
+      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", name, (long)i,
+                      "`%s` must be finite: entry %zu is %s", name, i,
+                      cag_number_text(knots[i], a));
+    if (i > 0 && knots[i] < knots[i - 1])
+      return cag_fail(err, CAG_E_ARGUMENT, "knots-not-monotone", name, (long)i,
+                      "`%s` must not decrease: entry %zu is %s after %s", name, i,
+                      cag_number_text(knots[i], a), cag_number_text(knots[i - 1], b));
+  }
+  double from = knots[degree], to = knots[count];
+  if (!(to > from))
+    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", name, degree,
+                    "`%s` must leave a range of parameters: entries %d and %zu are both %s", name,
+                    degree, count, cag_number_text(from, a));
+  for (size_t i = 1; i + (size_t)degree + 1 < n; i++)
+    if (knots[i] > from && knots[i] < to && knots[i + (size_t)degree] == knots[i])
+      return cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", name, (long)i,
+                      "`%s` may hold an inner knot at most %d times (the degree), %s stands more "
+                      "often from entry %zu on",
+                      name, degree, cag_number_text(knots[i], a), i);
+  return CAG_OK;
+}
+
+static CagStatus check_degree(size_t count, int degree, const char *direction, CagError *err) {
+  if (degree >= 1 && degree <= MAX_DEGREE && (size_t)degree < count) return CAG_OK;
+  return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", *direction == 'u' ? 0 : 1,
+                  "`degree` by %s must lie in 1..%zu for %zu net lines (and be at most %d), it is "
+                  "%d; add lines or lower the degree",
+                  direction, count ? count - 1 : 0, count, MAX_DEGREE, degree);
+}
+
+static CagStatus check_net(const double *h, size_t nu, size_t nv, CagError *err) {
+  for (size_t i = 0; i < nu * nv; i++)
+    for (int c = 0; c < 4; c++)
+      if (!isfinite(h[4 * i + (size_t)c]))
+        return cag_fail(err, CAG_E_ARGUMENT, "not-finite", c < 3 ? "net" : "weights", (long)i,
+                        "`%s` must be finite: row %zu, column %zu is not",
+                        c < 3 ? "net" : "weights", i / nv, i % nv);
+  return CAG_OK;
+}
+
+static bool near(const double *a, const double *b, double size) {
+  for (int c = 0; c < 4; c++)
+    if (fabs(a[c] - b[c]) > CAG_SURFACE_SAME * (c == 3 ? fmax(fabs(a[3]), fabs(b[3])) : size))
+      return false;
+  return true;
+}
+
+// Same place, whatever the weights.
+static bool near_point(const double *a, const double *b, double size) {
+  for (int c = 0; c < 3; c++)
+    if (fabs(a[c] * b[3] - b[c] * a[3]) > CAG_SURFACE_SAME * size * fmax(a[3], b[3])) return false;
+  return true;
+}
+
+static bool clamped(const Direction *d) {
+  return d->knots[0] == d->knots[d->degree] &&
+         d->knots[d->count] == d->knots[d->count + (size_t)d->degree];
+}
+
+// Flags from the net where the edges of the surface are those of the net, which is certain; else
+// from points.
+static void judge(Nurbs *b) {
+  cag_surface_judge(&b->base);
+  size_t nu = b->u.count, nv = b->v.count;
+  double size = 0;
+  for (size_t i = 0; i < nu * nv; i++)
+    for (size_t c = 0; c < 3; c++) size = fmax(size, fabs(b->net[4 * i + c]));
+  if (clamped(&b->u)) {
+    const double *first = b->net, *last = b->net + 4 * (nu - 1) * nv;
+    bool closed = true, pole0 = true, pole1 = true;
+    for (size_t j = 0; j < nv; j++) {
+      closed = closed && near(first + 4 * j, last + 4 * j, size);
+      pole0 = pole0 && near_point(first + 4 * j, first, size);
+      pole1 = pole1 && near_point(last + 4 * j, last, size);
+    }
+    b->base.closed_u = closed && !(pole0 && pole1);
+    b->base.pole_u0 = pole0;
+    b->base.pole_u1 = pole1;
+  }
+  if (clamped(&b->v)) {
+    bool closed = true, pole0 = true, pole1 = true;
+    for (size_t i = 0; i < nu; i++) {
+      const double *first = b->net + 4 * i * nv, *last = first + 4 * (nv - 1);
+      closed = closed && near(first, last, size);
+      pole0 = pole0 && near_point(first, b->net, size);
+      pole1 = pole1 && near_point(last, b->net + 4 * (nv - 1), size);
+    }
+    b->base.closed_v = closed && !(pole0 && pole1);
+    b->base.pole_v0 = pole0;
+    b->base.pole_v1 = pole1;
+  }
+  b->base.closed_u = b->base.closed_u || b->u.periodic;
+  b->base.closed_v = b->base.closed_v || b->v.periodic;
+}
+
+static bool is_bezier(const Direction *d) {
+  return d->count == (size_t)d->degree + 1 && clamped(d) && d->knots[d->degree] == 0 &&
+         d->knots[d->count] == 1;
+}
+
+static void nurbs_destroy(CagSurface *s) {
+  Nurbs *b = (Nurbs *)s;
+  free(b->u.knots);
+  free(b->v.knots);
+  free(b->net);
+  free(b->planes);
+}
+
+// Takes copies of everything; the net is homogeneous and already holds the repeated lines of closed
+// directions.
+static CagStatus build(const double *net, const Direction *u, const Direction *v, CagSurface **out,
+                       CagError *err) {
+  CagStatus status = check_net(net, u->count, v->count, err);
+  if (status) return status;
+  CagSurface *s;
+  status = cag_surface_block(sizeof(Nurbs), &nurbs_kind, u->knots[u->degree], u->knots[u->count],
+                             v->knots[v->degree], v->knots[v->count], &s, err);
+  if (status) return status;
+  Nurbs *b = (Nurbs *)s;
+  size_t total = u->count * v->count;
+  size_t knots_u = u->count + (size_t)u->degree + 1, knots_v = v->count + (size_t)v->degree + 1;
+  b->u = *u;
+  b->v = *v;
+  b->u.knots = malloc(knots_u * sizeof(double));
+  b->v.knots = malloc(knots_v * sizeof(double));
+  b->net = malloc(4 * total * sizeof(double));
+  b->planes = malloc(4 * total * sizeof(double));
+  if (!b->u.knots || !b->v.knots || !b->net || !b->planes) {
+    cag_surface_release(s);
+    return cag_fail_memory(err);
+  }
+  memcpy(b->u.knots, u->knots, knots_u * sizeof(double));
+  memcpy(b->v.knots, v->knots, knots_v * sizeof(double));
+  memcpy(b->net, net, 4 * total * sizeof(double));
+  // Equal weights are no weights.
+  double w = net[3];
+  for (size_t i = 0; i < total; i++) b->rational = b->rational || net[4 * i + 3] != w;
+  if (!b->rational && w != 1)
+    for (size_t i = 0; i < total; i++) {
+      for (size_t c = 0; c < 3; c++) b->net[4 * i + c] /= w;
+      b->net[4 * i + 3] = 1;
+    }
+  for (size_t i = 0; i < total; i++)
+    for (size_t c = 0; c < 4; c++) b->planes[c * total + i] = b->net[4 * i + c];
+  bool bezier = is_bezier(&b->u) && is_bezier(&b->v);
+  s->kind = bezier ? &bezier_kind : b->rational ? &nurbs_kind : &bspline_kind;
+  judge(b);
+  *out = s;
+  return CAG_OK;
+}
+
+CagStatus cag_surface_from_homogeneous(const double *net, size_t nu, size_t nv, int degree_u,
+                                       int degree_v, const double *knots_u, const double *knots_v,
+                                       CagSurface **out, CagError *err) {
+  Direction u = {degree_u, nu, nu, false, (double *)knots_u};
+  Direction v = {degree_v, nv, nv, false, (double *)knots_v};
+  CagStatus status = check_degree(nu, degree_u, "u", err);
+  if (!status) status = check_degree(nv, degree_v, "v", err);
+  if (!status) status = check_knots(knots_u, nu, degree_u, "knots", err);
+  if (!status) status = check_knots(knots_v, nv, degree_v, "knots", err);
+  return status ? status : build(net, &u, &v, out, err);
+}
+
+static CagStatus check_weights(const double *weights, size_t nu, size_t nv, CagError *err) {
+  bool any = false;
+  for (size_t i = 0; weights && i < nu * nv; i++) {
+    char text[32];
+    if (!(weights[i] >= 0) || !isfinite(weights[i]))
+      return cag_fail(err, CAG_E_ARGUMENT, "negative-weight", "weights", (long)i,
+                      "`weights` must be finite and not negative: row %zu, column %zu is %s",
+                      i / nv, i % nv, cag_number_text(weights[i], text));
+    any = any || weights[i] > 0;
+  }
+  if (weights && !any)
+    return cag_fail(err, CAG_E_ARGUMENT, "zero-denominator", "weights", 0,
+                    "`weights` must not all be 0");
+  return CAG_OK;
+}
+
+// Fills a direction: the given knots, or uniform ones of a closed direction (malloc'd, in *own).
+static CagStatus make_direction(size_t count, int degree, const double *knots, bool closed,
+                                const char *name, Direction *out, double **own, CagError *err) {
+  *own = NULL;
+  size_t stored = closed ? count + (size_t)(degree > 0 ? degree : 0) : count;
+  CagStatus status = check_degree(count, degree, name, err);
+  if (status) return status;
+  *out = (Direction){degree, stored, count, closed, (double *)knots};
+  if (!closed) return check_knots(knots, count, degree, "knots", err);
+  size_t n = stored + (size_t)degree + 1;
+  *own = malloc(n * sizeof **own);
+  if (!*own) return cag_fail_memory(err);
+  for (size_t i = 0; i < n; i++) (*own)[i] = (double)i - degree;
+  out->knots = *own;
+  return CAG_OK;
+}
+
+CagStatus cag_surface_nurbs_closed(const CagVec3 *net, const double *weights, size_t nu, size_t nv,
+                                   int degree_u, int degree_v, const double *knots_u,
+                                   const double *knots_v, bool closed_u, bool closed_v,
+                                   CagSurface **out, CagError *err) {
+  Direction u, v;
+  double *own_u = NULL, *own_v = NULL, *h = NULL;
+  CagStatus status = make_direction(nu, degree_u, knots_u, closed_u, "u", &u, &own_u, err);
+  if (!status) status = make_direction(nv, degree_v, knots_v, closed_v, "v", &v, &own_v, err);
+  if (!status) status = check_weights(weights, nu, nv, err);
+  if (!status) {
+    h = malloc(4 * u.count * v.count * sizeof *h);
+    if (!h) status = cag_fail_memory(err);
+  }
+  for (size_t i = 0; !status && i < u.count; i++)
+    for (size_t j = 0; j < v.count; j++) {
+      size_t from = (i % nu) * nv + j % nv;
+      double w = weights ? weights[from] : 1, *to = h + 4 * (i * v.count + j);
+      to[0] = net[from].x * w;
+      to[1] = net[from].y * w;
+      to[2] = net[from].z * w;
+      to[3] = w;
+    }
+  if (!status) status = build(h, &u, &v, out, err);
+  free(h);
+  free(own_u);
+  free(own_v);
+  return status;
+}
+
+CagStatus cag_surface_nurbs(const CagVec3 *net, const double *weights, size_t nu, size_t nv,
+                            int degree_u, int degree_v, const double *knots_u,
+                            const double *knots_v, CagSurface **out, CagError *err) {
+  return cag_surface_nurbs_closed(net, weights, nu, nv, degree_u, degree_v, knots_u, knots_v, false,
+                                  false, out, err);
+}
+
+CagStatus cag_surface_bezier(const CagVec3 *net, const double *weights, size_t nu, size_t nv,
+                             CagSurface **out, CagError *err) {
+  double knots_u[2 * (MAX_DEGREE + 1)], knots_v[2 * (MAX_DEGREE + 1)];
+  int p = nu <= MAX_DEGREE + 1 ? (int)nu - 1 : MAX_DEGREE + 1;
+  int q = nv <= MAX_DEGREE + 1 ? (int)nv - 1 : MAX_DEGREE + 1;
+  CagStatus status = check_degree(nu, p, "u", err);
+  if (!status) status = check_degree(nv, q, "v", err);
+  if (status) return status;
+  for (size_t i = 0; i < 2 * nu; i++) knots_u[i] = i < nu ? 0 : 1;
+  for (size_t i = 0; i < 2 * nv; i++) knots_v[i] = i < nv ? 0 : 1;
+  return cag_surface_nurbs(net, weights, nu, nv, p, q, knots_u, knots_v, out, err);
+}
+
+// --- The rest of the table ---
+
+static CagStatus nurbs_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
+  (void)err;
+  *out = cag_surface_retain(s);
+  return CAG_OK;
+}
+
+static CagStatus nurbs_transform(const CagSurface *s, const CagTransform *t, CagSurface **out,
+                                 CagError *err) {
+  const Nurbs *b = (const Nurbs *)s;
+  size_t total = b->u.count * b->v.count;
+  double *h = malloc(4 * total * sizeof *h);
+  if (!h) return cag_fail_memory(err);
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < total; i++) {
+    cag_transform_homogeneous(t, b->net + 4 * i, h + 4 * i);
+    if (h[4 * i + 3] < 0 || (h[4 * i + 3] == 0 && b->net[4 * i + 3] > 0))
+      status = cag_fail(err, CAG_E_DEGENERATE, "behind-centre", "transform", (long)i,
+                        "the projection sends control point [%zu, %zu] to infinity or behind its "
+                        "centre: move the surface or the centre",
+                        i / b->v.count, i % b->v.count);
+  }
+  if (!status) status = build(h, &b->u, &b->v, out, err);
+  free(h);
+  return status;
+}
+
+static size_t nurbs_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
+  const Nurbs *b = (const Nurbs *)s;
+  const Direction *d = direction == 0 ? &b->u : &b->v;
+  size_t n = 0;
+  for (size_t i = (size_t)d->degree + 1; i < d->count; i++)
+    if (d->knots[i] > d->knots[i - 1] && d->knots[i] < d->knots[d->count]) {
+      if (n < capacity) out[n] = d->knots[i];
+      n++;
+    }
+  return n;
+}
+
+static void nurbs_describe(const CagSurface *s, char *buffer, size_t size) {
+  const Nurbs *b = (const Nurbs *)s;
+  const char *closed = b->u.periodic   ? b->v.periodic ? ", closed by u and v" : ", closed by u"
+                       : b->v.periodic ? ", closed by v"
+                                       : "";
+  snprintf(buffer, size, "degree %d x %d, %zu x %zu points%s", b->u.degree, b->v.degree,
+           b->u.distinct, b->v.distinct, closed);
+}
+
+#define NURBS_TABLE(text)                                                                          \
+  {                                                                                                \
+    .name = text, .eval = nurbs_eval, .eval_grid = nurbs_grid, .to_nurbs = nurbs_to_nurbs,         \
+    .transform = nurbs_transform, .breaks = nurbs_breaks, .describe = nurbs_describe,              \
+    .destroy = nurbs_destroy,                                                                      \
+  }
+static const CagSurfaceKind bezier_kind = NURBS_TABLE("bezier");
+static const CagSurfaceKind bspline_kind = NURBS_TABLE("bspline");
+static const CagSurfaceKind nurbs_kind = NURBS_TABLE("nurbs");
+
+static const Nurbs *as_nurbs(const CagSurface *s) {
+  return s->kind->eval == nurbs_eval ? (const Nurbs *)s : NULL;
+}
+
+bool cag_surface_nurbs_view(const CagSurface *s, CagSurfaceNurbsView *out) {
+  const Nurbs *b = as_nurbs(s);
+  if (!b) return false;
+  if (out)
+    *out = (CagSurfaceNurbsView){
+        .degree_u = b->u.degree,
+        .degree_v = b->v.degree,
+        .nu = b->u.count,
+        .nv = b->v.count,
+        .distinct_u = b->u.distinct,
+        .distinct_v = b->v.distinct,
+        .periodic_u = b->u.periodic,
+        .periodic_v = b->v.periodic,
+        .rational = b->rational,
+        .knots_u = b->u.knots,
+        .knots_v = b->v.knots,
+        .homogeneous = b->net,
+    };
+  return true;
+}
+
+CagStatus cag_surface_nurbs_swapped(const CagSurface *s, CagSurface **out, CagError *err) {
+  const Nurbs *b = as_nurbs(s);
+  if (!b)
+    return cag_fail(err, CAG_E_UNSUPPORTED, "not-nurbs", "surface", -1,
+                    "the surface is a %s: convert it to a NURBS first", s->kind->name);
+  size_t nu = b->u.count, nv = b->v.count;
+  double *h = malloc(4 * nu * nv * sizeof *h);
+  if (!h) return cag_fail_memory(err);
+  for (size_t i = 0; i < nu; i++)
+    for (size_t j = 0; j < nv; j++)
+      memcpy(h + 4 * (j * nu + i), b->net + 4 * (i * nv + j), 4 * sizeof *h);
+  CagStatus status = build(h, &b->v, &b->u, out, err);
+  free(h);
+  return status;
+}
+
+// v runs backwards over the same domain.
+static CagStatus reversed_v(const Nurbs *b, CagSurface **out, CagError *err) {
+  size_t nu = b->u.count, nv = b->v.count, knots = nv + (size_t)b->v.degree + 1;
+  double *h = malloc(4 * nu * nv * sizeof *h), *turned = malloc(knots * sizeof *turned);
+  CagStatus status = h && turned ? CAG_OK : cag_fail_memory(err);
+  if (!status) {
+    for (size_t i = 0; i < nu; i++)
+      for (size_t j = 0; j < nv; j++)
+        memcpy(h + 4 * (i * nv + nv - 1 - j), b->net + 4 * (i * nv + j), 4 * sizeof *h);
+    // The ends of the domain change places exactly; the rest are mirrored in its middle.
+    double a = b->base.v0, z = b->base.v1;
+    for (size_t k = 0; k < knots; k++) {
+      double t = b->v.knots[knots - 1 - k];
+      turned[k] = t == a ? z : t == z ? a : a + z - t;
+    }
+    Direction v = b->v;
+    v.knots = turned;
+    status = build(h, &b->u, &v, out, err);
+  }
+  free(h);
+  free(turned);
+  return status;
+}
+
+CagStatus cag_surface_flip(const CagSurface *s, CagSurface **out, CagError *err) {
+  const Nurbs *b = as_nurbs(s);
+  if (b) return reversed_v(b, out, err);
+  const CagRegion *region;
+  CagTransform frame;
+  if (cag_surface_planar_view(s, &region, &frame)) {
+    // A mirrored region in a mirrored frame: the same piece of plane seen from behind.
+    CagTransform mirror = cag_transform_identity();
+    mirror.m[1][1] = -1;
+    mirror.m[1][3] = s->v0 + s->v1;
+    CagTransform turned = cag_transform_multiply(&frame, &mirror);
+    CagRegion *image;
+    CagStatus status = cag_region_transform(region, &mirror, &image, err);
+    if (status) return status;
+    status = cag_surface_planar(image, &turned, out, err);
+    cag_region_release(image);
+    return status;
+  }
+  CagTransform identity = cag_transform_identity();
+  return cag_surface_placed(s, &identity, true, out, err);
+}

@@ -1,0 +1,167 @@
+// A surface seen through an affine map, and turned over: the image of every kind that has no image
+// of its own.
+//
+// Kind "transformed". S'(u, v) = M S(u, v), or M S(u, v0 + v1 - v) where it is flipped. Placing a
+// placed surface composes the maps, so that there is never more than one wrapper.
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "geom/surface/family.h"
+
+typedef struct Placed {
+  CagSurface base;
+  CagSurface *inner;
+  CagTransform map;
+  bool flip;
+} Placed;
+
+static const CagSurfaceKind placed_kind;
+
+static double inner_v(const Placed *p, double v) {
+  if (!p->flip) return v;
+  // The ends go to the ends exactly.
+  if (v == p->base.v0) return p->base.v1;
+  if (v == p->base.v1) return p->base.v0;
+  return p->base.v0 + p->base.v1 - v;
+}
+
+static CagStatus placed_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
+                             CagVec3 *out, CagError *err) {
+  const Placed *p = (const Placed *)s;
+  CagSide side = p->flip ? (sv == CAG_SIDE_LEFT ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT) : sv;
+  CagStatus status = p->inner->kind->eval(p->inner, u, inner_v(p, v), n, su, side, out, err);
+  if (status) return status;
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; i + j <= n; j++) {
+      CagVec3 *d = &out[cag_partial(n, i, j)];
+      *d = i + j ? cag_transform_vector(&p->map, *d) : cag_transform_point(&p->map, *d);
+      if (p->flip && j % 2) *d = cag_scaled(*d, -1);
+    }
+  return CAG_OK;
+}
+
+static CagStatus placed_grid(const CagSurface *s, const double *us, size_t nu, const double *vs,
+                             size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err) {
+  const Placed *p = (const Placed *)s;
+  double *turned = NULL;
+  if (p->flip) {
+    turned = malloc((nv ? nv : 1) * sizeof *turned);
+    if (!turned) return cag_fail_memory(err);
+    for (size_t j = 0; j < nv; j++) turned[j] = inner_v(p, vs[j]);
+  }
+  CagStatus status =
+      cag_surface_eval_grid(p->inner, us, nu, turned ? turned : vs, nv, points, du, dv, err);
+  free(turned);
+  if (status) return status;
+  double sign = p->flip ? -1 : 1;
+  for (size_t i = 0; i < nu * nv; i++) {
+    points[i] = cag_transform_point(&p->map, points[i]);
+    if (du) du[i] = cag_transform_vector(&p->map, du[i]);
+    if (dv) dv[i] = cag_scaled(cag_transform_vector(&p->map, dv[i]), sign);
+  }
+  return CAG_OK;
+}
+
+static CagStatus placed_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
+  const Placed *p = (const Placed *)s;
+  CagSurface *exact = NULL, *moved = NULL;
+  CagStatus status = cag_surface_to_nurbs(p->inner, &exact, err);
+  if (status) return status;
+  status = cag_surface_transform(exact, &p->map, &moved, err);
+  cag_surface_release(exact);
+  if (status || !p->flip) {
+    if (!status) *out = moved;
+    return status;
+  }
+  status = cag_surface_flip(moved, out, err);
+  cag_surface_release(moved);
+  return status;
+}
+
+static CagStatus placed_transform(const CagSurface *s, const CagTransform *t, CagSurface **out,
+                                  CagError *err) {
+  const Placed *p = (const Placed *)s;
+  if (!cag_transform_is_affine(t)) return cag_surface_transform_placed(s, t, out, err);
+  CagTransform both = cag_transform_multiply(t, &p->map);
+  return cag_surface_placed(p->inner, &both, p->flip, out, err);
+}
+
+static size_t placed_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
+  const Placed *p = (const Placed *)s;
+  if (!p->inner->kind->breaks) return 0;
+  size_t n = p->inner->kind->breaks(p->inner, direction, out, capacity);
+  if (direction == 0 || !p->flip) return n;
+  size_t have = n < capacity ? n : capacity;
+  for (size_t i = 0; i < have; i++) out[i] = inner_v(p, out[i]);
+  for (size_t i = 0; i < have / 2; i++) {
+    double swap = out[i];
+    out[i] = out[have - 1 - i];
+    out[have - 1 - i] = swap;
+  }
+  return n;
+}
+
+static void placed_describe(const CagSurface *s, char *buffer, size_t size) {
+  const Placed *p = (const Placed *)s;
+  char inner[160] = "";
+  if (p->inner->kind->describe) p->inner->kind->describe(p->inner, inner, sizeof inner);
+  snprintf(buffer, size, "of a %s surface%s%s%s", p->inner->kind->name, *inner ? ", " : "", inner,
+           p->flip ? ", flipped" : "");
+}
+
+static void placed_destroy(CagSurface *s) { cag_surface_release(((Placed *)s)->inner); }
+
+static const CagSurfaceKind placed_kind = {
+    .name = "transformed",
+    .eval = placed_eval,
+    .eval_grid = placed_grid,
+    .to_nurbs = placed_to_nurbs,
+    .transform = placed_transform,
+    .breaks = placed_breaks,
+    .describe = placed_describe,
+    .destroy = placed_destroy,
+};
+
+static bool is_identity(const CagTransform *t) {
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++)
+      if (t->m[i][j] != (i == j)) return false;
+  return true;
+}
+
+CagStatus cag_surface_placed(const CagSurface *inner, const CagTransform *t, bool flip,
+                             CagSurface **out, CagError *err) {
+  CagTransform map = *t;
+  if (inner->kind == &placed_kind) {
+    const Placed *p = (const Placed *)inner;
+    map = cag_transform_multiply(t, &p->map);
+    flip = flip != p->flip;
+    inner = p->inner;
+  }
+  double w = map.m[3][3];
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) map.m[i][j] /= w;
+  if (!flip && is_identity(&map)) {
+    *out = cag_surface_retain(inner);
+    return CAG_OK;
+  }
+  CagSurface *s;
+  CagStatus status = cag_surface_block(sizeof(Placed), &placed_kind, inner->u0, inner->u1,
+                                       inner->v0, inner->v1, &s, err);
+  if (status) return status;
+  Placed *p = (Placed *)s;
+  p->inner = cag_surface_retain(inner);
+  p->map = map;
+  p->flip = flip;
+  s->angular_u = inner->angular_u;
+  s->angular_v = inner->angular_v;
+  s->closed_u = inner->closed_u;
+  s->closed_v = inner->closed_v;
+  s->pole_u0 = inner->pole_u0;
+  s->pole_u1 = inner->pole_u1;
+  s->pole_v0 = flip ? inner->pole_v1 : inner->pole_v0;
+  s->pole_v1 = flip ? inner->pole_v0 : inner->pole_v1;
+  *out = s;
+  return CAG_OK;
+}

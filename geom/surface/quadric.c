@@ -1,0 +1,422 @@
+// Quadrics: values, maps, and the reduction to standard form.
+//
+// The symmetric 3x3 matrix of the second-degree terms is diagonalised by Jacobi rotations; in the
+// eigenbasis the square is completed for every eigenvalue that is not zero, and what remains (a
+// constant k1, a linear term of length g along the directions of zero eigenvalues) decides the
+// class (reference 06a, 6.4). Before that, lengths are measured in units of the quadric's own size,
+// so that the decisions do not depend on the unit of the drawing.
+
+#include "geom/surface/quadric.h"
+
+#include <math.h>
+
+// An eigenvalue below this part of the largest is zero: a coefficient in a script has fewer digits
+// than this leaves.
+#define RANK_TOLERANCE 1e-10
+// The constant and the linear rest come out of a subtraction of numbers near 1 (in the quadric's
+// own units): this much is its rounding.
+#define REST_TOLERANCE 1e-13
+
+// name, in the order of CagQuadricClass
+static const char *const CLASS_NAME[] = {
+    "ellipsoid",
+    "imaginary-ellipsoid",
+    "hyperboloid-1",
+    "hyperboloid-2",
+    "cone",
+    "point",
+    "elliptic-paraboloid",
+    "hyperbolic-paraboloid",
+    "elliptic-cylinder",
+    "imaginary-elliptic-cylinder",
+    "hyperbolic-cylinder",
+    "parabolic-cylinder",
+    "intersecting-planes",
+    "line",
+    "parallel-planes",
+    "imaginary-parallel-planes",
+    "coincident-planes",
+    "plane",
+    "empty",
+};
+
+static CagStatus check(const CagQuadric *q, CagError *err) {
+  double largest = 0;
+  for (int i = 0; i < 10; i++) {
+    if (!isfinite(q->c[i]))
+      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "coefficients", i,
+                      "`coefficients` must be finite: number %d is not", i);
+    largest = fmax(largest, fabs(q->c[i]));
+  }
+  if (largest > 0) return CAG_OK;
+  return cag_fail(err, CAG_E_ARGUMENT, "zero-quadric", "coefficients", -1,
+                  "`coefficients` must not all be 0: every point would satisfy the equation");
+}
+
+CagStatus cag_quadric_from_rows(const double r[4][4], CagQuadric *out, CagError *err) {
+  CagQuadric q = {{r[0][0], r[1][1], r[2][2], r[0][1] + r[1][0], r[1][2] + r[2][1],
+                   r[0][2] + r[2][0], r[0][3] + r[3][0], r[1][3] + r[3][1], r[2][3] + r[3][2],
+                   r[3][3]}};
+  CagStatus status = check(&q, err);
+  if (!status) *out = q;
+  return status;
+}
+
+void cag_quadric_rows(const CagQuadric *q, double r[4][4]) {
+  const double *c = q->c;
+  const double rows[4][4] = {{c[0], c[3] / 2, c[5] / 2, c[6] / 2},
+                             {c[3] / 2, c[1], c[4] / 2, c[7] / 2},
+                             {c[5] / 2, c[4] / 2, c[2], c[8] / 2},
+                             {c[6] / 2, c[7] / 2, c[8] / 2, c[9]}};
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) r[i][j] = rows[i][j];
+}
+
+double cag_quadric_value(const CagQuadric *q, CagVec3 p) {
+  const double *c = q->c;
+  return c[0] * p.x * p.x + c[1] * p.y * p.y + c[2] * p.z * p.z + c[3] * p.x * p.y +
+         c[4] * p.y * p.z + c[5] * p.x * p.z + c[6] * p.x + c[7] * p.y + c[8] * p.z + c[9];
+}
+
+CagStatus cag_quadric_transform(const CagQuadric *q, const CagTransform *t, CagQuadric *out,
+                                CagError *err) {
+  CagTransform inverse;
+  CagStatus status = cag_transform_inverse(t, &inverse, err);
+  if (status) return status;
+  double rows[4][4], half[4][4], full[4][4];
+  cag_quadric_rows(q, rows);
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) {
+      half[i][j] = 0;
+      for (int k = 0; k < 4; k++) half[i][j] += rows[i][k] * inverse.m[k][j];
+    }
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) {
+      full[i][j] = 0;
+      for (int k = 0; k < 4; k++) full[i][j] += inverse.m[k][i] * half[k][j];
+    }
+  return cag_quadric_from_rows((const double(*)[4])full, out, err);
+}
+
+// --- Eigenvectors ---
+
+// Cyclic Jacobi of a symmetric matrix; v holds the eigenvectors. A diagonal matrix is left alone,
+// to the last bit.
+static void jacobi(double a[3][3], CagVec3 v[3]) {
+  double e[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int sweep = 0; sweep < 40; sweep++) {
+    double off = fabs(a[0][1]) + fabs(a[0][2]) + fabs(a[1][2]);
+    if (off == 0) break;
+    for (int p = 0; p < 2; p++)
+      for (int q = p + 1; q < 3; q++) {
+        if (a[p][q] == 0) continue;
+        // Too small to matter against either diagonal entry.
+        double tiny = 1e-17 * (fabs(a[p][p]) + fabs(a[q][q]));
+        if (sweep > 3 && fabs(a[p][q]) <= tiny) {
+          a[p][q] = a[q][p] = 0;
+          continue;
+        }
+        double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+        double t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
+        double c = 1 / sqrt(t * t + 1), s = t * c;
+        for (int k = 0; k < 3; k++) {
+          double x = a[k][p], y = a[k][q];
+          a[k][p] = c * x - s * y;
+          a[k][q] = s * x + c * y;
+        }
+        for (int k = 0; k < 3; k++) {
+          double x = a[p][k], y = a[q][k];
+          a[p][k] = c * x - s * y;
+          a[q][k] = s * x + c * y;
+        }
+        a[p][q] = a[q][p] = 0;
+        for (int k = 0; k < 3; k++) {
+          double x = e[k][p], y = e[k][q];
+          e[k][p] = c * x - s * y;
+          e[k][q] = s * x + c * y;
+        }
+      }
+  }
+  for (int j = 0; j < 3; j++) v[j] = cag_vec3(e[0][j], e[1][j], e[2][j]);
+}
+
+static double entry(CagVec3 v, int i) { return i == 0 ? v.x : i == 1 ? v.y : v.z; }
+
+// True when the component of largest magnitude is negative (ties: the first).
+static bool points_down(CagVec3 v) {
+  double best = 0;
+  for (int i = 2; i >= 0; i--)
+    if (fabs(entry(v, i)) >= fabs(best) * (1 - 1e-12)) best = entry(v, i);
+  return best < 0;
+}
+
+// --- Reduction ---
+
+// The equation in its eigenbasis, with lengths in units of `size` and divided by the largest
+// eigenvalue: sum lam_i y_i^2 + lin_i y_i + k, squares completed where lam_i is not zero.
+typedef struct Reduced {
+  double size;
+  double lam[3], lin[3], k1;
+  CagVec3 v[3];
+  double center[3]; // in the eigenbasis, own units; 0 along zero eigenvalues
+  double g;         // length of the linear rest
+  int rank3;
+} Reduced;
+
+static void reduce(const CagQuadric *q, Reduced *r) {
+  const double *c = q->c;
+  double m[3][3] = {
+      {c[0], c[3] / 2, c[5] / 2}, {c[3] / 2, c[1], c[4] / 2}, {c[5] / 2, c[4] / 2, c[2]}};
+  jacobi(m, r->v);
+  double largest = fmax(fabs(m[0][0]), fmax(fabs(m[1][1]), fabs(m[2][2])));
+  CagVec3 linear = cag_vec3(c[6], c[7], c[8]);
+  r->size = fmax(cag_norm(linear) / largest, sqrt(fabs(c[9]) / largest));
+  if (!(r->size > 0)) r->size = 1;
+  r->k1 = c[9] / (largest * r->size * r->size);
+  r->rank3 = 0;
+  r->g = 0;
+  for (int i = 0; i < 3; i++) {
+    r->lam[i] = m[i][i] / largest;
+    r->lin[i] = cag_dot(r->v[i], linear) / (largest * r->size);
+    r->center[i] = 0;
+    if (fabs(r->lam[i]) <= RANK_TOLERANCE) {
+      r->lam[i] = 0;
+      r->g = hypot(r->g, r->lin[i]);
+      continue;
+    }
+    r->rank3++;
+    r->center[i] = -r->lin[i] / (2 * r->lam[i]);
+    r->k1 -= r->lin[i] * r->lin[i] / (4 * r->lam[i]);
+  }
+  if (r->g <= REST_TOLERANCE) r->g = 0;
+  if (fabs(r->k1) <= REST_TOLERANCE) r->k1 = 0;
+}
+
+// The roles of the eigenvectors: which is e1, e2, e3, and their senses.
+typedef struct Roles {
+  int axis[3];
+  bool fixed[3]; // the sense must stay
+} Roles;
+
+static double nearness(const Reduced *r, const int axis[3]) {
+  double sum = 0;
+  for (int i = 0; i < 3; i++) sum += fabs(entry(r->v[axis[i]], i));
+  return sum;
+}
+
+// Of e1 and e2 (or of all three) whose roles are alike, gives the order nearest to the world's
+// axes.
+static void order_free(const Reduced *r, int axis[3], bool all) {
+  static const int ORDER[6][3] = {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}};
+  int start[3] = {axis[0], axis[1], axis[2]};
+  double best = -1;
+  for (int k = 0; k < (all ? 6 : 2); k++) {
+    int tried[3];
+    for (int i = 0; i < 3; i++) tried[i] = start[ORDER[k][i]];
+    double value = nearness(r, tried);
+    if (value <= best * (1 + 1e-12)) continue;
+    best = value;
+    for (int i = 0; i < 3; i++) axis[i] = tried[i];
+  }
+}
+
+// Right-handed frame with the given origin: free senses go along the world's axes, then the free
+// one that is farthest from its axis gives way to the handedness.
+static void set_frame(const CagVec3 e[3], const bool fixed[3], CagVec3 origin, CagTransform *out) {
+  CagVec3 axis[3];
+  for (int i = 0; i < 3; i++)
+    axis[i] = !fixed[i] && points_down(e[i]) ? cag_scaled(e[i], -1) : e[i];
+  if (cag_dot(cag_cross(axis[0], axis[1]), axis[2]) < 0) {
+    int turn = -1;
+    for (int i = 0; i < 3; i++)
+      if (!fixed[i] && (turn < 0 || fabs(entry(axis[i], i)) < fabs(entry(axis[turn], turn))))
+        turn = i;
+    axis[turn] = cag_scaled(axis[turn], -1);
+  }
+  *out = cag_transform_identity();
+  out->planar = false;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) out->m[i][j] = entry(axis[j], i);
+  out->m[0][3] = origin.x;
+  out->m[1][3] = origin.y;
+  out->m[2][3] = origin.z;
+}
+
+static CagVec3 from_basis(const Reduced *r, const double y[3]) {
+  CagVec3 p = {0, 0, 0};
+  for (int i = 0; i < 3; i++) p = cag_madd(p, y[i] * r->size, r->v[i]);
+  return p;
+}
+
+// Index of the eigenvalue whose sign is alone among those that are not zero (three of them).
+static int odd_sign(const double lam[3]) {
+  int positive = (lam[0] > 0) + (lam[1] > 0) + (lam[2] > 0);
+  for (int i = 0; i < 3; i++)
+    if ((lam[i] > 0) == (positive == 1)) return i;
+  return 2;
+}
+
+static void central(const Reduced *r, CagQuadricForm *f) {
+  int positive = (r->lam[0] > 0) + (r->lam[1] > 0) + (r->lam[2] > 0);
+  bool same = positive == 0 || positive == 3;
+  int axis[3] = {0, 1, 2};
+  f->has_center = true;
+  if (same) {
+    bool real = r->k1 * r->lam[0] < 0;
+    f->class_id = r->k1 == 0 ? CAG_QUADRIC_IMAGINARY_CONE
+                  : real     ? CAG_QUADRIC_ELLIPSOID
+                             : CAG_QUADRIC_IMAGINARY_ELLIPSOID;
+    order_free(r, axis, true);
+  } else {
+    int odd = odd_sign(r->lam);
+    axis[2] = odd;
+    axis[0] = (odd + 1) % 3;
+    axis[1] = (odd + 2) % 3;
+    order_free(r, axis, false);
+    // lam / -k1 of the odd axis: negative is one sheet.
+    f->class_id = r->k1 == 0                 ? CAG_QUADRIC_CONE
+                  : r->lam[odd] * -r->k1 < 0 ? CAG_QUADRIC_HYPERBOLOID_ONE
+                                             : CAG_QUADRIC_HYPERBOLOID_TWO;
+  }
+  CagVec3 e[3];
+  const bool fixed[3] = {false, false, false};
+  for (int i = 0; i < 3; i++) {
+    double lam = fabs(r->lam[axis[i]]);
+    e[i] = r->v[axis[i]];
+    f->semi[i] = r->k1 != 0                        ? r->size * sqrt(fabs(r->k1) / lam)
+                 : f->class_id == CAG_QUADRIC_CONE ? sqrt(fabs(r->lam[axis[2]]) / lam)
+                                                   : 0;
+  }
+  set_frame(e, fixed, from_basis(r, r->center), &f->frame);
+}
+
+static void paraboloid(const Reduced *r, int zero, CagQuadricForm *f) {
+  int axis[3] = {(zero + 1) % 3, (zero + 2) % 3, zero};
+  bool elliptic = r->lam[axis[0]] * r->lam[axis[1]] > 0;
+  double vertex[3] = {r->center[0], r->center[1], r->center[2]};
+  vertex[zero] = -r->k1 / r->lin[zero];
+  CagVec3 up = r->v[zero];
+  double slope = r->lin[zero];
+  // Z = -(lam_1 X^2 + lam_2 Y^2) / slope: an elliptic one opens along e3; of a saddle e3 goes up.
+  if (elliptic ? r->lam[axis[0]] * slope > 0 : points_down(up)) {
+    up = cag_scaled(up, -1);
+    slope = -slope;
+  }
+  if (elliptic) order_free(r, axis, false);
+  else if (r->lam[axis[0]] * slope > 0) {
+    int swap = axis[0];
+    axis[0] = axis[1];
+    axis[1] = swap;
+  }
+  f->class_id = elliptic ? CAG_QUADRIC_ELLIPTIC_PARABOLOID : CAG_QUADRIC_HYPERBOLIC_PARABOLOID;
+  for (int i = 0; i < 2; i++) f->semi[i] = sqrt(r->size * fabs(slope / r->lam[axis[i]]));
+  const CagVec3 e[3] = {r->v[axis[0]], r->v[axis[1]], up};
+  const bool fixed[3] = {false, false, true};
+  set_frame(e, fixed, from_basis(r, vertex), &f->frame);
+}
+
+static void cylinder(const Reduced *r, int zero, CagQuadricForm *f) {
+  int axis[3] = {(zero + 1) % 3, (zero + 2) % 3, zero};
+  bool same = r->lam[axis[0]] * r->lam[axis[1]] > 0;
+  if (same) {
+    f->class_id = r->k1 == 0                    ? CAG_QUADRIC_IMAGINARY_INTERSECTING_PLANES
+                  : r->k1 * r->lam[axis[0]] < 0 ? CAG_QUADRIC_ELLIPTIC_CYLINDER
+                                                : CAG_QUADRIC_IMAGINARY_ELLIPTIC_CYLINDER;
+  } else {
+    f->class_id = r->k1 == 0 ? CAG_QUADRIC_INTERSECTING_PLANES : CAG_QUADRIC_HYPERBOLIC_CYLINDER;
+  }
+  // e1 is the axis that a hyperbola meets.
+  if (same || r->k1 == 0) order_free(r, axis, false);
+  else if (r->lam[axis[0]] * r->k1 > 0) {
+    int swap = axis[0];
+    axis[0] = axis[1];
+    axis[1] = swap;
+  }
+  if (r->k1 != 0)
+    for (int i = 0; i < 2; i++) f->semi[i] = r->size * sqrt(fabs(r->k1 / r->lam[axis[i]]));
+  else if (!same) {
+    f->semi[0] = 1;
+    f->semi[1] = sqrt(fabs(r->lam[axis[0]] / r->lam[axis[1]]));
+  }
+  const CagVec3 e[3] = {r->v[axis[0]], r->v[axis[1]], r->v[zero]};
+  const bool fixed[3] = {false, false, false};
+  set_frame(e, fixed, from_basis(r, r->center), &f->frame);
+}
+
+// One eigenvalue: y along its vector; the linear rest spans a direction w of the plane square to
+// it.
+static void single(const Reduced *r, int one, CagQuadricForm *f) {
+  if (r->g == 0) {
+    f->class_id = r->k1 == 0                ? CAG_QUADRIC_COINCIDENT_PLANES
+                  : r->k1 * r->lam[one] < 0 ? CAG_QUADRIC_PARALLEL_PLANES
+                                            : CAG_QUADRIC_IMAGINARY_PARALLEL_PLANES;
+    if (f->class_id == CAG_QUADRIC_PARALLEL_PLANES)
+      f->semi[0] = r->size * sqrt(-r->k1 / r->lam[one]);
+    const CagVec3 e[3] = {r->v[one], r->v[(one + 1) % 3], r->v[(one + 2) % 3]};
+    const bool fixed[3] = {false, false, false};
+    set_frame(e, fixed, from_basis(r, r->center), &f->frame);
+    return;
+  }
+  f->class_id = CAG_QUADRIC_PARABOLIC_CYLINDER;
+  double vertex[3], sign = r->lam[one] > 0 ? -1 : 1;
+  CagVec3 opens = {0, 0, 0};
+  for (int i = 0; i < 3; i++) {
+    bool zero = i != one;
+    vertex[i] = zero ? -r->k1 * r->lin[i] / (r->g * r->g) : r->center[i];
+    if (zero) opens = cag_madd(opens, sign * r->lin[i] / r->g, r->v[i]);
+  }
+  CagVec3 across = r->v[one], along = cag_cross(opens, across);
+  if (points_down(along)) {
+    across = cag_scaled(across, -1);
+    along = cag_scaled(along, -1);
+  }
+  f->semi[0] = r->size * r->g / (4 * fabs(r->lam[one])); // Y^2 = 4 a X
+  const CagVec3 e[3] = {opens, across, along};
+  const bool fixed[3] = {true, true, true};
+  set_frame(e, fixed, from_basis(r, vertex), &f->frame);
+}
+
+// No term of second degree.
+static void linear(const CagQuadric *q, CagQuadricForm *f) {
+  CagVec3 n = cag_vec3(q->c[6], q->c[7], q->c[8]);
+  double length = cag_norm(n);
+  f->class_id = length > 0 ? CAG_QUADRIC_PLANE : CAG_QUADRIC_EMPTY;
+  f->rank4 = length > 0 ? 2 : 1;
+  f->frame = cag_transform_identity();
+  f->frame.planar = false;
+  if (!(length > 0)) return;
+  CagVec3 up = cag_unit(n), x = {1, 0, 0};
+  if (fabs(up.x) > 0.9) x = cag_vec3(0, 1, 0);
+  x = cag_unit(cag_madd(x, -cag_dot(x, up), up));
+  const CagVec3 e[3] = {x, cag_cross(up, x), up};
+  const bool fixed[3] = {true, true, true};
+  set_frame(e, fixed, cag_scaled(up, -q->c[9] / length), &f->frame);
+}
+
+CagStatus cag_quadric_classify(const CagQuadric *q, CagQuadricForm *out, CagError *err) {
+  CagStatus status = check(q, err);
+  if (status) return status;
+  CagQuadricForm f = {0};
+  bool second = false;
+  for (int i = 0; i < 6; i++) second = second || q->c[i] != 0;
+  if (!second) linear(q, &f);
+  else {
+    Reduced r;
+    reduce(q, &r);
+    int zero = 0, one = 0;
+    for (int i = 0; i < 3; i++) {
+      if (r.lam[i] == 0) zero = i;
+      else one = i;
+    }
+    f.rank3 = r.rank3;
+    f.rank4 = r.rank3 + (r.g > 0 ? 2 : r.k1 != 0 ? 1 : 0);
+    if (r.rank3 == 3) central(&r, &f);
+    else if (r.rank3 == 2 && r.g > 0) paraboloid(&r, zero, &f);
+    else if (r.rank3 == 2) cylinder(&r, zero, &f);
+    else single(&r, one, &f);
+    if (f.has_center) f.center = cag_vec3(f.frame.m[0][3], f.frame.m[1][3], f.frame.m[2][3]);
+  }
+  f.name = CLASS_NAME[f.class_id];
+  *out = f;
+  return CAG_OK;
+}

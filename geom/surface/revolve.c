@@ -1,0 +1,230 @@
+// Surfaces of revolution: a curve turned about an axis.
+//
+// S(u, v) = A + axial(u) + cos v radial(u) + sin v (w x radial(u)), where P(u) - A splits into its
+// part along the unit axis w and the rest. A turn by v of a vector is one of the plane square to w,
+// so the j-th derivative by v is the radial part turned by j right angles more.
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "geom/surface/family.h"
+
+typedef struct Revolution {
+  CagSurface base;
+  CagCurve *profile; // of space
+  CagVec3 axis;      // unit
+  CagVec3 through;
+  double on_axis; // a profile point nearer to the axis than this lies on it
+} Revolution;
+
+static const CagSurfaceKind revolution_kind;
+
+// Splits a vector into its part along the axis and the rest.
+static void split(const Revolution *r, CagVec3 p, CagVec3 *axial, CagVec3 *radial) {
+  *axial = cag_scaled(r->axis, cag_dot(r->axis, p));
+  *radial = cag_sub(p, *axial);
+}
+
+// As above of a profile point; one on the axis has no radial part at all, so that a pole is one
+// point to the last bit.
+static void split_point(const Revolution *r, CagVec3 p, CagVec3 *axial, CagVec3 *radial) {
+  split(r, cag_sub(p, r->through), axial, radial);
+  if (cag_norm(*radial) <= r->on_axis) *radial = (CagVec3){0, 0, 0};
+  *axial = cag_add(*axial, r->through);
+}
+
+static CagStatus revolution_eval(const CagSurface *s, double u, double v, int n, CagSide su,
+                                 CagSide sv, CagVec3 *out, CagError *err) {
+  (void)sv;
+  const Revolution *r = (const Revolution *)s;
+  CagVec3 p[CAG_MAX_PARTIAL + 1];
+  CagStatus status = cag_curve_eval(r->profile, u, n, su, p, err);
+  if (status) return status;
+  double sine, cosine;
+  cag_sincos(v, &sine, &cosine);
+  for (int i = 0; i <= n; i++) {
+    CagVec3 axial, radial;
+    if (i == 0) split_point(r, p[0], &axial, &radial);
+    else split(r, p[i], &axial, &radial);
+    CagVec3 across = cag_cross(r->axis, radial);
+    double c = cosine, d = sine;
+    for (int j = 0; i + j <= n; j++) {
+      CagVec3 turned = cag_madd(cag_scaled(radial, c), d, across);
+      out[cag_partial(n, i, j)] = j == 0 ? cag_add(axial, turned) : turned;
+      double next = -d;
+      d = c;
+      c = next;
+    }
+  }
+  return CAG_OK;
+}
+
+static CagStatus revolution_grid(const CagSurface *s, const double *us, size_t nu, const double *vs,
+                                 size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv,
+                                 CagError *err) {
+  const Revolution *r = (const Revolution *)s;
+  CagVec3 *p = malloc((2 * nu + 1) * sizeof *p);
+  double *turn = malloc((2 * nv + 1) * sizeof *turn);
+  CagStatus status = CAG_OK;
+  if (!p || !turn) status = cag_fail_memory(err);
+  else status = cag_curve_eval_many(r->profile, us, nu, 1, p, err);
+  for (size_t j = 0; !status && j < nv; j++) cag_sincos(vs[j], &turn[2 * j], &turn[2 * j + 1]);
+  for (size_t i = 0; !status && i < nu; i++) {
+    CagVec3 axial, radial, axial_u, radial_u;
+    split_point(r, p[2 * i], &axial, &radial);
+    split(r, p[2 * i + 1], &axial_u, &radial_u);
+    CagVec3 across = cag_cross(r->axis, radial), across_u = cag_cross(r->axis, radial_u);
+    for (size_t j = 0; j < nv; j++) {
+      double sine = turn[2 * j], cosine = turn[2 * j + 1];
+      size_t at = i * nv + j;
+      points[at] = cag_madd(cag_madd(axial, cosine, radial), sine, across);
+      if (du) du[at] = cag_madd(cag_madd(axial_u, cosine, radial_u), sine, across_u);
+      if (dv) dv[at] = cag_madd(cag_scaled(across, cosine), -sine, radial);
+    }
+  }
+  free(p);
+  free(turn);
+  return status;
+}
+
+// The exact form: each control point of the profile goes around on the arc's own control points.
+static CagStatus revolution_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
+  const Revolution *r = (const Revolution *)s;
+  CagCurve *exact;
+  CagStatus status = cag_curve_to_nurbs(r->profile, &exact, err);
+  if (status) return status;
+  CagNurbsView view;
+  cag_curve_nurbs_view(exact, &view);
+  CagConicNurbs arc;
+  cag_conic_nurbs(CAG_ARC_CIRCLE, s->v0, s->v1, &arc);
+  double *net = malloc(view.count * arc.count * 4 * sizeof *net);
+  if (!net) {
+    cag_curve_release(exact);
+    return cag_fail_memory(err);
+  }
+  for (size_t i = 0; i < view.count; i++) {
+    const double *h = view.homogeneous + 4 * i;
+    // Homogeneous point less w times the axis point.
+    CagVec3 q = {h[0] - h[3] * r->through.x, h[1] - h[3] * r->through.y,
+                 h[2] - h[3] * r->through.z};
+    CagVec3 axial, radial;
+    split(r, q, &axial, &radial);
+    if (cag_norm(radial) <= r->on_axis * h[3]) radial = (CagVec3){0, 0, 0};
+    CagVec3 across = cag_cross(r->axis, radial);
+    for (size_t j = 0; j < arc.count; j++) {
+      double x = arc.points[j][0], y = arc.points[j][1], w = arc.points[j][2];
+      CagVec3 p = cag_madd(cag_madd(cag_scaled(axial, w), x, radial), y, across);
+      double *at = net + 4 * (i * arc.count + j);
+      at[3] = h[3] * w;
+      at[0] = p.x + at[3] * r->through.x;
+      at[1] = p.y + at[3] * r->through.y;
+      at[2] = p.z + at[3] * r->through.z;
+    }
+  }
+  status = cag_surface_from_homogeneous(net, view.count, arc.count, view.degree, arc.degree,
+                                        view.knots, arc.knots, out, err);
+  free(net);
+  cag_curve_release(exact);
+  return status;
+}
+
+static CagStatus revolution_transform(const CagSurface *s, const CagTransform *t, CagSurface **out,
+                                      CagError *err) {
+  const Revolution *r = (const Revolution *)s;
+  double scale;
+  if (!cag_transform_is_affine(t) || !cag_transform_is_similarity(t, &scale))
+    return cag_surface_transform_placed(s, t, out, err);
+  CagCurve *profile;
+  CagStatus status = cag_curve_transform(r->profile, t, &profile, err);
+  if (status) return status;
+  // In a mirror the turn runs the other way about the image of the axis.
+  CagVec3 axis = cag_scaled(cag_transform_vector(t, r->axis), cag_transform_mirrors(t) ? -1 : 1);
+  status = cag_surface_revolve(profile, axis, cag_transform_point(t, r->through), s->v0, s->v1, out,
+                               err);
+  cag_curve_release(profile);
+  return status;
+}
+
+static size_t revolution_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
+  const Revolution *r = (const Revolution *)s;
+  if (direction == 1 || !r->profile->kind->breaks) return 0;
+  return r->profile->kind->breaks(r->profile, out, capacity);
+}
+
+static void revolution_describe(const CagSurface *s, char *buffer, size_t size) {
+  const Revolution *r = (const Revolution *)s;
+  char x[32], y[32], z[32];
+  snprintf(buffer, size, "of a %s about [%s, %s, %s]", r->profile->kind->name,
+           cag_number_text(r->axis.x, x), cag_number_text(r->axis.y, y),
+           cag_number_text(r->axis.z, z));
+}
+
+static void revolution_destroy(CagSurface *s) { cag_curve_release(((Revolution *)s)->profile); }
+
+static const CagSurfaceKind revolution_kind = {
+    .name = "revolution",
+    .eval = revolution_eval,
+    .eval_grid = revolution_grid,
+    .to_nurbs = revolution_to_nurbs,
+    .transform = revolution_transform,
+    .breaks = revolution_breaks,
+    .describe = revolution_describe,
+    .destroy = revolution_destroy,
+};
+
+// A turn may overlap itself, but not more than once.
+#define MOST_TURN (4 * M_PI)
+
+CagStatus cag_surface_revolve(const CagCurve *profile, CagVec3 axis, CagVec3 through, double from,
+                              double to, CagSurface **out, CagError *err) {
+  CagVec3 unit = cag_unit(axis);
+  if (!(cag_norm(unit) > 0))
+    return cag_fail(err, CAG_E_ARGUMENT, "zero-axis", "axis", -1,
+                    "`axis` must not be the zero vector: give a direction such as Z");
+  if (!(to > from) || to - from > MOST_TURN) {
+    char a[32], b[32];
+    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "angle", -1,
+                    "`angle` must ascend and span at most 720deg, it is %sdeg..%sdeg",
+                    cag_number_text(from * (180 / M_PI), a), cag_number_text(to * (180 / M_PI), b));
+  }
+  CagCurve *space;
+  CagStatus status = cag_surface_space_curve(profile, &space, err);
+  if (status) return status;
+  CagSurface *s;
+  status = cag_surface_block(sizeof(Revolution), &revolution_kind, space->start, space->end, from,
+                             to, &s, err);
+  if (status) {
+    cag_curve_release(space);
+    return status;
+  }
+  Revolution *r = (Revolution *)s;
+  r->profile = space;
+  r->axis = unit;
+  r->through = through;
+  s->angular_u = space->angular;
+  s->angular_v = true;
+  CagBounds box;
+  status = cag_curve_bounds(space, &box, err);
+  if (status) {
+    cag_surface_release(s);
+    return status;
+  }
+  double size = cag_norm(cag_sub(box.max, box.min)) + cag_norm(cag_sub(box.min, through));
+  r->on_axis = CAG_SURFACE_SAME * size;
+  cag_surface_judge(s);
+  *out = s;
+  return CAG_OK;
+}
+
+bool cag_surface_revolution_view(const CagSurface *s, const CagCurve **profile, CagVec3 *axis,
+                                 CagVec3 *through, double *from, double *to) {
+  if (s->kind != &revolution_kind) return false;
+  const Revolution *r = (const Revolution *)s;
+  if (profile) *profile = r->profile;
+  if (axis) *axis = r->axis;
+  if (through) *through = r->through;
+  if (from) *from = s->v0;
+  if (to) *to = s->v1;
+  return true;
+}
