@@ -1,0 +1,639 @@
+// Matrices as lists of rows, and polynomials: linear systems, eigenvalues, roots.
+//
+// Decompositions are LAPACK's. A matrix counts as singular where its reciprocal condition number is
+// below the rounding error: its solution would be noise.
+
+#include <complex.h>
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+// LAPACKE's complex type is C's.
+#include <lapacke.h>
+
+#include "interp/builtin/support.h"
+
+static const char FAMILY[] = "Matrices";
+#define LISTS (CAG_TYPE_BIT(LIST) | CAG_TYPE_BIT(RANGE))
+
+// --- Reading and giving ---
+
+typedef struct Matrix {
+  size_t rows, columns;
+  double *x; // by rows; malloc'd
+} Matrix;
+
+static bool take(CagCall *call, size_t rows, size_t columns, Matrix *out) {
+  size_t n = rows * columns;
+  *out = (Matrix){rows, columns, malloc((n ? n : 1) * sizeof(double))};
+  return out->x || cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+}
+
+static bool check_finite(CagCall *call, int argument, const Matrix *m) {
+  for (size_t i = 0; i < m->rows * m->columns; i++)
+    if (!isfinite(m->x[i])) return cag_fail_value(call, argument, "finite numbers");
+  return true;
+}
+
+// Row i of a matrix that is no packed list: too long, or no row.
+static bool read_row(CagCall *call, int argument, const CagList *list, size_t i, const double **x,
+                     size_t *n) {
+  CagValue row = cag_list_get(call->vm, list, i);
+  return cag_as_vector(row, x, n) || cag_fail_element(call, argument, i, row, "rows of numbers");
+}
+
+static bool read_rows(CagCall *call, int argument, Matrix *out) {
+  CagValue v = call->values[argument];
+  if (v.type != CAG_LIST) return cag_fail_type(call, argument, "a matrix (a list of rows)");
+  const CagList *list = CAG_AS_LIST(v);
+  const double *x;
+  size_t n, columns;
+  if (list->length == 0) return cag_fail_value(call, argument, "a matrix of at least one row");
+  if (!read_row(call, argument, list, 0, &x, &columns) || !take(call, list->length, columns, out))
+    return false;
+  for (size_t i = 0; i < list->length; i++) {
+    bool good = read_row(call, argument, list, i, &x, &n);
+    if (good && n != columns)
+      good = cag_fail_call(
+          call, argument, CAG_ERR_length,
+          "expects rows of one length as `%s`, found %zu numbers in row 0 and %zu in row %zu",
+          cag_parameter_name(call, argument), columns, n, i);
+    if (!good) {
+      free(out->x);
+      return false;
+    }
+    memcpy(out->x + i * columns, x, columns * sizeof *x);
+  }
+  return true;
+}
+
+static bool read_matrix(CagCall *call, int argument, Matrix *out) {
+  if (!read_rows(call, argument, out)) return false;
+  if (check_finite(call, argument, out)) return true;
+  free(out->x);
+  return false;
+}
+
+static bool read_square(CagCall *call, int argument, const char *mend, Matrix *out) {
+  if (!read_matrix(call, argument, out)) return false;
+  if (out->rows == out->columns) return true;
+  cag_fail_call(call, argument, CAG_ERR_length,
+                "expects a square matrix, found %zu rows and %zu columns", out->rows, out->columns);
+  if (mend) cag_fail_help(call->vm, "%s", mend);
+  free(out->x);
+  return false;
+}
+
+// A vector (as one column; *vector is set) or a matrix with so many rows.
+static bool read_right_side(CagCall *call, int argument, size_t rows, const char *as, Matrix *out,
+                            bool *vector) {
+  const double *x;
+  size_t n;
+  *vector = cag_as_vector(call->values[argument], &x, &n);
+  if (*vector) {
+    if (!take(call, n, 1, out)) return false;
+    memcpy(out->x, x, n * sizeof *x);
+    if (!check_finite(call, argument, out)) goto failed;
+  } else if (!read_matrix(call, argument, out)) {
+    return false;
+  }
+  if (out->rows == rows) return true;
+  cag_fail_call(call, argument, CAG_ERR_length,
+                "expects %zu rows in `%s`, as many as `%s` has %s, found %zu", rows,
+                cag_parameter_name(call, argument), cag_parameter_name(call, 0), as, out->rows);
+failed:
+  free(out->x);
+  return false;
+}
+
+// The first rows of m as a list of rows, or its only column as a vector.
+static CagValue give_rows(CagVm *vm, const Matrix *m, size_t rows, bool vector) {
+  if (vector) return cag_vector(vm, m->x, rows);
+  CagBuilder *built = cag_builder_new(vm);
+  for (size_t i = 0; i < rows; i++)
+    cag_builder_add(vm, built, cag_vector(vm, m->x + i * m->columns, m->columns));
+  return cag_builder_finish(vm, built);
+}
+
+// Frees m on the way.
+static bool give_matrix(CagCall *call, Matrix *m, size_t rows, bool vector, CagValue *result) {
+  bool good = true;
+  for (size_t i = 0; i < rows * m->columns && good; i++) {
+    m->x[i] += 0.0; // never -0
+    if (!isfinite(m->x[i])) good = cag_fail_call(call, 0, CAG_ERR_not_finite, "overflows");
+  }
+  if (good) *result = give_rows(call->vm, m, rows, vector);
+  free(m->x);
+  return good;
+}
+
+// --- Linear systems ---
+
+static bool fail_singular(CagCall *call) {
+  return cag_fail_call(call, 0, CAG_ERR_singular,
+                       "expects a matrix that is not singular: its rows depend on each other");
+}
+
+// Replaces m by its LU decomposition. *singular: whether it is, to rounding.
+static bool decompose(CagCall *call, Matrix *m, lapack_int *pivots, bool *singular) {
+  lapack_int n = (lapack_int)m->rows;
+  double norm = LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', n, n, m->x, n), reciprocal = 0;
+  lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, m->x, n, pivots);
+  if (info < 0)
+    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  *singular = info > 0;
+  if (info == 0) LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', n, m->x, n, norm, &reciprocal);
+  *singular = *singular || !(reciprocal > DBL_EPSILON);
+  return true;
+}
+
+static bool solve_system(CagCall *call, Matrix *a, Matrix *b) {
+  lapack_int n = (lapack_int)a->rows, *pivots = malloc(a->rows * sizeof *pivots);
+  bool singular = false;
+  bool good = pivots
+                  ? decompose(call, a, pivots, &singular)
+                  : cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  if (good && singular) good = fail_singular(call);
+  if (good)
+    LAPACKE_dgetrs(LAPACK_ROW_MAJOR, 'N', n, (lapack_int)b->columns, a->x, n, pivots, b->x,
+                   (lapack_int)b->columns);
+  free(pivots);
+  return good;
+}
+
+static bool call_solve(CagCall *call, CagValue *result) {
+  Matrix a, b;
+  bool vector;
+  if (!read_square(call, 0, "least_squares takes any number of rows", &a)) return false;
+  bool good = read_right_side(call, 1, a.rows, "rows", &b, &vector);
+  if (good && !solve_system(call, &a, &b)) {
+    free(b.x);
+    good = false;
+  }
+  free(a.x);
+  return good && give_matrix(call, &b, b.rows, vector, result);
+}
+
+static bool call_least_squares(CagCall *call, CagValue *result) {
+  Matrix a, b, x;
+  bool vector;
+  if (!read_matrix(call, 0, &a)) return false;
+  if (!read_right_side(call, 1, a.rows, "rows", &b, &vector)) {
+    free(a.x);
+    return false;
+  }
+  // dgelsd wants room for the larger of rows and columns in the right side, and gives the solution
+  // there.
+  size_t room = a.rows > a.columns ? a.rows : a.columns, least = a.rows + a.columns - room;
+  double *singular_values = malloc(least * sizeof *singular_values);
+  bool good = take(call, room, b.columns, &x);
+  if (good && !singular_values) {
+    free(x.x);
+    good = cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  }
+  if (good) {
+    memset(x.x, 0, room * b.columns * sizeof(double));
+    memcpy(x.x, b.x, b.rows * b.columns * sizeof(double));
+    lapack_int rank, columns = (lapack_int)b.columns;
+    // Singular values below this part of the largest count as 0.
+    double cut = DBL_EPSILON * (double)room;
+    lapack_int info =
+        LAPACKE_dgelsd(LAPACK_ROW_MAJOR, (lapack_int)a.rows, (lapack_int)a.columns, columns, a.x,
+                       (lapack_int)a.columns, x.x, columns, singular_values, cut, &rank);
+    if (info != 0) {
+      free(x.x);
+      good = cag_fail_call(call, 0, CAG_ERR_convergence,
+                           "does not settle: the singular values could not be found");
+    }
+  }
+  size_t unknowns = a.columns;
+  free(singular_values);
+  free(a.x);
+  free(b.x);
+  return good && give_matrix(call, &x, unknowns, vector, result);
+}
+
+static bool call_multiply(CagCall *call, CagValue *result) {
+  Matrix a, b, c;
+  bool vector;
+  if (!read_matrix(call, 0, &a)) return false;
+  if (!read_right_side(call, 1, a.columns, "columns", &b, &vector)) {
+    free(a.x);
+    return false;
+  }
+  bool good = take(call, a.rows, b.columns, &c);
+  for (size_t i = 0; good && i < a.rows; i++) {
+    double *row = c.x + i * c.columns;
+    memset(row, 0, c.columns * sizeof *row);
+    for (size_t k = 0; k < a.columns; k++)
+      for (size_t j = 0; j < c.columns; j++)
+        row[j] += a.x[i * a.columns + k] * b.x[k * b.columns + j];
+    if (i % 64 == 63) good = cag_keep_going(call->vm);
+    if (!good) free(c.x);
+  }
+  free(a.x);
+  free(b.x);
+  return good && give_matrix(call, &c, c.rows, vector, result);
+}
+
+// Up to 3x3 by the rule of Sarrus: exact for small whole numbers.
+static double small_determinant(const Matrix *m) {
+  const double *x = m->x;
+  if (m->rows == 1) return x[0];
+  if (m->rows == 2) return x[0] * x[3] - x[1] * x[2];
+  return x[0] * (x[4] * x[8] - x[5] * x[7]) - x[1] * (x[3] * x[8] - x[5] * x[6]) +
+         x[2] * (x[3] * x[7] - x[4] * x[6]);
+}
+
+static bool large_determinant(CagCall *call, Matrix *m, double *out) {
+  lapack_int n = (lapack_int)m->rows, *pivots = malloc(m->rows * sizeof *pivots);
+  lapack_int info = pivots ? LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, m->x, n, pivots) : -1;
+  if (info < 0) {
+    free(pivots);
+    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  }
+  *out = 1;
+  for (lapack_int i = 0; i < n; i++) *out *= m->x[i * n + i] * (pivots[i] == i + 1 ? 1 : -1);
+  free(pivots);
+  return true;
+}
+
+static bool call_determinant(CagCall *call, CagValue *result) {
+  Matrix m;
+  double determinant;
+  if (!read_square(call, 0, NULL, &m)) return false;
+  bool good = true;
+  if (m.rows <= 3) determinant = small_determinant(&m);
+  else good = large_determinant(call, &m, &determinant);
+  free(m.x);
+  return good && cag_give_number(call, determinant + 0.0, result);
+}
+
+static bool call_inverse(CagCall *call, CagValue *result) {
+  Matrix a, b;
+  if (!read_square(call, 0, NULL, &a)) return false;
+  bool good = take(call, a.rows, a.rows, &b);
+  if (good) {
+    memset(b.x, 0, a.rows * a.rows * sizeof(double));
+    for (size_t i = 0; i < a.rows; i++) b.x[i * a.rows + i] = 1;
+    good = solve_system(call, &a, &b);
+    if (!good) free(b.x);
+  }
+  free(a.x);
+  return good && give_matrix(call, &b, b.rows, false, result);
+}
+
+static bool call_transpose(CagCall *call, CagValue *result) {
+  Matrix a, b;
+  if (!read_rows(call, 0, &a)) return false;
+  bool good = take(call, a.columns, a.rows, &b);
+  for (size_t i = 0; good && i < a.rows; i++)
+    for (size_t j = 0; j < a.columns; j++) b.x[j * a.rows + i] = a.x[i * a.columns + j];
+  if (good) *result = give_rows(call->vm, &b, b.rows, false);
+  if (good) free(b.x);
+  free(a.x);
+  return good;
+}
+
+// --- Eigenvalues ---
+
+static bool check_symmetric(CagCall *call, const Matrix *m) {
+  static const double RELATIVE = 1e-9; // what computing a symmetric matrix may have left
+  double largest = 0;
+  for (size_t i = 0; i < m->rows * m->rows; i++) largest = fmax(largest, fabs(m->x[i]));
+  for (size_t i = 0; i < m->rows; i++)
+    for (size_t j = 0; j < i; j++) {
+      double low = m->x[i * m->rows + j], high = m->x[j * m->rows + i];
+      if (fabs(low - high) <= RELATIVE * largest) continue;
+      char a[32], b[32];
+      return cag_fail_call(call, 0, CAG_ERR_value,
+                           "expects a symmetric matrix: [%zu][%zu] = %s, but [%zu][%zu] = %s", i, j,
+                           cag_number_text(low, a), j, i, cag_number_text(high, b));
+    }
+  return true;
+}
+
+// Eigenvectors have no sign of their own: the component largest in size is made positive.
+static void orient(double *v, size_t n) {
+  size_t largest = 0;
+  // Sizes that differ by rounding only do not decide.
+  static const double CLEARLY = 1 + 1e-9;
+  for (size_t i = 1; i < n; i++)
+    if (fabs(v[i]) > CLEARLY * fabs(v[largest])) largest = i;
+  if (v[largest] >= 0) return;
+  for (size_t i = 0; i < n; i++) v[i] = -v[i];
+}
+
+static bool call_eigen(CagCall *call, CagValue *result) {
+  Matrix m;
+  if (!read_square(call, 0, NULL, &m)) return false;
+  size_t n = m.rows;
+  double *values = malloc(n * sizeof *values);
+  bool good = values
+                  ? check_symmetric(call, &m)
+                  : cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  // In column-major order the eigenvectors come out one behind the other: the rows of what we give.
+  if (good &&
+      LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'U', (lapack_int)n, m.x, (lapack_int)n, values) != 0)
+    good = cag_fail_call(call, 0, CAG_ERR_convergence,
+                         "does not settle: the eigenvalues could not be found");
+  if (good) {
+    for (size_t i = 0; i < n; i++) orient(m.x + i * n, n);
+    for (size_t i = 0; i < n * n; i++) m.x[i] += 0.0;
+    static const char *const names[] = {"values", "vectors"};
+    CagValue fields[] = {cag_vector(call->vm, values, n), give_rows(call->vm, &m, n, false)};
+    *result = cag_record_new(call->vm, names, fields, 2);
+  }
+  free(values);
+  free(m.x);
+  return good;
+}
+
+// --- Roots of polynomials ---
+//
+// The eigenvalues of the companion matrix are roots of a polynomial whose coefficients differ from
+// the given ones by rounding only. A root of multiplicity m is spread by that into m roots about
+// it, as far as the m-th root of the rounding error, with their mean at the root. So clusters are
+// sought: the mean of m neighbours, improved by Newton's method as a root of the derivative of
+// order m - 1, counts as a root of multiplicity m where the polynomial and its first m - 1
+// derivatives vanish there to rounding.
+
+typedef double complex Complex;
+typedef long double complex LongComplex;
+
+typedef struct Roots {
+  const double *c; // coefficients, c[degree] not 0, c[0] not 0
+  size_t degree;
+  Complex *z;   // eigenvalues
+  bool *done;   // which have been given to a root
+  size_t *near; // numbers of those not done, by distance from the one in question
+  Complex *found;
+  size_t found_count;
+} Roots;
+
+// The derivative of this order, divided by its factorial, at z; *size the sum of the sizes of its
+// terms.
+static LongComplex taylor_at(const Roots *r, LongComplex z, size_t order, long double *size) {
+  LongComplex value = 0;
+  long double sum = 0, distance = cabsl(z);
+  // binomial(j, order), from the highest j down
+  long double binomial = 1;
+  for (size_t k = 0; k < order; k++)
+    binomial = binomial * (long double)(r->degree - k) / (long double)(k + 1);
+  for (size_t j = r->degree;; j--) {
+    value = value * z + r->c[j] * binomial;
+    sum = sum * distance + fabsl(r->c[j] * binomial);
+    if (j == order) break;
+    binomial = binomial * (long double)(j - order) / (long double)j;
+  }
+  if (size) *size = sum;
+  return value;
+}
+
+// Newton's method for a simple root of the derivative of order m - 1.
+static LongComplex improve(const Roots *r, LongComplex z, size_t m) {
+  enum { STEPS_MOST = 20 };
+  for (int i = 0; i < STEPS_MOST; i++) {
+    LongComplex slope = taylor_at(r, z, m, NULL) * (long double)m;
+    if (slope == 0) break;
+    LongComplex step = taylor_at(r, z, m - 1, NULL) / slope;
+    if (!(cabsl(step) < HUGE_VALL)) break;
+    z -= step;
+    if (cabsl(step) <= LDBL_EPSILON * cabsl(z)) break;
+  }
+  return z;
+}
+
+// Whether z is a root of multiplicity m of a polynomial that differs by rounding.
+static bool vanishes(const Roots *r, LongComplex z, size_t m) {
+  static const double ROUNDING = 16 * DBL_EPSILON; // of a coefficient, for each degree
+  for (size_t k = 0; k < m; k++) {
+    long double size;
+    LongComplex value = taylor_at(r, z, k, &size);
+    if (cabsl(value) > ROUNDING * (long double)r->degree * size) return false;
+  }
+  return true;
+}
+
+// Fills near with the roots not done, by distance from root i, which comes first; gives their
+// number.
+static size_t neighbours(Roots *r, size_t i) {
+  size_t n = 0;
+  for (size_t j = 0; j < r->degree; j++) {
+    if (r->done[j]) continue;
+    double distance = cabs(r->z[j] - r->z[i]);
+    size_t k = n++;
+    for (; k > 0 && j != i && cabs(r->z[r->near[k - 1]] - r->z[i]) > distance; k--)
+      r->near[k] = r->near[k - 1];
+    if (j == i)
+      for (; k > 0; k--) r->near[k] = r->near[k - 1];
+    r->near[k] = j;
+  }
+  return n;
+}
+
+// The number of the conjugate of root i among those not done.
+static size_t conjugate(const Roots *r, size_t i) {
+  for (size_t j = 0; j < r->degree; j++)
+    if (!r->done[j] && r->z[j] == conj(r->z[i])) return j;
+  return i;
+}
+
+// Whether the first m neighbours are m of the same side, or closed under conjugation. *real: the
+// latter.
+static bool one_sided(const Roots *r, size_t m, bool *real) {
+  size_t above = 0, below = 0;
+  for (size_t k = 0; k < m; k++) {
+    above += cimag(r->z[r->near[k]]) > 0;
+    below += cimag(r->z[r->near[k]]) < 0;
+  }
+  *real = above == below;
+  return *real || above == m;
+}
+
+static void give_root(Roots *r, LongComplex z, size_t m, bool real) {
+  for (size_t k = 0; k < m; k++) {
+    size_t i = r->near[k];
+    if (!real) r->done[conjugate(r, i)] = true;
+    r->done[i] = true;
+    r->found[r->found_count++] = real ? (double)creall(z) : (Complex)z;
+    if (!real) r->found[r->found_count++] = conj((Complex)z);
+  }
+}
+
+// Tries the m roots nearest to the one in question as one root of multiplicity m.
+static bool take_cluster(Roots *r, size_t m) {
+  bool real;
+  if (!one_sided(r, m, &real)) return false;
+  LongComplex mean = 0;
+  for (size_t k = 0; k < m; k++) mean += r->z[r->near[k]];
+  mean /= (long double)m;
+  // Members of a cluster lie closer together than to 0; wider ones are several roots.
+  static const double SPREAD = 0.25;
+  for (size_t k = 0; k < m; k++)
+    if (m > 1 && cabsl(r->z[r->near[k]] - mean) > SPREAD * cabsl(mean)) return false;
+  if (real) mean = creall(mean);
+  LongComplex z = improve(r, mean, m);
+  if (real) z = creall(z);
+  long double moved = cabsl(z - mean);
+  if (!(moved <= SPREAD * cabsl(mean))) {
+    if (m > 1) return false;
+    z = mean;
+  }
+  if (m > 1 && !vanishes(r, z, m)) return false;
+  give_root(r, z, m, real);
+  return true;
+}
+
+static void collect_roots(Roots *r) {
+  for (size_t i = 0; i < r->degree; i++) {
+    if (r->done[i] || cimag(r->z[i]) < 0) continue;
+    size_t m = neighbours(r, i);
+    while (m > 1 && !take_cluster(r, m)) m--;
+    if (m == 1) take_cluster(r, 1);
+  }
+}
+
+// Eigenvalues of the companion matrix, conjugates side by side. x is scaled by a power of 2 so that
+// first and last coefficient weigh alike.
+static bool companion_roots(CagCall *call, Roots *r) {
+  size_t n = r->degree;
+  int exponent = 0;
+  double ratio = fabs(r->c[0] / r->c[n]);
+  if (ratio > 0 && isfinite(ratio)) exponent = (int)rint(log2(ratio) / (double)n);
+  Matrix m;
+  if (!take(call, n, n, &m)) return false;
+  double *re = malloc(2 * n * sizeof *re), *im = re ? re + n : NULL;
+  bool good = re != NULL;
+  if (!good) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  if (good) {
+    memset(m.x, 0, n * n * sizeof *m.x);
+    for (size_t j = 0; j < n; j++) {
+      m.x[j] = -ldexp(r->c[n - 1 - j] / r->c[n], -exponent * (int)(j + 1));
+      if (j + 1 < n) m.x[(j + 1) * n + j] = 1;
+      if (!isfinite(m.x[j]))
+        good = cag_fail_call(call, 0, CAG_ERR_not_finite,
+                             "overflows: the coefficients differ too much in size");
+    }
+  }
+  if (good && LAPACKE_dgeev(LAPACK_ROW_MAJOR, 'N', 'N', (lapack_int)n, m.x, (lapack_int)n, re, im,
+                            NULL, (lapack_int)n, NULL, (lapack_int)n) != 0)
+    good = cag_fail_call(call, 0, CAG_ERR_convergence,
+                         "does not settle: the roots could not be found");
+  for (size_t i = 0; good && i < n; i++)
+    r->z[i] = CMPLX(ldexp(re[i], exponent), ldexp(im[i], exponent));
+  free(re);
+  free(m.x);
+  return good;
+}
+
+static int compare_roots(const void *a, const void *b) {
+  Complex s = *(const Complex *)a, t = *(const Complex *)b;
+  if (creal(s) != creal(t)) return creal(s) < creal(t) ? -1 : 1;
+  return (cimag(s) > cimag(t)) - (cimag(s) < cimag(t));
+}
+
+// All roots of the polynomial, sorted by real part, then imaginary part; *out is malloc'd.
+static bool all_roots(CagCall *call, Complex **out, size_t *count) {
+  enum { DEGREE_MOST = 200 }; // beyond, coefficients say too little about the roots
+  const double *c;
+  size_t n;
+  if (!cag_arg_numbers(call, 0, &c, &n)) return false;
+  for (size_t i = 0; i < n; i++)
+    if (!isfinite(c[i])) return cag_fail_value(call, 0, "finite coefficients");
+  while (n > 0 && c[n - 1] == 0) n--;
+  if (n == 0)
+    return cag_fail_value(
+        call, 0,
+        "a polynomial with a coefficient that is not 0, since every number is a root of 0,");
+  size_t zeros = 0;
+  while (c[zeros] == 0) zeros++;
+  size_t degree = n - 1 - zeros;
+  if (degree > DEGREE_MOST)
+    return cag_fail_value(call, 0, "a polynomial of a degree of at most 200");
+  size_t room = n + 1;
+  Roots r = {.c = c + zeros, .degree = degree};
+  r.z = calloc(room, sizeof *r.z);
+  r.found = calloc(2 * room, sizeof *r.found);
+  r.done = calloc(room, sizeof *r.done);
+  r.near = calloc(room, sizeof *r.near);
+  bool good = r.z && r.found && r.done && r.near;
+  if (!good) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  if (good && degree > 0) good = companion_roots(call, &r);
+  if (good) {
+    collect_roots(&r);
+    for (size_t i = 0; i < zeros; i++) r.found[r.found_count++] = 0;
+    qsort(r.found, r.found_count, sizeof *r.found, compare_roots);
+  }
+  free(r.z);
+  free(r.done);
+  free(r.near);
+  if (good) *out = r.found, *count = r.found_count;
+  else free(r.found);
+  return good;
+}
+
+static bool call_roots(CagCall *call, CagValue *result) {
+  Complex *z;
+  size_t n, reals = 0;
+  double *numbers;
+  if (!all_roots(call, &z, &n)) return false;
+  for (size_t i = 0; i < n; i++) reals += cimag(z[i]) == 0;
+  *result = cag_list_values(call->vm, NULL, 0);
+  if (reals > 0) *result = cag_list_numbers(call->vm, reals, &numbers);
+  for (size_t i = 0, k = 0; i < n; i++)
+    if (cimag(z[i]) == 0) numbers[k++] = creal(z[i]) + 0.0;
+  free(z);
+  return true;
+}
+
+static bool call_complex_roots(CagCall *call, CagValue *result) {
+  Complex *z;
+  size_t n;
+  double *numbers;
+  if (!all_roots(call, &z, &n)) return false;
+  *result = cag_list_values(call->vm, NULL, 0);
+  if (n > 0) *result = cag_list_vectors(call->vm, n, 2, &numbers);
+  for (size_t i = 0; i < n; i++) {
+    numbers[2 * i] = creal(z[i]) + 0.0;
+    numbers[2 * i + 1] = cimag(z[i]) + 0.0;
+  }
+  free(z);
+  return true;
+}
+
+const CagBuiltin cag_builtins_matrices[] = {
+    {"solve(matrix, rhs)", call_solve, "list",
+     "The x with matrix * x = rhs, of a square matrix (a list of rows) and a vector, or a matrix "
+     "of several columns. An error where the matrix is singular.",
+     "print solve([[2, 1], [1, 3]], [3, 5]) // expect: [0.8, 1.4]", 0, FAMILY},
+    {"least_squares(matrix, rhs)", call_least_squares, "list",
+     "The x for which the squares of matrix * x - rhs have the least sum; where there are several, "
+     "the shortest.",
+     "print round(least_squares([[1, 0], [1, 1], [1, 2]], [1, 3, 5]), 9) // expect: [1, 2]", 0,
+     FAMILY},
+    {"multiply(A, B)", call_multiply, "list",
+     "The product of two matrices, or of a matrix and a vector.",
+     "print multiply([[1, 2], [3, 4]], [1, 1]), multiply([[1, 2], [3, 4]], [[0, 1], [1, 0]]) // "
+     "expect: [3, 7] [[2, 1], [4, 3]]",
+     LISTS, FAMILY},
+    {"determinant(A)", call_determinant, "number", "The determinant of a square matrix.",
+     "print determinant([[1, 2], [3, 4]]) // expect: -2", LISTS, FAMILY},
+    {"inverse(A)", call_inverse, "list",
+     "The inverse of a square matrix. An error where it is singular.",
+     "print inverse([[2, 0], [0, 4]]) // expect: [[0.5, 0], [0, 0.25]]", LISTS, FAMILY},
+    {"transpose(A)", call_transpose, "list", "The matrix whose rows are the columns of A.",
+     "print transpose([[1, 2, 3], [4, 5, 6]]) // expect: [[1, 4], [2, 5], [3, 6]]", LISTS, FAMILY},
+    {"eigen(symmetric)", call_eigen, "record",
+     "Eigenvalues of a symmetric matrix in rising order, and as `vectors` the unit eigenvector of "
+     "each, its largest component positive.",
+     "e = eigen([[2, 0], [0, 1]])\nprint e.values, e.vectors // expect: [1, 2] [[0, 1], [1, 0]]", 0,
+     FAMILY},
+    {"roots(coefficients)", call_roots, "list",
+     "The real roots of c0 + c1 x + c2 x^2 + ... in rising order, multiple ones as often as they "
+     "are roots. An error where all coefficients are 0.",
+     "print roots([-6, 11, -6, 1]), roots([1, 0, 1]) // expect: [1, 2, 3] []", 0, FAMILY},
+    {"complex_roots(coefficients)", call_complex_roots, "list",
+     "All roots of c0 + c1 x + c2 x^2 + ... as [re, im], by real, then imaginary part.",
+     "print complex_roots([1, 0, 1]) // expect: [[0, -1], [0, 1]]", 0, FAMILY},
+    {0}};
