@@ -1,4 +1,5 @@
-// The arena: blocks in a list, the one in use first. Small things are cut from it one behind the other.
+// The arena: blocks in a list, the one in use first. Small things are cut from it one behind the
+// other.
 
 #include "lang/arena.h"
 
@@ -13,7 +14,8 @@ struct CagArenaBlock {
   alignas(max_align_t) char bytes[];
 };
 
-// Blocks grow from small (the REPL makes a tree per line) to large (a generated script of many megabytes).
+// Blocks grow from small (the REPL makes a tree per line) to large (a generated script of many
+// megabytes).
 #define FIRST_BLOCK ((size_t)4 << 10)
 #define LARGEST_BLOCK ((size_t)256 << 10)
 

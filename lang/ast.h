@@ -137,6 +137,7 @@ typedef enum CagBinding {
 struct CagExpr {
   CagExprKind kind;
   CagSpan span;
+  uint32_t height; // of the tree below, from 1; at most CAG_MAX_HEIGHT, so that walks may recurse
   union {
     double number;
     struct {
@@ -261,6 +262,7 @@ typedef struct CagModuleAst {
   size_t top_count;
   CagComment *comments;
   size_t comment_count;
+  size_t name_count; // number of different names, reserved words included
 } CagModuleAst;
 
 #endif

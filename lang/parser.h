@@ -12,6 +12,10 @@ typedef enum CagParseMode {
 
 // Brackets nest at most so deep (language, section 8).
 #define CAG_MAX_NESTING 1000
+// No expression tree is higher than this: a chain of as many operators, or brackets and what stands
+// between them. Low enough that a walk which recurses fits an ordinary stack, in a build with
+// sanitizers too.
+#define CAG_MAX_HEIGHT 4000
 
 // Parses a source. Always gives a tree (release with cag_module_ast_free); errors go to `errors`,
 // up to 20 of them, and the tree then has ERROR expressions where nothing could be read.

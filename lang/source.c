@@ -42,8 +42,8 @@ void cag_source_free(CagSource *s) {
   free(s);
 }
 
-// Bytes of the well-formed UTF-8 character at p (Unicode 15, table 3-7), 0 when there is none. p is NUL-terminated, and a NUL is
-// never part of a longer character, so nothing behind the end is read.
+// Bytes of the well-formed UTF-8 character at p (Unicode 15, table 3-7), 0 when there is none. p is
+// NUL-terminated, and a NUL is never part of a longer character, so nothing behind the end is read.
 static size_t character_length(const unsigned char *p) {
   unsigned char a = p[0], low = 0x80, high = 0xbf;
   size_t n;
@@ -52,7 +52,7 @@ static size_t character_length(const unsigned char *p) {
   else if (a >= 0xe0 && a <= 0xef) n = 3;
   else if (a >= 0xf0 && a <= 0xf4) n = 4;
   else return 0;
-  if (a == 0xe0) low = 0xa0;      // no overlong forms
+  if (a == 0xe0) low = 0xa0;       // no overlong forms
   else if (a == 0xed) high = 0x9f; // no surrogates
   else if (a == 0xf0) low = 0x90;
   else if (a == 0xf4) high = 0x8f; // nothing beyond U+10FFFF
@@ -66,7 +66,8 @@ size_t cag_source_bad_utf8(const CagSource *s) {
   const unsigned char *p = (const unsigned char *)s->text;
   size_t i = 0;
   while (i < s->length) {
-    uint64_t eight; // most of a script is ASCII: eight bytes at a time, none with its high bit set and none zero
+    uint64_t eight; // most of a script is ASCII: eight bytes at a time, none with its high bit set
+                    // and none zero
     while (s->length - i >= sizeof eight) {
       memcpy(&eight, p + i, sizeof eight);
       if ((eight | (eight - 0x0101010101010101u)) & 0x8080808080808080u) break;

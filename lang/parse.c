@@ -1,0 +1,400 @@
+// The parser's ground: tokens, errors, panic, brackets, lists under way.
+
+#include "lang/parse.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- tokens ----
+
+CagToken *parse_peek(Parser *p, unsigned n) {
+  while (p->count <= n) {
+    cag_lexer_next(&p->lexer, &p->ahead[(p->first + p->count) % LOOK_AHEAD]);
+    p->count++;
+  }
+  return &p->ahead[(p->first + n) % LOOK_AHEAD];
+}
+
+static CagTokenKind closer_of(CagTokenKind opener) {
+  switch (opener) {
+  case CAG_TOKEN_LEFT_PAREN: return CAG_TOKEN_RIGHT_PAREN;
+  case CAG_TOKEN_LEFT_SQUARE: return CAG_TOKEN_RIGHT_SQUARE;
+  case CAG_TOKEN_LEFT_BRACE: return CAG_TOKEN_RIGHT_BRACE;
+  case CAG_TOKEN_TEXT_HEAD: return CAG_TOKEN_TEXT_TAIL;
+  default: return CAG_TOKEN_END;
+  }
+}
+
+static bool is_closer(CagTokenKind k) {
+  return k == CAG_TOKEN_RIGHT_PAREN || k == CAG_TOKEN_RIGHT_SQUARE || k == CAG_TOKEN_RIGHT_BRACE ||
+         k == CAG_TOKEN_TEXT_TAIL;
+}
+
+static void count_opener(Parser *p, const CagToken *t, CagTokenKind closer) {
+  if (p->bracket_count < CAG_MAX_NESTING) {
+    p->brackets[p->bracket_count++] = (Bracket){closer, t->span};
+    return;
+  }
+  p->excess++;
+  parse_error(p, CAG_ERR_too_deep, t->span, "brackets nest more than %d deep here",
+              CAG_MAX_NESTING);
+}
+
+// Takes away the bracket that a closer belongs to, with what was left open inside it. One that
+// closes nothing is passed over.
+static void count_closer(Parser *p, CagTokenKind closer) {
+  if (p->excess) {
+    p->excess--;
+    return;
+  }
+  for (size_t i = p->bracket_count; i-- > 0;)
+    if (p->brackets[i].closer == closer) {
+      p->bracket_count = i;
+      return;
+    }
+}
+
+void parse_skip(Parser *p) {
+  CagToken *t = parse_current(p);
+  CagTokenKind closer = closer_of(t->kind);
+  p->previous = *t;
+  if (closer != CAG_TOKEN_END) count_opener(p, t, closer);
+  else if (is_closer(t->kind)) count_closer(p, t->kind);
+  p->first = (p->first + 1) % LOOK_AHEAD;
+  p->count--;
+  parse_peek(p, 0);
+}
+
+void parse_advance(Parser *p) {
+  if (!p->panic) parse_skip(p);
+}
+
+bool parse_accept(Parser *p, CagTokenKind kind) {
+  if (parse_kind(p) != kind || p->panic) return false;
+  parse_skip(p);
+  return true;
+}
+
+bool parse_at_newline(Parser *p) {
+  return p->newlines && !p->panic && parse_current(p)->newline_before;
+}
+
+bool parse_is_word(CagTokenKind kind) {
+  return kind == CAG_TOKEN_NAME || kind >= CAG_TOKEN_FIRST_WORD;
+}
+
+bool parse_begins_expression(CagTokenKind kind) {
+  switch (kind) {
+  case CAG_TOKEN_NUMBER:
+  case CAG_TOKEN_ANGLE:
+  case CAG_TOKEN_TEXT:
+  case CAG_TOKEN_TEXT_HEAD:
+  case CAG_TOKEN_NAME:
+  case CAG_TOKEN_LEFT_PAREN:
+  case CAG_TOKEN_LEFT_SQUARE:
+  case CAG_TOKEN_LEFT_BRACE:
+  case CAG_TOKEN_MINUS:
+  case CAG_TOKEN_NOT:
+  case CAG_TOKEN_IF:
+  case CAG_TOKEN_TRUE:
+  case CAG_TOKEN_FALSE:
+  case CAG_TOKEN_NONE: return true;
+  default: return false;
+  }
+}
+
+bool parse_token_is(Parser *p, const CagToken *t, const char *name) {
+  (void)p;
+  return t->kind == CAG_TOKEN_NAME && strcmp(t->as.name, name) == 0;
+}
+
+// ---- what begins a statement ----
+
+// So many words of a parameter list are looked through for its `=`.
+#define LONGEST_PARAMETER_LIST 4096
+
+bool parse_at_function(Parser *p) {
+  if (parse_kind(p) != CAG_TOKEN_NAME || parse_kind_at(p, 1) != CAG_TOKEN_LEFT_PAREN) return false;
+  const CagToken *paren = parse_peek(p, 1);
+  if (paren->newline_before) return false;
+  CagLexer probe;
+  cag_lexer_probe(&probe, &p->lexer, paren->span.start);
+  CagToken t;
+  size_t open = 0, left = LONGEST_PARAMETER_LIST;
+  do {
+    cag_lexer_next(&probe, &t);
+    if (closer_of(t.kind) != CAG_TOKEN_END) open++;
+    else if (is_closer(t.kind)) open--;
+  } while (open && --left && t.kind != CAG_TOKEN_END && t.kind != CAG_TOKEN_ERROR);
+  bool found = false;
+  if (open == 0) {
+    cag_lexer_next(&probe, &t);
+    found = t.kind == CAG_TOKEN_EQUALS;
+  }
+  cag_lexer_release(&probe);
+  return found;
+}
+
+static bool in_first_column(Parser *p) {
+  uint32_t start = parse_current(p)->span.start;
+  return start == 0 || p->module->source->text[start - 1] == '\n';
+}
+
+bool parse_at_statement(Parser *p) {
+  if (p->panic || !in_first_column(p)) return false;
+  CagTokenKind next;
+  switch (parse_kind(p)) {
+  case CAG_TOKEN_IMPORT:
+  case CAG_TOKEN_PARAM:
+  case CAG_TOKEN_SHOW:
+  case CAG_TOKEN_PRINT:
+  case CAG_TOKEN_ASSERT: return parse_kind_at(p, 1) != CAG_TOKEN_COLON;
+  case CAG_TOKEN_NAME:
+    next = parse_kind_at(p, 1);
+    if (next == CAG_TOKEN_EQUALS || next == CAG_TOKEN_ASSIGN_OPERATOR) return true;
+    if (next == CAG_TOKEN_NAME) return !parse_peek(p, 1)->newline_before;
+    return parse_at_function(p);
+  default: return false;
+  }
+}
+
+// ---- errors ----
+
+static CagDiagnostic *add_error(Parser *p, CagErrorId id, CagSpan span, const char *format,
+                                va_list args) {
+  char message[512];
+  vsnprintf(message, sizeof message, format, args);
+  return cag_diagnostics_add(p->errors, id, p->module->source, span, "%s", message);
+}
+
+CagDiagnostic *parse_error(Parser *p, CagErrorId id, CagSpan span, const char *format, ...) {
+  if (p->panic) return NULL;
+  CagTokenKind kind = parse_current(p)->kind;
+  size_t told = p->errors->count + p->errors->dropped - p->first_error;
+  if (kind == CAG_TOKEN_END && told == 0) p->cut_off = true;
+  if (kind == CAG_TOKEN_ERROR && told == 1 && p->lexer.cut_off) p->cut_off = true;
+  p->panic = true;
+  if (kind == CAG_TOKEN_ERROR) return NULL; // the lexer has told it
+  va_list args;
+  va_start(args, format);
+  CagDiagnostic *d = add_error(p, id, span, format, args);
+  va_end(args);
+  return d;
+}
+
+CagDiagnostic *parse_mend(Parser *p, CagErrorId id, CagSpan span, const char *format, ...) {
+  if (p->panic) return NULL;
+  va_list args;
+  va_start(args, format);
+  CagDiagnostic *d = add_error(p, id, span, format, args);
+  va_end(args);
+  return d;
+}
+
+void parse_help(CagDiagnostic *d, const char *format, ...) {
+  if (!d) return;
+  va_list args;
+  va_start(args, format);
+  char text[512];
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  cag_diagnostic_set_help(d, "%s", text);
+}
+
+void parse_related(Parser *p, CagDiagnostic *d, CagSpan span, const char *text) {
+  if (d) cag_diagnostic_add_note(d, CAG_NOTE_RELATED, p->module->source, span, "%s", text);
+}
+
+const char *parse_quote(Parser *p, CagSpan span, char *buffer, size_t size, const char *else_text) {
+  size_t length = span.end - span.start;
+  const char *text = p->module->source->text + span.start;
+  if (length == 0 || length >= size || memchr(text, '\n', length)) return else_text;
+  memcpy(buffer, text, length);
+  buffer[length] = 0;
+  return buffer;
+}
+
+const char *parse_found(Parser *p, char *buffer, size_t size) {
+  const CagToken *t = parse_current(p);
+  char word[40];
+  switch (t->kind) {
+  case CAG_TOKEN_END: return p->mode == CAG_PARSE_REPL ? "the end" : "the end of the file";
+  case CAG_TOKEN_TEXT:
+  case CAG_TOKEN_TEXT_HEAD: return "a text";
+  case CAG_TOKEN_TEXT_MIDDLE:
+  case CAG_TOKEN_TEXT_TAIL: return "`}`";
+  default: break;
+  }
+  if (!parse_quote(p, t->span, word, sizeof word, NULL)) return cag_token_what(t->kind);
+  if (t->kind >= CAG_TOKEN_FIRST_WORD) snprintf(buffer, size, "the reserved word `%s`", word);
+  else snprintf(buffer, size, "`%s`", word);
+  return buffer;
+}
+
+CagSpan parse_here(Parser *p) {
+  CagSpan s = parse_current(p)->span;
+  if (parse_current(p)->kind == CAG_TOKEN_END) s.start = s.end = p->previous.span.end;
+  return s;
+}
+
+// Reports the innermost bracket when the text goes on, or ends, as if it were closed.
+static bool report_unclosed(Parser *p) {
+  if (p->panic || p->bracket_count == 0) return false;
+  if (parse_kind(p) != CAG_TOKEN_END && !parse_at_statement(p)) return false;
+  const Bracket *b = &p->brackets[p->bracket_count - 1];
+  const char *closer = cag_token_what(b->closer);
+  if (parse_kind(p) == CAG_TOKEN_END) {
+    CagDiagnostic *d = parse_error(p, CAG_ERR_bracket_not_closed, b->span,
+                                   "this bracket is never closed: %s is missing", closer);
+    parse_help(d, "opened here");
+    return true;
+  }
+  CagSpan next = parse_current(p)->span;
+  CagDiagnostic *d = parse_error(p, CAG_ERR_bracket_not_closed, b->span,
+                                 "this bracket is not closed: %s is missing", closer);
+  parse_help(d, "opened here");
+  parse_related(p, d, next, "still open where the next statement begins");
+  return true;
+}
+
+static void unexpected_closer(Parser *p, const char *found) {
+  CagSpan here = parse_here(p);
+  if (p->bracket_count == 0) {
+    parse_help(parse_error(p, CAG_ERR_bracket_stray, here, "%s closes nothing", found),
+               "no bracket is open here");
+    return;
+  }
+  const Bracket *b = &p->brackets[p->bracket_count - 1];
+  CagSpan opener = b->span;
+  const char *wanted = cag_token_what(b->closer);
+  CagDiagnostic *d =
+      parse_error(p, CAG_ERR_bracket_mismatch, here, "expected %s, found %s", wanted, found);
+  parse_help(d, "close the inner bracket first");
+  parse_related(p, d, opener, "the open bracket");
+}
+
+// Words that people put behind a value out of habit.
+static bool habit_behind(Parser *p, const CagExpr *before) {
+  char text[QUOTE_SIZE];
+  CagSpan here = parse_here(p);
+  const char *value = before ? parse_quote(p, before->span, text, sizeof text, "a") : "a";
+  CagDiagnostic *d;
+  switch (parse_kind(p)) {
+  case CAG_TOKEN_QUESTION:
+    d = parse_error(p, CAG_ERR_ternary, here, "a choice is not written with `?`");
+    parse_help(d, "write if %s then a else b", before ? value : "c");
+    return true;
+  case CAG_TOKEN_EQUALS:
+    d = parse_error(p, CAG_ERR_equals_in_expression, here,
+                    "`=` defines a name, and cannot stand here");
+    parse_help(d, "to compare write ==");
+    return true;
+  case CAG_TOKEN_ASSIGN_OPERATOR:
+    d = parse_error(p, CAG_ERR_assignment_operator, here,
+                    "nothing changes in cag: no value can be assigned");
+    parse_help(d, "define a new name for the new value");
+    return true;
+  case CAG_TOKEN_NOT:
+    if (parse_kind_at(p, 1) != CAG_TOKEN_IN) return false;
+    here.end = parse_peek(p, 1)->span.end;
+    d = parse_error(p, CAG_ERR_not_in, here, "`not in` is no operator");
+    parse_help(d, "write not (%s in xs)", value);
+    return true;
+  case CAG_TOKEN_IF:
+    d = parse_error(p, CAG_ERR_trailing_if, here, "the condition comes before the value");
+    parse_help(d, "write if c then %s else b", value);
+    return true;
+  case CAG_TOKEN_FOR:
+    d = parse_error(p, CAG_ERR_trailing_for, here, "in a comprehension the loop comes first");
+    parse_help(d, "write [for x in xs: %s]", value);
+    return true;
+  case CAG_TOKEN_BY:
+    d = parse_error(p, CAG_ERR_by_without_range, here,
+                    "`by` gives the step of a range, and here is no range");
+    parse_help(d, "write 0..10 by 2");
+    return true;
+  case CAG_TOKEN_ARROW:
+    d = parse_error(p, CAG_ERR_function_parameters, here,
+                    "before `=>` stand the names of the parameters");
+    parse_help(d, "write x => e or (x, y) => e");
+    return true;
+  case CAG_TOKEN_COLON:
+    if (p->bracket_count == 0 || p->brackets[p->bracket_count - 1].closer != CAG_TOKEN_TEXT_TAIL)
+      return false;
+    d = parse_error(p, CAG_ERR_format_spec, here,
+                    "the { } of a text hold an expression and no format");
+    parse_help(d, "write {text(%s, digits: 2)}", value);
+    return true;
+  default: return false;
+  }
+}
+
+void parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const char *wanted) {
+  if (p->panic || report_unclosed(p) || habit_behind(p, before)) return;
+  char word[64];
+  CagTokenKind kind = parse_kind(p);
+  const char *found = parse_found(p, word, sizeof word);
+  if (is_closer(kind) || kind == CAG_TOKEN_TEXT_MIDDLE) {
+    unexpected_closer(p, found);
+    return;
+  }
+  bool moved = parse_current(p)->newline_before;
+  CagDiagnostic *d = parse_error(p, id, parse_here(p), "expected %s, found %s", wanted, found);
+  if (kind == CAG_TOKEN_LEFT_PAREN && moved && before)
+    parse_help(d, "the `(` of a call stands on the line of the function");
+  else if (kind == CAG_TOKEN_LEFT_SQUARE && moved && before)
+    parse_help(
+        d, "a comma is missing before it, or the `[` of an index is not on the line of the list");
+  else if (id == CAG_ERR_expected_separator && parse_begins_expression(kind))
+    parse_help(d, "a comma or an operator is missing before it");
+  else if (id == CAG_ERR_expected_end && parse_begins_expression(kind))
+    parse_help(d, "an operator is missing before it, or a line break");
+  else if (kind == CAG_TOKEN_SPREAD) parse_help(d, "a range is written 0..3");
+  else if (kind == CAG_TOKEN_SEMICOLON) parse_help(d, "a comma separates what stands in brackets");
+}
+
+// ---- brackets ----
+
+Opened parse_open(Parser *p, bool newlines) {
+  Opened o = {parse_here(p), p->newlines};
+  parse_advance(p);
+  p->newlines = newlines;
+  return o;
+}
+
+bool parse_close(Parser *p, Opened o, CagTokenKind closer, const CagExpr *before,
+                 const char *wanted) {
+  p->newlines = o.newlines;
+  if (parse_accept(p, closer)) return true;
+  parse_unexpected(p, before, CAG_ERR_expected_separator, wanted);
+  return false;
+}
+
+// ---- lists under way ----
+
+size_t parse_list_begin(Parser *p) { return p->stack_size; }
+
+void parse_list_push(Parser *p, const void *item, size_t size) {
+  if (p->stack_size + size > p->stack_capacity) {
+    size_t capacity = p->stack_capacity ? 2 * p->stack_capacity : 4096;
+    char *stack = realloc(p->stack, capacity);
+    if (!stack) {
+      fputs("cag: out of memory\n", stderr);
+      exit(5); // a limit was crossed (command line, exit status)
+    }
+    p->stack = stack;
+    p->stack_capacity = capacity;
+  }
+  memcpy(p->stack + p->stack_size, item, size);
+  p->stack_size += size;
+}
+
+void *parse_list_end(Parser *p, size_t begin, size_t size, size_t *count) {
+  size_t bytes = p->stack_size - begin;
+  void *items = cag_arena_alloc(&p->module->arena, bytes);
+  if (bytes) memcpy(items, p->stack + begin, bytes);
+  p->stack_size = begin;
+  *count = bytes / size;
+  return items;
+}

@@ -1,0 +1,125 @@
+// What the files of the parser share: the parser's state, its tokens, errors and brackets.
+//
+// Tokens come from a short look-ahead. After an error the parser is in panic: every token reads as
+// END, so that all functions return by themselves, and further errors are not reported;
+// cag_parse_recover ends it at the next statement. Brackets are counted where tokens are consumed,
+// in panic too, so the stack always holds what is open at this place.
+
+#ifndef CAG_LANG_PARSE_H
+#define CAG_LANG_PARSE_H
+
+#include "lang/lexer.h"
+#include "lang/parser.h"
+
+#define LOOK_AHEAD 4
+
+typedef struct Bracket {
+  CagTokenKind closer;
+  CagSpan span;
+} Bracket;
+
+typedef struct Parser {
+  CagLexer lexer;
+  CagNames names;
+  CagModuleAst *module;
+  CagDiagnostics *errors;
+  CagParseMode mode;
+
+  CagToken ahead[LOOK_AHEAD]; // ring: the current token, and those looked at beyond it
+  unsigned first, count;
+  CagToken previous; // the one consumed last
+  bool panic;
+  bool cut_off;       // the first error was that the text ends too early
+  size_t first_error; // errors that were there before this parse
+
+  bool newlines; // newlines count here: the innermost bracket is a block, or there is none
+  Bracket brackets[CAG_MAX_NESTING];
+  size_t bracket_count;
+  size_t excess;          // brackets open beyond the limit
+  unsigned depth;         // recursion that no bracket causes: signs, powers, functions, branches
+  CagSpan statement_head; // first word of the statement, for hints
+  CagTokenKind statement_kind;
+
+  char *stack; // lists under way
+  size_t stack_size, stack_capacity;
+  CagDecl **tops;
+  size_t top_count, top_capacity;
+} Parser;
+
+// ---- tokens ----
+
+CagToken *parse_peek(Parser *p, unsigned n); // n = 0: the current one
+void parse_advance(Parser *p);
+void parse_skip(Parser *p); // the same, in panic too
+
+static inline CagTokenKind parse_kind(Parser *p) {
+  return p->panic ? CAG_TOKEN_END : p->ahead[p->first].kind;
+}
+static inline CagToken *parse_current(Parser *p) { return &p->ahead[p->first]; }
+static inline CagTokenKind parse_kind_at(Parser *p, unsigned n) {
+  return p->panic ? CAG_TOKEN_END : parse_peek(p, n)->kind;
+}
+bool parse_accept(Parser *p, CagTokenKind kind);
+// A newline stands before the current token, in a place where newlines count.
+bool parse_at_newline(Parser *p);
+// The current token begins a line in its first column, and a statement.
+bool parse_at_statement(Parser *p);
+// A name with parameters and a `=` stands here: a definition and no call.
+bool parse_at_function(Parser *p);
+bool parse_is_word(CagTokenKind kind); // a name or a reserved word
+bool parse_begins_expression(CagTokenKind kind);
+bool parse_token_is(Parser *p, const CagToken *t, const char *name);
+
+// ---- errors ----
+
+// Reports an error and goes into panic. NULL when the parser is in panic already.
+CagDiagnostic *parse_error(Parser *p, CagErrorId id, CagSpan span, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+// Reports an error whose mend is plain enough to go on.
+CagDiagnostic *parse_mend(Parser *p, CagErrorId id, CagSpan span, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+void parse_help(CagDiagnostic *d, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void parse_related(Parser *p, CagDiagnostic *d, CagSpan span, const char *text);
+// How a message calls the current token: "`foo`", "the end of the file".
+const char *parse_found(Parser *p, char *buffer, size_t size);
+CagSpan parse_here(Parser *p); // of the current token; behind the last one at the end
+// The text of a span for a hint, `else_text` when it is long or has line breaks.
+const char *parse_quote(Parser *p, CagSpan span, char *buffer, size_t size, const char *else_text);
+#define QUOTE_SIZE 64
+// Says what is wrong with the token behind a complete expression. `wanted` is what could have stood
+// there.
+void parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const char *wanted);
+
+// ---- brackets and lists ----
+
+// Consumes the opening bracket that is the current token; newlines count inside when `newlines`.
+// Gives what parse_close needs.
+typedef struct Opened {
+  CagSpan span;
+  bool newlines; // whether they counted outside
+} Opened;
+Opened parse_open(Parser *p, bool newlines);
+// Consumes the closing bracket. `wanted` is what else could stand there: "`,` or `)`".
+bool parse_close(Parser *p, Opened o, CagTokenKind closer, const CagExpr *before,
+                 const char *wanted);
+
+size_t parse_list_begin(Parser *p);
+void parse_list_push(Parser *p, const void *item, size_t size);
+// The list since `begin` as an array in the arena.
+void *parse_list_end(Parser *p, size_t begin, size_t size, size_t *count);
+
+// ---- the grammar ----
+
+CagDecl *parse_declare(Parser *p, CagDeclKind kind, const CagToken *name);
+CagExpr *parse_new(Parser *p, CagExprKind kind, uint32_t start);
+CagExpr *parse_expression(Parser *p);
+CagExpr *parse_operand(Parser *p);
+CagFunctionAst *parse_function(Parser *p, const char *name);
+CagStatement *parse_definition(Parser *p, bool top);
+CagStatement *parse_assert(Parser *p);
+const char *parse_doc(Parser *p);
+// Reports statements and words that have no place at the head of a statement here. Gives true when
+// it did.
+bool parse_habit(Parser *p, bool in_block);
+
+#endif

@@ -1,0 +1,574 @@
+// Statements, and the parse as a whole.
+
+#include "lang/parser.h"
+#include "lang/parse.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// ---- statements ----
+
+static CagStatement *new_statement(Parser *p, CagStatementKind kind) {
+  CagStatement *s = cag_arena_alloc(&p->module->arena, sizeof *s);
+  s->kind = kind;
+  s->span = parse_current(p)->span;
+  s->doc = parse_doc(p);
+  p->statement_head = s->span;
+  p->statement_kind = parse_kind(p);
+  return s;
+}
+
+static CagStatement *end_statement(Parser *p, CagStatement *s) {
+  if (p->previous.span.end > s->span.start) s->span.end = p->previous.span.end;
+  return s;
+}
+
+// The text of one /// comment, without its slashes and the blank behind them.
+static void add_doc_line(Parser *p, size_t list, CagSpan span) {
+  const char *text = p->module->source->text + span.start + 3;
+  size_t length = span.end - span.start - 3;
+  if (length && *text == ' ') text++, length--;
+  if (parse_list_begin(p) > list) parse_list_push(p, "\n", 1);
+  if (length) parse_list_push(p, text, length);
+}
+
+// The documentation before the current token: all its /// lines.
+const char *parse_doc(Parser *p) {
+  const CagComment *comments = p->lexer.comments;
+  size_t end = parse_current(p)->comments, first = end;
+  bool any = false;
+  while (first > 0 && comments[first - 1].span.start >= p->previous.span.end)
+    any |= comments[--first].doc;
+  if (!any) return NULL;
+  size_t list = parse_list_begin(p), length;
+  for (size_t i = first; i < end; i++)
+    if (comments[i].doc) add_doc_line(p, list, comments[i].span);
+  parse_list_push(p, "", 1);
+  return parse_list_end(p, list, 1, &length);
+}
+
+static CagDecl *declare_top(Parser *p, CagStatement *s, const CagToken *name) {
+  CagDecl *d = parse_declare(p, CAG_DECL_TOP, name);
+  d->statement = s;
+  d->index = p->top_count;
+  d->doc = s->doc;
+  if (p->top_count == p->top_capacity) {
+    size_t capacity = p->top_capacity ? 2 * p->top_capacity : 64;
+    CagDecl **tops = realloc(p->tops, capacity * sizeof *tops);
+    if (!tops) {
+      fputs("cag: out of memory\n", stderr);
+      exit(5); // a limit was crossed (command line, exit status)
+    }
+    p->tops = tops;
+    p->top_capacity = capacity;
+  }
+  p->tops[p->top_count++] = d;
+  return d;
+}
+
+// A name that a statement defines. An error, in panic, for anything else.
+static bool statement_name(Parser *p, CagToken *name, const char *what) {
+  *name = *parse_current(p);
+  if (parse_accept(p, CAG_TOKEN_NAME)) return true;
+  char word[64];
+  const char *found = parse_found(p, word, sizeof word);
+  if (parse_kind(p) >= CAG_TOKEN_FIRST_WORD)
+    parse_help(
+        parse_error(p, CAG_ERR_reserved_name, parse_here(p), "expected %s, found %s", what, found),
+        "choose another name");
+  else parse_error(p, CAG_ERR_expected_name, parse_here(p), "expected %s, found %s", what, found);
+  name->as.name = cag_names_intern(&p->names, "_", 1)->bytes;
+  return false;
+}
+
+static void expect(Parser *p, CagTokenKind kind, const char *wanted) {
+  if (p->panic || parse_accept(p, kind)) return;
+  parse_unexpected(p, NULL, CAG_ERR_expected_word, wanted);
+}
+
+// definition = name [ "(" [ parameters ] ")" ] "=" expr
+CagStatement *parse_definition(Parser *p, bool top) {
+  CagStatement *s = new_statement(p, CAG_STATEMENT_DEFINITION);
+  CagToken name = *parse_current(p);
+  parse_advance(p);
+  CagFunctionAst *f = NULL;
+  if (parse_kind(p) == CAG_TOKEN_LEFT_PAREN) f = parse_function(p, name.as.name);
+  if (top) {
+    s->as.definition.decl = declare_top(p, s, &name);
+  } else {
+    s->as.definition.decl = parse_declare(p, CAG_DECL_BLOCK, &name);
+    s->as.definition.decl->statement = s;
+    s->as.definition.decl->doc = s->doc;
+  }
+  expect(p, CAG_TOKEN_EQUALS, "`=`");
+  CagExpr *value = parse_expression(p);
+  if (f) {
+    f->body = value;
+    CagExpr *e = parse_new(p, CAG_EXPR_LAMBDA, name.span.start);
+    e->span.end = p->previous.span.end;
+    e->height = value->height + 1;
+    for (size_t i = 0; i < f->parameter_count; i++)
+      if (f->parameters[i].fallback && f->parameters[i].fallback->height >= e->height)
+        e->height = f->parameters[i].fallback->height + 1;
+    e->as.function = f;
+    f->span = e->span;
+    if (!top) f->self = s->as.definition.decl;
+    value = e;
+  }
+  s->as.definition.value = value;
+  return end_statement(p, s);
+}
+
+// A text that stands for itself, without { }.
+static const char *plain_text(Parser *p, const char *what) {
+  CagToken *t = parse_current(p);
+  if (t->kind == CAG_TOKEN_TEXT_HEAD) {
+    parse_help(parse_error(p, CAG_ERR_text_not_plain, t->span, "%s has no { } in it", what),
+               "a brace itself is written \\{");
+    return "";
+  }
+  const char *text = t->as.text.bytes;
+  parse_advance(p);
+  return text;
+}
+
+static bool at_text(Parser *p) {
+  return parse_kind(p) == CAG_TOKEN_TEXT || parse_kind(p) == CAG_TOKEN_TEXT_HEAD;
+}
+
+// param = "param" name "=" operand [ "in" expr ] [ text ]
+static CagStatement *param(Parser *p) {
+  CagStatement *s = new_statement(p, CAG_STATEMENT_PARAM);
+  parse_advance(p);
+  CagToken name;
+  statement_name(p, &name, "the name of the param");
+  s->as.param.decl = declare_top(p, s, &name);
+  expect(p, CAG_TOKEN_EQUALS, "`=` and a default");
+  s->as.param.value = parse_operand(p);
+  if (parse_accept(p, CAG_TOKEN_IN)) s->as.param.domain = parse_expression(p);
+  if (at_text(p) && !parse_at_newline(p)) s->as.param.label = plain_text(p, "the label of a param");
+  return end_statement(p, s);
+}
+
+// ---- import ----
+
+// The last word of a path in a text: what stands between its last `/` and its `.cag`. False when
+// that is no name.
+static bool word_of_path(Parser *p, const char *path, CagToken *word) {
+  const char *slash = strrchr(path, '/'), *start = slash ? slash + 1 : path;
+  size_t length = strlen(start);
+  if (length > 4 && strcmp(start + length - 4, ".cag") == 0) length -= 4;
+  char *name = cag_arena_copy(&p->module->arena, start, length);
+  CagSource *source = cag_source_new("", name, length);
+  if (!source) return false;
+  CagLexer probe;
+  cag_lexer_init(&probe, source, &p->module->arena, &p->names, NULL);
+  CagToken end;
+  cag_lexer_next(&probe, word);
+  cag_lexer_next(&probe, &end);
+  bool good = word->kind == CAG_TOKEN_NAME && word->span.start == 0 && word->span.end == length &&
+              end.kind == CAG_TOKEN_END;
+  cag_lexer_release(&probe);
+  cag_source_free(source);
+  return good;
+}
+
+// name { "." name }: the path, and its last name.
+static const char *module_path(Parser *p, CagToken *last) {
+  size_t list = parse_list_begin(p), length;
+  do {
+    if (!statement_name(p, last, "the name of a module")) break;
+    if (parse_list_begin(p) > list) parse_list_push(p, ".", 1);
+    parse_list_push(p, last->as.name, strlen(last->as.name));
+  } while (parse_accept(p, CAG_TOKEN_DOT));
+  parse_list_push(p, "", 1);
+  return parse_list_end(p, list, 1, &length);
+}
+
+// ":" name { "," name }
+static void import_names(Parser *p, CagStatement *s) {
+  size_t list = parse_list_begin(p);
+  do {
+    CagToken name;
+    if (parse_kind(p) == CAG_TOKEN_STAR) {
+      parse_help(parse_error(p, CAG_ERR_expected_name, parse_here(p),
+                             "expected a name of the module, found `*`"),
+                 "name what the file uses, or import the module and write module.name");
+      break;
+    }
+    if (!statement_name(p, &name, "a name of the module")) break;
+    CagImportName item = {parse_declare(p, CAG_DECL_IMPORTED, &name), name.as.name};
+    item.decl->statement = s;
+    parse_list_push(p, &item, sizeof item);
+  } while (parse_accept(p, CAG_TOKEN_COMMA));
+  s->as.import.names = parse_list_end(p, list, sizeof(CagImportName), &s->as.import.name_count);
+}
+
+// import = "import" ( name { "." name } | text ) [ "as" name ] [ ":" name { "," name } ]
+static CagStatement *import(Parser *p) {
+  CagStatement *s = new_statement(p, CAG_STATEMENT_IMPORT);
+  parse_advance(p);
+  CagToken word = {0};
+  bool has_word = true;
+  CagSpan path = parse_here(p);
+  if (at_text(p)) {
+    s->as.import.is_text = true;
+    s->as.import.path = plain_text(p, "the path of an import");
+    has_word = word_of_path(p, s->as.import.path, &word);
+    word.span = path;
+  } else {
+    s->as.import.path = module_path(p, &word);
+    path.end = p->previous.span.end;
+  }
+  s->as.import.path_span = path;
+  if (parse_accept(p, CAG_TOKEN_AS)) {
+    has_word = statement_name(p, &word, "the name for the module");
+    s->as.import.alias = word.as.name;
+  }
+  bool names = parse_accept(p, CAG_TOKEN_COLON);
+  if (names) import_names(p, s);
+  if (names && !s->as.import.alias) return end_statement(p, s);
+  if (!has_word && !p->panic) {
+    parse_help(parse_mend(p, CAG_ERR_import_needs_name, path, "this path does not end in a name"),
+               "add a name: as part");
+    return end_statement(p, s);
+  }
+  if (!p->panic) {
+    s->as.import.decl = parse_declare(p, CAG_DECL_IMPORT, &word);
+    s->as.import.decl->statement = s;
+  }
+  return end_statement(p, s);
+}
+
+// ---- show, print, assert ----
+
+// ( "show" | "print" ) expr { "," expr }
+static CagStatement *list_statement(Parser *p, CagStatementKind kind) {
+  CagStatement *s = new_statement(p, kind);
+  parse_advance(p);
+  size_t list = parse_list_begin(p);
+  do {
+    CagExpr *e = parse_expression(p);
+    parse_list_push(p, &e, sizeof e);
+  } while (!p->panic && parse_accept(p, CAG_TOKEN_COMMA));
+  s->as.list.items = parse_list_end(p, list, sizeof(CagExpr *), &s->as.list.count);
+  return end_statement(p, s);
+}
+
+// assert = "assert" expr [ "," expr ]
+CagStatement *parse_assert(Parser *p) {
+  CagStatement *s = new_statement(p, CAG_STATEMENT_ASSERT);
+  parse_advance(p);
+  s->as.assertion.condition = parse_expression(p);
+  if (parse_accept(p, CAG_TOKEN_COMMA)) s->as.assertion.message = parse_expression(p);
+  return end_statement(p, s);
+}
+
+// ---- habits ----
+
+static bool is_one_of(const char *name, const char *const *words, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (strcmp(name, words[i]) == 0) return true;
+  return false;
+}
+#define IS_ONE_OF(name, ...)                                                                       \
+  is_one_of(name, (const char *const[]){__VA_ARGS__},                                              \
+            sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))
+
+// A name of another language at the head of a statement.
+static bool name_habit(Parser *p) {
+  CagToken word = *parse_current(p), next = *parse_peek(p, 1);
+  if (next.newline_before) return false;
+  bool value_follows = parse_begins_expression(next.kind) && next.kind != CAG_TOKEN_MINUS &&
+                       next.kind != CAG_TOKEN_LEFT_SQUARE &&
+                       (next.kind != CAG_TOKEN_LEFT_PAREN || next.span.start > word.span.end);
+  if (!value_follows) return false;
+  if (IS_ONE_OF(word.as.name, "return", "yield")) {
+    parse_help(parse_mend(p, CAG_ERR_return, word.span, "there is no `%s`", word.as.name),
+               "the last expression of a block is its value");
+    parse_advance(p);
+    return false;
+  }
+  if (IS_ONE_OF(word.as.name, "while", "foreach", "repeat", "until", "loop")) {
+    if (next.kind == CAG_TOKEN_LEFT_PAREN && strcmp(word.as.name, "repeat") == 0) return false;
+    parse_help(
+        parse_error(p, CAG_ERR_loop, word.span, "there is no `%s`: nothing changes in cag",
+                    word.as.name),
+        "a list is built by [for x in xs: ...], a value by reduce or a function that calls itself");
+    return true;
+  }
+  if (next.kind == CAG_TOKEN_NAME &&
+      IS_ONE_OF(word.as.name, "let", "var", "val", "const", "def", "define", "fn", "fun", "func",
+                "function", "local", "auto", "int", "float", "double", "string", "bool", "number",
+                "module", "export", "final", "static", "set")) {
+    parse_help(
+        parse_mend(p, CAG_ERR_definition_keyword, word.span, "a definition begins with its name"),
+        "leave `%s` out", word.as.name);
+    parse_advance(p);
+  }
+  return false;
+}
+
+bool parse_habit(Parser *p, bool in_block) {
+  CagTokenKind kind = parse_kind(p);
+  if (kind == CAG_TOKEN_NAME) return name_habit(p);
+  if (kind < CAG_TOKEN_FIRST_WORD) return false;
+  CagTokenKind next = parse_kind_at(p, 1);
+  CagSpan here = parse_here(p);
+  char word[64];
+  const char *found = parse_quote(p, here, word, sizeof word, "");
+  if (next == CAG_TOKEN_EQUALS ||
+      (next == CAG_TOKEN_LEFT_PAREN && in_block && kind == CAG_TOKEN_BY)) {
+    parse_help(parse_error(p, CAG_ERR_reserved_name, here,
+                           "`%s` is a word of the language and cannot be defined", found),
+               "choose another name");
+    return true;
+  }
+  if (kind == CAG_TOKEN_FOR) {
+    parse_help(parse_error(p, CAG_ERR_loop, here, "`for` is no statement: it stands in a list"),
+               "write [for x in xs: ...]");
+    return true;
+  }
+  if (!in_block) return false;
+  if (kind == CAG_TOKEN_SHOW || kind == CAG_TOKEN_PRINT || kind == CAG_TOKEN_PARAM ||
+      kind == CAG_TOKEN_IMPORT) {
+    if (parse_at_statement(p)) {
+      parse_unexpected(p, NULL, CAG_ERR_bracket_not_closed, "`}`");
+      return true;
+    }
+    CagDiagnostic *d =
+        parse_error(p, CAG_ERR_block_statement, here, "`%s` stands at the top level only", found);
+    parse_help(d, kind == CAG_TOKEN_PRINT ? "write trace(x) to see a value from within"
+                                          : "a block has definitions, asserts and its value");
+    return true;
+  }
+  return false;
+}
+
+// ---- the module ----
+
+// An expression where a statement should stand.
+static CagStatement *expression_statement(Parser *p) {
+  CagStatement *s = new_statement(p, CAG_STATEMENT_EXPRESSION);
+  CagExpr *e = parse_expression(p);
+  s->as.expression = e;
+  end_statement(p, s);
+  if (p->mode == CAG_PARSE_REPL || p->panic) return s;
+  if (parse_kind(p) == CAG_TOKEN_ASSIGN_OPERATOR || parse_kind(p) == CAG_TOKEN_QUESTION ||
+      parse_kind(p) == CAG_TOKEN_EQUALS)
+    return s; // reported as what it is
+  char text[QUOTE_SIZE];
+  const char *said = parse_quote(p, e->span, text, sizeof text, "...");
+  CagDiagnostic *d =
+      parse_mend(p, CAG_ERR_expression_statement, e->span, "an expression alone is no statement");
+  if (e->kind == CAG_EXPR_BINARY && e->as.binary.op == CAG_OP_EQUAL &&
+      e->as.binary.left->kind == CAG_EXPR_NAME)
+    parse_help(d, "to define %s write =", e->as.binary.left->as.name.id);
+  else parse_help(d, "write print %s, or show it, or give it a name", said);
+  return s;
+}
+
+static CagStatement *name_statement(Parser *p) {
+  CagToken *next = parse_peek(p, 1);
+  char text[QUOTE_SIZE];
+  if (next->kind == CAG_TOKEN_EQUALS || parse_at_function(p)) return parse_definition(p, true);
+  next = parse_peek(p, 1);
+  if (next->kind == CAG_TOKEN_ASSIGN_OPERATOR) {
+    const char *name = parse_current(p)->as.name;
+    const char *op = parse_quote(p, next->span, text, sizeof text, "=");
+    CagDiagnostic *d = parse_error(p, CAG_ERR_assignment_operator, next->span,
+                                   "nothing changes in cag: %s keeps its value", name);
+    parse_help(d, "define a new name: %s2 = %s %.*s ...", name, name, (int)strlen(op) - 1, op);
+    return NULL;
+  }
+  return expression_statement(p);
+}
+
+// statement = import | param | definition | "show" list | "print" list | assert
+static CagStatement *statement(Parser *p) {
+  if (parse_habit(p, false)) return NULL;
+  CagTokenKind kind = parse_kind(p);
+  switch (kind) {
+  case CAG_TOKEN_IMPORT: return import(p);
+  case CAG_TOKEN_PARAM: return param(p);
+  case CAG_TOKEN_SHOW: return list_statement(p, CAG_STATEMENT_SHOW);
+  case CAG_TOKEN_PRINT: return list_statement(p, CAG_STATEMENT_PRINT);
+  case CAG_TOKEN_ASSERT: return parse_assert(p);
+  case CAG_TOKEN_NAME: return name_statement(p);
+  default: break;
+  }
+  if (parse_begins_expression(kind)) return expression_statement(p);
+  char word[64];
+  if (kind == CAG_TOKEN_RIGHT_PAREN || kind == CAG_TOKEN_RIGHT_SQUARE ||
+      kind == CAG_TOKEN_RIGHT_BRACE)
+    parse_unexpected(p, NULL, CAG_ERR_expected_statement, "a statement");
+  else
+    parse_help(parse_error(p, CAG_ERR_expected_statement, parse_here(p),
+                           "expected a statement, found %s", parse_found(p, word, sizeof word)),
+               "a line that begins so goes on with nothing before it");
+  return NULL;
+}
+
+// end = newline | ";" | end of the file
+static void end_of_statement(Parser *p, const CagStatement *s) {
+  if (p->panic) return;
+  CagTokenKind kind = parse_kind(p);
+  if (kind == CAG_TOKEN_END || kind == CAG_TOKEN_SEMICOLON) return;
+  if (parse_at_newline(p) && (parse_is_word(kind) || parse_begins_expression(kind)) &&
+      kind != CAG_TOKEN_ELSE && kind != CAG_TOKEN_THEN && kind != CAG_TOKEN_BY &&
+      kind != CAG_TOKEN_AS)
+    return;
+  const CagExpr *before = NULL;
+  if (s && s->kind == CAG_STATEMENT_DEFINITION) before = s->as.definition.value;
+  if (s && s->kind == CAG_STATEMENT_EXPRESSION) before = s->as.expression;
+  parse_unexpected(p, before, CAG_ERR_expected_end, "the end of the line or `;`");
+}
+
+// Ends a panic: passes on to the next statement in the first column, and reports a bracket that is
+// still open there.
+static void recover(Parser *p, uint32_t start) {
+  CagDiagnostics *errors = p->lexer.errors;
+  size_t told = p->errors->count;
+  bool unclosed_told = told && p->errors->items[told - 1].id == CAG_ERR_bracket_not_closed;
+  p->lexer.errors = NULL; // what is skipped is not judged
+  p->panic = false;
+  while (parse_kind(p) != CAG_TOKEN_END) {
+    if (parse_current(p)->span.start > start && parse_at_statement(p)) break;
+    p->panic = true; // nor are the brackets in it
+    parse_skip(p);
+    p->panic = false;
+  }
+  p->lexer.errors = errors;
+  if (p->bracket_count && !p->excess && !unclosed_told) {
+    const Bracket *b = &p->brackets[p->bracket_count - 1];
+    CagDiagnostic *d =
+        parse_mend(p, CAG_ERR_bracket_not_closed, b->span,
+                   "this bracket is not closed: %s is missing", cag_token_what(b->closer));
+    parse_help(d, "opened here");
+  }
+  p->bracket_count = p->excess = p->depth = 0;
+  p->stack_size = 0;
+  p->newlines = true;
+}
+
+static void statements(Parser *p) {
+  size_t capacity = 0, count = 0;
+  CagStatement **list = NULL;
+  for (;;) {
+    while (parse_accept(p, CAG_TOKEN_SEMICOLON)) {}
+    if (parse_kind(p) == CAG_TOKEN_END) break;
+    uint32_t start = parse_current(p)->span.start;
+    CagStatement *s = statement(p);
+    end_of_statement(p, s);
+    if (p->panic) recover(p, start);
+    if (p->errors->count >= CAG_DIAGNOSTICS_MAX) break;
+    if (!s) continue;
+    if (count == capacity) {
+      capacity = capacity ? 2 * capacity : 64;
+      CagStatement **grown = realloc(list, capacity * sizeof *grown);
+      if (!grown) break;
+      list = grown;
+    }
+    list[count++] = s;
+  }
+  CagModuleAst *m = p->module;
+  m->statements = cag_arena_alloc(&m->arena, count * sizeof *list);
+  if (count) memcpy(m->statements, list, count * sizeof *list);
+  m->count = count;
+  free(list);
+}
+
+// Puts the errors of this parse in the order of the text: those of the lexer run a few words ahead.
+static void sort_errors(CagDiagnostics *d, size_t from) {
+  for (size_t i = from + 1; i < d->count; i++) {
+    CagDiagnostic moved = d->items[i];
+    size_t k = i;
+    for (; k > from && d->items[k - 1].span.start > moved.span.start; k--)
+      d->items[k] = d->items[k - 1];
+    d->items[k] = moved;
+  }
+}
+
+static bool check_encoding(const CagSource *source, CagDiagnostics *errors) {
+  size_t bad = cag_source_bad_utf8(source);
+  if (bad == source->length) return true;
+  CagSpan span = {(uint32_t)bad, (uint32_t)bad + 1};
+  unsigned char byte = (unsigned char)source->text[bad];
+  if (byte == 0)
+    cag_diagnostic_set_help(cag_diagnostics_add(errors, CAG_ERR_invalid_utf8, source, span,
+                                                "a zero byte: this is no text"),
+                            "a script is a text in UTF-8");
+  else
+    cag_diagnostic_set_help(cag_diagnostics_add(errors, CAG_ERR_invalid_utf8, source, span,
+                                                "the byte 0x%02X is not UTF-8 here", byte),
+                            "save the file as UTF-8");
+  return false;
+}
+
+static void copy_results(Parser *p) {
+  CagModuleAst *m = p->module;
+  m->tops = cag_arena_alloc(&m->arena, p->top_count * sizeof *m->tops);
+  if (p->top_count) memcpy(m->tops, p->tops, p->top_count * sizeof *m->tops);
+  m->top_count = p->top_count;
+  size_t bytes = p->lexer.comment_count * sizeof *m->comments;
+  m->comments = cag_arena_alloc(&m->arena, bytes);
+  if (bytes) memcpy(m->comments, p->lexer.comments, bytes);
+  m->comment_count = p->lexer.comment_count;
+  m->name_count = p->names.count;
+}
+
+// Parses; tells whether the first error was that the text ends too early.
+static CagModuleAst *parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors,
+                           bool *cut_off) {
+  CagModuleAst *m = calloc(1, sizeof *m);
+  Parser *p = calloc(1, sizeof *p);
+  if (!m || !p) {
+    fputs("cag: out of memory\n", stderr);
+    exit(5); // a limit was crossed (command line, exit status)
+  }
+  m->source = source;
+  size_t before = errors->count;
+  *cut_off = false;
+  if (check_encoding(source, errors)) {
+    p->module = m;
+    p->errors = errors;
+    p->mode = mode;
+    p->first_error = errors->count + errors->dropped;
+    p->newlines = true;
+    cag_names_init(&p->names, &m->arena);
+    cag_lexer_init(&p->lexer, source, &m->arena, &p->names, errors);
+    parse_peek(p, 0);
+    statements(p);
+    copy_results(p);
+    *cut_off = p->cut_off;
+    sort_errors(errors, before);
+    cag_lexer_release(&p->lexer);
+    cag_names_release(&p->names);
+  }
+  free(p->stack);
+  free(p->tops);
+  free(p);
+  return m;
+}
+
+CagModuleAst *cag_parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors) {
+  bool cut_off;
+  return parse(source, mode, errors, &cut_off);
+}
+
+void cag_module_ast_free(CagModuleAst *m) {
+  if (!m) return;
+  cag_arena_free(&m->arena);
+  free(m);
+}
+
+bool cag_parse_incomplete(const char *text, size_t length) {
+  CagSource *source = cag_source_new("", text, length);
+  if (!source) return false;
+  CagDiagnostics errors = {0};
+  bool cut_off;
+  cag_module_ast_free(parse(source, CAG_PARSE_REPL, &errors, &cut_off));
+  cag_diagnostics_free(&errors);
+  cag_source_free(source);
+  return cut_off;
+}
