@@ -1,0 +1,81 @@
+// B-spline basis functions by the triangular scheme (Cox, de Boor), derivatives by differences of
+// the lower degrees, Bezier pieces by blossoms.
+
+#include "geom/basis/bspline.h"
+
+#include <string.h>
+
+void cag_bspline_basis(const double *knots, int p, size_t span, double t, double *out) {
+  out[0] = 1;
+  for (int d = 1; d <= p; d++) {
+    double carried = 0;
+    for (int r = 0; r < d; r++) {
+      double right = knots[span + 1 + (size_t)r], left = knots[span + 1 + (size_t)r - (size_t)d];
+      double share = out[r] / (right - left);
+      out[r] = carried + (right - t) * share;
+      carried = (t - left) * share;
+    }
+    out[d] = carried;
+  }
+}
+
+// N^(k)_{i,p} = p (N^(k-1)_{i,p-1} / (x_{i+p} - x_i) - N^(k-1)_{i+1,p-1} / (x_{i+p+1} - x_{i+1})):
+// from the values of degree p - k, k steps up.
+void cag_bspline_derivatives(const double *knots, int p, size_t span, double t, int order,
+                             double *out) {
+  for (int k = 0; k <= order; k++) {
+    double *row = out + (size_t)k * (size_t)(p + 1);
+    memset(row, 0, sizeof(double) * (size_t)(p + 1));
+    if (k > p) continue;
+    int d = p - k;
+    cag_bspline_basis(knots, d, span, t, row);
+    for (d = p - k + 1; d <= p; d++) {
+      // Function j of degree d (support from span - d + j) is made of j - 1 and j of degree d - 1.
+      double carried = 0;
+      for (int j = 0; j <= d; j++) {
+        double lower = 0;
+        if (j < d) {
+          size_t i = span + (size_t)j - (size_t)d + 1;
+          lower = d * row[j] / (knots[i + (size_t)d] - knots[i]);
+        }
+        row[j] = carried - lower;
+        carried = lower;
+      }
+    }
+  }
+}
+
+// Bezier point j is the blossom at (p - j) times the left and j times the right end.
+void cag_bspline_piece(const double *homogeneous, const double *knots, int p, size_t span,
+                       double *out) {
+  double d[4 * (CAG_MAX_DEGREE + 1)];
+  const double a = knots[span], b = knots[span + 1];
+  const double *first = homogeneous + 4 * (span - (size_t)p);
+  for (int j = 0; j <= p; j++) {
+    memcpy(d, first, sizeof(double) * 4 * (size_t)(p + 1));
+    for (int s = 1; s <= p; s++) {
+      const double u = s <= j ? b : a;
+      for (int i = p; i >= s; i--) {
+        size_t k = span - (size_t)p + (size_t)i;
+        double lo = knots[k], hi = knots[k + (size_t)(p + 1 - s)];
+        double f = (u - lo) / (hi - lo);
+        for (int c = 0; c < 4; c++) d[4 * i + c] = cag_mix(d[4 * (i - 1) + c], d[4 * i + c], f);
+      }
+    }
+    memcpy(out + 4 * j, d + 4 * p, sizeof(double) * 4);
+  }
+}
+
+void cag_bspline_insert(double *homogeneous, double *knots, size_t n, int p, double t) {
+  const size_t r = cag_knots_span(knots, n, p, t, false, 0);
+  double *h = homogeneous;
+  // Points above the span move up; the p of the span are cut, from the last down.
+  memmove(h + 4 * (r + 1), h + 4 * r, sizeof(double) * 4 * (n - r));
+  for (size_t i = r; i + (size_t)p > r; i--) {
+    double f = (t - knots[i]) / (knots[i + (size_t)p] - knots[i]);
+    for (int c = 0; c < 4; c++)
+      h[4 * i + (size_t)c] = cag_mix(h[4 * (i - 1) + (size_t)c], h[4 * i + (size_t)c], f);
+  }
+  memmove(knots + r + 2, knots + r + 1, sizeof(double) * (n + (size_t)p - r));
+  knots[r + 1] = t;
+}

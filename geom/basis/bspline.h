@@ -1,0 +1,23 @@
+// B-spline basis functions over a knot vector, and the Bezier pieces of a B-spline.
+//
+// Over a span only the p + 1 functions N[span - p] .. N[span] are not zero.
+
+#ifndef CAG_GEOM_BSPLINE_H
+#define CAG_GEOM_BSPLINE_H
+
+#include "geom/basis/bernstein.h"
+#include "geom/basis/knots.h"
+
+// out[j] = N[span - p + j](t), j = 0..p.
+void cag_bspline_basis(const double *knots, int p, size_t span, double t, double *out);
+// out[k * (p + 1) + j] = k-th derivative of N[span - p + j] at t, k = 0..order; 0 above the degree.
+void cag_bspline_derivatives(const double *knots, int p, size_t span, double t, int order,
+                             double *out);
+// Bezier points (p + 1 times 4 numbers) of the curve over [knots[span], knots[span + 1]].
+void cag_bspline_piece(const double *homogeneous, const double *knots, int p, size_t span,
+                       double *out);
+// Inserts knot t of the usable range once (Boehm 1980): n points become n + 1, n + p + 1 knots one
+// more; both arrays have the room.
+void cag_bspline_insert(double *homogeneous, double *knots, size_t n, int p, double t);
+
+#endif

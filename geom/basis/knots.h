@@ -1,0 +1,35 @@
+// Knot vectors of B-splines: construction, checking, span search.
+//
+// A knot vector for degree p and n control points has n + p + 1 knots and the usable range
+// knots[p]..knots[n]. `span` is the index i with knots[i] <= t < knots[i + 1], p <= i < n; t equal
+// to the last usable knot belongs to the last non-empty span.
+
+#ifndef CAG_GEOM_KNOTS_H
+#define CAG_GEOM_KNOTS_H
+
+#include <stdbool.h>
+
+#include "geom/linalg/vec.h"
+#include "geom/status.h"
+
+// 0, .., 0, 1, 2, .., m, .., m with m = n - p (reference 05b, 1.6).
+void cag_knots_open(size_t n, int p, double *knots);
+// 0, 1, 2, ..
+void cag_knots_periodic(size_t n, int p, double *knots);
+// Clamped, inner knots by the length walked along the polygon (reference 05b, 1.6).
+void cag_knots_chord(const CagVec3 *points, size_t n, int p, double *knots);
+
+// Fails with "order-range", "not-finite", "knots-not-monotone", "knot-multiplicity", "empty-range".
+CagStatus cag_knots_check(const double *knots, size_t n, int p, CagError *err);
+// Degree against the number of control points: 1 <= p < n.
+CagStatus cag_degree_check(size_t n, int p, CagError *err);
+
+// Span of t within the usable range. `left`: the limit from the left is meant at a knot. `hint` is
+// tried first: the span found last.
+size_t cag_knots_span(const double *knots, size_t n, int p, double t, bool left, size_t hint);
+// How often t occurs.
+int cag_knots_multiplicity(const double *knots, size_t n, int p, double t);
+// "uniform", "open-uniform", "open-nonuniform", "nonuniform" (reference 05b, 1.6).
+const char *cag_knots_class(const double *knots, size_t n, int p);
+
+#endif

@@ -1,0 +1,225 @@
+// What every curve answers, written against CagCurveKind: checked parameters, reference counts, and
+// the fallbacks of kinds that do not specialise.
+
+#include "geom/curve/curve.h"
+
+#include <float.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/curve/family.h"
+
+// A parameter this many ulps outside the domain is the end: it was computed.
+#define SNAP_ULPS 16
+
+CagStatus cag_curve_block(size_t size, const CagCurveKind *kind, int dimension, double start,
+                          double end, CagCurve **out, CagError *err) {
+  CagCurve *c = calloc(1, size);
+  if (!c) return cag_fail_memory(err);
+  c->kind = kind;
+  c->references = 1;
+  c->dimension = dimension;
+  c->start = start;
+  c->end = end;
+  *out = c;
+  return CAG_OK;
+}
+
+CagCurve *cag_curve_retain(const CagCurve *c) {
+  CagCurve *mine = (CagCurve *)c;
+  if (mine) mine->references++;
+  return mine;
+}
+
+void cag_curve_release(CagCurve *c) {
+  if (!c || --c->references > 0) return;
+  if (c->kind->destroy) c->kind->destroy(c);
+  free(c);
+}
+
+// --- Checks ---
+
+CagStatus cag_curve_check_points(const CagVec3 *points, size_t n, const char *name, CagError *err) {
+  for (size_t i = 0; i < n; i++)
+    if (!isfinite(points[i].x) || !isfinite(points[i].y) || !isfinite(points[i].z))
+      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", name, (long)i,
+                      "%s[%zu] has a coordinate that is not a finite number", name, i);
+  return CAG_OK;
+}
+
+CagStatus cag_curve_check_number(double x, const char *name, CagError *err) {
+  if (isfinite(x)) return CAG_OK;
+  return cag_fail(err, CAG_E_ARGUMENT, "not-finite", name, -1, "`%s` is not a finite number", name);
+}
+
+double cag_curve_size(const CagVec3 *points, size_t n) {
+  double size = 0;
+  for (size_t i = 0; i < n; i++)
+    size = fmax(size, fmax(fabs(points[i].x), fmax(fabs(points[i].y), fabs(points[i].z))));
+  return size;
+}
+
+static const char *parameter_text(const CagCurve *c, double t, char *buffer) {
+  if (!c->angular) return cag_number_text(t, buffer);
+  // Degrees are shown without the rounding of their way through radians.
+  snprintf(buffer, 32, "%.12gdeg", t * (180 / M_PI));
+  return buffer;
+}
+
+static CagStatus snap(const CagCurve *c, double *t, const char *name, CagError *err) {
+  if (*t >= c->start && *t <= c->end) return CAG_OK;
+  char a[48], b[48], x[48];
+  if (isnan(*t)) return cag_curve_check_number(*t, name, err);
+  double slack = SNAP_ULPS * DBL_EPSILON * fmax(fabs(c->start), fabs(c->end));
+  if (*t < c->start && c->start - *t <= slack) {
+    *t = c->start;
+    return CAG_OK;
+  }
+  if (*t > c->end && *t - c->end <= slack) {
+    *t = c->end;
+    return CAG_OK;
+  }
+  return cag_fail(err, CAG_E_DOMAIN, "parameter-range", name, -1,
+                  "`%s` = %s lies outside the domain %s..%s", name, parameter_text(c, *t, x),
+                  parameter_text(c, c->start, a), parameter_text(c, c->end, b));
+}
+
+static CagStatus check_order(int order, CagError *err) {
+  if (order >= 0 && order <= CAG_MAX_DERIVATIVE) return CAG_OK;
+  return cag_fail(err, CAG_E_ARGUMENT, "derivative-order", "order", -1,
+                  "the order of a derivative is 0 to %d; this is %d", CAG_MAX_DERIVATIVE, order);
+}
+
+// --- Evaluation ---
+
+CagStatus cag_curve_eval(const CagCurve *c, double t, int order, CagSide side, CagVec3 *out,
+                         CagError *err) {
+  CagStatus status = check_order(order, err);
+  if (!status) status = snap(c, &t, "t", err);
+  if (status) return status;
+  if (t == c->start) side = CAG_SIDE_RIGHT;
+  if (t == c->end) side = CAG_SIDE_LEFT;
+  return c->kind->eval(c, t, order, side, out, err);
+}
+
+CagStatus cag_curve_point(const CagCurve *c, double t, CagVec3 *out, CagError *err) {
+  return cag_curve_eval(c, t, 0, CAG_SIDE_RIGHT, out, err);
+}
+
+CagStatus cag_curve_eval_many(const CagCurve *c, const double *t, size_t n, int order, CagVec3 *out,
+                              CagError *err) {
+  CagStatus status = check_order(order, err);
+  if (status) return status;
+  bool inside = true;
+  for (size_t i = 0; i < n; i++) inside = inside && t[i] >= c->start && t[i] <= c->end;
+  if (inside && c->kind->eval_many) return c->kind->eval_many(c, t, n, order, out, err);
+  for (size_t i = 0; i < n; i++) {
+    status = cag_curve_eval(c, t[i], order, CAG_SIDE_RIGHT, out + i * (size_t)(order + 1), err);
+    if (status) {
+      err->index = (long)i;
+      return status;
+    }
+  }
+  return CAG_OK;
+}
+
+// --- Other forms ---
+
+CagStatus cag_curve_to_nurbs(const CagCurve *c, CagCurve **out, CagError *err) {
+  if (c->kind->to_nurbs) return c->kind->to_nurbs(c, out, err);
+  return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "", -1,
+                  "a curve of kind \"%s\" has no exact NURBS form; approximate(C, tolerance) makes "
+                  "one within a tolerance",
+                  c->kind->name);
+}
+
+int cag_curve_image_dimension(const CagCurve *c, const CagTransform *t) {
+  return c->dimension == 2 && t->planar ? 2 : 3;
+}
+
+CagStatus cag_curve_transform_nurbs(const CagCurve *c, const CagTransform *t, CagCurve **out,
+                                    CagError *err) {
+  CagCurve *exact;
+  CagStatus status = cag_curve_to_nurbs(c, &exact, err);
+  if (status) return status;
+  status = exact->kind->transform(exact, t, out, err);
+  cag_curve_release(exact);
+  return status;
+}
+
+CagStatus cag_curve_transform(const CagCurve *c, const CagTransform *t, CagCurve **out,
+                              CagError *err) {
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++)
+      if (!isfinite(t->m[i][j]))
+        return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "T", -1,
+                        "the transform has an entry that is not a finite number");
+  return c->kind->transform(c, t, out, err);
+}
+
+CagStatus cag_curve_to_space(const CagCurve *c, CagCurve **out, CagError *err) {
+  if (c->dimension == 3) {
+    *out = cag_curve_retain(c);
+    return CAG_OK;
+  }
+  CagTransform t = cag_transform_identity();
+  t.planar = false;
+  return c->kind->transform(c, &t, out, err);
+}
+
+CagStatus cag_curve_reverse(const CagCurve *c, CagCurve **out, CagError *err) {
+  return c->kind->reverse(c, out, err);
+}
+
+double cag_curve_remap(const CagCurve *c, double t, double a, double b) {
+  if (t == c->start) return a;
+  if (t == c->end) return b;
+  return a + (t - c->start) * ((b - a) / (c->end - c->start));
+}
+
+static CagStatus check_range(double a, double b, CagError *err) {
+  char x[32], y[32];
+  CagStatus status = cag_curve_check_number(a, "range", err);
+  if (!status) status = cag_curve_check_number(b, "range", err);
+  if (status || a < b) return status;
+  return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "range", -1,
+                  "the range %s..%s has no length; its start must be less than its end",
+                  cag_number_text(a, x), cag_number_text(b, y));
+}
+
+CagStatus cag_curve_trim(const CagCurve *c, double a, double b, CagCurve **out, CagError *err) {
+  CagStatus status = check_range(a, b, err);
+  if (!status) status = snap(c, &a, "range", err);
+  if (!status) status = snap(c, &b, "range", err);
+  if (!status) status = check_range(a, b, err);
+  if (status) return status;
+  if (a == c->start && b == c->end) {
+    *out = cag_curve_retain(c);
+    return CAG_OK;
+  }
+  return c->kind->trim(c, a, b, out, err);
+}
+
+CagStatus cag_curve_reparametrize(const CagCurve *c, double a, double b, CagCurve **out,
+                                  CagError *err) {
+  CagStatus status = check_range(a, b, err);
+  if (status) return status;
+  if (a == c->start && b == c->end) {
+    *out = cag_curve_retain(c);
+    return CAG_OK;
+  }
+  return c->kind->reparametrize(c, a, b, out, err);
+}
+
+CagStatus cag_curve_cuts(const CagCurve *c, double **out, size_t *n, CagError *err) {
+  size_t inner = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
+  double *cuts = malloc(sizeof *cuts * (inner + 2));
+  if (!cuts) return cag_fail_memory(err);
+  cuts[0] = c->start;
+  if (inner) c->kind->breaks(c, cuts + 1, inner);
+  cuts[inner + 1] = c->end;
+  *out = cuts;
+  *n = inner + 2;
+  return CAG_OK;
+}

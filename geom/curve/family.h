@@ -1,0 +1,33 @@
+// What the kinds of curves share among themselves; users of curves do not need it.
+
+#ifndef CAG_GEOM_CURVE_FAMILY_H
+#define CAG_GEOM_CURVE_FAMILY_H
+
+#include "geom/curve/curve.h"
+
+// Two points are one when they are nearer than this part of the size of the data: the rounding of a
+// few evaluations.
+#define CAG_CURVE_SAME 1e-12
+
+// Zeroed block of `size` bytes (a struct that starts with CagCurve) with one reference.
+CagStatus cag_curve_block(size_t size, const CagCurveKind *kind, int dimension, double start,
+                          double end, CagCurve **out, CagError *err);
+// Fails with "not-finite" and the index.
+CagStatus cag_curve_check_points(const CagVec3 *points, size_t n, const char *name, CagError *err);
+CagStatus cag_curve_check_number(double x, const char *name, CagError *err);
+// Largest coordinate of the points in size: what rounding is relative to.
+double cag_curve_size(const CagVec3 *points, size_t n);
+// 2 when a plane curve stays one under t.
+int cag_curve_image_dimension(const CagCurve *c, const CagTransform *t);
+// Image by way of the exact NURBS form, for maps that a kind is not closed under.
+CagStatus cag_curve_transform_nurbs(const CagCurve *c, const CagTransform *t, CagCurve **out,
+                                    CagError *err);
+// The affine map of parameters that carries [c->start, c->end] to [a, b], exact at the ends.
+double cag_curve_remap(const CagCurve *c, double t, double a, double b);
+// Bound of the distance of the points over [a, b], where the curve is smooth, from the chord
+// between its ends. Goes to zero with the square of b - a.
+double cag_curve_sag(const CagCurve *c, double a, double b);
+// Interior breaks and both ends, malloc'd, ascending: *n values.
+CagStatus cag_curve_cuts(const CagCurve *c, double **out, size_t *n, CagError *err);
+
+#endif

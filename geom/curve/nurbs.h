@@ -1,0 +1,47 @@
+// The data of the NURBS kinds (bezier, bspline, nurbs), for what works on control points.
+//
+// Beside the knots and control points as given, a curve keeps its Bezier pieces, one per non-empty
+// knot interval. Neighbouring pieces share their joint bit for bit, and a periodic curve's last
+// piece ends in the first point of its first: the curve is evaluated from the pieces, so it is
+// continuous and closed exactly. Up to degree CAG_NURBS_TAYLOR the pieces' Taylor coefficients
+// about both ends are kept as well; evaluation from the nearer end is as accurate as de Casteljau
+// and several times faster.
+
+#ifndef CAG_GEOM_NURBS_H
+#define CAG_GEOM_NURBS_H
+
+#include "geom/basis/bspline.h"
+#include "geom/curve/curve.h"
+
+#define CAG_NURBS_TAYLOR 3
+
+typedef struct CagNurbs {
+  CagCurve base;
+  int degree;
+  size_t count, distinct;
+  bool periodic, rational;
+  double *knots;       // count + degree + 1
+  double *homogeneous; // count x 4
+  size_t pieces;
+  double *cuts;    // pieces + 1: distinct knots of the domain
+  double *bezier;  // pieces x (degree + 1) x 4
+  double *taylor;  // pieces x 2 x (degree + 1) x 4: about the left end, about the right; or NULL
+  double per_unit; // pieces per unit of t where the cuts are equally spaced, else 0
+} CagNurbs;
+
+typedef enum CagNurbsKind { CAG_NURBS_BEZIER, CAG_NURBS_BSPLINE, CAG_NURBS_RATIONAL } CagNurbsKind;
+
+// NULL: another kind.
+const CagNurbs *cag_nurbs_data(const CagCurve *c);
+// From homogeneous points (copied). distinct: number of given points of a periodic curve, else 0.
+// Where not `rational` all weights are 1. Knots are taken to be good; weights are checked.
+CagStatus cag_nurbs_new(const double *homogeneous, size_t n, int degree, const double *knots,
+                        bool rational, size_t distinct, CagNurbsKind kind, int dimension,
+                        CagCurve **out, CagError *err);
+// Index of the piece that t lies in.
+size_t cag_nurbs_piece(const CagNurbs *c, double t, CagSide side, size_t hint);
+static inline const double *cag_nurbs_bezier(const CagNurbs *c, size_t piece) {
+  return c->bezier + piece * (size_t)(c->degree + 1) * 4;
+}
+
+#endif
