@@ -1,4 +1,4 @@
-// Curves as cubic Bezier pieces, and what POV-Ray makes of them: lathes and prisms.
+// Lathes, prisms and flat polygons.
 //
 // A lathe is a profile in the half plane (radius, height) turned about its y axis; a prism a plane
 // outline drawn along its y axis. Both take linear and Bezier splines, and both let several closed
@@ -6,161 +6,31 @@
 // that are polynomials of degree up to 3.
 
 #include <stdlib.h>
-#include <string.h>
 
+#include "interp/export/pieces.h"
 #include "interp/export/pov_write.h"
 
-#define DEGREE_MAX 3
-// Points are the same, or a line is straight, to this part of the curve's size: rounding of the
-// knot insertions below.
+// Points are the same, or lie in a plane, to this part of the size: rounding of knot insertions.
 #define SAME 1e-9
-
-// --- Bezier pieces ---
-
-typedef struct Pieces {
-  CagVec3 *points; // four a piece
-  size_t count, capacity;
-} Pieces;
-
-static bool add_piece(Pieces *p, const CagVec3 cubic[4]) {
-  if (p->count == p->capacity) {
-    size_t capacity = p->capacity ? 2 * p->capacity : 8;
-    CagVec3 *points = realloc(p->points, capacity * 4 * sizeof *points);
-    if (!points) return false;
-    p->points = points;
-    p->capacity = capacity;
-  }
-  memcpy(p->points + 4 * p->count++, cubic, 4 * sizeof *cubic);
-  return true;
-}
-
-// Raises a polynomial of `degree` up to 3 to a cubic.
-static void elevate(const CagVec3 *b, int degree, CagVec3 out[4]) {
-  CagVec3 c[4];
-  memcpy(c, b, (size_t)(degree + 1) * sizeof *c);
-  for (int d = degree; d < DEGREE_MAX; d++) {
-    CagVec3 last = c[d];
-    for (int i = d; i >= 1; i--) c[i] = cag_lerp(c[i], c[i - 1], (double)i / (d + 1));
-    c[d + 1] = last;
-  }
-  memcpy(out, c, sizeof c);
-}
-
-// The polar form of the span [knots[i], knots[i + 1]] at the arguments a[0..degree): de Boor with
-// another argument at each level. Bezier point k is that of degree - k times the span's start and k
-// times its end (Ramshaw).
-static CagVec3 blossom(const CagNurbsView *v, size_t i, const double *a) {
-  CagVec3 d[DEGREE_MAX + 1];
-  int p = v->degree;
-  for (int j = 0; j <= p; j++) {
-    const double *h = v->homogeneous + 4 * (i - (size_t)p + (size_t)j);
-    d[j] = cag_vec3(h[0], h[1], h[2]);
-  }
-  for (int level = 1; level <= p; level++)
-    for (int j = p; j >= level; j--) {
-      size_t low = i - (size_t)p + (size_t)j, high = i + 1 + (size_t)(j - level);
-      double t = (a[level - 1] - v->knots[low]) / (v->knots[high] - v->knots[low]);
-      d[j] = cag_lerp(d[j - 1], d[j], t);
-    }
-  return d[p];
-}
-
-static bool nurbs_pieces(const CagNurbsView *v, Pieces *out) {
-  if (v->rational || v->degree > DEGREE_MAX) return false;
-  size_t p = (size_t)v->degree;
-  for (size_t i = p; i < v->count; i++) {
-    double from = v->knots[i], to = v->knots[i + 1];
-    if (!(from < to)) continue;
-    CagVec3 b[DEGREE_MAX + 1], cubic[4];
-    for (int k = 0; k <= v->degree; k++) {
-      double a[DEGREE_MAX];
-      for (int j = 0; j < v->degree; j++) a[j] = j < k ? to : from;
-      b[k] = blossom(v, i, a);
-    }
-    elevate(b, v->degree, cubic);
-    if (!add_piece(out, cubic)) return false;
-  }
-  return out->count > 0;
-}
-
-static bool polyline_pieces(const CagVec3 *points, size_t n, bool closed, Pieces *out) {
-  for (size_t i = 0; i + 1 < n + (closed ? 1 : 0); i++) {
-    CagVec3 cubic[4], ends[2] = {points[i], points[(i + 1) % n]};
-    elevate(ends, 1, cubic);
-    if (!add_piece(out, cubic)) return false;
-  }
-  return out->count > 0;
-}
-
-static bool is_even_line(const CagVec3 c[4]) {
-  double size = cag_norm(cag_sub(c[3], c[0]));
-  CagVec3 a = cag_sub(c[1], cag_lerp(c[0], c[3], 1.0 / 3));
-  CagVec3 b = cag_sub(c[2], cag_lerp(c[0], c[3], 2.0 / 3));
-  return cag_norm(a) <= SAME * size && cag_norm(b) <= SAME * size;
-}
 
 static bool nearly(CagVec3 a, CagVec3 b, double size) {
   return cag_norm(cag_sub(a, b)) <= SAME * size;
 }
 
-// True when the pieces are the curve: a guard against kinds whose NURBS form is not what is drawn.
-static bool pieces_are_curve(const Pieces *p, const CagCurve *c) {
-  CagError err;
-  CagVec3 from, to;
-  if (cag_curve_point(c, c->start, &from, &err) || cag_curve_point(c, c->end, &to, &err))
-    return false;
-  double size = 0;
-  for (size_t i = 0; i < 4 * p->count; i++) size = fmax(size, cag_norm(p->points[i]));
-  return nearly(from, p->points[0], size) && nearly(to, p->points[4 * p->count - 1], size);
-}
-
-bool pov_cubic_pieces(const CagCurve *c, CagVec3 **out, size_t *n, bool *linear) {
-  Pieces p = {0};
-  CagNurbsView view;
-  const CagVec3 *vertices;
-  size_t count;
-  bool closed, ok;
-  if (cag_curve_vertices(c, &vertices, &count, &closed)) {
-    ok = polyline_pieces(vertices, count, closed, &p);
-  } else if (cag_curve_nurbs_view(c, &view)) {
-    ok = nurbs_pieces(&view, &p);
-  } else { // joined curves and others that have an exact form
-    CagError err;
-    CagCurve *nurbs;
-    ok = cag_curve_to_nurbs(c, &nurbs, &err) == CAG_OK;
-    if (ok) {
-      ok = cag_curve_nurbs_view(nurbs, &view) && nurbs_pieces(&view, &p);
-      cag_curve_release(nurbs);
-    }
-  }
-  if (!ok || !pieces_are_curve(&p, c)) {
-    free(p.points);
-    return false;
-  }
-  *linear = true;
-  for (size_t i = 0; i < p.count && *linear; i++) *linear = is_even_line(p.points + 4 * i);
-  *out = p.points;
-  *n = p.count;
-  return true;
-}
-
 // --- Outlines of two coordinates, in POV-Ray's order ---
 
 typedef struct Outline {
-  Pieces all;
+  CagPieces all;
   bool linear; // every piece is straight, and they follow one another
 } Outline;
 
 static bool add_curve(Outline *o, const CagCurve *c) {
-  CagVec3 *points;
-  size_t n;
-  bool linear;
-  if (!pov_cubic_pieces(c, &points, &n, &linear)) return false;
+  CagPieces p;
+  if (!cag_pieces_of_curve(c, &p)) return false;
   // Separate outlines are told apart by Bezier pieces only.
-  if (o->all.count > 0 || !linear) o->linear = false;
-  bool ok = true;
-  for (size_t i = 0; ok && i < n; i++) ok = add_piece(&o->all, points + 4 * i);
-  free(points);
+  if (o->all.count > 0 || !p.linear) o->linear = false;
+  bool ok = cag_pieces_append(&o->all, &p);
+  free(p.points);
   return ok;
 }
 
@@ -184,14 +54,14 @@ static void write_outline(CagPovWriter *w, const Outline *o) {
   pov_text(w, "\n");
 }
 
-static double largest(const Pieces *p) {
+static double largest(const CagPieces *p) {
   double size = 0;
   for (size_t i = 0; i < 4 * p->count; i++) size = fmax(size, cag_norm(p->points[i]));
   return size;
 }
 
 // Rounding leaves coordinates such as 3e-17 where 0 is meant: a 10^-13th of the size is no shape.
-static void tidy(Pieces *p) {
+static void tidy(CagPieces *p) {
   double unit = largest(p) * 1e-13;
   for (size_t i = 0; i < 4 * p->count; i++) {
     CagVec3 *q = p->points + i;
@@ -215,7 +85,7 @@ static CagVec3 radial_part(const Turn *t, CagVec3 p) {
 }
 
 // Takes the pieces to (radius, height); false: they leave the half plane.
-static bool to_half_plane(Turn *t, Pieces *p) {
+static bool to_half_plane(Turn *t, CagPieces *p) {
   double size = 0;
   CagVec3 farthest = {0, 0, 0};
   for (size_t i = 0; i < 4 * p->count; i++) {
@@ -256,8 +126,7 @@ static bool add_profile(Outline *o, Turn *t, const CagSurface *s) {
             to_half_plane(t, &part.all);
   cag_curve_release(space);
   if (o->all.count > 0 || !part.linear) o->linear = false;
-  for (size_t i = 0; ok && i < part.all.count; i++)
-    ok = add_piece(&o->all, part.all.points + 4 * i);
+  ok = ok && cag_pieces_append(&o->all, &part.all);
   free(part.all.points);
   return ok;
 }

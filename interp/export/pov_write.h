@@ -65,9 +65,4 @@ bool pov_try_polygon(CagPovWriter *w, const CagRegion *r, const CagTransform *pl
 CagStatus pov_curve(CagPovWriter *w, const CagItem *item, const char *name, CagError *err);
 CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err); // pov_mesh.c
 
-// --- Bezier pieces of a curve (pov_lathe.c) ---
-// The curve as cubic Bezier segments, four points each; exact for polynomials of degree up to 3,
-// else false. *out is malloc'd. `linear`: all of them are straight and evenly run.
-bool pov_cubic_pieces(const CagCurve *c, CagVec3 **out, size_t *n, bool *linear);
-
 #endif
