@@ -41,8 +41,8 @@ static bool fail_code(CagIoError *err, const Source *source, exr_result_t code) 
   if (code == EXR_ERR_FEATURE_NOT_IMPLEMENTED)
     return cag_io_error_set(
         err, CAG_EXIT_FILE, "store it with ZIP, PIZ, RLE or no compression",
-        "cannot read '%s' as EXR: its compression is not one that this build of "
-        "OpenEXRCore decodes",
+        "cannot read '%s' as EXR: its compression, for channels like these, is not one that "
+        "OpenEXRCore decodes rightly",
         source->shown);
   return fail(err, source,
               source->complaint[0] ? source->complaint : exr_get_default_error_message(code));
@@ -85,52 +85,37 @@ typedef struct {
   const CagImage *image;
   size_t first_channel;
   exr_attr_box2i_t data, display;
-  int lines; // scanlines in a chunk
   bool begun;
   exr_decode_pipeline_t decoder;
-  float *scratch; // one chunk of all channels
-  size_t scratch_samples;
+  int64_t x0, y0; // upper left pixel of the chunk that is decoded
+  exr_result_t (*decompress)(exr_decode_pipeline_t *); // the library's choice
 } PartReader;
 
-// Places of the samples of one chunk: aims the decoder's channels at the scratch memory.
-static exr_result_t aim_channels(PartReader *r) {
-  size_t total = 0;
-  for (int16_t i = 0; i < r->decoder.channel_count; i++) {
-    const exr_coding_channel_info_t *c = &r->decoder.channels[i];
-    if (c->width < 0 || c->height < 0) return EXR_ERR_CORRUPT_CHUNK;
-    total += (size_t)c->width * (size_t)c->height;
+// An IEEE 754 binary16 number.
+static float half_to_float(uint16_t h) {
+  const uint32_t sign = (uint32_t)(h & 0x8000) << 16;
+  uint32_t exponent = h >> 10 & 31, fraction = h & 1023, bits;
+  if (exponent == 31) {
+    bits = sign | 0x7f800000 | fraction << 13;
+  } else if (exponent) {
+    bits = sign | (exponent + 127 - 15) << 23 | fraction << 13;
+  } else {
+    const float tiny = (float)fraction * 0x1p-24f;
+    return sign ? -tiny : tiny;
   }
-  if (total > CAG_IMAGE_SAMPLES_MAX) return EXR_ERR_OUT_OF_MEMORY;
-  if (total > r->scratch_samples) {
-    free(r->scratch);
-    r->scratch = malloc(total * sizeof *r->scratch);
-    r->scratch_samples = r->scratch ? total : 0;
-    if (!r->scratch) return EXR_ERR_OUT_OF_MEMORY;
-  }
-  float *at = r->scratch;
-  for (int16_t i = 0; i < r->decoder.channel_count; i++) {
-    exr_coding_channel_info_t *c = &r->decoder.channels[i];
-    // Whole numbers are decoded as such and converted here; half becomes float in the library.
-    c->user_data_type = c->data_type == EXR_PIXEL_UINT ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
-    c->user_bytes_per_element = sizeof(float);
-    c->user_pixel_stride = sizeof(float);
-    c->user_line_stride = c->width * (int32_t)sizeof(float);
-    c->decode_to_ptr = c->width && c->height ? (uint8_t *)at : NULL;
-    at += (size_t)c->width * (size_t)c->height;
-  }
-  return EXR_ERR_SUCCESS;
+  float value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
 }
 
-// A decoded sample as a float.
-static float sample(const exr_coding_channel_info_t *c, size_t index) {
-  const uint8_t *from = c->decode_to_ptr + index * sizeof(float);
+// A sample as it stands in the file, little-endian.
+static float sample(const uint8_t *at, uint16_t type) {
+  if (type == EXR_PIXEL_HALF) return half_to_float((uint16_t)(at[0] | at[1] << 8));
+  const uint32_t bits =
+      (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
+  if (type == EXR_PIXEL_UINT) return (float)bits;
   float value;
-  uint32_t whole;
-  if (c->data_type == EXR_PIXEL_UINT) {
-    memcpy(&whole, from, sizeof whole);
-    return (float)whole;
-  }
-  memcpy(&value, from, sizeof value);
+  memcpy(&value, &bits, sizeof value);
   return value;
 }
 
@@ -138,48 +123,81 @@ static int64_t clamp(int64_t i, int64_t least, int64_t most) {
   return i < least ? least : i > most ? most : i;
 }
 
-// Copies the decoded samples of channel `c` of a chunk that covers the file's pixels from (x0, y0),
-// w by h of them, into its plane, as far as they are in the display window. The chunk's samples
-// begin at the first multiple of the sampling.
-static void copy_channel(const PartReader *r, const exr_coding_channel_info_t *c, float *plane,
-                         int64_t x0, int64_t y0, int64_t w, int64_t h) {
-  if (!c->decode_to_ptr) return;
-  const int64_t xs = c->x_samples > 0 ? c->x_samples : 1, ys = c->y_samples > 0 ? c->y_samples : 1;
-  const int64_t left = r->display.min.x, top = r->display.min.y;
-  const int64_t x_begin = x0 > left ? x0 : left, y_begin = y0 > top ? y0 : top;
-  const int64_t x_end = clamp(x0 + w, x_begin, left + (int64_t)r->image->width);
-  const int64_t y_end = clamp(y0 + h, y_begin, top + (int64_t)r->image->height);
-  const bool plain =
-      xs == 1 && ys == 1 && c->data_type != EXR_PIXEL_UINT && c->width == w && c->height == h;
-  for (int64_t y = y_begin; y < y_end && x_begin < x_end; y++) {
-    float *to = plane + (size_t)(y - top) * r->image->width + (size_t)(x_begin - left);
-    const int64_t row = clamp((y - y0) / ys, 0, c->height - 1) * c->width;
-    if (plain) {
-      memcpy(to, c->decode_to_ptr + (size_t)(row + x_begin - x0) * sizeof(float),
-             (size_t)(x_end - x_begin) * sizeof(float));
-      continue;
-    }
-    for (int64_t x = x_begin; x < x_end; x++)
-      *to++ = sample(c, (size_t)(row + clamp((x - x0) / xs, 0, c->width - 1)));
+// Puts one stored row of `count` samples, the first of which belongs to the file's pixel (x, y),
+// into the plane, as far as it is in the display window. A sample fills the xs by ys pixels that it
+// stands for.
+static void put_row(const PartReader *r, const exr_coding_channel_info_t *c, float *plane,
+                    const uint8_t *from, int64_t x, int64_t y, int64_t count) {
+  const int64_t width = (int64_t)r->image->width, height = (int64_t)r->image->height;
+  const int64_t xs = c->x_samples, ys = c->y_samples, size = c->bytes_per_element;
+  const int64_t left = x - r->display.min.x, top = y - r->display.min.y;
+  const int64_t column_end = clamp(left + count * xs, 0, width);
+  const int64_t row_end = clamp(top + ys, 0, height);
+  for (int64_t row = top < 0 ? 0 : top; row < row_end; row++) {
+    float *to = plane + row * width;
+    for (int64_t column = left < 0 ? 0 : left; column < column_end; column++)
+      to[column] =
+          sample(from + (xs == 1 ? column - left : (column - left) / xs) * size, c->data_type);
   }
+}
+
+// The last step of the decoder, in the place of the library's, which in 3.1 confuses coarser
+// samplings. The chunk's data are its rows from above, and in each row the samples of the channels
+// that have one there.
+static exr_result_t unpack(exr_decode_pipeline_t *d) {
+  const PartReader *r = d->decoding_user_data;
+  const uint8_t *at = d->unpacked_buffer;
+  uint64_t rest = d->chunk.unpacked_size;
+  if (!at) return EXR_ERR_CORRUPT_CHUNK;
+  for (int64_t y = r->y0; y < r->y0 + d->chunk.height; y++) {
+    for (int16_t i = 0; i < d->channel_count; i++) {
+      const exr_coding_channel_info_t *c = &d->channels[i];
+      const int64_t xs = c->x_samples;
+      if (y % c->y_samples != 0) continue;
+      int64_t x = r->x0;
+      while (x % xs != 0) x++;
+      const int64_t end = r->x0 + d->chunk.width;
+      const int64_t count = x < end ? (end - x + xs - 1) / xs : 0;
+      const uint64_t bytes = (uint64_t)count * (uint64_t)c->bytes_per_element;
+      if (bytes > rest) return EXR_ERR_CORRUPT_CHUNK;
+      put_row(r, c, cag_image_plane(r->image, r->first_channel + (size_t)i), at, x, y, count);
+      at += bytes;
+      rest -= bytes;
+    }
+  }
+  return EXR_ERR_SUCCESS;
+}
+
+// A chunk that compression would not make smaller is stored as it is; the library's B44 does not
+// know that.
+static exr_result_t decompress(exr_decode_pipeline_t *d) {
+  const PartReader *r = d->decoding_user_data;
+  if (d->chunk.packed_size == d->chunk.unpacked_size) return EXR_ERR_SUCCESS;
+  return r->decompress(d);
 }
 
 // Decodes one chunk, whose upper left pixel is (x0, y0).
 static exr_result_t read_chunk(PartReader *r, const exr_chunk_info_t *chunk, int64_t x0,
                                int64_t y0) {
-  exr_result_t rv = r->begun ? exr_decoding_update(r->file, r->part, chunk, &r->decoder)
-                             : exr_decoding_initialize(r->file, r->part, chunk, &r->decoder);
-  if (rv) return rv;
+  // The library takes an empty chunk for decoded, and would leave what the memory held before.
+  if (!chunk->packed_size || chunk->packed_size > chunk->unpacked_size)
+    return EXR_ERR_CORRUPT_CHUNK;
   const bool first = !r->begun;
+  exr_result_t rv = first ? exr_decoding_initialize(r->file, r->part, chunk, &r->decoder)
+                          : exr_decoding_update(r->file, r->part, chunk, &r->decoder);
+  if (rv) return rv;
   r->begun = true;
-  rv = aim_channels(r);
-  if (!rv && first) rv = exr_decoding_choose_default_routines(r->file, r->part, &r->decoder);
-  if (!rv) rv = exr_decoding_run(r->file, r->part, &r->decoder);
-  for (int16_t i = 0; !rv && i < r->decoder.channel_count; i++)
-    copy_channel(r, &r->decoder.channels[i],
-                 cag_image_plane(r->image, r->first_channel + (size_t)i), x0, y0, chunk->width,
-                 chunk->height);
-  return rv;
+  r->x0 = x0;
+  r->y0 = y0;
+  if (first) {
+    rv = exr_decoding_choose_default_routines(r->file, r->part, &r->decoder);
+    if (rv) return rv;
+    r->decompress = r->decoder.decompress_fn;
+    if (r->decompress) r->decoder.decompress_fn = decompress;
+    r->decoder.unpack_and_convert_fn = unpack;
+    r->decoder.decoding_user_data = r;
+  }
+  return exr_decoding_run(r->file, r->part, &r->decoder);
 }
 
 static exr_result_t read_scanlines(PartReader *r) {
@@ -224,7 +242,6 @@ static exr_result_t read_part(exr_context_t file, int part, size_t first_channel
   if (!rv) rv = exr_get_data_window(file, part, &r.data);
   if (!rv) rv = storage == EXR_STORAGE_TILED ? read_tiles(&r) : read_scanlines(&r);
   if (r.begun) exr_decoding_destroy(file, &r.decoder);
-  free(r.scratch);
   return rv;
 }
 
@@ -244,6 +261,29 @@ static void name_channel(CagImage *image, size_t c, exr_context_t file, int part
   cag_image_set_name(image, c, full);
 }
 
+// Checks the channels of a part. PIZ, PXR24 and B44 look at the channels while they decompress,
+// where OpenEXRCore 3.1 errs for coarser samplings, and in B44 for channels that are not half, up
+// to reading beyond its memory: such files are refused.
+static bool survey_channels(exr_context_t file, const Source *source, int part,
+                            const exr_attr_chlist_t *list, exr_storage_t storage, bool *all_half,
+                            CagIoError *err) {
+  exr_compression_t kind;
+  exr_result_t rv = exr_get_compression(file, part, &kind);
+  if (rv) return fail_code(err, source, rv);
+  const bool b44 = kind == EXR_COMPRESSION_B44 || kind == EXR_COMPRESSION_B44A;
+  const bool structured = b44 || kind == EXR_COMPRESSION_PIZ || kind == EXR_COMPRESSION_PXR24;
+  for (int i = 0; i < list->num_channels; i++) {
+    const exr_attr_chlist_entry_t *c = &list->entries[i];
+    const bool coarse = c->x_sampling != 1 || c->y_sampling != 1;
+    *all_half &= c->pixel_type == EXR_PIXEL_HALF;
+    if (c->x_sampling < 1 || c->y_sampling < 1 || (coarse && storage == EXR_STORAGE_TILED))
+      return fail(err, source, "a channel has a sampling that cannot be");
+    if ((structured && coarse) || (b44 && c->pixel_type != EXR_PIXEL_HALF))
+      return fail_code(err, source, EXR_ERR_FEATURE_NOT_IMPLEMENTED);
+  }
+  return true;
+}
+
 // Checks every part and counts the channels of all.
 static bool survey(exr_context_t file, const Source *source, int parts, size_t *channels,
                    bool *all_half, CagIoError *err) {
@@ -257,8 +297,7 @@ static bool survey(exr_context_t file, const Source *source, int parts, size_t *
     if (rv) return fail_code(err, source, rv);
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
       return fail(err, source, "it holds deep data (several samples per pixel)");
-    for (int i = 0; i < list->num_channels; i++)
-      *all_half &= list->entries[i].pixel_type == EXR_PIXEL_HALF;
+    if (!survey_channels(file, source, p, list, storage, all_half, err)) return false;
     if (list->num_channels < 1) return fail(err, source, "a part has no channels");
     *channels += (size_t)list->num_channels;
   }

@@ -23,6 +23,8 @@
 
 // How often the flag, the clock and the process are looked at, in milliseconds.
 #define WATCH_INTERVAL 40
+// The same once the output is closed: the process is about to end.
+#define WATCH_INTERVAL_CLOSED 4
 // A run that asks for the version only is given this many seconds.
 #define VERSION_TIME_LIMIT 20.0
 // Largest picture file that is taken back: half floats of the largest image.
@@ -240,7 +242,8 @@ static End follow(pid_t child, int output, const Watch *watch, CagPovrayLog *log
   // An exit is looked for even while the output is open: a child of the child may hold it.
   for (;;) {
     struct pollfd waiting = {.fd = open_output ? output : -1, .events = POLLIN};
-    if (poll(&waiting, 1, WATCH_INTERVAL) > 0 && waiting.revents) {
+    if (poll(&waiting, 1, open_output ? WATCH_INTERVAL : WATCH_INTERVAL_CLOSED) > 0 &&
+        waiting.revents) {
       open_output = drain(output, log);
       if (open_output && !should_end(watch, begun, &end.kind)) continue;
     }

@@ -277,6 +277,70 @@ static void a_file_made_by_hand_is_read(void **state) {
   cag_image_free(&image);
 }
 
+// A 4 by 2 file without compression: Y at every pixel (10 y + x), C (0.5, 0.75) for squares of two
+// by two.
+static Bytes file_with_coarse_channel(uint32_t sampling) {
+  Bytes b = {.size = 0};
+  put_u32(&b, 20000630);
+  put_u32(&b, 2);
+  put_head(&b, "channels", "chlist", 2 * 18 + 1);
+  for (int c = 0; c < 2; c++) {
+    put_text(&b, c ? "Y" : "C");
+    put_u32(&b, 2);
+    put_u32(&b, 0);
+    put_u32(&b, c ? 1 : sampling);
+    put_u32(&b, c ? 1 : sampling);
+  }
+  put(&b, "", 1);
+  put_head(&b, "compression", "compression", 1);
+  put(&b, "\0", 1);
+  const uint32_t window[4] = {0, 0, 3, 1};
+  put_head(&b, "dataWindow", "box2i", 16);
+  put(&b, window, 16);
+  put_head(&b, "displayWindow", "box2i", 16);
+  put(&b, window, 16);
+  put_head(&b, "lineOrder", "lineOrder", 1);
+  put(&b, "\0", 1);
+  put_head(&b, "pixelAspectRatio", "float", 4);
+  put_f32(&b, 1);
+  put_head(&b, "screenWindowCenter", "v2f", 8);
+  put_f32(&b, 0);
+  put_f32(&b, 0);
+  put_head(&b, "screenWindowWidth", "float", 4);
+  put_f32(&b, 1);
+  put(&b, "", 1);
+  uint64_t offset = b.size + 16;
+  put(&b, &offset, 8);
+  offset += 8 + 24;
+  put(&b, &offset, 8);
+  for (uint32_t y = 0; y < 2; y++) {
+    put_u32(&b, y);
+    put_u32(&b, y ? 16 : 24);
+    for (int x = 0; x < 2 && y == 0; x++) put_f32(&b, 0.5f + 0.25f * (float)x);
+    for (uint32_t x = 0; x < 4; x++) put_f32(&b, (float)(10 * y + x));
+  }
+  return b;
+}
+
+static void a_coarse_channel_is_repeated(void **state) {
+  (void)state;
+  Bytes b = file_with_coarse_channel(2);
+  CagImage image;
+  CagIoError err = {0};
+  if (!cag_exr_read_memory(b.bytes, b.size, "c.exr", &image, NULL, &err))
+    fail_msg("%s", err.message);
+  for (size_t i = 0; i < 8; i++) {
+    assert_true(cag_image_plane(&image, 0)[i] == (i % 4 < 2 ? 0.5f : 0.75f));
+    assert_true(cag_image_plane(&image, 1)[i] == (float)(i / 4 * 10 + i % 4));
+  }
+  cag_image_free(&image);
+  const uint32_t bad[3] = {0, 0x80000000u, 0x7fffffffu};
+  for (int i = 0; i < 3; i++) {
+    b = file_with_coarse_channel(bad[i]);
+    if (cag_exr_read_memory(b.bytes, b.size, "c.exr", &image, NULL, &err)) cag_image_free(&image);
+  }
+}
+
 // Writes float channel "Y" with value 100 y + x, tiled, through the library.
 static void write_tiled(const char *path, int width, int height, exr_compression_t compression) {
   exr_context_t file;
@@ -327,6 +391,17 @@ static void tiles_are_put_together(void **state) {
     cag_image_free(&image);
     unlink(place("t.exr"));
   }
+}
+
+static void what_the_library_would_decode_wrongly_is_refused(void **state) {
+  (void)state;
+  write_tiled(place("t.exr"), 37, 21, EXR_COMPRESSION_B44);
+  CagImage image;
+  CagIoError err = {0};
+  assert_false(cag_exr_read(place("t.exr"), &image, NULL, &err));
+  assert_non_null(strstr(err.message, "compression"));
+  assert_int_equal(err.exit_status, CAG_EXIT_FILE);
+  unlink(place("t.exr"));
 }
 
 static void parts_become_named_layers(void **state) {
@@ -493,7 +568,9 @@ int main(void) {
       cmocka_unit_test(names_that_exr_needs_are_refused),
       cmocka_unit_test(a_rewrite_keeps_pixels_and_adds_facts),
       cmocka_unit_test(a_file_made_by_hand_is_read),
+      cmocka_unit_test(a_coarse_channel_is_repeated),
       cmocka_unit_test(tiles_are_put_together),
+      cmocka_unit_test(what_the_library_would_decode_wrongly_is_refused),
       cmocka_unit_test(parts_become_named_layers),
       cmocka_unit_test(bad_files_are_named_with_their_fault),
       cmocka_unit_test(a_file_cut_anywhere_is_an_error),
