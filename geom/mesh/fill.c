@@ -1,0 +1,371 @@
+// Tessellation, step 4: leaves become triangles.
+//
+// Where the nodes around a leaf are those of its grid, all is a grid. Elsewhere the grid keeps away
+// from the sides by one step, and each side's band between its nodes and the outermost row of the
+// grid is sewn up: of the two next segments that whose middle comes first gets the next triangle.
+// No triangle of a band is wider than a step of the grid, so the bound of plan.c holds for it too.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/mesh/tessellation.h"
+
+typedef struct Fill {
+  Tessellator *t;
+  CagMesh *mesh;
+  size_t vertices, triangles; // filled so far
+  double *us, *vs;            // room for the grid of the largest leaf
+  CagVec3 *du, *dv;
+  size_t grid_room;
+} Fill;
+
+// A sequence of vertices with their parameters along it.
+typedef struct Chain {
+  const Node *nodes; // of a line; NULL: a row of the grid
+  const Line *line;
+  bool after;
+  double from, step; // of the grid
+  uint32_t first;
+  uint32_t stride;
+  size_t segments;
+} Chain;
+
+static uint32_t chain_vertex(const Tessellator *t, const Chain *c, size_t k) {
+  if (c->nodes) return tess_node_vertex(t, c->line, c->nodes + k, c->after, k == c->segments);
+  return c->first + (uint32_t)k * c->stride;
+}
+
+static double chain_parameter(const Chain *c, size_t k) {
+  return c->nodes ? c->nodes[k].t : c->from + c->step * (double)k;
+}
+
+static Chain side_chain(const Tessellator *t, const Leaf *leaf, int side) {
+  const Line *line = &t->lines[leaf->line[side]];
+  return (Chain){.nodes = t->nodes + leaf->nodes[side],
+                 .line = line,
+                 .after = side % 2 == 0,
+                 .segments = leaf->segments[side]};
+}
+
+// --- Triangles ---
+
+static bool one_point(const Fill *f, uint32_t a, uint32_t b) {
+  if (a == b) return true;
+  const Tessellator *t = f->t;
+  return a < t->vertex_count && b < t->vertex_count && t->weld[a] == t->weld[b];
+}
+
+// Leaves out triangles at poles that have shrunk to an edge.
+static void add_triangle(Fill *f, uint32_t a, uint32_t b, uint32_t c) {
+  if (one_point(f, a, b) || one_point(f, b, c) || one_point(f, c, a)) return;
+  uint32_t *to = f->mesh->triangles + 3 * f->triangles++;
+  to[0] = a;
+  to[1] = b;
+  to[2] = c;
+}
+
+// Corners counter-clockwise in (u, v): a lower left, b lower right, c upper right, d upper left.
+// At a pole the vertex where the base of the triangle begins is kept (see pole_nodes).
+static void add_quad(Fill *f, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+  const CagVec3 *p = f->mesh->positions;
+  bool cut_ac = tess_cut_ac(p[a], p[b], p[c], p[d]);
+  if (one_point(f, a, d) || one_point(f, a, b)) cut_ac = true;
+  else if (one_point(f, b, c) || one_point(f, c, d)) cut_ac = false;
+  if (cut_ac) {
+    add_triangle(f, a, b, c);
+    add_triangle(f, a, c, d);
+  } else {
+    add_triangle(f, a, b, d);
+    add_triangle(f, b, c, d);
+  }
+}
+
+// Sews up the band between two chains, `low` on the right hand of `high` (so that a triangle low,
+// next low, high is counter-clockwise).
+static void sew(Fill *f, const Chain *low, const Chain *high) {
+  const Tessellator *t = f->t;
+  const CagVec3 *p = f->mesh->positions;
+  size_t i = 0, j = 0;
+  uint32_t a = chain_vertex(t, low, 0), d = chain_vertex(t, high, 0);
+  while (i < low->segments || j < high->segments) {
+    bool can_low = i < low->segments, can_high = j < high->segments;
+    uint32_t b = can_low ? chain_vertex(t, low, i + 1) : a,
+             c = can_high ? chain_vertex(t, high, j + 1) : d;
+    bool take_low = can_low;
+    if (can_low && can_high) {
+      double x = chain_parameter(low, i) + chain_parameter(low, i + 1),
+             y = chain_parameter(high, j) + chain_parameter(high, j + 1);
+      double same = 1e-9 * (fabs(x) + fabs(y)); // rounding of equal parameters
+      if (fabs(x - y) > same) take_low = x < y;
+      else if (one_point(f, a, b)) take_low = false;
+      else if (one_point(f, c, d)) take_low = true;
+      else take_low = !tess_cut_ac(p[a], p[b], p[c], p[d]);
+    }
+    if (take_low) {
+      add_triangle(f, a, b, d);
+      a = b;
+      i++;
+    } else {
+      add_triangle(f, a, c, d);
+      d = c;
+      j++;
+    }
+  }
+}
+
+// --- Vertices inside a leaf ---
+
+static CagVec3 normal_of(const CagSurface *s, CagVec3 du, CagVec3 dv, double u, double v,
+                         bool *missing) {
+  const double parallel = 1e-9; // see plan.c
+  CagVec3 n = cag_cross(du, dv);
+  double length2 = cag_dot(n, n);
+  if (length2 > parallel * parallel * cag_dot(du, du) * cag_dot(dv, dv) && length2 > 0)
+    return cag_scaled(n, 1 / sqrt(length2));
+  CagError ignored;
+  if (cag_surface_normal(s, u, v, &n, &ignored) == CAG_OK) return n;
+  *missing = true;
+  return cag_vec3(0, 0, 0);
+}
+
+// Inner vertices of the leaf's grid: index (i - 1) * (nv - 1) + (j - 1) from *first.
+static CagStatus inner_vertices(Fill *f, const Leaf *leaf, uint32_t *first, CagError *err) {
+  const CagSurface *s = f->t->faces[leaf->face].surface;
+  CagMesh *m = f->mesh;
+  size_t nu = leaf->n[0] - 1, nv = leaf->n[1] - 1;
+  *first = (uint32_t)f->vertices;
+  if (nu == 0 || nv == 0) return CAG_OK;
+  for (size_t i = 0; i < nu; i++)
+    f->us[i] = tess_mix(leaf->from[0], leaf->to[0], i + 1, leaf->n[0]);
+  for (size_t j = 0; j < nv; j++)
+    f->vs[j] = tess_mix(leaf->from[1], leaf->to[1], j + 1, leaf->n[1]);
+  size_t rows = f->grid_room / nv;
+  for (size_t done = 0; done < nu; done += rows) {
+    if (rows > nu - done) rows = nu - done;
+    CagVec3 *points = m->positions + f->vertices;
+    CagStatus status =
+        cag_surface_eval_grid(s, f->us + done, rows, f->vs, nv, points, f->du, f->dv, err);
+    if (status == CAG_OK) status = tess_interrupted(f->t, err);
+    if (status != CAG_OK) return status;
+    for (size_t i = 0, k = 0; i < rows; i++)
+      for (size_t j = 0; j < nv; j++, k++) {
+        size_t v = f->vertices + k;
+        m->normals[v] =
+            normal_of(s, f->du[k], f->dv[k], f->us[done + i], f->vs[j], &f->t->needs_normals);
+        m->uv[2 * v] = f->us[done + i];
+        m->uv[2 * v + 1] = f->vs[j];
+        m->weld[v] = (uint32_t)v;
+      }
+    f->vertices += rows * nv;
+  }
+  return CAG_OK;
+}
+
+// --- Leaves ---
+
+static void fill_regular(Fill *f, const Leaf *leaf, uint32_t first) {
+  const Tessellator *t = f->t;
+  uint32_t nu = leaf->n[0], nv = leaf->n[1], stride = nv - 1;
+  Chain side[4];
+  for (int k = 0; k < 4; k++) side[k] = side_chain(t, leaf, k);
+#define VERTEX(i, j)                                                                               \
+  ((j) == 0    ? chain_vertex(t, &side[SIDE_V0], i)                                                \
+   : (j) == nv ? chain_vertex(t, &side[SIDE_V1], i)                                                \
+   : (i) == 0  ? chain_vertex(t, &side[SIDE_U0], j)                                                \
+   : (i) == nu ? chain_vertex(t, &side[SIDE_U1], j)                                                \
+               : first + ((i)-1) * stride + (j)-1)
+  const CagVec3 *p = f->mesh->positions;
+  for (uint32_t i = 0; i < nu; i++) {
+    bool inner_column = i > 0 && i + 1 < nu;
+    for (uint32_t j = 0; j < nv; j++) {
+      if (!inner_column || j == 0 || j + 1 == nv) {
+        add_quad(f, VERTEX(i, j), VERTEX(i + 1, j), VERTEX(i + 1, j + 1), VERTEX(i, j + 1));
+        continue;
+      }
+      uint32_t a = first + (i - 1) * stride + j - 1, b = a + stride, c = b + 1, d = a + 1;
+      bool cut_ac = tess_cut_ac(p[a], p[b], p[c], p[d]);
+      uint32_t *to = f->mesh->triangles + 3 * f->triangles;
+      to[0] = a;
+      to[1] = b;
+      to[2] = cut_ac ? c : d;
+      to[3] = cut_ac ? a : b;
+      to[4] = c;
+      to[5] = d;
+      f->triangles += 2;
+    }
+  }
+#undef VERTEX
+}
+
+// The four bands around the inner grid and the grid itself.
+static void fill_stitched(Fill *f, const Leaf *leaf, uint32_t first) {
+  uint32_t nu = leaf->n[0], nv = leaf->n[1], stride = nv - 1;
+  double step[2];
+  for (int d = 0; d < 2; d++) step[d] = (leaf->to[d] - leaf->from[d]) / leaf->n[d];
+  for (uint32_t i = 0; i + 2 < nu; i++)
+    for (uint32_t j = 0; j + 2 < nv; j++) {
+      uint32_t a = first + i * stride + j;
+      add_quad(f, a, a + stride, a + stride + 1, a + 1);
+    }
+  for (int side = 0; side < 4; side++) {
+    int along = side < 2 ? 1 : 0;
+    uint32_t start = first;
+    if (side == SIDE_U1) start += (nu - 2) * stride;
+    if (side == SIDE_V1) start += nv - 2;
+    Chain outer = side_chain(f->t, leaf, side);
+    Chain inner = {.from = leaf->from[along] + step[along],
+                   .step = step[along],
+                   .first = start,
+                   .stride = along == 0 ? stride : 1,
+                   .segments = leaf->n[along] - 2};
+    bool outer_is_low = side == SIDE_U1 || side == SIDE_V0;
+    sew(f, outer_is_low ? &outer : &inner, outer_is_low ? &inner : &outer);
+  }
+}
+
+static CagStatus fill_leaf(Fill *f, const Leaf *leaf, CagError *err) {
+  if (!leaf->regular && (leaf->n[0] == 1 || leaf->n[1] == 1)) {
+    // A strip: the sides across it are single segments.
+    bool along_u = leaf->segments[SIDE_U0] == 1 && leaf->segments[SIDE_U1] == 1;
+    Chain low = side_chain(f->t, leaf, along_u ? SIDE_V0 : SIDE_U1),
+          high = side_chain(f->t, leaf, along_u ? SIDE_V1 : SIDE_U0);
+    sew(f, &low, &high);
+    return CAG_OK;
+  }
+  uint32_t first;
+  CagStatus status = inner_vertices(f, leaf, &first, err);
+  if (status != CAG_OK) return status;
+  if (leaf->regular) fill_regular(f, leaf, first);
+  else fill_stitched(f, leaf, first);
+  return CAG_OK;
+}
+
+// Nodes on the leaf's sides, and what kind of filling they allow.
+static void look_at_sides(Tessellator *t, Leaf *leaf) {
+  leaf->regular = true;
+  for (int side = 0; side < 4; side++) {
+    const Line *line = &t->lines[leaf->line[side]];
+    int along = 1 - side / 2;
+    size_t low = line->node, high = line->node + line->node_count - 1;
+    while (low < high) {
+      size_t middle = (low + high) / 2;
+      if (t->nodes[middle].t < leaf->from[along]) low = middle + 1;
+      else high = middle;
+    }
+    size_t last = low;
+    double from = leaf->from[along], length = leaf->to[along] - from;
+    while (last < line->node + line->node_count - 1 && t->nodes[last].t < leaf->to[along]) last++;
+    leaf->nodes[side] = low;
+    leaf->segments[side] = (uint32_t)(last - low);
+    leaf->regular &= leaf->segments[side] == leaf->n[along];
+    const double even = 1e-6; // of a step: rounding of equal parameters
+    for (size_t k = low; leaf->regular && k <= last; k++) {
+      double x = (t->nodes[k].t - from) / length * leaf->n[along];
+      leaf->regular = fabs(x - (double)(k - low)) <= even;
+    }
+  }
+  if (leaf->regular) return;
+  const uint32_t *s = leaf->segments;
+  bool strip_u = leaf->n[1] == 1 && s[SIDE_U0] == 1 && s[SIDE_U1] == 1,
+       strip_v = leaf->n[0] == 1 && s[SIDE_V0] == 1 && s[SIDE_V1] == 1;
+  // Neither: the grid needs a point inside to sew to.
+  for (int d = 0; d < 2 && !strip_u && !strip_v; d++)
+    if (leaf->n[d] < 2) leaf->n[d] = 2;
+}
+
+static size_t inner_count(const Leaf *leaf) { return (size_t)(leaf->n[0] - 1) * (leaf->n[1] - 1); }
+
+// A disc with i inner vertices and b boundary segments has 2 i + b - 2 triangles.
+static size_t triangles_of(const Leaf *leaf) {
+  size_t boundary = 0;
+  for (int side = 0; side < 4; side++) boundary += leaf->segments[side];
+  return 2 * inner_count(leaf) + boundary - 2;
+}
+
+// --- The mesh ---
+
+// Vertices of one point take the first's position, and point to it in `weld`.
+static void finish_weld(Tessellator *t) {
+  for (uint32_t k = 0; k < t->vertex_count; k++) {
+    uint32_t root = tess_find(t, k);
+    t->weld[k] = root;
+    t->positions[k] = t->positions[root];
+  }
+}
+
+// Mean of the triangles around a vertex where the surface has no normal.
+static void complete_normals(CagMesh *m) {
+  unsigned char *missing = calloc(m->vertex_count + 1, 1);
+  if (!missing) return;
+  for (size_t v = 0; v < m->vertex_count; v++)
+    missing[v] = cag_dot(m->normals[v], m->normals[v]) == 0;
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    if (!missing[k[0]] && !missing[k[1]] && !missing[k[2]]) continue;
+    CagVec3 a = m->positions[k[0]];
+    CagVec3 n = cag_cross(cag_sub(m->positions[k[1]], a), cag_sub(m->positions[k[2]], a));
+    for (int j = 0; j < 3; j++)
+      if (missing[k[j]]) m->normals[k[j]] = cag_add(m->normals[k[j]], n);
+  }
+  for (size_t v = 0; v < m->vertex_count; v++) {
+    if (!missing[v]) continue;
+    m->normals[v] = cag_unit(m->normals[v]);
+    if (cag_dot(m->normals[v], m->normals[v]) == 0) m->normals[v] = cag_vec3(0, 0, 1);
+  }
+  free(missing);
+}
+
+static CagStatus begin_fill(Fill *f, CagError *err) {
+  enum { CHUNK = 4096 }; // points evaluated at once: their partials stay in the cache
+  Tessellator *t = f->t;
+  size_t vertices = t->vertex_count, triangles = 0, longest = 1;
+  for (size_t k = 0; k < t->leaf_count; k++) {
+    Leaf *leaf = &t->leaves[k];
+    look_at_sides(t, leaf);
+    vertices += inner_count(leaf);
+    triangles += triangles_of(leaf);
+    for (int d = 0; d < 2; d++)
+      if (leaf->n[d] > longest) longest = leaf->n[d];
+  }
+  for (size_t k = 0; k < t->face_count; k++) triangles += t->faces[k].triangle_count;
+  if (triangles > t->how.max_triangles) return tess_limit(t, (double)triangles, err);
+  CagStatus status = cag_mesh_new(vertices, triangles, true, true, true, &f->mesh, err);
+  if (status != CAG_OK) return status;
+  f->grid_room = longest > CHUNK ? longest : CHUNK;
+  f->us = malloc(longest * sizeof *f->us);
+  f->vs = malloc(longest * sizeof *f->vs);
+  f->du = malloc(f->grid_room * sizeof *f->du);
+  f->dv = malloc(f->grid_room * sizeof *f->dv);
+  if (!f->us || !f->vs || !f->du || !f->dv) return cag_fail_memory(err);
+  memcpy(f->mesh->positions, t->positions, t->vertex_count * sizeof *t->positions);
+  memcpy(f->mesh->normals, t->normals, t->vertex_count * sizeof *t->normals);
+  memcpy(f->mesh->uv, t->uv, t->vertex_count * 2 * sizeof *t->uv);
+  memcpy(f->mesh->weld, t->weld, t->vertex_count * sizeof *t->weld);
+  f->vertices = t->vertex_count;
+  return CAG_OK;
+}
+
+CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
+  finish_weld(t);
+  Fill f = {.t = t};
+  CagStatus status = begin_fill(&f, err);
+  for (size_t k = 0; status == CAG_OK && k < t->leaf_count; k++)
+    status = fill_leaf(&f, &t->leaves[k], err);
+  for (size_t k = 0; status == CAG_OK && k < t->face_count; k++)
+    for (size_t j = 0; j < t->faces[k].triangle_count; j++) {
+      const uint32_t *corner = t->faces[k].triangles + 3 * j;
+      add_triangle(&f, corner[0], corner[1], corner[2]);
+    }
+  free(f.us);
+  free(f.vs);
+  free(f.du);
+  free(f.dv);
+  if (status != CAG_OK) {
+    cag_mesh_release(f.mesh);
+    return status;
+  }
+  f.mesh->triangle_count = f.triangles;
+  if (t->needs_normals) complete_normals(f.mesh);
+  *out = f.mesh;
+  return CAG_OK;
+}

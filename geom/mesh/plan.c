@@ -1,0 +1,432 @@
+// Tessellation, step 1: how finely each part of a face is divided.
+//
+// A linear triangle whose corners lie within a box of hu x hv parameters is off the surface by at
+// most (hu^2 |S_uu| + 2 hu hv |S_uv| + hv^2 |S_vv|) / 8 (Filip, Magedson and Markot 1986). Only the
+// components along the normal count, so that flat pieces take two triangles whatever their
+// parametrization. The second partials are taken from differences of first ones on a dense grid.
+// Then the choice is tried out: distances from the surface to the triangles are measured, and the
+// bound is scaled by what was found, until the distance is under the tolerance and near to it.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/mesh/distance.h"
+#include "geom/mesh/tessellation.h"
+
+enum {
+  STEPS = 8, // of the sampling grid of a leaf; even, so that halves are known as well
+  SIDE = STEPS + 1,
+  SAMPLES = SIDE * SIDE,
+  TRIED = 8,          // quadrilaterals measured along each direction of a leaf
+  MAX_DEPTH = 24,     // of halving: features of a 4000th of the domain, in both directions
+  WORTH_HALVING = 32, // quadrilaterals
+  MAX_CORRECTIONS = 8
+};
+
+// The sampling grid stays this far (of the leaf) inside, so that one-sided derivatives of the
+// leaf's own piece are seen, and poles have normals.
+static const double inset = 1e-6;
+// Distances found on samples may be this much of the tolerance; the rest is for the points between.
+static const double highest_use = 0.94, aimed_use = 0.88, lowest_use = 0.72;
+
+typedef struct Range {
+  int u0, u1, v0, v1; // sample indices, both ends in
+} Range;
+
+// Needs of a leaf in parameters of 0..1: triangles of 1/nu x 1/nv are off by
+// uu/nu^2 + uv/(nu nv) + vv/nv^2.
+typedef struct Needs {
+  double uu, uv, vv;
+  double turn[2];   // of the normal
+  double length[2]; // of lines
+} Needs;
+
+typedef struct Sampled {
+  double from[2], to[2];
+  CagVec3 points[SAMPLES], du[SAMPLES], dv[SAMPLES], normals[SAMPLES];
+  bool has_normal[SAMPLES];
+  double off_uu[SAMPLES], off_uv[SAMPLES], off_vv[SAMPLES];
+} Sampled;
+
+// --- Sampling ---
+
+static void find_normals(Sampled *s) {
+  // Where the partials are nearly parallel the cross product is rounding.
+  const double parallel = 1e-9;
+  for (int k = 0; k < SAMPLES; k++) {
+    CagVec3 n = cag_cross(s->du[k], s->dv[k]);
+    double length = cag_norm(n);
+    s->has_normal[k] = length > parallel * cag_norm(s->du[k]) * cag_norm(s->dv[k]) && length > 0;
+    s->normals[k] = s->has_normal[k] ? cag_scaled(n, 1 / length) : n;
+  }
+}
+
+// Derivative of the samples d along a direction (stride) at index i, in leaf parameters 0..1.
+static CagVec3 slope(const CagVec3 *d, int i, int stride) {
+  const double twice_step = 2 * (1 - 2 * inset) / STEPS;
+  CagVec3 change;
+  if (i == 0)
+    change = cag_sub(cag_sub(cag_scaled(d[stride], 4), cag_scaled(d[0], 3)), d[2 * stride]);
+  else if (i == STEPS)
+    change = cag_add(cag_sub(cag_scaled(d[0], 3), cag_scaled(d[-stride], 4)), d[-2 * stride]);
+  else change = cag_sub(d[stride], d[-stride]);
+  return cag_scaled(change, 1 / twice_step);
+}
+
+static double along_normal(const Sampled *s, int k, CagVec3 x) {
+  return s->has_normal[k] ? fabs(cag_dot(x, s->normals[k])) : cag_norm(x);
+}
+
+static void find_second_partials(Sampled *s) {
+  for (int i = 0; i < SIDE; i++)
+    for (int j = 0; j < SIDE; j++) {
+      int k = i * SIDE + j;
+      s->off_uu[k] = along_normal(s, k, slope(s->du + k, i, SIDE)) / 8;
+      s->off_uv[k] = along_normal(s, k, slope(s->du + k, j, 1)) / 4;
+      s->off_vv[k] = along_normal(s, k, slope(s->dv + k, j, 1)) / 8;
+    }
+}
+
+static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *err) {
+  double ts[2][SIDE], length[2];
+  for (int d = 0; d < 2; d++) {
+    length[d] = s->to[d] - s->from[d];
+    for (int i = 0; i < SIDE; i++)
+      ts[d][i] = s->from[d] + length[d] * (inset + (1 - 2 * inset) * i / STEPS);
+  }
+  CagStatus status =
+      cag_surface_eval_grid(surface, ts[0], SIDE, ts[1], SIDE, s->points, s->du, s->dv, err);
+  if (status != CAG_OK) return status;
+  for (int k = 0; k < SAMPLES; k++) {
+    s->du[k] = cag_scaled(s->du[k], length[0]);
+    s->dv[k] = cag_scaled(s->dv[k], length[1]);
+  }
+  find_normals(s);
+  find_second_partials(s);
+  return CAG_OK;
+}
+
+// Do the samples along a direction tell the whole story? If the mean of the derivatives at the ends
+// of a step is far from the step made, the surface does something between them (the turns of a
+// helix).
+static bool is_resolved(const Sampled *s, int direction) {
+  const double far = 0.2; // of the longest step
+  const CagVec3 *d = direction == 0 ? s->du : s->dv;
+  int stride = direction == 0 ? SIDE : 1;
+  double longest = 0, worst = 0;
+  for (int k = 0; k < SAMPLES; k++) longest = fmax(longest, cag_norm(d[k]));
+  for (int i = 0; i < SIDE; i++)
+    for (int j = 0; j < STEPS; j++) {
+      int k = direction == 0 ? j * SIDE + i : i * SIDE + j;
+      CagVec3 step = cag_scaled(cag_sub(s->points[k + stride], s->points[k]), STEPS);
+      CagVec3 mean = cag_scaled(cag_add(d[k], d[k + stride]), 0.5);
+      worst = fmax(worst, cag_norm(cag_sub(step, mean)));
+    }
+  return worst <= far * longest;
+}
+
+// --- Needs and counts ---
+
+static double angle_between(CagVec3 a, CagVec3 b) {
+  return atan2(cag_norm(cag_cross(a, b)), cag_dot(a, b));
+}
+
+static Needs needs_of(const Sampled *s, Range r) {
+  Needs n = {0};
+  double part[2] = {(double)(r.u1 - r.u0) / STEPS, (double)(r.v1 - r.v0) / STEPS};
+  for (int i = r.u0; i <= r.u1; i++)
+    for (int j = r.v0; j <= r.v1; j++) {
+      int k = i * SIDE + j;
+      n.uu = fmax(n.uu, s->off_uu[k]);
+      n.uv = fmax(n.uv, s->off_uv[k]);
+      n.vv = fmax(n.vv, s->off_vv[k]);
+      n.length[0] = fmax(n.length[0], cag_norm(s->du[k]));
+      n.length[1] = fmax(n.length[1], cag_norm(s->dv[k]));
+      if (i < r.u1 && s->has_normal[k] && s->has_normal[k + SIDE])
+        n.turn[0] = fmax(n.turn[0], STEPS * angle_between(s->normals[k], s->normals[k + SIDE]));
+      if (j < r.v1 && s->has_normal[k] && s->has_normal[k + 1])
+        n.turn[1] = fmax(n.turn[1], STEPS * angle_between(s->normals[k], s->normals[k + 1]));
+    }
+  n.uu *= part[0] * part[0];
+  n.uv *= part[0] * part[1];
+  n.vv *= part[1] * part[1];
+  for (int d = 0; d < 2; d++) {
+    n.turn[d] *= part[d];
+    n.length[d] *= part[d];
+  }
+  return n;
+}
+
+// Least n >= 1 with a/n^2 + b/n <= limit; infinite where there is none.
+static double least_count(double a, double b, double limit) {
+  if (a <= 0 && b <= 0) return 1;
+  if (!(limit > 0)) return INFINITY;
+  double n = ceil((b + sqrt(b * b + 4 * a * limit)) / (2 * limit) * (1 - 1e-12));
+  return n > 1 ? n : 1;
+}
+
+// Counts with uu/nu^2 + uv/(nu nv) + vv/nv^2 <= limit and small product. On the boundary of what is
+// allowed, nu nv = (uu r + uv + vv/r) / limit for the ratio r = nv/nu. Among the ratios that are
+// nearly best the one nearest to square quadrilaterals is taken.
+static void best_counts(double uu, double uv, double vv, double limit, double square_ratio,
+                        double n[2]) {
+  const double nearly = 1.1;
+  double sum = nearly * (2 * sqrt(uu * vv) + uv) - uv, ratio = square_ratio;
+  double root = sqrt(fmax(0, sum * sum - 4 * uu * vv));
+  if (uu > 0) ratio = fmin(ratio, (sum + root) / (2 * uu));
+  if (vv > 0) ratio = fmax(ratio, sum + root > 0 ? 2 * vv / (sum + root) : INFINITY);
+  double nu = ratio < INFINITY ? sqrt((uu + uv * (1 / ratio) + vv / (ratio * ratio)) / limit) : 1;
+  double nv = ratio * nu;
+  if (!(nu >= 1)) nu = 1;
+  if (!(nv >= 1)) nv = 1;
+  double best = INFINITY;
+  // Round one of the counts either way, the other follows.
+  for (int trial = 0; trial < 4; trial++) {
+    double fixed = fmax(1, floor(trial < 2 ? nu : nv) + trial % 2);
+    double rest = limit - (trial < 2 ? uu : vv) / (fixed * fixed);
+    double other = least_count(trial < 2 ? vv : uu, uv / fixed, rest);
+    if (fixed * other >= best) continue;
+    best = fixed * other;
+    n[0] = trial < 2 ? fixed : other;
+    n[1] = trial < 2 ? other : fixed;
+  }
+  if (best < INFINITY) return;
+  n[0] = ceil(nu) + 1;
+  n[1] = ceil(nv) + 1;
+}
+
+// Counts for a leaf; correction scales the bound on the distance.
+static void counts_for(const CagTessellation *how, const Needs *needs, double correction,
+                       double n[2]) {
+  // Values below are rounding of zero; they would only make stripes.
+  double nothing = how->tolerance * 1e-6;
+  double uu = needs->uu > nothing ? needs->uu * correction : 0,
+         uv = needs->uv > nothing ? needs->uv * correction : 0,
+         vv = needs->vv > nothing ? needs->vv * correction : 0;
+  double square_ratio =
+      needs->length[0] > 0 && needs->length[1] > 0 ? needs->length[1] / needs->length[0] : 1;
+  best_counts(uu, uv, vv, how->tolerance, square_ratio, n);
+  const double no_turn = 1e-7; // radians: rounding of normals
+  double most[2];
+  if (how->angle > 0) {
+    double a = needs->turn[0] > no_turn ? needs->turn[0] : 0,
+           b = needs->turn[1] > no_turn ? needs->turn[1] : 0, limit = how->angle * how->angle;
+    best_counts(a * a, 0, b * b, limit, square_ratio, most);
+    for (int d = 0; d < 2; d++) n[d] = fmax(n[d], most[d]);
+  }
+  if (how->max_edge > 0) {
+    double a = needs->length[0], b = needs->length[1];
+    best_counts(a * a, 0, b * b, how->max_edge * how->max_edge, square_ratio, most);
+    for (int d = 0; d < 2; d++) n[d] = fmax(n[d], most[d]);
+  }
+}
+
+// --- Trial ---
+
+// Indices of at most TRIED of n quadrilaterals, spread from first to last.
+static int spread(double n, double out[TRIED]) {
+  int count = n < TRIED ? (int)n : TRIED;
+  for (int k = 0; k < count; k++) out[k] = count == 1 ? 0 : floor(k * (n - 1) / (count - 1));
+  return count;
+}
+
+enum { AT_0, AT_THIRD, AT_HALF, AT_TWO_THIRDS, AT_1, PLACES };
+static const double place[PLACES] = {0, 1.0 / 3, 0.5, 2.0 / 3, 1};
+
+// Largest measured distance from points of the surface over one quadrilateral to its triangles.
+static double quad_distance(const CagVec3 *at, int stride) {
+#define AT(i, j) at[(i)*stride + (j)]
+  CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
+  double worst = cag_distance_to_segment(AT(AT_HALF, AT_0), a, b);
+  worst = fmax(worst, cag_distance_to_segment(AT(AT_HALF, AT_1), d, c));
+  worst = fmax(worst, cag_distance_to_segment(AT(AT_0, AT_HALF), a, d));
+  worst = fmax(worst, cag_distance_to_segment(AT(AT_1, AT_HALF), b, c));
+  CagVec3 middle = AT(AT_HALF, AT_HALF);
+  if (tess_cut_ac(a, b, c, d)) {
+    worst = fmax(worst, cag_distance_to_triangle(AT(AT_TWO_THIRDS, AT_THIRD), a, b, c));
+    worst = fmax(worst, cag_distance_to_triangle(AT(AT_THIRD, AT_TWO_THIRDS), a, c, d));
+    return fmax(worst, fmin(cag_distance_to_triangle(middle, a, b, c),
+                            cag_distance_to_triangle(middle, a, c, d)));
+  }
+  worst = fmax(worst, cag_distance_to_triangle(AT(AT_THIRD, AT_THIRD), a, b, d));
+  worst = fmax(worst, cag_distance_to_triangle(AT(AT_TWO_THIRDS, AT_TWO_THIRDS), b, c, d));
+  return fmax(worst, fmin(cag_distance_to_triangle(middle, a, b, d),
+                          cag_distance_to_triangle(middle, b, c, d)));
+#undef AT
+}
+
+static CagStatus measure(const CagSurface *surface, const double from[2], const double to[2],
+                         const double n[2], double *distance, CagError *err) {
+  enum { MOST = TRIED * PLACES };
+  double ts[2][MOST], chosen[TRIED];
+  int count[2];
+  for (int d = 0; d < 2; d++) {
+    count[d] = spread(n[d], chosen);
+    for (int k = 0; k < count[d]; k++)
+      for (int p = 0; p < PLACES; p++) {
+        double t = from[d] + (to[d] - from[d]) * ((chosen[k] + place[p]) / n[d]);
+        ts[d][k * PLACES + p] = t < to[d] ? t : to[d];
+      }
+  }
+  CagVec3 points[MOST * MOST];
+  size_t columns = (size_t)count[0] * PLACES, rows = (size_t)count[1] * PLACES;
+  CagStatus status =
+      cag_surface_eval_grid(surface, ts[0], columns, ts[1], rows, points, NULL, NULL, err);
+  if (status != CAG_OK) return status;
+  *distance = 0;
+  for (int i = 0; i < count[0]; i++)
+    for (int j = 0; j < count[1]; j++) {
+      const CagVec3 *corner = points + (size_t)i * PLACES * rows + (size_t)j * PLACES;
+      *distance = fmax(*distance, quad_distance(corner, (int)rows));
+    }
+  return CAG_OK;
+}
+
+// Finds counts whose measured distance lies under the tolerance and not far under it.
+static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, const Sampled *s,
+                               double best[2], CagError *err) {
+  Range all = {0, STEPS, 0, STEPS};
+  Needs needs = needs_of(s, all);
+  double tolerance = t->how.tolerance, correction = 1, limit = (double)t->how.max_triangles;
+  double smallest = INFINITY, n[2];
+  for (int round = 0; round < MAX_CORRECTIONS; round++) {
+    counts_for(&t->how, &needs, correction, n);
+    double quads = n[0] * n[1], distance;
+    if (quads >= smallest) break;
+    if (quads > limit) return tess_limit(t, 2 * quads, err);
+    CagStatus status = measure(surface, s->from, s->to, n, &distance, err);
+    if (status != CAG_OK) return status;
+    double use = distance / tolerance;
+    if (use <= highest_use) {
+      smallest = quads;
+      best[0] = n[0];
+      best[1] = n[1];
+      if (use >= lowest_use || quads <= 1) break;
+    }
+    // Differences are blind to what happens between samples: then the counts themselves grow.
+    double largest = fmax(needs.uu, fmax(needs.uv, needs.vv));
+    if (use > highest_use && largest * correction < tolerance * 0.5) {
+      needs.uu = fmax(needs.uu, tolerance);
+      needs.vv = fmax(needs.vv, tolerance);
+    }
+    correction *= fmin(16, fmax(use / aimed_use, 1.0 / 16));
+  }
+  if (smallest < INFINITY) return CAG_OK;
+  // Corrections did not settle it; doubling does.
+  best[0] = n[0];
+  best[1] = n[1];
+  for (double distance = INFINITY; distance > highest_use * tolerance;) {
+    best[0] *= 2;
+    best[1] *= 2;
+    if (best[0] * best[1] > limit) return tess_limit(t, 2 * best[0] * best[1], err);
+    CagStatus status = measure(surface, s->from, s->to, best, &distance, err);
+    if (status != CAG_OK) return status;
+  }
+  return CAG_OK;
+}
+
+// --- Leaves ---
+
+static double cost_of(const CagTessellation *how, const Sampled *s, Range r) {
+  double n[2];
+  Needs needs = needs_of(s, r);
+  counts_for(how, &needs, 1, n);
+  return n[0] * n[1];
+}
+
+// Direction in which the leaf is better halved; -1: none.
+static int halving(const CagTessellation *how, const Sampled *s, int depth) {
+  const double gain = 0.8; // halving makes seams of small triangles: it must save more
+  if (depth >= MAX_DEPTH) return -1;
+  for (int d = 0; d < 2; d++)
+    if (!is_resolved(s, d)) return d;
+  Range all = {0, STEPS, 0, STEPS};
+  double whole = cost_of(how, s, all);
+  if (whole < WORTH_HALVING) return -1;
+  int half = STEPS / 2;
+  double by_u =
+      cost_of(how, s, (Range){0, half, 0, STEPS}) + cost_of(how, s, (Range){half, STEPS, 0, STEPS});
+  double by_v =
+      cost_of(how, s, (Range){0, STEPS, 0, half}) + cost_of(how, s, (Range){0, STEPS, half, STEPS});
+  if (fmin(by_u, by_v) > gain * whole) return -1;
+  return by_u <= by_v ? 0 : 1;
+}
+
+static CagStatus add_leaf(Tessellator *t, uint32_t face, const Sampled *s, const double n[2],
+                          CagError *err) {
+  CagStatus status =
+      tess_grow(&t->leaves, t->leaf_count, &t->leaf_capacity, sizeof *t->leaves, err);
+  if (status != CAG_OK) return status;
+  Leaf *leaf = &t->leaves[t->leaf_count++];
+  memset(leaf, 0, sizeof *leaf);
+  leaf->face = face;
+  for (int d = 0; d < 2; d++) {
+    leaf->from[d] = s->from[d];
+    leaf->to[d] = s->to[d];
+    leaf->n[d] = n[d] < UINT32_MAX / 4 ? (uint32_t)n[d] : UINT32_MAX / 4;
+  }
+  return CAG_OK;
+}
+
+// The halves of a leaf, lower one first.
+static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], const double to[2],
+                           int depth, CagError *err) {
+  CagStatus status = tess_interrupted(t, err);
+  if (status != CAG_OK) return status;
+  const CagSurface *surface = t->faces[face].surface;
+  Sampled s;
+  memcpy(s.from, from, sizeof s.from);
+  memcpy(s.to, to, sizeof s.to);
+  status = sample_leaf(surface, &s, err);
+  if (status != CAG_OK) return status;
+  int d = halving(&t->how, &s, depth);
+  double middle = d < 0 ? 0 : from[d] + (to[d] - from[d]) / 2;
+  if (d < 0 || !(middle > from[d] && middle < to[d])) {
+    double n[2];
+    status = settle_counts(t, surface, &s, n, err);
+    return status == CAG_OK ? add_leaf(t, face, &s, n, err) : status;
+  }
+  double lower_to[2] = {to[0], to[1]}, upper_from[2] = {from[0], from[1]};
+  lower_to[d] = upper_from[d] = middle;
+  status = plan_leaf(t, face, from, lower_to, depth + 1, err);
+  return status == CAG_OK ? plan_leaf(t, face, upper_from, to, depth + 1, err) : status;
+}
+
+static CagStatus find_breaks(Face *f, int direction, CagError *err) {
+  const CagSurface *s = f->surface;
+  double from = direction == 0 ? s->u0 : s->v0, to = direction == 0 ? s->u1 : s->v1;
+  size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
+  double *all = malloc((inner + 2) * sizeof *all);
+  if (!all) return cag_fail_memory(err);
+  if (inner > 0) s->kind->breaks(s, direction, all + 1, inner);
+  all[0] = from;
+  size_t count = 1;
+  // Breaks nearer to each other than this are one: no cell is that thin but by rounding.
+  double thin = 1e-12 * (to - from);
+  for (size_t k = 1; k <= inner; k++)
+    if (all[k] > all[count - 1] + thin && all[k] < to - thin) all[count++] = all[k];
+  all[count++] = to;
+  f->breaks[direction] = all;
+  f->break_count[direction] = count;
+  return CAG_OK;
+}
+
+CagStatus tess_plan_face(Tessellator *t, uint32_t face, CagError *err) {
+  Face *f = &t->faces[face];
+  f->leaf = t->leaf_count;
+  for (int d = 0; d < 2; d++) {
+    CagStatus status = find_breaks(f, d, err);
+    if (status != CAG_OK) return status;
+  }
+  for (size_t i = 0; i + 1 < f->break_count[0]; i++)
+    for (size_t j = 0; j + 1 < f->break_count[1]; j++) {
+      double from[2] = {f->breaks[0][i], f->breaks[1][j]},
+             to[2] = {f->breaks[0][i + 1], f->breaks[1][j + 1]};
+      CagStatus status = plan_leaf(t, face, from, to, 0, err);
+      if (status != CAG_OK) return status;
+    }
+  f->leaf_count = t->leaf_count - f->leaf;
+  double quads = 0;
+  for (size_t k = 0; k < t->leaf_count; k++) quads += (double)t->leaves[k].n[0] * t->leaves[k].n[1];
+  return quads > (double)t->how.max_triangles ? tess_limit(t, 2 * quads, err) : CAG_OK;
+}

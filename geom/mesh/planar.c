@@ -1,0 +1,223 @@
+// Tessellation of plane trimmed faces: their loops as points, the points as triangles.
+//
+// Where a loop is the edge of other faces of a solid it takes the nodes of their sides, exactly.
+// Flat as it is, nothing is added inside.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/mesh/tessellation.h"
+
+// Points of the loops in order: positions in space; for those from other faces their vertex.
+typedef struct Outline {
+  CagVec3 *points;
+  uint32_t *vertices;
+  size_t count, capacity;
+} Outline;
+
+// A side of another face that runs along the loop.
+typedef struct Piece {
+  const Line *line;
+  bool used;
+} Piece;
+
+static CagStatus add_point(Outline *o, CagVec3 point, uint32_t vertex, CagError *err) {
+  if (o->count == o->capacity) {
+    size_t n = o->capacity ? 2 * o->capacity : 256;
+    CagVec3 *points = realloc(o->points, n * sizeof *points);
+    if (points) o->points = points;
+    uint32_t *vertices = realloc(o->vertices, n * sizeof *vertices);
+    if (vertices) o->vertices = vertices;
+    if (!points || !vertices) return cag_fail_memory(err);
+    o->capacity = n;
+  }
+  o->points[o->count] = point;
+  o->vertices[o->count++] = vertex;
+  return CAG_OK;
+}
+
+static uint32_t node_root(Tessellator *t, const Line *line, bool last) {
+  const Node *node = &t->nodes[line->node + (last ? line->node_count - 1 : 0)];
+  uint32_t v = node->corner != NO_INDEX ? t->corners[node->corner].quadrant[3] : node->vertex[1];
+  return tess_find(t, v);
+}
+
+// --- Loops that are edges of other faces ---
+
+// Lines of the sides along the loop; *n of them, malloc'd.
+static CagStatus find_pieces(const Tessellator *t, const CagSolid *solid, uint32_t face, int side,
+                             Piece **out, size_t *n, CagError *err) {
+  *n = 0;
+  Piece *pieces = malloc((solid->edge_count + 1) * sizeof *pieces);
+  if (!pieces) return cag_fail_memory(err);
+  for (size_t e = 0; e < solid->edge_count; e++)
+    for (int k = 0; k < 2; k++) {
+      const struct CagSolidEdge *edge = &solid->edges[e];
+      if (edge->face[k] != face || edge->side[k] != side) continue;
+      uint32_t line = tess_side_line(t, (uint32_t)edge->face[1 - k], edge->side[1 - k]);
+      if (line != NO_INDEX) pieces[(*n)++] = (Piece){&t->lines[line], false};
+    }
+  *out = pieces;
+  return CAG_OK;
+}
+
+// Appends the nodes of a piece, from its start or from its end; the last one is left to the next
+// piece when that begins there.
+static CagStatus append_piece(Tessellator *t, Outline *o, size_t first, const Line *line,
+                              bool backwards, CagError *err) {
+  for (size_t k = 0; k < line->node_count; k++) {
+    size_t at = line->node + (backwards ? line->node_count - 1 - k : k);
+    const Node *node = &t->nodes[at];
+    uint32_t v = node->corner != NO_INDEX ? t->corners[node->corner].quadrant[3] : node->vertex[1];
+    v = tess_find(t, v);
+    if (o->count > first && tess_find(t, o->vertices[o->count - 1]) == v) continue;
+    CagStatus status = add_point(o, t->positions[v], v, err);
+    if (status != CAG_OK) return status;
+  }
+  // The loop closes on its first point.
+  while (o->count > first + 1 &&
+         tess_find(t, o->vertices[o->count - 1]) == tess_find(t, o->vertices[first]))
+    o->count--;
+  return CAG_OK;
+}
+
+// Pieces one after the other: each time the one with an end nearest to where the last ended. Ends
+// that only rounding parts become one point.
+static CagStatus outline_of_pieces(Tessellator *t, Outline *o, Piece *pieces, size_t n,
+                                   CagError *err) {
+  const double rounding = 1e-7; // of the size
+  size_t first = o->count;
+  CagStatus status = append_piece(t, o, first, pieces[0].line, false, err);
+  uint32_t end = node_root(t, pieces[0].line, true);
+  for (size_t done = 1; status == CAG_OK && done < n; done++) {
+    size_t best = 0;
+    bool backwards = false;
+    double least = INFINITY;
+    for (size_t k = 1; k < n; k++)
+      for (int last = 0; last < 2 && !pieces[k].used; last++) {
+        CagVec3 gap = cag_sub(t->positions[node_root(t, pieces[k].line, last)], t->positions[end]);
+        if (cag_norm(gap) >= least) continue;
+        least = cag_norm(gap);
+        best = k;
+        backwards = last;
+      }
+    pieces[best].used = true;
+    if (least <= rounding * t->size) tess_unite(t, end, node_root(t, pieces[best].line, backwards));
+    status = append_piece(t, o, first, pieces[best].line, backwards, err);
+    end = node_root(t, pieces[best].line, !backwards);
+  }
+  uint32_t start = node_root(t, pieces[0].line, false);
+  if (n > 1 && cag_norm(cag_sub(t->positions[start], t->positions[end])) <= rounding * t->size)
+    tess_unite(t, start, end);
+  while (o->count > first + 1 &&
+         tess_find(t, o->vertices[o->count - 1]) == tess_find(t, o->vertices[first]))
+    o->count--;
+  return status;
+}
+
+// --- Loops of their own ---
+
+static double largest_scale(const CagTransform *frame) {
+  double scale = 0;
+  for (int k = 0; k < 2; k++)
+    scale = fmax(scale, cag_norm(cag_vec3(frame->m[0][k], frame->m[1][k], frame->m[2][k])));
+  return scale > 0 ? scale : 1;
+}
+
+// The last point of a closed curve is its first one again, and is left out.
+static CagStatus outline_of_curve(const Tessellator *t, Outline *o, const CagCurve *curve,
+                                  const CagTransform *frame, CagError *err) {
+  double *at;
+  size_t n;
+  double scale = largest_scale(frame), angle = t->how.angle > 0 ? t->how.angle : M_PI / 2;
+  CagStatus status = cag_curve_discretize(curve, t->how.tolerance / scale, angle, &at, &n, err);
+  if (status != CAG_OK) return status;
+  for (size_t k = 0; status == CAG_OK && k + 1 < n; k++) {
+    CagVec3 p, q;
+    status = cag_curve_point(curve, at[k], &p, err);
+    if (status == CAG_OK) status = cag_curve_point(curve, at[k + 1], &q, err);
+    if (status != CAG_OK) break;
+    double length = cag_norm(cag_sub(q, p)) * scale;
+    size_t parts = t->how.max_edge > 0 ? (size_t)ceil(length / t->how.max_edge) : 1;
+    if (parts < 1) parts = 1;
+    for (size_t j = 0; status == CAG_OK && j < parts; j++) {
+      if (j > 0) status = cag_curve_point(curve, tess_mix(at[k], at[k + 1], j, parts), &p, err);
+      if (status == CAG_OK) status = add_point(o, cag_transform_point(frame, p), NO_INDEX, err);
+    }
+    if ((double)o->count > (double)t->how.max_triangles + 2)
+      status = tess_limit(t, (double)o->count, err);
+  }
+  free(at);
+  return status;
+}
+
+// --- The face ---
+
+static CagStatus outline_of_loop(Tessellator *t, Outline *o, uint32_t face, size_t loop,
+                                 const CagSolid *solid, const CagCurve *curve,
+                                 const CagTransform *frame, CagError *err) {
+  Piece *pieces = NULL;
+  size_t n = 0;
+  CagStatus status = CAG_OK;
+  if (solid) status = find_pieces(t, solid, face, (int)loop + 4, &pieces, &n, err);
+  if (status == CAG_OK)
+    status =
+        n > 0 ? outline_of_pieces(t, o, pieces, n, err) : outline_of_curve(t, o, curve, frame, err);
+  free(pieces);
+  return status;
+}
+
+// Vertices of the face's own for the outline's points (its normal is another than its neighbours'),
+// with x and y of the region as parameters.
+static CagStatus own_vertices(Tessellator *t, const Outline *o, const CagTransform *frame,
+                              double *xy, uint32_t *vertices, CagError *err) {
+  CagTransform back;
+  CagStatus status = cag_transform_inverse(frame, &back, err);
+  CagVec3 x = cag_vec3(frame->m[0][0], frame->m[1][0], frame->m[2][0]),
+          y = cag_vec3(frame->m[0][1], frame->m[1][1], frame->m[2][1]);
+  CagVec3 normal = cag_unit(cag_cross(x, y));
+  for (size_t k = 0; status == CAG_OK && k < o->count; k++) {
+    CagVec3 flat = cag_transform_point(&back, o->points[k]);
+    xy[2 * k] = flat.x;
+    xy[2 * k + 1] = flat.y;
+    status = tess_new_vertex(t, o->points[k], normal, flat.x, flat.y, &vertices[k], err);
+    if (status == CAG_OK) tess_unite(t, o->vertices[k], vertices[k]);
+  }
+  return status;
+}
+
+static CagStatus triangulate_outline(Tessellator *t, Face *f, const Outline *o,
+                                     const size_t *counts, size_t loops, const CagTransform *frame,
+                                     CagError *err) {
+  double *xy = malloc((2 * o->count + 1) * sizeof *xy);
+  uint32_t *vertices = malloc((o->count + 1) * sizeof *vertices);
+  CagStatus status =
+      xy && vertices ? own_vertices(t, o, frame, xy, vertices, err) : cag_fail_memory(err);
+  if (status == CAG_OK)
+    status = cag_triangulate(xy, counts, loops, &f->triangles, &f->triangle_count, err);
+  for (size_t k = 0; status == CAG_OK && k < 3 * f->triangle_count; k++)
+    f->triangles[k] = vertices[f->triangles[k]];
+  free(xy);
+  free(vertices);
+  return status;
+}
+
+CagStatus tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid, CagError *err) {
+  Face *f = &t->faces[face];
+  const CagRegion *region;
+  CagTransform frame;
+  if (!cag_surface_planar_view(f->surface, &region, &frame)) return CAG_OK;
+  Outline o = {0};
+  size_t *counts = malloc((region->count + 1) * sizeof *counts);
+  CagStatus status = counts ? CAG_OK : cag_fail_memory(err);
+  for (size_t l = 0; status == CAG_OK && l < region->count; l++) {
+    size_t before = o.count;
+    status = outline_of_loop(t, &o, face, l, solid, region->loops[l], &frame, err);
+    counts[l] = o.count - before;
+  }
+  if (status == CAG_OK) status = triangulate_outline(t, f, &o, counts, region->count, &frame, err);
+  free(counts);
+  free(o.points);
+  free(o.vertices);
+  return status;
+}

@@ -1,0 +1,123 @@
+// Tessellation of surfaces and solids: the steps of tessellation.h in their order.
+
+#include "geom/mesh/tessellate.h"
+
+#include <stdlib.h>
+
+#include "geom/mesh/tessellation.h"
+
+CagStatus tess_grow(void *array, size_t count, size_t *capacity, size_t size, CagError *err) {
+  if (count < *capacity) return CAG_OK;
+  void **at = array;
+  size_t n = *capacity ? 2 * *capacity : 64;
+  void *larger = realloc(*at, n * size);
+  if (!larger) return cag_fail_memory(err);
+  *at = larger;
+  *capacity = n;
+  return CAG_OK;
+}
+
+CagStatus tess_interrupted(const Tessellator *t, CagError *err) {
+  if (!t->how.interrupt || !*t->how.interrupt) return CAG_OK;
+  return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the tessellation was interrupted");
+}
+
+CagStatus tess_limit(const Tessellator *t, double triangles, CagError *err) {
+  char tolerance[32];
+  return cag_fail(err, CAG_E_LIMIT, "triangle-limit", "tolerance", -1,
+                  "a tolerance of %s mm takes more than %.0f triangles, the limit is %zu: use a "
+                  "larger tolerance",
+                  cag_number_text(t->how.tolerance, tolerance), floor(triangles),
+                  t->how.max_triangles);
+}
+
+static void release(Tessellator *t) {
+  for (size_t k = 0; k < t->face_count; k++) {
+    free(t->faces[k].breaks[0]);
+    free(t->faces[k].breaks[1]);
+    free(t->faces[k].triangles);
+  }
+  for (size_t k = 0; k < t->line_count; k++) free(t->lines[k].own_parameters);
+  free(t->faces);
+  free(t->leaves);
+  free(t->lines);
+  free(t->atoms);
+  free(t->nodes);
+  free(t->corners);
+  free(t->corner_hash);
+  free(t->positions);
+  free(t->normals);
+  free(t->uv);
+  free(t->weld);
+}
+
+static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBounds *bounds,
+                       CagSurface *const *faces, size_t n, CagError *err) {
+  const double default_share = 1e-3; // of the diagonal
+  *t = (Tessellator){.how = how ? *how : CAG_TESSELLATION_DEFAULT};
+  t->size = cag_norm(cag_sub(bounds->max, bounds->min));
+  if (!isfinite(t->size))
+    return cag_fail(err, CAG_E_ARGUMENT, "surface-unbounded", "", -1,
+                    "only a bounded surface can be tessellated; this one reaches infinity");
+  if (!(t->how.tolerance > 0)) t->how.tolerance = t->size > 0 ? t->size * default_share : 1;
+  t->faces = calloc(n + 1, sizeof *t->faces);
+  if (!t->faces) return cag_fail_memory(err);
+  t->face_count = n;
+  for (size_t k = 0; k < n; k++) {
+    t->faces[k].surface = faces[k];
+    t->faces[k].planar = cag_surface_planar_view(faces[k], NULL, NULL);
+  }
+  return CAG_OK;
+}
+
+// Sides that two faces share get the same division.
+static CagStatus join_edges(Tessellator *t, const CagSolid *solid, CagError *err) {
+  for (size_t e = 0; e < solid->edge_count; e++) {
+    const struct CagSolidEdge *edge = &solid->edges[e];
+    uint32_t a = tess_side_line(t, (uint32_t)edge->face[0], edge->side[0]),
+             b = tess_side_line(t, (uint32_t)edge->face[1], edge->side[1]);
+    if (a == NO_INDEX || b == NO_INDEX || a == b) continue;
+    if (t->lines[a].joined != NO_INDEX || t->lines[b].joined != NO_INDEX) continue;
+    CagStatus status = tess_join_lines(t, a, b, edge->reversed, err);
+    if (status != CAG_OK) return status;
+  }
+  return CAG_OK;
+}
+
+static CagStatus run(Tessellator *t, const CagSolid *solid, CagMesh **out, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
+    if (!t->faces[k].planar) status = tess_plan_face(t, k, err);
+  for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
+    if (!t->faces[k].planar) status = tess_make_lines(t, k, err);
+  if (status == CAG_OK && solid) status = join_edges(t, solid, err);
+  if (status == CAG_OK) status = tess_make_nodes(t, err);
+  for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
+    if (t->faces[k].planar) status = tess_planar_face(t, k, solid, err);
+  return status == CAG_OK ? tess_fill(t, out, err) : status;
+}
+
+CagStatus cag_surface_tessellate(const CagSurface *s, const CagTessellation *how, CagMesh **out,
+                                 CagError *err) {
+  CagBounds bounds;
+  CagSurface *face = (CagSurface *)s;
+  CagStatus status = cag_surface_bounds(s, &bounds, err);
+  if (status != CAG_OK) return status;
+  Tessellator t;
+  status = begin(&t, how, &bounds, &face, 1, err);
+  if (status == CAG_OK) status = run(&t, NULL, out, err);
+  release(&t);
+  return status;
+}
+
+CagStatus cag_solid_tessellate(const CagSolid *s, const CagTessellation *how, CagMesh **out,
+                               CagError *err) {
+  CagBounds bounds;
+  CagStatus status = cag_solid_bounds(s, &bounds, err);
+  if (status != CAG_OK) return status;
+  Tessellator t;
+  status = begin(&t, how, &bounds, s->faces, s->face_count, err);
+  if (status == CAG_OK) status = run(&t, s, out, err);
+  release(&t);
+  return status;
+}
