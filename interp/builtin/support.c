@@ -280,6 +280,18 @@ static const char *skip_digits(const char *s, const char *end) {
   return s;
 }
 
+// The double of a text that is known to be a decimal number. strtod wants a NUL behind it.
+static bool convert_number(const char *s, size_t n, double *out) {
+  char buffer[128], *copy = n < sizeof buffer ? buffer : malloc(n + 1);
+  if (!copy) return false;
+  memcpy(copy, s, n);
+  copy[n] = 0;
+  double x = strtod(copy, NULL);
+  if (copy != buffer) free(copy);
+  *out = x + 0.0;
+  return isfinite(x);
+}
+
 bool cag_read_number(const char *s, size_t n, double *out) {
   const char *end = s + n;
   while (s < end && strchr(" \t\r\n", *s)) s++;
@@ -305,13 +317,7 @@ bool cag_read_number(const char *s, size_t n, double *out) {
     if (s == power) return false;
   }
   if (s != end) return false;
-  char *stop;
-  double x = strtod(from, &stop);
-  // The text goes on behind `end` with nothing that a number could take in: a space, a separator, a
-  // quote, the NUL.
-  if (stop != end || !isfinite(x)) return false;
-  *out = x + 0.0;
-  return true;
+  return convert_number(from, (size_t)(end - from), out);
 }
 
 // --- Angles in degrees ---

@@ -1,0 +1,593 @@
+// Data from files and as text: CSV, JSON, plain text.
+//
+// Which files a script may read, and reading them, is the machine's business (cag_vm_open_file).
+// Both parsers work on the bytes of the whole file and report errors by line and column of the
+// file.
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <utf8proc.h>
+
+#include "interp/builtin/support.h"
+
+static const char FAMILY[] = "Files";
+
+// --- Reading files ---
+
+typedef struct Reader {
+  CagCall *call;
+  const char *path;
+  char *bytes; // malloc'd, NUL behind the end
+  const char *at, *end;
+} Reader;
+
+// "read_csv: points.csv, line 3, column 7: ..."
+static bool fail_at(Reader *r, const char *place, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static bool fail_at(Reader *r, const char *place, const char *format, ...) {
+  char message[300];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(message, sizeof message, format, arguments);
+  va_end(arguments);
+  size_t line = 1, column = 1;
+  for (const char *s = r->bytes; s < place; s++) {
+    if (*s == '\n') line++, column = 1;
+    else if (((unsigned char)*s & 0xC0) != 0x80) column++;
+  }
+  return cag_fail_call(r->call, 0, CAG_ERR_parse_text,
+                       "cannot read \"%s\": line %zu, column %zu: %s", r->path, line, column,
+                       message);
+}
+
+static bool check_utf8(Reader *r) {
+  const char *s = r->at;
+  while (s < r->end) {
+    utf8proc_int32_t c;
+    utf8proc_ssize_t n = utf8proc_iterate((const utf8proc_uint8_t *)s, r->end - s, &c);
+    if (n <= 0) return fail_at(r, s, "not UTF-8: the byte 0x%02x", (unsigned char)*s);
+    if (c == 0) return fail_at(r, s, "a NUL character");
+    s += n;
+  }
+  return true;
+}
+
+static bool reader_open(CagCall *call, Reader *r) {
+  *r = (Reader){.call = call};
+  size_t n;
+  if (!cag_arg_text(call, 0, &r->path) || !cag_vm_open_file(call, 0, r->path, &r->bytes, &n))
+    return false;
+  r->at = r->bytes;
+  r->end = r->bytes + n;
+  // Some programs write a byte order mark.
+  static const char MARK[] = "\xEF\xBB\xBF";
+  if (n >= strlen(MARK) && memcmp(r->at, MARK, strlen(MARK)) == 0) r->at += strlen(MARK);
+  if (check_utf8(r)) return true;
+  free(r->bytes);
+  return false;
+}
+
+static bool call_read_text(CagCall *call, CagValue *result) {
+  Reader r;
+  if (!reader_open(call, &r)) return false;
+  *result = cag_text_new(call->vm, r.at, (size_t)(r.end - r.at));
+  free(r.bytes);
+  return true;
+}
+
+// --- CSV (RFC 4180, any separator, any line ending) ---
+
+typedef struct Csv {
+  Reader r;
+  char separator;
+  CagString cell;
+  CagValue *row; // cells of the row just read
+  size_t count, capacity;
+  bool numbers; // the row has a number
+  const char *row_start;
+} Csv;
+
+// cell = '"' { any | '""' } '"' | { any but separator and line end }
+static bool read_cell(Csv *c) {
+  Reader *r = &c->r;
+  c->cell.length = 0;
+  if (r->at == r->end || *r->at != '"') {
+    const char *from = r->at;
+    while (r->at < r->end && *r->at != c->separator && *r->at != '\n' && *r->at != '\r') r->at++;
+    cag_string_add(&c->cell, from, (size_t)(r->at - from));
+    return true;
+  }
+  const char *open = r->at++;
+  for (;;) {
+    const char *quote = memchr(r->at, '"', (size_t)(r->end - r->at));
+    if (!quote) return fail_at(r, open, "a quote that is not closed");
+    bool doubled = quote + 1 < r->end && quote[1] == '"';
+    cag_string_add(&c->cell, r->at, (size_t)(quote - r->at) + doubled);
+    r->at = quote + 1 + doubled;
+    if (!doubled) break;
+  }
+  if (r->at < r->end && *r->at != c->separator && *r->at != '\n' && *r->at != '\r')
+    return fail_at(r, r->at, "a quoted cell goes on behind its quote");
+  return true;
+}
+
+static CagValue cell_value(Csv *c) {
+  double x;
+  if (c->cell.length == 0) return cag_none();
+  if (!cag_read_number(c->cell.bytes, c->cell.length, &x))
+    return cag_text_new(c->r.call->vm, c->cell.bytes, c->cell.length);
+  c->numbers = true;
+  return cag_number(x);
+}
+
+static bool row_add(Csv *c, CagValue v) {
+  if (c->count == c->capacity) {
+    size_t capacity = c->capacity ? 2 * c->capacity : 16;
+    CagValue *row = realloc(c->row, capacity * sizeof *row);
+    if (!row)
+      return cag_fail_call(c->r.call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+    c->row = row;
+    c->capacity = capacity;
+  }
+  c->row[c->count++] = v;
+  return true;
+}
+
+static void skip_line_end(Reader *r) {
+  if (r->at < r->end && *r->at == '\r') r->at++;
+  if (r->at < r->end && *r->at == '\n') r->at++;
+}
+
+// Reads the next row that is not an empty line. *found: whether there is one.
+static bool read_row(Csv *c, bool *found) {
+  Reader *r = &c->r;
+  while (r->at < r->end && (*r->at == '\n' || *r->at == '\r')) skip_line_end(r);
+  c->count = 0;
+  c->numbers = false;
+  c->row_start = r->at;
+  *found = r->at < r->end;
+  if (!*found) return true;
+  for (;;) {
+    if (!read_cell(c) || !row_add(c, cell_value(c))) return false;
+    if (r->at == r->end || *r->at != c->separator) break;
+    r->at++;
+  }
+  skip_line_end(r);
+  return true;
+}
+
+// The names of the header: its cells as texts; a cell without a name is named by its place.
+static bool read_names(Csv *c, CagText **names) {
+  CagVm *vm = c->r.call->vm;
+  for (size_t i = 0; i < c->count; i++) {
+    CagString s = {0};
+    if (c->row[i].type == CAG_NONE) cag_string_printf(&s, "column%zu", i + 1);
+    else cag_print_value(vm, &s, c->row[i], false);
+    names[i] = cag_intern(vm, s.bytes ? s.bytes : "", s.length);
+    cag_string_free(&s);
+    for (size_t j = 0; j < i; j++)
+      if (names[j] == names[i])
+        return fail_at(&c->r, c->row_start, "two columns are named \"%s\"", names[i]->bytes);
+  }
+  return true;
+}
+
+// A record of the row. All rows share the layout of the first.
+static bool row_record(Csv *c, CagText **names, size_t columns, CagRecord **first, CagValue *out) {
+  CagVm *vm = c->r.call->vm;
+  if (c->count > columns)
+    return fail_at(&c->r, c->row_start, "%zu cells, but the header names %zu", c->count, columns);
+  while (c->count < columns)
+    if (!row_add(c, cag_none())) return false;
+  if (!*first) {
+    *out = cag_record_from_texts(vm, names, c->row, columns);
+    *first = CAG_AS_RECORD(*out);
+    return true;
+  }
+  CagRecord *record = cag_alloc(vm, CAG_RECORD, sizeof *record + columns * sizeof(CagValue));
+  record->layout = (*first)->layout;
+  memcpy(record->fields, c->row, columns * sizeof(CagValue));
+  *out = cag_object(CAG_RECORD, record);
+  return true;
+}
+
+enum { ROWS_BETWEEN_CHECKS = 1 << 12 };
+
+// Rows as lists, the one that has been read first.
+static bool read_lists(Csv *c, CagBuilder *built) {
+  bool found = true;
+  for (size_t n = 0; found; n++) {
+    CagVm *vm = c->r.call->vm;
+    if (!cag_builder_add(vm, built, cag_list_values(vm, c->row, c->count))) return false;
+    if (n % ROWS_BETWEEN_CHECKS == ROWS_BETWEEN_CHECKS - 1 && !cag_keep_going(vm)) return false;
+    if (!read_row(c, &found)) return false;
+  }
+  return true;
+}
+
+// Rows as records, the header having been read.
+static bool read_records(Csv *c, CagBuilder *built) {
+  CagVm *vm = c->r.call->vm;
+  size_t columns = c->count;
+  CagRecord *first = NULL;
+  CagText **names = malloc(columns * sizeof(CagText *));
+  bool found = true, good = names != NULL;
+  if (!good) cag_fail_call(c->r.call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  good = good && read_names(c, names) && read_row(c, &found);
+  for (size_t n = 0; good && found; n++) {
+    CagValue record;
+    good = row_record(c, names, columns, &first, &record) && cag_builder_add(vm, built, record);
+    if (n % ROWS_BETWEEN_CHECKS == ROWS_BETWEEN_CHECKS - 1) good = good && cag_keep_going(vm);
+    good = good && read_row(c, &found);
+  }
+  free(names);
+  return good;
+}
+
+static bool read_separator(CagCall *call, char *out) {
+  const char *separator = ",";
+  if (cag_given(call, 1) && !cag_arg_text(call, 1, &separator)) return false;
+  *out = separator[0];
+  bool good = separator[0] && !separator[1] && !strchr("\"\r\n", separator[0]) &&
+              (unsigned char)separator[0] < 0x80;
+  return good || cag_fail_value(call, 1, "one character, such as \",\" \";\" \"\\t\"");
+}
+
+static bool call_read_csv(CagCall *call, CagValue *result) {
+  Csv c = {0};
+  bool found, header = false, asked = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  if (asked && !cag_arg_bool_or(call, 2, false, &header)) return false;
+  if (!read_separator(call, &c.separator) || !reader_open(call, &c.r)) return false;
+  CagBuilder *built = cag_builder_new(call->vm);
+  bool good = read_row(&c, &found);
+  if (good && found) {
+    if (!asked) header = !c.numbers;
+    good = header ? read_records(&c, built) : read_lists(&c, built);
+  }
+  if (good) *result = cag_builder_finish(call->vm, built);
+  cag_string_free(&c.cell);
+  free(c.row);
+  free(c.r.bytes);
+  return good;
+}
+
+// --- JSON in ---
+
+static void skip_blank(Reader *r) {
+  while (r->at < r->end && strchr(" \t\r\n", *r->at)) r->at++;
+}
+
+static bool next_is(Reader *r, char c) {
+  skip_blank(r);
+  if (r->at == r->end || *r->at != c) return false;
+  r->at++;
+  return true;
+}
+
+static bool read_hex(Reader *r, unsigned *out) {
+  *out = 0;
+  for (int i = 0; i < 4; i++, r->at++) {
+    static const char DIGITS[] = "0123456789abcdef";
+    char c = r->at < r->end ? *r->at : 0;
+    if (c >= 'A' && c <= 'F') c += 'a' - 'A';
+    const char *digit = c ? strchr(DIGITS, c) : NULL;
+    if (!digit) return fail_at(r, r->at, "expected four hexadecimal digits");
+    *out = *out * 16 + (unsigned)(digit - DIGITS);
+  }
+  return true;
+}
+
+// \uXXXX, two of them for a character beyond U+FFFF; the `\u` has been read.
+static bool read_unicode(Reader *r, CagString *s) {
+  const char *place = r->at;
+  unsigned high, low;
+  if (!read_hex(r, &high)) return false;
+  if (high >= 0xD800 && high < 0xE000) {
+    bool pair = high < 0xDC00 && r->end - r->at > 2 && r->at[0] == '\\' && r->at[1] == 'u';
+    if (pair) r->at += 2;
+    if (!pair || !read_hex(r, &low) || low < 0xDC00 || low > 0xDFFF)
+      return fail_at(r, place, "half of a surrogate pair");
+    high = 0x10000 + ((high - 0xD800) << 10) + (low - 0xDC00);
+  }
+  if (high == 0) return fail_at(r, place, "a NUL character");
+  utf8proc_uint8_t bytes[4];
+  utf8proc_ssize_t n = utf8proc_encode_char((utf8proc_int32_t)high, bytes);
+  cag_string_add(s, (const char *)bytes, (size_t)n);
+  return true;
+}
+
+// The opening quote has been read.
+static bool read_json_text(Reader *r, CagString *s) {
+  static const char LETTERS[] = "\"\\/bfnrt", MEANT[] = "\"\\/\b\f\n\r\t";
+  const char *open = r->at - 1;
+  for (;;) {
+    if (r->at == r->end || *r->at == '\n') return fail_at(r, open, "a text that is not closed");
+    char c = *r->at++;
+    if (c == '"') return true;
+    if ((unsigned char)c < ' ')
+      return fail_at(r, r->at - 1, "a control character in a text: write \\u%04x", (unsigned)c);
+    if (c != '\\') {
+      cag_string_add(s, &c, 1);
+      continue;
+    }
+    char letter = r->at < r->end ? *r->at++ : 0;
+    const char *found = letter ? strchr(LETTERS, letter) : NULL;
+    if (found) cag_string_add(s, &MEANT[found - LETTERS], 1);
+    else if (letter != 'u') return fail_at(r, r->at - 1, "an unknown escape");
+    else if (!read_unicode(r, s)) return false;
+  }
+}
+
+static bool read_json_value(Reader *r, int depth, CagValue *out);
+
+// "[" [ value { "," value } ] "]"
+static bool read_json_list(Reader *r, int depth, CagValue *out) {
+  CagVm *vm = r->call->vm;
+  CagBuilder *built = cag_builder_new(vm);
+  if (!next_is(r, ']')) {
+    do {
+      CagValue v;
+      if (!read_json_value(r, depth, &v) || !cag_builder_add(vm, built, v)) return false;
+    } while (next_is(r, ','));
+    if (!next_is(r, ']')) return fail_at(r, r->at, "expected `,` or `]`");
+  }
+  *out = cag_builder_finish(vm, built);
+  return true;
+}
+
+typedef struct Field {
+  CagText *name; // interned: equal names are one text
+  CagValue value;
+  size_t place;
+} Field;
+
+typedef struct Fields {
+  Field *fields;
+  size_t count, capacity;
+} Fields;
+
+static bool add_field(Reader *r, Fields *f, CagText *name, CagValue value) {
+  if (f->count == f->capacity) {
+    size_t capacity = f->capacity ? 2 * f->capacity : 8;
+    Field *fields = realloc(f->fields, capacity * sizeof *fields);
+    if (!fields)
+      return cag_fail_call(r->call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+    f->fields = fields;
+    f->capacity = capacity;
+  }
+  f->fields[f->count] = (Field){name, value, f->count};
+  f->count++;
+  return true;
+}
+
+static int by_name(const void *a, const void *b) {
+  const Field *f = a, *g = b;
+  if (f->name != g->name) return f->name < g->name ? -1 : 1;
+  return (f->place > g->place) - (f->place < g->place);
+}
+
+static int by_place(const void *a, const void *b) {
+  const Field *f = a, *g = b;
+  return (f->place > g->place) - (f->place < g->place);
+}
+
+// Of fields with one name the last value holds, in the first one's place, as most readers of JSON
+// have it.
+static void join_fields(Fields *f) {
+  if (f->count < 2) return;
+  qsort(f->fields, f->count, sizeof *f->fields, by_name);
+  size_t kept = 0;
+  for (size_t i = 1; i < f->count; i++) {
+    if (f->fields[i].name == f->fields[kept].name) f->fields[kept].value = f->fields[i].value;
+    else f->fields[++kept] = f->fields[i];
+  }
+  f->count = kept + 1;
+  qsort(f->fields, f->count, sizeof *f->fields, by_place);
+}
+
+static bool give_fields(Reader *r, Fields *f, CagValue *out) {
+  join_fields(f);
+  CagText **names = malloc((f->count ? f->count : 1) * sizeof(CagText *));
+  CagValue *values = malloc((f->count ? f->count : 1) * sizeof *values);
+  bool good = names && values;
+  if (!good) cag_fail_call(r->call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  for (size_t i = 0; good && i < f->count; i++) {
+    names[i] = f->fields[i].name;
+    values[i] = f->fields[i].value;
+  }
+  if (good) *out = cag_record_from_texts(r->call->vm, names, values, f->count);
+  free(names);
+  free(values);
+  return good;
+}
+
+// text ":" value
+static bool read_field(Reader *r, int depth, Fields *f) {
+  CagValue value;
+  CagString s = {0};
+  if (!next_is(r, '"')) return fail_at(r, r->at, "expected a name in quotes");
+  bool good = read_json_text(r, &s);
+  CagText *name = good ? cag_intern(r->call->vm, s.bytes ? s.bytes : "", s.length) : NULL;
+  cag_string_free(&s);
+  if (!good) return false;
+  if (!next_is(r, ':')) return fail_at(r, r->at, "expected `:`");
+  return read_json_value(r, depth, &value) && add_field(r, f, name, value);
+}
+
+// "{" [ field { "," field } ] "}"
+static bool read_json_record(Reader *r, int depth, CagValue *out) {
+  Fields f = {0};
+  bool good = true;
+  if (!next_is(r, '}')) {
+    do good = read_field(r, depth, &f);
+    while (good && next_is(r, ','));
+    if (good && !next_is(r, '}')) good = fail_at(r, r->at, "expected `,` or `}`");
+  }
+  good = good && give_fields(r, &f, out);
+  free(f.fields);
+  return good;
+}
+
+static bool read_json_number(Reader *r, CagValue *out) {
+  const char *from = r->at;
+  double x;
+  while (r->at < r->end && *r->at && strchr("+-.eE0123456789", *r->at)) r->at++;
+  if (r->at == from) return fail_at(r, from, "expected a value");
+  if (!cag_read_number(from, (size_t)(r->at - from), &x))
+    return fail_at(r, from, "not a number that can be held");
+  *out = cag_number(x);
+  return true;
+}
+
+static bool read_word(Reader *r, const char *word) {
+  size_t n = strlen(word);
+  if ((size_t)(r->end - r->at) < n || memcmp(r->at, word, n) != 0) return false;
+  r->at += n;
+  return true;
+}
+
+static bool read_json_value(Reader *r, int depth, CagValue *out) {
+  enum { DEPTH_MOST = 1000 }; // as deep as brackets of the language may nest
+  skip_blank(r);
+  if (r->at == r->end) return fail_at(r, r->at, "the file ends where a value was expected");
+  if (depth == DEPTH_MOST) return fail_at(r, r->at, "brackets nest deeper than %d", DEPTH_MOST);
+  if (next_is(r, '[')) return read_json_list(r, depth + 1, out);
+  if (next_is(r, '{')) return read_json_record(r, depth + 1, out);
+  if (next_is(r, '"')) {
+    CagString s = {0};
+    bool good = read_json_text(r, &s);
+    if (good) *out = cag_text_from_string(r->call->vm, &s);
+    else cag_string_free(&s);
+    return good;
+  }
+  if (read_word(r, "true")) return *out = cag_bool(true), true;
+  if (read_word(r, "false")) return *out = cag_bool(false), true;
+  if (read_word(r, "null")) return *out = cag_none(), true;
+  return read_json_number(r, out);
+}
+
+static bool call_read_json(CagCall *call, CagValue *result) {
+  Reader r;
+  if (!reader_open(call, &r)) return false;
+  bool good = read_json_value(&r, 0, result);
+  skip_blank(&r);
+  if (good && r.at < r.end) good = fail_at(&r, r.at, "something follows the value");
+  free(r.bytes);
+  return good;
+}
+
+// --- JSON out ---
+
+static bool write_json(CagCall *call, CagString *s, CagValue v);
+
+static void write_json_text(CagString *s, const char *bytes, size_t n) {
+  cag_string_add(s, "\"", 1);
+  for (size_t i = 0; i < n; i++) {
+    char c = bytes[i];
+    if (c == '"' || c == '\\') cag_string_printf(s, "\\%c", c);
+    else if (c == '\n') cag_string_add(s, "\\n", 2);
+    else if (c == '\t') cag_string_add(s, "\\t", 2);
+    else if ((unsigned char)c < ' ') cag_string_printf(s, "\\u%04x", (unsigned)c);
+    else cag_string_add(s, &c, 1);
+  }
+  cag_string_add(s, "\"", 1);
+}
+
+static bool write_json_number(CagCall *call, CagString *s, double x) {
+  if (!isfinite(x))
+    return cag_fail_call(call, 0, CAG_ERR_value,
+                         "expects finite numbers: JSON has none that is infinite");
+  cag_print_number(s, x);
+  return true;
+}
+
+static bool write_json_list(CagCall *call, CagString *s, const CagList *list) {
+  cag_string_add(s, "[", 1);
+  for (size_t i = 0; i < list->length; i++) {
+    if (i > 0) cag_string_add(s, ", ", 2);
+    if (!write_json(call, s, cag_list_get(call->vm, list, i))) return false;
+  }
+  cag_string_add(s, "]", 1);
+  return true;
+}
+
+static bool write_json_record(CagCall *call, CagString *s, const CagRecord *r) {
+  cag_string_add(s, "{", 1);
+  for (size_t i = 0; i < r->layout->count; i++) {
+    if (i > 0) cag_string_add(s, ", ", 2);
+    write_json_text(s, r->layout->names[i]->bytes, r->layout->names[i]->length);
+    cag_string_add(s, ": ", 2);
+    if (!write_json(call, s, r->fields[i])) return false;
+  }
+  cag_string_add(s, "}", 1);
+  return true;
+}
+
+static bool write_json_transform(CagCall *call, CagString *s, const CagTransform *t) {
+  for (int i = 0; i < 4; i++) {
+    cag_string_add(s, i == 0 ? "[[" : "], [", i == 0 ? 2 : 4);
+    for (int j = 0; j < 4; j++) {
+      if (j > 0) cag_string_add(s, ", ", 2);
+      if (!write_json_number(call, s, t->m[i][j])) return false;
+    }
+  }
+  cag_string_add(s, "]]", 2);
+  return true;
+}
+
+static bool write_json(CagCall *call, CagString *s, CagValue v) {
+  switch (v.type) {
+  case CAG_NONE: cag_string_add(s, "null", strlen("null")); return true;
+  case CAG_BOOL: cag_string_printf(s, "%s", v.as.boolean ? "true" : "false"); return true;
+  case CAG_NUMBER:
+  case CAG_ANGLE: return write_json_number(call, s, v.as.number);
+  case CAG_TEXT: write_json_text(s, CAG_AS_TEXT(v)->bytes, CAG_AS_TEXT(v)->length); return true;
+  case CAG_RANGE:
+    if (!cag_as_list(call->vm, v, &v)) return false;
+    return write_json_list(call, s, CAG_AS_LIST(v));
+  case CAG_LIST: return write_json_list(call, s, CAG_AS_LIST(v));
+  case CAG_RECORD: return write_json_record(call, s, CAG_AS_RECORD(v));
+  case CAG_TRANSFORM: return write_json_transform(call, s, &CAG_AS_TRANSFORM(v)->t);
+  default: {
+    char found[120];
+    return cag_fail_call(
+        call, 0, CAG_ERR_type,
+        "expects numbers, angles, texts, bools, none, lists, records or transforms, found %s",
+        cag_value_words(call->vm, v, found, sizeof found));
+  }
+  }
+}
+
+static bool call_json(CagCall *call, CagValue *result) {
+  CagString s = {0};
+  if (!write_json(call, &s, call->values[0])) {
+    cag_string_free(&s);
+    return false;
+  }
+  *result = cag_text_from_string(call->vm, &s);
+  return true;
+}
+
+const CagBuiltin cag_builtins_files[] = {
+    {"read_csv(path, separator = \",\", header = none)", call_read_csv, "list",
+     "The rows of a table in a text file: as records where it has a header, else as lists. header: "
+     "none takes the first row for a header when it has no number. What "
+     "reads as a number is one, an empty cell is none; cells in quotes may hold separators and "
+     "line ends. Files lie below the script's folder or on the module path.",
+     "rows = attempt(() => read_csv(\"none.csv\"), err => err.reason)\nprint rows // expect: file",
+     0, FAMILY},
+    {"read_json(path)", call_read_json, "any",
+     "The value of a JSON file: objects are records, arrays lists, null is none. Files lie below "
+     "the script's folder or on the module path.",
+     "print attempt(() => read_json(\"none.json\"), err => err.code) // expect: E0317", 0, FAMILY},
+    {"read_text(path)", call_read_text, "text",
+     "The text of a UTF-8 file below the script's folder or on the module path.",
+     "print attempt(() => read_text(\"none.txt\"), err => err.code) // expect: E0317", 0, FAMILY},
+    {"json(x)", call_json, "text",
+     "x as JSON text: records as objects, none as null, numbers in their shortest form, angles by "
+     "their degrees, transforms as rows.",
+     "print json({a: 1, b: [true, none, \"x\"]}) // expect: {\"a\": 1, \"b\": [true, null, \"x\"]}",
+     0, FAMILY},
+    {0}};
