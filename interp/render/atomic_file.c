@@ -50,6 +50,9 @@ struct CagAtomicFileState {
   char *shown;    // the path as the user gave it, for messages
   uint64_t taken; // bytes handed to the system
   int error;      // errno of the first failure, or 0
+  bool in_memory; // then fd is -1, and what is flushed goes here:
+  char *memory;
+  size_t memory_capacity;
   char buffer[BUFFER_SIZE];
 };
 
@@ -195,6 +198,7 @@ static void dispose(struct CagAtomicFileState *s) {
   slot_release(s->slot);
   if (s->fd >= 0 && s->fd != STDOUT_FILENO) close(s->fd);
   if (s->folder >= 0) close(s->folder);
+  free(s->memory);
   free(s->name);
   free(s->shown);
   free(s);
@@ -217,36 +221,71 @@ static bool open_place(struct CagAtomicFileState *s, const char *path, CagIoErro
   return open_folder(s, mode != 0, err) && create_temporary(s, mode, err);
 }
 
+// An unopened file with an empty buffer, shown as `shown` in messages.
+static struct CagAtomicFileState *new_state(const char *shown, CagIoError *err) {
+  struct CagAtomicFileState *s = malloc(sizeof *s);
+  char *copy = strdup(shown);
+  if (!s || !copy) {
+    free(s);
+    free(copy);
+    fail_open(err, shown, ENOMEM);
+    return NULL;
+  }
+  // Not the whole: the buffer stays untouched until it is used.
+  memset(s, 0, offsetof(struct CagAtomicFileState, buffer));
+  s->fd = s->folder = -1;
+  s->shown = copy;
+  s->file = (CagAtomicFile){s->buffer, s->buffer + BUFFER_SIZE, s};
+  return s;
+}
+
+CagAtomicFile *cag_atomic_file_open_memory(CagIoError *err) {
+  struct CagAtomicFileState *s = new_state("memory", err);
+  if (!s) return NULL;
+  s->in_memory = true;
+  return &s->file;
+}
+
 CagAtomicFile *cag_atomic_file_open(const char *path, CagIoError *err) {
   if (!*path) {
     cag_io_error_set(err, CAG_EXIT_FILE, "name a file, or - for standard output",
                      "cannot write a file with an empty name");
     return NULL;
   }
-  struct CagAtomicFileState *s = malloc(sizeof *s);
-  if (!s) {
-    fail_open(err, path, ENOMEM);
-    return NULL;
-  }
-  s->fd = s->folder = -1;
-  s->slot = NULL;
-  s->name = NULL;
-  s->taken = 0;
-  s->error = 0;
-  s->file = (CagAtomicFile){s->buffer, s->buffer + BUFFER_SIZE, s};
-  s->shown = strdup(strcmp(path, "-") ? path : "standard output");
-  if (!s->shown || !open_place(s, path, err)) {
-    if (!s->shown) fail_open(err, path, ENOMEM);
+  struct CagAtomicFileState *s = new_state(strcmp(path, "-") ? path : "standard output", err);
+  if (!s) return NULL;
+  if (!open_place(s, path, err)) {
     dispose(s);
     return NULL;
   }
   return &s->file;
 }
 
+// Appends to the memory, which always has room for a zero byte more.
+static void append(struct CagAtomicFileState *s, const char *data, size_t n) {
+  const size_t size = (size_t)s->taken;
+  if (n >= s->memory_capacity - size || !s->memory) {
+    if (n > SIZE_MAX / 4 - size) {
+      s->error = ENOMEM;
+      return;
+    }
+    const size_t capacity = 2 * (size + n) + 1;
+    char *larger = realloc(s->memory, capacity);
+    if (!larger) {
+      s->error = ENOMEM;
+      return;
+    }
+    s->memory = larger;
+    s->memory_capacity = capacity;
+  }
+  if (n) memcpy(s->memory + size, data, n);
+}
+
 // Hands all n bytes to the system, however it splits them. After a failure nothing more is tried.
 static void write_through(struct CagAtomicFileState *s, const char *data, size_t n) {
+  if (s->in_memory && !s->error) append(s, data, n);
   s->taken += n;
-  while (n > 0 && !s->error) {
+  while (n > 0 && !s->error && !s->in_memory) {
     ssize_t done = write(s->fd, data, n);
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) {
@@ -333,6 +372,22 @@ bool cag_atomic_file_commit(CagAtomicFile *f, CagIoError *err) {
   }
   bool ok = s->error == 0;
   if (!ok) fail_write(s, s->error, err);
+  dispose(s);
+  return ok;
+}
+
+bool cag_atomic_file_commit_memory(CagAtomicFile *f, char **bytes, size_t *size, CagIoError *err) {
+  struct CagAtomicFileState *s = f->state;
+  cag_atomic_file_flush(f);
+  const bool ok = s->error == 0;
+  if (ok) {
+    s->memory[s->taken] = '\0';
+    *bytes = s->memory;
+    *size = (size_t)s->taken;
+    s->memory = NULL;
+  } else {
+    fail_write(s, s->error, err);
+  }
   dispose(s);
   return ok;
 }

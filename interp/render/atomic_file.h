@@ -45,6 +45,10 @@ typedef struct CagAtomicFile {
 // there.
 CagAtomicFile *cag_atomic_file_open(const char *path, CagIoError *err);
 
+// Opens a target in memory instead, for what is handed on (a scene for the renderer) and for tests:
+// the same writers serve both. End it with cag_atomic_file_commit_memory or cag_atomic_file_abort.
+CagAtomicFile *cag_atomic_file_open_memory(CagIoError *err);
+
 // Appends n bytes, of any size.
 void cag_atomic_file_write(CagAtomicFile *f, const void *data, size_t n);
 
@@ -78,6 +82,9 @@ uint64_t cag_atomic_file_size(const CagAtomicFile *f);
 // Writes the rest, closes, renames into place, and releases `f`. On failure the temporary is
 // removed, what was at the place before is untouched, and `err` says why.
 bool cag_atomic_file_commit(CagAtomicFile *f, CagIoError *err);
+
+// Ends a target in memory: what was written, with a zero byte behind it, is the caller's to free.
+bool cag_atomic_file_commit_memory(CagAtomicFile *f, char **bytes, size_t *size, CagIoError *err);
 
 // Removes the temporary and releases `f`, which may be NULL. Nothing at the place itself changes.
 void cag_atomic_file_abort(CagAtomicFile *f);

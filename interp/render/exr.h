@@ -1,7 +1,9 @@
 // OpenEXR files, through the library's own C API (OpenEXRCore).
 //
 // Read: one or several parts, scanlines or tiles (the full-size level), half, float and
-// whole-number channels, every compression that the library decodes. The image covers the display
+// whole-number channels. The compressions are those that OpenEXRCore 3.1 decodes rightly: none,
+// RLE, ZIP, ZIPS; PIZ and PXR24 when all channels have full sampling; B44 and B44A when they also
+// are all half. (DWAA, DWAB and the rest are refused with a message.) The image covers the display
 // window: pixels that the file has no data for are 0, data outside is left out, a channel stored at
 // a coarser sampling is repeated. In a file with several parts, the channels of the first keep
 // their names and those of the others are named `part.channel`.

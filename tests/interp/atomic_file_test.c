@@ -316,6 +316,26 @@ static void a_long_name_has_room_for_its_temporary(void **state) {
   assert_int_equal(unlink(name), 0);
 }
 
+static void memory_takes_the_same_writes(void **state) {
+  (void)state;
+  CagAtomicFile *f = cag_atomic_file_open_memory(NULL);
+  for (int i = 0; i < 1000000; i++)
+    cag_atomic_file_printf(f, "%06d\n", i); // seven times the buffer
+  assert_int_equal(cag_atomic_file_size(f), 7000000);
+  char *bytes;
+  size_t size;
+  assert_true(cag_atomic_file_commit_memory(f, &bytes, &size, NULL));
+  assert_int_equal(size, 7000000);
+  for (int i = 0; i < 1000000; i++) assert_int_equal(atoi(bytes + 7 * i), i);
+  assert_int_equal(bytes[size], 0);
+  free(bytes);
+  assert_true(
+      cag_atomic_file_commit_memory(cag_atomic_file_open_memory(NULL), &bytes, &size, NULL));
+  assert_true(size == 0 && bytes[0] == 0);
+  free(bytes);
+  cag_atomic_file_abort(cag_atomic_file_open_memory(NULL));
+}
+
 static void standard_output_is_a_dash(void **state) {
   (void)state;
   fflush(stdout);
@@ -352,6 +372,7 @@ int main(void) {
       cmocka_unit_test(a_file_cleaned_up_cannot_be_committed),
       cmocka_unit_test(many_files_may_be_open_but_not_endlessly),
       cmocka_unit_test(a_long_name_has_room_for_its_temporary),
+      cmocka_unit_test(memory_takes_the_same_writes),
       cmocka_unit_test(standard_output_is_a_dash),
   };
   return cmocka_run_group_tests(tests, enter_folder, leave_folder);
