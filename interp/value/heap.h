@@ -1,22 +1,32 @@
 // The heap: precise mark and sweep.
 //
-// Allocation never collects. It adds to a debt, and the machine collects at safe points (calls of script functions, back edges of loops, between top-level
-// definitions) once the debt is due; so C code between safe points needs no care. Roots are the machine's stack, the modules' globals, constants, interned texts and the
-// root stack. Crossing --max-memory after a collection is the error E0602 (memory-limit).
+// Allocation never collects. It adds to a debt, and the machine collects at safe points (calls of
+// script functions, back edges of loops, between top-level definitions) once the debt is due; so C
+// code between safe points needs no care. Roots are the machine's stack, the modules' globals,
+// constants, interned texts and the root stack. Crossing --max-memory after a collection is the
+// error E0602 (memory-limit).
 //
-// Small objects (up to CAG_SMALL_MAX bytes) come from size-classed pages with free lists; larger ones from malloc. Memory outside of the heap (a curve's data, a
-// list's buffer) is told with cag_heap_charge.
+// Small objects (up to CAG_SMALL_MAX bytes) come from size-classed pages with free lists; larger
+// ones from malloc. Memory outside of the heap (a curve's data, a list's buffer) is told with
+// cag_heap_charge.
 
 #ifndef CAG_INTERP_HEAP_H
 #define CAG_INTERP_HEAP_H
 
 #include "interp/value/value.h"
 
-// Zeroed except for the header, which is set. Never NULL: when the system has no more memory the run ends with the memory limit's error at the
-// next safe point, using a reserve.
+// Zeroed except for the header, which is set. Never NULL: when the limit or the system's memory is
+// crossed, the run ends there with the memory limit's error (a long jump to where the run began;
+// what C code holds from malloc at that moment is lost).
 void *cag_alloc(CagVm *vm, CagType type, size_t size);
 void cag_heap_charge(CagVm *vm, size_t bytes);
 void cag_collect(CagVm *vm);
+
+// What objects with the type CAG_INTERNAL are: their head.flags.
+enum { CAG_INTERNAL_BUILDER = 1, CAG_INTERNAL_LAYOUT = 2 };
+
+void cag_heap_init(CagVm *vm, size_t limit);
+void cag_heap_free(CagVm *vm);
 
 // Root stack.
 void cag_root_push(CagVm *vm, CagValue v);

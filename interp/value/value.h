@@ -1,9 +1,11 @@
 // Values of the language.
 //
-// A CagValue is a tag and either an immediate (none, bool, number, angle) or a pointer to an object of the heap. Everything is immutable once it is reachable
-// from a script. Objects begin with a CagObject header and are collected (see heap.h): memory is never reclaimed while C code runs between two safe points, so
-// a built-in that does not call back into the script may keep values in plain C variables. One that calls back (cag_call) must keep what it still needs afterwards
-// on the root stack (cag_root_push / cag_root_pop).
+// A CagValue is a tag and either an immediate (none, bool, number, angle) or a pointer to an object
+// of the heap. Everything is immutable once it is reachable from a script. Objects begin with a
+// CagObject header and are collected (see heap.h): memory is never reclaimed while C code runs
+// between two safe points, so a built-in that does not call back into the script may keep values in
+// plain C variables. One that calls back (cag_call) must keep what it still needs afterwards on the
+// root stack (cag_root_push / cag_root_pop).
 
 #ifndef CAG_INTERP_VALUE_H
 #define CAG_INTERP_VALUE_H
@@ -23,32 +25,32 @@ typedef struct CagVm CagVm;
 typedef struct CagObject CagObject;
 
 // X(tag, name in type_of and in messages with its article)
-#define CAG_VALUE_TYPES(X)                                                                                             \
-  X(NONE, "none", "none")                                                                                              \
-  X(BOOL, "bool", "a bool")                                                                                            \
-  X(NUMBER, "number", "a number")                                                                                      \
-  X(ANGLE, "angle", "an angle")                                                                                        \
-  X(TEXT, "text", "a text")                                                                                            \
-  X(LIST, "list", "a list")                                                                                            \
-  X(RANGE, "range", "a range")                                                                                         \
-  X(RECORD, "record", "a record")                                                                                      \
-  X(CLOSURE, "function", "a function")                                                                                 \
-  X(BUILTIN, "function", "a function")                                                                                 \
-  X(TRANSFORM, "transform", "a transform")                                                                             \
-  X(CURVE, "curve", "a curve")                                                                                         \
-  X(REGION, "region", "a region")                                                                                      \
-  X(SURFACE, "surface", "a surface")                                                                                   \
-  X(SOLID, "solid", "a solid")                                                                                         \
-  X(MESH, "mesh", "a mesh")                                                                                            \
-  X(GROUP, "group", "a group")                                                                                         \
-  X(PLANE, "plane", "a plane")                                                                                         \
-  X(LINK, "link", "a link")                                                                                            \
-  X(ROBOT, "robot", "a robot")                                                                                         \
-  X(CAMERA, "camera", "a camera")                                                                                      \
-  X(LIGHT, "light", "a light")                                                                                         \
-  X(SENSOR, "sensor", "a sensor")                                                                                      \
-  X(IMAGE, "image", "an image")                                                                                        \
-  X(SETTING, "setting", "a scene setting")                                                                             \
+#define CAG_VALUE_TYPES(X)                                                                         \
+  X(NONE, "none", "none")                                                                          \
+  X(BOOL, "bool", "a bool")                                                                        \
+  X(NUMBER, "number", "a number")                                                                  \
+  X(ANGLE, "angle", "an angle")                                                                    \
+  X(TEXT, "text", "a text")                                                                        \
+  X(LIST, "list", "a list")                                                                        \
+  X(RANGE, "range", "a range")                                                                     \
+  X(RECORD, "record", "a record")                                                                  \
+  X(CLOSURE, "function", "a function")                                                             \
+  X(BUILTIN, "function", "a function")                                                             \
+  X(TRANSFORM, "transform", "a transform")                                                         \
+  X(CURVE, "curve", "a curve")                                                                     \
+  X(REGION, "region", "a region")                                                                  \
+  X(SURFACE, "surface", "a surface")                                                               \
+  X(SOLID, "solid", "a solid")                                                                     \
+  X(MESH, "mesh", "a mesh")                                                                        \
+  X(GROUP, "group", "a group")                                                                     \
+  X(PLANE, "plane", "a plane")                                                                     \
+  X(LINK, "link", "a link")                                                                        \
+  X(ROBOT, "robot", "a robot")                                                                     \
+  X(CAMERA, "camera", "a camera")                                                                  \
+  X(LIGHT, "light", "a light")                                                                     \
+  X(SENSOR, "sensor", "a sensor")                                                                  \
+  X(IMAGE, "image", "an image")                                                                    \
+  X(SETTING, "setting", "a scene setting")                                                         \
   X(MODULE, "module", "a module")
 
 typedef enum CagType {
@@ -74,33 +76,34 @@ typedef struct CagValue {
 } CagValue;
 
 struct CagObject {
-  uint8_t type;   // CagType
+  uint8_t type; // CagType
   uint8_t mark;
-  uint8_t small;  // size class; 0: from malloc
+  uint8_t small; // size class; 0: from malloc
   uint8_t flags;
-  uint32_t hash;  // free for the object's use
+  uint32_t hash;   // free for the object's use
   CagObject *next; // list of large objects, or free list
 };
 
 // --- Text: UTF-8, NUL-terminated ---
 typedef struct CagText {
   CagObject head;
-  size_t length;      // bytes
-  size_t characters;  // code points
+  size_t length;     // bytes
+  size_t characters; // code points
   bool interned;
   char bytes[];
 } CagText;
 
 // --- List ---
-// dim 0: items are CagValues. dim 1: numbers, packed. dim d >= 2: vectors of d numbers each, packed (element k is numbers[k * d .. k * d + d)).
-// An empty list has dim 0. A list of numbers always has dim 1, so a vector is a list with dim 1; a list of number lists of one length 2..16 always has that dim.
-// Data are inline, malloc'd, or a part of another list's (`owner`).
+// dim 0: items are CagValues. dim 1: numbers, packed. dim d >= 2: vectors of d numbers each, packed
+// (element k is numbers[k * d .. k * d + d)). An empty list has dim 0. A list of numbers always has
+// dim 1, so a vector is a list with dim 1; a list of number lists of one length 2..16 always has
+// that dim. Data are inline, malloc'd, or a part of another list's (`owner`).
 #define CAG_MAX_PACKED 16
 typedef struct CagList {
   CagObject head;
   size_t length;
   uint32_t dim;
-  bool allocated; // data are ours and from malloc
+  bool allocated;        // data are ours and from malloc
   struct CagList *owner; // whose data these are; NULL: ours
   union {
     CagValue *items;
@@ -112,11 +115,12 @@ typedef struct CagList {
 // --- Range ---
 typedef struct CagRange {
   CagObject head;
-  double start, end, step; // degrees when angle
+  double start, end, step;   // degrees when angle
   bool angle, open, stepped; // stepped: `by` was written
 } CagRange;
 
-// --- Record: fields keep their order. Layouts (the names) are shared between records made at one place. ---
+// --- Record: fields keep their order. Layouts (the names) are shared between records made at one
+// place. ---
 typedef struct CagLayout {
   CagObject head; // CAG_INTERNAL
   size_t count;
@@ -153,7 +157,8 @@ typedef struct CagPlaneValue {
   CagPlane plane;
 } CagPlaneValue;
 
-// --- Shapes: geometry (one reference held) and what was said about it. Copied when an attribute or placement changes. ---
+// --- Shapes: geometry (one reference held) and what was said about it. Copied when an attribute or
+// placement changes. ---
 typedef struct CagShape {
   CagObject head;
   union {
@@ -162,9 +167,10 @@ typedef struct CagShape {
     CagSurface *surface;
     CagSolid *solid;
     CagMesh *mesh;
-    CagList *items;  // GROUP: list of shapes (dim 0)
+    CagList *items; // GROUP: list of shapes (dim 0)
   } as;
-  CagTransform placement; // REGION only: where the plane of the region lies (identity: z = 0); others are moved themselves
+  CagTransform placement; // REGION only: where the plane of the region lies (identity: z = 0);
+                          // others are moved themselves
   CagRecord *material;    // NULL: none said
   CagText *name;          // NULL
   CagRecord *style;       // of curves: radius, dash; NULL
@@ -172,12 +178,14 @@ typedef struct CagShape {
   bool hidden;
 } CagShape;
 
-// --- Camera, light, setting (sky, background, ground): plain records with a kind, checked at construction ---
+// --- Camera, light, setting (sky, background, ground): plain records with a kind, checked at
+// construction ---
 typedef struct CagSceneValue {
   CagObject head;
   const char *kind;  // "perspective", "sun", "point", "spot", "area", "sky", "background", "ground"
   CagRecord *fields; // all arguments by name, defaults filled in; colours as [r, g, b] linear
-  CagTransform placement; // moved by transforms: applied to eye, target, direction ... by the scene builder
+  CagTransform
+      placement; // moved by transforms: applied to eye, target, direction ... by the scene builder
 } CagSceneValue;
 
 typedef struct CagModuleValue {
@@ -189,11 +197,17 @@ typedef struct CagModuleValue {
 static inline CagValue cag_none(void) { return (CagValue){CAG_NONE, {.number = 0}}; }
 static inline CagValue cag_bool(bool b) { return (CagValue){CAG_BOOL, {.boolean = b}}; }
 static inline CagValue cag_number(double x) { return (CagValue){CAG_NUMBER, {.number = x}}; }
-static inline CagValue cag_angle(double degrees) { return (CagValue){CAG_ANGLE, {.number = degrees}}; }
+static inline CagValue cag_angle(double degrees) {
+  return (CagValue){CAG_ANGLE, {.number = degrees}};
+}
 static inline CagValue cag_unset(void) { return (CagValue){CAG_UNSET, {.number = 0}}; }
-static inline CagValue cag_object(CagType type, void *o) { return (CagValue){type, {.object = (CagObject *)o}}; }
+static inline CagValue cag_object(CagType type, void *o) {
+  return (CagValue){type, {.object = (CagObject *)o}};
+}
 static inline bool cag_is_shape(CagValue v) { return v.type >= CAG_CURVE && v.type <= CAG_GROUP; }
-static inline bool cag_is_function(CagValue v) { return v.type == CAG_CLOSURE || v.type == CAG_BUILTIN; }
+static inline bool cag_is_function(CagValue v) {
+  return v.type == CAG_CLOSURE || v.type == CAG_BUILTIN;
+}
 #define CAG_AS_TEXT(v) ((CagText *)(v).as.object)
 #define CAG_AS_LIST(v) ((CagList *)(v).as.object)
 #define CAG_AS_RANGE(v) ((CagRange *)(v).as.object)
@@ -208,21 +222,24 @@ static inline bool cag_is_function(CagValue v) { return v.type == CAG_CLOSURE ||
 
 CagValue cag_text_new(CagVm *vm, const char *bytes, size_t length); // valid UTF-8; copies
 CagValue cag_text_c(CagVm *vm, const char *s);
-CagText *cag_intern(CagVm *vm, const char *bytes, size_t length);   // the one text of these bytes; lives as long as the machine
+CagText *cag_intern(CagVm *vm, const char *bytes,
+                    size_t length); // the one text of these bytes; lives as long as the machine
 
 // List of n numbers (dim 1); the numbers are unset and to be filled in at once.
 CagValue cag_list_numbers(CagVm *vm, size_t n, double **numbers);
-// List of n vectors of d numbers.
+// List of n vectors of d numbers, d in 2..CAG_MAX_PACKED.
 CagValue cag_list_vectors(CagVm *vm, size_t n, size_t d, double **numbers);
-// List of n values in any representation; packs them when they are all numbers or vectors of one length. Copies.
+// List of n values in any representation; packs them when they are all numbers or vectors of one
+// length. Copies.
 CagValue cag_list_values(CagVm *vm, const CagValue *values, size_t n);
 CagValue cag_vector(CagVm *vm, const double *x, size_t n);
-CagValue cag_point(CagVm *vm, CagVec3 p, int dimension); // [x, y] or [x, y, z]
+CagValue cag_point(CagVm *vm, CagVec3 p, int dimension);                      // [x, y] or [x, y, z]
 CagValue cag_list_slice(CagVm *vm, CagValue list, size_t from, size_t count); // shares the data
 // Element i (not checked) of a list in any representation.
 CagValue cag_list_get(CagVm *vm, const CagList *l, size_t i);
 
-// Growing list: add values, then finish (packs). Rooted by the caller if the script is called in between (cag_builder_value).
+// Growing list: add values, then finish (packs). Rooted by the caller if the script is called in
+// between (cag_builder_value).
 typedef struct CagBuilder {
   CagObject head; // CAG_INTERNAL
   size_t length, capacity;
@@ -231,18 +248,25 @@ typedef struct CagBuilder {
   void *data;
 } CagBuilder;
 CagBuilder *cag_builder_new(CagVm *vm);
-bool cag_builder_add(CagVm *vm, CagBuilder *b, CagValue v); // false: the memory limit was crossed (error is set)
+bool cag_builder_add(CagVm *vm, CagBuilder *b,
+                     CagValue v); // false: the memory limit was crossed (error is set)
 CagValue cag_builder_finish(CagVm *vm, CagBuilder *b);
 static inline CagValue cag_builder_value(CagBuilder *b) { return cag_object(CAG_INTERNAL, b); }
 
-CagValue cag_range_new(CagVm *vm, double start, double end, double step, bool angle, bool open, bool stepped);
+CagValue cag_range_new(CagVm *vm, double start, double end, double step, bool angle, bool open,
+                       bool stepped);
 // Number of elements as a list; fails (false, error set) for an endless one.
 bool cag_range_count(CagVm *vm, const CagRange *r, size_t *count);
 double cag_range_element(const CagRange *r, size_t k, size_t count);
 
 // Record with these names (C strings) and values.
 CagValue cag_record_new(CagVm *vm, const char *const *names, const CagValue *values, size_t n);
-CagValue cag_record_from_texts(CagVm *vm, CagText *const *names, const CagValue *values, size_t n); // names distinct
+CagValue cag_record_from_texts(CagVm *vm, CagText *const *names, const CagValue *values,
+                               size_t n); // names distinct
+CagLayout *cag_layout_new(CagVm *vm, CagText *const *names,
+                          size_t n);                                 // names interned and distinct
+size_t cag_layout_find(const CagLayout *l, const CagText *interned); // (size_t)-1: none
+CagValue cag_record_with_layout(CagVm *vm, CagLayout *l, const CagValue *values);
 // Value of a field, or CAG_UNSET.
 CagValue cag_record_get(const CagRecord *r, const char *name);
 CagValue cag_record_get_text(CagVm *vm, const CagRecord *r, const CagText *name);
@@ -256,17 +280,19 @@ CagValue cag_surface_value(CagVm *vm, CagSurface *s);
 CagValue cag_solid_value(CagVm *vm, CagSolid *s);
 CagValue cag_mesh_value(CagVm *vm, CagMesh *m);
 CagValue cag_group_value(CagVm *vm, CagValue list); // list of shapes
-CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes, to be changed before anybody sees it
+CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes, to
+                                                    // be changed before anybody sees it
 CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue record);
 
 // --- Questions ---
-const char *cag_type_name(CagValue v);    // "number"
-const char *cag_type_article(CagValue v); // "a number"
+const char *cag_type_name(CagValue v);             // "number"
+const char *cag_type_article(CagValue v);          // "a number"
 bool cag_equal(CagVm *vm, CagValue a, CagValue b); // ==
 
 // A list or vector of exactly / at least n numbers as doubles.
 bool cag_as_vector(CagValue v, const double **x, size_t *n); // a list with dim 1 (not empty)
-// A range or list as a list value (materialises ranges; a text or record is not one). False: error set.
+// A range or list as a list value (materialises ranges; a text or record is not one). False: error
+// set.
 bool cag_as_list(CagVm *vm, CagValue v, CagValue *list);
 
 // --- Printed form (language, section 7) ---
@@ -280,7 +306,8 @@ void cag_string_free(CagString *s);
 void cag_print_number(CagString *s, double x);
 // quoted: texts in quotes (inside lists and records).
 void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted);
-// For messages: the type and, where short, the value: "the number 30", "the text \"a\"", "a list of 3 elements".
+// For messages: the type and, where short, the value: "the number 30", "the text \"a\"", "a list of
+// 3 elements".
 void cag_describe_value(CagVm *vm, CagString *s, CagValue v);
 
 #endif

@@ -1,0 +1,129 @@
+// The machine's beginning and end.
+
+#include "interp/eval/vm.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+// Values that the stack can hold: reserved address space, of which only what is used costs memory.
+// Frames of ordinary size fit in frame_limit times.
+#define STACK_VALUES_MIN ((size_t)16 << 20)
+#define STACK_VALUES_PER_FRAME 64
+
+static const volatile int never = 0;
+
+static void *reserve_memory(size_t bytes) {
+  void *p =
+      mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return p == MAP_FAILED ? NULL : p;
+}
+
+static size_t stack_values(const CagVm *vm) {
+  size_t n = vm->frame_limit * STACK_VALUES_PER_FRAME;
+  return n > STACK_VALUES_MIN ? n : STACK_VALUES_MIN;
+}
+
+static size_t tail_bytes(const CagVm *vm) {
+  return vm->frame_limit * CAG_TAIL_KEPT * sizeof(CagTailPlace);
+}
+
+// One function value, or the constant, of each built-in name.
+static void make_builtins(CagVm *vm) {
+  size_t n = cag_builtin_count();
+  CagValue *values = calloc(n ? n : 1, sizeof *values);
+  if (!values) cag_vm_out_of_memory(vm);
+  vm->builtin_values = values;
+  for (size_t i = 0; i < n; i++) {
+    CagValue constant = cag_builtin_constant(vm, i);
+    if (constant.type != CAG_UNSET) {
+      values[i] = constant;
+      continue;
+    }
+    CagBuiltinValue *b = cag_alloc(vm, CAG_BUILTIN, sizeof *b);
+    b->index = i;
+    values[i] = cag_object(CAG_BUILTIN, b);
+  }
+}
+
+size_t cag_vm_add_global(CagVm *vm, const char *name) {
+  if (vm->global_count == vm->global_capacity) {
+    size_t capacity = vm->global_capacity ? vm->global_capacity * 2 : 64;
+    CagGlobal *globals = realloc(vm->globals, capacity * sizeof *globals);
+    if (!globals) cag_vm_out_of_memory(vm);
+    vm->globals = globals;
+    vm->global_capacity = capacity;
+  }
+  vm->globals[vm->global_count] = (CagGlobal){.name = name};
+  return vm->global_count++;
+}
+
+static void set_reserved(CagVm *vm, const char *name, double value) {
+  size_t g = cag_vm_add_global(vm, name);
+  vm->globals[g].value = cag_number(value);
+  vm->globals[g].state = CAG_GLOBAL_DONE;
+}
+
+CagVm *cag_vm_new(const CagVmOptions *options) {
+  CagVm *vm = calloc(1, sizeof *vm);
+  if (!vm) return NULL;
+  cag_heap_init(vm, options->max_memory);
+  vm->frame_limit = options->max_depth;
+  vm->max_time = options->max_time;
+  vm->max_triangles = options->max_triangles;
+  vm->out = options->out;
+  vm->trace = options->trace;
+  vm->interrupt = options->interrupt ? options->interrupt : &never;
+  vm->stack = reserve_memory(stack_values(vm) * sizeof *vm->stack);
+  vm->frames = calloc(vm->frame_limit, sizeof *vm->frames);
+  vm->tails = reserve_memory(tail_bytes(vm));
+  if (!vm->stack || !vm->frames || !vm->tails) {
+    cag_vm_free(vm);
+    return NULL;
+  }
+  vm->top = vm->high_water = vm->stack;
+  vm->stack_end = vm->stack + stack_values(vm);
+  make_builtins(vm);
+  set_reserved(vm, "time", 0);
+  set_reserved(vm, "frame", 0);
+  set_reserved(vm, "frames", 1);
+  return vm;
+}
+
+static void free_module(CagModuleUnit *m) {
+  free(m->name);
+  free(m->path);
+  if (m->ast) cag_module_ast_free(m->ast);
+  cag_source_free(m->source);
+  free(m->tops);
+  free(m->imports);
+  free(m->publics);
+  free(m->public_names);
+  free(m);
+}
+
+void cag_vm_free(CagVm *vm) {
+  if (!vm) return;
+  cag_heap_free(vm);
+  if (vm->stack) munmap(vm->stack, stack_values(vm) * sizeof *vm->stack);
+  if (vm->tails) munmap(vm->tails, tail_bytes(vm));
+  free(vm->frames);
+  for (CagProto *p = vm->protos, *next; p; p = next) {
+    next = p->next;
+    cag_proto_free(p);
+  }
+  cag_diagnostics_free(&vm->errors);
+  for (size_t i = 0; i < vm->module_count; i++) free_module(vm->modules[i]);
+  free(vm->modules);
+  free(vm->globals);
+  free(vm->roots);
+  free(vm->interned);
+  free(vm->builtin_values);
+  free(vm->shown);
+  free(vm->outer_names);
+  free(vm->outer_globals);
+  free(vm->root);
+  for (size_t i = 0; i < vm->include_count; i++) free(vm->include[i]);
+  free(vm->include);
+  free(vm);
+}

@@ -1,0 +1,280 @@
+// The machine: what a running program consists of.
+//
+// A program is a set of modules. Each top-level definition has a slot in `globals`, evaluated when
+// first needed by running its initialiser. Functions are register code (see opcodes.def): a frame's
+// registers are a window of one value stack; instruction operands a, b, c number them. Since values
+// never change, closures copy what they capture.
+//
+// Invariants: `frames[0 .. frame_count)` are the active calls, also across built-ins that call
+// back, and every frame below the top has its pc saved just behind the call it waits for. All
+// values in stack[0 .. top) are valid (live or kept by the last collection), so the collector may
+// mark them all.
+
+#ifndef CAG_INTERP_VM_H
+#define CAG_INTERP_VM_H
+
+#include <setjmp.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <time.h>
+
+#include "interp/builtin/builtin.h"
+#include "interp/scene/build.h"
+#include "interp/value/heap.h"
+#include "interp/value/value.h"
+#include "lang/ast.h"
+#include "lang/parser.h"
+
+typedef enum CagOpcode {
+#define CAG_OPCODE(name, story) CAG_CODE_##name,
+#include "interp/eval/opcodes.def"
+#undef CAG_OPCODE
+  CAG_OPCODE_COUNT
+} CagOpcode;
+
+typedef struct CagInstruction {
+  uint16_t op, a;
+  union {
+    struct {
+      uint16_t b, c;
+    };
+    int32_t x; // jump distance, or number of a constant, global or child
+  };
+} CagInstruction;
+
+// Where the arguments of a call stand in the source, for messages; in order of `pc`.
+typedef struct CagCallSite {
+  uint32_t pc;
+  uint32_t first, count; // in the proto's argument spans; the first span is the callee's
+} CagCallSite;
+
+typedef struct CagProto {
+  const char *name; // of the function or definition; NULL: a lambda or a statement
+  bool is_function; // false: initialiser of a definition, or a statement
+  const CagSource *source;
+  size_t parameter_count, required_count;
+  const char **parameters; // NUL-terminated names, compared by strcmp
+  uint32_t body;           // pc of the body, behind the defaults
+  uint32_t registers;
+  CagInstruction *code;
+  CagSpan *spans;
+  size_t code_count, code_capacity;
+  CagValue *constants;
+  size_t constant_count, constant_capacity;
+  struct CagProto **children;
+  size_t child_count, child_capacity;
+  struct CagCapture {
+    bool local;     // a register of the function around; else one of its captures
+    uint16_t index; // CAG_CAPTURE_SELF: the closure around itself
+  } * captures;
+  size_t capture_count, capture_capacity;
+  CagCallSite *sites;
+  size_t site_count, site_capacity;
+  CagSpan *site_spans;
+  size_t site_span_count, site_span_capacity;
+  const char ***names; // argument names of calls that name some: one array per such call
+  size_t *name_counts;
+  size_t names_count, names_capacity;
+  struct CagProto *next; // all protos of the machine
+} CagProto;
+
+#define CAG_CAPTURE_SELF 0xffff
+// One frame has at most so many registers: operands are 16 bits, and the last numbers are kept for
+// marks.
+#define CAG_MAX_REGISTERS 60000
+
+struct CagModuleUnit;
+
+typedef enum CagGlobalState { CAG_GLOBAL_NEW, CAG_GLOBAL_RUNNING, CAG_GLOBAL_DONE } CagGlobalState;
+
+typedef struct CagGlobal {
+  CagValue value;
+  CagGlobalState state;
+  const CagExpr
+      *expr; // compiled when the value is first needed; NULL: the value was set from outside
+  struct CagModuleUnit *unit;
+  const char *name;
+  CagSpan span; // of the name
+} CagGlobal;
+
+// A call in tail position leaves its place here: the last CAG_TAIL_KEPT of each frame.
+#define CAG_TAIL_KEPT 16
+typedef struct CagTailPlace {
+  const CagProto *proto;
+  uint32_t pc;
+} CagTailPlace;
+
+typedef struct CagFrame {
+  const CagProto *proto;
+  CagClosure *closure;
+  const CagInstruction *pc; // next instruction
+  CagValue *base;
+  uint64_t tail_count; // calls in tail position made by this frame; places in vm->tails
+} CagFrame;
+
+typedef struct CagModuleUnit {
+  size_t number;
+  char *name; // "std.materials", or the path as shown
+  char *path; // real path of the file; NULL: standard library, REPL, text
+  CagSource *source;
+  CagModuleAst *ast;
+  size_t *tops;   // globals of the tops, by CagDecl.index
+  CagValue value; // the module as a value
+  enum { CAG_MODULE_LOADING, CAG_MODULE_LOADED, CAG_MODULE_FAILED } state;
+  bool asserted;   // its asserts have run
+  size_t *imports; // module number of each import statement, in order
+  size_t import_count;
+  struct CagPublicName {
+    const char *name;
+    size_t global;
+    const CagStatement *statement;
+  } * publics; // sorted by name
+  size_t public_count;
+  const char **public_names;
+} CagModuleUnit;
+
+// --- Memory (heap.c) ---
+#define CAG_SMALL_MAX 512
+#define CAG_SMALL_STEP 16
+#define CAG_SMALL_CLASSES (CAG_SMALL_MAX / CAG_SMALL_STEP + 1)
+typedef struct CagPage CagPage;
+typedef struct CagHeap {
+  CagObject *free_lists[CAG_SMALL_CLASSES];
+  CagPage *pages;
+  CagObject *large; // list of objects from malloc
+  size_t bytes;     // held by objects and what they were charged with
+  size_t debt;      // allocated since the last collection
+  size_t threshold; // debt at which the next collection is due
+  size_t limit;     // --max-memory
+  uint8_t mark;     // mark of live objects in the last collection: 1 or 2
+  CagObject **gray;
+  size_t gray_count, gray_capacity;
+  size_t collections;
+} CagHeap;
+
+// A built-in that is being run: tells which argument of the call in the source each parameter came
+// from.
+typedef struct CagNative {
+  struct CagNative *outer;
+  size_t frame_count; // frames when it was called
+  bool direct;        // called by the instruction of the top frame, not by another built-in
+  const uint16_t
+      *order; // argument (as written) of each parameter, 0xffff: none; NULL: as they come
+  size_t order_count;
+} CagNative;
+
+struct CagVm {
+  CagHeap heap;
+  CagNative *native;
+  CagValue *stack, *stack_end, *top;
+  CagValue *high_water;
+  CagFrame *frames;
+  size_t frame_count, frame_limit;
+  CagTailPlace *tails; // frame_limit x CAG_TAIL_KEPT, reserved lazily
+  CagValue *roots;
+  size_t root_count, root_capacity;
+  CagText **interned;
+  size_t interned_count, interned_size;
+  CagGlobal *globals;
+  size_t global_count, global_capacity;
+  CagModuleUnit **modules;
+  size_t module_count, module_capacity;
+  CagProto *protos;
+  CagValue *builtin_values; // one function value per built-in name
+  char *stack_low;          // lowest address that the C stack may reach
+
+  // The error of the run: `failed` says that errors.items[0] is set.
+  CagDiagnostics errors;
+  bool failed;
+  jmp_buf *escape; // where running out of memory leads
+
+  // Definitions of earlier texts of the REPL, oldest first.
+  const char **outer_names;
+  size_t *outer_globals;
+  size_t outer_count, outer_capacity;
+
+  // What the script showed
+  CagShown *shown;
+  size_t shown_count, shown_capacity;
+
+  // Outside
+  FILE *out, *trace;
+  const volatile int *interrupt; // never NULL
+  volatile int limit_hit;        // set by the watchdog when the time is over
+  double max_time;               // seconds; 0: none
+  struct timespec started;
+  size_t max_triangles;
+  double tolerance;
+  char *root;     // real path of the folder of the main script; NULL: none (no file may be read)
+  char **include; // real paths of the module path
+  size_t include_count;
+};
+
+// Reserved globals.
+enum { CAG_GLOBAL_TIME, CAG_GLOBAL_FRAME, CAG_GLOBAL_FRAMES, CAG_GLOBAL_RESERVED };
+
+// --- compile.c: syntax tree to code ---
+// Code of an expression as the body of a parameterless unit named `name` (a definition) or nameless
+// (a statement). `tops` and the module give globals their numbers. NULL: too large for one function
+// (an error is added).
+CagProto *cag_compile_expression(CagVm *vm, CagModuleUnit *m, const CagExpr *e, const char *name);
+// Code of an assert: gives true or fails.
+CagProto *cag_compile_assert(CagVm *vm, CagModuleUnit *m, const CagStatement *s);
+void cag_proto_free(CagProto *p);
+
+// --- run.c ---
+bool cag_vm_run(CagVm *vm, const CagProto *proto, CagValue *result); // a unit without parameters
+bool cag_vm_force(CagVm *vm, size_t global, CagValue *result);
+// Runs `work` where running out of memory is caught: false with the error set. The only place that
+// a run may begin at.
+bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *context);
+// Whether the run must stop (interrupt, time, memory): sets the error and gives false. Collects
+// when due.
+bool cag_safe_point(CagVm *vm);
+
+// --- operators.c: everything that is no fast path of the loop ---
+bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result);
+bool cag_compare(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, bool *result);
+bool cag_contains(CagVm *vm, CagValue needle, CagValue haystack, bool *result);
+bool cag_negate(CagVm *vm, CagValue v, CagValue *result);
+bool cag_index(CagVm *vm, CagValue object, CagValue index, CagValue *result);
+bool cag_member(CagVm *vm, CagValue object, CagValue name, CagValue *result);
+bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool open,
+                    CagValue *result);
+
+// --- failure.c ---
+// Sets the error at the current instruction of the top frame (or without place when there is none),
+// with the chain of calls.
+bool cag_vm_fail(CagVm *vm, CagErrorId id, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+// The same, underlining argument `argument` (0 .. ) of the current call; -1: the callee.
+bool cag_vm_fail_at(CagVm *vm, int argument, CagErrorId id, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+void cag_vm_clear_error(CagVm *vm);
+_Noreturn void cag_vm_out_of_memory(CagVm *vm);
+
+// --- modules.c ---
+#define CAG_NO_MODULE ((size_t)-1)
+// Loads a module and what it imports: parses all, then resolves all, then gives slots. Errors go to
+// vm->errors; CAG_NO_MODULE then.
+size_t cag_load_file(CagVm *vm, const char *path, int *exit_status);
+size_t cag_load_text(CagVm *vm, const char *name, const char *text, size_t length,
+                     CagParseMode mode);
+// Whether a file may be read: below the root or the module path. Gives the real path (malloc'd) or
+// NULL with the reason in message.
+char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *message, size_t size);
+// Reads a whole file. NULL: *why is what went wrong (static or strerror text).
+char *cag_read_whole_file(const char *path, size_t *length, const char **why);
+
+// --- vm.c ---
+typedef struct CagVmOptions {
+  size_t max_memory, max_depth, max_triangles;
+  double max_time;
+  FILE *out, *trace;
+  const volatile int *interrupt; // NULL: none
+} CagVmOptions;
+CagVm *cag_vm_new(const CagVmOptions *options);
+void cag_vm_free(CagVm *vm);
+size_t cag_vm_add_global(CagVm *vm, const char *name);
+
+#endif

@@ -1,0 +1,317 @@
+// The heap: pages of equal cells for small objects, malloc for large ones, mark and sweep over
+// both.
+//
+// A cell of a page is free when its `type` is CELL_FREE. The mark alternates between 1 and 2 from
+// one collection to the next, so that nothing needs to be unmarked; an object is born with the mark
+// of the last collection and becomes garbage unless the next one reaches it.
+
+#include "interp/value/heap.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/eval/vm.h"
+
+#define CELL_FREE 0xff
+// Pages are so large that their header is small beside them and the system's allocator is seldom
+// asked.
+#define PAGE_BYTES ((size_t)64 * 1024)
+// A collection is due after so much allocation, or as much as is live, whichever is more: the cost
+// of marking stays in proportion.
+#define DEBT_MIN ((size_t)16 << 20)
+
+struct CagPage {
+  CagPage *next;
+  size_t cell, count;
+  max_align_t cells[];
+};
+
+// Under AddressSanitizer each object is a block of its own, so that a use after its end is seen.
+#if defined(__SANITIZE_ADDRESS__)
+#define SMALL_LIMIT 0
+#else
+#define SMALL_LIMIT CAG_SMALL_MAX
+#endif
+
+static void take_bytes(CagVm *vm, size_t size) {
+  CagHeap *h = &vm->heap;
+  if (size > h->limit || h->bytes > h->limit - size) cag_vm_out_of_memory(vm);
+  h->bytes += size;
+  h->debt += size;
+}
+
+// Makes a new page of cells for a size class and threads them into its free list.
+static bool add_page(CagHeap *h, size_t size_class) {
+  CagPage *page = malloc(PAGE_BYTES);
+  if (!page) return false;
+  page->cell = size_class * CAG_SMALL_STEP;
+  page->count = (PAGE_BYTES - sizeof *page) / page->cell;
+  page->next = h->pages;
+  h->pages = page;
+  char *cell = (char *)page->cells;
+  for (size_t i = 0; i < page->count; i++, cell += page->cell) {
+    CagObject *o = (CagObject *)cell;
+    o->type = CELL_FREE;
+    o->small = (uint8_t)size_class;
+    o->next = h->free_lists[size_class];
+    h->free_lists[size_class] = o;
+  }
+  return true;
+}
+
+void *cag_alloc(CagVm *vm, CagType type, size_t size) {
+  CagHeap *h = &vm->heap;
+  take_bytes(vm, size);
+  CagObject *o;
+  if (size <= SMALL_LIMIT) {
+    size_t size_class = (size + CAG_SMALL_STEP - 1) / CAG_SMALL_STEP;
+    if (!h->free_lists[size_class] && !add_page(h, size_class)) cag_vm_out_of_memory(vm);
+    o = h->free_lists[size_class];
+    h->free_lists[size_class] = o->next;
+    memset(o, 0, size);
+    o->small = (uint8_t)size_class;
+  } else {
+    o = calloc(1, size);
+    if (!o) cag_vm_out_of_memory(vm);
+    o->next = h->large;
+    h->large = o;
+  }
+  o->type = (uint8_t)type;
+  o->mark = h->mark;
+  return o;
+}
+
+void cag_heap_charge(CagVm *vm, size_t bytes) { take_bytes(vm, bytes); }
+
+void cag_root_push(CagVm *vm, CagValue v) {
+  if (vm->root_count == vm->root_capacity) {
+    size_t capacity = vm->root_capacity ? vm->root_capacity * 2 : 64;
+    CagValue *roots = realloc(vm->roots, capacity * sizeof *roots);
+    if (!roots) cag_vm_out_of_memory(vm);
+    vm->roots = roots;
+    vm->root_capacity = capacity;
+  }
+  vm->roots[vm->root_count++] = v;
+}
+
+void cag_root_pop(CagVm *vm, size_t n) { vm->root_count -= n; }
+
+// --- Marking ---
+
+static void mark_object(CagHeap *h, CagObject *o) {
+  if (!o || o->mark == h->mark) return;
+  o->mark = h->mark;
+  if (h->gray_count == h->gray_capacity) {
+    size_t capacity = h->gray_capacity ? h->gray_capacity * 2 : 1024;
+    CagObject **gray = realloc(h->gray, capacity * sizeof *gray);
+    if (!gray) abort(); // a few MB at most beside what the system has given already
+    h->gray = gray;
+    h->gray_capacity = capacity;
+  }
+  h->gray[h->gray_count++] = o;
+}
+
+static void mark_value(CagHeap *h, CagValue v) {
+  if (v.type >= CAG_FIRST_OBJECT && v.type != CAG_UNSET) mark_object(h, v.as.object);
+}
+
+static void mark_values(CagHeap *h, const CagValue *v, size_t n) {
+  for (size_t i = 0; i < n; i++) mark_value(h, v[i]);
+}
+
+// Bytes that an object holds beside its cell.
+static size_t charged(const CagObject *o) {
+  switch (o->type) {
+  case CAG_LIST: {
+    const CagList *l = (const CagList *)o;
+    if (!l->allocated) return 0;
+    return l->length * (l->dim ? l->dim * sizeof(double) : sizeof(CagValue));
+  }
+  case CAG_MESH: {
+    const CagMesh *m = ((const CagShape *)o)->as.mesh;
+    return m ? m->vertex_count * 64 + m->triangle_count * 12 : 0;
+  }
+  // Rough figures: geometry is counted so that a million small curves bring a collection about.
+  case CAG_CURVE: return 512;
+  case CAG_REGION:
+  case CAG_SURFACE: return 2048;
+  case CAG_SOLID: return 4096;
+  default: return 0;
+  }
+}
+
+static size_t own_size(const CagObject *o) {
+  switch (o->type) {
+  case CAG_TEXT: return sizeof(CagText) + ((const CagText *)o)->length + 1;
+  case CAG_LIST: {
+    const CagList *l = (const CagList *)o;
+    if (l->allocated || l->owner) return sizeof *l;
+    return sizeof *l + l->length * (l->dim ? l->dim * sizeof(double) : sizeof(CagValue));
+  }
+  case CAG_RECORD:
+    return sizeof(CagRecord) + ((const CagRecord *)o)->layout->count * sizeof(CagValue);
+  default: return 128;
+  }
+}
+
+// Marks what an object refers to.
+static void scan(CagHeap *h, CagObject *o) {
+  switch (o->type) {
+  case CAG_LIST: {
+    CagList *l = (CagList *)o;
+    if (l->owner) mark_object(h, &l->owner->head);
+    else if (l->dim == 0) mark_values(h, l->as.items, l->length);
+    break;
+  }
+  case CAG_RECORD: {
+    CagRecord *r = (CagRecord *)o;
+    mark_object(h, &r->layout->head);
+    mark_values(h, r->fields, r->layout->count);
+    break;
+  }
+  case CAG_CLOSURE: {
+    CagClosure *c = (CagClosure *)o;
+    mark_values(h, c->captures, c->capture_count);
+    break;
+  }
+  case CAG_CURVE:
+  case CAG_REGION:
+  case CAG_SURFACE:
+  case CAG_SOLID:
+  case CAG_MESH:
+  case CAG_GROUP: {
+    CagShape *s = (CagShape *)o;
+    if (o->type == CAG_GROUP && s->as.items) mark_object(h, &s->as.items->head);
+    if (s->material) mark_object(h, &s->material->head);
+    if (s->name) mark_object(h, &s->name->head);
+    if (s->style) mark_object(h, &s->style->head);
+    break;
+  }
+  case CAG_CAMERA:
+  case CAG_LIGHT:
+  case CAG_SETTING: {
+    CagSceneValue *s = (CagSceneValue *)o;
+    if (s->fields) mark_object(h, &s->fields->head);
+    break;
+  }
+  case CAG_INTERNAL: // builders and layouts tell themselves apart by flags
+    if (o->flags == CAG_INTERNAL_BUILDER) {
+      CagBuilder *b = (CagBuilder *)o;
+      if (b->mixed || b->dim == 0) mark_values(h, b->data, b->length);
+    }
+    break;
+  default: break;
+  }
+}
+
+// Frees what an object holds outside of the heap.
+static void destroy(CagObject *o) {
+  switch (o->type) {
+  case CAG_LIST:
+    if (((CagList *)o)->allocated) free(((CagList *)o)->as.data);
+    break;
+  case CAG_CURVE: cag_curve_release(((CagShape *)o)->as.curve); break;
+  case CAG_REGION: cag_region_release(((CagShape *)o)->as.region); break;
+  case CAG_SURFACE: cag_surface_release(((CagShape *)o)->as.surface); break;
+  case CAG_SOLID: cag_solid_release(((CagShape *)o)->as.solid); break;
+  case CAG_MESH: cag_mesh_release(((CagShape *)o)->as.mesh); break;
+  case CAG_INTERNAL:
+    if (o->flags == CAG_INTERNAL_BUILDER) free(((CagBuilder *)o)->data);
+    if (o->flags == CAG_INTERNAL_LAYOUT) free(((CagLayout *)o)->index);
+    break;
+  default: break;
+  }
+}
+
+static void mark_roots(CagVm *vm) {
+  CagHeap *h = &vm->heap;
+  mark_values(h, vm->stack, (size_t)(vm->top - vm->stack));
+  // What lies above the stack's top is dead: clear it, so that a later frame never shows the
+  // collector a stale pointer.
+  if (vm->high_water > vm->top)
+    memset(vm->top, 0, (size_t)(vm->high_water - vm->top) * sizeof *vm->top);
+  vm->high_water = vm->top;
+  for (size_t i = 0; i < vm->frame_count; i++)
+    if (vm->frames[i].closure) mark_object(h, &vm->frames[i].closure->head);
+  mark_values(h, vm->roots, vm->root_count);
+  for (size_t i = 0; i < vm->interned_size; i++)
+    if (vm->interned[i]) mark_object(h, &vm->interned[i]->head);
+  for (size_t i = 0; i < vm->global_count; i++) mark_value(h, vm->globals[i].value);
+  for (size_t i = 0; i < vm->module_count; i++) mark_value(h, vm->modules[i]->value);
+  for (const CagProto *p = vm->protos; p; p = p->next)
+    mark_values(h, p->constants, p->constant_count);
+  if (vm->builtin_values) mark_values(h, vm->builtin_values, cag_builtin_count());
+  for (size_t i = 0; i < vm->shown_count; i++) mark_value(h, vm->shown[i].value);
+}
+
+// --- Sweeping ---
+
+static void sweep(CagHeap *h) {
+  h->bytes = 0;
+  memset(h->free_lists, 0, sizeof h->free_lists);
+  for (CagPage *page = h->pages; page; page = page->next) {
+    size_t size_class = page->cell / CAG_SMALL_STEP;
+    char *cell = (char *)page->cells;
+    for (size_t i = 0; i < page->count; i++, cell += page->cell) {
+      CagObject *o = (CagObject *)cell;
+      if (o->type != CELL_FREE && o->mark == h->mark) {
+        h->bytes += page->cell + charged(o);
+        continue;
+      }
+      if (o->type != CELL_FREE) destroy(o);
+      o->type = CELL_FREE;
+      o->next = h->free_lists[size_class];
+      h->free_lists[size_class] = o;
+    }
+  }
+  CagObject **link = &h->large;
+  while (*link) {
+    CagObject *o = *link;
+    if (o->mark == h->mark) {
+      h->bytes += own_size(o) + charged(o);
+      link = &o->next;
+    } else {
+      *link = o->next;
+      destroy(o);
+      free(o);
+    }
+  }
+}
+
+void cag_collect(CagVm *vm) {
+  CagHeap *h = &vm->heap;
+  h->mark = h->mark == 1 ? 2 : 1;
+  h->gray_count = 0;
+  mark_roots(vm);
+  while (h->gray_count) scan(h, h->gray[--h->gray_count]);
+  sweep(h);
+  h->debt = 0;
+  size_t room = h->limit > h->bytes ? (h->limit - h->bytes) / 2 : 0;
+  h->threshold = h->bytes > DEBT_MIN ? h->bytes : DEBT_MIN;
+  if (h->threshold > room) h->threshold = room;
+  h->collections++;
+}
+
+// Frees everything; the machine ends.
+void cag_heap_free(CagVm *vm) {
+  CagHeap *h = &vm->heap;
+  for (CagPage *page = h->pages, *next; page; page = next) {
+    next = page->next;
+    char *cell = (char *)page->cells;
+    for (size_t i = 0; i < page->count; i++, cell += page->cell)
+      if (((CagObject *)cell)->type != CELL_FREE) destroy((CagObject *)cell);
+    free(page);
+  }
+  for (CagObject *o = h->large, *next; o; o = next) {
+    next = o->next;
+    destroy(o);
+    free(o);
+  }
+  free(h->gray);
+  memset(h, 0, sizeof *h);
+}
+
+void cag_heap_init(CagVm *vm, size_t limit) {
+  vm->heap = (CagHeap){.limit = limit, .mark = 1, .threshold = DEBT_MIN};
+  if (vm->heap.threshold > limit / 4) vm->heap.threshold = limit / 4;
+}
