@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/basis/bspline.h"
 #include "interp/builtin/curves.h"
 
 static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve *c,
@@ -160,30 +161,23 @@ bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
   return ok;
 }
 
-// Values of basis functions are those of curves whose control points are 1 at one place and 0
-// elsewhere: three at a time, as x, y and z.
 static CagStatus basis_values(const double *knots, size_t n, int degree, double t, int derivative,
                               double *out, CagError *err) {
-  CagVec3 *points = calloc(n, sizeof *points);
-  if (!points) return cag_fail_memory(err);
-  CagStatus status = CAG_OK;
-  for (size_t i = 0; status == CAG_OK && i < n; i += 3) {
-    CagCurve *c = NULL;
-    CagVec3 values[CAG_MAX_DERIVATIVE + 1];
-    memset(points, 0, n * sizeof *points);
-    points[i].x = 1;
-    if (i + 1 < n) points[i + 1].y = 1;
-    if (i + 2 < n) points[i + 2].z = 1;
-    status = cag_curve_nurbs(points, NULL, n, degree, knots, 3, &c, err);
-    if (status == CAG_OK) status = cag_curve_eval(c, t, derivative, CAG_SIDE_RIGHT, values, err);
-    cag_curve_release(c);
-    if (status != CAG_OK) break;
-    out[i] = values[derivative].x;
-    if (i + 1 < n) out[i + 1] = values[derivative].y;
-    if (i + 2 < n) out[i + 2] = values[derivative].z;
-  }
-  free(points);
-  return status;
+  CagStatus status = cag_knots_check(knots, n, degree, err);
+  if (status != CAG_OK) return status;
+  if (t < knots[degree] || t > knots[n])
+    return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "t", -1,
+                    "`t` must be in %.17g..%.17g, the usable range of the knots; found %.17g",
+                    knots[degree], knots[n], t);
+  size_t width = (size_t)degree + 1;
+  double *rows = malloc((size_t)(derivative + 1) * width * sizeof *rows);
+  if (!rows) return cag_fail_memory(err);
+  size_t span = cag_knots_span(knots, n, degree, t, false, (size_t)degree);
+  cag_bspline_derivatives(knots, degree, span, t, derivative, rows);
+  memset(out, 0, n * sizeof *out);
+  memcpy(out + span - (size_t)degree, rows + (size_t)derivative * width, width * sizeof *out);
+  free(rows);
+  return CAG_OK;
 }
 
 bool cag_curves_basis(CagCall *call, CagValue *result) {

@@ -1,0 +1,262 @@
+// The table of surfaces.
+
+#include "interp/builtin/surfaces.h"
+
+#define SURFACES CAG_TAKES(SURFACE)
+#define CURVES CAG_TAKES(CURVE)
+#define LISTS CAG_TAKES_LISTS
+#define NUMBERS CAG_TAKES(NUMBER)
+
+static const char asked[] = "Surfaces: questions";
+static const char curvature[] = "Surfaces: curvature";
+static const char changed[] = "Surfaces: changed";
+static const char made[] = "Surfaces: made of curves";
+static const char nets[] = "Surfaces: nets of points";
+static const char quadrics[] = "Quadrics";
+
+const CagBuiltin cag_builtins_surfaces[] = {
+    // --- At one place, and data ---
+    {"at(S, u, v)", cag_surfaces_at, "list",
+     "The point of the surface at u, v, as S(u, v) does. Parameters are natural: knots, or angles "
+     "of what is turned. Outside of the domain is an error (parameter-range).",
+     "print at(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0.5, 0.5) // expect: [2, 1, 0]", SURFACES,
+     asked},
+    {"partial(S, u, v, du = 1, dv = 0)", cag_surfaces_partial, "list",
+     "The partial derivative, du times by u and dv times by v (by angles: per radian).",
+     "print partial(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [4, 0, 0]", SURFACES,
+     asked},
+    {"normal(S, u, v)", cag_surfaces_normal, "list",
+     "The unit normal, along partial u x partial v; at a pole its limit where there is one.",
+     "print near(normal(sphere_surface(2), 90deg, 0deg), X) // expect: true", SURFACES, asked},
+    {"tangent_plane(S, u, v)", cag_surfaces_tangent_plane, "plane",
+     "The plane that touches the surface at u, v.",
+     "print near(tangent_plane(sphere_surface(2), 90deg, 0deg).normal, X) // expect: true",
+     SURFACES, asked},
+    {"domain(S)", cag_surfaces_domain, "record", "The ranges u and v of the parameters.",
+     "print domain(sphere_surface(1)) // expect: {u: 0deg..180deg, v: 0deg..360deg}", SURFACES,
+     asked},
+    {"degree(S)", cag_surfaces_degree, "list",
+     "The degrees in u and v of a Bezier or B-spline surface; others have none: an error "
+     "(no-control-points).",
+     "print degree(bezier_surface([[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]])) // expect: "
+     "[1, "
+     "1]",
+     SURFACES, asked},
+    {"knots(S)", cag_surfaces_knots, "list", "The knots in u and in v.",
+     "print knots(bezier_surface([[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]))[0] // expect: "
+     "[0, 0, 1, 1]",
+     SURFACES, asked},
+    {"points(S)", cag_surfaces_points, "list", "The net of control points, by rows of u.",
+     "print points(bezier_surface([[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]]))[1][1] // "
+     "expect: [1, 1, 1]",
+     SURFACES, asked},
+    {"weights(S)", cag_surfaces_weights, "list",
+     "The weights of the control points, by rows of u; 1 each where none were given.",
+     "print weights(bezier_surface([[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 1]]])) // expect: "
+     "[[1, 1], [1, 1]]",
+     SURFACES, asked},
+    {"is_closed(S)", cag_surfaces_is_closed, "bool", "Whether the surface has no boundary.",
+     "print is_closed(sphere_surface(1)) // expect: true", SURFACES, asked},
+    {"closed_in(S)", cag_surfaces_closed_in, "record",
+     "Whether the edges u meet, and whether the edges v do.",
+     "print closed_in(torus_surface(3, 1)) // expect: {u: true, v: true}", SURFACES, asked},
+
+    // --- Curvature ---
+    {"first_form(S, u, v)", cag_surfaces_first_form, "list",
+     "The first fundamental form [E, F, G]: the products of the partials.",
+     "print first_form(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [16, 0, 4]",
+     SURFACES, curvature},
+    {"second_form(S, u, v)", cag_surfaces_second_form, "list",
+     "The second fundamental form [L, M, N]: the second partials along the normal. At a pole there "
+     "is none: an error (singular-point).",
+     "print second_form(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [0, 0, 0]",
+     SURFACES, curvature},
+    {"gaussian_curvature(S, u, v)", cag_surfaces_gaussian_curvature, "number",
+     "The product of the principal curvatures, in 1/mm2.",
+     "print near(gaussian_curvature(sphere_surface(2), 60deg, 10deg), 0.25) // expect: true",
+     SURFACES, curvature},
+    {"mean_curvature(S, u, v)", cag_surfaces_mean_curvature, "number",
+     "The mean of the principal curvatures, in 1/mm; negative where the surface bends away from "
+     "its "
+     "normal.",
+     "print near(mean_curvature(sphere_surface(2), 60deg, 10deg), -0.5) // expect: true", SURFACES,
+     curvature},
+    {"normal_curvature(S, u, v, V)", cag_surfaces_normal_curvature, "number",
+     "The curvature of the cut along the direction V (taken along the surface), in 1/mm.",
+     "print near(normal_curvature(sphere_surface(2), 90deg, 0deg, Y), -0.5) // expect: true",
+     SURFACES, curvature},
+    {"principal_curvatures(S, u, v)", cag_surfaces_principal_curvatures, "record",
+     "The least and the greatest normal curvature, min and max, with min_direction and "
+     "max_direction (unit, square to each other).",
+     "k = principal_curvatures(torus_surface(3, 1), 0deg, 0deg)\n"
+     "print near(k.min * k.max, 0.25) // expect: true",
+     SURFACES, curvature},
+    {"curvature_class(S, u, v)", cag_surfaces_curvature_class, "text",
+     "\"elliptic\", \"hyperbolic\", \"parabolic\" or \"planar\".",
+     "print curvature_class(sphere_surface(1), 90deg, 0deg) // expect: elliptic", SURFACES,
+     curvature},
+
+    // --- Of the whole ---
+    {"area(S)", cag_surfaces_area, "number", "The area in mm2, to 1e-8.",
+     "print near(area(sphere_surface(1)), 4 * pi, relative: 1e-8) // expect: true", SURFACES,
+     asked},
+    {"volume(S)", cag_surfaces_volume, "number",
+     "The volume in mm3 within a closed surface, to 1e-8. An open surface is an error "
+     "(surface-open).",
+     "print near(volume(sphere_surface(3)), 36 * pi, relative: 1e-8) // expect: true", SURFACES,
+     asked},
+    {"sample(S, nu, nv)", cag_surfaces_sample, "list",
+     "Rows of points: nu by nv (2 at least) in equal steps of the parameters.",
+     "print sample(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 2, 3)[1] // expect: [[4, 0, 0], [4, "
+     "1, "
+     "0], [4, 2, 0]]",
+     SURFACES, asked},
+    {"to_nurbs(S)", cag_surfaces_to_nurbs, "surface",
+     "The exact rational B-spline of the surface; one that has none is an error (no-exact-form).",
+     "print degree(to_nurbs(sphere_surface(1))) // expect: [2, 2]", SURFACES, changed},
+    {"flip(S)", cag_surfaces_flip, "surface", "The same surface with its normals turned over.",
+     "s = flip(sphere_surface(1))\n"
+     "print near(normal(s, 90deg, 0deg), -X) // expect: true",
+     SURFACES, changed},
+    {"isocurve(S, u = none, v = none)", cag_surfaces_isocurve, "curve",
+     "The curve on the surface where u, or v, has this value.",
+     "print near(length(isocurve(sphere_surface(1), u: 90deg)), tau) // expect: true", SURFACES,
+     changed},
+    {"boundary(S)", cag_surfaces_boundary, "list",
+     "The curves around the surface; none where it is closed.",
+     "print len(boundary(bilinear([0, 0], [0, 2], [4, 0], [4, 2]))) // expect: 4", SURFACES,
+     changed},
+
+    // --- Of curves ---
+    {"revolve(C, axis = Z, through = origin, angle = 0deg..360deg)", cag_surfaces_revolve,
+     "surface or solid",
+     "A curve turned about the axis through a point, over a range of angles (an angle a is "
+     "0deg..a): a surface with u as in the curve and v the angle. Of a region, or a list of "
+     "points, "
+     "the solid. About an axis along Z a plane [x, y] is taken as [x, 0, y]. A zero axis and a "
+     "region that the axis cuts are errors.",
+     "print near(volume(revolve(polygon([[0, 0], [2, 0], [0, 3]]))), 4 * pi) // expect: true\n"
+     "print near(area(revolve(line([2, 0], [2, 5]))), 20 * pi) // expect: true",
+     CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
+    {"extrude(C, V, twist = 0deg, scale = 1, caps = true)", cag_surfaces_extrude,
+     "solid or surface",
+     "A curve carried along a vector, or up by a height (mm): a surface with u as in the curve and "
+     "v "
+     "in 0..1. Of a region, a list of points or a closed plane curve a solid with its caps; "
+     "`caps: false` leaves the sides alone. On the way it turns by the twist and grows to the "
+     "scale "
+     "about the z axis.",
+     "print volume(extrude(rectangle(4, 3), 5)) // expect: 60\n"
+     "print area(extrude(line([0, 0], [4, 0]), [0, 0, 5])) // expect: 20",
+     CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
+    {"ruled(A, B)", cag_surfaces_ruled, "surface",
+     "Straight between two curves: u = 1 is the first, u = 0 the second, v in 0..1 along both.",
+     "s = ruled(line([0, 0, 1], [4, 0, 1]), line([0, 0, 0], [4, 0, 0]))\n"
+     "print s(1, 0.5) // expect: [2, 0, 1]",
+     CURVES, made},
+    {"bilinear(P, Q, R, S)", cag_surfaces_bilinear, "surface",
+     "Between four corners: P at u = 0, v = 0, Q at u = 0, v = 1, R at u = 1, v = 0 and S at u = "
+     "1, "
+     "v = 1.",
+     "print bilinear([0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 4])(0.5, 0.5) // expect: [0.5, 0.5, "
+     "1]",
+     LISTS, made},
+    {"tube(path, radius, caps = true)", cag_surfaces_tube, "solid or surface",
+     "A round tube of this radius (mm) along a path: a solid with its caps, or with `caps: false` "
+     "the side alone, u the angle around and v as in the path.",
+     "print near(volume(tube(line([0, 0, 0], [0, 0, 5]), 2)), 20 * pi, relative: 1e-8) // expect: "
+     "true",
+     CURVES, made},
+    {"translational(A, B)", cag_surfaces_translational, "surface",
+     "Curve A carried along curve B, from B's start.",
+     "s = translational(line([0, 0, 0], [4, 0, 0]), line([0, 0, 0], [0, 3, 0]))\n"
+     "print area(s) // expect: 12",
+     CURVES, made},
+    {"sphere_surface(radius)", cag_surfaces_sphere_surface, "surface",
+     "The sphere about the origin as a surface: u the polar angle from Z, v the azimuth.",
+     "print near(sphere_surface(2)(90deg, 90deg), [0, 2, 0]) // expect: true", NUMBERS, made},
+    {"torus_surface(major, minor)", cag_surfaces_torus_surface, "surface",
+     "The torus about Z as a surface: a circle of radius `minor` turned at the radius `major`.",
+     "print near(area(torus_surface(3, 1)), 12 * pi^2, relative: 1e-8) // expect: true", NUMBERS,
+     made},
+
+    // --- Nets ---
+    {"bezier_surface(net, weights = none)", cag_surfaces_bezier_surface, "surface",
+     "The Bezier surface of a net of points, given by rows of u, over 0..1 in both directions; "
+     "rational with weights, in rows as the points.",
+     "s = bezier_surface([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 4]]])\n"
+     "print s(0.5, 0.5) // expect: [0.5, 0.5, 1]",
+     LISTS, nets},
+    {"bspline_surface(net, degree = [3, 3], knots = [\"open\", \"open\"], closed = [false, false], "
+     "weights = none, order = none)",
+     cag_surfaces_bspline_surface, "surface",
+     "The B-spline surface of a net of points, given by rows of u. `degree`, `knots` and `closed` "
+     "are one value for both directions, or a list of two for u and v; knots as of bspline, except "
+     "\"chord\".",
+     "net = [for i in 0..3: [for j in 0..3: [i, j, 0]]]\n"
+     "print near(area(bspline_surface(net)), 9) // expect: true",
+     LISTS, nets},
+    {"nurbs_surface(net, degree = [3, 3], knots = [\"open\", \"open\"], closed = [false, false], "
+     "weights = none, order = none)",
+     cag_surfaces_nurbs_surface, "surface",
+     "As bspline_surface, with weights (in rows as the points) required.",
+     "s = nurbs_surface([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]], degree: 1, weights: [[1, "
+     "1], [1, 1]])\n"
+     "print near(area(s), 1) // expect: true",
+     LISTS, nets},
+
+    // --- Quadrics ---
+    {"quadric(coefficients, within = none)", cag_surfaces_quadric, "surface or group",
+     "The real surface of a x^2 + b y^2 + c z^2 + d xy + e yz + f xz + g x + h y + j z + k = 0 "
+     "from "
+     "its ten numbers, or from 4 rows of 4; two sheets or planes are a group. An unbounded one "
+     "ends "
+     "at the box or range of z of `within`. One without real points is an error "
+     "(quadric-imaginary), as is an unbounded one without `within` (quadric-unbounded).",
+     "print near(area(quadric([1, 1, 1, 0, 0, 0, 0, 0, 0, -4])), 16 * pi, relative: 1e-8) // "
+     "expect: "
+     "true",
+     LISTS, quadrics},
+    {"ellipsoid(a, b, c)", cag_surfaces_ellipsoid, "surface", "x^2/a^2 + y^2/b^2 + z^2/c^2 = 1.",
+     "print near(bounds(ellipsoid(3, 2, 1)).size, [6, 4, 2]) // expect: true", NUMBERS, quadrics},
+    {"hyperboloid(a, b, c, sheets = 1, within = none)", cag_surfaces_hyperboloid,
+     "surface or group",
+     "x^2/a^2 + y^2/b^2 - z^2/c^2 = 1, or -1 with `sheets: 2`, cut by `within`.",
+     "print classify(hyperboloid(1, 1, 1, within: -2..2)).class // expect: hyperboloid-1", NUMBERS,
+     quadrics},
+    {"paraboloid(a, b, within = none)", cag_surfaces_paraboloid, "surface",
+     "z = x^2/a^2 + y^2/b^2, cut by `within`.",
+     "print near(bounds(paraboloid(1, 1, within: 0..4)).max, [2, 2, 4]) // expect: true", NUMBERS,
+     quadrics},
+    {"hyperbolic_paraboloid(a, b, within = none)", cag_surfaces_hyperbolic_paraboloid,
+     "surface or group", "The saddle z = x^2/a^2 - y^2/b^2, cut by `within`.",
+     "s = hyperbolic_paraboloid(1, 1, within: box(2, centered: true))\n"
+     "print classify(s).class // expect: hyperbolic-paraboloid",
+     NUMBERS, quadrics},
+    {"elliptic_cone(a, b, c, within = none)", cag_surfaces_elliptic_cone, "surface or group",
+     "x^2/a^2 + y^2/b^2 - z^2/c^2 = 0, cut by `within`.",
+     "print classify(elliptic_cone(1, 2, 1, within: -1..1)).class // expect: cone", NUMBERS,
+     quadrics},
+    {"elliptic_cylinder(a, b, within = none)", cag_surfaces_elliptic_cylinder, "surface",
+     "x^2/a^2 + y^2/b^2 = 1 along Z, cut by `within`.",
+     "print near(area(elliptic_cylinder(1, 1, within: 0..3)), 6 * pi, relative: 1e-8) // expect: "
+     "true",
+     NUMBERS, quadrics},
+    {"parabolic_cylinder(a, within = none)", cag_surfaces_parabolic_cylinder, "surface or group",
+     "y^2 = 4 a x along Z, a the focal distance, cut by `within`.",
+     "s = parabolic_cylinder(1, within: box(2, centered: true))\n"
+     "print classify(s).class // expect: parabolic-cylinder",
+     NUMBERS, quadrics},
+    {"hyperbolic_cylinder(a, b, within = none)", cag_surfaces_hyperbolic_cylinder,
+     "surface or group", "x^2/a^2 - y^2/b^2 = 1 along Z, cut by `within`.",
+     "s = hyperbolic_cylinder(1, 1, within: box(4, centered: true))\n"
+     "print classify(s).class // expect: hyperbolic-cylinder",
+     NUMBERS, quadrics},
+    {"classify(Q)", cag_surfaces_classify, "record",
+     "Of a quadric, or of its ten numbers or four rows: `class` (17 kinds, imaginary ones too), "
+     "the "
+     "canonical `frame`, `center` (none without one), `semi_axes`, and the ranks `rank3` and "
+     "`rank4` of its matrices.",
+     "print classify([1, 1, 1, 0, 0, 0, 0, 0, 0, 4]).class // expect: imaginary-ellipsoid",
+     SURFACES | CAG_TAKES(GROUP) | CAG_TAKES(LIST), quadrics},
+    {0}};

@@ -1,0 +1,36 @@
+// Functions of the surfaces' table (surfaces.c), by the file that holds them.
+
+#ifndef CAG_INTERP_BUILTIN_SURFACES_H
+#define CAG_INTERP_BUILTIN_SURFACES_H
+
+#include "interp/builtin/shapes.h"
+
+#define CAG_SURFACE_FUNCTIONS(X)                                                                   \
+  /* surfaces_ask.c: at one place, and data */                                                     \
+  X(at)                                                                                            \
+  X(partial) X(normal) X(tangent_plane) X(domain) X(degree) X(knots) X(points) X(weights)          \
+      X(is_closed) X(closed_in) /* surfaces_curvature.c */                                         \
+      X(first_form) X(second_form) X(gaussian_curvature) X(mean_curvature) X(normal_curvature)     \
+          X(principal_curvatures)                                                                  \
+              X(curvature_class) /* surfaces_change.c: of the whole, and what is made of it */     \
+      X(area) X(volume) X(sample) X(to_nurbs) X(flip) X(isocurve)                                  \
+          X(boundary) /* surfaces_make.c: of curves */                                             \
+      X(revolve) X(extrude) X(ruled) X(bilinear) X(tube) X(translational) X(sphere_surface)        \
+          X(torus_surface) /* surfaces_net.c: of nets of points */                                 \
+      X(bezier_surface) X(bspline_surface) X(nurbs_surface) /* surfaces_quadric.c */               \
+      X(quadric) X(ellipsoid) X(hyperboloid) X(paraboloid) X(hyperbolic_paraboloid)                \
+          X(elliptic_cone) X(elliptic_cylinder) X(parabolic_cylinder) X(hyperbolic_cylinder)       \
+              X(classify)
+
+#define X(name) bool cag_surfaces_##name(CagCall *call, CagValue *result);
+CAG_SURFACE_FUNCTIONS(X)
+#undef X
+
+// Reads u and v of a surface from the parameters `at` and the next.
+bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v);
+
+// A region turned about an axis that lies in its plane, to a solid.
+bool cag_region_revolved(CagCall *call, const CagRegion *region, const CagTransform *place,
+                         CagVec3 axis, CagVec3 through, double from, double to, CagValue *result);
+
+#endif

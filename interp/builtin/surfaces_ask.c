@@ -1,0 +1,148 @@
+// What surfaces answer at one place, and their data.
+
+#include "interp/builtin/surfaces.h"
+
+bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v) {
+  return cag_arg_parameter(call, at, s->angular_u, s->u0, s->u1, false, u) &&
+         cag_arg_parameter(call, at + 1, s->angular_v, s->v0, s->v1, false, v);
+}
+
+static bool read_at(CagCall *call, CagSurface **s, double *u, double *v) {
+  return cag_arg_surface(call, 0, s) && cag_arg_uv(call, *s, 1, u, v);
+}
+
+bool cag_surfaces_at(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagVec3 p;
+  CagError err;
+  double u, v;
+  if (!read_at(call, &s, &u, &v) ||
+      !cag_geometry_ok(call, cag_surface_point(s, u, v, &p, &err), &err))
+    return false;
+  *result = cag_point(call->vm, p, 3);
+  return true;
+}
+
+bool cag_surfaces_partial(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagVec3 out[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)];
+  CagError err;
+  double u, v;
+  long du, dv;
+  if (!read_at(call, &s, &u, &v) || !cag_arg_integer_or(call, 3, 1, 0, CAG_MAX_PARTIAL, &du) ||
+      !cag_arg_integer_or(call, 4, 0, 0, CAG_MAX_PARTIAL - du, &dv))
+    return false;
+  int n = (int)(du + dv);
+  CagStatus status = cag_surface_eval(s, u, v, n, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, out, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_point(call->vm, out[cag_partial(n, (int)du, (int)dv)], 3);
+  return true;
+}
+
+bool cag_surfaces_normal(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagVec3 n;
+  CagError err;
+  double u, v;
+  if (!read_at(call, &s, &u, &v) ||
+      !cag_geometry_ok(call, cag_surface_normal(s, u, v, &n, &err), &err))
+    return false;
+  *result = cag_point(call->vm, n, 3);
+  return true;
+}
+
+bool cag_surfaces_tangent_plane(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagPlane plane;
+  CagError err;
+  double u, v;
+  if (!read_at(call, &s, &u, &v) ||
+      !cag_geometry_ok(call, cag_surface_point(s, u, v, &plane.point, &err), &err) ||
+      !cag_geometry_ok(call, cag_surface_normal(s, u, v, &plane.normal, &err), &err))
+    return false;
+  *result = cag_plane_value(call->vm, &plane);
+  return true;
+}
+
+static const char *const directions[] = {"u", "v"};
+
+bool cag_surfaces_domain(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  CagValue values[] = {cag_domain_value(call->vm, s->angular_u, s->u0, s->u1),
+                       cag_domain_value(call->vm, s->angular_v, s->v0, s->v1)};
+  *result = cag_record_new(call->vm, directions, values, 2);
+  return true;
+}
+
+static bool read_net(CagCall *call, const char *what, CagSurfaceNurbsView *net) {
+  CagSurface *s;
+  CagError err;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  if (cag_surface_nurbs_view(s, net)) return true;
+  cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
+           "a surface of kind %s has no %s; `to_nurbs` gives its rational form where there is one",
+           s->kind->name, what);
+  return cag_fail_geometry(call, &err);
+}
+
+bool cag_surfaces_degree(CagCall *call, CagValue *result) {
+  CagSurfaceNurbsView net;
+  if (!read_net(call, "degree", &net)) return false;
+  double degrees[] = {net.degree_u, net.degree_v};
+  *result = cag_vector(call->vm, degrees, 2);
+  return true;
+}
+
+bool cag_surfaces_knots(CagCall *call, CagValue *result) {
+  CagSurfaceNurbsView net;
+  if (!read_net(call, "knots", &net)) return false;
+  CagValue values[] = {cag_numbers_value(call->vm, net.knots_u, net.nu + (size_t)net.degree_u + 1),
+                       cag_numbers_value(call->vm, net.knots_v, net.nv + (size_t)net.degree_v + 1)};
+  *result = cag_list_values(call->vm, values, 2);
+  return true;
+}
+
+// The net by rows of u: points, or weights where `dim` is 1.
+static bool give_net(CagCall *call, const CagSurfaceNurbsView *net, size_t dim, CagValue *result) {
+  CagBuilder *rows = cag_builder_new(call->vm);
+  for (size_t i = 0; i < net->distinct_u; i++) {
+    double *out;
+    CagValue row = dim == 1 ? cag_list_numbers(call->vm, net->distinct_v, &out)
+                            : cag_list_vectors(call->vm, net->distinct_v, dim, &out);
+    for (size_t j = 0; j < net->distinct_v; j++) {
+      const double *h = net->homogeneous + 4 * (i * net->nv + j);
+      if (dim == 1) *out++ = h[3];
+      else
+        for (size_t k = 0; k < dim; k++) *out++ = h[k] / h[3];
+    }
+    if (!cag_builder_add(call->vm, rows, row)) return false;
+  }
+  *result = cag_builder_finish(call->vm, rows);
+  return true;
+}
+
+bool cag_surfaces_points(CagCall *call, CagValue *result) {
+  CagSurfaceNurbsView net;
+  return read_net(call, "control points", &net) && give_net(call, &net, 3, result);
+}
+
+bool cag_surfaces_weights(CagCall *call, CagValue *result) {
+  CagSurfaceNurbsView net;
+  return read_net(call, "weights", &net) && give_net(call, &net, 1, result);
+}
+
+bool cag_surfaces_is_closed(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  *result = cag_bool(cag_surface_is_closed(s));
+  return true;
+}
+
+bool cag_surfaces_closed_in(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  CagValue values[] = {cag_bool(s->closed_u), cag_bool(s->closed_v)};
+  *result = cag_record_new(call->vm, directions, values, 2);
+  return true;
+}

@@ -1,0 +1,146 @@
+// Measures of whole surfaces, and what is made of one: samples, curves, other forms.
+
+#include <stdlib.h>
+
+#include "interp/builtin/surfaces.h"
+
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface *s,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_surface_value(call->vm, s);
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}
+
+bool cag_surfaces_area(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagVec3 centroid;
+  CagError err;
+  double area;
+  if (!cag_arg_surface(call, 0, &s) ||
+      !cag_geometry_ok(call, cag_surface_area(s, &area, &centroid, &err), &err))
+    return false;
+  *result = cag_number(area);
+  return true;
+}
+
+bool cag_surfaces_volume(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagError err;
+  double terms[10] = {0};
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  if (!cag_surface_is_closed(s)) {
+    cag_fail(
+        &err, CAG_E_ARGUMENT, "surface-open", "", -1,
+        "the surface has a boundary, so it holds no volume; `solid` of all sides tells the gap");
+    return cag_fail_geometry(call, &err);
+  }
+  if (!cag_geometry_ok(call, cag_surface_volume_terms(s, terms, &err), &err)) return false;
+  *result = cag_number(fabs(terms[0]));
+  return true;
+}
+
+// Most points that one call makes.
+#define POINTS_MAX 100000000
+
+static double step(double from, double to, size_t i, size_t n) {
+  return i == n ? to : from + (to - from) * ((double)i / (double)n);
+}
+
+bool cag_surfaces_sample(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagError err;
+  long n, m;
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer(call, 1, 2, POINTS_MAX, &n) ||
+      !cag_arg_integer(call, 2, 2, POINTS_MAX / n, &m))
+    return false;
+  size_t nu = (size_t)n, nv = (size_t)m;
+  double *us = malloc(nu * sizeof *us), *vs = malloc(nv * sizeof *vs);
+  CagVec3 *points = malloc(nu * nv * sizeof *points);
+  bool ok = us && vs && points;
+  if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  for (size_t i = 0; ok && i < nu; i++) us[i] = step(s->u0, s->u1, i, nu - 1);
+  for (size_t j = 0; ok && j < nv; j++) vs[j] = step(s->v0, s->v1, j, nv - 1);
+  ok = ok && cag_geometry_ok(
+                 call, cag_surface_eval_grid(s, us, nu, vs, nv, points, NULL, NULL, &err), &err);
+  CagBuilder *rows = cag_builder_new(call->vm);
+  for (size_t i = 0; ok && i < nu; i++)
+    ok = cag_builder_add(call->vm, rows, cag_points_value(call->vm, points + i * nv, nv, 3));
+  if (ok) *result = cag_builder_finish(call->vm, rows);
+  free(us);
+  free(vs);
+  free(points);
+  return ok;
+}
+
+bool cag_surfaces_to_nurbs(CagCall *call, CagValue *result) {
+  CagSurface *s, *out = NULL;
+  CagError err;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  return give(call, cag_surface_to_nurbs(s, &out, &err), &err, out, result);
+}
+
+bool cag_surfaces_flip(CagCall *call, CagValue *result) {
+  CagSurface *s, *out = NULL;
+  CagError err;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  return give(call, cag_surface_flip(s, &out, &err), &err, out, result);
+}
+
+bool cag_surfaces_isocurve(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagCurve *c = NULL;
+  CagError err;
+  double at;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  bool u = cag_given(call, 1) && call->values[1].type != CAG_NONE;
+  bool v = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  if (u == v)
+    return cag_fail_call(call, u ? 2 : -1, CAG_ERR_value,
+                         "wants either `u:` or `v:`, which is fixed");
+  bool read = u ? cag_arg_parameter(call, 1, s->angular_u, s->u0, s->u1, false, &at)
+                : cag_arg_parameter(call, 2, s->angular_v, s->v0, s->v1, false, &at);
+  if (!read || !cag_geometry_ok(call, cag_surface_isocurve(s, u ? 0 : 1, at, &c, &err), &err))
+    return false;
+  *result = cag_curve_value(call->vm, c);
+  return true;
+}
+
+static bool add_curve(CagCall *call, CagBuilder *list, CagStatus status, const CagError *err,
+                      CagCurve *c) {
+  return cag_geometry_ok(call, status, err) &&
+         cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
+}
+
+bool cag_surfaces_boundary(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagError err;
+  const CagRegion *region;
+  CagTransform frame;
+  CagCurve *c = NULL;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  CagBuilder *list = cag_builder_new(call->vm);
+  if (cag_surface_planar_view(s, &region, &frame)) {
+    for (size_t i = 0; i < region->count; i++) {
+      CagStatus status = cag_curve_transform(region->loops[i], &frame, &c, &err);
+      if (!add_curve(call, list, status, &err, c)) return false;
+    }
+    *result = cag_builder_finish(call->vm, list);
+    return true;
+  }
+  const struct {
+    bool edge;
+    int direction;
+    double at;
+  } sides[] = {{!s->closed_u && !s->pole_u0, 0, s->u0},
+               {!s->closed_u && !s->pole_u1, 0, s->u1},
+               {!s->closed_v && !s->pole_v0, 1, s->v0},
+               {!s->closed_v && !s->pole_v1, 1, s->v1}};
+  for (int i = 0; i < 4; i++) {
+    if (!sides[i].edge) continue;
+    CagStatus status = cag_surface_isocurve(s, sides[i].direction, sides[i].at, &c, &err);
+    if (!add_curve(call, list, status, &err, c)) return false;
+  }
+  *result = cag_builder_finish(call->vm, list);
+  return true;
+}

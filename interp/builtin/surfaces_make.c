@@ -1,0 +1,292 @@
+// Surfaces and solids made of curves and regions: turned, extruded, ruled, carried along a path.
+
+#include <stdlib.h>
+
+#include "interp/builtin/surfaces.h"
+
+static const double FULL_TURN = 6.283185307179586; // 2 pi
+
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface *s,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_surface_value(call->vm, s);
+  return true;
+}
+
+static bool give_solid(CagCall *call, CagStatus status, const CagError *err, CagSolid *s,
+                       CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_solid_value(call->vm, s);
+  return true;
+}
+
+// --- Revolution ---
+
+// [x, y] -> [x, 0, y]
+static CagTransform upright(void) {
+  CagTransform t = {{{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}}, false};
+  return t;
+}
+
+// An axis within this sine of the profile's plane, and this share of the profile's distance from
+// it, lies in it: rounding of frames stays well below.
+#define AXIS_IN_PLANE 1e-9
+
+// Rows that take the region's own coordinates to (distance from the axis, height along it).
+static CagTransform half_plane(const CagTransform *place, CagVec3 radial, CagVec3 axis,
+                               CagVec3 through) {
+  CagTransform t = cag_transform_identity();
+  const CagVec3 rows[] = {radial, axis};
+  for (int i = 0; i < 2; i++) {
+    CagVec3 r = rows[i];
+    for (int j = 0; j < 4; j++)
+      t.m[i][j] = r.x * place->m[0][j] + r.y * place->m[1][j] + r.z * place->m[2][j];
+    t.m[i][2] = 0;
+    t.m[i][3] -= cag_dot(r, through);
+  }
+  return t;
+}
+
+// Turns the region about an axis in its plane: its coordinates become distance from and height
+// along the axis, that is turned about Z, and placed with Z on the axis.
+bool cag_region_revolved(CagCall *call, const CagRegion *region, const CagTransform *place,
+                         CagVec3 axis, CagVec3 through, double from, double to, CagValue *result) {
+  CagError err;
+  CagVec3 centroid;
+  double area;
+  CagVec3 a = cag_unit(axis);
+  CagVec3 x = cag_transform_vector(place, cag_vec3(1, 0, 0));
+  CagVec3 n = cag_unit(cag_cross(x, cag_transform_vector(place, cag_vec3(0, 1, 0))));
+  if (!cag_geometry_ok(call, cag_region_area(region, &area, &centroid, &err), &err)) return false;
+  CagVec3 center = cag_sub(cag_transform_point(place, centroid), through);
+  if (fabs(cag_dot(a, n)) > AXIS_IN_PLANE ||
+      fabs(cag_dot(center, n)) > AXIS_IN_PLANE * (1 + cag_norm(center))) {
+    cag_fail(&err, CAG_E_ARGUMENT, "axis-not-in-plane", "axis", -1,
+             "`axis` does not lie in the plane of the region");
+    return cag_fail_geometry(call, &err);
+  }
+  CagVec3 radial = cag_cross(n, a);
+  if (cag_dot(center, radial) < 0) radial = cag_scaled(radial, -1);
+  CagTransform flat = half_plane(place, radial, a, through), frame;
+  CagRegion *half = NULL;
+  CagSolid *turned = NULL, *placed = NULL;
+  CagStatus status = cag_region_transform(region, &flat, &half, &err);
+  if (status == CAG_OK)
+    status = cag_solid_revolve(half, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), from, to, &turned, &err);
+  if (status == CAG_OK) status = cag_axes(through, radial, cag_cross(a, radial), &frame, &err);
+  if (status == CAG_OK) status = cag_solid_transform(turned, &frame, &placed, &err);
+  cag_region_release(half);
+  cag_solid_release(turned);
+  return give_solid(call, status, &err, placed, result);
+}
+
+// An angle a is 0..a (a..0 of a negative one).
+static bool read_turn(CagCall *call, int argument, double *from, double *to) {
+  *from = 0;
+  *to = FULL_TURN;
+  if (!cag_given(call, argument)) return true;
+  if (call->values[argument].type == CAG_RANGE)
+    return cag_arg_parameter_range(call, argument, true, from, to);
+  double angle;
+  if (!cag_arg_angle(call, argument, &angle)) return false;
+  *from = fmin(angle, 0);
+  *to = fmax(angle, 0);
+  return true;
+}
+
+static CagStatus revolve_curve(const CagCurve *c, bool stand, CagVec3 axis, CagVec3 through,
+                               double from, double to, CagSurface **out, CagError *err) {
+  CagTransform up = upright();
+  CagCurve *profile = NULL;
+  CagStatus status =
+      stand ? cag_curve_transform(c, &up, &profile, err) : cag_curve_to_space(c, &profile, err);
+  if (status == CAG_OK) status = cag_surface_revolve(profile, axis, through, from, to, out, err);
+  cag_curve_release(profile);
+  return status;
+}
+
+bool cag_surfaces_revolve(CagCall *call, CagValue *result) {
+  CagVec3 axis, through;
+  CagError err;
+  double from, to;
+  CagValue v = call->values[0];
+  if (!cag_arg_direction(call, 1, cag_vec3(0, 0, 1), &axis, NULL) ||
+      !cag_arg_vec_or(call, 2, cag_vec3(0, 0, 0), &through, NULL) ||
+      !read_turn(call, 3, &from, &to))
+    return false;
+  bool along_z = axis.x == 0 && axis.y == 0;
+  if (v.type == CAG_CURVE) {
+    const CagCurve *c = CAG_AS_SHAPE(v)->as.curve;
+    CagSurface *s = NULL;
+    CagStatus status =
+        revolve_curve(c, along_z && c->dimension == 2, axis, through, from, to, &s, &err);
+    if (!give(call, status, &err, s, result)) return false;
+    cag_shape_say_alike(*result, v);
+    return true;
+  }
+  CagRegion *region;
+  CagTransform place;
+  if (!cag_arg_region(call, 0, &region, &place)) return false;
+  if (along_z && place.planar) {
+    CagTransform up = upright();
+    place = cag_transform_multiply(&up, &place);
+  }
+  bool ok = cag_region_revolved(call, region, &place, axis, through, from, to, result);
+  cag_region_release(region);
+  if (ok && cag_is_shape(v)) cag_shape_say_alike(*result, v);
+  return ok;
+}
+
+// --- Extrusion ---
+
+typedef struct Extrusion {
+  CagVec3 v;
+  bool height; // v is a height along the section's normal
+  double twist, scale;
+  bool caps;
+} Extrusion;
+
+static bool read_extrusion(CagCall *call, Extrusion *e) {
+  CagValue v = call->values[1];
+  double height = 0;
+  e->height = v.type == CAG_NUMBER;
+  if (e->height && !cag_arg_finite(call, 1, &height)) return false;
+  e->v = cag_vec3(0, 0, height);
+  if (!e->height && v.type != CAG_LIST) return cag_fail_type(call, 1, "a height or a vector");
+  if (!e->height && !cag_arg_vec(call, 1, &e->v, NULL)) return false;
+  return cag_arg_angle_or(call, 2, 0, &e->twist) && cag_arg_number_or(call, 3, 1, &e->scale) &&
+         cag_arg_bool_or(call, 4, true, &e->caps);
+}
+
+// The sides of a region, one for each of its curves, without caps.
+static bool extrude_sides(CagCall *call, const CagRegion *region, const Extrusion *e,
+                          const CagTransform *place, CagValue *result) {
+  CagError err;
+  CagBuilder *sides = cag_builder_new(call->vm);
+  CagValue side = cag_none();
+  for (size_t i = 0; i < region->count; i++) {
+    CagSurface *s = NULL, *placed = NULL;
+    CagStatus status = cag_surface_extrude(region->loops[i], e->v, e->twist, e->scale, &s, &err);
+    if (status == CAG_OK) status = cag_surface_transform(s, place, &placed, &err);
+    cag_surface_release(s);
+    if (!give(call, status, &err, placed, &side) || !cag_builder_add(call->vm, sides, side))
+      return false;
+  }
+  *result =
+      region->count == 1 ? side : cag_group_value(call->vm, cag_builder_finish(call->vm, sides));
+  return true;
+}
+
+static bool extrude_region(CagCall *call, const CagRegion *region, Extrusion e,
+                           const CagTransform *place, CagValue *result) {
+  CagError err;
+  CagTransform back;
+  CagSolid *s = NULL, *placed = NULL;
+  // In the region's own coordinates, and placed then. A height is along the normal there.
+  if (!e.height) {
+    if (!cag_geometry_ok(call, cag_transform_inverse(place, &back, &err), &err)) return false;
+    e.v = cag_transform_vector(&back, e.v);
+  }
+  if (!e.caps) return extrude_sides(call, region, &e, place, result);
+  CagStatus status = cag_solid_extrude(region, e.v, e.twist, e.scale, &s, &err);
+  if (status == CAG_OK) status = cag_solid_transform(s, place, &placed, &err);
+  cag_solid_release(s);
+  return give_solid(call, status, &err, placed, result);
+}
+
+bool cag_surfaces_extrude(CagCall *call, CagValue *result) {
+  Extrusion e;
+  CagError err;
+  CagRegion *region;
+  CagTransform place;
+  CagValue v = call->values[0];
+  if (!read_extrusion(call, &e)) return false;
+  const CagCurve *c = v.type == CAG_CURVE ? CAG_AS_SHAPE(v)->as.curve : NULL;
+  bool ok;
+  if (c && (!c->closed || c->dimension == 3 || !e.caps)) {
+    CagSurface *s = NULL;
+    CagStatus status = cag_surface_extrude(c, e.v, e.twist, e.scale, &s, &err);
+    ok = give(call, status, &err, s, result);
+  } else {
+    if (!cag_arg_region(call, 0, &region, &place)) return false;
+    ok = extrude_region(call, region, e, &place, result);
+    cag_region_release(region);
+  }
+  if (ok && cag_is_shape(v)) cag_shape_say_alike(*result, v);
+  return ok;
+}
+
+// --- Others ---
+
+bool cag_surfaces_ruled(CagCall *call, CagValue *result) {
+  CagCurve *a, *b;
+  CagSurface *s = NULL;
+  CagError err;
+  if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b)) return false;
+  return give(call, cag_surface_ruled(a, b, &s, &err), &err, s, result);
+}
+
+bool cag_surfaces_bilinear(CagCall *call, CagValue *result) {
+  CagVec3 p[4];
+  CagSurface *s = NULL;
+  CagError err;
+  for (int i = 0; i < 4; i++)
+    if (!cag_arg_vec(call, i, &p[i], NULL)) return false;
+  CagStatus status = cag_surface_bilinear(p[0], p[1], p[2], p[3], &s, &err);
+  return give(call, status, &err, s, result);
+}
+
+bool cag_surfaces_tube(CagCall *call, CagValue *result) {
+  CagCurve *path;
+  CagSurface *s = NULL;
+  CagSolid *solid = NULL;
+  CagError err;
+  double radius;
+  bool caps;
+  if (!cag_arg_curve(call, 0, &path) || !cag_arg_positive(call, 1, &radius) ||
+      !cag_arg_bool_or(call, 2, true, &caps))
+    return false;
+  bool ok;
+  if (caps) {
+    CagStatus status = cag_solid_tube(path, radius, &solid, &err);
+    ok = give_solid(call, status, &err, solid, result);
+  } else {
+    CagStatus status = cag_surface_tube(path, radius, &s, &err);
+    ok = give(call, status, &err, s, result);
+  }
+  if (ok) cag_shape_say_alike(*result, call->values[0]);
+  return ok;
+}
+
+bool cag_surfaces_translational(CagCall *call, CagValue *result) {
+  CagCurve *a, *b;
+  CagSurface *s = NULL;
+  CagError err;
+  if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b)) return false;
+  return give(call, cag_surface_translational(a, b, &s, &err), &err, s, result);
+}
+
+// The half circle from the north pole to the south pole turned about Z: u is the polar angle, v the
+// azimuth, and S_u x S_v points outward.
+bool cag_surfaces_sphere_surface(CagCall *call, CagValue *result) {
+  double radius;
+  CagCurve *meridian = NULL;
+  CagSurface *s = NULL;
+  CagError err;
+  if (!cag_arg_positive(call, 0, &radius)) return false;
+  CagTransform from_pole = {{{0, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}, true};
+  CagStatus status = cag_curve_arc(radius, radius, 0, FULL_TURN / 2, &from_pole, &meridian, &err);
+  if (status == CAG_OK)
+    status =
+        revolve_curve(meridian, true, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, FULL_TURN, &s, &err);
+  cag_curve_release(meridian);
+  return give(call, status, &err, s, result);
+}
+
+bool cag_surfaces_torus_surface(CagCall *call, CagValue *result) {
+  double major, minor;
+  CagSurface *s = NULL;
+  CagError err;
+  if (!cag_arg_positive(call, 0, &major) || !cag_arg_positive(call, 1, &minor)) return false;
+  return give(call, cag_surface_torus(major, minor, &s, &err), &err, s, result);
+}

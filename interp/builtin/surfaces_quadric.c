@@ -1,0 +1,180 @@
+// Quadrics: by their ten numbers, by rows, and by name.
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/builtin/surfaces.h"
+
+// --- Where an unbounded one ends: a box (a solid whose bounds count) or a range of z ---
+
+static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_only, bool *given) {
+  CagError err;
+  CagValue v = call->values[argument];
+  *given = v.type != CAG_UNSET && v.type != CAG_NONE;
+  *z_only = false;
+  *box = (CagBounds){{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
+  if (!*given) return true;
+  if (v.type == CAG_SOLID)
+    return cag_geometry_ok(call, cag_solid_bounds(CAG_AS_SHAPE(v)->as.solid, box, &err), &err);
+  if (v.type != CAG_RANGE) return cag_fail_type(call, argument, "a box or a range of z");
+  bool angle;
+  *z_only = true;
+  if (!cag_arg_interval(call, argument, &box->min.z, &box->max.z, &angle)) return false;
+  if (angle) return cag_fail_type(call, argument, "a box or a range of z");
+  return box->min.z < box->max.z ||
+         cag_fail_call(call, argument, CAG_ERR_value, "expects a range of z that is not empty");
+}
+
+// One surface, or a group of the sheets or planes.
+static bool give_patches(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
+  CagBounds box;
+  bool z_only, given;
+  CagSurface **patches = NULL;
+  size_t n = 0;
+  CagError err;
+  if (!read_within(call, within, &box, &z_only, &given) ||
+      !cag_geometry_ok(
+          call, cag_quadric_patches(q, given ? &box : NULL, z_only, &patches, &n, &err), &err))
+    return false;
+  CagBuilder *list = cag_builder_new(call->vm);
+  bool ok = true;
+  for (size_t i = 0; i < n; i++) {
+    CagValue patch = cag_surface_value(call->vm, patches[i]);
+    if (n == 1) *result = patch;
+    else ok = cag_builder_add(call->vm, list, patch) && ok;
+  }
+  free(patches);
+  if (ok && n != 1) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
+  return ok;
+}
+
+// --- By numbers ---
+
+static bool read_equation(CagCall *call, CagQuadric *q) {
+  CagList *list;
+  CagError err;
+  double rows[4][4];
+  const double *x;
+  size_t n;
+  if (!cag_arg_list(call, 0, &list)) return false;
+  if (cag_as_vector(cag_object(CAG_LIST, list), &x, &n) && n == 10) {
+    memcpy(q->c, x, sizeof q->c);
+    return true;
+  }
+  bool square = list->length == 4;
+  for (size_t i = 0; square && i < 4; i++) {
+    square = cag_as_vector(cag_list_get(call->vm, list, i), &x, &n) && n == 4;
+    if (square) memcpy(rows[i], x, sizeof rows[i]);
+  }
+  if (!square)
+    return cag_fail_call(call, 0, CAG_ERR_type,
+                         "expects the 10 numbers of a x^2 + b y^2 + c z^2 + d xy + e yz + f xz + "
+                         "g x + h y + j z + k = 0, or 4 rows of 4");
+  return cag_geometry_ok(call, cag_quadric_from_rows(rows, q, &err), &err);
+}
+
+bool cag_surfaces_quadric(CagCall *call, CagValue *result) {
+  CagQuadric q;
+  return read_equation(call, &q) && give_patches(call, &q, 1, result);
+}
+
+// --- By name: alpha x^2 + beta y^2 + gamma z^2 + linear terms + k ---
+
+// Semi-axes from the parameters 0..n-1.
+static bool read_axes(CagCall *call, int n, double axes[3]) {
+  for (int i = 0; i < n; i++)
+    if (!cag_arg_positive(call, i, &axes[i])) return false;
+  return true;
+}
+
+static double inverse_square(double x) { return 1 / (x * x); }
+
+bool cag_surfaces_ellipsoid(CagCall *call, CagValue *result) {
+  double s[3];
+  if (!read_axes(call, 3, s)) return false;
+  CagQuadric q = {
+      {inverse_square(s[0]), inverse_square(s[1]), inverse_square(s[2]), 0, 0, 0, 0, 0, 0, -1}};
+  return give_patches(call, &q, 3, result);
+}
+
+bool cag_surfaces_hyperboloid(CagCall *call, CagValue *result) {
+  double s[3];
+  long sheets;
+  if (!read_axes(call, 3, s) || !cag_arg_integer_or(call, 3, 1, 1, 2, &sheets)) return false;
+  CagQuadric q = {{inverse_square(s[0]), inverse_square(s[1]), -inverse_square(s[2]), 0, 0, 0, 0, 0,
+                   0, sheets == 1 ? -1 : 1}};
+  return give_patches(call, &q, 4, result);
+}
+
+bool cag_surfaces_elliptic_cone(CagCall *call, CagValue *result) {
+  double s[3];
+  if (!read_axes(call, 3, s)) return false;
+  CagQuadric q = {
+      {inverse_square(s[0]), inverse_square(s[1]), -inverse_square(s[2]), 0, 0, 0, 0, 0, 0, 0}};
+  return give_patches(call, &q, 3, result);
+}
+
+// x^2/a^2 + sign y^2/b^2 + j z + k = 0
+static bool two_axes(CagCall *call, double sign, double j, double k, CagValue *result) {
+  double s[3];
+  if (!read_axes(call, 2, s)) return false;
+  CagQuadric q = {{inverse_square(s[0]), sign * inverse_square(s[1]), 0, 0, 0, 0, 0, 0, j, k}};
+  return give_patches(call, &q, 2, result);
+}
+
+bool cag_surfaces_paraboloid(CagCall *call, CagValue *result) {
+  return two_axes(call, 1, -1, 0, result);
+}
+bool cag_surfaces_hyperbolic_paraboloid(CagCall *call, CagValue *result) {
+  return two_axes(call, -1, -1, 0, result);
+}
+bool cag_surfaces_elliptic_cylinder(CagCall *call, CagValue *result) {
+  return two_axes(call, 1, 0, -1, result);
+}
+bool cag_surfaces_hyperbolic_cylinder(CagCall *call, CagValue *result) {
+  return two_axes(call, -1, 0, -1, result);
+}
+
+bool cag_surfaces_parabolic_cylinder(CagCall *call, CagValue *result) {
+  double s[3];
+  if (!read_axes(call, 1, s)) return false;
+  CagQuadric q = {{0, 1, 0, 0, 0, 0, -4 * s[0], 0, 0, 0}};
+  return give_patches(call, &q, 1, result);
+}
+
+// --- Classification ---
+
+// The equation of a quadric surface, of the sheets of one, or given as for `quadric`.
+static bool read_quadric(CagCall *call, CagQuadric *q) {
+  CagError err;
+  CagValue v = call->values[0];
+  if (v.type == CAG_LIST) return read_equation(call, q);
+  if (v.type == CAG_GROUP && CAG_AS_SHAPE(v)->as.items->length > 0)
+    v = cag_list_get(call->vm, CAG_AS_SHAPE(v)->as.items, 0);
+  if (v.type == CAG_SURFACE && cag_surface_quadric_view(CAG_AS_SHAPE(v)->as.surface, q))
+    return true;
+  cag_fail(&err, CAG_E_UNSUPPORTED, "not-a-quadric", "", -1,
+           "expects a quadric, or its 10 numbers or 4 rows");
+  return cag_fail_geometry(call, &err);
+}
+
+bool cag_surfaces_classify(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"class", "frame", "center", "semi_axes", "rank3", "rank4"};
+  CagQuadric q;
+  CagQuadricForm form;
+  CagError err;
+  if (!read_quadric(call, &q) ||
+      !cag_geometry_ok(call, cag_quadric_classify(&q, &form, &err), &err))
+    return false;
+  CagTransform frame = form.frame;
+  frame.planar = false;
+  CagValue values[] = {cag_text_c(call->vm, form.name),
+                       cag_transform_value(call->vm, &frame),
+                       form.has_center ? cag_point(call->vm, form.center, 3) : cag_none(),
+                       cag_vector(call->vm, form.semi, 3),
+                       cag_number(form.rank3),
+                       cag_number(form.rank4)};
+  *result = cag_record_new(call->vm, names, values, 6);
+  return true;
+}
