@@ -177,6 +177,8 @@ static void report_tuple(Parser *p, CagSpan span) {
                parse_quote(p, inside, text, sizeof text, "a, b"));
 }
 
+static CagExpr *group(Parser *p);
+
 // lambda = ( name | "(" [ parameters ] ")" ) "=>" expr
 static CagExpr *lambda(Parser *p) {
   uint32_t start = parse_here(p).start;
@@ -188,15 +190,11 @@ static CagExpr *lambda(Parser *p) {
     f->parameters[0] = parameter;
     f->parameter_count = f->required_count = 1;
   } else {
-    CagSpan open = parse_here(p);
+    if (parse_at_tuple(p)) return group(p);
     parameters(p, f);
-    if (!p->panic && parse_kind(p) != CAG_TOKEN_ARROW) {
-      report_tuple(p, (CagSpan){open.start, p->previous.span.end});
-      return finish(p, parse_new(p, CAG_EXPR_ERROR, start));
-    }
   }
-  parse_advance(p); // =>
-  if (!deeper(p)) return error_here(p);
+  if (!parse_accept(p, CAG_TOKEN_ARROW)) parse_unexpected(p, NULL, CAG_ERR_expected_word, "`=>`");
+  if (p->panic || !deeper(p)) return error_here(p);
   f->body = parse_expression(p);
   p->depth--;
   return function_expression(p, f, start);
@@ -471,6 +469,14 @@ static void close_block(Parser *p, Opened o, const CagExpr *value) {
                "give it a name, or leave it out");
     return;
   }
+  if (kind == CAG_TOKEN_COMMA && !ended)
+    parse_help(
+        parse_error(p, CAG_ERR_tuple, o.span, "this brace opens a block, which has one value"),
+        "a list stands in [ ], the fields of a record have names: { a: 1 }");
+  else if (kind == CAG_TOKEN_COLON && value->kind == CAG_EXPR_TEMPLATE)
+    parse_help(
+        parse_error(p, CAG_ERR_text_not_plain, value->span, "the name of a field has no { } in it"),
+        "a record with computed names is record([[name, value], ...])");
   parse_close(p, o, CAG_TOKEN_RIGHT_BRACE, value, "`}`");
 }
 
@@ -568,9 +574,10 @@ static CagExpr *template(Parser *p) {
 static CagExpr *group(Parser *p) {
   Opened o = parse_open(p, false);
   CagExpr *e = parse_new(p, CAG_EXPR_GROUP, o.span.start);
-  CagExpr *value = e->as.unary.operand = parse_expression(p);
+  bool tuple = parse_kind(p) == CAG_TOKEN_RIGHT_PAREN;
+  CagExpr *value = e->as.unary.operand = tuple ? error_here(p) : parse_expression(p);
   stack_on(p, e, value);
-  bool tuple = parse_kind(p) == CAG_TOKEN_COMMA;
+  tuple |= parse_kind(p) == CAG_TOKEN_COMMA;
   while (parse_accept(p, CAG_TOKEN_COMMA) && parse_kind(p) != CAG_TOKEN_RIGHT_PAREN)
     value = parse_expression(p);
   if (parse_close(p, o, CAG_TOKEN_RIGHT_PAREN, value, "`)`") && tuple) {

@@ -34,6 +34,7 @@ static bool is_closer(CagTokenKind k) {
 static void count_opener(Parser *p, const CagToken *t, CagTokenKind closer) {
   if (p->bracket_count < CAG_MAX_NESTING) {
     p->brackets[p->bracket_count++] = (Bracket){closer, t->span};
+    p->open[closer]++;
     return;
   }
   p->excess++;
@@ -48,11 +49,12 @@ static void count_closer(Parser *p, CagTokenKind closer) {
     p->excess--;
     return;
   }
-  for (size_t i = p->bracket_count; i-- > 0;)
-    if (p->brackets[i].closer == closer) {
-      p->bracket_count = i;
-      return;
-    }
+  if (p->open[closer] == 0) return;
+  CagTokenKind taken;
+  do {
+    taken = p->brackets[--p->bracket_count].closer;
+    p->open[taken]--;
+  } while (taken != closer);
 }
 
 void parse_skip(Parser *p) {
@@ -113,27 +115,37 @@ bool parse_token_is(Parser *p, const CagToken *t, const char *name) {
 
 // So many words of a parameter list are looked through for its `=`.
 #define LONGEST_PARAMETER_LIST 4096
+// After so many words looked through in vain, only short lists are: a text of nothing but open
+// brackets would take quadratic time otherwise.
+#define VAIN_LIMIT ((size_t)1 << 20)
+#define VAIN_LENGTH 64
 
-bool parse_at_function(Parser *p) {
-  if (parse_kind(p) != CAG_TOKEN_NAME || parse_kind_at(p, 1) != CAG_TOKEN_LEFT_PAREN) return false;
-  const CagToken *paren = parse_peek(p, 1);
-  if (paren->newline_before) return false;
+// The token behind the bracket that closes the one at `start`; ERROR when it is not found.
+static CagTokenKind kind_behind_bracket(Parser *p, uint32_t start) {
   CagLexer probe;
-  cag_lexer_probe(&probe, &p->lexer, paren->span.start);
+  cag_lexer_probe(&probe, &p->lexer, start);
   CagToken t;
-  size_t open = 0, left = LONGEST_PARAMETER_LIST;
+  size_t open = 0, seen = 0, most = p->vain < VAIN_LIMIT ? LONGEST_PARAMETER_LIST : VAIN_LENGTH;
   do {
     cag_lexer_next(&probe, &t);
     if (closer_of(t.kind) != CAG_TOKEN_END) open++;
     else if (is_closer(t.kind)) open--;
-  } while (open && --left && t.kind != CAG_TOKEN_END && t.kind != CAG_TOKEN_ERROR);
-  bool found = false;
-  if (open == 0) {
-    cag_lexer_next(&probe, &t);
-    found = t.kind == CAG_TOKEN_EQUALS;
-  }
+  } while (open && ++seen < most && t.kind != CAG_TOKEN_END && t.kind != CAG_TOKEN_ERROR);
+  if (open == 0) cag_lexer_next(&probe, &t);
+  else p->vain += seen;
   cag_lexer_release(&probe);
-  return found;
+  return open == 0 ? t.kind : CAG_TOKEN_ERROR;
+}
+
+bool parse_at_function(Parser *p) {
+  if (parse_kind(p) != CAG_TOKEN_NAME || parse_kind_at(p, 1) != CAG_TOKEN_LEFT_PAREN) return false;
+  const CagToken *paren = parse_peek(p, 1);
+  return !paren->newline_before && kind_behind_bracket(p, paren->span.start) == CAG_TOKEN_EQUALS;
+}
+
+bool parse_at_tuple(Parser *p) {
+  CagTokenKind behind = kind_behind_bracket(p, parse_current(p)->span.start);
+  return behind != CAG_TOKEN_ARROW && behind != CAG_TOKEN_ERROR;
 }
 
 static bool in_first_column(Parser *p) {
@@ -274,6 +286,20 @@ static void unexpected_closer(Parser *p, const char *found) {
   parse_related(p, d, opener, "the open bracket");
 }
 
+// c ? a : b
+static void report_ternary(Parser *p, const CagExpr *condition) {
+  CagSpan here = parse_here(p);
+  parse_advance(p);
+  CagExpr *a = parse_expression(p), *b = NULL;
+  if (parse_accept(p, CAG_TOKEN_COLON)) b = parse_expression(p);
+  char first[QUOTE_SIZE], second[QUOTE_SIZE], third[QUOTE_SIZE];
+  CagDiagnostic *d = parse_error(p, CAG_ERR_ternary, here, "a choice is not written with `?`");
+  parse_help(d, "write if %s then %s else %s",
+             condition ? parse_quote(p, condition->span, first, sizeof first, "c") : "c",
+             parse_quote(p, a->span, second, sizeof second, "a"),
+             b ? parse_quote(p, b->span, third, sizeof third, "b") : "b");
+}
+
 // Words that people put behind a value out of habit.
 static bool habit_behind(Parser *p, const CagExpr *before) {
   char text[QUOTE_SIZE];
@@ -281,10 +307,7 @@ static bool habit_behind(Parser *p, const CagExpr *before) {
   const char *value = before ? parse_quote(p, before->span, text, sizeof text, "a") : "a";
   CagDiagnostic *d;
   switch (parse_kind(p)) {
-  case CAG_TOKEN_QUESTION:
-    d = parse_error(p, CAG_ERR_ternary, here, "a choice is not written with `?`");
-    parse_help(d, "write if %s then a else b", before ? value : "c");
-    return true;
+  case CAG_TOKEN_QUESTION: report_ternary(p, before); return true;
   case CAG_TOKEN_EQUALS:
     d = parse_error(p, CAG_ERR_equals_in_expression, here,
                     "`=` defines a name, and cannot stand here");
@@ -342,7 +365,8 @@ void parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const cha
   bool moved = parse_current(p)->newline_before;
   CagDiagnostic *d = parse_error(p, id, parse_here(p), "expected %s, found %s", wanted, found);
   if (kind == CAG_TOKEN_LEFT_PAREN && moved && before)
-    parse_help(d, "the `(` of a call stands on the line of the function");
+    parse_help(
+        d, "a comma is missing before it, or the `(` of a call is not on the line of the function");
   else if (kind == CAG_TOKEN_LEFT_SQUARE && moved && before)
     parse_help(
         d, "a comma is missing before it, or the `[` of an index is not on the line of the list");

@@ -35,10 +35,13 @@ typedef struct Parser {
   bool newlines; // newlines count here: the innermost bracket is a block, or there is none
   Bracket brackets[CAG_MAX_NESTING];
   size_t bracket_count;
-  size_t excess;          // brackets open beyond the limit
+  uint32_t open[CAG_TOKEN_COMMA]; // how many of them each closing bracket would close
+  size_t vain;                    // words looked through ahead for a bracket that was not found
+  size_t excess;                  // brackets open beyond the limit
   unsigned depth;         // recursion that no bracket causes: signs, powers, functions, branches
   CagSpan statement_head; // first word of the statement, for hints
   CagTokenKind statement_kind;
+  uint32_t habit; // where a word of another language before a definition was passed over
 
   char *stack; // lists under way
   size_t stack_size, stack_capacity;
@@ -66,6 +69,8 @@ bool parse_at_newline(Parser *p);
 bool parse_at_statement(Parser *p);
 // A name with parameters and a `=` stands here: a definition and no call.
 bool parse_at_function(Parser *p);
+// Here, where `(` opens parameters, stands a list in parentheses instead: no `=>` follows.
+bool parse_at_tuple(Parser *p);
 bool parse_is_word(CagTokenKind kind); // a name or a reserved word
 bool parse_begins_expression(CagTokenKind kind);
 bool parse_token_is(Parser *p, const CagToken *t, const char *name);

@@ -276,6 +276,8 @@ static bool is_one_of(const char *name, const char *const *words, size_t count) 
             sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))
 
 // A name of another language at the head of a statement.
+//
+// A word before a definition is passed over, and the definition read as one.
 static bool name_habit(Parser *p) {
   CagToken word = *parse_current(p), next = *parse_peek(p, 1);
   if (next.newline_before) return false;
@@ -304,6 +306,7 @@ static bool name_habit(Parser *p) {
     parse_help(
         parse_mend(p, CAG_ERR_definition_keyword, word.span, "a definition begins with its name"),
         "leave `%s` out", word.as.name);
+    p->habit = word.span.start;
     parse_advance(p);
   }
   return false;
@@ -371,7 +374,10 @@ static CagStatement *expression_statement(Parser *p) {
 static CagStatement *name_statement(Parser *p) {
   CagToken *next = parse_peek(p, 1);
   char text[QUOTE_SIZE];
-  if (next->kind == CAG_TOKEN_EQUALS || parse_at_function(p)) return parse_definition(p, true);
+  bool mended = p->previous.kind == CAG_TOKEN_NAME && p->previous.span.start == p->habit;
+  if (next->kind == CAG_TOKEN_EQUALS || parse_at_function(p) ||
+      (mended && next->kind == CAG_TOKEN_LEFT_PAREN))
+    return parse_definition(p, true);
   next = parse_peek(p, 1);
   if (next->kind == CAG_TOKEN_ASSIGN_OPERATOR) {
     const char *name = parse_current(p)->as.name;
@@ -420,8 +426,30 @@ static void end_of_statement(Parser *p, const CagStatement *s) {
     return;
   const CagExpr *before = NULL;
   if (s && s->kind == CAG_STATEMENT_DEFINITION) before = s->as.definition.value;
+  if (before && before->kind == CAG_EXPR_LAMBDA) before = before->as.function->body;
   if (s && s->kind == CAG_STATEMENT_EXPRESSION) before = s->as.expression;
   parse_unexpected(p, before, CAG_ERR_expected_end, "the end of the line or `;`");
+}
+
+// No bracket is open, and a line begins in its first column with a value that the line before does
+// not ask for.
+static bool at_new_line(Parser *p) {
+  const CagToken *t = parse_current(p);
+  if (p->bracket_count || p->excess || !t->newline_before || !parse_begins_expression(t->kind))
+    return false;
+  if (t->span.start > 0 && p->module->source->text[t->span.start - 1] != '\n') return false;
+  switch (p->previous.kind) {
+  case CAG_TOKEN_RIGHT_PAREN:
+  case CAG_TOKEN_RIGHT_SQUARE:
+  case CAG_TOKEN_RIGHT_BRACE:
+  case CAG_TOKEN_TEXT_TAIL:
+  case CAG_TOKEN_ERROR:
+  case CAG_TOKEN_SEMICOLON: return true;
+  case CAG_TOKEN_MINUS:
+  case CAG_TOKEN_IF:
+  case CAG_TOKEN_NOT: return false;
+  default: return parse_begins_expression(p->previous.kind);
+  }
 }
 
 // Ends a panic: passes on to the next statement in the first column, and reports a bracket that is
@@ -433,7 +461,7 @@ static void recover(Parser *p, uint32_t start) {
   p->lexer.errors = NULL; // what is skipped is not judged
   p->panic = false;
   while (parse_kind(p) != CAG_TOKEN_END) {
-    if (parse_current(p)->span.start > start && parse_at_statement(p)) break;
+    if (parse_current(p)->span.start > start && (parse_at_statement(p) || at_new_line(p))) break;
     p->panic = true; // nor are the brackets in it
     parse_skip(p);
     p->panic = false;
@@ -447,6 +475,7 @@ static void recover(Parser *p, uint32_t start) {
     parse_help(d, "opened here");
   }
   p->bracket_count = p->excess = p->depth = 0;
+  memset(p->open, 0, sizeof p->open);
   p->stack_size = 0;
   p->newlines = true;
 }
@@ -535,6 +564,7 @@ static CagModuleAst *parse(const CagSource *source, CagParseMode mode, CagDiagno
     p->mode = mode;
     p->first_error = errors->count + errors->dropped;
     p->newlines = true;
+    p->habit = UINT32_MAX;
     cag_names_init(&p->names, &m->arena);
     cag_lexer_init(&p->lexer, source, &m->arena, &p->names, errors);
     parse_peek(p, 0);
