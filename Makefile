@@ -13,6 +13,9 @@ CC      ?= cc
 OPT     ?= -O3
 WARN    := -Wall -Wextra -Werror
 SANITIZE ?=
+# V=1 shows the commands.
+V ?=
+Q := $(if $(V),,@)
 
 # Each: pkg-config name and the Debian package to install when it is missing.
 NEEDS := OpenEXR:libopenexr-dev lapacke:liblapacke-dev libedit:libedit-dev libcjson:libcjson-dev \
@@ -51,7 +54,8 @@ all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
 $(BUILD)/obj/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) -c $< -o $@
+	@echo "cc $<"
+	$Q$(CC) $(CFLAGS_ALL) -c $< -o $@
 
 $(BUILD)/liblang.a: $(LANG_OBJ)
 	@rm -f $@; ar rcs $@ $^
@@ -60,7 +64,7 @@ $(BUILD)/libgeom.a: $(GEOM_OBJ)
 $(BUILD)/libcag.a: $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
 	@rm -f $@; ar rcs $@ $^
 $(BUILD)/libcag.so: $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
-	$(CC) -shared -Wl,-soname,libcag.so.0 $^ -o $@ $(LDLIBS_ALL)
+	$Q$(CC) -shared -Wl,-soname,libcag.so.0 $^ -o $@ $(LDLIBS_ALL)
 
 # The standard library, as C arrays.
 $(BUILD)/gen/stdlib.c: $(STDLIB) tools/embed.sh
@@ -68,22 +72,26 @@ $(BUILD)/gen/stdlib.c: $(STDLIB) tools/embed.sh
 	sh tools/embed.sh $(STDLIB) > $@.tmp && mv $@.tmp $@
 $(BUILD)/obj/gen/stdlib.o: $(BUILD)/gen/stdlib.c
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) -c $< -o $@
+	@echo "cc $<"
+	$Q$(CC) $(CFLAGS_ALL) -c $< -o $@
 
 $(BUILD)/cag: $(TOOL_OBJ) $(BUILD)/libcag.a
-	$(CC) $^ -o $@ $(LDLIBS_ALL)
+	$Q$(CC) $^ -o $@ $(LDLIBS_ALL)
 
 # C unit tests (cmocka): one program per file of tests/lang, tests/geom, tests/interp.
 UNIT = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/*_test.c))
 $(BUILD)/tests/lang/%: tests/lang/%.c $(BUILD)/liblang.a
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) $< $(BUILD)/liblang.a -o $@ -lcmocka $(LDLIBS_ALL)
+	@echo "cc $<"
+	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/liblang.a -o $@ -lcmocka $(LDLIBS_ALL)
 $(BUILD)/tests/geom/%: tests/geom/%.c $(BUILD)/libgeom.a
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) $< $(BUILD)/libgeom.a -o $@ -lcmocka $(LDLIBS_ALL)
+	@echo "cc $<"
+	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libgeom.a -o $@ -lcmocka $(LDLIBS_ALL)
 $(BUILD)/tests/interp/%: tests/interp/%.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ -lcmocka $(LDLIBS_ALL)
+	@echo "cc $<"
+	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ -lcmocka $(LDLIBS_ALL)
 unit-lang: $(call UNIT,lang)
 	@for t in $^; do ./$$t || exit 1; done
 unit-geom: $(call UNIT,geom)
