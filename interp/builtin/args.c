@@ -130,6 +130,7 @@ bool cag_arg_integer_or(CagCall *call, int argument, long fallback, long low, lo
 static const double RADIANS_PER_DEGREE = 0.017453292519943295; // pi / 180
 
 bool cag_arg_degrees(CagCall *call, int argument, double *degrees) {
+  *degrees = 0;
   CagValue v = call->values[argument];
   if (v.type != CAG_ANGLE) return fail_number_for_angle(call, argument);
   if (!isfinite(v.as.number)) return cag_fail_value(call, argument, "a finite angle");

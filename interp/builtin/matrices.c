@@ -260,7 +260,7 @@ static bool large_determinant(CagCall *call, Matrix *m, double *out) {
 
 static bool call_determinant(CagCall *call, CagValue *result) {
   Matrix m;
-  double determinant;
+  double determinant = 0;
   if (!read_square(call, 0, NULL, &m)) return false;
   bool good = true;
   if (m.rows <= 3) determinant = small_determinant(&m);
