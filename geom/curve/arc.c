@@ -109,6 +109,22 @@ bool cag_curve_arc_view(const CagCurve *curve, double *a, double *b, CagTransfor
   return true;
 }
 
+double cag_curve_stretch(CagVec3 x, CagVec3 y) {
+  double xx = cag_dot(x, x), yy = cag_dot(y, y), xy = cag_dot(x, y);
+  return sqrt((xx + yy + hypot(xx - yy, 2 * xy)) / 2);
+}
+
+bool cag_curve_arc_axes(const CagCurve *curve, CagVec3 *center, CagVec3 *x, CagVec3 *y,
+                        double *rate) {
+  if (!is_arc(curve)) return false;
+  const Arc *c = (const Arc *)curve;
+  *center = c->center;
+  *x = c->x;
+  *y = c->y;
+  *rate = c->rate;
+  return true;
+}
+
 static double angle_at(const Arc *c, double t) {
   if (c->base.closed && t == c->base.end) t = c->base.start;
   return c->phase + c->rate * t;

@@ -29,5 +29,18 @@ double cag_curve_remap(const CagCurve *c, double t, double a, double b);
 double cag_curve_sag(const CagCurve *c, double a, double b);
 // Interior breaks and both ends, malloc'd, ascending: *n values.
 CagStatus cag_curve_cuts(const CagCurve *c, double **out, size_t *n, CagError *err);
+// Axes of an arc kind: center + cos(angle) x + sin(angle) y, d angle / dt = rate.
+bool cag_curve_arc_axes(const CagCurve *c, CagVec3 *center, CagVec3 *x, CagVec3 *y, double *rate);
+// Bound of |C''| over [a, b]; false: no helix.
+bool cag_curve_helix_bend(const CagCurve *c, double a, double b, double *out);
+// Largest factor by which x u + y v lengthens the unit vector (u, v).
+double cag_curve_stretch(CagVec3 x, CagVec3 y);
+// The piece of a composite curve over [a, b] (within one piece), with its own parameters, which run
+// `rate` times as fast; NULL: no composite.
+const CagCurve *cag_curve_composite_piece(const CagCurve *c, double a, double b, double *local_a,
+                                          double *local_b, double *rate);
+// Points whose hull, plane and line are those of the curve (control points where there are some,
+// else samples); malloc'd.
+CagStatus cag_curve_gather(const CagCurve *c, CagVec3 **out, size_t *n, CagError *err);
 
 #endif

@@ -110,6 +110,17 @@ static void derivatives(const Helix *c, double t, int order, CagVec3 *out) {
   }
 }
 
+// C'' = r e'' + 2 growth e' by the angle, with two vectors at right angles.
+bool cag_curve_helix_bend(const CagCurve *curve, double a, double b, double *out) {
+  if (curve->kind != &helix_kind) return false;
+  const Helix *c = (const Helix *)curve;
+  const double growth = c->taper / (2 * M_PI);
+  const double r = fmax(fabs(c->radius + growth * (c->phase + c->rate * a)),
+                        fabs(c->radius + growth * (c->phase + c->rate * b)));
+  *out = c->rate * c->rate * hypot(r, 2 * growth) * cag_curve_stretch(c->x, c->y);
+  return true;
+}
+
 static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, CagVec3 *out,
                       CagError *err) {
   (void)side;

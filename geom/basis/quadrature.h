@@ -1,0 +1,19 @@
+// Adaptive integration by the Gauss-Kronrod pair of 7 and 15 points.
+
+#ifndef CAG_GEOM_QUADRATURE_H
+#define CAG_GEOM_QUADRATURE_H
+
+#include "geom/status.h"
+
+#define CAG_INTEGRAND_PARTS 8
+
+// Writes the integrand's `parts` numbers at t.
+typedef CagStatus (*CagIntegrand)(void *context, double t, double *out, CagError *err);
+
+// Integral over the pieces cuts[0]..cuts[1], .., each smooth inside; `n` cuts. Relative error of
+// every part at most about `tolerance` of the largest part's integral of absolute values. Kinks and
+// cusps inside a piece are found by bisection.
+CagStatus cag_integrate(CagIntegrand f, void *context, const double *cuts, size_t n, int parts,
+                        double tolerance, double *out, CagError *err);
+
+#endif

@@ -1,0 +1,152 @@
+// The closest point of a curve, the global one.
+//
+// Parts of the curve are kept while their chord, less the bound of the distance from it, is nearer
+// than the best point found; Newton's method takes that point to the local minimum. The bound
+// shrinks with the square of the step, so only the parts about the minima live on.
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/curve/family.h"
+
+// Two places whose distances differ by less than this part of the size count as equally near.
+#define EQUALLY_NEAR 1e-10
+// Parts kept at one time, at which the search goes on with the nearest ones alone.
+#define MOST_PARTS 400000
+
+typedef struct Part {
+  double a, b;
+  CagVec3 p, q;
+} Part;
+
+typedef struct Search {
+  const CagCurve *c;
+  CagVec3 target;
+  double slack;
+  double t, distance; // best so far
+  CagVec3 point;
+} Search;
+
+typedef struct Parts {
+  Part *items;
+  size_t n, capacity;
+} Parts;
+
+static CagStatus push(Parts *list, Part part, CagError *err) {
+  if (list->n == list->capacity) {
+    size_t capacity = list->capacity ? 2 * list->capacity : 64;
+    Part *grown = realloc(list->items, sizeof *grown * capacity);
+    if (!grown) return cag_fail_memory(err);
+    list->items = grown;
+    list->capacity = capacity;
+  }
+  list->items[list->n++] = part;
+  return CAG_OK;
+}
+
+static void offer(Search *s, double t, CagVec3 p) {
+  double d = cag_norm(cag_sub(p, s->target));
+  if (!(d < s->distance)) return;
+  s->distance = d;
+  s->t = t;
+  s->point = p;
+}
+
+// Newton on (C - P) . C' = 0 within [a, b], from t.
+static CagStatus polish(Search *s, double a, double b, double t, CagError *err) {
+  const int rounds = 40;
+  for (int i = 0; i < rounds; i++) {
+    CagVec3 d[3];
+    CagStatus status = cag_curve_eval(s->c, t, 2, t >= b ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, err);
+    if (status) return status;
+    offer(s, t, d[0]);
+    CagVec3 r = cag_sub(d[0], s->target);
+    double f = cag_dot(r, d[1]), vv = cag_dot(d[1], d[1]), slope = vv + cag_dot(r, d[2]);
+    // Near a maximum the full step would climb: the step of a straight curve goes down.
+    if (!(slope > 0)) slope = vv;
+    if (!(slope > 0)) return CAG_OK;
+    double next = fmin(b, fmax(a, t - f / slope));
+    if (next == t) return CAG_OK;
+    t = next;
+  }
+  return CAG_OK;
+}
+
+static double chord_parameter(const Part *part, CagVec3 target) {
+  CagVec3 d = cag_sub(part->q, part->p);
+  double n = cag_dot(d, d), u = n > 0 ? cag_dot(cag_sub(target, part->p), d) / n : 0;
+  return fmin(1, fmax(0, u));
+}
+
+// Looks at one part: dropped, finished, or halved onto the list.
+static CagStatus step(Search *s, const Part *part, Parts *next, CagError *err) {
+  double u = chord_parameter(part, s->target);
+  double sag = cag_curve_sag(s->c, part->a, part->b);
+  double near = cag_norm(cag_sub(cag_lerp(part->p, part->q, u), s->target)) - sag;
+  if (near >= s->distance - s->slack) return CAG_OK;
+  double guess = part->a + u * (part->b - part->a), middle = part->a + (part->b - part->a) / 2;
+  CagStatus status = polish(s, part->a, part->b, guess, err);
+  if (status || sag <= s->slack || near >= s->distance - s->slack) return status;
+  if (!(part->a < middle && middle < part->b)) return CAG_OK;
+  CagVec3 p;
+  status = cag_curve_point(s->c, middle, &p, err);
+  if (status) return status;
+  offer(s, middle, p);
+  status = push(next, (Part){part->a, middle, part->p, p}, err);
+  return status ? status : push(next, (Part){middle, part->b, p, part->q}, err);
+}
+
+// The smooth pieces, halved a few times so that round ones have chords worth the name.
+static CagStatus first_parts(Search *s, Parts *list, CagError *err) {
+  enum { HALVES = 4 };
+  double *cuts;
+  size_t n;
+  CagStatus status = cag_curve_cuts(s->c, &cuts, &n, err);
+  if (status) return status;
+  const size_t pieces = n > 8 ? 1 : HALVES;
+  for (size_t i = 0; !status && i + 1 < n; i++) {
+    Part part = {.b = cuts[i]};
+    status = cag_curve_eval(s->c, cuts[i], 0, CAG_SIDE_RIGHT, &part.q, err);
+    if (!status) offer(s, cuts[i], part.q);
+    for (size_t k = 1; !status && k <= pieces; k++) {
+      part.a = part.b;
+      part.p = part.q;
+      part.b = k == pieces ? cuts[i + 1]
+                           : cuts[i] + (cuts[i + 1] - cuts[i]) * (double)k / (double)pieces;
+      status = cag_curve_eval(s->c, part.b, 0, CAG_SIDE_LEFT, &part.q, err);
+      if (!status) offer(s, part.b, part.q);
+      if (!status) status = push(list, part, err);
+    }
+  }
+  free(cuts);
+  return status;
+}
+
+CagStatus cag_curve_closest(const CagCurve *c, CagVec3 p, double *t, CagVec3 *point,
+                            double *distance, CagError *err) {
+  CagStatus status = cag_curve_check_points(&p, 1, "P", err);
+  if (status) {
+    err->index = -1;
+    return status;
+  }
+  CagBounds box = c->kind->hull(c, c->start, c->end);
+  Search s = {.c = c, .target = p, .distance = INFINITY, .t = c->start};
+  s.slack = EQUALLY_NEAR * cag_norm(cag_sub(box.max, box.min));
+  Parts now = {0}, next = {0};
+  status = first_parts(&s, &now, err);
+  while (!status && now.n > 0) {
+    next.n = 0;
+    for (size_t i = 0; !status && i < now.n && next.n < MOST_PARTS; i++)
+      status = step(&s, &now.items[i], &next, err);
+    Parts swap = now;
+    now = next;
+    next = swap;
+  }
+  free(now.items);
+  free(next.items);
+  if (status) return status;
+  if (t) *t = s.t;
+  if (point) *point = s.point;
+  if (distance) *distance = s.distance;
+  return CAG_OK;
+}

@@ -1,0 +1,409 @@
+// Curves joined end to end: each piece keeps its kind and runs over its part of the domain.
+//
+// Piece i covers cuts[i]..cuts[i + 1] and its own domain at constant rate; its ends are hit
+// exactly. Pieces are never composites themselves. A joint belongs to the piece that starts there,
+// except for limits from the left.
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/curve/family.h"
+#include "geom/curve/nurbs.h"
+
+// Ends meet when their gap is this part of the size of the curves or less.
+#define MEET 1e-9
+
+typedef struct Composite {
+  CagCurve base;
+  size_t n;
+  CagCurve **pieces;
+  double *cuts; // n + 1
+} Composite;
+
+static const CagCurveKind composite_kind;
+
+static void destroy(CagCurve *curve) {
+  Composite *c = (Composite *)curve;
+  for (size_t i = 0; c->pieces && i < c->n; i++) cag_curve_release(c->pieces[i]);
+  free(c->pieces);
+  free(c->cuts);
+}
+
+// Retains the pieces; copies the cuts.
+static CagStatus make(CagCurve *const *pieces, const double *cuts, size_t n, bool angular,
+                      CagCurve **out, CagError *err) {
+  CagCurve *base;
+  CagStatus status = cag_curve_block(sizeof(Composite), &composite_kind, pieces[0]->dimension,
+                                     cuts[0], cuts[n], &base, err);
+  if (status) return status;
+  Composite *c = (Composite *)base;
+  c->pieces = calloc(n, sizeof(CagCurve *));
+  c->cuts = malloc(sizeof(double) * (n + 1));
+  if (!c->pieces || !c->cuts) {
+    cag_curve_release(base);
+    return cag_fail_memory(err);
+  }
+  c->n = n;
+  for (size_t i = 0; i < n; i++) c->pieces[i] = cag_curve_retain(pieces[i]);
+  memcpy(c->cuts, cuts, sizeof(double) * (n + 1));
+  base->angular = angular;
+  CagVec3 ends[2];
+  status = cag_curve_point(pieces[0], pieces[0]->start, &ends[0], err);
+  if (!status) status = cag_curve_point(pieces[n - 1], pieces[n - 1]->end, &ends[1], err);
+  if (status) {
+    cag_curve_release(base);
+    return status;
+  }
+  CagBounds box = pieces[0]->kind->hull(pieces[0], pieces[0]->start, pieces[0]->end);
+  const CagVec3 extent[4] = {ends[0], ends[1], box.min, box.max};
+  base->closed = cag_norm(cag_sub(ends[0], ends[1])) <= MEET * cag_curve_size(extent, 4);
+  *out = base;
+  return CAG_OK;
+}
+
+static double local(const Composite *c, size_t i, double t) {
+  const CagCurve *piece = c->pieces[i];
+  if (t == c->cuts[i]) return piece->start;
+  if (t == c->cuts[i + 1]) return piece->end;
+  double rate = (piece->end - piece->start) / (c->cuts[i + 1] - c->cuts[i]);
+  double u = piece->start + (t - c->cuts[i]) * rate;
+  return fmin(fmax(u, piece->start), piece->end);
+}
+
+static size_t piece_of(const Composite *c, double t, CagSide side) {
+  size_t lo = 0, hi = c->n;
+  while (hi - lo > 1) {
+    size_t mid = lo + (hi - lo) / 2;
+    if (c->cuts[mid] <= t) lo = mid;
+    else hi = mid;
+  }
+  if (side == CAG_SIDE_LEFT && lo > 0 && t == c->cuts[lo]) lo--;
+  return lo;
+}
+
+const CagCurve *cag_curve_composite_piece(const CagCurve *curve, double a, double b,
+                                          double *local_a, double *local_b, double *rate) {
+  if (curve->kind != &composite_kind) return NULL;
+  const Composite *c = (const Composite *)curve;
+  const size_t i = piece_of(c, a, CAG_SIDE_RIGHT);
+  *local_a = local(c, i, a);
+  *local_b = b >= c->cuts[i + 1] ? c->pieces[i]->end : local(c, i, b);
+  *rate = (c->pieces[i]->end - c->pieces[i]->start) / (c->cuts[i + 1] - c->cuts[i]);
+  return c->pieces[i];
+}
+
+// --- Joining ---
+
+// Pieces of all curves one after the other, composites taken apart; lengths of their domains.
+static size_t flatten(CagCurve *const *curves, size_t n, CagCurve **pieces, double *lengths) {
+  size_t count = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (curves[i]->kind == &composite_kind) {
+      const Composite *c = (const Composite *)curves[i];
+      for (size_t k = 0; k < c->n; k++, count++) {
+        if (!pieces) continue;
+        pieces[count] = c->pieces[k];
+        lengths[count] = c->cuts[k + 1] - c->cuts[k];
+      }
+    } else {
+      if (pieces) {
+        pieces[count] = curves[i];
+        lengths[count] = curves[i]->end - curves[i]->start;
+      }
+      count++;
+    }
+  }
+  return count;
+}
+
+static CagStatus check_joints(CagCurve *const *curves, size_t n, CagError *err) {
+  for (size_t i = 0; i + 1 < n; i++) {
+    CagVec3 p, q;
+    CagStatus status = cag_curve_point(curves[i], curves[i]->end, &p, err);
+    if (!status) status = cag_curve_point(curves[i + 1], curves[i + 1]->start, &q, err);
+    if (status) return status;
+    CagBounds box = curves[i]->kind->hull(curves[i], curves[i]->start, curves[i]->end);
+    const CagVec3 extent[3] = {box.min, box.max, q};
+    double gap = cag_norm(cag_sub(p, q));
+    if (gap > MEET * cag_curve_size(extent, 3))
+      return cag_fail(err, CAG_E_ARGUMENT, "ends-do-not-meet", "curves", (long)i + 1,
+                      "curves[%zu] starts at [%.9g, %.9g, %.9g], %.3g away from the end of "
+                      "curves[%zu] at [%.9g, %.9g, %.9g]; move it, or reverse one of them",
+                      i + 1, q.x, q.y, q.z, gap, i, p.x, p.y, p.z);
+  }
+  return CAG_OK;
+}
+
+// Straight pieces alone make a polyline whose vertices have whole parameters.
+static CagStatus join_straight(CagCurve *const *curves, size_t n, int dimension, bool *done,
+                               CagCurve **out, CagError *err) {
+  const CagVec3 *points;
+  size_t count, total = 1;
+  bool ring;
+  *done = false;
+  for (size_t i = 0; i < n; i++) {
+    if (!cag_curve_vertices(curves[i], &points, &count, &ring) ||
+        curves[i]->end - curves[i]->start != (double)(count + ring - 1))
+      return CAG_OK;
+    total += count + ring - 1;
+  }
+  CagVec3 *all = malloc(sizeof *all * total);
+  if (!all) return cag_fail_memory(err);
+  size_t used = 0;
+  for (size_t i = 0; i < n; i++) {
+    cag_curve_vertices(curves[i], &points, &count, &ring);
+    for (size_t k = i > 0; k < count + ring; k++) all[used++] = points[k % count];
+  }
+  const CagVec3 ends[2] = {all[0], all[total - 1]};
+  bool closed =
+      total > 3 && cag_norm(cag_sub(ends[0], ends[1])) <= MEET * cag_curve_size(all, total);
+  if (closed) all[total - 1] = all[0];
+  CagStatus status = cag_curve_polyline(all, total, closed, dimension, out, err);
+  free(all);
+  *done = true;
+  return status;
+}
+
+CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagError *err) {
+  if (n == 0)
+    return cag_fail(err, CAG_E_ARGUMENT, "too-few-curves", "curves", -1,
+                    "there is no curve to join");
+  CagStatus status = check_joints(curves, n, err);
+  if (status) return status;
+  if (n == 1) {
+    *out = cag_curve_retain(curves[0]);
+    return CAG_OK;
+  }
+  int dimension = 2;
+  for (size_t i = 0; i < n; i++)
+    if (curves[i]->dimension == 3) dimension = 3;
+  bool done;
+  status = join_straight(curves, n, dimension, &done, out, err);
+  if (status || done) return status;
+
+  const size_t count = flatten(curves, n, NULL, NULL);
+  CagCurve **pieces = malloc(sizeof *pieces * count);
+  double *cuts = malloc(sizeof *cuts * (count + 1));
+  if (!pieces || !cuts) {
+    free(pieces);
+    free(cuts);
+    return cag_fail_memory(err);
+  }
+  flatten(curves, n, pieces, cuts + 1);
+  // The domains go on from one another as they are, or are laid end to end from 0.
+  bool natural = true, angular = true;
+  for (size_t i = 0; i < n; i++) {
+    natural = natural && (i == 0 || curves[i]->start == curves[i - 1]->end);
+    angular = angular && curves[i]->angular;
+  }
+  cuts[0] = natural ? curves[0]->start : 0;
+  for (size_t i = 0; i < count; i++) cuts[i + 1] += cuts[i];
+  if (natural) cuts[count] = curves[n - 1]->end;
+  size_t owned = 0;
+  for (; !status && owned < count; owned++) {
+    CagCurve *placed;
+    if (pieces[owned]->dimension == dimension) placed = cag_curve_retain(pieces[owned]);
+    else status = cag_curve_to_space(pieces[owned], &placed, err);
+    if (status) break;
+    pieces[owned] = placed;
+  }
+  if (!status) status = make(pieces, cuts, count, angular, out, err);
+  for (size_t i = 0; i < owned; i++) cag_curve_release(pieces[i]);
+  free(pieces);
+  free(cuts);
+  return status;
+}
+
+// --- Questions ---
+
+static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, CagVec3 *out,
+                      CagError *err) {
+  const Composite *c = (const Composite *)curve;
+  const size_t i = piece_of(c, t, side);
+  const CagCurve *piece = c->pieces[i];
+  CagStatus status = cag_curve_eval(piece, local(c, i, t), order, side, out, err);
+  double rate = (piece->end - piece->start) / (c->cuts[i + 1] - c->cuts[i]), scale = 1;
+  for (int k = 1; !status && rate != 1 && k <= order; k++) {
+    scale *= rate;
+    out[k] = cag_scaled(out[k], scale);
+  }
+  return status;
+}
+
+// Bezier pieces of all pieces, raised to one degree, with p-fold knots between them.
+static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) {
+  const Composite *c = (const Composite *)curve;
+  CagCurve **exact = calloc(c->n, sizeof *exact);
+  double *data = NULL;
+  CagStatus status = exact ? CAG_OK : cag_fail_memory(err);
+  int p = 1;
+  size_t total = 0;
+  bool rational = false;
+  for (size_t i = 0; !status && i < c->n; i++) {
+    status = cag_curve_to_nurbs(c->pieces[i], &exact[i], err);
+    if (status) break;
+    const CagNurbs *piece = cag_nurbs_data(exact[i]);
+    if (piece->degree > p) p = piece->degree;
+    total += piece->pieces;
+    rational = rational || piece->rational;
+  }
+  const size_t n = total * (size_t)p + 1;
+  if (!status) data = malloc(sizeof(double) * (5 * n + 5 * (size_t)p + 8));
+  if (!status && !data) status = cag_fail_memory(err);
+  if (!status) {
+    double *h = data, *knots = data + 4 * n + 4 * (size_t)p; // room for a piece in the making
+    double raised[2][4 * (CAG_MAX_DEGREE + 2)];
+    size_t used = 0, k = 0;
+    knots[k++] = curve->start;
+    for (size_t i = 0; i < c->n; i++) {
+      const CagNurbs *piece = cag_nurbs_data(exact[i]);
+      for (size_t j = 0; j < piece->pieces; j++) {
+        int from = 0;
+        memcpy(raised[0], cag_nurbs_bezier(piece, j),
+               sizeof(double) * 4 * (size_t)(piece->degree + 1));
+        for (int d = piece->degree; d < p; d++, from = !from)
+          cag_bezier_elevate(raised[from], d, raised[!from]);
+        // The joint is one homogeneous point: weights are scaled to agree there.
+        double scale = used ? h[4 * (used - 1) + 3] / raised[from][3] : 1;
+        for (int m = used > 0; m <= p; m++, used++)
+          for (int x = 0; x < 4; x++) h[4 * used + (size_t)x] = scale * raised[from][4 * m + x];
+        double t = piece->cuts[j];
+        double at = t == exact[i]->start ? c->cuts[i]
+                                         : cag_curve_remap(exact[i], t, c->cuts[i], c->cuts[i + 1]);
+        for (int m = 0; m < p; m++) knots[k++] = at;
+      }
+    }
+    for (int m = 0; m <= p; m++) knots[k++] = curve->end;
+    status = cag_nurbs_new(h, used, p, knots, rational, 0,
+                           rational ? CAG_NURBS_RATIONAL : CAG_NURBS_BSPLINE, curve->dimension, out,
+                           err);
+  }
+  for (size_t i = 0; exact && i < c->n; i++) cag_curve_release(exact[i]);
+  free(exact);
+  free(data);
+  return status;
+}
+
+typedef CagStatus (*PieceMap)(const CagCurve *piece, const void *context, CagCurve **out,
+                              CagError *err);
+
+// A composite of the images of all pieces over the given cuts, in the opposite order if
+// `backwards`.
+static CagStatus mapped(const Composite *c, PieceMap map, const void *context, bool backwards,
+                        const double *cuts, CagCurve **out, CagError *err) {
+  CagCurve **pieces = calloc(c->n, sizeof *pieces);
+  if (!pieces) return cag_fail_memory(err);
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < c->n; i++)
+    status = map(c->pieces[backwards ? c->n - 1 - i : i], context, &pieces[i], err);
+  if (!status) status = make(pieces, cuts, c->n, c->base.angular, out, err);
+  for (size_t i = 0; i < c->n; i++) cag_curve_release(pieces[i]);
+  free(pieces);
+  return status;
+}
+
+static CagStatus transform_piece(const CagCurve *piece, const void *context, CagCurve **out,
+                                 CagError *err) {
+  return cag_curve_transform(piece, context, out, err);
+}
+
+static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurve **out,
+                           CagError *err) {
+  const Composite *c = (const Composite *)curve;
+  return mapped(c, transform_piece, t, false, c->cuts, out, err);
+}
+
+static CagStatus reverse_piece(const CagCurve *piece, const void *context, CagCurve **out,
+                               CagError *err) {
+  (void)context;
+  return cag_curve_reverse(piece, out, err);
+}
+
+static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
+  const Composite *c = (const Composite *)curve;
+  double *cuts = malloc(sizeof *cuts * (c->n + 1));
+  if (!cuts) return cag_fail_memory(err);
+  for (size_t i = 0; i <= c->n; i++)
+    cuts[i] = cag_curve_remap(curve, c->cuts[c->n - i], curve->end, curve->start);
+  CagStatus status = mapped(c, reverse_piece, NULL, true, cuts, out, err);
+  free(cuts);
+  return status;
+}
+
+static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out, CagError *err) {
+  const Composite *c = (const Composite *)curve;
+  const size_t first = piece_of(c, a, CAG_SIDE_RIGHT), last = piece_of(c, b, CAG_SIDE_LEFT);
+  const size_t n = last - first + 1;
+  CagCurve **pieces = calloc(n, sizeof *pieces);
+  double *cuts = malloc(sizeof *cuts * (n + 1));
+  CagStatus status = CAG_OK;
+  if (!pieces || !cuts) status = cag_fail_memory(err);
+  for (size_t i = 0; !status && i < n; i++) {
+    const size_t k = first + i;
+    cuts[i] = i == 0 ? a : c->cuts[k];
+    double from = local(c, k, cuts[i]);
+    double to = i == n - 1 ? local(c, k, b) : c->pieces[k]->end;
+    status = cag_curve_trim(c->pieces[k], from, to, &pieces[i], err);
+  }
+  if (!status) {
+    cuts[n] = b;
+    status = make(pieces, cuts, n, curve->angular, out, err);
+  }
+  for (size_t i = 0; pieces && i < n; i++) cag_curve_release(pieces[i]);
+  free(pieces);
+  free(cuts);
+  return status;
+}
+
+static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
+                               CagError *err) {
+  const Composite *c = (const Composite *)curve;
+  double *cuts = malloc(sizeof *cuts * (c->n + 1));
+  if (!cuts) return cag_fail_memory(err);
+  for (size_t i = 0; i <= c->n; i++) cuts[i] = cag_curve_remap(curve, c->cuts[i], a, b);
+  CagStatus status = make(c->pieces, cuts, c->n, false, out, err);
+  free(cuts);
+  return status;
+}
+
+static CagBounds hull(const CagCurve *curve, double a, double b) {
+  const Composite *c = (const Composite *)curve;
+  CagBounds box = CAG_BOUNDS_EMPTY;
+  size_t first = piece_of(c, a, CAG_SIDE_RIGHT), last = piece_of(c, b, CAG_SIDE_LEFT);
+  for (size_t i = first; i <= last || i == first; i++) {
+    double from = i == first ? local(c, i, a) : c->pieces[i]->start;
+    double to = i == last ? local(c, i, b) : c->pieces[i]->end;
+    CagBounds part = c->pieces[i]->kind->hull(c->pieces[i], from, fmax(from, to));
+    cag_bounds_add(&box, part.min);
+    cag_bounds_add(&box, part.max);
+  }
+  return box;
+}
+
+static size_t breaks(const CagCurve *curve, double *out, size_t capacity) {
+  const Composite *c = (const Composite *)curve;
+  size_t n = 0;
+  for (size_t i = 0; i < c->n; i++) {
+    const CagCurve *piece = c->pieces[i];
+    if (i > 0) {
+      if (n < capacity) out[n] = c->cuts[i];
+      n++;
+    }
+    if (!piece->kind->breaks) continue;
+    size_t room = n < capacity ? capacity - n : 0;
+    size_t inner = piece->kind->breaks(piece, out ? out + n : NULL, room);
+    for (size_t k = 0; k < inner && k < room; k++)
+      out[n + k] = cag_curve_remap(piece, out[n + k], c->cuts[i], c->cuts[i + 1]);
+    n += inner;
+  }
+  return n;
+}
+
+static void describe(const CagCurve *curve, char *buffer, size_t size) {
+  snprintf(buffer, size, "%zu pieces", ((const Composite *)curve)->n);
+}
+
+static const CagCurveKind composite_kind = {"composite", eval,    NULL,     to_nurbs,
+                                            transform,   reverse, trim,     reparametrize,
+                                            hull,        breaks,  describe, destroy};

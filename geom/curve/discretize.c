@@ -1,0 +1,165 @@
+// Parameters at which a polyline through a curve stays within a chord tolerance and an angle.
+//
+// The smooth pieces are halved until the bound of cag_curve_sag and the turning of the tangent are
+// within the limits; circles are cut into equal steps. Ends and breaks are always in.
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/curve/family.h"
+#include "geom/curve/nurbs.h"
+
+// More points than any picture or part needs: a tolerance that asks for more was mistyped.
+#define MOST_POINTS 20000000
+// A piece shorter than this part of the tolerance is not halved for its turning: it holds a cusp.
+#define CUSP 0.25
+// An arc is at least a polygon of this step, whatever the tolerance.
+#define WIDEST (M_PI / 2)
+
+typedef struct Output {
+  double *t;
+  size_t n, capacity;
+} Output;
+
+static CagStatus append(Output *out, double t, CagError *err) {
+  if (out->n == out->capacity) {
+    size_t capacity = out->capacity ? 2 * out->capacity : 64;
+    double *grown = realloc(out->t, sizeof *grown * capacity);
+    if (!grown) return cag_fail_memory(err);
+    out->t = grown;
+    out->capacity = capacity;
+  }
+  if (out->n >= MOST_POINTS)
+    return cag_fail(err, CAG_E_LIMIT, "too-many-points", "tolerance", -1,
+                    "the tolerance asks for more than %d points on one curve; make it larger",
+                    MOST_POINTS);
+  out->t[out->n++] = t;
+  return CAG_OK;
+}
+
+static double angle_between(CagVec3 a, CagVec3 b) {
+  return atan2(cag_norm(cag_cross(a, b)), cag_dot(a, b));
+}
+
+// Turning of a polygon: a Bezier curve turns no more than its control polygon does.
+static double bezier_turn(const double *b, int p, double *length) {
+  double turn = 0;
+  CagVec3 before = {0, 0, 0}, from = cag_project(b);
+  *length = 0;
+  for (int i = 1; i <= p; i++) {
+    if (!(b[4 * i + 3] > 0)) continue;
+    CagVec3 to = cag_project(b + 4 * i), leg = cag_sub(to, from);
+    double size = cag_norm(leg);
+    if (size == 0) continue;
+    if (*length > 0) turn += angle_between(before, leg);
+    *length += size;
+    before = leg;
+    from = to;
+  }
+  return turn;
+}
+
+// Turning of the tangent over [a, b], and about the length.
+static double turn_of(const CagCurve *c, double a, double b, double *length) {
+  enum { SAMPLES = 4 };
+  double rate;
+  const CagCurve *piece = cag_curve_composite_piece(c, a, b, &a, &b, &rate);
+  if (piece) c = piece;
+  const CagNurbs *nurbs = cag_nurbs_data(c);
+  if (nurbs) {
+    double part[4 * (CAG_MAX_DEGREE + 1)];
+    size_t i = cag_nurbs_piece(nurbs, a, CAG_SIDE_RIGHT, nurbs->pieces);
+    double h = nurbs->cuts[i + 1] - nurbs->cuts[i];
+    cag_bezier_segment(cag_nurbs_bezier(nurbs, i), nurbs->degree, fmax(0, (a - nurbs->cuts[i]) / h),
+                       fmin(1, (b - nurbs->cuts[i]) / h), part);
+    return bezier_turn(part, nurbs->degree, length);
+  }
+  double turn = 0;
+  CagVec3 before = {0, 0, 0}, d[2], from = {0, 0, 0};
+  CagError ignored;
+  *length = 0;
+  for (int i = 0; i <= SAMPLES; i++) {
+    CagSide side = i == SAMPLES ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+    double t = i == SAMPLES ? b : a + (b - a) * i / SAMPLES;
+    if (cag_curve_eval(c, t, 1, side, d, &ignored)) return 0;
+    if (i > 0) {
+      *length += cag_norm(cag_sub(d[0], from));
+      if (cag_norm(before) > 0 && cag_norm(d[1]) > 0) turn += angle_between(before, d[1]);
+    }
+    before = d[1];
+    from = d[0];
+  }
+  return turn;
+}
+
+static CagStatus halve(const CagCurve *c, double a, double b, double tolerance, double angle,
+                       Output *out, CagError *err) {
+  double middle = a + (b - a) / 2, length;
+  bool fine = cag_curve_sag(c, a, b) <= tolerance;
+  if (fine && angle < M_PI) fine = turn_of(c, a, b, &length) <= angle || length <= CUSP * tolerance;
+  if (fine || !(a < middle && middle < b)) return append(out, b, err);
+  CagStatus status = halve(c, a, middle, tolerance, angle, out, err);
+  return status ? status : halve(c, middle, b, tolerance, angle, out, err);
+}
+
+// Equal steps over a circle's arc. Gives false where the piece is no arc of a circle.
+static bool circle_steps(const CagCurve *c, double a, double b, double tolerance, double angle,
+                         size_t *n) {
+  const double round = 1e-9, slack = 1e-9;
+  CagVec3 center, x, y;
+  double rate, ignored;
+  const CagCurve *piece = cag_curve_composite_piece(c, a, b, &a, &b, &ignored);
+  if (!cag_curve_arc_axes(piece ? piece : c, &center, &x, &y, &rate)) return false;
+  double xx = cag_dot(x, x);
+  if (fabs(cag_dot(y, y) - xx) > round * xx || fabs(cag_dot(x, y)) > round * xx) return false;
+  // 1 - cos(step / 2) = tolerance / r
+  double step = 4 * asin(sqrt(fmin(1, tolerance / (2 * sqrt(xx)))));
+  step = fmin(step, fmin(angle, WIDEST));
+  *n = (size_t)fmax(1, ceil(fabs(rate) * (b - a) / step - slack));
+  return true;
+}
+
+static CagStatus one_piece(const CagCurve *c, double a, double b, double tolerance, double angle,
+                           Output *out, CagError *err) {
+  size_t n;
+  if (!circle_steps(c, a, b, tolerance, angle, &n))
+    return halve(c, a, b, tolerance, angle, out, err);
+  CagStatus status = CAG_OK;
+  for (size_t i = 1; !status && i <= n; i++)
+    status = append(out, i == n ? b : a + (b - a) * ((double)i / (double)n), err);
+  return status;
+}
+
+CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle, double **out,
+                               size_t *n, CagError *err) {
+  char text[32];
+  if (!(tolerance > 0))
+    return cag_fail(err, CAG_E_ARGUMENT, "tolerance-not-positive", "tolerance", -1,
+                    "`tolerance` must be positive; this is %s", cag_number_text(tolerance, text));
+  if (!(angle > 0))
+    return cag_fail(err, CAG_E_ARGUMENT, "angle-not-positive", "angle", -1,
+                    "`angle` must be positive; this is %.12gdeg", angle * (180 / M_PI));
+  double *cuts;
+  size_t count;
+  CagStatus status = cag_curve_cuts(c, &cuts, &count, err);
+  if (status) return status;
+  Output o = {0};
+  status = append(&o, cuts[0], err);
+  for (size_t i = 0; !status && i + 1 < count; i++)
+    status = one_piece(c, cuts[i], cuts[i + 1], tolerance, angle, &o, err);
+  // A closed curve is at least a triangle.
+  if (!status && c->closed && o.n < 4) {
+    const double a = c->start, b = c->end;
+    o.n = 0;
+    for (int i = 0; !status && i <= 4; i++)
+      status = append(&o, i == 4 ? b : a + (b - a) * i / 4, err);
+  }
+  free(cuts);
+  if (status) {
+    free(o.t);
+    return status;
+  }
+  *out = o.t;
+  *n = o.n;
+  return CAG_OK;
+}

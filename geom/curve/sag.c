@@ -1,0 +1,80 @@
+// How far a curve can be from a chord: the bound that discretizing, boxes and searches rest on.
+
+#include <math.h>
+
+#include "geom/curve/family.h"
+#include "geom/curve/nurbs.h"
+
+static double from_segment(CagVec3 p, CagVec3 a, CagVec3 b) {
+  CagVec3 ab = cag_sub(b, a), ap = cag_sub(p, a);
+  double n = cag_dot(ab, ab), u = n > 0 ? cag_dot(ap, ab) / n : 0;
+  return cag_norm(cag_madd(ap, -fmin(1, fmax(0, u)), ab));
+}
+
+// Two bounds hold: the convex hull of the control points, and for polynomials p (p - 1) / 8 times
+// their largest second difference.
+static double bezier_sag(const double *b, int p, bool rational) {
+  double bend = 0, hull = 0;
+  const CagVec3 first = cag_project(b), last = cag_project(b + 4 * p);
+  for (int i = 1; i < p; i++) {
+    if (b[4 * i + 3] > 0) hull = fmax(hull, from_segment(cag_project(b + 4 * i), first, last));
+    const double *q = b + 4 * (i - 1);
+    CagVec3 d = {q[0] - 2 * q[4] + q[8], q[1] - 2 * q[5] + q[9], q[2] - 2 * q[6] + q[10]};
+    bend = fmax(bend, cag_norm(d));
+  }
+  return rational ? hull : fmin(hull, p * (p - 1) * bend / 8);
+}
+
+static double nurbs_sag(const CagNurbs *c, double a, double b) {
+  const size_t i = cag_nurbs_piece(c, a, CAG_SIDE_RIGHT, c->pieces);
+  const double length = c->cuts[i + 1] - c->cuts[i];
+  double u = fmax(0, (a - c->cuts[i]) / length), v = fmin(1, (b - c->cuts[i]) / length);
+  const double *bezier = cag_nurbs_bezier(c, i);
+  double part[4 * (CAG_MAX_DEGREE + 1)];
+  if (u > 0 || v < 1) {
+    cag_bezier_segment(bezier, c->degree, u, v, part);
+    bezier = part;
+  }
+  return bezier_sag(bezier, c->degree, c->rational);
+}
+
+// A kind of which nothing is known but its points: the largest distance found, and half as much
+// again.
+static double sampled_sag(const CagCurve *c, double a, double b) {
+  enum { SAMPLES = 9 };
+  const double safety = 1.5;
+  CagVec3 first, last, p;
+  CagError ignored;
+  if (cag_curve_eval(c, a, 0, CAG_SIDE_RIGHT, &first, &ignored) ||
+      cag_curve_eval(c, b, 0, CAG_SIDE_LEFT, &last, &ignored))
+    return INFINITY;
+  double most = 0;
+  for (int i = 1; i < SAMPLES; i++) {
+    if (cag_curve_eval(c, a + (b - a) * i / SAMPLES, 0, CAG_SIDE_RIGHT, &p, &ignored))
+      return INFINITY;
+    most = fmax(most, from_segment(p, first, last));
+  }
+  return safety * most;
+}
+
+double cag_curve_sag(const CagCurve *c, double a, double b) {
+  const CagNurbs *nurbs = cag_nurbs_data(c);
+  if (nurbs) return nurbs_sag(nurbs, a, b);
+
+  CagVec3 center, x, y;
+  double rate, bend;
+  if (cag_curve_arc_axes(c, &center, &x, &y, &rate)) {
+    // The chord of a unit circle, stretched by the axes at most.
+    double half = fabs(rate) * (b - a) / 2, quarter = sin(fmin(half, M_PI) / 2);
+    return cag_curve_stretch(x, y) * 2 * quarter * quarter;
+  }
+  if (cag_curve_helix_bend(c, a, b, &bend)) return (b - a) * (b - a) * bend / 8;
+
+  const CagVec3 *points;
+  size_t n;
+  bool ring;
+  if (cag_curve_vertices(c, &points, &n, &ring)) return 0;
+  const CagCurve *piece = cag_curve_composite_piece(c, a, b, &a, &b, &rate);
+  if (piece) return cag_curve_sag(piece, a, b);
+  return sampled_sag(c, a, b);
+}
