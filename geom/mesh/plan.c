@@ -18,6 +18,7 @@ enum {
   SIDE = STEPS + 1,
   SAMPLES = SIDE * SIDE,
   TRIED = 8,          // quadrilaterals measured along each direction of a leaf
+  TRIED_LAST = 16,    // in the last check, of their middles alone
   MAX_DEPTH = 24,     // of halving: features of a 4000th of the domain, in both directions
   WORTH_HALVING = 32, // quadrilaterals
   MAX_CORRECTIONS = 8
@@ -110,7 +111,7 @@ static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *er
 // of a step is far from the step made, the surface does something between them (the turns of a
 // helix).
 static bool is_resolved(const Sampled *s, int direction) {
-  const double far = 0.2; // of the longest step
+  const double far = 0.07; // of the longest step: an arc of 50 degrees, a sixth of a wave
   const CagVec3 *d = direction == 0 ? s->du : s->dv;
   int stride = direction == 0 ? SIDE : 1;
   double longest = 0, worst = 0;
@@ -159,40 +160,53 @@ static Needs needs_of(const Sampled *s, Range r) {
 
 // Least n >= 1 with a/n^2 + b/n <= limit; infinite where there is none.
 static double least_count(double a, double b, double limit) {
-  if (a <= 0 && b <= 0) return 1;
   if (!(limit > 0)) return INFINITY;
+  if (a <= 0 && b <= 0) return 1;
   double n = ceil((b + sqrt(b * b + 4 * a * limit)) / (2 * limit) * (1 - 1e-12));
   return n > 1 ? n : 1;
 }
 
-// Counts with uu/nu^2 + uv/(nu nv) + vv/nv^2 <= limit and small product. On the boundary of what is
-// allowed, nu nv = (uu r + uv + vv/r) / limit for the ratio r = nv/nu. Among the ratios that are
-// nearly best the one nearest to square quadrilaterals is taken.
-static void best_counts(double uu, double uv, double vv, double limit, double square_ratio,
-                        double n[2]) {
+// Terms of uu/nu^2 + uv/(nu nv) + vv/nv^2 <= limit.
+typedef struct Form {
+  double uu, uv, vv, limit;
+} Form;
+
+// Takes the counts with nu (which: 0) or nv (1) fixed, the other following, where their product is
+// clearly smaller than that of the best so far.
+static void try_counts(const Form *f, int which, double fixed, double n[2], double *best) {
+  const double clearly = 0.9;
+  double own = which == 0 ? f->uu : f->vv, others = which == 0 ? f->vv : f->uu;
+  double other = least_count(others, f->uv / fixed, f->limit - own / (fixed * fixed));
+  if (!(fixed * other < clearly * *best)) return;
+  *best = fixed * other;
+  n[which] = fixed;
+  n[1 - which] = other;
+}
+
+// Counts with a small product. On the boundary of what is allowed, nu nv = (uu r + uv + vv/r) /
+// limit for the ratio r = nv/nu. Among the ratios that are nearly best the one nearest to square
+// quadrilaterals is taken; single rows and columns only where they are clearly better.
+static void best_counts(const Form *f, double square_ratio, double n[2]) {
   const double nearly = 1.1;
-  double sum = nearly * (2 * sqrt(uu * vv) + uv) - uv, ratio = square_ratio;
-  double root = sqrt(fmax(0, sum * sum - 4 * uu * vv));
-  if (uu > 0) ratio = fmin(ratio, (sum + root) / (2 * uu));
-  if (vv > 0) ratio = fmax(ratio, sum + root > 0 ? 2 * vv / (sum + root) : INFINITY);
-  double nu = ratio < INFINITY ? sqrt((uu + uv * (1 / ratio) + vv / (ratio * ratio)) / limit) : 1;
-  double nv = ratio * nu;
-  if (!(nu >= 1)) nu = 1;
-  if (!(nv >= 1)) nv = 1;
+  double sum = nearly * (2 * sqrt(f->uu * f->vv) + f->uv) - f->uv, ratio = square_ratio;
+  double root = sqrt(fmax(0, sum * sum - 4 * f->uu * f->vv));
+  if (f->uu > 0) ratio = fmin(ratio, (sum + root) / (2 * f->uu));
+  if (f->vv > 0 && sum + root > 0) ratio = fmax(ratio, 2 * f->vv / (sum + root));
   double best = INFINITY;
-  // Round one of the counts either way, the other follows.
-  for (int trial = 0; trial < 4; trial++) {
-    double fixed = fmax(1, floor(trial < 2 ? nu : nv) + trial % 2);
-    double rest = limit - (trial < 2 ? uu : vv) / (fixed * fixed);
-    double other = least_count(trial < 2 ? vv : uu, uv / fixed, rest);
-    if (fixed * other >= best) continue;
-    best = fixed * other;
-    n[0] = trial < 2 ? fixed : other;
-    n[1] = trial < 2 ? other : fixed;
+  n[0] = n[1] = 1;
+  if (f->uu <= 0 && f->uv <= 0 && f->vv <= 0) return;
+  if (ratio > 0) {
+    double nu = fmax(1, sqrt((f->uu + f->uv / ratio + f->vv / (ratio * ratio)) / f->limit));
+    double nv = fmax(1, ratio * nu);
+    double rounded[2][2], products[2] = {INFINITY, INFINITY};
+    try_counts(f, 0, ceil(nu), rounded[0], &products[0]);
+    try_counts(f, 1, ceil(nv), rounded[1], &products[1]);
+    int better = products[1] < products[0];
+    best = products[better];
+    if (best < INFINITY) memcpy(n, rounded[better], sizeof rounded[better]);
   }
-  if (best < INFINITY) return;
-  n[0] = ceil(nu) + 1;
-  n[1] = ceil(nv) + 1;
+  try_counts(f, 0, 1, n, &best);
+  try_counts(f, 1, 1, n, &best);
 }
 
 // Counts for a leaf; correction scales the bound on the distance.
@@ -205,27 +219,27 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
          vv = needs->vv > nothing ? needs->vv * correction : 0;
   double square_ratio =
       needs->length[0] > 0 && needs->length[1] > 0 ? needs->length[1] / needs->length[0] : 1;
-  best_counts(uu, uv, vv, how->tolerance, square_ratio, n);
+  best_counts(&(Form){uu, uv, vv, how->tolerance}, square_ratio, n);
   const double no_turn = 1e-7; // radians: rounding of normals
   double most[2];
   if (how->angle > 0) {
     double a = needs->turn[0] > no_turn ? needs->turn[0] : 0,
            b = needs->turn[1] > no_turn ? needs->turn[1] : 0, limit = how->angle * how->angle;
-    best_counts(a * a, 0, b * b, limit, square_ratio, most);
+    best_counts(&(Form){a * a, 0, b * b, limit}, square_ratio, most);
     for (int d = 0; d < 2; d++) n[d] = fmax(n[d], most[d]);
   }
   if (how->max_edge > 0) {
     double a = needs->length[0], b = needs->length[1];
-    best_counts(a * a, 0, b * b, how->max_edge * how->max_edge, square_ratio, most);
+    best_counts(&(Form){a * a, 0, b * b, how->max_edge * how->max_edge}, square_ratio, most);
     for (int d = 0; d < 2; d++) n[d] = fmax(n[d], most[d]);
   }
 }
 
 // --- Trial ---
 
-// Indices of at most TRIED of n quadrilaterals, spread from first to last.
-static int spread(double n, double out[TRIED]) {
-  int count = n < TRIED ? (int)n : TRIED;
+// Indices of at most `most` of n quadrilaterals, spread from first to last.
+static int spread(double n, int most, double *out) {
+  int count = n < most ? (int)n : most;
   for (int k = 0; k < count; k++) out[k] = count == 1 ? 0 : floor(k * (n - 1) / (count - 1));
   return count;
 }
@@ -233,51 +247,89 @@ static int spread(double n, double out[TRIED]) {
 enum { AT_0, AT_THIRD, AT_HALF, AT_TWO_THIRDS, AT_1, PLACES };
 static const double place[PLACES] = {0, 1.0 / 3, 0.5, 2.0 / 3, 1};
 
-// Largest measured distance from points of the surface over one quadrilateral to its triangles.
-static double quad_distance(const CagVec3 *at, int stride) {
 #define AT(i, j) at[(i)*stride + (j)]
+// Largest measured distance from points of the surface over one quadrilateral to its triangles, cut
+// one way. A point may lie over either: parameters are not evenly spread.
+static double cut_distance(const CagVec3 *at, int stride, bool cut_ac) {
+  CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
+  CagVec3 tried[3] = {AT(AT_HALF, AT_HALF), AT(cut_ac ? AT_TWO_THIRDS : AT_THIRD, AT_THIRD),
+                      AT(cut_ac ? AT_THIRD : AT_TWO_THIRDS, AT_TWO_THIRDS)};
+  CagVec3 end = cut_ac ? c : d, start = cut_ac ? a : b;
+  double worst = 0;
+  for (int k = 0; k < 3; k++)
+    worst = fmax(worst, fmin(cag_distance_to_triangle(tried[k], a, b, end),
+                             cag_distance_to_triangle(tried[k], start, c, d)));
+  return worst;
+}
+
+// At the border of a leaf triangles may be cut either way when they are sewn to their neighbours.
+static double quad_distance(const CagVec3 *at, int stride, bool border) {
   CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
   double worst = cag_distance_to_segment(AT(AT_HALF, AT_0), a, b);
   worst = fmax(worst, cag_distance_to_segment(AT(AT_HALF, AT_1), d, c));
   worst = fmax(worst, cag_distance_to_segment(AT(AT_0, AT_HALF), a, d));
   worst = fmax(worst, cag_distance_to_segment(AT(AT_1, AT_HALF), b, c));
-  CagVec3 middle = AT(AT_HALF, AT_HALF);
-  if (tess_cut_ac(a, b, c, d)) {
-    worst = fmax(worst, cag_distance_to_triangle(AT(AT_TWO_THIRDS, AT_THIRD), a, b, c));
-    worst = fmax(worst, cag_distance_to_triangle(AT(AT_THIRD, AT_TWO_THIRDS), a, c, d));
-    return fmax(worst, fmin(cag_distance_to_triangle(middle, a, b, c),
-                            cag_distance_to_triangle(middle, a, c, d)));
-  }
-  worst = fmax(worst, cag_distance_to_triangle(AT(AT_THIRD, AT_THIRD), a, b, d));
-  worst = fmax(worst, cag_distance_to_triangle(AT(AT_TWO_THIRDS, AT_TWO_THIRDS), b, c, d));
-  return fmax(worst, fmin(cag_distance_to_triangle(middle, a, b, d),
-                          cag_distance_to_triangle(middle, b, c, d)));
-#undef AT
+  bool cut_ac = tess_cut_ac(a, b, c, d);
+  worst = fmax(worst, cut_distance(at, stride, cut_ac));
+  return border ? fmax(worst, cut_distance(at, stride, !cut_ac)) : worst;
 }
+#undef AT
 
-static CagStatus measure(const CagSurface *surface, const double from[2], const double to[2],
-                         const double n[2], double *distance, CagError *err) {
-  enum { MOST = TRIED * PLACES };
-  double ts[2][MOST], chosen[TRIED];
+// Points of the surface over some quadrilaterals of a leaf: of each, those at the places given.
+typedef struct Trial {
   int count[2];
+  int rows;
+  CagVec3 points[TRIED_LAST * TRIED_LAST * 9]; // also room for TRIED and PLACES
+} Trial;
+
+static CagStatus evaluate_trial(const CagSurface *surface, const Sampled *s, const double n[2],
+                                int most, const double *places, int place_count, Trial *trial,
+                                CagError *err) {
+  double ts[2][TRIED_LAST * PLACES], chosen[TRIED_LAST];
   for (int d = 0; d < 2; d++) {
-    count[d] = spread(n[d], chosen);
-    for (int k = 0; k < count[d]; k++)
-      for (int p = 0; p < PLACES; p++) {
-        double t = from[d] + (to[d] - from[d]) * ((chosen[k] + place[p]) / n[d]);
-        ts[d][k * PLACES + p] = t < to[d] ? t : to[d];
+    trial->count[d] = spread(n[d], most, chosen);
+    for (int k = 0; k < trial->count[d]; k++)
+      for (int p = 0; p < place_count; p++) {
+        double t = s->from[d] + (s->to[d] - s->from[d]) * ((chosen[k] + places[p]) / n[d]);
+        ts[d][k * place_count + p] = t < s->to[d] ? t : s->to[d];
       }
   }
-  CagVec3 points[MOST * MOST];
-  size_t columns = (size_t)count[0] * PLACES, rows = (size_t)count[1] * PLACES;
-  CagStatus status =
-      cag_surface_eval_grid(surface, ts[0], columns, ts[1], rows, points, NULL, NULL, err);
+  trial->rows = trial->count[1] * place_count;
+  return cag_surface_eval_grid(surface, ts[0], (size_t)(trial->count[0] * place_count), ts[1],
+                               (size_t)trial->rows, trial->points, NULL, NULL, err);
+}
+
+static CagStatus measure(const CagSurface *surface, const Sampled *s, const double n[2],
+                         double *distance, CagError *err) {
+  Trial trial;
+  CagStatus status = evaluate_trial(surface, s, n, TRIED, place, PLACES, &trial, err);
   if (status != CAG_OK) return status;
   *distance = 0;
-  for (int i = 0; i < count[0]; i++)
-    for (int j = 0; j < count[1]; j++) {
-      const CagVec3 *corner = points + (size_t)i * PLACES * rows + (size_t)j * PLACES;
-      *distance = fmax(*distance, quad_distance(corner, (int)rows));
+  for (int i = 0; i < trial.count[0]; i++)
+    for (int j = 0; j < trial.count[1]; j++) {
+      const CagVec3 *corner = trial.points + (i * trial.rows + j) * PLACES;
+      bool border = i == 0 || j == 0 || i + 1 == trial.count[0] || j + 1 == trial.count[1];
+      *distance = fmax(*distance, quad_distance(corner, trial.rows, border));
+    }
+  return CAG_OK;
+}
+
+// Middles of more quadrilaterals, for leaves too large for measure() to see all.
+static CagStatus measure_middles(const CagSurface *surface, const Sampled *s, const double n[2],
+                                 double *distance, CagError *err) {
+  static const double ends_and_middle[3] = {0, 0.5, 1};
+  Trial trial;
+  CagStatus status = evaluate_trial(surface, s, n, TRIED_LAST, ends_and_middle, 3, &trial, err);
+  if (status != CAG_OK) return status;
+  *distance = 0;
+  for (int i = 0; i < trial.count[0]; i++)
+    for (int j = 0; j < trial.count[1]; j++) {
+      const CagVec3 *at = trial.points + (i * trial.rows + j) * 3, *far = at + 2 * trial.rows;
+      CagVec3 middle = at[trial.rows + 1], a = at[0], b = far[0], c = far[2], d = at[2];
+      bool cut_ac = tess_cut_ac(a, b, c, d);
+      double off = fmin(cag_distance_to_triangle(middle, a, b, cut_ac ? c : d),
+                        cag_distance_to_triangle(middle, cut_ac ? a : b, c, d));
+      *distance = fmax(*distance, off);
     }
   return CAG_OK;
 }
@@ -294,9 +346,14 @@ static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, 
     double quads = n[0] * n[1], distance;
     if (quads >= smallest) break;
     if (quads > limit) return tess_limit(t, 2 * quads, err);
-    CagStatus status = measure(surface, s->from, s->to, n, &distance, err);
+    CagStatus status = measure(surface, s, n, &distance, err);
     if (status != CAG_OK) return status;
     double use = distance / tolerance;
+    if (use <= highest_use && fmax(n[0], n[1]) > TRIED) {
+      status = measure_middles(surface, s, n, &distance, err);
+      if (status != CAG_OK) return status;
+      use = fmax(use, distance / tolerance);
+    }
     if (use <= highest_use) {
       smallest = quads;
       best[0] = n[0];
@@ -319,7 +376,7 @@ static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, 
     best[0] *= 2;
     best[1] *= 2;
     if (best[0] * best[1] > limit) return tess_limit(t, 2 * best[0] * best[1], err);
-    CagStatus status = measure(surface, s->from, s->to, best, &distance, err);
+    CagStatus status = measure(surface, s, best, &distance, err);
     if (status != CAG_OK) return status;
   }
   return CAG_OK;
