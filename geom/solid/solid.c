@@ -1,0 +1,443 @@
+// Solids as bodies bounded by faces: reference counts, transforms, bounds, shared edges and mass.
+
+#include "geom/solid/solid.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/solid/build.h"
+
+CagStatus cag_solid_block(CagSolidKind kind, size_t faces, CagSolid **out, CagError *err) {
+  CagSolid *s = calloc(1, sizeof *s);
+  CagSurface **room = calloc(faces ? faces : 1, sizeof *room);
+  if (!s || !room) {
+    free(s);
+    free(room);
+    return cag_fail_memory(err);
+  }
+  s->references = 1;
+  s->kind = kind;
+  s->placement = cag_transform_identity();
+  s->placement.planar = false;
+  s->faces = room;
+  *out = s;
+  return CAG_OK;
+}
+
+void cag_solid_add(CagSolid *s, CagSurface *face) { s->faces[s->face_count++] = face; }
+
+CagSolid *cag_solid_retain(const CagSolid *s) {
+  CagSolid *mine = (CagSolid *)s;
+  if (mine) mine->references++;
+  return mine;
+}
+
+void cag_solid_release(CagSolid *s) {
+  if (!s || --s->references > 0) return;
+  for (size_t i = 0; i < s->face_count; i++) cag_surface_release(s->faces[i]);
+  free(s->faces);
+  free(s->edges);
+  free(s);
+}
+
+CagStatus cag_solid_check_size(double size, const char *name, long index, CagError *err) {
+  if (size > 0 && isfinite(size)) return CAG_OK;
+  char text[32];
+  if (index >= 0)
+    return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", name, index,
+                    "`%s` must be positive lengths: %s[%ld] is %s", name, name, index,
+                    cag_number_text(size, text));
+  return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", name, -1,
+                  "`%s` must be a positive length, it is %s", name, cag_number_text(size, text));
+}
+
+CagStatus cag_solid_disk(double radius, CagRegion **out, CagError *err) {
+  CagTransform frame = cag_transform_identity();
+  CagCurve *circle;
+  CagStatus status = cag_curve_arc(radius, radius, 0, 2 * M_PI, &frame, &circle, err);
+  if (status) return status;
+  status = cag_region_new(circle, NULL, 0, out, err);
+  cag_curve_release(circle);
+  return status;
+}
+
+// --- Edges ---
+
+CagStatus cag_solid_add_edge(CagSolid *s, size_t face_a, int side_a, size_t face_b, int side_b,
+                             bool reversed, CagError *err) {
+  struct CagSolidEdge *grown = realloc(s->edges, (s->edge_count + 1) * sizeof *grown);
+  if (!grown) return cag_fail_memory(err);
+  s->edges = grown;
+  s->edges[s->edge_count++] = (struct CagSolidEdge){{face_a, face_b}, {side_a, side_b}, reversed};
+  return CAG_OK;
+}
+
+int cag_solid_first_side(const CagSurface *face) {
+  return cag_surface_planar_view(face, NULL, NULL) ? 4 : 0;
+}
+
+int cag_solid_side_end(const CagSurface *face) {
+  const CagRegion *region;
+  return cag_surface_planar_view(face, &region, NULL) ? 4 + (int)region->count : 4;
+}
+
+bool cag_solid_side_is_edge(const CagSurface *f, int side) {
+  switch (side) {
+  case 0: return !f->closed_u && !f->pole_u0;
+  case 1: return !f->closed_u && !f->pole_u1;
+  case 2: return !f->closed_v && !f->pole_v0;
+  case 3: return !f->closed_v && !f->pole_v1;
+  default: return true;
+  }
+}
+
+static double part(double a, double b, double fraction) {
+  return fraction >= 1 ? b : a + fraction * (b - a);
+}
+
+CagStatus cag_solid_side_point(const CagSurface *f, int side, double fraction, CagVec3 *out,
+                               CagError *err) {
+  const CagRegion *region;
+  CagTransform frame;
+  if (side >= 4 && cag_surface_planar_view(f, &region, &frame)) {
+    const CagCurve *loop = region->loops[side - 4];
+    CagVec3 flat;
+    CagStatus status = cag_curve_point(loop, part(loop->start, loop->end, fraction), &flat, err);
+    if (!status) *out = cag_transform_point(&frame, flat);
+    return status;
+  }
+  double u = part(f->u0, f->u1, fraction), v = part(f->v0, f->v1, fraction);
+  if (side < 2) return cag_surface_point(f, side == 0 ? f->u0 : f->u1, v, out, err);
+  return cag_surface_point(f, u, side == 2 ? f->v0 : f->v1, out, err);
+}
+
+// Points compared along an edge; none is the middle of a symmetric one alone.
+#define EDGE_POINTS 6
+static const double EDGE_FRACTION[EDGE_POINTS] = {0, 0.17, 0.36, 0.64, 0.83, 1};
+
+// Edges are the same when their points are, to this part of the size of the solid.
+#define EDGE_SAME 1e-9
+
+typedef struct Side {
+  size_t face;
+  int side;
+  CagVec3 p[EDGE_POINTS];
+} Side;
+
+// +1: the same, -1: the same run backwards, 0: different.
+static int compare(const Side *a, const Side *b, double slack) {
+  bool same = true, backwards = true;
+  for (int i = 0; i < EDGE_POINTS; i++) {
+    same = same && cag_norm(cag_sub(a->p[i], b->p[i])) <= slack;
+    backwards = backwards && cag_norm(cag_sub(a->p[i], b->p[EDGE_POINTS - 1 - i])) <= slack;
+  }
+  return same ? 1 : backwards ? -1 : 0;
+}
+
+static CagStatus collect_sides(const CagSolid *s, Side **out, size_t *n, double *size,
+                               CagError *err) {
+  size_t most = 0;
+  for (size_t f = 0; f < s->face_count; f++)
+    most += (size_t)(cag_solid_side_end(s->faces[f]) - cag_solid_first_side(s->faces[f]));
+  Side *sides = malloc((most ? most : 1) * sizeof *sides);
+  if (!sides) return cag_fail_memory(err);
+  CagBounds box = CAG_BOUNDS_EMPTY;
+  *n = 0;
+  for (size_t f = 0; f < s->face_count; f++)
+    for (int k = cag_solid_first_side(s->faces[f]); k < cag_solid_side_end(s->faces[f]); k++) {
+      if (!cag_solid_side_is_edge(s->faces[f], k)) continue;
+      Side *side = &sides[(*n)++];
+      side->face = f;
+      side->side = k;
+      for (int i = 0; i < EDGE_POINTS; i++) {
+        CagStatus status = cag_solid_side_point(s->faces[f], k, EDGE_FRACTION[i], &side->p[i], err);
+        if (status) {
+          free(sides);
+          return status;
+        }
+        cag_bounds_add(&box, side->p[i]);
+      }
+    }
+  *size = *n ? cag_norm(cag_sub(box.max, box.min)) : 0;
+  *out = sides;
+  return CAG_OK;
+}
+
+CagStatus cag_solid_match_edges(CagSolid *s, CagError *err) {
+  Side *sides = NULL;
+  size_t n = 0;
+  double size = 0;
+  CagStatus status = collect_sides(s, &sides, &n, &size, err);
+  for (size_t i = 0; !status && i < n; i++)
+    for (size_t j = i + 1; !status && sides[i].face != SIZE_MAX && j < n; j++) {
+      if (sides[j].face == SIZE_MAX) continue;
+      int how = compare(&sides[i], &sides[j], EDGE_SAME * size);
+      if (how == 0) continue;
+      status = cag_solid_add_edge(s, sides[i].face, sides[i].side, sides[j].face, sides[j].side,
+                                  how < 0, err);
+      sides[j].face = SIZE_MAX; // has its partner
+      break;
+    }
+  free(sides);
+  return status;
+}
+
+// --- Transforms ---
+
+// A flipped face runs backwards by v: v0 and v1 change places, sides along v and the loops of a
+// planar face turn round.
+static void flip_edge_end(int *side, bool *reversed) {
+  if (*side == 2 || *side == 3) *side = 5 - *side;
+  else *reversed = !*reversed;
+}
+
+CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid **out,
+                              CagError *err) {
+  CagTransform unused;
+  CagStatus status = cag_transform_inverse(t, &unused, err);
+  if (status) return status;
+  if (!cag_transform_is_affine(t))
+    return cag_fail(err, CAG_E_UNSUPPORTED, "not-affine", "transform", -1,
+                    "a solid can be moved by affine transforms only: project its faces, or its "
+                    "mesh");
+  CagSolid *moved = NULL;
+  status = cag_solid_block(s->kind, s->face_count, &moved, err);
+  if (status) return status;
+  moved->a = s->a;
+  moved->b = s->b;
+  moved->c = s->c;
+  moved->centered = s->centered;
+  moved->placement = cag_transform_multiply(t, &s->placement);
+  bool mirror = cag_transform_mirrors(t);
+  for (size_t i = 0; !status && i < s->face_count; i++) {
+    CagSurface *face, *turned = NULL;
+    status = cag_surface_transform(s->faces[i], t, &face, err);
+    if (!status && mirror) {
+      status = cag_surface_flip(face, &turned, err);
+      cag_surface_release(face);
+      face = turned;
+    }
+    if (!status) cag_solid_add(moved, face);
+  }
+  for (size_t i = 0; !status && i < s->edge_count; i++) {
+    struct CagSolidEdge e = s->edges[i];
+    for (int k = 0; mirror && k < 2; k++) flip_edge_end(&e.side[k], &e.reversed);
+    status = cag_solid_add_edge(moved, e.face[0], e.side[0], e.face[1], e.side[1], e.reversed, err);
+  }
+  if (status) {
+    cag_solid_release(moved);
+    return status;
+  }
+  *out = moved;
+  return CAG_OK;
+}
+
+CagStatus cag_solid_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
+  CagBounds box = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; i < s->face_count; i++) {
+    CagBounds face;
+    CagStatus status = cag_surface_bounds(s->faces[i], &face, err);
+    if (status) return status;
+    cag_bounds_add(&box, face.min);
+    cag_bounds_add(&box, face.max);
+  }
+  *out = box;
+  return CAG_OK;
+}
+
+// --- Mass ---
+
+// A body in its own coordinates: volume, centroid, and second moments (xx yy zz xy yz zx) about the
+// centroid.
+typedef struct Body {
+  double volume, moment[6];
+  CagVec3 centroid;
+  double area;
+  CagVec3 area_centroid;
+} Body;
+
+static Body box_body(const CagSolid *s) {
+  double v = s->a * s->b * s->c;
+  Body b = {.volume = v, .area = 2 * (s->a * s->b + s->b * s->c + s->c * s->a)};
+  b.moment[0] = v * s->a * s->a / 12;
+  b.moment[1] = v * s->b * s->b / 12;
+  b.moment[2] = v * s->c * s->c / 12;
+  if (!s->centered) b.centroid = cag_vec3(s->a / 2, s->b / 2, s->c / 2);
+  b.area_centroid = b.centroid;
+  return b;
+}
+
+static Body sphere_body(const CagSolid *s) {
+  double r = s->a;
+  Body b = {.volume = 4 * M_PI / 3 * r * r * r, .area = 4 * M_PI * r * r};
+  for (int k = 0; k < 3; k++) b.moment[k] = b.volume * r * r / 5;
+  return b;
+}
+
+// A frustum on z = 0: integrals of powers of the radius R (1 - t) + r t over t = z / h.
+static Body frustum_body(const CagSolid *s) {
+  double h = s->a, R = s->b, r = s->c;
+  double square = (R * R + R * r + r * r) / 3;
+  double first = (R * R + 2 * R * r + 3 * r * r) / 12, second = R * R / 30 + R * r / 10 + r * r / 5;
+  double fourth =
+      (R * R * R * R + R * R * R * r + R * R * r * r + R * r * r * r + r * r * r * r) / 5;
+  Body b = {.volume = M_PI * h * square, .centroid = {0, 0, h * first / square}};
+  b.moment[0] = b.moment[1] = M_PI / 4 * h * fourth;
+  b.moment[2] = M_PI * h * h * h * second - b.volume * b.centroid.z * b.centroid.z;
+  double side = M_PI * (R + r) * hypot(h, R - r), foot = M_PI * R * R, top = M_PI * r * r;
+  b.area = side + foot + top;
+  double side_z = h * (R + 2 * r) / (3 * (R + r));
+  b.area_centroid = cag_vec3(0, 0, (side * side_z + top * h) / b.area);
+  return b;
+}
+
+static Body torus_body(const CagSolid *s) {
+  double R = s->a, r = s->b;
+  Body b = {.volume = 2 * M_PI * M_PI * R * r * r, .area = 4 * M_PI * M_PI * R * r};
+  b.moment[0] = b.moment[1] = b.volume * (R * R / 2 + 3 * r * r / 8);
+  b.moment[2] = b.volume * r * r / 4;
+  return b;
+}
+
+static bool closed_form(const CagSolid *s, Body *out) {
+  switch (s->kind) {
+  case CAG_SOLID_BOX: *out = box_body(s); return true;
+  case CAG_SOLID_SPHERE: *out = sphere_body(s); return true;
+  case CAG_SOLID_CYLINDER: *out = frustum_body(s); return true;
+  case CAG_SOLID_TORUS: *out = torus_body(s); return true;
+  default: return false;
+  }
+}
+
+// The tensor of inertia, trace(J) E - J, from second moments.
+static void set_inertia(CagMassProperties *m, const double j[3][3]) {
+  double trace = j[0][0] + j[1][1] + j[2][2];
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) m->inertia[i][k] = (i == k ? trace : 0) - j[i][k];
+}
+
+// Moments under the placement: J' = |det| A J A^T.
+static void place_body(const Body *b, const CagTransform *t, CagMassProperties *m) {
+  const double j[3][3] = {{b->moment[0], b->moment[3], b->moment[5]},
+                          {b->moment[3], b->moment[1], b->moment[4]},
+                          {b->moment[5], b->moment[4], b->moment[2]}};
+  double half[3][3], full[3][3];
+  double det = fabs(cag_dot(cag_cross(cag_vec3(t->m[0][0], t->m[1][0], t->m[2][0]),
+                                      cag_vec3(t->m[0][1], t->m[1][1], t->m[2][1])),
+                            cag_vec3(t->m[0][2], t->m[1][2], t->m[2][2])));
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) {
+      half[i][k] = 0;
+      for (int l = 0; l < 3; l++) half[i][k] += t->m[i][l] * j[l][k];
+    }
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) {
+      full[i][k] = 0;
+      for (int l = 0; l < 3; l++) full[i][k] += half[i][l] * t->m[k][l];
+      full[i][k] *= det;
+    }
+  m->volume = b->volume * det;
+  m->volume_centroid = cag_transform_point(t, b->centroid);
+  set_inertia(m, (const double(*)[3])full);
+}
+
+static CagStatus area_of_faces(const CagSolid *s, CagMassProperties *m, CagError *err) {
+  CagVec3 moment = {0, 0, 0};
+  m->area = 0;
+  for (size_t i = 0; i < s->face_count; i++) {
+    double area;
+    CagVec3 centroid;
+    CagStatus status = cag_surface_area(s->faces[i], &area, &centroid, err);
+    if (status) return status;
+    m->area += area;
+    moment = cag_madd(moment, area, centroid);
+  }
+  m->area_centroid = m->area > 0 ? cag_scaled(moment, 1 / m->area) : moment;
+  return CAG_OK;
+}
+
+// By the divergence theorem, in coordinates about the middle of the solid: moments about a far
+// origin would lose their digits.
+static CagStatus volume_of_faces(const CagSolid *s, CagMassProperties *m, CagError *err) {
+  CagBounds box;
+  CagStatus status = cag_solid_bounds(s, &box, err);
+  if (status) return status;
+  CagVec3 middle = cag_lerp(box.min, box.max, 0.5);
+  CagTransform shift = cag_translate(cag_scaled(middle, -1));
+  double terms[10] = {0};
+  for (size_t i = 0; i < s->face_count; i++) {
+    CagSurface *face;
+    status = cag_surface_transform(s->faces[i], &shift, &face, err);
+    if (status) return status;
+    status = cag_surface_volume_terms(face, terms, err);
+    cag_surface_release(face);
+    if (status) return status;
+  }
+  double v = terms[0];
+  const double c[3] = {terms[1] / v, terms[2] / v, terms[3] / v};
+  double j[3][3];
+  for (int i = 0; i < 3; i++) {
+    int next = (i + 1) % 3;
+    j[i][i] = terms[4 + i] - v * c[i] * c[i];
+    j[i][next] = j[next][i] = terms[7 + i] - v * c[i] * c[next];
+  }
+  m->volume = v;
+  m->volume_centroid = cag_add(middle, cag_vec3(c[0], c[1], c[2]));
+  set_inertia(m, (const double(*)[3])j);
+  return CAG_OK;
+}
+
+CagStatus cag_solid_mass(const CagSolid *s, CagMassProperties *out, CagError *err) {
+  CagMassProperties m = {0};
+  Body body;
+  double scale;
+  if (!closed_form(s, &body)) {
+    CagStatus status = area_of_faces(s, &m, err);
+    if (!status) status = volume_of_faces(s, &m, err);
+    if (!status) *out = m;
+    return status;
+  }
+  place_body(&body, &s->placement, &m);
+  if (cag_transform_is_similarity(&s->placement, &scale)) {
+    m.area = body.area * scale * scale;
+    m.area_centroid = cag_transform_point(&s->placement, body.area_centroid);
+  } else {
+    CagStatus status = area_of_faces(s, &m, err);
+    if (status) return status;
+  }
+  *out = m;
+  return CAG_OK;
+}
+
+// --- Text ---
+
+void cag_solid_describe(const CagSolid *s, char *buffer, size_t size) {
+  char a[32], b[32], c[32];
+  cag_number_text(s->a, a);
+  cag_number_text(s->b, b);
+  cag_number_text(s->c, c);
+  switch (s->kind) {
+  case CAG_SOLID_BOX:
+    snprintf(buffer, size, "box, %s x %s x %s%s", a, b, c, s->centered ? ", centered" : "");
+    return;
+  case CAG_SOLID_SPHERE: snprintf(buffer, size, "sphere, radius %s", a); return;
+  case CAG_SOLID_CYLINDER:
+    if (s->b == s->c) snprintf(buffer, size, "cylinder, height %s, radius %s", a, b);
+    else if (s->c == 0) snprintf(buffer, size, "cone, height %s, radius %s", a, b);
+    else snprintf(buffer, size, "cylinder, height %s, radius %s, top %s", a, b, c);
+    return;
+  case CAG_SOLID_TORUS: snprintf(buffer, size, "torus, major %s, minor %s", a, b); return;
+  case CAG_SOLID_EXTRUSION: snprintf(buffer, size, "extrusion, %zu faces", s->face_count); return;
+  case CAG_SOLID_REVOLUTION:
+    snprintf(buffer, size, "revolution, %zu %s", s->face_count,
+             s->face_count == 1 ? "face" : "faces");
+    return;
+  case CAG_SOLID_TUBE: snprintf(buffer, size, "tube, radius %s", a); return;
+  case CAG_SOLID_SHELL:
+    snprintf(buffer, size, "shell, %zu %s", s->face_count, s->face_count == 1 ? "face" : "faces");
+    return;
+  }
+}
