@@ -1,0 +1,221 @@
+// Meshes: made of lists, asked for their data, checked, and made of other shapes.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/mesh/tessellate.h"
+#include "interp/builtin/solids.h"
+
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagMesh *m,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_mesh_value(call->vm, m);
+  return true;
+}
+
+static bool read_mesh(CagCall *call, const CagMesh **m) {
+  *m = NULL;
+  if (call->values[0].type != CAG_MESH) {
+    cag_fail_type(call, 0, "a mesh");
+    return false;
+  }
+  *m = CAG_AS_SHAPE(call->values[0])->as.mesh;
+  return true;
+}
+
+// --- From lists ---
+
+// Faces as counts and indices; both arrays are to be freed even when the call fails.
+static bool read_faces(CagCall *call, const CagList *faces, size_t vertices, uint32_t **counts,
+                       uint32_t **indices) {
+  size_t total = 0, at = 0;
+  for (size_t i = 0; i < faces->length; i++) {
+    const double *x;
+    size_t n;
+    if (!cag_as_vector(cag_list_get(call->vm, faces, i), &x, &n) || n < 3)
+      return cag_fail_call(call, 1, CAG_ERR_type,
+                           "expects 3 or more numbers of vertices in each face; faces[%zu] has not",
+                           i);
+    total += n;
+  }
+  *counts = malloc((faces->length + 1) * sizeof **counts);
+  *indices = malloc((total + 1) * sizeof **indices);
+  if (!*counts || !*indices)
+    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  for (size_t i = 0; i < faces->length; i++) {
+    const double *x;
+    size_t n;
+    cag_as_vector(cag_list_get(call->vm, faces, i), &x, &n);
+    (*counts)[i] = (uint32_t)n;
+    for (size_t k = 0; k < n; k++) {
+      if (x[k] < 0 || x[k] >= (double)vertices || x[k] != floor(x[k]))
+        return cag_fail_call(call, 1, CAG_ERR_value,
+                             "expects whole numbers below %zu, the count of vertices; found %g at "
+                             "faces[%zu][%zu]",
+                             vertices, x[k], i, k);
+      (*indices)[at++] = (uint32_t)x[k];
+    }
+  }
+  return true;
+}
+
+bool cag_solids_mesh(CagCall *call, CagValue *result) {
+  CagVec3 *vertices = NULL;
+  size_t n;
+  CagList *faces;
+  uint32_t *counts = NULL, *indices = NULL;
+  CagMesh *m = NULL;
+  CagError err;
+  if (!cag_arg_list(call, 1, &faces) || !cag_arg_points(call, 0, &vertices, &n, NULL)) return false;
+  bool ok = read_faces(call, faces, n, &counts, &indices);
+  if (ok) {
+    CagStatus status = cag_mesh_from_faces(vertices, n, indices, counts, faces->length, &m, &err);
+    ok = give(call, status, &err, m, result);
+  }
+  free(vertices);
+  free(counts);
+  free(indices);
+  return ok;
+}
+
+// --- Data and checks ---
+
+bool cag_solids_vertices(CagCall *call, CagValue *result) {
+  const CagMesh *m;
+  if (!read_mesh(call, &m)) return false;
+  *result = cag_points_value(call->vm, m->positions, m->vertex_count, 3);
+  return true;
+}
+
+bool cag_solids_faces(CagCall *call, CagValue *result) {
+  const CagMesh *m;
+  double *out;
+  if (!read_mesh(call, &m)) return false;
+  if (m->triangle_count == 0) {
+    *result = cag_list_values(call->vm, NULL, 0);
+    return true;
+  }
+  *result = cag_list_vectors(call->vm, m->triangle_count, 3, &out);
+  for (size_t i = 0; i < 3 * m->triangle_count; i++) out[i] = m->triangles[i];
+  return true;
+}
+
+// Where a mesh has no normals of its own: those of its triangles, weighted by their areas.
+static CagStatus face_normals(const CagMesh *m, CagVec3 **out, CagError *err) {
+  CagVec3 *sum = calloc(m->vertex_count + 1, sizeof *sum);
+  if (!sum) return cag_fail_memory(err);
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    CagVec3 a = m->positions[k[0]];
+    CagVec3 n = cag_cross(cag_sub(m->positions[k[1]], a), cag_sub(m->positions[k[2]], a));
+    for (int i = 0; i < 3; i++) sum[k[i]] = cag_add(sum[k[i]], n);
+  }
+  for (size_t i = 0; i < m->vertex_count; i++) sum[i] = cag_unit(sum[i]);
+  *out = sum;
+  return CAG_OK;
+}
+
+bool cag_solids_normals_of(CagCall *call, CagValue *result) {
+  const CagMesh *m;
+  CagError err;
+  CagVec3 *own = NULL;
+  if (!read_mesh(call, &m)) return false;
+  if (!m->normals && !cag_geometry_ok(call, face_normals(m, &own, &err), &err)) return false;
+  *result = cag_points_value(call->vm, own ? own : m->normals, m->vertex_count, 3);
+  free(own);
+  return true;
+}
+
+bool cag_solids_is_watertight(CagCall *call, CagValue *result) {
+  const CagMesh *m;
+  CagVec3 edge[2];
+  if (!read_mesh(call, &m)) return false;
+  *result = cag_bool(cag_mesh_is_watertight(m, edge));
+  return true;
+}
+
+bool cag_solids_euler_characteristic(CagCall *call, CagValue *result) {
+  const CagMesh *m;
+  if (!read_mesh(call, &m)) return false;
+  *result = cag_number((double)cag_mesh_euler_characteristic(m));
+  return true;
+}
+
+bool cag_solids_weld(CagCall *call, CagValue *result) {
+  const CagMesh *m;
+  CagMesh *out = NULL;
+  CagError err;
+  double tolerance;
+  if (!read_mesh(call, &m) || !cag_arg_finite(call, 1, &tolerance)) return false;
+  if (!give(call, cag_mesh_weld(m, tolerance, &out, &err), &err, out, result)) return false;
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}
+
+bool cag_solids_flip(CagCall *call, CagValue *result) {
+  const CagMesh *m;
+  CagMesh *out = NULL;
+  CagError err;
+  if (!read_mesh(call, &m)) return false;
+  if (!give(call, cag_mesh_flip(m, &out, &err), &err, out, result)) return false;
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}
+
+// --- Tessellation ---
+
+static CagStatus tessellate_shape(CagValue v, const CagTessellation *how, CagMesh **out,
+                                  CagError *err) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  CagTessellation own = *how;
+  if (own.tolerance <= 0) own.tolerance = shape->tolerance;
+  switch (v.type) {
+  case CAG_SURFACE: return cag_surface_tessellate(shape->as.surface, &own, out, err);
+  case CAG_SOLID: return cag_solid_tessellate(shape->as.solid, &own, out, err);
+  case CAG_MESH: *out = cag_mesh_retain(shape->as.mesh); return CAG_OK;
+  case CAG_REGION: {
+    CagSurface *flat = NULL;
+    CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &flat, err);
+    if (status == CAG_OK) status = cag_surface_tessellate(flat, &own, out, err);
+    cag_surface_release(flat);
+    return status;
+  }
+  default:
+    return cag_fail(err, CAG_E_UNSUPPORTED, "no-faces", "", -1,
+                    "a curve has no faces; `tube` gives it a thickness");
+  }
+}
+
+static bool read_how(CagCall *call, CagTessellation *how) {
+  *how = CAG_TESSELLATION_DEFAULT;
+  if (cag_given(call, 1) && call->values[1].type != CAG_NONE &&
+      !cag_arg_positive(call, 1, &how->tolerance))
+    return false;
+  if (!cag_arg_angle_or(call, 2, how->angle, &how->angle)) return false;
+  if (!(how->angle > 0))
+    return cag_fail_call(call, 2, CAG_ERR_value, "expects an angle greater than 0");
+  return !cag_given(call, 3) || call->values[3].type == CAG_NONE ||
+         cag_arg_positive(call, 3, &how->max_edge);
+}
+
+bool cag_solids_tessellate(CagCall *call, CagValue *result) {
+  CagTessellation how;
+  CagError err;
+  CagBuilder *builder = cag_builder_new(call->vm);
+  if (!read_how(call, &how) || !cag_shapes_collect(call, call->values[0], builder)) return false;
+  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects a shape");
+  CagMesh **meshes = malloc(shapes->length * sizeof *meshes), *whole = NULL;
+  if (!meshes) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  CagStatus status = CAG_OK;
+  size_t n = 0;
+  for (; status == CAG_OK && n < shapes->length; n += status == CAG_OK)
+    status = tessellate_shape(cag_list_get(call->vm, shapes, n), &how, &meshes[n], &err);
+  if (status == CAG_OK && n == 1) whole = cag_mesh_retain(meshes[0]);
+  else if (status == CAG_OK) status = cag_mesh_append(meshes, n, &whole, &err);
+  for (size_t i = 0; i < n; i++) cag_mesh_release(meshes[i]);
+  free(meshes);
+  if (!give(call, status, &err, whole, result)) return false;
+  cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
+  return true;
+}

@@ -1,0 +1,137 @@
+// The table of solids, meshes, copies, and shapes that explain others.
+
+#include "interp/builtin/solids.h"
+
+#define NUMBERS CAG_TAKES(NUMBER)
+#define LISTS CAG_TAKES_LISTS
+#define MESHES CAG_TAKES(MESH)
+// What has a volume; surfaces have rows of their own.
+#define BODIES (CAG_TAKES(SOLID) | MESHES | CAG_TAKES(GROUP))
+
+static const char primitives[] = "Solids";
+static const char copies[] = "Copies";
+static const char measures[] = "Solids: measures";
+static const char meshes[] = "Meshes";
+static const char figures[] = "Figures";
+
+const CagBuiltin cag_builtins_solids[] = {
+    {"box(size, centered = false)", cag_solids_box, "solid",
+     "A cube of this size (mm), or a box of [x, y, z], with a corner in the origin or its center "
+     "there. A size that is not greater than 0 is an error.",
+     "print volume(box([1, 2, 3])), bounds(box(2, centered: true)).min // expect: 6 [-1, -1, -1]",
+     NUMBERS | CAG_TAKES(LIST), primitives},
+    {"sphere(radius)", cag_solids_sphere, "solid", "The ball about the origin.",
+     "print near(volume(sphere(3)), 36 * pi) // expect: true", NUMBERS, primitives},
+    {"cylinder(height, radius, top = radius)", cag_solids_cylinder, "solid",
+     "A cylinder standing on z = 0; with another radius on top a frustum, with 0 a cone.",
+     "print near(volume(cylinder(5, 2)), 20 * pi) // expect: true", NUMBERS, primitives},
+    {"cone(height, radius)", cag_solids_cone, "solid", "A cone standing on z = 0.",
+     "print near(volume(cone(3, 2)), 4 * pi) // expect: true", NUMBERS, primitives},
+    {"prism(region, height)", cag_solids_prism, "solid",
+     "A region, closed plane curve or list of points carried up by the height (mm).",
+     "print volume(prism([[0, 0], [4, 0], [0, 3]], 5)) // expect: 30",
+     CAG_TAKES(REGION) | CAG_TAKES(CURVE) | CAG_TAKES(LIST), primitives},
+    {"rod(P, Q, radius, top = radius)", cag_solids_rod, "solid",
+     "A cylinder from P to Q; with another radius at Q a frustum or cone. One point twice is an "
+     "error.",
+     "print near(volume(rod(origin, [0, 3, 4], 1)), 5 * pi) // expect: true", LISTS, primitives},
+    {"torus(major, minor)", cag_solids_torus, "solid",
+     "The ring about Z: a disc of radius `minor` turned at the radius `major`.",
+     "print near(volume(torus(3, 1)), 6 * pi^2) // expect: true", NUMBERS, primitives},
+    {"solid(S)", cag_solids_solid, "solid",
+     "The body within closed surfaces: one, or a list or group of surfaces and regions whose edges "
+     "meet. An open shell is an error that tells the gap (solid-open).",
+     "print near(volume(solid(ellipsoid(1, 2, 3))), 8 * pi, relative: 1e-8) // expect: true",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), primitives},
+
+    // --- Copies ---
+    {"around(G, n, axis = Z, through = origin)", cag_solids_around, "group",
+     "n copies of G, turned evenly about an axis through a point.",
+     "print bounds(around(translate(sphere(1), [4, 0, 0]), 2)).size.x // expect: 10",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), copies},
+    {"rows(G, n, V)", cag_solids_rows, "group",
+     "n copies of G, each moved by V from the one before.",
+     "print bounds(rows(box(1), 3, [2, 0, 0])).size // expect: [5, 1, 1]",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), copies},
+    {"mirrored(G, plane)", cag_solids_mirrored, "group", "G and its image in a plane.",
+     "print bounds(mirrored(box(1), plane(origin, X))).size // expect: [2, 1, 1]",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), copies},
+
+    // --- Measures ---
+    {"area(G)", cag_solids_area, "number",
+     "The area of the surface of a solid or mesh, in mm2; of a group the sum.",
+     "print area(box([1, 2, 3])) // expect: 22", BODIES, measures},
+    {"volume(G)", cag_solids_volume, "number",
+     "The volume of a solid or closed mesh, in mm3; of a group the sum. An open mesh is an error "
+     "that names an open edge (mesh-open).",
+     "print volume(box([1, 2, 3])) // expect: 6", BODIES, measures},
+    {"centroid(G)", cag_solids_centroid, "list",
+     "The center of volume of a solid, closed mesh or group.",
+     "print centroid(box([2, 4, 6])) // expect: [1, 2, 3]", BODIES, measures},
+    {"inertia(G, density = 1)", cag_solids_inertia, "record",
+     "mass (volume times density), center, and matrix: the moments of inertia about the center.",
+     "print near(inertia(box(1)).matrix[0][0], 1 / 6) // expect: true",
+     BODIES | CAG_TAKES(SURFACE) | CAG_TAKES(LIST), measures},
+
+    // --- Meshes ---
+    {"mesh(vertices, faces)", cag_solids_mesh, "mesh",
+     "A mesh of points and faces: each face a list of 3 or more numbers of vertices, "
+     "counter-clockwise seen from outside. A number that is no vertex is an error.",
+     "m = mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])\n"
+     "print area(m) // expect: 0.5",
+     LISTS, meshes},
+    {"vertices(M)", cag_solids_vertices, "list", "The points of a mesh.",
+     "print len(vertices(mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))) // expect: 3",
+     MESHES, meshes},
+    {"faces(M)", cag_solids_faces, "list", "The triangles of a mesh, as numbers of vertices.",
+     "print faces(mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])) // expect: [[0, 1, 2]]",
+     MESHES, meshes},
+    {"normals_of(M)", cag_solids_normals_of, "list",
+     "The unit normal at each vertex: of the surface that the mesh was made of, else the mean of "
+     "the faces around.",
+     "print normals_of(mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))[0] // expect: [0, 0, "
+     "1]",
+     MESHES, meshes},
+    {"is_watertight(M)", cag_solids_is_watertight, "bool",
+     "Whether each edge has two faces that run it in opposite senses.",
+     "print is_watertight(tessellate(sphere(1))) // expect: true", MESHES, meshes},
+    {"euler_characteristic(M)", cag_solids_euler_characteristic, "number",
+     "Vertices - edges + faces: 2 of a sphere, 0 of a torus.",
+     "print euler_characteristic(tessellate(torus(3, 1))) // expect: 0", MESHES, meshes},
+    {"weld(M, tolerance)", cag_solids_weld, "mesh",
+     "The mesh with vertices nearer than the tolerance (mm) made one.",
+     "print len(vertices(weld(tessellate(box(1)), 1e-6))) // expect: 8", MESHES, meshes},
+    {"tessellate(G, tolerance = none, angle = 15deg, max_edge = none)", cag_solids_tessellate,
+     "mesh",
+     "Triangles whose distance from the true surface is at most the tolerance (mm; none: by the "
+     "size "
+     "of G), along whose edges the normal turns by at most the angle, and whose edges are at most "
+     "so "
+     "long. A curve has no faces: an error.",
+     "m = tessellate(sphere(10), tolerance: 0.01)\n"
+     "print abs(volume(m) / volume(sphere(10)) - 1) < 0.003 // expect: true",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), meshes},
+    {"flip(M)", cag_solids_flip, "mesh", "The mesh turned inside out.",
+     "print normals_of(flip(mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])))[0].z // expect: "
+     "-1",
+     MESHES, meshes},
+
+    // --- Figures ---
+    {"control_net(S)", cag_solids_control_net, "group",
+     "The polygon or net of control points of a Bezier or B-spline curve or surface, as lines.",
+     "c = bezier([[0, 0], [1, 2], [2, 0]])\n"
+     "print bounds(control_net(c)).max // expect: [2, 2]",
+     CAG_TAKES(CURVE) | CAG_TAKES(SURFACE), figures},
+    {"isolines(S, nu, nv)", cag_solids_isolines, "group",
+     "nu lines where u is fixed and nv lines where v is, evenly over the surface, both ends in.",
+     "s = bilinear([0, 0], [0, 2], [4, 0], [4, 2])\n"
+     "print bounds(isolines(s, 3, 2)).max // expect: [4, 2, 0]",
+     CAG_TAKES(SURFACE), figures},
+    {"arrow(P, V, radius = none)", cag_solids_arrow, "group",
+     "An arrow at P along V; none: a shaft as thick as suits its length.",
+     "print near(bounds(arrow(origin, [0, 0, 10])).max.z, 10) // expect: true", LISTS, figures},
+    {"triad(T, size)", cag_solids_triad, "group",
+     "The axes of a frame as arrows of this size (mm): x red, y green, z blue.",
+     "print near(bounds(triad(identity, 5)).max.x, 5) // expect: true", CAG_TAKES(TRANSFORM),
+     figures},
+    {0}};

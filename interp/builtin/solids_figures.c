@@ -1,0 +1,155 @@
+// Shapes that explain other shapes: control nets, isolines, arrows, frames.
+
+#include <stdlib.h>
+
+#include "interp/builtin/solids.h"
+
+static bool add_line(CagCall *call, CagBuilder *list, const CagVec3 *points, size_t n, bool closed,
+                     int dimension) {
+  CagCurve *c = NULL;
+  CagError err;
+  return cag_geometry_ok(call, cag_curve_polyline(points, n, closed, dimension, &c, &err), &err) &&
+         cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
+}
+
+static bool give_group(CagCall *call, CagBuilder *list, CagValue *result) {
+  *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
+  return true;
+}
+
+static CagVec3 point_of(const double *h) { return cag_vec3(h[0] / h[3], h[1] / h[3], h[2] / h[3]); }
+
+static bool fail_no_net(CagCall *call, const char *kind) {
+  CagError err;
+  cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
+           "kind %s has no control points; `to_nurbs` gives its rational form where there is one",
+           kind);
+  return cag_fail_geometry(call, &err);
+}
+
+static bool curve_net(CagCall *call, const CagCurve *c, CagValue *result) {
+  CagNurbsView nurbs;
+  if (!cag_curve_nurbs_view(c, &nurbs)) return fail_no_net(call, c->kind->name);
+  CagBuilder *list = cag_builder_new(call->vm);
+  CagVec3 *points = malloc(nurbs.distinct * sizeof *points);
+  if (!points) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  for (size_t i = 0; i < nurbs.distinct; i++) points[i] = point_of(nurbs.homogeneous + 4 * i);
+  bool ok = add_line(call, list, points, nurbs.distinct, nurbs.periodic, c->dimension);
+  free(points);
+  return ok && give_group(call, list, result);
+}
+
+static bool surface_net(CagCall *call, const CagSurface *s, CagValue *result) {
+  CagSurfaceNurbsView net;
+  if (!cag_surface_nurbs_view(s, &net)) return fail_no_net(call, s->kind->name);
+  CagBuilder *list = cag_builder_new(call->vm);
+  size_t nu = net.distinct_u, nv = net.distinct_v;
+  CagVec3 *points = malloc((nu > nv ? nu : nv) * sizeof *points);
+  bool ok = points != NULL;
+  if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  for (size_t i = 0; ok && i < nu; i++) {
+    for (size_t j = 0; j < nv; j++) points[j] = point_of(net.homogeneous + 4 * (i * net.nv + j));
+    ok = add_line(call, list, points, nv, net.periodic_v, 3);
+  }
+  for (size_t j = 0; ok && j < nv; j++) {
+    for (size_t i = 0; i < nu; i++) points[i] = point_of(net.homogeneous + 4 * (i * net.nv + j));
+    ok = add_line(call, list, points, nu, net.periodic_u, 3);
+  }
+  free(points);
+  return ok && give_group(call, list, result);
+}
+
+bool cag_solids_control_net(CagCall *call, CagValue *result) {
+  CagValue v = call->values[0];
+  if (v.type == CAG_CURVE) return curve_net(call, CAG_AS_SHAPE(v)->as.curve, result);
+  if (v.type == CAG_SURFACE) return surface_net(call, CAG_AS_SHAPE(v)->as.surface, result);
+  return cag_fail_type(call, 0, "a curve or a surface");
+}
+
+// More lines than a picture can show.
+#define ISOLINES_MAX 100000
+
+static bool add_isolines(CagCall *call, CagBuilder *list, const CagSurface *s, int direction,
+                         long n) {
+  double from = direction ? s->v0 : s->u0, to = direction ? s->v1 : s->u1;
+  bool closed = direction ? s->closed_v : s->closed_u;
+  bool poles[2] = {direction ? s->pole_v0 : s->pole_u0, direction ? s->pole_v1 : s->pole_u1};
+  CagError err;
+  // The last line of a closed direction is the first again.
+  long last = closed ? n : n - 1;
+  for (long i = 0; i < n; i++) {
+    if ((i == 0 && poles[0]) || (i == last && poles[1])) continue;
+    double at = last == 0 ? from : from + (to - from) * ((double)i / (double)last);
+    CagCurve *c = NULL;
+    CagStatus status = cag_surface_isocurve(s, direction, at, &c, &err);
+    if (!cag_geometry_ok(call, status, &err) ||
+        !cag_builder_add(call->vm, list, cag_curve_value(call->vm, c)))
+      return false;
+  }
+  return true;
+}
+
+bool cag_solids_isolines(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  long nu, nv;
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer(call, 1, 0, ISOLINES_MAX, &nu) ||
+      !cag_arg_integer(call, 2, 0, ISOLINES_MAX, &nv))
+    return false;
+  CagBuilder *list = cag_builder_new(call->vm);
+  return add_isolines(call, list, s, 0, nu) && add_isolines(call, list, s, 1, nv) &&
+         give_group(call, list, result);
+}
+
+// Proportions of an arrow: the shaft's radius by its length, the head's length and radius by the
+// shaft's radius, and the head's largest part of the whole.
+#define SHAFT 0.02
+#define HEAD_LENGTH 8
+#define HEAD_RADIUS 2.5
+#define HEAD_PART 0.5
+
+static bool make_arrow(CagCall *call, CagVec3 p, CagVec3 v, double radius, CagValue *result) {
+  CagError err;
+  CagSolid *shaft = NULL, *head = NULL;
+  double length = cag_norm(v);
+  double head_length = fmin(HEAD_LENGTH * radius, HEAD_PART * length);
+  CagVec3 neck = cag_madd(p, 1 - head_length / length, v);
+  if (!cag_geometry_ok(call, cag_solid_rod(p, neck, radius, radius, &shaft, &err), &err))
+    return false;
+  CagValue parts[2] = {cag_solid_value(call->vm, shaft)};
+  if (!cag_geometry_ok(
+          call, cag_solid_rod(neck, cag_add(p, v), HEAD_RADIUS * radius, 0, &head, &err), &err))
+    return false;
+  parts[1] = cag_solid_value(call->vm, head);
+  *result = cag_group_value(call->vm, cag_list_values(call->vm, parts, 2));
+  return true;
+}
+
+bool cag_solids_arrow(CagCall *call, CagValue *result) {
+  CagVec3 p, v;
+  if (!cag_arg_vec(call, 0, &p, NULL) || !cag_arg_direction(call, 1, p, &v, NULL)) return false;
+  double radius = SHAFT * cag_norm(v);
+  if (cag_given(call, 2) && call->values[2].type != CAG_NONE && !cag_arg_positive(call, 2, &radius))
+    return false;
+  return make_arrow(call, p, v, radius, result);
+}
+
+bool cag_solids_triad(CagCall *call, CagValue *result) {
+  // x, y, z in red, green, blue; linear light.
+  static const double colors[3][3] = {{0.7, 0.02, 0.02}, {0.03, 0.4, 0.03}, {0.02, 0.08, 0.7}};
+  static const char *const names[] = {"color"};
+  CagTransform t;
+  double size;
+  CagValue arrows[3];
+  if (!cag_arg_transform(call, 0, &t) || !cag_arg_positive(call, 1, &size)) return false;
+  CagVec3 origin = cag_transform_point(&t, cag_vec3(0, 0, 0));
+  for (int i = 0; i < 3; i++) {
+    CagVec3 axis = cag_unit(cag_vec3(t.m[0][i], t.m[1][i], t.m[2][i]));
+    if (cag_norm(axis) == 0)
+      return cag_fail_call(call, 0, CAG_ERR_value, "expects a frame whose axes are not zero");
+    if (!make_arrow(call, origin, cag_scaled(axis, size), SHAFT * size, &arrows[i])) return false;
+    CagValue color = cag_vector(call->vm, colors[i], 3);
+    CAG_AS_SHAPE(arrows[i])->material = CAG_AS_RECORD(cag_record_new(call->vm, names, &color, 1));
+  }
+  *result = cag_group_value(call->vm, cag_list_values(call->vm, arrows, 3));
+  return true;
+}

@@ -1,0 +1,157 @@
+// Solids: primitives, prisms, rods and closed shells.
+
+#include <stdlib.h>
+
+#include "interp/builtin/solids.h"
+#include "interp/builtin/surfaces.h"
+
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagSolid *s,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_solid_value(call->vm, s);
+  return true;
+}
+
+bool cag_solids_box(CagCall *call, CagValue *result) {
+  CagVec3 size;
+  int dimension = 3;
+  bool centered;
+  CagSolid *s = NULL;
+  CagError err;
+  if (call->values[0].type == CAG_NUMBER) {
+    double side;
+    if (!cag_arg_positive(call, 0, &side)) return false;
+    size = cag_vec3(side, side, side);
+  } else {
+    if (call->values[0].type != CAG_LIST)
+      return cag_fail_type(call, 0, "a number or the sizes [x, y, z]");
+    if (!cag_arg_vec(call, 0, &size, &dimension)) return false;
+    if (dimension != 3) return cag_fail_type(call, 0, "a number or the sizes [x, y, z]");
+  }
+  if (!cag_arg_bool_or(call, 1, false, &centered)) return false;
+  return give(call, cag_solid_box(size, centered, &s, &err), &err, s, result);
+}
+
+bool cag_solids_sphere(CagCall *call, CagValue *result) {
+  double radius;
+  CagSolid *s = NULL;
+  CagError err;
+  if (!cag_arg_positive(call, 0, &radius)) return false;
+  return give(call, cag_solid_sphere(radius, &s, &err), &err, s, result);
+}
+
+// A radius that may be 0 beside one that is not.
+static bool read_radius(CagCall *call, int argument, double fallback, double *out) {
+  if (!cag_arg_number_or(call, argument, fallback, out)) return false;
+  if (*out >= 0 && isfinite(*out)) return true;
+  return cag_fail_call(call, argument, CAG_ERR_value, "expects a radius of 0 or more");
+}
+
+bool cag_solids_cylinder(CagCall *call, CagValue *result) {
+  double height, radius, top;
+  CagSolid *s = NULL;
+  CagError err;
+  if (!cag_arg_positive(call, 0, &height) || !read_radius(call, 1, 0, &radius) ||
+      !read_radius(call, 2, radius, &top))
+    return false;
+  return give(call, cag_solid_cylinder(height, radius, top, &s, &err), &err, s, result);
+}
+
+bool cag_solids_cone(CagCall *call, CagValue *result) {
+  double height, radius;
+  CagSolid *s = NULL;
+  CagError err;
+  if (!cag_arg_positive(call, 0, &height) || !cag_arg_positive(call, 1, &radius)) return false;
+  return give(call, cag_solid_cylinder(height, radius, 0, &s, &err), &err, s, result);
+}
+
+bool cag_solids_prism(CagCall *call, CagValue *result) {
+  double height;
+  if (!cag_arg_finite(call, 1, &height)) return false;
+  // The first two arguments of an extrusion; the rest are not given.
+  CagValue values[5] = {call->values[0], call->values[1], cag_unset(), cag_unset(), cag_unset()};
+  CagCall extrude = *call;
+  extrude.values = values;
+  extrude.count = 5;
+  return cag_surfaces_extrude(&extrude, result);
+}
+
+CagStatus cag_solid_rod(CagVec3 p, CagVec3 q, double radius, double top, CagSolid **out,
+                        CagError *err) {
+  CagVec3 along = cag_sub(q, p);
+  double height = cag_norm(along);
+  if (height == 0)
+    return cag_fail(err, CAG_E_ARGUMENT, "same-points", "", -1,
+                    "the two ends of the rod are the same point");
+  CagVec3 side = cag_cross(cag_vec3(0, 0, 1), along);
+  // Nearly upright: any level direction does.
+  if (cag_norm(side) <= 1e-12 * height) side = cag_vec3(1, 0, 0);
+  CagTransform frame;
+  CagSolid *standing = NULL;
+  CagStatus status = cag_axes(p, side, cag_cross(along, side), &frame, err);
+  if (status == CAG_OK) status = cag_solid_cylinder(height, radius, top, &standing, err);
+  if (status == CAG_OK) status = cag_solid_transform(standing, &frame, out, err);
+  cag_solid_release(standing);
+  return status;
+}
+
+bool cag_solids_rod(CagCall *call, CagValue *result) {
+  CagVec3 p, q;
+  double radius, top;
+  CagSolid *s = NULL;
+  CagError err;
+  if (!cag_arg_vec(call, 0, &p, NULL) || !cag_arg_vec(call, 1, &q, NULL) ||
+      !read_radius(call, 2, 0, &radius) || !read_radius(call, 3, radius, &top))
+    return false;
+  return give(call, cag_solid_rod(p, q, radius, top, &s, &err), &err, s, result);
+}
+
+bool cag_solids_torus(CagCall *call, CagValue *result) {
+  double major, minor;
+  CagSolid *s = NULL;
+  CagError err;
+  if (!cag_arg_positive(call, 0, &major) || !cag_arg_positive(call, 1, &minor)) return false;
+  return give(call, cag_solid_torus(major, minor, &s, &err), &err, s, result);
+}
+
+// The faces of a closed body: surfaces, and regions as flat ones. Solids give theirs.
+static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **faces, size_t *n) {
+  CagError err;
+  for (size_t i = 0; i < shapes->length; i++) {
+    CagValue v = cag_list_get(call->vm, shapes, i);
+    const CagShape *shape = CAG_AS_SHAPE(v);
+    if (v.type == CAG_SURFACE) {
+      faces[(*n)++] = cag_surface_retain(shape->as.surface);
+    } else if (v.type == CAG_REGION) {
+      CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &faces[*n], &err);
+      if (!cag_geometry_ok(call, status, &err)) return false;
+      (*n)++;
+    } else {
+      return cag_fail_call(call, 0, CAG_ERR_type, "expects surfaces and regions, found %s",
+                           cag_type_article(v));
+    }
+  }
+  return true;
+}
+
+bool cag_solids_solid(CagCall *call, CagValue *result) {
+  CagError err;
+  CagSolid *s = NULL;
+  if (call->values[0].type == CAG_SOLID) {
+    *result = call->values[0];
+    return true;
+  }
+  CagBuilder *builder = cag_builder_new(call->vm);
+  if (!cag_shapes_collect(call, call->values[0], builder)) return false;
+  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects surfaces");
+  CagSurface **faces = malloc(shapes->length * sizeof *faces);
+  if (!faces) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  size_t n = 0;
+  bool ok = collect_faces(call, shapes, faces, &n) &&
+            give(call, cag_solid_shell(faces, n, &s, &err), &err, s, result);
+  for (size_t i = 0; i < n; i++) cag_surface_release(faces[i]);
+  free(faces);
+  if (ok) cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
+  return ok;
+}
