@@ -1,0 +1,88 @@
+// The program `cag`: one function per command, and what they share.
+//
+// main.c reads the command line into a CagTool, by the tables commands.def and options.def, and
+// calls the command's function with its operands. A command gives back the exit status of the
+// program (CAG_STATUS_*). Commands use include/cag.h as any client of the library would; only
+// those about pictures also use the readers and writers of interp/render.
+//
+// Standard output belongs to what was asked for (prints, values, exported bytes); everything else
+// goes to standard error. main.c flushes standard output at the end and makes a failure of that
+// exit status 3, so a command need not look at each write.
+
+#ifndef CAG_INTERP_TOOL_TOOL_H
+#define CAG_INTERP_TOOL_TOOL_H
+
+#include <signal.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "cag.h"
+
+typedef struct CagTool CagTool;
+typedef int CagToolFunction(CagTool *t, int argc, char **argv);
+
+// A row of commands.def.
+typedef struct CagToolCommand {
+  const char *name, *operands, *summary, *story, *examples;
+  int least, most; // how many operands
+  CagToolFunction *run;
+} CagToolCommand;
+
+typedef struct CagToolDefine {
+  const char *name, *value; // -D name=value
+} CagToolDefine;
+
+typedef enum CagToolColor {
+  CAG_TOOL_COLOR_AUTO,
+  CAG_TOOL_COLOR_ALWAYS,
+  CAG_TOOL_COLOR_NEVER
+} CagToolColor;
+
+// The command line, read. Texts point into argv; NULL or 0 where an option was not given.
+struct CagTool {
+  const CagToolCommand *command;
+  CagSessionOptions session; // limits, tolerance, module path, and the interrupt flag
+  CagToolDefine *defines;
+  size_t define_count;
+  CagStyle style; // of diagnostics on standard error: JSON, or text with or without color
+  CagToolColor color;
+  bool quiet, verbose;
+  bool wants_help, wants_version;
+
+  const char *output, *format; // -o, --format
+  int width, height;           // --size
+  const char *quality, *camera;
+  double exposure;
+  bool has_frames;
+  long first_frame, last_frame; // --frames
+  double threshold;
+  const char *heatmap;
+};
+
+CagToolFunction cag_tool_run, cag_tool_eval, cag_tool_export, cag_tool_render, cag_tool_compare,
+    cag_tool_test, cag_tool_explain, cag_tool_info, cag_tool_repl;
+
+// A session with the options and the -D of the command line. NULL, after a message, when memory is
+// out.
+CagSession *cag_tool_session(CagTool *t);
+
+// Writes the diagnostics of the session's last call to standard error in the style asked for, and
+// gives back `status`: `return cag_tool_finish(t, s, cag_session_run_file(s, path));`. Says nothing
+// of an interruption and of a standard output that nobody reads any more.
+int cag_tool_finish(CagTool *t, CagSession *s, int status);
+
+// Says `cag render: MESSAGE` and, behind it, the mend `help` (NULL: none) on standard error, and
+// gives back `status`.
+int cag_tool_fail(const CagTool *t, int status, const char *help, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+// A remark on standard error; nothing with -q or JSON diagnostics.
+void cag_tool_say(const CagTool *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// Nonzero after Ctrl-C or SIGTERM; t->session.interrupt points to it. A second signal ends the
+// program at once, without temporaries left behind. Who handles Ctrl-C and goes on (the REPL)
+// resets it to 0.
+extern volatile int cag_tool_interrupt;
+
+#endif
