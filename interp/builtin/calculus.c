@@ -158,10 +158,11 @@ static bool measure(Integrand *g, Piece *p) {
 }
 
 // A piece whose ends are neighbours, or whose error is that of rounding, is not divided.
-static bool can_be_divided(const Piece *p) {
+static bool can_be_divided(const Piece *p, double narrowest) {
   static const double ROUNDING = 50 * DBL_EPSILON;
   double middle = 0.5 * (p->low + p->high);
-  return middle > p->low && middle < p->high && p->error > ROUNDING * p->magnitude;
+  return middle > p->low && middle < p->high && p->high - p->low > narrowest &&
+         p->error > ROUNDING * p->magnitude;
 }
 
 // The pieces lie in a list of the heap on top of the root stack, so that a run that ends within the
@@ -170,6 +171,7 @@ typedef struct Pieces {
   CagVm *vm;
   Piece *at;
   size_t count, capacity;
+  double narrowest; // what is narrower is not divided
 } Pieces;
 
 enum { PIECES_FIRST = 32, PIECES_MOST = 4096 };
@@ -188,12 +190,15 @@ static void grow(Pieces *p, size_t capacity) {
 
 // What the pieces add up to, and the one to divide next; (size_t)-1: none can be.
 typedef struct Survey {
-  double error, wanted, size;
+  double error, size;
+  double wanted,
+      tolerable; // errors: with the latter the result is given when nothing can be divided
   size_t worst;
 } Survey;
 
 static Survey survey(const Integrand *g, const Pieces *pieces) {
   static const double RELATIVE = 1e-11, ROUNDING = 100 * DBL_EPSILON, FLOOR = 1e-300;
+  static const double TOLERABLE = 1e-8;
   Survey s = {.worst = (size_t)-1};
   double magnitude = 0, total[COMPONENTS_MOST] = {0};
   for (size_t i = 0; i < pieces->count; i++) {
@@ -202,11 +207,12 @@ static Survey survey(const Integrand *g, const Pieces *pieces) {
     magnitude += p->magnitude;
     for (size_t c = 0; c < g->components; c++) total[c] += p->value[c];
     bool worse = s.worst == (size_t)-1 || p->error > pieces->at[s.worst].error;
-    if (worse && can_be_divided(p)) s.worst = i;
+    if (worse && can_be_divided(p, pieces->narrowest)) s.worst = i;
   }
   for (size_t c = 0; c < g->components; c++) s.size = fmax(s.size, fabs(total[c]));
   // Where positive and negative parts cancel, their size bounds what rounding allows.
   s.wanted = fmax(fmax(RELATIVE * s.size, ROUNDING * magnitude), FLOOR);
+  s.tolerable = fmax(TOLERABLE * magnitude, FLOOR);
   return s;
 }
 
@@ -214,11 +220,13 @@ static Survey survey(const Integrand *g, const Pieces *pieces) {
 static bool refine(Integrand *g, Pieces *pieces) {
   for (;;) {
     Survey s = survey(g, pieces);
-    if (s.error <= s.wanted || s.worst == (size_t)-1) return true;
-    if (pieces->count == PIECES_MOST)
-      return cag_fail_call(g->subject.call, 0, CAG_ERR_convergence,
-                           "does not settle: after %d pieces the error is still about %.2g of %.6g",
-                           PIECES_MOST, s.error, s.size);
+    if (s.error <= s.wanted) return true;
+    if (s.worst == (size_t)-1 && s.error <= s.tolerable) return true;
+    if (s.worst == (size_t)-1 || pieces->count == PIECES_MOST)
+      return cag_fail_call(
+          g->subject.call, 0, CAG_ERR_convergence,
+          "does not settle: after %zu pieces the error is still about %.2g of %.6g", pieces->count,
+          s.error, s.size);
     if (pieces->count == pieces->capacity) grow(pieces, 2 * pieces->capacity);
     Piece *p = &pieces->at[s.worst], *q = &pieces->at[pieces->count++];
     double middle = 0.5 * (p->low + p->high);
@@ -246,6 +254,9 @@ static bool integrate(Integrand *g, double sign, CagValue *result) {
   Pieces pieces = {.vm = vm};
   double low, high;
   choose_substitution(g, &low, &high);
+  // A singularity that matters still in so small a part of the range has no integral.
+  static const double SMALLEST_PART = 0x1p-150;
+  pieces.narrowest = SMALLEST_PART * (high - low);
   grow(&pieces, PIECES_FIRST);
   pieces.count = FIRST;
   double middle = low + 0.5 * (high - low);
@@ -393,12 +404,15 @@ static bool fail_same_sign(const Subject *f, double fa, double fb) {
 
 // Brent's root finder: b is the best place, the root lies between b and c, a was the b before.
 static bool brent_root(const Subject *f, double a, double fa, double b, double fb, double *root) {
-  enum { STEPS_MOST = 300 };
+  enum { STEPS_MOST = 1000 };
+  // Of a root at 0 so much of the range is good enough.
+  static const double PART = 1e-4 * DBL_EPSILON;
+  double least_step = PART * fabs(b - a);
   double c = a, fc = fa, step = b - a, before = step;
   for (int i = 0; i < STEPS_MOST; i++) {
     if ((fb > 0) == (fc > 0)) c = a, fc = fa, step = before = b - a;
     if (fabs(fc) < fabs(fb)) a = b, b = c, c = a, fa = fb, fb = fc, fc = fa;
-    double small = 2 * DBL_EPSILON * fabs(b) + DBL_MIN, half = 0.5 * (c - b);
+    double small = 2 * DBL_EPSILON * fabs(b) + least_step, half = 0.5 * (c - b);
     *root = b;
     if (fabs(half) <= small || fb == 0) return true;
     if (fabs(before) >= small && fabs(fa) > fabs(fb)) {
