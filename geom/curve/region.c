@@ -1,0 +1,508 @@
+// Regions: making them from loops, their measures, and whether a point is inside.
+//
+// Every question about a loop is asked of the exact curve, except crossings, which are looked for
+// on polygons far finer than any drawing.
+
+#include "geom/curve/region.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/curve/family.h"
+
+// Points this near to a loop, as a part of its size, lie on it.
+#define ON_BOUNDARY 1e-10
+// Chord tolerance of the polygons that are searched for crossings, as a part of the size.
+#define CROSSING_TOLERANCE 1e-5
+#define CROSSING_ANGLE (M_PI / 18)
+
+CagRegion *cag_region_retain(const CagRegion *r) {
+  CagRegion *mine = (CagRegion *)r;
+  if (mine) mine->references++;
+  return mine;
+}
+
+void cag_region_release(CagRegion *r) {
+  if (!r || --r->references > 0) return;
+  for (size_t i = 0; r->loops && i < r->count; i++) cag_curve_release(r->loops[i]);
+  free(r->loops);
+  free(r->outer);
+  free(r);
+}
+
+// An empty frame for n loops.
+static CagRegion *allocate(size_t n) {
+  CagRegion *r = calloc(1, sizeof *r);
+  if (!r) return NULL;
+  r->references = 1;
+  r->loops = calloc(n, sizeof(CagCurve *));
+  r->outer = calloc(n, sizeof(size_t));
+  r->count = n;
+  if (r->loops && r->outer) return r;
+  cag_region_release(r);
+  return NULL;
+}
+
+// --- Inside or outside ---
+
+static double loop_size(const CagCurve *c) {
+  CagBounds b = c->kind->hull(c, c->start, c->end);
+  return cag_norm(cag_sub(b.max, b.min));
+}
+
+// How often the ray from p along +x is crossed upwards less downwards by the part [a, b] of the
+// curve, whose ends have the heights ya, yb above p. A part to the right of p counts by its ends
+// alone; a part about p is halved, which ends because p is not on the curve.
+static int crossings(const CagCurve *c, double a, double b, double ya, double yb, CagVec3 p) {
+  CagBounds box = c->kind->hull(c, a, b);
+  if (box.max.x < p.x || box.min.y > p.y || box.max.y < p.y) {
+    // Where the hull says that no crossing is possible, rounding of an end must not make one; the
+    // heights decide only whether the ends lie on different sides, and then p's height is touched.
+    if (box.max.x < p.x || (ya >= 0) == (yb >= 0)) return 0;
+  }
+  double middle = a + (b - a) / 2;
+  if (box.min.x > p.x || !(a < middle && middle < b))
+    return (ya >= 0) == (yb >= 0) ? 0 : yb >= 0 ? 1 : -1;
+  CagVec3 q;
+  CagError ignored;
+  if (cag_curve_point(c, middle, &q, &ignored)) return 0;
+  double ym = q.y - p.y;
+  return crossings(c, a, middle, ya, ym, p) + crossings(c, middle, b, ym, yb, p);
+}
+
+typedef enum Place { OUTSIDE, INSIDE, BOUNDARY } Place;
+
+static CagStatus place_of(const CagCurve *c, CagVec3 p, Place *out, CagError *err) {
+  CagBounds box = c->kind->hull(c, c->start, c->end);
+  double slack = ON_BOUNDARY * cag_norm(cag_sub(box.max, box.min));
+  *out = OUTSIDE;
+  if (p.x < box.min.x - slack || p.x > box.max.x + slack || p.y < box.min.y - slack ||
+      p.y > box.max.y + slack)
+    return CAG_OK;
+  double distance;
+  CagStatus status = cag_curve_closest(c, p, NULL, NULL, &distance, err);
+  if (status) return status;
+  if (distance <= slack) {
+    *out = BOUNDARY;
+    return CAG_OK;
+  }
+  double *cuts;
+  size_t n;
+  status = cag_curve_cuts(c, &cuts, &n, err);
+  if (status) return status;
+  CagVec3 start, q;
+  status = cag_curve_point(c, c->start, &start, err);
+  double before = start.y - p.y, first = before;
+  int sum = 0;
+  for (size_t i = 0; !status && i + 1 < n; i++) {
+    double next = first; // the loop ends where it starts
+    if (i + 2 < n) {
+      status = cag_curve_point(c, cuts[i + 1], &q, err);
+      next = q.y - p.y;
+    }
+    if (!status) sum += crossings(c, cuts[i], cuts[i + 1], before, next, p);
+    before = next;
+  }
+  free(cuts);
+  *out = sum % 2 ? INSIDE : OUTSIDE;
+  return status;
+}
+
+// Whether `inner` lies within `outer`, for loops that do not cross: judged by a point of the inner
+// one that is not on the other. Loops that coincide count as outside.
+static CagStatus loop_within(const CagCurve *inner, const CagCurve *outer, bool *out,
+                             CagError *err) {
+  enum { SAMPLES = 16 };
+  *out = false;
+  for (int i = 0; i < SAMPLES; i++) {
+    CagVec3 p;
+    Place place;
+    double t = inner->start + (inner->end - inner->start) * (i + 0.3) / SAMPLES;
+    CagStatus status = cag_curve_point(inner, t, &p, err);
+    if (!status) status = place_of(outer, p, &place, err);
+    if (status) return status;
+    if (place == BOUNDARY) continue;
+    *out = place == INSIDE;
+    return CAG_OK;
+  }
+  return CAG_OK;
+}
+
+// --- Crossings ---
+
+typedef struct Edge {
+  CagVec3 p, q;
+  double min_x, max_x;
+  size_t loop, index, count; // edge `index` of `count` of its loop
+} Edge;
+
+typedef struct Edges {
+  Edge *items;
+  size_t n, capacity;
+} Edges;
+
+static CagStatus add_edges(const CagCurve *c, size_t loop, Edges *edges, CagError *err) {
+  double *t;
+  size_t n;
+  CagStatus status =
+      cag_curve_discretize(c, CROSSING_TOLERANCE * loop_size(c), CROSSING_ANGLE, &t, &n, err);
+  if (status) return status;
+  CagVec3 *p = malloc(sizeof *p * n);
+  status = p ? cag_curve_eval_many(c, t, n, 0, p, err) : cag_fail_memory(err);
+  if (!status && edges->n + n > edges->capacity) {
+    size_t capacity = 2 * (edges->n + n);
+    Edge *grown = realloc(edges->items, sizeof *grown * capacity);
+    if (grown) {
+      edges->items = grown;
+      edges->capacity = capacity;
+    } else {
+      status = cag_fail_memory(err);
+    }
+  }
+  if (!status) p[n - 1] = p[0];
+  for (size_t i = 0; !status && i + 1 < n; i++)
+    edges->items[edges->n++] =
+        (Edge){p[i], p[i + 1], fmin(p[i].x, p[i + 1].x), fmax(p[i].x, p[i + 1].x), loop, i, n - 1};
+  free(p);
+  free(t);
+  return status;
+}
+
+static int by_min_x(const void *a, const void *b) {
+  double x = ((const Edge *)a)->min_x, y = ((const Edge *)b)->min_x;
+  return (x > y) - (x < y);
+}
+
+static double side(CagVec3 a, CagVec3 b, CagVec3 p) {
+  return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+}
+
+// Edges that cross in their interiors; those that touch do not.
+static bool cross(const Edge *e, const Edge *f) {
+  if (fmax(e->p.y, e->q.y) < fmin(f->p.y, f->q.y) || fmax(f->p.y, f->q.y) < fmin(e->p.y, e->q.y))
+    return false;
+  if (e->loop == f->loop) {
+    size_t gap = e->index > f->index ? e->index - f->index : f->index - e->index;
+    if (gap == 1 || gap == e->count - 1) return false;
+  }
+  return side(e->p, e->q, f->p) * side(e->p, e->q, f->q) < 0 &&
+         side(f->p, f->q, e->p) * side(f->p, f->q, e->q) < 0;
+}
+
+static CagStatus check_crossings(CagCurve *const *loops, size_t n, const char *argument, long shift,
+                                 CagError *err) {
+  Edges edges = {0};
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < n; i++) status = add_edges(loops[i], i, &edges, err);
+  if (!status) qsort(edges.items, edges.n, sizeof(Edge), by_min_x);
+  for (size_t i = 0; !status && i < edges.n; i++)
+    for (size_t k = i + 1; k < edges.n && edges.items[k].min_x <= edges.items[i].max_x; k++) {
+      const Edge *e = &edges.items[i], *f = &edges.items[k];
+      if (!cross(e, f)) continue;
+      long a = (long)(e->loop < f->loop ? e->loop : f->loop) + shift;
+      long b = (long)(e->loop < f->loop ? f->loop : e->loop) + shift;
+      CagVec3 at = cag_lerp(e->p, e->q, 0.5);
+      status =
+          a == b
+              ? cag_fail(err, CAG_E_ARGUMENT, "region-crossing", a < 0 ? "C" : argument, a,
+                         "the boundary crosses itself near [%.6g, %.6g]", at.x, at.y)
+              : cag_fail(err, CAG_E_ARGUMENT, "region-crossing", argument, b,
+                         "%s[%ld] crosses %s near [%.6g, %.6g]; boundaries of a region must "
+                         "not cross",
+                         argument, b, a < 0 ? "the outer boundary" : "another of them", at.x, at.y);
+      break;
+    }
+  free(edges.items);
+  return status;
+}
+
+// --- Construction ---
+
+static CagStatus check_loop(const CagCurve *c, const char *argument, long index, CagError *err) {
+  char which[64] = "the outer boundary";
+  if (index >= 0) snprintf(which, sizeof which, "%.30s[%ld]", argument, index);
+  if (c->dimension != 2)
+    return cag_fail(err, CAG_E_ARGUMENT, "not-planar", argument, index,
+                    "%s is a curve of space; a region is bounded by plane curves, whose points are "
+                    "[x, y]",
+                    which);
+  if (c->closed) return CAG_OK;
+  CagVec3 p, q;
+  CagStatus status = cag_curve_point(c, c->start, &p, err);
+  if (!status) status = cag_curve_point(c, c->end, &q, err);
+  if (status) return status;
+  return cag_fail(err, CAG_E_ARGUMENT, "region-not-closed", argument, index,
+                  "%s is not closed: it runs from [%.9g, %.9g] to [%.9g, %.9g], %.3g apart", which,
+                  p.x, p.y, q.x, q.y, cag_norm(cag_sub(p, q)));
+}
+
+// The loop run counter-clockwise (or clockwise); fails where it bounds nothing.
+static CagStatus oriented(const CagCurve *c, bool clockwise, CagCurve **out, CagError *err) {
+  // Part of the square of the size under which an area is rounding.
+  const double nothing = 1e-12;
+  double area;
+  CagStatus status = cag_curve_area(c, &area, NULL, err);
+  if (status) return status;
+  double size = loop_size(c);
+  if (fabs(area) <= nothing * size * size)
+    return cag_fail(err, CAG_E_DEGENERATE, "zero-area", "C", -1,
+                    "the closed curve bounds no area: it runs back on itself or its two sides "
+                    "cancel");
+  if ((area < 0) == clockwise) {
+    *out = cag_curve_retain(c);
+    return CAG_OK;
+  }
+  return cag_curve_reverse(c, out, err);
+}
+
+CagStatus cag_region_new(const CagCurve *outer, CagCurve *const *holes, size_t hole_count,
+                         CagRegion **out, CagError *err) {
+  CagStatus status = check_loop(outer, "C", -1, err);
+  for (size_t i = 0; !status && i < hole_count; i++)
+    status = check_loop(holes[i], "holes", (long)i, err);
+  if (status) return status;
+  CagRegion *r = allocate(hole_count + 1);
+  if (!r) return cag_fail_memory(err);
+  for (size_t i = 0; !status && i <= hole_count; i++)
+    status = oriented(i ? holes[i - 1] : outer, i > 0, &r->loops[i], err);
+  if (!status) status = check_crossings(r->loops, r->count, "holes", -1, err);
+  for (size_t i = 1; !status && i <= hole_count; i++) {
+    bool within;
+    status = loop_within(r->loops[i], r->loops[0], &within, err);
+    if (!status && !within)
+      status = cag_fail(err, CAG_E_ARGUMENT, "hole-outside", "holes", (long)i - 1,
+                        "holes[%zu] does not lie within the outer boundary", i - 1);
+    for (size_t k = 1; !status && k < i; k++) {
+      bool a, b;
+      status = loop_within(r->loops[i], r->loops[k], &a, err);
+      if (!status) status = loop_within(r->loops[k], r->loops[i], &b, err);
+      if (!status && (a || b))
+        status = cag_fail(err, CAG_E_ARGUMENT, "region-crossing", "holes", (long)i - 1,
+                          "holes[%zu] and holes[%zu] lie one in the other; holes must be apart",
+                          k - 1, i - 1);
+    }
+  }
+  if (status) cag_region_release(r);
+  else *out = r;
+  return status;
+}
+
+// Nesting depth of every loop, and the loops in the order: an outer one, then its holes.
+CagStatus cag_region_from_loops(CagCurve *const *loops, size_t n, CagRegion **out, CagError *err) {
+  if (n == 0)
+    return cag_fail(err, CAG_E_ARGUMENT, "too-few-curves", "C", -1,
+                    "a region wants at least one closed curve");
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < n; i++) status = check_loop(loops[i], "curves", (long)i, err);
+  if (!status) status = check_crossings(loops, n, "curves", 0, err);
+  if (status) return status;
+  bool *within = calloc(n * n, sizeof *within); // within[i * n + k]: loop i lies in loop k
+  size_t *depth = calloc(n, sizeof *depth);
+  CagRegion *r = allocate(n);
+  if (!within || !depth || !r) status = cag_fail_memory(err);
+  for (size_t i = 0; !status && i < n; i++)
+    for (size_t k = 0; !status && k < n; k++) {
+      if (i == k) continue;
+      status = loop_within(loops[i], loops[k], &within[i * n + k], err);
+      depth[i] += within[i * n + k];
+    }
+  size_t used = 0;
+  for (size_t i = 0; !status && i < n; i++) {
+    if (depth[i] % 2) continue;
+    const size_t outer = used;
+    status = oriented(loops[i], false, &r->loops[used], err);
+    r->outer[used++] = outer;
+    for (size_t k = 0; !status && k < n; k++) {
+      if (depth[k] != depth[i] + 1 || !within[k * n + i]) continue;
+      status = oriented(loops[k], true, &r->loops[used], err);
+      r->outer[used++] = outer;
+    }
+  }
+  free(within);
+  free(depth);
+  if (status) cag_region_release(r);
+  else *out = r;
+  return status;
+}
+
+static CagStatus from_one(CagCurve *loop, CagRegion **out, CagError *err) {
+  CagRegion *r = allocate(1);
+  if (!r) {
+    cag_curve_release(loop);
+    return cag_fail_memory(err);
+  }
+  r->loops[0] = loop;
+  *out = r;
+  return CAG_OK;
+}
+
+static CagStatus check_positive(double x, const char *name, CagError *err) {
+  char text[32];
+  CagStatus status = cag_curve_check_number(x, name, err);
+  if (status || x > 0) return status;
+  return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", name, -1,
+                  "`%s` must be positive; this is %s", name, cag_number_text(x, text));
+}
+
+// Sides and quarter circles, counter-clockwise from the start of the lower side.
+static CagStatus rounded_rectangle(double w, double h, double r, CagCurve **out, CagError *err) {
+  static const double sx[4] = {1, 1, -1, -1}, sy[4] = {-1, 1, 1, -1};
+  CagCurve *pieces[8];
+  size_t n = 0;
+  CagStatus status = CAG_OK;
+  const double x = w / 2 - r, y = h / 2 - r; // center of the corner arcs
+  for (int i = 0; !status && i < 4; i++) {
+    // Side i runs from corner i - 1 to corner i, outwards of both centers by r.
+    const int k = (i + 3) % 4;
+    static const double nx[4] = {0, 1, 0, -1}, ny[4] = {-1, 0, 1, 0};
+    CagVec3 p = {sx[k] * x + nx[i] * r, sy[k] * y + ny[i] * r, 0};
+    CagVec3 q = {sx[i] * x + nx[i] * r, sy[i] * y + ny[i] * r, 0};
+    if (p.x != q.x || p.y != q.y) {
+      status = cag_curve_line(p, q, 2, &pieces[n], err);
+      n += status == CAG_OK;
+    }
+    CagTransform frame = cag_translate(cag_vec3(sx[i] * x, sy[i] * y, 0));
+    frame.planar = true;
+    if (!status) {
+      status = cag_curve_arc(r, r, (i - 1) * M_PI / 2, i * M_PI / 2, &frame, &pieces[n], err);
+      n += status == CAG_OK;
+    }
+  }
+  if (!status) status = cag_curve_join(pieces, n, out, err);
+  for (size_t i = 0; i < n; i++) cag_curve_release(pieces[i]);
+  return status;
+}
+
+CagStatus cag_region_rectangle(double w, double h, double radius, CagRegion **out, CagError *err) {
+  char text[32], most[32];
+  CagStatus status = check_positive(w, "w", err);
+  if (!status) status = check_positive(h, "h", err);
+  if (!status) status = cag_curve_check_number(radius, "radius", err);
+  if (status) return status;
+  if (radius < 0)
+    return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", "radius", -1,
+                    "`radius` must not be negative; this is %s", cag_number_text(radius, text));
+  if (radius > fmin(w, h) / 2)
+    return cag_fail(err, CAG_E_ARGUMENT, "radius-too-large", "radius", -1,
+                    "`radius` is at most half the shorter side, %s; this is %s",
+                    cag_number_text(fmin(w, h) / 2, most), cag_number_text(radius, text));
+  CagCurve *loop;
+  if (radius > 0 && radius == w / 2 && radius == h / 2) {
+    CagTransform frame = cag_transform_identity();
+    status = cag_curve_arc(radius, radius, 0, 2 * M_PI, &frame, &loop, err);
+  } else if (radius > 0) {
+    status = rounded_rectangle(w, h, radius, &loop, err);
+  } else {
+    const CagVec3 p[4] = {
+        {-w / 2, -h / 2, 0}, {w / 2, -h / 2, 0}, {w / 2, h / 2, 0}, {-w / 2, h / 2, 0}};
+    status = cag_curve_polyline(p, 4, true, 2, &loop, err);
+  }
+  return status ? status : from_one(loop, out, err);
+}
+
+CagStatus cag_region_regular_polygon(size_t n, double radius, CagRegion **out, CagError *err) {
+  CagStatus status = check_positive(radius, "radius", err);
+  if (status) return status;
+  if (n < 3)
+    return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "n", -1,
+                    "a polygon has at least 3 corners; `n` is %zu", n);
+  CagVec3 *p = malloc(sizeof *p * n);
+  if (!p) return cag_fail_memory(err);
+  for (size_t i = 0; i < n; i++) {
+    double s, c;
+    cag_sincos(2 * M_PI * (double)i / (double)n, &s, &c);
+    p[i] = cag_vec3(radius * c, radius * s, 0);
+  }
+  CagCurve *loop;
+  status = cag_curve_polyline(p, n, true, 2, &loop, err);
+  free(p);
+  return status ? status : from_one(loop, out, err);
+}
+
+// --- Measures ---
+
+CagStatus cag_region_area(const CagRegion *r, double *area, CagVec3 *centroid, CagError *err) {
+  double total = 0;
+  CagVec3 moment = {0, 0, 0};
+  for (size_t i = 0; i < r->count; i++) {
+    double a;
+    CagVec3 c;
+    CagStatus status = cag_curve_area(r->loops[i], &a, &c, err);
+    if (status) return status;
+    total += a;
+    moment = cag_madd(moment, a, c);
+  }
+  if (area) *area = total;
+  if (centroid) *centroid = cag_scaled(moment, 1 / total);
+  return CAG_OK;
+}
+
+CagStatus cag_region_perimeter(const CagRegion *r, double *out, CagError *err) {
+  double total = 0;
+  for (size_t i = 0; i < r->count; i++) {
+    double part;
+    const CagCurve *c = r->loops[i];
+    CagStatus status = cag_curve_length(c, c->start, c->end, &part, err);
+    if (status) return status;
+    total += part;
+  }
+  *out = total;
+  return CAG_OK;
+}
+
+CagStatus cag_region_bounds(const CagRegion *r, CagBounds *out, CagError *err) {
+  CagBounds box = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; i < r->count; i++) {
+    CagBounds part;
+    CagStatus status = cag_curve_bounds(r->loops[i], &part, err);
+    if (status) return status;
+    cag_bounds_add(&box, part.min);
+    cag_bounds_add(&box, part.max);
+  }
+  *out = box;
+  return CAG_OK;
+}
+
+CagStatus cag_region_contains(const CagRegion *r, CagVec3 p, bool *out, CagError *err) {
+  CagStatus status = cag_curve_check_points(&p, 1, "P", err);
+  if (status) {
+    err->index = -1;
+    return status;
+  }
+  bool within = false;
+  for (size_t i = 0; i < r->count; i++) {
+    Place place;
+    status = place_of(r->loops[i], p, &place, err);
+    if (status) return status;
+    if (place == BOUNDARY) {
+      *out = true;
+      return CAG_OK;
+    }
+    within = within != (place == INSIDE);
+  }
+  *out = within;
+  return CAG_OK;
+}
+
+CagStatus cag_region_transform(const CagRegion *r, const CagTransform *t, CagRegion **out,
+                               CagError *err) {
+  if (!t->planar)
+    return cag_fail(err, CAG_E_UNSUPPORTED, "not-planar", "T", -1,
+                    "a region stays one under transforms made of plane data alone; this one is of "
+                    "space");
+  CagRegion *image = allocate(r->count);
+  if (!image) return cag_fail_memory(err);
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < r->count; i++) {
+    CagCurve *moved;
+    status = cag_curve_transform(r->loops[i], t, &moved, err);
+    if (status) break;
+    status = oriented(moved, r->outer[i] != i, &image->loops[i], err);
+    cag_curve_release(moved);
+    image->outer[i] = r->outer[i];
+  }
+  if (status) cag_region_release(image);
+  else *out = image;
+  return status;
+}
