@@ -650,6 +650,8 @@ static void lex_sign(CagLexer *lx, CagToken *t) {
     if (strncmp(s->spelling, p, n) != 0) continue;
     uint32_t end = t->span.start + (uint32_t)n;
     finish(lx, t, s->kind, end);
+    if (s->kind >= CAG_TOKEN_FIRST_WORD) // && is read as the word `and`
+      t->as.name = cag_names_intern(lx->names, s->meant, strlen(s->meant))->bytes;
     if (s->meant)
       help(report(lx, s->error, t->span.start, end, "`%s` is no operator here", s->spelling),
            "write %s", s->meant);

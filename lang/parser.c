@@ -452,6 +452,18 @@ static bool at_new_line(Parser *p) {
   }
 }
 
+// A bracket of the wrong kind, just reported, stands for the right one, unless there is one that it
+// could close.
+static void pass_wrong_closer(Parser *p, CagErrorId told) {
+  CagTokenKind kind = parse_current(p)->kind;
+  if (told != CAG_ERR_bracket_mismatch || p->excess || p->bracket_count == 0) return;
+  if (kind >= CAG_TOKEN_COMMA || p->open[kind]) return;
+  p->open[p->brackets[--p->bracket_count].closer]--;
+  p->panic = true;
+  parse_skip(p);
+  p->panic = false;
+}
+
 // Ends a panic: passes on to the next statement in the first column, and reports a bracket that is
 // still open there.
 static void recover(Parser *p, uint32_t start) {
@@ -460,6 +472,7 @@ static void recover(Parser *p, uint32_t start) {
   bool unclosed_told = told && p->errors->items[told - 1].id == CAG_ERR_bracket_not_closed;
   p->lexer.errors = NULL; // what is skipped is not judged
   p->panic = false;
+  pass_wrong_closer(p, told ? p->errors->items[told - 1].id : CAG_ERR_COUNT);
   while (parse_kind(p) != CAG_TOKEN_END) {
     if (parse_current(p)->span.start > start && (parse_at_statement(p) || at_new_line(p))) break;
     p->panic = true; // nor are the brackets in it
@@ -467,6 +480,8 @@ static void recover(Parser *p, uint32_t start) {
     p->panic = false;
   }
   p->lexer.errors = errors;
+  for (size_t i = 0; i < p->bracket_count; i++) // a text that is still open ended with its line
+    if (p->brackets[i].closer == CAG_TOKEN_TEXT_TAIL) p->bracket_count = i;
   if (p->bracket_count && !p->excess && !unclosed_told) {
     const Bracket *b = &p->brackets[p->bracket_count - 1];
     CagDiagnostic *d =

@@ -1,0 +1,211 @@
+// Errors of the syntax: going on after one, open brackets, habits of other languages, limits.
+
+#include "support.h"
+
+static void the_parser_goes_on_at_the_next_statement(void **state) {
+  (void)state;
+  expect_errors("x = 1 +* 2\n  y\nz = 3 $\nw = 4\nv = * 5\n", "E0120 1:8, E0102 3:7, E0120 5:5");
+}
+
+static void an_open_bracket_is_reported_where_it_was_opened(void **state) {
+  (void)state;
+  expect_errors("x = [1, 2\ny = 3\n", "E0123 1:5");
+  expect_errors("x = [1,\ny = 3\n", "E0123 1:5");
+  expect_errors("x = { a: 1,\ny = 3\n", "E0123 1:5");
+  expect_errors("f(x) = max(x, (1 + 2\nshow f(1)\n", "E0123 1:15");
+  expect_errors("f(x) = {\n  a = 1\n  a\nshow f(1)\n", "E0123 1:8");
+  expect_errors("x = f(1", "E0123 1:6");
+  expect_errors("x = (1 + * [2\ny = 3", "E0120 1:10, E0123 1:12");
+}
+
+static void a_wrong_bracket_names_the_open_one(void **state) {
+  (void)state;
+  expect_errors("x = [1, 2)\ny = 1 $\n", "E0124 1:10, E0102 2:7");
+  expect_errors("x = 1)\n", "E0125 1:6");
+  Parsed p = parse_text("x = f([1)\n");
+  assert_int_equal(p.errors.items[0].notes[0].span.start, 6);
+  release(&p);
+}
+
+static void twenty_errors_are_kept(void **state) {
+  (void)state;
+  char text[4096] = "";
+  for (int i = 0; i < 100; i++) strcat(text, "x = $\n");
+  Parsed p = parse_text(text);
+  assert_int_equal(p.errors.count, CAG_DIAGNOSTICS_MAX);
+  release(&p);
+}
+
+static void habits_of_other_languages_get_their_mend(void **state) {
+  (void)state;
+  expect_mend("x = !true", "E0154", "not");
+  expect_mend("x = true && false", "E0155", "and");
+  expect_mend("x = true || false", "E0155", "or");
+  expect_mend("x = true ? 1 : 2", "E0156", "if true then 1 else 2");
+  expect_mend("x = 'text'", "E0108", "\"text\"");
+  expect_mend("print(1, 2)", "E0157", "print 1, 2");
+  expect_mend("a = 1\nprint(a, 2)", "E0157", "print a, 2");
+  expect_mend("x = 1\nx += 1", "E0151", "x2 = x + ...");
+  expect_mend("max(1, 2)", "E0150", "print max(1, 2)");
+  expect_mend("x == 3", "E0150", "define x write =");
+  expect_mend("x = if 1 = 2 then 3 else 4", "E0153", "==");
+  expect_mend("let x = 1", "E0152", "let");
+  expect_mend("def f(x) = x", "E0152", "def");
+  expect_mend("var x = 1", "E0152", "var");
+  expect_mend("function f(x) = x", "E0152", "function");
+  expect_mend("x = 2 ** 3", "E0158", "^");
+  expect_mend("x = if true then 1 elif false then 2 else 3", "E0159", "else if");
+  expect_mend("f(x) = {\n return x\n}", "E0160", "block");
+  expect_mend("x = 1 # one", "E0115", "//");
+  expect_mend("x = True", "E0201", "true");
+  expect_mend("x = null", "E0201", "none");
+  expect_mend("for i in 0..3: print i", "E0161", "[for x in xs: ...]");
+  expect_mend("while x < 3", "E0161", "reduce");
+  expect_mend("x = 1 if true else 2", "E0162", "if c then 1 else b");
+  expect_mend("x = [1 for i in 0..3]", "E0163", "[for x in xs: 1]");
+  expect_mend("x = 3 not in [1]", "E0164", "not (3 in xs)");
+  expect_mend("x = max(a = 1)", "E0165", "a: value");
+  expect_mend("x = 1 === 1", "E0166", "==");
+  expect_mend("x = 1 <> 1", "E0166", "!=");
+  expect_mend("f = x -> x", "E0166", "=>");
+  expect_mend("x := 3", "E0166", "=");
+  expect_mend("y = 1\nx = \"{y:.2f}\"", "E0167", "text(y, digits: 2)");
+  expect_mend("x = (1, 2)", "E0140", "[1, 2]");
+  expect_mend("x = {1, 2}", "E0140", "[ ]");
+  expect_mend("x = [1, 2][1..]", "E0142", "1..-1");
+  expect_mend("x = 1 + if true then 1 else 2", "E0136", "(if true then 1 else 2)");
+  expect_mend("x = 1 |> y => y", "E0136", "(y => y)");
+  expect_mend("x = 3 × 4", "E0102", "*");
+  expect_mend("f(x: number) = x", "E0126", "no types");
+  expect_mend("x = max(...[1])", "E0143", "each argument");
+}
+
+// Mended habits let the parser go on: one error each, and nothing that follows from it.
+static void a_mended_habit_leaves_no_further_error(void **state) {
+  (void)state;
+  expect_errors("x = !true && false\nlet y = 2 ** 3 # c\nprint('a', y)\n",
+                "E0154 1:5, E0155 1:11, E0152 2:1, E0158 2:11, E0115 2:16, E0157 3:6, E0108 3:7");
+}
+
+static void a_missing_value_is_reported_at_the_end_of_its_line(void **state) {
+  (void)state;
+  expect_errors("x =\ny = 4\n", "E0120 1:3");
+  expect_errors("x = 3 +\ny = 4\n", "E0120 1:7");
+  expect_errors("x = {\n a =\n b = 2\n a\n}\n", "E0120 2:4");
+  expect_errors("x =", "E0120 1:4");
+}
+
+static char *repeated(const char *head, const char *unit, size_t n, const char *middle,
+                      const char *closer, size_t closers) {
+  size_t size = strlen(head) + n * strlen(unit) + strlen(middle) + closers * strlen(closer) + 2;
+  char *text = malloc(size), *p = text;
+  p += sprintf(p, "%s", head);
+  for (size_t i = 0; i < n; i++) p += sprintf(p, "%s", unit);
+  p += sprintf(p, "%s", middle);
+  for (size_t i = 0; i < closers; i++) p += sprintf(p, "%s", closer);
+  return text;
+}
+
+static void expect_limit(size_t n, const char *unit, const char *closer, const char *errors) {
+  char *text = repeated("x = ", unit, n, "1", closer, *closer ? n : 0);
+  expect_errors(text, errors);
+  free(text);
+}
+
+static void brackets_nest_a_thousand_deep(void **state) {
+  (void)state;
+  expect_limit(1000, "(", ")", "");
+  expect_limit(1001, "(", ")", "E0127 1:1005");
+  expect_limit(1000, "[", "]", "");
+  expect_limit(1000, "{", "}", "");
+  expect_limit(1000, "\"{", "}\"", "");
+  expect_limit(1001, "\"{", "}\"", "E0127 1:2005");
+  expect_limit(100000, "[", "]", "E0127 1:1005");
+  expect_limit(100000, "{a: ", "}", "E0127 1:4005");
+  expect_limit(100000, "max(", "", "E0127 1:4008");
+}
+
+static void chains_without_brackets_are_bounded_too(void **state) {
+  (void)state;
+  expect_limit(100000, "-", "", "E0127 1:1006");
+  expect_limit(100000, "2^", "", "E0127 1:2007");
+  expect_limit(100000, "a => ", "", "E0127 1:5010");
+  expect_limit(3000, "1 + ", "", "");
+  expect_limit(3000, "if true then 1 else ", "", "");
+  Parsed p;
+  char *text = repeated("x = 1", " + 1", 1000000, "", "", 0);
+  p = parse_text(text);
+  assert_int_equal(p.errors.count, 1);
+  assert_string_equal(cag_error_info(p.errors.items[0].id)->code, "E0128");
+  release(&p);
+  free(text);
+}
+
+static void a_long_line_is_no_burden(void **state) {
+  (void)state;
+  char *text = repeated("x = [", "1, ", 3000000, "2", "]", 1);
+  expect_errors(text, "");
+  free(text);
+  text = repeated("x = \"", "0123456789", 1000000, "\" $", "", 0);
+  expect_errors(text, "E0102 1:10000008");
+  free(text);
+}
+
+// A small generator of our own, so that every run has the same texts.
+static uint32_t next_random(uint32_t *seed) {
+  *seed ^= *seed << 13;
+  *seed ^= *seed >> 17;
+  *seed ^= *seed << 5;
+  return *seed;
+}
+
+static void damaged_texts_neither_crash_nor_hang(void **state) {
+  (void)state;
+  static const char good[] =
+      "/// doc\nimport std.materials as mat: glazed\nparam h = 120 in 50..300 \"height\"\n"
+      "f(a, b = 2) = { c = a + b; assert c > 0, \"m{c}\"\n c ^ -2 }\n"
+      "xs = [for [k, _] in {a: 1, \"b\": 2} if k != \"a\": \"{k} {\"x{1}\"}\"]\n"
+      "g = (x, y) => if x then y else not x |> f(1, k: 0..<5 by 2)[1..-1].z\n"
+      "show `raw` + 45deg /* c /* d */ */\nprint xs == 1 and g or -h, 'q' // end\n";
+  static const char pieces[] = "()[]{}\"`'\\\n,:;.=<>+-*/%|&^!?#_ \xc3\xa9\xffxif0";
+  uint32_t seed = 2463534242u;
+  for (int round = 0; round < 4000; round++) {
+    char text[sizeof good];
+    size_t length = sizeof good - 1;
+    memcpy(text, good, sizeof good);
+    for (uint32_t edits = 1 + next_random(&seed) % 8; edits; edits--) {
+      size_t at = next_random(&seed) % length;
+      if (next_random(&seed) % 4 == 0 && length > 20) {
+        memmove(text + at, text + at + 1, length - at - 1);
+        length--;
+      } else {
+        text[at] = pieces[next_random(&seed) % (sizeof pieces - 1)];
+      }
+    }
+    if (next_random(&seed) % 3 == 0) length = 1 + next_random(&seed) % length;
+    Parsed p = parse_bytes(text, length, round % 2 ? CAG_PARSE_FILE : CAG_PARSE_REPL);
+    CagResolveEnv env = test_env();
+    cag_resolve(p.module, &env, &p.errors); // a damaged tree too
+    messages_of(&p, round % 3 ? CAG_DIAGNOSTIC_TEXT : CAG_DIAGNOSTIC_JSON);
+    tree_of(&p);
+    cag_parse_incomplete(text, length);
+    release(&p);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_parser_goes_on_at_the_next_statement),
+      cmocka_unit_test(an_open_bracket_is_reported_where_it_was_opened),
+      cmocka_unit_test(a_wrong_bracket_names_the_open_one),
+      cmocka_unit_test(twenty_errors_are_kept),
+      cmocka_unit_test(habits_of_other_languages_get_their_mend),
+      cmocka_unit_test(a_mended_habit_leaves_no_further_error),
+      cmocka_unit_test(a_missing_value_is_reported_at_the_end_of_its_line),
+      cmocka_unit_test(brackets_nest_a_thousand_deep),
+      cmocka_unit_test(chains_without_brackets_are_bounded_too),
+      cmocka_unit_test(a_long_line_is_no_burden),
+      cmocka_unit_test(damaged_texts_neither_crash_nor_hang),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
