@@ -66,7 +66,7 @@ static Finish finish_of(const CagMaterial *m) {
   double mirror = metallic * 0.95 * pow(1 - rough, 1.5);
   double blurred = metallic - mirror;
   Finish f = {.metal = metallic > 0.5};
-  f.diffuse = (1 - metallic) + 0.55 * blurred;
+  f.diffuse = (1 - metallic) + 0.4 * blurred;
   f.specular = f.metal ? 0.35 * blurred + 0.1 : 1.5 * normal_reflectance(m->ior);
   f.phong = coat * normal_reflectance(1.5);
   f.mirror = f.metal ? mirror : fmax(gloss(rough), coat);

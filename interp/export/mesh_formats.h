@@ -1,0 +1,40 @@
+// Meshes as files for other programs: OBJ with its MTL, binary STL, binary PLY, binary glTF (GLB).
+//
+// A file is written from parts, each a mesh with a name and a material, to an open output file;
+// errors of writing stay in the file until its commit. Triangles that the single precision of a
+// format shrinks to an edge or a point are left out of STL, PLY and GLB (their neighbours close the
+// place). Lengths are millimetres, Z up, in OBJ, STL and PLY; GLB keeps them in its vertices, and
+// its root node turns them into glTF's metres and Y up.
+
+#ifndef CAG_INTERP_EXPORT_MESH_FORMATS_H
+#define CAG_INTERP_EXPORT_MESH_FORMATS_H
+
+#include "interp/render/atomic_file.h"
+#include "interp/scene/scene.h"
+
+typedef struct CagMeshPart {
+  const char *name; // of the object, UTF-8
+  const CagMesh *mesh;
+  const CagMaterial *material;
+} CagMeshPart;
+
+// One object a part, its vertices shared across seams and creases (`v` by `weld`), normals and
+// parameters of its own (`vn`, `vt`). material_file: the name to put in `mtllib`, beside the file;
+// NULL: no materials.
+CagStatus cag_export_obj(const CagMeshPart *parts, size_t n, const char *material_file,
+                         CagAtomicFile *file, CagError *err);
+// The materials of the parts, each once: colours in sRGB as viewers take them, and the physical
+// `Pr`, `Pm`, `Pc`.
+CagStatus cag_export_mtl(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
+// All parts in one list of triangles with their flat normals. `title` goes into the header (NULL:
+// the program's).
+CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title,
+                         CagAtomicFile *file, CagError *err);
+// One welded mesh: a point is one vertex, so its normal at a crease is the mean of those there, and
+// its parameters at a seam are the first. Colours are 8-bit sRGB.
+CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
+// glTF 2.0: a node and a mesh each part, metallic-roughness materials with the Khronos extensions for
+// ior, transmission, clear coat and strong emission where a material has them.
+CagStatus cag_export_glb(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
+
+#endif

@@ -1,0 +1,103 @@
+// What the mesh formats share: numbers as text and as bytes, vertices in single precision.
+
+#include "interp/export/mesh_write.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static const char two_digits[] = "00010203040506070809101112131415161718192021222324252627282930313"
+                                 "23334353637383940414243444546474849505152535455565758596061626364"
+                                 "65666768697071727374757677787980818283848586878889909192939495969"
+                                 "79899";
+
+char *cag_mesh_write_index(char *at, uint64_t n) {
+  char digits[20];
+  int k = 20;
+  while (n >= 100) {
+    k -= 2;
+    memcpy(digits + k, two_digits + 2 * (n % 100), 2);
+    n /= 100;
+  }
+  if (n >= 10) {
+    k -= 2;
+    memcpy(digits + k, two_digits + 2 * n, 2);
+  } else digits[--k] = (char)('0' + n);
+  memcpy(at, digits + k, (size_t)(20 - k));
+  return at + 20 - k;
+}
+
+enum { DIGITS = 9 };
+
+// Decimals of x < 10^9 so that it has DIGITS significant digits.
+static int decimals_of(double x) {
+  static const double bound[] = {1e8,  1e7,  1e6,  1e5,  1e4,  1e3, 1e2,
+                                 1e1, 1, 1e-1, 1e-2, 1e-3, 1e-4};
+  int k = 0;
+  while (k < (int)(sizeof bound / sizeof *bound) && x < bound[k]) k++;
+  return k;
+}
+
+// The digits of a fraction of `decimals` digits, without trailing zeros; from the back, so that
+// zeros are dropped as they come.
+static char *write_fraction(char *at, uint64_t fraction, int decimals) {
+  while (decimals > 0 && fraction % 10 == 0) fraction /= 10, decimals--;
+  for (char *to = at + decimals; to > at; fraction /= 10) *--to = (char)('0' + fraction % 10);
+  return at + decimals;
+}
+
+char *cag_mesh_write_number(char *at, double x) {
+  static const double power[] = {1,   1e1, 1e2, 1e3, 1e4,  1e5,  1e6,
+                                 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13};
+  static const uint64_t whole_power[] = {1,           10,           100,           1000,
+                                         10000,       100000,       1000000,       10000000,
+                                         100000000,   1000000000,   10000000000,   100000000000,
+                                         1000000000000, 10000000000000};
+  const double least_plain = 1e-5, most_plain = 999999999.4;
+  double size = x < 0 ? -x : x;
+  if (size == 0) {
+    *at++ = '0';
+    return at;
+  }
+  if (!(size >= least_plain && size < most_plain)) return at + snprintf(at, 24, "%.9g", x);
+  int decimals = decimals_of(size);
+  uint64_t scaled = (uint64_t)(size * power[decimals] + 0.5);
+  uint64_t whole = scaled / whole_power[decimals], fraction = scaled % whole_power[decimals];
+  if (x < 0) *at++ = '-';
+  at = cag_mesh_write_index(at, whole);
+  if (fraction == 0) return at;
+  *at++ = '.';
+  return write_fraction(at, fraction, decimals);
+}
+
+char *cag_mesh_write_word(char *at, const char *name, size_t room) {
+  if (!*name && room > 0) *at++ = '_';
+  for (; *name && room > 0; name++, room--) {
+    unsigned char c = (unsigned char)*name;
+    *at++ = c <= ' ' || c == 0x7f ? '_' : (char)c;
+  }
+  return at;
+}
+
+float *cag_mesh_float_positions(const CagMesh *m) {
+  float *p = malloc((m->vertex_count + 1) * 3 * sizeof *p);
+  for (size_t v = 0; p && v < m->vertex_count; v++) {
+    // + 0: a negative zero is the same place as a positive one.
+    p[3 * v] = (float)m->positions[v].x + 0.0f;
+    p[3 * v + 1] = (float)m->positions[v].y + 0.0f;
+    p[3 * v + 2] = (float)m->positions[v].z + 0.0f;
+  }
+  return p;
+}
+
+size_t cag_mesh_kept_triangles(const CagMesh *m, const float *positions) {
+  size_t kept = 0;
+  for (size_t t = 0; t < m->triangle_count; t++)
+    kept += !cag_mesh_shrinks(positions, m->triangles + 3 * t);
+  return kept;
+}
+
+size_t cag_mesh_first_with_material(const CagMeshPart *parts, size_t i) {
+  for (size_t k = 0; k < i; k++)
+    if (parts[k].material == parts[i].material) return k;
+  return i;
+}

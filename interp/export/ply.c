@@ -1,0 +1,141 @@
+// Binary PLY, little-endian: one welded list of vertices with normals, parameters and colours, and
+// one of triangles.
+
+#include <stdlib.h>
+
+#include "interp/export/mesh_write.h"
+
+enum { VERTEX_BYTES = 8 * 4 + 3, FACE_BYTES = 1 + 3 * 4, BATCH = 1024 };
+
+typedef struct PlyPart {
+  float *positions;
+  uint32_t *number; // of a vertex in the file
+  CagVec3 *normals; // of points: those of their vertices together
+  size_t vertices, triangles;
+} PlyPart;
+
+static uint32_t point_of(const CagMesh *m, size_t v) { return m->weld ? m->weld[v] : (uint32_t)v; }
+
+// Adds each vertex's normal to its point's, one of many alike once; a mesh without normals gets
+// those of its triangles.
+static void sum_normals(const CagMesh *m, CagVec3 *normals) {
+  for (size_t v = 0; v < m->vertex_count; v++) normals[v] = cag_vec3(0, 0, 0);
+  if (m->normals) {
+    for (size_t v = 0; v < m->vertex_count; v++) {
+      uint32_t p = point_of(m, v);
+      if (p == v || cag_norm(cag_sub(m->normals[v], m->normals[p])) > 0)
+        normals[p] = cag_add(normals[p], m->normals[v]);
+    }
+    return;
+  }
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    CagVec3 a = m->positions[k[0]];
+    CagVec3 n = cag_cross(cag_sub(m->positions[k[1]], a), cag_sub(m->positions[k[2]], a));
+    for (int j = 0; j < 3; j++) {
+      uint32_t p = point_of(m, k[j]);
+      normals[p] = cag_add(normals[p], n);
+    }
+  }
+}
+
+static bool begin_part(PlyPart *p, const CagMesh *m, size_t first) {
+  p->positions = cag_mesh_float_positions(m);
+  p->number = malloc((m->vertex_count + 1) * sizeof *p->number);
+  p->normals = malloc((m->vertex_count + 1) * sizeof *p->normals);
+  if (!p->positions || !p->number || !p->normals) return false;
+  sum_normals(m, p->normals);
+  for (size_t v = 0; v < m->vertex_count; v++) {
+    uint32_t point = point_of(m, v);
+    p->number[v] = point == v ? (uint32_t)(first + p->vertices++) : p->number[point];
+  }
+  p->triangles = cag_mesh_kept_triangles(m, p->positions);
+  return true;
+}
+
+static void write_header(size_t vertices, size_t triangles, CagAtomicFile *file) {
+  cag_atomic_file_printf(file,
+                         "ply\nformat binary_little_endian 1.0\ncomment written by cag, lengths "
+                         "in mm, z up\nelement vertex %zu\n",
+                         vertices);
+  static const char *const floats[] = {"x", "y", "z", "nx", "ny", "nz", "s", "t"};
+  for (size_t k = 0; k < sizeof floats / sizeof *floats; k++)
+    cag_atomic_file_printf(file, "property float %s\n", floats[k]);
+  cag_atomic_file_printf(file,
+                         "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                         "element face %zu\nproperty list uchar uint vertex_indices\nend_header\n",
+                         triangles);
+}
+
+static void color_bytes(const CagMaterial *material, unsigned char rgb[3]) {
+  double linear[3] = {1, 1, 1};
+  if (material) {
+    linear[0] = material->color.r;
+    linear[1] = material->color.g;
+    linear[2] = material->color.b;
+  }
+  for (int k = 0; k < 3; k++)
+    rgb[k] = (unsigned char)(255 * cag_linear_to_srgb(fmin(fmax(linear[k], 0), 1)) + 0.5);
+}
+
+static void write_vertices(const CagMeshPart *part, const PlyPart *p, CagAtomicFile *file) {
+  const CagMesh *m = part->mesh;
+  unsigned char rgb[3];
+  color_bytes(part->material, rgb);
+  for (size_t v = 0; v < m->vertex_count;) {
+    char *at = cag_atomic_file_reserve(file, (size_t)BATCH * VERTEX_BYTES);
+    for (size_t end = v + BATCH; v < m->vertex_count && v < end; v++) {
+      if (point_of(m, v) != v) continue;
+      CagVec3 n = cag_unit(p->normals[v]);
+      for (int axis = 0; axis < 3; axis++) at = cag_mesh_put_float(at, p->positions[3 * v + axis]);
+      at = cag_mesh_put_float(at, (float)n.x);
+      at = cag_mesh_put_float(at, (float)n.y);
+      at = cag_mesh_put_float(at, (float)n.z);
+      at = cag_mesh_put_float(at, m->uv ? (float)m->uv[2 * v] : 0);
+      at = cag_mesh_put_float(at, m->uv ? (float)m->uv[2 * v + 1] : 0);
+      memcpy(at, rgb, 3);
+      at += 3;
+    }
+    cag_atomic_file_advance(file, at);
+  }
+}
+
+static void write_faces(const CagMesh *m, const PlyPart *p, CagAtomicFile *file) {
+  for (size_t t = 0; t < m->triangle_count;) {
+    char *at = cag_atomic_file_reserve(file, (size_t)BATCH * FACE_BYTES);
+    for (size_t end = t + BATCH; t < m->triangle_count && t < end; t++) {
+      const uint32_t *k = m->triangles + 3 * t;
+      if (cag_mesh_shrinks(p->positions, k)) continue;
+      *at++ = 3;
+      for (int j = 0; j < 3; j++) at = cag_mesh_put_u32(at, p->number[k[j]]);
+    }
+    cag_atomic_file_advance(file, at);
+  }
+}
+
+CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err) {
+  PlyPart *p = calloc(n + 1, sizeof *p);
+  size_t vertices = 0, triangles = 0;
+  CagStatus status = p ? CAG_OK : cag_fail_memory(err);
+  for (size_t i = 0; status == CAG_OK && i < n; i++) {
+    if (!begin_part(&p[i], parts[i].mesh, vertices)) status = cag_fail_memory(err);
+    vertices += p[i].vertices;
+    triangles += p[i].triangles;
+    if (status == CAG_OK && vertices > UINT32_MAX)
+      status = cag_fail(err, CAG_E_LIMIT, "file-too-large", "", -1,
+                        "a PLY file holds at most %lu vertices: use a larger tolerance",
+                        (unsigned long)UINT32_MAX);
+  }
+  if (status == CAG_OK) {
+    write_header(vertices, triangles, file);
+    for (size_t i = 0; i < n; i++) write_vertices(&parts[i], &p[i], file);
+    for (size_t i = 0; i < n; i++) write_faces(parts[i].mesh, &p[i], file);
+  }
+  for (size_t i = 0; p && i < n; i++) {
+    free(p[i].positions);
+    free(p[i].number);
+    free(p[i].normals);
+  }
+  free(p);
+  return status;
+}
