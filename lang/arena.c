@@ -19,12 +19,14 @@ struct CagArenaBlock {
 #define FIRST_BLOCK ((size_t)4 << 10)
 #define LARGEST_BLOCK ((size_t)256 << 10)
 
+void *cag_checked(void *memory) {
+  if (memory) return memory;
+  fputs("cag: out of memory\n", stderr);
+  exit(5); // a limit was crossed (command line, exit status)
+}
+
 static CagArenaBlock *block_new(size_t size) {
-  CagArenaBlock *b = calloc(1, sizeof *b + size);
-  if (!b) {
-    fputs("cag: out of memory\n", stderr);
-    exit(5); // a limit was crossed (command line, exit status)
-  }
+  CagArenaBlock *b = cag_checked(calloc(1, sizeof *b + size));
   b->size = size;
   return b;
 }

@@ -16,4 +16,7 @@ void *cag_arena_alloc(CagArena *a, size_t size);
 char *cag_arena_copy(CagArena *a, const char *bytes, size_t length); // NUL-terminated copy
 void cag_arena_free(CagArena *a);
 
+// The same memory; ends the process with a message when there is none.
+void *cag_checked(void *memory);
+
 #endif

@@ -143,6 +143,16 @@ void cag_diagnostics_move(CagDiagnostics *to, CagDiagnostics *from) {
   from->dropped = 0;
 }
 
+void cag_diagnostics_sort(CagDiagnostics *d, size_t from) {
+  for (size_t i = from + 1; i < d->count; i++) {
+    CagDiagnostic moved = d->items[i];
+    size_t k = i;
+    for (; k > from && d->items[k - 1].span.start > moved.span.start; k--)
+      d->items[k] = d->items[k - 1];
+    d->items[k] = moved;
+  }
+}
+
 // ---- the nearest name ----
 
 // Longer names are not compared: nobody misspells them one letter at a time.

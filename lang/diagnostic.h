@@ -84,6 +84,9 @@ void cag_diagnostic_add_note(CagDiagnostic *d, int kind, const CagSource *source
 // Moves what `from` holds to the end of `to`, leaving `from` empty.
 void cag_diagnostics_move(CagDiagnostics *to, CagDiagnostics *from);
 
+// Puts the items from number `from` on, all of one source, in the order of the text.
+void cag_diagnostics_sort(CagDiagnostics *d, size_t from);
+
 typedef enum CagDiagnosticStyle {
   CAG_DIAGNOSTIC_TEXT,
   CAG_DIAGNOSTIC_COLOR,

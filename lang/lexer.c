@@ -47,11 +47,7 @@ static void finish(CagLexer *lx, CagToken *t, CagTokenKind kind, uint32_t end) {
 
 static void *grown(void *items, size_t *capacity, size_t size) {
   size_t wanted = *capacity ? 2 * *capacity : 16;
-  void *p = realloc(items, wanted * size);
-  if (!p) {
-    fputs("cag: out of memory\n", stderr);
-    exit(5); // a limit was crossed (command line, exit status)
-  }
+  void *p = cag_checked(realloc(items, wanted * size));
   *capacity = wanted;
   return p;
 }

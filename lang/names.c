@@ -2,19 +2,13 @@
 
 #include "lang/names.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define FIRST_CAPACITY 256
 
 static CagNameHead **slots_new(size_t capacity) {
-  CagNameHead **slots = calloc(capacity, sizeof(CagNameHead *));
-  if (!slots) {
-    fputs("cag: out of memory\n", stderr);
-    exit(5); // a limit was crossed (command line, exit status)
-  }
-  return slots;
+  return cag_checked(calloc(capacity, sizeof(CagNameHead *)));
 }
 
 void cag_names_init(CagNames *n, CagArena *arena) {

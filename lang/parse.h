@@ -117,6 +117,27 @@ void *parse_list_end(Parser *p, size_t begin, size_t size, size_t *count);
 
 CagDecl *parse_declare(Parser *p, CagDeclKind kind, const CagToken *name);
 CagExpr *parse_new(Parser *p, CagExprKind kind, uint32_t start);
+// Ends a node behind the last token.
+CagExpr *parse_finish(Parser *p, CagExpr *e);
+// Counts `below` into the height of e.
+void parse_stack_on(Parser *p, CagExpr *e, const CagExpr *below);
+CagExpr *parse_error_node(Parser *p);
+CagExpr *parse_binary(Parser *p, CagExprKind kind, CagBinaryOp op, CagSpan op_span, CagExpr *left,
+                      CagExpr *right);
+// Counts recursion that no bracket bounds. Gives false, in panic, when it is too deep.
+bool parse_deeper(Parser *p);
+// Consumes a name that is defined here; NULL, in panic, when something else stands here.
+const CagToken *parse_name_to_define(Parser *p, CagToken *name, const char *what);
+// Whether a definition begins where the value of the line before should stand.
+bool parse_at_next_definition(Parser *p);
+// Says that an expression is missing before the current token.
+CagExpr *parse_missing(Parser *p);
+bool parse_opens_lambda(Parser *p);
+CagExpr *parse_lambda(Parser *p);
+CagExpr *parse_branch(Parser *p);
+CagExpr *parse_negation(Parser *p);
+CagExpr *parse_postfix(Parser *p);
+CagExpr *parse_group(Parser *p);
 CagExpr *parse_expression(Parser *p);
 CagExpr *parse_operand(Parser *p);
 CagFunctionAst *parse_function(Parser *p, const char *name);

@@ -54,12 +54,7 @@ static CagDecl *declare_top(Parser *p, CagStatement *s, const CagToken *name) {
   d->doc = s->doc;
   if (p->top_count == p->top_capacity) {
     size_t capacity = p->top_capacity ? 2 * p->top_capacity : 64;
-    CagDecl **tops = realloc(p->tops, capacity * sizeof *tops);
-    if (!tops) {
-      fputs("cag: out of memory\n", stderr);
-      exit(5); // a limit was crossed (command line, exit status)
-    }
-    p->tops = tops;
+    p->tops = cag_checked(realloc(p->tops, capacity * sizeof(CagDecl *)));
     p->top_capacity = capacity;
   }
   p->tops[p->top_count++] = d;
@@ -509,9 +504,7 @@ static void statements(Parser *p) {
     if (!s) continue;
     if (count == capacity) {
       capacity = capacity ? 2 * capacity : 64;
-      CagStatement **grown = realloc(list, capacity * sizeof *grown);
-      if (!grown) break;
-      list = grown;
+      list = cag_checked(realloc(list, capacity * sizeof *list));
     }
     list[count++] = s;
   }
@@ -520,17 +513,6 @@ static void statements(Parser *p) {
   if (count) memcpy(m->statements, list, count * sizeof *list);
   m->count = count;
   free(list);
-}
-
-// Puts the errors of this parse in the order of the text: those of the lexer run a few words ahead.
-static void sort_errors(CagDiagnostics *d, size_t from) {
-  for (size_t i = from + 1; i < d->count; i++) {
-    CagDiagnostic moved = d->items[i];
-    size_t k = i;
-    for (; k > from && d->items[k - 1].span.start > moved.span.start; k--)
-      d->items[k] = d->items[k - 1];
-    d->items[k] = moved;
-  }
 }
 
 static bool check_encoding(const CagSource *source, CagDiagnostics *errors) {
@@ -564,12 +546,8 @@ static void copy_results(Parser *p) {
 // Parses; tells whether the first error was that the text ends too early.
 static CagModuleAst *parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors,
                            bool *cut_off) {
-  CagModuleAst *m = calloc(1, sizeof *m);
-  Parser *p = calloc(1, sizeof *p);
-  if (!m || !p) {
-    fputs("cag: out of memory\n", stderr);
-    exit(5); // a limit was crossed (command line, exit status)
-  }
+  CagModuleAst *m = cag_checked(calloc(1, sizeof *m));
+  Parser *p = cag_checked(calloc(1, sizeof *p));
   m->source = source;
   size_t before = errors->count;
   *cut_off = false;
@@ -586,7 +564,7 @@ static CagModuleAst *parse(const CagSource *source, CagParseMode mode, CagDiagno
     statements(p);
     copy_results(p);
     *cut_off = p->cut_off;
-    sort_errors(errors, before);
+    cag_diagnostics_sort(errors, before); // those of the lexer run a few words ahead
     cag_lexer_release(&p->lexer);
     cag_names_release(&p->names);
   }

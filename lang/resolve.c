@@ -46,14 +46,6 @@ typedef struct Resolver {
 
 #define NOT_FOUND ((size_t)-1)
 
-static void *checked(void *p) {
-  if (!p) {
-    fputs("cag: out of memory\n", stderr);
-    exit(5); // a limit was crossed (command line, exit status)
-  }
-  return p;
-}
-
 static bool is_blank(const char *name) { return name[0] == '_' && name[1] == 0; }
 
 static Current *current_of(Resolver *r, const char *name) {
@@ -126,7 +118,7 @@ static const char *nearest(Resolver *r, const char *name) {
     if (strcmp(foreign[i].said, name) == 0) return foreign[i].meant;
   const CagResolveEnv *env = r->env;
   size_t count = 0, most = r->count + env->outer_count + env->builtin_count;
-  const char **names = checked(malloc((most + 1) * sizeof *names));
+  const char **names = cag_checked(malloc((most + 1) * sizeof *names));
   for (size_t i = r->count; i-- > 0;)
     if (!is_blank(r->entries[i].decl->name)) names[count++] = r->entries[i].decl->name;
   for (size_t i = 0; i < env->outer_count; i++) names[count++] = env->outer_names[i];
@@ -229,7 +221,7 @@ static void declare(Resolver *r, CagDecl *d) {
   }
   if (r->count == r->capacity) {
     r->capacity = r->capacity ? 2 * r->capacity : 64;
-    r->entries = checked(realloc(r->entries, r->capacity * sizeof *r->entries));
+    r->entries = cag_checked(realloc(r->entries, r->capacity * sizeof *r->entries));
   }
   r->entries[r->count++] = (Entry){d, c->decl, c->scope};
   *c = (Current){d, r->scope};
@@ -430,7 +422,7 @@ static void walk_call(Resolver *r, CagExpr *e) {
   walk(r, e->as.call.callee);
   Given few[FEW], *given = few;
   size_t named = 0, count = e->as.call.count;
-  if (count > FEW) given = checked(malloc(count * sizeof *given));
+  if (count > FEW) given = cag_checked(malloc(count * sizeof *given));
   for (size_t i = 0; i < count; i++) {
     CagArgument *a = &e->as.call.arguments[i];
     walk(r, a->value);
@@ -443,7 +435,7 @@ static void walk_call(Resolver *r, CagExpr *e) {
 static void walk_record(Resolver *r, CagExpr *e) {
   Given few[FEW], *given = few;
   size_t named = 0, count = e->as.record.count;
-  if (count > FEW) given = checked(malloc(count * sizeof *given));
+  if (count > FEW) given = cag_checked(malloc(count * sizeof *given));
   for (size_t i = 0; i < count; i++) {
     CagField *f = &e->as.record.fields[i];
     walk(r, f->value);
@@ -542,24 +534,13 @@ static void walk_statement(Resolver *r, CagStatement *s) {
   }
 }
 
-// Puts the errors in the order of the text.
-static void sort_errors(CagDiagnostics *d, size_t from) {
-  for (size_t i = from + 1; i < d->count; i++) {
-    CagDiagnostic moved = d->items[i];
-    size_t k = i;
-    for (; k > from && d->items[k - 1].span.start > moved.span.start; k--)
-      d->items[k] = d->items[k - 1];
-    d->items[k] = moved;
-  }
-}
-
 void cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *errors) {
   Resolver r = {.module = m, .env = env, .errors = errors};
   size_t before = errors->count;
-  r.current = checked(calloc(m->name_count + 1, sizeof *r.current));
+  r.current = cag_checked(calloc(m->name_count + 1, sizeof *r.current));
   declare_tops(&r);
   for (size_t i = 0; i < m->count; i++) walk_statement(&r, m->statements[i]);
-  sort_errors(errors, before);
+  cag_diagnostics_sort(errors, before);
   free(r.current);
   free(r.entries);
 }
