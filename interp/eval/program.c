@@ -263,3 +263,9 @@ bool cag_program_run(CagVm *vm, CagModuleUnit *main,
   }
   return true;
 }
+
+bool cag_program_run_shows(CagVm *vm, CagModuleUnit *m) {
+  for (size_t i = 0; i < m->ast->count; i++)
+    if (m->ast->statements[i]->kind == CAG_STATEMENT_SHOW && !run_show(vm, m, m->ast->statements[i])) return false;
+  return true;
+}

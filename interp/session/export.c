@@ -1,0 +1,206 @@
+// Writing the scene in a format.
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "interp/export/json.h"
+#include "interp/export/mesh_formats.h"
+#include "interp/export/pov.h"
+#include "interp/export/svg.h"
+#include "interp/session/output.h"
+
+typedef int (*ExportFunction)(CagSession *s, const char *path);
+
+// --- Meshes ---
+
+typedef struct Parts {
+  CagMeshPart *items;
+  size_t count;
+} Parts;
+
+static void free_parts(Parts *p) {
+  for (size_t i = 0; i < p->count; i++) cag_mesh_release((CagMesh *)p->items[i].mesh);
+  free(p->items);
+}
+
+// Meshes of all things shown; grounds and lines are for pictures only, unless nothing else was
+// shown.
+static int make_parts(CagSession *s, Parts *out) {
+  const CagScene *scene = &s->scene;
+  *out = (Parts){calloc(scene->item_count + 1, sizeof *out->items), 0};
+  bool bodies = false;
+  for (size_t i = 0; i < scene->item_count; i++)
+    bodies |= scene->items[i].kind != CAG_ITEM_CURVE && scene->items[i].kind != CAG_ITEM_GROUND;
+  size_t triangles = 0;
+  for (size_t i = 0; i < scene->item_count; i++) {
+    const CagItem *item = &scene->items[i];
+    if (item->kind == CAG_ITEM_GROUND || (bodies && item->kind == CAG_ITEM_CURVE)) continue;
+    CagError err = {0};
+    CagMesh *mesh;
+    CagStatus status = cag_item_mesh(scene, item, &mesh, &err);
+    if (status == CAG_OK) {
+      triangles += mesh->triangle_count;
+      out->items[out->count++] = (CagMeshPart){
+          .name = item->name, .mesh = mesh, .material = &scene->materials[item->material]};
+      if (triangles > scene->max_triangles)
+        status = cag_fail(&err, CAG_E_LIMIT, "triangle-limit", "", -1,
+                          "the meshes have more than the %zu triangles allowed (--max-triangles)",
+                          scene->max_triangles);
+    }
+    if (status == CAG_OK) continue;
+    free_parts(out);
+    return cag_session_fail_geometry(s, &err);
+  }
+  return CAG_STATUS_OK;
+}
+
+// Name of the material file that goes with an .obj; NULL for standard output.
+static char *material_path(const char *path) {
+  if (strcmp(path, "-") == 0) return NULL;
+  const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
+  size_t stem = dot && (!slash || dot > slash) ? (size_t)(dot - path) : strlen(path);
+  char *out = malloc(stem + 5);
+  if (out) snprintf(out, stem + 5, "%.*s.mtl", (int)stem, path);
+  return out;
+}
+
+typedef struct MeshOutput {
+  const CagMeshPart *parts;
+  size_t count;
+  const char *material_file; // of .obj
+} MeshOutput;
+
+typedef CagStatus (*MeshWriter)(const MeshOutput *m, CagAtomicFile *f, CagError *err);
+
+static CagStatus write_obj(const MeshOutput *m, CagAtomicFile *f, CagError *err) {
+  return cag_export_obj(m->parts, m->count, m->material_file, f, err);
+}
+static CagStatus write_mtl(const MeshOutput *m, CagAtomicFile *f, CagError *err) {
+  return cag_export_mtl(m->parts, m->count, f, err);
+}
+static CagStatus write_stl(const MeshOutput *m, CagAtomicFile *f, CagError *err) {
+  return cag_export_stl(m->parts, m->count, NULL, f, err);
+}
+static CagStatus write_ply(const MeshOutput *m, CagAtomicFile *f, CagError *err) {
+  return cag_export_ply(m->parts, m->count, f, err);
+}
+static CagStatus write_glb(const MeshOutput *m, CagAtomicFile *f, CagError *err) {
+  return cag_export_glb(m->parts, m->count, f, err);
+}
+
+static int write_mesh_file(CagSession *s, const MeshOutput *m, const char *path, MeshWriter write) {
+  CagIoError io = {0};
+  CagError err = {0};
+  CagAtomicFile *f = cag_atomic_file_open(path, &io);
+  if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  if (write(m, f, &err) != CAG_OK) {
+    cag_atomic_file_abort(f);
+    return cag_session_fail_geometry(s, &err);
+  }
+  return cag_atomic_file_commit(f, &io) ? CAG_STATUS_OK
+                                        : cag_session_fail_io(s, CAG_ERR_output_file, &io);
+}
+
+static int export_meshes(CagSession *s, const char *path, MeshWriter write) {
+  Parts parts;
+  int status = make_parts(s, &parts);
+  if (status != CAG_STATUS_OK) return status;
+  char *materials = write == write_obj ? material_path(path) : NULL;
+  const char *slash = materials ? strrchr(materials, '/') : NULL;
+  MeshOutput m = {parts.items, parts.count, slash ? slash + 1 : materials};
+  // The materials first: an .obj that stands there whole finds them.
+  if (materials) status = write_mesh_file(s, &m, materials, write_mtl);
+  if (status == CAG_STATUS_OK) status = write_mesh_file(s, &m, path, write);
+  free(materials);
+  free_parts(&parts);
+  return status;
+}
+
+static int export_obj(CagSession *s, const char *path) { return export_meshes(s, path, write_obj); }
+static int export_stl(CagSession *s, const char *path) { return export_meshes(s, path, write_stl); }
+static int export_ply(CagSession *s, const char *path) { return export_meshes(s, path, write_ply); }
+static int export_glb(CagSession *s, const char *path) { return export_meshes(s, path, write_glb); }
+
+// --- Scenes as text ---
+
+static int export_text(CagSession *s, const char *path,
+                       CagStatus (*write)(CagSession *s, CagAtomicFile *f, CagError *err)) {
+  CagIoError io = {0};
+  CagError err = {0};
+  CagAtomicFile *f = cag_atomic_file_open(path, &io);
+  if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  if (write(s, f, &err) != CAG_OK) {
+    cag_atomic_file_abort(f);
+    return cag_session_fail_geometry(s, &err);
+  }
+  return cag_atomic_file_commit(f, &io) ? CAG_STATUS_OK
+                                        : cag_session_fail_io(s, CAG_ERR_output_file, &io);
+}
+
+static CagStatus write_pov(CagSession *s, CagAtomicFile *f, CagError *err) {
+  return cag_export_pov(&s->scene, &(CagPovOptions){.quality = CAG_POV_NORMAL}, f, err);
+}
+static CagStatus write_svg(CagSession *s, CagAtomicFile *f, CagError *err) {
+  return cag_export_svg(&s->scene, 0, f, err);
+}
+static CagStatus write_json(CagSession *s, CagAtomicFile *f, CagError *err) {
+  return cag_export_json(&s->scene, f, err);
+}
+
+static int export_pov(CagSession *s, const char *path) { return export_text(s, path, write_pov); }
+static int export_svg(CagSession *s, const char *path) { return export_text(s, path, write_svg); }
+static int export_json(CagSession *s, const char *path) { return export_text(s, path, write_json); }
+
+// --- The table ---
+
+static const struct Format {
+  const char *name, *story;
+  ExportFunction write;
+} formats[] = {
+    {"obj", "mesh, Wavefront OBJ with its materials in an .mtl file beside it", export_obj},
+    {"stl", "mesh, binary STL", export_stl},
+    {"ply", "mesh, binary PLY with normals, colours and parameters", export_ply},
+    {"glb", "mesh, binary glTF 2.0 in metres with Y up", export_glb},
+    {"pov", "scene, POV-Ray 3.7 source with its own objects where it has them", export_pov},
+    {"svg", "curves and regions as a flat picture", export_svg},
+    {"json", "scene, all of it as data", export_json},
+};
+#define FORMAT_COUNT (sizeof formats / sizeof *formats)
+
+const char *const *cag_export_formats(void) {
+  static const char *const names[] = {"obj", "stl", "ply", "glb", "pov", "svg", "json", NULL};
+  return names;
+}
+
+static const struct Format *find_format(const char *name) {
+  for (size_t i = 0; i < FORMAT_COUNT; i++)
+    if (strcasecmp(formats[i].name, name) == 0) return &formats[i];
+  return NULL;
+}
+
+const char *cag_export_format_story(const char *format) {
+  const struct Format *f = find_format(format);
+  return f ? f->story : NULL;
+}
+
+int cag_session_export(CagSession *s, const char *path, const char *format) {
+  const char *slash = strrchr(path, '/');
+  const char *dot = strrchr(slash ? slash : path, '.');
+  const char *name = format ? format : dot ? dot + 1 : "";
+  const struct Format *f = find_format(name);
+  if (!f) {
+    CagDiagnostic *d =
+        *name ? cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
+                                    "there is no format `%s`", name)
+              : cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
+                                    "%s has no ending that tells the format", path);
+    cag_diagnostic_set_help(d, strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0
+                                   ? "`cag render` makes pictures"
+                                   : "the formats are obj, stl, ply, glb, pov, svg, json; --format "
+                                     "says it where the ending does not");
+    return CAG_STATUS_USAGE;
+  }
+  int status = cag_session_build_scene(s);
+  return status == CAG_STATUS_OK ? f->write(s, path) : status;
+}

@@ -1,0 +1,13 @@
+// What export and render share.
+
+#ifndef CAG_INTERP_SESSION_OUTPUT_H
+#define CAG_INTERP_SESSION_OUTPUT_H
+
+#include "interp/render/atomic_file.h"
+#include "interp/render/image.h"
+#include "interp/session/session.h"
+
+// Number of the camera of this name (NULL: the first), or a diagnostic and its status.
+int cag_session_find_camera(CagSession *s, const char *name, size_t *out);
+
+#endif

@@ -1,0 +1,216 @@
+// From a scene to a picture: POV-Ray source, the renderer, EXR or PNG.
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "interp/export/pov.h"
+#include "interp/render/exr.h"
+#include "interp/render/png.h"
+#include "interp/render/povray.h"
+#include "interp/session/output.h"
+
+#define SKY_FILE "sky.exr"
+
+void cag_render_options_init(CagRenderOptions *o) { *o = (CagRenderOptions){.quality = "normal"}; }
+
+const char *cag_find_povray(char *buffer, size_t size) {
+  CagIoError err = {0};
+  char version[64];
+  if (!cag_povray_find(NULL, 0, version, &err)) {
+    snprintf(buffer, size, "%s", err.message);
+    return NULL;
+  }
+  snprintf(buffer, size, "%s", version);
+  return buffer;
+}
+
+static bool find_quality(const char *name, CagPovQuality *pov, CagPovrayQuality *engine) {
+  static const char *const names[] = {"draft", "normal", "final"};
+  static const CagPovQuality source[] = {CAG_POV_DRAFT, CAG_POV_NORMAL, CAG_POV_FINAL};
+  static const CagPovrayQuality process[] = {CAG_POVRAY_DRAFT, CAG_POVRAY_NORMAL, CAG_POVRAY_FINAL};
+  for (size_t i = 0; i < 3; i++) {
+    if (strcmp(names[i], name) != 0) continue;
+    *pov = source[i];
+    *engine = process[i];
+    return true;
+  }
+  return false;
+}
+
+int cag_session_find_camera(CagSession *s, const char *name, size_t *out) {
+  *out = 0;
+  if (!name) return CAG_STATUS_OK;
+  const char *names[64];
+  size_t n = 0;
+  for (size_t i = 0; i < s->scene.camera_count; i++) {
+    if (strcmp(s->scene.cameras[i].name, name) == 0) {
+      *out = i;
+      return CAG_STATUS_OK;
+    }
+    if (n < 64) names[n++] = s->scene.cameras[i].name;
+  }
+  CagDiagnostic *d = cag_diagnostics_add(&s->diagnostics, CAG_ERR_camera_unknown, NULL,
+                                         (CagSpan){0, 0}, "there is no camera `%s`", name);
+  const char *nearest = cag_nearest_name(name, names, n);
+  if (nearest) cag_diagnostic_set_help(d, "did you mean `%s`?", nearest);
+  else if (n) cag_diagnostic_set_help(d, "the scene has `%s`", names[0]);
+  return CAG_STATUS_USAGE;
+}
+
+// --- Metadata ---
+
+static bool add_matrix(CagExrMetadata *m, const char *name, const CagTransform *t,
+                       CagIoError *err) {
+  double rows[16];
+  for (int i = 0; i < 16; i++) rows[i] = t->m[i / 4][i % 4];
+  return cag_exr_metadata_matrix(m, name, rows, err);
+}
+
+// What a picture tells of itself: script, camera, tolerance, versions.
+static bool make_metadata(const CagSession *s, const CagCamera *camera, const char *renderer,
+                          CagExrMetadata *m, CagIoError *err) {
+  CagTransform frame = cag_camera_frame(camera), inverse;
+  CagError ignored = {0};
+  bool ok = cag_exr_metadata_text(m, "cag.version", CAG_VERSION, err) &&
+            cag_exr_metadata_text(m, "cag.script", s->script ? s->script : "", err) &&
+            cag_exr_metadata_text(m, "cag.renderer", renderer, err) &&
+            cag_exr_metadata_text(m, "cag.camera", camera->name, err) &&
+            cag_exr_metadata_number(m, "cag.tolerance", s->scene.tolerance, err) &&
+            cag_exr_metadata_number(m, "cag.frame", s->frame, err) &&
+            add_matrix(m, "cag.cameraToWorld", &frame, err);
+  if (!ok) return false;
+  if (camera->orthographic) ok = cag_exr_metadata_number(m, "cag.cameraWidth", camera->width, err);
+  else ok = cag_exr_metadata_number(m, "cag.cameraFov", camera->fov * 180 / M_PI, err);
+  if (ok && cag_transform_inverse(&frame, &inverse, &ignored) == CAG_OK)
+    ok = add_matrix(m, "worldToCamera", &inverse, err);
+  return ok;
+}
+
+// --- Rendering ---
+
+typedef struct Job {
+  CagSession *session;
+  const CagRenderOptions *options;
+  CagCamera camera;
+  CagPovQuality pov;
+  CagPovrayQuality engine;
+  char *source;
+  size_t source_size;
+  CagPovrayResult result;
+} Job;
+
+static int write_source(Job *j, size_t camera) {
+  CagIoError io = {0};
+  CagError err = {0};
+  CagAtomicFile *f = cag_atomic_file_open_memory(&io);
+  if (!f) return cag_session_fail_io(j->session, CAG_ERR_output_file, &io);
+  // The sky's panorama stands beside the scene under a plain name (see povray.h).
+  CagScene *scene = &j->session->scene;
+  char plain[] = SKY_FILE, *image = scene->sky.image;
+  if (image) scene->sky.image = plain;
+  CagPovOptions options = {
+      .quality = j->pov, .camera = camera, .size = {j->camera.size[0], j->camera.size[1]}};
+  CagStatus written = cag_export_pov(scene, &options, f, &err);
+  scene->sky.image = image;
+  if (written != CAG_OK) {
+    cag_atomic_file_abort(f);
+    return cag_session_fail_geometry(j->session, &err);
+  }
+  if (!cag_atomic_file_commit_memory(f, &j->source, &j->source_size, &io))
+    return cag_session_fail_io(j->session, CAG_ERR_output_file, &io);
+  return CAG_STATUS_OK;
+}
+
+static int render(Job *j) {
+  CagIoError io = {0};
+  const CagScene *scene = &j->session->scene;
+  CagPovrayFile sky = {SKY_FILE, scene->sky.image};
+  CagPovrayJob job = {.scene = j->source,
+                      .scene_size = j->source_size,
+                      .files = &sky,
+                      .file_count = scene->sky.image ? 1 : 0,
+                      .width = j->camera.size[0],
+                      .height = j->camera.size[1],
+                      .quality = j->engine,
+                      .threads = j->options->threads,
+                      .time_limit = j->options->time_limit,
+                      .interrupted = j->session->options.interrupt,
+                      .progress = j->options->progress,
+                      .progress_user = j->options->progress_context};
+  if (!cag_povray_render(&job, &j->result, &io))
+    return cag_session_fail_io(j->session, CAG_ERR_renderer, &io);
+  return CAG_STATUS_OK;
+}
+
+static bool is_png(const char *path) {
+  const char *dot = strrchr(path, '.');
+  return dot && strcasecmp(dot, ".png") == 0;
+}
+
+static bool write_png(Job *j, const char *path, CagIoError *io) {
+  CagImage image;
+  if (!cag_exr_read_memory(j->result.exr, j->result.exr_size, "the renderer's picture", &image,
+                           NULL, io))
+    return false;
+  CagPngText texts[] = {{"Software", "cag " CAG_VERSION},
+                        {"Title", j->session->script ? j->session->script : ""}};
+  bool ok = cag_png_write(
+      path, &image, &(CagPngOptions){.exposure = j->options->exposure, .bits = 8}, texts, 2, io);
+  cag_image_free(&image);
+  return ok;
+}
+
+static bool write_exr(Job *j, const char *path, CagIoError *io) {
+  char renderer[96];
+  snprintf(renderer, sizeof renderer, "POV-Ray %s", j->result.version);
+  CagExrMetadata m = {0};
+  bool ok = make_metadata(j->session, &j->camera, renderer, &m, io) &&
+            cag_exr_rewrite(j->result.exr, j->result.exr_size, "the renderer's picture", path, &m,
+                            NULL, io);
+  cag_exr_metadata_free(&m);
+  return ok;
+}
+
+int cag_session_render(CagSession *s, const CagRenderOptions *options, const char *path) {
+  const char *dot = strrchr(path, '.');
+  if (!dot || (strcasecmp(dot, ".exr") != 0 && strcasecmp(dot, ".png") != 0)) {
+    CagDiagnostic *d =
+        cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
+                            "a picture is an .exr or a .png file, found %s", path);
+    cag_diagnostic_set_help(d, "`export` writes the other formats");
+    return CAG_STATUS_USAGE;
+  }
+  int status = cag_session_build_scene(s);
+  if (status != CAG_STATUS_OK) return status;
+  Job j = {.session = s, .options = options};
+  if (!find_quality(options->quality, &j.pov, &j.engine)) {
+    cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
+                        "the quality is draft, normal or final, found %s", options->quality);
+    return CAG_STATUS_USAGE;
+  }
+  size_t camera;
+  status = cag_session_find_camera(s, options->camera, &camera);
+  if (status != CAG_STATUS_OK) return status;
+  if (options->width > 0 &&
+      s->scene.automatic_camera) { // it frames what it shows for the picture's shape
+    s->scene.cameras[0].size[0] = options->width;
+    s->scene.cameras[0].size[1] = options->height;
+    cag_camera_frame_all(&s->scene, &s->scene.cameras[0]);
+  }
+  j.camera = s->scene.cameras[camera];
+  if (options->width > 0) {
+    j.camera.size[0] = options->width;
+    j.camera.size[1] = options->height;
+  }
+  CagIoError io = {0};
+  status = write_source(&j, camera);
+  if (status == CAG_STATUS_OK) status = render(&j);
+  if (status == CAG_STATUS_OK &&
+      !(is_png(path) ? write_png(&j, path, &io) : write_exr(&j, path, &io)))
+    status = cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  free(j.source);
+  cag_povray_result_free(&j.result);
+  return status;
+}

@@ -1,0 +1,404 @@
+// Sessions: one machine a run, on a thread with a large stack, and what became of it.
+
+#include "interp/session/session.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+// The C stack of an evaluation: reserved address space; deep recursion through built-ins needs
+// about 1 KiB a call (several with sanitizers).
+#define C_STACK_BYTES ((size_t)512 << 20)
+
+const char *cag_version(void) { return CAG_VERSION; }
+
+void cag_session_options_init(CagSessionOptions *o) {
+  *o = (CagSessionOptions){.max_memory = (size_t)4 << 30,
+                           .max_depth = 10000,
+                           .max_triangles = 100000000,
+                           .out = stdout,
+                           .messages = stderr};
+}
+
+CagSession *cag_session_new(const CagSessionOptions *options) {
+  CagSession *s = calloc(1, sizeof *s);
+  if (!s) return NULL;
+  s->options = *options;
+  s->frames = 1;
+  return s;
+}
+
+static void drop_scene(CagSession *s) {
+  if (s->has_scene) cag_scene_free(&s->scene);
+  s->has_scene = false;
+}
+
+void cag_session_drop_vm(CagSession *s) {
+  drop_scene(s);
+  cag_diagnostics_free(&s->diagnostics);
+  s->diagnostics = (CagDiagnostics){0};
+  cag_vm_free(s->vm);
+  s->vm = NULL;
+  s->interactive = false;
+  free(s->inputs);
+  s->inputs = NULL;
+  s->input_count = 0;
+}
+
+void cag_session_free(CagSession *s) {
+  if (!s) return;
+  cag_session_drop_vm(s);
+  cag_session_clear_defines(s);
+  free(s->script);
+  free(s);
+}
+
+// --- Params ---
+
+void cag_session_define(CagSession *s, const char *name, const char *value) {
+  char **names = realloc(s->names, (s->define_count + 1) * sizeof *names);
+  if (names) s->names = names;
+  char **values = realloc(s->values, (s->define_count + 1) * sizeof *values);
+  if (values) s->values = values;
+  char *n = strdup(name), *v = strdup(value);
+  if (!names || !values || !n || !v) {
+    free(n);
+    free(v);
+    return;
+  }
+  s->names[s->define_count] = n;
+  s->values[s->define_count++] = v;
+}
+
+void cag_session_clear_defines(CagSession *s) {
+  for (size_t i = 0; i < s->define_count; i++) {
+    free(s->names[i]);
+    free(s->values[i]);
+  }
+  free(s->names);
+  free(s->values);
+  s->names = s->values = NULL;
+  s->define_count = 0;
+}
+
+void cag_session_set_frame(CagSession *s, double frame, double frames) {
+  s->frame = frame;
+  s->frames = frames;
+}
+
+// --- The machine and its thread ---
+
+static bool add_folder(CagVm *vm, const char *path) {
+  char *real = realpath(path, NULL);
+  if (!real) return true; // a folder that is not there holds no modules
+  char **include = realloc(vm->include, (vm->include_count + 1) * sizeof *include);
+  if (!include) {
+    free(real);
+    return false;
+  }
+  vm->include = include;
+  vm->include[vm->include_count++] = real;
+  return true;
+}
+
+CagVm *cag_session_vm(CagSession *s) {
+  if (s->vm) return s->vm;
+  const CagSessionOptions *o = &s->options;
+  s->vm = cag_vm_new(&(CagVmOptions){.max_memory = o->max_memory,
+                                     .max_depth = o->max_depth,
+                                     .max_triangles = o->max_triangles,
+                                     .max_time = o->max_time,
+                                     .out = o->out,
+                                     .trace = o->messages,
+                                     .interrupt = o->interrupt});
+  if (!s->vm) {
+    cag_diagnostics_add(&s->diagnostics, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
+                        "there is not enough memory to start");
+    return NULL;
+  }
+  s->vm->tolerance = o->tolerance;
+  for (size_t i = 0; i < o->module_path_count; i++) add_folder(s->vm, o->module_path[i]);
+  return s->vm;
+}
+
+// Sets vm->limit_hit when the time is over, unless told before that the work is done.
+typedef struct Watch {
+  CagVm *vm;
+  pthread_mutex_t mutex;
+  pthread_cond_t done;
+  bool finished;
+  struct timespec deadline;
+} Watch;
+
+static void *watch(void *context) {
+  Watch *w = context;
+  pthread_mutex_lock(&w->mutex);
+  while (!w->finished && pthread_cond_timedwait(&w->done, &w->mutex, &w->deadline) != ETIMEDOUT) {}
+  if (!w->finished) w->vm->limit_hit = 1;
+  pthread_mutex_unlock(&w->mutex);
+  return NULL;
+}
+
+static bool start_watch(Watch *w, CagVm *vm, pthread_t *thread) {
+  w->vm = vm;
+  w->finished = false;
+  clock_gettime(CLOCK_REALTIME, &w->deadline);
+  double whole = (double)(time_t)vm->max_time;
+  w->deadline.tv_sec += (time_t)whole;
+  w->deadline.tv_nsec += (long)((vm->max_time - whole) * 1e9);
+  if (w->deadline.tv_nsec >= 1000000000) {
+    w->deadline.tv_nsec -= 1000000000;
+    w->deadline.tv_sec++;
+  }
+  pthread_mutex_init(&w->mutex, NULL);
+  pthread_cond_init(&w->done, NULL);
+  return pthread_create(thread, NULL, watch, w) == 0;
+}
+
+static void end_watch(Watch *w, pthread_t thread) {
+  pthread_mutex_lock(&w->mutex);
+  w->finished = true;
+  pthread_cond_signal(&w->done);
+  pthread_mutex_unlock(&w->mutex);
+  pthread_join(thread, NULL);
+  pthread_cond_destroy(&w->done);
+  pthread_mutex_destroy(&w->mutex);
+}
+
+typedef struct Task {
+  CagVm *vm;
+  bool (*work)(CagVm *vm, void *context);
+  void *context;
+  size_t stack;
+  bool ok;
+} Task;
+
+static void *perform(void *context) {
+  Task *t = context;
+  char here;
+  t->vm->stack_low = &here - t->stack + 65536; // the guard and what the system keeps there
+  t->ok = cag_vm_protect(t->vm, t->work, t->context);
+  return NULL;
+}
+
+int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void *context) {
+  CagVm *vm = cag_session_vm(s);
+  if (!vm) return CAG_STATUS_LIMIT;
+  cag_vm_clear_error(vm);
+  vm->limit_hit = 0;
+  Task task = {.vm = vm, .work = work, .context = context, .stack = C_STACK_BYTES};
+  Watch w;
+  pthread_t watcher, thread;
+  bool watched = vm->max_time > 0 && start_watch(&w, vm, &watcher);
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  bool started = false;
+  for (; !started && task.stack >= 1 << 20; task.stack /= 2) { // less where the system gives less
+    started = pthread_attr_setstacksize(&attributes, task.stack) == 0 &&
+              pthread_create(&thread, &attributes, perform, &task) == 0;
+    if (started) break;
+  }
+  pthread_attr_destroy(&attributes);
+  if (started) pthread_join(thread, NULL);
+  else cag_vm_fail(vm, CAG_ERR_limit_memory, "the system gives no thread to evaluate on");
+  if (watched) end_watch(&w, watcher);
+  fflush(s->options.out);
+  cag_diagnostics_move(&s->diagnostics, &vm->errors);
+  vm->failed = false;
+  if (started && task.ok) return CAG_STATUS_OK;
+  return cag_session_status(s);
+}
+
+// --- Status ---
+
+int cag_session_status(const CagSession *s) {
+  if (s->diagnostics.count == 0) return CAG_STATUS_OK;
+  const CagDiagnostic *d = &s->diagnostics.items[0];
+  switch (d->id) {
+  case CAG_ERR_interrupted: return CAG_STATUS_INTERRUPTED;
+  case CAG_ERR_limit_depth:
+  case CAG_ERR_limit_memory:
+  case CAG_ERR_limit_time:
+  case CAG_ERR_limit_triangles: return CAG_STATUS_LIMIT;
+  case CAG_ERR_output_file: return CAG_STATUS_FILE;
+  case CAG_ERR_renderer: return CAG_STATUS_RENDERER;
+  case CAG_ERR_format_unknown:
+  case CAG_ERR_camera_unknown:
+  case CAG_ERR_picture_size: return CAG_STATUS_USAGE;
+  case CAG_ERR_module_unreadable: return d->source ? CAG_STATUS_SCRIPT : CAG_STATUS_FILE;
+  default: return CAG_STATUS_SCRIPT;
+  }
+}
+
+int cag_session_fail_geometry(CagSession *s, const CagError *err) {
+  CagErrorId id = err->reason ? cag_error_by_reason(err->reason) : CAG_ERR_COUNT;
+  if (err->status == CAG_E_LIMIT) id = CAG_ERR_limit_triangles;
+  else if (err->status == CAG_E_MEMORY) id = CAG_ERR_limit_memory;
+  else if (err->status == CAG_E_CALLBACK && s->options.interrupt && *s->options.interrupt)
+    id = CAG_ERR_interrupted;
+  else if (id == CAG_ERR_COUNT) id = CAG_ERR_value;
+  const char *message = id == CAG_ERR_interrupted ? "interrupted" : err->message;
+  CagDiagnostic *d = cag_diagnostics_add(&s->diagnostics, id, NULL, (CagSpan){0, 0}, "%s", message);
+  if (err->reason && strcmp(err->reason, cag_error_info(id)->reason) != 0)
+    d->reason = strdup(err->reason);
+  return cag_session_status(s);
+}
+
+int cag_session_fail_io(CagSession *s, CagErrorId id, const CagIoError *err) {
+  if (err->exit_status == CAG_EXIT_INTERRUPTED) id = CAG_ERR_interrupted;
+  else if (err->exit_status == CAG_EXIT_LIMIT) id = CAG_ERR_limit_time;
+  else if (err->exit_status == CAG_EXIT_RENDERER) id = CAG_ERR_renderer;
+  else if (err->exit_status == CAG_EXIT_USAGE) id = CAG_ERR_picture_size;
+  CagDiagnostic *d =
+      cag_diagnostics_add(&s->diagnostics, id, NULL, (CagSpan){0, 0}, "%s", err->message);
+  if (err->help[0]) cag_diagnostic_set_help(d, "%s", err->help);
+  return err->exit_status;
+}
+
+// --- Runs ---
+
+typedef struct Run {
+  CagSession *session;
+  const char *path, *name, *text;
+  size_t length;
+  int status;
+} Run;
+
+static bool run(CagVm *vm, void *context) {
+  Run *r = context;
+  CagSession *s = r->session;
+  size_t k = r->path ? cag_load_file(vm, r->path, &r->status)
+                     : cag_load_text(vm, r->name, r->text, r->length, CAG_PARSE_FILE);
+  if (k == CAG_NO_MODULE) return false;
+  CagDefine *defines = calloc(s->define_count ? s->define_count : 1, sizeof *defines);
+  if (!defines) cag_vm_out_of_memory(vm);
+  for (size_t i = 0; i < s->define_count; i++) defines[i] = (CagDefine){s->names[i], s->values[i]};
+  bool ok = cag_program_set_params(vm, vm->modules[k], defines, s->define_count, s->frame,
+                                   s->frames, false);
+  free(defines);
+  return ok && cag_program_run(vm, vm->modules[k], NULL, NULL);
+}
+
+static int start_run(CagSession *s, Run *r) {
+  cag_session_drop_vm(s);
+  free(s->script);
+  s->script = strdup(r->path ? r->path : r->name);
+  return cag_session_work(s, run, r);
+}
+
+int cag_session_run_file(CagSession *s, const char *path) {
+  return start_run(s, &(Run){.session = s, .path = path});
+}
+
+int cag_session_run_text(CagSession *s, const char *name, const char *text, size_t length) {
+  return start_run(s, &(Run){.session = s, .name = name, .text = text, .length = length});
+}
+
+// --- Diagnostics ---
+
+size_t cag_session_error_count(const CagSession *s) { return s->diagnostics.count; }
+
+void cag_session_error(const CagSession *s, size_t i, CagErrorView *out) {
+  const CagDiagnostic *d = &s->diagnostics.items[i];
+  const CagErrorInfo *info = cag_error_info(d->id);
+  *out = (CagErrorView){.code = info->code,
+                        .reason = d->reason ? d->reason : info->reason,
+                        .message = d->message,
+                        .help = d->help};
+  if (!d->source) return;
+  CagPosition from = cag_source_position(d->source, d->span.start),
+              to = cag_source_position(d->source, d->span.end);
+  out->file = d->source->name;
+  out->line = from.line;
+  out->column = from.column;
+  out->end_line = to.line;
+  out->end_column = to.column;
+}
+
+void cag_session_write_diagnostics(const CagSession *s, CagStyle style, FILE *out) {
+  cag_diagnostics_render(&s->diagnostics, (CagDiagnosticStyle)style, out);
+}
+
+// --- Scene ---
+
+static bool rerun_shows(CagVm *vm, CagSession *s) {
+  vm->shown_count = 0;
+  for (size_t i = 0; i < s->input_count; i++)
+    if (!cag_program_run_shows(vm, vm->modules[s->inputs[i]])) return false;
+  return true;
+}
+
+static bool build(CagVm *vm, void *context) {
+  CagSession *s = context;
+  if (s->interactive && !rerun_shows(vm, s)) return false;
+  if (!cag_scene_from_values(vm, vm->shown, vm->shown_count, &s->scene)) return false;
+  s->has_scene = true;
+  return true;
+}
+
+int cag_session_build_scene(CagSession *s) {
+  if (s->interactive) drop_scene(s);
+  if (s->has_scene) return CAG_STATUS_OK;
+  if (s->interactive) {
+    cag_diagnostics_free(&s->diagnostics);
+    s->diagnostics = (CagDiagnostics){0};
+  }
+  int status = cag_session_work(s, build, s);
+  if (status != CAG_STATUS_OK) return status;
+  CagScene *scene = &s->scene;
+  if (s->options.tolerance > 0) scene->tolerance = s->options.tolerance;
+  scene->max_triangles = s->options.max_triangles;
+  scene->interrupt = s->options.interrupt;
+  if (!scene->script && s->script) scene->script = strdup(s->script);
+  if (scene->item_count == 0) {
+    CagDiagnostic *d =
+        cag_diagnostics_add(&s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0},
+                            "%s shows no shape", s->script ? s->script : "the session");
+    cag_diagnostic_set_help(d, "add `show` and a shape: show sphere(10)");
+    drop_scene(s);
+    return CAG_STATUS_SCRIPT;
+  }
+  CagError err = {0};
+  if (cag_scene_complete(scene, &err) != CAG_OK) {
+    drop_scene(s);
+    return cag_session_fail_geometry(s, &err);
+  }
+  return CAG_STATUS_OK;
+}
+
+int cag_session_scene(CagSession *s, CagShownCounts *out) {
+  int status = cag_session_build_scene(s);
+  if (status != CAG_STATUS_OK) return status;
+  *out = (CagShownCounts){s->scene.item_count, s->scene.camera_count, s->scene.light_count};
+  return CAG_STATUS_OK;
+}
+
+const char *cag_session_camera(CagSession *s, size_t i) {
+  if (cag_session_build_scene(s) != CAG_STATUS_OK || i >= s->scene.camera_count) return NULL;
+  return s->scene.cameras[i].name;
+}
+
+typedef struct Listing {
+  CagSession *session;
+  FILE *out;
+} Listing;
+
+static bool describe(CagVm *vm, void *context) {
+  Listing *l = context;
+  if (l->session->interactive && !rerun_shows(vm, l->session)) return false;
+  for (size_t i = 0; i < vm->shown_count; i++) {
+    CagString text = {0};
+    if (vm->shown[i].name) cag_string_printf(&text, "%s: ", vm->shown[i].name);
+    if (vm->shown[i].value.type == CAG_LIST) cag_describe_value(vm, &text, vm->shown[i].value);
+    else cag_print_value(vm, &text, vm->shown[i].value, false);
+    fprintf(l->out, "%s\n", text.bytes ? text.bytes : "");
+    cag_string_free(&text);
+  }
+  return true;
+}
+
+void cag_session_describe_scene(CagSession *s, FILE *out) {
+  cag_session_work(s, describe, &(Listing){s, out});
+}

@@ -1,0 +1,44 @@
+// Inside of a session (include/cag.h tells what it is).
+//
+// A script run is a machine of its own, kept until the next run, since the diagnostics and the
+// shown values refer to its sources. The interactive machine lives as long as the session.
+
+#ifndef CAG_INTERP_SESSION_H
+#define CAG_INTERP_SESSION_H
+
+#include "cag.h"
+#include "interp/eval/program.h"
+#include "interp/render/io_error.h"
+#include "interp/scene/scene.h"
+
+struct CagSession {
+  CagSessionOptions options;
+  CagVm *vm;
+  bool interactive;       // the machine keeps its definitions
+  char **names, **values; // params from outside
+  size_t define_count;
+  double frame, frames;
+  char *script; // name of the script, for metadata
+  CagDiagnostics diagnostics;
+  CagScene scene;
+  bool has_scene;
+  // Modules of the interactive session in order: their shows make its scene.
+  size_t *inputs;
+  size_t input_count;
+  char text[256]; // for answers that are texts
+};
+
+// Makes a machine when there is none. NULL: memory is out (a diagnostic says so).
+CagVm *cag_session_vm(CagSession *s);
+void cag_session_drop_vm(CagSession *s);
+// Runs work(vm, context) on the big stack, with the time limit, where running out of memory is
+// caught. Moves the machine's errors to the session's diagnostics. Gives the status.
+int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void *context);
+int cag_session_status(const CagSession *s); // by the diagnostics there are
+// Adds an error of the core, or of files and renderers, and gives the status.
+int cag_session_fail_geometry(CagSession *s, const CagError *err);
+int cag_session_fail_io(CagSession *s, CagErrorId id, const CagIoError *err);
+// Builds the scene and completes it with camera and light.
+int cag_session_build_scene(CagSession *s);
+
+#endif
