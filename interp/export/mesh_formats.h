@@ -28,13 +28,13 @@ CagStatus cag_export_obj(const CagMeshPart *parts, size_t n, const char *materia
 CagStatus cag_export_mtl(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
 // All parts in one list of triangles with their flat normals. `title` goes into the header (NULL:
 // the program's).
-CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title,
-                         CagAtomicFile *file, CagError *err);
+CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, CagAtomicFile *file,
+                         CagError *err);
 // One welded mesh: a point is one vertex, so its normal at a crease is the mean of those there, and
 // its parameters at a seam are the first. Colours are 8-bit sRGB.
 CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
-// glTF 2.0: a node and a mesh each part, metallic-roughness materials with the Khronos extensions for
-// ior, transmission, clear coat and strong emission where a material has them.
+// glTF 2.0: a node and a mesh each part, metallic-roughness materials with the Khronos extensions
+// for ior, transmission, clear coat and strong emission where a material has them.
 CagStatus cag_export_glb(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
 
 #endif

@@ -30,8 +30,7 @@ enum { DIGITS = 9 };
 
 // Decimals of x < 10^9 so that it has DIGITS significant digits.
 static int decimals_of(double x) {
-  static const double bound[] = {1e8,  1e7,  1e6,  1e5,  1e4,  1e3, 1e2,
-                                 1e1, 1, 1e-1, 1e-2, 1e-3, 1e-4};
+  static const double bound[] = {1e8, 1e7, 1e6, 1e5, 1e4, 1e3, 1e2, 1e1, 1, 1e-1, 1e-2, 1e-3, 1e-4};
   int k = 0;
   while (k < (int)(sizeof bound / sizeof *bound) && x < bound[k]) k++;
   return k;
@@ -46,12 +45,11 @@ static char *write_fraction(char *at, uint64_t fraction, int decimals) {
 }
 
 char *cag_mesh_write_number(char *at, double x) {
-  static const double power[] = {1,   1e1, 1e2, 1e3, 1e4,  1e5,  1e6,
+  static const double power[] = {1,   1e1, 1e2, 1e3,  1e4,  1e5,  1e6,
                                  1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13};
-  static const uint64_t whole_power[] = {1,           10,           100,           1000,
-                                         10000,       100000,       1000000,       10000000,
-                                         100000000,   1000000000,   10000000000,   100000000000,
-                                         1000000000000, 10000000000000};
+  static const uint64_t whole_power[] = {
+      1,        10,        100,        1000,        10000,        100000,        1000000,
+      10000000, 100000000, 1000000000, 10000000000, 100000000000, 1000000000000, 10000000000000};
   const double least_plain = 1e-5, most_plain = 999999999.4;
   double size = x < 0 ? -x : x;
   if (size == 0) {

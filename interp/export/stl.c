@@ -8,8 +8,7 @@ enum { HEADER = 80, RECORD = 50, BATCH = 1024 };
 
 static char *put_triangle(char *at, const CagMesh *m, const float *p, const uint32_t *k) {
   CagVec3 a = m->positions[k[0]];
-  CagVec3 n = cag_unit(
-      cag_cross(cag_sub(m->positions[k[1]], a), cag_sub(m->positions[k[2]], a)));
+  CagVec3 n = cag_unit(cag_cross(cag_sub(m->positions[k[1]], a), cag_sub(m->positions[k[2]], a)));
   at = cag_mesh_put_float(at, (float)n.x);
   at = cag_mesh_put_float(at, (float)n.y);
   at = cag_mesh_put_float(at, (float)n.z);
@@ -30,8 +29,8 @@ static void put_triangles(const CagMesh *m, const float *p, CagAtomicFile *file)
   }
 }
 
-CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title,
-                         CagAtomicFile *file, CagError *err) {
+CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, CagAtomicFile *file,
+                         CagError *err) {
   float **positions = calloc(n + 1, sizeof *positions);
   CagStatus status = positions ? CAG_OK : cag_fail_memory(err);
   size_t triangles = 0;
