@@ -154,7 +154,7 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
   pov_material_name(w, item->material, closed, material);
   pov_printf(w, "\nobject {\n  %s\n  material { %s }\n", name, material);
   pov_placement(w, "  ", &w->placement);
-  pov_text(w, "}\n\n");
+  pov_text(w, w->unit != 1 ? "  scale unit\n}\n\n" : "}\n\n");
   return CAG_OK;
 }
 
@@ -184,12 +184,23 @@ static bool make_names(CagPovWriter *w) {
   return ok;
 }
 
+// POV-Ray's tolerances are absolute, about 1e-3: between these radii a scene is well above them and
+// well below where doubles get coarse. Another is brought to about 100 by a power of ten.
+#define RADIUS_MIN 2.0
+#define RADIUS_MAX 1e6
+
+static double unit_for(double radius) {
+  if (radius >= RADIUS_MIN && radius <= RADIUS_MAX) return 1;
+  return pow(10, 2 - floor(log10(radius)));
+}
+
 static void measure(CagPovWriter *w) {
   const CagBounds *b = &w->scene->bounds;
   bool empty = !(b->min.x <= b->max.x);
   w->center = empty ? cag_vec3(0, 0, 0) : cag_lerp(b->min, b->max, 0.5);
   w->radius = empty ? 0 : cag_norm(cag_sub(b->max, b->min)) / 2;
   if (!(w->radius > 0)) w->radius = 100; // nothing but ground or points: any size will do
+  w->unit = unit_for(w->radius);
 }
 
 static CagStatus write_all(CagPovWriter *w, const bool *closed, CagError *err) {
@@ -198,6 +209,10 @@ static CagStatus write_all(CagPovWriter *w, const bool *closed, CagError *err) {
   pov_text(w, "// Written by cag " CAG_VERSION " for POV-Ray 3.7. Millimetres, Z up.\n\n");
   pov_text(w, "#version 3.7;\n\n");
   write_settings(w);
+  if (w->unit != 1) {
+    pov_text(w, "\n// The renderer's tolerances are meant for scenes some 100 units large.\n");
+    pov_printf(w, "#declare unit = %.9g; // a millimetre\n", w->unit);
+  }
   heading(w, "Camera");
   pov_camera(w);
   heading(w, "Light and sky");

@@ -36,6 +36,9 @@ void pov_material_name(const CagPovWriter *w, size_t index, bool closed, char ou
 // The specular exponent's inverse that POV-Ray calls roughness; below this a highlight is a pixel.
 #define SPECULAR_ROUGHNESS_MIN 0.0008
 
+// A mirror image fainter than this is left out.
+#define MIRROR_LEAST 0.01
+
 // Sharp share of the mirror image of a surface of this roughness.
 static double gloss(double roughness) {
   double g = clamp01(1 - roughness / MIRROR_ROUGHNESS);
@@ -78,7 +81,7 @@ static void write_number_line(CagPovWriter *w, const char *word, double x) {
 }
 
 static void write_mirror(CagPovWriter *w, const Finish *f, bool bends) {
-  if (f->mirror < 0.01) return;
+  if (f->mirror < MIRROR_LEAST) return;
   if (f->metal) pov_printf(w, "      reflection { %.4g metallic }\n", f->mirror);
   else if (bends) pov_printf(w, "      reflection { 0, %.4g fresnel }\n", f->mirror);
   else // a thin sheet: Fresnel's law for glass, roughly
@@ -221,6 +224,12 @@ static void write_own_texture(CagPovWriter *w, const char *text) {
   pov_text(w, whole ? "\n" : "\n  }\n");
 }
 
+// Fresnel's law and refraction ask the interior.
+static bool needs_ior(const CagMaterial *m) {
+  Finish f = finish_of(m);
+  return m->pov || m->transmission > 0 || (!f.metal && f.mirror >= MIRROR_LEAST);
+}
+
 void pov_material(CagPovWriter *w, size_t index, bool closed) {
   const CagMaterial *m = &w->scene->materials[index];
   char name[64];
@@ -230,7 +239,7 @@ void pov_material(CagPovWriter *w, size_t index, bool closed) {
   bool bends = closed || !(m->transmission > 0);
   if (m->pov) write_own_texture(w, m->pov);
   else write_texture(w, m, bends);
-  if (bends && m->ior > 1) pov_printf(w, "  interior { ior %.5g }\n", m->ior);
+  if (bends && needs_ior(m)) pov_printf(w, "  interior { ior %.5g }\n", m->ior);
   pov_text(w, "}\n");
 }
 

@@ -12,8 +12,10 @@ static CagVec3 tidy(CagVec3 v) {
   return cag_vec3(pov_round(v.x, unit), pov_round(v.y, unit), pov_round(v.z, unit));
 }
 
-static void write_axis(CagPovWriter *w, const char *word, CagVec3 axis, double length) {
+static void write_axis(CagPovWriter *w, const char *word, CagVec3 axis, double length,
+                       bool in_space) {
   pov_printf(w, "  %-9s ", word);
+  if (in_space && w->unit != 1) pov_text(w, "unit*");
   if (length != 1) {
     pov_number(w, length);
     pov_text(w, "*");
@@ -27,9 +29,9 @@ static void write_focus(CagPovWriter *w, const CagCamera *c, CagVec3 view) {
   double focus = c->focus > 0 ? c->focus : cag_norm(cag_sub(c->target, c->eye));
   bool final = w->options->quality == CAG_POV_FINAL;
   pov_text(w, "  aperture ");
-  pov_number(w, c->aperture);
+  pov_length(w, c->aperture);
   pov_text(w, "\n  focal_point ");
-  pov_vec(w, cag_madd(c->eye, focus, view));
+  pov_place_vec(w, cag_madd(c->eye, focus, view));
   pov_printf(w, "\n  blur_samples %d variance %s confidence %s\n", final ? 120 : 40,
              final ? "1/20000" : "1/5000", final ? "0.98" : "0.95");
 }
@@ -49,16 +51,16 @@ void pov_camera(CagPovWriter *w) {
   pov_text(w, "camera {\n");
   pov_text(w, c->orthographic ? "  orthographic\n" : "  perspective\n");
   pov_text(w, "  location  ");
-  pov_vec(w, eye);
+  pov_place_vec(w, eye);
   pov_text(w, "\n");
   if (c->orthographic) { // right and up span the picture
-    write_axis(w, "right", right, c->width);
-    write_axis(w, "up", up, c->width / aspect);
-    write_axis(w, "direction", view, 1);
+    write_axis(w, "right", right, c->width, true);
+    write_axis(w, "up", up, c->width / aspect, true);
+    write_axis(w, "direction", view, 1, false);
   } else { // a picture of height 1 at this distance
-    write_axis(w, "right", right, aspect);
-    write_axis(w, "up", up, 1);
-    write_axis(w, "direction", view, aspect / 2 / tan(c->fov / 2));
+    write_axis(w, "right", right, aspect, false);
+    write_axis(w, "up", up, 1, false);
+    write_axis(w, "direction", view, aspect / 2 / tan(c->fov / 2), false);
   }
   write_focus(w, c, view);
   pov_text(w, "}\n");
@@ -84,11 +86,11 @@ static void write_area(CagPovWriter *w, CagVec3 direction, double size, bool rou
   any_perpendicular(direction, &a, &b);
   int n = w->options->quality == CAG_POV_FINAL ? 9 : 5;
   pov_text(w, "  area_light ");
-  pov_number(w, size);
+  pov_length(w, size);
   pov_text(w, "*");
   pov_vec(w, tidy(a));
   pov_text(w, ", ");
-  pov_number(w, size);
+  pov_length(w, size);
   pov_text(w, "*");
   pov_vec(w, tidy(b));
   pov_printf(w, ", %d, %d adaptive %d jitter%s\n", n, n, n > 5 ? 2 : 1, round ? " circular" : "");
@@ -96,7 +98,7 @@ static void write_area(CagPovWriter *w, CagVec3 direction, double size, bool rou
 
 static void write_light_head(CagPovWriter *w, const CagLight *l, const char *what, CagVec3 at) {
   pov_printf(w, "light_source { // %s\n  ", what);
-  pov_vec(w, at);
+  pov_place_vec(w, at);
   pov_text(w, "\n  color ");
   pov_color(
       w, (CagColor){l->color.r * l->strength, l->color.g * l->strength, l->color.b * l->strength});
@@ -115,7 +117,7 @@ static void write_spot(CagPovWriter *w, const CagLight *l) {
   double half = l->angle / 2 * 180 / 3.14159265358979323846;
   write_light_head(w, l, "spot", l->position);
   pov_printf(w, "  spotlight radius %.6g falloff %.6g point_at ", soft_edge * half, half);
-  pov_vec(w, cag_add(l->position, l->direction));
+  pov_place_vec(w, cag_madd(l->position, w->radius, cag_unit(l->direction)));
   pov_text(w, "\n");
 }
 

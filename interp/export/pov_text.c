@@ -34,6 +34,20 @@ static void list_of_numbers(CagPovWriter *w, const double *x, size_t n) {
 
 void pov_vec(CagPovWriter *w, CagVec3 v) { list_of_numbers(w, (const double[]){v.x, v.y, v.z}, 3); }
 
+static void put_unit(CagPovWriter *w) {
+  if (w->unit != 1) pov_text(w, "unit*");
+}
+
+void pov_place_vec(CagPovWriter *w, CagVec3 v) {
+  put_unit(w);
+  pov_vec(w, v);
+}
+
+void pov_length(CagPovWriter *w, double x) {
+  put_unit(w);
+  pov_number(w, x);
+}
+
 void pov_vec2(CagPovWriter *w, double x, double y) {
   list_of_numbers(w, (const double[]){x, y}, 2);
 }

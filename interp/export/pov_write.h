@@ -17,6 +17,7 @@ typedef struct CagPovWriter {
   CagVec3 center; // of the scene
   double radius;  // of a sphere about everything; positive
   bool indirect;  // radiosity is on
+  double unit;    // POV-Ray's units in a millimetre: 1 unless the scene is tiny or huge
   CagPovName *item_names, *material_names;
   // Where the thing just written stands, to be said behind its material, so that a pattern moves
   // with it. Set by pov_try_solid, taken and reset by the caller.
@@ -26,8 +27,10 @@ typedef struct CagPovWriter {
 // --- Text (pov_text.c) ---
 void pov_text(CagPovWriter *w, const char *text);
 void pov_printf(CagPovWriter *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void pov_number(CagPovWriter *w, double x); // shortest that reads back the same
-void pov_vec(CagPovWriter *w, CagVec3 v);   // <x, y, z>
+void pov_number(CagPovWriter *w, double x);     // shortest that reads back the same
+void pov_vec(CagPovWriter *w, CagVec3 v);       // <x, y, z>
+void pov_place_vec(CagPovWriter *w, CagVec3 v); // of the camera or a light: unit*<x, y, z>
+void pov_length(CagPovWriter *w, double x);     // likewise
 void pov_vec2(CagPovWriter *w, double x, double y);
 void pov_color(CagPovWriter *w, CagColor c); // rgb <r, g, b>, rounded to 5 places
 double pov_round(double x, double unit);     // to a multiple of unit, for readable numbers

@@ -359,6 +359,32 @@ static void check_places(bool orthographic) {
   fixture_end(&f);
 }
 
+// The renderer's tolerances are absolute; a scene a thousand times smaller gives the same picture.
+static void tiny_scenes_look_like_large_ones(void **state) {
+  (void)state;
+  if (!have_povray()) skip();
+  CagImage pictures[2];
+  for (int i = 0; i < 2; i++) {
+    double size = i == 0 ? 1 : 1e-3;
+    Fixture f;
+    fixture_begin(&f);
+    f.camera.eye = cag_vec3(0, -300 * size, 40 * size);
+    f.camera.aperture = 0;
+    f.scene.bounds.min = cag_vec3(-50 * size, -50 * size, -50 * size);
+    f.scene.bounds.max = cag_scaled(f.scene.bounds.min, -1);
+    fixture_solid(&f, "ring", torus(30 * size, 8 * size));
+    fixture_solid(
+        &f, "ball",
+        moved_solid(sphere(12 * size), cag_translate(cag_vec3(0, -20 * size, 25 * size))));
+    render(&f, false, &pictures[i]);
+    fixture_end(&f);
+  }
+  assert_true(difference(&pictures[0], &pictures[1]) < 1e-3);
+  assert_true(coverage(&pictures[0]) > 0.05);
+  cag_image_free(&pictures[0]);
+  cag_image_free(&pictures[1]);
+}
+
 static void pictures_are_not_mirrored_and_match_the_camera(void **state) {
   (void)state;
   if (!have_povray()) skip();
@@ -463,6 +489,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_kind_parses_and_native_objects_are_used),
       cmocka_unit_test(native_objects_look_like_their_meshes),
+      cmocka_unit_test(tiny_scenes_look_like_large_ones),
       cmocka_unit_test(pictures_are_not_mirrored_and_match_the_camera),
       cmocka_unit_test(a_white_face_square_to_a_sun_of_strength_1_is_white),
       cmocka_unit_test(materials_of_every_pattern_parse),
