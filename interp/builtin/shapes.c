@@ -134,13 +134,14 @@ bool cag_arg_several(CagCall *call, int from, CagValue **items, size_t *n) {
 // What a group says holds for those of its shapes that say nothing of their own.
 static CagValue inherit(CagVm *vm, CagValue item, const CagShape *group) {
   const CagShape *own = CAG_AS_SHAPE(item);
-  bool more = (!own->material && group->material) || (!own->name && group->name) ||
+  CagRecord *material = cag_material_combine(vm, own->material, group->material);
+  bool more = material != own->material || (!own->name && group->name) ||
               (own->tolerance == 0 && group->tolerance > 0) || (!own->style && group->style) ||
               (!own->hidden && group->hidden);
   if (!more) return item;
   CagValue copy = cag_shape_copy(vm, item);
   CagShape *s = CAG_AS_SHAPE(copy);
-  if (!s->material) s->material = group->material;
+  s->material = material;
   if (!s->name) s->name = group->name;
   if (!s->style) s->style = group->style;
   if (s->tolerance == 0) s->tolerance = group->tolerance;

@@ -44,6 +44,8 @@ CagValue cag_points_value(CagVm *vm, const CagVec3 *points, size_t n, int dimens
 
 // Sets in `to` what was said about `from`: material, name, style, tolerance, hidden.
 void cag_shape_say_alike(CagValue to, CagValue from);
+// What holds of a material said near and one said further out; see scene_say.c. Either may be NULL.
+CagRecord *cag_material_combine(CagVm *vm, CagRecord *inner, CagRecord *outer);
 // A list, or the arguments from `from` on, as one list of values: `join_curves(a, b)` and
 // `join_curves([a, b])`.
 bool cag_arg_several(CagCall *call, int from, CagValue **items, size_t *n);

@@ -1,0 +1,247 @@
+// What is said about shapes: material, colour, name, tolerance, line style.
+//
+// What is said nearer to the shape holds: a material said of a group does not change that of a
+// shape in it. A colour said alone is a record with that field only; a material said further out
+// then gives the rest, and a colour said further out fills in a material without one.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/builtin/scene.h"
+
+// --- Materials ---
+
+typedef enum FieldKind { FIELD_COLOR, FIELD_SHARE, FIELD_NUMBER, FIELD_TEXT, FIELD_GLOW } FieldKind;
+typedef struct Field {
+  const char *name;
+  FieldKind kind;
+} Field;
+
+static const Field fields[] = {
+    {"color", FIELD_COLOR},          {"metallic", FIELD_SHARE},    {"roughness", FIELD_SHARE},
+    {"ior", FIELD_NUMBER},           {"coat", FIELD_SHARE},        {"transmission", FIELD_SHARE},
+    {"emission", FIELD_GLOW},        {"texture", FIELD_TEXT},      {"color2", FIELD_COLOR},
+    {"texture_scale", FIELD_NUMBER}, {"pov", FIELD_TEXT},          {"name", FIELD_TEXT},
+    {"density", FIELD_NUMBER},       {"reflectivity", FIELD_SHARE}};
+#define FIELD_COUNT (sizeof fields / sizeof *fields)
+
+static const char *const textures[] = {"", "wood", "marble", "concrete", "clay"};
+#define TEXTURE_COUNT (sizeof textures / sizeof *textures)
+
+static bool fail_field(CagCall *call, const char *name) {
+  const char *names[FIELD_COUNT];
+  for (size_t i = 0; i < FIELD_COUNT; i++) names[i] = fields[i].name;
+  cag_fail_call(call, 1, CAG_ERR_material_field, "found a field that no material has: `%s`", name);
+  const char *nearest = cag_nearest_name(name, names, FIELD_COUNT);
+  if (nearest) cag_fail_help(call->vm, "did you mean `%s`?", nearest);
+  return false;
+}
+
+static bool check_texture(CagCall *call, const char *text) {
+  for (size_t i = 0; i < TEXTURE_COUNT; i++)
+    if (!strcmp(text, textures[i])) return true;
+  cag_fail_call(call, 1, CAG_ERR_material_field,
+                "expects \"wood\", \"marble\", \"concrete\" or \"clay\" as `texture`, found \"%s\"",
+                text);
+  const char *nearest = cag_nearest_name(text, textures, TEXTURE_COUNT);
+  if (nearest) cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
+  return false;
+}
+
+// Checks one field; colours become [r, g, b].
+static bool check_field(CagCall *call, const Field *f, CagValue *v) {
+  CagColor c;
+  double x = v->type == CAG_NUMBER ? v->as.number : -1;
+  switch (f->kind) {
+  case FIELD_GLOW:
+    if (v->type == CAG_NUMBER && x >= 0 && isfinite(x)) {
+      *v = cag_color_value(call->vm, (CagColor){x, x, x});
+      return true;
+    }
+    // fall through
+  case FIELD_COLOR:
+    if (!cag_color_read(call, 1, f->name, *v, &c)) return false;
+    *v = cag_color_value(call->vm, c);
+    return true;
+  case FIELD_SHARE:
+    return (x >= 0 && x <= 1) || cag_fail_call(call, 1, CAG_ERR_material_field,
+                                               "expects a number in 0..1 as `%s`", f->name);
+  case FIELD_NUMBER:
+    return (x > 0 && isfinite(x)) ||
+           cag_fail_call(call, 1, CAG_ERR_material_field, "expects a number greater than 0 as `%s`",
+                         f->name);
+  case FIELD_TEXT:
+    if (v->type != CAG_TEXT)
+      return cag_fail_call(call, 1, CAG_ERR_material_field, "expects a text as `%s`, found %s",
+                           f->name, cag_type_article(*v));
+    return strcmp(f->name, "texture") != 0 || check_texture(call, CAG_AS_TEXT(*v)->bytes);
+  }
+  return true;
+}
+
+static bool check_material(CagCall *call, const CagRecord *given, CagRecord **out) {
+  size_t n = given->layout->count;
+  CagValue values[FIELD_COUNT];
+  for (size_t i = 0; i < n; i++) {
+    const char *name = given->layout->names[i]->bytes;
+    size_t k = 0;
+    while (k < FIELD_COUNT && strcmp(fields[k].name, name) != 0) k++;
+    if (k == FIELD_COUNT) return fail_field(call, name);
+    values[i] = given->fields[i];
+    if (!check_field(call, &fields[k], &values[i])) return false;
+  }
+  *out = CAG_AS_RECORD(cag_record_from_texts(call->vm, given->layout->names, values, n));
+  return true;
+}
+
+static bool has_field(const CagRecord *r, const char *name) {
+  return cag_record_get(r, name).type != CAG_UNSET;
+}
+
+// All fields of `base`, and the colour.
+static CagRecord *with_color(CagVm *vm, const CagRecord *base, CagValue color) {
+  const char *names[FIELD_COUNT + 1];
+  CagValue values[FIELD_COUNT + 1];
+  size_t n = 0;
+  names[n] = "color";
+  values[n++] = color;
+  for (size_t i = 0; i < base->layout->count; i++) {
+    const char *name = base->layout->names[i]->bytes;
+    if (!strcmp(name, "color")) continue;
+    names[n] = name;
+    values[n++] = base->fields[i];
+  }
+  return CAG_AS_RECORD(cag_record_new(vm, names, values, n));
+}
+
+CagRecord *cag_material_combine(CagVm *vm, CagRecord *inner, CagRecord *outer) {
+  if (!inner) return outer;
+  if (!outer) return inner;
+  bool color_alone = inner->layout->count == 1 && has_field(inner, "color");
+  if (color_alone) return with_color(vm, outer, cag_record_get(inner, "color"));
+  if (!has_field(inner, "color") && has_field(outer, "color"))
+    return with_color(vm, inner, cag_record_get(outer, "color"));
+  return inner;
+}
+
+// --- Saying it ---
+
+// A copy of a setting, camera or light with another value of a field.
+static CagValue with_field(CagVm *vm, CagValue v, const char *name, CagValue value) {
+  const CagSceneValue *old = CAG_AS_SCENE(v);
+  const char *names[32];
+  CagValue values[32];
+  size_t n = 0;
+  for (size_t i = 0; i < old->fields->layout->count && n < 31; i++) {
+    if (!strcmp(old->fields->layout->names[i]->bytes, name)) continue;
+    names[n] = old->fields->layout->names[i]->bytes;
+    values[n++] = old->fields->fields[i];
+  }
+  names[n] = name;
+  values[n++] = value;
+  CagValue copy = cag_scene_value(vm, v.type, old->kind, cag_record_new(vm, names, values, n));
+  CAG_AS_SCENE(copy)->placement = old->placement;
+  return copy;
+}
+
+// A shape, or a list of shapes as a group, copied to be changed.
+static bool copy_shape(CagCall *call, CagValue *result) {
+  CagValue v = call->values[0];
+  if (v.type == CAG_LIST) {
+    CagBuilder *shapes = cag_builder_new(call->vm);
+    if (!cag_shapes_collect(call, v, shapes)) return false;
+    v = cag_group_value(call->vm, cag_builder_finish(call->vm, shapes));
+  }
+  if (!cag_is_shape(v)) return cag_fail_type(call, 0, "a shape or a list of shapes");
+  *result = cag_shape_copy(call->vm, v);
+  return true;
+}
+
+static bool say_material(CagCall *call, CagRecord *material, CagValue *result) {
+  CagValue v = call->values[0];
+  if (v.type == CAG_SETTING && !strcmp(CAG_AS_SCENE(v)->kind, "ground")) {
+    CagValue old = cag_record_get(CAG_AS_SCENE(v)->fields, "material");
+    CagRecord *inner = old.type == CAG_RECORD ? CAG_AS_RECORD(old) : NULL;
+    CagRecord *both = cag_material_combine(call->vm, inner, material);
+    *result = with_field(call->vm, v, "material", cag_object(CAG_RECORD, both));
+    return true;
+  }
+  if (!copy_shape(call, result)) return false;
+  CagShape *shape = CAG_AS_SHAPE(*result);
+  shape->material = cag_material_combine(call->vm, shape->material, material);
+  return true;
+}
+
+bool cag_scenes_material(CagCall *call, CagValue *result) {
+  CagRecord *given, *material;
+  return cag_arg_record(call, 1, &given) && check_material(call, given, &material) &&
+         say_material(call, material, result);
+}
+
+bool cag_scenes_color(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"color"};
+  CagColor c;
+  if (!cag_color_read(call, 1, "color", call->values[1], &c)) return false;
+  CagValue color = cag_color_value(call->vm, c);
+  return say_material(call, CAG_AS_RECORD(cag_record_new(call->vm, names, &color, 1)), result);
+}
+
+bool cag_scenes_named(CagCall *call, CagValue *result) {
+  const char *name;
+  CagValue v = call->values[0];
+  if (!cag_arg_text(call, 1, &name)) return false;
+  if (!*name) return cag_fail_call(call, 1, CAG_ERR_value, "expects a name that is not empty");
+  if (v.type == CAG_CAMERA || v.type == CAG_LIGHT || v.type == CAG_SETTING) {
+    *result = cag_record_get(CAG_AS_SCENE(v)->fields, "name").type == CAG_TEXT
+                  ? v
+                  : with_field(call->vm, v, "name", call->values[1]);
+    return true;
+  }
+  if (!copy_shape(call, result)) return false;
+  CagShape *shape = CAG_AS_SHAPE(*result);
+  if (!shape->name) shape->name = CAG_AS_TEXT(call->values[1]);
+  return true;
+}
+
+bool cag_scenes_tolerance(CagCall *call, CagValue *result) {
+  double tolerance;
+  if (!cag_arg_positive(call, 1, &tolerance) || !copy_shape(call, result)) return false;
+  CagShape *shape = CAG_AS_SHAPE(*result);
+  if (shape->tolerance == 0) shape->tolerance = tolerance;
+  return true;
+}
+
+bool cag_scenes_hidden(CagCall *call, CagValue *result) {
+  if (!copy_shape(call, result)) return false;
+  CAG_AS_SHAPE(*result)->hidden = true;
+  return true;
+}
+
+bool cag_scenes_group(CagCall *call, CagValue *result) {
+  CagBuilder *items = cag_builder_new(call->vm);
+  for (size_t i = 0; i < call->count; i++) {
+    CagValue v = call->values[i];
+    if (v.type == CAG_UNSET) continue;
+    // Groups stay whole, with what was said about them; lists are taken apart.
+    bool ok = v.type == CAG_GROUP ? cag_builder_add(call->vm, items, v)
+                                  : cag_shapes_collect(call, v, items);
+    if (!ok) return false;
+  }
+  *result = cag_group_value(call->vm, cag_builder_finish(call->vm, items));
+  return true;
+}
+
+bool cag_scenes_line_style(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"radius", "dash"};
+  CagValue values[2];
+  for (int i = 0; i < 2; i++) {
+    double x = 0;
+    bool given = cag_given(call, i + 1) && call->values[i + 1].type != CAG_NONE;
+    if (given && !cag_arg_positive(call, i + 1, &x)) return false;
+    values[i] = given ? cag_number(x) : cag_none();
+  }
+  if (!copy_shape(call, result)) return false;
+  CagShape *shape = CAG_AS_SHAPE(*result);
+  if (!shape->style) shape->style = CAG_AS_RECORD(cag_record_new(call->vm, names, values, 2));
+  return true;
+}

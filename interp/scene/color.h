@@ -1,0 +1,11 @@
+// Names of colours, for messages that offer the nearest one.
+
+#ifndef CAG_INTERP_SCENE_COLOR_H
+#define CAG_INTERP_SCENE_COLOR_H
+
+#include "interp/scene/scene.h"
+
+// The CSS names, in the order of the alphabet.
+const char *const *cag_color_names(size_t *count);
+
+#endif

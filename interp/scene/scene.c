@@ -1,0 +1,60 @@
+// The scene as plain data: release, default material, frame of a camera.
+
+#include "interp/scene/scene.h"
+
+#include <stdlib.h>
+
+static void free_item(CagItem *item) {
+  switch (item->kind) {
+  case CAG_ITEM_CURVE: cag_curve_release(item->as.curve); break;
+  case CAG_ITEM_REGION: cag_region_release(item->as.region); break;
+  case CAG_ITEM_SURFACE: cag_surface_release(item->as.surface); break;
+  case CAG_ITEM_SOLID: cag_solid_release(item->as.solid); break;
+  case CAG_ITEM_MESH: cag_mesh_release(item->as.mesh); break;
+  case CAG_ITEM_GROUND: break;
+  }
+  free(item->name);
+}
+
+void cag_scene_free(CagScene *s) {
+  for (size_t i = 0; i < s->item_count; i++) free_item(&s->items[i]);
+  for (size_t i = 0; i < s->material_count; i++) {
+    free(s->materials[i].name);
+    free(s->materials[i].texture);
+    free(s->materials[i].pov);
+  }
+  for (size_t i = 0; i < s->camera_count; i++) free(s->cameras[i].name);
+  free(s->items);
+  free(s->materials);
+  free(s->cameras);
+  free(s->lights);
+  free(s->sky.colors);
+  free(s->sky.image);
+  free(s->script);
+  *s = (CagScene){0};
+}
+
+// Light grey with a soft gloss: shows form under any light. The texts are not allocated: who keeps
+// the material in a scene copies them.
+CagMaterial cag_material_default(void) {
+  static char name[] = "default", texture[] = "";
+  return (CagMaterial){.name = name,
+                       .color = {0.62, 0.62, 0.6},
+                       .roughness = 0.5,
+                       .ior = 1.5,
+                       .texture = texture,
+                       .color2 = {0.2, 0.2, 0.2},
+                       .texture_scale = 10};
+}
+
+CagTransform cag_camera_frame(const CagCamera *c) {
+  CagTransform frame;
+  CagError err;
+  if (cag_look_at(c->eye, c->target, c->up, &frame, &err) == CAG_OK) return frame;
+  // Eye and target are the same point: constructors refuse that, a far-fetched transform may not.
+  cag_look_at(cag_vec3(0, 0, 0), cag_vec3(0, 1, 0), cag_vec3(0, 0, 1), &frame, &err);
+  frame.m[0][3] = c->eye.x;
+  frame.m[1][3] = c->eye.y;
+  frame.m[2][3] = c->eye.z;
+  return frame;
+}
