@@ -93,11 +93,11 @@ $(BUILD)/tests/interp/%: tests/interp/%.c $(BUILD)/libcag.a
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ -lcmocka $(LDLIBS_ALL)
 unit-lang: $(call UNIT,lang)
-	@for t in $^; do ./$$t || exit 1; done
+	@for t in $^; do case $$t in /*) $$t;; *) ./$$t;; esac || exit 1; done
 unit-geom: $(call UNIT,geom)
-	@for t in $^; do ./$$t || exit 1; done
+	@for t in $^; do case $$t in /*) $$t;; *) ./$$t;; esac || exit 1; done
 unit-interp: $(call UNIT,interp)
-	@for t in $^; do ./$$t || exit 1; done
+	@for t in $^; do case $$t in /*) $$t;; *) ./$$t;; esac || exit 1; done
 
 test: all $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp)
 	BUILD=$(BUILD) sh tests/run_all.sh

@@ -263,14 +263,14 @@ static inline bool reserve(CagVm *vm, CagValue *base, size_t registers) {
 #endif
 
 #if COMPUTED_GOTO
-#define CASE(name) op_##name
+#define CASE(name) op_##name:
 #define NEXT_INSTRUCTION                                                                           \
   do {                                                                                             \
     i = *pc++;                                                                                     \
     goto *labels[i.op];                                                                            \
   } while (0)
 #else
-#define CASE(name) case CAG_CODE_##name
+#define CASE(name) case CAG_CODE_##name:
 #define NEXT_INSTRUCTION goto next
 #endif
 
@@ -355,15 +355,23 @@ next:
   switch (i.op) {
 #endif
 
-  CASE(CONSTANT) : R(i.a) = K(i.x);
-  NEXT_INSTRUCTION;
-  CASE(NONE) : R(i.a) = cag_none();
-  NEXT_INSTRUCTION;
-  CASE(BOOL) : R(i.a) = cag_bool(i.x != 0);
-  NEXT_INSTRUCTION;
-  CASE(MOVE) : R(i.a) = R(i.b);
-  NEXT_INSTRUCTION;
-  CASE(GLOBAL) : {
+  CASE(CONSTANT) {
+    R(i.a) = K(i.x);
+    NEXT_INSTRUCTION;
+  }
+  CASE(NONE) {
+    R(i.a) = cag_none();
+    NEXT_INSTRUCTION;
+  }
+  CASE(BOOL) {
+    R(i.a) = cag_bool(i.x != 0);
+    NEXT_INSTRUCTION;
+  }
+  CASE(MOVE) {
+    R(i.a) = R(i.b);
+    NEXT_INSTRUCTION;
+  }
+  CASE(GLOBAL) {
     const CagGlobal *g = &vm->globals[i.x];
     if (g->state == CAG_GLOBAL_DONE) {
       R(i.a) = g->value;
@@ -376,27 +384,34 @@ next:
     R(i.a) = v;
     NEXT_INSTRUCTION;
   }
-  CASE(CAPTURE) : R(i.a) = f->closure->captures[i.b];
-  NEXT_INSTRUCTION;
-  CASE(SELF) : R(i.a) = cag_object(CAG_CLOSURE, f->closure);
-  NEXT_INSTRUCTION;
-  CASE(CLOSURE) : SAVE();
-  R(i.a) = make_closure(vm, f->proto->children[i.x], f);
-  NEXT_INSTRUCTION;
-
-  CASE(ADD) : ARITHMETIC(CAG_OP_ADD, x->as.number + y->as.number);
-  CASE(SUBTRACT) : ARITHMETIC(CAG_OP_SUBTRACT, x->as.number - y->as.number);
-  CASE(MULTIPLY) : ARITHMETIC(CAG_OP_MULTIPLY, x->as.number * y->as.number);
-  CASE(DIVIDE) : ARITHMETIC(CAG_OP_DIVIDE, x->as.number / y->as.number);
-  CASE(ADD_K) : ARITHMETIC_K(CAG_OP_ADD, x->as.number + y->as.number);
-  CASE(SUBTRACT_K) : ARITHMETIC_K(CAG_OP_SUBTRACT, x->as.number - y->as.number);
-  CASE(MULTIPLY_K) : ARITHMETIC_K(CAG_OP_MULTIPLY, x->as.number * y->as.number);
-  CASE(DIVIDE_K) : ARITHMETIC_K(CAG_OP_DIVIDE, x->as.number / y->as.number);
-  CASE(BINARY) : SAVE();
-  vm->top = base + f->proto->registers; // an operator of solids may call a built-in
-  if (!cag_arithmetic(vm, (CagBinaryOp)i.c, R(i.a), R(i.b), &R(i.a))) goto failed;
-  NEXT_INSTRUCTION;
-  CASE(COMPARE) : {
+  CASE(CAPTURE) {
+    R(i.a) = f->closure->captures[i.b];
+    NEXT_INSTRUCTION;
+  }
+  CASE(SELF) {
+    R(i.a) = cag_object(CAG_CLOSURE, f->closure);
+    NEXT_INSTRUCTION;
+  }
+  CASE(CLOSURE) {
+    SAVE();
+    R(i.a) = make_closure(vm, f->proto->children[i.x], f);
+    NEXT_INSTRUCTION;
+  }
+  CASE(ADD) { ARITHMETIC(CAG_OP_ADD, x->as.number + y->as.number); }
+  CASE(SUBTRACT) { ARITHMETIC(CAG_OP_SUBTRACT, x->as.number - y->as.number); }
+  CASE(MULTIPLY) { ARITHMETIC(CAG_OP_MULTIPLY, x->as.number * y->as.number); }
+  CASE(DIVIDE) { ARITHMETIC(CAG_OP_DIVIDE, x->as.number / y->as.number); }
+  CASE(ADD_K) { ARITHMETIC_K(CAG_OP_ADD, x->as.number + y->as.number); }
+  CASE(SUBTRACT_K) { ARITHMETIC_K(CAG_OP_SUBTRACT, x->as.number - y->as.number); }
+  CASE(MULTIPLY_K) { ARITHMETIC_K(CAG_OP_MULTIPLY, x->as.number * y->as.number); }
+  CASE(DIVIDE_K) { ARITHMETIC_K(CAG_OP_DIVIDE, x->as.number / y->as.number); }
+  CASE(BINARY) {
+    SAVE();
+    vm->top = base + f->proto->registers; // an operator of solids may call a built-in
+    if (!cag_arithmetic(vm, (CagBinaryOp)i.c, R(i.a), R(i.b), &R(i.a))) goto failed;
+    NEXT_INSTRUCTION;
+  }
+  CASE(COMPARE) {
     bool b;
     if (i.c == CAG_OP_EQUAL || i.c == CAG_OP_NOT_EQUAL)
       b = cag_equal(vm, R(i.a), R(i.b)) == (i.c == CAG_OP_EQUAL);
@@ -405,64 +420,84 @@ next:
     R(i.a) = cag_bool(b);
     NEXT_INSTRUCTION;
   }
-  CASE(NEGATE) : if (R(i.b).type == CAG_NUMBER) R(i.a) = cag_number(-R(i.b).as.number);
-  else TRY(cag_negate(vm, R(i.b), &R(i.a))); NEXT_INSTRUCTION;
-  CASE(NOT) : if (R(i.b).type != CAG_BOOL) {
+  CASE(NEGATE) {
+    if (R(i.b).type == CAG_NUMBER) R(i.a) = cag_number(-R(i.b).as.number);
+    else TRY(cag_negate(vm, R(i.b), &R(i.a)));
+    NEXT_INSTRUCTION;
+  }
+  CASE(NOT) {
+    if (R(i.b).type != CAG_BOOL) {
+      SAVE();
+      fail_condition(vm, R(i.b), "what `not` turns");
+      goto failed;
+    }
+    R(i.a) = cag_bool(!R(i.b).as.boolean);
+    NEXT_INSTRUCTION;
+  }
+  CASE(JUMP) {
+    pc += i.x;
+    NEXT_INSTRUCTION;
+  }
+  CASE(JUMP_IF_FALSE) {
+    if (R(i.a).type != CAG_BOOL) {
+      SAVE();
+      fail_condition(vm, R(i.a), "a condition");
+      goto failed;
+    }
+    if (!R(i.a).as.boolean) pc += i.x;
+    NEXT_INSTRUCTION;
+  }
+  CASE(JUMP_IF_TRUE) {
+    if (R(i.a).type != CAG_BOOL) {
+      SAVE();
+      fail_condition(vm, R(i.a), "a condition");
+      goto failed;
+    }
+    if (R(i.a).as.boolean) pc += i.x;
+    NEXT_INSTRUCTION;
+  }
+  CASE(JUMP_IF_SET) {
+    if (R(i.a).type != CAG_UNSET) pc += i.x;
+    NEXT_INSTRUCTION;
+  }
+  CASE(JUMP_NOT_LESS) {
+    if (NUMBERS(R(i.a), R(i.b))) BRANCH(R(i.a).as.number < R(i.b).as.number);
+    {
+      bool b;
+      TRY(i.c ? cag_compare(vm, CAG_OP_GREATER, R(i.b), R(i.a), &b)
+              : cag_compare(vm, CAG_OP_LESS, R(i.a), R(i.b), &b));
+      BRANCH(b);
+    }
+  }
+  CASE(JUMP_NOT_LESS_EQUAL) {
+    if (NUMBERS(R(i.a), R(i.b))) BRANCH(R(i.a).as.number <= R(i.b).as.number);
+    {
+      bool b;
+      TRY(i.c ? cag_compare(vm, CAG_OP_GREATER_EQUAL, R(i.b), R(i.a), &b)
+              : cag_compare(vm, CAG_OP_LESS_EQUAL, R(i.a), R(i.b), &b));
+      BRANCH(b);
+    }
+  }
+  CASE(JUMP_NOT_EQUAL) {
+    if (NUMBERS(R(i.a), R(i.b))) BRANCH(R(i.a).as.number == R(i.b).as.number);
     SAVE();
-    fail_condition(vm, R(i.b), "what `not` turns");
-    goto failed;
+    BRANCH(cag_equal(vm, R(i.a), R(i.b)));
   }
-  R(i.a) = cag_bool(!R(i.b).as.boolean);
-  NEXT_INSTRUCTION;
-
-  CASE(JUMP) : pc += i.x;
-  NEXT_INSTRUCTION;
-  CASE(JUMP_IF_FALSE) : if (R(i.a).type != CAG_BOOL) {
+  CASE(JUMP_EQUAL) {
+    if (NUMBERS(R(i.a), R(i.b))) BRANCH(R(i.a).as.number != R(i.b).as.number);
     SAVE();
-    fail_condition(vm, R(i.a), "a condition");
-    goto failed;
+    BRANCH(!cag_equal(vm, R(i.a), R(i.b)));
   }
-  if (!R(i.a).as.boolean) pc += i.x;
-  NEXT_INSTRUCTION;
-  CASE(JUMP_IF_TRUE) : if (R(i.a).type != CAG_BOOL) {
-    SAVE();
-    fail_condition(vm, R(i.a), "a condition");
-    goto failed;
+  CASE(CHECK_BOOL) {
+    if (R(i.a).type != CAG_BOOL) {
+      SAVE();
+      fail_condition(vm, R(i.a),
+                     i.b == CAG_EXPR_AND ? "the right side of `and`" : "the right side of `or`");
+      goto failed;
+    }
+    NEXT_INSTRUCTION;
   }
-  if (R(i.a).as.boolean) pc += i.x;
-  NEXT_INSTRUCTION;
-  CASE(JUMP_IF_SET) : if (R(i.a).type != CAG_UNSET) pc += i.x;
-  NEXT_INSTRUCTION;
-  CASE(JUMP_NOT_LESS) : if (NUMBERS(R(i.a), R(i.b))) BRANCH(R(i.a).as.number < R(i.b).as.number);
-  {
-    bool b;
-    TRY(i.c ? cag_compare(vm, CAG_OP_GREATER, R(i.b), R(i.a), &b)
-            : cag_compare(vm, CAG_OP_LESS, R(i.a), R(i.b), &b));
-    BRANCH(b);
-  }
-  CASE(JUMP_NOT_LESS_EQUAL)
-      : if (NUMBERS(R(i.a), R(i.b))) BRANCH(R(i.a).as.number <= R(i.b).as.number);
-  {
-    bool b;
-    TRY(i.c ? cag_compare(vm, CAG_OP_GREATER_EQUAL, R(i.b), R(i.a), &b)
-            : cag_compare(vm, CAG_OP_LESS_EQUAL, R(i.a), R(i.b), &b));
-    BRANCH(b);
-  }
-  CASE(JUMP_NOT_EQUAL) : if (NUMBERS(R(i.a), R(i.b))) BRANCH(R(i.a).as.number == R(i.b).as.number);
-  SAVE();
-  BRANCH(cag_equal(vm, R(i.a), R(i.b)));
-  CASE(JUMP_EQUAL) : if (NUMBERS(R(i.a), R(i.b))) BRANCH(R(i.a).as.number != R(i.b).as.number);
-  SAVE();
-  BRANCH(!cag_equal(vm, R(i.a), R(i.b)));
-  CASE(CHECK_BOOL) : if (R(i.a).type != CAG_BOOL) {
-    SAVE();
-    fail_condition(vm, R(i.a),
-                   i.b == CAG_EXPR_AND ? "the right side of `and`" : "the right side of `or`");
-    goto failed;
-  }
-  NEXT_INSTRUCTION;
-
-  CASE(CALL) : {
+  CASE(CALL) {
     CagValue *callee = &R(i.a);
     SAVE();
     if (callee->type != CAG_CLOSURE) {
@@ -492,7 +527,7 @@ next:
     SAFE_POINT();
     NEXT_INSTRUCTION;
   }
-  CASE(CALL_NAMED) : {
+  CASE(CALL_NAMED) {
     CagValue *callee = &R(i.a);
     SAVE();
     const char *const *names = (const char *const *)f->proto->names[i.c];
@@ -516,7 +551,8 @@ next:
     SAFE_POINT();
     NEXT_INSTRUCTION;
   }
-  CASE(TAIL_CALL) : CASE(TAIL_CALL_NAMED) : {
+  CASE(TAIL_CALL)
+  CASE(TAIL_CALL_NAMED) {
     CagValue *callee = &R(i.a);
     SAVE();
     const char *const *names = NULL;
@@ -547,7 +583,9 @@ next:
     SAFE_POINT();
     NEXT_INSTRUCTION;
   }
-  CASE(RETURN) : return_value : {
+  CASE(RETURN) {
+  return_value:;
+
     CagValue v = R(i.a);
     vm->frame_count--;
     if (vm->frame_count == entry) {
@@ -558,14 +596,17 @@ next:
     R(pc[-1].a) = v;
     NEXT_INSTRUCTION;
   }
-
-  CASE(LIST) : SAVE();
-  R(i.a) = cag_list_values(vm, &R(i.b), i.c);
-  NEXT_INSTRUCTION;
-  CASE(BUILDER) : SAVE();
-  R(i.a) = cag_builder_value(cag_builder_new(vm));
-  NEXT_INSTRUCTION;
-  CASE(PUSH) : {
+  CASE(LIST) {
+    SAVE();
+    R(i.a) = cag_list_values(vm, &R(i.b), i.c);
+    NEXT_INSTRUCTION;
+  }
+  CASE(BUILDER) {
+    SAVE();
+    R(i.a) = cag_builder_value(cag_builder_new(vm));
+    NEXT_INSTRUCTION;
+  }
+  CASE(PUSH) {
     CagBuilder *b = (CagBuilder *)R(i.a).as.object;
     if (R(i.b).type == CAG_NUMBER && b->dim == 1 && b->length < b->capacity) {
       ((double *)b->data)[b->length++] = R(i.b).as.number;
@@ -574,24 +615,35 @@ next:
     TRY(cag_builder_add(vm, b, R(i.b)));
     NEXT_INSTRUCTION;
   }
-  CASE(EXTEND) : TRY(extend(vm, R(i.a), R(i.b)));
-  NEXT_INSTRUCTION;
-  CASE(FINISH) : SAVE();
-  R(i.a) = cag_builder_finish(vm, (CagBuilder *)R(i.b).as.object);
-  NEXT_INSTRUCTION;
-  CASE(RECORD) : SAVE();
-  R(i.a) = cag_record_with_layout(vm, (CagLayout *)K(i.c).as.object, &R(i.b));
-  NEXT_INSTRUCTION;
-  CASE(RECORD_SET) : SAVE();
-  R(i.a) = record_set(vm, CAG_AS_RECORD(R(i.a)), CAG_AS_TEXT(K(i.c)), R(i.b));
-  NEXT_INSTRUCTION;
-  CASE(RECORD_SPREAD) : TRY(record_spread(vm, &R(i.a), R(i.b)));
-  NEXT_INSTRUCTION;
-  CASE(RANGE)
-      : TRY(cag_make_range(vm, R(i.b), R(i.b + 1), i.c & 2 ? R(i.b + 2) : cag_unset(), i.c & 1,
-                           &R(i.a)));
-  NEXT_INSTRUCTION;
-  CASE(INDEX) : {
+  CASE(EXTEND) {
+    TRY(extend(vm, R(i.a), R(i.b)));
+    NEXT_INSTRUCTION;
+  }
+  CASE(FINISH) {
+    SAVE();
+    R(i.a) = cag_builder_finish(vm, (CagBuilder *)R(i.b).as.object);
+    NEXT_INSTRUCTION;
+  }
+  CASE(RECORD) {
+    SAVE();
+    R(i.a) = cag_record_with_layout(vm, (CagLayout *)K(i.c).as.object, &R(i.b));
+    NEXT_INSTRUCTION;
+  }
+  CASE(RECORD_SET) {
+    SAVE();
+    R(i.a) = record_set(vm, CAG_AS_RECORD(R(i.a)), CAG_AS_TEXT(K(i.c)), R(i.b));
+    NEXT_INSTRUCTION;
+  }
+  CASE(RECORD_SPREAD) {
+    TRY(record_spread(vm, &R(i.a), R(i.b)));
+    NEXT_INSTRUCTION;
+  }
+  CASE(RANGE) {
+    TRY(cag_make_range(vm, R(i.b), R(i.b + 1), i.c & 2 ? R(i.b + 2) : cag_unset(), i.c & 1,
+                       &R(i.a)));
+    NEXT_INSTRUCTION;
+  }
+  CASE(INDEX) {
     CagValue *o = &R(i.b), *k = &R(i.c);
     if (o->type == CAG_LIST && k->type == CAG_NUMBER) {
       const CagList *l = (const CagList *)o->as.object;
@@ -604,7 +656,7 @@ next:
     TRY(cag_index(vm, *o, *k, &R(i.a)));
     NEXT_INSTRUCTION;
   }
-  CASE(MEMBER) : {
+  CASE(MEMBER) {
     CagValue *o = &R(i.b);
     if (o->type == CAG_RECORD) {
       const CagRecord *r = (const CagRecord *)o->as.object;
@@ -619,12 +671,16 @@ next:
     if (!cag_member(vm, *o, K(i.c), &R(i.a))) goto failed;
     NEXT_INSTRUCTION;
   }
-  CASE(TEMPLATE) : SAVE();
-  R(i.a) = join_template(vm, &R(i.b), i.c);
-  NEXT_INSTRUCTION;
-  CASE(ITERATE) : TRY(iterate(vm, &R(i.a), R(i.b)));
-  NEXT_INSTRUCTION;
-  CASE(NEXT) : {
+  CASE(TEMPLATE) {
+    SAVE();
+    R(i.a) = join_template(vm, &R(i.b), i.c);
+    NEXT_INSTRUCTION;
+  }
+  CASE(ITERATE) {
+    TRY(iterate(vm, &R(i.a), R(i.b)));
+    NEXT_INSTRUCTION;
+  }
+  CASE(NEXT) {
     CagValue *it = &R(i.a);
     if (it->type == CAG_NUMBER) { // a range that counts by 1
       double k = it[1].as.number;
@@ -640,10 +696,12 @@ next:
     if (!next_element(vm, it)) pc += i.x;
     NEXT_INSTRUCTION;
   }
-  CASE(LOOP) : SAFE_POINT();
-  pc += i.x;
-  NEXT_INSTRUCTION;
-  CASE(UNPACK) : {
+  CASE(LOOP) {
+    SAFE_POINT();
+    pc += i.x;
+    NEXT_INSTRUCTION;
+  }
+  CASE(UNPACK) {
     CagValue v = R(i.b);
     const CagList *l = v.type == CAG_LIST ? (const CagList *)v.as.object : NULL;
     if (l && l->dim == 1 && l->length == i.c) {
@@ -653,10 +711,11 @@ next:
     TRY(unpack(vm, &R(i.a), v, i.c));
     NEXT_INSTRUCTION;
   }
-  CASE(ASSERT_FAIL) : SAVE();
-  fail_assert(vm, R(i.a), &R(i.a + 1), i.b);
-  goto failed;
-
+  CASE(ASSERT_FAIL) {
+    SAVE();
+    fail_assert(vm, R(i.a), &R(i.a + 1), i.b);
+    goto failed;
+  }
 #if !COMPUTED_GOTO
 }
 #endif

@@ -124,6 +124,9 @@ void cag_scene_free(CagScene *s);
 // Adds what is missing: a camera that frames everything (unless there is one), the studio light
 // (unless there is a light or a sky that lights). Computes bounds.
 CagStatus cag_scene_complete(CagScene *s, CagError *err);
+// Moves a camera, keeping its direction, so that it frames all items for the shape of its picture
+// (size): used by cag_scene_complete, and again when a picture of another size is asked for.
+void cag_camera_frame_all(const CagScene *s, CagCamera *camera);
 // Camera to world: columns x (right), y (down), z (view), origin.
 CagTransform cag_camera_frame(const CagCamera *c);
 CagMaterial cag_material_default(void);

@@ -18,7 +18,6 @@
 #define PAGE_BYTES ((size_t)64 * 1024)
 // A collection is due after so much allocation, or as much as is live, whichever is more: the cost
 // of marking stays in proportion.
-#define DEBT_MIN ((size_t)16 << 20)
 
 struct CagPage {
   CagPage *next;
@@ -29,8 +28,11 @@ struct CagPage {
 // Under AddressSanitizer each object is a block of its own, so that a use after its end is seen.
 #if defined(__SANITIZE_ADDRESS__)
 #define SMALL_LIMIT 0
+// Collections come often then, to find what is not rooted.
+#define DEBT_MIN ((size_t)32 << 10)
 #else
 #define SMALL_LIMIT CAG_SMALL_MAX
+#define DEBT_MIN ((size_t)16 << 20)
 #endif
 
 static void take_bytes(CagVm *vm, size_t size) {
