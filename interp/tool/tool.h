@@ -77,8 +77,17 @@ int cag_tool_finish(CagTool *t, CagSession *s, int status);
 int cag_tool_fail(const CagTool *t, int status, const char *help, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
+// Flushes standard output. When that fails, says so (unless nobody reads it any more), and makes
+// a status of 0 CAG_STATUS_FILE. main.c does it at the end.
+int cag_tool_close_output(const CagTool *t, int status);
+// Whether standard output is a pipe that was closed at its other end.
+bool cag_tool_output_is_unread(void);
+
 // A remark on standard error; nothing with -q or JSON diagnostics.
 void cag_tool_say(const CagTool *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// Checks that the output can be written, before a long calculation: 0, or a status after a message.
+int cag_tool_check_output(const CagTool *t, const char *path);
 
 // Nonzero after Ctrl-C or SIGTERM; t->session.interrupt points to it. A second signal ends the
 // program at once, without temporaries left behind. Who handles Ctrl-C and goes on (the REPL)

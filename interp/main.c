@@ -1,0 +1,60 @@
+// The program `cag`: reads the command line, calls the command, and ends with its status.
+//
+// Signals: the first Ctrl-C (or SIGTERM, SIGHUP) asks what runs to stop, which leaves nothing half
+// written; the second ends the program at once, after the temporaries of output files are removed.
+// A standard output that nobody reads shows as a failed write, not as a signal.
+
+#include <fcntl.h>
+#include <locale.h>
+#include <unistd.h>
+
+#include "interp/render/atomic_file.h"
+#include "interp/tool/cli.h"
+
+volatile int cag_tool_interrupt;
+
+static void on_signal(int number) {
+  (void)number;
+  if (cag_tool_interrupt) {
+    cag_atomic_files_cleanup();
+    _exit(CAG_STATUS_INTERRUPTED);
+  }
+  cag_tool_interrupt = 1;
+}
+
+static void catch_signals(void) {
+  static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP};
+  signal(SIGPIPE, SIG_IGN);
+  for (size_t i = 0; i < sizeof SIGNALS / sizeof *SIGNALS; i++) {
+    struct sigaction action = {.sa_handler = on_signal}, before; // reads are to end, not to resume
+    sigemptyset(&action.sa_mask);
+    // Who started the program may have asked for a signal to be ignored, as nohup does.
+    if (sigaction(SIGNALS[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+      sigaction(SIGNALS[i], &action, NULL);
+  }
+}
+
+// Fills closed standard files, so that no file opened later gets their numbers and what is meant
+// for standard output ends in it. They are opened the wrong way round: their use is an error.
+static void fill_standard_files(void) {
+  for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
+    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
+      return;
+}
+
+int main(int argc, char **argv) {
+  CagTool t;
+  int count, status = CAG_STATUS_USAGE;
+  fill_standard_files();
+  catch_signals();
+  setlocale(LC_CTYPE, ""); // for line editing; numbers stay as C writes them
+  if (cag_tool_read(&t, argc, argv, &count)) {
+    if (t.wants_help) cag_tool_help(t.command, stdout), status = CAG_STATUS_OK;
+    else if (t.wants_version) status = printf("cag %s\n", cag_version()) < 0;
+    else status = t.command->run(&t, count, argv);
+    if (cag_tool_interrupt) status = CAG_STATUS_INTERRUPTED;
+    status = cag_tool_close_output(&t, status);
+  }
+  cag_tool_release(&t);
+  return status;
+}

@@ -1,0 +1,22 @@
+// The progress bar of a renderer, on a terminal; nothing on a pipe.
+
+#ifndef CAG_INTERP_TOOL_PROGRESS_H
+#define CAG_INTERP_TOOL_PROGRESS_H
+
+#include "interp/tool/tool.h"
+
+typedef struct CagProgress {
+  bool shown; // standard error is a terminal, and is to be used
+  long frame, first, last;
+  bool dirty; // the bar stands on the line
+  int tenths; // what it shows, so that it is drawn only when that changes; -1: nothing
+  const char *phase;
+} CagProgress;
+
+void cag_progress_begin(CagProgress *p, const CagTool *t);
+// For CagRenderOptions; the context is the CagProgress.
+void cag_progress_show(void *context, double percent, const char *phase);
+// Takes the bar away.
+void cag_progress_end(CagProgress *p);
+
+#endif
