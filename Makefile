@@ -105,7 +105,10 @@ test: all $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp)
 test-sanitize:
 	$(MAKE) BUILD=$(BUILD)-sanitize OPT=-O1 SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" test
 
-bench: all
+$(BUILD)/tests/bench/%: tests/bench/%.c $(BUILD)/libcag.a
+	@mkdir -p $(@D)
+	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(LDLIBS_ALL)
+bench: all $(BUILD)/tests/bench/export
 	BUILD=$(BUILD) sh tests/bench/run.sh
 
 FORMATTED = $(shell find include lang geom interp tests -name '*.[ch]' | sort)

@@ -1,0 +1,63 @@
+#!/bin/sh
+# Figures of speed beside those of peers, measured in one run: `make bench`. Nothing here is a test.
+#
+# Peers are asked for when they are installed (lua5.4, openscad); without them their column is empty.
+B=${BUILD:-build}
+CAG=$B/cag
+here=tests/bench
+tmp=$(mktemp -d)
+trap 'rm -rf "$tmp"' EXIT
+
+# Seconds of wall time that a command takes: the best of five.
+best() {
+  b=
+  for _ in 1 2 3 4 5; do
+    s=$(date +%s%N)
+    "$@" >/dev/null 2>&1 || { echo nan; return; }
+    e=$(date +%s%N)
+    t=$(( (e - s) / 1000 ))
+    if [ -z "$b" ] || [ "$t" -lt "$b" ]; then b=$t; fi
+  done
+  awk "BEGIN { printf \"%.4f\", $b / 1e6 }"
+}
+# name, our seconds, peer's name, peer's seconds, the most that the ratio should be
+report() {
+  if [ -n "$4" ]; then
+    awk "BEGIN { printf \"%-44s %9.4f s   %-22s %9.4f s   ratio %6.2f   aim %s\n\", \"$1\", $2, \"$3\", $4, $2 / $4, \"$5\" }"
+  else
+    awk "BEGIN { printf \"%-44s %9.4f s   %-45s   aim %s\n\", \"$1\", $2, \"$3\", \"$5\" }"
+  fi
+}
+peer() { command -v "$1" >/dev/null 2>&1; }
+
+echo "--- language, against Lua 5.4"
+for job in fib additions vectors; do
+  ours=$(best "$CAG" run $here/$job.cag)
+  theirs=
+  if peer lua5.4; then theirs=$(best lua5.4 $here/$job.lua); fi
+  case $job in
+    fib) report "fib(32)" "$ours" "lua5.4" "$theirs" "<= 1.5" ;;
+    additions) report "comprehension of 10^7 additions" "$ours" "lua5.4" "$theirs" "<= 1.5" ;;
+    vectors) report "10^6 vector additions" "$ours" "lua5.4 tables" "$theirs" "<= 1.0" ;;
+  esac
+done
+
+echo "--- start and first result"
+: > "$tmp/empty.cag"
+report "cag run of an empty script" "$(best "$CAG" run "$tmp/empty.cag")" "" "" "< 0.010 s"
+report "vase to binary STL, default tolerance" "$(best "$CAG" export examples/vase.cag -o "$tmp/vase.stl" -q)" "" "" "< 0.050 s"
+if peer openscad && [ -f $here/rev.scad ]; then
+  report "revolved profile to STL" "$(best "$CAG" export $here/rev.cag -o "$tmp/rev.stl" -q)" "openscad" "$(best openscad -o "$tmp/scad.stl" $here/rev.scad)" "< 1"
+fi
+
+echo "--- memory"
+for job in million fold; do
+  ours=$( { /usr/bin/time -f %M "$CAG" run $here/$job.cag >/dev/null; } 2>&1 | tail -n 1)
+  case $job in
+    million) echo "a million temporaries in a comprehension: $((ours / 1024)) MB at the peak, aim < 200 MB" ;;
+    fold) echo "10^8 temporaries in a fold: $((ours / 1024)) MB at the peak, aim: bounded" ;;
+  esac
+done
+
+echo "--- export of 10^6 triangles"
+"$B/tests/bench/export" "$tmp"
