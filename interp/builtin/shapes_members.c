@@ -1,0 +1,209 @@
+// Members, calls and the printed form of shapes, transforms, planes, cameras, lights and settings.
+
+#include <string.h>
+
+#include "interp/builtin/shapes.h"
+
+// --- Members ---
+
+static const char *const transform_members[] = {"x", "y", "z", "origin"};
+static const char *const plane_members[] = {"point", "normal", "row"};
+static const char *const mesh_members[] = {"vertices", "faces"};
+
+// A call of a built-in of one argument, for members that are functions as well.
+static bool ask(CagVm *vm, const char *function, CagValue v, CagValue *out) {
+  size_t index = cag_builtin_find(function), count;
+  if (index == (size_t)-1) return false;
+  const CagBuiltin *rows = cag_builtin_rows(index, &count);
+  size_t row = cag_builtin_select(index, v.type, 1);
+  if (row == (size_t)-1) return false;
+  CagCall call = {vm, &rows[row], &v, 1};
+  return rows[row].function(&call, out);
+}
+
+static bool is_one_of(const char *name, const char *const *names, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    if (!strcmp(name, names[i])) return true;
+  return false;
+}
+#define COUNT(array) (sizeof array / sizeof *array)
+
+static bool transform_member(CagVm *vm, const CagTransform *t, const char *name, CagValue *out) {
+  for (int j = 0; j < 4; j++) {
+    if (strcmp(name, transform_members[j]) != 0) continue;
+    *out = cag_point(vm, cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]), 3);
+    return true;
+  }
+  return false;
+}
+
+static bool plane_member(CagVm *vm, const CagPlane *p, const char *name, CagValue *out) {
+  double row[4];
+  if (!strcmp(name, "point")) *out = cag_point(vm, p->point, 3);
+  else if (!strcmp(name, "normal")) *out = cag_point(vm, p->normal, 3);
+  else if (!strcmp(name, "row")) {
+    cag_plane_row(p, row);
+    *out = cag_vector(vm, row, 4);
+  } else return false;
+  return true;
+}
+
+static bool is_staged(CagValue v) {
+  return v.type == CAG_CAMERA || v.type == CAG_LIGHT || v.type == CAG_SETTING;
+}
+
+bool cag_value_member(CagVm *vm, CagValue object, const char *name, CagValue *out) {
+  if (object.type == CAG_TRANSFORM)
+    return transform_member(vm, &CAG_AS_TRANSFORM(object)->t, name, out);
+  if (object.type == CAG_PLANE) return plane_member(vm, &CAG_AS_PLANE(object)->plane, name, out);
+  if (is_staged(object)) {
+    CagValue field = cag_record_get(CAG_AS_SCENE(object)->fields, name);
+    if (field.type == CAG_UNSET) return false;
+    *out = field;
+    return true;
+  }
+  if (object.type == CAG_MESH && is_one_of(name, mesh_members, COUNT(mesh_members)))
+    return ask(vm, name, object, out);
+  if (object.type == CAG_GROUP && !strcmp(name, "items")) {
+    *out = cag_object(CAG_LIST, CAG_AS_SHAPE(object)->as.items);
+    return true;
+  }
+  return false;
+}
+
+const char *const *cag_value_members(CagValue object, size_t *n) {
+  static const char *const group_members[] = {"items"};
+  // All that any camera, light or setting has; the nearest of these is a good guess.
+  static const char *const stage_members[] = {
+      "eye",       "target",   "up",    "fov",      "kind",  "width",  "size",  "focus", "aperture",
+      "direction", "position", "angle", "strength", "color", "colors", "image", "z"};
+  *n = 0;
+  if (object.type == CAG_TRANSFORM) {
+    *n = COUNT(transform_members);
+    return transform_members;
+  }
+  if (object.type == CAG_PLANE) {
+    *n = COUNT(plane_members);
+    return plane_members;
+  }
+  if (object.type == CAG_MESH) {
+    *n = COUNT(mesh_members);
+    return mesh_members;
+  }
+  if (object.type == CAG_GROUP) {
+    *n = COUNT(group_members);
+    return group_members;
+  }
+  if (is_staged(object)) {
+    *n = COUNT(stage_members);
+    return stage_members;
+  }
+  return NULL;
+}
+
+// --- Calls ---
+
+bool cag_shape_call(CagVm *vm, CagValue shape, const CagValue *arguments, size_t n,
+                    CagValue *result) {
+  size_t index = cag_builtin_find("at"), count, wanted = shape.type == CAG_CURVE ? 1 : 2;
+  const CagBuiltin *rows = cag_builtin_rows(index, &count);
+  size_t row = cag_builtin_select(index, shape.type, wanted + 1);
+  CagValue values[4] = {shape, cag_unset(), cag_unset(), cag_unset()};
+  if (shape.type != CAG_CURVE && shape.type != CAG_SURFACE) {
+    CagCall call = {vm, rows, values, 1};
+    return cag_fail_call(&call, 0, CAG_ERR_not_function, "is not asked of %s",
+                         cag_type_article(shape));
+  }
+  for (size_t i = 0; i < n && i < wanted; i++) values[i + 1] = arguments[i];
+  CagCall call = {vm, &rows[row], values, 3};
+  if (n != wanted)
+    return cag_fail_call(&call, -1, CAG_ERR_arity,
+                         shape.type == CAG_CURVE ? "of a curve wants one parameter, found %zu"
+                                                 : "of a surface wants u and v, found %zu",
+                         n);
+  return rows[row].function(&call, result);
+}
+
+// --- Printed form ---
+
+static void add_range(CagString *s, const char *name, bool angular, double from, double to) {
+  cag_string_printf(s, ", %s in ", name);
+  cag_print_number(s, angular ? cag_degrees_shown(from) : from);
+  cag_string_printf(s, angular ? "deg.." : "..");
+  cag_print_number(s, angular ? cag_degrees_shown(to) : to);
+  if (angular) cag_string_printf(s, "deg");
+}
+
+static void describe_curve(CagString *s, const CagCurve *c) {
+  static const char *const splines[] = {"bezier", "bspline", "nurbs"};
+  char text[200] = "";
+  if (c->kind->describe) c->kind->describe(c, text, sizeof text);
+  bool spline = is_one_of(c->kind->name, splines, COUNT(splines));
+  cag_string_printf(s, "%s%s%s%s", c->kind->name, spline ? " curve" : "", *text ? ", " : "", text);
+  add_range(s, "t", c->angular, c->start, c->end);
+}
+
+static void describe_surface(CagString *s, const CagSurface *f) {
+  char text[200] = "";
+  if (f->kind->describe) f->kind->describe(f, text, sizeof text);
+  cag_string_printf(s, "%s surface%s%s", f->kind->name, *text ? ", " : "", text);
+  add_range(s, "u", f->angular_u, f->u0, f->u1);
+  add_range(s, "v", f->angular_v, f->v0, f->v1);
+}
+
+static void add_count(CagString *s, size_t n, const char *one, const char *many) {
+  cag_string_printf(s, "%zu %s", n, n == 1 ? one : many);
+}
+
+static void describe_region(CagString *s, const CagRegion *r) {
+  cag_string_printf(s, "region of ");
+  add_count(s, r->count, "curve", "curves");
+}
+
+// Fields by name, as far as they are given: "sun, direction [1, 1, -2], ...".
+static void describe_staged(CagVm *vm, CagString *s, CagValue v) {
+  const CagSceneValue *value = CAG_AS_SCENE(v);
+  const char *noun = v.type == CAG_CAMERA ? " camera" : v.type == CAG_LIGHT ? " light" : "";
+  cag_string_printf(s, "%s%s", value->kind, !strcmp(value->kind, "sun") ? "" : noun);
+  for (size_t i = 0; i < value->fields->layout->count; i++) {
+    CagValue field = value->fields->fields[i];
+    const char *name = value->fields->layout->names[i]->bytes;
+    if (field.type == CAG_NONE || !strcmp(name, "kind")) continue;
+    cag_string_printf(s, ", %s ", name);
+    cag_print_value(vm, s, field, true);
+  }
+}
+
+void cag_describe_shape(CagVm *vm, CagString *s, CagValue v) {
+  char text[200] = "";
+  switch (v.type) {
+  case CAG_CURVE: describe_curve(s, CAG_AS_SHAPE(v)->as.curve); return;
+  case CAG_SURFACE: describe_surface(s, CAG_AS_SHAPE(v)->as.surface); return;
+  case CAG_REGION: describe_region(s, CAG_AS_SHAPE(v)->as.region); return;
+  case CAG_SOLID:
+    cag_solid_describe(CAG_AS_SHAPE(v)->as.solid, text, sizeof text);
+    cag_string_printf(s, "%s", text);
+    return;
+  case CAG_MESH:
+    cag_string_printf(s, "mesh, ");
+    add_count(s, CAG_AS_SHAPE(v)->as.mesh->vertex_count, "vertex", "vertices");
+    cag_string_printf(s, ", ");
+    add_count(s, CAG_AS_SHAPE(v)->as.mesh->triangle_count, "triangle", "triangles");
+    return;
+  case CAG_GROUP:
+    cag_string_printf(s, "group of ");
+    add_count(s, CAG_AS_SHAPE(v)->as.items->length, "shape", "shapes");
+    return;
+  case CAG_PLANE: {
+    const CagPlane *p = &CAG_AS_PLANE(v)->plane;
+    cag_string_printf(s, "plane through ");
+    cag_print_value(vm, s, cag_point(vm, p->point, 3), true);
+    cag_string_printf(s, ", normal ");
+    cag_print_value(vm, s, cag_point(vm, p->normal, 3), true);
+    return;
+  }
+  default:
+    if (is_staged(v)) describe_staged(vm, s, v);
+    else cag_string_printf(s, "%s", cag_type_name(v));
+  }
+}

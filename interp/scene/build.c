@@ -1,0 +1,377 @@
+// From the values that a script shows to a scene: groups are taken apart, what was said about a
+// group goes down to shapes that say nothing themselves, records become plain structs.
+//
+// Nothing here calls back into the script, so values need no roots.
+
+#include "interp/scene/build.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/builtin/shapes.h"
+#include "interp/eval/vm.h"
+
+typedef struct Build {
+  CagVm *vm;
+  CagScene *scene;
+  size_t item_capacity, material_capacity, camera_capacity, light_capacity;
+  bool failed; // memory is out
+} Build;
+
+// What groups around a shape say about it.
+typedef struct Said {
+  CagRecord *material;
+  const char *name;
+  CagRecord *style;
+  double tolerance;
+} Said;
+
+static void *grown(Build *b, void *items, size_t count, size_t *capacity, size_t size) {
+  if (count < *capacity) return items;
+  size_t more = *capacity ? 2 * *capacity : 16;
+  void *bigger = realloc(items, more * size);
+  if (!bigger) {
+    b->failed = true;
+    return items;
+  }
+  *capacity = more;
+  return bigger;
+}
+
+static char *copy_text(Build *b, const char *text) {
+  char *copy = strdup(text);
+  if (!copy) b->failed = true;
+  return copy;
+}
+
+// --- Fields of records ---
+
+static const char *text_field(const CagRecord *r, const char *name, const char *fallback) {
+  CagValue v = r ? cag_record_get(r, name) : cag_unset();
+  return v.type == CAG_TEXT ? CAG_AS_TEXT(v)->bytes : fallback;
+}
+
+static double number_field(const CagRecord *r, const char *name, double fallback) {
+  CagValue v = r ? cag_record_get(r, name) : cag_unset();
+  return v.type == CAG_NUMBER || v.type == CAG_ANGLE ? v.as.number : fallback;
+}
+
+static CagVec3 point_field(const CagRecord *r, const char *name, CagVec3 fallback) {
+  const double *x;
+  size_t n;
+  CagValue v = cag_record_get(r, name);
+  if (v.type != CAG_LIST || !cag_as_vector(v, &x, &n) || n < 2) return fallback;
+  return cag_vec3(x[0], x[1], n > 2 ? x[2] : 0);
+}
+
+static CagColor color_field(const CagRecord *r, const char *name, CagColor fallback) {
+  CagVec3 c = point_field(r, name, cag_vec3(fallback.r, fallback.g, fallback.b));
+  return (CagColor){c.x, c.y, c.z};
+}
+
+// --- Materials ---
+
+// Curves without a material are drawn in ink.
+static const CagColor ink = {0.03, 0.035, 0.05};
+#define DEFAULT_MATERIAL 0
+#define INK_MATERIAL 1
+
+static bool same_text(const char *a, const char *b) { return a == b || (a && b && !strcmp(a, b)); }
+static bool same_color(CagColor a, CagColor b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
+
+static bool same_material(const CagMaterial *a, const CagMaterial *b) {
+  return same_color(a->color, b->color) && a->metallic == b->metallic &&
+         a->roughness == b->roughness && a->ior == b->ior && a->transmission == b->transmission &&
+         same_color(a->emission, b->emission) && a->coat == b->coat &&
+         same_color(a->color2, b->color2) && a->texture_scale == b->texture_scale &&
+         same_text(a->texture, b->texture) && same_text(a->pov, b->pov);
+}
+
+// Keeps the material unless there is the same one already; texts are copied.
+static size_t keep_material(Build *b, CagMaterial m, const char *name) {
+  CagScene *s = b->scene;
+  for (size_t i = 0; i < s->material_count; i++)
+    if (same_material(&s->materials[i], &m) && (!name || same_text(s->materials[i].name, name)))
+      return i;
+  s->materials =
+      grown(b, s->materials, s->material_count, &b->material_capacity, sizeof *s->materials);
+  if (b->failed) return DEFAULT_MATERIAL;
+  char numbered[32];
+  snprintf(numbered, sizeof numbered, "material_%zu", s->material_count);
+  m.name = copy_text(b, name ? name : numbered);
+  m.texture = copy_text(b, m.texture);
+  m.pov = m.pov ? copy_text(b, m.pov) : NULL;
+  s->materials[s->material_count] = m;
+  return s->material_count++;
+}
+
+static size_t material_of(Build *b, const CagRecord *r, size_t fallback) {
+  if (!r) return fallback;
+  CagMaterial m = b->scene->materials[fallback];
+  m.color = color_field(r, "color", m.color);
+  m.color2 = color_field(r, "color2", m.color2);
+  m.emission = color_field(r, "emission", m.emission);
+  m.metallic = number_field(r, "metallic", m.metallic);
+  m.roughness = number_field(r, "roughness", m.roughness);
+  m.ior = number_field(r, "ior", m.ior);
+  m.transmission = number_field(r, "transmission", m.transmission);
+  m.coat = number_field(r, "coat", m.coat);
+  m.texture_scale = number_field(r, "texture_scale", m.texture_scale);
+  // Copied when the material is kept.
+  m.texture = (char *)text_field(r, "texture", m.texture);
+  m.pov = (char *)text_field(r, "pov", NULL);
+  return keep_material(b, m, text_field(r, "name", NULL));
+}
+
+// --- Items ---
+
+static bool name_is_taken(const CagScene *s, const char *name) {
+  for (size_t i = 0; i < s->item_count; i++)
+    if (same_text(s->items[i].name, name)) return true;
+  return false;
+}
+
+// "vase", "vase.2", "vase.3" ... The search begins behind the last number given out, which makes
+// scenes of many items of one name quick.
+static char *unique_name(Build *b, const char *wanted) {
+  if (!name_is_taken(b->scene, wanted)) return copy_text(b, wanted);
+  size_t n = strlen(wanted), number = 1;
+  const CagScene *s = b->scene;
+  for (size_t i = s->item_count; i-- > 0 && number == 1;) {
+    const char *name = s->items[i].name;
+    if (name && !strncmp(name, wanted, n) && name[n] == '.')
+      number = strtoul(name + n + 1, NULL, 10);
+  }
+  size_t size = n + 24;
+  char *name = malloc(size);
+  if (!name) {
+    b->failed = true;
+    return NULL;
+  }
+  do snprintf(name, size, "%s.%zu", wanted, ++number);
+  while (name_is_taken(s, name));
+  return name;
+}
+
+static CagItem *add_item(Build *b, CagItemKind kind, const char *name) {
+  CagScene *s = b->scene;
+  s->items = grown(b, s->items, s->item_count, &b->item_capacity, sizeof *s->items);
+  char *own = b->failed ? NULL : unique_name(b, name);
+  if (b->failed) return NULL;
+  CagItem *item = &s->items[s->item_count++];
+  *item = (CagItem){.kind = kind, .name = own, .placement = cag_transform_identity()};
+  return item;
+}
+
+static const char *solid_noun(const CagSolid *s) {
+  static const char *const nouns[] = {"box",       "sphere",     "cylinder", "torus",
+                                      "extrusion", "revolution", "tube",     "solid"};
+  return nouns[s->kind];
+}
+
+static void add_shape(Build *b, CagValue v, const Said *said) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  CagItem *item = NULL;
+  const char *name = said->name;
+  size_t fallback = v.type == CAG_CURVE ? INK_MATERIAL : DEFAULT_MATERIAL;
+  size_t material = material_of(b, said->material, fallback);
+  switch (v.type) {
+  case CAG_CURVE:
+    item = add_item(b, CAG_ITEM_CURVE, name ? name : shape->as.curve->kind->name);
+    if (item) item->as.curve = cag_curve_retain(shape->as.curve);
+    break;
+  case CAG_REGION:
+    item = add_item(b, CAG_ITEM_REGION, name ? name : "region");
+    if (item) item->as.region = cag_region_retain(shape->as.region);
+    if (item) item->placement = shape->placement;
+    break;
+  case CAG_SURFACE:
+    item = add_item(b, CAG_ITEM_SURFACE, name ? name : shape->as.surface->kind->name);
+    if (item) item->as.surface = cag_surface_retain(shape->as.surface);
+    break;
+  case CAG_SOLID:
+    item = add_item(b, CAG_ITEM_SOLID, name ? name : solid_noun(shape->as.solid));
+    if (item) item->as.solid = cag_solid_retain(shape->as.solid);
+    break;
+  default:
+    item = add_item(b, CAG_ITEM_MESH, name ? name : "mesh");
+    if (item) item->as.mesh = cag_mesh_retain(shape->as.mesh);
+  }
+  if (!item) return;
+  item->material = material;
+  item->tolerance = said->tolerance;
+  item->line_radius = number_field(said->style, "radius", 0);
+  item->dash = number_field(said->style, "dash", 0);
+}
+
+static void add_shapes(Build *b, CagValue v, const Said *around) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  if (shape->hidden) return;
+  Said said = {cag_material_combine(b->vm, shape->material, around->material),
+               shape->name ? shape->name->bytes : around->name,
+               shape->style ? shape->style : around->style,
+               shape->tolerance > 0 ? shape->tolerance : around->tolerance};
+  if (v.type != CAG_GROUP) {
+    add_shape(b, v, &said);
+    return;
+  }
+  const CagList *items = shape->as.items;
+  for (size_t i = 0; i < items->length && !b->failed; i++)
+    add_shapes(b, cag_list_get(b->vm, items, i), &said);
+}
+
+// --- Cameras, lights, settings ---
+
+static const CagVec3 none = {0, 0, 0};
+
+// Up made square to the view; along the view, Y is up.
+static CagVec3 square_up(CagVec3 view, CagVec3 up) {
+  const double along_view = 1e-9; // sine below which up and view are one direction
+  CagVec3 v = cag_unit(view), u = cag_unit(up);
+  if (cag_norm(cag_cross(v, u)) < along_view) u = cag_vec3(0, 1, 0);
+  if (cag_norm(cag_cross(v, u)) < along_view) u = cag_vec3(0, 0, 1);
+  return cag_unit(cag_madd(u, -cag_dot(u, v), v));
+}
+
+static void add_camera(Build *b, const CagSceneValue *v, const char *name) {
+  CagScene *s = b->scene;
+  const CagRecord *r = v->fields;
+  const CagTransform *place = &v->placement;
+  s->cameras = grown(b, s->cameras, s->camera_count, &b->camera_capacity, sizeof *s->cameras);
+  if (b->failed) return;
+  CagVec3 size = point_field(r, "size", cag_vec3(1280, 720, 0));
+  CagCamera c = {.eye = cag_transform_point(place, point_field(r, "eye", none)),
+                 .target = cag_transform_point(place, point_field(r, "target", none)),
+                 .orthographic = !strcmp(v->kind, "orthographic"),
+                 .fov = number_field(r, "fov", 40) * CAG_RADIANS_PER_DEGREE,
+                 .width = number_field(r, "width", 0),
+                 .size = {(int)size.x, (int)size.y},
+                 .focus = number_field(r, "focus", 0),
+                 .aperture = number_field(r, "aperture", 0)};
+  CagVec3 view = cag_sub(c.target, c.eye);
+  CagVec3 up = cag_transform_vector(place, point_field(r, "up", cag_vec3(0, 0, 1)));
+  c.up = square_up(view, up);
+  if (c.width <= 0) c.width = 2 * cag_norm(view) * tan(c.fov / 2);
+  c.name = copy_text(b, text_field(r, "name", name ? name : "camera"));
+  s->cameras[s->camera_count++] = c;
+}
+
+static void add_light(Build *b, const CagSceneValue *v) {
+  static const struct {
+    const char *kind;
+    CagLightKind id;
+  } kinds[] = {{"sun", CAG_LIGHT_SUN},
+               {"point", CAG_LIGHT_POINT},
+               {"spot", CAG_LIGHT_SPOT},
+               {"area", CAG_LIGHT_AREA}};
+  CagScene *s = b->scene;
+  const CagRecord *r = v->fields;
+  const CagTransform *place = &v->placement;
+  s->lights = grown(b, s->lights, s->light_count, &b->light_capacity, sizeof *s->lights);
+  if (b->failed) return;
+  CagLight l = {.kind = CAG_LIGHT_SUN,
+                .position = cag_transform_point(place, point_field(r, "position", none)),
+                .angle = number_field(r, "angle", 30) * CAG_RADIANS_PER_DEGREE,
+                .size = number_field(r, "size", 0),
+                .color = color_field(r, "color", (CagColor){1, 1, 1}),
+                .strength = number_field(r, "strength", 1)};
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+    if (!strcmp(v->kind, kinds[i].kind)) l.kind = kinds[i].id;
+  CagVec3 target = cag_transform_point(place, point_field(r, "target", none));
+  CagVec3 direction = l.kind == CAG_LIGHT_SUN
+                          ? cag_transform_vector(place, point_field(r, "direction", none))
+                          : cag_sub(target, l.position);
+  l.direction = l.kind == CAG_LIGHT_POINT ? cag_vec3(0, 0, -1) : cag_unit(direction);
+  s->lights[s->light_count++] = l;
+}
+
+static void set_sky(Build *b, const CagRecord *r) {
+  CagSky *sky = &b->scene->sky;
+  free(sky->colors);
+  free(sky->image);
+  *sky = (CagSky){0};
+  CagValue image = cag_record_get(r, "image"), colors = cag_record_get(r, "colors");
+  if (image.type == CAG_TEXT) sky->image = copy_text(b, CAG_AS_TEXT(image)->bytes);
+  if (colors.type != CAG_LIST) return;
+  const CagList *list = CAG_AS_LIST(colors);
+  sky->colors = malloc((list->length + 1) * sizeof *sky->colors);
+  if (!sky->colors) {
+    b->failed = true;
+    return;
+  }
+  for (size_t i = 0; i < list->length; i++) {
+    const double *x;
+    size_t n;
+    if (!cag_as_vector(cag_list_get(b->vm, list, i), &x, &n) || n != 3) continue;
+    sky->colors[sky->color_count++] = (CagColor){x[0], x[1], x[2]};
+  }
+}
+
+static void add_ground(Build *b, const CagRecord *r, const char *name) {
+  CagValue said = cag_record_get(r, "material");
+  const CagRecord *material = said.type == CAG_RECORD ? CAG_AS_RECORD(said) : NULL;
+  size_t index = material_of(b, material, DEFAULT_MATERIAL);
+  CagItem *item = add_item(b, CAG_ITEM_GROUND, text_field(r, "name", name ? name : "ground"));
+  if (!item) return;
+  item->material = index;
+  item->ground_z = number_field(r, "z", 0);
+  item->ground_size = number_field(r, "size", INFINITY);
+}
+
+static void add_setting(Build *b, const CagSceneValue *v, const char *name) {
+  if (!strcmp(v->kind, "sky")) set_sky(b, v->fields);
+  else if (!strcmp(v->kind, "ground")) add_ground(b, v->fields, name);
+  else {
+    b->scene->has_background = true;
+    b->scene->background = color_field(v->fields, "color", (CagColor){0, 0, 0});
+  }
+}
+
+// --- What is shown ---
+
+bool cag_value_is_shown(CagValue v) {
+  if (v.type == CAG_LIST) {
+    // Lists of numbers and vectors are packed, and so are no shapes.
+    const CagList *list = CAG_AS_LIST(v);
+    if (list->dim != 0) return false;
+    for (size_t i = 0; i < list->length; i++)
+      if (!cag_value_is_shown(list->as.items[i])) return false;
+    return true;
+  }
+  return cag_is_shape(v) || v.type == CAG_CAMERA || v.type == CAG_LIGHT || v.type == CAG_SETTING;
+}
+
+static void add_value(Build *b, CagValue v, const char *name) {
+  if (v.type == CAG_LIST) {
+    const CagList *list = CAG_AS_LIST(v);
+    for (size_t i = 0; i < list->length && !b->failed; i++)
+      add_value(b, cag_list_get(b->vm, list, i), name);
+    return;
+  }
+  if (v.type == CAG_CAMERA) add_camera(b, CAG_AS_SCENE(v), name);
+  else if (v.type == CAG_LIGHT) add_light(b, CAG_AS_SCENE(v));
+  else if (v.type == CAG_SETTING) add_setting(b, CAG_AS_SCENE(v), name);
+  else if (cag_is_shape(v)) add_shapes(b, v, &(Said){NULL, name, NULL, 0});
+}
+
+bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene *out) {
+  *out = (CagScene){.bounds = CAG_BOUNDS_EMPTY};
+  Build b = {.vm = vm, .scene = out};
+  CagMaterial plain = cag_material_default(), line = plain;
+  line.color = ink;
+  keep_material(&b, plain, plain.name);
+  keep_material(&b, line, "ink");
+  for (size_t i = 0; i < n && !b.failed; i++) {
+    if (!cag_value_is_shown(shown[i].value)) {
+      cag_scene_free(out);
+      return cag_vm_fail(vm, CAG_ERR_no_image,
+                         "show expects shapes, lights, cameras and lists of these, found %s",
+                         cag_type_article(shown[i].value));
+    }
+    add_value(&b, shown[i].value, shown[i].name);
+  }
+  if (!b.failed) return true;
+  cag_scene_free(out);
+  return cag_vm_fail(vm, CAG_ERR_limit_memory, "the scene needs more memory than there is");
+}

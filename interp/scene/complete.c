@@ -1,0 +1,299 @@
+// What a scene gets that shows no camera or no light.
+//
+// Camera: from the front, to the right and above (three quarters), as near as the corners of all
+// items' bounds allow with a margin. Things that lie flat in a plane z = constant are looked at
+// from above, without perspective, on white paper.
+//
+// Light (no light and no sky shown): a studio scaled to the scene. A large warm key light from the
+// camera's upper left, a dim cool fill from its right, a rim light from behind, a sky of soft greys
+// that lights all sides, and a grey floor at the lowest point, whose tone meets the sky's, unless
+// the scene shows a ground of its own or the camera is below.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/scene/scene.h"
+
+// Part of half the picture that stays free on each side.
+#define MARGIN 0.09
+static const double AUTOMATIC_FOV = 0.52; // radians, about 30 degrees: a calm perspective
+// From the target to the automatic camera.
+static const CagVec3 THREE_QUARTERS = {0.62, -1, 0.55};
+// Thinner than this part of its width a scene is flat.
+#define FLAT 1e-6
+
+// --- Bounds ---
+
+static void join(CagBounds *into, const CagBounds *b) {
+  if (b->min.x > b->max.x) return;
+  cag_bounds_add(into, b->min);
+  cag_bounds_add(into, b->max);
+}
+
+static CagStatus region_bounds(const CagItem *item, CagBounds *out, CagError *err) {
+  *out = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; i < item->as.region->count; i++) {
+    CagCurve *placed = NULL;
+    CagBounds loop;
+    CagStatus status =
+        cag_curve_transform(item->as.region->loops[i], &item->placement, &placed, err);
+    if (status == CAG_OK) status = cag_curve_bounds(placed, &loop, err);
+    cag_curve_release(placed);
+    if (status != CAG_OK) return status;
+    join(out, &loop);
+  }
+  return CAG_OK;
+}
+
+static CagStatus item_bounds(const CagItem *item, CagBounds *out, CagError *err) {
+  *out = CAG_BOUNDS_EMPTY;
+  switch (item->kind) {
+  case CAG_ITEM_CURVE: return cag_curve_bounds(item->as.curve, out, err);
+  case CAG_ITEM_REGION: return region_bounds(item, out, err);
+  case CAG_ITEM_SURFACE: return cag_surface_bounds(item->as.surface, out, err);
+  case CAG_ITEM_SOLID: return cag_solid_bounds(item->as.solid, out, err);
+  case CAG_ITEM_MESH: *out = cag_mesh_bounds(item->as.mesh); return CAG_OK;
+  case CAG_ITEM_GROUND: return CAG_OK;
+  }
+  return CAG_OK;
+}
+
+static CagVec3 corner(const CagBounds *b, int k) {
+  return cag_vec3(k & 1 ? b->max.x : b->min.x, k & 2 ? b->max.y : b->min.y,
+                  k & 4 ? b->max.z : b->min.z);
+}
+
+// --- Camera ---
+
+static CagVec3 column(const CagTransform *t, int j) {
+  return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
+}
+
+// How far the corners reach in the picture's direction a (0: right, 1: down), as limits of where
+// the eye may stand at depth 0: each corner at (x, z) asks for x - k z <= e + k d and
+// e - k d <= x + k z, with k the tangent of half the angle of view and d the distance.
+typedef struct Reach {
+  double high, low;
+} Reach;
+
+static void reach(const CagBounds *boxes, size_t n, const CagTransform *frame, CagVec3 center,
+                  int a, double k, Reach *out) {
+  *out = (Reach){-INFINITY, INFINITY};
+  for (size_t i = 0; i < n; i++) {
+    if (boxes[i].min.x > boxes[i].max.x) continue;
+    for (int c = 0; c < 8; c++) {
+      CagVec3 p = cag_sub(corner(&boxes[i], c), center);
+      double x = cag_dot(p, column(frame, a)), z = cag_dot(p, column(frame, 2));
+      out->high = fmax(out->high, x - k * z);
+      out->low = fmin(out->low, x + k * z);
+    }
+  }
+}
+
+// Moves the camera, its direction kept, so that all boxes just fit.
+static void fit(CagCamera *c, const CagBounds *boxes, size_t n, CagVec3 center, double radius) {
+  CagTransform frame = cag_camera_frame(c);
+  CagVec3 view = column(&frame, 2);
+  double aspect = (double)c->size[0] / c->size[1];
+  double k[2] = {c->orthographic ? 0 : tan(c->fov / 2) * (1 - MARGIN), 0};
+  Reach r[2];
+  k[1] = k[0] / aspect;
+  for (int a = 0; a < 2; a++) reach(boxes, n, &frame, center, a, k[a], &r[a]);
+  double middle[2], distance = 2 * radius;
+  for (int a = 0; a < 2; a++) {
+    middle[a] = (r[a].high + r[a].low) / 2;
+    if (!c->orthographic) {
+      double needed = (r[a].high - r[a].low) / (2 * k[a]);
+      distance = a == 0 ? needed : fmax(distance, needed);
+    }
+  }
+  if (c->orthographic) {
+    double wide = r[0].high - r[0].low, tall = (r[1].high - r[1].low) * aspect;
+    c->width = fmax(fmax(wide, tall), 1e-9 * radius) / (1 - MARGIN);
+  }
+  // A single point has no reach: any distance shows it.
+  if (!(distance > 0)) distance = 2 * radius;
+  CagVec3 on_axis =
+      cag_madd(cag_madd(center, middle[0], column(&frame, 0)), middle[1], column(&frame, 1));
+  c->target = on_axis;
+  c->eye = cag_madd(on_axis, -distance, view);
+}
+
+static bool is_flat(const CagBounds *b) {
+  CagVec3 size = cag_sub(b->max, b->min);
+  return size.z <= FLAT * fmax(size.x, size.y);
+}
+
+// The box to frame: where nothing is shown, some room about the origin.
+static CagBounds framed(const CagScene *s) {
+  if (s->bounds.min.x <= s->bounds.max.x) return s->bounds;
+  return (CagBounds){{-50, -50, 0}, {50, 50, 50}};
+}
+
+static double radius_of(const CagBounds *b) {
+  double radius = cag_norm(cag_sub(b->max, b->min)) / 2;
+  return radius > 0 ? radius : 1;
+}
+
+CagStatus cag_camera_fit(const CagScene *s, CagCamera *c, CagError *err) {
+  CagBounds whole = framed(s);
+  size_t n = s->item_count;
+  CagBounds *boxes = malloc((n + 1) * sizeof *boxes);
+  if (!boxes) return cag_fail_memory(err);
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; status == CAG_OK && i < n; i++)
+    status = item_bounds(&s->items[i], &boxes[i], err);
+  // Without items the room about the origin stands for them.
+  boxes[n] = s->bounds.min.x <= s->bounds.max.x ? CAG_BOUNDS_EMPTY : whole;
+  if (status == CAG_OK)
+    fit(c, boxes, n + 1, cag_lerp(whole.min, whole.max, 0.5), radius_of(&whole));
+  free(boxes);
+  return status;
+}
+
+static CagStatus add_camera(CagScene *s, CagError *err) {
+  CagBounds whole = framed(s);
+  CagVec3 center = cag_lerp(whole.min, whole.max, 0.5);
+  bool flat = is_flat(&whole);
+  CagCamera *c = malloc(sizeof *c);
+  char *name = strdup("automatic");
+  if (!c || !name) {
+    free(c);
+    free(name);
+    return cag_fail_memory(err);
+  }
+  CagVec3 back = flat ? cag_vec3(0, 0, 1) : cag_unit(THREE_QUARTERS);
+  *c = (CagCamera){.name = name,
+                   .eye = cag_add(center, back),
+                   .target = center,
+                   .orthographic = flat,
+                   .fov = AUTOMATIC_FOV,
+                   .size = {1280, 720}};
+  CagVec3 up = flat ? cag_vec3(0, 1, 0) : cag_vec3(0, 0, 1);
+  c->up = cag_unit(cag_madd(up, -cag_dot(up, back), back));
+  s->cameras = c;
+  s->camera_count = 1;
+  s->automatic_camera = true;
+  return cag_camera_fit(s, c, err);
+}
+
+// --- Studio ---
+
+// Where a light stands, in radii of the scene to the camera's right, up, and back to the camera.
+typedef struct StudioLight {
+  double right, up, back;
+  double size; // side, in radii
+  CagColor color;
+  double strength;
+} StudioLight;
+
+static const StudioLight STUDIO[] = {
+    {-2.2, 2.8, 2.2, 1.8, {1, 0.97, 0.92}, 0.62}, // key
+    {3.2, 1.2, 2.0, 3.0, {0.9, 0.95, 1}, 0.16},   // fill
+    {1.6, 2.6, -3.4, 1.2, {1, 1, 1}, 0.28},       // rim
+};
+#define STUDIO_COUNT (sizeof STUDIO / sizeof *STUDIO)
+// From below to above; the middle is the horizon, where the floor's tone meets it.
+static const CagColor STUDIO_SKY[] = {
+    {0.30, 0.30, 0.31}, {0.44, 0.44, 0.45}, {0.50, 0.51, 0.53}, {0.58, 0.60, 0.63}};
+#define SKY_COUNT (sizeof STUDIO_SKY / sizeof *STUDIO_SKY)
+static const CagColor FLOOR = {0.52, 0.52, 0.52};
+static const CagColor PAPER = {1, 1, 1};
+
+static CagStatus set_sky(CagScene *s, const CagColor *colors, size_t n, CagError *err) {
+  s->sky.colors = malloc(n * sizeof *colors);
+  if (!s->sky.colors) return cag_fail_memory(err);
+  memcpy(s->sky.colors, colors, n * sizeof *colors);
+  s->sky.color_count = n;
+  return CAG_OK;
+}
+
+static CagStatus add_floor(CagScene *s, double z, CagError *err) {
+  CagItem *items = realloc(s->items, (s->item_count + 1) * sizeof *items);
+  if (items) s->items = items;
+  CagMaterial *materials = realloc(s->materials, (s->material_count + 1) * sizeof *materials);
+  if (materials) s->materials = materials;
+  char *texts[] = {strdup("studio_floor"), strdup("studio_floor"), strdup("")};
+  if (!items || !materials || !texts[0] || !texts[1] || !texts[2]) {
+    for (int i = 0; i < 3; i++) free(texts[i]);
+    return cag_fail_memory(err);
+  }
+  CagMaterial m = cag_material_default();
+  m.name = texts[1];
+  m.texture = texts[2];
+  m.color = FLOOR;
+  m.roughness = 1;
+  m.ior = 1.2;
+  materials[s->material_count] = m;
+  items[s->item_count++] = (CagItem){.kind = CAG_ITEM_GROUND,
+                                     .name = texts[0],
+                                     .placement = cag_transform_identity(),
+                                     .material = s->material_count++,
+                                     .ground_z = z,
+                                     .ground_size = INFINITY};
+  return CAG_OK;
+}
+
+static bool has_ground(const CagScene *s) {
+  for (size_t i = 0; i < s->item_count; i++)
+    if (s->items[i].kind == CAG_ITEM_GROUND) return true;
+  return false;
+}
+
+// A drawing: even light from above on paper.
+static CagStatus add_paper_light(CagScene *s, CagError *err) {
+  s->lights = malloc(sizeof *s->lights);
+  if (!s->lights) return cag_fail_memory(err);
+  s->lights[0] = (CagLight){.kind = CAG_LIGHT_SUN,
+                            .direction = cag_unit(cag_vec3(0.25, -0.35, -1)),
+                            .color = {1, 1, 1},
+                            .strength = 0.8};
+  s->light_count = 1;
+  if (!s->has_background) s->background = PAPER;
+  s->has_background = true;
+  return CAG_OK;
+}
+
+static CagStatus add_studio(CagScene *s, CagError *err) {
+  CagBounds whole = framed(s);
+  CagVec3 center = cag_lerp(whole.min, whole.max, 0.5), up = cag_vec3(0, 0, 1);
+  double radius = radius_of(&whole);
+  CagTransform frame = cag_camera_frame(&s->cameras[0]);
+  s->studio = true;
+  if (is_flat(&whole) && s->cameras[0].orthographic) return add_paper_light(s, err);
+  // The camera's right and back along the ground; looked at from straight above, as it sees them.
+  CagVec3 right = column(&frame, 0), back = cag_cross(right, up);
+  if (cag_norm(back) == 0) back = cag_vec3(0, -1, 0);
+  s->lights = malloc(STUDIO_COUNT * sizeof *s->lights);
+  if (!s->lights) return cag_fail_memory(err);
+  for (size_t i = 0; i < STUDIO_COUNT; i++) {
+    const StudioLight *l = &STUDIO[i];
+    CagVec3 offset = cag_madd(cag_madd(cag_scaled(right, l->right * radius), l->up * radius, up),
+                              l->back * radius, back);
+    s->lights[i] = (CagLight){.kind = CAG_LIGHT_AREA,
+                              .position = cag_add(center, offset),
+                              .direction = cag_unit(cag_scaled(offset, -1)),
+                              .size = l->size * radius,
+                              .color = l->color,
+                              .strength = l->strength};
+  }
+  s->light_count = STUDIO_COUNT;
+  CagStatus status = s->has_background ? CAG_OK : set_sky(s, STUDIO_SKY, SKY_COUNT, err);
+  bool floor = !s->has_background && !has_ground(s) && s->cameras[0].eye.z > whole.min.z;
+  if (status == CAG_OK && floor) status = add_floor(s, whole.min.z, err);
+  return status;
+}
+
+CagStatus cag_scene_complete(CagScene *s, CagError *err) {
+  CagStatus status = CAG_OK;
+  s->bounds = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; status == CAG_OK && i < s->item_count; i++) {
+    CagBounds one;
+    status = item_bounds(&s->items[i], &one, err);
+    if (status == CAG_OK) join(&s->bounds, &one);
+  }
+  if (status == CAG_OK && s->camera_count == 0) status = add_camera(s, err);
+  bool lit = s->light_count > 0 || s->sky.color_count > 0 || s->sky.image;
+  if (status == CAG_OK && !lit) status = add_studio(s, err);
+  return status;
+}

@@ -1,0 +1,75 @@
+// Items as meshes: surfaces and solids tessellated, regions flat, curves as tubes, grounds as
+// squares.
+
+#include "interp/scene/item_mesh.h"
+
+#include <stdlib.h>
+
+// Radius of curves that say none, as a part of the diagonal of the scene's bounds.
+#define LINE_PART 0.0025
+// Side of an endless ground, in diagonals of the scene's bounds.
+#define GROUND_PART 20
+
+static double diagonal(const CagBounds *b) {
+  double d = b->min.x <= b->max.x ? cag_norm(cag_sub(b->max, b->min)) : 0;
+  return d > 0 ? d : 100;
+}
+
+double cag_item_line_radius(const CagScene *s, const CagItem *item) {
+  return item->line_radius > 0 ? item->line_radius : LINE_PART * diagonal(&s->bounds);
+}
+
+static CagTessellation how_fine(const CagScene *s, const CagItem *item) {
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  how.tolerance = item->tolerance > 0 ? item->tolerance : s->tolerance;
+  if (s->max_triangles > 0) how.max_triangles = s->max_triangles;
+  how.interrupt = s->interrupt;
+  return how;
+}
+
+static CagStatus region_mesh(const CagItem *item, const CagTessellation *how, CagMesh **out,
+                             CagError *err) {
+  CagSurface *flat = NULL;
+  CagStatus status = cag_surface_planar(item->as.region, &item->placement, &flat, err);
+  if (status == CAG_OK) status = cag_surface_tessellate(flat, how, out, err);
+  cag_surface_release(flat);
+  return status;
+}
+
+static CagStatus ground_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err) {
+  static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
+  CagMesh *m = NULL;
+  CagStatus status = cag_mesh_new(4, 2, true, true, false, &m, err);
+  if (status != CAG_OK) return status;
+  double side =
+      isfinite(item->ground_size) ? item->ground_size : GROUND_PART * diagonal(&s->bounds);
+  bool empty = !(s->bounds.min.x <= s->bounds.max.x) || isfinite(item->ground_size);
+  CagVec3 center = empty ? cag_vec3(0, 0, 0) : cag_lerp(s->bounds.min, s->bounds.max, 0.5);
+  for (int i = 0; i < 4; i++) {
+    double x = i == 1 || i == 2 ? 1 : 0, y = i >= 2 ? 1 : 0;
+    m->positions[i] =
+        cag_vec3(center.x + (x - 0.5) * side, center.y + (y - 0.5) * side, item->ground_z);
+    m->normals[i] = cag_vec3(0, 0, 1);
+    m->uv[2 * i] = x;
+    m->uv[2 * i + 1] = y;
+  }
+  for (int i = 0; i < 6; i++) m->triangles[i] = triangles[i];
+  *out = m;
+  return CAG_OK;
+}
+
+CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err) {
+  CagTessellation how = how_fine(s, item);
+  switch (item->kind) {
+  case CAG_ITEM_CURVE: {
+    double radius = cag_item_line_radius(s, item);
+    return cag_curve_tube_mesh(item->as.curve, radius, item->dash, &how, out, err);
+  }
+  case CAG_ITEM_REGION: return region_mesh(item, &how, out, err);
+  case CAG_ITEM_SURFACE: return cag_surface_tessellate(item->as.surface, &how, out, err);
+  case CAG_ITEM_SOLID: return cag_solid_tessellate(item->as.solid, &how, out, err);
+  case CAG_ITEM_MESH: *out = cag_mesh_retain(item->as.mesh); return CAG_OK;
+  case CAG_ITEM_GROUND: return ground_mesh(s, item, out, err);
+  }
+  return cag_fail(err, CAG_E_ARGUMENT, "item-kind", "", -1, "an item of an unknown kind");
+}
