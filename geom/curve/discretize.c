@@ -11,10 +11,16 @@
 
 // More points than any picture or part needs: a tolerance that asks for more was mistyped.
 #define MOST_POINTS 20000000
-// A piece shorter than this part of the tolerance is not halved for its turning: it holds a cusp.
-#define CUSP 0.25
+// A piece shorter than these parts of the tolerance and of the curve's size is not halved for its
+// turning: it holds a cusp.
+#define CUSP_TOLERANCE 0.25
+#define CUSP_SIZE 1e-4
 // An arc is at least a polygon of this step, whatever the tolerance.
 #define WIDEST (M_PI / 2)
+
+typedef struct Limits {
+  double tolerance, angle, cusp;
+} Limits;
 
 typedef struct Output {
   double *t;
@@ -92,19 +98,19 @@ static double turn_of(const CagCurve *c, double a, double b, double *length) {
   return turn;
 }
 
-static CagStatus halve(const CagCurve *c, double a, double b, double tolerance, double angle,
-                       Output *out, CagError *err) {
+static CagStatus halve(const CagCurve *c, double a, double b, const Limits *limits, Output *out,
+                       CagError *err) {
   double middle = a + (b - a) / 2, length;
-  bool fine = cag_curve_sag(c, a, b) <= tolerance;
-  if (fine && angle < M_PI) fine = turn_of(c, a, b, &length) <= angle || length <= CUSP * tolerance;
+  bool fine = cag_curve_sag(c, a, b) <= limits->tolerance;
+  if (fine && limits->angle < M_PI)
+    fine = turn_of(c, a, b, &length) <= limits->angle || length <= limits->cusp;
   if (fine || !(a < middle && middle < b)) return append(out, b, err);
-  CagStatus status = halve(c, a, middle, tolerance, angle, out, err);
-  return status ? status : halve(c, middle, b, tolerance, angle, out, err);
+  CagStatus status = halve(c, a, middle, limits, out, err);
+  return status ? status : halve(c, middle, b, limits, out, err);
 }
 
 // Equal steps over a circle's arc. Gives false where the piece is no arc of a circle.
-static bool circle_steps(const CagCurve *c, double a, double b, double tolerance, double angle,
-                         size_t *n) {
+static bool circle_steps(const CagCurve *c, double a, double b, const Limits *limits, size_t *n) {
   const double round = 1e-9, slack = 1e-9;
   CagVec3 center, x, y;
   double rate, ignored;
@@ -113,17 +119,16 @@ static bool circle_steps(const CagCurve *c, double a, double b, double tolerance
   double xx = cag_dot(x, x);
   if (fabs(cag_dot(y, y) - xx) > round * xx || fabs(cag_dot(x, y)) > round * xx) return false;
   // 1 - cos(step / 2) = tolerance / r
-  double step = 4 * asin(sqrt(fmin(1, tolerance / (2 * sqrt(xx)))));
-  step = fmin(step, fmin(angle, WIDEST));
+  double step = 4 * asin(sqrt(fmin(1, limits->tolerance / (2 * sqrt(xx)))));
+  step = fmin(step, fmin(limits->angle, WIDEST));
   *n = (size_t)fmax(1, ceil(fabs(rate) * (b - a) / step - slack));
   return true;
 }
 
-static CagStatus one_piece(const CagCurve *c, double a, double b, double tolerance, double angle,
-                           Output *out, CagError *err) {
+static CagStatus one_piece(const CagCurve *c, double a, double b, const Limits *limits, Output *out,
+                           CagError *err) {
   size_t n;
-  if (!circle_steps(c, a, b, tolerance, angle, &n))
-    return halve(c, a, b, tolerance, angle, out, err);
+  if (!circle_steps(c, a, b, limits, &n)) return halve(c, a, b, limits, out, err);
   CagStatus status = CAG_OK;
   for (size_t i = 1; !status && i <= n; i++)
     status = append(out, i == n ? b : a + (b - a) * ((double)i / (double)n), err);
@@ -143,10 +148,13 @@ CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle
   size_t count;
   CagStatus status = cag_curve_cuts(c, &cuts, &count, err);
   if (status) return status;
+  CagBounds box = c->kind->hull(c, c->start, c->end);
+  const double size = cag_norm(cag_sub(box.max, box.min));
+  const Limits limits = {tolerance, angle, fmin(CUSP_TOLERANCE * tolerance, CUSP_SIZE * size)};
   Output o = {0};
   status = append(&o, cuts[0], err);
   for (size_t i = 0; !status && i + 1 < count; i++)
-    status = one_piece(c, cuts[i], cuts[i + 1], tolerance, angle, &o, err);
+    status = one_piece(c, cuts[i], cuts[i + 1], &limits, &o, err);
   // A closed curve is at least a triangle.
   if (!status && c->closed && o.n < 4) {
     const double a = c->start, b = c->end;

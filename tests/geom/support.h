@@ -1,0 +1,43 @@
+// What the tests of the geometry core share: calls that must succeed, calls that must fail with a
+// reason, and nearness.
+
+#ifndef CAG_TESTS_GEOM_SUPPORT_H
+#define CAG_TESTS_GEOM_SUPPORT_H
+
+#include <cmocka.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/linalg/vec.h"
+#include "geom/status.h"
+
+static CagError err;
+
+#define OK(call)                                                                                   \
+  do {                                                                                             \
+    if ((call) != CAG_OK) fail_msg("%s: %s", #call, err.message);                                  \
+  } while (0)
+#define FAILS(call, why)                                                                           \
+  do {                                                                                             \
+    assert_int_not_equal((call), CAG_OK);                                                          \
+    assert_string_equal(err.reason, why);                                                          \
+  } while (0)
+#define NEAR(a, b, tolerance)                                                                      \
+  do {                                                                                             \
+    double near_a = (a), near_b = (b);                                                             \
+    if (!(fabs(near_a - near_b) <= (tolerance)))                                                   \
+      fail_msg("%s = %.17g is not %.17g", #a, near_a, near_b);                                     \
+  } while (0)
+
+static inline void near_vec(CagVec3 a, CagVec3 b, double tolerance) {
+  double d = cag_norm(cag_sub(a, b));
+  if (!(d <= tolerance))
+    fail_msg("[%.17g %.17g %.17g] is not [%.17g %.17g %.17g]", a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+#endif
