@@ -5,10 +5,11 @@
 #include "interp/builtin/curves.h"
 
 // The new curve, with what was said about the old one.
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve *c,
+// `made` is read after the call that fills it: pass its address.
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve **made,
                  CagValue *result) {
   if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_curve_value(call->vm, c);
+  *result = cag_curve_value(call->vm, *made);
   cag_shape_say_alike(*result, call->values[0]);
   return true;
 }
@@ -17,7 +18,7 @@ bool cag_curves_reverse(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
   CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  return give(call, cag_curve_reverse(c, &out, &err), &err, out, result);
+  return give(call, cag_curve_reverse(c, &out, &err), &err, &out, result);
 }
 
 bool cag_curves_trim(CagCall *call, CagValue *result) {
@@ -27,7 +28,7 @@ bool cag_curves_trim(CagCall *call, CagValue *result) {
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_parameter_range(call, 1, c->angular, &from, &to))
     return false;
   CagStatus status = cag_curve_trim(c, from, to, &out, &err);
-  return give(call, status, &err, out, result);
+  return give(call, status, &err, &out, result);
 }
 
 bool cag_curves_reparametrize(CagCall *call, CagValue *result) {
@@ -37,7 +38,7 @@ bool cag_curves_reparametrize(CagCall *call, CagValue *result) {
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_parameter_range(call, 1, c->angular, &from, &to))
     return false;
   CagStatus status = cag_curve_reparametrize(c, from, to, &out, &err);
-  return give(call, status, &err, out, result);
+  return give(call, status, &err, &out, result);
 }
 
 bool cag_curves_split(CagCall *call, CagValue *result) {
@@ -49,9 +50,9 @@ bool cag_curves_split(CagCall *call, CagValue *result) {
       !cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, &t))
     return false;
   CagStatus status = cag_curve_trim(c, c->start, t, &first, &err);
-  if (!give(call, status, &err, first, &parts[0])) return false;
+  if (!give(call, status, &err, &first, &parts[0])) return false;
   status = cag_curve_trim(c, t, c->end, &second, &err);
-  if (!give(call, status, &err, second, &parts[1])) return false;
+  if (!give(call, status, &err, &second, &parts[1])) return false;
   *result = cag_list_values(call->vm, parts, 2);
   return true;
 }
@@ -85,7 +86,7 @@ bool cag_curves_to_nurbs(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
   CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  return give(call, cag_curve_to_nurbs(c, &out, &err), &err, out, result);
+  return give(call, cag_curve_to_nurbs(c, &out, &err), &err, &out, result);
 }
 
 // No limit of the turn: only the distance counts.
@@ -105,5 +106,5 @@ bool cag_curves_polygonize(CagCall *call, CagValue *result) {
     status = cag_curve_polyline(points, c->closed ? n - 1 : n, c->closed, c->dimension, &out, &err);
   free(points);
   free(t);
-  return give(call, status, &err, out, result);
+  return give(call, status, &err, &out, result);
 }

@@ -6,10 +6,11 @@
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
 
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve *c,
+// `made` is read after the call that fills it: pass its address.
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve **made,
                  CagValue *result) {
   if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_curve_value(call->vm, c);
+  *result = cag_curve_value(call->vm, *made);
   return true;
 }
 
@@ -20,7 +21,7 @@ bool cag_curves_line(CagCall *call, CagValue *result) {
   CagError err;
   if (!cag_arg_vec(call, 0, &p, &dp) || !cag_arg_vec(call, 1, &q, &dq)) return false;
   CagStatus status = cag_curve_line(p, q, dp > dq ? dp : dq, &c, &err);
-  return give(call, status, &err, c, result);
+  return give(call, status, &err, &c, result);
 }
 
 bool cag_curves_polyline(CagCall *call, CagValue *result) {
@@ -35,7 +36,7 @@ bool cag_curves_polyline(CagCall *call, CagValue *result) {
     return false;
   CagStatus status = cag_curve_polyline(points, n, closed, dimension, &c, &err);
   free(points);
-  return give(call, status, &err, c, result);
+  return give(call, status, &err, &c, result);
 }
 
 // --- Circles and ellipses ---
@@ -79,7 +80,7 @@ static bool give_arc(CagCall *call, double a, double b, double from, double to, 
   CagError err;
   if (!read_frame(call, frame_at, &frame)) return false;
   CagStatus status = cag_curve_arc(a, b, from, to, &frame, &c, &err);
-  return give(call, status, &err, c, result);
+  return give(call, status, &err, &c, result);
 }
 
 bool cag_curves_circle(CagCall *call, CagValue *result) {
@@ -145,7 +146,7 @@ bool cag_curves_circle_through(CagCall *call, CagValue *result) {
   if (dimension == 3) status = level_frame(center, normal, &frame, &err);
   frame.planar = dimension == 2;
   if (status == CAG_OK) status = cag_curve_arc(radius, radius, 0, FULL_TURN, &frame, &c, &err);
-  return give(call, status, &err, c, result);
+  return give(call, status, &err, &c, result);
 }
 
 bool cag_curves_arc_through(CagCall *call, CagValue *result) {
@@ -165,7 +166,7 @@ bool cag_curves_arc_through(CagCall *call, CagValue *result) {
   CagStatus status = cag_axes(center, x, y, &frame, &err);
   frame.planar = dimension == 2;
   if (status == CAG_OK) status = cag_curve_arc(radius, radius, 0, sweep, &frame, &c, &err);
-  return give(call, status, &err, c, result);
+  return give(call, status, &err, &c, result);
 }
 
 bool cag_curves_helix(CagCall *call, CagValue *result) {
@@ -176,5 +177,5 @@ bool cag_curves_helix(CagCall *call, CagValue *result) {
       !cag_arg_finite(call, 2, &turns) || !cag_arg_number_or(call, 3, 0, &taper))
     return false;
   CagStatus status = cag_curve_helix(radius, pitch, turns, taper, &c, &err);
-  return give(call, status, &err, c, result);
+  return give(call, status, &err, &c, result);
 }

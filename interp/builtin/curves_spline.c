@@ -7,10 +7,11 @@
 #include "geom/basis/bspline.h"
 #include "interp/builtin/curves.h"
 
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve *c,
+// `made` is read after the call that fills it: pass its address.
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve **made,
                  CagValue *result) {
   if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_curve_value(call->vm, c);
+  *result = cag_curve_value(call->vm, *made);
   return true;
 }
 
@@ -55,7 +56,7 @@ bool cag_curves_bezier(CagCall *call, CagValue *result) {
   bool ok = read_weights(call, 1, n, &weights);
   CagStatus status = ok ? cag_curve_bezier(points, weights, n, dimension, &c, &err) : CAG_OK;
   free(points);
-  return ok && give(call, status, &err, c, result);
+  return ok && give(call, status, &err, &c, result);
 }
 
 // Knots from a name or a list; *own is to be freed.
@@ -103,12 +104,12 @@ static bool make_bspline(CagCall *call, const CagVec3 *points, size_t n, int dim
       return cag_fail_call(call, 2, CAG_ERR_value,
                            "takes no list of `knots` for a closed curve: they are uniform");
     status = cag_curve_nurbs_closed(points, weights, n, degree, dimension, &c, &err);
-    return give(call, status, &err, c, result);
+    return give(call, status, &err, &c, result);
   }
   bool ok = read_knots(call, 2, n, degree, points, &own, &knots);
   status = ok ? cag_curve_nurbs(points, weights, n, degree, knots, dimension, &c, &err) : CAG_OK;
   free(own);
-  return ok && give(call, status, &err, c, result);
+  return ok && give(call, status, &err, &c, result);
 }
 
 bool cag_curves_bspline(CagCall *call, CagValue *result) {

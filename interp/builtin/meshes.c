@@ -6,10 +6,11 @@
 #include "geom/mesh/tessellate.h"
 #include "interp/builtin/solids.h"
 
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagMesh *m,
+// `made` is read after the call that fills it: pass its address.
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagMesh **made,
                  CagValue *result) {
   if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_mesh_value(call->vm, m);
+  *result = cag_mesh_value(call->vm, *made);
   return true;
 }
 
@@ -70,7 +71,7 @@ bool cag_solids_mesh(CagCall *call, CagValue *result) {
   bool ok = read_faces(call, faces, n, &counts, &indices);
   if (ok) {
     CagStatus status = cag_mesh_from_faces(vertices, n, indices, counts, faces->length, &m, &err);
-    ok = give(call, status, &err, m, result);
+    ok = give(call, status, &err, &m, result);
   }
   free(vertices);
   free(counts);
@@ -147,7 +148,7 @@ bool cag_solids_weld(CagCall *call, CagValue *result) {
   CagError err;
   double tolerance;
   if (!read_mesh(call, &m) || !cag_arg_finite(call, 1, &tolerance)) return false;
-  if (!give(call, cag_mesh_weld(m, tolerance, &out, &err), &err, out, result)) return false;
+  if (!give(call, cag_mesh_weld(m, tolerance, &out, &err), &err, &out, result)) return false;
   cag_shape_say_alike(*result, call->values[0]);
   return true;
 }
@@ -157,7 +158,7 @@ bool cag_solids_flip(CagCall *call, CagValue *result) {
   CagMesh *out = NULL;
   CagError err;
   if (!read_mesh(call, &m)) return false;
-  if (!give(call, cag_mesh_flip(m, &out, &err), &err, out, result)) return false;
+  if (!give(call, cag_mesh_flip(m, &out, &err), &err, &out, result)) return false;
   cag_shape_say_alike(*result, call->values[0]);
   return true;
 }
@@ -215,7 +216,7 @@ bool cag_solids_tessellate(CagCall *call, CagValue *result) {
   else if (status == CAG_OK) status = cag_mesh_append(meshes, n, &whole, &err);
   for (size_t i = 0; i < n; i++) cag_mesh_release(meshes[i]);
   free(meshes);
-  if (!give(call, status, &err, whole, result)) return false;
+  if (!give(call, status, &err, &whole, result)) return false;
   cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
   return true;
 }

@@ -4,10 +4,11 @@
 
 #include "interp/builtin/curves.h"
 
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagRegion *r,
+// `made` is read after the call that fills it: pass its address.
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagRegion **made,
                  CagValue *result) {
   if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_region_value(call->vm, r, NULL);
+  *result = cag_region_value(call->vm, *made, NULL);
   return true;
 }
 
@@ -52,7 +53,7 @@ bool cag_curves_region(CagCall *call, CagValue *result) {
     ok = read_loop(call, 1, cag_list_get(call->vm, holes, read), &loops[read]);
   if (ok) {
     CagStatus status = cag_region_new(outer, loops, n, &region, &err);
-    ok = give(call, status, &err, region, result);
+    ok = give(call, status, &err, &region, result);
   }
   for (size_t i = 0; i < read; i++) cag_curve_release(loops[i]);
   free(loops);
@@ -73,7 +74,7 @@ bool cag_curves_rectangle(CagCall *call, CagValue *result) {
       !cag_arg_number_or(call, 2, 0, &radius))
     return false;
   CagStatus status = cag_region_rectangle(w, h, radius, &region, &err);
-  return give(call, status, &err, region, result);
+  return give(call, status, &err, &region, result);
 }
 
 // More corners than any polygon of a drawing; a circle says it better.
@@ -87,7 +88,7 @@ bool cag_curves_regular_polygon(CagCall *call, CagValue *result) {
   if (!cag_arg_integer(call, 0, 3, CORNERS_MAX, &n) || !cag_arg_positive(call, 1, &radius))
     return false;
   CagStatus status = cag_region_regular_polygon((size_t)n, radius, &region, &err);
-  return give(call, status, &err, region, result);
+  return give(call, status, &err, &region, result);
 }
 
 bool cag_curves_boundary(CagCall *call, CagValue *result) {

@@ -5,10 +5,11 @@
 #include "interp/builtin/solids.h"
 #include "interp/builtin/surfaces.h"
 
-static bool give(CagCall *call, CagStatus status, const CagError *err, CagSolid *s,
+// `made` is read after the call that fills it: pass its address.
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagSolid **made,
                  CagValue *result) {
   if (!cag_geometry_ok(call, status, err)) return false;
-  *result = cag_solid_value(call->vm, s);
+  *result = cag_solid_value(call->vm, *made);
   return true;
 }
 
@@ -29,7 +30,7 @@ bool cag_solids_box(CagCall *call, CagValue *result) {
     if (dimension != 3) return cag_fail_type(call, 0, "a number or the sizes [x, y, z]");
   }
   if (!cag_arg_bool_or(call, 1, false, &centered)) return false;
-  return give(call, cag_solid_box(size, centered, &s, &err), &err, s, result);
+  return give(call, cag_solid_box(size, centered, &s, &err), &err, &s, result);
 }
 
 bool cag_solids_sphere(CagCall *call, CagValue *result) {
@@ -37,7 +38,7 @@ bool cag_solids_sphere(CagCall *call, CagValue *result) {
   CagSolid *s = NULL;
   CagError err;
   if (!cag_arg_positive(call, 0, &radius)) return false;
-  return give(call, cag_solid_sphere(radius, &s, &err), &err, s, result);
+  return give(call, cag_solid_sphere(radius, &s, &err), &err, &s, result);
 }
 
 // A radius that may be 0 beside one that is not.
@@ -54,7 +55,7 @@ bool cag_solids_cylinder(CagCall *call, CagValue *result) {
   if (!cag_arg_positive(call, 0, &height) || !read_radius(call, 1, 0, &radius) ||
       !read_radius(call, 2, radius, &top))
     return false;
-  return give(call, cag_solid_cylinder(height, radius, top, &s, &err), &err, s, result);
+  return give(call, cag_solid_cylinder(height, radius, top, &s, &err), &err, &s, result);
 }
 
 bool cag_solids_cone(CagCall *call, CagValue *result) {
@@ -62,7 +63,7 @@ bool cag_solids_cone(CagCall *call, CagValue *result) {
   CagSolid *s = NULL;
   CagError err;
   if (!cag_arg_positive(call, 0, &height) || !cag_arg_positive(call, 1, &radius)) return false;
-  return give(call, cag_solid_cylinder(height, radius, 0, &s, &err), &err, s, result);
+  return give(call, cag_solid_cylinder(height, radius, 0, &s, &err), &err, &s, result);
 }
 
 bool cag_solids_prism(CagCall *call, CagValue *result) {
@@ -103,7 +104,7 @@ bool cag_solids_rod(CagCall *call, CagValue *result) {
   if (!cag_arg_vec(call, 0, &p, NULL) || !cag_arg_vec(call, 1, &q, NULL) ||
       !read_radius(call, 2, 0, &radius) || !read_radius(call, 3, radius, &top))
     return false;
-  return give(call, cag_solid_rod(p, q, radius, top, &s, &err), &err, s, result);
+  return give(call, cag_solid_rod(p, q, radius, top, &s, &err), &err, &s, result);
 }
 
 bool cag_solids_torus(CagCall *call, CagValue *result) {
@@ -111,7 +112,7 @@ bool cag_solids_torus(CagCall *call, CagValue *result) {
   CagSolid *s = NULL;
   CagError err;
   if (!cag_arg_positive(call, 0, &major) || !cag_arg_positive(call, 1, &minor)) return false;
-  return give(call, cag_solid_torus(major, minor, &s, &err), &err, s, result);
+  return give(call, cag_solid_torus(major, minor, &s, &err), &err, &s, result);
 }
 
 // The faces of a closed body: surfaces, and regions as flat ones. Solids give theirs.
@@ -149,7 +150,7 @@ bool cag_solids_solid(CagCall *call, CagValue *result) {
   if (!faces) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
   size_t n = 0;
   bool ok = collect_faces(call, shapes, faces, &n) &&
-            give(call, cag_solid_shell(faces, n, &s, &err), &err, s, result);
+            give(call, cag_solid_shell(faces, n, &s, &err), &err, &s, result);
   for (size_t i = 0; i < n; i++) cag_surface_release(faces[i]);
   free(faces);
   if (ok) cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
