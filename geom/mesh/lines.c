@@ -138,6 +138,8 @@ static Line new_line(const Face *f, uint32_t face, const LeafSide *first) {
   if (line.seam) line.before = end_of(s, low + 1);
   line.pole = (pole_at(s, low) && first->coordinate == end_of(s, low)) ||
               (pole_at(s, low + 1) && first->coordinate == end_of(s, low + 1));
+  line.border = !line.seam && !line.pole &&
+                (first->coordinate == end_of(s, low) || first->coordinate == end_of(s, low + 1));
   line.is_break = line.seam || is_break(f, first->fixed, first->coordinate);
   return line;
 }
@@ -158,6 +160,8 @@ CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err) {
     Line *line = &t->lines[t->line_count++];
     *line = new_line(f, face, &sides[k]);
     status = cut_line(t, line, sides + k, next - k, corners, err);
+    if (status == CAG_OK && (line->border || line->is_break))
+      status = tess_refine_chords(t, line, err);
     for (size_t j = k; j < next; j++)
       t->leaves[sides[j].leaf].line[sides[j].side] = (uint32_t)(t->line_count - 1);
   }

@@ -262,14 +262,25 @@ static double cut_distance(const CagVec3 *at, int stride, bool cut_ac) {
   return worst;
 }
 
+// How far p lies off the plane of a triangle. Along the plane the neighbour takes over, and at the
+// border of a face chords.c cares.
+static double off_plane(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c) {
+  CagVec3 n = cag_cross(cag_sub(b, a), cag_sub(c, a));
+  double area = cag_norm(n);
+  return area > 0 ? fabs(cag_dot(cag_sub(p, a), n)) / area : cag_distance_to_triangle(p, a, b, c);
+}
+
 // At the border of a leaf triangles may be cut either way when they are sewn to their neighbours.
 static double quad_distance(const CagVec3 *at, int stride, bool border) {
   CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
-  double worst = cag_distance_to_segment(AT(AT_HALF, AT_0), a, b);
-  worst = fmax(worst, cag_distance_to_segment(AT(AT_HALF, AT_1), d, c));
-  worst = fmax(worst, cag_distance_to_segment(AT(AT_0, AT_HALF), a, d));
-  worst = fmax(worst, cag_distance_to_segment(AT(AT_1, AT_HALF), b, c));
   bool cut_ac = tess_cut_ac(a, b, c, d);
+  CagVec3 end = cut_ac ? c : d, start = cut_ac ? a : b;
+  double worst = off_plane(AT(AT_HALF, AT_0), a, b, end);
+  worst = fmax(worst, off_plane(AT(AT_HALF, AT_1), start, c, d));
+  worst = fmax(worst, cut_ac ? off_plane(AT(AT_0, AT_HALF), a, c, d)
+                             : off_plane(AT(AT_0, AT_HALF), a, b, d));
+  worst = fmax(worst, cut_ac ? off_plane(AT(AT_1, AT_HALF), a, b, c)
+                             : off_plane(AT(AT_1, AT_HALF), b, c, d));
   worst = fmax(worst, cut_distance(at, stride, cut_ac));
   return border ? fmax(worst, cut_distance(at, stride, !cut_ac)) : worst;
 }

@@ -45,7 +45,7 @@ typedef struct Line {
   uint32_t face;
   int fixed;
   double coordinate, before;
-  bool seam, pole, is_break;
+  bool seam, pole, border, is_break; // border: an end of the domain, and no seam or pole
   size_t atom, atom_count;
   size_t node, node_count; // node_count = sum of n + 1
   uint32_t joined;         // line of another face with the same nodes, or NO_INDEX
@@ -111,6 +111,9 @@ CagStatus tess_limit(const Tessellator *t, double triangles, CagError *err);
 
 CagStatus tess_plan_face(Tessellator *t, uint32_t face, CagError *err);
 CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err);
+// Divides the atoms of a line until its chords keep the tolerance, where it is a border or a
+// crease.
+CagStatus tess_refine_chords(Tessellator *t, Line *line, CagError *err);
 // Index of the line on a side of a face; NO_INDEX: the face is planar or the side is a pole or
 // seam.
 uint32_t tess_side_line(const Tessellator *t, uint32_t face, int side);
