@@ -10,7 +10,7 @@
 #include "geom/curve/nurbs.h"
 
 // More points than any picture or part needs: a tolerance that asks for more was mistyped.
-#define MOST_POINTS 20000000
+#define MOST_POINTS 5000000
 // A piece shorter than these parts of the tolerance and of the curve's size is not halved for its
 // turning: it holds a cusp.
 #define CUSP_TOLERANCE 0.25
@@ -27,7 +27,14 @@ typedef struct Output {
   size_t n, capacity;
 } Output;
 
+static CagStatus fail_count(CagError *err) {
+  return cag_fail(err, CAG_E_LIMIT, "too-many-points", "tolerance", -1,
+                  "the tolerance asks for more than %d points on one curve; make it larger",
+                  MOST_POINTS);
+}
+
 static CagStatus append(Output *out, double t, CagError *err) {
+  if (out->n >= MOST_POINTS) return fail_count(err);
   if (out->n == out->capacity) {
     size_t capacity = out->capacity ? 2 * out->capacity : 64;
     double *grown = realloc(out->t, sizeof *grown * capacity);
@@ -35,10 +42,6 @@ static CagStatus append(Output *out, double t, CagError *err) {
     out->t = grown;
     out->capacity = capacity;
   }
-  if (out->n >= MOST_POINTS)
-    return cag_fail(err, CAG_E_LIMIT, "too-many-points", "tolerance", -1,
-                    "the tolerance asks for more than %d points on one curve; make it larger",
-                    MOST_POINTS);
   out->t[out->n++] = t;
   return CAG_OK;
 }
@@ -129,7 +132,7 @@ static CagStatus one_piece(const CagCurve *c, double a, double b, const Limits *
                            CagError *err) {
   size_t n;
   if (!circle_steps(c, a, b, limits, &n)) return halve(c, a, b, limits, out, err);
-  CagStatus status = CAG_OK;
+  CagStatus status = n > MOST_POINTS ? fail_count(err) : CAG_OK;
   for (size_t i = 1; !status && i <= n; i++)
     status = append(out, i == n ? b : a + (b - a) * ((double)i / (double)n), err);
   return status;
