@@ -135,20 +135,18 @@ static double radius_of(const CagBounds *b) {
   return radius > 0 ? radius : 1;
 }
 
-CagStatus cag_camera_fit(const CagScene *s, CagCamera *c, CagError *err) {
+// A box whose bounds cannot be told, or for which memory is out, does not count.
+void cag_camera_frame_all(const CagScene *s, CagCamera *camera) {
   CagBounds whole = framed(s);
+  CagError err;
   size_t n = s->item_count;
-  CagBounds *boxes = malloc((n + 1) * sizeof *boxes);
-  if (!boxes) return cag_fail_memory(err);
-  CagStatus status = CAG_OK;
-  for (size_t i = 0; status == CAG_OK && i < n; i++)
-    status = item_bounds(&s->items[i], &boxes[i], err);
-  // Without items the room about the origin stands for them.
-  boxes[n] = s->bounds.min.x <= s->bounds.max.x ? CAG_BOUNDS_EMPTY : whole;
-  if (status == CAG_OK)
-    fit(c, boxes, n + 1, cag_lerp(whole.min, whole.max, 0.5), radius_of(&whole));
+  bool empty = !(s->bounds.min.x <= s->bounds.max.x);
+  CagBounds *boxes = empty ? NULL : malloc(n * sizeof *boxes);
+  for (size_t i = 0; boxes && i < n; i++)
+    if (item_bounds(&s->items[i], &boxes[i], &err) != CAG_OK) boxes[i] = CAG_BOUNDS_EMPTY;
+  fit(camera, boxes ? boxes : &whole, boxes ? n : 1, cag_lerp(whole.min, whole.max, 0.5),
+      radius_of(&whole));
   free(boxes);
-  return status;
 }
 
 static CagStatus add_camera(CagScene *s, CagError *err) {
@@ -174,7 +172,8 @@ static CagStatus add_camera(CagScene *s, CagError *err) {
   s->cameras = c;
   s->camera_count = 1;
   s->automatic_camera = true;
-  return cag_camera_fit(s, c, err);
+  cag_camera_frame_all(s, c);
+  return CAG_OK;
 }
 
 // --- Studio ---

@@ -127,9 +127,6 @@ CagStatus cag_scene_complete(CagScene *s, CagError *err);
 // Moves a camera, keeping its direction, so that it frames all items for the shape of its picture
 // (size): used by cag_scene_complete, and again when a picture of another size is asked for.
 void cag_camera_frame_all(const CagScene *s, CagCamera *camera);
-// Moves a camera, its direction, kind and angle of view kept, so that all items just fit into a
-// picture of its size: for an automatic camera whose picture gets another shape.
-CagStatus cag_camera_fit(const CagScene *s, CagCamera *c, CagError *err);
 // Camera to world: columns x (right), y (down), z (view), origin.
 CagTransform cag_camera_frame(const CagCamera *c);
 CagMaterial cag_material_default(void);
