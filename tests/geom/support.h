@@ -4,7 +4,6 @@
 #ifndef CAG_TESTS_GEOM_SUPPORT_H
 #define CAG_TESTS_GEOM_SUPPORT_H
 
-#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,6 +11,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include <cmocka.h>
 
 #include "geom/linalg/vec.h"
 #include "geom/status.h"
