@@ -9,6 +9,7 @@ BUILD   ?= build
 PREFIX  ?= /usr/local
 DESTDIR ?=
 VERSION := 0.1.0
+SONAME  := libcag.so.0
 CC      ?= cc
 OPT     ?= -O3
 WARN    := -Wall -Wextra -Werror
@@ -48,7 +49,7 @@ GEOM_OBJ := $(call obj,$(GEOM_SRC))
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o
 TOOL_OBJ := $(call obj,$(TOOL_SRC) $(MAIN_SRC))
 
-.PHONY: all clean unit unit-lang unit-geom unit-interp test test-sanitize bench format check-format check-layers install
+.PHONY: all clean unit unit-lang unit-geom unit-interp test test-programs test-sanitize bench format check-format check-layers install
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -64,7 +65,8 @@ $(BUILD)/libgeom.a: $(GEOM_OBJ)
 $(BUILD)/libcag.a: $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
 	@rm -f $@; ar rcs $@ $^
 $(BUILD)/libcag.so: $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
-	$Q$(CC) -shared -Wl,-soname,libcag.so.0 $^ -o $@ $(LDLIBS_ALL)
+	$Q$(CC) -shared -Wl,-soname,$(SONAME) $^ -o $@ $(LDLIBS_ALL)
+	@ln -sf libcag.so $(BUILD)/$(SONAME)
 
 # The standard library, as C arrays.
 $(BUILD)/gen/stdlib.c: $(STDLIB) tools/embed.sh
@@ -99,7 +101,8 @@ unit-geom: $(call UNIT,geom)
 unit-interp: $(call UNIT,interp)
 	@for t in $^; do case $$t in /*) $$t;; *) ./$$t;; esac || exit 1; done
 
-test: all $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp)
+test-programs: all $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp)
+test: test-programs
 	BUILD=$(BUILD) sh tests/run_all.sh
 
 test-sanitize:
@@ -118,6 +121,20 @@ check-format:
 	clang-format --dry-run -Werror $(FORMATTED)
 check-layers:
 	sh tools/check_layers.sh
+
+# The program, the libraries with their pkg-config file, man pages and the completion of bash.
+install: all
+	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin lib/pkgconfig include share/man/man1 share/bash-completion/completions)
+	install -m 755 $(BUILD)/cag $(DESTDIR)$(PREFIX)/bin/cag
+	install -m 644 $(BUILD)/libcag.a $(DESTDIR)$(PREFIX)/lib/libcag.a
+	install -m 755 $(BUILD)/libcag.so $(DESTDIR)$(PREFIX)/lib/libcag.so.$(VERSION)
+	ln -sf libcag.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib/$(SONAME)
+	ln -sf $(SONAME) $(DESTDIR)$(PREFIX)/lib/libcag.so
+	install -m 644 include/cag.h $(DESTDIR)$(PREFIX)/include/cag.h
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@MODULES@|$(MODULES)|' tools/libcag.pc.in \
+	  > $(DESTDIR)$(PREFIX)/lib/pkgconfig/libcag.pc
+	sh tools/man.sh $(BUILD)/cag $(DESTDIR)$(PREFIX)/share/man/man1
+	sh tools/completion.sh $(BUILD)/cag > $(DESTDIR)$(PREFIX)/share/bash-completion/completions/cag
 
 clean:
 	rm -rf $(BUILD) $(BUILD)-sanitize

@@ -146,6 +146,11 @@ static bool set_heatmap(CagTool *t, const char *value) {
   return true;
 }
 
+static bool set_filter(CagTool *t, const char *value) {
+  t->filter = value;
+  return true;
+}
+
 // Makes room for one more in an array that grows one by one: command lines are short.
 static void *grow(void *array, size_t count, size_t size) {
   void *larger = realloc(array, (count + 1) * size);
@@ -230,6 +235,11 @@ static bool set_color(CagTool *t, const char *value) {
 }
 
 // Flags get no value.
+static bool set_update(CagTool *t, const char *value) {
+  (void)value;
+  return t->update = true;
+}
+
 static bool set_quiet(CagTool *t, const char *value) {
   (void)value;
   return t->quiet = true;
@@ -308,15 +318,14 @@ static const char *nearest_option(const CagToolCommand *command, const char *sho
 
 static bool reject_option(const CagTool *t, const Given *g) {
   const char *nearest = nearest_option(t->command, g->shown);
-  const char *what = g->option ? "does not take" : "has no";
   char help[256];
+  const bool expression = t->command->run == cag_tool_eval;
   if (nearest) snprintf(help, sizeof help, "did you mean --%s?", nearest);
   else
-    snprintf(help, sizeof help,
-             "`cag %s --help` lists the options; an operand that begins with - "
-             "stands behind --",
-             t->command->name);
-  cag_tool_fail(t, CAG_STATUS_USAGE, help, "`cag %s` %s the option %s", t->command->name, what,
+    snprintf(help, sizeof help, "`cag %s --help` lists the options%s", t->command->name,
+             expression ? "; an expression that begins with - stands behind --" : "");
+  cag_tool_fail(t, CAG_STATUS_USAGE, help,
+                g->option ? "%s is an option of other commands" : "there is no option %s",
                 g->shown);
   return false;
 }

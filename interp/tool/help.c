@@ -27,8 +27,8 @@ static void write_wrapped(const char *text, size_t at, size_t indent, FILE *out)
 }
 
 static void write_row(const char *left, const char *right, FILE *out) {
-  const int n = fprintf(out, "  %-*s", TEXT_COLUMN - 2, left);
-  if (n > TEXT_COLUMN - 1) fprintf(out, "\n%*s", TEXT_COLUMN, "");
+  fprintf(out, "  %-*s", TEXT_COLUMN - 2, left);
+  if (strlen(left) > TEXT_COLUMN - 4) fprintf(out, "\n%*s", TEXT_COLUMN, "");
   write_wrapped(right, TEXT_COLUMN, TEXT_COLUMN, out);
 }
 

@@ -1,0 +1,61 @@
+#!/bin/sh
+# Runs all suites of a build (BUILD, default build) and adds up. The last line is `N passed, N failed`; the exit status is 0 when
+# nothing failed. A suite that crashes, or does not say how many of its tests passed, counts as one failure more.
+set -u
+cd "$(dirname "$0")/.."
+BUILD=${BUILD:-build}
+passed=0 failed=0
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+
+# add NAME PASSED FAILED STATUS: adds a suite, and shows its output when something is wrong with it.
+add() {
+  suite_failed=$3
+  [ "$4" -eq 0 ] || [ "$3" -gt 0 ] || suite_failed=1
+  [ "$2" -gt 0 ] || [ "$suite_failed" -gt 0 ] || suite_failed=1
+  [ "$suite_failed" -eq 0 ] || cat "$log"
+  echo "$1: $2 passed, $suite_failed failed"
+  passed=$((passed + $2)) failed=$((failed + suite_failed))
+}
+
+# A program of C tests. cmocka writes its counts to standard error, one pair for each group.
+unit() {
+  "$1" > "$log" 2>&1
+  status=$?
+  add "${1#"$BUILD"/}" "$(sed -n 's/^\[  PASSED  \] \([0-9]*\) test(s).*/\1/p' "$log" | awk '{ n += $1 } END { print n + 0 }')" \
+    "$(sed -n 's/^\[  FAILED  \].*[ :]\([0-9]*\) test(s).*/\1/p' "$log" | awk '{ n += $1 } END { print n + 0 }')" $status
+}
+
+# A command whose last line is `N passed, N failed`.
+counted() {
+  name=$1
+  shift
+  "$@" > "$log" 2>&1
+  status=$?
+  counts=$(tail -n 1 "$log" | sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\1 \2/p')
+  add "$name" ${counts:-0 1} $status
+}
+
+# A check that passes or fails as a whole.
+check() {
+  name=$1
+  shift
+  "$@" > "$log" 2>&1
+  status=$?
+  if [ $status -eq 0 ]; then add "$name" 1 0 0; else add "$name" 0 1 $status; fi
+}
+
+case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
+for source in tests/lang/*_test.c tests/geom/*_test.c tests/interp/*_test.c; do
+  [ ! -e "$source" ] || unit "$BUILD/${source%.c}"
+done
+counted "cag test" "$BUILD/cag" test tests/language examples
+counted "tests/cli" env BUILD="$BUILD" sh tests/cli/run.sh
+check "layers" make -s check-layers
+if command -v clang-format > /dev/null; then
+  check "format" make -s check-format
+else
+  echo "format: not checked, clang-format is not here"
+fi
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

@@ -1,0 +1,19 @@
+# The Debian packages that cag needs, and their installation; read by setup.sh and test.sh.
+
+BUILD_PACKAGES="gcc libc6-dev make pkg-config libopenexr-dev liblapacke-dev libopenblas-dev libedit-dev libcjson-dev
+  libpng-dev libutf8proc-dev libglu1-mesa-dev povray povray-includes"
+TEST_PACKAGES="libcmocka-dev clang-format"
+
+# Installs those of the packages that are not here; as root, or with sudo.
+install_packages() {
+  missing=
+  for package in "$@"; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
+  done
+  [ -n "$missing" ] || return 0
+  echo "installing$missing"
+  as_root=
+  [ "$(id -u)" -eq 0 ] || as_root=sudo
+  $as_root apt-get update -q
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $missing
+}

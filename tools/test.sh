@@ -1,0 +1,12 @@
+#!/bin/sh
+# Runs all tests, after installing what they need and building. The last line is `N passed, N failed`.
+set -u
+cd "$(dirname "$0")/.."
+. tools/packages.sh
+if install_packages $BUILD_PACKAGES $TEST_PACKAGES && make -j"$(nproc)" test-programs; then
+  BUILD=build sh tests/run_all.sh
+else
+  echo "the tests could not be built"
+  echo "0 passed, 1 failed"
+  exit 1
+fi
