@@ -58,6 +58,8 @@ struct CagTool {
   long first_frame, last_frame; // --frames
   double threshold;
   const char *heatmap;
+  const char *filter; // --filter
+  bool update;        // --update
 };
 
 CagToolFunction cag_tool_run, cag_tool_eval, cag_tool_export, cag_tool_render, cag_tool_compare,

@@ -1,0 +1,723 @@
+// Scripts as tests: reading the expectations, running, comparing.
+//
+// Reading: a scan over the bytes of the script that knows comments and texts and nothing else of
+// the language, since scripts with errors are tests too. It makes a Plan: for each run its options,
+// the lines to be printed, and the errors.
+
+#include "interp/session/expect.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "interp/render/compare.h"
+#include "interp/render/exr.h"
+#include "interp/render/png.h"
+
+void cag_test_options_init(CagTestOptions *o) {
+  *o = (CagTestOptions){0};
+  cag_session_options_init(&o->session);
+}
+
+// A piece of the script's text.
+typedef struct Piece {
+  const char *start, *end;
+} Piece;
+
+typedef struct Expected {
+  Piece text; // the line, or the error's code
+  size_t line;
+  bool is_error;
+  bool alone; // nothing but the comment stands on the line
+  bool met;
+} Expected;
+
+typedef struct Define {
+  char *name, *value;
+} Define;
+
+typedef struct Plan {
+  char *options; // as written behind `run:`; NULL: the plain run
+  size_t line;
+  Define *defines;
+  size_t define_count;
+  CagSessionOptions limits;
+  Expected *expected;
+  size_t count;
+  char *problem; // with the options
+} Plan;
+
+typedef struct Plans {
+  Plan *items;
+  size_t count;
+  bool memory; // ran out
+} Plans;
+
+// --- Making plans ---
+
+// Room for one more; NULL when memory is out.
+static void *grow(void **array, size_t *count, size_t size) {
+  char *larger = realloc(*array, (*count + 1) * size);
+  if (!larger) return NULL;
+  *array = larger;
+  void *item = larger + size * (*count)++;
+  memset(item, 0, size);
+  return item;
+}
+
+static void free_plans(Plans *plans) {
+  for (size_t i = 0; i < plans->count; i++) {
+    Plan *p = &plans->items[i];
+    for (size_t k = 0; k < p->define_count; k++) free(p->defines[k].name);
+    free(p->defines);
+    free(p->expected);
+    free(p->options);
+    free(p->problem);
+  }
+  free(plans->items);
+}
+
+static Plan *add_plan(Plans *plans, const CagSessionOptions *limits, size_t line) {
+  Plan *p = grow((void **)&plans->items, &plans->count, sizeof *p);
+  if (!p) {
+    plans->memory = true;
+    return NULL;
+  }
+  p->limits = *limits;
+  p->line = line;
+  return p;
+}
+
+static Piece trim(Piece p) {
+  while (p.start < p.end && isspace((unsigned char)*p.start)) p.start++;
+  while (p.end > p.start && isspace((unsigned char)p.end[-1])) p.end--;
+  return p;
+}
+
+// The next word of a line of options into `out` (as long as the line), without its quotes. Gives
+// where it ends, NULL when there is none.
+static const char *next_word(const char *at, char *out) {
+  while (isspace((unsigned char)*at)) at++;
+  if (!*at) return NULL;
+  char quote = 0;
+  for (; *at && (quote || !isspace((unsigned char)*at)); at++) {
+    if (quote && *at == quote) quote = 0;
+    else if (!quote && (*at == '"' || *at == '\'')) quote = *at;
+    else *out++ = *at;
+  }
+  *out = 0;
+  return at;
+}
+
+static bool add_define(Plan *p, const char *word) {
+  const char *equals = strchr(word, '=');
+  if (!equals || equals == word) return false;
+  Define *d = grow((void **)&p->defines, &p->define_count, sizeof *d);
+  if (!d || !(d->name = strdup(word))) {
+    if (d) p->define_count--;
+    return false;
+  }
+  d->name[equals - word] = 0;
+  d->value = d->name + (equals - word) + 1;
+  return true;
+}
+
+static bool set_limit(Plan *p, const char *name, const char *value) {
+  char *end;
+  double x = strtod(value, &end);
+  if (end == value || *end || !(x > 0)) return false;
+  if (!strcmp(name, "--max-depth")) p->limits.max_depth = (size_t)x;
+  else if (!strcmp(name, "--max-memory")) p->limits.max_memory = (size_t)x;
+  else if (!strcmp(name, "--max-triangles")) p->limits.max_triangles = (size_t)x;
+  else if (!strcmp(name, "--max-time")) p->limits.max_time = x;
+  else return false;
+  return true;
+}
+
+static void set_problem(Plan *p, const char *word) {
+  static const char FORM[] =
+      "`%s` is no option of `// run:`; there are -D name=value, --max-depth, "
+      "--max-memory, --max-time and --max-triangles";
+  free(p->problem);
+  if (asprintf(&p->problem, FORM, word) < 0) p->problem = NULL;
+}
+
+// Reads the options of `// run:` into the plan.
+static void read_options(Plans *plans, Plan *p, Piece text) {
+  p->options = strndup(text.start, (size_t)(text.end - text.start));
+  char *word = malloc((size_t)(text.end - text.start) + 1);
+  const char *at = p->options;
+  if (!at || !word) plans->memory = true;
+  while (at && word && (at = next_word(at, word))) {
+    char *name = strdup(word);
+    bool ok = name != NULL;
+    if (ok && !strncmp(name, "-D", 2) && name[2]) ok = add_define(p, name + 2);
+    else if (ok) {
+      const char *value = next_word(at, word);
+      ok = value && (!strcmp(name, "-D") ? add_define(p, word) : set_limit(p, name, word));
+      if (ok) at = value;
+    }
+    if (!ok) set_problem(p, name ? name : word);
+    free(name);
+    if (!ok) break;
+  }
+  free(word);
+}
+
+// --- Reading the script ---
+
+typedef struct Reader {
+  const char *start, *end; // of the script
+  size_t line;             // of the byte that is looked at
+  const char *line_start;
+  const CagSessionOptions *limits;
+  Plans *plans;
+} Reader;
+
+static bool begins_with(Piece p, const char *word, Piece *rest) {
+  size_t n = strlen(word);
+  if ((size_t)(p.end - p.start) < n || memcmp(p.start, word, n) != 0) return false;
+  *rest = trim((Piece){p.start + n, p.end});
+  return true;
+}
+
+static void add_expected(Reader *r, Piece text, bool is_error, bool alone) {
+  if (r->plans->count == 0 && !add_plan(r->plans, r->limits, 0)) return;
+  Plan *p = &r->plans->items[r->plans->count - 1];
+  Expected *e = grow((void **)&p->expected, &p->count, sizeof *e);
+  if (e) *e = (Expected){.text = text, .line = r->line, .is_error = is_error, .alone = alone};
+  else r->plans->memory = true;
+}
+
+// `E0201, E0203`: several errors of one line.
+static void add_errors(Reader *r, Piece text, bool alone) {
+  const char *at = text.start;
+  while (at < text.end) {
+    const char *from = at;
+    while (at < text.end && isalnum((unsigned char)*at)) at++;
+    if (at > from) add_expected(r, (Piece){from, at}, true, alone);
+    else at++;
+  }
+}
+
+// What stands behind the `//` of a comment.
+static void read_comment(Reader *r, Piece text, bool alone) {
+  Piece rest;
+  text = trim(text);
+  if (begins_with(text, "expect error:", &rest)) {
+    add_errors(r, rest, alone);
+  } else if (begins_with(text, "expect:", &rest)) {
+    add_expected(r, rest, false, alone);
+  } else if (begins_with(text, "run:", &rest)) {
+    Plan *p = add_plan(r->plans, r->limits, r->line);
+    if (p) read_options(r->plans, p, rest);
+  }
+}
+
+// The rest of a line whose text or comment has no end.
+static void read_broken_line(Reader *r, const char *at, const char *line_end) {
+  Piece rest;
+  for (; at + 2 <= line_end; at++)
+    if (at[0] == '/' && at[1] == '/' &&
+        begins_with(trim((Piece){at + 2, line_end}), "expect error:", &rest))
+      add_errors(r, rest, false);
+}
+
+static const char *end_of_line(const Reader *r, const char *at) {
+  const char *newline = memchr(at, '\n', (size_t)(r->end - at));
+  return newline ? newline : r->end;
+}
+
+// Behind the `*/` of a block comment that begins at `at`, NULL when it has none. They nest.
+static const char *skip_block_comment(const char *at, const char *end) {
+  size_t depth = 0;
+  for (; at + 2 <= end; at++) {
+    if (at[0] == '/' && at[1] == '*') {
+      depth++;
+      at++;
+    } else if (at[0] == '*' && at[1] == '/') {
+      at++;
+      if (--depth == 0) return at + 1;
+    }
+  }
+  return NULL;
+}
+
+static const char *skip_raw(const char *at, const char *end) {
+  const char *close = memchr(at + 1, '`', (size_t)(end - at - 1));
+  return close ? close + 1 : NULL;
+}
+
+// Behind the closing quote of a text that begins at `at`, NULL when there is none on its line.
+// Within its { } stand expressions with texts of their own: `holes` are the braces open in each
+// text around.
+#define TEXT_NESTING 64
+static const char *skip_text(const char *at, const char *line_end) {
+  unsigned holes[TEXT_NESTING] = {0}, depth = 0;
+  for (at++; at < line_end; at++) {
+    const char c = *at;
+    if (holes[depth] == 0) { // within the text
+      if (c == '\\') at++;
+      else if (c == '{') holes[depth] = 1;
+      else if (c == '"' && depth == 0) return at + 1;
+      else if (c == '"') depth--;
+    } else if (c == '"') {
+      if (++depth == TEXT_NESTING) return NULL;
+      holes[depth] = 0;
+    } else if (c == '{') {
+      holes[depth]++;
+    } else if (c == '}') {
+      holes[depth]--;
+    } else if (c == '`') {
+      const char *behind = skip_raw(at, line_end);
+      if (!behind) return NULL;
+      at = behind - 1;
+    }
+  }
+  return NULL;
+}
+
+static void count_lines(Reader *r, const char *from, const char *to) {
+  for (; from < to; from++) {
+    if (*from != '\n') continue;
+    r->line++;
+    r->line_start = from + 1;
+  }
+}
+
+static bool is_blank(const char *from, const char *to) {
+  while (from < to && isspace((unsigned char)*from)) from++;
+  return from == to;
+}
+
+// Reads the comment or text at `at`, if one begins there, and gives where to go on.
+static const char *read_at(Reader *r, const char *at) {
+  const char *line_end = end_of_line(r, at), *behind;
+  const bool two = at + 2 <= r->end;
+  if (two && at[0] == '/' && at[1] == '/') {
+    read_comment(r, (Piece){at + 2, line_end}, is_blank(r->line_start, at));
+    return line_end;
+  }
+  if (two && at[0] == '/' && at[1] == '*') behind = skip_block_comment(at, r->end);
+  else if (*at == '`') behind = skip_raw(at, r->end);
+  else if (*at == '"') behind = skip_text(at, line_end);
+  else return at + 1;
+  if (behind) return behind;
+  read_broken_line(r, at, line_end);
+  return line_end;
+}
+
+static bool read_plans(const char *text, size_t length, const CagSessionOptions *limits,
+                       Plans *plans) {
+  Reader r = {.start = text,
+              .end = text + length,
+              .line = 1,
+              .line_start = text,
+              .limits = limits,
+              .plans = plans};
+  for (const char *at = text; at < r.end;) {
+    const char *behind = read_at(&r, at);
+    count_lines(&r, at, behind);
+    at = behind;
+  }
+  if (plans->count == 0) add_plan(plans, limits, 0);
+  return !plans->memory;
+}
+
+// --- A run ---
+
+typedef struct Run {
+  const CagTestOptions *options;
+  CagTestCounts *counts;
+  const char *path; // shown, and read unless there is a text
+  const char *text; // NULL: the file's
+  size_t length;    // of the text
+  Plan *plan;
+  char *name;
+  bool failed;
+} Run;
+
+static void fail(Run *r, size_t line, const char *message, const char *expected, const char *got,
+                 const char *detail) {
+  r->failed = true;
+  if (!r->options->failure) return;
+  r->options->failure(r->options->context,
+                      &(CagTestFailure){r->name, r->path, line, message, expected, got, detail});
+}
+
+static void end_run(Run *r, CagTestOutcome outcome, double seconds, const char *remark) {
+  size_t *counts[] = {&r->counts->passed, &r->counts->failed, &r->counts->left_out};
+  ++*counts[outcome];
+  if (r->options->ended) r->options->ended(r->options->context, r->name, outcome, seconds, remark);
+}
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static char *rendered_errors(const CagSession *s) {
+  char *text = NULL;
+  size_t size;
+  FILE *f = open_memstream(&text, &size);
+  if (!f) return NULL;
+  cag_session_write_diagnostics(s, CAG_STYLE_TEXT, f);
+  fclose(f);
+  return text;
+}
+
+// Whether the error is one that a line expects. One with a place in this script must be on the
+// line; but a comment alone on its line in a run with options names the code only, since such runs
+// stand behind the script.
+static bool meets(const Run *r, const CagErrorView *error, const Expected *e) {
+  size_t n = (size_t)(e->text.end - e->text.start);
+  if (e->met || !e->is_error || strlen(error->code) != n || memcmp(error->code, e->text.start, n))
+    return false;
+  bool here = error->file && strcmp(error->file, r->path) == 0;
+  return !here || error->line == e->line || (e->alone && r->plan->options);
+}
+
+static bool is_expected(Run *r, const CagErrorView *error) {
+  for (size_t i = 0; i < r->plan->count; i++) {
+    if (!meets(r, error, &r->plan->expected[i])) continue;
+    r->plan->expected[i].met = true;
+    return true;
+  }
+  return false;
+}
+
+static void check_errors(Run *r, const CagSession *s) {
+  bool all = true;
+  size_t line = 0;
+  char message[256];
+  // Another error of the same line or code may have been seen already: an error again is no new
+  // one.
+  for (size_t i = 0; i < cag_session_error_count(s); i++) {
+    CagErrorView e;
+    cag_session_error(s, i, &e);
+    if (is_expected(r, &e)) continue;
+    if (all) {
+      snprintf(message, sizeof message, "an error that is not expected: %s", e.code);
+      line = e.file && strcmp(e.file, r->path) == 0 ? e.line : 0;
+    }
+    all = false;
+  }
+  if (!all) {
+    char *errors = rendered_errors(s);
+    fail(r, line, message, NULL, NULL, errors);
+    free(errors);
+  }
+  for (size_t i = 0; i < r->plan->count; i++) {
+    const Expected *e = &r->plan->expected[i];
+    if (!e->is_error || e->met) continue;
+    snprintf(message, sizeof message, "the expected error %.*s did not come",
+             (int)(e->text.end - e->text.start), e->text.start);
+    fail(r, e->line, message, NULL, NULL, NULL);
+  }
+}
+
+// Compares what was printed line by line; tells the first difference.
+static void check_output(Run *r, const char *text, size_t size) {
+  const char *at = text, *end = text + size;
+  size_t last_line = r->plan->line;
+  for (size_t i = 0; i < r->plan->count; i++) {
+    const Expected *e = &r->plan->expected[i];
+    if (e->is_error) continue;
+    char *expected = strndup(e->text.start, (size_t)(e->text.end - e->text.start));
+    last_line = e->line;
+    if (at == end) {
+      fail(r, e->line, "the output ends before this line", expected, NULL, NULL);
+      free(expected);
+      return;
+    }
+    const char *stop = memchr(at, '\n', (size_t)(end - at));
+    if (!stop) stop = end;
+    Piece got = trim((Piece){at, stop});
+    bool same = expected && (size_t)(got.end - got.start) == strlen(expected) &&
+                memcmp(got.start, expected, strlen(expected)) == 0;
+    if (!same) {
+      char *found = strndup(got.start, (size_t)(got.end - got.start));
+      fail(r, e->line, "another line is printed", expected, found, NULL);
+      free(found);
+      free(expected);
+      return;
+    }
+    free(expected);
+    at = stop < end ? stop + 1 : end;
+  }
+  if (at == end || last_line == r->plan->line) return; // a script that expects no line may print
+  const char *stop = memchr(at, '\n', (size_t)(end - at));
+  char *found = strndup(at, (size_t)((stop ? stop : end) - at));
+  fail(r, last_line, "more is printed than expected", NULL, found, NULL);
+  free(found);
+}
+
+// --- Pictures ---
+
+static bool ends_with(const char *path, const char *ending) {
+  size_t n = strlen(path), k = strlen(ending);
+  return n >= k && strcmp(path + n - k, ending) == 0;
+}
+
+// The reference picture of the script, or NULL; to be freed.
+static char *find_reference(const char *path) {
+  static const char *const endings[] = {".exr", ".png"};
+  size_t stem = strlen(path) - (ends_with(path, ".cag") ? 4 : 0);
+  for (size_t i = 0; i < 2; i++) {
+    char *reference;
+    struct stat status;
+    if (asprintf(&reference, "%.*s%s", (int)stem, path, endings[i]) < 0) return NULL;
+    if (stat(reference, &status) == 0 && S_ISREG(status.st_mode)) return reference;
+    free(reference);
+  }
+  return NULL;
+}
+
+static bool read_picture(const char *path, CagImage *out, CagIoError *err) {
+  return ends_with(path, ".exr") ? cag_exr_read(path, out, NULL, err)
+                                 : cag_png_read(path, out, err);
+}
+
+// Compares the rendered picture with the reference.
+static bool compare_pictures(Run *r, const CagImage *reference, const char *reference_path,
+                             const char *path) {
+  CagImage image;
+  CagCompareReport report;
+  CagIoError err = {0};
+  if (!read_picture(path, &image, &err)) {
+    fail(r, 0, err.message, NULL, NULL, NULL);
+    return false;
+  }
+  bool ok =
+      cag_compare_images(reference, reference_path, &image, path, CAG_TEST_PIXEL, &report, &err);
+  cag_image_free(&image);
+  if (!ok) {
+    fail(r, 0, err.message, NULL, NULL, NULL);
+    return false;
+  }
+  double share = (double)report.differing_pixels / ((double)report.width * (double)report.height);
+  ok = share <= CAG_TEST_PIXELS && (!report.has_color || report.delta_e_mean <= CAG_TEST_DELTA_E);
+  if (!ok) {
+    char *message = NULL;
+    if (asprintf(&message,
+                 "the picture is not as %s: the mean colour difference is %.3g (%g may be), %.3g%% "
+                 "of the pixels differ (%g%% may); it is kept in %s",
+                 reference_path, report.delta_e_mean, CAG_TEST_DELTA_E, 100 * share,
+                 100 * CAG_TEST_PIXELS, path) < 0)
+      message = NULL;
+    fail(r, 0, message ? message : "the picture is not as its reference", NULL, NULL, NULL);
+    free(message);
+  }
+  cag_compare_report_free(&report);
+  return ok;
+}
+
+// Renders to `path` in the size of the reference. False, after a failure was told.
+static bool render(Run *r, CagSession *s, const CagImage *reference, const char *path) {
+  CagRenderOptions options;
+  cag_render_options_init(&options);
+  options.width = (int)reference->width;
+  options.height = (int)reference->height;
+  options.time_limit = CAG_TEST_SECONDS;
+  if (cag_session_render(s, &options, path) == CAG_STATUS_OK) return true;
+  char *errors = rendered_errors(s);
+  fail(r, 0, "the scene cannot be rendered", NULL, NULL, errors);
+  free(errors);
+  return false;
+}
+
+// Renders into a folder of its own, which goes away unless the picture differs.
+static bool render_and_compare(Run *r, CagSession *s, const CagImage *reference,
+                               const char *reference_path) {
+  const char *root = getenv("TMPDIR"), *slash = strrchr(reference_path, '/');
+  char *folder = NULL, *path = NULL;
+  if (asprintf(&folder, "%s/cag-test-XXXXXX", root && *root ? root : "/tmp") < 0) return false;
+  bool ok = mkdtemp(folder) != NULL;
+  if (!ok) fail(r, 0, "no folder for the picture can be made", NULL, NULL, NULL);
+  ok = ok && asprintf(&path, "%s/%s", folder, slash ? slash + 1 : reference_path) >= 0;
+  bool keep = false;
+  if (ok) ok = render(r, s, reference, path);
+  if (ok) {
+    ok = compare_pictures(r, reference, reference_path, path);
+    keep = !ok;
+  }
+  if (path && !keep) unlink(path);
+  if (!keep) rmdir(folder);
+  free(path);
+  free(folder);
+  return ok;
+}
+
+static int test_picture(Run *r, CagSession *s, const char *reference_path) {
+  char version[256];
+  double begin = now();
+  CagImage reference;
+  CagIoError err = {0};
+  const char *remark = NULL;
+  r->failed = false;
+  if (!cag_find_povray(version, sizeof version)) {
+    end_run(r, CAG_TEST_LEFT_OUT, 0, version);
+    return CAG_STATUS_OK;
+  }
+  if (!read_picture(reference_path, &reference, &err)) {
+    fail(r, 0, err.message, NULL, NULL, NULL);
+  } else {
+    bool ok = r->options->update ? render(r, s, &reference, reference_path)
+                                 : render_and_compare(r, s, &reference, reference_path);
+    if (ok && r->options->update) remark = "renewed";
+    cag_image_free(&reference);
+    if (!ok) r->failed = true;
+  }
+  const volatile int *interrupt = r->options->session.interrupt;
+  if (interrupt && *interrupt) return CAG_STATUS_INTERRUPTED;
+  end_run(r, r->failed ? CAG_TEST_FAILED : CAG_TEST_PASSED, now() - begin, remark);
+  return CAG_STATUS_OK;
+}
+
+// --- Runs ---
+
+static bool is_chosen(const Run *r) {
+  return !r->options->filter || strstr(r->name, r->options->filter);
+}
+
+static CagSession *make_session(const Run *r, FILE *out) {
+  CagSessionOptions options = r->plan->limits;
+  options.out = out;
+  if (!(options.max_time > 0) || options.max_time > CAG_TEST_SECONDS)
+    options.max_time = CAG_TEST_SECONDS;
+  CagSession *s = cag_session_new(&options);
+  for (size_t i = 0; s && i < r->options->define_count; i++)
+    cag_session_define(s, r->options->define_names[i], r->options->define_values[i]);
+  for (size_t i = 0; s && i < r->plan->define_count; i++)
+    cag_session_define(s, r->plan->defines[i].name, r->plan->defines[i].value);
+  return s;
+}
+
+static bool expects_error(const Plan *p) {
+  for (size_t i = 0; i < p->count; i++)
+    if (p->expected[i].is_error) return true;
+  return false;
+}
+
+// The picture belongs to the plain run of a script that ends well.
+static int test_reference(Run *r, CagSession *s) {
+  char *reference =
+      r->text || r->plan->options || expects_error(r->plan) ? NULL : find_reference(r->path);
+  if (!reference) return CAG_STATUS_OK;
+  char *name = r->name;
+  int status = CAG_STATUS_OK;
+  if (asprintf(&r->name, "%s (picture)", name) < 0) r->name = NULL;
+  if (!r->name) status = CAG_STATUS_LIMIT;
+  else status = test_picture(r, s, reference);
+  free(r->name);
+  r->name = name;
+  free(reference);
+  return status;
+}
+
+static int perform(Run *r) {
+  double begin = now();
+  char *output = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&output, &size);
+  CagSession *s = out ? make_session(r, out) : NULL;
+  int status = CAG_STATUS_LIMIT;
+  if (s && r->plan->problem) {
+    fail(r, r->plan->line, r->plan->problem, NULL, NULL, NULL);
+    end_run(r, CAG_TEST_FAILED, 0, NULL);
+    status = CAG_STATUS_OK;
+  } else if (s) {
+    status = r->text ? cag_session_run_text(s, r->path, r->text, r->length)
+                     : cag_session_run_file(s, r->path);
+    fflush(out);
+    if (status != CAG_STATUS_INTERRUPTED) {
+      check_errors(r, s);
+      // What an error left unprinted is no failure of its own.
+      if (!r->failed) check_output(r, output, size);
+      bool ok = !r->failed;
+      end_run(r, ok ? CAG_TEST_PASSED : CAG_TEST_FAILED, now() - begin, NULL);
+      status = ok && status == CAG_STATUS_OK ? test_reference(r, s) : CAG_STATUS_OK;
+    }
+  }
+  cag_session_free(s);
+  if (out) fclose(out);
+  free(output);
+  return status;
+}
+
+static int run_plans(const char *path, const char *text, size_t length, bool is_file,
+                     const CagTestOptions *options, CagTestCounts *counts) {
+  Plans plans = {0};
+  int status = CAG_STATUS_OK;
+  if (!read_plans(text, length, &options->session, &plans)) status = CAG_STATUS_LIMIT;
+  for (size_t i = 0; i < plans.count && status == CAG_STATUS_OK; i++) {
+    Plan *p = &plans.items[i];
+    Run r = {.options = options,
+             .counts = counts,
+             .path = path,
+             .text = is_file ? NULL : text,
+             .length = length,
+             .plan = p};
+    if (asprintf(&r.name, "%s%s%s", path, p->options ? " " : "", p->options ? p->options : "") < 0)
+      status = CAG_STATUS_LIMIT;
+    else {
+      if (is_chosen(&r)) status = perform(&r);
+      free(r.name);
+    }
+  }
+  free_plans(&plans);
+  return status;
+}
+
+int cag_test_text(const char *name, const char *text, size_t length, const CagTestOptions *options,
+                  CagTestCounts *counts) {
+  return run_plans(name, text, length, false, options, counts);
+}
+
+static char *read_whole(const char *path, size_t *length) {
+  FILE *f = fopen(path, "rb");
+  if (!f) return NULL;
+  char *text = NULL;
+  size_t capacity = 0, n = 0;
+  for (;;) {
+    if (n == capacity) {
+      char *larger = realloc(text, capacity = capacity ? 2 * capacity : 4096);
+      if (!larger) break;
+      text = larger;
+    }
+    size_t k = fread(text + n, 1, capacity - n, f);
+    if (k == 0) break;
+    n += k;
+  }
+  bool ok = text && !ferror(f) && feof(f);
+  fclose(f);
+  *length = n;
+  if (ok) return text;
+  free(text);
+  return NULL;
+}
+
+int cag_test_file(const char *path, const CagTestOptions *options, CagTestCounts *counts) {
+  size_t length;
+  errno = 0;
+  char *text = read_whole(path, &length);
+  if (!text) {
+    char message[256];
+    snprintf(message, sizeof message, "the script cannot be read: %s",
+             errno ? strerror(errno) : "there is not enough memory");
+    if (options->failure)
+      options->failure(options->context,
+                       &(CagTestFailure){.test = path, .file = path, .message = message});
+    counts->failed++;
+    return CAG_STATUS_FILE;
+  }
+  int status = run_plans(path, text, length, true, options, counts);
+  free(text);
+  return status;
+}
