@@ -12,11 +12,11 @@
 #include "interp/builtin/support.h"
 
 // All families, in the order in which the documentation lists them.
-#define FAMILIES(X)                                                                                \
-  X(constants)                                                                                     \
-  X(numbers)                                                                                       \
-  X(angles) X(vectors) X(lists) X(texts) X(records) X(control) X(random) X(calculus) X(matrices)   \
-      X(files) X(formula) X(transforms) X(curves) X(surfaces) X(solids) X(scene)
+// clang-format off
+#define FAMILIES(X) \
+  X(constants) X(numbers) X(angles) X(vectors) X(lists) X(texts) X(records) X(control) X(random) \
+  X(calculus) X(matrices) X(files) X(formula) X(transforms) X(curves) X(surfaces) X(solids) X(scene)
+// clang-format on
 
 #define X(family) extern const CagBuiltin cag_builtins_##family[];
 FAMILIES(X)

@@ -449,10 +449,10 @@ static bool read_word(Reader *r, const char *word) {
 }
 
 static bool read_json_value(Reader *r, int depth, CagValue *out) {
-  enum { DEPTH_MOST = 1000 }; // as deep as brackets of the language may nest
   skip_blank(r);
   if (r->at == r->end) return fail_at(r, r->at, "the file ends where a value was expected");
-  if (depth == DEPTH_MOST) return fail_at(r, r->at, "brackets nest deeper than %d", DEPTH_MOST);
+  if (depth == CAG_DEPTH_MOST)
+    return fail_at(r, r->at, "brackets nest deeper than %d", CAG_DEPTH_MOST);
   if (next_is(r, '[')) return read_json_list(r, depth + 1, out);
   if (next_is(r, '{')) return read_json_record(r, depth + 1, out);
   if (next_is(r, '"')) {
@@ -480,7 +480,7 @@ static bool call_read_json(CagCall *call, CagValue *result) {
 
 // --- JSON out ---
 
-static bool write_json(CagCall *call, CagString *s, CagValue v);
+static bool write_json(CagCall *call, CagString *s, CagValue v, int depth);
 
 static void write_json_text(CagString *s, const char *bytes, size_t n) {
   cag_string_add(s, "\"", 1);
@@ -503,23 +503,23 @@ static bool write_json_number(CagCall *call, CagString *s, double x) {
   return true;
 }
 
-static bool write_json_list(CagCall *call, CagString *s, const CagList *list) {
+static bool write_json_list(CagCall *call, CagString *s, const CagList *list, int depth) {
   cag_string_add(s, "[", 1);
   for (size_t i = 0; i < list->length; i++) {
     if (i > 0) cag_string_add(s, ", ", 2);
-    if (!write_json(call, s, cag_list_get(call->vm, list, i))) return false;
+    if (!write_json(call, s, cag_list_get(call->vm, list, i), depth)) return false;
   }
   cag_string_add(s, "]", 1);
   return true;
 }
 
-static bool write_json_record(CagCall *call, CagString *s, const CagRecord *r) {
+static bool write_json_record(CagCall *call, CagString *s, const CagRecord *r, int depth) {
   cag_string_add(s, "{", 1);
   for (size_t i = 0; i < r->layout->count; i++) {
     if (i > 0) cag_string_add(s, ", ", 2);
     write_json_text(s, r->layout->names[i]->bytes, r->layout->names[i]->length);
     cag_string_add(s, ": ", 2);
-    if (!write_json(call, s, r->fields[i])) return false;
+    if (!write_json(call, s, r->fields[i], depth)) return false;
   }
   cag_string_add(s, "}", 1);
   return true;
@@ -537,7 +537,8 @@ static bool write_json_transform(CagCall *call, CagString *s, const CagTransform
   return true;
 }
 
-static bool write_json(CagCall *call, CagString *s, CagValue v) {
+static bool write_json(CagCall *call, CagString *s, CagValue v, int depth) {
+  if (depth > CAG_DEPTH_MOST) return cag_fail_depth(call);
   switch (v.type) {
   case CAG_NONE: cag_string_add(s, "null", strlen("null")); return true;
   case CAG_BOOL: cag_string_printf(s, "%s", v.as.boolean ? "true" : "false"); return true;
@@ -546,9 +547,9 @@ static bool write_json(CagCall *call, CagString *s, CagValue v) {
   case CAG_TEXT: write_json_text(s, CAG_AS_TEXT(v)->bytes, CAG_AS_TEXT(v)->length); return true;
   case CAG_RANGE:
     if (!cag_as_list(call->vm, v, &v)) return false;
-    return write_json_list(call, s, CAG_AS_LIST(v));
-  case CAG_LIST: return write_json_list(call, s, CAG_AS_LIST(v));
-  case CAG_RECORD: return write_json_record(call, s, CAG_AS_RECORD(v));
+    return write_json_list(call, s, CAG_AS_LIST(v), depth + 1);
+  case CAG_LIST: return write_json_list(call, s, CAG_AS_LIST(v), depth + 1);
+  case CAG_RECORD: return write_json_record(call, s, CAG_AS_RECORD(v), depth + 1);
   case CAG_TRANSFORM: return write_json_transform(call, s, &CAG_AS_TRANSFORM(v)->t);
   default: {
     char found[120];
@@ -562,7 +563,7 @@ static bool write_json(CagCall *call, CagString *s, CagValue v) {
 
 static bool call_json(CagCall *call, CagValue *result) {
   CagString s = {0};
-  if (!write_json(call, &s, call->values[0])) {
+  if (!write_json(call, &s, call->values[0], 0)) {
     cag_string_free(&s);
     return false;
   }

@@ -101,7 +101,8 @@ static CagValue round_value(CagValue v, int digits) {
   return v;
 }
 
-static bool round_list(CagCall *call, CagValue value, int digits, CagValue *result) {
+static bool round_list(CagCall *call, CagValue value, int digits, int depth, CagValue *result) {
+  if (depth > CAG_DEPTH_MOST) return cag_fail_depth(call);
   const CagList *list = CAG_AS_LIST(value);
   if (list->dim > 0) {
     double *numbers;
@@ -117,7 +118,7 @@ static bool round_list(CagCall *call, CagValue value, int digits, CagValue *resu
     if (is_number_or_angle(element)) rounded = round_value(element, digits);
     else if (element.type != CAG_LIST)
       return cag_fail_element(call, 0, i, element, "numbers, angles or lists of these");
-    else if (!round_list(call, element, digits, &rounded)) return false;
+    else if (!round_list(call, element, digits, depth + 1, &rounded)) return false;
     if (!cag_builder_add(call->vm, built, rounded)) return false;
   }
   *result = cag_builder_finish(call->vm, built);
@@ -131,7 +132,7 @@ static bool call_round(CagCall *call, CagValue *result) {
   if (!cag_arg_integer_or(call, 1, 0, -PLACES_MOST, PLACES_MOST, &digits)) return false;
   CagValue v = call->values[0];
   if (!is_number_or_angle(v))
-    return cag_as_list(call->vm, v, &v) && round_list(call, v, (int)digits, result);
+    return cag_as_list(call->vm, v, &v) && round_list(call, v, (int)digits, 0, result);
   *result = round_value(v, (int)digits);
   return true;
 }

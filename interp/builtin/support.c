@@ -46,6 +46,11 @@ bool cag_give_angle(CagCall *call, double degrees, CagValue *result) {
   return check_result(call, degrees);
 }
 
+bool cag_fail_depth(CagCall *call) {
+  return cag_fail_call(call, 0, CAG_ERR_value, "expects lists that nest at most %d deep",
+                       CAG_DEPTH_MOST);
+}
+
 // --- Sequences ---
 
 size_t cag_character_size(const char *s) {
@@ -141,7 +146,11 @@ static bool mix_transforms(CagCall *call, CagValue a, CagValue b, double t, CagV
   return true;
 }
 
-static bool mix_lists(CagCall *call, const CagList *a, const CagList *b, double t, CagValue *out) {
+static bool mix_values(CagCall *call, CagValue a, CagValue b, double t, int depth, CagValue *out);
+
+static bool mix_lists(CagCall *call, const CagList *a, const CagList *b, double t, int depth,
+                      CagValue *out) {
+  if (depth > CAG_DEPTH_MOST) return cag_fail_depth(call);
   if (a->length != b->length)
     return cag_fail_call(call, 1, CAG_ERR_length,
                          "expects lists of one length, found %zu and %zu elements", a->length,
@@ -158,8 +167,8 @@ static bool mix_lists(CagCall *call, const CagList *a, const CagList *b, double 
   CagBuilder *built = cag_builder_new(call->vm);
   for (size_t i = 0; i < a->length; i++) {
     CagValue element;
-    if (!cag_mix_values(call, cag_list_get(call->vm, a, i), cag_list_get(call->vm, b, i), t,
-                        &element))
+    if (!mix_values(call, cag_list_get(call->vm, a, i), cag_list_get(call->vm, b, i), t, depth,
+                    &element))
       return false;
     if (!cag_builder_add(call->vm, built, element)) return false;
   }
@@ -167,7 +176,7 @@ static bool mix_lists(CagCall *call, const CagList *a, const CagList *b, double 
   return true;
 }
 
-bool cag_mix_values(CagCall *call, CagValue a, CagValue b, double t, CagValue *out) {
+static bool mix_values(CagCall *call, CagValue a, CagValue b, double t, int depth, CagValue *out) {
   if (a.type == b.type && a.type == CAG_NUMBER)
     return cag_give_number(call, cag_mix_numbers(a.as.number, b.as.number, t), out);
   if (a.type == b.type && a.type == CAG_ANGLE)
@@ -177,13 +186,17 @@ bool cag_mix_values(CagCall *call, CagValue a, CagValue b, double t, CagValue *o
       (a.type == CAG_LIST || a.type == CAG_RANGE) && (b.type == CAG_LIST || b.type == CAG_RANGE);
   if (lists)
     return cag_as_list(call->vm, a, &a) && cag_as_list(call->vm, b, &b) &&
-           mix_lists(call, CAG_AS_LIST(a), CAG_AS_LIST(b), t, out);
+           mix_lists(call, CAG_AS_LIST(a), CAG_AS_LIST(b), t, depth + 1, out);
   char left[120], right[120];
   return cag_fail_call(call, 0, CAG_ERR_type,
                        "expects two numbers, angles, vectors, lists of these or transforms to go "
                        "between, found %s and %s",
                        cag_value_words(call->vm, a, left, sizeof left),
                        cag_value_words(call->vm, b, right, sizeof right));
+}
+
+bool cag_mix_values(CagCall *call, CagValue a, CagValue b, double t, CagValue *out) {
+  return mix_values(call, a, b, t, 0, out);
 }
 
 // --- Decimal rounding ---

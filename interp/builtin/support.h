@@ -41,6 +41,10 @@ const char *cag_text_at(const CagText *t, size_t k);
 CagValue cag_text_from_string(CagVm *vm, CagString *s); // frees s
 
 // --- Values ---
+// Values nest as deep as a script likes, functions that follow them so deep only: the same bound as
+// for brackets.
+#define CAG_DEPTH_MOST 1000
+bool cag_fail_depth(CagCall *call);
 // Order of two numbers, angles or texts: -1, 0, 1. False when they have none (no error is set).
 bool cag_order(CagValue a, CagValue b, int *order);
 bool cag_fail_order(CagCall *call, int argument, CagValue a, CagValue b);

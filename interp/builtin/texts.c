@@ -18,21 +18,22 @@ static bool read_text(CagCall *call, int argument, const CagText **out) {
 
 // --- text ---
 
-static bool print_places(CagCall *call, CagString *s, CagValue v, int digits);
+static bool print_places(CagCall *call, CagString *s, CagValue v, int digits, int depth);
 
-static bool print_list(CagCall *call, CagString *s, const CagList *list, int digits) {
+static bool print_list(CagCall *call, CagString *s, const CagList *list, int digits, int depth) {
+  if (depth > CAG_DEPTH_MOST) return cag_fail_depth(call);
   cag_string_add(s, "[", 1);
   for (size_t i = 0; i < list->length; i++) {
     if (i > 0) cag_string_add(s, ", ", 2);
-    if (!print_places(call, s, cag_list_get(call->vm, list, i), digits)) return false;
+    if (!print_places(call, s, cag_list_get(call->vm, list, i), digits, depth)) return false;
   }
   cag_string_add(s, "]", 1);
   return true;
 }
 
 // Numbers and angles with so many places, alone or in lists.
-static bool print_places(CagCall *call, CagString *s, CagValue v, int digits) {
-  if (v.type == CAG_LIST) return print_list(call, s, CAG_AS_LIST(v), digits);
+static bool print_places(CagCall *call, CagString *s, CagValue v, int digits, int depth) {
+  if (v.type == CAG_LIST) return print_list(call, s, CAG_AS_LIST(v), digits, depth + 1);
   if (v.type != CAG_NUMBER && v.type != CAG_ANGLE) {
     char found[120];
     return cag_fail_call(call, 0, CAG_ERR_type,
@@ -54,7 +55,7 @@ static bool call_text(CagCall *call, CagValue *result) {
   }
   long digits;
   if (!cag_arg_integer(call, 1, 0, PLACES_MOST, &digits)) return false;
-  if (!print_places(call, &s, call->values[0], (int)digits)) {
+  if (!print_places(call, &s, call->values[0], (int)digits, 0)) {
     cag_string_free(&s);
     return false;
   }

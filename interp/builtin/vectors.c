@@ -157,6 +157,7 @@ static bool call_angle_between(CagCall *call, CagValue *result) {
 typedef struct Nearness {
   CagCall *call;
   double tolerance, relative;
+  int depth; // of lists
 } Nearness;
 
 static bool near_numbers(const Nearness *by, double a, double b) {
@@ -171,9 +172,9 @@ static bool near_transforms(const Nearness *by, const CagTransform *a, const Cag
 }
 
 // Compares two values into *out; false with the error set where they are nothing to compare.
-static bool near_values(const Nearness *by, CagValue a, CagValue b, bool *out);
+static bool near_values(Nearness *by, CagValue a, CagValue b, bool *out);
 
-static bool near_lists(const Nearness *by, const CagList *a, const CagList *b, bool *out) {
+static bool near_lists(Nearness *by, const CagList *a, const CagList *b, bool *out) {
   if (a->length != b->length)
     return cag_fail_call(by->call, 1, CAG_ERR_length,
                          "expects lists of one length, found %zu and %zu elements", a->length,
@@ -184,13 +185,15 @@ static bool near_lists(const Nearness *by, const CagList *a, const CagList *b, b
       *out = near_numbers(by, a->as.numbers[i], b->as.numbers[i]);
     return true;
   }
+  if (++by->depth > CAG_DEPTH_MOST) return cag_fail_depth(by->call);
   for (size_t i = 0; i < a->length && *out; i++)
     if (!near_values(by, cag_list_get(by->call->vm, a, i), cag_list_get(by->call->vm, b, i), out))
       return false;
+  by->depth--;
   return true;
 }
 
-static bool near_values(const Nearness *by, CagValue a, CagValue b, bool *out) {
+static bool near_values(Nearness *by, CagValue a, CagValue b, bool *out) {
   CagVm *vm = by->call->vm;
   bool lists =
       (a.type == CAG_LIST || a.type == CAG_RANGE) && (b.type == CAG_LIST || b.type == CAG_RANGE);
