@@ -445,9 +445,6 @@ static bool call_index_of(CagCall *call, CagValue *result) {
 
 // --- Making lists ---
 
-// Longer lists than this are asked for by mistake; the memory limit stops others.
-#define COUNT_MOST 1000000000000L
-
 // Part k of n - 1 of the way: the ends are exact, and whole steps stay whole.
 static double step_between(double a, double b, long k, long n) {
   double way = b - a;
@@ -485,7 +482,7 @@ static bool check_ends(CagCall *call) {
 
 static bool call_linspace(CagCall *call, CagValue *result) {
   long n;
-  if (!check_ends(call) || !cag_arg_integer(call, 2, 2, COUNT_MOST, &n)) return false;
+  if (!check_ends(call) || !cag_arg_integer(call, 2, 2, LONG_MAX, &n)) return false;
   CagValue a = call->values[0], b = call->values[1];
   CagBuilder *built = cag_builder_new(call->vm);
   for (long k = 0; k < n; k++) {
@@ -500,7 +497,7 @@ static bool call_linspace(CagCall *call, CagValue *result) {
 
 static bool call_repeat(CagCall *call, CagValue *result) {
   long n;
-  if (!cag_arg_integer(call, 1, 0, COUNT_MOST, &n)) return false;
+  if (!cag_arg_integer(call, 1, 0, LONG_MAX, &n)) return false;
   CagBuilder *built = cag_builder_new(call->vm);
   for (long k = 0; k < n; k++)
     if (!cag_builder_add(call->vm, built, call->values[0]) || !may_go_on(call, (size_t)k))

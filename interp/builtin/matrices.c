@@ -542,10 +542,7 @@ static bool all_roots(CagCall *call, Complex **out, size_t *count) {
   for (size_t i = 0; i < n; i++)
     if (!isfinite(c[i])) return cag_fail_value(call, 0, "finite coefficients");
   while (n > 0 && c[n - 1] == 0) n--;
-  if (n == 0)
-    return cag_fail_value(
-        call, 0,
-        "a polynomial with a coefficient that is not 0, since every number is a root of 0,");
+  if (n == 0) return cag_fail_value(call, 0, "a polynomial that is not 0 everywhere");
   size_t zeros = 0;
   while (c[zeros] == 0) zeros++;
   size_t degree = n - 1 - zeros;

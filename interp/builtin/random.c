@@ -4,6 +4,7 @@
 // upper 53 bits of each output make a number of [0, 1): whole-number arithmetic only, so one seed
 // gives one list on every machine.
 
+#include <limits.h>
 #include <string.h>
 
 #include "interp/builtin/support.h"
@@ -82,7 +83,7 @@ static bool call_random(CagCall *call, CagValue *result) {
   double seed;
   long n;
   Source source;
-  if (!cag_arg_finite(call, 0, &seed) || !cag_arg_integer(call, 1, 0, 1000000000000L, &n) ||
+  if (!cag_arg_finite(call, 0, &seed) || !cag_arg_integer(call, 1, 0, LONG_MAX, &n) ||
       !read_source(call, &source))
     return false;
   // Whole seeds count as whole numbers, others by the bits of the double.
