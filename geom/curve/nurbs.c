@@ -262,20 +262,24 @@ static inline void taylor_point(const double *a, int p, double s, double out[4])
     for (int c = 0; c < 4; c++) out[c] = out[c] * s + a[4 * k + c];
 }
 
+// Inlined with a constant degree and order, the loops below unroll and the factors are constants.
 static inline void taylor_derivatives(const double *a, int p, double s, int order, double *out) {
+  static const double falling[CAG_NURBS_TAYLOR + 1][CAG_NURBS_TAYLOR + 1] = {
+      {1, 1, 1, 1}, {0, 1, 2, 3}, {0, 0, 2, 6}, {0, 0, 0, 6}}; // k (k - 1) .. (k - d + 1)
   for (int d = 0; d <= order; d++) {
     double *o = out + 4 * d;
-    if (d > p) {
-      for (int c = 0; c < 4; c++) o[c] = 0;
-      continue;
-    }
-    for (int c = 0; c < 4; c++) o[c] = 0;
-    for (int k = p; k >= d; k--) {
-      double falling = 1; // k (k - 1) .. (k - d + 1)
-      for (int i = 0; i < d; i++) falling *= k - i;
-      for (int c = 0; c < 4; c++) o[c] = o[c] * s + falling * a[4 * k + c];
-    }
+    for (int c = 0; c < 4; c++) o[c] = d > p ? 0 : falling[d][p] * a[4 * p + c];
+    for (int k = p - 1; k >= d; k--)
+      for (int c = 0; c < 4; c++) o[c] = o[c] * s + falling[d][k] * a[4 * k + c];
   }
+}
+
+static void taylor_evaluate(const double *a, int p, double s, int order, double *out) {
+  if (p == 3 && order == 1) taylor_derivatives(a, 3, s, 1, out);
+  else if (p == 3 && order == 2) taylor_derivatives(a, 3, s, 2, out);
+  else if (p == 2 && order == 1) taylor_derivatives(a, 2, s, 1, out);
+  else if (p == 2 && order == 2) taylor_derivatives(a, 2, s, 2, out);
+  else taylor_derivatives(a, p, s, order, out);
 }
 
 // Coefficients about the nearer end of the piece, and the distance from it.
@@ -291,7 +295,7 @@ static void homogeneous_derivatives(const CagNurbs *c, size_t piece, double t, i
   if (c->taylor) {
     double s;
     const double *a = nearer_end(c, piece, t, &s);
-    taylor_derivatives(a, c->degree, s, order, out);
+    taylor_evaluate(a, c->degree, s, order, out);
     return;
   }
   const double length = c->cuts[piece + 1] - c->cuts[piece];
