@@ -1,0 +1,167 @@
+# Where outputs go, and outputs that cannot be written.
+
+script ball.cag 'print "printed"
+show sphere(10)'
+script curve.cag 'show circle(10)'
+
+for format in obj stl ply glb pov json; do
+  it "export writes .$format"
+  try export ball.cag -o "ball.$format"
+  status 0
+  prints_exactly printed
+  exists "ball.$format"
+  no_temporaries .
+done
+
+it 'the endings mean what they say'
+begins_with ball.ply 706c790a
+begins_with ball.glb 676c5446
+grep -q '^mtllib ball.mtl' ball.obj || wrong 'the .obj names no materials'
+exists ball.mtl
+grep -q 'sphere *{' ball.pov || wrong 'the .pov has no sphere'
+
+it 'export writes .svg of curves'
+try export curve.cag -o curve.svg
+status 0
+grep -q '<svg' curve.svg || wrong 'no svg'
+
+it 'an .svg of solids is refused with the reason'
+try export ball.cag -o ball.svg
+status 1
+says 'curve'
+is_missing ball.svg
+
+it '--format overrides the ending'
+try export ball.cag -o ball.dat --format ply
+status 0
+begins_with ball.dat 706c790a
+
+it '-o - is standard output, and prints go to standard error then'
+try export ball.cag -o - --format ply
+status 0
+begins_with out 706c790a
+says printed
+
+it 'an export twice gives the same bytes'
+try export ball.cag -o again.stl
+cmp -s ball.stl again.stl || wrong 'the files differ'
+
+it 'a finer tolerance gives more triangles'
+try export ball.cag -o fine.stl --tolerance 0.001
+status 0
+[ "$(wc -c < fine.stl)" -gt "$(wc -c < ball.stl)" ] || wrong 'it is not finer'
+
+it 'an output that is a folder'
+mkdir taken.stl
+try export ball.cag -o taken.stl
+status 3
+says 'taken.stl'
+prints_nothing
+
+it 'an output in a folder that is not there'
+try export ball.cag -o nowhere/ball.stl
+status 3
+says 'nowhere/ball.stl'
+prints_nothing
+is_missing nowhere
+
+it 'an output below a file'
+try export ball.cag -o ball.stl/more.stl
+status 3
+
+it 'an output that is write-protected'
+printf earlier > kept.stl
+chmod 400 kept.stl
+if [ "$(id -u)" -ne 0 ]; then
+  try export ball.cag -o kept.stl
+  status 3
+  holds kept.stl earlier
+fi
+chmod 600 kept.stl
+
+it 'an output with an empty name'
+try export ball.cag -o '' --format stl
+status 2
+
+it 'render checks its output before it works'
+try render ball.cag -o nowhere/ball.png
+status 3
+prints_nothing
+
+it 'an output keeps its permissions'
+cp ball.stl mode.stl
+chmod 640 mode.stl
+try export ball.cag -o mode.stl
+[ "$(stat -c %a mode.stl)" = 640 ] || wrong 'the permissions changed'
+
+it 'a full disk is an error, for a device'
+try export ball.cag -o /dev/full --format stl
+status 3
+says 'No space left'
+
+it 'a full disk leaves the earlier output'
+mkdir disk
+if mount -t tmpfs -o size=64k tmpfs disk 2> err; then
+  printf earlier > disk/ball.stl
+  try export ball.cag -o disk/ball.stl --tolerance 0.001
+  status 3
+  says 'No space left'
+  holds disk/ball.stl earlier
+  no_temporaries disk
+  umount disk
+fi
+
+it 'a standard output that is full is an error'
+ran='cag run > /dev/full' && "$CAG" run ball.cag -q > /dev/full 2> err
+code=$?
+: > out
+status 3
+says 'standard output'
+
+it 'a standard output that is closed is an error'
+ran='cag run >&-' && "$CAG" run ball.cag -q 2> err >&-
+code=$?
+status 3
+says 'standard output'
+
+it 'help and values notice a full standard output too'
+"$CAG" --help > /dev/full 2> err
+code=$?
+status 3
+"$CAG" eval '1 + 1' > /dev/full 2> err
+code=$?
+status 3
+"$CAG" export ball.cag -o - --format stl > /dev/full 2> err
+code=$?
+status 3
+
+it 'a reader that goes away is no message'
+script lines.cag 'print join([for i in 0..<200000: "line {i}"], "\n")
+print "more"'
+ran='cag run lines.cag | head -n 1'
+("$CAG" run lines.cag 2> err; echo $? > code) | head -n 1 > out
+code=$(cat code)
+prints_exactly 'line 0'
+status 3
+says_nothing
+("$CAG" export ball.cag -o - --format obj --tolerance 0.0005 -q 2> err; echo $? > code) | head -n 1 > out
+code=$(cat code)
+status 3
+grep -v '^printed$' err > others
+[ ! -s others ] || wrong 'there is a message'
+
+it 'a failing script prints what came before'
+script half.cag 'print "first"
+print 1/0'
+try run half.cag
+status 1
+prints_exactly first
+says 'half.cag:2:7'
+
+it 'a symbolic link stays one'
+printf earlier > target.stl
+ln -s target.stl alias.stl
+try export ball.cag -o alias.stl
+status 0
+[ -L alias.stl ] || wrong 'the link was replaced'
+cmp -s target.stl ball.stl || wrong 'the target was not written'

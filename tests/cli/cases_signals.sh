@@ -1,0 +1,95 @@
+# Ctrl-C and its like: status 130, nothing half-written.
+
+script endless.cag 'print "begun"
+f(n) = f(n + 1)
+print f(0)'
+script ball.cag 'show sphere(10)'
+mkdir temporary
+# Runs cag until a signal comes after so many seconds.
+interrupted() {
+  signal=$1 after=$2
+  shift 2
+  ran="cag $* (SIG$signal after $after s)"
+  TMPDIR=$PWD/temporary timeout --preserve-status -k 20 -s "$signal" "$after" "$CAG" "$@" > out 2> err < /dev/null
+  code=$?
+  check_end
+}
+
+for signal in INT TERM HUP; do
+  it "SIG$signal stops a run"
+  interrupted $signal 0.5 run endless.cag
+  status 130
+  prints_exactly begun
+done
+
+it 'Ctrl-C stops a long list'
+script list.cag 'print sum([for i in 0..1e12: i])'
+interrupted INT 0.3 run list.cag
+status 130
+
+it 'Ctrl-C stops eval'
+interrupted INT 0.3 eval '{ f(n) = f(n + 1); f(0) }'
+status 130
+
+it 'Ctrl-C while a script is read from standard input'
+mkfifo pipe
+sleep 5 > pipe &
+sleeper=$!
+ran='cag run - (SIGINT)'
+timeout --preserve-status -k 20 -s INT 0.3 "$CAG" run - < pipe > out 2> err
+code=$?
+kill $sleeper
+status 130
+
+# A renderer that never ends, to be found by its odd argument.
+mkdir slow
+cat > slow/povray <<'END'
+#!/bin/sh
+sleep 61.2937
+END
+chmod +x slow/povray
+is_running() { grep -l -a '61\.2937' /proc/[0-9]*/cmdline 2> /dev/null | grep -q .; }
+
+it 'Ctrl-C during a render ends the renderer and leaves the earlier picture'
+printf earlier > out.png
+PATH=$PWD/slow:$PATH
+interrupted INT 1 render ball.cag -o out.png --size 64x48
+status 130
+holds out.png earlier
+no_temporaries .
+no_temporaries temporary
+sleep 0.1
+! is_running || wrong 'the renderer still runs'
+
+it 'a killed cag takes its renderer along'
+ran='cag render (SIGKILL)'
+TMPDIR=$PWD/temporary "$CAG" render ball.cag -o out.png --size 64x48 > out 2> err &
+child=$!
+sleep 0.7
+kill -KILL $child
+wait $child 2> /dev/null
+sleep 0.3
+! is_running || wrong 'the renderer still runs'
+holds out.png earlier
+rm -rf temporary/*
+PATH=${PATH#*:}
+
+it 'Ctrl-C during a film keeps the frames that are whole'
+script film.cag 'show sphere(10 + frame)'
+interrupted INT 2 render film.cag -o 'film.%04d.png' --frames 0..999 --size 64x48 --quality draft
+status 130
+exists film.0000.png
+no_temporaries .
+no_temporaries temporary
+for picture in film.*.png; do begins_with "$picture" 89504e470d0a1a0a; done
+
+it 'a second Ctrl-C ends at once'
+ran='cag run (SIGTERM twice)'
+"$CAG" run endless.cag > out 2> err &
+child=$!
+sleep 0.3
+kill -TERM $child
+kill -TERM $child 2> /dev/null
+wait $child
+code=$?
+status 130

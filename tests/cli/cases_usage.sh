@@ -1,0 +1,200 @@
+# The command line itself: commands, options, help, wrong usage. Nothing of this runs a script.
+
+script ball.cag 'show sphere(10)'
+
+it 'the version is printed'
+try --version
+status 0
+prints_like '^cag [0-9][0-9]*\.[0-9][0-9]*\.[0-9][0-9]*$'
+says_nothing
+
+it 'help lists all commands'
+try --help
+status 0
+for command in run eval export render compare test explain info repl; do prints "  $command "; done
+
+for command in run eval export render compare test explain info repl; do
+  it "cag $command --help shows examples"
+  try $command --help
+  status 0
+  prints "Usage: cag $command"
+  prints 'Examples:'
+  prints '--diagnostics'
+  says_nothing
+done
+
+it 'the help of render lists its options'
+try render --help
+for option in '-o OUT' '--size' '--quality' '--camera' '--frames' '--exposure' '--engine' '--tolerance' '--max-time'; do prints "$option"; done
+
+it 'the help of export lists the formats'
+try export --help
+for format in obj stl ply glb pov svg json; do prints_like "^  $format "; done
+
+it 'a misspelt command gets the nearest'
+try rendr ball.cag
+status 2
+says 'did you mean `cag render`?'
+
+it 'a command that this version does not have is unknown'
+try lsp
+status 2
+says "there is no command 'lsp'"
+
+it 'a script in the place of a command gets its mend'
+try ball.cag
+status 2
+says 'cag run ball.cag'
+
+it 'a misspelt option gets the nearest'
+try render ball.cag -o a.png --sise 3x3
+status 2
+says 'cag render: '
+says 'did you mean --size?'
+is_missing a.png
+
+it 'an option of another command is refused'
+try run ball.cag --size 3x3
+status 2
+says '--size is an option of other commands'
+
+it 'an option without its value is refused'
+try render ball.cag -o a.png --quality
+status 2
+says '--quality needs a value'
+
+it 'an option is not the value of the option before it'
+try render ball.cag -o --size 3x3
+status 2
+says '-o needs a value'
+
+it 'a flag takes no value'
+try run ball.cag --help=yes
+status 2
+says '--help takes no value'
+
+it 'a missing operand is wrong usage'
+try run
+status 2
+says 'cag run FILE'
+
+it 'an operand too many is wrong usage'
+try compare a.exr b.exr c.exr
+status 2
+says "'c.exr' is one too many"
+
+it 'export wants an output'
+try export ball.cag
+status 2
+says '-o OUT'
+
+it 'a second output is refused'
+try export ball.cag -o a.stl -o b.stl
+status 2
+says "'a.stl' and 'b.stl'"
+is_missing a.stl
+is_missing b.stl
+
+it 'an output without an ending wants --format'
+try export ball.cag -o thing
+status 2
+says '--format'
+is_missing thing
+
+for ending in gltf 3mf igs step urdf xyz; do
+  it "there is no format .$ending, and the message names those that there are"
+  try export ball.cag -o "a.$ending"
+  status 2
+  says '.obj .stl .ply .glb .pov .svg .json'
+  is_missing "a.$ending"
+done
+
+it 'export of a picture gets its mend'
+try export ball.cag -o a.png
+status 2
+says 'cag render'
+
+it 'render of a mesh gets its mend'
+try render ball.cag -o a.stl
+status 2
+says 'cag export'
+
+it 'an engine that is not there names the one that is'
+try render ball.cag -o a.png --engine preview
+status 2
+says 'povray'
+
+it 'there are no passes'
+try render ball.cag -o a.exr --passes color
+status 2
+says '--passes'
+
+for wrong in '--size 10' '--size 0x4' '--size 4x4x4' '--size 999999x4' '--size -3x4' '--quality best' '--exposure bright' '--exposure nan' \
+  '--frames 3' '--frames 5..3' '--frames a..b' '--frames 1..2..3' '--tolerance 0' '--tolerance -1' '--tolerance fine' '--max-memory lots' \
+  '--max-memory 5X' '--max-memory 0' '--max-time 0' '--max-time soon' '--max-depth 0' '--max-depth 1.5' '--max-triangles none' \
+  '--diagnostics xml' '--color red' '-D height' '-D =3'; do
+  it "render $wrong is wrong usage"
+  try render ball.cag -o 'a.%04d.png' $wrong
+  status 2
+  says "${wrong%% *}"
+  prints_nothing
+done
+
+it 'options stand before, between and behind the operands, with = or without'
+script param.cag 'param n = 1
+print n'
+try -D n=2 run param.cag
+status 0
+prints_exactly 2
+try run -Dn=3 param.cag
+prints_exactly 3
+try run param.cag --color=never -qD n=4
+prints_exactly 4
+
+it '-- ends the options'
+script -strange.cag 'print 5'
+try run -- -strange.cag
+status 0
+prints_exactly 5
+
+it 'explain tells a code at length, whatever its case'
+try explain e0201
+status 0
+prints 'E0201'
+prints 'example'
+
+it 'explain without a code lists all'
+try explain
+status 0
+prints 'E0101'
+prints 'E0601'
+
+it 'every code that is listed is explained'
+"$CAG" explain > codes
+while read -r one rest; do
+  "$CAG" explain "$one" > out 2> err || wrong "cag explain $one failed"
+  [ "$(wc -l < out)" -ge 3 ] || wrong "cag explain $one says too little"
+done < codes
+[ "$(wc -l < codes)" -ge 100 ] || wrong 'there are few codes'
+
+it 'an unknown code is wrong usage'
+try explain E9999
+status 2
+says 'E9999'
+
+it 'info tells versions, what was found and the limits'
+try info
+status 0
+for line in '^cag ' '^OpenEXR  *3' '^LAPACK  *3' '^POV-Ray  *3\.7' '^memory  *4G' '^depth  *10000'; do prints_like "$line"; done
+
+it 'info says when POV-Ray is missing'
+mkdir -p empty
+ran='cag info' && PATH=$PWD/empty "$CAG" info > out 2> err
+code=$?
+status 0
+prints_like '^POV-Ray  *not found'
+
+it 'usage errors are JSON when that is asked for'
+try run --diagnostics json
+status 2
+says_like '^{"severity":"error",.*"message":".*"help":".*"}$'

@@ -1,0 +1,76 @@
+# What the command line's tests are written in:
+#
+#   it 'a missing script is status 3'      begins a test, and ends the one before
+#   try run missing.cag                    runs cag; its output is kept in the files `out` and `err`
+#   status 3                               what the exit status must be
+#   says 'missing.cag'                     a text that standard error must hold; `prints`: standard output
+#
+# A test fails at its first expectation that does not hold, and is shown with what was run.
+
+test_name= test_state=
+
+it() {
+  case $test_state in
+    good) passed=$((passed + 1)) ;;
+    bad) failed=$((failed + 1)) ;;
+  esac
+  test_name=$1 test_state=
+  [ -z "$1" ] || test_state=good
+  ran= code=
+}
+
+wrong() {
+  [ "$test_state" = good ] || return 0
+  test_state=bad
+  echo "FAILED: $test_name"
+  echo "  $1"
+  echo "  ran: $ran, status $code"
+  head -c 1500 out | sed 's/^/  out: /'
+  head -c 3000 err | sed 's/^/  err: /'
+}
+
+# Nothing here takes long: a run that hangs is ended and fails.
+LONGEST=120
+try() { with_input /dev/null "$@"; }
+with_input() {
+  input=$1
+  shift
+  ran="cag $*"
+  timeout $LONGEST "$CAG" "$@" < "$input" > out 2> err
+  code=$?
+  check_end
+}
+# Another command than cag.
+try_command() {
+  ran=$*
+  "$@" < /dev/null > out 2> err
+  code=$?
+  check_end
+}
+check_end() {
+  [ $code -ne 124 ] || wrong "it hung"
+  [ $code -lt 128 ] || [ $code -eq 130 ] || wrong "it crashed"
+  ! grep -q 'Sanitizer\|runtime error:' err || wrong "a sanitizer found something"
+}
+
+status() { [ "$code" -eq "$1" ] || wrong "expected status $1"; }
+says() { grep -qF -e "$1" err || wrong "standard error lacks: $1"; }
+says_not() { ! grep -qF -e "$1" err || wrong "standard error has: $1"; }
+prints() { grep -qF -e "$1" out || wrong "standard output lacks: $1"; }
+says_nothing() { [ ! -s err ] || wrong "standard error is not empty"; }
+prints_nothing() { [ ! -s out ] || wrong "standard output is not empty"; }
+prints_exactly() { [ "$(cat out)" = "$1" ] || wrong "standard output is not: $1"; }
+# A text of a pattern, for what varies.
+says_like() { grep -q -e "$1" err || wrong "standard error has nothing like: $1"; }
+prints_like() { grep -q -e "$1" out || wrong "standard output has nothing like: $1"; }
+holds() { [ "$(cat "$1")" = "$2" ] || wrong "the file $1 does not hold: $2"; }
+exists() { [ -s "$1" ] || wrong "the file $1 is missing or empty"; }
+is_missing() { [ ! -e "$1" ] || wrong "the file $1 is there"; }
+# What a killed or failed run must not leave behind in a folder.
+no_temporaries() { [ -z "$(ls -A "$1" | grep -e '\.tmp$' -e '^cag-' -e '^\.')" ] || wrong "temporaries are left in $1: $(ls -A "$1")"; }
+bytes_at_most() { [ "$(wc -c < "$1")" -le "$2" ] || wrong "$1 is longer than $2 bytes"; }
+# The first bytes of a file, as hexadecimal digits.
+begins_with() { [ "$(head -c $((${#2} / 2)) "$1" | od -An -v -tx1 | tr -d ' \n')" = "$2" ] || wrong "$1 does not begin with $2"; }
+
+# A script of this name and text.
+script() { printf '%s\n' "$2" > "$1"; }

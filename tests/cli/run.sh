@@ -1,0 +1,25 @@
+#!/bin/sh
+# Tests of the command line: the real program, run on real files. BUILD is the folder of the build (default build).
+#   sh tests/cli/run.sh [NAME ...]      all the files cases_*.sh, or some: usage bad_input ...
+# The last line is `N passed, N failed`.
+set -u
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+BUILD=${BUILD:-$root/build}
+case $BUILD in /*) ;; *) BUILD=$root/$BUILD ;; esac
+CAG=$BUILD/cag
+passed=0 failed=0
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+. "$here/harness.sh"
+
+[ $# -gt 0 ] || set -- usage run bad_input output limits signals render compare diagnostics install
+for name in "$@"; do
+  mkdir "$work/$name"
+  cd "$work/$name" || exit 1
+  . "$here/cases_$name.sh"
+  it ''
+  cd "$root" || exit 1
+done
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
