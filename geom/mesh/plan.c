@@ -229,8 +229,12 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
     for (int d = 0; d < 2; d++) n[d] = fmax(n[d], most[d]);
   }
   if (how->max_edge > 0) {
-    double a = needs->length[0], b = needs->length[1];
-    best_counts(&(Form){a * a, 0, b * b, how->max_edge * how->max_edge}, square_ratio, most);
+    // A triangle's edge is at most as long as two sides of a quadrilateral, and lines may be a
+    // little longer between the samples.
+    const double between = 1.05;
+    double a = between * needs->length[0], b = between * needs->length[1];
+    best_counts(&(Form){a * a, 2 * a * b, b * b, how->max_edge * how->max_edge}, square_ratio,
+                most);
     for (int d = 0; d < 2; d++) n[d] = fmax(n[d], most[d]);
   }
 }
