@@ -1,0 +1,372 @@
+// Intersections by subdivision: parts that the bound of their distance from the chord keeps apart
+// are dropped, parts in which at most one crossing fits are finished by Newton's method, the rest
+// is halved. What is left at the smallest size are touches.
+
+#include "geom/curve/intersect.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+#include "geom/curve/family.h"
+
+// Parts of the size of the data: where a curve counts as a chord, where two points are one, where
+// meetings found twice are the same.
+#define CHORD 1e-11
+#define MEET 1e-9
+#define SAME_POINT 1e-7
+#define ZERO 1e-12
+// Parts of the domain: meetings farther apart than this are different even at one point; a part
+// longer than the second that lies in the other wholly is an overlap.
+#define SAME_PLACE 1e-4
+#define OVERLAP 1e-3
+// Pairs looked at before the curves are taken to run along each other.
+#define MOST_PAIRS 1000000
+#define DEPTH 60
+
+typedef struct Found {
+  CagMeeting *items;
+  size_t n, capacity;
+} Found;
+
+typedef struct Part {
+  double a, b;
+  CagVec3 p, q;
+} Part;
+
+static CagStatus fail_overlap(CagError *err) {
+  return cag_fail(err, CAG_E_DEGENERATE, "overlap", "", -1,
+                  "the two run along each other: they share more than single points");
+}
+
+static CagStatus add(Found *found, double t, double t2, CagVec3 point, CagError *err) {
+  if (found->n == found->capacity) {
+    size_t capacity = found->capacity ? 2 * found->capacity : 16;
+    CagMeeting *grown = realloc(found->items, sizeof *grown * capacity);
+    if (!grown) return cag_fail_memory(err);
+    found->items = grown;
+    found->capacity = capacity;
+  }
+  found->items[found->n++] = (CagMeeting){t, t2, point};
+  return CAG_OK;
+}
+
+static int by_t(const void *a, const void *b) {
+  const CagMeeting *x = a, *y = b;
+  if (x->t != y->t) return x->t > y->t ? 1 : -1;
+  return (x->t2 > y->t2) - (x->t2 < y->t2);
+}
+
+// Whether two parameters of a curve are one place: near each other, or at the two ends of a seam.
+static bool same_place(const CagCurve *c, double s, double t) {
+  if (!c) return true;
+  double gap = fabs(s - t), range = c->end - c->start;
+  return gap <= SAME_PLACE * range || (c->closed && gap >= (1 - SAME_PLACE) * range);
+}
+
+// Sorts, and drops what was found twice: the later of two.
+static void tidy(Found *found, const CagCurve *a, const CagCurve *b, double size) {
+  // A seam is met at its start.
+  for (size_t i = 0; i < found->n; i++) {
+    CagMeeting *m = &found->items[i];
+    if (a->closed && a->end - m->t <= MEET * (a->end - a->start)) m->t = a->start;
+    if (b && b->closed && b->end - m->t2 <= MEET * (b->end - b->start)) m->t2 = b->start;
+  }
+  if (found->n) qsort(found->items, found->n, sizeof *found->items, by_t);
+  size_t kept = 0;
+  for (size_t i = 0; i < found->n; i++) {
+    const CagMeeting *m = &found->items[i];
+    bool known = false;
+    for (size_t k = 0; k < kept && !known; k++) {
+      const CagMeeting *o = &found->items[k];
+      known = cag_norm(cag_sub(m->point, o->point)) <= SAME_POINT * size &&
+              same_place(a, m->t, o->t) && same_place(b, m->t2, o->t2);
+    }
+    if (!known) found->items[kept++] = *m;
+  }
+  found->n = kept;
+}
+
+static CagStatus first_parts(const CagCurve *c, Part **out, size_t *n, CagError *err) {
+  // A smooth piece may be a whole turn: its chord says something only after some halvings.
+  enum { HALVES = 4 };
+  double *cuts;
+  size_t count;
+  CagStatus status = cag_curve_cuts(c, &cuts, &count, err);
+  if (status) return status;
+  const size_t pieces = cag_curve_sag(c, cuts[0], cuts[1]) > 0 ? HALVES : 1;
+  Part *parts = malloc(sizeof *parts * (count - 1) * pieces);
+  if (!parts) status = cag_fail_memory(err);
+  size_t used = 0;
+  for (size_t i = 0; !status && i + 1 < count; i++)
+    for (size_t k = 0; !status && k < pieces; k++) {
+      Part *p = &parts[used++];
+      double range = cuts[i + 1] - cuts[i];
+      p->a = k ? cuts[i] + range * (double)k / (double)pieces : cuts[i];
+      p->b = k + 1 < pieces ? cuts[i] + range * (double)(k + 1) / (double)pieces : cuts[i + 1];
+      status = cag_curve_eval(c, p->a, 0, CAG_SIDE_RIGHT, &p->p, err);
+      if (!status) status = cag_curve_eval(c, p->b, 0, CAG_SIDE_LEFT, &p->q, err);
+    }
+  free(cuts);
+  if (status) {
+    free(parts);
+    return status;
+  }
+  *out = parts;
+  *n = used;
+  return CAG_OK;
+}
+
+static CagStatus halves(const CagCurve *c, const Part *part, Part out[2], CagError *err) {
+  double m = part->a + (part->b - part->a) / 2;
+  CagVec3 p;
+  CagStatus status = cag_curve_point(c, m, &p, err);
+  if (status) return status;
+  out[0] = (Part){part->a, m, part->p, p};
+  out[1] = (Part){m, part->b, p, part->q};
+  return CAG_OK;
+}
+
+static double extent_of(const CagCurve *c) {
+  CagBounds b = c->kind->hull(c, c->start, c->end);
+  return cag_norm(cag_sub(b.max, b.min));
+}
+
+// --- A plane ---
+
+typedef struct PlaneSearch {
+  const CagCurve *c;
+  const CagPlane *plane;
+  double size;
+  Found found;
+} PlaneSearch;
+
+static double height(const PlaneSearch *s, CagVec3 p) {
+  return cag_dot(cag_sub(p, s->plane->point), s->plane->normal);
+}
+
+// The root between a and b, where the heights have different signs: Newton kept in its bracket.
+static CagStatus solve(PlaneSearch *s, double a, double b, double fa, CagError *err) {
+  double t = a + (b - a) / 2;
+  CagVec3 d[2] = {{0, 0, 0}};
+  for (int i = 0; i < 100; i++) {
+    CagStatus status = cag_curve_eval(s->c, t, 1, CAG_SIDE_RIGHT, d, err);
+    if (status) return status;
+    double f = height(s, d[0]), slope = cag_dot(d[1], s->plane->normal);
+    if (f == 0) break;
+    if ((f > 0) == (fa > 0)) a = t;
+    else b = t;
+    double next = t - f / slope;
+    if (!(next > a && next < b)) next = a + (b - a) / 2;
+    if (fabs(next - t) <= DBL_EPSILON * fmax(fabs(t), s->c->end - s->c->start)) break;
+    t = next;
+  }
+  return add(&s->found, t, 0, d[0], err);
+}
+
+// The smallest height near t: Newton on its derivative.
+static CagStatus touch(PlaneSearch *s, double a, double b, CagError *err) {
+  double t = a + (b - a) / 2, best_t = t, best = INFINITY;
+  CagVec3 d[3], point = {0, 0, 0};
+  const double reach = 4 * (b - a);
+  for (int i = 0; i < 20; i++) {
+    CagStatus status = cag_curve_eval(s->c, t, 2, CAG_SIDE_RIGHT, d, err);
+    if (status) return status;
+    double f = height(s, d[0]);
+    if (fabs(f) < best) {
+      best = fabs(f);
+      best_t = t;
+      point = d[0];
+    }
+    double slope = cag_dot(d[1], s->plane->normal), bend = cag_dot(d[2], s->plane->normal);
+    double next = bend != 0 ? t - slope / bend : slope != 0 ? t - f / slope : t;
+    next = fmin(fmin(b + reach, s->c->end), fmax(fmax(a - reach, s->c->start), next));
+    if (!(next != t)) break;
+    t = next;
+  }
+  return best <= MEET * s->size ? add(&s->found, best_t, 0, point, err) : CAG_OK;
+}
+
+static CagStatus plane_part(PlaneSearch *s, const Part *part, int depth, CagError *err) {
+  // Slope of the chord beside the bound of its change that leaves room for one root only.
+  const double steep = 16;
+  const double zero = ZERO * s->size;
+  double fa = height(s, part->p), fb = height(s, part->q);
+  double sag = cag_curve_sag(s->c, part->a, part->b);
+  if (fabs(fa) <= zero) fa = 0;
+  if (fabs(fb) <= zero) fb = 0;
+  if (fa * fb > 0 && fmin(fabs(fa), fabs(fb)) > sag) return CAG_OK;
+  if (fabs(fb - fa) > steep * sag) {
+    if (fa == 0) return add(&s->found, part->a, 0, part->p, err);
+    if (fb == 0) return add(&s->found, part->b, 0, part->q, err);
+    return fa * fb > 0 ? CAG_OK : solve(s, part->a, part->b, fa, err);
+  }
+  const bool wide = part->b - part->a > OVERLAP * (s->c->end - s->c->start);
+  if (wide && fa == 0 && fb == 0) {
+    bool lies = true;
+    for (int i = 1; lies && i < 5; i++) {
+      CagVec3 p;
+      CagStatus status = cag_curve_point(s->c, part->a + (part->b - part->a) * i / 5, &p, err);
+      if (status) return status;
+      lies = fabs(height(s, p)) <= zero;
+    }
+    if (lies) return fail_overlap(err);
+  }
+  if (sag <= CHORD * s->size || depth == 0) return touch(s, part->a, part->b, err);
+  Part half[2];
+  CagStatus status = halves(s->c, part, half, err);
+  for (int i = 0; !status && i < 2; i++) status = plane_part(s, &half[i], depth - 1, err);
+  return status;
+}
+
+CagStatus cag_curve_intersect_plane(const CagCurve *c, const CagPlane *plane, CagMeeting **out,
+                                    size_t *n, CagError *err) {
+  PlaneSearch s = {.c = c, .plane = plane, .size = extent_of(c)};
+  Part *parts;
+  size_t count;
+  CagStatus status = first_parts(c, &parts, &count, err);
+  if (status) return status;
+  for (size_t i = 0; !status && i < count; i++) status = plane_part(&s, &parts[i], DEPTH, err);
+  free(parts);
+  if (status) {
+    free(s.found.items);
+    return status;
+  }
+  tidy(&s.found, c, NULL, s.size);
+  *out = s.found.items;
+  *n = s.found.n;
+  return CAG_OK;
+}
+
+// --- Another curve ---
+
+typedef struct CurveSearch {
+  const CagCurve *a, *b;
+  double size;
+  size_t pairs;
+  Found found;
+} CurveSearch;
+
+// Nearest points p + u (q - p) and r + v (s - r) of two segments; gives their distance.
+static double segments(const Part *a, const Part *b, double *u, double *v) {
+  CagVec3 d = cag_sub(a->q, a->p), e = cag_sub(b->q, b->p), r = cag_sub(a->p, b->p);
+  double dd = cag_dot(d, d), ee = cag_dot(e, e), de = cag_dot(d, e), dr = cag_dot(d, r),
+         er = cag_dot(e, r), det = dd * ee - de * de;
+  double s = det > DBL_EPSILON * dd * ee ? fmin(1, fmax(0, (de * er - dr * ee) / det)) : 0;
+  double t = ee > 0 ? (de * s + er) / ee : 0;
+  if (t < 0 || t > 1) {
+    t = fmin(1, fmax(0, t));
+    s = dd > 0 ? fmin(1, fmax(0, (de * t - dr) / dd)) : 0;
+  }
+  *u = s;
+  *v = t;
+  return cag_norm(cag_sub(cag_madd(a->p, s, d), cag_madd(b->p, t, e)));
+}
+
+// Gauss-Newton on the distance of the two points, from (t, u); adds the meeting when it is one.
+static CagStatus meet(CurveSearch *s, const Part *a, const Part *b, double t, double u,
+                      CagError *err) {
+  const double reach_a = a->b - a->a, reach_b = b->b - b->a;
+  CagVec3 p[2], q[2];
+  double best = INFINITY, best_t = t, best_u = u;
+  CagVec3 point = {0, 0, 0};
+  for (int i = 0; i < 60; i++) {
+    CagStatus status =
+        cag_curve_eval(s->a, t, 1, t >= a->b ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, p, err);
+    if (!status)
+      status = cag_curve_eval(s->b, u, 1, u >= b->b ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, q, err);
+    if (status) return status;
+    CagVec3 r = cag_sub(p[0], q[0]);
+    double distance = cag_norm(r);
+    if (distance < best) {
+      best = distance;
+      best_t = t;
+      best_u = u;
+      point = p[0];
+    }
+    double pp = cag_dot(p[1], p[1]), qq = cag_dot(q[1], q[1]), pq = cag_dot(p[1], q[1]);
+    double f = cag_dot(r, p[1]), g = cag_dot(r, q[1]), det = pp * qq - pq * pq;
+    double dt, du;
+    if (det > ZERO * pp * qq) {
+      dt = (pq * g - qq * f) / det;
+      du = (pp * g - pq * f) / det;
+    } else { // parallel: each its own way
+      dt = pp > 0 ? -f / (2 * pp) : 0;
+      du = qq > 0 ? g / (2 * qq) : 0;
+    }
+    double next_t =
+        fmin(fmin(s->a->end, a->b + reach_a), fmax(fmax(s->a->start, a->a - reach_a), t + dt));
+    double next_u =
+        fmin(fmin(s->b->end, b->b + reach_b), fmax(fmax(s->b->start, b->a - reach_b), u + du));
+    if (next_t == t && next_u == u) break;
+    t = next_t;
+    u = next_u;
+  }
+  return best <= MEET * s->size ? add(&s->found, best_t, best_u, point, err) : CAG_OK;
+}
+
+// Collinear chords share a stretch, or an end point at most.
+static bool run_along(const CurveSearch *s, const Part *a, const Part *b) {
+  CagVec3 d = cag_sub(a->q, a->p);
+  double length = cag_norm(d);
+  if (length == 0) return false;
+  CagVec3 unit = cag_scaled(d, 1 / length);
+  double x = cag_dot(cag_sub(b->p, a->p), unit), y = cag_dot(cag_sub(b->q, a->p), unit);
+  double common = fmin(length, fmax(x, y)) - fmax(0, fmin(x, y));
+  bool parallel = cag_norm(cag_cross(unit, cag_unit(cag_sub(b->q, b->p)))) <= MEET;
+  return parallel && common > OVERLAP * fmin(length, fabs(y - x)) && common > OVERLAP * s->size;
+}
+
+static CagStatus pair(CurveSearch *s, const Part *a, const Part *b, int depth, CagError *err) {
+  // A tangent leaves the chord's direction by about 4 sag / length; beyond a few times that, chords
+  // at an angle mean curves that cross once at most.
+  const double bend = 16;
+  double u, v;
+  double sag_a = cag_curve_sag(s->a, a->a, a->b), sag_b = cag_curve_sag(s->b, b->a, b->b);
+  if (segments(a, b, &u, &v) > sag_a + sag_b + ZERO * s->size) return CAG_OK;
+  if (++s->pairs > MOST_PAIRS) return fail_overlap(err);
+  CagVec3 d = cag_sub(a->q, a->p), e = cag_sub(b->q, b->p);
+  double da = cag_norm(d), db = cag_norm(e);
+  double t = a->a + u * (a->b - a->a), w = b->a + v * (b->b - b->a);
+  if (da > 0 && db > 0) {
+    double sine = cag_norm(cag_cross(d, e)) / (da * db);
+    if (sine > bend * (sag_a / da + sag_b / db) && sine > MEET) return meet(s, a, b, t, w, err);
+  }
+  const double small = CHORD * s->size;
+  if ((sag_a <= small && sag_b <= small) || depth == 0) {
+    if (run_along(s, a, b)) return fail_overlap(err);
+    return meet(s, a, b, t, w, err);
+  }
+  Part half[2];
+  const bool first = sag_a > sag_b;
+  CagStatus status = first ? halves(s->a, a, half, err) : halves(s->b, b, half, err);
+  for (int i = 0; !status && i < 2; i++)
+    status = first ? pair(s, &half[i], b, depth - 1, err) : pair(s, a, &half[i], depth - 1, err);
+  return status;
+}
+
+CagStatus cag_curve_intersect(const CagCurve *a, const CagCurve *b, CagMeeting **out, size_t *n,
+                              CagError *err) {
+  CurveSearch s = {.a = a, .b = b, .size = fmax(extent_of(a), extent_of(b))};
+  Part *parts_a, *parts_b;
+  size_t count_a, count_b;
+  CagStatus status = first_parts(a, &parts_a, &count_a, err);
+  if (status) return status;
+  status = first_parts(b, &parts_b, &count_b, err);
+  if (status) {
+    free(parts_a);
+    return status;
+  }
+  for (size_t i = 0; !status && i < count_a; i++)
+    for (size_t k = 0; !status && k < count_b; k++)
+      status = pair(&s, &parts_a[i], &parts_b[k], 2 * DEPTH, err);
+  free(parts_a);
+  free(parts_b);
+  if (status) {
+    free(s.found.items);
+    return status;
+  }
+  tidy(&s.found, a, b, s.size);
+  *out = s.found.items;
+  *n = s.found.n;
+  return CAG_OK;
+}

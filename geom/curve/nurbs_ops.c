@@ -1,0 +1,203 @@
+// Splitting, Bezier pieces, degree elevation and knot insertion of NURBS curves.
+
+#include "geom/curve/nurbs_ops.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/curve/family.h"
+#include "geom/curve/nurbs.h"
+
+static CagStatus fail_inside(const CagCurve *c, double t, CagError *err) {
+  char x[32], a[32], b[32];
+  return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "t", -1,
+                  "`t` = %s does not lie inside the domain %s..%s", cag_number_text(t, x),
+                  cag_number_text(c->start, a), cag_number_text(c->end, b));
+}
+
+CagStatus cag_curve_split(const CagCurve *c, double t, CagCurve *out[2], CagError *err) {
+  if (!(t > c->start && t < c->end)) return fail_inside(c, t, err);
+  CagCurve *first, *second;
+  CagStatus status = cag_curve_trim(c, c->start, t, &first, err);
+  if (status) return status;
+  status = cag_curve_trim(c, t, c->end, &second, err);
+  if (status) {
+    cag_curve_release(first);
+    return status;
+  }
+  out[0] = first;
+  out[1] = second;
+  return CAG_OK;
+}
+
+CagStatus cag_curve_to_bezier(const CagCurve *c, CagCurve ***out, size_t *n, CagError *err) {
+  CagCurve *exact;
+  CagStatus status = cag_curve_to_nurbs(c, &exact, err);
+  if (status) return status;
+  const CagNurbs *nurbs = cag_nurbs_data(exact);
+  const int p = nurbs->degree;
+  double knots[2 * (CAG_MAX_DEGREE + 1)];
+  cag_knots_open((size_t)p + 1, p, knots);
+  CagCurve **pieces = calloc(nurbs->pieces, sizeof *pieces);
+  if (!pieces) status = cag_fail_memory(err);
+  for (size_t i = 0; !status && i < nurbs->pieces; i++)
+    status = cag_nurbs_new(cag_nurbs_bezier(nurbs, i), (size_t)p + 1, p, knots, nurbs->rational, 0,
+                           CAG_NURBS_BEZIER, c->dimension, &pieces[i], err);
+  if (status) {
+    for (size_t i = 0; pieces && i < nurbs->pieces; i++) cag_curve_release(pieces[i]);
+    free(pieces);
+  } else {
+    *out = pieces;
+    *n = nurbs->pieces;
+  }
+  cag_curve_release(exact);
+  return status;
+}
+
+// The curve as an open NURBS, both ends in p + 1 knots.
+static CagStatus clamped(const CagCurve *c, CagCurve **out, CagError *err) {
+  CagCurve *exact;
+  CagStatus status = cag_curve_to_nurbs(c, &exact, err);
+  if (status) return status;
+  const CagNurbs *n = cag_nurbs_data(exact);
+  const size_t last = n->count + (size_t)n->degree;
+  if (n->knots[0] == exact->start && n->knots[last] == exact->end) {
+    *out = exact;
+    return CAG_OK;
+  }
+  status = exact->kind->trim(exact, exact->start, exact->end, out, err);
+  cag_curve_release(exact);
+  return status;
+}
+
+static CagNurbsKind plain_kind(const CagNurbs *c) {
+  return c->rational ? CAG_NURBS_RATIONAL : CAG_NURBS_BSPLINE;
+}
+
+// --- Elevation ---
+
+// Blossom of a Bezier piece over [a, b] at p arguments.
+static void blossom(const double *bezier, int p, double a, double b, const double *args,
+                    double out[4]) {
+  double d[4 * (CAG_MAX_DEGREE + 1)];
+  memcpy(d, bezier, sizeof(double) * 4 * (size_t)(p + 1));
+  for (int level = 0; level < p; level++) {
+    double u = (args[level] - a) / (b - a);
+    for (int i = 0; i < 4 * (p - level); i++) d[i] = cag_mix(d[i], d[i + 4], u);
+  }
+  memcpy(out, d, 4 * sizeof(double));
+}
+
+// Q_j = mean over l of the blossom at z_{j+1} .. z_{j+p+1} without z_{j+l} (reference 05b, BS-46),
+// taken on the piece in the middle of the point's support.
+static CagStatus elevate_once(const CagCurve *curve, CagCurve **out, CagError *err) {
+  const CagNurbs *c = cag_nurbs_data(curve);
+  const int p = c->degree;
+  if (p >= CAG_MAX_DEGREE)
+    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "times", -1, "the degree is at most %d",
+                    CAG_MAX_DEGREE);
+  const size_t old = c->count + (size_t)p + 1, room = old + c->pieces + 1;
+  double *z = malloc(sizeof(double) * room), *h = malloc(sizeof(double) * 4 * room);
+  double *args = malloc(sizeof(double) * (size_t)(p + 1));
+  CagStatus status = z && h && args ? CAG_OK : cag_fail_memory(err);
+  size_t m = 0;
+  for (size_t i = 0; !status && i < old; i++) {
+    z[m++] = c->knots[i];
+    if (i + 1 == old || c->knots[i + 1] != c->knots[i]) z[m++] = c->knots[i];
+  }
+  const size_t n = m - (size_t)p - 2; // points of degree p + 1
+  for (size_t j = 0; !status && j < n; j++) {
+    // The piece about the middle of the inner knots.
+    double middle = (z[j + 1] + z[j + (size_t)p + 1]) / 2;
+    size_t piece = cag_nurbs_piece(c, middle, CAG_SIDE_RIGHT, c->pieces);
+    double sum[4] = {0}, value[4];
+    for (int l = 0; l <= p; l++) {
+      for (int k = 0, used = 0; k <= p; k++)
+        if (k != l) args[used++] = z[j + 1 + (size_t)k];
+      blossom(cag_nurbs_bezier(c, piece), p, c->cuts[piece], c->cuts[piece + 1], args, value);
+      for (int x = 0; x < 4; x++) sum[x] += value[x];
+    }
+    for (int x = 0; x < 4; x++) h[4 * j + (size_t)x] = sum[x] / (p + 1);
+    if (!c->rational) h[4 * j + 3] = 1;
+  }
+  if (!status) {
+    // The ends are the curve's own, bit for bit.
+    memcpy(h, c->bezier, 4 * sizeof(double));
+    memcpy(h + 4 * (n - 1), cag_nurbs_bezier(c, c->pieces) - 4, 4 * sizeof(double));
+    bool bezier = c->pieces == 1 && strcmp(curve->kind->name, "bezier") == 0;
+    status = cag_nurbs_new(h, n, p + 1, z, c->rational, 0,
+                           bezier ? CAG_NURBS_BEZIER : plain_kind(c), curve->dimension, out, err);
+  }
+  free(z);
+  free(h);
+  free(args);
+  return status;
+}
+
+CagStatus cag_curve_elevate(const CagCurve *c, int times, CagCurve **out, CagError *err) {
+  if (times < 0)
+    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "times", -1,
+                    "`times` must not be negative; this is %d", times);
+  CagCurve *now, *next;
+  CagStatus status = clamped(c, &now, err);
+  for (int i = 0; !status && i < times; i++) {
+    status = elevate_once(now, &next, err);
+    cag_curve_release(now);
+    now = next;
+  }
+  if (!status) *out = now;
+  return status;
+}
+
+// --- Insertion ---
+
+CagStatus cag_curve_insert_knots(const CagCurve *c, const double *t, size_t n, CagCurve **out,
+                                 CagError *err) {
+  CagCurve *open;
+  CagStatus status = clamped(c, &open, err);
+  if (status) return status;
+  const CagNurbs *from = cag_nurbs_data(open);
+  const int p = from->degree;
+  size_t count = from->count;
+  double *h = malloc(sizeof(double) * 4 * (count + n));
+  double *knots = malloc(sizeof(double) * (count + n + (size_t)p + 1));
+  if (!h || !knots) status = cag_fail_memory(err);
+  if (!status) {
+    memcpy(h, from->homogeneous, sizeof(double) * 4 * count);
+    memcpy(knots, from->knots, sizeof(double) * (count + (size_t)p + 1));
+  }
+  char text[32];
+  for (size_t i = 0; !status && i < n; i++) {
+    if (!(t[i] > open->start && t[i] < open->end)) {
+      status = fail_inside(open, t[i], err);
+    } else if (cag_knots_multiplicity(knots, count, p, t[i]) >= p) {
+      status = cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", "t", (long)i,
+                        "the knot %s occurs %d times already, as often as degree %d allows",
+                        cag_number_text(t[i], text), p, p);
+    } else {
+      cag_bspline_insert(h, knots, count++, p, t[i]);
+    }
+  }
+  if (!status)
+    status = cag_nurbs_new(h, count, p, knots, from->rational, 0, plain_kind(from), open->dimension,
+                           out, err);
+  free(h);
+  free(knots);
+  cag_curve_release(open);
+  return status;
+}
+
+CagStatus cag_curve_insert_midpoints(const CagCurve *c, CagCurve **out, CagError *err) {
+  CagCurve *exact;
+  CagStatus status = cag_curve_to_nurbs(c, &exact, err);
+  if (status) return status;
+  const CagNurbs *n = cag_nurbs_data(exact);
+  double *middles = malloc(sizeof(double) * n->pieces);
+  if (!middles) status = cag_fail_memory(err);
+  for (size_t i = 0; !status && i < n->pieces; i++)
+    middles[i] = n->cuts[i] + (n->cuts[i + 1] - n->cuts[i]) / 2;
+  if (!status) status = cag_curve_insert_knots(exact, middles, n->pieces, out, err);
+  free(middles);
+  cag_curve_release(exact);
+  return status;
+}
