@@ -46,9 +46,9 @@ static void write_materials(CagPovWriter *w, const bool *closed) {
 static void write_radiosity(CagPovWriter *w) {
   bool final = w->options->quality == CAG_POV_FINAL;
   pov_text(w, "  radiosity { // light from everywhere\n");
-  pov_printf(w, "    pretrace_start 0.08 pretrace_end %s\n", final ? "0.005" : "0.02");
+  pov_printf(w, "    pretrace_start 0.08 pretrace_end %s\n", final ? "0.01" : "0.02");
   pov_printf(w, "    count %d nearest_count %d error_bound %s recursion_limit %d\n",
-             final ? 200 : 60, final ? 10 : 6, final ? "0.5" : "0.9", final ? 2 : 1);
+             final ? 120 : 50, final ? 10 : 6, final ? "0.5" : "0.9", final ? 2 : 1);
   pov_text(w, "    low_error_factor 0.6 gray_threshold 0 minimum_reuse 0.012 brightness 1\n  }\n");
 }
 

@@ -3,18 +3,12 @@
 #include <stdlib.h>
 
 #include "interp/export/pov_write.h"
+#include "interp/scene/item_mesh.h"
 
 // Joints of a line turn by at most this, so that the chain looks round.
 #define TURN_MAX (6 * 3.14159265358979323846 / 180)
 // Largest distance of the chain from the curve, in radii of the line.
 #define SAG 0.05
-
-// Radius of lines that say none: this part of the scene's diagonal.
-#define LINE_PART 400.0
-
-static double line_radius(const CagPovWriter *w, const CagItem *item) {
-  return item->line_radius > 0 ? item->line_radius : pov_round(2 * w->radius / LINE_PART, 1e-6);
-}
 
 static void write_rod(CagPovWriter *w, CagVec3 p, CagVec3 q) {
   pov_text(w, "cylinder { ");
@@ -90,7 +84,7 @@ static CagStatus write_polyline(CagPovWriter *w, const CagItem *item, double rad
 
 CagStatus pov_curve(CagPovWriter *w, const CagItem *item, const char *name, CagError *err) {
   const CagCurve *c = item->as.curve;
-  double radius = line_radius(w, item), circle;
+  double radius = cag_item_line_radius(w->scene, item), circle;
   CagTransform frame;
   pov_text(w, "#local line_radius = ");
   pov_number(w, radius);

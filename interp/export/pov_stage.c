@@ -84,7 +84,7 @@ static void write_area(CagPovWriter *w, CagVec3 direction, double size, bool rou
   if (w->options->quality == CAG_POV_DRAFT || !(size > 0)) return;
   CagVec3 a, b;
   any_perpendicular(direction, &a, &b);
-  int n = w->options->quality == CAG_POV_FINAL ? 9 : 5;
+  int n = w->options->quality == CAG_POV_FINAL ? 8 : 4;
   pov_text(w, "  area_light ");
   pov_length(w, size);
   pov_text(w, "*");
@@ -93,7 +93,7 @@ static void write_area(CagPovWriter *w, CagVec3 direction, double size, bool rou
   pov_length(w, size);
   pov_text(w, "*");
   pov_vec(w, tidy(b));
-  pov_printf(w, ", %d, %d adaptive %d jitter%s\n", n, n, n > 5 ? 2 : 1, round ? " circular" : "");
+  pov_printf(w, ", %d, %d adaptive %d jitter%s\n", n, n, n > 4 ? 1 : 0, round ? " circular" : "");
 }
 
 static void write_light_head(CagPovWriter *w, const CagLight *l, const char *what, CagVec3 at) {
