@@ -43,6 +43,11 @@ static const double GAUSS[NODES] = {
 // far better than the difference says, so the promised 1e-8 has room.
 #define CELL_TOLERANCE 1e-10
 #define MAX_DEPTH 24
+// No surface that converges needs as many cells; one that does not must still end.
+#define MAX_CELLS 20000
+// A term that is below this part of what the extent of the surface allows is mostly rounding (the
+// flux through a wall that stands upright, say) and is not chased further.
+#define SMALLEST_TERM 1e-4
 #define MAX_TERMS 10
 
 typedef void Integrand(CagVec3 p, CagVec3 du, CagVec3 dv, double *out);
@@ -51,8 +56,11 @@ typedef struct Integral {
   const CagSurface *s;
   Integrand *f;
   size_t terms;
+  const int *powers; // of length that each term has beyond an area
   double sum[MAX_TERMS];
   double size[MAX_TERMS]; // of the magnitudes, estimated from the first pass
+  double area, reach; // of the surface, and largest distance from the origin, from the first pass
+  size_t budget;      // cells that may still be taken
 } Integral;
 
 typedef struct Cell {
@@ -64,8 +72,7 @@ typedef struct CellSums {
   double error_u, error_v; // largest disagreement relative to the integral's sizes
 } CellSums;
 
-static CagStatus sum_cell(const Integral *in, const Cell *c, bool judge, CellSums *out,
-                          CagError *err) {
+static CagStatus sum_cell(Integral *in, const Cell *c, bool judge, CellSums *out, CagError *err) {
   double us[NODES], vs[NODES];
   CagVec3 p[NODES * NODES], du[NODES * NODES], dv[NODES * NODES];
   double hu = (c->u1 - c->u0) / 2, hv = (c->v1 - c->v0) / 2;
@@ -82,6 +89,10 @@ static CagStatus sum_cell(const Integral *in, const Cell *c, bool judge, CellSum
       double value[MAX_TERMS];
       int at = i * NODES + j;
       in->f(p[at], du[at], dv[at], value);
+      if (!judge) {
+        in->area += KRONROD[i] * KRONROD[j] * hu * hv * cag_norm(cag_cross(du[at], dv[at]));
+        in->reach = fmax(in->reach, cag_norm(p[at]));
+      }
       double w = KRONROD[i] * KRONROD[j] * hu * hv;
       double wu = GAUSS[i] * KRONROD[j] * hu * hv, wv = KRONROD[i] * GAUSS[j] * hu * hv;
       for (size_t k = 0; k < in->terms; k++) {
@@ -103,10 +114,11 @@ static CagStatus refine(Integral *in, const Cell *c, int depth, CagError *err) {
   CellSums sums;
   CagStatus status = sum_cell(in, c, true, &sums, err);
   if (status) return status;
-  if (fmax(sums.error_u, sums.error_v) <= CELL_TOLERANCE || depth >= MAX_DEPTH) {
+  if (fmax(sums.error_u, sums.error_v) <= CELL_TOLERANCE || depth >= MAX_DEPTH || in->budget == 0) {
     for (size_t k = 0; k < in->terms; k++) in->sum[k] += sums.fine[k];
     return CAG_OK;
   }
+  in->budget--;
   Cell a = *c, b = *c;
   if (sums.error_u >= sums.error_v) a.u1 = b.u0 = (c->u0 + c->u1) / 2;
   else a.v1 = b.v0 = (c->v0 + c->v1) / 2;
@@ -133,7 +145,10 @@ static CagStatus integrate(Integral *in, CagError *err) {
   size_t nu, nv;
   CagStatus status = cell_ends(in->s, 0, &us, &nu, err);
   if (!status) status = cell_ends(in->s, 1, &vs, &nv, err);
-  for (int pass = 0; !status && pass < 2; pass++)
+  in->budget = MAX_CELLS;
+  for (int pass = 0; !status && pass < 2; pass++) {
+    for (size_t k = 0; pass == 1 && k < in->terms; k++)
+      in->size[k] = fmax(in->size[k], SMALLEST_TERM * in->area * pow(in->reach, in->powers[k]));
     for (size_t i = 0; !status && i < nu; i++)
       for (size_t j = 0; !status && j < nv; j++) {
         Cell c = {us[i], us[i + 1], vs[j], vs[j + 1]};
@@ -143,10 +158,13 @@ static CagStatus integrate(Integral *in, CagError *err) {
         for (size_t k = 0; !status && pass == 0 && k < in->terms; k++)
           in->size[k] += sums.magnitude[k];
       }
+  }
   free(us);
   free(vs);
   return status;
 }
+
+static const int AREA_POWERS[] = {0, 1, 1, 1}, FLUX_POWERS[] = {1, 2, 2, 2, 3, 3, 3, 3, 3, 3};
 
 static void area_terms(CagVec3 p, CagVec3 du, CagVec3 dv, double *out) {
   double a = cag_norm(cag_cross(du, dv));
@@ -296,7 +314,7 @@ CagStatus cag_surface_area(const CagSurface *s, double *area, CagVec3 *centroid,
   CagTransform frame;
   if (cag_surface_planar_view(s, &region, &frame))
     return planar_area(region, &frame, area, centroid, err);
-  Integral in = {.s = s, .f = area_terms, .terms = centroid ? 4 : 1};
+  Integral in = {.s = s, .f = area_terms, .terms = centroid ? 4 : 1, .powers = AREA_POWERS};
   CagStatus status = integrate(&in, err);
   if (status) return status;
   *area = in.sum[0];
@@ -310,7 +328,7 @@ CagStatus cag_surface_volume_terms(const CagSurface *s, double terms[10], CagErr
   const CagRegion *region;
   CagTransform frame;
   if (cag_surface_planar_view(s, &region, &frame)) return planar_flux(region, &frame, terms, err);
-  Integral in = {.s = s, .f = flux_terms, .terms = 10};
+  Integral in = {.s = s, .f = flux_terms, .terms = 10, .powers = FLUX_POWERS};
   CagStatus status = integrate(&in, err);
   for (int k = 0; !status && k < 10; k++) terms[k] += in.sum[k];
   return status;

@@ -56,9 +56,9 @@ static inline double inside(double a, double b, int k) {
   return a + FRACTION[k] * (b - a);
 }
 
-// All partials of order 1..3 are the derivatives of those an order lower (central differences, whose
-// error is h^2 of the third derivative more), the grid agrees with single points, and the flip has
-// the other normal.
+// All partials of order 1..3 are the derivatives of those an order lower (central differences,
+// whose error is h^2 of the third derivative more), the grid agrees with single points, and the
+// flip has the other normal.
 static inline void assert_consistent(const CagSurface *s) {
   enum { N = 3 };
   double hu = 1e-5 * (s->u1 - s->u0), hv = 1e-5 * (s->v1 - s->v0);
@@ -83,10 +83,9 @@ static inline void assert_consistent(const CagSurface *s) {
           for (int j = 0; i + j < N; j++) {
             size_t at = cag_partial(N, i, j);
             CagVec3 slope = cag_scaled(cag_sub(hi[at], lo[at]), 1 / (2 * h));
-            CagVec3 given =
-                d[direction == 0 ? cag_partial(N, i + 1, j) : cag_partial(N, i, j + 1)];
-            double unit = pow(s->u1 - s->u0, i + (direction == 0)) *
-                          pow(s->v1 - s->v0, j + (direction == 1));
+            CagVec3 given = d[direction == 0 ? cag_partial(N, i + 1, j) : cag_partial(N, i, j + 1)];
+            double unit =
+                pow(s->u1 - s->u0, i + (direction == 0)) * pow(s->v1 - s->v0, j + (direction == 1));
             if (cag_norm(cag_sub(slope, given)) * unit > 1e-6 * scale)
               fail_msg("%s: partial %d, %d by %c at %g, %g: [%g %g %g], differences [%g %g %g]",
                        s->kind->name, i, j, "uv"[direction], u, v, given.x, given.y, given.z,

@@ -30,10 +30,11 @@ static void assert_partials(const CagSurface *s, double u, double v, const Expec
 // bezier-surface.ex14, bezier-surface.ex14.modified
 static void bezier_patches_have_the_partials_of_the_worked_example(void **state) {
   (void)state;
-  const Expected base = {{0, 4.6875, 0}, {30, 0, 0}, {0, 0, -30}, {0, 0, 0}, {0, -7.5, 0}, {0, -7.5, 0}};
-  const Expected moved = {{0.703125, 5.390625, -0.703125},   {28.59375, -1.40625, 1.40625},
-                          {-1.40625, -1.40625, -28.59375},   {2.8125, 2.8125, -2.8125},
-                          {-5.625, -13.125, 5.625},          {-5.625, -13.125, 5.625}};
+  const Expected base = {{0, 4.6875, 0}, {30, 0, 0},   {0, 0, -30},
+                         {0, 0, 0},      {0, -7.5, 0}, {0, -7.5, 0}};
+  const Expected moved = {{0.703125, 5.390625, -0.703125}, {28.59375, -1.40625, 1.40625},
+                          {-1.40625, -1.40625, -28.59375}, {2.8125, 2.8125, -2.8125},
+                          {-5.625, -13.125, 5.625},        {-5.625, -13.125, 5.625}};
   for (int k = 0; k < 2; k++) {
     CagVec3 net[16];
     CagSurface *s;
@@ -50,8 +51,8 @@ static void bezier_patches_have_the_partials_of_the_worked_example(void **state)
 // bezier-surface.fig40.5x3
 static void bezier_patches_may_have_different_degrees(void **state) {
   (void)state;
-  const CagVec3 net[] = {{0, 0, 0}, {0, 2, 4}, {0, 0, 8}, {3, 2, 0}, {3, 4, 4},
-                         {3, 2, 8}, {6, 5, 0}, {6, 3, 4}, {6, 2, 8}, {9, 2, 0},
+  const CagVec3 net[] = {{0, 0, 0}, {0, 2, 4}, {0, 0, 8},  {3, 2, 0},  {3, 4, 4},
+                         {3, 2, 8}, {6, 5, 0}, {6, 3, 4},  {6, 2, 8},  {9, 2, 0},
                          {9, 4, 4}, {9, 2, 8}, {12, 0, 0}, {12, 2, 4}, {12, 0, 8}};
   const Expected e = {{3, 2.412109375, 4}, {12, 3.53125, 0}, {0, -0.6328125, 8},
                       {0, -3.375, 0},      {0, -15.375, 0},  {0, -5.890625, 0}};
@@ -80,11 +81,13 @@ static void bspline_surface_of_example_15(void **state) {
   cag_surface_release(s);
 }
 
-static const CagVec3 RATIONAL[] = {
-    {-20, 0, 15}, {-20, 4, 5}, {-20, 4, -5}, {-20, 0, -15}, {-10, 3, 15}, {-10, 8, 5}, {-10, 8, -5},
-    {-10, 2, -15}, {0, 2, 15}, {0, 7, 5}, {0, 9, -5}, {0, 3, -15}, {10, 3, 15}, {10, 6, 5},
-    {10, 8, -5}, {10, 2, -15}, {20, 0, 15}, {20, 4, 5}, {20, 4, -5}, {20, 0, -15}};
-static const double RATIONAL_WEIGHTS[] = {1, 2, 1, 1, 1, 3, 1, 1, 2, 1, 4, 1, 1, 1, 1, 1, 1, 1, 1, 3};
+static const CagVec3 RATIONAL[] = {{-20, 0, 15}, {-20, 4, 5}, {-20, 4, -5}, {-20, 0, -15},
+                                   {-10, 3, 15}, {-10, 8, 5}, {-10, 8, -5}, {-10, 2, -15},
+                                   {0, 2, 15},   {0, 7, 5},   {0, 9, -5},   {0, 3, -15},
+                                   {10, 3, 15},  {10, 6, 5},  {10, 8, -5},  {10, 2, -15},
+                                   {20, 0, 15},  {20, 4, 5},  {20, 4, -5},  {20, 0, -15}};
+static const double RATIONAL_WEIGHTS[] = {1, 2, 1, 1, 1, 3, 1, 1, 2, 1,
+                                          4, 1, 1, 1, 1, 1, 1, 1, 1, 3};
 static const double RATIONAL_U[] = {0, 0, 0, 0, 1, 2, 2, 2, 2}, CUBIC[] = {0, 0, 0, 0, 1, 1, 1, 1};
 
 // rational-surface.derivatives
@@ -170,7 +173,8 @@ static void bad_nurbs_data_are_refused_by_name(void **state) {
   double weights[16];
   for (int i = 0; i < 16; i++) weights[i] = i == 10 ? -1 : 1;
   MUST_FAIL(cag_surface_nurbs(net, NULL, 4, 4, 4, 3, fifth, CUBIC, &s, err), "order-range");
-  MUST_FAIL(cag_surface_nurbs(net, NULL, 4, 4, 3, 3, CUBIC, falling, &s, err), "knots-not-monotone");
+  MUST_FAIL(cag_surface_nurbs(net, NULL, 4, 4, 3, 3, CUBIC, falling, &s, err),
+            "knots-not-monotone");
   MUST_FAIL(cag_surface_nurbs(net, NULL, 4, 4, 3, 3, empty, CUBIC, &s, err), "empty-range");
   MUST_FAIL(cag_surface_bezier(net, weights, 4, 4, &s, err), "negative-weight");
   net[7].y = NAN;
@@ -272,15 +276,18 @@ static void a_line_revolves_to_a_frustum(void **state) {
   assert_transforms(s);
   assert_exact_revolution(s);
   cag_surface_release(s);
-  MUST_FAIL(cag_surface_revolve(c, cag_vec3(0, 0, 0), cag_vec3(0, 0, 0), 0, 1, &s, err), "zero-axis");
-  MUST_FAIL(cag_surface_revolve(c, cag_vec3(1, 0, 0), cag_vec3(0, 0, 0), 1, 1, &s, err), "empty-range");
+  MUST_FAIL(cag_surface_revolve(c, cag_vec3(0, 0, 0), cag_vec3(0, 0, 0), 0, 1, &s, err),
+            "zero-axis");
+  MUST_FAIL(cag_surface_revolve(c, cag_vec3(1, 0, 0), cag_vec3(0, 0, 0), 1, 1, &s, err),
+            "empty-range");
   cag_curve_release(c);
 }
 
 static void a_semicircle_revolves_to_a_sphere_with_normals_at_its_poles(void **state) {
   (void)state;
   double r = 3;
-  CagCurve *c = new_arc(r, r, -M_PI / 2, M_PI / 2, cag_vec3(1, 0, 0), cag_vec3(0, 0, 1), cag_vec3(0, 0, 0));
+  CagCurve *c =
+      new_arc(r, r, -M_PI / 2, M_PI / 2, cag_vec3(1, 0, 0), cag_vec3(0, 0, 1), cag_vec3(0, 0, 0));
   CagSurface *s;
   MUST(cag_surface_revolve(c, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, 2 * M_PI, &s, err));
   assert_true(s->pole_u0 && s->pole_u1 && s->closed_v && cag_surface_is_closed(s));
@@ -327,7 +334,8 @@ static void a_rational_profile_has_the_net_of_the_reference(void **state) {
   MUST(cag_surface_to_nurbs(s, &exact, err));
   // There u runs around; here v does.
   assert_point(surface_at(exact, 0.8, 1.3),
-               cag_vec3(-1.0870246390978302, 2.2106083085251864, 1.3658536585365855), 1e-12, "point");
+               cag_vec3(-1.0870246390978302, 2.2106083085251864, 1.3658536585365855), 1e-12,
+               "point");
   assert_exact_revolution(s);
   assert_consistent(s);
   cag_surface_release(exact);
@@ -343,8 +351,10 @@ static void partial_turns_are_exact_and_keep_their_angle(void **state) {
   assert_false(s->closed_v);
   assert_exact_revolution(s);
   MUST(cag_surface_to_nurbs(s, &exact, err));
-  assert_point(surface_at(exact, exact->u0, exact->v0), surface_at(s, s->u0, s->v0), 1e-12, "corner");
-  assert_point(surface_at(exact, exact->u1, exact->v1), surface_at(s, s->u1, s->v1), 1e-12, "corner");
+  assert_point(surface_at(exact, exact->u0, exact->v0), surface_at(s, s->u0, s->v0), 1e-12,
+               "corner");
+  assert_point(surface_at(exact, exact->u1, exact->v1), surface_at(s, s->u1, s->v1), 1e-12,
+               "corner");
   assert_consistent(s);
   assert_transforms(s);
   cag_surface_release(exact);
@@ -392,7 +402,8 @@ static void ruled_surfaces_walk_both_curves_by_fractions(void **state) {
   MUST(cag_surface_to_nurbs(s, &exact, err));
   for (int i = 0; i <= 10; i++)
     for (int j = 0; j <= 10; j++)
-      assert_point(surface_at(exact, i / 10.0, j / 10.0), surface_at(s, i / 10.0, j / 10.0), 1e-12, "exact form");
+      assert_point(surface_at(exact, i / 10.0, j / 10.0), surface_at(s, i / 10.0, j / 10.0), 1e-12,
+                   "exact form");
   cag_surface_release(exact);
   cag_surface_release(s);
   cag_curve_release(c0);
@@ -414,7 +425,8 @@ static void ruled_nurbs_form_raises_the_lower_degree(void **state) {
   CagSurfaceNurbsView view;
   assert_true(cag_surface_nurbs_view(exact, &view));
   assert_int_equal(view.degree_v, 3);
-  const CagVec3 raised[] = {{0, 0, 0}, {0.5, 0.8660254037844386, 0}, {1.5, 0.8660254037844386, 0}, {2, 0, 0}};
+  const CagVec3 raised[] = {
+      {0, 0, 0}, {0.5, 0.8660254037844386, 0}, {1.5, 0.8660254037844386, 0}, {2, 0, 0}};
   for (int j = 0; j < 4; j++) {
     const double *h = view.homogeneous + 4 * j;
     assert_near(h[3], j == 0 || j == 3 ? 1 : 2.0 / 3, 1e-14, "weight");
@@ -435,7 +447,8 @@ static void ruled_nurbs_form_raises_the_lower_degree(void **state) {
 
 static void extrusions_twist_and_scale(void **state) {
   (void)state;
-  CagCurve *c = new_arc(2, 1, 0, 2 * M_PI, cag_vec3(1, 0, 0), cag_vec3(0, 1, 0), cag_vec3(0.5, 0, 0));
+  CagCurve *c =
+      new_arc(2, 1, 0, 2 * M_PI, cag_vec3(1, 0, 0), cag_vec3(0, 1, 0), cag_vec3(0.5, 0, 0));
   CagSurface *plain, *twisted, *tapered, *exact;
   MUST(cag_surface_extrude(c, cag_vec3(1, 0, 5), 0, 1, &plain, err));
   MUST(cag_surface_extrude(c, cag_vec3(0, 0, 5), M_PI / 2, 0.5, &twisted, err));
@@ -478,7 +491,8 @@ static void translational_surfaces_add_curves(void **state) {
   MUST(cag_surface_area(s, &area, NULL, err));
   MUST(cag_surface_area(exact, &other, NULL, err));
   assert_near(other, area, 1e-8, "area");
-  assert_point(surface_at(exact, exact->u1, exact->v1), surface_at(s, s->u1, s->v1), 1e-12, "corner");
+  assert_point(surface_at(exact, exact->u1, exact->v1), surface_at(s, s->u1, s->v1), 1e-12,
+               "corner");
   cag_surface_release(exact);
   cag_surface_release(s);
   cag_curve_release(a);
@@ -691,7 +705,8 @@ static void bounds_are_tight_between_samples(void **state) {
   for (int i = 0; i <= N; i++)
     for (int j = 0; j <= N; j += 1) {
       double u = (double)i / N, v = (double)j / N;
-      double z = 4 * u * (1 - u) * v * (1 - v) * 5 + 2 * u * (1 - u) * v * v + u * u * 2 * v * (1 - v) * 2;
+      double z =
+          4 * u * (1 - u) * v * (1 - v) * 5 + 2 * u * (1 - u) * v * v + u * u * 2 * v * (1 - v) * 2;
       best = fmax(best, z);
     }
   assert_true(box.max.z >= best);
