@@ -192,7 +192,8 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   vm->native = &native;
   CagCall call = {.vm = vm, .builtin = b, .values = values, .count = total};
   *result = cag_none();
-  bool ok = b->function(&call, result);
+  bool ok =
+      b->function(&call, result) && !vm->failed; // a comparison deep in a value may have failed
   vm->native = native.outer;
   vm->top = top;
   return ok;

@@ -117,7 +117,7 @@ bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **byte
   char *real =
       cag_allowed_path(vm, path, folder && *folder ? folder : vm->root, message, sizeof message);
   free(folder);
-  if (!real) return cag_fail_call(call, argument, CAG_ERR_file, "cannot read %s", message);
+  if (!real) return cag_fail_call(call, argument, CAG_ERR_file, "cannot read it: %s", message);
   const char *why;
   *bytes = cag_read_whole_file(real, n, &why);
   free(real);

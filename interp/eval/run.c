@@ -11,6 +11,11 @@
 // The C stack must keep so much free below a nested run: the deepest built-in needs far less.
 #define C_STACK_RESERVE ((ptrdiff_t)256 * 1024)
 
+bool cag_room_on_c_stack(const CagVm *vm) {
+  char here;
+  return vm->stack_low == NULL || &here - vm->stack_low > C_STACK_RESERVE;
+}
+
 bool cag_safe_point(CagVm *vm) {
   if (*vm->interrupt) return cag_vm_fail(vm, CAG_ERR_interrupted, "interrupted");
   if (vm->limit_hit)
@@ -26,6 +31,12 @@ bool cag_keep_going(CagVm *vm) {
     return cag_vm_fail(vm, CAG_ERR_limit_time,
                        "the script ran longer than the %g s it may (--max-time)", vm->max_time);
   return true;
+}
+
+// Whether two values are equal (or not). False: they nest too deep to be told.
+static bool equal(CagVm *vm, CagValue a, CagValue b, bool negated, bool *out) {
+  *out = cag_equal(vm, a, b) != negated;
+  return !vm->failed;
 }
 
 static bool fail_depth(CagVm *vm) {
@@ -414,7 +425,7 @@ next:
   CASE(COMPARE) {
     bool b;
     if (i.c == CAG_OP_EQUAL || i.c == CAG_OP_NOT_EQUAL)
-      b = cag_equal(vm, R(i.a), R(i.b)) == (i.c == CAG_OP_EQUAL);
+      TRY(equal(vm, R(i.a), R(i.b), i.c == CAG_OP_NOT_EQUAL, &b));
     else if (i.c == CAG_OP_IN) TRY(cag_contains(vm, R(i.a), R(i.b), &b));
     else TRY(cag_compare(vm, (CagBinaryOp)i.c, R(i.a), R(i.b), &b));
     R(i.a) = cag_bool(b);
@@ -480,13 +491,15 @@ next:
   }
   CASE(JUMP_NOT_EQUAL) {
     if (NUMBERS(R(i.a), R(i.b))) BRANCH(R(i.a).as.number == R(i.b).as.number);
-    SAVE();
-    BRANCH(cag_equal(vm, R(i.a), R(i.b)));
+    bool b;
+    TRY(equal(vm, R(i.a), R(i.b), false, &b));
+    BRANCH(b);
   }
   CASE(JUMP_EQUAL) {
     if (NUMBERS(R(i.a), R(i.b))) BRANCH(R(i.a).as.number != R(i.b).as.number);
-    SAVE();
-    BRANCH(!cag_equal(vm, R(i.a), R(i.b)));
+    bool b;
+    TRY(equal(vm, R(i.a), R(i.b), true, &b));
+    BRANCH(b);
   }
   CASE(CHECK_BOOL) {
     if (R(i.a).type != CAG_BOOL) {
@@ -726,15 +739,9 @@ return false;
 
 // --- Ways in ---
 
-// Whether the C stack has room for another run.
-static bool room_on_c_stack(CagVm *vm) {
-  char here;
-  return vm->stack_low == NULL || &here - vm->stack_low > C_STACK_RESERVE;
-}
-
 static bool enter(CagVm *vm, const CagProto *p, CagClosure *closure, const CagInstruction *start,
                   CagValue *base, CagValue *result) {
-  if (vm->frame_count == vm->frame_limit || !room_on_c_stack(vm)) return fail_depth(vm);
+  if (vm->frame_count == vm->frame_limit || !cag_room_on_c_stack(vm)) return fail_depth(vm);
   if (!reserve(vm, base, p->registers)) return false;
   CagValue *top = vm->top;
   CagNative *native = vm->native;
@@ -761,8 +768,9 @@ bool cag_call(CagVm *vm, CagValue function, const CagValue *arguments, size_t n,
     memcpy(base, arguments, n * sizeof *base);
     CagValue *top = vm->top;
     vm->top = base + n;
-    bool ok = room_on_c_stack(vm) ? cag_call_native(vm, function, base, n, NULL, 0, false, result)
-                                  : fail_depth(vm);
+    bool ok = cag_room_on_c_stack(vm)
+                  ? cag_call_native(vm, function, base, n, NULL, 0, false, result)
+                  : fail_depth(vm);
     vm->top = top;
     return ok;
   }

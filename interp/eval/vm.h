@@ -95,6 +95,7 @@ typedef struct CagGlobal {
   struct CagModuleUnit *unit;
   const char *name;
   CagSpan span; // of the name
+  bool given;   // a param whose value comes from outside: it stays when others are forgotten
 } CagGlobal;
 
 // A call in tail position leaves its place here: the last CAG_TAIL_KEPT of each frame.
@@ -122,6 +123,7 @@ typedef struct CagModuleUnit {
   CagValue value; // the module as a value
   enum { CAG_MODULE_LOADING, CAG_MODULE_LOADED, CAG_MODULE_FAILED } state;
   bool asserted;   // its asserts have run
+  bool adopted;    // its definitions are those of the interactive session
   size_t *imports; // module number of each import statement, in order
   size_t import_count;
   struct CagPublicName {
@@ -231,6 +233,8 @@ bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *con
 // Whether the run must stop (interrupt, time, memory): sets the error and gives false. Collects
 // when due.
 bool cag_safe_point(CagVm *vm);
+// Whether the C stack has room for more recursion: deep values are walked only so far.
+bool cag_room_on_c_stack(const CagVm *vm);
 
 // --- operators.c: everything that is no fast path of the loop ---
 bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result);

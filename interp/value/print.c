@@ -201,6 +201,10 @@ static void print_range(CagString *s, const CagRange *r) {
 }
 
 void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted) {
+  if (!cag_room_on_c_stack(vm)) { // nested hundreds of thousands deep
+    add(s, "...");
+    return;
+  }
   switch (v.type) {
   case CAG_NONE: add(s, "none"); break;
   case CAG_BOOL: add(s, v.as.boolean ? "true" : "false"); break;
@@ -347,6 +351,11 @@ bool cag_equal(CagVm *vm, CagValue a, CagValue b) {
   if (a.type == CAG_LIST && b.type == CAG_RANGE)
     return equal_range_list(vm, CAG_AS_RANGE(b), CAG_AS_LIST(a));
   if (a.type != b.type) return false;
+  if ((a.type == CAG_LIST || a.type == CAG_RECORD) && !cag_room_on_c_stack(vm)) {
+    if (!vm->failed)
+      cag_vm_fail(vm, CAG_ERR_limit_depth, "the values nest too deep to be compared");
+    return false;
+  }
   switch (a.type) {
   case CAG_NONE: return true;
   case CAG_BOOL: return a.as.boolean == b.as.boolean;
