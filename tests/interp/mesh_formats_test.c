@@ -1,0 +1,233 @@
+// Mesh files: what is in them, byte by byte where the format says so.
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "interp/export/mesh_formats.h"
+#include "interp/export/mesh_write.h"
+
+#include <cjson/cJSON.h>
+
+static CagError err;
+
+// A tetrahedron with corners in the origin and at 2, 3, 4 on the axes, whose vertex 4 is vertex 0
+// again with another normal, and a triangle that single precision shrinks.
+static CagMesh *tetrahedron(void) {
+  static const CagVec3 corner[6] = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0},
+                                    {0, 0, 4}, {0, 0, 0}, {2, 1e-60, 0}};
+  static const uint32_t faces[15] = {0, 2, 1, 0, 1, 3, 4, 3, 2, 1, 2, 3, 1, 5, 2};
+  CagMesh *m;
+  if (cag_mesh_new(6, 5, true, true, true, &m, &err)) fail();
+  memcpy(m->positions, corner, sizeof corner);
+  memcpy(m->triangles, faces, sizeof faces);
+  for (uint32_t k = 0; k < 6; k++) {
+    m->normals[k] = k == 4 ? cag_vec3(-1, 0, 0) : cag_vec3(0, 0, -1);
+    m->uv[2 * k] = k * 0.25;
+    m->uv[2 * k + 1] = 1;
+    m->weld[k] = k == 4 ? 0 : k;
+  }
+  return m;
+}
+
+static CagMaterial red(void) {
+  static char name[] = "red paint", none[] = "";
+  return (CagMaterial){.name = name,
+                       .color = {1, 0, 0},
+                       .roughness = 0.5,
+                       .ior = 1.5,
+                       .transmission = 0.25,
+                       .texture = none};
+}
+
+typedef enum Format { OBJ, MTL, STL, PLY, GLB } Format;
+
+// The bytes of the file, zero-ended, from malloc.
+static char *written(Format format, const CagMeshPart *parts, size_t n, size_t *size) {
+  char path[] = "/tmp/cag_mesh_formats_XXXXXX";
+  int fd = mkstemp(path);
+  assert_true(fd >= 0);
+  close(fd);
+  CagIoError io;
+  CagAtomicFile *f = cag_atomic_file_open(path, &io);
+  assert_non_null(f);
+  CagStatus status = CAG_OK;
+  switch (format) {
+  case OBJ: status = cag_export_obj(parts, n, "a.mtl", f, &err); break;
+  case MTL: status = cag_export_mtl(parts, n, f, &err); break;
+  case STL: status = cag_export_stl(parts, n, "solid work", f, &err); break;
+  case PLY: status = cag_export_ply(parts, n, f, &err); break;
+  case GLB: status = cag_export_glb(parts, n, f, &err); break;
+  }
+  assert_int_equal(status, CAG_OK);
+  assert_true(cag_atomic_file_commit(f, &io));
+  FILE *in = fopen(path, "rb");
+  char *bytes = calloc(1, 1 << 16);
+  *size = fread(bytes, 1, (1 << 16) - 1, in);
+  fclose(in);
+  unlink(path);
+  return bytes;
+}
+
+static float float_at(const char *p) {
+  float x;
+  memcpy(&x, p, 4);
+  return x;
+}
+static uint32_t word_at(const char *p) {
+  uint32_t x;
+  memcpy(&x, p, 4);
+  return x;
+}
+
+static void numbers_read_back_as_the_same_float(void **state) {
+  (void)state;
+  const double shown[] = {0,     -0.0,         1,           -1,   0.1,  123456.789,
+                          -1e-5, 9.99999999e8, 999999999.6, 1e-7, 1e20, 3.14159265358979,
+                          100,   0.001,        99999999.95};
+  const char *const text[] = {"0",          "0",          "1",         "-1",    "0.1",
+                              "123456.789", "-0.00001",   "999999999", "1e+09", "1e-07",
+                              "1e+20",      "3.14159265", "100",       "0.001", "100000000"};
+  for (size_t k = 0; k < sizeof shown / sizeof *shown; k++) {
+    char buffer[32];
+    *cag_mesh_write_number(buffer, shown[k]) = '\0';
+    assert_string_equal(buffer, text[k]);
+  }
+  uint32_t x = 7;
+  for (int k = 0; k < 200000; k++) {
+    x = x * 1664525u + 1013904223u; // Numerical Recipes
+    double value = ldexp((double)x - 2147483648.0, (int)(x >> 27) - 40);
+    char buffer[32];
+    *cag_mesh_write_number(buffer, (float)value) = '\0';
+    if (strtof(buffer, NULL) != (float)value) fail_msg("%.17g became %s", value, buffer);
+  }
+}
+
+static void stl_has_the_triangles_that_have_an_area(void **state) {
+  (void)state;
+  CagMesh *m = tetrahedron();
+  CagMeshPart part = {"t", m, NULL};
+  size_t size;
+  char *b = written(STL, &part, 1, &size);
+  assert_int_equal(size, 84 + 4 * 50);
+  assert_memory_not_equal(b, "solid", 5);
+  assert_int_equal(word_at(b + 80), 4);
+  assert_true(float_at(b + 84 + 8) == -1); // normal of the first face
+  assert_true(float_at(b + 84 + 12 + 16) == 3);
+  // The slanted face x/2 + y/3 + z/4 = 1 has the normal (6, 4, 3)/sqrt 61.
+  assert_true(fabs(float_at(b + 84 + 150) - 6 / sqrt(61)) < 1e-7);
+  free(b);
+  cag_mesh_release(m);
+}
+
+static void obj_shares_points_and_keeps_normals_apart(void **state) {
+  (void)state;
+  CagMesh *m = tetrahedron();
+  CagMaterial material = red();
+  CagMeshPart parts[2] = {{"left part", m, &material}, {"right", m, &material}};
+  size_t size;
+  char *b = written(OBJ, parts, 2, &size);
+  assert_non_null(strstr(b, "mtllib a.mtl\no left_part\nv 0 0 0\nv 2 0 0\nv 0 3 0\nv 0 0 4\n"));
+  assert_non_null(strstr(b, "usemtl red_paint\n"));
+  assert_non_null(strstr(b, "f 1/1/1 3/3/3 2/2/2\n"));
+  assert_non_null(strstr(b, "f 1/5/5 4/4/4 3/3/3\n")); // vertex 4 is point 0 with its own normal
+  assert_non_null(strstr(b, "f 6/7/7 8/9/9 7/8/8\n")); // the second part counts on
+  free(b);
+  b = written(MTL, parts, 2, &size);
+  assert_non_null(strstr(b, "newmtl red_paint\nKd 1 0 0\n"));
+  assert_non_null(strstr(b, "\nd 0.75\n"));
+  assert_null(strstr(strstr(b, "newmtl") + 1, "newmtl"));
+  free(b);
+  cag_mesh_release(m);
+}
+
+static void ply_is_welded(void **state) {
+  (void)state;
+  CagMesh *m = tetrahedron();
+  CagMaterial material = red();
+  CagMeshPart part = {"t", m, &material};
+  size_t size;
+  char *b = written(PLY, &part, 1, &size);
+  assert_non_null(strstr(b, "format binary_little_endian 1.0\n"));
+  assert_non_null(strstr(b, "element vertex 5\n"));
+  assert_non_null(strstr(b, "element face 4\n"));
+  const char *data = strstr(b, "end_header\n") + strlen("end_header\n");
+  assert_int_equal(size, (size_t)(data - b) + 5 * 35 + 4 * 13);
+  // Vertex 0 has the mean of its two normals.
+  assert_true(fabs(float_at(data + 12) + sqrt(0.5)) < 1e-7);
+  assert_true(fabs(float_at(data + 20) + sqrt(0.5)) < 1e-7);
+  assert_int_equal((unsigned char)data[32], 255);
+  assert_int_equal((unsigned char)data[33], 0);
+  const char *faces = data + 5 * 35;
+  assert_int_equal(faces[0], 3);
+  assert_int_equal(word_at(faces + 1), 0);
+  assert_int_equal(word_at(faces + 2 * 13 + 1), 0); // named vertex 4
+  free(b);
+  cag_mesh_release(m);
+}
+
+static double number_of(const cJSON *json, const char *a, int i, const char *key) {
+  return cJSON_GetNumberValue(
+      cJSON_GetObjectItem(cJSON_GetArrayItem(cJSON_GetObjectItem(json, a), i), key));
+}
+
+static void glb_describes_its_data(void **state) {
+  (void)state;
+  CagMesh *m = tetrahedron();
+  CagMaterial material = red();
+  CagMeshPart parts[2] = {{"left \"part\"", m, &material}, {"right", m, &material}};
+  size_t size;
+  char *b = written(GLB, parts, 2, &size);
+  assert_memory_equal(b, "glTF", 4);
+  assert_int_equal(word_at(b + 4), 2);
+  assert_int_equal(word_at(b + 8), size);
+  uint32_t length = word_at(b + 12);
+  assert_int_equal(length % 4, 0);
+  assert_memory_equal(b + 16, "JSON", 4);
+  cJSON *json = cJSON_ParseWithLength(b + 20, length);
+  assert_non_null(json);
+  assert_memory_equal(b + 20 + length + 4, "BIN\0", 4);
+  uint32_t binary = word_at(b + 20 + length);
+  // A part: 6 vertices of 32 bytes, 4 triangles of 12.
+  assert_int_equal(binary, 2 * (6 * 32 + 4 * 12));
+  assert_true(number_of(json, "buffers", 0, "byteLength") == binary);
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "accessors")), 8);
+  assert_true(number_of(json, "accessors", 3, "count") == 12);
+  assert_true(number_of(json, "accessors", 0, "count") == 6);
+  const cJSON *most =
+      cJSON_GetObjectItem(cJSON_GetArrayItem(cJSON_GetObjectItem(json, "accessors"), 0), "max");
+  for (int k = 0; k < 3; k++)
+    assert_true(cJSON_GetNumberValue(cJSON_GetArrayItem(most, k)) == k + 2);
+  assert_int_equal(cJSON_GetArraySize(cJSON_GetObjectItem(json, "materials")), 1);
+  assert_string_equal(cJSON_GetStringValue(cJSON_GetObjectItem(
+                          cJSON_GetArrayItem(cJSON_GetObjectItem(json, "nodes"), 1), "name")),
+                      "left \"part\"");
+  assert_string_equal(
+      cJSON_GetStringValue(cJSON_GetArrayItem(cJSON_GetObjectItem(json, "extensionsUsed"), 0)),
+      "KHR_materials_transmission");
+  cJSON_Delete(json);
+  free(b);
+  b = written(GLB, parts, 0, &size); // an empty scene is a file too
+  assert_int_equal(word_at(b + 8), size);
+  free(b);
+  cag_mesh_release(m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(numbers_read_back_as_the_same_float),
+      cmocka_unit_test(stl_has_the_triangles_that_have_an_area),
+      cmocka_unit_test(obj_shares_points_and_keeps_normals_apart),
+      cmocka_unit_test(ply_is_welded),
+      cmocka_unit_test(glb_describes_its_data),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
