@@ -325,8 +325,10 @@ static CagStatus write_file(const CagMeshPart *parts, GlbPart *g, size_t n, Text
 CagStatus cag_export_glb(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err) {
   GlbPart *g = calloc(n + 1, sizeof *g);
   CagStatus status = g ? CAG_OK : cag_fail_memory(err);
-  for (size_t i = 0; status == CAG_OK && i < n; i++)
-    if (!begin_part(&g[i], parts[i].mesh)) status = cag_fail_memory(err);
+  for (size_t i = 0; status == CAG_OK && i < n; i++) {
+    status = cag_mesh_check_range(&parts[i], err);
+    if (status == CAG_OK && !begin_part(&g[i], parts[i].mesh)) status = cag_fail_memory(err);
+  }
   Text json = {0};
   if (status == CAG_OK) status = write_file(parts, g, n, &json, file, err);
   free(json.at);

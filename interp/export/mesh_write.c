@@ -2,6 +2,7 @@
 
 #include "interp/export/mesh_write.h"
 
+#include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -85,6 +86,19 @@ float *cag_mesh_float_positions(const CagMesh *m) {
     p[3 * v + 2] = (float)m->positions[v].z + 0.0f;
   }
   return p;
+}
+
+CagStatus cag_mesh_check_range(const CagMeshPart *part, CagError *err) {
+  const CagMesh *m = part->mesh;
+  for (size_t v = 0; v < m->vertex_count; v++) {
+    CagVec3 p = m->positions[v];
+    if (fabs(p.x) <= FLT_MAX && fabs(p.y) <= FLT_MAX && fabs(p.z) <= FLT_MAX) continue;
+    return cag_fail(err, CAG_E_DEGENERATE, "mesh-empty", "", (long)v,
+                    "`%s` has a vertex at [%g, %g, %g], too far away for the single precision of "
+                    "the format; OBJ can hold it",
+                    part->name ? part->name : "part", p.x, p.y, p.z);
+  }
+  return CAG_OK;
 }
 
 size_t cag_mesh_kept_triangles(const CagMesh *m, const float *positions) {

@@ -40,6 +40,8 @@ static inline bool cag_mesh_shrinks(const float *p, const uint32_t *k) {
          (b[0] == c[0] && b[1] == c[1] && b[2] == c[2]) ||
          (c[0] == a[0] && c[1] == a[1] && c[2] == a[2]);
 }
+// Fails with "mesh-empty" where a coordinate is beyond single precision.
+CagStatus cag_mesh_check_range(const CagMeshPart *part, CagError *err);
 size_t cag_mesh_kept_triangles(const CagMesh *m, const float *positions);
 
 // Index of the first part with the same material as part i.

@@ -118,6 +118,8 @@ CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file
   size_t vertices = 0, triangles = 0;
   CagStatus status = p ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; status == CAG_OK && i < n; i++) {
+    status = cag_mesh_check_range(&parts[i], err);
+    if (status != CAG_OK) break;
     if (!begin_part(&p[i], parts[i].mesh, vertices)) status = cag_fail_memory(err);
     vertices += p[i].vertices;
     triangles += p[i].triangles;

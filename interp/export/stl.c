@@ -35,6 +35,8 @@ CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, 
   CagStatus status = positions ? CAG_OK : cag_fail_memory(err);
   size_t triangles = 0;
   for (size_t i = 0; status == CAG_OK && i < n; i++) {
+    status = cag_mesh_check_range(&parts[i], err);
+    if (status != CAG_OK) break;
     positions[i] = cag_mesh_float_positions(parts[i].mesh);
     if (!positions[i]) status = cag_fail_memory(err);
     else triangles += cag_mesh_kept_triangles(parts[i].mesh, positions[i]);

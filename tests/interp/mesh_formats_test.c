@@ -221,6 +221,23 @@ static void glb_describes_its_data(void **state) {
   cag_mesh_release(m);
 }
 
+static void what_single_precision_cannot_hold_is_an_error(void **state) {
+  (void)state;
+  CagMesh *m = tetrahedron();
+  m->positions[3].z = 1e60;
+  CagMeshPart part = {"far", m, NULL};
+  CagIoError io;
+  CagAtomicFile *f = cag_atomic_file_open("/dev/null", &io);
+  assert_non_null(f);
+  assert_int_equal(cag_export_stl(&part, 1, NULL, f, &err), CAG_E_DEGENERATE);
+  assert_string_equal(err.reason, "mesh-empty");
+  assert_int_equal(cag_export_ply(&part, 1, f, &err), CAG_E_DEGENERATE);
+  assert_int_equal(cag_export_glb(&part, 1, f, &err), CAG_E_DEGENERATE);
+  assert_int_equal(cag_export_obj(&part, 1, NULL, f, &err), CAG_OK);
+  cag_atomic_file_abort(f);
+  cag_mesh_release(m);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(numbers_read_back_as_the_same_float),
@@ -228,6 +245,7 @@ int main(void) {
       cmocka_unit_test(obj_shares_points_and_keeps_normals_apart),
       cmocka_unit_test(ply_is_welded),
       cmocka_unit_test(glb_describes_its_data),
+      cmocka_unit_test(what_single_precision_cannot_hold_is_an_error),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
