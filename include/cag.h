@@ -130,6 +130,15 @@ CAG_API bool cag_input_is_incomplete(const char *text, size_t length);
 // list.
 CAG_API const char *cag_session_name(CagSession *s, size_t i, const char **source_text,
                                      size_t *source_length);
+// Writes what is known of a name defined interactively, its text and documentation; false: no such
+// name.
+CAG_API bool cag_session_write_doc(CagSession *s, const char *name, FILE *out);
+// Gives the names that may stand behind `path.`, a name or several with points between them, of the
+// interactive session.
+CAG_API void cag_session_members(CagSession *s, const char *path,
+                                 void (*give)(void *context, const char *name), void *context);
+// Writes the interactive session as a script: imports, definitions as they are now, asserts, shows.
+CAG_API void cag_session_write_script(CagSession *s, FILE *out);
 CAG_API void cag_session_clear(CagSession *s);
 // Names of all built-ins, NULL at the end.
 CAG_API const char *const *cag_builtin_name_list(void);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interp/builtin/apply.h"
 #include "interp/session/session.h"
 
 typedef struct Input {
@@ -69,7 +70,7 @@ static void adopt(CagVm *vm, CagModuleUnit *m) {
   if (!again) return;
   for (size_t i = 0; i < vm->outer_count; i++) {
     CagGlobal *g = &vm->globals[vm->outer_globals[i]];
-    if (g->expr && g->state == CAG_GLOBAL_DONE) g->state = CAG_GLOBAL_NEW;
+    if (g->expr && !g->given && g->state == CAG_GLOBAL_DONE) g->state = CAG_GLOBAL_NEW;
   }
 }
 
@@ -82,6 +83,16 @@ static void give_value(CagVm *vm, CagValue v, void *context) {
   cag_string_free(&s);
 }
 
+// Params get the values of -D, those that a text has; their defaults are checked.
+static bool set_params(CagVm *vm, CagModuleUnit *m, const CagSession *s) {
+  CagDefine *defines = calloc(s->define_count ? s->define_count : 1, sizeof *defines);
+  if (!defines) cag_vm_out_of_memory(vm);
+  for (size_t i = 0; i < s->define_count; i++) defines[i] = (CagDefine){s->names[i], s->values[i]};
+  bool ok = cag_program_set_params(vm, m, defines, s->define_count, s->frame, s->frames, true);
+  free(defines);
+  return ok;
+}
+
 static bool evaluate_input(CagVm *vm, void *context) {
   Input *in = context;
   CagSession *s = in->session;
@@ -90,10 +101,11 @@ static bool evaluate_input(CagVm *vm, void *context) {
   if (k == CAG_NO_MODULE) return false;
   CagModuleUnit *m = vm->modules[k];
   adopt(vm, m);
+  m->adopted = true;
   size_t *inputs = realloc(s->inputs, (s->input_count + 1) * sizeof *inputs);
   if (!inputs) cag_vm_out_of_memory(vm);
   s->inputs = inputs;
-  if (!cag_program_run(vm, m, give_value, in)) return false;
+  if (!set_params(vm, m, s) || !cag_program_run(vm, m, give_value, in)) return false;
   s->inputs[s->input_count++] = k;
   return true;
 }
@@ -125,19 +137,139 @@ bool cag_input_is_incomplete(const char *text, size_t length) {
   return cag_parse_incomplete(text, length);
 }
 
+// The definition that name i of the session stands for; NULL when an import brought it.
+static const CagDecl *find_decl(const CagVm *vm, size_t i) {
+  const CagModuleUnit *m = vm->globals[vm->outer_globals[i]].unit;
+  for (size_t k = 0; m && m->adopted && k < m->ast->top_count; k++)
+    if (strcmp(m->ast->tops[k]->name, vm->outer_names[i]) == 0) return m->ast->tops[k];
+  return NULL;
+}
+
 const char *cag_session_name(CagSession *s, size_t i, const char **source_text,
                              size_t *source_length) {
   if (!s->vm || !s->interactive || i >= s->vm->outer_count) return NULL;
-  const CagGlobal *g = &s->vm->globals[s->vm->outer_globals[i]];
+  const CagVm *vm = s->vm;
+  const CagDecl *d = source_text || source_length ? find_decl(vm, i) : NULL;
   if (source_text) *source_text = NULL;
   if (source_length) *source_length = 0;
-  for (size_t k = 0; g->unit && source_text && k < g->unit->ast->top_count; k++) {
-    const CagDecl *d = g->unit->ast->tops[k];
-    if (strcmp(d->name, s->vm->outer_names[i]) != 0) continue;
-    *source_text = g->unit->source->text + d->statement->span.start;
-    if (source_length) *source_length = d->statement->span.end - d->statement->span.start;
+  if (!d) return vm->outer_names[i];
+  const CagSpan span = d->statement->span;
+  const CagModuleUnit *m = vm->globals[vm->outer_globals[i]].unit;
+  if (source_text) *source_text = m->source->text + span.start;
+  if (source_length) *source_length = span.end - span.start;
+  return vm->outer_names[i];
+}
+
+bool cag_session_write_doc(CagSession *s, const char *name, FILE *out) {
+  size_t i = s->vm && s->interactive ? find_name(s->vm, name) : (size_t)-1;
+  if (i == (size_t)-1) return false;
+  const char *text, *doc = NULL;
+  size_t length;
+  cag_session_name(s, i, &text, &length);
+  if (text) {
+    doc = find_decl(s->vm, i)->doc;
+    fprintf(out, "%.*s\n", (int)length, text);
+  } else {
+    const CagModuleUnit *m = s->vm->globals[s->vm->outer_globals[i]].unit;
+    fprintf(out, "%s is imported%s%s\n", name, m ? " from " : "", m ? m->name : "");
+    for (size_t k = 0; m && k < m->ast->top_count; k++)
+      if (strcmp(m->ast->tops[k]->name, name) == 0) doc = m->ast->tops[k]->doc;
   }
-  return s->vm->outer_names[i];
+  while (doc && *doc) {
+    size_t n = strcspn(doc, "\n");
+    fprintf(out, "  %.*s\n", (int)n, doc);
+    doc += n + (doc[n] == '\n');
+  }
+  return true;
+}
+
+// --- Members ---
+
+// Tab does not wait for values that take longer.
+#define MEMBERS_SECONDS 1.0
+
+typedef struct MemberQuestion {
+  CagSession *session;
+  const char *path;
+  void (*give)(void *context, const char *name);
+  void *context;
+} MemberQuestion;
+
+static void give_members(CagVm *vm, CagValue v, const MemberQuestion *q) {
+  static const char *const ends[] = {"start", "end", "step"};
+  if (v.type == CAG_RECORD) {
+    const CagLayout *l = CAG_AS_RECORD(v)->layout;
+    for (size_t i = 0; i < l->count; i++) q->give(q->context, l->names[i]->bytes);
+  } else if (v.type == CAG_MODULE) {
+    const CagModuleUnit *m = vm->modules[CAG_AS_MODULE(v)->module];
+    for (size_t i = 0; i < m->public_count; i++) q->give(q->context, m->publics[i].name);
+  } else if (v.type == CAG_RANGE) {
+    for (size_t i = 0; i < 3; i++) q->give(q->context, ends[i]);
+  } else if (v.type >= CAG_TRANSFORM) {
+    size_t n = 0;
+    const char *const *names = cag_value_members(v, &n);
+    for (size_t i = 0; i < n; i++) q->give(q->context, names[i]);
+  }
+}
+
+static bool ask_members(CagVm *vm, void *context) {
+  const MemberQuestion *q = context;
+  char *path = strdup(q->path), *rest = NULL;
+  if (!path) return false;
+  const char *word = strtok_r(path, ".", &rest);
+  size_t i = word ? find_name(vm, word) : (size_t)-1;
+  CagValue v;
+  bool ok = i != (size_t)-1 && cag_vm_force(vm, vm->outer_globals[i], &v);
+  while (ok && (word = strtok_r(NULL, ".", &rest)))
+    ok = cag_member(vm, v, cag_text_c(vm, word), &v);
+  free(path);
+  if (ok) give_members(vm, v, q);
+  return ok;
+}
+
+void cag_session_members(CagSession *s, const char *path,
+                         void (*give)(void *context, const char *name), void *context) {
+  if (!s->vm || !s->interactive) return;
+  double limit = s->vm->max_time;
+  s->vm->max_time = MEMBERS_SECONDS;
+  cag_session_work(s, ask_members, &(MemberQuestion){s, path, give, context});
+  s->vm->max_time = limit;
+  cag_diagnostics_free(&s->diagnostics);
+  s->diagnostics = (CagDiagnostics){0};
+}
+
+// --- The session as a script ---
+
+static void write_span(const CagModuleUnit *m, CagSpan span, FILE *out) {
+  fprintf(out, "%.*s\n", (int)(span.end - span.start), m->source->text + span.start);
+}
+
+// Writes the statements of a kind of all inputs that ran.
+static void write_statements(const CagSession *s, CagStatementKind kind, FILE *out) {
+  for (size_t i = 0; i < s->input_count; i++) {
+    const CagModuleUnit *m = s->vm->modules[s->inputs[i]];
+    for (size_t k = 0; k < m->ast->count; k++)
+      if (m->ast->statements[k]->kind == kind) write_span(m, m->ast->statements[k]->span, out);
+  }
+}
+
+void cag_session_write_script(CagSession *s, FILE *out) {
+  if (!s->vm || !s->interactive) return;
+  write_statements(s, CAG_STATEMENT_IMPORT, out);
+  const char *text;
+  size_t length;
+  for (size_t i = 0; cag_session_name(s, i, &text, &length); i++) {
+    if (!text) continue;
+    const char *doc = find_decl(s->vm, i)->doc;
+    while (doc && *doc) {
+      size_t n = strcspn(doc, "\n");
+      fprintf(out, "/// %.*s\n", (int)n, doc);
+      doc += n + (doc[n] == '\n');
+    }
+    fprintf(out, "%.*s\n", (int)length, text);
+  }
+  write_statements(s, CAG_STATEMENT_ASSERT, out);
+  write_statements(s, CAG_STATEMENT_SHOW, out);
 }
 
 void cag_session_clear(CagSession *s) { cag_session_drop_vm(s); }

@@ -1,0 +1,307 @@
+// Lines of the REPL: from libedit on a terminal, else as they come.
+//
+// The history is a plain file of lines, $XDG_STATE_HOME/cag/history (~/.local/state without it). A
+// line is appended when it is entered, so that sessions side by side keep each other's; the file is
+// cut at the start when it has grown. Whatever goes wrong with it is passed over: history is a
+// comfort.
+
+#include <errno.h>
+#include <fcntl.h>
+#include <histedit.h>
+#include <langinfo.h>
+#include <locale.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <wchar.h>
+
+#include "interp/tool/repl.h"
+
+// Lines of history that are remembered, and those that the file may have before it is cut.
+#define HISTORY_LINES 2000
+#define HISTORY_FILE_LINES 4000
+
+struct CagReplInput {
+  CagRepl *repl;
+  EditLine *editor; // NULL without a terminal
+  History *history;
+  char *history_path; // NULL: none is kept
+  char *line;
+  size_t capacity;
+  char *next; // the line looked at ahead
+  size_t next_capacity;
+  bool has_next;
+  bool more;
+  char *last; // the last line of the history
+};
+
+// --- History ---
+
+// Makes the folders of a path; those that are there stay as they are.
+static void make_folders(char *path) {
+  for (char *at = path + 1; *at; at++) {
+    if (*at != '/') continue;
+    *at = 0;
+    mkdir(path, 0700);
+    *at = '/';
+  }
+}
+
+static char *find_history(void) {
+  const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+  char *path = NULL;
+  int n = -1;
+  if (state && *state == '/') n = asprintf(&path, "%s/cag/history", state);
+  else if (home && *home == '/') n = asprintf(&path, "%s/.local/state/cag/history", home);
+  if (n < 0) return NULL;
+  make_folders(path);
+  return path;
+}
+
+static void remember(CagReplInput *in, const char *line) {
+  HistEvent event;
+  if (!*line || (in->last && strcmp(in->last, line) == 0)) return;
+  history(in->history, &event, H_ENTER, line);
+  free(in->last);
+  in->last = strdup(line);
+}
+
+static void append_line(const CagReplInput *in, const char *line) {
+  if (!in->history_path) return;
+  int fd = open(in->history_path, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
+  if (fd < 0) return;
+  char *whole;
+  int n = asprintf(&whole, "%s\n", line);
+  if (n >= 0) {
+    ssize_t ignored = write(fd, whole, (size_t)n); // one write, so that sessions do not mix lines
+    (void)ignored;
+    free(whole);
+  }
+  close(fd);
+}
+
+// Keeps the last lines of a file that has grown.
+static void cut_history(const CagReplInput *in, size_t lines) {
+  char *path = NULL, *line = NULL;
+  size_t capacity = 0, k = 0;
+  if (asprintf(&path, "%s.new", in->history_path) < 0) return;
+  FILE *from = fopen(in->history_path, "re"), *to = fopen(path, "we");
+  while (from && to && getline(&line, &capacity, from) >= 0)
+    if (++k + HISTORY_LINES > lines) fputs(line, to);
+  bool ok = to && fclose(to) == 0;
+  if (from) fclose(from);
+  if (ok) chmod(path, 0600);
+  if (!from || !ok || rename(path, in->history_path) != 0) unlink(path);
+  free(line);
+  free(path);
+}
+
+static void load_history(CagReplInput *in) {
+  char *line = NULL;
+  size_t capacity = 0, lines = 0;
+  ssize_t n;
+  FILE *f = in->history_path ? fopen(in->history_path, "re") : NULL;
+  if (!f) return;
+  while ((n = getline(&line, &capacity, f)) >= 0) {
+    if (n > 0 && line[n - 1] == '\n') line[n - 1] = 0;
+    remember(in, line);
+    lines++;
+  }
+  free(line);
+  fclose(f);
+  if (lines > HISTORY_FILE_LINES) cut_history(in, lines);
+}
+
+// --- The line editor ---
+
+static CagReplInput *input_of(EditLine *editor) {
+  CagReplInput *in = NULL;
+  el_get(editor, EL_CLIENTDATA, &in);
+  return in;
+}
+
+static char *prompt(EditLine *editor) {
+  static char first[] = "cag> ", next[] = "...> ";
+  return input_of(editor)->more ? next : first;
+}
+
+// Reads one character of UTF-8. A signal ends the line: libedit's own reader would go on.
+static int read_character(EditLine *editor, wchar_t *out) {
+  (void)editor;
+  mbstate_t state = {0};
+  for (;;) {
+    char byte;
+    ssize_t n = read(STDIN_FILENO, &byte, 1);
+    if (n < 0 && errno == EINTR && !cag_tool_interrupt) continue; // the window changed its size
+    if (n < 0) return -1;
+    if (n == 0) return 0;
+    size_t k = mbrtowc(out, &byte, 1, &state);
+    if (k == (size_t)-1) memset(&state, 0, sizeof state); // no character: leave it out
+    else if (k != (size_t)-2) return 1;
+  }
+}
+
+// Lists the proposals below the line, in columns.
+static void list_proposals(const CagReplProposals *p) {
+  struct winsize size = {0};
+  size_t longest = 0;
+  ioctl(STDOUT_FILENO, TIOCGWINSZ, &size);
+  for (size_t i = 0; i < p->count; i++)
+    if (strlen(p->items[i]) > longest) longest = strlen(p->items[i]);
+  size_t width = longest + 2, columns = size.ws_col > width ? size.ws_col / width : 1;
+  size_t rows = (p->count + columns - 1) / columns;
+  putchar('\n');
+  for (size_t r = 0; r < rows; r++) {
+    for (size_t i = r; i < p->count; i += rows) printf("%-*s", (int)width, p->items[i]);
+    putchar('\n');
+  }
+  fflush(stdout);
+}
+
+static size_t common_length(const CagReplProposals *p) {
+  size_t n = strlen(p->items[0]);
+  for (size_t i = 1; i < p->count; i++) {
+    size_t k = 0;
+    while (k < n && p->items[i][k] == p->items[0][k]) k++;
+    n = k;
+  }
+  while (n > 0 && ((unsigned char)p->items[0][n] & 0xc0) == 0x80) n--; // whole characters
+  return n;
+}
+
+static unsigned char complete(EditLine *editor, int key) {
+  (void)key;
+  const LineInfo *line = el_line(editor);
+  char *text = strndup(line->buffer, (size_t)(line->cursor - line->buffer));
+  if (!text) return CC_ERROR;
+  CagReplProposals p = cag_repl_propose(input_of(editor)->repl, text);
+  unsigned char result = CC_REFRESH_BEEP;
+  if (p.count > 0) {
+    size_t n = common_length(&p);
+    if (n > p.length) {
+      char *rest = strndup(p.items[0] + p.length, n - p.length);
+      result = rest && el_insertstr(editor, rest) == 0 ? CC_REFRESH : CC_ERROR;
+      free(rest);
+    } else if (p.count > 1) {
+      list_proposals(&p);
+      result = CC_REDISPLAY;
+    } else {
+      result = CC_NORM;
+    }
+  }
+  cag_repl_proposals_free(&p);
+  free(text);
+  return result;
+}
+
+static bool start_editor(CagReplInput *in) {
+  HistEvent event;
+  if (strcmp(nl_langinfo(CODESET), "UTF-8") != 0) setlocale(LC_CTYPE, "C.UTF-8");
+  in->history = history_init();
+  in->editor = el_init("cag", stdin, stdout, stderr);
+  if (!in->history || !in->editor) return false;
+  history(in->history, &event, H_SETSIZE, HISTORY_LINES);
+  el_set(in->editor, EL_CLIENTDATA, in);
+  el_set(in->editor, EL_PROMPT, prompt);
+  el_set(in->editor, EL_EDITOR, "emacs");
+  el_set(in->editor, EL_SIGNAL, 0);
+  el_set(in->editor, EL_HIST, history, in->history);
+  el_set(in->editor, EL_GETCFN, read_character);
+  el_set(in->editor, EL_ADDFN, "cag-complete", "Complete the word", complete);
+  el_set(in->editor, EL_BIND, "^I", "cag-complete", NULL);
+  el_set(in->editor, EL_BIND, "^R", "em-inc-search-prev", NULL);
+  el_source(in->editor, NULL);
+  in->history_path = find_history();
+  load_history(in);
+  return true;
+}
+
+static bool keep_line(CagReplInput *in, const char *line, size_t n) {
+  if (n + 1 > in->capacity) {
+    char *larger = realloc(in->line, n + 1);
+    if (!larger) return false;
+    in->line = larger;
+    in->capacity = n + 1;
+  }
+  memcpy(in->line, line, n);
+  in->line[n] = 0;
+  return true;
+}
+
+static CagReplRead edit_line(CagReplInput *in, char **line) {
+  int n = 0;
+  fflush(stdout);
+  fflush(stderr);
+  el_set(in->editor, EL_PREP_TERM, 1);
+  const char *text = el_gets(in->editor, &n);
+  el_set(in->editor, EL_PREP_TERM, 0);
+  if (cag_tool_interrupt) {
+    fputs("^C\n", stdout);
+    return CAG_REPL_INTERRUPTED;
+  }
+  if (!text || n <= 0) {
+    putchar('\n');
+    return CAG_REPL_END;
+  }
+  size_t length = strcspn(text, "\r\n");
+  if (!keep_line(in, text, length)) return CAG_REPL_END;
+  *line = in->line;
+  bool again = in->last && strcmp(in->last, in->line) == 0;
+  remember(in, in->line);
+  if (length && !again) append_line(in, in->line);
+  return CAG_REPL_LINE;
+}
+
+// --- Plain lines ---
+
+// Reads a line into a buffer, without its end. A byte of zero ends it.
+static bool read_plain(char **line, size_t *capacity) {
+  ssize_t n = getline(line, capacity, stdin);
+  if (n < 0) return false;
+  while (n > 0 && ((*line)[n - 1] == '\n' || (*line)[n - 1] == '\r')) (*line)[--n] = 0;
+  return true;
+}
+
+const char *cag_repl_peek(CagReplInput *in) {
+  if (!in->has_next) in->has_next = read_plain(&in->next, &in->next_capacity);
+  return in->has_next ? in->next : NULL;
+}
+
+static CagReplRead plain_line(CagReplInput *in, char **line) {
+  if (!cag_repl_peek(in)) return cag_tool_interrupt ? CAG_REPL_INTERRUPTED : CAG_REPL_END;
+  char *bytes = in->line;
+  size_t capacity = in->capacity;
+  in->line = in->next;
+  in->capacity = in->next_capacity;
+  in->next = bytes;
+  in->next_capacity = capacity;
+  in->has_next = false;
+  *line = in->line;
+  return CAG_REPL_LINE;
+}
+
+CagReplRead cag_repl_read(CagReplInput *in, bool more, char **line) {
+  in->more = more;
+  return in->editor ? edit_line(in, line) : plain_line(in, line);
+}
+
+CagReplInput *cag_repl_input_new(CagRepl *repl) {
+  CagReplInput *in = calloc(1, sizeof *in);
+  if (!in) return NULL;
+  in->repl = repl;
+  if (!repl->interactive || start_editor(in)) return in;
+  cag_repl_input_free(in);
+  return NULL;
+}
+
+void cag_repl_input_free(CagReplInput *in) {
+  if (in->editor) el_end(in->editor);
+  if (in->history) history_end(in->history);
+  free(in->history_path);
+  free(in->line);
+  free(in->next);
+  free(in->last);
+  free(in);
+}
