@@ -75,7 +75,7 @@ done
 it 'a hundred thousand nested brackets that close'
 awk 'BEGIN { printf "x = "; for (i = 0; i < 100000; i++) printf "["; for (i = 0; i < 100000; i++) printf "]"; print "" }' > nested.cag
 fails nested.cag 1 'nested.cag:1:'
-says '1,000'
+says '1000 deep'
 
 it 'a text that is not ended'
 script text.cag 'a = 1
@@ -158,7 +158,7 @@ print len(xs)'
 fails endless_for.cag 1 'endless_for.cag:1:'
 
 it 'a list beyond the memory'
-script huge.cag 'print len([for i in 0..1e18: i])'
+script huge.cag 'print len([for i in 0..1e14: i])'
 try run huge.cag --max-memory 64M
 status 5
 says 'huge.cag:1:'

@@ -24,7 +24,7 @@ prints_exactly 'height 200'
 it '-D of an unknown param gets the nearest'
 try run vase.cag -D hieght=200
 status 1
-says 'E0247\|hieght'
+says 'no param `hieght`'
 says 'height'
 
 it '-D outside the range fails before anything runs'

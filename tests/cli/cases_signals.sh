@@ -38,14 +38,14 @@ sleeper=$!
 ran='cag run - (SIGINT)'
 timeout --preserve-status -k 20 -s INT 0.3 "$CAG" run - < pipe > out 2> err
 code=$?
-kill $sleeper
+kill $sleeper 2> /dev/null
 status 130
 
 # A renderer that never ends, to be found by its odd argument.
 mkdir slow
 cat > slow/povray <<'END'
 #!/bin/sh
-sleep 61.2937
+exec sleep 61.2937
 END
 chmod +x slow/povray
 is_running() { grep -l -a '61\.2937' /proc/[0-9]*/cmdline 2> /dev/null | grep -q .; }

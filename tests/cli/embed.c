@@ -1,5 +1,5 @@
-// A program that uses the library: the volume of a vase's mesh file, for two heights. The README
-// shows it, and the tests build it against an installed libcag.
+// A program that uses the library: a vase, higher than its script says, as a mesh. The README shows
+// it, and the tests build it against an installed libcag.
 
 #include <cag.h>
 #include <stdio.h>
