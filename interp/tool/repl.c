@@ -30,7 +30,9 @@ void cag_repl_fail(CagRepl *repl, int status, const char *format, ...) {
 void cag_repl_finish(CagRepl *repl, int status) {
   fflush(stdout);
   if (status == CAG_STATUS_OK) return;
-  if (status == CAG_STATUS_INTERRUPTED) fputs("interrupted\n", stderr);
+  // The terminal has written ^C, and its cursor stands behind it.
+  if (status == CAG_STATUS_INTERRUPTED)
+    fputs(repl->interactive ? "\ninterrupted\n" : "interrupted\n", stderr);
   else cag_session_write_diagnostics(repl->session, repl->tool->style, stderr);
   fflush(stderr);
   if (repl->status == CAG_STATUS_OK) repl->status = status;
@@ -100,9 +102,17 @@ static void clear_text(Text *t) {
   *t = (Text){0};
 }
 
-// Whether another line belongs to the text. Without a terminal the line to come can be looked at.
+static const char *last_line(const Text *t) {
+  const char *at = t->bytes + t->length - 1; // behind it stands the newline
+  while (at > t->bytes && at[-1] != '\n') at--;
+  return at + strspn(at, " \t");
+}
+
+// Whether another line belongs to the text. `///` documents what follows it. Without a terminal the
+// line to come can be looked at.
 static bool wants_more(CagRepl *repl, const Text *t) {
   if (cag_input_is_incomplete(t->bytes, t->length)) return true;
+  if (strncmp(last_line(t), "///", 3) == 0) return true;
   const char *next = repl->interactive ? NULL : cag_repl_peek(repl->input);
   return next && goes_on(next);
 }

@@ -8,10 +8,11 @@
 
 #include "interp/tool/repl.h"
 
+// Each text once; the name of an argument that is proposed as `name: ` is not proposed again.
 static void propose(CagReplProposals *p, const char *text, size_t length, const char *prefix) {
   if (length < p->length || strncmp(text, prefix, p->length) != 0) return;
   for (size_t i = 0; i < p->count; i++)
-    if (strlen(p->items[i]) == length && strncmp(p->items[i], text, length) == 0) return;
+    if (strcspn(p->items[i], ":") == length && strncmp(p->items[i], text, length) == 0) return;
   char **items = realloc(p->items, (p->count + 1) * sizeof *items);
   if (!items) return;
   p->items = items;

@@ -1,0 +1,269 @@
+#!/bin/sh
+# Tests of the REPL: through a pipe, and through a real terminal (tmux). The last line counts.
+#
+#   BUILD=build sh tests/repl/run.sh
+
+build=${BUILD:-build}
+case $build in /*) ;; *) build=$PWD/$build ;; esac
+cag=$build/cag
+work=$(mktemp -d) || exit 1
+session=cag-repl-$$
+passed=0
+failed=0
+trap 'tmux -L "$session" kill-server 2>/dev/null; rm -rf "$work"' EXIT
+trap 'exit 130' INT TERM
+cd "$work" || exit 1
+export XDG_STATE_HOME="$work/state"
+
+# result NAME: counts the status of the command before.
+result() {
+  if [ "$2" = 0 ]; then
+    passed=$((passed + 1))
+  else
+    failed=$((failed + 1))
+    echo "FAILED $1"
+    [ -z "$3" ] || printf '%s\n' "$3" | sed 's/^/  /'
+  fi
+}
+
+# --- Through a pipe ---
+
+# prints NAME EXPECTED INPUT: what INPUT makes the REPL write to standard output.
+prints() {
+  got=$(printf '%s\n' "$3" | "$cag" repl 2>"$work/errors")
+  [ "$got" = "$2" ]
+  result "$1" $? "expected: $2
+got:      $got
+errors:   $(cat "$work/errors")"
+}
+
+# complains NAME STATUS WORDS INPUT: what it writes to standard error, and its exit status.
+complains() {
+  printf '%s\n' "$4" | "$cag" repl >/dev/null 2>"$work/errors"
+  status=$?
+  [ $status = "$2" ] && { [ -z "$3" ] || grep -qF -- "$3" "$work/errors"; }
+  result "$1" $? "expected: status $2, $3
+got:      status $status, $(cat "$work/errors")"
+}
+
+prints 'an expression is printed with its type' '3 : number' '1 + 2'
+prints 'a text is printed as written' '"a" : text' '"a"'
+prints 'print prints the bare text' 'a' 'print "a"'
+prints 'definitions say nothing' '' 'x = 3'
+prints 'what depends on a name follows its new definition' '6 : number
+20 : number' 'a = 3
+b = a * 2
+b
+a = 10
+b'
+prints 'a function may be defined again' '10 : number' 'f(x) = x
+g(x) = f(x) * 2
+f(x) = x + 3
+g(2)'
+prints 'an open bracket asks for another line' '[1, 2] : list' '[1,
+2]'
+prints 'a line that begins with a pipe goes on' '9 : number' '3
+  |> (x => x^2)'
+prints 'lines of an if belong together' '2 : number' 'if false
+  then 1
+  else 2'
+prints 'a comment alone says nothing' '' '// nothing'
+prints 'an error leaves what was defined' '3 : number' 'x = 3
+sin(30)
+x'
+prints 'there is no prompt on a pipe' '' ''
+prints ':type gives the type' 'angle' ':type 30deg'
+prints ':list shows the definitions' 'x = 1
+f(a) = a + 1' 'x = 1
+f(a) = a + 1
+:list'
+prints ':clear forgets' '' 'x = 1
+:clear
+:list'
+prints ':quit ends' '1 : number' '1
+:quit
+2'
+prints 'a unique beginning names a command' '' ':q'
+prints ':scene tells what is shown' 's: sphere, radius 10' 's = sphere(10)
+show s
+:scene'
+prints ':help shows documentation of a definition' 'r = 3
+  the radius' '/// the radius
+r = 3
+:help r'
+prints 'letters of all alphabets are names' '3 : number' 'радиус = 3
+радиус'
+prints 'values computed before an error are kept' '1 : number
+2 : number' '1; 2; 1/0'
+
+printf '%s\n' ':time 1 + 1' | "$cag" repl 2>&1 | grep -qE '^[0-9.e-]+ (ms|s)$'
+result ':time tells how long it took' $?
+printf '%s\n' ':help' | "$cag" repl 2>&1 | grep -q '^:render'
+result ':help lists the commands' $?
+printf '%s\n' ':help sphere' | "$cag" repl 2>&1 | grep -q '^sphere(radius)'
+result ':help shows documentation of a built-in' $?
+printf '%s\n' ':doc' | "$cag" repl 2>&1 | grep -qw 'bspline'
+result ':doc lists the built-ins' $?
+
+complains 'an error shows its line' 1 '1 | sin(30)' 'sin(30)'
+complains 'an error of names gives the nearest' 1 'did you mean radius?' 'radius = 3
+raduis'
+complains 'an unknown command gives the nearest' 2 'did you mean `:help`?' ':hlep'
+complains 'an input cut off says what is open' 1 'never closed' '[1, 2'
+complains 'a command without its operand says what it wants' 2 ':load FILE' ':load'
+complains ':type of a statement wants an expression' 2 'wants an expression' ':type x = 1'
+complains 'a script that is missing has status 3' 3 'missing.cag' ':load missing.cag'
+complains 'nothing fails' 0 '' 'x = 1'
+
+cat >part.cag <<'END'
+/// how wide
+width = 40
+show box(width)
+END
+prints ':load adds the definitions of a script' '40 : number' ':load part.cag
+width'
+prints ':reload takes the script as it is now, and drops what was typed' '40 : number
+width = 40' ':load part.cag
+width = 3
+:reload
+width
+:list'
+got=$(echo 'width + 1' | "$cag" repl part.cag 2>&1)
+[ "$got" = '41 : number' ]
+result 'cag repl FILE loads the file' $? "$got"
+echo 'param height = 3 in 1..9' >param.cag
+got=$(echo 'height' | "$cag" repl param.cag -D height=7 2>&1)
+[ "$got" = '7 : number' ]
+result '-D sets the params of the file' $? "$got"
+
+printf '%s\n' 'r = 3' 'f(x) = x * r' 'r = 4' 'show sphere(r)' ':save saved.cag' | "$cag" repl >/dev/null 2>&1
+[ "$("$cag" eval 'read_text("saved.cag")' 2>/dev/null)" ] && "$cag" run saved.cag 2>&1 | grep -q 'radius 4'
+result ':save writes a script with the newest definitions' $? "$(cat saved.cag 2>&1)"
+printf '%s\n' 'show box(10)' ':export box.stl' | "$cag" repl 2>&1 | grep -q 'wrote box.stl' && [ -s box.stl ]
+result ':export writes a file and says its path' $?
+if command -v povray >/dev/null; then
+  printf '%s\n' 'show sphere(10), camera([90, -60, 40], size: [32, 24])' ':render ball.png' | "$cag" repl 2>&1 |
+    grep -q 'wrote ball.png' && [ -s ball.png ]
+  result ':render writes a picture and says its path' $?
+else
+  echo 'povray is missing: :render is not tested'
+fi
+printf '%s\n' 'x = 3' ':edit' 'x' | VISUAL='sed -i s/3/8/' "$cag" repl 2>&1 | grep -q '^8 : number$'
+result ':edit takes back what the editor left' $?
+[ ! -e "$XDG_STATE_HOME/cag/history" ]
+result 'a pipe leaves no history' $?
+
+# --- Through a terminal ---
+
+screen() { tmux -L "$session" capture-pane -p -t repl 2>/dev/null; }
+
+keys() { tmux -L "$session" send-keys -t repl "$@"; }
+
+# wait_for WORDS: waits until the last line of the screen that is not blank is WORDS.
+wait_for() {
+  tries=0
+  while [ $tries -lt 100 ] && [ "$(screen | sed 's/ *$//' | grep . | tail -n 1)" != "$1" ]; do
+    sleep 0.02
+    tries=$((tries + 1))
+  done
+}
+
+# shows NAME WORDS: waits until a line of the screen is WORDS.
+shows() {
+  tries=0
+  while [ $tries -lt 100 ]; do
+    if screen | sed 's/ *$//' | grep -qxF -- "$2"; then
+      result "$1" 0
+      return
+    fi
+    sleep 0.05
+    tries=$((tries + 1))
+  done
+  result "$1" 1 "no line: $2
+$(screen)"
+}
+
+open_terminal() {
+  tmux -L "$session" -f /dev/null new-session -d -s repl -x 100 -y 40 \
+    env XDG_STATE_HOME="$XDG_STATE_HOME" LC_ALL=C.UTF-8 TERM=screen NO_COLOR=1 "$cag"
+}
+
+if ! command -v tmux >/dev/null; then
+  echo 'tmux is missing: the REPL is not tested on a terminal'
+elif ! open_terminal; then
+  echo 'tmux does not start: the REPL is not tested on a terminal'
+else
+  shows 'a prompt waits' 'cag>'
+  keys '1 + 2' Enter
+  shows 'a value is shown' '3 : number'
+  keys '[10,' Enter
+  shows 'an open bracket changes the prompt' '...>'
+  keys '20]' Enter
+  shows 'the bracket closes' '[10, 20] : list'
+  keys 'sphere_s' Tab '(2)' Enter
+  shows 'Tab completes names' 'cag> sphere_surface(2)'
+  keys 'bspline([[0, 0], [1, 1]], degr' Tab '1)' Enter
+  shows 'Tab completes named arguments' 'cag> bspline([[0, 0], [1, 1]], degree: 1)'
+  keys 'r = {height: 7, hue: 1}' Enter 'r.hei' Tab Enter
+  shows 'Tab completes members' '7 : number'
+  keys ':sc' Tab Enter
+  shows 'Tab completes commands' 'cag> :scene'
+  keys ':load par' Tab 't' Tab Enter 'width' Enter
+  shows 'Tab completes files' '40 : number'
+  keys 'f(n) = f(n + 1)' Enter 'f(0)' Enter
+  sleep 0.5
+  keys C-c
+  shows 'Ctrl-C stops an evaluation' 'interrupted'
+  keys '5 * 5' Enter
+  shows 'the session goes on after Ctrl-C' '25 : number'
+  keys 'never evaluated'
+  wait_for 'cag> never evaluated'
+  keys C-c
+  wait_for 'cag>'
+  keys '6 * 6' Enter
+  shows 'Ctrl-C at the prompt drops the line' '36 : number'
+  keys '[1,' Enter
+  wait_for '...>'
+  keys C-c
+  wait_for 'cag>'
+  keys '7 * 7' Enter
+  shows 'Ctrl-C drops an input that is not complete' '49 : number'
+  keys 'θ = 30deg' Enter 'sin(θ)' Enter
+  shows 'letters of all alphabets can be typed' '0.5 : number'
+  keys 'радиус = 8' Enter 'рад' Tab ' + 1' Enter
+  shows 'Tab completes letters of all alphabets' '9 : number'
+  keys '1000 + 1' Enter
+  shows 'a value to find again' '1001 : number'
+  keys Up BSpace '3' Enter
+  shows 'the line before can be edited' '1003 : number'
+  keys C-d
+  tries=0
+  while tmux -L "$session" has-session -t repl 2>/dev/null && [ $tries -lt 100 ]; do
+    sleep 0.05
+    tries=$((tries + 1))
+  done
+  ! tmux -L "$session" has-session -t repl 2>/dev/null
+  result 'Ctrl-D ends' $?
+  grep -qxF '1000 + 3' "$XDG_STATE_HOME/cag/history"
+  result 'the history is kept' $?
+  open_terminal
+  shows 'a prompt waits again' 'cag>'
+  keys Up Enter
+  shows 'history is there in the next session' '1003 : number'
+  keys ':quit' Enter
+fi
+
+# The state's folder cannot be made below a file.
+if command -v tmux >/dev/null; then
+  : >"$work/file"
+  XDG_STATE_HOME=$work/file/state
+  sleep 0.2
+  if open_terminal 2>/dev/null; then
+    keys '4 * 4' Enter
+    shows 'a history that cannot be written harms nothing' '16 : number'
+    keys C-d
+  fi
+fi
+
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
