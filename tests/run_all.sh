@@ -51,6 +51,7 @@ for source in tests/lang/*_test.c tests/geom/*_test.c tests/interp/*_test.c; do
 done
 counted "cag test" "$BUILD/cag" test tests/language examples
 counted "tests/cli" env BUILD="$BUILD" sh tests/cli/run.sh
+counted "tests/repl" env BUILD="$BUILD" sh tests/repl/run.sh
 check "layers" make -s check-layers
 if command -v clang-format > /dev/null; then
   check "format" make -s check-format
