@@ -32,8 +32,8 @@ static void write_focus(CagPovWriter *w, const CagCamera *c, CagVec3 view) {
   pov_length(w, c->aperture);
   pov_text(w, "\n  focal_point ");
   pov_place_vec(w, cag_madd(c->eye, focus, view));
-  pov_printf(w, "\n  blur_samples %d variance %s confidence %s\n", final ? 120 : 40,
-             final ? "1/20000" : "1/5000", final ? "0.98" : "0.95");
+  pov_printf(w, "\n  blur_samples %d variance %s confidence %s\n", final ? 80 : 12,
+             final ? "1/10000" : "1/1000", final ? "0.95" : "0.9");
 }
 
 void pov_camera(CagPovWriter *w) {
@@ -84,7 +84,7 @@ static void write_area(CagPovWriter *w, CagVec3 direction, double size, bool rou
   if (w->options->quality == CAG_POV_DRAFT || !(size > 0)) return;
   CagVec3 a, b;
   any_perpendicular(direction, &a, &b);
-  int n = w->options->quality == CAG_POV_FINAL ? 8 : 4;
+  int n = w->options->quality == CAG_POV_FINAL ? 9 : 5;
   pov_text(w, "  area_light ");
   pov_length(w, size);
   pov_text(w, "*");
@@ -93,7 +93,7 @@ static void write_area(CagPovWriter *w, CagVec3 direction, double size, bool rou
   pov_length(w, size);
   pov_text(w, "*");
   pov_vec(w, tidy(b));
-  pov_printf(w, ", %d, %d adaptive %d jitter%s\n", n, n, n > 4 ? 1 : 0, round ? " circular" : "");
+  pov_printf(w, ", %d, %d adaptive %d jitter%s\n", n, n, n > 5 ? 2 : 1, round ? " circular" : "");
 }
 
 static void write_light_head(CagPovWriter *w, const CagLight *l, const char *what, CagVec3 at) {
