@@ -131,7 +131,7 @@ CagStatus cag_curve_closest(const CagCurve *c, CagVec3 p, double *t, CagVec3 *po
   }
   CagBounds box = c->kind->hull(c, c->start, c->end);
   Search s = {.c = c, .target = p, .distance = INFINITY, .t = c->start};
-  s.slack = EQUALLY_NEAR * cag_norm(cag_sub(box.max, box.min));
+  s.slack = fmax(EQUALLY_NEAR * cag_norm(cag_sub(box.max, box.min)), cag_curve_noise(&box));
   Parts now = {0}, next = {0};
   status = first_parts(&s, &now, err);
   while (!status && now.n > 0) {

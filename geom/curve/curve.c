@@ -60,6 +60,12 @@ double cag_curve_size(const CagVec3 *points, size_t n) {
   return size;
 }
 
+double cag_curve_noise(const CagBounds *box) {
+  const double ulps = 32; // of a few dozen operations
+  const CagVec3 corners[2] = {box->min, box->max};
+  return ulps * DBL_EPSILON * cag_curve_size(corners, 2);
+}
+
 static const char *parameter_text(const CagCurve *c, double t, char *buffer) {
   if (!c->angular) return cag_number_text(t, buffer);
   // Degrees are shown without the rounding of their way through radians.

@@ -153,7 +153,10 @@ CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle
   if (status) return status;
   CagBounds box = c->kind->hull(c, c->start, c->end);
   const double size = cag_norm(cag_sub(box.max, box.min));
-  const Limits limits = {tolerance, angle, fmin(CUSP_TOLERANCE * tolerance, CUSP_SIZE * size)};
+  // Below the rounding of the coordinates neither distances nor directions mean anything.
+  const double noise = cag_curve_noise(&box);
+  const double cusp = fmin(CUSP_TOLERANCE * tolerance, CUSP_SIZE * size);
+  const Limits limits = {fmax(tolerance, noise), angle, fmax(cusp, 2 * noise / fmin(angle, 1))};
   Output o = {0};
   status = append(&o, cuts[0], err);
   for (size_t i = 0; !status && i + 1 < count; i++)

@@ -17,6 +17,9 @@ CagStatus cag_curve_check_points(const CagVec3 *points, size_t n, const char *na
 CagStatus cag_curve_check_number(double x, const char *name, CagError *err);
 // Largest coordinate of the points in size: what rounding is relative to.
 double cag_curve_size(const CagVec3 *points, size_t n);
+// What rounding of coordinates in the box can be: no distance is known better, however small the
+// curve is beside its distance from the origin.
+double cag_curve_noise(const CagBounds *box);
 // 2 when a plane curve stays one under t.
 int cag_curve_image_dimension(const CagCurve *c, const CagTransform *t);
 // Image by way of the exact NURBS form, for maps that a kind is not closed under.

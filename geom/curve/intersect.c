@@ -64,7 +64,7 @@ static bool same_place(const CagCurve *c, double s, double t) {
 }
 
 // Sorts, and drops what was found twice: the later of two.
-static void tidy(Found *found, const CagCurve *a, const CagCurve *b, double size) {
+static void tidy(Found *found, const CagCurve *a, const CagCurve *b, double size, double noise) {
   // A seam is met at its start.
   for (size_t i = 0; i < found->n; i++) {
     CagMeeting *m = &found->items[i];
@@ -78,7 +78,7 @@ static void tidy(Found *found, const CagCurve *a, const CagCurve *b, double size
     bool known = false;
     for (size_t k = 0; k < kept && !known; k++) {
       const CagMeeting *o = &found->items[k];
-      known = cag_norm(cag_sub(m->point, o->point)) <= SAME_POINT * size &&
+      known = cag_norm(cag_sub(m->point, o->point)) <= SAME_POINT * size + noise &&
               same_place(a, m->t, o->t) && same_place(b, m->t2, o->t2);
     }
     if (!known) found->items[kept++] = *m;
@@ -126,8 +126,10 @@ static CagStatus halves(const CagCurve *c, const Part *part, Part out[2], CagErr
   return CAG_OK;
 }
 
-static double extent_of(const CagCurve *c) {
+// Size of a curve, and what rounding makes of its coordinates.
+static double extent_of(const CagCurve *c, double *noise) {
   CagBounds b = c->kind->hull(c, c->start, c->end);
+  *noise = fmax(*noise, cag_curve_noise(&b));
   return cag_norm(cag_sub(b.max, b.min));
 }
 
@@ -136,7 +138,7 @@ static double extent_of(const CagCurve *c) {
 typedef struct PlaneSearch {
   const CagCurve *c;
   const CagPlane *plane;
-  double size;
+  double size, noise;
   Found found;
 } PlaneSearch;
 
@@ -183,13 +185,13 @@ static CagStatus touch(PlaneSearch *s, double a, double b, CagError *err) {
     if (!(next != t)) break;
     t = next;
   }
-  return best <= MEET * s->size ? add(&s->found, best_t, 0, point, err) : CAG_OK;
+  return best <= (MEET * s->size + s->noise) ? add(&s->found, best_t, 0, point, err) : CAG_OK;
 }
 
 static CagStatus plane_part(PlaneSearch *s, const Part *part, int depth, CagError *err) {
   // Slope of the chord beside the bound of its change that leaves room for one root only.
   const double steep = 16;
-  const double zero = ZERO * s->size;
+  const double zero = (ZERO * s->size + s->noise);
   double fa = height(s, part->p), fb = height(s, part->q);
   double sag = cag_curve_sag(s->c, part->a, part->b);
   if (fabs(fa) <= zero) fa = 0;
@@ -211,7 +213,7 @@ static CagStatus plane_part(PlaneSearch *s, const Part *part, int depth, CagErro
     }
     if (lies) return fail_overlap(err);
   }
-  if (sag <= CHORD * s->size || depth == 0) return touch(s, part->a, part->b, err);
+  if (sag <= (CHORD * s->size + s->noise) || depth == 0) return touch(s, part->a, part->b, err);
   Part half[2];
   CagStatus status = halves(s->c, part, half, err);
   for (int i = 0; !status && i < 2; i++) status = plane_part(s, &half[i], depth - 1, err);
@@ -220,7 +222,8 @@ static CagStatus plane_part(PlaneSearch *s, const Part *part, int depth, CagErro
 
 CagStatus cag_curve_intersect_plane(const CagCurve *c, const CagPlane *plane, CagMeeting **out,
                                     size_t *n, CagError *err) {
-  PlaneSearch s = {.c = c, .plane = plane, .size = extent_of(c)};
+  PlaneSearch s = {.c = c, .plane = plane};
+  s.size = extent_of(c, &s.noise);
   Part *parts;
   size_t count;
   CagStatus status = first_parts(c, &parts, &count, err);
@@ -231,7 +234,7 @@ CagStatus cag_curve_intersect_plane(const CagCurve *c, const CagPlane *plane, Ca
     free(s.found.items);
     return status;
   }
-  tidy(&s.found, c, NULL, s.size);
+  tidy(&s.found, c, NULL, s.size, s.noise);
   *out = s.found.items;
   *n = s.found.n;
   return CAG_OK;
@@ -241,7 +244,7 @@ CagStatus cag_curve_intersect_plane(const CagCurve *c, const CagPlane *plane, Ca
 
 typedef struct CurveSearch {
   const CagCurve *a, *b;
-  double size;
+  double size, noise;
   size_t pairs;
   Found found;
 } CurveSearch;
@@ -301,7 +304,7 @@ static CagStatus meet(CurveSearch *s, const Part *a, const Part *b, double t, do
     t = next_t;
     u = next_u;
   }
-  return best <= MEET * s->size ? add(&s->found, best_t, best_u, point, err) : CAG_OK;
+  return best <= (MEET * s->size + s->noise) ? add(&s->found, best_t, best_u, point, err) : CAG_OK;
 }
 
 // Collinear chords share a stretch, or an end point at most.
@@ -322,7 +325,7 @@ static CagStatus pair(CurveSearch *s, const Part *a, const Part *b, int depth, C
   const double bend = 16;
   double u, v;
   double sag_a = cag_curve_sag(s->a, a->a, a->b), sag_b = cag_curve_sag(s->b, b->a, b->b);
-  if (segments(a, b, &u, &v) > sag_a + sag_b + ZERO * s->size) return CAG_OK;
+  if (segments(a, b, &u, &v) > sag_a + sag_b + (ZERO * s->size + s->noise)) return CAG_OK;
   if (++s->pairs > MOST_PAIRS) return fail_overlap(err);
   CagVec3 d = cag_sub(a->q, a->p), e = cag_sub(b->q, b->p);
   double da = cag_norm(d), db = cag_norm(e);
@@ -331,7 +334,7 @@ static CagStatus pair(CurveSearch *s, const Part *a, const Part *b, int depth, C
     double sine = cag_norm(cag_cross(d, e)) / (da * db);
     if (sine > bend * (sag_a / da + sag_b / db) && sine > MEET) return meet(s, a, b, t, w, err);
   }
-  const double small = CHORD * s->size;
+  const double small = (CHORD * s->size + s->noise);
   if ((sag_a <= small && sag_b <= small) || depth == 0) {
     if (run_along(s, a, b)) return fail_overlap(err);
     return meet(s, a, b, t, w, err);
@@ -346,7 +349,9 @@ static CagStatus pair(CurveSearch *s, const Part *a, const Part *b, int depth, C
 
 CagStatus cag_curve_intersect(const CagCurve *a, const CagCurve *b, CagMeeting **out, size_t *n,
                               CagError *err) {
-  CurveSearch s = {.a = a, .b = b, .size = fmax(extent_of(a), extent_of(b))};
+  CurveSearch s = {.a = a, .b = b};
+  const double size_a = extent_of(a, &s.noise), size_b = extent_of(b, &s.noise);
+  s.size = fmax(size_a, size_b);
   Part *parts_a, *parts_b;
   size_t count_a, count_b;
   CagStatus status = first_parts(a, &parts_a, &count_a, err);
@@ -365,7 +370,7 @@ CagStatus cag_curve_intersect(const CagCurve *a, const CagCurve *b, CagMeeting *
     free(s.found.items);
     return status;
   }
-  tidy(&s.found, a, b, s.size);
+  tidy(&s.found, a, b, s.size, s.noise);
   *out = s.found.items;
   *n = s.found.n;
   return CAG_OK;

@@ -220,7 +220,7 @@ CagStatus cag_curve_bounds(const CagCurve *c, CagBounds *out, CagError *err) {
     *out = box;
     return CAG_OK;
   }
-  double slack = BOX * cag_norm(cag_sub(box.max, box.min)), *cuts;
+  double slack = fmax(BOX * cag_norm(cag_sub(box.max, box.min)), cag_curve_noise(&box)), *cuts;
   CagStatus status = cag_curve_cuts(c, &cuts, &n, err);
   if (status) return status;
   box = CAG_BOUNDS_EMPTY;
