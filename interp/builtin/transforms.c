@@ -4,7 +4,7 @@
 
 #include "interp/builtin/transforms.h"
 
-#define MOVED CAG_TAKES_MOVABLE
+#define MOVED (CAG_TAKES_MOVABLE | CAG_TAKES(LIST))
 #define LISTS CAG_TAKES_LISTS
 #define OF_TRANSFORM CAG_TAKES(TRANSFORM)
 

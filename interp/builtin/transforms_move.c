@@ -36,7 +36,7 @@ static bool make_or_move(CagCall *call, CagValue *result, MakeTransform make) {
   CagCall moving = *call;
   CagValue values[PARAMETERS_MAX];
   bool moves = (call->builtin->first & CAG_TAKES(CURVE)) != 0;
-  if (!moves && call->count > 1 && holds_movables(call->vm, call->values[0])) {
+  if (!moves && call->values[0].type == CAG_LIST && holds_movables(call->vm, call->values[0])) {
     size_t n = call->count < PARAMETERS_MAX ? call->count : PARAMETERS_MAX - 1;
     memcpy(values, call->values, n * sizeof *values);
     for (size_t i = n; i < PARAMETERS_MAX; i++) values[i] = cag_unset();
