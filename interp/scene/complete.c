@@ -197,6 +197,9 @@ static const CagColor STUDIO_SKY[] = {
     {0.30, 0.30, 0.31}, {0.44, 0.44, 0.45}, {0.50, 0.51, 0.53}, {0.58, 0.60, 0.63}};
 #define SKY_COUNT (sizeof STUDIO_SKY / sizeof *STUDIO_SKY)
 static const CagColor FLOOR = {0.52, 0.52, 0.52};
+// Radii between the floor and the lowest point, so that a flat thing there and the floor are not
+// one plane; no shadow shows it.
+#define FLOOR_GAP 5e-4
 static const CagColor PAPER = {1, 1, 1};
 
 static CagStatus set_sky(CagScene *s, const CagColor *colors, size_t n, CagError *err) {
@@ -279,7 +282,7 @@ static CagStatus add_studio(CagScene *s, CagError *err) {
   s->light_count = STUDIO_COUNT;
   CagStatus status = s->has_background ? CAG_OK : set_sky(s, STUDIO_SKY, SKY_COUNT, err);
   bool floor = !s->has_background && !has_ground(s) && s->cameras[0].eye.z > whole.min.z;
-  if (status == CAG_OK && floor) status = add_floor(s, whole.min.z, err);
+  if (status == CAG_OK && floor) status = add_floor(s, whole.min.z - FLOOR_GAP * radius, err);
   return status;
 }
 
