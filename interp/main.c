@@ -1,11 +1,12 @@
 // The program `cag`: reads the command line, calls the command, and ends with its status.
 //
 // Signals: the first Ctrl-C (or SIGTERM, SIGHUP) asks what runs to stop, which leaves nothing half
-// written; the second ends the program at once, after the temporaries of output files are removed.
-// A standard output that nobody reads shows as a failed write, not as a signal.
+// written; a second one ends the program at once, after the temporaries of output files are
+// removed. A standard output that nobody reads shows as a failed write, not as a signal.
 
 #include <fcntl.h>
 #include <locale.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "interp/render/atomic_file.h"
@@ -13,13 +14,26 @@
 
 volatile int cag_tool_interrupt;
 
+// Signals that come this soon (in seconds) after the first are the same wish, such as a shell and a
+// `timeout` that both send one: what was asked to stop gets the time to clean up.
+static const double SAME_WISH = 0.3;
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 static void on_signal(int number) {
+  static volatile double first;
   (void)number;
-  if (cag_tool_interrupt) {
+  if (!cag_tool_interrupt) {
+    first = now();
+    cag_tool_interrupt = 1;
+  } else if (now() - first > SAME_WISH) {
     cag_atomic_files_cleanup();
     _exit(CAG_STATUS_INTERRUPTED);
   }
-  cag_tool_interrupt = 1;
 }
 
 static void catch_signals(void) {

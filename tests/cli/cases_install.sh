@@ -2,7 +2,7 @@
 
 it 'make install lays everything out below DESTDIR'
 ran='make install'
-env -u MAKEFLAGS -u MAKELEVEL make -s -C "$root" install BUILD="$BUILD" PREFIX=/opt/cag DESTDIR="$PWD/dest" > out 2> err
+env -u MAKEFLAGS -u MAKELEVEL make -s -o all -C "$root" install BUILD="$BUILD" PREFIX=/opt/cag DESTDIR="$PWD/dest" > out 2> err
 code=$?
 status 0
 prefix=$PWD/dest/opt/cag

@@ -61,6 +61,20 @@ no_temporaries temporary
 sleep 0.1
 ! is_running || wrong 'the renderer still runs'
 
+it 'two signals at once still leave nothing behind'
+ran='cag render (SIGTERM twice)'
+TMPDIR=$PWD/temporary "$CAG" render ball.cag -o out.png --size 64x48 > out 2> err &
+child=$!
+sleep 0.7
+kill -TERM $child
+kill -TERM $child
+wait $child
+code=$?
+status 130
+holds out.png earlier
+no_temporaries temporary
+! is_running || wrong 'the renderer still runs'
+
 it 'a killed cag takes its renderer along'
 ran='cag render (SIGKILL)'
 TMPDIR=$PWD/temporary "$CAG" render ball.cag -o out.png --size 64x48 > out 2> err &
