@@ -8,9 +8,12 @@
 #define CAG_CURVE_FUNCTIONS(X)                                                                     \
   /* curves_ask.c: at one parameter */                                                             \
   X(at)                                                                                            \
-  X(derivative) X(tangent) X(normal) X(binormal) X(curvature) X(torsion) X(frenet) X(domain)       \
-      X(start) X(end) X(start_point) X(end_point) X(degree) X(points) X(weights) X(knots)          \
-          X(is_closed) X(is_planar) X(is_straight) /* curves_measure.c: of the whole */            \
+  X(derivative)                                                                                    \
+  X(tangent)                                                                                       \
+  X(normal)                                                                                        \
+  X(binormal) X(curvature) X(torsion) X(frenet) X(domain) X(start) X(end) X(start_point)           \
+      X(end_point) X(degree) X(points) X(weights) X(knots) X(is_closed) X(is_planar)               \
+          X(is_straight) /* curves_measure.c: of the whole */                                      \
       X(length) X(parameter_at_length) X(sample) X(divide) X(closest) X(area) X(centroid)          \
           X(bounds) /* curves_change.c: another curve of it */                                     \
       X(reverse) X(trim) X(reparametrize) X(split) X(join_curves) X(to_nurbs)                      \

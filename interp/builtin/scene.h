@@ -9,8 +9,10 @@
 #define CAG_SCENE_FUNCTIONS(X)                                                                     \
   /* scene_stage.c */                                                                              \
   X(camera)                                                                                        \
-  X(sun) X(point_light) X(spot_light) X(area_light) X(sky) X(background)                           \
-      X(ground) /* scene_say.c */                                                                  \
+  X(sun)                                                                                           \
+  X(point_light)                                                                                   \
+  X(spot_light)                                                                                    \
+  X(area_light) X(sky) X(background) X(ground) /* scene_say.c */                                   \
       X(material) X(color) X(named) X(tolerance) X(hidden) X(group) X(line_style)
 
 #define X(name) bool cag_scenes_##name(CagCall *call, CagValue *result);

@@ -8,8 +8,11 @@
 #define CAG_SURFACE_FUNCTIONS(X)                                                                   \
   /* surfaces_ask.c: at one place, and data */                                                     \
   X(at)                                                                                            \
-  X(partial) X(normal) X(tangent_plane) X(domain) X(degree) X(knots) X(points) X(weights)          \
-      X(is_closed) X(closed_in) /* surfaces_curvature.c */                                         \
+  X(partial)                                                                                       \
+  X(normal)                                                                                        \
+  X(tangent_plane)                                                                                 \
+  X(domain) X(degree) X(knots) X(points) X(weights) X(is_closed)                                   \
+      X(closed_in) /* surfaces_curvature.c */                                                      \
       X(first_form) X(second_form) X(gaussian_curvature) X(mean_curvature) X(normal_curvature)     \
           X(principal_curvatures)                                                                  \
               X(curvature_class) /* surfaces_change.c: of the whole, and what is made of it */     \

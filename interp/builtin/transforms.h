@@ -10,7 +10,10 @@ extern const CagBuiltin cag_builtins_transforms[];
 #define CAG_TRANSFORM_FUNCTIONS(X)                                                                 \
   /* transforms_move.c: also take what they move */                                                \
   X(translate)                                                                                     \
-  X(rotate) X(scale) X(reflect) X(shear) X(project) X(moved) /* transforms_make.c */               \
+  X(rotate)                                                                                        \
+  X(scale)                                                                                         \
+  X(reflect)                                                                                       \
+  X(shear) X(project) X(moved) /* transforms_make.c */                                             \
       X(reflect_line) X(reflect_point) X(from_rows) X(axes) X(look_at) X(euler) X(rpy)             \
           X(quaternion) X(axis_angle) X(cylindrical) X(spherical) X(dh) X(mdh) X(from_pairs)       \
               X(solve_frame) /* transforms_ask.c */                                                \
