@@ -5,23 +5,24 @@
 
 #include "interp/builtin/shapes.h"
 
-#define CAG_CURVE_FUNCTIONS(X)                                                                     \
-  /* curves_ask.c: at one parameter */                                                             \
-  X(at)                                                                                            \
-  X(derivative)                                                                                    \
-  X(tangent)                                                                                       \
-  X(normal)                                                                                        \
-  X(binormal) X(curvature) X(torsion) X(frenet) X(domain) X(start) X(end) X(start_point)           \
-      X(end_point) X(degree) X(points) X(weights) X(knots) X(is_closed) X(is_planar)               \
-          X(is_straight) /* curves_measure.c: of the whole */                                      \
-      X(length) X(parameter_at_length) X(sample) X(divide) X(closest) X(area) X(centroid)          \
-          X(bounds) /* curves_change.c: another curve of it */                                     \
-      X(reverse) X(trim) X(reparametrize) X(split) X(join_curves) X(to_nurbs)                      \
-          X(polygonize) /* curves_make.c */                                                        \
-      X(line) X(polyline) X(circle) X(arc) X(ellipse) X(arc_through) X(circle_through)             \
-          X(helix)                                                       /* curves_spline.c */     \
-      X(bezier) X(bspline) X(nurbs) X(knot_vector) X(basis) X(bernstein) /* regions.c */           \
-      X(region) X(polygon) X(rectangle) X(regular_polygon) X(boundary)
+// clang-format off
+#define CAG_CURVE_FUNCTIONS(X) \
+  /* curves_ask.c: at one parameter */ \
+  X(at) X(derivative) X(tangent) X(normal) X(binormal) X(curvature) X(torsion) X(frenet) \
+  X(domain) X(start) X(end) X(start_point) X(end_point) X(degree) X(points) X(weights) \
+  X(knots) X(is_closed) X(is_planar) X(is_straight) \
+  /* curves_measure.c: of the whole */ \
+  X(length) X(parameter_at_length) X(sample) X(divide) X(closest) X(area) X(centroid) \
+  X(bounds) \
+  /* curves_change.c: another curve of it */ \
+  X(reverse) X(trim) X(reparametrize) X(split) X(join_curves) X(to_nurbs) X(polygonize) \
+  /* curves_make.c */ \
+  X(line) X(polyline) X(circle) X(arc) X(ellipse) X(arc_through) X(circle_through) X(helix) \
+  /* curves_spline.c */ \
+  X(bezier) X(bspline) X(nurbs) X(knot_vector) X(basis) X(bernstein) \
+  /* regions.c */ \
+  X(region) X(polygon) X(rectangle) X(regular_polygon) X(boundary)
+// clang-format on
 
 #define X(name) bool cag_curves_##name(CagCall *call, CagValue *result);
 CAG_CURVE_FUNCTIONS(X)

@@ -6,14 +6,13 @@
 #include "interp/builtin/shapes.h"
 #include "interp/scene/scene.h"
 
-#define CAG_SCENE_FUNCTIONS(X)                                                                     \
-  /* scene_stage.c */                                                                              \
-  X(camera)                                                                                        \
-  X(sun)                                                                                           \
-  X(point_light)                                                                                   \
-  X(spot_light)                                                                                    \
-  X(area_light) X(sky) X(background) X(ground) /* scene_say.c */                                   \
-      X(material) X(color) X(named) X(tolerance) X(hidden) X(group) X(line_style)
+// clang-format off
+#define CAG_SCENE_FUNCTIONS(X) \
+  /* scene_stage.c */ \
+  X(camera) X(sun) X(point_light) X(spot_light) X(area_light) X(sky) X(background) X(ground) \
+  /* scene_say.c */ \
+  X(material) X(color) X(named) X(tolerance) X(hidden) X(group) X(line_style)
+// clang-format on
 
 #define X(name) bool cag_scenes_##name(CagCall *call, CagValue *result);
 CAG_SCENE_FUNCTIONS(X)

@@ -5,18 +5,20 @@
 
 #include "interp/builtin/shapes.h"
 
-#define CAG_SOLID_FUNCTIONS(X)                                                                     \
-  /* solids_make.c */                                                                              \
-  X(box)                                                                                           \
-  X(sphere)                                                                                        \
-  X(cylinder)                                                                                      \
-  X(cone)                                                                                          \
-  X(prism) X(rod) X(torus) X(solid)            /* solids_copies.c */                               \
-      X(around) X(rows) X(mirrored)            /* solids_measure.c */                              \
-      X(area) X(volume) X(centroid) X(inertia) /* meshes.c */                                      \
-      X(mesh) X(vertices) X(faces) X(normals_of) X(is_watertight) X(euler_characteristic) X(weld)  \
-          X(tessellate) X(flip) /* solids_figures.c */                                             \
-      X(control_net) X(isolines) X(arrow) X(triad)
+// clang-format off
+#define CAG_SOLID_FUNCTIONS(X) \
+  /* solids_make.c */ \
+  X(box) X(sphere) X(cylinder) X(cone) X(prism) X(rod) X(torus) X(solid) \
+  /* solids_copies.c */ \
+  X(around) X(rows) X(mirrored) \
+  /* solids_measure.c */ \
+  X(area) X(volume) X(centroid) X(inertia) \
+  /* meshes.c */ \
+  X(mesh) X(vertices) X(faces) X(normals_of) X(is_watertight) X(euler_characteristic) \
+  X(weld) X(tessellate) X(flip) \
+  /* solids_figures.c */ \
+  X(control_net) X(isolines) X(arrow) X(triad)
+// clang-format on
 
 #define X(name) bool cag_solids_##name(CagCall *call, CagValue *result);
 CAG_SOLID_FUNCTIONS(X)

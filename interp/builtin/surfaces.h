@@ -5,25 +5,26 @@
 
 #include "interp/builtin/shapes.h"
 
-#define CAG_SURFACE_FUNCTIONS(X)                                                                   \
-  /* surfaces_ask.c: at one place, and data */                                                     \
-  X(at)                                                                                            \
-  X(partial)                                                                                       \
-  X(normal)                                                                                        \
-  X(tangent_plane)                                                                                 \
-  X(domain) X(degree) X(knots) X(points) X(weights) X(is_closed)                                   \
-      X(closed_in) /* surfaces_curvature.c */                                                      \
-      X(first_form) X(second_form) X(gaussian_curvature) X(mean_curvature) X(normal_curvature)     \
-          X(principal_curvatures)                                                                  \
-              X(curvature_class) /* surfaces_change.c: of the whole, and what is made of it */     \
-      X(area) X(volume) X(sample) X(to_nurbs) X(flip) X(isocurve)                                  \
-          X(boundary) /* surfaces_make.c: of curves */                                             \
-      X(revolve) X(extrude) X(ruled) X(bilinear) X(tube) X(translational) X(sphere_surface)        \
-          X(torus_surface) /* surfaces_net.c: of nets of points */                                 \
-      X(bezier_surface) X(bspline_surface) X(nurbs_surface) /* surfaces_quadric.c */               \
-      X(quadric) X(ellipsoid) X(hyperboloid) X(paraboloid) X(hyperbolic_paraboloid)                \
-          X(elliptic_cone) X(elliptic_cylinder) X(parabolic_cylinder) X(hyperbolic_cylinder)       \
-              X(classify)
+// clang-format off
+#define CAG_SURFACE_FUNCTIONS(X) \
+  /* surfaces_ask.c: at one place, and data */ \
+  X(at) X(partial) X(normal) X(tangent_plane) X(domain) X(degree) X(knots) X(points) \
+  X(weights) X(is_closed) X(closed_in) \
+  /* surfaces_curvature.c */ \
+  X(first_form) X(second_form) X(gaussian_curvature) X(mean_curvature) X(normal_curvature) \
+  X(principal_curvatures) X(curvature_class) \
+  /* surfaces_change.c: of the whole, and what is made of it */ \
+  X(area) X(volume) X(sample) X(to_nurbs) X(flip) X(isocurve) X(boundary) \
+  /* surfaces_make.c: of curves */ \
+  X(revolve) X(extrude) X(ruled) X(bilinear) X(tube) X(translational) X(sphere_surface) \
+  X(torus_surface) \
+  /* surfaces_net.c: of nets of points */ \
+  X(bezier_surface) X(bspline_surface) X(nurbs_surface) \
+  /* surfaces_quadric.c */ \
+  X(quadric) X(ellipsoid) X(hyperboloid) X(paraboloid) X(hyperbolic_paraboloid) \
+  X(elliptic_cone) X(elliptic_cylinder) X(parabolic_cylinder) X(hyperbolic_cylinder) \
+  X(classify)
+// clang-format on
 
 #define X(name) bool cag_surfaces_##name(CagCall *call, CagValue *result);
 CAG_SURFACE_FUNCTIONS(X)
