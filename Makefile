@@ -131,7 +131,7 @@ install: all
 	ln -sf libcag.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(PREFIX)/lib/libcag.so
 	install -m 644 include/cag.h $(DESTDIR)$(PREFIX)/include/cag.h
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@MODULES@|$(MODULES)|' tools/libcag.pc.in \
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@LIBS@|$(strip $(PKG_LIBS))|' tools/libcag.pc.in \
 	  > $(DESTDIR)$(PREFIX)/lib/pkgconfig/libcag.pc
 	sh tools/man.sh $(BUILD)/cag $(DESTDIR)$(PREFIX)/share/man/man1
 	sh tools/completion.sh $(BUILD)/cag > $(DESTDIR)$(PREFIX)/share/bash-completion/completions/cag
