@@ -92,7 +92,7 @@ static void series_scale(const CagVec3 *a, const double *f, int n, CagVec3 *out)
 }
 
 static void series_unit(const CagVec3 *a, int n, CagVec3 *out) {
-  double w[ORDER], f[ORDER]; // f = w^(-1/2)
+  double w[ORDER] = {0}, f[ORDER] = {0}; // f = w^(-1/2)
   series_dot(a, a, n, w);
   f[0] = 1 / sqrt(w[0]);
   for (int k = 1; k <= n; k++) {
@@ -127,11 +127,9 @@ static void angle_series(const Segment *g, double v, int n, double *out) {
   double a[NODES + 1];
   for (int i = 0; i <= NODES; i++) a[i] = g->phi[i];
   double power = 1;
-  for (int k = 0; k <= n; k++) {
-    if (k > NODES) {
-      out[k] = 0;
-      continue;
-    }
+  int last = n < NODES ? n : NODES;
+  for (int k = last + 1; k <= n; k++) out[k] = 0;
+  for (int k = 0; k <= last; k++) {
     for (int i = NODES - 1; i >= k; i--) a[i] += s * a[i + 1];
     out[k] = a[k] * power;
     power /= half;
