@@ -1,0 +1,55 @@
+// B-splines from data points: interpolation and least squares (reference 05b, 4).
+//
+// Both systems are banded since over one span only degree + 1 basis functions act: interpolation
+// is solved by LAPACK's banded elimination with pivoting, least squares by Givens rotations of one
+// data row after the other into a banded triangle, which never squares the condition.
+
+#ifndef CAG_GEOM_FIT_H
+#define CAG_GEOM_FIT_H
+
+#include "geom/curve/cubic.h"
+
+typedef enum CagFitKnots {
+  CAG_FIT_AUTO,     // even where the data allow it well, else averaged
+  CAG_FIT_OPEN,     // clamped, evenly spaced
+  CAG_FIT_AVERAGED, // clamped, by the data's parameters
+  CAG_FIT_GIVEN
+} CagFitKnots;
+
+typedef struct CagFitData {
+  const CagVec3 *points;
+  size_t n;
+  CagSpacing spacing;       // of the parameters over the usable range of the knots ...
+  const double *parameters; // ... or n numbers, ascending; NULL: by spacing
+  CagFitKnots kind;
+  const double *knots; // of CAG_FIT_GIVEN
+  int degree;
+  int dimension;
+} CagFitData;
+
+typedef struct CagFitReport {
+  double *parameters; // n, malloc'd
+  CagVec3 *residuals; // n, malloc'd: the curve less the data
+  double rms, largest;
+  int rounds; // of the iteration that holds a coordinate
+} CagFitReport;
+void cag_fit_report_free(CagFitReport *r);
+
+// The curve through all points. tangents: NULL; 2 of them: at both ends (with n = 2 in both
+// points); n: in all points. They are by the parameter. Fails with "fit-singular",
+// "zero-chord-total", "bad-parameter", "order-range" and others.
+CagStatus cag_curve_interpolate(const CagFitData *data, const CagVec3 *tangents,
+                                size_t tangent_count, CagCurve **out, CagError *err);
+
+// Least squares with `count` control points.
+//
+//   keep_ends  the first and last control point are the first and last data point
+//   axis       -1; else 0, 1, 2: the curve at the parameter of each point has exactly (to `slack`)
+//              that coordinate of the point; keeps the ends too. The parameters of inner points are
+//              moved, at most CAG_FIT_ROUNDS times ("fit-no-convergence")
+//   report     may be NULL
+#define CAG_FIT_ROUNDS 50
+CagStatus cag_curve_fit(const CagFitData *data, size_t count, bool keep_ends, int axis,
+                        double slack, CagCurve **out, CagFitReport *report, CagError *err);
+
+#endif
