@@ -13,7 +13,7 @@ add() {
   suite_failed=$3
   [ "$4" -eq 0 ] || [ "$3" -gt 0 ] || suite_failed=1
   [ "$2" -gt 0 ] || [ "$suite_failed" -gt 0 ] || suite_failed=1
-  [ "$suite_failed" -eq 0 ] || cat "$log"
+  [ "$suite_failed" -eq 0 ] || tail -n 200 "$log"
   echo "$1: $2 passed, $suite_failed failed"
   passed=$((passed + $2)) failed=$((failed + suite_failed))
 }

@@ -423,8 +423,10 @@ static bool check_operands(const CagTool *t, int count, char **operands) {
   snprintf(help, sizeof help, "write `cag %s %s`; `cag %s --help` shows examples", c->name,
            c->operands, c->name);
   if (count < c->least) {
-    cag_tool_fail(t, CAG_STATUS_USAGE, help, "%s",
-                  count ? "something is missing" : "it is not said on what");
+    if (count)
+      cag_tool_fail(t, CAG_STATUS_USAGE, help, "%s are wanted, found only '%s'", c->operands,
+                    operands[0]);
+    else cag_tool_fail(t, CAG_STATUS_USAGE, help, "%s is missing", c->operands);
     return false;
   }
   if (count > c->most) {
