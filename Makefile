@@ -101,7 +101,12 @@ unit-geom: $(call UNIT,geom)
 unit-interp: $(call UNIT,interp)
 	@for t in $^; do case $$t in /*) $$t;; *) ./$$t;; esac || exit 1; done
 
-test-programs: all $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp)
+$(BUILD)/tests/vectors/run: tests/vectors/run.c $(BUILD)/libcag.a
+	@mkdir -p $(@D)
+	@echo "cc $<"
+	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(LDLIBS_ALL)
+
+test-programs: all $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run
 test: test-programs
 	BUILD=$(BUILD) sh tests/run_all.sh
 
