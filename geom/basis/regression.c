@@ -1,0 +1,118 @@
+// Least-squares fits of formulas: a QR factorisation of the matrix of powers, of x shifted and
+// scaled into -1 .. 1 so that high degrees stay well conditioned.
+
+#include "geom/basis/regression.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+
+// x closer together than this share of their range are one.
+#define SAME_X 1e-12
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static CagStatus check_distinct(const double *x, size_t n, size_t needed, CagError *err) {
+  double *sorted = malloc(sizeof *sorted * (n + 1));
+  if (!sorted) return cag_fail_memory(err);
+  size_t distinct = n > 0;
+  for (size_t i = 0; i < n; i++) sorted[i] = x[i];
+  qsort(sorted, n, sizeof *sorted, ascending);
+  for (size_t i = 1; i < n; i++)
+    distinct += sorted[i] - sorted[i - 1] > SAME_X * (sorted[n - 1] - sorted[0]);
+  free(sorted);
+  if (distinct >= needed) return CAG_OK;
+  return cag_fail(err, CAG_E_ARGUMENT, "underdetermined", "points", -1,
+                  "%zu coefficients need as many points of different x; these have %zu", needed,
+                  distinct);
+}
+
+// Coefficients of p((x - m) / h), in place, become those of powers of x: Horner's scheme on
+// polynomials.
+static void expand(double *c, int degree, double m, double h) {
+  for (int i = 0; i <= degree; i++) c[i] /= pow(h, i);
+  for (int i = 0; i < degree; i++)
+    for (int k = degree - 1; k >= i; k--) c[k] -= m * c[k + 1];
+}
+
+static CagStatus fit_polynomial(const double *x, const double *y, size_t n, int degree, double *out,
+                                CagError *err) {
+  const size_t columns = (size_t)degree + 1;
+  CagStatus status = check_distinct(x, n, columns, err);
+  if (status) return status;
+  double low = x[0], high = x[0];
+  for (size_t i = 1; i < n; i++) {
+    low = fmin(low, x[i]);
+    high = fmax(high, x[i]);
+  }
+  const double m = low + (high - low) / 2, h = high > low ? (high - low) / 2 : 1;
+  double *matrix = malloc(sizeof *matrix * n * columns), *right = malloc(sizeof *right * n);
+  if (!matrix || !right) status = cag_fail_memory(err);
+  for (size_t i = 0; !status && i < n; i++) {
+    right[i] = y[i];
+    double power = 1;
+    for (size_t j = 0; j < columns; j++, power *= (x[i] - m) / h) matrix[i * columns + j] = power;
+  }
+  if (!status && LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', (lapack_int)n, (lapack_int)columns, 1, matrix,
+                               (lapack_int)columns, right, 1) != 0)
+    status = cag_fail(err, CAG_E_DEGENERATE, "underdetermined", "points", -1,
+                      "the points do not determine %zu coefficients", columns);
+  for (size_t j = 0; !status && j < columns; j++) out[j] = right[j];
+  if (!status) expand(out, degree, m, h);
+  free(matrix);
+  free(right);
+  return status;
+}
+
+static CagStatus fail_sign(const char *what, size_t i, CagError *err) {
+  return cag_fail(err, CAG_E_DOMAIN, "domain", "points", (long)i,
+                  "%s: `points`[%zu] is not so, and has no logarithm", what, i);
+}
+
+// The line through the logarithms.
+static CagStatus fit_logarithm(const double *x, const double *y, size_t n, bool power, double *out,
+                               CagError *err) {
+  double *u = calloc(n + 1, sizeof *u), *v = calloc(n + 1, sizeof *v);
+  CagStatus status = u && v ? CAG_OK : cag_fail_memory(err);
+  const double sign = n > 0 && y[0] < 0 && !power ? -1 : 1;
+  for (size_t i = 0; !status && i < n; i++) {
+    if (power && !(x[i] > 0 && y[i] > 0))
+      status = fail_sign("a power law fits points of positive x and y", i, err);
+    else if (!(sign * y[i] > 0))
+      status = fail_sign("an exponential fits points whose y have one sign", i, err);
+    else {
+      u[i] = power ? log(x[i]) : x[i];
+      v[i] = log(sign * y[i]);
+    }
+  }
+  if (!status) status = fit_polynomial(u, v, n, 1, out, err);
+  if (!status) out[0] = sign * exp(out[0]);
+  free(u);
+  free(v);
+  return status;
+}
+
+static double value_at(CagModel model, const double *c, int degree, double x) {
+  if (model == CAG_MODEL_POWER) return c[0] * pow(x, c[1]);
+  if (model == CAG_MODEL_EXPONENTIAL) return c[0] * exp(c[1] * x);
+  double y = c[degree];
+  for (int i = degree - 1; i >= 0; i--) y = y * x + c[i];
+  return y;
+}
+
+CagStatus cag_fit_formula(const double *x, const double *y, size_t n, CagModel model, int degree,
+                          double *out, double *residual, CagError *err) {
+  CagStatus status = model == CAG_MODEL_POLYNOMIAL
+                         ? fit_polynomial(x, y, n, degree, out, err)
+                         : fit_logarithm(x, y, n, model == CAG_MODEL_POWER, out, err);
+  if (status) return status;
+  *residual = 0;
+  for (size_t i = 0; i < n; i++) {
+    const double d = y[i] - value_at(model, out, degree, x[i]);
+    *residual += d * d;
+  }
+  return CAG_OK;
+}

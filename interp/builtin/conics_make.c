@@ -1,0 +1,475 @@
+// Conics made: by their axes, their equation, through points, as arcs, and as points.
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "geom/curve/family.h"
+#include "interp/builtin/conics.h"
+#include "interp/builtin/support.h"
+
+// Most points that one call makes.
+#define POINTS_MAX 100000000
+
+bool cag_conics_said(const CagCall *call, int argument) {
+  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
+}
+
+// `made` is read after the call that fills it: pass its address.
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagCurve **made,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_curve_value(call->vm, *made);
+  return true;
+}
+
+// --- Parabola and hyperbola ---
+
+// As of circles: z along the normal, x level; of a normal along Z x is X.
+static bool read_frame(CagCall *call, int at, CagTransform *out) {
+  CagVec3 center, normal;
+  int dimension = 2;
+  CagError err;
+  if (!cag_arg_vec_or(call, at, cag_vec3(0, 0, 0), &center, &dimension)) return false;
+  if (!cag_given(call, at)) dimension = 2;
+  *out = cag_translate(center);
+  out->planar = dimension == 2 && !cag_conics_said(call, at + 1);
+  if (!cag_conics_said(call, at + 1)) return true;
+  if (!cag_arg_direction(call, at + 1, center, &normal, NULL)) return false;
+  CagVec3 x = cag_cross(cag_vec3(0, 0, 1), normal);
+  if (x.x == 0 && x.y == 0) x = cag_vec3(1, 0, 0);
+  if (!cag_geometry_ok(call, cag_axes(center, x, cag_cross(normal, x), out, &err), &err))
+    return false;
+  out->planar = false;
+  return true;
+}
+
+__attribute__((format(printf, 3, 4))) static bool fail_domain(CagCall *call, const char *argument,
+                                                              const char *format, ...) {
+  CagError err;
+  char message[200];
+  va_list list;
+  va_start(list, format);
+  vsnprintf(message, sizeof message, format, list);
+  va_end(list);
+  cag_fail(&err, CAG_E_DOMAIN, "domain", argument, -1, "%s", message);
+  return cag_fail_geometry(call, &err);
+}
+
+// The parameter where x or y is reached; x on the upper half.
+typedef bool (*Inverse)(CagCall *call, double a, double b, double value, bool is_x, double *t);
+
+static bool parabola_at(CagCall *call, double a, double b, double value, bool is_x, double *t) {
+  (void)b;
+  if (is_x && value < 0)
+    return fail_domain(call, "x", "a parabola begins at x = 0; it has no point at x = %.17g",
+                       value);
+  *t = is_x ? sqrt(value / a) : value / (2 * a);
+  return true;
+}
+
+static bool hyperbola_at(CagCall *call, double a, double b, double value, bool is_x, double *t) {
+  if (is_x && value < a)
+    return fail_domain(
+        call, "x", "the right branch begins at x = %.17g; it has no point at x = %.17g", a, value);
+  // asinh of y keeps its digits near the vertex, where acosh of x loses them.
+  *t = asinh(is_x ? sqrt((value - a) * (value + a)) / a : value / b);
+  return true;
+}
+
+// Exactly one of range, x and y, of which the last two stand at `x_at` and after.
+static bool read_range(CagCall *call, int range_at, int x_at, double a, double b, Inverse inverse,
+                       double *from, double *to, bool *angle) {
+  const bool range = cag_conics_said(call, range_at), x = cag_conics_said(call, x_at),
+             y = cag_conics_said(call, x_at + 1);
+  *angle = false;
+  if (range + x + y != 1)
+    return cag_fail_call(
+        call, -1, CAG_ERR_value,
+        "needs one of `range`, `x` and `y` to say which part of the curve is meant");
+  if (range) {
+    if (!cag_arg_interval(call, range_at, from, to, angle)) return false;
+    if (*angle) {
+      *from *= CAG_RADIANS_PER_DEGREE;
+      *to *= CAG_RADIANS_PER_DEGREE;
+    }
+    return true;
+  }
+  double first, last;
+  return cag_arg_interval(call, x ? x_at : x_at + 1, &first, &last, NULL) &&
+         inverse(call, a, b, first, x, from) && inverse(call, a, b, last, x, to);
+}
+
+bool cag_conics_parabola(CagCall *call, CagValue *result) {
+  double a, from, to;
+  bool angle;
+  CagTransform frame;
+  CagCurve *c = NULL;
+  CagError err;
+  if (!cag_arg_positive(call, 0, &a) ||
+      !read_range(call, 1, 4, a, 0, parabola_at, &from, &to, &angle) ||
+      !read_frame(call, 2, &frame))
+    return false;
+  CagStatus status = cag_curve_parabola(a, angle ? CAG_FORM_TANGENT : CAG_FORM_QUADRATIC, from, to,
+                                        &frame, &c, &err);
+  return give(call, status, &err, &c, result);
+}
+
+bool cag_conics_hyperbola(CagCall *call, CagValue *result) {
+  double a, b, from, to;
+  bool angle;
+  CagTransform frame;
+  CagCurve *c = NULL;
+  CagError err;
+  if (!cag_arg_positive(call, 0, &a) || !cag_arg_positive(call, 1, &b) ||
+      !read_range(call, 2, 5, a, b, hyperbola_at, &from, &to, &angle) ||
+      !read_frame(call, 3, &frame))
+    return false;
+  CagStatus status = cag_curve_hyperbola(a, b, angle ? CAG_FORM_SECANT : CAG_FORM_HYPERBOLIC, from,
+                                         to, &frame, &c, &err);
+  return give(call, status, &err, &c, result);
+}
+
+// --- By equation ---
+
+// 6 numbers, or 3 rows of a symmetric matrix.
+static bool read_equation(CagCall *call, int argument, CagConic *out) {
+  CagList *list;
+  CagError err;
+  if (!cag_arg_list(call, argument, &list)) return false;
+  if (list->dim == 1 && list->length == 6) {
+    for (int i = 0; i < 6; i++) out->c[i] = list->as.numbers[i];
+  } else if (list->dim == 3 && list->length == 3) {
+    const double *s = list->as.numbers;
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < i; j++)
+        if (s[3 * i + j] != s[3 * j + i])
+          return cag_fail_call(call, argument, CAG_ERR_value,
+                               "expects a symmetric matrix, found rows[%d][%d] and rows[%d][%d] "
+                               "different",
+                               i, j, j, i);
+    *out = (CagConic){{s[0], 2 * s[1], s[4], 2 * s[2], 2 * s[5], s[8]}};
+  } else {
+    return cag_fail_call(call, argument, CAG_ERR_value,
+                         "expects the 6 coefficients [A, B, C, D, E, F] of A x^2 + B xy + C y^2 + "
+                         "D x + E y + F = 0, or the 3 rows of its symmetric matrix");
+  }
+  return cag_geometry_ok(call, cag_conic_check(out, &err), &err);
+}
+
+bool cag_arg_conic(CagCall *call, int argument, CagConic *out) {
+  CagCurve *c;
+  CagError err;
+  if (call->values[argument].type == CAG_LIST) return read_equation(call, argument, out);
+  return cag_arg_curve(call, argument, &c) &&
+         cag_geometry_ok(call, cag_conic_of_curve(c, out, &err), &err);
+}
+
+bool cag_conics_conic(CagCall *call, CagValue *result) {
+  CagConic k;
+  CagCurve *c = NULL;
+  CagError err;
+  bool halved;
+  if (!read_equation(call, 0, &k) || !cag_arg_bool_or(call, 1, false, &halved)) return false;
+  if (halved) {
+    k.c[1] *= 2;
+    k.c[3] *= 2;
+    k.c[4] *= 2;
+  }
+  return give(call, cag_curve_conic(&k, &c, &err), &err, &c, result);
+}
+
+bool cag_conics_conic_of_curve(CagCall *call, CagValue *result) {
+  CagConic k;
+  CagCurve *c = NULL;
+  CagError err;
+  if (!cag_arg_conic(call, 0, &k)) return false;
+  return give(call, cag_curve_conic(&k, &c, &err), &err, &c, result);
+}
+
+bool cag_conics_branches(CagCall *call, CagValue *result) {
+  CagConic k;
+  CagCurve *c[2];
+  CagValue items[2];
+  CagError err;
+  size_t n;
+  double from = -2, to = 2;
+  if (!cag_arg_conic(call, 0, &k) ||
+      (cag_given(call, 1) && !cag_arg_interval(call, 1, &from, &to, NULL)) ||
+      !cag_geometry_ok(call, cag_conic_branches(&k, from, to, c, &n, &err), &err))
+    return false;
+  for (size_t i = 0; i < n; i++) items[i] = cag_curve_value(call->vm, c[i]);
+  *result = cag_list_values(call->vm, items, n);
+  return true;
+}
+
+// --- From conditions ---
+
+static bool make_by(CagCall *call, const CagVec3 *points, size_t n, const CagConicTangent *tangents,
+                    size_t m, CagConicShape shape, CagValue *result) {
+  CagConic k;
+  CagCurve *c = NULL;
+  CagError err;
+  CagStatus status = cag_conic_from_conditions(points, n, tangents, m, shape, &k, &err);
+  if (!status) status = cag_curve_conic(&k, &c, &err);
+  return give(call, status, &err, &c, result);
+}
+
+static bool check_plane(CagCall *call, int argument, int dimension) {
+  return dimension == 2 || cag_fail_value(call, argument, "points [x, y] of the plane");
+}
+
+bool cag_conics_conic_through(CagCall *call, CagValue *result) {
+  CagVec3 *points;
+  size_t n;
+  int dimension;
+  if (call->count > 1) {
+    // Five points one by one.
+    CagVec3 five[5];
+    if (call->count != 5)
+      return cag_fail_call(call, -1, CAG_ERR_value, "expects 5 points, or one list of them");
+    for (int i = 0; i < 5; i++)
+      if (!cag_arg_vec(call, i, &five[i], &dimension) || !check_plane(call, i, dimension))
+        return false;
+    return make_by(call, five, 5, NULL, 0, CAG_CONIC_GENERAL, result);
+  }
+  if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
+  bool ok = check_plane(call, 0, dimension) &&
+            make_by(call, points, n, NULL, 0, CAG_CONIC_GENERAL, result);
+  free(points);
+  return ok;
+}
+
+// A tangent is {point, direction} or [point, direction].
+static bool read_tangent(CagCall *call, CagValue v, size_t index, CagConicTangent *out) {
+  CagValue part[2] = {cag_unset(), cag_unset()};
+  if (v.type == CAG_RECORD) {
+    part[0] = cag_record_get(CAG_AS_RECORD(v), "point");
+    part[1] = cag_record_get(CAG_AS_RECORD(v), "direction");
+  } else if (v.type == CAG_LIST && CAG_AS_LIST(v)->length == 2) {
+    for (size_t i = 0; i < 2; i++) part[i] = cag_list_get(call->vm, CAG_AS_LIST(v), i);
+  }
+  CagVec3 *to[2] = {&out->point, &out->direction};
+  for (int i = 0; i < 2; i++) {
+    const double *x;
+    size_t n;
+    if (!cag_as_vector(part[i], &x, &n) || n != 2)
+      return cag_fail_call(call, 1, CAG_ERR_value,
+                           "expects tangents as {point: [x, y], direction: [u, v]} or [[x, y], "
+                           "[u, v]]; tangents[%zu] is not such a one",
+                           index);
+    *to[i] = cag_vec3(x[0], x[1], 0);
+  }
+  return true;
+}
+
+bool cag_conics_conic_by(CagCall *call, CagValue *result) {
+  static const char *const kinds[] = {"general", "axis", "circle", "line", NULL};
+  CagList *list = NULL;
+  CagVec3 *points = NULL;
+  size_t n = 0, m = 0;
+  int kind, dimension = 2;
+  if (!cag_arg_choice(call, 2, kinds, &kind)) return false;
+  if (cag_given(call, 1) && !cag_arg_list(call, 1, &list)) return false;
+  bool none = call->values[0].type == CAG_LIST && CAG_AS_LIST(call->values[0])->length == 0;
+  if (!none && !cag_arg_points(call, 0, &points, &n, &dimension)) return false;
+  m = list ? list->length : 0;
+  CagConicTangent *tangents = calloc(m + 1, sizeof *tangents);
+  bool ok = tangents != NULL && check_plane(call, 0, dimension);
+  if (!tangents) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  for (size_t i = 0; ok && i < m; i++)
+    ok = read_tangent(call, cag_list_get(call->vm, list, i), i, &tangents[i]);
+  ok = ok && make_by(call, points, n, tangents, m, (CagConicShape)kind, result);
+  free(tangents);
+  free(points);
+  return ok;
+}
+
+// --- Arcs ---
+
+bool cag_conics_conic_arc(CagCall *call, CagValue *result) {
+  CagVec3 p[3], shoulder;
+  int dimension = 2, d;
+  double weight, rho;
+  CagCurve *c = NULL;
+  CagError err;
+  for (int i = 0; i < 3; i++) {
+    if (!cag_arg_vec(call, i, &p[i], &d)) return false;
+    if (d == 3) dimension = 3;
+  }
+  int said = 0;
+  for (int i = 3; i < 6; i++) said += cag_conics_said(call, i);
+  if (said != 1)
+    return cag_fail_call(
+        call, -1, CAG_ERR_value,
+        "needs one of `rho`, `shoulder` and `weight` to say how far the arc bulges");
+  if (cag_conics_said(call, 3)) {
+    if (!cag_arg_finite(call, 3, &rho)) return false;
+    if (!(rho > 0 && rho < 1))
+      return cag_fail_value(call, 3, "a number between 0 and 1 (0.5: a parabola)");
+    weight = rho / (1 - rho);
+  } else if (cag_conics_said(call, 4)) {
+    if (!cag_arg_vec(call, 4, &shoulder, NULL) ||
+        !cag_geometry_ok(call, cag_conic_shoulder_weight(p[0], p[1], p[2], shoulder, &weight, &err),
+                         &err))
+      return false;
+  } else if (!cag_arg_finite(call, 5, &weight)) {
+    return false;
+  }
+  return give(call, cag_conic_arc(p[0], p[1], p[2], weight, dimension, &c, &err), &err, &c, result);
+}
+
+bool cag_conics_conic_segment(CagCall *call, CagValue *result) {
+  static const char *const sides[] = {"lower", "upper", NULL};
+  CagConic k;
+  CagCurve *c = NULL;
+  CagError err;
+  double from, to;
+  int upper;
+  if (!cag_arg_conic(call, 0, &k) || !cag_arg_interval(call, 1, &from, &to, NULL) ||
+      !cag_arg_choice(call, 2, sides, &upper))
+    return false;
+  return give(call, cag_conic_segment(&k, from, to, upper, &c, &err), &err, &c, result);
+}
+
+// --- Points ---
+
+// An arc in the axes of its ellipse: angle from..to of the parameter.
+typedef struct Axes {
+  CagVec3 center, x, y; // unit vectors
+  double a, b, from, to;
+} Axes;
+
+static bool read_axes(CagCall *call, const CagCurve *c, Axes *out) {
+  CagVec3 x, y, p;
+  double rate;
+  CagError err;
+  if (!cag_curve_arc_axes(c, &out->center, &x, &y, &rate))
+    return cag_fail_call(call, 0, CAG_ERR_value, "takes this `by` of circles and ellipses only");
+  out->a = cag_norm(x);
+  out->b = cag_norm(y);
+  out->x = cag_unit(x);
+  out->y = cag_unit(y);
+  const double square = 1e-9; // cosine of axes that count as square to each other
+  if (fabs(cag_dot(out->x, out->y)) > square)
+    return cag_fail_call(call, 0, CAG_ERR_value,
+                         "takes this `by` of ellipses given by their axes; this one was sheared");
+  if (!cag_geometry_ok(call, cag_curve_point(c, c->start, &p, &err), &err)) return false;
+  const CagVec3 d = cag_sub(p, out->center);
+  out->from = atan2(cag_dot(d, out->y) / out->b, cag_dot(d, out->x) / out->a);
+  if (c->angular && fabs(remainder(out->from - c->start, 2 * M_PI)) < square) out->from = c->start;
+  out->to = out->from + rate * (c->end - c->start);
+  return true;
+}
+
+static CagVec3 axes_point(const Axes *k, double x, double y) {
+  return cag_madd(cag_madd(k->center, x, k->x), y, k->y);
+}
+
+// The polar angle of the point with this parameter: in its quadrant.
+static double polar_angle(const Axes *k, double t) {
+  double s, c;
+  cag_sincos(t, &s, &c);
+  return t + (atan2(k->b * s, k->a * c) - atan2(s, c));
+}
+
+static bool by_angle(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
+  Axes k;
+  if (!read_axes(call, c, &k)) return false;
+  const double from = polar_angle(&k, k.from), to = polar_angle(&k, k.to);
+  for (size_t i = 0; i < n; i++) {
+    double s, cosine;
+    cag_sincos(from + (to - from) * ((double)i / (double)(n - 1)), &s, &cosine);
+    const double r = k.a * k.b / hypot(k.b * cosine, k.a * s);
+    out[i] = axes_point(&k, r * cosine, r * s);
+  }
+  return true;
+}
+
+static bool by_rational(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
+  Axes k;
+  if (!read_axes(call, c, &k)) return false;
+  if (fmin(k.from, k.to) <= -M_PI || fmax(k.from, k.to) >= M_PI)
+    return fail_domain(call, "",
+                       "the rational form reaches its point at 180deg only at infinity: "
+                       "the arc must lie between -180deg and 180deg");
+  const double from = tan(k.from / 2), to = tan(k.to / 2);
+  for (size_t i = 0; i < n; i++) {
+    const double t = from + (to - from) * ((double)i / (double)(n - 1)), d = 1 + t * t;
+    out[i] = axes_point(&k, k.a * ((1 - t) * (1 + t) / d), k.b * (2 * t / d));
+  }
+  return true;
+}
+
+static bool by_length(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
+  double whole, t;
+  CagError err;
+  CagStatus status = cag_curve_length(c, c->start, c->end, &whole, &err);
+  for (size_t i = 0; !status && i < n; i++) {
+    t = i + 1 == n ? c->end : c->start;
+    if (i > 0 && i + 1 < n)
+      status = cag_curve_parameter_at_length(c, whole * (double)i / (double)(n - 1), &t, &err);
+    if (!status) status = cag_curve_point(c, t, &out[i], &err);
+  }
+  return cag_geometry_ok(call, status, &err);
+}
+
+// Halvings that exhaust a double's digits.
+#define HALVINGS 100
+
+// The point of abscissa x between t = low, where it is less, and high.
+static CagStatus find_x(const CagCurve *c, double x, double low, double high, CagVec3 *out,
+                        CagError *err) {
+  for (int i = 0; i < HALVINGS; i++) {
+    const double m = low + (high - low) / 2;
+    CagStatus status = cag_curve_point(c, m, out, err);
+    if (status) return status;
+    if (m == low || m == high) break;
+    if (out->x < x) low = m;
+    else high = m;
+  }
+  return CAG_OK;
+}
+
+static bool by_x(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
+  CagError err;
+  CagStatus status = cag_curve_point(c, c->start, &out[0], &err);
+  if (!status) status = cag_curve_point(c, c->end, &out[n - 1], &err);
+  const double from = out[0].x, to = out[n - 1].x;
+  CagBounds box = c->kind->hull(c, c->start, c->end);
+  const double slack = 1e-9 * (box.max.x - box.min.x);
+  if (!status && (box.min.x < fmin(from, to) - slack || box.max.x > fmax(from, to) + slack))
+    return fail_domain(call, "", "x must go one way from the start to the end");
+  for (size_t i = 1; !status && i + 1 < n; i++) {
+    const double x = from + (to - from) * ((double)i / (double)(n - 1));
+    status =
+        find_x(c, x, from < to ? c->start : c->end, from < to ? c->end : c->start, &out[i], &err);
+    out[i].x = x;
+  }
+  return cag_geometry_ok(call, status, &err);
+}
+
+static bool by_parameter(CagCall *call, const CagCurve *c, size_t n, CagVec3 *out) {
+  CagError err;
+  return cag_geometry_ok(call, cag_conic_points(c, n, out, &err), &err);
+}
+
+bool cag_conics_conic_points(CagCall *call, CagValue *result) {
+  static const char *const ways[] = {"parameter", "angle", "length", "rational", "x", NULL};
+  static bool (*const make[])(CagCall *, const CagCurve *, size_t,
+                              CagVec3 *) = {by_parameter, by_angle, by_length, by_rational, by_x};
+  CagCurve *given;
+  long n;
+  int way;
+  if (!cag_arg_curve(call, 0, &given) || !cag_arg_integer(call, 1, 2, POINTS_MAX, &n) ||
+      !cag_arg_choice(call, 2, ways, &way))
+    return false;
+  const CagCurve *c = cag_curve_conic_branch(given) ? cag_curve_conic_branch(given) : given;
+  CagVec3 *points = malloc(sizeof *points * (size_t)n);
+  if (!points)
+    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  bool ok = make[way](call, c, (size_t)n, points);
+  if (ok) *result = cag_points_value(call->vm, points, (size_t)n, c->dimension);
+  free(points);
+  return ok;
+}

@@ -1,0 +1,165 @@
+// Circles and lines that touch, fillets and rounded corners.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/curve/circles.h"
+#include "geom/curve/family.h"
+#include "interp/builtin/conics.h"
+#include "interp/builtin/support.h"
+
+static const double FULL_TURN = 6.283185307179586; // 2 pi
+
+// A line, taken whole, or the circle of a circle or arc.
+static bool read_touched(CagCall *call, int argument, CagTouched *out) {
+  CagCurve *c;
+  const CagVec3 *p;
+  CagVec3 x, y;
+  size_t n;
+  bool closed;
+  double rate;
+  const double round = 1e-12;
+  if (!cag_arg_curve(call, argument, &c)) return false;
+  if (c->dimension == 2 && cag_curve_vertices(c, &p, &n, &closed) && n == 2) {
+    *out = (CagTouched){p[0], cag_sub(p[1], p[0]), 0};
+    return true;
+  }
+  const CagCurve *branch = cag_curve_conic_branch(c) ? cag_curve_conic_branch(c) : c;
+  if (c->dimension == 2 && cag_curve_arc_axes(branch, &out->p, &x, &y, &rate)) {
+    out->radius = cag_norm(x);
+    out->d = cag_vec3(0, 0, 0);
+    if (fabs(cag_norm(y) - out->radius) <= round * out->radius &&
+        fabs(cag_dot(x, y)) <= round * out->radius * out->radius)
+      return true;
+  }
+  return cag_fail_call(call, argument, CAG_ERR_value,
+                       "expects lines, circles or arcs of circles in the plane");
+}
+
+// "inside" or "outside", or a list of two such.
+static bool read_contact(CagCall *call, int argument, bool inside[2]) {
+  static const char *const words[] = {"outside", "inside", NULL};
+  int word;
+  CagValue v = call->values[argument];
+  if (v.type == CAG_LIST && CAG_AS_LIST(v)->length == 2 && CAG_AS_LIST(v)->dim == 0) {
+    for (int i = 0; i < 2; i++) {
+      CagValue item = CAG_AS_LIST(v)->as.items[i];
+      const char *text = item.type == CAG_TEXT ? CAG_AS_TEXT(item)->bytes : "";
+      inside[i] = text[0] == 'i';
+      if (strcmp(text, words[inside[i]]) != 0)
+        return cag_fail_value(call, argument, "\"outside\" or \"inside\", or a list of two such");
+    }
+    return true;
+  }
+  if (!cag_arg_choice(call, argument, words, &word)) return false;
+  inside[0] = inside[1] = word == 1;
+  return true;
+}
+
+bool cag_conics_circle_tangent(CagCall *call, CagValue *result) {
+  static const char *const sides[] = {"left", "right", NULL};
+  static const char *const nearness[] = {"far", "near", NULL};
+  CagTouched a, b;
+  CagTouchChoice choice;
+  CagVec3 center, touch[2];
+  CagCurve *c = NULL;
+  CagError err;
+  double radius;
+  int side, near;
+  if (!read_touched(call, 0, &a) || !read_touched(call, 1, &b) ||
+      !cag_arg_positive(call, 2, &radius) || !cag_arg_choice(call, 3, sides, &side) ||
+      !cag_arg_choice(call, 4, nearness, &near) || !read_contact(call, 5, choice.inside))
+    return false;
+  choice.right = side == 1;
+  choice.near = near == 1;
+  if (!cag_geometry_ok(call, cag_tangent_circle(&a, &b, radius, choice, &center, touch, &err),
+                       &err))
+    return false;
+  CagTransform frame = cag_translate(center);
+  frame.planar = true;
+  CagStatus status = cag_curve_arc(radius, radius, 0, FULL_TURN, &frame, &c, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_curve_value(call->vm, c);
+  return true;
+}
+
+bool cag_conics_fillet(CagCall *call, CagValue *result) {
+  CagCurve *a, *b, *arc = NULL;
+  CagError err;
+  double radius, t, t2;
+  if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b) ||
+      !cag_arg_positive(call, 2, &radius) ||
+      !cag_geometry_ok(call, cag_fillet(a, b, radius, &arc, &t, &t2, &err), &err))
+    return false;
+  *result = cag_curve_value(call->vm, arc);
+  return true;
+}
+
+static bool give_lines(CagCall *call, CagTangentLine *lines, size_t n, CagValue *result) {
+  CagBuilder *list = cag_builder_new(call->vm);
+  CagError err;
+  bool ok = true;
+  for (size_t i = 0; ok && i < n; i++) {
+    CagCurve *c = NULL;
+    CagStatus status = cag_curve_line(lines[i].p, lines[i].q, 2, &c, &err);
+    ok = cag_geometry_ok(call, status, &err) &&
+         cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
+  }
+  free(lines);
+  if (ok) *result = cag_builder_finish(call->vm, list);
+  return ok;
+}
+
+bool cag_conics_tangent_lines(CagCall *call, CagValue *result) {
+  CagCurve *a, *b;
+  CagVec3 p;
+  CagTangentLine *lines = NULL;
+  CagError err;
+  size_t n = 0;
+  int dimension;
+  CagStatus status;
+  if (!cag_arg_curve(call, 0, &a)) return false;
+  if (cag_curve_conic_branch(a)) a = (CagCurve *)cag_curve_conic_branch(a);
+  if (call->values[1].type == CAG_CURVE) {
+    if (!cag_arg_curve(call, 1, &b)) return false;
+    if (cag_curve_conic_branch(b)) b = (CagCurve *)cag_curve_conic_branch(b);
+    status = cag_tangents_of_two(a, b, &lines, &n, &err);
+  } else {
+    if (!cag_arg_vec(call, 1, &p, &dimension)) return false;
+    if (dimension != 2) return cag_fail_value(call, 1, "a point [x, y] of the plane, or a curve");
+    status = cag_tangents_from_point(a, p, &lines, &n, &err);
+  }
+  return cag_geometry_ok(call, status, &err) && give_lines(call, lines, n, result);
+}
+
+bool cag_conics_rounded(CagCall *call, CagValue *result) {
+  CagCurve *c, *out = NULL;
+  CagError err;
+  double radius;
+  if (!cag_arg_curve(call, 0, &c) || !cag_arg_positive(call, 1, &radius) ||
+      !cag_geometry_ok(call, cag_curve_rounded(c, radius, &out, &err), &err))
+    return false;
+  *result = cag_curve_value(call->vm, out);
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}
+
+bool cag_conics_rounded_region(CagCall *call, CagValue *result) {
+  const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
+  const CagRegion *region = shape->as.region;
+  CagRegion *out = NULL;
+  CagError err;
+  double radius;
+  if (!cag_arg_positive(call, 1, &radius)) return false;
+  CagCurve **loops = calloc(region->count, sizeof *loops);
+  CagStatus status = loops ? CAG_OK : cag_fail_memory(&err);
+  for (size_t i = 0; !status && i < region->count; i++)
+    status = cag_curve_rounded(region->loops[i], radius, &loops[i], &err);
+  if (!status) status = cag_region_from_loops(loops, region->count, &out, &err);
+  for (size_t i = 0; loops && i < region->count; i++) cag_curve_release(loops[i]);
+  free(loops);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_region_value(call->vm, out, &shape->placement);
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}
