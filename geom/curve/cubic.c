@@ -120,7 +120,7 @@ static void inner_row(const Spline *s, size_t i, double *before, double *diagona
 static CagStatus solve_open(const Spline *s, const CagCubicEnds *ends, CagVec3 *out,
                             CagError *err) {
   const size_t n = s->n;
-  System a;
+  System a = {0};
   CagStatus status = system_new(n, &a, err);
   if (status) return status;
   CagVec3 right;
@@ -175,7 +175,7 @@ static CagStatus solve_closed(const Spline *s, double sign, CagVec3 *out, CagErr
     out[2] = cag_scaled(out[0], sign);
     return CAG_OK;
   }
-  System a;
+  System a = {0};
   CagStatus status = system_new(m, &a, err);
   if (status) return status;
   for (size_t i = 1; i < m; i++) {
@@ -274,7 +274,7 @@ CagStatus cag_curve_hermite(const CagVec3 *points, const CagVec3 *tangents, size
   if (!status) status = cag_curve_check_points(points, n, "points", err);
   if (!status) status = cag_curve_check_points(tangents, n, "tangents", err);
   if (!status) status = cag_parameters_check(parameters, n, err);
-  Draft d;
+  Draft d = {0};
   if (!status) status = draft_new(n, 2, parameters, &d, err);
   if (status) return status;
   size_t k = 0;
@@ -308,7 +308,7 @@ CagStatus cag_curve_cubic_spline(const CagVec3 *points, size_t n, const double *
   if (!status && tension) {
     status = cag_curve_hermite(points, tangents, n, parameters, dimension, out, err);
   } else if (!status) {
-    Draft d;
+    Draft d = {0};
     status = draft_new(n, 1, parameters, &d, err);
     if (!status) {
       d.points[0] = points[0];

@@ -182,7 +182,7 @@ static double bisect(const double *a, int degree, double lo, double hi) {
 static size_t positive_roots(const double *a, int degree, double most, double *out) {
   while (degree > 0 && a[degree] == 0) degree--;
   if (degree == 0) return 0;
-  double slope[QUARTIC], turns[QUARTIC];
+  double slope[QUARTIC] = {0}, turns[QUARTIC];
   for (int k = 1; k <= degree; k++) slope[k - 1] = k * a[k];
   const size_t n = positive_roots(slope, degree - 1, most, turns);
   size_t found = 0;
