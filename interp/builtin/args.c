@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "interp/builtin/support.h"
+#include "interp/value/jet.h"
 
 const char *cag_parameter_name(const CagCall *call, int argument) {
   const CagSignature *s = cag_builtin_signature_of(call->builtin);
@@ -48,6 +49,7 @@ bool cag_fail_value(CagCall *call, int argument, const char *expected) {
 
 bool cag_fail_element(CagCall *call, int argument, size_t index, CagValue element,
                       const char *expected) {
+  if (cag_holds_jet(element)) return cag_fail_differentiate(call, argument);
   char found[200];
   cag_value_words(call->vm, element, found, sizeof found);
   const char *name = cag_parameter_name(call, argument);

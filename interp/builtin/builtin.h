@@ -59,6 +59,10 @@ bool cag_fail_geometry(CagCall *call, const CagError *err);
 // angle, found the number 30"), code E0301 (type).
 bool cag_fail_type(CagCall *call, int argument, const char *expected);
 
+// "NAME cannot be differentiated", code E0331: an argument is a jet (jet.h). All readers of
+// arguments end here when they meet one, since cag_fail_type and cag_fail_element do.
+bool cag_fail_differentiate(CagCall *call, int argument);
+
 // --- Reading arguments. Each gives false with the error set. `argument` is the parameter's index.
 // Unset ones take the default given (…_or). ---
 bool cag_given(const CagCall *call, int argument);

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interp/value/jet.h"
+
 // --- Results ---
 
 static bool all_finite(const CagCall *call) {
@@ -118,6 +120,7 @@ bool cag_order(CagValue a, CagValue b, int *order) {
 }
 
 bool cag_fail_order(CagCall *call, int argument, CagValue a, CagValue b) {
+  if (cag_holds_jet(a) || cag_holds_jet(b)) return cag_fail_differentiate(call, argument);
   char left[120], right[120];
   return cag_fail_call(call, argument, CAG_ERR_not_comparable,
                        "cannot tell which of %s and %s comes first: it compares numbers with "

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "interp/builtin/apply.h"
+#include "interp/builtin/jets.h"
+#include "interp/value/jet.h"
 
 static const char *function_name(const char *name) { return name ? name : "this function"; }
 
@@ -157,7 +159,7 @@ static bool bind_names(CagVm *vm, const CagSignature *s, CagValue *values, size_
 static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count,
                          const char *const *names, size_t named, bool direct, CagValue *result) {
   size_t positional = count - named;
-  CagType first = positional ? values[0].type : CAG_UNSET;
+  CagType first = positional ? cag_plain_type(values[0]) : CAG_UNSET;
   size_t row = cag_builtin_select(index, first, positional);
   if (row == (size_t)-1) return fail_no_row(vm, index, values[0]);
   size_t rows;
@@ -192,8 +194,8 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   vm->native = &native;
   CagCall call = {.vm = vm, .builtin = b, .values = values, .count = total};
   *result = cag_none();
-  bool ok =
-      b->function(&call, result) && !vm->failed; // a comparison deep in a value may have failed
+  CagBuiltinFunction function = vm->differentiation ? cag_jet_function(&call, index) : b->function;
+  bool ok = function(&call, result) && !vm->failed; // a comparison deep in a value may have failed
   vm->native = native.outer;
   vm->top = top;
   return ok;
@@ -210,7 +212,11 @@ bool cag_call_native(CagVm *vm, CagValue callee, CagValue *arguments, size_t cou
     if (named)
       return cag_vm_fail(vm, CAG_ERR_argument_name, "a call of %s takes its parameters by position",
                          cag_type_article(callee));
-    return cag_shape_call(vm, callee, arguments, count, result);
+    bool jets = false;
+    for (size_t i = 0; vm->differentiation && i < count; i++)
+      jets = jets || arguments[i].type == CAG_JET;
+    return jets ? cag_jet_shape_call(vm, callee, arguments, count, result)
+                : cag_shape_call(vm, callee, arguments, count, result);
   }
   CagString s = {0};
   cag_describe_value(vm, &s, callee);

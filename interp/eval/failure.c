@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "interp/eval/vm.h"
+#include "interp/value/jet.h"
 
 // Chains longer than this show their first and last frames only.
 #define CHAIN_FIRST 6
@@ -106,6 +107,24 @@ bool cag_vm_fail(CagVm *vm, CagErrorId id, const char *format, ...) {
   return false;
 }
 
+bool cag_vm_fail_in(CagVm *vm, CagValue function, CagErrorId id, const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  // A frame of the function for the time of the report, at its last instruction.
+  bool entered = function.type == CAG_CLOSURE && vm->frame_count < vm->frame_limit;
+  if (entered) {
+    CagClosure *c = CAG_AS_CLOSURE(function);
+    vm->frames[vm->frame_count++] = (CagFrame){.proto = c->proto,
+                                               .closure = c,
+                                               .pc = c->proto->code + c->proto->code_count,
+                                               .base = vm->top};
+  }
+  vfail(vm, id, WHOLE_CALL, NULL, format, args);
+  if (entered) vm->frame_count--;
+  va_end(args);
+  return false;
+}
+
 bool cag_vm_fail_at(CagVm *vm, int argument, CagErrorId id, const char *format, ...) {
   va_list args;
   va_start(args, format);
@@ -146,7 +165,15 @@ bool cag_fail_call(CagCall *call, int argument, CagErrorId id, const char *forma
   return false;
 }
 
+bool cag_fail_differentiate(CagCall *call, int argument) {
+  cag_fail_call(call, argument, CAG_ERR_not_differentiable, "cannot be differentiated");
+  return cag_fail_help(call->vm, "a curve or surface whose derivatives are asked for must be made "
+                                 "without it");
+}
+
 bool cag_fail_type(CagCall *call, int argument, const char *expected) {
+  if ((size_t)argument < call->count && cag_holds_jet(call->values[argument]))
+    return cag_fail_differentiate(call, argument);
   const CagSignature *s = cag_builtin_signature_of(call->builtin);
   CagValue v = (size_t)argument < call->count ? call->values[argument] : cag_unset();
   CagString found = {0};

@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "interp/builtin/apply.h"
+#include "interp/builtin/jets.h"
 #include "interp/eval/vm.h"
+#include "interp/value/jet.h"
 
 static const char *symbol(CagBinaryOp op) {
   static const char *const symbols[] = {"+",  "-",  "*", "/",  "%", "^",  "|", "&",
@@ -98,6 +100,9 @@ static bool scalars(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue 
 
 // --- Lists ---
 
+// Vectors that are no packed numbers (angles, jets) are made without a builder.
+#define SHORT_LIST 4
+
 static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result);
 
 // Element by element of two packed lists of one shape.
@@ -136,6 +141,14 @@ static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue
     return false;
   }
   if (l->dim && l->dim == m->dim) return packed_sum(vm, op, l, m, result);
+  if (l->length <= SHORT_LIST) {
+    CagValue parts[SHORT_LIST];
+    for (size_t i = 0; i < l->length; i++)
+      if (!cag_arithmetic(vm, op, cag_list_get(vm, l, i), cag_list_get(vm, m, i), &parts[i]))
+        return false;
+    *result = cag_list_values(vm, parts, l->length);
+    return true;
+  }
   CagBuilder *out = cag_builder_new(vm);
   for (size_t i = 0; i < l->length; i++) {
     CagValue v;
@@ -169,6 +182,16 @@ static bool list_scaled(CagVm *vm, CagBinaryOp op, CagValue list, CagValue facto
     }
     return true;
   }
+  if (l->length <= SHORT_LIST) {
+    CagValue parts[SHORT_LIST];
+    for (size_t i = 0; i < l->length; i++) {
+      CagValue e = cag_list_get(vm, l, i);
+      if (!cag_arithmetic(vm, op, swapped ? factor : e, swapped ? e : factor, &parts[i]))
+        return false;
+    }
+    *result = cag_list_values(vm, parts, l->length);
+    return true;
+  }
   CagBuilder *out = cag_builder_new(vm);
   for (size_t i = 0; i < l->length; i++) {
     CagValue v, e = cag_list_get(vm, l, i);
@@ -180,7 +203,17 @@ static bool list_scaled(CagVm *vm, CagBinaryOp op, CagValue list, CagValue facto
 }
 
 static bool is_list(CagValue v) { return v.type == CAG_LIST || v.type == CAG_RANGE; }
-static bool is_scalar(CagValue v) { return v.type == CAG_NUMBER || v.type == CAG_ANGLE; }
+static bool is_scalar(CagValue v) {
+  return v.type == CAG_NUMBER || v.type == CAG_ANGLE || v.type == CAG_JET;
+}
+
+// Two scalars of which one is a jet: the value as plain numbers give it, and its derivatives.
+static bool jets(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
+  bool known;
+  CagValue value;
+  return scalars(vm, op, cag_plain(a), cag_plain(b), &value, &known) &&
+         cag_jet_arithmetic(vm, (int)op, a, b, value, result);
+}
 
 // --- Others ---
 
@@ -221,11 +254,26 @@ static const char *mend(CagBinaryOp op, CagValue a, CagValue b) {
   return NULL;
 }
 
+// T * v. A curve by a formula is evaluated for that: the registers of the frame must be below the
+// top of the stack, which the loop does not see to for operators.
+static bool moved(CagVm *vm, const CagTransform *t, CagValue v, CagValue *result) {
+  CagValue *top = vm->top;
+  if (vm->frame_count) {
+    const CagFrame *f = &vm->frames[vm->frame_count - 1];
+    if (f->base + f->proto->registers > top) vm->top = f->base + f->proto->registers;
+  }
+  bool ok = vm->differentiation ? cag_jet_transform(vm, t, v, result)
+                                : cag_transform_apply(vm, t, v, result);
+  vm->top = top;
+  return ok && !vm->failed;
+}
+
 bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
   bool known;
   if (op <= CAG_OP_POWER) {
     bool ok = scalars(vm, op, a, b, result, &known);
     if (known) return ok;
+    if (is_scalar(a) && is_scalar(b)) return jets(vm, op, a, b, result);
   }
   switch (op) {
   case CAG_OP_ADD:
@@ -240,7 +288,7 @@ bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue 
     if (is_body(a) && is_body(b)) return solids(vm, op, a, b, result);
     break;
   case CAG_OP_MULTIPLY:
-    if (a.type == CAG_TRANSFORM) return cag_transform_apply(vm, &CAG_AS_TRANSFORM(a)->t, b, result);
+    if (a.type == CAG_TRANSFORM) return moved(vm, &CAG_AS_TRANSFORM(a)->t, b, result);
     if (is_list(a) && is_scalar(b)) return list_scaled(vm, op, a, b, false, result);
     if (is_scalar(a) && is_list(b)) return list_scaled(vm, op, b, a, true, result);
     break;
@@ -259,6 +307,7 @@ bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue 
 bool cag_negate(CagVm *vm, CagValue v, CagValue *result) {
   if (v.type == CAG_NUMBER) *result = cag_number(-v.as.number);
   else if (v.type == CAG_ANGLE) *result = cag_angle(-v.as.number);
+  else if (v.type == CAG_JET) return jets(vm, CAG_OP_MULTIPLY, v, cag_number(-1), result);
   else if (is_list(v)) return list_scaled(vm, CAG_OP_MULTIPLY, v, cag_number(-1), false, result);
   else {
     CagString s = {0};
@@ -280,6 +329,10 @@ static int compare_texts(const CagText *a, const CagText *b) {
 
 bool cag_compare(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, bool *result) {
   int c;
+  if (a.type == CAG_JET || b.type == CAG_JET) { // by their values
+    a = cag_plain(a);
+    b = cag_plain(b);
+  }
   if (a.type == b.type && is_scalar(a)) {
     c = (a.as.number > b.as.number) - (a.as.number < b.as.number);
   } else if (a.type == CAG_TEXT && b.type == CAG_TEXT) {
@@ -318,6 +371,7 @@ static bool in_range(const CagRange *r, double x) {
 }
 
 bool cag_contains(CagVm *vm, CagValue needle, CagValue haystack, bool *result) {
+  needle = cag_plain(needle);
   switch (haystack.type) {
   case CAG_RANGE: {
     const CagRange *r = CAG_AS_RANGE(haystack);
@@ -373,6 +427,8 @@ bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool 
   const CagValue parts[] = {low, high, step};
   for (int i = 0; i < (step.type == CAG_UNSET ? 2 : 3); i++) {
     if (parts[i].type == type) continue;
+    if (parts[i].type == CAG_JET)
+      return cag_vm_fail(vm, CAG_ERR_not_differentiable, "a range cannot be differentiated");
     CagString s = {0};
     cag_describe_value(vm, &s, parts[i]);
     if (i == 0 || !is_scalar(parts[i]))
@@ -492,6 +548,8 @@ bool cag_index(CagVm *vm, CagValue object, CagValue index, CagValue *result) {
     return fail_field(vm, object, CAG_AS_TEXT(index)->bytes);
   }
   bool listed = object.type == CAG_LIST || object.type == CAG_RANGE || object.type == CAG_TEXT;
+  if (listed && index.type == CAG_JET)
+    return cag_vm_fail(vm, CAG_ERR_not_differentiable, "an index cannot be differentiated");
   if (!listed || (index.type != CAG_NUMBER && index.type != CAG_RANGE)) {
     CagString s = {0};
     cag_describe_value(vm, &s, listed || object.type == CAG_RECORD ? index : object);
@@ -572,6 +630,15 @@ static bool member_of_list(CagVm *vm, CagValue object, const char *name, CagValu
     size_t k = (size_t)(axis - axes);
     if (k < l->length) {
       *result = cag_number(l->as.numbers[k]);
+      return true;
+    }
+    return cag_vm_fail(vm, CAG_ERR_field, "a vector of %zu numbers has no `%s`", l->length, name);
+  }
+  if (axis && l->dim == 0 && l->length >= 2 && l->length <= 4 && vm->differentiation &&
+      cag_holds_jet(object)) {
+    size_t k = (size_t)(axis - axes);
+    if (k < l->length) {
+      *result = l->as.items[k];
       return true;
     }
     return cag_vm_fail(vm, CAG_ERR_field, "a vector of %zu numbers has no `%s`", l->length, name);

@@ -117,6 +117,7 @@ void cag_vm_free(CagVm *vm) {
   free(vm->modules);
   free(vm->globals);
   free(vm->roots);
+  free(vm->kept);
   free(vm->interned);
   free(vm->builtin_values);
   free(vm->shown);

@@ -149,6 +149,7 @@ typedef struct CagHeap {
   size_t threshold; // debt at which the next collection is due
   size_t limit;     // --max-memory
   uint8_t mark;     // mark of live objects in the last collection: 1 or 2
+  uint8_t depth;    // of calls of the script by geometry: what is older is not collected (heap.c)
   CagObject **gray;
   size_t gray_count, gray_capacity;
   size_t collections;
@@ -175,6 +176,11 @@ struct CagVm {
   CagTailPlace *tails; // frame_limit x CAG_TAIL_KEPT, reserved lazily
   CagValue *roots;
   size_t root_count, root_capacity;
+  // Values that geometry refers to, in slots that keep their numbers; free ones are CAG_UNSET and
+  // hold the next free one + 1.
+  CagValue *kept;
+  size_t kept_count, kept_capacity, kept_free;
+  uint32_t differentiation; // level of the jets that are being computed with, 0: none
   CagText **interned;
   size_t interned_count, interned_size;
   CagGlobal *globals;
@@ -236,6 +242,15 @@ bool cag_safe_point(CagVm *vm);
 // Whether the C stack has room for more recursion: deep values are walked only so far.
 bool cag_room_on_c_stack(const CagVm *vm);
 
+// --- callback.c: calls of the script from geometry ---
+// Keeps a value alive until it is let go.
+size_t cag_vm_keep(CagVm *vm, CagValue v);
+void cag_vm_let_go(CagVm *vm, size_t slot);
+// Runs `work`, which may call the script, from geometry code: a limit that is crossed gives false
+// with the error set, and nothing that is held outside is collected. After an error all further
+// calls give false at once.
+bool cag_vm_call_back(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *context);
+
 // --- operators.c: everything that is no fast path of the loop ---
 bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result);
 bool cag_compare(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, bool *result);
@@ -251,6 +266,9 @@ bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool 
 // with the chain of calls.
 bool cag_vm_fail(CagVm *vm, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+// The same with the place within the function, which has been left: what it gave is wrong.
+bool cag_vm_fail_in(CagVm *vm, CagValue function, CagErrorId id, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 // The same, underlining argument `argument` (0 .. ) of the current call; -1: the callee.
 bool cag_vm_fail_at(CagVm *vm, int argument, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 4, 5)));

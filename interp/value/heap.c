@@ -4,6 +4,11 @@
 // A cell of a page is free when its `type` is CELL_FREE. The mark alternates between 1 and 2 from
 // one collection to the next, so that nothing needs to be unmarked; an object is born with the mark
 // of the last collection and becomes garbage unless the next one reaches it.
+//
+// Geometry may call the script back (a curve by a formula), from within built-ins that hold values
+// in plain variables. An object therefore remembers how many such calls it was made inside of, and
+// a collection within a call leaves alone what was made outside of it. Values never change, so what
+// is older refers to nothing that was made inside.
 
 #include "interp/value/heap.h"
 
@@ -34,6 +39,10 @@ struct CagPage {
 #define SMALL_LIMIT CAG_SMALL_MAX
 #define DEBT_MIN ((size_t)16 << 20)
 #endif
+
+// The mark's byte: the mark proper below, the depth of calls from geometry above.
+#define MARK_BITS 2
+#define MARK_MASK ((1 << MARK_BITS) - 1)
 
 static void take_bytes(CagVm *vm, size_t size) {
   CagHeap *h = &vm->heap;
@@ -79,7 +88,7 @@ void *cag_alloc(CagVm *vm, CagType type, size_t size) {
     h->large = o;
   }
   o->type = (uint8_t)type;
-  o->mark = h->mark;
+  o->mark = (uint8_t)(h->mark | h->depth << MARK_BITS);
   return o;
 }
 
@@ -101,8 +110,8 @@ void cag_root_pop(CagVm *vm, size_t n) { vm->root_count -= n; }
 // --- Marking ---
 
 static void mark_object(CagHeap *h, CagObject *o) {
-  if (!o || o->mark == h->mark) return;
-  o->mark = h->mark;
+  if (!o || (o->mark & MARK_MASK) == h->mark) return;
+  o->mark = (uint8_t)((o->mark & ~MARK_MASK) | h->mark);
   if (h->gray_count == h->gray_capacity) {
     size_t capacity = h->gray_capacity ? h->gray_capacity * 2 : 1024;
     CagObject **gray = realloc(h->gray, capacity * sizeof *gray);
@@ -236,6 +245,7 @@ static void mark_roots(CagVm *vm) {
   for (size_t i = 0; i < vm->frame_count; i++)
     if (vm->frames[i].closure) mark_object(h, &vm->frames[i].closure->head);
   mark_values(h, vm->roots, vm->root_count);
+  mark_values(h, vm->kept, vm->kept_count);
   for (size_t i = 0; i < vm->interned_size; i++)
     if (vm->interned[i]) mark_object(h, &vm->interned[i]->head);
   for (size_t i = 0; i < vm->global_count; i++) mark_value(h, vm->globals[i].value);
@@ -248,6 +258,13 @@ static void mark_roots(CagVm *vm) {
 
 // --- Sweeping ---
 
+static bool lives(const CagHeap *h, CagObject *o) {
+  if ((o->mark & MARK_MASK) == h->mark) return true;
+  if (o->mark >> MARK_BITS >= h->depth) return false;
+  o->mark = (uint8_t)((o->mark & ~MARK_MASK) | h->mark);
+  return true;
+}
+
 static void sweep(CagHeap *h) {
   h->bytes = 0;
   memset(h->free_lists, 0, sizeof h->free_lists);
@@ -256,7 +273,7 @@ static void sweep(CagHeap *h) {
     char *cell = (char *)page->cells;
     for (size_t i = 0; i < page->count; i++, cell += page->cell) {
       CagObject *o = (CagObject *)cell;
-      if (o->type != CELL_FREE && o->mark == h->mark) {
+      if (o->type != CELL_FREE && lives(h, o)) {
         h->bytes += page->cell + charged(o);
         continue;
       }
@@ -269,7 +286,7 @@ static void sweep(CagHeap *h) {
   CagObject **link = &h->large;
   while (*link) {
     CagObject *o = *link;
-    if (o->mark == h->mark) {
+    if (lives(h, o)) {
       h->bytes += own_size(o) + charged(o);
       link = &o->next;
     } else {

@@ -8,6 +8,7 @@
 
 #include "interp/builtin/apply.h"
 #include "interp/eval/vm.h"
+#include "interp/value/jet.h"
 
 // --- Growing bytes ---
 
@@ -209,6 +210,7 @@ void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted) {
   case CAG_NONE: add(s, "none"); break;
   case CAG_BOOL: add(s, v.as.boolean ? "true" : "false"); break;
   case CAG_NUMBER: cag_print_number(s, v.as.number); break;
+  case CAG_JET: cag_print_value(vm, s, cag_plain(v), quoted); break;
   case CAG_ANGLE:
     cag_print_number(s, v.as.number);
     add(s, "deg");
@@ -262,6 +264,7 @@ void cag_describe_value(CagVm *vm, CagString *s, CagValue v) {
   switch (v.type) {
   case CAG_NONE: add(s, "none"); return;
   case CAG_BOOL: add(s, v.as.boolean ? "true" : "false"); return;
+  case CAG_JET: cag_describe_value(vm, s, cag_plain(v)); return;
   case CAG_NUMBER:
     add(s, "the number ");
     cag_print_number(s, v.as.number);
@@ -312,7 +315,13 @@ void cag_describe_value(CagVm *vm, CagString *s, CagValue v) {
 // --- Equality ---
 
 static bool equal_lists(CagVm *vm, const CagList *a, const CagList *b) {
-  if (a->length != b->length || a->dim != b->dim) return false;
+  if (a->length != b->length) return false;
+  if (a->dim != b->dim) { // alike only where one holds jets, which are equal by their values
+    if (!vm->differentiation || a->dim + b->dim == 0 || (a->dim && b->dim)) return false;
+    for (size_t i = 0; i < a->length; i++)
+      if (!cag_equal(vm, cag_list_get(vm, a, i), cag_list_get(vm, b, i))) return false;
+    return true;
+  }
   if (a->dim == 0) {
     for (size_t i = 0; i < a->length; i++)
       if (!cag_equal(vm, a->as.items[i], b->as.items[i])) return false;
@@ -350,6 +359,10 @@ bool cag_equal(CagVm *vm, CagValue a, CagValue b) {
     return equal_range_list(vm, CAG_AS_RANGE(a), CAG_AS_LIST(b));
   if (a.type == CAG_LIST && b.type == CAG_RANGE)
     return equal_range_list(vm, CAG_AS_RANGE(b), CAG_AS_LIST(a));
+  if (a.type == CAG_JET || b.type == CAG_JET) {
+    a = cag_plain(a);
+    b = cag_plain(b);
+  }
   if (a.type != b.type) return false;
   if ((a.type == CAG_LIST || a.type == CAG_RECORD) && !cag_room_on_c_stack(vm)) {
     if (!vm->failed)

@@ -30,6 +30,7 @@ typedef struct CagObject CagObject;
   X(BOOL, "bool", "a bool")                                                                        \
   X(NUMBER, "number", "a number")                                                                  \
   X(ANGLE, "angle", "an angle")                                                                    \
+  X(JET, "number", "a number") /* a number or angle with its derivatives: jet.h */                 \
   X(TEXT, "text", "a text")                                                                        \
   X(LIST, "list", "a list")                                                                        \
   X(RANGE, "range", "a range")                                                                     \
@@ -64,7 +65,7 @@ typedef enum CagType {
 } CagType;
 
 // From here on a value has an object behind it.
-#define CAG_FIRST_OBJECT CAG_TEXT
+#define CAG_FIRST_OBJECT CAG_JET
 
 typedef struct CagValue {
   CagType type;
@@ -76,8 +77,8 @@ typedef struct CagValue {
 } CagValue;
 
 struct CagObject {
-  uint8_t type; // CagType
-  uint8_t mark;
+  uint8_t type;  // CagType
+  uint8_t mark;  // of the last collection, and how deep in geometry it was made: see heap.c
   uint8_t small; // size class; 0: from malloc
   uint8_t flags;
   uint32_t hash;   // free for the object's use

@@ -1,0 +1,261 @@
+// Curves by a function of the caller.
+//
+// Images, parts and other parametrizations share the function and put maps around it: the parameter
+// of the function runs from `from` to `to` while the curve's runs over its domain, and points go
+// through `map`, which may be projective. Nothing but points is known of the curve, so its hull is
+// that of samples, widened by how far samples lie from the chords of their neighbours.
+
+#include "geom/curve/function.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "geom/curve/family.h"
+
+typedef struct Source {
+  CagCurveFunction function;
+  int references;
+} Source;
+
+typedef struct Function {
+  CagCurve base;
+  Source *source;
+  double from, to; // parameters of the function at the ends of the domain
+  CagTransform map;
+  bool mapped;
+  CagBounds box; // hull of the whole, which is asked for often
+} Function;
+
+static const CagCurveKind function_kind;
+
+static double inner(const Function *c, double t) {
+  const CagCurve *b = &c->base;
+  if (t == b->start) return c->from;
+  if (t == b->end) return c->to;
+  return c->from + (t - b->start) * ((c->to - c->from) / (b->end - b->start));
+}
+
+static CagStatus fail_not_finite(const Function *c, double t, int k, CagError *err) {
+  char text[48];
+  const double inside = inner(c, t);
+  if (c->base.angular) snprintf(text, sizeof text, "%.12gdeg", inside * (180 / M_PI));
+  else cag_number_text(inside, text);
+  if (k == 0)
+    return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+                    "the point of the function at t = %s is not finite", text);
+  return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+                  "derivative %d of the function at t = %s is not finite", k, text);
+}
+
+// Derivatives of the image under a projective map: those of the homogeneous coordinates, and the
+// quotient rule.
+static CagStatus project(const Function *c, double t, int order, CagVec3 *d, CagError *err) {
+  double w[CAG_MAX_DERIVATIVE + 1] = {0};
+  const double(*m)[4] = c->map.m;
+  for (int k = 0; k <= order; k++) {
+    const CagVec3 p = d[k];
+    const double one = k == 0;
+    w[k] = m[3][0] * p.x + m[3][1] * p.y + m[3][2] * p.z + m[3][3] * one;
+    d[k] = cag_vec3(m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3] * one,
+                    m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3] * one,
+                    m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3] * one);
+  }
+  if (w[0] == 0) return fail_not_finite(c, t, 0, err);
+  for (int k = 0; k <= order; k++) {
+    double binomial = 1;
+    for (int i = 1; i <= k; i++) {
+      binomial = binomial * (k - i + 1) / i;
+      d[k] = cag_madd(d[k], -binomial * w[i], d[k - i]);
+    }
+    d[k] = cag_scaled(d[k], 1 / w[0]);
+  }
+  return CAG_OK;
+}
+
+static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, CagVec3 *out,
+                      CagError *err) {
+  (void)side;
+  const Function *c = (const Function *)curve;
+  const CagCurveFunction *f = &c->source->function;
+  CagStatus status = f->eval(f->context, inner(c, t), order, out, err);
+  if (status) return status;
+  const double rate = (c->to - c->from) / (curve->end - curve->start);
+  double scale = 1;
+  for (int k = 1; rate != 1 && k <= order; k++) {
+    scale *= rate;
+    out[k] = cag_scaled(out[k], scale);
+  }
+  if (c->mapped) status = project(c, t, order, out, err);
+  for (int k = 0; !status && k <= order; k++)
+    if (!isfinite(out[k].x) || !isfinite(out[k].y) || !isfinite(out[k].z))
+      status = fail_not_finite(c, t, k, err);
+  return status;
+}
+
+// Samples of a hull: a wave between two of them would have to be shorter than what a fair picture
+// of the curve needs.
+#define HULL_SAMPLES 33
+// The distance from the chord of the neighbours is four times that from the chord between samples;
+// waves that samples meet badly stay within.
+static CagStatus sampled_box(const CagCurve *curve, double a, double b, int samples, CagBounds *out,
+                             CagError *err) {
+  CagVec3 before[2] = {{0, 0, 0}, {0, 0, 0}};
+  double sag = 0;
+  *out = CAG_BOUNDS_EMPTY;
+  for (int i = 0; i < samples; i++) {
+    CagVec3 p;
+    double t = i + 1 == samples ? b : a + (b - a) * i / (samples - 1);
+    CagStatus status = eval(curve, t, 0, CAG_SIDE_RIGHT, &p, err);
+    if (status) return status;
+    cag_bounds_add(out, p);
+    if (i >= 2)
+      sag = fmax(sag, cag_norm(cag_sub(before[1], cag_scaled(cag_add(before[0], p), 0.5))));
+    before[0] = before[1];
+    before[1] = p;
+  }
+  const CagVec3 margin = cag_vec3(sag, sag, curve->dimension == 2 ? 0 : sag);
+  out->min = cag_sub(out->min, margin);
+  out->max = cag_add(out->max, margin);
+  return CAG_OK;
+}
+
+static CagBounds hull(const CagCurve *curve, double a, double b) {
+  const Function *c = (const Function *)curve;
+  const int samples = 9; // of a part, which is asked for in halves of halves
+  CagBounds box;
+  CagError ignored;
+  if (a <= curve->start && b >= curve->end) return c->box;
+  if (sampled_box(curve, a, b, samples, &box, &ignored)) return c->box;
+  return box;
+}
+
+// Another curve of the same function.
+static CagStatus make(const Function *like, double start, double end, double from, double to,
+                      CagCurve **out, CagError *err) {
+  CagCurve *base;
+  CagStatus status = cag_curve_block(sizeof(Function), &function_kind, like->base.dimension, start,
+                                     end, &base, err);
+  if (status) return status;
+  Function *c = (Function *)base;
+  c->source = like->source;
+  c->source->references++;
+  c->from = from;
+  c->to = to;
+  c->map = like->map;
+  c->mapped = like->mapped;
+  base->angular = like->base.angular;
+  *out = base;
+  return CAG_OK;
+}
+
+// Fills the box and judges whether the ends meet; releases the curve where that fails.
+static CagStatus finish(CagCurve *curve, CagCurve **out, CagError *err) {
+  Function *c = (Function *)curve;
+  CagVec3 ends[2];
+  CagStatus status = sampled_box(curve, curve->start, curve->end, HULL_SAMPLES, &c->box, err);
+  if (!status) status = eval(curve, curve->start, 0, CAG_SIDE_RIGHT, &ends[0], err);
+  if (!status) status = eval(curve, curve->end, 0, CAG_SIDE_LEFT, &ends[1], err);
+  if (status) {
+    cag_curve_release(curve);
+    return status;
+  }
+  const CagVec3 corners[2] = {c->box.min, c->box.max};
+  curve->closed =
+      cag_norm(cag_sub(ends[0], ends[1])) <= CAG_CURVE_SAME * cag_curve_size(corners, 2);
+  *out = curve;
+  return CAG_OK;
+}
+
+CagStatus cag_curve_function(const CagCurveFunction *f, int dimension, double start, double end,
+                             bool angular, CagCurve **out, CagError *err) {
+  char a[32], b[32];
+  CagStatus status = cag_curve_check_number(start, "range", err);
+  if (!status) status = cag_curve_check_number(end, "range", err);
+  if (status) return status;
+  if (!(start < end))
+    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "range", -1,
+                    "the range %s..%s has no length; its start must be less than its end",
+                    cag_number_text(angular ? start * (180 / M_PI) : start, a),
+                    cag_number_text(angular ? end * (180 / M_PI) : end, b));
+  Source *source = malloc(sizeof *source);
+  if (!source) return cag_fail_memory(err);
+  // The context is the caller's until all is well.
+  *source = (Source){.function = *f, .references = 0};
+  source->function.release = NULL;
+  Function like = {.source = source, .map = cag_transform_identity()};
+  like.base.dimension = dimension;
+  like.base.angular = angular;
+  CagCurve *curve;
+  source->references = 1;
+  status = make(&like, start, end, start, end, &curve, err);
+  if (!status) status = finish(curve, out, err);
+  source->references--;
+  if (status) {
+    free(source);
+    return status;
+  }
+  source->function.release = f->release;
+  return CAG_OK;
+}
+
+static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurve **out,
+                           CagError *err) {
+  const Function *c = (const Function *)curve;
+  CagCurve *made;
+  CagStatus status = make(c, curve->start, curve->end, c->from, c->to, &made, err);
+  if (status) return status;
+  Function *moved = (Function *)made;
+  moved->map = cag_transform_multiply(t, &c->map);
+  moved->mapped = true;
+  made->dimension = cag_curve_image_dimension(curve, t);
+  return finish(made, out, err);
+}
+
+static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
+  const Function *c = (const Function *)curve;
+  CagCurve *made;
+  CagStatus status = make(c, curve->start, curve->end, c->to, c->from, &made, err);
+  return status ? status : finish(made, out, err);
+}
+
+static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out, CagError *err) {
+  const Function *c = (const Function *)curve;
+  CagCurve *made;
+  CagStatus status = make(c, a, b, inner(c, a), inner(c, b), &made, err);
+  return status ? status : finish(made, out, err);
+}
+
+static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
+                               CagError *err) {
+  const Function *c = (const Function *)curve;
+  CagCurve *made;
+  CagStatus status = make(c, a, b, c->from, c->to, &made, err);
+  if (status) return status;
+  made->angular = false;
+  return finish(made, out, err);
+}
+
+static void describe(const CagCurve *curve, char *buffer, size_t size) {
+  const Function *c = (const Function *)curve;
+  snprintf(buffer, size, "by a formula%s", c->mapped ? ", moved" : "");
+}
+
+static void destroy(CagCurve *curve) {
+  Source *source = ((Function *)curve)->source;
+  if (--source->references > 0) return;
+  if (source->function.release) source->function.release(source->function.context);
+  free(source);
+}
+
+static const CagCurveKind function_kind = {
+    .name = "function",
+    .eval = eval,
+    .transform = transform,
+    .reverse = reverse,
+    .trim = trim,
+    .reparametrize = reparametrize,
+    .hull = hull,
+    .describe = describe,
+    .destroy = destroy,
+};

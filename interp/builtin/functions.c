@@ -1,0 +1,304 @@
+// Curves and surfaces by a formula: functions of the script called by geometry.
+//
+// Points alone are asked for with plain numbers. Where derivatives are wanted, the parameters are
+// jets (interp/value/jet.h), and the coordinates that the function gives hold their derivatives.
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/curve/function.h"
+#include "geom/surface/function.h"
+#include "interp/builtin/shapes.h"
+#include "interp/builtin/support.h"
+#include "interp/eval/vm.h"
+#include "interp/value/jet.h"
+
+#define DEGREES_PER_RADIAN 57.29577951308232
+
+// --- A function of the script as geometry holds it ---
+
+typedef struct Formula {
+  CagVm *vm;
+  size_t slot;     // where the machine keeps the function
+  bool angular[2]; // parameters that the script sees as angles
+  int variables;
+  size_t coordinates; // of its points, 0: not yet known
+} Formula;
+
+static Formula *formula_new(CagVm *vm, CagValue function, int variables) {
+  Formula *f = calloc(1, sizeof *f);
+  if (!f) cag_vm_out_of_memory(vm);
+  f->vm = vm;
+  f->variables = variables;
+  f->slot = cag_vm_keep(vm, function);
+  return f;
+}
+
+static void formula_free(void *context) {
+  Formula *f = context;
+  cag_vm_let_go(f->vm, f->slot);
+  free(f);
+}
+
+// Degrees of radians; whole degrees stay whole.
+static double degrees_of(double radians) {
+  const double degrees = radians * DEGREES_PER_RADIAN, whole = rint(degrees);
+  return fabs(degrees - whole) <= 4e-16 * fabs(whole) ? whole : degrees;
+}
+
+static void parameter_text(const Formula *f, const double *at, char *out, size_t size) {
+  static const char *const names[2][2] = {{"t", ""}, {"u", "v"}};
+  char x[2][32];
+  for (int i = 0; i < f->variables; i++)
+    cag_number_text(f->angular[i] ? degrees_of(at[i]) : at[i], x[i]);
+  const char *const *name = names[f->variables - 1];
+  if (f->variables == 1)
+    snprintf(out, size, "%s = %s%s", name[0], x[0], f->angular[0] ? "deg" : "");
+  else
+    snprintf(out, size, "%s = %s%s, %s = %s%s", name[0], x[0], f->angular[0] ? "deg" : "", name[1],
+             x[1], f->angular[1] ? "deg" : "");
+}
+
+// --- What a function gives ---
+
+static bool fail_point(Formula *f, const double *at, CagValue given) {
+  char where[96], found[160];
+  CagVm *vm = f->vm;
+  parameter_text(f, at, where, sizeof where);
+  cag_value_words(vm, given, found, sizeof found);
+  const char *wanted = f->variables == 2     ? "a point of 3 numbers"
+                       : f->coordinates == 2 ? "a point of 2 numbers, as it does at the start"
+                       : f->coordinates == 3 ? "a point of 3 numbers, as it does at the start"
+                                             : "a point of 2 or 3 numbers";
+  return cag_vm_fail_in(vm, vm->kept[f->slot], CAG_ERR_type,
+                        "the function of a %s must give %s; at %s it gave %s",
+                        f->variables == 1 ? "curve" : "surface", wanted, where, found);
+}
+
+static bool fail_not_finite(Formula *f, const double *at, const char *what) {
+  char where[96];
+  parameter_text(f, at, where, sizeof where);
+  return cag_vm_fail_in(f->vm, f->vm->kept[f->slot], CAG_ERR_not_finite,
+                        "%s of the function at %s is not finite", what, where);
+}
+
+// Coordinate i of a point: a number or a jet of this evaluation. False: neither.
+static bool coordinate(CagVm *vm, CagValue v, const CagSeries *like, CagSeries *out) {
+  if (v.type == CAG_NUMBER) {
+    cag_series_constant(like, v.as.number, out);
+    return true;
+  }
+  if (v.type != CAG_JET || CAG_AS_JET(v)->angle) return false;
+  return cag_series_of(v, like, out) || cag_fail_jet_level(vm);
+}
+
+// Reads a point into series. The error is set when that fails.
+static bool read_point(Formula *f, const double *at, CagValue given, const CagSeries *like,
+                       CagSeries *out) {
+  const CagList *l = given.type == CAG_LIST ? CAG_AS_LIST(given) : NULL;
+  bool good = l && l->dim <= 1 && (l->length == 3 || (l->length == 2 && f->variables == 1)) &&
+              (f->coordinates == 0 || l->length == f->coordinates);
+  if (!good) return fail_point(f, at, given);
+  for (size_t i = 0; i < 3; i++) {
+    if (i == l->length) cag_series_constant(like, 0, &out[i]);
+    else if (l->dim == 1) cag_series_constant(like, l->as.numbers[i], &out[i]);
+    else if (!coordinate(f->vm, l->as.items[i], like, &out[i]))
+      return f->vm->failed ? false : fail_point(f, at, given);
+    if (!isfinite(out[i].c[0])) return fail_not_finite(f, at, "the point");
+    for (size_t k = 1; k < cag_jet_count(like->variables, like->order); k++)
+      if (!isfinite(out[i].c[k])) return fail_not_finite(f, at, "a derivative");
+  }
+  f->coordinates = l->length;
+  return true;
+}
+
+// Calls the function at the parameters for derivatives up to the order of `like`.
+static bool call_formula(Formula *f, const double *at, CagSeries *like, CagSeries *out) {
+  CagVm *vm = f->vm;
+  CagValue arguments[2], given;
+  const uint32_t outer = vm->differentiation;
+  if (like->order > 0) vm->differentiation = outer + 1;
+  like->level = vm->differentiation;
+  for (int i = 0; i < f->variables; i++) {
+    const bool angle = f->angular[i];
+    const double x = angle ? degrees_of(at[i]) : at[i];
+    if (like->order > 0)
+      arguments[i] = cag_jet_variable(vm, f->variables, like->order, like->level, i, x,
+                                      angle ? DEGREES_PER_RADIAN : 1, angle);
+    else arguments[i] = angle ? cag_angle(x) : cag_number(x);
+  }
+  bool ok = cag_call(vm, vm->kept[f->slot], arguments, (size_t)f->variables, &given) &&
+            read_point(f, at, given, like, out);
+  vm->differentiation = outer;
+  return ok;
+}
+
+// The status of a call that failed; the machine has the error.
+static CagStatus fail_callback(const CagVm *vm, CagError *err) {
+  return cag_fail(err, CAG_E_CALLBACK, "function-failed", "", -1, "%s",
+                  vm->errors.count ? vm->errors.items[0].message : "the function failed");
+}
+
+// --- Curves ---
+
+typedef struct CurveQuestion {
+  Formula *formula;
+  double t;
+  int order;
+  CagVec3 *out;
+} CurveQuestion;
+
+static bool answer_curve(CagVm *vm, void *context) {
+  (void)vm;
+  CurveQuestion *q = context;
+  CagSeries like = {.variables = 1, .order = q->order}, x[3];
+  if (!call_formula(q->formula, &q->t, &like, x)) return false;
+  double factorial = 1;
+  for (int k = 0; k <= q->order; k++) {
+    if (k > 1) factorial *= k;
+    q->out[k] = cag_vec3(factorial * x[0].c[k], factorial * x[1].c[k], factorial * x[2].c[k]);
+  }
+  return true;
+}
+
+static CagStatus curve_eval(void *context, double t, int order, CagVec3 *out, CagError *err) {
+  Formula *f = context;
+  CurveQuestion q = {f, t, order, out};
+  return cag_vm_call_back(f->vm, answer_curve, &q) ? CAG_OK : fail_callback(f->vm, err);
+}
+
+static bool check_finite_range(CagCall *call, int argument, double a, double b) {
+  return (isfinite(a) && isfinite(b)) || cag_fail_value(call, argument, "a range with finite ends");
+}
+
+static bool call_curve(CagCall *call, CagValue *result) {
+  CagValue function;
+  double a, b;
+  bool angle;
+  CagError err;
+  if (!cag_arg_function(call, 0, &function) || !cag_arg_interval(call, 1, &a, &b, &angle) ||
+      !check_finite_range(call, 1, a, b))
+    return false;
+  if (angle) {
+    a *= CAG_RADIANS_PER_DEGREE;
+    b *= CAG_RADIANS_PER_DEGREE;
+  }
+  Formula *f = formula_new(call->vm, function, 1);
+  f->angular[0] = angle;
+  // The first point tells whether the curve is of the plane or of space.
+  CagVec3 p;
+  CagCurve *c;
+  const CagCurveFunction geometry = {curve_eval, formula_free, f};
+  CagStatus status = a < b ? curve_eval(f, a, 0, &p, &err) : CAG_OK;
+  if (!status)
+    status = cag_curve_function(&geometry, f->coordinates == 2 ? 2 : 3, a, b, angle, &c, &err);
+  if (status) {
+    formula_free(f);
+    return cag_fail_geometry(call, &err);
+  }
+  *result = cag_curve_value(call->vm, c);
+  return true;
+}
+
+// --- Surfaces ---
+
+typedef struct SurfaceQuestion {
+  Formula *formula;
+  double u;
+  const double *vs;
+  size_t nv;
+  int order;
+  CagVec3 *out;
+  bool row; // S, S_u, S_v of all vs; else all partials at vs[0]
+} SurfaceQuestion;
+
+static CagVec3 coefficient(const CagSeries *x, size_t k, double factor) {
+  return cag_vec3(factor * x[0].c[k], factor * x[1].c[k], factor * x[2].c[k]);
+}
+
+static bool answer_surface(CagVm *vm, void *context) {
+  (void)vm;
+  SurfaceQuestion *q = context;
+  CagSeries like = {.variables = 2, .order = q->order}, x[3];
+  for (size_t k = 0; q->row && k < q->nv; k++) {
+    const double at[2] = {q->u, q->vs[k]};
+    if (!call_formula(q->formula, at, &like, x)) return false;
+    CagVec3 *out = q->out + k * (q->order ? 3 : 1);
+    for (size_t i = 0; i < (q->order ? 3u : 1u); i++) out[i] = coefficient(x, i, 1);
+  }
+  if (q->row) return true;
+  const double at[2] = {q->u, q->vs[0]};
+  if (!call_formula(q->formula, at, &like, x)) return false;
+  const int n = q->order;
+  double factorial[CAG_MAX_PARTIAL + 1] = {1};
+  for (int i = 1; i <= n; i++) factorial[i] = factorial[i - 1] * i;
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; i + j <= n; j++)
+      q->out[cag_partial(n, i, j)] =
+          coefficient(x, cag_jet_offset(2, i + j) + (size_t)j, factorial[i] * factorial[j]);
+  return true;
+}
+
+static CagStatus surface_eval(void *context, double u, double v, int n, CagVec3 *out,
+                              CagError *err) {
+  Formula *f = context;
+  SurfaceQuestion q = {f, u, &v, 1, n, out, false};
+  return cag_vm_call_back(f->vm, answer_surface, &q) ? CAG_OK : fail_callback(f->vm, err);
+}
+
+static CagStatus surface_row(void *context, double u, const double *vs, size_t nv, int n,
+                             CagVec3 *out, CagError *err) {
+  Formula *f = context;
+  SurfaceQuestion q = {f, u, vs, nv, n, out, true};
+  return cag_vm_call_back(f->vm, answer_surface, &q) ? CAG_OK : fail_callback(f->vm, err);
+}
+
+static bool call_surface(CagCall *call, CagValue *result) {
+  CagValue function;
+  double range[2][2] = {{0, 1}, {0, 1}};
+  CagError err;
+  if (!cag_arg_function(call, 0, &function)) return false;
+  Formula like = {0};
+  for (int i = 0; i < 2; i++) {
+    if (!cag_given(call, 1 + i)) continue;
+    if (!cag_arg_interval(call, 1 + i, &range[i][0], &range[i][1], &like.angular[i]) ||
+        !check_finite_range(call, 1 + i, range[i][0], range[i][1]))
+      return false;
+    for (int k = 0; like.angular[i] && k < 2; k++) range[i][k] *= CAG_RADIANS_PER_DEGREE;
+  }
+  Formula *f = formula_new(call->vm, function, 2);
+  f->angular[0] = like.angular[0];
+  f->angular[1] = like.angular[1];
+  const CagSurfaceFunction geometry = {surface_eval, surface_row, formula_free, f};
+  CagSurface *s;
+  CagStatus status = cag_surface_function(&geometry, range[0][0], range[0][1], f->angular[0],
+                                          range[1][0], range[1][1], f->angular[1], &s, &err);
+  if (status) {
+    formula_free(f);
+    return cag_fail_geometry(call, &err);
+  }
+  *result = cag_surface_value(call->vm, s);
+  return true;
+}
+
+#define FUNCTIONS (CAG_TAKES(CLOSURE) | CAG_TAKES(BUILTIN) | CAG_TAKES(CURVE) | CAG_TAKES(SURFACE))
+
+const CagBuiltin cag_builtins_functions[] = {
+    {"curve(f, range)", call_curve, "curve",
+     "The curve of the points f(t), t in a range of numbers or of angles. f gives [x, y], or [x, "
+     "y, z]. Derivatives, and with them tangents, lengths and meshes, are computed exactly along "
+     "with the formula, not by differences; of an angle they are per radian. floor, round, sign "
+     "and what searches cannot be differentiated, nor can abs at 0: an error (not-differentiable). "
+     "All questions to curves work but for to_nurbs: there is no exact form.",
+     "c = curve(t => [cos(t), sin(t), in_radians(t)], 0deg..360deg)\n"
+     "print c(90deg).y, near(curvature(c, 30deg), 0.5) // expect: 1 true\n"
+     "print derivative(curve(t => [t, t^3], 0..2), 1, 2) // expect: [0, 6]",
+     FUNCTIONS, "Curves: made"},
+    {"surface(f, u = 0..1, v = 0..1)", call_surface, "surface",
+     "The surface of the points f(u, v) = [x, y, z], u and v in ranges of numbers or of angles. "
+     "Partial derivatives are exact, as of `curve`. Edges that meet and edges that are one point "
+     "are found, so that a closed formula is a closed surface.",
+     "s = surface((u, v) => [u, v, u * v], u: 0..2, v: 0..2)\n"
+     "print s(1, 2), near(normal(s, 0, 0), Z) // expect: [1, 2, 2] true",
+     FUNCTIONS, "Surfaces: made"},
+    {0}};
