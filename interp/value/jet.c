@@ -379,6 +379,7 @@ bool cag_jet_arithmetic(CagVm *vm, int op, CagValue a, CagValue b, CagValue valu
   }
   const CagSeries like = cag_series_shape(jet);
   CagSeries x, y, out;
+  shape_like(&like, &out);
   if (!cag_series_of(a, &like, &x) || !cag_series_of(b, &like, &y)) return cag_fail_jet_level(vm);
   switch (op) {
   case CAG_OP_MULTIPLY:
