@@ -78,14 +78,6 @@ static bool is_within(CagVm *vm, CagModuleUnit *m, const CagStatement *s, CagVal
   return false;
 }
 
-// Forgets what was computed with the default of a param, perhaps, before it was set.
-static void forget_values(CagVm *vm, const CagModuleUnit *m) {
-  for (size_t i = 0; i < m->ast->top_count; i++) {
-    CagGlobal *g = &vm->globals[m->tops[i]];
-    if (g->state == CAG_GLOBAL_DONE && !g->given) g->state = CAG_GLOBAL_NEW;
-  }
-}
-
 static bool set_param(CagVm *vm, CagModuleUnit *m, const CagStatement *s, const CagDefine *d) {
   size_t g = m->tops[s->as.param.decl->index];
   CagValue standard, v;
@@ -109,7 +101,6 @@ static bool set_param(CagVm *vm, CagModuleUnit *m, const CagStatement *s, const 
   if (s->as.param.domain && !is_within(vm, m, s, v, CAG_ERR_param_range)) return false;
   vm->globals[g].value = v;
   vm->globals[g].given = true;
-  forget_values(vm, m);
   return true;
 }
 
