@@ -681,6 +681,13 @@ static void isocurves_run_on_the_surface(void **state) {
   MUST(cag_curve_trim(c, 1, 2, &part, err));
   MUST(cag_curve_length(part, 1, 2, &length, err));
   assert_near(length, 3, 1e-9, "its part");
+  CagBounds box; // sin has its maximum inside, cos falls
+  MUST(cag_curve_bounds(part, &box, err));
+  assert_near(box.max.y, 3, 1e-9, "bounds");
+  assert_near(box.min.y, 3 * sin(1), 1e-9, "bounds");
+  assert_near(box.min.x, 3 * cos(2), 1e-9, "bounds");
+  assert_near(box.max.x, 3 * cos(1), 1e-9, "bounds");
+  assert_near(box.min.z, 1, 1e-12, "bounds");
   cag_curve_release(part);
   MUST(cag_curve_reverse(c, &part, err));
   CagVec3 p;
