@@ -78,79 +78,60 @@ static bool find_points(const CagMesh *m, double tolerance, uint32_t *first) {
   return done;
 }
 
-// May v stand for `other` in all but position?
-static bool looks_alike(const CagMesh *m, size_t v, size_t other) {
-  const double same_direction = 1 - 1e-6; // cosine of 0.08 degrees: no shading shows it
-  if (m->normals && cag_dot(m->normals[v], m->normals[other]) < same_direction) return false;
-  return !m->uv || (m->uv[2 * v] == m->uv[2 * other] && m->uv[2 * v + 1] == m->uv[2 * other + 1]);
-}
-
-// kept[v]: v itself, or the earlier vertex of the same point that looks alike. `chain` links the
-// kept vertices of a point.
-static void find_kept(const CagMesh *m, const uint32_t *first, uint32_t *chain, uint32_t *kept) {
+// Do joined vertices agree on the normal (within what no shading shows)? On the parameters?
+static void find_agreement(const CagMesh *m, const uint32_t *first, bool *normals, bool *uv) {
+  const double same_direction = 1 - 1e-6; // cosine of 0.08 degrees
+  *normals = m->normals != NULL;
+  *uv = m->uv != NULL;
   for (size_t v = 0; v < m->vertex_count; v++) {
-    chain[v] = NO_VERTEX;
-    kept[v] = (uint32_t)v;
-    if (first[v] == v) continue;
-    uint32_t last = first[v];
-    for (uint32_t k = first[v]; k != NO_VERTEX; last = k, k = chain[k])
-      if (looks_alike(m, v, k)) {
-        kept[v] = k;
-        break;
-      }
-    if (kept[v] == v) chain[last] = (uint32_t)v;
+    const uint32_t k = first[v];
+    if (*normals && cag_dot(m->normals[v], m->normals[k]) < same_direction) *normals = k == v;
+    if (*uv && (m->uv[2 * v] != m->uv[2 * k] || m->uv[2 * v + 1] != m->uv[2 * k + 1])) *uv = false;
   }
 }
 
-static CagStatus build_welded(const CagMesh *m, const uint32_t *first, const uint32_t *kept,
-                              uint32_t *number, CagMesh **out, CagError *err) {
+static CagStatus build_welded(const CagMesh *m, const uint32_t *first, uint32_t *number,
+                              CagMesh **out, CagError *err) {
   size_t vertices = 0, triangles = 0;
-  bool doubled = false;
-  for (size_t v = 0; v < m->vertex_count; v++) {
-    if (kept[v] != v) continue;
-    number[v] = (uint32_t)vertices++;
-    doubled |= first[v] != v;
-  }
+  bool normals, uv;
+  for (size_t v = 0; v < m->vertex_count; v++)
+    if (first[v] == v) number[v] = (uint32_t)vertices++;
+  find_agreement(m, first, &normals, &uv);
   CagMesh *w = NULL;
-  CagStatus status = cag_mesh_new(vertices, m->triangle_count, m->normals != NULL, m->uv != NULL,
-                                  doubled, &w, err);
+  CagStatus status = cag_mesh_new(vertices, m->triangle_count, normals, uv, false, &w, err);
   if (status != CAG_OK) return status;
   for (size_t v = 0; v < m->vertex_count; v++) {
-    if (kept[v] != v) continue;
+    if (first[v] != v) continue;
     uint32_t to = number[v];
-    w->positions[to] = m->positions[first[v]];
-    if (w->normals) w->normals[to] = m->normals[v];
-    if (w->uv) memcpy(w->uv + 2 * to, m->uv + 2 * v, 2 * sizeof *w->uv);
-    if (w->weld) w->weld[to] = number[first[v]];
+    w->positions[to] = m->positions[v];
+    if (normals) w->normals[to] = m->normals[v];
+    if (uv) memcpy(w->uv + 2 * to, m->uv + 2 * v, 2 * sizeof *w->uv);
   }
   for (size_t t = 0; t < m->triangle_count; t++) {
-    const uint32_t *k = m->triangles + 3 * t;
-    if (first[k[0]] == first[k[1]] || first[k[1]] == first[k[2]] || first[k[2]] == first[k[0]])
-      continue; // shrunk to an edge or a point
-    for (int j = 0; j < 3; j++) w->triangles[3 * triangles + j] = number[kept[k[j]]];
-    triangles++;
+    uint32_t k[3];
+    for (int j = 0; j < 3; j++) k[j] = number[first[m->triangles[3 * t + j]]];
+    if (k[0] == k[1] || k[1] == k[2] || k[2] == k[0]) continue; // shrunk to an edge or a point
+    memcpy(w->triangles + 3 * triangles++, k, sizeof k);
   }
   w->triangle_count = triangles;
   *out = w;
   return CAG_OK;
 }
 
-// Vertices of one point stay apart where their normals or parameters differ (sharp edges, seams);
-// they then have the same position and are told by `weld`.
+// A point is one vertex in the result, also at sharp edges and seams. Normals and parameters belong
+// to vertices: they stay where those that were joined agree on them everywhere, else the mesh has
+// none (it is then shaded by its faces).
 CagStatus cag_mesh_weld(const CagMesh *m, double tolerance, CagMesh **out, CagError *err) {
   if (!(tolerance >= 0) || !isfinite(tolerance))
     return cag_fail(err, CAG_E_ARGUMENT, "tolerance-negative", "tolerance", -1,
                     "`tolerance` must be a length of 0 or more, not %g", tolerance);
   size_t n = m->vertex_count + 1;
-  uint32_t *first = malloc(n * sizeof *first), *kept = malloc(n * sizeof *kept),
-           *chain = malloc(n * sizeof *chain);
+  uint32_t *first = malloc(n * sizeof *first), *number = malloc(n * sizeof *number);
   CagStatus status = CAG_E_MEMORY;
-  if (first && kept && chain && find_points(m, tolerance, first)) {
-    find_kept(m, first, chain, kept);
-    status = build_welded(m, first, kept, chain, out, err);
-  } else cag_fail_memory(err);
+  if (first && number && find_points(m, tolerance, first))
+    status = build_welded(m, first, number, out, err);
+  else cag_fail_memory(err);
   free(first);
-  free(kept);
-  free(chain);
+  free(number);
   return status;
 }

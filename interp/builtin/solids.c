@@ -99,7 +99,8 @@ const CagBuiltin cag_builtins_solids[] = {
      "Vertices - edges + faces: 2 of a sphere, 0 of a torus.",
      "print euler_characteristic(tessellate(torus(3, 1))) // expect: 0", MESHES, meshes},
     {"weld(M, tolerance)", cag_solids_weld, "mesh",
-     "The mesh with vertices nearer than the tolerance (mm) made one.",
+     "The mesh with vertices nearer than the tolerance (mm) made one, also across sharp edges and "
+     "seams. Normals stay where the joined ones agree, else the mesh is shaded by its faces.",
      "m = mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1e-9, 0, 0]], [[0, 1, 2], [3, 2, 1]])\n"
      "print is_watertight(weld(m, 1e-6)) // expect: true",
      MESHES, meshes},

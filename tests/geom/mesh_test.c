@@ -160,6 +160,38 @@ static void welding_closes_what_is_near(void **state) {
   cag_mesh_release(loose);
 }
 
+// A tessellated box has a vertex for each corner of each face, so that its edges are sharp.
+static void welding_joins_vertices_across_sharp_edges(void **state) {
+  (void)state;
+  CagMesh *m = cube(), *doubled, *welded;
+  OK(cag_mesh_new(8, 12, true, true, true, &doubled, &err));
+  memcpy(doubled->positions, m->positions, 8 * sizeof *m->positions);
+  memcpy(doubled->triangles, m->triangles, 36 * sizeof *m->triangles);
+  for (uint32_t i = 0; i < 8; i++) {
+    doubled->normals[i] = cag_unit(doubled->positions[i]);
+    doubled->uv[2 * i] = doubled->uv[2 * i + 1] = 0.5;
+    doubled->weld[i] = i;
+  }
+  CagMesh *pair;
+  OK(cag_mesh_append((CagMesh *[]){doubled, doubled}, 2, &pair, &err));
+  OK(cag_mesh_weld(pair, 0, &welded, &err));
+  assert_int_equal(welded->vertex_count, 8);
+  assert_non_null(welded->normals); // all agree
+  assert_non_null(welded->uv);
+  assert_null(welded->weld);
+  cag_mesh_release(welded);
+  pair->normals[12] = cag_scaled(pair->normals[12], -1);
+  pair->uv[20] = 0.25;
+  OK(cag_mesh_weld(pair, 1e-9, &welded, &err));
+  assert_int_equal(welded->vertex_count, 8);
+  assert_null(welded->normals);
+  assert_null(welded->uv);
+  cag_mesh_release(welded);
+  cag_mesh_release(pair);
+  cag_mesh_release(doubled);
+  cag_mesh_release(m);
+}
+
 static void meshes_join_to_one(void **state) {
   (void)state;
   CagMesh *a = cube(), *b, *both;
@@ -186,6 +218,7 @@ int main(void) {
       cmocka_unit_test(bad_faces_are_named),
       cmocka_unit_test(a_concave_face_is_cut_within_its_outline),
       cmocka_unit_test(welding_closes_what_is_near),
+      cmocka_unit_test(welding_joins_vertices_across_sharp_edges),
       cmocka_unit_test(meshes_join_to_one),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
