@@ -312,11 +312,14 @@ static bool closed_form(const CagSolid *s, Body *out) {
   }
 }
 
-// The tensor of inertia, trace(J) E - J, from second moments.
+// The tensor of inertia, trace(J) E - J, from second moments. The diagonal adds the other two
+// moments, so that nothing is lost to a difference.
 static void set_inertia(CagMassProperties *m, const double j[3][3]) {
-  double trace = j[0][0] + j[1][1] + j[2][2];
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++) m->inertia[i][k] = (i == k ? trace : 0) - j[i][k];
+  for (int i = 0; i < 3; i++) {
+    int next = (i + 1) % 3, last = (i + 2) % 3;
+    for (int k = 0; k < 3; k++)
+      m->inertia[i][k] = i == k ? j[next][next] + j[last][last] : 0 - j[i][k];
+  }
 }
 
 // Moments under the placement: J' = |det| A J A^T.

@@ -152,8 +152,9 @@ static bool points_down(CagVec3 v) {
 
 // --- Reduction ---
 
-// The equation in its eigenbasis, with lengths in units of `size` and divided by the largest
-// eigenvalue: sum lam_i y_i^2 + lin_i y_i + k, squares completed where lam_i is not zero.
+// The equation in its eigenbasis, with lengths in units of `size` and divided by about the largest
+// eigenvalue: sum lam_i y_i^2 + lin_i y_i + k, squares completed where lam_i is not zero. Both
+// units are powers of two, so that they cost no digit.
 typedef struct Reduced {
   double size;
   double lam[3], lin[3], k1;
@@ -163,15 +164,22 @@ typedef struct Reduced {
   int rank3;
 } Reduced;
 
+// The power of two that is at most x > 0.
+static double power_of_two(double x) {
+  int exponent;
+  frexp(x, &exponent);
+  return ldexp(1, exponent - 1);
+}
+
 static void reduce(const CagQuadric *q, Reduced *r) {
   const double *c = q->c;
   double m[3][3] = {
       {c[0], c[3] / 2, c[5] / 2}, {c[3] / 2, c[1], c[4] / 2}, {c[5] / 2, c[4] / 2, c[2]}};
   jacobi(m, r->v);
-  double largest = fmax(fabs(m[0][0]), fmax(fabs(m[1][1]), fabs(m[2][2])));
+  double largest = power_of_two(fmax(fabs(m[0][0]), fmax(fabs(m[1][1]), fabs(m[2][2]))));
   CagVec3 linear = cag_vec3(c[6], c[7], c[8]);
   r->size = fmax(cag_norm(linear) / largest, sqrt(fabs(c[9]) / largest));
-  if (!(r->size > 0)) r->size = 1;
+  r->size = r->size > 0 ? power_of_two(r->size) : 1;
   r->k1 = c[9] / (largest * r->size * r->size);
   r->rank3 = 0;
   r->g = 0;

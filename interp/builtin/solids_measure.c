@@ -2,58 +2,114 @@
 
 #include "interp/builtin/solids.h"
 
-// Integrals over the body: of 1; of x, y, z; of xx, yy, zz, xy, yz, zx, about the origin.
+// Second moments (xx, yy, zz, xy, yz, zx) are about the body's own centroid: about a far origin
+// they would lose their digits.
 typedef struct Body {
-  double area;
-  double terms[10];
+  double area, volume;
+  double center[3];
+  double moment[3], product[3];
 } Body;
 
 static CagStatus solid_body(const CagSolid *s, Body *out, CagError *err) {
   CagMassProperties mass;
   CagStatus status = cag_solid_mass(s, &mass, err);
   if (status != CAG_OK) return status;
-  CagVec3 c = mass.volume_centroid;
-  double v = mass.volume, trace = 0;
-  const double x[3] = {c.x, c.y, c.z};
-  for (int i = 0; i < 3; i++) trace += mass.inertia[i][i] / 2;
-  out->area = mass.area;
-  out->terms[0] = v;
+  const CagVec3 c = mass.volume_centroid;
+  *out = (Body){.area = mass.area, .volume = mass.volume, .center = {c.x, c.y, c.z}};
   for (int i = 0; i < 3; i++) {
-    int j = (i + 1) % 3;
-    out->terms[1 + i] = v * x[i];
-    // The matrix holds trace - xx on its diagonal and -xy beside it, about the centroid.
-    out->terms[4 + i] = trace - mass.inertia[i][i] + v * x[i] * x[i];
-    out->terms[7 + i] = -mass.inertia[i][j] + v * x[i] * x[j];
+    out->moment[i] = mass.inertia[i][i];
+    out->product[i] = -mass.inertia[i][(i + 1) % 3];
   }
   return CAG_OK;
 }
 
+// From integrals of 1; x, y, z; xx, yy, zz, xy, yz, zx about a point near the body.
+static void set_body(const double terms[10], CagVec3 about, Body *out) {
+  const double at[3] = {about.x, about.y, about.z};
+  const double v = terms[0];
+  double c[3] = {0, 0, 0}, second[3];
+  for (int i = 0; v != 0 && i < 3; i++) c[i] = terms[1 + i] / v;
+  out->volume = v;
+  for (int i = 0; i < 3; i++) {
+    out->center[i] = at[i] + c[i];
+    second[i] = terms[4 + i] - v * c[i] * c[i];
+    out->product[i] = terms[7 + i] - v * c[i] * c[(i + 1) % 3];
+  }
+  for (int i = 0; i < 3; i++) out->moment[i] = second[(i + 1) % 3] + second[(i + 2) % 3];
+}
+
+static CagTransform to_middle(const CagBounds *box, CagVec3 *middle) {
+  *middle = cag_lerp(box->min, box->max, 0.5);
+  return cag_translate(cag_scaled(*middle, -1));
+}
+
 static CagStatus mesh_body(const CagMesh *m, bool volume, Body *out, CagError *err) {
-  CagVec3 edge[2];
+  CagVec3 edge[2], middle;
+  CagMesh *near;
+  double terms[10] = {0};
   out->area = cag_mesh_area(m);
-  if (!volume) return CAG_OK;
+  if (!volume || m->vertex_count == 0) return CAG_OK;
   if (!cag_mesh_is_watertight(m, edge))
     return cag_fail(
         err, CAG_E_ARGUMENT, "mesh-open", "", -1,
         "the mesh is not closed: the edge from [%g, %g, %g] to [%g, %g, %g] has not two "
         "faces; it holds no volume",
         edge[0].x, edge[0].y, edge[0].z, edge[1].x, edge[1].y, edge[1].z);
-  cag_mesh_volume_terms(m, out->terms);
+  const CagBounds box = cag_mesh_bounds(m);
+  const CagTransform shift = to_middle(&box, &middle);
+  CagStatus status = cag_mesh_transform(m, &shift, &near, err);
+  if (status != CAG_OK) return status;
+  cag_mesh_volume_terms(near, terms);
+  cag_mesh_release(near);
+  set_body(terms, middle, out);
   return CAG_OK;
 }
 
 static CagStatus surface_body(const CagSurface *s, bool volume, Body *out, CagError *err) {
-  CagVec3 centroid;
+  CagVec3 centroid, middle;
+  CagBounds box;
+  CagSurface *near;
+  double terms[10] = {0};
   CagStatus status = cag_surface_area(s, &out->area, &centroid, err);
   if (status != CAG_OK || !volume) return status;
   if (!cag_surface_is_closed(s))
     return cag_fail(err, CAG_E_ARGUMENT, "surface-open", "", -1,
                     "the surface has a boundary, so it holds no volume");
-  status = cag_surface_volume_terms(s, out->terms, err);
+  status = cag_surface_bounds(s, &box, err);
+  if (status != CAG_OK) return status;
+  const CagTransform shift = to_middle(&box, &middle);
+  status = cag_surface_transform(s, &shift, &near, err);
+  if (status != CAG_OK) return status;
+  status = cag_surface_volume_terms(near, terms, err);
+  cag_surface_release(near);
   // A surface that is inside out is the same body.
   for (int i = 9; i >= 0; i--)
-    if (out->terms[0] < 0) out->terms[i] = -out->terms[i];
+    if (terms[0] < 0) terms[i] = -terms[i];
+  set_body(terms, middle, out);
   return status;
+}
+
+// The two as one body (Steiner's theorem).
+static void join_bodies(Body *whole, const Body *part) {
+  const double a = whole->volume, b = part->volume, v = a + b;
+  whole->area += part->area;
+  if (a == 0 || v == 0) {
+    const double area = whole->area;
+    if (a == 0) *whole = *part;
+    whole->area = area, whole->volume = v;
+    return;
+  }
+  double d[3];
+  for (int i = 0; i < 3; i++) {
+    d[i] = part->center[i] - whole->center[i];
+    whole->center[i] += d[i] * (b / v);
+  }
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    whole->moment[i] += part->moment[i] + a * (b / v) * (d[j] * d[j] + d[k] * d[k]);
+    whole->product[i] += part->product[i] + a * (b / v) * d[i] * d[j];
+  }
+  whole->volume = v;
 }
 
 static bool shape_body(CagCall *call, CagValue v, bool volume, Body *out) {
@@ -79,8 +135,7 @@ static bool read_body(CagCall *call, bool volume, Body *out) {
   for (size_t i = 0; i < shapes->length; i++) {
     Body one;
     if (!shape_body(call, cag_list_get(call->vm, shapes, i), volume, &one)) return false;
-    out->area += one.area;
-    for (int k = 0; k < 10; k++) out->terms[k] += one.terms[k];
+    join_bodies(out, &one);
   }
   return true;
 }
@@ -95,46 +150,41 @@ bool cag_solids_area(CagCall *call, CagValue *result) {
 bool cag_solids_volume(CagCall *call, CagValue *result) {
   Body body;
   if (!read_body(call, true, &body)) return false;
-  *result = cag_number(body.terms[0]);
+  *result = cag_number(body.volume);
   return true;
 }
 
-static bool read_massive(CagCall *call, Body *body, CagVec3 *center) {
+static bool read_massive(CagCall *call, Body *body) {
   if (!read_body(call, true, body)) return false;
-  if (body->terms[0] == 0)
-    return cag_fail_call(call, 0, CAG_ERR_value, "expects a body with a volume, found none");
-  *center =
-      cag_scaled(cag_vec3(body->terms[1], body->terms[2], body->terms[3]), 1 / body->terms[0]);
-  return true;
+  return body->volume != 0 ||
+         cag_fail_call(call, 0, CAG_ERR_value, "expects a body with a volume, found none");
+}
+
+static CagValue center_value(CagCall *call, const Body *body) {
+  const double *c = body->center;
+  return cag_point(call->vm, cag_vec3(c[0], c[1], c[2]), 3);
 }
 
 bool cag_solids_centroid(CagCall *call, CagValue *result) {
   Body body;
-  CagVec3 center;
-  if (!read_massive(call, &body, &center)) return false;
-  *result = cag_point(call->vm, center, 3);
+  if (!read_massive(call, &body)) return false;
+  *result = center_value(call, &body);
   return true;
 }
 
 bool cag_solids_inertia(CagCall *call, CagValue *result) {
   static const char *const names[] = {"mass", "center", "matrix"};
   Body body;
-  CagVec3 center;
-  double density, *m;
-  if (!cag_arg_number_or(call, 1, 1, &density) || !read_massive(call, &body, &center)) return false;
-  const double c[3] = {center.x, center.y, center.z};
-  double second[3], product[3], v = body.terms[0];
-  for (int i = 0; i < 3; i++) {
-    second[i] = body.terms[4 + i] - v * c[i] * c[i];
-    product[i] = body.terms[7 + i] - v * c[i] * c[(i + 1) % 3];
-  }
+  double density = 1, *m;
+  if (cag_given(call, 1) && !cag_arg_positive(call, 1, &density)) return false;
+  if (!read_massive(call, &body)) return false;
   CagValue matrix = cag_list_vectors(call->vm, 3, 3, &m);
   for (int i = 0; i < 3; i++) {
-    int j = (i + 1) % 3, k = (i + 2) % 3;
-    m[3 * i + i] = density * (second[j] + second[k]);
-    m[3 * i + j] = m[3 * j + i] = -density * product[i];
+    const int j = (i + 1) % 3;
+    m[3 * i + i] = density * body.moment[i];
+    m[3 * i + j] = m[3 * j + i] = 0 - density * body.product[i];
   }
-  CagValue values[] = {cag_number(density * v), cag_point(call->vm, center, 3), matrix};
+  CagValue values[] = {cag_number(density * body.volume), center_value(call, &body), matrix};
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }

@@ -136,6 +136,15 @@ static void every_class_is_told_as_in_the_reference(void **state) {
 
 // Class, ranks and semi-axes do not change when the quadric is moved, its equation multiplied by a
 // negative number, or the drawing scaled to other units.
+// x^2/25 + y^2/9 + z^2/4 = 1, as a user writes it: no digit is lost to the units of the reduction.
+static void round_semi_axes_come_out_round(void **state) {
+  (void)state;
+  const CagQuadric q = {{1 / 25.0, 1 / 9.0, 1 / 4.0, 0, 0, 0, 0, 0, 0, -1}};
+  CagQuadricForm f;
+  MUST(cag_quadric_classify(&q, &f, err));
+  assert_true(f.semi[0] == 5 && f.semi[1] == 3 && f.semi[2] == 2);
+}
+
 static void classes_survive_motions_and_units(void **state) {
   (void)state;
   CagTransform turn, shift, scale, map;
@@ -432,6 +441,7 @@ static void what_has_no_surface_says_why(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_class_is_told_as_in_the_reference),
+      cmocka_unit_test(round_semi_axes_come_out_round),
       cmocka_unit_test(classes_survive_motions_and_units),
       cmocka_unit_test(centers_and_translations_have_the_numbers_of_the_reference),
       cmocka_unit_test(a_far_quadric_keeps_its_class),
