@@ -765,7 +765,7 @@ bool cag_call(CagVm *vm, CagValue function, const CagValue *arguments, size_t n,
   CagValue *base = vm->top + 1;
   if (function.type != CAG_CLOSURE) {
     if (!reserve(vm, base, n + 1)) return false;
-    memcpy(base, arguments, n * sizeof *base);
+    if (n) memcpy(base, arguments, n * sizeof *base); // no arguments: may be NULL
     CagValue *top = vm->top;
     vm->top = base + n;
     bool ok = cag_room_on_c_stack(vm)
@@ -778,7 +778,7 @@ bool cag_call(CagVm *vm, CagValue function, const CagValue *arguments, size_t n,
   const CagProto *p = closure->proto;
   if (!reserve(vm, base, (n > p->registers ? n : p->registers) + 1)) return false;
   base[-1] = function;
-  memcpy(base, arguments, n * sizeof *base);
+  if (n) memcpy(base, arguments, n * sizeof *base); // no arguments: may be NULL
   const CagInstruction *start = p->code + p->body;
   if (n != p->parameter_count) {
     if (!cag_bind_closure(vm, p, base, n, NULL, 0)) return false;
