@@ -94,7 +94,7 @@ static int write_mesh_file(CagSession *s, const MeshOutput *m, const char *path,
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
   if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
-  if (write(m, f, &err) != CAG_OK) {
+  if (cag_session_checked(s, write(m, f, &err), &err) != CAG_OK) {
     cag_atomic_file_abort(f);
     return cag_session_fail_geometry(s, &err);
   }
@@ -130,7 +130,7 @@ static int export_text(CagSession *s, const char *path,
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
   if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
-  if (write(s, f, &err) != CAG_OK) {
+  if (cag_session_checked(s, write(s, f, &err), &err) != CAG_OK) {
     cag_atomic_file_abort(f);
     return cag_session_fail_geometry(s, &err);
   }
@@ -184,6 +184,16 @@ const char *cag_export_format_story(const char *format) {
   return f ? f->story : NULL;
 }
 
+typedef struct Output {
+  const struct Format *format;
+  const char *path;
+} Output;
+
+static int write_output(CagSession *s, void *context) {
+  const Output *o = context;
+  return o->format->write(s, o->path);
+}
+
 int cag_session_export(CagSession *s, const char *path, const char *format) {
   const char *slash = strrchr(path, '/');
   const char *dot = strrchr(slash ? slash : path, '.');
@@ -202,5 +212,6 @@ int cag_session_export(CagSession *s, const char *path, const char *format) {
     return CAG_STATUS_USAGE;
   }
   int status = cag_session_build_scene(s);
-  return status == CAG_STATUS_OK ? f->write(s, path) : status;
+  return status == CAG_STATUS_OK ? cag_session_geometry(s, write_output, &(Output){f, path})
+                                 : status;
 }

@@ -94,6 +94,7 @@ typedef struct Job {
   CagSession *session;
   const CagRenderOptions *options;
   CagCamera camera;
+  size_t index; // of the camera
   CagPovQuality pov;
   CagPovrayQuality engine;
   char *source;
@@ -101,25 +102,26 @@ typedef struct Job {
   CagPovrayResult result;
 } Job;
 
-static int write_source(Job *j, size_t camera) {
+static int write_source(CagSession *s, void *context) {
+  Job *j = context;
   CagIoError io = {0};
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open_memory(&io);
-  if (!f) return cag_session_fail_io(j->session, CAG_ERR_output_file, &io);
+  if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
   // The sky's panorama stands beside the scene under a plain name (see povray.h).
-  CagScene *scene = &j->session->scene;
+  CagScene *scene = &s->scene;
   char plain[] = SKY_FILE, *image = scene->sky.image;
   if (image) scene->sky.image = plain;
   CagPovOptions options = {
-      .quality = j->pov, .camera = camera, .size = {j->camera.size[0], j->camera.size[1]}};
-  CagStatus written = cag_export_pov(scene, &options, f, &err);
+      .quality = j->pov, .camera = j->index, .size = {j->camera.size[0], j->camera.size[1]}};
+  CagStatus written = cag_session_checked(s, cag_export_pov(scene, &options, f, &err), &err);
   scene->sky.image = image;
   if (written != CAG_OK) {
     cag_atomic_file_abort(f);
-    return cag_session_fail_geometry(j->session, &err);
+    return cag_session_fail_geometry(s, &err);
   }
   if (!cag_atomic_file_commit_memory(f, &j->source, &j->source_size, &io))
-    return cag_session_fail_io(j->session, CAG_ERR_output_file, &io);
+    return cag_session_fail_io(s, CAG_ERR_output_file, &io);
   return CAG_STATUS_OK;
 }
 
@@ -173,6 +175,12 @@ static bool write_exr(Job *j, const char *path, CagIoError *io) {
   return ok;
 }
 
+static int frame_all(CagSession *s, void *context) {
+  (void)context;
+  cag_camera_frame_all(&s->scene, &s->scene.cameras[0]);
+  return CAG_STATUS_OK;
+}
+
 int cag_session_render(CagSession *s, const CagRenderOptions *options, const char *path) {
   const char *dot = strrchr(path, '.');
   if (!dot || (strcasecmp(dot, ".exr") != 0 && strcasecmp(dot, ".png") != 0)) {
@@ -197,7 +205,8 @@ int cag_session_render(CagSession *s, const CagRenderOptions *options, const cha
       s->scene.automatic_camera) { // it frames what it shows for the picture's shape
     s->scene.cameras[0].size[0] = options->width;
     s->scene.cameras[0].size[1] = options->height;
-    cag_camera_frame_all(&s->scene, &s->scene.cameras[0]);
+    status = cag_session_geometry(s, frame_all, NULL);
+    if (status != CAG_STATUS_OK) return status;
   }
   j.camera = s->scene.cameras[camera];
   if (options->width > 0) {
@@ -205,7 +214,8 @@ int cag_session_render(CagSession *s, const CagRenderOptions *options, const cha
     j.camera.size[1] = options->height;
   }
   CagIoError io = {0};
-  status = write_source(&j, camera);
+  j.index = camera;
+  status = cag_session_geometry(s, write_source, &j);
   if (status == CAG_STATUS_OK) status = render(&j);
   if (status == CAG_STATUS_OK &&
       !(is_png(path) ? write_png(&j, path, &io) : write_exr(&j, path, &io)))

@@ -211,6 +211,30 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
   return cag_session_status(s);
 }
 
+typedef struct GeometryTask {
+  CagSession *session;
+  int (*work)(CagSession *s, void *context);
+  void *context;
+  int status;
+} GeometryTask;
+
+static bool perform_geometry(CagVm *vm, void *context) {
+  GeometryTask *t = context;
+  t->status = t->work(t->session, t->context);
+  return t->status == CAG_STATUS_OK && !vm->failed;
+}
+
+int cag_session_geometry(CagSession *s, int (*work)(CagSession *s, void *context), void *context) {
+  GeometryTask t = {s, work, context, CAG_STATUS_OK};
+  int status = cag_session_work(s, perform_geometry, &t);
+  return t.status != CAG_STATUS_OK ? t.status : status;
+}
+
+CagStatus cag_session_checked(const CagSession *s, CagStatus status, CagError *err) {
+  if (status != CAG_OK || !s->vm || !s->vm->failed) return status;
+  return cag_fail(err, CAG_E_CALLBACK, "function-failed", "", -1, "a function failed");
+}
+
 // --- Status ---
 
 int cag_session_status(const CagSession *s) {
@@ -233,6 +257,10 @@ int cag_session_status(const CagSession *s) {
 }
 
 int cag_session_fail_geometry(CagSession *s, const CagError *err) {
+  if (err->status == CAG_E_CALLBACK && s->vm && s->vm->failed) { // a function of the script
+    cag_diagnostics_move(&s->diagnostics, &s->vm->errors);
+    return cag_session_status(s);
+  }
   CagErrorId id = err->reason ? cag_error_by_reason(err->reason) : CAG_ERR_COUNT;
   if (err->status == CAG_E_LIMIT) id = CAG_ERR_limit_triangles;
   else if (err->status == CAG_E_MEMORY) id = CAG_ERR_limit_memory;
@@ -338,6 +366,13 @@ static bool build(CagVm *vm, void *context) {
   return true;
 }
 
+static int complete_scene(CagSession *s, void *context) {
+  (void)context;
+  CagError err = {0};
+  CagStatus status = cag_session_checked(s, cag_scene_complete(&s->scene, &err), &err);
+  return status == CAG_OK ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
+}
+
 int cag_session_build_scene(CagSession *s) {
   if (s->interactive) drop_scene(s);
   if (s->has_scene) return CAG_STATUS_OK;
@@ -360,12 +395,9 @@ int cag_session_build_scene(CagSession *s) {
     drop_scene(s);
     return CAG_STATUS_SCRIPT;
   }
-  CagError err = {0};
-  if (cag_scene_complete(scene, &err) != CAG_OK) {
-    drop_scene(s);
-    return cag_session_fail_geometry(s, &err);
-  }
-  return CAG_STATUS_OK;
+  status = cag_session_geometry(s, complete_scene, NULL);
+  if (status != CAG_STATUS_OK) drop_scene(s);
+  return status;
 }
 
 int cag_session_scene(CagSession *s, CagShownCounts *out) {

@@ -34,6 +34,12 @@ void cag_session_drop_vm(CagSession *s);
 // Runs work(vm, context) on the big stack, with the time limit, where running out of memory is
 // caught. Moves the machine's errors to the session's diagnostics. Gives the status.
 int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void *context);
+// The same for work that gives a status and adds its own diagnostics. Geometry may call functions
+// of the script (curves by a formula) whenever it is asked, so exports and pictures are made there
+// too.
+int cag_session_geometry(CagSession *s, int (*work)(CagSession *s, void *context), void *context);
+// Sees to it that an error of such a function that was overlooked is none that stays unknown.
+CagStatus cag_session_checked(const CagSession *s, CagStatus status, CagError *err);
 int cag_session_status(const CagSession *s); // by the diagnostics there are
 // Adds an error of the core, or of files and renderers, and gives the status.
 int cag_session_fail_geometry(CagSession *s, const CagError *err);
