@@ -388,8 +388,8 @@ static CagStatus fail_segment(double x, CagError *err) {
                   cag_number_text(x, text));
 }
 
-// The smaller or larger y at x.
-static CagStatus root_at(const CagConic *conic, double x, bool upper, CagVec3 *out, CagError *err) {
+CagStatus cag_conic_point_at(const CagConic *conic, double x, bool upper, CagVec3 *out,
+                             CagError *err) {
   const double *c = conic->c, b = c[1] * x + c[4], e = (c[0] * x + c[3]) * x + c[5];
   const double scale = fmax(fabs(c[0]), fmax(fabs(c[1]), fabs(c[2])));
   if (fabs(c[2]) <= NOTHING * scale) {
@@ -446,8 +446,8 @@ CagStatus cag_conic_segment(const CagConic *c, double from, double to, bool uppe
   CagStatus status = cag_conic_classify(c, &k, err);
   if (!status && from == to)
     status = cag_fail(err, CAG_E_ARGUMENT, "empty-range", "x", -1, "the range of x has no length");
-  if (!status) status = root_at(c, from, upper, &p, err);
-  if (!status) status = root_at(c, to, upper, &q, err);
+  if (!status) status = cag_conic_point_at(c, from, upper, &p, err);
+  if (!status) status = cag_conic_point_at(c, to, upper, &q, err);
   if (status) return status;
   if (k.line_count > 0) return segment_of_lines(c, p, q, out, err);
   if (!(k.a > 0)) return fail_segment(from, err);

@@ -97,6 +97,11 @@ const CagBuiltin cag_builtins_conics[] = {
      "nearest to the center.",
      "print map(branches(conic([1, 0, -1, 0, 0, -1])), b => b(0)) // expect: [[1, 0], [-1, 0]]",
      EQUATIONS, general},
+    {"conic_point(C, x, branch = \"lower\"|\"upper\")", cag_conics_point_of_conic, "list",
+     "The point of a conic at this x that has the smaller or the larger y; an error where there is "
+     "none (domain).",
+     "print conic_point(conic([1, 0, 1, 0, 0, -25]), 3, branch: \"upper\") // expect: [3, 4]",
+     EQUATIONS, general},
     {"conic_segment(C, x, branch = \"lower\"|\"upper\")", cag_conics_conic_segment, "curve",
      "The arc of a conic over a range of x (which may run down), on the branch of the smaller or "
      "the larger y. Where the conic has no point at an end, or the ends lie on two branches of a "

@@ -12,11 +12,11 @@
   X(hyperbola)                                                                                     \
   X(conic)                                                                                         \
   X(conic_of_curve)                                                                                \
-  X(branches) X(conic_through) X(conic_by) X(conic_arc) X(conic_segment)                           \
-      X(conic_points) /* conics_ask.c */                                                           \
+  X(branches)                                                                                      \
+  X(conic_through) X(conic_by) X(conic_arc) X(conic_segment) X(conic_points) /* conics_ask.c */    \
       X(classify) X(coefficients) X(intersect_line) X(polar_line) X(implicit_at) X(points_at)      \
-          X(slope) X(signed_curvature) X(fit_formula) X(line_through) X(meet_lines)                \
-              X(line_image) /* conics_touch.c */                                                   \
+          X(point_of_conic) X(slope) X(signed_curvature) X(fit_formula) X(line_through)            \
+              X(meet_lines) X(line_image) /* conics_touch.c */                                     \
       X(circle_tangent) X(fillet) X(tangent_lines) X(rounded) X(rounded_region)
 
 #define X(name) bool cag_conics_##name(CagCall *call, CagValue *result);

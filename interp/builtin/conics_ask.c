@@ -220,6 +220,21 @@ bool cag_conics_implicit_at(CagCall *call, CagValue *result) {
   return true;
 }
 
+bool cag_conics_point_of_conic(CagCall *call, CagValue *result) {
+  static const char *const sides[] = {"lower", "upper", NULL};
+  CagConic k;
+  CagVec3 p;
+  CagError err;
+  double x;
+  int upper;
+  if (!cag_arg_conic(call, 0, &k) || !cag_arg_finite(call, 1, &x) ||
+      !cag_arg_choice(call, 2, sides, &upper) ||
+      !cag_geometry_ok(call, cag_conic_point_at(&k, x, upper, &p, &err), &err))
+    return false;
+  *result = cag_point(call->vm, p, 2);
+  return true;
+}
+
 // --- Plane curves by their coordinates ---
 
 static bool read_plane_curve(CagCall *call, CagCurve **c) {
