@@ -70,6 +70,10 @@ static CagStatus clamped(const CagCurve *c, CagCurve **out, CagError *err) {
   return status;
 }
 
+CagStatus cag_curve_clamp(const CagCurve *c, CagCurve **out, CagError *err) {
+  return clamped(c, out, err);
+}
+
 static CagNurbsKind plain_kind(const CagNurbs *c) {
   return c->rational ? CAG_NURBS_RATIONAL : CAG_NURBS_BSPLINE;
 }
@@ -187,11 +191,70 @@ CagStatus cag_curve_insert_knots(const CagCurve *c, const double *t, size_t n, C
   return status;
 }
 
+// Blossom at p arguments of the polynomial over the span.
+static void span_blossom(const CagNurbs *c, size_t span, const double *args, double *d,
+                         double out[4]) {
+  const int p = c->degree;
+  memcpy(d, c->homogeneous + 4 * (span - (size_t)p), sizeof(double) * 4 * (size_t)(p + 1));
+  for (int s = 1; s <= p; s++)
+    for (int i = p; i >= s; i--) {
+      const size_t k = span - (size_t)p + (size_t)i;
+      const double lo = c->knots[k], hi = c->knots[k + (size_t)(p + 1 - s)];
+      const double f = (args[s - 1] - lo) / (hi - lo);
+      for (int x = 0; x < 4; x++) d[4 * i + x] = cag_mix(d[4 * (i - 1) + x], d[4 * i + x], f);
+    }
+  memcpy(out, d + 4 * p, sizeof(double) * 4);
+}
+
+// Points over the knots `y` of n points, which refine those of the curve: point j is the blossom at
+// y[j + 1] .. y[j + p], of a span of the usable range within the point's support.
+static CagStatus refined_points(const CagNurbs *c, const double *y, size_t n, double *h,
+                                CagError *err) {
+  const size_t p = (size_t)c->degree;
+  double *work = malloc(sizeof(double) * 4 * (p + 1));
+  if (!work) return cag_fail_memory(err);
+  for (size_t j = 0; j < n; j++) {
+    double from = fmax(y[j], c->base.start), to = fmin(y[j + p + 1], c->base.end);
+    double middle = from + (to - from) / 2;
+    size_t span = cag_knots_span(c->knots, c->count, c->degree, middle, false, p);
+    span_blossom(c, span, y + j + 1, work, h + 4 * j);
+    if (!c->rational) h[4 * j + 3] = 1;
+  }
+  free(work);
+  return CAG_OK;
+}
+
+// Uniform knots at half the spacing, with the usable range of the curve.
+static CagStatus halve_uniform(const CagNurbs *c, CagCurve **out, CagError *err) {
+  const size_t p = (size_t)c->degree, spans = c->count - p, n = 2 * spans + p;
+  double *y = malloc(sizeof(double) * (n + p + 1 + 4 * n));
+  if (!y) return cag_fail_memory(err);
+  double *h = y + n + p + 1;
+  const double start = c->base.start, step = (c->base.end - start) / (double)(2 * spans);
+  for (size_t i = 0; i < n + p + 1; i++)
+    y[i] = i == n ? c->base.end : start + ((double)i - (double)p) * step;
+  CagStatus status = refined_points(c, y, n, h, err);
+  // A periodic curve's last points are its first, bit for bit.
+  const size_t distinct = c->periodic ? 2 * c->distinct : 0;
+  for (size_t i = distinct; distinct && i < n; i++)
+    memcpy(h + 4 * i, h + 4 * (i - distinct), 4 * sizeof(double));
+  if (!status)
+    status = cag_nurbs_new(h, n, c->degree, y, c->rational, distinct, plain_kind(c),
+                           c->base.dimension, out, err);
+  free(y);
+  return status;
+}
+
 CagStatus cag_curve_insert_midpoints(const CagCurve *c, CagCurve **out, CagError *err) {
   CagCurve *exact;
   CagStatus status = cag_curve_to_nurbs(c, &exact, err);
   if (status) return status;
   const CagNurbs *n = cag_nurbs_data(exact);
+  if (strcmp(cag_knots_class(n->knots, n->count, n->degree), "uniform") == 0) {
+    status = halve_uniform(n, out, err);
+    cag_curve_release(exact);
+    return status;
+  }
   double *middles = malloc(sizeof(double) * n->pieces);
   if (!middles) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n->pieces; i++)
