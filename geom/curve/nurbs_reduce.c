@@ -40,6 +40,28 @@ static double bound(const double *h, const double *g, size_t n, const double *ar
   return most == 0 ? 0 : most / least;
 }
 
+// A working copy: n points, n + p + 1 knots.
+typedef struct Spline {
+  int p;
+  size_t n;
+  bool rational;
+  double *h, *knots;
+} Spline;
+
+static void spline_free(Spline *s) {
+  free(s->h);
+  free(s->knots);
+}
+
+static CagStatus spline_make(Spline *s, int p, size_t n, bool rational, CagError *err) {
+  *s = (Spline){.p = p, .n = n, .rational = rational};
+  s->h = malloc(sizeof(double) * 4 * n);
+  s->knots = malloc(sizeof(double) * (n + (size_t)p + 1));
+  return s->h && s->knots ? CAG_OK : cag_fail_memory(err);
+}
+
+// --- Removal ---
+
 // b: E points; a: E numbers within (0, 1); g[0] and g[E] are given, those between are found, and b
 // becomes what they give.
 static void solve_chain(double *b, const double *a, size_t e, double *g) {
