@@ -1,5 +1,6 @@
 // The printed form of values (language, section 7), and equality.
 
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -61,8 +62,8 @@ void cag_string_free(CagString *s) {
 // the first digit.
 static int shortest_digits(double x, char digits[20], int *exponent) {
   char text[40];
-  for (int precision = 15; precision <= 17;
-       precision++) { // any double of up to 15 digits survives 15; 17 always do
+  // Any normal double of up to 15 digits survives 15; 17 always do.
+  for (int precision = x < DBL_MIN ? 1 : 15; precision <= 17; precision++) {
     snprintf(text, sizeof text, "%.*e", precision - 1, x);
     if (precision == 17 || strtod(text, NULL) == x) break;
   }
