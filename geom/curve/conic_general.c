@@ -3,10 +3,12 @@
 // The form is kept as given, not scaled. Sizes are judged relative to the terms that they are the
 // difference of, so that neither a factor of the equation nor the unit of length matters.
 
+#include <float.h>
 #include <stdlib.h>
 
 #include "geom/curve/conic.h"
 #include "geom/curve/family.h"
+#include "geom/curve/nurbs.h"
 
 // The smaller eigenvalue of the quadratic part is 0 below this share of the larger: coefficients
 // that were turned and rounded still make a parabola, and ellipses may be 3e5 times as long as
@@ -348,6 +350,29 @@ static bool conic_of_bezier(const double *h, CagConic *out) {
   return carry(s0, m, out);
 }
 
+// Sum of the sizes of the terms at p: what the value there is small relative to.
+static double terms_at(const CagConic *k, CagVec3 p) {
+  const double *c = k->c;
+  return fabs(c[0] * p.x * p.x) + fabs(c[1] * p.x * p.y) + fabs(c[2] * p.y * p.y) +
+         fabs(c[3] * p.x) + fabs(c[4] * p.y) + fabs(c[5]);
+}
+
+// Whether the other pieces of a quadratic NURBS curve belong to the conic of its first: five points
+// of each do.
+static bool all_on(const CagNurbs *c, const CagConic *k) {
+  enum { POINTS = 5 };
+  for (size_t i = 0; i < c->pieces; i++)
+    for (int j = 0; j < POINTS; j++) {
+      const double t = c->cuts[i] + (c->cuts[i + 1] - c->cuts[i]) * j / POINTS;
+      CagVec3 p;
+      CagError ignored;
+      if (cag_curve_point(&c->base, t, &p, &ignored) ||
+          fabs(cag_conic_value(k, p)) > ROUND * terms_at(k, p))
+        return false;
+    }
+  return true;
+}
+
 CagStatus cag_conic_of_curve(const CagCurve *c, CagConic *out, CagError *err) {
   static const double circle[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, -1}};
   static const double hyperbola[3][3] = {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
@@ -358,7 +383,7 @@ CagStatus cag_conic_of_curve(const CagCurve *c, CagConic *out, CagError *err) {
   size_t n;
   bool closed;
   CagOpenConic open;
-  CagNurbsView nurbs;
+  const CagNurbs *nurbs = cag_nurbs_data(c);
   if (cag_curve_conic_view(c, out)) return CAG_OK;
   if (c->dimension != 2) return not_a_conic(err);
   if (cag_curve_arc_axes(c, &center, &x, &y, &rate))
@@ -374,8 +399,7 @@ CagStatus cag_conic_of_curve(const CagCurve *c, CagConic *out, CagError *err) {
     *out = (CagConic){{0, 0, 0, d.y, -d.x, d.x * p[0].y - d.y * p[0].x}};
     return CAG_OK;
   }
-  if (cag_curve_nurbs_view(c, &nurbs) && nurbs.degree == 2 && nurbs.count == 3 &&
-      conic_of_bezier(nurbs.homogeneous, out))
+  if (nurbs && nurbs->degree == 2 && conic_of_bezier(nurbs->bezier, out) && all_on(nurbs, out))
     return CAG_OK;
   return not_a_conic(err);
 }
@@ -428,11 +452,7 @@ static CagStatus directed(CagStatus status, bool backwards, CagCurve *forward, C
 static CagStatus segment_of_lines(const CagConic *c, CagVec3 p, CagVec3 q, CagCurve **out,
                                   CagError *err) {
   const CagVec3 middle = cag_lerp(p, q, 0.5);
-  const double *k = c->c;
-  const double size = fabs(k[0] * middle.x * middle.x) + fabs(k[2] * middle.y * middle.y) +
-                      fabs(k[1] * middle.x * middle.y) + fabs(k[3] * middle.x) +
-                      fabs(k[4] * middle.y) + fabs(k[5]);
-  if (fabs(cag_conic_value(c, middle)) > ROUND * size)
+  if (fabs(cag_conic_value(c, middle)) > ROUND * terms_at(c, middle))
     return cag_fail(err, CAG_E_DOMAIN, "domain", "x", -1,
                     "the two ends lie on different lines of the conic");
   return cag_curve_line(p, q, 2, out, err);
@@ -485,12 +505,22 @@ CagStatus cag_conic_line(const CagConic *conic, CagVec3 p, CagVec3 d, CagLineCon
   CagConicClass k;
   CagStatus status = cag_conic_classify(conic, &k, err);
   if (status) return status;
-  const double *c = conic->c, dd = cag_dot(d, d);
+  const double dd = cag_dot(d, d);
   if (!(dd > 0))
     return cag_fail(err, CAG_E_ARGUMENT, "zero-vector", "", -1, "the line has no direction");
-  // From the point next to the center the numbers stay small.
-  const double shift = cag_dot(cag_sub(k.center, p), d) / dd;
-  const CagVec3 o = cag_madd(p, shift, d);
+  // About the center, and from the line's point next to it, the numbers stay small; what the way
+  // there costs is the rounding of its terms.
+  const CagVec3 m = k.center;
+  const double *g = conic->c;
+  const double c[6] = {g[0],
+                       g[1],
+                       g[2],
+                       2 * g[0] * m.x + g[1] * m.y + g[3],
+                       2 * g[2] * m.y + g[1] * m.x + g[4],
+                       cag_conic_value(conic, m)};
+  const double rounding = 8 * DBL_EPSILON * terms_at(conic, m);
+  const double shift = cag_dot(cag_sub(m, p), d) / dd;
+  const CagVec3 o = cag_sub(cag_madd(p, shift, d), m);
   const double terms[6] = {c[0] * o.x * o.x, c[1] * o.x * o.y, c[2] * o.y * o.y,
                            c[3] * o.x,       c[4] * o.y,       c[5]};
   const double slopes[5] = {2 * c[0] * o.x * d.x, c[1] * (o.x * d.y + o.y * d.x),
@@ -508,7 +538,7 @@ CagStatus cag_conic_line(const CagConic *conic, CagVec3 p, CagVec3 d, CagLineCon
   }
   const bool flat = fabs(q2) <= NOTHING * size2;
   if (flat && fabs(q1) <= NOTHING * size1) {
-    *kind = fabs(q0) <= NOTHING * size0 ? CAG_LINE_WITHIN : CAG_LINE_NONE;
+    *kind = fabs(q0) <= NOTHING * size0 + rounding ? CAG_LINE_WITHIN : CAG_LINE_NONE;
     return CAG_OK;
   }
   if (flat) {
@@ -517,7 +547,7 @@ CagStatus cag_conic_line(const CagConic *conic, CagVec3 p, CagVec3 d, CagLineCon
     return CAG_OK;
   }
   const double disc = q1 * q1 - 4 * q2 * q0;
-  if (fabs(disc) <= NOTHING * (q1 * q1 + 4 * fabs(q2) * size0)) {
+  if (fabs(disc) <= NOTHING * (q1 * q1 + 4 * fabs(q2) * size0) + 4 * fabs(q2) * rounding) {
     *kind = CAG_LINE_TANGENT;
     t[0] = t[1] = shift - q1 / (2 * q2);
     return CAG_OK;
