@@ -1,8 +1,9 @@
 // The program `cag`: reads the command line, calls the command, and ends with its status.
 //
 // Signals: the first Ctrl-C (or SIGTERM, SIGHUP) asks what runs to stop, which leaves nothing half
-// written; a second one ends the program at once, after the temporaries of output files are
-// removed. A standard output that nobody reads shows as a failed write, not as a signal.
+// written. A second one, or an alarm where that takes too long (a single long step of geometry does
+// not look up), ends the program at once, after the temporaries of output files are removed. A
+// standard output that nobody reads shows as a failed write, not as a signal.
 
 #include <fcntl.h>
 #include <locale.h>
@@ -18,26 +19,35 @@ volatile int cag_tool_interrupt;
 // `timeout` that both send one: what was asked to stop gets the time to clean up.
 static const double SAME_WISH = 0.3;
 
+// Seconds that what runs has to stop by itself: renderers, their folders and the script need less.
+static const unsigned PATIENCE = 2;
+
 static double now(void) {
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+static void end_now(void) {
+  cag_atomic_files_cleanup();
+  _exit(CAG_STATUS_INTERRUPTED);
+}
+
 static void on_signal(int number) {
   static volatile double first;
-  (void)number;
-  if (!cag_tool_interrupt) {
+  if (number == SIGALRM) {
+    end_now();
+  } else if (!cag_tool_interrupt) {
     first = now();
     cag_tool_interrupt = 1;
+    alarm(PATIENCE);
   } else if (now() - first > SAME_WISH) {
-    cag_atomic_files_cleanup();
-    _exit(CAG_STATUS_INTERRUPTED);
+    end_now();
   }
 }
 
 static void catch_signals(void) {
-  static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP};
+  static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM};
   signal(SIGPIPE, SIG_IGN);
   for (size_t i = 0; i < sizeof SIGNALS / sizeof *SIGNALS; i++) {
     struct sigaction action = {.sa_handler = on_signal}, before; // reads are to end, not to resume

@@ -27,6 +27,13 @@ script list.cag 'print sum([for i in 0..1e12: i])'
 interrupted INT 0.3 run list.cag
 status 130
 
+it 'Ctrl-C ends a long step that does not look up, after two seconds'
+script matrix.cag 'print "begun"
+a = [for i in 0..<4000: random(i, 4000)]
+print determinant(multiply(inverse(a), inverse(a)))'
+interrupted INT 2 run matrix.cag
+status 130
+
 it 'Ctrl-C stops eval'
 interrupted INT 0.3 eval '{ f(n) = f(n + 1); f(0) }'
 status 130
