@@ -104,7 +104,13 @@ static double turn_of(const CagCurve *c, double a, double b, double *length) {
 static CagStatus halve(const CagCurve *c, double a, double b, const Limits *limits, Output *out,
                        CagError *err) {
   double middle = a + (b - a) / 2, length;
-  bool fine = cag_curve_sag(c, a, b) <= limits->tolerance;
+  const double sag = cag_curve_sag(c, a, b);
+  bool fine = sag <= limits->tolerance;
+  if (isinf(sag)) { // what cannot be evaluated gets no better in halves
+    CagVec3 ignored;
+    CagStatus status = cag_curve_point(c, middle, &ignored, err);
+    if (status) return status;
+  }
   if (fine && limits->angle < M_PI)
     fine = turn_of(c, a, b, &length) <= limits->angle || length <= limits->cusp;
   if (fine || !(a < middle && middle < b)) return append(out, b, err);

@@ -231,9 +231,7 @@ static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCur
   const Function *c = (const Function *)curve;
   CagCurve *made;
   CagStatus status = make(c, a, b, c->from, c->to, &made, err);
-  if (status) return status;
-  made->angular = false;
-  return finish(made, out, err);
+  return status ? status : finish(made, out, err);
 }
 
 static void describe(const CagCurve *curve, char *buffer, size_t size) {

@@ -39,10 +39,11 @@ static double nurbs_sag(const CagNurbs *c, double a, double b) {
 }
 
 // A kind of which nothing is known but its points: the largest distance found, and half as much
-// again.
+// again. The samples stand at multiples of the golden ratio, so that no wave meets them all at one
+// phase.
 static double sampled_sag(const CagCurve *c, double a, double b) {
   enum { SAMPLES = 9 };
-  const double safety = 1.5;
+  const double safety = 1.5, golden = 0.6180339887498949;
   CagVec3 first, last, p;
   CagError ignored;
   if (cag_curve_eval(c, a, 0, CAG_SIDE_RIGHT, &first, &ignored) ||
@@ -50,8 +51,8 @@ static double sampled_sag(const CagCurve *c, double a, double b) {
     return INFINITY;
   double most = 0;
   for (int i = 1; i < SAMPLES; i++) {
-    if (cag_curve_eval(c, a + (b - a) * i / SAMPLES, 0, CAG_SIDE_RIGHT, &p, &ignored))
-      return INFINITY;
+    const double share = i * golden - floor(i * golden);
+    if (cag_curve_eval(c, a + (b - a) * share, 0, CAG_SIDE_RIGHT, &p, &ignored)) return INFINITY;
     most = fmax(most, from_segment(p, first, last));
   }
   return safety * most;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "interp/builtin/support.h"
+#include "interp/value/jet.h"
 
 static const char FAMILY[] = "Calculus";
 static const double DEGREES_PER_RADIAN = 57.29577951308232;
@@ -45,6 +46,7 @@ static bool evaluate(const Subject *f, double x, CagValue *y) {
 }
 
 static bool fail_result(const Subject *f, CagValue y, const char *expected) {
+  if (cag_holds_jet(y)) return cag_fail_differentiate(f->call, 0);
   char found[120];
   return cag_fail_call(
       f->call, 0, CAG_ERR_type, "expects a function that gives %s as `%s`, it gave %s", expected,

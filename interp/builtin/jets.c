@@ -236,8 +236,9 @@ static bool of_in_degrees(const CagSeries *x, double degrees, double value, CagS
 #define UNARY(X)                                                                                   \
   X(abs)                                                                                           \
   X(sqrt)                                                                                          \
-  X(cbrt) X(exp) X(ln) X(log10) X(log2) X(sinh) X(cosh) X(tanh) X(asinh) X(acosh) X(atanh) X(sin)  \
-      X(cos) X(tan) X(asin) X(acos) X(atan) X(in_degrees) X(in_radians)
+  X(cbrt)                                                                                          \
+  X(exp) X(ln) X(log10) X(log2) X(sinh) X(cosh) X(tanh) X(asinh) X(acosh) X(atanh) X(sin) X(cos)   \
+      X(tan) X(asin) X(acos) X(atan) X(in_degrees) X(in_radians)
 
 // abs of an angle: the jet is read in radians, and given so.
 #define X(name)                                                                                    \
@@ -528,7 +529,7 @@ static bool jet_polar(CagCall *call, CagValue *result) {
   return center.type == CAG_UNSET || op(call, CAG_OP_ADD, center, *result, result);
 }
 
-// Answers that are steps or texts: those of the values.
+// An answer that is a step: that of the values.
 static bool by_value(CagCall *call, CagValue *result) { return plain_result(call, result); }
 
 // --- Curves and surfaces at a parameter that is a jet ---
@@ -792,7 +793,6 @@ static const struct {
     {"curvature", jet_curvature},
     {"torsion", jet_torsion},
     {"near", by_value},
-    {"text", by_value},
 };
 #define COUNT (sizeof differentiated / sizeof *differentiated)
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "interp/builtin/transforms.h"
+#include "interp/value/jet.h"
 
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result);
 
@@ -166,6 +167,7 @@ static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *re
     cag_shape_say_alike(*result, v);
     return true;
   }
+  if (cag_holds_jet(v)) return cag_fail_differentiate(call, 0);
   CagString found = {0};
   cag_describe_value(call->vm, &found, v);
   cag_fail_call(call, 0, CAG_ERR_operand,
