@@ -416,13 +416,15 @@ CagStatus cag_conic_point_at(const CagConic *conic, double x, bool upper, CagVec
                              CagError *err) {
   const double *c = conic->c, b = c[1] * x + c[4], e = (c[0] * x + c[3]) * x + c[5];
   const double scale = fmax(fabs(c[0]), fmax(fabs(c[1]), fabs(c[2])));
+  const double b_size = fabs(c[1] * x) + fabs(c[4]);
+  const double e_size = fabs(c[0] * x * x) + fabs(c[3] * x) + fabs(c[5]);
   if (fabs(c[2]) <= NOTHING * scale) {
     if (b == 0) return fail_segment(x, err);
     *out = cag_vec3(x, -e / b, 0);
     return CAG_OK;
   }
   double disc = b * b - 4 * c[2] * e;
-  if (fabs(disc) <= NOTHING * (b * b + fabs(4 * c[2] * e))) disc = 0;
+  if (disc < 0 && -disc <= NOTHING * (b_size * b_size + 4 * fabs(c[2]) * e_size)) disc = 0;
   if (disc < 0) return fail_segment(x, err);
   const double q = -(b + copysign(sqrt(disc), b)) / 2, first = q / c[2];
   const double second = q != 0 ? e / q : first;
