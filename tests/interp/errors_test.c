@@ -1,0 +1,125 @@
+// Every kind of error is explained, is provoked by its example, and has a script that provokes it.
+//
+// The scripts stand in tests/language/errors/CODE.cag and are run by `cag test`; here is looked
+// that none is missing. The program runs in the root of the repository.
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "cag.h"
+
+// A limit that keeps the examples of limits short.
+#define EXAMPLE_MEMORY ((size_t)64 << 20)
+#define EXAMPLE_SECONDS 20
+
+// Limits that the script of a test sets with `// run:`; an example of their own would take long.
+static const char *const by_options[] = {"E0603", "E0604"};
+
+// Kinds without an example are those that no script can provoke: outputs, renderers and pictures
+// are the command line's business, an interruption comes from outside, a defect should not be.
+static bool has_script(const char *code, const char *example) {
+  for (size_t i = 0; i < sizeof by_options / sizeof *by_options; i++)
+    if (strcmp(by_options[i], code) == 0) return true;
+  return example != NULL;
+}
+
+// Examples that want more than one text: a file that imports itself, a -D.
+static const char *const beyond_text[] = {"E0241", "E0247", "E0248", "E0249"};
+
+static bool wants_more(const char *code) {
+  for (size_t i = 0; i < sizeof beyond_text / sizeof *beyond_text; i++)
+    if (strcmp(beyond_text[i], code) == 0) return true;
+  return false;
+}
+
+static bool is_provoked(const char *code, const char *example) {
+  CagSessionOptions options;
+  cag_session_options_init(&options);
+  options.max_memory = EXAMPLE_MEMORY;
+  options.max_time = EXAMPLE_SECONDS;
+  options.out = fopen("/dev/null", "w");
+  assert_non_null(options.out);
+  CagSession *s = cag_session_new(&options);
+  assert_non_null(s);
+  int status = cag_session_run_text(s, code, example, strlen(example));
+  CagShownCounts counts;
+  if (status == CAG_STATUS_OK) cag_session_scene(s, &counts); // what a shown value is made of
+  bool found = cag_session_error_count(s) > 0;
+  for (size_t i = 0; i < cag_session_error_count(s); i++) {
+    CagErrorView e;
+    cag_session_error(s, i, &e);
+    if (strcmp(e.code, code) == 0) continue;
+    print_error("the example of %s gives %s: %s\n", code, e.code, e.message);
+    found = false;
+  }
+  if (cag_session_error_count(s) == 0) print_error("the example of %s gives no error\n", code);
+  cag_session_free(s);
+  fclose(options.out);
+  return found;
+}
+
+static void every_example_provokes_its_error(void **state) {
+  (void)state;
+  const char *code, *example;
+  size_t bad = 0;
+  for (size_t i = 0; cag_error_kind(i, &code, NULL, NULL, &example); i++)
+    if (example && !wants_more(code) && !is_provoked(code, example)) bad++;
+  assert_int_equal(bad, 0);
+}
+
+static void every_kind_is_explained(void **state) {
+  (void)state;
+  const char *code, *reason, *title;
+  for (size_t i = 0; cag_error_kind(i, &code, &reason, &title, NULL); i++) {
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    if (!cag_explain(code, out)) fail_msg("%s has no explanation", code);
+    fclose(out);
+    // Code, reason and title stand in the first line, below it a sentence at least.
+    size_t head = strcspn(text, "\n");
+    if (!strstr(text, code) || !strstr(text, reason) || !strstr(text, title) || size < head + 20)
+      fail_msg("%s is not explained: %s", code, text);
+    free(text);
+  }
+}
+
+static void codes_and_reasons_are_said_once(void **state) {
+  (void)state;
+  const char *a, *b, *a_reason, *b_reason;
+  for (size_t i = 0; cag_error_kind(i, &a, &a_reason, NULL, NULL); i++)
+    for (size_t k = 0; k < i && cag_error_kind(k, &b, &b_reason, NULL, NULL); k++)
+      if (strcmp(a, b) == 0 || strcmp(a_reason, b_reason) == 0)
+        fail_msg("%s (%s) and %s (%s)", a, a_reason, b, b_reason);
+}
+
+static void every_kind_of_a_script_has_one(void **state) {
+  (void)state;
+  const char *code, *example;
+  size_t bad = 0;
+  for (size_t i = 0; cag_error_kind(i, &code, NULL, NULL, &example); i++) {
+    char path[128];
+    snprintf(path, sizeof path, "tests/language/errors/%s.cag", code);
+    bool missing = has_script(code, example) && access(path, R_OK) != 0;
+    if (missing) print_error("%s is missing\n", path);
+    bad += missing;
+  }
+  assert_int_equal(bad, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_example_provokes_its_error),
+      cmocka_unit_test(every_kind_is_explained),
+      cmocka_unit_test(codes_and_reasons_are_said_once),
+      cmocka_unit_test(every_kind_of_a_script_has_one),
+  };
+  return cmocka_run_group_tests_name("errors", tests, NULL, NULL);
+}
