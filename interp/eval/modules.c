@@ -33,9 +33,11 @@ static CagModuleUnit *new_unit(CagVm *vm, const char *name, const char *path, co
   return m;
 }
 
+// Looks whether the file is a text. Of bytes astray in a text the lexer tells each, with its place;
+// a zero byte is in no text, and such a file has too many of the others to tell.
 static bool check_text(CagVm *vm, CagModuleUnit *m) {
   size_t bad = cag_source_bad_utf8(m->source);
-  if (bad == m->source->length) return true;
+  if (bad == m->source->length || !memchr(m->source->text, 0, m->source->length)) return true;
   const char *why = m->source->text[bad] == 0 ? "a zero byte" : "a byte that is no UTF-8";
   CagDiagnostic *d = cag_diagnostics_add(
       &vm->errors, CAG_ERR_module_not_text, m->source, (CagSpan){(uint32_t)bad, (uint32_t)bad + 1},
