@@ -344,6 +344,7 @@ static CagStatus eval_many(const CagCurve *curve, const double *t, size_t n, int
                            CagVec3 *out, CagError *err) {
   (void)err;
   const CagNurbs *c = (const CagNurbs *)curve;
+  if (cag_nurbs_eval_many(c, t, n, order, out)) return CAG_OK;
   size_t piece = 0;
   for (size_t i = 0; i < n; i++) {
     piece = cag_nurbs_piece(c, t[i], CAG_SIDE_RIGHT, piece);
