@@ -13,7 +13,6 @@ static CagCurve *winding(int degree, bool rational, const char *knots) {
   CagVec3 p[POINTS];
   double w[POINTS], k[POINTS + 5];
   CagCurve *c;
-  CagError err;
   for (int i = 0; i < POINTS; i++) {
     p[i] = cag_vec3(40 * sin(1.3 * i), 30 * cos(0.7 * i), 1.1 * i);
     w[i] = 1 + 0.5 * sin(i);
@@ -27,7 +26,6 @@ static void compare(const CagCurve *c, int order) {
   static double t[PARAMETERS];
   static CagVec3 many[PARAMETERS * 4 + 1];
   const CagVec3 untouched = {1, 2, 3};
-  CagError err;
   for (int i = 0; i < PARAMETERS; i++) t[i] = c->start + (c->end - c->start) * i / (PARAMETERS - 1);
   t[PARAMETERS - 1] = c->end;
   many[PARAMETERS * (order + 1)] = untouched;
