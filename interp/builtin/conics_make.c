@@ -346,18 +346,22 @@ static bool read_axes(CagCall *call, const CagCurve *c, Axes *out) {
   CagError err;
   if (!cag_curve_arc_axes(c, &out->center, &x, &y, &rate))
     return cag_fail_call(call, 0, CAG_ERR_value, "takes this `by` of circles and ellipses only");
+  // Any two conjugate half diameters will do for an arc; from them to the axes the angle shifts.
+  const double same = 1e-9; // cosine of axes square to each other, and angles that are one
+  if (fabs(cag_dot(x, y)) > same * cag_norm(x) * cag_norm(y)) {
+    const double shift = atan2(2 * cag_dot(x, y), cag_dot(x, x) - cag_dot(y, y)) / 2;
+    const CagVec3 axis = cag_madd(cag_scaled(x, cos(shift)), sin(shift), y);
+    y = cag_madd(cag_scaled(y, cos(shift)), -sin(shift), x);
+    x = axis;
+  }
   out->a = cag_norm(x);
   out->b = cag_norm(y);
   out->x = cag_unit(x);
   out->y = cag_unit(y);
-  const double square = 1e-9; // cosine of axes that count as square to each other
-  if (fabs(cag_dot(out->x, out->y)) > square)
-    return cag_fail_call(call, 0, CAG_ERR_value,
-                         "takes this `by` of ellipses given by their axes; this one was sheared");
   if (!cag_geometry_ok(call, cag_curve_point(c, c->start, &p, &err), &err)) return false;
   const CagVec3 d = cag_sub(p, out->center);
   out->from = atan2(cag_dot(d, out->y) / out->b, cag_dot(d, out->x) / out->a);
-  if (c->angular && fabs(remainder(out->from - c->start, 2 * M_PI)) < square) out->from = c->start;
+  if (c->angular && fabs(remainder(out->from - c->start, 2 * M_PI)) < same) out->from = c->start;
   out->to = out->from + rate * (c->end - c->start);
   return true;
 }
