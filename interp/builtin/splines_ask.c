@@ -1,0 +1,424 @@
+// Bases as matrices, the forms and the shape of cubic segments, joints, crossings with lines.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/basis/bernstein.h"
+#include "geom/curve/hulls.h"
+#include "geom/curve/intersect.h"
+#include "geom/curve/joint.h"
+#include "interp/builtin/splines.h"
+#include "interp/builtin/support.h"
+
+// --- Matrices: rows by descending powers of t, columns by control points ---
+
+static CagValue matrix_value(CagVm *vm, const double *m, size_t n) {
+  double *out;
+  CagValue v;
+  if (n == 1) v = cag_list_numbers(vm, 1, &out);
+  else if (n <= CAG_MAX_PACKED) v = cag_list_vectors(vm, n, n, &out);
+  else {
+    CagBuilder *rows = cag_builder_new(vm);
+    for (size_t i = 0; i < n; i++) cag_builder_add(vm, rows, cag_numbers_value(vm, m + i * n, n));
+    return cag_builder_finish(vm, rows);
+  }
+  memcpy(out, m, n * n * sizeof *out);
+  if (n == 1) v = cag_list_values(vm, &v, 1);
+  return v;
+}
+
+// C(i, j) = binomial(n - j, n - i - j) (-1)^(n - i - j), D = diag(binomial(n, j)), N = C D
+// (reference 05a, 6).
+static void bezier_matrix(int n, double *product, double *c, double *d) {
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; j <= n; j++) {
+      const int k = n - i - j;
+      const double sign = k % 2 == 0 ? 1 : -1, a = k < 0 ? 0 : sign * cag_binomial(n - j, k);
+      const int at = i * (n + 1) + j;
+      product[at] = a * cag_binomial(n, j);
+      if (c) c[at] = a;
+      if (d) d[at] = i == j ? cag_binomial(n, j) : 0;
+    }
+}
+
+// One span of a uniform B-spline (reference 05b, 2.7).
+static void bspline_matrix(int p, double *out) {
+  const int k = p + 1;
+  double factorial = 1;
+  for (int i = 2; i <= p; i++) factorial *= i;
+  for (int i = 0; i < k; i++)
+    for (int j = 0; j < k; j++) {
+      double sum = 0;
+      for (int l = j; l < k; l++)
+        sum += pow(k - (l + 1), i) * ((l - j) % 2 == 0 ? 1 : -1) * cag_binomial(k, l - j);
+      out[i * k + j] = cag_binomial(p, i) * sum / factorial;
+    }
+}
+
+static void parabolic_matrix(double a, double b, double *out) {
+  const double c = 1 - a, ab = a * b;
+  const double m[16] = {-c * c / a,
+                        (c + ab) / a,
+                        (-c - ab) / (1 - b),
+                        b * b / (1 - b), //
+                        2 * c * c / a,
+                        (-2 * c - ab) / a,
+                        (2 * c - b * (1 - 2 * a)) / (1 - b),
+                        -b * b / (1 - b), //
+                        -c * c / a,
+                        (1 - 2 * a) / a,
+                        a,
+                        0, //
+                        0,
+                        1,
+                        0,
+                        0};
+  memcpy(out, m, sizeof m);
+}
+
+// Entries of higher degrees are beyond what a double holds exactly.
+#define BEZIER_MATRIX_MOST 50
+#define BSPLINE_MATRIX_MOST 15
+
+// basis_matrix(kind, degree = 3, alpha = 0.5, beta = 0.5)
+bool cag_splines_basis_matrix(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"bezier",      "bspline",   "hermite",
+                                      "catmull_rom", "parabolic", NULL};
+  static const double hermite[16] = {2, -2, 1, 1, -3, 3, -2, -1, 0, 0, 1, 0, 1, 0, 0, 0};
+  double m[(BEZIER_MATRIX_MOST + 1) * (BEZIER_MATRIX_MOST + 1)], alpha, beta;
+  char text[32];
+  int kind;
+  long degree;
+  if (!cag_arg_choice(call, 0, names, &kind)) return false;
+  const long most = kind == 0 ? BEZIER_MATRIX_MOST : kind == 1 ? BSPLINE_MATRIX_MOST : 3;
+  if (!cag_arg_integer_or(call, 1, 3, kind < 2 ? 0 : 3, most, &degree) ||
+      !cag_arg_number_or(call, 2, 0.5, &alpha) || !cag_arg_number_or(call, 3, 0.5, &beta))
+    return false;
+  const double *ratios[2] = {&alpha, &beta};
+  for (int i = 0; i < 2; i++)
+    if (kind == 4 && !(*ratios[i] > 0 && *ratios[i] < 1))
+      return cag_splines_fail(call, "bad-blend-parameter", i ? "beta" : "alpha", -1,
+                              "a parabola passes its middle point between 0 and 1: %s = %s",
+                              i ? "beta" : "alpha", cag_number_text(*ratios[i], text));
+  if (kind == 0) bezier_matrix((int)degree, m, NULL, NULL);
+  else if (kind == 1) bspline_matrix((int)degree, m);
+  else if (kind == 2) memcpy(m, hermite, sizeof hermite);
+  else parabolic_matrix(kind == 3 ? 0.5 : alpha, kind == 3 ? 0.5 : beta, m);
+  *result = matrix_value(call->vm, m, (size_t)degree + 1);
+  return true;
+}
+
+bool cag_splines_bezier_matrices(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"N", "C", "D"};
+  double m[3][(BEZIER_MATRIX_MOST + 1) * (BEZIER_MATRIX_MOST + 1)];
+  long n;
+  if (!cag_arg_integer(call, 0, 0, BEZIER_MATRIX_MOST, &n)) return false;
+  bezier_matrix((int)n, m[0], m[1], m[2]);
+  CagValue values[3];
+  for (int i = 0; i < 3; i++) values[i] = matrix_value(call->vm, m[i], (size_t)n + 1);
+  *result = cag_record_new(call->vm, names, values, 3);
+  return true;
+}
+
+// A higher degree has no values that a double can tell apart.
+#define BERNSTEIN_MOST 1000
+
+bool cag_splines_bernstein_maxima(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"t", "value"};
+  double b[BERNSTEIN_MOST + 1], *t, *value;
+  long n;
+  if (!cag_arg_integer(call, 0, 0, BERNSTEIN_MOST, &n)) return false;
+  CagValue values[] = {cag_list_numbers(call->vm, (size_t)n + 1, &t),
+                       cag_list_numbers(call->vm, (size_t)n + 1, &value)};
+  for (long i = 0; i <= n; i++) {
+    t[i] = n == 0 ? 0 : (double)i / (double)n;
+    cag_bernstein((int)n, t[i], b);
+    value[i] = b[i];
+  }
+  *result = cag_record_new(call->vm, names, values, 2);
+  return true;
+}
+
+// hermite_basis(t, length = 1)
+bool cag_splines_hermite_basis(CagCall *call, CagValue *result) {
+  double t, h, *f;
+  if (!cag_arg_finite(call, 0, &t) ||
+      (cag_given(call, 1) ? !cag_arg_finite(call, 1, &h) : (h = 1, false)))
+    return false;
+  char text[32];
+  if (!(h > 0))
+    return cag_splines_fail(call, "bad-parameter-length", "length", -1,
+                            "the length of a segment is positive; this is %s",
+                            cag_number_text(h, text));
+  *result = cag_list_numbers(call->vm, 4, &f);
+  f[0] = (2 * t - 3) * t * t + 1;
+  f[1] = (3 - 2 * t) * t * t;
+  f[2] = t * ((t - 2) * t + 1) * h;
+  f[3] = t * (t - 1) * t * h;
+  return true;
+}
+
+// --- Polynomials of pieces ---
+
+bool cag_splines_polynomials(CagCall *call, CagValue *result) {
+  CagCurve *c;
+  CagVec3 *a;
+  size_t pieces;
+  int degree;
+  CagError err;
+  if (!cag_arg_curve(call, 0, &c) ||
+      !cag_geometry_ok(call, cag_curve_coefficients(c, &a, &pieces, &degree, &err), &err))
+    return false;
+  CagBuilder *rows = cag_builder_new(call->vm);
+  bool ok = true;
+  const size_t stride = (size_t)degree + 1;
+  for (size_t i = 0; ok && i < pieces; i++)
+    ok = cag_builder_add(call->vm, rows,
+                         cag_points_value(call->vm, a + i * stride, stride, c->dimension));
+  free(a);
+  if (ok) *result = cag_builder_finish(call->vm, rows);
+  return ok;
+}
+
+// --- Cubic segments ---
+
+static bool read_segment(CagCall *call, bool plane, CagVec3 v[4], int *dimension) {
+  if (!cag_arg_vec(call, 0, &v[0], dimension)) return false;
+  for (int i = 1; i < 4; i++)
+    if (!cag_splines_vec(call, i, *dimension, &v[i])) return false;
+  if (!plane || *dimension == 2) return true;
+  return cag_splines_fail(call, "dimension-mismatch", "", -1,
+                          "inflections, cusps and loops are those of plane segments: give points "
+                          "and tangents of 2 numbers");
+}
+
+bool cag_splines_hermite_shape(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"chord",       "k0",           "k1",          "ratio0",
+                                      "ratio1",      "within_limit", "projection0", "projection1",
+                                      "inflections", "cusp",         "loop"};
+  CagVec3 v[4];
+  int dimension;
+  CagHermiteShape s;
+  CagError err;
+  if (!read_segment(call, true, v, &dimension) ||
+      !cag_geometry_ok(call, cag_hermite_shape(v[0], v[1], v[2], v[3], &s, &err), &err))
+    return false;
+  CagValue values[] = {cag_number(s.chord),
+                       cag_number(s.speed[0]),
+                       cag_number(s.speed[1]),
+                       cag_number(s.ratio[0]),
+                       cag_number(s.ratio[1]),
+                       cag_bool(s.within_limit),
+                       cag_number(s.projection[0]),
+                       cag_number(s.projection[1]),
+                       cag_numbers_value(call->vm, s.inflection, s.inflections),
+                       s.has_cusp ? cag_number(s.cusp) : cag_none(),
+                       s.has_loop ? cag_numbers_value(call->vm, s.loop, 2) : cag_none()};
+  *result = cag_record_new(call->vm, names, values, sizeof values / sizeof *values);
+  return true;
+}
+
+// hermite_by_curvature(P, Q, V, W, start, finish)
+bool cag_splines_hermite_by_curvature(CagCall *call, CagValue *result) {
+  CagVec3 v[4];
+  int dimension;
+  double k[2], lengths[4][2];
+  CagError err;
+  if (!read_segment(call, true, v, &dimension) || !cag_arg_finite(call, 4, &k[0]) ||
+      !cag_arg_finite(call, 5, &k[1]))
+    return false;
+  for (int i = 2; i < 4; i++) {
+    if (cag_norm(v[i]) == 0)
+      return cag_splines_fail(call, "zero-vector", cag_parameter_name(call, i), -1,
+                              "the direction at the %s is the zero vector",
+                              i == 2 ? "start" : "end");
+    v[i] = cag_unit(v[i]);
+  }
+  const size_t n = cag_hermite_by_curvature(v[0], v[1], v[2], v[3], k, lengths);
+  static const double unit[2] = {0, 1};
+  CagValue curves[4];
+  for (size_t i = 0; i < n; i++) {
+    const CagVec3 tangents[2] = {cag_scaled(v[2], lengths[i][0]), cag_scaled(v[3], lengths[i][1])};
+    CagCurve *c = NULL;
+    CagStatus status = cag_curve_hermite(v, tangents, 2, unit, 2, &c, &err);
+    if (!cag_splines_give(call, status, &err, &c, &curves[i])) return false;
+  }
+  *result = cag_list_values(call->vm, curves, n);
+  return true;
+}
+
+// The Bezier points of the segment that four points or vectors are in the form `from`.
+static void to_bezier_points(const CagVec3 g[4], int from, CagVec3 b[4]) {
+  CagVec3 d0, d1;
+  switch (from) {
+  case 0: memcpy(b, g, 4 * sizeof *b); return;
+  case 1:
+    d0 = g[2];
+    d1 = g[3];
+    b[0] = g[0];
+    b[3] = g[1];
+    break;
+  case 2:
+    b[0] = g[0];
+    b[3] = cag_add(cag_add(g[0], g[1]), cag_add(g[2], g[3]));
+    d0 = g[1];
+    d1 = cag_add(g[1], cag_add(cag_scaled(g[2], 2), cag_scaled(g[3], 3)));
+    break;
+  default:
+    b[0] = g[1];
+    b[3] = g[2];
+    d0 = cag_scaled(cag_sub(g[2], g[0]), 0.5);
+    d1 = cag_scaled(cag_sub(g[3], g[1]), 0.5);
+  }
+  b[1] = cag_madd(b[0], 1.0 / 3, d0);
+  b[2] = cag_madd(b[3], -1.0 / 3, d1);
+}
+
+// convert_cubic(points, from = "bezier")
+bool cag_splines_convert_cubic(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"bezier", "hermite", "power", "parabolic", NULL};
+  CagVec3 *g, b[4];
+  size_t n;
+  int dimension, from;
+  if (!cag_arg_choice(call, 1, names, &from) || !cag_splines_points(call, 0, &g, &n, &dimension))
+    return false;
+  if (n == 4) to_bezier_points(g, from, b);
+  free(g);
+  if (n != 4)
+    return cag_splines_fail(call, "point-count", "points", -1,
+                            "a cubic has four points and vectors; these are %zu", n);
+  const CagVec3 d0 = cag_scaled(cag_sub(b[1], b[0]), 3), d1 = cag_scaled(cag_sub(b[3], b[2]), 3);
+  const CagVec3 bend = cag_scaled(cag_add(cag_sub(b[0], cag_scaled(b[1], 2)), b[2]), 3);
+  const CagVec3 cube = cag_add(cag_sub(b[3], b[0]), cag_scaled(cag_sub(b[1], b[2]), 3));
+  const CagVec3 forms[4][4] = {{b[0], b[1], b[2], b[3]},
+                               {b[0], b[3], d0, d1},
+                               {b[0], d0, bend, cube},
+                               {cag_madd(b[3], -2, d0), b[0], b[3], cag_madd(b[0], 2, d1)}};
+  CagValue values[4];
+  for (int i = 0; i < 4; i++) values[i] = cag_points_value(call->vm, forms[i], 4, dimension);
+  *result = cag_record_new(call->vm, names, values, 4);
+  return true;
+}
+
+// --- Joints ---
+
+// bezier_join(C, degree = 3, order = 1, ratio = 1)
+bool cag_splines_bezier_join(CagCall *call, CagValue *result) {
+  CagCurve *c;
+  long m, order;
+  double ratio;
+  CagVec3 out[3];
+  CagError err;
+  if (!cag_arg_curve(call, 0, &c) || !cag_arg_integer_or(call, 1, 3, 0, CAG_MAX_DEGREE, &m) ||
+      !cag_arg_integer_or(call, 2, 1, -1000, 1000, &order) ||
+      !cag_arg_number_or(call, 3, 1, &ratio) ||
+      !cag_geometry_ok(call, cag_bezier_join(c, (int)m, (int)order, ratio, out, &err), &err))
+    return false;
+  *result = cag_points_value(call->vm, out, (size_t)order + 1, c->dimension);
+  return true;
+}
+
+static CagValue number_or_none(double x) { return isnan(x) ? cag_none() : cag_number(x); }
+
+// continuity(C, D, tolerance = 1e-9)
+bool cag_splines_continuity(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"class", "C0",         "C1",          "C2",
+                                      "G1",    "G2",         "gap",         "angle",
+                                      "ratio", "first_jump", "second_jump", "curvature_jump"};
+  CagCurve *a, *b;
+  double tolerance;
+  CagJoint j;
+  CagError err;
+  if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b) ||
+      !cag_arg_number_or(call, 2, 1e-9, &tolerance))
+    return false;
+  if (!(tolerance >= 0))
+    return cag_splines_fail(call, "tolerance-not-positive", "tolerance", -1,
+                            "the tolerance is 0 or more");
+  if (!cag_geometry_ok(call, cag_curve_joint(a, b, tolerance, &j, &err), &err)) return false;
+  CagValue values[] = {cag_text_c(call->vm, cag_joint_class(&j)),
+                       cag_bool(j.c0),
+                       cag_bool(j.c1),
+                       cag_bool(j.c2),
+                       cag_bool(j.g1),
+                       cag_bool(j.g2),
+                       cag_number(j.gap),
+                       isnan(j.angle) ? cag_none() : cag_angle(j.angle / CAG_RADIANS_PER_DEGREE),
+                       number_or_none(j.ratio),
+                       cag_number(j.first_jump),
+                       cag_number(j.second_jump),
+                       number_or_none(j.curvature_jump)};
+  *result = cag_record_new(call->vm, names, values, sizeof values / sizeof *values);
+  return true;
+}
+
+// --- Lines and hulls ---
+
+static size_t polygon_crossings(const CagCurve *curve, CagVec3 normal, double offset) {
+  CagCurve *exact;
+  CagNurbsView view;
+  CagError err;
+  if (cag_curve_to_nurbs(curve, &exact, &err) != CAG_OK) return 0;
+  size_t n = 0;
+  if (cag_curve_nurbs_view(exact, &view)) {
+    int last = 0;
+    for (size_t i = 0; i < view.count; i++) {
+      const double *h = view.homogeneous + 4 * i;
+      const double d = cag_dot(normal, cag_vec3(h[0], h[1], h[2])) - offset * h[3];
+      const int sign = (d > 0) - (d < 0);
+      n += sign != 0 && last != 0 && sign != last;
+      if (sign != 0) last = sign;
+    }
+  }
+  cag_curve_release(exact);
+  return n;
+}
+
+// line_crossings(C, normal, offset)
+bool cag_splines_line_crossings(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"t", "points", "curve_crossings", "polygon_crossings"};
+  CagCurve *c;
+  CagVec3 normal;
+  double offset;
+  CagMeeting *meetings;
+  size_t n;
+  int d;
+  CagError err;
+  if (!cag_arg_curve(call, 0, &c) || !cag_arg_vec(call, 1, &normal, &d) ||
+      !cag_arg_finite(call, 2, &offset))
+    return false;
+  const double square = cag_dot(normal, normal);
+  if (!(square > 0))
+    return cag_splines_fail(call, "zero-vector", "normal", -1,
+                            "the normal of a line or plane is not the zero vector");
+  const CagPlane plane = {cag_scaled(normal, offset / square), cag_unit(normal)};
+  if (!cag_geometry_ok(call, cag_curve_intersect_plane(c, &plane, &meetings, &n, &err), &err))
+    return false;
+  CagBuilder *t = cag_builder_new(call->vm), *points = cag_builder_new(call->vm);
+  bool ok = true;
+  for (size_t i = 0; ok && i < n; i++)
+    ok = cag_builder_add(call->vm, t, cag_parameter_value(c->angular, meetings[i].t)) &&
+         cag_builder_add(call->vm, points, cag_point(call->vm, meetings[i].point, c->dimension));
+  free(meetings);
+  if (!ok) return false;
+  CagValue values[] = {cag_builder_finish(call->vm, t), cag_builder_finish(call->vm, points),
+                       cag_number((double)n),
+                       cag_number((double)polygon_crossings(c, normal, offset))};
+  *result = cag_record_new(call->vm, names, values, 4);
+  return true;
+}
+
+bool cag_splines_hulls_disjoint(CagCall *call, CagValue *result) {
+  CagVec3 *a, *b;
+  size_t n, m;
+  int d;
+  if (!cag_arg_points(call, 0, &a, &n, &d)) return false;
+  if (!cag_arg_points(call, 1, &b, &m, &d)) {
+    free(a);
+    return false;
+  }
+  *result = cag_bool(cag_hulls_disjoint(a, n, b, m));
+  free(a);
+  free(b);
+  return true;
+}

@@ -1,0 +1,160 @@
+// B-splines from data: interpolation, least squares and its report.
+
+#include <stdlib.h>
+
+#include "geom/curve/fit.h"
+#include "interp/builtin/splines.h"
+#include "interp/builtin/support.h"
+
+// data_parameters(points, by = "chord")
+bool cag_splines_data_parameters(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"chord", "uniform", "centripetal", NULL};
+  CagVec3 *points;
+  size_t n;
+  int dimension, choice;
+  double *out;
+  if (!cag_arg_choice(call, 1, names, &choice) ||
+      !cag_splines_points(call, 0, &points, &n, &dimension))
+    return false;
+  *result = cag_list_numbers(call->vm, n, &out);
+  double sum = 0;
+  for (size_t i = 0; i < n; i++) {
+    double step = i == 0 ? 0 : 1;
+    if (i > 0 && choice != CAG_SPACING_UNIFORM) step = cag_norm(cag_sub(points[i], points[i - 1]));
+    out[i] = sum += choice == CAG_SPACING_CENTRIPETAL ? sqrt(step) : step;
+  }
+  free(points);
+  if (isfinite(sum)) return true;
+  return cag_splines_fail(call, "not-finite", "points", -1, "the distances of the points overflow");
+}
+
+// What both read: points, degree, parameters, knots.
+typedef struct Request {
+  CagFitData data;
+  CagVec3 *points;
+  double *parameters;
+} Request;
+
+static void free_request(Request *r) {
+  free(r->points);
+  free(r->parameters);
+}
+
+static bool read_knots(CagCall *call, int argument, CagFitData *d, size_t count) {
+  static const char *const names[] = {"auto", "open", "averaged", NULL};
+  const CagType type = cag_given(call, argument) ? call->values[argument].type : CAG_UNSET;
+  if (type != CAG_LIST && type != CAG_RANGE) {
+    int choice;
+    if (!cag_arg_choice(call, argument, names, &choice)) return false;
+    d->kind = (CagFitKnots)choice;
+    return true;
+  }
+  size_t given;
+  d->kind = CAG_FIT_GIVEN;
+  if (!cag_arg_numbers(call, argument, &d->knots, &given)) return false;
+  const size_t wanted = count + (size_t)d->degree + 1;
+  if (given == wanted) return true;
+  return cag_splines_fail(call, "knot-count", "knots", -1,
+                          "%zu control points of degree %d want %zu `knots` (count + degree + 1), "
+                          "found %zu",
+                          count, d->degree, wanted, given);
+}
+
+static bool read_request(CagCall *call, int degree, int order, int parameters, Request *out) {
+  Request r = {0};
+  CagFitData *d = &r.data;
+  if (!cag_arg_degree(call, degree, order, 3, &d->degree) ||
+      !cag_splines_points(call, 0, &r.points, &d->n, &d->dimension))
+    return false;
+  d->points = r.points;
+  if (!cag_splines_parameters(call, parameters, CAG_SPACING_CHORD, d->n, &d->spacing,
+                              &r.parameters)) {
+    free_request(&r);
+    return false;
+  }
+  d->parameters = r.parameters;
+  *out = r;
+  return true;
+}
+
+// interpolate(points, degree = 3, parameters = "chord", tangents = none, knots = "auto",
+//             order = none)
+bool cag_splines_interpolate(CagCall *call, CagValue *result) {
+  Request r;
+  CagVec3 *tangents = NULL;
+  size_t count = 0;
+  int dimension;
+  CagCurve *c = NULL;
+  CagError err;
+  if (!read_request(call, 1, 5, 2, &r)) return false;
+  bool ok = !cag_splines_set(call, 3) || cag_splines_points(call, 3, &tangents, &count, &dimension);
+  if (ok && tangents && dimension != r.data.dimension)
+    ok = cag_splines_fail(call, "dimension-mismatch", "tangents", -1,
+                          "the points have %d numbers, the tangents %d", r.data.dimension,
+                          dimension);
+  ok = ok && read_knots(call, 4, &r.data, r.data.n + count);
+  if (ok) {
+    CagStatus status = cag_curve_interpolate(&r.data, tangents, count, &c, &err);
+    ok = cag_splines_give(call, status, &err, &c, result);
+  }
+  free(tangents);
+  free_request(&r);
+  return ok;
+}
+
+// fit(points, degree = 3, count = degree + 1, parameters = "chord", fixed = "ends", knots = "auto",
+//     error = 1e-9, order = none)
+static bool fit(CagCall *call, CagFitReport *report, size_t *n, int *dimension, CagCurve **out) {
+  static const char *const names[] = {"ends", "none", "x", "y", "z", NULL};
+  Request r;
+  int fixed;
+  long count;
+  double slack;
+  CagError err;
+  if (!cag_arg_choice(call, 4, names, &fixed) || !cag_arg_number_or(call, 6, 1e-9, &slack) ||
+      !read_request(call, 1, 7, 3, &r))
+    return false;
+  bool ok = cag_arg_integer_or(call, 2, r.data.degree + 1L, 1, 100000000, &count);
+  if (ok && !(slack >= 0))
+    ok = cag_splines_fail(call, "bad-parameter", "error", -1,
+                          "the error that is allowed is 0 or more");
+  // Too many control points are told as that, not as the wrong number of knots.
+  ok = ok && ((size_t)count > r.data.n || read_knots(call, 5, &r.data, (size_t)count));
+  if (ok) {
+    CagStatus status = cag_curve_fit(&r.data, (size_t)count, fixed == 0,
+                                     fixed >= 2 ? fixed - 2 : -1, slack, out, report, &err);
+    ok = cag_geometry_ok(call, status, &err);
+  }
+  *n = r.data.n;
+  *dimension = r.data.dimension;
+  free_request(&r);
+  return ok;
+}
+
+bool cag_splines_fit(CagCall *call, CagValue *result) {
+  CagCurve *c;
+  size_t n;
+  int dimension;
+  if (!fit(call, NULL, &n, &dimension, &c)) return false;
+  *result = cag_curve_value(call->vm, c);
+  return true;
+}
+
+bool cag_splines_fit_report(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"curve", "parameters", "residuals",
+                                      "rms",   "largest",    "rounds"};
+  CagCurve *c;
+  CagFitReport report;
+  size_t n;
+  int dimension;
+  if (!fit(call, &report, &n, &dimension, &c)) return false;
+  CagValue values[] = {cag_curve_value(call->vm, c),
+                       cag_numbers_value(call->vm, report.parameters, n),
+                       cag_points_value(call->vm, report.residuals, n, dimension),
+                       cag_number(report.rms),
+                       cag_number(report.largest),
+                       cag_number(report.rounds)};
+  cag_fit_report_free(&report);
+  *result = cag_record_new(call->vm, names, values, 6);
+  return true;
+}
