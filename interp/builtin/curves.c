@@ -21,12 +21,13 @@ const CagBuiltin cag_builtins_curves[] = {
      "print at(line([0, 0], [4, 2]), 0.5), at(circle(2), 0.25, unit: true) // expect: [2, 1] [0, "
      "2]",
      CURVES, asked},
-    {"derivative(C, t, order = 1)", cag_curves_derivative, "list",
+    {"derivative(C, t, order = 1, side = \"right\")", cag_curves_derivative, "list",
      "The derivative of this order by t (by an angle: per radian); at a knot or corner the one to "
-     "its right.",
+     "its right, or with `side: \"left\"` the one to its left.",
      "print derivative(bezier([[0, 0], [1, 2], [2, 0]]), 0) // expect: [2, 4]", CURVES, asked},
-    {"tangent(C, t)", cag_curves_tangent, "list",
-     "The unit tangent; where the derivative vanishes, its limit if there is one.",
+    {"tangent(C, t, side = \"right\")", cag_curves_tangent, "list",
+     "The unit tangent, at a corner the one to its right or `side: \"left\"`; where the derivative "
+     "vanishes, its limit if there is one.",
      "print near(tangent(line([0, 0], [3, 4]), 0.2), [0.6, 0.8]) // expect: true", CURVES, asked},
     {"normal(C, t)", cag_curves_normal, "list",
      "The unit normal, towards the center of curvature. Where the curvature is 0 there is none: an "
@@ -65,7 +66,8 @@ const CagBuiltin cag_builtins_curves[] = {
      "print degree(bezier([[0, 0], [1, 1], [2, 0]])) // expect: 2", CURVES, asked},
     {"points(C)", cag_curves_points, "list",
      "The control points of a Bezier or B-spline curve, the corners of a polyline; of a closed one "
-     "as they were given. Other kinds have none: an error (no-control-points).",
+     "as they were given. A point whose weight is 0 acts on nothing and is none. Other kinds have "
+     "none: an error (no-control-points).",
      "print points(polyline([[0, 0], [1, 1]])) // expect: [[0, 0], [1, 1]]", CURVES, asked},
     {"weights(C)", cag_curves_weights, "list",
      "The weights of the control points, 1 each where none were given.",
@@ -191,14 +193,11 @@ const CagBuiltin cag_builtins_curves[] = {
      "q = nurbs([[1, 0], [1, 1], [0, 1]], degree: 2, weights: [1, sqrt(0.5), 1])\n"
      "print near(norm(q(0.3)), 1) // expect: true",
      LISTS, splines},
-    {"knot_vector(count, degree = 3, kind = \"open\", order = none)", cag_curves_knot_vector,
-     "list",
+    {"knot_vector(count, degree = 3, kind = \"open\", order = none, over = none)",
+     cag_curves_knot_vector, "list",
      "The knots of so many control points: \"open\", \"periodic\", or, of the list of the points, "
-     "by their chords.",
+     "by their chords; in whole steps from 0, or with the usable range `over`.",
      "print knot_vector(4, 2) // expect: [0, 0, 0, 1, 2, 2, 2]", NUMBERS, splines},
-    {"basis(knots, degree = 3, t = 0, derivative = 0, order = none)", cag_curves_basis, "list",
-     "The values at t of all B-spline basis functions of these knots, or their derivatives.",
-     "print basis([0, 0, 0, 1, 1, 1], 2, 0.5) // expect: [0.25, 0.5, 0.25]", LISTS, splines},
     {"bernstein(n, t)", cag_curves_bernstein, "list",
      "The values at t of the n + 1 Bernstein polynomials of degree n.",
      "print bernstein(2, 0.5) // expect: [0.25, 0.5, 0.25]", NUMBERS, splines},

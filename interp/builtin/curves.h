@@ -19,7 +19,7 @@
   /* curves_make.c */ \
   X(line) X(polyline) X(circle) X(arc) X(ellipse) X(arc_through) X(circle_through) X(helix) \
   /* curves_spline.c */ \
-  X(bezier) X(bspline) X(nurbs) X(knot_vector) X(basis) X(bernstein) \
+  X(bezier) X(bspline) X(nurbs) X(knot_vector) X(bernstein) \
   /* regions.c */ \
   X(region) X(polygon) X(rectangle) X(regular_polygon) X(boundary)
 // clang-format on
@@ -30,5 +30,11 @@ CAG_CURVE_FUNCTIONS(X)
 
 // Degree from `degree` or, one more, from `order`; the fallback where neither is given.
 bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *out);
+
+// The frame of a circle by its `center` and `normal`, the parameters `at` and the next: z along the
+// normal; planar where neither is of space.
+bool cag_arg_circle_frame(CagCall *call, int at, CagTransform *out);
+// Weights, one for each of n points; NULL where there are none. "weight-count".
+bool cag_arg_weights(CagCall *call, int argument, size_t n, const double **out);
 
 #endif

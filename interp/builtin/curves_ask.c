@@ -1,11 +1,20 @@
 // What curves answer at one parameter, and their data.
 
+#include "geom/basis/bernstein.h"
 #include "interp/builtin/curves.h"
 
 // The curve of the first argument and the parameter of the second.
 static bool read_at(CagCall *call, CagCurve **c, double *t) {
   return cag_arg_curve(call, 0, c) &&
          cag_arg_parameter(call, 1, (*c)->angular, (*c)->start, (*c)->end, false, t);
+}
+
+static bool read_side(CagCall *call, int argument, CagSide *out) {
+  static const char *const sides[] = {"right", "left", NULL};
+  int side;
+  if (!cag_arg_choice(call, argument, sides, &side)) return false;
+  *out = side == 1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+  return true;
 }
 
 bool cag_curves_at(CagCall *call, CagValue *result) {
@@ -28,8 +37,10 @@ bool cag_curves_derivative(CagCall *call, CagValue *result) {
   CagError err;
   double t;
   long order;
+  CagSide side;
   if (!read_at(call, &c, &t) || !cag_arg_integer_or(call, 2, 1, 0, CAG_MAX_DERIVATIVE, &order) ||
-      !cag_geometry_ok(call, cag_curve_eval(c, t, (int)order, CAG_SIDE_RIGHT, out, &err), &err))
+      !read_side(call, 3, &side) ||
+      !cag_geometry_ok(call, cag_curve_eval(c, t, (int)order, side, out, &err), &err))
     return false;
   *result = cag_point(call->vm, out[order], c->dimension);
   return true;
@@ -40,8 +51,9 @@ bool cag_curves_tangent(CagCall *call, CagValue *result) {
   CagVec3 v;
   CagError err;
   double t;
-  if (!read_at(call, &c, &t) ||
-      !cag_geometry_ok(call, cag_curve_tangent(c, t, CAG_SIDE_RIGHT, &v, &err), &err))
+  CagSide side;
+  if (!read_at(call, &c, &t) || !read_side(call, 2, &side) ||
+      !cag_geometry_ok(call, cag_curve_tangent(c, t, side, &v, &err), &err))
     return false;
   *result = cag_point(call->vm, v, c->dimension);
   return true;
@@ -194,11 +206,14 @@ bool cag_curves_points(CagCall *call, CagValue *result) {
     return true;
   }
   if (!cag_curve_nurbs_view(c, &nurbs)) return fail_no_data(call, c, "control points");
-  double *out;
-  *result = cag_list_vectors(call->vm, nurbs.distinct, (size_t)c->dimension, &out);
-  for (size_t i = 0; i < nurbs.distinct; i++)
-    for (int k = 0; k < c->dimension; k++)
-      *out++ = nurbs.homogeneous[4 * i + (size_t)k] / nurbs.homogeneous[4 * i + 3];
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t i = 0; i < nurbs.distinct; i++) {
+    const double *h = nurbs.homogeneous + 4 * i;
+    // A point of weight 0 has no place.
+    CagValue p = h[3] > 0 ? cag_point(call->vm, cag_project(h), c->dimension) : cag_none();
+    if (!cag_builder_add(call->vm, list, p)) return false;
+  }
+  *result = cag_builder_finish(call->vm, list);
   return true;
 }
 

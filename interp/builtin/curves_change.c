@@ -2,7 +2,9 @@
 
 #include <stdlib.h>
 
-#include "interp/builtin/curves.h"
+#include "geom/curve/approximate.h"
+#include "geom/curve/nurbs_ops.h"
+#include "interp/builtin/bsplines.h"
 
 // The new curve, with what was said about the old one.
 // `made` is read after the call that fills it: pass its address.
@@ -106,5 +108,163 @@ bool cag_curves_polygonize(CagCall *call, CagValue *result) {
     status = cag_curve_polyline(points, c->closed ? n - 1 : n, c->closed, c->dimension, &out, &err);
   free(points);
   free(t);
+  return give(call, status, &err, &out, result);
+}
+
+// --- Another form of the same points ---
+
+bool cag_bsplines_to_bezier(CagCall *call, CagValue *result) {
+  CagCurve *c, **pieces;
+  CagError err;
+  size_t n;
+  if (!cag_arg_curve(call, 0, &c) ||
+      !cag_geometry_ok(call, cag_curve_to_bezier(c, &pieces, &n, &err), &err))
+    return false;
+  CagBuilder *list = cag_builder_new(call->vm);
+  bool ok = true;
+  for (size_t i = 0; i < n; i++) {
+    CagValue piece = cag_curve_value(call->vm, pieces[i]);
+    cag_shape_say_alike(piece, call->values[0]);
+    ok = ok && cag_builder_add(call->vm, list, piece);
+  }
+  free(pieces);
+  if (ok) *result = cag_builder_finish(call->vm, list);
+  return ok;
+}
+
+// Most times that a degree is raised or a knot inserted or taken away at once.
+#define TIMES_MAX 1000
+
+bool cag_bsplines_elevate(CagCall *call, CagValue *result) {
+  CagCurve *c, *out = NULL;
+  CagError err;
+  long times;
+  if (!cag_arg_curve(call, 0, &c) || !cag_arg_integer_or(call, 1, 1, 0, TIMES_MAX, &times))
+    return false;
+  CagStatus status = cag_curve_elevate(c, (int)times, &out, &err);
+  return give(call, status, &err, &out, result);
+}
+
+// A tolerance in mm, positive or inf.
+static bool read_tolerance(CagCall *call, int argument, double *out) {
+  if (!cag_arg_number(call, argument, out)) return false;
+  return *out >= 0 ||
+         cag_fail_call(call, argument, CAG_ERR_value, "wants a `tolerance` of 0 or more");
+}
+
+bool cag_bsplines_reduce_degree(CagCall *call, CagValue *result) {
+  CagCurve *c, *out = NULL;
+  CagError err;
+  double tolerance;
+  if (!cag_arg_curve(call, 0, &c) || !read_tolerance(call, 1, &tolerance)) return false;
+  CagStatus status = cag_curve_reduce_degree(c, tolerance, &out, NULL, &err);
+  return give(call, status, &err, &out, result);
+}
+
+bool cag_bsplines_insert_knot(CagCall *call, CagValue *result) {
+  CagCurve *c, *out = NULL;
+  CagError err;
+  double t;
+  long times;
+  if (!cag_arg_curve(call, 0, &c) ||
+      !cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, &t) ||
+      !cag_arg_integer_or(call, 2, 1, 1, TIMES_MAX, &times))
+    return false;
+  double knots[TIMES_MAX];
+  for (long i = 0; i < times; i++) knots[i] = t;
+  CagStatus status = cag_curve_insert_knots(c, knots, (size_t)times, &out, &err);
+  return give(call, status, &err, &out, result);
+}
+
+// Part of the size of the curve within which a knot counts as one without effect.
+#define WITHOUT_EFFECT 1e-9
+
+static bool tolerance_of_size(CagCall *call, const CagCurve *c, int argument, double part,
+                              double *out) {
+  CagBounds box;
+  CagError err;
+  if (cag_given(call, argument) && call->values[argument].type != CAG_NONE)
+    return read_tolerance(call, argument, out);
+  if (!cag_geometry_ok(call, cag_curve_bounds(c, &box, &err), &err)) return false;
+  *out = part * cag_norm(cag_sub(box.max, box.min));
+  return true;
+}
+
+// C, t, tolerance, times
+bool cag_bsplines_remove_knot(CagCall *call, CagValue *result) {
+  CagCurve *c, *out = NULL;
+  CagError err;
+  double t, tolerance;
+  long times;
+  if (!cag_arg_curve(call, 0, &c) ||
+      !cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, &t) ||
+      !tolerance_of_size(call, c, 2, WITHOUT_EFFECT, &tolerance) ||
+      !cag_arg_integer_or(call, 3, 1, 1, TIMES_MAX, &times))
+    return false;
+  CagStatus status = cag_curve_remove_knot(c, t, (int)times, tolerance, &out, NULL, &err);
+  return give(call, status, &err, &out, result);
+}
+
+bool cag_bsplines_refine(CagCall *call, CagValue *result) {
+  static const char *const ways[] = {"midpoints", NULL};
+  CagCurve *c, *out = NULL;
+  CagError err;
+  CagStatus status;
+  const double *knots;
+  size_t n;
+  int way;
+  if (!cag_arg_curve(call, 0, &c)) return false;
+  if (cag_given(call, 1) && call->values[1].type != CAG_TEXT) {
+    if (!cag_arg_numbers(call, 1, &knots, &n)) return false;
+    status = cag_curve_insert_knots(c, knots, n, &out, &err);
+  } else {
+    if (!cag_arg_choice(call, 1, ways, &way)) return false;
+    status = cag_curve_insert_midpoints(c, &out, &err);
+  }
+  return give(call, status, &err, &out, result);
+}
+
+bool cag_bsplines_clamp_ends(CagCall *call, CagValue *result) {
+  CagCurve *c, *out = NULL;
+  CagError err;
+  if (!cag_arg_curve(call, 0, &c)) return false;
+  return give(call, cag_curve_clamp(c, &out, &err), &err, &out, result);
+}
+
+// --- Curves near it ---
+
+bool cag_bsplines_deviation(CagCall *call, CagValue *result) {
+  CagCurve *a, *b;
+  CagError err;
+  double most;
+  if (!cag_arg_curve(call, 0, &a) || !cag_arg_curve(call, 1, &b) ||
+      !cag_geometry_ok(call, cag_curve_deviation(a, b, &most, &err), &err))
+    return false;
+  *result = cag_number(most);
+  return true;
+}
+
+bool cag_bsplines_approximate(CagCall *call, CagValue *result) {
+  CagCurve *c, *out = NULL;
+  CagError err;
+  double tolerance;
+  if (!cag_arg_curve(call, 0, &c) || !cag_arg_positive(call, 1, &tolerance)) return false;
+  CagStatus status = cag_curve_approximate(c, tolerance, &out, &err);
+  return give(call, status, &err, &out, result);
+}
+
+// How exact an offset is where nothing is said, as part of its curve's size.
+#define OFFSET_TOLERANCE 1e-6
+
+bool cag_bsplines_offset(CagCall *call, CagValue *result) {
+  CagCurve *c, *out = NULL;
+  CagError err;
+  double d, tolerance;
+  if (!cag_arg_curve(call, 0, &c) || !cag_arg_finite(call, 1, &d) ||
+      !tolerance_of_size(call, c, 2, OFFSET_TOLERANCE, &tolerance))
+    return false;
+  if (!(tolerance > 0))
+    return cag_fail_call(call, 2, CAG_ERR_value, "wants a positive `tolerance`");
+  CagStatus status = cag_curve_offset(c, d, tolerance, &out, &err);
   return give(call, status, &err, &out, result);
 }

@@ -48,8 +48,7 @@ static CagStatus level_frame(CagVec3 center, CagVec3 normal, CagTransform *out, 
   return cag_axes(center, x, cag_cross(normal, x), out, err);
 }
 
-// `center` and `normal` stand at `at` and the parameter after it.
-static bool read_frame(CagCall *call, int at, CagTransform *out) {
+bool cag_arg_circle_frame(CagCall *call, int at, CagTransform *out) {
   CagVec3 center, normal;
   int dimension = 2;
   CagError err;
@@ -78,7 +77,7 @@ static bool give_arc(CagCall *call, double a, double b, double from, double to, 
   CagTransform frame;
   CagCurve *c = NULL;
   CagError err;
-  if (!read_frame(call, frame_at, &frame)) return false;
+  if (!cag_arg_circle_frame(call, frame_at, &frame)) return false;
   CagStatus status = cag_curve_arc(a, b, from, to, &frame, &c, &err);
   return give(call, status, &err, &c, result);
 }

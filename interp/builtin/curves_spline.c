@@ -25,24 +25,25 @@ bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *ou
     if (cag_given(call, degree))
       return cag_fail_call(call, order, CAG_ERR_value,
                            "takes `degree` or `order` (one more than the degree), not both");
-    if (!cag_arg_integer(call, order, 2, INT_MAX, &given)) return false;
+    if (!cag_arg_integer(call, order, 0, INT_MAX, &given)) return false;
     *out = (int)given - 1;
     return true;
   }
-  if (!cag_arg_integer_or(call, degree, fallback, 0, INT_MAX - 1, &given)) return false;
+  if (!cag_arg_integer_or(call, degree, fallback, -1, INT_MAX - 1, &given)) return false;
   *out = (int)given;
   return true;
 }
 
-// Weights as many as points; NULL where there are none.
-static bool read_weights(CagCall *call, int argument, size_t n, const double **out) {
+bool cag_arg_weights(CagCall *call, int argument, size_t n, const double **out) {
   size_t count;
+  CagError err;
   *out = NULL;
   if (!is_set(call, argument)) return true;
   if (!cag_arg_numbers(call, argument, out, &count)) return false;
   if (count == n) return true;
-  return cag_fail_call(call, argument, CAG_ERR_length,
-                       "expects one of `weights` for each of %zu points, found %zu", n, count);
+  cag_fail(&err, CAG_E_ARGUMENT, "weight-count", "weights", -1,
+           "expects one of `weights` for each of %zu points, found %zu", n, count);
+  return cag_fail_geometry(call, &err);
 }
 
 bool cag_curves_bezier(CagCall *call, CagValue *result) {
@@ -53,7 +54,7 @@ bool cag_curves_bezier(CagCall *call, CagValue *result) {
   CagCurve *c = NULL;
   CagError err;
   if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
-  bool ok = read_weights(call, 1, n, &weights);
+  bool ok = cag_arg_weights(call, 1, n, &weights);
   CagStatus status = ok ? cag_curve_bezier(points, weights, n, dimension, &c, &err) : CAG_OK;
   free(points);
   return ok && give(call, status, &err, &c, result);
@@ -75,11 +76,7 @@ static bool read_knots(CagCall *call, int argument, size_t n, int degree, const 
     return cag_fail_geometry(call, &err);
   }
   if (cag_given(call, argument) && !cag_arg_text(call, argument, &type)) return false;
-  if (n <= (size_t)degree || degree < 1) {
-    cag_fail(&err, CAG_E_ARGUMENT, "degree-too-high", "degree", -1,
-             "a degree of %d wants at least %d points, found %zu", degree, degree + 1, n);
-    return cag_fail_geometry(call, &err);
-  }
+  if (!cag_geometry_ok(call, cag_degree_check(n, degree, &err), &err)) return false;
   *own = malloc((n + (size_t)degree + 1) * sizeof **own);
   if (!*own) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
   *knots = *own;
@@ -97,7 +94,7 @@ static bool make_bspline(CagCall *call, const CagVec3 *points, size_t n, int dim
   CagError err;
   CagStatus status;
   if (!cag_arg_degree(call, 1, 5, 3, &degree) || !cag_arg_bool_or(call, 3, false, &closed) ||
-      !read_weights(call, 4, n, &weights))
+      !cag_arg_weights(call, 4, n, &weights))
     return false;
   if (closed) {
     if (cag_given(call, 2) && call->values[2].type != CAG_TEXT)
@@ -131,15 +128,31 @@ bool cag_curves_nurbs(CagCall *call, CagValue *result) {
 
 // --- Bases as data ---
 
+// Knots so that their usable range is from..to.
+static void remap_knots(double *knots, size_t n, int degree, double from, double to) {
+  const double a = knots[degree], b = knots[n];
+  for (size_t i = 0; i < n + (size_t)degree + 1; i++)
+    knots[i] = knots[i] == b ? to : from + (knots[i] - a) / (b - a) * (to - from);
+}
+
+// count, degree, kind, order, over
 bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
   long count;
   int degree;
   CagVec3 *points = NULL;
   size_t n = 0;
   const char *type = "chord";
+  double from = 0, to = 1, *knots;
+  bool angle;
   CagError err;
-  if (!cag_arg_integer(call, 0, 2, INT_MAX, &count) || !cag_arg_degree(call, 1, 3, 3, &degree))
+  if (!cag_arg_integer(call, 0, 1, INT_MAX, &count) || !cag_arg_degree(call, 1, 3, 3, &degree))
     return false;
+  if (is_set(call, 4)) {
+    if (!cag_arg_interval(call, 4, &from, &to, &angle)) return false;
+    if (angle || !isfinite(from) || !isfinite(to) || !(from < to))
+      return cag_fail_type(call, 4, "a range of numbers that ascends");
+  }
+  if (!cag_geometry_ok(call, cag_degree_check((size_t)count, degree, &err), &err)) return false;
   if (cag_given(call, 2) && call->values[2].type == CAG_LIST) {
     if (!cag_arg_points(call, 2, &points, &n, NULL)) return false;
     if (n != (size_t)count) {
@@ -148,57 +161,12 @@ bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
     }
   } else if (!cag_given(call, 2)) type = "open";
   else if (!cag_arg_text(call, 2, &type)) return false;
-  bool ok = degree >= 1 && count > degree;
-  if (!ok)
-    cag_fail_call(call, 1, CAG_ERR_value, "wants a degree of at least 1 and less than the count");
-  double *knots = NULL;
-  if (ok) {
-    size_t size = (size_t)count + (size_t)degree + 1;
-    *result = cag_list_numbers(call->vm, size, &knots);
-    ok = cag_geometry_ok(call, cag_knots_make(type, (size_t)count, degree, points, knots, &err),
-                         &err);
-  }
+  *result = cag_list_numbers(call->vm, (size_t)count + (size_t)degree + 1, &knots);
+  CagStatus status = cag_knots_make(type, (size_t)count, degree, points, knots, &err);
   free(points);
-  return ok;
-}
-
-static CagStatus basis_values(const double *knots, size_t n, int degree, double t, int derivative,
-                              double *out, CagError *err) {
-  CagStatus status = cag_knots_check(knots, n, degree, err);
-  if (status != CAG_OK) return status;
-  if (t < knots[degree] || t > knots[n])
-    return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "t", -1,
-                    "`t` must be in %.17g..%.17g, the usable range of the knots; found %.17g",
-                    knots[degree], knots[n], t);
-  size_t width = (size_t)degree + 1;
-  double *rows = malloc((size_t)(derivative + 1) * width * sizeof *rows);
-  if (!rows) return cag_fail_memory(err);
-  size_t span = cag_knots_span(knots, n, degree, t, false, (size_t)degree);
-  cag_bspline_derivatives(knots, degree, span, t, derivative, rows);
-  memset(out, 0, n * sizeof *out);
-  memcpy(out + span - (size_t)degree, rows + (size_t)derivative * width, width * sizeof *out);
-  free(rows);
-  return CAG_OK;
-}
-
-bool cag_curves_basis(CagCall *call, CagValue *result) {
-  const double *knots;
-  size_t count;
-  int degree;
-  long derivative;
-  double t, *out;
-  CagError err;
-  if (!cag_arg_numbers(call, 0, &knots, &count) || !cag_arg_degree(call, 1, 4, 3, &degree) ||
-      !cag_arg_finite(call, 2, &t) ||
-      !cag_arg_integer_or(call, 3, 0, 0, CAG_MAX_DERIVATIVE, &derivative))
-    return false;
-  if (degree < 1 || count < 2 * ((size_t)degree + 1))
-    return cag_fail_call(call, 0, CAG_ERR_value,
-                         "wants at least 2 (degree + 1) knots, found %zu of degree %d", count,
-                         degree);
-  size_t n = count - (size_t)degree - 1;
-  *result = cag_list_numbers(call->vm, n, &out);
-  return cag_geometry_ok(call, basis_values(knots, n, degree, t, (int)derivative, out, &err), &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (is_set(call, 4)) remap_knots(knots, (size_t)count, degree, from, to);
+  return true;
 }
 
 // A higher degree has no values that a double can tell apart.

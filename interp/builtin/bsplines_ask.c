@@ -1,0 +1,301 @@
+// The spans of a B-spline curve and the control points behind them; circles as NURBS; pictures of
+// control polygons and curvature.
+
+#include <limits.h>
+#include <stdlib.h>
+
+#include "geom/basis/basis_table.h"
+#include "geom/curve/family.h"
+#include "geom/curve/nurbs.h"
+#include "interp/builtin/bsplines.h"
+#include "interp/builtin/support.h"
+
+static bool fail_memory(CagCall *call) {
+  return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+}
+
+static bool read_nurbs(CagCall *call, const CagNurbs **out) {
+  CagCurve *c;
+  CagError err;
+  if (!cag_arg_curve(call, 0, &c)) return false;
+  *out = cag_nurbs_data(c);
+  if (*out) return true;
+  cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
+           "a curve of kind %s has no control points; `to_nurbs` gives its rational form where "
+           "there is one",
+           c->kind->name);
+  return cag_fail_geometry(call, &err);
+}
+
+static CagValue range_of(CagCall *call, double a, double b) {
+  return cag_domain_value(call->vm, false, a, b);
+}
+
+bool cag_bsplines_spans(CagCall *call, CagValue *result) {
+  const CagNurbs *c;
+  if (!read_nurbs(call, &c)) return false;
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t i = 0; i < c->pieces; i++)
+    if (!cag_builder_add(call->vm, list, range_of(call, c->cuts[i], c->cuts[i + 1]))) return false;
+  *result = cag_builder_finish(call->vm, list);
+  return true;
+}
+
+// Of a closed curve a control point acts about its own place, and where that passes the seam, about
+// the other end too: the ranges come one after the other.
+bool cag_bsplines_support(CagCall *call, CagValue *result) {
+  const CagNurbs *c;
+  long i;
+  if (!read_nurbs(call, &c) || !cag_arg_integer(call, 1, 0, (long)c->distinct - 1, &i))
+    return false;
+  const size_t p = (size_t)c->degree;
+  CagBuilder *list = cag_builder_new(call->vm);
+  CagValue whole = cag_unset();
+  for (size_t k = (size_t)i; k < c->count; k += c->distinct) {
+    const double a = fmax(c->knots[k], c->base.start), b = fmin(c->knots[k + p + 1], c->base.end);
+    if (!(a < b)) continue;
+    whole = range_of(call, a, b);
+    if (!cag_builder_add(call->vm, list, whole)) return false;
+  }
+  *result = c->periodic ? cag_builder_finish(call->vm, list) : whole;
+  if (whole.type == CAG_UNSET)
+    *result = c->periodic ? cag_builder_finish(call->vm, list) : cag_none();
+  return true;
+}
+
+static CagValue control_point(CagCall *call, const CagNurbs *c, size_t i) {
+  const double *h = c->homogeneous + 4 * i;
+  return h[3] > 0 ? cag_point(call->vm, cag_project(h), c->base.dimension) : cag_none();
+}
+
+bool cag_bsplines_acting_points(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"span", "indices", "points"};
+  static const char *const sides[] = {"right", "left", NULL};
+  const CagNurbs *c;
+  double t;
+  int side;
+  if (!read_nurbs(call, &c) ||
+      !cag_arg_parameter(call, 1, false, c->base.start, c->base.end, false, &t) ||
+      !cag_arg_choice(call, 2, sides, &side))
+    return false;
+  const size_t p = (size_t)c->degree;
+  const size_t span = cag_knots_span(c->knots, c->count, c->degree, t, side == 1, p);
+  CagBuilder *indices = cag_builder_new(call->vm), *points = cag_builder_new(call->vm);
+  for (size_t i = span - p; i <= span; i++)
+    if (!cag_builder_add(call->vm, indices, cag_number((double)(i % c->distinct))) ||
+        !cag_builder_add(call->vm, points, control_point(call, c, i)))
+      return false;
+  CagValue values[] = {range_of(call, c->knots[span], c->knots[span + 1]),
+                       cag_builder_finish(call->vm, indices), cag_builder_finish(call->vm, points)};
+  *result = cag_record_new(call->vm, names, values, 3);
+  return true;
+}
+
+// The points that act on a span lie on one line, to rounding.
+static bool collinear(const CagNurbs *c, size_t span) {
+  const double *h = c->homogeneous + 4 * (span - (size_t)c->degree);
+  CagVec3 first = {0}, far = {0};
+  double size = 0, length = 0;
+  bool begun = false;
+  for (int i = 0; i <= c->degree; i++) {
+    if (!(h[4 * i + 3] > 0)) continue;
+    const CagVec3 p = cag_project(h + 4 * i);
+    if (!begun) first = p;
+    begun = true;
+    size = fmax(size, cag_curve_size(&p, 1));
+    const CagVec3 d = cag_sub(p, first);
+    if (cag_norm(d) <= length) continue;
+    far = d;
+    length = cag_norm(d);
+  }
+  if (!(length > 0)) return true;
+  far = cag_scaled(far, 1 / length);
+  for (int i = 0; i <= c->degree; i++) {
+    if (!(h[4 * i + 3] > 0)) continue;
+    const CagVec3 d = cag_sub(cag_project(h + 4 * i), first);
+    if (cag_norm(cag_cross(far, d)) > CAG_CURVE_SAME * fmax(size, length)) return false;
+  }
+  return true;
+}
+
+bool cag_bsplines_straight_spans(CagCall *call, CagValue *result) {
+  const CagNurbs *c;
+  if (!read_nurbs(call, &c)) return false;
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t i = (size_t)c->degree; i < c->count; i++) {
+    if (!(c->knots[i] < c->knots[i + 1]) || !collinear(c, i)) continue;
+    if (!cag_builder_add(call->vm, list, range_of(call, c->knots[i], c->knots[i + 1])))
+      return false;
+  }
+  *result = cag_builder_finish(call->vm, list);
+  return true;
+}
+
+// The weight function: C, t, derivative, side
+bool cag_bsplines_denominator(CagCall *call, CagValue *result) {
+  static const char *const sides[] = {"right", "left", NULL};
+  const CagNurbs *c;
+  double t;
+  long order;
+  int side;
+  if (!read_nurbs(call, &c) ||
+      !cag_arg_parameter(call, 1, false, c->base.start, c->base.end, false, &t) ||
+      !cag_arg_integer_or(call, 2, 0, 0, CAG_MAX_DERIVATIVE, &order) ||
+      !cag_arg_choice(call, 3, sides, &side))
+    return false;
+  const size_t i = cag_nurbs_piece(c, t, side == 1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, c->pieces);
+  const double length = c->cuts[i + 1] - c->cuts[i];
+  double out[4 * (CAG_MAX_DERIVATIVE + 1)];
+  cag_bezier_derivatives(cag_nurbs_bezier(c, i), c->degree, (t - c->cuts[i]) / length, (int)order,
+                         out);
+  double value = out[4 * order + 3];
+  for (long k = 0; k < order; k++) value /= length;
+  return cag_give_number(call, value, result);
+}
+
+// --- Circles ---
+
+#define SEGMENTS_MAX 1000000
+
+// radius, segments, center, normal, start: arcs of 1/segments turn each, knots 0..segments.
+bool cag_bsplines_nurbs_circle(CagCall *call, CagValue *result) {
+  const double full = 6.283185307179586; // 2 pi
+  double radius, from;
+  long segments;
+  CagTransform frame;
+  CagError err;
+  CagCurve *c = NULL;
+  if (!cag_arg_positive(call, 0, &radius) ||
+      !cag_arg_integer_or(call, 1, 4, 3, SEGMENTS_MAX, &segments) ||
+      !cag_arg_angle_or(call, 4, 0, &from) || !cag_arg_circle_frame(call, 2, &frame))
+    return false;
+  const size_t q = (size_t)segments, n = 2 * q + 1;
+  CagVec3 *points = malloc(n * sizeof *points);
+  double *weights = malloc(sizeof(double) * (2 * n + 3)), *knots = weights + n;
+  bool ok = (points && weights) || fail_memory(call);
+  const double half = cos(full / 2 / (double)q);
+  for (size_t i = 0; ok && i < n; i++) {
+    double sine, cosine;
+    cag_sincos(from + full * (double)(i % (n - 1)) / (double)(n - 1), &sine, &cosine);
+    weights[i] = i % 2 ? half : 1;
+    points[i] = cag_transform_point(
+        &frame, cag_vec3(radius * cosine / weights[i], radius * sine / weights[i], 0));
+  }
+  for (size_t i = 0; ok && i < n + 3; i++) knots[i] = i == 0 ? 0 : (double)((i - 1) / 2);
+  if (ok) {
+    knots[n + 2] = (double)q;
+    CagStatus status =
+        cag_curve_nurbs(points, weights, n, 2, knots, frame.planar ? 2 : 3, &c, &err);
+    ok = cag_geometry_ok(call, status, &err);
+  }
+  free(points);
+  free(weights);
+  if (ok) *result = cag_curve_value(call->vm, c);
+  return ok;
+}
+
+// --- Pictures ---
+
+bool cag_bsplines_control_net(CagCall *call, CagValue *result) {
+  CagCurve *c, *out = NULL;
+  const CagVec3 *corners;
+  CagError err;
+  size_t n;
+  bool closed;
+  if (!cag_arg_curve(call, 0, &c)) return false;
+  if (cag_curve_vertices(c, &corners, &n, &closed)) {
+    *result = call->values[0];
+    return true;
+  }
+  const CagNurbs *nurbs;
+  if (!read_nurbs(call, &nurbs)) return false;
+  CagVec3 *points = malloc(nurbs->distinct * sizeof *points);
+  if (!points) return fail_memory(call);
+  n = 0;
+  for (size_t i = 0; i < nurbs->distinct; i++)
+    if (nurbs->homogeneous[4 * i + 3] > 0) points[n++] = cag_project(nurbs->homogeneous + 4 * i);
+  CagStatus status =
+      cag_curve_polyline(points, n, nurbs->periodic && n > 2, c->dimension, &out, &err);
+  free(points);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_curve_value(call->vm, out);
+  return true;
+}
+
+// Teeth of a comb for each piece where nothing is said.
+#define TEETH 20
+// Length of the longest tooth, as part of the size of the curve, where nothing is said.
+#define LONGEST_TOOTH 0.25
+
+typedef struct Comb {
+  size_t n;
+  CagVec3 *feet, *teeth; // curvature vectors, away from the center of curvature
+} Comb;
+
+static CagStatus make_comb(const CagCurve *c, Comb *comb, double *most, CagError *err) {
+  *most = 0;
+  for (size_t i = 0; i < comb->n; i++) {
+    const double t = i + 1 == comb->n
+                         ? c->end
+                         : c->start + (c->end - c->start) * (double)i / (double)(comb->n - 1);
+    CagFrenet f;
+    CagStatus status = cag_curve_frenet(c, t, &f, err);
+    if (status != CAG_OK) return status;
+    comb->feet[i] = f.point;
+    comb->teeth[i] = cag_scaled(f.normal, -f.curvature);
+    *most = fmax(*most, f.curvature);
+  }
+  return CAG_OK;
+}
+
+static bool give_comb(CagCall *call, const CagCurve *c, const Comb *comb, double scale,
+                      CagValue *result) {
+  CagVec3 *tips = malloc(comb->n * sizeof *tips);
+  if (!tips) return fail_memory(call);
+  CagBuilder *list = cag_builder_new(call->vm);
+  CagCurve *line = NULL;
+  CagError err;
+  bool ok = true;
+  for (size_t i = 0; ok && i < comb->n; i++) {
+    tips[i] = cag_madd(comb->feet[i], scale, comb->teeth[i]);
+    if (cag_norm(cag_sub(tips[i], comb->feet[i])) == 0) continue;
+    ok = cag_geometry_ok(call, cag_curve_line(comb->feet[i], tips[i], c->dimension, &line, &err),
+                         &err) &&
+         cag_builder_add(call->vm, list, cag_curve_value(call->vm, line));
+  }
+  ok = ok &&
+       cag_geometry_ok(call, cag_curve_polyline(tips, comb->n, false, c->dimension, &line, &err),
+                       &err) &&
+       cag_builder_add(call->vm, list, cag_curve_value(call->vm, line));
+  free(tips);
+  if (ok) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
+  return ok;
+}
+
+// C, n, scale
+bool cag_bsplines_hedgehog(CagCall *call, CagValue *result) {
+  CagCurve *c;
+  CagBounds box;
+  CagError err;
+  long n;
+  double scale = 0, most = 0;
+  if (!cag_arg_curve(call, 0, &c)) return false;
+  const size_t pieces = c->kind->breaks(c, NULL, 0) + 1;
+  const long usual = pieces < SEGMENTS_MAX / TEETH ? (long)pieces * TEETH + 1 : SEGMENTS_MAX;
+  const bool given = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  if ((cag_given(call, 1) && call->values[1].type != CAG_NONE
+           ? !cag_arg_integer(call, 1, 2, SEGMENTS_MAX, &n)
+           : (n = usual, false)) ||
+      (given && !cag_arg_finite(call, 2, &scale)) ||
+      !cag_geometry_ok(call, cag_curve_bounds(c, &box, &err), &err))
+    return false;
+  Comb comb = {.n = (size_t)n};
+  comb.feet = malloc(2 * comb.n * sizeof(CagVec3));
+  if (!comb.feet) return fail_memory(call);
+  comb.teeth = comb.feet + comb.n;
+  bool ok = cag_geometry_ok(call, make_comb(c, &comb, &most, &err), &err);
+  if (!given && most > 0) scale = LONGEST_TOOTH * cag_norm(cag_sub(box.max, box.min)) / most;
+  ok = ok && give_comb(call, c, &comb, scale, result);
+  free(comb.feet);
+  return ok;
+}

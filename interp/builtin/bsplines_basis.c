@@ -1,0 +1,435 @@
+// Knot vectors and B-spline bases as data (reference 05b, sections 1 and 5).
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/basis/basis_table.h"
+#include "geom/basis/bernstein.h"
+#include "interp/builtin/bsplines.h"
+
+static bool is_set(CagCall *call, int argument) {
+  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
+}
+
+static bool fail_memory(CagCall *call) {
+  return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+}
+
+// Most knots that one call makes.
+#define KNOTS_MAX 100000000
+
+bool cag_bsplines_uniform_knots(CagCall *call, CagValue *result) {
+  long count;
+  double start = 0, step = 1, *out;
+  if (!cag_arg_integer(call, 0, 1, KNOTS_MAX, &count) ||
+      (cag_given(call, 1) && !cag_arg_finite(call, 1, &start)) ||
+      (cag_given(call, 2) && !cag_arg_positive(call, 2, &step)))
+    return false;
+  *result = cag_list_numbers(call->vm, (size_t)count, &out);
+  for (long i = 0; i < count; i++) out[i] = start + (double)i * step;
+  return true;
+}
+
+// The knots of argument 0 and a degree; at least degree + 2 of them, ascending and finite.
+static bool read_knots(CagCall *call, int degree_at, int order_at, const double **knots,
+                       size_t *count, int *degree) {
+  CagError err;
+  if (!cag_arg_numbers(call, 0, knots, count) ||
+      !cag_arg_degree(call, degree_at, order_at, 3, degree))
+    return false;
+  CagStatus status = CAG_OK;
+  char a[32], b[32];
+  if (*degree < 1 || *degree > CAG_MAX_DEGREE)
+    status = cag_fail(&err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+                      "the degree is 1 to %d; this is %d", CAG_MAX_DEGREE, *degree);
+  else if (*count < (size_t)*degree + 2)
+    status = cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", -1,
+                      "a function of degree %d lives on %d knots, found %zu", *degree, *degree + 2,
+                      *count);
+  for (size_t i = 0; status == CAG_OK && i < *count; i++) {
+    if (!isfinite((*knots)[i]))
+      status = cag_fail(&err, CAG_E_ARGUMENT, "not-finite", "knots", (long)i,
+                        "knots[%zu] is not a finite number", i);
+    else if (i > 0 && (*knots)[i] < (*knots)[i - 1])
+      status =
+          cag_fail(&err, CAG_E_ARGUMENT, "knots-not-monotone", "knots", (long)i,
+                   "`knots` must not decrease: knots[%zu] = %s is less than knots[%zu] = %s", i,
+                   cag_number_text((*knots)[i], a), i - 1, cag_number_text((*knots)[i - 1], b));
+  }
+  if (status == CAG_OK && !((*knots)[0] < (*knots)[*count - 1]))
+    status = cag_fail(&err, CAG_E_ARGUMENT, "empty-range", "knots", 0, "all knots are equal");
+  return cag_geometry_ok(call, status, &err);
+}
+
+static CagValue interval(CagCall *call, double a, double b) {
+  return cag_domain_value(call->vm, false, a, b);
+}
+
+bool cag_bsplines_classify_knots(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"class", "degree",   "points",    "multiplicities",
+                                      "range", "segments", "full_range"};
+  const double *x;
+  size_t count;
+  int p;
+  if (!read_knots(call, 1, 2, &x, &count, &p)) return false;
+  CagError err;
+  const size_t n = count - (size_t)p - 1, k = (size_t)p;
+  if (n < k + 1) {
+    cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", -1,
+             "a curve of degree %d wants at least %zu `knots`, found %zu", p, 2 * k + 2, count);
+    return cag_fail_geometry(call, &err);
+  }
+  // The range may be empty, which only a curve minds; multiplicities may be too high.
+  char text[32];
+  CagBuilder *list = cag_builder_new(call->vm);
+  size_t segments = 0;
+  for (size_t i = 0, run; i < count; i += run) {
+    for (run = 1; i + run < count && x[i + run] == x[i]; run++) {}
+    const bool inner = x[i] > x[0] && x[i] < x[count - 1];
+    if (run > k + 1 || (inner && run > k && x[k] < x[i] && x[i] < x[n])) {
+      cag_fail(&err, CAG_E_ARGUMENT, "knot-multiplicity", "knots", (long)i,
+               "the knot %s occurs %zu times: degree %d allows %d inside and %d at the ends",
+               cag_number_text(x[i], text), run, p, p, p + 1);
+      return cag_fail_geometry(call, &err);
+    }
+    const double pair[2] = {x[i], (double)run};
+    if (!cag_builder_add(call->vm, list, cag_vector(call->vm, pair, 2))) return false;
+    segments += i + run < count && x[i] >= x[k] && x[i + run] <= x[n];
+  }
+  CagValue values[] = {cag_text_c(call->vm, cag_knots_class(x, n, p)),
+                       cag_number(p),
+                       cag_number((double)n),
+                       cag_builder_finish(call->vm, list),
+                       interval(call, x[k], x[n]),
+                       cag_number((double)segments),
+                       interval(call, x[0], x[count - 1])};
+  *result = cag_record_new(call->vm, names, values, 7);
+  return true;
+}
+
+// --- Values ---
+
+typedef struct Basis {
+  const double *knots, *weights; // weights: NULL, or one for each function
+  size_t count, n;
+  int degree, derivative;
+  bool left;
+  double *rows, *work; // derivative + 1 rows of n; degree + 2
+} Basis;
+
+// R_i = h_i N_i / S: the rule of Leibniz on R_i S = h_i N_i, with the sums S of the derivatives.
+static CagStatus make_rational(const Basis *b, double t, CagError *err) {
+  char text[32];
+  const size_t n = b->n;
+  double sums[CAG_MAX_DERIVATIVE + 1];
+  for (int d = 0; d <= b->derivative; d++) {
+    double *row = b->rows + (size_t)d * n;
+    sums[d] = 0;
+    for (size_t i = 0; i < n; i++) sums[d] += row[i] *= b->weights[i];
+    if (!(sums[0] > 0))
+      return cag_fail(err, CAG_E_DEGENERATE, "zero-denominator", "weights", -1,
+                      "all functions that act at t = %s have the weight 0",
+                      cag_number_text(t, text));
+    double binomial = 1; // C(d, j)
+    for (int j = 1; j <= d; j++) {
+      binomial = binomial * (d - j + 1) / j;
+      const double *lower = b->rows + (size_t)(d - j) * n;
+      for (size_t i = 0; i < n; i++) row[i] -= binomial * sums[j] * lower[i];
+    }
+    for (size_t i = 0; i < n; i++) row[i] /= sums[0];
+  }
+  return CAG_OK;
+}
+
+static CagStatus basis_at(const Basis *b, double t, double *out, CagError *err) {
+  size_t at;
+  CagStatus status = cag_basis_interval(b->knots, b->count, b->degree, t, b->left, &at, err);
+  for (int d = b->weights ? 0 : b->derivative; status == CAG_OK && d <= b->derivative; d++)
+    cag_basis_derivative(b->knots, b->count, b->degree, at, t, d, b->work,
+                         b->rows + (size_t)d * b->n);
+  if (status == CAG_OK && b->weights) status = make_rational(b, t, err);
+  if (status == CAG_OK) memcpy(out, b->rows + (size_t)b->derivative * b->n, b->n * sizeof *out);
+  return status;
+}
+
+static bool read_basis_weights(CagCall *call, int argument, Basis *b) {
+  size_t count;
+  CagError err;
+  char text[32];
+  if (!is_set(call, argument)) return true;
+  if (!cag_arg_numbers(call, argument, &b->weights, &count)) return false;
+  CagStatus status = CAG_OK;
+  if (count != b->n)
+    status = cag_fail(&err, CAG_E_ARGUMENT, "weight-count", "weights", -1,
+                      "expects one of `weights` for each of %zu functions, found %zu", b->n, count);
+  for (size_t i = 0; status == CAG_OK && i < count; i++)
+    if (!(b->weights[i] >= 0))
+      status = cag_fail(&err, CAG_E_ARGUMENT, "negative-weight", "weights", (long)i,
+                        "weights must not be negative: weights[%zu] = %s", i,
+                        cag_number_text(b->weights[i], text));
+  return cag_geometry_ok(call, status, &err);
+}
+
+// One row, or as many as there are parameters.
+static bool give_basis(CagCall *call, const Basis *b, CagValue *result) {
+  CagError err;
+  const double *list = NULL;
+  double t, *out;
+  size_t rows = 1;
+  const bool several = call->values[2].type != CAG_NUMBER;
+  if (several ? !cag_arg_numbers(call, 2, &list, &rows) : !cag_arg_finite(call, 2, &t))
+    return false;
+  if (!several) {
+    *result = cag_list_numbers(call->vm, b->n, &out);
+    return cag_geometry_ok(call, basis_at(b, t, out, &err), &err);
+  }
+  CagBuilder *all = cag_builder_new(call->vm);
+  for (size_t i = 0; i < rows; i++) {
+    CagValue row = cag_list_numbers(call->vm, b->n, &out);
+    if (!cag_geometry_ok(call, basis_at(b, list[i], out, &err), &err) ||
+        !cag_builder_add(call->vm, all, row) || !cag_keep_going(call->vm))
+      return false;
+  }
+  *result = cag_builder_finish(call->vm, all);
+  return true;
+}
+
+// knots, degree, t, derivative, order, weights, side
+bool cag_bsplines_basis(CagCall *call, CagValue *result) {
+  static const char *const sides[] = {"right", "left", NULL};
+  Basis b = {0};
+  long derivative;
+  int side;
+  if (!read_knots(call, 1, 4, &b.knots, &b.count, &b.degree) ||
+      !cag_arg_integer_or(call, 3, 0, 0, CAG_MAX_DERIVATIVE, &derivative) ||
+      !cag_arg_choice(call, 6, sides, &side))
+    return false;
+  b.n = b.count - (size_t)b.degree - 1;
+  b.derivative = (int)derivative;
+  b.left = side == 1;
+  if (!read_basis_weights(call, 5, &b)) return false;
+  b.rows = malloc(sizeof(double) * ((size_t)(derivative + 1) * b.n + (size_t)b.degree + 2));
+  if (!b.rows) return fail_memory(call);
+  b.work = b.rows + (size_t)(derivative + 1) * b.n;
+  bool ok = give_basis(call, &b, result);
+  free(b.rows);
+  return ok;
+}
+
+bool cag_bsplines_basis_triangle(CagCall *call, CagValue *result) {
+  const double *x;
+  size_t count, at;
+  int p;
+  double t;
+  CagError err;
+  if (!read_knots(call, 1, 3, &x, &count, &p) || !cag_arg_finite(call, 2, &t) ||
+      !cag_geometry_ok(call, cag_basis_interval(x, count, p, t, false, &at, &err), &err))
+    return false;
+  double *rows = malloc(sizeof(double) * (size_t)(p + 1) * (count - 1));
+  if (!rows) return fail_memory(call);
+  cag_basis_triangle(x, count, p, at, t, rows);
+  CagBuilder *list = cag_builder_new(call->vm);
+  bool ok = true;
+  for (size_t q = 0; ok && q <= (size_t)p; q++)
+    ok = cag_builder_add(call->vm, list,
+                         cag_vector(call->vm, rows + q * (count - 1), count - 1 - q));
+  free(rows);
+  if (ok) *result = cag_builder_finish(call->vm, list);
+  return ok;
+}
+
+// --- Pieces ---
+
+// Record of one interval: its functions with their coefficients.
+static CagValue piece_record(CagCall *call, const double *x, size_t count, int p, size_t at,
+                             bool local, double *table) {
+  static const char *const names[] = {"interval", "functions", "coefficients", "matrix"};
+  CagVm *vm = call->vm;
+  const size_t k = (size_t)p, n = count - k - 1, width = k + 1;
+  cag_basis_piece(x, count, p, at, local, table);
+  const size_t first = at > k ? at - k : 0, last = at < n ? at : n - 1;
+  CagBuilder *functions = cag_builder_new(vm), *rows = cag_builder_new(vm),
+             *matrix = cag_builder_new(vm);
+  bool ok = true;
+  for (size_t i = first; ok && i <= last; i++)
+    ok = cag_builder_add(vm, functions, cag_number((double)i)) &&
+         cag_builder_add(vm, rows, cag_vector(vm, table + (i + k - at) * width, width));
+  // Rows of the matrix: powers from the highest down; columns: the functions.
+  for (size_t power = width; ok && power-- > 0;) {
+    double *out;
+    CagValue row = cag_list_numbers(vm, last - first + 1, &out);
+    for (size_t i = first; i <= last; i++) out[i - first] = table[(i + k - at) * width + power];
+    ok = cag_builder_add(vm, matrix, row);
+  }
+  if (!ok) return cag_unset();
+  CagValue values[] = {interval(call, x[at], x[at + 1]), cag_builder_finish(vm, functions),
+                       cag_builder_finish(vm, rows), cag_builder_finish(vm, matrix)};
+  return cag_record_new(vm, names, values, 4);
+}
+
+bool cag_bsplines_basis_pieces(CagCall *call, CagValue *result) {
+  const double *x;
+  size_t count;
+  int p;
+  bool local;
+  if (!read_knots(call, 1, 2, &x, &count, &p) || !cag_arg_bool_or(call, 3, false, &local))
+    return false;
+  double *table = malloc(sizeof(double) * (size_t)(p + 1) * (size_t)(p + 1));
+  if (!table) return fail_memory(call);
+  CagBuilder *list = cag_builder_new(call->vm);
+  bool ok = true;
+  for (size_t i = 0; ok && i + 1 < count; i++) {
+    if (!(x[i] < x[i + 1])) continue;
+    CagValue piece = piece_record(call, x, count, p, i, local, table);
+    ok = piece.type == CAG_RECORD && cag_builder_add(call->vm, list, piece);
+  }
+  free(table);
+  if (ok) *result = cag_builder_finish(call->vm, list);
+  return ok;
+}
+
+// --- Dependency ---
+
+// Indices low..high within 0..most, as a list.
+static CagValue indices(CagCall *call, long low, long high, long most) {
+  double *out;
+  low = low < 0 ? 0 : low;
+  high = high > most ? most : high;
+  CagValue list = cag_list_numbers(call->vm, high < low ? 0 : (size_t)(high - low + 1), &out);
+  for (long i = low; i <= high; i++) out[i - low] = (double)i;
+  return list;
+}
+
+// i, degree, count, order
+bool cag_bsplines_basis_dependency(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"needs", "feeds"};
+  long i, count = LONG_MAX / 2;
+  int p;
+  if (!cag_arg_integer(call, 0, 0, KNOTS_MAX, &i) || !cag_arg_degree(call, 1, 3, 3, &p) ||
+      (is_set(call, 2) && !cag_arg_integer(call, 2, 1, KNOTS_MAX, &count)))
+    return false;
+  if (p > CAG_MAX_DEGREE)
+    return cag_fail_call(call, 1, CAG_ERR_value, "takes a degree up to %d", CAG_MAX_DEGREE);
+  CagBuilder *needs = cag_builder_new(call->vm), *feeds = cag_builder_new(call->vm);
+  for (long q = 0; q <= p; q++) {
+    // Of degree q there are count + p - q functions.
+    const long most = count + p - q - 1;
+    if (!cag_builder_add(call->vm, needs, indices(call, i, i + p - q, most)) ||
+        !cag_builder_add(call->vm, feeds, indices(call, i - q, i, most)))
+      return false;
+  }
+  CagValue values[] = {cag_builder_finish(call->vm, needs), cag_builder_finish(call->vm, feeds)};
+  *result = cag_record_new(call->vm, names, values, 2);
+  return true;
+}
+
+// --- Refinement ---
+
+// knots, refined, degree, order
+bool cag_bsplines_oslo(CagCall *call, CagValue *result) {
+  const double *x, *y;
+  size_t count, n;
+  int p;
+  CagError err;
+  if (!read_knots(call, 2, 3, &x, &count, &p) || !cag_arg_numbers(call, 1, &y, &n)) return false;
+  if (n < count) {
+    cag_fail(&err, CAG_E_ARGUMENT, "not-a-refinement", "refined", -1,
+             "`refined` has %zu knots, less than the %zu of `knots`", n, count);
+    return cag_fail_geometry(call, &err);
+  }
+  const size_t m = n - (size_t)p - 1, block = (count - 1) * m;
+  double *table = malloc(sizeof(double) * block * (size_t)(p + 1));
+  if (!table) return fail_memory(call);
+  CagBuilder *list = cag_builder_new(call->vm);
+  bool ok = cag_geometry_ok(call, cag_basis_oslo(x, count, y, n, p, table, &err), &err);
+  for (size_t q = 0; ok && q <= (size_t)p; q++) {
+    CagBuilder *rows = cag_builder_new(call->vm);
+    for (size_t i = 0; ok && i + q + 1 < count; i++)
+      ok = cag_builder_add(call->vm, rows, cag_vector(call->vm, table + q * block + i * m, m));
+    ok = ok && cag_builder_add(call->vm, list, cag_builder_finish(call->vm, rows));
+  }
+  free(table);
+  if (ok) *result = cag_builder_finish(call->vm, list);
+  return ok;
+}
+
+// --- Phantom vertices ---
+
+// What holds at an end of a uniform B-spline: a derivative (0: the point) and its value.
+typedef struct EndCondition {
+  int derivative;
+  CagVec3 value;
+} EndCondition;
+
+static bool read_end(CagCall *call, int argument, CagVec3 end_point, int dimension,
+                     EndCondition *out) {
+  static const char wanted[] = "\"position\", {tangent: V} or {second: V}";
+  *out = (EndCondition){0, end_point};
+  if (!cag_given(call, argument)) return true;
+  const CagValue v = call->values[argument];
+  if (v.type == CAG_TEXT && strcmp(CAG_AS_TEXT(v)->bytes, "position") == 0) return true;
+  if (v.type != CAG_RECORD) return cag_fail_type(call, argument, wanted);
+  CagValue tangent = cag_record_get(CAG_AS_RECORD(v), "tangent");
+  CagValue second = cag_record_get(CAG_AS_RECORD(v), "second");
+  const CagValue given = tangent.type != CAG_UNSET ? tangent : second;
+  const double *x;
+  size_t n;
+  if (!cag_as_vector(given, &x, &n) || n != (size_t)dimension)
+    return cag_fail_type(call, argument, wanted);
+  out->derivative = tangent.type != CAG_UNSET ? 1 : 2;
+  out->value = cag_vec3(x[0], x[1], n > 2 ? x[2] : 0);
+  return true;
+}
+
+// The point before points[0] (step 1) or behind points[n - 1] (step -1): of the degree + 1 points
+// that act at the end the outermost, so that the condition holds. Weights come from the basis at
+// the end of uniform knots.
+static CagStatus phantom(const EndCondition *c, const CagVec3 *points, size_t n, int p, bool last,
+                         double *work, CagVec3 *out, CagError *err) {
+  const size_t k = (size_t)p, count = 2 * k + 2;
+  if (c->derivative > p)
+    return cag_fail(err, CAG_E_ARGUMENT, "order-range", last ? "end" : "start", -1,
+                    "a curve of degree %d has no derivative of order %d to choose", p,
+                    c->derivative);
+  double *knots = work, *weights = knots + count, *rest = weights + k + 1;
+  for (size_t i = 0; i < count; i++) knots[i] = (double)i;
+  cag_basis_derivative(knots, count, p, k, last ? (double)k + 1 : (double)k, c->derivative, rest,
+                       weights);
+  CagVec3 sum = c->value;
+  for (size_t i = 0; i < k; i++) {
+    // Known points from the end inwards have the weights 1, 2, .. from the phantom's.
+    const CagVec3 known = last ? points[n - 1 - i] : points[i];
+    sum = cag_madd(sum, -weights[last ? k - 1 - i : 1 + i], known);
+  }
+  *out = cag_scaled(sum, 1 / weights[last ? k : 0]);
+  return CAG_OK;
+}
+
+// points, degree, start, end, order
+bool cag_bsplines_phantom_points(CagCall *call, CagValue *result) {
+  CagVec3 *points;
+  size_t n;
+  int dimension, p;
+  EndCondition start, end;
+  CagError err;
+  if (!cag_arg_degree(call, 1, 4, 3, &p) || !cag_arg_points(call, 0, &points, &n, &dimension))
+    return false;
+  CagVec3 *all = malloc(sizeof *all * (n + 2));
+  double *work = malloc(sizeof(double) * (4 * (size_t)p + 8));
+  bool ok = (all && work) || fail_memory(call);
+  ok = ok && cag_geometry_ok(call, cag_degree_check(n, p, &err), &err) &&
+       read_end(call, 2, points[0], dimension, &start) &&
+       read_end(call, 3, points[n - 1], dimension, &end);
+  if (ok) {
+    memcpy(all + 1, points, sizeof *all * n);
+    CagStatus status = phantom(&start, points, n, p, false, work, &all[0], &err);
+    if (status == CAG_OK) status = phantom(&end, points, n, p, true, work, &all[n + 1], &err);
+    ok = cag_geometry_ok(call, status, &err);
+  }
+  if (ok) *result = cag_points_value(call->vm, all, n + 2, dimension);
+  free(all);
+  free(work);
+  free(points);
+  return ok;
+}

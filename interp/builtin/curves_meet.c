@@ -1,0 +1,76 @@
+// Where curves meet curves, surfaces and planes.
+
+#include <stdlib.h>
+
+#include "geom/curve/intersect.h"
+#include "geom/surface/meet_curve.h"
+#include "interp/builtin/bsplines.h"
+
+static bool with_curve(CagCall *call, const CagCurve *a, const CagCurve *b, CagBuilder *list) {
+  static const char *const names[] = {"point", "t", "t2"};
+  CagMeeting *found;
+  CagError err;
+  size_t n;
+  if (!cag_geometry_ok(call, cag_curve_intersect(a, b, &found, &n, &err), &err)) return false;
+  const int dimension = a->dimension == 2 && b->dimension == 2 ? 2 : 3;
+  bool ok = true;
+  for (size_t i = 0; ok && i < n; i++) {
+    CagValue values[] = {cag_point(call->vm, found[i].point, dimension),
+                         cag_parameter_value(a->angular, found[i].t),
+                         cag_parameter_value(b->angular, found[i].t2)};
+    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 3));
+  }
+  free(found);
+  return ok;
+}
+
+static bool with_plane(CagCall *call, const CagCurve *c, const CagPlane *plane, CagBuilder *list) {
+  static const char *const names[] = {"point", "t"};
+  CagMeeting *found;
+  CagError err;
+  size_t n;
+  if (!cag_geometry_ok(call, cag_curve_intersect_plane(c, plane, &found, &n, &err), &err))
+    return false;
+  bool ok = true;
+  for (size_t i = 0; ok && i < n; i++) {
+    CagValue values[] = {cag_point(call->vm, found[i].point, c->dimension),
+                         cag_parameter_value(c->angular, found[i].t)};
+    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2));
+  }
+  free(found);
+  return ok;
+}
+
+static bool with_surface(CagCall *call, const CagCurve *c, const CagSurface *s, CagBuilder *list) {
+  static const char *const names[] = {"point", "t", "u", "v"};
+  CagSurfaceMeeting *found;
+  CagError err;
+  size_t n;
+  if (!cag_geometry_ok(call, cag_surface_intersect_curve(s, c, &found, &n, &err), &err))
+    return false;
+  bool ok = true;
+  for (size_t i = 0; ok && i < n; i++) {
+    CagValue values[] = {cag_point(call->vm, found[i].point, 3),
+                         cag_parameter_value(c->angular, found[i].t),
+                         cag_parameter_value(s->angular_u, found[i].u),
+                         cag_parameter_value(s->angular_v, found[i].v)};
+    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 4));
+  }
+  free(found);
+  return ok;
+}
+
+bool cag_bsplines_intersect(CagCall *call, CagValue *result) {
+  CagCurve *c;
+  if (!cag_arg_curve(call, 0, &c)) return false;
+  const CagValue other = call->values[1];
+  CagBuilder *list = cag_builder_new(call->vm);
+  bool ok;
+  if (other.type == CAG_CURVE) ok = with_curve(call, c, CAG_AS_SHAPE(other)->as.curve, list);
+  else if (other.type == CAG_PLANE) ok = with_plane(call, c, &CAG_AS_PLANE(other)->plane, list);
+  else if (other.type == CAG_SURFACE)
+    ok = with_surface(call, c, CAG_AS_SHAPE(other)->as.surface, list);
+  else return cag_fail_type(call, 1, "a curve, a surface or a plane");
+  if (ok) *result = cag_builder_finish(call->vm, list);
+  return ok;
+}
