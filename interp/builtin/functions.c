@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "geom/curve/function.h"
+#include "geom/curve/natural.h"
 #include "geom/surface/function.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
@@ -112,8 +113,12 @@ static bool read_point(Formula *f, const double *at, CagValue given, const CagSe
   return true;
 }
 
-// Calls the function at the parameters for derivatives up to the order of `like`.
-static bool call_formula(Formula *f, const double *at, CagSeries *like, CagSeries *out) {
+// Calls the function at the parameters with numbers, or with jets where derivatives are wanted, and
+// has what it gives read.
+static bool call_formula(Formula *f, const double *at, CagSeries *like,
+                         bool (*read)(Formula *f, const double *at, CagValue given,
+                                      const CagSeries *like, CagSeries *out),
+                         CagSeries *out) {
   CagVm *vm = f->vm;
   CagValue arguments[2], given;
   const uint32_t outer = vm->differentiation;
@@ -128,7 +133,7 @@ static bool call_formula(Formula *f, const double *at, CagSeries *like, CagSerie
     else arguments[i] = angle ? cag_angle(x) : cag_number(x);
   }
   bool ok = cag_call(vm, vm->kept[f->slot], arguments, (size_t)f->variables, &given) &&
-            read_point(f, at, given, like, out);
+            read(f, at, given, like, out);
   vm->differentiation = outer;
   return ok;
 }
@@ -152,7 +157,7 @@ static bool answer_curve(CagVm *vm, void *context) {
   (void)vm;
   CurveQuestion *q = context;
   CagSeries like = {.variables = 1, .order = q->order}, x[3];
-  if (!call_formula(q->formula, &q->t, &like, x)) return false;
+  if (!call_formula(q->formula, &q->t, &like, read_point, x)) return false;
   double factorial = 1;
   for (int k = 0; k <= q->order; k++) {
     if (k > 1) factorial *= k;
@@ -200,6 +205,89 @@ static bool call_curve(CagCall *call, CagValue *result) {
   return true;
 }
 
+// --- Curves from natural equations ---
+
+typedef struct Equations {
+  Formula *curvature, *torsion; // torsion NULL: none
+} Equations;
+
+static void equations_free(void *context) {
+  Equations *e = context;
+  if (e->curvature) formula_free(e->curvature);
+  if (e->torsion) formula_free(e->torsion);
+  free(e);
+}
+
+static bool read_number(Formula *f, const double *at, CagValue given, const CagSeries *like,
+                        CagSeries *out) {
+  if (!coordinate(f->vm, given, like, out)) {
+    if (f->vm->failed) return false;
+    char found[160], where[32];
+    return cag_vm_fail_in(f->vm, f->vm->kept[f->slot], CAG_ERR_type,
+                          "curvature and torsion are numbers; at s = %s the function gave %s",
+                          cag_number_text(*at, where),
+                          cag_value_words(f->vm, given, found, sizeof found));
+  }
+  for (size_t k = 0; k < cag_jet_count(1, like->order); k++)
+    if (!isfinite(out->c[k])) return fail_not_finite(f, at, k ? "a derivative" : "the value");
+  return true;
+}
+
+typedef struct EquationQuestion {
+  Equations *equations;
+  double s;
+  int order;
+  double *curvature, *torsion;
+} EquationQuestion;
+
+static bool answer_equation(CagVm *vm, void *context) {
+  (void)vm;
+  EquationQuestion *q = context;
+  Formula *const formulas[2] = {q->equations->curvature, q->equations->torsion};
+  double *const out[2] = {q->curvature, q->torsion};
+  for (int i = 0; i < 2; i++) {
+    CagSeries like = {.variables = 1, .order = q->order}, x;
+    cag_series_constant(&like, 0, &x);
+    if (formulas[i] && !call_formula(formulas[i], &q->s, &like, read_number, &x)) return false;
+    for (int k = 0; k <= q->order; k++) out[i][k] = x.c[k];
+  }
+  return true;
+}
+
+static CagStatus equations_eval(void *context, double s, int order, double *curvature,
+                                double *torsion, CagError *err) {
+  Equations *e = context;
+  EquationQuestion q = {e, s, order, curvature, torsion};
+  CagVm *vm = e->curvature->vm;
+  return cag_vm_call_back(vm, answer_equation, &q) ? CAG_OK : fail_callback(vm, err);
+}
+
+static bool call_natural_curve(CagCall *call, CagValue *result) {
+  CagValue curvature, torsion = cag_none();
+  double length;
+  CagTransform frame = cag_transform_identity();
+  CagCurve *c;
+  CagError err;
+  const bool twisted = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  if (!cag_arg_function(call, 0, &curvature) || !cag_arg_number(call, 1, &length) ||
+      (twisted && !cag_arg_function(call, 2, &torsion)) ||
+      (cag_given(call, 3) && !cag_arg_transform(call, 3, &frame)))
+    return false;
+  Equations *e = calloc(1, sizeof *e);
+  if (!e) cag_vm_out_of_memory(call->vm);
+  e->curvature = formula_new(call->vm, curvature, 1);
+  if (twisted) e->torsion = formula_new(call->vm, torsion, 1);
+  const CagNaturalEquations equations = {equations_eval, equations_free, e};
+  CagStatus status =
+      cag_curve_natural(&equations, length, &frame, twisted || !frame.planar ? 3 : 2, &c, &err);
+  if (status) {
+    equations_free(e);
+    return cag_fail_geometry(call, &err);
+  }
+  *result = cag_curve_value(call->vm, c);
+  return true;
+}
+
 // --- Surfaces ---
 
 typedef struct SurfaceQuestion {
@@ -222,13 +310,13 @@ static bool answer_surface(CagVm *vm, void *context) {
   CagSeries like = {.variables = 2, .order = q->order}, x[3];
   for (size_t k = 0; q->row && k < q->nv; k++) {
     const double at[2] = {q->u, q->vs[k]};
-    if (!call_formula(q->formula, at, &like, x)) return false;
+    if (!call_formula(q->formula, at, &like, read_point, x)) return false;
     CagVec3 *out = q->out + k * (q->order ? 3 : 1);
     for (size_t i = 0; i < (q->order ? 3u : 1u); i++) out[i] = coefficient(x, i, 1);
   }
   if (q->row) return true;
   const double at[2] = {q->u, q->vs[0]};
-  if (!call_formula(q->formula, at, &like, x)) return false;
+  if (!call_formula(q->formula, at, &like, read_point, x)) return false;
   const int n = q->order;
   double factorial[CAG_MAX_PARTIAL + 1] = {1};
   for (int i = 1; i <= n; i++) factorial[i] = factorial[i - 1] * i;
@@ -293,6 +381,17 @@ const CagBuiltin cag_builtins_functions[] = {
      "c = curve(t => [cos(t), sin(t), in_radians(t)], 0deg..360deg)\n"
      "print c(90deg).y, near(curvature(c, 30deg), 0.5) // expect: 1 true\n"
      "print derivative(curve(t => [t, t^3], 0..2), 1, 2) // expect: [0, 6]",
+     FUNCTIONS, "Curves: made"},
+    {"natural_curve(curvature, length, torsion = none, frame = identity)", call_natural_curve,
+     "curve",
+     "The curve whose curvature (1/mm) and torsion are these functions of the arc length s in "
+     "0..length, which is its parameter. It starts at the frame's origin along its x axis and "
+     "bends "
+     "towards its y axis. Without torsion it is a plane curve, and negative curvature bends to the "
+     "other side. Points are accurate to 1e-12 of the length where the functions are smooth; they "
+     "may be pieced together by `if`.",
+     "c = natural_curve(s => 0.5, pi) // a quarter of a circle of radius 2\n"
+     "print near(end_point(c), [2, 2]), near(curvature(c, 1), 0.5) // expect: true true",
      FUNCTIONS, "Curves: made"},
     {"surface(f, u = 0..1, v = 0..1)", call_surface, "surface",
      "The surface of the points f(u, v) = [x, y, z], u and v in ranges of numbers or of angles. "
