@@ -439,6 +439,8 @@ void cag_solid_describe(const CagSolid *s, char *buffer, size_t size) {
              s->face_count == 1 ? "face" : "faces");
     return;
   case CAG_SOLID_TUBE: snprintf(buffer, size, "tube, radius %s", a); return;
+  case CAG_SOLID_SWEEP: snprintf(buffer, size, "sweep, %zu faces", s->face_count); return;
+  case CAG_SOLID_LOFT: snprintf(buffer, size, "loft, %zu faces", s->face_count); return;
   case CAG_SOLID_SHELL:
     snprintf(buffer, size, "shell, %zu %s", s->face_count, s->face_count == 1 ? "face" : "faces");
     return;

@@ -9,6 +9,7 @@
 
 #include "geom/surface/quadric.h"
 #include "geom/surface/surface.h"
+#include "geom/surface/swept.h"
 
 typedef enum CagSolidKind {
   CAG_SOLID_BOX,        // size: a corner in the origin, or centered
@@ -19,6 +20,8 @@ typedef enum CagSolidKind {
   CAG_SOLID_REVOLUTION, // closed region or profile that meets the axis, turned about an axis (full,
                         // or partial with caps)
   CAG_SOLID_TUBE,       // tube along a path with its caps
+  CAG_SOLID_SWEEP,      // region along a path, or under a motion
+  CAG_SOLID_LOFT,       // surface through closed sections with its caps
   CAG_SOLID_SHELL       // closed surfaces given
 } CagSolidKind;
 
@@ -54,6 +57,18 @@ CagStatus cag_solid_extrude(const CagRegion *r, CagVec3 v, double twist, double 
 CagStatus cag_solid_revolve(const CagRegion *r, CagVec3 axis, CagVec3 through, double from,
                             double to, CagSolid **out, CagError *err);
 CagStatus cag_solid_tube(const CagCurve *path, double radius, CagSolid **out, CagError *err);
+// Region carried by a motion (section coordinates x, y), with caps unless it comes home; fails with
+// "sweep-not-closed" where a closed path brings it home turned.
+CagStatus cag_solid_sweep(const CagRegion *r, const CagMotion *motion, CagSolid **out,
+                          CagError *err);
+// Disk whose radius changes along the path.
+CagStatus cag_solid_tube_along(const CagCurve *path, const CagAlong *radius, CagSolid **out,
+                               CagError *err);
+// A loft (surface.h) closed by u, with flat caps where it is not closed by v: "section-not-plane",
+// "section-open".
+CagStatus cag_solid_loft(const CagSurface *side, CagSolid **out, CagError *err);
+// The one face of a swept or lofted solid that is no cap; NULL: there is none, or several.
+const CagSurface *cag_solid_side(const CagSolid *s);
 // Surfaces that together have no boundary (edges matched to 1e-6 of the size; else "solid-open"
 // with the gap); turned outward.
 CagStatus cag_solid_shell(CagSurface *const *faces, size_t n, CagSolid **out, CagError *err);

@@ -3,6 +3,8 @@
 #include "interp/builtin/surfaces.h"
 
 #define SURFACES CAG_TAKES(SURFACE)
+// Surfaces, and solids for their side.
+#define SIDES (CAG_TAKES(SURFACE) | CAG_TAKES(SOLID))
 #define CURVES CAG_TAKES(CURVE)
 #define LISTS CAG_TAKES_LISTS
 #define NUMBERS CAG_TAKES(NUMBER)
@@ -19,22 +21,21 @@ const CagBuiltin cag_builtins_surfaces[] = {
     {"at(S, u, v)", cag_surfaces_at, "list",
      "The point of the surface at u, v, as S(u, v) does. Parameters are natural: knots, or angles "
      "of what is turned. Outside of the domain is an error (parameter-range).",
-     "print at(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0.5, 0.5) // expect: [2, 1, 0]", SURFACES,
+     "print at(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0.5, 0.5) // expect: [2, 1, 0]", SIDES,
      asked},
     {"partial(S, u, v, du = 1, dv = 0)", cag_surfaces_partial, "list",
      "The partial derivative, du times by u and dv times by v (by angles: per radian).",
-     "print partial(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [4, 0, 0]", SURFACES,
+     "print partial(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [4, 0, 0]", SIDES,
      asked},
     {"normal(S, u, v)", cag_surfaces_normal, "list",
      "The unit normal, along partial u x partial v; at a pole its limit where there is one.",
-     "print near(normal(sphere_surface(2), 90deg, 0deg), X) // expect: true", SURFACES, asked},
+     "print near(normal(sphere_surface(2), 90deg, 0deg), X) // expect: true", SIDES, asked},
     {"tangent_plane(S, u, v)", cag_surfaces_tangent_plane, "plane",
      "The plane that touches the surface at u, v.",
-     "print near(tangent_plane(sphere_surface(2), 90deg, 0deg).normal, X) // expect: true",
-     SURFACES, asked},
-    {"domain(S)", cag_surfaces_domain, "record", "The ranges u and v of the parameters.",
-     "print domain(sphere_surface(1)) // expect: {u: 0deg..180deg, v: 0deg..360deg}", SURFACES,
+     "print near(tangent_plane(sphere_surface(2), 90deg, 0deg).normal, X) // expect: true", SIDES,
      asked},
+    {"domain(S)", cag_surfaces_domain, "record", "The ranges u and v of the parameters.",
+     "print domain(sphere_surface(1)) // expect: {u: 0deg..180deg, v: 0deg..360deg}", SIDES, asked},
     {"degree(S)", cag_surfaces_degree, "list",
      "The degrees in u and v of a Bezier or B-spline surface; others have none: an error "
      "(no-control-points).",
@@ -65,36 +66,35 @@ const CagBuiltin cag_builtins_surfaces[] = {
     {"first_form(S, u, v)", cag_surfaces_first_form, "list",
      "The first fundamental form [E, F, G]: the products of the partials.",
      "print first_form(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [16, 0, 4]",
-     SURFACES, curvature},
+     SIDES, curvature},
     {"second_form(S, u, v)", cag_surfaces_second_form, "list",
      "The second fundamental form [L, M, N]: the second partials along the normal. At a pole there "
      "is none: an error (singular-point).",
      "print second_form(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [0, 0, 0]",
-     SURFACES, curvature},
+     SIDES, curvature},
     {"gaussian_curvature(S, u, v)", cag_surfaces_gaussian_curvature, "number",
      "The product of the principal curvatures, in 1/mm2.",
-     "print near(gaussian_curvature(sphere_surface(2), 60deg, 10deg), 0.25) // expect: true",
-     SURFACES, curvature},
+     "print near(gaussian_curvature(sphere_surface(2), 60deg, 10deg), 0.25) // expect: true", SIDES,
+     curvature},
     {"mean_curvature(S, u, v)", cag_surfaces_mean_curvature, "number",
      "The mean of the principal curvatures, in 1/mm; negative where the surface bends away from "
      "its "
      "normal.",
-     "print near(mean_curvature(sphere_surface(2), 60deg, 10deg), -0.5) // expect: true", SURFACES,
+     "print near(mean_curvature(sphere_surface(2), 60deg, 10deg), -0.5) // expect: true", SIDES,
      curvature},
     {"normal_curvature(S, u, v, V)", cag_surfaces_normal_curvature, "number",
      "The curvature of the cut along the direction V (taken along the surface), in 1/mm.",
-     "print near(normal_curvature(sphere_surface(2), 90deg, 0deg, Y), -0.5) // expect: true",
-     SURFACES, curvature},
+     "print near(normal_curvature(sphere_surface(2), 90deg, 0deg, Y), -0.5) // expect: true", SIDES,
+     curvature},
     {"principal_curvatures(S, u, v)", cag_surfaces_principal_curvatures, "record",
      "The least and the greatest normal curvature, min and max, with min_direction and "
      "max_direction (unit, square to each other).",
      "k = principal_curvatures(torus_surface(3, 1), 0deg, 0deg)\n"
      "print near(k.min * k.max, 0.25) // expect: true",
-     SURFACES, curvature},
+     SIDES, curvature},
     {"curvature_class(S, u, v)", cag_surfaces_curvature_class, "text",
      "\"elliptic\", \"hyperbolic\", \"parabolic\" or \"planar\".",
-     "print curvature_class(sphere_surface(1), 90deg, 0deg) // expect: elliptic", SURFACES,
-     curvature},
+     "print curvature_class(sphere_surface(1), 90deg, 0deg) // expect: elliptic", SIDES, curvature},
 
     // --- Of the whole ---
     {"area(S)", cag_surfaces_area, "number", "The area in mm2, to 1e-8.",
@@ -161,12 +161,44 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print bilinear([0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 4])(0.5, 0.5) // expect: [0.5, 0.5, "
      "1]",
      LISTS, made},
+    {"sweep(C, path, orient = \"rmf\", twist = 0deg, scale = 1, caps = true)", cag_surfaces_sweep,
+     "solid or surface",
+     "A section carried along a path, square to it: its x goes along the frame's normal and its y "
+     "along the binormal. The frame does not turn about the path (\"rmf\"), is that of Frenet "
+     "(\"frenet\"), keeps the place it has at the start (\"fixed\"), or has y as near to a "
+     "direction "
+     "as may be. On the way the section turns by `twist` and grows to `scale`, evenly, or as "
+     "functions of the path's parameter say. Of a region, a list of points or a closed plane curve "
+     "a solid with caps, whose u and v are those of the side; else, and with `caps: false`, the "
+     "surface, u as in the section and v as in the path. Corners of the path are mitred.",
+     "path = polyline([[0, 0, 0], [0, 0, 5]])\n"
+     "print near(volume(sweep(rectangle(4, 2), path)), 40, relative: 1e-8) // expect: true\n"
+     "ring = sweep(circle(1), circle(5, frame: identity), twist: 90deg)\n"
+     "print near(volume(sweep(circle(1), circle(5))), 10 * pi^2, relative: 1e-8) // expect: true",
+     CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
+    {"sweep_by(C, map, range, caps = true)", cag_surfaces_sweep_by, "solid or surface",
+     "A section moved by a transform that depends on one parameter: S(u, v) = map(v) applied to "
+     "C(u), v over the range. Of a region, a list of points or a closed plane curve a solid with "
+     "caps. A map that jumps is an error (function-jumps).",
+     "s = sweep_by(rectangle(2, 2), t => translate([0, 0, t]) * rotate(Z, t * 10deg), 0..3)\n"
+     "print near(volume(s), 12, relative: 1e-8) // expect: true",
+     CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
     {"tube(path, radius, caps = true)", cag_surfaces_tube, "solid or surface",
-     "A round tube of this radius (mm) along a path: a solid with its caps, or with `caps: false` "
-     "the side alone, u the angle around and v as in the path.",
-     "print near(volume(tube(line([0, 0, 0], [0, 0, 5]), 2)), 20 * pi, relative: 1e-8) // expect: "
-     "true",
+     "A round tube of this radius (mm), or of a radius that is a function of the path's parameter: "
+     "a solid with its caps, or with `caps: false` the side alone, u the angle around and v as in "
+     "the path.",
+     "path = line([0, 0, 0], [0, 0, 5])\n"
+     "print near(volume(tube(path, 2)), 20 * pi, relative: 1e-8) // expect: true\n"
+     "print near(volume(tube(path, t => 2 - t)), 35 * pi / 3, relative: 1e-8) // expect: true",
      CURVES, made},
+    {"loft(curves, degree = 3, closed = false, caps = true)", cag_surfaces_loft, "solid or surface",
+     "The surface through curves in order: u runs along them over 0..1, v = i is curve i. In v it "
+     "is a spline of the degree; `closed` leads from the last curve back to the first. Of closed "
+     "curves the ends get flat caps, and it is a solid.",
+     "a = circle(2)\n"
+     "tower = loft([to_space(a), translate(a, [0, 0, 3]), translate(a, [0, 0, 5])])\n"
+     "print near(volume(tower), 20 * pi, relative: 1e-8) // expect: true",
+     LISTS, made},
     {"translational(A, B)", cag_surfaces_translational, "surface",
      "Curve A carried along curve B, from B's start.",
      "s = translational(line([0, 0, 0], [4, 0, 0]), line([0, 0, 0], [0, 3, 0]))\n"

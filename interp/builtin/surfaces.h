@@ -16,8 +16,10 @@
   /* surfaces_change.c: of the whole, and what is made of it */ \
   X(area) X(volume) X(sample) X(to_nurbs) X(flip) X(isocurve) X(boundary) \
   /* surfaces_make.c: of curves */ \
-  X(revolve) X(extrude) X(ruled) X(bilinear) X(tube) X(translational) X(sphere_surface) \
+  X(revolve) X(extrude) X(ruled) X(bilinear) X(translational) X(sphere_surface) \
   X(torus_surface) \
+  /* surfaces_sweep.c */ \
+  X(sweep) X(sweep_by) X(tube) X(loft) \
   /* surfaces_net.c: of nets of points */ \
   X(bezier_surface) X(bspline_surface) X(nurbs_surface) \
   /* surfaces_quadric.c */ \
@@ -30,6 +32,8 @@
 CAG_SURFACE_FUNCTIONS(X)
 #undef X
 
+// A surface, or the side of a solid that a section sweeps; borrowed.
+bool cag_arg_side(CagCall *call, int argument, CagSurface **out);
 // Reads u and v of a surface from the parameters `at` and the next.
 bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v);
 

@@ -2,13 +2,23 @@
 
 #include "interp/builtin/surfaces.h"
 
+bool cag_arg_side(CagCall *call, int argument, CagSurface **out) {
+  CagValue v = call->values[argument];
+  if (v.type != CAG_SOLID) return cag_arg_surface(call, argument, out);
+  *out = (CagSurface *)cag_solid_side(CAG_AS_SHAPE(v)->as.solid);
+  if (*out) return true;
+  return cag_fail_call(
+      call, argument, CAG_ERR_type,
+      "wants a surface: this solid has no single side; only swept ones have u and v");
+}
+
 bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v) {
   return cag_arg_parameter(call, at, s->angular_u, s->u0, s->u1, false, u) &&
          cag_arg_parameter(call, at + 1, s->angular_v, s->v0, s->v1, false, v);
 }
 
 static bool read_at(CagCall *call, CagSurface **s, double *u, double *v) {
-  return cag_arg_surface(call, 0, s) && cag_arg_uv(call, *s, 1, u, v);
+  return cag_arg_side(call, 0, s) && cag_arg_uv(call, *s, 1, u, v);
 }
 
 bool cag_surfaces_at(CagCall *call, CagValue *result) {
@@ -68,7 +78,7 @@ static const char *const directions[] = {"u", "v"};
 
 bool cag_surfaces_domain(CagCall *call, CagValue *result) {
   CagSurface *s;
-  if (!cag_arg_surface(call, 0, &s)) return false;
+  if (!cag_arg_side(call, 0, &s)) return false;
   CagValue values[] = {cag_domain_value(call->vm, s->angular_u, s->u0, s->u1),
                        cag_domain_value(call->vm, s->angular_v, s->v0, s->v1)};
   *result = cag_record_new(call->vm, directions, values, 2);
@@ -78,7 +88,7 @@ bool cag_surfaces_domain(CagCall *call, CagValue *result) {
 static bool read_net(CagCall *call, const char *what, CagSurfaceNurbsView *net) {
   CagSurface *s;
   CagError err;
-  if (!cag_arg_surface(call, 0, &s)) return false;
+  if (!cag_arg_side(call, 0, &s)) return false;
   if (cag_surface_nurbs_view(s, net)) return true;
   cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
            "a surface of kind %s has no %s; `to_nurbs` gives its rational form where there is one",
@@ -134,14 +144,14 @@ bool cag_surfaces_weights(CagCall *call, CagValue *result) {
 
 bool cag_surfaces_is_closed(CagCall *call, CagValue *result) {
   CagSurface *s;
-  if (!cag_arg_surface(call, 0, &s)) return false;
+  if (!cag_arg_side(call, 0, &s)) return false;
   *result = cag_bool(cag_surface_is_closed(s));
   return true;
 }
 
 bool cag_surfaces_closed_in(CagCall *call, CagValue *result) {
   CagSurface *s;
-  if (!cag_arg_surface(call, 0, &s)) return false;
+  if (!cag_arg_side(call, 0, &s)) return false;
   CagValue values[] = {cag_bool(s->closed_u), cag_bool(s->closed_v)};
   *result = cag_record_new(call->vm, directions, values, 2);
   return true;

@@ -237,28 +237,6 @@ bool cag_surfaces_bilinear(CagCall *call, CagValue *result) {
   return give(call, status, &err, &s, result);
 }
 
-bool cag_surfaces_tube(CagCall *call, CagValue *result) {
-  CagCurve *path;
-  CagSurface *s = NULL;
-  CagSolid *solid = NULL;
-  CagError err;
-  double radius;
-  bool caps;
-  if (!cag_arg_curve(call, 0, &path) || !cag_arg_positive(call, 1, &radius) ||
-      !cag_arg_bool_or(call, 2, true, &caps))
-    return false;
-  bool ok;
-  if (caps) {
-    CagStatus status = cag_solid_tube(path, radius, &solid, &err);
-    ok = give_solid(call, status, &err, solid, result);
-  } else {
-    CagStatus status = cag_surface_tube(path, radius, &s, &err);
-    ok = give(call, status, &err, &s, result);
-  }
-  if (ok) cag_shape_say_alike(*result, call->values[0]);
-  return ok;
-}
-
 bool cag_surfaces_translational(CagCall *call, CagValue *result) {
   CagCurve *a, *b;
   CagSurface *s = NULL;

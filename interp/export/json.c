@@ -380,6 +380,8 @@ static const char *const solid_names[] = {[CAG_SOLID_BOX] = "box",
                                           [CAG_SOLID_EXTRUSION] = "extrusion",
                                           [CAG_SOLID_REVOLUTION] = "revolution",
                                           [CAG_SOLID_TUBE] = "tube",
+                                          [CAG_SOLID_SWEEP] = "sweep",
+                                          [CAG_SOLID_LOFT] = "loft",
                                           [CAG_SOLID_SHELL] = "shell"};
 
 static CagStatus put_faces(Writer *w, const CagSolid *s, CagError *err) {

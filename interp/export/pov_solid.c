@@ -84,7 +84,9 @@ bool pov_try_solid(CagPovWriter *w, const CagSolid *s) {
   case CAG_SOLID_EXTRUSION: return pov_try_prism(w, s);
   case CAG_SOLID_REVOLUTION:
   case CAG_SOLID_SHELL: return try_shell(w, s);
-  case CAG_SOLID_TUBE: return false;
+  case CAG_SOLID_TUBE:
+  case CAG_SOLID_SWEEP:
+  case CAG_SOLID_LOFT: return false;
   }
   return false;
 }

@@ -1,0 +1,117 @@
+// Lofts: compatible sections, interpolated across by a spline (reference 06b, 4 and 7.5).
+//
+// Control points are interpolated in homogeneous coordinates, so that every section is met exactly
+// with its weights.
+
+#include "geom/surface/loft.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/basis/bspline.h"
+#include "geom/surface/family.h"
+#include "geom/surface/net.h"
+
+// Rows of all sections as one net across them.
+static CagStatus gather(const CagNet *sections, size_t n, int degree, CagNet *out, CagError *err) {
+  size_t width = 4 * sections[0].count;
+  CagStatus status = cag_net_new(degree, n, width, out, err);
+  if (status) return status;
+  for (size_t j = 0; j < n; j++)
+    memcpy(out->data + j * width, sections[j].data, width * sizeof *out->data);
+  return CAG_OK;
+}
+
+static CagStatus open_loft(const CagNet *sections, size_t n, int degree, CagSurface **out,
+                           CagError *err) {
+  CagNet net;
+  int p = degree < (int)n - 1 ? degree : (int)n - 1;
+  CagStatus status = gather(sections, n, p, &net, err);
+  if (status) return status;
+  double *at = malloc(n * sizeof *at);
+  if (!at) status = cag_fail_memory(err);
+  for (size_t j = 0; at && j < n; j++) at[j] = (double)j;
+  if (!status) {
+    cag_net_averaged_knots(at, n, p, net.knots);
+    status = cag_net_interpolate(&net, at, err);
+  }
+  if (!status) status = cag_net_to_surface(&net, 1, &sections[0], out, err);
+  free(at);
+  cag_net_free(&net);
+  return status;
+}
+
+// With uniform periodic knots the system is circulant: row j has the basis at a knot, shifted.
+static CagStatus solve_circulant(CagNet *net, CagError *err) {
+  size_t n = net->count, p = (size_t)net->degree, width = net->width;
+  double knots[64], basis[32];
+  for (size_t i = 0; i < 2 * p + 2; i++) knots[i] = (double)i;
+  cag_bspline_basis(knots, net->degree, p, (double)p, basis);
+  double *a = calloc(n * n, sizeof *a);
+  lapack_int *pivots = malloc(n * sizeof *pivots);
+  CagStatus status = a && pivots ? CAG_OK : cag_fail_memory(err);
+  if (!status) {
+    for (size_t j = 0; j < n; j++)
+      for (size_t k = 0; k <= p; k++) a[j * n + (j + k) % n] += basis[k];
+    lapack_int info = LAPACKE_dgesv(LAPACK_ROW_MAJOR, (lapack_int)n, (lapack_int)width, a,
+                                    (lapack_int)n, pivots, net->data, (lapack_int)width);
+    if (info != 0)
+      status =
+          cag_fail(err, CAG_E_DEGENERATE, "fit-singular", "degree", -1,
+                   "`degree` %zu has no closed loft through %zu curves: take another degree", p, n);
+  }
+  free(a);
+  free(pivots);
+  return status;
+}
+
+static CagStatus closed_loft(const CagNet *sections, size_t n, int degree, CagSurface **out,
+                             CagError *err) {
+  if (degree % 2 == 0)
+    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+                    "`degree` of a closed loft must be odd, it is %d: take %d", degree, degree + 1);
+  if ((size_t)degree >= n)
+    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+                    "`degree` must be less than the number of curves of a closed loft (%zu), it is "
+                    "%d",
+                    n, degree);
+  CagNet net, wrapped = {0};
+  size_t p = (size_t)degree;
+  CagStatus status = gather(sections, n, degree, &net, err);
+  if (status) return status;
+  status = solve_circulant(&net, err);
+  // The first rows again, and the ends clamped: the knots -p..n + p, the range 0..n.
+  if (!status) status = cag_net_new(degree, n + p, net.width, &wrapped, err);
+  if (!status) {
+    memcpy(wrapped.data, net.data, n * net.width * sizeof *net.data);
+    memcpy(wrapped.data + n * net.width, net.data, p * net.width * sizeof *net.data);
+    for (size_t i = 0; i < n + 2 * p + 1; i++) wrapped.knots[i] = (double)i - (double)p;
+    status = cag_net_to_surface(&wrapped, 1, &sections[0], out, err);
+  }
+  cag_net_free(&net);
+  cag_net_free(&wrapped);
+  return status;
+}
+
+CagStatus cag_surface_loft(const CagCurve *const *curves, size_t n, int degree, bool closed,
+                           CagSurface **out, CagError *err) {
+  CagNet *sections = calloc(n, sizeof *sections);
+  if (!sections) return cag_fail_memory(err);
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < n; i++) {
+    status = cag_net_of_curve(curves[i], &sections[i], err);
+    if (status && err->index < 0) {
+      err->index = (long)i;
+      memcpy(err->argument, "curves", sizeof "curves");
+    }
+  }
+  if (!status) status = cag_nets_unify(sections, n, err);
+  if (!status)
+    status = closed ? closed_loft(sections, n, degree, out, err)
+                    : open_loft(sections, n, degree, out, err);
+  for (size_t i = 0; i < n; i++) cag_net_free(&sections[i]);
+  free(sections);
+  return status;
+}

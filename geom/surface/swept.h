@@ -1,0 +1,19 @@
+// Surfaces that a section sweeps under a motion.
+
+#ifndef CAG_GEOM_SWEPT_H
+#define CAG_GEOM_SWEPT_H
+
+#include "geom/surface/motion.h"
+
+// u as in the section, v as of the motion. The section's x and y go along the motion's x and y; of
+// a section in space z goes along its z (not around corners: "section-not-plane").
+CagStatus cag_surface_sweep(const CagCurve *section, const CagMotion *motion, CagSurface **out,
+                            CagError *err);
+// A circle whose radius changes along the path.
+CagStatus cag_surface_tube_along(const CagCurve *path, const CagAlong *radius, CagSurface **out,
+                                 CagError *err);
+// Section and motion of a sweep or tube; false: another kind.
+bool cag_surface_swept_view(const CagSurface *s, const CagCurve **section,
+                            const CagMotion **motion);
+
+#endif

@@ -1,0 +1,290 @@
+// Surfaces and solids that a section sweeps along a path or under transforms, and lofts.
+
+#include <stdlib.h>
+
+#include "geom/surface/loft.h"
+#include "interp/builtin/support.h"
+#include "interp/builtin/surfaces.h"
+
+// Functions of the path's parameter are kept as series to this part of their size.
+#define FIT_TOLERANCE 1e-12
+
+// --- Functions of the script as series ---
+
+typedef struct Sampled {
+  CagCall *call;
+  int argument;
+  bool angular; // the parameter is an angle
+  bool angles;  // the values are angles
+} Sampled;
+
+static CagStatus stopped(CagError *err) {
+  return cag_fail(err, CAG_E_CALLBACK, "function-failed", "", -1, "the function failed");
+}
+
+static CagStatus call_at(const Sampled *s, double t, CagValue *out, CagError *err) {
+  CagValue at = cag_parameter_value(s->angular, t);
+  if (!cag_call(s->call->vm, s->call->values[s->argument], &at, 1, out) ||
+      !cag_keep_going(s->call->vm))
+    return stopped(err);
+  return CAG_OK;
+}
+
+static CagStatus sample_number(void *context, double t, double *out, CagError *err) {
+  const Sampled *s = context;
+  CagValue v;
+  CagStatus status = call_at(s, t, &v, err);
+  if (status) return status;
+  if (v.type != (s->angles ? CAG_ANGLE : CAG_NUMBER)) {
+    cag_fail_call(s->call, s->argument, CAG_ERR_type,
+                  "expects a function that gives %s, it gave %s", s->angles ? "angles" : "numbers",
+                  cag_type_article(v));
+    return stopped(err);
+  }
+  *out = s->angles ? v.as.number * CAG_RADIANS_PER_DEGREE : v.as.number;
+  return CAG_OK;
+}
+
+static CagStatus sample_rows(void *context, double t, double *out, CagError *err) {
+  const Sampled *s = context;
+  CagValue v;
+  CagStatus status = call_at(s, t, &v, err);
+  if (status) return status;
+  if (v.type != CAG_TRANSFORM) {
+    cag_fail_call(s->call, s->argument, CAG_ERR_type,
+                  "expects a function that gives transforms, it gave %s", cag_type_article(v));
+    return stopped(err);
+  }
+  const CagTransform *m = &CAG_AS_TRANSFORM(v)->t;
+  if (!cag_transform_is_affine(m))
+    return cag_fail(err, CAG_E_ARGUMENT, "not-affine", "map", -1,
+                    "`map` must give affine transforms: a projection has no sweep");
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 4; j++) out[4 * i + j] = m->m[i][j] / m->m[3][3];
+  return CAG_OK;
+}
+
+// A number or angle reached at the end of the path, or a function of its parameter.
+static bool read_along(CagCall *call, int argument, const CagCurve *path, bool angles, double from,
+                       CagAlong *out, CagChebyshev **fit) {
+  CagValue v = call->values[argument];
+  CagError err;
+  *fit = NULL;
+  *out = (CagAlong){from, from, NULL};
+  if (v.type == CAG_UNSET) return true;
+  if (!cag_is_function(v)) {
+    if (v.type != (angles ? CAG_ANGLE : CAG_NUMBER))
+      return cag_fail_type(call, argument,
+                           angles ? "an angle or a function" : "a number or a function");
+    return angles ? cag_arg_angle(call, argument, &out->end)
+                  : cag_arg_finite(call, argument, &out->end);
+  }
+  Sampled s = {call, argument, path->angular, angles};
+  const char *name = cag_builtin_signature_of(call->builtin)->parameters[argument];
+  CagStatus status = cag_chebyshev_fit(sample_number, &s, path->start, path->end, 1, FIT_TOLERANCE,
+                                       name, fit, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  out->function = *fit;
+  return true;
+}
+
+// --- Results ---
+
+static bool give_surface(CagCall *call, CagStatus status, const CagError *err, CagSurface **s,
+                         CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_surface_value(call->vm, *s);
+  return true;
+}
+
+static bool give_solid(CagCall *call, CagStatus status, const CagError *err, CagSolid **s,
+                       CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_solid_value(call->vm, *s);
+  return true;
+}
+
+// --- Sections ---
+
+// What is swept: a curve for a surface, else a region of the plane. A region that stands in space
+// keeps its own coordinates.
+typedef struct Section {
+  const CagCurve *curve; // borrowed
+  CagRegion *region;     // owned
+} Section;
+
+static bool read_section(CagCall *call, bool caps, Section *out) {
+  CagValue v = call->values[0];
+  *out = (Section){0};
+  if (v.type == CAG_CURVE) {
+    const CagCurve *c = CAG_AS_SHAPE(v)->as.curve;
+    if (!c->closed || c->dimension == 3 || !caps) {
+      out->curve = c;
+      return true;
+    }
+  }
+  CagTransform place;
+  return cag_arg_region(call, 0, &out->region, &place);
+}
+
+static bool sweep_sides(CagCall *call, const Section *section, const CagMotion *motion,
+                        CagValue *result) {
+  CagError err;
+  size_t n = section->curve ? 1 : section->region->count;
+  CagBuilder *sides = cag_builder_new(call->vm);
+  CagValue side = cag_none();
+  for (size_t i = 0; i < n; i++) {
+    CagSurface *s = NULL;
+    const CagCurve *c = section->curve ? section->curve : section->region->loops[i];
+    CagStatus status = cag_surface_sweep(c, motion, &s, &err);
+    if (!give_surface(call, status, &err, &s, &side) || !cag_builder_add(call->vm, sides, side))
+      return false;
+  }
+  *result = n == 1 ? side : cag_group_value(call->vm, cag_builder_finish(call->vm, sides));
+  return true;
+}
+
+static bool sweep_section(CagCall *call, const Section *section, const CagMotion *motion, bool caps,
+                          CagValue *result) {
+  if (section->curve || !caps) return sweep_sides(call, section, motion, result);
+  CagError err;
+  CagSolid *s = NULL;
+  return give_solid(call, cag_solid_sweep(section->region, motion, &s, &err), &err, &s, result);
+}
+
+// --- Sweeps ---
+
+static bool read_orient(CagCall *call, int argument, CagPathMotion *how) {
+  static const char *const names[] = {"rmf", "frenet", "fixed", NULL};
+  static const CagOrient orients[] = {CAG_ORIENT_RMF, CAG_ORIENT_FRENET, CAG_ORIENT_FIXED};
+  CagValue v = call->values[argument];
+  int choice;
+  if (v.type == CAG_LIST) {
+    how->orient = CAG_ORIENT_UP;
+    return cag_arg_direction(call, argument, cag_vec3(0, 0, 1), &how->up, NULL);
+  }
+  if (v.type != CAG_UNSET && v.type != CAG_TEXT)
+    return cag_fail_type(call, argument, "\"rmf\", \"frenet\", \"fixed\" or a direction");
+  if (!cag_arg_choice(call, argument, names, &choice)) return false;
+  how->orient = orients[choice];
+  return true;
+}
+
+bool cag_surfaces_sweep(CagCall *call, CagValue *result) {
+  CagCurve *path;
+  CagPathMotion how = {0};
+  CagChebyshev *twist = NULL, *scale = NULL;
+  CagMotion *motion = NULL;
+  Section section = {0};
+  CagError err;
+  bool caps;
+  bool ok = cag_arg_curve(call, 1, &path) && read_orient(call, 2, &how) &&
+            cag_arg_bool_or(call, 5, true, &caps) && read_section(call, caps, &section) &&
+            read_along(call, 3, path, true, 0, &how.twist, &twist) &&
+            read_along(call, 4, path, false, 1, &how.scale, &scale) &&
+            cag_geometry_ok(call, cag_motion_along(path, &how, &motion, &err), &err) &&
+            sweep_section(call, &section, motion, caps, result);
+  cag_motion_release(motion);
+  cag_chebyshev_release(twist);
+  cag_chebyshev_release(scale);
+  cag_region_release(section.region);
+  if (ok && cag_is_shape(call->values[0])) cag_shape_say_alike(*result, call->values[0]);
+  return ok;
+}
+
+bool cag_surfaces_sweep_by(CagCall *call, CagValue *result) {
+  CagValue map;
+  CagChebyshev *rows = NULL;
+  CagMotion *motion = NULL;
+  Section section = {0};
+  CagError err;
+  bool caps, angle;
+  double from, to;
+  if (!cag_arg_function(call, 1, &map) || !cag_arg_interval(call, 2, &from, &to, &angle) ||
+      !cag_arg_bool_or(call, 3, true, &caps))
+    return false;
+  if (!(from < to) || !isfinite(from) || !isfinite(to))
+    return cag_fail_call(call, 2, CAG_ERR_value, "expects a range that ends after its start");
+  double unit = angle ? CAG_RADIANS_PER_DEGREE : 1;
+  Sampled s = {call, 1, angle, false};
+  bool ok = read_section(call, caps, &section);
+  if (ok) {
+    CagStatus status = cag_chebyshev_fit(sample_rows, &s, from * unit, to * unit, 12, FIT_TOLERANCE,
+                                         "map", &rows, &err);
+    if (status == CAG_OK)
+      status = cag_motion_affine(rows, from * unit, to * unit, angle, &motion, &err);
+    ok = cag_geometry_ok(call, status, &err) && sweep_section(call, &section, motion, caps, result);
+  }
+  cag_motion_release(motion);
+  cag_chebyshev_release(rows);
+  cag_region_release(section.region);
+  if (ok && cag_is_shape(call->values[0])) cag_shape_say_alike(*result, call->values[0]);
+  return ok;
+}
+
+bool cag_surfaces_tube(CagCall *call, CagValue *result) {
+  CagCurve *path;
+  CagSurface *s = NULL;
+  CagSolid *solid = NULL;
+  CagChebyshev *fit = NULL;
+  CagAlong radius = {0};
+  CagError err;
+  bool caps, ok;
+  bool changing = cag_is_function(call->values[1]);
+  if (!cag_arg_curve(call, 0, &path) || !cag_arg_bool_or(call, 2, true, &caps) ||
+      (!changing && !cag_arg_positive(call, 1, &radius.end)))
+    return false;
+  if (changing && !read_along(call, 1, path, false, 0, &radius, &fit)) return false;
+  if (caps) {
+    CagStatus status = changing ? cag_solid_tube_along(path, &radius, &solid, &err)
+                                : cag_solid_tube(path, radius.end, &solid, &err);
+    ok = give_solid(call, status, &err, &solid, result);
+  } else {
+    CagStatus status = changing ? cag_surface_tube_along(path, &radius, &s, &err)
+                                : cag_surface_tube(path, radius.end, &s, &err);
+    ok = give_surface(call, status, &err, &s, result);
+  }
+  cag_chebyshev_release(fit);
+  if (ok) cag_shape_say_alike(*result, call->values[0]);
+  return ok;
+}
+
+// --- Lofts ---
+
+bool cag_surfaces_loft(CagCall *call, CagValue *result) {
+  CagList *list;
+  CagError err;
+  long degree;
+  bool closed, caps;
+  if (!cag_arg_list(call, 0, &list) || !cag_arg_integer_or(call, 1, 3, 1, 25, &degree) ||
+      !cag_arg_bool_or(call, 2, false, &closed) || !cag_arg_bool_or(call, 3, true, &caps))
+    return false;
+  if (list->length < 2) return cag_fail_value(call, 0, "at least 2 curves");
+  const CagCurve **curves = malloc(list->length * sizeof *curves);
+  if (!curves)
+    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  bool all_closed = true, ok = true;
+  for (size_t i = 0; ok && i < list->length; i++) {
+    CagValue v = cag_list_get(call->vm, list, i);
+    if (v.type != CAG_CURVE) ok = cag_fail_element(call, 0, i, v, "curves");
+    else {
+      curves[i] = CAG_AS_SHAPE(v)->as.curve;
+      all_closed = all_closed && curves[i]->closed;
+    }
+  }
+  CagSurface *side = NULL;
+  CagSolid *solid = NULL;
+  if (ok) {
+    CagStatus status = cag_surface_loft(curves, list->length, (int)degree, closed, &side, &err);
+    if (caps && all_closed && status == CAG_OK) {
+      status = cag_solid_loft(side, &solid, &err);
+      cag_surface_release(side);
+      ok = give_solid(call, status, &err, &solid, result);
+    } else {
+      ok = give_surface(call, status, &err, &side, result);
+    }
+  }
+  free(curves);
+  if (ok) cag_shape_say_alike(*result, cag_list_get(call->vm, list, 0));
+  return ok;
+}
