@@ -478,6 +478,27 @@ static CagStatus put_items(Writer *w, CagError *err) {
   return status;
 }
 
+static void put_labels(Writer *w) {
+  const CagScene *s = w->scene;
+  if (s->label_count == 0) return;
+  key(w, "labels");
+  open(w, "[");
+  for (size_t i = 0; i < s->label_count; i++) {
+    const CagLabel *l = &s->labels[i];
+    open(w, "\n{");
+    key_text(w, "text", l->text);
+    key_vec(w, "at", l->at);
+    if (l->directed) key_vec(w, "along", l->along);
+    key_text(w, "place", cag_label_places[l->place]);
+    key_text(w, "mark", cag_label_marks[l->mark]);
+    key_number(w, "size", l->size);
+    key_number(w, "material", (double)l->material);
+    close(w, "}");
+  }
+  close(w, "]");
+  new_line(w);
+}
+
 // --- Materials, cameras, lights, settings ---
 
 static void put_materials(Writer *w) {
@@ -604,6 +625,7 @@ CagStatus cag_export_json(const CagScene *scene, CagAtomicFile *file, CagError *
   put_materials(&w);
   CagStatus status = put_items(&w, err);
   if (status) return status;
+  put_labels(&w);
   put_cameras(&w);
   put_lights(&w);
   put_sky(&w);

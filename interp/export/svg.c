@@ -8,8 +8,10 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "interp/export/pieces.h"
+#include "interp/export/svg_label.h"
 
 // Part of the picture's size that an approximated curve may be off, and that numbers are rounded
 // to.
@@ -63,25 +65,19 @@ static void put_point(Picture *p, CagVec3 q) {
   cag_bounds_add(&p->box, q);
 }
 
-static void put_escaped(FILE *out, const char *text) {
-  for (const char *c = text; *c; c++) {
-    switch (*c) {
-    case '&': fputs("&amp;", out); break;
-    case '<': fputs("&lt;", out); break;
-    case '>': fputs("&gt;", out); break;
-    case '"': fputs("&quot;", out); break;
-    default: fputc((unsigned char)*c < ' ' ? ' ' : *c, out);
-    }
-  }
-}
+// "#rrggbb"
+typedef struct ColorText {
+  char text[8];
+} ColorText;
 
-static void put_color(FILE *out, CagColor c) {
-  double rgb[3] = {c.r, c.g, c.b};
-  fputc('#', out);
-  for (int i = 0; i < 3; i++) {
-    double s = cag_linear_to_srgb(fmin(fmax(rgb[i], 0), 1));
-    fprintf(out, "%02x", (unsigned)lround(255 * s));
-  }
+static ColorText color_text(CagColor c) {
+  const double rgb[3] = {c.r, c.g, c.b};
+  unsigned byte[3];
+  ColorText out;
+  for (int i = 0; i < 3; i++)
+    byte[i] = (unsigned)lround(255 * cag_linear_to_srgb(fmin(fmax(rgb[i], 0), 1)));
+  snprintf(out.text, sizeof out.text, "#%02x%02x%02x", byte[0] & 255, byte[1] & 255, byte[2] & 255);
+  return out;
 }
 
 // --- Strokes of the pen ---
@@ -275,9 +271,12 @@ static CagStatus draw_curve(Picture *p, const CagCurve *c, CagError *err) {
 static void open_path(Picture *p, const CagItem *item) {
   p->drawing = false;
   fputs("  <path", p->out);
-  const CagColor color = p->scene->materials[item->material].color;
+  const CagMaterial *material = &p->scene->materials[item->material];
   if (item->kind == CAG_ITEM_REGION) {
-    fputs(" stroke=\"none\" fill-rule=\"evenodd\" fill=\"", p->out);
+    fputs(" stroke=\"none\" fill-rule=\"evenodd\"", p->out);
+    if (material->transmission > 0)
+      fprintf(p->out, " fill-opacity=\"%.3g\"", 1 - material->transmission);
+    fputs(" fill=\"", p->out);
   } else {
     if (item->line_radius > 0) {
       fputs(" stroke-width=\"", p->out);
@@ -291,13 +290,13 @@ static void open_path(Picture *p, const CagItem *item) {
     }
     fputs(" stroke=\"", p->out);
   }
-  put_color(p->out, color);
+  fputs(color_text(material->color).text, p->out);
   fputs("\" d=\"", p->out);
 }
 
 static void close_path(Picture *p, const CagItem *item) {
   fputs("\"><title>", p->out);
-  put_escaped(p->out, item->name);
+  cag_svg_escape(p->out, item->name, strlen(item->name));
   fputs("</title></path>\n", p->out);
 }
 
@@ -330,6 +329,37 @@ static CagStatus draw_item(Picture *p, const CagItem *item, CagError *err) {
   return status;
 }
 
+// --- Labels ---
+
+// False: behind the camera. The picture of a direction is that of a short step along it.
+static bool look_at_label(const Picture *p, const CagLabel *l, CagVec3 *at, CagVec3 *along) {
+  CagVec3 q = cag_transform_point(&p->view, l->at), d = cag_transform_vector(&p->view, l->along);
+  *at = cag_vec3(q.x, q.y, 0);
+  *along = cag_vec3(d.x, d.y, 0);
+  if (p->affine) return true;
+  const double k = p->scale / q.z;
+  *at = cag_vec3(k * q.x, -k * q.y, 0);
+  *along = cag_vec3(k * (d.x - q.x * d.z / q.z), -k * (d.y - q.y * d.z / q.z), 0);
+  return q.z > p->near;
+}
+
+// They come last: over all lines, and when the picture's size is known.
+static void draw_labels(Picture *p) {
+  const CagScene *s = p->scene;
+  CagBounds drawn = p->box;
+  CagVec3 at, along;
+  for (size_t i = 0; i < s->label_count; i++)
+    if (look_at_label(p, &s->labels[i], &at, &along)) cag_bounds_add(&drawn, at);
+  double diagonal = cag_norm(cag_sub(drawn.max, drawn.min));
+  if (!(diagonal > 0)) diagonal = p->size;
+  for (size_t i = 0; i < s->label_count; i++) {
+    const CagLabel *l = &s->labels[i];
+    if (!look_at_label(p, l, &at, &along)) continue;
+    ColorText color = color_text(s->materials[l->material].color);
+    cag_svg_label(p->out, l, at, along, color.text, diagonal, &p->box);
+  }
+}
+
 // --- The view ---
 
 static CagStatus item_bounds(const CagItem *item, CagBounds *out, CagError *err) {
@@ -358,9 +388,10 @@ static CagStatus measure(const CagScene *s, CagBounds *all, CagError *err) {
     cag_bounds_add(all, b.max);
     found++;
   }
-  if (found > 0) return CAG_OK;
+  for (size_t i = 0; i < s->label_count; i++) cag_bounds_add(all, s->labels[i].at);
+  if (found + s->label_count > 0) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, "svg-without-curves", "", -1,
-                  "the scene has no curves or regions, and an .svg shows nothing else");
+                  "the scene has no curves, regions or labels, and an .svg shows nothing else");
 }
 
 static CagStatus set_view(Picture *p, size_t camera, const CagBounds *all, CagError *err) {
@@ -412,7 +443,7 @@ static void write_file(Picture *p, CagAtomicFile *f, const char *paths, size_t n
   }
   cag_atomic_file_text(f,
                        "\">\n<g fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\" "
-                       "stroke-width=\"");
+                       "font-family=\"sans-serif\" stroke-width=\"");
   write_number(f, p, STROKE_PART * diagonal);
   cag_atomic_file_text(f, "\">\n");
   cag_atomic_file_write(f, paths, n);
@@ -431,6 +462,7 @@ CagStatus cag_export_svg(const CagScene *scene, size_t camera, CagAtomicFile *fi
   if (!p.out) return cag_fail_memory(err);
   for (size_t i = 0; !status && i < scene->item_count; i++)
     status = draw_item(&p, &scene->items[i], err);
+  if (!status) draw_labels(&p);
   bool whole = fclose(p.out) == 0;
   if (!status && !whole) status = cag_fail_memory(err);
   if (!status && !(p.box.min.x <= p.box.max.x))

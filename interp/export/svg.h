@@ -1,4 +1,4 @@
-// The curves and regions of a scene as a flat picture in SVG.
+// The curves, regions and labels of a scene as a flat picture in SVG.
 //
 // Where all of them lie in one plane z = constant they are seen from above, at their true size in
 // millimetres, y up. Otherwise they are seen by the camera; of a perspective one, a millimetre is
@@ -7,7 +7,9 @@
 // Curves that are polynomials of degree up to 3 become exact cubic paths, arcs of circles and
 // ellipses exact elliptic arcs; everything else is drawn by cubics that stay within a 20,000th of
 // the picture's size. Regions are filled, their holes left out. Stroke and fill are the material's
-// colour, the stroke twice the line's radius wide. Other shapes have no outline and are left out.
+// colour, the stroke twice the line's radius wide; the transmission of a region's material is how
+// much of what lies below shows through. Labels stand over everything. Other shapes have no outline
+// and are left out.
 
 #ifndef CAG_INTERP_EXPORT_SVG_H
 #define CAG_INTERP_EXPORT_SVG_H
@@ -16,7 +18,7 @@
 #include "interp/scene/scene.h"
 
 // Writes the picture to an open file. `camera`: index into the scene's cameras. A scene without
-// curves and regions is an error ("svg-without-curves").
+// curves, regions and labels is an error ("svg-without-curves").
 CagStatus cag_export_svg(const CagScene *scene, size_t camera, CagAtomicFile *file, CagError *err);
 
 #endif

@@ -15,7 +15,7 @@
 typedef struct Build {
   CagVm *vm;
   CagScene *scene;
-  size_t item_capacity, material_capacity, camera_capacity, light_capacity;
+  size_t item_capacity, label_capacity, material_capacity, camera_capacity, light_capacity;
   bool failed; // memory is out
 } Build;
 
@@ -170,10 +170,34 @@ static const char *solid_noun(const CagSolid *s) {
   return nouns[s->kind];
 }
 
+// A label is a mesh without faces: see builtin/figures.c.
+static void add_label(Build *b, const CagMesh *anchor, const char *text, const Said *said) {
+  CagScene *s = b->scene;
+  size_t material = material_of(b, said->material, INK_MATERIAL);
+  s->labels = grown(b, s->labels, s->label_count, &b->label_capacity, sizeof *s->labels);
+  if (b->failed) return;
+  bool directed = anchor->vertex_count > 1;
+  CagVec3 at = anchor->positions[0];
+  s->labels[s->label_count++] =
+      (CagLabel){.text = copy_text(b, text),
+                 .at = at,
+                 .along = directed ? cag_sub(anchor->positions[1], at) : cag_vec3(0, 0, 0),
+                 .directed = directed,
+                 .place = (CagLabelPlace)number_field(said->style, "place", 0),
+                 .mark = (CagLabelMark)number_field(said->style, "mark", 0),
+                 .size = number_field(said->style, "size", 0),
+                 .material = material};
+}
+
 static void add_shape(Build *b, CagValue v, const Said *said) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagItem *item = NULL;
   const char *name = said->name;
+  const char *label = v.type == CAG_MESH ? text_field(said->style, "label", NULL) : NULL;
+  if (label) {
+    add_label(b, shape->as.mesh, label, said);
+    return;
+  }
   size_t fallback = v.type == CAG_CURVE ? INK_MATERIAL : DEFAULT_MATERIAL;
   size_t material = material_of(b, said->material, fallback);
   switch (v.type) {

@@ -4,6 +4,17 @@
 
 #include <stdlib.h>
 
+const char *const cag_label_marks[] = {
+#define X(name, text) text,
+    CAG_LABEL_MARKS(X)
+#undef X
+        NULL};
+const char *const cag_label_places[] = {
+#define X(name, text, x, y) text,
+    CAG_LABEL_PLACES(X)
+#undef X
+        NULL};
+
 static void free_item(CagItem *item) {
   switch (item->kind) {
   case CAG_ITEM_CURVE: cag_curve_release(item->as.curve); break;
@@ -18,6 +29,7 @@ static void free_item(CagItem *item) {
 
 void cag_scene_free(CagScene *s) {
   for (size_t i = 0; i < s->item_count; i++) free_item(&s->items[i]);
+  for (size_t i = 0; i < s->label_count; i++) free(s->labels[i].text);
   for (size_t i = 0; i < s->material_count; i++) {
     free(s->materials[i].name);
     free(s->materials[i].texture);
@@ -25,6 +37,7 @@ void cag_scene_free(CagScene *s) {
   }
   for (size_t i = 0; i < s->camera_count; i++) free(s->cameras[i].name);
   free(s->items);
+  free(s->labels);
   free(s->materials);
   free(s->cameras);
   free(s->lights);

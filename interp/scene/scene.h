@@ -68,6 +68,45 @@ typedef struct CagItem {
   double ground_z, ground_size; // GROUND; size may be infinite
 } CagItem;
 
+// X(NAME, text): what is drawn at a label's place.
+#define CAG_LABEL_MARKS(X)                                                                         \
+  X(NONE, "none") X(DOT, "dot") X(CIRCLE, "circle") X(CROSS, "cross") X(ARROW, "arrow")
+// X(NAME, text, x, y): where a label's text stands, as steps right and up from its place.
+#define CAG_LABEL_PLACES(X)                                                                        \
+  X(RIGHT, "right", 1, 0)                                                                          \
+  X(LEFT, "left", -1, 0)                                                                           \
+  X(ABOVE, "above", 0, 1)                                                                          \
+  X(BELOW, "below", 0, -1)                                                                         \
+  X(CENTER, "center", 0, 0)                                                                        \
+  X(ABOVE_RIGHT, "above_right", 1, 1)                                                              \
+  X(ABOVE_LEFT, "above_left", -1, 1)                                                               \
+  X(BELOW_RIGHT, "below_right", 1, -1)                                                             \
+  X(BELOW_LEFT, "below_left", -1, -1)
+typedef enum CagLabelMark {
+#define X(name, text) CAG_LABEL_##name,
+  CAG_LABEL_MARKS(X)
+#undef X
+} CagLabelMark;
+typedef enum CagLabelPlace {
+#define X(name, text, x, y) CAG_LABEL_##name,
+  CAG_LABEL_PLACES(X)
+#undef X
+} CagLabelPlace;
+// Their words, ending with NULL.
+extern const char *const cag_label_marks[];
+extern const char *const cag_label_places[];
+
+// A text or mark of flat pictures.
+typedef struct CagLabel {
+  char *text;
+  CagVec3 at, along; // along: the direction of the text and of an arrow
+  bool directed;     // there is one
+  CagLabelPlace place;
+  CagLabelMark mark;
+  double size;     // height of the text, mm; 0: by the size of the picture
+  size_t material; // index into materials
+} CagLabel;
+
 typedef struct CagCamera {
   char *name;
   CagVec3 eye, target, up; // up square to the view
@@ -102,6 +141,8 @@ typedef struct CagSky {
 typedef struct CagScene {
   CagItem *items;
   size_t item_count;
+  CagLabel *labels;
+  size_t label_count;
   CagMaterial *materials;
   size_t material_count; // 0 is the default material
   CagCamera *cameras;
