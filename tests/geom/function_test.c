@@ -1,0 +1,190 @@
+// Curves and surfaces by functions of the caller: maps around them, errors, ownership.
+
+#include "geom/curve/function.h"
+#include "geom/curve/natural.h"
+#include "geom/surface/function.h"
+#include "support.h"
+
+// A circle of radius 2 in the plane z = 1, which fails behind `limit`.
+typedef struct Circle {
+  double limit;
+  int released;
+} Circle;
+
+static CagStatus circle_eval(void *context, double t, int order, CagVec3 *out, CagError *e) {
+  const Circle *c = context;
+  if (t > c->limit) return cag_fail(e, CAG_E_CALLBACK, "function-failed", "", -1, "too far");
+  for (int k = 0; k <= order; k++)
+    out[k] = cag_vec3(2 * cos(t + k * M_PI / 2), 2 * sin(t + k * M_PI / 2), k == 0);
+  return CAG_OK;
+}
+static void circle_release(void *context) { ((Circle *)context)->released++; }
+
+static CagCurve *make_circle(Circle *c) {
+  CagCurve *curve;
+  const CagCurveFunction f = {circle_eval, circle_release, c};
+  OK(cag_curve_function(&f, 3, 0, 2 * M_PI, true, &curve, &err));
+  return curve;
+}
+
+static void a_function_is_released_with_its_last_curve(void **state) {
+  (void)state;
+  Circle c = {10, 0};
+  CagCurve *whole = make_circle(&c), *part, *back;
+  OK(cag_curve_trim(whole, 1, 2, &part, &err));
+  OK(cag_curve_reverse(part, &back, &err));
+  assert_true(whole->closed && !part->closed && back->angular);
+  cag_curve_release(whole);
+  cag_curve_release(part);
+  assert_int_equal(c.released, 0);
+  CagVec3 p;
+  OK(cag_curve_point(back, 1, &p, &err));
+  near_vec(p, cag_vec3(2 * cos(2), 2 * sin(2), 1), 1e-15);
+  cag_curve_release(back);
+  assert_int_equal(c.released, 1);
+}
+
+static void a_function_that_fails_stays_with_its_caller(void **state) {
+  (void)state;
+  Circle c = {3, 0};
+  CagCurve *curve;
+  const CagCurveFunction f = {circle_eval, circle_release, &c};
+  assert_int_equal(cag_curve_function(&f, 3, 0, 2 * M_PI, true, &curve, &err), CAG_E_CALLBACK);
+  FAILS(cag_curve_function(&f, 3, 1, 1, false, &curve, &err), "empty-range");
+  FAILS(cag_curve_function(&f, 3, 0, INFINITY, false, &curve, &err), "not-finite");
+  assert_int_equal(c.released, 0);
+}
+
+// Derivatives of x / z for x = 2 cos t, z = 2 sin t + 3, from differentiating the quotient by hand.
+static void a_projection_has_the_derivatives_of_the_quotient(void **state) {
+  (void)state;
+  Circle c = {10, 0};
+  CagCurve *curve = make_circle(&c), *image;
+  CagTransform t = cag_transform_identity();
+  t.planar = false;
+  t.m[3][1] = 1; // w = y + 3
+  t.m[3][3] = 3;
+  OK(cag_curve_transform(curve, &t, &image, &err));
+  CagVec3 d[3];
+  OK(cag_curve_eval(image, 0.7, 2, CAG_SIDE_RIGHT, d, &err));
+  const double x = 2 * cos(0.7), x1 = -2 * sin(0.7), x2 = -x, w = 2 * sin(0.7) + 3, w1 = x, w2 = x1;
+  NEAR(d[0].x, x / w, 1e-15);
+  NEAR(d[1].x, x1 / w - x * w1 / (w * w), 1e-15);
+  NEAR(d[2].x, x2 / w - 2 * x1 * w1 / (w * w) - x * w2 / (w * w) + 2 * x * w1 * w1 / (w * w * w),
+       1e-15);
+  cag_curve_release(curve);
+  cag_curve_release(image);
+}
+
+static void bounds_and_length_are_those_of_the_circle(void **state) {
+  (void)state;
+  Circle c = {10, 0};
+  CagCurve *curve = make_circle(&c);
+  CagBounds box;
+  double length;
+  OK(cag_curve_bounds(curve, &box, &err));
+  near_vec(box.min, cag_vec3(-2, -2, 1), 1e-8);
+  near_vec(box.max, cag_vec3(2, 2, 1), 1e-8);
+  OK(cag_curve_length(curve, 0, 2 * M_PI, &length, &err));
+  NEAR(length, 4 * M_PI, 1e-12);
+  cag_curve_release(curve);
+}
+
+// u v over the unit square, and NaN at u = 1 where `broken`.
+static CagStatus saddle_eval(void *context, double u, double v, int n, CagVec3 *out, CagError *e) {
+  (void)e;
+  const bool broken = *(const bool *)context;
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; i + j <= n; j++) {
+      double x = i + j == 0 ? u : i == 1 && j == 0, y = i + j == 0 ? v : i == 0 && j == 1;
+      double z = i > 1 || j > 1 ? 0 : (i ? 1 : u) * (j ? 1 : v);
+      out[cag_partial(n, i, j)] = cag_vec3(x, y, broken && u == 1 ? NAN : z);
+    }
+  return CAG_OK;
+}
+static CagStatus saddle_row(void *context, double u, const double *vs, size_t nv, int n,
+                            CagVec3 *out, CagError *e) {
+  for (size_t k = 0; k < nv; k++) {
+    CagVec3 d[4];
+    saddle_eval(context, u, vs[k], n, d, e);
+    CagVec3 *to = out + k * (n ? 3 : 1);
+    to[0] = d[0];
+    if (n) to[1] = d[cag_partial(1, 1, 0)];
+    if (n) to[2] = d[cag_partial(1, 0, 1)];
+  }
+  return CAG_OK;
+}
+
+static void points_that_are_not_finite_are_found(void **state) {
+  (void)state;
+  bool broken = true;
+  CagSurface *s;
+  const CagSurfaceFunction f = {saddle_eval, saddle_row, NULL, &broken};
+  FAILS(cag_surface_function(&f, 0, 1, false, 0, 1, false, &s, &err), "not-finite");
+  assert_non_null(strstr(err.message, "u = 1, v = 0"));
+  broken = false;
+  OK(cag_surface_function(&f, 0, 1, false, 0, 1, false, &s, &err));
+  assert_false(s->closed_u || s->closed_v || s->pole_u0 || s->pole_v1);
+  CagVec3 points[4], du[4], dv[4];
+  const double ends[2] = {0, 1};
+  OK(cag_surface_eval_grid(s, ends, 2, ends, 2, points, du, dv, &err));
+  near_vec(points[3], cag_vec3(1, 1, 1), 0);
+  near_vec(du[1], cag_vec3(1, 0, 1), 0);
+  near_vec(dv[2], cag_vec3(0, 1, 1), 0);
+  broken = true;
+  FAILS(cag_surface_eval_grid(s, ends, 2, ends, 2, points, du, dv, &err), "not-finite");
+  cag_surface_release(s);
+}
+
+// Curvature s / 4 and torsion 1 / 2 by numbers.
+static CagStatus spiral_eval(void *context, double s, int order, double *k, double *w,
+                             CagError *e) {
+  (void)context;
+  (void)e;
+  for (int i = 0; i <= order; i++) {
+    k[i] = i == 0 ? s / 4 : i == 1 ? 0.25 : 0;
+    w[i] = i == 0 ? 0.5 : 0;
+  }
+  return CAG_OK;
+}
+
+// The frame's equations again, by what the curve answers.
+static void a_natural_curve_has_its_curvature_and_torsion(void **state) {
+  (void)state;
+  CagCurve *c;
+  const CagNaturalEquations equations = {spiral_eval, NULL, NULL};
+  CagTransform frame = cag_transform_identity();
+  OK(cag_curve_natural(&equations, 40, &frame, 3, &c, &err));
+  for (double s = 0.5; s < 40; s += 3.7) {
+    CagFrenet f;
+    CagVec3 d[7], around[2];
+    OK(cag_curve_frenet(c, s, &f, &err));
+    NEAR(f.curvature, s / 4, 1e-12 * s);
+    NEAR(f.torsion, 0.5, 1e-11);
+    // The fourth derivative against differences of the third.
+    const double h = 1e-4;
+    OK(cag_curve_eval(c, s, 6, CAG_SIDE_RIGHT, d, &err));
+    CagVec3 third[4];
+    OK(cag_curve_eval(c, s + h, 3, CAG_SIDE_RIGHT, third, &err));
+    around[1] = third[3];
+    OK(cag_curve_eval(c, s - h, 3, CAG_SIDE_RIGHT, third, &err));
+    around[0] = third[3];
+    CagVec3 slope = cag_scaled(cag_sub(around[1], around[0]), 1 / (2 * h));
+    near_vec(d[4], slope, 1e-6 * (1 + pow(s / 4, 6)));
+  }
+  cag_curve_release(c);
+  frame.m[0][0] = 2;
+  FAILS(cag_curve_natural(&equations, 40, &frame, 3, &c, &err), "frame-not-orthonormal");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_function_is_released_with_its_last_curve),
+      cmocka_unit_test(a_function_that_fails_stays_with_its_caller),
+      cmocka_unit_test(a_projection_has_the_derivatives_of_the_quotient),
+      cmocka_unit_test(bounds_and_length_are_those_of_the_circle),
+      cmocka_unit_test(points_that_are_not_finite_are_found),
+      cmocka_unit_test(a_natural_curve_has_its_curvature_and_torsion),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
