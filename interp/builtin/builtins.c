@@ -227,7 +227,7 @@ static void build_table(void) {
   table.names = take(table.row_count, sizeof *table.names);
   size_t *name_of = number_names(parsed);
   // Group by name.
-  table.name_texts = take(table.name_count, sizeof *table.name_texts);
+  table.name_texts = take(table.name_count + 1, sizeof *table.name_texts);
   size_t first = 0;
   for (size_t i = 0; i < table.name_count; i++) {
     table.name_texts[i] = table.names[i].name;
