@@ -1,0 +1,342 @@
+// Cubic splines, Hermite segments, blends, joints, hulls: numbers of the reference (05a) and
+// identities.
+
+#include "geom/curve/cubic.h"
+#include "geom/curve/hulls.h"
+#include "geom/curve/joint.h"
+#include "support.h"
+
+// The points of the reference's examples 2, 3, 5 and 6.
+static const CagVec3 zigzag[4] = {{0, 0, 0}, {1, 1, 0}, {2, -1, 0}, {3, 0, 0}};
+static const CagVec3 loop[5] = {{0, 0, 0}, {2, 1, 0}, {3, 3, 0}, {1, 4, 0}, {0, 0, 0}};
+static const CagCubicEnds relaxed = {.closing = CAG_CUBIC_ENDS};
+static const CagCubicEnds diagonal = {
+    .closing = CAG_CUBIC_ENDS, .clamped = {true, true}, .tangent = {{1, 1, 0}, {1, 1, 0}}};
+
+static CagVec3 at(const CagCurve *c, double t) {
+  CagVec3 p;
+  OK(cag_curve_point(c, t, &p, &err));
+  return p;
+}
+
+static CagVec3 derived(const CagCurve *c, double t, int order, CagSide side) {
+  CagVec3 d[4];
+  OK(cag_curve_eval(c, t, order, side, d, &err));
+  return d[order];
+}
+
+static void clamped_splines_have_the_tangents_of_the_reference(void **state) {
+  (void)state;
+  double u[4];
+  CagVec3 d[4];
+  OK(cag_spacing_parameters(zigzag, 4, CAG_SPACING_CHORD, u, &err));
+  OK(cag_cubic_tangents(zigzag, 4, u, &diagonal, NULL, d, &err));
+  // Five printed places.
+  near_vec(d[1], cag_vec3(0.50543, -0.14772, 0), 1e-5);
+  near_vec(d[2], cag_vec3(0.50543, -0.14772, 0), 1e-5);
+  OK(cag_spacing_parameters(zigzag, 4, CAG_SPACING_UNIFORM, u, &err));
+  OK(cag_cubic_tangents(zigzag, 4, u, &diagonal, NULL, d, &err));
+  near_vec(d[1], cag_vec3(1, -0.8, 0), 1e-14);
+  near_vec(d[2], cag_vec3(1, -0.8, 0), 1e-14);
+}
+
+static void splines_pass_their_points_and_are_smooth(void **state) {
+  (void)state;
+  const CagSpacing spacings[] = {CAG_SPACING_CHORD, CAG_SPACING_UNIFORM, CAG_SPACING_CENTRIPETAL};
+  const CagCubicEnds ends[] = {
+      relaxed, diagonal, {.closing = CAG_CUBIC_CYCLIC}, {.closing = CAG_CUBIC_ANTICYCLIC}};
+  for (int s = 0; s < 3; s++)
+    for (int e = 0; e < 4; e++) {
+      double u[5];
+      CagCurve *c;
+      OK(cag_spacing_parameters(loop, 5, spacings[s], u, &err));
+      OK(cag_curve_cubic_spline(loop, 5, u, &ends[e], NULL, 2, &c, &err));
+      assert_int_equal(c->dimension, 2);
+      for (int i = 0; i < 5; i++) near_vec(at(c, u[i]), loop[i], 1e-13);
+      for (int i = 1; i < 4; i++)
+        near_vec(derived(c, u[i], 2, CAG_SIDE_LEFT), derived(c, u[i], 2, CAG_SIDE_RIGHT), 1e-11);
+      for (int k = 1; k <= 2; k++) {
+        CagVec3 first = derived(c, c->start, k, CAG_SIDE_RIGHT);
+        CagVec3 last = derived(c, c->end, k, CAG_SIDE_LEFT);
+        if (ends[e].closing == CAG_CUBIC_CYCLIC) near_vec(first, last, 1e-11);
+        if (ends[e].closing == CAG_CUBIC_ANTICYCLIC) near_vec(first, cag_scaled(last, -1), 1e-11);
+      }
+      if (e == 0) near_vec(derived(c, c->start, 2, CAG_SIDE_RIGHT), cag_vec3(0, 0, 0), 1e-12);
+      cag_curve_release(c);
+    }
+}
+
+// n = 2 and n = 3 leave no room for the general rows (reference 05a, 4).
+static void the_shortest_splines_are_the_reference_s(void **state) {
+  (void)state;
+  const CagVec3 two[2] = {{0, 0, 0}, {3, 4, 0}};
+  const double u[2] = {0, 5};
+  CagVec3 d[5];
+  CagCubicEnds ends = {.closing = CAG_CUBIC_CYCLIC};
+  OK(cag_cubic_tangents(two, 2, u, &ends, NULL, d, &err));
+  near_vec(d[1], cag_vec3(0.6, 0.8, 0), 1e-15);
+  ends.closing = CAG_CUBIC_ANTICYCLIC;
+  OK(cag_cubic_tangents(two, 2, u, &ends, NULL, d, &err));
+  near_vec(d[0], cag_vec3(0, 0, 0), 0);
+  OK(cag_cubic_tangents(two, 2, u, &relaxed, NULL, d, &err));
+  near_vec(d[0], cag_vec3(0.6, 0.8, 0), 1e-15);
+  ends = (CagCubicEnds){.closing = CAG_CUBIC_ENDS, .clamped = {true}, .tangent = {{1, 0, 0}}};
+  OK(cag_cubic_tangents(two, 2, u, &ends, NULL, d, &err));
+  near_vec(d[1], cag_vec3(1.5 * 0.6 - 0.5, 1.5 * 0.8, 0), 1e-15);
+  // Three points: P'_2 by hand from the two rows of the cyclic system, lengths 1 and 2.
+  const double v[3] = {0, 1, 3};
+  const CagVec3 three[3] = {{0, 0, 0}, {1, 3, 0}, {0, 0, 0}};
+  ends = (CagCubicEnds){.closing = CAG_CUBIC_CYCLIC};
+  CagCurve *c;
+  OK(cag_curve_cubic_spline(three, 3, v, &ends, NULL, 2, &c, &err));
+  for (int k = 1; k <= 2; k++) {
+    near_vec(derived(c, 0, k, CAG_SIDE_RIGHT), derived(c, 3, k, CAG_SIDE_LEFT), 1e-13);
+    near_vec(derived(c, 1, k, CAG_SIDE_RIGHT), derived(c, 1, k, CAG_SIDE_LEFT), 1e-13);
+  }
+  cag_curve_release(c);
+}
+
+static void a_cubic_is_its_own_clamped_spline(void **state) {
+  (void)state;
+  const double u[6] = {0, 0.2, 0.25, 1, 3, 3.5};
+  CagVec3 p[6], d[6];
+  for (int i = 0; i < 6; i++) {
+    const double t = u[i];
+    p[i] = cag_vec3(t * t * t - t, 2 * t * t, 5 - t);
+    d[i] = cag_vec3(3 * t * t - 1, 4 * t, -1);
+  }
+  const CagCubicEnds ends = {
+      .closing = CAG_CUBIC_ENDS, .clamped = {true, true}, .tangent = {d[0], d[5]}};
+  CagCurve *c;
+  OK(cag_curve_cubic_spline(p, 6, u, &ends, NULL, 3, &c, &err));
+  for (int k = 0; k <= 20; k++) {
+    const double t = 3.5 * k / 20;
+    near_vec(at(c, t), cag_vec3(t * t * t - t, 2 * t * t, 5 - t), 1e-12);
+  }
+  cag_curve_release(c);
+}
+
+static void chords_of_any_ratio_keep_the_points(void **state) {
+  (void)state;
+  const CagVec3 p[5] = {{0, 0, 0}, {1e-5, 1e-5, 0}, {1, 0, 0}, {1.000001, 0, 0}, {100, 3, 0}};
+  double u[5];
+  CagCurve *c;
+  OK(cag_spacing_parameters(p, 5, CAG_SPACING_CHORD, u, &err));
+  OK(cag_curve_cubic_spline(p, 5, u, &relaxed, NULL, 2, &c, &err));
+  for (int i = 0; i < 5; i++) near_vec(at(c, u[i]), p[i], 1e-12);
+  cag_curve_release(c);
+}
+
+static void tension_jumps_the_second_derivative_along_the_tangent(void **state) {
+  (void)state;
+  const double u[4] = {0, 1, 3, 4}, nu[2] = {2, 5};
+  CagCurve *c;
+  OK(cag_curve_cubic_spline(zigzag, 4, u, &relaxed, nu, 2, &c, &err));
+  for (int i = 1; i < 3; i++) {
+    CagVec3 jump = cag_sub(derived(c, u[i], 2, CAG_SIDE_RIGHT), derived(c, u[i], 2, CAG_SIDE_LEFT));
+    near_vec(jump, cag_scaled(derived(c, u[i], 1, CAG_SIDE_RIGHT), nu[i - 1]), 1e-12);
+  }
+  cag_curve_release(c);
+  const double negative[2] = {0, -1};
+  FAILS(cag_curve_cubic_spline(zigzag, 4, u, &relaxed, negative, 2, &c, &err), "bad-tension");
+}
+
+static void bad_splines_are_told(void **state) {
+  (void)state;
+  const CagVec3 repeated[3] = {{0, 0, 0}, {1, 1, 0}, {1, 1, 0}};
+  const double still[4] = {0, 1, 1, 2};
+  double u[4];
+  CagCurve *c;
+  FAILS(cag_spacing_parameters(repeated, 3, CAG_SPACING_CHORD, u, &err), "coincident-points");
+  assert_int_equal(err.index, 2);
+  OK(cag_spacing_parameters(repeated, 3, CAG_SPACING_UNIFORM, u, &err));
+  FAILS(cag_spacing_parameters(repeated, 1, CAG_SPACING_UNIFORM, u, &err), "too-few-points");
+  FAILS(cag_curve_cubic_spline(zigzag, 4, still, &relaxed, NULL, 2, &c, &err),
+        "bad-parameter-length");
+}
+
+static void blends_have_the_points_of_the_reference(void **state) {
+  (void)state;
+  const double half[2] = {0.5, 0.5};
+  CagCurve *c;
+  OK(cag_curve_parabolic_blend(zigzag, 4, half, 1, CAG_BLEND_OPEN, 2, &c, &err));
+  near_vec(at(c, 1.0 / 3), cag_vec3(4.0 / 3, 4.0 / 9, 0), 1e-14);
+  near_vec(at(c, 2.0 / 3), cag_vec3(5.0 / 3, -4.0 / 9, 0), 1e-14);
+  cag_curve_release(c);
+  OK(cag_curve_parabolic_blend(zigzag, 4, NULL, 1, CAG_BLEND_OPEN, 2, &c, &err));
+  NEAR(c->end, sqrt(5), 1e-15);
+  near_vec(at(c, c->end / 3), cag_vec3(1.35970, 0.49583, 0), 1e-5);
+  near_vec(at(c, c->end * 2 / 3), cag_vec3(1.64030, -0.49583, 0), 1e-5);
+  cag_curve_release(c);
+}
+
+// Three points on a parabola: both arcs are that parabola, whatever the blend.
+static void arcs_at_the_ends_are_parabolas(void **state) {
+  (void)state;
+  const CagVec3 p[3] = {{0, 0, 0}, {1, 1, 0}, {2, 4, 0}};
+  const double half[1] = {0.5};
+  CagCurve *c;
+  OK(cag_curve_parabolic_blend(p, 3, half, 1, CAG_BLEND_PARABOLA, 2, &c, &err));
+  for (int k = 0; k <= 20; k++) near_vec(at(c, 0.1 * k), cag_vec3(0.1 * k, 0.01 * k * k, 0), 1e-14);
+  cag_curve_release(c);
+}
+
+static void closed_blends_meet_with_one_tangent(void **state) {
+  (void)state;
+  CagCurve *c;
+  OK(cag_curve_parabolic_blend(loop, 4, NULL, 1, CAG_BLEND_CLOSED, 2, &c, &err));
+  assert_true(c->closed);
+  near_vec(derived(c, c->start, 1, CAG_SIDE_RIGHT), derived(c, c->end, 1, CAG_SIDE_LEFT), 1e-13);
+  cag_curve_release(c);
+  const double bad[2] = {0.5, 1};
+  FAILS(cag_curve_parabolic_blend(zigzag, 4, bad, 1, CAG_BLEND_OPEN, 2, &c, &err),
+        "bad-blend-parameter");
+  FAILS(cag_curve_parabolic_blend(loop, 5, NULL, 1, CAG_BLEND_CLOSED, 2, &c, &err),
+        "coincident-points");
+}
+
+// Figure 10 of the reference: both tangents at 45 degrees to a chord of length 1.
+static void the_magnitude_of_tangents_decides_the_shape(void **state) {
+  (void)state;
+  const CagVec3 p = {0, 0, 0}, q = {1, 0, 0};
+  CagHermiteShape s;
+  OK(cag_hermite_shape(p, q, cag_vec3(0.5, 0.5, 0), cag_vec3(0.5, -0.5, 0), &s, &err));
+  assert_true(s.inflections == 0 && !s.has_cusp && !s.has_loop && s.within_limit);
+  OK(cag_hermite_shape(p, q, cag_vec3(2, 2, 0), cag_vec3(2, -2, 0), &s, &err));
+  assert_int_equal(s.inflections, 2);
+  OK(cag_hermite_shape(p, q, cag_vec3(3, 3, 0), cag_vec3(3, -3, 0), &s, &err));
+  assert_true(s.has_cusp && !s.has_loop);
+  NEAR(s.cusp, 0.5, 1e-12);
+  const double m = 5 / sqrt(2);
+  OK(cag_hermite_shape(p, q, cag_vec3(m, m, 0), cag_vec3(m, -m, 0), &s, &err));
+  assert_true(s.has_loop && !s.within_limit);
+  // s^2 = (m cos a - 3 l) / (4 (m cos a - l)) about 1/2
+  const double half = sqrt((m - 3) / (4 * (m - 1)));
+  NEAR(s.loop[0], 0.5 - half, 1e-12);
+  NEAR(s.loop[1], 0.5 + half, 1e-12);
+  OK(cag_hermite_shape(p, q, cag_vec3(1, 0, 0), cag_vec3(1, 0, 0), &s, &err));
+  assert_true(s.inflections == 0 && !s.has_cusp && !s.has_loop);
+  FAILS(cag_hermite_shape(p, p, q, q, &s, &err), "coincident-points");
+}
+
+static double signed_curvature(const CagCurve *c, double t) {
+  const CagVec3 v = derived(c, t, 1, CAG_SIDE_LEFT), a = derived(c, t, 2, CAG_SIDE_LEFT);
+  return (v.x * a.y - v.y * a.x) / pow(cag_norm(v), 3);
+}
+
+// The curvatures of a known segment lead back to it; every other answer has them too.
+static void end_curvatures_are_those_asked_for(void **state) {
+  (void)state;
+  const CagVec3 points[2] = {{0, 0, 0}, {2, 1, 0}}, dp = {1, 0, 0}, dq = {0.6, 0.8, 0};
+  const CagVec3 known[2] = {cag_scaled(dp, 2), cag_scaled(dq, 1.5)};
+  const double unit[2] = {0, 1};
+  CagCurve *c;
+  OK(cag_curve_hermite(points, known, 2, unit, 2, &c, &err));
+  const double wanted[2] = {signed_curvature(c, 0), signed_curvature(c, 1)};
+  cag_curve_release(c);
+  double lengths[4][2];
+  const size_t n = cag_hermite_by_curvature(points[0], points[1], dp, dq, wanted, lengths);
+  bool found = false;
+  for (size_t i = 0; i < n; i++) {
+    const CagVec3 d[2] = {cag_scaled(dp, lengths[i][0]), cag_scaled(dq, lengths[i][1])};
+    OK(cag_curve_hermite(points, d, 2, unit, 2, &c, &err));
+    for (int e = 0; e < 2; e++) NEAR(signed_curvature(c, e), wanted[e], 1e-9);
+    cag_curve_release(c);
+    found = found || (fabs(lengths[i][0] - 2) < 1e-9 && fabs(lengths[i][1] - 1.5) < 1e-9);
+  }
+  assert_true(found);
+}
+
+static void polynomials_and_their_coefficients_are_one_curve(void **state) {
+  (void)state;
+  const CagVec3 a[5] = {{1, 2, 3}, {-1, 0, 2}, {0, 4, 1}, {2, -2, 0.5}, {0.25, 1, -1}};
+  CagCurve *c;
+  CagVec3 *found;
+  size_t pieces;
+  int degree;
+  OK(cag_curve_polynomial(a, 5, 2.5, 3, &c, &err));
+  const double t = 1.7;
+  CagVec3 sum = a[4];
+  for (int k = 3; k >= 0; k--) sum = cag_madd(a[k], t, sum);
+  near_vec(at(c, t), sum, 1e-12);
+  OK(cag_curve_coefficients(c, &found, &pieces, &degree, &err));
+  assert_true(pieces == 1 && degree == 4);
+  for (int k = 0; k < 5; k++) near_vec(found[k], a[k], 1e-12);
+  free(found);
+  cag_curve_release(c);
+  FAILS(cag_curve_polynomial(a, 5, 0, 3, &c, &err), "bad-parameter-length");
+}
+
+static void joined_beziers_go_on_as_asked(void **state) {
+  (void)state;
+  const CagVec3 b[4] = {{1, 1, 0}, {2, 3, 0}, {4, 3, 0}, {3, 1, 0}};
+  CagCurve *c, *next;
+  CagVec3 q[4];
+  CagJoint j;
+  OK(cag_curve_bezier(b, NULL, 4, 2, &c, &err));
+  // Reference 05a, 6, worked: the C2 continuation by a cubic.
+  OK(cag_bezier_join(c, 3, 2, 1, q, &err));
+  near_vec(q[0], cag_vec3(3, 1, 0), 1e-14);
+  near_vec(q[1], cag_vec3(2, -1, 0), 1e-14);
+  near_vec(q[2], cag_vec3(-2, -5, 0), 1e-13);
+  q[3] = cag_vec3(0, 0, 0);
+  OK(cag_curve_bezier(q, NULL, 4, 2, &next, &err));
+  OK(cag_curve_joint(c, next, 1e-9, &j, &err));
+  assert_string_equal(cag_joint_class(&j), "C2");
+  cag_curve_release(next);
+  // Twice the speed on the first side: G2, but not C1.
+  OK(cag_bezier_join(c, 3, 2, 2, q, &err));
+  OK(cag_curve_bezier(q, NULL, 4, 2, &next, &err));
+  OK(cag_curve_joint(c, next, 1e-9, &j, &err));
+  assert_string_equal(cag_joint_class(&j), "G2");
+  assert_false(j.c1);
+  NEAR(j.ratio, 0.5, 1e-13);
+  cag_curve_release(next);
+  // Back to where it came from: opposite tangents are not G1.
+  OK(cag_curve_reverse(c, &next, &err));
+  OK(cag_curve_joint(c, next, 1e-9, &j, &err));
+  assert_string_equal(cag_joint_class(&j), "C0");
+  NEAR(j.angle, 3.141592653589793, 1e-12);
+  cag_curve_release(next);
+  FAILS(cag_bezier_join(c, 1, 2, 1, q, &err), "bad-order");
+  FAILS(cag_bezier_join(c, 3, 1, 0, q, &err), "bad-parameter");
+  cag_curve_release(c);
+}
+
+static void hulls_are_apart_by_their_gap(void **state) {
+  (void)state;
+  CagVec3 a[8], b[8];
+  for (int i = 0; i < 8; i++) {
+    a[i] = cag_vec3(i & 1, i >> 1 & 1, i >> 2);
+    b[i] = cag_add(a[i], cag_vec3(1.5, 2, 0.5));
+  }
+  // Unit cubes: 0.5 apart along x, 1 along y, overlapping along z.
+  NEAR(cag_norm(cag_hulls_gap(a, 8, b, 8)), hypot(0.5, 1), 1e-14);
+  assert_true(cag_hulls_disjoint(a, 8, b, 8));
+  for (int i = 0; i < 8; i++) b[i] = cag_add(a[i], cag_vec3(1, 0.3, 0));
+  assert_false(cag_hulls_disjoint(a, 8, b, 8)); // they touch
+  const CagVec3 inside[1] = {{0.4, 0.5, 0.6}}, beside[1] = {{0.5, 0.5, 1.0625}};
+  assert_false(cag_hulls_disjoint(a, 8, inside, 1));
+  NEAR(cag_norm(cag_hulls_gap(a, 8, beside, 1)), 0.0625, 1e-15);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(clamped_splines_have_the_tangents_of_the_reference),
+      cmocka_unit_test(splines_pass_their_points_and_are_smooth),
+      cmocka_unit_test(the_shortest_splines_are_the_reference_s),
+      cmocka_unit_test(a_cubic_is_its_own_clamped_spline),
+      cmocka_unit_test(chords_of_any_ratio_keep_the_points),
+      cmocka_unit_test(tension_jumps_the_second_derivative_along_the_tangent),
+      cmocka_unit_test(bad_splines_are_told),
+      cmocka_unit_test(blends_have_the_points_of_the_reference),
+      cmocka_unit_test(arcs_at_the_ends_are_parabolas),
+      cmocka_unit_test(closed_blends_meet_with_one_tangent),
+      cmocka_unit_test(the_magnitude_of_tangents_decides_the_shape),
+      cmocka_unit_test(end_curvatures_are_those_asked_for),
+      cmocka_unit_test(polynomials_and_their_coefficients_are_one_curve),
+      cmocka_unit_test(joined_beziers_go_on_as_asked),
+      cmocka_unit_test(hulls_are_apart_by_their_gap),
+  };
+  return cmocka_run_group_tests_name("cubic", tests, NULL, NULL);
+}

@@ -1,0 +1,196 @@
+// Interpolation and least squares: example 17 of the reference (05b), curves found again from their
+// own points, and bad data.
+
+#include "geom/basis/bspline.h"
+#include "geom/curve/fit.h"
+#include "support.h"
+
+static const CagVec3 hump[5] = {{0, 0, 0}, {1.5, 2, 0}, {3, 2.5, 0}, {4.5, 2, 0}, {6, 0, 0}};
+
+static CagVec3 at(const CagCurve *c, double t) {
+  CagVec3 p;
+  OK(cag_curve_point(c, t, &p, &err));
+  return p;
+}
+
+static CagVec3 control(const CagCurve *c, size_t i) {
+  CagNurbsView v;
+  assert_true(cag_curve_nurbs_view(c, &v));
+  return cag_vec3(v.homogeneous[4 * i], v.homogeneous[4 * i + 1], v.homogeneous[4 * i + 2]);
+}
+
+static void example_17_is_interpolated(void **state) {
+  (void)state;
+  const CagFitData d = {.points = hump, .n = 5, .degree = 2, .dimension = 2, .kind = CAG_FIT_OPEN};
+  CagCurve *c;
+  OK(cag_curve_interpolate(&d, NULL, 0, &c, &err));
+  near_vec(control(c, 1), cag_vec3(0.40881519451030174, 1.3769113842979592, 0), 1e-13);
+  near_vec(control(c, 2), cag_vec3(3, 2.87436287190068, 0), 1e-13);
+  cag_curve_release(c);
+}
+
+static void example_17_is_fitted(void **state) {
+  (void)state;
+  const CagFitData d = {.points = hump, .n = 5, .degree = 2, .dimension = 2, .kind = CAG_FIT_OPEN};
+  CagCurve *c;
+  CagFitReport r;
+  OK(cag_curve_fit(&d, 4, false, -1, 0, &c, &r, &err));
+  near_vec(control(c, 0), cag_vec3(0, -0.007589704531225728, 0), 1e-13);
+  near_vec(control(c, 1), cag_vec3(0.7884875264621146, 2.414049971171124, 0), 1e-13);
+  NEAR(r.rms, 0.05023185501160643, 1e-13);
+  NEAR(r.parameters[1], 0.6125741132772069, 1e-14);
+  cag_fit_report_free(&r);
+  cag_curve_release(c);
+  OK(cag_curve_fit(&d, 4, true, -1, 0, &c, NULL, &err));
+  near_vec(control(c, 1), cag_vec3(0.7884875264621146, 2.4132578686686488, 0), 1e-13);
+  near_vec(control(c, 3), hump[4], 0);
+  cag_curve_release(c);
+}
+
+static void a_held_coordinate_agrees_at_every_point(void **state) {
+  (void)state;
+  const CagVec3 p[5] = {{0, 0, 0}, {1, 0.4, 0}, {2, 1.2, 0}, {3, 2.6, 0}, {4, 5, 0}};
+  const CagFitData d = {.points = p, .n = 5, .degree = 2, .dimension = 2, .kind = CAG_FIT_OPEN};
+  CagCurve *c;
+  CagFitReport r;
+  OK(cag_curve_fit(&d, 4, true, 0, 1e-12, &c, &r, &err));
+  for (int i = 0; i < 5; i++) NEAR(at(c, r.parameters[i]).x, p[i].x, 1e-12);
+  // Vector bspline.fit.fixed-x
+  near_vec(control(c, 1), cag_vec3(1.675296579381261, 0.4973494632220339, 0), 1e-8);
+  assert_true(r.rounds > 0 && r.rounds < CAG_FIT_ROUNDS);
+  cag_fit_report_free(&r);
+  cag_curve_release(c);
+  const CagVec3 back[5] = {{0, 0, 0}, {2, 1, 0}, {1, 2, 0}, {2, 3, 0}, {0, 4, 0}};
+  const CagFitData bad = {.points = back, .n = 5, .degree = 2, .dimension = 2};
+  FAILS(cag_curve_fit(&bad, 4, true, 0, 1e-12, &c, NULL, &err), "fit-no-convergence");
+}
+
+#define MANY 200
+
+// Points of a B-spline of the same knots, at their own parameters: least squares find it again.
+static void a_spline_is_found_again_from_its_points(void **state) {
+  (void)state;
+  const CagVec3 net[7] = {{0, 0, 0}, {1, 3, 1},  {3, -2, 2}, {4, 4, 0},
+                          {6, 1, 1}, {7, 0, -2}, {9, 1, 1}};
+  for (int degree = 1; degree <= 6; degree++) {
+    double knots[14], u[MANY];
+    CagVec3 p[MANY];
+    CagCurve *c, *again;
+    CagFitReport r;
+    cag_knots_open(7, degree, knots);
+    OK(cag_curve_nurbs(net, NULL, 7, degree, knots, 3, &c, &err));
+    for (int i = 0; i < MANY; i++) {
+      const double s = (double)i / (MANY - 1);
+      u[i] = c->end * s * s;
+      p[i] = at(c, u[i]);
+    }
+    const CagFitData d = {.points = p,
+                          .n = MANY,
+                          .parameters = u,
+                          .kind = CAG_FIT_GIVEN,
+                          .knots = knots,
+                          .degree = degree,
+                          .dimension = 3};
+    for (int keep = 0; keep < 2; keep++) {
+      OK(cag_curve_fit(&d, 7, keep == 1, -1, 0, &again, &r, &err));
+      for (size_t i = 0; i < 7; i++) near_vec(control(again, i), net[i], 1e-11);
+      assert_true(r.largest < 1e-12);
+      cag_fit_report_free(&r);
+      cag_curve_release(again);
+    }
+    cag_curve_release(c);
+  }
+}
+
+static void interpolation_passes_uneven_points_at_any_degree(void **state) {
+  (void)state;
+  CagVec3 p[40];
+  for (int i = 0; i < 40; i++) p[i] = cag_vec3(i * i * 0.01, sin(i), i % 3);
+  for (int degree = 1; degree <= 7; degree++) {
+    const CagFitData d = {.points = p, .n = 40, .degree = degree, .dimension = 3};
+    double total = 0, walked = 0;
+    CagCurve *c;
+    OK(cag_curve_interpolate(&d, NULL, 0, &c, &err));
+    for (int i = 1; i < 40; i++) total += cag_norm(cag_sub(p[i], p[i - 1]));
+    for (int i = 0; i < 40; i++) {
+      if (i > 0) walked += cag_norm(cag_sub(p[i], p[i - 1]));
+      near_vec(at(c, fmin(c->end, c->end * walked / total)), p[i], 1e-10);
+    }
+    cag_curve_release(c);
+  }
+}
+
+static void tangents_are_kept_at_the_ends_and_everywhere(void **state) {
+  (void)state;
+  const double u[5] = {0, 1, 2.5, 3, 4};
+  const CagVec3 v[5] = {{1, 5, 0}, {2, 0, 0}, {1, -1, 0}, {0, -2, 0}, {3, 1, 0}};
+  const CagVec3 ends[2] = {{1, 5, 0}, {3, 1, 0}};
+  for (int degree = 2; degree <= 5; degree++) {
+    const CagFitData d = {
+        .points = hump, .n = 5, .parameters = u, .degree = degree, .dimension = 2};
+    CagCurve *c;
+    CagVec3 e[2];
+    OK(cag_curve_interpolate(&d, ends, 2, &c, &err));
+    for (int i = 0; i < 5; i++) near_vec(at(c, u[i]), hump[i], 1e-12);
+    for (int i = 0; i < 2; i++) {
+      OK(cag_curve_eval(c, u[4 * i], 1, CAG_SIDE_LEFT, e, &err));
+      near_vec(e[1], ends[i], 1e-11);
+    }
+    cag_curve_release(c);
+    if (degree < 3) continue;
+    OK(cag_curve_interpolate(&d, v, 5, &c, &err));
+    for (int i = 0; i < 5; i++) {
+      OK(cag_curve_eval(c, u[i], 1, CAG_SIDE_LEFT, e, &err));
+      near_vec(e[0], hump[i], 1e-11);
+      near_vec(e[1], v[i], 1e-10);
+    }
+    cag_curve_release(c);
+  }
+}
+
+static void bad_data_are_told(void **state) {
+  (void)state;
+  const CagVec3 same[4] = {{1, 1, 0}, {1, 1, 0}, {1, 1, 0}, {1, 1, 0}};
+  const CagVec3 pair[4] = {{0, 0, 0}, {1, 1, 0}, {1, 1, 0}, {3, 0, 0}};
+  const double crowded[5] = {0, 0.1, 0.2, 0.3, 3}, falling[5] = {0, 2, 1, 2.5, 3};
+  CagCurve *c;
+  CagFitData d = {.points = same, .n = 4, .degree = 2, .dimension = 2};
+  FAILS(cag_curve_interpolate(&d, NULL, 0, &c, &err), "zero-chord-total");
+  FAILS(cag_curve_fit(&d, 3, true, -1, 0, &c, NULL, &err), "zero-chord-total");
+  d.points = pair;
+  FAILS(cag_curve_interpolate(&d, NULL, 0, &c, &err), "fit-singular");
+  OK(cag_curve_fit(&d, 3, true, -1, 0, &c, NULL, &err));
+  cag_curve_release(c);
+  d = (CagFitData){.points = hump, .n = 5, .degree = 2, .dimension = 2, .kind = CAG_FIT_OPEN};
+  FAILS(cag_curve_fit(&d, 6, true, -1, 0, &c, NULL, &err), "fit-underdetermined");
+  d.parameters = crowded;
+  FAILS(cag_curve_interpolate(&d, NULL, 0, &c, &err), "fit-singular");
+  FAILS(cag_curve_fit(&d, 5, false, -1, 0, &c, NULL, &err), "fit-singular");
+  d.kind = CAG_FIT_AUTO;
+  OK(cag_curve_interpolate(&d, NULL, 0, &c, &err));
+  for (int i = 0; i < 5; i++) near_vec(at(c, crowded[i]), hump[i], 1e-11);
+  cag_curve_release(c);
+  OK(cag_curve_fit(&d, 4, true, -1, 0, &c, NULL, &err));
+  cag_curve_release(c);
+  d.parameters = falling;
+  FAILS(cag_curve_interpolate(&d, NULL, 0, &c, &err), "bad-parameter");
+  d.parameters = NULL;
+  d.degree = 5;
+  FAILS(cag_curve_interpolate(&d, NULL, 0, &c, &err), "order-range");
+  const CagVec3 broken[2] = {{0, 0, 0}, {NAN, 0, 0}};
+  d = (CagFitData){.points = broken, .n = 2, .degree = 1, .dimension = 2};
+  FAILS(cag_curve_interpolate(&d, NULL, 0, &c, &err), "not-finite");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(example_17_is_interpolated),
+      cmocka_unit_test(example_17_is_fitted),
+      cmocka_unit_test(a_held_coordinate_agrees_at_every_point),
+      cmocka_unit_test(a_spline_is_found_again_from_its_points),
+      cmocka_unit_test(interpolation_passes_uneven_points_at_any_degree),
+      cmocka_unit_test(tangents_are_kept_at_the_ends_and_everywhere),
+      cmocka_unit_test(bad_data_are_told),
+  };
+  return cmocka_run_group_tests_name("fit", tests, NULL, NULL);
+}
