@@ -169,7 +169,7 @@ static CagStatus minimising(const CagMotion *t, const Segment *g, double v, int 
   Frame e;
   CagStatus status = reference(t, g, v, n, side, &e, err);
   if (status) return status;
-  double phi[ORDER], s[ORDER], c[ORDER];
+  double phi[ORDER] = {0}, s[ORDER], c[ORDER];
   CagVec3 x[ORDER], y[ORDER];
   angle_series(g, v, n, phi);
   series_sincos(phi, n, s, c);
