@@ -1,12 +1,10 @@
-// Shapes that say something about other shapes: labels and marks, combs of curvature, normals.
+// Shapes that say something about other shapes: labels and marks, normals.
 //
 // A label is a mesh without faces: its first vertex is the place, a second one, where there is one,
 // the end of its direction. So every transform moves it as it moves shapes. What it says stands
 // in its style.
 
 #include "interp/builtin/figures.h"
-
-#include <stdlib.h>
 
 #include "interp/scene/scene.h"
 
@@ -42,66 +40,7 @@ bool cag_figures_label(CagCall *call, CagValue *result) {
   return true;
 }
 
-// --- Combs ---
-
-#define TEETH_MAX 100000
-// The longest tooth of a comb that says no scale, as a part of the curve's size.
-#define TOOTH_PART 0.25
-
-typedef struct Tooth {
-  CagVec3 foot, bend; // bend: the vector of curvature
-} Tooth;
-
-typedef struct Comb {
-  Tooth *teeth;
-  size_t *starts; // of the smooth pieces, and the end
-  size_t count, pieces;
-} Comb;
-
-// The second derivative by arc length.
-static CagVec3 bend_of(const CagVec3 e[3]) {
-  double speed2 = cag_dot(e[1], e[1]);
-  if (!(speed2 > 0)) return cag_vec3(0, 0, 0);
-  CagVec3 across = cag_sub(cag_scaled(e[2], speed2), cag_scaled(e[1], cag_dot(e[1], e[2])));
-  return cag_scaled(across, 1 / (speed2 * speed2));
-}
-
-// The curve's smooth pieces share the teeth by their part of the domain; both ends of a piece have
-// one, so that a jump of the curvature shows.
-static CagStatus fill_comb(const CagCurve *c, size_t n, Comb *out, CagError *err) {
-  size_t breaks = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
-  double *cuts = malloc((breaks + 2) * sizeof *cuts);
-  out->starts = malloc((breaks + 2) * sizeof *out->starts);
-  out->teeth = malloc((n + 3 * (breaks + 1)) * sizeof *out->teeth);
-  CagStatus status = CAG_OK;
-  if (!cuts || !out->starts || !out->teeth) status = cag_fail_memory(err);
-  if (!status && breaks > 0) c->kind->breaks(c, cuts + 1, breaks);
-  if (!status) {
-    cuts[0] = c->start;
-    cuts[breaks + 1] = c->end;
-  }
-  for (size_t i = 0; !status && i <= breaks; i++) {
-    double a = cuts[i], b = cuts[i + 1];
-    size_t steps = 1 + (size_t)((double)n * (b - a) / (c->end - c->start));
-    out->starts[i] = out->count;
-    for (size_t k = 0; !status && k <= steps; k++) {
-      double t = k == steps ? b : a + (b - a) * (double)k / (double)steps;
-      CagVec3 e[3];
-      status = cag_curve_eval(c, t, 2, k == steps ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, e, err);
-      if (!status) out->teeth[out->count++] = (Tooth){e[0], bend_of(e)};
-    }
-  }
-  if (!status) out->starts[breaks + 1] = out->count;
-  out->pieces = breaks + 1;
-  free(cuts);
-  return status;
-}
-
-static double largest_bend(const Comb *comb) {
-  double most = 0;
-  for (size_t i = 0; i < comb->count; i++) most = fmax(most, cag_norm(comb->teeth[i].bend));
-  return most;
-}
+// --- Normals ---
 
 static bool add_curve(CagCall *call, CagBuilder *list, CagStatus status, CagCurve *c,
                       const CagError *err) {
@@ -109,35 +48,13 @@ static bool add_curve(CagCall *call, CagBuilder *list, CagStatus status, CagCurv
          cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
 }
 
-static bool add_teeth(CagCall *call, CagBuilder *list, const Comb *comb, double scale,
-                      int dimension) {
-  CagError err;
-  CagCurve *c = NULL;
-  CagVec3 *tips = malloc(comb->count * sizeof *tips);
-  if (!tips) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
-  bool ok = true;
-  for (size_t i = 0; ok && i < comb->count; i++) {
-    const Tooth *tooth = &comb->teeth[i];
-    tips[i] = cag_madd(tooth->foot, -scale, tooth->bend);
-    if (cag_norm(cag_sub(tips[i], tooth->foot)) == 0) continue;
-    CagStatus status = cag_curve_line(tooth->foot, tips[i], dimension, &c, &err);
-    ok = add_curve(call, list, status, c, &err);
-  }
-  for (size_t i = 0; ok && i < comb->pieces; i++) {
-    size_t from = comb->starts[i], n = comb->starts[i + 1] - from;
-    CagStatus status = cag_curve_polyline(tips + from, n, false, dimension, &c, &err);
-    ok = add_curve(call, list, status, c, &err);
-  }
-  free(tips);
-  return ok;
-}
-
-// Reads `scale`: 0 where none is said.
-static bool read_scale(CagCall *call, double *scale) {
-  *scale = 0;
-  if (!cag_given(call, 1) || call->values[1].type == CAG_NONE) return true;
-  if (!cag_arg_finite(call, 1, scale)) return false;
-  if (*scale == 0) return cag_fail_call(call, 1, CAG_ERR_value, "expects a scale that is not 0");
+// Reads the length: 0 where none is said.
+static bool read_length(CagCall *call, int argument, double *out) {
+  *out = 0;
+  if (!cag_given(call, argument) || call->values[argument].type == CAG_NONE) return true;
+  if (!cag_arg_finite(call, argument, out)) return false;
+  if (*out == 0)
+    return cag_fail_call(call, argument, CAG_ERR_value, "expects a length that is not 0");
   return true;
 }
 
@@ -146,29 +63,6 @@ static double size_of(const CagBounds *b) { return cag_norm(cag_sub(b->max, b->m
 static bool give_group(CagCall *call, CagBuilder *list, CagValue *result) {
   *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
   return true;
-}
-
-bool cag_figures_curve_comb(CagCall *call, CagValue *result) {
-  CagCurve *c;
-  double scale;
-  long n;
-  CagBounds box;
-  CagError err;
-  Comb comb = {0};
-  if (!cag_arg_curve(call, 0, &c) || !read_scale(call, &scale) ||
-      !cag_arg_integer_or(call, 2, 100, 1, TEETH_MAX, &n) ||
-      !cag_geometry_ok(call, cag_curve_bounds(c, &box, &err), &err))
-    return false;
-  CagBuilder *list = cag_builder_new(call->vm);
-  bool ok = cag_geometry_ok(call, fill_comb(c, (size_t)n, &comb, &err), &err);
-  if (ok && scale == 0) {
-    double most = largest_bend(&comb);
-    scale = most > 0 ? TOOTH_PART * size_of(&box) / most : 0;
-  }
-  ok = ok && add_teeth(call, list, &comb, scale, c->dimension);
-  free(comb.teeth);
-  free(comb.starts);
-  return ok && give_group(call, list, result);
 }
 
 // The length of normals that say none, as a part of the surface's size.
@@ -180,8 +74,8 @@ bool cag_figures_surface_normals(CagCall *call, CagValue *result) {
   long n;
   CagBounds box;
   CagError err;
-  if (!cag_arg_surface(call, 0, &s) || !read_scale(call, &length) ||
-      !cag_arg_integer_or(call, 2, 12, 2, 1000, &n) ||
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer_or(call, 1, 12, 2, 1000, &n) ||
+      !read_length(call, 2, &length) ||
       !cag_geometry_ok(call, cag_surface_bounds(s, &box, &err), &err))
     return false;
   if (length == 0) length = NORMAL_PART * size_of(&box);
@@ -222,18 +116,10 @@ const CagBuiltin cag_builtins_figures[] = {
      "show circle(10), label([10, 0], \"P_0\", mark: \"dot\")\n"
      "print bounds(translate([1, 2, 0]) * label([3, 4], \"Q\")).min // expect: [4, 6, 0]",
      CAG_TAKES(LIST), figures},
-    {"hedgehog(C, scale = none, count = 100)", cag_figures_curve_comb, "group",
-     "The comb of a curve's curvature: lines from about `count` points away from the center of "
-     "curvature, as long as the curvature times the scale (in mm^2; none: by the size of C; "
-     "negative: towards the center), and the line through their ends. Where the curvature jumps "
-     "the "
-     "comb has a step.",
-     "print near(bounds(hedgehog(circle(10), scale: 20)).max.x, 12) // expect: true",
-     CAG_TAKES(CURVE), figures},
-    {"hedgehog(S, scale = none, count = 12)", cag_figures_surface_normals, "group",
-     "The normals of a surface as lines of the length `scale` mm (none: by the size of S) at count "
-     "by count points.",
+    {"hedgehog(S, n = 12, scale = none)", cag_figures_surface_normals, "group",
+     "The normals of a surface as lines at n by n points, of the length `scale` mm (none: by the "
+     "size of S; negative: to the other side).",
      "s = bilinear([0, 0], [0, 2], [4, 0], [4, 2])\n"
-     "print len(hedgehog(s, 1, 3).items), bounds(hedgehog(s, scale: -3)).size.z // expect: 9 3",
+     "print len(hedgehog(s, 3).items), bounds(hedgehog(s, scale: -3)).size.z // expect: 9 3",
      CAG_TAKES(SURFACE), figures},
     {0}};

@@ -6,7 +6,6 @@
 #include "interp/builtin/shapes.h"
 
 bool cag_figures_label(CagCall *call, CagValue *result);
-bool cag_figures_curve_comb(CagCall *call, CagValue *result);
 bool cag_figures_surface_normals(CagCall *call, CagValue *result);
 
 #endif
