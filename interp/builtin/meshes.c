@@ -5,6 +5,7 @@
 
 #include "geom/mesh/tessellate.h"
 #include "interp/builtin/solids.h"
+#include "interp/eval/vm.h"
 
 // `made` is read after the call that fills it: pass its address.
 static bool give(CagCall *call, CagStatus status, const CagError *err, CagMesh **made,
@@ -189,6 +190,8 @@ static CagStatus tessellate_shape(CagValue v, const CagTessellation *how, CagMes
 
 static bool read_how(CagCall *call, CagTessellation *how) {
   *how = CAG_TESSELLATION_DEFAULT;
+  if (call->vm->max_triangles > 0) how->max_triangles = call->vm->max_triangles;
+  how->interrupt = call->vm->interrupt;
   if (cag_given(call, 1) && call->values[1].type != CAG_NONE &&
       !cag_arg_positive(call, 1, &how->tolerance))
     return false;

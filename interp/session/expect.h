@@ -57,6 +57,7 @@ typedef struct CagTestOptions {
   size_t define_count;
   const char *filter; // runs whose name holds this text; NULL: all
   bool update;        // write the reference pictures instead of comparing with them
+  bool no_pictures;   // do not render
   void (*failure)(void *context, const CagTestFailure *failure);
   // A run has ended; `remark` says more (why it was left out, that a picture was renewed) or is
   // NULL.

@@ -240,6 +240,11 @@ static bool set_update(CagTool *t, const char *value) {
   return t->update = true;
 }
 
+static bool set_no_pictures(CagTool *t, const char *value) {
+  (void)value;
+  return t->no_pictures = true;
+}
+
 static bool set_quiet(CagTool *t, const char *value) {
   (void)value;
   return t->quiet = true;

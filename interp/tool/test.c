@@ -188,6 +188,7 @@ int cag_tool_test(CagTool *tool, int argc, char **argv) {
   t.options.session = tool->session;
   t.options.filter = tool->filter;
   t.options.update = tool->update;
+  t.options.no_pictures = tool->no_pictures;
   t.options.failure = report_failure;
   t.options.ended = report_end;
   t.options.context = &t;

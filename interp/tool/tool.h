@@ -60,6 +60,7 @@ struct CagTool {
   const char *heatmap;
   const char *filter; // --filter
   bool update;        // --update
+  bool no_pictures;   // --no-pictures
 };
 
 CagToolFunction cag_tool_run, cag_tool_eval, cag_tool_export, cag_tool_render, cag_tool_compare,
