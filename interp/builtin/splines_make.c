@@ -227,16 +227,24 @@ static bool read_end(CagCall *call, const CagRecord *r, int end, const Data *d, 
   const double *x;
   size_t n;
   if (v.type == CAG_NONE || v.type == CAG_UNSET) return true;
-  if (!cag_as_vector(v, &x, &n) || (int)n != d->dimension)
+  const char *where = end ? "finish" : "start";
+  if (!cag_as_vector(v, &x, &n))
+    return cag_fail_call(call, 1, CAG_ERR_value, "expects a vector as `%s` of the end conditions",
+                         where);
+  if ((int)n != d->dimension)
     return cag_splines_fail(call, "dimension-mismatch", "ends", -1,
                             "the points have %d numbers, the tangent at the %s has %zu",
-                            d->dimension, end ? "end" : "start", n);
+                            d->dimension, where, n);
+  for (size_t i = 0; i < n; i++)
+    if (!isfinite(x[i]))
+      return cag_splines_fail(call, "not-finite", "ends", -1,
+                              "the tangent at the %s has a number that is not finite", where);
   CagVec3 t = cag_vec3(x[0], x[1], n > 2 ? x[2] : 0);
   if (direction.type == CAG_BOOL && direction.as.boolean) {
     const size_t i = end ? d->n - 2 : 0;
     if (cag_norm(t) == 0)
       return cag_splines_fail(call, "zero-vector", "ends", -1,
-                              "the direction at the %s is the zero vector", end ? "end" : "start");
+                              "the direction at the %s is the zero vector", where);
     t = cag_scaled(cag_unit(t),
                    cag_norm(cag_sub(d->points[i + 1], d->points[i])) / (d->u[i + 1] - d->u[i]));
   }
