@@ -6,17 +6,17 @@
 #include "geom/curve/cubic.h"
 #include "interp/builtin/curves.h"
 
+// splines_make.c: through points by cubic segments; splines_fit.c: from data; splines_ask.c: bases,
+// segments, joints.
 #define CAG_SPLINE_FUNCTIONS(X)                                                                    \
-  /* splines_make.c: through points by cubic segments */                                           \
   X(hermite)                                                                                       \
   X(cubic_spline)                                                                                  \
   X(clamped)                                                                                       \
-  X(relaxed) X(cyclic) X(anticyclic) X(ends) X(parabolic_blend) X(catmull_rom)                     \
-      X(polynomial_curve)                                    /* splines_fit.c */                   \
-      X(data_parameters) X(interpolate) X(fit) X(fit_report) /* splines_ask.c */                   \
-      X(polynomials) X(basis_matrix) X(bezier_matrices) X(bernstein_maxima) X(hermite_basis)       \
-          X(hermite_shape) X(hermite_by_curvature) X(convert_cubic) X(bezier_join) X(continuity)   \
-              X(line_crossings) X(hulls_disjoint)
+  X(relaxed) X(cyclic) X(anticyclic) X(ends) X(parabolic_blend) X(catmull_rom) X(polynomial_curve) \
+      X(data_parameters) X(interpolate) X(fit) X(fit_report) X(polynomials) X(basis_matrix)        \
+          X(bezier_matrices) X(bernstein_maxima) X(hermite_basis) X(hermite_shape)                 \
+              X(hermite_by_curvature) X(convert_cubic) X(bezier_join) X(continuity)                \
+                  X(line_crossings) X(hulls_disjoint)
 
 #define X(name) bool cag_splines_##name(CagCall *call, CagValue *result);
 CAG_SPLINE_FUNCTIONS(X)
