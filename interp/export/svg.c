@@ -57,11 +57,15 @@ static void put_number(Picture *p, double x) {
   fputs(cag_number_text(rounded(p, x), text), p->out);
 }
 
-static void put_point(Picture *p, CagVec3 q) {
+static void put_control(Picture *p, CagVec3 q) {
   fputc(' ', p->out);
   put_number(p, q.x);
   fputc(' ', p->out);
   put_number(p, -q.y);
+}
+
+static void put_point(Picture *p, CagVec3 q) {
+  put_control(p, q);
   cag_bounds_add(&p->box, q);
 }
 
@@ -96,11 +100,32 @@ static void line_to(Picture *p, CagVec3 q) {
   p->last = q;
 }
 
+static CagVec3 cubic_at(const CagVec3 c[4], double t) {
+  double s = 1 - t;
+  CagVec3 p = cag_scaled(c[0], s * s * s);
+  p = cag_madd(p, 3 * s * s * t, c[1]);
+  p = cag_madd(p, 3 * s * t * t, c[2]);
+  return cag_madd(p, t * t * t, c[3]);
+}
+
+// Adds the points where a cubic turns back in x (or y); w: its control points' x (or y).
+static void cover_turns(Picture *p, const CagVec3 c[4], const double w[4]) {
+  // A third of the derivative is a t^2 + 2 b t + k.
+  const double k = w[1] - w[0], b = w[2] - 2 * w[1] + w[0], a = w[3] - 3 * w[2] + 3 * w[1] - w[0];
+  const double root = sqrt(fmax(b * b - a * k, 0)), q = -(b + copysign(root, b));
+  const double at[2] = {a != 0 ? q / a : -1, q != 0 ? k / q : -1};
+  for (int i = 0; i < 2; i++)
+    if (at[i] > 0 && at[i] < 1) cag_bounds_add(&p->box, cubic_at(c, at[i]));
+}
+
 static void cubic_to(Picture *p, CagVec3 a, CagVec3 b, CagVec3 q) {
+  const CagVec3 c[4] = {p->last, a, b, q};
+  cover_turns(p, c, (double[]){c[0].x, a.x, b.x, q.x});
+  cover_turns(p, c, (double[]){c[0].y, a.y, b.y, q.y});
   fputs(" C", p->out);
-  put_point(p, a);
+  put_control(p, a);
   fputc(',', p->out);
-  put_point(p, b);
+  put_control(p, b);
   fputc(',', p->out);
   put_point(p, q);
   p->last = q;
@@ -199,14 +224,6 @@ static bool look(const Picture *p, const CagCurve *c, double t, CagSide side, Sa
   out->p = cag_vec3(k * q.x, -k * q.y, 0); // y of the camera goes down
   out->d = cag_vec3(k * (d.x - q.x * d.z / z), -k * (d.y - q.y * d.z / z), 0);
   return true;
-}
-
-static CagVec3 cubic_at(const CagVec3 c[4], double t) {
-  double s = 1 - t;
-  CagVec3 p = cag_scaled(c[0], s * s * s);
-  p = cag_madd(p, 3 * s * s * t, c[1]);
-  p = cag_madd(p, 3 * s * t * t, c[2]);
-  return cag_madd(p, t * t * t, c[3]);
 }
 
 static bool fits(const Picture *p, const CagCurve *c, const Sample *a, const Sample *b,

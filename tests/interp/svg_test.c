@@ -158,6 +158,67 @@ static void perspective_keeps_lengths_at_the_target(void **state) {
   fixture_end(&f);
 }
 
+// The cubic 0, 10, -10, 0 in y over 0..3 in x turns at t = 1/2 -+ sqrt(3)/6, where |y| is
+// 10 sqrt(3)/6: the picture ends there, and not at the control points. Its border is 5% of the
+// diagonal and half of the stroke, 0.3% of it.
+static void the_picture_ends_where_the_curve_does(void **state) {
+  (void)state;
+  Fixture f;
+  CagCurve *c;
+  const CagVec3 p[] = {{0, 0, 0}, {1, 10, 0}, {2, -10, 0}, {3, 0, 0}};
+  OK(cag_curve_bezier(p, NULL, 4, 2, &c, &err));
+  fixture_begin(&f);
+  fixture_curve(&f, "wave", c);
+  char *text = export_text(&f);
+  double box[4];
+  const char *at = strstr(text, "viewBox=\"");
+  assert_non_null(at);
+  assert_int_equal(sscanf(at, "viewBox=\"%lf %lf %lf %lf", &box[0], &box[1], &box[2], &box[3]), 4);
+  const double tall = 10 * sqrt(3) / 3, border = (0.05 + 0.0015) * hypot(3, tall);
+  assert_true(fabs(box[2] - (3 + 2 * border)) < 1e-6);
+  assert_true(fabs(box[3] - (tall + 2 * border)) < 1e-6);
+  free(text);
+  fixture_end(&f);
+}
+
+static void labels_stand_beside_their_marks(void **state) {
+  (void)state;
+  Fixture f;
+  CagLabel labels[] = {{.text = "P_0",
+                        .at = {10, 20, 0},
+                        .place = CAG_LABEL_RIGHT,
+                        .mark = CAG_LABEL_DOT,
+                        .size = 4},
+                       {.text = "a < b",
+                        .at = {0, 0, 0},
+                        .along = {0, 5, 0},
+                        .directed = true,
+                        .place = CAG_LABEL_ABOVE,
+                        .size = 4},
+                       {.text = "",
+                        .at = {30, 0, 0},
+                        .along = {2, 0, 0},
+                        .directed = true,
+                        .mark = CAG_LABEL_ARROW,
+                        .size = 10}};
+  fixture_begin(&f);
+  fixture_curve(&f, "wave", cubic());
+  f.scene.labels = labels;
+  f.scene.label_count = 3;
+  char *text = export_text(&f);
+  assert_contains(text, "<circle cx=\"10\" cy=\"-20\" r=\"0.96\"");
+  // A name is set in italics, its index lowered and small.
+  assert_contains(text, "font-style=\"italic\" text-anchor=\"start\"");
+  assert_contains(text, "<tspan>P</tspan><tspan dy=\"0.88\" font-size=\"2.8\">0</tspan>");
+  // Words stay upright; along +Y they run upwards.
+  assert_contains(text, "rotate(-90 ");
+  assert_contains(text, "<tspan>a &lt; b</tspan>");
+  // The head of an arrow along +X ends in its place.
+  assert_contains(text, "d=\"M 30 0 L 21 ");
+  free(text);
+  fixture_end(&f);
+}
+
 static void the_file_is_well_formed(void **state) {
   (void)state;
   if (system("xmllint --version >/dev/null 2>&1") != 0) skip();
@@ -195,6 +256,8 @@ int main(void) {
       cmocka_unit_test(lines_have_their_width_dash_and_colour),
       cmocka_unit_test(a_space_curve_is_drawn_as_the_camera_sees_it),
       cmocka_unit_test(perspective_keeps_lengths_at_the_target),
+      cmocka_unit_test(the_picture_ends_where_the_curve_does),
+      cmocka_unit_test(labels_stand_beside_their_marks),
       cmocka_unit_test(the_file_is_well_formed),
       cmocka_unit_test(a_scene_without_curves_is_an_error),
   };
