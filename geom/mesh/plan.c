@@ -110,7 +110,7 @@ static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *er
 // Do the samples along a direction tell the whole story? If the mean of the derivatives at the ends
 // of a step is far from the step made, the surface does something between them (the turns of a
 // helix).
-static bool is_resolved(const Sampled *s, int direction) {
+static bool is_resolved(const CagTessellation *how, const Sampled *s, int direction) {
   const double far = 0.07; // of the longest step: an arc of 50 degrees, a sixth of a wave
   const CagVec3 *d = direction == 0 ? s->du : s->dv;
   int stride = direction == 0 ? SIDE : 1;
@@ -123,7 +123,8 @@ static bool is_resolved(const Sampled *s, int direction) {
       CagVec3 mean = cag_scaled(cag_add(d[k], d[k + stride]), 0.5);
       worst = fmax(worst, cag_norm(cag_sub(step, mean)));
     }
-  return worst <= far * longest;
+  // Within the tolerance it does not matter, and of a point all is rounding.
+  return worst <= fmax(far * longest, how->tolerance);
 }
 
 // --- Needs and counts ---
@@ -411,7 +412,7 @@ static int halving(const CagTessellation *how, const Sampled *s, int depth) {
   const double gain = 0.8; // halving makes seams of small triangles: it must save more
   if (depth >= MAX_DEPTH) return -1;
   for (int d = 0; d < 2; d++)
-    if (!is_resolved(s, d)) return d;
+    if (!is_resolved(how, s, d)) return d;
   Range all = {0, STEPS, 0, STEPS};
   double whole = cost_of(how, s, all);
   if (whole < WORTH_HALVING) return -1;

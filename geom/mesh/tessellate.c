@@ -2,6 +2,7 @@
 
 #include "geom/mesh/tessellate.h"
 
+#include <float.h>
 #include <stdlib.h>
 
 #include "geom/mesh/tessellation.h"
@@ -54,12 +55,19 @@ static void release(Tessellator *t) {
 static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBounds *bounds,
                        CagSurface *const *faces, size_t n, CagError *err) {
   const double default_share = 1e-3; // of the diagonal
+  // Of the largest coordinate: a surface that is smaller is a point, its normals are rounding.
+  const double rounding = 64 * DBL_EPSILON;
   *t = (Tessellator){.how = how ? *how : CAG_TESSELLATION_DEFAULT};
   t->size = cag_norm(cag_sub(bounds->max, bounds->min));
   if (!isfinite(t->size))
     return cag_fail(err, CAG_E_ARGUMENT, "surface-unbounded", "", -1,
                     "only a bounded surface can be tessellated; this one reaches infinity");
+  const double noise = rounding * fmax(cag_norm(bounds->min), cag_norm(bounds->max));
   if (!(t->how.tolerance > 0)) t->how.tolerance = t->size > 0 ? t->size * default_share : 1;
+  if (t->size <= noise) {
+    t->how.tolerance = fmax(t->how.tolerance, noise);
+    t->how.angle = t->how.max_edge = 0;
+  }
   t->faces = calloc(n + 1, sizeof *t->faces);
   if (!t->faces) return cag_fail_memory(err);
   t->face_count = n;

@@ -562,6 +562,22 @@ static void a_shell_of_patches_in_any_sense_is_watertight(void **state) {
   for (int k = 0; k < 6; k++) cag_surface_release(faces[k]);
 }
 
+// All control points are one, which rounding scatters: neither the size nor the normals mean
+// anything.
+static void a_surface_that_is_a_point_is_no_work(void **state) {
+  (void)state;
+  CagVec3 net[16];
+  CagSurface *s;
+  CagMesh *m;
+  CagError error;
+  for (int i = 0; i < 16; i++) net[i] = cag_vec3(1, 2, 3);
+  assert_int_equal(cag_surface_bezier(net, NULL, 4, 4, &s, &error), CAG_OK);
+  assert_int_equal(cag_surface_tessellate(s, &CAG_TESSELLATION_DEFAULT, &m, &error), CAG_OK);
+  assert_true(m->triangle_count <= 2);
+  cag_mesh_release(m);
+  cag_surface_release(s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_flat_patch_takes_two_triangles),
@@ -579,6 +595,7 @@ int main(void) {
       cmocka_unit_test(revolutions_are_watertight),
       cmocka_unit_test(tubes_are_watertight),
       cmocka_unit_test(a_shell_of_patches_in_any_sense_is_watertight),
+      cmocka_unit_test(a_surface_that_is_a_point_is_no_work),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
