@@ -21,8 +21,9 @@ CagStatus cag_basis_interval(const double *knots, size_t count, int p, double t,
     if (knots[mid] <= t) lo = mid;
     else hi = mid;
   }
-  // The left limit is meant where the functions end.
-  if (left || t >= knots[last] || t == knots[end])
+  // The left limit is meant where the functions end, and the usable range, where there is one.
+  const bool at_end = end > (size_t)p && t == knots[end];
+  if (left || t >= knots[last] || at_end)
     while (lo > 0 && knots[lo] >= t) lo--;
   while (lo + 1 < last && knots[lo] >= knots[lo + 1]) lo++;
   while (lo > 0 && knots[lo] >= knots[lo + 1]) lo--;

@@ -10,6 +10,7 @@
 
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
+#include "geom/curve/nurbs_ops.h"
 
 // Ends meet when their gap is this part of the size of the curves or less.
 #define MEET 1e-9
@@ -232,47 +233,56 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
 }
 
 // Bezier pieces of all pieces, raised to one degree, with p-fold knots between them.
+// The pieces as clamped curves of one degree; gives their number of points and whether one is
+// rational.
+static CagStatus alike_pieces(const Composite *c, CagCurve **exact, size_t *points, bool *rational,
+                              int *degree, CagError *err) {
+  *degree = 1;
+  *points = 1;
+  *rational = false;
+  for (size_t i = 0; i < c->n; i++) {
+    CagStatus status = cag_curve_to_nurbs(c->pieces[i], &exact[i], err);
+    if (status) return status;
+    const CagNurbs *piece = cag_nurbs_data(exact[i]);
+    if (piece->degree > *degree) *degree = piece->degree;
+  }
+  for (size_t i = 0; i < c->n; i++) {
+    CagCurve *raised;
+    CagStatus status =
+        cag_curve_elevate(exact[i], *degree - cag_nurbs_data(exact[i])->degree, &raised, err);
+    if (status) return status;
+    cag_curve_release(exact[i]);
+    exact[i] = raised;
+    *points += cag_nurbs_data(raised)->count - 1;
+    *rational = *rational || cag_nurbs_data(raised)->rational;
+  }
+  return CAG_OK;
+}
+
+// The joint of two pieces is one homogeneous point, to which the weights of the second are scaled,
+// and a knot as often as the degree. Inside the pieces their knots stay.
 static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) {
   const Composite *c = (const Composite *)curve;
   CagCurve **exact = calloc(c->n, sizeof *exact);
   double *data = NULL;
-  CagStatus status = exact ? CAG_OK : cag_fail_memory(err);
-  int p = 1;
-  size_t total = 0;
-  bool rational = false;
-  for (size_t i = 0; !status && i < c->n; i++) {
-    status = cag_curve_to_nurbs(c->pieces[i], &exact[i], err);
-    if (status) break;
-    const CagNurbs *piece = cag_nurbs_data(exact[i]);
-    if (piece->degree > p) p = piece->degree;
-    total += piece->pieces;
-    rational = rational || piece->rational;
-  }
-  const size_t n = total * (size_t)p + 1;
-  if (!status) data = malloc(sizeof(double) * (5 * n + 5 * (size_t)p + 8));
-  if (!status && !data) status = cag_fail_memory(err);
+  int p;
+  size_t n;
+  bool rational;
+  CagStatus status = exact ? alike_pieces(c, exact, &n, &rational, &p, err) : cag_fail_memory(err);
+  if (!status && !(data = malloc(sizeof(double) * (5 * n + (size_t)p + 1))))
+    status = cag_fail_memory(err);
   if (!status) {
-    double *h = data, *knots = data + 4 * n + 4 * (size_t)p; // room for a piece in the making
-    double raised[2][4 * (CAG_MAX_DEGREE + 2)];
+    double *h = data, *knots = data + 4 * n;
     size_t used = 0, k = 0;
     knots[k++] = curve->start;
     for (size_t i = 0; i < c->n; i++) {
       const CagNurbs *piece = cag_nurbs_data(exact[i]);
-      for (size_t j = 0; j < piece->pieces; j++) {
-        int from = 0;
-        memcpy(raised[0], cag_nurbs_bezier(piece, j),
-               sizeof(double) * 4 * (size_t)(piece->degree + 1));
-        for (int d = piece->degree; d < p; d++, from = !from)
-          cag_bezier_elevate(raised[from], d, raised[!from]);
-        // The joint is one homogeneous point: weights are scaled to agree there.
-        double scale = used ? h[4 * (used - 1) + 3] / raised[from][3] : 1;
-        for (int m = used > 0; m <= p; m++, used++)
-          for (int x = 0; x < 4; x++) h[4 * used + (size_t)x] = scale * raised[from][4 * m + x];
-        double t = piece->cuts[j];
-        double at = t == exact[i]->start ? c->cuts[i]
-                                         : cag_curve_remap(exact[i], t, c->cuts[i], c->cuts[i + 1]);
-        for (int m = 0; m < p; m++) knots[k++] = at;
-      }
+      const double scale = used ? h[4 * (used - 1) + 3] / piece->homogeneous[3] : 1;
+      for (size_t m = used > 0; m < piece->count; m++, used++)
+        for (size_t x = 0; x < 4; x++) h[4 * used + x] = scale * piece->homogeneous[4 * m + x];
+      for (int m = 0; m < p; m++) knots[k++] = c->cuts[i];
+      for (size_t m = (size_t)p + 1; m < piece->count; m++)
+        knots[k++] = cag_curve_remap(exact[i], piece->knots[m], c->cuts[i], c->cuts[i + 1]);
     }
     for (int m = 0; m <= p; m++) knots[k++] = curve->end;
     status = cag_nurbs_new(h, used, p, knots, rational, 0,

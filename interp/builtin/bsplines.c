@@ -112,6 +112,13 @@ const CagBuiltin cag_builtins_bsplines[] = {
      "print domain(c), near(norm(c(0.7)), 2), near(weights(c)[1], 0.5) // expect: 0..3 true true",
      NUMBERS, spans},
 
+    {"nurbs_arc(radius, range, segments = 1, center = [0, 0], normal = none)",
+     cag_bsplines_nurbs_arc, "curve",
+     "The arc over a range of angles (which may run down) as a rational B-spline of degree 2 of so "
+     "many equal pieces; each turns by less than 180deg: else an error (arc-too-wide).",
+     "print near(weights(nurbs_arc(2, 0deg..120deg)), [1, 0.5, 1]) // expect: true", NUMBERS,
+     spans},
+
     // --- Other forms ---
     {"to_bezier(C)", cag_bsplines_to_bezier, "list",
      "The Bezier curves, over 0..1 each, that the curve is made of. A curve without exact rational "

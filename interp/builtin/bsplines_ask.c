@@ -156,42 +156,81 @@ bool cag_bsplines_denominator(CagCall *call, CagValue *result) {
 // --- Circles ---
 
 #define SEGMENTS_MAX 1000000
+#define HALF_TURN 180
+#define FULL_TURN 6.283185307179586 // 2 pi
 
-// radius, segments, center, normal, start: arcs of 1/segments turn each, knots 0..segments.
-bool cag_bsplines_nurbs_circle(CagCall *call, CagValue *result) {
-  const double full = 6.283185307179586; // 2 pi
-  double radius, from;
-  long segments;
-  CagTransform frame;
-  CagError err;
+// q equal arcs of degree 2 from the angle `from` over the sweep (radians), knots 0..q: the corners
+// of the polygon around, with the cosine of half an arc for weight, and the points where it
+// touches.
+static bool give_arcs(CagCall *call, double radius, double from, double sweep, size_t q,
+                      const CagTransform *frame, CagValue *result) {
+  const size_t n = 2 * q + 1;
+  const bool whole = sweep == FULL_TURN;
   CagCurve *c = NULL;
-  if (!cag_arg_positive(call, 0, &radius) ||
-      !cag_arg_integer_or(call, 1, 4, 3, SEGMENTS_MAX, &segments) ||
-      !cag_arg_angle_or(call, 4, 0, &from) || !cag_arg_circle_frame(call, 2, &frame))
-    return false;
-  const size_t q = (size_t)segments, n = 2 * q + 1;
+  CagError err;
   CagVec3 *points = malloc(n * sizeof *points);
   double *weights = malloc(sizeof(double) * (2 * n + 3)), *knots = weights + n;
   bool ok = (points && weights) || fail_memory(call);
-  const double half = cos(full / 2 / (double)q);
+  const double half = cos(sweep / 2 / (double)q);
   for (size_t i = 0; ok && i < n; i++) {
     double sine, cosine;
-    cag_sincos(from + full * (double)(i % (n - 1)) / (double)(n - 1), &sine, &cosine);
+    const size_t k = whole ? i % (n - 1) : i;
+    cag_sincos(k == n - 1 ? from + sweep : from + sweep * (double)k / (double)(n - 1), &sine,
+               &cosine);
     weights[i] = i % 2 ? half : 1;
     points[i] = cag_transform_point(
-        &frame, cag_vec3(radius * cosine / weights[i], radius * sine / weights[i], 0));
+        frame, cag_vec3(radius * cosine / weights[i], radius * sine / weights[i], 0));
   }
   for (size_t i = 0; ok && i < n + 3; i++) knots[i] = i == 0 ? 0 : (double)((i - 1) / 2);
   if (ok) {
     knots[n + 2] = (double)q;
     CagStatus status =
-        cag_curve_nurbs(points, weights, n, 2, knots, frame.planar ? 2 : 3, &c, &err);
+        cag_curve_nurbs(points, weights, n, 2, knots, frame->planar ? 2 : 3, &c, &err);
     ok = cag_geometry_ok(call, status, &err);
   }
   free(points);
   free(weights);
   if (ok) *result = cag_curve_value(call->vm, c);
   return ok;
+}
+
+// radius, segments, center, normal, start
+bool cag_bsplines_nurbs_circle(CagCall *call, CagValue *result) {
+  double radius, from;
+  long segments;
+  CagTransform frame;
+  return cag_arg_positive(call, 0, &radius) &&
+         cag_arg_integer_or(call, 1, 4, 3, SEGMENTS_MAX, &segments) &&
+         cag_arg_angle_or(call, 4, 0, &from) && cag_arg_circle_frame(call, 2, &frame) &&
+         give_arcs(call, radius, from, FULL_TURN, (size_t)segments, &frame, result);
+}
+
+// radius, range, segments, center, normal
+bool cag_bsplines_nurbs_arc(CagCall *call, CagValue *result) {
+  double radius, from, to;
+  long segments;
+  bool angle;
+  CagTransform frame;
+  CagError err;
+  char text[32];
+  if (!cag_arg_positive(call, 0, &radius) || !cag_arg_interval(call, 1, &from, &to, &angle) ||
+      !cag_arg_integer_or(call, 2, 1, 1, SEGMENTS_MAX, &segments) ||
+      !cag_arg_circle_frame(call, 3, &frame))
+    return false;
+  if (!angle || !isfinite(from) || !isfinite(to))
+    return cag_fail_type(call, 1, "a range of angles");
+  const double sweep = to - from;
+  CagStatus status = CAG_OK;
+  if (sweep == 0)
+    status = cag_fail(&err, CAG_E_ARGUMENT, "empty-range", "range", -1, "the range has no length");
+  else if (!(fabs(sweep) / (double)segments < HALF_TURN))
+    status = cag_fail(&err, CAG_E_ARGUMENT, "arc-too-wide", "range", -1,
+                      "one piece of degree 2 turns by less than 180 degrees; these are %s in %ld: "
+                      "take more `segments`",
+                      cag_number_text(fabs(sweep), text), segments);
+  return cag_geometry_ok(call, status, &err) &&
+         give_arcs(call, radius, from * CAG_RADIANS_PER_DEGREE, sweep * CAG_RADIANS_PER_DEGREE,
+                   (size_t)segments, &frame, result);
 }
 
 // --- Pictures ---

@@ -301,13 +301,13 @@ static CagValue indices(CagCall *call, long low, long high, long most) {
   return list;
 }
 
-// i, degree, count, order
+// i, degree, order, count
 bool cag_bsplines_basis_dependency(CagCall *call, CagValue *result) {
   static const char *const names[] = {"needs", "feeds"};
   long i, count = LONG_MAX / 2;
   int p;
-  if (!cag_arg_integer(call, 0, 0, KNOTS_MAX, &i) || !cag_arg_degree(call, 1, 3, 3, &p) ||
-      (is_set(call, 2) && !cag_arg_integer(call, 2, 1, KNOTS_MAX, &count)))
+  if (!cag_arg_integer(call, 0, 0, KNOTS_MAX, &i) || !cag_arg_degree(call, 1, 2, 3, &p) ||
+      (is_set(call, 3) && !cag_arg_integer(call, 3, 1, KNOTS_MAX, &count)))
     return false;
   if (p > CAG_MAX_DEGREE)
     return cag_fail_call(call, 1, CAG_ERR_value, "takes a degree up to %d", CAG_MAX_DEGREE);

@@ -9,7 +9,8 @@
 // every field of `expect` is there and alike: numbers within the tolerance (relative above 1),
 // lists and records element by element, null only null. Further fields are not looked at. Where
 // `expect` has `error` (or the status "error"), the script has to stop with an error that is no
-// limit; with `reason`, the error's short name has to be it. Rules for single fields stand in the
+// limit; with `reason`, the error's short name has to be it. Parameters `t` that stand only in
+// `expect`, beside the `points` they belong to, are given too. Rules for single fields stand in the
 // table below.
 
 #include <fnmatch.h>
@@ -34,6 +35,7 @@ typedef enum Rule {
   UP_TO_FACTOR,  // a list of numbers, or each list of numbers in a list: times any non-zero number
   ANY_ORDER,     // the elements of a list in any order
   FACTOR_ORDER,  // both of these
+  SOME_OF,       // a list whose elements are among those found, in any order
   MODULO_TURN,   // degrees, whole turns do not count
   ANY_ORDER_TURN // a list in any order of degrees, or of lists and records of them
 } Rule;
@@ -55,6 +57,8 @@ static const struct {
     {"conic.*", "coef_4_2", UP_TO_FACTOR},
     {"pc.line_implicit", "coef", UP_TO_FACTOR},
     {"pc.point_at_x", "points", ANY_ORDER},
+    {"*", "joints", SOME_OF},
+    {"*", "left_at_knots", SOME_OF},
     {"quadric-from-geometry", "coefficients", UP_TO_FACTOR},
     {"ik*", "solutions", ANY_ORDER_TURN},
 };
@@ -185,9 +189,9 @@ static bool compare_element(Check *c, Rule rule, const cJSON *expect, const cJSO
 
 // Each expected element takes the first of the found ones that is like it and not taken.
 static bool compare_order(Check *c, Rule rule, const cJSON *expect, const cJSON *found) {
-  int n = cJSON_IsArray(expect) ? cJSON_GetArraySize(expect) : -1;
-  if (n < 0 || !cJSON_IsArray(found) || cJSON_GetArraySize(found) != n)
-    return differ_items(c, expect, found);
+  if (!cJSON_IsArray(expect) || !cJSON_IsArray(found)) return differ_items(c, expect, found);
+  int n = cJSON_GetArraySize(found);
+  if (rule != SOME_OF && cJSON_GetArraySize(expect) != n) return differ_items(c, expect, found);
   bool *taken = calloc((size_t)n + 1, sizeof *taken), good = taken != NULL;
   for (const cJSON *e = expect->child; good && e; e = e->next) {
     int i = 0;
@@ -272,13 +276,13 @@ static bool run_vector(File *f, const cJSON *vector, size_t i, Check *c) {
   if (!kind || !expect) return differ(c, "it has no `kind` or no `expect`");
   c->tolerance = cJSON_IsNumber(tolerance) ? tolerance->valuedouble : USUAL_TOLERANCE;
   char text[1024];
-  snprintf(text, sizeof text,
-           "print if vectors[%zu].kind in kinds.kinds then\n"
-           "  attempt(() => json({value: (kinds.kinds[vectors[%zu].kind])(get(vectors[%zu], "
-           "\"given\", {}))}),\n"
-           "    err => json({stopped: {reason: err.reason, message: err.message}}))\n"
-           "else json({unknown: true})\n",
-           i, i, i);
+  snprintf(
+      text, sizeof text,
+      "print if vectors[%zu].kind in kinds.kinds then\n"
+      "  attempt(() => json({value: (kinds.kinds[vectors[%zu].kind])(given_of(vectors[%zu]))}),\n"
+      "    err => json({stopped: {reason: err.reason, message: err.message}}))\n"
+      "else json({unknown: true})\n",
+      i, i, i);
   char *line = ask(f, text, c->problem, sizeof c->problem);
   if (!line) return false;
   cJSON *result = cJSON_Parse(line);
@@ -325,6 +329,8 @@ static bool start(File *f, const char *kinds_folder, const char *path, const cha
   int n = asprintf(&text,
                    "import kinds\nfile = read_json(%s)\n"
                    "vectors = if type_of(file) == \"list\" then file else file.vectors\n"
+                   "given_of(v) = if \"t\" in v.expect and \"points\" in v.expect\n"
+                   "  then {t: v.expect.t, ...get(v, \"given\", {})} else get(v, \"given\", {})\n"
                    "print len(vectors)\n",
                    quoted ? quoted : "\"\"");
   char *answer = n < 0 ? NULL : ask(f, text, problem, size);
