@@ -24,7 +24,7 @@
 #define STEP_LEAST 1e-14
 // A frame turns by so much a step at most (radians).
 #define TURN_MOST 2.0
-#define STEPS_MOST 1000000
+#define STEPS_MOST 100000
 // Derivatives up to this order come from the series of the step, higher ones from the equations.
 #define ORDER_KEPT 3
 
@@ -134,7 +134,7 @@ static Frame frame_after(const Step *step, const Expansion *e, double h) {
 static CagStatus add_step(Natural *c, const Step *step, CagError *err) {
   char text[32];
   if (c->count == STEPS_MOST)
-    return cag_fail(err, CAG_E_CONVERGENCE, "too-many-steps", "curvature", -1,
+    return cag_fail(err, CAG_E_CONVERGENCE, "convergence", "curvature", -1,
                     "curvature and torsion change so fast that at s = %s the curve has taken %d "
                     "steps",
                     cag_number_text(step->start, text), STEPS_MOST);

@@ -19,8 +19,8 @@ typedef struct CagNaturalEquations {
 // Dimension 2: a plane curve, whose curvature may be negative; torsion is not asked for. Points are
 // accurate to 1e-12 of the length as far as the equations are smooth; they may jump.
 //
-// Fails with "length-not-positive", "frame-not-orthonormal", "too-many-steps". On success the curve
-// owns the context; where the call fails it stays the caller's.
+// Fails with "length-not-positive", "frame-not-orthonormal", "convergence" (100,000 steps). On
+// success the curve owns the context; where the call fails it stays the caller's.
 CagStatus cag_curve_natural(const CagNaturalEquations *equations, double length,
                             const CagTransform *frame, int dimension, CagCurve **out,
                             CagError *err);

@@ -269,7 +269,7 @@ static bool call_natural_curve(CagCall *call, CagValue *result) {
   CagCurve *c;
   CagError err;
   const bool twisted = cag_given(call, 2) && call->values[2].type != CAG_NONE;
-  if (!cag_arg_function(call, 0, &curvature) || !cag_arg_number(call, 1, &length) ||
+  if (!cag_arg_function(call, 0, &curvature) || !cag_arg_positive(call, 1, &length) ||
       (twisted && !cag_arg_function(call, 2, &torsion)) ||
       (cag_given(call, 3) && !cag_arg_transform(call, 3, &frame)))
     return false;
