@@ -95,8 +95,7 @@ CagStatus cag_net_trim(CagNet *net, double a, double b, CagError *err) {
   return CAG_OK;
 }
 
-// Removes one of the knots equal to t where that changes nothing: used after raising the degree of
-// Bezier pieces, where the smoothness is known.
+// Removes knot number r, the last of its equals, where that changes nothing.
 static void drop_knot(CagNet *net, size_t r) {
   // Inverse of Boehm's insertion, from both sides to the middle (Tiller 1992).
   size_t p = (size_t)net->degree, n = net->count, width = net->width;
@@ -131,6 +130,12 @@ static void drop_knot(CagNet *net, size_t r) {
           (n - gone - 1) * width * sizeof *net->data);
   memmove(net->knots + r, net->knots + r + 1, (n + p - r) * sizeof *net->knots);
   net->count--;
+}
+
+void cag_net_drop(CagNet *net, double t) {
+  size_t r = 0;
+  while (r + 1 < net->count + (size_t)net->degree + 1 && net->knots[r + 1] <= t) r++;
+  drop_knot(net, r);
 }
 
 static void raise_pieces(const CagNet *net, CagNet *next) {
@@ -181,11 +186,7 @@ CagStatus cag_net_raise(CagNet *net, CagError *err) {
   if (!status) {
     raise_pieces(net, &next);
     for (size_t i = 0; i < n; i++)
-      for (int m = p + 1; m > times[i] + 1; m--) {
-        size_t r = 0;
-        while (r + 1 < next.count + (size_t)p + 2 && next.knots[r + 1] <= cuts[i]) r++;
-        drop_knot(&next, r);
-      }
+      for (int m = p + 1; m > times[i] + 1; m--) cag_net_drop(&next, cuts[i]);
     cag_net_free(net);
     *net = next;
   }

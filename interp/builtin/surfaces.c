@@ -13,6 +13,7 @@ static const char asked[] = "Surfaces: questions";
 static const char curvature[] = "Surfaces: curvature";
 static const char changed[] = "Surfaces: changed";
 static const char made[] = "Surfaces: made of curves";
+static const char patches[] = "Surfaces: patches";
 static const char nets[] = "Surfaces: nets of points";
 static const char quadrics[] = "Quadrics";
 
@@ -211,6 +212,48 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "The torus about Z as a surface: a circle of radius `minor` turned at the radius `major`.",
      "print near(area(torus_surface(3, 1)), 12 * pi^2, relative: 1e-8) // expect: true", NUMBERS,
      made},
+
+    // --- Patches ---
+    {"coons(u0, u1, v0, v1)", cag_surfaces_coons, "surface",
+     "The surface between four edges, named by the side they lie on: u0 and u1 run along v, v0 and "
+     "v1 along u, all in the sense of growing parameters. Edges that do not meet are an error "
+     "(coons-corner-mismatch), which tells the corner, the gap and what to reverse.",
+     "s = coons(line([0, 0, 0], [0, 2, 0]), line([2, 0, 0], [2, 2, 4]), line([0, 0, 0], [2, 0, "
+     "0]), "
+     "line([0, 2, 0], [2, 2, 4]))\n"
+     "print s(0.5, 0.5) // expect: [1, 1, 1]",
+     CURVES, patches},
+    {"coons_bicubic(corners, tangents_u, tangents_v, twists = \"zero\")",
+     cag_surfaces_coons_bicubic, "surface",
+     "The bicubic patch over 0..1 from tables of 2 rows of 2, [[at u = 0, v = 0; at v = 1], [at u "
+     "= 1 ...]]: points, derivatives by u and by v, and twists, \"zero\" (Ferguson's patch) or "
+     "\"adini\" (those of the linear Coons surface).",
+     "flat = [[[0, 0, 0], [0, 3, 0]], [[3, 0, 0], [3, 3, 0]]]\n"
+     "s = coons_bicubic(flat, [[[3, 0, 8], [3, 0, 8]], [[3, 0, -8], [3, 0, -8]]], [[[0, 3, 0], [0, "
+     "3, 0]], [[0, 3, 0], [0, 3, 0]]])\n"
+     "print s(0.5, 0.5) // expect: [1.5, 1.5, 2]",
+     LISTS, patches},
+    {"hermite_patch(Q, u = 0..1, v = 0..1)", cag_surfaces_hermite_patch, "surface",
+     "The bicubic patch of a 4 by 4 table of vectors: rows at u = 0, at u = 1, and the derivatives "
+     "by u there; columns likewise for v. Derivatives are by the true parameters of the ranges.",
+     "q = [[[0, 0, 0], [0, 3, 0], [0, 3, 0], [0, 3, 0]], [[3, 0, 0], [3, 3, 0], [0, 3, 0], [0, 3, "
+     "0]], [[3, 0, 0], [3, 0, 0], [0, 0, 0], [0, 0, 0]], [[3, 0, 0], [3, 0, 0], [0, 0, 0], [0, 0, "
+     "0]]]\n"
+     "print near(hermite_patch(q)(0.5, 0.25), [1.5, 0.75, 0]) // expect: true",
+     LISTS, patches},
+    {"hermite_surface(grid, edge_tangents, corner_twists, lengths = none)",
+     cag_surfaces_hermite_surface, "surface",
+     "The bicubic surface with continuous curvature through a grid of points, by rows of u: point "
+     "[i][j] is at u = i, v = j (or at the sums of `lengths`, steps for u and for v). "
+     "edge_tangents is a record: u0 and u1 the derivatives by u along the first and last row, v0 "
+     "and v1 those by v along the first and last column; corner_twists 2 rows of 2.",
+     "grid = [for i in 0..2: [for j in 0..2: [i, j, 0]]]\n"
+     "x = [for i in 0..2: X]\n"
+     "y = [for i in 0..2: Y]\n"
+     "o = [0, 0, 0]\n"
+     "s = hermite_surface(grid, {u0: x, u1: x, v0: y, v1: y}, [[o, o], [o, o]])\n"
+     "print near(s(0.5, 1.25), [0.5, 1.25, 0]) // expect: true",
+     LISTS, patches},
 
     // --- Nets ---
     {"bezier_surface(net, weights = none)", cag_surfaces_bezier_surface, "surface",

@@ -20,6 +20,8 @@
   X(torus_surface) \
   /* surfaces_sweep.c */ \
   X(sweep) X(sweep_by) X(tube) X(loft) \
+  /* surfaces_patch.c */ \
+  X(coons) X(coons_bicubic) X(hermite_patch) X(hermite_surface) \
   /* surfaces_net.c: of nets of points */ \
   X(bezier_surface) X(bspline_surface) X(nurbs_surface) \
   /* surfaces_quadric.c */ \

@@ -1,0 +1,188 @@
+// Patches between given edges, corners and points: Coons and Hermite.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/surface/patches.h"
+#include "interp/builtin/support.h"
+#include "interp/builtin/surfaces.h"
+
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_surface_value(call->vm, *made);
+  return true;
+}
+
+bool cag_surfaces_coons(CagCall *call, CagValue *result) {
+  CagCurve *side[4];
+  CagSurface *s = NULL;
+  CagError err;
+  for (int k = 0; k < 4; k++)
+    if (!cag_arg_curve(call, k, &side[k])) return false;
+  return give(call, cag_surface_coons(side[0], side[1], side[2], side[3], &s, &err), &err, &s,
+              result);
+}
+
+// --- Tables of vectors ---
+
+static bool read_vector(CagValue v, CagVec3 *out) {
+  const double *x;
+  size_t n;
+  if (!cag_as_vector(v, &x, &n) || n < 2 || n > 3) return false;
+  *out = cag_vec3(x[0], x[1], n == 3 ? x[2] : 0);
+  return isfinite(out->x) && isfinite(out->y) && isfinite(out->z);
+}
+
+static bool read_line(CagCall *call, int argument, CagValue line, const char *what, size_t n,
+                      CagVec3 *out) {
+  if (line.type != CAG_LIST || CAG_AS_LIST(line)->length != n)
+    return cag_fail_call(
+        call, argument, CAG_ERR_length, "expects %zu vectors %s, found %s", n, what,
+        line.type == CAG_LIST ? "a list of another length" : cag_type_article(line));
+  for (size_t i = 0; i < n; i++) {
+    CagValue v = cag_list_get(call->vm, CAG_AS_LIST(line), i);
+    if (!read_vector(v, &out[i]))
+      return cag_fail_call(call, argument, CAG_ERR_type,
+                           "expects vectors of 2 or 3 finite numbers %s, found %s at [%zu]", what,
+                           cag_type_article(v), i);
+  }
+  return true;
+}
+
+// rows x n vectors.
+static bool read_table(CagCall *call, int argument, size_t rows, size_t n, CagVec3 *out) {
+  CagList *list;
+  if (!cag_arg_list(call, argument, &list)) return false;
+  if (list->length != rows)
+    return cag_fail_call(call, argument, CAG_ERR_length, "expects %zu rows as `%s`, found %zu",
+                         rows, cag_parameter_name(call, argument), list->length);
+  char what[32];
+  for (size_t i = 0; i < rows; i++) {
+    snprintf(what, sizeof what, "in row %zu", i);
+    if (!read_line(call, argument, cag_list_get(call->vm, list, i), what, n, out + i * n))
+      return false;
+  }
+  return true;
+}
+
+// --- Bicubic patches ---
+
+bool cag_surfaces_coons_bicubic(CagCall *call, CagValue *result) {
+  static const char *const modes[] = {"zero", "adini", NULL};
+  CagHermiteCorners c;
+  CagSurface *s = NULL;
+  CagError err;
+  memset(&c, 0, sizeof c);
+  if (!read_table(call, 0, 2, 2, c.p[0]) || !read_table(call, 1, 2, 2, c.pu[0]) ||
+      !read_table(call, 2, 2, 2, c.pv[0]))
+    return false;
+  if (call->values[3].type == CAG_LIST) {
+    if (!read_table(call, 3, 2, 2, c.puv[0])) return false;
+  } else {
+    int mode;
+    if (!cag_arg_choice(call, 3, modes, &mode)) return false;
+    if (mode == 1) cag_hermite_adini(&c);
+  }
+  return give(call, cag_surface_hermite(&c, 0, 1, 0, 1, &s, &err), &err, &s, result);
+}
+
+bool cag_surfaces_hermite_patch(CagCall *call, CagValue *result) {
+  CagVec3 q[16];
+  CagHermiteCorners c;
+  CagSurface *s = NULL;
+  CagError err;
+  double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
+  if (!read_table(call, 0, 4, 4, q)) return false;
+  if ((cag_given(call, 1) && !cag_arg_interval(call, 1, &u0, &u1, NULL)) ||
+      (cag_given(call, 2) && !cag_arg_interval(call, 2, &v0, &v1, NULL)))
+    return false;
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) {
+      c.p[i][j] = q[4 * i + j];
+      c.pv[i][j] = q[4 * i + 2 + j];
+      c.pu[i][j] = q[4 * (2 + i) + j];
+      c.puv[i][j] = q[4 * (2 + i) + 2 + j];
+    }
+  return give(call, cag_surface_hermite(&c, u0, u1, v0, v1, &s, &err), &err, &s, result);
+}
+
+// --- Composite ---
+
+typedef struct GridData {
+  CagVec3 *points, *tangents;
+  double *steps[2];
+} GridData;
+
+static bool read_steps(CagCall *call, size_t m, size_t n, GridData *d) {
+  if (!cag_given(call, 3) || call->values[3].type == CAG_NONE) return true;
+  CagList *list;
+  if (!cag_arg_list(call, 3, &list)) return false;
+  if (list->length != 2) return cag_fail_value(call, 3, "two lists, for u and v");
+  for (int k = 0; k < 2; k++) {
+    size_t wanted = k == 0 ? m : n;
+    CagValue line = cag_list_get(call->vm, list, (size_t)k);
+    if (line.type != CAG_LIST || CAG_AS_LIST(line)->length != wanted || CAG_AS_LIST(line)->dim != 1)
+      return cag_fail_call(call, 3, CAG_ERR_length, "expects %zu numbers for %c in `lengths`",
+                           wanted, k == 0 ? 'u' : 'v');
+    d->steps[k] = malloc(wanted * sizeof(double));
+    if (!d->steps[k])
+      return cag_fail_call(call, 3, CAG_ERR_limit_memory, "needs more memory than there is");
+    memcpy(d->steps[k], CAG_AS_LIST(line)->as.numbers, wanted * sizeof(double));
+  }
+  return true;
+}
+
+static bool read_edges(CagCall *call, CagHermiteGrid *g, GridData *d) {
+  static const char *const names[] = {"u0", "u1", "v0", "v1"};
+  CagRecord *edges;
+  if (!cag_arg_record(call, 1, &edges)) return false;
+  CagVec3 *at = d->tangents;
+  const CagVec3 **into[] = {&g->u_start, &g->u_end, &g->v_start, &g->v_end};
+  for (int k = 0; k < 4; k++) {
+    CagValue line = cag_record_get(edges, names[k]);
+    size_t n = k < 2 ? g->nv : g->nu;
+    char what[48];
+    snprintf(what, sizeof what, "for %s in `edge_tangents`", names[k]);
+    if (line.type == CAG_UNSET)
+      return cag_fail_call(call, 1, CAG_ERR_value,
+                           "expects a record with u0, u1, v0, v1: %s is missing", names[k]);
+    if (!read_line(call, 1, line, what, n, at)) return false;
+    *into[k] = at;
+    at += n;
+  }
+  return true;
+}
+
+static bool make_grid(CagCall *call, GridData *d, CagValue *result) {
+  CagHermiteGrid g = {0};
+  CagList *rows;
+  CagError err;
+  CagSurface *s = NULL;
+  if (!cag_arg_list(call, 0, &rows)) return false;
+  g.nu = rows->length;
+  CagValue first = g.nu ? cag_list_get(call->vm, rows, 0) : cag_none();
+  if (first.type != CAG_LIST) return cag_fail_type(call, 0, "rows of points");
+  g.nv = CAG_AS_LIST(first)->length;
+  d->points = malloc((g.nu * g.nv + 1) * sizeof *d->points);
+  d->tangents = malloc(2 * (g.nu + g.nv) * sizeof *d->tangents);
+  if (!d->points || !d->tangents)
+    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  if (!read_table(call, 0, g.nu, g.nv, d->points) || !read_edges(call, &g, d) ||
+      !read_table(call, 2, 2, 2, g.twist[0]) || !read_steps(call, g.nu - 1, g.nv - 1, d))
+    return false;
+  g.points = d->points;
+  g.steps_u = d->steps[0];
+  g.steps_v = d->steps[1];
+  return give(call, cag_surface_hermite_grid(&g, &s, &err), &err, &s, result);
+}
+
+bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
+  GridData d = {0};
+  bool ok = make_grid(call, &d, result);
+  free(d.points);
+  free(d.tangents);
+  free(d.steps[0]);
+  free(d.steps[1]);
+  return ok;
+}

@@ -1,0 +1,262 @@
+// Patches: the vectors of the reference (05a, 8 and 9; 06a, 6.9 and 6.10) and what follows from
+// them.
+
+#include "geom/surface/patches.h"
+#include "tests/geom/surface_support.h"
+
+static CagCurve *spline(const CagVec3 *points, size_t n) {
+  CagCurve *c = NULL;
+  double knots[16];
+  MUST(cag_knots_make("open", n, 2, points, knots, err));
+  MUST(cag_curve_nurbs(points, NULL, n, 2, knots, 3, &c, err));
+  return c;
+}
+
+// coons-linear.ex12, ex12-grid: order 3 B-splines on open uniform knots; u of the vectors is u.
+static void coons_of_example_12(void **state) {
+  (void)state;
+  CagVec3 v0[] = {{0, 0, 3}, {1, 1, 3}, {2, 1, 3}, {2, 1, 3}, {3, 0, 3}};
+  CagVec3 v1[] = {{0, 0, 0}, {1, 1, 0}, {2, 1, 0}, {3, 0, 0}};
+  CagVec3 u0[] = {{0, 0, 3}, {0, 1, 2}, {0, 1, 1}, {0, 0, 0}};
+  CagVec3 u1[] = {{3, 0, 3}, {3, 1, 2}, {3, 1, 2}, {3, 1, 1}, {3, 0, 0}};
+  CagCurve *a = spline(u0, 4), *b = spline(u1, 5), *c = spline(v0, 5), *d = spline(v1, 4);
+  CagSurface *s = NULL, *exact = NULL;
+  MUST(cag_surface_coons(a, b, c, d, &s, err));
+  MUST(cag_surface_to_nurbs(s, &exact, err));
+  static const double AT[][2] = {{0.25, 0.25}, {0.25, 0.75}, {0.75, 0.25}, {0.9, 0.1}, {0.5, 0.0},
+                                 {0.0, 0.5},   {1.0, 0.5},   {0.5, 1.0},   {0.5, 0.5}};
+  static const CagVec3 POINT[] = {{1.1328125, 1.6875, 2.109375},
+                                  {0.9609375, 1.59375, 0.9609375},
+                                  {2.078125, 1.78125, 2.078125},
+                                  {2.503, 0.9899999999999998, 2.5029999999999997},
+                                  {1.875, 1.0, 3.0},
+                                  {0.0, 1.0, 1.5},
+                                  {3.0, 1.0, 1.875},
+                                  {1.5, 1.0, 0.0},
+                                  {1.6875, 2.0, 1.6875}};
+  for (size_t i = 0; i < sizeof AT / sizeof *AT; i++) {
+    assert_point(surface_at(s, AT[i][0], AT[i][1]), POINT[i], 1e-12, "coons-linear.ex12");
+    assert_point(surface_at(exact, AT[i][0], AT[i][1]), POINT[i], 1e-12, "exact form");
+  }
+  assert_consistent(s);
+  assert_transforms(s);
+  cag_surface_release(exact);
+  cag_surface_release(s);
+  // One edge against the others: named, with the mend.
+  CagCurve *turned;
+  MUST(cag_curve_reverse(c, &turned, err));
+  CagError e;
+  assert_int_equal(cag_surface_coons(a, b, turned, d, &s, &e), CAG_E_ARGUMENT);
+  assert_string_equal(e.reason, "coons-corner-mismatch");
+  assert_non_null(strstr(e.message, "3 apart; reversing `v0` closes the patch"));
+  cag_curve_release(turned);
+  cag_curve_release(a);
+  cag_curve_release(b);
+  cag_curve_release(c);
+  cag_curve_release(d);
+}
+
+static CagSurface *bicubic(const CagVec3 p[4], const CagVec3 pu[4], const CagVec3 pv[4],
+                           const CagVec3 puv[4]) {
+  CagHermiteCorners c;
+  memcpy(c.p, p, sizeof c.p);
+  memcpy(c.pu, pu, sizeof c.pu);
+  memcpy(c.pv, pv, sizeof c.pv);
+  memcpy(c.puv, puv, sizeof c.puv);
+  CagSurface *s = NULL;
+  MUST(cag_surface_hermite(&c, 0, 1, 0, 1, &s, err));
+  return s;
+}
+
+// coons-bicubic.ex13 with its derivatives, and figures 33 to 35: heights of the middle.
+static void bicubic_patches_of_the_reference(void **state) {
+  (void)state;
+  const CagVec3 P[] = {{-100.0, 0.0, 100.0},
+                       {-100.0, -100.0, -100.0},
+                       {100.0, -100.0, 100.0},
+                       {100.0, 0.0, -100.0}},
+                U[] = {{100.0, 100.0, 0.0}, {1.0, 1.0, 0.0}, {1.0, -1.0, 0.0}, {1.0, -1.0, 0.0}},
+                V[] = {{0.0, 10.0, -10.0}, {0.0, -1.0, -1.0}, {0.0, 1.0, -1.0}, {0.0, -1.0, -1.0}},
+                T[] = {{0.0, 0.0, 0.0}, {0.1, 0.1, 0.1}, {0.1, -0.1, -0.1}, {0.0, 0.0, 0.0}};
+  CagSurface *s = bicubic(P, U, V, T);
+  CagVec3 d[9];
+  MUST(cag_surface_eval(s, 0.5, 0.5, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err));
+  assert_point(d[cag_partial(2, 0, 0)], (CagVec3){6.184374999999999, -42.75, -0.5625}, 1e-11,
+               "coons-bicubic.ex13 point");
+  assert_point(d[cag_partial(2, 1, 0)], (CagVec3){287.125, -14.056249999999999, 1.69375}, 1e-11,
+               "coons-bicubic.ex13 d_u");
+  assert_point(d[cag_partial(2, 0, 1)], (CagVec3){-18.5625, -19.69375, -298.38125}, 1e-11,
+               "coons-bicubic.ex13 d_w");
+  assert_point(d[cag_partial(2, 1, 1)], (CagVec3){37.1375, 490.5, -3.375}, 1e-11,
+               "coons-bicubic.ex13 d_uw");
+  assert_point(d[cag_partial(2, 2, 0)], (CagVec3){-49.474999999999994, -51.5, 0.0}, 1e-11,
+               "coons-bicubic.ex13 d_uu");
+  assert_point(d[cag_partial(2, 0, 2)], (CagVec3){0.025, -6.5, 4.5}, 1e-11,
+               "coons-bicubic.ex13 d_ww");
+  cag_surface_release(s);
+  const CagVec3 FLAT[] = {{-100, 0, 100}, {-100, 0, -100}, {100, 0, 100}, {100, 0, -100}};
+  CagVec3 twist[4] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  static const double M[] = {1, 10, 100, 1000};
+  for (int i = 0; i < 4; i++) {
+    double m = M[i];
+    CagVec3 u[] = {{m, m, 0}, {m, m, 0}, {m, -m, 0}, {m, -m, 0}};
+    CagVec3 v[] = {{0, m, -m}, {0, -m, -m}, {0, m, -m}, {0, -m, -m}};
+    s = bicubic(FLAT, u, v, twist);
+    assert_near(surface_at(s, 0.5, 0.5).y, m / 2, 1e-12, "coons-bicubic.fig33");
+    cag_surface_release(s);
+  }
+  CagVec3 u[] = {{100, 100, 0}, {100, -100, 0}, {100, -100, 0}, {100, -100, 0}};
+  CagVec3 v[] = {{0, 100, -100}, {0, 100, -100}, {0, 100, -100}, {0, -100, -100}};
+  s = bicubic(FLAT, u, v, twist);
+  assert_near(surface_at(s, 0.5, 0.5).y, 25, 1e-12, "coons-bicubic.fig34");
+  cag_surface_release(s);
+}
+
+// Adini's twists make a patch with straight edges the bilinear one.
+static void adini_twists_keep_bilinear_patches(void **state) {
+  (void)state;
+  CagHermiteCorners c = {.p = {{{0, 0, 0}, {0, 2, 1}}, {{3, 0, -1}, {4, 5, 2}}}};
+  for (int k = 0; k < 2; k++) {
+    c.pu[0][k] = c.pu[1][k] = cag_sub(c.p[1][k], c.p[0][k]);
+    c.pv[k][0] = c.pv[k][1] = cag_sub(c.p[k][1], c.p[k][0]);
+  }
+  cag_hermite_adini(&c);
+  CagSurface *s = NULL, *flat = NULL;
+  MUST(cag_surface_hermite(&c, 0, 1, 0, 1, &s, err));
+  MUST(cag_surface_bilinear(c.p[0][0], c.p[0][1], c.p[1][0], c.p[1][1], &flat, err));
+  for (int k = 0; k < 4; k++) {
+    double u = inside(0, 1, k), w = inside(0, 1, 3 - k);
+    assert_point(surface_at(s, u, w), surface_at(flat, u, w), 1e-13, "bilinear");
+  }
+  cag_surface_release(s);
+  cag_surface_release(flat);
+}
+
+// hermite-surface.3x2: tangents, twists and samples; curvature continues over the knots.
+static void composite_surface_uniform(void **state) {
+  (void)state;
+  static const CagVec3 P[4][3] = {{{0.0, 0.0, 0.61}, {0.0, 1.0, 0.62}, {0.0, 2.0, 0.03}},
+                                  {{1.0, 0.0, -0.43}, {1.0, 1.0, -0.89}, {1.0, 2.0, -0.23}},
+                                  {{2.0, 0.0, -0.18}, {2.0, 1.0, -0.91}, {2.0, 2.0, -0.9}},
+                                  {{3.0, 0.0, 1.0}, {3.0, 1.0, 0.3}, {3.0, 2.0, -0.53}}};
+  static const CagVec3 Q0[] = {{1.0, 0.0, -0.13}, {1.0, 0.0, 0.95}, {1.0, 0.0, 0.8}},
+                       Q1[] = {{1.0, 0.0, 0.69}, {1.0, 0.0, -0.22}, {1.0, 0.0, -0.01}};
+  static const CagVec3 R0[] = {{0.0, 1.0, 0.35},
+                               {0.0, 1.0, -0.88},
+                               {0.0, 1.0, 0.11},
+                               {0.0, 1.0, -0.46}},
+                       R1[] = {
+                           {0.0, 1.0, 0.76}, {0.0, 1.0, -0.87}, {0.0, 1.0, 0.36}, {0.0, 1.0, 0.74}};
+  static const CagVec3 Q[4][3] = {
+      {{1.0, 0.0, -0.13}, {1.0, 0.0, 0.95}, {1.0, 0.0, 0.8}},
+      {{1.0, 0.0, -0.8373333333333334}, {1.0, 0.0, -1.73}, {1.0, 0.0, -0.8979999999999999}},
+      {{1.0, 0.0, 1.1093333333333333}, {1.0, 0.0, 1.38}, {1.0, 0.0, 0.001999999999999955}},
+      {{1.0, 0.0, 0.69}, {1.0, 0.0, -0.22}, {1.0, 0.0, -0.01}}};
+  static const CagVec3 R[4][3] = {
+      {{0.0, 1.0, 0.35}, {0.0, 1.0, -0.7124999999999999}, {0.0, 1.0, 0.76}},
+      {{0.0, 1.0, -0.88}, {0.0, 1.0, 0.5875}, {0.0, 1.0, -0.87}},
+      {{0.0, 1.0, 0.11}, {0.0, 1.0, -0.6575}, {0.0, 1.0, 0.36}},
+      {{0.0, 1.0, -0.46}, {0.0, 1.0, -1.2175}, {0.0, 1.0, 0.74}}};
+  static const CagVec3 T[4][3] = {
+      {{0.0, 0.0, -0.27}, {0.0, 0.0, 0.6650000000000001}, {0.0, 0.0, 0.4}},
+      {{0.0, 0.0, -0.17933333333333332},
+       {0.0, 0.0, 0.1944999999999998},
+       {0.0, 0.0, -0.7806666666666666}},
+      {{0.0, 0.0, 0.2673333333333333},
+       {0.0, 0.0, -1.2780000000000002},
+       {0.0, 0.0, 1.5226666666666668}},
+      {{0.0, 0.0, 0.37}, {0.0, 0.0, -0.49749999999999994}, {0.0, 0.0, -0.48}}};
+  static const double U[] = {1.0, 1.0, 1.0}, V[] = {1.0, 1.0};
+  CagHermiteGrid g = {4, 3, P[0], Q0, Q1, R0, R1, {{T[0][0], T[0][2]}, {T[3][0], T[3][2]}}, U, V};
+  CagSurface *s = NULL;
+  MUST(cag_surface_hermite_grid(&g, &s, err));
+  double u = 0;
+  for (int i = 0; i <= 3; i++) {
+    double v = 0;
+    for (int j = 0; j <= 2; j++) {
+      CagVec3 d[9], l[9];
+      MUST(cag_surface_eval(s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err));
+      MUST(cag_surface_eval(s, u, v, 2, CAG_SIDE_LEFT, CAG_SIDE_LEFT, l, err));
+      assert_point(d[0], P[i][j], 1e-12, "point");
+      assert_point(d[cag_partial(2, 1, 0)], Q[i][j], 1e-11, "tangent by u");
+      assert_point(d[cag_partial(2, 0, 1)], R[i][j], 1e-11, "tangent by v");
+      assert_point(d[cag_partial(2, 1, 1)], T[i][j], 1e-11, "twist");
+      for (int k = 2; k < 8; k += 2) assert_point(l[k], d[k], 1e-10, "C2");
+      if (j < 2) v += V[j];
+    }
+    if (i < 3) u += U[i];
+  }
+  cag_surface_release(s);
+}
+
+// hermite-surface.nonuniform: tangents, twists and samples; curvature continues over the knots.
+static void composite_surface_nonuniform(void **state) {
+  (void)state;
+  static const CagVec3 P[4][3] = {{{0.0, 0.0, 0.08}, {0.0, 1.0, -0.31}, {0.0, 2.0, -0.26}},
+                                  {{1.0, 0.0, -0.25}, {1.0, 1.0, 0.97}, {1.0, 2.0, 0.27}},
+                                  {{2.0, 0.0, 0.35}, {2.0, 1.0, -0.34}, {2.0, 2.0, 0.36}},
+                                  {{3.0, 0.0, -0.75}, {3.0, 1.0, -0.9}, {3.0, 2.0, 0.7}}};
+  static const CagVec3 Q0[] = {{1.0, 0.0, -0.98}, {1.0, 0.0, 0.96}, {1.0, 0.0, 0.65}},
+                       Q1[] = {{1.0, 0.0, 0.57}, {1.0, 0.0, -0.9}, {1.0, 0.0, -0.59}};
+  static const CagVec3
+      R0[] = {{0.0, 1.0, 0.7}, {0.0, 1.0, -0.14}, {0.0, 1.0, 0.25}, {0.0, 1.0, -0.76}},
+      R1[] = {{0.0, 1.0, -0.63}, {0.0, 1.0, -0.01}, {0.0, 1.0, 0.52}, {0.0, 1.0, 0.08}};
+  static const CagVec3 Q[4][3] = {{{1.0000000000000002, 0.0, -0.9799999999999998},
+                                   {1.0000000000000002, 0.0, 0.96},
+                                   {1.0000000000000002, 0.0, 0.6500000000000002}},
+                                  {{0.5677966101694916, 0.0, 0.6199999999999999},
+                                   {0.5677966101694916, 0.0, 0.8433050847457626},
+                                   {0.5677966101694916, 0.0, 0.1609322033898305}},
+                                  {{2.0932203389830506, 0.0, -2.84},
+                                   {2.0932203389830506, 0.0, -1.2648305084745763},
+                                   {2.0932203389830506, 0.0, 1.0494067796610167}},
+                                  {{1.0, 0.0, 0.57}, {1.0, 0.0, -0.9}, {1.0, 0.0, -0.59}}};
+  static const CagVec3 R[4][3] = {
+      {{0.0, 1.0, 0.7}, {0.0, 0.8, -0.06199999999999997}, {0.0, 1.0, -0.63}},
+      {{0.0, 1.0, -0.14}, {0.0, 0.8, -0.11099999999999999}, {0.0, 1.0, -0.01}},
+      {{0.0, 1.0, 0.25}, {0.0, 0.8, 0.148}, {0.0, 1.0, 0.52}},
+      {{0.0, 1.0, -0.76}, {0.0, 0.8, 1.508}, {0.0, 1.0, 0.08}}};
+  static const CagVec3 T[4][3] = {
+      {{0.0, 0.0, -0.3900000000000001},
+       {0.0, 0.0, 0.4640000000000004},
+       {0.0, 0.0, 0.3700000000000001}},
+      {{0.0, 0.0, -0.24635593220338983},
+       {0.0, 0.0, -0.7159237288135594},
+       {0.0, 0.0, 0.8012711864406779}},
+      {{0.0, 0.0, -2.1968644067796608},
+       {0.0, 0.0, 3.4620423728813554},
+       {0.0, 0.0, -1.0326271186440676}},
+      {{0.0, 0.0, -0.36}, {0.0, 0.0, -0.21899999999999992}, {0.0, 0.0, -0.06}}};
+  static const double U[] = {1.0, 2.0, 0.5}, V[] = {1.5, 1.0};
+  CagHermiteGrid g = {4, 3, P[0], Q0, Q1, R0, R1, {{T[0][0], T[0][2]}, {T[3][0], T[3][2]}}, U, V};
+  CagSurface *s = NULL;
+  MUST(cag_surface_hermite_grid(&g, &s, err));
+  double u = 0;
+  for (int i = 0; i <= 3; i++) {
+    double v = 0;
+    for (int j = 0; j <= 2; j++) {
+      CagVec3 d[9], l[9];
+      MUST(cag_surface_eval(s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err));
+      MUST(cag_surface_eval(s, u, v, 2, CAG_SIDE_LEFT, CAG_SIDE_LEFT, l, err));
+      assert_point(d[0], P[i][j], 1e-12, "point");
+      assert_point(d[cag_partial(2, 1, 0)], Q[i][j], 1e-11, "tangent by u");
+      assert_point(d[cag_partial(2, 0, 1)], R[i][j], 1e-11, "tangent by v");
+      assert_point(d[cag_partial(2, 1, 1)], T[i][j], 1e-11, "twist");
+      for (int k = 2; k < 8; k += 2) assert_point(l[k], d[k], 1e-10, "C2");
+      if (j < 2) v += V[j];
+    }
+    if (i < 3) u += U[i];
+  }
+  cag_surface_release(s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(coons_of_example_12),
+      cmocka_unit_test(bicubic_patches_of_the_reference),
+      cmocka_unit_test(adini_twists_keep_bilinear_patches),
+      cmocka_unit_test(composite_surface_uniform),
+      cmocka_unit_test(composite_surface_nonuniform),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
