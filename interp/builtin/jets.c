@@ -233,12 +233,11 @@ static bool of_in_degrees(const CagSeries *x, double degrees, double value, CagS
   return true;
 }
 
-#define UNARY(X)                                                                                   \
-  X(abs)                                                                                           \
-  X(sqrt)                                                                                          \
-  X(cbrt)                                                                                          \
-  X(exp) X(ln) X(log10) X(log2) X(sinh) X(cosh) X(tanh) X(asinh) X(acosh) X(atanh) X(sin) X(cos)   \
-      X(tan) X(asin) X(acos) X(atan) X(in_degrees) X(in_radians)
+// clang-format off
+#define UNARY(X) \
+  X(abs) X(sqrt) X(cbrt) X(exp) X(ln) X(log10) X(log2) X(sinh) X(cosh) X(tanh) X(asinh) X(acosh) \
+  X(atanh) X(sin) X(cos) X(tan) X(asin) X(acos) X(atan) X(in_degrees) X(in_radians)
+// clang-format on
 
 // abs of an angle: the jet is read in radians, and given so.
 #define X(name)                                                                                    \
