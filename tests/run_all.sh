@@ -53,6 +53,9 @@ counted "cag test" "$BUILD/cag" test tests/language tests/scenes
 counted "cag test examples" "$BUILD/cag" test --no-pictures examples
 counted "tests/cli" env BUILD="$BUILD" sh tests/cli/run.sh
 counted "tests/repl" env BUILD="$BUILD" sh tests/repl/run.sh
+for vectors in tests/data/0*.json; do
+  counted "$vectors" env BUILD="$BUILD" tests/vectors/run "$vectors"
+done
 check "layers" make -s check-layers
 if command -v clang-format > /dev/null; then
   check "format" make -s check-format
