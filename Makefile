@@ -116,7 +116,12 @@ test-sanitize:
 $(BUILD)/tests/bench/%: tests/bench/%.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(LDLIBS_ALL)
-bench: all $(BUILD)/tests/bench/export
+# SISL is a peer of this figure only, and only where its header is.
+$(BUILD)/tests/bench/curves: tests/bench/curves.c $(BUILD)/libcag.a
+	@mkdir -p $(@D)
+	$Q$(CC) $(CFLAGS_ALL) $$(test -f /usr/include/sisl.h && echo -DCAG_SISL) $< $(BUILD)/libcag.a -o $@ \
+	  $$(test -f /usr/include/sisl.h && echo -lsisl) $(LDLIBS_ALL)
+bench: all $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves
 	BUILD=$(BUILD) sh tests/bench/run.sh
 
 FORMATTED = $(shell find include lang geom interp tests -name '*.[ch]' | sort)

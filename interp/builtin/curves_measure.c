@@ -1,6 +1,7 @@
 // Measures of whole curves and regions, and their division.
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "interp/builtin/curves.h"
 
@@ -47,21 +48,29 @@ static double step(const CagCurve *c, size_t i, size_t n) {
   return i == n ? c->end : c->start + (c->end - c->start) * ((double)i / (double)n);
 }
 
+// Points that are evaluated together: few enough to stay near the processor.
+#define SAMPLE_BATCH 512
+
 bool cag_curves_sample(CagCall *call, CagValue *result) {
   CagCurve *c;
   CagError err;
   long n;
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_integer(call, 1, 2, PARTS_MAX, &n)) return false;
-  size_t count = (size_t)n;
-  double *t = malloc(count * sizeof *t);
-  CagVec3 *points = malloc(count * sizeof *points);
-  bool ok = t && points;
-  if (!ok) fail_memory(call);
-  for (size_t i = 0; ok && i < count; i++) t[i] = step(c, i, count - 1);
-  ok = ok && cag_geometry_ok(call, cag_curve_eval_many(c, t, count, 0, points, &err), &err);
-  if (ok) *result = cag_points_value(call->vm, points, count, c->dimension);
-  free(t);
-  free(points);
+  const size_t count = (size_t)n, dimension = (size_t)c->dimension;
+  double t[SAMPLE_BATCH], *to;
+  CagVec3 points[SAMPLE_BATCH];
+  CagValue list = cag_list_vectors(call->vm, count, dimension, &to);
+  bool ok = true;
+  cag_root_push(call->vm, list); // a curve may be a function of the script
+  for (size_t from = 0; ok && from < count; from += SAMPLE_BATCH) {
+    const size_t m = count - from < SAMPLE_BATCH ? count - from : SAMPLE_BATCH;
+    for (size_t i = 0; i < m; i++) t[i] = step(c, from + i, count - 1);
+    ok = cag_geometry_ok(call, cag_curve_eval_many(c, t, m, 0, points, &err), &err);
+    for (size_t i = 0; ok && i < m; i++, to += dimension)
+      memcpy(to, &points[i], dimension * sizeof *to);
+  }
+  cag_root_pop(call->vm, 1);
+  *result = list;
   return ok;
 }
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Figures of speed beside those of peers, measured in one run: `make bench`. Nothing here is a test.
 #
-# Peers are asked for when they are installed (lua5.4, openscad); without them their column is empty.
+# Peers are asked for when they are installed (lua5.4, openscad, SISL by libsisl-dev); without them their column is empty.
 B=${BUILD:-build}
 CAG=$B/cag
 here=tests/bench
@@ -61,3 +61,15 @@ done
 
 echo "--- export of 10^6 triangles"
 "$B/tests/bench/export" "$tmp"
+
+# Seconds of the processor that a script takes: the best of five.
+cpu() {
+  for _ in 1 2 3 4 5; do
+    { /usr/bin/time -f "%U %S" "$CAG" run "$1" >/dev/null; } 2>&1 | awk 'END { print $1 + $2 }'
+  done | sort -n | head -n 1
+}
+echo "--- curves, against SISL 4.6"
+# The scripts sample 20 times.
+"$B/tests/bench/curves" $(for kind in bspline nurbs; do
+  awk "BEGIN { print ($(cpu $here/sample_$kind.cag) - $(cpu "$tmp/empty.cag")) / 20 }"
+done)
