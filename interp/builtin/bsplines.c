@@ -84,7 +84,7 @@ const CagBuiltin cag_builtins_bsplines[] = {
      CURVES, spans},
     {"support(C, i)", cag_bsplines_support, "range",
      "The range over which control point i has an influence: what moves when it is moved. Of a "
-     "closed curve a list of ranges, two where it passes the seam.",
+     "closed curve a list of ranges, two where it passes the seam; none where it has none.",
      "print support(bspline([for i in 0..7: [i, i % 2]]), 4) // expect: 1..5", CURVES, spans},
     {"acting_points(C, t, side = \"right\")", cag_bsplines_acting_points, "record",
      "The control points that the curve at t is made of: the `span` between knots, their `indices` "

@@ -50,16 +50,18 @@ bool cag_bsplines_support(CagCall *call, CagValue *result) {
     return false;
   const size_t p = (size_t)c->degree;
   CagBuilder *list = cag_builder_new(call->vm);
-  CagValue whole = cag_unset();
+  double from = 0, to = 0; // the range in the making, empty at first
   for (size_t k = (size_t)i; k < c->count; k += c->distinct) {
     const double a = fmax(c->knots[k], c->base.start), b = fmin(c->knots[k + p + 1], c->base.end);
     if (!(a < b)) continue;
-    whole = range_of(call, a, b);
-    if (!cag_builder_add(call->vm, list, whole)) return false;
+    if (from < to && a > to && !cag_builder_add(call->vm, list, range_of(call, from, to)))
+      return false;
+    from = from < to && a <= to ? from : a;
+    to = b;
   }
-  *result = c->periodic ? cag_builder_finish(call->vm, list) : whole;
-  if (whole.type == CAG_UNSET)
-    *result = c->periodic ? cag_builder_finish(call->vm, list) : cag_none();
+  const CagValue last = from < to ? range_of(call, from, to) : cag_none();
+  if (c->periodic && !cag_builder_add(call->vm, list, last)) return false;
+  *result = c->periodic ? cag_builder_finish(call->vm, list) : last;
   return true;
 }
 
