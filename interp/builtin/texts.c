@@ -105,6 +105,9 @@ static bool call_split(CagCall *call, CagValue *result) {
   return true;
 }
 
+// Elements joined between two looks at the clock.
+enum { KEEP_GOING_EVERY = 4096 };
+
 static bool call_join(CagCall *call, CagValue *result) {
   const CagText *separator = NULL;
   CagSequence xs;
@@ -112,6 +115,10 @@ static bool call_join(CagCall *call, CagValue *result) {
   if (!cag_sequence_open(call, 0, true, &xs)) return false;
   CagString s = {0};
   for (size_t i = 0; i < xs.length; i++) {
+    if (i % KEEP_GOING_EVERY == 0 && !cag_keep_going(call->vm)) {
+      cag_string_free(&s);
+      return false;
+    }
     if (i > 0 && separator) cag_string_add(&s, separator->bytes, separator->length);
     cag_print_value(call->vm, &s, cag_sequence_element(call->vm, &xs, i), false);
   }

@@ -214,6 +214,11 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
   if (closed) count = 2 * floor(count / 2);
   else count = 2 * floor((count - 1) / 2) + 1;
   if (count < 2) return add_path(b, p, n, closed, radius, err);
+  // A dash has two triangles on each side at least, and every second step is one.
+  if (count * SIDES > (double)b->max_triangles)
+    return cag_fail(err, CAG_E_LIMIT, "triangle-limit", "dash", -1,
+                    "%.0f dashes need more than the %zu triangles allowed: make them longer",
+                    ceil(count / 2), b->max_triangles);
   double step = length / count;
   CagVec3 *run = malloc((n + 2) * sizeof *run);
   if (!run) return cag_fail_memory(err);

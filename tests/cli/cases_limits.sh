@@ -58,3 +58,14 @@ prints_nothing
 it 'eval has limits too'
 try eval 'len([for i in 0..<1e9: [i, i]])' --max-memory 16M
 status 5
+
+it 'dashes that are too many are refused before they are made'
+script dashes.cag 'show line_style(circle(9), dash: 1e-9)'
+try export dashes.cag -o dashes.stl --max-time 5
+status 5
+says 'dashes need more'
+
+it 'built-ins without an end of their own look at the clock'
+try eval 'join(0..1e9)' --max-time 0.3
+status 5
+says '--max-time'
