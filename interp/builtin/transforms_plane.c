@@ -83,8 +83,10 @@ bool cag_transforms_distance_to_line(CagCall *call, CagValue *result) {
   CagVec3 along = cag_sub(r, q);
   if (cag_norm(along) == 0)
     return cag_fail_call(call, 2, CAG_ERR_value, "expects two different points of the line");
-  *result = cag_number(cag_norm(cag_cross(cag_sub(p, q), along)) / cag_norm(along));
-  return true;
+  const double distance = cag_norm(cag_cross(cag_sub(p, q), along)) / cag_norm(along);
+  *result = cag_number(distance);
+  return isfinite(distance) ||
+         cag_fail_call(call, -1, CAG_ERR_value, "expects points so near that distances are finite");
 }
 
 // Vector area of the closed polygon and its centroid: shoelace sums taken from the first point,
