@@ -1,7 +1,6 @@
 // Measures of whole curves and regions, and their division.
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "interp/builtin/curves.h"
 
@@ -62,12 +61,16 @@ bool cag_curves_sample(CagCall *call, CagValue *result) {
   CagValue list = cag_list_vectors(call->vm, count, dimension, &to);
   bool ok = true;
   cag_root_push(call->vm, list); // a curve may be a function of the script
-  for (size_t from = 0; ok && from < count; from += SAMPLE_BATCH) {
+  for (size_t from = 0; ok && from < count; from += SAMPLE_BATCH, to += SAMPLE_BATCH * dimension) {
     const size_t m = count - from < SAMPLE_BATCH ? count - from : SAMPLE_BATCH;
+    // Vectors of a list in space lie as those of the core do.
+    CagVec3 *out = dimension == 3 ? (CagVec3 *)to : points;
     for (size_t i = 0; i < m; i++) t[i] = step(c, from + i, count - 1);
-    ok = cag_geometry_ok(call, cag_curve_eval_many(c, t, m, 0, points, &err), &err);
-    for (size_t i = 0; ok && i < m; i++, to += dimension)
-      memcpy(to, &points[i], dimension * sizeof *to);
+    ok = cag_geometry_ok(call, cag_curve_eval_many(c, t, m, 0, out, &err), &err);
+    for (size_t i = 0; ok && dimension == 2 && i < m; i++) {
+      to[2 * i] = points[i].x;
+      to[2 * i + 1] = points[i].y;
+    }
   }
   cag_root_pop(call->vm, 1);
   *result = list;

@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "interp/eval/vm.h"
 
@@ -12,6 +13,23 @@
 #define INLINE_MAX 4096
 
 static size_t element_size(uint32_t dim) { return dim ? dim * sizeof(double) : sizeof(CagValue); }
+
+// From this size on, data are worth the kernel's large pages of 2 MiB: zeroing and mapping small
+// ones one by one would take as long as computing what stands in them.
+#define LARGE_PAGES_FROM ((size_t)8 << 20)
+#define SMALL_PAGE ((uintptr_t)4096)
+
+static void *take(size_t bytes) {
+  void *p = malloc(bytes);
+#ifdef MADV_HUGEPAGE
+  if (p && bytes >= LARGE_PAGES_FROM) {
+    const uintptr_t from = ((uintptr_t)p + SMALL_PAGE - 1) & ~(SMALL_PAGE - 1);
+    const uintptr_t to = ((uintptr_t)p + bytes) & ~(SMALL_PAGE - 1);
+    madvise((void *)from, to - from, MADV_HUGEPAGE); // a hint: nothing is lost when it is refused
+  }
+#endif
+  return p;
+}
 
 static CagList *new_list(CagVm *vm, size_t n, uint32_t dim) {
   size_t element = element_size(dim);
@@ -24,7 +42,7 @@ static CagList *new_list(CagVm *vm, size_t n, uint32_t dim) {
   } else {
     l = cag_alloc(vm, CAG_LIST, sizeof *l);
     cag_heap_charge(vm, bytes);
-    l->as.data = malloc(bytes);
+    l->as.data = take(bytes);
     if (!l->as.data) cag_vm_out_of_memory(vm);
     l->allocated = true;
   }

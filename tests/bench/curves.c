@@ -206,9 +206,9 @@ static void compare_sample(const char *kind, bool rational, double seconds) {
     derivatives = best(derivatives, of_sisl(&s, t, 2, &sum));
   }
   char name[64];
-  snprintf(name, sizeof name, "%s, `sample` in a script, against points", kind);
+  snprintf(name, sizeof name, "%s, `sample`, SISL: points", kind);
   report(name, seconds, sisl, 0);
-  snprintf(name, sizeof name, "%s, `sample` in a script, against all", kind);
+  snprintf(name, sizeof name, "%s, `sample`, SISL: with derivatives", kind);
   report(name, seconds, derivatives, 8);
   free(t);
   free_subject(&s);
