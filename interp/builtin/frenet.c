@@ -1,0 +1,355 @@
+// Curve theory in the language: frames from derivatives, special points, contact with planes,
+// changes of the parameter, and helices by their constants.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/curve/frenet.h"
+#include "interp/builtin/shapes.h"
+#include "interp/builtin/support.h"
+
+#define CURVES CAG_TAKES(CURVE)
+
+static bool read_at(CagCall *call, CagCurve **c, double *t) {
+  return cag_arg_curve(call, 0, c) &&
+         cag_arg_parameter(call, 1, (*c)->angular, (*c)->start, (*c)->end, false, t);
+}
+
+static CagValue rows_value(CagVm *vm, double m[3][3]) {
+  const CagVec3 rows[3] = {
+      {m[0][0], m[0][1], m[0][2]}, {m[1][0], m[1][1], m[1][2]}, {m[2][0], m[2][1], m[2][2]}};
+  return cag_points_value(vm, rows, 3, 3);
+}
+
+// --- Frames ---
+
+static bool call_frenet_of(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"speed",     "tangent", "normal", "binormal",
+                                      "curvature", "torsion", "radius"};
+  CagVec3 *given, d[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  size_t n;
+  int dimension;
+  double speed;
+  CagFrenet f;
+  CagError err;
+  if (!cag_arg_points(call, 0, &given, &n, &dimension)) return false;
+  for (size_t i = 0; i < 3 && i < n; i++) d[i] = given[i];
+  free(given);
+  if (n > 3 || n < 2)
+    return cag_fail_value(call, 0, "a list of the derivatives of order 1 and 2, or 1 to 3");
+  if (!cag_geometry_ok(call, cag_frenet_of(d, &speed, &f, &err), &err)) return false;
+  const bool bent = f.has_normal, twisted = bent && (n == 3 || dimension == 2);
+  CagValue values[] = {cag_number(speed),
+                       cag_point(call->vm, f.tangent, dimension),
+                       bent ? cag_point(call->vm, f.normal, dimension) : cag_none(),
+                       bent ? cag_point(call->vm, f.binormal, 3) : cag_none(),
+                       cag_number(f.curvature),
+                       twisted ? cag_number(f.torsion) : cag_none(),
+                       bent ? cag_number(1 / f.curvature) : cag_none()};
+  *result = cag_record_new(call->vm, names, values, 7);
+  return true;
+}
+
+static bool fail_no_normal(CagCall *call) {
+  CagError err;
+  cag_fail(&err, CAG_E_DEGENERATE, "no-normal", "", -1,
+           "the curvature is 0 here, so there is neither normal nor circle of curvature");
+  return cag_fail_geometry(call, &err);
+}
+
+static bool call_frame_derivative(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"by_length", "by_parameter", "tangent", "normal", "binormal"};
+  CagCurve *c;
+  CagFrenet f;
+  CagVec3 d[2];
+  CagError err;
+  double t;
+  if (!read_at(call, &c, &t) || !cag_geometry_ok(call, cag_curve_frenet(c, t, &f, &err), &err) ||
+      !cag_geometry_ok(call, cag_curve_eval(c, t, 1, CAG_SIDE_RIGHT, d, &err), &err))
+    return false;
+  if (!f.has_normal) return fail_no_normal(call);
+  const double k = f.curvature, w = f.torsion, speed = cag_norm(d[1]);
+  double by_length[3][3] = {{0, k, 0}, {-k, 0, w}, {0, -w, 0}}, by_parameter[3][3];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) by_parameter[i][j] = speed * by_length[i][j];
+  const CagVec3 bend = cag_madd(cag_scaled(f.tangent, -k), w, f.binormal);
+  CagValue values[] = {rows_value(call->vm, by_length), rows_value(call->vm, by_parameter),
+                       cag_point(call->vm, cag_scaled(f.normal, k), c->dimension),
+                       cag_point(call->vm, bend, c->dimension),
+                       cag_point(call->vm, cag_scaled(f.normal, -w), 3)};
+  *result = cag_record_new(call->vm, names, values, 5);
+  return true;
+}
+
+// Three vectors of space.
+static bool read_triad(CagCall *call, int argument, CagVec3 out[3]) {
+  CagVec3 *given;
+  size_t n;
+  int dimension;
+  if (!cag_arg_points(call, argument, &given, &n, &dimension)) return false;
+  const bool good = n == 3 && dimension == 3;
+  if (good) memcpy(out, given, 3 * sizeof *out);
+  free(given);
+  return good || cag_fail_value(call, argument, "a list of 3 vectors of space");
+}
+
+static bool call_triad_derivative(CagCall *call, CagValue *result) {
+  CagVec3 m[3], dm[3];
+  double rates[3][3];
+  CagError err;
+  if (!read_triad(call, 0, m) || !read_triad(call, 1, dm) ||
+      !cag_geometry_ok(call, cag_triad_derivative(m, dm, rates, &err), &err))
+    return false;
+  *result = rows_value(call->vm, rates);
+  return true;
+}
+
+// --- At one parameter ---
+
+static bool call_osculating_circle(CagCall *call, CagValue *result) {
+  CagCurve *c, *circle;
+  CagFrenet f;
+  CagError err;
+  double t;
+  if (!read_at(call, &c, &t) || !cag_geometry_ok(call, cag_curve_frenet(c, t, &f, &err), &err))
+    return false;
+  if (!f.has_normal) return fail_no_normal(call);
+  const double radius = 1 / f.curvature;
+  const CagVec3 center = cag_madd(f.point, radius, f.normal);
+  // From the point on in the direction of the curve.
+  const CagVec3 columns[4] = {cag_scaled(f.normal, -1), f.tangent, f.binormal, center};
+  CagTransform frame = cag_transform_identity();
+  frame.planar = c->dimension == 2;
+  // In the plane a curve that bends to the right has y on the right of x.
+  for (int j = 0; j < 4; j++) {
+    if (frame.planar && j == 2) continue;
+    frame.m[0][j] = columns[j].x;
+    frame.m[1][j] = columns[j].y;
+    frame.m[2][j] = columns[j].z;
+  }
+  CagStatus status = cag_curve_arc(radius, radius, 0, 2 * acos(-1), &frame, &circle, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  static const char *const names[] = {"radius", "center", "circle"};
+  CagValue values[] = {cag_number(radius), cag_point(call->vm, center, c->dimension),
+                       cag_curve_value(call->vm, circle)};
+  *result = cag_record_new(call->vm, names, values, 3);
+  return true;
+}
+
+static bool call_tangent_line(CagCall *call, CagValue *result) {
+  CagCurve *c, *line;
+  CagVec3 p, v;
+  CagError err;
+  double t, length;
+  if (!read_at(call, &c, &t) || !cag_arg_number_or(call, 2, 1, &length) ||
+      !cag_geometry_ok(call, cag_curve_point(c, t, &p, &err), &err) ||
+      !cag_geometry_ok(call, cag_curve_tangent(c, t, CAG_SIDE_RIGHT, &v, &err), &err) ||
+      !cag_geometry_ok(call, cag_curve_line(p, cag_madd(p, length, v), c->dimension, &line, &err),
+                       &err))
+    return false;
+  *result = cag_curve_value(call->vm, line);
+  return true;
+}
+
+static bool call_plane_contact(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"coefficients", "order", "before", "after", "crosses"};
+  CagCurve *c;
+  CagVec3 normal;
+  CagContact found;
+  CagError err;
+  double t;
+  int dimension;
+  if (!read_at(call, &c, &t) ||
+      !cag_arg_direction(call, 2, cag_vec3(0, 0, 1), &normal, &dimension) ||
+      !cag_geometry_ok(call, cag_curve_contact(c, t, normal, &found, &err), &err))
+    return false;
+  CagValue values[] = {cag_numbers_value(call->vm, found.c + 1, 3),
+                       found.order < 0 ? cag_number(HUGE_VAL) : cag_number(found.order),
+                       cag_number(found.before), cag_number(found.after),
+                       cag_bool(found.before * found.after < 0)};
+  *result = cag_record_new(call->vm, names, values, 5);
+  return true;
+}
+
+// --- Of the whole ---
+
+static bool parameters_value(CagCall *call, const CagCurve *c, const CagParameters *list,
+                             bool ranges, CagValue *out) {
+  CagBuilder *b = cag_builder_new(call->vm);
+  for (size_t i = 0; i + (ranges ? 1 : 0) < list->count; i += ranges ? 2 : 1) {
+    CagValue v = ranges ? cag_domain_value(call->vm, c->angular, list->t[i], list->t[i + 1])
+                        : cag_parameter_value(c->angular, list->t[i]);
+    if (!cag_builder_add(call->vm, b, v)) return false;
+  }
+  *out = cag_builder_finish(call->vm, b);
+  return true;
+}
+
+static bool call_special_points(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"singular", "straightening", "flattening",
+                                      "still",    "straight",      "planar"};
+  CagCurve *c;
+  CagSpecialPoints found;
+  CagError err;
+  if (!cag_arg_curve(call, 0, &c)) return false;
+  bool ok = cag_geometry_ok(call, cag_curve_special_points(c, &found, &err), &err);
+  CagValue values[6];
+  for (int k = 0; ok && k < CAG_VANISHINGS; k++)
+    ok = parameters_value(call, c, &found.points[k], false, &values[k]) &&
+         parameters_value(call, c, &found.stretches[k], true, &values[3 + k]);
+  if (ok) *result = cag_record_new(call->vm, names, values, 6);
+  cag_special_points_free(&found);
+  return ok;
+}
+
+// --- Change of the parameter ---
+
+static bool call_chain_derivatives(CagCall *call, CagValue *result) {
+  CagVec3 *d, out[CAG_MAX_DERIVATIVE];
+  const double *f;
+  size_t n, m;
+  int dimension;
+  CagError err;
+  if (!cag_arg_numbers(call, 1, &f, &m)) return false;
+  if (!cag_arg_points(call, 0, &d, &n, &dimension)) return false;
+  bool ok = n <= CAG_MAX_DERIVATIVE && m == n;
+  if (!ok) cag_fail_value(call, 1, "as many derivatives as the curve has, at most 16");
+  ok = ok && cag_geometry_ok(call, cag_chain_derivatives(d, f, (int)n, out, &err), &err);
+  if (ok) *result = cag_points_value(call->vm, out, n, dimension);
+  free(d);
+  return ok;
+}
+
+// --- Helices ---
+
+static bool call_circular_vectors(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"e", "g"};
+  double degrees, s, c;
+  if (!cag_arg_degrees(call, 0, &degrees)) return false;
+  cag_sincos_degrees(degrees, &s, &c);
+  CagValue values[] = {cag_point(call->vm, cag_vec3(c, s, 0), 3),
+                       cag_point(call->vm, cag_vec3(-s, c, 0), 3)};
+  *result = cag_record_new(call->vm, names, values, 2);
+  return true;
+}
+
+static bool call_helix_motion(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"point", "velocity", "angle",     "rise",
+                                      "pitch", "length",   "curvature", "torsion"};
+  double a, turning, v, time;
+  CagError err;
+  if (!cag_arg_positive(call, 0, &a) || !cag_arg_degrees(call, 1, &turning) ||
+      !cag_arg_finite(call, 2, &v) || !cag_arg_finite(call, 3, &time))
+    return false;
+  if (turning == 0) {
+    cag_fail(&err, CAG_E_ARGUMENT, "no-turning", "turning", -1,
+             "`turning` must not be 0: the point moves along a line, not a helix");
+    return cag_fail_geometry(call, &err);
+  }
+  double s, c;
+  cag_sincos_degrees(turning * time, &s, &c);
+  const double omega = turning * CAG_RADIANS_PER_DEGREE, b = v / omega, r2 = a * a + b * b;
+  CagValue values[] = {cag_point(call->vm, cag_vec3(a * c, a * s, v * time), 3),
+                       cag_point(call->vm, cag_vec3(-a * omega * s, a * omega * c, v), 3),
+                       cag_angle(turning * time),
+                       cag_number(b),
+                       cag_number(2 * acos(-1) * b),
+                       cag_number(hypot(a * omega, v) * fabs(time)),
+                       cag_number(a / r2),
+                       cag_number(b / r2)};
+  *result = cag_record_new(call->vm, names, values, 8);
+  return true;
+}
+
+static bool call_constant_curve(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"kind", "radius", "rise", "pitch"};
+  double k, w;
+  if (!cag_arg_finite(call, 0, &k) || !cag_arg_finite(call, 1, &w)) return false;
+  if (k < 0) return cag_fail_value(call, 0, "a curvature of 0 or more");
+  const bool bent = k > 0;
+  // Through the larger of both, so that squares neither overflow nor vanish.
+  const double h = hypot(k, w), radius = bent ? k / h / h : 0, rise = bent ? w / h / h : 0;
+  CagValue values[] = {
+      cag_text_c(call->vm, !bent    ? "line"
+                           : w == 0 ? "circle"
+                                    : "helix"),
+      bent ? cag_number(radius) : cag_none(),
+      bent ? cag_number(rise) : cag_none(),
+      bent ? cag_number(2 * acos(-1) * rise) : cag_none(),
+  };
+  *result = cag_record_new(call->vm, names, values, 4);
+  return true;
+}
+
+static const char asked[] = "Curves: questions";
+static const char theory[] = "Curves: theory";
+
+const CagBuiltin cag_builtins_frenet[] = {
+    {"special_points(C)", call_special_points, "record",
+     "The parameters where the curve stands still for a moment (singular: the first derivative is "
+     "0), where its curvature is 0 (straightening) and where its torsion is 0 (flattening); a "
+     "parameter is in the first of these lists that it belongs to. Pieces between knots and "
+     "corners "
+     "along which it is so throughout are ranges: still, straight, planar.",
+     "s = special_points(curve(t => [t, t^3], -1..1))\n"
+     "print near(s.straightening, [0], 1e-9), s.singular, s.planar // expect: true [] [-1..1]",
+     CURVES, asked},
+    {"plane_contact(C, t, normal)", call_plane_contact, "record",
+     "How the curve meets the plane through C(t) with this normal: the coefficients [c1, c2, c3] "
+     "of its signed distance c1 h + c2 h^2 + c3 h^3 + ... at t + h, the order of contact (0: it "
+     "goes through at an angle, 1: it touches, 2: the osculating plane; inf: it lies in the "
+     "plane), "
+     "the side before and after (-1, 0, 1), and whether it crosses from one to the other.",
+     "c = curve(t => [t, t^2, t^3], -1..1)\n"
+     "print plane_contact(c, 0, Y).order, plane_contact(c, 0, Z).crosses // expect: 1 true",
+     CURVES, asked},
+    {"osculating_circle(C, t)", call_osculating_circle, "record",
+     "The circle of curvature: radius, center, and the circle as a curve that starts at C(t) and "
+     "runs along with C. Where the curvature is 0 there is none: an error (no-normal).",
+     "print near(osculating_circle(ellipse(2, 1), 0deg).center, [1.5, 0]) // expect: true", CURVES,
+     asked},
+    {"tangent_line(C, t, length = 1)", call_tangent_line, "curve",
+     "The line from C(t) along the tangent, of this length; a negative one runs backwards.",
+     "print end_point(tangent_line(bezier([[0, 0], [1, 0], [2, 2]]), 0, 3)) // expect: [3, 0]",
+     CURVES, asked},
+    {"frame_derivative(C, t)", call_frame_derivative, "record",
+     "How the Frenet frame turns: the derivatives of tangent, normal and binormal by the arc "
+     "length, "
+     "and as rows of coefficients in the frame by_length and by_parameter (skew matrices).",
+     "f = frame_derivative(circle(2), 0deg)\n"
+     "print near(f.by_length, [[0, 0.5, 0], [-0.5, 0, 0], [0, 0, 0]]) // expect: true",
+     CURVES, asked},
+    {"frenet_of(derivatives)", call_frenet_of, "record",
+     "Frame of a curve with these derivatives of order 1, 2 (and 3): speed, tangent, normal, "
+     "binormal, curvature, torsion and radius of curvature. What does not exist is none. A first "
+     "derivative of 0 is an error (singular-point).",
+     "print frenet_of([[2, 0, 0], [0, 2, 0], [0, 0, 3]]).curvature // expect: 0.5", CAG_TAKES_LISTS,
+     theory},
+    {"triad_derivative(triad, derivatives)", call_triad_derivative, "list",
+     "Of three unit vectors at right angles that turn: the rows of coefficients of their "
+     "derivatives in the vectors themselves, a skew matrix.",
+     "print triad_derivative([X, Y, Z], [2 * Y, -2 * X, [0, 0, 0]]) // expect: [[0, 2, 0], [-2, 0, "
+     "0], [0, 0, 0]]",
+     CAG_TAKES_LISTS, theory},
+    {"chain_derivatives(derivatives, by)", call_chain_derivatives, "list",
+     "The derivatives of order 1, 2, .. of C(t(u)) by u, from those of C by t and those of t by u, "
+     "as many of both.",
+     "print chain_derivatives([[1, 2], [0, 4]], [2, 3]) // expect: [[2, 4], [3, 22]]",
+     CAG_TAKES_LISTS, theory},
+    {"circular_vectors(t)", call_circular_vectors, "record",
+     "The unit vectors of the turning axes: e = [cos t, sin t, 0] and g = [-sin t, cos t, 0], its "
+     "derivative.",
+     "print circular_vectors(90deg) // expect: {e: [0, 1, 0], g: [-1, 0, 0]}", 0, theory},
+    {"helix_motion(radius, turning, speed, time)", call_helix_motion, "record",
+     "A point that starts at [radius, 0, 0], turns about z by the angle `turning` each second and "
+     "climbs at this speed: point, velocity, angle turned, rise per radian, pitch per turn, length "
+     "of its way, curvature and torsion.",
+     "m = helix_motion(2, 90deg, 3, 1)\nprint m.point, m.angle // expect: [0, 2, 3] 90deg", 0,
+     theory},
+    {"constant_curve(curvature, torsion)", call_constant_curve, "record",
+     "The curve of constant curvature and torsion: kind (\"line\", \"circle\" or \"helix\"), "
+     "radius, "
+     "rise per radian and pitch per turn, as `helix` takes it.",
+     "print constant_curve(0.25, 0.25).radius, constant_curve(0.4, 0).kind // expect: 2 circle", 0,
+     theory},
+    {0}};

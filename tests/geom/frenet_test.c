@@ -1,0 +1,235 @@
+// Curve theory against closed forms: the twisted cubic, cusps, waves, knots.
+
+#include "geom/curve/frenet.h"
+#include "geom/curve/function.h"
+#include "support.h"
+
+// The curve (t, t^2, t^3) at t: derivatives 1..3.
+static void twisted(double t, CagVec3 d[3]) {
+  d[0] = cag_vec3(1, 2 * t, 3 * t * t);
+  d[1] = cag_vec3(0, 2, 6 * t);
+  d[2] = cag_vec3(0, 0, 6);
+}
+
+// Curvature 2 sqrt(9 t^4 + 9 t^2 + 1) / (9 t^4 + 4 t^2 + 1)^(3/2), torsion 3 / (9 t^4 + 9 t^2 + 1).
+static void the_twisted_cubic_has_its_curvature_and_torsion(void **state) {
+  (void)state;
+  for (double t = -2; t <= 2; t += 0.25) {
+    CagVec3 d[3];
+    CagFrenet f;
+    double speed;
+    const double bend = 9 * t * t * t * t + 9 * t * t + 1, run = 9 * t * t * t * t + 4 * t * t + 1;
+    twisted(t, d);
+    OK(cag_frenet_of(d, &speed, &f, &err));
+    NEAR(speed, sqrt(run), 1e-14 * sqrt(run));
+    NEAR(f.curvature, 2 * sqrt(bend) / pow(run, 1.5), 1e-14);
+    NEAR(f.torsion, 3 / bend, 1e-14);
+    NEAR(cag_dot(f.normal, f.tangent), 0, 1e-15);
+    near_vec(cag_cross(f.tangent, f.normal), f.binormal, 1e-15);
+  }
+}
+
+static void frames_of_lines_and_of_nothing(void **state) {
+  (void)state;
+  CagVec3 d[3] = {{2, -1, 2}, {4, -2, 4}, {1, 0, 0}};
+  CagFrenet f;
+  double speed;
+  OK(cag_frenet_of(d, &speed, &f, &err));
+  assert_false(f.has_normal);
+  assert_true(f.curvature == 0 && speed == 3);
+  d[0] = cag_vec3(0, 0, 0);
+  FAILS(cag_frenet_of(d, &speed, &f, &err), "singular-point");
+}
+
+// C(t) = t e with t = sin u: d^n sin u. And t = u^2 about u = 1 with C = t^4, which is u^8.
+static void the_chain_rule_holds_to_any_order(void **state) {
+  (void)state;
+  CagVec3 d[8] = {{0, 0, 0}}, out[8];
+  const double f[8] = {2, 2, 0, 0, 0, 0, 0, 0};
+  const double fourth[4] = {4, 12, 24, 24};
+  for (int k = 0; k < 4; k++) d[k] = cag_vec3(fourth[k], 0, k == 0);
+  OK(cag_chain_derivatives(d, f, 8, out, &err));
+  double expected = 1;
+  for (int k = 0; k < 8; k++) {
+    expected *= 8 - k;
+    NEAR(out[k].x, expected, 0);
+    NEAR(out[k].z, k < 2 ? 2 : 0, 0);
+  }
+  const double still[1] = {0};
+  FAILS(cag_chain_derivatives(d, still, 1, out, &err), "parameter-stands-still");
+}
+
+static void a_triad_that_turns_has_a_skew_derivative(void **state) {
+  (void)state;
+  // Turned by t about z and then by 2 t about its own x: the rates are those of the angular
+  // velocity (2, sin 2t, cos 2t) in the triad.
+  const double t = 0.7, c = cos(t), s = sin(t), C = cos(2 * t), S = sin(2 * t);
+  const CagVec3 m[3] = {{c, s, 0}, {-s * C, c * C, S}, {s * S, -c * S, C}};
+  CagVec3 dm[3] = {{-s, c, 0},
+                   {-c * C + 2 * s * S, -s * C - 2 * c * S, 2 * C},
+                   {c * S + 2 * s * C, s * S - 2 * c * C, -2 * S}};
+  double a[3][3];
+  OK(cag_triad_derivative(m, dm, a, &err));
+  const double w[3] = {2, S, C};
+  NEAR(a[0][1], w[2], 1e-15);
+  NEAR(a[1][2], w[0], 1e-15);
+  NEAR(a[2][0], w[1], 1e-15);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) NEAR(a[i][j] + a[j][i], 0, 1e-15);
+  dm[0] = m[0];
+  FAILS(cag_triad_derivative(m, dm, a, &err), "triad-not-rigid");
+  assert_int_equal(err.index, 0);
+  const CagVec3 skew[3] = {{1, 0, 0}, {0, 1, 0}, {0, 1e-3, 1}};
+  FAILS(cag_triad_derivative(skew, dm, a, &err), "frame-not-orthonormal");
+}
+
+// --- Curves of polynomials by Bezier points ---
+
+static CagCurve *bezier(const CagVec3 *points, size_t n, int dimension) {
+  CagCurve *c;
+  OK(cag_curve_bezier(points, NULL, n, dimension, &c, &err));
+  return c;
+}
+
+// (t, t^2, t^3) over 0..1.
+static CagCurve *twisted_cubic(void) {
+  static const CagVec3 p[4] = {{0, 0, 0}, {1.0 / 3, 0, 0}, {2.0 / 3, 1.0 / 3, 0}, {1, 1, 1}};
+  return bezier(p, 4, 3);
+}
+
+static void contact_with_planes(void **state) {
+  (void)state;
+  CagCurve *c = twisted_cubic();
+  CagContact k;
+  OK(cag_curve_contact(c, 0, cag_vec3(2, 0, 0), &k, &err));
+  assert_true(k.order == 0 && k.after == 1 && k.before == -1 && k.c[1] == 1);
+  OK(cag_curve_contact(c, 0, cag_vec3(0, 1, 0), &k, &err));
+  assert_true(k.order == 1 && k.after == 1 && k.before == 1);
+  NEAR(k.c[2], 1, 1e-15);
+  OK(cag_curve_contact(c, 0, cag_vec3(0, 0, -3), &k, &err));
+  assert_true(k.order == 2 && k.after == -1 && k.before == 1);
+  NEAR(k.c[3], -1, 1e-15);
+  // The osculating plane at 1/2 has the normal (3 t^2, -3 t, 1): there l = (t - 1/2)^3.
+  OK(cag_curve_contact(c, 0.5, cag_vec3(0.75, -1.5, 1), &k, &err));
+  assert_true(k.order == 2 && k.after == 1 && k.before == -1);
+  NEAR(k.c[3], 1 / sqrt(0.75 * 0.75 + 1.5 * 1.5 + 1), 1e-14);
+  cag_curve_release(c);
+  // A circle lies in its plane.
+  CagTransform frame = cag_transform_identity();
+  OK(cag_curve_arc(2, 2, 0, 2 * M_PI, &frame, &c, &err));
+  OK(cag_curve_contact(c, 1, cag_vec3(0, 0, 1), &k, &err));
+  assert_true(k.order == -1 && k.before == 0 && k.after == 0);
+  cag_curve_release(c);
+}
+
+static void expect_points(const CagParameters *list, const double *t, size_t n, double tolerance) {
+  assert_int_equal(list->count, n);
+  for (size_t i = 0; i < n; i++) NEAR(list->t[i], t[i], tolerance);
+}
+
+// The cusp (x^2, x^3), x = 2 t - 1; the twisted cubic has no special points at all.
+static void a_cusp_is_singular_and_nothing_else(void **state) {
+  (void)state;
+  static const CagVec3 cusp[4] = {{1, -1, 0}, {-1.0 / 3, 1, 0}, {-1.0 / 3, -1, 0}, {1, 1, 0}};
+  CagCurve *c = bezier(cusp, 4, 2);
+  CagSpecialPoints s;
+  const double half = 0.5;
+  OK(cag_curve_special_points(c, &s, &err));
+  expect_points(&s.points[CAG_STANDS], &half, 1, 1e-12);
+  assert_true(s.points[CAG_STRAIGHT].count == 0 && s.stretches[CAG_STRAIGHT].count == 0);
+  assert_int_equal(s.stretches[CAG_FLAT].count, 2);
+  cag_special_points_free(&s);
+  cag_curve_release(c);
+  c = twisted_cubic();
+  OK(cag_curve_special_points(c, &s, &err));
+  for (int k = 0; k < CAG_VANISHINGS; k++)
+    assert_true(s.points[k].count == 0 && s.stretches[k].count == 0);
+  cag_special_points_free(&s);
+  cag_curve_release(c);
+}
+
+// (t, sin 40 t): straight where sin 40 t = 0. (t, t^2 , sin 9 t): the torsion is 0 where its third
+// derivative is, cos 9 t = 0; the first is never straight there.
+static CagStatus wave(void *context, double t, int order, CagVec3 *out, CagError *e) {
+  (void)e;
+  const int dimension = *(const int *)context;
+  const double w = dimension == 2 ? 40 : 9;
+  double power = 1;
+  for (int k = 0; k <= order; k++, power *= w) {
+    const double y = power * sin(w * t + k * M_PI / 2), x = k == 0 ? t : k == 1;
+    const double square = k == 0 ? t * t : k == 1 ? 2 * t : k == 2 ? 2 : 0;
+    out[k] = dimension == 2 ? cag_vec3(x, y, 0) : cag_vec3(x, square, y);
+  }
+  return CAG_OK;
+}
+
+static void forget(void *context) { (void)context; }
+
+static void waves_are_straight_at_their_zeros_and_flat_where_they_twist_back(void **state) {
+  (void)state;
+  CagCurve *c;
+  CagSpecialPoints s;
+  int dimension = 2;
+  double t[64];
+  const CagCurveFunction function = {wave, forget, &dimension};
+  OK(cag_curve_function(&function, 2, 0.01, 4, false, &c, &err));
+  OK(cag_curve_special_points(c, &s, &err));
+  for (int i = 0; i < 50; i++) t[i] = (i + 1) * M_PI / 40;
+  expect_points(&s.points[CAG_STRAIGHT], t, 50, 1e-12);
+  assert_int_equal(s.points[CAG_STANDS].count, 0);
+  cag_special_points_free(&s);
+  cag_curve_release(c);
+  dimension = 3;
+  OK(cag_curve_function(&function, 3, 0, 4, false, &c, &err));
+  OK(cag_curve_special_points(c, &s, &err));
+  for (int i = 0; i < 11; i++) t[i] = (i + 0.5) * M_PI / 9;
+  expect_points(&s.points[CAG_FLAT], t, 11, 1e-12);
+  assert_true(s.points[CAG_STRAIGHT].count == 0 && s.points[CAG_STANDS].count == 0);
+  cag_special_points_free(&s);
+  cag_curve_release(c);
+}
+
+// A quadratic B-spline of four points on a line and a turn has a straight piece; natural ends and
+// fourth order zeros (t, t^5) count.
+static void pieces_and_ends(void **state) {
+  (void)state;
+  static const CagVec3 p[5] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 1, 0}, {3, 3, 0}};
+  static const double knots[8] = {0, 0, 0, 1, 2, 3, 3, 3};
+  CagCurve *c;
+  CagSpecialPoints s;
+  OK(cag_curve_nurbs(p, NULL, 5, 2, knots, 2, &c, &err));
+  OK(cag_curve_special_points(c, &s, &err));
+  assert_int_equal(s.stretches[CAG_STRAIGHT].count, 2);
+  assert_true(s.stretches[CAG_STRAIGHT].t[0] == 0 && s.stretches[CAG_STRAIGHT].t[1] == 1);
+  assert_int_equal(s.points[CAG_STRAIGHT].count, 0);
+  cag_special_points_free(&s);
+  cag_curve_release(c);
+  // (t, t^4): a touch of straightness without a change of sides, at the start.
+  static const CagVec3 quartic[5] = {{0, 0, 0}, {.25, 0, 0}, {.5, 0, 0}, {.75, 0, 0}, {1, 1, 0}};
+  const double zero = 0;
+  c = bezier(quartic, 5, 2);
+  OK(cag_curve_special_points(c, &s, &err));
+  expect_points(&s.points[CAG_STRAIGHT], &zero, 1, 0);
+  cag_special_points_free(&s);
+  cag_curve_release(c);
+  // A line is straight throughout, and nothing is said of its torsion beside its plane.
+  OK(cag_curve_line(cag_vec3(1, 2, 3), cag_vec3(4, 6, 8), 3, &c, &err));
+  OK(cag_curve_special_points(c, &s, &err));
+  assert_true(s.stretches[CAG_STRAIGHT].count == 2 && s.points[CAG_STRAIGHT].count == 0);
+  cag_special_points_free(&s);
+  cag_curve_release(c);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_twisted_cubic_has_its_curvature_and_torsion),
+      cmocka_unit_test(frames_of_lines_and_of_nothing),
+      cmocka_unit_test(the_chain_rule_holds_to_any_order),
+      cmocka_unit_test(a_triad_that_turns_has_a_skew_derivative),
+      cmocka_unit_test(contact_with_planes),
+      cmocka_unit_test(a_cusp_is_singular_and_nothing_else),
+      cmocka_unit_test(waves_are_straight_at_their_zeros_and_flat_where_they_twist_back),
+      cmocka_unit_test(pieces_and_ends),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
