@@ -67,6 +67,8 @@ CagStatus cag_solid_tube_along(const CagCurve *path, const CagAlong *radius, Cag
 // A loft (surface.h) closed by u, with flat caps where it is not closed by v: "section-not-plane",
 // "section-open".
 CagStatus cag_solid_loft(const CagSurface *side, CagSolid **out, CagError *err);
+// Between a surface and its offset by d along its normals.
+CagStatus cag_solid_thicken(const CagSurface *s, double d, CagSolid **out, CagError *err);
 // The one face of a swept or lofted solid that is no cap; NULL: there is none, or several.
 const CagSurface *cag_solid_side(const CagSolid *s);
 // Surfaces that together have no boundary (edges matched to 1e-6 of the size; else "solid-open"

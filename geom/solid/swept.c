@@ -6,6 +6,7 @@
 #include "geom/basis/bernstein.h"
 #include "geom/solid/build.h"
 #include "geom/surface/family.h"
+#include "geom/surface/reshape.h"
 
 static CagStatus add_turned(CagSolid *s, CagSurface *face, bool flip, CagError *err) {
   CagSurface *turned = face;
@@ -256,4 +257,54 @@ const CagSurface *cag_solid_side(const CagSolid *s) {
     side = s->faces[i];
   }
   return side;
+}
+
+// --- Plates ---
+
+static CagStatus plate_edge(const CagSurface *s, const CagSurface *over, int side, CagSurface **out,
+                            CagError *err) {
+  CagCurve *below = NULL, *above = NULL;
+  int direction = side < 2 ? 0 : 1;
+  double at = side == 0 ? s->u0 : side == 1 ? s->u1 : side == 2 ? s->v0 : s->v1;
+  CagStatus status = cag_surface_isocurve(s, direction, at, &below, err);
+  if (!status) status = cag_surface_isocurve(over, direction, at, &above, err);
+  if (!status) status = cag_surface_ruled(above, below, out, err);
+  cag_curve_release(below);
+  cag_curve_release(above);
+  return status;
+}
+
+CagStatus cag_solid_thicken(const CagSurface *s, double d, CagSolid **out, CagError *err) {
+  if (cag_surface_planar_view(s, NULL, NULL))
+    return cag_fail(err, CAG_E_UNSUPPORTED, "not-nurbs", "surface", -1,
+                    "a region becomes a plate by `extrude`");
+  CagSurface *faces[6];
+  size_t n = 0;
+  CagStatus status = cag_surface_offset(s, d, &faces[0], err);
+  if (status) return status;
+  n = 1;
+  const bool open[4] = {!s->closed_u && !s->pole_u0, !s->closed_u && !s->pole_u1,
+                        !s->closed_v && !s->pole_v0, !s->closed_v && !s->pole_v1};
+  status = cag_surface_flip(s, &faces[n], err);
+  if (!status) n++;
+  for (int side = 0; !status && side < 4; side++) {
+    if (!open[side]) continue;
+    status = plate_edge(s, faces[0], side, &faces[n], err);
+    if (!status) n++;
+  }
+  CagSolid *made = NULL;
+  if (!status && n > 2) status = cag_solid_shell(faces, n, out, err);
+  if (!status && n == 2) {
+    // Closed: a hollow body, whose two faces have no edges.
+    status = cag_solid_block(CAG_SOLID_SHELL, 2, &made, err);
+    for (int k = 0; !status && k < 2; k++) {
+      CagSurface *face = cag_surface_retain(faces[k]);
+      if (d > 0) cag_solid_add(made, face);
+      else status = add_turned(made, face, true, err);
+    }
+    if (status) cag_solid_release(made);
+    else *out = made;
+  }
+  while (n > 0) cag_surface_release(faces[--n]);
+  return status;
 }

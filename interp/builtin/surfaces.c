@@ -128,6 +128,72 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print len(boundary(bilinear([0, 0], [0, 2], [4, 0], [4, 2]))) // expect: 4", SURFACES,
      changed},
 
+    {"trim(S, u = none, v = none)", cag_surfaces_trim, "surface",
+     "The part over ranges of the parameters, which stay as they are; exact control points where "
+     "the "
+     "surface has some.",
+     "s = trim(sphere_surface(1), u: 0deg..90deg)\n"
+     "print near(area(s), tau, relative: 1e-8) // expect: true",
+     SURFACES, changed},
+    {"split(S, u = none, v = none)", cag_surfaces_split, "list",
+     "The two parts below and above this u, or v.",
+     "parts = split(sphere_surface(1), u: 90deg)\n"
+     "print near(area(parts[1]), tau, relative: 1e-8) // expect: true",
+     SURFACES, changed},
+    {"insert_knot(S, u = none, v = none, times = 1)", cag_surfaces_insert_knot, "surface",
+     "The same surface with one knot more in u, or in v, and so one more row of control points.",
+     "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
+     "print len(points(insert_knot(s, v: 0.5))[0]) // expect: 4",
+     SURFACES, changed},
+    {"refine(S, u = true, v = true)", cag_surfaces_refine, "surface",
+     "The same surface with a knot more in the middle of every knot interval, in both directions "
+     "or "
+     "in one.",
+     "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
+     "print len(points(refine(s))), len(points(refine(s))[0]) // expect: 3 4",
+     SURFACES, changed},
+    {"elevate(S, u = 0, v = 0)", cag_surfaces_elevate, "surface",
+     "The same surface with its degrees raised by so much.",
+     "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
+     "print degree(elevate(s, u: 2, v: 1)) // expect: [3, 3]",
+     SURFACES, changed},
+    {"to_bezier(S)", cag_surfaces_to_bezier, "list",
+     "The Bezier pieces of the surface, in rows of u, each over 0..1.",
+     "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
+     "print len(to_bezier(refine(s))[1]) // expect: 2",
+     SURFACES, changed},
+    {"transpose_uv(S)", cag_surfaces_transpose_uv, "surface",
+     "The same surface with u and v exchanged, which turns its normal over.",
+     "s = transpose_uv(bilinear([0, 0], [0, 2], [4, 0], [4, 2]))\n"
+     "print s(0.5, 0.25) // expect: [1, 1, 0]",
+     SURFACES, changed},
+    {"join_surfaces(A, B, tolerance = 1e-9)", cag_surfaces_join_surfaces, "surface",
+     "Two surfaces that share an edge as one: u runs over the first, then over the second. The "
+     "tolerance is a part of their size. Without a common edge it is an error "
+     "(edges-do-not-match).",
+     "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
+     "parts = split(s, u: 0.5)\n"
+     "print near(area(join_surfaces(parts[0], parts[1])), area(s), relative: 1e-8) // expect: true",
+     SURFACES, changed},
+    {"continuity(A, B, tolerance = 1e-9)", cag_surfaces_continuity, "record",
+     "How two surfaces meet along the edges nearest to each other: class (\"none\", \"C0\", "
+     "\"G1\", "
+     "\"C1\", \"G2\"), the largest gap (mm), angle between the tangent planes, jump of the "
+     "derivative "
+     "across and jump of the curvature across; edges, the side of each.",
+     "parts = split(sphere_surface(1), u: 60deg)\n"
+     "print continuity(parts[0], parts[1]).class // expect: G2",
+     SURFACES, asked},
+    {"offset(S, d)", cag_surfaces_offset, "surface",
+     "The surface at this distance (mm) along its normals.",
+     "print near(area(offset(sphere_surface(2), 1)), 36 * pi, relative: 1e-7) // expect: true",
+     SURFACES, changed},
+    {"thicken(S, d)", cag_surfaces_thicken, "solid",
+     "The plate between a surface and its offset by the distance (mm).",
+     "s = bilinear([0, 0], [0, 2], [4, 0], [4, 2])\n"
+     "print near(volume(thicken(s, 0.5)), 4, relative: 1e-8) // expect: true",
+     SURFACES, changed},
+
     // --- Of curves ---
     {"revolve(C, axis = Z, through = origin, angle = 0deg..360deg)", cag_surfaces_revolve,
      "surface or solid",

@@ -20,6 +20,9 @@
   X(torus_surface) \
   /* surfaces_sweep.c */ \
   X(sweep) X(sweep_by) X(tube) X(loft) \
+  /* surfaces_reshape.c */ \
+  X(trim) X(split) X(insert_knot) X(refine) X(elevate) X(to_bezier) X(transpose_uv) \
+  X(join_surfaces) X(continuity) X(offset) X(thicken) \
   /* surfaces_patch.c */ \
   X(coons) X(coons_bicubic) X(hermite_patch) X(hermite_surface) \
   /* surfaces_net.c: of nets of points */ \

@@ -1,0 +1,286 @@
+// Surfaces that ask another one: parts, exchanged parameters, offsets.
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "geom/surface/family.h"
+#include "geom/surface/reshape.h"
+
+typedef struct Derived {
+  CagSurface base;
+  CagSurface *inner;
+  double distance; // offset
+} Derived;
+
+static const CagSurfaceKind part_kind, transposed_kind, offset_kind;
+
+static CagStatus make(const CagSurfaceKind *kind, const CagSurface *inner, double u0, double u1,
+                      double v0, double v1, double distance, CagSurface **out, CagError *err) {
+  CagSurface *s;
+  CagStatus status = cag_surface_block(sizeof(Derived), kind, u0, u1, v0, v1, &s, err);
+  if (status) return status;
+  Derived *d = (Derived *)s;
+  d->inner = cag_surface_retain(inner);
+  d->distance = distance;
+  s->angular_u = kind == &transposed_kind ? inner->angular_v : inner->angular_u;
+  s->angular_v = kind == &transposed_kind ? inner->angular_u : inner->angular_v;
+  cag_surface_judge(s);
+  *out = s;
+  return CAG_OK;
+}
+
+static void derived_destroy(CagSurface *s) { cag_surface_release(((Derived *)s)->inner); }
+
+static void derived_describe(const CagSurface *s, char *buffer, size_t size) {
+  const Derived *d = (const Derived *)s;
+  char text[32];
+  if (s->kind == &offset_kind)
+    snprintf(buffer, size, "of a %s surface by %s", d->inner->kind->name,
+             cag_number_text(d->distance, text));
+  else snprintf(buffer, size, "of a %s surface", d->inner->kind->name);
+}
+
+// Breaks of the inner surface within the domain.
+static size_t inner_breaks(const CagSurface *s, int direction, int inner, double *out,
+                           size_t capacity) {
+  const CagSurface *from = ((const Derived *)s)->inner;
+  size_t n = from->kind->breaks ? from->kind->breaks(from, inner, NULL, 0) : 0;
+  if (n == 0) return 0;
+  double *all = malloc(n * sizeof *all);
+  if (!all) return 0;
+  from->kind->breaks(from, inner, all, n);
+  n = cag_surface_tidy_breaks(all, n, direction == 0 ? s->u0 : s->v0,
+                              direction == 0 ? s->u1 : s->v1);
+  for (size_t i = 0; i < n && i < capacity; i++) out[i] = all[i];
+  free(all);
+  return n;
+}
+
+static size_t same_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
+  return inner_breaks(s, direction, direction, out, capacity);
+}
+
+// --- Parts ---
+
+static CagStatus part_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
+                           CagVec3 *out, CagError *err) {
+  return cag_surface_eval(((const Derived *)s)->inner, u, v, n, su, sv, out, err);
+}
+
+static CagStatus part_grid(const CagSurface *s, const double *us, size_t nu, const double *vs,
+                           size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err) {
+  return cag_surface_eval_grid(((const Derived *)s)->inner, us, nu, vs, nv, points, du, dv, err);
+}
+
+static const CagSurfaceKind part_kind = {
+    .name = "part",
+    .eval = part_eval,
+    .eval_grid = part_grid,
+    .breaks = same_breaks,
+    .describe = derived_describe,
+    .destroy = derived_destroy,
+};
+
+static CagStatus check_range(double a, double b, double lo, double hi, const char *name,
+                             CagError *err) {
+  char x[32], y[32], from[32], to[32];
+  if (a < b && a >= lo && b <= hi) return CAG_OK;
+  return cag_fail(err, CAG_E_DOMAIN, a < b ? "parameter-range" : "empty-range", name, -1,
+                  "`%s` must be a range within %s..%s, it is %s..%s (radians where it is an angle)",
+                  name, cag_number_text(lo, from), cag_number_text(hi, to), cag_number_text(a, x),
+                  cag_number_text(b, y));
+}
+
+CagStatus cag_surface_part(const CagSurface *s, double u0, double u1, double v0, double v1,
+                           CagSurface **out, CagError *err) {
+  CagSurfaceNurbsView view;
+  CagStatus status = check_range(u0, u1, s->u0, s->u1, "u", err);
+  if (!status) status = check_range(v0, v1, s->v0, s->v1, "v", err);
+  if (status) return status;
+  if (cag_surface_planar_view(s, NULL, NULL))
+    return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,
+                    "a region has no rectangle of parameters: cut the region itself");
+  if (cag_surface_nurbs_view(s, &view)) return cag_surface_nurbs_part(s, u0, u1, v0, v1, out, err);
+  const CagSurface *inner = s->kind == &part_kind ? ((const Derived *)s)->inner : s;
+  return make(&part_kind, inner, u0, u1, v0, v1, 0, out, err);
+}
+
+// --- Exchanged parameters ---
+
+static CagStatus transposed_eval(const CagSurface *s, double u, double v, int n, CagSide su,
+                                 CagSide sv, CagVec3 *out, CagError *err) {
+  CagStatus status = cag_surface_eval(((const Derived *)s)->inner, v, u, n, sv, su, out, err);
+  for (int i = 0; !status && i <= n; i++)
+    for (int j = 0; j < i && i + j <= n; j++) {
+      CagVec3 swap = out[cag_partial(n, i, j)];
+      out[cag_partial(n, i, j)] = out[cag_partial(n, j, i)];
+      out[cag_partial(n, j, i)] = swap;
+    }
+  return status;
+}
+
+static CagStatus transposed_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
+  CagSurface *exact;
+  CagStatus status = cag_surface_to_nurbs(((const Derived *)s)->inner, &exact, err);
+  if (status) return status;
+  status = cag_surface_nurbs_swapped(exact, out, err);
+  cag_surface_release(exact);
+  return status;
+}
+
+static size_t transposed_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
+  return inner_breaks(s, direction, 1 - direction, out, capacity);
+}
+
+static const CagSurfaceKind transposed_kind = {
+    .name = "transposed",
+    .eval = transposed_eval,
+    .to_nurbs = transposed_to_nurbs,
+    .breaks = transposed_breaks,
+    .describe = derived_describe,
+    .destroy = derived_destroy,
+};
+
+CagStatus cag_surface_transpose(const CagSurface *s, CagSurface **out, CagError *err) {
+  CagSurfaceNurbsView view;
+  if (cag_surface_nurbs_view(s, &view)) return cag_surface_nurbs_swapped(s, out, err);
+  if (s->kind == &transposed_kind) {
+    *out = cag_surface_retain(((const Derived *)s)->inner);
+    return CAG_OK;
+  }
+  return make(&transposed_kind, s, s->v0, s->v1, s->u0, s->u1, 0, out, err);
+}
+
+// --- Offsets ---
+
+#define SIDE (CAG_MAX_PARTIAL + 1)
+typedef struct Series {
+  CagVec3 c[SIDE][SIDE]; // Taylor coefficients by u and v, total order <= n
+} Series;
+
+static double dot_term(const Series *a, const Series *b, int i, int j) {
+  double sum = 0;
+  for (int k = 0; k <= i; k++)
+    for (int l = 0; l <= j; l++) sum += cag_dot(a->c[k][l], b->c[i - k][j - l]);
+  return sum;
+}
+
+static void series_cross(const Series *a, const Series *b, int n, Series *out) {
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; i + j <= n; j++) {
+      CagVec3 sum = {0, 0, 0};
+      for (int k = 0; k <= i; k++)
+        for (int l = 0; l <= j; l++) sum = cag_add(sum, cag_cross(a->c[k][l], b->c[i - k][j - l]));
+      out->c[i][j] = sum;
+    }
+}
+
+// N / |N|: with w = N . N and f = w^(-1/2), w D f = -1/2 f D w gives f order by order (by u, and
+// for i = 0 by v).
+static void series_unit(const Series *a, int n, Series *out) {
+  double w[SIDE][SIDE], f[SIDE][SIDE];
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; i + j <= n; j++) w[i][j] = dot_term(a, a, i, j);
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; i + j <= n; j++) {
+      if (i + j == 0) {
+        f[0][0] = 1 / sqrt(w[0][0]);
+        continue;
+      }
+      bool by_u = i > 0;
+      int order = by_u ? i : j;
+      double sum = 0;
+      for (int k = 0; k <= i; k++)
+        for (int l = 0; l <= j; l++) {
+          if (k + l == 0) continue;
+          int of_w = by_u ? k : l, of_f = order - of_w;
+          sum += (-0.5 * of_w - of_f) * w[k][l] * f[i - k][j - l];
+        }
+      f[i][j] = sum / (order * w[0][0]);
+    }
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; i + j <= n; j++) {
+      CagVec3 sum = {0, 0, 0};
+      for (int k = 0; k <= i; k++)
+        for (int l = 0; l <= j; l++) sum = cag_madd(sum, f[i - k][j - l], a->c[k][l]);
+      out->c[i][j] = sum;
+    }
+}
+
+static const double FACTORIAL[] = {1, 1, 2, 6, 24, 120, 720, 5040, 40320};
+
+// Points need only the normal, which has a limit at poles.
+static CagStatus offset_point(const Derived *d, double u, double v, CagVec3 *out, CagError *err) {
+  CagVec3 normal;
+  CagStatus status = cag_surface_point(d->inner, u, v, out, err);
+  if (!status) status = cag_surface_normal(d->inner, u, v, &normal, err);
+  if (!status) *out = cag_madd(*out, d->distance, normal);
+  return status;
+}
+
+// Where the normal is a limit, derivatives are taken this share of the domain inside.
+#define FROM_POLE 1e-7
+
+static CagStatus offset_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
+                             CagVec3 *out, CagError *err) {
+  const Derived *d = (const Derived *)s;
+  const CagSurface *in = d->inner;
+  if (n == 0) return offset_point(d, u, v, out, err);
+  if (n + 1 > CAG_MAX_PARTIAL)
+    return cag_fail(err, CAG_E_UNSUPPORTED, "derivative-order", "order", -1,
+                    "an offset has partial derivatives up to order %d, not %d", CAG_MAX_PARTIAL - 1,
+                    n);
+  CagVec3 point, all[SIDE * SIDE];
+  CagStatus status = offset_point(d, u, v, &point, err);
+  if (status) return status;
+  double hu = FROM_POLE * (in->u1 - in->u0), hv = FROM_POLE * (in->v1 - in->v0);
+  if (in->pole_u0 && u < in->u0 + hu) u = in->u0 + hu;
+  if (in->pole_u1 && u > in->u1 - hu) u = in->u1 - hu;
+  if (in->pole_v0 && v < in->v0 + hv) v = in->v0 + hv;
+  if (in->pole_v1 && v > in->v1 - hv) v = in->v1 - hv;
+  status = cag_surface_eval(in, u, v, n + 1, su, sv, all, err);
+  if (status) return status;
+  Series du, dv, normal, unit;
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; i + j <= n; j++) {
+      double f = 1 / (FACTORIAL[i] * FACTORIAL[j]);
+      du.c[i][j] = cag_scaled(all[cag_partial(n + 1, i + 1, j)], f);
+      dv.c[i][j] = cag_scaled(all[cag_partial(n + 1, i, j + 1)], f);
+    }
+  series_cross(&du, &dv, n, &normal);
+  series_unit(&normal, n, &unit);
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; i + j <= n; j++)
+      out[cag_partial(n, i, j)] = cag_madd(all[cag_partial(n + 1, i, j)],
+                                           d->distance * FACTORIAL[i] * FACTORIAL[j], unit.c[i][j]);
+  out[0] = point;
+  return CAG_OK;
+}
+
+static const CagSurfaceKind offset_kind = {
+    .name = "offset",
+    .eval = offset_eval,
+    .breaks = same_breaks,
+    .describe = derived_describe,
+    .destroy = derived_destroy,
+};
+
+CagStatus cag_surface_offset(const CagSurface *s, double d, CagSurface **out, CagError *err) {
+  if (!isfinite(d))
+    return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "d", -1, "`d` must be finite");
+  if (cag_surface_planar_view(s, NULL, NULL)) {
+    CagVec3 n;
+    CagStatus status = cag_surface_normal(s, s->u0, s->v0, &n, err);
+    CagTransform move = cag_translate(cag_scaled(n, d));
+    move.planar = false;
+    return status ? status : cag_surface_transform(s, &move, out, err);
+  }
+  CagVec3 probe;
+  CagStatus status = make(&offset_kind, s, s->u0, s->u1, s->v0, s->v1, d, out, err);
+  if (status) return status;
+  // The normal must exist where no pole explains its absence.
+  status = cag_surface_point(*out, (s->u0 + s->u1) / 2, (s->v0 + s->v1) / 2, &probe, err);
+  if (status) cag_surface_release(*out);
+  return status;
+}

@@ -1,0 +1,397 @@
+// Knots, degrees and joins of NURBS surfaces, direction by direction on their nets.
+
+#include "geom/surface/reshape.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/surface/family.h"
+#include "geom/surface/net.h"
+
+// Places along an edge at which two surfaces are compared: between them no spline of usual degree
+// hides a gap.
+#define EDGE_PROBES 33
+
+// --- Nets ---
+
+typedef CagStatus (*NetChange)(CagNet *net, const void *how, CagError *err);
+
+static CagStatus changed(const CagSurface *s, int direction, NetChange change, const void *how,
+                         CagSurface **out, CagError *err) {
+  CagNet net, across;
+  CagStatus status = cag_net_of_surface(s, direction, &net, &across, err);
+  if (status) return status;
+  status = change(&net, how, err);
+  if (!status) status = cag_net_to_surface(&net, direction, &across, out, err);
+  cag_net_free(&net);
+  cag_net_free(&across);
+  return status;
+}
+
+typedef struct Insertion {
+  double t;
+  int times;
+} Insertion;
+
+static CagStatus insert(CagNet *net, const void *how, CagError *err) {
+  const Insertion *k = how;
+  char text[32], from[32], to[32];
+  double start = cag_net_start(net), end = cag_net_end(net);
+  if (!(k->t > start && k->t < end))
+    return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "", -1,
+                    "the knot must lie inside of %s..%s, it is %s", cag_number_text(start, from),
+                    cag_number_text(end, to), cag_number_text(k->t, text));
+  int there = cag_net_multiplicity(net, k->t);
+  if (there + k->times > net->degree)
+    return cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", "times", -1,
+                    "no knot may occur more often than the degree %d: %s is there %d times",
+                    net->degree, cag_number_text(k->t, text), there);
+  CagStatus status = CAG_OK;
+  for (int i = 0; !status && i < k->times; i++) status = cag_net_insert(net, k->t, err);
+  return status;
+}
+
+CagStatus cag_surface_insert_knot(const CagSurface *s, int direction, double t, int times,
+                                  CagSurface **out, CagError *err) {
+  Insertion k = {t, times};
+  return changed(s, direction, insert, &k, out, err);
+}
+
+static CagStatus halve(CagNet *net, const void *how, CagError *err) {
+  (void)how;
+  size_t p = (size_t)net->degree, n = net->count;
+  double *middles = malloc((n + 1) * sizeof *middles);
+  if (!middles) return cag_fail_memory(err);
+  size_t count = 0;
+  for (size_t i = p; i < n; i++)
+    if (net->knots[i + 1] > net->knots[i])
+      middles[count++] = (net->knots[i] + net->knots[i + 1]) / 2;
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < count; i++) status = cag_net_insert(net, middles[i], err);
+  free(middles);
+  return status;
+}
+
+static CagStatus raise(CagNet *net, const void *how, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (int i = 0; !status && i < *(const int *)how; i++) status = cag_net_raise(net, err);
+  return status;
+}
+
+// A change by u, then one by v; NULL: none.
+static CagStatus both(const CagSurface *s, NetChange change, const void *u, const void *v,
+                      CagSurface **out, CagError *err) {
+  CagSurface *first;
+  CagStatus status =
+      u ? changed(s, 0, change, u, &first, err) : cag_surface_to_nurbs(s, &first, err);
+  if (status) return status;
+  if (!v) {
+    *out = first;
+    return CAG_OK;
+  }
+  status = changed(first, 1, change, v, out, err);
+  cag_surface_release(first);
+  return status;
+}
+
+CagStatus cag_surface_refine(const CagSurface *s, bool u, bool v, CagSurface **out, CagError *err) {
+  return both(s, halve, u ? &u : NULL, v ? &v : NULL, out, err);
+}
+
+CagStatus cag_surface_elevate(const CagSurface *s, int u, int v, CagSurface **out, CagError *err) {
+  return both(s, raise, u > 0 ? &u : NULL, v > 0 ? &v : NULL, out, err);
+}
+
+// --- Bezier pieces ---
+
+typedef struct Range {
+  double a, b;
+} Range;
+
+static CagStatus cut_out(CagNet *net, const void *how, CagError *err) {
+  const Range *r = how;
+  return cag_net_trim(net, r->a, r->b, err);
+}
+
+static CagStatus piece(CagNet *net, const void *how, CagError *err) {
+  CagStatus status = cut_out(net, how, err);
+  if (!status) cag_net_rescale(net, 0, 1);
+  return status;
+}
+
+static size_t spans(const double *knots, size_t count, int degree, double *cuts) {
+  size_t n = 0;
+  cuts[n++] = knots[degree];
+  for (size_t i = (size_t)degree + 1; i <= count; i++)
+    if (knots[i] > cuts[n - 1]) cuts[n++] = knots[i];
+  return n - 1;
+}
+
+CagStatus cag_surface_to_bezier(const CagSurface *s, CagSurface ***out, size_t *nu, size_t *nv,
+                                CagError *err) {
+  CagSurface *exact;
+  CagStatus status = cag_surface_to_nurbs(s, &exact, err);
+  if (status) return status;
+  CagSurfaceNurbsView view;
+  cag_surface_nurbs_view(exact, &view);
+  double *cu = malloc((view.nu + 2) * sizeof *cu), *cv = malloc((view.nv + 2) * sizeof *cv);
+  CagSurface **pieces = NULL;
+  size_t made = 0;
+  if (!cu || !cv) status = cag_fail_memory(err);
+  if (!status) {
+    *nu = spans(view.knots_u, view.nu, view.degree_u, cu);
+    *nv = spans(view.knots_v, view.nv, view.degree_v, cv);
+    pieces = malloc(*nu * *nv * sizeof *pieces);
+    if (!pieces) status = cag_fail_memory(err);
+  }
+  for (size_t i = 0; !status && i < *nu; i++) {
+    Range u = {cu[i], cu[i + 1]};
+    CagSurface *strip;
+    status = changed(exact, 0, piece, &u, &strip, err);
+    if (status) break;
+    for (size_t j = 0; !status && j < *nv; j++) {
+      Range v = {cv[j], cv[j + 1]};
+      status = changed(strip, 1, piece, &v, &pieces[made], err);
+      if (!status) made++;
+    }
+    cag_surface_release(strip);
+  }
+  free(cu);
+  free(cv);
+  cag_surface_release(exact);
+  if (!status) {
+    *out = pieces;
+    return CAG_OK;
+  }
+  while (made > 0) cag_surface_release(pieces[--made]);
+  free(pieces);
+  return status;
+}
+
+CagStatus cag_surface_nurbs_part(const CagSurface *s, double u0, double u1, double v0, double v1,
+                                 CagSurface **out, CagError *err) {
+  CagSurface *strip;
+  Range u = {u0, u1}, v = {v0, v1};
+  CagStatus status = changed(s, 0, cut_out, &u, &strip, err);
+  if (status) return status;
+  status = changed(strip, 1, cut_out, &v, out, err);
+  cag_surface_release(strip);
+  return status;
+}
+
+// --- Edges ---
+
+// Partials at a fraction of a side: along it, and outward across it.
+static CagStatus edge_partials(const CagSurface *s, int side, double f, CagVec3 *point,
+                               CagVec3 *along, CagVec3 *across, CagVec3 second[3], CagError *err) {
+  bool of_u = side < 2;
+  double lo = of_u ? s->v0 : s->u0, hi = of_u ? s->v1 : s->u1, t = f >= 1 ? hi : lo + f * (hi - lo);
+  double at = side == 0 ? s->u0 : side == 1 ? s->u1 : side == 2 ? s->v0 : s->v1;
+  CagVec3 d[9];
+  CagStatus status = of_u ? cag_surface_eval(s, at, t, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err)
+                          : cag_surface_eval(s, t, at, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err);
+  if (status) return status;
+  double sign = side % 2 == 1 ? 1 : -1;
+  CagVec3 du = d[cag_partial(2, 1, 0)], dv = d[cag_partial(2, 0, 1)];
+  *point = d[0];
+  *along = of_u ? dv : du;
+  *across = cag_scaled(of_u ? du : dv, sign);
+  second[0] = d[of_u ? cag_partial(2, 2, 0) : cag_partial(2, 0, 2)];
+  second[1] = cag_scaled(d[cag_partial(2, 1, 1)], sign);
+  second[2] = d[of_u ? cag_partial(2, 0, 2) : cag_partial(2, 2, 0)];
+  return CAG_OK;
+}
+
+static CagStatus edge_gap(const CagSurface *a, int i, const CagSurface *b, int j, bool reversed,
+                          double *gap, CagError *err) {
+  CagVec3 p, q, along, across, second[3];
+  *gap = 0;
+  for (int k = 0; k < EDGE_PROBES; k++) {
+    double f = (double)k / (EDGE_PROBES - 1);
+    CagStatus status = edge_partials(a, i, f, &p, &along, &across, second, err);
+    if (!status)
+      status = edge_partials(b, j, reversed ? 1 - f : f, &q, &along, &across, second, err);
+    if (status) return status;
+    *gap = fmax(*gap, cag_norm(cag_sub(p, q)));
+  }
+  return CAG_OK;
+}
+
+// Normal curvature in the direction of the surface that is square to the edge.
+static double across_curvature(CagVec3 along, CagVec3 across, const CagVec3 second[3]) {
+  CagVec3 n = cag_unit(cag_cross(across, along)), w = cag_cross(along, n);
+  // w = x across + y along in the tangent plane.
+  double e = cag_dot(across, across), f = cag_dot(across, along), g = cag_dot(along, along);
+  double det = e * g - f * f, wa = cag_dot(w, across), wl = cag_dot(w, along);
+  double x = (wa * g - wl * f) / det, y = (wl * e - wa * f) / det;
+  double form = x * x * cag_dot(n, second[0]) + 2 * x * y * cag_dot(n, second[1]) +
+                y * y * cag_dot(n, second[2]);
+  return form / cag_dot(w, w);
+}
+
+static CagStatus find_seam(const CagSurface *a, const CagSurface *b, CagSeam *out, CagError *err) {
+  out->gap = INFINITY;
+  // The usual order first: the end of the first on the start of the second.
+  static const int ORDER[] = {1, 3, 0, 2};
+  for (int x = 0; x < 4; x++)
+    for (int y = 3; y >= 0; y--)
+      for (int r = 0; r < 2; r++) {
+        double gap;
+        CagStatus status = edge_gap(a, ORDER[x], b, ORDER[y], r == 1, &gap, err);
+        if (status) return status;
+        if (gap >= out->gap * (1 - 1e-6)) continue;
+        *out = (CagSeam){.side = {ORDER[x], ORDER[y]}, .reversed = r == 1, .gap = gap};
+      }
+  return CAG_OK;
+}
+
+CagStatus cag_surface_seam(const CagSurface *a, const CagSurface *b, double tolerance, CagSeam *out,
+                           CagError *err) {
+  CagBounds box, other;
+  CagStatus status = find_seam(a, b, out, err);
+  if (!status) status = cag_surface_bounds(a, &box, err);
+  if (!status) status = cag_surface_bounds(b, &other, err);
+  if (status) return status;
+  cag_bounds_add(&box, other.min);
+  cag_bounds_add(&box, other.max);
+  double size = cag_norm(cag_sub(box.max, box.min)), fastest = 0, bend = 0;
+  for (int k = 0; k < EDGE_PROBES; k++) {
+    double f = (double)k / (EDGE_PROBES - 1);
+    CagVec3 p, q, la, lb, xa, xb, sa[3], sb[3];
+    status = edge_partials(a, out->side[0], f, &p, &la, &xa, sa, err);
+    if (!status)
+      status = edge_partials(b, out->side[1], out->reversed ? 1 - f : f, &q, &lb, &xb, sb, err);
+    if (status) return status;
+    if (out->reversed) {
+      lb = cag_scaled(lb, -1);
+      sb[1] = cag_scaled(sb[1], -1);
+    }
+    // Across the seam b goes inward where a goes outward.
+    xb = cag_scaled(xb, -1);
+    sb[1] = cag_scaled(sb[1], -1);
+    CagVec3 na = cag_cross(xa, la), nb = cag_cross(xb, lb);
+    out->angle = fmax(out->angle, atan2(cag_norm(cag_cross(na, nb)), cag_dot(na, nb)));
+    out->first = fmax(out->first, cag_norm(cag_sub(xa, xb)));
+    fastest = fmax(fastest, fmax(cag_norm(xa), cag_norm(xb)));
+    double ka = across_curvature(la, xa, sa), kb = across_curvature(lb, xb, sb);
+    out->curvature = fmax(out->curvature, fabs(ka - kb));
+    bend = fmax(bend, fmax(fabs(ka), fabs(kb)));
+  }
+  out->c0 = out->gap <= tolerance * size;
+  out->g1 = out->c0 && out->angle <= tolerance;
+  out->c1 = out->c0 && out->first <= tolerance * fastest;
+  out->g2 = out->g1 && out->curvature <= tolerance * fmax(bend, 1 / size);
+  return CAG_OK;
+}
+
+// --- Join ---
+
+// The surface turned so that the side becomes u1 (`last`) or u0, its direction reversed on demand.
+static CagStatus turned(const CagSurface *s, int side, bool last, bool reverse, CagNet *net,
+                        CagNet *across, CagError *err) {
+  int direction = side < 2 ? 0 : 1;
+  CagStatus status = cag_net_of_surface(s, direction, net, across, err);
+  if (status) return status;
+  if ((side % 2 == 1) != last) cag_net_reverse(net);
+  if (reverse) {
+    CagSurface *put;
+    CagNet cross, other;
+    status = cag_net_to_surface(net, 0, across, &put, err);
+    cag_net_free(net);
+    cag_net_free(across);
+    if (!status) status = cag_net_of_surface(put, 1, &cross, &other, err);
+    if (status) return status;
+    cag_surface_release(put);
+    cag_net_reverse(&cross);
+    status = cag_net_to_surface(&cross, 1, &other, &put, err);
+    cag_net_free(&cross);
+    cag_net_free(&other);
+    if (status) return status;
+    status = cag_net_of_surface(put, 0, net, across, err);
+    cag_surface_release(put);
+  }
+  return status;
+}
+
+// Both with one degree and knot vector by v, that of the first: as surfaces again.
+static CagStatus alike_across(CagNet nets[2], CagNet across[2], CagError *err) {
+  CagNet lines[2], along[2];
+  CagStatus status = CAG_OK;
+  double lo = cag_net_start(&across[0]), hi = cag_net_end(&across[0]);
+  int made = 0;
+  for (; !status && made < 2; made++) {
+    CagSurface *s;
+    status = cag_net_to_surface(&nets[made], 0, &across[made], &s, err);
+    if (status) break;
+    status = cag_net_of_surface(s, 1, &lines[made], &along[made], err);
+    cag_surface_release(s);
+    if (status) break;
+    status =
+        cag_net_trim(&lines[made], cag_net_start(&lines[made]), cag_net_end(&lines[made]), err);
+    cag_net_rescale(&lines[made], 0, 1);
+  }
+  if (!status) status = cag_nets_unify(lines, 2, err);
+  for (int k = 0; !status && k < 2; k++) {
+    CagSurface *s;
+    cag_net_rescale(&lines[k], lo, hi);
+    status = cag_net_to_surface(&lines[k], 1, &along[k], &s, err);
+    if (status) break;
+    cag_net_free(&nets[k]);
+    cag_net_free(&across[k]);
+    status = cag_net_of_surface(s, 0, &nets[k], &across[k], err);
+    cag_surface_release(s);
+  }
+  for (int k = 0; k < made; k++) {
+    cag_net_free(&lines[k]);
+    cag_net_free(&along[k]);
+  }
+  return status;
+}
+
+// The second behind the first; the row between is the first's.
+static CagStatus behind(const CagNet nets[2], CagNet *out, CagError *err) {
+  const CagNet *a = &nets[0], *b = &nets[1];
+  size_t p = (size_t)a->degree, n = a->count + b->count - 1;
+  CagStatus status = cag_net_new(a->degree, n, a->width, out, err);
+  if (status) return status;
+  // Weights along the seam may differ by a factor.
+  double factor = a->data[(a->count - 1) * a->width + 3] / b->data[3];
+  memcpy(out->data, a->data, a->count * a->width * sizeof *out->data);
+  for (size_t i = a->width; i < b->count * b->width; i++)
+    out->data[(a->count - 1) * a->width + i] = factor * b->data[i];
+  double shift = cag_net_end(a) - cag_net_start(b);
+  memcpy(out->knots, a->knots, (a->count + p) * sizeof *out->knots);
+  for (size_t i = p + 1; i < b->count + p + 1; i++)
+    out->knots[a->count + i - 1] = b->knots[i] + shift;
+  return CAG_OK;
+}
+
+CagStatus cag_surface_join(const CagSurface *a, const CagSurface *b, double tolerance,
+                           CagSurface **out, CagError *err) {
+  CagSeam seam;
+  CagStatus status = cag_surface_seam(a, b, tolerance, &seam, err);
+  if (status) return status;
+  char text[32];
+  if (!seam.c0)
+    return cag_fail(err, CAG_E_ARGUMENT, "edges-do-not-match", "", -1,
+                    "no edge of the first surface lies on one of the second: the nearest two are "
+                    "%s apart",
+                    cag_number_text(seam.gap, text));
+  CagNet nets[2] = {{0}, {0}}, across[2] = {{0}, {0}}, joined = {0};
+  status = turned(a, seam.side[0], true, false, &nets[0], &across[0], err);
+  if (!status) status = turned(b, seam.side[1], false, seam.reversed, &nets[1], &across[1], err);
+  if (!status) status = alike_across(nets, across, err);
+  for (int k = 0; !status && k < 2; k++)
+    status = cag_net_trim(&nets[k], cag_net_start(&nets[k]), cag_net_end(&nets[k]), err);
+  for (int k = 0; k < 2; k++)
+    while (!status && nets[k].degree < nets[1 - k].degree) status = cag_net_raise(&nets[k], err);
+  if (!status) status = behind(nets, &joined, err);
+  if (!status) status = cag_net_to_surface(&joined, 0, &across[0], out, err);
+  cag_net_free(&joined);
+  for (int k = 0; k < 2; k++) {
+    cag_net_free(&nets[k]);
+    cag_net_free(&across[k]);
+  }
+  return status;
+}

@@ -1,0 +1,50 @@
+// Other forms of a surface: parts, finer nets, higher degrees, joins; and surfaces derived from
+// another by its parameters or its normal.
+
+#ifndef CAG_GEOM_RESHAPE_H
+#define CAG_GEOM_RESHAPE_H
+
+#include "geom/surface/surface.h"
+
+// --- On control points; other kinds go by their exact form ("no-exact-form") ---
+// Inserts t so many times into the direction (0: u); "parameter-range", "knot-multiplicity".
+CagStatus cag_surface_insert_knot(const CagSurface *s, int direction, double t, int times,
+                                  CagSurface **out, CagError *err);
+// The middle of every knot interval, in the directions asked for.
+CagStatus cag_surface_refine(const CagSurface *s, bool u, bool v, CagSurface **out, CagError *err);
+CagStatus cag_surface_elevate(const CagSurface *s, int u, int v, CagSurface **out, CagError *err);
+// Its Bezier pieces over 0..1, by rows of u: *nu x *nv of them, the array malloc'd.
+CagStatus cag_surface_to_bezier(const CagSurface *s, CagSurface ***out, size_t *nu, size_t *nv,
+                                CagError *err);
+// Two surfaces as one across the edge that they share: u runs over the first, then over the second.
+// Fails with "edges-do-not-match", which tells the smallest gap.
+CagStatus cag_surface_join(const CagSurface *a, const CagSurface *b, double tolerance,
+                           CagSurface **out, CagError *err);
+
+// The part over a rectangle of parameters of a NURBS surface, as one.
+CagStatus cag_surface_nurbs_part(const CagSurface *s, double u0, double u1, double v0, double v1,
+                                 CagSurface **out, CagError *err);
+
+// --- Of any kind ---
+// The part over a rectangle of parameters, which stay as they are.
+CagStatus cag_surface_part(const CagSurface *s, double u0, double u1, double v0, double v1,
+                           CagSurface **out, CagError *err);
+// S'(u, v) = S(v, u).
+CagStatus cag_surface_transpose(const CagSurface *s, CagSurface **out, CagError *err);
+// S + d n; partials up to order CAG_MAX_PARTIAL - 1.
+CagStatus cag_surface_offset(const CagSurface *s, double d, CagSurface **out, CagError *err);
+
+// How two surfaces meet along the edge that they share.
+typedef struct CagSeam {
+  int side[2]; // of each: 0: u0, 1: u1, 2: v0, 3: v1
+  bool reversed;
+  double gap;       // largest distance of points
+  double angle;     // largest angle between the tangent planes, radians
+  double first;     // largest |difference of the derivatives across|
+  double curvature; // largest difference of the normal curvatures across the edge
+  bool c0, g1, c1, g2;
+} CagSeam;
+CagStatus cag_surface_seam(const CagSurface *a, const CagSurface *b, double tolerance, CagSeam *out,
+                           CagError *err);
+
+#endif

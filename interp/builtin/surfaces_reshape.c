@@ -1,0 +1,186 @@
+// Parts, finer nets and joins of surfaces; offsets and plates.
+
+#include <stdlib.h>
+
+#include "geom/surface/reshape.h"
+#include "interp/builtin/support.h"
+#include "interp/builtin/surfaces.h"
+
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_surface_value(call->vm, *made);
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}
+
+static bool named(const CagCall *call, int argument) {
+  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
+}
+
+// One of `u:` and `v:`, the parameters from `at` on; *direction is which, *t its value.
+static bool read_place(CagCall *call, const CagSurface *s, int at, int *direction, double *t) {
+  bool u = named(call, at), v = named(call, at + 1);
+  if (u == v)
+    return cag_fail_call(call, u ? at + 1 : -1, CAG_ERR_value, "wants either `u:` or `v:`");
+  *direction = u ? 0 : 1;
+  return u ? cag_arg_parameter(call, at, s->angular_u, s->u0, s->u1, false, t)
+           : cag_arg_parameter(call, at + 1, s->angular_v, s->v0, s->v1, false, t);
+}
+
+bool cag_surfaces_trim(CagCall *call, CagValue *result) {
+  CagSurface *s, *out = NULL;
+  CagError err;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  double u0 = s->u0, u1 = s->u1, v0 = s->v0, v1 = s->v1;
+  if ((named(call, 1) && !cag_arg_parameter_range(call, 1, s->angular_u, &u0, &u1)) ||
+      (named(call, 2) && !cag_arg_parameter_range(call, 2, s->angular_v, &v0, &v1)))
+    return false;
+  return give(call, cag_surface_part(s, u0, u1, v0, v1, &out, &err), &err, &out, result);
+}
+
+bool cag_surfaces_split(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagError err;
+  int direction;
+  double t;
+  if (!cag_arg_surface(call, 0, &s) || !read_place(call, s, 1, &direction, &t)) return false;
+  CagBuilder *parts = cag_builder_new(call->vm);
+  for (int k = 0; k < 2; k++) {
+    CagSurface *part = NULL;
+    double lo = k == 0 ? (direction == 0 ? s->u0 : s->v0) : t;
+    double hi = k == 0 ? t : (direction == 0 ? s->u1 : s->v1);
+    CagStatus status = direction == 0 ? cag_surface_part(s, lo, hi, s->v0, s->v1, &part, &err)
+                                      : cag_surface_part(s, s->u0, s->u1, lo, hi, &part, &err);
+    CagValue v;
+    if (!give(call, status, &err, &part, &v) || !cag_builder_add(call->vm, parts, v)) return false;
+  }
+  *result = cag_builder_finish(call->vm, parts);
+  return true;
+}
+
+bool cag_surfaces_insert_knot(CagCall *call, CagValue *result) {
+  CagSurface *s, *out = NULL;
+  CagError err;
+  int direction;
+  long times;
+  double t;
+  if (!cag_arg_surface(call, 0, &s) || !read_place(call, s, 1, &direction, &t) ||
+      !cag_arg_integer_or(call, 3, 1, 1, 25, &times))
+    return false;
+  CagStatus status = cag_surface_insert_knot(s, direction, t, (int)times, &out, &err);
+  return give(call, status, &err, &out, result);
+}
+
+bool cag_surfaces_refine(CagCall *call, CagValue *result) {
+  CagSurface *s, *out = NULL;
+  CagError err;
+  bool u, v;
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_bool_or(call, 1, true, &u) ||
+      !cag_arg_bool_or(call, 2, true, &v))
+    return false;
+  return give(call, cag_surface_refine(s, u, v, &out, &err), &err, &out, result);
+}
+
+bool cag_surfaces_elevate(CagCall *call, CagValue *result) {
+  CagSurface *s, *out = NULL;
+  CagError err;
+  long u, v;
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer_or(call, 1, 0, 0, 20, &u) ||
+      !cag_arg_integer_or(call, 2, 0, 0, 20, &v))
+    return false;
+  return give(call, cag_surface_elevate(s, (int)u, (int)v, &out, &err), &err, &out, result);
+}
+
+bool cag_surfaces_to_bezier(CagCall *call, CagValue *result) {
+  CagSurface *s, **pieces = NULL;
+  CagError err;
+  size_t nu, nv;
+  if (!cag_arg_surface(call, 0, &s) ||
+      !cag_geometry_ok(call, cag_surface_to_bezier(s, &pieces, &nu, &nv, &err), &err))
+    return false;
+  CagBuilder *rows = cag_builder_new(call->vm);
+  bool ok = true;
+  for (size_t i = 0; i < nu; i++) {
+    CagBuilder *row = cag_builder_new(call->vm);
+    for (size_t j = 0; j < nv; j++) {
+      CagValue v = cag_surface_value(call->vm, pieces[i * nv + j]);
+      cag_shape_say_alike(v, call->values[0]);
+      ok = ok && cag_builder_add(call->vm, row, v);
+    }
+    ok = ok && cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
+  }
+  free(pieces);
+  if (ok) *result = cag_builder_finish(call->vm, rows);
+  return ok;
+}
+
+bool cag_surfaces_transpose_uv(CagCall *call, CagValue *result) {
+  CagSurface *s, *out = NULL;
+  CagError err;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  return give(call, cag_surface_transpose(s, &out, &err), &err, &out, result);
+}
+
+// --- Two surfaces ---
+
+#define SEAM_TOLERANCE 1e-9
+
+bool cag_surfaces_join_surfaces(CagCall *call, CagValue *result) {
+  CagSurface *a, *b, *out = NULL;
+  CagError err;
+  double tolerance;
+  if (!cag_arg_surface(call, 0, &a) || !cag_arg_surface(call, 1, &b) ||
+      !cag_arg_number_or(call, 2, SEAM_TOLERANCE, &tolerance))
+    return false;
+  return give(call, cag_surface_join(a, b, tolerance, &out, &err), &err, &out, result);
+}
+
+bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"class",          "gap",  "angle", "first_jump",
+                                      "curvature_jump", "edges"};
+  static const char *const sides[] = {"u0", "u1", "v0", "v1"};
+  CagSurface *a, *b;
+  CagSeam seam;
+  CagError err;
+  double tolerance;
+  if (!cag_arg_surface(call, 0, &a) || !cag_arg_surface(call, 1, &b) ||
+      !cag_arg_number_or(call, 2, SEAM_TOLERANCE, &tolerance) ||
+      !cag_geometry_ok(call, cag_surface_seam(a, b, tolerance, &seam, &err), &err))
+    return false;
+  const char *class = !seam.c0 ? "none" : seam.g2 ? "G2" : seam.c1 ? "C1" : seam.g1 ? "G1" : "C0";
+  CagBuilder *edges = cag_builder_new(call->vm);
+  for (int k = 0; k < 2; k++)
+    if (!cag_builder_add(call->vm, edges, cag_text_c(call->vm, sides[seam.side[k]]))) return false;
+  CagValue values[] = {cag_text_c(call->vm, class),
+                       cag_number(seam.gap),
+                       cag_angle(seam.angle / CAG_RADIANS_PER_DEGREE),
+                       cag_number(seam.first),
+                       cag_number(seam.curvature),
+                       cag_builder_finish(call->vm, edges)};
+  *result = cag_record_new(call->vm, names, values, 6);
+  return true;
+}
+
+// --- Offsets ---
+
+bool cag_surfaces_offset(CagCall *call, CagValue *result) {
+  CagSurface *s, *out = NULL;
+  CagError err;
+  double d;
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_finite(call, 1, &d)) return false;
+  return give(call, cag_surface_offset(s, d, &out, &err), &err, &out, result);
+}
+
+bool cag_surfaces_thicken(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagSolid *out = NULL;
+  CagError err;
+  double d;
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_finite(call, 1, &d)) return false;
+  if (d == 0) return cag_fail_value(call, 1, "a thickness that is not 0");
+  if (!cag_geometry_ok(call, cag_solid_thicken(s, d, &out, &err), &err)) return false;
+  *result = cag_solid_value(call->vm, out);
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}
