@@ -96,8 +96,9 @@ bool cag_scenes_camera(CagCall *call, CagValue *result) {
     return cag_fail_call(call, cag_given(call, 1) ? 1 : 0, CAG_ERR_view,
                          "wants two different points as `eye` and `target`");
   if (!cag_arg_angle_or(call, 3, 40 * CAG_RADIANS_PER_DEGREE, &fov)) return false;
-  if (!(fov > 0 && fov < 179.5 * CAG_RADIANS_PER_DEGREE))
-    return cag_fail_call(call, 3, CAG_ERR_view, "wants a `fov` above 0deg and below 180deg");
+  const double widest = 179; // degrees: the tangent of the half grows without end towards 180
+  if (!(fov > 0 && fov <= widest * CAG_RADIANS_PER_DEGREE))
+    return cag_fail_call(call, 3, CAG_ERR_view, "wants a `fov` above 0deg, of 179deg at most");
   if (!cag_arg_choice(call, 4, kinds, &kind) ||
       (is_set(call, 5) && !cag_arg_positive(call, 5, &width)) || !read_size(call, 6, &size) ||
       (is_set(call, 7) && !cag_arg_positive(call, 7, &focus)) ||
