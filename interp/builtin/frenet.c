@@ -267,8 +267,10 @@ static bool call_constant_curve(CagCall *call, CagValue *result) {
   if (!cag_arg_finite(call, 0, &k) || !cag_arg_finite(call, 1, &w)) return false;
   if (k < 0) return cag_fail_value(call, 0, "a curvature of 0 or more");
   const bool bent = k > 0;
-  // Through the larger of both, so that squares neither overflow nor vanish.
-  const double h = hypot(k, w), radius = bent ? k / h / h : 0, rise = bent ? w / h / h : 0;
+  // In units of the larger of both, so that squares neither overflow nor vanish.
+  const double unit = fmax(k, fabs(w)), x = bent ? k / unit : 0, y = bent ? w / unit : 0;
+  const double squares = x * x + y * y;
+  const double radius = bent ? x / squares / unit : 0, rise = bent ? y / squares / unit : 0;
   CagValue values[] = {
       cag_text_c(call->vm, !bent    ? "line"
                            : w == 0 ? "circle"
