@@ -387,7 +387,7 @@ int cag_session_build_scene(CagSession *s) {
   scene->max_triangles = s->options.max_triangles;
   scene->interrupt = s->options.interrupt;
   if (!scene->script && s->script) scene->script = strdup(s->script);
-  if (scene->item_count == 0) {
+  if (scene->item_count + scene->label_count == 0) {
     CagDiagnostic *d =
         cag_diagnostics_add(&s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0},
                             "%s shows no shape", s->script ? s->script : "the session");
