@@ -40,8 +40,8 @@ CagStatus cag_nurbs_new(const double *homogeneous, size_t n, int degree, const d
                         CagCurve **out, CagError *err);
 // Index of the piece that t lies in.
 size_t cag_nurbs_piece(const CagNurbs *c, double t, CagSide side, size_t hint);
-// Points and derivatives to `order` at n parameters, limits from the right, as eval_many gives them;
-// false: this degree or order is not its business. See nurbs_many.c.
+// Points and derivatives to `order` at n parameters, limits from the right, as eval_many gives
+// them; false: this degree or order is not its business. See nurbs_many.c.
 bool cag_nurbs_eval_many(const CagNurbs *c, const double *t, size_t n, int order, CagVec3 *out);
 static inline const double *cag_nurbs_bezier(const CagNurbs *c, size_t piece) {
   return c->bezier + piece * (size_t)(c->degree + 1) * 4;
