@@ -20,8 +20,12 @@
 // Parts of a domain within which parameters are one place.
 #define SAME_PLACE 1e-4
 // Pairs looked at before the curve is taken to run within the surface.
-#define MOST_PAIRS 4000000
+#define MOST_PAIRS 400000
 #define DEPTH 100
+// A stretch in common that is longer than this part of the size is an overlap.
+#define COMMON 1e-3
+// How far from a pair a touch is looked for, in its widths.
+#define TOUCH_REACH 128
 // Cells of a smooth patch, and parts of a smooth piece, to begin with, in each direction.
 #define FIRST 4
 
@@ -32,9 +36,9 @@ typedef struct Part {
 
 typedef struct Cell {
   double u[2], v[2], bow;
-  double width;           // of its shorter direction
-  CagVec3 middle, normal; // of the plane; normal: unit
-  CagBounds box;          // holds the cell
+  double along_u, along_v; // the longer of two opposite edges
+  CagVec3 middle, normal;  // of the plane; normal: unit
+  CagBounds box;           // holds the cell
 } Cell;
 
 typedef struct Search {
@@ -85,11 +89,10 @@ static CagStatus make_cell(const Search *s, Cell *cell, CagError *err) {
     cag_bounds_add(&cell->box, grid[i]);
   }
   cell->bow *= safety;
-  const double along_u = fmax(cag_norm(cag_sub(grid[SIDE * (SIDE - 1)], grid[0])),
-                              cag_norm(cag_sub(grid[SIDE * SIDE - 1], grid[SIDE - 1])));
-  const double along_v = fmax(cag_norm(cag_sub(grid[SIDE - 1], grid[0])),
-                              cag_norm(cag_sub(grid[SIDE * SIDE - 1], grid[SIDE * (SIDE - 1)])));
-  cell->width = fmin(along_u, along_v);
+  cell->along_u = fmax(cag_norm(cag_sub(grid[SIDE * (SIDE - 1)], grid[0])),
+                       cag_norm(cag_sub(grid[SIDE * SIDE - 1], grid[SIDE - 1])));
+  cell->along_v = fmax(cag_norm(cag_sub(grid[SIDE - 1], grid[0])),
+                       cag_norm(cag_sub(grid[SIDE * SIDE - 1], grid[SIDE * (SIDE - 1)])));
   // Between samples of a grid of SIDE the surface may reach out of their box by its bend, too.
   const double out = fmax(cell->bow, cag_norm(cag_sub(cell->box.max, cell->box.min)) / 8);
   cell->box.min = cag_sub(cell->box.min, cag_vec3(out, out, out));
@@ -169,10 +172,12 @@ static CagStatus add(Search *s, CagSurfaceMeeting m, CagError *err) {
 
 static double within(double x, double low, double high) { return fmin(high, fmax(low, x)); }
 
-static CagStatus meet(Search *s, const Part *part, const Cell *cell, CagError *err) {
-  const double reach_t = part->b - part->a, reach_u = cell->u[1] - cell->u[0],
-               reach_v = cell->v[1] - cell->v[0];
-  double t = part->a + reach_t / 2, u = cell->u[0] + reach_u / 2, v = cell->v[0] + reach_v / 2;
+// Within `reach` widths of part and cell about them.
+static CagStatus meet(Search *s, const Part *part, const Cell *cell, double reach, CagError *err) {
+  const double width_t = part->b - part->a, width_u = cell->u[1] - cell->u[0],
+               width_v = cell->v[1] - cell->v[0];
+  const double reach_t = reach * width_t, reach_u = reach * width_u, reach_v = reach * width_v;
+  double t = part->a + width_t / 2, u = cell->u[0] + width_u / 2, v = cell->v[0] + width_v / 2;
   double best = INFINITY;
   CagSurfaceMeeting found = {0};
   for (int i = 0; i < 80; i++) {
@@ -219,23 +224,27 @@ static CagStatus halve_part(const Search *s, const Part *part, Part out[2], CagE
 
 // Across the longer side of the cell.
 static CagStatus halve_cell(const Search *s, const Cell *cell, Cell out[2], CagError *err) {
-  CagVec3 corner[3];
-  CagStatus status = cag_surface_point(s->s, cell->u[0], cell->v[0], &corner[0], err);
-  if (!status) status = cag_surface_point(s->s, cell->u[1], cell->v[0], &corner[1], err);
-  if (!status) status = cag_surface_point(s->s, cell->u[0], cell->v[1], &corner[2], err);
-  if (status) return status;
-  // A cell with an edge in one point, or closed, is judged by its parameters.
-  double along_u = cag_norm(cag_sub(corner[1], corner[0]));
-  double along_v = cag_norm(cag_sub(corner[2], corner[0]));
-  if (fmin(along_u, along_v) <= FLAT * s->size) {
-    along_u = (cell->u[1] - cell->u[0]) / (s->s->u1 - s->s->u0);
-    along_v = (cell->v[1] - cell->v[0]) / (s->s->v1 - s->s->v0);
-  }
   out[0] = out[1] = *cell;
-  if (along_u >= along_v) out[0].u[1] = out[1].u[0] = cell->u[0] + (cell->u[1] - cell->u[0]) / 2;
+  if (cell->along_u >= cell->along_v)
+    out[0].u[1] = out[1].u[0] = cell->u[0] + (cell->u[1] - cell->u[0]) / 2;
   else out[0].v[1] = out[1].v[0] = cell->v[0] + (cell->v[1] - cell->v[0]) / 2;
-  status = make_cell(s, &out[0], err);
+  CagStatus status = make_cell(s, &out[0], err);
   return status ? status : make_cell(s, &out[1], err);
+}
+
+// A chord along a flat cell: overlap where its middle lies in the cell, else a touch at most.
+static CagStatus along(Search *s, const Part *part, const Cell *cell, CagError *err) {
+  const size_t before = s->n;
+  Part middle = *part;
+  for (int i = 1; i < 4; i++) {
+    const double t = part->a + (part->b - part->a) * i / 4;
+    middle.a = middle.b = t;
+    CagStatus status = meet(s, &middle, cell, 1, err);
+    if (status) return status;
+  }
+  if (s->n - before == 3) return fail_overlap(err);
+  s->n = before;
+  return meet(s, part, cell, TOUCH_REACH, err);
 }
 
 static CagStatus pair(Search *s, const Part *part, const Cell *cell, int depth, CagError *err) {
@@ -244,16 +253,19 @@ static CagStatus pair(Search *s, const Part *part, const Cell *cell, int depth, 
   if (apart(s, part, cell)) return CAG_OK;
   if (++s->pairs > MOST_PAIRS) return fail_overlap(err);
   const CagVec3 d = cag_sub(part->q, part->p);
-  const double chord = cag_norm(d), rise = fabs(cag_dot(d, cell->normal)), width = cell->width;
+  const double chord = cag_norm(d), rise = fabs(cag_dot(d, cell->normal)),
+               width = fmin(cell->along_u, cell->along_v);
   const bool one = rise > MEET * chord && chord < steep * width &&
                    rise > steep * (part->sag + cell->bow * chord / width);
+  if (one) return meet(s, part, cell, 1, err);
+  // Both as good as flat and along each other: a touch, whose crossings Newton's method finds from
+  // all pairs about it, or a stretch in common.
   const double flat = FLAT * s->size + s->noise;
-  if (one || depth == 0 || (part->sag <= flat && cell->bow <= flat && chord <= flat))
-    return meet(s, part, cell, err);
-  CagStatus status = CAG_OK;
-  // The one that bends more, or where both are flat the longer one.
   const bool flats = part->sag <= flat && cell->bow <= flat;
-  if (flats ? chord > width / 4 : part->sag > cell->bow || chord > steep * width / 2) {
+  if (flats && rise <= MEET * s->size && chord > COMMON * s->size) return along(s, part, cell, err);
+  if (depth == 0 || flats) return meet(s, part, cell, TOUCH_REACH, err);
+  CagStatus status = CAG_OK;
+  if (part->sag > cell->bow || chord > steep * width / 2) {
     Part half[2];
     status = halve_part(s, part, half, err);
     for (int i = 0; !status && i < 2; i++) status = pair(s, &half[i], cell, depth - 1, err);
