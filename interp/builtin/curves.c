@@ -184,7 +184,8 @@ const CagBuiltin cag_builtins_curves[] = {
      "The B-spline of these control points. `knots` is \"open\" (through both ends), \"periodic\" "
      "(uniform), \"chord\" (by the points' distances) or a list of points + degree + 1 numbers "
      "that "
-     "do not decrease; a closed one has uniform knots and joins smoothly. `order` is degree + 1.",
+     "do not decrease; a closed one has uniform knots, joins smoothly, and takes a last point that "
+     "repeats the first once. `order` is degree + 1.",
      "c = bspline([[0, 0], [1, 2], [3, 2], [4, 0]], degree: 2)\n"
      "print domain(c), c(0) // expect: 0..2 [0, 0]",
      LISTS, splines},

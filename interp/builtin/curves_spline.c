@@ -100,7 +100,10 @@ static bool make_bspline(CagCall *call, const CagVec3 *points, size_t n, int dim
     if (cag_given(call, 2) && call->values[2].type != CAG_TEXT)
       return cag_fail_call(call, 2, CAG_ERR_value,
                            "takes no list of `knots` for a closed curve: they are uniform");
-    status = cag_curve_nurbs_closed(points, weights, n, degree, dimension, &c, &err);
+    // A polygon that comes back to its first point has that once.
+    const CagVec3 a = points[0], b = points[n - 1];
+    const bool again = n > 2 && a.x == b.x && a.y == b.y && a.z == b.z;
+    status = cag_curve_nurbs_closed(points, weights, n - again, degree, dimension, &c, &err);
     return give(call, status, &err, &c, result);
   }
   bool ok = read_knots(call, 2, n, degree, points, &own, &knots);
