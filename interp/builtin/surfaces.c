@@ -106,6 +106,12 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "(surface-open).",
      "print near(volume(sphere_surface(3)), 36 * pi, relative: 1e-8) // expect: true", SURFACES,
      asked},
+    {"is_developable(S, tolerance = 1e-9)", cag_surfaces_is_developable, "bool",
+     "Whether the surface can be unrolled into the plane without stretching: its Gaussian "
+     "curvature, times the square of its size, is nowhere larger than the tolerance.",
+     "print is_developable(revolve(line([1, 0], [2, 4]))), is_developable(sphere_surface(1)) // "
+     "expect: true false",
+     SURFACES, asked},
     {"sample(S, nu, nv)", cag_surfaces_sample, "list",
      "Rows of points: nu by nv (2 at least) in equal steps of the parameters.",
      "print sample(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 2, 3)[1] // expect: [[4, 0, 0], [4, "
@@ -240,7 +246,6 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "surface, u as in the section and v as in the path. Corners of the path are mitred.",
      "path = polyline([[0, 0, 0], [0, 0, 5]])\n"
      "print near(volume(sweep(rectangle(4, 2), path)), 40, relative: 1e-8) // expect: true\n"
-     "ring = sweep(circle(1), circle(5, frame: identity), twist: 90deg)\n"
      "print near(volume(sweep(circle(1), circle(5))), 10 * pi^2, relative: 1e-8) // expect: true",
      CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
     {"sweep_by(C, map, range, caps = true)", cag_surfaces_sweep_by, "solid or surface",
@@ -263,7 +268,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "is a spline of the degree; `closed` leads from the last curve back to the first. Of closed "
      "curves the ends get flat caps, and it is a solid.",
      "a = circle(2)\n"
-     "tower = loft([to_space(a), translate(a, [0, 0, 3]), translate(a, [0, 0, 5])])\n"
+     "tower = loft([for z in [0, 3, 5]: translate(a, [0, 0, z])])\n"
      "print near(volume(tower), 20 * pi, relative: 1e-8) // expect: true",
      LISTS, made},
     {"translational(A, B)", cag_surfaces_translational, "surface",
@@ -344,6 +349,32 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "s = nurbs_surface([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]], degree: 1, weights: [[1, "
      "1], [1, 1]])\n"
      "print near(area(s), 1) // expect: true",
+     LISTS, nets},
+
+    {"interpolate_surface(grid, degree = [3, 3], parameters = \"chord\")",
+     cag_surfaces_interpolate_surface, "surface",
+     "The B-spline surface through a grid of points, given by rows of u, over 0..1. Parameters by "
+     "chord length (its mean over the rows, and over the columns) or \"uniform\"; knots are means "
+     "of "
+     "them.",
+     "grid = [for i in 0..4: [for j in 0..5: [i, j, i * j / 10]]]\n"
+     "s = interpolate_surface(grid)\n"
+     "print near(s(0, 0), [0, 0, 0]), near(s(1, 1), [4, 5, 2]) // expect: true true",
+     LISTS, nets},
+    {"fit_surface(grid, degree, count, parameters = \"chord\")", cag_surfaces_fit_surface,
+     "surface",
+     "The B-spline surface with `count` control points (two numbers, for u and v) on open uniform "
+     "knots that comes nearest to a grid of points in the sense of least squares. Parameters by "
+     "chord length along each row and column, by their \"mean\", or \"uniform\".",
+     "grid = [for i in 0..4: [for j in 0..5: [i, j, i * j / 10]]]\n"
+     "print near(area(fit_surface(grid, 2, [3, 4])), area(interpolate_surface(grid)), relative: "
+     "1e-6) // expect: true",
+     LISTS, nets},
+    {"fit_surface_report(grid, degree, count, parameters = \"chord\")",
+     cag_surfaces_fit_surface_report, "record",
+     "surface, as fit_surface gives it; rms and largest, its distances from the data (mm).",
+     "grid = [for i in 0..4: [for j in 0..5: [i, j, i * j / 10]]]\n"
+     "print fit_surface_report(grid, 2, [3, 4], \"uniform\").largest < 1e-12 // expect: true",
      LISTS, nets},
 
     // --- Quadrics ---
