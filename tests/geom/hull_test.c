@@ -1,0 +1,144 @@
+// Convex hulls, side predicates, curves on surfaces and distances of meshes: closed forms.
+
+#include "geom/mesh/hull.h"
+#include "geom/mesh/predicates.h"
+#include "support.h"
+
+static CagMesh *hull_of(const CagVec3 *points, size_t n) {
+  CagMesh *m;
+  CagVec3 edge[2];
+  OK(cag_hull_space(points, n, &m, &err));
+  assert_true(cag_mesh_is_watertight(m, edge));
+  assert_int_equal(cag_mesh_euler_characteristic(m), 2);
+  return m;
+}
+
+static double volume_of(const CagMesh *m) {
+  double terms[10] = {0};
+  cag_mesh_volume_terms(m, terms);
+  return terms[0];
+}
+
+static double random_number(uint64_t *state) {
+  *state = *state * 6364136223846793005u + 1442695040888963407u;
+  return (double)(*state >> 11) / 9007199254740992.0;
+}
+
+static void sides_are_exact(void **state) {
+  (void)state;
+  // 0.5 + k 2^-53: on the line x = y to the last bit, or beside it by one.
+  const CagVec3 a = cag_vec3(12, 12, 0), b = cag_vec3(24, 24, 0);
+  for (int i = 0; i < 64; i++)
+    for (int k = 0; k < 64; k++) {
+      const CagVec3 c = cag_vec3(0.5 + i * 0x1p-53, 0.5 + k * 0x1p-53, 0);
+      assert_int_equal(cag_side_of_line(a, b, c), (k > i) - (k < i));
+      const CagVec3 up = cag_vec3(12, 12, 1e5);
+      const int side = cag_side_of_plane(a, b, up, c); // the plane x = y, seen from x > y
+      assert_int_equal(side, (i > k) - (i < k));
+    }
+  assert_int_equal(
+      cag_side_of_plane(cag_vec3(0, 0, 0), cag_vec3(1, 0, 0), cag_vec3(0, 1, 0), cag_vec3(0, 0, 1)),
+      1);
+}
+
+static void plane_hulls_run_counter_clockwise_without_straight_corners(void **state) {
+  (void)state;
+  const CagVec3 points[] = {{2, 2, 0}, {1, 0, 0}, {0, 0, 0}, {2, 0, 0},
+                            {0, 2, 0}, {1, 1, 0}, {0, 0, 0}, {0, 1, 0}};
+  size_t *ring, n;
+  OK(cag_hull_plane(points, 8, &ring, &n, &err));
+  const size_t expected[] = {2, 3, 0, 4};
+  assert_int_equal(n, 4);
+  assert_memory_equal(ring, expected, sizeof expected);
+  free(ring);
+  // Tenths are not on one line to the last bit, but to rounding.
+  CagVec3 tenths[31];
+  for (int i = 0; i < 30; i++) tenths[i] = cag_vec3(0.1 * i, 0.3 * i, 0);
+  tenths[30] = cag_vec3(5, 0, 0);
+  OK(cag_hull_plane(tenths, 31, &ring, &n, &err));
+  assert_int_equal(n, 3);
+  free(ring);
+  FAILS(cag_hull_plane(tenths, 30, &ring, &n, &err), "collinear-points");
+  FAILS(cag_hull_plane(tenths, 2, &ring, &n, &err), "too-few-points");
+  const CagVec3 same[3] = {{1, 2, 0}, {1, 2, 0}, {1, 2, 0}};
+  FAILS(cag_hull_plane(same, 3, &ring, &n, &err), "coincident-points");
+}
+
+static void boxes_of_grids_have_eight_corners(void **state) {
+  (void)state;
+  enum { N = 6 };
+  CagVec3 points[N * N * N];
+  CagTransform turn;
+  OK(cag_rotate(cag_vec3(1, 2, 3), 0.7, cag_vec3(0.3, 0, 0), &turn, &err));
+  for (int turned = 0; turned < 2; turned++) {
+    for (int i = 0; i < N * N * N; i++) {
+      points[i] = cag_vec3(i % N * 0.1, i / N % N * 0.2, i / (N * N) * 0.3);
+      if (turned) points[i] = cag_transform_point(&turn, points[i]);
+    }
+    CagMesh *m = hull_of(points, N * N * N);
+    assert_int_equal(m->vertex_count, 8);
+    assert_int_equal(m->triangle_count, 12);
+    NEAR(volume_of(m), 0.5 * 1 * 1.5, 1e-14);
+    cag_mesh_release(m);
+  }
+}
+
+static void hulls_hold_all_points(void **state) {
+  (void)state;
+  enum { N = 2000 };
+  static CagVec3 points[N];
+  uint64_t seed = 7;
+  for (int kind = 0; kind < 3; kind++) {
+    for (int i = 0; i < N; i++) {
+      CagVec3 p = cag_vec3(random_number(&seed) - 0.5, random_number(&seed) - 0.5,
+                           random_number(&seed) - 0.5);
+      if (kind == 0) p = cag_unit(p); // all are corners
+      if (kind == 1)                  // many in planes and lines
+        p = cag_vec3(floor(8 * p.x), floor(8 * p.y), floor(8 * p.z));
+      points[i] = p;
+    }
+    CagMesh *m = hull_of(points, N);
+    if (kind == 0) {
+      assert_int_equal(m->vertex_count, N);
+      assert_int_equal(m->triangle_count, 2 * N - 4); // Euler
+    }
+    if (kind == 1) NEAR(volume_of(m), 343, 1e-11);
+    for (size_t t = 0; t < m->triangle_count; t++) {
+      const uint32_t *k = m->triangles + 3 * t;
+      for (int i = 0; i < N; i++)
+        assert_true(cag_side_of_plane(m->positions[k[0]], m->positions[k[1]], m->positions[k[2]],
+                                      points[i]) <= 0);
+    }
+    cag_mesh_release(m);
+  }
+}
+
+static void flat_sets_have_no_solid(void **state) {
+  (void)state;
+  CagVec3 p[50];
+  CagMesh *m;
+  CagTransform turn;
+  OK(cag_rotate(cag_vec3(1, 2, 3), 0.7, cag_vec3(0.3, 0, 0), &turn, &err));
+  for (int i = 0; i < 50; i++)
+    p[i] = cag_transform_point(&turn, cag_vec3(i % 7 * 0.1, i / 7 * 0.3, 0));
+  FAILS(cag_hull_space(p, 50, &m, &err), "coplanar-points");
+  for (int i = 0; i < 50; i++) p[i] = cag_vec3(0.1 * i, 0.3 * i, 0.7 * i);
+  FAILS(cag_hull_space(p, 50, &m, &err), "collinear-points");
+  for (int i = 0; i < 50; i++) p[i] = cag_vec3(0.1, 0.3, 0.7);
+  FAILS(cag_hull_space(p, 50, &m, &err), "coincident-points");
+  FAILS(cag_hull_space(p, 3, &m, &err), "too-few-points");
+  p[7].y = NAN;
+  FAILS(cag_hull_space(p, 50, &m, &err), "not-finite");
+  assert_int_equal(err.index, 7);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(sides_are_exact),
+      cmocka_unit_test(plane_hulls_run_counter_clockwise_without_straight_corners),
+      cmocka_unit_test(boxes_of_grids_have_eight_corners),
+      cmocka_unit_test(hulls_hold_all_points),
+      cmocka_unit_test(flat_sets_have_no_solid),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
