@@ -265,9 +265,9 @@ static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) 
   const Composite *c = (const Composite *)curve;
   CagCurve **exact = calloc(c->n, sizeof *exact);
   double *data = NULL;
-  int p;
-  size_t n;
-  bool rational;
+  int p = 0;
+  size_t n = 0;
+  bool rational = false;
   CagStatus status = exact ? alike_pieces(c, exact, &n, &rational, &p, err) : cag_fail_memory(err);
   if (!status && !(data = malloc(sizeof(double) * (5 * n + (size_t)p + 1))))
     status = cag_fail_memory(err);

@@ -28,7 +28,7 @@ static bool fail_arity(CagVm *vm, const char *name, size_t required, size_t most
   if (any) snprintf(expected, sizeof expected, "at least %zu", required);
   else if (required == most) snprintf(expected, sizeof expected, "%zu", most);
   else snprintf(expected, sizeof expected, "%zu to %zu", required, most);
-  bool one = required == most && most == 1 && !any;
+  bool one = required == 1 && (any || most == 1);
   return cag_vm_fail(vm, CAG_ERR_arity, "%s expects %s argument%s, found %zu", function_name(name),
                      expected, one ? "" : "s", found);
 }
