@@ -99,13 +99,17 @@ static int position_decimals(const CagMesh *m) {
 }
 
 CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
+  if (m->triangle_count == 0) { // a shape without area: its name stands for something unseen
+    pov_text(w, "sphere { // nothing is seen of it: it has no area\n  0, 1\n"
+                "  no_image no_shadow no_reflection\n}");
+    return CAG_OK;
+  }
   int decimals = position_decimals(m);
   CagBounds b = cag_mesh_bounds(m);
   double reach = fmax(cag_norm(b.min), cag_norm(b.max));
-  if (m->triangle_count == 0 || !(reach * powers_of_ten[decimals] < INTEGER_MAX))
+  if (!(reach * powers_of_ten[decimals] < INTEGER_MAX))
     return cag_fail(err, CAG_E_DEGENERATE, "mesh-empty", "", -1,
-                    m->triangle_count == 0 ? "the mesh has no triangles"
-                                           : "the mesh is too large for the renderer's numbers");
+                    "the mesh is too large for the renderer's numbers");
   pov_printf(w, "mesh2 { // %zu triangles\n", m->triangle_count);
   write_vectors(w, "vertex_vectors", m->positions, m->vertex_count, decimals);
   if (m->normals) write_vectors(w, "normal_vectors", m->normals, m->vertex_count, NORMAL_DECIMALS);

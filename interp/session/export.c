@@ -89,19 +89,33 @@ static CagStatus write_glb(const MeshOutput *m, CagAtomicFile *f, CagError *err)
   return cag_export_glb(m->parts, m->count, f, err);
 }
 
-static int write_mesh_file(CagSession *s, const MeshOutput *m, const char *path, MeshWriter write) {
+// Writes to an open file; the file is whole, but not yet in its place. NULL: failed, *status says
+// how.
+static CagAtomicFile *write_mesh_file(CagSession *s, const MeshOutput *m, const char *path,
+                                      MeshWriter write, int *status) {
   CagIoError io = {0};
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
-  if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  if (!f) {
+    *status = cag_session_fail_io(s, CAG_ERR_output_file, &io);
+    return NULL;
+  }
   if (cag_session_checked(s, write(m, f, &err), &err) != CAG_OK) {
     cag_atomic_file_abort(f);
-    return cag_session_fail_geometry(s, &err);
+    *status = cag_session_fail_geometry(s, &err);
+    return NULL;
   }
+  cag_atomic_file_flush(f);
+  return f;
+}
+
+static int commit(CagSession *s, CagAtomicFile *f) {
+  CagIoError io = {0};
   return cag_atomic_file_commit(f, &io) ? CAG_STATUS_OK
                                         : cag_session_fail_io(s, CAG_ERR_output_file, &io);
 }
 
+// Writes the meshes, and beside an .obj its materials: both stand there anew, or neither does.
 static int export_meshes(CagSession *s, const char *path, MeshWriter write) {
   Parts parts;
   int status = make_parts(s, &parts);
@@ -109,9 +123,19 @@ static int export_meshes(CagSession *s, const char *path, MeshWriter write) {
   char *materials = write == write_obj ? material_path(path) : NULL;
   const char *slash = materials ? strrchr(materials, '/') : NULL;
   MeshOutput m = {parts.items, parts.count, slash ? slash + 1 : materials};
-  // The materials first: an .obj that stands there whole finds them.
-  if (materials) status = write_mesh_file(s, &m, materials, write_mtl);
-  if (status == CAG_STATUS_OK) status = write_mesh_file(s, &m, path, write);
+  CagAtomicFile *beside = NULL, *file = write_mesh_file(s, &m, path, write, &status);
+  if (file && materials) beside = write_mesh_file(s, &m, materials, write_mtl, &status);
+  if (!file || (materials && !beside)) {
+    cag_atomic_file_abort(file);
+  } else if (cag_atomic_file_failed(file)) { // its commit tells why
+    cag_atomic_file_abort(beside);
+    status = commit(s, file);
+  } else {
+    // The materials first: an .obj that stands there whole finds them.
+    if (beside) status = commit(s, beside);
+    if (status == CAG_STATUS_OK) status = commit(s, file);
+    else cag_atomic_file_abort(file);
+  }
   free(materials);
   free_parts(&parts);
   return status;
