@@ -34,6 +34,10 @@ CagStatus cag_surface_transpose(const CagSurface *s, CagSurface **out, CagError 
 // S + d n; partials up to order CAG_MAX_PARTIAL - 1.
 CagStatus cag_surface_offset(const CagSurface *s, double d, CagSurface **out, CagError *err);
 
+// A developable surface laid flat into z = 0 with its parameters, lengths kept; it is straight
+// along u or v. The ruling at the start lies along x. Fails with "not-developable".
+CagStatus cag_surface_unroll(const CagSurface *s, CagSurface **out, CagError *err);
+
 // How two surfaces meet along the edge that they share.
 typedef struct CagSeam {
   int side[2]; // of each: 0: u0, 1: u1, 2: v0, 3: v1

@@ -190,6 +190,15 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "parts = split(sphere_surface(1), u: 60deg)\n"
      "print continuity(parts[0], parts[1]).class // expect: G2",
      SURFACES, asked},
+    {"unroll(S)", cag_surfaces_unroll, "surface",
+     "A cylinder, cone, plane or other developable surface laid flat into z = 0, with the "
+     "parameters "
+     "and all lengths it has; it is straight along u or v. One that would have to be stretched is "
+     "an "
+     "error (not-developable).",
+     "flat = unroll(revolve(line([1, 0], [1, 5])))\n"
+     "print near(bounds(flat).size, [5, tau, 0]) // expect: true",
+     SURFACES, changed},
     {"offset(S, d)", cag_surfaces_offset, "surface",
      "The surface at this distance (mm) along its normals.",
      "print near(area(offset(sphere_surface(2), 1)), 36 * pi, relative: 1e-7) // expect: true",

@@ -24,7 +24,7 @@
   X(trim) X(split) X(insert_knot) X(refine) X(elevate) X(to_bezier) X(transpose_uv) \
   X(join_surfaces) X(continuity) X(offset) X(thicken) \
   /* surfaces_fit.c */ \
-  X(interpolate_surface) X(fit_surface) X(fit_surface_report) X(is_developable) \
+  X(interpolate_surface) X(fit_surface) X(fit_surface_report) X(is_developable) X(unroll) \
   /* surfaces_patch.c */ \
   X(coons) X(coons_bicubic) X(hermite_patch) X(hermite_surface) \
   /* surfaces_net.c: of nets of points */ \

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "geom/surface/loft.h"
+#include "geom/surface/reshape.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
@@ -124,7 +125,9 @@ static bool fit(CagCall *call, bool report, CagValue *result) {
 
 bool cag_surfaces_fit_surface(CagCall *call, CagValue *result) { return fit(call, false, result); }
 
-bool cag_surfaces_fit_surface_report(CagCall *call, CagValue *result) { return fit(call, true, result); }
+bool cag_surfaces_fit_surface_report(CagCall *call, CagValue *result) {
+  return fit(call, true, result);
+}
 
 // --- Developable surfaces ---
 
@@ -157,5 +160,15 @@ bool cag_surfaces_is_developable(CagCall *call, CagValue *result) {
       worst = fmax(worst, fabs(k) * size * size);
     }
   *result = cag_bool(worst <= tolerance);
+  return true;
+}
+
+bool cag_surfaces_unroll(CagCall *call, CagValue *result) {
+  CagSurface *s, *out = NULL;
+  CagError err;
+  if (!cag_arg_surface(call, 0, &s) ||
+      !give(call, cag_surface_unroll(s, &out, &err), &err, &out, result))
+    return false;
+  cag_shape_say_alike(*result, call->values[0]);
   return true;
 }

@@ -167,12 +167,57 @@ static void offsets_and_plates(void **state) {
   cag_surface_release(s);
 }
 
+// Cylinder, cone and a ruled strip: first forms, and so lengths and areas, are kept.
+static void unrolling_keeps_lengths(void **state) {
+  (void)state;
+  CagCurve *c[3] = {NULL, NULL, NULL};
+  CagSurface *s[3] = {NULL, NULL, NULL}, *flat = NULL;
+  CagVec3 bezier[] = {{0, 0, 0}, {1, 2, 0}, {3, -1, 0}, {4, 1, 0}};
+  MUST(cag_curve_line(cag_vec3(0, 0, 4), cag_vec3(3, 0, 0), 3, &c[0], err));
+  MUST(cag_surface_revolve(c[0], cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, 2 * M_PI, &s[0], err));
+  MUST(cag_curve_bezier(bezier, NULL, 4, 3, &c[1], err));
+  MUST(cag_surface_extrude(c[1], cag_vec3(1, 0.5, 3), 0, 1, &s[1], err));
+  // A cone from a point off the curve's plane.
+  CagTransform half;
+  MUST(cag_scale(cag_vec3(0.25, 0.25, 0.25), cag_vec3(1, 1, 5), &half, err));
+  MUST(cag_curve_transform(c[1], &half, &c[2], err));
+  MUST(cag_surface_ruled(c[1], c[2], &s[2], err));
+  for (int k = 0; k < 3; k++) {
+    MUST(cag_surface_unroll(s[k], &flat, err));
+    for (int i = 0; i < 4; i++)
+      for (int j = 0; j < 4; j++) {
+        double u = inside(s[k]->u0, s[k]->u1, i), v = inside(s[k]->v0, s[k]->v1, j);
+        CagVec3 a[4], b[4];
+        MUST(cag_surface_eval(s[k], u, v, 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, a, err));
+        MUST(cag_surface_eval(flat, u, v, 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, b, err));
+        assert_near(b[0].z, 0, 0, "flat");
+        assert_near(cag_dot(b[1], b[1]), cag_dot(a[1], a[1]), 1e-9, "G");
+        assert_near(cag_dot(b[1], b[2]), cag_dot(a[1], a[2]), 1e-9, "F");
+        assert_near(cag_dot(b[2], b[2]), cag_dot(a[2], a[2]), 1e-9, "E");
+      }
+    cag_surface_release(flat);
+  }
+  // The sector of the cone of slant 5 and radius 3 spans 216 degrees.
+  MUST(cag_surface_unroll(s[0], &flat, err));
+  CagVec3 p = surface_at(flat, flat->u1, 0), q = surface_at(flat, flat->u1, 2 * M_PI);
+  assert_near(cag_norm(cag_sub(p, q)), 10 * sin(108 * M_PI / 180), 1e-9, "chord of the sector");
+  cag_surface_release(flat);
+  CagSurface *saddle = NULL;
+  MUST(cag_surface_bilinear(cag_vec3(0, 0, 0), cag_vec3(0, 1, 0), cag_vec3(1, 0, 0),
+                            cag_vec3(1, 1, 1), &saddle, err));
+  MUST_FAIL(cag_surface_unroll(saddle, &flat, err), "not-developable");
+  cag_surface_release(saddle);
+  for (int k = 0; k < 3; k++) {
+    cag_surface_release(s[k]);
+    cag_curve_release(c[k]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nets_change_and_points_stay),
-      cmocka_unit_test(parts_of_other_kinds),
-      cmocka_unit_test(joined_parts_are_the_whole),
-      cmocka_unit_test(offsets_and_plates),
+      cmocka_unit_test(nets_change_and_points_stay), cmocka_unit_test(parts_of_other_kinds),
+      cmocka_unit_test(joined_parts_are_the_whole),  cmocka_unit_test(offsets_and_plates),
+      cmocka_unit_test(unrolling_keeps_lengths),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,183 @@
+// Unrolling of developable surfaces that are straight along one parameter.
+//
+// With S(s, t) = a(t) + s r(t), the plane image is p(t) + s R(t): R has the length of r and turns
+// as r does within the tangent plane, and p moves along R and across it as a does along and across
+// r. That keeps the first fundamental form, and so all lengths, where the tangent plane is the same
+// along each ruling. The angle and the point are integrals over t, kept as series.
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/basis/chebyshev.h"
+#include "geom/basis/quadrature.h"
+#include "geom/surface/reshape.h"
+#include "geom/surface/swept.h"
+
+#define SERIES 1e-13
+#define INTEGRAL 1e-13
+// The tangent plane turns by less along a ruling of a developable surface; sine of the angle.
+#define SAME_PLANE 1e-7
+// Second derivatives along a straight direction, as a part of the first.
+#define STRAIGHT 1e-9
+
+typedef struct Unrolling {
+  const CagSurface *s;
+  int direction; // in which it is straight: 0: u
+  double s0, s1, t0, t1;
+  const CagChebyshev *angle;
+} Unrolling;
+
+static CagStatus partials(const Unrolling *w, double s, double t, CagVec3 *d, CagError *err) {
+  CagVec3 all[9];
+  CagStatus status =
+      w->direction == 0 ? cag_surface_eval(w->s, s, t, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, all, err)
+                        : cag_surface_eval(w->s, t, s, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, all, err);
+  if (status) return status;
+  bool u = w->direction == 0;
+  d[0] = all[0];
+  d[1] = all[u ? cag_partial(2, 1, 0) : cag_partial(2, 0, 1)]; // by s
+  d[2] = all[u ? cag_partial(2, 0, 1) : cag_partial(2, 1, 0)]; // by t
+  d[3] = all[cag_partial(2, 1, 1)];
+  d[4] = all[u ? cag_partial(2, 2, 0) : cag_partial(2, 0, 2)]; // by s twice
+  return CAG_OK;
+}
+
+// Unit ruling e and f, square to it in the tangent plane. The plane is taken at the end of the
+// ruling where the partials are less parallel: the other may be an apex.
+static CagStatus axes_at(const Unrolling *w, double t, CagVec3 d[5], CagVec3 *e, CagVec3 *f,
+                         CagError *err) {
+  CagVec3 far[5];
+  CagStatus status = partials(w, w->s0, t, d, err);
+  if (!status) status = partials(w, w->s1, t, far, err);
+  if (status) return status;
+  CagVec3 n0 = cag_cross(d[1], d[2]), n1 = cag_cross(far[1], far[2]);
+  CagVec3 n = cag_unit(cag_norm(n0) >= cag_norm(n1) ? n0 : n1);
+  *e = cag_unit(d[1]);
+  *f = cag_cross(n, *e);
+  return CAG_OK;
+}
+
+static CagStatus turning(void *context, double t, double *out, CagError *err) {
+  const Unrolling *w = context;
+  CagVec3 d[5], e, f;
+  CagStatus status = axes_at(w, t, d, &e, &f, err);
+  if (!status) out[0] = cag_dot(d[3], f) / cag_norm(d[1]);
+  return status;
+}
+
+static CagStatus angle_at(void *context, double t, double *out, CagError *err) {
+  Unrolling *w = context;
+  out[0] = 0;
+  if (t <= w->t0) return CAG_OK;
+  double cuts[2] = {w->t0, t};
+  return cag_integrate(turning, w, cuts, 2, 1, INTEGRAL, out, err);
+}
+
+static CagStatus walking(void *context, double t, double *out, CagError *err) {
+  const Unrolling *w = context;
+  CagVec3 d[5], e, f;
+  double angle;
+  CagStatus status = axes_at(w, t, d, &e, &f, err);
+  if (status) return status;
+  cag_chebyshev_series(w->angle, t, false, 0, &angle);
+  double along = cag_dot(d[2], e), across = cag_dot(d[2], f);
+  out[0] = along * cos(angle) - across * sin(angle);
+  out[1] = along * sin(angle) + across * cos(angle);
+  return CAG_OK;
+}
+
+// Rows of the map [s - s0, 0, 0] -> p + (s - s0) R.
+static CagStatus rows_at(void *context, double t, double *out, CagError *err) {
+  Unrolling *w = context;
+  double p[2] = {0, 0}, angle, cuts[2] = {w->t0, t};
+  CagVec3 d[5];
+  CagStatus status = partials(w, w->s0, t, d, err);
+  if (!status && t > w->t0) status = cag_integrate(walking, w, cuts, 2, 2, INTEGRAL, p, err);
+  if (status) return status;
+  cag_chebyshev_series(w->angle, t, false, 0, &angle);
+  double length = cag_norm(d[1]);
+  const double rows[12] = {
+      length * cos(angle), 0, 0, p[0], length * sin(angle), 0, 0, p[1], 0, 0, 0, 0};
+  for (int i = 0; i < 12; i++) out[i] = rows[i];
+  return CAG_OK;
+}
+
+// Odd numbers of probes miss symmetric places.
+#define PROBES 17
+
+static CagStatus is_straight(const Unrolling *w, bool *out, CagError *err) {
+  *out = true;
+  for (int i = 0; *out && i < PROBES; i++)
+    for (int j = 0; *out && j < PROBES; j++) {
+      CagVec3 d[5];
+      double s = w->s0 + (w->s1 - w->s0) * (i + 0.37) / PROBES;
+      double t = w->t0 + (w->t1 - w->t0) * (j + 0.61) / PROBES;
+      CagStatus status = partials(w, s, t, d, err);
+      if (status) return status;
+      *out = cag_norm(d[4]) * (w->s1 - w->s0) <= STRAIGHT * cag_norm(d[1]);
+    }
+  return CAG_OK;
+}
+
+static CagStatus check_planes(const Unrolling *w, CagError *err) {
+  for (int j = 0; j < PROBES; j++) {
+    CagVec3 a[5], b[5];
+    double t = w->t0 + (w->t1 - w->t0) * (j + 0.61) / PROBES;
+    CagStatus status = partials(w, w->s0 + 0.01 * (w->s1 - w->s0), t, a, err);
+    if (!status) status = partials(w, w->s1, t, b, err);
+    if (status) return status;
+    CagVec3 n = cag_unit(cag_cross(a[1], a[2])), m = cag_unit(cag_cross(b[1], b[2]));
+    char text[32];
+    if (cag_norm(cag_cross(n, m)) > SAME_PLANE)
+      return cag_fail(err, CAG_E_ARGUMENT, "not-developable", "", -1,
+                      "the surface cannot be unrolled without stretching: its tangent plane turns "
+                      "along the ruling at %c = %s",
+                      w->direction == 0 ? 'v' : 'u', cag_number_text(t, text));
+  }
+  return CAG_OK;
+}
+
+static CagStatus build(Unrolling *w, CagSurface **out, CagError *err) {
+  CagChebyshev *angle = NULL, *rows = NULL;
+  CagMotion *motion = NULL;
+  CagCurve *ruling = NULL, *shifted = NULL;
+  CagSurface *made = NULL;
+  CagStatus status =
+      cag_chebyshev_fit(angle_at, w, w->t0, w->t1, 1, SERIES, "surface", &angle, err);
+  w->angle = angle;
+  if (!status)
+    status = cag_chebyshev_fit(rows_at, w, w->t0, w->t1, 12, SERIES, "surface", &rows, err);
+  bool angular = w->direction == 0 ? w->s->angular_v : w->s->angular_u;
+  if (!status) status = cag_motion_affine(rows, w->t0, w->t1, angular, &motion, err);
+  if (!status)
+    status = cag_curve_line(cag_vec3(0, 0, 0), cag_vec3(w->s1 - w->s0, 0, 0), 2, &ruling, err);
+  if (!status) status = cag_curve_reparametrize(ruling, w->s0, w->s1, &shifted, err);
+  if (!status) status = cag_surface_sweep(shifted, motion, &made, err);
+  if (!status && w->direction == 1) {
+    status = cag_surface_transpose(made, out, err);
+    cag_surface_release(made);
+  } else if (!status) {
+    *out = made;
+  }
+  cag_curve_release(ruling);
+  cag_curve_release(shifted);
+  cag_motion_release(motion);
+  cag_chebyshev_release(rows);
+  cag_chebyshev_release(angle);
+  return status;
+}
+
+CagStatus cag_surface_unroll(const CagSurface *s, CagSurface **out, CagError *err) {
+  Unrolling u = {s, 0, s->u0, s->u1, s->v0, s->v1, NULL};
+  Unrolling v = {s, 1, s->v0, s->v1, s->u0, s->u1, NULL};
+  bool by_u, by_v;
+  CagStatus status = is_straight(&u, &by_u, err);
+  if (!status) status = is_straight(&v, &by_v, err);
+  if (status) return status;
+  if (!by_u && !by_v)
+    return cag_fail(err, CAG_E_ARGUMENT, "not-developable", "", -1,
+                    "the surface is straight along neither u nor v, so it cannot be unrolled: only "
+                    "cylinders, cones, planes and ruled surfaces can");
+  status = check_planes(by_v ? &v : &u, err);
+  return status ? status : build(by_v ? &v : &u, out, err);
+}
