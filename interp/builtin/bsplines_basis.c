@@ -326,6 +326,9 @@ bool cag_bsplines_basis_dependency(CagCall *call, CagValue *result) {
 
 // --- Refinement ---
 
+// Most numbers in the tables of one refinement: 800 MB.
+#define TABLE_MAX 1e8
+
 // knots, refined, degree, order
 bool cag_bsplines_oslo(CagCall *call, CagValue *result) {
   const double *x, *y;
@@ -339,6 +342,7 @@ bool cag_bsplines_oslo(CagCall *call, CagValue *result) {
     return cag_fail_geometry(call, &err);
   }
   const size_t m = n - (size_t)p - 1, block = (count - 1) * m;
+  if ((double)(count - 1) * (double)m * (double)(p + 1) > TABLE_MAX) return fail_memory(call);
   double *table = malloc(sizeof(double) * block * (size_t)(p + 1));
   if (!table) return fail_memory(call);
   CagBuilder *list = cag_builder_new(call->vm);
