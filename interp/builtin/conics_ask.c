@@ -1,5 +1,6 @@
 // Questions to conics, to lines by their equations, and to plane curves by their coordinates.
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "geom/basis/regression.h"
@@ -90,9 +91,10 @@ static bool read_row(CagCall *call, int argument, double row[3]) {
   const double *x;
   size_t n;
   if (!cag_arg_numbers(call, argument, &x, &n)) return false;
-  if (n != 3 || (x[0] == 0 && x[1] == 0 && x[2] == 0))
+  bool finite = n == 3 && isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]);
+  if (!finite || (x[0] == 0 && x[1] == 0 && x[2] == 0))
     return cag_fail_value(call, argument,
-                          "the 3 numbers [p, q, r] of a line p x + q y + r = 0, not all 0");
+                          "the 3 finite numbers [p, q, r] of a line p x + q y + r = 0, not all 0");
   for (int i = 0; i < 3; i++) row[i] = x[i];
   return true;
 }
