@@ -199,6 +199,20 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "flat = unroll(revolve(line([1, 0], [1, 5])))\n"
      "print near(bounds(flat).size, [5, tau, 0]) // expect: true",
      SURFACES, changed},
+    {"map_onto(G, S)", cag_surfaces_map_onto, "curve or surface",
+     "A curve or surface laid onto a surface: x and y of G are its u and v (radians where these "
+     "are "
+     "angles), z goes along its normal. Exact derivatives; what leaves the domain is an error "
+     "(parameter-range).",
+     "c = map_onto(circle(0.25, center: [0.5, 0.5]), bilinear([0, 0], [0, 8], [8, 0], [8, 8]))\n"
+     "print near(length(c), 4 * pi) // expect: true",
+     CURVES | SURFACES, changed},
+    {"remap(S, f, u = none, v = none)", cag_surfaces_remap, "surface",
+     "The surface S(f(u, v)) with other parameters: f gives the old u and v for the new ones, over "
+     "these ranges (none: those of S). Exact derivatives.",
+     "s = remap(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), (u, v) => [u^2, 1 - v])\n"
+     "print near(s(0.5, 0.25), [1, 1.5, 0]) // expect: true",
+     SURFACES, changed},
     {"offset(S, d)", cag_surfaces_offset, "surface",
      "The surface at this distance (mm) along its normals.",
      "print near(area(offset(sphere_surface(2), 1)), 36 * pi, relative: 1e-7) // expect: true",

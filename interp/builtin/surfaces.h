@@ -25,6 +25,8 @@
   X(join_surfaces) X(continuity) X(offset) X(thicken) \
   /* surfaces_fit.c */ \
   X(interpolate_surface) X(fit_surface) X(fit_surface_report) X(is_developable) X(unroll) \
+  /* surfaces_map.c */ \
+  X(map_onto) X(remap) \
   /* surfaces_patch.c */ \
   X(coons) X(coons_bicubic) X(hermite_patch) X(hermite_surface) \
   /* surfaces_net.c: of nets of points */ \
