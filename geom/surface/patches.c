@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/basis/bernstein.h"
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
 
@@ -19,6 +20,8 @@ typedef struct Coons {
 } Coons;
 
 static const CagSurfaceKind coons_kind;
+
+#define MAX_TRIANGLE 25
 
 // Corners differ when they are farther apart than this share of the patch's size.
 #define CORNER_GAP 1e-9
@@ -430,5 +433,34 @@ CagStatus cag_surface_hermite_grid(const CagHermiteGrid *g, CagSurface **out, Ca
   }
   free(vectors);
   free(numbers);
+  return status;
+}
+
+// --- Triangles ---
+
+// Row m of the tensor net is the Bezier curve of degree m of the points with i = n - m, raised to
+// n.
+CagStatus cag_surface_bezier_triangle(const CagVec3 *points, int n, CagSurface **out,
+                                      CagError *err) {
+  if (n < 1 || n > MAX_TRIANGLE)
+    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "net", -1,
+                    "`net` must have 2 to %d rows, it has %d", MAX_TRIANGLE + 1, n + 1);
+  size_t side = (size_t)n + 1;
+  double *h = malloc((side + 2) * side * 4 * sizeof *h), *knots = malloc(2 * side * sizeof *knots);
+  CagStatus status = h && knots ? CAG_OK : cag_fail_memory(err);
+  size_t at = 0;
+  double *spare = h ? h + side * side * 4 : NULL;
+  for (int m = 0; !status && m <= n; m++) {
+    double *row = h + (size_t)m * side * 4;
+    for (int k = 0; k <= m; k++) put(row, side, 0, (size_t)k, points[at++]);
+    for (int degree = m; degree < n; degree++) {
+      cag_bezier_elevate(row, degree, spare);
+      memcpy(row, spare, (size_t)(degree + 2) * 4 * sizeof *row);
+    }
+  }
+  for (size_t i = 0; !status && i < 2 * side; i++) knots[i] = i < side ? 0 : 1;
+  if (!status) status = cag_surface_from_homogeneous(h, side, side, n, n, knots, knots, out, err);
+  free(h);
+  free(knots);
   return status;
 }

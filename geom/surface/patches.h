@@ -34,4 +34,10 @@ typedef struct CagHermiteGrid {
 } CagHermiteGrid;
 CagStatus cag_surface_hermite_grid(const CagHermiteGrid *g, CagSurface **out, CagError *err);
 
+// The triangular Bezier surface of degree n from (n + 1)(n + 2) / 2 points b_ijk, i + j + k = n, in
+// order of falling i, then falling j, as the tensor patch S(u, v) with barycentric 1 - u, u (1 -
+// v), u v: exactly the same points, with the first corner as a pole at u = 0.
+CagStatus cag_surface_bezier_triangle(const CagVec3 *points, int n, CagSurface **out,
+                                      CagError *err);
+
 #endif

@@ -356,6 +356,16 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 4]]])\n"
      "print s(0.5, 0.5) // expect: [0.5, 0.5, 1]",
      LISTS, nets},
+    {"bezier_triangle(net)", cag_surfaces_bezier_triangle, "surface",
+     "The triangular Bezier surface from rows of 1, 2, 3 ... points: the first row is the corner "
+     "at "
+     "u = 0, the last the edge u = 1, along which v runs. Barycentric coordinates of u, v are 1 - "
+     "u, "
+     "u (1 - v), u v.",
+     "s = bezier_triangle([[[0, 0, 0]], [[1, 0, 1], [0, 1, 1]], [[2, 0, 0], [1, 1, 1], [0, 2, "
+     "0]]])\n"
+     "print near(s(2 / 3, 0.5), [2 / 3, 2 / 3, 2 / 3]) // expect: true",
+     LISTS, nets},
     {"bspline_surface(net, degree = [3, 3], knots = [\"open\", \"open\"], closed = [false, false], "
      "weights = none, order = none)",
      cag_surfaces_bspline_surface, "surface",

@@ -186,3 +186,31 @@ bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
   free(d.steps[1]);
   return ok;
 }
+
+// --- Triangles ---
+
+static bool read_triangle(CagCall *call, const CagList *rows, CagVec3 *out) {
+  char what[32];
+  for (size_t i = 0; i < rows->length; i++) {
+    snprintf(what, sizeof what, "in row %zu", i);
+    if (!read_line(call, 0, cag_list_get(call->vm, rows, i), what, i + 1, out)) return false;
+    out += i + 1;
+  }
+  return true;
+}
+
+bool cag_surfaces_bezier_triangle(CagCall *call, CagValue *result) {
+  CagList *rows;
+  CagSurface *s = NULL;
+  CagError err;
+  if (!cag_arg_list(call, 0, &rows)) return false;
+  size_t n = rows->length;
+  if (n > 1000) return cag_fail_value(call, 0, "at most 26 rows");
+  CagVec3 *points = malloc((n * (n + 1) / 2 + 1) * sizeof *points);
+  if (!points)
+    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  bool ok = read_triangle(call, rows, points) &&
+            give(call, cag_surface_bezier_triangle(points, (int)n - 1, &s, &err), &err, &s, result);
+  free(points);
+  return ok;
+}

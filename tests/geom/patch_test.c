@@ -250,6 +250,52 @@ static void composite_surface_nonuniform(void **state) {
   cag_surface_release(s);
 }
 
+// bezier-triangle: the vectors' points at barycentric coordinates.
+static void bezier_triangles_of_the_reference(void **state) {
+  (void)state;
+  {
+    static const CagVec3 P[] = {{2.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, {1.0, 0.0, 1.0},
+                                {0.0, 2.0, 0.0}, {0.0, 1.0, 2.0}, {0.0, 0.0, 0.0}};
+    static const CagVec3 AT[] = {{1.0, 0.0, 0.0},
+                                 {0.0, 1.0, 0.0},
+                                 {0.0, 0.0, 1.0},
+                                 {0.3333333333333333, 0.3333333333333333, 0.3333333333333333},
+                                 {0.5, 0.25, 0.25}};
+    static const CagVec3 POINT[] = {{2.0, 0.0, 0.0},
+                                    {0.0, 2.0, 0.0},
+                                    {0.0, 0.0, 0.0},
+                                    {0.6666666666666666, 0.6666666666666666, 0.8888888888888888},
+                                    {1.0, 0.5, 0.75}};
+    CagSurface *s = NULL;
+    MUST(cag_surface_bezier_triangle(P, 2, &s, err));
+    for (size_t i = 0; i < sizeof AT / sizeof *AT; i++) {
+      double u = 1 - AT[i].x, v = u > 0 ? AT[i].z / u : 0;
+      assert_point(surface_at(s, u, v), POINT[i], 1e-12, "lecture.bezier-triangle-n2");
+    }
+    assert_true(s->pole_u0);
+    cag_surface_release(s);
+  }
+  {
+    static const CagVec3 P[] = {{3.0, 0.0, 0.0}, {2.0, 1.0, 1.0}, {2.0, 0.0, 1.0}, {1.0, 2.0, 1.0},
+                                {1.0, 1.0, 3.0}, {1.0, 0.0, 1.0}, {0.0, 3.0, 0.0}, {0.0, 2.0, 1.0},
+                                {0.0, 1.0, 1.0}, {0.0, 0.0, 0.0}};
+    static const CagVec3 AT[] = {{0.2, 0.3, 0.5},
+                                 {0.3333333333333333, 0.3333333333333333, 0.3333333333333333},
+                                 {0.6, 0.4, 0.0}};
+    static const CagVec3 POINT[] = {{0.6000000000000001, 0.9, 1.2000000000000002},
+                                    {0.9999999999999998, 1.0, 1.3333333333333335},
+                                    {1.8, 1.2000000000000002, 0.7200000000000001}};
+    CagSurface *s = NULL;
+    MUST(cag_surface_bezier_triangle(P, 3, &s, err));
+    for (size_t i = 0; i < sizeof AT / sizeof *AT; i++) {
+      double u = 1 - AT[i].x, v = u > 0 ? AT[i].z / u : 0;
+      assert_point(surface_at(s, u, v), POINT[i], 1e-12, "lecture.bezier-triangle-n3");
+    }
+    assert_true(s->pole_u0);
+    cag_surface_release(s);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(coons_of_example_12),
@@ -257,6 +303,7 @@ int main(void) {
       cmocka_unit_test(adini_twists_keep_bilinear_patches),
       cmocka_unit_test(composite_surface_uniform),
       cmocka_unit_test(composite_surface_nonuniform),
+      cmocka_unit_test(bezier_triangles_of_the_reference),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
