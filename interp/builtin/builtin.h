@@ -109,7 +109,7 @@ size_t cag_builtin_count(void);            // of names
 size_t cag_builtin_find(const char *name); // (size_t)-1: none
 const char *cag_builtin_name(size_t index);
 const CagBuiltin *cag_builtin_rows(size_t index, size_t *rows); // the rows of that name
-const char *const *cag_builtin_names(void); // NULL at the end
+const char *const *cag_builtin_names(void);                     // NULL at the end
 
 // A row's signature, parsed. All signatures are parsed together when the first is asked for and
 // never change afterwards.

@@ -18,7 +18,8 @@ bool cag_program_set_params(CagVm *vm, CagModuleUnit *main, const CagDefine *def
 // statements are given to `expression` (may be NULL).
 bool cag_program_run(CagVm *vm, CagModuleUnit *main,
                      void (*expression)(CagVm *vm, CagValue v, void *context), void *context);
-// Runs the show statements of a module alone, once more: the interactive session's scene follows its definitions.
+// Runs the show statements of a module alone, once more: the interactive session's scene follows
+// its definitions.
 bool cag_program_run_shows(CagVm *vm, CagModuleUnit *m);
 
 #endif
