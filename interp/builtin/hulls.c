@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "geom/mesh/hull.h"
+#include "geom/mesh/separation.h"
 #include "geom/mesh/tessellate.h"
 #include "geom/surface/curve_on.h"
 #include "interp/builtin/shapes.h"
@@ -57,6 +58,8 @@ static CagStatus cloud_add(Cloud *cloud, const CagVec3 *points, size_t n, CagErr
 
 // How finely a shape is replaced by points of it: part of its size.
 #define HULL_TOLERANCE 1e-4
+// A point is on a boundary when it is nearer than this part of the size.
+#define BOUNDARY 1e-9
 
 static CagStatus add_curve(Cloud *cloud, const CagCurve *c, double tolerance, CagError *err) {
   CagBounds box;
@@ -173,6 +176,222 @@ static bool call_curve_on(CagCall *call, CagValue *result) {
   return true;
 }
 
+// --- Inside and apart ---
+
+// A shape as parts. Surfaces, curves and meshes that were made for it live as long as it does.
+typedef struct Body {
+  CagParts parts;
+  CagCurve **curves;
+  size_t curve_count;
+  double size;
+} Body;
+
+static void body_free(Body *b) {
+  for (size_t i = 0; i < b->curve_count; i++) cag_curve_release(b->curves[i]);
+  free(b->curves);
+  cag_parts_free(&b->parts);
+}
+
+static CagStatus body_add_curve(Body *b, const CagCurve *c, double tolerance, CagError *err) {
+  CagCurve **grown = realloc(b->curves, (b->curve_count + 1) * sizeof *grown);
+  if (!grown) return cag_fail_memory(err);
+  b->curves = grown;
+  b->curves[b->curve_count++] = cag_curve_retain(c);
+  return cag_parts_add_curve(&b->parts, c, tolerance, err);
+}
+
+static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s, double tolerance,
+                                  CagError *err) {
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  CagMesh *m;
+  const bool flat = cag_surface_planar_view(s, NULL, NULL);
+  how.tolerance = tolerance;
+  if (vm->max_triangles > 0) how.max_triangles = vm->max_triangles;
+  how.interrupt = vm->interrupt;
+  CagStatus status = cag_surface_tessellate(s, &how, &m, err);
+  if (status) return status;
+  status = cag_parts_add_mesh(&b->parts, m, flat ? NULL : s, err);
+  cag_mesh_release(m);
+  return status;
+}
+
+// The inside of a region by triangles, its edge exactly.
+static CagStatus body_add_region(const CagVm *vm, Body *b, const CagRegion *r,
+                                 const CagTransform *place, double tolerance, CagError *err) {
+  CagSurface *flat;
+  CagStatus status = cag_surface_planar(r, place, &flat, err);
+  if (status) return status;
+  status = body_add_surface(vm, b, flat, tolerance, err);
+  cag_surface_release(flat);
+  for (size_t i = 0; !status && i < r->count; i++) {
+    CagCurve *loop;
+    status = cag_curve_transform(r->loops[i], place, &loop, err);
+    if (status) break;
+    status = body_add_curve(b, loop, tolerance, err);
+    cag_curve_release(loop);
+  }
+  return status;
+}
+
+static CagStatus body_add_face(const CagVm *vm, Body *b, const CagSurface *face, double tolerance,
+                               CagError *err) {
+  const CagRegion *region;
+  CagTransform frame;
+  return cag_surface_planar_view(face, &region, &frame)
+             ? body_add_region(vm, b, region, &frame, tolerance, err)
+             : body_add_surface(vm, b, face, tolerance, err);
+}
+
+static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tolerance,
+                                CagError *err) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  CagStatus status = CAG_OK;
+  switch (v.type) {
+  case CAG_CURVE: return body_add_curve(b, shape->as.curve, tolerance, err);
+  case CAG_REGION:
+    return body_add_region(vm, b, shape->as.region, &shape->placement, tolerance, err);
+  case CAG_SURFACE: return body_add_face(vm, b, shape->as.surface, tolerance, err);
+  case CAG_MESH: return cag_parts_add_mesh(&b->parts, shape->as.mesh, NULL, err);
+  default:
+    for (size_t i = 0; !status && i < shape->as.solid->face_count; i++)
+      status = body_add_face(vm, b, shape->as.solid->faces[i], tolerance, err);
+    return status;
+  }
+}
+
+// Whether a solid or closed mesh holds p, by its mesh. Within the tolerance of the boundary the
+// mesh may be on the other side of p: there the place is asked that lies beyond p as seen from the
+// boundary, on the same side but farther from it.
+static CagStatus holds(const CagVm *vm, CagValue v, CagVec3 p, bool *inside, CagError *err) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  CagBounds box;
+  CagMesh *m;
+  Body body = {0}, point = {0};
+  double distance = 0;
+  CagVec3 foot;
+  *inside = false;
+  CagStatus status = CAG_OK;
+  if (v.type == CAG_MESH) box = cag_mesh_bounds(shape->as.mesh);
+  else status = cag_solid_bounds(shape->as.solid, &box, err);
+  if (status) return status;
+  const double size = cag_norm(cag_sub(box.max, box.min)), tolerance = HULL_TOLERANCE * size;
+  const double near = BOUNDARY * size;
+  if (p.x < box.min.x - near || p.y < box.min.y - near || p.z < box.min.z - near ||
+      p.x > box.max.x + near || p.y > box.max.y + near || p.z > box.max.z + near)
+    return CAG_OK;
+  status = body_add_shape(vm, &body, v, tolerance, err);
+  if (!status) status = cag_parts_add_point(&point.parts, p, err);
+  if (!status) status = cag_parts_distance(&point.parts, &body.parts, &distance, &foot, err);
+  body_free(&body);
+  body_free(&point);
+  if (status) return status;
+  *inside = distance <= near;
+  if (*inside) return CAG_OK;
+  if (v.type != CAG_MESH && distance < 4 * tolerance)
+    p = cag_madd(foot, 4 * tolerance / distance, cag_sub(p, foot));
+  status = mesh_of(vm, v, tolerance, &m, err);
+  if (status) return status;
+  *inside = cag_mesh_winding(m, p) > 0.5;
+  cag_mesh_release(m);
+  return CAG_OK;
+}
+
+static bool is_body(CagValue v) {
+  return v.type == CAG_SOLID ||
+         (v.type == CAG_MESH && cag_mesh_is_watertight(CAG_AS_SHAPE(v)->as.mesh, NULL));
+}
+
+static bool call_contains(CagCall *call, CagValue *result) {
+  CagVec3 p;
+  CagError err;
+  bool inside = false;
+  const CagValue v = call->values[0];
+  if (!cag_arg_vec(call, 1, &p, NULL)) return false;
+  if (!is_body(v))
+    return cag_fail_call(call, 0, CAG_ERR_value,
+                         "expects a closed mesh; this one has an open edge and no inside");
+  if (!cag_geometry_ok(call, holds(call->vm, v, p, &inside, &err), &err)) return false;
+  *result = cag_bool(inside);
+  return true;
+}
+
+// One side of a distance: a point or shapes.
+typedef struct Side {
+  bool point;
+  CagVec3 p;
+  const CagList *shapes;
+  Body body;
+} Side;
+
+static bool read_side(CagCall *call, int argument, Side *out) {
+  const CagValue v = call->values[argument];
+  CagBounds box;
+  int dimension;
+  *out = (Side){.point = !cag_is_shape(v) && !is_list_of_shapes(call->vm, v)};
+  if (out->point) return cag_arg_vec(call, argument, &out->p, NULL);
+  CagBuilder *builder = cag_builder_new(call->vm);
+  if (!cag_shapes_collect(call, v, builder)) return false;
+  out->shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  if (!cag_value_bounds(call, v, &box, &dimension)) return false;
+  out->body.size = cag_norm(cag_sub(box.max, box.min));
+  return true;
+}
+
+static CagStatus fill_side(CagVm *vm, Side *side, CagError *err) {
+  CagStatus status = CAG_OK;
+  if (side->point) return cag_parts_add_point(&side->body.parts, side->p, err);
+  for (size_t i = 0; !status && i < side->shapes->length; i++)
+    status = body_add_shape(vm, &side->body, cag_list_get(vm, side->shapes, i),
+                            HULL_TOLERANCE * side->body.size, err);
+  return status;
+}
+
+// Whether a body of the first holds any shape of the second. Where surfaces do not meet one point
+// of each shape tells.
+static CagStatus swallows(CagVm *vm, const Side *outer, const Side *inner, bool *yes,
+                          CagError *err) {
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && !*yes && !outer->point && i < outer->shapes->length; i++) {
+    const CagValue v = cag_list_get(vm, outer->shapes, i);
+    if (!is_body(v)) continue;
+    for (size_t k = 0; !status && !*yes && (inner->point ? k < 1 : k < inner->shapes->length);
+         k++) {
+      Body one = {0};
+      if (inner->point) status = cag_parts_add_point(&one.parts, inner->p, err);
+      else
+        status = body_add_shape(vm, &one, cag_list_get(vm, inner->shapes, k),
+                                HULL_TOLERANCE * inner->body.size, err);
+      if (!status && one.parts.n) status = holds(vm, v, one.parts.items[0].p[0], yes, err);
+      body_free(&one);
+    }
+  }
+  return status;
+}
+
+static CagStatus measure(CagVm *vm, Side side[2], double *out, CagError *err) {
+  bool within = false;
+  CagStatus status = fill_side(vm, &side[0], err);
+  if (!status) status = fill_side(vm, &side[1], err);
+  if (!status)
+    status = cag_parts_distance(&side[0].body.parts, &side[1].body.parts, out, NULL, err);
+  if (status || *out == 0) return status;
+  status = swallows(vm, &side[0], &side[1], &within, err);
+  if (!status && !within) status = swallows(vm, &side[1], &side[0], &within, err);
+  if (within) *out = 0;
+  return status;
+}
+
+static bool call_distance(CagCall *call, CagValue *result) {
+  Side side[2] = {0};
+  CagError err;
+  double distance = 0;
+  bool ok = read_side(call, 0, &side[0]) && read_side(call, 1, &side[1]) &&
+            cag_geometry_ok(call, measure(call->vm, side, &distance, &err), &err);
+  for (int i = 0; i < 2; i++) body_free(&side[i].body);
+  if (ok) *result = cag_number(distance);
+  return ok;
+}
+
 const CagBuiltin cag_builtins_hulls[] = {
     {"convex_hull(points)", call_convex_hull, "region or mesh",
      "The smallest convex shape that holds all points: of points of the plane a region, "
@@ -194,4 +413,20 @@ const CagBuiltin cag_builtins_hulls[] = {
      "c = curve_on(torus_surface(5, 1), line([0, 0], [tau, 3 * tau]))\n"
      "print is_closed(c), length(c) > 3 * tau // expect: true true",
      CAG_TAKES(SURFACE), "Curves: made"},
+    {"contains(G, P)", call_contains, "bool",
+     "Whether a solid or closed mesh contains P; its boundary, to 1e-9 of its size, belongs to it. "
+     "Solids are asked exactly but for walls and gaps thinner than 1e-3 of their size.",
+     "print contains(sphere(2), [0, 0, 1.999]), contains(box(1), [1, 1, 1.001]) // expect: true "
+     "false",
+     CAG_TAKES(SOLID) | CAG_TAKES(MESH), "Solids: measures"},
+    {"distance(G, P)", call_distance, "number",
+     "The least distance (mm) of a shape or group from a point or another shape; 0 where they "
+     "meet, and within a solid or closed mesh. It is that of the exact shapes, not of their "
+     "meshes, by Newton's method from the nearest places of their meshes; where several places "
+     "are equally near to 1e-4 of the size, it may be that of any of them. `distance(P, G)` is the "
+     "same.",
+     "print near(distance(sphere(2), translate(sphere(1), [5, 0, 0])), 2) // expect: true\n"
+     "print near(distance([0, 0, 5], torus(3, 1)), sqrt(34) - 1) // expect: true\n"
+     "print distance(box(2), [1, 1, 1]) // expect: 0",
+     CAG_TAKES_SHAPES, "Solids: measures"},
     {0}};

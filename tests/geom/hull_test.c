@@ -2,6 +2,9 @@
 
 #include "geom/mesh/hull.h"
 #include "geom/mesh/predicates.h"
+#include "geom/mesh/separation.h"
+#include "geom/mesh/tessellate.h"
+#include "geom/surface/curve_on.h"
 #include "support.h"
 
 static CagMesh *hull_of(const CagVec3 *points, size_t n) {
@@ -132,6 +135,77 @@ static void flat_sets_have_no_solid(void **state) {
   assert_int_equal(err.index, 7);
 }
 
+static void curves_on_a_torus_have_the_derivatives_of_its_formula(void **state) {
+  (void)state;
+  // u = a t, v = b t on [(R + r cos v) cos u, (R + r cos v) sin u, r sin v]: sums of waves.
+  const double major = 5, minor = 1, a = 2, b = 3;
+  CagSurface *s;
+  CagCurve *line, *c;
+  OK(cag_surface_torus(major, minor, &s, &err));
+  OK(cag_curve_line(cag_vec3(0, 0, 0), cag_vec3(2 * M_PI * a, 2 * M_PI * b, 0), 2, &line, &err));
+  CagCurve *timed;
+  OK(cag_curve_reparametrize(line, 0, 2 * M_PI, &timed, &err));
+  OK(cag_curve_on_surface(s, timed, &c, &err));
+  assert_true(c->closed);
+  CagVec3 d[4];
+  for (int i = 0; i < 40; i++) {
+    const double t = 0.157 * i, wave[3] = {a, a + b, a - b};
+    const double size[3] = {major, minor / 2, minor / 2};
+    OK(cag_curve_eval(c, t, 3, CAG_SIDE_RIGHT, d, &err));
+    for (int k = 0; k <= 3; k++) {
+      CagVec3 want = cag_vec3(0, 0, pow(b, k) * minor * sin(b * t + k * M_PI / 2));
+      for (int w = 0; w < 3; w++) {
+        want.x += size[w] * pow(wave[w], k) * cos(wave[w] * t + k * M_PI / 2);
+        want.y += size[w] * pow(wave[w], k) * sin(wave[w] * t + k * M_PI / 2);
+      }
+      near_vec(d[k], want, 1e-11);
+    }
+  }
+  CagCurve *far;
+  OK(cag_curve_line(cag_vec3(0, 0, 0), cag_vec3(0, 0, 1), 3, &far, &err));
+  FAILS(cag_curve_on_surface(s, far, &c, &err), "not-planar");
+  cag_curve_release(far);
+  cag_curve_release(line);
+  cag_curve_release(timed);
+  cag_curve_release(c);
+  cag_surface_release(s);
+}
+
+static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state) {
+  (void)state;
+  CagSurface *s, *moved;
+  CagMesh *m;
+  CagParts a = {0}, b = {0};
+  double distance;
+  CagVec3 foot;
+  const CagTransform lift = cag_translate(cag_vec3(0, 0, 7));
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  how.tolerance = 0.01;
+  OK(cag_surface_torus(5, 1, &s, &err));
+  OK(cag_surface_transform(s, &lift, &moved, &err));
+  OK(cag_surface_tessellate(s, &how, &m, &err));
+  OK(cag_parts_add_mesh(&a, m, s, &err));
+  NEAR(cag_mesh_winding(m, cag_vec3(5, 0, 0.3)), 1, 1e-9);
+  NEAR(cag_mesh_winding(m, cag_vec3(0, 0, 0.3)), 0, 1e-9);
+  cag_mesh_release(m);
+  OK(cag_surface_tessellate(moved, &how, &m, &err));
+  OK(cag_parts_add_mesh(&b, m, moved, &err));
+  OK(cag_parts_distance(&a, &b, &distance, &foot, &err));
+  NEAR(distance, 5, 1e-12);
+  NEAR(foot.z, 6, 1e-9);
+  NEAR(hypot(foot.x, foot.y), 5, 1e-7);
+  cag_parts_free(&b);
+  b = (CagParts){0};
+  OK(cag_parts_add_point(&b, cag_vec3(8, 0, 4), &err));
+  OK(cag_parts_distance(&a, &b, &distance, NULL, &err));
+  NEAR(distance, 4, 1e-12); // 3-4-5
+  cag_parts_free(&a);
+  cag_parts_free(&b);
+  cag_mesh_release(m);
+  cag_surface_release(s);
+  cag_surface_release(moved);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sides_are_exact),
@@ -139,6 +213,8 @@ int main(void) {
       cmocka_unit_test(boxes_of_grids_have_eight_corners),
       cmocka_unit_test(hulls_hold_all_points),
       cmocka_unit_test(flat_sets_have_no_solid),
+      cmocka_unit_test(curves_on_a_torus_have_the_derivatives_of_its_formula),
+      cmocka_unit_test(tori_are_as_far_apart_as_their_circles_less_their_tubes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,443 @@
+// Distances of shapes.
+//
+// Two trees of boxes are walked together for the pairs of chords and triangles that are nearest;
+// from these Newton's method, damped and kept within bounds, finds the nearest points of the exact
+// shapes.
+
+#include "geom/mesh/separation.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/mesh/distance.h"
+
+// Pairs from which the exact search starts: neighbours share their nearest point, so that several
+// are needed for each place.
+#define CANDIDATES 24
+#define LEAF 4
+#define ROUNDS 100
+// Shapes nearer than this part of their size meet.
+#define TOUCHING 1e-10
+
+// --- Parts ---
+
+static CagStatus push(CagParts *parts, CagPart part, CagError *err) {
+  if (parts->n == parts->capacity) {
+    const size_t capacity = parts->capacity ? 2 * parts->capacity : 64;
+    CagPart *grown = realloc(parts->items, capacity * sizeof *grown);
+    if (!grown) return cag_fail_memory(err);
+    parts->items = grown;
+    parts->capacity = capacity;
+  }
+  parts->items[parts->n++] = part;
+  return CAG_OK;
+}
+
+void cag_parts_free(CagParts *parts) { free(parts->items); }
+
+CagStatus cag_parts_add_point(CagParts *parts, CagVec3 p, CagError *err) {
+  return push(parts, (CagPart){.p = {p, p, p}}, err);
+}
+
+CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double tolerance, CagError *err) {
+  const double turn = 0.3; // radians
+  double *t = NULL;
+  size_t n = 0;
+  CagVec3 before = {0, 0, 0}, p;
+  CagStatus status = cag_curve_discretize(c, tolerance, turn, &t, &n, err);
+  for (size_t i = 0; !status && i < n; i++) {
+    status = cag_curve_point(c, t[i], &p, err);
+    if (!status && i > 0)
+      status = push(parts,
+                    (CagPart){.p = {before, p, p},
+                              .curve = c,
+                              .at = {(t[i - 1] + t[i]) / 2, 0},
+                              .low = {t[i - 1], 0},
+                              .high = {t[i], 0}},
+                    err);
+    before = p;
+  }
+  free(t);
+  return status;
+}
+
+CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface *surface,
+                             CagError *err) {
+  CagStatus status = CAG_OK;
+  const bool exact = surface && m->uv;
+  for (size_t t = 0; !status && t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    CagPart part = {.flat = !exact, .at = {0.5, 0.5}, .high = {1, 1}};
+    for (int i = 0; i < 3; i++) part.p[i] = m->positions[k[i]];
+    if (exact) {
+      part.surface = surface;
+      for (int x = 0; x < 2; x++)
+        part.at[x] = (m->uv[2 * k[0] + x] + m->uv[2 * k[1] + x] + m->uv[2 * k[2] + x]) / 3;
+      part.low[0] = surface->u0, part.high[0] = surface->u1;
+      part.low[1] = surface->v0, part.high[1] = surface->v1;
+    }
+    status = push(parts, part, err);
+  }
+  return status;
+}
+
+// --- Chords and triangles ---
+
+static double segments(CagVec3 p, CagVec3 q, CagVec3 r, CagVec3 s) {
+  const CagVec3 a = cag_sub(q, p), b = cag_sub(s, r), w = cag_sub(p, r);
+  const double aa = cag_dot(a, a), bb = cag_dot(b, b), ab = cag_dot(a, b);
+  const double det = aa * bb - ab * ab, aw = cag_dot(a, w), bw = cag_dot(b, w);
+  double nearest = fmin(fmin(cag_distance_to_segment(p, r, s), cag_distance_to_segment(q, r, s)),
+                        fmin(cag_distance_to_segment(r, p, q), cag_distance_to_segment(s, p, q)));
+  if (!(det > 0)) return nearest;
+  const double x = (ab * bw - bb * aw) / det, y = (aa * bw - ab * aw) / det;
+  if (x > 0 && x < 1 && y > 0 && y < 1)
+    nearest = fmin(nearest, cag_norm(cag_sub(cag_madd(p, x, a), cag_madd(r, y, b))));
+  return nearest;
+}
+
+static bool pierces(CagVec3 p, CagVec3 q, const CagVec3 t[3]) {
+  const CagVec3 n = cag_cross(cag_sub(t[1], t[0]), cag_sub(t[2], t[0]));
+  const double a = cag_dot(n, cag_sub(p, t[0])), b = cag_dot(n, cag_sub(q, t[0]));
+  if (!((a < 0 && b > 0) || (a > 0 && b < 0))) return false;
+  const CagVec3 x = cag_lerp(p, q, a / (a - b));
+  for (int i = 0; i < 3; i++)
+    if (cag_dot(cag_cross(cag_sub(t[(i + 1) % 3], t[i]), cag_sub(x, t[i])), n) < 0) return false;
+  return true;
+}
+
+static double chord_distance(const CagPart *a, const CagPart *b) {
+  double nearest = INFINITY;
+  for (int i = 0; i < 3; i++) {
+    const int next = (i + 1) % 3;
+    if (pierces(a->p[i], a->p[next], b->p) || pierces(b->p[i], b->p[next], a->p)) return 0;
+    nearest = fmin(nearest, cag_distance_to_triangle(a->p[i], b->p[0], b->p[1], b->p[2]));
+    nearest = fmin(nearest, cag_distance_to_triangle(b->p[i], a->p[0], a->p[1], a->p[2]));
+    for (int k = 0; k < 3; k++)
+      nearest = fmin(nearest, segments(a->p[i], a->p[next], b->p[k], b->p[(k + 1) % 3]));
+  }
+  return nearest;
+}
+
+// --- Trees of boxes ---
+
+typedef struct Node {
+  CagBounds box;
+  size_t first, count; // parts by `order`
+  size_t left;         // children left and left + 1; 0: a leaf
+} Node;
+
+typedef struct Tree {
+  const CagParts *parts;
+  size_t *order;
+  Node *nodes;
+  size_t n;
+} Tree;
+
+static double coordinate(CagVec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+static CagBounds box_of(const Tree *t, size_t first, size_t count) {
+  CagBounds box = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; i < count; i++)
+    for (int k = 0; k < 3; k++) cag_bounds_add(&box, t->parts->items[t->order[first + i]].p[k]);
+  return box;
+}
+
+// Parts below the middle of the box first; halves by number where all are on one side.
+static size_t divide(Tree *t, const Node *node) {
+  const CagVec3 size = cag_sub(node->box.max, node->box.min);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const double middle = (coordinate(node->box.min, axis) + coordinate(node->box.max, axis)) / 2;
+  size_t low = 0;
+  for (size_t i = 0; i < node->count; i++) {
+    size_t *at = t->order + node->first;
+    const CagPart *part = &t->parts->items[at[i]];
+    const double x = (coordinate(part->p[0], axis) + coordinate(part->p[1], axis) +
+                      coordinate(part->p[2], axis)) /
+                     3;
+    if (x >= middle) continue;
+    const size_t swap = at[i];
+    at[i] = at[low];
+    at[low++] = swap;
+  }
+  return low == 0 || low == node->count ? node->count / 2 : low;
+}
+
+static CagStatus grow_tree(const CagParts *parts, Tree *t, CagError *err) {
+  *t = (Tree){.parts = parts, .n = 1};
+  t->order = malloc(parts->n * sizeof *t->order);
+  t->nodes = malloc(2 * parts->n * sizeof *t->nodes);
+  if (!t->order || !t->nodes) return cag_fail_memory(err);
+  for (size_t i = 0; i < parts->n; i++) t->order[i] = i;
+  t->nodes[0] = (Node){box_of(t, 0, parts->n), 0, parts->n, 0};
+  for (size_t i = 0; i < t->n; i++) {
+    Node *node = &t->nodes[i];
+    if (node->count <= LEAF) continue;
+    const size_t low = divide(t, node), rest = node->count - low;
+    node->left = t->n;
+    t->nodes[t->n++] = (Node){box_of(t, node->first, low), node->first, low, 0};
+    t->nodes[t->n++] = (Node){box_of(t, node->first + low, rest), node->first + low, rest, 0};
+  }
+  return CAG_OK;
+}
+
+static double gap(const CagBounds *a, const CagBounds *b) {
+  const double x = fmax(0, fmax(a->min.x - b->max.x, b->min.x - a->max.x));
+  const double y = fmax(0, fmax(a->min.y - b->max.y, b->min.y - a->max.y));
+  const double z = fmax(0, fmax(a->min.z - b->max.z, b->min.z - a->max.z));
+  return sqrt(x * x + y * y + z * z);
+}
+
+// The nearest pairs so far, ascending.
+typedef struct Nearest {
+  size_t n;
+  double distance[CANDIDATES];
+  const CagPart *a[CANDIDATES], *b[CANDIDATES];
+} Nearest;
+
+static double worst(const Nearest *s) {
+  return s->n < CANDIDATES ? INFINITY : s->distance[CANDIDATES - 1];
+}
+
+static void keep(Nearest *s, double d, const CagPart *a, const CagPart *b) {
+  if (d >= worst(s)) return;
+  size_t i = s->n < CANDIDATES ? s->n++ : CANDIDATES - 1;
+  for (; i > 0 && s->distance[i - 1] > d; i--) {
+    s->distance[i] = s->distance[i - 1];
+    s->a[i] = s->a[i - 1];
+    s->b[i] = s->b[i - 1];
+  }
+  s->distance[i] = d;
+  s->a[i] = a;
+  s->b[i] = b;
+}
+
+static void walk(const Tree *a, size_t i, const Tree *b, size_t k, Nearest *s) {
+  const Node *x = &a->nodes[i], *y = &b->nodes[k];
+  if (gap(&x->box, &y->box) >= worst(s) || (s->n && s->distance[0] == 0)) return;
+  if (!x->left && !y->left) {
+    for (size_t m = 0; m < x->count; m++)
+      for (size_t n = 0; n < y->count; n++) {
+        const CagPart *p = &a->parts->items[a->order[x->first + m]];
+        const CagPart *q = &b->parts->items[b->order[y->first + n]];
+        keep(s, chord_distance(p, q), p, q);
+      }
+    return;
+  }
+  const bool first = x->left && (!y->left || x->count >= y->count);
+  const Node *child = first ? &a->nodes[x->left] : &b->nodes[y->left];
+  const CagBounds *other = first ? &y->box : &x->box;
+  const size_t nearer = gap(&child[1].box, other) < gap(&child[0].box, other);
+  for (size_t turn = 0; turn < 2; turn++) {
+    const size_t c = turn ? 1 - nearer : nearer;
+    if (first) walk(a, x->left + c, b, k, s);
+    else walk(a, i, b, y->left + c, s);
+  }
+}
+
+// --- Nearest points of exact shapes ---
+
+typedef struct Place {
+  CagVec3 p, d[2], dd[3]; // point, first derivatives, second: 00, 01, 11
+} Place;
+
+static int freedom(const CagPart *part) {
+  return part->curve ? 1 : part->surface || part->flat ? 2 : 0;
+}
+
+static CagStatus look(const CagPart *part, const double *x, Place *out, CagError *err) {
+  *out = (Place){.p = part->p[0]};
+  if (part->curve) {
+    CagVec3 d[3];
+    const CagSide side = x[0] >= part->high[0] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+    CagStatus status = cag_curve_eval(part->curve, x[0], 2, side, d, err);
+    if (status) return status;
+    *out = (Place){.p = d[0], .d = {d[1]}, .dd = {d[2]}};
+  } else if (part->surface) {
+    CagVec3 d[9];
+    CagStatus status =
+        cag_surface_eval(part->surface, x[0], x[1], 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err);
+    if (status) return status;
+    *out = (Place){d[0],
+                   {d[cag_partial(2, 1, 0)], d[cag_partial(2, 0, 1)]},
+                   {d[cag_partial(2, 2, 0)], d[cag_partial(2, 1, 1)], d[cag_partial(2, 0, 2)]}};
+  } else if (part->flat) {
+    // (1 - s) p0 + s ((1 - t) p1 + t p2), which fills the triangle from the unit square
+    const CagVec3 far = cag_lerp(part->p[1], part->p[2], x[1]);
+    const CagVec3 across = cag_sub(part->p[2], part->p[1]);
+    out->p = cag_lerp(part->p[0], far, x[0]);
+    out->d[0] = cag_sub(far, part->p[0]);
+    out->d[1] = cag_scaled(across, x[0]);
+    out->dd[1] = across;
+  }
+  return CAG_OK;
+}
+
+typedef struct Pair {
+  const CagPart *part[2];
+  int free[2], n; // parameters of each, of both
+  double x[4];
+} Pair;
+
+typedef struct Slope {
+  double value; // half the square of the distance
+  double g[4], h[4][4], scale[4];
+} Slope;
+
+static CagStatus slope(const Pair *pair, const double *x, Slope *out, CagError *err) {
+  Place place[2];
+  CagVec3 d[4];
+  CagStatus status = look(pair->part[0], x, &place[0], err);
+  if (!status) status = look(pair->part[1], x + pair->free[0], &place[1], err);
+  if (status) return status;
+  const CagVec3 r = cag_sub(place[0].p, place[1].p);
+  *out = (Slope){.value = cag_dot(r, r) / 2};
+  for (int side = 0, at = 0; side < 2; at += pair->free[side++])
+    for (int i = 0; i < pair->free[side]; i++)
+      d[at + i] = cag_scaled(place[side].d[i], side ? -1 : 1);
+  for (int i = 0; i < pair->n; i++) {
+    out->g[i] = cag_dot(r, d[i]);
+    out->scale[i] = cag_dot(d[i], d[i]);
+    for (int k = 0; k < pair->n; k++) out->h[i][k] = cag_dot(d[i], d[k]);
+  }
+  for (int side = 0, at = 0; side < 2; at += pair->free[side++])
+    for (int i = 0; i < pair->free[side]; i++)
+      for (int k = 0; k < pair->free[side]; k++)
+        out->h[at + i][at + k] += (side ? -1 : 1) * cag_dot(r, place[side].dd[i + k]);
+  return CAG_OK;
+}
+
+static void limits(const Pair *pair, int i, double *low, double *high, bool *ring) {
+  const int side = i >= pair->free[0], k = side ? i - pair->free[0] : i;
+  const CagPart *part = pair->part[side];
+  *low = part->low[k];
+  *high = part->high[k];
+  *ring = part->surface && (k == 0 ? part->surface->closed_u : part->surface->closed_v);
+}
+
+// Solves (h + damping scale) d = -g for the free parameters (Cholesky); false: not positive.
+static bool solve(const Slope *s, const bool *fixed, int n, double damping, double *d) {
+  double l[4][4] = {{0}}, y[4];
+  for (int i = 0; i < n; i++) {
+    for (int k = 0; k <= i; k++) {
+      double sum = fixed[i] || fixed[k] ? (double)(i == k) : s->h[i][k];
+      if (i == k && !fixed[i]) sum += damping * s->scale[i] + 1e-300;
+      for (int m = 0; m < k; m++) sum -= l[i][m] * l[k][m];
+      if (i != k) l[i][k] = sum / l[k][k];
+      else if (sum > 0) l[i][i] = sqrt(sum);
+      else return false;
+    }
+    y[i] = fixed[i] ? 0 : -s->g[i];
+    for (int m = 0; m < i; m++) y[i] -= l[i][m] * y[m];
+    y[i] /= l[i][i];
+  }
+  for (int i = n - 1; i >= 0; i--) {
+    d[i] = y[i];
+    for (int m = i + 1; m < n; m++) d[i] -= l[m][i] * d[m];
+    d[i] /= l[i][i];
+  }
+  return true;
+}
+
+static void advance(const Pair *pair, const double *d, double *x) {
+  for (int i = 0; i < pair->n; i++) {
+    double low, high;
+    bool ring;
+    limits(pair, i, &low, &high, &ring);
+    x[i] = pair->x[i] + d[i];
+    if (ring) x[i] -= (high - low) * floor((x[i] - low) / (high - low));
+    x[i] = fmin(fmax(x[i], low), high);
+  }
+}
+
+// The distance at the local minimum that the pair leads to, and its point of the second shape.
+static CagStatus refine(Pair *pair, double *out, CagVec3 *point, CagError *err) {
+  Slope here, there;
+  double damping = 1e-6;
+  CagStatus status = slope(pair, pair->x, &here, err);
+  for (int round = 0; !status && pair->n && round < ROUNDS && damping < 1e12; round++) {
+    bool fixed[4];
+    double d[4], x[4];
+    for (int i = 0; i < pair->n; i++) {
+      double low, high;
+      bool ring;
+      limits(pair, i, &low, &high, &ring);
+      fixed[i] =
+          !ring && ((pair->x[i] <= low && here.g[i] > 0) || (pair->x[i] >= high && here.g[i] < 0));
+    }
+    if (!solve(&here, fixed, pair->n, damping, d)) {
+      damping = fmax(damping * 10, 1e-3);
+      continue;
+    }
+    advance(pair, d, x);
+    status = slope(pair, x, &there, err);
+    if (status) break;
+    if (!(there.value < here.value)) {
+      damping = fmax(damping * 10, 1e-6);
+      continue;
+    }
+    memcpy(pair->x, x, sizeof x);
+    here = there;
+    damping /= 10;
+  }
+  if (status) return status;
+  Place place;
+  *out = sqrt(2 * here.value);
+  status = look(pair->part[1], pair->x + pair->free[0], &place, err);
+  *point = place.p;
+  return status;
+}
+
+CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, double *out, CagVec3 *point,
+                             CagError *err) {
+  Tree first = {0}, second = {0};
+  Nearest nearest = {.n = 0};
+  double best = INFINITY, size = 0;
+  CagStatus status = grow_tree(a, &first, err);
+  if (!status) status = grow_tree(b, &second, err);
+  if (!status) {
+    walk(&first, 0, &second, 0, &nearest);
+    const CagBounds *box[2] = {&first.nodes[0].box, &second.nodes[0].box};
+    for (int i = 0; i < 2; i++) size = fmax(size, cag_norm(cag_sub(box[i]->max, box[i]->min)));
+  }
+  const bool meet = nearest.n && nearest.distance[0] == 0;
+  for (size_t i = 0; !status && !meet && i < nearest.n; i++) {
+    Pair pair = {.part = {nearest.a[i], nearest.b[i]}};
+    double d = INFINITY;
+    CagVec3 p;
+    for (int side = 0; side < 2; side++) {
+      pair.free[side] = freedom(pair.part[side]);
+      for (int k = 0; k < pair.free[side]; k++) pair.x[pair.n++] = pair.part[side]->at[k];
+    }
+    status = refine(&pair, &d, &p, err);
+    // Flat pairs are exact as they are.
+    const bool flat = !nearest.a[i]->curve && !nearest.a[i]->surface && !nearest.b[i]->curve &&
+                      !nearest.b[i]->surface;
+    if (!status && flat) d = nearest.distance[i];
+    if (status || d >= best) continue;
+    best = d;
+    if (point) *point = p;
+  }
+  free(first.order);
+  free(first.nodes);
+  free(second.order);
+  free(second.nodes);
+  if (!status) *out = meet || best <= TOUCHING * size ? 0 : best;
+  return status;
+}
+
+// --- Inside ---
+
+// Solid angles (van Oosterom, Strackee 1983), over 4 pi.
+double cag_mesh_winding(const CagMesh *m, CagVec3 p) {
+  double sum = 0;
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    const CagVec3 a = cag_sub(m->positions[k[0]], p), b = cag_sub(m->positions[k[1]], p);
+    const CagVec3 c = cag_sub(m->positions[k[2]], p);
+    const double x = cag_norm(a), y = cag_norm(b), z = cag_norm(c);
+    sum += atan2(cag_dot(a, cag_cross(b, c)),
+                 x * y * z + cag_dot(a, b) * z + cag_dot(b, c) * x + cag_dot(c, a) * y);
+  }
+  return sum / (2 * M_PI);
+}

@@ -1,0 +1,40 @@
+// How far two shapes are apart, and whether a point is within a closed mesh.
+
+#ifndef CAG_GEOM_MESH_SEPARATION_H
+#define CAG_GEOM_MESH_SEPARATION_H
+
+#include "geom/mesh/mesh.h"
+#include "geom/surface/surface.h"
+
+// Small parts of a shape: points, chords of curves, triangles of exact surfaces, flat triangles.
+typedef struct CagPart {
+  CagVec3 p[3];              // corners; fewer are repeated
+  const CagCurve *curve;     // borrowed; the part over [low[0], high[0]]
+  const CagSurface *surface; // borrowed
+  bool flat;                 // the triangle itself
+  double at[2];              // parameters within the part
+  double low[2], high[2];    // where the search may go
+} CagPart;
+
+typedef struct CagParts {
+  CagPart *items;
+  size_t n, capacity;
+} CagParts;
+
+CagStatus cag_parts_add_point(CagParts *parts, CagVec3 p, CagError *err);
+CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double tolerance, CagError *err);
+// The mesh of a surface, which has its parameters; surface NULL: the mesh is the shape.
+CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface *surface,
+                             CagError *err);
+void cag_parts_free(CagParts *parts);
+
+// The least distance of two non-empty sets of parts; 0 where they meet. Parts are compared by their
+// chords and flat triangles, and the nearest pairs then on the exact shapes (Newton's method).
+// `point`: of b, where they do not meet; may be NULL.
+CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, double *out, CagVec3 *point,
+                             CagError *err);
+
+// How often a closed mesh winds about p: 1 inside, 0 outside, fractions on the boundary only.
+double cag_mesh_winding(const CagMesh *m, CagVec3 p);
+
+#endif
