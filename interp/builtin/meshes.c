@@ -27,15 +27,17 @@ static bool read_mesh(CagCall *call, const CagMesh **m) {
 
 // --- From lists ---
 
-// Faces as counts and indices; both arrays are to be freed even when the call fails.
-static bool read_faces(CagCall *call, const CagList *faces, size_t vertices, uint32_t **counts,
-                       uint32_t **indices) {
+bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **counts,
+                   uint32_t **indices, size_t *count) {
+  CagList *faces;
   size_t total = 0, at = 0;
+  if (!cag_arg_list(call, argument, &faces)) return false;
+  *count = faces->length;
   for (size_t i = 0; i < faces->length; i++) {
     const double *x;
     size_t n;
     if (!cag_as_vector(cag_list_get(call->vm, faces, i), &x, &n) || n < 3)
-      return cag_fail_call(call, 1, CAG_ERR_type,
+      return cag_fail_call(call, argument, CAG_ERR_type,
                            "expects 3 or more numbers of vertices in each face; faces[%zu] has not",
                            i);
     total += n;
@@ -51,7 +53,7 @@ static bool read_faces(CagCall *call, const CagList *faces, size_t vertices, uin
     (*counts)[i] = (uint32_t)n;
     for (size_t k = 0; k < n; k++) {
       if (x[k] < 0 || x[k] >= (double)vertices || x[k] != floor(x[k]))
-        return cag_fail_call(call, 1, CAG_ERR_value,
+        return cag_fail_call(call, argument, CAG_ERR_value,
                              "expects whole numbers below %zu, the count of vertices; found %g at "
                              "faces[%zu][%zu]",
                              vertices, x[k], i, k);
@@ -63,15 +65,14 @@ static bool read_faces(CagCall *call, const CagList *faces, size_t vertices, uin
 
 bool cag_solids_mesh(CagCall *call, CagValue *result) {
   CagVec3 *vertices = NULL;
-  size_t n;
-  CagList *faces;
+  size_t n, faces = 0;
   uint32_t *counts = NULL, *indices = NULL;
   CagMesh *m = NULL;
   CagError err;
-  if (!cag_arg_list(call, 1, &faces) || !cag_arg_points(call, 0, &vertices, &n, NULL)) return false;
-  bool ok = read_faces(call, faces, n, &counts, &indices);
+  if (!cag_arg_points(call, 0, &vertices, &n, NULL)) return false;
+  bool ok = cag_arg_faces(call, 1, n, &counts, &indices, &faces);
   if (ok) {
-    CagStatus status = cag_mesh_from_faces(vertices, n, indices, counts, faces->length, &m, &err);
+    CagStatus status = cag_mesh_from_faces(vertices, n, indices, counts, faces, &m, &err);
     ok = give(call, status, &err, &m, result);
   }
   free(vertices);

@@ -44,6 +44,9 @@ CAG_SURFACE_FUNCTIONS(X)
 
 // A surface, or the side of a solid that a section sweeps; borrowed.
 bool cag_arg_side(CagCall *call, int argument, CagSurface **out);
+// Reads the net of a triangular Bezier surface, rows of 1, 2, 3 ... points; *net is malloc'd.
+#define CAG_TRIANGLE_ROWS 1000
+bool cag_arg_triangle(CagCall *call, int argument, CagVec3 **net, int *degree);
 // Reads u and v of a surface from the parameters `at` and the next.
 bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v);
 

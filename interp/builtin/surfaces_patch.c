@@ -189,28 +189,41 @@ bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
 
 // --- Triangles ---
 
-static bool read_triangle(CagCall *call, const CagList *rows, CagVec3 *out) {
+static bool read_triangle(CagCall *call, int argument, const CagList *rows, CagVec3 *out) {
   char what[32];
   for (size_t i = 0; i < rows->length; i++) {
     snprintf(what, sizeof what, "in row %zu", i);
-    if (!read_line(call, 0, cag_list_get(call->vm, rows, i), what, i + 1, out)) return false;
+    if (!read_line(call, argument, cag_list_get(call->vm, rows, i), what, i + 1, out)) return false;
     out += i + 1;
   }
   return true;
 }
 
-bool cag_surfaces_bezier_triangle(CagCall *call, CagValue *result) {
+bool cag_arg_triangle(CagCall *call, int argument, CagVec3 **net, int *degree) {
   CagList *rows;
+  if (!cag_arg_list(call, argument, &rows)) return false;
+  size_t n = rows->length;
+  if (n < 1 || n > CAG_TRIANGLE_ROWS) {
+    char wanted[48];
+    snprintf(wanted, sizeof wanted, "1 to %d rows of points", CAG_TRIANGLE_ROWS);
+    return cag_fail_value(call, argument, wanted);
+  }
+  *degree = (int)n - 1;
+  *net = malloc(n * (n + 1) / 2 * sizeof **net);
+  if (!*net)
+    return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
+  if (read_triangle(call, argument, rows, *net)) return true;
+  free(*net);
+  return false;
+}
+
+bool cag_surfaces_bezier_triangle(CagCall *call, CagValue *result) {
+  CagVec3 *net = NULL;
+  int degree = 0;
   CagSurface *s = NULL;
   CagError err;
-  if (!cag_arg_list(call, 0, &rows)) return false;
-  size_t n = rows->length;
-  if (n > 1000) return cag_fail_value(call, 0, "at most 26 rows");
-  CagVec3 *points = malloc((n * (n + 1) / 2 + 1) * sizeof *points);
-  if (!points)
-    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  bool ok = read_triangle(call, rows, points) &&
-            give(call, cag_surface_bezier_triangle(points, (int)n - 1, &s, &err), &err, &s, result);
-  free(points);
+  if (!cag_arg_triangle(call, 0, &net, &degree)) return false;
+  bool ok = give(call, cag_surface_bezier_triangle(net, degree, &s, &err), &err, &s, result);
+  free(net);
   return ok;
 }

@@ -1,0 +1,123 @@
+// Triangular Bezier surfaces in barycentric coordinates; the surface itself is made by
+// bezier_triangle.
+
+#include <stdlib.h>
+
+#include "geom/surface/triangle.h"
+#include "interp/builtin/surfaces.h"
+
+static const char triangles[] = "Surfaces: nets of points";
+
+static CagValue vector_value(CagVm *vm, CagVec3 p) {
+  return cag_vector(vm, (double[]){p.x, p.y, p.z}, 3);
+}
+
+static CagValue net_value(CagVm *vm, const CagVec3 *net, int degree) {
+  CagBuilder *rows = cag_builder_new(vm);
+  for (int row = 0; row <= degree; row++) {
+    cag_builder_add(vm, rows, cag_points_value(vm, net, (size_t)row + 1, 3));
+    net += row + 1;
+  }
+  return cag_builder_finish(vm, rows);
+}
+
+static bool read_coordinates(CagCall *call, int argument, double out[3]) {
+  const double *w;
+  size_t n;
+  if (!cag_arg_numbers(call, argument, &w, &n)) return false;
+  if (n != 3)
+    return cag_fail_call(call, argument, CAG_ERR_length,
+                         "expects 3 barycentric coordinates, found %zu", n);
+  for (int c = 0; c < 3; c++) out[c] = w[c];
+  return true;
+}
+
+static bool triangle_point(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"point", "ds", "dt", "normal"};
+  CagVec3 *net = NULL;
+  int degree = 0;
+  double w[3];
+  CagTriangleJet jet = {0};
+  CagError err;
+  if (!read_coordinates(call, 1, w) || !cag_arg_triangle(call, 0, &net, &degree)) return false;
+  CagStatus status = cag_triangle_at(net, degree, w, &jet, &err);
+  free(net);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagVec3 normal = cag_unit(cag_cross(jet.ds, jet.dt));
+  CagValue values[] = {vector_value(call->vm, jet.point), vector_value(call->vm, jet.ds),
+                       vector_value(call->vm, jet.dt),
+                       cag_norm(normal) > 0 ? vector_value(call->vm, normal) : cag_none()};
+  *result = cag_record_new(call->vm, names, values, 4);
+  return true;
+}
+
+static bool triangle_elevate(CagCall *call, CagValue *result) {
+  CagVec3 *net = NULL;
+  int degree = 0;
+  long times;
+  if (!cag_arg_integer_or(call, 1, 1, 0, CAG_TRIANGLE_ROWS, &times) ||
+      !cag_arg_triangle(call, 0, &net, &degree))
+    return false;
+  bool ok = true;
+  if (degree + times >= CAG_TRIANGLE_ROWS)
+    ok = cag_fail_call(call, 1, CAG_ERR_value, "raises a degree to %d at most, found %d and %ld",
+                       CAG_TRIANGLE_ROWS - 1, degree, times);
+  for (; ok && times > 0; times--) {
+    CagVec3 *raised = malloc(cag_triangle_count(degree + 1) * sizeof *raised);
+    if (raised) cag_triangle_elevate(net, degree++, raised);
+    else ok = cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+    free(net);
+    net = raised;
+    ok = ok && cag_keep_going(call->vm);
+  }
+  if (ok) *result = net_value(call->vm, net, degree);
+  free(net);
+  return ok;
+}
+
+static bool triangle_split(CagCall *call, CagValue *result) {
+  CagVec3 *net = NULL;
+  int degree = 0;
+  double w[3];
+  CagError err;
+  if (!read_coordinates(call, 1, w) || !cag_arg_triangle(call, 0, &net, &degree)) return false;
+  size_t n = cag_triangle_count(degree);
+  CagVec3 *parts = malloc(3 * n * sizeof *parts);
+  CagStatus status = cag_fail_memory(&err);
+  if (parts)
+    status = cag_triangle_split(net, degree, w, (CagVec3 *const[]){parts, parts + n, parts + 2 * n},
+                                &err);
+  bool ok = cag_geometry_ok(call, status, &err);
+  if (ok) {
+    CagValue nets[3];
+    for (size_t c = 0; c < 3; c++) nets[c] = net_value(call->vm, parts + c * n, degree);
+    *result = cag_list_values(call->vm, nets, 3);
+  }
+  free(net);
+  free(parts);
+  return ok;
+}
+
+const CagBuiltin cag_builtins_triangles[] = {
+    {"triangle_point(net, W)", triangle_point, "record",
+     "Of the triangular Bezier surface of a net, as bezier_triangle takes it, at barycentric "
+     "coordinates [u, v, w]: point, ds and dt, the derivatives along [1, 0, -1] and [0, 1, -1], "
+     "and the unit normal, none where there is none. The first row of the net is the corner u = "
+     "1; the last runs from v = 1 to w = 1. Coordinates that do not sum to 1 (to 1e-9), and "
+     "negative ones, are an error (parameter-range).",
+     "net = [[[2, 0, 0]], [[1, 1, 1], [1, 0, 1]], [[0, 2, 0], [0, 1, 2], [0, 0, 0]]]\n"
+     "print triangle_point(net, [0.5, 0.25, 0.25]).point // expect: [1, 0.5, 0.75]",
+     CAG_TAKES_LISTS, triangles},
+    {"triangle_elevate(net, times = 1)", triangle_elevate, "list",
+     "The net of the same triangular Bezier surface with its degree raised.",
+     "print triangle_elevate([[[2, 0, 0]], [[0, 2, 0], [0, 0, 4]]])[1] // expect: [[1, 1, 0], [1, "
+     "0, 2]]",
+     CAG_TAKES_LISTS, triangles},
+    {"triangle_split(net, W)", triangle_split, "list",
+     "The nets of the three triangular Bezier surfaces between the point at barycentric "
+     "coordinates and two corners of a net: in the first the point takes the place of the first "
+     "corner, and so on. At a point of an edge one of them has no area.",
+     "parts = triangle_split([[[2, 0, 0]], [[0, 2, 0], [0, 0, 4]]], [0.5, 0.25, 0.25])\n"
+     "print parts[0][0] // expect: [[1, 0.5, 1]]",
+     CAG_TAKES_LISTS, triangles},
+    {0}};
