@@ -18,12 +18,13 @@ static char *put_triangle(char *at, const CagMesh *m, const float *p, const uint
   return at + 2;
 }
 
-static void put_triangles(const CagMesh *m, const float *p, CagAtomicFile *file) {
+// `all`: no triangle shrinks, as is nearly always so.
+static void put_triangles(const CagMesh *m, const float *p, bool all, CagAtomicFile *file) {
   for (size_t t = 0; t < m->triangle_count;) {
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * RECORD);
     for (size_t end = t + BATCH; t < m->triangle_count && t < end; t++) {
       const uint32_t *k = m->triangles + 3 * t;
-      if (!cag_mesh_shrinks(p, k)) at = put_triangle(at, m, p, k);
+      if (all || !cag_mesh_shrinks(p, k)) at = put_triangle(at, m, p, k);
     }
     cag_atomic_file_advance(file, at);
   }
@@ -33,13 +34,14 @@ CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, 
                          CagError *err) {
   float **positions = calloc(n + 1, sizeof *positions);
   CagStatus status = positions ? CAG_OK : cag_fail_memory(err);
-  size_t triangles = 0;
+  size_t triangles = 0, shown = 0;
   for (size_t i = 0; status == CAG_OK && i < n; i++) {
     status = cag_mesh_check_range(&parts[i], err);
     if (status != CAG_OK) break;
     positions[i] = cag_mesh_float_positions(parts[i].mesh);
     if (!positions[i]) status = cag_fail_memory(err);
     else triangles += cag_mesh_kept_triangles(parts[i].mesh, positions[i]);
+    shown += parts[i].mesh->triangle_count;
   }
   if (status == CAG_OK && triangles > UINT32_MAX)
     status = cag_fail(err, CAG_E_LIMIT, "file-too-large", "", -1,
@@ -55,7 +57,7 @@ CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, 
     cag_atomic_file_write(file, header, sizeof header);
   }
   for (size_t i = 0; positions && i < n; i++) {
-    if (status == CAG_OK) put_triangles(parts[i].mesh, positions[i], file);
+    if (status == CAG_OK) put_triangles(parts[i].mesh, positions[i], triangles == shown, file);
     free(positions[i]);
   }
   free(positions);
