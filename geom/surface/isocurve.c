@@ -160,9 +160,10 @@ static void isocurve_describe(const CagCurve *curve, char *buffer, size_t size) 
   const Isocurve *c = (const Isocurve *)curve;
   bool angular = c->direction == 0 ? c->surface->angular_u : c->surface->angular_v;
   char text[32];
+  // Degrees to ten places: 30deg is no double of radians.
+  double shown = angular ? round(c->at * 180 / M_PI * 1e10) / 1e10 : c->at;
   snprintf(buffer, size, "of a %s surface at %c = %s%s", c->surface->kind->name,
-           c->direction == 0 ? 'u' : 'v', cag_number_text(c->at * (angular ? 180 / M_PI : 1), text),
-           angular ? "deg" : "");
+           c->direction == 0 ? 'u' : 'v', cag_number_text(shown, text), angular ? "deg" : "");
 }
 
 static void isocurve_destroy(CagCurve *c) { cag_surface_release(((Isocurve *)c)->surface); }
