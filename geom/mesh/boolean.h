@@ -1,0 +1,35 @@
+// Set operations of solids that triangle meshes bound.
+//
+// What decides (which triangles meet, where, what lies inside) is exact: the operands' coordinates
+// are taken as they are, and points of intersection are rounded to doubles only after everything is
+// decided. A point is inside a mesh where the mesh winds around it a positive number of times, so
+// meshes may have several parts, cavities, and parts that touch, cross or repeat each other.
+
+#ifndef CAG_GEOM_MESH_BOOLEAN_H
+#define CAG_GEOM_MESH_BOOLEAN_H
+
+#include "geom/mesh/mesh.h"
+
+typedef enum CagSetOperation { CAG_UNION, CAG_DIFFERENCE, CAG_INTERSECTION } CagSetOperation;
+
+// The solid of a and b, bounded by a closed, consistently oriented mesh in which each edge is of
+// two triangles; without triangles where the solid is empty. Where parts touch along an edge or in
+// a point, each has vertices of its own there (weld does not join them).
+//
+//   a, b       vertices are one point where their numbers are; each edge is run as often in one
+//              sense as in the other
+//   interrupt  NULL, or: not 0 stops with CAG_E_CALLBACK
+//
+// Normals are interpolated from the operands (turned where b's surface bounds a hole of a; of faces
+// where an operand has none); no operand has normals: none. uv is dropped.
+// Fails with "mesh-open" (argument "a" or "b", index of a triangle), "mesh-inside-out",
+// "vertex-not-finite", "mesh-too-large".
+CagStatus cag_mesh_boolean(CagSetOperation op, const CagMesh *a, const CagMesh *b,
+                           const volatile int *interrupt, CagMesh **out, CagError *err);
+
+// Of n >= 1 meshes: the union or intersection of all, or the first without all others. Errors name
+// the argument "meshes" and give the operand's number as the index.
+CagStatus cag_mesh_boolean_many(CagSetOperation op, const CagMesh *const *meshes, size_t n,
+                                const volatile int *interrupt, CagMesh **out, CagError *err);
+
+#endif
