@@ -3,6 +3,7 @@
 #ifndef CAG_INTERP_BUILTIN_SURFACES_H
 #define CAG_INTERP_BUILTIN_SURFACES_H
 
+#include "geom/surface/quadric.h"
 #include "interp/builtin/shapes.h"
 
 // clang-format off
@@ -47,6 +48,9 @@ bool cag_arg_side(CagCall *call, int argument, CagSurface **out);
 // Reads the net of a triangular Bezier surface, rows of 1, 2, 3 ... points; *net is malloc'd.
 #define CAG_TRIANGLE_ROWS 1000
 bool cag_arg_triangle(CagCall *call, int argument, CagVec3 **net, int *degree);
+// The equation of the first argument: a quadric surface, the sheets of one, a sphere, or what
+// `quadric` takes.
+bool cag_arg_quadric(CagCall *call, CagQuadric *q);
 // Reads u and v of a surface from the parameters `at` and the next.
 bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v);
 

@@ -148,8 +148,14 @@ bool cag_surfaces_parabolic_cylinder(CagCall *call, CagValue *result) {
 
 // --- Classification ---
 
-// The equation of a quadric surface, of the sheets of one, or given as for `quadric`.
-static bool read_quadric(CagCall *call, CagQuadric *q) {
+// The ball as an equation, negative inside.
+static bool sphere_equation(CagCall *call, const CagSolid *s, CagQuadric *q) {
+  CagError err;
+  CagQuadric own = {{1, 1, 1, 0, 0, 0, 0, 0, 0, -s->a * s->a}};
+  return cag_geometry_ok(call, cag_quadric_transform(&own, &s->placement, q, &err), &err);
+}
+
+bool cag_arg_quadric(CagCall *call, CagQuadric *q) {
   CagError err;
   CagValue v = call->values[0];
   if (v.type == CAG_LIST) return read_equation(call, q);
@@ -157,6 +163,8 @@ static bool read_quadric(CagCall *call, CagQuadric *q) {
     v = cag_list_get(call->vm, CAG_AS_SHAPE(v)->as.items, 0);
   if (v.type == CAG_SURFACE && cag_surface_quadric_view(CAG_AS_SHAPE(v)->as.surface, q))
     return true;
+  if (v.type == CAG_SOLID && CAG_AS_SHAPE(v)->as.solid->kind == CAG_SOLID_SPHERE)
+    return sphere_equation(call, CAG_AS_SHAPE(v)->as.solid, q);
   cag_fail(&err, CAG_E_UNSUPPORTED, "not-a-quadric", "", -1,
            "expects a quadric, or its 10 numbers or 4 rows");
   return cag_fail_geometry(call, &err);
@@ -167,7 +175,7 @@ bool cag_surfaces_classify(CagCall *call, CagValue *result) {
   CagQuadric q;
   CagQuadricForm form;
   CagError err;
-  if (!read_quadric(call, &q) ||
+  if (!cag_arg_quadric(call, &q) ||
       !cag_geometry_ok(call, cag_quadric_classify(&q, &form, &err), &err))
     return false;
   CagTransform frame = form.frame;
