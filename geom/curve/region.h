@@ -37,4 +37,34 @@ CagStatus cag_region_contains(const CagRegion *r, CagVec3 p, bool *out,
 CagStatus cag_region_transform(const CagRegion *r, const CagTransform *t, CagRegion **out,
                                CagError *err);
 
+typedef enum CagRegionOp {
+  CAG_REGION_UNION,
+  CAG_REGION_DIFFERENCE, // the first less all others
+  CAG_REGION_INTERSECTION
+} CagRegionOp;
+
+// The loops of the result are pieces of the given loops, cut where these cross, each of its own
+// kind; loops that nothing crosses are the given ones. What is one nearer than 1e-9 of the size of
+// all counts as one: slivers thinner than that are not there. Pieces that touch in a point stay
+// separate loops. Fails with "region-empty" where nothing is left, "region-undecided" where the
+// boundaries run so close to each other that rounding hides which is in front.
+CagStatus cag_region_boolean(CagRegionOp op, const CagRegion *a, const CagRegion *b,
+                             CagRegion **out, CagError *err);
+// The same of n >= 1 regions at once.
+CagStatus cag_region_combine(CagRegionOp op, const CagRegion *const *regions, size_t n,
+                             CagRegion **out, CagError *err);
+
+// The points at most d away from the region (d > 0), or those of it at least -d away from its
+// boundary (d < 0): holes shrink and grow. Corners go round in arcs. The boundaries of lines and
+// circles are exact, others within the tolerance. Fails as the set operations do.
+CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagRegion **out,
+                            CagError *err);
+
+// --- For the files of regions ---
+
+// A region of these loops, outer ones counter-clockwise, holes clockwise; outer[i] as in CagRegion.
+// Takes the loops over, whatever it returns.
+CagStatus cag_region_take(CagCurve **loops, const size_t *outer, size_t n, CagRegion **out,
+                          CagError *err);
+
 #endif

@@ -1,0 +1,67 @@
+// Curves of the plane cut at all places where they meet, and the region that winding numbers choose
+// from the faces between them.
+//
+// Set operations and offsets of regions are both this: they differ in the curves, and in the rule.
+
+#ifndef CAG_GEOM_REGION_ARRANGE_H
+#define CAG_GEOM_REGION_ARRANGE_H
+
+#include "geom/curve/region.h"
+
+// A curve that takes part. Those of one operand form closed loops, in whatever pieces they come.
+typedef struct CagWalk {
+  const CagCurve *curve; // borrowed
+  int operand;           // 0 or 1: which winding number it counts for
+  int sign;              // 1, or -1: counts as if run backwards
+  int group;             // curves of one group (0 or more) are known not to cross; -1: none
+} CagWalk;
+
+// Whether a face belongs to the region, by its winding numbers about the loops of both operands.
+typedef bool (*CagFaceRule)(const int winding[2], int parameter);
+
+// *out is NULL where no face belongs to it. Fails with "region-undecided".
+CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, int parameter,
+                             CagRegion **out, CagError *err);
+
+// --- Pieces: parts of the walks that run one way in x and in y (region_pieces.c) ---
+
+typedef struct CagPiece {
+  size_t walk;
+  double a, b;   // over the walk's curve
+  CagVec3 p, q;  // its ends
+  bool straight; // a segment from p to q
+  CagCurve *part; // the piece as a curve, made when first asked for
+} CagPiece;
+
+typedef struct CagPieces {
+  const CagWalk *walks;
+  CagPiece *items;
+  size_t n, capacity;
+  double tolerance; // two points nearer than this are one
+} CagPieces;
+
+CagStatus cag_pieces_add(CagPieces *s, size_t walk, CagError *err);
+void cag_pieces_free(CagPieces *s);
+CagStatus cag_piece_point(const CagPieces *s, const CagPiece *piece, double t, CagVec3 *out,
+                          CagError *err);
+// The parameter within [a, b] of the piece at which the coordinate (0: x, 1: y) has this value; the
+// nearer end where it has it nowhere.
+CagStatus cag_piece_at(const CagPieces *s, const CagPiece *piece, double a, double b, int axis,
+                       double value, double *t, CagVec3 *point, CagError *err);
+// The parameter within [a, b] at the distance from the point at `a` (from_end: at `b`).
+CagStatus cag_piece_at_distance(const CagPieces *s, const CagPiece *piece, double a, double b,
+                                bool from_end, double distance, CagVec3 *point, CagError *err);
+
+// --- Where they meet (region_meet.c) ---
+
+// A place at which a piece is to be cut; the two pieces of a meeting have the same point.
+typedef struct CagPieceCut {
+  size_t piece;
+  double t;
+  CagVec3 point;
+} CagPieceCut;
+
+// Cuts of all pieces, by piece and t; *out is malloc'd.
+CagStatus cag_pieces_meet(CagPieces *s, CagPieceCut **out, size_t *n, CagError *err);
+
+#endif
