@@ -37,8 +37,14 @@ static CagStatus check_rigid(const CagTransform *t, const char *argument, long l
                   place);
 }
 
+CagStatus cag_robot_pose_check(const CagTransform *t, const char *argument, CagError *err) {
+  return check_rigid(t, argument, -1, err);
+}
+
+// joint -1: a link by itself.
 static CagStatus check_limits(const CagRobotLink *l, long joint, CagError *err) {
-  char low[32], high[32], home[32];
+  char low[32], high[32], home[32], of[32] = "the joint";
+  if (joint >= 0) snprintf(of, sizeof of, "joint %ld", joint + 1);
   double unit = l->kind == CAG_JOINT_REVOLUTE ? 180 / M_PI : 1;
   const char *word = l->kind == CAG_JOINT_REVOLUTE ? "deg" : "";
   cag_number_text(l->low * unit, low);
@@ -46,28 +52,33 @@ static CagStatus check_limits(const CagRobotLink *l, long joint, CagError *err) 
   cag_number_text(l->home * unit, home);
   if (!isfinite(l->low) || !isfinite(l->high))
     return cag_fail(err, CAG_E_ARGUMENT, "joint-limits", "limits", joint,
-                    "the limits of joint %ld are %s%s..%s%s; they must be finite (a joint that "
+                    "the limits of %s are %s%s..%s%s; they must be finite (a joint that "
                     "turns freely has -360deg..360deg, say)",
-                    joint + 1, low, word, high, word);
+                    of, low, word, high, word);
   if (l->low > l->high)
     return cag_fail(err, CAG_E_ARGUMENT, "joint-limits", "limits", joint,
-                    "the limits of joint %ld run from %s%s down to %s%s; the lower comes first",
-                    joint + 1, low, word, high, word);
+                    "the limits of %s run from %s%s down to %s%s; the lower comes first", of, low,
+                    word, high, word);
   if (!(l->home >= l->low && l->home <= l->high))
     return cag_fail(err, CAG_E_ARGUMENT, "home-outside", "home", joint,
-                    "the home value %s%s of joint %ld lies outside of its limits %s%s..%s%s", home,
-                    word, joint + 1, low, word, high, word);
+                    "the home value %s%s of %s lies outside of its limits %s%s..%s%s", home, word,
+                    of, low, word, high, word);
   return CAG_OK;
 }
 
 static CagStatus check_link(const CagRobotLink *l, long index, long joint, CagError *err) {
-  if (l->kind == CAG_JOINT_FIXED) return check_rigid(&l->fixed, "links", index, err);
+  if (l->kind == CAG_JOINT_FIXED)
+    return check_rigid(&l->fixed, index < 0 ? "T" : "links", index, err);
   const double numbers[] = {l->theta, l->d, l->a, l->alpha, l->screw, l->speed, l->effort};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     if (!isfinite(numbers[i]))
       return cag_fail(err, CAG_E_ARGUMENT, "link-number", "links", index,
                       "links[%ld] has a number that is infinite or none", index);
   return check_limits(l, joint, err);
+}
+
+CagStatus cag_robot_link_check(const CagRobotLink *link, CagError *err) {
+  return check_link(link, -1, -1, err);
 }
 
 // --- Making ---
@@ -378,19 +389,14 @@ CagTransform cag_robot_rigid_inverse(const CagTransform *t) {
 
 // --- Skeleton ---
 
-static void add_point(CagVec3 *points, size_t *n, CagVec3 p, double slack) {
-  if (*n == 0 || cag_norm(cag_sub(p, points[*n - 1])) > slack) points[(*n)++] = p;
-}
-
 static CagVec3 origin_of(const CagTransform *t) {
   return cag_vec3(t->m[0][3], t->m[1][3], t->m[2][3]);
 }
 
 size_t cag_robot_skeleton(const CagRobot *r, const double *q, CagVec3 *points) {
-  const double slack = ON_LIMIT * r->reach;
   CagTransform frame = r->base;
   size_t n = 0, joint = 0;
-  add_point(points, &n, origin_of(&frame), slack);
+  points[n++] = origin_of(&frame);
   for (size_t i = 0; i < r->link_count; i++) {
     const CagRobotLink *l = &r->links[i];
     double value = l->kind == CAG_JOINT_FIXED ? 0 : q[joint++];
@@ -398,12 +404,11 @@ size_t cag_robot_skeleton(const CagRobot *r, const double *q, CagVec3 *points) {
     CagVec3 origin = origin_of(&a), bend = origin;
     if (l->kind != CAG_JOINT_FIXED)
       bend = r->convention == CAG_ROBOT_MODIFIED ? cag_vec3(l->a, 0, 0) : cag_vec3(0, 0, a.m[2][3]);
-    add_point(points, &n, cag_transform_point(&frame, bend), slack);
-    add_point(points, &n, cag_transform_point(&frame, origin), slack);
+    if (l->kind != CAG_JOINT_FIXED) points[n++] = cag_transform_point(&frame, bend);
+    points[n++] = cag_transform_point(&frame, origin);
     frame = cag_transform_multiply(&frame, &a);
   }
-  frame = cag_transform_multiply(&frame, &r->tool);
-  add_point(points, &n, origin_of(&frame), slack);
+  if (!is_identity(&r->tool)) points[n++] = cag_transform_point(&frame, origin_of(&r->tool));
   return n;
 }
 

@@ -92,6 +92,11 @@ CagStatus cag_robot_new(const CagRobotSpec *spec, CagRobot **out, CagError *err)
 CagRobot *cag_robot_retain(const CagRobot *r);
 void cag_robot_release(CagRobot *r);
 
+// Whether a link alone is good: finite numbers, limits, home, a rigid fixed transform.
+CagStatus cag_robot_link_check(const CagRobotLink *link, CagError *err);
+// Whether a pose asked for is a motion, to 1e-9: "not-rigid" of this argument.
+CagStatus cag_robot_pose_check(const CagTransform *t, const char *argument, CagError *err);
+
 // A revolute or prismatic row of zeros with limits of half a turn or 0 .. 0; a fixed link.
 CagRobotLink cag_robot_link(CagJointKind kind);
 
@@ -106,7 +111,8 @@ void cag_robot_subchain(const CagRobot *r, const double *q, size_t j, size_t i, 
 // The axis of each joint in the world: a point of it and its unit direction.
 void cag_robot_axes(const CagRobot *r, const double *q, CagVec3 *points, CagVec3 *directions);
 // Stick figure of the chain: the base's origin, then for each link the foot of its common normal
-// and its origin, the tool's origin last; coinciding neighbours once. At most 2 link_count + 2.
+// and its origin (of a fixed link its origin alone), and the tool's origin where there is a tool.
+// At most 2 link_count + 2 points.
 size_t cag_robot_skeleton(const CagRobot *r, const double *q, CagVec3 *points);
 
 // --- Jacobian (jacobian.c) ---

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "interp/builtin/robots.h"
 #include "interp/builtin/shapes.h"
 
 // --- Members ---
@@ -56,6 +57,8 @@ bool cag_value_member(CagVm *vm, CagValue object, const char *name, CagValue *ou
   if (object.type == CAG_TRANSFORM)
     return transform_member(vm, &CAG_AS_TRANSFORM(object)->t, name, out);
   if (object.type == CAG_PLANE) return plane_member(vm, &CAG_AS_PLANE(object)->plane, name, out);
+  if (object.type == CAG_ROBOT || object.type == CAG_LINK)
+    return cag_robot_member(vm, object, name, out);
   if (is_staged(object)) {
     CagValue field = cag_record_get(CAG_AS_SCENE(object)->fields, name);
     if (field.type == CAG_UNSET) return false;
@@ -78,6 +81,7 @@ const char *const *cag_value_members(CagValue object, size_t *n) {
       "eye",       "target",   "up",    "fov",      "kind",  "width",  "size",  "focus", "aperture",
       "direction", "position", "angle", "strength", "color", "colors", "image", "z"};
   *n = 0;
+  if (object.type == CAG_ROBOT || object.type == CAG_LINK) return cag_robot_members(object, n);
   if (object.type == CAG_TRANSFORM) {
     *n = COUNT(transform_members);
     return transform_members;
@@ -202,6 +206,8 @@ void cag_describe_shape(CagVm *vm, CagString *s, CagValue v) {
     cag_print_value(vm, s, cag_point(vm, p->normal, 3), true);
     return;
   }
+  case CAG_ROBOT:
+  case CAG_LINK: cag_describe_robot(vm, s, v); return;
   default:
     if (is_staged(v)) describe_staged(vm, s, v);
     else cag_string_printf(s, "%s", cag_type_name(v));

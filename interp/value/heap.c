@@ -146,7 +146,8 @@ static size_t charged(const CagObject *o) {
   case CAG_CURVE: return 512;
   case CAG_REGION:
   case CAG_SURFACE: return 2048;
-  case CAG_SOLID: return 4096;
+  case CAG_SOLID:
+  case CAG_ROBOT: return 4096;
   default: return 0;
   }
 }
@@ -205,6 +206,11 @@ static void scan(CagHeap *h, CagObject *o) {
     if (s->fields) mark_object(h, &s->fields->head);
     break;
   }
+  case CAG_LINK: mark_value(h, ((CagLinkValue *)o)->shape); break;
+  case CAG_ROBOT:
+    mark_object(h, &((CagRobotValue *)o)->name->head);
+    mark_object(h, &((CagRobotValue *)o)->links->head);
+    break;
   case CAG_INTERNAL: // builders and layouts tell themselves apart by flags
     if (o->flags == CAG_INTERNAL_BUILDER) {
       CagBuilder *b = (CagBuilder *)o;
@@ -226,6 +232,7 @@ static void destroy(CagObject *o) {
   case CAG_SURFACE: cag_surface_release(((CagShape *)o)->as.surface); break;
   case CAG_SOLID: cag_solid_release(((CagShape *)o)->as.solid); break;
   case CAG_MESH: cag_mesh_release(((CagShape *)o)->as.mesh); break;
+  case CAG_ROBOT: cag_robot_release(((CagRobotValue *)o)->robot); break;
   case CAG_INTERNAL:
     if (o->flags == CAG_INTERNAL_BUILDER) free(((CagBuilder *)o)->data);
     if (o->flags == CAG_INTERNAL_LAYOUT) free(((CagLayout *)o)->index);

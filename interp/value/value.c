@@ -295,3 +295,18 @@ CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue rec
   s->placement = cag_transform_identity();
   return cag_object(type, s);
 }
+
+CagValue cag_link_value(CagVm *vm, const CagRobotLink *link, CagValue shape) {
+  CagLinkValue *v = cag_alloc(vm, CAG_LINK, sizeof *v);
+  v->link = *link;
+  v->shape = shape;
+  return cag_object(CAG_LINK, v);
+}
+
+CagValue cag_robot_value(CagVm *vm, CagRobot *r, CagText *name, CagValue links) {
+  CagRobotValue *v = cag_alloc(vm, CAG_ROBOT, sizeof *v);
+  v->robot = r;
+  v->name = name;
+  v->links = CAG_AS_LIST(links);
+  return cag_object(CAG_ROBOT, v);
+}

@@ -18,6 +18,7 @@
 #include "geom/curve/region.h"
 #include "geom/linalg/transform.h"
 #include "geom/mesh/mesh.h"
+#include "geom/robot/robot.h"
 #include "geom/solid/solid.h"
 #include "geom/surface/surface.h"
 
@@ -189,6 +190,19 @@ typedef struct CagSceneValue {
       placement; // moved by transforms: applied to eye, target, direction ... by the scene builder
 } CagSceneValue;
 
+// --- Robots ---
+typedef struct CagLinkValue {
+  CagObject head;
+  CagRobotLink link;
+  CagValue shape; // drawn in the frame after the link: a shape, a list of shapes, or none
+} CagLinkValue;
+typedef struct CagRobotValue {
+  CagObject head;
+  CagRobot *robot; // one reference held
+  CagText *name;   // may be empty
+  CagList *links;  // of link values
+} CagRobotValue;
+
 typedef struct CagModuleValue {
   CagObject head;
   size_t module; // number in the program
@@ -219,6 +233,8 @@ static inline bool cag_is_function(CagValue v) {
 #define CAG_AS_PLANE(v) ((CagPlaneValue *)(v).as.object)
 #define CAG_AS_SHAPE(v) ((CagShape *)(v).as.object)
 #define CAG_AS_SCENE(v) ((CagSceneValue *)(v).as.object)
+#define CAG_AS_LINK(v) ((CagLinkValue *)(v).as.object)
+#define CAG_AS_ROBOT(v) ((CagRobotValue *)(v).as.object)
 #define CAG_AS_MODULE(v) ((CagModuleValue *)(v).as.object)
 
 CagValue cag_text_new(CagVm *vm, const char *bytes, size_t length); // valid UTF-8; copies
@@ -284,6 +300,9 @@ CagValue cag_group_value(CagVm *vm, CagValue list); // list of shapes
 CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes, to
                                                     // be changed before anybody sees it
 CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue record);
+CagValue cag_link_value(CagVm *vm, const CagRobotLink *link, CagValue shape);
+// Takes over the reference that is given; `links` is a list of link values.
+CagValue cag_robot_value(CagVm *vm, CagRobot *r, CagText *name, CagValue links);
 
 // --- Questions ---
 const char *cag_type_name(CagValue v);             // "number"

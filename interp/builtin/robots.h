@@ -1,0 +1,47 @@
+// Functions of the robots' table (robots.c), by the file that holds them, and what they share:
+// reading of robots, joint values and poses.
+//
+// A list q has one value for each joint: angles where it turns, numbers (millimetres) where it
+// slides. In the machine's memory q is radians and millimetres, at most CAG_ROBOT_JOINTS_MAX long.
+
+#ifndef CAG_INTERP_BUILTIN_ROBOTS_H
+#define CAG_INTERP_BUILTIN_ROBOTS_H
+
+#include "geom/robot/robot.h"
+#include "interp/builtin/shapes.h"
+
+// clang-format off
+#define CAG_ROBOT_FUNCTIONS(X) \
+  /* robots_make.c */ \
+  X(revolute) X(prismatic) X(fixed_link) X(robot) \
+  /* robots_ask.c */ \
+  X(fk) X(link_frames)
+// clang-format on
+
+#define X(name) bool cag_robots_##name(CagCall *call, CagValue *result);
+CAG_ROBOT_FUNCTIONS(X)
+#undef X
+
+// --- Arguments ---
+bool cag_arg_robot(CagCall *call, int argument, CagRobot **out); // borrowed
+// Joint values; where `limits` the error outside-limits names the joint outside.
+bool cag_arg_joints(CagCall *call, int argument, const CagRobot *r, bool limits, double *q);
+// The same, or home where the argument is not given or none.
+bool cag_arg_joints_or_home(CagCall *call, int argument, const CagRobot *r, bool limits, double *q);
+// A pose of space: a rigid transform; else the error not-rigid.
+bool cag_arg_pose(CagCall *call, int argument, CagTransform *out);
+bool cag_pose_of_value(CagCall *call, int argument, CagValue v, CagTransform *out);
+
+// --- Results ---
+CagValue cag_joints_value(CagVm *vm, const CagRobot *r, const double *q);
+// One joint's value.
+CagValue cag_joint_value(const CagRobot *r, size_t joint, double q);
+// Text of a joint's value with its unit, for messages: "35deg", "120"; buffer of 48 bytes.
+const char *cag_joint_text(const CagRobot *r, size_t joint, double q, char *buffer);
+
+// --- What the machine asks of links and robots ---
+bool cag_robot_member(CagVm *vm, CagValue v, const char *name, CagValue *out);
+const char *const *cag_robot_members(CagValue v, size_t *n);
+void cag_describe_robot(CagVm *vm, CagString *s, CagValue v);
+
+#endif

@@ -1,0 +1,364 @@
+// Links and robots made, their members, and their printed form.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/builtin/robots.h"
+#include "interp/builtin/support.h"
+
+// --- Links ---
+
+static bool said(const CagCall *call, int argument) {
+  return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
+}
+
+// The shape of a link: shapes, or lists of them.
+static bool read_shape(CagCall *call, int argument, CagValue *out) {
+  *out = cag_none();
+  if (!said(call, argument)) return true;
+  CagBuilder *builder = cag_builder_new(call->vm);
+  if (!cag_shapes_collect(call, call->values[argument], builder)) return false;
+  *out = call->values[argument];
+  return true;
+}
+
+// An optional number or angle greater than 0.
+static bool read_rate(CagCall *call, int argument, bool angle, double *out) {
+  *out = 0;
+  if (!said(call, argument)) return true;
+  if (!(angle ? cag_arg_angle(call, argument, out) : cag_arg_finite(call, argument, out)))
+    return false;
+  return *out > 0 || cag_fail_value(call, argument, "a value greater than 0");
+}
+
+// Reads limits as a range of the joint's unit.
+static bool read_limits(CagCall *call, int argument, CagRobotLink *l) {
+  bool turns = l->kind == CAG_JOINT_REVOLUTE, angle;
+  if (!cag_given(call, argument)) return true;
+  if (!cag_arg_interval(call, argument, &l->low, &l->high, &angle)) return false;
+  if (angle != turns && isfinite(l->low) && isfinite(l->high))
+    return cag_fail_type(call, argument, turns ? "a range of angles" : "a range of numbers");
+  if (turns) {
+    l->low *= CAG_RADIANS_PER_DEGREE;
+    l->high *= CAG_RADIANS_PER_DEGREE;
+  }
+  return true;
+}
+
+// Checks a finished link; its home is 0, or the limit next to it, where none was given.
+static bool give_link(CagCall *call, CagRobotLink *l, int home, int shape, CagValue *result) {
+  CagError err;
+  CagValue drawn;
+  bool turns = l->kind == CAG_JOINT_REVOLUTE;
+  if (!read_shape(call, shape, &drawn)) return false;
+  if (home >= 0 && said(call, home)) {
+    if (!(turns ? cag_arg_angle(call, home, &l->home) : cag_arg_finite(call, home, &l->home)))
+      return false;
+  } else if (home >= 0) {
+    l->home = turns ? fmin(fmax(0, l->low), l->high) : l->low;
+  }
+  if (!cag_geometry_ok(call, cag_robot_link_check(l, &err), &err)) return false;
+  *result = cag_link_value(call->vm, l, drawn);
+  return true;
+}
+
+static bool finite_or_zero(CagCall *call, int argument, double *out) {
+  *out = 0;
+  return !cag_given(call, argument) || cag_arg_finite(call, argument, out);
+}
+
+// d, a, alpha, offset, limits, home, shape, speed, effort, lead
+bool cag_robots_revolute(CagCall *call, CagValue *result) {
+  CagRobotLink l = cag_robot_link(CAG_JOINT_REVOLUTE);
+  double lead;
+  if (!finite_or_zero(call, 0, &l.d) || !finite_or_zero(call, 1, &l.a) ||
+      !cag_arg_angle_or(call, 2, 0, &l.alpha) || !cag_arg_angle_or(call, 3, 0, &l.theta) ||
+      !read_limits(call, 4, &l) || !read_rate(call, 7, true, &l.speed) ||
+      !read_rate(call, 8, false, &l.effort) || !finite_or_zero(call, 9, &lead))
+    return false;
+  l.screw = lead / (2 * M_PI);
+  return give_link(call, &l, 5, 6, result);
+}
+
+// theta, a, alpha, offset, limits, home, shape, speed, effort
+bool cag_robots_prismatic(CagCall *call, CagValue *result) {
+  CagRobotLink l = cag_robot_link(CAG_JOINT_PRISMATIC);
+  if (!said(call, 4))
+    return cag_fail_call(call, -1, CAG_ERR_joint_limits,
+                         "wants the travel of the joint as `limits`, such as limits: 0..300");
+  if (!cag_arg_angle_or(call, 0, 0, &l.theta) || !finite_or_zero(call, 1, &l.a) ||
+      !cag_arg_angle_or(call, 2, 0, &l.alpha) || !finite_or_zero(call, 3, &l.d) ||
+      !read_limits(call, 4, &l) || !read_rate(call, 7, false, &l.speed) ||
+      !read_rate(call, 8, false, &l.effort))
+    return false;
+  return give_link(call, &l, 5, 6, result);
+}
+
+bool cag_robots_fixed_link(CagCall *call, CagValue *result) {
+  CagRobotLink l = cag_robot_link(CAG_JOINT_FIXED);
+  if (!cag_arg_transform(call, 0, &l.fixed)) return false;
+  return give_link(call, &l, -1, 1, result);
+}
+
+// --- Robots ---
+
+// The links of a list as plain data.
+static bool read_links(CagCall *call, const CagList *list, CagRobotLink **out) {
+  CagRobotLink *links = malloc((list->length ? list->length : 1) * sizeof *links);
+  if (!links)
+    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  for (size_t i = 0; i < list->length; i++) {
+    CagValue v = cag_list_get(call->vm, list, i);
+    if (v.type != CAG_LINK) {
+      free(links);
+      return cag_fail_element(call, 0, i, v, "links (revolute, prismatic, fixed_link)");
+    }
+    links[i] = CAG_AS_LINK(v)->link;
+  }
+  *out = links;
+  return true;
+}
+
+// Flattens lists of links in the list, so that what stands for several rows may be one element.
+static bool flatten_links(CagCall *call, CagValue v, CagBuilder *into, int depth) {
+  if (v.type != CAG_LIST) return cag_builder_add(call->vm, into, v);
+  if (depth > CAG_DEPTH_MOST) return cag_fail_depth(call);
+  const CagList *list = CAG_AS_LIST(v);
+  for (size_t i = 0; i < list->length; i++)
+    if (!flatten_links(call, cag_list_get(call->vm, list, i), into, depth + 1)) return false;
+  return true;
+}
+
+// Degrees (or millimetres) that one unit of a joint's memory form is.
+static double shown_unit(const CagRobotLink *links, size_t n, size_t joint) {
+  for (size_t i = 0, k = 0; i < n; i++) {
+    if (links[i].kind == CAG_JOINT_FIXED || k++ != joint) continue;
+    return links[i].kind == CAG_JOINT_REVOLUTE ? 1 / CAG_RADIANS_PER_DEGREE : 1;
+  }
+  return 1;
+}
+
+typedef struct Coupling {
+  double *matrix, *offset; // one block of memory
+} Coupling;
+
+static bool read_coupling_rows(CagCall *call, int argument, CagValue rows, size_t joints,
+                               double *matrix) {
+  if (rows.type != CAG_LIST || CAG_AS_LIST(rows)->length != joints)
+    return cag_fail_call(call, argument, CAG_ERR_joint_count,
+                         "expects %zu rows of %zu numbers as the coupling, one for each joint",
+                         joints, joints);
+  for (size_t i = 0; i < joints; i++) {
+    const double *x;
+    size_t n;
+    CagValue row = cag_list_get(call->vm, CAG_AS_LIST(rows), i);
+    if (!cag_as_vector(row, &x, &n) || n != joints)
+      return cag_fail_call(call, argument, CAG_ERR_joint_count,
+                           "expects %zu numbers in each row of the coupling; row [%zu] differs",
+                           joints, i);
+    memcpy(matrix + i * joints, x, joints * sizeof *x);
+  }
+  return true;
+}
+
+static bool read_coupling_offset(CagCall *call, int argument, CagValue list, size_t joints,
+                                 double *offset) {
+  if (list.type != CAG_LIST || CAG_AS_LIST(list)->length != joints)
+    return cag_fail_call(call, argument, CAG_ERR_joint_count,
+                         "expects %zu values as the coupling's offset", joints);
+  for (size_t i = 0; i < joints; i++) {
+    CagValue v = cag_list_get(call->vm, CAG_AS_LIST(list), i);
+    if ((v.type != CAG_NUMBER && v.type != CAG_ANGLE) || !isfinite(v.as.number))
+      return cag_fail_element(call, argument, i, v, "finite angles or numbers as offset");
+    offset[i] = v.as.number;
+  }
+  return true;
+}
+
+// A matrix, or a record of `matrix` and `offset`; in degrees and millimetres as written.
+static bool read_coupling(CagCall *call, int argument, const CagRobotLink *links, size_t count,
+                          Coupling *out) {
+  *out = (Coupling){0};
+  if (!said(call, argument)) return true;
+  CagValue v = call->values[argument], rows = v, offset = cag_unset();
+  if (v.type == CAG_RECORD) {
+    rows = cag_record_get(CAG_AS_RECORD(v), "matrix");
+    offset = cag_record_get(CAG_AS_RECORD(v), "offset");
+  } else if (v.type != CAG_LIST) {
+    return cag_fail_type(call, argument, "rows of numbers, or a record of matrix and offset");
+  }
+  size_t n = 0;
+  for (size_t i = 0; i < count; i++) n += links[i].kind != CAG_JOINT_FIXED;
+  double *block = calloc(n * n + n + 1, sizeof *block);
+  if (!block)
+    return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
+  *out = (Coupling){block, block + n * n};
+  if (!read_coupling_rows(call, argument, rows, n, out->matrix) ||
+      (offset.type != CAG_UNSET && !read_coupling_offset(call, argument, offset, n, out->offset)))
+    return false;
+  for (size_t i = 0; i < n; i++) {
+    double unit = shown_unit(links, count, i);
+    out->offset[i] /= unit;
+    for (size_t j = 0; j < n; j++)
+      if (i != j) out->matrix[i * n + j] *= shown_unit(links, count, j) / unit;
+  }
+  return true;
+}
+
+static bool transform_or_identity(CagCall *call, int argument, CagTransform *out) {
+  *out = cag_transform_identity();
+  return !said(call, argument) || cag_arg_transform(call, argument, out);
+}
+
+// links, name, convention, base, tool, coupling
+bool cag_robots_robot(CagCall *call, CagValue *result) {
+  static const char *const conventions[] = {"dh", "mdh", NULL};
+  CagRobotSpec spec = {0};
+  CagList *list;
+  CagError err;
+  const char *name = "";
+  int convention;
+  if (!cag_arg_list(call, 0, &list)) return false;
+  CagBuilder *flat = cag_builder_new(call->vm);
+  if (!flatten_links(call, cag_object(CAG_LIST, list), flat, 0)) return false;
+  CagValue links = cag_builder_finish(call->vm, flat);
+  if ((cag_given(call, 1) && !cag_arg_text(call, 1, &name)) ||
+      !cag_arg_choice(call, 2, conventions, &convention) ||
+      !transform_or_identity(call, 3, &spec.base) || !transform_or_identity(call, 4, &spec.tool))
+    return false;
+  CagRobotLink *plain = NULL;
+  Coupling coupling = {0};
+  CagRobot *robot = NULL;
+  if (!read_links(call, CAG_AS_LIST(links), &plain)) return false;
+  spec.links = plain;
+  spec.link_count = CAG_AS_LIST(links)->length;
+  spec.convention = convention ? CAG_ROBOT_MODIFIED : CAG_ROBOT_CLASSIC;
+  bool ok = read_coupling(call, 5, plain, spec.link_count, &coupling);
+  spec.coupling = coupling.matrix;
+  spec.coupling_offset = coupling.offset;
+  CagStatus status = ok ? cag_robot_new(&spec, &robot, &err) : CAG_OK;
+  free(plain);
+  free(coupling.matrix);
+  if (!ok || !cag_geometry_ok(call, status, &err)) return false;
+  CagText *text = CAG_AS_TEXT(cag_text_c(call->vm, name));
+  *result = cag_robot_value(call->vm, robot, text, links);
+  return true;
+}
+
+// --- Members ---
+
+static CagValue range_of_link(CagVm *vm, const CagRobotLink *l) {
+  return cag_domain_value(vm, l->kind == CAG_JOINT_REVOLUTE, l->low, l->high);
+}
+
+static CagValue limits_of(CagVm *vm, const CagRobot *r) {
+  CagValue ranges[CAG_ROBOT_JOINTS_MAX];
+  for (size_t i = 0; i < r->joint_count; i++)
+    ranges[i] = range_of_link(vm, &r->links[r->joint_link[i]]);
+  return cag_list_values(vm, ranges, r->joint_count);
+}
+
+static bool robot_member(CagVm *vm, const CagRobotValue *v, const char *name, CagValue *out) {
+  const CagRobot *r = v->robot;
+  double q[CAG_ROBOT_JOINTS_MAX];
+  if (!strcmp(name, "joints")) *out = cag_number((double)r->joint_count);
+  else if (!strcmp(name, "limits")) *out = limits_of(vm, r);
+  else if (!strcmp(name, "name")) *out = cag_object(CAG_TEXT, v->name);
+  else if (!strcmp(name, "links")) *out = cag_object(CAG_LIST, v->links);
+  else if (!strcmp(name, "base")) *out = cag_transform_value(vm, &r->base);
+  else if (!strcmp(name, "tool")) *out = cag_transform_value(vm, &r->tool);
+  else if (!strcmp(name, "convention"))
+    *out = cag_text_c(vm, r->convention == CAG_ROBOT_MODIFIED ? "mdh" : "dh");
+  else if (!strcmp(name, "home")) {
+    cag_robot_home(r, q);
+    *out = cag_joints_value(vm, r, q);
+  } else return false;
+  return true;
+}
+
+static CagValue rate_value(double x, bool angle) {
+  if (x == 0) return cag_none();
+  return angle ? cag_angle(cag_degrees_shown(x)) : cag_number(x);
+}
+
+static bool link_member(CagVm *vm, const CagLinkValue *v, const char *name, CagValue *out) {
+  const CagRobotLink *l = &v->link;
+  bool turns = l->kind == CAG_JOINT_REVOLUTE, moves = l->kind != CAG_JOINT_FIXED;
+  static const char *const kinds[] = {"revolute", "prismatic", "fixed"};
+  if (!strcmp(name, "kind")) *out = cag_text_c(vm, kinds[l->kind]);
+  else if (!strcmp(name, "shape")) *out = v->shape;
+  else if (!strcmp(name, "transform"))
+    *out = moves ? cag_none() : cag_transform_value(vm, &l->fixed);
+  else if (!strcmp(name, "theta")) *out = cag_angle(cag_degrees_shown(l->theta));
+  else if (!strcmp(name, "d")) *out = cag_number(l->d);
+  else if (!strcmp(name, "a")) *out = cag_number(l->a);
+  else if (!strcmp(name, "alpha")) *out = cag_angle(cag_degrees_shown(l->alpha));
+  else if (!strcmp(name, "lead")) *out = cag_number(l->screw * 2 * M_PI);
+  else if (!strcmp(name, "limits")) *out = moves ? range_of_link(vm, l) : cag_none();
+  else if (!strcmp(name, "home"))
+    *out = !moves  ? cag_none()
+           : turns ? cag_angle(cag_degrees_shown(l->home))
+                   : cag_number(l->home);
+  else if (!strcmp(name, "speed")) *out = rate_value(l->speed, turns);
+  else if (!strcmp(name, "effort")) *out = rate_value(l->effort, false);
+  else return false;
+  return true;
+}
+
+bool cag_robot_member(CagVm *vm, CagValue v, const char *name, CagValue *out) {
+  return v.type == CAG_ROBOT ? robot_member(vm, CAG_AS_ROBOT(v), name, out)
+                             : link_member(vm, CAG_AS_LINK(v), name, out);
+}
+
+const char *const *cag_robot_members(CagValue v, size_t *n) {
+  static const char *const robots[] = {"joints", "limits", "home", "name",
+                                       "links",  "base",   "tool", "convention"};
+  static const char *const links[] = {"kind",  "shape",  "transform", "theta", "d",      "a",
+                                      "alpha", "limits", "home",      "speed", "effort", "lead"};
+  *n = v.type == CAG_ROBOT ? sizeof robots / sizeof *robots : sizeof links / sizeof *links;
+  return v.type == CAG_ROBOT ? robots : links;
+}
+
+// --- Printed form ---
+
+static void add_angle(CagString *s, const char *name, double radians) {
+  if (radians == 0) return;
+  cag_string_printf(s, ", %s ", name);
+  cag_print_number(s, cag_degrees_shown(radians));
+  cag_string_printf(s, "deg");
+}
+
+static void add_length(CagString *s, const char *name, double x) {
+  if (x == 0) return;
+  cag_string_printf(s, ", %s ", name);
+  cag_print_number(s, x);
+}
+
+static void describe_link(CagVm *vm, CagString *s, const CagRobotLink *l) {
+  static const char *const kinds[] = {"revolute link", "prismatic link", "fixed link"};
+  cag_string_printf(s, "%s", kinds[l->kind]);
+  if (l->kind == CAG_JOINT_FIXED) return;
+  add_angle(s, l->kind == CAG_JOINT_REVOLUTE ? "offset" : "theta", l->theta);
+  add_length(s, l->kind == CAG_JOINT_REVOLUTE ? "d" : "offset", l->d);
+  add_length(s, "a", l->a);
+  add_angle(s, "alpha", l->alpha);
+  cag_string_printf(s, ", limits ");
+  cag_print_value(vm, s, range_of_link(vm, l), true);
+}
+
+void cag_describe_robot(CagVm *vm, CagString *s, CagValue v) {
+  if (v.type == CAG_LINK) {
+    describe_link(vm, s, &CAG_AS_LINK(v)->link);
+    return;
+  }
+  const CagRobotValue *robot = CAG_AS_ROBOT(v);
+  cag_string_printf(s, "robot");
+  if (robot->name->length) cag_string_printf(s, " %s", robot->name->bytes);
+  size_t n = robot->robot->joint_count;
+  cag_string_printf(s, ", %zu joint%s (", n, n == 1 ? "" : "s");
+  for (size_t i = 0; i < n; i++)
+    cag_string_add(
+        s, robot->robot->links[robot->robot->joint_link[i]].kind == CAG_JOINT_REVOLUTE ? "R" : "P",
+        1);
+  cag_string_printf(s, ")");
+}
