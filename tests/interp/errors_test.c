@@ -30,8 +30,9 @@ static bool has_script(const char *code, const char *example) {
   return example != NULL;
 }
 
-// Examples that want more than one text: a file that imports itself, a -D.
-static const char *const beyond_text[] = {"E0241", "E0247", "E0248", "E0249"};
+// Examples that want more than one text: a file that imports itself, a -D, a mesh file.
+static const char *const beyond_text[] = {"E0241", "E0247", "E0248", "E0249", "E0730", "E0731",
+                                          "E0732", "E0733", "E0734", "E0735", "E0736"};
 
 static bool wants_more(const char *code) {
   for (size_t i = 0; i < sizeof beyond_text / sizeof *beyond_text; i++)

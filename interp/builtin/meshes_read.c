@@ -1,0 +1,68 @@
+// Meshes from files.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/builtin/shapes.h"
+#include "interp/eval/vm.h"
+#include "interp/import/mesh_read.h"
+
+static const char meshes[] = "Meshes";
+
+typedef struct Opener {
+  CagCall *call;
+  const char *path; // of the mesh, whose folder other files lie in
+} Opener;
+
+// Files that a mesh names are files of the script: the same places, the same limits.
+static CagStatus open_beside(void *context, const char *name, char **bytes, size_t *size,
+                             CagError *err) {
+  const Opener *o = context;
+  const char *slash = strrchr(o->path, '/');
+  int folder = slash && name[0] != '/' ? (int)(slash + 1 - o->path) : 0;
+  char *path;
+  if (asprintf(&path, "%.*s%s", folder, o->path, name) < 0) return cag_fail_memory(err);
+  bool good = cag_vm_open_file(o->call, 0, path, bytes, size);
+  free(path);
+  return good ? CAG_OK : cag_fail(err, CAG_E_CALLBACK, "file", "path", -1, "cannot read %s", name);
+}
+
+static size_t memory_left(const CagVm *vm) {
+  return vm->heap.limit > vm->heap.bytes ? vm->heap.limit - vm->heap.bytes : 0;
+}
+
+static bool call_read_mesh(CagCall *call, CagValue *result) {
+  const char *path;
+  char *bytes;
+  size_t size;
+  if (!cag_arg_text(call, 0, &path) || !cag_vm_open_file(call, 0, path, &bytes, &size))
+    return false;
+  Opener opener = {call, path};
+  const char *slash = strrchr(path, '/');
+  size_t left = memory_left(call->vm);
+  CagMeshFile file = {.name = slash ? slash + 1 : path,
+                      .bytes = bytes,
+                      .size = size,
+                      .max_triangles = call->vm->max_triangles,
+                      .max_memory = left > size ? left - size : 0,
+                      .interrupt = call->vm->interrupt,
+                      .open = open_beside,
+                      .context = &opener};
+  CagMesh *m = NULL;
+  CagError err = {0};
+  CagStatus status = cag_mesh_read(&file, &m, &err);
+  free(bytes); // before the error: running out of memory does not come back
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_mesh_value(call->vm, m);
+  return true;
+}
+
+const CagBuiltin cag_builtins_mesh_files[] = {
+    {"read_mesh(path)", call_read_mesh, "mesh",
+     "The mesh of a file: STL (binary and text), OBJ, PLY (binary and text), glTF and GLB, all its "
+     "parts together. Lengths are taken as millimetres and Z as up; those of glTF are metres with "
+     "Y up and are turned into ours. Points at one place are one point of the mesh; normals and "
+     "parameters are kept. What is wrong with a file is told with its line or byte. Files lie "
+     "below the script's folder or on the module path.",
+     "print attempt(() => read_mesh(\"none.stl\"), err => err.reason) // expect: file", 0, meshes},
+    {0}};
