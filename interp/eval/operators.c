@@ -226,14 +226,29 @@ static CagValue join_texts(CagVm *vm, const CagText *a, const CagText *b) {
   return v;
 }
 
-// Set operations of solids and regions, by the built-in that does them.
+// Puts the top of the stack above the registers of the running frame, which the loop does not see
+// to for operators, and gives the old one: so a built-in may be called, and it the script.
+static CagValue *raise_top(CagVm *vm) {
+  CagValue *top = vm->top;
+  if (vm->frame_count) {
+    const CagFrame *f = &vm->frames[vm->frame_count - 1];
+    if (f->base + f->proto->registers > top) vm->top = f->base + f->proto->registers;
+  }
+  return top;
+}
+
+// Set operations of solids and regions, by the built-in that does them: the rows of its name serve
+// the types of the first operand.
 static bool solids(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
   const char *name = op == CAG_OP_UNION          ? "union"
                      : op == CAG_OP_INTERSECTION ? "intersection"
                                                  : "difference";
   size_t index = cag_builtin_find(name);
   if (index == (size_t)-1) return fail_operands(vm, op, a, b, NULL);
-  return cag_call(vm, vm->builtin_values[index], (CagValue[]){a, b}, 2, result);
+  CagValue *top = raise_top(vm);
+  bool ok = cag_call(vm, vm->builtin_values[index], (CagValue[]){a, b}, 2, result);
+  vm->top = top;
+  return ok;
 }
 
 static bool is_body(CagValue v) {
@@ -254,14 +269,9 @@ static const char *mend(CagBinaryOp op, CagValue a, CagValue b) {
   return NULL;
 }
 
-// T * v. A curve by a formula is evaluated for that: the registers of the frame must be below the
-// top of the stack, which the loop does not see to for operators.
+// T * v. A curve by a formula is evaluated for that.
 static bool moved(CagVm *vm, const CagTransform *t, CagValue v, CagValue *result) {
-  CagValue *top = vm->top;
-  if (vm->frame_count) {
-    const CagFrame *f = &vm->frames[vm->frame_count - 1];
-    if (f->base + f->proto->registers > top) vm->top = f->base + f->proto->registers;
-  }
+  CagValue *top = raise_top(vm);
   bool ok = vm->differentiation ? cag_jet_transform(vm, t, v, result)
                                 : cag_transform_apply(vm, t, v, result);
   vm->top = top;
