@@ -7,6 +7,7 @@
 #include "interp/export/json.h"
 #include "interp/export/mesh_formats.h"
 #include "interp/export/pov.h"
+#include "interp/export/step.h"
 #include "interp/export/svg.h"
 #include "interp/session/output.h"
 
@@ -176,6 +177,46 @@ static int export_pov(CagSession *s, const char *path) { return export_text(s, p
 static int export_svg(CagSession *s, const char *path) { return export_text(s, path, write_svg); }
 static int export_json(CagSession *s, const char *path) { return export_text(s, path, write_json); }
 
+// --- Exact geometry ---
+
+typedef CagStatus (*BrepWriter)(const CagBrep *b, const char *script, CagAtomicFile *f,
+                                CagError *err);
+
+// Says what the file holds only nearly: exactness is what it is for.
+static void tell_approximate(const CagSession *s, const CagBrep *b) {
+  for (size_t i = 0; s->options.messages && i < b->shape_count; i++)
+    if (b->shapes[i].approximate)
+      fprintf(s->options.messages, "note: %s has no exact form: approximated within %g mm\n",
+              b->shapes[i].name, b->shapes[i].tolerance);
+}
+
+static int write_brep(CagSession *s, const CagBrep *b, const char *path, BrepWriter write) {
+  CagIoError io = {0};
+  CagError err = {0};
+  CagAtomicFile *f = cag_atomic_file_open(path, &io);
+  if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  if (write(b, s->scene.script, f, &err) != CAG_OK) {
+    cag_atomic_file_abort(f);
+    return cag_session_fail_geometry(s, &err);
+  }
+  int status = commit(s, f);
+  if (status == CAG_STATUS_OK) tell_approximate(s, b);
+  return status;
+}
+
+static int export_brep(CagSession *s, const char *path, BrepWriter write) {
+  CagBrep b;
+  CagError err = {0};
+  CagStatus made = cag_session_checked(s, cag_brep_of_scene(&s->scene, &b, &err), &err);
+  int status = made == CAG_OK ? write_brep(s, &b, path, write) : cag_session_fail_geometry(s, &err);
+  cag_brep_free(&b);
+  return status;
+}
+
+static int export_step(CagSession *s, const char *path) {
+  return export_brep(s, path, cag_export_step);
+}
+
 // --- The table ---
 
 static const struct Format {
@@ -187,13 +228,15 @@ static const struct Format {
     {"ply", "mesh, binary PLY with normals, colours and parameters", export_ply},
     {"glb", "mesh, binary glTF 2.0 in metres with Y up", export_glb},
     {"pov", "scene, POV-Ray 3.7 source with its own objects where it has them", export_pov},
+    {"step", "exact geometry, STEP AP214 with solids, colours and names", export_step},
     {"svg", "curves and regions as a flat picture", export_svg},
     {"json", "scene, all of it as data", export_json},
 };
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 
 const char *const *cag_export_formats(void) {
-  static const char *const names[] = {"obj", "stl", "ply", "glb", "pov", "svg", "json", NULL};
+  static const char *const names[] = {"obj",  "stl", "ply",  "glb", "pov",
+                                      "step", "svg", "json", NULL};
   return names;
 }
 
@@ -229,10 +272,11 @@ int cag_session_export(CagSession *s, const char *path, const char *format) {
                                     "there is no format `%s`", name)
               : cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
                                     "%s has no ending that tells the format", path);
-    cag_diagnostic_set_help(d, strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0
-                                   ? "`cag render` makes pictures"
-                                   : "the formats are obj, stl, ply, glb, pov, svg, json; --format "
-                                     "says it where the ending does not");
+    cag_diagnostic_set_help(
+        d, strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0
+               ? "`cag render` makes pictures"
+               : "the formats are obj, stl, ply, glb, pov, step, svg, json; --format "
+                 "says it where the ending does not");
     return CAG_STATUS_USAGE;
   }
   int status = cag_session_build_scene(s);

@@ -1,0 +1,240 @@
+// Surfaces and regions taken apart into smooth faces with their sides.
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "geom/curve/nurbs_ops.h"
+#include "geom/surface/reshape.h"
+#include "interp/export/brep_build.h"
+
+// Corners of a patch lie in one plane to this part of its size: rounding of its control points.
+#define FLAT 1e-12
+// A flat face's rectangle stands off its outline by this part of its size.
+#define MARGIN 1e-3
+
+void *cag_brep_grow(void *array, size_t count, size_t *room, size_t size) {
+  if (count < *room) return array;
+  size_t more = *room ? 2 * *room : 16;
+  void *grown = realloc(array, more * size);
+  if (grown) *room = more;
+  return grown;
+}
+
+// Makes room for one more of an array whose length is all that is known of it: it grows at powers
+// of two.
+static bool one_more(void **array, size_t count, size_t size) {
+  if (count > 0 && (count & (count - 1)) != 0) return true;
+  void *grown = realloc(*array, (count ? 2 * count : 1) * size);
+  if (grown) *array = grown;
+  return grown != NULL;
+}
+
+static CagStatus add_face(CagBrepWork *w, const CagBrepFace *face, size_t *index, CagError *err) {
+  CagBrep *b = w->brep;
+  if (!one_more((void **)&b->faces, b->face_count, sizeof *b->faces)) return cag_fail_memory(err);
+  *index = b->face_count;
+  b->faces[b->face_count++] = *face;
+  return CAG_OK;
+}
+
+static CagStatus add_loop(CagBrepWork *w, size_t face, size_t *index, CagError *err) {
+  CagBrep *b = w->brep;
+  if (!one_more((void **)&b->loops, b->loop_count, sizeof *b->loops)) return cag_fail_memory(err);
+  *index = b->loop_count;
+  b->loops[b->loop_count++] = (CagBrepLoop){0, 0};
+  b->faces[face].count++;
+  return CAG_OK;
+}
+
+// Takes the reference to the curve.
+static CagStatus add_side(CagBrepWork *w, CagCurve *curve, bool reversed, size_t face, size_t loop,
+                          size_t order, CagError *err) {
+  void *grown = cag_brep_grow(w->sides, w->side_count, &w->side_room, sizeof *w->sides);
+  if (!grown) {
+    cag_curve_release(curve);
+    return cag_fail_memory(err);
+  }
+  w->sides = grown;
+  w->sides[w->side_count++] = (CagBrepSide){.curve = curve,
+                                            .reversed = reversed,
+                                            .face = face,
+                                            .loop = loop,
+                                            .order = order,
+                                            .edge = SIZE_MAX};
+  return CAG_OK;
+}
+
+// --- Flat pieces ---
+
+static CagTransform plane_frame(CagVec3 origin, CagVec3 x, CagVec3 normal) {
+  CagVec3 z = cag_unit(normal);
+  x = cag_unit(cag_madd(x, -cag_dot(x, z), z));
+  CagVec3 y = cag_cross(z, x);
+  return (CagTransform){.m = {{x.x, y.x, z.x, origin.x},
+                              {x.y, y.y, z.y, origin.y},
+                              {x.z, y.z, z.z, origin.z},
+                              {0, 0, 0, 1}}};
+}
+
+// A bilinear patch whose corners make a convex quadrangle or a triangle of a plane.
+static bool is_flat_patch(const CagSurface *s, CagTransform *plane) {
+  CagSurfaceNurbsView v;
+  if (!cag_surface_nurbs_view(s, &v) || v.rational || v.degree_u != 1 || v.degree_v != 1 ||
+      v.nu != 2 || v.nv != 2)
+    return false;
+  CagVec3 p[4]; // around
+  const int around[4] = {0, 2, 3, 1};
+  for (int k = 0; k < 4; k++) {
+    const double *h = v.homogeneous + 4 * around[k];
+    p[k] = cag_vec3(h[0], h[1], h[2]);
+  }
+  CagVec3 a = cag_sub(p[2], p[0]), b = cag_sub(p[3], p[1]), normal = cag_cross(a, b);
+  double size = fmax(cag_norm(a), cag_norm(b));
+  if (!(cag_norm(normal) > FLAT * size * size)) return false;
+  normal = cag_unit(normal);
+  CagVec3 longest = {0, 0, 0};
+  for (int k = 0; k < 4; k++) {
+    CagVec3 edge = cag_sub(p[(k + 1) % 4], p[k]), next = cag_sub(p[(k + 2) % 4], p[(k + 1) % 4]);
+    if (fabs(cag_dot(cag_sub(p[k], p[0]), normal)) > FLAT * size) return false;
+    if (cag_dot(cag_cross(edge, next), normal) < -FLAT * size * size) return false;
+    if (cag_norm(edge) > cag_norm(longest)) longest = edge;
+  }
+  *plane = plane_frame(p[0], longest, normal);
+  return true;
+}
+
+// --- Pieces of surfaces ---
+
+// Sides in the order of the loop: v0 forward, u1 forward, v1 back, u0 back.
+static CagStatus add_piece_sides(CagBrepWork *w, const CagSurface *s, size_t face, CagError *err) {
+  static const int SIDE[4] = {2, 1, 3, 0};
+  const bool pole[4] = {s->pole_u0, s->pole_u1, s->pole_v0, s->pole_v1};
+  size_t loop;
+  CagStatus status = add_loop(w, face, &loop, err);
+  for (size_t k = 0; !status && k < 4; k++) {
+    if (pole[SIDE[k]]) continue;
+    CagCurve *c;
+    status = cag_brep_side_curve(s, SIDE[k], &c, err);
+    if (!status) status = add_side(w, c, k >= 2, face, loop, k, err);
+  }
+  return status;
+}
+
+// Takes the reference to the piece.
+static CagStatus add_piece(CagBrepWork *w, CagSurface *piece, size_t source, CagError *err) {
+  CagBrepFace face = {
+      .surface = piece, .whole = true, .first = w->brep->loop_count, .source = source};
+  face.flat = is_flat_patch(piece, &face.plane);
+  size_t index;
+  CagStatus status = add_face(w, &face, &index, err);
+  if (status) {
+    cag_surface_release(piece);
+    return status;
+  }
+  return add_piece_sides(w, piece, index, err);
+}
+
+CagStatus cag_brep_add_surface(CagBrepWork *w, const CagSurface *s, size_t source, CagError *err) {
+  const CagRegion *region;
+  CagTransform frame;
+  if (cag_surface_planar_view(s, &region, &frame))
+    return cag_brep_add_region(w, region, &frame, source, err);
+  CagSurface *nurbs = NULL;
+  double *u = NULL, *v = NULL;
+  size_t nu = 0, nv = 0;
+  CagStatus status = cag_brep_surface(w, s, &nurbs, err);
+  if (status) return status;
+  status = cag_brep_surface_creases(nurbs, 0, &u, &nu, err);
+  if (!status) status = cag_brep_surface_creases(nurbs, 1, &v, &nv, err);
+  for (size_t i = 0; !status && i <= nu; i++)
+    for (size_t j = 0; !status && j <= nv; j++) {
+      CagSurface *piece = NULL;
+      if (nu + nv == 0) piece = cag_surface_retain(nurbs);
+      else
+        status = cag_surface_nurbs_part(nurbs, i ? u[i - 1] : nurbs->u0, i < nu ? u[i] : nurbs->u1,
+                                        j ? v[j - 1] : nurbs->v0, j < nv ? v[j] : nurbs->v1, &piece,
+                                        err);
+      if (!status) status = add_piece(w, piece, source, err);
+    }
+  free(u);
+  free(v);
+  cag_surface_release(nurbs);
+  return status;
+}
+
+// --- Regions ---
+
+// The pieces of a loop between its corners; *last is the last point's order.
+static CagStatus add_outline(CagBrepWork *w, const CagCurve *outline, const CagTransform *frame,
+                             size_t face, CagError *err) {
+  CagCurve *flat = NULL, *rest = NULL;
+  double *corners = NULL;
+  size_t n = 0, loop;
+  CagStatus status = add_loop(w, face, &loop, err);
+  if (!status) status = cag_brep_curve(w, outline, &flat, err);
+  if (!status) status = cag_curve_transform(flat, frame, &rest, err);
+  if (!status) status = cag_brep_curve_corners(rest, &corners, &n, err);
+  for (size_t i = 0; !status && i < n; i++) {
+    CagCurve *parts[2];
+    status = cag_curve_split(rest, corners[i], parts, err);
+    if (status) break;
+    cag_curve_release(rest);
+    rest = parts[1];
+    status = add_side(w, parts[0], false, face, loop, i, err);
+  }
+  if (!status) status = add_side(w, cag_curve_retain(rest), false, face, loop, n, err);
+  free(corners);
+  cag_curve_release(flat);
+  cag_curve_release(rest);
+  return status;
+}
+
+// The rectangle about the outline, along the axes of the plane.
+static CagStatus rectangle_about(const CagRegion *r, size_t outer, const CagTransform *frame,
+                                 CagSurface **out, CagError *err) {
+  CagBounds box;
+  CagStatus status = cag_curve_bounds(r->loops[outer], &box, err);
+  if (status) return status;
+  double off = MARGIN * fmax(box.max.x - box.min.x, box.max.y - box.min.y);
+  CagVec3 p[4];
+  for (int k = 0; k < 4; k++)
+    p[k] = cag_transform_point(frame, cag_vec3(k / 2 ? box.max.x + off : box.min.x - off,
+                                               k % 2 ? box.max.y + off : box.min.y - off, 0));
+  const double x[4] = {0, 0, box.max.x - box.min.x + 2 * off, box.max.x - box.min.x + 2 * off};
+  const double y[4] = {0, 0, box.max.y - box.min.y + 2 * off, box.max.y - box.min.y + 2 * off};
+  return cag_surface_nurbs(p, NULL, 2, 2, 1, 1, x, y, out, err);
+}
+
+static CagVec3 column(const CagTransform *t, int j) {
+  return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
+}
+
+static CagStatus add_part(CagBrepWork *w, const CagRegion *r, size_t outer,
+                          const CagTransform *frame, size_t source, CagError *err) {
+  CagBrepFace face = {.flat = true, .first = w->brep->loop_count, .source = source};
+  CagVec3 x = column(frame, 0);
+  face.plane = plane_frame(column(frame, 3), x, cag_cross(x, column(frame, 1)));
+  CagStatus status = rectangle_about(r, outer, frame, &face.surface, err);
+  if (status) return status;
+  size_t index;
+  status = add_face(w, &face, &index, err);
+  if (status) {
+    cag_surface_release(face.surface);
+    return status;
+  }
+  status = add_outline(w, r->loops[outer], frame, index, err);
+  for (size_t i = 0; !status && i < r->count; i++)
+    if (i != outer && r->outer[i] == outer) status = add_outline(w, r->loops[i], frame, index, err);
+  return status;
+}
+
+CagStatus cag_brep_add_region(CagBrepWork *w, const CagRegion *r, const CagTransform *frame,
+                              size_t source, CagError *err) {
+  CagTransform space = *frame;
+  space.planar = false;
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < r->count; i++)
+    if (r->outer[i] == i) status = add_part(w, r, i, &space, source, err);
+  return status;
+}
