@@ -72,6 +72,11 @@ CAG_API void cag_session_set_frame(CagSession *s, double frame, double frames);
 CAG_API int cag_session_run_file(CagSession *s, const char *path);
 CAG_API int cag_session_run_text(CagSession *s, const char *name, const char *text, size_t length);
 
+// The one layout of a script, malloc'd; NULL where it has errors. Nothing is run, no other file is
+// read.
+CAG_API int cag_session_format(CagSession *s, const char *name, const char *text, size_t length,
+                               char **out, size_t *out_length);
+
 // --- Diagnostics of the last call ---
 CAG_API size_t cag_session_error_count(const CagSession *s);
 typedef struct CagErrorView {

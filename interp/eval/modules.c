@@ -334,6 +334,15 @@ size_t cag_load_text(CagVm *vm, const char *name, const char *text, size_t lengt
   return k;
 }
 
+const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *text, size_t length) {
+  CagModuleUnit *m = new_unit(vm, name, NULL, text, length);
+  m->state = CAG_MODULE_FAILED; // read, but not to be run
+  const size_t before = vm->errors.count;
+  if (check_text(vm, m)) m->ast = cag_parse(m->source, CAG_PARSE_FILE, &vm->errors);
+  vm->failed = vm->errors.count > before;
+  return vm->failed ? NULL : m->ast;
+}
+
 bool cag_vm_compile_lambda(CagVm *vm, const char *source, CagValue *out) {
   size_t outer = vm->outer_count; // a formula sees built-in names only
   vm->outer_count = 0;

@@ -282,6 +282,8 @@ _Noreturn void cag_vm_out_of_memory(CagVm *vm);
 size_t cag_load_file(CagVm *vm, const char *path, int *exit_status);
 size_t cag_load_text(CagVm *vm, const char *name, const char *text, size_t length,
                      CagParseMode mode);
+// Parses a script that is not to be run; its tree lives as long as the machine. NULL: it has errors.
+const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *text, size_t length);
 // Whether a file may be read: below the root or the module path. Gives the real path (malloc'd) or
 // NULL with the reason in message.
 char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *message, size_t size);

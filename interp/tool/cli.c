@@ -240,6 +240,16 @@ static bool set_update(CagTool *t, const char *value) {
   return t->update = true;
 }
 
+static bool set_check(CagTool *t, const char *value) {
+  (void)value;
+  return t->check = true;
+}
+
+static bool set_diff(CagTool *t, const char *value) {
+  (void)value;
+  return t->diff = true;
+}
+
 static bool set_no_pictures(CagTool *t, const char *value) {
   (void)value;
   return t->no_pictures = true;

@@ -1,0 +1,665 @@
+// The one layout of scripts: from the tree to documents (layout.h), statement by statement.
+//
+// Words are copied from the source by their spans. Comments stand in a list of their own; each is
+// put before the word that follows it, and the printer sees to it that one which stood at the end
+// of a line stands at the end of a line again. Line breaks are offered only where the language lets
+// a statement go on: in brackets, behind operators, before `|>`, `then` and `else`.
+
+#include "lang/format.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "lang/layout.h"
+
+#define INDENT 2
+// Elements of a list at most so wide are set several to a line.
+#define SMALL_ITEM 28
+
+typedef struct Format {
+  const CagModuleAst *module;
+  const char *text;
+  Layout layout;
+  size_t comment; // the next one that is not set yet
+} Format;
+
+static Doc *expression(Format *f, const CagExpr *e);
+
+// ---- words and comments ----
+
+// Line ends in [start, end) of the source.
+static size_t newlines(const Format *f, uint32_t start, uint32_t end) {
+  size_t n = 0;
+  for (const char *p = f->text + start, *stop = f->text + end;
+       p < stop && (p = memchr(p, '\n', (size_t)(stop - p))); p++)
+    n++;
+  return n;
+}
+
+// Line ends in the white space right before the place.
+static size_t lines_before(const Format *f, uint32_t at) {
+  size_t n = 0;
+  while (at > 0 && strchr(" \t\r\n", f->text[at - 1])) n += f->text[--at] == '\n';
+  return n;
+}
+
+// Whether no word but a comma stands between `at` and the end of its line.
+static bool ends_line(const Format *f, uint32_t at) {
+  const char *p = f->text + at;
+  while (*p && strchr(" \t\r,;", *p)) p++;
+  return *p == '\n' || *p == 0;
+}
+
+static Doc *comment_text(Format *f, const CagComment *c) {
+  uint32_t end = c->span.end;
+  while (end > c->span.start && strchr(" \t\r", f->text[end - 1])) end--;
+  return layout_text(&f->layout, f->text + c->span.start, end - c->span.start);
+}
+
+static bool comments_before(const Format *f, uint32_t offset) {
+  return f->comment < f->module->comment_count &&
+         f->module->comments[f->comment].span.start < offset;
+}
+
+// Sets one comment; `inner`: before a closing bracket, so that no space stands behind it.
+static void set_comment(Format *f, Docs *out, const CagComment *c, bool inner) {
+  const size_t before = lines_before(f, c->span.start);
+  const bool alone = !c->block || ends_line(f, c->span.end);
+  Doc *text = comment_text(f, c);
+  if (before > 1) layout_add(out, layout_blank(&f->layout));
+  if (alone) {
+    layout_add(out, before ? layout_comment(&f->layout, text) : layout_trailing(&f->layout, text));
+  } else {
+    layout_add(out, layout_inline(&f->layout, text));
+    if (!inner) layout_add(out, layout_word(&f->layout, " "));
+  }
+}
+
+static void set_comments(Format *f, Docs *out, uint32_t offset, bool inner) {
+  if (!comments_before(f, offset)) return;
+  while (comments_before(f, offset)) set_comment(f, out, &f->module->comments[f->comment++], inner);
+  if (!inner && lines_before(f, offset) > 1) layout_add(out, layout_blank(&f->layout));
+}
+
+// The words of the source in the span, after the comments before them.
+static void set_span(Format *f, Docs *out, CagSpan span) {
+  set_comments(f, out, span.start, false);
+  layout_add(out, layout_text(&f->layout, f->text + span.start, span.end - span.start));
+  while (comments_before(f, span.end)) f->comment++; // within a text's { }
+}
+
+static void set_word(Format *f, Docs *out, const char *word) {
+  layout_add(out, layout_word(&f->layout, word));
+}
+
+// A closing bracket, whose place in the source is the last byte of what it closes.
+static void set_closer(Format *f, Docs *out, uint32_t end, const char *word) {
+  set_comments(f, out, end - 1, true);
+  set_word(f, out, word);
+}
+
+static Doc *span_doc(Format *f, CagSpan span) {
+  Docs d = {0};
+  set_span(f, &d, span);
+  return layout_concat(&f->layout, &d);
+}
+
+// ---- lists between brackets ----
+
+// A blank line of the source before `start`, or before the comments that stand there.
+static bool blank_before(const Format *f, uint32_t start) {
+  if (comments_before(f, start)) start = f->module->comments[f->comment].span.start;
+  return lines_before(f, start) > 1;
+}
+
+// The body of a lambda that goes on behind `=>` and breaks within its own brackets.
+static bool opens_by_itself(const CagExpr *e) {
+  switch (e->kind) {
+  case CAG_EXPR_BLOCK:
+  case CAG_EXPR_LIST:
+  case CAG_EXPR_RECORD:
+  case CAG_EXPR_COMPREHENSION: return true;
+  case CAG_EXPR_LAMBDA: return opens_by_itself(e->as.function->body);
+  default: return false;
+  }
+}
+
+static bool is_long_text(const Format *f, const CagExpr *e) {
+  return e->kind == CAG_EXPR_TEXT && newlines(f, e->span.start, e->span.end) > 0;
+}
+
+static Doc *argument(Format *f, const CagArgument *a) {
+  Docs d = {0};
+  if (a->name) {
+    set_span(f, &d, a->name_span);
+    set_word(f, &d, ": ");
+  }
+  layout_add(&d, expression(f, a->value));
+  return layout_concat(&f->layout, &d);
+}
+
+static Doc *call(Format *f, const CagExpr *e) {
+  Docs d = {0}, items = {0};
+  layout_add(&d, expression(f, e->as.call.callee));
+  bool clear = true; // no comment stands where hugging would swallow its line
+  const CagExpr *last = NULL;
+  for (size_t i = 0; i < e->as.call.count; i++) {
+    const CagArgument *a = &e->as.call.arguments[i];
+    clear = !comments_before(f, a->value->span.start);
+    if (i) layout_add(&items, layout_line(&f->layout, " "));
+    last = a->value;
+    Doc *item = argument(f, a);
+    if (i + 1 < e->as.call.count) item = layout_pair(&f->layout, item, ",");
+    layout_add(&items, item);
+  }
+  clear = clear && !comments_before(f, e->span.end - 1);
+  const bool hugs = last && clear && (opens_by_itself(last) || is_long_text(f, last));
+  Docs end = {0};
+  set_closer(f, &end, e->span.end, ")");
+  layout_add(&d, layout_brackets(&f->layout, "(", &items, layout_concat(&f->layout, &end), INDENT,
+                                 "", hugs));
+  return layout_concat(&f->layout, &d);
+}
+
+static bool is_small(const Doc *d) { return d->width <= SMALL_ITEM; }
+
+// Items of a list or record between its brackets.
+static Doc *items_doc(Format *f, const CagExpr *e, Doc *(*item)(Format *, const CagExpr *, size_t),
+                      uint32_t (*start)(const CagExpr *, size_t), size_t count, const char *open,
+                      const char *pad, const char *close) {
+  Docs items = {0}, end = {0};
+  bool small = e->kind == CAG_EXPR_LIST;
+  for (size_t i = 0; i < count; i++) {
+    const bool blank = i && blank_before(f, start(e, i));
+    if (blank) layout_add(&items, layout_blank(&f->layout));
+    if (i) layout_add(&items, blank ? layout_hard(&f->layout) : layout_line(&f->layout, " "));
+    Doc *d = item(f, e, i);
+    small = small && is_small(d);
+    if (i + 1 < count) d = layout_pair(&f->layout, d, ",");
+    layout_add(&items, d);
+  }
+  set_closer(f, &end, e->span.end, close);
+  Doc *closing = layout_concat(&f->layout, &end);
+  if (count > 1 && small) return layout_filled(&f->layout, open, &items, closing, INDENT, pad);
+  return layout_brackets(&f->layout, open, &items, closing, INDENT, pad,
+                         count == 1 && e->kind == CAG_EXPR_LIST &&
+                             opens_by_itself(e->as.list.items[0]));
+}
+
+static Doc *list_item(Format *f, const CagExpr *e, size_t i) {
+  return expression(f, e->as.list.items[i]);
+}
+static uint32_t list_start(const CagExpr *e, size_t i) { return e->as.list.items[i]->span.start; }
+
+static Doc *field_item(Format *f, const CagExpr *e, size_t i) {
+  const CagField *field = &e->as.record.fields[i];
+  Docs d = {0};
+  if (!field->name) {
+    set_comments(f, &d, field->value->span.start, false);
+    set_word(f, &d, "...");
+    layout_add(&d, expression(f, field->value));
+    return layout_concat(&f->layout, &d);
+  }
+  set_span(f, &d, field->name_span);
+  set_word(f, &d, ": ");
+  layout_add(&d, expression(f, field->value));
+  return layout_concat(&f->layout, &d);
+}
+static uint32_t field_start(const CagExpr *e, size_t i) {
+  const CagField *field = &e->as.record.fields[i];
+  return field->name ? field->name_span.start : field->value->span.start;
+}
+
+// ---- functions ----
+
+static Doc *parameter(Format *f, const CagParameter *p) {
+  Docs d = {0};
+  set_span(f, &d, p->decl->span);
+  if (p->fallback) {
+    set_word(f, &d, " = ");
+    layout_add(&d, expression(f, p->fallback));
+  }
+  return layout_concat(&f->layout, &d);
+}
+
+static Doc *parameters(Format *f, const CagFunctionAst *fn) {
+  Docs items = {0};
+  for (size_t i = 0; i < fn->parameter_count; i++) {
+    if (i) layout_add(&items, layout_line(&f->layout, " "));
+    Doc *d = parameter(f, &fn->parameters[i]);
+    if (i + 1 < fn->parameter_count) d = layout_pair(&f->layout, d, ",");
+    layout_add(&items, d);
+  }
+  return layout_brackets(&f->layout, "(", &items, layout_word(&f->layout, ")"), INDENT, "", false);
+}
+
+// What stands behind `=` or `=>`: beginning there, or on a line of its own where it is a choice.
+static void set_value(Format *f, Docs *out, const CagExpr *value) {
+  if (comments_before(f, value->span.start)) {
+    Docs d = {0};
+    layout_add(&d, layout_line(&f->layout, " "));
+    set_comments(f, &d, value->span.start, false);
+    layout_add(&d, expression(f, value));
+    layout_add(out, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &d)));
+  } else if (value->kind == CAG_EXPR_IF) {
+    Docs d = {0};
+    layout_add(&d, layout_line(&f->layout, " "));
+    Doc *choice = expression(f, value);
+    if (choice->kind == DOC_GROUP)
+      choice->kind = DOC_CONCAT; // breaks where the line before it does
+    layout_add(&d, choice);
+    layout_add(out, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &d)));
+  } else {
+    set_word(f, out, " ");
+    layout_add(out, expression(f, value));
+  }
+}
+
+static Doc *lambda(Format *f, const CagExpr *e) {
+  const CagFunctionAst *fn = e->as.function;
+  Docs d = {0};
+  set_comments(f, &d, e->span.start, false);
+  if (fn->parameter_count == 1 && !fn->parameters[0].fallback)
+    set_span(f, &d, fn->parameters[0].decl->span);
+  else layout_add(&d, parameters(f, fn));
+  set_word(f, &d, " =>");
+  set_value(f, &d, fn->body);
+  return layout_concat(&f->layout, &d);
+}
+
+// ---- operators ----
+
+static int level(const CagExpr *e) {
+  switch (e->kind) {
+  case CAG_EXPR_PIPE: return 1;
+  case CAG_EXPR_OR: return 2;
+  case CAG_EXPR_AND: return 3;
+  case CAG_EXPR_BINARY:
+    switch (e->as.binary.op) {
+    case CAG_OP_ADD:
+    case CAG_OP_SUBTRACT:
+    case CAG_OP_UNION: return 5;
+    case CAG_OP_MULTIPLY:
+    case CAG_OP_DIVIDE:
+    case CAG_OP_MODULO:
+    case CAG_OP_INTERSECTION: return 6;
+    case CAG_OP_POWER: return 7;
+    default: return 4;
+    }
+  default: return 0;
+  }
+}
+
+static Doc *power(Format *f, const CagExpr *e) {
+  Docs d = {0};
+  layout_add(&d, expression(f, e->as.binary.left));
+  set_word(f, &d, "^");
+  layout_add(&d, expression(f, e->as.binary.right));
+  return layout_concat(&f->layout, &d);
+}
+
+// The operator of a binary expression as it is written, between spaces.
+static void set_operator(Format *f, Docs *out, const CagExpr *e) {
+  const CagSpan s = e->as.binary.op_span;
+  set_word(f, out, " ");
+  layout_add(out, layout_text(&f->layout, f->text + s.start, s.end - s.start));
+}
+
+// a + b - c: the operands of one level, a line break behind each operator where they do not fit.
+static Doc *chain(Format *f, const CagExpr *e) {
+  const int mine = level(e);
+  size_t n = 0;
+  for (const CagExpr *x = e; level(x) == mine; x = x->as.binary.left) n++;
+  const CagExpr **links = layout_memory(&f->layout, n * sizeof *links);
+  size_t at = n;
+  for (const CagExpr *x = e; level(x) == mine; x = x->as.binary.left) links[--at] = x;
+  Docs d = {0}, item = {0};
+  layout_add(&item, expression(f, links[0]->as.binary.left));
+  for (size_t i = 0; i < n; i++) {
+    set_operator(f, &item, links[i]);
+    layout_add(&d, layout_concat(&f->layout, &item));
+    layout_add(&d, layout_line(&f->layout, " "));
+    item = (Docs){0};
+    layout_add(&item, expression(f, links[i]->as.binary.right));
+  }
+  layout_add(&d, layout_concat(&f->layout, &item));
+  Docs nested = {0};
+  layout_add(&nested, layout_fill(&f->layout, &d));
+  return layout_nest(&f->layout, INDENT, &nested);
+}
+
+// a |> f |> g: all on a line, or each stage on its own.
+static Doc *pipe(Format *f, const CagExpr *e) {
+  size_t n = 0;
+  for (const CagExpr *x = e; x->kind == CAG_EXPR_PIPE; x = x->as.binary.left) n++;
+  const CagExpr **links = layout_memory(&f->layout, n * sizeof *links);
+  size_t at = n;
+  for (const CagExpr *x = e; x->kind == CAG_EXPR_PIPE; x = x->as.binary.left) links[--at] = x;
+  Docs d = {0}, stages = {0};
+  layout_add(&d, expression(f, links[0]->as.binary.left));
+  for (size_t i = 0; i < n; i++) {
+    set_comments(f, &stages, links[i]->as.binary.op_span.start, true);
+    layout_add(&stages, layout_line(&f->layout, " "));
+    set_word(f, &stages, "|> ");
+    layout_add(&stages, expression(f, links[i]->as.binary.right));
+  }
+  layout_add(&d, layout_nest(&f->layout, INDENT, &stages));
+  return layout_group(&f->layout, layout_concat(&f->layout, &d));
+}
+
+static bool is_plain(const CagExpr *e) {
+  switch (e->kind) {
+  case CAG_EXPR_NUMBER:
+  case CAG_EXPR_ANGLE:
+  case CAG_EXPR_NAME:
+  case CAG_EXPR_MEMBER:
+  case CAG_EXPR_INDEX:
+  case CAG_EXPR_CALL:
+  case CAG_EXPR_GROUP: return true;
+  case CAG_EXPR_BINARY:
+    return level(e) > 4 && is_plain(e->as.binary.left) && is_plain(e->as.binary.right);
+  default: return false;
+  }
+}
+
+// The end of a range: arithmetic without spaces, 0..n-1.
+static Doc *range_end(Format *f, const CagExpr *e) {
+  if (e->kind != CAG_EXPR_BINARY || !is_plain(e)) return expression(f, e);
+  Docs d = {0};
+  const CagSpan s = e->as.binary.op_span;
+  layout_add(&d, range_end(f, e->as.binary.left));
+  layout_add(&d, layout_text(&f->layout, f->text + s.start, s.end - s.start));
+  layout_add(&d, range_end(f, e->as.binary.right));
+  return layout_concat(&f->layout, &d);
+}
+
+static Doc *range(Format *f, const CagExpr *e) {
+  Docs d = {0};
+  layout_add(&d, range_end(f, e->as.range.low));
+  set_word(f, &d, e->as.range.open ? "..<" : "..");
+  layout_add(&d, range_end(f, e->as.range.high));
+  if (e->as.range.step) {
+    set_word(f, &d, " by ");
+    layout_add(&d, range_end(f, e->as.range.step));
+  }
+  return layout_concat(&f->layout, &d);
+}
+
+static Doc *prefixed(Format *f, const CagExpr *e, const char *word) {
+  Docs d = {0};
+  set_comments(f, &d, e->span.start, false);
+  set_word(f, &d, word);
+  layout_add(&d, expression(f, e->as.unary.operand));
+  return layout_concat(&f->layout, &d);
+}
+
+static Doc *group(Format *f, const CagExpr *e) {
+  Docs d = {0}, items = {0}, end = {0};
+  set_comments(f, &d, e->span.start, false);
+  const bool clear = !comments_before(f, e->as.unary.operand->span.start);
+  layout_add(&items, expression(f, e->as.unary.operand));
+  set_closer(f, &end, e->span.end, ")");
+  layout_add(&d, layout_brackets(&f->layout, "(", &items, layout_concat(&f->layout, &end), INDENT,
+                                 "", clear && opens_by_itself(e->as.unary.operand)));
+  return layout_concat(&f->layout, &d);
+}
+
+// if a then b else if c then d else e: on a line, or each branch on its own.
+static Doc *branches(Format *f, const CagExpr *e) {
+  Docs d = {0};
+  const char *word = "if ";
+  for (;;) {
+    set_comments(f, &d, e->span.start, false);
+    set_word(f, &d, word);
+    layout_add(&d, expression(f, e->as.branch.condition));
+    set_word(f, &d, " then ");
+    layout_add(&d, expression(f, e->as.branch.then));
+    if (e->as.branch.then->kind == CAG_EXPR_BLOCK) set_word(f, &d, " ");
+    else layout_add(&d, layout_line(&f->layout, " "));
+    if (e->as.branch.otherwise->kind != CAG_EXPR_IF) break;
+    e = e->as.branch.otherwise;
+    word = "else if ";
+  }
+  set_word(f, &d, "else ");
+  layout_add(&d, expression(f, e->as.branch.otherwise));
+  return layout_group(&f->layout, layout_concat(&f->layout, &d));
+}
+
+static void set_clause(Format *f, Docs *d, const CagClause *c) {
+  set_comments(f, d, c->span.start, false);
+  if (c->pattern) set_word(f, d, "[");
+  for (size_t i = 0; i < c->name_count; i++) {
+    if (i) set_word(f, d, ", ");
+    if (c->names[i]) set_span(f, d, c->names[i]->span);
+    else set_word(f, d, "_");
+  }
+  if (c->pattern) set_word(f, d, "]");
+  set_word(f, d, " in ");
+  layout_add(d, expression(f, c->source));
+  if (!c->filter) return;
+  set_word(f, d, " if ");
+  layout_add(d, expression(f, c->filter));
+}
+
+static Doc *comprehension(Format *f, const CagExpr *e) {
+  Docs d = {0}, clauses = {0}, body = {0};
+  set_comments(f, &d, e->span.start, false);
+  set_word(f, &d, "[for ");
+  for (size_t i = 0; i < e->as.comprehension.count; i++) {
+    if (i) layout_add(&clauses, layout_line(&f->layout, " "));
+    Docs item = {0};
+    set_clause(f, &item, &e->as.comprehension.clauses[i]);
+    set_word(f, &item, i + 1 < e->as.comprehension.count ? "," : ":");
+    layout_add(&clauses, layout_concat(&f->layout, &item));
+  }
+  layout_add(&d, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &clauses)));
+  const bool opens = e->as.comprehension.body->kind == CAG_EXPR_BLOCK &&
+                     !comments_before(f, e->as.comprehension.body->span.start);
+  if (opens) {
+    set_word(f, &d, " ");
+    layout_add(&d, expression(f, e->as.comprehension.body));
+  } else {
+    layout_add(&body, layout_line(&f->layout, " "));
+    layout_add(&body, expression(f, e->as.comprehension.body));
+    layout_add(&d, layout_nest(&f->layout, INDENT, &body));
+  }
+  set_closer(f, &d, e->span.end, "]");
+  return layout_group(&f->layout, layout_concat(&f->layout, &d));
+}
+
+static void set_statement(Format *f, Docs *d, const CagStatement *s);
+
+static Doc *block(Format *f, const CagExpr *e) {
+  Docs d = {0}, inner = {0};
+  set_comments(f, &d, e->span.start, false);
+  set_word(f, &d, "{");
+  const size_t n = e->as.block.count;
+  for (size_t i = 0; i <= n; i++) {
+    const CagSpan span = i < n ? e->as.block.statements[i]->span : e->as.block.value->span;
+    if (i && blank_before(f, span.start)) layout_add(&inner, layout_blank(&f->layout));
+    layout_add(&inner, n ? layout_hard(&f->layout) : layout_line(&f->layout, " "));
+    if (i < n) set_statement(f, &inner, e->as.block.statements[i]);
+    else layout_add(&inner, expression(f, e->as.block.value));
+  }
+  set_comments(f, &inner, e->span.end - 1, false);
+  layout_add(&d, layout_nest(&f->layout, INDENT, &inner));
+  layout_add(&d, n ? layout_hard(&f->layout) : layout_line(&f->layout, " "));
+  set_word(f, &d, "}");
+  return layout_group(&f->layout, layout_concat(&f->layout, &d));
+}
+
+static Doc *bracketed(Format *f, const CagExpr *e) {
+  Docs d = {0};
+  set_comments(f, &d, e->span.start, false);
+  if (e->kind == CAG_EXPR_LIST)
+    layout_add(&d, items_doc(f, e, list_item, list_start, e->as.list.count, "[", "", "]"));
+  else
+    layout_add(&d, items_doc(f, e, field_item, field_start, e->as.record.count, "{",
+                             e->as.record.count ? " " : "", "}"));
+  return layout_concat(&f->layout, &d);
+}
+
+static Doc *index_of(Format *f, const CagExpr *e) {
+  Docs d = {0};
+  layout_add(&d, expression(f, e->as.binary.left));
+  set_word(f, &d, "[");
+  layout_add(&d, expression(f, e->as.binary.right));
+  set_closer(f, &d, e->span.end, "]");
+  return layout_concat(&f->layout, &d);
+}
+
+static Doc *member(Format *f, const CagExpr *e) {
+  Docs d = {0};
+  layout_add(&d, expression(f, e->as.member.object));
+  set_comments(f, &d, e->as.member.name_span.start, true);
+  set_word(f, &d, ".");
+  set_span(f, &d, e->as.member.name_span);
+  return layout_concat(&f->layout, &d);
+}
+
+static Doc *expression(Format *f, const CagExpr *e) {
+  switch (e->kind) {
+  case CAG_EXPR_GROUP: return group(f, e);
+  case CAG_EXPR_LIST:
+  case CAG_EXPR_RECORD: return bracketed(f, e);
+  case CAG_EXPR_SPREAD: return prefixed(f, e, "...");
+  case CAG_EXPR_COMPREHENSION: return comprehension(f, e);
+  case CAG_EXPR_BLOCK: return block(f, e);
+  case CAG_EXPR_LAMBDA: return lambda(f, e);
+  case CAG_EXPR_IF: return branches(f, e);
+  case CAG_EXPR_NEGATE: return prefixed(f, e, "-");
+  case CAG_EXPR_NOT: return prefixed(f, e, "not ");
+  case CAG_EXPR_BINARY: return e->as.binary.op == CAG_OP_POWER ? power(f, e) : chain(f, e);
+  case CAG_EXPR_AND:
+  case CAG_EXPR_OR: return chain(f, e);
+  case CAG_EXPR_PIPE: return pipe(f, e);
+  case CAG_EXPR_RANGE: return range(f, e);
+  case CAG_EXPR_CALL: return call(f, e);
+  case CAG_EXPR_INDEX: return index_of(f, e);
+  case CAG_EXPR_MEMBER: return member(f, e);
+  default: return span_doc(f, e->span); // numbers, texts, names: as they are written
+  }
+}
+
+// ---- statements ----
+
+static void set_import(Format *f, Docs *d, const CagStatement *s) {
+  set_word(f, d, "import ");
+  set_span(f, d, s->as.import.path_span);
+  if (s->as.import.alias) {
+    set_word(f, d, " as ");
+    set_word(f, d, s->as.import.alias);
+  }
+  if (!s->as.import.name_count) return;
+  Docs names = {0};
+  for (size_t i = 0; i < s->as.import.name_count; i++) {
+    if (i) layout_add(&names, layout_line(&f->layout, " "));
+    Doc *name = span_doc(f, s->as.import.names[i].decl->span);
+    if (i + 1 < s->as.import.name_count) name = layout_pair(&f->layout, name, ",");
+    layout_add(&names, name);
+  }
+  set_word(f, d, ": ");
+  Docs nested = {0};
+  layout_add(&nested, layout_fill(&f->layout, &names));
+  layout_add(d, layout_nest(&f->layout, INDENT, &nested));
+}
+
+// Where the label of a param begins: it is the last word of the statement.
+static uint32_t label_start(const Format *f, const CagStatement *s) {
+  const CagExpr *last = s->as.param.domain ? s->as.param.domain : s->as.param.value;
+  const uint32_t from = last->span.end;
+  size_t comment = f->comment;
+  for (uint32_t at = from; at < s->span.end; at++) {
+    while (comment < f->module->comment_count && f->module->comments[comment].span.start < at)
+      comment++;
+    if (comment < f->module->comment_count && f->module->comments[comment].span.start == at) {
+      at = f->module->comments[comment].span.end - 1;
+      continue;
+    }
+    if (f->text[at] == '"' || f->text[at] == '`') return at;
+  }
+  return s->span.end;
+}
+
+static void set_param(Format *f, Docs *d, const CagStatement *s) {
+  set_word(f, d, "param ");
+  set_span(f, d, s->as.param.decl->span);
+  set_word(f, d, " = ");
+  layout_add(d, expression(f, s->as.param.value));
+  if (s->as.param.domain) {
+    set_word(f, d, " in ");
+    layout_add(d, expression(f, s->as.param.domain));
+  }
+  if (!s->as.param.label) return;
+  set_word(f, d, " ");
+  set_span(f, d, (CagSpan){label_start(f, s), s->span.end});
+}
+
+static void set_definition(Format *f, Docs *d, const CagStatement *s) {
+  const CagExpr *value = s->as.definition.value;
+  set_span(f, d, s->as.definition.decl->span);
+  if (value->kind == CAG_EXPR_LAMBDA && value->as.function->name) {
+    layout_add(d, parameters(f, value->as.function));
+    value = value->as.function->body;
+  }
+  set_word(f, d, " =");
+  set_value(f, d, value);
+}
+
+static void set_list(Format *f, Docs *d, const CagStatement *s, const char *word) {
+  set_word(f, d, word);
+  if (s->as.list.count == 1) {
+    layout_add(d, expression(f, s->as.list.items[0]));
+    return;
+  }
+  Docs items = {0}, nested = {0};
+  for (size_t i = 0; i < s->as.list.count; i++) {
+    if (i) layout_add(&items, layout_line(&f->layout, " "));
+    Doc *item = expression(f, s->as.list.items[i]);
+    if (i + 1 < s->as.list.count) item = layout_pair(&f->layout, item, ",");
+    layout_add(&items, item);
+  }
+  layout_add(&nested, layout_fill(&f->layout, &items));
+  layout_add(d, layout_nest(&f->layout, INDENT, &nested));
+}
+
+static void set_assert(Format *f, Docs *d, const CagStatement *s) {
+  set_word(f, d, "assert ");
+  if (!s->as.assertion.message) {
+    layout_add(d, expression(f, s->as.assertion.condition));
+    return;
+  }
+  Docs parts = {0};
+  layout_add(&parts, layout_pair(&f->layout, expression(f, s->as.assertion.condition), ","));
+  layout_add(&parts, layout_line(&f->layout, " "));
+  layout_add(&parts, expression(f, s->as.assertion.message));
+  layout_add(d, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &parts)));
+}
+
+static void set_statement(Format *f, Docs *d, const CagStatement *s) {
+  set_comments(f, d, s->span.start, false);
+  switch (s->kind) {
+  case CAG_STATEMENT_IMPORT: set_import(f, d, s); break;
+  case CAG_STATEMENT_PARAM: set_param(f, d, s); break;
+  case CAG_STATEMENT_DEFINITION: set_definition(f, d, s); break;
+  case CAG_STATEMENT_SHOW: set_list(f, d, s, "show "); break;
+  case CAG_STATEMENT_PRINT: set_list(f, d, s, "print "); break;
+  case CAG_STATEMENT_ASSERT: set_assert(f, d, s); break;
+  case CAG_STATEMENT_EXPRESSION: layout_add(d, expression(f, s->as.expression)); break;
+  }
+}
+
+char *cag_format(const CagModuleAst *m, size_t *length) {
+  Format f = {.module = m, .text = m->source->text};
+  layout_init(&f.layout, CAG_FORMAT_WIDTH);
+  for (size_t i = 0; i <= m->count; i++) {
+    Docs d = {0};
+    const uint32_t start =
+        i < m->count ? m->statements[i]->span.start : (uint32_t)m->source->length;
+    if (i && blank_before(&f, start)) layout_add(&d, layout_blank(&f.layout));
+    if (i < m->count) set_statement(&f, &d, m->statements[i]);
+    else set_comments(&f, &d, start, false);
+    layout_print(&f.layout, layout_concat(&f.layout, &d));
+  }
+  return layout_finish(&f.layout, length);
+}

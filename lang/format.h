@@ -1,0 +1,19 @@
+// The one layout of scripts.
+//
+// Formatting looks at the tree and at nothing of the old layout but comments and blank lines, and
+// never changes the tree: what is written stays written (units, parentheses, texts), only spaces,
+// line breaks, `;` between statements and commas before closing brackets are set anew.
+
+#ifndef CAG_LANG_FORMAT_H
+#define CAG_LANG_FORMAT_H
+
+#include "lang/ast.h"
+
+// Columns that a line has, where its words allow it.
+#define CAG_FORMAT_WIDTH 100
+
+// The script of a tree that was parsed without errors (CAG_PARSE_FILE), laid out. Malloc'd and
+// NUL-terminated, `length` bytes. Formatting the result gives it again.
+char *cag_format(const CagModuleAst *m, size_t *length);
+
+#endif

@@ -1,0 +1,401 @@
+// Documents and their printer (layout.h).
+
+#include "lang/layout.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "lang/arena.h"
+
+// Comments at the ends of neighbouring lines stand one below the other while the code of all of
+// them ends before this column.
+#define ALIGN_UNTIL 72
+#define COMMENT_GAP 2
+
+// ---- memory ----
+
+#define BLOCK_SIZE ((size_t)64 * 1024)
+
+struct LayoutBlock {
+  LayoutBlock *next;
+  size_t used, size;
+  _Alignas(max_align_t) char bytes[];
+};
+
+void layout_init(Layout *l, uint32_t width) { *l = (Layout){.width = width}; }
+
+static LayoutBlock *next_block(Layout *l, size_t size) {
+  LayoutBlock *b = l->block ? l->block->next : l->blocks;
+  if (b && b->size >= size) return b;
+  const size_t room = size > BLOCK_SIZE ? size : BLOCK_SIZE;
+  LayoutBlock *made = cag_checked(malloc(sizeof *made + room));
+  made->size = room;
+  made->next = b;
+  if (l->block) l->block->next = made;
+  else l->blocks = made;
+  return made;
+}
+
+void *layout_memory(Layout *l, size_t size) {
+  size = (size + _Alignof(max_align_t) - 1) / _Alignof(max_align_t) * _Alignof(max_align_t);
+  if (!l->block || l->block->size - l->block->used < size) {
+    l->block = next_block(l, size);
+    l->block->used = 0;
+  }
+  void *memory = l->block->bytes + l->block->used;
+  l->block->used += size;
+  return memory;
+}
+
+// ---- documents ----
+
+static uint32_t sum(uint32_t a, uint32_t b) { return a + b < DOC_ENDLESS ? a + b : DOC_ENDLESS; }
+
+void layout_add(Docs *list, Doc *d) {
+  if (list->tail) list->tail->next = d;
+  else list->head = d;
+  list->tail = d;
+}
+
+static Doc *new_doc(Layout *l, DocKind kind) {
+  Doc *d = layout_memory(l, sizeof *d);
+  *d = (Doc){.kind = kind};
+  return d;
+}
+
+static uint32_t code_points(const char *text, size_t length) {
+  uint32_t n = 0;
+  for (size_t i = 0; i < length; i++) n += ((unsigned char)text[i] & 0xC0) != 0x80;
+  return n;
+}
+
+Doc *layout_text(Layout *l, const char *text, size_t length) {
+  Doc *d = new_doc(l, DOC_TEXT);
+  d->text = text;
+  d->length = (uint32_t)length;
+  const char *end = memchr(text, '\n', length);
+  d->first = code_points(text, end ? (size_t)(end - text) : length);
+  d->width = end ? DOC_ENDLESS : d->first;
+  d->breaks = end != NULL;
+  return d;
+}
+
+Doc *layout_word(Layout *l, const char *word) { return layout_text(l, word, strlen(word)); }
+
+Doc *layout_line(Layout *l, const char *flat) {
+  Doc *d = layout_word(l, flat);
+  d->kind = DOC_LINE;
+  d->first = 0;
+  d->breaks = true;
+  return d;
+}
+
+static Doc *breaking(Layout *l, DocKind kind, Doc *child) {
+  Doc *d = new_doc(l, kind);
+  d->width = DOC_ENDLESS;
+  d->breaks = true;
+  d->child = child;
+  return d;
+}
+
+Doc *layout_hard(Layout *l) { return breaking(l, DOC_HARD, NULL); }
+Doc *layout_blank(Layout *l) { return breaking(l, DOC_BLANK, NULL); }
+Doc *layout_trailing(Layout *l, Doc *text) { return breaking(l, DOC_TRAILING, text); }
+Doc *layout_comment(Layout *l, Doc *text) { return breaking(l, DOC_COMMENT, text); }
+
+Doc *layout_inline(Layout *l, Doc *text) {
+  Doc *d = breaking(l, DOC_INLINE, text);
+  d->width = text->width < DOC_ENDLESS ? text->width + 1 : DOC_ENDLESS;
+  d->first = text->first + 1;
+  d->breaks = text->breaks;
+  return d;
+}
+
+static Doc *parent(Layout *l, DocKind kind, Doc *child) {
+  Doc *d = new_doc(l, kind);
+  d->child = child;
+  for (const Doc *c = child; c; c = c->next) {
+    d->width = sum(d->width, c->width);
+    if (!d->breaks) d->first += c->first;
+    d->breaks = d->breaks || c->breaks;
+  }
+  return d;
+}
+
+Doc *layout_concat(Layout *l, const Docs *parts) {
+  if (parts->head && !parts->head->next) return parts->head;
+  return parent(l, DOC_CONCAT, parts->head);
+}
+
+Doc *layout_pair(Layout *l, Doc *d, const char *word) {
+  Docs parts = {0};
+  layout_add(&parts, d);
+  layout_add(&parts, layout_word(l, word));
+  return layout_concat(l, &parts);
+}
+
+Doc *layout_group(Layout *l, Doc *d) { return parent(l, DOC_GROUP, d); }
+
+Doc *layout_nest(Layout *l, int indent, const Docs *parts) {
+  Doc *d = parent(l, DOC_NEST, parts->head);
+  d->indent = indent;
+  return d;
+}
+
+Doc *layout_fill(Layout *l, const Docs *items) { return parent(l, DOC_FILL, items->head); }
+
+Doc *layout_brackets(Layout *l, const char *open, const Docs *items, Doc *close, int indent,
+                     const char *pad, bool hugs) {
+  Doc *d = parent(l, DOC_BRACKETS, items->head);
+  d->text = open;
+  d->length = (uint32_t)strlen(open);
+  d->pad = pad;
+  d->close = close;
+  d->indent = indent;
+  d->hugs = hugs;
+  d->width = sum(sum(d->width, d->length + 2 * (uint32_t)strlen(pad)), close->width);
+  d->first = d->length + (items->head ? 0 : close->first);
+  d->breaks = items->head || close->breaks;
+  return d;
+}
+
+Doc *layout_filled(Layout *l, const char *open, const Docs *items, Doc *close, int indent,
+                   const char *pad) {
+  Doc *d = layout_brackets(l, open, items, close, indent, pad, false);
+  d->kind = DOC_FILLED;
+  return d;
+}
+
+// ---- printing ----
+
+static void put(Layout *l, const char *bytes, size_t n) {
+  if (!n) return;
+  if (l->capacity - l->length < n) {
+    l->capacity = (l->length + n) * 2 + 4096;
+    l->out = cag_checked(realloc(l->out, l->capacity));
+  }
+  memcpy(l->out + l->length, bytes, n);
+  l->length += n;
+}
+
+static void strip_spaces(Layout *l) {
+  for (; l->length && l->out[l->length - 1] == ' '; l->length--) l->column--;
+}
+
+static void break_line(Layout *l) {
+  static const char spaces[] = "                                                                ";
+  strip_spaces(l);
+  if (l->length) {
+    put(l, "\n\n", l->blank ? 2 : 1);
+    l->line += l->blank ? 2 : 1;
+  }
+  for (int n = l->pending_indent; n > 0; n -= (int)sizeof spaces - 1)
+    put(l, spaces, n < (int)sizeof spaces ? (size_t)n : sizeof spaces - 1);
+  l->column = l->indent = (uint32_t)l->pending_indent;
+  l->pending = l->blank = l->closed = false;
+}
+
+static void put_text(Layout *l, const char *text, size_t length) {
+  if (!length) return;
+  if (l->pending) break_line(l);
+  put(l, text, length);
+  for (const char *end; (end = memchr(text, '\n', length)); l->column = 0, l->line++) {
+    length -= (size_t)(end + 1 - text);
+    text = end + 1;
+  }
+  l->column += code_points(text, length);
+}
+
+static void put_line(Layout *l, int indent) {
+  l->pending = true;
+  l->pending_indent = indent;
+}
+
+static uint32_t column(const Layout *l) {
+  return l->pending ? (uint32_t)l->pending_indent : l->column;
+}
+
+static bool fits(const Layout *l, const Doc *d, uint32_t tail) {
+  return column(l) + d->width + tail <= l->width;
+}
+
+static void put_comment(Layout *l, const Doc *text, int indent) {
+  if (l->length) put_line(l, indent);
+  put_text(l, text->text, text->length);
+  put_line(l, indent);
+  l->closed = true;
+}
+
+static void put_trailing(Layout *l, const Doc *text, int indent) {
+  if (!l->length || l->closed) {
+    put_comment(l, text, indent);
+    return;
+  }
+  strip_spaces(l);
+  if (text->text[1] == '*') {
+    put(l, " ", 1);
+    put(l, text->text, text->length);
+    put_line(l, indent);
+    return;
+  }
+  if (l->trailing_count == l->trailing_capacity) {
+    l->trailing_capacity = l->trailing_capacity * 2 + 64;
+    l->trailing = cag_checked(realloc(l->trailing, l->trailing_capacity * sizeof *l->trailing));
+  }
+  l->trailing[l->trailing_count++] = (LayoutTrailing){l->length, l->line, l->column, l->indent};
+  put(l, text->text, text->length);
+  l->closed = true;
+  put_line(l, indent);
+}
+
+static void print(Layout *l, const Doc *d, bool flat, int indent, uint32_t tail);
+
+// The width behind d up to the next possible break.
+static uint32_t behind(const Doc *d, uint32_t tail) {
+  uint32_t width = 0;
+  for (d = d->next; d; d = d->next) {
+    width += d->first;
+    if (d->breaks) return width;
+  }
+  return width + tail;
+}
+
+static bool is_leaf(const Doc *d) { return d->kind <= DOC_INLINE; }
+
+static void print_children(Layout *l, const Doc *child, bool flat, int indent, uint32_t tail) {
+  for (; child; child = child->next)
+    print(l, child, flat, indent, flat || is_leaf(child) ? 0 : behind(child, tail));
+}
+
+static void print_fill(Layout *l, const Doc *child, int indent, uint32_t tail) {
+  for (bool whole = true; child; child = child->next) {
+    if (child->kind == DOC_LINE && child->next) {
+      const Doc *item = child->next;
+      const uint32_t after = item->next ? 0 : tail;
+      const bool stays = whole && item->kind != DOC_BLANK && item->kind != DOC_HARD &&
+                         column(l) + child->width + item->width + after <= l->width;
+      print(l, child, stays, indent, 0);
+    } else {
+      whole = child->width < DOC_ENDLESS;
+      print(l, child, false, indent, child->next ? 0 : tail);
+    }
+  }
+}
+
+static const Doc *last_of(const Doc *child) {
+  while (child && child->next) child = child->next;
+  return child;
+}
+
+// Whether the items but the last stand on this line, and the last opens on it.
+static bool hugs(const Layout *l, const Doc *d, int indent) {
+  const Doc *last = last_of(d->child);
+  if (!d->hugs || !last) return false;
+  uint32_t width = column(l) + d->length;
+  for (const Doc *c = d->child; c != last; c = c->next) width = sum(width, c->width);
+  if (width + last->first > l->width) return false;
+  return d->child == last || (uint32_t)(indent + d->indent) + last->width + 1 > l->width;
+}
+
+static void print_brackets(Layout *l, const Doc *d, bool flat, int indent, uint32_t tail) {
+  put_text(l, d->text, d->length);
+  if (flat) {
+    put_text(l, d->pad, strlen(d->pad));
+    print_children(l, d->child, true, indent, 0);
+    put_text(l, d->pad, strlen(d->pad));
+  } else if (hugs(l, d, indent)) {
+    const Doc *last = last_of(d->child);
+    for (const Doc *c = d->child; c != last; c = c->next) print(l, c, true, indent, 0);
+    print(l, last, false, indent, d->close->first + tail);
+  } else if (d->child) {
+    put_line(l, indent + d->indent);
+    if (d->kind == DOC_FILLED) print_fill(l, d->child, indent + d->indent, 0);
+    else print_children(l, d->child, false, indent + d->indent, 0);
+    if (d->close->kind == DOC_CONCAT) { // comments before the bracket stand with the items
+      const Doc *bracket = last_of(d->close->child);
+      for (const Doc *c = d->close->child; c != bracket; c = c->next)
+        print(l, c, false, indent + d->indent, 0);
+      put_line(l, indent);
+      print(l, bracket, false, indent, 0);
+      return;
+    }
+    put_line(l, indent);
+  }
+  print(l, d->close, flat, indent, tail);
+}
+
+static void print(Layout *l, const Doc *d, bool flat, int indent, uint32_t tail) {
+  switch (d->kind) {
+  case DOC_TEXT: put_text(l, d->text, d->length); break;
+  case DOC_LINE:
+    if (flat) put_text(l, d->text, d->length);
+    else put_line(l, indent);
+    break;
+  case DOC_HARD: put_line(l, indent); break;
+  case DOC_BLANK:
+    put_line(l, indent);
+    l->blank = true;
+    break;
+  case DOC_TRAILING: put_trailing(l, d->child, indent); break;
+  case DOC_COMMENT: put_comment(l, d->child, indent); break;
+  case DOC_INLINE:
+    if (!l->pending && l->length && !strchr(" ([{", l->out[l->length - 1])) put_text(l, " ", 1);
+    put_text(l, d->child->text, d->child->length);
+    break;
+  case DOC_CONCAT: print_children(l, d->child, flat, indent, tail); break;
+  case DOC_NEST: print_children(l, d->child, flat, indent + d->indent, tail); break;
+  case DOC_GROUP: print_children(l, d->child, flat || fits(l, d, tail), indent, tail); break;
+  case DOC_FILL:
+    if (flat || fits(l, d, tail)) print_children(l, d->child, true, indent, tail);
+    else print_fill(l, d->child, indent, tail);
+    break;
+  case DOC_BRACKETS:
+  case DOC_FILLED: print_brackets(l, d, flat || fits(l, d, tail), indent, tail); break;
+  }
+}
+
+void layout_print(Layout *l, Doc *d) {
+  print(l, d, false, 0, 0);
+  if (l->length) put_line(l, 0);
+  l->block = l->blocks;
+  if (l->block) l->block->used = 0;
+}
+
+// The column for the comments of trailing[from..to), which end neighbouring lines.
+static uint32_t common_column(const Layout *l, size_t from, size_t to) {
+  uint32_t most = 0;
+  for (size_t i = from; i < to; i++)
+    if (l->trailing[i].column > most) most = l->trailing[i].column;
+  return most <= ALIGN_UNTIL ? most : 0;
+}
+
+char *layout_finish(Layout *l, size_t *length) {
+  Layout aligned = {0};
+  size_t done = 0;
+  for (size_t i = 0; i < l->trailing_count;) {
+    size_t end = i + 1;
+    while (end < l->trailing_count && l->trailing[end].line == l->trailing[end - 1].line + 1 &&
+           l->trailing[end].indent == l->trailing[i].indent)
+      end++;
+    const uint32_t column = common_column(l, i, end);
+    for (; i < end; i++) {
+      const LayoutTrailing *t = &l->trailing[i];
+      put(&aligned, l->out + done, t->at - done);
+      for (uint32_t c = t->column; c < column; c++) put(&aligned, " ", 1);
+      put(&aligned, "  ", COMMENT_GAP);
+      done = t->at;
+    }
+  }
+  put(&aligned, l->out + done, l->length - done);
+  if (aligned.length) put(&aligned, "\n", 1);
+  put(&aligned, "", 1);
+  *length = aligned.length - 1;
+  free(l->out);
+  free(l->trailing);
+  while (l->blocks) {
+    LayoutBlock *next = l->blocks->next;
+    free(l->blocks);
+    l->blocks = next;
+  }
+  return aligned.out;
+}

@@ -1,0 +1,107 @@
+// Documents: text that knows where it may be broken into lines, and their printer.
+//
+// In the manner of Wadler ("A prettier printer", 2003): a document is text, a place for a line
+// break, or a combination; the printer sets each group on one line where it fits and breaks it
+// otherwise. Each document keeps its width on one line and the width up to its first possible
+// break, so no decision looks at more than the neighbours. Line breaks are lazy: one is printed
+// when the next text comes, so breaks that meet are one, and a comment that stood at the end of a
+// line goes there again. Everything made since the last layout_print lives until the next.
+
+#ifndef CAG_LANG_LAYOUT_H
+#define CAG_LANG_LAYOUT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum DocKind {
+  DOC_TEXT,
+  DOC_LINE,     // text (a space, or nothing) on one line, else a line break
+  DOC_HARD,     // always a line break
+  DOC_BLANK,    // the next line break leaves a line empty
+  DOC_TRAILING, // a comment at the end of the line
+  DOC_COMMENT,  // a comment on a line of its own
+  DOC_INLINE,   // a comment within the line, a space before it
+  DOC_CONCAT,   // breaks as what it stands in
+  DOC_GROUP,    // on one line, or all its lines broken
+  DOC_NEST,     // breaks as what it stands in, indented
+  DOC_FILL,     // each line broken only where the next item does not fit
+  DOC_BRACKETS, // items between brackets: on one line, or one to a line
+  DOC_FILLED    // items between brackets: on one line, or filled
+} DocKind;
+
+// Wider than any line: holds a break that must be.
+#define DOC_ENDLESS ((uint32_t)1 << 28)
+
+typedef struct Doc Doc;
+struct Doc {
+  DocKind kind;
+  bool breaks;    // holds a place for a break
+  bool hugs;      // BRACKETS: the last item may open on the line of the bracket
+  uint32_t width; // on one line; DOC_ENDLESS: not possible
+  uint32_t first; // up to the first possible break
+  int indent;
+  const char *text; // TEXT, LINE; the opening bracket
+  uint32_t length;
+  const char *pad; // within brackets on one line
+  Doc *child, *close;
+  Doc *next; // behind it in the same parent
+};
+
+typedef struct Docs {
+  Doc *head, *tail;
+} Docs;
+
+typedef struct LayoutBlock LayoutBlock;
+typedef struct LayoutTrailing {
+  size_t at; // end of the code in the output
+  size_t line;
+  uint32_t column, indent; // of the code
+} LayoutTrailing;
+
+typedef struct Layout {
+  uint32_t width;
+  LayoutBlock *blocks, *block; // of documents; the one in use
+  char *out;
+  size_t length, capacity;
+  size_t line;
+  uint32_t column, indent;
+  bool pending, blank; // a line break waits, and leaves a line empty
+  bool closed;         // the line ends in a comment
+  int pending_indent;
+  LayoutTrailing *trailing;
+  size_t trailing_count, trailing_capacity;
+} Layout;
+
+void layout_init(Layout *l, uint32_t width);
+// Memory that lives as long as the documents.
+void *layout_memory(Layout *l, size_t size);
+
+void layout_add(Docs *list, Doc *d);
+Doc *layout_text(Layout *l, const char *text, size_t length); // borrowed; may hold line breaks
+Doc *layout_word(Layout *l, const char *word);                // borrowed
+Doc *layout_line(Layout *l, const char *flat);
+Doc *layout_hard(Layout *l);
+Doc *layout_blank(Layout *l);
+Doc *layout_trailing(Layout *l, Doc *text);
+Doc *layout_comment(Layout *l, Doc *text);
+Doc *layout_inline(Layout *l, Doc *text);
+Doc *layout_concat(Layout *l, const Docs *parts);
+Doc *layout_pair(Layout *l, Doc *d, const char *word); // d and a word behind it
+Doc *layout_group(Layout *l, Doc *d);
+Doc *layout_nest(Layout *l, int indent, const Docs *parts);
+Doc *layout_fill(Layout *l, const Docs *items); // items and LINEs in turn
+// `items`: items and LINEs in turn. `hugs`: where all but the last fit, the last may begin behind
+// them, so that its own brackets close with these.
+Doc *layout_brackets(Layout *l, const char *open, const Docs *items, Doc *close, int indent,
+                     const char *pad, bool hugs);
+Doc *layout_filled(Layout *l, const char *open, const Docs *items, Doc *close, int indent,
+                   const char *pad);
+
+// Prints a document and ends its line; forgets all documents.
+void layout_print(Layout *l, Doc *d);
+// The whole output, malloc'd and NUL-terminated: comments at the ends of neighbouring lines are set
+// one below the other. Releases the layout.
+char *layout_finish(Layout *l, size_t *length);
+
+#endif

@@ -1,0 +1,211 @@
+// The one layout: what it looks like, and that it never changes a tree, loses a comment, or differs
+// the second time; over all scripts of the tree, as they are and with their spaces thrown about.
+
+#include <ftw.h>
+
+#include "lang/format.h"
+#include "lang/lexer.h"
+#include "support.h"
+
+// The layout of a text, or NULL where it has errors.
+static char *laid_out(const char *text, size_t length, char **tree, size_t *comments) {
+  Parsed p = parse_bytes(text, length, CAG_PARSE_FILE);
+  char *out = NULL;
+  if (p.errors.count == 0) {
+    size_t n;
+    out = cag_format(p.module, &n);
+    assert_int_equal(strlen(out), n);
+    if (tree) {
+      FILE *f = open_memstream(tree, &n);
+      cag_ast_dump(f, p.module);
+      fclose(f);
+    }
+    if (comments) *comments = p.module->comment_count;
+  }
+  release(&p);
+  return out;
+}
+
+static void expect_layout(const char *text, const char *expected) {
+  char *out = laid_out(text, strlen(text), NULL, NULL);
+  assert_non_null(out);
+  assert_string_equal(out, expected);
+  char *again = laid_out(out, strlen(out), NULL, NULL);
+  assert_string_equal(again, expected);
+  free(again);
+  free(out);
+}
+
+static void spaces_are_set_anew(void **state) {
+  (void)state;
+  expect_layout("a=1+2 *3;b   =-a^2\n\n\n\nshow   a,b", "a = 1 + 2 * 3\nb = -a^2\n\nshow a, b\n");
+  expect_layout("f( x,y=2 )=max( x , y )[ 0 ].p", "f(x, y = 2) = max(x, y)[0].p\n");
+  expect_layout("r={a:1,\"b c\":[1,2,],...s}", "r = { a: 1, \"b c\": [1, 2], ...s }\n");
+  expect_layout("r={ }\nxs=[ ]\ng=( )=>1", "r = {}\nxs = []\ng = () => 1\n");
+  expect_layout("x = [for i in 0 ..< n - 1 , [ a,_ ] in ys if a>0:i*a]",
+                "x = [for i in 0..<n-1, [a, _] in ys if a > 0: i * a]\n");
+  expect_layout("param h=120mm in 50 .. 300\"the height\"",
+                "param h = 120mm in 50..300 \"the height\"\n");
+  expect_layout("import  std.materials  as mat :a,b\nimport \"x.cag\"",
+                "import std.materials as mat: a, b\nimport \"x.cag\"\n");
+  expect_layout("t = \"a {1+2} b\"", "t = \"a {1+2} b\"\n");
+  expect_layout("f = (x) => not (x in r)", "f = x => not (x in r)\n");
+  expect_layout("r = 0deg .. 2 * 90deg by 1deg * 3", "r = 0deg..2*90deg by 1deg*3\n");
+  expect_layout("", "");
+}
+
+static void comments_keep_their_places(void **state) {
+  (void)state;
+  expect_layout("// head\n\n/// of a\na=1 // one\nbcd=2   // two\n// tail",
+                "// head\n\n/// of a\na = 1    // one\nbcd = 2  // two\n// tail\n");
+  expect_layout("x=[1,// one\n2 /* two */,\n// three\n3]",
+                "x = [\n  1,  // one\n  2, /* two */\n  // three\n  3\n]\n");
+  expect_layout("f(x)={// why\ny=x;// so\n\ny// last\n// end\n}",
+                "f(x) = {  // why\n  y = x  // so\n\n  y  // last\n  // end\n}\n");
+  expect_layout("a = b // c\n|> f", "a = b  // c\n  |> f\n");
+}
+
+#define LONG "an_argument_with_a_rather_long_name_of_its_own"
+
+static void long_lines_are_broken(void **state) {
+  (void)state;
+  expect_layout("a = function_name(" LONG ", " LONG ", k: 1)",
+                "a = function_name(\n  " LONG ",\n  " LONG ",\n  k: 1\n)\n");
+  expect_layout("a = " LONG " + " LONG " + c", "a = " LONG " +\n  " LONG " + c\n");
+  expect_layout("a = " LONG " |> " LONG "(1) |> g", "a = " LONG "\n  |> " LONG "(1)\n  |> g\n");
+  expect_layout("a = if " LONG " then " LONG " else if c then 1 else 2",
+                "a =\n  if " LONG " then " LONG "\n  else if c then 1\n  else 2\n");
+  expect_layout("a = map(xs, x => { y = x; y })", "a = map(xs, x => {\n  y = x\n  y\n})\n");
+}
+
+// ---- properties ----
+
+static size_t scripts_seen;
+
+static size_t count_of(const char *text, char c) {
+  size_t n = 0;
+  for (; *text; text++) n += *text == c;
+  return n;
+}
+
+static void check_properties(const char *path, const char *text, size_t length) {
+  char *tree, *again_tree;
+  size_t comments, again_comments;
+  char *out = laid_out(text, length, &tree, &comments);
+  if (!out) return;
+  scripts_seen++;
+  char *again = laid_out(out, strlen(out), &again_tree, &again_comments);
+  if (!again || strcmp(tree, again_tree) != 0) {
+    print_error("%s: the layout changes the tree:\n%.900s\n", path, out);
+    fail();
+  }
+  if (strcmp(out, again) != 0) {
+    size_t at = 0;
+    while (out[at] == again[at]) at++;
+    at = at > 150 ? at - 150 : 0;
+    print_error("%s: laid out twice it differs:\n%.300s\n-----\n%.300s\n", path, out + at,
+                again + at);
+    fail();
+  }
+  assert_int_equal(comments, again_comments);
+  assert_true(count_of(out, '/') == count_of(text, '/'));
+  free(tree);
+  free(again_tree);
+  free(out);
+  free(again);
+}
+
+static uint32_t seed;
+static uint32_t chance(uint32_t n) {
+  seed = seed * 1664525 + 1013904223;
+  return (seed >> 8) % n;
+}
+
+// The text with other spaces between its tokens, comments strewn in, and newlines where they do
+// not count.
+static char *thrown_about(const char *text, size_t length, size_t *size) {
+  CagSource *source = cag_source_new("", text, length);
+  CagArena arena = {0};
+  CagNames names;
+  CagLexer lexer;
+  CagToken t;
+  char *out;
+  FILE *f = open_memstream(&out, size);
+  uint32_t at = 0, texts = 0;
+  char stack[CAG_MAX_NESTING + 1] = {0};
+  size_t depth = 0;
+  cag_names_init(&names, &arena);
+  cag_lexer_init(&lexer, source, &arena, &names, NULL);
+  for (cag_lexer_next(&lexer, &t); t.kind != CAG_TOKEN_END && t.kind != CAG_TOKEN_ERROR;
+       cag_lexer_next(&lexer, &t)) {
+    fwrite(text + at, 1, t.span.start - at, f);
+    const bool free_space = depth && stack[depth - 1] != '{' && texts == 0 &&
+                            t.kind != CAG_TOKEN_LEFT_PAREN && t.kind != CAG_TOKEN_LEFT_SQUARE;
+    if (free_space && at) {
+      static const char *const spaces[] = {" ",         "\n",         "\n\n ", " // c\n",
+                                           " /* b */ ", "\n// own\n", "  "};
+      const uint32_t which = chance(20);
+      if (which < 7) fputs(spaces[which], f);
+    }
+    fwrite(text + t.span.start, 1, t.span.end - t.span.start, f);
+    at = t.span.end;
+    if (t.kind == CAG_TOKEN_TEXT_HEAD) texts++;
+    if (t.kind == CAG_TOKEN_TEXT_TAIL) texts--;
+    if (t.kind == CAG_TOKEN_LEFT_PAREN) stack[depth++] = '(';
+    if (t.kind == CAG_TOKEN_LEFT_SQUARE) stack[depth++] = '[';
+    if (t.kind == CAG_TOKEN_LEFT_BRACE) stack[depth++] = '{';
+    if (depth && (t.kind == CAG_TOKEN_RIGHT_PAREN || t.kind == CAG_TOKEN_RIGHT_SQUARE ||
+                  t.kind == CAG_TOKEN_RIGHT_BRACE))
+      depth--;
+  }
+  fwrite(text + at, 1, length - at, f);
+  fclose(f);
+  cag_lexer_release(&lexer);
+  cag_names_release(&names);
+  cag_arena_free(&arena);
+  cag_source_free(source);
+  return out;
+}
+
+static int check_file(const char *path, const struct stat *info, int kind, struct FTW *where) {
+  (void)info;
+  (void)where;
+  const size_t n = strlen(path);
+  if (kind != FTW_F || n < 4 || strcmp(path + n - 4, ".cag") != 0) return 0;
+  FILE *f = fopen(path, "rb");
+  char *text = NULL;
+  size_t size = 0;
+  const ssize_t length = f ? getdelim(&text, &size, -1, f) : -1;
+  if (f) fclose(f);
+  if (length > 0) {
+    check_properties(path, text, (size_t)length);
+    for (int i = 0; i < 5; i++) {
+      size_t thrown_size;
+      char *thrown = thrown_about(text, (size_t)length, &thrown_size);
+      check_properties(path, thrown, thrown_size);
+      free(thrown);
+    }
+  }
+  free(text);
+  return 0;
+}
+
+static void scripts_keep_their_trees(void **state) {
+  (void)state;
+  static const char *const folders[] = {"stdlib", "examples", "tests"};
+  scripts_seen = 0;
+  seed = 1;
+  for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
+    assert_int_equal(nftw(folders[i], check_file, 16, FTW_PHYS), 0);
+  assert_true(scripts_seen > 500);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(spaces_are_set_anew),
+      cmocka_unit_test(comments_keep_their_places),
+      cmocka_unit_test(long_lines_are_broken),
+      cmocka_unit_test(scripts_keep_their_trees),
+  };
+  return cmocka_run_group_tests_name("layout", tests, NULL, NULL);
+}
