@@ -70,7 +70,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
      SIDES, curvature},
     {"second_form(S, u, v)", cag_surfaces_second_form, "list",
      "The second fundamental form [L, M, N]: the second partials along the normal. At a pole there "
-     "is none: an error (singular-point).",
+     "is none: an error (degenerate-normal).",
      "print second_form(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [0, 0, 0]",
      SIDES, curvature},
     {"gaussian_curvature(S, u, v)", cag_surfaces_gaussian_curvature, "number",

@@ -106,13 +106,21 @@ static CagStatus revolve_curve(const CagCurve *c, bool stand, CagVec3 axis, CagV
   return status;
 }
 
+static bool read_axis(CagCall *call, int argument, CagVec3 *axis) {
+  CagError err;
+  if (!cag_arg_vec_or(call, argument, cag_vec3(0, 0, 1), axis, NULL)) return false;
+  if (cag_norm(*axis) > 0) return true;
+  cag_fail(&err, CAG_E_ARGUMENT, "zero-axis", "axis", -1,
+           "`axis` must have a direction; it is the zero vector");
+  return cag_fail_geometry(call, &err);
+}
+
 bool cag_surfaces_revolve(CagCall *call, CagValue *result) {
   CagVec3 axis, through;
   CagError err;
   double from, to;
   CagValue v = call->values[0];
-  if (!cag_arg_direction(call, 1, cag_vec3(0, 0, 1), &axis, NULL) ||
-      !cag_arg_vec_or(call, 2, cag_vec3(0, 0, 0), &through, NULL) ||
+  if (!read_axis(call, 1, &axis) || !cag_arg_vec_or(call, 2, cag_vec3(0, 0, 0), &through, NULL) ||
       !read_turn(call, 3, &from, &to))
     return false;
   bool along_z = axis.x == 0 && axis.y == 0;

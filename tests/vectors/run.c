@@ -60,6 +60,8 @@ static const struct {
     {"*", "joints", SOME_OF},
     {"*", "left_at_knots", SOME_OF},
     {"quadric-from-geometry", "coefficients", UP_TO_FACTOR},
+    {"quadric-classify", "axis_direction", UP_TO_FACTOR},
+    {"quadric-rulings", "directions", FACTOR_ORDER},
     {"ik*", "solutions", ANY_ORDER_TURN},
 };
 
