@@ -53,7 +53,7 @@ const CagBuiltin cag_builtins_robots[] = {
      ROBOTS, motion},
     {"link_frames(robot, q, limits = true)", cag_robots_link_frames, "list",
      "The frames of the chain in the world: the base, then the one after each link.",
-     PLANAR "print [position(t) for t in link_frames(arm, [0deg, 90deg])] "
+     PLANAR "print [for t in link_frames(arm, [0deg, 90deg]): position(t)] "
             "// expect: [[0, 0, 0], [300, 0, 0], [300, 200, 0]]",
      ROBOTS, motion},
     {0}};

@@ -1,0 +1,437 @@
+// Numerical inverse kinematics.
+//
+// The error of a pose is six numbers without unit: the way to the target as a part of a length of
+// the chain, and the rotation vector that is left. One step solves the damped normal equations
+//
+//     (J J^T + damping I) y = e,   dq = J^T y
+//
+// of size 6 whatever the number of joints, by Cholesky's factors without roots. The damping is in
+// proportion to the squared error (Sugihara 2011): far from a solution steps are careful, near to
+// one they are Newton's. Joints that would leave their limits are put on them, and what is left of
+// the error is given to the others. An attempt that has stopped to come nearer is given up soon,
+// since a fresh start is the cheaper way on.
+
+#include "geom/robot/numeric.h"
+
+#include "geom/robot/kernel.h"
+
+// The usual bound of steps over all starts: a few milliseconds.
+#define STEPS_DEFAULT 8000
+// Damping beside the squared error, and its least value.
+#define DAMPING 0.1
+#define DAMPING_LEAST 1e-12
+// Largest step of a turning joint, radians.
+#define STEP_MAX 1.0
+// An attempt is given up when in so many steps the squared error has not fallen to this part.
+#define PATIENCE 6
+#define PROGRESS 0.7
+// Steps that make a solution as good as rounding lets.
+#define POLISH_STEPS 6
+// Steps that bring the nearest place to a target out of reach to rest.
+#define DESCENT_STEPS 400
+
+typedef struct Problem {
+  const CagRobot *r;
+  size_t n;
+  double low[CAG_ROBOT_JOINTS_MAX], high[CAG_ROBOT_JOINTS_MAX];
+  double unit[CAG_ROBOT_JOINTS_MAX]; // a joint's value that counts as one: a radian, or the length
+  CagRobotFrame target;
+  double length; // that counts as a radian
+  double position, rotation;
+  size_t rows; // 6, or 3 for positions alone
+} Problem;
+
+// The chain at one place.
+typedef struct State {
+  double q[CAG_ROBOT_JOINTS_MAX];
+  double columns[CAG_ROBOT_JOINTS_MAX][6]; // of the Jacobian, in the units of the problem
+  double error[6];
+  double square; // of the error
+  double position, rotation;
+} State;
+
+// --- Errors ---
+
+// Rotation vector of the turn that takes the axes of `from` to those of `to`.
+static CagVec3 turn_between(const CagRobotFrame *from, const CagRobotFrame *to) {
+  // The sum of cross products is 2 sin(t) k, the sum of dot products 1 + 2 cos(t).
+  CagVec3 s = cag_add(cag_add(cag_cross(from->x, to->x), cag_cross(from->y, to->y)),
+                      cag_cross(from->z, to->z));
+  double cosine = cag_dot(from->x, to->x) + cag_dot(from->y, to->y) + cag_dot(from->z, to->z) - 1;
+  double sine = cag_norm(s);
+  const double nearly_none = 1e-5, nearly_half = 1e-4;
+  if (cosine > 0 && sine < nearly_none) return cag_scaled(s, 0.5);
+  double angle = atan2(sine, cosine);
+  if (sine > nearly_half) return cag_scaled(s, angle / sine);
+  // Almost half a turn: to + from of each axis lies along k; the longest is the most exact.
+  CagVec3 sums[3] = {cag_add(from->x, to->x), cag_add(from->y, to->y), cag_add(from->z, to->z)};
+  CagVec3 k = sums[0];
+  for (int i = 1; i < 3; i++)
+    if (cag_dot(sums[i], sums[i]) > cag_dot(k, k)) k = sums[i];
+  k = cag_unit(k);
+  return cag_scaled(k, cag_dot(k, s) < 0 ? -angle : angle);
+}
+
+static void set_error(const Problem *p, const CagRobotFrame *f, State *s) {
+  CagVec3 way = cag_sub(p->target.p, f->p);
+  s->position = cag_norm(way);
+  s->error[0] = way.x / p->length;
+  s->error[1] = way.y / p->length;
+  s->error[2] = way.z / p->length;
+  s->square = cag_dot(way, way) / (p->length * p->length);
+  s->rotation = 0;
+  s->error[3] = s->error[4] = s->error[5] = 0;
+  if (p->rows == 3) return;
+  CagVec3 turn = turn_between(f, &p->target);
+  s->error[3] = turn.x;
+  s->error[4] = turn.y;
+  s->error[5] = turn.z;
+  double square = cag_dot(turn, turn);
+  s->rotation = sqrt(square);
+  s->square += square;
+}
+
+static bool content(const Problem *p, const State *s) {
+  return s->position <= p->position && s->rotation <= p->rotation;
+}
+
+// Fills the columns and the error for s->q.
+static void evaluate(const Problem *p, State *s) {
+  const CagRobot *r = p->r;
+  CagRobotTurns turns;
+  CagRobotFrame f;
+  CagVec3 origins[CAG_ROBOT_JOINTS_MAX], axes[CAG_ROBOT_JOINTS_MAX];
+  cag_robot_turns(r, s->q, &turns);
+  cag_robot_frame_from(&r->before, &f);
+  for (size_t i = 0; i < p->n; i++) {
+    origins[i] = f.p;
+    axes[i] = f.z;
+    cag_robot_advance(&f, &r->stages[i], turns.sine[i], turns.cosine[i], s->q[i]);
+  }
+  for (size_t i = 0; i < p->n; i++) {
+    double turn = r->stages[i].turn * p->unit[i], slide = r->stages[i].slide * p->unit[i];
+    CagVec3 z = axes[i];
+    CagVec3 v = cag_scaled(cag_cross(z, cag_sub(f.p, origins[i])), turn);
+    v = cag_scaled(cag_madd(v, slide, z), 1 / p->length);
+    double *c = s->columns[i];
+    c[0] = v.x;
+    c[1] = v.y;
+    c[2] = v.z;
+    c[3] = p->rows == 3 ? 0 : turn * z.x;
+    c[4] = p->rows == 3 ? 0 : turn * z.y;
+    c[5] = p->rows == 3 ? 0 : turn * z.z;
+  }
+  set_error(p, &f, s);
+}
+
+// --- One step ---
+
+// Solves (M + damping I) y = e for the symmetric 6 x 6 matrix whose lower part is given, as
+// L D L^T; M is overwritten.
+static void solve_six(double m[6][6], double damping, const double e[6], double y[6]) {
+  double inverse[6];
+  for (int k = 0; k < 6; k++) {
+    double d = m[k][k] + damping, scaled[6];
+    for (int j = 0; j < k; j++) {
+      scaled[j] = m[k][j] * m[j][j];
+      d -= m[k][j] * scaled[j];
+    }
+    // What rounding leaves of a singular matrix is not below the damping.
+    d = d > damping ? d : damping;
+    m[k][k] = d;
+    inverse[k] = 1 / d;
+    for (int i = k + 1; i < 6; i++) {
+      double sum = m[i][k];
+      for (int j = 0; j < k; j++) sum -= m[i][j] * scaled[j];
+      m[i][k] = sum * inverse[k];
+    }
+  }
+  for (int k = 0; k < 6; k++) {
+    y[k] = e[k];
+    for (int j = 0; j < k; j++) y[k] -= m[k][j] * y[j];
+  }
+  for (int k = 5; k >= 0; k--) {
+    y[k] *= inverse[k];
+    for (int j = k + 1; j < 6; j++) y[k] -= m[j][k] * y[j];
+  }
+}
+
+// Lower part of the sum of c c^T over the free joints.
+static void add_products(const State *s, const bool *held, size_t n, double m[6][6]) {
+  memset(m, 0, 36 * sizeof(double));
+  for (size_t i = 0; i < n; i++) {
+    if (held[i]) continue;
+    const double *c = s->columns[i];
+    for (int a = 0; a < 6; a++)
+      for (int b = 0; b <= a; b++) m[a][b] += c[a] * c[b];
+  }
+}
+
+static double dot_six(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5];
+}
+
+// The step from s within the limits, into `step` (values of q). False where no joint can move.
+static bool find_step(const Problem *p, const State *s, double damping, double *step) {
+  const size_t rounds = 4; // of joints put on their limits
+  bool held[CAG_ROBOT_JOINTS_MAX] = {0};
+  double rest[6], m[6][6], y[6], largest = 0;
+  memcpy(rest, s->error, sizeof rest);
+  for (size_t round = 0;; round++) {
+    bool more = false;
+    add_products(s, held, p->n, m);
+    solve_six(m, damping, rest, y);
+    for (size_t i = 0; i < p->n; i++) {
+      if (held[i]) continue;
+      step[i] = dot_six(s->columns[i], y) * p->unit[i];
+      double to = s->q[i] + step[i];
+      if (to >= p->low[i] && to <= p->high[i]) continue;
+      step[i] = (to < p->low[i] ? p->low[i] : p->high[i]) - s->q[i];
+      if (round == rounds) continue;
+      held[i] = more = true;
+      for (int k = 0; k < 6; k++) rest[k] -= s->columns[i][k] * step[i] / p->unit[i];
+    }
+    if (!more) break;
+  }
+  for (size_t i = 0; i < p->n; i++) largest = fmax(largest, fabs(step[i] / p->unit[i]));
+  if (largest > STEP_MAX)
+    for (size_t i = 0; i < p->n; i++) step[i] *= STEP_MAX / largest;
+  return largest > 0;
+}
+
+static void take_step(const Problem *p, const State *s, const double *step, State *next) {
+  for (size_t i = 0; i < p->n; i++)
+    next->q[i] = fmin(fmax(s->q[i] + step[i], p->low[i]), p->high[i]);
+  evaluate(p, next);
+}
+
+// --- Attempts ---
+
+// Iterates from s->q, which is evaluated; the best place met is left in s.
+static bool attempt(const Problem *p, State *s, size_t steps_max, size_t *steps) {
+  State other, *at = s, *next = &other;
+  double step[CAG_ROBOT_JOINTS_MAX], marked = s->square;
+  size_t since = 0;
+  while (!content(p, at) && *steps < steps_max) {
+    double damping = DAMPING * at->square + DAMPING_LEAST;
+    if (!find_step(p, at, damping, step)) break;
+    take_step(p, at, step, next);
+    ++*steps;
+    State *swap = at;
+    at = next;
+    next = swap;
+    if (++since < PATIENCE) continue;
+    if (at->square > PROGRESS * marked) break;
+    marked = at->square;
+    since = 0;
+  }
+  if (at != s) *s = *at;
+  return content(p, s);
+}
+
+// Newton's steps while they help.
+static void polish(const Problem *p, State *s) {
+  State next;
+  double step[CAG_ROBOT_JOINTS_MAX];
+  for (int k = 0; k < POLISH_STEPS; k++) {
+    if (!find_step(p, s, DAMPING_LEAST, step)) return;
+    take_step(p, s, step, &next);
+    if (!(next.square < 0.25 * s->square)) {
+      if (next.square < s->square) *s = next;
+      return;
+    }
+    *s = next;
+  }
+}
+
+// Walks down to the least error where no solution is: damping that is taken back when a step has
+// helped and raised when not (Levenberg-Marquardt), since there the error does not vanish.
+static void descend(const Problem *p, State *s, double damping_start, size_t steps_max) {
+  const double raise = 4, lower = 0.3, most = 1e8, still = 1e-15;
+  State next;
+  double step[CAG_ROBOT_JOINTS_MAX], damping = damping_start;
+  for (size_t k = 0; k < steps_max && damping < most; k++) {
+    if (!find_step(p, s, damping, step)) return;
+    take_step(p, s, step, &next);
+    if (next.square < s->square) {
+      bool done = s->square - next.square <= still * s->square;
+      *s = next;
+      damping = fmax(damping * lower, DAMPING_LEAST);
+      if (done) return;
+    } else {
+      damping *= raise;
+    }
+  }
+}
+
+// --- Freedom to spare ---
+
+// The part of `rates` (in units of the problem) that leaves the tool where it is; joints that are
+// held do not move.
+static void project(const Problem *p, const State *s, const bool *held, const double *rates,
+                    double *out) {
+  double m[6][6], moved[6] = {0}, y[6];
+  for (size_t i = 0; i < p->n; i++)
+    for (int k = 0; k < 6 && !held[i]; k++) moved[k] += s->columns[i][k] * rates[i];
+  add_products(s, held, p->n, m);
+  solve_six(m, DAMPING_LEAST, moved, y);
+  for (size_t i = 0; i < p->n; i++) out[i] = held[i] ? 0 : rates[i] - dot_six(s->columns[i], y);
+}
+
+// Squared distance of joint values, in the problem's units.
+static double apart(const Problem *p, const double *a, const double *b) {
+  double sum = 0;
+  for (size_t i = 0; i < p->n; i++) {
+    double d = (a[i] - b[i]) / p->unit[i];
+    sum += d * d;
+  }
+  return sum;
+}
+
+// Moves a solution towards `near` along the motions that leave the tool alone.
+static void settle(const Problem *p, State *s, const double *near) {
+  const double widest = 0.3, gain_least = 1e-9, share_least = 1.0 / 64;
+  const int rounds = 60;
+  double share = 1, want[CAG_ROBOT_JOINTS_MAX] = {0}, step[CAG_ROBOT_JOINTS_MAX];
+  State next;
+  for (int round = 0; round < rounds && share > share_least; round++) {
+    bool held[CAG_ROBOT_JOINTS_MAX];
+    double largest = 0, before = apart(p, s->q, near);
+    for (size_t i = 0; i < p->n; i++) {
+      want[i] = (near[i] - s->q[i]) / p->unit[i];
+      held[i] = (s->q[i] <= p->low[i] && want[i] < 0) || (s->q[i] >= p->high[i] && want[i] > 0);
+    }
+    project(p, s, held, want, step);
+    for (size_t i = 0; i < p->n; i++) largest = fmax(largest, fabs(step[i]));
+    double scale = share * (largest > widest ? widest / largest : 1);
+    for (size_t i = 0; i < p->n; i++) step[i] *= scale * p->unit[i];
+    take_step(p, s, step, &next);
+    polish(p, &next);
+    double gain = before - apart(p, next.q, near);
+    if (content(p, &next) && gain > 0) {
+      *s = next;
+      if (gain < gain_least * before) return;
+    } else {
+      share /= 2;
+    }
+  }
+}
+
+// --- Starts ---
+
+// The generalized golden ratio of dimension n: the root above 1 of x^(n+1) = x + 1.
+static double golden(size_t n) {
+  double x = 1.5;
+  for (int k = 0; k < 60; k++) {
+    double power = 1;
+    for (size_t i = 0; i < n; i++) power *= x;
+    x -= (power * x - x - 1) / ((double)(n + 1) * power - 1);
+  }
+  return x;
+}
+
+// The additive recurrence of powers of the golden ratio (Roberts 2018), which fills a box of any
+// dimension evenly.
+static void sequence(const Problem *p, double ratio, size_t k, double *q) {
+  double power = 1;
+  for (size_t i = 0; i < p->n; i++) {
+    power /= ratio;
+    double x = 0.5 + (double)k * power;
+    q[i] = p->low[i] + (x - floor(x)) * (p->high[i] - p->low[i]);
+  }
+}
+
+static void set_limits(Problem *p) {
+  for (size_t i = 0; i < p->n; i++) {
+    const CagRobotLink *l = &p->r->links[p->r->joint_link[i]];
+    p->low[i] = l->low;
+    p->high[i] = l->high;
+    p->unit[i] = l->kind == CAG_JOINT_REVOLUTE ? 1 : p->length;
+  }
+}
+
+void cag_robot_sequence(const CagRobot *r, size_t k, double *q) {
+  Problem p = {.r = r, .n = r->joint_count, .length = 1};
+  set_limits(&p);
+  sequence(&p, golden(p.n), k, q);
+}
+
+// --- The search ---
+
+// Turns joints by whole turns towards `near` as far as their limits let.
+static void unwind(const Problem *p, const double *near, double *q) {
+  for (size_t i = 0; i < p->n; i++) {
+    const CagRobotStage *s = &p->r->stages[i];
+    if (s->turn == 0 || s->slide != 0) continue;
+    double best = q[i];
+    for (int k = -2; k <= 2; k++) {
+      double x = near[i] + remainder(q[i] - near[i], 2 * M_PI) + k * 2 * M_PI;
+      if (x < p->low[i] || x > p->high[i]) continue;
+      if (fabs(x - near[i]) < fabs(best - near[i])) best = x;
+    }
+    q[i] = best;
+  }
+}
+
+CagRobotFound cag_robot_search(const CagRobot *r, const CagTransform *target,
+                               const CagRobotSearch *search, double *q) {
+  Problem p = {.r = r,
+               .n = r->joint_count,
+               .length = r->reach,
+               .position = search->position > 0 ? search->position : 1e-9 * r->reach,
+               .rotation = search->rotation > 0 ? search->rotation : 1e-9,
+               .rows = search->position_only ? 3 : 6};
+  double near[CAG_ROBOT_JOINTS_MAX], ratio = golden(p.n);
+  size_t most = search->steps ? search->steps : STEPS_DEFAULT, steps = 0, left = 0;
+  State s, best;
+  bool found = false;
+  set_limits(&p);
+  cag_robot_frame_from(target, &p.target);
+  if (search->near) memcpy(near, search->near, p.n * sizeof *near);
+  else cag_robot_home(r, near);
+  for (size_t i = 0; i < p.n; i++) s.q[i] = fmin(fmax(near[i], p.low[i]), p.high[i]);
+  for (size_t k = 0; k == 0 || steps < most; k++) {
+    if (k > 0) sequence(&p, ratio, k, s.q);
+    evaluate(&p, &s);
+    bool solved = attempt(&p, &s, most, &steps);
+    if (solved) unwind(&p, near, s.q);
+    bool better = k == 0 || (solved && !found) ||
+                  (solved == found && (solved ? apart(&p, s.q, near) < apart(&p, best.q, near)
+                                              : s.square < best.square));
+    if (better) best = s;
+    if (solved && !found) left = search->alternatives;
+    else if (found && left > 0) left--;
+    found = found || solved;
+    if ((found && left == 0) || p.n == 0) break;
+  }
+  if (!found) descend(&p, &best, DAMPING * best.square + DAMPING_LEAST, DESCENT_STEPS);
+  polish(&p, &best);
+  if (found && search->stay_near && p.n > p.rows) settle(&p, &best, near);
+  memcpy(q, best.q, p.n * sizeof *q);
+  return (CagRobotFound){content(&p, &best), best.position, best.rotation, steps};
+}
+
+// --- Distances and free motion ---
+
+void cag_robot_pose_distance(const CagTransform *a, const CagTransform *b, double *position,
+                             double *rotation) {
+  CagRobotFrame f, g;
+  cag_robot_frame_from(a, &f);
+  cag_robot_frame_from(b, &g);
+  *position = cag_norm(cag_sub(f.p, g.p));
+  *rotation = cag_norm(turn_between(&f, &g));
+}
+
+void cag_robot_null_motion(const CagRobot *r, const double *q, const double *dq, double *out) {
+  Problem p = {.r = r, .n = r->joint_count, .length = r->reach, .rows = 6};
+  State s;
+  const bool held[CAG_ROBOT_JOINTS_MAX] = {0};
+  double rates[CAG_ROBOT_JOINTS_MAX] = {0};
+  set_limits(&p);
+  cag_robot_frame_from(&r->before, &p.target); // the error is not asked
+  memcpy(s.q, q, p.n * sizeof *q);
+  evaluate(&p, &s);
+  for (size_t i = 0; i < p.n; i++) rates[i] = dq[i] / p.unit[i];
+  project(&p, &s, held, rates, out);
+  for (size_t i = 0; i < p.n; i++) out[i] *= p.unit[i];
+}
