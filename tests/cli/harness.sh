@@ -64,6 +64,7 @@ prints_exactly() { [ "$(cat out)" = "$1" ] || wrong "standard output is not: $1"
 says_like() { grep -q -e "$1" err || wrong "standard error has nothing like: $1"; }
 prints_like() { grep -q -e "$1" out || wrong "standard output has nothing like: $1"; }
 holds() { [ "$(cat "$1")" = "$2" ] || wrong "the file $1 does not hold: $2"; }
+same() { cmp -s "$1" "$2" || wrong "$1 differs from $2"; }
 exists() { [ -s "$1" ] || wrong "the file $1 is missing or empty"; }
 is_missing() { [ ! -e "$1" ] || wrong "the file $1 is there"; }
 # What a killed or failed run must not leave behind in a folder.

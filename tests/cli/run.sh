@@ -13,7 +13,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 . "$here/harness.sh"
 
-[ $# -gt 0 ] || set -- usage run bad_input output limits signals render compare diagnostics install
+[ $# -gt 0 ] || set -- $(cd "$here" && ls cases_*.sh | sed "s/^cases_\(.*\)\.sh$/\1/")
 for name in "$@"; do
   mkdir "$work/$name"
   cd "$work/$name" || exit 1
