@@ -4,6 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "interp/export/iges.h"
 #include "interp/export/json.h"
 #include "interp/export/mesh_formats.h"
 #include "interp/export/pov.h"
@@ -195,7 +196,8 @@ static int write_brep(CagSession *s, const CagBrep *b, const char *path, BrepWri
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
   if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
-  if (write(b, s->scene.script, f, &err) != CAG_OK) {
+  const char *script = s->scene.script ? s->scene.script : "", *slash = strrchr(script, '/');
+  if (write(b, slash ? slash + 1 : script, f, &err) != CAG_OK) {
     cag_atomic_file_abort(f);
     return cag_session_fail_geometry(s, &err);
   }
@@ -216,6 +218,9 @@ static int export_brep(CagSession *s, const char *path, BrepWriter write) {
 static int export_step(CagSession *s, const char *path) {
   return export_brep(s, path, cag_export_step);
 }
+static int export_iges(CagSession *s, const char *path) {
+  return export_brep(s, path, cag_export_iges);
+}
 
 // --- The table ---
 
@@ -228,6 +233,7 @@ static const struct Format {
     {"ply", "mesh, binary PLY with normals, colours and parameters", export_ply},
     {"glb", "mesh, binary glTF 2.0 in metres with Y up", export_glb},
     {"pov", "scene, POV-Ray 3.7 source with its own objects where it has them", export_pov},
+    {"igs", "exact geometry, IGES 5.3 with curves, surfaces and trimmed planes", export_iges},
     {"step", "exact geometry, STEP AP214 with solids, colours and names", export_step},
     {"svg", "curves and regions as a flat picture", export_svg},
     {"json", "scene, all of it as data", export_json},
@@ -235,8 +241,8 @@ static const struct Format {
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 
 const char *const *cag_export_formats(void) {
-  static const char *const names[] = {"obj",  "stl", "ply",  "glb", "pov",
-                                      "step", "svg", "json", NULL};
+  static const char *const names[] = {"obj", "stl",  "ply", "glb",  "pov",
+                                      "igs", "step", "svg", "json", NULL};
   return names;
 }
 
@@ -275,7 +281,7 @@ int cag_session_export(CagSession *s, const char *path, const char *format) {
     cag_diagnostic_set_help(
         d, strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0
                ? "`cag render` makes pictures"
-               : "the formats are obj, stl, ply, glb, pov, step, svg, json; --format "
+               : "the formats are obj, stl, ply, glb, pov, igs, step, svg, json; --format "
                  "says it where the ending does not");
     return CAG_STATUS_USAGE;
   }
