@@ -172,6 +172,13 @@ static double shape_tolerance(const CagScene *s, const CagItem *item) {
   return item->tolerance > 0 ? item->tolerance : s->tolerance;
 }
 
+static CagStatus fail_operation(const CagItem *item, CagError *err) {
+  return cag_fail(err, CAG_E_UNSUPPORTED, "export-operation", "", -1,
+                  "%s is a union, difference or intersection of solids, whose faces meet in curves "
+                  "that are no NURBS: show its parts one by one, or write .stl, .obj, .ply or .glb",
+                  item->name);
+}
+
 static CagStatus add_faces(CagBrepWork *w, CagError *err) {
   const CagItem *item = w->item;
   switch (item->kind) {
@@ -180,6 +187,7 @@ static CagStatus add_faces(CagBrepWork *w, CagError *err) {
   case CAG_ITEM_SOLID: {
     CagStatus status = CAG_OK;
     const CagSolid *solid = item->as.solid;
+    if (solid->face_count == 0) return fail_operation(item, err);
     for (size_t i = 0; !status && i < solid->face_count; i++)
       status = cag_brep_add_surface(w, solid->faces[i], i, err);
     return status;

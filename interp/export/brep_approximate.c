@@ -210,11 +210,20 @@ static CagStatus fill_net(const CagSurface *s, const Lines *u, const Lines *v, N
       if (status) return status;
       put_cell(n, &c, i, j);
     }
-  // Opposite edges that are one stay so to the last bit.
+  // Opposite edges that are one, and edges that are a point, stay so to the last bit.
   for (size_t j = 0; s->closed_u && j < n->nv; j++)
     n->points[(n->nu - 1) * n->nv + j] = n->points[j];
   for (size_t i = 0; s->closed_v && i < n->nu; i++)
     n->points[i * n->nv + n->nv - 1] = n->points[i * n->nv];
+  size_t last_u = (n->nu - 1) * n->nv, last_v = n->nv - 1;
+  for (size_t j = 1; j < n->nv; j++) {
+    if (s->pole_u0) n->points[j] = n->points[0];
+    if (s->pole_u1) n->points[last_u + j] = n->points[last_u];
+  }
+  for (size_t i = 1; i < n->nu; i++) {
+    if (s->pole_v0) n->points[i * n->nv] = n->points[0];
+    if (s->pole_v1) n->points[i * n->nv + last_v] = n->points[last_v];
+  }
   return CAG_OK;
 }
 
