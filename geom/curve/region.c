@@ -44,6 +44,22 @@ static CagRegion *allocate(size_t n) {
   return NULL;
 }
 
+CagStatus cag_region_take(CagCurve **loops, const size_t *outer, size_t n, CagRegion **out,
+                          CagError *err) {
+  CagRegion *r = allocate(n);
+  for (size_t i = 0; i < n; i++) {
+    if (!r) {
+      cag_curve_release(loops[i]);
+      continue;
+    }
+    r->loops[i] = loops[i];
+    r->outer[i] = outer[i];
+  }
+  if (!r) return cag_fail_memory(err);
+  *out = r;
+  return CAG_OK;
+}
+
 // --- Inside or outside ---
 
 static double loop_size(const CagCurve *c) {

@@ -25,43 +25,45 @@ CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, i
 
 // --- Pieces: parts of the walks that run one way in x and in y (region_pieces.c) ---
 
-typedef struct CagPiece {
+typedef struct CagRegionPiece {
   size_t walk;
-  double a, b;   // over the walk's curve
-  CagVec3 p, q;  // its ends
-  bool straight; // a segment from p to q
+  double a, b;    // over the walk's curve
+  CagVec3 p, q;   // its ends
+  bool straight;  // a segment from p to q
   CagCurve *part; // the piece as a curve, made when first asked for
-} CagPiece;
+} CagRegionPiece;
 
-typedef struct CagPieces {
+typedef struct CagRegionPieces {
   const CagWalk *walks;
-  CagPiece *items;
+  CagRegionPiece *items;
   size_t n, capacity;
   double tolerance; // two points nearer than this are one
-} CagPieces;
+} CagRegionPieces;
 
-CagStatus cag_pieces_add(CagPieces *s, size_t walk, CagError *err);
-void cag_pieces_free(CagPieces *s);
-CagStatus cag_piece_point(const CagPieces *s, const CagPiece *piece, double t, CagVec3 *out,
-                          CagError *err);
+CagStatus cag_region_pieces_add(CagRegionPieces *s, size_t walk, CagError *err);
+void cag_region_pieces_free(CagRegionPieces *s);
+CagStatus cag_region_piece_point(const CagRegionPieces *s, const CagRegionPiece *piece, double t,
+                                 CagVec3 *out, CagError *err);
 // The parameter within [a, b] of the piece at which the coordinate (0: x, 1: y) has this value; the
 // nearer end where it has it nowhere.
-CagStatus cag_piece_at(const CagPieces *s, const CagPiece *piece, double a, double b, int axis,
-                       double value, double *t, CagVec3 *point, CagError *err);
+CagStatus cag_region_piece_at(const CagRegionPieces *s, const CagRegionPiece *piece, double a,
+                              double b, int axis, double value, double *t, CagVec3 *point,
+                              CagError *err);
 // The parameter within [a, b] at the distance from the point at `a` (from_end: at `b`).
-CagStatus cag_piece_at_distance(const CagPieces *s, const CagPiece *piece, double a, double b,
-                                bool from_end, double distance, CagVec3 *point, CagError *err);
+CagStatus cag_region_piece_at_distance(const CagRegionPieces *s, const CagRegionPiece *piece,
+                                       double a, double b, bool from_end, double distance,
+                                       CagVec3 *point, CagError *err);
 
 // --- Where they meet (region_meet.c) ---
 
 // A place at which a piece is to be cut; the two pieces of a meeting have the same point.
-typedef struct CagPieceCut {
+typedef struct CagRegionCut {
   size_t piece;
   double t;
   CagVec3 point;
-} CagPieceCut;
+} CagRegionCut;
 
 // Cuts of all pieces, by piece and t; *out is malloc'd.
-CagStatus cag_pieces_meet(CagPieces *s, CagPieceCut **out, size_t *n, CagError *err);
+CagStatus cag_region_pieces_meet(CagRegionPieces *s, CagRegionCut **out, size_t *n, CagError *err);
 
 #endif

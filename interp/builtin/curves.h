@@ -3,6 +3,7 @@
 #ifndef CAG_INTERP_BUILTIN_CURVES_H
 #define CAG_INTERP_BUILTIN_CURVES_H
 
+#include "geom/curve/region.h"
 #include "interp/builtin/shapes.h"
 
 // clang-format off
@@ -27,6 +28,9 @@
 #define X(name) bool cag_curves_##name(CagCall *call, CagValue *result);
 CAG_CURVE_FUNCTIONS(X)
 #undef X
+
+// Set operations of a call whose arguments are regions, for rows that serve lists of any shapes.
+bool cag_regions_operator(CagCall *call, CagRegionOp op, CagValue *result);
 
 // Degree from `degree` or, one more, from `order`; the fallback where neither is given.
 bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *out);

@@ -1,6 +1,7 @@
 // Regions: pieces of the plane.
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "interp/builtin/curves.h"
 
@@ -106,3 +107,140 @@ bool cag_curves_boundary(CagCall *call, CagValue *result) {
   *result = cag_builder_finish(call->vm, loops);
   return true;
 }
+
+// --- Set operations and offsets ---
+
+// What moves regions of the plane `place` into the plane `base`, where both are one plane.
+static CagStatus between_planes(const CagTransform *base, const CagTransform *place, int index,
+                                CagTransform *out, CagError *err) {
+  const double same = 1e-9; // part of the distances by which the planes may differ
+  CagTransform back;
+  CagStatus status = cag_transform_inverse(base, &back, err);
+  if (status) return status;
+  *out = cag_transform_multiply(&back, place);
+  const double reach = 1 + fabs(out->m[0][3]) + fabs(out->m[1][3]);
+  if (!(fabs(out->m[2][0]) <= same && fabs(out->m[2][1]) <= same &&
+        fabs(out->m[2][3]) <= same * reach))
+    return cag_fail(err, CAG_E_ARGUMENT, "region-planes", "", -1,
+                    "region %d lies in another plane of space than region 0; set operations join "
+                    "regions of one plane: make them first and move the result",
+                    index);
+  for (int i = 0; i < 4; i++) out->m[2][i] = out->m[i][2] = i == 2;
+  out->planar = true;
+  return CAG_OK;
+}
+
+// Region i of the call, in the plane of `base`; *out has one reference.
+static bool read_operand(CagCall *call, int argument, CagValue v, int i, const CagTransform *base,
+                         CagRegion **out) {
+  CagError err;
+  if (v.type != CAG_REGION && v.type != CAG_CURVE)
+    return cag_fail_call(call, argument, CAG_ERR_type, "expects regions, found %s as number %d",
+                         cag_type_article(v), i);
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  if (v.type == CAG_CURVE)
+    return cag_geometry_ok(call, cag_region_new(shape->as.curve, NULL, 0, out, &err), &err);
+  if (!memcmp(base->m, shape->placement.m, sizeof base->m)) {
+    *out = cag_region_retain(shape->as.region);
+    return true;
+  }
+  CagTransform t;
+  CagStatus status = between_planes(base, &shape->placement, i, &t, &err);
+  if (!status) status = cag_region_transform(shape->as.region, &t, out, &err);
+  return cag_geometry_ok(call, status, &err);
+}
+
+static bool combine(CagCall *call, CagRegionOp op, CagValue *result) {
+  CagValue *items;
+  size_t n, read = 0;
+  CagRegion *out = NULL;
+  CagError err;
+  if (!cag_arg_several(call, 0, &items, &n)) return false;
+  if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one region");
+  const bool listed = items != call->values;
+  const CagTransform base =
+      items[0].type == CAG_REGION ? CAG_AS_SHAPE(items[0])->placement : cag_transform_identity();
+  CagRegion **regions = malloc(n * sizeof *regions);
+  bool ok = regions != NULL;
+  if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  for (; ok && read < n; read += ok)
+    ok = read_operand(call, listed ? 0 : (int)read, items[read], (int)read, &base, &regions[read]);
+  if (ok)
+    ok = cag_geometry_ok(
+        call, cag_region_combine(op, (const CagRegion *const *)regions, n, &out, &err), &err);
+  for (size_t i = 0; i < read; i++) cag_region_release(regions[i]);
+  free(regions);
+  if (!ok) return false;
+  *result = cag_region_value(call->vm, out, &base);
+  cag_shape_say_alike(*result, items[0]);
+  return true;
+}
+
+static bool unite(CagCall *call, CagValue *result) {
+  return combine(call, CAG_REGION_UNION, result);
+}
+
+static bool subtract(CagCall *call, CagValue *result) {
+  return combine(call, CAG_REGION_DIFFERENCE, result);
+}
+
+static bool intersect(CagCall *call, CagValue *result) {
+  return combine(call, CAG_REGION_INTERSECTION, result);
+}
+
+bool cag_regions_operator(CagCall *call, CagRegionOp op, CagValue *result) {
+  return combine(call, op, result);
+}
+
+static bool offset(CagCall *call, CagValue *result) {
+  const double part = 1e-6; // of the size, where no tolerance is given
+  const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
+  double d, tolerance;
+  CagRegion *out = NULL;
+  CagBounds box;
+  CagError err;
+  if (!cag_arg_number(call, 1, &d) ||
+      !cag_geometry_ok(call, cag_region_bounds(shape->as.region, &box, &err), &err) ||
+      !cag_arg_number_or(call, 2, part * cag_norm(cag_sub(box.max, box.min)), &tolerance))
+    return false;
+  if (!(tolerance > 0))
+    return cag_fail_call(call, 2, CAG_ERR_value, "expects a tolerance greater than 0");
+  CagStatus status = cag_region_offset(shape->as.region, d, tolerance, &out, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_region_value(call->vm, out, &shape->placement);
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
+}
+
+#define REGIONS CAG_TAKES(REGION)
+static const char sets[] = "Regions: set operations and offsets";
+
+const CagBuiltin cag_builtins_regions[] = {
+    {"union(R, ...)", unite, "region",
+     "The points of any of the regions (or of one list of them), as `A | B`. The boundary is made "
+     "of pieces of theirs, each of its own kind; a region may have several outlines, each with its "
+     "holes.",
+     "r = rectangle(4, 2) | region(circle(1))\n"
+     "print area(r), area(union(rectangle(2, 2), rectangle(4, 1))) // expect: 8 6",
+     REGIONS, sets},
+    {"difference(R, ...)", subtract, "region",
+     "The points of the first region that are in none of the others, as `A - B`. Where nothing is "
+     "left it is an error (region-empty).",
+     "ring = difference(rectangle(4, 4), rectangle(2, 2))\n"
+     "print area(ring), len(boundary(ring)) // expect: 12 2",
+     REGIONS, sets},
+    {"intersection(R, ...)", intersect, "region",
+     "The points that are in all of the regions, as `A & B`. Where there are none it is an error "
+     "(region-empty).",
+     "lens = region(circle(1)) & region(circle(1, center: [1, 0]))\n"
+     "print near(area(lens), 2 * pi / 3 - sqrt(3) / 2) // expect: true",
+     REGIONS, sets},
+    {"offset(R, d, tolerance = none)", offset, "region",
+     "The points at most d (mm) away from the region, its corners gone round in arcs; with a "
+     "negative d those of it at least so far from its boundary. Holes shrink and grow; pieces may "
+     "join, part or vanish; where nothing is left it is an error (region-empty). Lines and circles "
+     "are exact, others within the tolerance (none: 1e-6 of the size).",
+     "r = offset(rectangle(4, 3), 1)\n"
+     "print near(area(r), 12 + 14 + pi), area(offset(rectangle(4, 3), -1)) // expect: true 2",
+     REGIONS, sets},
+    {0}};

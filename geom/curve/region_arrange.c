@@ -1,0 +1,355 @@
+// Curves of the plane cut where they meet, and the region that winding numbers choose.
+//
+// The steps: pieces that run one way (region_pieces.c); their meetings (region_meet.c); corners,
+// where ends and meetings nearer than the tolerance are one; edges between corners, those that run
+// along each other made one with the sum of their counts; the winding numbers to both sides of each
+// edge, by a ray from its middle; the edges whose two sides differ by the rule, chained to loops
+// with the region to their left (region_chain.c).
+//
+// Every walk is a chain from corner to corner, so counts balance at each corner however points were
+// moved together: winding numbers stay those of closed curves.
+
+#include "geom/curve/region_arrange.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "geom/curve/family.h"
+#include "geom/curve/region_chain.h"
+
+// Points nearer than this part of the size of all are one: what touches count as in intersections.
+#define SAME 1e-9
+// Where rounding left loops open the tolerance grows by a factor, so many times.
+#define GROWTH 8
+#define ATTEMPTS 4
+
+// --- Corners ---
+
+typedef struct Corners {
+  CagVec3 *points;
+  size_t *next; // of the same cell of the grid
+  size_t n, capacity;
+  size_t *heads, buckets;
+  double cell;
+} Corners;
+
+static const size_t none = (size_t)-1;
+
+static size_t bucket(const Corners *c, double x, double y) {
+  // Cells beyond what an integer counts come from coordinates whose neighbours are farther apart
+  // than cells anyway.
+  const uint64_t i = (uint64_t)(int64_t)fmax(-9e18, fmin(9e18, x)),
+                 k = (uint64_t)(int64_t)fmax(-9e18, fmin(9e18, y));
+  uint64_t h = i * 0x9E3779B97F4A7C15u ^ (k + 0x7F4A7C15u) * 0xC2B2AE3D27D4EB4Fu;
+  h ^= h >> 29;
+  return (size_t)(h % c->buckets);
+}
+
+// The number of the corner at the point, a new one where there is none.
+static CagStatus corner_at(Corners *c, CagVec3 p, double tolerance, size_t *out, CagError *err) {
+  const double x = floor(p.x / c->cell), y = floor(p.y / c->cell);
+  double best = tolerance;
+  *out = none;
+  for (int i = -1; i <= 1; i++)
+    for (int k = -1; k <= 1; k++)
+      for (size_t v = c->heads[bucket(c, x + i, y + k)]; v != none; v = c->next[v]) {
+        const double d = hypot(c->points[v].x - p.x, c->points[v].y - p.y);
+        if (d > best) continue;
+        best = d;
+        *out = v;
+      }
+  if (*out != none) return CAG_OK;
+  if (c->n == c->capacity) return cag_fail_memory(err);
+  const size_t b = bucket(c, x, y);
+  c->points[c->n] = p;
+  c->next[c->n] = c->heads[b];
+  c->heads[b] = c->n;
+  *out = c->n++;
+  return CAG_OK;
+}
+
+static CagStatus corners_new(Corners *c, size_t most, double tolerance, CagError *err) {
+  *c = (Corners){.capacity = most, .buckets = 2 * most + 1, .cell = 2 * tolerance};
+  c->points = malloc(sizeof *c->points * (most + 1));
+  c->next = malloc(sizeof *c->next * (most + 1));
+  c->heads = malloc(sizeof *c->heads * c->buckets);
+  if (!c->points || !c->next || !c->heads) return cag_fail_memory(err);
+  for (size_t i = 0; i < c->buckets; i++) c->heads[i] = none;
+  return CAG_OK;
+}
+
+static void corners_free(Corners *c) {
+  free(c->points);
+  free(c->next);
+  free(c->heads);
+}
+
+// --- Edges ---
+
+typedef struct Edges {
+  CagRegionEdge *items;
+  size_t n;
+} Edges;
+
+// Cuts the pieces at their meetings; what shrank to a corner is dropped.
+static CagStatus make_edges(const CagRegionPieces *s, const CagRegionCut *cuts, size_t cut_count,
+                            Corners *corners, Edges *out, CagError *err) {
+  out->items = malloc(sizeof *out->items * (s->n + cut_count + 1));
+  if (!out->items) return cag_fail_memory(err);
+  CagStatus status = CAG_OK;
+  // The given corners come first, so that meetings are moved to them and not they to meetings.
+  for (size_t i = 0; !status && i < s->n; i++) {
+    size_t ignored;
+    status = corner_at(corners, s->items[i].p, s->tolerance, &ignored, err);
+    if (!status) status = corner_at(corners, s->items[i].q, s->tolerance, &ignored, err);
+  }
+  size_t k = 0;
+  for (size_t i = 0; !status && i < s->n; i++) {
+    const CagRegionPiece *piece = &s->items[i];
+    size_t from, to;
+    double a = piece->a;
+    status = corner_at(corners, piece->p, s->tolerance, &from, err);
+    for (bool last = false; !status && !last;) {
+      last = k == cut_count || cuts[k].piece != i;
+      const double b = last ? piece->b : cuts[k].t;
+      status = corner_at(corners, last ? piece->q : cuts[k].point, s->tolerance, &to, err);
+      if (!last) k++;
+      // What is left at the end of a piece belongs to the edge before it.
+      if (!status && last && from == to && a > piece->a) out->items[out->n - 1].b = b;
+      if (status || from == to || (!(b > a) && !last)) continue;
+      const CagWalk *walk = &s->walks[piece->walk];
+      CagRegionEdge e = {.from = from, .to = to, .piece = i, .a = a, .b = b};
+      e.count[walk->operand] = walk->sign;
+      out->items[out->n++] = e;
+      from = to;
+      a = b;
+    }
+  }
+  return status;
+}
+
+static int by_corners(const void *a, const void *b) {
+  const CagRegionEdge *e = a, *f = b;
+  const size_t e0 = e->from < e->to ? e->from : e->to, e1 = e->from < e->to ? e->to : e->from;
+  const size_t f0 = f->from < f->to ? f->from : f->to, f1 = f->from < f->to ? f->to : f->from;
+  if (e0 != f0) return e0 > f0 ? 1 : -1;
+  if (e1 != f1) return e1 > f1 ? 1 : -1;
+  if (e->piece != f->piece) return e->piece > f->piece ? 1 : -1;
+  return (e->a > f->a) - (e->a < f->a);
+}
+
+static bool same_corners(const CagRegionEdge *e, const CagRegionEdge *f) {
+  return (e->from == f->from && e->to == f->to) || (e->from == f->to && e->to == f->from);
+}
+
+// Whether two edges between the same corners run along each other: three points of one that lie on
+// the other, looked for across the way from corner to corner.
+static CagStatus coincide(const CagRegionPieces *s, const CagRegionEdge *e, const CagRegionEdge *f,
+                          bool *out, CagError *err) {
+  const CagRegionPiece *p = &s->items[e->piece], *q = &s->items[f->piece];
+  const double near = 8; // tolerances: both ends of both were moved by up to one, and bend on
+  *out = true;
+  if (p->straight && q->straight) return CAG_OK;
+  for (int i = 1; *out && i < 4; i++) {
+    const double t = e->a + (e->b - e->a) * i / 4;
+    CagVec3 a, b[2];
+    double u;
+    CagStatus status = cag_region_piece_point(s, p, t, &a, err);
+    for (int axis = 0; !status && axis < 2; axis++)
+      status = cag_region_piece_at(s, q, f->a, f->b, axis, axis ? a.y : a.x, &u, &b[axis], err);
+    if (status) return status;
+    *out = fmin(hypot(a.x - b[0].x, a.y - b[0].y), hypot(a.x - b[1].x, a.y - b[1].y)) <=
+           near * s->tolerance;
+  }
+  return CAG_OK;
+}
+
+// Edges that run along each other become the first of them; those whose counts cancel go.
+static CagStatus join_alike(const CagRegionPieces *s, Edges *edges, CagError *err) {
+  CagStatus status = CAG_OK;
+  if (edges->n) qsort(edges->items, edges->n, sizeof *edges->items, by_corners);
+  size_t kept = 0;
+  for (size_t i = 0; !status && i < edges->n;) {
+    size_t group = i;
+    const size_t first = kept;
+    for (; !status && group < edges->n && same_corners(&edges->items[i], &edges->items[group]);
+         group++) {
+      const CagRegionEdge e = edges->items[group];
+      bool same = false;
+      for (size_t k = first; !status && k < kept && !same; k++) {
+        CagRegionEdge *f = &edges->items[k];
+        status = coincide(s, f, &e, &same, err);
+        if (status || !same) continue;
+        const int sense = f->from == e.from ? 1 : -1;
+        for (int o = 0; o < 2; o++) f->count[o] += sense * e.count[o];
+      }
+      if (!same) edges->items[kept++] = e;
+    }
+    i = group;
+  }
+  edges->n = kept;
+  if (status) return status;
+  kept = 0;
+  for (size_t i = 0; i < edges->n; i++)
+    if (edges->items[i].count[0] || edges->items[i].count[1])
+      edges->items[kept++] = edges->items[i];
+  edges->n = kept;
+  return CAG_OK;
+}
+
+// --- Winding numbers ---
+
+// The edges by strips across the axis: axis 1 holds strips of y, for rays along +x; axis 0 strips
+// of x, for rays along +y.
+typedef struct Strips {
+  size_t n, *starts, *edges;
+  double low, high;
+} Strips;
+
+#define STRIPS_MOST 512
+#define EDGES_PER_STRIP 8
+
+static double across(int axis, CagVec3 p) { return axis ? p.y : p.x; }
+
+// Coordinate along the ray, turned so that the plane keeps its sense: x for axis 1; for axis 0 y,
+// with strips of -x, which only turns the sign of what is counted.
+static double ahead(int axis, CagVec3 p) { return axis ? p.x : p.y; }
+
+static size_t strip_of(const Strips *s, double value) {
+  const double x = (value - s->low) / (s->high - s->low) * (double)s->n;
+  if (!(x > 0)) return 0;
+  return x >= (double)s->n ? s->n - 1 : (size_t)x;
+}
+
+static CagStatus strips_new(const Edges *edges, const Corners *corners, int axis, Strips *s,
+                            CagError *err) {
+  *s = (Strips){.n = edges->n / EDGES_PER_STRIP + 1, .low = INFINITY, .high = -INFINITY};
+  if (s->n > STRIPS_MOST) s->n = STRIPS_MOST;
+  for (size_t i = 0; i < corners->n; i++) {
+    s->low = fmin(s->low, across(axis, corners->points[i]));
+    s->high = fmax(s->high, across(axis, corners->points[i]));
+  }
+  s->starts = calloc(s->n + 2, sizeof *s->starts);
+  if (!s->starts) return cag_fail_memory(err);
+  // Twice over the edges: numbers, then places.
+  for (int fill = 0; fill < 2; fill++) {
+    for (size_t i = 0; i < edges->n; i++) {
+      const double y0 = across(axis, corners->points[edges->items[i].from]),
+                   y1 = across(axis, corners->points[edges->items[i].to]);
+      const size_t last = strip_of(s, fmax(y0, y1));
+      for (size_t k = strip_of(s, fmin(y0, y1)); k <= last; k++) {
+        if (fill) s->edges[s->starts[k + 1]++] = i;
+        else s->starts[k + 2]++;
+      }
+    }
+    if (fill) break;
+    for (size_t k = 2; k < s->n + 2; k++) s->starts[k] += s->starts[k - 1];
+    s->edges = malloc(sizeof *s->edges * (s->starts[s->n + 1] + 1));
+    if (!s->edges) return cag_fail_memory(err);
+  }
+  return CAG_OK;
+}
+
+// The winding numbers just beside the middle of edge `self`, ahead of it along the ray, and whether
+// the edge crosses the ray's line upwards.
+static CagStatus cast(const CagRegionPieces *s, const Edges *edges, const Corners *corners,
+                      const Strips *strips, int axis, size_t self, int winding[2], CagError *err) {
+  const CagRegionEdge *e = &edges->items[self];
+  const CagVec3 p = corners->points[e->from], q = corners->points[e->to];
+  const double y = (across(axis, p) + across(axis, q)) / 2;
+  CagVec3 m;
+  double t;
+  CagStatus status = cag_region_piece_at(s, &s->items[e->piece], e->a, e->b, axis, y, &t, &m, err);
+  winding[0] = winding[1] = 0;
+  const size_t strip = strip_of(strips, y);
+  for (size_t i = strips->starts[strip]; !status && i < strips->starts[strip + 1]; i++) {
+    if (strips->edges[i] == self) continue;
+    const CagRegionEdge *f = &edges->items[strips->edges[i]];
+    const CagVec3 u = corners->points[f->from], v = corners->points[f->to];
+    const bool up = across(axis, u) <= y, stays = (across(axis, v) <= y) == up;
+    const double x0 = ahead(axis, u), x1 = ahead(axis, v), x = ahead(axis, m);
+    if (stays || fmax(x0, x1) < x - s->tolerance) continue;
+    if (fmin(x0, x1) <= x + s->tolerance) {
+      CagVec3 there;
+      status = cag_region_piece_at(s, &s->items[f->piece], f->a, f->b, axis, y, &t, &there, err);
+      if (status || ahead(axis, there) <= x) continue;
+    }
+    // Strips of x are strips of -x turned round: there what looks upwards falls.
+    const int sense = up == (axis == 1) ? 1 : -1;
+    for (int o = 0; o < 2; o++) winding[o] += sense * f->count[o];
+  }
+  return status;
+}
+
+// Sets `keep` of every edge: 1, the region is to the left; -1, to the right; 0, on both sides or
+// none.
+static CagStatus classify(const CagRegionPieces *s, Edges *edges, const Corners *corners,
+                          CagFaceRule rule, int parameter, CagError *err) {
+  Strips strips[2] = {{0}, {0}};
+  CagStatus status = strips_new(edges, corners, 0, &strips[0], err);
+  if (!status) status = strips_new(edges, corners, 1, &strips[1], err);
+  for (size_t i = 0; !status && i < edges->n; i++) {
+    CagRegionEdge *e = &edges->items[i];
+    const CagVec3 p = corners->points[e->from], q = corners->points[e->to];
+    const int axis = fabs(q.y - p.y) >= fabs(q.x - p.x);
+    int ray[2], left[2], right[2];
+    status = cast(s, edges, corners, &strips[axis], axis, i, ray, err);
+    // Along +x an edge that goes up has its right side ahead; along +y one that goes to +x its
+    // left.
+    const bool right_ahead = axis ? q.y > p.y : q.x < p.x;
+    for (int o = 0; o < 2; o++) {
+      right[o] = right_ahead ? ray[o] : ray[o] - e->count[o];
+      left[o] = right_ahead ? ray[o] + e->count[o] : ray[o];
+    }
+    e->keep = (int)rule(left, parameter) - (int)rule(right, parameter);
+  }
+  for (int axis = 0; axis < 2; axis++) {
+    free(strips[axis].starts);
+    free(strips[axis].edges);
+  }
+  return status;
+}
+
+// --- All together ---
+
+static CagStatus attempt(const CagWalk *walks, size_t n, double tolerance, CagFaceRule rule,
+                         int parameter, CagRegion **out, CagError *err) {
+  CagRegionPieces pieces = {.walks = walks, .tolerance = tolerance};
+  CagRegionCut *cuts = NULL;
+  Corners corners = {0};
+  Edges edges = {0};
+  size_t cut_count = 0;
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < n; i++) status = cag_region_pieces_add(&pieces, i, err);
+  if (!status) status = cag_region_pieces_meet(&pieces, &cuts, &cut_count, err);
+  if (!status) status = corners_new(&corners, 2 * pieces.n + cut_count, tolerance, err);
+  if (!status) status = make_edges(&pieces, cuts, cut_count, &corners, &edges, err);
+  free(cuts);
+  if (!status) status = join_alike(&pieces, &edges, err);
+  if (!status) status = classify(&pieces, &edges, &corners, rule, parameter, err);
+  if (!status)
+    status = cag_region_chain(&pieces, edges.items, edges.n, corners.points, corners.n, out, err);
+  free(edges.items);
+  corners_free(&corners);
+  cag_region_pieces_free(&pieces);
+  return status;
+}
+
+CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, int parameter,
+                             CagRegion **out, CagError *err) {
+  CagBounds box = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; i < n; i++) {
+    const CagCurve *c = walks[i].curve;
+    const CagBounds one = c->kind->hull(c, c->start, c->end);
+    cag_bounds_add(&box, one.min);
+    cag_bounds_add(&box, one.max);
+  }
+  double tolerance = fmax(SAME * cag_norm(cag_sub(box.max, box.min)), cag_curve_noise(&box));
+  CagStatus status = CAG_OK;
+  for (int i = 0; i < ATTEMPTS; i++, tolerance *= GROWTH) {
+    status = attempt(walks, n, tolerance, rule, parameter, out, err);
+    if (status != CAG_E_CONVERGENCE) break;
+  }
+  return status;
+}

@@ -1,0 +1,53 @@
+// Set operations of regions: which faces between their boundaries belong to the result.
+//
+// A point lies in as many of the regions as the sum of its winding numbers about them says. The
+// first region is operand 0, all others are operand 1.
+
+#include <stdlib.h>
+
+#include "geom/curve/region_arrange.h"
+
+static bool in_union(const int winding[2], int n) {
+  (void)n;
+  return winding[0] + winding[1] > 0;
+}
+
+static bool in_difference(const int winding[2], int n) {
+  (void)n;
+  return winding[0] > 0 && winding[1] <= 0;
+}
+
+static bool in_intersection(const int winding[2], int n) { return winding[0] + winding[1] >= n; }
+
+typedef struct Rule {
+  const char *name, *why;
+  CagFaceRule face;
+} Rule;
+
+static const Rule rules[] = {
+    [CAG_REGION_UNION] = {"union", "all of them are thinner than can be told", in_union},
+    [CAG_REGION_DIFFERENCE] = {"difference", "the others cover the first region", in_difference},
+    [CAG_REGION_INTERSECTION] = {"intersection", "no point lies in all of them", in_intersection}};
+
+CagStatus cag_region_combine(CagRegionOp op, const CagRegion *const *regions, size_t n,
+                             CagRegion **out, CagError *err) {
+  size_t count = 0;
+  for (size_t i = 0; i < n; i++) count += regions[i]->count;
+  CagWalk *walks = malloc(sizeof *walks * (count + 1));
+  if (!walks) return cag_fail_memory(err);
+  count = 0;
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k < regions[i]->count; k++)
+      walks[count++] = (CagWalk){regions[i]->loops[k], i > 0, 1, (int)i};
+  CagStatus status = cag_region_arrange(walks, count, rules[op].face, (int)n, out, err);
+  free(walks);
+  if (status || *out) return status;
+  return cag_fail(err, CAG_E_DEGENERATE, "region-empty", "", -1, "nothing is left of the %s: %s",
+                  rules[op].name, rules[op].why);
+}
+
+CagStatus cag_region_boolean(CagRegionOp op, const CagRegion *a, const CagRegion *b,
+                             CagRegion **out, CagError *err) {
+  const CagRegion *const both[2] = {a, b};
+  return cag_region_combine(op, both, 2, out, err);
+}

@@ -1,0 +1,255 @@
+// Where the pieces of an arrangement meet each other.
+//
+// Two pieces are cut where they cross or touch, and where an end of one lies on the other. That is
+// enough where they run along each other, too: curves of our kinds that share a stretch share it
+// from an end to an end.
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/curve/family.h"
+#include "geom/curve/intersect.h"
+#include "geom/curve/region_arrange.h"
+
+typedef struct Meetings {
+  CagRegionPieces *pieces;
+  CagRegionCut *items;
+  size_t n, capacity;
+} Meetings;
+
+static CagStatus cut(Meetings *m, size_t piece, double t, CagVec3 point, CagError *err) {
+  if (m->n == m->capacity) {
+    size_t capacity = m->capacity ? 2 * m->capacity : 64;
+    CagRegionCut *grown = realloc(m->items, sizeof *grown * capacity);
+    if (!grown) return cag_fail_memory(err);
+    m->items = grown;
+    m->capacity = capacity;
+  }
+  const CagRegionPiece *p = &m->pieces->items[piece];
+  m->items[m->n++] = (CagRegionCut){piece, fmin(fmax(t, p->a), p->b), point};
+  return CAG_OK;
+}
+
+static CagStatus cut_both(Meetings *m, size_t i, double t, size_t k, double u, CagVec3 point,
+                          CagError *err) {
+  CagStatus status = cut(m, i, t, point, err);
+  return status ? status : cut(m, k, u, point, err);
+}
+
+static bool near(const Meetings *m, CagVec3 p, CagVec3 q) {
+  return hypot(p.x - q.x, p.y - q.y) <= m->pieces->tolerance;
+}
+
+static bool in_box(const Meetings *m, const CagRegionPiece *piece, CagVec3 p) {
+  const double slack = m->pieces->tolerance;
+  return p.x >= fmin(piece->p.x, piece->q.x) - slack &&
+         p.x <= fmax(piece->p.x, piece->q.x) + slack &&
+         p.y >= fmin(piece->p.y, piece->q.y) - slack && p.y <= fmax(piece->p.y, piece->q.y) + slack;
+}
+
+// --- Two segments ---
+
+// Parameter 0..1 of the segment's point nearest to the target.
+static double foot(const CagRegionPiece *piece, CagVec3 target) {
+  const CagVec3 d = cag_sub(piece->q, piece->p);
+  const double dd = cag_dot(d, d);
+  return dd > 0 ? fmin(1, fmax(0, cag_dot(cag_sub(target, piece->p), d) / dd)) : 0;
+}
+
+static double along(const CagRegionPiece *piece, double u) {
+  return u == 1 ? piece->b : piece->a + (piece->b - piece->a) * u;
+}
+
+static CagStatus end_on_segment(Meetings *m, size_t segment, CagVec3 end, CagError *err) {
+  const CagRegionPiece *piece = &m->pieces->items[segment];
+  if (!in_box(m, piece, end)) return CAG_OK;
+  const double u = foot(piece, end);
+  if (!near(m, cag_lerp(piece->p, piece->q, u), end)) return CAG_OK;
+  return cut(m, segment, along(piece, u), end, err);
+}
+
+static CagStatus meet_segments(Meetings *m, size_t i, size_t k, CagError *err) {
+  const CagRegionPiece *a = &m->pieces->items[i], *b = &m->pieces->items[k];
+  CagStatus status = end_on_segment(m, i, b->p, err);
+  if (!status) status = end_on_segment(m, i, b->q, err);
+  if (!status) status = end_on_segment(m, k, a->p, err);
+  if (!status) status = end_on_segment(m, k, a->q, err);
+  if (status) return status;
+  const CagVec3 d = cag_sub(a->q, a->p), e = cag_sub(b->q, b->p), r = cag_sub(b->p, a->p);
+  const double det = d.x * e.y - d.y * e.x;
+  if (det == 0) return CAG_OK;
+  const double u = (r.x * e.y - r.y * e.x) / det, v = (r.x * d.y - r.y * d.x) / det;
+  if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1)) return CAG_OK;
+  return cut_both(m, i, along(a, u), k, along(b, v), cag_lerp(a->p, a->q, u), err);
+}
+
+// --- Curves ---
+
+static CagStatus part_of(Meetings *m, size_t i, CagCurve **out, CagError *err) {
+  CagRegionPiece *piece = &m->pieces->items[i];
+  const CagWalk *walk = &m->pieces->walks[piece->walk];
+  if (!piece->part) {
+    double local_a, local_b, rate;
+    CagCurve *whole;
+    const CagCurve *inner =
+        cag_curve_composite_piece(walk->curve, piece->a, piece->b, &local_a, &local_b, &rate);
+    CagStatus status = inner ? cag_curve_trim(inner, local_a, local_b, &whole, err)
+                             : cag_curve_trim(walk->curve, piece->a, piece->b, &whole, err);
+    if (status) return status;
+    status = inner ? cag_curve_reparametrize(whole, piece->a, piece->b, &piece->part, err) : CAG_OK;
+    if (!inner) piece->part = whole;
+    else cag_curve_release(whole);
+    if (status) return status;
+  }
+  *out = piece->part;
+  return CAG_OK;
+}
+
+// Whether the point lies on piece i, and where.
+static CagStatus lies_on(Meetings *m, size_t i, CagVec3 p, bool *out, double *t, CagError *err) {
+  const CagRegionPiece *piece = &m->pieces->items[i];
+  *out = false;
+  if (!in_box(m, piece, p)) return CAG_OK;
+  if (near(m, p, piece->p) || near(m, p, piece->q)) {
+    *out = true;
+    *t = near(m, p, piece->p) ? piece->a : piece->b;
+    return CAG_OK;
+  }
+  if (piece->straight) {
+    const double u = foot(piece, p);
+    *out = near(m, cag_lerp(piece->p, piece->q, u), p);
+    *t = along(piece, u);
+    return CAG_OK;
+  }
+  // A box much larger than the distance to the curve: first the points of the same x and y.
+  CagCurve *part;
+  CagVec3 closest;
+  double distance;
+  CagStatus status = part_of(m, i, &part, err);
+  if (!status) status = cag_curve_closest(part, p, t, &closest, &distance, err);
+  *out = !status && distance <= m->pieces->tolerance;
+  return status;
+}
+
+// Whether the two run along each other somewhere: between two common places next to each other on
+// piece i, whose parameters are t, lies a third one.
+static CagStatus run_along(Meetings *m, size_t i, size_t k, double *t, size_t n, bool *out,
+                           CagError *err) {
+  *out = false;
+  for (size_t a = 1; a < n; a++)
+    for (size_t b = a; b > 0 && t[b] < t[b - 1]; b--) {
+      const double other = t[b];
+      t[b] = t[b - 1];
+      t[b - 1] = other;
+    }
+  const CagRegionPiece *piece = &m->pieces->items[i];
+  for (size_t a = 0; a + 1 < n && !*out; a++) {
+    CagVec3 p, q, middle;
+    double u;
+    CagStatus status = cag_region_piece_point(m->pieces, piece, t[a], &p, err);
+    if (!status) status = cag_region_piece_point(m->pieces, piece, t[a + 1], &q, err);
+    if (!status)
+      status = cag_region_piece_point(m->pieces, piece, t[a] + (t[a + 1] - t[a]) / 2, &middle, err);
+    if (!status && !near(m, p, q)) status = lies_on(m, k, middle, out, &u, err);
+    if (status) return status;
+  }
+  return CAG_OK;
+}
+
+static CagStatus meet_curves(Meetings *m, size_t i, size_t k, CagError *err) {
+  const size_t which[2] = {i, k};
+  double shared[4]; // parameters on piece i of ends of either on the other
+  size_t n = 0;
+  CagStatus status = CAG_OK;
+  for (int side = 0; side < 2; side++) {
+    const size_t on = which[side], of = which[1 - side];
+    for (int end = 0; !status && end < 2; end++) {
+      const CagRegionPiece *other = &m->pieces->items[of];
+      const CagVec3 p = end ? other->q : other->p;
+      bool lies;
+      double t;
+      status = lies_on(m, on, p, &lies, &t, err);
+      if (status || !lies) continue;
+      shared[n++] = side == 0 ? t : end ? other->b : other->a;
+      status = cut(m, on, t, p, err);
+    }
+  }
+  bool along_each_other = false;
+  if (!status && n > 1) status = run_along(m, i, k, shared, n, &along_each_other, err);
+  if (status || along_each_other) return status;
+  CagCurve *a, *b;
+  status = part_of(m, i, &a, err);
+  if (!status) status = part_of(m, k, &b, err);
+  if (status) return status;
+  CagMeeting *found = NULL;
+  size_t count = 0;
+  status = cag_curve_intersect(a, b, &found, &count, err);
+  if (status == CAG_E_DEGENERATE) return CAG_OK; // along each other: cut at their ends already
+  if (status) return status;
+  for (size_t f = 0; !status && f < count; f++)
+    status = cut_both(m, i, found[f].t, k, found[f].t2, found[f].point, err);
+  free(found);
+  return status;
+}
+
+// --- All pairs ---
+
+typedef struct Box {
+  double x0, x1, y0, y1;
+  size_t piece;
+} Box;
+
+static int by_x0(const void *a, const void *b) {
+  const Box *p = a, *q = b;
+  if (p->x0 != q->x0) return p->x0 > q->x0 ? 1 : -1;
+  return (p->piece > q->piece) - (p->piece < q->piece);
+}
+
+static int by_place(const void *a, const void *b) {
+  const CagRegionCut *p = a, *q = b;
+  if (p->piece != q->piece) return p->piece > q->piece ? 1 : -1;
+  return (p->t > q->t) - (p->t < q->t);
+}
+
+// Pieces of one group do not meet; nor do neighbours of one curve that is bent: they were parted
+// where one coordinate turns, the other keeps them apart.
+static bool may_meet(const CagRegionPieces *s, const CagRegionPiece *a, const CagRegionPiece *b) {
+  const int group = s->walks[a->walk].group;
+  if (group >= 0 && group == s->walks[b->walk].group) return false;
+  if (a->walk == b->walk && (a->b == b->a || b->b == a->a)) return a->straight || b->straight;
+  return true;
+}
+
+CagStatus cag_region_pieces_meet(CagRegionPieces *s, CagRegionCut **out, size_t *n, CagError *err) {
+  Meetings m = {.pieces = s};
+  Box *boxes = malloc(sizeof *boxes * (s->n + 1));
+  if (!boxes) return cag_fail_memory(err);
+  const double slack = s->tolerance;
+  for (size_t i = 0; i < s->n; i++) {
+    const CagRegionPiece *p = &s->items[i];
+    boxes[i] = (Box){fmin(p->p.x, p->q.x) - slack, fmax(p->p.x, p->q.x) + slack,
+                     fmin(p->p.y, p->q.y) - slack, fmax(p->p.y, p->q.y) + slack, i};
+  }
+  qsort(boxes, s->n, sizeof *boxes, by_x0);
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < s->n; i++) {
+    const Box *a = &boxes[i];
+    for (size_t k = i + 1; !status && k < s->n && boxes[k].x0 <= a->x1; k++) {
+      const Box *b = &boxes[k];
+      if (b->y0 > a->y1 || a->y0 > b->y1) continue;
+      const CagRegionPiece *p = &s->items[a->piece], *q = &s->items[b->piece];
+      if (!may_meet(s, p, q)) continue;
+      status = p->straight && q->straight ? meet_segments(&m, a->piece, b->piece, err)
+                                          : meet_curves(&m, a->piece, b->piece, err);
+    }
+  }
+  free(boxes);
+  if (status) {
+    free(m.items);
+    return status;
+  }
+  if (m.n) qsort(m.items, m.n, sizeof *m.items, by_place);
+  *out = m.items;
+  *n = m.n;
+  return CAG_OK;
+}

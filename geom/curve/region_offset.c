@@ -1,0 +1,368 @@
+// Regions grown and shrunk: the points within a distance of a region, or of its inside.
+//
+// A strip of the width |d| lies along each smooth part of the boundary, on the side it moves to,
+// and a sector about each corner that bends away from that side. The curve around region and strips
+// (grown), or around the region with the strips taken away (shrunk), runs along the shifted parts,
+// by arcs about such corners, and through all other corners; each point's winding number about it
+// is that of the region plus (less) the number of strips and sectors over the point. What is wanted
+// are the points with a positive one, so no crossing need be judged by itself.
+//
+// Strips count by their sense: where a part bends to its strip's side with a radius less than |d|,
+// the strip folds over and what lies beyond the fold would count against it. Such parts are left as
+// they are, and the whole neighbourhood of the part is added (taken away) instead: the curve around
+// it, both sides and half a circle at each end, runs around each point as often as the part has
+// stretches within |d| of the point (the sublevel sets of a function on an interval), so at least
+// once where it is within |d| and else not at all.
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/curve/approximate.h"
+#include "geom/curve/family.h"
+#include "geom/curve/region_arrange.h"
+
+// Turns by less than this (sine) are no corner.
+#define TURN 1e-9
+// Samples of a smooth part between which the radius of curvature passes |d| once at most.
+#define SAMPLES 32
+// Halvings that take an interval to neighbouring doubles.
+#define BISECTIONS 80
+// Axes of a circle differ by this part at most; a circle shrunk to this part of it is a point.
+#define ROUND 1e-12
+
+typedef struct Raw {
+  CagCurve **curves; // owned
+  CagWalk *walks;
+  size_t n, capacity;
+  double left, tolerance; // how far the boundary moves to its left
+} Raw;
+
+// Takes the curve over.
+static CagStatus put(Raw *raw, CagCurve *c, int sign, CagError *err) {
+  if (raw->n == raw->capacity) {
+    size_t capacity = raw->capacity ? 2 * raw->capacity : 32;
+    CagCurve **curves = realloc(raw->curves, sizeof *curves * capacity);
+    if (curves) raw->curves = curves;
+    CagWalk *walks = curves ? realloc(raw->walks, sizeof *walks * capacity) : NULL;
+    if (walks) raw->walks = walks;
+    if (!walks) {
+      cag_curve_release(c);
+      return cag_fail_memory(err);
+    }
+    raw->capacity = capacity;
+  }
+  raw->walks[raw->n] = (CagWalk){c, 0, sign, -1};
+  raw->curves[raw->n++] = c;
+  return CAG_OK;
+}
+
+static CagStatus put_line(Raw *raw, CagVec3 p, CagVec3 q, int sign, CagError *err) {
+  if (p.x == q.x && p.y == q.y) return CAG_OK;
+  CagCurve *line;
+  CagStatus status = cag_curve_line(p, q, 2, &line, err);
+  return status ? status : put(raw, line, sign, err);
+}
+
+// The arc about the center from one point to the other, counter-clockwise or clockwise.
+static CagStatus put_arc(Raw *raw, CagVec3 center, CagVec3 from, CagVec3 to, bool clockwise,
+                         int sign, CagError *err) {
+  const CagVec3 a = cag_sub(from, center), b = cag_sub(to, center);
+  const double radius = cag_norm(a);
+  double turn = atan2(cag_cross(a, b).z, cag_dot(a, b));
+  if (clockwise) turn = -turn;
+  if (turn <= 0) turn += 2 * M_PI;
+  const CagVec3 x = cag_scaled(a, 1 / radius);
+  const double sense = clockwise ? -1 : 1;
+  CagTransform frame = cag_translate(center);
+  frame.m[0][0] = x.x;
+  frame.m[1][0] = x.y;
+  frame.m[0][1] = -sense * x.y;
+  frame.m[1][1] = sense * x.x;
+  frame.planar = true;
+  CagCurve *arc;
+  CagStatus status = cag_curve_arc(radius, radius, 0, turn, &frame, &arc, err);
+  return status ? status : put(raw, arc, sign, err);
+}
+
+// --- Smooth parts ---
+
+typedef struct Part {
+  CagCurve *curve;
+  bool folds; // bends to the side it moves to with a radius less than the distance
+  CagVec3 ends[2], tangents[2];
+} Part;
+
+typedef struct Parts {
+  Part *items;
+  size_t n, capacity;
+} Parts;
+
+static void parts_free(Parts *p) {
+  for (size_t i = 0; i < p->n; i++) cag_curve_release(p->items[i].curve);
+  free(p->items);
+}
+
+static bool is_line(const CagCurve *c) {
+  const CagVec3 *v;
+  size_t n;
+  bool closed;
+  return cag_curve_vertices(c, &v, &n, &closed);
+}
+
+// Center, radius and sense of a circle's arc, or false.
+static bool circle_of(const CagCurve *c, CagVec3 *center, double *radius, double *sense) {
+  CagVec3 x, y;
+  double rate;
+  if (!cag_curve_arc_axes(c, center, &x, &y, &rate)) return false;
+  const double a = cag_norm(x), b = cag_norm(y);
+  *radius = a;
+  *sense = rate * cag_cross(x, y).z > 0 ? 1 : -1;
+  return fabs(a - b) <= ROUND * a && fabs(cag_dot(x, y)) <= ROUND * a * b;
+}
+
+// Positive where a strip of the width `left` does not fold: |C'|^3 (1 - left k).
+static CagStatus room(const CagCurve *c, double left, double t, double *out, CagError *err) {
+  CagVec3 d[3];
+  CagStatus status = cag_curve_eval(c, t, 2, t >= c->end ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, err);
+  if (status) return status;
+  const double speed = cag_norm(d[1]);
+  *out = speed * speed * speed - left * cag_cross(d[1], d[2]).z;
+  return CAG_OK;
+}
+
+// Takes the curve over.
+static CagStatus add_part(Parts *parts, CagCurve *c, bool folds, CagError *err) {
+  CagStatus status = CAG_OK;
+  if (parts->n == parts->capacity) {
+    size_t capacity = parts->capacity ? 2 * parts->capacity : 16;
+    Part *grown = realloc(parts->items, sizeof *grown * capacity);
+    if (grown) {
+      parts->items = grown;
+      parts->capacity = capacity;
+    } else {
+      status = cag_fail_memory(err);
+    }
+  }
+  Part p = {.curve = c, .folds = folds};
+  if (!status) status = cag_curve_point(c, c->start, &p.ends[0], err);
+  if (!status) status = cag_curve_point(c, c->end, &p.ends[1], err);
+  if (!status) status = cag_curve_tangent(c, c->start, CAG_SIDE_RIGHT, &p.tangents[0], err);
+  if (!status) status = cag_curve_tangent(c, c->end, CAG_SIDE_LEFT, &p.tangents[1], err);
+  if (status) cag_curve_release(c);
+  else parts->items[parts->n++] = p;
+  return status;
+}
+
+static CagStatus add_over(Parts *parts, const CagCurve *c, double a, double b, bool folds,
+                          CagError *err) {
+  CagCurve *part;
+  if (!(a < b)) return CAG_OK;
+  CagStatus status = cag_curve_trim(c, a, b, &part, err);
+  return status ? status : add_part(parts, part, folds, err);
+}
+
+// Cuts the part where the radius of curvature passes the distance.
+static CagStatus add_bent(Parts *parts, const CagCurve *c, double left, CagError *err) {
+  double *cuts;
+  size_t n;
+  CagStatus status = cag_curve_cuts(c, &cuts, &n, err);
+  if (status) return status;
+  double from = c->start, before = c->start, f = 0;
+  status = room(c, left, c->start, &f, err);
+  bool folds = f < 0, known = f != 0;
+  for (size_t i = 0; !status && i + 1 < n; i++)
+    for (int k = 1; !status && k <= SAMPLES; k++) {
+      const double t = k == SAMPLES ? cuts[i + 1] : cuts[i] + (cuts[i + 1] - cuts[i]) * k / SAMPLES;
+      status = room(c, left, t, &f, err);
+      if (!status && f != 0 && !known) {
+        folds = f < 0;
+        known = true;
+      }
+      if (!status && f != 0 && (f < 0) != folds) {
+        double lo = before, hi = t, g = 0;
+        for (int j = 0; !status && j < BISECTIONS && lo + (hi - lo) / 2 > lo; j++) {
+          const double m = lo + (hi - lo) / 2;
+          if (!(m < hi)) break;
+          status = room(c, left, m, &g, err);
+          if ((g < 0) == folds) lo = m;
+          else hi = m;
+        }
+        if (!status) status = add_over(parts, c, from, hi, folds, err);
+        from = hi;
+        folds = !folds;
+      }
+      before = t;
+    }
+  free(cuts);
+  return status ? status : add_over(parts, c, from, c->end, folds, err);
+}
+
+// A smooth part of the boundary, cut further where it has to be; whole circles that fold in two, as
+// a neighbourhood has ends.
+static CagStatus add_smooth(Parts *parts, const CagCurve *c, double left, CagError *err) {
+  CagVec3 center;
+  double radius, sense;
+  if (is_line(c)) return add_over(parts, c, c->start, c->end, false, err);
+  const double middle = c->start + (c->end - c->start) / 2;
+  CagStatus status;
+  if (!circle_of(c, &center, &radius, &sense)) {
+    const size_t first = parts->n;
+    status = add_bent(parts, c, left, err);
+    if (status || !c->closed || parts->n != first + 1 || !parts->items[first].folds) return status;
+    cag_curve_release(parts->items[--parts->n].curve);
+    status = add_over(parts, c, c->start, middle, true, err);
+    return status ? status : add_over(parts, c, middle, c->end, true, err);
+  }
+  const bool folds = radius - sense * left <= ROUND * radius;
+  if (!folds) return add_over(parts, c, c->start, c->end, false, err);
+  status = add_over(parts, c, c->start, middle, true, err);
+  return status ? status : add_over(parts, c, middle, c->end, true, err);
+}
+
+// Whether the curve goes on smoothly over the parameter, one of its breaks.
+static CagStatus is_smooth(const CagCurve *c, double t, bool *out, CagError *err) {
+  CagVec3 left, right;
+  CagStatus status = cag_curve_tangent(c, t, CAG_SIDE_LEFT, &left, err);
+  if (!status) status = cag_curve_tangent(c, t, CAG_SIDE_RIGHT, &right, err);
+  *out = !status && fabs(cag_cross(left, right).z) <= TURN && cag_dot(left, right) > 0;
+  return status;
+}
+
+static CagStatus add_loop(Parts *parts, const CagCurve *c, double left, CagError *err) {
+  double *cuts;
+  size_t n;
+  CagStatus status = cag_curve_cuts(c, &cuts, &n, err);
+  if (status) return status;
+  double from = cuts[0];
+  for (size_t i = 1; !status && i < n; i++) {
+    double local_a, local_b, rate;
+    const CagCurve *piece =
+        cag_curve_composite_piece(c, cuts[i - 1], cuts[i], &local_a, &local_b, &rate);
+    bool smooth = false;
+    // The joint of two pieces is always a cut: each has a kind of its own.
+    if (i + 1 < n && !(piece && local_b == piece->end))
+      status = is_smooth(c, cuts[i], &smooth, err);
+    if (status || smooth) continue;
+    CagCurve *part;
+    piece = cag_curve_composite_piece(c, from, cuts[i], &local_a, &local_b, &rate);
+    status = piece ? cag_curve_trim(piece, local_a, local_b, &part, err)
+                   : cag_curve_trim(c, from, cuts[i], &part, err);
+    if (status) break;
+    status = add_smooth(parts, part, left, err);
+    cag_curve_release(part);
+    from = cuts[i];
+  }
+  free(cuts);
+  return status;
+}
+
+// --- The curve around ---
+
+static CagVec3 left_of(CagVec3 v) { return cag_vec3(-v.y, v.x, 0); }
+
+// The part moved to its left; *out is NULL where it shrinks to a point.
+static CagStatus shifted(const Part *p, double left, double tolerance, CagCurve **out,
+                         CagError *err) {
+  CagVec3 center;
+  double radius, sense;
+  *out = NULL;
+  if (!circle_of(p->curve, &center, &radius, &sense))
+    return cag_curve_offset(p->curve, left, tolerance, out, err);
+  const double factor = 1 - sense * left / radius;
+  if (fabs(factor) <= ROUND) return CAG_OK;
+  CagTransform t = cag_translate(cag_scaled(center, 1 - factor));
+  t.m[0][0] = t.m[1][1] = factor; // negative: turned by half a turn, the sense stays
+  t.planar = true;
+  return cag_curve_transform(p->curve, &t, out, err);
+}
+
+static CagVec3 moved_end(const Part *p, int end, double left) {
+  return cag_madd(p->ends[end], left, left_of(p->tangents[end]));
+}
+
+// From the end of one part's strip to the start of the next one's.
+static CagStatus put_corner(Raw *raw, const Part *a, const Part *b, CagError *err) {
+  const CagVec3 corner = b->ends[0];
+  const CagVec3 from = a->folds ? corner : moved_end(a, 1, raw->left),
+                to = b->folds ? corner : moved_end(b, 0, raw->left);
+  if (!a->folds && !b->folds) {
+    const double sine = cag_cross(a->tangents[1], b->tangents[0]).z,
+                 cosine = cag_dot(a->tangents[1], b->tangents[0]);
+    if (fabs(sine) <= TURN && cosine > 0) return put_line(raw, from, to, 1, err);
+    if ((raw->left > 0) == (sine < 0) || fabs(sine) <= TURN)
+      return put_arc(raw, corner, from, to, raw->left > 0, 1, err);
+  }
+  CagStatus status = put_line(raw, from, corner, 1, err);
+  return status ? status : put_line(raw, corner, to, 1, err);
+}
+
+static CagStatus put_side(Raw *raw, const Part *p, double left, bool backwards, int sign,
+                          CagError *err) {
+  CagCurve *side, *turned;
+  CagStatus status = shifted(p, left, raw->tolerance, &side, err);
+  if (status || !side) return status;
+  if (!backwards) return put(raw, side, sign, err);
+  status = cag_curve_reverse(side, &turned, err);
+  cag_curve_release(side);
+  return status ? status : put(raw, turned, sign, err);
+}
+
+// The curve around all points within the distance of the part, counter-clockwise.
+static CagStatus put_neighbourhood(Raw *raw, const Part *p, CagError *err) {
+  const double d = fabs(raw->left);
+  const int sign = raw->left < 0 ? 1 : -1;
+  CagStatus status = put_side(raw, p, -d, false, sign, err);
+  if (!status)
+    status = put_arc(raw, p->ends[1], moved_end(p, 1, -d), moved_end(p, 1, d), false, sign, err);
+  if (!status) status = put_side(raw, p, d, true, sign, err);
+  if (!status)
+    status = put_arc(raw, p->ends[0], moved_end(p, 0, d), moved_end(p, 0, -d), false, sign, err);
+  return status;
+}
+
+static CagStatus put_loop(Raw *raw, const CagCurve *loop, CagError *err) {
+  Parts parts = {0};
+  CagStatus status = add_loop(&parts, loop, raw->left, err);
+  for (size_t i = 0; !status && i < parts.n; i++) {
+    const Part *p = &parts.items[i];
+    // A smooth closed curve moves to a closed curve.
+    if (parts.n > 1 || !p->curve->closed)
+      status = put_corner(raw, &parts.items[(i + parts.n - 1) % parts.n], p, err);
+    else {
+      bool smooth = fabs(cag_cross(p->tangents[0], p->tangents[1]).z) <= TURN &&
+                    cag_dot(p->tangents[0], p->tangents[1]) > 0;
+      if (!smooth) status = put_corner(raw, p, p, err);
+    }
+    if (!status && !p->folds) status = put_side(raw, p, raw->left, false, 1, err);
+    if (!status && p->folds) status = put(raw, cag_curve_retain(p->curve), 1, err);
+    if (!status && p->folds) status = put_neighbourhood(raw, p, err);
+  }
+  parts_free(&parts);
+  return status;
+}
+
+static bool is_inside(const int winding[2], int parameter) {
+  (void)parameter;
+  return winding[0] > 0;
+}
+
+CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagRegion **out,
+                            CagError *err) {
+  CagStatus status = cag_curve_check_number(d, "d", err);
+  if (status) return status;
+  if (d == 0) {
+    *out = cag_region_retain(r);
+    return CAG_OK;
+  }
+  Raw raw = {.left = -d, .tolerance = tolerance}; // the region lies to the left of its boundary
+  for (size_t i = 0; !status && i < r->count; i++) status = put_loop(&raw, r->loops[i], err);
+  if (!status) status = cag_region_arrange(raw.walks, raw.n, is_inside, 0, out, err);
+  for (size_t i = 0; i < raw.n; i++) cag_curve_release(raw.curves[i]);
+  free(raw.curves);
+  free(raw.walks);
+  if (status || *out) return status;
+  char text[32];
+  return cag_fail(err, CAG_E_DEGENERATE, "region-empty", "d", -1,
+                  "nothing is left: no point of the region is %s or more away from its boundary",
+                  cag_number_text(fabs(d), text));
+}
