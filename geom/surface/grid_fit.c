@@ -1,5 +1,6 @@
 // B-spline surfaces from grids of points (reference 06b, 4): interpolation by two banded solutions,
-// least squares by QR.
+// least squares by QR. Where all lines share their parameters the matrix is the product of one by u
+// and one by v, which are solved one after the other; else it is solved as a whole.
 
 #include <lapacke.h>
 #include <math.h>
@@ -7,28 +8,34 @@
 #include <string.h>
 
 #include "geom/basis/bspline.h"
+#include "geom/basis/knots.h"
 #include "geom/surface/family.h"
 #include "geom/surface/loft.h"
 #include "geom/surface/net.h"
 
 // A diagonal element of R below this part of the largest means dependent columns.
 #define RANK 1e-12
+// Basis values stand on the stack.
+#define DEGREE_MOST 31
 // Most numbers in the matrix of a fit whose lines have parameters of their own.
 #define DENSE_MOST 50000000
 
-// Parameters 0..end of n points with a stride; a line without length gets even ones.
-static void line_parameters(const CagVec3 *p, size_t n, size_t stride, bool even, double end,
-                            double *out) {
+// Parameters 0..end of n points with a stride; a line without length gets even ones. Of a closed
+// line the way back to the first point counts too, so that the last parameter is less than the end.
+static void line_parameters(const CagVec3 *p, size_t n, size_t stride, bool even, bool closed,
+                            double end, double *out, size_t step) {
   double total = 0;
   out[0] = 0;
   for (size_t i = 1; i < n; i++) {
     total += even ? 1 : cag_norm(cag_sub(p[i * stride], p[(i - 1) * stride]));
-    out[i] = total;
+    out[i * step] = total;
   }
+  if (closed) total += even ? 1 : cag_norm(cag_sub(p[0], p[(n - 1) * stride]));
+  size_t parts = closed ? n : n - 1;
   for (size_t i = 1; i < n; i++)
-    out[i] = i + 1 == n  ? end
-             : total > 0 ? out[i] / total * end
-                         : end * (double)i / (double)(n - 1);
+    out[i * step] = i == parts  ? end
+                    : total > 0 ? out[i * step] / total * end
+                                : end * (double)i / (double)parts;
 }
 
 // out[i]: mean over all lines of a direction (0: along u).
@@ -40,7 +47,8 @@ static CagStatus mean_parameters(const CagGridData *g, int direction, double end
   for (size_t i = 0; i < n; i++) out[i] = 0;
   for (size_t k = 0; k < lines; k++) {
     const CagVec3 *p = direction == 0 ? g->points + k : g->points + k * g->s;
-    line_parameters(p, n, direction == 0 ? g->s : 1, g->spacing == CAG_GRID_UNIFORM, end, one);
+    line_parameters(p, n, direction == 0 ? g->s : 1, g->spacing == CAG_GRID_UNIFORM, false, end,
+                    one, 1);
     for (size_t i = 0; i < n; i++) out[i] += one[i] / (double)lines;
   }
   out[n - 1] = end;
@@ -52,7 +60,7 @@ static CagStatus check(const CagGridData *g, size_t nu, size_t nv, CagError *err
   const size_t points[2] = {g->r, g->s}, net[2] = {nu, nv};
   const int degree[2] = {g->degree_u, g->degree_v};
   for (int k = 0; k < 2; k++) {
-    if (degree[k] < 1 || (size_t)degree[k] >= net[k])
+    if (degree[k] < 1 || degree[k] > DEGREE_MOST || (size_t)degree[k] >= net[k])
       return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", k,
                       "`degree` in %c must lie in 1..%zu for %zu control points, it is %d", "uv"[k],
                       net[k] - 1, net[k], degree[k]);
@@ -74,9 +82,9 @@ static void load(CagNet *net, const CagVec3 *points, size_t n) {
   }
 }
 
-CagStatus cag_surface_interpolate(const CagGridData *g, CagSurface **out, CagError *err) {
-  CagStatus status = check(g, g->r, g->s, err);
-  if (status) return status;
+// With open directions and parameters that all lines share: two banded solutions.
+static CagStatus interpolate_banded(const CagGridData *g, CagSurface **out, CagError *err) {
+  CagStatus status;
   CagNet net, across = {0};
   CagSurface *half = NULL;
   double *at = malloc((g->r + g->s) * sizeof *at);
@@ -112,136 +120,397 @@ CagStatus cag_surface_interpolate(const CagGridData *g, CagSurface **out, CagErr
   return status;
 }
 
+// --- Parameters ---
+
+static void spread(double *x, size_t r, size_t s, size_t i, size_t j, bool rows) {
+  for (size_t k = 0; k < (rows ? s : r); k++) x[rows ? i * s + k : k * s + j] = x[i * s + j];
+}
+
+// The mean over the lines, for all of them.
+static void average(double *x, size_t r, size_t s, bool over_columns, bool closed, double end) {
+  for (size_t i = 0; i < (over_columns ? r : s); i++) {
+    size_t lines = over_columns ? s : r, n = over_columns ? r : s;
+    double sum = 0;
+    for (size_t k = 0; k < lines; k++) sum += x[over_columns ? i * s + k : k * s + i];
+    size_t first = over_columns ? i * s : i;
+    x[first] = i + 1 == n && !closed ? end : sum / (double)lines;
+    if (over_columns) spread(x, r, s, i, 0, true);
+    else spread(x, r, s, 0, i, false);
+  }
+}
+
+void cag_grid_parameters(const CagGridData *g, const double end[2], double *u, double *v) {
+  bool even = g->spacing == CAG_GRID_UNIFORM;
+  for (size_t q = 0; q < g->s; q++)
+    line_parameters(g->points + q, g->r, g->s, even, g->closed[0], end[0], u + q, g->s);
+  for (size_t p = 0; p < g->r; p++)
+    line_parameters(g->points + p * g->s, g->s, 1, even, g->closed[1], end[1], v + p * g->s, 1);
+  if (g->spacing != CAG_GRID_MEAN) return;
+  average(u, g->r, g->s, true, g->closed[0], end[0]);
+  average(v, g->r, g->s, false, g->closed[1], end[1]);
+}
+
+void cag_grid_report_free(CagGridReport *report) {
+  free(report->u);
+  free(report->v);
+  *report = (CagGridReport){0};
+}
+
 // --- Least squares ---
+
+// Control points in one direction and their knots, as a spline on the line has them.
+typedef struct Axis {
+  int degree;
+  size_t count, stored; // distinct points; with the repeated ones of a closed direction
+  bool closed;
+  double *knots; // stored + degree + 1
+} Axis;
 
 typedef struct Fit {
   const CagGridData *g;
-  size_t nu, nv, rows, columns;
-  double *ku, *kv;        // knots
-  double *u, *v;          // parameters of all data
-  double *matrix, *right; // column-major; right: 3 columns
+  Axis axis[2];
+  size_t rows; // of all data
+  double *parameters[2];
   CagVec3 *net;
 } Fit;
 
-static void parameters(Fit *f) {
-  const CagGridData *g = f->g;
-  bool even = g->spacing == CAG_GRID_UNIFORM;
-  double eu = f->ku[f->nu], ev = f->kv[f->nv];
-  for (size_t p = 0; p < g->r; p++)
-    line_parameters(g->points + p * g->s, g->s, 1, even, ev, f->v + p * g->s);
-  // Columns are gathered into the matrix's room, which is not yet used.
-  for (size_t q = 0; q < g->s; q++) {
-    line_parameters(g->points + q, g->r, g->s, even, eu, f->matrix);
-    for (size_t p = 0; p < g->r; p++) f->u[p * g->s + q] = f->matrix[p];
-  }
-  if (g->spacing != CAG_GRID_MEAN) return;
-  for (size_t p = 0; p < g->r; p++) {
-    double sum = 0;
-    for (size_t q = 0; q < g->s; q++) sum += f->u[p * g->s + q];
-    for (size_t q = 0; q < g->s; q++) f->u[p * g->s + q] = p + 1 == g->r ? eu : sum / (double)g->s;
-  }
-  for (size_t q = 0; q < g->s; q++) {
-    double sum = 0;
-    for (size_t p = 0; p < g->r; p++) sum += f->v[p * g->s + q];
-    for (size_t p = 0; p < g->r; p++) f->v[p * g->s + q] = q + 1 == g->s ? ev : sum / (double)g->r;
-  }
+static double axis_start(const Axis *a) { return a->knots[a->degree]; }
+static double axis_end(const Axis *a) { return a->knots[a->stored]; }
+
+// The first parameter of a closed direction by its spacing.
+static double phase(const Axis *a) { return a->closed && a->degree % 2 == 0 ? 0.5 : 0; }
+
+static CagStatus make_axis(const CagGridData *g, int k, size_t count, Axis *a, CagError *err) {
+  int degree = k ? g->degree_v : g->degree_u;
+  *a = (Axis){degree, count, count, g->closed[k], NULL};
+  if (a->closed) a->stored += (size_t)degree;
+  size_t n = a->stored + (size_t)degree + 1;
+  a->knots = malloc(n * sizeof *a->knots);
+  if (!a->knots) return cag_fail_memory(err);
+  if (a->closed)
+    for (size_t i = 0; i < n; i++) a->knots[i] = (double)i - degree;
+  else if (g->knots[k]) memcpy(a->knots, g->knots[k], n * sizeof *a->knots);
+  else cag_knots_open(count, degree, a->knots);
+  return a->closed ? CAG_OK : cag_knots_check(a->knots, count, degree, err);
 }
 
-static void fill(Fit *f) {
-  const CagGridData *g = f->g;
-  size_t p = (size_t)g->degree_u, q = (size_t)g->degree_v;
-  double bu[32], bv[32];
-  memset(f->matrix, 0, f->rows * f->columns * sizeof *f->matrix);
-  for (size_t row = 0; row < f->rows; row++) {
-    double u = f->u[row], v = f->v[row];
-    size_t su = cag_knots_span(f->ku, f->nu, g->degree_u, u, u >= f->ku[f->nu], p);
-    size_t sv = cag_knots_span(f->kv, f->nv, g->degree_v, v, v >= f->kv[f->nv], q);
-    cag_bspline_basis(f->ku, g->degree_u, su, u, bu);
-    cag_bspline_basis(f->kv, g->degree_v, sv, v, bv);
-    for (size_t i = 0; i <= p; i++)
-      for (size_t j = 0; j <= q; j++) {
-        size_t column = (su - p + i) * f->nv + sv - q + j;
-        f->matrix[column * f->rows + row] = bu[i] * bv[j];
-      }
-    f->right[row] = g->points[row].x;
-    f->right[f->rows + row] = g->points[row].y;
-    f->right[2 * f->rows + row] = g->points[row].z;
-  }
+// Values of the basis at t, folded onto the distinct points: entries of `row` with a stride.
+static void fill_row(const Axis *a, double t, double *row, size_t stride) {
+  double basis[DEGREE_MOST + 1];
+  size_t p = (size_t)a->degree;
+  size_t span = cag_knots_span(a->knots, a->stored, a->degree, t, t >= axis_end(a), p);
+  cag_bspline_basis(a->knots, a->degree, span, t, basis);
+  for (size_t i = 0; i <= p; i++) row[(span - p + i) % a->count * stride] += basis[i];
 }
 
-static CagStatus solve(Fit *f, CagError *err) {
+static CagStatus fail_singular(CagError *err) {
+  return cag_fail(err, CAG_E_DEGENERATE, "fit-singular", "count", -1,
+                  "the data do not determine all control points: take fewer, a lower degree, other "
+                  "knots, or data that are spread more evenly");
+}
+
+// Least squares of a column-major matrix; the first `columns` rows of `right` become the solution.
+static CagStatus solve(double *matrix, size_t rows, size_t columns, double *right, size_t sides,
+                       CagError *err) {
   lapack_int info =
-      LAPACKE_dgels(LAPACK_COL_MAJOR, 'N', (lapack_int)f->rows, (lapack_int)f->columns, 3,
-                    f->matrix, (lapack_int)f->rows, f->right, (lapack_int)f->rows);
+      LAPACKE_dgels(LAPACK_COL_MAJOR, 'N', (lapack_int)rows, (lapack_int)columns, (lapack_int)sides,
+                    matrix, (lapack_int)rows, right, (lapack_int)rows);
   double most = 0, least = INFINITY;
-  for (size_t i = 0; i < f->columns; i++) {
-    double r = fabs(f->matrix[i * f->rows + i]);
+  for (size_t i = 0; i < columns; i++) {
+    double r = fabs(matrix[i * rows + i]);
     most = fmax(most, r);
     least = fmin(least, r);
   }
-  if (info != 0 || !(least > RANK * most))
-    return cag_fail(err, CAG_E_DEGENERATE, "fit-singular", "count", -1,
-                    "the data do not determine all control points: take fewer, a lower degree, or "
-                    "data that are spread more evenly");
-  for (size_t i = 0; i < f->columns; i++)
-    f->net[i] = cag_vec3(f->right[i], f->right[f->rows + i], f->right[2 * f->rows + i]);
-  return CAG_OK;
+  return info == 0 && least > RANK * most ? CAG_OK : fail_singular(err);
 }
 
-static CagStatus deviations(const Fit *f, const CagSurface *s, double *rms, double *largest,
+// All lines have the same parameters in both directions: the matrix is a product of two small ones.
+static bool is_product(const Fit *f) {
+  size_t s = f->g->s;
+  for (size_t i = 0; i < f->rows; i++)
+    if (f->parameters[0][i] != f->parameters[0][i / s * s] ||
+        f->parameters[1][i] != f->parameters[1][i % s])
+      return false;
+  return true;
+}
+
+// One direction: `lines` lines of n data each (data[i * lines + line]) to control points, in place
+// of the first rows.
+static CagStatus solve_lines(const Axis *a, const double *parameters, size_t stride, size_t n,
+                             CagVec3 *data, size_t lines, CagError *err) {
+  double *matrix = calloc(n * a->count, sizeof *matrix);
+  double *right = malloc(3 * n * lines * sizeof *right);
+  CagStatus status = matrix && right ? CAG_OK : cag_fail_memory(err);
+  for (size_t i = 0; !status && i < n; i++) {
+    fill_row(a, parameters[i * stride], matrix + i, n);
+    for (size_t l = 0; l < lines; l++) {
+      right[(3 * l) * n + i] = data[i * lines + l].x;
+      right[(3 * l + 1) * n + i] = data[i * lines + l].y;
+      right[(3 * l + 2) * n + i] = data[i * lines + l].z;
+    }
+  }
+  if (!status) status = solve(matrix, n, a->count, right, 3 * lines, err);
+  for (size_t i = 0; !status && i < a->count; i++)
+    for (size_t l = 0; l < lines; l++)
+      data[i * lines + l] =
+          cag_vec3(right[(3 * l) * n + i], right[(3 * l + 1) * n + i], right[(3 * l + 2) * n + i]);
+  free(matrix);
+  free(right);
+  return status;
+}
+
+static CagStatus fit_product(Fit *f, CagError *err) {
+  size_t r = f->g->r, s = f->g->s, nu = f->axis[0].count, nv = f->axis[1].count;
+  CagVec3 *data = malloc(r * s * sizeof *data), *turned = malloc(nu * s * sizeof *turned);
+  CagStatus status = data && turned ? CAG_OK : cag_fail_memory(err);
+  if (!status) {
+    memcpy(data, f->g->points, r * s * sizeof *data);
+    status = solve_lines(&f->axis[0], f->parameters[0], s, r, data, s, err);
+  }
+  for (size_t i = 0; !status && i < nu; i++)
+    for (size_t q = 0; q < s; q++) turned[q * nu + i] = data[i * s + q];
+  if (!status) status = solve_lines(&f->axis[1], f->parameters[1], 1, s, turned, nu, err);
+  for (size_t i = 0; !status && i < nu; i++)
+    for (size_t j = 0; j < nv; j++) f->net[i * nv + j] = turned[j * nu + i];
+  free(data);
+  free(turned);
+  return status;
+}
+
+static CagStatus fit_dense(Fit *f, CagError *err) {
+  size_t nu = f->axis[0].count, nv = f->axis[1].count, columns = nu * nv, rows = f->rows;
+  if (rows > DENSE_MOST / columns)
+    return cag_fail(err, CAG_E_LIMIT, "fit-too-large", "count", -1,
+                    "`count` times the data are more than can be solved at once: %zu unknowns for "
+                    "%zu points; take fewer control points, fit parts, or use the \"mean\" "
+                    "parameters",
+                    columns, rows);
+  double *matrix = malloc(rows * columns * sizeof *matrix);
+  double *right = malloc(3 * rows * sizeof *right), *bu = malloc((nu + nv) * sizeof *bu);
+  CagStatus status = matrix && right && bu ? CAG_OK : cag_fail_memory(err);
+  for (size_t row = 0; !status && row < rows; row++) {
+    double *bv = bu + nu;
+    memset(bu, 0, (nu + nv) * sizeof *bu);
+    fill_row(&f->axis[0], f->parameters[0][row], bu, 1);
+    fill_row(&f->axis[1], f->parameters[1][row], bv, 1);
+    for (size_t c = 0; c < columns; c++) matrix[c * rows + row] = bu[c / nv] * bv[c % nv];
+    right[row] = f->g->points[row].x;
+    right[rows + row] = f->g->points[row].y;
+    right[2 * rows + row] = f->g->points[row].z;
+  }
+  if (!status) status = solve(matrix, rows, columns, right, 3, err);
+  for (size_t i = 0; !status && i < columns; i++)
+    f->net[i] = cag_vec3(right[i], right[rows + i], right[2 * rows + i]);
+  free(matrix);
+  free(right);
+  free(bu);
+  return status;
+}
+
+static CagStatus surface_of(Fit *f, CagSurface **out, CagError *err) {
+  const Axis *u = &f->axis[0], *v = &f->axis[1];
+  CagStatus status = is_product(f) ? fit_product(f, err) : fit_dense(f, err);
+  if (status) return status;
+  return cag_surface_nurbs_closed(f->net, NULL, u->count, v->count, u->degree, v->degree,
+                                  u->closed ? NULL : u->knots, v->closed ? NULL : v->knots,
+                                  u->closed, v->closed, out, err);
+}
+
+static CagStatus deviations(const Fit *f, const CagSurface *s, CagGridReport *report,
                             CagError *err) {
   double sum = 0, most = 0;
   for (size_t i = 0; i < f->rows; i++) {
     CagVec3 p;
-    CagStatus status = cag_surface_point(s, f->u[i], f->v[i], &p, err);
+    CagStatus status = cag_surface_point(s, f->parameters[0][i], f->parameters[1][i], &p, err);
     if (status) return status;
     double d = cag_norm(cag_sub(p, f->g->points[i]));
     sum += d * d;
     most = fmax(most, d);
   }
-  if (rms) *rms = sqrt(sum / (double)f->rows);
-  if (largest) *largest = most;
+  report->rms = sqrt(sum / (double)f->rows);
+  report->largest = most;
   return CAG_OK;
 }
 
-CagStatus cag_surface_fit(const CagGridData *g, size_t nu, size_t nv, CagSurface **out, double *rms,
-                          double *largest, CagError *err) {
+// --- Parameter correction ---
+
+// t moved by a step within its axis; a closed one goes round.
+static double moved(const Axis *a, double t, double step) {
+  double lo = axis_start(a), hi = axis_end(a);
+  if (a->closed) {
+    t = fmod(t + step - lo, hi - lo);
+    return lo + (t < 0 ? t + hi - lo : t);
+  }
+  return fmin(fmax(t + step, lo), hi);
+}
+
+// One step of Gauss and Newton towards the nearest point for all data. Data on an open border stay
+// there, so that the surface keeps its edges.
+static CagStatus correct(Fit *f, const CagSurface *s, CagError *err) {
+  const Axis *au = &f->axis[0], *av = &f->axis[1];
+  size_t r = f->g->r, columns = f->g->s;
+  for (size_t i = 0; i < f->rows; i++) {
+    CagVec3 d[4];
+    double *u = &f->parameters[0][i], *v = &f->parameters[1][i];
+    CagStatus status = cag_surface_eval(s, *u, *v, 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err);
+    if (status) return status;
+    CagVec3 gap = cag_sub(f->g->points[i], d[0]), du = d[cag_partial(1, 1, 0)],
+            dv = d[cag_partial(1, 0, 1)];
+    size_t row = i / columns, column = i % columns;
+    bool fixed_u = !au->closed && (row == 0 || row + 1 == r);
+    bool fixed_v = !av->closed && (column == 0 || column + 1 == columns);
+    double e = cag_dot(du, du), m = cag_dot(du, dv), g = cag_dot(dv, dv);
+    double p = cag_dot(gap, du), q = cag_dot(gap, dv), det = e * g - m * m;
+    if (fixed_u && fixed_v) continue;
+    if (fixed_u) *v = moved(av, *v, g > 0 ? q / g : 0);
+    else if (fixed_v) *u = moved(au, *u, e > 0 ? p / e : 0);
+    else if (det > RANK * e * g) {
+      *u = moved(au, *u, (p * g - q * m) / det);
+      *v = moved(av, *v, (q * e - p * m) / det);
+    }
+  }
+  return CAG_OK;
+}
+
+// Rounds end when the residual falls by less than this part of it.
+#define LEAST_GAIN 1e-6
+
+static CagStatus improve(Fit *f, CagSurface **s, CagGridReport *report, CagError *err) {
+  double *kept[2];
+  CagStatus status = CAG_OK;
+  for (int k = 0; k < 2; k++) kept[k] = malloc(f->rows * sizeof(double));
+  if (!kept[0] || !kept[1]) status = cag_fail_memory(err);
+  for (int round = 0; !status && round < f->g->corrections; round++) {
+    CagGridReport next = {0};
+    CagSurface *better;
+    CagError ignored;
+    for (int k = 0; k < 2; k++) memcpy(kept[k], f->parameters[k], f->rows * sizeof(double));
+    status = correct(f, *s, err);
+    if (status) break;
+    bool good = surface_of(f, &better, &ignored) == CAG_OK;
+    if (good) status = deviations(f, better, &next, err);
+    if (!good || status || !(next.rms < report->rms * (1 - LEAST_GAIN))) {
+      if (good) cag_surface_release(better);
+      for (int k = 0; k < 2; k++) memcpy(f->parameters[k], kept[k], f->rows * sizeof(double));
+      break;
+    }
+    cag_surface_release(*s);
+    *s = better;
+    report->rms = next.rms;
+    report->largest = next.largest;
+    report->rounds = round + 1;
+  }
+  free(kept[0]);
+  free(kept[1]);
+  return status;
+}
+
+// --- All of it ---
+
+static CagStatus take_parameters(Fit *f, CagError *err) {
+  const CagGridData *g = f->g;
+  double end[2];
+  for (int k = 0; k < 2; k++) end[k] = axis_end(&f->axis[k]) - axis_start(&f->axis[k]);
+  cag_grid_parameters(g, end, f->parameters[0], f->parameters[1]);
+  for (int k = 0; k < 2; k++) {
+    const Axis *a = &f->axis[k];
+    double lo = axis_start(a), hi = axis_end(a), same = RANK * (hi - lo);
+    for (size_t i = 0; i < f->rows; i++) {
+      double *t = &f->parameters[k][i];
+      char text[32], from[32], to[32];
+      *t = g->parameters[k] ? g->parameters[k][i] : moved(a, lo + *t, phase(a));
+      if (!(*t >= lo - same && *t <= hi + same))
+        return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "parameters", (long)i,
+                        "`parameters` by %c must lie in %s..%s, that of point [%zu, %zu] is %s",
+                        "uv"[k], cag_number_text(lo, from), cag_number_text(hi, to), i / g->s,
+                        i % g->s, cag_number_text(*t, text));
+      *t = fmin(fmax(*t, lo), hi);
+    }
+  }
+  return CAG_OK;
+}
+
+static void fit_free(Fit *f) {
+  for (int k = 0; k < 2; k++) {
+    free(f->axis[k].knots);
+    free(f->parameters[k]);
+  }
+  free(f->net);
+}
+
+CagStatus cag_surface_fit(const CagGridData *g, size_t nu, size_t nv, CagSurface **out,
+                          CagGridReport *report, CagError *err) {
   CagStatus status = check(g, nu, nv, err);
   if (status) return status;
-  Fit f = {.g = g, .nu = nu, .nv = nv, .rows = g->r * g->s, .columns = nu * nv};
-  if (f.rows > DENSE_MOST / f.columns)
-    return cag_fail(err, CAG_E_LIMIT, "fit-too-large", "count", -1,
-                    "`count` times the data are more than can be solved at once: %zu unknowns for "
-                    "%zu points; take fewer control points or fit parts",
-                    f.columns, f.rows);
-  f.ku = malloc((nu + (size_t)g->degree_u + 1) * sizeof *f.ku);
-  f.kv = malloc((nv + (size_t)g->degree_v + 1) * sizeof *f.kv);
-  f.u = malloc(f.rows * sizeof *f.u);
-  f.v = malloc(f.rows * sizeof *f.v);
-  f.matrix = malloc(f.rows * f.columns * sizeof *f.matrix);
-  f.right = malloc(3 * f.rows * sizeof *f.right);
-  f.net = malloc(f.columns * sizeof *f.net);
-  if (!f.ku || !f.kv || !f.u || !f.v || !f.matrix || !f.right || !f.net)
-    status = cag_fail_memory(err);
-  if (!status) {
-    cag_knots_open(nu, g->degree_u, f.ku);
-    cag_knots_open(nv, g->degree_v, f.kv);
-    parameters(&f);
-    fill(&f);
-    status = solve(&f, err);
+  Fit f = {.g = g, .rows = g->r * g->s};
+  CagGridReport own = {0};
+  status = make_axis(g, 0, nu, &f.axis[0], err);
+  if (!status) status = make_axis(g, 1, nv, &f.axis[1], err);
+  for (int k = 0; k < 2; k++) f.parameters[k] = malloc(f.rows * sizeof(double));
+  f.net = malloc(nu * nv * sizeof *f.net);
+  if (!status && (!f.parameters[0] || !f.parameters[1] || !f.net)) status = cag_fail_memory(err);
+  if (!status) status = take_parameters(&f, err);
+  CagSurface *s = NULL;
+  if (!status) status = surface_of(&f, &s, err);
+  if (!status) status = deviations(&f, s, &own, err);
+  if (!status) status = improve(&f, &s, &own, err);
+  if (!status && report) {
+    own.u = f.parameters[0];
+    own.v = f.parameters[1];
+    f.parameters[0] = f.parameters[1] = NULL;
+    *report = own;
   }
-  if (!status)
-    status = cag_surface_nurbs(f.net, NULL, nu, nv, g->degree_u, g->degree_v, f.ku, f.kv, out, err);
-  if (!status && (rms || largest)) {
-    status = deviations(&f, *out, rms, largest, err);
-    if (status) cag_surface_release(*out);
-  }
-  free(f.ku);
-  free(f.kv);
-  free(f.u);
-  free(f.v);
-  free(f.matrix);
-  free(f.right);
-  free(f.net);
+  if (!status) *out = s;
+  else if (s) cag_surface_release(s);
+  fit_free(&f);
   return status;
+}
+
+// Knots of an open direction, at which its points can be interpolated: means of the parameters,
+// which are those of the first line where they were given.
+static CagStatus interpolation_knots(const CagGridData *g, int k, double **out, CagError *err) {
+  size_t n = k ? g->s : g->r;
+  int degree = k ? g->degree_v : g->degree_u;
+  double *at = malloc(n * sizeof *at);
+  *out = malloc((n + (size_t)degree + 1) * sizeof **out);
+  CagStatus status = at && *out ? CAG_OK : cag_fail_memory(err);
+  if (!status && !g->parameters[k]) status = mean_parameters(g, k, 1, at, err);
+  for (size_t i = 0; !status && g->parameters[k] && i < n; i++) {
+    at[i] = g->parameters[k][k ? i : i * g->s];
+    if (i > 0 && !(at[i] > at[i - 1]))
+      status = cag_fail(err, CAG_E_ARGUMENT, "knots-not-monotone", "parameters", (long)i,
+                        "`parameters` by %c must grow from point to point: number %zu does not",
+                        "uv"[k], i);
+  }
+  if (!status) cag_net_averaged_knots(at, n, degree, *out);
+  free(at);
+  return status;
+}
+
+CagStatus cag_surface_interpolate_report(const CagGridData *g, CagSurface **out,
+                                         CagGridReport *report, CagError *err) {
+  CagGridData all = *g;
+  double *knots[2] = {NULL, NULL};
+  CagStatus status = check(g, g->r, g->s, err);
+  if (status) return status;
+  if (all.spacing == CAG_GRID_CHORD) all.spacing = CAG_GRID_MEAN;
+  all.corrections = 0;
+  for (int k = 0; !status && k < 2; k++)
+    if (!g->closed[k] && !g->knots[k]) {
+      status = interpolation_knots(g, k, &knots[k], err);
+      all.knots[k] = knots[k];
+    }
+  if (!status) status = cag_surface_fit(&all, g->r, g->s, out, report, err);
+  free(knots[0]);
+  free(knots[1]);
+  return status;
+}
+
+CagStatus cag_surface_interpolate(const CagGridData *g, CagSurface **out, CagError *err) {
+  CagStatus status = check(g, g->r, g->s, err);
+  if (status) return status;
+  bool plain = true;
+  for (int k = 0; k < 2; k++) plain = plain && !g->closed[k] && !g->knots[k] && !g->parameters[k];
+  return plain ? interpolate_banded(g, out, err)
+               : cag_surface_interpolate_report(g, out, NULL, err);
 }

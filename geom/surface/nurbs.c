@@ -599,7 +599,7 @@ static CagStatus check_weights(const double *weights, size_t nu, size_t nv, CagE
   return CAG_OK;
 }
 
-// Fills a direction: the given knots, or uniform ones of a closed direction (malloc'd, in *own).
+// Fills a direction: the given knots, or whole ones of a closed direction (malloc'd, in *own).
 static CagStatus make_direction(size_t count, int degree, const double *knots, bool closed,
                                 const char *name, Direction *out, double **own, CagError *err) {
   *own = NULL;
@@ -607,7 +607,7 @@ static CagStatus make_direction(size_t count, int degree, const double *knots, b
   CagStatus status = check_degree(count, degree, name, err);
   if (status) return status;
   *out = (Direction){degree, stored, count, closed, (double *)knots};
-  if (!closed) return check_knots(knots, count, degree, "knots", err);
+  if (!closed || knots) return check_knots(knots, stored, degree, "knots", err);
   size_t n = stored + (size_t)degree + 1;
   *own = malloc(n * sizeof **own);
   if (!*own) return cag_fail_memory(err);

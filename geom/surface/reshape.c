@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/basis/bernstein.h"
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
 
@@ -17,15 +18,54 @@
 
 typedef CagStatus (*NetChange)(CagNet *net, const void *how, CagError *err);
 
+static bool periodic_in(const CagSurface *s, int direction) {
+  CagSurfaceNurbsView v;
+  return cag_surface_nurbs_view(s, &v) && (direction == 0 ? v.periodic_u : v.periodic_v);
+}
+
+// Takes the last lines of a direction, which repeat the first ones, for what they are. Homogeneous
+// points of n x m distinct lines, by their row length; knots as they are.
+static CagStatus closed_again(const double *h, size_t row, size_t n, size_t m,
+                              const CagSurfaceNurbsView *v, bool closed_u, bool closed_v,
+                              CagSurface **out, CagError *err) {
+  CagVec3 *net = malloc(n * m * sizeof *net);
+  double *weights = malloc(n * m * sizeof *weights);
+  CagStatus status = net && weights ? CAG_OK : cag_fail_memory(err);
+  for (size_t k = 0; !status && k < n * m; k++) {
+    const double *at = h + 4 * (k / m * row + k % m);
+    weights[k] = at[3];
+    net[k] = at[3] > 0 ? cag_project(at) : cag_vec3(0, 0, 0);
+  }
+  if (!status)
+    status =
+        cag_surface_nurbs_closed(net, v->rational ? weights : NULL, n, m, v->degree_u, v->degree_v,
+                                 v->knots_u, v->knots_v, closed_u, closed_v, out, err);
+  free(net);
+  free(weights);
+  return status;
+}
+
+// A closed direction stays so when the other one is changed.
 static CagStatus changed(const CagSurface *s, int direction, NetChange change, const void *how,
                          CagSurface **out, CagError *err) {
   CagNet net, across;
+  CagSurface *open = NULL;
   CagStatus status = cag_net_of_surface(s, direction, &net, &across, err);
   if (status) return status;
   status = change(&net, how, err);
-  if (!status) status = cag_net_to_surface(&net, direction, &across, out, err);
+  if (!status) status = cag_net_to_surface(&net, direction, &across, &open, err);
   cag_net_free(&net);
   cag_net_free(&across);
+  if (status || !periodic_in(s, 1 - direction)) {
+    if (!status) *out = open;
+    return status;
+  }
+  CagSurfaceNurbsView v;
+  cag_surface_nurbs_view(open, &v);
+  bool u = direction == 1;
+  status = closed_again(v.homogeneous, v.nv, u ? v.nu - (size_t)v.degree_u : v.nu,
+                        u ? v.nv : v.nv - (size_t)v.degree_v, &v, u, !u, out, err);
+  cag_surface_release(open);
   return status;
 }
 
@@ -95,8 +135,126 @@ static CagStatus both(const CagSurface *s, NetChange change, const void *u, cons
   return status;
 }
 
+// --- Refinement ---
+
+// Whether knot i of the net is at the same place as t.
+static bool at_knot(const CagNet *net, size_t i, double t) {
+  const double same = 1e-12; // of the usable range: what the same number is after some arithmetic
+  return fabs(net->knots[i] - t) <= same * (cag_net_end(net) - cag_net_start(net));
+}
+
+static CagStatus fail_superset(const CagNet *net, size_t i, CagError *err) {
+  char text[32];
+  return cag_fail(err, CAG_E_ARGUMENT, "knots-not-superset", "knots", (long)i,
+                  "the new knots must hold the old ones, with the same ends: %s is missing",
+                  cag_number_text(net->knots[i], text));
+}
+
+// Inserts what the wanted vector has more than the net, inside of the usable range. Knots are
+// walked together: each old one must turn up.
+static CagStatus to_knots(CagNet *net, const void *how, CagError *err) {
+  const CagRefinement *r = how;
+  size_t old = net->count + (size_t)net->degree + 1, i = 0, more = 0;
+  double start = cag_net_start(net), end = cag_net_end(net),
+         *add = malloc((r->count + 1) * sizeof *add);
+  if (!add) return cag_fail_memory(err);
+  CagStatus status = CAG_OK;
+  for (size_t k = 0; !status && k < r->count; k++) {
+    double t = r->knots[k];
+    if (!isfinite(t) || (k > 0 && t < r->knots[k - 1]))
+      status = cag_fail(err, CAG_E_ARGUMENT, "knots-not-monotone", "knots", (long)k,
+                        "the new knots must be finite and not decrease: entry %zu does", k);
+    else if (i < old && at_knot(net, i, t)) i++;
+    else if (i < old && net->knots[i] < t) status = fail_superset(net, i, err);
+    else if (t > start && t < end) add[more++] = t;
+    else {
+      char text[32], from[32], to[32];
+      status = cag_fail(err, CAG_E_ARGUMENT, "knots-not-superset", "knots", (long)k,
+                        "the new knots must keep the ends of %s..%s: %s is one too many",
+                        cag_number_text(start, from), cag_number_text(end, to),
+                        cag_number_text(t, text));
+    }
+  }
+  if (!status && i < old) status = fail_superset(net, i, err);
+  for (size_t k = 0; !status && k < more; k++) {
+    if (cag_net_multiplicity(net, add[k]) >= net->degree) {
+      char text[32];
+      status = cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", "knots", -1,
+                        "no inner knot may occur more often than the degree %d: %s does",
+                        net->degree, cag_number_text(add[k], text));
+    } else status = cag_net_insert(net, add[k], err);
+  }
+  free(add);
+  return status;
+}
+
+// A closed direction by its midpoints: N(t) = 2^-p sum over k of C(p + 1, k) N(2t - k) of the
+// uniform basis function of degree p, so point i goes into the new points 2i - p + k. Unit knots
+// stay unit knots: the domain is twice as long.
+static CagStatus halved_closed(const CagSurface *s, int direction, CagSurface **out,
+                               CagError *err) {
+  CagSurfaceNurbsView v;
+  cag_surface_nurbs_view(s, &v);
+  size_t n = v.distinct_u, m = v.distinct_v, old = direction == 0 ? n : m;
+  size_t p = (size_t)(direction == 0 ? v.degree_u : v.degree_v);
+  size_t nu = direction == 0 ? 2 * n : n, nv = direction == 1 ? 2 * m : m, total = nu * nv;
+  double *h = calloc(4 * total, sizeof *h);
+  double *knots = malloc((2 * old + 2 * p + 1) * sizeof *knots);
+  CagStatus status = h && knots ? CAG_OK : cag_fail_memory(err);
+  for (size_t i = 0; !status && i < n; i++)
+    for (size_t j = 0; j < m; j++) {
+      const double *from = v.homogeneous + 4 * (i * v.nv + j);
+      size_t first = 2 * (direction == 0 ? i : j) + 2 * old * p - p;
+      for (size_t k = 0; k <= p + 1; k++) {
+        size_t to = (first + k) % (2 * old);
+        double f = ldexp(cag_binomial((int)p + 1, (int)k), -(int)p);
+        double *at = h + 4 * (direction == 0 ? to * nv + j : i * nv + to);
+        for (size_t c = 0; c < 4; c++) at[c] += f * from[c];
+      }
+    }
+  if (!status) {
+    const double *was = direction == 0 ? v.knots_u : v.knots_v;
+    for (size_t i = 0; i < 2 * old + 2 * p + 1; i++) {
+      double steps = ((double)i - (double)p) / 2;
+      knots[i] = was[p] + steps * (was[p + 1] - was[p]);
+    }
+    if (direction == 0) v.knots_u = knots;
+    else v.knots_v = knots;
+    status = closed_again(h, nv, nu, nv, &v, v.periodic_u, v.periodic_v, out, err);
+  }
+  free(h);
+  free(knots);
+  return status;
+}
+
+static CagStatus refine_one(const CagSurface *s, int direction, const CagRefinement *by,
+                            CagSurface **out, CagError *err) {
+  if (by->how == CAG_REFINE_NOT) {
+    *out = cag_surface_retain(s);
+    return CAG_OK;
+  }
+  if (by->how == CAG_REFINE_KNOTS) return changed(s, direction, to_knots, by, out, err);
+  return periodic_in(s, direction) ? halved_closed(s, direction, out, err)
+                                   : changed(s, direction, halve, NULL, out, err);
+}
+
 CagStatus cag_surface_refine(const CagSurface *s, bool u, bool v, CagSurface **out, CagError *err) {
-  return both(s, halve, u ? &u : NULL, v ? &v : NULL, out, err);
+  CagRefinement by[2] = {{u ? CAG_REFINE_MIDPOINTS : CAG_REFINE_NOT, NULL, 0},
+                         {v ? CAG_REFINE_MIDPOINTS : CAG_REFINE_NOT, NULL, 0}};
+  return cag_surface_refine_by(s, by, out, err);
+}
+
+CagStatus cag_surface_refine_by(const CagSurface *s, const CagRefinement by[2], CagSurface **out,
+                                CagError *err) {
+  CagSurface *exact, *first;
+  CagStatus status = cag_surface_to_nurbs(s, &exact, err);
+  if (status) return status;
+  status = refine_one(exact, 0, &by[0], &first, err);
+  cag_surface_release(exact);
+  if (status) return status;
+  status = refine_one(first, 1, &by[1], out, err);
+  cag_surface_release(first);
+  return status;
 }
 
 CagStatus cag_surface_elevate(const CagSurface *s, int u, int v, CagSurface **out, CagError *err) {
@@ -230,7 +388,8 @@ static double across_curvature(CagVec3 along, CagVec3 across, const CagVec3 seco
   return form / cag_dot(w, w);
 }
 
-static CagStatus find_seam(const CagSurface *a, const CagSurface *b, CagSeam *out, CagError *err) {
+static CagStatus find_seam(const CagSurface *a, const CagSurface *b, const int sides[2],
+                           CagSeam *out, CagError *err) {
   out->gap = INFINITY;
   // The usual order first: the end of the first on the start of the second.
   static const int ORDER[] = {1, 3, 0, 2};
@@ -238,6 +397,7 @@ static CagStatus find_seam(const CagSurface *a, const CagSurface *b, CagSeam *ou
     for (int y = 3; y >= 0; y--)
       for (int r = 0; r < 2; r++) {
         double gap;
+        if (sides && (sides[0] != ORDER[x] || sides[1] != ORDER[y])) continue;
         CagStatus status = edge_gap(a, ORDER[x], b, ORDER[y], r == 1, &gap, err);
         if (status) return status;
         if (gap >= out->gap * (1 - 1e-6)) continue;
@@ -248,8 +408,13 @@ static CagStatus find_seam(const CagSurface *a, const CagSurface *b, CagSeam *ou
 
 CagStatus cag_surface_seam(const CagSurface *a, const CagSurface *b, double tolerance, CagSeam *out,
                            CagError *err) {
+  return cag_surface_seam_on(a, b, NULL, tolerance, out, err);
+}
+
+CagStatus cag_surface_seam_on(const CagSurface *a, const CagSurface *b, const int sides[2],
+                              double tolerance, CagSeam *out, CagError *err) {
   CagBounds box, other;
-  CagStatus status = find_seam(a, b, out, err);
+  CagStatus status = find_seam(a, b, sides, out, err);
   if (!status) status = cag_surface_bounds(a, &box, err);
   if (!status) status = cag_surface_bounds(b, &other, err);
   if (status) return status;

@@ -12,6 +12,16 @@ CagStatus cag_surface_insert_knot(const CagSurface *s, int direction, double t, 
                                   CagSurface **out, CagError *err);
 // The middle of every knot interval, in the directions asked for.
 CagStatus cag_surface_refine(const CagSurface *s, bool u, bool v, CagSurface **out, CagError *err);
+// The same in each direction as said: not at all, in the middles, or to a whole knot vector that
+// holds the old one, with the same ends. Fails with "knots-not-superset", "knots-not-monotone",
+// "knot-multiplicity".
+typedef struct CagRefinement {
+  enum { CAG_REFINE_NOT, CAG_REFINE_MIDPOINTS, CAG_REFINE_KNOTS } how;
+  const double *knots;
+  size_t count;
+} CagRefinement;
+CagStatus cag_surface_refine_by(const CagSurface *s, const CagRefinement by[2], CagSurface **out,
+                                CagError *err);
 CagStatus cag_surface_elevate(const CagSurface *s, int u, int v, CagSurface **out, CagError *err);
 // Its Bezier pieces over 0..1, by rows of u: *nu x *nv of them, the array malloc'd.
 CagStatus cag_surface_to_bezier(const CagSurface *s, CagSurface ***out, size_t *nu, size_t *nv,
@@ -50,5 +60,8 @@ typedef struct CagSeam {
 } CagSeam;
 CagStatus cag_surface_seam(const CagSurface *a, const CagSurface *b, double tolerance, CagSeam *out,
                            CagError *err);
+// The same for one side of each; NULL: the nearest two.
+CagStatus cag_surface_seam_on(const CagSurface *a, const CagSurface *b, const int sides[2],
+                              double tolerance, CagSeam *out, CagError *err);
 
 #endif

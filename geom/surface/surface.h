@@ -60,7 +60,7 @@ CagStatus cag_surface_nurbs(const CagVec3 *net, const double *weights, size_t nu
                             int degree_u, int degree_v, const double *knots_u,
                             const double *knots_v, CagSurface **out, CagError *err);
 // With a direction closed: distinct points are given, uniform periodic knots, domain 0..count in
-// it; knots of that direction are NULL.
+// it; knots of that direction are NULL, or all count + 2 degree + 1 of them, evenly spaced.
 CagStatus cag_surface_nurbs_closed(const CagVec3 *net, const double *weights, size_t nu, size_t nv,
                                    int degree_u, int degree_v, const double *knots_u,
                                    const double *knots_v, bool closed_u, bool closed_v,

@@ -24,8 +24,11 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "of what is turned. Outside of the domain is an error (parameter-range).",
      "print at(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0.5, 0.5) // expect: [2, 1, 0]", SIDES,
      asked},
-    {"partial(S, u, v, du = 1, dv = 0)", cag_surfaces_partial, "list",
-     "The partial derivative, du times by u and dv times by v (by angles: per radian).",
+    {"partial(S, u, v, du = 1, dv = 0, side = \"right\")", cag_surfaces_partial, "list",
+     "The partial derivative, du times by u and dv times by v (by angles: per radian). Where it "
+     "jumps, at a knot, it is the limit from the right (at the end of the domain from the left), "
+     "or "
+     "from the `side`, one for both directions or two for u and v.",
      "print partial(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0, 0) // expect: [4, 0, 0]", SIDES,
      asked},
     {"normal(S, u, v)", cag_surfaces_normal, "list",
@@ -153,8 +156,8 @@ const CagBuiltin cag_builtins_surfaces[] = {
      SURFACES, changed},
     {"refine(S, u = true, v = true)", cag_surfaces_refine, "surface",
      "The same surface with a knot more in the middle of every knot interval, in both directions "
-     "or "
-     "in one.",
+     "or in one (closed directions stay closed); or with a whole new list of knots for u, for v, "
+     "which holds the old ones: else an error (knots-not-superset).",
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
      "print len(points(refine(s))), len(points(refine(s))[0]) // expect: 3 4",
      SURFACES, changed},
@@ -181,12 +184,14 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "parts = split(s, u: 0.5)\n"
      "print near(area(join_surfaces(parts[0], parts[1])), area(s), relative: 1e-8) // expect: true",
      SURFACES, changed},
-    {"continuity(A, B, tolerance = 1e-9)", cag_surfaces_continuity, "record",
-     "How two surfaces meet along the edges nearest to each other: class (\"none\", \"C0\", "
+    {"continuity(A, B, edges = none, tolerance = 1e-9)", cag_surfaces_continuity, "record",
+     "How two surfaces meet along the edges nearest to each other, or those of `edges` (such as "
+     "[\"u1\", \"u0\"]): class (\"none\", \"C0\", "
      "\"G1\", "
      "\"C1\", \"G2\"), the largest gap (mm), angle between the tangent planes, jump of the "
      "derivative "
-     "across and jump of the curvature across; edges, the side of each.",
+     "across and jump of the curvature across; edges, the side of each, and whether they run "
+     "`reversed`; C0, G1, C1, G2, each on its own.",
      "parts = split(sphere_surface(1), u: 60deg)\n"
      "print continuity(parts[0], parts[1]).class // expect: G2",
      SURFACES, asked},
@@ -384,30 +389,51 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print near(area(s), 1) // expect: true",
      LISTS, nets},
 
-    {"interpolate_surface(grid, degree = [3, 3], parameters = \"chord\")",
+    {"interpolate_surface(grid, degree = [3, 3], parameters = \"chord\", knots = none, closed = "
+     "[false, false])",
      cag_surfaces_interpolate_surface, "surface",
      "The B-spline surface through a grid of points, given by rows of u, over 0..1. Parameters by "
-     "chord length (its mean over the rows, and over the columns) or \"uniform\"; knots are means "
-     "of "
-     "them.",
+     "chord length (its mean over the rows, and over the columns), \"uniform\", or a record with "
+     "u and v, each a list of one for each line or a table; knots are means of them, or two lists. "
+     "A closed direction goes on from its last line to the first, over 0..the number of lines; "
+     "points that do not determine the surface are an error (fit-singular).",
      "grid = [for i in 0..4: [for j in 0..5: [i, j, i * j / 10]]]\n"
      "s = interpolate_surface(grid)\n"
-     "print near(s(0, 0), [0, 0, 0]), near(s(1, 1), [4, 5, 2]) // expect: true true",
+     "print near(s(0, 0), [0, 0, 0]), near(s(1, 1), [4, 5, 2]) // expect: true true\n"
+     "ring = [for z in 0..3: [for k in 0..<5: polar(2, k * 72deg) |> (p => [p.x, p.y, z])]]\n"
+     "t = interpolate_surface(ring, closed: [false, true], parameters: \"uniform\")\n"
+     "print near(t(0, 5), [2, 0, 0]), closed_in(t).v // expect: true true",
      LISTS, nets},
-    {"fit_surface(grid, degree, count, parameters = \"chord\")", cag_surfaces_fit_surface,
-     "surface",
-     "The B-spline surface with `count` control points (two numbers, for u and v) on open uniform "
-     "knots that comes nearest to a grid of points in the sense of least squares. Parameters by "
-     "chord length along each row and column, by their \"mean\", or \"uniform\".",
+    {"fit_surface(grid, degree, count, parameters = \"chord\", knots = none, closed = [false, "
+     "false], corrections = 0)",
+     cag_surfaces_fit_surface, "surface",
+     "The B-spline surface with `count` control points (two numbers, for u and v) that comes "
+     "nearest to a grid of points in the sense of least squares, on open uniform knots or on those "
+     "given. Parameters by chord length along each row and column, by their \"mean\", "
+     "\"uniform\", or a record as of interpolate_surface. In so many rounds of `corrections` at "
+     "most they move to where the surface is nearest, and it is fitted again, as long as that "
+     "helps.",
      "grid = [for i in 0..4: [for j in 0..5: [i, j, i * j / 10]]]\n"
      "print near(area(fit_surface(grid, 2, [3, 4])), area(interpolate_surface(grid)), relative: "
      "1e-6) // expect: true",
      LISTS, nets},
-    {"fit_surface_report(grid, degree, count, parameters = \"chord\")",
+    {"fit_surface_report(grid, degree, count, parameters = \"chord\", knots = none, closed = "
+     "[false, false], corrections = 0)",
      cag_surfaces_fit_surface_report, "record",
-     "surface, as fit_surface gives it; rms and largest, its distances from the data (mm).",
+     "surface, as fit_surface gives it; the parameters u and v of each point; the residuals, "
+     "points "
+     "of the surface less the data; rms and largest of their lengths (mm); rounds of correction "
+     "that helped.",
      "grid = [for i in 0..4: [for j in 0..5: [i, j, i * j / 10]]]\n"
      "print fit_surface_report(grid, 2, [3, 4], \"uniform\").largest < 1e-12 // expect: true",
+     LISTS, nets},
+    {"grid_parameters(grid, parameters = \"chord\", ends = [1, 1], closed = [false, false])",
+     cag_surfaces_grid_parameters, "record",
+     "The parameters u and v of each point of a grid, from 0 to the ends: by chord length along "
+     "each row and column, by their \"mean\", or \"uniform\". In a closed direction the way "
+     "back to the first point counts as well.",
+     "p = grid_parameters([[[0, 0], [1, 0], [4, 0]], [[0, 2], [3, 2], [4, 2]]])\n"
+     "print p.u, p.v // expect: [[0, 0, 0], [1, 1, 1]] [[0, 0.25, 1], [0, 0.75, 1]]",
      LISTS, nets},
 
     // --- Quadrics ---

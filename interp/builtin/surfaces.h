@@ -25,7 +25,7 @@
   X(trim) X(split) X(insert_knot) X(refine) X(elevate) X(to_bezier) X(transpose_uv) \
   X(join_surfaces) X(continuity) X(offset) X(thicken) \
   /* surfaces_fit.c */ \
-  X(interpolate_surface) X(fit_surface) X(fit_surface_report) X(is_developable) X(unroll) \
+  X(interpolate_surface) X(fit_surface) X(fit_surface_report) X(grid_parameters) X(is_developable) X(unroll) \
   /* surfaces_map.c */ \
   X(map_onto) X(remap) \
   /* surfaces_patch.c */ \
@@ -45,12 +45,18 @@ CAG_SURFACE_FUNCTIONS(X)
 
 // A surface, or the side of a solid that a section sweeps; borrowed.
 bool cag_arg_side(CagCall *call, int argument, CagSurface **out);
+// "right" or "left", or two of them for u and v: the side from which limits are meant.
+bool cag_arg_surface_sides(CagCall *call, int argument, CagSide out[2]);
+// A side of each of two surfaces (0: u0, 1: u1, 2: v0, 3: v1), where they are given.
+bool cag_arg_edges(CagCall *call, int argument, int out[2], bool *given);
 // Reads the net of a triangular Bezier surface, rows of 1, 2, 3 ... points; *net is malloc'd.
 #define CAG_TRIANGLE_ROWS 1000
 bool cag_arg_triangle(CagCall *call, int argument, CagVec3 **net, int *degree);
 // The equation of the first argument: a quadric surface, the sheets of one, a sphere, or what
 // `quadric` takes.
 bool cag_arg_quadric(CagCall *call, CagQuadric *q);
+// "net-not-rectangular": row 0 of the first argument has `wanted` points, this row another number.
+bool cag_fail_rows(CagCall *call, size_t wanted, size_t row, size_t found);
 // Reads u and v of a surface from the parameters `at` and the next.
 bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v);
 

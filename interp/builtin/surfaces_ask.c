@@ -43,7 +43,9 @@ bool cag_surfaces_partial(CagCall *call, CagValue *result) {
       !cag_arg_integer_or(call, 4, 0, 0, CAG_MAX_PARTIAL - du, &dv))
     return false;
   int n = (int)(du + dv);
-  CagStatus status = cag_surface_eval(s, u, v, n, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, out, &err);
+  CagSide side[2];
+  if (!cag_arg_surface_sides(call, 5, side)) return false;
+  CagStatus status = cag_surface_eval(s, u, v, n, side[0], side[1], out, &err);
   if (!cag_geometry_ok(call, status, &err)) return false;
   *result = cag_point(call->vm, out[cag_partial(n, (int)du, (int)dv)], 3);
   return true;

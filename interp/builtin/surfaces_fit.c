@@ -1,6 +1,7 @@
 // Surfaces from grids of points, and what can be unrolled.
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "geom/surface/loft.h"
 #include "geom/surface/reshape.h"
@@ -57,10 +58,7 @@ static bool read_grid(CagCall *call, CagVec3 **points, size_t *r, size_t *s) {
       *points = malloc((*r * *s + 1) * sizeof **points);
       if (!*points) return fail_memory(call);
     }
-    if (line->length != *s)
-      return cag_fail_call(call, 0, CAG_ERR_length,
-                           "expects rows of one length: row 0 has %zu points, row %zu has %zu", *s,
-                           i, line->length);
+    if (line->length != *s) return cag_fail_rows(call, *s, i, line->length);
     for (size_t j = 0; j < *s; j++) {
       const double *x;
       size_t n;
@@ -76,50 +74,187 @@ static bool read_grid(CagCall *call, CagVec3 **points, size_t *r, size_t *s) {
   return cag_fail_value(call, 0, "rows of points");
 }
 
-static bool read_data(CagCall *call, int parameters, CagVec3 **points, CagGridData *g) {
-  static const char *const spacings[] = {"chord", "mean", "uniform", NULL};
-  long degree[2];
-  int spacing;
-  if (!read_grid(call, points, &g->r, &g->s) || !read_pair(call, 1, 3, 1, 25, degree) ||
-      !cag_arg_choice(call, parameters, spacings, &spacing))
-    return false;
-  g->points = *points;
-  g->degree_u = (int)degree[0];
-  g->degree_v = (int)degree[1];
-  g->spacing = (CagGridSpacing)spacing;
+// The value for a direction of an argument that is one for both, or a list of two.
+static CagValue one_of_two(CagCall *call, int argument, int direction) {
+  CagValue v = call->values[argument];
+  if (v.type != CAG_LIST || CAG_AS_LIST(v)->length != 2) return v;
+  return cag_list_get(call->vm, CAG_AS_LIST(v), (size_t)direction);
+}
+
+static bool read_closed(CagCall *call, int argument, bool closed[2]) {
+  for (int k = 0; k < 2; k++) {
+    CagValue v = one_of_two(call, argument, k);
+    closed[k] = v.type == CAG_BOOL && v.as.boolean;
+    if (v.type != CAG_BOOL && v.type != CAG_UNSET)
+      return cag_fail_type(call, argument, "a bool, or two for u and v");
+  }
   return true;
 }
 
-bool cag_surfaces_interpolate_surface(CagCall *call, CagValue *result) {
-  CagVec3 *points;
-  CagGridData g = {0};
-  CagSurface *s = NULL;
+// Knots of `count` points, or none for what the function makes itself.
+static bool read_knots(CagCall *call, int argument, const size_t count[2], CagGridData *g) {
   CagError err;
-  bool ok = read_data(call, 2, &points, &g) &&
-            give(call, cag_surface_interpolate(&g, &s, &err), &err, &s, result);
-  free(points);
+  for (int k = 0; k < 2; k++) {
+    CagValue v = one_of_two(call, argument, k);
+    const double *x;
+    size_t n, wanted = count[k] + (size_t)(k ? g->degree_v : g->degree_u) + 1;
+    if (v.type == CAG_UNSET || v.type == CAG_NONE || g->closed[k]) continue;
+    if (!cag_as_vector(v, &x, &n))
+      return cag_fail_type(call, argument, "none, or two lists of knots for u and v");
+    if (n != wanted) {
+      cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", k,
+               "%zu control points of degree %d want %zu `knots` in %c, found %zu", count[k],
+               k ? g->degree_v : g->degree_u, wanted, "uv"[k], n);
+      return cag_fail_geometry(call, &err);
+    }
+    g->knots[k] = x;
+  }
+  return true;
+}
+
+// Parameters by u or v: one for each row or column, or a table with one for each point.
+static bool read_table(CagCall *call, int argument, CagValue v, int k, const CagGridData *g,
+                       double *out) {
+  const double *x;
+  size_t n, lines = k == 0 ? g->r : g->s;
+  if (cag_as_vector(v, &x, &n) && n == lines) {
+    for (size_t i = 0; i < g->r * g->s; i++) out[i] = x[k == 0 ? i / g->s : i % g->s];
+    return true;
+  }
+  bool good = v.type == CAG_LIST && CAG_AS_LIST(v)->length == g->r;
+  for (size_t i = 0; good && i < g->r; i++) {
+    good = cag_as_vector(cag_list_get(call->vm, CAG_AS_LIST(v), i), &x, &n) && n == g->s;
+    if (good) memcpy(out + i * g->s, x, n * sizeof *x);
+  }
+  return good || cag_fail_call(call, argument, CAG_ERR_length,
+                               "expects as `parameters` by %c %zu numbers, or %zu rows of %zu",
+                               "uv"[k], lines, g -> r, g -> s);
+}
+
+typedef struct Data {
+  CagGridData g;
+  CagVec3 *points;
+  double *tables[2];
+} Data;
+
+static void data_free(Data *d) {
+  free(d->points);
+  free(d->tables[0]);
+  free(d->tables[1]);
+}
+
+// A spacing, or a record of parameters u and v, of which one may be left to the chords.
+static bool read_parameters(CagCall *call, int argument, Data *d) {
+  static const char *const spacings[] = {"chord", "mean", "uniform", NULL};
+  static const char *const names[] = {"u", "v"};
+  CagGridData *g = &d->g;
+  int spacing;
+  if (call->values[argument].type != CAG_RECORD) {
+    if (!cag_arg_choice(call, argument, spacings, &spacing)) return false;
+    g->spacing = (CagGridSpacing)spacing;
+    return true;
+  }
+  for (int k = 0; k < 2; k++) {
+    CagValue v = cag_record_get(CAG_AS_RECORD(call->values[argument]), names[k]);
+    if (v.type == CAG_UNSET || v.type == CAG_NONE) continue;
+    d->tables[k] = malloc((g->r * g->s + 1) * sizeof(double));
+    if (!d->tables[k]) return fail_memory(call);
+    if (!read_table(call, argument, v, k, g, d->tables[k])) return false;
+    g->parameters[k] = d->tables[k];
+  }
+  return true;
+}
+
+static bool read_data(CagCall *call, int parameters, int closed, Data *d) {
+  long degree[2];
+  if (!read_grid(call, &d->points, &d->g.r, &d->g.s) || !read_pair(call, 1, 3, 0, 1000, degree) ||
+      !read_closed(call, closed, d->g.closed))
+    return false;
+  d->g.points = d->points;
+  d->g.degree_u = (int)degree[0];
+  d->g.degree_v = (int)degree[1];
+  return read_parameters(call, parameters, d);
+}
+
+static CagValue table_value(CagVm *vm, const double *x, size_t r, size_t s) {
+  CagBuilder *rows = cag_builder_new(vm);
+  for (size_t i = 0; i < r; i++) cag_builder_add(vm, rows, cag_numbers_value(vm, x + i * s, s));
+  return cag_builder_finish(vm, rows);
+}
+
+static CagValue pair_value(CagVm *vm, const double *u, const double *v, size_t r, size_t s) {
+  static const char *const names[] = {"u", "v"};
+  CagValue values[] = {table_value(vm, u, r, s), table_value(vm, v, r, s)};
+  return cag_record_new(vm, names, values, 2);
+}
+
+// Points of the surface less the data.
+static bool residuals(CagCall *call, const CagSurface *s, const CagGridData *g,
+                      const CagGridReport *report, CagValue *out) {
+  CagBuilder *rows = cag_builder_new(call->vm);
+  CagVec3 *line = malloc((g->s + 1) * sizeof *line);
+  CagError err;
+  bool ok = line != NULL;
+  if (!ok) fail_memory(call);
+  for (size_t i = 0; ok && i < g->r; i++) {
+    for (size_t j = 0; ok && j < g->s; j++) {
+      size_t k = i * g->s + j;
+      CagStatus status = cag_surface_point(s, report->u[k], report->v[k], &line[j], &err);
+      ok = cag_geometry_ok(call, status, &err);
+      if (ok) line[j] = cag_sub(line[j], g->points[k]);
+    }
+    ok = ok && cag_builder_add(call->vm, rows, cag_points_value(call->vm, line, g->s, 3));
+  }
+  free(line);
+  if (ok) *out = cag_builder_finish(call->vm, rows);
   return ok;
 }
 
-static bool fit(CagCall *call, bool report, CagValue *result) {
-  static const char *const names[] = {"surface", "rms", "largest"};
-  CagVec3 *points;
-  CagGridData g = {0};
+static bool give_report(CagCall *call, const CagSurface *s, const CagGridData *g,
+                        const CagGridReport *report, CagValue *result) {
+  static const char *const names[] = {"surface", "parameters", "residuals",
+                                      "rms",     "largest",    "rounds"};
+  CagValue values[] = {*result,
+                       pair_value(call->vm, report->u, report->v, g->r, g->s),
+                       cag_none(),
+                       cag_number(report->rms),
+                       cag_number(report->largest),
+                       cag_number(report->rounds)};
+  if (!residuals(call, s, g, report, &values[2])) return false;
+  *result = cag_record_new(call->vm, names, values, 6);
+  return true;
+}
+
+// grid, degree, parameters, knots, closed
+bool cag_surfaces_interpolate_surface(CagCall *call, CagValue *result) {
+  Data d = {0};
   CagSurface *s = NULL;
   CagError err;
-  long count[2];
-  double rms, largest;
-  bool ok = read_data(call, 3, &points, &g) && read_pair(call, 2, 0, 2, 10000, count);
+  bool ok = read_data(call, 2, 4, &d) &&
+            read_knots(call, 3, (const size_t[]){d.g.r, d.g.s}, &d.g) &&
+            give(call, cag_surface_interpolate(&d.g, &s, &err), &err, &s, result);
+  data_free(&d);
+  return ok;
+}
+
+// grid, degree, count, parameters, knots, closed, corrections
+static bool fit(CagCall *call, bool report, CagValue *result) {
+  Data d = {0};
+  CagSurface *s = NULL;
+  CagError err;
+  long count[2], rounds;
+  CagGridReport found = {0};
+  bool ok = read_data(call, 3, 5, &d) && read_pair(call, 2, 0, 0, 10000, count) &&
+            cag_arg_integer_or(call, 6, 0, 0, 1000, &rounds);
+  const size_t net[2] = {ok ? (size_t)count[0] : 0, ok ? (size_t)count[1] : 0};
+  ok = ok && read_knots(call, 4, net, &d.g);
   if (ok) {
-    CagStatus status = cag_surface_fit(&g, (size_t)count[0], (size_t)count[1], &s,
-                                       report ? &rms : NULL, report ? &largest : NULL, &err);
-    ok = give(call, status, &err, &s, result);
+    d.g.corrections = (int)rounds;
+    ok = give(call, cag_surface_fit(&d.g, net[0], net[1], &s, &found, &err), &err, &s, result);
   }
-  if (ok && report) {
-    CagValue values[] = {*result, cag_number(rms), cag_number(largest)};
-    *result = cag_record_new(call->vm, names, values, 3);
-  }
-  free(points);
+  if (ok && report) ok = give_report(call, s, &d.g, &found, result);
+  cag_grid_report_free(&found);
+  data_free(&d);
   return ok;
 }
 
@@ -127,6 +262,38 @@ bool cag_surfaces_fit_surface(CagCall *call, CagValue *result) { return fit(call
 
 bool cag_surfaces_fit_surface_report(CagCall *call, CagValue *result) {
   return fit(call, true, result);
+}
+
+// grid, parameters, ends, closed
+bool cag_surfaces_grid_parameters(CagCall *call, CagValue *result) {
+  static const char *const spacings[] = {"chord", "mean", "uniform", NULL};
+  CagVec3 *points = NULL;
+  CagGridData g = {0};
+  int spacing;
+  double end[2] = {1, 1}, *table = NULL;
+  const double *x;
+  size_t n;
+  bool ok = read_grid(call, &points, &g.r, &g.s) && cag_arg_choice(call, 1, spacings, &spacing) &&
+            read_closed(call, 3, g.closed);
+  if (ok && cag_given(call, 2)) {
+    ok = cag_as_vector(call->values[2], &x, &n) && n == 2 && x[0] > 0 && x[1] > 0 &&
+         isfinite(x[0] + x[1]);
+    if (ok) memcpy(end, x, sizeof end);
+    else cag_fail_value(call, 2, "two positive numbers, the last parameters by u and by v");
+  }
+  if (ok) {
+    table = malloc(2 * g.r * g.s * sizeof *table);
+    if (!table) ok = fail_memory(call);
+  }
+  if (ok) {
+    g.points = points;
+    g.spacing = (CagGridSpacing)spacing;
+    cag_grid_parameters(&g, end, table, table + g.r * g.s);
+    *result = pair_value(call->vm, table, table + g.r * g.s, g.r, g.s);
+  }
+  free(table);
+  free(points);
+  return ok;
 }
 
 // --- Developable surfaces ---

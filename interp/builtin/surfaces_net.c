@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
 typedef struct Net {
@@ -19,6 +20,14 @@ static void net_free(Net *net) {
 
 static bool fail_memory(CagCall *call) {
   return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+}
+
+bool cag_fail_rows(CagCall *call, size_t wanted, size_t row, size_t found) {
+  CagError err;
+  cag_fail(&err, CAG_E_ARGUMENT, "net-not-rectangular", cag_parameter_name(call, 0), (long)row,
+           "`%s` must have rows of one length: row 0 has %zu points, row %zu has %zu",
+           cag_parameter_name(call, 0), wanted, row, found);
+  return cag_fail_geometry(call, &err);
 }
 
 static bool read_row(CagCall *call, const CagList *row, size_t i, Net *net) {
@@ -53,10 +62,7 @@ static bool read_net(CagCall *call, Net *net) {
       net->points = malloc((net->nu * n + 1) * sizeof *net->points);
       if (!net->points) return fail_memory(call);
     }
-    if (n != net->nv)
-      return cag_fail_call(call, 0, CAG_ERR_length,
-                           "expects rows of one length: row 0 has %zu points, row %zu has %zu",
-                           net->nv, i, n);
+    if (n != net->nv) return cag_fail_rows(call, net->nv, i, n);
     if (!read_row(call, CAG_AS_LIST(row), i, net)) return false;
   }
   if (net->nu == 0 || net->nv == 0)
@@ -77,9 +83,11 @@ static bool read_weights(CagCall *call, int argument, Net *net) {
     fits = cag_as_vector(cag_list_get(call->vm, rows, i), &x, &n) && n == net->nv;
     if (fits) memcpy(net->weights + i * net->nv, x, n * sizeof *x);
   }
-  return fits || cag_fail_call(call, argument, CAG_ERR_length,
-                               "expects `weights` in %zu rows of %zu numbers, as the points",
-                               net->nu, net->nv);
+  if (fits) return true;
+  CagError err;
+  cag_fail(&err, CAG_E_ARGUMENT, "weight-count", "weights", -1,
+           "`weights` must be %zu rows of %zu numbers, as the points", net->nu, net->nv);
+  return cag_fail_geometry(call, &err);
 }
 
 bool cag_surfaces_bezier_surface(CagCall *call, CagValue *result) {
@@ -111,8 +119,7 @@ static bool read_degree(CagCall *call, int degree, int order, int direction, int
   int argument = by_order ? order : degree;
   if (!cag_given(call, argument)) return true;
   CagValue v = one_of_two(call, argument, direction);
-  if (v.type != CAG_NUMBER || v.as.number != floor(v.as.number) || v.as.number < 1 ||
-      v.as.number > 1000)
+  if (v.type != CAG_NUMBER || v.as.number != floor(v.as.number) || fabs(v.as.number) > 1000)
     return cag_fail_type(call, argument, "a whole number, or two for u and v");
   *out = (int)v.as.number - (by_order ? 1 : 0);
   return true;
@@ -142,10 +149,10 @@ static bool read_knots(CagCall *call, int argument, int direction, size_t n, int
   if (!list && strcmp(type, "open") != 0 && strcmp(type, "periodic") != 0)
     return cag_fail_call(call, argument, CAG_ERR_value,
                          "expects \"open\", \"periodic\" or a list as `knots`, found \"%s\"", type);
-  if (n <= (size_t)degree) {
-    cag_fail(&err, CAG_E_ARGUMENT, "degree-too-high", "degree", -1,
-             "a degree of %d in %s wants at least %d points, found %zu", degree,
-             direction ? "v" : "u", degree + 1, n);
+  if (degree < 1 || n <= (size_t)degree) {
+    cag_fail(&err, CAG_E_ARGUMENT, "order-range", "degree", direction,
+             "`degree` in %s must lie in 1..%zu for %zu points, it is %d; add points or lower it",
+             direction ? "v" : "u", n - 1, n, degree);
     return cag_fail_geometry(call, &err);
   }
   if (list && (!cag_as_vector(v, &x, &count) || count != wanted)) {

@@ -72,14 +72,27 @@ bool cag_surfaces_insert_knot(CagCall *call, CagValue *result) {
   return give(call, status, &err, &out, result);
 }
 
+// What is done in one direction: whether at all, and to which knots (NULL: midpoints).
+static bool read_refinement(CagCall *call, int argument, CagRefinement *out) {
+  *out = (CagRefinement){CAG_REFINE_MIDPOINTS, NULL, 0};
+  CagValue v = call->values[argument];
+  if (v.type == CAG_UNSET) return true;
+  if (v.type == CAG_BOOL) {
+    if (!v.as.boolean) out->how = CAG_REFINE_NOT;
+    return true;
+  }
+  out->how = CAG_REFINE_KNOTS;
+  return cag_arg_numbers(call, argument, &out->knots, &out->count);
+}
+
 bool cag_surfaces_refine(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   CagError err;
-  bool u, v;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_bool_or(call, 1, true, &u) ||
-      !cag_arg_bool_or(call, 2, true, &v))
+  CagRefinement r[2];
+  if (!cag_arg_surface(call, 0, &s) || !read_refinement(call, 1, &r[0]) ||
+      !read_refinement(call, 2, &r[1]))
     return false;
-  return give(call, cag_surface_refine(s, u, v, &out, &err), &err, &out, result);
+  return give(call, cag_surface_refine_by(s, r, &out, &err), &err, &out, result);
 }
 
 bool cag_surfaces_elevate(CagCall *call, CagValue *result) {
@@ -137,17 +150,22 @@ bool cag_surfaces_join_surfaces(CagCall *call, CagValue *result) {
 }
 
 bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
-  static const char *const names[] = {"class",          "gap",  "angle", "first_jump",
-                                      "curvature_jump", "edges"};
+  static const char *const names[] = {"class", "gap",      "angle", "first_jump", "curvature_jump",
+                                      "edges", "reversed", "C0",    "G1",         "C1",
+                                      "G2"};
   static const char *const sides[] = {"u0", "u1", "v0", "v1"};
   CagSurface *a, *b;
   CagSeam seam;
   CagError err;
   double tolerance;
+  int edges_given[2];
+  bool given;
   if (!cag_arg_surface(call, 0, &a) || !cag_arg_surface(call, 1, &b) ||
-      !cag_arg_number_or(call, 2, SEAM_TOLERANCE, &tolerance) ||
-      !cag_geometry_ok(call, cag_surface_seam(a, b, tolerance, &seam, &err), &err))
+      !cag_arg_edges(call, 2, edges_given, &given) ||
+      !cag_arg_number_or(call, 3, SEAM_TOLERANCE, &tolerance))
     return false;
+  CagStatus status = cag_surface_seam_on(a, b, given ? edges_given : NULL, tolerance, &seam, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
   const char *class = !seam.c0 ? "none" : seam.g2 ? "G2" : seam.c1 ? "C1" : seam.g1 ? "G1" : "C0";
   CagBuilder *edges = cag_builder_new(call->vm);
   for (int k = 0; k < 2; k++)
@@ -157,8 +175,13 @@ bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
                        cag_angle(seam.angle / CAG_RADIANS_PER_DEGREE),
                        cag_number(seam.first),
                        cag_number(seam.curvature),
-                       cag_builder_finish(call->vm, edges)};
-  *result = cag_record_new(call->vm, names, values, 6);
+                       cag_builder_finish(call->vm, edges),
+                       cag_bool(seam.reversed),
+                       cag_bool(seam.c0),
+                       cag_bool(seam.g1),
+                       cag_bool(seam.c1),
+                       cag_bool(seam.g2)};
+  *result = cag_record_new(call->vm, names, values, 11);
   return true;
 }
 

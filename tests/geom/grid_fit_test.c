@@ -5,11 +5,14 @@
 
 static void check_fit(const CagVec3 *data, size_t r, size_t s, int p, int q, const CagVec3 *net,
                       size_t nu, size_t nv, double expected_rms, const char *id) {
-  CagGridData g = {data, r, s, p, q, CAG_GRID_CHORD};
+  CagGridData g = {
+      .points = data, .r = r, .s = s, .degree_u = p, .degree_v = q, .spacing = CAG_GRID_CHORD};
   CagSurface *fit = NULL;
   CagSurfaceNurbsView v;
-  double rms, largest;
-  MUST(cag_surface_fit(&g, nu, nv, &fit, &rms, &largest, err));
+  CagGridReport report;
+  MUST(cag_surface_fit(&g, nu, nv, &fit, &report, err));
+  double rms = report.rms, largest = report.largest;
+  cag_grid_report_free(&report);
   assert_true(cag_surface_nurbs_view(fit, &v));
   for (size_t i = 0; i < nu * nv; i++) {
     const double *h = v.homogeneous + 4 * i;
@@ -215,7 +218,8 @@ static void interpolation_meets_every_point(void **state) {
   for (int i = 0; i < 7; i++)
     for (int j = 0; j < 6; j++)
       data[6 * i + j] = cag_vec3(i + 0.1 * j, 2 * j - 0.05 * i, sin(0.7 * i) * cos(0.9 * j));
-  CagGridData g = {data, 7, 6, 3, 2, CAG_GRID_UNIFORM};
+  CagGridData g = {
+      .points = data, .r = 7, .s = 6, .degree_u = 3, .degree_v = 2, .spacing = CAG_GRID_UNIFORM};
   CagSurface *s = NULL;
   MUST(cag_surface_interpolate(&g, &s, err));
   for (int i = 0; i < 7; i++)
@@ -232,9 +236,9 @@ static void interpolation_meets_every_point(void **state) {
   g.degree_u = 7;
   MUST_FAIL(cag_surface_interpolate(&g, &s, err), "order-range");
   g.degree_u = 3;
-  MUST_FAIL(cag_surface_fit(&g, 8, 4, &s, NULL, NULL, err), "fit-underdetermined");
+  MUST_FAIL(cag_surface_fit(&g, 8, 4, &s, NULL, err), "fit-underdetermined");
   for (int i = 0; i < 42; i++) data[i] = cag_vec3(1, 2, 3);
-  MUST(cag_surface_fit(&g, 4, 4, &s, NULL, NULL, err)); // a point: even parameters
+  MUST(cag_surface_fit(&g, 4, 4, &s, NULL, err)); // a point: even parameters
   cag_surface_release(s);
 }
 

@@ -1,0 +1,762 @@
+// Control points of Bezier and B-spline surfaces: which act where, what they are multiplied by,
+// edits of corners and edges, and the patches' other forms.
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/basis/bernstein.h"
+#include "geom/basis/bspline.h"
+#include "geom/basis/knots.h"
+#include "geom/mesh/mesh.h"
+#include "geom/surface/edit.h"
+#include "geom/surface/reshape.h"
+#include "interp/builtin/support.h"
+#include "interp/builtin/surfaces.h"
+
+static const char family[] = "Surfaces: control points";
+#define SURFACES CAG_TAKES(SURFACE)
+
+static const char *const directions[] = {"u", "v"};
+
+static bool fail_memory(CagCall *call) {
+  return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+}
+
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_surface_value(call->vm, *made);
+  return true;
+}
+
+static CagValue vector_value(CagVm *vm, CagVec3 p) {
+  return cag_vector(vm, (double[]){p.x, p.y, p.z}, 3);
+}
+
+// --- One direction of a net ---
+
+typedef struct Axis {
+  int degree;
+  size_t count, distinct;
+  bool periodic;
+  const double *knots;
+} Axis;
+
+// A surface with control points: its view and the two axes.
+typedef struct Net {
+  CagSurface *s;
+  CagSurfaceNurbsView view;
+  Axis axis[2];
+} Net;
+
+static bool read_net(CagCall *call, Net *n) {
+  CagError err;
+  if (!cag_arg_surface(call, 0, &n->s)) return false;
+  if (!cag_surface_nurbs_view(n->s, &n->view)) {
+    cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
+             "a surface of kind %s has no control points; `to_nurbs` gives its rational form where "
+             "there is one",
+             n->s->kind->name);
+    return cag_fail_geometry(call, &err);
+  }
+  const CagSurfaceNurbsView *v = &n->view;
+  n->axis[0] = (Axis){v->degree_u, v->nu, v->distinct_u, v->periodic_u, v->knots_u};
+  n->axis[1] = (Axis){v->degree_v, v->nv, v->distinct_v, v->periodic_v, v->knots_v};
+  return true;
+}
+
+static CagValue range_of(CagVm *vm, double from, double to) {
+  return cag_range_new(vm, from, to, 1, false, false, false);
+}
+
+static CagValue spans_value(CagVm *vm, const Axis *a) {
+  CagBuilder *list = cag_builder_new(vm);
+  for (size_t i = (size_t)a->degree; i < a->count; i++)
+    if (a->knots[i] < a->knots[i + 1])
+      cag_builder_add(vm, list, range_of(vm, a->knots[i], a->knots[i + 1]));
+  return cag_builder_finish(vm, list);
+}
+
+static bool spans(CagCall *call, CagValue *result) {
+  Net n;
+  if (!read_net(call, &n)) return false;
+  CagValue values[] = {spans_value(call->vm, &n.axis[0]), spans_value(call->vm, &n.axis[1])};
+  *result = cag_record_new(call->vm, directions, values, 2);
+  return true;
+}
+
+// As of curves: a range, of a closed direction a list of ranges.
+static CagValue support_value(CagVm *vm, const Axis *a, size_t i) {
+  size_t p = (size_t)a->degree;
+  double lo = a->knots[p], hi = a->knots[a->count], from = 0, to = 0;
+  CagBuilder *list = cag_builder_new(vm);
+  for (size_t k = i; k < a->count; k += a->distinct) {
+    double b = fmax(a->knots[k], lo), e = fmin(a->knots[k + p + 1], hi);
+    if (!(b < e)) continue;
+    if (from < to && b > to) cag_builder_add(vm, list, range_of(vm, from, to));
+    from = from < to && b <= to ? from : b;
+    to = e;
+  }
+  CagValue last = from < to ? range_of(vm, from, to) : cag_none();
+  if (!a->periodic) return last;
+  cag_builder_add(vm, list, last);
+  return cag_builder_finish(vm, list);
+}
+
+static bool support(CagCall *call, CagValue *result) {
+  Net n;
+  long i, j;
+  if (!read_net(call, &n) || !cag_arg_integer(call, 1, 0, (long)n.axis[0].distinct - 1, &i) ||
+      !cag_arg_integer(call, 2, 0, (long)n.axis[1].distinct - 1, &j))
+    return false;
+  CagValue values[] = {support_value(call->vm, &n.axis[0], (size_t)i),
+                       support_value(call->vm, &n.axis[1], (size_t)j)};
+  *result = cag_record_new(call->vm, directions, values, 2);
+  return true;
+}
+
+static CagValue point_value(CagVm *vm, const double *h) {
+  return h[3] > 0 ? vector_value(vm, cag_project(h)) : cag_none();
+}
+
+static CagValue indices_value(CagVm *vm, const Axis *a, size_t span) {
+  double *out;
+  CagValue list = cag_list_numbers(vm, (size_t)a->degree + 1, &out);
+  for (size_t i = span - (size_t)a->degree; i <= span; i++) *out++ = (double)(i % a->distinct);
+  return list;
+}
+
+bool cag_arg_surface_sides(CagCall *call, int argument, CagSide out[2]) {
+  static const char *const sides[] = {"right", "left", NULL};
+  CagValue v = call->values[argument];
+  out[0] = out[1] = CAG_SIDE_RIGHT;
+  if (v.type == CAG_UNSET) return true;
+  for (int k = 0; k < 2; k++) {
+    CagValue one = v;
+    if (v.type == CAG_LIST && CAG_AS_LIST(v)->length == 2)
+      one = cag_list_get(call->vm, CAG_AS_LIST(v), (size_t)k);
+    bool known = one.type == CAG_TEXT && (strcmp(CAG_AS_TEXT(one)->bytes, sides[0]) == 0 ||
+                                          strcmp(CAG_AS_TEXT(one)->bytes, sides[1]) == 0);
+    if (!known) return cag_fail_value(call, argument, "\"right\" or \"left\", or two for u and v");
+    if (strcmp(CAG_AS_TEXT(one)->bytes, sides[1]) == 0) out[k] = CAG_SIDE_LEFT;
+  }
+  return true;
+}
+
+static bool acting_points(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"u", "v", "rows", "columns", "points"};
+  Net n;
+  double t[2];
+  CagSide side[2];
+  if (!read_net(call, &n) || !cag_arg_uv(call, n.s, 1, &t[0], &t[1]) ||
+      !cag_arg_surface_sides(call, 3, side))
+    return false;
+  size_t span[2];
+  CagValue values[5];
+  for (int k = 0; k < 2; k++) {
+    const Axis *a = &n.axis[k];
+    span[k] = cag_knots_span(a->knots, a->count, a->degree, t[k], side[k] == CAG_SIDE_LEFT,
+                             (size_t)a->degree);
+    values[k] = range_of(call->vm, a->knots[span[k]], a->knots[span[k] + 1]);
+    values[2 + k] = indices_value(call->vm, a, span[k]);
+  }
+  CagBuilder *rows = cag_builder_new(call->vm);
+  for (size_t i = span[0] - (size_t)n.axis[0].degree; i <= span[0]; i++) {
+    CagBuilder *row = cag_builder_new(call->vm);
+    for (size_t j = span[1] - (size_t)n.axis[1].degree; j <= span[1]; j++)
+      if (!cag_builder_add(call->vm, row,
+                           point_value(call->vm, n.view.homogeneous + 4 * (i * n.view.nv + j))))
+        return false;
+    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row))) return false;
+  }
+  values[4] = cag_builder_finish(call->vm, rows);
+  *result = cag_record_new(call->vm, names, values, 5);
+  return true;
+}
+
+// --- Basis ---
+
+// Values at t of the functions of all distinct points, malloc'd.
+static double *basis_line(const Axis *a, double t) {
+  double *out = calloc(a->distinct, sizeof *out);
+  double *values = malloc(((size_t)a->degree + 1) * sizeof *values);
+  if (out && values) {
+    size_t p = (size_t)a->degree;
+    size_t span = cag_knots_span(a->knots, a->count, a->degree, t, t >= a->knots[a->count], p);
+    cag_bspline_basis(a->knots, a->degree, span, t, values);
+    for (size_t i = 0; i <= p; i++) out[(span - p + i) % a->distinct] += values[i];
+    free(values);
+    return out;
+  }
+  free(out);
+  free(values);
+  return NULL;
+}
+
+static bool basis(CagCall *call, CagValue *result) {
+  Net n;
+  double t[2], sum = 0;
+  if (!read_net(call, &n) || !cag_arg_uv(call, n.s, 1, &t[0], &t[1])) return false;
+  double *bu = basis_line(&n.axis[0], t[0]), *bv = basis_line(&n.axis[1], t[1]);
+  size_t nu = n.axis[0].distinct, nv = n.axis[1].distinct;
+  bool ok = (bu && bv) || fail_memory(call);
+  for (size_t i = 0; ok && i < nu; i++)
+    for (size_t j = 0; j < nv; j++)
+      sum += bu[i] * bv[j] * n.view.homogeneous[4 * (i * n.view.nv + j) + 3];
+  if (ok && !(sum > 0)) {
+    CagError err;
+    cag_fail(&err, CAG_E_DEGENERATE, "zero-denominator", "", -1,
+             "all weights that act at this point are 0: give one of them a positive value");
+    ok = cag_fail_geometry(call, &err);
+  }
+  CagBuilder *rows = cag_builder_new(call->vm);
+  for (size_t i = 0; ok && i < nu; i++) {
+    double *out;
+    CagValue row = cag_list_numbers(call->vm, nv, &out);
+    for (size_t j = 0; j < nv; j++)
+      out[j] = bu[i] * bv[j] * n.view.homogeneous[4 * (i * n.view.nv + j) + 3] / sum;
+    ok = cag_builder_add(call->vm, rows, row);
+  }
+  free(bu);
+  free(bv);
+  if (ok) *result = cag_builder_finish(call->vm, rows);
+  return ok;
+}
+
+// --- Numerator and denominator ---
+
+// The polynomial surface of the points times their weights, or of the weights as z.
+static bool homogeneous_part(CagCall *call, const Net *n, bool weights, CagSurface **out) {
+  const CagSurfaceNurbsView *v = &n->view;
+  CagError err;
+  CagVec3 *net = malloc(v->nu * v->nv * sizeof *net);
+  bool ok = net != NULL || fail_memory(call);
+  for (size_t i = 0; ok && i < v->nu * v->nv; i++) {
+    const double *h = v->homogeneous + 4 * i;
+    net[i] = weights ? cag_vec3(0, 0, h[3]) : cag_vec3(h[0], h[1], h[2]);
+  }
+  ok = ok && cag_geometry_ok(call,
+                             cag_surface_nurbs(net, NULL, v->nu, v->nv, v->degree_u, v->degree_v,
+                                               v->knots_u, v->knots_v, out, &err),
+                             &err);
+  free(net);
+  return ok;
+}
+
+static bool part_at(CagCall *call, bool weights, CagVec3 *out) {
+  Net n;
+  double u, v;
+  long du, dv;
+  CagSurface *part = NULL;
+  CagError err;
+  CagVec3 d[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)];
+  if (!read_net(call, &n) || !cag_arg_uv(call, n.s, 1, &u, &v) ||
+      !cag_arg_integer_or(call, 3, 0, 0, CAG_MAX_PARTIAL, &du) ||
+      !cag_arg_integer_or(call, 4, 0, 0, CAG_MAX_PARTIAL - du, &dv) ||
+      !homogeneous_part(call, &n, weights, &part))
+    return false;
+  int order = (int)(du + dv);
+  CagStatus status = cag_surface_eval(part, u, v, order, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &err);
+  cag_surface_release(part);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *out = d[cag_partial(order, (int)du, (int)dv)];
+  return true;
+}
+
+static bool numerator(CagCall *call, CagValue *result) {
+  CagVec3 d;
+  if (!part_at(call, false, &d)) return false;
+  *result = vector_value(call->vm, d);
+  return true;
+}
+
+static bool denominator(CagCall *call, CagValue *result) {
+  CagVec3 d;
+  if (!part_at(call, true, &d)) return false;
+  *result = cag_number(d.z);
+  return true;
+}
+
+// --- Polynomials ---
+
+// Powers of one direction from Bernstein points, in place: n + 1 rows of `width` points, of the
+// parameter from 0 to `length`.
+static void to_powers(CagVec3 *b, int n, size_t width, double length) {
+  // Forward differences, each row below the one that it is taken from.
+  for (int k = 1; k <= n; k++)
+    for (int i = n; i >= k; i--)
+      for (size_t c = 0; c < width; c++)
+        b[(size_t)i * width + c] =
+            cag_sub(b[(size_t)i * width + c], b[(size_t)(i - 1) * width + c]);
+  double power = 1;
+  for (int i = 0; i <= n; i++, power *= length)
+    for (size_t c = 0; c < width; c++)
+      b[(size_t)i * width + c] = cag_scaled(b[(size_t)i * width + c], cag_binomial(n, i) / power);
+}
+
+static CagValue table_of(CagVm *vm, const CagVec3 *p, size_t n, size_t m) {
+  CagBuilder *rows = cag_builder_new(vm);
+  for (size_t i = 0; i < n; i++) cag_builder_add(vm, rows, cag_points_value(vm, p + i * m, m, 3));
+  return cag_builder_finish(vm, rows);
+}
+
+static bool piece_powers(CagCall *call, const CagSurface *piece, double lu, double lv,
+                         CagValue *out) {
+  CagSurfaceNurbsView v;
+  cag_surface_nurbs_view(piece, &v);
+  size_t n = v.nu, m = v.nv;
+  CagVec3 *b = malloc(2 * n * m * sizeof *b);
+  if (!b) return fail_memory(call);
+  CagVec3 *turned = b + n * m;
+  for (size_t i = 0; i < n * m; i++) b[i] = cag_project(v.homogeneous + 4 * i);
+  to_powers(b, (int)n - 1, m, lu);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < m; j++) turned[j * n + i] = b[i * m + j];
+  to_powers(turned, (int)m - 1, n, lv);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < m; j++) b[i * m + j] = turned[j * n + i];
+  *out = table_of(call->vm, b, n, m);
+  free(b);
+  return true;
+}
+
+static size_t span_lengths(const Axis *a, double *out) {
+  size_t n = 0;
+  for (size_t i = (size_t)a->degree; i < a->count; i++)
+    if (a->knots[i] < a->knots[i + 1]) out[n++] = a->knots[i + 1] - a->knots[i];
+  return n;
+}
+
+static bool polynomials(CagCall *call, CagValue *result) {
+  Net n;
+  CagError err;
+  CagSurface **pieces = NULL;
+  size_t nu = 0, nv = 0;
+  if (!read_net(call, &n)) return false;
+  if (n.view.rational) {
+    cag_fail(&err, CAG_E_UNSUPPORTED, "rational-patch", "", -1,
+             "the surface has weights, so it is no polynomial: ask for `numerator` and "
+             "`denominator`");
+    return cag_fail_geometry(call, &err);
+  }
+  double *lu = malloc((n.axis[0].count + n.axis[1].count) * sizeof *lu);
+  if (!lu) return fail_memory(call);
+  double *lv = lu + n.axis[0].count;
+  span_lengths(&n.axis[0], lu);
+  span_lengths(&n.axis[1], lv);
+  bool ok = cag_geometry_ok(call, cag_surface_to_bezier(n.s, &pieces, &nu, &nv, &err), &err);
+  CagBuilder *rows = cag_builder_new(call->vm);
+  for (size_t i = 0; ok && i < nu; i++) {
+    CagBuilder *row = cag_builder_new(call->vm);
+    for (size_t j = 0; ok && j < nv; j++) {
+      CagValue table;
+      ok = piece_powers(call, pieces[i * nv + j], lu[i], lv[j], &table) &&
+           cag_builder_add(call->vm, row, table);
+    }
+    ok = ok && cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
+  }
+  for (size_t i = 0; pieces && i < nu * nv; i++) cag_surface_release(pieces[i]);
+  free(pieces);
+  free(lu);
+  if (ok) *result = cag_builder_finish(call->vm, rows);
+  return ok;
+}
+
+// --- Corners ---
+
+static bool patch_corners(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"corners", "tangents_u", "tangents_v", "twists"};
+  CagSurface *s;
+  CagHermiteCorners c;
+  CagError err;
+  if (!cag_arg_surface(call, 0, &s) ||
+      !cag_geometry_ok(call, cag_surface_corners(s, &c, &err), &err))
+    return false;
+  CagValue values[] = {table_of(call->vm, c.p[0], 2, 2), table_of(call->vm, c.pu[0], 2, 2),
+                       table_of(call->vm, c.pv[0], 2, 2), table_of(call->vm, c.puv[0], 2, 2)};
+  *result = cag_record_new(call->vm, names, values, 4);
+  return true;
+}
+
+static bool hermite_matrix(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagHermiteCorners c;
+  CagError err;
+  if (!cag_arg_surface(call, 0, &s) ||
+      !cag_geometry_ok(call, cag_surface_hermite_corners(s, &c, &err), &err))
+    return false;
+  CagVec3 q[16];
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) {
+      q[4 * i + j] = c.p[i][j];
+      q[4 * i + 2 + j] = c.pv[i][j];
+      q[4 * (2 + i) + j] = c.pu[i][j];
+      q[4 * (2 + i) + 2 + j] = c.puv[i][j];
+    }
+  *result = table_of(call->vm, q, 4, 4);
+  return true;
+}
+
+// A number scales what is there, a vector takes its place.
+static bool read_edit(CagCall *call, int argument, CagCornerEdit *e, int k) {
+  e->factor[k] = 1;
+  if (!cag_given(call, argument)) return true;
+  if (call->values[argument].type == CAG_NUMBER)
+    return cag_arg_finite(call, argument, &e->factor[k]);
+  e->by_vector[k] = true;
+  return cag_arg_vec(call, argument, &e->vector[k], NULL);
+}
+
+// S, u, v, tangent_u, tangent_v, twist
+static bool edit_corner(CagCall *call, CagValue *result) {
+  CagSurface *s, *out = NULL;
+  CagCornerEdit e = {0};
+  CagError err;
+  long u, v;
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer(call, 1, 0, 1, &u) ||
+      !cag_arg_integer(call, 2, 0, 1, &v))
+    return false;
+  e.u = (int)u;
+  e.v = (int)v;
+  for (int k = 0; k < 3; k++)
+    if (!read_edit(call, 3 + k, &e, k)) return false;
+  return give(call, cag_surface_edit_corner(s, &e, &out, &err), &err, &out, result);
+}
+
+static bool set_point(CagCall *call, CagValue *result) {
+  CagSurface *s, *out = NULL;
+  CagVec3 p;
+  CagError err;
+  long i, j;
+  double weight = -1;
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer(call, 1, 0, LONG_MAX, &i) ||
+      !cag_arg_integer(call, 2, 0, LONG_MAX, &j) || !cag_arg_vec(call, 3, &p, NULL))
+    return false;
+  if (cag_given(call, 4) && call->values[4].type != CAG_NONE) {
+    if (!cag_arg_finite(call, 4, &weight)) return false;
+    if (weight < 0) {
+      char text[32];
+      cag_fail(&err, CAG_E_ARGUMENT, "negative-weight", "weight", -1,
+               "`weight` must not be negative, it is %s", cag_number_text(weight, text));
+      return cag_fail_geometry(call, &err);
+    }
+  }
+  CagStatus status = cag_surface_set_point(s, (size_t)i, (size_t)j, p, weight, &out, &err);
+  return give(call, status, &err, &out, result);
+}
+
+// --- Edges ---
+
+static const char *const sides[] = {"u0", "u1", "v0", "v1", NULL};
+
+static bool read_match(CagCall *call, int ratio, int shear, CagEdgeMatch *how) {
+  const double *x;
+  size_t n;
+  *how = (CagEdgeMatch){1, {0, 0}};
+  if (!cag_arg_number_or(call, ratio, 1, &how->ratio)) return false;
+  if (!cag_given(call, shear)) return true;
+  if (call->values[shear].type == CAG_NUMBER) {
+    if (!cag_arg_finite(call, shear, &how->shear[0])) return false;
+    how->shear[1] = how->shear[0];
+    return true;
+  }
+  if (!cag_as_vector(call->values[shear], &x, &n) || n != 2 || !isfinite(x[0] + x[1]))
+    return cag_fail_value(call, shear, "a number, or two for the ends of the edge");
+  how->shear[0] = x[0];
+  how->shear[1] = x[1];
+  return true;
+}
+
+// S, edge, ratio, shear, degree
+static bool bezier_join(CagCall *call, CagValue *result) {
+  static const char *const order[] = {"u1", "u0", "v0", "v1", NULL}; // the default comes first
+  static const int SIDE[] = {1, 0, 2, 3};
+  static const char *const names[] = {"points", "weights"};
+  CagSurface *s;
+  CagEdgeMatch how;
+  CagError err;
+  int edge;
+  long degree;
+  double *lines = NULL;
+  size_t n = 0;
+  CagSurfaceNurbsView v;
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_choice(call, 1, order, &edge) ||
+      !read_match(call, 2, 3, &how))
+    return false;
+  int side = SIDE[edge];
+  bool known = cag_surface_nurbs_view(s, &v);
+  long usual = !known ? 3 : side < 2 ? v.degree_u : v.degree_v;
+  if (!cag_arg_integer_or(call, 4, usual, 1, 1000, &degree)) return false;
+  CagStatus status = cag_surface_join_lines(s, side, (int)degree, &how, &lines, &n, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagBuilder *rows = cag_builder_new(call->vm), *weights = cag_builder_new(call->vm);
+  for (size_t i = 0; i < 2; i++) {
+    CagBuilder *row = cag_builder_new(call->vm);
+    double *w;
+    CagValue list = cag_list_numbers(call->vm, n, &w);
+    for (size_t j = 0; j < n; j++) {
+      const double *h = lines + 4 * (i * n + j);
+      w[j] = h[3];
+      cag_builder_add(call->vm, row, point_value(call->vm, h));
+    }
+    cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
+    cag_builder_add(call->vm, weights, list);
+  }
+  free(lines);
+  CagValue values[] = {cag_builder_finish(call->vm, rows), cag_builder_finish(call->vm, weights)};
+  *result = cag_record_new(call->vm, names, values, 2);
+  return true;
+}
+
+// A list of two sides, or none.
+bool cag_arg_edges(CagCall *call, int argument, int out[2], bool *given) {
+  CagValue v = call->values[argument];
+  *given = v.type != CAG_UNSET && v.type != CAG_NONE;
+  if (!*given) return true;
+  bool good = v.type == CAG_LIST && CAG_AS_LIST(v)->length == 2;
+  for (int k = 0; good && k < 2; k++) {
+    CagValue one = cag_list_get(call->vm, CAG_AS_LIST(v), (size_t)k);
+    out[k] = 0;
+    while (sides[out[k]] && one.type == CAG_TEXT &&
+           strcmp(sides[out[k]], CAG_AS_TEXT(one)->bytes) != 0)
+      out[k]++;
+    good = one.type == CAG_TEXT && sides[out[k]];
+  }
+  return good ||
+         cag_fail_value(call, argument,
+                        "a side of each surface, such as [\"u1\", \"u0\"] (u0, u1, v0, v1)");
+}
+
+// A, B, ratio, shear, edges
+static bool match_edge(CagCall *call, CagValue *result) {
+  CagSurface *a, *b, *out = NULL;
+  CagEdgeMatch how;
+  CagError err;
+  int edges[2];
+  bool given;
+  if (!cag_arg_surface(call, 0, &a) || !cag_arg_surface(call, 1, &b) ||
+      !read_match(call, 2, 3, &how) || !cag_arg_edges(call, 4, edges, &given))
+    return false;
+  CagStatus status = cag_surface_match(a, b, &how, given ? edges : NULL, &out, &err);
+  if (!give(call, status, &err, &out, result)) return false;
+  cag_shape_say_alike(*result, call->values[1]);
+  return true;
+}
+
+// --- Flat and creased places ---
+
+static bool creases(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"at", "angle"};
+  CagSurface *s;
+  CagError err;
+  CagValue both[2];
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  for (int k = 0; k < 2; k++) {
+    CagCrease *found = NULL;
+    size_t n = 0;
+    if (!cag_geometry_ok(call, cag_surface_creases(s, k, &found, &n, &err), &err)) return false;
+    CagBuilder *list = cag_builder_new(call->vm);
+    for (size_t i = 0; i < n; i++) {
+      CagValue values[] = {cag_parameter_value(k == 0 ? s->angular_u : s->angular_v, found[i].at),
+                           cag_angle(found[i].angle / CAG_RADIANS_PER_DEGREE)};
+      cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2));
+    }
+    free(found);
+    both[k] = cag_builder_finish(call->vm, list);
+  }
+  *result = cag_record_new(call->vm, directions, both, 2);
+  return true;
+}
+
+// Control points that miss their common plane by less than this part of their extent are in it.
+#define FLAT 1e-9
+
+// Whether all acting points lie in a plane.
+static bool acting_flat(const Net *n, size_t su, size_t sv) {
+  size_t p = (size_t)n->axis[0].degree, q = (size_t)n->axis[1].degree, nv = n->view.nv;
+  const double *h = n->view.homogeneous;
+  CagVec3 origin = cag_vec3(0, 0, 0), along = origin, normal = origin;
+  double reach = 0;
+  // The farthest from the first, then the farthest from that line, then all from the plane.
+  for (int pass = 0; pass < 3; pass++) {
+    double most = 0;
+    CagVec3 best = origin;
+    bool first = true;
+    for (size_t i = su - p; i <= su; i++)
+      for (size_t j = sv - q; j <= sv; j++) {
+        const double *at = h + 4 * (i * nv + j);
+        if (!(at[3] > 0)) continue;
+        CagVec3 x = cag_project(at);
+        if (first && pass == 0) origin = x;
+        first = false;
+        CagVec3 d = cag_sub(x, origin), c = pass == 1 ? cag_cross(along, d) : d;
+        double size = pass == 2 ? fabs(cag_dot(normal, d)) : cag_norm(c);
+        if (size > most) most = size, best = c;
+      }
+    if (pass == 0) reach = most, along = cag_unit(best);
+    if (pass == 1) normal = most > FLAT * reach ? cag_unit(best) : cag_vec3(0, 0, 0);
+    if (pass == 2) return most <= FLAT * reach;
+  }
+  return true;
+}
+
+static bool flat_spans(CagCall *call, CagValue *result) {
+  Net n;
+  if (!read_net(call, &n)) return false;
+  const Axis *u = &n.axis[0], *v = &n.axis[1];
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t i = (size_t)u->degree; i < u->count; i++)
+    for (size_t j = (size_t)v->degree; j < v->count; j++) {
+      if (!(u->knots[i] < u->knots[i + 1] && v->knots[j] < v->knots[j + 1])) continue;
+      if (!acting_flat(&n, i, j)) continue;
+      CagValue values[] = {range_of(call->vm, u->knots[i], u->knots[i + 1]),
+                           range_of(call->vm, v->knots[j], v->knots[j + 1])};
+      if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, directions, values, 2)))
+        return false;
+    }
+  *result = cag_builder_finish(call->vm, list);
+  return true;
+}
+
+// --- The net as a mesh ---
+
+static bool net_mesh(CagCall *call, CagValue *result) {
+  Net n;
+  CagError err;
+  CagMesh *m = NULL;
+  if (!read_net(call, &n)) return false;
+  const CagSurfaceNurbsView *v = &n.view;
+  size_t nu = v->distinct_u, nv = v->distinct_v;
+  size_t cu = v->periodic_u ? nu : nu - 1, cv = v->periodic_v ? nv : nv - 1;
+  for (size_t i = 0; i < nu * nv; i++)
+    if (!(v->homogeneous[4 * (i / nv * v->nv + i % nv) + 3] > 0)) {
+      cag_fail(
+          &err, CAG_E_DEGENERATE, "zero-denominator", "", (long)i,
+          "control point [%zu, %zu] has the weight 0 and so no place: the net has a hole there",
+          i / nv, i % nv);
+      return cag_fail_geometry(call, &err);
+    }
+  if (!cag_geometry_ok(call, cag_mesh_new(nu * nv, 2 * cu * cv, false, false, false, &m, &err),
+                       &err))
+    return false;
+  for (size_t i = 0; i < nu * nv; i++)
+    m->positions[i] = cag_project(v->homogeneous + 4 * (i / nv * v->nv + i % nv));
+  uint32_t *t = m->triangles;
+  for (size_t i = 0; i < cu; i++)
+    for (size_t j = 0; j < cv; j++) {
+      uint32_t a = (uint32_t)(i * nv + j), b = (uint32_t)((i + 1) % nu * nv + j);
+      uint32_t c = (uint32_t)((i + 1) % nu * nv + (j + 1) % nv),
+               d = (uint32_t)(i * nv + (j + 1) % nv);
+      double ac = cag_norm(cag_sub(m->positions[a], m->positions[c]));
+      double bd = cag_norm(cag_sub(m->positions[b], m->positions[d]));
+      const uint32_t by_ac[6] = {a, b, c, a, c, d}, by_bd[6] = {a, b, d, b, c, d};
+      memcpy(t, ac <= bd ? by_ac : by_bd, sizeof by_ac);
+      t += 6;
+    }
+  *result = cag_mesh_value(call->vm, m);
+  return true;
+}
+
+#define PATCH "s = bezier_surface([for i in 0..3: [for j in 0..3: [i, j, i * j]]])\n"
+
+const CagBuiltin cag_builtins_tensors[] = {
+    {"spans(S)", spans, "record",
+     "The ranges between the knots of a Bezier or B-spline surface, lists u and v: over each "
+     "rectangle of them it is one polynomial, or quotient of two.",
+     PATCH "print spans(refine(s)).u // expect: [0..0.5, 0.5..1]", SURFACES, family},
+    {"support(S, i, j)", support, "record",
+     "The ranges u and v over which control point [i, j] has an influence: what changes when it is "
+     "moved. In a closed direction a list of ranges.",
+     "s = bspline_surface([for i in 0..6: [for j in 0..6: [i, j, 0]]])\n"
+     "print support(s, 3, 0) // expect: {u: 0..4, v: 0..1}",
+     SURFACES, family},
+    {"acting_points(S, u, v, side = \"right\")", acting_points, "record",
+     "The control points that the surface at u, v is made of: the spans u and v between knots, the "
+     "`rows` and `columns` of the net (a closed direction goes round), and their `points`. The "
+     "surface over the spans lies in their convex hull.",
+     "s = bspline_surface([for i in 0..5: [for j in 0..4: [i, j, 0]]], degree: [3, 2])\n"
+     "a = acting_points(s, 2.5, 1.5)\n"
+     "print a.rows, a.columns // expect: [2, 3, 4, 5] [1, 2, 3]",
+     SURFACES, family},
+    {"basis(S, u, v)", basis, "list",
+     "By what each control point is multiplied at u, v, in rows as the net; they sum to 1.",
+     PATCH "print basis(s, 0, 0)[0] // expect: [1, 0, 0, 0]", SURFACES, family},
+    {"numerator(S, u, v, du = 0, dv = 0)", numerator, "list",
+     "The sum of the control points times their weights and basis functions, or its partial "
+     "derivative, du times by u and dv times by v; the point is this by the denominator.",
+     PATCH "print numerator(s, 0.5, 0.5) // expect: [1.5, 1.5, 2.25]", SURFACES, family},
+    {"denominator(S, u, v, du = 0, dv = 0)", denominator, "number",
+     "The sum of the weights times the basis functions, or its partial derivative; 1 of a surface "
+     "that is not rational.",
+     "s = bezier_surface([[[0, 0], [0, 1]], [[1, 0], [1, 1]]], weights: [[1, 1], [1, 3]])\n"
+     "print denominator(s, 0.5, 0.5), denominator(s, 0, 0, 1, 1) // expect: 1.5 2",
+     SURFACES, family},
+    {"polynomials(S)", polynomials, "list",
+     "Of each polynomial piece of the surface, in rows of u, the table of its coefficients: [i][j] "
+     "is the vector by u^i v^j, u and v from the piece's own start. Exact to rounding, which grows "
+     "with the degree (below 8 it is no concern).",
+     "s = bezier_surface([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 4]]])\n"
+     "print polynomials(s)[0][0] // expect: [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [0, 0, 4]]]",
+     SURFACES, family},
+    {"patch_corners(S)", patch_corners, "record",
+     "Points, derivatives by u and by v, and twists (by both) at the corners of a surface, as "
+     "coons_bicubic takes them: `corners`, `tangents_u`, `tangents_v`, `twists`, each [[at u = "
+     "start, v = start; v = end], [at u = end ...]].",
+     PATCH "print patch_corners(s).twists[1] // expect: [[0, 0, 9], [0, 0, 9]]", SURFACES, family},
+    {"hermite_matrix(S)", hermite_matrix, "list",
+     "The 4 by 4 table of a bicubic patch (or one of lower degrees), as hermite_patch takes it: "
+     "rows at u = start, at u = end and the derivatives by u there; columns likewise for v. "
+     "Surfaces of several patches (not-one-patch), of higher degrees (degree-too-high) or with "
+     "weights (rational-patch) have none.",
+     PATCH "q = hermite_matrix(s)\n"
+           "print near(hermite_patch(q)(0.3, 0.7), s(0.3, 0.7)) // expect: true",
+     SURFACES, family},
+    {"edit_corner(S, u, v, tangent_u = 1, tangent_v = 1, twist = 1)", edit_corner, "surface",
+     "The surface with another corner, that at the ends u and v (0 or 1 each): tangents and twist "
+     "are multiplied by a number, or become a vector. The three control points beside the corner "
+     "move; all other ones, and what is not named at this corner, stay.",
+     PATCH "t = edit_corner(s, 0, 0, tangent_u: 2, twist: [0, 0, 5])\n"
+           "c = patch_corners(t)\n"
+           "print c.tangents_u[0][0], c.twists[0][0] // expect: [6, 0, 0] [0, 0, 5]",
+     SURFACES, family},
+    {"set_point(S, i, j, P, weight = none)", set_point, "surface",
+     "The surface with control point [i, j] put to P, and its weight changed where one is given.",
+     PATCH "print points(set_point(s, 1, 2, [0, 0, 7]))[1][2] // expect: [0, 0, 7]", SURFACES,
+     family},
+    {"bezier_join(S, edge = \"u1\", ratio = 1, shear = 0, degree = none)", bezier_join, "record",
+     "The first two lines of control points, `points` and `weights`, of a Bezier surface that "
+     "continues S across an edge (u0, u1, v0, v1): its derivative across is that of S times the "
+     "ratio, and the derivative along the edge times the shear, a number or two for the ends of "
+     "the edge. Ratio 1 without shear is C1, else G1. The degree across is that of S, or the one "
+     "given.",
+     PATCH "print bezier_join(s, ratio: 2).points[1] // expect: [[5, 0, 0], [5, 1, 5], [5, 2, "
+           "10], [5, 3, 15]]",
+     SURFACES, family},
+    {"match_edge(A, B, ratio = 1, shear = 0, edges = none)", match_edge, "surface",
+     "B with its two lines of control points next to an edge moved so that it continues A there: "
+     "across the edges that are nearest to each other, or those of `edges` (such as [\"u1\", "
+     "\"u0\"]). Ratio and shear as of bezier_join, by the parameters as they are: 1 and 0 give C1. "
+     "B gets the degree and knots that A has along the edge.",
+     PATCH "t = bezier_surface([for i in 0..3: [for j in 0..3: [i + 3.5, j, 1]]])\n"
+           "print continuity(s, match_edge(s, t)).class // expect: C1",
+     SURFACES, family},
+    {"creases(S)", creases, "record",
+     "The lines u = `at`, in the list u, and v = `at` along which the tangents from both sides "
+     "differ, by the `angle` at most: where control points or knots coincide.",
+     "s = bspline_surface([for x in [0, 1, 2, 3, 4]: [for y in [0, 1]: [x, y, -abs(x - 2)]]], "
+     "degree: [2, 1], knots: [[0, 0, 0, 1, 1, 2, 2, 2], \"open\"])\n"
+     "print creases(s).u[0].at, near(creases(s).u[0].angle, 90deg) // expect: 1 true",
+     SURFACES, family},
+    {"flat_spans(S)", flat_spans, "list",
+     "The rectangles between knots, records u and v, over which the surface is plane because all "
+     "control points that act there lie in a plane.",
+     "s = bspline_surface([for i in 0..4: [for j in 0..2: [i, j, if i == 4 then 1 else 0]]], "
+     "degree: 2)\n"
+     "print flat_spans(s) // expect: [{u: 0..1, v: 0..1}, {u: 1..2, v: 0..1}]",
+     SURFACES, family},
+    {"net_mesh(S)", net_mesh, "mesh",
+     "The net of control points as a mesh, a coarse picture of the surface: each quadrilateral is "
+     "cut along its shorter diagonal.",
+     PATCH "print len(faces(net_mesh(s))) // expect: 18", SURFACES, family},
+    {0}};
