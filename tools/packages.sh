@@ -2,7 +2,7 @@
 
 BUILD_PACKAGES="gcc libc6-dev make pkg-config libopenexr-dev liblapacke-dev libopenblas-dev libedit-dev libcjson-dev
   libpng-dev libutf8proc-dev libglu1-mesa-dev povray povray-includes"
-TEST_PACKAGES="libcmocka-dev clang-format tmux libxml2-utils"
+TEST_PACKAGES="libcmocka-dev clang-format tmux libxml2-utils occt-draw"
 
 # Installs those of the packages that are not here; as root, or with sudo.
 install_packages() {

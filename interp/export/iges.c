@@ -11,8 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "interp/scene/color.h"
-
 // Columns of parameters in a line; the number of the directory line follows.
 #define PARAMETER_COLUMNS 64
 #define GLOBAL_COLUMNS 72
@@ -137,7 +135,9 @@ static void end(Writer *w, bool named) {
 static Pointer color(Writer *w, CagColor c) {
   Pointer p = begin(w, 314, 0, DEFINITION);
   const double rgb[3] = {c.r, c.g, c.b};
-  for (int i = 0; i < 3; i++) put_real(w, 100 * cag_linear_to_srgb(fmin(fmax(rgb[i], 0), 1)));
+  // Hundredths of sRGB, as viewers take it, to 3 places.
+  for (int i = 0; i < 3; i++)
+    put_real(w, round(1e5 * cag_linear_to_srgb(fmin(fmax(rgb[i], 0), 1))) / 1e3);
   end(w, false);
   return p;
 }

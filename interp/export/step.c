@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "interp/scene/color.h"
-
 typedef size_t Id; // of an entity; 0: none
 
 typedef struct Writer {
@@ -363,13 +361,18 @@ static Id curve_set(Writer *w, const CagBrepShape *shape) {
 
 // --- Colours ---
 
+// Of sRGB, as viewers take it, to 5 places.
+static void put_share(Writer *w, double linear) {
+  put_real(w, round(1e5 * cag_linear_to_srgb(fmin(fmax(linear, 0), 1))) / 1e5);
+}
+
 static Id color(Writer *w, CagColor c) {
   Id id = begin(w, "COLOUR_RGB('',");
-  put_real(w, cag_linear_to_srgb(fmin(fmax(c.r, 0), 1)));
+  put_share(w, c.r);
   put(w, ",");
-  put_real(w, cag_linear_to_srgb(fmin(fmax(c.g, 0), 1)));
+  put_share(w, c.g);
   put(w, ",");
-  put_real(w, cag_linear_to_srgb(fmin(fmax(c.b, 0), 1)));
+  put_share(w, c.b);
   end(w);
   return id;
 }
