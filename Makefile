@@ -20,7 +20,7 @@ Q := $(if $(V),,@)
 
 # Each: pkg-config name and the Debian package to install when it is missing.
 NEEDS := OpenEXR:libopenexr-dev lapacke:liblapacke-dev libedit:libedit-dev libcjson:libcjson-dev \
-         libpng:libpng-dev libutf8proc:libutf8proc-dev glu:libglu1-mesa-dev
+         libpng:libpng-dev libutf8proc:libutf8proc-dev glu:libglu1-mesa-dev zlib:zlib1g-dev
 MODULES := $(foreach n,$(NEEDS),$(firstword $(subst :, ,$(n))))
 ifeq ($(filter clean format check-format check-layers,$(MAKECMDGOALS)),)
 MISSING := $(foreach n,$(NEEDS),$(shell pkg-config --exists $(firstword $(subst :, ,$(n))) || echo $(lastword $(subst :, ,$(n)))))

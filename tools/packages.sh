@@ -1,7 +1,7 @@
 # The Debian packages that cag needs, and their installation; read by setup.sh and test.sh.
 
 BUILD_PACKAGES="gcc libc6-dev make pkg-config libopenexr-dev liblapacke-dev libopenblas-dev libedit-dev libcjson-dev
-  libpng-dev libutf8proc-dev libglu1-mesa-dev povray povray-includes"
+  libpng-dev libutf8proc-dev libglu1-mesa-dev zlib1g-dev povray povray-includes"
 TEST_PACKAGES="libcmocka-dev clang-format tmux libxml2-utils occt-draw"
 
 # Installs those of the packages that are not here; as root, or with sudo.

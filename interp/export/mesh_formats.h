@@ -1,10 +1,12 @@
-// Meshes as files for other programs: OBJ with its MTL, binary STL, binary PLY, binary glTF (GLB).
+// Meshes as files for other programs: OBJ with its MTL, binary STL, binary PLY, glTF and binary
+// glTF (GLB), 3MF.
 //
 // A file is written from parts, each a mesh with a name and a material, to an open output file;
 // errors of writing stay in the file until its commit. Triangles that the single precision of a
-// format shrinks to an edge or a point are left out of STL, PLY and GLB (their neighbours close the
-// place). Lengths are millimetres, Z up, in OBJ, STL and PLY; GLB keeps them in its vertices, and
-// its root node turns them into glTF's metres and Y up.
+// format shrinks to an edge or a point are left out of all but OBJ (their neighbours close the
+// place). Lengths are millimetres, Z up, in OBJ, STL, PLY and 3MF; glTF keeps them in its vertices,
+// and its root node turns them into metres and Y up. Parts that are copies of another are written
+// as such in glTF and 3MF.
 
 #ifndef CAG_INTERP_EXPORT_MESH_FORMATS_H
 #define CAG_INTERP_EXPORT_MESH_FORMATS_H
@@ -33,8 +35,16 @@ CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, 
 // One welded mesh: a point is one vertex, so its normal at a crease is the mean of those there, and
 // its parameters at a seam are the first. Colours are 8-bit sRGB.
 CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
-// glTF 2.0: a node and a mesh each part, metallic-roughness materials with the Khronos extensions
-// for ior, transmission, clear coat and strong emission where a material has them.
+// glTF 2.0: a node each part, a mesh each part that is no copy, metallic-roughness materials with
+// the Khronos extensions for ior, transmission, clear coat and strong emission where a material has
+// them.
 CagStatus cag_export_glb(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
+// The same as JSON, its data in a file beside it that has the name data_name; data NULL: in the
+// JSON itself.
+CagStatus cag_export_gltf(const CagMeshPart *parts, size_t n, const char *data_name,
+                          CagAtomicFile *data, CagAtomicFile *file, CagError *err);
+// 3MF, core specification: an object each part, closed ones as models and open ones as surfaces,
+// colours as base materials.
+CagStatus cag_export_3mf(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
 
 #endif

@@ -77,18 +77,20 @@ char *cag_mesh_write_word(char *at, const char *name, size_t room) {
   return at;
 }
 
-float *cag_mesh_float_positions(const CagMesh *m) {
-  float *p = malloc((m->vertex_count + 1) * 3 * sizeof *p);
-  for (size_t v = 0; p && v < m->vertex_count; v++) {
-    // + 0: a negative zero is the same place as a positive one.
-    p[3 * v] = (float)m->positions[v].x + 0.0f;
-    p[3 * v + 1] = (float)m->positions[v].y + 0.0f;
-    p[3 * v + 2] = (float)m->positions[v].z + 0.0f;
+void cag_mesh_write_words(CagAtomicFile *file, const void *words, size_t n) {
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+  cag_atomic_file_write(file, words, 4 * n);
+#else
+  for (size_t k = 0; k < n; k++) {
+    uint32_t word;
+    memcpy(&word, (const char *)words + 4 * k, 4);
+    char *at = cag_atomic_file_reserve(file, 4);
+    cag_atomic_file_advance(file, cag_mesh_put_u32(at, word));
   }
-  return p;
+#endif
 }
 
-CagStatus cag_mesh_check_range(const CagMeshPart *part, CagError *err) {
+static CagStatus fail_range(const CagMeshPart *part, CagError *err) {
   const CagMesh *m = part->mesh;
   for (size_t v = 0; v < m->vertex_count; v++) {
     CagVec3 p = m->positions[v];
@@ -98,6 +100,51 @@ CagStatus cag_mesh_check_range(const CagMeshPart *part, CagError *err) {
                     "the format; OBJ can hold it",
                     part->name ? part->name : "part", p.x, p.y, p.z);
   }
+  return CAG_OK;
+}
+
+// Numbers are taken as one row of 3 n, in steps of 12, so that the compiler makes vectors of them.
+enum { LANES = 12 };
+
+static void widen(const double *x, float least[LANES], float most[LANES], int n) {
+  for (int k = 0; k < n; k++) {
+    float f = (float)x[k];
+    least[k] = f < least[k] ? f : least[k];
+    most[k] = f > most[k] ? f : most[k];
+  }
+}
+
+CagStatus cag_mesh_floats(const CagMeshPart *part, float **out, float least[3], float most[3],
+                          CagError *err) {
+  const CagMesh *m = part->mesh;
+  size_t n = 3 * m->vertex_count, k = 0;
+  const double *x = n > 0 ? &m->positions[0].x : NULL;
+  float low[LANES], high[LANES], *p = malloc((n + 3) * sizeof *p);
+  *out = NULL;
+  if (!p) return cag_fail_memory(err);
+  for (int j = 0; j < LANES; j++) low[j] = INFINITY, high[j] = -INFINITY;
+  int good = 1;
+  for (; k + LANES <= n; k += LANES) {
+    // + 0: a negative zero is the same place as a positive one.
+    for (int j = 0; j < LANES; j++) p[k + (size_t)j] = (float)x[k + (size_t)j] + 0.0f;
+    for (int j = 0; j < LANES; j++) good &= fabs(x[k + (size_t)j]) <= FLT_MAX;
+    widen(x + k, low, high, LANES);
+  }
+  for (size_t j = k; j < n; j++) {
+    p[j] = (float)x[j] + 0.0f;
+    good &= fabs(x[j]) <= FLT_MAX;
+  }
+  if (n > k) widen(x + k, low, high, (int)(n - k));
+  if (!good) {
+    free(p);
+    return fail_range(part, err);
+  }
+  for (int j = 0; least && j < LANES; j++) {
+    int axis = j % 3;
+    least[axis] = j < 3 ? low[j] : fminf(least[axis], low[j]);
+    most[axis] = j < 3 ? high[j] : fmaxf(most[axis], high[j]);
+  }
+  *out = p;
   return CAG_OK;
 }
 

@@ -31,8 +31,13 @@ static inline char *cag_mesh_put_float(char *at, float x) {
   return cag_mesh_put_u32(at, bits);
 }
 
-// Positions in single precision; malloc'd, 3 a vertex. NULL: no memory.
-float *cag_mesh_float_positions(const CagMesh *m);
+// Appends words of 4 bytes, whole numbers or floats.
+void cag_mesh_write_words(CagAtomicFile *file, const void *words, size_t n);
+
+// Positions in single precision, 3 a vertex, from malloc, and their bounds (either may be NULL).
+// Fails with "mesh-empty" where a coordinate is beyond single precision.
+CagStatus cag_mesh_floats(const CagMeshPart *part, float **out, float least[3], float most[3],
+                          CagError *err);
 // Do two corners of the triangle lie on one point in single precision?
 static inline bool cag_mesh_shrinks(const float *p, const uint32_t *k) {
   const float *a = p + 3 * (size_t)k[0], *b = p + 3 * (size_t)k[1], *c = p + 3 * (size_t)k[2];
@@ -40,8 +45,6 @@ static inline bool cag_mesh_shrinks(const float *p, const uint32_t *k) {
          (b[0] == c[0] && b[1] == c[1] && b[2] == c[2]) ||
          (c[0] == a[0] && c[1] == a[1] && c[2] == a[2]);
 }
-// Fails with "mesh-empty" where a coordinate is beyond single precision.
-CagStatus cag_mesh_check_range(const CagMeshPart *part, CagError *err);
 size_t cag_mesh_kept_triangles(const CagMesh *m, const float *positions);
 
 // Index of the first part with the same material as part i.

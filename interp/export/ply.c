@@ -40,10 +40,9 @@ static void sum_normals(const CagMesh *m, CagVec3 *normals) {
 }
 
 static bool begin_part(PlyPart *p, const CagMesh *m, size_t first) {
-  p->positions = cag_mesh_float_positions(m);
   p->number = malloc((m->vertex_count + 1) * sizeof *p->number);
   p->normals = malloc((m->vertex_count + 1) * sizeof *p->normals);
-  if (!p->positions || !p->number || !p->normals) return false;
+  if (!p->number || !p->normals) return false;
   sum_normals(m, p->normals);
   for (size_t v = 0; v < m->vertex_count; v++) {
     uint32_t point = point_of(m, v);
@@ -118,7 +117,7 @@ CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file
   size_t vertices = 0, triangles = 0;
   CagStatus status = p ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; status == CAG_OK && i < n; i++) {
-    status = cag_mesh_check_range(&parts[i], err);
+    status = cag_mesh_floats(&parts[i], &p[i].positions, NULL, NULL, err);
     if (status != CAG_OK) break;
     if (!begin_part(&p[i], parts[i].mesh, vertices)) status = cag_fail_memory(err);
     vertices += p[i].vertices;

@@ -36,11 +36,9 @@ CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, 
   CagStatus status = positions ? CAG_OK : cag_fail_memory(err);
   size_t triangles = 0, shown = 0;
   for (size_t i = 0; status == CAG_OK && i < n; i++) {
-    status = cag_mesh_check_range(&parts[i], err);
+    status = cag_mesh_floats(&parts[i], &positions[i], NULL, NULL, err);
     if (status != CAG_OK) break;
-    positions[i] = cag_mesh_float_positions(parts[i].mesh);
-    if (!positions[i]) status = cag_fail_memory(err);
-    else triangles += cag_mesh_kept_triangles(parts[i].mesh, positions[i]);
+    triangles += cag_mesh_kept_triangles(parts[i].mesh, positions[i]);
     shown += parts[i].mesh->triangle_count;
   }
   if (status == CAG_OK && triangles > UINT32_MAX)

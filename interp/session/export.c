@@ -57,58 +57,57 @@ static int make_parts(CagSession *s, Parts *out) {
   return CAG_STATUS_OK;
 }
 
-// Name of the material file that goes with an .obj; NULL for standard output.
-static char *material_path(const char *path) {
+// Meshes are no output without triangles: labels and grounds are drawn in pictures alone.
+static int check_parts(CagSession *s, const Parts *parts) {
+  for (size_t i = 0; i < parts->count; i++)
+    if (parts->items[i].mesh->triangle_count > 0) return CAG_STATUS_OK;
+  CagDiagnostic *d = cag_diagnostics_add(
+      &s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0},
+      "%s shows nothing that a mesh file can hold", s->script ? s->script : "the session");
+  cag_diagnostic_set_help(d, s->scene.label_count > 0
+                                 ? "labels are drawn in .svg only; show a surface, solid or mesh"
+                                 : "a ground is for pictures; show a surface, solid or mesh");
+  return CAG_STATUS_SCRIPT;
+}
+
+// Name of the file that goes with another one, such as part.mtl with part.obj; NULL for standard
+// output.
+static char *path_beside(const char *path, const char *ending) {
   if (strcmp(path, "-") == 0) return NULL;
   const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
   size_t stem = dot && (!slash || dot > slash) ? (size_t)(dot - path) : strlen(path);
-  char *out = malloc(stem + 5);
-  if (out) snprintf(out, stem + 5, "%.*s.mtl", (int)stem, path);
-  return out;
+  char *out = NULL;
+  return asprintf(&out, "%.*s%s", (int)stem, path, ending) < 0 ? NULL : out;
 }
 
 typedef struct MeshOutput {
   const CagMeshPart *parts;
   size_t count;
-  const char *material_file; // of .obj
+  CagAtomicFile *file, *beside; // beside: NULL where the format or the output has none
+  const char *beside_name;
 } MeshOutput;
 
-typedef CagStatus (*MeshWriter)(const MeshOutput *m, CagAtomicFile *f, CagError *err);
+typedef CagStatus (*MeshWriter)(const MeshOutput *m, CagError *err);
 
-static CagStatus write_obj(const MeshOutput *m, CagAtomicFile *f, CagError *err) {
-  return cag_export_obj(m->parts, m->count, m->material_file, f, err);
+static CagStatus write_obj(const MeshOutput *m, CagError *err) {
+  CagStatus status = cag_export_obj(m->parts, m->count, m->beside_name, m->file, err);
+  return status == CAG_OK && m->beside ? cag_export_mtl(m->parts, m->count, m->beside, err)
+                                       : status;
 }
-static CagStatus write_mtl(const MeshOutput *m, CagAtomicFile *f, CagError *err) {
-  return cag_export_mtl(m->parts, m->count, f, err);
+static CagStatus write_stl(const MeshOutput *m, CagError *err) {
+  return cag_export_stl(m->parts, m->count, NULL, m->file, err);
 }
-static CagStatus write_stl(const MeshOutput *m, CagAtomicFile *f, CagError *err) {
-  return cag_export_stl(m->parts, m->count, NULL, f, err);
+static CagStatus write_ply(const MeshOutput *m, CagError *err) {
+  return cag_export_ply(m->parts, m->count, m->file, err);
 }
-static CagStatus write_ply(const MeshOutput *m, CagAtomicFile *f, CagError *err) {
-  return cag_export_ply(m->parts, m->count, f, err);
+static CagStatus write_glb(const MeshOutput *m, CagError *err) {
+  return cag_export_glb(m->parts, m->count, m->file, err);
 }
-static CagStatus write_glb(const MeshOutput *m, CagAtomicFile *f, CagError *err) {
-  return cag_export_glb(m->parts, m->count, f, err);
+static CagStatus write_gltf(const MeshOutput *m, CagError *err) {
+  return cag_export_gltf(m->parts, m->count, m->beside_name, m->beside, m->file, err);
 }
-
-// Writes to an open file; the file is whole, but not yet in its place. NULL: failed, *status says
-// how.
-static CagAtomicFile *write_mesh_file(CagSession *s, const MeshOutput *m, const char *path,
-                                      MeshWriter write, int *status) {
-  CagIoError io = {0};
-  CagError err = {0};
-  CagAtomicFile *f = cag_atomic_file_open(path, &io);
-  if (!f) {
-    *status = cag_session_fail_io(s, CAG_ERR_output_file, &io);
-    return NULL;
-  }
-  if (cag_session_checked(s, write(m, f, &err), &err) != CAG_OK) {
-    cag_atomic_file_abort(f);
-    *status = cag_session_fail_geometry(s, &err);
-    return NULL;
-  }
-  cag_atomic_file_flush(f);
-  return f;
+static CagStatus write_3mf(const MeshOutput *m, CagError *err) {
+  return cag_export_3mf(m->parts, m->count, m->file, err);
 }
 
 static int commit(CagSession *s, CagAtomicFile *f) {
@@ -117,36 +116,73 @@ static int commit(CagSession *s, CagAtomicFile *f) {
                                         : cag_session_fail_io(s, CAG_ERR_output_file, &io);
 }
 
-// Writes the meshes, and beside an .obj its materials: both stand there anew, or neither does.
-static int export_meshes(CagSession *s, const char *path, MeshWriter write) {
+// Puts both files into their places, or neither. The one beside comes first: a file that stands
+// there whole finds what it names.
+static int commit_both(CagSession *s, MeshOutput *m) {
+  cag_atomic_file_flush(m->file);
+  if (m->beside) cag_atomic_file_flush(m->beside);
+  if (cag_atomic_file_failed(m->file)) { // its commit tells why
+    cag_atomic_file_abort(m->beside);
+    return commit(s, m->file);
+  }
+  int status = m->beside ? commit(s, m->beside) : CAG_STATUS_OK;
+  if (status == CAG_STATUS_OK) return commit(s, m->file);
+  cag_atomic_file_abort(m->file);
+  return status;
+}
+
+static int write_meshes(CagSession *s, MeshOutput *m, const char *path, const char *beside,
+                        MeshWriter write) {
+  CagIoError io = {0};
+  CagError err = {0};
+  const char *slash = beside ? strrchr(beside, '/') : NULL;
+  m->beside_name = slash ? slash + 1 : beside;
+  m->file = cag_atomic_file_open(path, &io);
+  if (m->file && beside) m->beside = cag_atomic_file_open(beside, &io);
+  if (!m->file || (beside && !m->beside)) {
+    cag_atomic_file_abort(m->file);
+    return cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  }
+  if (cag_session_checked(s, write(m, &err), &err) == CAG_OK) return commit_both(s, m);
+  cag_atomic_file_abort(m->file);
+  cag_atomic_file_abort(m->beside);
+  return cag_session_fail_geometry(s, &err);
+}
+
+// ending: of the file that goes with it; NULL: none.
+static int export_meshes(CagSession *s, const char *path, MeshWriter write, const char *ending) {
   Parts parts;
   int status = make_parts(s, &parts);
   if (status != CAG_STATUS_OK) return status;
-  char *materials = write == write_obj ? material_path(path) : NULL;
-  const char *slash = materials ? strrchr(materials, '/') : NULL;
-  MeshOutput m = {parts.items, parts.count, slash ? slash + 1 : materials};
-  CagAtomicFile *beside = NULL, *file = write_mesh_file(s, &m, path, write, &status);
-  if (file && materials) beside = write_mesh_file(s, &m, materials, write_mtl, &status);
-  if (!file || (materials && !beside)) {
-    cag_atomic_file_abort(file);
-  } else if (cag_atomic_file_failed(file)) { // its commit tells why
-    cag_atomic_file_abort(beside);
-    status = commit(s, file);
-  } else {
-    // The materials first: an .obj that stands there whole finds them.
-    if (beside) status = commit(s, beside);
-    if (status == CAG_STATUS_OK) status = commit(s, file);
-    else cag_atomic_file_abort(file);
+  status = check_parts(s, &parts);
+  if (status == CAG_STATUS_OK) {
+    char *beside = ending ? path_beside(path, ending) : NULL;
+    MeshOutput m = {.parts = parts.items, .count = parts.count};
+    status = write_meshes(s, &m, path, beside, write);
+    free(beside);
   }
-  free(materials);
   free_parts(&parts);
   return status;
 }
 
-static int export_obj(CagSession *s, const char *path) { return export_meshes(s, path, write_obj); }
-static int export_stl(CagSession *s, const char *path) { return export_meshes(s, path, write_stl); }
-static int export_ply(CagSession *s, const char *path) { return export_meshes(s, path, write_ply); }
-static int export_glb(CagSession *s, const char *path) { return export_meshes(s, path, write_glb); }
+static int export_obj(CagSession *s, const char *path) {
+  return export_meshes(s, path, write_obj, ".mtl");
+}
+static int export_stl(CagSession *s, const char *path) {
+  return export_meshes(s, path, write_stl, NULL);
+}
+static int export_ply(CagSession *s, const char *path) {
+  return export_meshes(s, path, write_ply, NULL);
+}
+static int export_glb(CagSession *s, const char *path) {
+  return export_meshes(s, path, write_glb, NULL);
+}
+static int export_gltf(CagSession *s, const char *path) {
+  return export_meshes(s, path, write_gltf, ".bin");
+}
+static int export_3mf(CagSession *s, const char *path) {
+  return export_meshes(s, path, write_3mf, NULL);
+}
 
 // --- Scenes as text ---
 
@@ -232,6 +268,8 @@ static const struct Format {
     {"stl", "mesh, binary STL", export_stl},
     {"ply", "mesh, binary PLY with normals, colours and parameters", export_ply},
     {"glb", "mesh, binary glTF 2.0 in metres with Y up", export_glb},
+    {"gltf", "mesh, glTF 2.0 with its data in a .bin file beside it", export_gltf},
+    {"3mf", "mesh, 3MF with objects, copies and colours", export_3mf},
     {"pov", "scene, POV-Ray 3.7 source with its own objects where it has them", export_pov},
     {"igs", "exact geometry, IGES 5.3 with curves, surfaces and trimmed planes", export_iges},
     {"step", "exact geometry, STEP AP214 with solids, colours and names", export_step},
@@ -241,8 +279,8 @@ static const struct Format {
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 
 const char *const *cag_export_formats(void) {
-  static const char *const names[] = {"obj", "stl",  "ply", "glb",  "pov",
-                                      "igs", "step", "svg", "json", NULL};
+  static const char *const names[] = {"obj", "stl", "ply",  "glb", "gltf", "3mf",
+                                      "pov", "igs", "step", "svg", "json", NULL};
   return names;
 }
 
@@ -279,10 +317,11 @@ int cag_session_export(CagSession *s, const char *path, const char *format) {
               : cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
                                     "%s has no ending that tells the format", path);
     cag_diagnostic_set_help(
-        d, strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0
-               ? "`cag render` makes pictures"
-               : "the formats are obj, stl, ply, glb, pov, igs, step, svg, json; --format "
-                 "says it where the ending does not");
+        d,
+        strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0
+            ? "`cag render` makes pictures"
+            : "the formats are obj, stl, ply, glb, gltf, 3mf, pov, igs, step, svg, json; --format "
+              "says it where the ending does not");
     return CAG_STATUS_USAGE;
   }
   int status = cag_session_build_scene(s);

@@ -1,0 +1,268 @@
+// 3MF, core specification: a ZIP archive of the model as XML and the two parts that point to it.
+//
+// Ids: 1 the base materials, 2 on the objects in the order of the parts. A part is an object with a
+// mesh; a copy is an object with another one as its component, moved, which keeps its own name,
+// unless its material is another: then it has a mesh of its own. A mesh must be closed to be a
+// model; an open one is a surface. Points are those of the welded mesh.
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "interp/export/mesh_copies.h"
+#include "interp/export/mesh_write.h"
+#include "interp/export/zip.h"
+
+#ifndef CAG_VERSION
+#define CAG_VERSION "0"
+#endif
+
+enum {
+  BATCH = 128,
+  VERTEX_BYTES = 3 * 25 + 40,
+  TRIANGLE_BYTES = 3 * 21 + 40,
+  MATERIALS_ID = 1,
+  FIRST_OBJECT = 2
+};
+
+typedef struct Model {
+  const CagMeshPart *parts;
+  size_t count;
+  CagMeshCopy *copies;
+  const CagMaterial **materials; // in use, each once
+  size_t material_count;
+  CagAtomicFile *xml; // in memory
+} Model;
+
+static char *put_text(char *at, const char *text) {
+  size_t n = strlen(text);
+  memcpy(at, text, n);
+  return at + n;
+}
+
+// Text of an attribute. Control characters are none of XML's.
+static void write_escaped(CagAtomicFile *xml, const char *text) {
+  for (; *text; text++) {
+    unsigned char c = (unsigned char)*text;
+    const char *as = c == '&'   ? "&amp;"
+                     : c == '<' ? "&lt;"
+                     : c == '>' ? "&gt;"
+                     : c == '"' ? "&quot;"
+                     : c < ' '  ? " "
+                                : NULL;
+    if (as) cag_atomic_file_text(xml, as);
+    else cag_atomic_file_write(xml, text, 1);
+  }
+}
+
+// --- Materials ---
+
+static size_t material_number(const Model *m, const CagMaterial *material) {
+  size_t k = 0;
+  while (k < m->material_count && m->materials[k] != material) k++;
+  return k;
+}
+
+// Colours are sRGB; what lets light through is transparent.
+static void write_materials(Model *m) {
+  if (m->material_count == 0) return;
+  cag_atomic_file_printf(m->xml, "  <basematerials id=\"%d\">\n", MATERIALS_ID);
+  for (size_t i = 0; i < m->material_count; i++) {
+    const CagMaterial *a = m->materials[i];
+    const double x[4] = {cag_linear_to_srgb(fmin(fmax(a->color.r, 0), 1)),
+                         cag_linear_to_srgb(fmin(fmax(a->color.g, 0), 1)),
+                         cag_linear_to_srgb(fmin(fmax(a->color.b, 0), 1)),
+                         1 - fmin(fmax(a->transmission, 0), 1)};
+    cag_atomic_file_text(m->xml, "   <base name=\"");
+    write_escaped(m->xml, a->name ? a->name : "material");
+    cag_atomic_file_text(m->xml, "\" displaycolor=\"#");
+    for (int k = 0; k < 4; k++) cag_atomic_file_printf(m->xml, "%02X", (int)(255 * x[k] + 0.5));
+    cag_atomic_file_text(m->xml, "\"/>\n");
+  }
+  cag_atomic_file_text(m->xml, "  </basematerials>\n");
+}
+
+// --- Meshes ---
+
+static void write_vertices(Model *m, const CagMesh *mesh, const float *p, uint32_t *number) {
+  uint32_t n = 0;
+  for (size_t v = 0; v < mesh->vertex_count;) {
+    char *at = cag_atomic_file_reserve(m->xml, (size_t)BATCH * VERTEX_BYTES);
+    for (size_t end = v + BATCH; v < mesh->vertex_count && v < end; v++) {
+      if (mesh->weld && mesh->weld[v] != v) {
+        number[v] = number[mesh->weld[v]];
+        continue;
+      }
+      number[v] = n++;
+      at = put_text(at, "     <vertex x=\"");
+      at = cag_mesh_write_number(at, p[3 * v]);
+      at = put_text(at, "\" y=\"");
+      at = cag_mesh_write_number(at, p[3 * v + 1]);
+      at = put_text(at, "\" z=\"");
+      at = cag_mesh_write_number(at, p[3 * v + 2]);
+      at = put_text(at, "\"/>\n");
+    }
+    cag_atomic_file_advance(m->xml, at);
+  }
+}
+
+static void write_triangles(Model *m, const CagMesh *mesh, const float *p, const uint32_t *number) {
+  for (size_t t = 0; t < mesh->triangle_count;) {
+    char *at = cag_atomic_file_reserve(m->xml, (size_t)BATCH * TRIANGLE_BYTES);
+    for (size_t end = t + BATCH; t < mesh->triangle_count && t < end; t++) {
+      const uint32_t *k = mesh->triangles + 3 * t;
+      if (cag_mesh_shrinks(p, k)) continue;
+      at = put_text(at, "     <triangle v1=\"");
+      at = cag_mesh_write_index(at, number[k[0]]);
+      at = put_text(at, "\" v2=\"");
+      at = cag_mesh_write_index(at, number[k[1]]);
+      at = put_text(at, "\" v3=\"");
+      at = cag_mesh_write_index(at, number[k[2]]);
+      at = put_text(at, "\"/>\n");
+    }
+    cag_atomic_file_advance(m->xml, at);
+  }
+}
+
+static CagStatus write_mesh(Model *m, size_t i, const float *p, CagError *err) {
+  const CagMesh *mesh = m->parts[i].mesh;
+  uint32_t *number = malloc((mesh->vertex_count + 1) * sizeof *number);
+  if (!number) return cag_fail_memory(err);
+  cag_atomic_file_text(m->xml, "   <mesh>\n    <vertices>\n");
+  write_vertices(m, mesh, p, number);
+  cag_atomic_file_text(m->xml, "    </vertices>\n    <triangles>\n");
+  write_triangles(m, mesh, p, number);
+  cag_atomic_file_text(m->xml, "    </triangles>\n   </mesh>\n");
+  free(number);
+  return CAG_OK;
+}
+
+// --- Objects ---
+
+// A transform by rows, as for row vectors: the three images of the axes, then the place.
+static void write_transform(Model *m, const CagTransform *t) {
+  cag_atomic_file_text(m->xml, " transform=\"");
+  for (int j = 0; j < 4; j++)
+    for (int i = 0; i < 3; i++)
+      cag_atomic_file_printf(m->xml, "%s%.17g", i + j ? " " : "", t->m[i][j] + 0.0);
+  cag_atomic_file_text(m->xml, "\"");
+}
+
+static bool is_component(const Model *m, size_t i) {
+  size_t original = m->copies[i].original;
+  return original != i && m->parts[original].material == m->parts[i].material;
+}
+
+static CagStatus write_object(Model *m, size_t i, const float *p, CagError *err) {
+  const CagMeshPart *part = &m->parts[i];
+  CagVec3 edge[2];
+  size_t original = m->copies[i].original;
+  bool closed = cag_mesh_is_watertight(m->parts[original].mesh, edge);
+  cag_atomic_file_printf(m->xml, "  <object id=\"%zu\" type=\"%s\" name=\"", i + FIRST_OBJECT,
+                         closed ? "model" : "surface");
+  write_escaped(m->xml, part->name ? part->name : "part");
+  cag_atomic_file_text(m->xml, "\"");
+  CagStatus status = CAG_OK;
+  if (is_component(m, i)) {
+    cag_atomic_file_printf(m->xml, ">\n   <components>\n    <component objectid=\"%zu\"",
+                           original + FIRST_OBJECT);
+    write_transform(m, &m->copies[i].place);
+    cag_atomic_file_text(m->xml, "/>\n   </components>\n");
+  } else {
+    if (part->material)
+      cag_atomic_file_printf(m->xml, " pid=\"%d\" pindex=\"%zu\"", MATERIALS_ID,
+                             material_number(m, part->material));
+    cag_atomic_file_text(m->xml, ">\n");
+    status = write_mesh(m, i, p, err);
+  }
+  cag_atomic_file_text(m->xml, "  </object>\n");
+  return status;
+}
+
+// All objects; *shown: those of which single precision leaves something.
+static CagStatus write_objects(Model *m, bool *shown, CagError *err) {
+  for (size_t i = 0; i < m->count; i++) {
+    float *p = NULL;
+    if (is_component(m, i)) shown[i] = shown[m->copies[i].original];
+    else {
+      CagStatus status = cag_mesh_floats(&m->parts[i], &p, NULL, NULL, err);
+      if (status != CAG_OK) return status;
+      shown[i] = cag_mesh_kept_triangles(m->parts[i].mesh, p) > 0;
+    }
+    CagStatus status = shown[i] ? write_object(m, i, p, err) : CAG_OK;
+    free(p);
+    if (status != CAG_OK) return status;
+  }
+  return CAG_OK;
+}
+
+static CagStatus write_model(Model *m, bool *shown, CagError *err) {
+  cag_atomic_file_text(
+      m->xml, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+              "<model unit=\"millimeter\" xml:lang=\"en-US\" "
+              "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"
+              " <metadata name=\"Application\">cag " CAG_VERSION "</metadata>\n <resources>\n");
+  write_materials(m);
+  CagStatus status = write_objects(m, shown, err);
+  if (status != CAG_OK) return status;
+  cag_atomic_file_text(m->xml, " </resources>\n <build>\n");
+  for (size_t i = 0; i < m->count; i++)
+    if (shown[i]) cag_atomic_file_printf(m->xml, "  <item objectid=\"%zu\"/>\n", i + FIRST_OBJECT);
+  cag_atomic_file_text(m->xml, " </build>\n</model>\n");
+  return CAG_OK;
+}
+
+// --- The archive ---
+
+static CagStatus write_archive(const char *xml, size_t size, CagAtomicFile *file, CagError *err) {
+  static const char types[] =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\n"
+      " <Default Extension=\"rels\" "
+      "ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>\n"
+      " <Default Extension=\"model\" "
+      "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/>\n</Types>\n";
+  static const char relations[] =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">\n"
+      " <Relationship Target=\"/3D/3dmodel.model\" Id=\"model\" "
+      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>\n"
+      "</Relationships>\n";
+  CagZip zip = {.file = file};
+  CagStatus status = cag_zip_add(&zip, "[Content_Types].xml", types, sizeof types - 1, err);
+  if (status == CAG_OK)
+    status = cag_zip_add(&zip, "_rels/.rels", relations, sizeof relations - 1, err);
+  if (status == CAG_OK) status = cag_zip_add(&zip, "3D/3dmodel.model", xml, size, err);
+  if (status == CAG_OK) cag_zip_end(&zip);
+  return status;
+}
+
+static CagStatus begin(Model *m, CagError *err) {
+  CagIoError io;
+  m->materials = malloc((m->count + 1) * sizeof *m->materials);
+  if (!m->materials) return cag_fail_memory(err);
+  for (size_t i = 0; i < m->count; i++)
+    if (m->parts[i].material && material_number(m, m->parts[i].material) == m->material_count)
+      m->materials[m->material_count++] = m->parts[i].material;
+  m->xml = cag_atomic_file_open_memory(&io);
+  if (!m->xml) return cag_fail_memory(err);
+  return cag_mesh_find_copies(m->parts, m->count, &m->copies, err);
+}
+
+CagStatus cag_export_3mf(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err) {
+  Model m = {.parts = parts, .count = n};
+  bool *shown = calloc(n + 1, sizeof *shown);
+  CagIoError io;
+  char *xml = NULL;
+  size_t size = 0;
+  CagStatus status = shown ? begin(&m, err) : cag_fail_memory(err);
+  if (status == CAG_OK) status = write_model(&m, shown, err);
+  if (status == CAG_OK) {
+    if (!cag_atomic_file_commit_memory(m.xml, &xml, &size, &io)) status = cag_fail_memory(err);
+    else status = write_archive(xml, size, file, err);
+  } else cag_atomic_file_abort(m.xml);
+  free(xml);
+  free(shown);
+  free(m.copies);
+  free(m.materials);
+  return status;
+}

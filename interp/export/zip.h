@@ -1,0 +1,26 @@
+// ZIP archives as office-like formats (3MF) are packed in: deflated members, the same bytes for the
+// same content.
+
+#ifndef CAG_INTERP_EXPORT_ZIP_H
+#define CAG_INTERP_EXPORT_ZIP_H
+
+#include "geom/status.h"
+#include "interp/render/atomic_file.h"
+
+enum { CAG_ZIP_MEMBERS = 8, CAG_ZIP_NAME = 64 };
+
+typedef struct CagZip {
+  CagAtomicFile *file;
+  size_t count;
+  struct CagZipMember {
+    char name[CAG_ZIP_NAME];
+    uint32_t crc, packed, size, offset;
+  } members[CAG_ZIP_MEMBERS];
+} CagZip;
+
+// Adds a member of n bytes. Fails with CAG_E_LIMIT "file-too-large" beyond 4 GB.
+CagStatus cag_zip_add(CagZip *z, const char *name, const char *bytes, size_t n, CagError *err);
+// The directory at the end of the archive.
+void cag_zip_end(CagZip *z);
+
+#endif
