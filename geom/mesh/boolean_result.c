@@ -1,0 +1,301 @@
+// The mesh of a set operation: pieces that bound the solid, rounded to doubles and closed.
+//
+// Points that round to the same place become one; triangles that shrink to an edge or a point go,
+// and so do pairs of triangles that fall on each other with opposite senses. That keeps as many
+// triangles on one side of each edge as on the other. Where an edge is left with more than two,
+// they are joined in twos around the solid between them; corners that are joined become one vertex.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/mesh/boolean_work.h"
+#include "geom/mesh/edges.h"
+
+typedef struct Part {
+  uint32_t v[3];
+  uint32_t piece;
+  bool turned;
+} Part;
+
+// A vertex of the result; its list is that of the other vertices of the same corners.
+typedef struct Vertex {
+  CagVec3 normal;
+  uint32_t point, next, first;
+} Vertex;
+
+typedef struct Builder {
+  BoolWork *w;
+  bool normals;
+  Part *parts;
+  size_t n;
+  uint32_t *triangles;
+  uint32_t *corner; // forest of the corners 3 t + k
+  uint32_t *head;   // of a corner's root: its vertices
+  Vertex *vertices;
+  size_t vertex_count;
+} Builder;
+
+static bool is_inside(CagSetOperation op, bool a, bool b) {
+  return op == CAG_UNION ? a || b : op == CAG_DIFFERENCE ? a && !b : a && b;
+}
+
+// --- Triangles ---
+
+static void take_piece(Builder *b, CagSetOperation op, uint32_t i) {
+  BoolWork *w = b->w;
+  const BoolPiece *p = &bool_pieces(w)[i];
+  const int32_t *front = w->winding[i];
+  const bool outer = is_inside(op, front[0] > 0, front[1] > 0);
+  const bool inner = is_inside(op, front[0] + p->times[0] > 0, front[1] + p->times[1] > 0);
+  if (inner == outer) return;
+  Part part = {{0, 0, 0}, i, outer};
+  for (int k = 0; k < 3; k++)
+    part.v[k] = bool_points_first(&w->points, p->v[outer && k ? 3 - k : k]);
+  if (part.v[0] == part.v[1] || part.v[1] == part.v[2] || part.v[2] == part.v[0]) return;
+  b->parts[b->n++] = part;
+}
+
+// Turned so that the least point comes first; gives whether the next is the greater of the others.
+static bool sorted_corners(const Part *p, uint32_t v[3]) {
+  int least = 0;
+  for (int k = 1; k < 3; k++)
+    if (p->v[k] < p->v[least]) least = k;
+  v[0] = p->v[least];
+  v[1] = p->v[(least + 1) % 3];
+  v[2] = p->v[(least + 2) % 3];
+  if (v[1] < v[2]) return false;
+  const uint32_t middle = v[2];
+  v[2] = v[1];
+  v[1] = middle;
+  return true;
+}
+
+static int by_corners(const void *a, const void *b) {
+  uint32_t v[3], u[3];
+  const Part *p = a, *q = b;
+  const bool back = sorted_corners(p, v), other = sorted_corners(q, u);
+  for (int k = 0; k < 3; k++)
+    if (v[k] != u[k]) return v[k] < u[k] ? -1 : 1;
+  if (back != other) return back ? 1 : -1;
+  return p->piece < q->piece ? -1 : p->piece > q->piece;
+}
+
+// Of the same three corners, first the triangles of one sense, then those of the other.
+static size_t cancel(Part *p, size_t n) {
+  uint32_t v[3];
+  size_t ahead = 0;
+  while (ahead < n && !sorted_corners(&p[ahead], v)) ahead++;
+  const size_t back = n - ahead;
+  if (back > ahead) memmove(p, p + ahead + ahead, (back - ahead) * sizeof *p);
+  return back > ahead ? back - ahead : ahead - back;
+}
+
+static bool same_corners(const Part *p, const Part *q) {
+  uint32_t v[3], u[3];
+  sorted_corners(p, v);
+  sorted_corners(q, u);
+  return memcmp(v, u, sizeof v) == 0;
+}
+
+static int by_piece(const void *a, const void *b) {
+  const Part *p = a, *q = b;
+  return p->piece < q->piece ? -1 : p->piece > q->piece;
+}
+
+static void cancel_opposites(Builder *b) {
+  size_t kept = 0;
+  qsort(b->parts, b->n, sizeof *b->parts, by_corners);
+  for (size_t i = 0, same; i < b->n; i += same) {
+    for (same = 1; i + same < b->n && same_corners(&b->parts[i], &b->parts[i + same]);) same++;
+    const size_t left = cancel(b->parts + i, same);
+    memmove(b->parts + kept, b->parts + i, left * sizeof *b->parts);
+    kept += left;
+  }
+  b->n = kept;
+  qsort(b->parts, b->n, sizeof *b->parts, by_piece);
+}
+
+// --- Corners ---
+
+static void join(uint32_t *parent, uint32_t a, uint32_t b) {
+  a = bool_root(parent, a);
+  b = bool_root(parent, b);
+  if (a < b) parent[b] = a;
+  else parent[a] = b;
+}
+
+static void join_uses(Builder *b, const CagMeshEdge *one, const CagMeshEdge *two) {
+  uint32_t ends[2][2];
+  for (int i = 0; i < 2; i++) {
+    const CagMeshEdge *e = i ? two : one;
+    const uint32_t base = 3 * (uint32_t)cag_mesh_edge_triangle(e), k = cag_mesh_edge_corner(e);
+    const bool forward = cag_mesh_edge_forward(e);
+    ends[i][0] = base + (forward ? k : (k + 1) % 3);
+    ends[i][1] = base + (forward ? (k + 1) % 3 : k);
+  }
+  join(b->corner, ends[0][0], ends[1][0]);
+  join(b->corner, ends[0][1], ends[1][1]);
+}
+
+typedef struct Spoke {
+  double angle;
+  const CagMeshEdge *use;
+} Spoke;
+
+static int by_angle(const void *a, const void *b) {
+  const Spoke *p = a, *q = b;
+  if (p->angle != q->angle) return p->angle < q->angle ? -1 : 1;
+  return p->use < q->use ? -1 : 1;
+}
+
+// Counter-clockwise about the edge from low to high, from a triangle that runs it backward to one
+// that runs it forward there is solid: such neighbours are joined, like brackets.
+static bool join_many(Builder *b, const CagMeshEdge *e, size_t n) {
+  const CagVec3 *at = b->w->points.at;
+  Spoke *spokes = malloc(n * sizeof *spokes);
+  const CagMeshEdge **open = malloc(n * sizeof *open);
+  const CagVec3 low = at[e->low], d = cag_unit(cag_sub(at[e->high], low));
+  const CagVec3 least = fabs(d.x) < fabs(d.y)
+                            ? cag_vec3(fabs(d.x) > fabs(d.z), 0, fabs(d.x) <= fabs(d.z))
+                            : cag_vec3(0, fabs(d.y) <= fabs(d.z), fabs(d.y) > fabs(d.z));
+  const CagVec3 x = cag_unit(cag_cross(d, least)), y = cag_cross(d, x);
+  for (size_t i = 0; spokes && i < n; i++) {
+    const Part *p = &b->parts[cag_mesh_edge_triangle(&e[i])];
+    const CagVec3 apex = cag_sub(at[p->v[(cag_mesh_edge_corner(&e[i]) + 2) % 3]], low);
+    spokes[i] = (Spoke){atan2(cag_dot(apex, y), cag_dot(apex, x)), &e[i]};
+  }
+  const bool done = spokes && open;
+  if (done) qsort(spokes, n, sizeof *spokes, by_angle);
+  // Twice around: brackets that open before the start and close after it.
+  size_t depth = 0;
+  for (size_t i = 0; done && i < 2 * n; i++) {
+    const CagMeshEdge **use = &spokes[i % n].use;
+    if (!*use) continue;
+    if (!cag_mesh_edge_forward(*use)) {
+      if (i < n) open[depth++] = *use;
+    } else if (depth > 0) {
+      join_uses(b, open[--depth], *use);
+      *use = NULL;
+    }
+  }
+  free(spokes);
+  free(open);
+  return done;
+}
+
+static bool join_corners(Builder *b) {
+  size_t n = 0;
+  b->corner = malloc((3 * b->n + 1) * sizeof *b->corner);
+  b->triangles = malloc((3 * b->n + 1) * sizeof *b->triangles);
+  if (!b->corner || !b->triangles) return false;
+  for (uint32_t i = 0; i < 3 * b->n; i++) {
+    b->corner[i] = i;
+    b->triangles[i] = b->parts[i / 3].v[i % 3];
+  }
+  CagMeshEdge *edges = cag_mesh_edges(b->triangles, b->n, NULL, b->w->points.n, &n);
+  bool done = edges != NULL;
+  for (size_t i = 0, uses; done && i < n; i += uses) {
+    for (uses = 1; i + uses < n && edges[i + uses].low == edges[i].low &&
+                   edges[i + uses].high == edges[i].high;)
+      uses++;
+    if (uses == 2) join_uses(b, &edges[i], &edges[i + 1]);
+    else done = join_many(b, edges + i, uses);
+  }
+  free(edges);
+  return done;
+}
+
+// --- Normals ---
+
+// How much of each corner's normal there is at p.
+static void weights_at(const CagVec3 v[3], CagVec3 p, double weight[3]) {
+  const CagVec3 n = cag_cross(cag_sub(v[1], v[0]), cag_sub(v[2], v[0]));
+  double sum = 0;
+  for (int k = 0; k < 3; k++) {
+    const CagVec3 a = cag_sub(v[(k + 1) % 3], p), b = cag_sub(v[(k + 2) % 3], p);
+    weight[k] = fmax(0, cag_dot(n, cag_cross(a, b)));
+    sum += weight[k];
+  }
+  for (int k = 0; k < 3; k++) weight[k] = sum > 0 ? weight[k] / sum : 1 / 3.0;
+}
+
+static CagVec3 normal_at(const Builder *b, const Part *part, CagVec3 p) {
+  const BoolPiece *piece = &bool_pieces(b->w)[part->piece];
+  const BoolFace *face = &b->w->faces[piece->face];
+  const CagMesh *m = b->w->meshes[face->owner];
+  const uint32_t *corner = m->triangles + 3 * (size_t)face->triangle;
+  const double sense = (piece->facing > 0) == part->turned ? -1 : 1;
+  CagVec3 v[3], normal = {0, 0, 0};
+  double weight[3];
+  for (int k = 0; k < 3; k++) v[k] = m->positions[corner[k]];
+  if (m->normals) {
+    weights_at(v, p, weight);
+    for (int k = 0; k < 3; k++) {
+      if (v[k].x == p.x && v[k].y == p.y && v[k].z == p.z)
+        return cag_scaled(m->normals[corner[k]], sense);
+      normal = cag_madd(normal, weight[k], m->normals[corner[k]]);
+    }
+  }
+  if (!(cag_norm(normal) > 0)) normal = cag_cross(cag_sub(v[1], v[0]), cag_sub(v[2], v[0]));
+  return cag_scaled(cag_unit(normal), sense);
+}
+
+// --- Vertices ---
+
+static uint32_t vertex_of(Builder *b, uint32_t corner) {
+  const double same_direction = 1 - 1e-6; // cosine of 0.08 degrees, as in cag_mesh_weld
+  const Part *part = &b->parts[corner / 3];
+  const uint32_t root = bool_root(b->corner, corner), point = part->v[corner % 3];
+  const CagVec3 none = {0, 0, 0};
+  const CagVec3 normal = b->normals ? normal_at(b, part, b->w->points.at[point]) : none;
+  for (uint32_t i = b->head[root]; i != BOOL_NONE; i = b->vertices[i].next)
+    if (!b->normals || cag_dot(b->vertices[i].normal, normal) >= same_direction) return i;
+  const uint32_t head = b->head[root], i = (uint32_t)b->vertex_count++;
+  b->vertices[i] = (Vertex){normal, point, head, head == BOOL_NONE ? i : b->vertices[head].first};
+  b->head[root] = i;
+  return i;
+}
+
+static CagStatus write_mesh(Builder *b, CagMesh **out) {
+  CagMesh *m = NULL;
+  const CagStatus status =
+      cag_mesh_new(b->vertex_count, b->n, b->normals, false, b->normals, &m, b->w->err);
+  if (status) return status;
+  for (size_t i = 0; i < b->vertex_count; i++) {
+    m->positions[i] = b->w->points.at[b->vertices[i].point];
+    if (!b->normals) continue;
+    m->normals[i] = b->vertices[i].normal;
+    m->weld[i] = b->vertices[i].first;
+  }
+  memcpy(m->triangles, b->triangles, 3 * b->n * sizeof *m->triangles);
+  *out = m;
+  return CAG_OK;
+}
+
+static bool make_vertices(Builder *b) {
+  b->head = malloc((3 * b->n + 1) * sizeof *b->head);
+  b->vertices = malloc((3 * b->n + 1) * sizeof *b->vertices);
+  if (!b->head || !b->vertices) return false;
+  for (size_t i = 0; i < 3 * b->n; i++) b->head[i] = BOOL_NONE;
+  for (uint32_t i = 0; i < 3 * b->n; i++) b->triangles[i] = vertex_of(b, i);
+  return true;
+}
+
+CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out) {
+  Builder b = {.w = w};
+  b.normals = w->meshes[0]->normals || w->meshes[1]->normals;
+  b.parts = malloc((w->pieces.n + 1) * sizeof *b.parts);
+  CagStatus status = b.parts ? CAG_OK : cag_fail_memory(w->err);
+  if (!status) {
+    for (uint32_t i = 0; i < w->pieces.n; i++) take_piece(&b, op, i);
+    cancel_opposites(&b);
+    if (!join_corners(&b) || !make_vertices(&b)) status = cag_fail_memory(w->err);
+  }
+  if (!status) status = write_mesh(&b, out);
+  free(b.parts);
+  free(b.triangles);
+  free(b.corner);
+  free(b.head);
+  free(b.vertices);
+  return status;
+}
