@@ -23,6 +23,10 @@ typedef struct Vertex {
   uint32_t point, next, first;
 } Vertex;
 
+typedef struct Pinch {
+  uint32_t low, high, middle;
+} Pinch;
+
 typedef struct Builder {
   BoolWork *w;
   bool normals;
@@ -33,6 +37,7 @@ typedef struct Builder {
   uint32_t *head;   // of a corner's root: its vertices
   Vertex *vertices;
   size_t vertex_count;
+  BoolList pinched; // of Pinch
 } Builder;
 
 static bool is_inside(CagSetOperation op, bool a, bool b) {
@@ -183,8 +188,44 @@ static bool join_many(Builder *b, const CagMeshEdge *e, size_t n) {
   return done;
 }
 
+static size_t uses_of(const CagMeshEdge *e, size_t left) {
+  size_t n = 1;
+  while (n < left && e[n].low == e[0].low && e[n].high == e[0].high) n++;
+  return n;
+}
+
+// Do two of the pairs at an edge have one vertex at both ends? Where a solid touches itself along
+// an edge and hangs together around each end, they do.
+static bool is_pinched(Builder *b, const CagMeshEdge *e, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k < i; k++) {
+      bool same = cag_mesh_edge_forward(&e[i]) && cag_mesh_edge_forward(&e[k]);
+      for (unsigned end = 0; end < 2 && same; end++) {
+        const uint32_t one =
+            3 * (uint32_t)cag_mesh_edge_triangle(&e[i]) + (cag_mesh_edge_corner(&e[i]) + end) % 3;
+        const uint32_t two =
+            3 * (uint32_t)cag_mesh_edge_triangle(&e[k]) + (cag_mesh_edge_corner(&e[k]) + end) % 3;
+        same = bool_root(b->corner, one) == bool_root(b->corner, two);
+      }
+      if (same) return true;
+    }
+  return false;
+}
+
+// Gives such an edge a point in the middle, for the pairs to differ in.
+static bool note_pinched(Builder *b, const CagMeshEdge *e) {
+  const CagVec3 *at = b->w->points.at;
+  const uint32_t middle =
+      bool_points_add_far(&b->w->points, cag_lerp(at[e->low], at[e->high], 0.5));
+  if (!bool_list_reserve(&b->pinched, b->pinched.n + 1, sizeof(Pinch))) return false;
+  ((Pinch *)b->pinched.items)[b->pinched.n++] = (Pinch){e->low, e->high, middle};
+  return middle != BOOL_NONE;
+}
+
 static bool join_corners(Builder *b) {
   size_t n = 0;
+  free(b->corner);
+  free(b->triangles);
   b->corner = malloc((3 * b->n + 1) * sizeof *b->corner);
   b->triangles = malloc((3 * b->n + 1) * sizeof *b->triangles);
   if (!b->corner || !b->triangles) return false;
@@ -195,14 +236,52 @@ static bool join_corners(Builder *b) {
   CagMeshEdge *edges = cag_mesh_edges(b->triangles, b->n, NULL, b->w->points.n, &n);
   bool done = edges != NULL;
   for (size_t i = 0, uses; done && i < n; i += uses) {
-    for (uses = 1; i + uses < n && edges[i + uses].low == edges[i].low &&
-                   edges[i + uses].high == edges[i].high;)
-      uses++;
+    uses = uses_of(edges + i, n - i);
     if (uses == 2) join_uses(b, &edges[i], &edges[i + 1]);
     else done = join_many(b, edges + i, uses);
   }
+  b->pinched.n = 0;
+  for (size_t i = 0, uses; done && i < n; i += uses) {
+    uses = uses_of(edges + i, n - i);
+    if (uses > 2 && is_pinched(b, edges + i, uses)) done = note_pinched(b, edges + i);
+  }
   free(edges);
   return done;
+}
+
+static int by_ends(const void *a, const void *b) {
+  const Pinch *p = a, *q = b;
+  if (p->low != q->low) return p->low < q->low ? -1 : 1;
+  return p->high < q->high ? -1 : p->high > q->high;
+}
+
+// Splits triangles, also those that come from splitting, until no edge is a pinched one.
+static bool split_pinched(Builder *b) {
+  BoolList parts = {b->parts, b->n, b->n};
+  for (size_t i = 0; i < parts.n; i++)
+    for (int k = 0; k < 3; k++) {
+      const Part part = ((Part *)parts.items)[i];
+      const uint32_t p = part.v[k], q = part.v[(k + 1) % 3];
+      const Pinch key = {p < q ? p : q, p < q ? q : p, 0};
+      const Pinch *pinch =
+          bsearch(&key, b->pinched.items, b->pinched.n, sizeof key, by_ends); // edges are sorted
+      if (!pinch) continue;
+      if (!bool_list_reserve(&parts, parts.n + 1, sizeof part)) return false;
+      b->parts = parts.items;
+      Part half = part;
+      half.v[k] = pinch->middle;
+      b->parts[parts.n++] = half;
+      b->parts[i].v[(k + 1) % 3] = pinch->middle;
+      k = -1;
+    }
+  b->parts = parts.items;
+  b->n = parts.n;
+  return true;
+}
+
+static bool join_all(Builder *b) {
+  if (!join_corners(b)) return false;
+  return b->pinched.n == 0 || (split_pinched(b) && join_corners(b));
 }
 
 // --- Normals ---
@@ -289,13 +368,14 @@ CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out) {
   if (!status) {
     for (uint32_t i = 0; i < w->pieces.n; i++) take_piece(&b, op, i);
     cancel_opposites(&b);
-    if (!join_corners(&b) || !make_vertices(&b)) status = cag_fail_memory(w->err);
+    if (!join_all(&b) || !make_vertices(&b)) status = cag_fail_memory(w->err);
   }
   if (!status) status = write_mesh(&b, out);
   free(b.parts);
   free(b.triangles);
   free(b.corner);
   free(b.head);
+  free(b.pinched.items);
   free(b.vertices);
   return status;
 }
