@@ -418,15 +418,19 @@ static double limit_slack(const CagRobot *r, const CagRobotLink *l) {
   return l->kind == CAG_JOINT_REVOLUTE ? ON_LIMIT * 2 * M_PI : ON_LIMIT * r->reach;
 }
 
+double cag_robot_joint_outside(const CagRobot *r, size_t joint, double q, double *limit) {
+  const CagRobotLink *l = &r->links[r->joint_link[joint]];
+  double over = fmax(l->low - q, q - l->high);
+  *limit = q < l->low ? l->low : l->high;
+  return over > limit_slack(r, l) ? over : 0;
+}
+
 size_t cag_robot_outside(const CagRobot *r, const double *q, double *by) {
+  double limit;
   *by = 0;
   for (size_t i = 0; i < r->joint_count; i++) {
-    const CagRobotLink *l = &r->links[r->joint_link[i]];
-    double over = fmax(l->low - q[i], q[i] - l->high);
-    if (over > limit_slack(r, l)) {
-      *by = over;
-      return i;
-    }
+    *by = cag_robot_joint_outside(r, i, q[i], &limit);
+    if (*by > 0) return i;
   }
   return r->joint_count;
 }

@@ -51,15 +51,16 @@ void cag_robot_jacobian_tool(const CagRobot *r, const double *q, double (*column
 
 // --- Singular values ---
 
-// Turns two rows of n numbers until they are orthogonal; true when they were.
-static bool orthogonalize(double *a, double *b, size_t n) {
+// Turns two rows of n numbers until they are orthogonal; true when they were, or when one of them
+// is nothing: its square is at most `nothing`.
+static bool orthogonalize(double *a, double *b, size_t n, double nothing) {
   double aa = 0, bb = 0, ab = 0;
   for (size_t i = 0; i < n; i++) {
     aa += a[i] * a[i];
     bb += b[i] * b[i];
     ab += a[i] * b[i];
   }
-  if (fabs(ab) <= ORTHOGONAL * sqrt(aa * bb)) return true;
+  if (aa <= nothing || bb <= nothing || fabs(ab) <= ORTHOGONAL * sqrt(aa * bb)) return true;
   double zeta = (bb - aa) / (2 * ab);
   double t = (zeta >= 0 ? 1 : -1) / (fabs(zeta) + sqrt(1 + zeta * zeta));
   double c = 1 / sqrt(1 + t * t), s = c * t;
@@ -87,6 +88,10 @@ CagStatus cag_robot_singular_values(const CagRobot *r, const double *q, double v
   cag_robot_jacobian(r, q, columns, NULL);
   for (size_t i = 0; i < n; i++)
     for (int k = 0; k < 6; k++) rows[k][i] = columns[i][k] / (k < 3 ? r->reach : 1);
+  double square = 0;
+  for (int k = 0; k < 6; k++)
+    for (size_t i = 0; i < n; i++) square += rows[k][i] * rows[k][i];
+  double nothing = ORTHOGONAL * ORTHOGONAL * square;
   bool done = false;
   for (int sweep = 0; !done; sweep++) {
     if (sweep == SWEEPS_MAX)
@@ -94,7 +99,7 @@ CagStatus cag_robot_singular_values(const CagRobot *r, const double *q, double v
                       "the singular values did not converge");
     done = true;
     for (int i = 0; i < 5; i++)
-      for (int j = i + 1; j < 6; j++) done = orthogonalize(rows[i], rows[j], n) && done;
+      for (int j = i + 1; j < 6; j++) done = orthogonalize(rows[i], rows[j], n, nothing) && done;
   }
   for (int k = 0; k < 6; k++) {
     double sum = 0;

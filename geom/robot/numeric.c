@@ -390,7 +390,7 @@ CagRobotFound cag_robot_search(const CagRobot *r, const CagTransform *target,
   if (search->near) memcpy(near, search->near, p.n * sizeof *near);
   else cag_robot_home(r, near);
   for (size_t i = 0; i < p.n; i++) s.q[i] = fmin(fmax(near[i], p.low[i]), p.high[i]);
-  for (size_t k = 0; k == 0 || steps < most; k++) {
+  for (size_t k = 0; k == 0 || (steps < most && k != search->starts); k++) {
     if (k > 0) sequence(&p, ratio, k, s.q);
     evaluate(&p, &s);
     bool solved = attempt(&p, &s, most, &steps);
@@ -404,7 +404,8 @@ CagRobotFound cag_robot_search(const CagRobot *r, const CagTransform *target,
     found = found || solved;
     if ((found && left == 0) || p.n == 0) break;
   }
-  if (!found) descend(&p, &best, DAMPING * best.square + DAMPING_LEAST, DESCENT_STEPS);
+  if (!found && search->starts != 1)
+    descend(&p, &best, DAMPING * best.square + DAMPING_LEAST, DESCENT_STEPS);
   polish(&p, &best);
   if (found && search->stay_near && p.n > p.rows) settle(&p, &best, near);
   memcpy(q, best.q, p.n * sizeof *q);
@@ -432,6 +433,8 @@ void cag_robot_null_motion(const CagRobot *r, const double *q, const double *dq,
   memcpy(s.q, q, p.n * sizeof *q);
   evaluate(&p, &s);
   for (size_t i = 0; i < p.n; i++) rates[i] = dq[i] / p.unit[i];
+  // What the damping leaves of the other motions is squared by the second time.
   project(&p, &s, held, rates, out);
-  for (size_t i = 0; i < p.n; i++) out[i] *= p.unit[i];
+  project(&p, &s, held, out, rates);
+  for (size_t i = 0; i < p.n; i++) out[i] = rates[i] * p.unit[i];
 }

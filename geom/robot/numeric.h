@@ -14,6 +14,7 @@ typedef struct CagRobotSearch {
   double position, rotation; // errors (length, radians) with which to be content; 0: 1e-9 of the
                              // reach, 1e-9. What is found is always made as good as rounding lets.
   bool position_only;        // the tool may be turned as it likes
+  size_t starts;             // most starts; 0: as many as the steps let
   size_t steps;              // most steps of the iteration in all; 0: 8000
   size_t alternatives; // after a solution so many further starts for ones that are nearer to `near`
   bool stay_near; // chains with freedom to spare are moved towards `near` without moving the tool

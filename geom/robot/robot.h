@@ -135,6 +135,8 @@ double cag_robot_manipulability(const CagRobot *r, const double *q);
 // How far q lies outside of the limits: the first joint at fault and by how much (0 and
 // joint_count: none).
 size_t cag_robot_outside(const CagRobot *r, const double *q, double *by);
+// How far one joint's value lies outside, and the limit that it passes; 0: within.
+double cag_robot_joint_outside(const CagRobot *r, size_t joint, double q, double *limit);
 // Brings turning joints that are a whole turn away from their limits within them, nearest to
 // `near` (NULL: as near to q as may be). False when a joint cannot be brought.
 bool cag_robot_into_limits(const CagRobot *r, const double *near, double *q);

@@ -6,6 +6,11 @@
 
 static const char links[] = "Robots: links";
 static const char motion[] = "Robots: forward kinematics";
+static const char rates[] = "Robots: rates and forces";
+static const char ranges[] = "Robots: limits and motors";
+static const char inverse[] = "Robots: inverse kinematics";
+static const char paths[] = "Robots: paths";
+static const char drawing[] = "Robots: drawing";
 
 // Two links of 300 and 200 mm in the plane, for the examples.
 #define PLANAR                                                                                     \
@@ -56,4 +61,122 @@ const CagBuiltin cag_builtins_robots[] = {
      PLANAR "print [for t in link_frames(arm, [0deg, 90deg]): position(t)] "
             "// expect: [[0, 0, 0], [300, 0, 0], [300, 200, 0]]",
      ROBOTS, motion},
+    {"skeleton(robot, q = home, limits = true)", cag_robots_skeleton, "list",
+     "The points of the chain's stick figure: the origin of the base, for each link the foot of "
+     "its common normal and its origin, and the tool's where there is a tool.",
+     PLANAR "print skeleton(arm) // expect: [[0, 0, 0], [0, 0, 0], [300, 0, 0], [300, 0, 0], "
+            "[500, 0, 0]]",
+     ROBOTS, motion},
+    {"joint_axes(robot, q = home, limits = true)", cag_robots_joint_axes, "list",
+     "The axis of each joint in the world: records of kind, point and direction.",
+     PLANAR "print joint_axes(arm)[1].point // expect: [300, 0, 0]", ROBOTS, motion},
+    {"dh_table(robot)", cag_robots_dh_table, "list",
+     "The links as records: kind, theta, d, a, alpha (of a turning joint theta, of a sliding one d "
+     "is the offset), limits, and the transform of a fixed link.",
+     PLANAR "print dh_table(arm)[0].a // expect: 300", ROBOTS, motion},
+
+    {"jacobian(robot, q, frame = \"base\", limits = true)", cag_robots_jacobian, "list",
+     "6 rows of a number for each joint: velocity of the tool's origin (mm) and angular velocity "
+     "(radians) for each unit (radian, mm) of the joint's rate, in the axes of the world or of the "
+     "tool (frame \"tool\").",
+     PLANAR "print jacobian(arm, [0deg, 0deg])[1] // expect: [500, 200]", ROBOTS, rates},
+    {"manipulability(robot, q, limits = true)", cag_robots_manipulability, "number",
+     "Yoshikawa's measure, the root of det(J J'), of fewer than 6 joints of det(J' J): 0 at "
+     "singular places.",
+     PLANAR "print manipulability(arm, [0deg, 90deg]) > 0 // expect: true", ROBOTS, rates},
+    {"is_singular(robot, q, limits = true)", cag_robots_is_singular, "bool",
+     "Whether the tool cannot move in a direction in which it usually can: the Jacobian's rank, "
+     "with lengths measured by the robot's reach, is less than the number of joints or than 6.",
+     "arm = robot([revolute(alpha: 90deg), revolute(alpha: -90deg), revolute(d: 100)])\n"
+     "print is_singular(arm, [0deg, 0deg, 0deg]), is_singular(arm, [0deg, 90deg, 0deg]) "
+     "// expect: true false",
+     ROBOTS, rates},
+    {"jacobian_rank(robot, q, limits = true)", cag_robots_jacobian_rank, "number",
+     "In how many independent ways the tool can move: the singular values above 1e-9 of the "
+     "largest. The number of joints less the rank is the freedom to spare.",
+     PLANAR "print jacobian_rank(arm, [0deg, 90deg]) // expect: 2", ROBOTS, rates},
+    {"velocity(robot, q, dq, frame = \"base\", limits = true)", cag_robots_velocity, "list",
+     "J dq, [vx, vy, vz, wx, wy, wz]: mm and radians each second when dq has angles and mm each "
+     "second.",
+     PLANAR "print velocity(arm, [0deg, 0deg], [1rad, 0rad]) // expect: [0, 500, 0, 0, 0, 1]",
+     ROBOTS, rates},
+    {"torques(robot, q, wrench, frame = \"base\", limits = true)", cag_robots_torques, "list",
+     "J' w: what the joints give for the wrench [fx, fy, fz, mx, my, mz] that the tool exerts: N "
+     "and N mm from N and N mm.",
+     PLANAR "print torques(arm, [0deg, 0deg], [0, 10, 0, 0, 0, 0]) // expect: [5000, 2000]", ROBOTS,
+     rates},
+    {"null_motion(robot, q, dq, limits = true)", cag_robots_null_motion, "list",
+     "The part of the joint rates dq that leaves the tool where it is: zeros unless the chain has "
+     "freedom to spare.",
+     "arm = robot([prismatic(limits: 0..10), prismatic(limits: 0..10)])\n"
+     "print null_motion(arm, [5, 5], [2, 0]) // expect: [1, -1]",
+     ROBOTS, rates},
+
+    {"violations(robot, q)", cag_robots_violations, "list",
+     "The joints that are outside of their limits: records of joint (from 1), value, limit (the "
+     "one passed) and by. Empty within the limits.",
+     PLANAR "print violations(arm, [0deg, 170deg]) // expect: [{joint: 2, value: 170deg, limit: "
+            "150deg, by: 20deg}]",
+     ROBOTS, ranges},
+    {"motor_values(robot, q, change = false)", cag_robots_motor_values, "list",
+     "Where the motors stand for joint values: the coupling's matrix times q, and its offset; "
+     "`change: true` leaves the offset away, for differences. Without a coupling q itself.",
+     "arm = robot([revolute(a: 3), revolute(a: 2)], coupling: {matrix: [[1, 0], [1, 1]], offset: "
+     "[0deg, 90deg]})\n"
+     "print motor_values(arm, [10deg, 20deg]) // expect: [10deg, 120deg]",
+     ROBOTS, ranges},
+    {"joint_values(robot, motors, change = false)", cag_robots_joint_values, "list",
+     "The joint values for the motors' ones: the inverse of motor_values.",
+     "arm = robot([revolute(a: 3), revolute(a: 2)], coupling: [[1, 0], [1, 1]])\n"
+     "print joint_values(arm, [10deg, 30deg]) // expect: [10deg, 20deg]",
+     ROBOTS, ranges},
+
+    {"ik(robot, T, near = home, config = none, tolerance = 1e-6)", cag_robots_ik, "list",
+     "Joint values within the limits that bring the tool to the pose T, to the tolerance (mm and "
+     "radians): of several the nearest to `near`, or those of a branch by `config` (a record of "
+     "shoulder, elbow, wrist: 1 or -1). By closed form where the arm has one, else by damped least "
+     "squares; freedom to spare goes into being near. A point as T leaves the tool's rotation "
+     "free. Unreachable: an error that tells how far the closest pose is.",
+     PLANAR "q = ik(arm, [300, 200, 0], near: [0deg, 80deg])\n"
+            "print distance(position(fk(arm, q)), [300, 200, 0]) < 1e-9 // expect: true",
+     ROBOTS, inverse},
+    {"reachable(robot, T, tolerance = 1e-6)", cag_robots_reachable, "bool",
+     "Whether joint values within the limits bring the tool to a pose, or a point.",
+     PLANAR "print reachable(arm, [300, 200, 0]), reachable(arm, [300, 500, 0]) // expect: true "
+            "false",
+     ROBOTS, inverse},
+    {"closest_pose(robot, T, near = home)", cag_robots_closest_pose, "record",
+     "What comes closest to a pose or point, reachable or not: q, pose, distance (mm) and angle "
+     "(none for a point).",
+     PLANAR "print near(closest_pose(arm, [600, 0, 0]).distance, 100) // expect: true", ROBOTS,
+     inverse},
+
+    {"joint_path(robot, q, to, n)", cag_robots_joint_path, "list",
+     "n places from q to another, both in, the joints moving evenly.",
+     PLANAR "print joint_path(arm, [0deg, 0deg], [90deg, 30deg], 4)[1] // expect: [30deg, 10deg]",
+     ROBOTS, paths},
+    {"line_path(robot, T, to, n, near = home, cross = false)", cag_robots_line_path, "list",
+     "n places whose poses lie evenly on the straight way between two poses, both in; the joints "
+     "never change the branch. The step where the way leaves the workspace (path-leaves), where "
+     "the joints would jump (path-jumps) or where it meets or crosses a singular place "
+     "(path-singular; `cross: true` lets it) is named by the error.",
+     "arm = robot([revolute(a: 300), revolute(a: 200), revolute()])\n"
+     "qs = line_path(arm, translate([300, 100, 0]), translate([100, 300, 0]), 3, near: [0deg, "
+     "90deg, 0deg])\n"
+     "print near(distance(position(fk(arm, qs[1])), [200, 200, 0]), 0) // expect: true",
+     ROBOTS, paths},
+    {"follow(robot, poses, near = home, jumps = false)", cag_robots_follow, "list",
+     "The place of the joints for each pose, always reached from the one before without a change "
+     "of branch; `jumps: true` lets the joints go to another branch where there is no other way. "
+     "A pose out of reach is an error that names it.",
+     "arm = robot([revolute(a: 300), revolute(a: 200), revolute()])\n"
+     "print len(follow(arm, [for x in [350, 300, 250]: translate([x, 100, 0])])) // expect: 3",
+     ROBOTS, paths},
+
+    {"posed(robot, q = home, holding = none, limits = true)", cag_robots_posed, "group",
+     "The robot to look at: the shape of each link in the frame after it, and what it is holding, "
+     "given in the tool's frame. A robot without any shapes is drawn of plain rods and drums.",
+     "arm = robot([revolute(a: 100, shape: translate(box([100, 10, 10]), [-100, 0, 0]))])\n"
+     "print near(bounds(posed(arm, [90deg])).size, [10, 100, 10]) // expect: true",
+     ROBOTS, drawing},
     {0}};

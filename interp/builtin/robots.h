@@ -15,7 +15,13 @@
   /* robots_make.c */ \
   X(revolute) X(prismatic) X(fixed_link) X(robot) \
   /* robots_ask.c */ \
-  X(fk) X(link_frames)
+  X(fk) X(link_frames) X(jacobian) X(manipulability) X(is_singular) X(jacobian_rank) X(velocity) \
+  X(torques) X(null_motion) X(skeleton) X(joint_axes) X(dh_table) X(violations) \
+  X(motor_values) X(joint_values) \
+  /* robots_reach.c */ \
+  X(ik) X(reachable) X(closest_pose) X(joint_path) X(line_path) X(follow) \
+  /* robots_show.c */ \
+  X(posed)
 // clang-format on
 
 #define X(name) bool cag_robots_##name(CagCall *call, CagValue *result);
@@ -38,6 +44,9 @@ CagValue cag_joints_value(CagVm *vm, const CagRobot *r, const double *q);
 CagValue cag_joint_value(const CagRobot *r, size_t joint, double q);
 // Text of a joint's value with its unit, for messages: "35deg", "120"; buffer of 48 bytes.
 const char *cag_joint_text(const CagRobot *r, size_t joint, double q, char *buffer);
+
+// The group that `show robot` shows.
+bool cag_robot_at_home(CagVm *vm, CagValue robot, CagValue *group);
 
 // --- What the machine asks of links and robots ---
 bool cag_robot_member(CagVm *vm, CagValue v, const char *name, CagValue *out);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/robot/numeric.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/support.h"
 
@@ -153,4 +154,230 @@ bool cag_robots_link_frames(CagCall *call, CagValue *result) {
   free(frames);
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;
+}
+
+// --- Motion ---
+
+// Robot and joint values as the first two arguments; `limits` is argument number `argument`, or
+// always true where that is negative.
+static bool read_place(CagCall *call, int argument, CagRobot **r, double *q) {
+  bool limits = true;
+  return cag_arg_robot(call, 0, r) &&
+         (argument < 0 || cag_arg_bool_or(call, argument, true, &limits)) &&
+         cag_arg_joints(call, 1, *r, limits, q);
+}
+
+// robot, q, frame, limits
+bool cag_robots_jacobian(CagCall *call, CagValue *result) {
+  static const char *const frames[] = {"base", "tool", NULL};
+  CagRobot *r = NULL;
+  double q[CAG_ROBOT_JOINTS_MAX], columns[CAG_ROBOT_JOINTS_MAX][6], *numbers;
+  int frame;
+  if (!read_place(call, 3, &r, q) || !cag_arg_choice(call, 2, frames, &frame)) return false;
+  if (frame) cag_robot_jacobian_tool(r, q, columns);
+  else cag_robot_jacobian(r, q, columns, NULL);
+  CagValue rows[6];
+  for (int k = 0; k < 6; k++) {
+    rows[k] = cag_list_numbers(call->vm, r->joint_count, &numbers);
+    for (size_t i = 0; i < r->joint_count; i++) numbers[i] = columns[i][k];
+  }
+  *result = cag_list_values(call->vm, rows, 6);
+  return true;
+}
+
+bool cag_robots_manipulability(CagCall *call, CagValue *result) {
+  CagRobot *r = NULL;
+  double q[CAG_ROBOT_JOINTS_MAX];
+  if (!read_place(call, 2, &r, q)) return false;
+  return cag_give_number(call, cag_robot_manipulability(r, q), result);
+}
+
+static bool read_rank(CagCall *call, size_t *count, size_t *rank) {
+  CagRobot *r = NULL;
+  double q[CAG_ROBOT_JOINTS_MAX], values[6];
+  CagError err;
+  return read_place(call, 2, &r, q) &&
+         cag_geometry_ok(call, cag_robot_singular_values(r, q, values, count, rank, &err), &err);
+}
+
+bool cag_robots_is_singular(CagCall *call, CagValue *result) {
+  size_t count = 0, rank = 0;
+  if (!read_rank(call, &count, &rank)) return false;
+  *result = cag_bool(rank < count);
+  return true;
+}
+
+bool cag_robots_jacobian_rank(CagCall *call, CagValue *result) {
+  size_t count = 0, rank = 0;
+  if (!read_rank(call, &count, &rank)) return false;
+  *result = cag_number((double)rank);
+  return true;
+}
+
+// robot, q, dq, frame, limits
+bool cag_robots_velocity(CagCall *call, CagValue *result) {
+  static const char *const frames[] = {"base", "tool", NULL};
+  CagRobot *r = NULL;
+  double q[CAG_ROBOT_JOINTS_MAX], dq[CAG_ROBOT_JOINTS_MAX], columns[CAG_ROBOT_JOINTS_MAX][6],
+      v[6] = {0};
+  int frame;
+  if (!read_place(call, 4, &r, q) || !cag_arg_joints(call, 2, r, false, dq) ||
+      !cag_arg_choice(call, 3, frames, &frame))
+    return false;
+  if (frame) cag_robot_jacobian_tool(r, q, columns);
+  else cag_robot_jacobian(r, q, columns, NULL);
+  for (size_t i = 0; i < r->joint_count; i++)
+    for (int k = 0; k < 6; k++) v[k] += columns[i][k] * dq[i];
+  *result = cag_vector(call->vm, v, 6);
+  return true;
+}
+
+// robot, q, wrench, frame, limits
+bool cag_robots_torques(CagCall *call, CagValue *result) {
+  static const char *const frames[] = {"base", "tool", NULL};
+  CagRobot *r = NULL;
+  double q[CAG_ROBOT_JOINTS_MAX], columns[CAG_ROBOT_JOINTS_MAX][6], *torques;
+  const double *wrench = NULL;
+  size_t n = 0;
+  int frame;
+  if (!read_place(call, 4, &r, q) || !cag_arg_numbers(call, 2, &wrench, &n) ||
+      !cag_arg_choice(call, 3, frames, &frame))
+    return false;
+  if (n != 6)
+    return cag_fail_call(call, 2, CAG_ERR_length,
+                         "expects 6 numbers, the force [fx, fy, fz] and the moment [mx, my, mz] at "
+                         "the tool, found %zu",
+                         n);
+  if (frame) cag_robot_jacobian_tool(r, q, columns);
+  else cag_robot_jacobian(r, q, columns, NULL);
+  *result = cag_list_numbers(call->vm, r->joint_count, &torques);
+  for (size_t i = 0; i < r->joint_count; i++) {
+    torques[i] = 0;
+    for (int k = 0; k < 6; k++) torques[i] += columns[i][k] * wrench[k];
+  }
+  return true;
+}
+
+bool cag_robots_null_motion(CagCall *call, CagValue *result) {
+  CagRobot *r = NULL;
+  double q[CAG_ROBOT_JOINTS_MAX], dq[CAG_ROBOT_JOINTS_MAX], out[CAG_ROBOT_JOINTS_MAX];
+  if (!read_place(call, 3, &r, q) || !cag_arg_joints(call, 2, r, false, dq)) return false;
+  cag_robot_null_motion(r, q, dq, out);
+  *result = cag_joints_value(call->vm, r, out);
+  return true;
+}
+
+// --- The chain's lines ---
+
+bool cag_robots_skeleton(CagCall *call, CagValue *result) {
+  CagRobot *r = NULL;
+  double q[CAG_ROBOT_JOINTS_MAX];
+  bool limits;
+  if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 2, true, &limits) ||
+      !cag_arg_joints_or_home(call, 1, r, limits, q))
+    return false;
+  CagVec3 *points = malloc((2 * r->link_count + 2) * sizeof *points);
+  if (!points)
+    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  size_t n = cag_robot_skeleton(r, q, points);
+  *result = cag_points_value(call->vm, points, n, 3);
+  free(points);
+  return true;
+}
+
+bool cag_robots_joint_axes(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"kind", "point", "direction"};
+  CagRobot *r = NULL;
+  double q[CAG_ROBOT_JOINTS_MAX];
+  CagVec3 points[CAG_ROBOT_JOINTS_MAX], directions[CAG_ROBOT_JOINTS_MAX];
+  CagValue records[CAG_ROBOT_JOINTS_MAX];
+  bool limits;
+  if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 2, true, &limits) ||
+      !cag_arg_joints_or_home(call, 1, r, limits, q))
+    return false;
+  cag_robot_axes(r, q, points, directions);
+  for (size_t i = 0; i < r->joint_count; i++) {
+    CagVec3 z = directions[i];
+    CagValue values[] = {cag_text_c(call->vm, joint_turns(r, i) ? "revolute" : "prismatic"),
+                         cag_point(call->vm, points[i], 3),
+                         cag_point(call->vm, cag_vec3(z.x + 0.0, z.y + 0.0, z.z + 0.0), 3)};
+    records[i] = cag_record_new(call->vm, names, values, 3);
+  }
+  *result = cag_list_values(call->vm, records, r->joint_count);
+  return true;
+}
+
+// --- Tables ---
+
+static CagValue table_row(CagVm *vm, const CagRobotLink *l) {
+  static const char *const names[] = {"kind", "theta", "d", "a", "alpha", "limits", "transform"};
+  static const char *const kinds[] = {"revolute", "prismatic", "fixed"};
+  bool moves = l->kind != CAG_JOINT_FIXED, turns = l->kind == CAG_JOINT_REVOLUTE;
+  CagValue values[] = {
+      cag_text_c(vm, kinds[l->kind]),
+      moves ? cag_angle(cag_degrees_shown(l->theta)) : cag_none(),
+      moves ? cag_number(l->d) : cag_none(),
+      moves ? cag_number(l->a) : cag_none(),
+      moves ? cag_angle(cag_degrees_shown(l->alpha)) : cag_none(),
+      moves ? cag_domain_value(vm, turns, l->low, l->high) : cag_none(),
+      moves ? cag_none() : cag_transform_value(vm, &l->fixed),
+  };
+  return cag_record_new(vm, names, values, 7);
+}
+
+bool cag_robots_dh_table(CagCall *call, CagValue *result) {
+  CagRobot *r = NULL;
+  if (!cag_arg_robot(call, 0, &r)) return false;
+  CagBuilder *rows = cag_builder_new(call->vm);
+  for (size_t i = 0; i < r->link_count; i++)
+    if (!cag_builder_add(call->vm, rows, table_row(call->vm, &r->links[i]))) return false;
+  *result = cag_builder_finish(call->vm, rows);
+  return true;
+}
+
+// --- Limits and couplings ---
+
+bool cag_robots_violations(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"joint", "value", "limit", "by"};
+  CagRobot *r = NULL;
+  double q[CAG_ROBOT_JOINTS_MAX];
+  CagValue records[CAG_ROBOT_JOINTS_MAX];
+  size_t n = 0;
+  if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints(call, 1, r, false, q)) return false;
+  for (size_t i = 0; i < r->joint_count; i++) {
+    double limit, by = cag_robot_joint_outside(r, i, q[i], &limit);
+    if (by == 0) continue;
+    CagValue values[] = {cag_number((double)(i + 1)), cag_joint_value(r, i, q[i]),
+                         cag_joint_value(r, i, limit), cag_joint_value(r, i, by)};
+    records[n++] = cag_record_new(call->vm, names, values, 4);
+  }
+  *result = cag_list_values(call->vm, records, n);
+  return true;
+}
+
+// The map between joints and motors, or its linear part where `change` is true.
+static bool give_map(CagCall *call, void (*map)(const CagRobot *, const double *, double *),
+                     CagValue *result) {
+  CagRobot *r = NULL;
+  double q[CAG_ROBOT_JOINTS_MAX], out[CAG_ROBOT_JOINTS_MAX], zeros[CAG_ROBOT_JOINTS_MAX] = {0},
+                                                             at_zero[CAG_ROBOT_JOINTS_MAX];
+  bool change;
+  if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints(call, 1, r, false, q) ||
+      !cag_arg_bool_or(call, 2, false, &change))
+    return false;
+  map(r, q, out);
+  if (change) {
+    map(r, zeros, at_zero);
+    for (size_t i = 0; i < r->joint_count; i++) out[i] -= at_zero[i];
+  }
+  *result = cag_joints_value(call->vm, r, out);
+  return true;
+}
+
+bool cag_robots_motor_values(CagCall *call, CagValue *result) {
+  return give_map(call, cag_robot_motors, result);
+}
+
+bool cag_robots_joint_values(CagCall *call, CagValue *result) {
+  return give_map(call, cag_robot_joints, result);
 }

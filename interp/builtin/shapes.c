@@ -2,6 +2,7 @@
 // results as records, and reading of shapes.
 
 #include "interp/builtin/shapes.h"
+#include "interp/builtin/robots.h"
 
 #include <float.h>
 #include <stdio.h>
@@ -163,6 +164,10 @@ bool cag_shapes_collect(CagCall *call, CagValue v, CagBuilder *into) {
       if (!cag_shapes_collect(call, item, into)) return false;
     }
     return true;
+  }
+  if (v.type == CAG_ROBOT) {
+    CagValue group;
+    return cag_robot_at_home(call->vm, v, &group) && cag_shapes_collect(call, group, into);
   }
   if (!cag_is_shape(v)) {
     CagString found = {0};

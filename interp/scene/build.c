@@ -4,6 +4,7 @@
 // Nothing here calls back into the script, so values need no roots.
 
 #include "interp/scene/build.h"
+#include "interp/builtin/robots.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -363,7 +364,15 @@ bool cag_value_is_shown(CagValue v) {
       if (!cag_value_is_shown(list->as.items[i])) return false;
     return true;
   }
-  return cag_is_shape(v) || v.type == CAG_CAMERA || v.type == CAG_LIGHT || v.type == CAG_SETTING;
+  return cag_is_shape(v) || v.type == CAG_ROBOT || v.type == CAG_CAMERA || v.type == CAG_LIGHT ||
+         v.type == CAG_SETTING;
+}
+
+// A robot is shown at home.
+static void add_robot(Build *b, CagValue v, const char *name) {
+  CagValue group;
+  if (cag_robot_at_home(b->vm, v, &group)) add_shapes(b, group, &(Said){NULL, name, NULL, 0});
+  else b->failed = true;
 }
 
 static void add_value(Build *b, CagValue v, const char *name) {
@@ -376,6 +385,7 @@ static void add_value(Build *b, CagValue v, const char *name) {
   if (v.type == CAG_CAMERA) add_camera(b, CAG_AS_SCENE(v), name);
   else if (v.type == CAG_LIGHT) add_light(b, CAG_AS_SCENE(v));
   else if (v.type == CAG_SETTING) add_setting(b, CAG_AS_SCENE(v), name);
+  else if (v.type == CAG_ROBOT) add_robot(b, v, name);
   else if (cag_is_shape(v)) add_shapes(b, v, &(Said){NULL, name, NULL, 0});
 }
 

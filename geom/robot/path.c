@@ -1,0 +1,212 @@
+// Joint paths: a pose's solution is looked for from the one before, in steps so small that the
+// joints cannot slip into another branch unseen.
+
+#include "geom/robot/path.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/robot/kernel.h"
+
+#define TOLERANCE_DEFAULT 1e-6
+// Further starts for solutions nearer to the wanted place.
+#define ALTERNATIVES 24
+// Largest step of a joint that passes for continuous: radians, or the same part of the reach.
+#define CONTINUOUS 0.5
+// A part of the way this small over which the joints still jump is a jump.
+#define SHORTEST (1.0 / 4096)
+
+// --- One pose ---
+
+static CagStatus fail_unreachable(const CagRobotFound *found, bool position_only, CagError *err) {
+  char angle[64] = "";
+  if (!position_only) snprintf(angle, sizeof angle, " and %.6g deg", found->rotation * 180 / M_PI);
+  return cag_fail(err, CAG_E_DEGENERATE, "unreachable", "T", -1,
+                  "no joint values within the limits reach the pose; the closest found is %.6g "
+                  "mm%s away",
+                  found->position, angle);
+}
+
+CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const CagRobotGoal *goal,
+                          double *q, CagRobotFound *found, CagError *err) {
+  double tolerance = goal->tolerance > 0 ? goal->tolerance : TOLERANCE_DEFAULT;
+  CagRobotSearch search = {.near = goal->near,
+                           .position = tolerance,
+                           .rotation = tolerance,
+                           .position_only = goal->position_only,
+                           .alternatives = ALTERNATIVES,
+                           .stay_near = true};
+  if (goal->shoulder || goal->elbow || goal->wrist)
+    return cag_fail(err, CAG_E_UNSUPPORTED, "no-closed-form", "config", -1,
+                    "the arm has no closed form, so that its branches have no names; choose by "
+                    "`near`");
+  *found = cag_robot_search(r, target, &search, q);
+  return found->solved ? CAG_OK : fail_unreachable(found, goal->position_only, err);
+}
+
+// --- Steps ---
+
+// The joint that moves most from a to b, in radians or parts of the reach.
+static double largest_move(const CagRobot *r, const double *a, const double *b, size_t *joint) {
+  double largest = 0;
+  *joint = 0;
+  for (size_t i = 0; i < r->joint_count; i++) {
+    double move = fabs(b[i] - a[i]);
+    if (r->links[r->joint_link[i]].kind != CAG_JOINT_REVOLUTE) move /= r->reach;
+    if (move <= largest) continue;
+    largest = move;
+    *joint = i;
+  }
+  return largest;
+}
+
+// The solution that Newton's steps from `from` lead to.
+static bool solve_near(const CagRobot *r, const CagTransform *target, const double *from,
+                       double *q) {
+  CagRobotSearch search = {.near = from,
+                           .position = TOLERANCE_DEFAULT,
+                           .rotation = TOLERANCE_DEFAULT,
+                           .starts = 1,
+                           .steps = 100};
+  return cag_robot_search(r, target, &search, q).solved;
+}
+
+typedef enum Tracked { ARRIVED, LEFT, JUMPED } Tracked;
+
+// Follows the way from pose a (reached at q) to b; q is moved along. `done` is the part of the way
+// that was gone.
+static Tracked track(const CagRobot *r, const CagTransform *a, const CagTransform *b, double *q,
+                     double *done, CagError *err) {
+  double t = 0, h = 1, next[CAG_ROBOT_JOINTS_MAX];
+  size_t joint;
+  while (t < 1) {
+    CagTransform pose;
+    if (cag_transform_mix(a, b, t + h, &pose, err)) pose = *b;
+    bool solved = solve_near(r, &pose, q, next);
+    if (solved && largest_move(r, q, next, &joint) <= CONTINUOUS) {
+      memcpy(q, next, r->joint_count * sizeof *q);
+      t += h;
+      h = fmin(2 * h, 1 - t);
+      continue;
+    }
+    h /= 2;
+    if (h >= SHORTEST) continue;
+    *done = t;
+    CagRobotFound found;
+    CagRobotGoal goal = {.near = q};
+    if (cag_transform_mix(a, b, fmin(1, t + 2 * h), &pose, err)) pose = *b;
+    return cag_robot_solve(r, &pose, &goal, next, &found, err) ? LEFT : JUMPED;
+  }
+  *done = 1;
+  return ARRIVED;
+}
+
+// --- Lines ---
+
+// Sign of the determinant of the Jacobian of six joints, 0 where it is singular; of other chains 1
+// where it has full rank.
+static int jacobian_sign(const CagRobot *r, const double *q) {
+  double values[6], m[CAG_ROBOT_JOINTS_MAX][6];
+  size_t count, rank;
+  CagError ignored;
+  if (cag_robot_singular_values(r, q, values, &count, &rank, &ignored)) return 1;
+  if (rank < count) return 0;
+  if (r->joint_count != 6) return 1;
+  cag_robot_jacobian(r, q, m, NULL);
+  int sign = 1;
+  for (int k = 0; k < 6; k++) {
+    int pivot = k;
+    for (int i = k + 1; i < 6; i++)
+      if (fabs(m[i][k]) > fabs(m[pivot][k])) pivot = i;
+    for (int j = 0; j < 6; j++) {
+      double swap = m[k][j];
+      m[k][j] = m[pivot][j];
+      m[pivot][j] = swap;
+    }
+    if (pivot != k) sign = -sign;
+    if (m[k][k] < 0) sign = -sign;
+    for (int i = k + 1; i < 6; i++) {
+      double factor = m[i][k] / m[k][k];
+      for (int j = k; j < 6; j++) m[i][j] -= factor * m[k][j];
+    }
+  }
+  return sign;
+}
+
+static CagStatus fail_step(Tracked how, size_t step, double part, const char *what, CagError *err) {
+  double at = (double)step - 1 + part;
+  if (how == LEFT)
+    return cag_fail(err, CAG_E_DEGENERATE, "path-leaves", "", (long)step,
+                    "the way leaves the workspace before %s %zu (at %.6g): no joint values within "
+                    "the limits reach what follows",
+                    what, step, at);
+  return cag_fail(err, CAG_E_DEGENERATE, "path-jumps", "", (long)step,
+                  "the joints would have to jump before %s %zu (at %.6g): a joint limit or a "
+                  "singular place stands in the way of this branch; start from another `near`",
+                  what, step, at);
+}
+
+static CagStatus fail_singular(size_t step, bool between, CagError *err) {
+  return cag_fail(err, CAG_E_DEGENERATE, "path-singular", "", (long)step,
+                  between ? "the way crosses a singular place between the steps %zu and %zu; "
+                            "`cross: true` lets it"
+                          : "the way meets a singular place at step %zu (before %zu); `cross: "
+                            "true` lets it",
+                  between ? step - 1 : step, between ? step : step + 1);
+}
+
+CagStatus cag_robot_line_path(const CagRobot *r, const CagTransform *from, const CagTransform *to,
+                              size_t n, const double *near, bool cross, double *q, CagError *err) {
+  size_t joints = r->joint_count;
+  CagRobotFound found;
+  CagRobotGoal goal = {.near = near};
+  CagTransform at = *from;
+  double done;
+  CagStatus status = cag_robot_solve(r, from, &goal, q, &found, err);
+  if (status) return status;
+  int sign = jacobian_sign(r, q);
+  for (size_t k = 1; k < n; k++) {
+    CagTransform next = *to;
+    double *here = q + k * joints;
+    if (k + 1 < n) {
+      status = cag_transform_mix(from, to, (double)k / (double)(n - 1), &next, err);
+      if (status) return status;
+    }
+    memcpy(here, here - joints, joints * sizeof *q);
+    Tracked how = track(r, &at, &next, here, &done, err);
+    if (how != ARRIVED) return fail_step(how, k, done, "step", err);
+    int now = jacobian_sign(r, here);
+    if (!cross && now == 0 && k + 1 < n) return fail_singular(k, false, err);
+    if (!cross && now * sign < 0) return fail_singular(k, true, err);
+    sign = now;
+    at = next;
+  }
+  return CAG_OK;
+}
+
+CagStatus cag_robot_follow(const CagRobot *r, const CagTransform *poses, size_t n,
+                           const double *near, bool jumps, double *q, CagError *err) {
+  size_t joints = r->joint_count;
+  double done;
+  for (size_t k = 0; k < n; k++) {
+    double *here = q + k * joints, before[CAG_ROBOT_JOINTS_MAX];
+    CagRobotFound found;
+    Tracked how = LEFT;
+    if (k > 0) {
+      memcpy(before, here - joints, joints * sizeof *q);
+      memcpy(here, before, joints * sizeof *q);
+      how = track(r, &poses[k - 1], &poses[k], here, &done, err);
+      if (how == ARRIVED) continue;
+      if (how == JUMPED && !jumps) return fail_step(how, k, done, "pose", err);
+    }
+    // The first pose, or one that is reached although the straight way to it is not.
+    CagRobotGoal goal = {.near = k > 0 ? before : near};
+    CagStatus status = cag_robot_solve(r, &poses[k], &goal, here, &found, err);
+    if (status && k > 0)
+      return cag_fail(err, CAG_E_DEGENERATE, "path-leaves", "", (long)k,
+                      "pose %zu is out of reach; the closest found is %.6g mm and %.6g deg away", k,
+                      found.position, found.rotation * 180 / M_PI);
+    if (status) return status;
+  }
+  return CAG_OK;
+}

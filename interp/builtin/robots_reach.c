@@ -1,0 +1,192 @@
+// From poses to joint values: inverse kinematics, reach, and paths.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/robot/path.h"
+#include "interp/builtin/robots.h"
+#include "interp/builtin/support.h"
+
+// Most poses that one call follows.
+#define POSES_MAX 1000000
+
+// --- One pose ---
+
+// A pose, or a point where the tool may be turned as it likes.
+static bool read_target(CagCall *call, int argument, CagTransform *out, bool *point) {
+  CagVec3 p;
+  *point = call->values[argument].type == CAG_LIST;
+  if (!*point) return cag_arg_pose(call, argument, out);
+  if (!cag_arg_vec(call, argument, &p, NULL)) return false;
+  *out = cag_translate(p);
+  return true;
+}
+
+static bool read_branch(CagCall *call, int argument, const CagRecord *config, const char *name,
+                        int *out) {
+  CagValue v = cag_record_get(config, name);
+  *out = 0;
+  if (v.type == CAG_UNSET || v.type == CAG_NONE) return true;
+  if (v.type != CAG_NUMBER || (v.as.number != 1 && v.as.number != -1))
+    return cag_fail_call(call, argument, CAG_ERR_value, "expects 1 or -1 as `%s` of `%s`", name,
+                         cag_parameter_name(call, argument));
+  *out = v.as.number > 0 ? 1 : -1;
+  return true;
+}
+
+static bool read_config(CagCall *call, int argument, CagRobotGoal *goal) {
+  CagRecord *config = NULL;
+  if (!cag_given(call, argument) || call->values[argument].type == CAG_NONE) return true;
+  return cag_arg_record(call, argument, &config) &&
+         read_branch(call, argument, config, "shoulder", &goal->shoulder) &&
+         read_branch(call, argument, config, "elbow", &goal->elbow) &&
+         read_branch(call, argument, config, "wrist", &goal->wrist);
+}
+
+// robot, T, near, config, tolerance
+bool cag_robots_ik(CagCall *call, CagValue *result) {
+  CagRobot *r = NULL;
+  CagTransform target;
+  CagRobotGoal goal = {0};
+  CagRobotFound found;
+  CagError err;
+  double near[CAG_ROBOT_JOINTS_MAX], q[CAG_ROBOT_JOINTS_MAX];
+  if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &target, &goal.position_only) ||
+      !cag_arg_joints_or_home(call, 2, r, false, near) || !read_config(call, 3, &goal) ||
+      (cag_given(call, 4) && !cag_arg_positive(call, 4, &goal.tolerance)))
+    return false;
+  goal.near = near;
+  if (!cag_geometry_ok(call, cag_robot_solve(r, &target, &goal, q, &found, &err), &err))
+    return false;
+  *result = cag_joints_value(call->vm, r, q);
+  return true;
+}
+
+// robot, T, tolerance
+bool cag_robots_reachable(CagCall *call, CagValue *result) {
+  CagRobot *r = NULL;
+  CagTransform target;
+  CagRobotGoal goal = {0};
+  CagRobotFound found;
+  CagError err;
+  double q[CAG_ROBOT_JOINTS_MAX];
+  if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &target, &goal.position_only) ||
+      (cag_given(call, 2) && !cag_arg_positive(call, 2, &goal.tolerance)))
+    return false;
+  *result = cag_bool(cag_robot_solve(r, &target, &goal, q, &found, &err) == CAG_OK);
+  return true;
+}
+
+// robot, T, near: what comes closest
+bool cag_robots_closest_pose(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"q", "pose", "distance", "angle"};
+  CagRobot *r = NULL;
+  CagTransform target, pose;
+  CagRobotGoal goal = {0};
+  CagRobotFound found;
+  CagError err;
+  double near[CAG_ROBOT_JOINTS_MAX], q[CAG_ROBOT_JOINTS_MAX];
+  if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &target, &goal.position_only) ||
+      !cag_arg_joints_or_home(call, 2, r, false, near))
+    return false;
+  goal.near = near;
+  if (cag_robot_solve(r, &target, &goal, q, &found, &err) && strcmp(err.reason, "unreachable") != 0)
+    return cag_fail_geometry(call, &err);
+  cag_robot_forward(r, q, &pose);
+  CagValue values[] = {cag_joints_value(call->vm, r, q), cag_transform_value(call->vm, &pose),
+                       cag_number(found.position),
+                       goal.position_only ? cag_none()
+                                          : cag_angle(cag_degrees_shown(found.rotation))};
+  *result = cag_record_new(call->vm, names, values, 4);
+  return true;
+}
+
+// --- Paths ---
+
+// n places of the joints as a list of q.
+static bool give_places(CagCall *call, const CagRobot *r, const double *q, size_t n,
+                        CagValue *result) {
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t k = 0; k < n; k++)
+    if (!cag_builder_add(call->vm, list, cag_joints_value(call->vm, r, q + k * r->joint_count)))
+      return false;
+  *result = cag_builder_finish(call->vm, list);
+  return true;
+}
+
+static bool take_places(CagCall *call, const CagRobot *r, size_t n, double **out) {
+  *out = malloc((n * r->joint_count + 1) * sizeof **out);
+  return *out || cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+}
+
+// robot, from, to, n
+bool cag_robots_joint_path(CagCall *call, CagValue *result) {
+  CagRobot *r = NULL;
+  double from[CAG_ROBOT_JOINTS_MAX], to[CAG_ROBOT_JOINTS_MAX], *q;
+  long n;
+  if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints(call, 1, r, true, from) ||
+      !cag_arg_joints(call, 2, r, true, to) || !cag_arg_integer(call, 3, 2, POSES_MAX, &n) ||
+      !take_places(call, r, (size_t)n, &q))
+    return false;
+  size_t joints = r->joint_count;
+  for (size_t k = 0; k < (size_t)n; k++)
+    for (size_t i = 0; i < joints; i++) {
+      double t = (double)k / (double)(n - 1);
+      q[k * joints + i] = (1 - t) * from[i] + t * to[i];
+    }
+  bool ok = give_places(call, r, q, (size_t)n, result);
+  free(q);
+  return ok;
+}
+
+// robot, from, to, n, near, cross
+bool cag_robots_line_path(CagCall *call, CagValue *result) {
+  CagRobot *r = NULL;
+  CagTransform from, to;
+  double near[CAG_ROBOT_JOINTS_MAX], *q;
+  long n;
+  bool cross;
+  CagError err;
+  if (!cag_arg_robot(call, 0, &r) || !cag_arg_pose(call, 1, &from) || !cag_arg_pose(call, 2, &to) ||
+      !cag_arg_integer(call, 3, 2, POSES_MAX, &n) ||
+      !cag_arg_joints_or_home(call, 4, r, false, near) ||
+      !cag_arg_bool_or(call, 5, false, &cross) || !take_places(call, r, (size_t)n, &q))
+    return false;
+  CagStatus status = cag_robot_line_path(r, &from, &to, (size_t)n, near, cross, q, &err);
+  bool ok = cag_geometry_ok(call, status, &err) && give_places(call, r, q, (size_t)n, result);
+  free(q);
+  return ok;
+}
+
+static bool read_poses(CagCall *call, int argument, CagTransform **out, size_t *n) {
+  CagList *list = NULL;
+  if (!cag_arg_list(call, argument, &list)) return false;
+  *n = list->length;
+  *out = malloc((*n + 1) * sizeof **out);
+  if (!*out)
+    return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
+  for (size_t i = 0; i < *n; i++) {
+    CagValue v = cag_list_get(call->vm, list, i);
+    if (v.type != CAG_TRANSFORM) return cag_fail_element(call, argument, i, v, "poses");
+    if (!cag_pose_of_value(call, argument, v, &(*out)[i])) return false;
+  }
+  return true;
+}
+
+// robot, poses, near, jumps
+bool cag_robots_follow(CagCall *call, CagValue *result) {
+  CagRobot *r = NULL;
+  CagTransform *poses = NULL;
+  double near[CAG_ROBOT_JOINTS_MAX], *q = NULL;
+  size_t n = 0;
+  bool jumps;
+  CagError err;
+  bool ok = cag_arg_robot(call, 0, &r) && cag_arg_joints_or_home(call, 2, r, false, near) &&
+            cag_arg_bool_or(call, 3, false, &jumps) && read_poses(call, 1, &poses, &n) &&
+            take_places(call, r, n, &q) &&
+            cag_geometry_ok(call, cag_robot_follow(r, poses, n, near, jumps, q, &err), &err) &&
+            give_places(call, r, q, n, result);
+  free(poses);
+  free(q);
+  return ok;
+}

@@ -1,0 +1,152 @@
+// Robots to look at: the shapes of the links in the frames where the joints put them, or plain
+// rods and drums.
+
+#include <stdlib.h>
+
+#include "interp/builtin/robots.h"
+#include "interp/builtin/solids.h"
+
+// Sizes of plain robots as parts of the length of their skeleton.
+#define ROD_RADIUS 0.018
+#define DRUM_RADIUS 0.035
+#define DRUM_LENGTH 0.1
+#define FOOT_RADIUS 0.07
+#define FOOT_HEIGHT 0.012
+// Sections of the skeleton shorter than this part are not drawn.
+#define SHORT 1e-6
+
+// Linear light.
+static const double rod_color[3] = {0.42, 0.44, 0.47}, drum_color[3] = {0.86, 0.22, 0.03},
+                    foot_color[3] = {0.08, 0.09, 0.1};
+
+typedef struct Drawing {
+  CagCall *call;
+  CagBuilder *items;
+  double size;
+} Drawing;
+
+// Adds a body in one of the plain colours; takes over its reference.
+static bool add_body(Drawing *d, CagStatus status, CagSolid **body, const CagError *err,
+                     const double color[3]) {
+  static const char *const names[] = {"color"};
+  if (!cag_geometry_ok(d->call, status, err)) return false;
+  CagVm *vm = d->call->vm;
+  CagValue shape = cag_solid_value(vm, *body), value = cag_vector(vm, color, 3);
+  CAG_AS_SHAPE(shape)->material = CAG_AS_RECORD(cag_record_new(vm, names, &value, 1));
+  return cag_builder_add(vm, d->items, shape);
+}
+
+static bool add_rod(Drawing *d, CagVec3 p, CagVec3 q, double radius, const double color[3]) {
+  CagSolid *body = NULL;
+  CagError err;
+  if (cag_norm(cag_sub(q, p)) <= SHORT * d->size) return true;
+  CagStatus status = cag_solid_rod(p, q, radius, radius, &body, &err);
+  return add_body(d, status, &body, &err, color);
+}
+
+// A square bar about the axis of a sliding joint.
+static bool add_slide(Drawing *d, const CagTransform *frame) {
+  CagSolid *bar = NULL, *placed = NULL;
+  CagError err;
+  double side = 1.6 * DRUM_RADIUS * d->size;
+  CagStatus status = cag_solid_box(cag_vec3(side, side, DRUM_LENGTH * d->size), true, &bar, &err);
+  if (!status) status = cag_solid_transform(bar, frame, &placed, &err);
+  cag_solid_release(bar);
+  return add_body(d, status, &placed, &err, drum_color);
+}
+
+static bool add_joint(Drawing *d, const CagRobotLink *l, const CagTransform *frame) {
+  if (l->kind == CAG_JOINT_PRISMATIC) return add_slide(d, frame);
+  CagVec3 half = cag_vec3(0, 0, DRUM_LENGTH / 2 * d->size);
+  return add_rod(d, cag_transform_point(frame, cag_scaled(half, -1)),
+                 cag_transform_point(frame, half), DRUM_RADIUS * d->size, drum_color);
+}
+
+static double length_of(const CagVec3 *points, size_t n) {
+  double sum = 0;
+  for (size_t i = 1; i < n; i++) sum += cag_norm(cag_sub(points[i], points[i - 1]));
+  return sum > 0 ? sum : 1;
+}
+
+// A robot none of whose links has a shape.
+static bool draw_plain(Drawing *d, const CagRobot *r, const double *q, const CagTransform *frames,
+                       CagVec3 *points) {
+  size_t n = cag_robot_skeleton(r, q, points);
+  CagVec3 axes[CAG_ROBOT_JOINTS_MAX], directions[CAG_ROBOT_JOINTS_MAX];
+  d->size = length_of(points, n);
+  cag_robot_axes(r, q, axes, directions);
+  CagVec3 foot = cag_transform_point(&frames[0], cag_vec3(0, 0, -FOOT_HEIGHT * d->size));
+  if (!add_rod(d, foot, points[0], FOOT_RADIUS * d->size, foot_color)) return false;
+  for (size_t i = 1; i < n; i++)
+    if (!add_rod(d, points[i - 1], points[i], ROD_RADIUS * d->size, rod_color)) return false;
+  for (size_t i = 0; i < r->joint_count; i++) {
+    CagTransform frame;
+    CagError err;
+    CagVec3 z = directions[i];
+    CagVec3 side = fabs(z.x) < 0.9 ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
+    CagStatus status =
+        cag_axes(axes[i], cag_cross(z, side), cag_cross(z, cag_cross(z, side)), &frame, &err);
+    if (!cag_geometry_ok(d->call, status, &err) ||
+        !add_joint(d, &r->links[r->joint_link[i]], &frame))
+      return false;
+  }
+  return true;
+}
+
+static bool add_moved(Drawing *d, const CagTransform *t, CagValue shape) {
+  CagValue moved;
+  if (shape.type == CAG_NONE) return true;
+  return cag_transform_apply(d->call->vm, t, shape, &moved) &&
+         cag_shapes_collect(d->call, moved, d->items);
+}
+
+static bool draw(Drawing *d, const CagRobotValue *v, const double *q, CagValue holding) {
+  const CagRobot *r = v->robot;
+  CagTransform tool, *frames = malloc((r->link_count + 1) * sizeof *frames);
+  CagVec3 *points = malloc((2 * r->link_count + 2) * sizeof *points);
+  bool ok = (frames && points) ||
+            cag_fail_call(d->call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  bool shaped = false;
+  if (ok) cag_robot_frames(r, q, frames);
+  for (size_t i = 0; ok && i < r->link_count; i++) {
+    CagValue shape = CAG_AS_LINK(v->links->as.items[i])->shape;
+    shaped = shaped || shape.type != CAG_NONE;
+    ok = add_moved(d, &frames[i + 1], shape);
+  }
+  if (ok && !shaped) ok = draw_plain(d, r, q, frames, points);
+  cag_robot_forward(r, q, &tool);
+  ok = ok && add_moved(d, &tool, holding);
+  free(frames);
+  free(points);
+  return ok;
+}
+
+static bool give_drawing(CagCall *call, const CagRobotValue *v, const double *q, CagValue holding,
+                         CagValue *result) {
+  Drawing d = {call, cag_builder_new(call->vm), 1};
+  if (!draw(&d, v, q, holding)) return false;
+  *result = cag_group_value(call->vm, cag_builder_finish(call->vm, d.items));
+  if (v->name->length) CAG_AS_SHAPE(*result)->name = v->name;
+  return true;
+}
+
+// robot, q, holding, limits
+bool cag_robots_posed(CagCall *call, CagValue *result) {
+  CagRobot *r = NULL;
+  double q[CAG_ROBOT_JOINTS_MAX];
+  bool limits;
+  if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 3, true, &limits) ||
+      !cag_arg_joints_or_home(call, 1, r, limits, q))
+    return false;
+  CagValue holding = cag_given(call, 2) ? call->values[2] : cag_none();
+  return give_drawing(call, CAG_AS_ROBOT(call->values[0]), q, holding, result);
+}
+
+bool cag_robot_at_home(CagVm *vm, CagValue robot, CagValue *group) {
+  size_t rows;
+  double q[CAG_ROBOT_JOINTS_MAX];
+  CagValue values[] = {robot, cag_unset(), cag_unset(), cag_unset()};
+  CagCall call = {vm, cag_builtin_rows(cag_builtin_find("posed"), &rows), values, 4};
+  cag_robot_home(CAG_AS_ROBOT(robot)->robot, q);
+  return give_drawing(&call, CAG_AS_ROBOT(robot), q, cag_none(), group);
+}
