@@ -27,9 +27,12 @@ CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, i
 
 typedef struct CagRegionPiece {
   size_t walk;
-  double a, b;    // over the walk's curve
-  CagVec3 p, q;   // its ends
-  bool straight;  // a segment from p to q
+  double a, b;   // over the walk's curve
+  CagVec3 p, q;  // its ends
+  bool straight; // a segment from p to q
+  bool round;    // part of a circle: center, radius
+  CagVec3 center;
+  double radius;
   CagCurve *part; // the piece as a curve, made when first asked for
 } CagRegionPiece;
 

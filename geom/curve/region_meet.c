@@ -68,19 +68,79 @@ static CagStatus end_on_segment(Meetings *m, size_t segment, CagVec3 end, CagErr
   return cut(m, segment, along(piece, u), end, err);
 }
 
-static CagStatus meet_segments(Meetings *m, size_t i, size_t k, CagError *err) {
+static CagStatus meet_segments(Meetings *m, size_t i, size_t k, bool ends_only, CagError *err) {
   const CagRegionPiece *a = &m->pieces->items[i], *b = &m->pieces->items[k];
   CagStatus status = end_on_segment(m, i, b->p, err);
   if (!status) status = end_on_segment(m, i, b->q, err);
   if (!status) status = end_on_segment(m, k, a->p, err);
   if (!status) status = end_on_segment(m, k, a->q, err);
-  if (status) return status;
+  if (status || ends_only) return status;
   const CagVec3 d = cag_sub(a->q, a->p), e = cag_sub(b->q, b->p), r = cag_sub(b->p, a->p);
   const double det = d.x * e.y - d.y * e.x;
   if (det == 0) return CAG_OK;
   const double u = (r.x * e.y - r.y * e.x) / det, v = (r.x * d.y - r.y * d.x) / det;
   if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1)) return CAG_OK;
   return cut_both(m, i, along(a, u), k, along(b, v), cag_lerp(a->p, a->q, u), err);
+}
+
+// --- Circles ---
+
+// A point near both pieces cuts them; that of a circle whose ends it lies between.
+static CagStatus cut_at(Meetings *m, size_t i, size_t k, CagVec3 p, CagError *err) {
+  const size_t which[2] = {i, k};
+  const CagRegionPiece *pieces = m->pieces->items;
+  if (!in_box(m, &pieces[i], p) || !in_box(m, &pieces[k], p)) return CAG_OK;
+  for (int side = 0; side < 2; side++) {
+    const CagRegionPiece *piece = &pieces[which[side]];
+    double t = along(piece, foot(piece, p));
+    CagVec3 there;
+    if (!piece->straight) {
+      const CagVec3 r = cag_sub(p, piece->center);
+      const int axis = fabs(r.x) > fabs(r.y); // the coordinate that changes faster there
+      CagStatus status = cag_region_piece_at(m->pieces, piece, piece->a, piece->b, axis,
+                                             axis ? p.y : p.x, &t, &there, err);
+      if (status) return status;
+    }
+    CagStatus status = cut(m, which[side], t, p, err);
+    if (status) return status;
+  }
+  return CAG_OK;
+}
+
+// The two points at the distances `forward` and +-`aside` from `from` along the unit vector; one
+// where they are so near to each other that what lies between is no wider than the tolerance.
+static CagStatus cut_pair(Meetings *m, size_t i, size_t k, CagVec3 from, CagVec3 unit,
+                          double forward, double square, bool touch, CagError *err) {
+  const CagVec3 middle = cag_madd(from, forward, unit), side = cag_vec3(-unit.y, unit.x, 0);
+  if (touch) return cut_at(m, i, k, middle, err);
+  if (!(square > 0)) return CAG_OK;
+  const double aside = sqrt(square);
+  CagStatus status = cut_at(m, i, k, cag_madd(middle, aside, side), err);
+  return status ? status : cut_at(m, i, k, cag_madd(middle, -aside, side), err);
+}
+
+// Piece i is part of a circle, k a segment or part of a circle.
+static CagStatus meet_circle(Meetings *m, size_t i, size_t k, CagError *err) {
+  const CagRegionPiece *a = &m->pieces->items[i], *b = &m->pieces->items[k];
+  const double r = a->radius, tolerance = m->pieces->tolerance;
+  if (b->straight) {
+    const CagVec3 d = cag_sub(b->q, b->p);
+    const double length = cag_norm(d);
+    if (length == 0) return CAG_OK;
+    const CagVec3 normal = cag_vec3(d.y / length, -d.x / length, 0);
+    const double h = cag_dot(cag_sub(b->p, a->center), normal);
+    return cut_pair(m, i, k, a->center, normal, h, (r - h) * (r + h),
+                    fabs(fabs(h) - r) <= tolerance, err);
+  }
+  const CagVec3 d = cag_sub(b->center, a->center);
+  const double distance = cag_norm(d), s = b->radius;
+  if (distance <= tolerance) return CAG_OK; // about one center: the same, or apart
+  const bool touch =
+      fabs(distance - (r + s)) <= tolerance || fabs(distance - fabs(r - s)) <= tolerance;
+  const double forward = (distance + (r - s) * (r + s) / distance) / 2;
+  return cut_pair(m, i, k, a->center, cag_scaled(d, 1 / distance),
+                  touch ? copysign(r, forward) : forward, (r - forward) * (r + forward), touch,
+                  err);
 }
 
 // --- Curves ---
@@ -121,7 +181,15 @@ static CagStatus lies_on(Meetings *m, size_t i, CagVec3 p, bool *out, double *t,
     *t = along(piece, u);
     return CAG_OK;
   }
-  // A box much larger than the distance to the curve: first the points of the same x and y.
+  if (piece->round) {
+    const CagVec3 r = cag_sub(p, piece->center);
+    *out = fabs(cag_norm(r) - piece->radius) <= m->pieces->tolerance;
+    if (!*out) return CAG_OK;
+    const int axis = fabs(r.x) > fabs(r.y);
+    CagVec3 there;
+    return cag_region_piece_at(m->pieces, piece, piece->a, piece->b, axis, axis ? p.y : p.x, t,
+                               &there, err);
+  }
   CagCurve *part;
   CagVec3 closest;
   double distance;
@@ -156,7 +224,7 @@ static CagStatus run_along(Meetings *m, size_t i, size_t k, double *t, size_t n,
   return CAG_OK;
 }
 
-static CagStatus meet_curves(Meetings *m, size_t i, size_t k, CagError *err) {
+static CagStatus meet_curves(Meetings *m, size_t i, size_t k, bool ends_only, CagError *err) {
   const size_t which[2] = {i, k};
   double shared[4]; // parameters on piece i of ends of either on the other
   size_t n = 0;
@@ -175,8 +243,12 @@ static CagStatus meet_curves(Meetings *m, size_t i, size_t k, CagError *err) {
     }
   }
   bool along_each_other = false;
-  if (!status && n > 1) status = run_along(m, i, k, shared, n, &along_each_other, err);
+  if (status || ends_only) return status;
+  if (n > 1) status = run_along(m, i, k, shared, n, &along_each_other, err);
   if (status || along_each_other) return status;
+  const CagRegionPiece *one = &m->pieces->items[i], *other = &m->pieces->items[k];
+  if (one->round && (other->round || other->straight)) return meet_circle(m, i, k, err);
+  if (other->round && one->straight) return meet_circle(m, k, i, err);
   CagCurve *a, *b;
   status = part_of(m, i, &a, err);
   if (!status) status = part_of(m, k, &b, err);
@@ -211,13 +283,16 @@ static int by_place(const void *a, const void *b) {
   return (p->t > q->t) - (p->t < q->t);
 }
 
-// Pieces of one group do not meet; nor do neighbours of one curve that is bent: they were parted
-// where one coordinate turns, the other keeps them apart.
-static bool may_meet(const CagRegionPieces *s, const CagRegionPiece *a, const CagRegionPiece *b) {
+typedef enum Meet { NEVER, AT_ENDS, ANYWHERE } Meet;
+
+// Pieces of one group do not cross, but an end of one may touch another. Neighbours of one curve
+// that is bent do not meet at all: they were parted where one coordinate turns, the other keeps
+// them apart.
+static Meet may_meet(const CagRegionPieces *s, const CagRegionPiece *a, const CagRegionPiece *b) {
   const int group = s->walks[a->walk].group;
-  if (group >= 0 && group == s->walks[b->walk].group) return false;
-  if (a->walk == b->walk && (a->b == b->a || b->b == a->a)) return a->straight || b->straight;
-  return true;
+  if (a->walk == b->walk && (a->b == b->a || b->b == a->a) && !a->straight && !b->straight)
+    return NEVER;
+  return group >= 0 && group == s->walks[b->walk].group ? AT_ENDS : ANYWHERE;
 }
 
 CagStatus cag_region_pieces_meet(CagRegionPieces *s, CagRegionCut **out, size_t *n, CagError *err) {
@@ -238,9 +313,11 @@ CagStatus cag_region_pieces_meet(CagRegionPieces *s, CagRegionCut **out, size_t 
       const Box *b = &boxes[k];
       if (b->y0 > a->y1 || a->y0 > b->y1) continue;
       const CagRegionPiece *p = &s->items[a->piece], *q = &s->items[b->piece];
-      if (!may_meet(s, p, q)) continue;
-      status = p->straight && q->straight ? meet_segments(&m, a->piece, b->piece, err)
-                                          : meet_curves(&m, a->piece, b->piece, err);
+      const Meet where = may_meet(s, p, q);
+      if (where == NEVER) continue;
+      status = p->straight && q->straight
+                   ? meet_segments(&m, a->piece, b->piece, where == AT_ENDS, err)
+                   : meet_curves(&m, a->piece, b->piece, where == AT_ENDS, err);
     }
   }
   free(boxes);

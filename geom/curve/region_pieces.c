@@ -12,6 +12,8 @@
 
 // Velocities under this part of the largest count as none: a straight line keeps its direction.
 #define STILL 1e-11
+// Axes of a circle differ by this part at most.
+#define ROUND 1e-12
 // Samples of a smooth part in which turns of its direction are looked for, and more by degree.
 #define SAMPLES 24
 #define SAMPLES_PER_DEGREE 4
@@ -35,12 +37,26 @@ void cag_region_pieces_free(CagRegionPieces *s) {
   free(s->items);
 }
 
+// Sets what is known of a piece of a circle.
+static void find_circle(const CagCurve *c, CagRegionPiece *piece) {
+  double local_a, local_b, rate;
+  const CagCurve *inner =
+      cag_curve_composite_piece(c, piece->a, piece->b, &local_a, &local_b, &rate);
+  CagVec3 x, y;
+  if (!cag_curve_arc_axes(inner ? inner : c, &piece->center, &x, &y, &rate)) return;
+  piece->radius = cag_norm(x);
+  const double square = piece->radius * piece->radius;
+  piece->round =
+      fabs(square - cag_dot(y, y)) <= ROUND * square && fabs(cag_dot(x, y)) <= ROUND * square;
+}
+
 static CagStatus add_part(CagRegionPieces *s, size_t walk, double a, double b, bool straight,
                           CagError *err) {
   const CagCurve *c = s->walks[walk].curve;
   CagRegionPiece piece = {.walk = walk, .a = a, .b = b, .straight = straight};
   CagStatus status = cag_curve_eval(c, a, 0, CAG_SIDE_RIGHT, &piece.p, err);
   if (!status) status = cag_curve_eval(c, b, 0, CAG_SIDE_LEFT, &piece.q, err);
+  if (!straight) find_circle(c, &piece);
   return status ? status : add(s, piece, err);
 }
 
