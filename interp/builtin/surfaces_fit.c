@@ -117,6 +117,7 @@ static bool read_table(CagCall *call, int argument, CagValue v, int k, const Cag
                        double *out) {
   const double *x;
   size_t n, lines = k == 0 ? g->r : g->s;
+  if (v.type == CAG_RANGE && !cag_as_list(call->vm, v, &v)) return false;
   if (cag_as_vector(v, &x, &n) && n == lines) {
     for (size_t i = 0; i < g->r * g->s; i++) out[i] = x[k == 0 ? i / g->s : i % g->s];
     return true;
