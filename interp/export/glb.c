@@ -17,6 +17,7 @@ static CagStatus write_file(const CagGltfPlan *p, const CagGltfText *json, CagAt
                     (double)total / 1e9);
   const uint32_t header[] = {magic, version, (uint32_t)total, (uint32_t)json->length, json_chunk};
   const uint32_t data_header[] = {(uint32_t)data, binary_chunk};
+  cag_atomic_file_expect(file, total);
   cag_mesh_write_words(file, header, 5);
   cag_atomic_file_write(file, json->at, json->length);
   if (data > 0) cag_mesh_write_words(file, data_header, 2);

@@ -420,7 +420,10 @@ CagStatus cag_export_gltf(const CagMeshPart *parts, size_t n, const char *data_n
   status = cag_gltf_text(&p, data ? data_name : NULL, &t, err);
   if (status == CAG_OK && !data && p.data_bytes > 0) status = write_embedded(&p, &t, file, err);
   else if (status == CAG_OK) cag_atomic_file_write(file, t.at, t.length);
-  if (status == CAG_OK && data) cag_gltf_write_data(&p, data);
+  if (status == CAG_OK && data) {
+    cag_atomic_file_expect(data, p.data_bytes);
+    cag_gltf_write_data(&p, data);
+  }
   cag_gltf_text_free(&t);
   cag_gltf_plan_free(&p);
   return status;

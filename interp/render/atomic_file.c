@@ -303,6 +303,18 @@ void cag_atomic_file_flush(CagAtomicFile *f) {
   f->at = s->buffer;
 }
 
+void cag_atomic_file_expect(CagAtomicFile *f, uint64_t bytes) {
+#ifdef FALLOC_FL_KEEP_SIZE
+  // Only a hint: a full disk is told by the write that meets it.
+  const struct CagAtomicFileState *s = f->state;
+  if (s->slot && !s->error && bytes > BUFFER_SIZE && bytes <= INT64_MAX)
+    (void)!fallocate(s->fd, FALLOC_FL_KEEP_SIZE, 0, (off_t)bytes);
+#else
+  (void)f;
+  (void)bytes;
+#endif
+}
+
 void cag_atomic_file_write(CagAtomicFile *f, const void *data, size_t n) {
   if (n > (size_t)(f->limit - f->at)) cag_atomic_file_flush(f);
   if (n >= BUFFER_SIZE) {

@@ -1,4 +1,5 @@
-// Times the mesh formats on 10^6 triangles, beside writing the same bytes with fwrite.
+// Times the mesh formats on 10^6 triangles, beside writing the same bytes with fwrite to the same
+// place. Both take turns, so that what else the machine does meets both; the best of each counts.
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +9,7 @@
 
 #include "geom/mesh/mesh.h"
 #include "interp/export/mesh_formats.h"
+#include "interp/export/pov.h"
 #include "interp/scene/scene.h"
 
 static double now(void) {
@@ -56,32 +58,75 @@ static CagStatus write_glb(const CagMeshPart *p, CagAtomicFile *f, CagError *e) 
   return cag_export_glb(p, 1, f, e);
 }
 
-static double time_plain(const char *path, size_t bytes) {
-  char *data = malloc(bytes);
-  if (!data) exit(1);
-  memset(data, 1, bytes);
-  double best = 1e9;
-  for (int k = 0; k < 5; k++) {
-    remove(path);
-    double t = now();
-    FILE *f = fopen(path, "wb");
-    if (!f || fwrite(data, 1, bytes, f) != bytes || fclose(f)) exit(1);
-    t = now() - t;
-    if (t < best) best = t;
-  }
-  free(data);
-  return best;
+static CagStatus write_gltf(const CagMeshPart *p, CagAtomicFile *f, CagError *e) {
+  return cag_export_gltf(p, 1, NULL, NULL, f, e);
+}
+static CagStatus write_3mf(const CagMeshPart *p, CagAtomicFile *f, CagError *e) {
+  return cag_export_3mf(p, 1, f, e);
+}
+// A scene that owns what it has, as cag_scene_complete wants it.
+static CagStatus write_pov(const CagMeshPart *p, CagAtomicFile *f, CagError *e) {
+  CagScene scene = {.items = calloc(1, sizeof *scene.items),
+                    .item_count = 1,
+                    .materials = malloc(sizeof *scene.materials),
+                    .material_count = 1};
+  if (!scene.items || !scene.materials) exit(1);
+  scene.items[0] = (CagItem){.kind = CAG_ITEM_MESH,
+                             .name = strdup(p->name),
+                             .as.mesh = cag_mesh_retain(p->mesh),
+                             .placement = cag_transform_identity()};
+  scene.materials[0] = *p->material;
+  scene.materials[0].name = strdup(p->material->name);
+  scene.materials[0].texture = strdup("");
+  CagStatus status = cag_scene_complete(&scene, e);
+  if (status == CAG_OK)
+    status = cag_export_pov(&scene, &(CagPovOptions){.quality = CAG_POV_NORMAL}, f, e);
+  cag_scene_free(&scene);
+  return status;
+}
+
+typedef struct Format {
+  const char *name;
+  CagStatus (*write)(const CagMeshPart *, CagAtomicFile *, CagError *);
+  const char *aim;
+} Format;
+
+static double time_ours(const Format *format, const CagMeshPart *part, const char *path) {
+  CagIoError io;
+  CagError err;
+  remove(path);
+  double t = now();
+  CagAtomicFile *f = cag_atomic_file_open(path, &io);
+  if (!f || format->write(part, f, &err) != CAG_OK || !cag_atomic_file_commit(f, &io)) exit(1);
+  return now() - t;
+}
+
+static double time_plain(const char *path, const char *data, size_t bytes) {
+  remove(path);
+  double t = now();
+  FILE *f = fopen(path, "wb");
+  if (!f || fwrite(data, 1, bytes, f) != bytes || fclose(f)) exit(1);
+  return now() - t;
+}
+
+static char *read_back(const char *path, size_t *bytes) {
+  struct stat st;
+  if (stat(path, &st) != 0) exit(1);
+  *bytes = (size_t)st.st_size;
+  char *data = malloc(*bytes);
+  FILE *f = fopen(path, "rb");
+  if (!data || !f || fread(data, 1, *bytes, f) != *bytes) exit(1);
+  fclose(f);
+  return data;
 }
 
 int main(int argc, char **argv) {
-  static const struct {
-    const char *name;
-    CagStatus (*write)(const CagMeshPart *, CagAtomicFile *, CagError *);
-    const char *aim;
-  } formats[] = {{"stl", write_stl, "ratio <= 3"},
-                 {"ply", write_ply, "ratio <= 3"},
-                 {"glb", write_glb, "ratio <= 3"},
-                 {"obj", write_obj, ">= 3 Mtri/s"}};
+  static const Format formats[] = {
+      {"stl", write_stl, "ratio <= 2"}, {"ply", write_ply, "ratio <= 2"},
+      {"glb", write_glb, "ratio <= 2"}, {"gltf", write_gltf, ""},
+      {"3mf", write_3mf, ""},           {"obj", write_obj, ">= 5 Mtri/s"},
+      {"pov", write_pov, ">= 2 Mtri/s"}};
+  enum { TURNS = 9 };
   if (argc < 2) return 2;
   CagMesh *mesh = make_sheet(708);
   CagMaterial material = cag_material_default();
@@ -89,23 +134,18 @@ int main(int argc, char **argv) {
   for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
     char path[4096];
     snprintf(path, sizeof path, "%s/sheet.%s", argv[1], formats[i].name);
-    double best = 1e9;
-    for (int k = 0; k < 5; k++) {
-      remove(path);
-      CagIoError io;
-      CagError err;
-      double t = now();
-      CagAtomicFile *f = cag_atomic_file_open(path, &io);
-      if (!f || formats[i].write(&part, f, &err) != CAG_OK || !cag_atomic_file_commit(f, &io))
-        return 1;
-      t = now() - t;
-      if (t < best) best = t;
+    size_t bytes;
+    double best = time_ours(&formats[i], &part, path), plain = 1e9;
+    char *data = read_back(path, &bytes);
+    for (int k = 0; k < TURNS; k++) {
+      double a = time_plain(path, data, bytes), b = time_ours(&formats[i], &part, path);
+      plain = a < plain ? a : plain;
+      best = b < best ? b : best;
     }
-    struct stat st;
-    if (stat(path, &st) != 0) return 1;
-    double plain = time_plain(path, (size_t)st.st_size);
-    printf("%s %44.4f s   fwrite of %4lld MB %13.4f s   ratio %6.2f   %.1f Mtri/s   aim %s\n",
-           formats[i].name, best, (long long)st.st_size >> 20, plain, best / plain,
+    free(data);
+    remove(path);
+    printf("%-4s %43.4f s   fwrite of %4zu MB %13.4f s   ratio %6.2f   %.1f Mtri/s   aim %s\n",
+           formats[i].name, best, bytes >> 20, plain, best / plain,
            (double)mesh->triangle_count / best / 1e6, formats[i].aim);
   }
   return 0;
