@@ -207,6 +207,7 @@ static void free_work(BoolWork *w) {
   free(w->faces);
   free(w->nodes);
   free(w->order);
+  free(w->boxes);
   free(w->plane_of);
   free(w->contacts.items);
   free(w->pieces.items);

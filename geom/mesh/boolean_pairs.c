@@ -25,9 +25,22 @@ static bool boxes_meet(const CagBounds *a, const CagBounds *b) {
          b->min.y <= a->max.y && a->min.z <= b->max.z && b->min.z <= a->max.z;
 }
 
+static double least(double a, double b) { return a < b ? a : b; } // numbers only: fmin is slower
+static double most(double a, double b) { return a > b ? a : b; }
+
+static void add_box(CagBounds *all, const CagBounds *b) {
+  all->min = cag_vec3(least(all->min.x, b->min.x), least(all->min.y, b->min.y),
+                      least(all->min.z, b->min.z));
+  all->max =
+      cag_vec3(most(all->max.x, b->max.x), most(all->max.y, b->max.y), most(all->max.z, b->max.z));
+}
+
 static CagBounds face_box(const BoolWork *w, uint32_t f) {
   CagBounds box = CAG_BOUNDS_EMPTY;
-  for (int k = 0; k < 3; k++) cag_bounds_add(&box, w->points.at[w->faces[f].v[k]]);
+  for (int k = 0; k < 3; k++) {
+    const CagVec3 p = w->points.at[w->faces[f].v[k]];
+    add_box(&box, &(CagBounds){p, p});
+  }
   return box;
 }
 
@@ -52,17 +65,25 @@ static uint64_t grid_step(double x, double low, double high) {
   return high > low ? (uint64_t)((x - low) / (high - low) * steps) : 0;
 }
 
-static int by_code(const void *a, const void *b) {
-  const Place *p = a, *q = b;
-  if (p->code != q->code) return p->code < q->code ? -1 : 1;
-  return p->face < q->face ? -1 : p->face > q->face;
+// By code, those of one code as they are; n places more behind them to work with.
+static void sort_places(Place *p, size_t n) {
+  enum { BITS = 11, DIGITS = 6 }; // 66 bits: an even number of passes ends where it began
+  for (int digit = 0; digit < DIGITS; digit++) {
+    size_t start[(1 << BITS) + 1] = {0};
+    Place *from = digit % 2 ? p + n : p, *to = digit % 2 ? p : p + n;
+    const uint64_t mask = (1 << BITS) - 1;
+    for (size_t i = 0; i < n; i++) start[(from[i].code >> (BITS * digit) & mask) + 1]++;
+    for (int k = 0; k < 1 << BITS; k++) start[k + 1] += start[k];
+    for (size_t i = 0; i < n; i++) to[start[from[i].code >> (BITS * digit) & mask]++] = from[i];
+  }
 }
 
 static bool sort_faces(BoolWork *w) {
-  Place *places = malloc((w->face_count + 1) * sizeof *places);
+  Place *places = malloc((2 * w->face_count + 1) * sizeof *places);
   if (!places) return false;
   CagBounds all = CAG_BOUNDS_EMPTY;
-  for (size_t i = 0; i < w->corners; i++) cag_bounds_add(&all, w->points.at[i]);
+  for (size_t i = 0; i < w->corners; i++)
+    add_box(&all, &(CagBounds){w->points.at[i], w->points.at[i]});
   for (uint32_t f = 0; f < w->face_count; f++) {
     const CagBounds box = face_box(w, f);
     const CagVec3 c = cag_lerp(box.min, box.max, 0.5);
@@ -71,8 +92,11 @@ static bool sort_faces(BoolWork *w) {
                      spread(grid_step(c.y, all.min.y, all.max.y)) << 1 |
                      spread(grid_step(c.z, all.min.z, all.max.z)) << 2;
   }
-  qsort(places, w->face_count, sizeof *places, by_code);
-  for (size_t i = 0; i < w->face_count; i++) w->order[i] = places[i].face;
+  sort_places(places, w->face_count);
+  for (size_t i = 0; i < w->face_count; i++) {
+    w->order[i] = places[i].face;
+    w->boxes[i] = face_box(w, places[i].face);
+  }
   free(places);
   return true;
 }
@@ -82,27 +106,21 @@ static uint32_t build_node(BoolWork *w, uint32_t first, uint32_t count, uint32_t
   BoolNode *node = &w->nodes[at];
   *node = (BoolNode){CAG_BOUNDS_EMPTY, first, count, 0};
   if (count <= LEAF_FACES) {
-    for (uint32_t i = 0; i < count; i++) {
-      const CagBounds box = face_box(w, w->order[first + i]);
-      cag_bounds_add(&node->box, box.min);
-      cag_bounds_add(&node->box, box.max);
-    }
+    for (uint32_t i = 0; i < count; i++) add_box(&node->box, &w->boxes[first + i]);
     return at;
   }
   const uint32_t half = count / 2, left = build_node(w, first, half, used);
   node->right = build_node(w, first + half, count - half, used);
-  for (int side = 0; side < 2; side++) {
-    const CagBounds *box = &w->nodes[side ? node->right : left].box;
-    cag_bounds_add(&node->box, box->min);
-    cag_bounds_add(&node->box, box->max);
-  }
+  add_box(&node->box, &w->nodes[left].box);
+  add_box(&node->box, &w->nodes[node->right].box);
   return at;
 }
 
 static bool build_tree(BoolWork *w) {
   w->order = malloc((w->face_count + 1) * sizeof *w->order);
   w->nodes = malloc((2 * w->face_count + 1) * sizeof *w->nodes);
-  if (!w->order || !w->nodes || !sort_faces(w)) return false;
+  w->boxes = malloc((w->face_count + 1) * sizeof *w->boxes);
+  if (!w->order || !w->nodes || !w->boxes || !sort_faces(w)) return false;
   uint32_t used = 0;
   build_node(w, 0, (uint32_t)w->face_count, &used);
   return true;
@@ -237,6 +255,25 @@ static bool meet_in_space(BoolWork *w, uint32_t f, uint32_t g, const int side_f[
   return add_contact(w, f, first, last, two) && add_contact(w, g, first, last, one);
 }
 
+// Neighbours in a mesh: does an edge of f, seen along f's axis, have f on one side and all of g on
+// the other but for corners that both have? Most neighbours are told apart so, and without exact
+// numbers where they are nearly in one plane.
+static bool are_beside(BoolWork *w, const BoolFace *f, const BoolFace *g) {
+  const bool shared[3] = {has_corner(f, g->v[0]), has_corner(f, g->v[1]), has_corner(f, g->v[2])};
+  if (!shared[0] && !shared[1] && !shared[2]) return false;
+  for (int i = 0; i < 3; i++) {
+    const uint32_t a = f->v[i], b = f->v[(i + 1) % 3];
+    int beyond = 0;
+    for (int k = 0; k < 3 && beyond == k; k++) {
+      const uint32_t v = g->v[k];
+      if (shared[k]) beyond += v == a || v == b;
+      else beyond += bool_turn(&w->points, a, b, v, f->axis) == -f->sign;
+    }
+    if (beyond == 3) return true;
+  }
+  return false;
+}
+
 // Gives whether f lies on one side of g's plane, at most one corner in it that both have.
 static bool find_sides(BoolWork *w, const BoolFace *f, const BoolFace *g, int side[3],
                        bool *shares) {
@@ -256,7 +293,7 @@ static bool meet(BoolWork *w, uint32_t f, uint32_t g) {
   const BoolFace *one = &w->faces[f], *two = &w->faces[g];
   int side_f[3], side_g[3];
   bool edge;
-  if (find_sides(w, one, two, side_f, &edge)) return true;
+  if (are_beside(w, one, two) || find_sides(w, one, two, side_f, &edge)) return true;
   const bool flat = !side_f[0] && !side_f[1] && !side_f[2];
   if (edge && !flat) return true; // a common edge, and that is all
   if (flat) {
@@ -285,12 +322,11 @@ static void meet_leaves(Search *s, const BoolNode *a, const BoolNode *b) {
   if (!goes_on(s)) return;
   for (uint32_t i = 0; i < a->count; i++) {
     const uint32_t f = w->order[a->first + i];
-    const CagBounds box = face_box(w, f);
-    if (a != b && !boxes_meet(&box, &b->box)) continue;
+    const CagBounds *box = &w->boxes[a->first + i];
+    if (a != b && !boxes_meet(box, &b->box)) continue;
     for (uint32_t k = a == b ? i + 1 : 0; k < b->count; k++) {
       const uint32_t g = w->order[b->first + k];
-      const CagBounds other = face_box(w, g);
-      if (!boxes_meet(&box, &other) || meet(w, f, g)) continue;
+      if (!boxes_meet(box, &w->boxes[b->first + k]) || meet(w, f, g)) continue;
       s->status = cag_fail_memory(w->err);
       return;
     }

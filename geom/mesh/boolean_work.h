@@ -121,6 +121,7 @@ typedef struct BoolWork {
   size_t face_count;
   struct BoolNode *nodes; // a tree of boxes over `order`
   uint32_t *order;        // of the faces
+  CagBounds *boxes;       // in that order
   uint32_t *plane_of;     // forest of the faces that overlap others of their plane
   BoolList contacts;      // of BoolContact
   BoolList pieces;        // of BoolPiece
