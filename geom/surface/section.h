@@ -1,10 +1,12 @@
-// Plane sections: of quadrics as conics, of everything as curves; and what else a quadric's
-// equation tells about one of its points.
+// Plane sections: of quadrics as conics, of everything as curves; contours seen from a direction;
+// and what else a quadric's equation tells about one of its points.
 
 #ifndef CAG_GEOM_SURFACE_SECTION_H
 #define CAG_GEOM_SURFACE_SECTION_H
 
 #include "geom/curve/conic.h"
+#include "geom/mesh/mesh.h"
+#include "geom/solid/solid.h"
 #include "geom/surface/quadric.h"
 
 CagVec3 cag_quadric_gradient(const CagQuadric *q, CagVec3 p);
@@ -24,5 +26,68 @@ CagStatus cag_quadric_rulings(const CagQuadric *q, CagVec3 p, CagRulings *out, C
 void cag_quadric_section(const CagQuadric *q, const CagTransform *frame, CagConic *out);
 // A right-handed frame of the plane: its point, and x as near to the world's X (or Y) as may be.
 CagTransform cag_plane_frame(const CagPlane *plane);
+
+// --- Curves on which a function of the surface is 0 ---
+
+// A function of a place of the surface, from the partials there.
+typedef struct CagLevel {
+  int order; // of the partials that its gradient needs, 1 or 2; its value needs one order less
+  // d holds the partials of total order n; gradient (by u and v) is wanted where it is not NULL.
+  double (*value)(const struct CagLevel *level, const CagVec3 *d, int n, double *gradient);
+  CagVec3 point, direction;
+  bool central;
+  double zero; // values below are rounding
+} CagLevel;
+// Distance from a plane.
+CagLevel cag_level_plane(const CagPlane *plane, double size);
+// 0 where the line of sight lies in the tangent plane: along `direction`, or from `point` where
+// `central`.
+CagLevel cag_level_contour(CagVec3 direction, CagVec3 point, bool central);
+
+// One run of such a curve without corners: points and unit tangents. `checks` are further points of
+// it, by which a guess of its kind is tried.
+typedef struct CagTrace {
+  size_t count, check_count;
+  bool closed; // the last point is the first
+  CagVec3 *points, *tangents, *checks;
+} CagTrace;
+typedef struct CagTraces {
+  CagTrace *items;
+  size_t count, capacity;
+} CagTraces;
+void cag_traces_free(CagTraces *t);
+
+// All runs, dense enough that cubics through points and tangents stay within the tolerance. The
+// parameter rectangle is searched on a grid whose places nearest to 0 are followed up, so that
+// loops smaller than its cells are found as a rule. Where the function is 0 over a whole patch it
+// has no curves.
+CagStatus cag_surface_trace(const CagSurface *s, const CagLevel *level, double tolerance,
+                            CagTraces *out, CagError *err);
+// A run as a curve: a line, an arc of a conic where all its points lie on one to rounding, else
+// cubics. `quadric`: its conic is the section of this quadric; NULL: it is found.
+CagStatus cag_trace_curve(const CagTrace *t, const CagQuadric *quadric, double size, CagCurve **out,
+                          CagError *err);
+
+// --- Sections ---
+
+// A growing list of curves, each with one reference.
+typedef struct CagCurveList {
+  CagCurve **items;
+  size_t count, capacity;
+} CagCurveList;
+void cag_curve_list_free(CagCurveList *list);
+CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err); // takes c over
+
+// Sections with a plane are added to the list; what merely touches the plane may have none. The
+// tolerance is that of curves that are neither lines nor conics; 0: a millionth of the size.
+CagStatus cag_surface_section(const CagSurface *s, const CagPlane *plane, double tolerance,
+                              CagCurveList *out, CagError *err);
+CagStatus cag_solid_section(const CagSolid *s, const CagPlane *plane, double tolerance,
+                            CagCurveList *out, CagError *err);
+CagStatus cag_mesh_section(const CagMesh *m, const CagPlane *plane, CagCurveList *out,
+                           CagError *err);
+// The outline of a surface: where the line of sight touches it.
+CagStatus cag_surface_contour(const CagSurface *s, CagVec3 direction, CagVec3 eye, bool central,
+                              double tolerance, CagCurveList *out, CagError *err);
 
 #endif

@@ -129,6 +129,116 @@ static bool call_section_conic(CagCall *call, CagValue *result) {
   return true;
 }
 
+// --- Sections and outlines ---
+
+static bool read_tolerance(CagCall *call, int argument, double *tolerance) {
+  *tolerance = 0;
+  if (!cag_given(call, argument) || call->values[argument].type == CAG_NONE) return true;
+  return cag_arg_positive(call, argument, tolerance);
+}
+
+// All the shapes of a group or list; the caller keeps the list alive.
+static bool read_shapes(CagCall *call, CagValue v, CagList **out) {
+  CagBuilder *builder = cag_builder_new(call->vm);
+  if (!cag_shapes_collect(call, v, builder)) return false;
+  *out = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  return true;
+}
+
+static bool give_curves(CagCall *call, CagCurveList *list, CagValue *result) {
+  CagBuilder *out = cag_builder_new(call->vm);
+  bool ok = true;
+  for (size_t i = 0; ok && i < list->count; i++)
+    ok =
+        cag_builder_add(call->vm, out, cag_curve_value(call->vm, cag_curve_retain(list->items[i])));
+  if (ok) *result = cag_builder_finish(call->vm, out);
+  return ok;
+}
+
+static CagStatus region_surface(const CagShape *shape, CagSurface **out, CagError *err) {
+  return cag_surface_planar(shape->as.region, &shape->placement, out, err);
+}
+
+static bool section_of(CagCall *call, CagValue v, const CagPlane *plane, double tolerance,
+                       CagCurveList *list) {
+  CagError err;
+  CagShape *shape = CAG_AS_SHAPE(v);
+  CagSurface *flat = NULL;
+  CagStatus status;
+  if (v.type == CAG_SURFACE)
+    status = cag_surface_section(shape->as.surface, plane, tolerance, list, &err);
+  else if (v.type == CAG_SOLID)
+    status = cag_solid_section(shape->as.solid, plane, tolerance, list, &err);
+  else if (v.type == CAG_MESH) status = cag_mesh_section(shape->as.mesh, plane, list, &err);
+  else if (v.type == CAG_REGION) {
+    status = region_surface(shape, &flat, &err);
+    if (!status) status = cag_surface_section(flat, plane, tolerance, list, &err);
+    cag_surface_release(flat);
+  } else return cag_fail_type(call, 0, "surfaces, solids, meshes or regions");
+  return cag_geometry_ok(call, status, &err);
+}
+
+static bool call_section(CagCall *call, CagValue *result) {
+  CagPlane plane;
+  double tolerance;
+  CagList *shapes;
+  CagCurveList list = {0};
+  if (!cag_arg_plane(call, 1, &plane) || !read_tolerance(call, 2, &tolerance) ||
+      !read_shapes(call, call->values[0], &shapes))
+    return false;
+  // Formulas are called back: the shapes stay.
+  CagValue kept = cag_object(CAG_LIST, shapes);
+  cag_root_push(call->vm, kept);
+  bool ok = true;
+  for (size_t i = 0; ok && i < shapes->length; i++)
+    ok = section_of(call, cag_list_get(call->vm, shapes, i), &plane, tolerance, &list);
+  ok = ok && give_curves(call, &list, result);
+  cag_root_pop(call->vm, 1);
+  cag_curve_list_free(&list);
+  return ok;
+}
+
+static bool contour_of(CagCall *call, CagValue v, CagVec3 direction, CagVec3 eye, bool central,
+                       double tolerance, CagCurveList *list) {
+  CagError err;
+  CagStatus status = CAG_OK;
+  if (v.type == CAG_SURFACE)
+    status = cag_surface_contour(CAG_AS_SHAPE(v)->as.surface, direction, eye, central, tolerance,
+                                 list, &err);
+  else if (v.type == CAG_SOLID) {
+    const CagSolid *s = CAG_AS_SHAPE(v)->as.solid;
+    for (size_t i = 0; !status && i < s->face_count; i++)
+      status = cag_surface_contour(s->faces[i], direction, eye, central, tolerance, list, &err);
+  } else return cag_fail_type(call, 0, "surfaces or solids");
+  return cag_geometry_ok(call, status, &err);
+}
+
+static bool call_contour(CagCall *call, CagValue *result) {
+  CagVec3 direction = {0, 0, 0}, eye = {0, 0, 0};
+  double tolerance;
+  CagList *shapes;
+  CagCurveList list = {0};
+  bool central = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  bool parallel = cag_given(call, 1) && call->values[1].type != CAG_NONE;
+  if (central == parallel)
+    return cag_fail_call(call, -1, CAG_ERR_value,
+                         "needs either the direction of the view or, as `from`, the eye's place");
+  if (parallel && !cag_arg_direction(call, 1, direction, &direction, NULL)) return false;
+  if (central && !cag_arg_vec(call, 2, &eye, NULL)) return false;
+  if (!read_tolerance(call, 3, &tolerance) || !read_shapes(call, call->values[0], &shapes))
+    return false;
+  CagValue kept = cag_object(CAG_LIST, shapes);
+  cag_root_push(call->vm, kept);
+  bool ok = true;
+  for (size_t i = 0; ok && i < shapes->length; i++)
+    ok = contour_of(call, cag_list_get(call->vm, shapes, i), cag_unit(direction), eye, central,
+                    tolerance, &list);
+  ok = ok && give_curves(call, &list, result);
+  cag_root_pop(call->vm, 1);
+  cag_curve_list_free(&list);
+  return ok;
+}
+
 // --- Frames along a path ---
 
 static bool call_path_frame(CagCall *call, CagValue *result) {
@@ -206,6 +316,22 @@ const CagBuiltin cag_builtins_sections[] = {
      "s = section_conic(ellipsoid(2, 1, 1), plane([0, 0, 0.6], Z))\n"
      "print s.class, near(classify(s.conic).axes, [1.6, 0.8]) // expect: ellipse true",
      EQUATIONS, QUADRICS},
+    {"section(G, plane, tolerance = none)", call_section, "list",
+     "The curves in which a plane cuts surfaces, solids, meshes and regions. Lines and conics are "
+     "exact, closed ones whole; other curves are cubics within the tolerance (none: a millionth of "
+     "the size), of meshes polylines. Curves that meet end to end are joined, so that a solid "
+     "gives "
+     "closed curves. What only touches the plane need not show.",
+     "c = section(sphere(5), plane([0, 0, 3], Z))\n"
+     "print len(c), near(length(c[0]), 8 * pi) // expect: 1 true",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), SECTIONS},
+    {"contour(G, direction = none, from = none, tolerance = none)", call_contour, "list",
+     "The outlines of smooth surfaces and faces, seen along a direction or from an eye: the curves "
+     "on which the line of sight touches the surface, as exact as sections. Edges of solids are "
+     "not among them.",
+     "c = contour(sphere(5), from: [0, 0, 10])\n"
+     "print near(start_point(c[0]).z, 2.5) // expect: true",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), SECTIONS},
     {"path_frame(C, t, orient = \"rmf\")", call_path_frame, "transform",
      "The frame that `sweep` carries along a path, at the parameter t: x along the frame's normal, "
      "y along its binormal, z along the tangent. `orient` as of sweep; fixed keeps the frame of "

@@ -1,0 +1,342 @@
+// Plane sections of surfaces and solids, and outlines, as lists of curves.
+//
+// Flat faces are cut by their loops, all others are traced. Curves that meet end to end are joined,
+// so that a body gives closed curves.
+
+#include "geom/surface/section.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/curve/intersect.h"
+#include "geom/mesh/tessellate.h"
+
+// Curves meet whose ends are nearer than this part of the size: traced ends are far better.
+#define MEET 1e-7
+// A face within this part of the size of the plane lies in it and is not cut.
+#define WITHIN 1e-9
+#define DEFAULT_TOLERANCE 1e-6
+
+// --- Lists ---
+
+void cag_curve_list_free(CagCurveList *list) {
+  for (size_t i = 0; i < list->count; i++) cag_curve_release(list->items[i]);
+  free(list->items);
+  *list = (CagCurveList){0};
+}
+
+CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err) {
+  if (list->count == list->capacity) {
+    size_t capacity = list->capacity ? 2 * list->capacity : 8;
+    CagCurve **grown = realloc(list->items, capacity * sizeof *grown);
+    if (!grown) {
+      cag_curve_release(c);
+      return cag_fail_memory(err);
+    }
+    list->items = grown;
+    list->capacity = capacity;
+  }
+  list->items[list->count++] = c;
+  return CAG_OK;
+}
+
+// --- Joining ---
+
+static bool end_points(const CagCurve *c, CagVec3 out[2]) {
+  CagError err;
+  return cag_curve_point(c, c->start, &out[0], &err) == CAG_OK &&
+         cag_curve_point(c, c->end, &out[1], &err) == CAG_OK;
+}
+
+static bool is_line(const CagCurve *c) {
+  const CagVec3 *points;
+  size_t n;
+  bool closed;
+  return cag_curve_vertices(c, &points, &n, &closed) && !closed;
+}
+
+// Lines and open polylines end to end as one polyline.
+static CagStatus join_lines(CagCurve *const *parts, size_t n, bool closed, CagCurve **out,
+                            CagError *err) {
+  size_t count = 0, capacity = 1;
+  const CagVec3 *points;
+  size_t m;
+  bool ignored;
+  for (size_t i = 0; i < n; i++)
+    if (cag_curve_vertices(parts[i], &points, &m, &ignored)) capacity += m;
+  CagVec3 *all = malloc(capacity * sizeof *all);
+  if (!all) return cag_fail_memory(err);
+  for (size_t i = 0; i < n; i++)
+    if (cag_curve_vertices(parts[i], &points, &m, &ignored))
+      for (size_t k = i > 0; k < m; k++) all[count++] = points[k];
+  CagStatus status = cag_curve_polyline(all, closed ? count - 1 : count, closed, 3, out, err);
+  free(all);
+  return status;
+}
+
+static CagStatus join_parts(CagCurve *const *parts, size_t n, bool closed, CagCurve **out,
+                            CagError *err) {
+  bool straight = true;
+  for (size_t i = 0; i < n; i++) straight = straight && is_line(parts[i]);
+  if (straight) return join_lines(parts, n, closed, out, err);
+  return cag_curve_join(parts, n, out, err);
+}
+
+// Looks among the curves that are left for one that goes on from `at`, turns it if need be, and
+// moves it to place `to`. False: there is none.
+static bool take_next(CagCurveList *list, size_t to, CagVec3 at, double same, CagVec3 *end) {
+  for (size_t i = to; i < list->count; i++) {
+    CagVec3 ends[2];
+    CagError err;
+    CagCurve *c = list->items[i], *turned = NULL;
+    if (c->closed || !end_points(c, ends)) continue;
+    bool forward = cag_norm(cag_sub(ends[0], at)) <= same;
+    bool backward = !forward && cag_norm(cag_sub(ends[1], at)) <= same;
+    if (!forward && !backward) continue;
+    if (backward && cag_curve_reverse(c, &turned, &err) != CAG_OK) continue;
+    if (backward) {
+      cag_curve_release(c);
+      c = turned;
+    }
+    *end = ends[forward ? 1 : 0];
+    list->items[i] = list->items[to];
+    list->items[to] = c;
+    return true;
+  }
+  return false;
+}
+
+// Replaces the curves [first, list->count) by what they are joined end to end.
+static CagStatus join_list(CagCurveList *list, size_t first, double same, CagError *err) {
+  for (size_t i = first; i < list->count; i++) {
+    CagVec3 ends[2], end;
+    if (list->items[i]->closed || !end_points(list->items[i], ends)) continue;
+    // Back to where the run begins, so that it is taken up at an end.
+    size_t n = 1;
+    end = ends[1];
+    while (cag_norm(cag_sub(end, ends[0])) > same && take_next(list, i + n, end, same, &end)) n++;
+    CagVec3 start = ends[0];
+    bool closed = n > 1 && cag_norm(cag_sub(end, start)) <= same;
+    if (!closed) {
+      // The other way: each found one is put in front.
+      CagVec3 found;
+      while (take_next(list, i + n, start, same, &found)) {
+        CagCurve *turned = NULL, *c = list->items[i + n];
+        if (cag_curve_reverse(c, &turned, err) != CAG_OK) break;
+        cag_curve_release(c);
+        for (size_t k = i + n; k > i; k--) list->items[k] = list->items[k - 1];
+        list->items[i] = turned;
+        start = found;
+        n++;
+      }
+    }
+    if (n == 1) continue;
+    CagCurve *joined = NULL;
+    CagError ignored;
+    // Ends that the joint does not take for one stay apart.
+    if (join_parts(list->items + i, n, closed, &joined, &ignored) != CAG_OK) {
+      i += n - 1;
+      continue;
+    }
+    for (size_t k = 0; k < n; k++) cag_curve_release(list->items[i + k]);
+    list->items[i] = joined;
+    for (size_t k = i + n; k < list->count; k++) list->items[k - n + 1] = list->items[k];
+    list->count -= n - 1;
+  }
+  return CAG_OK;
+}
+
+// --- Flat faces ---
+
+static int by_size(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+// Where the line p + s d of the region's plane meets its loops: s in order.
+static CagStatus cut_loops(const CagRegion *region, CagVec3 p, CagVec3 d, double **out, size_t *n,
+                           CagError *err) {
+  CagPlane upright = {p, cag_vec3(-d.y, d.x, 0)};
+  *out = NULL;
+  *n = 0;
+  for (size_t i = 0; i < region->count; i++) {
+    CagMeeting *found = NULL;
+    size_t count = 0;
+    CagStatus status = cag_curve_intersect_plane(region->loops[i], &upright, &found, &count, err);
+    if (status) {
+      free(*out);
+      return status;
+    }
+    double *grown = realloc(*out, (*n + count + 1) * sizeof *grown);
+    if (!grown) {
+      free(found);
+      free(*out);
+      return cag_fail_memory(err);
+    }
+    *out = grown;
+    for (size_t k = 0; k < count; k++) grown[(*n)++] = cag_dot(cag_sub(found[k].point, p), d);
+    free(found);
+  }
+  if (*n > 1) qsort(*out, *n, sizeof **out, by_size);
+  return CAG_OK;
+}
+
+// A line of the region's plane, where it is looked for and where it is: the two differ where an
+// edge of the region lies on it.
+typedef struct FlatLine {
+  CagVec3 searched, shown, along;
+} FlatLine;
+
+static CagStatus add_piece(const CagTransform *frame, const FlatLine *l, double from, double to,
+                           CagCurveList *out, CagError *err) {
+  CagCurve *piece = NULL;
+  CagStatus status =
+      cag_curve_line(cag_transform_point(frame, cag_madd(l->shown, from, l->along)),
+                     cag_transform_point(frame, cag_madd(l->shown, to, l->along)), 3, &piece, err);
+  return status ? status : cag_curve_list_add(out, piece, err);
+}
+
+// The pieces of the line that lie in the region, neighbours made one.
+static CagStatus add_pieces(const CagRegion *region, const CagTransform *frame, const FlatLine *l,
+                            const double *cuts, size_t n, double same, CagCurveList *out,
+                            CagError *err) {
+  CagStatus status = CAG_OK;
+  bool open = false;
+  double from = 0, to = 0;
+  for (size_t i = 0; i + 1 < n && !status; i++) {
+    if (cuts[i + 1] - cuts[i] <= same) continue;
+    CagVec3 middle = cag_madd(l->searched, (cuts[i] + cuts[i + 1]) / 2, l->along);
+    bool here = false;
+    status = cag_region_contains(region, middle, &here, err);
+    if (status) return status;
+    if (here && !open) from = cuts[i];
+    if (here) to = cuts[i + 1];
+    if (!here && open) status = add_piece(frame, l, from, to, out, err);
+    open = here;
+  }
+  return open && !status ? add_piece(frame, l, from, to, out, err) : status;
+}
+
+static CagStatus section_flat(const CagRegion *region, const CagTransform *frame,
+                              const CagPlane *plane, double size, CagCurveList *out,
+                              CagError *err) {
+  CagVec3 n = plane->normal;
+  CagVec3 x = cag_vec3(frame->m[0][0], frame->m[1][0], frame->m[2][0]);
+  CagVec3 y = cag_vec3(frame->m[0][1], frame->m[1][1], frame->m[2][1]);
+  CagVec3 o = cag_vec3(frame->m[0][3], frame->m[1][3], frame->m[2][3]);
+  // a x + b y + c = 0 in the region's plane.
+  double a = cag_dot(n, x), b = cag_dot(n, y), c = cag_dot(n, cag_sub(o, plane->point));
+  double slope = hypot(a, b);
+  if (slope <= WITHIN * (cag_norm(x) + cag_norm(y))) return CAG_OK;
+  CagVec3 across = cag_vec3(a / slope, b / slope, 0), p = cag_scaled(across, -c / slope);
+  FlatLine l = {p, p, cag_vec3(-across.y, across.x, 0)};
+  double *cuts;
+  size_t count;
+  CagStatus status = cut_loops(region, p, l.along, &cuts, &count, err);
+  if (status && status != CAG_E_MEMORY) {
+    // An edge lies in the plane. It belongs to the face on the negative side, so that of two faces
+    // that meet there one has it.
+    l.searched = cag_madd(p, -WITHIN * size, across);
+    status = cut_loops(region, l.searched, l.along, &cuts, &count, err);
+  }
+  if (status) return status;
+  status = add_pieces(region, frame, &l, cuts, count, WITHIN * size, out, err);
+  free(cuts);
+  return status;
+}
+
+// --- Surfaces ---
+
+static double size_of(const CagBounds *b) { return cag_norm(cag_sub(b->max, b->min)); }
+
+// All of the box lies on one side of the plane.
+static bool is_beside(const CagBounds *b, const CagPlane *plane) {
+  bool above = false, below = false;
+  for (int k = 0; k < 8; k++) {
+    CagVec3 corner = {k & 1 ? b->max.x : b->min.x, k & 2 ? b->max.y : b->min.y,
+                      k & 4 ? b->max.z : b->min.z};
+    double d = cag_dot(plane->normal, cag_sub(corner, plane->point));
+    above = above || d >= 0;
+    below = below || d <= 0;
+  }
+  return !(above && below);
+}
+
+static CagStatus trace_all(const CagSurface *s, const CagLevel *level, const CagQuadric *quadric,
+                           double tolerance, double size, CagCurveList *out, CagError *err) {
+  CagTraces traces;
+  CagStatus status = cag_surface_trace(s, level, tolerance, &traces, err);
+  for (size_t i = 0; !status && i < traces.count; i++) {
+    CagCurve *c = NULL;
+    status = cag_trace_curve(&traces.items[i], quadric, size, &c, err);
+    if (!status) status = cag_curve_list_add(out, c, err);
+  }
+  if (traces.count > 0) cag_traces_free(&traces);
+  return status;
+}
+
+static CagStatus section_face(const CagSurface *s, const CagPlane *plane, double tolerance,
+                              double size, CagCurveList *out, CagError *err) {
+  const CagRegion *region;
+  CagTransform frame;
+  CagBounds box;
+  CagQuadric q;
+  CagStatus status = cag_surface_bounds(s, &box, err);
+  if (status || is_beside(&box, plane)) return status;
+  if (cag_surface_planar_view(s, &region, &frame))
+    return section_flat(region, &frame, plane, size, out, err);
+  CagLevel level = cag_level_plane(plane, size);
+  bool quadric = cag_surface_quadric_view(s, &q);
+  return trace_all(s, &level, quadric ? &q : NULL, tolerance, size, out, err);
+}
+
+CagStatus cag_surface_section(const CagSurface *s, const CagPlane *plane, double tolerance,
+                              CagCurveList *out, CagError *err) {
+  CagBounds box;
+  CagStatus status = cag_surface_bounds(s, &box, err);
+  if (status) return status;
+  double size = size_of(&box);
+  size_t first = out->count;
+  if (!(tolerance > 0)) tolerance = DEFAULT_TOLERANCE * size;
+  status = section_face(s, plane, tolerance, size, out, err);
+  return status ? status : join_list(out, first, MEET * size, err);
+}
+
+CagStatus cag_solid_section(const CagSolid *s, const CagPlane *plane, double tolerance,
+                            CagCurveList *out, CagError *err) {
+  CagBounds box;
+  CagStatus status = cag_solid_bounds(s, &box, err);
+  if (status) return status;
+  double size = size_of(&box);
+  size_t first = out->count;
+  if (!(tolerance > 0)) tolerance = DEFAULT_TOLERANCE * size;
+  if (s->face_count == 0) {
+    // Known as a mesh only.
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    CagMesh *mesh = NULL;
+    status = cag_solid_tessellate(s, &how, &mesh, err);
+    if (!status) status = cag_mesh_section(mesh, plane, out, err);
+    cag_mesh_release(mesh);
+    return status;
+  }
+  for (size_t i = 0; !status && i < s->face_count; i++)
+    status = section_face(s->faces[i], plane, tolerance, size, out, err);
+  return status ? status : join_list(out, first, MEET * size, err);
+}
+
+CagStatus cag_surface_contour(const CagSurface *s, CagVec3 direction, CagVec3 eye, bool central,
+                              double tolerance, CagCurveList *out, CagError *err) {
+  const CagRegion *region;
+  CagTransform frame;
+  CagBounds box;
+  // A flat face is seen from one side or from its edge.
+  if (cag_surface_planar_view(s, &region, &frame)) return CAG_OK;
+  CagStatus status = cag_surface_bounds(s, &box, err);
+  if (status) return status;
+  double size = size_of(&box);
+  size_t first = out->count;
+  CagLevel level = cag_level_contour(direction, eye, central);
+  if (!(tolerance > 0)) tolerance = DEFAULT_TOLERANCE * size;
+  status = trace_all(s, &level, NULL, tolerance, size, out, err);
+  return status ? status : join_list(out, first, MEET * size, err);
+}
