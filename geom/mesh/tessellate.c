@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "geom/mesh/tessellation.h"
+#include "geom/solid/csg.h"
 
 CagStatus tess_grow(void *array, size_t count, size_t *capacity, size_t size, CagError *err) {
   if (count < *capacity) return CAG_OK;
@@ -121,6 +122,7 @@ CagStatus cag_surface_tessellate(const CagSurface *s, const CagTessellation *how
 CagStatus cag_solid_tessellate(const CagSolid *s, const CagTessellation *how, CagMesh **out,
                                CagError *err) {
   CagBounds bounds;
+  if (cag_solid_is_compound(s)) return cag_csg_tessellate(s, how, out, err);
   CagStatus status = cag_solid_bounds(s, &bounds, err);
   if (status != CAG_OK) return status;
   Tessellator t;

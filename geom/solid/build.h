@@ -24,7 +24,11 @@ int cag_solid_side_end(const CagSurface *face);
 CagStatus cag_solid_side_point(const CagSurface *face, int side, double fraction, CagVec3 *out,
                                CagError *err);
 
-// Fails with "size-not-positive".
+// Lets go of what a solid without faces is made of (csg.c); NULL is allowed.
+void cag_solid_core_release(CagSolidCore *core);
+
+// Fails with "size-not-positive" and, where powers of it would leave the range of numbers,
+// "size-out-of-range".
 CagStatus cag_solid_check_size(double size, const char *name, long index, CagError *err);
 // A disk of the XY plane about the origin.
 CagStatus cag_solid_disk(double radius, CagRegion **out, CagError *err);

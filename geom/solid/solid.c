@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "geom/solid/build.h"
+#include "geom/solid/csg.h"
 
 CagStatus cag_solid_block(CagSolidKind kind, size_t faces, CagSolid **out, CagError *err) {
   CagSolid *s = calloc(1, sizeof *s);
@@ -40,12 +41,21 @@ void cag_solid_release(CagSolid *s) {
   for (size_t i = 0; i < s->face_count; i++) cag_surface_release(s->faces[i]);
   free(s->faces);
   free(s->edges);
+  cag_solid_core_release(s->core);
   free(s);
 }
 
+// Lengths whose fifth powers (moments) are numbers, with room for sums and transforms.
+#define LENGTH_MOST 1e50
+#define LENGTH_LEAST 1e-50
+
 CagStatus cag_solid_check_size(double size, const char *name, long index, CagError *err) {
-  if (size > 0 && isfinite(size)) return CAG_OK;
   char text[32];
+  if (size >= LENGTH_LEAST && size <= LENGTH_MOST) return CAG_OK;
+  if (size > 0 && isfinite(size))
+    return cag_fail(err, CAG_E_ARGUMENT, "size-out-of-range", name, index,
+                    "`%s` must lie between %g and %g, it is %s", name, LENGTH_LEAST, LENGTH_MOST,
+                    cag_number_text(size, text));
   if (index >= 0)
     return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", name, index,
                     "`%s` must be positive lengths: %s[%ld] is %s", name, name, index,
@@ -211,6 +221,8 @@ CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid
   moved->c = s->c;
   moved->centered = s->centered;
   moved->placement = cag_transform_multiply(t, &s->placement);
+  moved->core = s->core;
+  if (moved->core) moved->core->references++;
   bool mirror = cag_transform_mirrors(t);
   for (size_t i = 0; !status && i < s->face_count; i++) {
     CagSurface *face, *turned = NULL;
@@ -235,8 +247,24 @@ CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid
   return CAG_OK;
 }
 
+// The corners tell.
+static void box_bounds(const CagSolid *s, CagBounds *out) {
+  const CagVec3 size = cag_vec3(s->a, s->b, s->c);
+  const CagVec3 low = s->centered ? cag_scaled(size, -0.5) : cag_vec3(0, 0, 0);
+  *out = CAG_BOUNDS_EMPTY;
+  for (int k = 0; k < 8; k++) {
+    const CagVec3 step = cag_vec3(k & 1 ? size.x : 0, k & 2 ? size.y : 0, k & 4 ? size.z : 0);
+    cag_bounds_add(out, cag_transform_point(&s->placement, cag_add(low, step)));
+  }
+}
+
 CagStatus cag_solid_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
+  if (cag_solid_is_compound(s)) return cag_csg_bounds(s, out, err);
+  if (s->kind == CAG_SOLID_BOX) {
+    box_bounds(s, out);
+    return CAG_OK;
+  }
   for (size_t i = 0; i < s->face_count; i++) {
     CagBounds face;
     CagStatus status = cag_surface_bounds(s->faces[i], &face, err);
@@ -397,6 +425,7 @@ CagStatus cag_solid_mass(const CagSolid *s, CagMassProperties *out, CagError *er
   CagMassProperties m = {0};
   Body body;
   double scale;
+  if (cag_solid_is_compound(s)) return cag_csg_mass(s, out, err);
   if (!closed_form(s, &body)) {
     CagStatus status = area_of_faces(s, &m, err);
     if (!status) status = volume_of_faces(s, &m, err);
@@ -444,5 +473,37 @@ void cag_solid_describe(const CagSolid *s, char *buffer, size_t size) {
   case CAG_SOLID_SHELL:
     snprintf(buffer, size, "shell, %zu %s", s->face_count, s->face_count == 1 ? "face" : "faces");
     return;
+  case CAG_SOLID_MESH:
+    snprintf(buffer, size, "polyhedron, %zu triangles", s->core->mesh->triangle_count);
+    return;
+  case CAG_SOLID_HALF_SPACE:
+  case CAG_SOLID_QUADRIC: snprintf(buffer, size, "%s", cag_solid_kind_name(s->kind)); return;
+  case CAG_SOLID_UNION:
+  case CAG_SOLID_DIFFERENCE:
+  case CAG_SOLID_INTERSECTION:
+    snprintf(buffer, size, "%s of %zu solids", cag_solid_kind_name(s->kind), s->core->count);
+    return;
   }
+}
+
+const char *cag_solid_kind_name(CagSolidKind kind) {
+  static const char *const names[] = {
+      [CAG_SOLID_BOX] = "box",
+      [CAG_SOLID_SPHERE] = "sphere",
+      [CAG_SOLID_CYLINDER] = "cylinder",
+      [CAG_SOLID_TORUS] = "torus",
+      [CAG_SOLID_EXTRUSION] = "extrusion",
+      [CAG_SOLID_REVOLUTION] = "revolution",
+      [CAG_SOLID_TUBE] = "tube",
+      [CAG_SOLID_SWEEP] = "sweep",
+      [CAG_SOLID_LOFT] = "loft",
+      [CAG_SOLID_SHELL] = "shell",
+      [CAG_SOLID_MESH] = "polyhedron",
+      [CAG_SOLID_HALF_SPACE] = "half_space",
+      [CAG_SOLID_QUADRIC] = "quadric",
+      [CAG_SOLID_UNION] = "union",
+      [CAG_SOLID_DIFFERENCE] = "difference",
+      [CAG_SOLID_INTERSECTION] = "intersection",
+  };
+  return names[kind];
 }

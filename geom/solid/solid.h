@@ -3,6 +3,9 @@
 // A solid keeps how it was made (so that exporters can use native objects) and answers as a
 // boundary: `faces`, surfaces whose normals point outward. Immutable, reference counted. A
 // transform is applied to faces and kept beside the primitive.
+//
+// The kinds from MESH on have no faces: bodies within a mesh, unbounded sides, and set operations.
+// They answer by triangles; see csg.h.
 
 #ifndef CAG_GEOM_SOLID_H
 #define CAG_GEOM_SOLID_H
@@ -22,8 +25,17 @@ typedef enum CagSolidKind {
   CAG_SOLID_TUBE,       // tube along a path with its caps
   CAG_SOLID_SWEEP,      // region along a path, or under a motion
   CAG_SOLID_LOFT,       // surface through closed sections with its caps
-  CAG_SOLID_SHELL       // closed surfaces given
+  CAG_SOLID_SHELL,      // closed surfaces given
+  CAG_SOLID_MESH,       // within a closed mesh
+  CAG_SOLID_HALF_SPACE, // one side of a plane: unbounded
+  CAG_SOLID_QUADRIC,    // where a form of second degree is negative: unbounded
+  CAG_SOLID_UNION,      // set operations
+  CAG_SOLID_DIFFERENCE,
+  CAG_SOLID_INTERSECTION
 } CagSolidKind;
+
+// What kinds without faces are made of, in coordinates of their own (csg.h).
+typedef struct CagSolidCore CagSolidCore;
 
 typedef struct CagSolid {
   int references;
@@ -41,6 +53,7 @@ typedef struct CagSolid {
     int side[2];
     bool reversed; // the second runs against the first
   } * edges;
+  CagSolidCore *core; // kinds without faces: shared by the copies that were moved; else NULL
 } CagSolid;
 
 CagStatus cag_solid_box(CagVec3 size, bool centered, CagSolid **out, CagError *err);
@@ -83,5 +96,6 @@ CagStatus cag_solid_bounds(const CagSolid *s, CagBounds *out, CagError *err);
 CagStatus cag_solid_mass(const CagSolid *s, CagMassProperties *out,
                          CagError *err); // closed forms of primitives, else integrals over faces
 void cag_solid_describe(const CagSolid *s, char *buffer, size_t size); // "sphere, radius 10"
+const char *cag_solid_kind_name(CagSolidKind kind);                    // "box"
 
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "geom/mesh/tessellate.h"
+#include "geom/solid/csg.h"
 #include "interp/builtin/solids.h"
 #include "interp/eval/vm.h"
 
@@ -15,8 +16,23 @@ static bool give(CagCall *call, CagStatus status, const CagError *err, CagMesh *
   return true;
 }
 
+// A mesh, or that which bounds a polyhedron.
 static bool read_mesh(CagCall *call, const CagMesh **m) {
   *m = NULL;
+  const CagSolid *s =
+      call->values[0].type == CAG_SOLID ? CAG_AS_SHAPE(call->values[0])->as.solid : NULL;
+  if (s && s->kind == CAG_SOLID_MESH) {
+    CagMesh *moved = NULL;
+    CagError err;
+    CagStatus status = cag_mesh_transform(s->core->mesh, &s->placement, &moved, &err);
+    if (!cag_geometry_ok(call, status, &err)) return false;
+    *m = CAG_AS_SHAPE(cag_mesh_value(call->vm, moved))->as.mesh; // the heap lets it go
+    return true;
+  }
+  if (s)
+    return cag_fail_call(call, 0, CAG_ERR_type,
+                         "expects a mesh or a polyhedron, found a solid with faces of its own; "
+                         "`tessellate` makes a mesh of it");
   if (call->values[0].type != CAG_MESH) {
     cag_fail_type(call, 0, "a mesh");
     return false;

@@ -5,10 +5,17 @@
 #define NUMBERS CAG_TAKES(NUMBER)
 #define LISTS CAG_TAKES_LISTS
 #define MESHES CAG_TAKES(MESH)
+// Solids that are polyhedra (hulls, bodies within meshes) answer for the mesh that bounds them.
+#define POLYHEDRA (MESHES | CAG_TAKES(SOLID))
 // What has a volume; surfaces have rows of their own.
 #define BODIES (CAG_TAKES(SOLID) | MESHES | CAG_TAKES(GROUP))
 
+// What encloses a part of space; operations of regions have rows of their own.
+#define OPERANDS                                                                                   \
+  (CAG_TAKES(SOLID) | MESHES | CAG_TAKES(SURFACE) | CAG_TAKES(GROUP) | CAG_TAKES(LIST))
+
 static const char primitives[] = "Solids";
+static const char operations[] = "Set operations";
 static const char copies[] = "Copies";
 static const char measures[] = "Solids: measures";
 static const char meshes[] = "Meshes";
@@ -38,11 +45,59 @@ const CagBuiltin cag_builtins_solids[] = {
     {"torus(major, minor)", cag_solids_torus, "solid",
      "The ring about Z: a disc of radius `minor` turned at the radius `major`.",
      "print near(volume(torus(3, 1)), 6 * pi^2) // expect: true", NUMBERS, primitives},
-    {"solid(S)", cag_solids_solid, "solid",
+    {"solid(S, within = none)", cag_solids_solid, "solid",
      "The body within closed surfaces: one, or a list or group of surfaces and regions whose edges "
-     "meet. An open shell is an error that tells the gap (solid-open).",
-     "print near(volume(solid(ellipsoid(1, 2, 3))), 8 * pi, relative: 1e-8) // expect: true",
+     "meet. An open shell is an error that tells the gap (solid-open). Of a closed mesh the body "
+     "in "
+     "it, else the error names an open edge (mesh-open). Patches of a quadric are closed by flat "
+     "ends. The 10 numbers or 4 rows of a quadric (see `quadric`) mean the side where its form is "
+     "negative: all of it, to be cut by what it is intersected with or taken from, or the part "
+     "`within` a solid or a range of z.",
+     "print near(volume(solid(ellipsoid(1, 2, 3))), 8 * pi, relative: 1e-8) // expect: true\n"
+     "ball = solid([1, 1, 1, 0, 0, 0, 0, 0, 0, -4])\n"
+     "print contains(box(5) & ball, [1, 1, 1]), contains(box(5) & ball, [1.2, 1.2, 1.2]) // "
+     "expect: "
+     "true false",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), primitives},
+    {"half_space(plane)", cag_solids_half_space, "solid",
+     "The side of a plane that its normal leaves, without end. It is cut by what it is intersected "
+     "with or taken from; shown alone it is an error (solid-unbounded).",
+     "half = sphere(3) & half_space(plane(origin, Z))\n"
+     "print near(bounds(half).max.z, 0) // expect: true",
+     CAG_TAKES(PLANE), primitives},
+
+    // --- Set operations ---
+    {"union(G, ...)", cag_solids_union, "solid",
+     "What lies in any of the solids, given one by one or as one list; `a | b`. Closed meshes and "
+     "surfaces count as the bodies in them, a group as the union of its shapes. POV-Ray gets an "
+     "operation of its own, everything else a mesh whose operands keep the tolerance. The result "
+     "takes what was said of the material of the first.",
+     "print near(volume(union(box(1), translate(box(1), [0.5, 0, 0]))), 1.5) // expect: true\n"
+     "print volume([box(1), translate(box(1), [3, 0, 0])] |> union) // expect: 2",
+     OPERANDS, operations},
+    {"difference(G, ...)", cag_solids_difference, "solid",
+     "What lies in the first solid and in none of the others; `a - b`. Operands as of `union`. "
+     "When "
+     "nothing is left the volume is 0, and showing it is an error (csg-empty).",
+     "print near(volume(difference(box(3), translate(box(1), [1, 1, 1]))), 26) // expect: true\n"
+     "print volume(box(2) - translate(box(1), [5, 0, 0])) // expect: 8",
+     OPERANDS, operations},
+    {"intersection(G, ...)", cag_solids_intersection, "solid",
+     "What lies in all of the solids; `a & b`. Operands as of `union`. When nothing is left the "
+     "volume is 0, and showing it is an error (csg-empty).",
+     "print volume(intersection(box(2), translate(box(2), [1, 1, 1]))) // expect: 1\n"
+     "print volume(box(1) & translate(box(1), [3, 0, 0])) // expect: 0",
+     OPERANDS, operations},
+    {"clip(G, solid)", cag_solids_clip, "shape",
+     "The part of G within a solid, or on the side of a plane that its normal leaves. Solids and "
+     "closed meshes give solids, curves the pieces of them, surfaces, regions and open meshes the "
+     "mesh of what lies inside, to the tolerance of G. Groups and lists are clipped shape by "
+     "shape; "
+     "a shape that lies outside is left out. When nothing is left it is an error (csg-empty).",
+     "c = clip(line([-5, 0, 0], [5, 0, 0]), sphere(2))\n"
+     "print near(length(c), 4, 1e-9) // expect: true\n"
+     "print near(area(clip(rectangle(4, 4), plane(origin, X))), 8) // expect: true",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), operations},
 
     // --- Copies ---
     {"around(G, n, axis = Z, through = origin)", cag_solids_around, "group",
@@ -80,24 +135,24 @@ const CagBuiltin cag_builtins_solids[] = {
      "m = mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])\n"
      "print area(m) // expect: 0.5",
      LISTS, meshes},
-    {"vertices(M)", cag_solids_vertices, "list", "The points of a mesh.",
+    {"vertices(M)", cag_solids_vertices, "list", "The points of a mesh or of a polyhedron.",
      "print len(vertices(mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))) // expect: 3",
-     MESHES, meshes},
+     POLYHEDRA, meshes},
     {"faces(M)", cag_solids_faces, "list", "The triangles of a mesh, as numbers of vertices.",
      "print faces(mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])) // expect: [[0, 1, 2]]",
-     MESHES, meshes},
+     POLYHEDRA, meshes},
     {"normals_of(M)", cag_solids_normals_of, "list",
      "The unit normal at each vertex: of the surface that the mesh was made of, else the mean of "
      "the faces around.",
      "print normals_of(mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))[0] // expect: [0, 0, "
      "1]",
-     MESHES, meshes},
+     POLYHEDRA, meshes},
     {"is_watertight(M)", cag_solids_is_watertight, "bool",
      "Whether each edge has two faces that run it in opposite senses.",
-     "print is_watertight(tessellate(sphere(1))) // expect: true", MESHES, meshes},
+     "print is_watertight(tessellate(sphere(1))) // expect: true", POLYHEDRA, meshes},
     {"euler_characteristic(M)", cag_solids_euler_characteristic, "number",
      "Vertices - edges + faces: 2 of a sphere, 0 of a torus.",
-     "print euler_characteristic(tessellate(torus(3, 1))) // expect: 0", MESHES, meshes},
+     "print euler_characteristic(tessellate(torus(3, 1))) // expect: 0", POLYHEDRA, meshes},
     {"weld(M, tolerance)", cag_solids_weld, "mesh",
      "The mesh with vertices nearer than the tolerance (mm) made one, also across sharp edges and "
      "seams. Normals stay where the joined ones agree, else the mesh is shaded by its faces.",

@@ -3,12 +3,15 @@
 #ifndef CAG_INTERP_BUILTIN_SOLIDS_H
 #define CAG_INTERP_BUILTIN_SOLIDS_H
 
+#include "geom/surface/quadric.h"
 #include "interp/builtin/shapes.h"
 
 // clang-format off
 #define CAG_SOLID_FUNCTIONS(X) \
   /* solids_make.c */ \
   X(box) X(sphere) X(cylinder) X(cone) X(prism) X(rod) X(torus) X(solid) \
+  /* solids_csg.c */ \
+  X(union) X(difference) X(intersection) X(half_space) X(clip) \
   /* solids_copies.c */ \
   X(around) X(rows) X(mirrored) \
   /* solids_measure.c */ \
@@ -28,6 +31,15 @@ CAG_SOLID_FUNCTIONS(X)
 // NULL before, are to be freed even when the call fails.
 bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **counts,
                    uint32_t **indices, size_t *count);
+
+// The body where a form is negative, cut by the argument `within` where it is given: a solid or a
+// range of z (solids_csg.c).
+bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue *result);
+// Whether the surfaces are patches of one quadric, and its equation.
+bool cag_solids_are_quadric(CagSurface *const *faces, size_t n, CagQuadric *q);
+// The body that such patches bound together with flat ends.
+CagStatus cag_solid_of_patches(CagSurface *const *faces, size_t n, const CagQuadric *q,
+                               const volatile int *interrupt, CagSolid **out, CagError *err);
 
 // A cylinder, frustum or cone from p to q.
 CagStatus cag_solid_rod(CagVec3 p, CagVec3 q, double radius, double top, CagSolid **out,

@@ -2,8 +2,10 @@
 
 #include <stdlib.h>
 
+#include "geom/solid/csg.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/surfaces.h"
+#include "interp/eval/vm.h"
 
 // `made` is read after the call that fills it: pass its address.
 static bool give(CagCall *call, CagStatus status, const CagError *err, CagSolid **made,
@@ -135,24 +137,63 @@ static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **fac
   return true;
 }
 
-bool cag_solids_solid(CagCall *call, CagValue *result) {
+// Surfaces that close, or patches of one quadric that its form closes.
+static CagStatus close_faces(CagCall *call, CagSurface **faces, size_t n, CagSolid **out,
+                             CagError *err) {
+  CagQuadric q;
+  CagStatus status = cag_solid_shell(faces, n, out, err);
+  if (status == CAG_OK || !cag_solids_are_quadric(faces, n, &q)) return status;
+  return cag_solid_of_patches(faces, n, &q, call->vm->interrupt, out, err);
+}
+
+static bool solid_of_mesh(CagCall *call, CagValue v, CagValue *result) {
   CagError err;
   CagSolid *s = NULL;
-  if (call->values[0].type == CAG_SOLID) {
-    *result = call->values[0];
-    return true;
-  }
-  CagBuilder *builder = cag_builder_new(call->vm);
-  if (!cag_shapes_collect(call, call->values[0], builder)) return false;
-  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
-  if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects surfaces");
+  if (!give(call, cag_solid_from_mesh(CAG_AS_SHAPE(v)->as.mesh, &s, &err), &err, &s, result))
+    return false;
+  cag_shape_say_alike(*result, v);
+  return true;
+}
+
+static bool solid_of_faces(CagCall *call, const CagList *shapes, CagValue *result) {
+  CagError err;
+  CagSolid *s = NULL;
   CagSurface **faces = malloc(shapes->length * sizeof *faces);
   if (!faces) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
   size_t n = 0;
   bool ok = collect_faces(call, shapes, faces, &n) &&
-            give(call, cag_solid_shell(faces, n, &s, &err), &err, &s, result);
+            give(call, close_faces(call, faces, n, &s, &err), &err, &s, result);
   for (size_t i = 0; i < n; i++) cag_surface_release(faces[i]);
   free(faces);
   if (ok) cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
   return ok;
+}
+
+// The ten numbers of a form, or its rows.
+static bool is_form(CagValue v) {
+  return v.type == CAG_LIST && ((CAG_AS_LIST(v)->dim == 1 && CAG_AS_LIST(v)->length == 10) ||
+                                (CAG_AS_LIST(v)->dim == 4 && CAG_AS_LIST(v)->length == 4));
+}
+
+bool cag_solids_solid(CagCall *call, CagValue *result) {
+  const CagValue v = call->values[0];
+  CagQuadric q;
+  if (is_form(v))
+    return cag_surfaces_read_form(call, &q) && cag_solids_of_form(call, &q, 1, result);
+  if (cag_given(call, 1) && call->values[1].type != CAG_NONE)
+    return cag_fail_call(call, 1, CAG_ERR_value,
+                         "is for a quadric given by its 10 numbers or 4 rows; a surface has its "
+                         "own range");
+  if (v.type == CAG_SOLID) {
+    *result = v;
+    return true;
+  }
+  if (v.type == CAG_MESH) return solid_of_mesh(call, v, result);
+  CagBuilder *builder = cag_builder_new(call->vm);
+  if (!cag_shapes_collect(call, v, builder)) return false;
+  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects surfaces");
+  const CagValue first = cag_list_get(call->vm, shapes, 0);
+  if (shapes->length == 1 && first.type == CAG_MESH) return solid_of_mesh(call, first, result);
+  return solid_of_faces(call, shapes, result);
 }

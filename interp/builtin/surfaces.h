@@ -64,4 +64,7 @@ bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v
 bool cag_region_revolved(CagCall *call, const CagRegion *region, const CagTransform *place,
                          CagVec3 axis, CagVec3 through, double from, double to, CagValue *result);
 
+// Reads the first argument as the 10 numbers or 4 rows of a quadric (surfaces_quadric.c).
+bool cag_surfaces_read_form(CagCall *call, CagQuadric *q);
+
 #endif

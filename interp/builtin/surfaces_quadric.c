@@ -77,6 +77,8 @@ static bool read_equation(CagCall *call, CagQuadric *q) {
   return cag_geometry_ok(call, cag_quadric_from_rows(rows, q, &err), &err);
 }
 
+bool cag_surfaces_read_form(CagCall *call, CagQuadric *q) { return read_equation(call, q); }
+
 bool cag_surfaces_quadric(CagCall *call, CagValue *result) {
   CagQuadric q;
   return read_equation(call, &q) && give_patches(call, &q, 1, result);

@@ -252,7 +252,8 @@ static bool solids(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *
 }
 
 static bool is_body(CagValue v) {
-  return v.type == CAG_SOLID || v.type == CAG_REGION || v.type == CAG_MESH || v.type == CAG_GROUP;
+  return v.type == CAG_SOLID || v.type == CAG_REGION || v.type == CAG_MESH ||
+         v.type == CAG_SURFACE || v.type == CAG_GROUP;
 }
 
 // What to say to a pair that nothing joins.

@@ -8,7 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DEPTH_MAX 32 // the form nests to about 12
+#include "geom/solid/csg.h"
+
+#define DEPTH_MAX 512 // the form nests to about 12, and set operations of operations by 2 each
 
 typedef struct Writer {
   const CagScene *scene;
@@ -373,17 +375,6 @@ static CagStatus put_surface(Writer *w, const CagSurface *s, CagError *err) {
 
 // --- Solids ---
 
-static const char *const solid_names[] = {[CAG_SOLID_BOX] = "box",
-                                          [CAG_SOLID_SPHERE] = "sphere",
-                                          [CAG_SOLID_CYLINDER] = "cylinder",
-                                          [CAG_SOLID_TORUS] = "torus",
-                                          [CAG_SOLID_EXTRUSION] = "extrusion",
-                                          [CAG_SOLID_REVOLUTION] = "revolution",
-                                          [CAG_SOLID_TUBE] = "tube",
-                                          [CAG_SOLID_SWEEP] = "sweep",
-                                          [CAG_SOLID_LOFT] = "loft",
-                                          [CAG_SOLID_SHELL] = "shell"};
-
 static CagStatus put_faces(Writer *w, const CagSolid *s, CagError *err) {
   CagStatus status = CAG_OK;
   key(w, "faces");
@@ -393,10 +384,28 @@ static CagStatus put_faces(Writer *w, const CagSolid *s, CagError *err) {
   return status;
 }
 
+static CagStatus put_solid(Writer *w, const CagSolid *s, CagError *err);
+
+static CagStatus put_operands(Writer *w, const CagSolid *s, CagError *err) {
+  CagStatus status = CAG_OK;
+  const int room = 16; // what a solid without operands nests to
+  if (w->depth + room > DEPTH_MAX)
+    return cag_fail(err, CAG_E_LIMIT, "depth-limit", "", -1,
+                    "set operations nest too deep for the file (more than %d); `tessellate` makes "
+                    "one mesh of them",
+                    DEPTH_MAX / 2);
+  key(w, "operands");
+  open(w, "[");
+  for (size_t i = 0; !status && i < s->core->count; i++)
+    status = put_solid(w, s->core->operands[i], err);
+  close(w, "]");
+  return status;
+}
+
 static CagStatus put_solid(Writer *w, const CagSolid *s, CagError *err) {
   CagStatus status = CAG_OK;
   open(w, "{");
-  key_text(w, "type", solid_names[s->kind]);
+  key_text(w, "type", cag_solid_kind_name(s->kind));
   key_transform(w, "placement", &s->placement);
   switch (s->kind) {
   case CAG_SOLID_BOX:
@@ -413,6 +422,18 @@ static CagStatus put_solid(Writer *w, const CagSolid *s, CagError *err) {
     key_number(w, "major", s->a);
     key_number(w, "minor", s->b);
     break;
+  case CAG_SOLID_MESH:
+    key(w, "mesh");
+    put_mesh(w, s->core->mesh);
+    break;
+  case CAG_SOLID_HALF_SPACE:
+  case CAG_SOLID_QUADRIC:
+    key(w, "form"); // a x^2 + b y^2 + c z^2 + d xy + e yz + f xz + g x + h y + j z + k < 0
+    put_numbers(w, s->core->form, 10);
+    break;
+  case CAG_SOLID_UNION:
+  case CAG_SOLID_DIFFERENCE:
+  case CAG_SOLID_INTERSECTION: status = put_operands(w, s, err); break;
   default: status = put_faces(w, s, err);
   }
   close(w, "}");

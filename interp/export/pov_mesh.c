@@ -114,6 +114,8 @@ CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
   write_vectors(w, "vertex_vectors", m->positions, m->vertex_count, decimals);
   if (m->normals) write_vectors(w, "normal_vectors", m->normals, m->vertex_count, NORMAL_DECIMALS);
   write_faces(w, m);
+  // Any direction will do that no face is likely to lie along.
+  if (w->in_operation) pov_text(w, "  inside_vector <0.3071, 0.2117, 0.9278>\n");
   pov_text(w, "}");
   return CAG_OK;
 }

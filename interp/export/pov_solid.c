@@ -1,7 +1,8 @@
 // Solids that POV-Ray has objects for.
 //
 // Where a solid was only moved and turned, it is written in its own coordinates and the writer's
-// `placement` says where it stands; a scaled or sheared one carries its matrix itself.
+// `placement` says where it stands; a scaled or sheared one carries its matrix itself, and so does
+// an operand of a set operation.
 
 #include "interp/export/pov_write.h"
 
@@ -18,7 +19,7 @@ static bool is_rigid(const CagTransform *t) {
 }
 
 static void place(CagPovWriter *w, const CagTransform *t) {
-  if (is_rigid(t)) w->placement = *t;
+  if (!w->in_operation && is_rigid(t)) w->placement = *t;
   else pov_placement(w, "  ", t);
 }
 
@@ -86,7 +87,13 @@ bool pov_try_solid(CagPovWriter *w, const CagSolid *s) {
   case CAG_SOLID_SHELL: return try_shell(w, s);
   case CAG_SOLID_TUBE:
   case CAG_SOLID_SWEEP:
-  case CAG_SOLID_LOFT: return false;
+  case CAG_SOLID_LOFT:
+  case CAG_SOLID_MESH:
+  case CAG_SOLID_HALF_SPACE:
+  case CAG_SOLID_QUADRIC: return false;
+  case CAG_SOLID_UNION:
+  case CAG_SOLID_DIFFERENCE:
+  case CAG_SOLID_INTERSECTION: return affine && (pov_csg(w, s, 0), true);
   }
   return false;
 }

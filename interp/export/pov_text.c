@@ -7,7 +7,14 @@
 
 #include "interp/export/pov_write.h"
 
-void pov_text(CagPovWriter *w, const char *text) { cag_atomic_file_text(w->file, text); }
+void pov_text(CagPovWriter *w, const char *text) {
+  // Lines of what stands within another object are indented.
+  for (const char *end; w->depth > 0 && (end = strchr(text, '\n')) != NULL; text = end + 1) {
+    cag_atomic_file_write(w->file, text, (size_t)(end + 1 - text));
+    for (int i = 0; i < w->depth; i++) cag_atomic_file_text(w->file, "  ");
+  }
+  cag_atomic_file_text(w->file, text);
+}
 
 void pov_printf(CagPovWriter *w, const char *format, ...) {
   char text[1024]; // callers format names and short numbers

@@ -165,12 +165,6 @@ static CagItem *add_item(Build *b, CagItemKind kind, const char *name) {
   return item;
 }
 
-static const char *solid_noun(const CagSolid *s) {
-  static const char *const nouns[] = {"box",       "sphere",     "cylinder", "torus",
-                                      "extrusion", "revolution", "tube",     "solid"};
-  return nouns[s->kind];
-}
-
 // A label is a mesh without faces: see builtin/figures.c.
 static void add_label(Build *b, const CagMesh *anchor, const char *text, const Said *said) {
   CagScene *s = b->scene;
@@ -216,7 +210,7 @@ static void add_shape(Build *b, CagValue v, const Said *said) {
     if (item) item->as.surface = cag_surface_retain(shape->as.surface);
     break;
   case CAG_SOLID:
-    item = add_item(b, CAG_ITEM_SOLID, name ? name : solid_noun(shape->as.solid));
+    item = add_item(b, CAG_ITEM_SOLID, name ? name : cag_solid_kind_name(shape->as.solid->kind));
     if (item) item->as.solid = cag_solid_retain(shape->as.solid);
     break;
   default:

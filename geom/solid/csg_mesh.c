@@ -1,0 +1,314 @@
+// Meshes of solids without faces.
+//
+// An operation whose reach is finite is meshed as a whole, in coordinates of its own, and keeps the
+// mesh: copies that were moved take it from there. One that is unbounded is meshed within the
+// window that the operation around it can need. The outermost must be bounded; where bounds of the
+// operands do not show that (a tetrahedron of four half spaces), a coarse mesh within a window far
+// greater than everything given does: it must stay away from the window's faces.
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/solid/csg.h"
+
+// Largest distance from mesh to body by default, as part of the size (as tessellate.h says).
+#define DEFAULT_SHARE 1e-3
+// The window that tries whether a body is bounded, in sizes of what is given.
+#define FAR 100.0
+// A body found so is held by its coarse bounds and this part of their size.
+#define MARGIN 0.25
+
+static bool is_operation(const CagSolid *s) {
+  return s->kind == CAG_SOLID_UNION || s->kind == CAG_SOLID_DIFFERENCE ||
+         s->kind == CAG_SOLID_INTERSECTION;
+}
+
+static bool is_finite(const CagBounds *b) {
+  return isfinite(b->min.x) && isfinite(b->min.y) && isfinite(b->min.z) && isfinite(b->max.x) &&
+         isfinite(b->max.y) && isfinite(b->max.z);
+}
+
+static bool is_empty(const CagBounds *b) {
+  return !(b->min.x <= b->max.x && b->min.y <= b->max.y && b->min.z <= b->max.z);
+}
+
+static bool apart(const CagBounds *a, const CagBounds *b) {
+  return a->max.x < b->min.x || b->max.x < a->min.x || a->max.y < b->min.y || b->max.y < a->min.y ||
+         a->max.z < b->min.z || b->max.z < a->min.z;
+}
+
+static CagStatus empty_mesh(CagMesh **out, CagError *err) {
+  return cag_mesh_new(0, 0, false, false, false, out, err);
+}
+
+// How much a transform lengthens at most (never less than it does).
+static double stretch(const CagTransform *t) {
+  double scale, sum = 0;
+  if (cag_transform_is_similarity(t, &scale)) return scale;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) sum += t->m[i][j] * t->m[i][j];
+  return sqrt(sum) / fabs(t->m[3][3]);
+}
+
+static CagStatus check_interrupt(const volatile int *interrupt, CagError *err) {
+  if (!interrupt || !*interrupt) return CAG_OK;
+  return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the set operation was interrupted");
+}
+
+static CagStatus solid_mesh(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
+                            CagMesh **out, CagError *err);
+
+// --- Operations ---
+
+static CagSetOperation operation_of(const CagSolid *s) {
+  return s->kind == CAG_SOLID_UNION        ? CAG_UNION
+         : s->kind == CAG_SOLID_DIFFERENCE ? CAG_DIFFERENCE
+                                           : CAG_INTERSECTION;
+}
+
+// Meshes of the operands that matter within the window. *nothing: one that is missing leaves
+// nothing.
+static CagStatus operand_meshes(const CagSolid *s, const CagTessellation *how,
+                                const CagBounds *window, CagMesh **meshes, size_t *n, bool *nothing,
+                                CagError *err) {
+  CagStatus status = CAG_OK;
+  *n = 0;
+  *nothing = false;
+  for (size_t i = 0; !status && !*nothing && i < s->core->count; i++) {
+    const CagSolid *operand = s->core->operands[i];
+    bool needed = s->kind == CAG_SOLID_INTERSECTION || (s->kind == CAG_SOLID_DIFFERENCE && i == 0);
+    CagBounds reach;
+    status = check_interrupt(how->interrupt, err);
+    if (!status) status = cag_solid_reach(operand, &reach, err);
+    if (status) return status;
+    if (is_empty(&reach) || apart(&reach, window)) {
+      *nothing = needed;
+      continue;
+    }
+    status = solid_mesh(operand, how, window, &meshes[*n], err);
+    if (status) return status;
+    if (meshes[*n]->triangle_count > 0) {
+      ++*n;
+    } else {
+      cag_mesh_release(meshes[*n]);
+      *nothing = needed;
+    }
+  }
+  return status;
+}
+
+static CagStatus join_meshes(const CagSolid *s, const CagTessellation *how, CagMesh *const *meshes,
+                             size_t n, CagMesh **out, CagError *err) {
+  if (n == 0) return empty_mesh(out, err);
+  if (n == 1) {
+    *out = cag_mesh_retain(meshes[0]);
+    return CAG_OK;
+  }
+  CagStatus status = cag_mesh_boolean_many(operation_of(s), (const CagMesh *const *)meshes, n,
+                                           how->interrupt, out, err);
+  if (status || (*out)->triangle_count <= how->max_triangles) return status;
+  status = cag_fail(err, CAG_E_LIMIT, "triangle-limit", "tolerance", -1,
+                    "the %s takes %zu triangles, the limit is %zu: use a larger tolerance",
+                    cag_solid_kind_name(s->kind), (*out)->triangle_count, how->max_triangles);
+  cag_mesh_release(*out);
+  return status;
+}
+
+// In coordinates of the core.
+static CagStatus core_mesh(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
+                           CagMesh **out, CagError *err) {
+  if (is_empty(window)) return empty_mesh(out, err);
+  CagMesh **meshes = malloc((s->core->count + 1) * sizeof *meshes);
+  if (!meshes) return cag_fail_memory(err);
+  size_t n = 0;
+  bool nothing;
+  CagStatus status = operand_meshes(s, how, window, meshes, &n, &nothing, err);
+  if (!status) status = nothing ? empty_mesh(out, err) : join_meshes(s, how, meshes, n, out, err);
+  for (size_t i = 0; i < n; i++) cag_mesh_release(meshes[i]);
+  free(meshes);
+  return status;
+}
+
+// The mesh that the core keeps serves every tolerance that is not finer. It depends on the other
+// measures of `how` too: only meshes by the usual ones are kept.
+static bool is_usual(const CagTessellation *how) {
+  return how->angle == CAG_TESSELLATION_DEFAULT.angle && !(how->max_edge > 0);
+}
+
+// A kept mesh that is so much finer than asked for is not given: triangles cost.
+#define MUCH_FINER 0.25
+
+static CagStatus whole_core(const CagSolid *s, const CagTessellation *how, CagMesh **out,
+                            CagError *err) {
+  CagSolidCore *core = s->core;
+  if (core->mesh && is_usual(how) && core->tolerance <= how->tolerance &&
+      core->tolerance >= MUCH_FINER * how->tolerance) {
+    *out = cag_mesh_retain(core->mesh);
+    return CAG_OK;
+  }
+  CagStatus status = core_mesh(s, how, &core->reach, out, err);
+  if (status || !is_usual(how)) return status;
+  cag_mesh_release(core->mesh);
+  core->mesh = cag_mesh_retain(*out);
+  core->tolerance = how->tolerance;
+  return CAG_OK;
+}
+
+// A window that holds all that was given, and the mesh that lies in it, stand apart: bounded.
+static void add_landmarks(const CagSolid *s, CagBounds *into) {
+  CagQuadric q;
+  CagQuadricForm f;
+  CagBounds reach;
+  CagError err;
+  if (cag_solid_form(s, &q) && cag_quadric_classify(&q, &f, &err) == CAG_OK) {
+    CagVec3 o = cag_vec3(f.frame.m[0][3], f.frame.m[1][3], f.frame.m[2][3]);
+    double size = fmax(f.semi[0], fmax(f.semi[1], f.semi[2]));
+    if (s->kind == CAG_SOLID_HALF_SPACE) { // its frame may stand anywhere in the plane
+      CagVec3 n = cag_vec3(q.c[6], q.c[7], q.c[8]);
+      o = cag_scaled(n, -q.c[9] / cag_dot(n, n));
+    }
+    cag_bounds_add(into, cag_sub(o, cag_vec3(size, size, size)));
+    cag_bounds_add(into, cag_add(o, cag_vec3(size, size, size)));
+  } else if (is_operation(s)) {
+    for (size_t i = 0; i < s->core->count; i++) {
+      CagSolid *placed;
+      if (cag_solid_transform(s->core->operands[i], &s->placement, &placed, &err)) continue;
+      add_landmarks(placed, into);
+      cag_solid_release(placed);
+    }
+  } else if (cag_solid_reach(s, &reach, &err) == CAG_OK) {
+    cag_bounds_add(into, reach.min);
+    cag_bounds_add(into, reach.max);
+  }
+}
+
+static CagStatus unbounded(const CagSolid *s, CagError *err) {
+  if (!is_operation(s))
+    return cag_fail(err, CAG_E_ARGUMENT, "solid-unbounded", "", -1,
+                    "the %s reaches to infinity: intersect it with a solid that bounds it, as in "
+                    "`sphere(10) & half_space(plane(origin, Z))`, or take it away from one",
+                    s->kind == CAG_SOLID_HALF_SPACE ? "half space" : "side of the quadric");
+  return cag_fail(err, CAG_E_ARGUMENT, "solid-unbounded", "", -1,
+                  "the %s reaches to infinity: one of its %zu operands is a half space or quadric "
+                  "that the others do not bound; intersect it with a solid that does",
+                  cag_solid_kind_name(s->kind), s->core->count);
+}
+
+// Finds where an operation ends whose operands' bounds do not tell.
+static CagStatus find_reach(const CagSolid *s, CagError *err) {
+  CagSolid core = *s;
+  CagBounds around = CAG_BOUNDS_EMPTY;
+  CagTessellation coarse = CAG_TESSELLATION_DEFAULT;
+  CagMesh *m = NULL;
+  core.placement = cag_transform_identity();
+  add_landmarks(&core, &around);
+  double size = is_empty(&around) ? 0 : cag_norm(cag_sub(around.max, around.min));
+  if (!(size > 0) || !isfinite(size)) size = 1;
+  CagVec3 middle = is_empty(&around) ? cag_vec3(0, 0, 0) : cag_lerp(around.min, around.max, 0.5);
+  CagVec3 far = cag_vec3(FAR * size, FAR * size, FAR * size);
+  const CagBounds window = {cag_sub(middle, far), cag_add(middle, far)};
+  coarse.tolerance = DEFAULT_SHARE * FAR * size;
+  coarse.interrupt = s->core->interrupt;
+  CagStatus status = core_mesh(s, &coarse, &window, &m, err);
+  if (status) return status;
+  CagBounds found = cag_mesh_bounds(m);
+  bool empty = m->triangle_count == 0;
+  cag_mesh_release(m);
+  if (empty) {
+    s->core->reach = CAG_BOUNDS_EMPTY;
+    return CAG_OK;
+  }
+  if (found.min.x < window.min.x || found.min.y < window.min.y || found.min.z < window.min.z ||
+      found.max.x > window.max.x || found.max.y > window.max.y || found.max.z > window.max.z)
+    return unbounded(s, err);
+  double margin = MARGIN * cag_norm(cag_sub(found.max, found.min));
+  CagVec3 room = cag_vec3(margin, margin, margin);
+  s->core->reach = (CagBounds){cag_sub(found.min, room), cag_add(found.max, room)};
+  return CAG_OK;
+}
+
+// --- Any solid ---
+
+static CagStatus operation_mesh(const CagSolid *s, const CagTessellation *how,
+                                const CagBounds *window, CagMesh **out, CagError *err) {
+  CagTessellation own = *how;
+  CagMesh *m = NULL;
+  double scale = stretch(&s->placement);
+  if (!(scale > 0)) scale = 1;
+  own.tolerance /= scale;
+  own.max_edge /= scale;
+  if (!own.interrupt) own.interrupt = s->core->interrupt;
+  CagStatus status = CAG_OK;
+  if (is_finite(&s->core->reach) || is_empty(&s->core->reach)) {
+    status = whole_core(s, &own, &m, err);
+  } else {
+    CagTransform back;
+    CagBounds local = CAG_BOUNDS_EMPTY;
+    status = cag_transform_inverse(&s->placement, &back, err);
+    for (int k = 0; !status && k < 8; k++)
+      cag_bounds_add(&local,
+                     cag_transform_point(&back, cag_vec3(k & 1 ? window->max.x : window->min.x,
+                                                         k & 2 ? window->max.y : window->min.y,
+                                                         k & 4 ? window->max.z : window->min.z)));
+    if (!status) status = core_mesh(s, &own, &local, &m, err);
+  }
+  if (!status) status = cag_mesh_transform(m, &s->placement, out, err);
+  cag_mesh_release(m);
+  return status;
+}
+
+// `how` has a tolerance; the window is finite.
+static CagStatus solid_mesh(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
+                            CagMesh **out, CagError *err) {
+  CagQuadric q;
+  if (s->kind == CAG_SOLID_MESH) return cag_mesh_transform(s->core->mesh, &s->placement, out, err);
+  if (cag_solid_form(s, &q)) return cag_side_mesh(&q, window, how, out, err);
+  if (is_operation(s)) return operation_mesh(s, how, window, out, err);
+  return cag_solid_tessellate(s, how, out, err);
+}
+
+CagStatus cag_csg_mesh(const CagSolid *s, const CagTessellation *how, CagMesh **out,
+                       CagError *err) {
+  CagTessellation own = how ? *how : CAG_TESSELLATION_DEFAULT;
+  CagBounds reach;
+  CagStatus status = cag_solid_reach(s, &reach, err);
+  if (!status && !is_empty(&reach) && !is_finite(&reach)) {
+    status = s->kind == CAG_SOLID_INTERSECTION || s->kind == CAG_SOLID_DIFFERENCE
+                 ? find_reach(s, err)
+                 : unbounded(s, err);
+    if (!status) status = cag_solid_reach(s, &reach, err);
+  }
+  if (status) return status;
+  if (is_empty(&reach)) return empty_mesh(out, err);
+  double size = cag_norm(cag_sub(reach.max, reach.min));
+  if (!(own.tolerance > 0)) own.tolerance = DEFAULT_SHARE * size;
+  if (!(own.tolerance > 0)) return empty_mesh(out, err); // everything lies in one point
+  return solid_mesh(s, &own, &reach, out, err);
+}
+
+static CagStatus fail_empty(const CagSolid *s, CagError *err) {
+  char first[80], second[80];
+  if (!is_operation(s))
+    return cag_fail(err, CAG_E_DEGENERATE, "csg-empty", "", -1, "the form is nowhere negative");
+  cag_solid_describe(s->core->operands[0], first, sizeof first);
+  if (s->core->count < 2)
+    return cag_fail(err, CAG_E_DEGENERATE, "csg-empty", "", -1, "the %s of (%s) is empty",
+                    cag_solid_kind_name(s->kind), first);
+  cag_solid_describe(s->core->operands[1], second, sizeof second);
+  return cag_fail(err, CAG_E_DEGENERATE, "csg-empty", "", -1,
+                  s->kind == CAG_SOLID_DIFFERENCE
+                      ? "the %s of (%s) and (%s)%s leaves nothing: the first lies within what is "
+                        "taken away; make it larger or move it"
+                      : "the %s of (%s) and (%s)%s leaves nothing: they do not overlap; move them "
+                        "together",
+                  cag_solid_kind_name(s->kind), first, second,
+                  s->core->count > 2 ? " and others" : "");
+}
+
+CagStatus cag_csg_tessellate(const CagSolid *s, const CagTessellation *how, CagMesh **out,
+                             CagError *err) {
+  CagStatus status = cag_csg_mesh(s, how, out, err);
+  if (status || (*out)->triangle_count > 0) return status;
+  cag_mesh_release(*out);
+  return fail_empty(s, err);
+}

@@ -1,0 +1,395 @@
+// Set operations of solids, half spaces, quadrics as bodies, and what a solid leaves of shapes.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/solid/clip.h"
+#include "geom/solid/csg.h"
+#include "interp/builtin/solids.h"
+#include "interp/builtin/surfaces.h"
+#include "interp/eval/vm.h"
+
+// `made` is read after the call that fills it: pass its address.
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagSolid **made,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_solid_value(call->vm, *made);
+  return true;
+}
+
+// What was said of the material and tolerance of the first operand holds of the whole; names and
+// hiding are its own.
+static void say_body(CagValue to, const CagShape *from) {
+  CAG_AS_SHAPE(to)->material = from->material;
+  CAG_AS_SHAPE(to)->tolerance = from->tolerance;
+}
+
+// --- Operands ---
+
+typedef struct Operands {
+  CagSolid **s;
+  size_t n;
+} Operands;
+
+static bool operands_new(CagCall *call, size_t n, Operands *out) {
+  *out = (Operands){malloc((n + 1) * sizeof(CagSolid *)), 0};
+  return out->s || cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+}
+
+static void operands_free(Operands *o) {
+  for (size_t i = 0; i < o->n; i++) cag_solid_release(o->s[i]);
+  free(o->s);
+}
+
+// The place of an operand in an error: "the second operand" would need words for all numbers.
+static bool operand_ok(CagCall *call, CagStatus status, CagError *err, size_t index) {
+  if (status == CAG_OK) return true;
+  if (err->index < 0 && strcmp(err->argument, "surfaces") != 0) {
+    char text[sizeof err->message];
+    snprintf(text, sizeof text, "operand %zu: %.360s", index + 1, err->message);
+    memcpy(err->message, text, sizeof text);
+  }
+  return cag_fail_geometry(call, err);
+}
+
+// Reads one body: a solid, a closed mesh or surface.
+static bool read_one(CagCall *call, CagValue v, size_t index, CagSolid **out) {
+  CagError err;
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  CagSurface *face;
+  switch (v.type) {
+  case CAG_SOLID: *out = cag_solid_retain(shape->as.solid); return true;
+  case CAG_MESH:
+    return operand_ok(call, cag_solid_from_mesh(shape->as.mesh, out, &err), &err, index);
+  case CAG_SURFACE:
+    face = shape->as.surface;
+    return operand_ok(call, cag_solid_shell(&face, 1, out, &err), &err, index);
+  default:
+    return cag_fail_call(call, -1, CAG_ERR_csg_operand,
+                         "expects solids, closed meshes and closed surfaces, found %s as operand "
+                         "%zu, which encloses nothing in space",
+                         cag_type_article(v), index + 1);
+  }
+}
+
+static CagStatus combine(CagCall *call, CagSetOperation op, const Operands *o, CagSolid **out,
+                         CagError *err) {
+  if (o->n == 1) {
+    *out = cag_solid_retain(o->s[0]);
+    return CAG_OK;
+  }
+  return cag_solid_combine(op, o->s, o->n, call->vm->interrupt, out, err);
+}
+
+// A shape, or the union of those of a group or list. `said`: the first of them.
+static bool read_operand(CagCall *call, CagValue v, size_t index, CagSolid **out, CagValue *said) {
+  Operands parts;
+  CagError err;
+  CagBuilder *builder = cag_builder_new(call->vm);
+  if (!cag_shapes_collect(call, v, builder)) return false;
+  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  if (shapes->length == 0)
+    return cag_fail_call(call, -1, CAG_ERR_csg_operand,
+                         "expects solids, found an empty %s as operand %zu",
+                         v.type == CAG_LIST ? "list" : "group", index + 1);
+  if (!operands_new(call, shapes->length, &parts)) return false;
+  bool ok = true;
+  *said = cag_list_get(call->vm, shapes, 0);
+  for (size_t i = 0; ok && i < shapes->length; i++) {
+    ok = read_one(call, cag_list_get(call->vm, shapes, i), index, &parts.s[parts.n]);
+    if (ok) parts.n++;
+  }
+  ok = ok && cag_geometry_ok(call, combine(call, CAG_UNION, &parts, out, &err), &err);
+  operands_free(&parts);
+  return ok;
+}
+
+// --- union, difference, intersection ---
+
+// Operations of regions are rows of their own; a list is asked for what it holds.
+static bool holds_region(CagVm *vm, CagValue v) {
+  if (v.type != CAG_LIST || CAG_AS_LIST(v)->dim != 0 || CAG_AS_LIST(v)->length == 0)
+    return v.type == CAG_REGION;
+  return holds_region(vm, cag_list_get(vm, CAG_AS_LIST(v), 0));
+}
+
+static bool call_of_regions(CagCall *call, const char *name, CagValue *result, bool *done) {
+  size_t index = cag_builtin_find(name), count;
+  size_t row = cag_builtin_select(index, CAG_REGION, call->count);
+  *done = row != (size_t)-1;
+  if (!*done) return true;
+  CagCall regions = *call;
+  regions.builtin = &cag_builtin_rows(index, &count)[row];
+  return regions.builtin->function(&regions, result);
+}
+
+static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValue *result) {
+  CagValue *items, said = cag_unset(), unused;
+  size_t n;
+  Operands o;
+  CagError err;
+  CagSolid *made = NULL;
+  bool done = false;
+  if (holds_region(call->vm, call->values[0])) {
+    if (!call_of_regions(call, name, result, &done) || done) return done;
+  }
+  if (!cag_arg_several(call, 0, &items, &n)) return false;
+  if (n == 0)
+    return cag_fail_call(call, -1, CAG_ERR_csg_operand, "expects solids, found an empty list");
+  if (!operands_new(call, n, &o)) return false;
+  bool ok = true;
+  for (size_t i = 0; ok && i < n; i++) {
+    ok = read_operand(call, items[i], i, &o.s[o.n], i == 0 ? &said : &unused);
+    if (ok) o.n++;
+  }
+  ok = ok && give(call, combine(call, op, &o, &made, &err), &err, &made, result);
+  if (ok) say_body(*result, CAG_AS_SHAPE(said));
+  operands_free(&o);
+  return ok;
+}
+
+bool cag_solids_union(CagCall *call, CagValue *result) {
+  return operate(call, "union", CAG_UNION, result);
+}
+bool cag_solids_difference(CagCall *call, CagValue *result) {
+  return operate(call, "difference", CAG_DIFFERENCE, result);
+}
+bool cag_solids_intersection(CagCall *call, CagValue *result) {
+  return operate(call, "intersection", CAG_INTERSECTION, result);
+}
+
+// --- Sides ---
+
+bool cag_solids_half_space(CagCall *call, CagValue *result) {
+  CagPlane plane;
+  CagSolid *s = NULL;
+  CagError err;
+  return cag_arg_plane(call, 0, &plane) &&
+         give(call, cag_solid_half_space(&plane, &s, &err), &err, &s, result);
+}
+
+// The part of a form's side within a box, or between two heights.
+static CagStatus bounded_form(CagCall *call, const CagQuadric *q, CagSolid *const *within, size_t n,
+                              CagSolid **out, CagError *err) {
+  CagSolid *all[3] = {NULL};
+  CagStatus status = cag_solid_quadric(q, &all[0], err);
+  for (size_t i = 0; i < n; i++) all[1 + i] = within[i];
+  if (!status)
+    status = n == 0
+                 ? (*out = cag_solid_retain(all[0]), CAG_OK)
+                 : cag_solid_combine(CAG_INTERSECTION, all, n + 1, call->vm->interrupt, out, err);
+  cag_solid_release(all[0]);
+  return status;
+}
+
+static CagStatus heights(double low, double high, CagSolid *out[2], CagError *err) {
+  CagPlane floor = {{0, 0, low}, {0, 0, -1}}, roof = {{0, 0, high}, {0, 0, 1}};
+  CagStatus status = cag_solid_half_space(&floor, &out[0], err);
+  return status ? status : cag_solid_half_space(&roof, &out[1], err);
+}
+
+bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
+  CagSolid *ends[2] = {NULL}, *made = NULL;
+  CagError err;
+  size_t n = 0;
+  bool ok = true;
+  if (cag_given(call, within) && call->values[within].type != CAG_NONE) {
+    CagValue v = call->values[within];
+    double low, high;
+    bool angle;
+    if (v.type == CAG_SOLID) {
+      ends[n++] = cag_solid_retain(CAG_AS_SHAPE(v)->as.solid);
+    } else {
+      if (v.type != CAG_RANGE || !cag_arg_interval(call, within, &low, &high, &angle) || angle)
+        return cag_fail_type(call, within, "a solid or a range of z");
+      if (!(low < high))
+        return cag_fail_call(call, within, CAG_ERR_value, "expects a range of z that is not empty");
+      ok = cag_geometry_ok(call, heights(low, high, ends, &err), &err);
+      n = 2;
+    }
+  }
+  ok = ok && give(call, bounded_form(call, q, ends, n, &made, &err), &err, &made, result);
+  for (int i = 0; i < 2; i++) cag_solid_release(ends[i]);
+  return ok;
+}
+
+// Patches of one quadric that do not close: the body is where the form is negative within the range
+// of canonical coordinates that the patches have. Classes about an axis are cut across it alone.
+static CagStatus patch_range(const CagQuadricForm *f, CagSurface *const *faces, size_t n,
+                             CagBounds *out, CagError *err) {
+  CagTransform back;
+  CagStatus status = cag_transform_inverse(&f->frame, &back, err);
+  *out = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; !status && i < n; i++) {
+    CagSurface *local;
+    CagBounds one;
+    status = cag_surface_transform(faces[i], &back, &local, err);
+    if (status) return status;
+    status = cag_surface_bounds(local, &one, err);
+    cag_surface_release(local);
+    if (status) return status;
+    cag_bounds_add(out, one.min);
+    cag_bounds_add(out, one.max);
+  }
+  return status;
+}
+
+static bool is_about_axis(CagQuadricClass c) {
+  return c == CAG_QUADRIC_ELLIPSOID || c == CAG_QUADRIC_HYPERBOLOID_ONE ||
+         c == CAG_QUADRIC_HYPERBOLOID_TWO || c == CAG_QUADRIC_CONE ||
+         c == CAG_QUADRIC_ELLIPTIC_PARABOLOID || c == CAG_QUADRIC_ELLIPTIC_CYLINDER;
+}
+
+bool cag_solids_are_quadric(CagSurface *const *faces, size_t n, CagQuadric *q) {
+  for (size_t i = 0; i < n; i++) {
+    CagQuadric other;
+    if (!cag_surface_quadric_view(faces[i], &other)) return false;
+    if (i == 0) *q = other;
+    for (int k = 0; k < 10; k++)
+      if (q->c[k] != other.c[k] && q->c[k] != -other.c[k]) return false;
+  }
+  return n > 0;
+}
+
+CagStatus cag_solid_of_patches(CagSurface *const *faces, size_t n, const CagQuadric *q,
+                               const volatile int *interrupt, CagSolid **out, CagError *err) {
+  CagQuadricForm f;
+  CagBounds range;
+  CagSolid *box = NULL, *parts[2] = {NULL};
+  CagStatus status = cag_quadric_classify(q, &f, err);
+  if (!status) status = patch_range(&f, faces, n, &range, err);
+  if (status) return status;
+  if (is_about_axis(f.class_id)) { // room beside the axis, so that the box touches nothing there
+    double room = cag_norm(cag_sub(range.max, range.min));
+    range.min.x -= room, range.min.y -= room, range.max.x += room, range.max.y += room;
+  }
+  CagTransform place = f.frame, shift = cag_translate(range.min);
+  place.planar = false;
+  place = cag_transform_multiply(&place, &shift);
+  status = cag_solid_box(cag_sub(range.max, range.min), false, &box, err);
+  if (!status) status = cag_solid_transform(box, &place, &parts[1], err);
+  if (!status) status = cag_solid_quadric(q, &parts[0], err);
+  if (!status) status = cag_solid_combine(CAG_INTERSECTION, parts, 2, interrupt, out, err);
+  cag_solid_release(box);
+  cag_solid_release(parts[0]);
+  cag_solid_release(parts[1]);
+  return status;
+}
+
+// --- clip ---
+
+typedef struct Clip {
+  CagCall *call;
+  CagSolid *by;
+} Clip;
+
+static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
+  CagSolid *parts[2] = {NULL, c->by}, *made = NULL;
+  CagError err;
+  CagBounds reach;
+  if (!read_one(c->call, v, 0, &parts[0])) return false;
+  CagStatus status =
+      cag_solid_combine(CAG_INTERSECTION, parts, 2, c->call->vm->interrupt, &made, &err);
+  cag_solid_release(parts[0]);
+  if (!cag_geometry_ok(c->call, status, &err)) return false;
+  CagValue value = cag_solid_value(c->call->vm, made);
+  cag_shape_say_alike(value, v);
+  // What lies outside as a whole is left out; where only a mesh could tell, it is kept.
+  bool outside = cag_solid_reach(made, &reach, &err) == CAG_OK && !(reach.min.x <= reach.max.x);
+  return outside || cag_builder_add(c->call->vm, into, value);
+}
+
+static CagTessellation fineness(const Clip *c, const CagShape *shape) {
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  how.tolerance = shape->tolerance;
+  if (c->call->vm->max_triangles > 0) how.max_triangles = c->call->vm->max_triangles;
+  how.interrupt = c->call->vm->interrupt;
+  return how;
+}
+
+static bool clip_surface(const Clip *c, CagValue v, CagBuilder *into) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  const CagTessellation how = fineness(c, shape);
+  CagSurface *s = NULL;
+  CagMesh *m = NULL;
+  CagError err;
+  CagStatus status = CAG_OK;
+  if (v.type == CAG_SURFACE) s = cag_surface_retain(shape->as.surface);
+  else status = cag_surface_planar(shape->as.region, &shape->placement, &s, &err);
+  if (!status) status = cag_surface_clip(s, c->by, &how, &m, &err);
+  cag_surface_release(s);
+  if (!cag_geometry_ok(c->call, status, &err)) return false;
+  if (m->triangle_count == 0) {
+    cag_mesh_release(m);
+    return true;
+  }
+  CagValue value = cag_mesh_value(c->call->vm, m);
+  cag_shape_say_alike(value, v);
+  return cag_builder_add(c->call->vm, into, value);
+}
+
+static bool clip_curve(const Clip *c, CagValue v, CagBuilder *into) {
+  CagCurve **pieces = NULL;
+  size_t n = 0;
+  CagError err;
+  CagStatus status =
+      cag_curve_clip(CAG_AS_SHAPE(v)->as.curve, c->by, c->call->vm->interrupt, &pieces, &n, &err);
+  if (!cag_geometry_ok(c->call, status, &err)) return false;
+  bool ok = true;
+  for (size_t i = 0; i < n; i++) {
+    CagValue piece = cag_curve_value(c->call->vm, pieces[i]);
+    cag_shape_say_alike(piece, v);
+    ok = cag_builder_add(c->call->vm, into, piece) && ok;
+  }
+  free(pieces);
+  return ok;
+}
+
+static bool clip_shape(const Clip *c, CagValue v, CagBuilder *into) {
+  switch (v.type) {
+  case CAG_SOLID: return clip_solid(c, v, into);
+  case CAG_CURVE: return clip_curve(c, v, into);
+  case CAG_SURFACE:
+  case CAG_REGION: return clip_surface(c, v, into);
+  default: break;
+  }
+  // A mesh is a body where it is closed, else cut as a surface of its triangles.
+  const CagMesh *mesh = CAG_AS_SHAPE(v)->as.mesh;
+  if (cag_mesh_is_watertight(mesh, NULL)) return clip_solid(c, v, into);
+  const CagTessellation how = fineness(c, CAG_AS_SHAPE(v));
+  CagMesh *m = NULL;
+  CagError err;
+  if (!cag_geometry_ok(c->call, cag_mesh_clip(mesh, c->by, &how, &m, &err), &err)) return false;
+  CagValue value = cag_mesh_value(c->call->vm, m);
+  cag_shape_say_alike(value, v);
+  return m->triangle_count == 0 || cag_builder_add(c->call->vm, into, value);
+}
+
+bool cag_solids_clip(CagCall *call, CagValue *result) {
+  Clip c = {call, NULL};
+  CagValue said;
+  if (call->values[1].type == CAG_PLANE) {
+    CagError err;
+    const CagPlane *plane = &CAG_AS_PLANE(call->values[1])->plane;
+    if (!cag_geometry_ok(call, cag_solid_half_space(plane, &c.by, &err), &err)) return false;
+  } else if (!read_operand(call, call->values[1], 1, &c.by, &said)) {
+    return false;
+  }
+  CagBuilder *shapes = cag_builder_new(call->vm), *kept = cag_builder_new(call->vm);
+  bool ok = cag_shapes_collect(call, call->values[0], shapes);
+  const CagList *list = ok ? CAG_AS_LIST(cag_builder_finish(call->vm, shapes)) : NULL;
+  for (size_t i = 0; ok && i < list->length; i++)
+    ok = cag_keep_going(call->vm) && clip_shape(&c, cag_list_get(call->vm, list, i), kept);
+  cag_solid_release(c.by);
+  if (!ok) return false;
+  CagValue parts = cag_builder_finish(call->vm, kept);
+  size_t n = CAG_AS_LIST(parts)->length;
+  if (n == 0)
+    return cag_fail_call(call, -1, CAG_ERR_csg_empty,
+                         "leaves nothing: no part of the shape lies within the solid");
+  CagType first = call->values[0].type;
+  bool single = n == 1 && first != CAG_GROUP && first != CAG_LIST;
+  *result =
+      single ? cag_list_get(call->vm, CAG_AS_LIST(parts), 0) : cag_group_value(call->vm, parts);
+  return true;
+}
