@@ -30,8 +30,27 @@ typedef struct Model {
   CagMeshCopy *copies;
   const CagMaterial **materials; // in use, each once
   size_t material_count;
-  CagAtomicFile *xml; // in memory
+  CagAtomicFile *xml; // in memory: what was not packed yet
+  CagZip zip;
 } Model;
+
+// Text that is kept before it is packed.
+#define XML_KEPT ((uint64_t)1 << 20)
+
+// Packs the text so far, once there is enough of it.
+static CagStatus pack_xml(Model *m, bool all, CagError *err) {
+  CagIoError io;
+  char *xml;
+  size_t size;
+  if (!all && cag_atomic_file_size(m->xml) < XML_KEPT) return CAG_OK;
+  CagAtomicFile *full = m->xml;
+  m->xml = cag_atomic_file_open_memory(&io);
+  if (!cag_atomic_file_commit_memory(full, &xml, &size, &io) || !m->xml)
+    return cag_fail_memory(err);
+  CagStatus status = cag_zip_feed(&m->zip, xml, size, err);
+  free(xml);
+  return status;
+}
 
 static char *put_text(char *at, const char *text) {
   size_t n = strlen(text);
@@ -83,9 +102,11 @@ static void write_materials(Model *m) {
 
 // --- Meshes ---
 
-static void write_vertices(Model *m, const CagMesh *mesh, const float *p, uint32_t *number) {
+static CagStatus write_vertices(Model *m, const CagMesh *mesh, const float *p, uint32_t *number,
+                                CagError *err) {
   uint32_t n = 0;
-  for (size_t v = 0; v < mesh->vertex_count;) {
+  CagStatus status = CAG_OK;
+  for (size_t v = 0; status == CAG_OK && v < mesh->vertex_count;) {
     char *at = cag_atomic_file_reserve(m->xml, (size_t)BATCH * VERTEX_BYTES);
     for (size_t end = v + BATCH; v < mesh->vertex_count && v < end; v++) {
       if (mesh->weld && mesh->weld[v] != v) {
@@ -102,11 +123,15 @@ static void write_vertices(Model *m, const CagMesh *mesh, const float *p, uint32
       at = put_text(at, "\"/>\n");
     }
     cag_atomic_file_advance(m->xml, at);
+    status = pack_xml(m, false, err);
   }
+  return status;
 }
 
-static void write_triangles(Model *m, const CagMesh *mesh, const float *p, const uint32_t *number) {
-  for (size_t t = 0; t < mesh->triangle_count;) {
+static CagStatus write_triangles(Model *m, const CagMesh *mesh, const float *p,
+                                 const uint32_t *number, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (size_t t = 0; status == CAG_OK && t < mesh->triangle_count;) {
     char *at = cag_atomic_file_reserve(m->xml, (size_t)BATCH * TRIANGLE_BYTES);
     for (size_t end = t + BATCH; t < mesh->triangle_count && t < end; t++) {
       const uint32_t *k = mesh->triangles + 3 * t;
@@ -120,7 +145,9 @@ static void write_triangles(Model *m, const CagMesh *mesh, const float *p, const
       at = put_text(at, "\"/>\n");
     }
     cag_atomic_file_advance(m->xml, at);
+    status = pack_xml(m, false, err);
   }
+  return status;
 }
 
 static CagStatus write_mesh(Model *m, size_t i, const float *p, CagError *err) {
@@ -128,12 +155,12 @@ static CagStatus write_mesh(Model *m, size_t i, const float *p, CagError *err) {
   uint32_t *number = malloc((mesh->vertex_count + 1) * sizeof *number);
   if (!number) return cag_fail_memory(err);
   cag_atomic_file_text(m->xml, "   <mesh>\n    <vertices>\n");
-  write_vertices(m, mesh, p, number);
+  CagStatus status = write_vertices(m, mesh, p, number, err);
   cag_atomic_file_text(m->xml, "    </vertices>\n    <triangles>\n");
-  write_triangles(m, mesh, p, number);
+  if (status == CAG_OK) status = write_triangles(m, mesh, p, number, err);
   cag_atomic_file_text(m->xml, "    </triangles>\n   </mesh>\n");
   free(number);
-  return CAG_OK;
+  return status;
 }
 
 // --- Objects ---
@@ -152,11 +179,10 @@ static bool is_component(const Model *m, size_t i) {
   return original != i && m->parts[original].material == m->parts[i].material;
 }
 
-static CagStatus write_object(Model *m, size_t i, const float *p, CagError *err) {
+// p: the positions, of a part with a mesh of its own.
+static CagStatus write_object(Model *m, size_t i, bool closed, const float *p, CagError *err) {
   const CagMeshPart *part = &m->parts[i];
-  CagVec3 edge[2];
   size_t original = m->copies[i].original;
-  bool closed = cag_mesh_is_watertight(m->parts[original].mesh, edge);
   cag_atomic_file_printf(m->xml, "  <object id=\"%zu\" type=\"%s\" name=\"", i + FIRST_OBJECT,
                          closed ? "model" : "surface");
   write_escaped(m->xml, part->name ? part->name : "part");
@@ -181,14 +207,17 @@ static CagStatus write_object(Model *m, size_t i, const float *p, CagError *err)
 // All objects; *shown: those of which single precision leaves something.
 static CagStatus write_objects(Model *m, bool *shown, CagError *err) {
   for (size_t i = 0; i < m->count; i++) {
+    CagVec3 edge[2];
     float *p = NULL;
+    // Before the positions are made: the check takes as much memory as the mesh.
+    bool closed = cag_mesh_is_watertight(m->parts[i].mesh, edge);
     if (is_component(m, i)) shown[i] = shown[m->copies[i].original];
     else {
       CagStatus status = cag_mesh_floats(&m->parts[i], &p, NULL, NULL, err);
       if (status != CAG_OK) return status;
       shown[i] = cag_mesh_kept_triangles(m->parts[i].mesh, p) > 0;
     }
-    CagStatus status = shown[i] ? write_object(m, i, p, err) : CAG_OK;
+    CagStatus status = shown[i] ? write_object(m, i, closed, p, err) : CAG_OK;
     free(p);
     if (status != CAG_OK) return status;
   }
@@ -213,7 +242,7 @@ static CagStatus write_model(Model *m, bool *shown, CagError *err) {
 
 // --- The archive ---
 
-static CagStatus write_archive(const char *xml, size_t size, CagAtomicFile *file, CagError *err) {
+static CagStatus begin(Model *m, CagError *err) {
   static const char types[] =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">\n"
@@ -227,16 +256,6 @@ static CagStatus write_archive(const char *xml, size_t size, CagAtomicFile *file
       " <Relationship Target=\"/3D/3dmodel.model\" Id=\"model\" "
       "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>\n"
       "</Relationships>\n";
-  CagZip zip = {.file = file};
-  CagStatus status = cag_zip_add(&zip, "[Content_Types].xml", types, sizeof types - 1, err);
-  if (status == CAG_OK)
-    status = cag_zip_add(&zip, "_rels/.rels", relations, sizeof relations - 1, err);
-  if (status == CAG_OK) status = cag_zip_add(&zip, "3D/3dmodel.model", xml, size, err);
-  if (status == CAG_OK) cag_zip_end(&zip);
-  return status;
-}
-
-static CagStatus begin(Model *m, CagError *err) {
   CagIoError io;
   m->materials = malloc((m->count + 1) * sizeof *m->materials);
   if (!m->materials) return cag_fail_memory(err);
@@ -245,22 +264,25 @@ static CagStatus begin(Model *m, CagError *err) {
       m->materials[m->material_count++] = m->parts[i].material;
   m->xml = cag_atomic_file_open_memory(&io);
   if (!m->xml) return cag_fail_memory(err);
-  return cag_mesh_find_copies(m->parts, m->count, &m->copies, err);
+  CagStatus status = cag_mesh_find_copies(m->parts, m->count, &m->copies, err);
+  if (status == CAG_OK)
+    status = cag_zip_add(&m->zip, "[Content_Types].xml", types, sizeof types - 1, err);
+  if (status == CAG_OK)
+    status = cag_zip_add(&m->zip, "_rels/.rels", relations, sizeof relations - 1, err);
+  return status;
 }
 
 CagStatus cag_export_3mf(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err) {
-  Model m = {.parts = parts, .count = n};
+  Model m = {.parts = parts, .count = n, .zip.file = file};
   bool *shown = calloc(n + 1, sizeof *shown);
-  CagIoError io;
-  char *xml = NULL;
-  size_t size = 0;
   CagStatus status = shown ? begin(&m, err) : cag_fail_memory(err);
+  if (status == CAG_OK) status = cag_zip_open(&m.zip, "3D/3dmodel.model", err);
   if (status == CAG_OK) status = write_model(&m, shown, err);
-  if (status == CAG_OK) {
-    if (!cag_atomic_file_commit_memory(m.xml, &xml, &size, &io)) status = cag_fail_memory(err);
-    else status = write_archive(xml, size, file, err);
-  } else cag_atomic_file_abort(m.xml);
-  free(xml);
+  if (status == CAG_OK) status = pack_xml(&m, true, err);
+  if (status == CAG_OK) status = cag_zip_close(&m.zip, err);
+  if (status == CAG_OK) cag_zip_end(&m.zip);
+  cag_zip_free(&m.zip);
+  cag_atomic_file_abort(m.xml);
   free(shown);
   free(m.copies);
   free(m.materials);

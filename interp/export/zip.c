@@ -37,59 +37,96 @@ static char *put_member(char *at, const struct CagZipMember *m) {
   return put(at, 0, 2); // no extra field
 }
 
-// Deflates into memory from malloc.
-static CagStatus deflate_bytes(const char *bytes, size_t n, char **out, size_t *size,
-                               CagError *err) {
-  z_stream s = {0};
-  if (deflateInit2(&s, LEVEL, Z_DEFLATED, RAW_WINDOW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)
-    return cag_fail_memory(err);
-  size_t room = n / 4 + 4096;
-  char *packed = malloc(room);
-  int state = Z_OK;
-  s.next_in = (Bytef *)bytes;
-  s.avail_in = (uInt)n;
-  while (packed && state == Z_OK) {
-    if (s.total_out == room) {
-      room *= 2;
-      char *larger = realloc(packed, room);
-      if (!larger) free(packed);
-      packed = larger;
-      if (!packed) break;
-    }
-    s.next_out = (Bytef *)packed + s.total_out;
-    s.avail_out = (uInt)(room - s.total_out);
-    state = deflate(&s, Z_FINISH);
-    if (state == Z_BUF_ERROR) state = Z_OK; // the room was full
-  }
-  *out = packed;
-  *size = s.total_out;
-  deflateEnd(&s);
-  return packed ? CAG_OK : cag_fail_memory(err);
+struct CagZipPacker {
+  z_stream stream;
+  char *packed;
+  size_t room;
+  uint64_t size;
+};
+
+static CagStatus fail_size(uint64_t size, CagError *err) {
+  return cag_fail(err, CAG_E_LIMIT, "file-too-large", "", -1,
+                  "a 3MF file holds at most 4 GB of text, the scene takes %.1f GB: use a larger "
+                  "tolerance or PLY",
+                  (double)size / 1e9);
 }
 
-CagStatus cag_zip_add(CagZip *z, const char *name, const char *bytes, size_t n, CagError *err) {
-  char *packed = NULL;
-  size_t size = 0;
-  uint64_t offset = cag_atomic_file_size(z->file);
-  CagStatus status = n > UINT32_MAX / 2 ? CAG_OK : deflate_bytes(bytes, n, &packed, &size, err);
-  if (status == CAG_OK && (!packed || offset + size > UINT32_MAX))
-    status = cag_fail(err, CAG_E_LIMIT, "file-too-large", "", -1,
-                      "a part of a 3MF file holds at most 2 GB, the scene takes %.1f GB: use a "
-                      "larger tolerance or PLY",
-                      (double)n / 1e9);
+CagStatus cag_zip_open(CagZip *z, const char *name, CagError *err) {
+  struct CagZipPacker *p = calloc(1, sizeof *p);
+  if (!p) return cag_fail_memory(err);
+  if (deflateInit2(&p->stream, LEVEL, Z_DEFLATED, RAW_WINDOW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) !=
+      Z_OK) {
+    free(p);
+    return cag_fail_memory(err);
+  }
+  z->packer = p;
+  struct CagZipMember *m = &z->members[z->count];
+  *m = (struct CagZipMember){.offset = (uint32_t)cag_atomic_file_size(z->file)};
+  strncpy(m->name, name, sizeof m->name - 1);
+  return CAG_OK;
+}
+
+// Deflates what the stream has as input; `flush`: Z_FINISH with the last of it.
+static CagStatus pack(struct CagZipPacker *p, int flush, CagError *err) {
+  z_stream *s = &p->stream;
+  do {
+    if (s->total_out == p->room) {
+      size_t room = p->room ? p->room + p->room / 2 : (size_t)1 << 16;
+      char *larger = realloc(p->packed, room);
+      if (!larger) return cag_fail_memory(err);
+      p->packed = larger;
+      p->room = room;
+    }
+    s->next_out = (Bytef *)p->packed + s->total_out;
+    size_t left = p->room - s->total_out;
+    s->avail_out = left > UINT32_MAX ? UINT32_MAX : (uInt)left;
+    if (deflate(s, flush) == Z_STREAM_END) return CAG_OK;
+  } while (s->avail_out == 0 || flush == Z_FINISH);
+  return CAG_OK;
+}
+
+CagStatus cag_zip_feed(CagZip *z, const char *bytes, size_t n, CagError *err) {
+  struct CagZipPacker *p = z->packer;
+  struct CagZipMember *m = &z->members[z->count];
+  p->size += n;
+  if (p->size > UINT32_MAX) return fail_size(p->size, err);
+  m->crc = (uint32_t)crc32(m->crc, (const Bytef *)bytes, (uInt)n);
+  p->stream.next_in = (Bytef *)bytes;
+  p->stream.avail_in = (uInt)n;
+  return pack(p, Z_NO_FLUSH, err);
+}
+
+CagStatus cag_zip_close(CagZip *z, CagError *err) {
+  struct CagZipPacker *p = z->packer;
+  struct CagZipMember *m = &z->members[z->count];
+  CagStatus status = pack(p, Z_FINISH, err);
+  uint64_t size = p->stream.total_out, offset = cag_atomic_file_size(z->file);
+  if (status == CAG_OK && offset + size > UINT32_MAX) status = fail_size(p->size, err);
   if (status == CAG_OK) {
-    struct CagZipMember *m = &z->members[z->count++];
-    *m = (struct CagZipMember){.crc = (uint32_t)crc32(0, (const Bytef *)bytes, (uInt)n),
-                               .packed = (uint32_t)size,
-                               .size = (uint32_t)n,
-                               .offset = (uint32_t)offset};
-    strncpy(m->name, name, sizeof m->name - 1);
+    m->packed = (uint32_t)size;
+    m->size = (uint32_t)p->size;
+    z->count++;
     char header[64], *at = put_member(put(header, LOCAL_HEADER, 4), m);
     cag_atomic_file_write(z->file, header, (size_t)(at - header));
     cag_atomic_file_text(z->file, m->name);
-    cag_atomic_file_write(z->file, packed, size);
+    cag_atomic_file_write(z->file, p->packed, size);
   }
-  free(packed);
+  cag_zip_free(z);
+  return status;
+}
+
+void cag_zip_free(CagZip *z) {
+  if (!z->packer) return;
+  deflateEnd(&z->packer->stream);
+  free(z->packer->packed);
+  free(z->packer);
+  z->packer = NULL;
+}
+
+CagStatus cag_zip_add(CagZip *z, const char *name, const char *bytes, size_t n, CagError *err) {
+  CagStatus status = cag_zip_open(z, name, err);
+  if (status == CAG_OK) status = cag_zip_feed(z, bytes, n, err);
+  if (status == CAG_OK) status = cag_zip_close(z, err);
   return status;
 }
 
