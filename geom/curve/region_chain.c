@@ -138,6 +138,21 @@ static CagStatus chain_new(Chain *c, const CagRegionEdge *edges, size_t n, size_
   return CAG_OK;
 }
 
+// As many kept edges end at each corner as start there: winding numbers judged alike.
+static CagStatus check_balance(const Chain *c, size_t corners, CagError *err) {
+  long *balance = calloc(corners + 1, sizeof *balance);
+  if (!balance) return cag_fail_memory(err);
+  for (size_t i = 0; i < c->n; i++) {
+    balance[edge_start(&c->edges[c->kept[i]])]++;
+    balance[edge_end(&c->edges[c->kept[i]])]--;
+  }
+  CagStatus status = CAG_OK;
+  for (size_t v = 0; !status && v < corners; v++)
+    if (balance[v] != 0) status = undecided(c, v, err);
+  free(balance);
+  return status;
+}
+
 static void chain_free(Chain *c) {
   free(c->kept);
   free(c->starts);
@@ -169,25 +184,29 @@ static bool goes_on(const Chain *c, const CagRegionEdge *e, const CagRegionEdge 
   return seam && curve->closed && fmin(from, to) == curve->start && fmax(from, to) == curve->end;
 }
 
+// Ends this near, as a part of the size of their coordinates, are joined as they are.
+#define JOINS 1e-10
+
+static bool joins(CagVec3 p, CagVec3 q) {
+  const CagVec3 both[2] = {p, q};
+  return cag_norm(cag_sub(p, q)) <= JOINS * cag_curve_size(both, 2);
+}
+
 // The curve with its ends moved to the points, by a similarity: lines, arcs and the rest stay what
-// they are. Ends that are near enough to be joined stay where they are.
+// they are. Ends that are near enough to be joined stay where they are, and those that the
+// similarity would have to go far for, as it does where a curve comes back to its start.
 static CagStatus fit_ends(CagCurve **curve, CagVec3 from, CagVec3 to, CagError *err) {
-  const double joins = 1e-10; // part of the coordinates' size
+  const double most = 1e-3; // change of the size
   CagVec3 p, q;
   CagStatus status = cag_curve_point(*curve, (*curve)->start, &p, err);
   if (!status) status = cag_curve_point(*curve, (*curve)->end, &q, err);
   if (status) return status;
-  const CagVec3 ends[2] = {from, to};
-  const double gap = fmax(cag_norm(cag_sub(p, from)), cag_norm(cag_sub(q, to)));
-  if (gap <= joins * cag_curve_size(ends, 2)) return CAG_OK;
+  if (joins(p, from) && joins(q, to)) return CAG_OK;
   // Complex factor (to - from) / (q - p).
   const CagVec3 old = cag_sub(q, p), new = cag_sub(to, from);
   const double square = cag_dot(old, old);
-  double re = 1, im = 0;
-  if (square > 0) {
-    re = cag_dot(old, new) / square;
-    im = cag_cross(old, new).z / square;
-  }
+  if (!(cag_norm(cag_sub(new, old)) <= most * sqrt(square))) return CAG_OK;
+  const double re = cag_dot(old, new) / square, im = cag_cross(old, new).z / square;
   CagTransform t = cag_transform_identity();
   t.m[0][0] = t.m[1][1] = re;
   t.m[1][0] = im;
@@ -232,9 +251,12 @@ static CagStatus run_curve(const Chain *c, const size_t *loop, size_t n, CagCurv
   if (cag_curve_vertices(curve, &vertices, &count, &ring))
     return straight_run(c, loop, n, out, err);
   const bool forward = e->keep > 0;
+  const double a = forward ? e->a : f->a, b = forward ? f->b : e->b;
+  // A piece whose only cut is its end, but whose ends are two corners.
+  if (!(a < b))
+    return cag_curve_line(c->corners[edge_start(e)], c->corners[edge_end(f)], 2, out, err);
   CagCurve *part;
-  CagStatus status =
-      cag_curve_trim(curve, forward ? e->a : f->a, forward ? f->b : e->b, &part, err);
+  CagStatus status = cag_curve_trim(curve, a, b, &part, err);
   if (status) return status;
   if (!forward) {
     CagCurve *turned;
@@ -266,6 +288,30 @@ static size_t run_length(const Chain *c, const size_t *loop, size_t i, size_t n)
   return i == 0 && k == n ? n / 2 : k;
 }
 
+// Puts a line before the last run where it does not start at the end of the one before.
+static CagStatus close_gap(CagCurve **runs, size_t *count, CagError *err) {
+  CagCurve *last = runs[*count - 1], *before = runs[*count - 2];
+  CagVec3 p, q;
+  CagStatus status = cag_curve_point(before, before->end, &p, err);
+  if (!status) status = cag_curve_point(last, last->start, &q, err);
+  if (status || joins(p, q)) return status;
+  status = cag_curve_line(p, q, 2, &runs[*count - 1], err);
+  if (status) runs[*count - 1] = last;
+  else runs[(*count)++] = last;
+  return status;
+}
+
+// The same from the last run to the first.
+static CagStatus close_end(CagCurve **runs, size_t *count, CagError *err) {
+  CagVec3 p, q;
+  CagStatus status = cag_curve_point(runs[*count - 1], runs[*count - 1]->end, &p, err);
+  if (!status) status = cag_curve_point(runs[0], runs[0]->start, &q, err);
+  if (status || joins(p, q)) return status;
+  status = cag_curve_line(p, q, 2, &runs[*count], err);
+  *count += status == CAG_OK;
+  return status;
+}
+
 static CagStatus loop_curve(const Chain *c, size_t *loop, size_t n, CagCurve **out, CagError *err) {
   // The loop turned so that it starts with a run.
   size_t first = n;
@@ -278,7 +324,7 @@ static CagStatus loop_curve(const Chain *c, size_t *loop, size_t n, CagCurve **o
   if (whole) return whole_curve(c, loop_edge(c, loop, 0), out, err);
   if (first == n) first = 0;
   size_t *turned = malloc(sizeof *turned * n);
-  CagCurve **runs = malloc(sizeof *runs * n);
+  CagCurve **runs = malloc(sizeof *runs * (2 * n + 1));
   CagStatus status = turned && runs ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) turned[i] = loop[(first + i) % n];
   size_t count = 0;
@@ -286,7 +332,9 @@ static CagStatus loop_curve(const Chain *c, size_t *loop, size_t n, CagCurve **o
     k = run_length(c, turned, i, n);
     status = run_curve(c, turned + i, k, &runs[count], err);
     count += status == CAG_OK;
+    if (!status && i > 0) status = close_gap(runs, &count, err);
   }
+  if (!status) status = close_end(runs, &count, err);
   if (!status) status = cag_curve_join(runs, count, out, err);
   for (size_t i = 0; i < count; i++) cag_curve_release(runs[i]);
   free(runs);
@@ -432,6 +480,7 @@ CagStatus cag_region_chain(const CagRegionPieces *s, const CagRegionEdge *edges,
   Chain c = {.s = s, .edges = edges, .corners = corners};
   *out = NULL;
   CagStatus status = chain_new(&c, edges, n, corner_count, err);
+  if (!status) status = check_balance(&c, corner_count, err);
   for (size_t i = 0; !status && i < c.n; i++)
     if (!c.used[i]) status = walk(&c, i, err);
   Loop *loops = status ? NULL : malloc(sizeof *loops * (c.loop_count + 1));
