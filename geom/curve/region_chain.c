@@ -193,10 +193,11 @@ static bool joins(CagVec3 p, CagVec3 q) {
 }
 
 // The curve with its ends moved to the points, by a similarity: lines, arcs and the rest stay what
-// they are. Ends that are near enough to be joined stay where they are, and those that the
-// similarity would have to go far for, as it does where a curve comes back to its start.
-static CagStatus fit_ends(CagCurve **curve, CagVec3 from, CagVec3 to, CagError *err) {
-  const double most = 1e-3; // change of the size
+// they are. Ends that are near enough to be joined stay where they are, and those of curves that
+// would move farther elsewhere, as where one comes back to near its start.
+static CagStatus fit_ends(CagCurve **curve, CagVec3 from, CagVec3 to, double tolerance,
+                          CagError *err) {
+  const double most = 4; // tolerances: the ends move by one each
   CagVec3 p, q;
   CagStatus status = cag_curve_point(*curve, (*curve)->start, &p, err);
   if (!status) status = cag_curve_point(*curve, (*curve)->end, &q, err);
@@ -205,7 +206,9 @@ static CagStatus fit_ends(CagCurve **curve, CagVec3 from, CagVec3 to, CagError *
   // Complex factor (to - from) / (q - p).
   const CagVec3 old = cag_sub(q, p), new = cag_sub(to, from);
   const double square = cag_dot(old, old);
-  if (!(cag_norm(cag_sub(new, old)) <= most * sqrt(square))) return CAG_OK;
+  const CagBounds box = (*curve)->kind->hull(*curve, (*curve)->start, (*curve)->end);
+  const double size = cag_norm(cag_sub(box.max, box.min));
+  if (!(cag_norm(cag_sub(new, old)) * size <= most * tolerance * sqrt(square))) return CAG_OK;
   const double re = cag_dot(old, new) / square, im = cag_cross(old, new).z / square;
   CagTransform t = cag_transform_identity();
   t.m[0][0] = t.m[1][1] = re;
@@ -265,7 +268,8 @@ static CagStatus run_curve(const Chain *c, const size_t *loop, size_t n, CagCurv
     if (status) return status;
     part = turned;
   }
-  status = fit_ends(&part, c->corners[edge_start(e)], c->corners[edge_end(f)], err);
+  status =
+      fit_ends(&part, c->corners[edge_start(e)], c->corners[edge_end(f)], c->s->tolerance, err);
   if (status) cag_curve_release(part);
   else *out = part;
   return status;
