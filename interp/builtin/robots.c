@@ -151,6 +151,30 @@ const CagBuiltin cag_builtins_robots[] = {
      PLANAR "print near(closest_pose(arm, [600, 0, 0]).distance, 100) // expect: true", ROBOTS,
      inverse},
 
+    {"workspace(robot, n = 2000)", cag_robots_workspace, "record",
+     "What the robot reaches: points (the tool at n places that fill the joint limits), hull "
+     "(their "
+     "convex hull, a mesh or region) and cloud (the points as a mesh of dots) to show, bounds. Of "
+     "classical arms (kind \"cartesian\" \"cylindrical\" \"spherical\" \"spherical-offset\" "
+     "\"planar\" \"scara\" \"articulated\") by formula center, r_min, r_max, hole (no point is "
+     "nearer to the first axis; r is then the root of |p - center|^2 - hole^2), and volume "
+     "(planar: "
+     "the area; none where the limits cut the region): of the tool, or of the wrist's center.",
+     "w = workspace(robot([revolute(a: 300), revolute(a: 200)]), 100)\n"
+     "print w.kind, w.r_min, w.r_max, near(w.volume, 4 * pi * 300 * 200) // expect: planar 100 500 "
+     "true",
+     ROBOTS, inverse},
+    {"dh_assign(axes, end, base = none)", cag_robots_dh_assign, "record",
+     "Denavit-Hartenberg frames for joint axes, records of kind, point and direction at the zero "
+     "positions: `table` (records of kind, theta, d, a, alpha) and `frames`. `end` is the point "
+     "and direction of the last frame; the base's z axis is the first joint's (none: a frame at "
+     "its point). x(i) runs along the common normal, of axes that meet along the product of their "
+     "directions.",
+     "axes = [{point: [0, 0, 0], direction: Z}, {point: [300, 0, 0], direction: Z}]\n"
+     "r = dh_assign(axes, {point: [500, 0, 0], direction: Z})\n"
+     "print [for row in r.table: row.a] // expect: [300, 200]",
+     CAG_TAKES_LISTS, links},
+
     {"joint_path(robot, q, to, n)", cag_robots_joint_path, "list",
      "n places from q to another, both in, the joints moving evenly.",
      PLANAR "print joint_path(arm, [0deg, 0deg], [90deg, 30deg], 4)[1] // expect: [30deg, 10deg]",

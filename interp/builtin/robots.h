@@ -20,6 +20,8 @@
   X(motor_values) X(joint_values) \
   /* robots_reach.c */ \
   X(ik) X(reachable) X(closest_pose) X(joint_path) X(line_path) X(follow) \
+  /* robots_space.c */ \
+  X(workspace) X(dh_assign) \
   /* robots_show.c */ \
   X(posed)
 // clang-format on

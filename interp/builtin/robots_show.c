@@ -75,8 +75,11 @@ static bool draw_plain(Drawing *d, const CagRobot *r, const double *q, const Cag
   CagVec3 axes[CAG_ROBOT_JOINTS_MAX], directions[CAG_ROBOT_JOINTS_MAX];
   d->size = length_of(points, n);
   cag_robot_axes(r, q, axes, directions);
-  CagVec3 foot = cag_transform_point(&frames[0], cag_vec3(0, 0, -FOOT_HEIGHT * d->size));
-  if (!add_rod(d, foot, points[0], FOOT_RADIUS * d->size, foot_color)) return false;
+  CagVec3 top = cag_vec3(0, 0, -DRUM_LENGTH / 2 * d->size);
+  CagVec3 foot = cag_madd(top, -FOOT_HEIGHT * d->size, cag_vec3(0, 0, 1));
+  if (!add_rod(d, cag_transform_point(&frames[0], foot), cag_transform_point(&frames[0], top),
+               FOOT_RADIUS * d->size, foot_color))
+    return false;
   for (size_t i = 1; i < n; i++)
     if (!add_rod(d, points[i - 1], points[i], ROD_RADIUS * d->size, rod_color)) return false;
   for (size_t i = 0; i < r->joint_count; i++) {
