@@ -204,14 +204,19 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "flat = unroll(revolve(line([1, 0], [1, 5])))\n"
      "print near(bounds(flat).size, [5, tau, 0]) // expect: true",
      SURFACES, changed},
-    {"map_onto(G, S)", cag_surfaces_map_onto, "curve or surface",
-     "A curve or surface laid onto a surface: x and y of G are its u and v (radians where these "
-     "are "
-     "angles), z goes along its normal. Exact derivatives; what leaves the domain is an error "
+    {"map_onto(G, S, tolerance = none)", cag_surfaces_map_onto, "curve, surface, mesh or group",
+     "A shape laid onto a surface: x and y of G are its u and v (radians where these are angles), "
+     "z goes along its normal. Curves and surfaces have exact derivatives; regions, solids and "
+     "meshes become meshes within the tolerance (none: a thousandth of the size), closed ones "
+     "stay closed; of a group or list each member. What leaves the domain is an error "
      "(parameter-range).",
-     "c = map_onto(circle(0.25, center: [0.5, 0.5]), bilinear([0, 0], [0, 8], [8, 0], [8, 8]))\n"
-     "print near(length(c), 4 * pi) // expect: true",
-     CURVES | SURFACES, changed},
+     "s = bilinear([0, 0], [0, 8], [8, 0], [8, 8])\n"
+     "print near(length(map_onto(circle(0.25, center: [0.5, 0.5]), s)), 4 * pi) // expect: true\n"
+     "m = map_onto(translate(box([0.5, 0.5, 3]), [0.2, 0.2, 0]), s)\n"
+     "print near(volume(m), 48), is_watertight(m) // expect: true true",
+     CURVES | SURFACES | CAG_TAKES(REGION) | CAG_TAKES(SOLID) | CAG_TAKES(MESH) | CAG_TAKES(GROUP) |
+         CAG_TAKES(LIST),
+     changed},
     {"remap(S, f, u = none, v = none)", cag_surfaces_remap, "surface",
      "The surface S(f(u, v)) with other parameters: f gives the old u and v for the new ones, over "
      "these ranges (none: those of S). Exact derivatives.",

@@ -1,9 +1,13 @@
-// Mappings of parameters: curves and surfaces laid onto a surface, surfaces with other parameters.
+// Mappings of parameters: curves, surfaces and bodies laid onto a surface, surfaces with other
+// parameters.
 //
-// They are made as functions of the language, so that they are differentiated exactly.
+// Those of curves and surfaces are made as functions of the language, so that they are
+// differentiated exactly; those of regions, solids and meshes are meshes.
 
 #include <stdlib.h>
 
+#include "geom/mesh/tessellate.h"
+#include "geom/surface/mapped.h"
 #include "geom/surface/reshape.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
@@ -30,9 +34,10 @@ static const char *const SHEETS[2][2] = {
     {SHEET("g(u, v)[0] * 1rad", "g(u, v)[1]"), SHEET("g(u, v)[0] * 1rad", "g(u, v)[1] * 1rad")}};
 
 // The curve's smooth pieces one by one: a function has no corners of its own.
-static bool map_curve(CagCall *call, const CagCurve *c, const CagSurface *s, CagValue offset,
+static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue offset,
                       CagValue *result) {
   CagVm *vm = call->vm;
+  const CagCurve *c = CAG_AS_SHAPE(g)->as.curve;
   CagError err;
   size_t inner = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0, made = 0;
   double *cuts = malloc((inner + 2) * sizeof *cuts);
@@ -48,7 +53,7 @@ static bool map_curve(CagCall *call, const CagCurve *c, const CagSurface *s, Cag
     if (inner > 0) c->kind->breaks(c, cuts + 1, inner);
     cuts[inner + 1] = c->end;
     for (size_t i = 0; ok && i <= inner; i++) {
-      CagValue piece, arguments[4] = {call->values[0], call->values[1], offset,
+      CagValue piece, arguments[4] = {g, call->values[1], offset,
                                       cag_domain_value(vm, c->angular, cuts[i], cuts[i + 1])};
       ok = cag_call(vm, lambda, arguments, 4, &piece);
       if (ok) pieces[made++] = cag_curve_retain(CAG_AS_SHAPE(piece)->as.curve);
@@ -64,30 +69,128 @@ static bool map_curve(CagCall *call, const CagCurve *c, const CagSurface *s, Cag
   return ok;
 }
 
-static bool map_surface(CagCall *call, const CagSurface *g, const CagSurface *s, CagValue offset,
+static bool map_surface(CagCall *call, CagValue value, const CagSurface *s, CagValue offset,
                         CagValue *result) {
+  const CagSurface *g = CAG_AS_SHAPE(value)->as.surface;
   CagValue lambda;
   if (!cag_vm_compile_lambda(call->vm, SHEETS[s->angular_u][s->angular_v], &lambda)) return false;
-  CagValue arguments[5] = {call->values[0], call->values[1], offset,
+  CagValue arguments[5] = {value, call->values[1], offset,
                            cag_domain_value(call->vm, g->angular_u, g->u0, g->u1),
                            cag_domain_value(call->vm, g->angular_v, g->v0, g->v1)};
   return cag_call(call->vm, lambda, arguments, 5, result);
 }
 
-bool cag_surfaces_map_onto(CagCall *call, CagValue *result) {
-  CagSurface *s, *over = NULL;
+static bool map_smooth(CagCall *call, CagValue g, const CagSurface *s, CagValue *result) {
+  CagSurface *over = NULL;
   CagError err;
-  CagValue g = call->values[0];
-  if (!cag_arg_surface(call, 1, &s) ||
-      !cag_geometry_ok(call, cag_surface_offset(s, 1, &over, &err), &err))
-    return false;
+  if (!cag_geometry_ok(call, cag_surface_offset(s, 1, &over, &err), &err)) return false;
   CagValue offset = cag_surface_value(call->vm, over);
   cag_root_push(call->vm, offset);
-  bool ok = g.type == CAG_CURVE ? map_curve(call, CAG_AS_SHAPE(g)->as.curve, s, offset, result)
-                                : map_surface(call, CAG_AS_SHAPE(g)->as.surface, s, offset, result);
+  bool ok = g.type == CAG_CURVE ? map_curve(call, g, s, offset, result)
+                                : map_surface(call, g, s, offset, result);
   cag_root_pop(call->vm, 1);
-  if (ok) cag_shape_say_alike(*result, g);
   return ok;
+}
+
+// --- Bodies, as meshes ---
+
+static CagStatus region_mesh(const CagShape *shape, const CagTessellation *how, CagMesh **out,
+                             CagError *err) {
+  CagSurface *flat = NULL;
+  CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &flat, err);
+  if (status == CAG_OK) status = cag_surface_tessellate(flat, how, out, err);
+  cag_surface_release(flat);
+  return status;
+}
+
+static bool lies_flat(const CagMesh *m) {
+  for (size_t i = 0; i < m->vertex_count; i++)
+    if (m->positions[i].z != 0) return false;
+  return true;
+}
+
+// Before it is laid on the surface a body is a mesh a good deal finer than the image has to be.
+#define FINER 0.25
+
+static bool map_body(CagCall *call, CagValue g, const CagSurface *s, double tolerance,
+                     CagValue *result) {
+  const CagShape *shape = CAG_AS_SHAPE(g);
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  CagMesh *flat = NULL, *image = NULL;
+  CagError err;
+  CagStatus status;
+  if (g.type == CAG_MESH) {
+    flat = cag_mesh_retain(shape->as.mesh);
+    status = CAG_OK;
+  } else if (g.type == CAG_REGION) status = region_mesh(shape, &how, &flat, &err);
+  else status = cag_solid_tessellate(shape->as.solid, &how, &flat, &err);
+  if (status == CAG_OK && g.type != CAG_MESH && tolerance > 0) {
+    // The surface stretches what is drawn in its parameters: by how much, the domain tells.
+    CagBounds box;
+    status = cag_surface_bounds(s, &box, &err);
+    double size = status ? 0 : cag_norm(cag_sub(box.max, box.min));
+    double domain = hypot(s->u1 - s->u0, s->v1 - s->v0);
+    if (status == CAG_OK && size > 0) {
+      how.tolerance = FINER * tolerance * domain / size;
+      cag_mesh_release(flat);
+      flat = NULL;
+      status = g.type == CAG_REGION ? region_mesh(shape, &how, &flat, &err)
+                                    : cag_solid_tessellate(shape->as.solid, &how, &flat, &err);
+    }
+  }
+  if (status == CAG_OK)
+    status =
+        cag_mesh_onto_surface(flat, s, tolerance, lies_flat(flat), how.max_triangles, &image, &err);
+  cag_mesh_release(flat);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_mesh_value(call->vm, image);
+  return true;
+}
+
+static bool map_one(CagCall *call, CagValue g, const CagSurface *s, double tolerance,
+                    CagValue *result) {
+  bool smooth = g.type == CAG_CURVE || g.type == CAG_SURFACE;
+  if (smooth ? !map_smooth(call, g, s, result) : !map_body(call, g, s, tolerance, result))
+    return false;
+  cag_shape_say_alike(*result, g);
+  return true;
+}
+
+// Each of a group or list.
+static bool map_several(CagCall *call, const CagSurface *s, double tolerance, CagValue *result) {
+  CagBuilder *shapes = cag_builder_new(call->vm);
+  if (!cag_shapes_collect(call, call->values[0], shapes)) return false;
+  CagValue all = cag_builder_finish(call->vm, shapes);
+  const CagList *list = CAG_AS_LIST(all);
+  CagValue *images = malloc((list->length + 1) * sizeof *images);
+  if (!images) return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory");
+  cag_root_push(call->vm, all);
+  // Mapping the next one may call the script.
+  size_t n = 0;
+  bool ok = true;
+  for (; n < list->length; n++) {
+    ok = map_one(call, cag_list_get(call->vm, list, n), s, tolerance, &images[n]);
+    if (!ok) break;
+    cag_root_push(call->vm, images[n]);
+  }
+  CagBuilder *group = cag_builder_new(call->vm);
+  for (size_t i = 0; ok && i < n; i++) ok = cag_builder_add(call->vm, group, images[i]);
+  cag_root_pop(call->vm, n + 1);
+  free(images);
+  if (ok) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, group));
+  return ok;
+}
+
+bool cag_surfaces_map_onto(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  double tolerance = 0;
+  CagValue g = call->values[0];
+  if (!cag_arg_surface(call, 1, &s)) return false;
+  if (cag_given(call, 2) && call->values[2].type != CAG_NONE &&
+      !cag_arg_positive(call, 2, &tolerance))
+    return false;
+  if (g.type == CAG_GROUP || g.type == CAG_LIST) return map_several(call, s, tolerance, result);
+  return map_one(call, g, s, tolerance, result);
 }
 
 bool cag_surfaces_remap(CagCall *call, CagValue *result) {
