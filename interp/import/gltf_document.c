@@ -64,10 +64,11 @@ static CagStatus parse_json(CagGltf *g, const char *text, size_t n, CagError *er
   g->json = cJSON_ParseWithLengthOpts(text, n, &end, false);
   if (g->json && cJSON_IsObject(g->json)) return CAG_OK;
   size_t at = end && end > text ? (size_t)(end - text) : 0;
+  bool ended = at + 1 >= n; // cJSON points at the last byte then
   return cag_mesh_file_fail_line(g->draft->file, err,
-                                 at >= n ? "mesh-file-truncated" : "mesh-file-syntax", text + at,
+                                 ended ? "mesh-file-truncated" : "mesh-file-syntax", text + at,
                                  "the JSON of the file cannot be read%s",
-                                 at >= n ? ": it ends within; write or fetch the file again" : "");
+                                 ended ? ": it ends within; write or fetch the file again" : "");
 }
 
 static CagStatus read_array(CagGltf *g, const char *key, CagGltfArray *out, CagError *err) {
