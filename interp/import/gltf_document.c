@@ -49,13 +49,18 @@ bool cag_gltf_whole(const cJSON *object, const char *key, size_t fallback, size_
 
 static CagStatus parse_json(CagGltf *g, const char *text, size_t n, CagError *err) {
   size_t values = 1;
+  long depth = 0;
   bool quoted = false;
   for (size_t i = 0; i < n; i++) {
     if (quoted) {
       if (text[i] == '\\') i++;
       else if (text[i] == '"') quoted = false;
     } else if (text[i] == '"') quoted = true;
-    else values += text[i] == ',' || text[i] == '[' || text[i] == '{';
+    else {
+      bool opens = text[i] == '[' || text[i] == '{', closes = text[i] == ']' || text[i] == '}';
+      values += opens || text[i] == ',';
+      depth += opens - closes;
+    }
   }
   CagStatus status = cag_draft_take(g->draft, values, JSON_VALUE_BYTES, err);
   if (status == CAG_OK) status = cag_draft_take(g->draft, n, 1, err);
@@ -64,7 +69,7 @@ static CagStatus parse_json(CagGltf *g, const char *text, size_t n, CagError *er
   g->json = cJSON_ParseWithLengthOpts(text, n, &end, false);
   if (g->json && cJSON_IsObject(g->json)) return CAG_OK;
   size_t at = end && end > text ? (size_t)(end - text) : 0;
-  bool ended = at + 1 >= n; // cJSON points at the last byte then
+  bool ended = quoted || depth > 0;
   return cag_mesh_file_fail_line(g->draft->file, err,
                                  ended ? "mesh-file-truncated" : "mesh-file-syntax", text + at,
                                  "the JSON of the file cannot be read%s",
