@@ -6,7 +6,9 @@
 #include <stdlib.h>
 
 #include "geom/mesh/tessellation.h"
+#include "geom/mesh/trimmed.h"
 #include "geom/solid/csg.h"
+#include "geom/surface/trimmed.h"
 
 CagStatus tess_grow(void *array, size_t count, size_t *capacity, size_t size, CagError *err) {
   if (count < *capacity) return CAG_OK;
@@ -114,7 +116,9 @@ CagStatus cag_surface_tessellate(const CagSurface *s, const CagTessellation *how
   if (status != CAG_OK) return status;
   Tessellator t;
   status = begin(&t, how, &bounds, &face, 1, err);
-  if (status == CAG_OK) status = run(&t, NULL, out, err);
+  if (status == CAG_OK)
+    status = cag_surface_trimmed_view(s, NULL, NULL) ? cag_trimmed_tessellate(s, &t.how, out, err)
+                                                     : run(&t, NULL, out, err);
   release(&t);
   return status;
 }

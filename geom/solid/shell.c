@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "geom/solid/build.h"
+#include "geom/surface/trimmed.h"
 
 // How far edges may gape, as part of the size of the solid (geometry of files and of rounding
 // scripts).
@@ -245,6 +246,12 @@ static CagStatus face_outward(CagSolid *s, const Link *links, size_t count, CagE
 }
 
 CagStatus cag_solid_shell(CagSurface *const *faces, size_t n, CagSolid **out, CagError *err) {
+  for (size_t i = 0; i < n; i++)
+    if (cag_surface_trimmed_view(faces[i], NULL, NULL))
+      return cag_fail(err, CAG_E_UNSUPPORTED, "trimmed-face", "", (long)i,
+                      "face %zu is a trimmed surface, whose outline cannot be matched to the sides "
+                      "of others: use whole surfaces, or a mesh of the parts",
+                      i);
   if (n == 0)
     return cag_fail(err, CAG_E_ARGUMENT, "solid-open", "surfaces", -1,
                     "`surfaces` must hold at least one surface");

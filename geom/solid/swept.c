@@ -7,6 +7,7 @@
 #include "geom/solid/build.h"
 #include "geom/surface/family.h"
 #include "geom/surface/reshape.h"
+#include "geom/surface/trimmed.h"
 
 static CagStatus add_turned(CagSolid *s, CagSurface *face, bool flip, CagError *err) {
   CagSurface *turned = face;
@@ -275,6 +276,9 @@ static CagStatus plate_edge(const CagSurface *s, const CagSurface *over, int sid
 }
 
 CagStatus cag_solid_thicken(const CagSurface *s, double d, CagSolid **out, CagError *err) {
+  if (cag_surface_trimmed_view(s, NULL, NULL))
+    return cag_fail(err, CAG_E_UNSUPPORTED, "trimmed-face", "", -1,
+                    "a trimmed surface has no sides that a plate could close: trim with ranges");
   if (cag_surface_planar_view(s, NULL, NULL))
     return cag_fail(err, CAG_E_UNSUPPORTED, "not-nurbs", "surface", -1,
                     "a region becomes a plate by `extrude`");

@@ -6,6 +6,7 @@
 
 #include "geom/surface/family.h"
 #include "geom/surface/reshape.h"
+#include "geom/surface/trimmed.h"
 
 typedef struct Derived {
   CagSurface base;
@@ -101,6 +102,9 @@ CagStatus cag_surface_part(const CagSurface *s, double u0, double u1, double v0,
   if (cag_surface_planar_view(s, NULL, NULL))
     return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,
                     "a region has no rectangle of parameters: cut the region itself");
+  if (cag_surface_trimmed_view(s, NULL, NULL))
+    return cag_fail(err, CAG_E_UNSUPPORTED, "already-trimmed", "", -1,
+                    "the surface already has an outline: cut the whole one first, then trim it");
   if (cag_surface_nurbs_view(s, &view)) return cag_surface_nurbs_part(s, u0, u1, v0, v1, out, err);
   const CagSurface *inner = s->kind == &part_kind ? ((const Derived *)s)->inner : s;
   return make(&part_kind, inner, u0, u1, v0, v1, 0, out, err);
@@ -276,6 +280,7 @@ CagStatus cag_surface_offset(const CagSurface *s, double d, CagSurface **out, Ca
     move.planar = false;
     return status ? status : cag_surface_transform(s, &move, out, err);
   }
+  if (cag_surface_trimmed_view(s, NULL, NULL)) return cag_trimmed_offset(s, d, out, err);
   CagVec3 probe;
   CagStatus status = make(&offset_kind, s, s->u0, s->u1, s->v0, s->v1, d, out, err);
   if (status) return status;

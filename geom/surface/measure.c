@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "geom/surface/family.h"
+#include "geom/surface/trimmed.h"
 
 // Nodes of the 15 point Kronrod rule on -1..1 (the odd ones are those of the 7 point Gauss rule)
 // and the weights of both (Piessens et al., QUADPACK).
@@ -314,6 +315,7 @@ CagStatus cag_surface_area(const CagSurface *s, double *area, CagVec3 *centroid,
   CagTransform frame;
   if (cag_surface_planar_view(s, &region, &frame))
     return planar_area(region, &frame, area, centroid, err);
+  if (cag_surface_trimmed_view(s, NULL, NULL)) return cag_trimmed_area(s, area, centroid, err);
   Integral in = {.s = s, .f = area_terms, .terms = centroid ? 4 : 1, .powers = AREA_POWERS};
   CagStatus status = integrate(&in, err);
   if (status) return status;
@@ -328,6 +330,7 @@ CagStatus cag_surface_volume_terms(const CagSurface *s, double terms[10], CagErr
   const CagRegion *region;
   CagTransform frame;
   if (cag_surface_planar_view(s, &region, &frame)) return planar_flux(region, &frame, terms, err);
+  if (cag_surface_trimmed_view(s, NULL, NULL)) return cag_trimmed_volume_terms(s, terms, err);
   Integral in = {.s = s, .f = flux_terms, .terms = 10, .powers = FLUX_POWERS};
   CagStatus status = integrate(&in, err);
   for (int k = 0; !status && k < 10; k++) terms[k] += in.sum[k];
@@ -466,6 +469,7 @@ CagStatus cag_surface_bounds(const CagSurface *s, CagBounds *out, CagError *err)
   const CagRegion *region;
   CagTransform frame;
   if (cag_surface_planar_view(s, &region, &frame)) return planar_bounds(region, &frame, out, err);
+  if (cag_surface_trimmed_view(s, NULL, NULL)) return cag_trimmed_bounds(s, out, err);
   double *us = NULL, *vs = NULL;
   size_t nu = 0, nv = 0;
   CagVec3 *points = malloc((SAMPLES_FEW + 1) * (SAMPLES_FEW + 1) * sizeof *points);

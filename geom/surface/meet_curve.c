@@ -6,6 +6,7 @@
 // halved on the side that is bent more. What is left at the smallest size are touches.
 
 #include "geom/surface/meet_curve.h"
+#include "geom/surface/trimmed.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -306,7 +307,8 @@ static CagStatus tidy(Search *f, CagError *err) {
   const CagCurve *c = f->c;
   const CagRegion *region;
   CagTransform frame;
-  const bool trimmed = cag_surface_planar_view(s, &region, &frame);
+  const bool trimmed =
+      cag_surface_planar_view(s, &region, &frame) || cag_surface_trimmed_view(s, NULL, &region);
   for (size_t i = 0; i < f->n; i++) {
     CagSurfaceMeeting *m = &f->items[i];
     if (c->closed && c->end - m->t <= MEET * (c->end - c->start)) m->t = c->start;

@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "geom/surface/family.h"
+#include "geom/surface/trimmed.h"
 
 // Basis tables live on the stack; higher degrees serve nobody and lose all accuracy.
 #define MAX_DEGREE 63
@@ -792,6 +793,7 @@ static CagStatus reversed_v(const Nurbs *b, CagSurface **out, CagError *err) {
 CagStatus cag_surface_flip(const CagSurface *s, CagSurface **out, CagError *err) {
   const Nurbs *b = as_nurbs(s);
   if (b) return reversed_v(b, out, err);
+  if (cag_surface_trimmed_view(s, NULL, NULL)) return cag_trimmed_flip(s, out, err);
   const CagRegion *region;
   CagTransform frame;
   if (cag_surface_planar_view(s, &region, &frame)) {

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "geom/surface/family.h"
+#include "geom/surface/trimmed.h"
 
 // A parameter this many ulps outside the domain is taken for the end: it is the rounding of a
 // parameter that was computed.
@@ -293,7 +294,8 @@ void cag_surface_judge(CagSurface *s) {
 }
 
 bool cag_surface_is_closed(const CagSurface *s) {
-  if (cag_surface_planar_view(s, NULL, NULL)) return false;
+  if (cag_surface_planar_view(s, NULL, NULL) || cag_surface_trimmed_view(s, NULL, NULL))
+    return false;
   bool no_edge_u = s->closed_u || (s->pole_u0 && s->pole_u1);
   bool no_edge_v = s->closed_v || (s->pole_v0 && s->pole_v1);
   return no_edge_u && no_edge_v;

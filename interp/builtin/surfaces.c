@@ -137,12 +137,18 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print len(boundary(bilinear([0, 0], [0, 2], [4, 0], [4, 2]))) // expect: 4", SURFACES,
      changed},
 
-    {"trim(S, u = none, v = none)", cag_surfaces_trim, "surface",
+    {"trim(S, curves = none, u = none, v = none)", cag_surfaces_trim, "surface",
      "The part over ranges of the parameters, which stay as they are; exact control points where "
-     "the "
-     "surface has some.",
+     "the surface has some. Or the part within closed curves [u, v] of the parameter plane "
+     "(radians "
+     "where a parameter is an angle), given as a region, a curve, points or a list of curves, of "
+     "which inner ones are holes: area and volume are exact there, meshes end on the curves, "
+     "`boundary` gives them in space. Curves that leave the domain are an error (curve-outside).",
      "s = trim(sphere_surface(1), u: 0deg..90deg)\n"
-     "print near(area(s), tau, relative: 1e-8) // expect: true",
+     "print near(area(s), tau, relative: 1e-8) // expect: true\n"
+     "flat = bilinear([0, 0], [0, 8], [8, 0], [8, 8])\n"
+     "rings = [circle(0.25, center: [0.5, 0.5]), circle(0.125, center: [0.5, 0.5])]\n"
+     "print near(area(trim(flat, rings)), 3 * pi, relative: 1e-8) // expect: true",
      SURFACES, changed},
     {"split(S, u = none, v = none)", cag_surfaces_split, "list",
      "The two parts below and above this u, or v.",

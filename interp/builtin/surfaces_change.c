@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "geom/surface/trimmed.h"
 #include "interp/builtin/surfaces.h"
 
 // `made` is read after the call that fills it: pass its address.
@@ -124,6 +125,14 @@ bool cag_surfaces_boundary(CagCall *call, CagValue *result) {
   if (cag_surface_planar_view(s, &region, &frame)) {
     for (size_t i = 0; i < region->count; i++) {
       CagStatus status = cag_curve_transform(region->loops[i], &frame, &c, &err);
+      if (!add_curve(call, list, status, &err, c)) return false;
+    }
+    *result = cag_builder_finish(call->vm, list);
+    return true;
+  }
+  if (cag_surface_trimmed_view(s, NULL, &region)) {
+    for (size_t i = 0; i < region->count; i++) {
+      CagStatus status = cag_trimmed_loop(s, i, &c, &err);
       if (!add_curve(call, list, status, &err, c)) return false;
     }
     *result = cag_builder_finish(call->vm, list);

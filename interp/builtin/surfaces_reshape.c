@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "geom/surface/reshape.h"
+#include "geom/surface/trimmed.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
@@ -28,13 +29,53 @@ static bool read_place(CagCall *call, const CagSurface *s, int at, int *directio
            : cag_arg_parameter(call, at + 1, s->angular_v, s->v0, s->v1, false, t);
 }
 
+// The region within closed plane curves, given as one region, curve or list of points, or as a list
+// of curves; *out has one reference of its own.
+static bool read_loops(CagCall *call, int argument, CagRegion **out) {
+  CagValue v = call->values[argument];
+  CagTransform place;
+  CagError err;
+  bool curves = v.type == CAG_LIST && CAG_AS_LIST(v)->length > 0 &&
+                cag_list_get(call->vm, CAG_AS_LIST(v), 0).type == CAG_CURVE;
+  if (!curves) {
+    CagRegion *region;
+    if (!cag_arg_region(call, argument, &region, &place)) return false;
+    bool ok = cag_geometry_ok(call, cag_region_transform(region, &place, out, &err), &err);
+    cag_region_release(region);
+    return ok;
+  }
+  const CagList *list = CAG_AS_LIST(v);
+  CagCurve **loops = malloc(list->length * sizeof(CagCurve *));
+  if (!loops)
+    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  bool ok = true;
+  for (size_t i = 0; ok && i < list->length; i++) {
+    CagValue c = cag_list_get(call->vm, list, i);
+    ok = c.type == CAG_CURVE || cag_fail_element(call, argument, i, c, "closed plane curves");
+    if (ok) loops[i] = CAG_AS_SHAPE(c)->as.curve;
+  }
+  ok = ok && cag_geometry_ok(call, cag_region_from_loops(loops, list->length, out, &err), &err);
+  free(loops);
+  return ok;
+}
+
+// S, curves, u, v
 bool cag_surfaces_trim(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   CagError err;
   if (!cag_arg_surface(call, 0, &s)) return false;
+  if (named(call, 1)) {
+    CagRegion *region;
+    if (named(call, 2) || named(call, 3))
+      return cag_fail_call(call, 1, CAG_ERR_value, "takes `curves` or ranges u and v, not both");
+    if (!read_loops(call, 1, &region)) return false;
+    CagStatus status = cag_surface_trimmed(s, region, &out, &err);
+    cag_region_release(region);
+    return give(call, status, &err, &out, result);
+  }
   double u0 = s->u0, u1 = s->u1, v0 = s->v0, v1 = s->v1;
-  if ((named(call, 1) && !cag_arg_parameter_range(call, 1, s->angular_u, &u0, &u1)) ||
-      (named(call, 2) && !cag_arg_parameter_range(call, 2, s->angular_v, &v0, &v1)))
+  if ((named(call, 2) && !cag_arg_parameter_range(call, 2, s->angular_u, &u0, &u1)) ||
+      (named(call, 3) && !cag_arg_parameter_range(call, 3, s->angular_v, &v0, &v1)))
     return false;
   return give(call, cag_surface_part(s, u0, u1, v0, v1, &out, &err), &err, &out, result);
 }
