@@ -6,6 +6,7 @@
 
 #include "geom/curve/region_chain.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -255,8 +256,8 @@ static CagStatus run_curve(const Chain *c, const size_t *loop, size_t n, CagCurv
     return straight_run(c, loop, n, out, err);
   const bool forward = e->keep > 0;
   const double a = forward ? e->a : f->a, b = forward ? f->b : e->b;
-  // A piece whose only cut is its end, but whose ends are two corners.
-  if (!(a < b))
+  // What rounding left of a piece between two corners.
+  if (!(b - a > DBL_EPSILON * 8 * fmax(fabs(a), fabs(b))))
     return cag_curve_line(c->corners[edge_start(e)], c->corners[edge_end(f)], 2, out, err);
   CagCurve *part;
   CagStatus status = cag_curve_trim(curve, a, b, &part, err);

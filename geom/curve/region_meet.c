@@ -145,24 +145,30 @@ static CagStatus meet_circle(Meetings *m, size_t i, size_t k, CagError *err) {
 
 // --- Curves ---
 
+// The piece as a curve over its own parameters.
+static CagStatus make_part(const CagCurve *c, const CagRegionPiece *piece, CagCurve **out,
+                           CagError *err) {
+  double local_a, local_b, rate;
+  CagCurve *part;
+  const CagCurve *inner =
+      cag_curve_composite_piece(c, piece->a, piece->b, &local_a, &local_b, &rate);
+  CagStatus status;
+  if (piece->straight) status = cag_curve_line(piece->p, piece->q, 2, &part, err);
+  else if (inner) status = cag_curve_trim(inner, local_a, local_b, &part, err);
+  else return cag_curve_trim(c, piece->a, piece->b, out, err);
+  if (status) return status;
+  status = cag_curve_reparametrize(part, piece->a, piece->b, out, err);
+  cag_curve_release(part);
+  return status;
+}
+
 static CagStatus part_of(Meetings *m, size_t i, CagCurve **out, CagError *err) {
   CagRegionPiece *piece = &m->pieces->items[i];
-  const CagWalk *walk = &m->pieces->walks[piece->walk];
-  if (!piece->part) {
-    double local_a, local_b, rate;
-    CagCurve *whole;
-    const CagCurve *inner =
-        cag_curve_composite_piece(walk->curve, piece->a, piece->b, &local_a, &local_b, &rate);
-    CagStatus status = inner ? cag_curve_trim(inner, local_a, local_b, &whole, err)
-                             : cag_curve_trim(walk->curve, piece->a, piece->b, &whole, err);
-    if (status) return status;
-    status = inner ? cag_curve_reparametrize(whole, piece->a, piece->b, &piece->part, err) : CAG_OK;
-    if (!inner) piece->part = whole;
-    else cag_curve_release(whole);
-    if (status) return status;
-  }
+  CagStatus status = CAG_OK;
+  if (!piece->part)
+    status = make_part(m->pieces->walks[piece->walk].curve, piece, &piece->part, err);
   *out = piece->part;
-  return CAG_OK;
+  return status;
 }
 
 // Whether the point lies on piece i, and where.

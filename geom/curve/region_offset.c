@@ -12,7 +12,8 @@
 // they are, and the whole neighbourhood of the part is added (taken away) instead: the curve around
 // it, both sides and half a circle at each end, runs around each point as often as the part has
 // stretches within |d| of the point (the sublevel sets of a function on an interval), so at least
-// once where it is within |d| and else not at all.
+// once where it is within |d| and else not at all. Such a part reaches a little beyond the places
+// where the strip begins to fold, so that its ends are no cusps of the shifted curve.
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,6 +24,8 @@
 
 // Turns by less than this (sine) are no corner.
 #define TURN 1e-9
+// A strip whose far side runs at less than this part of the near side's speed counts as folding.
+#define FOLD 0.05
 // Samples of a smooth part between which the radius of curvature passes |d| once at most.
 #define SAMPLES 32
 // Halvings that take an interval to neighbouring doubles.
@@ -120,13 +123,15 @@ static bool circle_of(const CagCurve *c, CagVec3 *center, double *radius, double
   return fabs(a - b) <= ROUND * a && fabs(cag_dot(x, y)) <= ROUND * a * b;
 }
 
-// Positive where a strip of the width `left` does not fold: |C'|^3 (1 - left k).
-static CagStatus room(const CagCurve *c, double left, double t, double *out, CagError *err) {
+// Positive where the far side of a strip of the width `left` runs faster than at `least` times the
+// speed of the near side: |C'|^3 (1 - left k - least).
+static CagStatus room(const CagCurve *c, double left, double least, double t, double *out,
+                      CagError *err) {
   CagVec3 d[3];
   CagStatus status = cag_curve_eval(c, t, 2, t >= c->end ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, err);
   if (status) return status;
   const double speed = cag_norm(d[1]);
-  *out = speed * speed * speed - left * cag_cross(d[1], d[2]).z;
+  *out = (1 - least) * speed * speed * speed - left * cag_cross(d[1], d[2]).z;
   return CAG_OK;
 }
 
@@ -161,19 +166,20 @@ static CagStatus add_over(Parts *parts, const CagCurve *c, double a, double b, b
   return status ? status : add_part(parts, part, folds, err);
 }
 
-// Cuts the part where the radius of curvature passes the distance.
-static CagStatus add_bent(Parts *parts, const CagCurve *c, double left, CagError *err) {
+// Cuts the part where the room passes 0.
+static CagStatus add_bent(Parts *parts, const CagCurve *c, double left, double least,
+                          CagError *err) {
   double *cuts;
   size_t n;
   CagStatus status = cag_curve_cuts(c, &cuts, &n, err);
   if (status) return status;
   double from = c->start, before = c->start, f = 0;
-  status = room(c, left, c->start, &f, err);
+  status = room(c, left, least, c->start, &f, err);
   bool folds = f < 0, known = f != 0;
   for (size_t i = 0; !status && i + 1 < n; i++)
     for (int k = 1; !status && k <= SAMPLES; k++) {
       const double t = k == SAMPLES ? cuts[i + 1] : cuts[i] + (cuts[i + 1] - cuts[i]) * k / SAMPLES;
-      status = room(c, left, t, &f, err);
+      status = room(c, left, least, t, &f, err);
       if (!status && f != 0 && !known) {
         folds = f < 0;
         known = true;
@@ -183,7 +189,7 @@ static CagStatus add_bent(Parts *parts, const CagCurve *c, double left, CagError
         for (int j = 0; !status && j < BISECTIONS && lo + (hi - lo) / 2 > lo; j++) {
           const double m = lo + (hi - lo) / 2;
           if (!(m < hi)) break;
-          status = room(c, left, m, &g, err);
+          status = room(c, left, least, m, &g, err);
           if ((g < 0) == folds) lo = m;
           else hi = m;
         }
@@ -207,7 +213,7 @@ static CagStatus add_smooth(Parts *parts, const CagCurve *c, double left, CagErr
   CagStatus status;
   if (!circle_of(c, &center, &radius, &sense)) {
     const size_t first = parts->n;
-    status = add_bent(parts, c, left, err);
+    status = add_bent(parts, c, left, FOLD, err);
     if (status || !c->closed || parts->n != first + 1 || !parts->items[first].folds) return status;
     cag_curve_release(parts->items[--parts->n].curve);
     status = add_over(parts, c, c->start, middle, true, err);
@@ -228,7 +234,37 @@ static CagStatus is_smooth(const CagCurve *c, double t, bool *out, CagError *err
   return status;
 }
 
+// The part over [a, b] of the boundary, of one kind.
+static CagStatus take_part(const CagCurve *c, double a, double b, bool straight, CagCurve **out,
+                           CagError *err) {
+  double local_a, local_b, rate;
+  if (straight) {
+    CagVec3 p, q;
+    CagStatus status = cag_curve_eval(c, a, 0, CAG_SIDE_RIGHT, &p, err);
+    if (!status) status = cag_curve_eval(c, b, 0, CAG_SIDE_LEFT, &q, err);
+    return status ? status : cag_curve_line(p, q, 2, out, err);
+  }
+  const CagCurve *piece = cag_curve_composite_piece(c, a, b, &local_a, &local_b, &rate);
+  return piece ? cag_curve_trim(piece, local_a, local_b, out, err)
+               : cag_curve_trim(c, a, b, out, err);
+}
+
+// Whether [a, b] is so short that it is rounding, in the parameter and in the plane.
+static CagStatus is_nothing(const CagCurve *c, double a, double b, double size, bool *out,
+                            CagError *err) {
+  const double nothing = 1e-12; // part of the whole
+  CagVec3 p, q;
+  *out = !(a < b);
+  if (*out) return CAG_OK;
+  CagStatus status = cag_curve_eval(c, a, 0, CAG_SIDE_RIGHT, &p, err);
+  if (!status) status = cag_curve_eval(c, b, 0, CAG_SIDE_LEFT, &q, err);
+  *out = b - a <= nothing * (c->end - c->start) && cag_norm(cag_sub(p, q)) <= nothing * size;
+  return status;
+}
+
 static CagStatus add_loop(Parts *parts, const CagCurve *c, double left, CagError *err) {
+  const CagBounds box = c->kind->hull(c, c->start, c->end);
+  const double size = cag_norm(cag_sub(box.max, box.min));
   double *cuts;
   size_t n;
   CagStatus status = cag_curve_cuts(c, &cuts, &n, err);
@@ -238,17 +274,16 @@ static CagStatus add_loop(Parts *parts, const CagCurve *c, double left, CagError
     double local_a, local_b, rate;
     const CagCurve *piece =
         cag_curve_composite_piece(c, cuts[i - 1], cuts[i], &local_a, &local_b, &rate);
-    bool smooth = false;
+    const bool straight = is_line(piece ? piece : c);
+    bool smooth = false, nothing = false;
     // The joint of two pieces is always a cut: each has a kind of its own.
-    if (i + 1 < n && !(piece && local_b == piece->end))
+    if (i + 1 < n && !straight && !(piece && local_b == piece->end))
       status = is_smooth(c, cuts[i], &smooth, err);
     if (status || smooth) continue;
-    CagCurve *part;
-    piece = cag_curve_composite_piece(c, from, cuts[i], &local_a, &local_b, &rate);
-    status = piece ? cag_curve_trim(piece, local_a, local_b, &part, err)
-                   : cag_curve_trim(c, from, cuts[i], &part, err);
-    if (status) break;
-    status = add_smooth(parts, part, left, err);
+    status = is_nothing(c, from, cuts[i], size, &nothing, err);
+    CagCurve *part = NULL;
+    if (!status && !nothing) status = take_part(c, from, cuts[i], straight, &part, err);
+    if (part) status = add_smooth(parts, part, left, err);
     cag_curve_release(part);
     from = cuts[i];
   }
@@ -296,8 +331,8 @@ static CagStatus put_corner(Raw *raw, const Part *a, const Part *b, CagError *er
   return status ? status : put_line(raw, corner, to, 1, err);
 }
 
-static CagStatus put_side(Raw *raw, const Part *p, double left, bool backwards, int sign,
-                          CagError *err) {
+static CagStatus put_shifted(Raw *raw, const Part *p, double left, bool backwards, int sign,
+                             CagError *err) {
   CagCurve *side, *turned;
   CagStatus status = shifted(p, left, raw->tolerance, &side, err);
   if (status || !side) return status;
@@ -305,6 +340,21 @@ static CagStatus put_side(Raw *raw, const Part *p, double left, bool backwards, 
   status = cag_curve_reverse(side, &turned, err);
   cag_curve_release(side);
   return status ? status : put(raw, turned, sign, err);
+}
+
+// One side of a part; where that has cusps each of the curves between them.
+static CagStatus put_side(Raw *raw, const Part *p, double left, bool backwards, int sign,
+                          CagError *err) {
+  CagVec3 center;
+  double radius, sense;
+  if (!p->folds || is_line(p->curve) || circle_of(p->curve, &center, &radius, &sense))
+    return put_shifted(raw, p, left, backwards, sign, err);
+  Parts between = {0};
+  CagStatus status = add_bent(&between, p->curve, left, 0, err);
+  for (size_t i = 0; !status && i < between.n; i++)
+    status = put_shifted(raw, &between.items[i], left, backwards, sign, err);
+  parts_free(&between);
+  return status;
 }
 
 // The curve around all points within the distance of the part, counter-clockwise.
