@@ -1,0 +1,63 @@
+# Set operations as the renderer's own and as meshes: the same pictures.
+
+# alike NAME SHAPE: renders the shape natively and as a mesh; the colours' root mean square difference is small. Edges
+# that are sampled differently are all that may differ.
+alike() {
+  script "$1.cag" "param native = true
+give(s) = if native then s else tessellate(s, tolerance: 0.005)
+$2
+show camera([14, -30, 26], target: [4, 4, 3], fov: 34deg), sun([1, 1.5, -2]), sky([\"white\", \"lightblue\"])"
+  try export "$1.cag" -o "$1.pov"
+  status 0
+  grep -q -E '^#declare [a-z_]+ = (union|difference|intersection|merge) \{' "$1.pov" || wrong 'no operation of the renderer'
+  try render "$1.cag" -o "$1.exr" --size 96x72 --quality draft
+  status 0
+  try render "$1.cag" -o "$1_mesh.exr" --size 96x72 --quality draft -D native=false
+  status 0
+  try compare "$1.exr" "$1_mesh.exr"
+  awk '$1 ~ /^[RGB]$/ { n++; if ($2 > 0.012) bad = 1 } END { exit bad || n != 3 }' out || wrong 'the pictures differ'
+}
+
+it 'a box and a ball with three bores'
+alike die 'bore = translate(cylinder(14, 3), [0, 0, -7])
+die = (box(10, centered: true) & sphere(6.8)) - bore - rotate(bore, X, 90deg) - rotate(bore, Y, 90deg)
+show give(die) |> translate([4, 4, 4]) |> color("tomato")'
+
+it 'a bore whose ends lie in the faces, and a pin left in it'
+alike flush 'show give(box(8) - (translate(box([6, 6, 8]), [1, 1, 0]) - translate(cylinder(8, 2), [4, 4, 0]))) |> color("teal")'
+
+it 'half spaces and quadrics'
+alike bowl 'show give((sphere(5) - solid([1, 1, 0, 0, 0, 0, 0, 0, -4, -3])) & half_space(plane(origin, [1, 0, 0.5]))) |> translate([4, 4, 3]) |> color("gold")'
+
+it 'lathes, prisms, meshes and moved operations'
+alike kinds 'pot = revolve(bezier([[0, 0], [6, 0], [6, 8], [0, 8]]))
+star = extrude(polygon([for k in 0..9: polar(if k % 2 == 0 then 5 else 2, 36deg * k)]), 9)
+show give(pot - translate(star, [0, 0, 2])) |> color("orchid")
+show give((tessellate(box(4)) | torus(3, 1)) - translate(sphere(2), [4, 4, 4])) |> rotate(Z, 30deg) |> translate([9, 6, 1]) |> color("khaki")'
+
+it 'nothing but faces outside is seen of a union of glass'
+script glass.cag 'import std.materials as mat
+show sphere(4) | translate(sphere(4), [4, 0, 0]) |> material(mat.glass)'
+try export glass.cag -o glass.pov
+status 0
+grep -q 'merge {' glass.pov || wrong 'no merge'
+
+it 'an operation that leaves nothing names its operands'
+script nothing.cag 'show box(2) - sphere(9)'
+try export nothing.cag -o nothing.stl
+status 1
+says 'leaves nothing'
+says 'box, 2 x 2 x 2'
+says 'sphere, radius 9'
+
+it 'a half space alone has no end'
+script half.cag 'show half_space(plane(origin, Z))'
+try export half.cag -o half.pov
+status 1
+says 'reaches to infinity'
+
+it 'operations are operations in JSON, with their operands'
+script tree.cag 'show box(2) - (sphere(1) | translate(half_space(plane(origin, Z)), [0, 0, 0.5]))'
+try export tree.cag -o tree.json
+status 0
+for word in difference union half_space '"operands"' '"form"'; do grep -q "$word" tree.json || wrong "no $word"; done
