@@ -121,7 +121,12 @@ $(BUILD)/tests/bench/curves: tests/bench/curves.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $$(test -f /usr/include/sisl.h && echo -DCAG_SISL) $< $(BUILD)/libcag.a -o $@ \
 	  $$(test -f /usr/include/sisl.h && echo -lsisl) $(LDLIBS_ALL)
-bench: all $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves
+# Orocos KDL is a peer as well, a program of its own in C++, built only where its header is.
+KDL := $(wildcard /usr/include/kdl/chain.hpp)
+$(BUILD)/tests/bench/robots_kdl: tests/bench/robots_kdl.cpp tests/bench/robots.h
+	@mkdir -p $(@D)
+	$Q$(CXX) -std=c++17 -O3 -I. -isystem /usr/include/eigen3 $< -o $@ -lorocos-kdl
+bench: all $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl)
 	BUILD=$(BUILD) sh tests/bench/run.sh
 
 FORMATTED = $(shell find include lang geom interp tests -name '*.[ch]' | sort)

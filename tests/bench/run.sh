@@ -73,3 +73,7 @@ echo "--- curves, against SISL 4.6"
 "$B/tests/bench/curves" $(for kind in bspline nurbs; do
   awk "BEGIN { print ($(cpu $here/sample_$kind.cag) - $(cpu "$tmp/empty.cag")) / 20 }"
 done)
+
+echo "--- robots, against Orocos KDL; aims: fk < 0.5 us, Jacobian < 1 us, ratios >= 3, inverse >= 99.9 % and < 0.3 ms"
+if [ -x "$B/tests/bench/robots_kdl" ]; then "$B/tests/bench/robots_kdl" > "$tmp/kdl"; fi
+"$B/tests/bench/robots" "$tmp/kdl"
