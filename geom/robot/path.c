@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/robot/inverse.h"
 #include "geom/robot/kernel.h"
 
 #define TOLERANCE_DEFAULT 1e-6
@@ -27,8 +28,53 @@ static CagStatus fail_unreachable(const CagRobotFound *found, bool position_only
                   found->position, angle);
 }
 
+static bool is_wanted(int wanted, int is) { return !wanted || !is || wanted == is; }
+
+// The square of the way of all joints from a to b, in radians and parts of the reach.
+static double joint_way(const CagRobot *r, const double *a, const double *b) {
+  double sum = 0;
+  for (size_t i = 0; i < r->joint_count; i++) {
+    double move = b[i] - a[i];
+    if (r->links[r->joint_link[i]].kind != CAG_JOINT_REVOLUTE) move /= r->reach;
+    sum += move * move;
+  }
+  return sum;
+}
+
+// The closed form's solution of the wanted branch within the limits that is nearest to `near`;
+// false where there is none.
+static bool solve_closed(const CagRobot *r, const CagTransform *target, const CagRobotGoal *goal,
+                         const double *near, double *q) {
+  CagInverse all;
+  double nearest = INFINITY;
+  cag_robot_inverse(r, target, near, &all);
+  for (size_t i = 0; i < all.count; i++) {
+    CagInverseSolution *s = &all.solutions[i];
+    const CagConfiguration *c = &s->configuration;
+    if (!is_wanted(goal->shoulder, c->shoulder) || !is_wanted(goal->elbow, c->elbow) ||
+        !is_wanted(goal->wrist, c->wrist) || !cag_robot_into_limits(r, near, s->q))
+      continue;
+    const double way = joint_way(r, near, s->q);
+    if (way >= nearest) continue;
+    nearest = way;
+    memcpy(q, s->q, r->joint_count * sizeof *q);
+  }
+  return nearest < INFINITY;
+}
+
 CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const CagRobotGoal *goal,
                           double *q, CagRobotFound *found, CagError *err) {
+  double home[CAG_ROBOT_JOINTS_MAX];
+  const bool closed = !goal->position_only && cag_robot_has_inverse(r);
+  const bool branch = goal->shoulder || goal->elbow || goal->wrist;
+  cag_robot_home(r, home);
+  if (closed && solve_closed(r, target, goal, goal->near ? goal->near : home, q)) {
+    CagTransform pose;
+    *found = (CagRobotFound){.solved = true};
+    cag_robot_forward(r, q, &pose);
+    cag_robot_pose_distance(&pose, target, &found->position, &found->rotation);
+    return CAG_OK;
+  }
   double tolerance = goal->tolerance > 0 ? goal->tolerance : TOLERANCE_DEFAULT;
   CagRobotSearch search = {.near = goal->near,
                            .position = tolerance,
@@ -36,11 +82,15 @@ CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const C
                            .position_only = goal->position_only,
                            .alternatives = ALTERNATIVES,
                            .stay_near = true};
-  if (goal->shoulder || goal->elbow || goal->wrist)
+  if (branch && !closed)
     return cag_fail(err, CAG_E_UNSUPPORTED, "no-closed-form", "config", -1,
                     "the arm has no closed form, so that its branches have no names; choose by "
                     "`near`");
   *found = cag_robot_search(r, target, &search, q);
+  if (branch && found->solved)
+    return cag_fail(err, CAG_E_DEGENERATE, "unreachable", "config", -1,
+                    "the pose is reached, but not in this branch within the limits; `ik_all` tells "
+                    "the branches");
   return found->solved ? CAG_OK : fail_unreachable(found, goal->position_only, err);
 }
 

@@ -1,0 +1,103 @@
+// All joint values for a pose, by closed form, and the branch that joint values belong to.
+
+#include <string.h>
+
+#include "geom/robot/inverse.h"
+#include "interp/builtin/robots.h"
+#include "interp/builtin/support.h"
+
+// The branches that the arm has a choice of, as a record of 1 and -1.
+static CagValue config_value(CagVm *vm, const CagConfiguration *c) {
+  static const char *const all[] = {"shoulder", "elbow", "wrist"};
+  const int signs[] = {c->shoulder, c->elbow, c->wrist};
+  const char *names[3];
+  CagValue values[3];
+  size_t n = 0;
+  for (size_t i = 0; i < 3; i++) {
+    if (!signs[i]) continue;
+    names[n] = all[i];
+    values[n++] = cag_number(signs[i]);
+  }
+  return cag_record_new(vm, names, values, n);
+}
+
+// Numbers, from 1, of the joints whose bits are set.
+static CagValue free_value(CagVm *vm, unsigned free) {
+  double joints[CAG_INVERSE_JOINTS_MAX];
+  size_t n = 0;
+  for (size_t i = 0; i < CAG_INVERSE_JOINTS_MAX; i++)
+    if (free & 1u << i) joints[n++] = (double)i + 1;
+  return cag_vector(vm, joints, n);
+}
+
+static CagValue solution_value(CagVm *vm, const CagRobot *r, const CagInverseSolution *s) {
+  static const char *const names[] = {"q", "config", "free"};
+  const CagValue values[] = {cag_joints_value(vm, r, s->q), config_value(vm, &s->configuration),
+                             free_value(vm, s->free)};
+  return cag_record_new(vm, names, values, 3);
+}
+
+static bool fail_no_closed_form(CagCall *call) {
+  return cag_fail_call(call, 0, CAG_ERR_no_closed_form,
+                       "expects an arm whose inverse has a closed form; `ik` solves any other "
+                       "numerically");
+}
+
+// robot, T, near
+static bool ik_all(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"status", "solutions", "free"};
+  static const char *const statuses[] = {"ok", "unreachable", "infeasible-orientation", "singular"};
+  CagRobot *r = NULL;
+  CagTransform target;
+  CagInverse all;
+  double near[CAG_ROBOT_JOINTS_MAX];
+  if (!cag_arg_robot(call, 0, &r) || !cag_arg_pose(call, 1, &target) ||
+      !cag_arg_joints_or_home(call, 2, r, false, near))
+    return false;
+  cag_robot_inverse(r, &target, near, &all);
+  if (all.status == CAG_INVERSE_NO_CLOSED_FORM) return fail_no_closed_form(call);
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t i = 0; i < all.count; i++)
+    if (!cag_builder_add(call->vm, list, solution_value(call->vm, r, &all.solutions[i])))
+      return false;
+  CagValue values[] = {cag_text_c(call->vm, statuses[all.status]),
+                       cag_builder_finish(call->vm, list), free_value(call->vm, all.free)};
+  *result = cag_record_new(call->vm, names, values, 3);
+  return true;
+}
+
+// robot, q
+static bool configuration(CagCall *call, CagValue *result) {
+  CagRobot *r = NULL;
+  CagConfiguration c;
+  double q[CAG_ROBOT_JOINTS_MAX];
+  if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints(call, 1, r, false, q)) return false;
+  if (!cag_robot_configuration(r, q, &c)) return fail_no_closed_form(call);
+  *result = config_value(call->vm, &c);
+  return true;
+}
+
+#define ARM                                                                                        \
+  "puma = robot([revolute(alpha: -90deg), revolute(d: 149.5, a: 432), revolute(alpha: 90deg), "    \
+  "revolute(d: 432, alpha: -90deg), revolute(alpha: 90deg), revolute(d: 56.5)])\n"
+
+const CagBuiltin cag_builtins_inverse[] = {
+    {"ik_all(robot, T, near = home)", ik_all, "record",
+     "Every joint position that brings the tool to the pose T, by closed form, the limits not "
+     "asked: `status` (\"ok\", \"unreachable\", \"infeasible-orientation\" of arms with fewer than "
+     "six joints, \"singular\"), `solutions` (records of `q`, `config` with the branch, 1 or -1, "
+     "as shoulder, elbow and wrist, and `free`), `free`: the joints, from 1, that are free in a "
+     "singular family and stand where `near` has them. Arms are known by their structure: any with "
+     "a spherical wrist or with axes 2, 3, 4 parallel, SCARA and planar arms, those of slides.",
+     ARM "all = ik_all(puma, fk(puma, [35deg, -60deg, 100deg, 25deg, -40deg, 110deg]))\n"
+         "print all.status, len(all.solutions), all.solutions[0].config // expect: ok 8 {shoulder: "
+         "1, elbow: 1, wrist: 1}",
+     CAG_TAKES(ROBOT), "Robots: inverse kinematics"},
+    {"configuration(robot, q)", configuration, "record",
+     "The branch that joint values belong to, 1 or -1 each: shoulder (before or behind the first "
+     "axis), elbow (the side to which it is bent), wrist (the sign of the sine of joint 5), as far "
+     "as the arm has them.",
+     ARM "print configuration(puma, [35deg, -60deg, 100deg, 25deg, -40deg, 110deg]) // expect: "
+         "{shoulder: 1, elbow: -1, wrist: -1}",
+     CAG_TAKES(ROBOT), "Robots: inverse kinematics"},
+    {0}};
