@@ -26,7 +26,8 @@ static double bezier_sag(const double *b, int p, bool rational) {
 }
 
 static double nurbs_sag(const CagNurbs *c, double a, double b) {
-  const size_t i = cag_nurbs_piece(c, a, CAG_SIDE_RIGHT, c->pieces);
+  // By the middle: the ends may miss a knot by the rounding of a composite's parameters.
+  const size_t i = cag_nurbs_piece(c, a + (b - a) / 2, CAG_SIDE_RIGHT, c->pieces);
   const double length = c->cuts[i + 1] - c->cuts[i];
   double u = fmax(0, (a - c->cuts[i]) / length), v = fmin(1, (b - c->cuts[i]) / length);
   const double *bezier = cag_nurbs_bezier(c, i);
