@@ -310,8 +310,9 @@ CagStatus cag_gltf_plan(const CagMeshPart *parts, size_t n, CagGltfPlan *p, CagE
   size_t views = 0, meshes = 0;
   p->parts = calloc(n + 1, sizeof *p->parts);
   p->materials = malloc((n + 1) * sizeof *p->materials);
-  CagStatus status = p->parts && p->materials ? cag_mesh_find_copies(parts, n, &p->copies, err)
-                                              : cag_fail_memory(err);
+  CagStatus status = p->parts && p->materials
+                         ? cag_mesh_find_copies(parts, n, false, &p->copies, err)
+                         : cag_fail_memory(err);
   for (size_t i = 0; status == CAG_OK && i < n; i++) status = plan_part(p, i, &views, &meshes, err);
   if (status != CAG_OK) cag_gltf_plan_free(p);
   return status;

@@ -28,6 +28,7 @@ typedef struct Frame {
 
 typedef struct Finder {
   const CagMeshPart *parts;
+  bool same_material;
   CagMeshCopy *copies;
   Frame *frames; // of originals
   size_t *slots; // hash -> the last original, NONE
@@ -36,8 +37,9 @@ typedef struct Finder {
 } Finder;
 
 // Of what a motion leaves; the triangles may differ in diagonals.
-static size_t hash(const CagMesh *m) {
+static size_t hash(const CagMesh *m, const CagMaterial *material) {
   uint64_t h = m->vertex_count * 0x9e3779b97f4a7c15u + m->triangle_count; // any odd constant
+  h ^= (uintptr_t)material * 0xc2b2ae3d27d4eb4fu;
   return (size_t)(h ^ h >> 32);
 }
 
@@ -153,6 +155,7 @@ static bool same_triangles(const CagMesh *a, const CagMesh *b) {
 // Is part i a copy of original k? Fills in the copy.
 static bool try_original(Finder *f, size_t i, size_t k) {
   const CagMesh *a = f->parts[k].mesh, *b = f->parts[i].mesh;
+  if (f->same_material && f->parts[k].material != f->parts[i].material) return false;
   if (a == b) return f->copies[i].original = k, true;
   if (a->vertex_count != b->vertex_count || a->triangle_count != b->triangle_count) return false;
   Frame frame = f->frames[k];
@@ -168,7 +171,8 @@ static bool try_original(Finder *f, size_t i, size_t k) {
 static void find_one(Finder *f, size_t i) {
   const CagMesh *m = f->parts[i].mesh;
   f->copies[i] = (CagMeshCopy){i, cag_transform_identity()};
-  size_t *slot = &f->slots[hash(m) & f->mask];
+  const CagMaterial *material = f->same_material ? f->parts[i].material : NULL;
+  size_t *slot = &f->slots[hash(m, material) & f->mask];
   size_t looked = 0;
   for (size_t k = *slot; k != NONE && looked < CANDIDATES; k = f->next[k], looked++)
     if (try_original(f, i, k)) return;
@@ -177,11 +181,12 @@ static void find_one(Finder *f, size_t i) {
   *slot = i;
 }
 
-CagStatus cag_mesh_find_copies(const CagMeshPart *parts, size_t n, CagMeshCopy **out,
-                               CagError *err) {
+CagStatus cag_mesh_find_copies(const CagMeshPart *parts, size_t n, bool same_material,
+                               CagMeshCopy **out, CagError *err) {
   size_t size = 16;
   while (size < 2 * n) size *= 2;
   Finder f = {.parts = parts,
+              .same_material = same_material,
               .copies = malloc((n + 1) * sizeof *f.copies),
               .frames = malloc((n + 1) * sizeof *f.frames),
               .slots = malloc(size * sizeof *f.slots),

@@ -13,8 +13,9 @@ typedef struct CagMeshCopy {
 
 // However the copies were made: the meshes are compared. Copies agree in parameters and, moved, in
 // positions and normals, within what single precision does not show, and in their triangles but for
-// the diagonals of quads, which rounding may choose. *out from malloc, an element a part.
-CagStatus cag_mesh_find_copies(const CagMeshPart *parts, size_t n, CagMeshCopy **out,
-                               CagError *err);
+// the diagonals of quads, which rounding may choose. same_material: they agree in that as well.
+// *out from malloc, an element a part.
+CagStatus cag_mesh_find_copies(const CagMeshPart *parts, size_t n, bool same_material,
+                               CagMeshCopy **out, CagError *err);
 
 #endif

@@ -1,8 +1,8 @@
 // 3MF, core specification: a ZIP archive of the model as XML and the two parts that point to it.
 //
 // Ids: 1 the base materials, 2 on the objects in the order of the parts. A part is an object with a
-// mesh; a copy is an object with another one as its component, moved, which keeps its own name,
-// unless its material is another: then it has a mesh of its own. A mesh must be closed to be a
+// mesh; a copy of one of the same material is an object with that one as its component, moved, and
+// with a name of its own: components have no material. A mesh must be closed to be a
 // model; an open one is a surface. Points are those of the welded mesh.
 
 #include <stdio.h>
@@ -174,10 +174,7 @@ static void write_transform(Model *m, const CagTransform *t) {
   cag_atomic_file_text(m->xml, "\"");
 }
 
-static bool is_component(const Model *m, size_t i) {
-  size_t original = m->copies[i].original;
-  return original != i && m->parts[original].material == m->parts[i].material;
-}
+static bool is_component(const Model *m, size_t i) { return m->copies[i].original != i; }
 
 // p: the positions, of a part with a mesh of its own.
 static CagStatus write_object(Model *m, size_t i, bool closed, const float *p, CagError *err) {
@@ -264,7 +261,7 @@ static CagStatus begin(Model *m, CagError *err) {
       m->materials[m->material_count++] = m->parts[i].material;
   m->xml = cag_atomic_file_open_memory(&io);
   if (!m->xml) return cag_fail_memory(err);
-  CagStatus status = cag_mesh_find_copies(m->parts, m->count, &m->copies, err);
+  CagStatus status = cag_mesh_find_copies(m->parts, m->count, true, &m->copies, err);
   if (status == CAG_OK)
     status = cag_zip_add(&m->zip, "[Content_Types].xml", types, sizeof types - 1, err);
   if (status == CAG_OK)

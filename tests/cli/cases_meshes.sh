@@ -1,0 +1,238 @@
+# Mesh files: written, read back by cag, and by programs that are not ours: assimp, admesh, unzip, xmllint, the Khronos
+# validator. A program that is not here leaves its tests out.
+
+have() { command -v "$1" > /dev/null 2>&1; }
+
+# The validator comes from npm, once for a build folder. The version is the newest of the years since 2024.
+validator=$BUILD/npm
+if have node && have npm && [ ! -d "$validator/node_modules/gltf-validator" ]; then
+  mkdir -p "$validator"
+  npm install --prefix "$validator" --no-audit --no-fund --silent gltf-validator@2.0.0-dev.3.10 > npm_out 2>&1 < /dev/null ||
+    echo "the Khronos validator could not be installed: $(tail -n 1 npm_out)"
+fi
+can_validate() { have node && [ -d "$validator/node_modules/gltf-validator" ]; }
+# What it must find no fault with.
+validate() {
+  ran="gltf-validator $*"
+  NODE_PATH=$validator/node_modules timeout $LONGEST node "$here/gltf_validate.js" "$@" > out 2> err
+  code=$?
+  status 0
+  [ "$(grep -c ': 0 errors, 0 warnings' out)" -eq $# ] || wrong 'the validator found faults'
+}
+
+# Closed bodies: a ball, a ring, a box, a lathe with corners, and copies that are turned, moved and mirrored.
+script bodies.cag 'rod_of(k) = rod(origin, [0, 2, 9], 1)
+show named(sphere(10), "ball") |> material({color: "white", transmission: 0.8, ior: 1.33, roughness: 0})
+show named(torus(4, 1), "ring <&\"") |> translate([0, 0, 30]) |> color("teal")
+show box([3, 4, 5]) |> translate([40, 0, 0]) |> material({color: "gold", metallic: 1, emission: [2, 1, 0], coat: 0.5})
+show around(translate(rod_of(0), [25, 0, 0]), 7, axis: [1, 2, 3])
+show named(rows(torus(4, 1), 5, [9, 0, 0]), "chain") |> translate([0, 60, 0])
+show mirrored(translate(cone(5, 3), [0, 30, 0]), plane(origin, Y)) |> color("red")'
+# The same as one mesh, and the numbers that any file of it must give.
+cat > bodies_of.cag <<'E2'
+param file = "bodies.stl"
+rod_of(k) = rod(origin, [0, 2, 9], 1)
+shapes = [sphere(10), translate(torus(4, 1), [0, 0, 30]), translate(box([3, 4, 5]), [40, 0, 0]),
+  around(translate(rod_of(0), [25, 0, 0]), 7, axis: [1, 2, 3]), translate(rows(torus(4, 1), 5, [9, 0, 0]), [0, 60, 0]),
+  mirrored(translate(cone(5, 3), [0, 30, 0]), plane(origin, Y))]
+wanted = tessellate(shapes)
+found = read_mesh(file)
+same(a, b) = near(a, b, relative: 1e-6)
+print "volume {same(volume(found), volume(wanted))}, area {same(area(found), area(wanted))}"
+print "triangles {len(faces(found)) == len(faces(wanted))}, closed {is_watertight(found)}"
+print "euler {euler_characteristic(found) == euler_characteristic(wanted)}"
+print "bounds {norm(bounds(found).max - bounds(wanted).max) < 1e-4}, {norm(bounds(found).min - bounds(wanted).min) < 1e-4}"
+print "count {len(faces(found))}"
+E2
+all_the_same='volume true, area true
+triangles true, closed true
+euler true
+bounds true, true'
+
+triangles=
+for format in stl obj ply glb gltf; do
+  it "what .$format has is read back: volume, area, counts, closed"
+  try export bodies.cag -o "bodies.$format"
+  status 0
+  says_nothing
+  no_temporaries .
+  try run bodies_of.cag -D "file=bodies.$format"
+  status 0
+  prints "$all_the_same"
+  triangles=$(sed -n 's/^count //p' out)
+done
+# The binary STL tells its count in the bytes 80 to 83.
+it 'a .stl says how many triangles it has'
+[ "$(od -An -tu4 -j80 -N4 bodies.stl | tr -d ' ')" = "$triangles" ] || wrong 'it says another count'
+
+it 'a .gltf on standard output has its data in it'
+try export bodies.cag -o - --format gltf
+status 0
+cp out embedded.gltf
+grep -q 'base64,' embedded.gltf || wrong 'no data in it'
+try run bodies_of.cag -D file=embedded.gltf
+prints "$all_the_same"
+
+it 'a .gltf and its .bin stand there anew, or neither'
+mkdir half
+echo old > half/bodies.gltf
+mkdir half/bodies.bin
+try export bodies.cag -o half/bodies.gltf
+status 3
+says 'bodies.bin'
+holds half/bodies.gltf old
+no_temporaries half
+
+it 'copies are written once'
+[ "$(wc -c < bodies.glb)" -lt "$(($(wc -c < bodies.ply) * 3 / 4))" ] || wrong 'the .glb holds every copy'
+
+it 'meshes without a triangle are no output'
+script labels.cag 'show label([1, 2, 3], "here")'
+try export labels.cag -o labels.stl
+status 1
+says 'labels are drawn in .svg only'
+is_missing labels.stl
+script ground.cag 'show ground()'
+try export ground.cag -o ground.3mf
+status 1
+says 'a ground is for pictures'
+is_missing ground.3mf
+
+if can_validate; then
+  it 'the Khronos validator has nothing to say about .gltf and .glb'
+  script open.cag 'show bilinear([0, 0, 0], [0, 2, 1], [4, 0, 0], [4, 2, 0]) |> color("teal")
+show line([0, 0, 0], [1, 2, 3])
+show revolve(line([5, 0], [0, 3]))
+show sphere(1e-3), translate(sphere(2), [1e5, 0, 0]), sphere(1) |> material({emission: "red"})'
+  try export open.cag -o open.glb
+  try export open.cag -o open.gltf
+  validate bodies.glb bodies.gltf embedded.gltf open.glb open.gltf
+fi
+
+if have admesh; then
+  it 'admesh finds no open edge and as many facets'
+  try_command admesh bodies.stl
+  status 0
+  prints_like "Number of facets *: *$triangles  *$triangles"
+  prints_like 'Total disconnected facets *: *0 '
+  prints_like 'Degenerate facets *: *0'
+  prints_like 'Number of parts *: *17 '
+fi
+
+if have assimp; then
+  for format in stl ply obj; do
+    it "assimp finds as many triangles in .$format"
+    try_command assimp info "bodies.$format"
+    status 0
+    prints_like "^Faces: *$triangles$"
+  done
+  for format in glb gltf 3mf; do
+    it "what assimp makes of .$format is the same body"
+    [ -e "bodies.$format" ] || try export bodies.cag -o "bodies.$format"
+    try_command assimp export "bodies.$format" "of_$format.stl"
+    status 0
+    # assimp leaves glTF's metres and Y up as they are: a .glb of its own is what we read.
+    case $format in
+      3mf) try run bodies_of.cag -D "file=of_$format.stl" ;;
+      *) script turned.cag "m = read_mesh(\"of_$format.stl\")
+show scale(1000) * rotate(X, 90deg) * m"
+        try export turned.cag -o turned.obj
+        try run bodies_of.cag -D file=turned.obj ;;
+    esac
+    status 0
+    prints "$all_the_same"
+  done
+  for format in stlb stl ply plyb obj; do
+    it "cag reads what assimp writes: $format"
+    try_command assimp export bodies.obj "theirs.${format%b}" "-f$format"
+    status 0
+    try run bodies_of.cag -D "file=theirs.${format%b}"
+    status 0
+    prints 'volume true, area true'
+    prints 'closed true'
+  done
+  for format in glb2 gltf2; do
+    it "cag reads what assimp writes: $format"
+    try_command assimp export bodies.glb "theirs.${format%2}" "-f$format"
+    status 0
+    try run bodies_of.cag -D "file=theirs.${format%2}"
+    status 0
+    prints "$all_the_same"
+  done
+fi
+
+it '.3mf is the same twice'
+try export bodies.cag -o bodies.3mf
+try export bodies.cag -o again.3mf
+status 0
+cmp -s bodies.3mf again.3mf || wrong 'the files differ'
+begins_with bodies.3mf 504b0304
+
+if have unzip && have xmllint; then
+  it '.3mf is a sound archive of sound XML'
+  try_command unzip -t bodies.3mf
+  status 0
+  prints 'No errors detected'
+  unzip -p bodies.3mf '\[Content_Types\].xml' | xmllint --noout - || wrong 'the content types are no XML'
+  unzip -p bodies.3mf _rels/.rels | xmllint --noout - || wrong 'the relationships are no XML'
+  unzip -p bodies.3mf 3D/3dmodel.model > model.xml
+  try_command xmllint --noout model.xml
+  status 0
+
+  # Counts by XPath, without the namespace.
+  in_model() { xmllint --xpath "$(echo "$1" | sed 's/@@\([a-z]*\)/*[local-name()="\1"]/g')" model.xml; }
+  it '.3mf keeps the rules of the core specification'
+  ran='xmllint model.xml'
+  : > out
+  : > err
+  [ "$(in_model 'string(/@@model/@unit)')" = millimeter ] || wrong 'the unit is no millimetre'
+  [ "$(in_model 'count(//@@object)')" = 17 ] || wrong 'there are not 17 objects'
+  [ "$(in_model 'count(//@@build/@@item)')" = 17 ] || wrong 'not every object is built'
+  [ "$(in_model 'count(//@@item[not(@objectid = //@@object/@id)])')" = 0 ] || wrong 'an item of no object'
+  [ "$(in_model 'count(//@@component[not(@objectid = ../../preceding-sibling::@@object/@id)])')" = 0 ] ||
+    wrong 'a component of no object before it'
+  [ "$(in_model 'count(//@@object[@pid and @@components])')" = 0 ] || wrong 'components with a material'
+  [ "$(in_model 'count(//@@object[@type != "model"])')" = 0 ] || wrong 'a closed body is no model'
+  [ "$(in_model 'count(//@@mesh)')" = 8 ] || wrong 'not 8 bodies have meshes of their own'
+  [ "$(in_model 'count(//@@object[@pindex >= count(//@@base)])')" = 0 ] || wrong 'a material that is none'
+  [ "$(in_model 'count(//@@triangle[@v1 = @v2 or @v2 = @v3 or @v3 = @v1])')" = 0 ] || wrong 'a triangle with a point twice'
+  [ "$(in_model 'string(//@@object[@id = 3]/@name)')" = 'ring <&"' ] || wrong 'a name is not kept'
+  script open.cag 'show bilinear([0, 0, 0], [0, 2, 1], [4, 0, 0], [4, 2, 0])'
+  try export open.cag -o open.3mf
+  unzip -p open.3mf 3D/3dmodel.model | grep -q 'type="surface"' || wrong 'an open sheet is a model'
+fi
+
+# --- Reading: limits and places ---
+
+it 'read_mesh keeps the limit of triangles'
+script read.cag 'print len(faces(read_mesh("bodies.stl")))'
+try run read.cag --max-triangles 100
+status 5
+says 'bodies.stl has more than the 100 triangles allowed'
+
+it 'read_mesh keeps the limit of memory'
+try run read.cag --max-memory 2M
+status 5
+says 'max-memory'
+
+it 'read_mesh reads below the folder of the script alone'
+mkdir inner
+script inner/read.cag 'print len(faces(read_mesh("../bodies.stl")))'
+try run inner/read.cag
+status 1
+says 'outside of the folders'
+script inner/beside.gltf '{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 3, "uri": "../bodies.bin"}]}'
+script inner/read.cag 'print read_mesh("beside.gltf")'
+try run inner/read.cag
+status 1
+says 'bodies.bin lies outside'
+
+it 'a file cut anywhere is refused with its place'
+for format in stl ply glb; do
+  head -c 5000 "bodies.$format" > "cut.$format"
+  script cut.cag "print read_mesh(\"cut.$format\")"
+  try run cut.cag
+  status 1
+  says "cut.$format"
+  says 'write or fetch'
+done
