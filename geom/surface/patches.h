@@ -12,6 +12,12 @@
 CagStatus cag_surface_coons(const CagCurve *u0, const CagCurve *u1, const CagCurve *v0,
                             const CagCurve *v1, CagSurface **out, CagError *err);
 
+// The developable surface between two curves: as cag_surface_ruled, but its rulings join points
+// whose tangents lie in one plane with them. It runs as far as both curves have such rulings; v is
+// the fraction of the first one's parameter there. Fails with "no-rulings".
+CagStatus cag_surface_developable(const CagCurve *first, const CagCurve *second, CagSurface **out,
+                                  CagError *err);
+
 // Corner data of a bicubic patch, [i][j] at u = i, v = j.
 typedef struct CagHermiteCorners {
   CagVec3 p[2][2], pu[2][2], pv[2][2], puv[2][2];

@@ -324,6 +324,19 @@ const CagBuiltin cag_builtins_surfaces[] = {
      made},
 
     // --- Patches ---
+    {"developable(A, B)", cag_surfaces_developable, "surface",
+     "The developable surface between two curves, as `ruled` (u = 1 is the first, u = 0 the "
+     "second), "
+     "but with rulings that lie in one plane with the tangents at both ends, so that it can be "
+     "unrolled. The rulings begin as near to the starts of the curves as they can, and run as far "
+     "as both curves have them; v in 0..1 is the fraction of the first one's parameter there. "
+     "Where "
+     "there are none it is an error (no-rulings).",
+     "s = developable(circle(1), translate(ellipse(2, 1), [0, 0, 3]))\n"
+     "print is_developable(s), is_developable(ruled(circle(1), translate(ellipse(2, 1), [0, 0, "
+     "3]))) "
+     "// expect: true false",
+     CURVES, patches},
     {"coons(u0, u1, v0, v1)", cag_surfaces_coons, "surface",
      "The surface between four edges, named by the side they lie on: u0 and u1 run along v, v0 and "
      "v1 along u, all in the sense of growing parameters. Edges that do not meet are an error "

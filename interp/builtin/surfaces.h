@@ -29,7 +29,7 @@
   /* surfaces_map.c */ \
   X(map_onto) X(remap) \
   /* surfaces_patch.c */ \
-  X(coons) X(coons_bicubic) X(hermite_patch) X(hermite_surface) \
+  X(developable) X(coons) X(coons_bicubic) X(hermite_patch) X(hermite_surface) \
   X(bezier_triangle) \
   /* surfaces_net.c: of nets of points */ \
   X(bezier_surface) X(bspline_surface) X(nurbs_surface) \

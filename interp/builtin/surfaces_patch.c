@@ -24,6 +24,14 @@ bool cag_surfaces_coons(CagCall *call, CagValue *result) {
               result);
 }
 
+bool cag_surfaces_developable(CagCall *call, CagValue *result) {
+  CagCurve *first, *second;
+  CagSurface *s = NULL;
+  CagError err;
+  if (!cag_arg_curve(call, 0, &first) || !cag_arg_curve(call, 1, &second)) return false;
+  return give(call, cag_surface_developable(first, second, &s, &err), &err, &s, result);
+}
+
 // --- Tables of vectors ---
 
 static bool read_vector(CagValue v, CagVec3 *out) {
