@@ -88,7 +88,8 @@ static bool try_native(CagPovWriter *w, const CagItem *item) {
   if (w->options->meshes_only) return false;
   switch (item->kind) {
   case CAG_ITEM_SOLID: return pov_try_solid(w, item->as.solid);
-  case CAG_ITEM_SURFACE: return pov_try_surface(w, item->as.surface);
+  case CAG_ITEM_SURFACE:
+    return pov_try_cones(w, item->as.surface) || pov_try_surface(w, item->as.surface);
   case CAG_ITEM_REGION: return pov_try_polygon(w, item->as.region, &item->placement);
   default: return false;
   }
@@ -143,18 +144,12 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
   char material[64];
   CagStatus status = CAG_OK;
   w->placement = cag_transform_identity();
-  w->tolerance = item->tolerance;
-  w->see_through = w->scene->materials[item->material].transmission > 0;
   write_item_comment(w, item);
   if (item->kind == CAG_ITEM_CURVE && !w->options->meshes_only) {
     status = pov_curve(w, item, name, err);
   } else {
     pov_printf(w, "#declare %s = ", name);
     if (!try_native(w, item)) status = write_mesh(w, item, err);
-    if (!status && w->failure.status) {
-      *err = w->failure;
-      status = w->failure.status;
-    }
   }
   if (status) return status;
   pov_material_name(w, item->material, closed, material);

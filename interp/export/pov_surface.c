@@ -1,6 +1,7 @@
 // Surfaces that POV-Ray has objects for: bicubic Bezier patches, quadrics, tori, spheres, lathes,
 // flat polygons.
 
+#include "geom/surface/reshape.h"
 #include "interp/export/pov_write.h"
 
 // A sampled point fits a sphere or torus to this part of its size: rounding of the evaluation.
@@ -8,10 +9,19 @@
 
 #define FULL_TURN (2 * 3.14159265358979323846)
 
+static bool is_bezier(const CagSurfaceNurbsView *v) {
+  return !v->rational && !v->periodic_u && !v->periodic_v && v->nu == (size_t)v->degree_u + 1 &&
+         v->nv == (size_t)v->degree_v + 1 && v->degree_u <= 3 && v->degree_v <= 3;
+}
+
+// A Bezier patch of degree up to 3, raised to it; flat quadrangles are better off as meshes.
 static bool try_bicubic(CagPovWriter *w, const CagSurface *s) {
   CagSurfaceNurbsView v;
-  if (!cag_surface_nurbs_view(s, &v) || v.rational || v.periodic_u || v.periodic_v) return false;
-  if (v.degree_u != 3 || v.degree_v != 3 || v.nu != 4 || v.nv != 4) return false;
+  CagError err;
+  CagSurface *raised;
+  if (!cag_surface_nurbs_view(s, &v) || !is_bezier(&v) || v.degree_u + v.degree_v < 3) return false;
+  if (cag_surface_elevate(s, 3 - v.degree_u, 3 - v.degree_v, &raised, &err)) return false;
+  cag_surface_nurbs_view(raised, &v);
   // 2^steps cells each way; normals are exact at their corners.
   int steps = w->options->quality == CAG_POV_DRAFT ? 3 : 5;
   pov_printf(w, "bicubic_patch {\n  type 1 flatness 0 u_steps %d v_steps %d,\n", steps, steps);
@@ -22,6 +32,7 @@ static bool try_bicubic(CagPovWriter *w, const CagSurface *s) {
     pov_text(w, i == 15 ? "\n" : i % 4 == 3 ? ",\n" : ",");
   }
   pov_text(w, "}");
+  cag_surface_release(raised);
   return true;
 }
 

@@ -1,0 +1,75 @@
+# POV-Ray's own objects: each shape is written as the object named, is taken by POV-Ray, and looks like its mesh.
+
+quick='--size 96x72 --quality draft'
+lit='
+show camera(eye: [90, -140, 90], target: [0, 0, 12], fov: 32deg)
+show sun(direction: [-1, 2, -2])
+show sky(["#404040", "#909090"])'
+
+# native NAME OBJECT 'script that defines g': written as OBJECT and not as a mesh, with the same picture as the mesh of
+# it within 0.02 mm. A pixel is 1 mm wide; they differ where the outline falls between pixels.
+native() {
+  printf '%s\nshow g |> color("teal")%s\n' "$3" "$lit" > "$1.cag"
+  printf '%s\nshow tessellate(g, 0.02) |> color("teal")%s\n' "$3" "$lit" > "$1_mesh.cag"
+  it "$1 is written as $2"
+  try export "$1.cag" -o "$1.pov"
+  status 0
+  grep -q "= $2 {" "$1.pov" || wrong "there is no $2"
+  ! grep -q 'mesh2 {' "$1.pov" || wrong 'there is a mesh'
+  it "$1 as $2 looks like its mesh"
+  try render "$1.cag" -o "$1.exr" $quick
+  status 0
+  try render "$1_mesh.cag" -o "$1_mesh.exr" $quick
+  status 0
+  try compare "$1.exr" "$1_mesh.exr"
+  most=$(awk '$1 ~ /^[RGB]$/ && $2 > most { most = $2 } END { print most + 0 }' out)
+  awk "BEGIN { exit !($most < 0.01) }" || wrong "the root of the mean square difference is $most"
+  # It would also be small where nothing is to be seen.
+  try compare "$1.exr" empty.exr
+  status 1
+}
+printf 'show sphere(0.001) |> translate([0, 0, 9000])%s\n' "$lit" > empty.cag
+it 'a picture of nothing, to compare with'
+try render empty.cag -o empty.exr $quick
+status 0
+
+native ball sphere 'g = sphere(25) |> translate([0, 0, 25])'
+native egg sphere 'g = sphere(20) |> scale([1, 1.3, 0.6]) |> rotate(X, 30deg) |> translate([0, 0, 20])'
+native drum cylinder 'g = cylinder(30, 20)'
+native cup cone 'g = cylinder(30, 12, top: 22)'
+native ring torus 'g = torus(25, 8) |> rotate(X, 40deg) |> translate([0, 0, 20])'
+native dice box 'g = box([30, 40, 20], centered: true) |> rotate(Z, 20deg) |> translate([0, 0, 12])'
+native bowl union 'g = revolve(polyline([[0, 2], [20, 0], [30, 25], [28, 25], [15, 5]]))'
+native vase lathe 'g = revolve(bspline([[0, 0], [30, 0], [25, 20], [8, 25], [20, 45]]))'
+native tyre lathe 'g = revolve(rounded(polygon([[12, 0], [30, 0], [30, 20], [18, 24]]), 4))'
+native dome lathe 'g = revolve(arc(25, 0deg..70deg))'
+native pitcher lathe 'g = revolve(bezier([[10, 0], [40, 10], [0, 20], [30, 30], [22, 40]], weights: [1, 2, 1, 3, 1]))'
+native plate prism 'g = extrude(polygon([[-25, -20], [25, -20], [15, 20], [-25, 20]], holes: [[[-8, -8], [8, -8], [0, 8]]]), 15)'
+native flange prism 'g = extrude(region(circle(25), holes: [circle(6), circle(4, center: [15, 0])]), 12)'
+native leaning prism 'g = extrude(rounded(polygon([[-20, -20], [20, -20], [0, 25]]), 5), [10, 5, 25])'
+native patch bicubic_patch 'g = bezier_surface([for i in 0..3: [for j in 0..3: [20 * i - 30, 20 * j - 30, if i == 1 or j == 2 then 35 else 5]]])'
+native tent bicubic_patch 'g = bezier_surface([for i in 0..2: [for j in 0..1: [25 * i - 25, 50 * j - 25, if i == 1 then 40 else 5]]])'
+native tower quadric 'g = hyperboloid(12, 12, 15, within: 0..35)'
+native dish quadric 'g = paraboloid(5, 4, within: 0..30)'
+native saddle quadric 'g = hyperbolic_paraboloid(8, 6, within: box([50, 50, 60], centered: true)) |> translate([0, 0, 15])'
+native sheet polygon 'g = polygon([[-25, -20], [25, -20], [15, 20], [-25, 20]], holes: [[[-8, -8], [8, -8], [0, 8]]])'
+
+# curve NAME OBJECT 'script': a line of some thickness.
+native_curve() {
+  it "$1 is written as $2"
+  printf '%s\nshow g |> line_style(radius: 2)%s\n' "$3" "$lit" > "$1.cag"
+  try export "$1.cag" -o "$1.pov"
+  status 0
+  grep -q "= $2 {" "$1.pov" || wrong "there is no $2"
+  try render "$1.cag" -o "$1.exr" $quick
+  status 0
+}
+native_curve stick cylinder 'g = line([-20, 0, 0], [20, 10, 30])'
+native_curve hoop torus 'g = circle(25, normal: [0, 1, 1])'
+native_curve coil union 'g = helix(20, 8, 4)'
+
+it 'what has no object of its own is a mesh with normals'
+script knot.cag 'show tube(bezier([[0, 0, 0], [30, 0, 0], [30, 30, 10], [0, 30, 30]]), 4)'
+try export knot.cag -o knot.pov
+status 0
+grep -q 'normal_vectors' knot.pov || wrong 'there are no normals'
