@@ -144,12 +144,18 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
   char material[64];
   CagStatus status = CAG_OK;
   w->placement = cag_transform_identity();
+  w->tolerance = item->tolerance;
+  w->see_through = w->scene->materials[item->material].transmission > 0;
   write_item_comment(w, item);
   if (item->kind == CAG_ITEM_CURVE && !w->options->meshes_only) {
     status = pov_curve(w, item, name, err);
   } else {
     pov_printf(w, "#declare %s = ", name);
     if (!try_native(w, item)) status = write_mesh(w, item, err);
+    if (!status && w->failure.status) {
+      *err = w->failure;
+      status = w->failure.status;
+    }
   }
   if (status) return status;
   pov_material_name(w, item->material, closed, material);

@@ -22,6 +22,13 @@ typedef struct CagPovWriter {
   // Where the thing just written stands, to be said behind its material, so that a pattern moves
   // with it. Set by pov_try_solid, taken and reset by the caller.
   CagTransform placement;
+  // While a set operation is written (pov_csg.c): its operands carry their placement, and meshes
+  // tell inside from outside.
+  bool in_operation;
+  int depth;        // by so many steps lines are indented
+  double tolerance; // of the item being written, as its mesh would have it
+  bool see_through; // light passes through the item's material
+  CagError failure; // status not CAG_OK: writing an item failed on the way
 } CagPovWriter;
 
 // --- Text (pov_text.c) ---
@@ -64,7 +71,9 @@ bool pov_try_lathe(CagPovWriter *w, const CagSurface *const *s, size_t n);   // 
 // A revolution of straight lines without an inside.
 bool pov_try_cones(CagPovWriter *w, const CagSurface *s); // pov_lathe.c
 bool pov_try_prism(CagPovWriter *w, const CagSolid *s);   // pov_lathe.c
-bool pov_try_torus(CagPovWriter *w, const CagSurface *s); // pov_surface.c
+// The operation, `depth` times taken away from something; failures are left in the writer.
+void pov_csg(CagPovWriter *w, const CagSolid *s, int depth); // pov_csg.c
+bool pov_try_torus(CagPovWriter *w, const CagSurface *s);    // pov_surface.c
 bool pov_try_polygon(CagPovWriter *w, const CagRegion *r, const CagTransform *placement);
 // Declares the curve as a round line.
 CagStatus pov_curve(CagPovWriter *w, const CagItem *item, const char *name, CagError *err);
