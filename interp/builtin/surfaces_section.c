@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/surface/curvature_line.h"
 #include "geom/surface/motion.h"
 #include "interp/builtin/surfaces.h"
 
@@ -239,6 +240,21 @@ static bool call_contour(CagCall *call, CagValue *result) {
   return ok;
 }
 
+static bool call_curvature_line(CagCall *call, CagValue *result) {
+  static const char *const which[] = {"max", "min", NULL};
+  CagSurface *s;
+  CagCurve *line = NULL;
+  CagError err;
+  double u, v;
+  int k;
+  if (!cag_arg_side(call, 0, &s) || !cag_arg_uv(call, s, 1, &u, &v) ||
+      !cag_arg_choice(call, 3, which, &k) ||
+      !cag_geometry_ok(call, cag_surface_curvature_line(s, u, v, k == 0, &line, &err), &err))
+    return false;
+  *result = cag_curve_value(call->vm, line);
+  return true;
+}
+
 // --- Frames along a path ---
 
 static bool call_path_frame(CagCall *call, CagValue *result) {
@@ -332,6 +348,14 @@ const CagBuiltin cag_builtins_sections[] = {
      "c = contour(sphere(5), from: [0, 0, 10])\n"
      "print near(start_point(c[0]).z, 2.5) // expect: true",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), SECTIONS},
+    {"curvature_line(S, u, v, by = \"max\")", call_curvature_line, "curve",
+     "The line of curvature through a place: it follows the direction of the larger (\"max\") or "
+     "smaller (\"min\") principal curvature until it closes, leaves the surface or meets an "
+     "umbilic. Lines and arcs of conics are exact, others cubics to 1e-8 of the size. An umbilic "
+     "has no such line: an error (umbilic).",
+     "c = curvature_line(torus_surface(5, 2), 0deg, 0deg, \"min\")\n"
+     "print near(length(c), 4 * pi) or near(length(c), 14 * pi) // expect: true",
+     CAG_TAKES(SURFACE) | CAG_TAKES(SOLID), SECTIONS},
     {"path_frame(C, t, orient = \"rmf\")", call_path_frame, "transform",
      "The frame that `sweep` carries along a path, at the parameter t: x along the frame's normal, "
      "y along its binormal, z along the tangent. `orient` as of sweep; fixed keeps the frame of "

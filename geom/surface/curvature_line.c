@@ -1,0 +1,248 @@
+// Lines of curvature.
+//
+// The direction field is integrated by arc length with the method of Runge and Kutta of order 4,
+// each step once whole and once in halves: the difference settles the length of the step, and
+// improves the result to order 5. A principal direction has no sense of its own: it takes that of
+// the direction before it.
+
+#include "geom/surface/curvature_line.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/surface/section.h"
+
+// Principal curvatures are one when they differ by this part of the larger, or by this part of the
+// inverse size: second derivatives are not known better.
+#define UMBILIC 1e-7
+// Error of a step, as a part of the size: lines that are circles have to be told as such.
+#define STEP_ERROR 1e-13
+// Radians that the line may turn in a step, for the cubics that follow it.
+#define STEP_TURN 0.06
+#define STEPS_MOST 20000
+#define FIRST_STEP 1e-3
+#define SMALLEST_STEP 1e-12
+// Part of the size within which a line that comes back to its start has closed.
+#define CLOSED 1e-6
+
+CagStatus cag_surface_principal(const CagSurface *s, double u, double v, bool *found,
+                                CagPrincipal *out, CagError *err) {
+  const double flat = 1e-12;
+  CagVec3 d[9];
+  *found = false;
+  CagStatus status = cag_surface_eval(s, u, v, 2, u >= s->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
+                                      v >= s->v1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, err);
+  if (status) return status;
+  CagVec3 su = d[cag_partial(2, 1, 0)], sv = d[cag_partial(2, 0, 1)], n = cag_cross(su, sv);
+  double x = cag_norm(su), size = cag_norm(n);
+  out->point = d[0];
+  out->k[0] = out->k[1] = 0;
+  if (!(size > flat * x * cag_norm(sv))) return CAG_OK;
+  n = cag_unit(n);
+  // In the orthonormal basis e1, e2: su = x e1, sv = c e1 + e e2.
+  CagVec3 e1 = cag_unit(su), e2 = cag_cross(n, e1);
+  double c = cag_dot(sv, e1), e = cag_dot(sv, e2);
+  double l = cag_dot(d[cag_partial(2, 2, 0)], n), m = cag_dot(d[cag_partial(2, 1, 1)], n),
+         k = cag_dot(d[cag_partial(2, 0, 2)], n);
+  double a = l / (x * x), b = (m / x - c * a) / e, g = (k - c * c * a - 2 * c * e * b) / (e * e);
+  double middle = (a + g) / 2, spread = hypot((a - g) / 2, b), turn = atan2(b, (a - g) / 2) / 2;
+  out->k[0] = middle - spread;
+  out->k[1] = middle + spread;
+  for (int i = 0; i < 2; i++) {
+    double p = i == 1 ? cos(turn) : -sin(turn), q = i == 1 ? sin(turn) : cos(turn);
+    out->direction[i] = cag_madd(cag_scaled(e1, p), q, e2);
+    out->step[i][1] = q / e;
+    out->step[i][0] = (p - c * q / e) / x;
+  }
+  *found = true;
+  return CAG_OK;
+}
+
+typedef struct Place {
+  double u, v;
+} Place;
+
+typedef struct Walk {
+  const CagSurface *s;
+  int which;
+  double size;
+  CagTrace trace;
+  size_t capacity;
+  CagStatus status;
+  CagError *err;
+} Walk;
+
+static double wrapped(double x, double lo, double hi) {
+  double period = hi - lo;
+  while (x < lo) x += period;
+  while (x > hi) x -= period;
+  return x;
+}
+
+// The place within the domain; false outside.
+static bool bring_in(const CagSurface *s, Place *p) {
+  if (s->closed_u) p->u = wrapped(p->u, s->u0, s->u1);
+  if (s->closed_v) p->v = wrapped(p->v, s->v0, s->v1);
+  return p->u >= s->u0 && p->u <= s->u1 && p->v >= s->v0 && p->v <= s->v1;
+}
+
+static bool is_umbilic(const Walk *w, const CagPrincipal *p) {
+  double large = fmax(fabs(p->k[0]), fabs(p->k[1]));
+  return p->k[1] - p->k[0] <= UMBILIC * fmax(large, 1 / w->size);
+}
+
+// The way at a place, with the sense of `sense`; false where there is none.
+static bool way_at(Walk *w, Place at, CagVec3 sense, CagPrincipal *p, Place *way,
+                   CagVec3 *tangent) {
+  bool found;
+  if (!bring_in(w->s, &at)) return false;
+  w->status = cag_surface_principal(w->s, at.u, at.v, &found, p, w->err);
+  if (w->status || !found || is_umbilic(w, p)) return false;
+  double sign = cag_dot(p->direction[w->which], sense) < 0 ? -1 : 1;
+  *tangent = cag_scaled(p->direction[w->which], sign);
+  *way = (Place){sign * p->step[w->which][0], sign * p->step[w->which][1]};
+  return true;
+}
+
+static Place ahead(Place at, double h, Place way) {
+  return (Place){at.u + h * way.u, at.v + h * way.v};
+}
+
+static bool one_step(Walk *w, Place at, CagVec3 sense, double h, Place *out) {
+  CagPrincipal p;
+  Place k[4];
+  CagVec3 t;
+  if (!way_at(w, at, sense, &p, &k[0], &t) ||
+      !way_at(w, ahead(at, h / 2, k[0]), t, &p, &k[1], &t) ||
+      !way_at(w, ahead(at, h / 2, k[1]), t, &p, &k[2], &t) ||
+      !way_at(w, ahead(at, h, k[2]), t, &p, &k[3], &t))
+    return false;
+  out->u = at.u + h / 6 * (k[0].u + 2 * k[1].u + 2 * k[2].u + k[3].u);
+  out->v = at.v + h / 6 * (k[0].v + 2 * k[1].v + 2 * k[2].v + k[3].v);
+  return true;
+}
+
+static bool add_point(Walk *w, CagVec3 p, CagVec3 t) {
+  CagTrace *a = &w->trace;
+  if (a->count == w->capacity) {
+    size_t capacity = 2 * w->capacity + 64;
+    CagVec3 *points = realloc(a->points, capacity * sizeof *points);
+    if (points) a->points = points;
+    CagVec3 *tangents = realloc(a->tangents, capacity * sizeof *tangents);
+    if (tangents) a->tangents = tangents;
+    if (!points || !tangents) {
+      w->status = cag_fail_memory(w->err);
+      return false;
+    }
+    w->capacity = capacity;
+  }
+  a->points[a->count] = p;
+  a->tangents[a->count++] = t;
+  return true;
+}
+
+// Walks on from a place until the line ends. True where it has come back to the start.
+static bool walk(Walk *w, Place at, CagVec3 sense) {
+  CagPrincipal p;
+  Place way;
+  CagVec3 tangent, start, first = sense;
+  double h = FIRST_STEP * w->size, gone = 0;
+  if (!way_at(w, at, sense, &p, &way, &tangent)) return false;
+  start = p.point;
+  for (int steps = 0; steps < STEPS_MOST && h > SMALLEST_STEP * w->size; steps++) {
+    Place whole, half, twice, next_way;
+    CagVec3 next;
+    // Once it is near its start, the step is to end there.
+    CagVec3 home = cag_sub(start, p.point);
+    double left = cag_norm(home);
+    bool returning = gone > 4 * h && left < 2 * h && cag_dot(home, tangent) > 0;
+    if (returning && cag_dot(home, tangent) < h) h = cag_dot(home, tangent);
+    if (returning && left <= CLOSED * w->size) return cag_dot(tangent, first) > 0;
+    if (!one_step(w, at, tangent, h, &whole) || !one_step(w, at, tangent, h / 2, &half) ||
+        !one_step(w, half, tangent, h / 2, &twice) ||
+        !way_at(w, twice, tangent, &p, &next_way, &next)) {
+      if (w->status) return false;
+      h /= 2; // up to the border, or the umbilic
+      continue;
+    }
+    // Differences of the parameters as lengths, by the speed of the way.
+    double speed = hypot(way.u, way.v);
+    double error = hypot(twice.u - whole.u, twice.v - whole.v) / (15 * speed);
+    double turn = cag_norm(cag_sub(next, tangent));
+    if (error > STEP_ERROR * w->size || turn > STEP_TURN) {
+      way_at(w, at, tangent, &p, &way, &tangent);
+      h /= 2;
+      continue;
+    }
+    at = (Place){twice.u + (twice.u - whole.u) / 15, twice.v + (twice.v - whole.v) / 15};
+    if (!bring_in(w->s, &at) || !way_at(w, at, next, &p, &way, &tangent)) return false;
+    if (!add_point(w, p.point, tangent)) return false;
+    gone += h;
+    double grow = error > 0 ? 0.8 * pow(STEP_ERROR * w->size / error, 0.2) : 2;
+    h *= fmin(2, fmax(0.5, grow));
+    if (returning && cag_norm(cag_sub(start, p.point)) <= CLOSED * w->size)
+      return cag_dot(tangent, first) > 0;
+  }
+  return false;
+}
+
+// The points so far run backwards.
+static void turn_back(CagTrace *t) {
+  for (size_t i = 0, j = t->count; i < j--; i++) {
+    CagVec3 p = t->points[i], d = t->tangents[i];
+    t->points[i] = t->points[j];
+    t->points[j] = p;
+    t->tangents[i] = cag_scaled(t->tangents[j], -1);
+    t->tangents[j] = cag_scaled(d, -1);
+  }
+}
+
+static void trace_line(Walk *w, double u, double v, const CagPrincipal *p) {
+  Place at = {u, v};
+  CagVec3 sense = p->direction[w->which];
+  // Backwards, turned, and on from the start.
+  if (!add_point(w, p->point, cag_scaled(sense, -1))) return;
+  if (walk(w, at, cag_scaled(sense, -1)) && !w->status) {
+    CagTrace *t = &w->trace;
+    t->closed = true;
+    if (cag_norm(cag_sub(t->points[t->count - 1], p->point)) > CLOSED * w->size) {
+      add_point(w, p->point, t->tangents[0]);
+    }
+    t->points[t->count - 1] = t->points[0];
+    t->tangents[t->count - 1] = t->tangents[0];
+    return;
+  }
+  if (w->status) return;
+  turn_back(&w->trace);
+  walk(w, at, sense);
+}
+
+CagStatus cag_surface_curvature_line(const CagSurface *s, double u, double v, bool larger,
+                                     CagCurve **out, CagError *err) {
+  CagBounds box;
+  CagPrincipal p;
+  bool found;
+  CagStatus status = cag_surface_bounds(s, &box, err);
+  if (status == CAG_OK) status = cag_surface_principal(s, u, v, &found, &p, err);
+  if (status) return status;
+  Walk w = {.s = s, .which = larger ? 1 : 0, .err = err};
+  w.size = cag_norm(cag_sub(box.max, box.min));
+  if (!found)
+    return cag_fail(err, CAG_E_DEGENERATE, "degenerate-normal", "", -1,
+                    "the surface has no normal there, so no line of curvature begins there");
+  if (is_umbilic(&w, &p))
+    return cag_fail(err, CAG_E_DEGENERATE, "umbilic", "", -1,
+                    "both principal curvatures are the same there (an umbilic): every direction is "
+                    "a principal one");
+  trace_line(&w, u, v, &p);
+  status = w.status;
+  if (!status && w.trace.count < 2)
+    status = cag_fail(err, CAG_E_DEGENERATE, "umbilic", "", -1,
+                      "the line of curvature ends where it begins: next to it is an umbilic or the "
+                      "border");
+  if (!status) status = cag_trace_curve(&w.trace, NULL, w.size, out, err);
+  free(w.trace.points);
+  free(w.trace.tangents);
+  return status;
+}
