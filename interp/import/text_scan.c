@@ -64,10 +64,11 @@ static const char *read_digits(const char *p, uint64_t *mantissa, int *count, in
 }
 
 static const char *read_exponent(const char *p, int *exponent) {
+  if (*p != 'e' && *p != 'E') return p;
   const char *q = p + 1;
   bool negative = *q == '-';
   if (*q == '-' || *q == '+') q++;
-  if ((*p != 'e' && *p != 'E') || !is_digit(*q)) return p;
+  if (!is_digit(*q)) return p;
   int e = 0;
   for (; is_digit(*q); q++)
     if (e < 100000) e = 10 * e + (*q - '0');
