@@ -334,9 +334,9 @@ static CagStatus classify(const CagRegionPieces *s, Edges *edges, const Corners 
 
 // --- All together ---
 
-static CagStatus attempt(const CagWalk *walks, size_t n, double tolerance, CagFaceRule rule,
-                         int parameter, CagRegion **out, CagError *err) {
-  CagRegionPieces pieces = {.walks = walks, .tolerance = tolerance};
+static CagStatus attempt(const CagWalk *walks, size_t n, double tolerance, double thin,
+                         CagFaceRule rule, int parameter, CagRegion **out, CagError *err) {
+  CagRegionPieces pieces = {.walks = walks, .tolerance = tolerance, .thin = fmax(tolerance, thin)};
   CagRegionCut *cuts = NULL;
   Corners corners = {0};
   Edges edges = {0};
@@ -358,7 +358,7 @@ static CagStatus attempt(const CagWalk *walks, size_t n, double tolerance, CagFa
 }
 
 CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, int parameter,
-                             CagRegion **out, CagError *err) {
+                             double thin, CagRegion **out, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   for (size_t i = 0; i < n; i++) {
     const CagCurve *c = walks[i].curve;
@@ -369,7 +369,7 @@ CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, i
   double tolerance = fmax(SAME * cag_norm(cag_sub(box.max, box.min)), cag_curve_noise(&box));
   CagStatus status = CAG_OK;
   for (int i = 0; i < ATTEMPTS; i++, tolerance *= GROWTH) {
-    status = attempt(walks, n, tolerance, rule, parameter, out, err);
+    status = attempt(walks, n, tolerance, thin, rule, parameter, out, err);
     if (status != CAG_E_CONVERGENCE) break;
   }
   return status;

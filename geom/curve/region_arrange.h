@@ -19,9 +19,11 @@ typedef struct CagWalk {
 // Whether a face belongs to the region, by its winding numbers about the loops of both operands.
 typedef bool (*CagFaceRule)(const int winding[2], int parameter);
 
-// *out is NULL where no face belongs to it. Fails with "region-undecided".
+// *out is NULL where no face belongs to it. Loops about faces thinner than `thin` are dropped: what
+// curves that are near others only may leave between them; 0: those thinner than rounding. Fails
+// with "region-undecided".
 CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, int parameter,
-                             CagRegion **out, CagError *err);
+                             double thin, CagRegion **out, CagError *err);
 
 // --- Pieces: parts of the walks that run one way in x and in y (region_pieces.c) ---
 
@@ -41,6 +43,7 @@ typedef struct CagRegionPieces {
   CagRegionPiece *items;
   size_t n, capacity;
   double tolerance; // two points nearer than this are one
+  double thin;      // loops about less than this are dropped
 } CagRegionPieces;
 
 CagStatus cag_region_pieces_add(CagRegionPieces *s, size_t walk, CagError *err);

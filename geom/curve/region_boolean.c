@@ -39,7 +39,7 @@ CagStatus cag_region_combine(CagRegionOp op, const CagRegion *const *regions, si
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < regions[i]->count; k++)
       walks[count++] = (CagWalk){regions[i]->loops[k], i > 0, 1, (int)i};
-  CagStatus status = cag_region_arrange(walks, count, rules[op].face, (int)n, out, err);
+  CagStatus status = cag_region_arrange(walks, count, rules[op].face, (int)n, 0, out, err);
   free(walks);
   if (status || *out) return status;
   return cag_fail(err, CAG_E_DEGENERATE, "region-empty", "", -1, "nothing is left of the %s: %s",

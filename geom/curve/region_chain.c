@@ -442,7 +442,7 @@ static CagStatus collect_loops(const Chain *c, Loop *loops, size_t *count, CagEr
     begin = c->loop_ends[i];
     CagStatus status = loop_measure(c, l->edges, l->n, &l->area, &perimeter, err);
     if (status) return status;
-    if (fabs(l->area) <= c->s->tolerance * perimeter) continue;
+    if (fabs(l->area) <= c->s->thin * perimeter) continue;
     for (size_t k = 0; k < l->n; k++)
       cag_bounds_add(&l->box, c->corners[loop_edge(c, l->edges, k)->from]);
     for (size_t k = 0; k < l->n; k++)

@@ -38,6 +38,7 @@ typedef struct Raw {
   CagWalk *walks;
   size_t n, capacity;
   double left, tolerance; // how far the boundary moves to its left
+  bool near;              // some of the curves are within the tolerance only
 } Raw;
 
 // Takes the curve over.
@@ -336,6 +337,9 @@ static CagStatus put_shifted(Raw *raw, const Part *p, double left, bool backward
   CagCurve *side, *turned;
   CagStatus status = shifted(p, left, raw->tolerance, &side, err);
   if (status || !side) return status;
+  CagVec3 center;
+  double radius, sense;
+  raw->near = raw->near || !(is_line(p->curve) || circle_of(p->curve, &center, &radius, &sense));
   if (!backwards) return put(raw, side, sign, err);
   status = cag_curve_reverse(side, &turned, err);
   cag_curve_release(side);
@@ -406,7 +410,8 @@ CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagR
   }
   Raw raw = {.left = -d, .tolerance = tolerance}; // the region lies to the left of its boundary
   for (size_t i = 0; !status && i < r->count; i++) status = put_loop(&raw, r->loops[i], err);
-  if (!status) status = cag_region_arrange(raw.walks, raw.n, is_inside, 0, out, err);
+  if (!status)
+    status = cag_region_arrange(raw.walks, raw.n, is_inside, 0, raw.near ? tolerance : 0, out, err);
   for (size_t i = 0; i < raw.n; i++) cag_curve_release(raw.curves[i]);
   free(raw.curves);
   free(raw.walks);
