@@ -1,0 +1,389 @@
+// Set operations and offsets of regions, against closed forms and the points they hold.
+
+#include "tests/geom/support.h"
+
+#include "geom/curve/region.h"
+
+static CagRegion *disc(double x, double y, double radius) {
+  CagTransform frame = cag_translate(cag_vec3(x, y, 0));
+  frame.planar = true;
+  CagCurve *c;
+  CagRegion *r;
+  OK(cag_curve_arc(radius, radius, 0, 2 * M_PI, &frame, &c, &err));
+  OK(cag_region_new(c, NULL, 0, &r, &err));
+  cag_curve_release(c);
+  return r;
+}
+
+static CagRegion *polygon(const CagVec3 *p, size_t n) {
+  CagCurve *c;
+  CagRegion *r;
+  OK(cag_curve_polyline(p, n, true, 2, &c, &err));
+  OK(cag_region_new(c, NULL, 0, &r, &err));
+  cag_curve_release(c);
+  return r;
+}
+
+static CagRegion *box(double x, double y, double w, double h) {
+  const CagVec3 p[4] = {{x, y, 0}, {x + w, y, 0}, {x + w, y + h, 0}, {x, y + h, 0}};
+  return polygon(p, 4);
+}
+
+// A closed cubic B-spline about a point; the same for the same seed.
+static CagRegion *blob(double x, double y, unsigned seed) {
+  enum { POINTS = 8 };
+  CagVec3 p[POINTS];
+  for (int i = 0; i < POINTS; i++) {
+    seed = seed * 1103515245u + 12345u;
+    const double r = 1.5 + (double)(seed >> 16 & 1023) / 512, a = 2 * M_PI * i / POINTS;
+    p[i] = cag_vec3(x + r * cos(a), y + r * sin(a), 0);
+  }
+  CagCurve *c;
+  CagRegion *r;
+  OK(cag_curve_nurbs_closed(p, NULL, POINTS, 3, 2, &c, &err));
+  OK(cag_region_new(c, NULL, 0, &r, &err));
+  cag_curve_release(c);
+  return r;
+}
+
+static double area_of(const CagRegion *r) {
+  double area;
+  OK(cag_region_area(r, &area, NULL, &err));
+  return area;
+}
+
+static double free_area(CagRegion *r) {
+  const double area = area_of(r);
+  cag_region_release(r);
+  return area;
+}
+
+static bool holds(const CagRegion *r, double x, double y) {
+  bool in;
+  OK(cag_region_contains(r, cag_vec3(x, y, 0), &in, &err));
+  return in;
+}
+
+// Takes both operands over.
+static CagRegion *set(CagRegionOp op, CagRegion *a, CagRegion *b) {
+  CagRegion *r;
+  OK(cag_region_boolean(op, a, b, &r, &err));
+  cag_region_release(a);
+  cag_region_release(b);
+  return r;
+}
+
+static CagRegion *grown(CagRegion *a, double d) {
+  CagRegion *r;
+  OK(cag_region_offset(a, d, 1e-7, &r, &err));
+  cag_region_release(a);
+  return r;
+}
+
+static void check_loops(const CagRegion *r, size_t loops, size_t outer) {
+  size_t found = 0;
+  assert_int_equal(r->count, loops);
+  for (size_t i = 0; i < r->count; i++) {
+    double area;
+    assert_true(r->loops[i]->closed);
+    OK(cag_curve_area(r->loops[i], &area, NULL, &err));
+    assert_true((area > 0) == (r->outer[i] == i));
+    found += r->outer[i] == i;
+  }
+  assert_int_equal(found, outer);
+}
+
+static void crossing_discs_share_a_lens_of_arcs(void **state) {
+  (void)state;
+  // Two unit circles at the distance 1: 2 pi / 3 - sqrt(3) / 2.
+  const double lens = 2 * M_PI / 3 - sqrt(3) / 2;
+  CagRegion *r = set(CAG_REGION_INTERSECTION, disc(0, 0, 1), disc(1, 0, 1));
+  check_loops(r, 1, 1);
+  NEAR(free_area(r), lens, 1e-12);
+  NEAR(free_area(set(CAG_REGION_UNION, disc(0, 0, 1), disc(1, 0, 1))), 2 * M_PI - lens, 1e-12);
+  r = set(CAG_REGION_DIFFERENCE, disc(0, 0, 1), disc(1, 0, 1));
+  // All of the boundary is on one of the circles: the arcs are arcs still.
+  for (int i = 0; i <= 50; i++) {
+    const CagCurve *c = r->loops[0];
+    CagVec3 p;
+    OK(cag_curve_point(c, c->start + (c->end - c->start) * i / 50, &p, &err));
+    NEAR(fmin(fabs(hypot(p.x, p.y) - 1), fabs(hypot(p.x - 1, p.y) - 1)), 0, 1e-14);
+  }
+  NEAR(free_area(r), M_PI - lens, 1e-12);
+}
+
+static void a_loop_that_nothing_crosses_is_the_given_one(void **state) {
+  (void)state;
+  CagRegion *a = disc(0, 0, 3), *b = disc(1, 0, 1), *r;
+  OK(cag_region_boolean(CAG_REGION_DIFFERENCE, a, b, &r, &err));
+  check_loops(r, 2, 1);
+  assert_ptr_equal(r->loops[0], a->loops[0]);
+  NEAR(free_area(r), 8 * M_PI, 1e-11);
+  cag_region_release(b);
+  b = disc(2, 0, 1); // touches from inside
+  OK(cag_region_boolean(CAG_REGION_DIFFERENCE, a, b, &r, &err));
+  check_loops(r, 2, 1);
+  assert_ptr_equal(r->loops[0], a->loops[0]);
+  cag_region_release(r);
+  cag_region_release(a);
+  cag_region_release(b);
+}
+
+static void coincident_edges_vanish_between_and_stay_around(void **state) {
+  (void)state;
+  CagRegion *r = set(CAG_REGION_UNION, box(0, 0, 2, 2), box(2, 0, 2, 2));
+  check_loops(r, 1, 1);
+  NEAR(free_area(r), 8, 1e-14);
+  r = set(CAG_REGION_UNION, box(0, 0, 2, 2), box(0, 0, 2, 2));
+  check_loops(r, 1, 1);
+  NEAR(free_area(r), 4, 1e-14);
+  r = set(CAG_REGION_DIFFERENCE, box(0, 0, 4, 4), box(0, 0, 2, 4));
+  check_loops(r, 1, 1);
+  NEAR(free_area(r), 8, 1e-14);
+  // Half discs that share an arc: cut from the whole one and put together again.
+  CagRegion *upper = set(CAG_REGION_INTERSECTION, disc(0, 0, 2), box(-3, 0, 6, 3)),
+            *lower = set(CAG_REGION_DIFFERENCE, disc(0, 0, 2), box(-3, 0, 6, 3));
+  NEAR(area_of(upper), 2 * M_PI, 1e-12);
+  NEAR(area_of(lower), 2 * M_PI, 1e-12);
+  r = set(CAG_REGION_UNION, upper, lower);
+  check_loops(r, 1, 1);
+  NEAR(free_area(r), 4 * M_PI, 1e-12);
+}
+
+static void pieces_that_touch_stay_pieces(void **state) {
+  (void)state;
+  CagRegion *r = set(CAG_REGION_UNION, box(0, 0, 1, 1), box(1, 1, 1, 1));
+  check_loops(r, 2, 2);
+  NEAR(free_area(r), 2, 1e-14);
+  // A cross cut out of a square leaves four corners, and a frame around an island has two outlines.
+  r = set(CAG_REGION_DIFFERENCE, box(0, 0, 3, 3), box(1, -1, 1, 5));
+  r = set(CAG_REGION_DIFFERENCE, r, box(-1, 1, 5, 1));
+  check_loops(r, 4, 4);
+  NEAR(free_area(r), 4, 1e-14);
+  r = set(CAG_REGION_DIFFERENCE, box(0, 0, 9, 9), box(1, 1, 7, 7));
+  r = set(CAG_REGION_UNION, r, box(3, 3, 3, 3));
+  check_loops(r, 3, 2);
+  assert_true(holds(r, 0.5, 0.5) && !holds(r, 2, 2) && holds(r, 4, 4));
+  // Two triangular holes that touch in a point.
+  const CagVec3 left[3] = {{1, 2, 0}, {4, 4, 0}, {1, 6, 0}},
+                right[3] = {{7, 2, 0}, {7, 6, 0}, {4, 4, 0}};
+  CagRegion *holes = set(CAG_REGION_UNION, polygon(left, 3), polygon(right, 3));
+  r = set(CAG_REGION_UNION, r, box(0, 0, 9, 9));
+  r = set(CAG_REGION_DIFFERENCE, r, holes);
+  check_loops(r, 3, 1);
+  NEAR(free_area(r), 81 - 12, 1e-12);
+}
+
+static void an_empty_result_is_an_error(void **state) {
+  (void)state;
+  CagRegion *a = disc(0, 0, 1), *b = disc(5, 0, 1), *around = disc(0, 0, 2), *r;
+  FAILS(cag_region_boolean(CAG_REGION_INTERSECTION, a, b, &r, &err), "region-empty");
+  FAILS(cag_region_boolean(CAG_REGION_DIFFERENCE, a, around, &r, &err), "region-empty");
+  FAILS(cag_region_boolean(CAG_REGION_DIFFERENCE, a, a, &r, &err), "region-empty");
+  FAILS(cag_region_offset(a, -1, 1e-6, &r, &err), "region-empty");
+  FAILS(cag_region_offset(a, -7, 1e-6, &r, &err), "region-empty");
+  FAILS(cag_region_offset(a, (double)NAN, 1e-6, &r, &err), "not-finite");
+  CagRegion *beside = disc(2, 0, 1); // they touch in a point
+  FAILS(cag_region_boolean(CAG_REGION_INTERSECTION, a, beside, &r, &err), "region-empty");
+  cag_region_release(beside);
+  cag_region_release(a);
+  cag_region_release(b);
+  cag_region_release(around);
+}
+
+// |A or B| + |A and B| = |A| + |B|, |A less B| + |A and B| = |A|, and points tell the same.
+static void check_identities(CagRegion *a, CagRegion *b, double tolerance) {
+  CagRegion *u, *d, *m;
+  OK(cag_region_boolean(CAG_REGION_UNION, a, b, &u, &err));
+  OK(cag_region_boolean(CAG_REGION_DIFFERENCE, a, b, &d, &err));
+  OK(cag_region_boolean(CAG_REGION_INTERSECTION, a, b, &m, &err));
+  NEAR(area_of(u) + area_of(m), area_of(a) + area_of(b), tolerance);
+  NEAR(area_of(d) + area_of(m), area_of(a), tolerance);
+  CagBounds box;
+  OK(cag_region_bounds(u, &box, &err));
+  for (int i = 0; i < 100; i++) {
+    const double x = box.min.x + (box.max.x - box.min.x) * (i % 10 + 0.437) / 10,
+                 y = box.min.y + (box.max.y - box.min.y) * (i / 10 + 0.561) / 10;
+    const bool in_a = holds(a, x, y), in_b = holds(b, x, y);
+    assert_int_equal(holds(u, x, y), in_a || in_b);
+    assert_int_equal(holds(d, x, y), in_a && !in_b);
+    assert_int_equal(holds(m, x, y), in_a && in_b);
+  }
+  cag_region_release(u);
+  cag_region_release(d);
+  cag_region_release(m);
+}
+
+static void areas_of_splines_add_up(void **state) {
+  (void)state;
+  for (unsigned i = 0; i < 40; i++) {
+    CagRegion *a = blob(0, 0, i), *b = blob(1.5 * cos(i), 1.5 * sin(i), 77 + i);
+    if (i % 2) a = set(CAG_REGION_DIFFERENCE, a, disc(0.5, 0.25, 0.75));
+    check_identities(a, b, 1e-8);
+    cag_region_release(a);
+    cag_region_release(b);
+  }
+}
+
+static void areas_add_up_at_any_scale_and_far_away(void **state) {
+  (void)state;
+  const struct {
+    double scale, away, tolerance;
+  } cases[] = {{1e9, 0, 1e8}, {1e-9, 0, 1e-26}, {1, 1e6, 1e-5}, {1, 1e9, 1}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    CagTransform t = cag_transform_identity();
+    t.m[0][0] = t.m[1][1] = cases[i].scale;
+    t.m[0][3] = t.m[1][3] = cases[i].away;
+    t.planar = true;
+    CagRegion *a = set(CAG_REGION_DIFFERENCE, box(-2, -2, 5, 4), disc(0, 0, 1)), *b = blob(1, 1, 5),
+              *moved[2];
+    OK(cag_region_transform(a, &t, &moved[0], &err));
+    OK(cag_region_transform(b, &t, &moved[1], &err));
+    check_identities(moved[0], moved[1], cases[i].tolerance);
+    for (int k = 0; k < 2; k++) cag_region_release(moved[k]);
+    cag_region_release(a);
+    cag_region_release(b);
+  }
+}
+
+static void slivers_are_not_there(void **state) {
+  (void)state;
+  CagRegion *a = box(0, 0, 1, 1), *b = box(0, 0, 1, 1 + 1e-12), *r;
+  FAILS(cag_region_boolean(CAG_REGION_DIFFERENCE, b, a, &r, &err), "region-empty");
+  OK(cag_region_boolean(CAG_REGION_UNION, a, b, &r, &err));
+  check_loops(r, 1, 1);
+  cag_region_release(r);
+  cag_region_release(a);
+  cag_region_release(b);
+}
+
+static void thousands_of_edges_take_no_time(void **state) {
+  (void)state;
+  // Two combs across each other: n teeth each, n * n crossings of teeth.
+  enum { TEETH = 40 };
+  CagVec3 p[4 * TEETH], q[4 * TEETH];
+  for (int i = 0; i < TEETH; i++)
+    for (int k = 0; k < 4; k++) {
+      const double x = i + (k >= 2 ? 0.5 : 0),
+                   y = k == 1 || k == 2 ? TEETH : -1 + (k == 3 && i < TEETH - 1) * 0.5;
+      p[4 * i + k] = cag_vec3(x, k == 0 && i > 0 ? -0.5 : y, 0);
+      q[4 * i + k] = cag_vec3(p[4 * i + k].y, p[4 * i + k].x, 0);
+    }
+  CagRegion *a = polygon(p, 4 * TEETH), *b = polygon(q, 4 * TEETH);
+  check_identities(a, b, 1e-9);
+  cag_region_release(a);
+  cag_region_release(b);
+}
+
+// --- Offsets ---
+
+static void a_convex_region_grows_by_its_perimeter_and_a_disc(void **state) {
+  (void)state;
+  const CagVec3 p[5] = {{0, 0, 0}, {4, 0, 0}, {5, 3, 0}, {2, 5, 0}, {-1, 2, 0}};
+  CagRegion *r = polygon(p, 5);
+  double around;
+  const double area = area_of(r), d = 0.7;
+  OK(cag_region_perimeter(r, &around, &err));
+  NEAR(free_area(grown(r, d)), area + around * d + M_PI * d * d, 1e-12);
+  NEAR(free_area(grown(disc(1, 2, 3), 0.5)), M_PI * 3.5 * 3.5, 1e-12);
+  NEAR(free_area(grown(disc(1, 2, 3), -0.5)), M_PI * 2.5 * 2.5, 1e-12);
+  NEAR(free_area(grown(box(0, 0, 4, 3), -1)), 2, 1e-14);
+}
+
+static void holes_shrink_until_they_are_gone(void **state) {
+  (void)state;
+  CagRegion *ring = set(CAG_REGION_DIFFERENCE, disc(0, 0, 3), disc(0, 0, 1));
+  ring = grown(ring, 0.5);
+  check_loops(ring, 2, 1);
+  NEAR(area_of(ring), M_PI * (3.5 * 3.5 - 0.25), 1e-12);
+  ring = grown(ring, 1);
+  check_loops(ring, 1, 1);
+  NEAR(free_area(ring), M_PI * 4.5 * 4.5, 1e-12);
+  ring = set(CAG_REGION_DIFFERENCE, disc(0, 0, 3), disc(0, 0, 1));
+  NEAR(free_area(grown(ring, -0.5)), M_PI * (2.5 * 2.5 - 1.5 * 1.5), 1e-12);
+}
+
+static void a_dumbbell_shrinks_to_two_pieces(void **state) {
+  (void)state;
+  // Squares of side 4 with a bar of height 1 between: 1 off leaves the squares' inner squares of
+  // side 2, whose sides towards the bar bulge to the circles about the bar's corners.
+  CagRegion *r = set(CAG_REGION_UNION, box(0, 0, 4, 4), box(10, 0, 4, 4));
+  r = set(CAG_REGION_UNION, r, box(3, 1.5, 8, 1));
+  check_loops(r, 1, 1);
+  r = grown(r, -1);
+  check_loops(r, 2, 2);
+  // Beyond x = 3 lies, between the two circles of radius 1 about [4, 1.5] and [4, 2.5], what is at
+  // most at x = 4 - sqrt(1 - 0.25): the integral of 1 - sqrt(1 - s^2) over s in 0..0.5, twice.
+  const double h = 0.5, bulge = 2 * (h - (h * sqrt(1 - h * h) + asin(h)) / 2);
+  NEAR(free_area(r), 2 * (4 + bulge), 1e-12);
+}
+
+// Points of a grid are in the offset region just where they are within the distance.
+static void check_distances(CagRegion *r, double d, double tolerance) {
+  CagRegion *g;
+  CagBounds b;
+  OK(cag_region_offset(r, d, tolerance, &g, &err));
+  OK(cag_region_bounds(r, &b, &err));
+  for (int i = 0; i < 400; i++) {
+    const double x = b.min.x - 1.5 + (b.max.x - b.min.x + 3) * (i % 20 + 0.43) / 20,
+                 y = b.min.y - 1.5 + (b.max.y - b.min.y + 3) * (i / 20 + 0.57) / 20;
+    double nearest = INFINITY;
+    for (size_t k = 0; k < r->count; k++) {
+      double t, distance;
+      CagVec3 p;
+      OK(cag_curve_closest(r->loops[k], cag_vec3(x, y, 0), &t, &p, &distance, &err));
+      nearest = fmin(nearest, distance);
+    }
+    if (fabs(nearest - fabs(d)) < 4 * tolerance) continue;
+    const bool in = holds(r, x, y);
+    assert_int_equal(holds(g, x, y), d > 0 ? in || nearest < d : in && nearest > -d);
+  }
+  cag_region_release(g);
+}
+
+static void offsets_of_splines_keep_the_distance(void **state) {
+  (void)state;
+  const double distances[] = {0.3, 1, 2.5, -0.2, -0.6, -0.35};
+  for (unsigned i = 0; i < 6; i++) {
+    CagRegion *r = set(CAG_REGION_UNION, blob(0, 0, i), blob(2.5, 1, i + 9));
+    if (i % 2) r = set(CAG_REGION_DIFFERENCE, r, blob(1, 0.5, i));
+    check_distances(r, distances[i], 1e-6);
+    cag_region_release(r);
+  }
+}
+
+static void an_ellipse_folds_where_it_is_sharp(void **state) {
+  (void)state;
+  // The radius of curvature at the tips of x^2/25 + y^2 = 1 is 1/5: half off leaves two corners.
+  CagTransform frame = cag_transform_identity();
+  CagCurve *c;
+  CagRegion *r;
+  OK(cag_curve_arc(5, 1, 0, 2 * M_PI, &frame, &c, &err));
+  OK(cag_region_new(c, NULL, 0, &r, &err));
+  cag_curve_release(c);
+  for (int i = 1; i < 10; i++) check_distances(r, -i / 10.0, 1e-6);
+  for (int i = 1; i < 4; i++) check_distances(r, i, 1e-6);
+  CagRegion *none;
+  FAILS(cag_region_offset(r, -1.01, 1e-6, &none, &err), "region-empty");
+  cag_region_release(r);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(crossing_discs_share_a_lens_of_arcs),
+      cmocka_unit_test(a_loop_that_nothing_crosses_is_the_given_one),
+      cmocka_unit_test(coincident_edges_vanish_between_and_stay_around),
+      cmocka_unit_test(pieces_that_touch_stay_pieces),
+      cmocka_unit_test(an_empty_result_is_an_error),
+      cmocka_unit_test(areas_of_splines_add_up),
+      cmocka_unit_test(areas_add_up_at_any_scale_and_far_away),
+      cmocka_unit_test(slivers_are_not_there),
+      cmocka_unit_test(thousands_of_edges_take_no_time),
+      cmocka_unit_test(a_convex_region_grows_by_its_perimeter_and_a_disc),
+      cmocka_unit_test(holes_shrink_until_they_are_gone),
+      cmocka_unit_test(a_dumbbell_shrinks_to_two_pieces),
+      cmocka_unit_test(offsets_of_splines_keep_the_distance),
+      cmocka_unit_test(an_ellipse_folds_where_it_is_sharp),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
