@@ -12,10 +12,12 @@
 
 #include <cmocka.h>
 
+#include "interp/export/mesh_copies.h"
 #include "interp/export/mesh_formats.h"
 #include "interp/export/mesh_write.h"
 
 #include <cjson/cJSON.h>
+#include <zlib.h>
 
 static CagError err;
 
@@ -48,7 +50,7 @@ static CagMaterial red(void) {
                        .texture = none};
 }
 
-typedef enum Format { OBJ, MTL, STL, PLY, GLB } Format;
+typedef enum Format { OBJ, MTL, STL, PLY, GLB, GLTF, THREEMF } Format;
 
 // The bytes of the file, zero-ended, from malloc.
 static char *written(Format format, const CagMeshPart *parts, size_t n, size_t *size) {
@@ -66,6 +68,8 @@ static char *written(Format format, const CagMeshPart *parts, size_t n, size_t *
   case STL: status = cag_export_stl(parts, n, "solid work", f, &err); break;
   case PLY: status = cag_export_ply(parts, n, f, &err); break;
   case GLB: status = cag_export_glb(parts, n, f, &err); break;
+  case GLTF: status = cag_export_gltf(parts, n, NULL, NULL, f, &err); break;
+  case THREEMF: status = cag_export_3mf(parts, n, f, &err); break;
   }
   assert_int_equal(status, CAG_OK);
   assert_true(cag_atomic_file_commit(f, &io));
@@ -223,6 +227,110 @@ static void glb_describes_its_data(void **state) {
   cag_mesh_release(m);
 }
 
+static void gltf_may_hold_its_data(void **state) {
+  (void)state;
+  CagMesh *m = tetrahedron();
+  CagMeshPart part = {"t", m, NULL};
+  size_t size;
+  char *b = written(GLTF, &part, 1, &size);
+  cJSON *json = cJSON_Parse(b);
+  assert_non_null(json);
+  const char *uri = cJSON_GetStringValue(
+      cJSON_GetObjectItem(cJSON_GetArrayItem(cJSON_GetObjectItem(json, "buffers"), 0), "uri"));
+  const char head[] = "data:application/octet-stream;base64,";
+  assert_memory_equal(uri, head, strlen(head));
+  // 6 * 32 + 4 * 12 bytes in groups of 3 as 4 characters; the first vertex is three zeros, the
+  // second begins with 2.0, 00 00 00 40.
+  assert_int_equal(strlen(uri) - strlen(head), 240 / 3 * 4);
+  assert_memory_equal(uri + strlen(head), "AAAAAAAAAAAAAAAAAAAAQA", 20);
+  cJSON_Delete(json);
+  free(b);
+  cag_mesh_release(m);
+}
+
+// The bytes of a member of an archive whose local header begins at b; *next: behind it.
+static char *unpacked(const char *b, const char **next) {
+  assert_memory_equal(b, "PK\3\4", 4);
+  uint32_t crc = word_at(b + 14), packed = word_at(b + 18), size = word_at(b + 22);
+  size_t name = (unsigned char)b[26];
+  char *out = calloc(1, size + 1);
+  z_stream z = {.next_in = (Bytef *)b + 30 + name,
+                .avail_in = packed,
+                .next_out = (Bytef *)out,
+                .avail_out = size};
+  assert_int_equal(inflateInit2(&z, -15), Z_OK);
+  assert_int_equal(inflate(&z, Z_FINISH), Z_STREAM_END);
+  assert_int_equal(z.total_out, size);
+  inflateEnd(&z);
+  assert_int_equal(crc32(0, (Bytef *)out, size), crc);
+  *next = b + 30 + name + packed;
+  return out;
+}
+
+static void threemf_has_objects_materials_and_copies(void **state) {
+  (void)state;
+  CagMesh *m = tetrahedron();
+  CagMaterial material = red();
+  CagMeshPart parts[3] = {
+      {"left & right", m, &material}, {"again", m, &material}, {"bare", m, NULL}};
+  size_t size;
+  char *b = written(THREEMF, parts, 3, &size);
+  const char *at = b;
+  free(unpacked(at, &at));
+  free(unpacked(at, &at));
+  char *xml = unpacked(at, &at);
+  assert_memory_equal(at, "PK\1\2", 4);
+  // The triangle that single precision shrinks is one too many for a closed body. A quarter of the
+  // light passes.
+  assert_non_null(strstr(xml, "<base name=\"red paint\" displaycolor=\"#FF0000BF\"/>"));
+  assert_non_null(strstr(xml,
+                         "<object id=\"2\" type=\"surface\" name=\"left &amp; right\" pid=\"1\" "
+                         "pindex=\"0\">"));
+  assert_non_null(strstr(xml, "<vertex x=\"0\" y=\"3\" z=\"0\"/>"));
+  assert_non_null(strstr(xml, "<triangle v1=\"0\" v2=\"2\" v3=\"1\"/>"));
+  assert_non_null(strstr(xml, "<triangle v1=\"0\" v2=\"3\" v3=\"2\"/>")); // vertex 4 is point 0
+  assert_non_null(strstr(xml, "<component objectid=\"2\" transform=\"1 0 0 0 1 0 0 0 1 0 0 0\"/>"));
+  assert_non_null(strstr(xml, "<object id=\"4\" type=\"surface\" name=\"bare\">\n   <mesh>"));
+  assert_non_null(strstr(xml, "<item objectid=\"3\"/>"));
+  free(xml);
+  free(b);
+  cag_mesh_release(m);
+}
+
+static void copies_are_found_by_their_shape(void **state) {
+  (void)state;
+  CagMesh *m = tetrahedron(), *moved, *mirrored, *larger;
+  CagTransform turn, mirror, scale, shift = cag_translate(cag_vec3(100, -20, 3));
+  assert_int_equal(cag_rotate(cag_vec3(1, 2, 3), 1.25, cag_vec3(0, 5, 0), &turn, &err), CAG_OK);
+  assert_int_equal(cag_reflect(cag_vec3(1, 0, 0), cag_vec3(0, 0, 0), &mirror, &err), CAG_OK);
+  assert_int_equal(cag_scale(cag_vec3(2, 2, 2), cag_vec3(0, 0, 0), &scale, &err), CAG_OK);
+  CagTransform place = cag_transform_multiply(&shift, &turn);
+  assert_int_equal(cag_mesh_transform(m, &place, &moved, &err), CAG_OK);
+  assert_int_equal(cag_mesh_transform(m, &mirror, &mirrored, &err), CAG_OK);
+  assert_int_equal(cag_mesh_transform(m, &scale, &larger, &err), CAG_OK);
+  CagMaterial a = red(), b = red();
+  const CagMeshPart parts[5] = {{"m", m, &a},
+                                {"larger", larger, &a},
+                                {"moved", moved, &b},
+                                {"mirror", mirrored, &a},
+                                {"m", m, &a}};
+  CagMeshCopy *copies;
+  assert_int_equal(cag_mesh_find_copies(parts, 5, false, &copies, &err), CAG_OK);
+  const size_t originals[5] = {0, 1, 0, 3, 0};
+  for (int k = 0; k < 5; k++) assert_int_equal(copies[k].original, originals[k]);
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++)
+      assert_true(fabs(copies[2].place.m[i][j] - place.m[i][j]) < 1e-12 * 100);
+  free(copies);
+  assert_int_equal(cag_mesh_find_copies(parts, 5, true, &copies, &err), CAG_OK);
+  assert_int_equal(copies[2].original, 2);
+  free(copies);
+  cag_mesh_release(m);
+  cag_mesh_release(moved);
+  cag_mesh_release(mirrored);
+  cag_mesh_release(larger);
+}
+
 static void what_single_precision_cannot_hold_is_an_error(void **state) {
   (void)state;
   CagMesh *m = tetrahedron();
@@ -247,6 +355,9 @@ int main(void) {
       cmocka_unit_test(obj_shares_points_and_keeps_normals_apart),
       cmocka_unit_test(ply_is_welded),
       cmocka_unit_test(glb_describes_its_data),
+      cmocka_unit_test(gltf_may_hold_its_data),
+      cmocka_unit_test(threemf_has_objects_materials_and_copies),
+      cmocka_unit_test(copies_are_found_by_their_shape),
       cmocka_unit_test(what_single_precision_cannot_hold_is_an_error),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
