@@ -1,0 +1,177 @@
+// Plane sections in the core: meshes whose vertices lie in the plane, hostile ones, traced runs.
+
+#include "geom/surface/curvature_line.h"
+#include "geom/surface/mapped.h"
+#include "geom/surface/section.h"
+#include "support.h"
+
+static CagPlane plane_of(double x, double y, double z, double nx, double ny, double nz) {
+  CagPlane p;
+  OK(cag_plane(cag_vec3(x, y, z), cag_vec3(nx, ny, nz), &p, &err));
+  return p;
+}
+
+static CagMesh *mesh_of(const CagVec3 *vertices, size_t n, const uint32_t *triangles,
+                        size_t count) {
+  CagMesh *m;
+  OK(cag_mesh_new(n, count, false, false, false, &m, &err));
+  memcpy(m->positions, vertices, n * sizeof *vertices);
+  memcpy(m->triangles, triangles, 3 * count * sizeof *triangles);
+  return m;
+}
+
+// The octahedron with its six vertices on the axes.
+static CagMesh *octahedron(void) {
+  static const CagVec3 p[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  static const uint32_t t[] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
+                               2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  return mesh_of(p, 6, t, 8);
+}
+
+static double total_length(const CagCurveList *list) {
+  double sum = 0, length;
+  for (size_t i = 0; i < list->count; i++) {
+    OK(cag_curve_length(list->items[i], list->items[i]->start, list->items[i]->end, &length, &err));
+    sum += length;
+  }
+  return sum;
+}
+
+static void a_plane_through_vertices_and_edges_gives_one_closed_curve(void **state) {
+  (void)state;
+  CagMesh *m = octahedron();
+  // z = 0 holds four vertices and four edges; x = y two vertices.
+  const CagPlane planes[] = {plane_of(0, 0, 0, 0, 0, 1), plane_of(0, 0, 0, 0, 0, -1),
+                             plane_of(0, 0, 0, 1, -1, 0)};
+  const double lengths[] = {4 * sqrt(2), 4 * sqrt(2), 4 * sqrt(1.5)};
+  for (int i = 0; i < 3; i++) {
+    CagCurveList list = {0};
+    OK(cag_mesh_section(m, &planes[i], &list, &err));
+    assert_int_equal(list.count, 1);
+    assert_true(list.items[0]->closed);
+    NEAR(total_length(&list), lengths[i], 1e-12);
+    cag_curve_list_free(&list);
+  }
+  cag_mesh_release(m);
+}
+
+static void an_open_mesh_gives_open_curves_and_an_empty_one_none(void **state) {
+  (void)state;
+  static const CagVec3 p[] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
+  static const uint32_t t[] = {0, 1, 2, 0, 2, 3};
+  CagMesh *sheet = mesh_of(p, 4, t, 2), *empty = mesh_of(p, 0, t, 0);
+  CagPlane plane = plane_of(0.5, 0, 0, 1, 0, 0);
+  CagCurveList list = {0};
+  OK(cag_mesh_section(empty, &plane, &list, &err));
+  assert_int_equal(list.count, 0);
+  OK(cag_mesh_section(sheet, &plane, &list, &err));
+  assert_int_equal(list.count, 1);
+  assert_false(list.items[0]->closed);
+  NEAR(total_length(&list), 2, 1e-15);
+  // The sheet within the plane.
+  plane = plane_of(0, 0, 0, 0, 0, 1);
+  OK(cag_mesh_section(sheet, &plane, &list, &err));
+  assert_int_equal(list.count, 1);
+  cag_curve_list_free(&list);
+  cag_mesh_release(sheet);
+  cag_mesh_release(empty);
+}
+
+// Three triangles on one edge, and two that run alike.
+static void meshes_that_are_no_surfaces_do_no_harm(void **state) {
+  (void)state;
+  static const CagVec3 p[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0.5}, {0, 1, 0.5}, {-1, -1, 0.5}};
+  static const uint32_t t[] = {0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 1, 2};
+  CagMesh *m = mesh_of(p, 5, t, 4);
+  CagPlane plane = plane_of(0, 0, 0, 0, 0, 1);
+  CagCurveList list = {0};
+  OK(cag_mesh_section(m, &plane, &list, &err));
+  assert_true(list.count >= 1);
+  cag_curve_list_free(&list);
+  cag_mesh_release(m);
+}
+
+static void solids_of_all_sizes_are_cut_alike(void **state) {
+  (void)state;
+  // The plane through the middle of a cube along its space diagonal: a hexagon of side size /
+  // sqrt(2).
+  for (double size = 1e-6; size < 1e7; size *= 1e3) {
+    CagSolid *box;
+    OK(cag_solid_box(cag_vec3(size, size, size), false, &box, &err));
+    CagPlane plane = plane_of(size / 2, size / 2, size / 2, 1, 1, 1);
+    CagCurveList list = {0};
+    OK(cag_solid_section(box, &plane, 0, &list, &err));
+    assert_int_equal(list.count, 1);
+    NEAR(total_length(&list) / size, 3 * sqrt(2), 1e-9);
+    cag_curve_list_free(&list);
+    cag_solid_release(box);
+  }
+}
+
+// Arc lengths of x^2 + y^2 = r^2 at the height of the plane, near the ball's top, too.
+static void balls_give_exact_circles_at_every_height(void **state) {
+  (void)state;
+  CagSolid *ball;
+  OK(cag_solid_sphere(3, &ball, &err));
+  for (int k = -29; k <= 29; k++) {
+    CagPlane plane = plane_of(0, 0, k / 10.0, 0, 0, 1);
+    CagCurveList list = {0};
+    OK(cag_solid_section(ball, &plane, 0, &list, &err));
+    assert_int_equal(list.count, 1);
+    double a, b;
+    CagTransform frame;
+    assert_true(cag_curve_arc_view(list.items[0], &a, &b, &frame));
+    NEAR(total_length(&list), 6.283185307179586 * sqrt(9 - k * k / 100.0), 1e-8);
+    cag_curve_list_free(&list);
+  }
+  cag_solid_release(ball);
+}
+
+static void a_closed_mesh_laid_on_a_surface_stays_closed(void **state) {
+  (void)state;
+  CagSurface *torus;
+  CagMesh *m = octahedron(), *image;
+  OK(cag_surface_torus(5, 2, &torus, &err));
+  for (size_t i = 0; i < m->vertex_count; i++) {
+    m->positions[i].x += 3;
+    m->positions[i].y += 3;
+  }
+  OK(cag_mesh_onto_surface(m, torus, 1e-3, false, 100000, &image, &err));
+  CagVec3 edge[2];
+  assert_true(cag_mesh_is_watertight(image, edge));
+  assert_int_equal(cag_mesh_euler_characteristic(image), 2);
+  cag_mesh_release(image);
+  assert_int_equal(cag_mesh_onto_surface(m, torus, 1e-3, false, 100, &image, &err), CAG_E_LIMIT);
+  m->positions[0].x = 100;
+  FAILS(cag_mesh_onto_surface(m, torus, 1e-3, false, 100000, &image, &err), "parameter-range");
+  cag_mesh_release(m);
+  cag_surface_release(torus);
+}
+
+static void principal_directions_are_square_and_of_unit_length(void **state) {
+  (void)state;
+  CagSurface *torus;
+  OK(cag_surface_torus(5, 2, &torus, &err));
+  CagPrincipal p;
+  bool found;
+  OK(cag_surface_principal(torus, 0.3, 0.4, &found, &p, &err));
+  assert_true(found);
+  NEAR(cag_dot(p.direction[0], p.direction[1]), 0, 1e-14);
+  NEAR(cag_norm(p.direction[0]), 1, 1e-14);
+  // One of them is that of the small circle.
+  NEAR(fmax(fabs(p.k[0]), fabs(p.k[1])), 0.5, 1e-13);
+  cag_surface_release(torus);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_plane_through_vertices_and_edges_gives_one_closed_curve),
+      cmocka_unit_test(an_open_mesh_gives_open_curves_and_an_empty_one_none),
+      cmocka_unit_test(meshes_that_are_no_surfaces_do_no_harm),
+      cmocka_unit_test(solids_of_all_sizes_are_cut_alike),
+      cmocka_unit_test(balls_give_exact_circles_at_every_height),
+      cmocka_unit_test(a_closed_mesh_laid_on_a_surface_stays_closed),
+      cmocka_unit_test(principal_directions_are_square_and_of_unit_length),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
