@@ -240,6 +240,15 @@ static bool set_update(CagTool *t, const char *value) {
   return t->update = true;
 }
 
+static bool set_jobs(CagTool *t, const char *value) {
+  return read_count(t, "--jobs", value, &t->jobs);
+}
+
+static bool set_report(CagTool *t, const char *value) {
+  t->report = value;
+  return true;
+}
+
 static bool set_check(CagTool *t, const char *value) {
   (void)value;
   return t->check = true;

@@ -1,21 +1,47 @@
-// cag test [PATH ...]: runs scripts as tests.
+// cag test [PATH ...]: runs scripts as tests, several at a time.
 //
-// scripts.h says which scripts, interp/session/expect.h says what a test is. The report goes to
-// standard output: what failed, with -v also what passed, and at last `N passed, N failed`.
+// scripts.h says which scripts, interp/session/expect.h says what a test is. Workers take the
+// scripts in their order; what is said of a script is kept until those before it are told, so the
+// report does not depend on the number of workers. It goes to standard output: what failed, with -v
+// also what passed, and at last `N passed, N failed`.
 
 #include <cJSON.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "interp/session/expect.h"
+#include "interp/tool/junit.h"
 #include "interp/tool/scripts.h"
 
-typedef struct Testing {
+typedef struct Testing Testing;
+
+// A script, and what came of it.
+typedef struct Script {
+  Testing *testing;
+  char *path;
+  FILE *out, *messages; // into the texts below
+  char *said, *told;
+  size_t said_length, told_length;
+  CagTestCounts counts;
+  CagJunitCase *cases;
+  size_t case_count;
+  FILE *failure; // of the test that runs
+  char *failure_text;
+  size_t failure_length;
+  int status;
+  bool done;
+} Script;
+
+struct Testing {
   CagTool *tool;
   CagTestOptions options;
-  CagTestCounts counts;
-  int status; // of the first path that could not be read
-} Testing;
+  Script *scripts;
+  size_t count, capacity, next;
+  pthread_mutex_t mutex;
+  pthread_cond_t ended;
+};
 
 // --- Report ---
 
@@ -24,7 +50,7 @@ static void add_text(cJSON *object, const char *name, const char *text) {
 }
 
 // The fields of a diagnostic, and what was expected and found.
-static void report_json(const CagTestFailure *f) {
+static void report_json(FILE *out, const CagTestFailure *f) {
   cJSON *object = cJSON_CreateObject();
   add_text(object, "severity", "error");
   cJSON_AddNullToObject(object, "code");
@@ -36,67 +62,175 @@ static void report_json(const CagTestFailure *f) {
   add_text(object, "got", f->got);
   add_text(object, "detail", f->detail);
   char *text = cJSON_PrintUnformatted(object);
-  fprintf(stderr, "%s\n", text ? text : "{\"severity\":\"error\"}");
+  fprintf(out, "%s\n", text ? text : "{\"severity\":\"error\"}");
   cJSON_free(text);
   cJSON_Delete(object);
 }
 
-static void print_indented(const char *text) {
+static void print_indented(FILE *out, const char *text) {
   while (*text) {
     size_t n = strcspn(text, "\n");
-    printf("  %.*s\n", (int)n, text);
+    fprintf(out, "  %.*s\n", (int)n, text);
     text += n + (text[n] == '\n');
   }
 }
 
+static void report_text(FILE *out, const CagTestFailure *f) {
+  if (f->line) fprintf(out, "  %s:%zu: %s\n", f->file, f->line, f->message);
+  else fprintf(out, "  %s: %s\n", f->file, f->message);
+  if (f->expected) fprintf(out, "    expected: %s\n", f->expected);
+  if (f->got) fprintf(out, "    got:      %s\n", f->got);
+  if (f->detail) print_indented(out, f->detail);
+}
+
 static void report_failure(void *context, const CagTestFailure *f) {
-  const Testing *t = context;
-  if (t->tool->style == CAG_STYLE_JSON) {
-    report_json(f);
+  Script *s = context;
+  if (!s->failure) s->failure = open_memstream(&s->failure_text, &s->failure_length);
+  if (s->failure) report_text(s->failure, f);
+  if (s->testing->tool->style == CAG_STYLE_JSON) {
+    report_json(s->messages, f);
     return;
   }
-  printf("FAILED %s\n", f->test);
-  if (f->line) printf("  %s:%zu: %s\n", f->file, f->line, f->message);
-  else printf("  %s: %s\n", f->file, f->message);
-  if (f->expected) printf("    expected: %s\n", f->expected);
-  if (f->got) printf("    got:      %s\n", f->got);
-  if (f->detail) print_indented(f->detail);
-  fflush(stdout);
+  fprintf(s->out, "FAILED %s\n", f->test);
+  report_text(s->out, f);
+}
+
+// Keeps a case for the report in XML.
+static void keep_case(Script *s, const char *test, CagTestOutcome outcome, double seconds,
+                      const char *remark) {
+  if (s->failure) fclose(s->failure);
+  s->failure = NULL;
+  CagJunitCase *cases = realloc(s->cases, (s->case_count + 1) * sizeof *cases);
+  if (!cases) return;
+  s->cases = cases;
+  const bool left_out = outcome == CAG_TEST_LEFT_OUT;
+  cases[s->case_count++] = (CagJunitCase){
+      strdup(test), seconds,
+      outcome == CAG_TEST_FAILED ? (s->failure_text ? s->failure_text : strdup("")) : NULL,
+      left_out && remark ? strdup(remark) : NULL};
+  if (outcome != CAG_TEST_FAILED) free(s->failure_text);
+  s->failure_text = NULL;
 }
 
 static void report_end(void *context, const char *test, CagTestOutcome outcome, double seconds,
                        const char *remark) {
-  const Testing *t = context;
-  if (outcome == CAG_TEST_LEFT_OUT) cag_tool_say(t->tool, "%s is left out: %s", test, remark);
-  else if (remark && !t->tool->quiet) printf("%s: %s\n", test, remark);
-  else if (t->tool->verbose && outcome == CAG_TEST_PASSED)
-    printf("passed %s in %.2f s\n", test, seconds);
+  Script *s = context;
+  const CagTool *tool = s->testing->tool;
+  keep_case(s, test, outcome, seconds, remark);
+  if (outcome == CAG_TEST_LEFT_OUT) {
+    if (!tool->quiet && tool->style != CAG_STYLE_JSON)
+      fprintf(s->messages, "cag test: %s is left out: %s\n", test, remark);
+  } else if (remark && !tool->quiet) {
+    fprintf(s->out, "%s: %s\n", test, remark);
+  } else if (tool->verbose && outcome == CAG_TEST_PASSED) {
+    fprintf(s->out, "passed %s in %.2f s\n", test, seconds);
+  }
 }
 
 // --- A script ---
 
-static int test_input(Testing *t) {
+static int test_input(Script *s, const CagTestOptions *options) {
   size_t length;
-  char *text = cag_tool_read_file(t->tool, "-", &length);
-  if (!text) {
-    t->status = CAG_STATUS_FILE;
-    return CAG_STATUS_OK;
-  }
-  int status = cag_test_text("<stdin>", text, length, &t->options, &t->counts);
+  char *text = cag_tool_read_file(s->testing->tool, "-", &length);
+  if (!text) return CAG_STATUS_FILE;
+  const int status = cag_test_text("<stdin>", text, length, options, &s->counts);
   free(text);
   return status;
 }
 
-static int test_script(void *context, const char *path) {
+static void test_script(Script *s) {
+  CagTestOptions options = s->testing->options;
+  options.context = s;
+  s->out = open_memstream(&s->said, &s->said_length);
+  s->messages = open_memstream(&s->told, &s->told_length);
+  if (!s->out || !s->messages) s->status = CAG_STATUS_LIMIT;
+  else if (strcmp(s->path, "-") == 0) s->status = test_input(s, &options);
+  else s->status = cag_test_file(s->path, &options, &s->counts);
+  if (s->out) fclose(s->out);
+  if (s->messages) fclose(s->messages);
+}
+
+static void *work(void *context) {
   Testing *t = context;
-  if (strcmp(path, "-") == 0) return test_input(t);
-  int status = cag_test_file(path, &t->options, &t->counts);
-  if (status != CAG_STATUS_FILE) return status;
-  t->status = CAG_STATUS_FILE;
-  return CAG_STATUS_OK;
+  pthread_mutex_lock(&t->mutex);
+  while (t->next < t->count && !cag_tool_interrupt) {
+    Script *s = &t->scripts[t->next++];
+    pthread_mutex_unlock(&t->mutex);
+    test_script(s);
+    pthread_mutex_lock(&t->mutex);
+    s->done = true;
+    pthread_cond_signal(&t->ended);
+  }
+  pthread_mutex_unlock(&t->mutex);
+  return NULL;
+}
+
+// Tells of the scripts in their order, as each is done. Gives the first status that ends it all.
+static int tell(Testing *t, CagTestCounts *counts, int *file_status) {
+  int status = CAG_STATUS_OK;
+  for (size_t i = 0; i < t->count && status == CAG_STATUS_OK; i++) {
+    Script *s = &t->scripts[i];
+    pthread_mutex_lock(&t->mutex);
+    // Scripts that were begun end; those behind them are not begun after an interruption.
+    while (!s->done && !(cag_tool_interrupt && i >= t->next)) {
+      struct timespec soon;
+      clock_gettime(CLOCK_REALTIME, &soon);
+      soon.tv_nsec += 100000000;
+      if (soon.tv_nsec >= 1000000000) soon.tv_sec++, soon.tv_nsec -= 1000000000;
+      pthread_cond_timedwait(&t->ended, &t->mutex, &soon);
+    }
+    pthread_mutex_unlock(&t->mutex);
+    if (!s->done) return CAG_STATUS_INTERRUPTED;
+    fwrite(s->said, 1, s->said_length, stdout);
+    fflush(stdout);
+    fwrite(s->told, 1, s->told_length, stderr);
+    counts->passed += s->counts.passed;
+    counts->failed += s->counts.failed;
+    counts->left_out += s->counts.left_out;
+    if (s->status == CAG_STATUS_FILE) *file_status = CAG_STATUS_FILE;
+    else status = s->status;
+  }
+  return status;
+}
+
+static int run_all(Testing *t, CagTestCounts *counts, int *file_status) {
+  const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+  size_t jobs = t->tool->jobs ? t->tool->jobs : processors > 0 ? (size_t)processors : 1;
+  if (jobs > t->count) jobs = t->count;
+  pthread_t *threads = malloc((jobs + 1) * sizeof *threads);
+  size_t started = 0;
+  pthread_mutex_init(&t->mutex, NULL);
+  pthread_cond_init(&t->ended, NULL);
+  while (threads && started < jobs && pthread_create(&threads[started], NULL, work, t) == 0)
+    started++;
+  if (started == 0) work(t); // the system gives no thread
+  const int status = tell(t, counts, file_status);
+  pthread_mutex_lock(&t->mutex);
+  t->next = t->count; // after a failure of all: nothing more is begun
+  pthread_mutex_unlock(&t->mutex);
+  for (size_t i = 0; i < started; i++) pthread_join(threads[i], NULL);
+  pthread_cond_destroy(&t->ended);
+  pthread_mutex_destroy(&t->mutex);
+  free(threads);
+  return status;
 }
 
 // --- The command ---
+
+static int add_script(void *context, const char *path) {
+  Testing *t = context;
+  if (t->count == t->capacity) {
+    const size_t capacity = 2 * t->capacity + 16;
+    Script *scripts = realloc(t->scripts, capacity * sizeof *scripts);
+    if (!scripts) return CAG_STATUS_LIMIT;
+    t->scripts = scripts;
+    t->capacity = capacity;
+  }
+  char *copy = strdup(path);
+  if (!copy) return CAG_STATUS_LIMIT;
+  t->scripts[t->count++] = (Script){.testing = t, .path = copy};
+  return CAG_STATUS_OK;
+}
 
 // The defines of the command line as two lists, in one piece of memory.
 static bool copy_defines(CagTestOptions *o, const CagTool *t) {
@@ -113,6 +247,37 @@ static bool copy_defines(CagTestOptions *o, const CagTool *t) {
   return true;
 }
 
+static int write_report(const Testing *t) {
+  if (!t->tool->report) return CAG_STATUS_OK;
+  CagJunitSuite *suites = calloc(t->count + 1, sizeof *suites);
+  if (!suites) return cag_tool_fail(t->tool, CAG_STATUS_LIMIT, NULL, "out of memory");
+  for (size_t i = 0; i < t->count; i++)
+    suites[i] = (CagJunitSuite){t->scripts[i].path, t->scripts[i].cases, t->scripts[i].case_count};
+  CagIoError err = {0};
+  const bool ok = cag_junit_write(t->tool->report, suites, t->count, &err);
+  free(suites);
+  return ok ? CAG_STATUS_OK : cag_tool_fail(t->tool, CAG_STATUS_FILE, err.help, "%s", err.message);
+}
+
+static void release(Testing *t) {
+  for (size_t i = 0; i < t->count; i++) {
+    Script *s = &t->scripts[i];
+    for (size_t k = 0; k < s->case_count; k++) {
+      free(s->cases[k].name);
+      free(s->cases[k].failure);
+      free(s->cases[k].skipped);
+    }
+    if (s->failure) fclose(s->failure);
+    free(s->failure_text);
+    free(s->cases);
+    free(s->said);
+    free(s->told);
+    free(s->path);
+  }
+  free(t->scripts);
+  free((void *)(size_t)t->options.define_names);
+}
+
 int cag_tool_test(CagTool *tool, int argc, char **argv) {
   Testing t = {.tool = tool};
   cag_test_options_init(&t.options);
@@ -122,19 +287,21 @@ int cag_tool_test(CagTool *tool, int argc, char **argv) {
   t.options.no_pictures = tool->no_pictures;
   t.options.failure = report_failure;
   t.options.ended = report_end;
-  t.options.context = &t;
   if (!copy_defines(&t.options, tool))
     return cag_tool_fail(tool, CAG_STATUS_LIMIT, NULL, "out of memory");
-  CagToolScripts scripts = {.tool = tool, .each = test_script, .context = &t};
-  int status = cag_tool_each_script(&scripts, argc, argv);
-  if (scripts.status != CAG_STATUS_OK) t.status = scripts.status;
+  CagToolScripts scripts = {.tool = tool, .each = add_script, .context = &t};
+  CagTestCounts counts = {0};
+  int file_status = CAG_STATUS_OK, status = cag_tool_each_script(&scripts, argc, argv);
+  if (status == CAG_STATUS_OK) status = run_all(&t, &counts, &file_status);
   if (status == CAG_STATUS_LIMIT) cag_tool_fail(tool, status, NULL, "out of memory");
-  if (status == CAG_STATUS_OK && scripts.count == 0 && t.status == CAG_STATUS_OK)
+  if (status == CAG_STATUS_OK && t.count == 0 && scripts.status == CAG_STATUS_OK)
     cag_tool_say(tool, "there is no script to test");
-  if (t.counts.left_out) printf("%zu pictures not compared\n", t.counts.left_out);
-  printf("%zu passed, %zu failed\n", t.counts.passed, t.counts.failed);
-  free((void *)(size_t)t.options.define_names);
+  if (status == CAG_STATUS_OK) status = write_report(&t);
+  if (counts.left_out) printf("%zu pictures not compared\n", counts.left_out);
+  printf("%zu passed, %zu failed\n", counts.passed, counts.failed);
+  release(&t);
   if (status != CAG_STATUS_OK) return status;
-  if (t.status != CAG_STATUS_OK) return t.status;
-  return t.counts.failed ? CAG_STATUS_SCRIPT : CAG_STATUS_OK;
+  if (scripts.status != CAG_STATUS_OK) return scripts.status;
+  if (file_status != CAG_STATUS_OK) return file_status;
+  return counts.failed ? CAG_STATUS_SCRIPT : CAG_STATUS_OK;
 }

@@ -62,6 +62,8 @@ struct CagTool {
   bool update;        // --update
   bool no_pictures;   // --no-pictures
   bool check, diff;   // --check, --diff
+  size_t jobs;        // --jobs; 0: one for each processor
+  const char *report; // --report
 };
 
 CagToolFunction cag_tool_run, cag_tool_eval, cag_tool_export, cag_tool_render, cag_tool_compare,
