@@ -179,6 +179,13 @@ static CagStatus fail_operation(const CagItem *item, CagError *err) {
                   item->name);
 }
 
+static CagStatus fail_mesh(const CagItem *item, CagError *err) {
+  return cag_fail(err, CAG_E_UNSUPPORTED, "export-mesh", "", -1,
+                  "%s is a mesh, and files of exact geometry hold curves and surfaces: show the "
+                  "surfaces that it was made of, or write .stl, .obj, .ply or .glb",
+                  item->name);
+}
+
 static CagStatus add_faces(CagBrepWork *w, CagError *err) {
   const CagItem *item = w->item;
   switch (item->kind) {
@@ -187,16 +194,13 @@ static CagStatus add_faces(CagBrepWork *w, CagError *err) {
   case CAG_ITEM_SOLID: {
     CagStatus status = CAG_OK;
     const CagSolid *solid = item->as.solid;
+    if (solid->kind == CAG_SOLID_MESH) return fail_mesh(item, err);
     if (solid->face_count == 0) return fail_operation(item, err);
     for (size_t i = 0; !status && i < solid->face_count; i++)
       status = cag_brep_add_surface(w, solid->faces[i], i, err);
     return status;
   }
-  default:
-    return cag_fail(err, CAG_E_UNSUPPORTED, "export-mesh", "", -1,
-                    "%s is a mesh, and files of exact geometry hold curves and surfaces: show the "
-                    "surfaces that it was made of, or write .stl, .obj, .ply or .glb",
-                    item->name);
+  default: return fail_mesh(item, err);
   }
 }
 

@@ -223,6 +223,14 @@ for format in step igs; do
   is_missing "mesh.$format"
 done
 
+it 'a set operation has no exact boundary'
+script holed.cag 'show box(10) - cylinder(20, 3) |> named("holed")'
+try export holed.cag -o holed.step
+status 1
+says holed
+says 'one by one'
+is_missing holed.step
+
 it 'a solid of thousands of faces is written in no long time'
 script many.cag 'show extrude(polygon([for i in 0..<2000: [(20 + i % 2) * cos(i * 0.18deg), (20 + i % 2) * sin(i * 0.18deg)]]), 5)'
 try_command timeout 20 "$CAG" export many.cag -o many.step
