@@ -83,7 +83,7 @@ if [ -x "$B/tests/bench/robots_kdl" ]; then "$B/tests/bench/robots_kdl" > "$tmp/
 # Seconds that POV-Ray says it took to read a scene; it tells no less than a millisecond.
 parse_time() {
   (cd "$tmp" && povray "+I$1" +Oread.png +W4 +H4 -D -GA +GSread.txt >/dev/null 2>&1
-   sed -n 's/.*Parse Time:.*(\([0-9.]*\) seconds).*/\1/p' read.txt | awk '{ print $1 > 0.001 ? $1 : 0.001 }' | head -n 1)
+   sed -n 's/.*Parse Time:.*(\([0-9.]*\) seconds).*/\1/p' read.txt | awk '{ print ($1 > 0.001 ? $1 : 0.001) }' | head -n 1)
 }
 if peer povray; then
   echo "--- bodies of revolution and quadrics as .pov"
