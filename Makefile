@@ -14,6 +14,8 @@ CC      ?= cc
 OPT     ?= -O3
 WARN    := -Wall -Wextra -Werror
 SANITIZE ?=
+# CGAL=1 has CGAL do set operations of meshes: a program under the GPL. Give it a BUILD of its own.
+CGAL ?=
 # V=1 shows the commands.
 V ?=
 Q := $(if $(V),,@)
@@ -38,6 +40,13 @@ LDLIBS_ALL := $(PKG_LIBS) -lm -lpthread $(SANITIZE) $(LDFLAGS)
 
 LANG_SRC   := $(shell find lang -name '*.c' | sort)
 GEOM_SRC   := $(shell find geom -name '*.c' | sort)
+ifeq ($(CGAL),1)
+CFLAGS_ALL += -DCAG_CGAL
+LDLIBS_ALL += -lgmp -lmpfr -lstdc++
+CGAL_OBJ   := $(BUILD)/obj/geom/mesh/boolean_cgal.o
+else
+GEOM_SRC   := $(filter-out geom/mesh/boolean_by_cgal.c,$(GEOM_SRC))
+endif
 MAIN_SRC   := interp/main.c
 TOOL_SRC   := $(shell find interp/tool -name '*.c' | sort)
 INTERP_SRC := $(filter-out $(MAIN_SRC) $(TOOL_SRC),$(shell find interp -name '*.c' | sort))
@@ -45,7 +54,7 @@ STDLIB     := $(shell find stdlib -name '*.cag' | sort)
 
 obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 LANG_OBJ := $(call obj,$(LANG_SRC))
-GEOM_OBJ := $(call obj,$(GEOM_SRC))
+GEOM_OBJ := $(call obj,$(GEOM_SRC)) $(CGAL_OBJ)
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o
 TOOL_OBJ := $(call obj,$(TOOL_SRC) $(MAIN_SRC))
 
@@ -57,6 +66,12 @@ $(BUILD)/obj/%.o: %.c
 	@mkdir -p $(@D)
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) -c $< -o $@
+
+# CGAL's headers are read as the system's: they need not pass our warnings.
+$(BUILD)/obj/geom/mesh/boolean_cgal.o: geom/mesh/boolean_cgal.cpp
+	@mkdir -p $(@D)
+	@echo "c++ $<"
+	$Q$(CXX) -std=c++17 -O2 -g $(WARN) -fPIC -fvisibility=hidden -MMD -MP -I. $(SANITIZE) $(CXXFLAGS) -c $< -o $@
 
 $(BUILD)/liblang.a: $(LANG_OBJ)
 	@rm -f $@; ar rcs $@ $^
@@ -126,7 +141,7 @@ KDL := $(wildcard /usr/include/kdl/chain.hpp)
 $(BUILD)/tests/bench/robots_kdl: tests/bench/robots_kdl.cpp tests/bench/robots.h
 	@mkdir -p $(@D)
 	$Q$(CXX) -std=c++17 -O3 -I. -isystem /usr/include/eigen3 $< -o $@ -lorocos-kdl
-bench: all $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl)
+bench: all $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans
 	BUILD=$(BUILD) sh tests/bench/run.sh
 
 FORMATTED = $(shell find include lang geom interp tests -name '*.[ch]' | sort)

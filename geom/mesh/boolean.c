@@ -214,15 +214,24 @@ static void free_work(BoolWork *w) {
   free(w->winding);
 }
 
+static CagStatus solve(BoolWork *w, CagSetOperation op, CagMesh **out) {
+#ifdef CAG_CGAL
+  bool taken = false;
+  const CagStatus asked = bool_ask_cgal(w, op, &taken);
+  if (asked || taken) return asked ? asked : bool_build(w, CAG_UNION, out);
+#endif
+  CagStatus status = bool_find_contacts(w);
+  if (!status) status = bool_cut_faces(w);
+  if (!status) status = bool_find_windings(w);
+  return status ? status : bool_build(w, op, out);
+}
+
 static CagStatus operate(CagSetOperation op, const Operand o[2], const volatile int *interrupt,
                          CagMesh **out, CagError *err) {
   BoolWork w = {.meshes = {o[0].mesh, o[1].mesh}, .interrupt = interrupt, .err = err};
   CagStatus status = bool_stopped(&w);
   if (!status) status = read_operands(&w, o);
-  if (!status) status = bool_find_contacts(&w);
-  if (!status) status = bool_cut_faces(&w);
-  if (!status) status = bool_find_windings(&w);
-  if (!status) status = bool_build(&w, op, out);
+  if (!status) status = solve(&w, op, out);
   free_work(&w);
   return status;
 }

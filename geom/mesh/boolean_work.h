@@ -12,6 +12,8 @@
 //   boolean_plane.c   faces cut along what they meet
 //   boolean_cells.c   winding numbers
 //   boolean_result.c  the closed mesh
+//
+// A build with CGAL asks CGAL for the pieces first (boolean_by_cgal.c, boolean_cgal.cpp).
 
 #ifndef CAG_GEOM_MESH_BOOLEAN_WORK_H
 #define CAG_GEOM_MESH_BOOLEAN_WORK_H
@@ -136,6 +138,12 @@ CagStatus bool_find_contacts(BoolWork *w);
 CagStatus bool_cut_faces(BoolWork *w);
 CagStatus bool_find_windings(BoolWork *w);
 CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out);
+
+// The pieces of the result itself, all with the solid behind them. *taken: whether CGAL took the
+// operands.
+#ifdef CAG_CGAL
+CagStatus bool_ask_cgal(BoolWork *w, CagSetOperation op, bool *taken);
+#endif
 
 // Calls with the faces whose boxes the ray from `from` along +x may meet.
 typedef void BoolRayVisit(void *context, uint32_t face);

@@ -1,4 +1,5 @@
-// Figures of set operations of meshes: spheres of many triangles, coplanar bodies, many operands.
+// Figures of set operations of meshes: spheres of many triangles, the same twice, many operands.
+// `booleans volumes` prints volumes of random operations instead.
 
 #include <math.h>
 #include <stdio.h>
@@ -76,7 +77,33 @@ static void run(const char *what, CagSetOperation op, CagMesh *a, CagMesh *b) {
   cag_mesh_release(b);
 }
 
-int main(void) {
+static double random_number(void) {
+  static uint64_t state = 11;
+  state = state * 6364136223846793005u + 1442695040888963407u;
+  return (double)(state >> 11) / 9007199254740992.0;
+}
+
+// Volumes of random operations, to compare builds by: one to a line.
+static void print_volumes(void) {
+  for (int i = 0; i < 30; i++) {
+    const double x = random_number(), y = random_number(), z = random_number();
+    CagMesh *a = ball(cag_vec3(0, 0, 0), 1, 8 + 2 * (uint32_t)i);
+    CagMesh *b = ball(cag_vec3(x, y, z), 0.5 + random_number(), 60 - 2 * (uint32_t)(i % 20));
+    CagMesh *m;
+    CagError err;
+    if (cag_mesh_boolean((CagSetOperation)(i % 3), a, b, NULL, &m, &err)) exit(1);
+    printf("%.15g\n", volume(m));
+    cag_mesh_release(a);
+    cag_mesh_release(b);
+    cag_mesh_release(m);
+  }
+}
+
+int main(int argc, char **argv) {
+  if (argc > 1 && strcmp(argv[1], "volumes") == 0) {
+    print_volumes();
+    return 0;
+  }
   const uint32_t n = 318; // 100,488 triangles
   const CagVec3 o = cag_vec3(0, 0, 0), near = cag_vec3(0.5, 0.3, 0.1);
   for (int op = 0; op < 3; op++)
