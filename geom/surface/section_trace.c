@@ -14,6 +14,7 @@
 
 #include "geom/surface/family.h"
 #include "geom/surface/section.h"
+#include "geom/surface/trimmed.h"
 
 // Cells along the whole of a direction, and at least so many between two breaks.
 #define CELLS 40
@@ -51,9 +52,11 @@ typedef struct Node {
 typedef struct Tracer {
   const CagSurface *s;
   const CagLevel *level;
+  const CagRegion *region; // of a trimmed surface; NULL: all of the rectangle belongs to it
   double tolerance, size;
   double *lines[2];
   size_t n[2]; // grid lines
+  size_t cells;
   double *values;
   // Crossings of the edges along u (first) and along v.
   size_t edge_count;
@@ -143,11 +146,12 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static bool make_lines(Tracer *t, int direction, const double *extra, size_t extra_count) {
+static bool make_lines(Tracer *t, int direction, size_t cells, const double *extra,
+                       size_t extra_count) {
   const CagSurface *s = t->s;
   double lo = direction ? s->v0 : s->u0, hi = direction ? s->v1 : s->u1;
   size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
-  size_t between = CELLS / (inner + 1);
+  size_t between = cells / (inner + 1);
   if (between < CELLS_BETWEEN_BREAKS) between = CELLS_BETWEEN_BREAKS;
   if (between * (inner + 1) > CELLS_MOST) between = CELLS_MOST / (inner + 1) + 1;
   double *ends = malloc((inner + 2) * sizeof *ends);
@@ -193,6 +197,37 @@ static double largest_value(const Tracer *t) {
   double largest = 0;
   for (size_t k = 0; k < t->n[0] * t->n[1]; k++) largest = fmax(largest, fabs(t->values[k]));
   return largest;
+}
+
+// How far the function is within some cells from what the corners promise, as a part of its largest
+// value: near 1 where it goes up and down within a cell. The places are at no simple fraction of
+// the cells, where a wave could hide.
+static double roughness(Tracer *t) {
+  const size_t tried = 8;
+  const double x = 0.3719, y = 0.6173;
+  double worst = 0, largest = largest_value(t);
+  for (size_t a = 0; a < tried; a++)
+    for (size_t b = 0; b < tried && !t->status; b++) {
+      size_t i = a * (t->n[0] - 2) / (tried - 1), j = b * (t->n[1] - 2) / (tried - 1);
+      const double *u = &t->lines[0][i], *v = &t->lines[1][j];
+      double low = (1 - x) * *value_of(t, i, j) + x * *value_of(t, i + 1, j);
+      double high = (1 - x) * *value_of(t, i, j + 1) + x * *value_of(t, i + 1, j + 1);
+      double f = value_at(t, u[0] + x * (u[1] - u[0]), v[0] + y * (v[1] - v[0]));
+      worst = fmax(worst, fabs(f - ((1 - y) * low + y * high)));
+      largest = fmax(largest, fabs(f));
+    }
+  return largest > 0 ? worst / largest : 0;
+}
+
+// Twice as fine until the function is smooth from one line to the next.
+static bool make_grid(Tracer *t) {
+  const double smooth = 0.1;
+  for (t->cells = CELLS;; t->cells *= 2) {
+    if (!make_lines(t, 0, t->cells, NULL, 0) || !make_lines(t, 1, t->cells, NULL, 0) ||
+        !fill_values(t))
+      return false;
+    if (2 * t->cells > CELLS_MOST || roughness(t) <= smooth) return t->status == CAG_OK;
+  }
 }
 
 static double inside(double x, double lo, double hi) { return fmin(fmax(x, lo), hi); }
@@ -254,7 +289,7 @@ static bool add_small_loops(Tracer *t) {
     for (size_t i = 1; i + 1 < t->n[0] && n < FOLLOWED_MOST && !t->status; i++)
       if (nearest_to_zero(t, i, j) && follow(t, i, j, &us[n], &vs[n])) n++;
   if (n == 0) return t->status == CAG_OK;
-  return make_lines(t, 0, us, n) && make_lines(t, 1, vs, n) && fill_values(t);
+  return make_lines(t, 0, t->cells, us, n) && make_lines(t, 1, t->cells, vs, n) && fill_values(t);
 }
 
 // --- Crossings ---
@@ -486,29 +521,24 @@ static bool add_trace(CagTraces *out, const CagTrace *trace) {
   return true;
 }
 
-// Nodes [from, to] of the run as a trace.
-static bool keep_run(Tracer *t, size_t from, size_t to, CagTraces *out) {
-  size_t n = to - from + 1;
+// Nodes as a trace.
+static bool keep_nodes(const Node *nodes, size_t n, const CagVec3 *checks, size_t check_count,
+                       CagTraces *out) {
   if (n < 2) return true;
   CagTrace trace = {n,
-                    t->check_count,
+                    check_count,
                     false,
                     malloc(n * sizeof *trace.points),
                     malloc(n * sizeof *trace.tangents),
-                    malloc((t->check_count + 1) * sizeof *trace.checks)};
+                    malloc((check_count + 1) * sizeof *trace.checks)};
   bool ok = trace.points && trace.tangents && trace.checks;
   for (size_t i = 0; ok && i < n; i++) {
-    const Node *node = &t->run[from + i];
-    CagVec3 chord =
-        cag_sub(t->run[from + (i + 1 < n ? i + 1 : i)].p, t->run[from + (i > 0 ? i - 1 : 0)].p);
+    const Node *node = &nodes[i];
+    CagVec3 chord = cag_sub(nodes[i + 1 < n ? i + 1 : i].p, nodes[i > 0 ? i - 1 : 0].p);
     trace.points[i] = node->p;
     trace.tangents[i] = node->regular ? aligned(node->t, chord) : cag_vec3(0, 0, 0);
   }
-  // A run in several parts is judged by its points alone.
-  bool whole = from == 0 && to + 1 == t->run_count;
-  if (!whole) trace.check_count = 0;
-  if (ok && whole && t->check_count > 0)
-    memcpy(trace.checks, t->checks, t->check_count * sizeof *t->checks);
+  if (ok && check_count > 0) memcpy(trace.checks, checks, check_count * sizeof *checks);
   ok = ok && add_trace(out, &trace);
   if (!ok) {
     free(trace.points);
@@ -516,6 +546,56 @@ static bool keep_run(Tracer *t, size_t from, size_t to, CagTraces *out) {
     free(trace.checks);
   }
   return ok;
+}
+
+static bool belongs(Tracer *t, const Node *node) {
+  bool inside = false;
+  if (!t->status)
+    t->status = cag_region_contains(t->region, cag_vec3(node->u, node->v, 0), &inside, t->err);
+  return inside;
+}
+
+// Where the curve passes the border of the region between a node that belongs and one that does
+// not.
+static Node border_between(Tracer *t, Node in, Node off) {
+  const int halvings = 50;
+  for (int i = 0; i < halvings && !t->status; i++) {
+    Node m;
+    if (!middle_of(t, &in, &off, &m)) break;
+    if (belongs(t, &m)) in = m;
+    else off = m;
+  }
+  return in;
+}
+
+// The parts of a run of a trimmed surface that belong to it.
+static bool keep_trimmed(Tracer *t, size_t from, size_t to, CagTraces *out) {
+  Node *part = malloc((to - from + 3) * sizeof *part);
+  if (!part) return false;
+  size_t n = 0;
+  bool ok = true, before = false;
+  for (size_t i = from; i <= to && ok; i++) {
+    bool here = belongs(t, &t->run[i]);
+    if (here && !before && i > from) part[n++] = border_between(t, t->run[i], t->run[i - 1]);
+    if (here) part[n++] = t->run[i];
+    else if (before) {
+      part[n++] = border_between(t, t->run[i - 1], t->run[i]);
+      ok = keep_nodes(part, n, NULL, 0, out);
+      n = 0;
+    }
+    before = here;
+    ok = ok && !t->status;
+  }
+  ok = ok && keep_nodes(part, n, NULL, 0, out);
+  free(part);
+  return ok;
+}
+
+// Nodes [from, to] of the run. A run in several parts is judged by its points alone.
+static bool keep_run(Tracer *t, size_t from, size_t to, CagTraces *out) {
+  if (t->region) return keep_trimmed(t, from, to, out);
+  bool whole = from == 0 && to + 1 == t->run_count;
+  return keep_nodes(t->run + from, to - from + 1, t->checks, whole ? t->check_count : 0, out);
 }
 
 static bool is_corner(const Tracer *t, size_t i) {
@@ -687,8 +767,10 @@ CagStatus cag_surface_trace(const CagSurface *s, const CagLevel *level, double t
   CagLevel own = *level;
   Tracer t = {.s = s, .level = &own, .tolerance = tolerance, .err = err};
   t.size = cag_norm(cag_sub(box.max, box.min));
+  const CagSurface *whole;
+  if (!cag_surface_trimmed_view(s, &whole, &t.region)) t.region = NULL;
   *out = (CagTraces){0};
-  bool ok = make_lines(&t, 0, NULL, 0) && make_lines(&t, 1, NULL, 0) && fill_values(&t);
+  bool ok = make_grid(&t);
   if (ok && own.zero == 0) {
     const double rounding = 1e-13;
     own.zero = rounding * largest_value(&t);
