@@ -316,6 +316,16 @@ static CagVec3 moved_end(const Part *p, int end, double left) {
   return cag_madd(p->ends[end], left, left_of(p->tangents[end]));
 }
 
+// Whether both strips of two segments at an inner corner cover the triangle of the corner and the
+// strips' ends: counted once less it still counts, and the way to the corner and back is spared.
+static bool overlaps(const Part *a, const Part *b, double left) {
+  if (a->folds || b->folds || !is_line(a->curve) || !is_line(b->curve)) return false;
+  const double reach = fabs(left * cag_cross(a->tangents[1], b->tangents[0]).z);
+  return cag_dot(a->tangents[1], b->tangents[0]) > 0 &&
+         reach <= cag_norm(cag_sub(a->ends[1], a->ends[0])) &&
+         reach <= cag_norm(cag_sub(b->ends[1], b->ends[0]));
+}
+
 // From the end of one part's strip to the start of the next one's.
 static CagStatus put_corner(Raw *raw, const Part *a, const Part *b, CagError *err) {
   const CagVec3 corner = b->ends[0];
@@ -328,6 +338,7 @@ static CagStatus put_corner(Raw *raw, const Part *a, const Part *b, CagError *er
     if ((raw->left > 0) == (sine < 0) || fabs(sine) <= TURN)
       return put_arc(raw, corner, from, to, raw->left > 0, 1, err);
   }
+  if (overlaps(a, b, raw->left)) return put_line(raw, from, to, 1, err);
   CagStatus status = put_line(raw, from, corner, 1, err);
   return status ? status : put_line(raw, corner, to, 1, err);
 }
