@@ -4,8 +4,10 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "geom/curve/approximate.h"
 #include "geom/curve/nurbs_ops.h"
 #include "geom/surface/reshape.h"
+#include "geom/surface/trimmed.h"
 #include "interp/export/brep_build.h"
 
 // Corners of a patch lie in one plane to this part of its size: rounding of its control points.
@@ -121,6 +123,36 @@ static CagStatus add_piece_sides(CagBrepWork *w, const CagSurface *s, size_t fac
   return status;
 }
 
+// --- Trimmed pieces ---
+
+// The boundary of a trimmed surface is in general no NURBS: it is written to this part of its size,
+// a hundredth of what edges that meet may be apart.
+#define TRIM_NEAR 1e-8
+
+static CagStatus add_trim_sides(CagBrepWork *w, const CagCurve *loop, size_t face, CagError *err);
+
+// The whole surface with the loops in space; parameters need not agree with those of the NURBS.
+static CagStatus add_trimmed(CagBrepWork *w, const CagSurface *s, const CagSurface *inner,
+                             const CagRegion *region, size_t outer, size_t source, CagError *err) {
+  CagBrepFace face = {.first = w->brep->loop_count, .source = source};
+  CagStatus status = cag_brep_surface(w, inner, &face.surface, err);
+  size_t index = 0;
+  if (!status) {
+    status = add_face(w, &face, &index, err);
+    if (status) cag_surface_release(face.surface);
+  }
+  for (size_t pass = 0; pass < 2; pass++) // the outer loop first
+    for (size_t i = 0; !status && i < region->count; i++) {
+      if ((i == outer) != (pass == 0) || region->outer[i] != outer) continue;
+      CagCurve *loop;
+      status = cag_trimmed_loop(s, i, &loop, err);
+      if (status) return status;
+      status = add_trim_sides(w, loop, index, err);
+      cag_curve_release(loop);
+    }
+  return status;
+}
+
 // Takes the reference to the piece.
 static CagStatus add_piece(CagBrepWork *w, CagSurface *piece, size_t source, CagError *err) {
   CagBrepFace face = {
@@ -140,6 +172,13 @@ CagStatus cag_brep_add_surface(CagBrepWork *w, const CagSurface *s, size_t sourc
   CagTransform frame;
   if (cag_surface_planar_view(s, &region, &frame))
     return cag_brep_add_region(w, region, &frame, source, err);
+  const CagSurface *inner;
+  if (cag_surface_trimmed_view(s, &inner, &region)) {
+    CagStatus trimmed = CAG_OK;
+    for (size_t i = 0; !trimmed && i < region->count; i++)
+      if (region->outer[i] == i) trimmed = add_trimmed(w, s, inner, region, i, source, err);
+    return trimmed;
+  }
   CagSurface *nurbs = NULL;
   double *u = NULL, *v = NULL;
   size_t nu = 0, nv = 0;
@@ -165,15 +204,11 @@ CagStatus cag_brep_add_surface(CagBrepWork *w, const CagSurface *s, size_t sourc
 
 // --- Regions ---
 
-// The pieces of a loop between its corners; *last is the last point's order.
-static CagStatus add_outline(CagBrepWork *w, const CagCurve *outline, const CagTransform *frame,
-                             size_t face, CagError *err) {
-  CagCurve *flat = NULL, *rest = NULL;
+// The pieces of a loop between its corners; of a clamped curve of space, whose reference it takes.
+static CagStatus add_between_corners(CagBrepWork *w, CagCurve *rest, size_t face, CagError *err) {
   double *corners = NULL;
   size_t n = 0, loop;
   CagStatus status = add_loop(w, face, &loop, err);
-  if (!status) status = cag_brep_curve(w, outline, &flat, err);
-  if (!status) status = cag_curve_transform(flat, frame, &rest, err);
   if (!status) status = cag_brep_curve_corners(rest, &corners, &n, err);
   for (size_t i = 0; !status && i < n; i++) {
     CagCurve *parts[2];
@@ -185,9 +220,28 @@ static CagStatus add_outline(CagBrepWork *w, const CagCurve *outline, const CagT
   }
   if (!status) status = add_side(w, cag_curve_retain(rest), false, face, loop, n, err);
   free(corners);
-  cag_curve_release(flat);
   cag_curve_release(rest);
   return status;
+}
+
+static CagStatus add_outline(CagBrepWork *w, const CagCurve *outline, const CagTransform *frame,
+                             size_t face, CagError *err) {
+  CagCurve *flat = NULL, *placed = NULL;
+  CagStatus status = cag_brep_curve(w, outline, &flat, err);
+  if (!status) status = cag_curve_transform(flat, frame, &placed, err);
+  cag_curve_release(flat);
+  return status ? status : add_between_corners(w, placed, face, err);
+}
+
+static CagStatus add_trim_sides(CagBrepWork *w, const CagCurve *loop, size_t face, CagError *err) {
+  CagBounds box;
+  CagCurve *near = NULL, *clamped = NULL;
+  CagStatus status = cag_curve_bounds(loop, &box, err);
+  double size = status ? 0 : cag_norm(cag_sub(box.max, box.min));
+  if (!status) status = cag_curve_approximate(loop, TRIM_NEAR * size, &near, err);
+  if (!status) status = cag_brep_curve(w, near, &clamped, err);
+  cag_curve_release(near);
+  return status ? status : add_between_corners(w, clamped, face, err);
 }
 
 // The rectangle about the outline, along the axes of the plane.

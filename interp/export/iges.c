@@ -234,6 +234,7 @@ typedef struct Chain {
   size_t count;
 } Chain;
 
+// Both forms of the curve; map NULL: that of space alone.
 static CagStatus add_use(Writer *w, const CagBrepUse *use, const CagTransform *map, Chain *chain,
                          CagError *err) {
   CagCurve *run = NULL, *flat = NULL;
@@ -241,9 +242,9 @@ static CagStatus add_use(Writer *w, const CagBrepUse *use, const CagTransform *m
   CagStatus status = CAG_OK;
   if (use->reversed) status = cag_curve_reverse(c, &run, err);
   else run = cag_curve_retain(c);
-  if (!status) status = cag_curve_transform(run, map, &flat, err);
+  if (!status && map) status = cag_curve_transform(run, map, &flat, err);
   if (!status) {
-    chain->flat[chain->count] = nurbs_curve(w, flat, true, PART_FLAT);
+    if (map) chain->flat[chain->count] = nurbs_curve(w, flat, true, PART_FLAT);
     chain->space[chain->count++] = nurbs_curve(w, run, false, PART);
   }
   cag_curve_release(run);
@@ -269,14 +270,14 @@ static CagStatus boundary(Writer *w, const CagBrepLoop *loop, const CagTransform
   for (size_t i = 0; !status && i < loop->count; i++)
     status = add_use(w, &w->brep->uses[loop->first + i], map, &chain, err);
   if (!status) {
-    Pointer flat = composite(w, chain.flat, chain.count, PART_FLAT);
+    Pointer flat = map ? composite(w, chain.flat, chain.count, PART_FLAT) : 0;
     Pointer space = composite(w, chain.space, chain.count, PART);
     *out = begin(w, 142, 0, PART);
     put_integer(w, 0); // made in no particular way
     put_pointer(w, surface);
     put_pointer(w, flat);
     put_pointer(w, space);
-    put_integer(w, 3); // both are as good
+    put_integer(w, map ? 3 : 2); // both are as good; that of space is
     end(w, false);
   }
   free(chain.flat);
@@ -285,13 +286,14 @@ static CagStatus boundary(Writer *w, const CagBrepLoop *loop, const CagTransform
 }
 
 static CagStatus trimmed(Writer *w, const CagBrepFace *f, CagError *err) {
-  CagTransform map;
-  CagStatus status = to_parameters(f->surface, &map, err);
+  CagTransform map = cag_transform_identity();
+  CagStatus status = f->flat ? to_parameters(f->surface, &map, err) : CAG_OK;
   Pointer *loops = calloc(f->count + 1, sizeof *loops);
   if (!status && !loops) status = cag_fail_memory(err);
   Pointer surface = status ? 0 : nurbs_surface(w, f->surface, PART);
   for (size_t i = 0; !status && i < f->count; i++)
-    status = boundary(w, &w->brep->loops[f->first + i], &map, surface, &loops[i], err);
+    status =
+        boundary(w, &w->brep->loops[f->first + i], f->flat ? &map : NULL, surface, &loops[i], err);
   if (!status) {
     begin(w, 144, 0, FREE);
     put_pointer(w, surface);

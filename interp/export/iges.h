@@ -1,7 +1,7 @@
 // A scene as IGES 5.3: exact geometry for other CAD systems.
 //
 // Curves are entities 126, surfaces 128; a face that is not all of its surface is a trimmed surface
-// 144 with boundaries 142, each given in the parameters of the surface and in space. Every entity
+// 144 with boundaries 142, given in space and, of planes, in the parameters as well. Every entity
 // carries its colour (314) and its shape's name (406 form 15). Lengths are millimetres. IGES of
 // this kind knows no bodies: the faces of a solid stand side by side, their normals outward.
 

@@ -103,6 +103,11 @@ shape saddle - none 'g = hyperbolic_paraboloid(3, 4, within: box([6, 6, 20], cen
 shape double_cone - none 'g = elliptic_cone(3, 4, 5, within: -6..6)'
 shape trough - none 'g = parabolic_cylinder(3, within: box([6, 6, 20], centered: true))'
 
+shape trimmed - none 'g = bspline_surface([for i in 0..5: [for j in 0..6: [i * 10, j * 10, 8 * sin(i * 50deg) * cos(j * 40deg)]]])
+  |> trim([circle(0.8, center: [1.5, 2]), circle(0.3, center: [1.5, 2])])'
+# r^2 (cos u0 - cos u1) (v1 - v0), v around.
+shape trimmed_ball 229.5442203702878 none 'g = sphere_surface(10) |> trim([[1, 0.5], [3, 0.5], [3, 2], [1, 2]])'
+
 # line NAME LENGTH 'script that defines g' [options]: the expected numbers stand in place of those of a shape.
 line() {
   printf '%s\nshow g\n' "$3" > "$1.cag"
