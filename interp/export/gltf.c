@@ -231,6 +231,18 @@ static void add_views(Text *t, const Plan *p) {
   if (offset > 0) add(t, "]");
 }
 
+// A file's name as a relative reference (RFC 3986).
+static void add_uri(Text *t, const char *name) {
+  add(t, ",\"uri\":\"");
+  for (; *name; name++) {
+    unsigned char c = (unsigned char)*name;
+    bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                 (c != 0 && strchr("-._~", c));
+    add(t, plain ? "%c" : "%%%02X", c);
+  }
+  add(t, "\"");
+}
+
 CagStatus cag_gltf_text(const CagGltfPlan *p, const char *uri, CagGltfText *t, CagError *err) {
   *t = (CagGltfText){0};
   add(t, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"cag " CAG_VERSION "\"}");
@@ -242,7 +254,7 @@ CagStatus cag_gltf_text(const CagGltfPlan *p, const char *uri, CagGltfText *t, C
   add_views(t, p);
   if (p->data_bytes > 0) {
     add(t, ",\"buffers\":[{\"byteLength\":%llu", (unsigned long long)p->data_bytes);
-    if (uri) add(t, ",\"uri\":"), add_string(t, uri);
+    if (uri) add_uri(t, uri);
     // The place of the data's text, where it stands in the document.
     t->data_at = t->length;
     add(t, "}]");

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "geom/mesh/polygon.h"
+#include "interp/import/tangle.h"
 
 #define NO_VERTEX UINT32_MAX
 
@@ -126,14 +127,25 @@ CagStatus cag_draft_polygon(CagMeshDraft *d, const uint32_t *corners, size_t n, 
     cag_draft_triangle(d, corners[0], corners[1], corners[2]);
     return CAG_OK;
   }
+  status = cag_draft_check(d, err);
+  if (status != CAG_OK) return status;
+  CagTangle tangle = cag_tangle_of(d->positions, corners, n);
+  if (tangle == CAG_TANGLE_MEMORY) return cag_fail_memory(err);
+  if (tangle == CAG_TANGLE_UNKNOWN)
+    return cag_mesh_file_fail_byte(d->file, err, "mesh-file-unsupported", NULL,
+                                   "a face of %zu corners is too intricate; write it as triangles",
+                                   n);
   CagError poor;
   uint32_t *to = d->triangles + 3 * d->triangle_count;
-  status = cag_polygon_triangulate(d->positions, corners, n, 0, to, &poor);
-  if (status == CAG_E_MEMORY) return cag_fail_memory(err);
-  if (status == CAG_OK) d->triangle_count += n - 2;
-  else
-    for (size_t k = 1; k + 1 < n; k++)
-      cag_draft_triangle(d, corners[0], corners[k], corners[k + 1]);
+  if (tangle == CAG_TANGLE_NONE) {
+    status = cag_polygon_triangulate(d->positions, corners, n, 0, to, &poor);
+    if (status == CAG_E_MEMORY) return cag_fail_memory(err);
+    if (status == CAG_OK) {
+      d->triangle_count += n - 2;
+      return CAG_OK;
+    }
+  }
+  for (size_t k = 1; k + 1 < n; k++) cag_draft_triangle(d, corners[0], corners[k], corners[k + 1]);
   return CAG_OK;
 }
 

@@ -83,6 +83,13 @@ says 'bodies.bin'
 holds half/bodies.gltf old
 no_temporaries half
 
+it 'the name of a .bin may have any characters'
+try export bodies.cag -o 'für 100% von "mir" #1.gltf'
+status 0
+try run bodies_of.cag -D 'file=für 100% von "mir" #1.gltf'
+status 0
+prints "$all_the_same"
+
 it 'copies are written once'
 [ "$(wc -c < bodies.glb)" -lt "$(($(wc -c < bodies.ply) * 3 / 4))" ] || wrong 'the .glb holds every copy'
 
@@ -106,7 +113,7 @@ show revolve(line([5, 0], [0, 3]))
 show sphere(1e-3), translate(sphere(2), [1e5, 0, 0]), sphere(1) |> material({emission: "red"})'
   try export open.cag -o open.glb
   try export open.cag -o open.gltf
-  validate bodies.glb bodies.gltf embedded.gltf open.glb open.gltf
+  validate bodies.glb bodies.gltf embedded.gltf open.glb open.gltf 'für 100% von "mir" #1.gltf'
 fi
 
 if have admesh; then

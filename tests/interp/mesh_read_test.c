@@ -205,6 +205,35 @@ static void obj_has_polygons_and_numbers_from_the_end(void **state) {
   cag_mesh_release(m);
 }
 
+// 3000 corners that jump about a circle: a fan, at once, and not what takes a triangulation hours.
+static void tangled_polygons_are_taken_as_fans(void **state) {
+  (void)state;
+  enum { CORNERS = 3000, JUMP = 1111 };
+  Bytes b = bytes_of("", 0);
+  char line[80];
+  const double step = 2 * 3.14159265358979323846 / CORNERS;
+  for (int k = 0; k < CORNERS; k++)
+    add(&b, line,
+        (size_t)snprintf(line, sizeof line, "v %.9f %.9f 0\n", cos(k * step), sin(k * step)));
+  Bytes ring = bytes_of(b.at, b.n);
+  add(&b, "f", 1);
+  add(&ring, "f", 1);
+  for (int k = 0; k < CORNERS; k++) {
+    add(&b, line, (size_t)snprintf(line, sizeof line, " %d", k * JUMP % CORNERS + 1));
+    add(&ring, line, (size_t)snprintf(line, sizeof line, " %d", k + 1));
+  }
+  CagMesh *m = read_bytes("a.obj", b);
+  assert_int_equal(m->triangle_count, CORNERS - 2);
+  cag_mesh_release(m);
+  // One without crossings has the area of the regular polygon.
+  m = read_bytes("a.obj", ring);
+  assert_int_equal(m->triangle_count, CORNERS - 2);
+  assert_true(fabs(cag_mesh_area(m) - CORNERS / 2.0 * sin(step)) < 1e-6);
+  cag_mesh_release(m);
+  free(b.at);
+  free(ring.at);
+}
+
 static void obj_keeps_normals_and_parameters(void **state) {
   (void)state;
   CagMesh *m = read_text("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n"
@@ -706,6 +735,7 @@ int main(void) {
       cmocka_unit_test(text_stl_is_read_with_its_liberties),
       cmocka_unit_test(what_is_wrong_with_an_stl_is_told),
       cmocka_unit_test(obj_has_polygons_and_numbers_from_the_end),
+      cmocka_unit_test(tangled_polygons_are_taken_as_fans),
       cmocka_unit_test(obj_keeps_normals_and_parameters),
       cmocka_unit_test(what_is_wrong_with_an_obj_is_told),
       cmocka_unit_test(ply_as_text_has_other_properties_too),
