@@ -61,6 +61,13 @@ done
 
 echo "--- export of 10^6 triangles"
 "$B/tests/bench/export" "$tmp"
+echo 'show sphere(100)' > "$tmp/ball.cag"
+for format in stl ply glb gltf obj 3mf; do
+  kb=$( { /usr/bin/time -f %M "$CAG" export "$tmp/ball.cag" -o "$tmp/ball.$format" --tolerance 0.0003 >/dev/null; } 2>&1 | tail -n 1)
+  [ $format != stl ] || triangles=$((($(wc -c < "$tmp/ball.stl") - 84) / 50))
+  echo "$format of a ball of $triangles triangles: $((kb * 1024 / triangles)) bytes a triangle at the peak, aim <= 100"
+  rm "$tmp/ball.$format"
+done
 
 # Seconds of the processor that a script takes: the best of five.
 cpu() {
