@@ -22,6 +22,24 @@ static CagVec3 with_entries(int i, double a, int j, double b, int k, double c) {
   return cag_vec3(e[0], e[1], e[2]);
 }
 
+// Faces of a box: 2 * axis, and 1 more on the high side. u x v points out: the axes after the
+// face's own in turn, exchanged on the low side.
+static int face_u(int f) { return (f / 2 + 1 + (f % 2 == 0)) % 3; }
+static int face_v(int f) { return (f / 2 + 1 + f % 2) % 3; }
+
+// A side of a face lies at an end of one axis; the face at that end has the same edge on its side
+// towards the first face. Both run up the third axis.
+static CagStatus box_edges(CagSolid *s, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (int f = 0; !status && f < 6; f++)
+    for (int side = 0; !status && side < 4; side++) {
+      int g = 2 * (side < 2 ? face_u(f) : face_v(f)) + side % 2;
+      int back = (face_u(g) == f / 2 ? 0 : 2) + f % 2;
+      if (f < g) status = cag_solid_add_edge(s, (size_t)f, side, (size_t)g, back, false, err);
+    }
+  return status;
+}
+
 CagStatus cag_solid_box(CagVec3 size, bool centered, CagSolid **out, CagError *err) {
   CagStatus status = CAG_OK;
   for (int i = 0; !status && i < 3; i++)
@@ -35,9 +53,8 @@ CagStatus cag_solid_box(CagVec3 size, bool centered, CagSolid **out, CagError *e
   s->centered = centered;
   CagVec3 lo = centered ? cag_scaled(size, -0.5) : cag_vec3(0, 0, 0);
   CagVec3 hi = centered ? cag_scaled(size, 0.5) : size;
-  // u x v points out: the axes after the face's own in turn, exchanged on the low side.
   for (int f = 0; !status && f < 6; f++) {
-    int axis = f / 2, u = (axis + 1 + (f % 2 == 0)) % 3, v = (axis + 1 + f % 2) % 3;
+    int axis = f / 2, u = face_u(f), v = face_v(f);
     double at = entry(f % 2 ? hi : lo, axis);
     CagVec3 p[4];
     for (int k = 0; k < 4; k++)
@@ -46,7 +63,10 @@ CagStatus cag_solid_box(CagVec3 size, bool centered, CagSolid **out, CagError *e
     status = cag_surface_bilinear(p[0], p[1], p[2], p[3], &face, err);
     if (!status) cag_solid_add(s, face);
   }
-  return finish(s, status, out, err);
+  if (!status) status = box_edges(s, err);
+  if (status) cag_solid_release(s);
+  else *out = s;
+  return status;
 }
 
 static CagTransform diagonal(double x, double y, double z, double lift) {

@@ -111,7 +111,7 @@ static CagStatus mesh_of(const CagVm *vm, CagValue v, double tolerance, CagMesh 
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   how.tolerance = tolerance;
   if (vm->max_triangles > 0) how.max_triangles = vm->max_triangles;
-  how.interrupt = vm->interrupt;
+  how.interrupt = cag_vm_stop(vm);
   return v.type == CAG_SOLID ? cag_solid_tessellate(shape->as.solid, &how, out, err)
                              : cag_surface_tessellate(shape->as.surface, &how, out, err);
 }
@@ -142,7 +142,8 @@ static bool hull_of_shapes(CagCall *call, CagValue *result) {
   const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
   bool ok = true;
   for (size_t i = 0; ok && i < shapes->length; i++)
-    ok = cag_geometry_ok(call, add_shape(call->vm, &cloud, cag_list_get(call->vm, shapes, i), &err),
+    ok = (i % CAG_LOOK_UP != 0 || cag_keep_going(call->vm)) &&
+         cag_geometry_ok(call, add_shape(call->vm, &cloud, cag_list_get(call->vm, shapes, i), &err),
                          &err);
   ok = ok && hull_of_cloud(call, &cloud, result);
   free(cloud.points);
@@ -212,7 +213,7 @@ static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s,
   const bool flat = cag_surface_planar_view(s, NULL, NULL);
   how.tolerance = tolerance;
   if (vm->max_triangles > 0) how.max_triangles = vm->max_triangles;
-  how.interrupt = vm->interrupt;
+  how.interrupt = cag_vm_stop(vm);
   CagStatus status = cag_surface_tessellate(s, &how, &m, err);
   if (status) return status;
   status = cag_parts_add_mesh(&b->parts, m, flat ? NULL : s, err);
@@ -254,7 +255,7 @@ static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, 
   CagMesh *m;
   how.tolerance = tolerance;
   if (vm->max_triangles > 0) how.max_triangles = vm->max_triangles;
-  how.interrupt = vm->interrupt;
+  how.interrupt = cag_vm_stop(vm);
   CagStatus status = cag_solid_tessellate(s, &how, &m, err);
   if (status) return status;
   status = cag_parts_add_mesh(&b->parts, m, NULL, err);

@@ -208,7 +208,7 @@ static CagStatus tessellate_shape(CagValue v, const CagTessellation *how, CagMes
 static bool read_how(CagCall *call, CagTessellation *how) {
   *how = CAG_TESSELLATION_DEFAULT;
   if (call->vm->max_triangles > 0) how->max_triangles = call->vm->max_triangles;
-  how->interrupt = call->vm->interrupt;
+  how->interrupt = cag_vm_stop(call->vm);
   if (cag_given(call, 1) && call->values[1].type != CAG_NONE &&
       !cag_arg_positive(call, 1, &how->tolerance))
     return false;

@@ -274,6 +274,7 @@ bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension)
   for (size_t i = 0; i < n; i++) {
     CagBounds one;
     int d;
+    if (i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) return false;
     if (!shape_bounds(call, cag_list_get(call->vm, CAG_AS_LIST(list), i), &one, &d)) return false;
     bounds_join(out, &one);
     if (d == 3) *dimension = 3;

@@ -17,6 +17,9 @@
   (CAG_TAKES_SHAPES | CAG_TAKES(CAMERA) | CAG_TAKES(LIGHT) | CAG_TAKES(PLANE) |                    \
    CAG_TAKES(TRANSFORM))
 
+// Loops over shapes ask so often whether the run must stop.
+#define CAG_LOOK_UP 64
+
 #define CAG_RADIANS_PER_DEGREE 0.017453292519943295
 
 // True when the core is content; else the machine's error is set.

@@ -30,6 +30,7 @@ bool cag_solids_around(CagCall *call, CagValue *result) {
     // Whole degrees where there are, so that quarter turns are exact.
     double angle = 360.0 * (double)i / (double)n * CAG_RADIANS_PER_DEGREE;
     CagTransform t;
+    if (i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) return false;
     if (!cag_geometry_ok(call, cag_rotate(axis, angle, through, &t, &err), &err)) return false;
     t.planar = plane;
     if (!add_moved(call, copies, &t)) return false;
@@ -46,6 +47,7 @@ bool cag_solids_rows(CagCall *call, CagValue *result) {
   CagBuilder *copies = cag_builder_new(call->vm);
   for (long i = 0; i < n; i++) {
     CagTransform t = cag_translate(cag_scaled(step, (double)i));
+    if (i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) return false;
     t.planar = dimension == 2;
     if (!add_moved(call, copies, &t)) return false;
   }

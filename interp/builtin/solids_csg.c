@@ -78,7 +78,7 @@ static CagStatus combine(CagCall *call, CagSetOperation op, const Operands *o, C
     *out = cag_solid_retain(o->s[0]);
     return CAG_OK;
   }
-  return cag_solid_combine(op, o->s, o->n, call->vm->interrupt, out, err);
+  return cag_solid_combine(op, o->s, o->n, cag_vm_stop(call->vm), out, err);
 }
 
 // A shape, or the union of those of a group or list. `said`: the first of them.
@@ -139,7 +139,8 @@ static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValu
   if (!operands_new(call, n, &o)) return false;
   bool ok = true;
   for (size_t i = 0; ok && i < n; i++) {
-    ok = read_operand(call, items[i], i, &o.s[o.n], i == 0 ? &said : &unused);
+    ok = (i % CAG_LOOK_UP != 0 || cag_keep_going(call->vm)) &&
+         read_operand(call, items[i], i, &o.s[o.n], i == 0 ? &said : &unused);
     if (ok) o.n++;
   }
   ok = ok && give(call, combine(call, op, &o, &made, &err), &err, &made, result);
@@ -177,7 +178,7 @@ static CagStatus bounded_form(CagCall *call, const CagQuadric *q, CagSolid *cons
   if (!status)
     status = n == 0
                  ? (*out = cag_solid_retain(all[0]), CAG_OK)
-                 : cag_solid_combine(CAG_INTERSECTION, all, n + 1, call->vm->interrupt, out, err);
+                 : cag_solid_combine(CAG_INTERSECTION, all, n + 1, cag_vm_stop(call->vm), out, err);
   cag_solid_release(all[0]);
   return status;
 }
@@ -289,7 +290,7 @@ static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
   CagBounds reach;
   if (!read_one(c->call, v, 0, &parts[0])) return false;
   CagStatus status =
-      cag_solid_combine(CAG_INTERSECTION, parts, 2, c->call->vm->interrupt, &made, &err);
+      cag_solid_combine(CAG_INTERSECTION, parts, 2, cag_vm_stop(c->call->vm), &made, &err);
   cag_solid_release(parts[0]);
   if (!cag_geometry_ok(c->call, status, &err)) return false;
   CagValue value = cag_solid_value(c->call->vm, made);
@@ -303,7 +304,7 @@ static CagTessellation fineness(const Clip *c, const CagShape *shape) {
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   how.tolerance = shape->tolerance;
   if (c->call->vm->max_triangles > 0) how.max_triangles = c->call->vm->max_triangles;
-  how.interrupt = c->call->vm->interrupt;
+  how.interrupt = cag_vm_stop(c->call->vm);
   return how;
 }
 
@@ -333,7 +334,7 @@ static bool clip_curve(const Clip *c, CagValue v, CagBuilder *into) {
   size_t n = 0;
   CagError err;
   CagStatus status =
-      cag_curve_clip(CAG_AS_SHAPE(v)->as.curve, c->by, c->call->vm->interrupt, &pieces, &n, &err);
+      cag_curve_clip(CAG_AS_SHAPE(v)->as.curve, c->by, cag_vm_stop(c->call->vm), &pieces, &n, &err);
   if (!cag_geometry_ok(c->call, status, &err)) return false;
   bool ok = true;
   for (size_t i = 0; i < n; i++) {

@@ -143,7 +143,7 @@ static CagStatus close_faces(CagCall *call, CagSurface **faces, size_t n, CagSol
   CagQuadric q;
   CagStatus status = cag_solid_shell(faces, n, out, err);
   if (status == CAG_OK || !cag_solids_are_quadric(faces, n, &q)) return status;
-  return cag_solid_of_patches(faces, n, &q, call->vm->interrupt, out, err);
+  return cag_solid_of_patches(faces, n, &q, cag_vm_stop(call->vm), out, err);
 }
 
 static bool solid_of_mesh(CagCall *call, CagValue v, CagValue *result) {

@@ -134,6 +134,7 @@ static bool read_body(CagCall *call, bool volume, Body *out) {
   *out = (Body){0};
   for (size_t i = 0; i < shapes->length; i++) {
     Body one;
+    if (i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) return false;
     if (!shape_body(call, cag_list_get(call->vm, shapes, i), volume, &one)) return false;
     join_bodies(out, &one);
   }

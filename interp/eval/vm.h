@@ -218,6 +218,12 @@ struct CagVm {
   size_t include_count;
 };
 
+// What long geometry without calls of the script looks at, to end when it is not 0: the time limit
+// where there is one, which ends an interrupted run too, else the interrupt.
+static inline const volatile int *cag_vm_stop(const CagVm *vm) {
+  return vm->max_time > 0 ? &vm->limit_hit : vm->interrupt;
+}
+
 // Reserved globals.
 enum { CAG_GLOBAL_TIME, CAG_GLOBAL_FRAME, CAG_GLOBAL_FRAMES, CAG_GLOBAL_RESERVED };
 
@@ -282,7 +288,8 @@ _Noreturn void cag_vm_out_of_memory(CagVm *vm);
 size_t cag_load_file(CagVm *vm, const char *path, int *exit_status);
 size_t cag_load_text(CagVm *vm, const char *name, const char *text, size_t length,
                      CagParseMode mode);
-// Parses a script that is not to be run; its tree lives as long as the machine. NULL: it has errors.
+// Parses a script that is not to be run; its tree lives as long as the machine. NULL: it has
+// errors.
 const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *text, size_t length);
 // Whether a file may be read: below the root or the module path. Gives the real path (malloc'd) or
 // NULL with the reason in message.
