@@ -1,0 +1,266 @@
+// Scenes as exact boundaries: edges and vertices are shared, seams and poles are told, and the
+// files of them are well formed. That other programs measure them as they are is
+// tests/cli/cases_brep.sh.
+
+#include "tests/interp/scene_fixture.h"
+
+#include "interp/export/brep.h"
+#include "interp/export/iges.h"
+#include "interp/export/step.h"
+
+static CagBrep boundary_of(const Fixture *f) {
+  CagBrep b;
+  OK(cag_brep_of_scene(&f->scene, &b, &err));
+  return b;
+}
+
+static CagSolid *cylinder(void) {
+  CagSolid *s;
+  OK(cag_solid_cylinder(20, 5, 5, &s, &err));
+  return s;
+}
+
+static CagSolid *box(void) {
+  CagSolid *s;
+  OK(cag_solid_box(cag_vec3(1, 2, 3), false, &s, &err));
+  return s;
+}
+
+static CagSurface *sphere_surface(double radius) {
+  CagTransform frame = cag_transform_identity();
+  for (int i = 0; i < 3; i++) frame.m[i][i] = i < 2 ? radius : -radius;
+  CagSurface *s;
+  OK(cag_surface_quadric(CAG_SHAPE_ELLIPSOID, &frame, 0, 2 * M_PI, 0, M_PI, &s, &err));
+  return s;
+}
+
+// Every edge of a closed body is used once each way.
+static void check_closed(const CagBrep *b) {
+  int *forward = calloc(b->edge_count, sizeof *forward),
+      *back = calloc(b->edge_count, sizeof *back);
+  for (size_t i = 0; i < b->use_count; i++)
+    (b->uses[i].reversed ? back : forward)[b->uses[i].edge]++;
+  for (size_t i = 0; i < b->edge_count; i++) {
+    assert_int_equal(forward[i], 1);
+    assert_int_equal(back[i], 1);
+  }
+  free(forward);
+  free(back);
+}
+
+// A loop goes on where it was: each use ends in the vertex in which the next begins.
+static void check_loops(const CagBrep *b) {
+  for (size_t l = 0; l < b->loop_count; l++)
+    for (size_t i = 0; i < b->loops[l].count; i++) {
+      const CagBrepUse *u = &b->uses[b->loops[l].first + i];
+      const CagBrepUse *v = &b->uses[b->loops[l].first + (i + 1) % b->loops[l].count];
+      size_t end = u->reversed ? b->edges[u->edge].from : b->edges[u->edge].to;
+      size_t next = v->reversed ? b->edges[v->edge].to : b->edges[v->edge].from;
+      assert_int_equal(end, next);
+    }
+}
+
+static void a_box_has_8_corners_12_edges_and_6_flat_faces(void **state) {
+  (void)state;
+  Fixture f;
+  fixture_begin(&f);
+  fixture_solid(&f, "box", box());
+  CagBrep b = boundary_of(&f);
+  assert_int_equal(b.vertex_count, 8);
+  assert_int_equal(b.edge_count, 12);
+  assert_int_equal(b.face_count, 6);
+  for (size_t i = 0; i < 6; i++) assert_true(b.faces[i].flat);
+  for (size_t i = 0; i < 12; i++) assert_true(b.edges[i].straight);
+  assert_int_equal(b.shapes[0].kind, CAG_BREP_SOLID);
+  check_closed(&b);
+  check_loops(&b);
+  cag_brep_free(&b);
+  fixture_end(&f);
+}
+
+static void a_cylinder_has_a_seam_and_two_circles(void **state) {
+  (void)state;
+  Fixture f;
+  fixture_begin(&f);
+  fixture_solid(&f, "can", cylinder());
+  CagBrep b = boundary_of(&f);
+  assert_int_equal(b.vertex_count, 2);
+  assert_int_equal(b.edge_count, 3);
+  assert_int_equal(b.use_count, 6);
+  check_closed(&b);
+  check_loops(&b);
+  cag_brep_free(&b);
+  fixture_end(&f);
+}
+
+static void poles_are_vertices_without_an_edge(void **state) {
+  (void)state;
+  Fixture f;
+  fixture_begin(&f);
+  fixture_surface(&f, "ball", sphere_surface(10));
+  CagBrep b = boundary_of(&f);
+  assert_int_equal(b.vertex_count, 2);
+  assert_int_equal(b.edge_count, 1);
+  assert_int_equal(b.use_count, 2);
+  assert_int_equal(b.shapes[0].kind, CAG_BREP_SHEET);
+  assert_true(b.shells[0].closed);
+  check_loops(&b);
+  cag_brep_free(&b);
+  fixture_end(&f);
+}
+
+// A sphere with a wall: its outer face and, turned inwards, its inner one.
+static void a_sphere_in_a_sphere_is_a_hollow(void **state) {
+  (void)state;
+  Fixture f;
+  fixture_begin(&f);
+  CagSurface *inner = sphere_surface(10);
+  CagSolid *s;
+  OK(cag_solid_thicken(inner, 2, &s, &err));
+  fixture_solid(&f, "hollow", s)->tolerance = 0.01; // an offset is approximated
+  CagBrep b = boundary_of(&f);
+  assert_int_equal(b.shell_count, 2);
+  size_t hollows = 0;
+  for (size_t i = 0; i < 2; i++) hollows += b.shells[i].void_of != i;
+  assert_int_equal(hollows, 1);
+  check_closed(&b);
+  cag_brep_free(&b);
+  cag_surface_release(inner);
+  fixture_end(&f);
+}
+
+static void creases_part_faces_and_smooth_knots_do_not(void **state) {
+  (void)state;
+  Fixture f;
+  fixture_begin(&f);
+  const CagVec3 corners[] = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 5}};
+  CagCurve *line, *circle;
+  CagSurface *s;
+  CagTransform frame = cag_transform_identity();
+  OK(cag_curve_polyline(corners, 4, false, 3, &line, &err));
+  OK(cag_surface_extrude(line, cag_vec3(1, 2, 20), 0, 1, &s, &err));
+  fixture_surface(&f, "folded", s);
+  OK(cag_curve_arc(5, 5, 0, 2 * M_PI, &frame, &circle, &err));
+  OK(cag_surface_extrude(circle, cag_vec3(0, 0, 20), 0, 1, &s, &err));
+  fixture_surface(&f, "pipe", s);
+  CagBrep b = boundary_of(&f);
+  assert_int_equal(b.shapes[0].count, 1);
+  assert_int_equal(b.shells[b.shapes[0].first].count, 3); // three segments
+  assert_int_equal(b.shells[b.shapes[1].first].count, 1); // a circle's knots are smooth
+  check_loops(&b);
+  cag_brep_free(&b);
+  cag_curve_release(line);
+  cag_curve_release(circle);
+  fixture_end(&f);
+}
+
+static void what_is_not_exact_needs_a_tolerance(void **state) {
+  (void)state;
+  Fixture f;
+  CagCurve *c;
+  CagBrep b;
+  CagError err = {0};
+  fixture_begin(&f);
+  OK(cag_curve_helix(10, 5, 3, 0, &c, &err));
+  CagItem *item = fixture_curve(&f, "coil", c);
+  assert_int_equal(cag_brep_of_scene(&f.scene, &b, &err), CAG_E_UNSUPPORTED);
+  assert_string_equal(err.reason, "export-not-exact");
+  assert_non_null(strstr(err.message, "coil"));
+  cag_brep_free(&b);
+  item->tolerance = 0.01;
+  b = boundary_of(&f);
+  assert_true(b.shapes[0].approximate);
+  // Within the tolerance, at places that are no knots.
+  for (int i = 1; i < 97; i++) {
+    CagVec3 p, q;
+    double t, off;
+    OK(cag_curve_point(c, c->start + (c->end - c->start) * i / 97, &p, &err));
+    OK(cag_curve_closest(b.shapes[0].curve, p, &t, &q, &off, &err));
+    assert_true(off <= 0.01);
+  }
+  cag_brep_free(&b);
+  fixture_end(&f);
+}
+
+static void a_weight_of_zero_is_an_error(void **state) {
+  (void)state;
+  Fixture f;
+  CagCurve *c;
+  CagBrep b;
+  CagError err = {0};
+  const CagVec3 p[] = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}};
+  const double weights[] = {1, 0, 1};
+  fixture_begin(&f);
+  OK(cag_curve_bezier(p, weights, 3, 3, &c, &err));
+  fixture_curve(&f, "flat", c);
+  assert_int_equal(cag_brep_of_scene(&f.scene, &b, &err), CAG_E_UNSUPPORTED);
+  assert_string_equal(err.reason, "export-weight");
+  cag_brep_free(&b);
+  fixture_end(&f);
+}
+
+static char *written(const Fixture *f, CagStatus (*write)(const CagBrep *, const char *,
+                                                          CagAtomicFile *, CagError *)) {
+  CagBrep b = boundary_of(f);
+  CagIoError io;
+  char *bytes;
+  size_t size;
+  CagAtomicFile *file = cag_atomic_file_open_memory(&io);
+  assert_non_null(file);
+  OK(write(&b, "it's.cag", file, &err));
+  assert_true(cag_atomic_file_commit_memory(file, &bytes, &size, &io));
+  cag_brep_free(&b);
+  return bytes;
+}
+
+static void names_of_any_kind_are_written_safely(void **state) {
+  (void)state;
+  Fixture f;
+  fixture_begin(&f);
+  fixture_solid(&f, "it's a \\ b\n\xc3\xa9\xf0\x9f\x8d\x8e;", box());
+  char *step = written(&f, cag_export_step), *iges = written(&f, cag_export_iges);
+  assert_non_null(
+      strstr(step, "'it''s a \\\\ b\\X2\\000A\\X0\\\\X2\\00E9\\X0\\\\X4\\0001F34E\\X0\\;'"));
+  assert_non_null(strstr(iges, "14Hit's a \\ b___;"));
+  free(step);
+  free(iges);
+  fixture_end(&f);
+}
+
+// Every line has 80 columns, and the last one tells how many there are of each section.
+static void an_iges_file_counts_its_lines(void **state) {
+  (void)state;
+  Fixture f;
+  fixture_begin(&f);
+  fixture_solid(&f, "can", cylinder());
+  char *text = written(&f, cag_export_iges);
+  int count[5] = {0};
+  const char *sections = "SGDPT", *last = NULL;
+  for (const char *line = text; *line; line = strchr(line, '\n') + 1) {
+    assert_int_equal(strchr(line, '\n') - line, 80);
+    const char *section = strchr(sections, line[72]);
+    assert_non_null(section);
+    assert_int_equal(atoi(line + 73), ++count[section - sections]);
+    last = line;
+  }
+  int told[4];
+  assert_int_equal(sscanf(last, "S%7dG%7dD%7dP%7d", &told[0], &told[1], &told[2], &told[3]), 4);
+  for (int i = 0; i < 4; i++) assert_int_equal(told[i], count[i]);
+  free(text);
+  fixture_end(&f);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_box_has_8_corners_12_edges_and_6_flat_faces),
+      cmocka_unit_test(a_cylinder_has_a_seam_and_two_circles),
+      cmocka_unit_test(poles_are_vertices_without_an_edge),
+      cmocka_unit_test(a_sphere_in_a_sphere_is_a_hollow),
+      cmocka_unit_test(creases_part_faces_and_smooth_knots_do_not),
+      cmocka_unit_test(what_is_not_exact_needs_a_tolerance),
+      cmocka_unit_test(a_weight_of_zero_is_an_error),
+      cmocka_unit_test(names_of_any_kind_are_written_safely),
+      cmocka_unit_test(an_iges_file_counts_its_lines),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
