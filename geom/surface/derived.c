@@ -147,6 +147,7 @@ static const CagSurfaceKind transposed_kind = {
 };
 
 CagStatus cag_surface_transpose(const CagSurface *s, CagSurface **out, CagError *err) {
+  if (cag_surface_trimmed_view(s, NULL, NULL)) return cag_trimmed_transpose(s, out, err);
   CagSurfaceNurbsView view;
   if (cag_surface_nurbs_view(s, &view)) return cag_surface_nurbs_swapped(s, out, err);
   if (s->kind == &transposed_kind) {

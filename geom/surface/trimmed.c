@@ -387,6 +387,22 @@ CagStatus cag_trimmed_flip(const CagSurface *s, CagSurface **out, CagError *err)
   return status;
 }
 
+CagStatus cag_trimmed_transpose(const CagSurface *s, CagSurface **out, CagError *err) {
+  const Trimmed *w = (const Trimmed *)s;
+  CagTransform swap = cag_transform_identity();
+  swap.m[0][0] = swap.m[1][1] = 0;
+  swap.m[0][1] = swap.m[1][0] = 1;
+  CagRegion *image;
+  CagSurface *turned = NULL;
+  CagStatus status = cag_region_transform(w->region, &swap, &image, err);
+  if (status) return status;
+  status = cag_surface_transpose(w->inner, &turned, err);
+  if (!status) status = cag_surface_trimmed(turned, image, out, err);
+  if (turned) cag_surface_release(turned);
+  cag_region_release(image);
+  return status;
+}
+
 CagStatus cag_trimmed_offset(const CagSurface *s, double d, CagSurface **out, CagError *err) {
   const Trimmed *w = (const Trimmed *)s;
   CagSurface *moved;

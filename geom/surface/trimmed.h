@@ -21,6 +21,7 @@ CagStatus cag_trimmed_area(const CagSurface *s, double *area, CagVec3 *centroid,
 CagStatus cag_trimmed_volume_terms(const CagSurface *s, double terms[10], CagError *err);
 CagStatus cag_trimmed_bounds(const CagSurface *s, CagBounds *out, CagError *err);
 CagStatus cag_trimmed_flip(const CagSurface *s, CagSurface **out, CagError *err);
+CagStatus cag_trimmed_transpose(const CagSurface *s, CagSurface **out, CagError *err);
 // The offset of the whole surface within the same region.
 CagStatus cag_trimmed_offset(const CagSurface *s, double d, CagSurface **out, CagError *err);
 // Loop number i in space, with the loop's parameter.

@@ -66,6 +66,14 @@ static bool read_net(CagCall *call, Net *n) {
   return true;
 }
 
+// u and v within the domain.
+static bool read_place(CagCall *call, const Net *n, int at, double t[2]) {
+  CagVec3 p;
+  CagError err;
+  return cag_arg_uv(call, n->s, at, &t[0], &t[1]) &&
+         cag_geometry_ok(call, cag_surface_point(n->s, t[0], t[1], &p, &err), &err);
+}
+
 static CagValue range_of(CagVm *vm, double from, double to) {
   return cag_range_new(vm, from, to, 1, false, false, false);
 }
@@ -149,8 +157,7 @@ static bool acting_points(CagCall *call, CagValue *result) {
   Net n;
   double t[2];
   CagSide side[2];
-  if (!read_net(call, &n) || !cag_arg_uv(call, n.s, 1, &t[0], &t[1]) ||
-      !cag_arg_surface_sides(call, 3, side))
+  if (!read_net(call, &n) || !read_place(call, &n, 1, t) || !cag_arg_surface_sides(call, 3, side))
     return false;
   size_t span[2];
   CagValue values[5];
@@ -197,7 +204,7 @@ static double *basis_line(const Axis *a, double t) {
 static bool basis(CagCall *call, CagValue *result) {
   Net n;
   double t[2], sum = 0;
-  if (!read_net(call, &n) || !cag_arg_uv(call, n.s, 1, &t[0], &t[1])) return false;
+  if (!read_net(call, &n) || !read_place(call, &n, 1, t)) return false;
   double *bu = basis_line(&n.axis[0], t[0]), *bv = basis_line(&n.axis[1], t[1]);
   size_t nu = n.axis[0].distinct, nv = n.axis[1].distinct;
   bool ok = (bu && bv) || fail_memory(call);
