@@ -77,6 +77,12 @@ CAG_API int cag_session_run_text(CagSession *s, const char *name, const char *te
 CAG_API int cag_session_format(CagSession *s, const char *name, const char *text, size_t length,
                                char **out, size_t *out_length);
 
+// Finds errors without running anything: of syntax, names and arity, and types that cannot be right;
+// also definitions that nothing uses, as warnings. Imported modules are read. "-" is standard input.
+CAG_API int cag_session_check_file(CagSession *s, const char *path);
+CAG_API int cag_session_check_text(CagSession *s, const char *name, const char *text,
+                                   size_t length);
+
 // --- Diagnostics of the last call ---
 CAG_API size_t cag_session_error_count(const CagSession *s);
 typedef struct CagErrorView {

@@ -67,7 +67,7 @@ struct CagTool {
 };
 
 CagToolFunction cag_tool_run, cag_tool_eval, cag_tool_export, cag_tool_render, cag_tool_compare,
-    cag_tool_test, cag_tool_fmt, cag_tool_explain, cag_tool_info, cag_tool_repl;
+    cag_tool_test, cag_tool_fmt, cag_tool_check, cag_tool_explain, cag_tool_info, cag_tool_repl;
 
 // A session with the options and the -D of the command line. NULL, after a message, when memory is
 // out.

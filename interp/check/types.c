@@ -1,0 +1,194 @@
+// Sets of types: results and arguments of built-ins, and operators.
+
+#include "interp/check/types.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define SHAPES                                                                                     \
+  (CAG_TYPES(CURVE) | CAG_TYPES(REGION) | CAG_TYPES(SURFACE) | CAG_TYPES(SOLID) |                  \
+   CAG_TYPES(MESH) | CAG_TYPES(GROUP))
+// Types whose operators are all told by the table below; of others nothing is said.
+#define PLAIN                                                                                      \
+  (CAG_TYPES(NONE) | CAG_TYPES(BOOL) | CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE) | CAG_TYPES(TEXT) |    \
+   CAG_TYPES(LIST) | CAG_TYPES(RANGE) | CAG_TYPES(RECORD) | CAG_TYPES_FUNCTION)
+#define LISTS (CAG_TYPES(LIST) | CAG_TYPES(RANGE))
+#define NUMBERS CAG_TYPES(NUMBER)
+
+// --- Results ---
+
+static const struct {
+  const char *word;
+  CagTypes types;
+} words[] = {
+    {"number", NUMBERS},
+    {"angle", CAG_TYPES(ANGLE)},
+    {"list", CAG_TYPES(LIST)},
+    {"record", CAG_TYPES(RECORD)},
+    {"bool", CAG_TYPES(BOOL)},
+    {"text", CAG_TYPES(TEXT)},
+    {"none", CAG_TYPES(NONE)},
+    {"range", CAG_TYPES(RANGE)},
+    {"function", CAG_TYPES_FUNCTION},
+    {"transform", CAG_TYPES(TRANSFORM)},
+    {"curve", CAG_TYPES(CURVE)},
+    {"region", CAG_TYPES(REGION)},
+    {"surface", CAG_TYPES(SURFACE)},
+    {"solid", CAG_TYPES(SOLID)},
+    {"mesh", CAG_TYPES(MESH)},
+    {"group", CAG_TYPES(GROUP)},
+    {"shape", SHAPES},
+    {"plane", CAG_TYPES(PLANE)},
+    {"link", CAG_TYPES(LINK)},
+    {"robot", CAG_TYPES(ROBOT)},
+};
+
+static CagTypes word_types(const char *word, size_t length) {
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+    if (strlen(words[i].word) == length && strncmp(words[i].word, word, length) == 0)
+      return words[i].types;
+  if (length == 2 && strncmp(word, "or", 2) == 0) return 0;
+  return CAG_TYPES_ANY;
+}
+
+CagTypes cag_types_of_result(const char *result) {
+  CagTypes types = 0;
+  for (const char *p = result; p && *p;) {
+    const size_t n = strcspn(p, " ,");
+    if (n) types |= word_types(p, n);
+    p += n;
+    p += strspn(p, " ,");
+  }
+  return types ? types : CAG_TYPES_ANY;
+}
+
+// --- Arguments ---
+
+// What rows take whose masks do not say it: functions whose first parameters are all of these
+// types.
+static const struct {
+  const char *function;
+  CagTypes types;
+} takers[] = {
+#define NUMERIC(name) {#name, NUMBERS},
+    NUMERIC(sqrt) NUMERIC(cbrt) NUMERIC(exp) NUMERIC(ln) NUMERIC(log10) NUMERIC(log2) NUMERIC(sinh)
+        NUMERIC(cosh) NUMERIC(tanh) NUMERIC(asinh) NUMERIC(acosh) NUMERIC(atanh) NUMERIC(floor)
+            NUMERIC(ceil) NUMERIC(hypot) NUMERIC(asin) NUMERIC(acos) NUMERIC(atan) NUMERIC(atan2)
+#undef NUMERIC
+                {"sin", CAG_TYPES(ANGLE)},
+    {"cos", CAG_TYPES(ANGLE)},
+    {"tan", CAG_TYPES(ANGLE)},
+    {"in_degrees", CAG_TYPES(ANGLE)},
+    {"in_radians", CAG_TYPES(ANGLE)},
+    {"norm", LISTS},
+    {"unit", LISTS},
+    {"cross", LISTS},
+    {"dot", LISTS},
+    {"sum", LISTS},
+    {"upper", CAG_TYPES(TEXT)},
+    {"lower", CAG_TYPES(TEXT)},
+    {"starts_with", CAG_TYPES(TEXT)},
+    {"read_csv", CAG_TYPES(TEXT)},
+    {"read_json", CAG_TYPES(TEXT)},
+    {"read_text", CAG_TYPES(TEXT)},
+    {"read_mesh", CAG_TYPES(TEXT)},
+    {"roots", LISTS},
+    {"complex_roots", LISTS},
+};
+
+// Parameters whose name tells their type wherever they stand.
+static const struct {
+  const char *name;
+  CagTypes types;
+} parameters[] = {
+    {"angle", CAG_TYPES(ANGLE) | CAG_TYPES(RANGE) | CAG_TYPES(NONE)},
+    {"tolerance", NUMBERS | CAG_TYPES(ANGLE) | CAG_TYPES(NONE)},
+    {"caps", CAG_TYPES(BOOL)},
+    {"centered", CAG_TYPES(BOOL)},
+};
+
+CagTypes cag_types_taken(const CagBuiltin *row, const CagSignature *s, size_t parameter) {
+  if (parameter == 0 && row->first) return row->first;
+  if (!row->first)
+    for (size_t i = 0; i < sizeof takers / sizeof *takers; i++)
+      if (strcmp(takers[i].function, s->name) == 0) return takers[i].types;
+  if (parameter >= s->count) return CAG_TYPES_ANY;
+  for (size_t i = 0; i < sizeof parameters / sizeof *parameters; i++)
+    if (strcmp(parameters[i].name, s->parameters[parameter]) == 0) return parameters[i].types;
+  return CAG_TYPES_ANY;
+}
+
+// --- Operators ---
+
+static const struct {
+  CagBinaryOp op;
+  CagTypes left, right, result;
+} joined[] = {
+    {CAG_OP_ADD, NUMBERS, NUMBERS, NUMBERS},
+    {CAG_OP_ADD, CAG_TYPES(ANGLE), CAG_TYPES(ANGLE), CAG_TYPES(ANGLE)},
+    {CAG_OP_ADD, CAG_TYPES(TEXT), CAG_TYPES(TEXT), CAG_TYPES(TEXT)},
+    {CAG_OP_ADD, LISTS, LISTS, CAG_TYPES(LIST)},
+    {CAG_OP_SUBTRACT, NUMBERS, NUMBERS, NUMBERS},
+    {CAG_OP_SUBTRACT, CAG_TYPES(ANGLE), CAG_TYPES(ANGLE), CAG_TYPES(ANGLE)},
+    {CAG_OP_SUBTRACT, LISTS, LISTS, CAG_TYPES(LIST)},
+    {CAG_OP_MULTIPLY, NUMBERS, NUMBERS, NUMBERS},
+    {CAG_OP_MULTIPLY, CAG_TYPES(ANGLE), NUMBERS, CAG_TYPES(ANGLE)},
+    {CAG_OP_MULTIPLY, NUMBERS, CAG_TYPES(ANGLE), CAG_TYPES(ANGLE)},
+    {CAG_OP_MULTIPLY, LISTS, NUMBERS, CAG_TYPES(LIST)},
+    {CAG_OP_MULTIPLY, NUMBERS, LISTS, CAG_TYPES(LIST)},
+    {CAG_OP_DIVIDE, NUMBERS, NUMBERS, NUMBERS},
+    {CAG_OP_DIVIDE, CAG_TYPES(ANGLE), NUMBERS, CAG_TYPES(ANGLE)},
+    {CAG_OP_DIVIDE, CAG_TYPES(ANGLE), CAG_TYPES(ANGLE), NUMBERS},
+    {CAG_OP_DIVIDE, LISTS, NUMBERS, CAG_TYPES(LIST)},
+    {CAG_OP_MODULO, NUMBERS, NUMBERS, NUMBERS},
+    {CAG_OP_MODULO, CAG_TYPES(ANGLE), CAG_TYPES(ANGLE), CAG_TYPES(ANGLE)},
+    {CAG_OP_POWER, NUMBERS, NUMBERS, NUMBERS},
+    {CAG_OP_LESS, NUMBERS, NUMBERS, CAG_TYPES(BOOL)},
+    {CAG_OP_LESS, CAG_TYPES(ANGLE), CAG_TYPES(ANGLE), CAG_TYPES(BOOL)},
+    {CAG_OP_LESS, CAG_TYPES(TEXT), CAG_TYPES(TEXT), CAG_TYPES(BOOL)},
+};
+
+CagTypes cag_types_joined(CagBinaryOp op, CagTypes left, CagTypes right) {
+  CagTypes result = 0;
+  switch (op) {
+  case CAG_OP_EQUAL:
+  case CAG_OP_NOT_EQUAL:
+  case CAG_OP_IN: return CAG_TYPES(BOOL);
+  case CAG_OP_LESS_EQUAL:
+  case CAG_OP_GREATER:
+  case CAG_OP_GREATER_EQUAL: op = CAG_OP_LESS; break;
+  default: break;
+  }
+  // Types that the table does not tell of may join in their own ways.
+  if ((left | right) & ~PLAIN) result = op == CAG_OP_LESS ? CAG_TYPES(BOOL) : CAG_TYPES_ANY;
+  for (size_t i = 0; i < sizeof joined / sizeof *joined; i++)
+    if (joined[i].op == op && left & joined[i].left && right & joined[i].right)
+      result |= joined[i].result;
+  return result;
+}
+
+// --- Names ---
+
+const char *cag_types_text(CagTypes types, char *buffer, size_t size) {
+  static const char *const articles[] = {
+#define X(tag, name, article) article,
+      CAG_VALUE_TYPES(X)
+#undef X
+  };
+  size_t left = 0, n = 0;
+  types &= ~CAG_TYPES(JET);
+  if (types & CAG_TYPES(CLOSURE)) types &= ~CAG_TYPES(BUILTIN);
+  for (size_t i = 0; i < CAG_TYPE_COUNT; i++) left += types >> i & 1;
+  if (left > 6) {
+    snprintf(buffer, size, "another type");
+    return buffer;
+  }
+  buffer[0] = 0;
+  for (size_t i = 0; i < CAG_TYPE_COUNT && n < size; i++) {
+    if (!(types >> i & 1)) continue;
+    const char *between = n == 0 ? "" : left == 1 ? " or " : ", ";
+    n += (size_t)snprintf(buffer + n, size - n, "%s%s", between, articles[i]);
+    left--;
+  }
+  return buffer;
+}

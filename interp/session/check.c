@@ -1,0 +1,31 @@
+// A script checked without being run.
+
+#include "interp/check/check.h"
+
+#include "interp/session/session.h"
+
+typedef struct Check {
+  const char *path, *name, *text;
+  size_t length;
+} Check;
+
+static bool check(CagVm *vm, void *context) {
+  const Check *c = context;
+  int status;
+  const size_t k = c->path ? cag_load_file(vm, c->path, &status)
+                           : cag_load_text(vm, c->name, c->text, c->length, CAG_PARSE_FILE);
+  return k != CAG_NO_MODULE && cag_check_module(vm, vm->modules[k]);
+}
+
+static int start_check(CagSession *s, Check *c) {
+  cag_session_drop_vm(s);
+  return cag_session_work(s, check, c);
+}
+
+int cag_session_check_file(CagSession *s, const char *path) {
+  return start_check(s, &(Check){.path = path});
+}
+
+int cag_session_check_text(CagSession *s, const char *name, const char *text, size_t length) {
+  return start_check(s, &(Check){.name = name, .text = text, .length = length});
+}

@@ -1,0 +1,124 @@
+// The checker: what it finds, and that it finds nothing in scripts that are right.
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "cag.h"
+
+// The codes of what is said of a script, each with its line: "E0301:2 E0900:1".
+static const char *found(const char *script) {
+  static char text[1024];
+  CagSessionOptions options;
+  cag_session_options_init(&options);
+  CagSession *s = cag_session_new(&options);
+  cag_session_check_text(s, "test", script, strlen(script));
+  text[0] = 0;
+  for (size_t i = 0; i < cag_session_error_count(s); i++) {
+    CagErrorView view;
+    cag_session_error(s, i, &view);
+    char one[64];
+    snprintf(one, sizeof one, "%s%s:%zu", i ? " " : "", view.code, view.line);
+    strncat(text, one, sizeof text - strlen(text) - 1);
+  }
+  cag_session_free(s);
+  return text;
+}
+
+static void arguments_are_counted_and_named(void **state) {
+  (void)state;
+  assert_string_equal(found("print sqrt(1, 2)"), "E0302:1");
+  assert_string_equal(found("print sqrt()"), "E0302:1");
+  assert_string_equal(found("print box(10, centred: true)"), "E0303:1");
+  assert_string_equal(found("f(x, y = 2) = x + y\nprint f(1, 2, 3)"), "E0302:2");
+  assert_string_equal(found("f(x, y = 2) = x + y\nprint f(y: 1)"), "E0302:2");
+  assert_string_equal(found("f(x, y = 2) = x + y\nprint f(1, z: 1)"), "E0303:2");
+  assert_string_equal(found("f(x, y = 2) = x + y\nprint f(1, x: 1)"), "E0303:2");
+  assert_string_equal(found("f(x, y = 2) = x + y\nprint 1 |> f(2), 1 |> f(y: 3)"), "");
+  assert_string_equal(found("f(x) = x\nprint 1 |> f(2)"), "E0302:2");
+  assert_string_equal(found("g = { h(a) = a; h(1, 2) }\nprint g"), "E0302:1");
+  assert_string_equal(found("import std.materials as m\nprint m.glazed(\"red\", 1, 2, 3, 4)"), "E0302:2");
+}
+
+static void types_that_cannot_be_are_found(void **state) {
+  (void)state;
+  assert_string_equal(found("print sin(30)"), "E0301:1");
+  assert_string_equal(found("print sqrt(2deg)"), "E0301:1");
+  assert_string_equal(found("print 1 + 2deg"), "E0321:1");
+  assert_string_equal(found("a = 3\nprint a + \"x\""), "E0321:2");
+  assert_string_equal(found("c = line([0, 0, 0], [1, 0, 0])\nprint gaussian_curvature(c, 0, 0)"),
+                      "E0301:2");
+  assert_string_equal(found("print if 1 then 2 else 3"), "E0309:1");
+  assert_string_equal(found("print not 1, 1 and true"), "E0309:1 E0309:1");
+  assert_string_equal(found("print 3(4)"), "E0304:1");
+  assert_string_equal(found("print true[0]"), "E0301:1");
+  assert_string_equal(found("print -\"a\""), "E0321:1");
+  assert_string_equal(found("print [for i in 0..3: sin(i)]"), "E0301:1");
+  assert_string_equal(found("param h = 10 in 20..30\nprint h"), "E0250:1");
+}
+
+static void what_may_be_right_is_left_alone(void **state) {
+  (void)state;
+  assert_string_equal(found("f(x) = sin(x) + x\nprint f(1)"), ""); // x could be anything
+  assert_string_equal(found("x = if time > 0 then 1 else 1deg\nprint sin(x)"), "");
+  assert_string_equal(found("print attempt(() => sin(30), e => e.code)"), "");
+  assert_string_equal(found("even(n) = if n == 0 then true else odd(n - 1)\n"
+                            "odd(n) = if n == 0 then false else even(n - 1)\nprint even(4)"),
+                      "");
+  assert_string_equal(found("print 360deg * time, frame + frames"), "");
+}
+
+static void definitions_that_nothing_uses_are_told(void **state) {
+  (void)state;
+  assert_string_equal(found("a = 1\nb = 2\nprint b"), "E0900:1");
+  assert_string_equal(found("a = b\nb = 2\nprint 1"), "E0900:1 E0900:2");
+  assert_string_equal(found("a = 1\n_b = 2\n"), "E0900:2"); // a module
+  assert_string_equal(found("import std.materials\nprint 1"), "E0900:1");
+  assert_string_equal(found("import std.materials: glazed, matte\nprint glazed(\"red\")"),
+                      "E0900:1");
+  assert_string_equal(found("print { a = 1; _b = 2; 3 }"), "E0900:1");
+  assert_string_equal(found("print if true then 1 else 2"), "E0901:1");
+  assert_string_equal(found("/// deprecated: use g\nf(x) = x\nprint f(1)"), "E0902:3");
+}
+
+static void a_long_chain_of_definitions_is_no_trouble(void **state) {
+  (void)state;
+  char *script = malloc(4000000), *p = script;
+  for (int i = 0; i < 100000; i++) p += sprintf(p, "a%d = a%d + 1\n", i, i + 1);
+  sprintf(p, "a100000 = 1\nprint a0\n");
+  assert_string_equal(found(script), "");
+  free(script);
+}
+
+// Whatever the table of built-ins says as an example is right.
+static void examples_are_found_right(void **state) {
+  (void)state;
+  const char *signature, *summary, *example, *family;
+  size_t seen = 0;
+  for (size_t i = 0; cag_builtin_row(i, &signature, &summary, &example, &family); i++) {
+    if (!example || strstr(example, "expect error")) continue;
+    seen++;
+    const char *codes = found(example);
+    if (strstr(codes, "E03") || strstr(codes, "E02"))
+      fail_msg("%s: %s in\n%s", signature, codes, example);
+  }
+  assert_true(seen > 300);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(arguments_are_counted_and_named),
+      cmocka_unit_test(types_that_cannot_be_are_found),
+      cmocka_unit_test(what_may_be_right_is_left_alone),
+      cmocka_unit_test(definitions_that_nothing_uses_are_told),
+      cmocka_unit_test(a_long_chain_of_definitions_is_no_trouble),
+      cmocka_unit_test(examples_are_found_right),
+  };
+  return cmocka_run_group_tests_name("checker", tests, NULL, NULL);
+}
