@@ -14,6 +14,7 @@
 typedef struct Part {
   uint32_t v[3];
   uint32_t piece;
+  uint32_t origin; // the triangle that it was split from, or itself
   bool turned;
 } Part;
 
@@ -23,8 +24,16 @@ typedef struct Vertex {
   uint32_t point, next, first;
 } Vertex;
 
+// Two triangles that are joined at an edge of more.
+typedef struct Pair {
+  uint32_t low, high;
+  uint32_t triangle[2];
+  uint32_t corner[2]; // of the first triangle at the ends, as in `corner` below
+} Pair;
+
+// A triangle whose edge from low to high gets a point in the middle.
 typedef struct Pinch {
-  uint32_t low, high, middle;
+  uint32_t low, high, triangle, middle;
 } Pinch;
 
 typedef struct Builder {
@@ -37,7 +46,7 @@ typedef struct Builder {
   uint32_t *head;   // of a corner's root: its vertices
   Vertex *vertices;
   size_t vertex_count;
-  BoolList pinched; // of Pinch
+  BoolList pairs, pinched; // of Pair, of Pinch
 } Builder;
 
 static bool is_inside(CagSetOperation op, bool a, bool b) {
@@ -53,7 +62,7 @@ static void take_piece(Builder *b, CagSetOperation op, uint32_t i) {
   const bool outer = is_inside(op, front[0] > 0, front[1] > 0);
   const bool inner = is_inside(op, front[0] + p->times[0] > 0, front[1] + p->times[1] > 0);
   if (inner == outer) return;
-  Part part = {{0, 0, 0}, i, outer};
+  Part part = {{0, 0, 0}, i, 0, outer};
   for (int k = 0; k < 3; k++)
     part.v[k] = bool_points_first(&w->points, p->v[outer && k ? 3 - k : k]);
   if (part.v[0] == part.v[1] || part.v[1] == part.v[2] || part.v[2] == part.v[0]) return;
@@ -129,17 +138,24 @@ static void join(uint32_t *parent, uint32_t a, uint32_t b) {
   else parent[a] = b;
 }
 
-static void join_uses(Builder *b, const CagMeshEdge *one, const CagMeshEdge *two) {
-  uint32_t ends[2][2];
+static Pair join_uses(Builder *b, const CagMeshEdge *one, const CagMeshEdge *two) {
+  Pair pair = {one->low, one->high, {0, 0}, {0, 0}};
   for (int i = 0; i < 2; i++) {
     const CagMeshEdge *e = i ? two : one;
-    const uint32_t base = 3 * (uint32_t)cag_mesh_edge_triangle(e), k = cag_mesh_edge_corner(e);
+    pair.triangle[i] = (uint32_t)cag_mesh_edge_triangle(e);
+    const uint32_t base = 3 * pair.triangle[i], k = cag_mesh_edge_corner(e);
     const bool forward = cag_mesh_edge_forward(e);
-    ends[i][0] = base + (forward ? k : (k + 1) % 3);
-    ends[i][1] = base + (forward ? (k + 1) % 3 : k);
+    const uint32_t low = base + (forward ? k : (k + 1) % 3);
+    const uint32_t high = base + (forward ? (k + 1) % 3 : k);
+    if (i) {
+      join(b->corner, pair.corner[0], low);
+      join(b->corner, pair.corner[1], high);
+    } else {
+      pair.corner[0] = low;
+      pair.corner[1] = high;
+    }
   }
-  join(b->corner, ends[0][0], ends[1][0]);
-  join(b->corner, ends[0][1], ends[1][1]);
+  return pair;
 }
 
 typedef struct Spoke {
@@ -169,7 +185,8 @@ static bool join_many(Builder *b, const CagMeshEdge *e, size_t n) {
     const CagVec3 apex = cag_sub(at[p->v[(cag_mesh_edge_corner(&e[i]) + 2) % 3]], low);
     spokes[i] = (Spoke){atan2(cag_dot(apex, y), cag_dot(apex, x)), &e[i]};
   }
-  const bool done = spokes && open;
+  const bool done =
+      spokes && open && bool_list_reserve(&b->pairs, b->pairs.n + n / 2, sizeof(Pair));
   if (done) qsort(spokes, n, sizeof *spokes, by_angle);
   // Twice around: brackets that open before the start and close after it.
   size_t depth = 0;
@@ -179,7 +196,7 @@ static bool join_many(Builder *b, const CagMeshEdge *e, size_t n) {
     if (!cag_mesh_edge_forward(*use)) {
       if (i < n) open[depth++] = *use;
     } else if (depth > 0) {
-      join_uses(b, open[--depth], *use);
+      ((Pair *)b->pairs.items)[b->pairs.n++] = join_uses(b, open[--depth], *use);
       *use = NULL;
     }
   }
@@ -196,30 +213,50 @@ static size_t uses_of(const CagMeshEdge *e, size_t left) {
 
 // Do two of the pairs at an edge have one vertex at both ends? Where a solid touches itself along
 // an edge and hangs together around each end, they do.
-static bool is_pinched(Builder *b, const CagMeshEdge *e, size_t n) {
+static bool is_pinched(Builder *b, const Pair *p, size_t n) {
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < i; k++) {
-      bool same = cag_mesh_edge_forward(&e[i]) && cag_mesh_edge_forward(&e[k]);
-      for (unsigned end = 0; end < 2 && same; end++) {
-        const uint32_t one =
-            3 * (uint32_t)cag_mesh_edge_triangle(&e[i]) + (cag_mesh_edge_corner(&e[i]) + end) % 3;
-        const uint32_t two =
-            3 * (uint32_t)cag_mesh_edge_triangle(&e[k]) + (cag_mesh_edge_corner(&e[k]) + end) % 3;
-        same = bool_root(b->corner, one) == bool_root(b->corner, two);
-      }
+      bool same = true;
+      for (int end = 0; end < 2 && same; end++)
+        same = bool_root(b->corner, p[i].corner[end]) == bool_root(b->corner, p[k].corner[end]);
       if (same) return true;
     }
   return false;
 }
 
-// Gives such an edge a point in the middle, for the pairs to differ in.
-static bool note_pinched(Builder *b, const CagMeshEdge *e) {
-  const CagVec3 *at = b->w->points.at;
-  const uint32_t middle =
-      bool_points_add_far(&b->w->points, cag_lerp(at[e->low], at[e->high], 0.5));
-  if (!bool_list_reserve(&b->pinched, b->pinched.n + 1, sizeof(Pinch))) return false;
-  ((Pinch *)b->pinched.items)[b->pinched.n++] = (Pinch){e->low, e->high, middle};
-  return middle != BOOL_NONE;
+// Gives each pair at such an edge a point in the middle of its own.
+static bool part_pairs(Builder *b, const Pair *p, size_t n) {
+  if (!bool_list_reserve(&b->pinched, b->pinched.n + 2 * n, sizeof(Pinch))) return false;
+  for (size_t i = 0; i < n; i++) {
+    const CagVec3 *at = b->w->points.at;
+    const CagVec3 half = cag_lerp(at[p[i].low], at[p[i].high], 0.5);
+    const uint32_t middle = bool_points_add_far(&b->w->points, half);
+    if (middle == BOOL_NONE) return false;
+    for (int k = 0; k < 2; k++)
+      ((Pinch *)b->pinched.items)[b->pinched.n++] =
+          (Pinch){p[i].low, p[i].high, p[i].triangle[k], middle};
+  }
+  return true;
+}
+
+static int by_edge(const void *a, const void *b) {
+  const Pinch *p = a, *q = b;
+  if (p->low != q->low) return p->low < q->low ? -1 : 1;
+  if (p->high != q->high) return p->high < q->high ? -1 : 1;
+  return p->triangle < q->triangle ? -1 : p->triangle > q->triangle;
+}
+
+static bool find_pinched(Builder *b) {
+  const Pair *p = b->pairs.items;
+  b->pinched.n = 0;
+  for (size_t i = 0, same; i < b->pairs.n; i += same) {
+    for (same = 1;
+         i + same < b->pairs.n && p[i + same].low == p[i].low && p[i + same].high == p[i].high;)
+      same++;
+    if (is_pinched(b, p + i, same) && !part_pairs(b, p + i, same)) return false;
+  }
+  if (b->pinched.n) qsort(b->pinched.items, b->pinched.n, sizeof(Pinch), by_edge);
+  return true;
 }
 
 static bool join_corners(Builder *b) {
@@ -235,36 +272,26 @@ static bool join_corners(Builder *b) {
   }
   CagMeshEdge *edges = cag_mesh_edges(b->triangles, b->n, NULL, b->w->points.n, &n);
   bool done = edges != NULL;
+  b->pairs.n = 0;
   for (size_t i = 0, uses; done && i < n; i += uses) {
     uses = uses_of(edges + i, n - i);
-    if (uses == 2) join_uses(b, &edges[i], &edges[i + 1]);
+    if (uses == 2) (void)join_uses(b, &edges[i], &edges[i + 1]);
     else done = join_many(b, edges + i, uses);
-  }
-  b->pinched.n = 0;
-  for (size_t i = 0, uses; done && i < n; i += uses) {
-    uses = uses_of(edges + i, n - i);
-    if (uses > 2 && is_pinched(b, edges + i, uses)) done = note_pinched(b, edges + i);
   }
   free(edges);
   return done;
 }
 
-static int by_ends(const void *a, const void *b) {
-  const Pinch *p = a, *q = b;
-  if (p->low != q->low) return p->low < q->low ? -1 : 1;
-  return p->high < q->high ? -1 : p->high > q->high;
-}
-
 // Splits triangles, also those that come from splitting, until no edge is a pinched one.
 static bool split_pinched(Builder *b) {
   BoolList parts = {b->parts, b->n, b->n};
+  for (uint32_t i = 0; i < b->n; i++) b->parts[i].origin = i;
   for (size_t i = 0; i < parts.n; i++)
     for (int k = 0; k < 3; k++) {
       const Part part = ((Part *)parts.items)[i];
       const uint32_t p = part.v[k], q = part.v[(k + 1) % 3];
-      const Pinch key = {p < q ? p : q, p < q ? q : p, 0};
-      const Pinch *pinch =
-          bsearch(&key, b->pinched.items, b->pinched.n, sizeof key, by_ends); // edges are sorted
+      const Pinch key = {p < q ? p : q, p < q ? q : p, part.origin, 0};
+      const Pinch *pinch = bsearch(&key, b->pinched.items, b->pinched.n, sizeof key, by_edge);
       if (!pinch) continue;
       if (!bool_list_reserve(&parts, parts.n + 1, sizeof part)) return false;
       b->parts = parts.items;
@@ -272,16 +299,19 @@ static bool split_pinched(Builder *b) {
       half.v[k] = pinch->middle;
       b->parts[parts.n++] = half;
       b->parts[i].v[(k + 1) % 3] = pinch->middle;
-      k = -1;
+      k = -1; // from the start with what is left of the triangle
     }
-  b->parts = parts.items;
   b->n = parts.n;
   return true;
 }
 
+// Ends: each round leaves fewer edges of more than two triangles.
 static bool join_all(Builder *b) {
-  if (!join_corners(b)) return false;
-  return b->pinched.n == 0 || (split_pinched(b) && join_corners(b));
+  for (;;) {
+    if (!join_corners(b) || !find_pinched(b)) return false;
+    if (b->pinched.n == 0) return true;
+    if (!split_pinched(b)) return false;
+  }
 }
 
 // --- Normals ---
@@ -375,6 +405,7 @@ CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out) {
   free(b.triangles);
   free(b.corner);
   free(b.head);
+  free(b.pairs.items);
   free(b.pinched.items);
   free(b.vertices);
   return status;

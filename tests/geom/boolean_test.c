@@ -330,6 +330,19 @@ static void cubes_turned_by_next_to_nothing(void **state) {
     }
 }
 
+// Nearly all triangles are cut, and most points fall together when they are rounded.
+static void balls_turned_by_next_to_nothing(void **state) {
+  (void)state;
+  const double angles[] = {1e-9, 1e-15, 3e-16};
+  for (int i = 0; i < 3; i++) {
+    CagMesh *a = ball(cag_vec3(0, 0, 0), 1, 24, true);
+    CagMesh *b = rotated(ball(cag_vec3(0, 0, 0), 1, 24, true), cag_vec3(1, 2, 3), angles[i]);
+    check_pair(a, b, 1, 2);
+    cag_mesh_release(a);
+    cag_mesh_release(b);
+  }
+}
+
 static void a_box_far_from_the_origin(void **state) {
   (void)state;
   CagMesh *a = cube(1e6, -1e6, 1e6, 1), *b = cube(1e6 + 0.3, -1e6 + 0.3, 1e6 + 0.3, 1);
@@ -613,6 +626,7 @@ int main(void) {
       cmocka_unit_test(boxes_that_touch),
       cmocka_unit_test(solids_of_several_parts_and_cavities),
       cmocka_unit_test(cubes_turned_by_next_to_nothing),
+      cmocka_unit_test(balls_turned_by_next_to_nothing),
       cmocka_unit_test(a_box_far_from_the_origin),
       cmocka_unit_test(a_drilled_box),
       cmocka_unit_test(the_lens_of_two_spheres),
