@@ -10,6 +10,8 @@
 #define RIGID 1e-9
 // A coupling whose determinant is this small beside the product of its rows' lengths is singular.
 #define COUPLING_SINGULAR 1e-12
+// Lengths whose squares and products are still numbers.
+#define REACH_MAX 1e100
 // Joint values beyond a limit by less than this (radians, or parts of the reach) are on it.
 #define ON_LIMIT 1e-12
 
@@ -50,7 +52,7 @@ static CagStatus check_limits(const CagRobotLink *l, long joint, CagError *err) 
   cag_number_text(l->low * unit, low);
   cag_number_text(l->high * unit, high);
   cag_number_text(l->home * unit, home);
-  if (!isfinite(l->low) || !isfinite(l->high))
+  if (!isfinite(l->high - l->low))
     return cag_fail(err, CAG_E_ARGUMENT, "joint-limits", "limits", joint,
                     "the limits of %s are %s%s..%s%s; they must be finite (a joint that "
                     "turns freely has -360deg..360deg, say)",
@@ -300,7 +302,10 @@ CagStatus cag_robot_new(const CagRobotSpec *spec, CagRobot **out, CagError *err)
   r->tool = spec->tool;
   fill_stages(r);
   r->reach = reach_of(r);
-  status = fill_coupling(r, spec, err);
+  status = r->reach < REACH_MAX
+               ? fill_coupling(r, spec, err)
+               : cag_fail(err, CAG_E_ARGUMENT, "link-number", "links", -1,
+                          "the lengths of the links add up to more than %g", REACH_MAX);
   if (status) cag_robot_release(r);
   else *out = r;
   return status;
@@ -439,16 +444,12 @@ size_t cag_robot_outside(const CagRobot *r, const double *q, double *by) {
 // `wanted`.
 static bool turn_into(const CagRobotLink *l, double slack, double wanted, double *q) {
   const double turn = 2 * M_PI;
-  double best = 0, lowest = *q - floor((*q - l->low + slack) / turn) * turn;
-  bool found = false;
-  for (double x = lowest; x <= l->high + slack; x += turn) {
-    double inside = fmin(fmax(x, l->low), l->high);
-    if (found && fabs(inside - wanted) >= fabs(best - wanted)) continue;
-    best = inside;
-    found = true;
-  }
-  if (found) *q = best;
-  return found;
+  double x = wanted + remainder(*q - wanted, turn);
+  if (x > l->high + slack) x -= ceil((x - l->high - slack) / turn) * turn;
+  if (x < l->low - slack) x += ceil((l->low - slack - x) / turn) * turn;
+  if (x > l->high + slack) return false;
+  *q = fmin(fmax(x, l->low), l->high);
+  return true;
 }
 
 bool cag_robot_into_limits(const CagRobot *r, const double *near, double *q) {

@@ -205,8 +205,13 @@ static CagStatus fail_singular(size_t step, bool between, CagError *err) {
                   between ? step - 1 : step, between ? step : step + 1);
 }
 
+static CagStatus fail_stopped(CagError *err) {
+  return cag_fail(err, CAG_E_CALLBACK, "callback", "", -1, "the path was not finished");
+}
+
 CagStatus cag_robot_line_path(const CagRobot *r, const CagTransform *from, const CagTransform *to,
-                              size_t n, const double *near, bool cross, double *q, CagError *err) {
+                              size_t n, const double *near, bool cross, CagRobotWatch watch,
+                              double *q, CagError *err) {
   size_t joints = r->joint_count;
   CagRobotFound found;
   CagRobotGoal goal = {.near = near};
@@ -217,6 +222,7 @@ CagStatus cag_robot_line_path(const CagRobot *r, const CagTransform *from, const
   int sign = jacobian_sign(r, q);
   for (size_t k = 1; k < n; k++) {
     CagTransform next = *to;
+    if (watch.going && !watch.going(watch.data)) return fail_stopped(err);
     double *here = q + k * joints;
     if (k + 1 < n) {
       status = cag_transform_mix(from, to, (double)k / (double)(n - 1), &next, err);
@@ -235,13 +241,15 @@ CagStatus cag_robot_line_path(const CagRobot *r, const CagTransform *from, const
 }
 
 CagStatus cag_robot_follow(const CagRobot *r, const CagTransform *poses, size_t n,
-                           const double *near, bool jumps, double *q, CagError *err) {
+                           const double *near, bool jumps, CagRobotWatch watch, double *q,
+                           CagError *err) {
   size_t joints = r->joint_count;
   double done;
   for (size_t k = 0; k < n; k++) {
     double *here = q + k * joints, before[CAG_ROBOT_JOINTS_MAX];
     CagRobotFound found;
     Tracked how = LEFT;
+    if (watch.going && !watch.going(watch.data)) return fail_stopped(err);
     if (k > 0) {
       memcpy(before, here - joints, joints * sizeof *q);
       memcpy(here, before, joints * sizeof *q);

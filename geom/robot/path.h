@@ -18,6 +18,13 @@ typedef struct CagRobotGoal {
 CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const CagRobotGoal *goal,
                           double *q, CagRobotFound *found, CagError *err);
 
+// Asked between poses of a path whether to go on; `going` NULL: always. One that says no ends the
+// path with CAG_E_CALLBACK.
+typedef struct CagRobotWatch {
+  bool (*going)(void *data);
+  void *data;
+} CagRobotWatch;
+
 // n >= 2 places of the joints whose poses lie evenly on the way from one pose to another: straight
 // for the origin, about one axis for the rotation. q has n times joint_count values. `cross` lets
 // the way pass through singular places.
@@ -25,10 +32,12 @@ CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const C
 // "path-jumps" (the joints would have to jump there: a limit or a singularity stands between),
 // "path-singular"; err->index is the step, and the message tells it.
 CagStatus cag_robot_line_path(const CagRobot *r, const CagTransform *from, const CagTransform *to,
-                              size_t n, const double *near, bool cross, double *q, CagError *err);
+                              size_t n, const double *near, bool cross, CagRobotWatch watch,
+                              double *q, CagError *err);
 // Joint places for n poses, each reached from the one before without a jump to another branch
 // where there is such a way. `jumps` lets the joints go to another branch where there is none.
 CagStatus cag_robot_follow(const CagRobot *r, const CagTransform *poses, size_t n,
-                           const double *near, bool jumps, double *q, CagError *err);
+                           const double *near, bool jumps, CagRobotWatch watch, double *q,
+                           CagError *err);
 
 #endif

@@ -139,6 +139,8 @@ bool cag_robots_joint_path(CagCall *call, CagValue *result) {
   return ok;
 }
 
+static bool going(void *vm) { return cag_keep_going(vm); }
+
 // robot, from, to, n, near, cross
 bool cag_robots_line_path(CagCall *call, CagValue *result) {
   CagRobot *r = NULL;
@@ -152,7 +154,8 @@ bool cag_robots_line_path(CagCall *call, CagValue *result) {
       !cag_arg_joints_or_home(call, 4, r, false, near) ||
       !cag_arg_bool_or(call, 5, false, &cross) || !take_places(call, r, (size_t)n, &q))
     return false;
-  CagStatus status = cag_robot_line_path(r, &from, &to, (size_t)n, near, cross, q, &err);
+  CagStatus status = cag_robot_line_path(r, &from, &to, (size_t)n, near, cross,
+                                         (CagRobotWatch){going, call->vm}, q, &err);
   bool ok = cag_geometry_ok(call, status, &err) && give_places(call, r, q, (size_t)n, result);
   free(q);
   return ok;
@@ -184,7 +187,10 @@ bool cag_robots_follow(CagCall *call, CagValue *result) {
   bool ok = cag_arg_robot(call, 0, &r) && cag_arg_joints_or_home(call, 2, r, false, near) &&
             cag_arg_bool_or(call, 3, false, &jumps) && read_poses(call, 1, &poses, &n) &&
             take_places(call, r, n, &q) &&
-            cag_geometry_ok(call, cag_robot_follow(r, poses, n, near, jumps, q, &err), &err) &&
+            cag_geometry_ok(call,
+                            cag_robot_follow(r, poses, n, near, jumps,
+                                             (CagRobotWatch){going, call->vm}, q, &err),
+                            &err) &&
             give_places(call, r, q, n, result);
   free(poses);
   free(q);

@@ -138,6 +138,34 @@ static void freedom_to_spare_goes_into_being_near(void **state) {
   cag_robot_release(r);
 }
 
+// Numbers that no robot has end in an answer, not in a loop.
+static void hostile_numbers_come_to_an_end(void **state) {
+  (void)state;
+  CagRobotLink link = cag_robot_link(CAG_JOINT_REVOLUTE);
+  CagRobotSpec spec = {.links = &link,
+                       .link_count = 1,
+                       .base = cag_transform_identity(),
+                       .tool = cag_transform_identity()};
+  CagRobot *r = NULL;
+  link.a = 1e308;
+  FAILS(cag_robot_new(&spec, &r, &err), "link-number");
+  link.a = 1;
+  link.low = -1.7e308;
+  link.high = 1.7e308;
+  FAILS(cag_robot_new(&spec, &r, &err), "joint-limits");
+  link.low = -1e300;
+  link.high = 1e300;
+  OK(cag_robot_new(&spec, &r, &err));
+  double q[] = {3e299}, by;
+  assert_true(cag_robot_into_limits(r, NULL, q));
+  CagTransform far = cag_translate(cag_vec3(1e308, -1e308, 1e308));
+  CagRobotSearch search = {0};
+  assert_false(cag_robot_search(r, &far, &search, q).solved);
+  assert_true(isfinite(q[0]));
+  assert_int_equal(cag_robot_outside(r, q, &by), 1);
+  cag_robot_release(r);
+}
+
 static void a_chain_without_joints_is_asked_safely(void **state) {
   (void)state;
   CagRobotLink fixed = cag_robot_link(CAG_JOINT_FIXED);
@@ -150,29 +178,41 @@ static void a_chain_without_joints_is_asked_safely(void **state) {
   cag_robot_release(r);
 }
 
+static bool never(void *data) {
+  ++*(int *)data;
+  return false;
+}
+
 static void lines_are_straight_and_name_where_they_end(void **state) {
   (void)state;
   static const double rows[3][4] = {{0, 300, 0, 180}, {0, 200, 0, 170}, {0, 0, 0, 180}};
   CagRobot *r = chain(rows, 3);
   const double near[] = {0, 90 * DEGREE, 0};
+  const CagRobotWatch always = {0};
+  int asked = 0;
   CagTransform a = cag_translate(cag_vec3(300, 100, 0)), b = cag_translate(cag_vec3(100, 300, 0)),
                far = cag_translate(cag_vec3(600, 100, 0));
   double q[21][3];
-  OK(cag_robot_line_path(r, &a, &b, 21, near, false, &q[0][0], &err));
+  OK(cag_robot_line_path(r, &a, &b, 21, near, false, always, &q[0][0], &err));
   for (int k = 0; k < 21; k++) {
     CagTransform wanted = cag_translate(cag_vec3(300 - 10 * k, 100 + 10 * k, 0));
     assert_reaches(r, q[k], &wanted, 1e-9);
     assert_true(q[k][1] > 0); // never the other elbow
   }
   // The reach of 500 ends at x = sqrt(500^2 - 100^2) = 489.9, after step 9 of steps of 20 mm.
-  assert_int_equal(cag_robot_line_path(r, &a, &far, 16, near, false, &q[0][0], &err),
+  assert_int_equal(cag_robot_line_path(r, &a, &far, 16, near, false, always, &q[0][0], &err),
                    CAG_E_DEGENERATE);
   assert_string_equal(err.reason, "path-leaves");
   assert_int_equal(err.index, 10);
   const CagTransform poses[] = {a, b, far};
-  OK(cag_robot_follow(r, poses, 2, near, false, &q[0][0], &err));
-  assert_int_equal(cag_robot_follow(r, poses, 3, near, false, &q[0][0], &err), CAG_E_DEGENERATE);
+  OK(cag_robot_follow(r, poses, 2, near, false, always, &q[0][0], &err));
+  assert_int_equal(cag_robot_follow(r, poses, 3, near, false, always, &q[0][0], &err),
+                   CAG_E_DEGENERATE);
   assert_int_equal(err.index, 2);
+  const CagRobotWatch stop = {never, &asked};
+  assert_int_equal(cag_robot_follow(r, poses, 2, near, false, stop, &q[0][0], &err),
+                   CAG_E_CALLBACK);
+  assert_int_equal(asked, 1);
   cag_robot_release(r);
 }
 
@@ -269,6 +309,7 @@ int main(void) {
       cmocka_unit_test(poses_of_chains_are_found_within_the_limits),
       cmocka_unit_test(out_of_reach_the_nearest_point_is_found),
       cmocka_unit_test(freedom_to_spare_goes_into_being_near),
+      cmocka_unit_test(hostile_numbers_come_to_an_end),
       cmocka_unit_test(a_chain_without_joints_is_asked_safely),
       cmocka_unit_test(lines_are_straight_and_name_where_they_end),
       cmocka_unit_test(classical_arms_have_their_volumes),
