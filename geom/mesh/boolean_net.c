@@ -127,13 +127,21 @@ static bool doubt(BoolNet *n, uint32_t cell, int e) {
   if (!bool_list_reserve(&n->doubtful, n->doubtful.n + 1, sizeof(BoolEdge))) return false;
   const BoolCell *c = &bool_cells(n)[cell];
   ((BoolEdge *)n->doubtful.items)[n->doubtful.n++] =
-      (BoolEdge){c->v[(e + 1) % 3], c->v[(e + 2) % 3]};
+      (BoolEdge){c->v[(e + 1) % 3], c->v[(e + 2) % 3], cell};
   return true;
 }
 
-// The cell that runs the edge from a to b, and the corner opposite; false: there is none.
-static bool find_edge(const BoolNet *n, uint32_t a, uint32_t b, uint32_t *cell, int *corner) {
-  const uint32_t start = n->cell_of[a];
+// The cell that runs the edge from a to b, and the corner opposite; false: there is none. Looks at
+// edge.cell first: some points have very many cells around them.
+static bool find_edge(const BoolNet *n, BoolEdge edge, uint32_t *cell, int *corner) {
+  const uint32_t a = edge.a, b = edge.b, start = n->cell_of[a];
+  const BoolCell *had = &bool_cells(n)[edge.cell];
+  for (int k = 0; k < 3; k++)
+    if (had->v[k] == a && had->v[(k + 1) % 3] == b) {
+      *cell = edge.cell;
+      *corner = (k + 2) % 3;
+      return true;
+    }
   for (int step = 1; step <= 2; step++) { // counter-clockwise, from a border the other way
     uint32_t at = start;
     do {
@@ -154,7 +162,7 @@ static bool settle_doubts(BoolNet *n) {
     const BoolEdge edge = ((BoolEdge *)n->doubtful.items)[--n->doubtful.n];
     uint32_t cell;
     int e;
-    if (!find_edge(n, edge.a, edge.b, &cell, &e) || !should_flip(n, cell, e)) continue;
+    if (!find_edge(n, edge, &cell, &e) || !should_flip(n, cell, e)) continue;
     const uint32_t other = bool_cells(n)[cell].neighbour[e];
     flip(n, cell, e);
     // After a flip the corners that gained the diagonal are first and last, and first and middle.
@@ -317,14 +325,20 @@ static Exit find_exit(const BoolNet *n, uint32_t from, uint32_t to) {
   return (Exit){to, start, 0}; // not reached: the cells around a point leave no gap
 }
 
-static void fix_edge(BoolNet *n, uint32_t a, uint32_t b, uint32_t cut) {
+static void fix_side(BoolNet *n, uint32_t cell, int e, uint32_t cut) {
+  uint32_t *fixed = &bool_cells(n)[cell].fixed[e];
+  if (*fixed == BOOL_NONE) *fixed = cut;
+}
+
+// hint: a cell that may have the edge.
+static void fix_edge(BoolNet *n, uint32_t a, uint32_t b, uint32_t hint, uint32_t cut) {
   uint32_t cell;
   int e;
-  for (int way = 0; way < 2; way++) {
-    if (!find_edge(n, way ? b : a, way ? a : b, &cell, &e)) continue;
-    uint32_t *fixed = &bool_cells(n)[cell].fixed[e];
-    if (*fixed == BOOL_NONE) *fixed = cut;
-  }
+  const bool ahead = find_edge(n, (BoolEdge){a, b, hint}, &cell, &e);
+  if (!ahead && !find_edge(n, (BoolEdge){b, a, hint}, &cell, &e)) return;
+  fix_side(n, cell, e, cut);
+  const uint32_t other = bool_cells(n)[cell].neighbour[e];
+  if (other != BOOL_NONE) fix_side(n, other, place_of_neighbour(&bool_cells(n)[other], cell), cut);
 }
 
 static bool push_crossed(BoolNet *n, BoolEdge edge) {
@@ -355,7 +369,7 @@ static bool list_crossed(BoolNet *n, uint32_t from, uint32_t to, Exit exit, uint
     const BoolCell *c = &bool_cells(n)[at];
     *target = BOOL_NONE;
     if (c->fixed[e] != BOOL_NONE) return split_fixed(n, at, e, cut);
-    const BoolEdge edge = {c->v[(e + 1) % 3], c->v[(e + 2) % 3]}; // from right to left
+    const BoolEdge edge = {c->v[(e + 1) % 3], c->v[(e + 2) % 3], at}; // from right to left
     if (!push_crossed(n, edge)) return false;
     const uint32_t next = c->neighbour[e];
     const BoolCell *o = &bool_cells(n)[next];
@@ -375,9 +389,10 @@ static bool flip_crossed(BoolNet *n, uint32_t from, uint32_t to) {
     const BoolEdge edge = ((BoolEdge *)n->crossed.items)[i];
     uint32_t cell;
     int e;
-    if (!find_edge(n, edge.a, edge.b, &cell, &e)) continue;
+    if (!find_edge(n, edge, &cell, &e)) continue;
     const BoolCell *c = &bool_cells(n)[cell];
-    const BoolCell *o = &bool_cells(n)[c->neighbour[e]];
+    const uint32_t other = c->neighbour[e];
+    const BoolCell *o = &bool_cells(n)[other];
     const uint32_t p = c->v[e], d = o->v[place_of_neighbour(o, cell)];
     if (!is_convex(n, p, edge.a, d, edge.b)) {
       if (!push_crossed(n, edge)) return false;
@@ -385,7 +400,8 @@ static bool flip_crossed(BoolNet *n, uint32_t from, uint32_t to) {
     }
     flip(n, cell, e);
     if (p == from || p == to || d == from || d == to) continue;
-    if (turn(n, from, to, p) * turn(n, from, to, d) < 0 && !push_crossed(n, (BoolEdge){p, d}))
+    if (turn(n, from, to, p) * turn(n, from, to, d) < 0 &&
+        !push_crossed(n, (BoolEdge){p, d, other}))
       return false;
   }
   return true;
@@ -401,7 +417,7 @@ bool bool_net_add_segment(BoolNet *n, uint32_t a, uint32_t b, BoolCut cut) {
     if (target == BOOL_NONE && !list_crossed(n, a, b, exit, number, &target)) return false;
     if (target == BOOL_NONE) continue; // a fixed edge was split: now a point is on the way
     if (exit.target == BOOL_NONE && !flip_crossed(n, a, target)) return false;
-    fix_edge(n, a, target, number);
+    fix_edge(n, a, target, exit.target == BOOL_NONE ? n->last : exit.cell, number);
     a = target;
   }
   return true;

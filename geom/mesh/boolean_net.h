@@ -33,6 +33,7 @@ typedef struct BoolNet {
 
 typedef struct BoolEdge {
   uint32_t a, b;
+  uint32_t cell; // which had the edge
 } BoolEdge;
 
 static inline BoolCell *bool_cells(const BoolNet *n) { return n->cells.items; }
