@@ -1,6 +1,7 @@
 // Intersections by subdivision: parts that the bound of their distance from the chord keeps apart
 // are dropped, parts in which at most one crossing fits are finished by Newton's method, the rest
-// is halved. What is left at the smallest size are touches.
+// is clipped to where its control points let it be near the other, and halved where that helps
+// little. What is left at the smallest size are touches.
 
 #include "geom/curve/intersect.h"
 
@@ -8,6 +9,7 @@
 #include <stdlib.h>
 
 #include "geom/curve/family.h"
+#include "geom/curve/intersect_clip.h"
 
 // Parts of the size of the data: where a curve counts as a chord, where two points are one, where
 // meetings found twice are the same.
@@ -319,6 +321,29 @@ static bool run_along(const CurveSearch *s, const Part *a, const Part *b) {
   return parallel && common > OVERLAP * fmin(length, fabs(y - x)) && common > OVERLAP * s->size;
 }
 
+// Clips the longer-bent of the two parts by the other, then the other by what is left of it;
+// *apart: nothing is left, *smaller: enough has gone that the pair is looked at again.
+static CagStatus clip(const CurveSearch *s, Part *a, Part *b, bool *apart, bool *smaller,
+                      CagError *err) {
+  const double enough = 0.7; // of the interval that may be left: more means several meetings
+  const double slack = CHORD * s->size + s->noise;
+  const Part old_a = *a, old_b = *b;
+  *apart = !cag_curve_clip_parameters(s->a, a->a, a->b, s->b, slack, &b->a, &b->b);
+  *apart = *apart || !cag_curve_clip_parameters(s->b, b->a, b->b, s->a, slack, &a->a, &a->b);
+  *smaller = false;
+  if (*apart) return CAG_OK;
+  *smaller =
+      a->b - a->a <= enough * (old_a.b - old_a.a) || b->b - b->a <= enough * (old_b.b - old_b.a);
+  CagStatus status = CAG_OK;
+  if (!*smaller) return CAG_OK;
+  if (a->a != old_a.a) status = cag_curve_eval(s->a, a->a, 0, CAG_SIDE_RIGHT, &a->p, err);
+  if (!status && a->b != old_a.b) status = cag_curve_eval(s->a, a->b, 0, CAG_SIDE_LEFT, &a->q, err);
+  if (!status && b->a != old_b.a)
+    status = cag_curve_eval(s->b, b->a, 0, CAG_SIDE_RIGHT, &b->p, err);
+  if (!status && b->b != old_b.b) status = cag_curve_eval(s->b, b->b, 0, CAG_SIDE_LEFT, &b->q, err);
+  return status;
+}
+
 static CagStatus pair(CurveSearch *s, const Part *a, const Part *b, int depth, CagError *err) {
   // A tangent leaves the chord's direction by about 4 sag / length; beyond a few times that, chords
   // at an angle mean curves that cross once at most.
@@ -341,7 +366,13 @@ static CagStatus pair(CurveSearch *s, const Part *a, const Part *b, int depth, C
   }
   Part half[2];
   const bool first = sag_a > sag_b;
-  CagStatus status = first ? halves(s->a, a, half, err) : halves(s->b, b, half, err);
+  bool apart, smaller;
+  half[0] = *a;
+  half[1] = *b;
+  CagStatus status = clip(s, &half[0], &half[1], &apart, &smaller, err);
+  if (status || apart) return status;
+  if (smaller) return pair(s, &half[0], &half[1], depth - 1, err);
+  status = first ? halves(s->a, a, half, err) : halves(s->b, b, half, err);
   for (int i = 0; !status && i < 2; i++)
     status = first ? pair(s, &half[i], b, depth - 1, err) : pair(s, a, &half[i], depth - 1, err);
   return status;
