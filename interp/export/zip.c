@@ -138,7 +138,8 @@ void cag_zip_end(CagZip *z) {
     at = put(header, DIRECTORY_HEADER, 4);
     at = put(at, VERSION, 2);
     at = put_member(at, m);
-    at = put(at, 0, 2 + 2 + 2 + 4); // comment, disk, attributes
+    at = put(at, 0, 2 + 2 + 2); // comment, disk, attributes
+    at = put(at, 0, 4);         // attributes of the system
     at = put(at, m->offset, 4);
     cag_atomic_file_write(z->file, header, (size_t)(at - header));
     cag_atomic_file_text(z->file, m->name);
