@@ -36,6 +36,14 @@ void cag_solid_core_release(CagSolidCore *core) {
   free(core);
 }
 
+size_t cag_solid_kept_bytes(const CagSolid *s) {
+  const CagMesh *m = s->core ? s->core->mesh : NULL;
+  if (!m) return 0;
+  size_t vertex = (m->normals ? 2 : 1) * sizeof *m->positions + (m->weld ? sizeof *m->weld : 0);
+  return (m->vertex_count * vertex + m->triangle_count * 3 * sizeof *m->triangles) /
+         (size_t)s->core->references;
+}
+
 // --- Sides ---
 
 CagStatus cag_solid_half_space(const CagPlane *plane, CagSolid **out, CagError *err) {

@@ -54,6 +54,8 @@ CagStatus cag_csg_bounds(const CagSolid *s, CagBounds *out, CagError *err);
 CagStatus cag_csg_mass(const CagSolid *s, CagMassProperties *out, CagError *err);
 // The same as cag_csg_tessellate, but an empty body is a mesh without triangles.
 CagStatus cag_csg_mesh(const CagSolid *s, const CagTessellation *how, CagMesh **out, CagError *err);
+// Bytes of the mesh that the solid keeps, its part where several share it.
+size_t cag_solid_kept_bytes(const CagSolid *s);
 // Bounds that hold the solid, quickly told; infinite where it is unbounded or that is not known.
 CagStatus cag_solid_reach(const CagSolid *s, CagBounds *out, CagError *err);
 

@@ -183,14 +183,22 @@ bool cag_solids_flip(CagCall *call, CagValue *result) {
 
 // --- Tessellation ---
 
-static CagStatus tessellate_shape(CagValue v, const CagTessellation *how, CagMesh **out,
+static CagStatus tessellate_solid(CagVm *vm, const CagSolid *s, const CagTessellation *how,
+                                  CagMesh **out, CagError *err) {
+  const size_t before = cag_solid_kept_bytes(s);
+  const CagStatus status = cag_solid_tessellate(s, how, out, err);
+  cag_charge_solid(vm, s, before);
+  return status;
+}
+
+static CagStatus tessellate_shape(CagVm *vm, CagValue v, const CagTessellation *how, CagMesh **out,
                                   CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagTessellation own = *how;
   if (own.tolerance <= 0) own.tolerance = shape->tolerance;
   switch (v.type) {
   case CAG_SURFACE: return cag_surface_tessellate(shape->as.surface, &own, out, err);
-  case CAG_SOLID: return cag_solid_tessellate(shape->as.solid, &own, out, err);
+  case CAG_SOLID: return tessellate_solid(vm, shape->as.solid, &own, out, err);
   case CAG_MESH: *out = cag_mesh_retain(shape->as.mesh); return CAG_OK;
   case CAG_REGION: {
     CagSurface *flat = NULL;
@@ -231,7 +239,7 @@ bool cag_solids_tessellate(CagCall *call, CagValue *result) {
   CagStatus status = CAG_OK;
   size_t n = 0;
   for (; status == CAG_OK && n < shapes->length; n += status == CAG_OK)
-    status = tessellate_shape(cag_list_get(call->vm, shapes, n), &how, &meshes[n], &err);
+    status = tessellate_shape(call->vm, cag_list_get(call->vm, shapes, n), &how, &meshes[n], &err);
   if (status == CAG_OK && n == 1) whole = cag_mesh_retain(meshes[0]);
   else if (status == CAG_OK) status = cag_mesh_append(meshes, n, &whole, &err);
   for (size_t i = 0; i < n; i++) cag_mesh_release(meshes[i]);

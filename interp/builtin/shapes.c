@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/solid/csg.h"
+
 // Radians of degrees lose at most half an ulp, so the wanted decimal is within one ulp of the
 // stored double.
 static bool same_angle(double degrees, double radians) {
@@ -247,6 +249,11 @@ static CagStatus region_bounds(const CagShape *shape, CagBounds *out, int *dimen
   return CAG_OK;
 }
 
+void cag_charge_solid(CagVm *vm, const CagSolid *s, size_t before) {
+  const size_t now = cag_solid_kept_bytes(s);
+  if (now > before) cag_heap_charge(vm, now - before);
+}
+
 static bool shape_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagError err;
@@ -258,7 +265,12 @@ static bool shape_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimensi
   case CAG_REGION: return cag_geometry_ok(call, region_bounds(shape, out, dimension, &err), &err);
   case CAG_SURFACE:
     return cag_geometry_ok(call, cag_surface_bounds(shape->as.surface, out, &err), &err);
-  case CAG_SOLID: return cag_geometry_ok(call, cag_solid_bounds(shape->as.solid, out, &err), &err);
+  case CAG_SOLID: {
+    const size_t before = cag_solid_kept_bytes(shape->as.solid);
+    const CagStatus status = cag_solid_bounds(shape->as.solid, out, &err);
+    cag_charge_solid(call->vm, shape->as.solid, before);
+    return cag_geometry_ok(call, status, &err);
+  }
   default: *out = cag_mesh_bounds(shape->as.mesh); return true;
   }
 }

@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/solid/csg.h"
 #include "interp/eval/vm.h"
 
 #define CELL_FREE 0xff
@@ -146,7 +147,10 @@ static size_t charged(const CagObject *o) {
   case CAG_CURVE: return 512;
   case CAG_REGION:
   case CAG_SURFACE: return 2048;
-  case CAG_SOLID:
+  case CAG_SOLID: {
+    const CagSolid *s = ((const CagShape *)o)->as.solid;
+    return 4096 + (s ? cag_solid_kept_bytes(s) : 0);
+  }
   case CAG_ROBOT: return 4096;
   default: return 0;
   }
