@@ -9,6 +9,7 @@
 #include "geom/mesh/tessellate.h"
 #include "geom/surface/mapped.h"
 #include "geom/surface/reshape.h"
+#include "geom/surface/trimmed.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
@@ -147,8 +148,19 @@ static bool map_body(CagCall *call, CagValue g, const CagSurface *s, double tole
   return true;
 }
 
+// Maps of parameters know nothing of the curves that a surface is trimmed by.
+static bool refuse_trimmed(CagCall *call, CagValue g) {
+  CagError err;
+  if (g.type != CAG_SURFACE || !cag_surface_trimmed_view(CAG_AS_SHAPE(g)->as.surface, NULL, NULL))
+    return true;
+  cag_fail(&err, CAG_E_UNSUPPORTED, "surface-trimmed", "", -1,
+           "a trimmed surface cannot be mapped: map the whole one and trim that, or map its mesh");
+  return cag_fail_geometry(call, &err);
+}
+
 static bool map_one(CagCall *call, CagValue g, const CagSurface *s, double tolerance,
                     CagValue *result) {
+  if (!refuse_trimmed(call, g)) return false;
   bool smooth = g.type == CAG_CURVE || g.type == CAG_SURFACE;
   if (smooth ? !map_smooth(call, g, s, result) : !map_body(call, g, s, tolerance, result))
     return false;
@@ -196,7 +208,8 @@ bool cag_surfaces_map_onto(CagCall *call, CagValue *result) {
 bool cag_surfaces_remap(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagValue f, lambda;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_function(call, 1, &f) ||
+  if (!cag_arg_surface(call, 0, &s) || !refuse_trimmed(call, call->values[0]) ||
+      !cag_arg_function(call, 1, &f) ||
       !cag_vm_compile_lambda(call->vm,
                              "(s, f, a, b) => surface((u, v) => s(f(u, v)[0], f(u, v)[1]), u: a, "
                              "v: b)",
