@@ -4,7 +4,6 @@
 // so that a body gives closed curves.
 
 #include "geom/surface/section.h"
-#include "geom/surface/trimmed.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -263,6 +262,7 @@ static bool is_beside(const CagBounds *b, const CagPlane *plane) {
   return !(above && below);
 }
 
+// Trimmed surfaces are traced whole, and the runs end on their loops.
 static CagStatus trace_all(const CagSurface *s, const CagLevel *level, const CagQuadric *quadric,
                            double tolerance, double size, CagCurveList *out, CagError *err) {
   CagTraces traces;
@@ -276,20 +276,6 @@ static CagStatus trace_all(const CagSurface *s, const CagLevel *level, const Cag
   return status;
 }
 
-// A trimmed surface is cut as its mesh, which ends on its curves; finer ones cost more than they
-// tell.
-#define TRIMMED_TOLERANCE 1e-4
-static CagStatus section_trimmed(const CagSurface *s, const CagPlane *plane, double tolerance,
-                                 double size, CagCurveList *out, CagError *err) {
-  CagTessellation how = CAG_TESSELLATION_DEFAULT;
-  CagMesh *mesh = NULL;
-  how.tolerance = fmax(tolerance, TRIMMED_TOLERANCE * size);
-  CagStatus status = cag_surface_tessellate(s, &how, &mesh, err);
-  if (!status) status = cag_mesh_section(mesh, plane, out, err);
-  cag_mesh_release(mesh);
-  return status;
-}
-
 static CagStatus section_face(const CagSurface *s, const CagPlane *plane, double tolerance,
                               double size, CagCurveList *out, CagError *err) {
   const CagRegion *region;
@@ -300,8 +286,6 @@ static CagStatus section_face(const CagSurface *s, const CagPlane *plane, double
   if (status || is_beside(&box, plane)) return status;
   if (cag_surface_planar_view(s, &region, &frame))
     return section_flat(region, &frame, plane, size, out, err);
-  if (cag_surface_trimmed_view(s, NULL, NULL))
-    return section_trimmed(s, plane, tolerance, size, out, err);
   CagLevel level = cag_level_plane(plane, size);
   bool quadric = cag_surface_quadric_view(s, &q);
   return trace_all(s, &level, quadric ? &q : NULL, tolerance, size, out, err);
@@ -348,11 +332,6 @@ CagStatus cag_surface_contour(const CagSurface *s, CagVec3 direction, CagVec3 ey
   CagBounds box;
   // A flat face is seen from one side or from its edge.
   if (cag_surface_planar_view(s, &region, &frame)) return CAG_OK;
-  if (cag_surface_trimmed_view(s, NULL, NULL))
-    return cag_fail(
-        err, CAG_E_UNSUPPORTED, "surface-trimmed", "", -1,
-        "outlines are found on whole surfaces: ask the surface before it is trimmed, or "
-        "its mesh");
   CagStatus status = cag_surface_bounds(s, &box, err);
   if (status) return status;
   double size = size_of(&box);
