@@ -111,11 +111,12 @@ static double largest_move(const CagRobot *r, const double *a, const double *b, 
 }
 
 // The solution that Newton's steps from `from` lead to.
-static bool solve_near(const CagRobot *r, const CagTransform *target, const double *from,
-                       double *q) {
+static bool solve_near(const CagRobot *r, const CagTransform *target, bool position_only,
+                       const double *from, double *q) {
   CagRobotSearch search = {.near = from,
                            .position = TOLERANCE_DEFAULT,
                            .rotation = TOLERANCE_DEFAULT,
+                           .position_only = position_only,
                            .starts = 1,
                            .steps = 100};
   return cag_robot_search(r, target, &search, q).solved;
@@ -125,14 +126,14 @@ typedef enum Tracked { ARRIVED, LEFT, JUMPED } Tracked;
 
 // Follows the way from pose a (reached at q) to b; q is moved along. `done` is the part of the way
 // that was gone.
-static Tracked track(const CagRobot *r, const CagTransform *a, const CagTransform *b, double *q,
-                     double *done, CagError *err) {
+static Tracked track(const CagRobot *r, const CagTransform *a, const CagTransform *b,
+                     bool position_only, double *q, double *done, CagError *err) {
   double t = 0, h = 1, next[CAG_ROBOT_JOINTS_MAX];
   size_t joint;
   while (t < 1) {
     CagTransform pose;
     if (cag_transform_mix(a, b, t + h, &pose, err)) pose = *b;
-    bool solved = solve_near(r, &pose, q, next);
+    bool solved = solve_near(r, &pose, position_only, q, next);
     if (solved && largest_move(r, q, next, &joint) <= CONTINUOUS) {
       memcpy(q, next, r->joint_count * sizeof *q);
       t += h;
@@ -143,7 +144,7 @@ static Tracked track(const CagRobot *r, const CagTransform *a, const CagTransfor
     if (h >= SHORTEST) continue;
     *done = t;
     CagRobotFound found;
-    CagRobotGoal goal = {.near = q};
+    CagRobotGoal goal = {.near = q, .position_only = position_only};
     if (cag_transform_mix(a, b, fmin(1, t + 2 * h), &pose, err)) pose = *b;
     return cag_robot_solve(r, &pose, &goal, next, &found, err) ? LEFT : JUMPED;
   }
@@ -210,30 +211,30 @@ static CagStatus fail_stopped(CagError *err) {
 }
 
 CagStatus cag_robot_line_path(const CagRobot *r, const CagTransform *from, const CagTransform *to,
-                              size_t n, const double *near, bool cross, CagRobotWatch watch,
-                              double *q, CagError *err) {
+                              size_t n, const CagRobotWay *way, double *q, CagError *err) {
   size_t joints = r->joint_count;
   CagRobotFound found;
-  CagRobotGoal goal = {.near = near};
+  CagRobotGoal goal = {.near = way->near, .position_only = way->position_only};
   CagTransform at = *from;
   double done;
   CagStatus status = cag_robot_solve(r, from, &goal, q, &found, err);
   if (status) return status;
+  const bool asked = !way->cross && !way->position_only;
   int sign = jacobian_sign(r, q);
   for (size_t k = 1; k < n; k++) {
     CagTransform next = *to;
-    if (watch.going && !watch.going(watch.data)) return fail_stopped(err);
+    if (way->going && !way->going(way->data)) return fail_stopped(err);
     double *here = q + k * joints;
     if (k + 1 < n) {
       status = cag_transform_mix(from, to, (double)k / (double)(n - 1), &next, err);
       if (status) return status;
     }
     memcpy(here, here - joints, joints * sizeof *q);
-    Tracked how = track(r, &at, &next, here, &done, err);
+    Tracked how = track(r, &at, &next, way->position_only, here, &done, err);
     if (how != ARRIVED) return fail_step(how, k, done, "step", err);
     int now = jacobian_sign(r, here);
-    if (!cross && now == 0 && k + 1 < n) return fail_singular(k, false, err);
-    if (!cross && now * sign < 0) return fail_singular(k, true, err);
+    if (asked && now == 0 && k + 1 < n) return fail_singular(k, false, err);
+    if (asked && now * sign < 0) return fail_singular(k, true, err);
     sign = now;
     at = next;
   }
@@ -241,24 +242,23 @@ CagStatus cag_robot_line_path(const CagRobot *r, const CagTransform *from, const
 }
 
 CagStatus cag_robot_follow(const CagRobot *r, const CagTransform *poses, size_t n,
-                           const double *near, bool jumps, CagRobotWatch watch, double *q,
-                           CagError *err) {
+                           const CagRobotWay *way, double *q, CagError *err) {
   size_t joints = r->joint_count;
   double done;
   for (size_t k = 0; k < n; k++) {
     double *here = q + k * joints, before[CAG_ROBOT_JOINTS_MAX];
     CagRobotFound found;
     Tracked how = LEFT;
-    if (watch.going && !watch.going(watch.data)) return fail_stopped(err);
+    if (way->going && !way->going(way->data)) return fail_stopped(err);
     if (k > 0) {
       memcpy(before, here - joints, joints * sizeof *q);
       memcpy(here, before, joints * sizeof *q);
-      how = track(r, &poses[k - 1], &poses[k], here, &done, err);
+      how = track(r, &poses[k - 1], &poses[k], way->position_only, here, &done, err);
       if (how == ARRIVED) continue;
-      if (how == JUMPED && !jumps) return fail_step(how, k, done, "pose", err);
+      if (how == JUMPED && !way->jumps) return fail_step(how, k, done, "pose", err);
     }
     // The first pose, or one that is reached although the straight way to it is not.
-    CagRobotGoal goal = {.near = k > 0 ? before : near};
+    CagRobotGoal goal = {.near = k > 0 ? before : way->near, .position_only = way->position_only};
     CagStatus status = cag_robot_solve(r, &poses[k], &goal, here, &found, err);
     if (status && k > 0)
       return cag_fail(err, CAG_E_DEGENERATE, "path-leaves", "", (long)k,

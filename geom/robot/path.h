@@ -18,26 +18,27 @@ typedef struct CagRobotGoal {
 CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const CagRobotGoal *goal,
                           double *q, CagRobotFound *found, CagError *err);
 
-// Asked between poses of a path whether to go on; `going` NULL: always. One that says no ends the
-// path with CAG_E_CALLBACK.
-typedef struct CagRobotWatch {
-  bool (*going)(void *data);
+// How a path is gone. Zeros are the usual.
+typedef struct CagRobotWay {
+  const double *near; // of several solutions for the first pose the nearest to this; NULL: home
+  bool position_only; // the tool may be turned as it likes
+  bool cross;         // lines: pass through singular places
+  bool jumps;         // poses: go to another branch where there is no other way
+  bool (*going)(void *data); // asked between poses whether to go on; NULL: always. When not, the
+                             // path ends with CAG_E_CALLBACK
   void *data;
-} CagRobotWatch;
+} CagRobotWay;
 
 // n >= 2 places of the joints whose poses lie evenly on the way from one pose to another: straight
-// for the origin, about one axis for the rotation. q has n times joint_count values. `cross` lets
-// the way pass through singular places.
+// for the origin, about one axis for the rotation. q has n times joint_count values.
 // Fails with "unreachable" (the start), "path-leaves" (a pose on the way is out of reach),
 // "path-jumps" (the joints would have to jump there: a limit or a singularity stands between),
 // "path-singular"; err->index is the step, and the message tells it.
 CagStatus cag_robot_line_path(const CagRobot *r, const CagTransform *from, const CagTransform *to,
-                              size_t n, const double *near, bool cross, CagRobotWatch watch,
-                              double *q, CagError *err);
+                              size_t n, const CagRobotWay *way, double *q, CagError *err);
 // Joint places for n poses, each reached from the one before without a jump to another branch
-// where there is such a way. `jumps` lets the joints go to another branch where there is none.
+// where there is such a way.
 CagStatus cag_robot_follow(const CagRobot *r, const CagTransform *poses, size_t n,
-                           const double *near, bool jumps, CagRobotWatch watch, double *q,
-                           CagError *err);
+                           const CagRobotWay *way, double *q, CagError *err);
 
 #endif

@@ -183,7 +183,8 @@ const CagBuiltin cag_builtins_robots[] = {
      "n places whose poses lie evenly on the straight way between two poses, both in; the joints "
      "never change the branch. The step where the way leaves the workspace (path-leaves), where "
      "the joints would jump (path-jumps) or where it meets or crosses a singular place "
-     "(path-singular; `cross: true` lets it) is named by the error.",
+     "(path-singular; `cross: true` lets it) is named by the error. Two points leave the tool's "
+     "rotation free.",
      "arm = robot([revolute(a: 300), revolute(a: 200), revolute()])\n"
      "qs = line_path(arm, translate([300, 100, 0]), translate([100, 300, 0]), 3, near: [0deg, "
      "90deg, 0deg])\n"
@@ -192,7 +193,7 @@ const CagBuiltin cag_builtins_robots[] = {
     {"follow(robot, poses, near = home, jumps = false)", cag_robots_follow, "list",
      "The place of the joints for each pose, always reached from the one before without a change "
      "of branch; `jumps: true` lets the joints go to another branch where there is no other way. "
-     "A pose out of reach is an error that names it.",
+     "A pose out of reach is an error that names it. Points leave the tool's rotation free.",
      "arm = robot([revolute(a: 300), revolute(a: 200), revolute()])\n"
      "print len(follow(arm, [for x in [350, 300, 250]: translate([x, 100, 0])])) // expect: 3",
      ROBOTS, paths},

@@ -147,31 +147,42 @@ bool cag_robots_line_path(CagCall *call, CagValue *result) {
   CagTransform from, to;
   double near[CAG_ROBOT_JOINTS_MAX], *q;
   long n;
-  bool cross;
+  bool point = false;
   CagError err;
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_pose(call, 1, &from) || !cag_arg_pose(call, 2, &to) ||
-      !cag_arg_integer(call, 3, 2, POSES_MAX, &n) ||
-      !cag_arg_joints_or_home(call, 4, r, false, near) ||
-      !cag_arg_bool_or(call, 5, false, &cross) || !take_places(call, r, (size_t)n, &q))
+  CagRobotWay way = {.near = near, .going = going, .data = call->vm};
+  if (!cag_arg_robot(call, 0, &r) || !read_target(call, 1, &from, &way.position_only) ||
+      !read_target(call, 2, &to, &point))
     return false;
-  CagStatus status = cag_robot_line_path(r, &from, &to, (size_t)n, near, cross,
-                                         (CagRobotWatch){going, call->vm}, q, &err);
+  if (point != way.position_only)
+    return cag_fail_type(
+        call, 2, way.position_only ? "a point, as the start is" : "a pose, as the start is");
+  if (!cag_arg_integer(call, 3, 2, POSES_MAX, &n) ||
+      !cag_arg_joints_or_home(call, 4, r, false, near) ||
+      !cag_arg_bool_or(call, 5, false, &way.cross) || !take_places(call, r, (size_t)n, &q))
+    return false;
+  CagStatus status = cag_robot_line_path(r, &from, &to, (size_t)n, &way, q, &err);
   bool ok = cag_geometry_ok(call, status, &err) && give_places(call, r, q, (size_t)n, result);
   free(q);
   return ok;
 }
 
-static bool read_poses(CagCall *call, int argument, CagTransform **out, size_t *n) {
+// Poses, or points where the tool may be turned as it likes.
+static bool read_poses(CagCall *call, int argument, CagTransform **out, size_t *n, bool *points) {
   CagList *list = NULL;
   if (!cag_arg_list(call, argument, &list)) return false;
   *n = list->length;
+  *points = list->dim == 3;
   *out = malloc((*n + 1) * sizeof **out);
   if (!*out)
     return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; i < *n; i++) {
     CagValue v = cag_list_get(call->vm, list, i);
-    if (v.type != CAG_TRANSFORM) return cag_fail_element(call, argument, i, v, "poses");
-    if (!cag_pose_of_value(call, argument, v, &(*out)[i])) return false;
+    const double *x = *points ? list->as.numbers + 3 * i : NULL;
+    bool finite = *points && isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]);
+    if (finite) (*out)[i] = cag_translate(cag_vec3(x[0], x[1], x[2]));
+    else if (v.type != CAG_TRANSFORM)
+      return cag_fail_element(call, argument, i, v, "poses, or points of space,");
+    else if (!cag_pose_of_value(call, argument, v, &(*out)[i])) return false;
   }
   return true;
 }
@@ -182,15 +193,12 @@ bool cag_robots_follow(CagCall *call, CagValue *result) {
   CagTransform *poses = NULL;
   double near[CAG_ROBOT_JOINTS_MAX], *q = NULL;
   size_t n = 0;
-  bool jumps;
   CagError err;
+  CagRobotWay way = {.near = near, .going = going, .data = call->vm};
   bool ok = cag_arg_robot(call, 0, &r) && cag_arg_joints_or_home(call, 2, r, false, near) &&
-            cag_arg_bool_or(call, 3, false, &jumps) && read_poses(call, 1, &poses, &n) &&
-            take_places(call, r, n, &q) &&
-            cag_geometry_ok(call,
-                            cag_robot_follow(r, poses, n, near, jumps,
-                                             (CagRobotWatch){going, call->vm}, q, &err),
-                            &err) &&
+            cag_arg_bool_or(call, 3, false, &way.jumps) &&
+            read_poses(call, 1, &poses, &n, &way.position_only) && take_places(call, r, n, &q) &&
+            cag_geometry_ok(call, cag_robot_follow(r, poses, n, &way, q, &err), &err) &&
             give_places(call, r, q, n, result);
   free(poses);
   free(q);

@@ -188,30 +188,27 @@ static void lines_are_straight_and_name_where_they_end(void **state) {
   static const double rows[3][4] = {{0, 300, 0, 180}, {0, 200, 0, 170}, {0, 0, 0, 180}};
   CagRobot *r = chain(rows, 3);
   const double near[] = {0, 90 * DEGREE, 0};
-  const CagRobotWatch always = {0};
+  const CagRobotWay always = {.near = near};
   int asked = 0;
   CagTransform a = cag_translate(cag_vec3(300, 100, 0)), b = cag_translate(cag_vec3(100, 300, 0)),
                far = cag_translate(cag_vec3(600, 100, 0));
   double q[21][3];
-  OK(cag_robot_line_path(r, &a, &b, 21, near, false, always, &q[0][0], &err));
+  OK(cag_robot_line_path(r, &a, &b, 21, &always, &q[0][0], &err));
   for (int k = 0; k < 21; k++) {
     CagTransform wanted = cag_translate(cag_vec3(300 - 10 * k, 100 + 10 * k, 0));
     assert_reaches(r, q[k], &wanted, 1e-9);
     assert_true(q[k][1] > 0); // never the other elbow
   }
   // The reach of 500 ends at x = sqrt(500^2 - 100^2) = 489.9, after step 9 of steps of 20 mm.
-  assert_int_equal(cag_robot_line_path(r, &a, &far, 16, near, false, always, &q[0][0], &err),
-                   CAG_E_DEGENERATE);
+  assert_int_equal(cag_robot_line_path(r, &a, &far, 16, &always, &q[0][0], &err), CAG_E_DEGENERATE);
   assert_string_equal(err.reason, "path-leaves");
   assert_int_equal(err.index, 10);
   const CagTransform poses[] = {a, b, far};
-  OK(cag_robot_follow(r, poses, 2, near, false, always, &q[0][0], &err));
-  assert_int_equal(cag_robot_follow(r, poses, 3, near, false, always, &q[0][0], &err),
-                   CAG_E_DEGENERATE);
+  OK(cag_robot_follow(r, poses, 2, &always, &q[0][0], &err));
+  assert_int_equal(cag_robot_follow(r, poses, 3, &always, &q[0][0], &err), CAG_E_DEGENERATE);
   assert_int_equal(err.index, 2);
-  const CagRobotWatch stop = {never, &asked};
-  assert_int_equal(cag_robot_follow(r, poses, 2, near, false, stop, &q[0][0], &err),
-                   CAG_E_CALLBACK);
+  const CagRobotWay stop = {.near = near, .going = never, .data = &asked};
+  assert_int_equal(cag_robot_follow(r, poses, 2, &stop, &q[0][0], &err), CAG_E_CALLBACK);
   assert_int_equal(asked, 1);
   cag_robot_release(r);
 }
