@@ -29,6 +29,9 @@ CagStatus cag_region_rectangle(double w, double h, double radius, CagRegion **ou
 CagStatus cag_region_regular_polygon(size_t n, double radius, CagRegion **out,
                                      CagError *err); // first vertex on +x
 CagStatus cag_region_area(const CagRegion *r, double *area, CagVec3 *centroid, CagError *err);
+// The integrals of x x, x y and y y over the region, x and y from its center of area.
+CagStatus cag_region_second_moments(const CagRegion *r, double *area, CagVec3 *center, double *xx,
+                                    double *xy, double *yy, CagError *err);
 CagStatus cag_region_perimeter(const CagRegion *r, double *out, CagError *err);
 CagStatus cag_region_bounds(const CagRegion *r, CagBounds *out, CagError *err);
 CagStatus cag_region_contains(const CagRegion *r, CagVec3 p, bool *out,
@@ -56,7 +59,8 @@ CagStatus cag_region_combine(CagRegionOp op, const CagRegion *const *regions, si
 
 // The points at most d away from the region (d > 0), or those of it at least -d away from its
 // boundary (d < 0): holes shrink and grow. Corners go round in arcs. The boundaries of lines and
-// circles are exact, others within the tolerance. Fails as the set operations do.
+// circles are exact, others within the tolerance. Fails as the set operations do, and with
+// "too-far".
 CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagRegion **out,
                             CagError *err);
 

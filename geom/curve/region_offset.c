@@ -411,11 +411,46 @@ static bool is_inside(const int winding[2], int parameter) {
   return winding[0] > 0;
 }
 
+static CagStatus fail_empty(double d, CagError *err) {
+  char text[32];
+  return cag_fail(err, CAG_E_DEGENERATE, "region-empty", "d", -1,
+                  "nothing is left: no point of the region is %s or more away from its boundary",
+                  cag_number_text(fabs(d), text));
+}
+
+// The largest disc in the region has at most the region's area, and fits into its box.
+static CagStatus largest_disc(const CagRegion *r, double *out, CagError *err) {
+  double area;
+  CagBounds box;
+  CagStatus status = cag_region_area(r, &area, NULL, err);
+  if (!status) status = cag_region_bounds(r, &box, err);
+  if (status) return status;
+  *out = fmin(fmin(box.max.x - box.min.x, box.max.y - box.min.y) / 2, sqrt(area / M_PI));
+  return CAG_OK;
+}
+
+// Parts of the region's size: a distance below the first is rounding, one above the second leaves
+// the region itself below rounding.
+#define NO_DISTANCE 1e-12
+#define FAR 1e9
+
 CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagRegion **out,
                             CagError *err) {
   CagStatus status = cag_curve_check_number(d, "d", err);
+  CagBounds box;
+  double disc = 0;
+  if (!status) status = cag_region_bounds(r, &box, err);
+  if (!status && d < 0) status = largest_disc(r, &disc, err);
   if (status) return status;
-  if (d == 0) {
+  const double size = cag_norm(cag_sub(box.max, box.min)), slack = 1e-6;
+  char text[32];
+  if (d < 0 && -d > disc * (1 + slack)) return fail_empty(d, err);
+  if (d > FAR * size)
+    return cag_fail(err, CAG_E_ARGUMENT, "too-far", "d", -1,
+                    "`d` is %s, more than 1e9 times the size of the region: what it grows to is a "
+                    "disc but for rounding",
+                    cag_number_text(d, text));
+  if (fabs(d) <= NO_DISTANCE * size) {
     *out = cag_region_retain(r);
     return CAG_OK;
   }
@@ -426,9 +461,5 @@ CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagR
   for (size_t i = 0; i < raw.n; i++) cag_curve_release(raw.curves[i]);
   free(raw.curves);
   free(raw.walks);
-  if (status || *out) return status;
-  char text[32];
-  return cag_fail(err, CAG_E_DEGENERATE, "region-empty", "d", -1,
-                  "nothing is left: no point of the region is %s or more away from its boundary",
-                  cag_number_text(fabs(d), text));
+  return status || *out ? status : fail_empty(d, err);
 }

@@ -212,6 +212,28 @@ static bool offset(CagCall *call, CagValue *result) {
   return true;
 }
 
+static bool inertia(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"mass", "center", "matrix"};
+  const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
+  double density = 1, area, xx, xy, yy, *m;
+  CagVec3 center;
+  CagError err;
+  if (cag_given(call, 1) && !cag_arg_positive(call, 1, &density)) return false;
+  if (!shape->placement.planar)
+    return cag_fail_call(call, 0, CAG_ERR_value,
+                         "takes regions of the plane; this one was moved into space");
+  CagStatus status =
+      cag_region_second_moments(shape->as.region, &area, &center, &xx, &xy, &yy, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagValue matrix = cag_list_vectors(call->vm, 2, 2, &m);
+  m[0] = density * yy;
+  m[1] = m[2] = 0 - density * xy;
+  m[3] = density * xx;
+  CagValue values[] = {cag_number(density * area), cag_point(call->vm, center, 2), matrix};
+  *result = cag_record_new(call->vm, names, values, 3);
+  return true;
+}
+
 #define REGIONS CAG_TAKES(REGION)
 static const char sets[] = "Regions: set operations and offsets";
 
@@ -243,4 +265,9 @@ const CagBuiltin cag_builtins_regions[] = {
      "r = offset(rectangle(4, 3), 1)\n"
      "print near(area(r), 12 + 14 + pi), area(offset(rectangle(4, 3), -1)) // expect: true 2",
      REGIONS, sets},
+    {"inertia(R, density = 1)", inertia, "record",
+     "mass (area times density), center, and matrix: the second moments of area about the axes "
+     "through the center, [[of y y, less of x y], [less of x y, of x x]].",
+     "print near(inertia(rectangle(2, 6)).matrix, [[36, 0], [0, 4]]) // expect: true", REGIONS,
+     sets},
     {0}};
