@@ -9,7 +9,8 @@
 
 #include "geom/mesh/boolean_net.h"
 
-#define STOP_INTERVAL 64 // groups of faces between looks at the caller's wish to stop
+// Groups of faces, or points and segments of one, between looks at the caller's wish to stop.
+#define STOP_INTERVAL 64
 
 // The faces and contacts by the group that they belong to: a group's are items[start[root]] to
 // items[start[root + 1] - 1].
@@ -68,6 +69,11 @@ static bool add_piece(BoolWork *w, BoolPiece piece) {
   return true;
 }
 
+// One group may be large. Steps end with false where the caller wants a stop, as without memory.
+static bool goes_on(const Cutter *c, size_t i) {
+  return i % STOP_INTERVAL != 0 || bool_stopped(c->w) == CAG_OK;
+}
+
 // --- Points, in an order that keeps walks short ---
 
 static bool note_point(Cutter *c, uint32_t point) {
@@ -106,7 +112,7 @@ static bool add_points(Cutter *c) {
   for (size_t i = 0, k = 0; i < n; i += strip, k++)
     qsort(spots + i, n - i < strip ? n - i : strip, sizeof *spots, k % 2 ? by_y_down : by_y);
   for (size_t i = 0; i < n; i++)
-    if (!bool_net_add_point(&c->net, spots[i].point)) return false;
+    if (!goes_on(c, i) || !bool_net_add_point(&c->net, spots[i].point)) return false;
   return true;
 }
 
@@ -137,6 +143,7 @@ static bool start_large(Cutter *c, const BoolFace *rep) {
 static bool add_contacts(Cutter *c, uint32_t root) {
   for (size_t i = c->contacts.start[root]; i < c->contacts.start[root + 1]; i++) {
     const BoolContact *k = (BoolContact *)c->w->contacts.items + c->contacts.items[i];
+    if (!goes_on(c, i)) return false;
     if (k->a != k->b && !bool_net_add_segment(&c->net, k->a, k->b, k->cut)) return false;
   }
   return true;
@@ -145,6 +152,7 @@ static bool add_contacts(Cutter *c, uint32_t root) {
 static bool add_edges(Cutter *c, uint32_t root) {
   for (size_t i = c->faces.start[root]; i < c->faces.start[root + 1]; i++) {
     const BoolFace *f = &c->w->faces[c->faces.items[i]];
+    if (!goes_on(c, i)) return false;
     for (int k = 0; k < 3; k++) {
       const uint32_t a = f->v[k], b = f->v[(k + 1) % 3];
       if (!bool_net_add_segment(&c->net, a, b, (BoolCut){a, b, BOOL_NONE, c->net.axis}))
@@ -187,19 +195,26 @@ static bool try_cell(Cutter *c, uint32_t cell, uint32_t face, signed char facing
   return true;
 }
 
-// From the cells around a corner of the face on to their neighbours.
+// The next cell around v, counter-clockwise. No corner of a face is on the large triangle's edges:
+// the cells go all around.
+static uint32_t next_around(const Cutter *c, uint32_t cell, uint32_t v) {
+  const BoolCell *at = &bool_cells(&c->net)[cell];
+  const int k = at->v[0] == v ? 0 : at->v[1] == v ? 1 : 2;
+  return at->neighbour[(k + 1) % 3];
+}
+
+// From a covered cell at a corner of the face on to its neighbours. All corners are searched by
+// turns: some may have very many cells around them.
 static bool cover_cells(Cutter *c, uint32_t face, const BoolFace *rep) {
   const BoolFace *f = &c->w->faces[face];
   const int seen = bool_turn(&c->w->points, f->v[0], f->v[1], f->v[2], rep->axis);
   const signed char facing = (signed char)(seen * rep->sign);
-  const uint32_t start = c->net.cell_of[f->v[0]];
-  uint32_t at = start;
-  do { // no corner of a face is on the large triangle's edges: the cells go all around
-    if (!try_cell(c, at, face, facing)) return false;
-    const BoolCell *cell = &bool_cells(&c->net)[at];
-    const int k = cell->v[0] == f->v[0] ? 0 : cell->v[1] == f->v[0] ? 1 : 2;
-    at = cell->neighbour[(k + 1) % 3];
-  } while (at != start);
+  uint32_t at[3];
+  for (int k = 0; k < 3; k++) at[k] = c->net.cell_of[f->v[k]];
+  for (int k = 0; c->stack.n == 0; k = (k + 1) % 3) {
+    if (!try_cell(c, at[k], face, facing)) return false;
+    at[k] = next_around(c, at[k], f->v[k]);
+  }
   while (c->stack.n > 0) {
     const BoolCell cell = bool_cells(&c->net)[((uint32_t *)c->stack.items)[--c->stack.n]];
     for (int k = 0; k < 3; k++)
@@ -240,7 +255,7 @@ static bool cut_together(Cutter *c, uint32_t root) {
   Cover *covers = c->covers.items;
   for (size_t i = 0; i < n; i++) covers[i] = (Cover){{0, 0}, BOOL_NONE, 0, 0};
   for (size_t i = c->faces.start[root]; i < c->faces.start[root + 1]; i++)
-    if (!cover_cells(c, c->faces.items[i], rep)) return false;
+    if (!goes_on(c, i) || !cover_cells(c, c->faces.items[i], rep)) return false;
   for (uint32_t i = 0; i < n; i++)
     if (covers[i].face != BOOL_NONE && !add_cell(c, i, root, &covers[i])) return false;
   return true;
@@ -266,7 +281,9 @@ CagStatus bool_cut_faces(BoolWork *w) {
   for (uint32_t f = 0; !status && f < w->face_count; f++) {
     if (c.faces.start[f + 1] == c.faces.start[f]) continue; // another face speaks for its group
     if (groups++ % STOP_INTERVAL == 0) status = bool_stopped(w);
-    if (!status && !cut_group(&c, f)) status = cag_fail_memory(w->err);
+    if (status || cut_group(&c, f)) continue;
+    status = bool_stopped(w);
+    if (!status) status = cag_fail_memory(w->err);
   }
   bool_net_free(&c.net);
   free(c.faces.start);
