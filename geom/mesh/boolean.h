@@ -20,10 +20,14 @@ typedef enum CagSetOperation { CAG_UNION, CAG_DIFFERENCE, CAG_INTERSECTION } Cag
 //              sense as in the other
 //   interrupt  NULL, or: not 0 stops with CAG_E_CALLBACK
 //
+// The time is that of sorting the triangles, and of what meets. Triangles that overlap in one plane
+// are cut along the edges of each other: two finely divided faces of long triangles, one on the
+// other, make as many pieces as their edges cross.
+//
 // Normals are interpolated from the operands (turned where b's surface bounds a hole of a; of faces
 // where an operand has none); no operand has normals: none. uv is dropped.
 // Fails with "mesh-open" (argument "a" or "b", index of a triangle), "mesh-inside-out",
-// "vertex-not-finite", "mesh-too-large".
+// "vertex-out-of-range" (not finite, or beyond 1e100), "mesh-too-large".
 CagStatus cag_mesh_boolean(CagSetOperation op, const CagMesh *a, const CagMesh *b,
                            const volatile int *interrupt, CagMesh **out, CagError *err);
 
