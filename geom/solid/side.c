@@ -248,15 +248,6 @@ static CagStatus slab(Bodies *out, const CagQuadricForm *f, const Range *r, CagE
   return add_polygon(out, f, p, 4, r, err);
 }
 
-// Below the plane Z = 0.
-static CagStatus below(Bodies *out, const CagQuadricForm *f, const Range *r, CagError *err) {
-  if (!(r->lo.z < 0)) return CAG_OK;
-  const CagVec3 p[4] = {
-      {r->lo.x, r->lo.y, 0}, {r->hi.x, r->lo.y, 0}, {r->hi.x, r->hi.y, 0}, {r->lo.x, r->hi.y, 0}};
-  const Range under = {r->lo, {r->hi.x, r->hi.y, 0}};
-  return add_polygon(out, f, p, 4, &under, err);
-}
-
 // A side of the saddle's column: between an edge of the saddle, which is a parabola in a vertical
 // plane, and the floor below it. Patches with four sides, so that they share whole edges.
 static CagStatus column_side(const CagTransform *frame, const CagVec3 arc[3], double floor,
@@ -323,7 +314,6 @@ static CagStatus body_of(const CagQuadricForm *f, const Range *r, Bodies *out, C
   case CAG_QUADRIC_PARABOLIC_CYLINDER: inside->x = f->semi[0]; return parabolic(out, f, r, err);
   case CAG_QUADRIC_INTERSECTING_PLANES: inside->y = f->semi[1]; return wedges(out, f, r, err);
   case CAG_QUADRIC_PARALLEL_PLANES: return slab(out, f, r, err);
-  case CAG_QUADRIC_PLANE: inside->z = -1; return below(out, f, r, err);
   case CAG_QUADRIC_COINCIDENT_PLANES:
     // Nothing lies between: the sign beside the plane tells whether all of space does.
     inside->x = 1;
@@ -389,6 +379,30 @@ static CagStatus range_of(const CagQuadricForm *f, const CagBounds *window, Rang
   return CAG_OK;
 }
 
+// The side of a plane: a box whose roof lies in it, about the window's shadow on it. However far
+// away the plane stands, the corners are made once.
+static CagStatus plane_mesh(const CagQuadric *q, const CagBounds *window, CagMesh **out,
+                            CagError *err) {
+  double length = cag_norm(cag_vec3(q->c[6], q->c[7], q->c[8]));
+  CagVec3 n = cag_scaled(cag_vec3(q->c[6], q->c[7], q->c[8]), 1 / length);
+  CagVec3 middle = cag_lerp(window->min, window->max, 0.5);
+  double reach = (0.5 + ROOM) * cag_norm(cag_sub(window->max, window->min));
+  double above = cag_quadric_value(q, middle) / length;
+  const CagBounds box = enlarged(window, reach);
+  if (above >= reach) return empty_mesh(out, err);
+  if (above <= -reach) return cag_box_mesh(&box, out, err);
+  CagVec3 side = fabs(n.z) < 0.5 ? cag_vec3(0, 0, 1) : cag_vec3(1, 0, 0);
+  CagVec3 x = cag_unit(cag_cross(side, n)), y = cag_cross(n, x);
+  CagVec3 foot = cag_madd(middle, -above, n);
+  CagStatus status = cag_box_mesh(&box, out, err);
+  for (int k = 0; !status && k < 8; k++) {
+    CagVec3 p = cag_madd(foot, k & 1 ? reach : -reach, x);
+    p = cag_madd(p, k & 2 ? reach : -reach, y);
+    (*out)->positions[k] = k & 4 ? p : cag_madd(p, -2 * reach, n);
+  }
+  return status;
+}
+
 CagStatus cag_side_mesh(const CagQuadric *form, const CagBounds *window, const CagTessellation *how,
                         CagMesh **out, CagError *err) {
   CagQuadricForm f;
@@ -399,6 +413,7 @@ CagStatus cag_side_mesh(const CagQuadric *form, const CagBounds *window, const C
   double size = cag_norm(cag_sub(window->max, window->min));
   const CagBounds box = enlarged(window, ROOM * size);
   CagStatus status = cag_quadric_classify(form, &f, err);
+  if (!status && f.class_id == CAG_QUADRIC_PLANE) return plane_mesh(form, window, out, err);
   if (!status) status = range_of(&f, window, &range, err);
   if (!status) status = body_of(&f, &range, &bodies, &inside, err);
   bool within = !status && cag_quadric_value(form, cag_transform_point(&f.frame, inside)) < 0;
