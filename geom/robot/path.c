@@ -184,17 +184,33 @@ static int jacobian_sign(const CagRobot *r, const double *q) {
   return sign;
 }
 
-static CagStatus fail_step(Tracked how, size_t step, double part, const char *what, CagError *err) {
+// The joint that stands at a limit, from 1; 0: none does.
+static size_t joint_at_limit(const CagRobot *r, const double *q) {
+  const double near = 1e-2; // radians, or parts of the reach: the last step ends this far before it
+  for (size_t i = 0; i < r->joint_count; i++) {
+    const CagRobotLink *l = &r->links[r->joint_link[i]];
+    double room = fmin(q[i] - l->low, l->high - q[i]);
+    if (room <= near * (l->kind == CAG_JOINT_REVOLUTE ? 1 : r->reach)) return i + 1;
+  }
+  return 0;
+}
+
+// q is the last place that was reached.
+static CagStatus fail_step(const CagRobot *r, const double *q, Tracked how, size_t step,
+                           double part, const char *what, CagError *err) {
+  char cause[80] = "a singular place stands";
   double at = (double)step - 1 + part;
   if (how == LEFT)
     return cag_fail(err, CAG_E_DEGENERATE, "path-leaves", "", (long)step,
                     "the way leaves the workspace before %s %zu (at %.6g): no joint values within "
                     "the limits reach what follows",
                     what, step, at);
+  size_t joint = joint_at_limit(r, q);
+  if (joint > 0) snprintf(cause, sizeof cause, "the limit of joint %zu stands", joint);
   return cag_fail(err, CAG_E_DEGENERATE, "path-jumps", "", (long)step,
-                  "the joints would have to jump before %s %zu (at %.6g): a joint limit or a "
-                  "singular place stands in the way of this branch; start from another `near`",
-                  what, step, at);
+                  "the joints would have to jump before %s %zu (at %.6g): %s in the way of this "
+                  "branch; start from another `near`",
+                  what, step, at, cause);
 }
 
 static CagStatus fail_singular(size_t step, bool between, CagError *err) {
@@ -231,7 +247,7 @@ CagStatus cag_robot_line_path(const CagRobot *r, const CagTransform *from, const
     }
     memcpy(here, here - joints, joints * sizeof *q);
     Tracked how = track(r, &at, &next, way->position_only, here, &done, err);
-    if (how != ARRIVED) return fail_step(how, k, done, "step", err);
+    if (how != ARRIVED) return fail_step(r, here, how, k, done, "step", err);
     int now = jacobian_sign(r, here);
     if (asked && now == 0 && k + 1 < n) return fail_singular(k, false, err);
     if (asked && now * sign < 0) return fail_singular(k, true, err);
@@ -255,7 +271,7 @@ CagStatus cag_robot_follow(const CagRobot *r, const CagTransform *poses, size_t 
       memcpy(here, before, joints * sizeof *q);
       how = track(r, &poses[k - 1], &poses[k], way->position_only, here, &done, err);
       if (how == ARRIVED) continue;
-      if (how == JUMPED && !way->jumps) return fail_step(how, k, done, "pose", err);
+      if (how == JUMPED && !way->jumps) return fail_step(r, here, how, k, done, "pose", err);
     }
     // The first pose, or one that is reached although the straight way to it is not.
     CagRobotGoal goal = {.near = k > 0 ? before : way->near, .position_only = way->position_only};
