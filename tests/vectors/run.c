@@ -10,8 +10,8 @@
 // lists and records element by element, null only null. Further fields are not looked at. Where
 // `expect` has `error` (or the status "error"), the script has to stop with an error that is no
 // limit; with `reason`, the error's short name has to be it. Parameters `t` that stand only in
-// `expect`, beside the `points` they belong to, are given too. Rules for single fields stand in the
-// table below.
+// `expect`, beside the `points` they belong to, and `test_points` are given too. Rules for single
+// fields stand in the table below.
 
 #include <fnmatch.h>
 #include <libgen.h>
@@ -332,7 +332,10 @@ static bool start(File *f, const char *kinds_folder, const char *path, const cha
                    "import kinds\nfile = read_json(%s)\n"
                    "vectors = if type_of(file) == \"list\" then file else file.vectors\n"
                    "given_of(v) = if \"t\" in v.expect and \"points\" in v.expect\n"
-                   "  then {t: v.expect.t, ...get(v, \"given\", {})} else get(v, \"given\", {})\n"
+                   "  then {t: v.expect.t, ...get(v, \"given\", {})}\n"
+                   "  else if \"test_points\" in v.expect\n"
+                   "  then {test_points: v.expect.test_points, ...get(v, \"given\", {})}\n"
+                   "  else get(v, \"given\", {})\n"
                    "print len(vectors)\n",
                    quoted ? quoted : "\"\"");
   char *answer = n < 0 ? NULL : ask(f, text, problem, size);
