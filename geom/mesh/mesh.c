@@ -141,6 +141,7 @@ static CagStatus copy_mesh(const CagMesh *m, CagMesh **out, CagError *err) {
   memcpy(c->triangles, m->triangles, m->triangle_count * 3 * sizeof *m->triangles);
   if (m->normals) memcpy(c->normals, m->normals, n * sizeof *m->normals);
   if (m->uv) memcpy(c->uv, m->uv, n * 2 * sizeof *m->uv);
+  c->scale = m->scale;
   if (m->weld) memcpy(c->weld, m->weld, n * sizeof *m->weld);
   *out = c;
   return CAG_OK;
@@ -220,6 +221,18 @@ static void smooth_normals(CagMesh *m, size_t first_vertex, size_t vertices, siz
     m->normals[first_vertex + i] = cag_unit(m->normals[first_vertex + i]);
 }
 
+// Values of one scale stay values; where another part has parameters they lose their colours.
+static CagColorScale common_scale(CagMesh *const *meshes, size_t n) {
+  CagColorScale first = n > 0 ? meshes[0]->scale : (CagColorScale){0};
+  for (size_t i = 1; i < n; i++) {
+    const CagColorScale *s = &meshes[i]->scale;
+    if (s->kind != first.kind || s->from != first.from || s->to != first.to ||
+        s->stripes != first.stripes)
+      return (CagColorScale){0};
+  }
+  return first;
+}
+
 CagStatus cag_mesh_append(CagMesh *const *meshes, size_t n, CagMesh **out, CagError *err) {
   size_t vertices = 0, triangles = 0;
   bool normals = false, uv = n > 0, weld = false;
@@ -234,6 +247,7 @@ CagStatus cag_mesh_append(CagMesh *const *meshes, size_t n, CagMesh **out, CagEr
   CagStatus status = cag_mesh_new(vertices, triangles, normals, uv, weld, &m, err);
   if (status != CAG_OK) return status;
   size_t v = 0, t = 0;
+  if (uv) m->scale = common_scale(meshes, n);
   for (size_t i = 0; i < n; i++) {
     const CagMesh *part = meshes[i];
     memcpy(m->positions + v, part->positions, part->vertex_count * sizeof *m->positions);

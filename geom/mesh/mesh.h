@@ -9,6 +9,20 @@
 #include "geom/linalg/vec.h"
 #include "geom/status.h"
 
+// How a mesh shows a value by colours: uv[0] of each vertex is the value, `from` and `to` have the
+// first and last colour, values beyond them the same. The colours: interp/scene/color_scale.h.
+typedef enum CagColorScaleKind {
+  CAG_SCALE_NONE, // uv are parameters
+  CAG_SCALE_SEQUENCE,
+  CAG_SCALE_DIVERGING,
+  CAG_SCALE_STRIPES
+} CagColorScaleKind;
+typedef struct CagColorScale {
+  CagColorScaleKind kind;
+  double from, to;
+  int stripes; // STRIPES: pairs of a light and a dark one
+} CagColorScale;
+
 // Invariant: every index is below vertex_count; no triangle names a vertex twice. Corners carry
 // normals per vertex; where a solid has a sharp edge its vertices stand once per face for shading
 // (`normals`), and `weld` tells which vertices are one point of the closed surface: weld[i] <= i is
@@ -21,6 +35,7 @@ typedef struct CagMesh {
   double *uv;          // 2 per vertex; NULL: none
   uint32_t *triangles; // 3 per triangle, counter-clockwise seen from outside
   uint32_t *weld;
+  CagColorScale scale; // kind NONE unless there are uv
 } CagMesh;
 
 CagStatus cag_mesh_new(size_t vertices, size_t triangles, bool normals, bool uv, bool weld,

@@ -114,6 +114,7 @@ static CagStatus build_welded(const CagMesh *m, const uint32_t *first, uint32_t 
     memcpy(w->triangles + 3 * triangles++, k, sizeof k);
   }
   w->triangle_count = triangles;
+  if (uv) w->scale = m->scale;
   *out = w;
   return CAG_OK;
 }

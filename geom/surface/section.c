@@ -329,15 +329,20 @@ CagStatus cag_surface_contour(const CagSurface *s, CagVec3 direction, CagVec3 ey
                               double tolerance, CagCurveList *out, CagError *err) {
   const CagRegion *region;
   CagTransform frame;
-  CagBounds box;
   // A flat face is seen from one side or from its edge.
   if (cag_surface_planar_view(s, &region, &frame)) return CAG_OK;
+  CagLevel level = cag_level_contour(direction, eye, central);
+  return cag_surface_level_curves(s, &level, tolerance, out, err);
+}
+
+CagStatus cag_surface_level_curves(const CagSurface *s, const CagLevel *level, double tolerance,
+                                   CagCurveList *out, CagError *err) {
+  CagBounds box;
   CagStatus status = cag_surface_bounds(s, &box, err);
   if (status) return status;
   double size = size_of(&box);
   size_t first = out->count;
-  CagLevel level = cag_level_contour(direction, eye, central);
   if (!(tolerance > 0)) tolerance = DEFAULT_TOLERANCE * size;
-  status = trace_all(s, &level, NULL, tolerance, size, out, err);
+  status = trace_all(s, level, NULL, tolerance, size, out, err);
   return status ? status : join_list(out, first, MEET * size, err);
 }

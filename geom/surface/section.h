@@ -36,7 +36,8 @@ typedef struct CagLevel {
   double (*value)(const struct CagLevel *level, const CagVec3 *d, int n, double *gradient);
   CagVec3 point, direction;
   bool central;
-  double zero; // values below are rounding
+  double zero;     // values below are rounding
+  double constant; // what further functions need
 } CagLevel;
 // Distance from a plane.
 CagLevel cag_level_plane(const CagPlane *plane, double size);
@@ -89,5 +90,9 @@ CagStatus cag_mesh_section(const CagMesh *m, const CagPlane *plane, CagCurveList
 // The outline of a surface: where the line of sight touches it.
 CagStatus cag_surface_contour(const CagSurface *s, CagVec3 direction, CagVec3 eye, bool central,
                               double tolerance, CagCurveList *out, CagError *err);
+
+// The curves on which a function of the surface is 0, at `tolerance` as of sections.
+CagStatus cag_surface_level_curves(const CagSurface *s, const CagLevel *level, double tolerance,
+                                   CagCurveList *out, CagError *err);
 
 #endif

@@ -82,7 +82,7 @@ static double plane_value(const CagLevel *l, const CagVec3 *d, int n, double *gr
 
 CagLevel cag_level_plane(const CagPlane *plane, double size) {
   const double rounding = 1e-13;
-  CagLevel l = {1, plane_value, plane->point, plane->normal, false, rounding * size};
+  CagLevel l = {1, plane_value, plane->point, plane->normal, false, rounding * size, 0};
   return l;
 }
 
@@ -100,7 +100,7 @@ static double contour_value(const CagLevel *l, const CagVec3 *d, int n, double *
 }
 
 CagLevel cag_level_contour(CagVec3 direction, CagVec3 point, bool central) {
-  CagLevel l = {2, contour_value, point, direction, central, 0};
+  CagLevel l = {2, contour_value, point, direction, central, 0, 0};
   return l;
 }
 

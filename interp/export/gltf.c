@@ -10,6 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "interp/scene/color_scale.h"
+
 #ifndef CAG_VERSION
 #define CAG_VERSION "0"
 #endif
@@ -176,6 +178,7 @@ static void add_meshes(Text *t, const Plan *p) {
     add(t, ",\"primitives\":[{\"attributes\":{\"POSITION\":%zu", view++);
     if (m->normals) add(t, ",\"NORMAL\":%zu", view++);
     if (m->uv) add(t, ",\"TEXCOORD_0\":%zu", view++);
+    if (m->scale.kind) add(t, ",\"COLOR_0\":%zu", view++);
     add(t, "},\"indices\":%zu", view++);
     if (p->meshes[i].material) add(t, ",\"material\":%zu", p->parts[i].material);
     add(t, "}]}");
@@ -205,6 +208,7 @@ static void add_accessors(Text *t, const Plan *p) {
     add(t, "}");
     if (m->normals) add_accessor(t, &view, m->vertex_count, "VEC3", FLOAT), add(t, "}");
     if (m->uv) add_accessor(t, &view, m->vertex_count, "VEC2", FLOAT), add(t, "}");
+    if (m->scale.kind) add_accessor(t, &view, m->vertex_count, "VEC3", FLOAT), add(t, "}");
     add_accessor(t, &view, 3 * g->triangles, "SCALAR", UNSIGNED_INT);
     add(t, "}");
   }
@@ -226,6 +230,7 @@ static void add_views(Text *t, const Plan *p) {
     offset = add_view(t, offset, (uint64_t)m->vertex_count * 12, ARRAY_BUFFER);
     if (m->normals) offset = add_view(t, offset, (uint64_t)m->vertex_count * 12, ARRAY_BUFFER);
     if (m->uv) offset = add_view(t, offset, (uint64_t)m->vertex_count * 8, ARRAY_BUFFER);
+    if (m->scale.kind) offset = add_view(t, offset, (uint64_t)m->vertex_count * 12, ARRAY_BUFFER);
     offset = add_view(t, offset, (uint64_t)p->parts[i].triangles * 12, ELEMENT_ARRAY_BUFFER);
   }
   if (offset > 0) add(t, "]");
@@ -306,10 +311,11 @@ static CagStatus plan_part(Plan *p, size_t i, size_t *views, size_t *meshes, Cag
     g->triangles = cag_mesh_kept_triangles(m, g->positions);
     if (g->triangles > 0) {
       g->first_view = *views;
-      *views += 2 + (m->normals ? 1u : 0u) + (m->uv ? 1u : 0u);
-      p->data_bytes +=
-          (uint64_t)m->vertex_count * (12 + (m->normals ? 12u : 0u) + (m->uv ? 8u : 0u)) +
-          (uint64_t)g->triangles * 12;
+      bool colored = m->scale.kind != CAG_SCALE_NONE;
+      *views += 2 + (m->normals ? 1u : 0u) + (m->uv ? 1u : 0u) + colored;
+      p->data_bytes += (uint64_t)m->vertex_count * (12 + (m->normals ? 12u : 0u) +
+                                                    (m->uv ? 8u : 0u) + (colored ? 12u : 0u)) +
+                       (uint64_t)g->triangles * 12;
     }
   }
   g->shown = p->parts[p->copies[i].original].triangles > 0;
@@ -345,6 +351,21 @@ static void write_uv(const double *x, size_t n, CagAtomicFile *file) {
     size_t end = n - k < BATCH ? n : k + BATCH;
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * 4);
     for (; k < end; k++) at = cag_mesh_put_float(at, (float)x[k]);
+    cag_atomic_file_advance(file, at);
+  }
+}
+
+// Linear light, as the format has it; it multiplies the material's colour.
+static void write_colors(const CagMesh *m, CagAtomicFile *file) {
+  for (size_t v = 0; v < m->vertex_count;) {
+    size_t end = m->vertex_count - v < BATCH ? m->vertex_count : v + BATCH;
+    char *at = cag_atomic_file_reserve(file, (size_t)BATCH * 12);
+    for (; v < end; v++) {
+      CagColor c = cag_color_scale_at(&m->scale, m->uv[2 * v]);
+      at = cag_mesh_put_float(at, (float)c.r);
+      at = cag_mesh_put_float(at, (float)c.g);
+      at = cag_mesh_put_float(at, (float)c.b);
+    }
     cag_atomic_file_advance(file, at);
   }
 }
@@ -386,6 +407,7 @@ void cag_gltf_write_data(const CagGltfPlan *p, CagAtomicFile *file) {
     cag_mesh_write_words(file, g->positions, 3 * m->vertex_count);
     if (m->normals) write_normals(m->normals, m->vertex_count, file);
     if (m->uv) write_uv(m->uv, 2 * m->vertex_count, file);
+    if (m->scale.kind) write_colors(m, file);
     write_indices(m, g, file);
   }
 }

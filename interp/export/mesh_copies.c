@@ -139,7 +139,12 @@ static bool same_quad(const uint32_t *a, const uint32_t *b) {
   return true;
 }
 
+static bool same_scale(const CagColorScale *a, const CagColorScale *b) {
+  return a->kind == b->kind && a->from == b->from && a->to == b->to && a->stripes == b->stripes;
+}
+
 static bool same_triangles(const CagMesh *a, const CagMesh *b) {
+  if (!same_scale(&a->scale, &b->scale)) return false;
   bool alike = !a->normals == !b->normals && !a->uv == !b->uv && !a->weld == !b->weld;
   if (!alike || (a->weld && memcmp(a->weld, b->weld, a->vertex_count * sizeof *a->weld)))
     return false;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "interp/export/mesh_write.h"
+#include "interp/scene/color_scale.h"
 
 enum { VERTEX_BYTES = 8 * 4 + 3, FACE_BYTES = 1 + 3 * 4, BATCH = 1024 };
 
@@ -83,13 +84,8 @@ static void write_header(size_t vertices, size_t triangles, CagAtomicFile *file)
                          triangles);
 }
 
-static void color_bytes(const CagMaterial *material, unsigned char rgb[3]) {
-  double linear[3] = {1, 1, 1};
-  if (material) {
-    linear[0] = material->color.r;
-    linear[1] = material->color.g;
-    linear[2] = material->color.b;
-  }
+static void color_bytes(CagColor c, unsigned char rgb[3]) {
+  const double linear[3] = {c.r, c.g, c.b};
   for (int k = 0; k < 3; k++)
     rgb[k] = (unsigned char)(255 * cag_linear_to_srgb(fmin(fmax(linear[k], 0), 1)) + 0.5);
 }
@@ -112,12 +108,13 @@ static char *put_vertex(char *at, const float *p, CagVec3 n, const double *uv,
 static void write_vertices(const CagMeshPart *part, const PlyPart *p, CagAtomicFile *file) {
   const CagMesh *m = part->mesh;
   unsigned char rgb[3];
-  color_bytes(part->material, rgb);
+  color_bytes(part->material ? part->material->color : (CagColor){1, 1, 1}, rgb);
   for (size_t v = 0; v < m->vertex_count;) {
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * VERTEX_BYTES);
     size_t end = m->vertex_count - v < BATCH ? m->vertex_count : v + BATCH;
     for (; v < end; v++) {
       if (p->number && m->weld[v] != v) continue;
+      if (m->scale.kind) color_bytes(cag_color_scale_at(&m->scale, m->uv[2 * v]), rgb);
       CagVec3 n = p->sums ? cag_unit(p->sums[v]) : m->normals[v];
       at = put_vertex(at, p->positions + 3 * v, n, m->uv ? m->uv + 2 * v : NULL, rgb);
     }

@@ -159,7 +159,10 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
   }
   if (status) return status;
   pov_material_name(w, item->material, closed, material);
-  pov_printf(w, "\nobject {\n  %s\n  material { %s }\n", name, material);
+  pov_printf(w, "\nobject {\n  %s\n", name);
+  if (item->kind == CAG_ITEM_MESH && item->as.mesh->scale.kind && item->as.mesh->triangle_count)
+    pov_scale_material(w, item->material, &item->as.mesh->scale);
+  else pov_printf(w, "  material { %s }\n", material);
   pov_placement(w, "  ", &w->placement);
   pov_text(w, w->unit != 1 ? "  scale unit\n}\n\n" : "}\n\n");
   return CAG_OK;

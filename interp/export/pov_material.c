@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "interp/export/pov_write.h"
+#include "interp/scene/color_scale.h"
 
 static double clamp01(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
 
@@ -241,6 +242,24 @@ void pov_material(CagPovWriter *w, size_t index, bool closed) {
   else write_texture(w, m, bends);
   if (bends && needs_ior(m)) pov_printf(w, "  interior { ior %.5g }\n", m->ior);
   pov_text(w, "}\n");
+}
+
+void pov_scale_material(CagPovWriter *w, size_t index, const CagColorScale *scale) {
+  const CagMaterial *m = &w->scene->materials[index];
+  CagColorStop stops[CAG_SCALE_STOPS_MAX];
+  size_t n = cag_color_scale_stops(scale, stops);
+  pov_text(w, "  material {\n  texture {\n    uv_mapping\n    pigment {\n      gradient x\n"
+              "      color_map {\n");
+  for (size_t i = 0; i < n; i++) {
+    pov_printf(w, "        [%.7g ", pov_scale_place(stops[i].at));
+    pov_color(w, stops[i].color);
+    pov_text(w, "]\n");
+  }
+  pov_text(w, "      }\n    }\n");
+  write_finish(w, m, (CagColor){1, 1, 1}, false);
+  pov_text(w, "  }\n");
+  if (needs_ior(m)) pov_printf(w, "  interior { ior %.5g }\n", m->ior);
+  pov_text(w, "  }\n");
 }
 
 // Share of a sky's mean colour that stands in for its light: corners see less than all of it.

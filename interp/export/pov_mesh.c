@@ -98,6 +98,26 @@ static int position_decimals(const CagMesh *m) {
   return decimals < 0 ? 0 : decimals > DECIMALS_MAX ? DECIMALS_MAX : decimals;
 }
 
+// The places of the vertices on the scale of colours. They use the middle half of 0..1, where the
+// pattern does not begin anew, so that values beyond the scale stay beyond its colours.
+static void write_scale_places(CagPovWriter *w, const CagMesh *m) {
+  const int decimals = 7;
+  const CagColorScale *s = &m->scale;
+  pov_printf(w, "  uv_vectors {\n    %zu", m->vertex_count);
+  for (size_t i = 0; i < m->vertex_count; i++) {
+    char *at = cag_atomic_file_reserve(w->file, VECTOR_ROOM);
+    double t = (m->uv[2 * i] - s->from) / (s->to - s->from);
+    double place = isnan(t) ? 0.5 : fmin(fmax(pov_scale_place(t), 0), 1 - POV_SCALE_EDGE);
+    *at++ = ',';
+    if (i % VECTORS_PER_LINE == 0) memcpy(at, "\n    ", 5), at += 5;
+    *at++ = '<';
+    at = put_fixed(at, place, decimals);
+    memcpy(at, ",0>", 3);
+    cag_atomic_file_advance(w->file, at + 3);
+  }
+  pov_text(w, "\n  }\n");
+}
+
 CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
   if (m->triangle_count == 0) { // a shape without area: its name stands for something unseen
     pov_text(w, "sphere { // nothing is seen of it: it has no area\n  0, 1\n"
@@ -113,6 +133,7 @@ CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
   pov_printf(w, "mesh2 { // %zu triangles\n", m->triangle_count);
   write_vectors(w, "vertex_vectors", m->positions, m->vertex_count, decimals);
   if (m->normals) write_vectors(w, "normal_vectors", m->normals, m->vertex_count, NORMAL_DECIMALS);
+  if (m->scale.kind && m->uv) write_scale_places(w, m);
   write_faces(w, m);
   // Any direction will do that no face is likely to lie along.
   if (w->in_operation) pov_text(w, "  inside_vector <0.3071, 0.2117, 0.9278>\n");

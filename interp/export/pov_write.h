@@ -54,6 +54,12 @@ bool pov_names(const char *prefix, const char *const *names, size_t n, CagPovNam
 void pov_material(CagPovWriter *w, size_t index, bool closed);
 // The name to use for an item of it.
 void pov_material_name(const CagPovWriter *w, size_t index, bool closed, char out[64]);
+// The material with the colours of a scale in place of its own, to stand in an object; the mesh
+// has the places (pov_mesh).
+void pov_scale_material(CagPovWriter *w, size_t index, const CagColorScale *scale);
+// Where in the pattern the place t of a scale is; at its end it begins anew.
+#define POV_SCALE_EDGE 1e-6
+static inline double pov_scale_place(double t) { return 0.25 + 0.5 * t; }
 // Light from everywhere where there is no radiosity.
 CagColor pov_ambient(const CagScene *s);
 

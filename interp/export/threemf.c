@@ -2,7 +2,8 @@
 //
 // Ids: 1 the base materials, 2 on the objects in the order of the parts. A part is an object with a
 // mesh; a copy of one of the same material is an object with that one as its component, moved, and
-// with a name of its own: components have no material. A mesh must be closed to be a
+// with a name of its own: components have no material. Behind the objects' ids come the colour
+// groups (materials extension) of meshes that show values by colours. A mesh must be closed to be a
 // model; an open one is a surface. Points are those of the welded mesh.
 
 #include <stdio.h>
@@ -11,6 +12,7 @@
 #include "interp/export/mesh_copies.h"
 #include "interp/export/mesh_write.h"
 #include "interp/export/zip.h"
+#include "interp/scene/color_scale.h"
 
 #ifndef CAG_VERSION
 #define CAG_VERSION "0"
@@ -19,7 +21,7 @@
 enum {
   BATCH = 128,
   VERTEX_BYTES = 3 * 25 + 40,
-  TRIANGLE_BYTES = 3 * 21 + 40,
+  TRIANGLE_BYTES = 3 * 21 + 40 + 24 + 3 * 32, // with colours
   MATERIALS_ID = 1,
   FIRST_OBJECT = 2
 };
@@ -100,6 +102,45 @@ static void write_materials(Model *m) {
   cag_atomic_file_text(m->xml, "  </basematerials>\n");
 }
 
+// --- Colours of values ---
+
+// Steps of a scale: neighbours differ by less than 8-bit colours show.
+#define SCALE_STEPS 256
+
+static size_t scale_id(const Model *m, size_t i) { return m->count + FIRST_OBJECT + i; }
+
+static int scale_step(const CagColorScale *s, double value) {
+  double t = (value - s->from) / (s->to - s->from);
+  return isnan(t) ? 0 : (int)fmin(fmax(floor(t * SCALE_STEPS), 0), SCALE_STEPS - 1);
+}
+
+static void write_scale(Model *m, size_t i) {
+  const CagColorScale *s = &m->parts[i].mesh->scale;
+  cag_atomic_file_printf(m->xml, "  <m:colorgroup id=\"%zu\">\n", scale_id(m, i));
+  for (int k = 0; k < SCALE_STEPS; k++) {
+    CagColor c = cag_color_scale_at(s, s->from + (s->to - s->from) * (k + 0.5) / SCALE_STEPS);
+    const double x[3] = {c.r, c.g, c.b};
+    cag_atomic_file_text(m->xml, "   <m:color color=\"#");
+    for (int j = 0; j < 3; j++)
+      cag_atomic_file_printf(m->xml, "%02X", (int)(255 * cag_linear_to_srgb(x[j]) + 0.5));
+    cag_atomic_file_text(m->xml, "\"/>\n");
+  }
+  cag_atomic_file_text(m->xml, "  </m:colorgroup>\n");
+}
+
+// pid and p1, p2, p3 of a triangle.
+static char *put_triangle_colors(const Model *m, size_t i, const uint32_t *corners, char *at) {
+  static const char *const names[] = {"\" p1=\"", "\" p2=\"", "\" p3=\""};
+  const CagMesh *mesh = m->parts[i].mesh;
+  at = put_text(at, "\" pid=\"");
+  at = cag_mesh_write_index(at, scale_id(m, i));
+  for (int j = 0; j < 3; j++) {
+    at = put_text(at, names[j]);
+    at = cag_mesh_write_index(at, (uint64_t)scale_step(&mesh->scale, mesh->uv[2 * corners[j]]));
+  }
+  return at;
+}
+
 // --- Meshes ---
 
 static CagStatus write_vertices(Model *m, const CagMesh *mesh, const float *p, uint32_t *number,
@@ -128,8 +169,9 @@ static CagStatus write_vertices(Model *m, const CagMesh *mesh, const float *p, u
   return status;
 }
 
-static CagStatus write_triangles(Model *m, const CagMesh *mesh, const float *p,
-                                 const uint32_t *number, CagError *err) {
+static CagStatus write_triangles(Model *m, size_t part, const float *p, const uint32_t *number,
+                                 CagError *err) {
+  const CagMesh *mesh = m->parts[part].mesh;
   CagStatus status = CAG_OK;
   for (size_t t = 0; status == CAG_OK && t < mesh->triangle_count;) {
     char *at = cag_atomic_file_reserve(m->xml, (size_t)BATCH * TRIANGLE_BYTES);
@@ -142,6 +184,7 @@ static CagStatus write_triangles(Model *m, const CagMesh *mesh, const float *p,
       at = cag_mesh_write_index(at, number[k[1]]);
       at = put_text(at, "\" v3=\"");
       at = cag_mesh_write_index(at, number[k[2]]);
+      if (mesh->scale.kind) at = put_triangle_colors(m, part, k, at);
       at = put_text(at, "\"/>\n");
     }
     cag_atomic_file_advance(m->xml, at);
@@ -157,7 +200,7 @@ static CagStatus write_mesh(Model *m, size_t i, const float *p, CagError *err) {
   cag_atomic_file_text(m->xml, "   <mesh>\n    <vertices>\n");
   CagStatus status = write_vertices(m, mesh, p, number, err);
   cag_atomic_file_text(m->xml, "    </vertices>\n    <triangles>\n");
-  if (status == CAG_OK) status = write_triangles(m, mesh, p, number, err);
+  if (status == CAG_OK) status = write_triangles(m, i, p, number, err);
   cag_atomic_file_text(m->xml, "    </triangles>\n   </mesh>\n");
   free(number);
   return status;
@@ -180,6 +223,7 @@ static bool is_component(const Model *m, size_t i) { return m->copies[i].origina
 static CagStatus write_object(Model *m, size_t i, bool closed, const float *p, CagError *err) {
   const CagMeshPart *part = &m->parts[i];
   size_t original = m->copies[i].original;
+  if (part->mesh->scale.kind && !is_component(m, i)) write_scale(m, i);
   cag_atomic_file_printf(m->xml, "  <object id=\"%zu\" type=\"%s\" name=\"", i + FIRST_OBJECT,
                          closed ? "model" : "surface");
   write_escaped(m->xml, part->name ? part->name : "part");
@@ -225,7 +269,8 @@ static CagStatus write_model(Model *m, bool *shown, CagError *err) {
   cag_atomic_file_text(
       m->xml, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
               "<model unit=\"millimeter\" xml:lang=\"en-US\" "
-              "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"
+              "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
+              "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">\n"
               " <metadata name=\"Application\">cag " CAG_VERSION "</metadata>\n <resources>\n");
   write_materials(m);
   CagStatus status = write_objects(m, shown, err);

@@ -1,0 +1,450 @@
+// Pictures of a surface's quality: colours of curvature, zebra stripes, isophotes.
+//
+// Colours are those of a mesh with a value at each vertex and a scale (CagColorScale), which every
+// transform and exporter knows. The meshes are white, so that viewers which multiply the colours
+// of vertices and material show them as they are.
+
+#include <stdlib.h>
+
+#include "geom/surface/isophote.h"
+#include "geom/surface/value_map.h"
+#include "interp/builtin/shapes.h"
+#include "interp/builtin/support.h"
+#include "interp/eval/vm.h"
+#include "interp/scene/color_scale.h"
+
+// --- Meshes of several faces ---
+
+typedef struct Meshes {
+  CagMesh **items;
+  size_t count, capacity;
+} Meshes;
+
+static void free_meshes(Meshes *m) {
+  for (size_t i = 0; i < m->count; i++) cag_mesh_release(m->items[i]);
+  free(m->items);
+}
+
+// Takes the mesh over.
+static CagStatus add_mesh(Meshes *m, CagMesh *mesh, CagError *err) {
+  if (m->count == m->capacity) {
+    size_t room = m->capacity ? 2 * m->capacity : 8;
+    CagMesh **grown = realloc(m->items, room * sizeof *grown);
+    if (!grown) {
+      cag_mesh_release(mesh);
+      return cag_fail_memory(err);
+    }
+    m->items = grown;
+    m->capacity = room;
+  }
+  m->items[m->count++] = mesh;
+  return CAG_OK;
+}
+
+// All the shapes of the first argument, as a list that the caller roots.
+static bool read_shapes(CagCall *call, CagList **out) {
+  CagBuilder *builder = cag_builder_new(call->vm);
+  if (!cag_shapes_collect(call, call->values[0], builder)) return false;
+  *out = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  return (*out)->length > 0 || cag_fail_call(call, 0, CAG_ERR_value, "expects a shape");
+}
+
+typedef CagStatus (*MakeMesh)(const void *what, const CagShape *shape, CagValue v,
+                              const CagTessellation *how, Meshes *out, CagError *err);
+
+static bool make_meshes(CagCall *call, int tolerance, MakeMesh make, const void *what,
+                        Meshes *out) {
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  CagList *shapes;
+  CagError err;
+  if (call->vm->max_triangles > 0) how.max_triangles = call->vm->max_triangles;
+  how.interrupt = cag_vm_stop(call->vm);
+  bool said = cag_given(call, tolerance) && call->values[tolerance].type != CAG_NONE;
+  if ((said && !cag_arg_positive(call, tolerance, &how.tolerance)) || !read_shapes(call, &shapes))
+    return false;
+  // Formulas are called back: the shapes stay.
+  cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
+  bool ok = true;
+  for (size_t i = 0; ok && i < shapes->length; i++) {
+    CagValue v = cag_list_get(call->vm, shapes, i);
+    CagTessellation own = how;
+    if (!said) own.tolerance = CAG_AS_SHAPE(v)->tolerance;
+    ok = cag_geometry_ok(call, make(what, CAG_AS_SHAPE(v), v, &own, out, &err), &err);
+  }
+  cag_root_pop(call->vm, 1);
+  return ok;
+}
+
+static bool give_mesh(CagCall *call, const Meshes *parts, CagColorScale scale, CagValue *result) {
+  static const char *const names[] = {"color", "roughness", "ior"};
+  static const double white[] = {1, 1, 1};
+  const double matte_roughness = 0.6, matte_ior = 1.3;
+  CagMesh *whole = NULL;
+  CagError err;
+  for (size_t i = 0; i < parts->count; i++) parts->items[i]->scale = scale;
+  if (!cag_geometry_ok(call, cag_mesh_append(parts->items, parts->count, &whole, &err), &err))
+    return false;
+  *result = cag_mesh_value(call->vm, whole);
+  CagValue fields[] = {cag_vector(call->vm, white, 3), cag_number(matte_roughness),
+                       cag_number(matte_ior)};
+  CAG_AS_SHAPE(*result)->material = CAG_AS_RECORD(cag_record_new(call->vm, names, fields, 3));
+  return true;
+}
+
+// --- Colours of curvature ---
+
+static CagStatus value_mesh(const void *what, const CagShape *shape, CagValue v,
+                            const CagTessellation *how, Meshes *out, CagError *err) {
+  CagSurfaceValue kind = *(const CagSurfaceValue *)what;
+  const CagSurface *one[1] = {shape->as.surface};
+  const CagSurface *const *faces = one;
+  size_t n = 1;
+  if (v.type == CAG_SOLID) {
+    faces = (const CagSurface *const *)shape->as.solid->faces;
+    n = shape->as.solid->face_count;
+  }
+  if ((v.type != CAG_SURFACE && v.type != CAG_SOLID) || n == 0)
+    return cag_fail(err, CAG_E_UNSUPPORTED, "no-curvature", "", -1,
+                    "%s has no surfaces whose curvature could be shown",
+                    v.type == CAG_SOLID ? "a body of set operations or meshes"
+                                        : cag_type_article(v));
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < n; i++) {
+    CagMesh *mesh = NULL;
+    status = cag_surface_value_mesh(faces[i], kind, how, &mesh, err);
+    if (!status) status = add_mesh(out, mesh, err);
+  }
+  return status;
+}
+
+// The size of all meshes, from which follows what curvature is rounding.
+static double size_of(const Meshes *m) {
+  CagBounds all = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; i < m->count; i++) {
+    CagBounds b = cag_mesh_bounds(m->items[i]);
+    all.min =
+        cag_vec3(fmin(all.min.x, b.min.x), fmin(all.min.y, b.min.y), fmin(all.min.z, b.min.z));
+    all.max =
+        cag_vec3(fmax(all.max.x, b.max.x), fmax(all.max.y, b.max.y), fmax(all.max.z, b.max.z));
+  }
+  return cag_norm(cag_sub(all.max, all.min));
+}
+
+// Curvatures below this part of the inverse size are none.
+#define FLAT 1e-7
+
+// A span with values of both signs is made symmetric, so that 0 has the middle colour.
+static void find_span(const Meshes *m, CagSurfaceValue kind, double *from, double *to) {
+  double size = size_of(m), unit = size > 0 ? 1 / size : 1;
+  double least = FLAT * (kind == CAG_VALUE_GAUSSIAN ? unit * unit : unit);
+  if (kind == CAG_VALUE_SLOPE) least = FLAT;
+  cag_mesh_value_span(m->items, m->count, least, from, to);
+  const double both = 0.02; // a sign that takes up less of the span does not count
+  if (*from<-both * * to && * to> - both * *from) {
+    *to = fmax(*to, -*from);
+    *from = -*to;
+  }
+}
+
+static bool read_span(CagCall *call, int argument, bool slope, double *from, double *to) {
+  bool angle;
+  if (!cag_arg_interval(call, argument, from, to, &angle)) return false;
+  if (angle && !slope)
+    return cag_fail_call(call, argument, CAG_ERR_value,
+                         "expects a range of numbers: curvatures are 1/mm (mean and principal) and "
+                         "1/mm2 (Gaussian)");
+  if (!isfinite(*from) || !isfinite(*to) || *from == *to)
+    return cag_fail_call(call, argument, CAG_ERR_value,
+                         "expects a range with two different finite ends, found %g..%g", *from,
+                         *to);
+  return true;
+}
+
+static bool is_symmetric(double from, double to) {
+  const double same = 1e-9;
+  return from * to < 0 && fabs(from + to) <= same * (fabs(from) + fabs(to));
+}
+
+static bool call_colored_by(CagCall *call, CagValue *result) {
+  static const char *const scales[] = {"auto", "sequence", "diverging", NULL};
+  int kind, colors;
+  double from = 0, to = 0;
+  Meshes parts = {0};
+  if (!cag_arg_choice(call, 1, cag_surface_values, &kind) ||
+      !cag_arg_choice(call, 3, scales, &colors))
+    return false;
+  CagSurfaceValue value = (CagSurfaceValue)kind;
+  bool said = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  if (said && !read_span(call, 2, value == CAG_VALUE_SLOPE, &from, &to)) return false;
+  bool ok = make_meshes(call, 4, value_mesh, &value, &parts);
+  if (ok) {
+    if (!said) find_span(&parts, value, &from, &to);
+    bool diverging = colors == 2 || (colors == 0 && is_symmetric(from, to));
+    CagColorScale scale = {diverging ? CAG_SCALE_DIVERGING : CAG_SCALE_SEQUENCE, from, to, 0};
+    ok = give_mesh(call, &parts, scale, result);
+  }
+  free_meshes(&parts);
+  return ok;
+}
+
+// --- What a coloured mesh says ---
+
+static bool read_colored(CagCall *call, const CagMesh **out) {
+  if (call->values[0].type != CAG_MESH) return cag_fail_type(call, 0, "a mesh with colours");
+  *out = CAG_AS_SHAPE(call->values[0])->as.mesh;
+  if ((*out)->scale.kind && (*out)->uv) return true;
+  CagError err;
+  cag_fail(&err, CAG_E_UNSUPPORTED, "no-values", "", -1,
+           "the mesh has no values: `colored_by` and `zebra` make meshes that have");
+  return cag_fail_geometry(call, &err);
+}
+
+static bool call_values_of(CagCall *call, CagValue *result) {
+  const CagMesh *m;
+  if (!read_colored(call, &m)) return false;
+  double *x = malloc((m->vertex_count + 1) * sizeof *x);
+  if (!x) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  for (size_t v = 0; v < m->vertex_count; v++) x[v] = m->uv[2 * v] + 0.0;
+  *result = cag_numbers_value(call->vm, x, m->vertex_count);
+  free(x);
+  return true;
+}
+
+static bool call_color_range(CagCall *call, CagValue *result) {
+  const CagMesh *m;
+  if (!read_colored(call, &m)) return false;
+  *result = cag_domain_value(call->vm, false, m->scale.from, m->scale.to);
+  return true;
+}
+
+static bool call_scale_color(CagCall *call, CagValue *result) {
+  const CagMesh *m;
+  double x;
+  if (!read_colored(call, &m) || !cag_arg_finite(call, 1, &x)) return false;
+  CagColor c = cag_color_scale_at(&m->scale, x);
+  const double rgb[] = {c.r, c.g, c.b};
+  *result = cag_vector(call->vm, rgb, 3);
+  return true;
+}
+
+// --- Zebra stripes ---
+
+typedef struct Zebra {
+  CagVec3 eye, across;
+  int stripes;
+} Zebra;
+
+// Vertices along the narrowest stripe; the mirrored direction turns twice as fast as the normal.
+#define STRIPE_EDGES 2.5
+
+static CagStatus zebra_mesh(const void *what, const CagShape *shape, CagValue v,
+                            const CagTessellation *how, Meshes *out, CagError *err) {
+  const Zebra *z = what;
+  CagTessellation fine = *how;
+  CagMesh *mesh = NULL;
+  fine.angle = fmin(how->angle, 1 / (2 * STRIPE_EDGES * z->stripes));
+  CagStatus status;
+  if (v.type == CAG_SURFACE) status = cag_surface_tessellate(shape->as.surface, &fine, &mesh, err);
+  else if (v.type == CAG_SOLID) status = cag_solid_tessellate(shape->as.solid, &fine, &mesh, err);
+  else if (v.type == CAG_MESH && shape->as.mesh->normals) {
+    CagTransform still = cag_transform_identity(); // a copy of its own
+    status = cag_mesh_transform(shape->as.mesh, &still, &mesh, err);
+  } else
+    return cag_fail(err, CAG_E_UNSUPPORTED, "no-curvature", "", -1,
+                    "%s has no smooth normals that could mirror stripes", cag_type_article(v));
+  if (!status && !mesh->normals) {
+    cag_mesh_release(mesh);
+    return cag_fail(err, CAG_E_UNSUPPORTED, "no-curvature", "", -1,
+                    "a body of set operations or flat meshes has no smooth normals that could "
+                    "mirror stripes");
+  }
+  if (!status) status = cag_mesh_reflect(mesh, z->eye, z->across, err);
+  if (!status) return add_mesh(out, mesh, err);
+  cag_mesh_release(mesh);
+  return status;
+}
+
+// `across` made square to the view; where none is said the world's Z, or Y for a view along it.
+static bool read_across(CagCall *call, int argument, CagVec3 eye, CagVec3 *out) {
+  const double parallel = 1e-9; // sine
+  CagVec3 v = cag_vec3(0, 0, 1);
+  bool said = cag_given(call, argument) && call->values[argument].type != CAG_NONE;
+  if (said && !cag_arg_direction(call, argument, v, &v, NULL)) return false;
+  if (!said && cag_norm(cag_cross(v, eye)) < parallel) v = cag_vec3(0, 1, 0);
+  v = cag_unit(v);
+  CagVec3 square = cag_madd(v, -cag_dot(v, eye), eye);
+  if (cag_norm(square) < parallel)
+    return cag_fail_call(call, argument, CAG_ERR_value,
+                         "expects a direction that is not the one to the eye");
+  *out = cag_unit(square);
+  return true;
+}
+
+static bool call_zebra(CagCall *call, CagValue *result) {
+  const CagVec3 usual = {0.4, -0.8, 0.5}; // from the front, a little above
+  Zebra z;
+  long stripes;
+  Meshes parts = {0};
+  bool said = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  z.eye = usual;
+  if (!cag_arg_integer_or(call, 1, 8, 1, CAG_SCALE_STRIPES_MAX, &stripes) ||
+      (said && !cag_arg_direction(call, 2, usual, &z.eye, NULL)))
+    return false;
+  z.stripes = (int)stripes;
+  z.eye = cag_unit(z.eye);
+  if (!read_across(call, 3, z.eye, &z.across)) return false;
+  bool ok = make_meshes(call, 4, zebra_mesh, &z, &parts) &&
+            give_mesh(call, &parts, (CagColorScale){CAG_SCALE_STRIPES, -1, 1, z.stripes}, result);
+  free_meshes(&parts);
+  return ok;
+}
+
+// --- Isophotes ---
+
+#define LEVELS_MOST 1000
+
+// The cosines of the levels: of a count, angles evenly between 0 and 180 degrees, ends left out; of
+// a list, its angles. *out from malloc.
+static bool read_levels(CagCall *call, int argument, double **out, size_t *n) {
+  bool listed = cag_given(call, argument) && call->values[argument].type == CAG_LIST;
+  long count = 11;
+  const double straight = 3.14159265358979323846;
+  CagList *list = NULL;
+  if (listed && !cag_arg_list(call, argument, &list)) return false;
+  if (!listed && !cag_arg_integer_or(call, argument, count, 1, LEVELS_MOST, &count)) return false;
+  *n = listed ? list->length : (size_t)count;
+  if (*n > LEVELS_MOST)
+    return cag_fail_call(call, argument, CAG_ERR_value, "expects at most %d angles", LEVELS_MOST);
+  *out = malloc((*n + 1) * sizeof **out);
+  if (!*out) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  for (size_t i = 0; i < *n; i++) {
+    double angle = straight * (double)(i + 1) / (double)(*n + 1);
+    if (listed) {
+      CagValue v = cag_list_get(call->vm, list, i);
+      if (v.type != CAG_ANGLE || !(v.as.number >= 0 && v.as.number <= 180)) {
+        free(*out);
+        return cag_fail_call(call, argument, CAG_ERR_value,
+                             "expects a count or a list of angles from 0deg to 180deg; element %zu "
+                             "is none",
+                             i);
+      }
+      angle = v.as.number * CAG_RADIANS_PER_DEGREE;
+    }
+    // A right angle is where the outline is: its cosine is 0, not rounding.
+    (*out)[i] = fabs(angle - straight / 2) < 1e-15 ? 0 : cos(angle);
+  }
+  return true;
+}
+
+static CagStatus isophotes_of(CagValue v, CagVec3 direction, double cosine, double tolerance,
+                              CagCurveList *out, CagError *err) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  if (v.type == CAG_SURFACE)
+    return cag_surface_isophote(shape->as.surface, direction, cosine, tolerance, out, err);
+  if (v.type != CAG_SOLID || shape->as.solid->face_count == 0)
+    return cag_fail(
+        err, CAG_E_UNSUPPORTED, "no-curvature", "", -1, "%s has no surfaces to draw isophotes on",
+        v.type == CAG_SOLID ? "a body of set operations or meshes" : cag_type_article(v));
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < shape->as.solid->face_count; i++)
+    status =
+        cag_surface_isophote(shape->as.solid->faces[i], direction, cosine, tolerance, out, err);
+  return status;
+}
+
+static bool give_curves(CagCall *call, const CagCurveList *list, CagValue *result) {
+  CagBuilder *out = cag_builder_new(call->vm);
+  for (size_t i = 0; i < list->count; i++)
+    if (!cag_builder_add(call->vm, out,
+                         cag_curve_value(call->vm, cag_curve_retain(list->items[i]))))
+      return false;
+  *result = cag_group_value(call->vm, cag_builder_finish(call->vm, out));
+  return true;
+}
+
+static bool call_isophotes(CagCall *call, CagValue *result) {
+  CagVec3 direction = {0, 0, 1};
+  double *cosines = NULL, tolerance = 0;
+  size_t n;
+  CagList *shapes;
+  CagCurveList list = {0};
+  CagError err;
+  if (cag_given(call, 1) && call->values[1].type != CAG_NONE &&
+      !cag_arg_direction(call, 1, direction, &direction, NULL))
+    return false;
+  if (cag_given(call, 3) && call->values[3].type != CAG_NONE &&
+      !cag_arg_positive(call, 3, &tolerance))
+    return false;
+  if (!read_shapes(call, &shapes) || !read_levels(call, 2, &cosines, &n)) return false;
+  cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
+  bool ok = true;
+  direction = cag_unit(direction);
+  for (size_t i = 0; ok && i < shapes->length; i++)
+    for (size_t k = 0; ok && k < n; k++)
+      ok = cag_geometry_ok(call,
+                           isophotes_of(cag_list_get(call->vm, shapes, i), direction, cosines[k],
+                                        tolerance, &list, &err),
+                           &err) &&
+           cag_keep_going(call->vm);
+  ok = ok && give_curves(call, &list, result);
+  cag_root_pop(call->vm, 1);
+  cag_curve_list_free(&list);
+  free(cosines);
+  return ok;
+}
+
+// --- The table ---
+
+static const char figures[] = "Figures";
+
+const CagBuiltin cag_builtins_quality[] = {
+    {"colored_by(S, value, range = none, colors = \"auto\", tolerance = none)", call_colored_by,
+     "mesh",
+     "A surface, or the faces of a solid, as a mesh coloured by \"gaussian\", \"mean\", "
+     "\"principal_max\" or \"principal_min\" curvature (1/mm, Gaussian 1/mm2, signed by the "
+     "normal), or by \"slope\", the angle between tangent plane and horizontal (degrees). The "
+     "first and last colour are those of the range's ends; none: what is found, without rare "
+     "extremes, and symmetric about 0 where there are both signs. `colors`: \"sequence\" from "
+     "dark to bright, \"diverging\" blue over white to red, \"auto\" that one for a symmetric "
+     "range. Vertices stand doubled where curvature jumps. In .pov, .glb, .gltf, .ply and .3mf "
+     "with its colours, in .obj with the values as parameters.",
+     "m = colored_by(torus_surface(3, 1), \"gaussian\")\n"
+     "print near(max(values_of(m)), 1 / 4), near(min(values_of(m)), -1 / 2, 1e-3) // expect: true "
+     "true\n"
+     "print near(color_range(m).end, 0.5, 1e-3) // expect: true",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), figures},
+    {"zebra(G, stripes = 8, view = none, across = none, tolerance = none)", call_zebra, "mesh",
+     "What a mirror of this shape shows of long lamps: as many light and dark stripes, a mesh. "
+     "`view` is the direction to the eye (none: from the front, a little above), wherever the "
+     "camera stands; r = 2 (n . view) n - view the mirrored one; `across` the direction square to "
+     "the view in which the stripes follow each other (none: up). The value is r . across, -1..1 "
+     "(`values_of`), and the stripes are even parts of that. A bend in a stripe shows a jump of "
+     "the tangent plane, a kink one of the curvature.",
+     "m = zebra(sphere_surface(5), view: X)\n"
+     "print near(max(values_of(m)), 1, 1e-3), color_range(m) // expect: true -1..1",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), figures},
+    {"isophotes(G, direction = Z, levels = 11, tolerance = none)", call_isophotes, "group",
+     "The curves along which the angle between normal and direction is constant, as exact as "
+     "`section`: for a count that many angles evenly between 0deg and 180deg, or a list of angles. "
+     "At 90deg it is the outline seen along the direction.",
+     "c = isophotes(sphere_surface(5), Z, [60deg]).items\n"
+     "print len(c), near(length(c[0]), 2 * pi * 5 * sin(60deg)) // expect: 1 true",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), figures},
+    {"values_of(M)", call_values_of, "list",
+     "The values by which a mesh of `colored_by` or `zebra` is coloured, in the order of its "
+     "`vertices`. A mesh without values is an error (no-values).",
+     "m = colored_by(sphere_surface(2), \"gaussian\")\n"
+     "print near(values_of(m)[0], 1 / 4), len(values_of(m)) == len(vertices(m)) // expect: true "
+     "true",
+     CAG_TAKES(MESH), figures},
+    {"color_range(M)", call_color_range, "range",
+     "The values that have the first and the last colour of a mesh of `colored_by` or `zebra`.",
+     "print color_range(colored_by(sphere_surface(2), \"mean\", 0..1)) // expect: 0..1",
+     CAG_TAKES(MESH), figures},
+    {"color_of(M, value)", call_scale_color, "list",
+     "The colour that a mesh of `colored_by` or `zebra` gives to a value: red, green and blue in "
+     "linear light, 0..1.",
+     "m = colored_by(sphere_surface(2), \"mean\", 0..1)\n"
+     "print color_of(m, 5) == color_of(m, 1) // expect: true",
+     CAG_TAKES(MESH), figures},
+    {0}};
