@@ -30,6 +30,23 @@
 CAG_ROBOT_FUNCTIONS(X)
 #undef X
 
+// --- Plain robots, of rods, drums and a foot: sizes as parts of the length of their skeleton ---
+#define CAG_PLAIN_ROD_RADIUS 0.018
+#define CAG_PLAIN_DRUM_RADIUS 0.035
+#define CAG_PLAIN_DRUM_LENGTH 0.1
+#define CAG_PLAIN_SLIDE_SIDE 0.056 // of the square bar of a sliding joint
+#define CAG_PLAIN_FOOT_RADIUS 0.07
+#define CAG_PLAIN_FOOT_HEIGHT 0.012
+// Sections of the skeleton shorter than this part are not drawn.
+#define CAG_PLAIN_SHORT 1e-6
+// Linear light.
+#define CAG_PLAIN_ROD_COLOR                                                                        \
+  { 0.42, 0.44, 0.47 }
+#define CAG_PLAIN_DRUM_COLOR                                                                       \
+  { 0.86, 0.22, 0.03 }
+#define CAG_PLAIN_FOOT_COLOR                                                                       \
+  { 0.08, 0.09, 0.1 }
+
 // --- Arguments ---
 bool cag_arg_robot(CagCall *call, int argument, CagRobot **out); // borrowed
 // Joint values; where `limits` the error outside-limits names the joint outside.

@@ -6,18 +6,8 @@
 #include "interp/builtin/robots.h"
 #include "interp/builtin/solids.h"
 
-// Sizes of plain robots as parts of the length of their skeleton.
-#define ROD_RADIUS 0.018
-#define DRUM_RADIUS 0.035
-#define DRUM_LENGTH 0.1
-#define FOOT_RADIUS 0.07
-#define FOOT_HEIGHT 0.012
-// Sections of the skeleton shorter than this part are not drawn.
-#define SHORT 1e-6
-
-// Linear light.
-static const double rod_color[3] = {0.42, 0.44, 0.47}, drum_color[3] = {0.86, 0.22, 0.03},
-                    foot_color[3] = {0.08, 0.09, 0.1};
+static const double rod_color[3] = CAG_PLAIN_ROD_COLOR, drum_color[3] = CAG_PLAIN_DRUM_COLOR,
+                    foot_color[3] = CAG_PLAIN_FOOT_COLOR;
 
 typedef struct Drawing {
   CagCall *call;
@@ -39,7 +29,7 @@ static bool add_body(Drawing *d, CagStatus status, CagSolid **body, const CagErr
 static bool add_rod(Drawing *d, CagVec3 p, CagVec3 q, double radius, const double color[3]) {
   CagSolid *body = NULL;
   CagError err;
-  if (cag_norm(cag_sub(q, p)) <= SHORT * d->size) return true;
+  if (cag_norm(cag_sub(q, p)) <= CAG_PLAIN_SHORT * d->size) return true;
   CagStatus status = cag_solid_rod(p, q, radius, radius, &body, &err);
   return add_body(d, status, &body, &err, color);
 }
@@ -48,8 +38,9 @@ static bool add_rod(Drawing *d, CagVec3 p, CagVec3 q, double radius, const doubl
 static bool add_slide(Drawing *d, const CagTransform *frame) {
   CagSolid *bar = NULL, *placed = NULL;
   CagError err;
-  double side = 1.6 * DRUM_RADIUS * d->size;
-  CagStatus status = cag_solid_box(cag_vec3(side, side, DRUM_LENGTH * d->size), true, &bar, &err);
+  double side = CAG_PLAIN_SLIDE_SIDE * d->size;
+  CagStatus status =
+      cag_solid_box(cag_vec3(side, side, CAG_PLAIN_DRUM_LENGTH * d->size), true, &bar, &err);
   if (!status) status = cag_solid_transform(bar, frame, &placed, &err);
   cag_solid_release(bar);
   return add_body(d, status, &placed, &err, drum_color);
@@ -57,9 +48,9 @@ static bool add_slide(Drawing *d, const CagTransform *frame) {
 
 static bool add_joint(Drawing *d, const CagRobotLink *l, const CagTransform *frame) {
   if (l->kind == CAG_JOINT_PRISMATIC) return add_slide(d, frame);
-  CagVec3 half = cag_vec3(0, 0, DRUM_LENGTH / 2 * d->size);
+  CagVec3 half = cag_vec3(0, 0, CAG_PLAIN_DRUM_LENGTH / 2 * d->size);
   return add_rod(d, cag_transform_point(frame, cag_scaled(half, -1)),
-                 cag_transform_point(frame, half), DRUM_RADIUS * d->size, drum_color);
+                 cag_transform_point(frame, half), CAG_PLAIN_DRUM_RADIUS * d->size, drum_color);
 }
 
 static double length_of(const CagVec3 *points, size_t n) {
@@ -75,13 +66,14 @@ static bool draw_plain(Drawing *d, const CagRobot *r, const double *q, const Cag
   CagVec3 axes[CAG_ROBOT_JOINTS_MAX], directions[CAG_ROBOT_JOINTS_MAX];
   d->size = length_of(points, n);
   cag_robot_axes(r, q, axes, directions);
-  CagVec3 top = cag_vec3(0, 0, -DRUM_LENGTH / 2 * d->size);
-  CagVec3 foot = cag_madd(top, -FOOT_HEIGHT * d->size, cag_vec3(0, 0, 1));
+  CagVec3 top = cag_vec3(0, 0, -CAG_PLAIN_DRUM_LENGTH / 2 * d->size);
+  CagVec3 foot = cag_madd(top, -CAG_PLAIN_FOOT_HEIGHT * d->size, cag_vec3(0, 0, 1));
   if (!add_rod(d, cag_transform_point(&frames[0], foot), cag_transform_point(&frames[0], top),
-               FOOT_RADIUS * d->size, foot_color))
+               CAG_PLAIN_FOOT_RADIUS * d->size, foot_color))
     return false;
   for (size_t i = 1; i < n; i++)
-    if (!add_rod(d, points[i - 1], points[i], ROD_RADIUS * d->size, rod_color)) return false;
+    if (!add_rod(d, points[i - 1], points[i], CAG_PLAIN_ROD_RADIUS * d->size, rod_color))
+      return false;
   for (size_t i = 0; i < r->joint_count; i++) {
     CagTransform frame;
     CagError err;
@@ -129,6 +121,10 @@ static bool give_drawing(CagCall *call, const CagRobotValue *v, const double *q,
   Drawing d = {call, cag_builder_new(call->vm), 1};
   if (!draw(&d, v, q, holding)) return false;
   *result = cag_group_value(call->vm, cag_builder_finish(call->vm, d.items));
+  // Whose drawing it is, for formats that describe robots.
+  static const char *const names[] = {"robot"};
+  CagValue robot = cag_object(CAG_ROBOT, (void *)v);
+  CAG_AS_SHAPE(*result)->style = CAG_AS_RECORD(cag_record_new(call->vm, names, &robot, 1));
   if (v->name->length) CAG_AS_SHAPE(*result)->name = v->name;
   return true;
 }

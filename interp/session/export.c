@@ -1,8 +1,10 @@
 // Writing the scene in a format.
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 #include "interp/export/iges.h"
 #include "interp/export/json.h"
@@ -10,6 +12,7 @@
 #include "interp/export/pov.h"
 #include "interp/export/step.h"
 #include "interp/export/svg.h"
+#include "interp/export/urdf.h"
 #include "interp/session/output.h"
 
 typedef int (*ExportFunction)(CagSession *s, const char *path);
@@ -258,6 +261,103 @@ static int export_iges(CagSession *s, const char *path) {
   return export_brep(s, path, cag_export_iges);
 }
 
+// --- Robots ---
+
+// The one robot that is shown, or a diagnostic.
+static int find_robot(CagSession *s, const CagRobotValue **robot) {
+  enum { NAMED = 8 };
+  const CagRobotValue *found[NAMED];
+  CagVm *vm = s->vm;
+  CagValue *shown = malloc((vm->shown_count + 1) * sizeof *shown);
+  if (!shown) return CAG_STATUS_LIMIT;
+  for (size_t i = 0; i < vm->shown_count; i++) shown[i] = vm->shown[i].value;
+  size_t n = cag_urdf_robots(vm, shown, vm->shown_count, found, NAMED);
+  free(shown);
+  *robot = found[0];
+  if (n == 1) return CAG_STATUS_OK;
+  const char *script = s->script ? s->script : "the session";
+  CagString names = {0};
+  for (size_t i = 0; i < n && i < NAMED; i++)
+    cag_string_printf(&names, "%s%s", i > 0 ? ", " : "",
+                      found[i]->name->length > 0 ? found[i]->name->bytes : "one without a name");
+  CagDiagnostic *d =
+      n == 0 ? cag_diagnostics_add(&s->diagnostics, CAG_ERR_urdf_no_robot, NULL, (CagSpan){0, 0},
+                                   "%s shows no robot", script)
+             : cag_diagnostics_add(&s->diagnostics, CAG_ERR_urdf_several, NULL, (CagSpan){0, 0},
+                                   "%s shows %zu robots (%s%s); a .urdf file is of one", script, n,
+                                   names.bytes ? names.bytes : "", n > NAMED ? ", ..." : "");
+  cag_diagnostic_set_help(
+      d, n == 0 ? "show a robot, as it is or by `posed`: show robot([revolute(a: 300)])"
+                : "show one alone; a param may choose it: `param which = 0`, `show robots[which]`, "
+                  "and -D which=1");
+  cag_string_free(&names);
+  return CAG_STATUS_SCRIPT;
+}
+
+static int write_urdf_meshes(CagSession *s, const CagUrdf *u, const char *folder) {
+  CagIoError io = {0};
+  CagError err = {0};
+  if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
+    cag_io_error_set(&io, CAG_EXIT_FILE, "the meshes of a .urdf file lie in this folder beside it",
+                     "cannot make the folder %s: %s", folder, strerror(errno));
+    return cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  }
+  int status = CAG_STATUS_OK;
+  for (size_t i = 0; i < u->link_count; i++)
+    for (const CagUrdfShape *m = u->links[i].shapes; m && status == CAG_STATUS_OK; m = m->next) {
+      char *path = NULL;
+      if (m->kind != CAG_URDF_MESH) continue;
+      if (asprintf(&path, "%s/%s", folder, m->file) < 0) return CAG_STATUS_LIMIT;
+      CagAtomicFile *f = cag_atomic_file_open(path, &io);
+      free(path);
+      if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
+      if (cag_export_urdf_mesh(m, f, &err) == CAG_OK) {
+        status = commit(s, f);
+        continue;
+      }
+      cag_atomic_file_abort(f);
+      status = cag_session_fail_geometry(s, &err);
+    }
+  return status;
+}
+
+// The meshes come first: a file that stands there whole finds what it names.
+static int write_urdf(CagSession *s, const CagUrdf *u, const char *path) {
+  CagIoError io = {0};
+  if (u->meshes && strcmp(path, "-") == 0) {
+    CagDiagnostic *d =
+        cag_diagnostics_add(&s->diagnostics, CAG_ERR_urdf_output, NULL, (CagSpan){0, 0},
+                            "the links' meshes are files beside the .urdf file, and standard "
+                            "output has no place beside it");
+    cag_diagnostic_set_help(d, "write to a file: -o arm.urdf");
+    return CAG_STATUS_USAGE;
+  }
+  CagAtomicFile *f = cag_atomic_file_open(path, &io);
+  if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  char *folder = path_beside(path, "_meshes");
+  const char *slash = folder ? strrchr(folder, '/') : NULL;
+  cag_export_urdf(u, slash ? slash + 1 : folder ? folder : "", f);
+  int status = u->meshes && folder ? write_urdf_meshes(s, u, folder) : CAG_STATUS_OK;
+  free(folder);
+  if (status == CAG_STATUS_OK) return commit(s, f);
+  cag_atomic_file_abort(f);
+  return status;
+}
+
+static int export_urdf(CagSession *s, const char *path) {
+  const CagRobotValue *robot;
+  CagUrdf u;
+  CagUrdfHow how = {s->scene.tolerance, s->scene.bounds, s->scene.max_triangles,
+                    s->scene.interrupt};
+  int status = find_robot(s, &robot);
+  if (status != CAG_STATUS_OK) return status;
+  status = cag_urdf_of_robot(s->vm, robot, &how, &u)
+               ? write_urdf(s, &u, path)
+               : cag_session_fail_geometry(s, &(CagError){.status = CAG_E_CALLBACK});
+  cag_urdf_free(&u);
+  return status;
+}
+
 // --- The table ---
 
 static const struct Format {
@@ -273,14 +373,15 @@ static const struct Format {
     {"pov", "scene, POV-Ray 3.7 source with its own objects where it has them", export_pov},
     {"igs", "exact geometry, IGES 5.3 with curves, surfaces and trimmed planes", export_iges},
     {"step", "exact geometry, STEP AP214 with solids, colours and names", export_step},
+    {"urdf", "robot, URDF with its meshes in metres in a folder beside it", export_urdf},
     {"svg", "curves and regions as a flat picture", export_svg},
     {"json", "scene, all of it as data", export_json},
 };
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 
 const char *const *cag_export_formats(void) {
-  static const char *const names[] = {"obj", "stl", "ply",  "glb", "gltf", "3mf",
-                                      "pov", "igs", "step", "svg", "json", NULL};
+  static const char *const names[] = {"obj", "stl",  "ply",  "glb", "gltf", "3mf", "pov",
+                                      "igs", "step", "urdf", "svg", "json", NULL};
   return names;
 }
 
@@ -316,12 +417,11 @@ int cag_session_export(CagSession *s, const char *path, const char *format) {
                                     "there is no format `%s`", name)
               : cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
                                     "%s has no ending that tells the format", path);
-    cag_diagnostic_set_help(
-        d,
-        strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0
-            ? "`cag render` makes pictures"
-            : "the formats are obj, stl, ply, glb, gltf, 3mf, pov, igs, step, svg, json; --format "
-              "says it where the ending does not");
+    cag_diagnostic_set_help(d, strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0
+                                   ? "`cag render` makes pictures"
+                                   : "the formats are obj, stl, ply, glb, gltf, 3mf, pov, igs, "
+                                     "step, urdf, svg, json; --format "
+                                     "says it where the ending does not");
     return CAG_STATUS_USAGE;
   }
   int status = cag_session_build_scene(s);
