@@ -95,6 +95,11 @@ $(BUILD)/obj/gen/stdlib.o: $(BUILD)/gen/stdlib.c
 $(BUILD)/cag: $(TOOL_OBJ) $(BUILD)/libcag.a
 	$Q$(CC) $^ -o $@ $(LDLIBS_ALL)
 
+# Writes the program's tables, for what tools/*.sh make of them.
+$(BUILD)/tools/tables: tools/tables.c $(filter-out %/interp/main.o,$(TOOL_OBJ)) $(BUILD)/libcag.a
+	@mkdir -p $(@D)
+	$Q$(CC) $(CFLAGS_ALL) $^ -o $@ $(LDLIBS_ALL)
+
 # C unit tests (cmocka): one program per file of tests/lang, tests/geom, tests/interp.
 UNIT = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/*_test.c))
 $(BUILD)/tests/lang/%: tests/lang/%.c $(BUILD)/liblang.a
@@ -144,7 +149,7 @@ $(BUILD)/tests/bench/robots_kdl: tests/bench/robots_kdl.cpp tests/bench/robots.h
 bench: all $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans
 	BUILD=$(BUILD) sh tests/bench/run.sh
 
-FORMATTED = $(shell find include lang geom interp tests -name '*.[ch]' | sort)
+FORMATTED = $(shell find include lang geom interp tests tools -name '*.[ch]' | sort)
 format:
 	clang-format -i $(FORMATTED)
 check-format:
