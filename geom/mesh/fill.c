@@ -9,14 +9,14 @@
 #include <string.h>
 
 #include "geom/mesh/tessellation.h"
+#include "geom/surface/frames.h"
 
 typedef struct Fill {
   Tessellator *t;
   CagMesh *mesh;
   size_t vertices, triangles; // filled so far
-  double *us, *vs;            // room for the grid of the largest leaf
-  CagVec3 *du, *dv;
-  size_t grid_room;
+  double *us, *vs;            // room for the parameters of the largest leaf
+  size_t grid_room;           // points
 } Fill;
 
 // A sequence of vertices with their parameters along it.
@@ -115,17 +115,17 @@ static void sew(Fill *f, const Chain *low, const Chain *high) {
 
 // --- Vertices inside a leaf ---
 
-static CagVec3 normal_of(const CagSurface *s, CagVec3 du, CagVec3 dv, double u, double v,
-                         bool *missing) {
-  const double parallel = 1e-9; // see plan.c
-  CagVec3 n = cag_cross(du, dv);
-  double length2 = cag_dot(n, n);
-  if (length2 > parallel * parallel * cag_dot(du, du) * cag_dot(dv, dv) && length2 > 0)
-    return cag_scaled(n, 1 / sqrt(length2));
-  CagError ignored;
-  if (cag_surface_normal(s, u, v, &n, &ignored) == CAG_OK) return n;
-  *missing = true;
-  return cag_vec3(0, 0, 0);
+// Normals that the partials do not give.
+static void limit_normals(Fill *f, const CagSurface *s, size_t first, size_t n) {
+  CagMesh *m = f->mesh;
+  for (size_t v = first; v < first + n; v++) {
+    if (cag_dot(m->normals[v], m->normals[v]) > 0) continue;
+    CagError ignored;
+    CagVec3 *normal = &m->normals[v];
+    if (cag_surface_normal(s, m->uv[2 * v], m->uv[2 * v + 1], normal, &ignored) == CAG_OK) continue;
+    *normal = cag_vec3(0, 0, 0);
+    f->t->needs_normals = true;
+  }
 }
 
 // Inner vertices of the leaf's grid: index (i - 1) * (nv - 1) + (j - 1) from *first.
@@ -143,19 +143,18 @@ static CagStatus inner_vertices(Fill *f, const Leaf *leaf, uint32_t *first, CagE
   for (size_t done = 0; done < nu; done += rows) {
     if (rows > nu - done) rows = nu - done;
     CagVec3 *points = m->positions + f->vertices;
-    CagStatus status =
-        cag_surface_eval_grid(s, f->us + done, rows, f->vs, nv, points, f->du, f->dv, err);
+    CagStatus status = cag_surface_eval_frames(s, f->us + done, rows, f->vs, nv, points, NULL, NULL,
+                                               m->normals + f->vertices, err);
     if (status == CAG_OK) status = tess_interrupted(f->t, err);
     if (status != CAG_OK) return status;
     for (size_t i = 0, k = 0; i < rows; i++)
       for (size_t j = 0; j < nv; j++, k++) {
         size_t v = f->vertices + k;
-        m->normals[v] =
-            normal_of(s, f->du[k], f->dv[k], f->us[done + i], f->vs[j], &f->t->needs_normals);
         m->uv[2 * v] = f->us[done + i];
         m->uv[2 * v + 1] = f->vs[j];
         m->weld[v] = (uint32_t)v;
       }
+    limit_normals(f, s, f->vertices, rows * nv);
     f->vertices += rows * nv;
   }
   return CAG_OK;
@@ -316,7 +315,7 @@ static void complete_normals(CagMesh *m) {
 }
 
 static CagStatus begin_fill(Fill *f, CagError *err) {
-  enum { CHUNK = 4096 }; // points evaluated at once: their partials stay in the cache
+  enum { CHUNK = 4096 }; // points evaluated at once: what is made of them stays in the cache
   Tessellator *t = f->t;
   size_t vertices = t->vertex_count, triangles = 0, longest = 1;
   for (size_t k = 0; k < t->leaf_count; k++) {
@@ -334,9 +333,7 @@ static CagStatus begin_fill(Fill *f, CagError *err) {
   f->grid_room = longest > CHUNK ? longest : CHUNK;
   f->us = malloc(longest * sizeof *f->us);
   f->vs = malloc(longest * sizeof *f->vs);
-  f->du = malloc(f->grid_room * sizeof *f->du);
-  f->dv = malloc(f->grid_room * sizeof *f->dv);
-  if (!f->us || !f->vs || !f->du || !f->dv) return cag_fail_memory(err);
+  if (!f->us || !f->vs) return cag_fail_memory(err);
   memcpy(f->mesh->positions, t->positions, t->vertex_count * sizeof *t->positions);
   memcpy(f->mesh->normals, t->normals, t->vertex_count * sizeof *t->normals);
   memcpy(f->mesh->uv, t->uv, t->vertex_count * 2 * sizeof *t->uv);
@@ -358,8 +355,6 @@ CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
     }
   free(f.us);
   free(f.vs);
-  free(f.du);
-  free(f.dv);
   if (status != CAG_OK) {
     cag_mesh_release(f.mesh);
     return status;

@@ -18,6 +18,7 @@ enum {
   SIDE = STEPS + 1,
   SAMPLES = SIDE * SIDE,
   TRIED = 8,          // quadrilaterals measured along each direction of a leaf
+  TRIED_WELL = 12,    // of so few as this that is enough
   TRIED_LAST = 16,    // in the last check, of their middles alone
   MAX_DEPTH = 24,     // of halving: features of a 4000th of the domain, in both directions
   WORTH_HALVING = 32, // quadrilaterals
@@ -47,6 +48,7 @@ typedef struct Sampled {
   CagVec3 points[SAMPLES], du[SAMPLES], dv[SAMPLES], normals[SAMPLES];
   bool has_normal[SAMPLES];
   double off_uu[SAMPLES], off_uv[SAMPLES], off_vv[SAMPLES];
+  double turn[2][SAMPLES]; // of the normal on the way to the next sample
 } Sampled;
 
 // --- Sampling ---
@@ -88,6 +90,20 @@ static void find_second_partials(Sampled *s) {
     }
 }
 
+static double angle_between(CagVec3 a, CagVec3 b) {
+  return atan2(cag_norm(cag_cross(a, b)), cag_dot(a, b));
+}
+
+static void find_turns(Sampled *s) {
+  for (int d = 0; d < 2; d++)
+    for (int i = 0; i < SIDE; i++)
+      for (int j = 0; j < SIDE; j++) {
+        int k = i * SIDE + j, next = k + (d == 0 ? SIDE : 1);
+        bool known = (d == 0 ? i : j) < STEPS && s->has_normal[k] && s->has_normal[next];
+        s->turn[d][k] = known ? STEPS * angle_between(s->normals[k], s->normals[next]) : 0;
+      }
+}
+
 static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *err) {
   double ts[2][SIDE], length[2];
   for (int d = 0; d < 2; d++) {
@@ -104,12 +120,13 @@ static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *er
   }
   find_normals(s);
   find_second_partials(s);
+  find_turns(s);
   return CAG_OK;
 }
 
 // Do the samples along a direction tell the whole story? If the mean of the derivatives at the ends
 // of a step is far from the step made, the surface does something between them (the turns of a
-// helix).
+// helix). At half turns both vanish, and the lengths tell.
 static bool is_resolved(const CagTessellation *how, const Sampled *s, int direction) {
   const double far = 0.07; // of the longest step: an arc of 50 degrees, a sixth of a wave
   const CagVec3 *d = direction == 0 ? s->du : s->dv;
@@ -121,17 +138,15 @@ static bool is_resolved(const CagTessellation *how, const Sampled *s, int direct
       int k = direction == 0 ? j * SIDE + i : i * SIDE + j;
       CagVec3 step = cag_scaled(cag_sub(s->points[k + stride], s->points[k]), STEPS);
       CagVec3 mean = cag_scaled(cag_add(d[k], d[k + stride]), 0.5);
+      double length = (cag_norm(d[k]) + cag_norm(d[k + stride])) / 2;
       worst = fmax(worst, cag_norm(cag_sub(step, mean)));
+      worst = fmax(worst, fabs(length - cag_norm(step)));
     }
   // Within the tolerance it does not matter, and of a point all is rounding.
   return worst <= fmax(far * longest, how->tolerance);
 }
 
 // --- Needs and counts ---
-
-static double angle_between(CagVec3 a, CagVec3 b) {
-  return atan2(cag_norm(cag_cross(a, b)), cag_dot(a, b));
-}
 
 static Needs needs_of(const Sampled *s, Range r) {
   Needs n = {0};
@@ -144,10 +159,8 @@ static Needs needs_of(const Sampled *s, Range r) {
       n.vv = fmax(n.vv, s->off_vv[k]);
       n.length[0] = fmax(n.length[0], cag_norm(s->du[k]));
       n.length[1] = fmax(n.length[1], cag_norm(s->dv[k]));
-      if (i < r.u1 && s->has_normal[k] && s->has_normal[k + SIDE])
-        n.turn[0] = fmax(n.turn[0], STEPS * angle_between(s->normals[k], s->normals[k + SIDE]));
-      if (j < r.v1 && s->has_normal[k] && s->has_normal[k + 1])
-        n.turn[1] = fmax(n.turn[1], STEPS * angle_between(s->normals[k], s->normals[k + 1]));
+      if (i < r.u1) n.turn[0] = fmax(n.turn[0], s->turn[0][k]);
+      if (j < r.v1) n.turn[1] = fmax(n.turn[1], s->turn[1][k]);
     }
   n.uu *= part[0] * part[0];
   n.uv *= part[0] * part[1];
@@ -365,7 +378,7 @@ static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, 
     CagStatus status = measure(surface, s, n, &distance, err);
     if (status != CAG_OK) return status;
     double use = distance / tolerance;
-    if (use <= highest_use && fmax(n[0], n[1]) > TRIED) {
+    if (use <= highest_use && fmax(n[0], n[1]) > TRIED_WELL) {
       status = measure_middles(surface, s, n, &distance, err);
       if (status != CAG_OK) return status;
       use = fmax(use, distance / tolerance);
@@ -438,7 +451,9 @@ static CagStatus add_leaf(Tessellator *t, uint32_t face, const Sampled *s, const
     leaf->to[d] = s->to[d];
     leaf->n[d] = n[d] < UINT32_MAX / 4 ? (uint32_t)n[d] : UINT32_MAX / 4;
   }
-  return CAG_OK;
+  // Those at poles become one triangle, all others two.
+  t->quads += n[0] * n[1];
+  return t->quads > (double)t->how.max_triangles ? tess_limit(t, 2 * t->quads, err) : CAG_OK;
 }
 
 // The halves of a leaf, lower one first.
@@ -499,7 +514,5 @@ CagStatus tess_plan_face(Tessellator *t, uint32_t face, CagError *err) {
       if (status != CAG_OK) return status;
     }
   f->leaf_count = t->leaf_count - f->leaf;
-  double quads = 0;
-  for (size_t k = 0; k < t->leaf_count; k++) quads += (double)t->leaves[k].n[0] * t->leaves[k].n[1];
-  return quads > (double)t->how.max_triangles ? tess_limit(t, 2 * quads, err) : CAG_OK;
+  return CAG_OK;
 }

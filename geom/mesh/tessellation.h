@@ -86,6 +86,7 @@ typedef struct Tessellator {
   size_t face_count;
   Leaf *leaves;
   size_t leaf_count, leaf_capacity;
+  double quads; // of all leaves
   Line *lines;
   size_t line_count, line_capacity;
   Atom *atoms;
@@ -134,10 +135,12 @@ static inline double tess_mix(double a, double b, size_t k, size_t n) {
   return k == 0 ? a : k == n ? b : a + (b - a) * ((double)k / (double)n);
 }
 
-// Quadrilateral a b c d: is it cut from a to c (else from b to d)? By the shorter diagonal.
+// Quadrilateral a b c d: is it cut from a to c (else from b to d)? By the shorter diagonal. What is
+// as long but for rounding is cut from a to c: moved copies of a shape are cut alike.
 static inline bool tess_cut_ac(CagVec3 a, CagVec3 b, CagVec3 c, CagVec3 d) {
+  const double alike = 1e-6; // of the square: positions far from the origin are rounded to less
   CagVec3 ac = cag_sub(c, a), bd = cag_sub(d, b);
-  return cag_dot(ac, ac) <= cag_dot(bd, bd);
+  return cag_dot(ac, ac) <= cag_dot(bd, bd) * (1 + alike);
 }
 
 #endif

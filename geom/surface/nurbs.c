@@ -184,7 +184,7 @@ static CagStatus nurbs_eval(const CagSurface *s, double u, double v, int n, CagS
 // same in each (no contraction), so are the results.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
     !defined(__SANITIZE_ADDRESS__)
-#define WIDEST __attribute__((target_clones("arch=x86-64-v3", "default")))
+#define WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define WIDEST
 #endif
@@ -197,43 +197,31 @@ static CagStatus nurbs_eval(const CagSurface *s, double u, double v, int n, CagS
 // What is known of one row u and one run of columns in the same span of v.
 typedef struct Run {
   size_t n;            // columns
+  size_t room;         // columns that may be written: those after n are written again later
   const double *m, *d; // values and slopes by v: [l * stride + column]
   size_t stride;       // columns of the whole grid
   const double *a[4];  // row contracted with the values by u: x, y, z, w from the span's first on
   const double *da[4]; // with the slopes
   double *point, *du, *dv; // 3 numbers per column; du, dv may be NULL together
+  double *normal;          // of unit length, or zero; NULL: not asked for
 } Run;
 
-INLINE void run_points(const Run *r, int q) {
-  const double *restrict m = r->m;
-  double *restrict point = r->point;
-  size_t stride = r->stride;
-  for (size_t j = 0; j < r->n; j++) {
-    double x = 0, y = 0, z = 0;
-    for (int l = 0; l <= q; l++) {
-      double f = m[(size_t)l * stride + j];
-      x += r->a[0][l] * f;
-      y += r->a[1][l] * f;
-      z += r->a[2][l] * f;
-    }
-    point[3 * j] = x;
-    point[3 * j + 1] = y;
-    point[3 * j + 2] = z;
-  }
+// Vectors whose cross product is shorter than this part of the product of their lengths are
+// parallel: what is left is rounding.
+#define PARALLEL 1e-9
+
+// What the cross product is scaled by; 0: there is no normal.
+INLINE double normal_scale(double length2, double uu, double vv) {
+  bool good = length2 > PARALLEL * PARALLEL * uu * vv && length2 > DBL_MIN;
+  return good ? 1 / sqrt(length2) : 0;
 }
 
-// Columns worked on at a time: their nine rows of results stay in the first cache.
+// Columns worked on at a time: their rows of results stay in the first cache.
 #define CHUNK 64
 
 // sum_l a[l] f[l * stride + j] for all j of a chunk.
 INLINE void combine(double *restrict to, const double *restrict a, const double *restrict f,
                     size_t stride, size_t n, int q) {
-  if (q == 3) {
-    const double a0 = a[0], a1 = a[1], a2 = a[2], a3 = a[3];
-    const double *restrict f1 = f + stride, *restrict f2 = f1 + stride, *restrict f3 = f2 + stride;
-    for (size_t j = 0; j < n; j++) to[j] = a0 * f[j] + a1 * f1[j] + a2 * f2[j] + a3 * f3[j];
-    return;
-  }
   for (size_t j = 0; j < n; j++) to[j] = a[0] * f[j];
   for (int l = 1; l <= q; l++) {
     const double *restrict fl = f + (size_t)l * stride;
@@ -250,68 +238,216 @@ INLINE void interleave(double *restrict to, const double *restrict x, const doub
   }
 }
 
-INLINE void run_polynomial(const Run *r, int q) {
-  double s[9][CHUNK];
-  for (size_t at = 0; at < r->n; at += CHUNK) {
-    size_t n = r->n - at < CHUNK ? r->n - at : CHUNK;
-    const double *m = r->m + at, *d = r->d + at;
+typedef struct Chunk {
+  double point[4][CHUNK], du[4][CHUNK], dv[4][CHUNK], normal[3][CHUNK];
+} Chunk;
+
+// Divides by the weights. Gives the count of those that are not positive.
+INLINE size_t chunk_quotients(Chunk *restrict s, size_t n, bool first) {
+  size_t bad = 0;
+  for (size_t j = 0; j < n; j++) {
+    bad += !(s->point[3][j] > 0);
+    double inverse = 1 / s->point[3][j];
     for (int c = 0; c < 3; c++) {
-      combine(s[c], r->a[c], m, r->stride, n, q);
-      combine(s[3 + c], r->da[c], m, r->stride, n, q);
-      combine(s[6 + c], r->a[c], d, r->stride, n, q);
+      double x = s->point[c][j] * inverse;
+      s->point[c][j] = x;
+      if (!first) continue;
+      s->du[c][j] = (s->du[c][j] - s->du[3][j] * x) * inverse;
+      s->dv[c][j] = (s->dv[c][j] - s->dv[3][j] * x) * inverse;
     }
-    interleave(r->point + 3 * at, s[0], s[1], s[2], n);
-    interleave(r->du + 3 * at, s[3], s[4], s[5], n);
-    interleave(r->dv + 3 * at, s[6], s[7], s[8], n);
+  }
+  return bad;
+}
+
+INLINE void chunk_normals(Chunk *restrict s, size_t n) {
+  for (size_t j = 0; j < n; j++) {
+    double xu = s->du[0][j], yu = s->du[1][j], zu = s->du[2][j];
+    double xv = s->dv[0][j], yv = s->dv[1][j], zv = s->dv[2][j];
+    double nx = yu * zv - zu * yv, ny = zu * xv - xu * zv, nz = xu * yv - yu * xv;
+    double scale = normal_scale(nx * nx + ny * ny + nz * nz, xu * xu + yu * yu + zu * zu,
+                                xv * xv + yv * yv + zv * zv);
+    s->normal[0][j] = nx * scale;
+    s->normal[1][j] = ny * scale;
+    s->normal[2][j] = nz * scale;
   }
 }
 
-// False: a weight is not positive.
-INLINE bool run_rational(const Run *r, int q) {
-  double s[12][CHUNK]; // point, du, dv; x y z w each
-  double least = DBL_MAX;
+// Any degree. False: a weight is not positive.
+WIDEST static bool run_any(const Run *r, int q, bool rational, bool first) {
+  Chunk s;
+  size_t bad = 0;
   for (size_t at = 0; at < r->n; at += CHUNK) {
     size_t n = r->n - at < CHUNK ? r->n - at : CHUNK;
-    const double *m = r->m + at, *d = r->d + at;
-    for (int c = 0; c < 4; c++) {
-      combine(s[c], r->a[c], m, r->stride, n, q);
-      if (!r->du) continue;
-      combine(s[4 + c], r->da[c], m, r->stride, n, q);
-      combine(s[8 + c], r->a[c], d, r->stride, n, q);
+    for (int c = 0; c < (rational ? 4 : 3); c++) {
+      combine(s.point[c], r->a[c], r->m + at, r->stride, n, q);
+      if (!first) continue;
+      combine(s.du[c], r->da[c], r->m + at, r->stride, n, q);
+      combine(s.dv[c], r->a[c], r->d + at, r->stride, n, q);
     }
-    for (size_t j = 0; j < n; j++) {
-      least = s[3][j] < least ? s[3][j] : least;
-      s[3][j] = 1 / s[3][j];
+    if (rational) bad += chunk_quotients(&s, n, first);
+    interleave(r->point + 3 * at, s.point[0], s.point[1], s.point[2], n);
+    if (!first) continue;
+    if (r->du) {
+      interleave(r->du + 3 * at, s.du[0], s.du[1], s.du[2], n);
+      interleave(r->dv + 3 * at, s.dv[0], s.dv[1], s.dv[2], n);
     }
-    for (int c = 0; c < 3; c++) {
-      for (size_t j = 0; j < n; j++) s[c][j] *= s[3][j];
-      if (!r->du) continue;
-      for (size_t j = 0; j < n; j++) {
-        s[4 + c][j] = (s[4 + c][j] - s[7][j] * s[c][j]) * s[3][j];
-        s[8 + c][j] = (s[8 + c][j] - s[11][j] * s[c][j]) * s[3][j];
+    if (!r->normal) continue;
+    chunk_normals(&s, n);
+    interleave(r->normal + 3 * at, s.normal[0], s.normal[1], s.normal[2], n);
+  }
+  return bad == 0;
+}
+
+// Degrees up to 3 with vectors of four numbers in registers from the basis to the interleaved
+// result. The arithmetic of a column is that of run_any.
+#ifdef __has_builtin
+#if __has_builtin(__builtin_shufflevector)
+#define FUSED
+#endif
+#endif
+#ifdef FUSED
+#pragma GCC diagnostic ignored "-Wpsabi" // of functions that are always inlined
+
+#define WIDE 4
+typedef double Wide __attribute__((vector_size(8 * WIDE)));
+typedef struct Wide3 {
+  Wide x, y, z;
+} Wide3;
+typedef struct Basis {
+  Wide f[4];
+} Basis;
+
+INLINE Wide wide_load(const double *from) {
+  Wide w;
+  memcpy(&w, from, sizeof w);
+  return w;
+}
+
+// x0 y0 z0 x1 y1 z1 ...
+INLINE void wide_store(double *to, Wide3 p) {
+  Wide low = __builtin_shufflevector(p.x, p.y, 0, 4, 1, 5);
+  Wide high = __builtin_shufflevector(p.x, p.y, 2, 6, 3, 7);
+  Wide across = __builtin_shufflevector(low, p.z, 3, 5, 3, 5);
+  // One by one: an array of all three would be stored and read again.
+  Wide first = __builtin_shufflevector(low, p.z, 0, 1, 4, 2);
+  Wide second = __builtin_shufflevector(across, high, 0, 1, 4, 5);
+  Wide third = __builtin_shufflevector(high, p.z, 6, 2, 3, 7);
+  memcpy(to, &first, sizeof first);
+  memcpy(to + WIDE, &second, sizeof second);
+  memcpy(to + 2 * WIDE, &third, sizeof third);
+}
+
+// Of the last columns of a grid only `n` have room.
+INLINE void wide_put(double *to, Wide3 p, size_t n) {
+  double all[3 * WIDE];
+  if (n >= WIDE) {
+    wide_store(to, p);
+    return;
+  }
+  wide_store(all, p);
+  memcpy(to, all, 3 * n * sizeof *all);
+}
+
+INLINE Basis wide_basis(const double *m, const size_t row[4]) {
+  return (Basis){
+      {wide_load(m), wide_load(m + row[1]), wide_load(m + row[2]), wide_load(m + row[3])}};
+}
+
+INLINE Wide wide_sum(const double a[4], const Basis *b) {
+  return a[0] * b->f[0] + a[1] * b->f[1] + a[2] * b->f[2] + a[3] * b->f[3];
+}
+
+INLINE Wide3 wide_sums(double (*a)[4], const Basis *b) {
+  return (Wide3){wide_sum(a[0], b), wide_sum(a[1], b), wide_sum(a[2], b)};
+}
+
+INLINE Wide3 wide_quotient(Wide3 p, Wide3 base, Wide w, Wide inverse) {
+  return (Wide3){(p.x - w * base.x) * inverse, (p.y - w * base.y) * inverse,
+                 (p.z - w * base.z) * inverse};
+}
+
+INLINE Wide wide_dot(Wide3 a, Wide3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+INLINE bool run_wide(const Run *r, int q, bool rational, bool partials, bool normals) {
+  double a[4][4] = {{0}}, da[4][4] = {{0}}, scale[CHUNK], uu[CHUNK], vv[CHUNK];
+  Wide3 cross[CHUNK / WIDE];
+  // Rows that a lower degree does not have count for nothing.
+  size_t row[4], room = r->room;
+  bool good = true;
+  for (int l = 0; l < 4; l++) row[l] = l <= q ? (size_t)l * r->stride : 0;
+  for (int c = 0; c < (rational ? 4 : 3); c++)
+    for (int l = 0; l <= q; l++) {
+      a[c][l] = r->a[c][l];
+      da[c][l] = partials || normals ? r->da[c][l] : 0;
+    }
+  for (size_t start = 0; start < r->n; start += CHUNK) {
+    size_t n = r->n - start < CHUNK ? r->n - start : CHUNK;
+    for (size_t j = 0; j < n; j += WIDE) {
+      size_t at = start + j;
+      Wide inverse = {0};
+      Basis m = wide_basis(r->m + at, row);
+      Wide3 p = wide_sums(a, &m);
+      if (rational) {
+        Wide w = wide_sum(a[3], &m);
+        for (size_t k = 0; k < WIDE; k++) good = good && (w[k] > 0 || j + k >= n);
+        inverse = 1 / w;
+        p = (Wide3){p.x * inverse, p.y * inverse, p.z * inverse};
       }
+      wide_put(r->point + 3 * at, p, room - at);
+      if (!partials && !normals) continue;
+      Basis d = wide_basis(r->d + at, row);
+      Wide3 du = wide_sums(da, &m), dv = wide_sums(a, &d);
+      if (rational) {
+        du = wide_quotient(du, p, wide_sum(da[3], &m), inverse);
+        dv = wide_quotient(dv, p, wide_sum(a[3], &d), inverse);
+      }
+      if (partials) {
+        wide_put(r->du + 3 * at, du, room - at);
+        wide_put(r->dv + 3 * at, dv, room - at);
+      }
+      if (!normals) continue;
+      Wide3 c = {du.y * dv.z - du.z * dv.y, du.z * dv.x - du.x * dv.z, du.x * dv.y - du.y * dv.x};
+      Wide squares[3] = {wide_dot(c, c), wide_dot(du, du), wide_dot(dv, dv)};
+      cross[j / WIDE] = c;
+      memcpy(scale + j, &squares[0], sizeof(Wide));
+      memcpy(uu + j, &squares[1], sizeof(Wide));
+      memcpy(vv + j, &squares[2], sizeof(Wide));
     }
-    interleave(r->point + 3 * at, s[0], s[1], s[2], n);
-    if (!r->du) continue;
-    interleave(r->du + 3 * at, s[4], s[5], s[6], n);
-    interleave(r->dv + 3 * at, s[8], s[9], s[10], n);
+    if (!normals) continue;
+    for (size_t j = 0; j < (n + WIDE - 1) / WIDE * WIDE; j++)
+      scale[j] = normal_scale(scale[j], uu[j], vv[j]);
+    for (size_t j = 0; j < n; j += WIDE) {
+      Wide by = wide_load(scale + j);
+      Wide3 c = cross[j / WIDE];
+      wide_put(r->normal + 3 * (start + j), (Wide3){c.x * by, c.y * by, c.z * by},
+               room - start - j);
+    }
   }
-  return least > 0;
+  return good;
 }
 
-WIDEST static bool run_cubic(const Run *r, bool rational) {
-  if (rational) return run_rational(r, 3);
-  if (r->du) run_polynomial(r, 3);
-  else run_points(r, 3);
-  return true;
+WIDEST static bool run_polynomial(const Run *r, int q, bool first) {
+  if (!first) return run_wide(r, q, false, false, false);
+  if (!r->normal) return run_wide(r, q, false, true, false);
+  return r->du ? run_wide(r, q, false, true, true) : run_wide(r, q, false, false, true);
 }
 
-WIDEST static bool run_general(const Run *r, int q, bool rational) {
-  if (rational) return run_rational(r, q);
-  if (r->du) run_polynomial(r, q);
-  else run_points(r, q);
-  return true;
+WIDEST static bool run_rational(const Run *r, int q, bool first) {
+  if (!first) return run_wide(r, q, true, false, false);
+  if (!r->normal) return run_wide(r, q, true, true, false);
+  return r->du ? run_wide(r, q, true, true, true) : run_wide(r, q, true, false, true);
 }
+
+static bool run_columns(const Run *r, int q, bool rational, bool first) {
+  if (q > 3) return run_any(r, q, rational, first);
+  return rational ? run_rational(r, q, first) : run_polynomial(r, q, first);
+}
+#else
+#define WIDE 1
+static bool run_columns(const Run *r, int q, bool rational, bool first) {
+  return run_any(r, q, rational, first);
+}
+#endif
 
 // Working memory of a grid: everything that does not depend on both parameters.
 typedef struct GridWork {
@@ -324,7 +460,7 @@ typedef struct GridWork {
 static CagStatus grid_prepare(const Nurbs *b, const double *vs, size_t nv, bool first, GridWork *w,
                               CagError *err) {
   size_t lines = (size_t)b->v.degree + 1;
-  w->m = malloc((2 * lines * nv + 1) * sizeof *w->m);
+  w->m = calloc(2 * lines * nv + WIDE, sizeof *w->m); // whole vectors are read at the end
   w->span = malloc((nv + 1) * sizeof *w->span);
   w->row = malloc(8 * b->v.count * sizeof *w->row);
   w->du = first ? malloc((3 * nv + 1) * sizeof *w->du) : NULL;
@@ -363,13 +499,14 @@ WIDEST static void contract_row(const Nurbs *b, size_t span, const double *value
   }
 }
 
-static CagStatus nurbs_grid(const CagSurface *s, const double *us, size_t nu, const double *vs,
-                            size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err) {
-  const Nurbs *b = (const Nurbs *)s;
+static CagStatus grid(const Nurbs *b, const double *us, size_t nu, const double *vs, size_t nv,
+                      CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagVec3 *normals, CagError *err) {
+  const CagSurface *s = &b->base;
   if (nu == 0 || nv == 0) return CAG_OK;
-  bool first = du || dv, positive = true;
+  bool partials = du || dv, first = partials || normals, positive = true;
+  bool one = partials && !(du && dv); // wanted only: the other goes to a row of its own
   GridWork w = {0};
-  CagStatus status = grid_prepare(b, vs, nv, first && !(du && dv), &w, err);
+  CagStatus status = grid_prepare(b, vs, nv, one, &w, err);
   size_t q = (size_t)b->v.degree, low = SIZE_MAX, high = 0;
   for (size_t j = 0; !status && j < nv; j++) {
     low = w.span[j] < low ? w.span[j] : low;
@@ -385,11 +522,13 @@ static CagStatus nurbs_grid(const CagSurface *s, const double *us, size_t nu, co
       for (end = start + 1; end < nv && w.span[end] == w.span[start];) end++;
       size_t at = i * nv + start;
       Run run = {.n = end - start,
+                 .room = one ? end - start : nv - start,
                  .m = w.m + start,
                  .d = w.d + start,
                  .stride = nv,
-                 .point = &points[at].x};
-      if (first) {
+                 .point = &points[at].x,
+                 .normal = normals ? &normals[at].x : NULL};
+      if (partials) {
         run.du = du ? &du[at].x : w.du;
         run.dv = dv ? &dv[at].x : w.dv;
       }
@@ -397,7 +536,7 @@ static CagStatus nurbs_grid(const CagSurface *s, const double *us, size_t nu, co
         run.a[c] = w.row + c * b->v.count + w.span[start] - q;
         run.da[c] = w.row + (4 + c) * b->v.count + w.span[start] - q;
       }
-      bool good = q == 3 ? run_cubic(&run, b->rational) : run_general(&run, (int)q, b->rational);
+      bool good = run_columns(&run, (int)q, b->rational, first);
       positive = positive && good;
     }
   }
@@ -411,6 +550,11 @@ static CagStatus nurbs_grid(const CagSurface *s, const double *us, size_t nu, co
                       "all `weights` that act at a point of the grid are 0: give one of them a "
                       "positive value");
   return status;
+}
+
+static CagStatus nurbs_grid(const CagSurface *s, const double *us, size_t nu, const double *vs,
+                            size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err) {
+  return grid((const Nurbs *)s, us, nu, vs, nv, points, du, dv, NULL, err);
 }
 
 // --- Construction ---
@@ -727,6 +871,14 @@ static const CagSurfaceKind nurbs_kind = NURBS_TABLE("nurbs");
 
 static const Nurbs *as_nurbs(const CagSurface *s) {
   return s->kind->eval == nurbs_eval ? (const Nurbs *)s : NULL;
+}
+
+bool cag_surface_nurbs_frames(const CagSurface *s, const double *us, size_t nu, const double *vs,
+                              size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv,
+                              CagVec3 *normals, CagStatus *status, CagError *err) {
+  const Nurbs *b = as_nurbs(s);
+  if (b) *status = grid(b, us, nu, vs, nv, points, du, dv, normals, err);
+  return b != NULL;
 }
 
 bool cag_surface_nurbs_view(const CagSurface *s, CagSurfaceNurbsView *out) {

@@ -80,6 +80,9 @@ echo "--- curves, against SISL 4.6"
 "$B/tests/bench/curves" $(for kind in bspline nurbs; do
   awk "BEGIN { print ($(cpu $here/sample_$kind.cag) - $(cpu "$tmp/empty.cag")) / 20 }"
 done)
+echo "--- surfaces, against SISL 4.6 and Open CASCADE, which takes two minutes"
+if [ -x "$B/tests/bench/occt" ]; then "$B/tests/bench/occt" > "$tmp/occt"; fi
+"$B/tests/bench/surfaces" "$tmp/occt"
 echo "--- set operations of meshes"
 "$B/tests/bench/booleans"
 

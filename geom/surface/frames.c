@@ -1,0 +1,40 @@
+// Points of a surface on grids with unit normals: the kind's own grid, and a cross product for each
+// point. NURBS make both at once.
+
+#include "geom/surface/frames.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+// Rows are evaluated together up to this many points: their partials stay in the cache.
+#define TOGETHER 4096
+
+static CagVec3 normal_of(CagVec3 du, CagVec3 dv) {
+  const double parallel = 1e-9; // of the product of their lengths: the rest is rounding
+  CagVec3 n = cag_cross(du, dv);
+  double length2 = cag_dot(n, n);
+  bool good =
+      length2 > parallel * parallel * cag_dot(du, du) * cag_dot(dv, dv) && length2 > DBL_MIN;
+  return good ? cag_scaled(n, 1 / sqrt(length2)) : cag_vec3(0, 0, 0);
+}
+
+CagStatus cag_surface_eval_frames(const CagSurface *s, const double *us, size_t nu,
+                                  const double *vs, size_t nv, CagVec3 *points, CagVec3 *du,
+                                  CagVec3 *dv, CagVec3 *normals, CagError *err) {
+  CagStatus status = CAG_OK;
+  if (nu == 0 || nv == 0) return CAG_OK;
+  if (cag_surface_nurbs_frames(s, us, nu, vs, nv, points, du, dv, normals, &status, err))
+    return status;
+  size_t rows = nv < TOGETHER ? TOGETHER / nv : 1;
+  if (rows > nu) rows = nu;
+  CagVec3 *own = du && dv ? NULL : malloc(2 * rows * nv * sizeof *own);
+  if (!own && !(du && dv)) return cag_fail_memory(err);
+  for (size_t i = 0, n; !status && i < nu; i += n) {
+    n = nu - i < rows ? nu - i : rows;
+    CagVec3 *a = own ? own : du + i * nv, *b = own ? own + rows * nv : dv + i * nv;
+    status = cag_surface_eval_grid(s, us + i, n, vs, nv, points + i * nv, a, b, err);
+    for (size_t k = 0; !status && k < n * nv; k++) normals[i * nv + k] = normal_of(a[k], b[k]);
+  }
+  free(own);
+  return status;
+}
