@@ -10,17 +10,23 @@
 // Largest distance of the chain from the curve, in radii of the line.
 #define SAG 0.05
 
+static void write_joint(CagPovWriter *w, CagVec3 p) {
+  pov_text(w, "sphere { ");
+  pov_vec(w, p);
+  pov_text(w, ", line_radius }");
+}
+
+// A length that the renderer refuses is seen as its end alone.
 static void write_rod(CagPovWriter *w, CagVec3 p, CagVec3 q) {
+  const double least = 1e-8; // some hundred times the renderer's own limit
+  if (cag_norm(cag_sub(q, p)) * w->unit <= least) {
+    write_joint(w, p);
+    return;
+  }
   pov_text(w, "cylinder { ");
   pov_vec(w, p);
   pov_text(w, ", ");
   pov_vec(w, q);
-  pov_text(w, ", line_radius }");
-}
-
-static void write_joint(CagPovWriter *w, CagVec3 p) {
-  pov_text(w, "sphere { ");
-  pov_vec(w, p);
   pov_text(w, ", line_radius }");
 }
 
