@@ -98,7 +98,7 @@ $(BUILD)/cag: $(TOOL_OBJ) $(BUILD)/libcag.a
 # Writes the program's tables, for what tools/*.sh make of them.
 $(BUILD)/tools/tables: tools/tables.c $(filter-out %/interp/main.o,$(TOOL_OBJ)) $(BUILD)/libcag.a
 	@mkdir -p $(@D)
-	$Q$(CC) $(CFLAGS_ALL) $^ -o $@ $(LDLIBS_ALL)
+	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
 
 # C unit tests (cmocka): one program per file of tests/lang, tests/geom, tests/interp.
 UNIT = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/*_test.c))
