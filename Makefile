@@ -22,7 +22,8 @@ Q := $(if $(V),,@)
 
 # Each: pkg-config name and the Debian package to install when it is missing.
 NEEDS := OpenEXR:libopenexr-dev lapacke:liblapacke-dev libedit:libedit-dev libcjson:libcjson-dev \
-         libpng:libpng-dev libutf8proc:libutf8proc-dev glu:libglu1-mesa-dev zlib:zlib1g-dev
+         libpng:libpng-dev libutf8proc:libutf8proc-dev glu:libglu1-mesa-dev zlib:zlib1g-dev \
+         libcmark-gfm:libcmark-gfm-dev
 MODULES := $(foreach n,$(NEEDS),$(firstword $(subst :, ,$(n))))
 ifeq ($(filter clean format check-format check-layers,$(MAKECMDGOALS)),)
 MISSING := $(foreach n,$(NEEDS),$(shell pkg-config --exists $(firstword $(subst :, ,$(n))) || echo $(lastword $(subst :, ,$(n)))))
@@ -31,7 +32,8 @@ $(error cag needs packages that are not here: apt-get install $(strip $(MISSING)
 endif
 endif
 PKG_CFLAGS := $(shell pkg-config --cflags $(MODULES) 2>/dev/null)
-PKG_LIBS   := $(shell pkg-config --libs $(MODULES) 2>/dev/null)
+# The tables of Markdown come in a library that has no pkg-config file (libcmark-gfm-extensions-dev).
+PKG_LIBS   := -lcmark-gfm-extensions $(shell pkg-config --libs $(MODULES) 2>/dev/null)
 
 CFLAGS_ALL := -std=c17 -D_GNU_SOURCE $(OPT) -g $(WARN) -fno-math-errno -fno-trapping-math -ffp-contract=off \
               -fPIC -fvisibility=hidden -MMD -MP -I. -Iinclude -I$(BUILD)/gen \
@@ -51,11 +53,12 @@ MAIN_SRC   := interp/main.c
 TOOL_SRC   := $(shell find interp/tool -name '*.c' | sort)
 INTERP_SRC := $(filter-out $(MAIN_SRC) $(TOOL_SRC),$(shell find interp -name '*.c' | sort))
 STDLIB     := $(shell find stdlib -name '*.cag' | sort)
+DOCUMENTS  := $(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*)) tests/cli/embed.c
 
 obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 LANG_OBJ := $(call obj,$(LANG_SRC))
 GEOM_OBJ := $(call obj,$(GEOM_SRC)) $(CGAL_OBJ)
-INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o
+INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o $(BUILD)/obj/gen/documents.o
 TOOL_OBJ := $(call obj,$(TOOL_SRC) $(MAIN_SRC))
 
 .PHONY: all clean unit unit-lang unit-geom unit-interp test test-programs test-sanitize bench format check-format check-layers install
@@ -87,7 +90,11 @@ $(BUILD)/libcag.so: $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
 $(BUILD)/gen/stdlib.c: $(STDLIB) tools/embed.sh
 	@mkdir -p $(@D)
 	sh tools/embed.sh $(STDLIB) > $@.tmp && mv $@.tmp $@
-$(BUILD)/obj/gen/stdlib.o: $(BUILD)/gen/stdlib.c
+# What `cag doc` shows and makes a site of.
+$(BUILD)/gen/documents.c: $(DOCUMENTS) tools/embed.sh
+	@mkdir -p $(@D)
+	sh tools/embed.sh --documents $(DOCUMENTS) > $@.tmp && mv $@.tmp $@
+$(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c
 	@mkdir -p $(@D)
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) -c $< -o $@

@@ -77,8 +77,9 @@ CAG_API int cag_session_run_text(CagSession *s, const char *name, const char *te
 CAG_API int cag_session_format(CagSession *s, const char *name, const char *text, size_t length,
                                char **out, size_t *out_length);
 
-// Finds errors without running anything: of syntax, names and arity, and types that cannot be right;
-// also definitions that nothing uses, as warnings. Imported modules are read. "-" is standard input.
+// Finds errors without running anything: of syntax, names and arity, and types that cannot be
+// right; also definitions that nothing uses, as warnings. Imported modules are read. "-" is
+// standard input.
 CAG_API int cag_session_check_file(CagSession *s, const char *path);
 CAG_API int cag_session_check_text(CagSession *s, const char *name, const char *text,
                                    size_t length);
@@ -159,6 +160,30 @@ CAG_API bool cag_write_builtin_doc(const char *name, FILE *out);
 // false behind the last.
 CAG_API bool cag_builtin_row(size_t i, const char **signature, const char **summary,
                              const char **example, const char **family);
+
+// --- Documentation ---
+// Documentation of a built-in ("bspline"), a library module ("std.robots", "robots"), its member
+// ("robots.puma560") or an error code as text; NULL: an overview. `styled` makes headings bold for
+// a terminal. False: there is no such name.
+CAG_API bool cag_session_document(CagSession *s, const char *name, bool styled, FILE *out);
+// The names that the call above knows.
+CAG_API void cag_session_document_names(CagSession *s,
+                                        void (*give)(void *context, const char *name),
+                                        void *context);
+// What the `///` lines of a script say of its definitions and params.
+CAG_API int cag_session_document_text(CagSession *s, const char *name, const char *text,
+                                      size_t length, bool styled, FILE *out);
+typedef struct CagSiteOptions {
+  CagSessionOptions session; // limits of the examples, the interrupt flag
+  bool no_pictures;
+  size_t jobs; // examples run at once; 0: one for each processor
+  void (*say)(void *context, const char *message); // remarks; may be NULL
+  void *context;
+} CagSiteOptions;
+// Writes all documentation as a site of static pages into a folder, which is made. Pictures that
+// are there already are kept. Fails where an example does not do what it says.
+CAG_API int cag_session_write_site(CagSession *s, const char *folder,
+                                   const CagSiteOptions *options);
 
 // --- Error codes ---
 // Explanation of a code at length to `out`; false: no such code.

@@ -1,6 +1,15 @@
 #!/bin/sh
-# Writes C source that holds the given standard library files: cag_stdlib[] of { "std.name", text, length }.
-echo '#include "interp/eval/stdlib.h"'
+# Writes C source that holds the given files.
+#   embed.sh FILE.cag ...                 the standard library: cag_stdlib[] of { "std.name", text, length }
+#   embed.sh --documents FILE ...         documents: cag_documents[] of { "path", text, length }
+documents=
+if [ "${1:-}" = --documents ]; then
+  documents=1
+  shift
+  echo '#include "interp/doc/doc.h"'
+else
+  echo '#include "interp/eval/stdlib.h"'
+fi
 i=0
 for f in "$@"; do
   printf 'static const unsigned char file_%d[] = {\n' $i
@@ -8,11 +17,11 @@ for f in "$@"; do
   echo '0};'
   i=$((i + 1))
 done
-echo 'const CagStdlibFile cag_stdlib[] = {'
+if [ -n "$documents" ]; then echo 'const CagDocument cag_documents[] = {'; else echo 'const CagStdlibFile cag_stdlib[] = {'; fi
 i=0
 for f in "$@"; do
-  name=$(basename "$f" .cag)
-  printf '    {"std.%s", (const char *)file_%d, sizeof file_%d - 1},\n' "$name" $i $i
+  if [ -n "$documents" ]; then name=$f; else name=std.$(basename "$f" .cag); fi
+  printf '    {"%s", (const char *)file_%d, sizeof file_%d - 1},\n' "$name" $i $i
   i=$((i + 1))
 done
 echo '    {0, 0, 0}};'

@@ -249,6 +249,11 @@ static bool set_report(CagTool *t, const char *value) {
   return true;
 }
 
+static bool set_html(CagTool *t, const char *value) {
+  t->html = value;
+  return true;
+}
+
 static bool set_check(CagTool *t, const char *value) {
   (void)value;
   return t->check = true;

@@ -64,10 +64,12 @@ struct CagTool {
   bool check, diff;   // --check, --diff
   size_t jobs;        // --jobs; 0: one for each processor
   const char *report; // --report
+  const char *html;   // --html
 };
 
 CagToolFunction cag_tool_run, cag_tool_eval, cag_tool_export, cag_tool_render, cag_tool_compare,
-    cag_tool_test, cag_tool_fmt, cag_tool_check, cag_tool_explain, cag_tool_info, cag_tool_repl;
+    cag_tool_test, cag_tool_fmt, cag_tool_check, cag_tool_doc, cag_tool_explain, cag_tool_info,
+    cag_tool_repl;
 
 // A session with the options and the -D of the command line. NULL, after a message, when memory is
 // out.

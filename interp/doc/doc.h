@@ -1,0 +1,96 @@
+// Documentation: what is known of functions, modules and scripts, as text and as a site.
+//
+// One source serves all: the rows of the built-ins' table, what `///` lines say in the standard
+// library and in scripts, parameters.def, the kinds of errors, and the documents of docs/ that are
+// compiled into the program.
+
+#ifndef CAG_INTERP_DOC_H
+#define CAG_INTERP_DOC_H
+
+#include <stdio.h>
+
+#include "cag.h"
+#include "interp/builtin/builtin.h"
+#include "lang/ast.h"
+
+// --- Parameters ---
+
+typedef struct CagDocParameter {
+  const char *functions, *name, *type, *meaning; // functions: words, "" for all others
+} CagDocParameter;
+
+// What a parameter of a function takes; NULL where no row tells it.
+const CagDocParameter *cag_doc_parameter(const char *function, const char *parameter);
+
+// --- Definitions of a script or module ---
+
+typedef enum CagDocKind { CAG_DOC_VALUE, CAG_DOC_FUNCTION, CAG_DOC_PARAM } CagDocKind;
+
+typedef struct CagDocArgument {
+  char *name, *fallback; // the default's text; NULL: none
+} CagDocArgument;
+
+// A public definition. Texts are malloc'd.
+typedef struct CagDocEntry {
+  CagDocKind kind;
+  char *name;
+  char *signature;        // "flat(profile, height = 10)"; of a param all of its line
+  char *text;             // of the /// lines; NULL: there are none
+  char *fallback, *range; // of a param: its default, and what it may be (NULL: anything)
+  char *label;            // of a param: what is said about it; NULL: nothing
+  CagDocArgument *arguments;
+  size_t argument_count;
+} CagDocEntry;
+
+typedef struct CagDocModule {
+  char *name;    // "std.robots", or a path
+  char *purpose; // the comment that the text begins with, in plain lines; "" where there is none
+  CagDocEntry *entries;
+  size_t count;
+} CagDocModule;
+
+// The definitions of a parsed text.
+void cag_doc_module_read(const CagModuleAst *ast, const char *name, CagDocModule *out);
+void cag_doc_module_free(CagDocModule *m);
+
+// Reads a script's text with a session, which keeps what is wrong with it. Gives the status.
+int cag_session_read_doc(CagSession *s, const char *name, const char *text, size_t length,
+                         CagDocModule *out);
+
+// The library module called "std.robots" or "robots", by its place in the library; NULL: none.
+const char *cag_doc_library(const char *name, const char **text, size_t *length);
+
+// Name of library module i, NULL behind the last.
+const char *cag_doc_module_name(size_t i);
+
+// The first sentence of a summary: `n` bytes from its start on.
+size_t cag_doc_sentence(const char *text);
+
+// Calls `give` for each kind of error that a summary names, as "(parameter-range)".
+void cag_doc_reasons(const char *summary, void (*give)(void *context, CagErrorId id),
+                     void *context);
+
+// --- Text for a terminal ---
+
+typedef struct CagDocWriter {
+  FILE *out;
+  bool styled; // headings bold, by the codes of terminals
+} CagDocWriter;
+
+void cag_doc_write_overview(const CagDocWriter *w);
+void cag_doc_write_builtin(const CagDocWriter *w, size_t index);
+void cag_doc_write_module(const CagDocWriter *w, const CagDocModule *m);
+void cag_doc_write_entry(const CagDocWriter *w, const CagDocModule *m, const CagDocEntry *e);
+
+// --- Documents that are compiled into the program (tools/embed.sh) ---
+
+typedef struct CagDocument {
+  const char *path; // "docs/language.md"
+  const char *text;
+  size_t length;
+} CagDocument;
+
+extern const CagDocument cag_documents[];          // ends with a row of NULLs
+const CagDocument *cag_document(const char *path); // NULL: none
+
+#endif

@@ -1,0 +1,145 @@
+// Texts and scripts as HTML.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/doc/site.h"
+#include "lang/lexer.h"
+
+void cag_html_text(FILE *out, const char *text, size_t length) {
+  for (size_t i = 0; i < length; i++) {
+    if (text[i] == '<') fputs("&lt;", out);
+    else if (text[i] == '>') fputs("&gt;", out);
+    else if (text[i] == '&') fputs("&amp;", out);
+    else if (text[i] == '"') fputs("&quot;", out);
+    else fputc(text[i], out);
+  }
+}
+
+// --- Scripts ---
+
+static bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || (c & 0x80);
+}
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+static void write_class(FILE *out, const char *name, const char *text, size_t n) {
+  fprintf(out, "<span class=\"%s\">", name);
+  cag_html_text(out, text, n);
+  fputs("</span>", out);
+}
+
+static size_t word_end(const char *text, size_t i, size_t length) {
+  while (i < length && (is_letter(text[i]) || is_digit(text[i]))) i++;
+  return i;
+}
+
+// A number with its unit. The two points of a range do not belong to it.
+static size_t number_end(const char *text, size_t i, size_t length) {
+  while (i < length && (is_digit(text[i]) || text[i] == '_')) i++;
+  if (i + 1 < length && text[i] == '.' && is_digit(text[i + 1])) {
+    i++;
+    while (i < length && is_digit(text[i])) i++;
+  }
+  if (i + 2 < length && text[i] == 'e' && (is_digit(text[i + 1]) || is_digit(text[i + 2]))) i += 2;
+  return word_end(text, i, length);
+}
+
+static size_t text_end(const char *text, size_t i, size_t length) {
+  const char quote = text[i++];
+  while (i < length && text[i] != quote) i += text[i] == '\\' && quote == '"' ? 2 : 1;
+  return i < length ? i + 1 : length;
+}
+
+// A name leads to its page where a built-in is called so and it is no member or argument.
+static void write_word(FILE *out, const char *root, const char *text, size_t at, size_t end,
+                       size_t length) {
+  char name[64];
+  const size_t n = end - at;
+  if (n >= sizeof name) {
+    cag_html_text(out, text + at, n);
+    return;
+  }
+  memcpy(name, text + at, n);
+  name[n] = 0;
+  const bool member = at > 0 && text[at - 1] == '.' && !(at > 1 && text[at - 2] == '.');
+  const bool argument = end < length && text[end] == ':';
+  if (cag_word_is_reserved(name)) write_class(out, "k", name, n);
+  else if (!member && !argument && cag_builtin_find(name) != (size_t)-1)
+    fprintf(out, "<a class=\"f\" href=\"%sfunctions/%s.html\">%s</a>", root, name, name);
+  else cag_html_text(out, name, n);
+}
+
+void cag_html_script(FILE *out, const char *root, const char *text, size_t length) {
+  for (size_t i = 0; i < length;) {
+    size_t end = i + 1;
+    if (text[i] == '/' && i + 1 < length && text[i + 1] == '/') {
+      while (end < length && text[end] != '\n') end++;
+      write_class(out, "c", text + i, end - i);
+    } else if (text[i] == '"' || text[i] == '`') {
+      end = text_end(text, i, length);
+      write_class(out, "s", text + i, end - i);
+    } else if (is_digit(text[i])) {
+      end = number_end(text, i, length);
+      write_class(out, "n", text + i, end - i);
+    } else if (is_letter(text[i])) {
+      end = word_end(text, i, length);
+      write_word(out, root, text, i, end, length);
+    } else {
+      cag_html_text(out, text + i, 1);
+    }
+    i = end;
+  }
+}
+
+void cag_html_prose(FILE *out, const char *root, const char *text, size_t length) {
+  for (size_t i = 0; i < length;) {
+    const char *close = text[i] == '`' ? memchr(text + i + 1, '`', length - i - 1) : NULL;
+    if (close) {
+      const size_t n = (size_t)(close - text) - i - 1;
+      fputs("<code>", out);
+      cag_html_script(out, root, text + i + 1, n);
+      fputs("</code>", out);
+      i += n + 2;
+    } else {
+      cag_html_text(out, text + i, 1);
+      i++;
+    }
+  }
+}
+
+// --- Examples ---
+
+void cag_html_example(CagSite *s, FILE *out, const char *root, const char *about, const char *text,
+                      size_t length, const char *function) {
+  const CagSiteExample *e = cag_site_example(s, about, text, length, function);
+  while (length && text[length - 1] == '\n') length--;
+  fputs("<div class=\"example\"><div class=\"code\"><pre><code>", out);
+  cag_html_script(out, root, text, length);
+  fputs("</code></pre>\n", out);
+  if (e && e->output && *e->output) {
+    fputs("<pre class=\"output\"><samp>", out);
+    cag_html_text(out, e->output, strlen(e->output));
+    fputs("</samp></pre>\n", out);
+  }
+  fputs("</div>\n", out);
+  if (e && e->picture)
+    fprintf(out,
+            "<img src=\"%s%s\" width=\"%d\" height=\"%d\" loading=\"lazy\" alt=\"what the script "
+            "makes\">\n",
+            root, e->picture, CAG_SITE_WIDTH, CAG_SITE_HEIGHT);
+  fputs("</div>\n", out);
+}
+
+char *cag_html_anchor(const char *heading) {
+  char *out = malloc(strlen(heading) + 2), *to = out;
+  if (!out) abort();
+  for (const char *at = heading; *at; at++) {
+    if (is_digit(*at) || is_letter(*at)) *to++ = *at >= 'A' && *at <= 'Z' ? *at + 32 : *at;
+    else if (to > out && to[-1] != '-' && (*at == ' ' || *at == '-' || *at == '.')) *to++ = '-';
+  }
+  while (to > out && to[-1] == '-') to--;
+  if (to == out) *to++ = 'x';
+  *to = 0;
+  return out;
+}

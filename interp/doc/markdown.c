@@ -1,0 +1,167 @@
+// Documents in Markdown as parts of pages.
+//
+// cmark makes the tree and writes it; before that, headings get anchors, links to other documents
+// lead to their pages, code that is the name of a function leads to it, and fenced blocks of `cag`
+// become examples.
+
+#include <cmark-gfm-core-extensions.h>
+#include <cmark-gfm.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/doc/site.h"
+
+typedef struct Document {
+  CagSite *site;
+  const char *root, *about;
+} Document;
+
+// Puts HTML in the place of a node.
+static void replace(cmark_node *node, cmark_node_type type, const char *html) {
+  cmark_node *new = cmark_node_new(type);
+  cmark_node_set_literal(new, html);
+  cmark_node_replace(node, new);
+  cmark_node_free(node);
+}
+
+static void change_block(const Document *d, cmark_node *node) {
+  const char *info = cmark_node_get_fence_info(node), *text = cmark_node_get_literal(node);
+  if (!info || strncmp(info, "cag", 3) != 0 || (info[3] != 0 && info[3] != ' ')) return;
+  char *html = NULL;
+  size_t length = 0;
+  FILE *out = open_memstream(&html, &length);
+  if (!out) abort();
+  if (strstr(info, "fragment")) {
+    fputs("<pre><code>", out);
+    cag_html_script(out, d->root, text, strlen(text));
+    fputs("</code></pre>\n", out);
+  } else {
+    cag_html_example(d->site, out, d->root, d->about, text, strlen(text), NULL);
+  }
+  fclose(out);
+  replace(node, CMARK_NODE_HTML_BLOCK, html);
+  free(html);
+}
+
+static void change_code(const Document *d, cmark_node *node) {
+  const char *text = cmark_node_get_literal(node);
+  cmark_node *parent = cmark_node_parent(node);
+  if (parent && cmark_node_get_type(parent) == CMARK_NODE_LINK) return;
+  char *html = NULL;
+  size_t length = 0;
+  FILE *out = open_memstream(&html, &length);
+  if (!out) abort();
+  fputs("<code>", out);
+  cag_html_script(out, d->root, text, strlen(text));
+  fputs("</code>", out);
+  fclose(out);
+  replace(node, CMARK_NODE_HTML_INLINE, html);
+  free(html);
+}
+
+// The text of a heading, of all the nodes in it.
+static char *plain_text(cmark_node *heading) {
+  char *text = NULL;
+  size_t length = 0;
+  FILE *out = open_memstream(&text, &length);
+  cmark_iter *it = cmark_iter_new(heading);
+  if (!out) abort();
+  while (cmark_iter_next(it) != CMARK_EVENT_DONE) {
+    const char *part = cmark_node_get_literal(cmark_iter_get_node(it));
+    if (part) fputs(part, out);
+  }
+  cmark_iter_free(it);
+  fclose(out);
+  return text;
+}
+
+static void anchor_heading(const Document *d, cmark_node *node) {
+  char *text = plain_text(node), *anchor = cag_html_anchor(text), *html;
+  if (cmark_node_get_heading_level(node) > 1) {
+    char url[512];
+    snprintf(url, sizeof url, "guide/%s.html#%s", d->about, anchor);
+    cag_site_find(d->site, text, "guide", url, "", 0);
+  }
+  if (asprintf(&html, "<a class=\"anchor\" id=\"%s\"></a>", anchor) < 0) abort();
+  cmark_node *mark = cmark_node_new(CMARK_NODE_HTML_INLINE);
+  cmark_node_set_literal(mark, html);
+  cmark_node_prepend_child(node, mark);
+  free(html);
+  free(anchor);
+  free(text);
+}
+
+// "language.md#values" is the page language.html, where the site has it; what lies elsewhere in the
+// tree of the source has no page, and stays as words.
+static void change_link(const Document *d, cmark_node *node) {
+  const char *url = cmark_node_get_url(node);
+  const char *dot = strstr(url, ".md"), *name, *title;
+  if (strstr(url, "://") || *url == '#') return;
+  for (size_t i = 0; dot && cag_site_guide(i, &name, &title); i++) {
+    if (strlen(name) != (size_t)(dot - url) || strncmp(url, name, strlen(name)) != 0) continue;
+    char *page;
+    if (asprintf(&page, "%sguide/%s.html%s", d->root, name, dot + 3) < 0) abort();
+    cmark_node_set_url(node, page);
+    free(page);
+    return;
+  }
+  if (strncmp(url, "cookbook/", 9) == 0 && strstr(url, ".cag")) {
+    char *page;
+    if (asprintf(&page, "%scookbook/index.html#%.*s", d->root, (int)strcspn(url + 9, "."),
+                 url + 9) < 0)
+      abort();
+    cmark_node_set_url(node, page);
+    free(page);
+    return;
+  }
+  cmark_node *child;
+  while ((child = cmark_node_first_child(node))) cmark_node_insert_before(node, child);
+  cmark_node_unlink(node);
+  cmark_node_free(node);
+}
+
+static void change(const Document *d, cmark_node *node) {
+  const cmark_node_type type = cmark_node_get_type(node);
+  if (type == CMARK_NODE_CODE_BLOCK) change_block(d, node);
+  else if (type == CMARK_NODE_CODE) change_code(d, node);
+  else if (type == CMARK_NODE_HEADING) anchor_heading(d, node);
+  else if (type == CMARK_NODE_LINK) change_link(d, node);
+}
+
+// The nodes are gathered first, since they are changed under way.
+static void change_all(const Document *d, cmark_node *root) {
+  size_t count = 0, capacity = 0;
+  cmark_node **nodes = NULL;
+  cmark_iter *it = cmark_iter_new(root);
+  cmark_event_type event;
+  while ((event = cmark_iter_next(it)) != CMARK_EVENT_DONE) {
+    if (event != CMARK_EVENT_ENTER) continue;
+    if (count == capacity) {
+      capacity = capacity ? 2 * capacity : 256;
+      nodes = realloc(nodes, capacity * sizeof *nodes);
+      if (!nodes) abort();
+    }
+    nodes[count++] = cmark_iter_get_node(it);
+  }
+  cmark_iter_free(it);
+  for (size_t i = 0; i < count; i++) change(d, nodes[i]);
+  free(nodes);
+}
+
+void cag_html_markdown(CagSite *s, FILE *out, const char *root, const char *about, const char *text,
+                       size_t length) {
+  const Document d = {s, root, about};
+  cmark_gfm_core_extensions_ensure_registered();
+  cmark_parser *parser = cmark_parser_new(CMARK_OPT_UNSAFE);
+  cmark_syntax_extension *tables = cmark_find_syntax_extension("table");
+  if (tables) cmark_parser_attach_syntax_extension(parser, tables);
+  cmark_parser_feed(parser, text, length);
+  cmark_node *tree = cmark_parser_finish(parser);
+  change_all(&d, tree);
+  char *html =
+      cmark_render_html(tree, CMARK_OPT_UNSAFE, cmark_parser_get_syntax_extensions(parser));
+  fputs(html, out);
+  free(html);
+  cmark_node_free(tree);
+  cmark_parser_free(parser);
+}

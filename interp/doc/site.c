@@ -1,0 +1,243 @@
+// The making of the site: the two rounds, files, the frame around each page, and the search.
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "interp/doc/site.h"
+#include "interp/render/atomic_file.h"
+#include "interp/render/povray.h"
+#include "interp/session/session.h"
+
+// --- Documents of the program ---
+
+const CagDocument *cag_document(const char *path) {
+  for (const CagDocument *d = cag_documents; d->path; d++)
+    if (strcmp(d->path, path) == 0) return d;
+  return NULL;
+}
+
+// --- Files ---
+
+void cag_site_write(CagSite *s, const char *path, const char *text, size_t length) {
+  if (!s->final || s->failed) return;
+  char *full;
+  if (asprintf(&full, "%s/%s", s->folder, path) < 0) abort();
+  CagAtomicFile *f = cag_atomic_file_open(full, &s->error);
+  if (f) cag_atomic_file_write(f, text, length);
+  s->failed = !f || !cag_atomic_file_commit(f, &s->error);
+  free(full);
+}
+
+static bool make_folder(CagSite *s, const char *name) {
+  char *path;
+  if (asprintf(&path, "%s%s%s", s->folder, *name ? "/" : "", name) < 0) abort();
+  const bool made = mkdir(path, 0777) == 0 || errno == EEXIST;
+  if (!made)
+    cag_io_error_set(&s->error, CAG_EXIT_FILE, "the folder above it must be there, and writable",
+                     "cannot make the folder %s: %s", path, strerror(errno));
+  free(path);
+  return made;
+}
+
+// Pictures of earlier sites that no page shows any more.
+static void remove_old_pictures(const CagSite *s) {
+  char *path;
+  if (asprintf(&path, "%s/pictures", s->folder) < 0) abort();
+  DIR *folder = opendir(path);
+  for (struct dirent *f; folder && (f = readdir(folder));) {
+    char *name, *full;
+    bool used = strlen(f->d_name) != 20 || f->d_name[16] != '.'; // 16 digits and .svg or .png
+    if (asprintf(&name, "pictures/%s", f->d_name) < 0 ||
+        asprintf(&full, "%s/%s", s->folder, name) < 0)
+      abort();
+    for (size_t i = 0; i < s->count && !used; i++)
+      used = s->examples[i].picture && strcmp(s->examples[i].picture, name) == 0;
+    if (!used) unlink(full);
+    free(name);
+    free(full);
+  }
+  if (folder) closedir(folder);
+  free(path);
+}
+
+// --- The frame of a page ---
+
+static const struct {
+  const char *section, *path;
+} sections[] = {{"Functions", "index.html"},
+                {"Guide", "guide/index.html"},
+                {"Cookbook", "cookbook/index.html"},
+                {"Library", "library/index.html"},
+                {"Errors", "errors.html"}};
+
+void cag_site_begin(CagSite *s, CagSitePage *p, const char *path, const char *title,
+                    const char *section) {
+  const char *root = strchr(path, '/') ? "../" : "";
+  *p = (CagSitePage){.site = s, .path = path, .title = title, .root = root};
+  p->out = open_memstream(&p->text, &p->length);
+  if (!p->out) abort();
+  fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
+        p->out);
+  cag_html_text(p->out, title, strlen(title));
+  fprintf(
+      p->out,
+      " - cag</title>\n<link rel=\"stylesheet\" href=\"%sstyle.css\">\n"
+      "<script src=\"%sindex.js\" defer></script>\n<script src=\"%ssearch.js\" defer></script>\n"
+      "</head>\n<body data-root=\"%s\">\n<header>\n<a class=\"brand\" "
+      "href=\"%sindex.html\">cag</a>\n<nav>\n",
+      root, root, root, root, root);
+  for (size_t i = 0; i < sizeof sections / sizeof *sections; i++)
+    fprintf(p->out, "<a%s href=\"%s%s\">%s</a>\n",
+            strcmp(section, sections[i].section) == 0 ? " class=\"here\"" : "", root,
+            sections[i].path, sections[i].section);
+  fputs("</nav>\n<div class=\"search\"><input id=\"search\" type=\"search\" placeholder=\"Search "
+        "(/)\" "
+        "aria-label=\"Search\" autocomplete=\"off\"><ol "
+        "id=\"found\"></ol></div>\n</header>\n<main>\n",
+        p->out);
+}
+
+void cag_site_end(CagSitePage *p) {
+  fprintf(p->out, "</main>\n<footer>cag %s</footer>\n</body>\n</html>\n", cag_version());
+  fclose(p->out);
+  cag_site_write(p->site, p->path, p->text, p->length);
+  free(p->text);
+}
+
+// --- The search ---
+
+// A text as a string of JavaScript that may stand in a page as well.
+static void write_string(FILE *out, const char *text, size_t length) {
+  fputc('"', out);
+  for (size_t i = 0; i < length; i++) {
+    const unsigned char c = (unsigned char)text[i];
+    if (c == '"' || c == '\\') fprintf(out, "\\%c", c);
+    else if (c < 32 || c == '<') fprintf(out, "\\u%04x", c == '\n' ? ' ' : c);
+    else fputc(c, out);
+  }
+  fputc('"', out);
+}
+
+void cag_site_find(CagSite *s, const char *name, const char *kind, const char *url,
+                   const char *summary, size_t summary_length) {
+  fputs(s->index_count++ ? ",\n[" : "[", s->index);
+  write_string(s->index, name, strlen(name));
+  fputc(',', s->index);
+  write_string(s->index, kind, strlen(kind));
+  fputc(',', s->index);
+  write_string(s->index, url, strlen(url));
+  fputc(',', s->index);
+  write_string(s->index, summary, summary_length);
+  fputc(']', s->index);
+}
+
+static void write_pages(CagSite *s) {
+  char *index = NULL;
+  size_t length = 0;
+  s->index = open_memstream(&index, &length);
+  if (!s->index) abort();
+  s->index_count = 0;
+  fputs("const cagIndex = [\n", s->index);
+  cag_site_functions(s);
+  cag_site_library(s);
+  cag_site_guides(s);
+  cag_site_cookbook(s);
+  cag_site_errors(s);
+  fputs("\n];\n", s->index);
+  fclose(s->index);
+  cag_site_write(s, "index.js", index, length);
+  free(index);
+}
+
+// --- All of it ---
+
+static bool read_modules(CagSite *s) {
+  while (cag_doc_module_name(s->module_count)) s->module_count++;
+  s->modules = calloc(s->module_count + 1, sizeof *s->modules);
+  if (!s->modules) abort();
+  for (size_t i = 0; i < s->module_count; i++) {
+    const char *text;
+    size_t length;
+    const char *name = cag_doc_library(cag_doc_module_name(i), &text, &length);
+    if (cag_session_read_doc(s->session, name, text, length, &s->modules[i]) != CAG_STATUS_OK)
+      return false;
+  }
+  return true;
+}
+
+static bool make_folders(CagSite *s) {
+  static const char *const folders[] = {"",      "functions", "library",
+                                        "guide", "cookbook",  "pictures"};
+  for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
+    if (!make_folder(s, folders[i])) return false;
+  return true;
+}
+
+static void say(const CagSite *s, const char *format, size_t count, const char *text) {
+  char *message;
+  if (!s->options->say || asprintf(&message, format, count, text) < 0) return;
+  s->options->say(s->options->context, message);
+  free(message);
+}
+
+static void find_renderer(CagSite *s) {
+  char version[128];
+  s->renders = !s->options->no_pictures && cag_find_povray(version, sizeof version) != NULL;
+  if (!s->options->no_pictures && !s->renders)
+    say(s, "%.0zupictures are left out, other than drawings: %s", 0, version);
+}
+
+// An example that does not do what it says is an error of the documentation.
+static int judge(CagSite *s) {
+  size_t pictures = 0, wrong = 0;
+  for (size_t i = 0; i < s->count; i++) {
+    const CagSiteExample *e = &s->examples[i];
+    pictures += e->picture != NULL;
+    if (!e->failure) continue;
+    wrong++;
+    cag_diagnostics_add(&s->session->diagnostics, CAG_ERR_doc_example, NULL, (CagSpan){0, 0},
+                        "an example of %s does not do what it says:\n%s\nit printed:\n%s", e->about,
+                        e->text, e->failure);
+  }
+  say(s, "%zu scripts run", s->count, "");
+  if (pictures) say(s, "%zu pictures", pictures, "");
+  return wrong ? CAG_STATUS_SCRIPT : CAG_STATUS_OK;
+}
+
+static int make(CagSite *s) {
+  if (!make_folders(s)) return cag_session_fail_io(s->session, CAG_ERR_output_file, &s->error);
+  if (!read_modules(s)) return CAG_STATUS_SCRIPT;
+  find_renderer(s);
+  write_pages(s);
+  cag_site_run(s);
+  if (s->options->session.interrupt && *s->options->session.interrupt)
+    return CAG_STATUS_INTERRUPTED;
+  s->final = true;
+  write_pages(s);
+  const CagDocument *style = cag_document("docs/site/style.css");
+  const CagDocument *search = cag_document("docs/site/search.js");
+  cag_site_write(s, "style.css", style->text, style->length);
+  cag_site_write(s, "search.js", search->text, search->length);
+  if (s->failed) return cag_session_fail_io(s->session, CAG_ERR_output_file, &s->error);
+  remove_old_pictures(s);
+  return judge(s);
+}
+
+int cag_session_write_site(CagSession *session, const char *folder, const CagSiteOptions *options) {
+  CagSite s = {.session = session, .options = options, .folder = folder};
+  const int status = make(&s);
+  for (size_t i = 0; i < s.count; i++) {
+    CagSiteExample *e = &s.examples[i];
+    char *const texts[] = {e->text, e->function, e->output, e->picture, e->failure};
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) free(texts[k]);
+  }
+  for (size_t i = 0; i < s.module_count; i++) cag_doc_module_free(&s.modules[i]);
+  free(s.modules);
+  free(s.examples);
+  return status;
+}

@@ -1,0 +1,411 @@
+// The pages of functions, of the library, of errors, of the guide and of the cookbook.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/doc/site.h"
+
+static void write_text(FILE *out, const char *text) { cag_html_text(out, text, strlen(text)); }
+
+// --- Functions ---
+
+static const CagBuiltin *first_row(size_t index) {
+  size_t rows;
+  return cag_builtin_rows(index, &rows);
+}
+
+static void write_parameter(const CagSitePage *p, const char *function, const char *name,
+                            const char *fallback) {
+  const CagDocParameter *known = cag_doc_parameter(function, name);
+  fputs("<tr><td><code>", p->out);
+  write_text(p->out, name);
+  fputs("</code></td><td>", p->out);
+  if (known) write_text(p->out, known->type);
+  fputs("</td><td>", p->out);
+  if (fallback) {
+    fputs("<code>", p->out);
+    cag_html_script(p->out, p->root, fallback, strlen(fallback));
+    fputs("</code>", p->out);
+  }
+  fputs("</td><td>", p->out);
+  if (known) cag_html_prose(p->out, p->root, known->meaning, strlen(known->meaning));
+  fputs("</td></tr>\n", p->out);
+}
+
+static void begin_parameters(const CagSitePage *p) {
+  fputs("<table class=\"parameters\"><thead><tr><th>parameter</th><th>type</th><th>default</th>"
+        "<th></th></tr></thead><tbody>\n",
+        p->out);
+}
+
+typedef struct Errors {
+  const CagSitePage *page;
+  size_t count;
+} Errors;
+
+static void write_error_link(void *context, CagErrorId id) {
+  Errors *e = context;
+  const CagErrorInfo *info = cag_error_info(id);
+  FILE *out = e->page->out;
+  fputs(e->count++ ? ", " : "<p class=\"errors\">Errors: ", out);
+  fprintf(out, "<a href=\"%serrors.html#%s\" title=\"", e->page->root, info->code);
+  write_text(out, info->title);
+  fprintf(out, "\">%s</a>", info->reason);
+}
+
+static void write_row(const CagSitePage *p, const CagBuiltin *row) {
+  const CagSignature *s = cag_builtin_signature_of(row);
+  fputs("<section>\n<p class=\"signature\"><code>", p->out);
+  cag_html_script(p->out, p->root, row->signature, strlen(row->signature));
+  fputs("</code>", p->out);
+  if (row->result) {
+    fputs(" <span class=\"result\">&rarr; ", p->out);
+    write_text(p->out, row->result);
+    fputs("</span>", p->out);
+  }
+  fputs("</p>\n<p>", p->out);
+  cag_html_prose(p->out, p->root, row->summary, strlen(row->summary));
+  fputs("</p>\n", p->out);
+  if (s && (s->count || s->variadic)) {
+    begin_parameters(p);
+    for (size_t i = 0; i < s->count; i++)
+      write_parameter(p, s->name, s->parameters[i], s->defaults[i]);
+    if (s->variadic) write_parameter(p, s->name, "...", NULL);
+    fputs("</tbody></table>\n", p->out);
+  }
+  Errors errors = {p, 0};
+  cag_doc_reasons(row->summary, write_error_link, &errors);
+  if (errors.count) fputs("</p>\n", p->out);
+  cag_html_example(p->site, p->out, p->root, row->signature, row->example, strlen(row->example),
+                   s ? s->name : NULL);
+  fputs("</section>\n", p->out);
+}
+
+// The other functions of the family, beside the page.
+static void write_family_list(const CagSitePage *p, const char *family, size_t here) {
+  fputs("<aside><h2>", p->out);
+  write_text(p->out, family);
+  fputs("</h2><ul>\n", p->out);
+  for (size_t i = 0; i < cag_builtin_count(); i++)
+    if (strcmp(first_row(i)->family, family) == 0)
+      fprintf(p->out, "<li%s><a href=\"%s.html\">%s</a></li>\n", i == here ? " class=\"here\"" : "",
+              cag_builtin_name(i), cag_builtin_name(i));
+  fputs("</ul></aside>\n", p->out);
+}
+
+static void function_page(CagSite *s, size_t index) {
+  size_t rows;
+  CagSitePage p;
+  const CagBuiltin *b = cag_builtin_rows(index, &rows);
+  const char *name = cag_builtin_name(index);
+  char path[128];
+  snprintf(path, sizeof path, "functions/%s.html", name);
+  cag_site_find(s, name, b->function ? "function" : "constant", path, b->summary,
+                cag_doc_sentence(b->summary));
+  cag_site_begin(s, &p, path, name, "Functions");
+  fputs("<div class=\"with-aside\">\n<article>\n", p.out);
+  fprintf(p.out, "<h1>%s</h1>\n", name);
+  for (size_t i = 0; i < rows; i++) write_row(&p, &b[i]);
+  fputs("</article>\n", p.out);
+  write_family_list(&p, b->family, index);
+  fputs("</div>\n", p.out);
+  cag_site_end(&p);
+}
+
+static void write_family(const CagSitePage *p, const char *family) {
+  char *anchor = cag_html_anchor(family);
+  fprintf(p->out, "<section class=\"family\"><h2 id=\"%s\">", anchor);
+  write_text(p->out, family);
+  fputs("</h2>\n<dl>\n", p->out);
+  for (size_t i = 0; i < cag_builtin_count(); i++) {
+    const CagBuiltin *b = first_row(i);
+    if (strcmp(b->family, family) != 0) continue;
+    const char *name = cag_builtin_name(i);
+    fprintf(p->out, "<dt><a href=\"functions/%s.html\"><code>%s</code></a></dt><dd>", name, name);
+    cag_html_prose(p->out, "", b->summary, cag_doc_sentence(b->summary));
+    fputs("</dd>\n", p->out);
+  }
+  fputs("</dl></section>\n", p->out);
+  free(anchor);
+}
+
+// The families in the order of the table; the caller frees the list.
+static const char **list_families(size_t *count) {
+  const char **families = calloc(cag_builtin_count() + 1, sizeof *families);
+  if (!families) abort();
+  *count = 0;
+  for (size_t i = 0; i < cag_builtin_count(); i++) {
+    size_t k = 0;
+    while (k < *count && strcmp(families[k], first_row(i)->family) != 0) k++;
+    if (k == *count) families[(*count)++] = first_row(i)->family;
+  }
+  return families;
+}
+
+static void index_page(CagSite *s) {
+  CagSitePage p;
+  size_t count;
+  const char **families = list_families(&count);
+  cag_site_begin(s, &p, "index.html", "Functions", "Functions");
+  fputs(
+      "<h1>A language for geometry</h1>\n<p class=\"lead\">A script says what curves, surfaces, "
+      "solids, robots and scenes <em>are</em>. "
+      "New here? <a href=\"guide/getting-started.html\">Getting started</a> takes ten minutes, the "
+      "<a href=\"cookbook/index.html\">cookbook</a> has scripts to begin from.</p>\n<ul "
+      "class=\"families\">\n",
+      p.out);
+  for (size_t i = 0; i < count; i++) {
+    char *anchor = cag_html_anchor(families[i]);
+    fprintf(p.out, "<li><a href=\"#%s\">", anchor);
+    write_text(p.out, families[i]);
+    fputs("</a></li>\n", p.out);
+    free(anchor);
+  }
+  fputs("</ul>\n", p.out);
+  for (size_t i = 0; i < count; i++) write_family(&p, families[i]);
+  cag_site_end(&p);
+  free(families);
+}
+
+void cag_site_functions(CagSite *s) {
+  index_page(s);
+  for (size_t i = 0; i < cag_builtin_count(); i++) function_page(s, i);
+}
+
+// --- Library ---
+
+// The line that imports the module, as its purpose shows it; malloc'd.
+static char *import_line(const CagDocModule *m) {
+  char *line;
+  const char *shown = strstr(m->purpose, m->name);
+  const char *begin = shown && shown - m->purpose >= 7 ? shown - 7 : NULL;
+  if (begin && strncmp(begin, "import ", 7) == 0) return strndup(begin, strcspn(begin, "\n"));
+  if (asprintf(&line, "import %s", m->name) < 0) abort();
+  return line;
+}
+
+// An example; where it leaves the import to the reader, it is said.
+static void write_module_example(const CagSitePage *p, const CagDocModule *m, const char *text) {
+  char *import = import_line(m), *whole;
+  const bool said = strstr(text, "import ") != NULL;
+  if (asprintf(&whole, "%s%s%s", said ? "" : import, said ? "" : "\n", text) < 0) abort();
+  cag_html_example(p->site, p->out, p->root, m->name, whole, strlen(whole), NULL);
+  free(whole);
+  free(import);
+}
+
+// Documentation is prose in which lines indented by four are a script.
+static void write_doc_text(const CagSitePage *p, const CagDocModule *m, const char *text) {
+  while (*text) {
+    const bool code = strncmp(text, "    ", 4) == 0;
+    char *part = NULL;
+    size_t length = 0;
+    FILE *out = open_memstream(&part, &length);
+    if (!out) abort();
+    while (*text) {
+      const size_t n = strcspn(text, "\n"), next = n + (text[n] == '\n');
+      const bool indented = strncmp(text, "    ", 4) == 0;
+      // A blank line goes on with a script when the line behind it does.
+      if (code ? !indented && !(n == 0 && strncmp(text + next, "    ", 4) == 0) : indented) break;
+      fprintf(out, "%.*s\n", indented ? (int)n - 4 : (int)n, text + (indented ? 4 : 0));
+      text += next;
+    }
+    fclose(out);
+    if (code) write_module_example(p, m, part);
+    else cag_html_markdown(p->site, p->out, p->root, m->name, part, length);
+    free(part);
+  }
+}
+
+static void write_definition(const CagSitePage *p, const CagDocModule *m, const CagDocEntry *e) {
+  char url[256], name[256];
+  const size_t n = e->text ? cag_doc_sentence(e->text) : 0;
+  snprintf(url, sizeof url, "library/%s.html#%s", m->name + 4, e->name);
+  snprintf(name, sizeof name, "%s.%s", m->name + 4, e->name);
+  cag_site_find(p->site, name, "library", url, e->text ? e->text : "", n);
+  fprintf(p->out, "<section><p class=\"signature\" id=\"%s\"><code>", e->name);
+  cag_html_script(p->out, p->root, e->signature, strlen(e->signature));
+  fputs("</code></p>\n", p->out);
+  if (e->text) write_doc_text(p, m, e->text);
+  if (e->argument_count) {
+    begin_parameters(p);
+    for (size_t i = 0; i < e->argument_count; i++)
+      write_parameter(p, e->name, e->arguments[i].name, e->arguments[i].fallback);
+    fputs("</tbody></table>\n", p->out);
+  }
+  fputs("</section>\n", p->out);
+}
+
+static void module_page(CagSite *s, const CagDocModule *m) {
+  CagSitePage p;
+  char path[128];
+  snprintf(path, sizeof path, "library/%s.html", m->name + 4);
+  cag_site_find(s, m->name, "module", path, m->purpose, cag_doc_sentence(m->purpose));
+  cag_site_begin(s, &p, path, m->name, "Library");
+  fprintf(p.out, "<div class=\"with-aside\">\n<article>\n<h1>%s</h1>\n", m->name);
+  cag_html_markdown(s, p.out, p.root, m->name, m->purpose, strlen(m->purpose));
+  for (size_t i = 0; i < m->count; i++) write_definition(&p, m, &m->entries[i]);
+  fprintf(p.out, "</article>\n<aside><h2>%s</h2><ul>\n", m->name);
+  for (size_t i = 0; i < m->count; i++)
+    fprintf(p.out, "<li><a href=\"#%s\">%s</a></li>\n", m->entries[i].name, m->entries[i].name);
+  fputs("</ul></aside>\n</div>\n", p.out);
+  cag_site_end(&p);
+}
+
+void cag_site_library(CagSite *s) {
+  CagSitePage p;
+  cag_site_begin(s, &p, "library/index.html", "Library", "Library");
+  fputs("<h1>Library</h1>\n<p>Modules that come with the program: <code>import "
+        "std.materials</code> binds "
+        "<code>materials</code>.</p>\n<dl class=\"modules\">\n",
+        p.out);
+  for (size_t i = 0; i < s->module_count; i++) {
+    const CagDocModule *m = &s->modules[i];
+    fprintf(p.out, "<dt><a href=\"%s.html\"><code>%s</code></a></dt><dd>", m->name + 4, m->name);
+    cag_html_prose(p.out, p.root, m->purpose, cag_doc_sentence(m->purpose));
+    fputs("</dd>\n", p.out);
+  }
+  fputs("</dl>\n", p.out);
+  cag_site_end(&p);
+  for (size_t i = 0; i < s->module_count; i++) module_page(s, &s->modules[i]);
+}
+
+// --- Errors ---
+
+void cag_site_errors(CagSite *s) {
+  CagSitePage p;
+  cag_site_begin(s, &p, "errors.html", "Errors", "Errors");
+  fputs("<h1>Errors</h1>\n<p>Every kind of error has a code that stays. <code>cag explain "
+        "CODE</code> says the same.</p>\n",
+        p.out);
+  for (size_t i = 0; i < CAG_ERR_COUNT; i++) {
+    const CagErrorInfo *e = cag_error_info((CagErrorId)i);
+    char url[64], name[128];
+    snprintf(url, sizeof url, "errors.html#%s", e->code);
+    snprintf(name, sizeof name, "%s %s", e->code, e->reason);
+    cag_site_find(s, name, "error", url, e->title, strlen(e->title));
+    fprintf(p.out, "<section class=\"error\" id=\"%s\"><h2>%s <small>%s</small></h2>\n<p><strong>",
+            e->code, e->code, e->reason);
+    write_text(p.out, e->title);
+    fputs("</strong></p>\n<p>", p.out);
+    cag_html_prose(p.out, "", e->explanation, strlen(e->explanation));
+    fputs("</p>\n", p.out);
+    if (e->example) {
+      fputs("<pre><code>", p.out);
+      cag_html_script(p.out, "", e->example, strlen(e->example));
+      fputs("</code></pre>\n", p.out);
+    }
+    fputs("</section>\n", p.out);
+  }
+  cag_site_end(&p);
+}
+
+// --- Guide ---
+
+static const struct {
+  const char *name, *title, *story;
+} guides[] = {
+    {"getting-started", "Getting started", "from nothing to a picture, in ten minutes"},
+    {"language", "The language", "words, values, functions, blocks, params, modules"},
+    {"geometry", "Geometry", "each family of shapes with its formula and picture"},
+    {"robots", "Robots", "chains of links, their motion, and files of others"},
+    {"batch", "Rendering and batch", "pictures, films, many jobs at once"},
+    {"embedding", "Embedding libcag", "scripts within programs in C"},
+    {"manual-additions", "Finer points", "functions by subject, as a reference"},
+};
+#define GUIDE_COUNT (sizeof guides / sizeof *guides)
+
+static const CagDocument *guide_document(const char *name) {
+  char path[128];
+  snprintf(path, sizeof path, "docs/%s.md", name);
+  return cag_document(path);
+}
+
+bool cag_site_guide(size_t i, const char **name, const char **title) {
+  for (size_t k = 0; k < GUIDE_COUNT; k++) {
+    if (!guide_document(guides[k].name) || i-- > 0) continue;
+    *name = guides[k].name;
+    *title = guides[k].title;
+    return true;
+  }
+  return false;
+}
+
+static void guide_page(CagSite *s, size_t at) {
+  const CagDocument *d = guide_document(guides[at].name);
+  CagSitePage p;
+  char path[128];
+  const char *name, *title;
+  snprintf(path, sizeof path, "guide/%s.html", guides[at].name);
+  cag_site_find(s, guides[at].title, "guide", path, guides[at].story, strlen(guides[at].story));
+  cag_site_begin(s, &p, path, guides[at].title, "Guide");
+  fputs("<div class=\"with-aside\">\n<article class=\"guide\">\n", p.out);
+  cag_html_markdown(s, p.out, p.root, guides[at].name, d->text, d->length);
+  if (strcmp(guides[at].name, "embedding") == 0) {
+    const CagDocument *program = cag_document("tests/cli/embed.c");
+    fputs("<h2>The whole program</h2>\n<pre><code>", p.out);
+    cag_html_text(p.out, program->text, program->length);
+    fputs("</code></pre>\n", p.out);
+  }
+  fputs("</article>\n<aside><h2>Guide</h2><ul>\n", p.out);
+  for (size_t i = 0; cag_site_guide(i, &name, &title); i++)
+    fprintf(p.out, "<li%s><a href=\"%s.html\">%s</a></li>\n",
+            strcmp(name, guides[at].name) == 0 ? " class=\"here\"" : "", name, title);
+  fputs("</ul></aside>\n</div>\n", p.out);
+  cag_site_end(&p);
+}
+
+void cag_site_guides(CagSite *s) {
+  CagSitePage p;
+  cag_site_begin(s, &p, "guide/index.html", "Guide", "Guide");
+  fputs("<h1>Guide</h1>\n<dl class=\"modules\">\n", p.out);
+  for (size_t i = 0; i < GUIDE_COUNT; i++)
+    if (guide_document(guides[i].name))
+      fprintf(p.out, "<dt><a href=\"%s.html\">%s</a></dt><dd>%s</dd>\n", guides[i].name,
+              guides[i].title, guides[i].story);
+  fputs("</dl>\n", p.out);
+  cag_site_end(&p);
+  for (size_t i = 0; i < GUIDE_COUNT; i++)
+    if (guide_document(guides[i].name)) guide_page(s, i);
+}
+
+// --- Cookbook ---
+
+// A recipe begins with comments: its title, an empty one, and its paragraph.
+static void write_recipe(const CagSitePage *p, const CagDocument *d) {
+  char title[160], name[64], url[128];
+  const char *at = d->text, *file = strrchr(d->path, '/') + 1;
+  snprintf(name, sizeof name, "%.*s", (int)strcspn(file, "."), file);
+  const char *begin = strncmp(at, "// ", 3) == 0 ? at + 3 : at;
+  snprintf(title, sizeof title, "%.*s", (int)strcspn(begin, "\n"), begin);
+  at += strcspn(at, "\n");
+  at += *at == '\n';
+  snprintf(url, sizeof url, "cookbook/index.html#%s", name);
+  fprintf(p->out, "<section class=\"recipe\"><h2 id=\"%s\">", name);
+  write_text(p->out, title);
+  fputs("</h2>\n<p>", p->out);
+  const char *paragraph = at;
+  while (strncmp(at, "//", 2) == 0) {
+    const size_t n = strcspn(at, "\n"), skip = n > 2 && at[2] == ' ' ? 3 : 2;
+    cag_html_prose(p->out, p->root, at + skip, n - skip);
+    fputc('\n', p->out);
+    at += n + (at[n] == '\n');
+  }
+  cag_site_find(p->site, title, "recipe", url, paragraph, 0);
+  fputs("</p>\n", p->out);
+  at += strspn(at, "\n");
+  cag_html_example(p->site, p->out, p->root, d->path, at, strlen(at), NULL);
+  fputs("</section>\n", p->out);
+}
+
+void cag_site_cookbook(CagSite *s) {
+  CagSitePage p;
+  cag_site_begin(s, &p, "cookbook/index.html", "Cookbook", "Cookbook");
+  fputs("<h1>Cookbook</h1>\n<p class=\"lead\">Scripts to begin from. Each is whole: save it as "
+        "<code>x.cag</code> and say "
+        "<code>cag render x.cag -o x.png</code>.</p>\n",
+        p.out);
+  for (const CagDocument *d = cag_documents; d->path; d++)
+    if (strncmp(d->path, "docs/cookbook/", 14) == 0) write_recipe(&p, d);
+  cag_site_end(&p);
+}

@@ -1,0 +1,277 @@
+// The examples of the site: each is run in a session of its own, and its picture made.
+//
+// A picture shows what the example shows. One that shows nothing has the picture of the call that
+// it is an example of, where that gives a shape, or else of the last shape that it defines. Curves
+// and regions of one plane become .svg, all else is rendered. The name of a picture's file is made
+// of what it shows, so that pictures that are there already need not be made again.
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "interp/doc/site.h"
+#include "interp/render/povray.h"
+#include "interp/scene/scene.h"
+#include "interp/session/session.h"
+
+// The seconds that an example, or its picture, may take.
+#define SECONDS 120.0
+// What examples are called in their messages.
+#define NAME "example.cag"
+// A drawing is as flat as rounding leaves it, by its width.
+#define FLAT 1e-9
+
+const CagSiteExample *cag_site_example(CagSite *s, const char *about, const char *text,
+                                       size_t length, const char *function) {
+  for (size_t i = 0; i < s->count; i++)
+    if (strlen(s->examples[i].text) == length && strncmp(s->examples[i].text, text, length) == 0)
+      return &s->examples[i];
+  if (s->final) return NULL;
+  if (s->count == s->capacity) {
+    s->capacity = s->capacity ? 2 * s->capacity : 512;
+    s->examples = realloc(s->examples, s->capacity * sizeof *s->examples);
+    if (!s->examples) abort();
+  }
+  CagSiteExample *e = &s->examples[s->count++];
+  *e = (CagSiteExample){.about = about, .text = strndup(text, length)};
+  if (function) e->function = strdup(function);
+  return NULL;
+}
+
+// --- Sessions ---
+
+static CagSession *open_session(const CagSite *site, FILE *out, FILE *messages) {
+  CagSessionOptions options = site->options->session;
+  options.out = out;
+  options.messages = messages;
+  if (options.max_time <= 0) options.max_time = SECONDS;
+  return cag_session_new(&options);
+}
+
+typedef struct Type {
+  char name[32];
+} Type;
+
+static void keep_type(void *context, const char *text, const char *type) {
+  (void)text;
+  snprintf(((Type *)context)->name, sizeof((Type *)context)->name, "%s", type);
+}
+
+// The type of an expression in an interactive session; "" where it fails.
+static Type type_of(CagSession *s, const char *expression) {
+  Type t = {""};
+  if (cag_session_input(s, expression, strlen(expression), keep_type, &t) != CAG_STATUS_OK)
+    t.name[0] = 0;
+  return t;
+}
+
+static bool is_shape(Type t) {
+  static const char *const shapes[] = {"curve", "region", "surface", "solid", "mesh", "group"};
+  for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
+    if (strcmp(t.name, shapes[i]) == 0) return true;
+  return false;
+}
+
+// --- What a picture shows ---
+
+// The call of the function in the text, with its balanced parentheses; malloc'd, NULL: none.
+static char *find_call(const char *text, const char *function) {
+  const size_t n = strlen(function);
+  for (const char *at = text; (at = strstr(at, function)); at += n) {
+    const char before = at > text ? at[-1] : ' ';
+    if (at[n] != '(' || before == '_' || before == '.' || (before >= 'a' && before <= 'z'))
+      continue;
+    int depth = 0;
+    for (const char *end = at + n; *end; end++) {
+      depth += (*end == '(') - (*end == ')');
+      if (depth == 0) return strndup(at, (size_t)(end + 1 - at));
+    }
+  }
+  return NULL;
+}
+
+// The last definition of the session that is a shape, as an expression; malloc'd.
+static char *last_shape(CagSession *s) {
+  size_t count = 0;
+  while (cag_session_name(s, count, NULL, NULL)) count++;
+  while (count-- > 0) {
+    const char *name = cag_session_name(s, count, NULL, NULL);
+    char *copy = strdup(name);
+    if (!copy) return NULL;
+    const Type t = type_of(s, copy);
+    char *posed = NULL;
+    if (is_shape(t)) return copy;
+    if (strcmp(t.name, "robot") == 0 && asprintf(&posed, "posed(%s)", copy) < 0) posed = NULL;
+    free(copy);
+    if (posed) return posed;
+  }
+  return NULL;
+}
+
+// What to show of an example that shows nothing itself; malloc'd, NULL: no shape is in it.
+static char *choose_shape(const CagSite *site, const CagSiteExample *e, FILE *out) {
+  CagSession *s = open_session(site, out, out);
+  char *call = e->function ? find_call(e->text, e->function) : NULL, *shape = NULL;
+  if (s && cag_session_input(s, e->text, strlen(e->text), NULL, NULL) == CAG_STATUS_OK) {
+    if (call && is_shape(type_of(s, call))) {
+      shape = call;
+      call = NULL;
+    } else {
+      shape = last_shape(s);
+    }
+  }
+  free(call);
+  if (s) cag_session_free(s);
+  return shape;
+}
+
+// Whether all that is shown are curves and regions of one plane z = constant.
+static bool is_drawing(const CagScene *scene) {
+  const CagBounds *b = &scene->bounds;
+  bool drawn = scene->item_count > 0;
+  for (size_t i = 0; i < scene->item_count; i++)
+    drawn = drawn &&
+            (scene->items[i].kind == CAG_ITEM_CURVE || scene->items[i].kind == CAG_ITEM_REGION);
+  return drawn && b->max.z - b->min.z <= FLAT * (1 + b->max.x - b->min.x);
+}
+
+static uint64_t hash_text(uint64_t h, const char *text) {
+  for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u; // FNV-1a
+  return h;
+}
+
+static char *picture_name(const char *text, const char *shape, const char *ending) {
+  char *name;
+  uint64_t h = hash_text(14695981039346656037u, CAG_VERSION);
+  h = hash_text(hash_text(h, text), shape ? shape : "");
+  if (asprintf(&name, "pictures/%016llx.%s", (unsigned long long)h, ending) < 0) abort();
+  return name;
+}
+
+// Makes the picture of a session's scene, where it is not there yet.
+static void make_picture(const CagSite *site, CagSession *s, CagSiteExample *e, const char *shape) {
+  CagShownCounts counts;
+  if (cag_session_scene(s, &counts) != CAG_STATUS_OK || counts.items == 0) return;
+  const bool drawing = is_drawing(&s->scene);
+  if (!drawing && !site->renders) return;
+  char *name = picture_name(e->text, shape, drawing ? "svg" : "png"), *path;
+  if (asprintf(&path, "%s/%s", site->folder, name) < 0) abort();
+  int status = CAG_STATUS_OK;
+  if (access(path, R_OK) != 0 && drawing) {
+    status = cag_session_export(s, path, "svg");
+  } else if (access(path, R_OK) != 0) {
+    CagRenderOptions options;
+    cag_render_options_init(&options);
+    options.width = CAG_SITE_WIDTH;
+    options.height = CAG_SITE_HEIGHT;
+    options.quality = "draft";
+    options.threads = 1;
+    options.time_limit = SECONDS;
+    status = cag_session_render(s, &options, path);
+  }
+  if (status == CAG_STATUS_OK) e->picture = name;
+  else free(name);
+  free(path);
+}
+
+static void picture(const CagSite *site, CagSession *ran, CagSiteExample *e, FILE *out) {
+  CagShownCounts counts = {0};
+  if (cag_session_scene(ran, &counts) == CAG_STATUS_OK && counts.items > 0) {
+    make_picture(site, ran, e, NULL);
+    return;
+  }
+  char *shape = choose_shape(site, e, out), *text;
+  if (!shape) return;
+  if (asprintf(&text, "%s\nshow %s\n", e->text, shape) < 0) abort();
+  CagSession *s = open_session(site, out, out);
+  if (s && cag_session_run_text(s, NAME, text, strlen(text)) == CAG_STATUS_OK)
+    make_picture(site, s, e, shape);
+  if (s) cag_session_free(s);
+  free(text);
+  free(shape);
+}
+
+// --- A run ---
+
+// What was printed against the `expect:` comments, in their order; a script without them is well.
+static bool is_expected(const char *script, const char *output) {
+  const char *line = output, *at = strstr(script, "// expect:");
+  for (; at; at = strstr(at + 1, "// expect:")) {
+    const char *want = at + strlen("// expect:");
+    size_t n = strcspn(want, "\n"), m = strcspn(line, "\n");
+    const char *got = line;
+    if (!*line && n) return false;
+    line += m + (line[m] == '\n');
+    while (n && *want == ' ') want++, n--;
+    while (n && want[n - 1] == ' ') n--;
+    while (m && *got == ' ') got++, m--;
+    while (m && got[m - 1] == ' ') m--;
+    if (n != m || strncmp(want, got, n) != 0) return false;
+  }
+  return true;
+}
+
+static void run_example(const CagSite *site, CagSiteExample *e) {
+  size_t length, told_length;
+  char *told = NULL;
+  FILE *out = open_memstream(&e->output, &length), *messages = open_memstream(&told, &told_length);
+  FILE *quiet = fopen("/dev/null", "w");
+  CagSession *s = out && messages && quiet ? open_session(site, out, messages) : NULL;
+  if (!s) abort();
+  const int status = cag_session_run_text(s, NAME, e->text, strlen(e->text));
+  const bool fails = strstr(e->text, "// expect error:") != NULL;
+  if (status != CAG_STATUS_OK) cag_session_write_diagnostics(s, CAG_STYLE_TEXT, out);
+  fflush(out);
+  if (fails != (status != CAG_STATUS_OK) || (!fails && !is_expected(e->text, e->output)))
+    e->failure = strdup(e->output);
+  fflush(messages);
+  fwrite(told, 1, told_length, out); // what trace says
+  if (status == CAG_STATUS_OK && !site->options->no_pictures) {
+    s->options.out = s->options.messages = quiet; // geometry may call functions again
+    picture(site, s, e, quiet);
+  }
+  cag_session_free(s);
+  fclose(out);
+  fclose(messages);
+  fclose(quiet);
+  free(told);
+}
+
+// --- All of them ---
+
+typedef struct Running {
+  CagSite *site;
+  pthread_mutex_t mutex;
+} Running;
+
+static void *work(void *context) {
+  Running *r = context;
+  CagSite *s = r->site;
+  const volatile int *stop = s->options->session.interrupt;
+  pthread_mutex_lock(&r->mutex);
+  while (s->next < s->count && !(stop && *stop)) {
+    CagSiteExample *e = &s->examples[s->next++];
+    pthread_mutex_unlock(&r->mutex);
+    run_example(s, e);
+    pthread_mutex_lock(&r->mutex);
+  }
+  pthread_mutex_unlock(&r->mutex);
+  return NULL;
+}
+
+void cag_site_run(CagSite *s) {
+  const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+  size_t jobs = s->options->jobs ? s->options->jobs : processors > 0 ? (size_t)processors : 1;
+  if (jobs > s->count) jobs = s->count;
+  Running r = {.site = s};
+  pthread_t *threads = calloc(jobs + 1, sizeof *threads);
+  if (!threads) abort();
+  pthread_mutex_init(&r.mutex, NULL);
+  size_t started = 0;
+  while (started < jobs && pthread_create(&threads[started], NULL, work, &r) == 0) started++;
+  if (started == 0) work(&r);
+  for (size_t i = 0; i < started; i++) pthread_join(threads[i], NULL);
+  pthread_mutex_destroy(&r.mutex);
+  free(threads);
+}

@@ -1,0 +1,190 @@
+// Documentation as text for a terminal.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/doc/doc.h"
+
+// Columns that a line has at most.
+#define WIDTH 92
+// Where what is said about a parameter begins.
+#define NAME_COLUMN 24
+
+static void heading(const CagDocWriter *w, const char *text) {
+  fprintf(w->out, w->styled ? "\033[1m%s\033[0m\n" : "%s\n", text);
+}
+
+// Text wrapped at word ends; the first line goes on at column `at`, further ones begin at `indent`.
+static void write_wrapped(FILE *out, const char *text, size_t length, size_t indent, size_t at) {
+  size_t column = at;
+  bool first = true;
+  for (size_t i = 0; i < length;) {
+    const size_t spaces = strspn(text + i, " \n");
+    i += spaces;
+    size_t n = strcspn(text + i, " \n");
+    if (i + n > length) n = length > i ? length - i : 0;
+    if (n == 0) break;
+    if (!first && column + 1 + n > WIDTH) {
+      fprintf(out, "\n%*s", (int)indent, "");
+      column = indent;
+    } else if (!first) {
+      fputc(' ', out);
+      column++;
+    } else if (column < indent) {
+      fprintf(out, "%*s", (int)(indent - column), "");
+      column = indent;
+    }
+    fwrite(text + i, 1, n, out);
+    column += n;
+    i += n;
+    first = false;
+  }
+  fputc('\n', out);
+}
+
+static void write_indented(FILE *out, const char *text, int indent) {
+  while (*text) {
+    const size_t n = strcspn(text, "\n");
+    if (n) fprintf(out, "%*s%.*s\n", indent, "", (int)n, text);
+    else fputc('\n', out);
+    text += n + (text[n] == '\n');
+  }
+}
+
+// --- Built-ins ---
+
+static void write_parameter(FILE *out, const char *function, const char *name,
+                            const char *fallback) {
+  const CagDocParameter *p = cag_doc_parameter(function, name);
+  const int used = fprintf(out, "    %s", name);
+  char *text;
+  const char *type = p ? p->type : "value", *meaning = p ? p->meaning : "";
+  const int n = asprintf(&text, "%s%s%s%s%s", type, *meaning ? ": " : "", meaning,
+                         fallback ? "; default " : "", fallback ? fallback : "");
+  if (n < 0) return;
+  if (used + 2 > NAME_COLUMN) fprintf(out, "\n%*s", NAME_COLUMN, "");
+  else fprintf(out, "%*s", NAME_COLUMN - used, "");
+  write_wrapped(out, text, (size_t)n, NAME_COLUMN, NAME_COLUMN);
+  free(text);
+}
+
+typedef struct Errors {
+  FILE *out;
+  size_t count;
+} Errors;
+
+static void write_error(void *context, CagErrorId id) {
+  Errors *e = context;
+  const CagErrorInfo *info = cag_error_info(id);
+  if (e->count++ == 0) fputs("\n  Errors\n", e->out);
+  fprintf(e->out, "    %s  %s: %s\n", info->code, info->reason, info->title);
+}
+
+static void write_row(const CagDocWriter *w, const CagBuiltin *row) {
+  fprintf(w->out, w->styled ? "\033[1m%s\033[0m" : "%s", row->signature);
+  if (row->result) fprintf(w->out, " -> %s", row->result);
+  fputc('\n', w->out);
+  write_wrapped(w->out, row->summary, strlen(row->summary), 2, 0);
+  const CagSignature *s = cag_builtin_signature_of(row);
+  if (s && (s->count || s->variadic)) fputs("\n  Parameters\n", w->out);
+  for (size_t i = 0; s && i < s->count; i++)
+    write_parameter(w->out, s->name, s->parameters[i], s->defaults[i]);
+  if (s && s->variadic) write_parameter(w->out, s->name, "...", NULL);
+  Errors errors = {w->out, 0};
+  cag_doc_reasons(row->summary, write_error, &errors);
+  fputs("\n  Example\n", w->out);
+  write_indented(w->out, row->example, 4);
+}
+
+void cag_doc_write_builtin(const CagDocWriter *w, size_t index) {
+  size_t rows;
+  const CagBuiltin *b = cag_builtin_rows(index, &rows);
+  for (size_t i = 0; i < rows; i++) {
+    if (i) fputc('\n', w->out);
+    write_row(w, &b[i]);
+  }
+}
+
+// --- Modules and scripts ---
+
+static void write_param(const CagDocWriter *w, const CagDocEntry *e) {
+  fprintf(w->out, w->styled ? "\033[1mparam %s\033[0m" : "param %s", e->name);
+  fprintf(w->out, " = %s", e->fallback);
+  if (e->range) fprintf(w->out, " in %s", e->range);
+  fputc('\n', w->out);
+  if (e->label) write_wrapped(w->out, e->label, strlen(e->label), 2, 0);
+}
+
+static void write_arguments(FILE *out, const CagDocEntry *e) {
+  bool any = false;
+  for (size_t i = 0; i < e->argument_count; i++) {
+    const CagDocArgument *a = &e->arguments[i];
+    if (!cag_doc_parameter(e->name, a->name) && !a->fallback) continue;
+    if (!any) fputs("\n  Parameters\n", out);
+    any = true;
+    write_parameter(out, e->name, a->name, a->fallback);
+  }
+}
+
+static void write_definition(const CagDocWriter *w, const CagDocEntry *e, bool at_length) {
+  if (e->kind == CAG_DOC_PARAM) write_param(w, e);
+  else fprintf(w->out, w->styled ? "\033[1m%s\033[0m\n" : "%s\n", e->signature);
+  if (e->text) write_indented(w->out, e->text, 2);
+  if (at_length) write_arguments(w->out, e);
+}
+
+void cag_doc_write_entry(const CagDocWriter *w, const CagDocModule *m, const CagDocEntry *e) {
+  fprintf(w->out, "In %s:\n\n", m->name);
+  write_definition(w, e, true);
+}
+
+void cag_doc_write_module(const CagDocWriter *w, const CagDocModule *m) {
+  heading(w, m->name);
+  if (*m->purpose) fputc('\n', w->out);
+  write_indented(w->out, m->purpose, 0);
+  for (size_t i = 0; i < m->count; i++) {
+    fputc('\n', w->out);
+    write_definition(w, &m->entries[i], false);
+  }
+}
+
+// --- The overview ---
+
+static void write_family(const CagDocWriter *w, const char *family) {
+  size_t column = 0;
+  heading(w, family);
+  const char *last = "";
+  for (size_t i = 0; i < cag_builtin_count(); i++) {
+    size_t rows;
+    const CagBuiltin *b = cag_builtin_rows(i, &rows);
+    const char *name = cag_builtin_name(i);
+    if (strcmp(b->family, family) != 0 || strcmp(name, last) == 0) continue;
+    last = name;
+    const size_t n = strlen(name);
+    if (column && column + 1 + n > WIDTH) {
+      fputc('\n', w->out);
+      column = 0;
+    }
+    column += (size_t)fprintf(w->out, column ? " %s" : "  %s", name);
+  }
+  fputs("\n", w->out);
+}
+
+void cag_doc_write_overview(const CagDocWriter *w) {
+  const char **families = calloc(cag_builtin_count() + 1, sizeof *families);
+  if (!families) return;
+  size_t count = 0;
+  for (size_t i = 0; i < cag_builtin_count(); i++) {
+    size_t rows, k = 0;
+    const char *family = cag_builtin_rows(i, &rows)->family;
+    while (k < count && strcmp(families[k], family) != 0) k++;
+    if (k == count) families[count++] = family;
+  }
+  for (size_t k = 0; k < count; k++) write_family(w, families[k]);
+  free(families);
+  heading(w, "Library");
+  for (size_t i = 0; cag_doc_module_name(i); i++) fprintf(w->out, "  %s\n", cag_doc_module_name(i));
+  fputs("\n`cag doc NAME` tells of a function, a module or an error code, `cag doc FILE.cag` of a "
+        "script,\n`cag doc --html DIR` makes all of it a site.\n",
+        w->out);
+}
