@@ -1,8 +1,8 @@
 # The Debian packages that cag needs, and their installation; read by setup.sh and test.sh.
 
 BUILD_PACKAGES="gcc libc6-dev make pkg-config libopenexr-dev liblapacke-dev libopenblas-dev libedit-dev libcjson-dev
-  libpng-dev libutf8proc-dev libglu1-mesa-dev zlib1g-dev libcmark-gfm-dev libcmark-gfm-extensions-dev povray povray-includes"
-TEST_PACKAGES="libcmocka-dev clang-format tmux libxml2-utils occt-draw admesh assimp-utils unzip"
+  libpng-dev libutf8proc-dev libglu1-mesa-dev zlib1g-dev libcmark-gfm-dev libcmark-gfm-extensions-dev libxml2-dev povray povray-includes"
+TEST_PACKAGES="libcmocka-dev clang-format tmux libxml2-utils occt-draw admesh assimp-utils unzip liburdfdom-tools"
 # The Khronos validator of glTF runs on these; where they came from elsewhere, Debian's would be in their way.
 command -v node > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES nodejs"
 command -v npm > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES npm"

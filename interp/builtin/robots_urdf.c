@@ -1,0 +1,312 @@
+// Robots from URDF files.
+//
+// Meshes are read as read_mesh reads them, by the same rules of where a script's files lie: names
+// are taken from the folder of the .urdf file, and those of ROS packages are looked for near it.
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "interp/builtin/robots.h"
+#include "interp/builtin/solids.h"
+#include "interp/builtin/support.h"
+#include "interp/eval/vm.h"
+#include "interp/import/urdf_read.h"
+
+static const char family[] = "Robots: links";
+
+typedef struct Import {
+  CagCall *call;
+  const char *path; // of the .urdf file
+  CagUrdfTree tree;
+  CagUrdfRows rows;
+} Import;
+
+// --- Meshes ---
+
+static bool begins(const char *text, const char *with) {
+  return strncmp(text, with, strlen(with)) == 0;
+}
+
+static bool can_be_read(const char *file) {
+  static const char *const endings[] = {".stl", ".obj", ".ply", ".gltf", ".glb"};
+  const char *dot = strrchr(file, '.');
+  for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
+    if (!strcasecmp(dot, endings[i])) return true;
+  return false;
+}
+
+static bool is_gltf(const char *file) {
+  const char *dot = strrchr(file, '.');
+  return dot && (!strcasecmp(dot, ".gltf") || !strcasecmp(dot, ".glb"));
+}
+
+static bool fail_mesh(const Import *m, const CagUrdfBody *b, const char *why, const char *mend) {
+  cag_fail_call(m->call, 0, CAG_ERR_urdf_mesh, "cannot read the mesh \"%.120s\" (%s, line %ld): %s",
+                b->file, m->tree.file, b->line, why);
+  return cag_fail_help(m->call->vm, "%s; `shapes: false` reads the chain alone", mend);
+}
+
+// Reads a mesh at this place. *found is false where there is no such file; the error is set then
+// too.
+static bool read_at(const Import *m, const char *path, CagValue *out, bool *found) {
+  CagVm *vm = m->call->vm;
+  size_t rows;
+  CagValue text = cag_text_c(vm, path);
+  CagCall call = {vm, cag_builtin_rows(cag_builtin_find("read_mesh"), &rows), &text, 1};
+  if (call.builtin->function(&call, out)) return *found = true;
+  *found = vm->errors.count == 0 || vm->errors.items[0].id != CAG_ERR_file;
+  return false;
+}
+
+// Where a name may lie, as printf patterns of the folder of the .urdf file, the package and the
+// rest of the name.
+static const char *const package_places[] = {"%1$s%3$s", "%1$s%2$s/%3$s", "%1$s../%3$s",
+                                             "%1$s../../%2$s/%3$s"};
+static const char *const plain_places[] = {"%1$s%3$s"};
+
+static bool read_near(const Import *m, const CagUrdfBody *b, const char *package, int package_size,
+                      const char *rest, CagValue *out) {
+  const char *const *places = package ? package_places : plain_places;
+  size_t n = package ? sizeof package_places / sizeof *package_places : 1;
+  const char *slash = strrchr(m->path, '/');
+  char *folder = strndup(m->path, slash ? (size_t)(slash + 1 - m->path) : 0);
+  char *name = strndup(package ? package : "", (size_t)package_size);
+  bool ok = false, found = folder && name;
+  if (!found) cag_fail_call(m->call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  for (size_t i = 0; folder && name && i < n; i++) {
+    char *path = NULL;
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+    if (asprintf(&path, places[i], folder, name, rest) < 0) path = NULL;
+#pragma GCC diagnostic pop
+    ok = path && read_at(m, path, out, &found);
+    free(path);
+    if (ok || found) break;
+    cag_vm_clear_error(m->call->vm);
+  }
+  free(folder);
+  free(name);
+  if (ok || found) return ok;
+  return fail_mesh(m, b, "there is no such file below the folders that the script may read",
+                   package ? "put the package's folders beside the .urdf file, as in meshes/arm.stl"
+                           : "put the file where the .urdf file says, seen from its own folder");
+}
+
+// package://NAME/REST; else a path from the folder of the .urdf file. Absolute paths are of another
+// machine: their last name is looked for beside the file.
+static bool read_file(const Import *m, const CagUrdfBody *b, CagValue *out) {
+  static const char package[] = "package://", model[] = "model://", file[] = "file://";
+  const char *name = b->file;
+  if (!can_be_read(name))
+    return fail_mesh(m, b, "meshes are read from .stl .obj .ply .gltf .glb",
+                     "convert it, or give the link a <collision> of such a mesh");
+  if (begins(name, package) || begins(name, model)) {
+    name = strstr(name, "://") + 3;
+    const char *slash = strchr(name, '/');
+    if (slash) return read_near(m, b, name, (int)(slash - name), slash + 1, out);
+    return fail_mesh(m, b, "behind the package's name its file is missing",
+                     "write package://NAME/meshes/arm.stl");
+  }
+  if (begins(name, file)) name += strlen(file);
+  else if (strstr(name, "://"))
+    return fail_mesh(m, b, "nothing is fetched from elsewhere",
+                     "put the file beside the .urdf file and name it so");
+  const char *slash = strrchr(name, '/');
+  return read_near(m, b, NULL, 0, name[0] == '/' && slash ? slash + 1 : name, out);
+}
+
+// --- Bodies ---
+
+static bool give_solid(const Import *m, CagStatus status, CagSolid *s, const CagError *err,
+                       CagValue *out) {
+  if (!cag_geometry_ok(m->call, status, err)) return false;
+  *out = cag_solid_value(m->call->vm, s);
+  return true;
+}
+
+static CagTransform scaled(const double factors[3]) {
+  CagTransform t = cag_transform_identity();
+  for (int i = 0; i < 3; i++) t.m[i][i] = factors[i];
+  t.planar = false;
+  return t;
+}
+
+static bool make_body(const Import *m, const CagUrdfBody *b, CagTransform *place, CagValue *out) {
+  CagSolid *s = NULL;
+  CagError err = {0};
+  const double *size = b->size;
+  switch (b->kind) {
+  case CAG_URDF_BODY_BOX: {
+    CagStatus status = cag_solid_box(cag_vec3(size[0], size[1], size[2]), true, &s, &err);
+    return give_solid(m, status, s, &err, out);
+  }
+  case CAG_URDF_BODY_CYLINDER: {
+    CagTransform down = cag_translate(cag_vec3(0, 0, -size[1] / 2));
+    *place = cag_transform_multiply(place, &down);
+    CagStatus status = cag_solid_cylinder(size[1], size[0], size[0], &s, &err);
+    return give_solid(m, status, s, &err, out);
+  }
+  case CAG_URDF_BODY_SPHERE: {
+    CagStatus status = cag_solid_sphere(size[0], &s, &err);
+    return give_solid(m, status, s, &err, out);
+  }
+  case CAG_URDF_BODY_MESH: break;
+  }
+  // glTF says its own unit, which the reader has made millimetres.
+  double unit = is_gltf(b->file) ? 1 : 1000, factors[3];
+  for (int i = 0; i < 3; i++) factors[i] = b->scale[i] * unit;
+  CagTransform scale = scaled(factors);
+  *place = cag_transform_multiply(place, &scale);
+  return read_file(m, b, out);
+}
+
+static CagRecord *material_of(CagVm *vm, const CagUrdfBody *b) {
+  static const char *const names[] = {"color", "name", "transmission"};
+  const double color[3] = {b->color.r, b->color.g, b->color.b};
+  CagValue values[] = {cag_vector(vm, color, 3), cag_text_c(vm, b->material ? b->material : ""),
+                       cag_number(1 - b->alpha)};
+  bool named = b->material && *b->material;
+  if (!b->colored) return NULL;
+  if (b->alpha < 1) {
+    if (!named) values[1] = cag_text_c(vm, "material");
+    return CAG_AS_RECORD(cag_record_new(vm, names, values, 3));
+  }
+  return CAG_AS_RECORD(cag_record_new(vm, names, values, named ? 2 : 1));
+}
+
+// What is drawn of a link: its visual bodies, or in their stead those for collisions where a visual
+// one is a mesh that cannot be read (Collada, mostly).
+static const CagUrdfBody *drawn_bodies(const CagUrdfNode *n) {
+  for (const CagUrdfBody *b = n->visuals; b; b = b->next)
+    if (b->kind == CAG_URDF_BODY_MESH && !can_be_read(b->file) && n->collisions)
+      return n->collisions;
+  return n->visuals;
+}
+
+static bool add_bodies(const Import *m, const CagUrdfPlaced *placed, CagBuilder *into) {
+  CagVm *vm = m->call->vm;
+  const CagUrdfNode *n = &m->tree.nodes[placed->node];
+  for (const CagUrdfBody *b = drawn_bodies(n); b; b = b->next) {
+    CagTransform place = cag_transform_multiply(&placed->place, &b->place);
+    CagValue body, moved;
+    if (!cag_keep_going(vm) || !make_body(m, b, &place, &body) ||
+        !cag_transform_apply(vm, &place, body, &moved))
+      return false;
+    CagShape *shape = CAG_AS_SHAPE(moved);
+    shape->material = material_of(vm, b);
+    shape->name = CAG_AS_TEXT(cag_text_c(vm, n->name));
+    if (!cag_builder_add(vm, into, moved)) return false;
+  }
+  return true;
+}
+
+// --- Links ---
+
+// The shape of a row, named as its link: none, one body, or a group.
+static bool make_shape(const Import *m, const CagUrdfRow *row, CagValue *out) {
+  CagVm *vm = m->call->vm;
+  CagBuilder *bodies = cag_builder_new(vm);
+  *out = cag_none();
+  for (size_t i = 0; i < row->count; i++)
+    if (!add_bodies(m, &m->rows.placed[row->first + i], bodies)) return false;
+  CagValue list = cag_builder_finish(vm, bodies);
+  const CagList *items = CAG_AS_LIST(list);
+  if (items->length == 0) return true;
+  if (items->length == 1) {
+    *out = items->as.items[0];
+    return true;
+  }
+  *out = cag_group_value(vm, list);
+  CAG_AS_SHAPE(*out)->name =
+      CAG_AS_TEXT(cag_text_c(vm, m->tree.nodes[m->rows.placed[row->first].node].name));
+  return true;
+}
+
+static bool make_links(const Import *m, CagRobotLink *plain, CagValue *list) {
+  CagBuilder *links = cag_builder_new(m->call->vm);
+  for (size_t i = 0; i < m->rows.row_count; i++) {
+    CagValue shape;
+    plain[i] = m->rows.rows[i].link;
+    if (!make_shape(m, &m->rows.rows[i], &shape) ||
+        !cag_builder_add(m->call->vm, links, cag_link_value(m->call->vm, &plain[i], shape)))
+      return false;
+  }
+  *list = cag_builder_finish(m->call->vm, links);
+  return true;
+}
+
+static bool make_robot(Import *m, CagValue *result) {
+  CagCall *call = m->call;
+  CagError err = {0};
+  CagRobot *robot = NULL;
+  CagValue list;
+  CagRobotLink *plain = malloc((m->rows.row_count + 1) * sizeof *plain);
+  if (!plain)
+    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  bool ok = make_links(m, plain, &list);
+  CagRobotSpec spec = {.links = plain,
+                       .link_count = m->rows.row_count,
+                       .convention = CAG_ROBOT_CLASSIC,
+                       .base = m->rows.base,
+                       .tool = m->rows.tool};
+  CagStatus status = ok ? cag_robot_new(&spec, &robot, &err) : CAG_OK;
+  free(plain);
+  if (!ok || !cag_geometry_ok(call, status, &err)) return false;
+  CagText *name = CAG_AS_TEXT(cag_text_c(call->vm, m->tree.name));
+  *result = cag_robot_value(call->vm, robot, name, list);
+  return true;
+}
+
+// --- The call ---
+
+static bool name_or_none(CagCall *call, int argument, const char **out) {
+  *out = NULL;
+  return !cag_given(call, argument) || call->values[argument].type == CAG_NONE ||
+         cag_arg_text(call, argument, out);
+}
+
+static bool read_chain(Import *m, const char *tip, const char *base, bool shapes, const char *bytes,
+                       size_t size) {
+  CagError err = {0};
+  size_t *chain = NULL, n = 0;
+  const char *slash = strrchr(m->path, '/');
+  CagStatus status = cag_urdf_read(slash ? slash + 1 : m->path, bytes, size, &m->tree, &err);
+  if (status == CAG_OK) status = cag_urdf_chain(&m->tree, base, tip, &chain, &n, &err);
+  if (status == CAG_OK)
+    status = cag_urdf_rows(&m->tree, base ? base : tip, chain, n, shapes, &m->rows, &err);
+  free(chain);
+  return cag_geometry_ok(m->call, status, &err);
+}
+
+// path, tip, base, shapes
+static bool call_read_urdf(CagCall *call, CagValue *result) {
+  Import m = {.call = call};
+  const char *tip, *base;
+  char *bytes = NULL;
+  size_t size = 0;
+  bool shapes;
+  if (!cag_arg_text(call, 0, &m.path) || !name_or_none(call, 1, &tip) ||
+      !name_or_none(call, 2, &base) || !cag_arg_bool_or(call, 3, true, &shapes) ||
+      !cag_vm_open_file(call, 0, m.path, &bytes, &size))
+    return false;
+  bool ok = read_chain(&m, tip, base, shapes, bytes, size);
+  free(bytes);
+  ok = ok && make_robot(&m, result);
+  cag_urdf_rows_free(&m.rows);
+  cag_urdf_tree_free(&m.tree);
+  return ok;
+}
+
+const CagBuiltin cag_builtins_robot_files[] = {
+    {"read_urdf(path, tip = none, base = none, shapes = true)", call_read_urdf, "robot",
+     "The robot of a URDF file, as the chain of links from `base` (none: the first) down to `tip` "
+     "(none: the end of what does not branch), in mm. Its rows are classic ones, with fixed links "
+     "where no row leads from one axis to the next; `continuous` joints have -360deg..360deg; "
+     "velocity and effort are kept. Links without bodies go into the rows before them. The visual "
+     "bodies are the shapes of the links, `shapes: false` leaves them away; meshes (.stl .obj .ply "
+     ".gltf .glb) and package:// names are looked for beside the file. Files lie below the "
+     "script's folder or on the module path.",
+     "print attempt(() => read_urdf(\"none.urdf\"), err => err.reason) // expect: file", 0, family},
+    {0}};
