@@ -3,11 +3,13 @@
 #   make             program and libraries          make test            all suites, closing with `N passed, N failed`
 #   make test-sanitize  under ASan and UBSan        make bench           figures against peers
 #   make format      clang-format everything        make check-format / check-layers
-#   make install PREFIX=/usr/local DESTDIR=
+#   make install PREFIX=/usr/local DESTDIR=      make deb             Debian packages
 
 BUILD   ?= build
 PREFIX  ?= /usr/local
 DESTDIR ?=
+# Where libraries go below PREFIX.
+LIBDIR  ?= lib
 VERSION := 0.1.0
 SONAME  := libcag.so.0
 CC      ?= cc
@@ -61,7 +63,7 @@ GEOM_OBJ := $(call obj,$(GEOM_SRC)) $(CGAL_OBJ)
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o $(BUILD)/obj/gen/documents.o
 TOOL_OBJ := $(call obj,$(TOOL_SRC) $(MAIN_SRC))
 
-.PHONY: all clean unit unit-lang unit-geom unit-interp test test-programs test-sanitize bench format check-format check-layers install
+.PHONY: all clean unit unit-lang unit-geom unit-interp test test-programs test-sanitize bench format check-format check-layers install deb editors
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -174,19 +176,26 @@ check-format:
 check-layers:
 	sh tools/check_layers.sh
 
-# The program, the libraries with their pkg-config file, man pages and the completion of bash.
-install: all
-	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin lib/pkgconfig include share/man/man1 share/bash-completion/completions)
+# The program, the libraries with their pkg-config file, and what tools/install.sh puts beside them.
+install: all $(BUILD)/tools/tables
+	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin $(LIBDIR)/pkgconfig include share)
 	install -m 755 $(BUILD)/cag $(DESTDIR)$(PREFIX)/bin/cag
-	install -m 644 $(BUILD)/libcag.a $(DESTDIR)$(PREFIX)/lib/libcag.a
-	install -m 755 $(BUILD)/libcag.so $(DESTDIR)$(PREFIX)/lib/libcag.so.$(VERSION)
-	ln -sf libcag.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib/$(SONAME)
-	ln -sf $(SONAME) $(DESTDIR)$(PREFIX)/lib/libcag.so
+	install -m 644 $(BUILD)/libcag.a $(DESTDIR)$(PREFIX)/$(LIBDIR)/libcag.a
+	install -m 755 $(BUILD)/libcag.so $(DESTDIR)$(PREFIX)/$(LIBDIR)/libcag.so.$(VERSION)
+	ln -sf libcag.so.$(VERSION) $(DESTDIR)$(PREFIX)/$(LIBDIR)/$(SONAME)
+	ln -sf $(SONAME) $(DESTDIR)$(PREFIX)/$(LIBDIR)/libcag.so
 	install -m 644 include/cag.h $(DESTDIR)$(PREFIX)/include/cag.h
-	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@LIBS@|$(strip $(PKG_LIBS))|' tools/libcag.pc.in \
-	  > $(DESTDIR)$(PREFIX)/lib/pkgconfig/libcag.pc
-	sh tools/man.sh $(BUILD)/cag $(DESTDIR)$(PREFIX)/share/man/man1
-	sh tools/completion.sh $(BUILD)/cag > $(DESTDIR)$(PREFIX)/share/bash-completion/completions/cag
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|' -e 's|@LIBS@|$(strip $(PKG_LIBS))|' tools/libcag.pc.in \
+	  > $(DESTDIR)$(PREFIX)/$(LIBDIR)/pkgconfig/libcag.pc
+	$(BUILD)/tools/tables > $(BUILD)/tables.txt
+	sh tools/install.sh $(BUILD)/tables.txt $(DESTDIR)$(PREFIX)/share
+
+# Debian packages in $(BUILD)/deb: the program, the library, and what programs that use it are built with.
+deb: all $(BUILD)/tools/tables
+	BUILD=$(BUILD) VERSION=$(VERSION) sh packaging/deb.sh
+# The names of the built-in functions in the files for editors.
+editors: $(BUILD)/tools/tables
+	$(BUILD)/tools/tables | sh tools/editors.sh editors
 
 clean:
 	rm -rf $(BUILD) $(BUILD)-sanitize

@@ -5,6 +5,7 @@
 //     command  NAME OPERANDS SUMMARY STORY
 //     example  COMMAND LINE
 //     option   COMMAND own|shared LETTER NAME ARGUMENT HELP
+//     repl     NAME OPERAND STORY     of the commands of the REPL
 //     format   NAME STORY             of exports
 //     constant NAME FAMILY
 //     function NAME FAMILY SIGNATURE SUMMARY
@@ -18,6 +19,7 @@
 
 #include "interp/eval/stdlib.h"
 #include "interp/tool/cli.h"
+#include "interp/tool/repl.h"
 
 // The tables come with what reads the command line, which looks at this.
 volatile int cag_tool_interrupt;
@@ -47,6 +49,12 @@ static void write_options(void) {
     for (size_t i = 0; i < cag_tool_option_count; i++)
       if (cag_tool_options[i].commands >> k & 1)
         write_option(cag_tool_commands[k].name, &cag_tool_options[i]);
+}
+
+static void write_repl(void) {
+  const char *name, *operand, *story;
+  for (size_t i = 0; cag_repl_command_row(i, &name, &operand, &story); i++)
+    printf("repl\t%s\t%s\t%s\n", name, part(operand), story);
 }
 
 static void write_formats(void) {
@@ -80,6 +88,7 @@ int main(void) {
   printf("version\t%s\n", cag_version());
   write_commands();
   write_options();
+  write_repl();
   write_formats();
   write_builtins();
   for (const CagStdlibFile *f = cag_stdlib; f->module; f++) printf("module\t%s\n", f->module);

@@ -57,8 +57,9 @@ void cag_repl_proposals_free(CagReplProposals *p);
 
 // Performs a line that begins with `:`.
 void cag_repl_command(CagRepl *repl, char *line);
-// Names of the commands, NULL at the end, and whether one wants a file behind it.
-const char *const *cag_repl_command_names(void);
+// Command i in the order of :help; false behind the last.
+bool cag_repl_command_row(size_t i, const char **name, const char **operand, const char **story);
+// Whether a command wants a file behind it.
 bool cag_repl_command_takes_file(const char *name);
 
 // --- repl.c ---

@@ -48,11 +48,12 @@ static const struct Command {
 };
 #define COUNT (sizeof commands / sizeof *commands)
 
-const char *const *cag_repl_command_names(void) {
-  static const char *const names[COUNT + 1] = {":help",   ":doc",    ":type",   ":time", ":list",
-                                               ":scene",  ":load",   ":reload", ":save", ":edit",
-                                               ":render", ":export", ":clear",  ":quit"};
-  return names;
+bool cag_repl_command_row(size_t i, const char **name, const char **operand, const char **story) {
+  if (i >= COUNT) return false;
+  if (name) *name = commands[i].name;
+  if (operand) *operand = commands[i].operand;
+  if (story) *story = commands[i].story;
+  return true;
 }
 
 // The command of this name or of this beginning; `several` counts those that begin so.
@@ -75,13 +76,15 @@ bool cag_repl_command_takes_file(const char *name) {
 }
 
 static void fail_unknown(CagRepl *repl, const char *name, size_t several) {
-  const char *nearest = cag_nearest_name(name, cag_repl_command_names(), COUNT);
+  const char *names[COUNT];
+  for (size_t i = 0; i < COUNT; i++) names[i] = commands[i].name;
+  const char *nearest = cag_nearest_name(name, names, COUNT);
   if (several > 1) {
-    char names[128] = "";
-    for (size_t i = 0, n = 0; i < COUNT && n < sizeof names; i++)
+    char list[128] = "";
+    for (size_t i = 0, n = 0; i < COUNT && n < sizeof list; i++)
       if (strncmp(commands[i].name, name, strlen(name)) == 0)
-        n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", n ? ", " : "", commands[i].name);
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "`%s` could be %s", name, names);
+        n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", n ? ", " : "", commands[i].name);
+    cag_repl_fail(repl, CAG_STATUS_USAGE, "`%s` could be %s", name, list);
   } else if (nearest) {
     cag_repl_fail(repl, CAG_STATUS_USAGE, "there is no command `%s`; did you mean `%s`?", name,
                   nearest);

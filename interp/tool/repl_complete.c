@@ -63,7 +63,9 @@ static void propose_names(CagRepl *repl, CagReplProposals *p, const char *prefix
 
 static void propose_commands(CagReplProposals *p, const char *prefix) {
   p->length = strlen(prefix);
-  for (const char *const *c = cag_repl_command_names(); *c; c++) propose(p, *c, strlen(*c), prefix);
+  const char *name;
+  for (size_t i = 0; cag_repl_command_row(i, &name, NULL, NULL); i++)
+    propose(p, name, strlen(name), prefix);
 }
 
 // --- Members ---
