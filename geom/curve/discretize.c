@@ -28,7 +28,7 @@ typedef struct Output {
 } Output;
 
 static CagStatus fail_count(CagError *err) {
-  return cag_fail(err, CAG_E_LIMIT, "too-many-points", "tolerance", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, "too-many-points", "tolerance", -1,
                   "the tolerance asks for more than %d points on one curve; make it larger",
                   MOST_POINTS);
 }

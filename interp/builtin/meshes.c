@@ -69,7 +69,7 @@ bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **coun
     (*counts)[i] = (uint32_t)n;
     for (size_t k = 0; k < n; k++) {
       if (x[k] < 0 || x[k] >= (double)vertices || x[k] != floor(x[k]))
-        return cag_fail_call(call, argument, CAG_ERR_value,
+        return cag_fail_call(call, argument, CAG_ERR_face_index,
                              "expects whole numbers below %zu, the count of vertices; found %g at "
                              "faces[%zu][%zu]",
                              vertices, x[k], i, k);
