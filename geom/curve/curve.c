@@ -40,16 +40,26 @@ void cag_curve_release(CagCurve *c) {
 
 // --- Checks ---
 
+// Lengths up to this size can be squared and multiplied by each other without overflow.
+#define LARGEST 1e100
+
 CagStatus cag_curve_check_points(const CagVec3 *points, size_t n, const char *name, CagError *err) {
   for (size_t i = 0; i < n; i++)
     if (!isfinite(points[i].x) || !isfinite(points[i].y) || !isfinite(points[i].z))
       return cag_fail(err, CAG_E_ARGUMENT, "not-finite", name, (long)i,
                       "%s[%zu] has a coordinate that is not a finite number", name, i);
+    else if (cag_curve_size(points + i, 1) > LARGEST)
+      return cag_fail(err, CAG_E_ARGUMENT, "size-out-of-range", name, (long)i,
+                      "%s[%zu] has a coordinate beyond %g, too large to compute with", name, i,
+                      LARGEST);
   return CAG_OK;
 }
 
 CagStatus cag_curve_check_number(double x, const char *name, CagError *err) {
-  if (isfinite(x)) return CAG_OK;
+  if (fabs(x) <= LARGEST) return CAG_OK;
+  if (isfinite(x))
+    return cag_fail(err, CAG_E_ARGUMENT, "size-out-of-range", name, -1,
+                    "`%s` is beyond %g, too large to compute with", name, LARGEST);
   return cag_fail(err, CAG_E_ARGUMENT, "not-finite", name, -1, "`%s` is not a finite number", name);
 }
 

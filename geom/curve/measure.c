@@ -215,6 +215,9 @@ CagStatus cag_curve_bounds(const CagCurve *c, CagBounds *out, CagError *err) {
   const CagVec3 *points;
   size_t n;
   bool ring;
+  if (!isfinite(cag_norm(cag_sub(box.max, box.min))))
+    return cag_fail(err, CAG_E_ARGUMENT, "size-out-of-range", "", -1,
+                    "the curve is too large to compute with");
   // Hulls of these kinds are tight.
   if (cag_curve_arc_axes(c, &center, &x, &y, &rate) || cag_curve_vertices(c, &points, &n, &ring)) {
     *out = box;
