@@ -56,6 +56,7 @@ counted "tests/repl" env BUILD="$BUILD" sh tests/repl/run.sh
 for vectors in tests/data/0*.json; do
   counted "$vectors" env BUILD="$BUILD" tests/vectors/run "$vectors"
 done
+counted "tests/fuzz" "$BUILD/tests/fuzz/fuzz" 8
 check "layers" make -s check-layers
 if command -v clang-format > /dev/null; then
   check "format" make -s check-format

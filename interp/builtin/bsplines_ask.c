@@ -321,7 +321,7 @@ bool cag_bsplines_hedgehog(CagCall *call, CagValue *result) {
   long n;
   double scale = 0, most = 0;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  const size_t pieces = c->kind->breaks(c, NULL, 0) + 1;
+  const size_t pieces = (c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0) + 1;
   const long usual = pieces < SEGMENTS_MAX / TEETH ? (long)pieces * TEETH + 1 : SEGMENTS_MAX;
   const bool given = cag_given(call, 2) && call->values[2].type != CAG_NONE;
   if ((cag_given(call, 1) && call->values[1].type != CAG_NONE
