@@ -1,5 +1,5 @@
-// Curves against SISL 4.6, in one run: evaluation, arc length, closest point. Built with SISL where
-// its header is (CAG_SISL); without it the peer's column stays empty.
+// Curves against SISL 4.6, in one run: evaluation, arc length, curves from data, closest point.
+// Built with SISL where its header is (CAG_SISL); without it the peer's column stays empty.
 //
 // The curve is a cubic of 20 control points on a bent helix, polynomial and rational. Every
 // figure is the best of five rounds over the same parameters, which are in no order. A sum of what
@@ -19,6 +19,7 @@
 #endif
 
 #include "geom/curve/curve.h"
+#include "geom/curve/fit.h"
 
 #define ROUNDS 5
 #define EVALUATIONS 1000000
@@ -26,6 +27,8 @@
 #define DEGREE 3
 #define QUERIES 2000
 #define PIECES 100
+#define DATA 100000
+#define FITTED 1000 // control points of the least squares
 
 // Time of the processor: other programs must not count.
 static double now(void) {
@@ -238,6 +241,42 @@ static void measure_length(void) {
   free_subject(&s);
 }
 
+// --- Curves from data ---
+
+// A curve through all the data, and one of FITTED control points by least squares. The data lie on
+// a smooth curve, so that both have to come near: the first to rounding, the second to its spans.
+static void measure_fits(void) {
+  CagVec3 *points = malloc(DATA * sizeof *points);
+  check(points != NULL, "no memory");
+  for (size_t i = 0; i < DATA; i++) {
+    double a = 40.0 * (double)i / DATA;
+    points[i] = cag_vec3(40 * cos(a) + a, 30 * sin(a), 3 * a);
+  }
+  CagFitData data = {
+      .points = points, .n = DATA, .spacing = CAG_SPACING_CHORD, .degree = DEGREE, .dimension = 3};
+  double through = 0, least = 0, rms = 0;
+  CagError err;
+  for (int round = 0; round < ROUNDS; round++) {
+    CagCurve *c;
+    CagFitReport fit;
+    double begin = now();
+    check(cag_curve_interpolate(&data, NULL, 0, &c, &err) == CAG_OK, err.message);
+    through = best(through, now() - begin);
+    cag_curve_release(c);
+    begin = now();
+    check(cag_curve_fit(&data, FITTED, true, -1, 0, &c, &fit, &err) == CAG_OK, err.message);
+    least = best(least, now() - begin);
+    rms = fit.rms;
+    cag_fit_report_free(&fit);
+    cag_curve_release(c);
+  }
+  report("cubic through 10^5 points", through, 0, 0);
+  printf("    aim < 500 ms\n");
+  report("10^5 points by 1000 control points", least, 0, 0);
+  printf("    aim < 1000 ms; the rms is %.1e\n", rms);
+  free(points);
+}
+
 // --- Closest point ---
 
 static double sisl_closest(const Subject *s, const CagVec3 *p, double *distance) {
@@ -306,6 +345,7 @@ int main(int argc, char **argv) {
     compare_sample("cubic NURBS", true, strtod(argv[2], NULL));
   }
   measure_length();
+  measure_fits();
   measure_closest("2000 closest points, cubic B-spline", false);
   measure_closest("2000 closest points, cubic NURBS", true);
   return 0;
