@@ -112,13 +112,19 @@ CAG_API int cag_session_export(CagSession *s, const char *path, const char *form
 CAG_API const char *const *cag_export_formats(void);
 CAG_API const char *cag_export_format_story(const char *format);
 
+// A part of a picture: pixels from its left and top edge. A width of 0: all of it.
+typedef struct CagRenderRegion {
+  int x, y, width, height;
+} CagRenderRegion;
+
 typedef struct CagRenderOptions {
-  int width, height;   // pixels; 0: the camera's
-  const char *quality; // "draft", "normal", "final"
-  const char *camera;  // its name; NULL: the first
-  double exposure;     // stops, for .png
-  int threads;         // 0: one for each processor
-  double time_limit;   // seconds of the renderer; 0: none
+  int width, height;      // pixels; 0: the camera's
+  const char *quality;    // "draft", "normal", "final"
+  const char *camera;     // its name; NULL: the first
+  double exposure;        // stops, for .png
+  int threads;            // 0: one for each processor
+  double time_limit;      // seconds of the renderer; 0: none
+  CagRenderRegion region; // only this part is rendered and written
   void (*progress)(void *context, double percent, const char *phase);
   void *progress_context;
 } CagRenderOptions;

@@ -438,6 +438,15 @@ static End render_in_folder(const CagPovrayJob *job, const char *program, const 
            : count > THREADS_MAX ? THREADS_MAX
                                  : count);
   const int q = job->quality;
+  // Columns and rows count from 1; without a region all of them are said.
+  const bool part = job->region_width > 0;
+  char edges[4][24];
+  snprintf(edges[0], sizeof edges[0], "+SC%d", part ? job->region_x + 1 : 1);
+  snprintf(edges[1], sizeof edges[1], "+EC%d",
+           part ? job->region_x + job->region_width : job->width);
+  snprintf(edges[2], sizeof edges[2], "+SR%d", part ? job->region_y + 1 : 1);
+  snprintf(edges[3], sizeof edges[3], "+ER%d",
+           part ? job->region_y + job->region_height : job->height);
   char *const arguments[] = {"povray",
                              "+Iscene.pov",
                              "+Oout.exr",
@@ -445,6 +454,10 @@ static End render_in_folder(const CagPovrayJob *job, const char *program, const 
                              width,
                              height,
                              threads,
+                             edges[0],
+                             edges[1],
+                             edges[2],
+                             edges[3],
                              (char *)QUALITIES[q].quality,
                              (char *)QUALITIES[q].antialias,
                              (char *)QUALITIES[q].method,

@@ -45,6 +45,8 @@ typedef struct CagPovrayJob {
   const CagPovrayFile *files; // may be NULL when file_count is 0
   size_t file_count;
   int width, height; // pixels, 1 to CAG_IMAGE_SIDE_MAX
+  // Only this part is rendered, the rest of the picture stays black; a width of 0: all of it.
+  int region_x, region_y, region_width, region_height;
   CagPovrayQuality quality;
   bool alpha;                               // write a channel A: the background is transparent
   int threads;                              // 0: one for each processor

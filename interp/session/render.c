@@ -135,6 +135,10 @@ static int render(Job *j) {
                       .file_count = scene->sky.image ? 1 : 0,
                       .width = j->camera.size[0],
                       .height = j->camera.size[1],
+                      .region_x = j->options->region.x,
+                      .region_y = j->options->region.y,
+                      .region_width = j->options->region.width,
+                      .region_height = j->options->region.height,
                       .quality = j->engine,
                       .threads = j->options->threads,
                       .time_limit = j->options->time_limit,
@@ -151,11 +155,32 @@ static bool is_png(const char *path) {
   return dot && strcasecmp(dot, ".png") == 0;
 }
 
-static bool write_png(Job *j, const char *path, CagIoError *io) {
-  CagImage image;
-  if (!cag_exr_read_memory(j->result.exr, j->result.exr_size, "the renderer's picture", &image,
+// Reads the renderer's picture: the part of it that was asked for.
+static bool read_picture(const Job *j, CagImage *out, CagIoError *io) {
+  const CagRenderRegion r = j->options->region;
+  CagImage whole;
+  if (!cag_exr_read_memory(j->result.exr, j->result.exr_size, "the renderer's picture", &whole,
                            NULL, io))
     return false;
+  if (!r.width) {
+    *out = whole;
+    return true;
+  }
+  const bool ok = cag_image_create(out, (size_t)r.width, (size_t)r.height, whole.channel_count, io);
+  for (size_t c = 0; ok && c < whole.channel_count; c++) {
+    cag_image_set_name(out, c, whole.channels[c].name);
+    for (int y = 0; y < r.height; y++)
+      memcpy(cag_image_plane(out, c) + (size_t)y * out->width,
+             cag_image_plane(&whole, c) + (size_t)(r.y + y) * whole.width + (size_t)r.x,
+             out->width * sizeof(float));
+  }
+  cag_image_free(&whole);
+  return ok;
+}
+
+static bool write_png(Job *j, const char *path, CagIoError *io) {
+  CagImage image;
+  if (!read_picture(j, &image, io)) return false;
   CagPngText texts[] = {{"Software", "cag " CAG_VERSION},
                         {"Title", j->session->script ? j->session->script : ""}};
   bool ok = cag_png_write(
@@ -164,13 +189,24 @@ static bool write_png(Job *j, const char *path, CagIoError *io) {
   return ok;
 }
 
+// POV-Ray's pictures are half floats, and so are parts of them.
+static bool write_part(Job *j, const char *path, const CagExrMetadata *m, CagIoError *io) {
+  CagImage image;
+  if (!read_picture(j, &image, io)) return false;
+  const bool ok = cag_exr_write(path, &image, CAG_EXR_HALF, m, io);
+  cag_image_free(&image);
+  return ok;
+}
+
 static bool write_exr(Job *j, const char *path, CagIoError *io) {
   char renderer[96];
   snprintf(renderer, sizeof renderer, "POV-Ray %s", j->result.version);
   CagExrMetadata m = {0};
-  bool ok = make_metadata(j->session, &j->camera, renderer, &m, io) &&
-            cag_exr_rewrite(j->result.exr, j->result.exr_size, "the renderer's picture", path, &m,
-                            NULL, io);
+  bool ok = make_metadata(j->session, &j->camera, renderer, &m, io);
+  if (ok && j->options->region.width) ok = write_part(j, path, &m, io);
+  else if (ok)
+    ok = cag_exr_rewrite(j->result.exr, j->result.exr_size, "the renderer's picture", path, &m,
+                         NULL, io);
   cag_exr_metadata_free(&m);
   return ok;
 }
@@ -179,6 +215,20 @@ static int frame_all(CagSession *s, void *context) {
   (void)context;
   cag_camera_frame_all(&s->scene, &s->scene.cameras[0]);
   return CAG_STATUS_OK;
+}
+
+static bool check_region(const Job *j) {
+  const CagRenderRegion r = j->options->region;
+  const int *size = j->camera.size;
+  if (!r.width || (r.x >= 0 && r.y >= 0 && r.width > 0 && r.height > 0 &&
+                   r.width <= size[0] - r.x && r.height <= size[1] - r.y))
+    return true;
+  CagDiagnostic *d =
+      cag_diagnostics_add(&j->session->diagnostics, CAG_ERR_region_outside, NULL, (CagSpan){0, 0},
+                          "the region %dx%d+%d+%d reaches beyond the picture of %d by %d pixels",
+                          r.width, r.height, r.x, r.y, size[0], size[1]);
+  cag_diagnostic_set_help(d, "a region is WxH+X+Y within --size");
+  return false;
 }
 
 int cag_session_render(CagSession *s, const CagRenderOptions *options, const char *path) {
@@ -213,6 +263,7 @@ int cag_session_render(CagSession *s, const CagRenderOptions *options, const cha
     j.camera.size[0] = options->width;
     j.camera.size[1] = options->height;
   }
+  if (!check_region(&j)) return CAG_STATUS_USAGE;
   CagIoError io = {0};
   j.index = camera;
   status = cag_session_geometry(s, write_source, &j);

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "interp/render/image.h"
+#include "interp/tool/tiles.h"
 #include "lang/diagnostic.h"
 
 const CagToolCommand cag_tool_commands[CAG_TOOL_COMMAND_COUNT] = {
@@ -28,6 +29,11 @@ const CagToolCommand cag_tool_commands[CAG_TOOL_COMMAND_COUNT] = {
 
 static bool reject(const CagTool *t, const char *help, const char *option, const char *value,
                    const char *problem) {
+  if (t->refusal) {
+    snprintf(t->refusal->message, sizeof t->refusal->message, "'%.160s': %s", value, problem);
+    snprintf(t->refusal->help, sizeof t->refusal->help, "%s", help);
+    return false;
+  }
   cag_tool_fail(t, CAG_STATUS_USAGE, help, "%s '%s': %s", option, value, problem);
   return false;
 }
@@ -249,6 +255,64 @@ static bool set_report(CagTool *t, const char *value) {
   return true;
 }
 
+static bool set_region(CagTool *t, const char *value) {
+  static const char HELP[] = "write width x height, and where it begins from the left and the top, "
+                             "such as 640x360+640+0";
+  long n[4];
+  const char *at = value, *between = "x++";
+  for (int i = 0; i < 4; i++) {
+    if (!read_whole(at, &at, &n[i]) || n[i] > (long)CAG_IMAGE_SIDE_MAX || *at != between[i])
+      return reject(t, HELP, "--region", value, "that is no region");
+    at += i < 3;
+  }
+  if (n[0] < 1 || n[1] < 1) return reject(t, HELP, "--region", value, "that is nothing");
+  t->region = (CagRenderRegion){(int)n[2], (int)n[3], (int)n[0], (int)n[1]};
+  return true;
+}
+
+static bool set_threads(CagTool *t, const char *value) {
+  size_t n = 0;
+  if (!read_count(t, "--threads", value, &n)) return false;
+  t->threads = n < INT_MAX ? (int)n : INT_MAX;
+  return true;
+}
+
+static bool set_retries(CagTool *t, const char *value) {
+  long n;
+  if (!read_whole(value, &value, &n) || *value)
+    return reject(t, "give a whole number, such as 2", "--retries", value, "that is no count");
+  t->retries = (size_t)n;
+  return true;
+}
+
+static bool set_fresh(CagTool *t, const char *value) {
+  (void)value;
+  return t->fresh = true;
+}
+
+static bool set_engine_queue(CagTool *t, const char *value) {
+  static const char *const CHOICES[] = {"slurm"};
+  size_t i;
+  t->queue = value;
+  return one_of(t, "--engine-queue", value, CHOICES, 1, "the queue that there is: slurm", &i);
+}
+
+static bool set_tiles(CagTool *t, const char *value) {
+  int columns, lines;
+  t->tiles = value;
+  return cag_tiles_read(value, &columns, &lines) ||
+         reject(t, "write columns x lines, such as 4x3; at most 64x64", "--tiles", value,
+                "these are no tiles");
+}
+
+static bool set_element(CagTool *t, const char *value) {
+  long n;
+  const char *end;
+  t->element = value;
+  return (read_whole(value, &end, &n) && !*end) ||
+         reject(t, "it is the number of the array's task", "--element", value, "that is no number");
+}
+
 static bool set_html(CagTool *t, const char *value) {
   t->html = value;
   return true;
@@ -291,7 +355,7 @@ static bool set_version(CagTool *t, const char *value) {
 
 #define ON(name) (1u << CAG_TOOL_##name)
 #define ALL (~0u)
-#define SCRIPTS (ON(run) | ON(eval) | ON(export) | ON(render) | ON(test) | ON(repl))
+#define SCRIPTS (ON(run) | ON(eval) | ON(export) | ON(render) | ON(test) | ON(repl) | ON(batch))
 const CagToolOption cag_tool_options[] = {
 #define CAG_OPTION(id, letter, name, argument, commands, help)                                     \
   {#id, letter, name, argument, commands, help, set_##id},
@@ -421,6 +485,19 @@ static int find_command(int argc, char **argv) {
     i += takes_next(argv[i]);
   }
   return argc;
+}
+
+bool cag_tool_try(CagTool *t, const char *name, const char *value, CagToolRefusal *why) {
+  for (size_t i = 0; i < cag_tool_option_count; i++) {
+    const CagToolOption *o = &cag_tool_options[i];
+    if (!o->name || strcmp(o->name, name) != 0) continue;
+    *why = (CagToolRefusal){0};
+    t->refusal = why;
+    const bool taken = o->set(t, value);
+    t->refusal = NULL;
+    return taken;
+  }
+  return false;
 }
 
 static bool reject_command(CagTool *t, const char *word) {

@@ -221,6 +221,8 @@ int cag_tool_render(CagTool *t, int argc, char **argv) {
   f.options.progress = cag_progress_show;
   f.options.progress_context = &f.progress;
   if (t->quality) f.options.quality = t->quality;
+  f.options.region = t->region;
+  f.options.threads = t->threads;
   status = render_film(&f);
   cag_session_free(f.session);
   free(f.script.text);

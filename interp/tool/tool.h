@@ -39,6 +39,11 @@ typedef enum CagToolColor {
   CAG_TOOL_COLOR_NEVER
 } CagToolColor;
 
+// Why an option does not take a value.
+typedef struct CagToolRefusal {
+  char message[256], help[256];
+} CagToolRefusal;
+
 // The command line, read. Texts point into argv; NULL or 0 where an option was not given.
 struct CagTool {
   const CagToolCommand *command;
@@ -58,18 +63,28 @@ struct CagTool {
   long first_frame, last_frame; // --frames
   double threshold;
   const char *heatmap;
-  const char *filter; // --filter
-  bool update;        // --update
-  bool no_pictures;   // --no-pictures
-  bool check, diff;   // --check, --diff
-  size_t jobs;        // --jobs; 0: one for each processor
-  const char *report; // --report
-  const char *html;   // --html
+  const char *filter;     // --filter
+  bool update;            // --update
+  bool no_pictures;       // --no-pictures
+  bool check, diff;       // --check, --diff
+  size_t jobs;            // --jobs; 0: one for each processor
+  const char *report;     // --report
+  CagRenderRegion region; // --region; a width of 0: all of the picture
+  int threads;            // --threads; 0: one for each processor
+  const char *queue;      // --engine-queue; NULL: run here
+  size_t retries;         // --retries
+  bool fresh;             // --fresh
+  const char *tiles;      // --tiles
+  const char *element;    // --element
+  const char *html;       // --html
+
+  // Where a value that an option refuses is told instead of on standard error; NULL: there.
+  struct CagToolRefusal *refusal;
 };
 
 CagToolFunction cag_tool_run, cag_tool_eval, cag_tool_export, cag_tool_render, cag_tool_compare,
     cag_tool_test, cag_tool_fmt, cag_tool_check, cag_tool_doc, cag_tool_explain, cag_tool_info,
-    cag_tool_repl;
+    cag_tool_repl, cag_tool_batch;
 
 // A session with the options and the -D of the command line. NULL, after a message, when memory is
 // out.
@@ -90,6 +105,10 @@ int cag_tool_fail(const CagTool *t, int status, const char *help, const char *fo
 int cag_tool_close_output(const CagTool *t, int status);
 // Whether standard output is a pipe that was closed at its other end.
 bool cag_tool_output_is_unread(void);
+
+// Keeps a value of the option `--name` in `t`, as the command line does. False, with the reason in
+// `why`, where the option does not take it.
+bool cag_tool_try(CagTool *t, const char *name, const char *value, CagToolRefusal *why);
 
 // A remark on standard error; nothing with -q or JSON diagnostics.
 void cag_tool_say(const CagTool *t, const char *format, ...) __attribute__((format(printf, 2, 3)));

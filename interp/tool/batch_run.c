@@ -1,0 +1,265 @@
+// The tasks of a batch, run here.
+//
+// One thread does everything: it starts processes while there is room, waits until one says
+// something or ends, and takes what has ended to the journal. A task that fails is put back as long
+// as it may be tried again, behind the others.
+
+#include <errno.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "interp/tool/batch.h"
+#include "interp/tool/batch_child.h"
+#include "interp/tool/batch_load.h"
+#include "interp/tool/batch_progress.h"
+#include "interp/tool/batch_result.h"
+#include "interp/tool/tiles.h"
+
+// Milliseconds between looks at everything; and while a process whose output is closed is about to
+// end.
+#define LOOK_INTERVAL 50
+#define LOOK_INTERVAL_CLOSED 1
+
+// Seconds between looks at memory.
+static const double MEMORY_INTERVAL = 0.5;
+
+// What a row's processes may take beyond --max-memory, which is about the values of its script.
+#define MEMORY_BESIDE ((size_t)64 << 20)
+
+// A process sees to --max-time itself, and tells where it stood. Only one that does not is stopped.
+static const double TIME_FACTOR = 1.1, TIME_BESIDE = 1;
+
+typedef struct {
+  CagChild child;
+  CagTask *task;
+} Slot;
+
+typedef struct {
+  CagBatch *batch;
+  Slot *slots;
+  size_t running, capacity;
+  size_t next; // tasks before it are not waiting, but for those put back
+  bool again;  // there may be some of these
+  bool joins;  // run only what joins tiles
+  CagLoad load;
+  CagBatchProgress progress;
+  size_t limit_memory; // of a row's processes; 0: none
+  double memory_seen;
+  int status;
+} Run;
+
+// --- Choosing ---
+
+static bool is_ready(const Run *r, const CagTask *task) {
+  if (task->state != CAG_TASK_WAITING || (r->joins && !task->joins)) return false;
+  for (int k = 1; k <= task->joins; k++)
+    if (task[-k].state != CAG_TASK_DONE && task[-k].state != CAG_TASK_KEPT) return false;
+  return true;
+}
+
+static CagTask *choose(Run *r) {
+  CagBatch *b = r->batch;
+  for (;;) {
+    for (; r->next < b->task_count; r->next++)
+      if (is_ready(r, &b->tasks[r->next])) return &b->tasks[r->next++];
+    if (!r->again) return NULL;
+    r->again = false;
+    r->next = 0;
+  }
+}
+
+// --- Joining tiles, in a process of its own ---
+
+typedef struct {
+  const CagBatch *batch;
+  const CagTask *task;
+} Join;
+
+static int join(void *context) {
+  const Join *j = context;
+  const CagTask *task = j->task;
+  const CagBatchRow *row = &j->batch->rows[task->row];
+  const char **tiles = malloc((size_t)task->joins * sizeof *tiles);
+  char *output = cag_batch_path(j->batch, task->output);
+  CagIoError err = {.exit_status = CAG_STATUS_LIMIT, .message = "out of memory"};
+  for (int i = 0; tiles && i < task->joins; i++) tiles[i] = task[i - task->joins].output;
+  const bool ok =
+      tiles && output &&
+      cag_tiles_join(tiles, row->tile_columns, row->lines, row->width, row->height, output, &err);
+  free(tiles);
+  free(output);
+  if (ok) return CAG_STATUS_OK;
+  fprintf(stderr, "%s\n", err.message);
+  return err.exit_status;
+}
+
+static void remove_tiles(const CagTask *task) {
+  for (int i = 1; i <= task->joins; i++) remove(task[-i].output);
+}
+
+// --- Starting and ending ---
+
+static double hard_limit(const CagTool *t) {
+  return t->session.max_time > 0 ? TIME_FACTOR * t->session.max_time + TIME_BESIDE : 0;
+}
+
+// Ends a task without a process.
+static void fail_start(Run *r, CagTask *task, const char *why) {
+  task->state = CAG_TASK_FAILED;
+  task->status = CAG_STATUS_LIMIT;
+  task->message = strdup(why);
+  r->status = cag_batch_end_task(r->batch, task);
+}
+
+static void start(Run *r, CagTask *task) {
+  CagBatch *b = r->batch;
+  Slot *slot = &r->slots[r->running];
+  Join work = {b, task};
+  if (task->tile >= 0 && mkdir(b->tiles_folder, 0777) != 0 && errno != EEXIST) {
+    fail_start(r, task, "the folder for its tiles cannot be made beside the file of jobs");
+    return;
+  }
+  char **words = task->joins ? NULL : cag_batch_command(b, task, b->threads);
+  const bool started = task->joins ? cag_child_start_work(&slot->child, join, &work, 0)
+                                   : words && cag_child_start(&slot->child, words, b->folder,
+                                                              hard_limit(b->tool), false);
+  const int code = errno;
+  free(words);
+  task->attempts++;
+  if (!started && r->running) { // the system has no more for now
+    task->attempts--;
+    r->again = true;
+    r->load.limit = (double)r->running;
+    return;
+  }
+  if (!started) {
+    fail_start(r, task, strerror(code));
+    return;
+  }
+  task->state = CAG_TASK_RUNNING;
+  slot->task = task;
+  r->running++;
+}
+
+// What has ended goes to the journal, or back to what waits.
+static void end(Run *r, Slot *slot) {
+  CagBatch *b = r->batch;
+  CagTask *task = slot->task;
+  task->seconds += slot->child.seconds;
+  if (slot->child.memory > task->memory) task->memory = slot->child.memory;
+  free(task->message);
+  task->status =
+      cag_child_result(&slot->child, b->tool->session.max_time, r->limit_memory, &task->message);
+  cag_child_free(&slot->child);
+  r->again = true; // what joins this tile, or this one once more
+  if (task->status != CAG_STATUS_OK && (size_t)task->attempts <= b->tool->retries) {
+    task->state = CAG_TASK_WAITING;
+    return;
+  }
+  task->state = task->status == CAG_STATUS_OK ? CAG_TASK_DONE : CAG_TASK_FAILED;
+  cag_batch_progress_clear(&r->progress);
+  const int status = cag_batch_end_task(b, task);
+  if (r->status == CAG_STATUS_OK) r->status = status;
+  if (task->state == CAG_TASK_DONE) remove_tiles(task);
+}
+
+static void look(Run *r) {
+  for (size_t i = 0; i < r->running;) {
+    Slot slot = r->slots[i];
+    if (!cag_child_look(&r->slots[i].child)) {
+      i++;
+      continue;
+    }
+    slot = r->slots[i];
+    r->slots[i] = r->slots[--r->running];
+    end(r, &slot);
+  }
+}
+
+// Stops what takes too much memory.
+static void see_to_memory(Run *r) {
+  const double now = cag_child_now();
+  if (!r->limit_memory || !r->running || now - r->memory_seen < MEMORY_INTERVAL) return;
+  r->memory_seen = now;
+  pid_t *processes = malloc(r->running * sizeof *processes);
+  size_t *bytes = malloc(r->running * sizeof *bytes);
+  for (size_t i = 0; processes && i < r->running; i++) processes[i] = r->slots[i].child.pid;
+  if (processes && bytes) {
+    cag_load_memory(processes, r->running, bytes);
+    for (size_t i = 0; i < r->running; i++)
+      if (bytes[i] > r->limit_memory + MEMORY_BESIDE)
+        cag_child_stop(&r->slots[i].child, CAG_CHILD_STOP_MEMORY);
+  }
+  free(processes);
+  free(bytes);
+}
+
+static void wait_for_news(Run *r, struct pollfd *waiting) {
+  bool closed = false;
+  for (size_t i = 0; i < r->running; i++) {
+    waiting[i] = (struct pollfd){.fd = r->slots[i].child.said, .events = POLLIN};
+    closed |= waiting[i].fd < 0;
+  }
+  poll(waiting, r->running, closed ? LOOK_INTERVAL_CLOSED : LOOK_INTERVAL);
+}
+
+// After Ctrl-C: all processes end, and what they did not finish waits for the next call.
+static void stop_all(Run *r, struct pollfd *waiting) {
+  for (size_t i = 0; i < r->running; i++) cag_child_stop(&r->slots[i].child, CAG_CHILD_STOP_ASKED);
+  while (r->running) {
+    wait_for_news(r, waiting);
+    for (size_t i = 0; i < r->running;) {
+      if (!cag_child_look(&r->slots[i].child)) {
+        i++;
+        continue;
+      }
+      r->slots[i].task->state = CAG_TASK_WAITING;
+      cag_child_free(&r->slots[i].child);
+      r->slots[i] = r->slots[--r->running];
+    }
+  }
+}
+
+static void run_all(Run *r, struct pollfd *waiting) {
+  while (r->status == CAG_STATUS_OK && !cag_tool_interrupt) {
+    const size_t limit = cag_load_limit(&r->load, r->running);
+    for (CagTask *task; r->running < limit && r->running < r->capacity && (task = choose(r));)
+      start(r, task);
+    if (!r->running) return;
+    wait_for_news(r, waiting);
+    look(r);
+    see_to_memory(r);
+    cag_batch_progress_show(&r->progress, r->batch, r->running);
+  }
+}
+
+static int run(CagBatch *b, bool joins) {
+  CagSessionOptions usual;
+  cag_session_options_init(&usual);
+  const size_t given = b->tool->session.max_memory;
+  Run r = {.batch = b,
+           .joins = joins,
+           .capacity = b->workers * CAG_LOAD_MOST,
+           .limit_memory = given != usual.max_memory ? given : 0};
+  r.slots = calloc(r.capacity, sizeof *r.slots);
+  struct pollfd *waiting = calloc(r.capacity, sizeof *waiting);
+  if (r.slots && waiting) {
+    cag_load_begin(&r.load, b->workers);
+    cag_batch_progress_begin(&r.progress, b);
+    run_all(&r, waiting);
+    stop_all(&r, waiting);
+    cag_batch_progress_clear(&r.progress);
+    cag_batch_fail_joins(b);
+  } else {
+    r.status = cag_tool_fail(b->tool, CAG_STATUS_LIMIT, NULL, "out of memory");
+  }
+  free(r.slots);
+  free(waiting);
+  return cag_tool_interrupt ? CAG_STATUS_INTERRUPTED : r.status;
+}
+
+int cag_batch_run(CagBatch *b) { return run(b, false); }
+
+int cag_batch_run_joins(CagBatch *b) { return run(b, true); }
