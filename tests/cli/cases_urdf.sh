@@ -181,3 +181,10 @@ printf '<robot name="r"><link name="a"><visual><geometry><mesh filename="package
 script dae.cag 'print volume(posed(read_urdf("dae.urdf")))'
 try run dae.cag
 prints 6000000000
+
+it 'the examples of the chapter on robots do what they say'
+mkdir chapter
+awk '/^```cag$/ { n++; inside = 1; next } /^```/ { inside = 0 } inside { print > ("chapter/" n ".cag") }' "$root/docs/robots.md"
+exists chapter/7.cag
+try test chapter
+status 0
