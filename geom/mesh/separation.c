@@ -193,6 +193,7 @@ typedef struct Nearest {
   size_t n;
   double distance[CANDIDATES];
   const CagPart *a[CANDIDATES], *b[CANDIDATES];
+  const volatile int *interrupt; // not NULL and not 0: the search ends
 } Nearest;
 
 static double worst(const Nearest *s) {
@@ -215,6 +216,7 @@ static void keep(Nearest *s, double d, const CagPart *a, const CagPart *b) {
 static void walk(const Tree *a, size_t i, const Tree *b, size_t k, Nearest *s) {
   const Node *x = &a->nodes[i], *y = &b->nodes[k];
   if (gap(&x->box, &y->box) >= worst(s) || (s->n && s->distance[0] == 0)) return;
+  if (s->interrupt && *s->interrupt) return;
   if (!x->left && !y->left) {
     for (size_t m = 0; m < x->count; m++)
       for (size_t n = 0; n < y->count; n++) {
@@ -389,9 +391,12 @@ static CagStatus refine(Pair *pair, double *out, CagVec3 *point, CagError *err) 
 }
 
 CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, double *out, CagVec3 *point,
-                             CagError *err) {
+                             const volatile int *interrupt, CagError *err) {
+  if (a->n == 0 || b->n == 0)
+    return cag_fail(err, CAG_E_DEGENERATE, "zero-area", "", -1,
+                    "a surface without area has no triangles to measure from");
   Tree first = {0}, second = {0};
-  Nearest nearest = {.n = 0};
+  Nearest nearest = {.interrupt = interrupt};
   double best = INFINITY, size = 0;
   CagStatus status = grow_tree(a, &first, err);
   if (!status) status = grow_tree(b, &second, err);
@@ -399,6 +404,8 @@ CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, double *out, 
     walk(&first, 0, &second, 0, &nearest);
     const CagBounds *box[2] = {&first.nodes[0].box, &second.nodes[0].box};
     for (int i = 0; i < 2; i++) size = fmax(size, cag_norm(cag_sub(box[i]->max, box[i]->min)));
+    if (interrupt && *interrupt)
+      status = cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the search was interrupted");
   }
   const bool meet = nearest.n && nearest.distance[0] == 0;
   for (size_t i = 0; !status && !meet && i < nearest.n; i++) {

@@ -28,11 +28,15 @@ CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface
                              CagError *err);
 void cag_parts_free(CagParts *parts);
 
-// The least distance of two non-empty sets of parts; 0 where they meet. Parts are compared by their
-// chords and flat triangles, and the nearest pairs then on the exact shapes (Newton's method).
-// `point`: of b, where they do not meet; may be NULL.
+// The least distance of two sets of parts; 0 where they meet. Parts are compared by their chords
+// and flat triangles, and the nearest pairs then on the exact shapes (Newton's method).
+//
+//   point      of b, where they do not meet; may be NULL
+//   interrupt  NULL, or: not 0 stops with CAG_E_CALLBACK
+//
+// Fails with "zero-area" where a set is empty, as that of a surface which is one point.
 CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, double *out, CagVec3 *point,
-                             CagError *err);
+                             const volatile int *interrupt, CagError *err);
 
 // How often a closed mesh winds about p: 1 inside, 0 outside, fractions on the boundary only.
 double cag_mesh_winding(const CagMesh *m, CagVec3 p);

@@ -305,7 +305,8 @@ static CagStatus side_of(CagVm *vm, CagValue v, CagVec3 p, int *side, CagError *
     return CAG_OK;
   status = body_add_shape(vm, &body, v, tolerance, err);
   if (!status) status = cag_parts_add_point(&point.parts, p, err);
-  if (!status) status = cag_parts_distance(&point.parts, &body.parts, &distance, &foot, err);
+  if (!status)
+    status = cag_parts_distance(&point.parts, &body.parts, &distance, &foot, cag_vm_stop(vm), err);
   body_free(&body);
   body_free(&point);
   if (status) return status;
@@ -422,7 +423,8 @@ static CagStatus measure(CagVm *vm, Side side[2], double *out, CagError *err) {
   CagStatus status = fill_side(vm, &side[0], err);
   if (!status) status = fill_side(vm, &side[1], err);
   if (!status)
-    status = cag_parts_distance(&side[0].body.parts, &side[1].body.parts, out, NULL, err);
+    status = cag_parts_distance(&side[0].body.parts, &side[1].body.parts, out, NULL,
+                                cag_vm_stop(vm), err);
   if (status || *out == 0) return status;
   status = swallows(vm, &side[0], &side[1], &within, err);
   if (!status && !within) status = swallows(vm, &side[1], &side[0], &within, err);

@@ -190,14 +190,14 @@ static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state
   cag_mesh_release(m);
   OK(cag_surface_tessellate(moved, &how, &m, &err));
   OK(cag_parts_add_mesh(&b, m, moved, &err));
-  OK(cag_parts_distance(&a, &b, &distance, &foot, &err));
+  OK(cag_parts_distance(&a, &b, &distance, &foot, NULL, &err));
   NEAR(distance, 5, 1e-12);
   NEAR(foot.z, 6, 1e-9);
   NEAR(hypot(foot.x, foot.y), 5, 1e-7);
   cag_parts_free(&b);
   b = (CagParts){0};
   OK(cag_parts_add_point(&b, cag_vec3(8, 0, 4), &err));
-  OK(cag_parts_distance(&a, &b, &distance, NULL, &err));
+  OK(cag_parts_distance(&a, &b, &distance, NULL, NULL, &err));
   NEAR(distance, 4, 1e-12); // 3-4-5
   cag_parts_free(&a);
   cag_parts_free(&b);
