@@ -44,6 +44,7 @@ share=$out/work/cag/usr/share
 mv "$share/zsh/site-functions" "$share/zsh/vendor-completions"
 find "$share/man" -type f -exec gzip -9n {} +
 strip --strip-unneeded --remove-section=.comment --remove-section=.note "$out/work/cag/usr/bin/cag" "$out/work/libcag0/usr/lib/$triplet/libcag.so.$VERSION"
+chmod 644 "$out/work/libcag0/usr/lib/$triplet/libcag.so.$VERSION"
 strip --strip-debug --enable-deterministic-archives "$out/work/libcag-dev/usr/lib/$triplet/libcag.a"
 for package in cag libcag0 libcag-dev; do
   documents=$out/work/$package/usr/share/doc/$package

@@ -53,6 +53,7 @@ counted "cag test" "$BUILD/cag" test tests/language tests/scenes
 counted "cag test examples" "$BUILD/cag" test --no-pictures examples
 counted "tests/cli" env BUILD="$BUILD" sh tests/cli/run.sh
 counted "tests/repl" env BUILD="$BUILD" sh tests/repl/run.sh
+counted "tests/editors" env BUILD="$BUILD" sh tests/editors/run.sh
 for vectors in tests/data/0*.json; do
   counted "$vectors" env BUILD="$BUILD" tests/vectors/run "$vectors"
 done

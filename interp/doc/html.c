@@ -64,8 +64,10 @@ static void write_word(FILE *out, const char *root, const char *text, size_t at,
   name[n] = 0;
   const bool member = at > 0 && text[at - 1] == '.' && !(at > 1 && text[at - 2] == '.');
   const bool argument = end < length && text[end] == ':';
+  // A name with nothing behind it may be a parameter or a definition of the script.
+  const bool meant = n == length || (end < length && text[end] == '(');
   if (cag_word_is_reserved(name)) write_class(out, "k", name, n);
-  else if (!member && !argument && cag_builtin_find(name) != (size_t)-1)
+  else if (meant && !member && !argument && cag_builtin_find(name) != (size_t)-1)
     fprintf(out, "<a class=\"f\" href=\"%sfunctions/%s.html\">%s</a>", root, name, name);
   else cag_html_text(out, name, n);
 }
@@ -110,12 +112,33 @@ void cag_html_prose(FILE *out, const char *root, const char *text, size_t length
 
 // --- Examples ---
 
+// The script without its `// expect` comments: what it prints is shown below it. malloc'd.
+static char *without_expectations(const char *text, size_t length) {
+  char *out = strndup(text, length), *to = out;
+  if (!out) abort();
+  for (char *at = out; *at;) {
+    const bool expects = strncmp(at, "// expect", 9) == 0 && (at[9] == ':' || at[9] == ' ');
+    if (!expects) {
+      *to++ = *at++;
+      continue;
+    }
+    while (to > out && to[-1] == ' ') to--;
+    at += strcspn(at, "\n");
+    // A line that had nothing else goes away with its end.
+    if (to > out && to[-1] == '\n' && *at) at++;
+  }
+  *to = 0;
+  return out;
+}
+
 void cag_html_example(CagSite *s, FILE *out, const char *root, const char *about, const char *text,
                       size_t length, const char *function) {
   const CagSiteExample *e = cag_site_example(s, about, text, length, function);
   while (length && text[length - 1] == '\n') length--;
+  char *shown = without_expectations(text, length);
   fputs("<div class=\"example\"><div class=\"code\"><pre><code>", out);
-  cag_html_script(out, root, text, length);
+  cag_html_script(out, root, shown, strlen(shown));
+  free(shown);
   fputs("</code></pre>\n", out);
   if (e && e->output && *e->output) {
     fputs("<pre class=\"output\"><samp>", out);

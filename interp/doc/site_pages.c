@@ -53,6 +53,25 @@ static void write_error_link(void *context, CagErrorId id) {
   fprintf(out, "\">%s</a>", info->reason);
 }
 
+// A summary, in which names of the row's parameters lead nowhere.
+static void write_summary(const CagSitePage *p, const CagSignature *s, const char *text) {
+  while (*text) {
+    const char *open = strchr(text, '`'), *close = open ? strchr(open + 1, '`') : NULL;
+    bool parameter = false;
+    const size_t n = close ? (size_t)(close - open) - 1 : 0;
+    for (size_t i = 0; close && s && i < s->count; i++)
+      parameter |= strlen(s->parameters[i]) == n && strncmp(s->parameters[i], open + 1, n) == 0;
+    const size_t part = close ? (size_t)(close + 1 - text) : strlen(text);
+    if (parameter) {
+      cag_html_text(p->out, text, (size_t)(open - text));
+      fprintf(p->out, "<code>%.*s</code>", (int)n, open + 1);
+    } else {
+      cag_html_prose(p->out, p->root, text, part);
+    }
+    text += part;
+  }
+}
+
 static void write_row(const CagSitePage *p, const CagBuiltin *row) {
   const CagSignature *s = cag_builtin_signature_of(row);
   fputs("<section>\n<p class=\"signature\"><code>", p->out);
@@ -64,7 +83,7 @@ static void write_row(const CagSitePage *p, const CagBuiltin *row) {
     fputs("</span>", p->out);
   }
   fputs("</p>\n<p>", p->out);
-  cag_html_prose(p->out, p->root, row->summary, strlen(row->summary));
+  write_summary(p, s, row->summary);
   fputs("</p>\n", p->out);
   if (s && (s->count || s->variadic)) {
     begin_parameters(p);

@@ -57,6 +57,7 @@ status() { [ "$code" -eq "$1" ] || wrong "expected status $1"; }
 says() { grep -qF -e "$1" err || wrong "standard error lacks: $1"; }
 says_not() { ! grep -qF -e "$1" err || wrong "standard error has: $1"; }
 prints() { grep -qF -e "$1" out || wrong "standard output lacks: $1"; }
+have() { command -v "$1" > /dev/null 2>&1; }
 says_nothing() { [ ! -s err ] || wrong "standard error is not empty"; }
 prints_nothing() { [ ! -s out ] || wrong "standard output is not empty"; }
 prints_exactly() { [ "$(cat out)" = "$1" ] || wrong "standard output is not: $1"; }

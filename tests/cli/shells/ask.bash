@@ -1,0 +1,7 @@
+# What bash proposes for the last of the words, a line each:  bash ask.bash COMPLETION cag render ''
+. "$1"
+shift
+COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) COMPREPLY=()
+compopt() { :; } # bash wants to be completing for it
+_cag
+printf '%s\n' "${COMPREPLY[@]}" | sort

@@ -1,0 +1,13 @@
+# What zsh proposes at the end of a line, a line each:  zsh -f ask.zsh FOLDER 'cag render '    FOLDER has _cag.
+# The proposals are caught on their way into a real line editor, on a terminal of zsh's own.
+zmodload zsh/zpty
+folder=$1 line=$2
+zpty editor zsh -f -i
+zpty -w editor "PS1= PROMPT_EOL_MARK= fpath=($folder \$fpath); autoload -U compinit && compinit -u -D"
+zpty -w editor "zstyle ':completion:*' insert-tab false; setopt nobeep; LISTMAX=10000"
+zpty -w editor "zle -C catcher complete-word catch; catch() { local -a got; compadd() { local -a some; builtin compadd -O some \"\$@\"; got+=(\$some); builtin compadd \"\$@\"; }; _main_complete; unfunction compadd; print -rl -- '<<<' \$got '>>>'; compstate[insert]= compstate[list]=; }; bindkey '^T' catcher; print RE''ADY"
+zpty -r editor out '*READY*'
+zpty -n -w editor "$line"$'\C-T'
+zpty -r editor out '*>>>*'
+print -r -- "${${out#*<<<}%>>>*}" | tr -d '\r' | grep . | sort -u
+zpty -d editor
