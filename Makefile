@@ -140,7 +140,7 @@ $(BUILD)/tests/fuzz/fuzz: tests/fuzz/fuzz.c $(BUILD)/libcag.a
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(LDLIBS_ALL)
 
-test-programs: all $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz
+test-programs: all $(BUILD)/tools/tables $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz
 test: test-programs
 	BUILD=$(BUILD) sh tests/run_all.sh
 
