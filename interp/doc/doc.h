@@ -21,6 +21,9 @@ typedef struct CagDocParameter {
 
 // What a parameter of a function takes; NULL where no row tells it.
 const CagDocParameter *cag_doc_parameter(const char *function, const char *parameter);
+// The same of a function of a library module ("std.robots"); of scripts nothing is known.
+const CagDocParameter *cag_doc_module_parameter(const char *module, const char *function,
+                                                const char *parameter);
 
 // --- Definitions of a script or module ---
 

@@ -18,13 +18,24 @@ static bool has_word(const char *words, const char *word) {
   return false;
 }
 
+static const CagDocParameter *find(const char *word, const char *parameter) {
+  for (size_t i = 0; i < PARAMETER_COUNT; i++)
+    if (strcmp(parameters[i].name, parameter) == 0 &&
+        (*word ? has_word(parameters[i].functions, word) : !*parameters[i].functions))
+      return &parameters[i];
+  return NULL;
+}
+
 const CagDocParameter *cag_doc_parameter(const char *function, const char *parameter) {
-  const CagDocParameter *common = NULL;
-  for (size_t i = 0; i < PARAMETER_COUNT; i++) {
-    const CagDocParameter *p = &parameters[i];
-    if (strcmp(p->name, parameter) != 0) continue;
-    if (*p->functions && has_word(p->functions, function)) return p;
-    if (!*p->functions && !common) common = p;
-  }
-  return common;
+  const CagDocParameter *own = find(function, parameter);
+  return own ? own : find("", parameter);
+}
+
+const CagDocParameter *cag_doc_module_parameter(const char *module, const char *function,
+                                                const char *parameter) {
+  char word[160];
+  if (strncmp(module, "std.", 4) != 0) return NULL;
+  snprintf(word, sizeof word, "%s.%s", module + 4, function);
+  const CagDocParameter *own = find(word, parameter);
+  return own ? own : find(module + 4, parameter);
 }

@@ -14,9 +14,8 @@ static const CagBuiltin *first_row(size_t index) {
   return cag_builtin_rows(index, &rows);
 }
 
-static void write_parameter(const CagSitePage *p, const char *function, const char *name,
+static void write_parameter(const CagSitePage *p, const CagDocParameter *known, const char *name,
                             const char *fallback) {
-  const CagDocParameter *known = cag_doc_parameter(function, name);
   fputs("<tr><td><code>", p->out);
   write_text(p->out, name);
   fputs("</code></td><td>", p->out);
@@ -88,8 +87,9 @@ static void write_row(const CagSitePage *p, const CagBuiltin *row) {
   if (s && (s->count || s->variadic)) {
     begin_parameters(p);
     for (size_t i = 0; i < s->count; i++)
-      write_parameter(p, s->name, s->parameters[i], s->defaults[i]);
-    if (s->variadic) write_parameter(p, s->name, "...", NULL);
+      write_parameter(p, cag_doc_parameter(s->name, s->parameters[i]), s->parameters[i],
+                      s->defaults[i]);
+    if (s->variadic) write_parameter(p, cag_doc_parameter(s->name, "..."), "...", NULL);
     fputs("</tbody></table>\n", p->out);
   }
   Errors errors = {p, 0};
@@ -249,7 +249,8 @@ static void write_definition(const CagSitePage *p, const CagDocModule *m, const 
   if (e->argument_count) {
     begin_parameters(p);
     for (size_t i = 0; i < e->argument_count; i++)
-      write_parameter(p, e->name, e->arguments[i].name, e->arguments[i].fallback);
+      write_parameter(p, cag_doc_module_parameter(m->name, e->name, e->arguments[i].name),
+                      e->arguments[i].name, e->arguments[i].fallback);
     fputs("</tbody></table>\n", p->out);
   }
   fputs("</section>\n", p->out);

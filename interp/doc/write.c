@@ -53,12 +53,11 @@ static void write_indented(FILE *out, const char *text, int indent) {
 
 // --- Built-ins ---
 
-static void write_parameter(FILE *out, const char *function, const char *name,
+static void write_parameter(FILE *out, const CagDocParameter *p, const char *name,
                             const char *fallback) {
-  const CagDocParameter *p = cag_doc_parameter(function, name);
   const int used = fprintf(out, "    %s", name);
   char *text;
-  const char *type = p ? p->type : "value", *meaning = p ? p->meaning : "";
+  const char *type = p ? p->type : "any value", *meaning = p ? p->meaning : "";
   const int n = asprintf(&text, "%s%s%s%s%s", type, *meaning ? ": " : "", meaning,
                          fallback ? "; default " : "", fallback ? fallback : "");
   if (n < 0) return;
@@ -88,8 +87,9 @@ static void write_row(const CagDocWriter *w, const CagBuiltin *row) {
   const CagSignature *s = cag_builtin_signature_of(row);
   if (s && (s->count || s->variadic)) fputs("\n  Parameters\n", w->out);
   for (size_t i = 0; s && i < s->count; i++)
-    write_parameter(w->out, s->name, s->parameters[i], s->defaults[i]);
-  if (s && s->variadic) write_parameter(w->out, s->name, "...", NULL);
+    write_parameter(w->out, cag_doc_parameter(s->name, s->parameters[i]), s->parameters[i],
+                    s->defaults[i]);
+  if (s && s->variadic) write_parameter(w->out, cag_doc_parameter(s->name, "..."), "...", NULL);
   Errors errors = {w->out, 0};
   cag_doc_reasons(row->summary, write_error, &errors);
   fputs("\n  Example\n", w->out);
@@ -115,27 +115,24 @@ static void write_param(const CagDocWriter *w, const CagDocEntry *e) {
   if (e->label) write_wrapped(w->out, e->label, strlen(e->label), 2, 0);
 }
 
-static void write_arguments(FILE *out, const CagDocEntry *e) {
-  bool any = false;
+static void write_arguments(FILE *out, const CagDocModule *m, const CagDocEntry *e) {
+  if (e->argument_count) fputs("\n  Parameters\n", out);
   for (size_t i = 0; i < e->argument_count; i++) {
     const CagDocArgument *a = &e->arguments[i];
-    if (!cag_doc_parameter(e->name, a->name) && !a->fallback) continue;
-    if (!any) fputs("\n  Parameters\n", out);
-    any = true;
-    write_parameter(out, e->name, a->name, a->fallback);
+    write_parameter(out, cag_doc_module_parameter(m->name, e->name, a->name), a->name, a->fallback);
   }
 }
 
-static void write_definition(const CagDocWriter *w, const CagDocEntry *e, bool at_length) {
+static void write_definition(const CagDocWriter *w, const CagDocEntry *e) {
   if (e->kind == CAG_DOC_PARAM) write_param(w, e);
   else fprintf(w->out, w->styled ? "\033[1m%s\033[0m\n" : "%s\n", e->signature);
   if (e->text) write_indented(w->out, e->text, 2);
-  if (at_length) write_arguments(w->out, e);
 }
 
 void cag_doc_write_entry(const CagDocWriter *w, const CagDocModule *m, const CagDocEntry *e) {
   fprintf(w->out, "In %s:\n\n", m->name);
-  write_definition(w, e, true);
+  write_definition(w, e);
+  write_arguments(w->out, m, e);
 }
 
 void cag_doc_write_module(const CagDocWriter *w, const CagDocModule *m) {
@@ -144,7 +141,7 @@ void cag_doc_write_module(const CagDocWriter *w, const CagDocModule *m) {
   write_indented(w->out, m->purpose, 0);
   for (size_t i = 0; i < m->count; i++) {
     fputc('\n', w->out);
-    write_definition(w, &m->entries[i], false);
+    write_definition(w, &m->entries[i]);
   }
 }
 
