@@ -1,0 +1,139 @@
+# cag doc: on a terminal, and as a site.
+
+it 'a function is told with parameters, defaults, errors and example'
+try doc insert_knot
+status 0
+prints 'insert_knot(C, t, times = 1) -> curve'
+prints 'insert_knot(S, u = none, v = none, times = 1) -> surface'
+prints 'whole number: how often; default 1'
+prints 'knot-multiplicity'
+prints 'Example'
+
+it 'without a name all functions are listed by family'
+try doc
+status 0
+prints 'Robots: inverse kinematics'
+prints 'std.materials'
+
+it 'a module of the library is told, and a definition in it, with std. or without'
+try doc std.robots
+status 0
+prints 'puma560'
+try doc robots.puma560
+prints 'Unimation PUMA 560'
+try doc kinematics.gripper_tips
+prints 'number, mm: between the jaws'
+
+it 'an error code is told'
+try doc E0301
+status 0
+prints 'E0301 (type)'
+
+it 'a misspelt name gets the nearest one'
+try doc bsplin
+status 2
+says 'did you mean `cag doc bspline`?'
+try doc robots.puma56
+status 2
+says 'did you mean `cag doc robots.puma560`?'
+
+script flange.cag '// A flange.
+// It has holes.
+
+/// How far across.
+param width = 40 in 10..90 "mm, outside"
+/// A plate of this size.
+///
+///     show plate(30)
+plate(size, thickness = 3) = box([size, size, thickness])
+_hidden = 1
+show plate(width)'
+
+it 'a script is told by its /// lines, and not run'
+try doc flange.cag
+status 0
+prints 'It has holes.'
+prints 'param width = 40 in 10..90'
+prints 'mm, outside'
+prints 'How far across.'
+prints 'plate(size, thickness = 3)'
+prints 'A plate of this size.'
+! grep -q _hidden out || wrong 'private names are shown'
+with_input flange.cag doc -
+status 0
+prints 'A plate of this size.'
+
+it 'a script with errors, or that is not there, is told'
+script broken.cag 'a = ('
+try doc broken.cag
+status 1
+says 'broken.cag:1'
+try doc nowhere.cag
+status 3
+says 'nowhere.cag'
+
+it 'no colours go to a pipe, unless asked for'
+try doc sin
+! grep -q "$(printf '\033')" out || wrong 'codes of colours'
+try doc sin --color always
+grep -q "$(printf '\033')" out || wrong 'no codes of colours'
+
+it 'the site is made, and every example on it does what it says'
+try doc --html site --no-pictures
+status 0
+says 'scripts run'
+for file in index.html index.js search.js style.css errors.html guide/getting-started.html guide/language.html \
+  guide/geometry.html guide/embedding.html cookbook/index.html library/robots.html functions/bspline.html; do
+  [ "$file" = ] || exists "site/$file"
+done
+
+it 'every function has a page'
+"$CAG" doc | sed -n '/^Library/q;s/^  //p' | tr ' ' '\n' | sort -u > names
+[ "$(wc -l < names)" -gt 400 ] || wrong 'there are few names'
+while read -r name; do exists "site/functions/$name.html"; done < names
+
+it 'pages show signature, parameters, example and output'
+grep -q 'whole number, 1 or more' site/functions/bspline.html || wrong 'no parameters'
+grep -q 'class="output"' site/functions/bspline.html || wrong 'no output'
+grep -q 'cag_session_new' site/guide/embedding.html || wrong 'the program of the embedding guide is missing'
+[ "$(grep -c '<section class="recipe">' site/cookbook/index.html)" -ge 25 ] || wrong 'fewer than 25 recipes'
+
+it 'no link or anchor of the site leads nowhere'
+try_command node "$here/site_links.js" site
+status 0
+
+it 'the pages are HTML'
+ran='xmllint --html' code=0
+# xmllint knows no elements of HTML 5, and its other remarks are what is looked for.
+find site -name '*.html' -exec xmllint --html --noout {} + 2>&1 | grep 'error :' | grep -v 'Tag [a-z]* invalid' > err
+[ ! -s err ] || wrong 'xmllint finds errors'
+
+it 'the search finds a function and leads to it'
+browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
+if [ -n "$browser" ]; then
+  try_command node "$here/site_search.js" "$browser" site bspline functions/bspline.html
+  status 0
+  prints 'Enter leads to functions/bspline.html: bspline'
+else
+  echo 'the search of the site is not tried: chromium is not here'
+fi
+
+it 'drawings are made without POV-Ray, and pictures of another site are kept'
+ran="PATH without povray" && PATH=/nowhere "$CAG" doc --html drawings --jobs 2 > out 2> err
+code=$?
+status 0
+says 'pictures are left out'
+grep -q 'pictures/[0-9a-f]*\.svg' drawings/functions/bspline.html || wrong 'no drawing of a spline'
+first=$(ls -i drawings/pictures | head -n 1)
+PATH=/nowhere "$CAG" doc --html drawings --jobs 2 > out 2> err
+[ "$(ls -i drawings/pictures | head -n 1)" = "$first" ] || wrong 'a drawing was made again'
+
+it 'a folder that cannot be made is told'
+try doc --html flange.cag/site --no-pictures
+status 3
+says 'flange.cag/site'
+
+it '--html takes no name'
+try doc --html site bspline
+status 2
+says 'leave the name away'
