@@ -310,5 +310,6 @@ CagStatus cag_csg_tessellate(const CagSolid *s, const CagTessellation *how, CagM
   CagStatus status = cag_csg_mesh(s, how, out, err);
   if (status || (*out)->triangle_count > 0) return status;
   cag_mesh_release(*out);
+  *out = NULL;
   return fail_empty(s, err);
 }

@@ -27,9 +27,13 @@ const CagBuiltin cag_builtins_transforms[] = {
      "The turn by the angle about an axis through the point `about`, by the right hand: with the "
      "thumb along the axis it goes as the fingers do. A zero axis is an error.",
      "print rotate(X, 90deg) * [0, 1, 0] // expect: [0, 0, 1]", CAG_TAKES(LIST), family},
-    {"rotate(G, axis, angle, about = origin)", cag_transforms_rotate, "as G",
-     "G turned about an axis through a point; `rotate(G, angle)` turns about Z.",
-     "print bounds(box([1, 2, 3]) |> rotate(Z, 90deg)).size // expect: [2, 1, 3]", MOVED, family},
+    {"rotate(G, axis, angle = none, about = origin)", cag_transforms_rotate, "as G",
+     "G turned about an axis through a point; `rotate(G, angle)` and `rotate(G, angle, about)` "
+     "turn "
+     "about Z.",
+     "print bounds(box([1, 2, 3]) |> rotate(Z, 90deg)).size // expect: [2, 1, 3]\n"
+     "print end_point(line([0, 0], [2, 0]) |> rotate(90deg)) // expect: [0, 2]",
+     MOVED, family},
     {"scale(factor, about = origin)", cag_transforms_scale, "transform",
      "Stretches by a factor, or by one along each of x, y, z ([fx, fy] in the plane), away from "
      "the point `about`. A negative factor mirrors, a zero factor is an error.",

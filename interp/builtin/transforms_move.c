@@ -73,9 +73,14 @@ static bool make_rotate(CagCall *call, int at, CagTransform *out) {
   bool plain = call->values[at].type == CAG_ANGLE;
   int next = plain ? at : at + 1;
   if (!plain && !cag_arg_vec(call, at, &axis, &axis_dimension)) return false;
+  if (!cag_given(call, next))
+    return cag_fail_call(call, -1, CAG_ERR_arity, "needs an argument for `angle`");
   if (!cag_arg_angle(call, next, &angle)) return false;
-  if ((size_t)next + 1 < call->count && cag_given(call, next + 1)) {
-    if (!cag_arg_vec(call, next + 1, &about, &about_dimension)) return false;
+  // By position it follows the angle; by its name it stands behind the place of an axis.
+  size_t place = (size_t)next + 1;
+  if (plain && at > 0 && place + 1 < call->count && cag_given(call, (int)place + 1)) place++;
+  if (place < call->count && cag_given(call, (int)place)) {
+    if (!cag_arg_vec(call, (int)place, &about, &about_dimension)) return false;
   } else {
     about = zero;
   }
