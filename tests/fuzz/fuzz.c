@@ -312,8 +312,9 @@ static const char *judge(CagSession *s, int status, const char *output, bool str
     cag_session_error(s, i, &e);
     if (!e.code || strcmp(e.code, "E0000") == 0 || strcmp(e.code, "E0399") == 0)
       return "an error without a code";
-    if ((!e.message || !*e.message) &&
-        strcmp(e.code, "E0313") != 0) // error("") is the script's return "an error without words";
+    // error("") has the words of the script.
+    if ((!e.message || !*e.message) && strcmp(e.code, "E0313") != 0)
+      return "an error without words";
   }
   return NULL;
 }
