@@ -9,7 +9,7 @@
 
 enum { CHORDS = 32 }; // of an atom that are looked at
 
-static const double highest_use = 0.94, aimed_use = 0.88; // see plan.c
+static const double highest_use = 0.9, aimed_use = 0.84; // see plan.c
 
 // Largest distance of the middles and thirds of some of the n chords of [from, to] from them.
 static CagStatus chord_distance(const Tessellator *t, const Line *line, double from, double to,

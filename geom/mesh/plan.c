@@ -29,7 +29,7 @@ enum {
 // leaf's own piece are seen, and poles have normals.
 static const double inset = 1e-6;
 // Distances found on samples may be this much of the tolerance; the rest is for the points between.
-static const double highest_use = 0.94, aimed_use = 0.88, lowest_use = 0.72;
+static const double highest_use = 0.9, aimed_use = 0.84, lowest_use = 0.68;
 
 typedef struct Range {
   int u0, u1, v0, v1; // sample indices, both ends in
@@ -40,6 +40,7 @@ typedef struct Range {
 typedef struct Needs {
   double uu, uv, vv;
   double turn[2];   // of the normal
+  double bend[2];   // the same, but for where it turns at once, at cusps
   double length[2]; // of lines
 } Needs;
 
@@ -124,6 +125,21 @@ static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *er
   return CAG_OK;
 }
 
+// Radians between two samples: where the normal turns more, they do not tell how.
+static const double turned_away = 1;
+
+// Points may be spread well about a rim where the normal turns at once. Smaller ones are left to
+// the trial.
+static bool are_turns_resolved(const CagTessellation *how, const Sampled *s, int direction) {
+  const double small = 4; // tolerances
+  int stride = direction == 0 ? SIDE : 1;
+  for (int k = 0; k < SAMPLES; k++)
+    if (s->turn[direction][k] > turned_away * STEPS &&
+        cag_norm(cag_sub(s->points[k + stride], s->points[k])) > small * how->tolerance)
+      return false;
+  return true;
+}
+
 // Do the samples along a direction tell the whole story? If the mean of the derivatives at the ends
 // of a step is far from the step made, the surface does something between them (the turns of a
 // helix). At half turns both vanish, and the lengths tell.
@@ -143,7 +159,7 @@ static bool is_resolved(const CagTessellation *how, const Sampled *s, int direct
       worst = fmax(worst, fabs(length - cag_norm(step)));
     }
   // Within the tolerance it does not matter, and of a point all is rounding.
-  return worst <= fmax(far * longest, how->tolerance);
+  return worst <= fmax(far * longest, how->tolerance) && are_turns_resolved(how, s, direction);
 }
 
 // --- Needs and counts ---
@@ -159,14 +175,18 @@ static Needs needs_of(const Sampled *s, Range r) {
       n.vv = fmax(n.vv, s->off_vv[k]);
       n.length[0] = fmax(n.length[0], cag_norm(s->du[k]));
       n.length[1] = fmax(n.length[1], cag_norm(s->dv[k]));
-      if (i < r.u1) n.turn[0] = fmax(n.turn[0], s->turn[0][k]);
-      if (j < r.v1) n.turn[1] = fmax(n.turn[1], s->turn[1][k]);
+      for (int d = 0; d < 2; d++) {
+        if (d == 0 ? i == r.u1 : j == r.v1) continue;
+        n.turn[d] = fmax(n.turn[d], s->turn[d][k]);
+        if (s->turn[d][k] <= turned_away * STEPS) n.bend[d] = fmax(n.bend[d], s->turn[d][k]);
+      }
     }
   n.uu *= part[0] * part[0];
   n.uv *= part[0] * part[1];
   n.vv *= part[1] * part[1];
   for (int d = 0; d < 2; d++) {
     n.turn[d] *= part[d];
+    n.bend[d] *= part[d];
     n.length[d] *= part[d];
   }
   return n;
@@ -235,12 +255,20 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
       needs->length[0] > 0 && needs->length[1] > 0 ? needs->length[1] / needs->length[0] : 1;
   best_counts(&(Form){uu, uv, vv, how->tolerance}, square_ratio, n);
   const double no_turn = 1e-7; // radians: rounding of normals
+  const double closely = 0.95; // of the angle: normals turn more between samples, and in seams
   double most[2];
   if (how->angle > 0) {
-    double a = needs->turn[0] > no_turn ? needs->turn[0] : 0,
-           b = needs->turn[1] > no_turn ? needs->turn[1] : 0, limit = how->angle * how->angle;
+    double a = needs->bend[0] > no_turn ? needs->bend[0] : 0,
+           b = needs->bend[1] > no_turn ? needs->bend[1] : 0,
+           limit = closely * closely * how->angle * how->angle;
     best_counts(&(Form){a * a, 0, b * b, limit}, square_ratio, most);
-    for (int d = 0; d < 2; d++) n[d] = fmax(n[d], most[d]);
+    // Edges that are far shorter than the tolerance need not be shorter: at a cusp the normal turns
+    // at once.
+    const double shortest = 0.2; // of the tolerance
+    for (int d = 0; d < 2; d++) {
+      double room = fmax(1, ceil(needs->length[d] / (shortest * how->tolerance)));
+      n[d] = fmax(n[d], fmin(most[d], room));
+    }
   }
   if (how->max_edge > 0) {
     // A triangle's edge is at most as long as two sides of a quadrilateral, and lines may be a
@@ -280,25 +308,28 @@ static double cut_distance(const CagVec3 *at, int stride, bool cut_ac) {
   return worst;
 }
 
-// How far p lies off the plane of a triangle. Along the plane the neighbour takes over, and at the
-// border of a face chords.c cares.
-static double off_plane(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c) {
-  CagVec3 n = cag_cross(cag_sub(b, a), cag_sub(c, a));
-  double area = cag_norm(n);
-  return area > 0 ? fabs(cag_dot(cag_sub(p, a), n)) / area : cag_distance_to_triangle(p, a, b, c);
+// How far p, over the middle of the edge a b of a triangle a b c, lies off the mesh. Beside the
+// edge the neighbour takes over, whose plane is turned by up to that angle; at the border of a face
+// chords.c cares.
+static double off_edge(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c, double sine) {
+  CagVec3 ab = cag_sub(b, a), ap = cag_sub(p, a), n = cag_cross(ab, cag_sub(c, a));
+  double area = cag_norm(n), length = cag_norm(ab);
+  if (!(area > 0) || !(length > 0)) return cag_distance_to_triangle(p, a, b, c);
+  double off = fabs(cag_dot(ap, n)) / area,
+         outside = cag_dot(ap, cag_cross(ab, n)) / (area * length);
+  if (outside <= 0) return off;
+  return fmin(off + outside * sine, sqrt(off * off + outside * outside));
 }
 
 // At the border of a leaf triangles may be cut either way when they are sewn to their neighbours.
-static double quad_distance(const CagVec3 *at, int stride, bool border) {
+// sine: of the angle between neighbours along u and v.
+static double quad_distance(const CagVec3 *at, int stride, const double sine[2], bool border) {
   CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
   bool cut_ac = tess_cut_ac(a, b, c, d);
-  CagVec3 end = cut_ac ? c : d, start = cut_ac ? a : b;
-  double worst = off_plane(AT(AT_HALF, AT_0), a, b, end);
-  worst = fmax(worst, off_plane(AT(AT_HALF, AT_1), start, c, d));
-  worst = fmax(worst, cut_ac ? off_plane(AT(AT_0, AT_HALF), a, c, d)
-                             : off_plane(AT(AT_0, AT_HALF), a, b, d));
-  worst = fmax(worst, cut_ac ? off_plane(AT(AT_1, AT_HALF), a, b, c)
-                             : off_plane(AT(AT_1, AT_HALF), b, c, d));
+  double worst = off_edge(AT(AT_HALF, AT_0), a, b, cut_ac ? c : d, sine[1]);
+  worst = fmax(worst, off_edge(AT(AT_HALF, AT_1), c, d, cut_ac ? a : b, sine[1]));
+  worst = fmax(worst, off_edge(AT(AT_0, AT_HALF), d, a, cut_ac ? c : b, sine[0]));
+  worst = fmax(worst, off_edge(AT(AT_1, AT_HALF), b, c, cut_ac ? a : d, sine[0]));
   worst = fmax(worst, cut_distance(at, stride, cut_ac));
   return border ? fmax(worst, cut_distance(at, stride, !cut_ac)) : worst;
 }
@@ -314,9 +345,11 @@ typedef struct Trial {
 static CagStatus evaluate_trial(const CagSurface *surface, const Sampled *s, const double n[2],
                                 int most, const double *places, int place_count, Trial *trial,
                                 CagError *err) {
-  double ts[2][TRIED_LAST * PLACES], chosen[TRIED_LAST];
+  double ts[2][TRIED_LAST * TRIED_LAST * 3], chosen[TRIED_LAST * TRIED_LAST];
   for (int d = 0; d < 2; d++) {
-    trial->count[d] = spread(n[d], most, chosen);
+    // Of strips as many more along them as are not needed across.
+    int across = n[1 - d] < most ? (int)n[1 - d] : most;
+    trial->count[d] = spread(n[d], most * most / across, chosen);
     for (int k = 0; k < trial->count[d]; k++)
       for (int p = 0; p < place_count; p++) {
         double t = s->from[d] + (s->to[d] - s->from[d]) * ((chosen[k] + places[p]) / n[d]);
@@ -328,9 +361,12 @@ static CagStatus evaluate_trial(const CagSurface *surface, const Sampled *s, con
                                (size_t)trial->rows, trial->points, NULL, NULL, err);
 }
 
-static CagStatus measure(const CagSurface *surface, const Sampled *s, const double n[2],
-                         double *distance, CagError *err) {
+// turn: of the normal over the leaf, by Needs.
+static CagStatus measure(const CagSurface *surface, const Sampled *s, const double turn[2],
+                         const double n[2], double *distance, CagError *err) {
   Trial trial;
+  double sine[2];
+  for (int d = 0; d < 2; d++) sine[d] = sin(fmin(turn[d] / n[d], M_PI / 2));
   CagStatus status = evaluate_trial(surface, s, n, TRIED, place, PLACES, &trial, err);
   if (status != CAG_OK) return status;
   *distance = 0;
@@ -338,7 +374,7 @@ static CagStatus measure(const CagSurface *surface, const Sampled *s, const doub
     for (int j = 0; j < trial.count[1]; j++) {
       const CagVec3 *corner = trial.points + (i * trial.rows + j) * PLACES;
       bool border = i == 0 || j == 0 || i + 1 == trial.count[0] || j + 1 == trial.count[1];
-      *distance = fmax(*distance, quad_distance(corner, trial.rows, border));
+      *distance = fmax(*distance, quad_distance(corner, trial.rows, sine, border));
     }
   return CAG_OK;
 }
@@ -363,9 +399,14 @@ static CagStatus measure_middles(const CagSurface *surface, const Sampled *s, co
   return CAG_OK;
 }
 
-// Finds counts whose measured distance lies under the tolerance and not far under it.
+// Finds counts whose measured distance lies under the tolerance and not far under it. `surprise`:
+// not NULL where the leaf may be halved instead; set where the samples were blind to what is
+// between them.
 static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, const Sampled *s,
-                               double best[2], CagError *err) {
+                               double best[2], bool *surprise, CagError *err) {
+  const double surprising = 3; // times the tolerance, where the bound promised less than it
+  // Strips that are twisted may be sewn to other nodes than those that are tried.
+  const double sewn = 1.15, twisted = 0.05;
   Range all = {0, STEPS, 0, STEPS};
   Needs needs = needs_of(s, all);
   double tolerance = t->how.tolerance, correction = 1, limit = (double)t->how.max_triangles;
@@ -375,13 +416,18 @@ static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, 
     double quads = n[0] * n[1], distance;
     if (quads >= smallest) break;
     if (quads > limit) return tess_limit(t, 2 * quads, err);
-    CagStatus status = measure(surface, s, n, &distance, err);
+    CagStatus status = measure(surface, s, needs.turn, n, &distance, err);
     if (status != CAG_OK) return status;
     double use = distance / tolerance;
     if (use <= highest_use && fmax(n[0], n[1]) > TRIED_WELL) {
       status = measure_middles(surface, s, n, &distance, err);
       if (status != CAG_OK) return status;
       use = fmax(use, distance / tolerance);
+    }
+    if (fmin(n[0], n[1]) <= 1 && needs.uv > twisted * tolerance * quads) use *= sewn;
+    if (surprise && round == 0 && use > surprising) {
+      *surprise = true;
+      return CAG_OK;
     }
     if (use <= highest_use) {
       smallest = quads;
@@ -405,7 +451,7 @@ static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, 
     best[0] *= 2;
     best[1] *= 2;
     if (best[0] * best[1] > limit) return tess_limit(t, 2 * best[0] * best[1], err);
-    CagStatus status = measure(surface, s, best, &distance, err);
+    CagStatus status = measure(surface, s, needs.turn, best, &distance, err);
     if (status != CAG_OK) return status;
   }
   return CAG_OK;
@@ -420,12 +466,45 @@ static double cost_of(const CagTessellation *how, const Sampled *s, Range r) {
   return n[0] * n[1];
 }
 
+// The triangles of a leaf at a pole come together in a point: is the leaf so finely divided around
+// it that they are slivers, and would it be divided less nearer to the pole?
+static bool is_sliver_pole(const CagTessellation *how, const Sampled *s, int direction, bool end) {
+  const double slim = 0.15; // base by height: 9 degrees at the tip
+  const double gain = 0.9;
+  const double small = 50; // tolerances: a leaf that is no higher is near enough to the tip
+  // A leaf may reach from pole to pole: its half is as wide as all of it.
+  int quarter = STEPS / 4, stride = direction == 0 ? SIDE : 1, other = direction == 0 ? 1 : SIDE;
+  const CagVec3 *around = direction == 0 ? s->dv : s->du, *along = direction == 0 ? s->du : s->dv;
+  Range all = {0, STEPS, 0, STEPS}, near = all;
+  if (direction == 0) *(end ? &near.u0 : &near.u1) = end ? STEPS - quarter : quarter;
+  else *(end ? &near.v0 : &near.v1) = end ? STEPS - quarter : quarter;
+  double n[2], less[2], base = 0, height = 0;
+  Needs needs = needs_of(s, all), fewer = needs_of(s, near);
+  counts_for(how, &needs, 1, n);
+  if (n[direction] < 2) return false;
+  counts_for(how, &fewer, 1, less);
+  // The parallels grow with the distance from the pole: the first one by the first sample.
+  for (int i = 0; i < SIDE; i++) {
+    int k = i * other + (end ? STEPS - 1 : 1) * stride;
+    base = fmax(base, cag_norm(around[k]) * STEPS);
+    height = fmax(height, cag_norm(along[k]));
+  }
+  return height > small * how->tolerance && base / n[1 - direction] < slim * height &&
+         less[1 - direction] < gain * n[1 - direction];
+}
+
 // Direction in which the leaf is better halved; -1: none.
-static int halving(const CagTessellation *how, const Sampled *s, int depth) {
+static int halving(const CagTessellation *how, const CagSurface *surface, const Sampled *s,
+                   int depth) {
   const double gain = 0.8; // halving makes seams of small triangles: it must save more
   if (depth >= MAX_DEPTH) return -1;
   for (int d = 0; d < 2; d++)
     if (!is_resolved(how, s, d)) return d;
+  const bool pole[4] = {
+      surface->pole_u0 && s->from[0] == surface->u0, surface->pole_u1 && s->to[0] == surface->u1,
+      surface->pole_v0 && s->from[1] == surface->v0, surface->pole_v1 && s->to[1] == surface->v1};
+  for (int side = 0; side < 4; side++)
+    if (pole[side] && is_sliver_pole(how, s, side / 2, side % 2)) return side / 2;
   Range all = {0, STEPS, 0, STEPS};
   double whole = cost_of(how, s, all);
   if (whole < WORTH_HALVING) return -1;
@@ -467,12 +546,17 @@ static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], 
   memcpy(s.to, to, sizeof s.to);
   status = sample_leaf(surface, &s, err);
   if (status != CAG_OK) return status;
-  int d = halving(&t->how, &s, depth);
+  int d = halving(&t->how, surface, &s, depth);
   double middle = d < 0 ? 0 : from[d] + (to[d] - from[d]) / 2;
   if (d < 0 || !(middle > from[d] && middle < to[d])) {
     double n[2];
-    status = settle_counts(t, surface, &s, n, err);
-    return status == CAG_OK ? add_leaf(t, face, &s, n, err) : status;
+    bool surprise = false;
+    status = settle_counts(t, surface, &s, n, depth < MAX_DEPTH && d < 0 ? &surprise : NULL, err);
+    if (status != CAG_OK) return status;
+    if (!surprise) return add_leaf(t, face, &s, n, err);
+    Needs needs = needs_of(&s, (Range){0, STEPS, 0, STEPS});
+    d = needs.length[0] >= needs.length[1] ? 0 : 1;
+    middle = from[d] + (to[d] - from[d]) / 2;
   }
   double lower_to[2] = {to[0], to[1]}, upper_from[2] = {from[0], from[1]};
   lower_to[d] = upper_from[d] = middle;

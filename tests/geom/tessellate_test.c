@@ -278,7 +278,7 @@ static void a_torus_closes_and_keeps_its_tolerance(void **state) {
   OK(cag_surface_torus(10, 3, &s, &err));
   double last = 0;
   for (double tolerance = 0.1; tolerance > 5e-4; tolerance /= 10) {
-    CagMesh *m = mesh_of(s, tolerance, 0.4);
+    CagMesh *m = mesh_of(s, tolerance, 0.3);
     assert_true(is_closed(m));
     assert_int_equal(cag_mesh_euler_characteristic(m), 0);
     double terms[10];
