@@ -26,12 +26,17 @@ static void replace(cmark_node *node, cmark_node_type type, const char *html) {
 
 static void change_block(const Document *d, cmark_node *node) {
   const char *info = cmark_node_get_fence_info(node), *text = cmark_node_get_literal(node);
-  if (!info || strncmp(info, "cag", 3) != 0 || (info[3] != 0 && info[3] != ' ')) return;
+  int width, offset;
+  char character;
+  // Indented code, as in the comments of modules, is of the language as well.
+  const bool plain = !cmark_node_get_fenced(node, &width, &offset, &character);
+  const bool named = info && strncmp(info, "cag", 3) == 0 && (info[3] == 0 || info[3] == ' ');
+  if (!plain && !named) return;
   char *html = NULL;
   size_t length = 0;
   FILE *out = open_memstream(&html, &length);
   if (!out) abort();
-  if (strstr(info, "fragment")) {
+  if (plain || strstr(info, "fragment")) {
     fputs("<pre><code>", out);
     cag_html_script(out, d->root, text, strlen(text));
     fputs("</code></pre>\n", out);

@@ -66,11 +66,18 @@ static Type type_of(CagSession *s, const char *expression) {
   return t;
 }
 
-static bool is_shape(Type t) {
+// Whether an expression is a shape, or a list of shapes.
+static bool is_shape(CagSession *s, const char *expression, Type t) {
   static const char *const shapes[] = {"curve", "region", "surface", "solid", "mesh", "group"};
   for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
     if (strcmp(t.name, shapes[i]) == 0) return true;
-  return false;
+  if (strcmp(t.name, "list") != 0) return false;
+  char *first;
+  if (asprintf(&first, "(%s)[0]", expression) < 0) abort();
+  t = type_of(s, first);
+  const bool shape = strcmp(t.name, "list") != 0 && is_shape(s, first, t);
+  free(first);
+  return shape;
 }
 
 // --- What a picture shows ---
@@ -101,7 +108,7 @@ static char *last_shape(CagSession *s) {
     if (!copy) return NULL;
     const Type t = type_of(s, copy);
     char *posed = NULL;
-    if (is_shape(t)) return copy;
+    if (is_shape(s, copy, t)) return copy;
     if (strcmp(t.name, "robot") == 0 && asprintf(&posed, "posed(%s)", copy) < 0) posed = NULL;
     free(copy);
     if (posed) return posed;
@@ -114,7 +121,7 @@ static char *choose_shape(const CagSite *site, const CagSiteExample *e, FILE *ou
   CagSession *s = open_session(site, out, out);
   char *call = e->function ? find_call(e->text, e->function) : NULL, *shape = NULL;
   if (s && cag_session_input(s, e->text, strlen(e->text), NULL, NULL) == CAG_STATUS_OK) {
-    if (call && is_shape(type_of(s, call))) {
+    if (call && is_shape(s, call, type_of(s, call))) {
       shape = call;
       call = NULL;
     } else {
