@@ -194,21 +194,21 @@ double cag_curve_remap(const CagCurve *c, double t, double a, double b) {
   return a + (t - c->start) * ((b - a) / (c->end - c->start));
 }
 
-static CagStatus check_range(double a, double b, CagError *err) {
+static CagStatus check_range(const CagCurve *c, double a, double b, CagError *err) {
   char x[32], y[32];
   CagStatus status = cag_curve_check_number(a, "range", err);
   if (!status) status = cag_curve_check_number(b, "range", err);
   if (status || a < b) return status;
   return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "range", -1,
                   "the range %s..%s has no length; its start must be less than its end",
-                  cag_number_text(a, x), cag_number_text(b, y));
+                  parameter_text(c, a, x), parameter_text(c, b, y));
 }
 
 CagStatus cag_curve_trim(const CagCurve *c, double a, double b, CagCurve **out, CagError *err) {
-  CagStatus status = check_range(a, b, err);
+  CagStatus status = check_range(c, a, b, err);
   if (!status) status = snap(c, &a, "range", err);
   if (!status) status = snap(c, &b, "range", err);
-  if (!status) status = check_range(a, b, err);
+  if (!status) status = check_range(c, a, b, err);
   if (status) return status;
   if (a == c->start && b == c->end) {
     *out = cag_curve_retain(c);
@@ -219,7 +219,7 @@ CagStatus cag_curve_trim(const CagCurve *c, double a, double b, CagCurve **out, 
 
 CagStatus cag_curve_reparametrize(const CagCurve *c, double a, double b, CagCurve **out,
                                   CagError *err) {
-  CagStatus status = check_range(a, b, err);
+  CagStatus status = check_range(c, a, b, err);
   if (status) return status;
   if (a == c->start && b == c->end) {
     *out = cag_curve_retain(c);

@@ -139,6 +139,8 @@ bool cag_transforms_homogeneous(CagCall *call, CagValue *result) {
   // A point at infinity keeps its direction; any other is scaled, so that dividing gives it back.
   double scale = w == 0 ? 1 : w;
   double h[] = {scale * p.x, scale * p.y, scale * p.z, w};
+  for (int i = 0; i < 4; i++)
+    if (!isfinite(h[i])) return cag_fail_call(call, 1, CAG_ERR_not_finite, "overflows");
   *result = cag_vector(call->vm, h, 4);
   return true;
 }
