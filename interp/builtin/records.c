@@ -77,6 +77,10 @@ static bool call_record(CagCall *call, CagValue *result) {
   CagSequence pairs;
   if (!cag_sequence_open(call, 0, false, &pairs)) return false;
   size_t n = pairs.length;
+  // Before memory is taken: elements of long ranges are no pairs.
+  CagText *name;
+  CagValue value;
+  if (n > 0 && !read_pair(call, &pairs, 0, &name, &value)) return false;
   CagText **names = malloc((n ? n : 1) * sizeof(CagText *));
   CagValue *values = malloc((n ? n : 1) * sizeof *values);
   bool good = names && values;
