@@ -7,11 +7,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "interp/builtin/robots.h"
 #include "interp/eval/vm.h"
 #include "interp/export/urdf.h"
 #include "interp/scene/build.h"
+
+// Bytes of a name; longer ones give way to those of the walk.
+enum { NAME_ROOM = 120 };
 
 typedef struct Walk {
   CagCall call; // for errors, and to collect shapes
@@ -96,7 +100,7 @@ static bool is_taken(const CagUrdf *u, const char *name) {
 // The name of the link's shape where it has one.
 static char *link_name(Walk *w, size_t i) {
   CagUrdf *u = w->u;
-  char wanted[120], name[150];
+  char wanted[NAME_ROOM], name[NAME_ROOM + 32];
   CagValue shape = CAG_AS_LINK(w->value->links->as.items[i])->shape;
   const CagText *said = cag_is_shape(shape) ? CAG_AS_SHAPE(shape)->name : NULL;
   if (said && said->length > 0 && said->length < sizeof wanted)
@@ -123,8 +127,8 @@ static size_t keep_material(CagUrdf *u, const char *said, CagColor color, double
     while (i < u->material_count && strcmp(u->materials[i].name, m.name) != 0) i++;
     if (i < u->material_count && same_material(&u->materials[i], &m)) return i;
     if (i == u->material_count) break;
-    char numbered[200];
-    snprintf(numbered, sizeof numbered, "%.160s_%zu", wanted, k + 1);
+    char numbered[NAME_ROOM + 32];
+    snprintf(numbered, sizeof numbered, "%s_%zu", wanted, k + 1);
     m.name = text_of(u, numbered);
   }
   if (u->material_count == u->material_room) {
@@ -148,6 +152,23 @@ static CagUrdfShape *add_shape(CagUrdf *u, size_t link, CagUrdfShapeKind kind) {
   *l->last_shape = s;
   l->last_shape = &s->next;
   return s;
+}
+
+// File systems may take large and small letters for the same.
+static bool file_is_taken(const CagUrdf *u, const char *file) {
+  for (size_t i = 0; i < u->link_count; i++)
+    for (const CagUrdfShape *s = u->links[i].shapes; s; s = s->next)
+      if (s->file && !strcasecmp(s->file, file)) return true;
+  return false;
+}
+
+// The name of the next mesh of a link: foot.stl, foot_2.stl ...
+static char *file_name(CagUrdf *u, const char *link) {
+  char file[200];
+  snprintf(file, sizeof file, "%s.stl", link);
+  for (size_t k = 2; file_is_taken(u, file); k++)
+    snprintf(file, sizeof file, "%s_%zu.stl", link, k);
+  return text_of(u, file);
 }
 
 static bool mesh_of(Walk *w, CagScene *scene, const CagItem *item, CagMesh **out) {
@@ -179,8 +200,8 @@ static double density_of(CagValue leaf) {
 static const char *material_name(CagValue leaf) {
   const CagRecord *m = CAG_AS_SHAPE(leaf)->material;
   CagValue said = m ? cag_record_get(m, "name") : cag_unset();
-  return said.type == CAG_TEXT && CAG_AS_TEXT(said)->length > 0 ? CAG_AS_TEXT(said)->bytes
-                                                                : "material";
+  const CagText *name = said.type == CAG_TEXT ? CAG_AS_TEXT(said) : NULL;
+  return name && name->length > 0 && name->length < NAME_ROOM ? name->bytes : "material";
 }
 
 // The one item of a leaf, as a mesh of the link, and its mass.
@@ -197,12 +218,9 @@ static bool add_item(Walk *w, CagScene *scene, CagValue leaf) {
     cag_mesh_release(mesh);
     return true;
   }
-  size_t number = 1;
-  for (const CagUrdfShape *s = l->shapes; s; s = s->next) number++;
+  char *file = file_name(u, l->name);
   CagUrdfShape *s = add_shape(u, w->link, CAG_URDF_MESH);
-  char file[200];
-  snprintf(file, sizeof file, number > 1 ? "%s_%zu.stl" : "%s.stl", l->name, number);
-  s->file = text_of(u, file);
+  s->file = file;
   s->mesh = mesh;
   s->place = w->at;
   s->material =

@@ -22,6 +22,9 @@
 #define BODIES_MOST 16384
 
 #define MILLIMETRES 1000.0
+// Metres: robots are larger than the one and smaller than the other.
+#define LENGTH_LEAST 1e-9
+#define LENGTH_MOST 1e9
 
 typedef struct NamedColor {
   const char *name;
@@ -108,12 +111,22 @@ static bool numbers(Reader *r, const xmlNode *node, const char *name, double *ou
   return true;
 }
 
+// The same for lengths in metres and factors of them: none is beyond all measure.
+static bool lengths(Reader *r, const xmlNode *node, const char *name, double *out, int n) {
+  if (!numbers(r, node, name, out, n)) return false;
+  for (int i = 0; i < n; i++)
+    if (fabs(out[i]) > LENGTH_MOST)
+      fail_at(r, syntax, xmlGetLineNo((xmlNode *)node), "%s of <%.40s> is beyond all measure: %g",
+              name, (const char *)node->name, out[i]);
+  return r->status == CAG_OK;
+}
+
 // --- Elements that several have ---
 
 static CagTransform origin_of(Reader *r, const xmlNode *owner) {
   double xyz[3] = {0}, rpy[3] = {0};
   const xmlNode *n = child(owner, "origin");
-  numbers(r, n, "xyz", xyz, 3);
+  lengths(r, n, "xyz", xyz, 3);
   numbers(r, n, "rpy", rpy, 3);
   CagTransform t = cag_rpy(rpy[0], rpy[1], rpy[2]);
   for (int i = 0; i < 3; i++) t.m[i][3] = xyz[i] * MILLIMETRES;
@@ -163,21 +176,23 @@ static void read_geometry(Reader *r, const xmlNode *n, CagUrdfBody *b) {
     b->kind = CAG_URDF_BODY_MESH;
     b->file = wanted(r, g, "filename");
     for (int i = 0; i < 3; i++) b->scale[i] = 1;
-    numbers(r, g, "scale", b->scale, 3);
+    lengths(r, g, "scale", b->scale, 3);
     for (int i = 0; i < 3; i++)
-      if (b->scale[i] == 0) fail_at(r, syntax, b->line, "the scale of a mesh must not be 0");
+      if (fabs(b->scale[i]) < LENGTH_LEAST)
+        fail_at(r, syntax, b->line, "the scale of a mesh must not be 0");
     return;
   }
   if ((g = child(n, "box"))) {
     b->kind = CAG_URDF_BODY_BOX;
-    sized = numbers(r, g, "size", size, 3) && size[0] > 0 && size[1] > 0 && size[2] > 0;
+    sized = lengths(r, g, "size", size, 3) && size[0] > LENGTH_LEAST && size[1] > LENGTH_LEAST &&
+            size[2] > LENGTH_LEAST;
   } else if ((g = child(n, "cylinder"))) {
     b->kind = CAG_URDF_BODY_CYLINDER;
-    sized = numbers(r, g, "radius", &size[0], 1) && numbers(r, g, "length", &size[1], 1) &&
-            size[0] > 0 && size[1] > 0;
+    sized = lengths(r, g, "radius", &size[0], 1) && lengths(r, g, "length", &size[1], 1) &&
+            size[0] > LENGTH_LEAST && size[1] > LENGTH_LEAST;
   } else if ((g = child(n, "sphere"))) {
     b->kind = CAG_URDF_BODY_SPHERE;
-    sized = numbers(r, g, "radius", &size[0], 1) && size[0] > 0;
+    sized = lengths(r, g, "radius", &size[0], 1) && size[0] > LENGTH_LEAST;
   } else {
     fail_at(r, syntax, b->line, "<geometry> holds no mesh, box, cylinder or sphere");
   }

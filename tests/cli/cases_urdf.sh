@@ -90,6 +90,16 @@ status 2
 says 'standard output has no place beside it'
 prints_nothing
 
+it 'each mesh has a file of its own'
+script names.cag 'foot(k) = named(group(box(k), box(k + 1)), "foot")
+show robot([revolute(shape: foot(1)), revolute(shape: named(box(5), "foot_2")), revolute(shape: foot(7)), revolute(shape: named(box(9), "Foot")),
+  revolute(shape: named(box(10), "tool"))])'
+try export names.cag -o names.urdf
+status 0
+[ "$(ls names_meshes | wc -l)" -eq 7 ] || wrong "not seven files: $(ls names_meshes | tr '\n' ' ')"
+[ "$(grep -o 'filename="[^"]*"' names.urdf | sort -u | wc -l)" -eq 7 ] || wrong 'not seven names'
+accepted names.urdf
+
 it 'a coupling is said in a comment'
 script coupled.cag 'show robot([revolute(a: 3), revolute(a: 2)], coupling: [[1, 0], [1, 1]])'
 try export coupled.cag -o coupled.urdf

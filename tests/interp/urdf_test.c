@@ -494,6 +494,9 @@ static void what_is_no_robot_is_refused(void **state) {
        "1\"/></geometry></visual></link></robot>",
        "urdf-syntax"},
       {"<robot><link name=\"a\"><visual/></link></robot>", "urdf-syntax"},
+      {"<robot>" LINKS "<joint name=\"j\" type=\"fixed\">" ENDS
+       "<origin xyz=\"1e300 0 0\"/></joint></robot>",
+       "urdf-syntax"},
       {"<!DOCTYPE robot SYSTEM \"file:///etc/passwd\"><robot><link name=\"a\"/></robot>",
        "urdf-syntax"},
       {"<!DOCTYPE r [<!ENTITY a \"aaaa\"><!ENTITY b \"&a;&a;&a;&a;\">]><robot name=\"&b;\"><link "
