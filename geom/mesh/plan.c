@@ -41,6 +41,7 @@ typedef struct Needs {
   double uu, uv, vv;
   double turn[2];   // of the normal
   double bend[2];   // the same, but for where it turns at once, at cusps
+  double both;      // of bends, about the same axis
   double length[2]; // of lines
 } Needs;
 
@@ -50,6 +51,7 @@ typedef struct Sampled {
   bool has_normal[SAMPLES];
   double off_uu[SAMPLES], off_uv[SAMPLES], off_vv[SAMPLES];
   double turn[2][SAMPLES]; // of the normal on the way to the next sample
+  double both[SAMPLES];    // the product of both turns where they have the same axis, else less
 } Sampled;
 
 // --- Sampling ---
@@ -105,6 +107,18 @@ static void find_turns(Sampled *s) {
       }
 }
 
+// Along a diagonal the turns add up where they have the same axis.
+static void find_common_turns(Sampled *s) {
+  for (int i = 0; i < STEPS; i++)
+    for (int j = 0; j < STEPS; j++) {
+      int k = i * SIDE + j;
+      CagVec3 u = cag_sub(s->normals[k + SIDE], s->normals[k]),
+              v = cag_sub(s->normals[k + 1], s->normals[k]);
+      bool known = s->has_normal[k] && s->has_normal[k + SIDE] && s->has_normal[k + 1];
+      s->both[k] = known ? fabs(cag_dot(u, v)) * STEPS * STEPS : 0;
+    }
+}
+
 static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *err) {
   double ts[2][SIDE], length[2];
   for (int d = 0; d < 2; d++) {
@@ -122,6 +136,7 @@ static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *er
   find_normals(s);
   find_second_partials(s);
   find_turns(s);
+  find_common_turns(s);
   return CAG_OK;
 }
 
@@ -175,6 +190,8 @@ static Needs needs_of(const Sampled *s, Range r) {
       n.vv = fmax(n.vv, s->off_vv[k]);
       n.length[0] = fmax(n.length[0], cag_norm(s->du[k]));
       n.length[1] = fmax(n.length[1], cag_norm(s->dv[k]));
+      if (i < r.u1 && j < r.v1 && fmax(s->turn[0][k], s->turn[1][k]) <= turned_away * STEPS)
+        n.both = fmax(n.both, s->both[k]);
       for (int d = 0; d < 2; d++) {
         if (d == 0 ? i == r.u1 : j == r.v1) continue;
         n.turn[d] = fmax(n.turn[d], s->turn[d][k]);
@@ -183,6 +200,7 @@ static Needs needs_of(const Sampled *s, Range r) {
     }
   n.uu *= part[0] * part[0];
   n.uv *= part[0] * part[1];
+  n.both *= part[0] * part[1];
   n.vv *= part[1] * part[1];
   for (int d = 0; d < 2; d++) {
     n.turn[d] *= part[d];
@@ -261,7 +279,8 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
     double a = needs->bend[0] > no_turn ? needs->bend[0] : 0,
            b = needs->bend[1] > no_turn ? needs->bend[1] : 0,
            limit = closely * closely * how->angle * how->angle;
-    best_counts(&(Form){a * a, 0, b * b, limit}, square_ratio, most);
+    best_counts(&(Form){a * a, a > 0 && b > 0 ? 2 * needs->both : 0, b * b, limit}, square_ratio,
+                most);
     // Edges that are far shorter than the tolerance need not be shorter: at a cusp the normal turns
     // at once.
     const double shortest = 0.2; // of the tolerance
