@@ -158,6 +158,8 @@ CAG_API void cag_session_members(CagSession *s, const char *path,
 // Writes the interactive session as a script: imports, definitions as they are now, asserts, shows.
 CAG_API void cag_session_write_script(CagSession *s, FILE *out);
 CAG_API void cag_session_clear(CagSession *s);
+// Module i of the standard library, as import writes it ("std.robots"); NULL behind the last.
+CAG_API const char *cag_library_module(size_t i);
 // Names of all built-ins, NULL at the end.
 CAG_API const char *const *cag_builtin_name_list(void);
 // Documentation of a built-in name as text to `out`; false: no such name.

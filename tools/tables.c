@@ -17,7 +17,6 @@
 
 #include <string.h>
 
-#include "interp/eval/stdlib.h"
 #include "interp/tool/cli.h"
 #include "interp/tool/repl.h"
 
@@ -91,7 +90,8 @@ int main(void) {
   write_repl();
   write_formats();
   write_builtins();
-  for (const CagStdlibFile *f = cag_stdlib; f->module; f++) printf("module\t%s\n", f->module);
+  const char *module;
+  for (size_t i = 0; (module = cag_library_module(i)); i++) printf("module\t%s\n", module);
   write_errors();
   return ferror(stdout) || fflush(stdout) ? 1 : 0;
 }

@@ -3,7 +3,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interp/eval/stdlib.h"
 #include "interp/session/session.h"
+
+const char *cag_library_module(size_t i) {
+  for (size_t k = 0; k < i; k++)
+    if (!cag_stdlib[k].module) return NULL;
+  return cag_stdlib[i].module;
+}
 
 const char *const *cag_builtin_name_list(void) { return cag_builtin_names(); }
 

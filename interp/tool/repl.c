@@ -161,6 +161,7 @@ static void read_texts(CagRepl *repl) {
   Text text = {0};
   char *line;
   while (!repl->quit && go_on(repl)) {
+    repl->before = text.bytes;
     CagReplRead read = cag_repl_read(repl->input, text.bytes != NULL, &line);
     if (read == CAG_REPL_END) break;
     if (read == CAG_REPL_INTERRUPTED) clear_text(&text);

@@ -3,6 +3,7 @@
 //     repl.c           reading texts and evaluating them
 //     repl_input.c     lines, from the line editor or from a pipe; history
 //     repl_complete.c  what Tab proposes
+//     repl_import.c    the same behind import
 //     repl_commands.c  the `:` commands
 //
 // With a terminal on both sides lines are edited, and Ctrl-C stops what runs. Else lines are just
@@ -22,8 +23,9 @@ typedef struct CagRepl {
   CagReplInput *input;
   bool interactive; // a person at a terminal
   bool quit;
-  int status;    // of the first failure; CAG_STATUS_OK
-  char **loaded; // the files of :load, for :reload
+  int status;         // of the first failure; CAG_STATUS_OK
+  const char *before; // the lines that the line being read goes on; NULL: none
+  char **loaded;      // the files of :load, for :reload
   size_t loaded_count;
 } CagRepl;
 
@@ -52,6 +54,16 @@ typedef struct CagReplProposals {
 // What could stand in place of the word before the end of `text` (the line up to the cursor).
 CagReplProposals cag_repl_propose(CagRepl *repl, const char *text);
 void cag_repl_proposals_free(CagReplProposals *p);
+// Adds a text that begins with `prefix` (of p->length bytes), once.
+void cag_repl_propose_text(CagReplProposals *p, const char *text, size_t length,
+                           const char *prefix);
+// Where the name that ends at `end` begins.
+const char *cag_repl_word(const char *text, const char *end);
+
+// --- repl_import.c ---
+
+// Proposals for a line that begins with `import`; false for other lines, and within its text.
+bool cag_repl_propose_import(CagRepl *repl, CagReplProposals *p, const char *line);
 
 // --- repl_commands.c ---
 

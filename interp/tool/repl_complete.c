@@ -1,5 +1,6 @@
-// What Tab proposes: commands behind `:`, files behind the commands that take one, else members
-// behind a `.`, the named arguments of the call that the cursor is in, and names.
+// What Tab proposes: commands behind `:`, files behind the commands that take one and in the texts
+// of functions that read one, else members behind a `.`, the named arguments of the call that the
+// cursor is in, and names.
 
 #include <ctype.h>
 #include <glob.h>
@@ -9,7 +10,8 @@
 #include "interp/tool/repl.h"
 
 // Each text once; the name of an argument that is proposed as `name: ` is not proposed again.
-static void propose(CagReplProposals *p, const char *text, size_t length, const char *prefix) {
+void cag_repl_propose_text(CagReplProposals *p, const char *text, size_t length,
+                           const char *prefix) {
   if (length < p->length || strncmp(text, prefix, p->length) != 0) return;
   for (size_t i = 0; i < p->count; i++)
     if (strcspn(p->items[i], ":") == length && strncmp(p->items[i], text, length) == 0) return;
@@ -32,7 +34,7 @@ void cag_repl_proposals_free(CagReplProposals *p) {
 // Letters of other alphabets are bytes from 128 on.
 static bool is_word(char c) { return isalnum((unsigned char)c) || c == '_' || (c & 0x80); }
 
-static const char *word_start(const char *text, const char *end) {
+const char *cag_repl_word(const char *text, const char *end) {
   while (end > text && is_word(end[-1])) end--;
   return end;
 }
@@ -44,7 +46,7 @@ static void propose_files(CagReplProposals *p, const char *path) {
   if (asprintf(&pattern, "%s*", path) < 0) return;
   if (glob(pattern, GLOB_MARK, NULL, &found) == 0)
     for (size_t i = 0; i < found.gl_pathc; i++)
-      propose(p, found.gl_pathv[i], strlen(found.gl_pathv[i]), path);
+      cag_repl_propose_text(p, found.gl_pathv[i], strlen(found.gl_pathv[i]), path);
   globfree(&found);
   free(pattern);
 }
@@ -55,17 +57,18 @@ static void propose_names(CagRepl *repl, CagReplProposals *p, const char *prefix
                                       "or",  "param", "print",  "show", "then", "true"};
   const char *name;
   for (size_t i = 0; (name = cag_session_name(repl->session, i, NULL, NULL)); i++)
-    propose(p, name, strlen(name), prefix);
-  for (const char *const *b = cag_builtin_name_list(); *b; b++) propose(p, *b, strlen(*b), prefix);
+    cag_repl_propose_text(p, name, strlen(name), prefix);
+  for (const char *const *b = cag_builtin_name_list(); *b; b++)
+    cag_repl_propose_text(p, *b, strlen(*b), prefix);
   for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-    propose(p, words[i], strlen(words[i]), prefix);
+    cag_repl_propose_text(p, words[i], strlen(words[i]), prefix);
 }
 
 static void propose_commands(CagReplProposals *p, const char *prefix) {
   p->length = strlen(prefix);
   const char *name;
   for (size_t i = 0; cag_repl_command_row(i, &name, NULL, NULL); i++)
-    propose(p, name, strlen(name), prefix);
+    cag_repl_propose_text(p, name, strlen(name), prefix);
 }
 
 // --- Members ---
@@ -77,7 +80,7 @@ typedef struct Members {
 
 static void take_member(void *context, const char *name) {
   const Members *m = context;
-  propose(m->proposals, name, strlen(name), m->prefix);
+  cag_repl_propose_text(m->proposals, name, strlen(name), m->prefix);
 }
 
 // --- Named arguments ---
@@ -99,7 +102,7 @@ static void propose_parameters(CagReplProposals *p, const char *signature, size_
     char name[64];
     if (to > from && (size_t)(to - from) < sizeof name - 3) {
       int n = snprintf(name, sizeof name, "%.*s: ", (int)(to - from), from);
-      propose(p, name, (size_t)n, prefix);
+      cag_repl_propose_text(p, name, (size_t)n, prefix);
     }
   }
 }
@@ -118,20 +121,85 @@ static void propose_arguments_of(CagRepl *repl, CagReplProposals *p, const char 
       propose_parameters(p, text, strlen(text), prefix);
 }
 
-// The name before the innermost open parenthesis, to be freed; NULL: none is open.
-static char *find_call(const char *text, const char *end) {
-  int depth = 0;
-  for (const char *at = end; at > text; at--) {
-    if (strchr(")]}", at[-1])) depth++;
-    if (!strchr("([{", at[-1]) || depth-- > 0) continue;
-    const char *start = word_start(text, at - 1);
-    return at[-1] == '(' && start < at - 1 ? strndup(start, (size_t)(at - 1 - start)) : NULL;
+// --- Where the cursor is ---
+
+// Brackets that nest deeper are not looked into.
+#define DEPTH_MAX 64
+
+// What is open at the end of a text: brackets, texts and the { } within them, innermost last.
+typedef struct Open {
+  char kinds[DEPTH_MAX]; // ( [ { " ` and $ for the { of a text
+  const char *places[DEPTH_MAX];
+  size_t count;
+} Open;
+
+static void enter(Open *o, char kind, const char *at) {
+  if (o->count == DEPTH_MAX) return;
+  o->kinds[o->count] = kind;
+  o->places[o->count++] = at;
+}
+
+static char innermost(const Open *o) { return o->count ? o->kinds[o->count - 1] : 0; }
+
+// Takes a character of a text; gives back the last one that belongs to it.
+static const char *scan_text(Open *o, const char *at) {
+  const char quote = innermost(o);
+  if (*at == quote) o->count--;
+  else if (quote == '`') return at;
+  else if (*at == '\n') o->count--; // a text ends on its line
+  else if (*at == '\\' && at[1]) return at + 1;
+  else if (*at == '{') enter(o, '$', at);
+  return at;
+}
+
+static Open scan(const char *text) {
+  Open o = {.count = 0};
+  for (const char *at = text; *at; at++) {
+    const char in = innermost(&o);
+    if (in == '"' || in == '`') {
+      at = scan_text(&o, at);
+    } else if (*at == '/' && at[1] == '/') {
+      at += strcspn(at, "\n");
+      if (!*at) break;
+    } else if (strchr("([{\"`", *at)) {
+      enter(&o, *at, at);
+    } else if (strchr(")]}", *at) && o.count) {
+      o.count--;
+    }
   }
-  return NULL;
+  return o;
+}
+
+// The name before the parenthesis that is the innermost bracket but texts, to be freed; NULL: none.
+static char *find_call(const char *text, const Open *o) {
+  size_t i = o->count;
+  while (i > 0 && strchr("\"`", o->kinds[i - 1])) i--;
+  if (i == 0 || o->kinds[i - 1] != '(') return NULL;
+  const char *end = o->places[i - 1], *start = cag_repl_word(text, end);
+  return start < end ? strndup(start, (size_t)(end - start)) : NULL;
+}
+
+static bool reads_file(const char *function) { return strncmp(function, "read_", 5) == 0; }
+
+// Files in the open text of a call that reads one, or of an import.
+static void propose_in_text(CagReplProposals *p, const char *text, const Open *o) {
+  const char *quote = o->places[o->count - 1];
+  char *function = find_call(text, o);
+  const char *line = quote;
+  while (line > text && line[-1] != '\n') line--;
+  line += strspn(line, " \t");
+  if (strncmp(line, "import", 6) == 0 || (function && reads_file(function)))
+    propose_files(p, quote + 1);
+  free(function);
 }
 
 static void propose_words(CagRepl *repl, CagReplProposals *p, const char *text) {
-  const char *end = text + strlen(text), *word = word_start(text, end);
+  const Open open = scan(text);
+  if (strchr("\"`", innermost(&open)) && open.count) {
+    propose_in_text(p, text, &open);
+    return;
+  }
+  const char *end = text + strlen(text), *word = cag_repl_word(text, end);
   p->length = (size_t)(end - word);
   if (word > text && word[-1] == '.' && (word < text + 2 || word[-2] != '.')) {
     const char *object = word - 1;
@@ -141,18 +209,28 @@ static void propose_words(CagRepl *repl, CagReplProposals *p, const char *text) 
     free(path);
     return;
   }
-  char *function = find_call(text, word);
+  char *function = find_call(text, &open);
   if (function) propose_arguments_of(repl, p, function, word);
   free(function);
   if (p->length > 0) propose_names(repl, p, word);
+}
+
+// A line that goes on with the lines before it.
+static void propose_further(CagRepl *repl, CagReplProposals *p, const char *line) {
+  char *text = NULL;
+  if (asprintf(&text, "%s%s", repl->before, line) < 0) return;
+  propose_words(repl, p, text);
+  free(text);
 }
 
 CagReplProposals cag_repl_propose(CagRepl *repl, const char *text) {
   CagReplProposals p = {0};
   text += strspn(text, " \t");
   size_t n = strcspn(text, " \t");
-  if (*text != ':') {
-    propose_words(repl, &p, text);
+  if (repl->before) {
+    propose_further(repl, &p, text);
+  } else if (*text != ':') {
+    if (!cag_repl_propose_import(repl, &p, text)) propose_words(repl, &p, text);
   } else if (!text[n]) {
     propose_commands(&p, text);
   } else {

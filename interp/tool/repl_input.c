@@ -133,6 +133,7 @@ static int read_character(EditLine *editor, wchar_t *out) {
   mbstate_t state = {0};
   for (;;) {
     char byte;
+    if (cag_tool_interrupt) return -1; // it came while Tab was looking
     ssize_t n = read(STDIN_FILENO, &byte, 1);
     if (n < 0 && errno == EINTR && !cag_tool_interrupt) continue; // the window changed its size
     if (n < 0) return -1;

@@ -110,6 +110,7 @@ complains 'an error of names gives the nearest' 1 'did you mean radius?' 'radius
 raduis'
 complains 'an unknown command gives the nearest' 2 'did you mean `:help`?' ':hlep'
 complains 'an input cut off says what is open' 1 'never closed' '[1, 2'
+complains 'a command that is not there says so' 2 'there is no command `:view`' ':view'
 complains 'a command without its operand says what it wants' 2 ':load FILE' ':load'
 complains ':type of a statement wants an expression' 2 'wants an expression' ':type x = 1'
 complains 'a script that is missing has status 3' 3 'missing.cag' ':load missing.cag'
@@ -183,6 +184,21 @@ shows() {
 $(screen)"
 }
 
+# completes NAME TEXT LINE: what Tab makes of a text that is typed, which is dropped then.
+completes() {
+  wait_for 'cag>'
+  keys -l "$2"
+  wait_for "cag> $2"
+  keys Tab
+  wait_for "cag> $3"
+  got=$(screen | sed 's/ *$//' | grep . | tail -n 1)
+  [ "$got" = "cag> $3" ]
+  result "$1" $? "expected: cag> $3
+got:      $got"
+  keys C-c
+  wait_for 'cag>'
+}
+
 open_terminal() {
   tmux -L "$session" -f /dev/null new-session -d -s repl -x 100 -y 40 \
     env XDG_STATE_HOME="$XDG_STATE_HOME" LC_ALL=C.UTF-8 TERM=screen NO_COLOR=1 "$cag"
@@ -210,12 +226,46 @@ else
   shows 'Tab completes commands' 'cag> :scene'
   keys ':load par' Tab 't' Tab Enter 'width' Enter
   shows 'Tab completes files' '40 : number'
+  echo 'span = 3' >gripper.cag
+  completes 'Tab completes modules of the library' 'import std.ro' 'import std.robots'
+  completes 'Tab completes scripts that can be imported' 'import gri' 'import gripper'
+  completes 'Tab completes files in the text of an import' 'import "gri' 'import "gripper.cag'
+  completes 'Tab completes names of the module that is imported' 'import std.robots: pand' 'import std.robots: panda'
+  completes 'Tab completes names of a script that is imported' 'import gripper: s' 'import gripper: span'
+  completes 'Tab completes files in the text of a function that reads one' 'read_text("gri' 'read_text("gripper.cag'
+  completes 'Tab completes nothing in other texts' 'print "sphere_s' 'print "sphere_s'
+  completes 'Tab completes names within the braces of a text' 'print "a {sphere_s' 'print "a {sphere_surface'
+  completes 'Tab completes files behind :export' ':export grip' ':export gripper.cag'
+  completes 'Tab completes files behind the beginning of a command' ':lo grip' ':lo gripper.cag'
+  completes 'Tab completes names behind :help' ':help sphere_s' ':help sphere_surface'
+  completes 'a bracket within a text opens nothing' 'print "(", sphere_s' 'print "(", sphere_surface'
+  keys 'import std.robots as robots' Enter 'plate(width, thickness = 2) = width' Enter 'ball = sphere(5)' Enter 'turned = rotate(Z, 30deg)' Enter
+  completes 'Tab completes members of a module' 'robots.puma5' 'robots.puma560'
+  completes 'Tab completes members of a transform' 'turned.ori' 'turned.origin'
+  completes 'Tab completes members of members' 'robots.puma560.dof' 'robots.puma560.dof'
+  completes 'Tab completes arguments of functions defined here' 'plate(1, thickn' 'plate(1, thickness:'
+  keys 'bspline(' Enter '[[0, 0], [1, 1]], degr' Tab '1)' Enter
+  shows 'Tab completes named arguments of the line before' '...> [[0, 0], [1, 1]], degree: 1)'
+  keys 'width = 3' Enter 'twice = 2 * width' Enter 'twice' Enter 'width = 50' Enter 'twice' Enter
+  shows 'what depends on a name follows on a terminal' '100 : number'
   keys 'f(n) = f(n + 1)' Enter 'f(0)' Enter
   sleep 0.5
   keys C-c
   shows 'Ctrl-C stops an evaluation' 'interrupted'
   keys '5 * 5' Enter
   shows 'the session goes on after Ctrl-C' '25 : number'
+  if command -v povray >/dev/null; then
+    keys 'show ball, camera([90, -60, 40], size: [4000, 4000])' Enter ':render large.png' Enter
+    sleep 1
+    keys C-c
+    wait_for 'cag>'
+    keys '5 * 7' Enter
+    shows 'Ctrl-C stops a render and keeps the session' '35 : number'
+    [ ! -e large.png ] && ! ls large* >/dev/null 2>&1
+    result 'a render that was stopped leaves nothing' $? "$(ls)"
+    keys ':clear' Enter 'show sphere(10), camera([90, -60, 40], size: [32, 24])' Enter ':render' Enter
+    shows ':render says the path of the picture' 'wrote scene.png'
+  fi
   keys 'never evaluated'
   wait_for 'cag> never evaluated'
   keys C-c
