@@ -93,6 +93,21 @@ prints "$all_the_same"
 it 'copies are written once'
 [ "$(wc -c < bodies.glb)" -lt "$(($(wc -c < bodies.ply) * 3 / 4))" ] || wrong 'the .glb holds every copy'
 
+it 'values are shown by colours where the format has them'
+script colors.cag 'show colored_by(torus_surface(3, 1), "gaussian") |> named("map"), zebra(translate([9, 0, 0]) * sphere_surface(2))
+show translate([0, 9, 0]) * colored_by(torus_surface(3, 1), "gaussian"), translate([0, 18, 0]) * colored_by(torus_surface(3, 1), "mean")'
+for format in gltf glb ply 3mf obj stl pov; do
+  try export colors.cag -o "colors.$format"
+  status 0
+done
+[ "$(grep -o COLOR_0 colors.gltf | wc -l)" -eq 3 ] || wrong 'the moved copy of a map shares its mesh, the others have colours of their own'
+grep -q uv_mapping colors.pov || wrong 'the .pov has no colours'
+if have unzip && have xmllint; then
+  unzip -p colors.3mf 3D/3dmodel.model > colors.xml
+  xmllint --noout colors.xml || wrong 'the .3mf is no XML'
+  [ "$(grep -c '<m:colorgroup' colors.xml)" -eq 3 ] || wrong 'the .3mf has not a group of colours for each mesh'
+fi
+
 it 'meshes without a triangle are no output'
 script labels.cag 'show label([1, 2, 3], "here")'
 try export labels.cag -o labels.stl
@@ -113,7 +128,7 @@ show revolve(line([5, 0], [0, 3]))
 show sphere(1e-3), translate(sphere(2), [1e5, 0, 0]), sphere(1) |> material({emission: "red"})'
   try export open.cag -o open.glb
   try export open.cag -o open.gltf
-  validate bodies.glb bodies.gltf embedded.gltf open.glb open.gltf 'für 100% von "mir" #1.gltf'
+  validate bodies.glb bodies.gltf embedded.gltf open.glb open.gltf colors.glb colors.gltf 'für 100% von "mir" #1.gltf'
 fi
 
 if have admesh; then
