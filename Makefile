@@ -170,7 +170,11 @@ $(BUILD)/tests/bench/occt: tests/bench/occt.cpp
 	@mkdir -p $(@D)
 	$Q$(CXX) -std=c++17 -O3 -isystem $(dir $(OCCT)) $< -o $@ -lTKMesh -lTKTopAlgo -lTKBRep -lTKG3d -lTKGeomBase \
 	  -lTKMath -lTKernel
-bench: all $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans
+# What Tab proposes belongs to the program, not to the library.
+$(BUILD)/tests/bench/complete: tests/bench/complete.c $(filter-out %/interp/main.o,$(TOOL_OBJ)) $(BUILD)/libcag.a
+	@mkdir -p $(@D)
+	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
+bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans
 	BUILD=$(BUILD) sh tests/bench/run.sh
 
 FORMATTED = $(shell find include lang geom interp tests tools -name '*.[ch]' | sort)
