@@ -232,8 +232,8 @@ bool cag_scenes_group(CagCall *call, CagValue *result) {
 }
 
 bool cag_scenes_line_style(CagCall *call, CagValue *result) {
-  static const char *const names[] = {"radius", "dash"};
-  CagValue values[2];
+  static const char *const names[] = {"radius", "dash", "robot"};
+  CagValue values[3];
   for (int i = 0; i < 2; i++) {
     double x = 0;
     bool given = cag_given(call, i + 1) && call->values[i + 1].type != CAG_NONE;
@@ -242,6 +242,11 @@ bool cag_scenes_line_style(CagCall *call, CagValue *result) {
   }
   if (!copy_shape(call, result)) return false;
   CagShape *shape = CAG_AS_SHAPE(*result);
-  if (!shape->style) shape->style = CAG_AS_RECORD(cag_record_new(call->vm, names, values, 2));
+  // A drawing of a robot says whose it is, and nothing of lines.
+  values[2] = shape->style ? cag_record_get(shape->style, "robot") : cag_unset();
+  bool drawn =
+      values[2].type == CAG_ROBOT && cag_record_get(shape->style, "radius").type == CAG_UNSET;
+  if (!shape->style || drawn)
+    shape->style = CAG_AS_RECORD(cag_record_new(call->vm, names, values, drawn ? 3 : 2));
   return true;
 }
