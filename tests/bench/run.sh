@@ -50,6 +50,26 @@ if peer openscad && [ -f $here/rev.scad ]; then
   report "revolved profile to STL" "$(best "$CAG" export $here/rev.cag -o "$tmp/rev.stl" -q)" "openscad" "$(best openscad -o "$tmp/scad.stl" $here/rev.scad)" "< 1"
 fi
 
+echo "--- the REPL, fmt and check"
+report "cag repl to its end, one expression" "$(best sh -c "echo 1 + 1 | $CAG repl")" "" "" "< 0.030 s"
+slowest=$("$B/tests/bench/complete")
+report "the slowest Tab: ${slowest#* }" "${slowest%% *}" "" "" "< 0.010 s"
+# A script of 100,000 lines: functions, shapes, records, comments.
+awk 'BEGIN {
+  for (i = 1; i <= 20000; i++) {
+    print "/// part " i " of the row"
+    print "part_" i "(width, height = " i % 90 + 1 ") = box([width, height, 2]) |> translate([" i ", 0, 0])"
+    print "curve_" i " = bspline([[0, 0], [" i ", 2], [4, " i " - 1.5], [9, 0]], degree: 3)"
+    print "row_" i " = { name: \"part {" i "}\", size: [10, 20, 30], angle: " i % 360 "deg }  // its row"
+    print "show part_" i "(row_" i ".size[0]) |> rotate(Z, row_" i ".angle), tube(curve_" i ", 0.5)"
+  }
+}' > "$tmp/long.cag"
+lines=$(wc -l < "$tmp/long.cag")
+for job in fmt check; do
+  if [ $job = fmt ]; then "$CAG" fmt "$tmp/long.cag" > /dev/null; seconds=$(best "$CAG" fmt --check "$tmp/long.cag"); aim=500000; else seconds=$(best "$CAG" check "$tmp/long.cag"); aim=100000; fi
+  awk "BEGIN { printf \"%-44s %9.0f lines a second%33s   aim >= %d\n\", \"cag $job of $lines lines\", $lines / $seconds, \"\", $aim }"
+done
+
 echo "--- memory"
 for job in million fold; do
   ours=$( { /usr/bin/time -f %M "$CAG" run $here/$job.cag >/dev/null; } 2>&1 | tail -n 1)
