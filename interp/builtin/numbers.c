@@ -137,6 +137,9 @@ static bool call_round(CagCall *call, CagValue *result) {
   return true;
 }
 
+// After so many elements of a long range it is asked whether the search may go on.
+enum { STEPS_BETWEEN_CHECKS = 1 << 14 };
+
 // The least (sign = -1) or greatest (sign = 1) of the arguments, or of the one list.
 static bool extreme(CagCall *call, int sign, CagValue *result) {
   CagSequence s;
@@ -152,6 +155,8 @@ static bool extreme(CagCall *call, int sign, CagValue *result) {
     if (!cag_order(v, i == 0 ? v : *result, &order))
       return cag_fail_order(call, of_list ? 0 : (int)i, i == 0 ? v : *result, v);
     if (i == 0 || order == sign) *result = v;
+    if (i % STEPS_BETWEEN_CHECKS == STEPS_BETWEEN_CHECKS - 1 && !cag_keep_going(call->vm))
+      return false;
   }
   return true;
 }
