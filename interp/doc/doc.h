@@ -66,6 +66,10 @@ const char *cag_doc_library(const char *name, const char **text, size_t *length)
 // Name of library module i, NULL behind the last.
 const char *cag_doc_module_name(size_t i);
 
+// The default that a signature says: of `"left"|"right"`, all that may be said, the first. `n`
+// bytes.
+size_t cag_doc_default(const char *fallback);
+
 // The first sentence of a summary: `n` bytes from its start on.
 size_t cag_doc_sentence(const char *text);
 

@@ -143,6 +143,11 @@ const char *cag_doc_module_name(size_t i) { return cag_stdlib[i].module; }
 
 // --- Summaries ---
 
+size_t cag_doc_default(const char *fallback) {
+  const char *others = strstr(fallback, "\"|\"");
+  return others ? (size_t)(others - fallback) + 1 : strlen(fallback);
+}
+
 size_t cag_doc_sentence(const char *text) {
   for (const char *at = text; *at; at++) {
     const bool stop = *at == '.' && (at[1] == ' ' || at[1] == '\n' || at[1] == 0);

@@ -23,7 +23,7 @@ static void write_parameter(const CagSitePage *p, const CagDocParameter *known, 
   fputs("</td><td>", p->out);
   if (fallback) {
     fputs("<code>", p->out);
-    cag_html_script(p->out, p->root, fallback, strlen(fallback));
+    cag_html_script(p->out, p->root, fallback, cag_doc_default(fallback));
     fputs("</code>", p->out);
   }
   fputs("</td><td>", p->out);

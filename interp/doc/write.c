@@ -58,8 +58,9 @@ static void write_parameter(FILE *out, const CagDocParameter *p, const char *nam
   const int used = fprintf(out, "    %s", name);
   char *text;
   const char *type = p ? p->type : "any value", *meaning = p ? p->meaning : "";
-  const int n = asprintf(&text, "%s%s%s%s%s", type, *meaning ? ": " : "", meaning,
-                         fallback ? "; default " : "", fallback ? fallback : "");
+  const int n = asprintf(&text, "%s%s%s%s%.*s", type, *meaning ? ": " : "", meaning,
+                         fallback ? "; default " : "",
+                         fallback ? (int)cag_doc_default(fallback) : 0, fallback ? fallback : "");
   if (n < 0) return;
   if (used + 2 > NAME_COLUMN) fprintf(out, "\n%*s", NAME_COLUMN, "");
   else fprintf(out, "%*s", NAME_COLUMN - used, "");

@@ -157,6 +157,12 @@ static void a_sentence_ends_at_its_point(void **state) {
   assert_int_equal(cag_doc_sentence(""), 0);
 }
 
+static void of_several_words_the_first_is_the_default(void **state) {
+  (void)state;
+  assert_int_equal(cag_doc_default("\"left\"|\"right\""), 6);
+  assert_int_equal(cag_doc_default("0..1"), 4);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_parameter_of_a_built_in_is_told),
@@ -165,6 +171,7 @@ int main(void) {
       cmocka_unit_test(no_row_of_parameters_is_left_over),
       cmocka_unit_test(a_script_s_params_have_default_range_and_words),
       cmocka_unit_test(a_sentence_ends_at_its_point),
+      cmocka_unit_test(of_several_words_the_first_is_the_default),
   };
   return cmocka_run_group_tests_name("documentation", tests, NULL, NULL);
 }
