@@ -10,6 +10,7 @@
 
 #include <float.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "geom/curve/family.h"
 
@@ -159,6 +160,60 @@ static bool step_to(const CagVec3 columns[3], CagVec3 residual, double out[3]) {
   return solve3(normal, rhs, out);
 }
 
+// --- Overlap ---
+
+static int by_t(const void *a, const void *b) {
+  const CagSurfaceMeeting *x = a, *y = b;
+  if (x->t != y->t) return x->t > y->t ? 1 : -1;
+  if (x->u != y->u) return x->u > y->u ? 1 : -1;
+  return (x->v > y->v) - (x->v < y->v);
+}
+
+static double within(double x, double low, double high) { return fmin(high, fmax(low, x)); }
+
+// Does the curve's point at t lie on the surface, near to a place of it?
+static CagStatus is_on(const Search *s, double t, double u, double v, bool *out, CagError *err) {
+  enum { STEPS = 12 };
+  CagVec3 p, q[4];
+  CagStatus status = cag_curve_eval(s->c, t, 0, CAG_SIDE_RIGHT, &p, err);
+  *out = false;
+  for (int i = 0; !status && i < STEPS && !*out; i++) {
+    status = cag_surface_eval(s->s, u, v, 1, u >= s->s->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
+                              v >= s->s->v1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, q, err);
+    if (status) return status;
+    const CagVec3 r = cag_sub(p, q[0]), du = q[cag_partial(1, 1, 0)], dv = q[cag_partial(1, 0, 1)];
+    const double a = cag_dot(du, du), b = cag_dot(du, dv), c = cag_dot(dv, dv), det = a * c - b * b;
+    *out = cag_norm(r) <= MEET * s->size + s->noise;
+    if (!(det > 0)) break;
+    u = within(u + (c * cag_dot(du, r) - b * cag_dot(dv, r)) / det, s->s->u0, s->s->u1);
+    v = within(v + (a * cag_dot(dv, r) - b * cag_dot(du, r)) / det, s->s->v0, s->s->v1);
+  }
+  return status;
+}
+
+// A curve within the surface is found as a row of meetings, between which it meets the surface too.
+static CagStatus check_overlap(const Search *s, CagError *err) {
+  const size_t row = 8; // meetings
+  CagSurfaceMeeting *m = malloc((s->n + 1) * sizeof *m);
+  if (!m) return cag_fail_memory(err);
+  memcpy(m, s->items, s->n * sizeof *m);
+  qsort(m, s->n, sizeof *m, by_t);
+  CagStatus status = CAG_OK;
+  double length = 0;
+  size_t found = 0;
+  for (size_t i = 0; !status && i + 1 < s->n; i++) {
+    const double gap = cag_norm(cag_sub(m[i + 1].point, m[i].point));
+    bool on;
+    if (gap <= SAME_POINT * s->size) continue;
+    status = is_on(s, m[i].t + (m[i + 1].t - m[i].t) / 2, m[i].u, m[i].v, &on, err);
+    found = on ? found + 1 : 0;
+    length = on ? length + gap : 0;
+    if (!status && found >= row && length > COMMON * s->size) status = fail_overlap(err);
+  }
+  free(m);
+  return status;
+}
+
 static CagStatus add(Search *s, CagSurfaceMeeting m, CagError *err) {
   if (s->n == s->capacity) {
     size_t capacity = s->capacity ? 2 * s->capacity : 16;
@@ -168,10 +223,10 @@ static CagStatus add(Search *s, CagSurfaceMeeting m, CagError *err) {
     s->capacity = capacity;
   }
   s->items[s->n++] = m;
-  return CAG_OK;
+  // So many are looked at, and again when they have become twice as many.
+  const size_t many = 256;
+  return s->n >= many && (s->n & (s->n - 1)) == 0 ? check_overlap(s, err) : CAG_OK;
 }
-
-static double within(double x, double low, double high) { return fmin(high, fmax(low, x)); }
 
 // Within `reach` widths of part and cell about them.
 static CagStatus meet(Search *s, const Part *part, const Cell *cell, double reach, CagError *err) {
@@ -293,13 +348,6 @@ static bool at_pole(const CagSurface *s, const CagSurfaceMeeting *m, bool of_u) 
          (s->pole_v1 && same(m->v, s->v1, s->v0, s->v1, false));
 }
 
-static int by_t(const void *a, const void *b) {
-  const CagSurfaceMeeting *x = a, *y = b;
-  if (x->t != y->t) return x->t > y->t ? 1 : -1;
-  if (x->u != y->u) return x->u > y->u ? 1 : -1;
-  return (x->v > y->v) - (x->v < y->v);
-}
-
 // Sorts, puts seams to their start, and drops what was found twice or lies outside of a trimmed
 // plane.
 static CagStatus tidy(Search *f, CagError *err) {
@@ -394,6 +442,7 @@ CagStatus cag_surface_intersect_curve(const CagSurface *surface, const CagCurve 
   if (!status) status = surface_cuts(surface, 0, &uc, &nu, err);
   if (!status) status = surface_cuts(surface, 1, &vc, &nv, err);
   if (!status) status = search_all(&s, tc, nt, uc, nu, vc, nv, err);
+  if (!status && s.n > 0) status = check_overlap(&s, err);
   free(tc);
   free(uc);
   free(vc);
