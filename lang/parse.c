@@ -402,6 +402,7 @@ size_t parse_list_begin(Parser *p) { return p->stack_size; }
 void parse_list_push(Parser *p, const void *item, size_t size) {
   if (p->stack_size + size > p->stack_capacity) {
     size_t capacity = p->stack_capacity ? 2 * p->stack_capacity : 4096;
+    while (capacity < p->stack_size + size) capacity *= 2;
     p->stack = cag_checked(realloc(p->stack, capacity));
     p->stack_capacity = capacity;
   }

@@ -149,6 +149,20 @@ static void a_script_s_params_have_default_range_and_words(void **state) {
   cag_session_free(s);
 }
 
+static void a_line_of_documentation_may_be_long(void **state) {
+  (void)state;
+  enum { LENGTH = 100000 };
+  static char script[LENGTH + 32] = "/// ";
+  memset(script + 4, 'x', LENGTH);
+  strcpy(script + 4 + LENGTH, "\na = 1\n");
+  CagSession *s = open_session();
+  CagDocModule m;
+  assert_int_equal(cag_session_read_doc(s, "a.cag", script, strlen(script), &m), CAG_STATUS_OK);
+  assert_int_equal(strlen(m.entries[0].text), LENGTH);
+  cag_doc_module_free(&m);
+  cag_session_free(s);
+}
+
 static void a_sentence_ends_at_its_point(void **state) {
   (void)state;
   assert_int_equal(cag_doc_sentence("One. Two."), 4);
@@ -170,6 +184,7 @@ int main(void) {
       cmocka_unit_test(every_public_definition_of_the_library_is_told),
       cmocka_unit_test(no_row_of_parameters_is_left_over),
       cmocka_unit_test(a_script_s_params_have_default_range_and_words),
+      cmocka_unit_test(a_line_of_documentation_may_be_long),
       cmocka_unit_test(a_sentence_ends_at_its_point),
       cmocka_unit_test(of_several_words_the_first_is_the_default),
   };
