@@ -27,7 +27,7 @@
 #define SECONDS 0.5
 #define MEMORY ((size_t)256 << 20)
 #define TRIANGLES 50000
-#define HANG 20
+#define HANG 60
 #define LONGEST 16384 // bytes of one script
 #define MUTATIONS 120 // mutated scripts in each round
 
