@@ -55,7 +55,7 @@ MAIN_SRC   := interp/main.c
 TOOL_SRC   := $(shell find interp/tool -name '*.c' | sort)
 INTERP_SRC := $(filter-out $(MAIN_SRC) $(TOOL_SRC),$(shell find interp -name '*.c' | sort))
 STDLIB     := $(shell find stdlib -name '*.cag' | sort)
-DOCUMENTS  := $(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*)) tests/cli/embed.c
+DOCUMENTS  := $(filter-out docs/architecture.md,$(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*))) tests/cli/embed.c
 
 obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 LANG_OBJ := $(call obj,$(LANG_SRC))

@@ -171,8 +171,8 @@ CAG_API bool cag_builtin_row(size_t i, const char **signature, const char **summ
 
 // --- Documentation ---
 // Documentation of a built-in ("bspline"), a library module ("std.robots", "robots"), its member
-// ("robots.puma560") or an error code as text; NULL: an overview. `styled` makes headings bold for
-// a terminal. False: there is no such name.
+// ("robots.puma560"), a chapter of the manual ("geometry") or an error code as text; NULL: an
+// overview. `styled` makes headings bold for a terminal. False: there is no such name.
 CAG_API bool cag_session_document(CagSession *s, const char *name, bool styled, FILE *out);
 // The names that the call above knows.
 CAG_API void cag_session_document_names(CagSession *s,

@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -178,18 +179,24 @@ static bool make_folders(CagSite *s) {
   return true;
 }
 
-static void say(const CagSite *s, const char *format, size_t count, const char *text) {
+static void say(const CagSite *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void say(const CagSite *s, const char *format, ...) {
   char *message;
-  if (!s->options->say || asprintf(&message, format, count, text) < 0) return;
+  va_list args;
+  va_start(args, format);
+  const int n = s->options->say ? vasprintf(&message, format, args) : -1;
+  va_end(args);
+  if (n < 0) return;
   s->options->say(s->options->context, message);
   free(message);
 }
 
 static void find_renderer(CagSite *s) {
-  char version[128];
-  s->renders = !s->options->no_pictures && cag_find_povray(version, sizeof version) != NULL;
-  if (!s->options->no_pictures && !s->renders)
-    say(s, "%.0zupictures are left out, other than drawings: %s", 0, version);
+  char found[256];
+  if (s->options->no_pictures) return;
+  s->renders = cag_find_povray(found, sizeof found) != NULL;
+  if (!s->renders) say(s, "pictures are left out, other than drawings: %s", found);
 }
 
 // An example that does not do what it says is an error of the documentation.
@@ -204,8 +211,8 @@ static int judge(CagSite *s) {
                         "an example of %s does not do what it says:\n%s\nit printed:\n%s", e->about,
                         e->text, e->failure);
   }
-  say(s, "%zu scripts run", s->count, "");
-  if (pictures) say(s, "%zu pictures", pictures, "");
+  say(s, "%zu scripts run", s->count);
+  if (pictures) say(s, "%zu pictures", pictures);
   return wrong ? CAG_STATUS_SCRIPT : CAG_STATUS_OK;
 }
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "interp/doc/doc.h"
+#include "interp/doc/site.h"
 
 // Columns that a line has at most.
 #define WIDTH 92
@@ -182,7 +182,12 @@ void cag_doc_write_overview(const CagDocWriter *w) {
   free(families);
   heading(w, "Library");
   for (size_t i = 0; cag_doc_module_name(i); i++) fprintf(w->out, "  %s\n", cag_doc_module_name(i));
-  fputs("\n`cag doc NAME` tells of a function, a module or an error code, `cag doc FILE.cag` of a "
+  const char *name, *title;
+  heading(w, "Manual");
+  for (size_t i = 0; cag_site_guide(i, &name, &title); i++)
+    fprintf(w->out, "  %-18s %s\n", name, title);
+  fputs("\n`cag doc NAME` tells of a function, a module, a chapter or an error code, `cag doc "
+        "FILE.cag` of a "
         "script,\n`cag doc --html DIR` makes all of it a site.\n",
         w->out);
 }

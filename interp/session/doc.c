@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "interp/doc/doc.h"
+#include "interp/doc/site.h"
 #include "interp/session/session.h"
 
 typedef struct Reading {
@@ -67,12 +67,22 @@ static bool write_member(CagSession *s, const char *name, const CagDocWriter *w)
   return write_library(s, module, dot + 1, w);
 }
 
+// A chapter of the manual, as it is written.
+static bool write_guide(const char *name, FILE *out) {
+  char path[128];
+  snprintf(path, sizeof path, "docs/%s.md", name);
+  const CagDocument *d = cag_document(path);
+  if (d) fwrite(d->text, 1, d->length, out);
+  return d != NULL;
+}
+
 bool cag_session_document(CagSession *s, const char *name, bool styled, FILE *out) {
   const CagDocWriter w = {out, styled};
   if (!name) return cag_doc_write_overview(&w), true;
   const size_t index = cag_builtin_find(name);
   if (index != (size_t)-1) return cag_doc_write_builtin(&w, index), true;
-  return write_library(s, name, NULL, &w) || write_member(s, name, &w) || cag_explain(name, out);
+  return write_library(s, name, NULL, &w) || write_member(s, name, &w) || write_guide(name, out) ||
+         cag_explain(name, out);
 }
 
 void cag_session_document_names(CagSession *s, void (*give)(void *context, const char *name),
@@ -94,7 +104,8 @@ void cag_session_document_names(CagSession *s, void (*give)(void *context, const
       }
     cag_doc_module_free(&m);
   }
-  const char *code, *reason;
+  const char *chapter, *title, *code, *reason;
+  for (size_t i = 0; cag_site_guide(i, &chapter, &title); i++) give(context, chapter);
   for (size_t i = 0; cag_error_kind(i, &code, &reason, NULL, NULL); i++) {
     give(context, code);
     give(context, reason);

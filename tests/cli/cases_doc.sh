@@ -24,6 +24,11 @@ prints 'Unimation PUMA 560'
 try doc kinematics.gripper_tips
 prints 'number, mm: between the jaws'
 
+it 'a chapter of the manual is shown'
+try doc geometry
+status 0
+prints '# Geometry'
+
 it 'an error code is told'
 try doc E0301
 status 0
