@@ -121,3 +121,34 @@ if peer povray; then
   "$CAG" export $here/turned.cag -D mesh=true -o "$tmp/turned_mesh.pov" -q
   report "POV-Ray reads 36 of them" "$(parse_time turned.pov)" "mesh2, 0.01 mm" "$(parse_time turned_mesh.pov)" "<= 0.05"
 fi
+
+# 200 small renders with two workers: how busy their two processors are, and what a row takes beside the renderer.
+if peer povray; then
+  echo "--- batch"
+  mkdir "$tmp/batch"
+  echo 'param r = 1
+show sphere(10 + r)' > "$tmp/batch/ball.cag"
+  { echo script,output,size,quality,r
+    for i in $(seq 200); do echo "ball.cag,b$i.png,64x48,draft,$i"; done
+  } > "$tmp/batch/renders.csv"
+  { echo script,output,r
+    for i in $(seq 200); do echo "ball.cag,b$i.json,$i"; done
+  } > "$tmp/batch/exports.csv"
+  # Ticks of the first line of /proc/stat: of work, and all of them.
+  ticks() { awk '{ print $2 + $3 + $4 + $7 + $8 + $9, $2 + $3 + $4 + $5 + $6 + $7 + $8 + $9; exit }' /proc/stat; }
+  before=$(ticks)
+  s=$(date +%s%N)
+  "$CAG" batch "$tmp/batch/renders.csv" --jobs 2 -q
+  e=$(date +%s%N)
+  echo "$before $(ticks) $(nproc)" | awk "{ busy = (\$3 - \$1) / (\$4 - \$2) * \$5 / 2
+    printf \"200 renders of 64x48 in %.2f s, their processors %.0f %% busy, aim >= 95 %%\\n\", ($e - $s) / 1e9, 100 * (busy > 1 ? 1 : busy) }"
+  s=$(date +%s%N)
+  "$CAG" batch "$tmp/batch/exports.csv" --jobs 1 -q
+  e=$(date +%s%N)
+  row=$(((e - s) / 200000))
+  s=$(date +%s%N)
+  for i in $(seq 50); do "$CAG" export "$tmp/batch/ball.cag" -o "$tmp/batch/alone.json" -D "r=$i" -q; done
+  e=$(date +%s%N)
+  alone=$(((e - s) / 50000))
+  echo "a row without a renderer takes $row us, its process alone $alone us: $((row - alone)) us beside it, aim < 20000 us"
+fi
