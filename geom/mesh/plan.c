@@ -315,15 +315,22 @@ static const double place[PLACES] = {0, 1.0 / 3, 0.5, 2.0 / 3, 1};
 #define AT(i, j) at[(i)*stride + (j)]
 // Largest measured distance from points of the surface over one quadrilateral to its triangles, cut
 // one way. A point may lie over either: parameters are not evenly spread.
-static double cut_distance(const CagVec3 *at, int stride, bool cut_ac) {
+// worst: what was found before; smaller ones are of no interest.
+static double cut_distance(const CagVec3 *at, int stride, bool cut_ac, double worst) {
   CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
   CagVec3 tried[3] = {AT(AT_HALF, AT_HALF), AT(cut_ac ? AT_TWO_THIRDS : AT_THIRD, AT_THIRD),
                       AT(cut_ac ? AT_THIRD : AT_TWO_THIRDS, AT_TWO_THIRDS)};
   CagVec3 end = cut_ac ? c : d, start = cut_ac ? a : b;
-  double worst = 0;
-  for (int k = 0; k < 3; k++)
-    worst = fmax(worst, fmin(cag_distance_to_triangle(tried[k], a, b, end),
-                             cag_distance_to_triangle(tried[k], start, c, d)));
+  for (int k = 0; k < 3; k++) {
+    // The last of them lies over the other triangle.
+    bool first = k < 2;
+    double off = first ? cag_distance_to_triangle(tried[k], a, b, end)
+                       : cag_distance_to_triangle(tried[k], start, c, d);
+    if (off <= worst) continue;
+    off = fmin(off, first ? cag_distance_to_triangle(tried[k], start, c, d)
+                          : cag_distance_to_triangle(tried[k], a, b, end));
+    worst = fmax(worst, off);
+  }
   return worst;
 }
 
@@ -342,15 +349,16 @@ static double off_edge(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c, double sine) 
 
 // At the border of a leaf triangles may be cut either way when they are sewn to their neighbours.
 // sine: of the angle between neighbours along u and v.
-static double quad_distance(const CagVec3 *at, int stride, const double sine[2], bool border) {
+static double quad_distance(const CagVec3 *at, int stride, const double sine[2], bool border,
+                            double worst) {
   CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
   bool cut_ac = tess_cut_ac(a, b, c, d);
-  double worst = off_edge(AT(AT_HALF, AT_0), a, b, cut_ac ? c : d, sine[1]);
+  worst = fmax(worst, off_edge(AT(AT_HALF, AT_0), a, b, cut_ac ? c : d, sine[1]));
   worst = fmax(worst, off_edge(AT(AT_HALF, AT_1), c, d, cut_ac ? a : b, sine[1]));
   worst = fmax(worst, off_edge(AT(AT_0, AT_HALF), d, a, cut_ac ? c : b, sine[0]));
   worst = fmax(worst, off_edge(AT(AT_1, AT_HALF), b, c, cut_ac ? a : d, sine[0]));
-  worst = fmax(worst, cut_distance(at, stride, cut_ac));
-  return border ? fmax(worst, cut_distance(at, stride, !cut_ac)) : worst;
+  worst = cut_distance(at, stride, cut_ac, worst);
+  return border ? cut_distance(at, stride, !cut_ac, worst) : worst;
 }
 #undef AT
 
@@ -393,7 +401,7 @@ static CagStatus measure(const CagSurface *surface, const Sampled *s, const doub
     for (int j = 0; j < trial.count[1]; j++) {
       const CagVec3 *corner = trial.points + (i * trial.rows + j) * PLACES;
       bool border = i == 0 || j == 0 || i + 1 == trial.count[0] || j + 1 == trial.count[1];
-      *distance = fmax(*distance, quad_distance(corner, trial.rows, sine, border));
+      *distance = quad_distance(corner, trial.rows, sine, border, *distance);
     }
   return CAG_OK;
 }
@@ -411,8 +419,9 @@ static CagStatus measure_middles(const CagSurface *surface, const Sampled *s, co
       const CagVec3 *at = trial.points + (i * trial.rows + j) * 3, *far = at + 2 * trial.rows;
       CagVec3 middle = at[trial.rows + 1], a = at[0], b = far[0], c = far[2], d = at[2];
       bool cut_ac = tess_cut_ac(a, b, c, d);
-      double off = fmin(cag_distance_to_triangle(middle, a, b, cut_ac ? c : d),
-                        cag_distance_to_triangle(middle, cut_ac ? a : b, c, d));
+      double off = cag_distance_to_triangle(middle, a, b, cut_ac ? c : d);
+      if (off <= *distance) continue;
+      off = fmin(off, cag_distance_to_triangle(middle, cut_ac ? a : b, c, d));
       *distance = fmax(*distance, off);
     }
   return CAG_OK;
