@@ -8,6 +8,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "geom/surface/crossing.h"
+
 // The C stack of an evaluation: reserved address space; deep recursion through built-ins needs
 // about 1 KiB a call (several with sanitizers).
 #define C_STACK_BYTES ((size_t)512 << 20)
@@ -373,6 +375,24 @@ static int complete_scene(CagSession *s, void *context) {
   return status == CAG_OK ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
 }
 
+// Surfaces that cross themselves are shown all the same, with a warning.
+static int look_for_crossings(CagSession *s, void *context) {
+  (void)context;
+  char what[256];
+  for (size_t i = 0; i < s->scene.item_count; i++) {
+    const CagItem *item = &s->scene.items[i];
+    const bool crosses = (item->kind == CAG_ITEM_SURFACE &&
+                          cag_surface_crosses_itself(item->as.surface, what, sizeof what)) ||
+                         (item->kind == CAG_ITEM_SOLID &&
+                          cag_solid_crosses_itself(item->as.solid, what, sizeof what));
+    if (!crosses || s->vm->failed) continue;
+    cag_diagnostics_add(&s->diagnostics, CAG_ERR_crosses_itself, NULL, (CagSpan){0, 0}, "%s: %s",
+                        item->name ? item->name : "a shape", what)
+        ->severity = CAG_SEVERITY_WARNING;
+  }
+  return CAG_STATUS_OK;
+}
+
 int cag_session_build_scene(CagSession *s) {
   if (s->interactive) drop_scene(s);
   if (s->has_scene) return CAG_STATUS_OK;
@@ -396,6 +416,7 @@ int cag_session_build_scene(CagSession *s) {
     return CAG_STATUS_SCRIPT;
   }
   status = cag_session_geometry(s, complete_scene, NULL);
+  if (status == CAG_STATUS_OK) status = cag_session_geometry(s, look_for_crossings, NULL);
   if (status != CAG_STATUS_OK) drop_scene(s);
   return status;
 }

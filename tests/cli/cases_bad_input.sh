@@ -238,3 +238,17 @@ printf '\357\273\277a = 1\r\nprint a\r\n' > windows.cag
 try run windows.cag
 status 0
 prints_exactly 1
+
+it 'a profile that crosses itself is reported, and exported all the same'
+script knot.cag 'show revolve(polyline([[5, 0], [20, 10], [5, 20], [20, 0]])) |> named("knot")'
+try export knot.cag -o knot.stl
+status 0
+says 'warning: knot: its profile crosses itself'
+exists knot.stl
+
+it 'a sweep that folds is reported, and exported all the same'
+script fold.cag 'show sweep(circle(8), helix(5, 3, 4))'
+try export fold.cag -o fold.stl
+status 0
+says 'so that it folds there'
+exists fold.stl
