@@ -14,7 +14,8 @@ VERSION := 0.1.0
 SONAME  := libcag.so.0
 CC      ?= cc
 OPT     ?= -O3
-WARN    := -Wall -Wextra -Werror
+# (The ABI of wide vectors between functions of one file is nobody else's business.)
+WARN    := -Wall -Wextra -Werror -Wno-psabi
 SANITIZE ?=
 # CGAL=1 has CGAL do set operations of meshes: a program under the GPL. Give it a BUILD of its own.
 CGAL ?=
