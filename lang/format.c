@@ -21,9 +21,22 @@ typedef struct Format {
   const char *text;
   Layout layout;
   size_t comment; // the next one that is not set yet
+  bool inner;     // what is set is part of something: an operand, an element, an argument
 } Format;
 
 static Doc *expression(Format *f, const CagExpr *e);
+
+// An expression that is part of another, or one that stands for itself: a definition's value, the
+// body of a function.
+static Doc *within(Format *f, const CagExpr *e, bool inner) {
+  const bool outer = f->inner;
+  f->inner = inner;
+  Doc *d = expression(f, e);
+  f->inner = outer;
+  return d;
+}
+static Doc *part(Format *f, const CagExpr *e) { return within(f, e, true); }
+static Doc *whole(Format *f, const CagExpr *e) { return within(f, e, false); }
 
 // ---- words and comments ----
 
@@ -61,10 +74,18 @@ static bool comments_before(const Format *f, uint32_t offset) {
          f->module->comments[f->comment].span.start < offset;
 }
 
+// Whether a line break is set behind the comment that was just taken: before the next one, or as a
+// blank line before the word at `offset`.
+static bool breaks_next(const Format *f, uint32_t offset, bool inner) {
+  if (comments_before(f, offset))
+    return lines_before(f, f->module->comments[f->comment].span.start) > 0;
+  return !inner && lines_before(f, offset) > 1;
+}
+
 // Sets one comment; `inner`: before a closing bracket, so that no space stands behind it.
-static void set_comment(Format *f, Docs *out, const CagComment *c, bool inner) {
+static void set_comment(Format *f, Docs *out, const CagComment *c, uint32_t offset, bool inner) {
   const size_t before = lines_before(f, c->span.start);
-  const bool alone = !c->block || ends_line(f, c->span.end);
+  const bool alone = !c->block || ends_line(f, c->span.end) || breaks_next(f, offset, inner);
   Doc *text = comment_text(f, c);
   if (before > 1) layout_add(out, layout_blank(&f->layout));
   if (alone) {
@@ -75,10 +96,16 @@ static void set_comment(Format *f, Docs *out, const CagComment *c, bool inner) {
   }
 }
 
+static bool set_each_comment(Format *f, Docs *out, uint32_t offset, bool inner) {
+  const bool some = comments_before(f, offset);
+  while (comments_before(f, offset))
+    set_comment(f, out, &f->module->comments[f->comment++], offset, inner);
+  return some;
+}
+
 static void set_comments(Format *f, Docs *out, uint32_t offset, bool inner) {
-  if (!comments_before(f, offset)) return;
-  while (comments_before(f, offset)) set_comment(f, out, &f->module->comments[f->comment++], inner);
-  if (!inner && lines_before(f, offset) > 1) layout_add(out, layout_blank(&f->layout));
+  if (set_each_comment(f, out, offset, inner) && !inner && lines_before(f, offset) > 1)
+    layout_add(out, layout_blank(&f->layout));
 }
 
 // The words of the source in the span, after the comments before them.
@@ -112,7 +139,7 @@ static bool blank_before(const Format *f, uint32_t start) {
   return lines_before(f, start) > 1;
 }
 
-// The body of a lambda that goes on behind `=>` and breaks within its own brackets.
+// What may begin behind a bracket or `=>` and breaks within its own brackets.
 static bool opens_by_itself(const CagExpr *e) {
   switch (e->kind) {
   case CAG_EXPR_BLOCK:
@@ -120,6 +147,8 @@ static bool opens_by_itself(const CagExpr *e) {
   case CAG_EXPR_RECORD:
   case CAG_EXPR_COMPREHENSION: return true;
   case CAG_EXPR_LAMBDA: return opens_by_itself(e->as.function->body);
+  case CAG_EXPR_CALL:
+    return e->as.call.count == 1 && opens_by_itself(e->as.call.arguments[0].value);
   default: return false;
   }
 }
@@ -134,7 +163,7 @@ static Doc *argument(Format *f, const CagArgument *a) {
     set_span(f, &d, a->name_span);
     set_word(f, &d, ": ");
   }
-  layout_add(&d, expression(f, a->value));
+  layout_add(&d, part(f, a->value));
   return layout_concat(&f->layout, &d);
 }
 
@@ -156,8 +185,10 @@ static Doc *call(Format *f, const CagExpr *e) {
   const bool hugs = last && clear && (opens_by_itself(last) || is_long_text(f, last));
   Docs end = {0};
   set_closer(f, &end, e->span.end, ")");
-  layout_add(&d, layout_brackets(&f->layout, "(", &items, layout_concat(&f->layout, &end), INDENT,
-                                 "", hugs));
+  Doc *arguments =
+      layout_brackets(&f->layout, "(", &items, layout_concat(&f->layout, &end), INDENT, "", hugs);
+  arguments->gathers = true;
+  layout_add(&d, arguments);
   return layout_concat(&f->layout, &d);
 }
 
@@ -187,7 +218,7 @@ static Doc *items_doc(Format *f, const CagExpr *e, Doc *(*item)(Format *, const 
 }
 
 static Doc *list_item(Format *f, const CagExpr *e, size_t i) {
-  return expression(f, e->as.list.items[i]);
+  return part(f, e->as.list.items[i]);
 }
 static uint32_t list_start(const CagExpr *e, size_t i) { return e->as.list.items[i]->span.start; }
 
@@ -202,7 +233,7 @@ static Doc *field_item(Format *f, const CagExpr *e, size_t i) {
   }
   set_span(f, &d, field->name_span);
   set_word(f, &d, ": ");
-  layout_add(&d, expression(f, field->value));
+  layout_add(&d, part(f, field->value));
   return layout_concat(&f->layout, &d);
 }
 static uint32_t field_start(const CagExpr *e, size_t i) {
@@ -239,19 +270,19 @@ static void set_value(Format *f, Docs *out, const CagExpr *value) {
     Docs d = {0};
     layout_add(&d, layout_line(&f->layout, " "));
     set_comments(f, &d, value->span.start, false);
-    layout_add(&d, expression(f, value));
+    layout_add(&d, whole(f, value));
     layout_add(out, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &d)));
   } else if (value->kind == CAG_EXPR_IF) {
     Docs d = {0};
     layout_add(&d, layout_line(&f->layout, " "));
-    Doc *choice = expression(f, value);
+    Doc *choice = whole(f, value);
     if (choice->kind == DOC_GROUP)
       choice->kind = DOC_CONCAT; // breaks where the line before it does
     layout_add(&d, choice);
     layout_add(out, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &d)));
   } else {
     set_word(f, out, " ");
-    layout_add(out, expression(f, value));
+    layout_add(out, whole(f, value));
   }
 }
 
@@ -305,22 +336,64 @@ static void set_operator(Format *f, Docs *out, const CagExpr *e) {
   layout_add(out, layout_text(&f->layout, f->text + s.start, s.end - s.start));
 }
 
+// What may stand beside a * or / without spaces.
+static bool is_factor(const CagExpr *e) {
+  switch (e->kind) {
+  case CAG_EXPR_NUMBER:
+  case CAG_EXPR_ANGLE:
+  case CAG_EXPR_NAME: return true;
+  case CAG_EXPR_MEMBER: return is_factor(e->as.member.object);
+  case CAG_EXPR_INDEX: return is_factor(e->as.binary.left) && is_factor(e->as.binary.right);
+  case CAG_EXPR_BINARY:
+    return e->as.binary.op == CAG_OP_POWER && is_factor(e->as.binary.left) &&
+           is_factor(e->as.binary.right);
+  default: return false;
+  }
+}
+
+// Factors of a product that is set without spaces are at most so many.
+#define FACTORS_MAX 4
+
+// 2*r, a.x/3: products of plain words, which are set without spaces where they are part of
+// something.
+static bool is_product(const CagExpr *e) {
+  size_t factors = 1;
+  for (; e->kind == CAG_EXPR_BINARY &&
+         (e->as.binary.op == CAG_OP_MULTIPLY || e->as.binary.op == CAG_OP_DIVIDE);
+       e = e->as.binary.left) {
+    if (++factors > FACTORS_MAX || !is_factor(e->as.binary.right)) return false;
+  }
+  if (e->kind == CAG_EXPR_NEGATE) e = e->as.unary.operand;
+  return factors > 1 && is_factor(e);
+}
+
+static Doc *product(Format *f, const CagExpr *e) {
+  if (e->kind != CAG_EXPR_BINARY || e->as.binary.op == CAG_OP_POWER) return expression(f, e);
+  Docs d = {0};
+  layout_add(&d, product(f, e->as.binary.left));
+  set_word(f, &d, e->as.binary.op == CAG_OP_MULTIPLY ? "*" : "/");
+  layout_add(&d, expression(f, e->as.binary.right));
+  return layout_concat(&f->layout, &d);
+}
+
 // a + b - c: the operands of one level, a line break behind each operator where they do not fit.
 static Doc *chain(Format *f, const CagExpr *e) {
   const int mine = level(e);
+  if (f->inner && is_product(e) && !comments_before(f, e->span.end)) return product(f, e);
+  const bool parts = mine == 4 || mine == 5; // of a sum or a comparison
   size_t n = 0;
   for (const CagExpr *x = e; level(x) == mine; x = x->as.binary.left) n++;
   const CagExpr **links = layout_memory(&f->layout, n * sizeof *links);
   size_t at = n;
   for (const CagExpr *x = e; level(x) == mine; x = x->as.binary.left) links[--at] = x;
   Docs d = {0}, item = {0};
-  layout_add(&item, expression(f, links[0]->as.binary.left));
+  layout_add(&item, within(f, links[0]->as.binary.left, parts || f->inner));
   for (size_t i = 0; i < n; i++) {
     set_operator(f, &item, links[i]);
     layout_add(&d, layout_concat(&f->layout, &item));
     layout_add(&d, layout_line(&f->layout, " "));
     item = (Docs){0};
-    layout_add(&item, expression(f, links[i]->as.binary.right));
+    layout_add(&item, within(f, links[i]->as.binary.right, parts || f->inner));
   }
   layout_add(&d, layout_concat(&f->layout, &item));
   Docs nested = {0};
@@ -397,7 +470,7 @@ static Doc *group(Format *f, const CagExpr *e) {
   Docs d = {0}, items = {0}, end = {0};
   set_comments(f, &d, e->span.start, false);
   const bool clear = !comments_before(f, e->as.unary.operand->span.start);
-  layout_add(&items, expression(f, e->as.unary.operand));
+  layout_add(&items, part(f, e->as.unary.operand));
   set_closer(f, &end, e->span.end, ")");
   layout_add(&d, layout_brackets(&f->layout, "(", &items, layout_concat(&f->layout, &end), INDENT,
                                  "", clear && opens_by_itself(e->as.unary.operand)));
@@ -408,8 +481,9 @@ static Doc *group(Format *f, const CagExpr *e) {
 static Doc *branches(Format *f, const CagExpr *e) {
   Docs d = {0};
   const char *word = "if ";
-  for (;;) {
-    set_comments(f, &d, e->span.start, false);
+  for (bool first = true;; first = false) {
+    if (first) set_comments(f, &d, e->span.start, false);
+    else set_each_comment(f, &d, e->span.start, false); // they stand before `else`
     set_word(f, &d, word);
     layout_add(&d, expression(f, e->as.branch.condition));
     set_word(f, &d, " then ");
@@ -457,10 +531,10 @@ static Doc *comprehension(Format *f, const CagExpr *e) {
                      !comments_before(f, e->as.comprehension.body->span.start);
   if (opens) {
     set_word(f, &d, " ");
-    layout_add(&d, expression(f, e->as.comprehension.body));
+    layout_add(&d, whole(f, e->as.comprehension.body));
   } else {
     layout_add(&body, layout_line(&f->layout, " "));
-    layout_add(&body, expression(f, e->as.comprehension.body));
+    layout_add(&body, whole(f, e->as.comprehension.body));
     layout_add(&d, layout_nest(&f->layout, INDENT, &body));
   }
   set_closer(f, &d, e->span.end, "]");
@@ -479,7 +553,7 @@ static Doc *block(Format *f, const CagExpr *e) {
     if (i && blank_before(f, span.start)) layout_add(&inner, layout_blank(&f->layout));
     layout_add(&inner, n ? layout_hard(&f->layout) : layout_line(&f->layout, " "));
     if (i < n) set_statement(f, &inner, e->as.block.statements[i]);
-    else layout_add(&inner, expression(f, e->as.block.value));
+    else layout_add(&inner, whole(f, e->as.block.value));
   }
   set_comments(f, &inner, e->span.end - 1, false);
   layout_add(&d, layout_nest(&f->layout, INDENT, &inner));
@@ -503,7 +577,7 @@ static Doc *index_of(Format *f, const CagExpr *e) {
   Docs d = {0};
   layout_add(&d, expression(f, e->as.binary.left));
   set_word(f, &d, "[");
-  layout_add(&d, expression(f, e->as.binary.right));
+  layout_add(&d, part(f, e->as.binary.right));
   set_closer(f, &d, e->span.end, "]");
   return layout_concat(&f->layout, &d);
 }
@@ -581,6 +655,13 @@ static uint32_t label_start(const Format *f, const CagStatement *s) {
   return s->span.end;
 }
 
+// Whether the word is on one line, which no comment ends.
+static bool stands_last(const Format *f, CagSpan word) {
+  const char *end = f->text + word.end;
+  end += strspn(end, " \t\r;");
+  return newlines(f, word.start, word.end) == 0 && *end != '/';
+}
+
 static void set_param(Format *f, Docs *d, const CagStatement *s) {
   set_word(f, d, "param ");
   set_span(f, d, s->as.param.decl->span);
@@ -591,8 +672,15 @@ static void set_param(Format *f, Docs *d, const CagStatement *s) {
     layout_add(d, expression(f, s->as.param.domain));
   }
   if (!s->as.param.label) return;
+  const CagSpan label = {label_start(f, s), s->span.end};
+  // Labels that end neighbouring lines are set one below the other, as comments are.
+  if (!comments_before(f, label.start) && stands_last(f, label)) {
+    Doc *text = layout_text(&f->layout, f->text + label.start, label.end - label.start);
+    layout_add(d, layout_trailing(&f->layout, text));
+    return;
+  }
   set_word(f, d, " ");
-  set_span(f, d, (CagSpan){label_start(f, s), s->span.end});
+  set_span(f, d, label);
 }
 
 static void set_definition(Format *f, Docs *d, const CagStatement *s) {

@@ -297,6 +297,14 @@ static bool hugs(const Layout *l, const Doc *d, int indent) {
   return d->child == last || (uint32_t)(indent + d->indent) + last->width + 1 > l->width;
 }
 
+// Whether all items fit on the line below the bracket.
+static bool gathers(const Layout *l, const Doc *d, int indent) {
+  uint32_t width = (uint32_t)(indent + d->indent);
+  if (!d->gathers) return false;
+  for (const Doc *c = d->child; c; c = c->next) width = sum(width, c->width);
+  return width <= l->width;
+}
+
 static void print_brackets(Layout *l, const Doc *d, bool flat, int indent, uint32_t tail) {
   put_text(l, d->text, d->length);
   if (flat) {
@@ -310,7 +318,7 @@ static void print_brackets(Layout *l, const Doc *d, bool flat, int indent, uint3
   } else if (d->child) {
     put_line(l, indent + d->indent);
     if (d->kind == DOC_FILLED) print_fill(l, d->child, indent + d->indent, 0);
-    else print_children(l, d->child, false, indent + d->indent, 0);
+    else print_children(l, d->child, gathers(l, d, indent), indent + d->indent, 0);
     if (d->close->kind == DOC_CONCAT) { // comments before the bracket stand with the items
       const Doc *bracket = last_of(d->close->child);
       for (const Doc *c = d->close->child; c != bracket; c = c->next)

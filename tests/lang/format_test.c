@@ -38,20 +38,38 @@ static void expect_layout(const char *text, const char *expected) {
 
 static void spaces_are_set_anew(void **state) {
   (void)state;
-  expect_layout("a=1+2 *3;b   =-a^2\n\n\n\nshow   a,b", "a = 1 + 2 * 3\nb = -a^2\n\nshow a, b\n");
+  expect_layout("a=1+2 *3;b   =-a^2\n\n\n\nshow   a,b", "a = 1 + 2*3\nb = -a^2\n\nshow a, b\n");
   expect_layout("f( x,y=2 )=max( x , y )[ 0 ].p", "f(x, y = 2) = max(x, y)[0].p\n");
   expect_layout("r={a:1,\"b c\":[1,2,],...s}", "r = { a: 1, \"b c\": [1, 2], ...s }\n");
   expect_layout("r={ }\nxs=[ ]\ng=( )=>1", "r = {}\nxs = []\ng = () => 1\n");
   expect_layout("x = [for i in 0 ..< n - 1 , [ a,_ ] in ys if a>0:i*a]",
                 "x = [for i in 0..<n-1, [a, _] in ys if a > 0: i * a]\n");
   expect_layout("param h=120mm in 50 .. 300\"the height\"",
-                "param h = 120mm in 50..300 \"the height\"\n");
+                "param h = 120mm in 50..300  \"the height\"\n");
   expect_layout("import  std.materials  as mat :a,b\nimport \"x.cag\"",
                 "import std.materials as mat: a, b\nimport \"x.cag\"\n");
   expect_layout("t = \"a {1+2} b\"", "t = \"a {1+2} b\"\n");
   expect_layout("f = (x) => not (x in r)", "f = x => not (x in r)\n");
   expect_layout("r = 0deg .. 2 * 90deg by 1deg * 3", "r = 0deg..2*90deg by 1deg*3\n");
   expect_layout("", "");
+}
+
+static void products_are_set_close_within_something(void **state) {
+  (void)state;
+  expect_layout("a=2*r;b=[2 * r,-x / 2, r*3^2]", "a = 2 * r\nb = [2*r, -x/2, r*3^2]\n");
+  expect_layout("c = f(2 * p.x, k: w[0] / 3)", "c = f(2*p.x, k: w[0]/3)\n");
+  expect_layout("c = a*b+c  %d*sin(2 * t)", "c = a*b + c % d * sin(2*t)\n");
+  expect_layout("d = map(xs, x=>2*x)", "d = map(xs, x => 2 * x)\n");
+  expect_layout("e = [a /* the */ * b]", "e = [a * /* the */ b]\n");
+  expect_layout("f = [a*b*c*d*e, (a*b)^2]", "f = [a * b * c * d * e, (a*b)^2]\n");
+}
+
+static void labels_of_params_are_set_one_below_the_other(void **state) {
+  (void)state;
+  expect_layout("param a=1 in 0..9 \"one\"\nparam bcd = 2   \"two\"",
+                "param a = 1 in 0..9  \"one\"\nparam bcd = 2        \"two\"\n");
+  expect_layout("param a=1 \"one\" // why\nb = 2\nparam b = 2 \"two\"; c = 3",
+                "param a = 1 \"one\"  // why\nb = 2\nparam b = 2  \"two\"\nc = 3\n");
 }
 
 static void comments_keep_their_places(void **state) {
@@ -63,6 +81,7 @@ static void comments_keep_their_places(void **state) {
   expect_layout("f(x)={// why\ny=x;// so\n\ny// last\n// end\n}",
                 "f(x) = {  // why\n  y = x  // so\n\n  y  // last\n  // end\n}\n");
   expect_layout("a = b // c\n|> f", "a = b  // c\n  |> f\n");
+  expect_layout("a = [b /* c */ +\n// own\nd]", "a = [\n  b + /* c */\n    // own\n    d\n]\n");
 }
 
 #define LONG "an_argument_with_a_rather_long_name_of_its_own"
@@ -71,6 +90,11 @@ static void long_lines_are_broken(void **state) {
   (void)state;
   expect_layout("a = function_name(" LONG ", " LONG ", k: 1)",
                 "a = function_name(\n  " LONG ",\n  " LONG ",\n  k: 1\n)\n");
+  expect_layout("a = function_name(" LONG ", name: 120, position: [100, 200, 300], color: 1)",
+                "a = function_name(\n  " LONG
+                ", name: 120, position: [100, 200, 300], color: 1\n)\n");
+  expect_layout("a = revolve(polyline([" LONG ", " LONG "]))",
+                "a = revolve(polyline([\n  " LONG ",\n  " LONG "\n]))\n");
   expect_layout("a = " LONG " + " LONG " + c", "a = " LONG " +\n  " LONG " + c\n");
   expect_layout("a = " LONG " |> " LONG "(1) |> g", "a = " LONG "\n  |> " LONG "(1)\n  |> g\n");
   expect_layout("a = if " LONG " then " LONG " else if c then 1 else 2",
@@ -203,6 +227,8 @@ static void scripts_keep_their_trees(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(spaces_are_set_anew),
+      cmocka_unit_test(products_are_set_close_within_something),
+      cmocka_unit_test(labels_of_params_are_set_one_below_the_other),
       cmocka_unit_test(comments_keep_their_places),
       cmocka_unit_test(long_lines_are_broken),
       cmocka_unit_test(scripts_keep_their_trees),
