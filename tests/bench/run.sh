@@ -1,7 +1,8 @@
 #!/bin/sh
 # Figures of speed beside those of peers, measured in one run: `make bench`. Nothing here is a test.
 #
-# Peers are asked for when they are installed (lua5.4, openscad, SISL by libsisl-dev); without them their column is empty.
+# Peers are asked for when they are installed (lua5.4, openscad, SISL by libsisl-dev, Open CASCADE by
+# libocct-modeling-algorithms-dev); without them their column is empty.
 B=${BUILD:-build}
 CAG=$B/cag
 here=tests/bench
