@@ -97,8 +97,9 @@ void cag_html_script(FILE *out, const char *root, const char *text, size_t lengt
 void cag_html_prose(FILE *out, const char *root, const char *text, size_t length) {
   for (size_t i = 0; i < length;) {
     const char *close = text[i] == '`' ? memchr(text + i + 1, '`', length - i - 1) : NULL;
-    if (close) {
-      const size_t n = (size_t)(close - text) - i - 1;
+    const size_t n = close ? (size_t)(close - text) - i - 1 : 0;
+    // With nothing between them, backquotes are meant themselves.
+    if (n > 0 && strspn(text + i + 1, " ") < n) {
       fputs("<code>", out);
       cag_html_script(out, root, text + i + 1, n);
       fputs("</code>", out);
