@@ -85,7 +85,8 @@ static bool breaks_next(const Format *f, uint32_t offset, bool inner) {
 // Sets one comment; `inner`: before a closing bracket, so that no space stands behind it.
 static void set_comment(Format *f, Docs *out, const CagComment *c, uint32_t offset, bool inner) {
   const size_t before = lines_before(f, c->span.start);
-  const bool alone = !c->block || ends_line(f, c->span.end) || breaks_next(f, offset, inner);
+  const bool alone = !c->block || (ends_line(f, c->span.end) && !(inner && before == 0)) ||
+                     breaks_next(f, offset, inner);
   Doc *text = comment_text(f, c);
   if (before > 1) layout_add(out, layout_blank(&f->layout));
   if (alone) {
@@ -171,10 +172,12 @@ static Doc *call(Format *f, const CagExpr *e) {
   Docs d = {0}, items = {0};
   layout_add(&d, expression(f, e->as.call.callee));
   bool clear = true; // no comment stands where hugging would swallow its line
+  bool gathers = true, opens = !comments_before(f, e->span.end - 1);
   const CagExpr *last = NULL;
   for (size_t i = 0; i < e->as.call.count; i++) {
     const CagArgument *a = &e->as.call.arguments[i];
     clear = !comments_before(f, a->value->span.start);
+    gathers = gathers && a->value->kind != CAG_EXPR_PIPE;
     if (i) layout_add(&items, layout_line(&f->layout, " "));
     last = a->value;
     Doc *item = argument(f, a);
@@ -187,7 +190,9 @@ static Doc *call(Format *f, const CagExpr *e) {
   set_closer(f, &end, e->span.end, ")");
   Doc *arguments =
       layout_brackets(&f->layout, "(", &items, layout_concat(&f->layout, &end), INDENT, "", hugs);
-  arguments->gathers = true;
+  arguments->gathers = gathers;
+  arguments->opens =
+      opens && e->as.call.count > 1 && opens_by_itself(e->as.call.arguments[0].value);
   layout_add(&d, arguments);
   return layout_concat(&f->layout, &d);
 }
@@ -261,7 +266,10 @@ static Doc *parameters(Format *f, const CagFunctionAst *fn) {
     if (i + 1 < fn->parameter_count) d = layout_pair(&f->layout, d, ",");
     layout_add(&items, d);
   }
-  return layout_brackets(&f->layout, "(", &items, layout_word(&f->layout, ")"), INDENT, "", false);
+  Doc *d =
+      layout_brackets(&f->layout, "(", &items, layout_word(&f->layout, ")"), INDENT, "", false);
+  d->gathers = true;
+  return d;
 }
 
 // What stands behind `=` or `=>`: beginning there, or on a line of its own where it is a choice.

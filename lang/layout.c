@@ -235,6 +235,7 @@ static void put_trailing(Layout *l, const Doc *text, int indent) {
   if (text->text[1] == '*') {
     put(l, " ", 1);
     put(l, text->text, text->length);
+    l->column += 1 + code_points(text->text, text->length);
     put_line(l, indent);
     return;
   }
@@ -305,6 +306,17 @@ static bool gathers(const Layout *l, const Doc *d, int indent) {
   return width <= l->width;
 }
 
+// Items behind the first are short when they are at most so wide together.
+#define REST_MAX 40
+
+// Whether the first item opens on the line of the bracket, and the rest stand behind its end.
+static bool opens(const Layout *l, const Doc *d, int indent) {
+  if (!d->opens || gathers(l, d, indent)) return false;
+  uint32_t rest = 0;
+  for (const Doc *c = d->child->next; c; c = c->next) rest = sum(rest, c->width);
+  return rest <= REST_MAX && column(l) + d->length + d->child->first <= l->width;
+}
+
 static void print_brackets(Layout *l, const Doc *d, bool flat, int indent, uint32_t tail) {
   put_text(l, d->text, d->length);
   if (flat) {
@@ -315,6 +327,9 @@ static void print_brackets(Layout *l, const Doc *d, bool flat, int indent, uint3
     const Doc *last = last_of(d->child);
     for (const Doc *c = d->child; c != last; c = c->next) print(l, c, true, indent, 0);
     print(l, last, false, indent, d->close->first + tail);
+  } else if (opens(l, d, indent)) {
+    print(l, d->child, false, indent, 0);
+    for (const Doc *c = d->child->next; c; c = c->next) print(l, c, true, indent, 0);
   } else if (d->child) {
     put_line(l, indent + d->indent);
     if (d->kind == DOC_FILLED) print_fill(l, d->child, indent + d->indent, 0);

@@ -38,6 +38,7 @@ struct Doc {
   DocKind kind;
   bool breaks;    // holds a place for a break
   bool hugs;      // BRACKETS: the last item may open on the line of the bracket
+  bool opens;     // BRACKETS: the first item may open on their line, and the short rest close it
   bool gathers;   // BRACKETS: broken, all items may stand on one line of their own
   uint32_t width; // on one line; DOC_ENDLESS: not possible
   uint32_t first; // up to the first possible break

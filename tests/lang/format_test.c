@@ -93,6 +93,9 @@ static void long_lines_are_broken(void **state) {
   expect_layout("a = function_name(" LONG ", name: 120, position: [100, 200, 300], color: 1)",
                 "a = function_name(\n  " LONG
                 ", name: 120, position: [100, 200, 300], color: 1\n)\n");
+  expect_layout("a = figure([" LONG ", " LONG "], width: 110)",
+                "a = figure([\n  " LONG ",\n  " LONG "\n], width: 110)\n");
+  expect_layout("a = curve(t => { x = t; x }, 0..1)", "a = curve(t => {\n  x = t\n  x\n}, 0..1)\n");
   expect_layout("a = revolve(polyline([" LONG ", " LONG "]))",
                 "a = revolve(polyline([\n  " LONG ",\n  " LONG "\n]))\n");
   expect_layout("a = " LONG " + " LONG " + c", "a = " LONG " +\n  " LONG " + c\n");
