@@ -130,7 +130,7 @@ if peer povray; then
   echo 'param r = 1
 show sphere(10 + r)' > "$tmp/batch/ball.cag"
   { echo script,output,size,quality,r
-    for i in $(seq 200); do echo "ball.cag,b$i.png,64x48,draft,$i"; done
+    for i in $(seq 200); do echo "ball.cag,b$i.png,160x120,normal,$i"; done
   } > "$tmp/batch/renders.csv"
   { echo script,output,r
     for i in $(seq 200); do echo "ball.cag,b$i.json,$i"; done
@@ -142,7 +142,7 @@ show sphere(10 + r)' > "$tmp/batch/ball.cag"
   "$CAG" batch "$tmp/batch/renders.csv" --jobs 2 -q
   e=$(date +%s%N)
   echo "$before $(ticks) $(nproc)" | awk "{ busy = (\$3 - \$1) / (\$4 - \$2) * \$5 / 2
-    printf \"200 renders of 64x48 in %.2f s, their processors %.0f %% busy, aim >= 95 %%\\n\", ($e - $s) / 1e9, 100 * (busy > 1 ? 1 : busy) }"
+    printf \"200 renders of 160x120 in %.2f s, their processors %.0f %% busy, aim >= 95 %%\\n\", ($e - $s) / 1e9, 100 * (busy > 1 ? 1 : busy) }"
   s=$(date +%s%N)
   "$CAG" batch "$tmp/batch/exports.csv" --jobs 1 -q
   e=$(date +%s%N)
