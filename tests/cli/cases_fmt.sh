@@ -63,3 +63,8 @@ it 'a file that is not there is told'
 try fmt nowhere.cag
 status 3
 says 'nowhere.cag'
+
+it 'the examples and the library have the layout'
+try fmt --check "$root"/examples/*.cag "$root/examples/curves" "$root/stdlib/curves.cag" "$root/stdlib/kinematics.cag" \
+  "$root/stdlib/materials.cag" "$root/stdlib/surfaces.cag"
+status 0
