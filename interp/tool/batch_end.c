@@ -58,6 +58,10 @@ int cag_batch_end_task(CagBatch *b, CagTask *task) {
                            .attempts = task->attempts};
   strcpy(entry.key, task->key);
   if (!done) tell_task(b, task);
+  else if (b->tool->verbose && task->tile >= 0)
+    cag_tool_say(b->tool, "row %zu: tile %d of %d in %.1f s", b->jobs.rows[task->row].number,
+                 task->tile + 1, b->rows[task->row].tile_columns * b->rows[task->row].lines,
+                 task->seconds);
   else if (b->tool->verbose)
     cag_tool_say(b->tool, "row %zu: wrote %s in %.1f s with %.0f MB",
                  b->jobs.rows[task->row].number, task->output, task->seconds,
