@@ -43,6 +43,9 @@ static bool find_places(CagBatch *b) {
   b->folder = strndup(jobs, (size_t)(strrchr(jobs, '/') - jobs));
   b->journal_path = with_ending(jobs, n, ".journal");
   b->tiles_folder = with_ending(jobs, n, ".tiles");
+  // The renderer would take a % for a frame's place.
+  for (char *at = b->tiles_folder ? strrchr(b->tiles_folder, '/') : NULL; at && *at; at++)
+    if (*at == '%') *at = '_';
   b->queue_folder = with_ending(jobs, n, ".slurm");
   b->report_path =
       b->tool->report ? full_path(b->tool->report) : with_ending(jobs, n - ending, ".report.csv");

@@ -238,10 +238,11 @@ static void task_key(const CagBatchRow *row, CagTask *task, const CagTask *whole
   write_key(h, task->key);
 }
 
-// A tile's place is beside the journal, under its key.
+// A tile's place is beside the journal, under its key; seen from there, since a % in the name of an
+// outer folder would be a frame's place to the renderer.
 static bool place_tile(const CagBatch *b, CagTask *task) {
   if (task->tile < 0) return true;
-  return asprintf(&task->output, "%s/%s.exr", b->tiles_folder, task->key) >= 0;
+  return asprintf(&task->output, "%s/%s.exr", strrchr(b->tiles_folder, '/') + 1, task->key) >= 0;
 }
 
 bool cag_batch_make_keys(CagBatch *b) {

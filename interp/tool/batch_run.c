@@ -81,13 +81,15 @@ static int join(void *context) {
   const Join *j = context;
   const CagTask *task = j->task;
   const CagBatchRow *row = &j->batch->rows[task->row];
-  const char **tiles = malloc((size_t)task->joins * sizeof *tiles);
+  char **tiles = calloc((size_t)task->joins, sizeof *tiles);
   char *output = cag_batch_path(j->batch, task->output);
   CagIoError err = {.exit_status = CAG_STATUS_LIMIT, .message = "out of memory"};
-  for (int i = 0; tiles && i < task->joins; i++) tiles[i] = task[i - task->joins].output;
-  const bool ok =
-      tiles && output &&
-      cag_tiles_join(tiles, row->tile_columns, row->lines, row->width, row->height, output, &err);
+  bool ok = tiles && output;
+  for (int i = 0; ok && i < task->joins; i++)
+    ok = (tiles[i] = cag_batch_path(j->batch, task[i - task->joins].output)) != NULL;
+  ok = ok && cag_tiles_join((const char *const *)tiles, row->tile_columns, row->lines, row->width,
+                            row->height, output, &err);
+  for (int i = 0; tiles && i < task->joins; i++) free(tiles[i]);
   free(tiles);
   free(output);
   if (ok) return CAG_STATUS_OK;
@@ -95,8 +97,12 @@ static int join(void *context) {
   return err.exit_status;
 }
 
-static void remove_tiles(const CagTask *task) {
-  for (int i = 1; i <= task->joins; i++) remove(task[-i].output);
+static void remove_tiles(const CagBatch *b, const CagTask *task) {
+  for (int i = 1; i <= task->joins; i++) {
+    char *path = cag_batch_path(b, task[-i].output);
+    if (path) remove(path);
+    free(path);
+  }
 }
 
 // --- Starting and ending ---
@@ -162,7 +168,7 @@ static void end(Run *r, Slot *slot) {
   cag_batch_progress_clear(&r->progress);
   const int status = cag_batch_end_task(b, task);
   if (r->status == CAG_STATUS_OK) r->status = status;
-  if (task->state == CAG_TASK_DONE) remove_tiles(task);
+  if (task->state == CAG_TASK_DONE) remove_tiles(b, task);
 }
 
 static void look(Run *r) {

@@ -197,7 +197,9 @@ static bool submit(Array *a, char *script) {
   if (t->jobs) snprintf(array, sizeof array, "--array=0-%zu%%%zu", last, t->jobs);
   else snprintf(array, sizeof array, "--array=0-%zu", last);
   snprintf(name, sizeof name, "--job-name=%s", a->name);
-  snprintf(output, sizeof output, "--output=%s/said-%%a.txt", a->folder);
+  // In a name with a % Slurm would see its own signs.
+  if (strchr(a->folder, '%')) snprintf(output, sizeof output, "--output=/dev/null");
+  else snprintf(output, sizeof output, "--output=%s/said-%%a.txt", a->folder);
   snprintf(time, sizeof time, "--time=%.0f", t->session.max_time > 0 ? minutes(a) : 0);
   snprintf(threads, sizeof threads, "--cpus-per-task=%d", t->threads);
   // A task of a lost node is not begun again by Slurm: it is reported, and the next call does it.

@@ -359,6 +359,16 @@ is_missing tiles.csv.tiles
 try batch tiles.csv
 prints_exactly '0 done, 0 failed, 4 left out (already done)'
 
+it 'tiles in a folder with odd letters'
+mkdir 'o d%d'
+cp ball.cag 'o d%d'
+printf 'script,output,size,quality,tiles\nball.cag,t.exr,200x150,draft,2x2\n' > 'o d%d/a%d.csv'
+try batch 'o d%d/a%d.csv'
+status 0
+try compare 'o d%d/t.exr' whole.exr
+status 0
+[ "$(ls 'o d%d' | wc -l)" -eq 5 ] || wrong "something is left: $(ls 'o d%d')"
+
 it '--tiles is for all pictures'
 table all.csv <<'END'
 script,output,size,quality
