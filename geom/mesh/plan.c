@@ -54,6 +54,10 @@ typedef struct Sampled {
   double both[SAMPLES];    // the product of both turns where they have the same axis, else less
 } Sampled;
 
+// As fmax and fmin, without the calls. The first of larger() is a number.
+static inline double larger(double a, double b) { return b > a ? b : a; }
+static inline double smaller(double a, double b) { return b < a || isnan(a) ? b : a; }
+
 // --- Sampling ---
 
 static void find_normals(Sampled *s) {
@@ -163,18 +167,18 @@ static bool is_resolved(const CagTessellation *how, const Sampled *s, int direct
   const CagVec3 *d = direction == 0 ? s->du : s->dv;
   int stride = direction == 0 ? SIDE : 1;
   double longest = 0, worst = 0;
-  for (int k = 0; k < SAMPLES; k++) longest = fmax(longest, cag_norm(d[k]));
+  for (int k = 0; k < SAMPLES; k++) longest = larger(longest, cag_norm(d[k]));
   for (int i = 0; i < SIDE; i++)
     for (int j = 0; j < STEPS; j++) {
       int k = direction == 0 ? j * SIDE + i : i * SIDE + j;
       CagVec3 step = cag_scaled(cag_sub(s->points[k + stride], s->points[k]), STEPS);
       CagVec3 mean = cag_scaled(cag_add(d[k], d[k + stride]), 0.5);
       double length = (cag_norm(d[k]) + cag_norm(d[k + stride])) / 2;
-      worst = fmax(worst, cag_norm(cag_sub(step, mean)));
-      worst = fmax(worst, fabs(length - cag_norm(step)));
+      worst = larger(worst, cag_norm(cag_sub(step, mean)));
+      worst = larger(worst, fabs(length - cag_norm(step)));
     }
   // Within the tolerance it does not matter, and of a point all is rounding.
-  return worst <= fmax(far * longest, how->tolerance) && are_turns_resolved(how, s, direction);
+  return worst <= larger(far * longest, how->tolerance) && are_turns_resolved(how, s, direction);
 }
 
 // --- Needs and counts ---
@@ -185,17 +189,17 @@ static Needs needs_of(const Sampled *s, Range r) {
   for (int i = r.u0; i <= r.u1; i++)
     for (int j = r.v0; j <= r.v1; j++) {
       int k = i * SIDE + j;
-      n.uu = fmax(n.uu, s->off_uu[k]);
-      n.uv = fmax(n.uv, s->off_uv[k]);
-      n.vv = fmax(n.vv, s->off_vv[k]);
-      n.length[0] = fmax(n.length[0], cag_norm(s->du[k]));
-      n.length[1] = fmax(n.length[1], cag_norm(s->dv[k]));
-      if (i < r.u1 && j < r.v1 && fmax(s->turn[0][k], s->turn[1][k]) <= turned_away * STEPS)
-        n.both = fmax(n.both, s->both[k]);
+      n.uu = larger(n.uu, s->off_uu[k]);
+      n.uv = larger(n.uv, s->off_uv[k]);
+      n.vv = larger(n.vv, s->off_vv[k]);
+      n.length[0] = larger(n.length[0], cag_norm(s->du[k]));
+      n.length[1] = larger(n.length[1], cag_norm(s->dv[k]));
+      if (i < r.u1 && j < r.v1 && larger(s->turn[0][k], s->turn[1][k]) <= turned_away * STEPS)
+        n.both = larger(n.both, s->both[k]);
       for (int d = 0; d < 2; d++) {
         if (d == 0 ? i == r.u1 : j == r.v1) continue;
-        n.turn[d] = fmax(n.turn[d], s->turn[d][k]);
-        if (s->turn[d][k] <= turned_away * STEPS) n.bend[d] = fmax(n.bend[d], s->turn[d][k]);
+        n.turn[d] = larger(n.turn[d], s->turn[d][k]);
+        if (s->turn[d][k] <= turned_away * STEPS) n.bend[d] = larger(n.bend[d], s->turn[d][k]);
       }
     }
   n.uu *= part[0] * part[0];
@@ -241,15 +245,15 @@ static void try_counts(const Form *f, int which, double fixed, double n[2], doub
 static void best_counts(const Form *f, double square_ratio, double n[2]) {
   const double nearly = 1.1;
   double sum = nearly * (2 * sqrt(f->uu * f->vv) + f->uv) - f->uv, ratio = square_ratio;
-  double root = sqrt(fmax(0, sum * sum - 4 * f->uu * f->vv));
-  if (f->uu > 0) ratio = fmin(ratio, (sum + root) / (2 * f->uu));
-  if (f->vv > 0 && sum + root > 0) ratio = fmax(ratio, 2 * f->vv / (sum + root));
+  double root = sqrt(larger(0, sum * sum - 4 * f->uu * f->vv));
+  if (f->uu > 0) ratio = smaller(ratio, (sum + root) / (2 * f->uu));
+  if (f->vv > 0 && sum + root > 0) ratio = larger(ratio, 2 * f->vv / (sum + root));
   double best = INFINITY;
   n[0] = n[1] = 1;
   if (f->uu <= 0 && f->uv <= 0 && f->vv <= 0) return;
   if (ratio > 0) {
-    double nu = fmax(1, sqrt((f->uu + f->uv / ratio + f->vv / (ratio * ratio)) / f->limit));
-    double nv = fmax(1, ratio * nu);
+    double nu = larger(1, sqrt((f->uu + f->uv / ratio + f->vv / (ratio * ratio)) / f->limit));
+    double nv = larger(1, ratio * nu);
     double rounded[2][2], products[2] = {INFINITY, INFINITY};
     try_counts(f, 0, ceil(nu), rounded[0], &products[0]);
     try_counts(f, 1, ceil(nv), rounded[1], &products[1]);
@@ -285,8 +289,8 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
     // at once.
     const double shortest = 0.2; // of the tolerance
     for (int d = 0; d < 2; d++) {
-      double room = fmax(1, ceil(needs->length[d] / (shortest * how->tolerance)));
-      n[d] = fmax(n[d], fmin(most[d], room));
+      double room = larger(1, ceil(needs->length[d] / (shortest * how->tolerance)));
+      n[d] = larger(n[d], smaller(most[d], room));
     }
   }
   if (how->max_edge > 0) {
@@ -296,7 +300,7 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
     double a = between * needs->length[0], b = between * needs->length[1];
     best_counts(&(Form){a * a, 2 * a * b, b * b, how->max_edge * how->max_edge}, square_ratio,
                 most);
-    for (int d = 0; d < 2; d++) n[d] = fmax(n[d], most[d]);
+    for (int d = 0; d < 2; d++) n[d] = larger(n[d], most[d]);
   }
 }
 
@@ -327,9 +331,9 @@ static double cut_distance(const CagVec3 *at, int stride, bool cut_ac, double wo
     double off = first ? cag_distance_to_triangle(tried[k], a, b, end)
                        : cag_distance_to_triangle(tried[k], start, c, d);
     if (off <= worst) continue;
-    off = fmin(off, first ? cag_distance_to_triangle(tried[k], start, c, d)
-                          : cag_distance_to_triangle(tried[k], a, b, end));
-    worst = fmax(worst, off);
+    off = smaller(off, first ? cag_distance_to_triangle(tried[k], start, c, d)
+                             : cag_distance_to_triangle(tried[k], a, b, end));
+    worst = larger(worst, off);
   }
   return worst;
 }
@@ -344,7 +348,7 @@ static double off_edge(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c, double sine) 
   double off = fabs(cag_dot(ap, n)) / area,
          outside = cag_dot(ap, cag_cross(ab, n)) / (area * length);
   if (outside <= 0) return off;
-  return fmin(off + outside * sine, sqrt(off * off + outside * outside));
+  return smaller(off + outside * sine, sqrt(off * off + outside * outside));
 }
 
 // At the border of a leaf triangles may be cut either way when they are sewn to their neighbours.
@@ -353,10 +357,10 @@ static double quad_distance(const CagVec3 *at, int stride, const double sine[2],
                             double worst) {
   CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
   bool cut_ac = tess_cut_ac(a, b, c, d);
-  worst = fmax(worst, off_edge(AT(AT_HALF, AT_0), a, b, cut_ac ? c : d, sine[1]));
-  worst = fmax(worst, off_edge(AT(AT_HALF, AT_1), c, d, cut_ac ? a : b, sine[1]));
-  worst = fmax(worst, off_edge(AT(AT_0, AT_HALF), d, a, cut_ac ? c : b, sine[0]));
-  worst = fmax(worst, off_edge(AT(AT_1, AT_HALF), b, c, cut_ac ? a : d, sine[0]));
+  worst = larger(worst, off_edge(AT(AT_HALF, AT_0), a, b, cut_ac ? c : d, sine[1]));
+  worst = larger(worst, off_edge(AT(AT_HALF, AT_1), c, d, cut_ac ? a : b, sine[1]));
+  worst = larger(worst, off_edge(AT(AT_0, AT_HALF), d, a, cut_ac ? c : b, sine[0]));
+  worst = larger(worst, off_edge(AT(AT_1, AT_HALF), b, c, cut_ac ? a : d, sine[0]));
   worst = cut_distance(at, stride, cut_ac, worst);
   return border ? cut_distance(at, stride, !cut_ac, worst) : worst;
 }
@@ -393,7 +397,7 @@ static CagStatus measure(const CagSurface *surface, const Sampled *s, const doub
                          const double n[2], double *distance, CagError *err) {
   Trial trial;
   double sine[2];
-  for (int d = 0; d < 2; d++) sine[d] = sin(fmin(turn[d] / n[d], M_PI / 2));
+  for (int d = 0; d < 2; d++) sine[d] = sin(smaller(turn[d] / n[d], M_PI / 2));
   CagStatus status = evaluate_trial(surface, s, n, TRIED, place, PLACES, &trial, err);
   if (status != CAG_OK) return status;
   *distance = 0;
@@ -421,8 +425,8 @@ static CagStatus measure_middles(const CagSurface *surface, const Sampled *s, co
       bool cut_ac = tess_cut_ac(a, b, c, d);
       double off = cag_distance_to_triangle(middle, a, b, cut_ac ? c : d);
       if (off <= *distance) continue;
-      off = fmin(off, cag_distance_to_triangle(middle, cut_ac ? a : b, c, d));
-      *distance = fmax(*distance, off);
+      off = smaller(off, cag_distance_to_triangle(middle, cut_ac ? a : b, c, d));
+      *distance = larger(*distance, off);
     }
   return CAG_OK;
 }
@@ -447,12 +451,12 @@ static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, 
     CagStatus status = measure(surface, s, needs.turn, n, &distance, err);
     if (status != CAG_OK) return status;
     double use = distance / tolerance;
-    if (use <= highest_use && fmax(n[0], n[1]) > TRIED_WELL) {
+    if (use <= highest_use && larger(n[0], n[1]) > TRIED_WELL) {
       status = measure_middles(surface, s, n, &distance, err);
       if (status != CAG_OK) return status;
-      use = fmax(use, distance / tolerance);
+      use = larger(use, distance / tolerance);
     }
-    if (fmin(n[0], n[1]) <= 1 && needs.uv > twisted * tolerance * quads) use *= sewn;
+    if (smaller(n[0], n[1]) <= 1 && needs.uv > twisted * tolerance * quads) use *= sewn;
     if (surprise && round == 0 && use > surprising) {
       *surprise = true;
       return CAG_OK;
@@ -464,12 +468,12 @@ static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, 
       if (use >= lowest_use || quads <= 1) break;
     }
     // Differences are blind to what happens between samples: then the counts themselves grow.
-    double largest = fmax(needs.uu, fmax(needs.uv, needs.vv));
+    double largest = larger(needs.uu, larger(needs.uv, needs.vv));
     if (use > highest_use && largest * correction < tolerance * 0.5) {
-      needs.uu = fmax(needs.uu, tolerance);
-      needs.vv = fmax(needs.vv, tolerance);
+      needs.uu = larger(needs.uu, tolerance);
+      needs.vv = larger(needs.vv, tolerance);
     }
-    correction *= fmin(16, fmax(use / aimed_use, 1.0 / 16));
+    correction *= smaller(16, larger(use / aimed_use, 1.0 / 16));
   }
   if (smallest < INFINITY) return CAG_OK;
   // Corrections did not settle it; doubling does.
@@ -514,8 +518,8 @@ static bool is_sliver_pole(const CagTessellation *how, const Sampled *s, int dir
   // The parallels grow with the distance from the pole: the first one by the first sample.
   for (int i = 0; i < SIDE; i++) {
     int k = i * other + (end ? STEPS - 1 : 1) * stride;
-    base = fmax(base, cag_norm(around[k]) * STEPS);
-    height = fmax(height, cag_norm(along[k]));
+    base = larger(base, cag_norm(around[k]) * STEPS);
+    height = larger(height, cag_norm(along[k]));
   }
   return height > small * how->tolerance && base / n[1 - direction] < slim * height &&
          less[1 - direction] < gain * n[1 - direction];
@@ -541,7 +545,7 @@ static int halving(const CagTessellation *how, const CagSurface *surface, const 
       cost_of(how, s, (Range){0, half, 0, STEPS}) + cost_of(how, s, (Range){half, STEPS, 0, STEPS});
   double by_v =
       cost_of(how, s, (Range){0, STEPS, 0, half}) + cost_of(how, s, (Range){0, STEPS, half, STEPS});
-  if (fmin(by_u, by_v) > gain * whole) return -1;
+  if (smaller(by_u, by_v) > gain * whole) return -1;
   return by_u <= by_v ? 0 : 1;
 }
 

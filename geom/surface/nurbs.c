@@ -22,6 +22,12 @@
 // Basis tables live on the stack; higher degrees serve nobody and lose all accuracy.
 #define MAX_DEGREE 63
 
+#if defined(__GNUC__)
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
+
 typedef struct Direction {
   int degree;
   size_t count, distinct;
@@ -55,13 +61,14 @@ static size_t find_span(const Direction *d, double t, CagSide side) {
   return low;
 }
 
-// Values of the degree + 1 basis functions on the span, by the triangular scheme of Cox and de
-// Boor; `lower` takes those of the degree below (degree of them) where it is not NULL.
-static void basis_values(const Direction *d, size_t span, double t, double *values, double *lower) {
+// Values of the p + 1 basis functions of degree p on the span, by the triangular scheme of Cox and
+// de Boor; `lower` takes those of the degree below (p of them) where it is not NULL.
+INLINE void basis_scheme(const Direction *d, int p, size_t span, double t, double *values,
+                         double *lower) {
   double left[MAX_DEGREE + 1], right[MAX_DEGREE + 1];
   values[0] = 1;
-  for (int j = 1; j <= d->degree; j++) {
-    if (lower && j == d->degree) memcpy(lower, values, (size_t)j * sizeof *values);
+  for (int j = 1; j <= p; j++) {
+    for (int r = 0; lower && j == p && r < j; r++) lower[r] = values[r];
     left[j] = t - d->knots[span + 1 - (size_t)j];
     right[j] = d->knots[span + (size_t)j] - t;
     double saved = 0;
@@ -74,12 +81,14 @@ static void basis_values(const Direction *d, size_t span, double t, double *valu
   }
 }
 
-// Values and first derivatives.
-static void basis_first(const Direction *d, size_t span, double t, double *values, double *slopes) {
-  double lower[MAX_DEGREE + 1];
-  int p = d->degree;
-  basis_values(d, span, t, values, lower);
-  double before = 0;
+static void basis_values(const Direction *d, size_t span, double t, double *values) {
+  basis_scheme(d, d->degree, span, t, values, NULL);
+}
+
+INLINE void basis_first_of(const Direction *d, int p, size_t span, double t, double *values,
+                           double *slopes) {
+  double lower[MAX_DEGREE + 1], before = 0;
+  basis_scheme(d, p, span, t, values, lower);
   for (int i = 0; i <= p; i++) {
     double after = 0;
     if (i < p) {
@@ -91,10 +100,25 @@ static void basis_first(const Direction *d, size_t span, double t, double *value
   }
 }
 
+// Values and first derivatives. The loops of the degrees that are met most are unrolled.
+static void basis_first(const Direction *d, size_t span, double t, double *values, double *slopes) {
+  switch (d->degree) {
+  case 1: basis_first_of(d, 1, span, t, values, slopes); break;
+  case 2: basis_first_of(d, 2, span, t, values, slopes); break;
+  case 3: basis_first_of(d, 3, span, t, values, slopes); break;
+  default: basis_first_of(d, d->degree, span, t, values, slopes);
+  }
+}
+
 // Derivatives 0..n: out[k * (degree + 1) + i]. Derivatives of a B-spline are B-splines of the
 // differences of its control points, applied here to the unit control points.
 static void basis_derivatives(const Direction *d, size_t span, double t, int n, double *out) {
   int p = d->degree, width = p + 1;
+  if (n <= 1) {
+    double slopes[MAX_DEGREE + 1];
+    basis_first(d, span, t, out, n < 1 ? slopes : out + width);
+    return;
+  }
   for (int k = 0; k <= n; k++) {
     double *row = out + k * width;
     for (int i = 0; i <= p; i++) row[i] = 0;
@@ -103,7 +127,7 @@ static void basis_derivatives(const Direction *d, size_t span, double t, int n, 
     Direction low = *d;
     low.degree = p - k;
     double values[MAX_DEGREE + 1];
-    basis_values(&low, span, t, values, NULL);
+    basis_values(&low, span, t, values);
     for (int i = 0; i <= p - k; i++) row[i] = values[i];
     for (int q = p - k + 1; q <= p; q++) {
       double before = 0;
@@ -156,8 +180,10 @@ static CagStatus nurbs_eval(const CagSurface *s, double u, double v, int n, CagS
   size_t iu = find_span(&b->u, u, su), iv = find_span(&b->v, v, sv);
   basis_derivatives(&b->u, iu, u, n, bu);
   basis_derivatives(&b->v, iv, v, n, bv);
-  double h[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)][4] = {{0, 0, 0, 1}};
+  double h[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)][4];
   double row[MAX_DEGREE + 1][4];
+  h[0][0] = h[0][1] = h[0][2] = 0;
+  h[0][3] = 1;
   for (int i = 0; i <= n; i++) {
     // The net contracted with the i-th derivatives by u.
     memset(row, 0, (size_t)(q + 1) * sizeof *row);
@@ -187,11 +213,6 @@ static CagStatus nurbs_eval(const CagSurface *s, double u, double v, int n, CagS
 #define WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define WIDEST
-#endif
-#if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline))
-#else
-#define INLINE static inline
 #endif
 
 // What is known of one row u and one run of columns in the same span of v.
@@ -480,6 +501,17 @@ static CagStatus grid_prepare(const Nurbs *b, const double *vs, size_t nv, bool 
   return CAG_OK;
 }
 
+// sum_k f[k] net[k * stride + j] for the columns lo..hi, in the order of k. Few columns are met as
+// often as many (a cell of a surface alone): so no sums on their way through memory.
+INLINE void contract_lines(const double *f, int p, const double *net, size_t stride, size_t lo,
+                           size_t hi, double *restrict to) {
+  for (size_t j = lo; j < hi; j++) {
+    double sum = f[0] * net[j];
+    for (int k = 1; k <= p; k++) sum += f[k] * net[(size_t)k * stride + j];
+    to[j] = sum;
+  }
+}
+
 // Contracts the columns lo..hi of the planes with the basis by u.
 WIDEST static void contract_row(const Nurbs *b, size_t span, const double *value,
                                 const double *slope, size_t lo, size_t hi, bool slopes,
@@ -489,13 +521,13 @@ WIDEST static void contract_row(const Nurbs *b, size_t span, const double *value
   for (int c = 0; c < planes; c++) {
     const double *net = b->planes + (size_t)c * plane + (span - (size_t)p) * nv;
     double *restrict a = row + (size_t)c * nv, *restrict da = row + (size_t)(4 + c) * nv;
-    for (size_t j = lo; j < hi; j++) a[j] = value[0] * net[j];
-    for (int k = 1; k <= p; k++)
-      for (size_t j = lo; j < hi; j++) a[j] += value[k] * net[(size_t)k * nv + j];
-    if (!slopes) continue;
-    for (size_t j = lo; j < hi; j++) da[j] = slope[0] * net[j];
-    for (int k = 1; k <= p; k++)
-      for (size_t j = lo; j < hi; j++) da[j] += slope[k] * net[(size_t)k * nv + j];
+    if (p == 3) {
+      contract_lines(value, 3, net, nv, lo, hi, a);
+      if (slopes) contract_lines(slope, 3, net, nv, lo, hi, da);
+    } else {
+      contract_lines(value, p, net, nv, lo, hi, a);
+      if (slopes) contract_lines(slope, p, net, nv, lo, hi, da);
+    }
   }
 }
 
