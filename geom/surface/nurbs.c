@@ -61,6 +61,11 @@ static size_t find_span(const Direction *d, double t, CagSide side) {
   return low;
 }
 
+// Is it the span of t, from the right? Neighbouring parameters mostly share theirs.
+static bool is_in_span(const Direction *d, size_t span, double t) {
+  return span < d->count && d->knots[span] <= t && t < d->knots[span + 1];
+}
+
 // Values of the p + 1 basis functions of degree p on the span, by the triangular scheme of Cox and
 // de Boor; `lower` takes those of the degree below (p of them) where it is not NULL.
 INLINE void basis_scheme(const Direction *d, int p, size_t span, double t, double *values,
@@ -382,6 +387,52 @@ INLINE Wide3 wide_sums(double (*a)[4], const Basis *b) {
   return (Wide3){wide_sum(a[0], b), wide_sum(a[1], b), wide_sum(a[2], b)};
 }
 
+// As basis_first, of several parameters in the same span.
+INLINE void basis_wide(const Direction *d, int p, size_t span, Wide t, Wide *values, Wide *slopes) {
+  const double *knots = d->knots + span;
+  Wide left[4], right[4], lower[4], before = {0};
+  values[0] = before + 1;
+  for (int j = 1; j <= p; j++) {
+    Wide saved = {0};
+    left[j] = t - knots[1 - j];
+    right[j] = knots[j] - t;
+    for (int r = 0; r < j; r++) {
+      if (j == p) lower[r] = values[r];
+      Wide part = values[r] / (right[r + 1] + left[j - r]);
+      values[r] = saved + right[r + 1] * part;
+      saved = left[j - r] * part;
+    }
+    values[j] = saved;
+  }
+  for (int i = 0; i < p; i++) {
+    Wide after = (double)p * lower[i] / (knots[1 + i] - knots[1 + i - p]);
+    slopes[i] = before - after;
+    before = after;
+  }
+  slopes[p] = before;
+}
+
+INLINE void columns_wide(const Direction *d, int p, size_t span, const double *vs, size_t n,
+                         size_t stride, double *m, double *slopes) {
+  for (size_t j = 0; j < n; j += WIDE) {
+    size_t some = n - j < WIDE ? n - j : WIDE;
+    Wide t, value[4], slope[4];
+    for (size_t k = 0; k < WIDE; k++) t[k] = vs[j + (k < some ? k : 0)];
+    basis_wide(d, p, span, t, value, slope);
+    for (int l = 0; l <= p; l++) {
+      size_t at = (size_t)l * stride + j;
+      // Behind the last of a row stands the next one.
+      if (some == WIDE) {
+        memcpy(m + at, &value[l], sizeof value[l]);
+        memcpy(slopes + at, &slope[l], sizeof slope[l]);
+      } else {
+        memcpy(m + at, &value[l], some * sizeof *m);
+        memcpy(slopes + at, &slope[l], some * sizeof *m);
+      }
+    }
+  }
+}
+
 INLINE Wide3 wide_quotient(Wide3 p, Wide3 base, Wide w, Wide inverse) {
   return (Wide3){(p.x - w * base.x) * inverse, (p.y - w * base.y) * inverse,
                  (p.z - w * base.z) * inverse};
@@ -447,6 +498,15 @@ INLINE bool run_wide(const Run *r, int q, bool rational, bool partials, bool nor
   return good;
 }
 
+WIDEST static void columns_low(const Direction *d, size_t span, const double *vs, size_t n,
+                               size_t stride, double *m, double *slopes) {
+  switch (d->degree) {
+  case 1: columns_wide(d, 1, span, vs, n, stride, m, slopes); break;
+  case 2: columns_wide(d, 2, span, vs, n, stride, m, slopes); break;
+  default: columns_wide(d, 3, span, vs, n, stride, m, slopes);
+  }
+}
+
 WIDEST static bool run_polynomial(const Run *r, int q, bool first) {
   if (!first) return run_wide(r, q, false, false, false);
   if (!r->normal) return run_wide(r, q, false, true, false);
@@ -470,6 +530,25 @@ static bool run_columns(const Run *r, int q, bool rational, bool first) {
 }
 #endif
 
+// Values and slopes of n parameters in the same span, [l * stride + column].
+static void basis_columns(const Direction *d, size_t span, const double *vs, size_t n,
+                          size_t stride, double *m, double *slopes) {
+#ifdef FUSED
+  if (d->degree <= 3) {
+    columns_low(d, span, vs, n, stride, m, slopes);
+    return;
+  }
+#endif
+  double value[MAX_DEGREE + 1], slope[MAX_DEGREE + 1];
+  for (size_t j = 0; j < n; j++) {
+    basis_first(d, span, vs[j], value, slope);
+    for (size_t l = 0; l <= (size_t)d->degree; l++) {
+      m[l * stride + j] = value[l];
+      slopes[l * stride + j] = slope[l];
+    }
+  }
+}
+
 // Working memory of a grid: everything that does not depend on both parameters.
 typedef struct GridWork {
   double *m, *d;   // basis by v, [l * nv + column]
@@ -477,6 +556,13 @@ typedef struct GridWork {
   double *row;     // 8 x count_v: planes contracted by u with values and slopes
   double *du, *dv; // where the caller wants only one of them
 } GridWork;
+
+// Columns from start on in the same span.
+static size_t end_of_run(const size_t *span, size_t start, size_t nv) {
+  size_t end = start + 1;
+  while (end < nv && span[end] == span[start]) end++;
+  return end;
+}
 
 static CagStatus grid_prepare(const Nurbs *b, const double *vs, size_t nv, bool first, GridWork *w,
                               CagError *err) {
@@ -488,15 +574,16 @@ static CagStatus grid_prepare(const Nurbs *b, const double *vs, size_t nv, bool 
   w->dv = first ? malloc((3 * nv + 1) * sizeof *w->dv) : NULL;
   if (!w->m || !w->span || !w->row || (first && (!w->du || !w->dv))) return cag_fail_memory(err);
   w->d = w->m + lines * nv;
-  double value[MAX_DEGREE + 1], slope[MAX_DEGREE + 1];
+  size_t span = SIZE_MAX;
   for (size_t j = 0; j < nv; j++) {
-    CagSide side = vs[j] >= b->base.v1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
-    w->span[j] = find_span(&b->v, vs[j], side);
-    basis_first(&b->v, w->span[j], vs[j], value, slope);
-    for (size_t l = 0; l < lines; l++) {
-      w->m[l * nv + j] = value[l];
-      w->d[l * nv + j] = slope[l];
-    }
+    bool at_end = vs[j] >= b->base.v1;
+    if (at_end || !is_in_span(&b->v, span, vs[j]))
+      span = find_span(&b->v, vs[j], at_end ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT);
+    w->span[j] = span;
+  }
+  for (size_t start = 0, end; start < nv; start = end) {
+    end = end_of_run(w->span, start, nv);
+    basis_columns(&b->v, w->span[start], vs + start, end - start, nv, w->m + start, w->d + start);
   }
   return CAG_OK;
 }
@@ -551,7 +638,7 @@ static CagStatus grid(const Nurbs *b, const double *us, size_t nu, const double 
     basis_first(&b->u, span, us[i], value, slope);
     contract_row(b, span, value, slope, low - q, high + 1, first, w.row);
     for (size_t start = 0, end; start < nv; start = end) {
-      for (end = start + 1; end < nv && w.span[end] == w.span[start];) end++;
+      end = end_of_run(w.span, start, nv);
       size_t at = i * nv + start;
       Run run = {.n = end - start,
                  .room = one ? end - start : nv - start,
