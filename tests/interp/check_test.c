@@ -43,7 +43,8 @@ static void arguments_are_counted_and_named(void **state) {
   assert_string_equal(found("f(x, y = 2) = x + y\nprint 1 |> f(2), 1 |> f(y: 3)"), "");
   assert_string_equal(found("f(x) = x\nprint 1 |> f(2)"), "E0302:2");
   assert_string_equal(found("g = { h(a) = a; h(1, 2) }\nprint g"), "E0302:1");
-  assert_string_equal(found("import std.materials as m\nprint m.glazed(\"red\", 1, 2, 3, 4)"), "E0302:2");
+  assert_string_equal(found("import std.materials as m\nprint m.glazed(\"red\", 1, 2, 3, 4)"),
+                      "E0302:2");
 }
 
 static void types_that_cannot_be_are_found(void **state) {
