@@ -553,27 +553,22 @@ static void basis_columns(const Direction *d, size_t span, const double *vs, siz
 typedef struct GridWork {
   double *m, *d;   // basis by v, [l * nv + column]
   size_t *span;    // by v, per column
+  size_t *end;     // of the columns in the same span, at the first of them
   double *row;     // 8 x count_v: planes contracted by u with values and slopes
   double *du, *dv; // where the caller wants only one of them
 } GridWork;
-
-// Columns from start on in the same span.
-static size_t end_of_run(const size_t *span, size_t start, size_t nv) {
-  size_t end = start + 1;
-  while (end < nv && span[end] == span[start]) end++;
-  return end;
-}
 
 static CagStatus grid_prepare(const Nurbs *b, const double *vs, size_t nv, bool first, GridWork *w,
                               CagError *err) {
   size_t lines = (size_t)b->v.degree + 1;
   w->m = calloc(2 * lines * nv + WIDE, sizeof *w->m); // whole vectors are read at the end
-  w->span = malloc((nv + 1) * sizeof *w->span);
+  w->span = malloc(2 * nv * sizeof *w->span);
   w->row = malloc(8 * b->v.count * sizeof *w->row);
   w->du = first ? malloc((3 * nv + 1) * sizeof *w->du) : NULL;
   w->dv = first ? malloc((3 * nv + 1) * sizeof *w->dv) : NULL;
   if (!w->m || !w->span || !w->row || (first && (!w->du || !w->dv))) return cag_fail_memory(err);
   w->d = w->m + lines * nv;
+  w->end = w->span + nv;
   size_t span = SIZE_MAX;
   for (size_t j = 0; j < nv; j++) {
     bool at_end = vs[j] >= b->base.v1;
@@ -582,7 +577,8 @@ static CagStatus grid_prepare(const Nurbs *b, const double *vs, size_t nv, bool 
     w->span[j] = span;
   }
   for (size_t start = 0, end; start < nv; start = end) {
-    end = end_of_run(w->span, start, nv);
+    for (end = start + 1; end < nv && w->span[end] == w->span[start];) end++;
+    w->end[start] = end;
     basis_columns(&b->v, w->span[start], vs + start, end - start, nv, w->m + start, w->d + start);
   }
   return CAG_OK;
@@ -638,7 +634,7 @@ static CagStatus grid(const Nurbs *b, const double *us, size_t nu, const double 
     basis_first(&b->u, span, us[i], value, slope);
     contract_row(b, span, value, slope, low - q, high + 1, first, w.row);
     for (size_t start = 0, end; start < nv; start = end) {
-      end = end_of_run(w.span, start, nv);
+      end = w.end[start];
       size_t at = i * nv + start;
       Run run = {.n = end - start,
                  .room = one ? end - start : nv - start,
