@@ -321,9 +321,10 @@ static CagStatus crease_nodes(Tessellator *t, Line *line, bool only_look, bool *
   // Looking at some nodes tells whether there is a crease: it is a matter of the whole line, but
   // for surfaces made to deceive.
   enum { LOOKS = 16 };
-  size_t stride = only_look && line->node_count > LOOKS ? line->node_count / LOOKS : 1;
-  for (size_t k = 0; k < line->node_count; k += stride) {
+  size_t stride = only_look && line->node_count > LOOKS ? line->node_count / LOOKS : 1, step;
+  for (size_t k = 0; k < line->node_count; k += step) {
     Node *node = &nodes[k];
+    step = node->corner != NO_INDEX ? 1 : stride; // corners are not looked at
     if (node->corner != NO_INDEX) continue;
     double u, v;
     CagVec3 point, normal;

@@ -578,6 +578,31 @@ static void a_surface_that_is_a_point_is_no_work(void **state) {
   cag_surface_release(s);
 }
 
+// Each side of a crease keeps its own normals, wherever the corners of the leaves fall along it.
+static void creases_are_sharp_at_every_tolerance(void **state) {
+  (void)state;
+  const CagVec3 profile[] = {{0, 2, 0}, {20, 0, 0}, {30, 25, 0}, {28, 25, 0}, {15, 5, 0}};
+  CagCurve *c;
+  CagSurface *s;
+  OK(cag_curve_polyline(profile, 5, false, 2, &c, &err));
+  OK(cag_surface_revolve(c, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, 2 * M_PI, &s, &err));
+  for (double tolerance = 1; tolerance > 1e-4; tolerance *= 0.7) {
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    CagMesh *m;
+    how.tolerance = tolerance;
+    OK(cag_surface_tessellate(s, &how, &m, &err));
+    for (size_t k = 0; k < m->triangle_count; k++) {
+      const uint32_t *t = m->triangles + 3 * k;
+      const CagVec3 *p = m->positions;
+      const CagVec3 n = cag_unit(cag_cross(cag_sub(p[t[1]], p[t[0]]), cag_sub(p[t[2]], p[t[0]])));
+      for (int i = 0; i < 3; i++) assert_true(cag_dot(n, m->normals[t[i]]) > cos(M_PI / 10));
+    }
+    cag_mesh_release(m);
+  }
+  cag_surface_release(s);
+  cag_curve_release(c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_flat_patch_takes_two_triangles),
@@ -596,6 +621,7 @@ int main(void) {
       cmocka_unit_test(tubes_are_watertight),
       cmocka_unit_test(a_shell_of_patches_in_any_sense_is_watertight),
       cmocka_unit_test(a_surface_that_is_a_point_is_no_work),
+      cmocka_unit_test(creases_are_sharp_at_every_tolerance),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
