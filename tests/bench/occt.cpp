@@ -1,6 +1,6 @@
 // The peer's side of the figures of tessellation, Open CASCADE: a line of tolerance, triangles and
-// seconds of the processor for each tolerance, on the surface of surfaces.c. The finest takes it
-// minutes.
+// seconds of the processor for each tolerance, on the surface of surfaces.c. The best of some rounds
+// is taken, as there; but of the finest, which takes it minutes, there is one.
 
 #include <cmath>
 #include <cstdio>
@@ -17,7 +17,8 @@
 #include <TColgp_Array2OfPnt.hxx>
 #include <TopoDS_Face.hxx>
 
-static const int side = 20, degree = 3;
+static const int side = 20, degree = 3, rounds = 5;
+static const double repeated = 1e-3; // the finest tolerance that is met in every round
 static const double angle = 0.5, sewing = 1e-7;
 
 static double now() {
@@ -57,12 +58,16 @@ static int triangles_of(const TopoDS_Face &face) {
 int main() {
   Handle(Geom_BSplineSurface) surface = subject();
   for (double tolerance : {1e-2, 1e-3, 1e-4}) {
-    TopoDS_Face face = BRepBuilderAPI_MakeFace(surface, sewing);
-    double begin = now();
-    BRepMesh_IncrementalMesh mesh(face, tolerance, Standard_False, angle, Standard_False);
-    double seconds = now() - begin;
-    printf("%g %d %.6f\n", tolerance, triangles_of(face),
-           seconds);
+    double seconds = HUGE_VAL;
+    int triangles = 0;
+    for (int round = 0; round < (tolerance < repeated ? 1 : rounds); round++) {
+      TopoDS_Face face = BRepBuilderAPI_MakeFace(surface, sewing);
+      double begin = now();
+      BRepMesh_IncrementalMesh mesh(face, tolerance, Standard_False, angle, Standard_False);
+      seconds = std::fmin(seconds, now() - begin);
+      triangles = triangles_of(face);
+    }
+    printf("%g %d %.6f\n", tolerance, triangles, seconds);
     fflush(stdout);
   }
   return 0;
