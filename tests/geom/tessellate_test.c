@@ -581,10 +581,10 @@ static void a_surface_that_is_a_point_is_no_work(void **state) {
 // Each side of a crease keeps its own normals, wherever the corners of the leaves fall along it.
 static void creases_are_sharp_at_every_tolerance(void **state) {
   (void)state;
-  const CagVec3 profile[] = {{0, 2, 0}, {20, 0, 0}, {30, 25, 0}, {28, 25, 0}, {15, 5, 0}};
+  const CagVec3 profile[] = {{0, 0, 2}, {20, 0, 0}, {30, 0, 25}, {28, 0, 25}, {15, 0, 5}};
   CagCurve *c;
   CagSurface *s;
-  OK(cag_curve_polyline(profile, 5, false, 2, &c, &err));
+  OK(cag_curve_polyline(profile, 5, false, 3, &c, &err));
   OK(cag_surface_revolve(c, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, 2 * M_PI, &s, &err));
   for (double tolerance = 1; tolerance > 1e-4; tolerance *= 0.7) {
     CagTessellation how = CAG_TESSELLATION_DEFAULT;
