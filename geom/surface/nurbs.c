@@ -177,21 +177,15 @@ static CagStatus divide(int n, const double (*h)[4], CagVec3 *out, CagError *err
   return CAG_OK;
 }
 
-static CagStatus nurbs_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
-                            CagVec3 *out, CagError *err) {
-  const Nurbs *b = (const Nurbs *)s;
-  int p = b->u.degree, q = b->v.degree;
-  double bu[(CAG_MAX_PARTIAL + 1) * (MAX_DEGREE + 1)], bv[(CAG_MAX_PARTIAL + 1) * (MAX_DEGREE + 1)];
-  size_t iu = find_span(&b->u, u, su), iv = find_span(&b->v, v, sv);
-  basis_derivatives(&b->u, iu, u, n, bu);
-  basis_derivatives(&b->v, iv, v, n, bv);
-  double h[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)][4];
+// All partials of total order <= n of the homogeneous point. bu, bv: the bases' derivatives; p, q:
+// the degrees, once more, so that their loops may be unrolled.
+INLINE void contract_net(const Nurbs *b, int p, int q, size_t iu, size_t iv, int n,
+                         const double *bu, const double *bv, double (*h)[4]) {
   double row[MAX_DEGREE + 1][4];
-  h[0][0] = h[0][1] = h[0][2] = 0;
-  h[0][3] = 1;
   for (int i = 0; i <= n; i++) {
     // The net contracted with the i-th derivatives by u.
-    memset(row, 0, (size_t)(q + 1) * sizeof *row);
+    for (int l = 0; l <= q; l++)
+      for (int c = 0; c < 4; c++) row[l][c] = 0;
     for (int k = 0; k <= p && i <= p; k++) {
       double f = bu[i * (p + 1) + k];
       const double *net = b->net + 4 * ((iu - (size_t)p + (size_t)k) * b->v.count + iv - (size_t)q);
@@ -199,14 +193,34 @@ static CagStatus nurbs_eval(const CagSurface *s, double u, double v, int n, CagS
         for (int c = 0; c < 4; c++) row[l][c] += f * net[4 * l + c];
     }
     for (int j = 0; i + j <= n; j++) {
-      double *to = h[cag_partial(n, i, j)];
-      to[0] = to[1] = to[2] = to[3] = 0;
+      double to[4] = {0};
       for (int l = 0; l <= q; l++)
         for (int c = 0; c < 4; c++) to[c] += bv[j * (q + 1) + l] * row[l][c];
-      out[cag_partial(n, i, j)] = cag_vec3(to[0], to[1], to[2]);
+      memcpy(h[cag_partial(n, i, j)], to, sizeof to);
     }
   }
-  return b->rational ? divide(n, (const double(*)[4])h, out, err) : CAG_OK;
+}
+
+static CagStatus nurbs_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
+                            CagVec3 *out, CagError *err) {
+  const Nurbs *b = (const Nurbs *)s;
+  int p = b->u.degree, q = b->v.degree;
+  double bu[(CAG_MAX_PARTIAL + 1) * (MAX_DEGREE + 1)], bv[(CAG_MAX_PARTIAL + 1) * (MAX_DEGREE + 1)];
+  double h[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)][4];
+  size_t iu = find_span(&b->u, u, su), iv = find_span(&b->v, v, sv);
+  h[0][0] = h[0][1] = h[0][2] = 0;
+  h[0][3] = 1;
+  basis_derivatives(&b->u, iu, u, n, bu);
+  basis_derivatives(&b->v, iv, v, n, bv);
+  if (p == 3 && q == 3) contract_net(b, 3, 3, iu, iv, n, bu, bv, h);
+  else contract_net(b, p, q, iu, iv, n, bu, bv, h);
+  if (b->rational) return divide(n, (const double(*)[4])h, out, err);
+  for (int i = 0; i <= n; i++)
+    for (int j = 0; i + j <= n; j++) {
+      int k = cag_partial(n, i, j);
+      out[k] = cag_vec3(h[k][0], h[k][1], h[k][2]);
+    }
+  return CAG_OK;
 }
 
 // --- Grids ---
