@@ -48,6 +48,7 @@ typedef struct Needs {
 typedef struct Sampled {
   double from[2], to[2];
   CagVec3 points[SAMPLES], du[SAMPLES], dv[SAMPLES], normals[SAMPLES];
+  double speed[2][SAMPLES]; // the lengths of du and dv
   bool has_normal[SAMPLES];
   double off_uu[SAMPLES], off_uv[SAMPLES], off_vv[SAMPLES];
   double turn[2][SAMPLES]; // of the normal on the way to the next sample
@@ -60,13 +61,15 @@ static inline double smaller(double a, double b) { return b < a || isnan(a) ? b 
 
 // --- Sampling ---
 
-static void find_normals(Sampled *s) {
+static void find_lengths_and_normals(Sampled *s) {
   // Where the partials are nearly parallel the cross product is rounding.
   const double parallel = 1e-9;
   for (int k = 0; k < SAMPLES; k++) {
     CagVec3 n = cag_cross(s->du[k], s->dv[k]);
     double length = cag_norm(n);
-    s->has_normal[k] = length > parallel * cag_norm(s->du[k]) * cag_norm(s->dv[k]) && length > 0;
+    s->speed[0][k] = cag_norm(s->du[k]);
+    s->speed[1][k] = cag_norm(s->dv[k]);
+    s->has_normal[k] = length > parallel * s->speed[0][k] * s->speed[1][k] && length > 0;
     s->normals[k] = s->has_normal[k] ? cag_scaled(n, 1 / length) : n;
   }
 }
@@ -137,7 +140,7 @@ static CagStatus sample_leaf(const CagSurface *surface, Sampled *s, CagError *er
     s->du[k] = cag_scaled(s->du[k], length[0]);
     s->dv[k] = cag_scaled(s->dv[k], length[1]);
   }
-  find_normals(s);
+  find_lengths_and_normals(s);
   find_second_partials(s);
   find_turns(s);
   find_common_turns(s);
@@ -165,15 +168,16 @@ static bool are_turns_resolved(const CagTessellation *how, const Sampled *s, int
 static bool is_resolved(const CagTessellation *how, const Sampled *s, int direction) {
   const double far = 0.07; // of the longest step: an arc of 50 degrees, a sixth of a wave
   const CagVec3 *d = direction == 0 ? s->du : s->dv;
+  const double *speed = s->speed[direction];
   int stride = direction == 0 ? SIDE : 1;
   double longest = 0, worst = 0;
-  for (int k = 0; k < SAMPLES; k++) longest = larger(longest, cag_norm(d[k]));
+  for (int k = 0; k < SAMPLES; k++) longest = larger(longest, speed[k]);
   for (int i = 0; i < SIDE; i++)
     for (int j = 0; j < STEPS; j++) {
       int k = direction == 0 ? j * SIDE + i : i * SIDE + j;
       CagVec3 step = cag_scaled(cag_sub(s->points[k + stride], s->points[k]), STEPS);
       CagVec3 mean = cag_scaled(cag_add(d[k], d[k + stride]), 0.5);
-      double length = (cag_norm(d[k]) + cag_norm(d[k + stride])) / 2;
+      double length = (speed[k] + speed[k + stride]) / 2;
       worst = larger(worst, cag_norm(cag_sub(step, mean)));
       worst = larger(worst, fabs(length - cag_norm(step)));
     }
@@ -192,8 +196,8 @@ static Needs needs_of(const Sampled *s, Range r) {
       n.uu = larger(n.uu, s->off_uu[k]);
       n.uv = larger(n.uv, s->off_uv[k]);
       n.vv = larger(n.vv, s->off_vv[k]);
-      n.length[0] = larger(n.length[0], cag_norm(s->du[k]));
-      n.length[1] = larger(n.length[1], cag_norm(s->dv[k]));
+      n.length[0] = larger(n.length[0], s->speed[0][k]);
+      n.length[1] = larger(n.length[1], s->speed[1][k]);
       if (i < r.u1 && j < r.v1 && larger(s->turn[0][k], s->turn[1][k]) <= turned_away * STEPS)
         n.both = larger(n.both, s->both[k]);
       for (int d = 0; d < 2; d++) {
@@ -506,7 +510,6 @@ static bool is_sliver_pole(const CagTessellation *how, const Sampled *s, int dir
   const double small = 50; // tolerances: a leaf that is no higher is near enough to the tip
   // A leaf may reach from pole to pole: its half is as wide as all of it.
   int quarter = STEPS / 4, stride = direction == 0 ? SIDE : 1, other = direction == 0 ? 1 : SIDE;
-  const CagVec3 *around = direction == 0 ? s->dv : s->du, *along = direction == 0 ? s->du : s->dv;
   Range all = {0, STEPS, 0, STEPS}, near = all;
   if (direction == 0) *(end ? &near.u0 : &near.u1) = end ? STEPS - quarter : quarter;
   else *(end ? &near.v0 : &near.v1) = end ? STEPS - quarter : quarter;
@@ -518,8 +521,8 @@ static bool is_sliver_pole(const CagTessellation *how, const Sampled *s, int dir
   // The parallels grow with the distance from the pole: the first one by the first sample.
   for (int i = 0; i < SIDE; i++) {
     int k = i * other + (end ? STEPS - 1 : 1) * stride;
-    base = larger(base, cag_norm(around[k]) * STEPS);
-    height = larger(height, cag_norm(along[k]));
+    base = larger(base, s->speed[1 - direction][k] * STEPS);
+    height = larger(height, s->speed[direction][k]);
   }
   return height > small * how->tolerance && base / n[1 - direction] < slim * height &&
          less[1 - direction] < gain * n[1 - direction];
