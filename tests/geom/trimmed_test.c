@@ -6,7 +6,7 @@
 #include "tests/geom/surface_support.h"
 
 static CagRegion *disks(const double (*circles)[3], size_t n) {
-  CagCurve *loops[4];
+  CagCurve *loops[4] = {0};
   CagRegion *r = NULL;
   for (size_t i = 0; i < n; i++) {
     CagTransform frame = cag_translate(cag_vec3(circles[i][0], circles[i][1], 0));
