@@ -94,6 +94,11 @@ start_controller > /dev/null 2>&1
 start_node > /dev/null 2>&1
 waits_for node_is idle
 
+if ! node_is idle; then # where no control groups are mounted, for one
+  echo "cag batch with Slurm is left out: its node does not begin here: $(tail -n 2 slurm/node.log | head -n 1)"
+  end_slurm
+else
+
 it 'Slurm begins'
 ran=sinfo code=0
 node_is idle || wrong "the node is not there: $(tail -n 5 slurm/controller.log slurm/node.log 2>&1)"
@@ -245,4 +250,5 @@ prints_exactly '1 done, 0 failed, 0 left out (already done)'
 end_slurm
 trap 'rm -rf "$work"' EXIT
 unset SLURM_CONF
+fi
 fi
