@@ -7,7 +7,7 @@ have() { command -v "$1" > /dev/null 2>&1; }
 validator=$BUILD/npm
 if have node && have npm && [ ! -d "$validator/node_modules/gltf-validator" ]; then
   mkdir -p "$validator"
-  npm install --prefix "$validator" --no-audit --no-fund --silent gltf-validator@2.0.0-dev.3.10 > npm_out 2>&1 < /dev/null ||
+  timeout 90 npm install --prefix "$validator" --fetch-retries=1 --fetch-timeout=30000 --no-audit --no-fund --silent gltf-validator@2.0.0-dev.3.10 > npm_out 2>&1 < /dev/null ||
     echo "the Khronos validator could not be installed: $(tail -n 1 npm_out)"
 fi
 can_validate() { have node && [ -d "$validator/node_modules/gltf-validator" ]; }

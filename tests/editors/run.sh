@@ -47,7 +47,7 @@ result 'every built-in name is in both' $? "$(cat "$work/missing")"
 packages=$build/npm-editors
 if command -v node > /dev/null && command -v npm > /dev/null && [ ! -d "$packages/node_modules/vscode-textmate" ]; then
   mkdir -p "$packages"
-  npm install --prefix "$packages" --no-audit --no-fund --silent vscode-textmate@9.3.2 vscode-oniguruma@2.0.1 > "$work/npm" 2>&1 < /dev/null ||
+  timeout 90 npm install --prefix "$packages" --fetch-retries=1 --fetch-timeout=30000 --no-audit --no-fund --silent vscode-textmate@9.3.2 vscode-oniguruma@2.0.1 > "$work/npm" 2>&1 < /dev/null ||
     echo "vscode-textmate could not be installed: $(tail -n 1 "$work/npm")"
 fi
 if [ -d "$packages/node_modules/vscode-textmate" ]; then
