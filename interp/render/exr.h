@@ -65,6 +65,10 @@ bool cag_exr_read(const char *path, CagImage *out, CagExrMetadata *metadata, Cag
 bool cag_exr_read_memory(const void *bytes, size_t size, const char *shown, CagImage *out,
                          CagExrMetadata *metadata, CagIoError *err);
 
+// Whether the bytes are an EXR of scanlines to which nothing is missing; pixels are not decoded. A
+// file has its table of chunks filled in last of all.
+bool cag_exr_is_whole(const void *bytes, size_t size);
+
 typedef enum { CAG_EXR_HALF, CAG_EXR_FLOAT } CagExrPixels;
 
 // Writes the picture with its metadata (may be NULL). `-` is standard output. Channels must have

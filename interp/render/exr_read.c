@@ -369,25 +369,30 @@ static bool read_open(exr_context_t file, const Source *source, CagImage *out, b
   return fail_code(err, source, rv);
 }
 
+// Opens the bytes of `source`, to be closed with exr_finish when the result is 0.
+static exr_result_t open_source(Source *source, exr_context_t *file) {
+  exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  setup.error_handler_fn = keep_complaint;
+  setup.user_data = source;
+  setup.read_fn = source_read;
+  setup.size_fn = source_size;
+  setup.max_image_width = setup.max_image_height = (int)CAG_IMAGE_SIDE_MAX;
+  setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+  *file = NULL;
+  const exr_result_t rv = exr_start_read(file, source->shown, &setup);
+  if (rv && *file) exr_finish(file);
+  return rv;
+}
+
 bool cag_exr_read_pixels(const void *bytes, size_t size, const char *shown, CagImage *out,
                          CagExrMetadata *metadata, bool *all_half, CagIoError *err) {
   Source source = {.bytes = bytes, .size = size, .shown = shown};
   if (!size) return fail(err, &source, "the file is empty");
   if (size < sizeof MAGIC || memcmp(bytes, MAGIC, sizeof MAGIC) != 0)
     return fail(err, &source, "it is not an EXR file (its first bytes are not those of one)");
-  exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  setup.error_handler_fn = keep_complaint;
-  setup.user_data = &source;
-  setup.read_fn = source_read;
-  setup.size_fn = source_size;
-  setup.max_image_width = setup.max_image_height = (int)CAG_IMAGE_SIDE_MAX;
-  setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-  exr_context_t file = NULL;
-  exr_result_t rv = exr_start_read(&file, shown, &setup);
-  if (rv) {
-    if (file) exr_finish(&file);
-    return fail_code(err, &source, rv);
-  }
+  exr_context_t file;
+  exr_result_t rv = open_source(&source, &file);
+  if (rv) return fail_code(err, &source, rv);
   bool ok = read_open(file, &source, out, all_half, err);
   if (ok && metadata && !read_metadata(file, metadata, err)) {
     cag_image_free(out);
@@ -395,6 +400,24 @@ bool cag_exr_read_pixels(const void *bytes, size_t size, const char *shown, CagI
   }
   exr_finish(&file);
   return ok;
+}
+
+bool cag_exr_is_whole(const void *bytes, size_t size) {
+  Source source = {.bytes = bytes, .size = size, .shown = "picture"};
+  exr_context_t file;
+  exr_attr_box2i_t data;
+  int32_t lines;
+  if (size < sizeof MAGIC || memcmp(bytes, MAGIC, sizeof MAGIC) != 0 || open_source(&source, &file))
+    return false;
+  bool whole = exr_get_data_window(file, 0, &data) == EXR_ERR_SUCCESS &&
+               exr_get_scanlines_per_chunk(file, 0, &lines) == EXR_ERR_SUCCESS && lines > 0;
+  for (int64_t y = data.min.y; whole && y <= data.max.y; y += lines) {
+    exr_chunk_info_t chunk;
+    whole = exr_read_scanline_chunk_info(file, 0, (int)y, &chunk) == EXR_ERR_SUCCESS &&
+            chunk.data_offset <= size && chunk.packed_size <= size - chunk.data_offset;
+  }
+  exr_finish(&file);
+  return whole;
 }
 
 bool cag_exr_read_memory(const void *bytes, size_t size, const char *shown, CagImage *out,

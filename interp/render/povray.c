@@ -3,34 +3,26 @@
 #include "interp/render/povray.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <ftw.h>
 #include <limits.h>
-#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "interp/render/exr.h"
 #include "interp/render/image.h"
-#include "interp/render/povray_log.h"
+#include "interp/render/povray_process.h"
 #include "interp/render/sandbox.h"
 
-// How often the flag, the clock and the process are looked at, in milliseconds.
-#define WATCH_INTERVAL 40
-// The same once the output is closed: the process is about to end.
-#define WATCH_INTERVAL_CLOSED 4
+// The name of the picture in the folder.
+#define PICTURE "out.exr"
 // A run that asks for the version only is given this many seconds.
 #define VERSION_TIME_LIMIT 20.0
 // Largest picture file that is taken back: half floats of the largest image.
 #define PICTURE_SIZE_MAX ((size_t)1 << 33)
-// Exit status of the child when exec fails.
-#define EXEC_FAILED 127
 
 static double now(void) {
   struct timespec t;
@@ -178,109 +170,6 @@ static bool put_configuration(const char *folder, const char *library, CagIoErro
 
 // The process.
 
-typedef struct {
-  const char *program;
-  char *const *arguments;
-  char *const *environment;
-  const char *folder; // the process starts in it
-  int ruleset;        // of the sandbox
-} Command;
-
-typedef struct {
-  double time_limit;
-  const volatile sig_atomic_t *interrupted;
-} Watch;
-
-typedef enum { END_EXITED, END_SIGNALED, END_INTERRUPTED, END_TIME, END_NO_START } EndKind;
-
-typedef struct {
-  EndKind kind;
-  int code; // exit status, signal, or errno
-} End;
-
-// In the child, after fork: only calls that are safe in a signal handler.
-static void become(const Command *c, int output) {
-  const struct rlimit no_core = {0, 0};
-  int null = open("/dev/null", O_RDONLY);
-  setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL); // POV-Ray does not outlive a killed cag
-  setrlimit(RLIMIT_CORE, &no_core);
-  sigset_t none;
-  sigemptyset(&none);
-  signal(SIGINT, SIG_DFL);
-  signal(SIGTERM, SIG_DFL);
-  signal(SIGPIPE, SIG_DFL);
-  sigprocmask(SIG_SETMASK, &none, NULL);
-  if (null >= 0 && dup2(null, STDIN_FILENO) >= 0 && dup2(output, STDOUT_FILENO) >= 0 &&
-      dup2(output, STDERR_FILENO) >= 0 && chdir(c->folder) == 0 && cag_sandbox_enter(c->ruleset))
-    execve(c->program, c->arguments, c->environment);
-  _exit(EXEC_FAILED);
-}
-
-static bool should_end(const Watch *watch, double begun, EndKind *kind) {
-  if (watch->interrupted && *watch->interrupted) *kind = END_INTERRUPTED;
-  else if (watch->time_limit > 0 && now() - begun > watch->time_limit) *kind = END_TIME;
-  else return false;
-  return true;
-}
-
-// Reads what there is; false at the end of the output.
-static bool drain(int fd, CagPovrayLog *log) {
-  char bytes[4096];
-  ssize_t n = read(fd, bytes, sizeof bytes);
-  if (n < 0) return errno == EINTR || errno == EAGAIN;
-  if (n > 0) cag_povray_log_feed(log, bytes, (size_t)n);
-  return n > 0;
-}
-
-// Follows the process to its end, or ends it.
-static End follow(pid_t child, int output, const Watch *watch, CagPovrayLog *log) {
-  const double begun = now();
-  bool open_output = true, stopped = false;
-  End end = {END_EXITED, 0};
-  int status = 0;
-  // An exit is looked for even while the output is open: a child of the child may hold it.
-  for (;;) {
-    struct pollfd waiting = {.fd = open_output ? output : -1, .events = POLLIN};
-    if (poll(&waiting, 1, open_output ? WATCH_INTERVAL : WATCH_INTERVAL_CLOSED) > 0 &&
-        waiting.revents) {
-      open_output = drain(output, log);
-      if (open_output && !should_end(watch, begun, &end.kind)) continue;
-    }
-    pid_t done = waitpid(child, &status, WNOHANG);
-    if (done == child || (done < 0 && errno == ECHILD)) break;
-    if (stopped || !should_end(watch, begun, &end.kind)) continue;
-    kill(-child, SIGKILL);
-    kill(child, SIGKILL);
-    stopped = true;
-  }
-  kill(-child, SIGKILL); // whatever it started
-  while (open_output && poll(&(struct pollfd){.fd = output, .events = POLLIN}, 1, 0) > 0)
-    open_output = drain(output, log);
-  cag_povray_log_finish(log);
-  if (stopped) return end;
-  if (WIFSIGNALED(status)) return (End){END_SIGNALED, WTERMSIG(status)};
-  return (End){END_EXITED, WEXITSTATUS(status)};
-}
-
-static End run(const Command *command, const Watch *watch, CagPovrayLog *log) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return (End){END_NO_START, errno};
-  pid_t child = fork();
-  if (child == 0) become(command, ends[1]);
-  const int code = errno;
-  close(ends[1]);
-  if (child < 0) {
-    close(ends[0]);
-    return (End){END_NO_START, code};
-  }
-  setpgid(child, child); // on both sides, so that no kill comes too early
-  fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  End end = follow(child, ends[0], watch, log);
-  close(ends[0]);
-  return end;
-}
-
 // The folders that POV-Ray may read: system libraries, itself and its own library.
 static int prepare_sandbox(const char *program, const char *library, const char *folder) {
   char own[PATH_MAX] = "/usr";
@@ -311,19 +200,23 @@ static int prepare_sandbox(const char *program, const char *library, const char 
   return cag_sandbox_prepare(readable, sizeof readable / sizeof *readable, folder);
 }
 
-// Runs the program with the arguments in the folder.
-static End run_in_folder(const char *program, char *const *arguments, const char *folder,
-                         const char *library, const Watch *watch, CagPovrayLog *log) {
+// Runs the program with the arguments in the folder; `process` says the rest.
+static CagPovrayEnd run_in_folder(const char *program, char *const *arguments, const char *folder,
+                                  const char *library, CagPovrayProcess process,
+                                  CagPovrayLog *log) {
   char home[PATH_MAX + 8], temporary[PATH_MAX + 8], path[PATH_MAX];
   snprintf(home, sizeof home, "HOME=%s", folder);
   snprintf(temporary, sizeof temporary, "TMPDIR=%s", folder);
   const char *list = getenv("PATH");
   snprintf(path, sizeof path, "PATH=%s", list ? list : "/usr/bin:/bin");
   char *const environment[] = {home, temporary, path, "LC_ALL=C", NULL};
-  Command command = {program, arguments, environment, folder,
-                     prepare_sandbox(program, library, folder)};
-  End end = run(&command, watch, log);
-  if (command.ruleset >= 0) close(command.ruleset);
+  process.program = program;
+  process.arguments = arguments;
+  process.environment = environment;
+  process.folder = folder;
+  process.ruleset = prepare_sandbox(program, library, folder);
+  const CagPovrayEnd end = cag_povray_process_run(&process, log);
+  if (process.ruleset >= 0) close(process.ruleset);
   return end;
 }
 
@@ -352,28 +245,30 @@ static bool fail_scene(const CagPovrayJob *job, const CagPovrayLog *log, CagIoEr
 }
 
 // Fills the error of a run that gave no picture.
-static bool fail_end(const CagPovrayJob *job, End end, const CagPovrayLog *log, CagIoError *err) {
+static bool fail_end(const CagPovrayJob *job, CagPovrayEnd end, const CagPovrayLog *log,
+                     CagIoError *err) {
   char last[CAG_POVRAY_LAST_LINES * CAG_POVRAY_LINE_MAX];
   cag_povray_log_last(log, last, sizeof last);
   switch (end.kind) {
-  case END_INTERRUPTED: return cag_io_error_set(err, CAG_EXIT_INTERRUPTED, NULL, "interrupted");
-  case END_TIME:
+  case CAG_POVRAY_INTERRUPTED:
+    return cag_io_error_set(err, CAG_EXIT_INTERRUPTED, NULL, "interrupted");
+  case CAG_POVRAY_TIME:
     return cag_io_error_set(err, CAG_EXIT_LIMIT, "raise --max-time, or use --quality draft",
                             "POV-Ray was stopped after the time limit of %g s", job->time_limit);
-  case END_NO_START:
+  case CAG_POVRAY_NO_START:
     return cag_io_error_set(err, CAG_EXIT_RENDERER, NULL, "POV-Ray could not be started: %s",
                             strerror(end.code));
-  case END_SIGNALED:
+  case CAG_POVRAY_SIGNALED:
     return cag_io_error_set(err, CAG_EXIT_RENDERER,
                             end.code == SIGKILL
                                 ? "the system does so when memory runs out: try a coarser tolerance"
                                 : NULL,
                             "POV-Ray was killed by signal %d (%s)%s%.380s", end.code,
                             strsignal(end.code), *last ? "; its last lines were:" : "", last);
-  case END_EXITED: break;
+  case CAG_POVRAY_EXITED: break;
   }
   if (log->error_line) return fail_scene(job, log, err);
-  if (end.code == EXEC_FAILED && !log->line_count)
+  if (end.code == CAG_POVRAY_EXEC_FAILED && !log->line_count)
     return cag_io_error_set(err, CAG_EXIT_RENDERER,
                             "check that povray on PATH is a program that runs",
                             "POV-Ray could not be started");
@@ -388,9 +283,11 @@ static bool fail_end(const CagPovrayJob *job, End end, const CagPovrayLog *log, 
 // Takes the picture into memory; false when there is none.
 static bool take_picture(const char *folder, CagPovrayResult *out) {
   char path[PATH_MAX + 16];
-  snprintf(path, sizeof path, "%s/out.exr", folder);
+  snprintf(path, sizeof path, "%s/" PICTURE, folder);
   FILE *f = fopen(path, "rbe");
   struct stat st;
+  free(out->exr);
+  out->exr = NULL;
   if (!f) return false;
   bool ok = fstat(fileno(f), &st) == 0 && S_ISREG(st.st_mode) && st.st_size > 0 &&
             (size_t)st.st_size < PICTURE_SIZE_MAX;
@@ -404,6 +301,17 @@ static bool take_picture(const char *folder, CagPovrayResult *out) {
     out->exr = NULL;
   }
   return ok;
+}
+
+typedef struct {
+  const char *folder;
+  CagPovrayResult *result;
+} Place;
+
+static bool is_whole(void *user) {
+  const Place *p = user;
+  return take_picture(p->folder, p->result) &&
+         cag_exr_is_whole(p->result->exr, p->result->exr_size);
 }
 
 // Rendering.
@@ -426,8 +334,9 @@ static bool prepare_folder(const CagPovrayJob *job, const char *folder, const ch
   return ok;
 }
 
-static End render_in_folder(const CagPovrayJob *job, const char *program, const char *folder,
-                            const char *library, CagPovrayLog *log) {
+static CagPovrayEnd render_in_folder(const CagPovrayJob *job, const char *program,
+                                     const char *folder, const char *library,
+                                     CagPovrayResult *result, CagPovrayLog *log) {
   char width[24], height[24], threads[24];
   snprintf(width, sizeof width, "+W%d", job->width);
   snprintf(height, sizeof height, "+H%d", job->height);
@@ -449,7 +358,7 @@ static End render_in_folder(const CagPovrayJob *job, const char *program, const 
            part ? job->region_y + job->region_height : job->height);
   char *const arguments[] = {"povray",
                              "+Iscene.pov",
-                             "+Oout.exr",
+                             "+O" PICTURE,
                              "+FE",
                              width,
                              height,
@@ -468,8 +377,13 @@ static End render_in_folder(const CagPovrayJob *job, const char *program, const 
                              "-P",
                              "+V",
                              NULL};
-  const Watch watch = {job->time_limit, job->interrupted};
-  return run_in_folder(program, arguments, folder, library, &watch, log);
+  Place place = {folder, result};
+  const CagPovrayProcess process = {.time_limit = job->time_limit,
+                                    .interrupted = job->interrupted,
+                                    .picture = PICTURE,
+                                    .is_whole = is_whole,
+                                    .user = &place};
+  return run_in_folder(program, arguments, folder, library, process, log);
 }
 
 bool cag_povray_render(const CagPovrayJob *job, CagPovrayResult *out, CagIoError *err) {
@@ -487,9 +401,12 @@ bool cag_povray_render(const CagPovrayJob *job, CagPovrayResult *out, CagIoError
   *out = (CagPovrayResult){0};
   bool ok = prepare_folder(job, folder, library, err);
   if (ok) {
-    const End end = render_in_folder(job, program, folder, library, &log);
-    ok = end.kind == END_EXITED && end.code == 0 && take_picture(folder, out);
-    if (!ok) fail_end(job, end, &log, err);
+    const CagPovrayEnd end = render_in_folder(job, program, folder, library, out, &log);
+    ok = end.kind == CAG_POVRAY_EXITED && end.code == 0 && take_picture(folder, out);
+    if (!ok) {
+      fail_end(job, end, &log, err);
+      cag_povray_result_free(out);
+    }
   }
   remove_folder(folder);
   out->seconds = now() - begun;
@@ -510,13 +427,13 @@ bool cag_povray_find(char *path, size_t path_size, char version[64], CagIoError 
   if (!make_folder(folder, err)) return false;
   library_path(program, library);
   char *const arguments[] = {"povray", "--version", NULL};
-  const Watch watch = {VERSION_TIME_LIMIT, NULL};
+  const CagPovrayProcess process = {.time_limit = VERSION_TIME_LIMIT};
   CagPovrayLog log = {0};
   bool ok = put_configuration(folder, library, err);
   if (ok) {
     const CagPovrayJob no_job = {.time_limit = VERSION_TIME_LIMIT};
-    const End end = run_in_folder(program, arguments, folder, library, &watch, &log);
-    ok = end.kind == END_EXITED && log.version[0];
+    const CagPovrayEnd end = run_in_folder(program, arguments, folder, library, process, &log);
+    ok = end.kind == CAG_POVRAY_EXITED && log.version[0];
     if (!ok) fail_end(&no_job, end, &log, err);
   }
   remove_folder(folder);

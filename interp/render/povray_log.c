@@ -89,6 +89,7 @@ static void take_line(CagPovrayLog *log) {
   take_error(log, line);
   if (take_heading(log, line)) return;
   take_version(log, line);
+  log->told_statistics |= !strncmp(line, "Render Statistics", 17);
   memcpy(log->last[log->line_count++ % CAG_POVRAY_LAST_LINES], line, CAG_POVRAY_LINE_MAX);
 }
 
@@ -100,6 +101,11 @@ void cag_povray_log_feed(CagPovrayLog *log, const char *bytes, size_t n) {
 }
 
 void cag_povray_log_finish(CagPovrayLog *log) { take_line(log); }
+
+void cag_povray_log_whole(CagPovrayLog *log) {
+  log->phase = "rendering";
+  report(log, 100);
+}
 
 void cag_povray_log_last(const CagPovrayLog *log, char *out, size_t size) {
   const size_t kept =

@@ -29,6 +29,7 @@ typedef struct CagPovrayLog {
   size_t error_line;
   char error_text[2 * CAG_POVRAY_LINE_MAX];
   bool error_continues;
+  bool told_statistics; // which it does when all is rendered
 } CagPovrayLog;
 
 // Takes output as it comes, in pieces of any size. Lines end in '\n', lines of progress in '\r'.
@@ -36,6 +37,9 @@ void cag_povray_log_feed(CagPovrayLog *log, const char *bytes, size_t n);
 
 // Takes a last line that has no end.
 void cag_povray_log_finish(CagPovrayLog *log);
+
+// The picture is whole, though its last line of progress may not have come.
+void cag_povray_log_whole(CagPovrayLog *log);
 
 // Puts the last lines into `out`, each after a '\n'.
 void cag_povray_log_last(const CagPovrayLog *log, char *out, size_t size);

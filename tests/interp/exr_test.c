@@ -494,6 +494,30 @@ static void a_file_cut_anywhere_is_an_error(void **state) {
 
 // Flips bytes at random, a third of the time in the header, and reads: either way is fine, as long
 // as it ends in order.
+// Until its table of chunks is filled in, which comes last, a file lacks something.
+static void a_file_is_whole_when_all_of_it_is_there(void **state) {
+  (void)state;
+  CagImage image = ramp(37, 50);
+  assert_true(cag_exr_write(place("a.exr"), &image, CAG_EXR_HALF, NULL, NULL));
+  size_t size;
+  unsigned char *bytes = read_bytes(place("a.exr"), &size);
+  assert_true(cag_exr_is_whole(bytes, size));
+  for (size_t n = 0; n < size; n++) assert_false(cag_exr_is_whole(bytes, n));
+  // ZIP has 16 lines a chunk: 4 chunks, whose offsets stand before the first of them.
+  uint64_t first;
+  size_t table = 0;
+  for (size_t i = 0; !table && i + 8 <= size; i++) {
+    memcpy(&first, bytes + i, 8);
+    if (first == i + 4 * 8) table = i;
+  }
+  assert_true(table > 0);
+  memset(bytes + table + 3 * 8, 0, 8);
+  assert_false(cag_exr_is_whole(bytes, size));
+  free(bytes);
+  cag_image_free(&image);
+  unlink(place("a.exr"));
+}
+
 static void flip_and_read(const unsigned char *bytes, size_t size, unsigned seed, int rounds) {
   uint64_t random = seed * 2654435761u + 1;
   unsigned char *damaged = malloc(size);
@@ -574,6 +598,7 @@ int main(void) {
       cmocka_unit_test(parts_become_named_layers),
       cmocka_unit_test(bad_files_are_named_with_their_fault),
       cmocka_unit_test(a_file_cut_anywhere_is_an_error),
+      cmocka_unit_test(a_file_is_whole_when_all_of_it_is_there),
       cmocka_unit_test(damaged_files_never_crash),
       cmocka_unit_test(a_refused_image_leaves_the_old_file),
   };
