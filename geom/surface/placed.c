@@ -165,3 +165,10 @@ CagStatus cag_surface_placed(const CagSurface *inner, const CagTransform *t, boo
   *out = s;
   return CAG_OK;
 }
+
+bool cag_surface_placed_view(const CagSurface *s, const CagSurface **inner, CagTransform *map) {
+  if (s->kind != &placed_kind) return false;
+  *inner = ((const Placed *)s)->inner;
+  *map = ((const Placed *)s)->map;
+  return true;
+}

@@ -69,6 +69,8 @@ CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool
                               CagSurface ***out, size_t *n, CagError *err);
 // The equation behind a surface of kind "quadric"; false: another kind.
 bool cag_surface_quadric_view(const CagSurface *s, CagQuadric *equation);
+// The affine map from its unit form.
+bool cag_surface_quadric_frame(const CagSurface *s, CagTransform *frame);
 
 // The parametric forms of real quadrics (reference 06a, table of parametric forms), each in units
 // of its semi-axes: they are the lengths of the frame's columns.

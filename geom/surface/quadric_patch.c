@@ -252,6 +252,12 @@ bool cag_surface_quadric_view(const CagSurface *s, CagQuadric *equation) {
   return true;
 }
 
+bool cag_surface_quadric_frame(const CagSurface *s, CagTransform *frame) {
+  if (s->kind != &quadric_kind) return false;
+  *frame = ((const Patch *)s)->frame;
+  return true;
+}
+
 // --- Pieces within a box ---
 
 // The pieces found so far; at most two sheets, nappes, branches or planes.

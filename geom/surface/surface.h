@@ -105,6 +105,9 @@ bool cag_surface_nurbs_view(const CagSurface *s, CagSurfaceNurbsView *out);
 // Profile, axis and angles of a revolution, for exporters with lathes.
 bool cag_surface_revolution_view(const CagSurface *s, const CagCurve **profile, CagVec3 *axis,
                                  CagVec3 *through, double *from, double *to);
+// What a surface seen through an affine map shows: S(u, v) is `map` of `inner`, with v run
+// backwards where it was turned over. false: it has an image of its own.
+bool cag_surface_placed_view(const CagSurface *s, const CagSurface **inner, CagTransform *map);
 
 // --- Questions ---
 CagStatus cag_surface_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,

@@ -22,6 +22,7 @@ static bool nearly(CagVec3 a, CagVec3 b, double size) {
 typedef struct Turn {
   CagVec3 axis, through, out; // out: unit, square to the axis, in the profile's half plane
   bool has_out;
+  CagTransform map; // the whole is seen through it
 } Turn;
 
 #define FULL_TURN (2 * 3.14159265358979323846)
@@ -58,14 +59,24 @@ static bool same_axis(const Turn *t, CagVec3 axis, CagVec3 through) {
   return fabs(fabs(cag_dot(axis, t->axis)) - 1) < SAME && off <= SAME * (1 + cag_norm(between));
 }
 
+// The faces of one body were all moved alike, so that their maps are equal to the last bit.
+static bool same_map(const CagTransform *a, const CagTransform *b) {
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++)
+      if (a->m[i][j] != b->m[i][j]) return false;
+  return true;
+}
+
 static bool add_profile(CagPovOutline *o, Turn *t, const CagSurface *s) {
   const CagCurve *profile;
   CagVec3 axis, through;
+  CagTransform map;
   double from, to;
+  s = pov_unplaced(s, &map);
   if (!cag_surface_revolution_view(s, &profile, &axis, &through, &from, &to)) return false;
-  if (fabs(fabs(to - from) - FULL_TURN) > SAME) return false;
-  if (o->all.count == 0) t->axis = cag_unit(axis), t->through = through;
-  else if (!same_axis(t, cag_unit(axis), through)) return false;
+  if (fabs(fabs(to - from) - FULL_TURN) > SAME || !pov_takes(&map)) return false;
+  if (o->all.count == 0) t->axis = cag_unit(axis), t->through = through, t->map = map;
+  else if (!same_map(&t->map, &map) || !same_axis(t, cag_unit(axis), through)) return false;
   CagPovOutline part = CAG_POV_OUTLINE_EMPTY;
   CagCurve *space = NULL;
   CagError err;
@@ -77,7 +88,7 @@ static bool add_profile(CagPovOutline *o, Turn *t, const CagSurface *s) {
   return ok;
 }
 
-// y of the lathe to the axis, x to the profile's side.
+// y of the lathe to the axis, x to the profile's side, and on through the map.
 static CagTransform lathe_placement(const Turn *t) {
   CagTransform m = cag_transform_identity();
   CagVec3 x = t->out, y = t->axis, z = cag_cross(x, y);
@@ -87,7 +98,8 @@ static CagTransform lathe_placement(const Turn *t) {
     m.m[1][j] = columns[j].y;
     m.m[2][j] = columns[j].z;
   }
-  return m;
+  m.planar = false;
+  return cag_transform_multiply(&t->map, &m);
 }
 
 bool pov_try_lathe(CagPovWriter *w, const CagSurface *const *s, size_t n) {

@@ -1,8 +1,9 @@
 // Quadric surfaces as `quadric`, cut where the patch ends.
 //
 // POV-Ray's quadric is the whole surface. A patch of it is written with a box that cuts it: one
-// along the quadric's own axes, or along those of the world, whichever has the patch's edges on its
-// faces. Where neither does, the patch is no piece that a box cuts out, and becomes a mesh.
+// along the quadric's own axes, one stretched and sheared as the patch was, or one along the axes
+// of the world, whichever has the patch's edges on its faces. Where none does, the patch is no
+// piece that a box cuts out, and becomes a mesh.
 
 #include <string.h>
 
@@ -136,9 +137,12 @@ bool pov_try_quadric(CagPovWriter *w, const CagSurface *const *s, size_t n) {
   CagQuadricForm form;
   CagError err;
   Cut cut;
+  CagTransform world = cag_transform_identity(), own = world;
   if (!common_equation(s, n, &q) || cag_quadric_classify(&q, &form, &err)) return false;
-  CagTransform world = cag_transform_identity();
-  if (!find_cut(s, n, &form.frame, &cut) && !find_cut(s, n, &world, &cut)) return false;
+  cag_surface_quadric_frame(s[0], &own);
+  if (!find_cut(s, n, &form.frame, &cut) && !find_cut(s, n, &own, &cut) &&
+      !find_cut(s, n, &world, &cut))
+    return false;
   write_equation(w, q.c);
   if (cuts_anything(&cut)) write_cut(w, &cut);
   pov_text(w, "}");

@@ -72,6 +72,9 @@ static bool ring_fits(const Ring *r, const CagTransform *frame, double major, do
 }
 
 bool pov_try_torus(CagPovWriter *w, const CagSurface *s) {
+  CagTransform map;
+  s = pov_unplaced(s, &map);
+  if (!pov_takes(&map)) return false;
   if (fabs(s->u1 - s->u0 - FULL_TURN) > FITS || fabs(s->v1 - s->v0 - FULL_TURN) > FITS)
     return false;
   Ring r = {s, cag_surface_revolution_view(s, NULL, NULL, NULL, NULL, NULL)};
@@ -95,7 +98,8 @@ bool pov_try_torus(CagPovWriter *w, const CagSurface *s) {
   pov_text(w, ", ");
   pov_number(w, minor);
   pov_text(w, "\n  rotate 90*x // POV-Ray's own lie about y\n");
-  pov_placement(w, "  ", &frame);
+  CagTransform placed = cag_transform_multiply(&map, &frame);
+  pov_placement(w, "  ", &placed);
   pov_text(w, "}");
   return true;
 }
@@ -104,7 +108,9 @@ bool pov_try_torus(CagPovWriter *w, const CagSurface *s) {
 static bool try_sphere(CagPovWriter *w, const CagSurface *s) {
   const CagCurve *profile;
   double from, to, a, b;
-  CagTransform frame;
+  CagTransform frame, map;
+  s = pov_unplaced(s, &map);
+  if (!pov_takes(&map)) return false;
   if (!cag_surface_revolution_view(s, &profile, NULL, NULL, &from, &to)) return false;
   if (fabs(fabs(to - from) - FULL_TURN) > FITS) return false;
   if (!cag_curve_arc_view(profile, &a, &b, &frame) || a != b) return false;
@@ -117,11 +123,13 @@ static bool try_sphere(CagPovWriter *w, const CagSurface *s) {
   CagVec3 center = cag_lerp(low, high, 0.5);
   double radius = cag_norm(cag_sub(high, low)) / 2;
   if (fabs(cag_norm(cag_sub(side, center)) - radius) > FITS * radius) return false;
-  pov_text(w, "sphere { ");
+  pov_text(w, "sphere {\n  ");
   pov_vec(w, center);
   pov_text(w, ", ");
   pov_number(w, radius);
-  pov_text(w, " }");
+  pov_text(w, "\n");
+  pov_placement(w, "  ", &map);
+  pov_text(w, "}");
   return true;
 }
 

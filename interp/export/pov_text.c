@@ -114,6 +114,25 @@ void pov_placement(CagPovWriter *w, const char *indent, const CagTransform *t) {
   pov_text(w, ">\n");
 }
 
+// The renderer's own tolerances become those of the stretched body, in its thinnest direction.
+#define FLATTEST 1e-6
+
+bool pov_takes(const CagTransform *map) {
+  if (!cag_transform_is_affine(map)) return false;
+  double largest = 0;
+  for (int j = 0; j < 3; j++)
+    largest = fmax(largest, cag_norm(cag_vec3(map->m[0][j], map->m[1][j], map->m[2][j])));
+  double w = map->m[3][3], volume = cag_transform_determinant(map) / w;
+  return isfinite(largest) && fabs(volume) > FLATTEST * largest * largest * largest;
+}
+
+const CagSurface *pov_unplaced(const CagSurface *s, CagTransform *map) {
+  const CagSurface *inner;
+  *map = cag_transform_identity();
+  map->planar = false;
+  return cag_surface_placed_view(s, &inner, map) ? inner : s;
+}
+
 // Words of POV-Ray 3.7 that are written in small letters, digits and _ only, sorted.
 static const char *const reserved[] = {
 #include "interp/export/pov_words.def"

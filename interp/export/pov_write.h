@@ -74,6 +74,11 @@ bool pov_try_solid(CagPovWriter *w, const CagSolid *s);                      // 
 bool pov_try_surface(CagPovWriter *w, const CagSurface *s);                  // pov_surface.c
 bool pov_try_quadric(CagPovWriter *w, const CagSurface *const *s, size_t n); // pov_quadric.c
 bool pov_try_lathe(CagPovWriter *w, const CagSurface *const *s, size_t n);   // pov_lathe.c
+// What POV-Ray's objects are stretched by: an affine map that leaves them a body. A flatter one is
+// for meshes.
+bool pov_takes(const CagTransform *map); // pov_text.c
+// The surface and the map it is seen through; itself and the identity where there is none.
+const CagSurface *pov_unplaced(const CagSurface *s, CagTransform *map); // pov_text.c
 // A revolution of straight lines without an inside.
 bool pov_try_cones(CagPovWriter *w, const CagSurface *s); // pov_lathe.c
 bool pov_try_prism(CagPovWriter *w, const CagSolid *s);   // pov_lathe.c

@@ -52,6 +52,16 @@ native tent bicubic_patch 'g = bezier_surface([for i in 0..2: [for j in 0..1: [2
 native tower quadric 'g = hyperboloid(12, 12, 15, within: 0..35)'
 native dish quadric 'g = paraboloid(5, 4, within: 0..30)'
 native saddle quadric 'g = hyperbolic_paraboloid(8, 6, within: box([50, 50, 60], centered: true)) |> translate([0, 0, 15])'
+# Stretched, sheared and mirrored: the same objects behind a matrix.
+native stretched_vase lathe 'g = revolve(bspline([[0, 0], [20, 0], [16, 20], [5, 25], [13, 45]])) |> scale([1.5, 0.8, 1]) |> rotate(X, 20deg)'
+native mirrored_tyre lathe 'g = transform([[1, 0.3, 0, 0], [0, 1, 0.4, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) * revolve(rounded(polygon([[12, 0], [30, 0], [30, 20], [18, 24]]), 4)) |> reflect(plane([0, 0, 12], [1, 0, 3]))'
+native flat_bowl union 'g = revolve(polyline([[0, 2], [20, 0], [30, 25], [28, 25], [15, 5]])) |> scale([1, 0.6, 1.2])'
+native round_egg sphere 'g = sphere_surface(20) |> scale([1, 1.3, 0.6]) |> rotate(X, 30deg) |> translate([0, 0, 20])'
+native oval_ring torus 'g = torus_surface(20, 6) |> scale([1.4, 0.8, 1.5]) |> rotate(X, 40deg) |> translate([0, 0, 20])'
+native leaning_tower quadric 'g = transform([[1, 0, 0.4, -8], [0, 1, -0.2, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) * hyperboloid(12, 10, 15, within: 0..35)'
+native leaning_dish quadric 'g = transform([[-1, 0.2, 0.3, 0], [0, 1, 0, 0], [0, 0, 0.8, 0], [0, 0, 0, 1]]) * paraboloid(5, 4, within: 0..30)'
+native oval_cut difference 'g = difference(revolve(rounded(polygon([[12, 0], [30, 0], [30, 20], [18, 24]]), 4)) |> scale([1.1, 0.7, 1.3]), torus(20, 6) |> scale([1.5, 1, 0.7]) |> translate([10, 0, 20]))'
+
 native sheet polygon 'g = polygon([[-25, -20], [25, -20], [15, 20], [-25, 20]], holes: [[[-8, -8], [8, -8], [0, 8]]])'
 
 # curve NAME OBJECT 'script': a line of some thickness.
@@ -67,6 +77,12 @@ native_curve() {
 native_curve stick cylinder 'g = line([-20, 0, 0], [20, 10, 30])'
 native_curve hoop torus 'g = circle(25, normal: [0, 1, 1])'
 native_curve coil union 'g = helix(20, 8, 4)'
+
+it 'what is nearly flat is a mesh: the renderer would not meet it'
+script leaf.cag 'show sphere_surface(20) |> scale([1, 1, 1e-8])'
+try export leaf.cag -o leaf.pov
+status 0
+grep -q 'mesh2 {' leaf.pov || wrong 'it is no mesh'
 
 it 'what has no object of its own is a mesh with normals'
 script knot.cag 'show tube(bezier([[0, 0, 0], [30, 0, 0], [30, 30, 10], [0, 30, 30]]), 4)'
