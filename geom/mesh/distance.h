@@ -14,14 +14,23 @@ static inline double cag_distance_to_segment(CagVec3 p, CagVec3 a, CagVec3 b) {
   return cag_norm(cag_sub(ap, cag_scaled(ab, t)));
 }
 
+// Is a triangle so thin that rounding turns its plane? Then its edges speak for it: they are nearer
+// than its height. With corners off by e and the longest edge l, the plane of a triangle of height
+// h is off by l e / h at its ends; that is more than h where h is below sqrt(e l). n: the cross
+// product of the edges from a.
+static inline bool cag_triangle_is_thin(CagVec3 a, CagVec3 ab, CagVec3 ac, CagVec3 n) {
+  const double rounding = 16 * 2.220446049250313e-16; // of coordinates, by their evaluation
+  double area2 = cag_dot(n, n), l2 = fmax(cag_dot(ab, ab), cag_dot(ac, ac));
+  return !(area2 * area2 > rounding * rounding * (cag_dot(a, a) + l2) * (l2 * l2 * l2));
+}
+
 // Also of triangles that are a segment or a point.
 static inline double cag_distance_to_triangle(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c) {
-  CagVec3 n = cag_cross(cag_sub(b, a), cag_sub(c, a));
-  double area2 = cag_dot(n, n);
-  bool inside = area2 > 0 && cag_dot(cag_cross(cag_sub(b, a), cag_sub(p, a)), n) >= 0 &&
+  CagVec3 ab = cag_sub(b, a), ac = cag_sub(c, a), ap = cag_sub(p, a), n = cag_cross(ab, ac);
+  bool inside = cag_dot(cag_cross(ab, ap), n) >= 0 && cag_dot(cag_cross(ap, ac), n) >= 0 &&
                 cag_dot(cag_cross(cag_sub(c, b), cag_sub(p, b)), n) >= 0 &&
-                cag_dot(cag_cross(cag_sub(a, c), cag_sub(p, c)), n) >= 0;
-  if (inside) return fabs(cag_dot(cag_sub(p, a), n)) / sqrt(area2);
+                !cag_triangle_is_thin(a, ab, ac, n);
+  if (inside) return fabs(cag_dot(ap, n)) / cag_norm(n);
   return fmin(cag_distance_to_segment(p, a, b),
               fmin(cag_distance_to_segment(p, b, c), cag_distance_to_segment(p, c, a)));
 }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "geom/mesh/tessellation.h"
+#include "geom/surface/frames.h"
 
 // Normals that differ by less than this are one: they are the same limit computed in two ways.
 static const double same_normal = 1e-6;
@@ -65,13 +66,8 @@ void tess_unite(Tessellator *t, uint32_t a, uint32_t b) {
 
 // --- Normals ---
 
-static bool cross_normal(CagVec3 du, CagVec3 dv, CagVec3 *out) {
-  const double parallel = 1e-9; // see plan.c
-  CagVec3 n = cag_cross(du, dv);
-  double length = cag_norm(n);
-  if (!(length > parallel * cag_norm(du) * cag_norm(dv)) || !(length > 0)) return false;
-  *out = cag_scaled(n, 1 / length);
-  return true;
+static bool cross_normal(const CagSurface *s, const CagVec3 d[4], CagVec3 *out) {
+  return cag_normal_of_partials(s, d[0], d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)], out);
 }
 
 // Normal where the partials are no help: the surface's own limit, else that a little further
@@ -84,8 +80,7 @@ static CagVec3 limit_normal(const CagSurface *s, double u, double v) {
   u += inside * ((s->u0 + s->u1) / 2 - u);
   v += inside * ((s->v0 + s->v1) / 2 - v);
   CagStatus status = cag_surface_eval(s, u, v, 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &ignored);
-  if (status == CAG_OK && cross_normal(d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)], &n))
-    return n;
+  if (status == CAG_OK && cross_normal(s, d, &n)) return n;
   return cag_vec3(0, 0, 0);
 }
 
@@ -96,8 +91,7 @@ static CagStatus sided_vertex(const CagSurface *s, double u, double v, bool afte
                                       after_v ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, d, err);
   if (status != CAG_OK) return status;
   *point = d[0];
-  if (!cross_normal(d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)], normal))
-    *normal = limit_normal(s, u, v);
+  if (!cross_normal(s, d, normal)) *normal = limit_normal(s, u, v);
   return CAG_OK;
 }
 
@@ -303,7 +297,8 @@ static CagStatus row_of_nodes(Tessellator *t, Line *line, bool after, const Row 
     if (node->corner != NO_INDEX) continue;
     CagVec3 normal;
     node_parameters(line, node->t, after, &u, &v);
-    if (!cross_normal(row->du[k], row->dv[k], &normal)) normal = limit_normal(s, u, v);
+    if (!cag_normal_of_partials(s, row->points[k], row->du[k], row->dv[k], &normal))
+      normal = limit_normal(s, u, v);
     uint32_t other = node->vertex[!after];
     if (other != NO_INDEX && alike(t->normals[other], normal)) normal = t->normals[other];
     status = tess_new_vertex(t, row->points[k], normal, u, v, &node->vertex[after], err);

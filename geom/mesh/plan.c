@@ -12,6 +12,7 @@
 
 #include "geom/mesh/distance.h"
 #include "geom/mesh/tessellation.h"
+#include "geom/surface/frames.h"
 
 enum {
   STEPS = 8, // of the sampling grid of a leaf; even, so that halves are known as well
@@ -62,14 +63,16 @@ static inline double smaller(double a, double b) { return b < a || isnan(a) ? b 
 // --- Sampling ---
 
 static void find_lengths_and_normals(Sampled *s) {
-  // Where the partials are nearly parallel the cross product is rounding.
+  // Where the partials are nearly parallel the cross product is rounding, where one of them is as
+  // short as that, it is rounding itself.
   const double parallel = 1e-9;
   for (int k = 0; k < SAMPLES; k++) {
     CagVec3 n = cag_cross(s->du[k], s->dv[k]);
     double length = cag_norm(n);
     s->speed[0][k] = cag_norm(s->du[k]);
     s->speed[1][k] = cag_norm(s->dv[k]);
-    s->has_normal[k] = length > parallel * s->speed[0][k] * s->speed[1][k] && length > 0;
+    s->has_normal[k] = length > parallel * s->speed[0][k] * s->speed[1][k] && length > 0 &&
+                       smaller(s->speed[0][k], s->speed[1][k]) > cag_partial_noise(s->points[k], 1);
     s->normals[k] = s->has_normal[k] ? cag_scaled(n, 1 / length) : n;
   }
 }
@@ -346,9 +349,10 @@ static double cut_distance(const CagVec3 *at, int stride, bool cut_ac, double wo
 // edge the neighbour takes over, whose plane is turned by up to that angle; at the border of a face
 // chords.c cares.
 static double off_edge(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c, double sine) {
-  CagVec3 ab = cag_sub(b, a), ap = cag_sub(p, a), n = cag_cross(ab, cag_sub(c, a));
+  CagVec3 ab = cag_sub(b, a), ac = cag_sub(c, a), ap = cag_sub(p, a), n = cag_cross(ab, ac);
   double area = cag_norm(n), length = cag_norm(ab);
-  if (!(area > 0) || !(length > 0)) return cag_distance_to_triangle(p, a, b, c);
+  if (!(length > 0) || cag_triangle_is_thin(a, ab, ac, n))
+    return cag_distance_to_triangle(p, a, b, c);
   double off = fabs(cag_dot(ap, n)) / area,
          outside = cag_dot(ap, cag_cross(ab, n)) / (area * length);
   if (outside <= 0) return off;

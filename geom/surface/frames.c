@@ -9,13 +9,16 @@
 // Rows are evaluated together up to this many points: their partials stay in the cache.
 #define TOGETHER 4096
 
-static CagVec3 normal_of(CagVec3 du, CagVec3 dv) {
+bool cag_normal_of_partials(const CagSurface *s, CagVec3 point, CagVec3 du, CagVec3 dv,
+                            CagVec3 *out) {
   const double parallel = 1e-9; // of the product of their lengths: the rest is rounding
   CagVec3 n = cag_cross(du, dv);
-  double length2 = cag_dot(n, n);
-  bool good =
-      length2 > parallel * parallel * cag_dot(du, du) * cag_dot(dv, dv) && length2 > DBL_MIN;
-  return good ? cag_scaled(n, 1 / sqrt(length2)) : cag_vec3(0, 0, 0);
+  double length2 = cag_dot(n, n), uu = cag_dot(du, du), vv = cag_dot(dv, dv);
+  double u = cag_partial_noise(point, s->u1 - s->u0), v = cag_partial_noise(point, s->v1 - s->v0);
+  if (!(length2 > parallel * parallel * uu * vv && length2 > DBL_MIN)) return false;
+  if (!(uu > u * u && vv > v * v)) return false;
+  *out = cag_scaled(n, 1 / sqrt(length2));
+  return true;
 }
 
 CagStatus cag_surface_eval_frames(const CagSurface *s, const double *us, size_t nu,
@@ -33,7 +36,9 @@ CagStatus cag_surface_eval_frames(const CagSurface *s, const double *us, size_t 
     n = nu - i < rows ? nu - i : rows;
     CagVec3 *a = own ? own : du + i * nv, *b = own ? own + rows * nv : dv + i * nv;
     status = cag_surface_eval_grid(s, us + i, n, vs, nv, points + i * nv, a, b, err);
-    for (size_t k = 0; !status && k < n * nv; k++) normals[i * nv + k] = normal_of(a[k], b[k]);
+    for (size_t k = 0; !status && k < n * nv; k++)
+      if (!cag_normal_of_partials(s, points[i * nv + k], a[k], b[k], &normals[i * nv + k]))
+        normals[i * nv + k] = cag_vec3(0, 0, 0);
   }
   free(own);
   return status;

@@ -116,6 +116,24 @@ static void judge(Nurbs *b) {
   b->base.closed_v = b->base.closed_v || b->v.periodic;
 }
 
+// Partials are differences of neighbouring points by the length of a span.
+static void find_noise(Nurbs *b) {
+  double most = 0, weight = 0;
+  for (size_t i = 0; i < b->u.count * b->v.count; i++) {
+    const double *p = b->net + 4 * i;
+    most = fmax(most, cag_norm(cag_vec3(p[0], p[1], p[2])));
+    weight = fmax(weight, p[3]);
+  }
+  const Direction *along[2] = {&b->u, &b->v};
+  for (int k = 0; k < 2; k++) {
+    const Direction *d = along[k];
+    double spans = (double)(d->count - (size_t)d->degree);
+    double noise = cag_partial_noise(cag_vec3(most / weight, 0, 0),
+                                     (d->knots[d->count] - d->knots[d->degree]) / spans);
+    b->noise2[k] = noise * noise;
+  }
+}
+
 static bool is_bezier(const Direction *d) {
   return d->count == (size_t)d->degree + 1 && clamped(d) && d->knots[d->degree] == 0 &&
          d->knots[d->count] == 1;
@@ -168,6 +186,7 @@ static CagStatus build(const double *net, const Direction *u, const Direction *v
   bool bezier = is_bezier(&b->u) && is_bezier(&b->v);
   s->kind = bezier ? &bezier_kind : b->rational ? &nurbs_kind : &bspline_kind;
   judge(b);
+  find_noise(b);
   *out = s;
   return CAG_OK;
 }

@@ -30,6 +30,7 @@ typedef struct Run {
   const double *da[4]; // with the slopes
   double *point, *du, *dv; // 3 numbers per column; du, dv may be NULL together
   double *normal;          // of unit length, or zero; NULL: not asked for
+  const double *noise2;    // of Nurbs
 } Run;
 
 // Vectors whose cross product is shorter than this part of the product of their lengths are
@@ -37,8 +38,9 @@ typedef struct Run {
 #define PARALLEL 1e-9
 
 // What the cross product is scaled by; 0: there is no normal.
-INLINE double normal_scale(double length2, double uu, double vv) {
-  bool good = length2 > PARALLEL * PARALLEL * uu * vv && length2 > DBL_MIN;
+INLINE double normal_scale(double length2, double uu, double vv, const double noise2[2]) {
+  bool good = (length2 > PARALLEL * PARALLEL * uu * vv) & (length2 > DBL_MIN) & (uu > noise2[0]) &
+              (vv > noise2[1]);
   return good ? 1 / sqrt(length2) : 0;
 }
 
@@ -85,13 +87,13 @@ INLINE size_t chunk_quotients(Chunk *restrict s, size_t n, bool first) {
   return bad;
 }
 
-INLINE void chunk_normals(Chunk *restrict s, size_t n) {
+INLINE void chunk_normals(Chunk *restrict s, size_t n, const double noise2[2]) {
   for (size_t j = 0; j < n; j++) {
     double xu = s->du[0][j], yu = s->du[1][j], zu = s->du[2][j];
     double xv = s->dv[0][j], yv = s->dv[1][j], zv = s->dv[2][j];
     double nx = yu * zv - zu * yv, ny = zu * xv - xu * zv, nz = xu * yv - yu * xv;
     double scale = normal_scale(nx * nx + ny * ny + nz * nz, xu * xu + yu * yu + zu * zu,
-                                xv * xv + yv * yv + zv * zv);
+                                xv * xv + yv * yv + zv * zv, noise2);
     s->normal[0][j] = nx * scale;
     s->normal[1][j] = ny * scale;
     s->normal[2][j] = nz * scale;
@@ -118,7 +120,7 @@ WIDEST static bool run_any(const Run *r, int q, bool rational, bool first) {
       interleave(r->dv + 3 * at, s.dv[0], s.dv[1], s.dv[2], n);
     }
     if (!r->normal) continue;
-    chunk_normals(&s, n);
+    chunk_normals(&s, n, r->noise2);
     interleave(r->normal + 3 * at, s.normal[0], s.normal[1], s.normal[2], n);
   }
   return bad == 0;
@@ -242,6 +244,7 @@ INLINE Wide wide_dot(Wide3 a, Wide3 b) { return a.x * b.x + a.y * b.y + a.z * b.
 
 INLINE bool run_wide(const Run *r, int q, bool rational, bool partials, bool normals) {
   double a[4][4] = {{0}}, da[4][4] = {{0}}, scale[CHUNK], uu[CHUNK], vv[CHUNK];
+  const double noise2[2] = {r->noise2[0], r->noise2[1]};
   Wide3 cross[CHUNK / WIDE];
   // Rows that a lower degree does not have count for nothing.
   size_t row[4], room = r->room;
@@ -287,7 +290,7 @@ INLINE bool run_wide(const Run *r, int q, bool rational, bool partials, bool nor
     }
     if (!normals) continue;
     for (size_t j = 0; j < (n + WIDE - 1) / WIDE * WIDE; j++)
-      scale[j] = normal_scale(scale[j], uu[j], vv[j]);
+      scale[j] = normal_scale(scale[j], uu[j], vv[j], noise2);
     for (size_t j = 0; j < n; j += WIDE) {
       Wide by = wide_load(scale + j);
       Wide3 c = cross[j / WIDE];
@@ -442,6 +445,7 @@ CagStatus tensor_frames(const Nurbs *b, const double *us, size_t nu, const doubl
                  .m = w.m + start,
                  .d = w.d + start,
                  .stride = nv,
+                 .noise2 = b->noise2,
                  .point = &points[at].x,
                  .normal = normals ? &normals[at].x : NULL};
       if (partials) {

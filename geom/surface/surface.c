@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "geom/surface/family.h"
+#include "geom/surface/frames.h"
 #include "geom/surface/trimmed.h"
 
 // A parameter this many ulps outside the domain is taken for the end: it is the rounding of a
@@ -187,7 +188,8 @@ static void expand(const CagVec3 *d, int n, int i0, double du, double dv, CagVec
 }
 
 // First direction that S_u x S_v takes on the way (du, dv) into the surface. False: none is found.
-static bool limit_along(const CagVec3 *d, int n, double du, double dv, double scale,
+// zero: what is no longer counts for nothing.
+static bool limit_along(const CagVec3 *d, int n, double du, double dv, double zero,
                         CagVec3 *normal) {
   CagVec3 a[NORMAL_ORDER], b[NORMAL_ORDER];
   expand(d, n, 1, du, dv, a);
@@ -199,7 +201,7 @@ static bool limit_along(const CagVec3 *d, int n, double du, double dv, double sc
       sum = cag_madd(sum, binomial, cag_cross(a[i], b[k - i]));
       binomial = binomial * (k - i) / (i + 1);
     }
-    if (cag_norm(sum) > NORMAL_ZERO * scale * scale) {
+    if (cag_norm(sum) > zero) {
       *normal = cag_unit(sum);
       return true;
     }
@@ -220,8 +222,8 @@ CagStatus cag_surface_normal(const CagSurface *s, double u, double v, CagVec3 *o
   CagVec3 a = cag_scaled(first[cag_partial(1, 1, 0)], lu);
   CagVec3 b = cag_scaled(first[cag_partial(1, 0, 1)], lv);
   CagVec3 cross = cag_cross(a, b);
-  double scale = fmax(cag_norm(a), cag_norm(b));
-  if (cag_norm(cross) > NORMAL_ZERO * scale * scale) {
+  double scale = fmax(cag_norm(a), cag_norm(b)), noise = cag_partial_noise(first[0], 1);
+  if (cag_norm(cross) > (NORMAL_ZERO * scale + noise) * scale) {
     *out = cag_unit(cross);
     return CAG_OK;
   }
@@ -244,7 +246,8 @@ CagStatus cag_surface_normal(const CagSurface *s, double u, double v, CagVec3 *o
   size_t start = edge_u && !edge_v ? 1 : 0;
   for (size_t i = 0; i < 3; i++) {
     const double *way = ways[i == 2 ? 2 : (i + start) % 2];
-    if (limit_along(d, NORMAL_ORDER, way[0], way[1], scale, out)) return CAG_OK;
+    if (limit_along(d, NORMAL_ORDER, way[0], way[1], (NORMAL_ZERO * scale + noise) * scale, out))
+      return CAG_OK;
   }
   char text_u[32], text_v[32];
   return cag_fail(err, CAG_E_DEGENERATE, "degenerate-normal", "", -1,

@@ -36,8 +36,9 @@ typedef struct Nurbs {
   CagSurface base;
   Direction u, v;
   bool rational;
-  double *net;    // count_u x count_v x 4
-  double *planes; // 4 x count_u x count_v: x, y, z, w
+  double *net;      // count_u x count_v x 4
+  double *planes;   // 4 x count_u x count_v: x, y, z, w
+  double noise2[2]; // squares of the lengths below which partials by u and v are rounding
 } Nurbs;
 
 size_t tensor_span(const Direction *d, double t, CagSide side);
