@@ -1,24 +1,14 @@
 // B-spline surfaces from grids of points (reference 06b, 4): interpolation by two banded solutions,
-// least squares by QR. Where all lines share their parameters the matrix is the product of one by u
-// and one by v, which are solved one after the other; else it is solved as a whole.
+// least squares in rounds of solving for the net and moving the parameters.
 
-#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "geom/basis/bspline.h"
 #include "geom/basis/knots.h"
 #include "geom/surface/family.h"
-#include "geom/surface/loft.h"
+#include "geom/surface/grid_fit.h"
 #include "geom/surface/net.h"
-
-// A diagonal element of R below this part of the largest means dependent columns.
-#define RANK 1e-12
-// Basis values stand on the stack.
-#define DEGREE_MOST 31
-// Most numbers in the matrix of a fit whose lines have parameters of their own.
-#define DENSE_MOST 50000000
 
 // Parameters 0..end of n points with a stride; a line without length gets even ones. Of a closed
 // line the way back to the first point counts too, so that the last parameter is less than the end.
@@ -60,7 +50,7 @@ static CagStatus check(const CagGridData *g, size_t nu, size_t nv, CagError *err
   const size_t points[2] = {g->r, g->s}, net[2] = {nu, nv};
   const int degree[2] = {g->degree_u, g->degree_v};
   for (int k = 0; k < 2; k++) {
-    if (degree[k] < 1 || degree[k] > DEGREE_MOST || (size_t)degree[k] >= net[k])
+    if (degree[k] < 1 || degree[k] > CAG_GRID_DEGREE_MOST || (size_t)degree[k] >= net[k])
       return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", k,
                       "`degree` in %c must lie in 1..%zu for %zu control points, it is %d", "uv"[k],
                       net[k] - 1, net[k], degree[k]);
@@ -153,36 +143,19 @@ void cag_grid_parameters(const CagGridData *g, const double end[2], double *u, d
 void cag_grid_report_free(CagGridReport *report) {
   free(report->u);
   free(report->v);
+  free(report->planes);
   *report = (CagGridReport){0};
 }
 
 // --- Least squares ---
 
-// Control points in one direction and their knots, as a spline on the line has them.
-typedef struct Axis {
-  int degree;
-  size_t count, stored; // distinct points; with the repeated ones of a closed direction
-  bool closed;
-  double *knots; // stored + degree + 1
-} Axis;
-
-typedef struct Fit {
-  const CagGridData *g;
-  Axis axis[2];
-  size_t rows; // of all data
-  double *parameters[2];
-  CagVec3 *net;
-} Fit;
-
-static double axis_start(const Axis *a) { return a->knots[a->degree]; }
-static double axis_end(const Axis *a) { return a->knots[a->stored]; }
-
 // The first parameter of a closed direction by its spacing.
-static double phase(const Axis *a) { return a->closed && a->degree % 2 == 0 ? 0.5 : 0; }
+static double phase(const CagGridAxis *a) { return a->closed && a->degree % 2 == 0 ? 0.5 : 0; }
 
-static CagStatus make_axis(const CagGridData *g, int k, size_t count, Axis *a, CagError *err) {
+static CagStatus make_axis(const CagGridData *g, int k, size_t count, CagGridAxis *a,
+                           CagError *err) {
   int degree = k ? g->degree_v : g->degree_u;
-  *a = (Axis){degree, count, count, g->closed[k], NULL};
+  *a = (CagGridAxis){degree, count, count, g->closed[k], NULL};
   if (a->closed) a->stored += (size_t)degree;
   size_t n = a->stored + (size_t)degree + 1;
   a->knots = malloc(n * sizeof *a->knots);
@@ -194,129 +167,7 @@ static CagStatus make_axis(const CagGridData *g, int k, size_t count, Axis *a, C
   return a->closed ? CAG_OK : cag_knots_check(a->knots, count, degree, err);
 }
 
-// Values of the basis at t, folded onto the distinct points: entries of `row` with a stride.
-static void fill_row(const Axis *a, double t, double *row, size_t stride) {
-  double basis[DEGREE_MOST + 1];
-  size_t p = (size_t)a->degree;
-  size_t span = cag_knots_span(a->knots, a->stored, a->degree, t, t >= axis_end(a), p);
-  cag_bspline_basis(a->knots, a->degree, span, t, basis);
-  for (size_t i = 0; i <= p; i++) row[(span - p + i) % a->count * stride] += basis[i];
-}
-
-static CagStatus fail_singular(CagError *err) {
-  return cag_fail(err, CAG_E_DEGENERATE, "fit-singular", "count", -1,
-                  "the data do not determine all control points: take fewer, a lower degree, other "
-                  "knots, or data that are spread more evenly");
-}
-
-// Least squares of a column-major matrix; the first `columns` rows of `right` become the solution.
-static CagStatus solve(double *matrix, size_t rows, size_t columns, double *right, size_t sides,
-                       CagError *err) {
-  lapack_int info =
-      LAPACKE_dgels(LAPACK_COL_MAJOR, 'N', (lapack_int)rows, (lapack_int)columns, (lapack_int)sides,
-                    matrix, (lapack_int)rows, right, (lapack_int)rows);
-  double most = 0, least = INFINITY;
-  for (size_t i = 0; i < columns; i++) {
-    double r = fabs(matrix[i * rows + i]);
-    most = fmax(most, r);
-    least = fmin(least, r);
-  }
-  return info == 0 && least > RANK * most ? CAG_OK : fail_singular(err);
-}
-
-// All lines have the same parameters in both directions: the matrix is a product of two small ones.
-static bool is_product(const Fit *f) {
-  size_t s = f->g->s;
-  for (size_t i = 0; i < f->rows; i++)
-    if (f->parameters[0][i] != f->parameters[0][i / s * s] ||
-        f->parameters[1][i] != f->parameters[1][i % s])
-      return false;
-  return true;
-}
-
-// One direction: `lines` lines of n data each (data[i * lines + line]) to control points, in place
-// of the first rows.
-static CagStatus solve_lines(const Axis *a, const double *parameters, size_t stride, size_t n,
-                             CagVec3 *data, size_t lines, CagError *err) {
-  double *matrix = calloc(n * a->count, sizeof *matrix);
-  double *right = malloc(3 * n * lines * sizeof *right);
-  CagStatus status = matrix && right ? CAG_OK : cag_fail_memory(err);
-  for (size_t i = 0; !status && i < n; i++) {
-    fill_row(a, parameters[i * stride], matrix + i, n);
-    for (size_t l = 0; l < lines; l++) {
-      right[(3 * l) * n + i] = data[i * lines + l].x;
-      right[(3 * l + 1) * n + i] = data[i * lines + l].y;
-      right[(3 * l + 2) * n + i] = data[i * lines + l].z;
-    }
-  }
-  if (!status) status = solve(matrix, n, a->count, right, 3 * lines, err);
-  for (size_t i = 0; !status && i < a->count; i++)
-    for (size_t l = 0; l < lines; l++)
-      data[i * lines + l] =
-          cag_vec3(right[(3 * l) * n + i], right[(3 * l + 1) * n + i], right[(3 * l + 2) * n + i]);
-  free(matrix);
-  free(right);
-  return status;
-}
-
-static CagStatus fit_product(Fit *f, CagError *err) {
-  size_t r = f->g->r, s = f->g->s, nu = f->axis[0].count, nv = f->axis[1].count;
-  CagVec3 *data = malloc(r * s * sizeof *data), *turned = malloc(nu * s * sizeof *turned);
-  CagStatus status = data && turned ? CAG_OK : cag_fail_memory(err);
-  if (!status) {
-    memcpy(data, f->g->points, r * s * sizeof *data);
-    status = solve_lines(&f->axis[0], f->parameters[0], s, r, data, s, err);
-  }
-  for (size_t i = 0; !status && i < nu; i++)
-    for (size_t q = 0; q < s; q++) turned[q * nu + i] = data[i * s + q];
-  if (!status) status = solve_lines(&f->axis[1], f->parameters[1], 1, s, turned, nu, err);
-  for (size_t i = 0; !status && i < nu; i++)
-    for (size_t j = 0; j < nv; j++) f->net[i * nv + j] = turned[j * nu + i];
-  free(data);
-  free(turned);
-  return status;
-}
-
-static CagStatus fit_dense(Fit *f, CagError *err) {
-  size_t nu = f->axis[0].count, nv = f->axis[1].count, columns = nu * nv, rows = f->rows;
-  if (rows > DENSE_MOST / columns)
-    return cag_fail(err, CAG_E_LIMIT, "fit-too-large", "count", -1,
-                    "`count` times the data are more than can be solved at once: %zu unknowns for "
-                    "%zu points; take fewer control points, fit parts, or use the \"mean\" "
-                    "parameters",
-                    columns, rows);
-  double *matrix = malloc(rows * columns * sizeof *matrix);
-  double *right = malloc(3 * rows * sizeof *right), *bu = malloc((nu + nv) * sizeof *bu);
-  CagStatus status = matrix && right && bu ? CAG_OK : cag_fail_memory(err);
-  for (size_t row = 0; !status && row < rows; row++) {
-    double *bv = bu + nu;
-    memset(bu, 0, (nu + nv) * sizeof *bu);
-    fill_row(&f->axis[0], f->parameters[0][row], bu, 1);
-    fill_row(&f->axis[1], f->parameters[1][row], bv, 1);
-    for (size_t c = 0; c < columns; c++) matrix[c * rows + row] = bu[c / nv] * bv[c % nv];
-    right[row] = f->g->points[row].x;
-    right[rows + row] = f->g->points[row].y;
-    right[2 * rows + row] = f->g->points[row].z;
-  }
-  if (!status) status = solve(matrix, rows, columns, right, 3, err);
-  for (size_t i = 0; !status && i < columns; i++)
-    f->net[i] = cag_vec3(right[i], right[rows + i], right[2 * rows + i]);
-  free(matrix);
-  free(right);
-  free(bu);
-  return status;
-}
-
-static CagStatus surface_of(Fit *f, CagSurface **out, CagError *err) {
-  const Axis *u = &f->axis[0], *v = &f->axis[1];
-  CagStatus status = is_product(f) ? fit_product(f, err) : fit_dense(f, err);
-  if (status) return status;
-  return cag_surface_nurbs_closed(f->net, NULL, u->count, v->count, u->degree, v->degree,
-                                  u->closed ? NULL : u->knots, v->closed ? NULL : v->knots,
-                                  u->closed, v->closed, out, err);
-}
-
-static CagStatus deviations(const Fit *f, const CagSurface *s, CagGridReport *report,
+static CagStatus deviations(const CagGridFit *f, const CagSurface *s, CagGridReport *report,
                             CagError *err) {
   double sum = 0, most = 0;
   for (size_t i = 0; i < f->rows; i++) {
@@ -334,9 +185,8 @@ static CagStatus deviations(const Fit *f, const CagSurface *s, CagGridReport *re
 
 // --- Parameter correction ---
 
-// t moved by a step within its axis; a closed one goes round.
-static double moved(const Axis *a, double t, double step) {
-  double lo = axis_start(a), hi = axis_end(a);
+double cag_grid_moved(const CagGridAxis *a, double t, double step) {
+  double lo = cag_grid_start(a), hi = cag_grid_end(a);
   if (a->closed) {
     t = fmod(t + step - lo, hi - lo);
     return lo + (t < 0 ? t + hi - lo : t);
@@ -344,11 +194,16 @@ static double moved(const Axis *a, double t, double step) {
   return fmin(fmax(t + step, lo), hi);
 }
 
+bool cag_grid_on_border(const CagGridFit *f, size_t i, int direction) {
+  const size_t line = direction == 0 ? i / f->g->s : i % f->g->s;
+  return !f->axis[direction].closed &&
+         (line == 0 || line + 1 == (direction == 0 ? f->g->r : f->g->s));
+}
+
 // One step of Gauss and Newton towards the nearest point for all data. Data on an open border stay
 // there, so that the surface keeps its edges.
-static CagStatus correct(Fit *f, const CagSurface *s, CagError *err) {
-  const Axis *au = &f->axis[0], *av = &f->axis[1];
-  size_t r = f->g->r, columns = f->g->s;
+static CagStatus correct(CagGridFit *f, const CagSurface *s, CagError *err) {
+  const CagGridAxis *au = &f->axis[0], *av = &f->axis[1];
   for (size_t i = 0; i < f->rows; i++) {
     CagVec3 d[4];
     double *u = &f->parameters[0][i], *v = &f->parameters[1][i];
@@ -356,17 +211,15 @@ static CagStatus correct(Fit *f, const CagSurface *s, CagError *err) {
     if (status) return status;
     CagVec3 gap = cag_sub(f->g->points[i], d[0]), du = d[cag_partial(1, 1, 0)],
             dv = d[cag_partial(1, 0, 1)];
-    size_t row = i / columns, column = i % columns;
-    bool fixed_u = !au->closed && (row == 0 || row + 1 == r);
-    bool fixed_v = !av->closed && (column == 0 || column + 1 == columns);
+    bool fixed_u = cag_grid_on_border(f, i, 0), fixed_v = cag_grid_on_border(f, i, 1);
     double e = cag_dot(du, du), m = cag_dot(du, dv), g = cag_dot(dv, dv);
     double p = cag_dot(gap, du), q = cag_dot(gap, dv), det = e * g - m * m;
     if (fixed_u && fixed_v) continue;
-    if (fixed_u) *v = moved(av, *v, g > 0 ? q / g : 0);
-    else if (fixed_v) *u = moved(au, *u, e > 0 ? p / e : 0);
-    else if (det > RANK * e * g) {
-      *u = moved(au, *u, (p * g - q * m) / det);
-      *v = moved(av, *v, (q * e - p * m) / det);
+    if (fixed_u) *v = cag_grid_moved(av, *v, g > 0 ? q / g : 0);
+    else if (fixed_v) *u = cag_grid_moved(au, *u, e > 0 ? p / e : 0);
+    else if (det > CAG_GRID_RANK * e * g) {
+      *u = cag_grid_moved(au, *u, (p * g - q * m) / det);
+      *v = cag_grid_moved(av, *v, (q * e - p * m) / det);
     }
   }
   return CAG_OK;
@@ -375,7 +228,11 @@ static CagStatus correct(Fit *f, const CagSurface *s, CagError *err) {
 // Rounds end when the residual falls by less than this part of it.
 #define LEAST_GAIN 1e-6
 
-static CagStatus improve(Fit *f, CagSurface **s, CagGridReport *report, CagError *err) {
+static CagStatus move_parameters(CagGridFit *f, const CagSurface *s, CagError *err) {
+  return f->held ? cag_grid_correct_held(f, s, err) : correct(f, s, err);
+}
+
+static CagStatus improve(CagGridFit *f, CagSurface **s, CagGridReport *report, CagError *err) {
   double *kept[2];
   CagStatus status = CAG_OK;
   for (int k = 0; k < 2; k++) kept[k] = malloc(f->rows * sizeof(double));
@@ -385,9 +242,8 @@ static CagStatus improve(Fit *f, CagSurface **s, CagGridReport *report, CagError
     CagSurface *better;
     CagError ignored;
     for (int k = 0; k < 2; k++) memcpy(kept[k], f->parameters[k], f->rows * sizeof(double));
-    status = correct(f, *s, err);
-    if (status) break;
-    bool good = surface_of(f, &better, &ignored) == CAG_OK;
+    bool good = move_parameters(f, *s, &ignored) == CAG_OK &&
+                cag_grid_surface(f, &better, &ignored) == CAG_OK;
     if (good) status = deviations(f, better, &next, err);
     if (!good || status || !(next.rms < report->rms * (1 - LEAST_GAIN))) {
       if (good) cag_surface_release(better);
@@ -398,7 +254,7 @@ static CagStatus improve(Fit *f, CagSurface **s, CagGridReport *report, CagError
     *s = better;
     report->rms = next.rms;
     report->largest = next.largest;
-    report->rounds = round + 1;
+    report->rounds++;
   }
   free(kept[0]);
   free(kept[1]);
@@ -407,18 +263,18 @@ static CagStatus improve(Fit *f, CagSurface **s, CagGridReport *report, CagError
 
 // --- All of it ---
 
-static CagStatus take_parameters(Fit *f, CagError *err) {
+static CagStatus take_parameters(CagGridFit *f, CagError *err) {
   const CagGridData *g = f->g;
   double end[2];
-  for (int k = 0; k < 2; k++) end[k] = axis_end(&f->axis[k]) - axis_start(&f->axis[k]);
+  for (int k = 0; k < 2; k++) end[k] = cag_grid_end(&f->axis[k]) - cag_grid_start(&f->axis[k]);
   cag_grid_parameters(g, end, f->parameters[0], f->parameters[1]);
   for (int k = 0; k < 2; k++) {
-    const Axis *a = &f->axis[k];
-    double lo = axis_start(a), hi = axis_end(a), same = RANK * (hi - lo);
+    const CagGridAxis *a = &f->axis[k];
+    double lo = cag_grid_start(a), hi = cag_grid_end(a), same = CAG_GRID_RANK * (hi - lo);
     for (size_t i = 0; i < f->rows; i++) {
       double *t = &f->parameters[k][i];
       char text[32], from[32], to[32];
-      *t = g->parameters[k] ? g->parameters[k][i] : moved(a, lo + *t, phase(a));
+      *t = g->parameters[k] ? g->parameters[k][i] : cag_grid_moved(a, lo + *t, phase(a));
       if (!(*t >= lo - same && *t <= hi + same))
         return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "parameters", (long)i,
                         "`parameters` by %c must lie in %s..%s, that of point [%zu, %zu] is %s",
@@ -430,19 +286,21 @@ static CagStatus take_parameters(Fit *f, CagError *err) {
   return CAG_OK;
 }
 
-static void fit_free(Fit *f) {
+static void fit_free(CagGridFit *f) {
   for (int k = 0; k < 2; k++) {
     free(f->axis[k].knots);
     free(f->parameters[k]);
   }
   free(f->net);
+  free(f->held);
+  free(f->planes);
 }
 
 CagStatus cag_surface_fit(const CagGridData *g, size_t nu, size_t nv, CagSurface **out,
                           CagGridReport *report, CagError *err) {
   CagStatus status = check(g, nu, nv, err);
   if (status) return status;
-  Fit f = {.g = g, .rows = g->r * g->s};
+  CagGridFit f = {.g = g, .rows = g->r * g->s};
   CagGridReport own = {0};
   status = make_axis(g, 0, nu, &f.axis[0], err);
   if (!status) status = make_axis(g, 1, nv, &f.axis[1], err);
@@ -451,13 +309,16 @@ CagStatus cag_surface_fit(const CagGridData *g, size_t nu, size_t nv, CagSurface
   if (!status && (!f.parameters[0] || !f.parameters[1] || !f.net)) status = cag_fail_memory(err);
   if (!status) status = take_parameters(&f, err);
   CagSurface *s = NULL;
-  if (!status) status = surface_of(&f, &s, err);
+  if (!status && g->hold) status = cag_grid_hold(&f, &own.rounds, err);
+  if (!status) status = cag_grid_surface(&f, &s, err);
   if (!status) status = deviations(&f, s, &own, err);
   if (!status) status = improve(&f, &s, &own, err);
   if (!status && report) {
     own.u = f.parameters[0];
     own.v = f.parameters[1];
-    f.parameters[0] = f.parameters[1] = NULL;
+    own.planes = f.planes;
+    own.planes_along = f.planes_along;
+    f.parameters[0] = f.parameters[1] = f.planes = NULL;
     *report = own;
   }
   if (!status) *out = s;
@@ -495,6 +356,7 @@ CagStatus cag_surface_interpolate_report(const CagGridData *g, CagSurface **out,
   if (status) return status;
   if (all.spacing == CAG_GRID_CHORD) all.spacing = CAG_GRID_MEAN;
   all.corrections = 0;
+  all.hold = CAG_GRID_HOLD_NONE;
   for (int k = 0; !status && k < 2; k++)
     if (!g->closed[k] && !g->knots[k]) {
       status = interpolation_knots(g, k, &knots[k], err);

@@ -18,6 +18,23 @@ typedef enum CagGridSpacing {
   CAG_GRID_UNIFORM // even
 } CagGridSpacing;
 
+// A coordinate that a fit holds: the parameters of the data move until the surface has it.
+typedef enum CagGridHold {
+  CAG_GRID_HOLD_NONE,
+  CAG_GRID_HOLD_X,
+  CAG_GRID_HOLD_Y,
+  CAG_GRID_HOLD_Z
+} CagGridHold;
+
+// Whether lines of control points lie in planes of the held coordinate, and which lines: those of
+// one u, of one v, or those along which the data's coordinate changes less.
+typedef enum CagGridPlanes {
+  CAG_GRID_PLANES_NONE,
+  CAG_GRID_PLANES_U,
+  CAG_GRID_PLANES_V,
+  CAG_GRID_PLANES_EITHER
+} CagGridPlanes;
+
 typedef struct CagGridData {
   const CagVec3 *points; // r x s, by rows of u
   size_t r, s;
@@ -30,20 +47,31 @@ typedef struct CagGridData {
   const double *knots[2];      // NULL: means of parameters (interpolation), open uniform (fits)
   const double *parameters[2]; // of each point, r x s; NULL: by the spacing
   int corrections; // of a fit: most rounds in which parameters move to the nearest points
+  // Of a fit. Without planes the edges of the net are fitted to the border of the data, and the
+  // coordinate of the net is that of the first fit; with planes it is theirs.
+  CagGridHold hold;
+  double slack; // how far the coordinate may be off; parameters that keep to it do not move
+  CagGridPlanes lines;
+  const double *planes; // NULL: by the stations of the data
+  size_t plane_count;
 } CagGridData;
 
 // What a fit or interpolation went by, and how well it did.
 typedef struct CagGridReport {
   double *u, *v; // parameters of the points, r x s, malloc'd
   double rms, largest;
-  int rounds; // corrections that were of use
+  int rounds;       // in which parameters moved: to hold the coordinate, and corrections of use
+  double *planes;   // of the lines of control points, malloc'd; NULL: none
+  int planes_along; // 0: of one u
 } CagGridReport;
 void cag_grid_report_free(CagGridReport *report);
 
 // Through all points; CHORD is taken as MEAN. Fails with "fit-singular", "parameter-range".
 CagStatus cag_surface_interpolate(const CagGridData *data, CagSurface **out, CagError *err);
 // Least squares with nu x nv control points, by Householder QR. Fails with "fit-underdetermined",
-// "fit-singular", "parameter-range". `report` may be NULL.
+// "fit-singular", "parameter-range"; where a coordinate is held also with "fit-ends",
+// "fit-no-convergence", "coordinate-turns", "plane-count", "planes-not-monotone", "planes-closed",
+// "beyond-planes". `report` may be NULL.
 CagStatus cag_surface_fit(const CagGridData *data, size_t nu, size_t nv, CagSurface **out,
                           CagGridReport *report, CagError *err);
 // Interpolation with a report.

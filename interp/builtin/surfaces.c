@@ -429,25 +429,31 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print near(t(0, 5), [2, 0, 0]), closed_in(t).v // expect: true true",
      LISTS, nets},
     {"fit_surface(grid, degree, count, parameters = \"chord\", knots = none, closed = [false, "
-     "false], corrections = 0)",
+     "false], corrections = 0, fixed = \"none\", planes = none, error = 1e-9)",
      cag_surfaces_fit_surface, "surface",
      "The B-spline surface with `count` control points (two numbers, for u and v) that comes "
      "nearest to a grid of points in the sense of least squares, on open uniform knots or on those "
      "given. Parameters by chord length along each row and column, by their \"mean\", "
      "\"uniform\", or a record as of interpolate_surface. In so many rounds of `corrections` at "
      "most they move to where the surface is nearest, and it is fitted again, as long as that "
-     "helps.",
+     "helps. `fixed`: of \"x\", \"y\" or \"z\" the surface has the data's coordinate at each, to "
+     "`error`: parameters move until it has (`error: inf`: they stay), the edges are fitted to the "
+     "border alone. With `planes` the control points lie where that coordinate has these values, "
+     "one for each row of them ({v: ...}: for each column), or \"auto\": by the stations of the "
+     "data; only their other coordinates are solved for.",
      "grid = [for i in 0..4: [for j in 0..5: [i, j, i * j / 10]]]\n"
      "print near(area(fit_surface(grid, 2, [3, 4])), area(interpolate_surface(grid)), relative: "
-     "1e-6) // expect: true",
+     "1e-6) // expect: true\n"
+     "hull = fit_surface(grid, 2, [3, 4], fixed: \"x\", planes: [0, 2.5, 4])\n"
+     "print [for row in points(hull): row[1].x] // expect: [0, 2.5, 4]",
      LISTS, nets},
     {"fit_surface_report(grid, degree, count, parameters = \"chord\", knots = none, closed = "
-     "[false, false], corrections = 0)",
+     "[false, false], corrections = 0, fixed = \"none\", planes = none, error = 1e-9)",
      cag_surfaces_fit_surface_report, "record",
      "surface, as fit_surface gives it; the parameters u and v of each point; the residuals, "
-     "points "
-     "of the surface less the data; rms and largest of their lengths (mm); rounds of correction "
-     "that helped.",
+     "points of the surface less the data; rms and largest of their lengths (mm); rounds in which "
+     "parameters moved, to hold a coordinate or as corrections that helped; the planes by u or by "
+     "v, as they can be given again (none: the control points lie in none).",
      "grid = [for i in 0..4: [for j in 0..5: [i, j, i * j / 10]]]\n"
      "print fit_surface_report(grid, 2, [3, 4], \"uniform\").largest < 1e-12 // expect: true",
      LISTS, nets},

@@ -8,6 +8,9 @@
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
+// How far a coordinate that is held may be off, in mm, unless said otherwise: as of curves.
+#define HELD_WITHIN 1e-9
+
 static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
                  CagValue *result) {
   if (!cag_geometry_ok(call, status, err)) return false;
@@ -177,6 +180,39 @@ static bool read_data(CagCall *call, int parameters, int closed, Data *d) {
   return read_parameters(call, parameters, d);
 }
 
+// The planes of one direction: positions, or "auto".
+static bool read_positions(CagCall *call, int argument, CagValue v, CagGridData *g) {
+  if (v.type == CAG_TEXT && strcmp(CAG_AS_TEXT(v)->bytes, "auto") == 0) return true;
+  if (v.type == CAG_RANGE && !cag_as_list(call->vm, v, &v)) return false;
+  if (!cag_as_vector(v, &g->planes, &g->plane_count))
+    return cag_fail_type(call, argument,
+                         "\"auto\", a list of positions (of rows of control points), or a record "
+                         "with one of these as u or v");
+  return true;
+}
+
+static bool read_planes(CagCall *call, int argument, CagGridData *g) {
+  CagValue v = call->values[argument];
+  g->lines = CAG_GRID_PLANES_NONE;
+  if (!cag_given(call, argument)) return true;
+  if (g->hold == CAG_GRID_HOLD_NONE)
+    return cag_fail_call(call, argument, CAG_ERR_value,
+                         "are positions along x, y or z: say which as `fixed: \"x\"`");
+  if (v.type != CAG_RECORD) {
+    g->lines = v.type == CAG_TEXT ? CAG_GRID_PLANES_EITHER : CAG_GRID_PLANES_U;
+    return read_positions(call, argument, v, g);
+  }
+  CagValue by[2] = {cag_record_get(CAG_AS_RECORD(v), "u"), cag_record_get(CAG_AS_RECORD(v), "v")};
+  bool said[2];
+  for (int k = 0; k < 2; k++) said[k] = by[k].type != CAG_UNSET && by[k].type != CAG_NONE;
+  if (said[0] == said[1])
+    return cag_fail_value(call, argument,
+                          "the planes of one direction, of rows as {u: ...} or of columns as "
+                          "{v: ...}");
+  g->lines = said[0] ? CAG_GRID_PLANES_U : CAG_GRID_PLANES_V;
+  return read_positions(call, argument, by[said[0] ? 0 : 1], g);
+}
+
 static CagValue table_value(CagVm *vm, const double *x, size_t r, size_t s) {
   CagBuilder *rows = cag_builder_new(vm);
   for (size_t i = 0; i < r; i++) cag_builder_add(vm, rows, cag_numbers_value(vm, x + i * s, s));
@@ -211,18 +247,29 @@ static bool residuals(CagCall *call, const CagSurface *s, const CagGridData *g,
   return ok;
 }
 
+// As they can be given again.
+static CagValue planes_value(CagVm *vm, const CagGridReport *report, const size_t net[2]) {
+  static const char *const names[] = {"u", "v"};
+  CagValue values[] = {cag_none(), cag_none()};
+  if (!report->planes) return cag_none();
+  const int k = report->planes_along;
+  values[k] = cag_numbers_value(vm, report->planes, net[k]);
+  return cag_record_new(vm, names, values, 2);
+}
+
 static bool give_report(CagCall *call, const CagSurface *s, const CagGridData *g,
-                        const CagGridReport *report, CagValue *result) {
-  static const char *const names[] = {"surface", "parameters", "residuals",
-                                      "rms",     "largest",    "rounds"};
+                        const size_t net[2], const CagGridReport *report, CagValue *result) {
+  static const char *const names[] = {"surface", "parameters", "residuals", "rms",
+                                      "largest", "rounds",     "planes"};
   CagValue values[] = {*result,
                        pair_value(call->vm, report->u, report->v, g->r, g->s),
                        cag_none(),
                        cag_number(report->rms),
                        cag_number(report->largest),
-                       cag_number(report->rounds)};
+                       cag_number(report->rounds),
+                       planes_value(call->vm, report, net)};
   if (!residuals(call, s, g, report, &values[2])) return false;
-  *result = cag_record_new(call->vm, names, values, 6);
+  *result = cag_record_new(call->vm, names, values, 7);
   return true;
 }
 
@@ -238,22 +285,29 @@ bool cag_surfaces_interpolate_surface(CagCall *call, CagValue *result) {
   return ok;
 }
 
-// grid, degree, count, parameters, knots, closed, corrections
+// grid, degree, count, parameters, knots, closed, corrections, fixed, planes, error
 static bool fit(CagCall *call, bool report, CagValue *result) {
   Data d = {0};
   CagSurface *s = NULL;
+  static const char *const coordinates[] = {"none", "x", "y", "z", NULL};
   CagError err;
   long count[2], rounds;
+  int fixed;
   CagGridReport found = {0};
   bool ok = read_data(call, 3, 5, &d) && read_pair(call, 2, 0, 0, 10000, count) &&
-            cag_arg_integer_or(call, 6, 0, 0, 1000, &rounds);
+            cag_arg_integer_or(call, 6, 0, 0, 1000, &rounds) &&
+            cag_arg_choice(call, 7, coordinates, &fixed) &&
+            cag_arg_number_or(call, 9, HELD_WITHIN, &d.g.slack);
+  if (ok && !(d.g.slack >= 0)) ok = cag_fail_value(call, 9, "a distance of 0 or more");
+  if (ok) d.g.hold = (CagGridHold)fixed;
+  ok = ok && read_planes(call, 8, &d.g);
   const size_t net[2] = {ok ? (size_t)count[0] : 0, ok ? (size_t)count[1] : 0};
   ok = ok && read_knots(call, 4, net, &d.g);
   if (ok) {
     d.g.corrections = (int)rounds;
     ok = give(call, cag_surface_fit(&d.g, net[0], net[1], &s, &found, &err), &err, &s, result);
   }
-  if (ok && report) ok = give_report(call, s, &d.g, &found, result);
+  if (ok && report) ok = give_report(call, s, &d.g, net, &found, result);
   cag_grid_report_free(&found);
   data_free(&d);
   return ok;
