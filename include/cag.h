@@ -48,15 +48,16 @@ typedef struct CagSessionOptions {
   double max_time;                // seconds; 0: none
   const char *const *module_path; // folders of modules (-I)
   size_t module_path_count;
-  FILE *out;                     // what print writes to (stdout)
-  FILE *messages;                // what trace writes to (stderr)
+  const char *folder; // below which texts read files and modules (NULL: the working folder)
+  FILE *out;          // what print writes to (stdout)
+  FILE *messages;     // what trace writes to (stderr)
   const volatile int *interrupt; // becomes nonzero to stop; may be NULL
 } CagSessionOptions;
 
 CAG_API const char *cag_version(void);
 CAG_API void cag_session_options_init(CagSessionOptions *options);
-// NULL when memory is out. The options are copied, module_path and what it points to must outlive
-// the session.
+// NULL when memory is out. The options are copied, module_path, folder and what they point to must
+// outlive the session.
 CAG_API CagSession *cag_session_new(const CagSessionOptions *options);
 CAG_API void cag_session_free(CagSession *s);
 
@@ -184,7 +185,9 @@ CAG_API int cag_session_document_text(CagSession *s, const char *name, const cha
 typedef struct CagSiteOptions {
   CagSessionOptions session; // limits of the examples, the interrupt flag
   bool no_pictures;
-  size_t jobs; // examples run at once; 0: one for each processor
+  size_t jobs;                // examples run at once; 0: one for each processor
+  const char *const *scripts; // files that the site tells of as well, beside the library
+  size_t script_count;
   void (*say)(void *context, const char *message); // remarks; may be NULL
   void *context;
 } CagSiteOptions;

@@ -50,7 +50,7 @@ for source in tests/lang/*_test.c tests/geom/*_test.c tests/interp/*_test.c; do
   [ ! -e "$source" ] || unit "$BUILD/${source%.c}"
 done
 counted "cag test" "$BUILD/cag" test tests/language tests/scenes
-counted "cag test examples" "$BUILD/cag" test --no-pictures examples
+counted "cag test examples" "$BUILD/cag" test --no-pictures examples stdlib
 counted "tests/cli" env BUILD="$BUILD" sh tests/cli/run.sh
 counted "tests/repl" env BUILD="$BUILD" sh tests/repl/run.sh
 counted "tests/editors" env BUILD="$BUILD" sh tests/editors/run.sh

@@ -31,6 +31,7 @@ typedef enum CagDocKind { CAG_DOC_VALUE, CAG_DOC_FUNCTION, CAG_DOC_PARAM } CagDo
 
 typedef struct CagDocArgument {
   char *name, *fallback; // the default's text; NULL: none
+  char *meaning;         // what the /// lines say of it: "number, mm: how wide"; NULL: nothing
 } CagDocArgument;
 
 // A public definition. Texts are malloc'd.
@@ -38,7 +39,8 @@ typedef struct CagDocEntry {
   CagDocKind kind;
   char *name;
   char *signature;        // "flat(profile, height = 10)"; of a param all of its line
-  char *text;             // of the /// lines; NULL: there are none
+  char *text;             // of the /// lines, without those of parameters; NULL: there are none
+  size_t *lines;          // for each line of the text, which of the source it is
   char *fallback, *range; // of a param: its default, and what it may be (NULL: anything)
   char *label;            // of a param: what is said about it; NULL: nothing
   CagDocArgument *arguments;
@@ -55,6 +57,15 @@ typedef struct CagDocModule {
 // The definitions of a parsed text.
 void cag_doc_module_read(const CagModuleAst *ast, const char *name, CagDocModule *out);
 void cag_doc_module_free(CagDocModule *m);
+
+// The head of a documentation's text that is all prose, or all a script (lines indented by four,
+// and the blank ones between them); bytes of it, 0 at the end of the text.
+size_t cag_doc_part(const char *text, bool *is_code);
+// The bytes of such a head, a script without its indentation; malloc'd.
+char *cag_doc_part_text(const char *text, size_t length, bool is_code);
+// What an example in a script's documentation begins with to see the script: it imports what it
+// names of the file's definitions. NULL: it imports things itself, or names none. malloc'd.
+char *cag_doc_script_import(const CagDocModule *m, const char *file, const char *example);
 
 // Reads a script's text with a session, which keeps what is wrong with it. Gives the status.
 int cag_session_read_doc(CagSession *s, const char *name, const char *text, size_t length,

@@ -132,9 +132,10 @@ static char *without_expectations(const char *text, size_t length) {
   return out;
 }
 
-void cag_html_example(CagSite *s, FILE *out, const char *root, const char *about, const char *text,
-                      size_t length, const char *function) {
-  const CagSiteExample *e = cag_site_example(s, about, text, length, function);
+void cag_html_example(CagSite *s, const CagSiteSpot *spot, const char *text, size_t length) {
+  const CagSiteExample *e = cag_site_example(s, spot, text, length);
+  FILE *out = spot->out;
+  const char *root = spot->root;
   while (length && text[length - 1] == '\n') length--;
   char *shown = without_expectations(text, length);
   fputs("<div class=\"example\"><div class=\"code\"><pre><code>", out);

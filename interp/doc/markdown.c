@@ -14,6 +14,7 @@
 typedef struct Document {
   CagSite *site;
   const char *root, *about;
+  bool is_guide; // a chapter of the manual; else what is said of a module
 } Document;
 
 // Puts HTML in the place of a node.
@@ -36,12 +37,13 @@ static void change_block(const Document *d, cmark_node *node) {
   size_t length = 0;
   FILE *out = open_memstream(&html, &length);
   if (!out) abort();
-  if (plain || strstr(info, "fragment")) {
+  if (plain || !d->is_guide || strstr(info, "fragment")) {
     fputs("<pre><code>", out);
     cag_html_script(out, d->root, text, strlen(text));
     fputs("</code></pre>\n", out);
   } else {
-    cag_html_example(d->site, out, d->root, d->about, text, strlen(text), NULL);
+    cag_html_example(d->site, &(CagSiteSpot){.out = out, .root = d->root, .about = d->about}, text,
+                     strlen(text));
   }
   fclose(out);
   replace(node, CMARK_NODE_HTML_BLOCK, html);
@@ -82,7 +84,7 @@ static char *plain_text(cmark_node *heading) {
 
 static void anchor_heading(const Document *d, cmark_node *node) {
   char *text = plain_text(node), *anchor = cag_html_anchor(text), *html;
-  if (cmark_node_get_heading_level(node) > 1) {
+  if (d->is_guide && cmark_node_get_heading_level(node) > 1) {
     char url[512];
     snprintf(url, sizeof url, "guide/%s.html#%s", d->about, anchor);
     cag_site_find(d->site, text, "guide", url, "", 0);
@@ -125,9 +127,23 @@ static void change_link(const Document *d, cmark_node *node) {
   cmark_node_free(node);
 }
 
+// What looks like HTML in the comments of a script, such as `a <b> c`, is meant as it stands.
+static void change_html(cmark_node *node, cmark_node_type type) {
+  cmark_node *text = cmark_node_new(CMARK_NODE_TEXT), *new = text;
+  cmark_node_set_literal(text, cmark_node_get_literal(node));
+  if (type == CMARK_NODE_HTML_BLOCK) {
+    new = cmark_node_new(CMARK_NODE_PARAGRAPH);
+    cmark_node_append_child(new, text);
+  }
+  cmark_node_replace(node, new);
+  cmark_node_free(node);
+}
+
 static void change(const Document *d, cmark_node *node) {
   const cmark_node_type type = cmark_node_get_type(node);
-  if (type == CMARK_NODE_CODE_BLOCK) change_block(d, node);
+  const bool is_html = type == CMARK_NODE_HTML_INLINE || type == CMARK_NODE_HTML_BLOCK;
+  if (is_html && !d->is_guide) change_html(node, type);
+  else if (type == CMARK_NODE_CODE_BLOCK) change_block(d, node);
   else if (type == CMARK_NODE_CODE) change_code(d, node);
   else if (type == CMARK_NODE_HEADING) anchor_heading(d, node);
   else if (type == CMARK_NODE_LINK) change_link(d, node);
@@ -153,9 +169,16 @@ static void change_all(const Document *d, cmark_node *root) {
   free(nodes);
 }
 
+static bool is_guide(const char *about) {
+  const char *name, *title;
+  for (size_t i = 0; cag_site_guide(i, &name, &title); i++)
+    if (strcmp(name, about) == 0) return true;
+  return false;
+}
+
 void cag_html_markdown(CagSite *s, FILE *out, const char *root, const char *about, const char *text,
                        size_t length) {
-  const Document d = {s, root, about};
+  const Document d = {s, root, about, is_guide(about)};
   cmark_gfm_core_extensions_ensure_registered();
   cmark_parser *parser = cmark_parser_new(CMARK_OPT_UNSAFE);
   cmark_syntax_extension *tables = cmark_find_syntax_extension("table");

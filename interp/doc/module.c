@@ -50,6 +50,67 @@ static void read_arguments(const CagSource *s, const CagFunctionAst *f, CagDocEn
   e->argument_count = f->parameter_count;
 }
 
+// The lines of the source that the /// lines before a statement stand on; `count` of them.
+static void find_lines(const CagModuleAst *ast, const CagStatement *st, size_t count,
+                       CagDocEntry *e) {
+  size_t i = 0;
+  e->lines = calloc(count + 1, sizeof *e->lines);
+  if (!e->lines) abort();
+  while (i < ast->comment_count && ast->comments[i].span.start < st->span.start) i++;
+  while (count > 0 && i-- > 0)
+    if (ast->comments[i].doc)
+      e->lines[--count] = cag_source_position(ast->source, ast->comments[i].span.start).line;
+}
+
+// "- `width`: number, mm: how wide" of a parameter of the function; `n` bytes.
+static CagDocArgument *find_item(CagDocEntry *e, const char *line, size_t n, size_t *skip) {
+  for (size_t i = 0; i < e->argument_count; i++) {
+    const size_t k = strlen(e->arguments[i].name);
+    if (n < k + 6 || strncmp(line, "- `", 3) != 0 || strncmp(line + k + 3, "`: ", 3) != 0) continue;
+    if (strncmp(line + 3, e->arguments[i].name, k) != 0 || e->arguments[i].meaning) continue;
+    *skip = k + 6;
+    return &e->arguments[i];
+  }
+  return NULL;
+}
+
+// Adds a part of a line to what is said of a parameter.
+static void add_meaning(CagDocArgument *a, const char *text, size_t n) {
+  char *old = a->meaning;
+  const size_t spaces = strspn(text, " ");
+  if (asprintf(&a->meaning, "%s%s%.*s", old ? old : "", old ? " " : "", (int)(n - spaces),
+               text + spaces) < 0)
+    abort();
+  free(old);
+}
+
+// Moves the items that tell of parameters from the text to the arguments. An item goes on in lines
+// indented by two.
+static void read_items(CagDocEntry *e) {
+  char *to = e->text;
+  size_t kept = 0, line = 0;
+  CagDocArgument *item = NULL;
+  bool gap = false; // a blank line here would be the second where items stood
+  for (const char *at = e->text; *at; line++) {
+    size_t n = strcspn(at, "\n"), skip = 0;
+    const size_t next = n + (at[n] == '\n');
+    CagDocArgument *begun = find_item(e, at, n, &skip);
+    const bool more = item && !begun && strncmp(at, "  ", 2) == 0 && strspn(at, " ") < n;
+    item = begun ? begun : more ? item : NULL;
+    if (item) {
+      add_meaning(item, at + skip, n - skip);
+      gap = to == e->text || (to - e->text > 1 && to[-2] == '\n'); // blank, or nothing, before it
+    } else if (n > 0 || !gap) {
+      gap = false;
+      e->lines[kept++] = e->lines[line];
+      memmove(to, at, next);
+      to += next;
+    }
+    at += next;
+  }
+  *to = 0;
+}
+
 // "flat(profile, height = 10)": the head of a definition, up to its `=`.
 static char *function_head(const CagSource *s, CagSpan statement, const CagFunctionAst *f) {
   size_t end = f->body->span.start;
@@ -59,10 +120,20 @@ static char *function_head(const CagSource *s, CagSpan statement, const CagFunct
   return copy_line(text + statement.start, end - statement.start);
 }
 
-static void read_entry(const CagSource *s, const CagDecl *d, CagDocEntry *e) {
+static size_t count_lines(const char *text) {
+  size_t count = 1;
+  for (; *text; text++) count += *text == '\n';
+  return count;
+}
+
+static void read_entry(const CagModuleAst *ast, const CagDecl *d, CagDocEntry *e) {
+  const CagSource *s = ast->source;
   const CagStatement *st = d->statement;
   *e = (CagDocEntry){.name = copy(d->name, strlen(d->name))};
-  if (d->doc) e->text = copy(d->doc, strlen(d->doc));
+  if (d->doc) {
+    e->text = copy(d->doc, strlen(d->doc));
+    find_lines(ast, st, count_lines(d->doc), e);
+  }
   if (st->kind == CAG_STATEMENT_PARAM) {
     e->kind = CAG_DOC_PARAM;
     e->signature = copy_span(s, st->span);
@@ -81,6 +152,7 @@ static void read_entry(const CagSource *s, const CagDecl *d, CagDocEntry *e) {
   e->kind = CAG_DOC_FUNCTION;
   e->signature = function_head(s, st->span, value->as.function);
   read_arguments(s, value->as.function, e);
+  if (e->text) read_items(e);
 }
 
 // The // lines at the very start, without their slashes.
@@ -105,8 +177,7 @@ void cag_doc_module_read(const CagModuleAst *ast, const char *name, CagDocModule
   out->entries = calloc(ast->top_count + 1, sizeof *out->entries);
   if (!out->entries) abort();
   for (size_t i = 0; i < ast->top_count; i++)
-    if (ast->tops[i]->name[0] != '_')
-      read_entry(ast->source, ast->tops[i], &out->entries[out->count++]);
+    if (ast->tops[i]->name[0] != '_') read_entry(ast, ast->tops[i], &out->entries[out->count++]);
 }
 
 void cag_doc_module_free(CagDocModule *m) {
@@ -115,15 +186,113 @@ void cag_doc_module_free(CagDocModule *m) {
     for (size_t k = 0; k < e->argument_count; k++) {
       free(e->arguments[k].name);
       free(e->arguments[k].fallback);
+      free(e->arguments[k].meaning);
     }
     char *const texts[] = {e->name, e->signature, e->text, e->fallback, e->range, e->label};
     for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) free(texts[k]);
     free(e->arguments);
+    free(e->lines);
   }
   free(m->entries);
   free(m->name);
   free(m->purpose);
   *m = (CagDocModule){0};
+}
+
+// --- Examples ---
+
+size_t cag_doc_part(const char *text, bool *is_code) {
+  const char *at = text;
+  *is_code = strncmp(text, "    ", 4) == 0;
+  while (*at) {
+    const size_t n = strcspn(at, "\n"), next = n + (at[n] == '\n');
+    const bool indented = strncmp(at, "    ", 4) == 0;
+    // A blank line goes on with a script when the line behind it does.
+    const bool between = n == 0 && strncmp(at + next, "    ", 4) == 0;
+    if (*is_code ? !indented && !between : indented) break;
+    at += next;
+  }
+  return (size_t)(at - text);
+}
+
+char *cag_doc_part_text(const char *text, size_t length, bool is_code) {
+  char *part = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&part, &size);
+  if (!out) abort();
+  for (const char *at = text; at < text + length;) {
+    const size_t n = strcspn(at, "\n"), indent = is_code && n >= 4 ? 4 : 0;
+    fprintf(out, "%.*s\n", (int)(n - indent), at + indent);
+    at += n + (at[n] == '\n');
+  }
+  fclose(out);
+  return part;
+}
+
+static bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         (unsigned char)c >= 0x80;
+}
+
+// Whether a text has the word, other than as a member (`.word`) or, with `defined`, as what a line
+// defines: a name imported must not be defined again.
+static bool has_word(const char *text, const char *word, bool defined) {
+  const size_t n = strlen(word);
+  for (const char *at = text; (at = strstr(at, word)); at += n) {
+    const char before = at > text ? at[-1] : '\n', after = at[n];
+    if (is_letter(before) || before == '.' || is_letter(after)) continue;
+    if (!defined) return true;
+    const size_t line = strcspn(at, "\n"), head = strcspn(at, "=\n");
+    if (before == '\n' && head < line && at[head + 1] != '=' && at[head + 1] != '>') return true;
+  }
+  return false;
+}
+
+// What the module is called in examples: as the head of the script shows its import ("import
+// parts.flange as f"), or else as its file is.
+static void find_module_name(const CagDocModule *m, const char *file, char *name, size_t size) {
+  const int n = (int)strcspn(file, ".");
+  snprintf(name, size, "%.*s", n, file);
+  for (const char *at = m->purpose; (at = strstr(at, "import ")); at++) {
+    const size_t line = strcspn(at, "\n");
+    const char *stem = memmem(at, line, name, (size_t)n), *as = memmem(at, line, " as ", 4);
+    if (!stem || !as || as < stem || n == 0) continue;
+    size_t k = 0;
+    while (is_letter(as[4 + k])) k++;
+    snprintf(name, size, "%.*s", (int)k, as + 4);
+    return;
+  }
+}
+
+// Whether the text has members of the module that a script of this name would be: "flange.plate".
+static bool has_members_of(const char *text, const char *stem) {
+  const size_t n = strlen(stem);
+  if (n == 0 || (*stem >= '0' && *stem <= '9')) return false;
+  for (const char *at = stem; *at; at++)
+    if (!is_letter(*at)) return false;
+  for (const char *at = text; (at = strstr(at, stem)); at += n)
+    if (at[n] == '.' && (at == text || (!is_letter(at[-1]) && at[-1] != '.'))) return true;
+  return false;
+}
+
+char *cag_doc_script_import(const CagDocModule *m, const char *file, const char *example) {
+  char *line = NULL, stem[256];
+  size_t size = 0, names = 0;
+  if (has_word(example, "import", false)) return NULL;
+  FILE *out = open_memstream(&line, &size);
+  if (!out) abort();
+  find_module_name(m, file, stem, sizeof stem);
+  const bool whole = has_members_of(example, stem);
+  fprintf(out, "import \"%s\"%s%s", file, whole ? " as " : "", whole ? stem : "");
+  for (size_t i = 0; i < m->count; i++) {
+    const char *name = m->entries[i].name;
+    if (!has_word(example, name, false) || has_word(example, name, true)) continue;
+    fprintf(out, "%s%s", names++ ? ", " : ": ", name);
+  }
+  fclose(out);
+  if (names || whole) return line;
+  free(line);
+  return NULL;
 }
 
 // --- The library ---

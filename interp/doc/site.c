@@ -69,11 +69,9 @@ static void remove_old_pictures(const CagSite *s) {
 
 static const struct {
   const char *section, *path;
-} sections[] = {{"Functions", "index.html"},
-                {"Guide", "guide/index.html"},
-                {"Cookbook", "cookbook/index.html"},
-                {"Library", "library/index.html"},
-                {"Errors", "errors.html"}};
+} sections[] = {{"Functions", "index.html"},         {"Guide", "guide/index.html"},
+                {"Cookbook", "cookbook/index.html"}, {"Library", "library/index.html"},
+                {"Scripts", "scripts/index.html"},   {"Errors", "errors.html"}};
 
 void cag_site_begin(CagSite *s, CagSitePage *p, const char *path, const char *title,
                     const char *section) {
@@ -92,10 +90,12 @@ void cag_site_begin(CagSite *s, CagSitePage *p, const char *path, const char *ti
       "</head>\n<body data-root=\"%s\">\n<header>\n<a class=\"brand\" "
       "href=\"%sindex.html\">cag</a>\n<nav>\n",
       root, root, root, root, root);
-  for (size_t i = 0; i < sizeof sections / sizeof *sections; i++)
+  for (size_t i = 0; i < sizeof sections / sizeof *sections; i++) {
+    if (s->script_count == 0 && strcmp(sections[i].section, "Scripts") == 0) continue;
     fprintf(p->out, "<a%s href=\"%s%s\">%s</a>\n",
             strcmp(section, sections[i].section) == 0 ? " class=\"here\"" : "", root,
             sections[i].path, sections[i].section);
+  }
   fputs("</nav>\n<div class=\"search\"><input id=\"search\" type=\"search\" placeholder=\"Search "
         "(/)\" "
         "aria-label=\"Search\" autocomplete=\"off\"><ol "
@@ -146,6 +146,7 @@ static void write_pages(CagSite *s) {
   fputs("const cagIndex = [\n", s->index);
   cag_site_functions(s);
   cag_site_library(s);
+  cag_site_scripts(s);
   cag_site_guides(s);
   cag_site_cookbook(s);
   cag_site_errors(s);
@@ -176,7 +177,7 @@ static bool make_folders(CagSite *s) {
                                         "guide", "cookbook",  "pictures"};
   for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
     if (!make_folder(s, folders[i])) return false;
-  return true;
+  return s->script_count == 0 || make_folder(s, "scripts");
 }
 
 static void say(const CagSite *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -217,6 +218,7 @@ static int judge(CagSite *s) {
 }
 
 static int make(CagSite *s) {
+  if (!cag_site_read_scripts(s)) return cag_session_status(s->session);
   if (!make_folders(s)) return cag_session_fail_io(s->session, CAG_ERR_output_file, &s->error);
   if (!read_modules(s)) return CAG_STATUS_SCRIPT;
   find_renderer(s);
@@ -240,11 +242,12 @@ int cag_session_write_site(CagSession *session, const char *folder, const CagSit
   const int status = make(&s);
   for (size_t i = 0; i < s.count; i++) {
     CagSiteExample *e = &s.examples[i];
-    char *const texts[] = {e->text, e->function, e->output, e->picture, e->failure};
+    char *const texts[] = {e->text, e->folder, e->function, e->output, e->picture, e->failure};
     for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) free(texts[k]);
   }
   for (size_t i = 0; i < s.module_count; i++) cag_doc_module_free(&s.modules[i]);
   free(s.modules);
+  cag_site_free_scripts(&s);
   free(s.examples);
   return status;
 }

@@ -18,11 +18,19 @@
 typedef struct CagSiteExample {
   const char *about; // where it stands, for messages
   char *text;
+  char *folder;   // of a script that it belongs to; NULL: it reads no files
   char *function; // what it is an example of, whose picture may be made of its call; NULL: nothing
   char *output;   // what it printed, and its error where one is expected
   char *picture;  // "pictures/0123456789abcdef.png"; NULL: none
   char *failure;  // why it is wrong; NULL: it is well
 } CagSiteExample;
+
+// A file of the user's that the site tells of.
+typedef struct CagSiteScript {
+  char *file, *folder; // its name, and where it is
+  char *page;          // the name of its page: "parts.gripper"
+  CagDocModule module; // called as the user sees it: "parts/gripper.cag"
+} CagSiteScript;
 
 typedef struct CagSite {
   CagSession *session; // reads modules
@@ -36,13 +44,24 @@ typedef struct CagSite {
   size_t index_count;
   CagDocModule *modules;
   size_t module_count;
+  CagSiteScript *scripts;
+  size_t script_count;
   CagIoError error; // of the first file that could not be written
   bool failed;
 } CagSite;
 
-// Keeps an example (the first time), or finds it. `function` may be NULL.
-const CagSiteExample *cag_site_example(CagSite *s, const char *about, const char *text,
-                                       size_t length, const char *function);
+// Where an example stands.
+typedef struct CagSiteSpot {
+  FILE *out;
+  const char *root;     // leads from the page to the site's folder: "" or "../"
+  const char *about;    // for messages
+  const char *function; // what it is an example of; NULL: nothing
+  const char *folder;   // as in CagSiteExample
+} CagSiteSpot;
+
+// Keeps an example (the first time), or finds it.
+const CagSiteExample *cag_site_example(CagSite *s, const CagSiteSpot *spot, const char *text,
+                                       size_t length);
 // Runs all examples and makes their pictures.
 void cag_site_run(CagSite *s);
 
@@ -52,11 +71,11 @@ void cag_html_text(FILE *out, const char *text, size_t length);
 // to the site's folder: "" or "../".
 void cag_html_script(FILE *out, const char *root, const char *text, size_t length);
 // An example with what it printed and its picture.
-void cag_html_example(CagSite *s, FILE *out, const char *root, const char *about, const char *text,
-                      size_t length, const char *function);
+void cag_html_example(CagSite *s, const CagSiteSpot *spot, const char *text, size_t length);
 // Text in which `words` between backquotes are code, and lead to functions' pages.
 void cag_html_prose(FILE *out, const char *root, const char *text, size_t length);
-// Markdown, with tables. Fenced blocks of `cag` are examples (`cag fragment`: only coloured).
+// Markdown, with tables. Fenced blocks of `cag` in the guide are examples (`cag fragment`: only
+// coloured).
 void cag_html_markdown(CagSite *s, FILE *out, const char *root, const char *about, const char *text,
                        size_t length);
 // The anchor of a heading: "Curves and splines" is "curves-and-splines". malloc'd.
@@ -81,8 +100,21 @@ void cag_site_write(CagSite *s, const char *path, const char *text, size_t lengt
 void cag_site_find(CagSite *s, const char *name, const char *kind, const char *url,
                    const char *summary, size_t summary_length);
 
+// The table of parameters: its head, and a line, of which `known` may be NULL.
+void cag_site_begin_parameters(const CagSitePage *p);
+void cag_site_parameter(const CagSitePage *p, const CagDocParameter *known, const char *name,
+                        const char *fallback);
+
+// Reads the scripts that the site is to tell of; false: a diagnostic says what is wrong.
+bool cag_site_read_scripts(CagSite *s);
+void cag_site_free_scripts(CagSite *s);
+
 void cag_site_functions(CagSite *s); // the index, and a page for each function
 void cag_site_library(CagSite *s);
+void cag_site_scripts(CagSite *s);
+// Their part of the index of functions: its place in the list at the top, and the section.
+void cag_site_scripts_item(const CagSitePage *p);
+void cag_site_scripts_section(const CagSitePage *p);
 void cag_site_errors(CagSite *s);
 void cag_site_guides(CagSite *s);
 void cag_site_cookbook(CagSite *s);

@@ -1,4 +1,4 @@
-// The pages of functions, of the library, of errors, of the guide and of the cookbook.
+// The pages of functions, of errors, of the guide and of the cookbook.
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,29 +12,6 @@ static void write_text(FILE *out, const char *text) { cag_html_text(out, text, s
 static const CagBuiltin *first_row(size_t index) {
   size_t rows;
   return cag_builtin_rows(index, &rows);
-}
-
-static void write_parameter(const CagSitePage *p, const CagDocParameter *known, const char *name,
-                            const char *fallback) {
-  fputs("<tr><td><code>", p->out);
-  write_text(p->out, name);
-  fputs("</code></td><td>", p->out);
-  if (known) write_text(p->out, known->type);
-  fputs("</td><td>", p->out);
-  if (fallback) {
-    fputs("<code>", p->out);
-    cag_html_script(p->out, p->root, fallback, cag_doc_default(fallback));
-    fputs("</code>", p->out);
-  }
-  fputs("</td><td>", p->out);
-  if (known) cag_html_prose(p->out, p->root, known->meaning, strlen(known->meaning));
-  fputs("</td></tr>\n", p->out);
-}
-
-static void begin_parameters(const CagSitePage *p) {
-  fputs("<table class=\"parameters\"><thead><tr><th>parameter</th><th>type</th><th>default</th>"
-        "<th></th></tr></thead><tbody>\n",
-        p->out);
 }
 
 typedef struct Errors {
@@ -85,18 +62,21 @@ static void write_row(const CagSitePage *p, const CagBuiltin *row) {
   write_summary(p, s, row->summary);
   fputs("</p>\n", p->out);
   if (s && (s->count || s->variadic)) {
-    begin_parameters(p);
+    cag_site_begin_parameters(p);
     for (size_t i = 0; i < s->count; i++)
-      write_parameter(p, cag_doc_parameter(s->name, s->parameters[i]), s->parameters[i],
-                      s->defaults[i]);
-    if (s->variadic) write_parameter(p, cag_doc_parameter(s->name, "..."), "...", NULL);
+      cag_site_parameter(p, cag_doc_parameter(s->name, s->parameters[i]), s->parameters[i],
+                         s->defaults[i]);
+    if (s->variadic) cag_site_parameter(p, cag_doc_parameter(s->name, "..."), "...", NULL);
     fputs("</tbody></table>\n", p->out);
   }
   Errors errors = {p, 0};
   cag_doc_reasons(row->summary, write_error_link, &errors);
   if (errors.count) fputs("</p>\n", p->out);
-  cag_html_example(p->site, p->out, p->root, row->signature, row->example, strlen(row->example),
-                   s ? s->name : NULL);
+  cag_html_example(
+      p->site,
+      &(CagSiteSpot){
+          .out = p->out, .root = p->root, .about = row->signature, .function = s ? s->name : NULL},
+      row->example, strlen(row->example));
   fputs("</section>\n", p->out);
 }
 
@@ -180,8 +160,10 @@ static void index_page(CagSite *s) {
     fputs("</a></li>\n", p.out);
     free(anchor);
   }
+  cag_site_scripts_item(&p);
   fputs("</ul>\n", p.out);
   for (size_t i = 0; i < count; i++) write_family(&p, families[i]);
+  cag_site_scripts_section(&p);
   cag_site_end(&p);
   free(families);
 }
@@ -189,105 +171,6 @@ static void index_page(CagSite *s) {
 void cag_site_functions(CagSite *s) {
   index_page(s);
   for (size_t i = 0; i < cag_builtin_count(); i++) function_page(s, i);
-}
-
-// --- Library ---
-
-// The line that imports the module, as its purpose shows it; malloc'd.
-static char *import_line(const CagDocModule *m) {
-  char *line;
-  const char *shown = strstr(m->purpose, m->name);
-  const char *begin = shown && shown - m->purpose >= 7 ? shown - 7 : NULL;
-  if (begin && strncmp(begin, "import ", 7) == 0) return strndup(begin, strcspn(begin, "\n"));
-  if (asprintf(&line, "import %s", m->name) < 0) abort();
-  return line;
-}
-
-// An example; where it leaves the import to the reader, it is said.
-static void write_module_example(const CagSitePage *p, const CagDocModule *m, const char *text) {
-  char *import = import_line(m), *whole;
-  const bool said = strstr(text, "import ") != NULL;
-  if (asprintf(&whole, "%s%s%s", said ? "" : import, said ? "" : "\n", text) < 0) abort();
-  cag_html_example(p->site, p->out, p->root, m->name, whole, strlen(whole), NULL);
-  free(whole);
-  free(import);
-}
-
-// Documentation is prose in which lines indented by four are a script.
-static void write_doc_text(const CagSitePage *p, const CagDocModule *m, const char *text) {
-  while (*text) {
-    const bool code = strncmp(text, "    ", 4) == 0;
-    char *part = NULL;
-    size_t length = 0;
-    FILE *out = open_memstream(&part, &length);
-    if (!out) abort();
-    while (*text) {
-      const size_t n = strcspn(text, "\n"), next = n + (text[n] == '\n');
-      const bool indented = strncmp(text, "    ", 4) == 0;
-      // A blank line goes on with a script when the line behind it does.
-      if (code ? !indented && !(n == 0 && strncmp(text + next, "    ", 4) == 0) : indented) break;
-      fprintf(out, "%.*s\n", indented ? (int)n - 4 : (int)n, text + (indented ? 4 : 0));
-      text += next;
-    }
-    fclose(out);
-    if (code) write_module_example(p, m, part);
-    else cag_html_markdown(p->site, p->out, p->root, m->name, part, length);
-    free(part);
-  }
-}
-
-static void write_definition(const CagSitePage *p, const CagDocModule *m, const CagDocEntry *e) {
-  char url[256], name[256];
-  const size_t n = e->text ? cag_doc_sentence(e->text) : 0;
-  snprintf(url, sizeof url, "library/%s.html#%s", m->name + 4, e->name);
-  snprintf(name, sizeof name, "%s.%s", m->name + 4, e->name);
-  cag_site_find(p->site, name, "library", url, e->text ? e->text : "", n);
-  fprintf(p->out, "<section><p class=\"signature\" id=\"%s\"><code>", e->name);
-  cag_html_script(p->out, p->root, e->signature, strlen(e->signature));
-  fputs("</code></p>\n", p->out);
-  if (e->text) write_doc_text(p, m, e->text);
-  if (e->argument_count) {
-    begin_parameters(p);
-    for (size_t i = 0; i < e->argument_count; i++)
-      write_parameter(p, cag_doc_module_parameter(m->name, e->name, e->arguments[i].name),
-                      e->arguments[i].name, e->arguments[i].fallback);
-    fputs("</tbody></table>\n", p->out);
-  }
-  fputs("</section>\n", p->out);
-}
-
-static void module_page(CagSite *s, const CagDocModule *m) {
-  CagSitePage p;
-  char path[128];
-  snprintf(path, sizeof path, "library/%s.html", m->name + 4);
-  cag_site_find(s, m->name, "module", path, m->purpose, cag_doc_sentence(m->purpose));
-  cag_site_begin(s, &p, path, m->name, "Library");
-  fprintf(p.out, "<div class=\"with-aside\">\n<article>\n<h1>%s</h1>\n", m->name);
-  cag_html_markdown(s, p.out, p.root, m->name, m->purpose, strlen(m->purpose));
-  for (size_t i = 0; i < m->count; i++) write_definition(&p, m, &m->entries[i]);
-  fprintf(p.out, "</article>\n<aside><h2>%s</h2><ul>\n", m->name);
-  for (size_t i = 0; i < m->count; i++)
-    fprintf(p.out, "<li><a href=\"#%s\">%s</a></li>\n", m->entries[i].name, m->entries[i].name);
-  fputs("</ul></aside>\n</div>\n", p.out);
-  cag_site_end(&p);
-}
-
-void cag_site_library(CagSite *s) {
-  CagSitePage p;
-  cag_site_begin(s, &p, "library/index.html", "Library", "Library");
-  fputs("<h1>Library</h1>\n<p>Modules that come with the program: <code>import "
-        "std.materials</code> binds "
-        "<code>materials</code>.</p>\n<dl class=\"modules\">\n",
-        p.out);
-  for (size_t i = 0; i < s->module_count; i++) {
-    const CagDocModule *m = &s->modules[i];
-    fprintf(p.out, "<dt><a href=\"%s.html\"><code>%s</code></a></dt><dd>", m->name + 4, m->name);
-    cag_html_prose(p.out, p.root, m->purpose, cag_doc_sentence(m->purpose));
-    fputs("</dd>\n", p.out);
-  }
-  fputs("</dl>\n", p.out);
-  cag_site_end(&p);
-  for (size_t i = 0; i < s->module_count; i++) module_page(s, &s->modules[i]);
 }
 
 // --- Errors ---
@@ -414,7 +297,8 @@ static void write_recipe(const CagSitePage *p, const CagDocument *d) {
   cag_site_find(p->site, title, "recipe", url, paragraph, 0);
   fputs("</p>\n", p->out);
   at += strspn(at, "\n");
-  cag_html_example(p->site, p->out, p->root, d->path, at, strlen(at), NULL);
+  cag_html_example(p->site, &(CagSiteSpot){.out = p->out, .root = p->root, .about = d->path}, at,
+                   strlen(at));
   fputs("</section>\n", p->out);
 }
 

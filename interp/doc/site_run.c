@@ -22,11 +22,15 @@
 // A drawing is as flat as rounding leaves it, by its width.
 #define FLAT 1e-9
 
-const CagSiteExample *cag_site_example(CagSite *s, const char *about, const char *text,
-                                       size_t length, const char *function) {
+static bool is_same(const CagSiteExample *e, const char *folder, const char *text, size_t length) {
+  return strlen(e->text) == length && strncmp(e->text, text, length) == 0 &&
+         (folder && e->folder ? strcmp(folder, e->folder) == 0 : !folder && !e->folder);
+}
+
+const CagSiteExample *cag_site_example(CagSite *s, const CagSiteSpot *spot, const char *text,
+                                       size_t length) {
   for (size_t i = 0; i < s->count; i++)
-    if (strlen(s->examples[i].text) == length && strncmp(s->examples[i].text, text, length) == 0)
-      return &s->examples[i];
+    if (is_same(&s->examples[i], spot->folder, text, length)) return &s->examples[i];
   if (s->final) return NULL;
   if (s->count == s->capacity) {
     s->capacity = s->capacity ? 2 * s->capacity : 512;
@@ -34,15 +38,18 @@ const CagSiteExample *cag_site_example(CagSite *s, const char *about, const char
     if (!s->examples) abort();
   }
   CagSiteExample *e = &s->examples[s->count++];
-  *e = (CagSiteExample){.about = about, .text = strndup(text, length)};
-  if (function) e->function = strdup(function);
+  *e = (CagSiteExample){.about = spot->about, .text = strndup(text, length)};
+  if (spot->function) e->function = strdup(spot->function);
+  if (spot->folder) e->folder = strdup(spot->folder);
   return NULL;
 }
 
 // --- Sessions ---
 
-static CagSession *open_session(const CagSite *site, FILE *out, FILE *messages) {
+static CagSession *open_session(const CagSite *site, const CagSiteExample *e, FILE *out,
+                                FILE *messages) {
   CagSessionOptions options = site->options->session;
+  options.folder = e->folder;
   options.out = out;
   options.messages = messages;
   if (options.max_time <= 0) options.max_time = SECONDS;
@@ -118,7 +125,7 @@ static char *last_shape(CagSession *s) {
 
 // What to show of an example that shows nothing itself; malloc'd, NULL: no shape is in it.
 static char *choose_shape(const CagSite *site, const CagSiteExample *e, FILE *out) {
-  CagSession *s = open_session(site, out, out);
+  CagSession *s = open_session(site, e, out, out);
   char *call = e->function ? find_call(e->text, e->function) : NULL, *shape = NULL;
   if (s && cag_session_input(s, e->text, strlen(e->text), NULL, NULL) == CAG_STATUS_OK) {
     if (call && is_shape(s, call, type_of(s, call))) {
@@ -191,7 +198,7 @@ static void picture(const CagSite *site, CagSession *ran, CagSiteExample *e, FIL
   char *shape = choose_shape(site, e, out), *text;
   if (!shape) return;
   if (asprintf(&text, "%s\nshow %s\n", e->text, shape) < 0) abort();
-  CagSession *s = open_session(site, out, out);
+  CagSession *s = open_session(site, e, out, out);
   if (s && cag_session_run_text(s, NAME, text, strlen(text)) == CAG_STATUS_OK)
     make_picture(site, s, e, shape);
   if (s) cag_session_free(s);
@@ -224,7 +231,7 @@ static void run_example(const CagSite *site, CagSiteExample *e) {
   char *told = NULL;
   FILE *out = open_memstream(&e->output, &length), *messages = open_memstream(&told, &told_length);
   FILE *quiet = fopen("/dev/null", "w");
-  CagSession *s = out && messages && quiet ? open_session(site, out, messages) : NULL;
+  CagSession *s = out && messages && quiet ? open_session(site, e, out, messages) : NULL;
   if (!s) abort();
   const int status = cag_session_run_text(s, NAME, e->text, strlen(e->text));
   const bool fails = strstr(e->text, "// expect error:") != NULL;

@@ -120,8 +120,17 @@ static void write_arguments(FILE *out, const CagDocModule *m, const CagDocEntry 
   if (e->argument_count) fputs("\n  Parameters\n", out);
   for (size_t i = 0; i < e->argument_count; i++) {
     const CagDocArgument *a = &e->arguments[i];
-    write_parameter(out, cag_doc_module_parameter(m->name, e->name, a->name), a->name, a->fallback);
+    const CagDocParameter said = {"", a->name, a->meaning, ""};
+    write_parameter(out, a->meaning ? &said : cag_doc_module_parameter(m->name, e->name, a->name),
+                    a->name, a->fallback);
   }
+}
+
+// Whether the /// lines tell of parameters one by one.
+static bool tells_parameters(const CagDocEntry *e) {
+  for (size_t i = 0; i < e->argument_count; i++)
+    if (e->arguments[i].meaning) return true;
+  return false;
 }
 
 static void write_definition(const CagDocWriter *w, const CagDocEntry *e) {
@@ -143,6 +152,7 @@ void cag_doc_write_module(const CagDocWriter *w, const CagDocModule *m) {
   for (size_t i = 0; i < m->count; i++) {
     fputc('\n', w->out);
     write_definition(w, &m->entries[i]);
+    if (tells_parameters(&m->entries[i])) write_arguments(w->out, m, &m->entries[i]);
   }
 }
 

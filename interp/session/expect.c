@@ -15,6 +15,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "interp/doc/doc.h"
 #include "interp/render/compare.h"
 #include "interp/render/exr.h"
 #include "interp/render/png.h"
@@ -334,9 +335,12 @@ static bool read_plans(const char *text, size_t length, const CagSessionOptions 
 typedef struct Run {
   const CagTestOptions *options;
   CagTestCounts *counts;
-  const char *path; // shown, and read unless there is a text
-  const char *text; // NULL: the file's
-  size_t length;    // of the text
+  const char *path;   // shown, and read unless there is a text
+  const char *text;   // NULL: the file's
+  size_t length;      // of the text
+  const char *about;  // the name of what the text is an example of; NULL: it is a script
+  size_t example;     // its number among those, from 1
+  const char *folder; // of an example: where it finds the script
   Plan *plan;
   char *name;
   bool failed;
@@ -589,10 +593,11 @@ static bool is_chosen(const Run *r) {
 static CagSession *make_session(const Run *r, FILE *out) {
   CagSessionOptions options = r->plan->limits;
   options.out = out;
+  options.folder = r->folder;
   if (!(options.max_time > 0) || options.max_time > CAG_TEST_SECONDS)
     options.max_time = CAG_TEST_SECONDS;
   CagSession *s = cag_session_new(&options);
-  for (size_t i = 0; s && i < r->options->define_count; i++)
+  for (size_t i = 0; s && !r->about && i < r->options->define_count; i++)
     cag_session_define(s, r->options->define_names[i], r->options->define_values[i]);
   for (size_t i = 0; s && i < r->plan->define_count; i++)
     cag_session_define(s, r->plan->defines[i].name, r->plan->defines[i].value);
@@ -652,25 +657,29 @@ static int perform(Run *r) {
   return status;
 }
 
-static int run_plans(const char *path, const char *text, size_t length, bool is_file,
-                     const CagTestOptions *options, CagTestCounts *counts) {
+static char *run_name(const Run *r) {
+  char *name, about[256] = "";
+  const char *options = r->plan->options;
+  if (r->about && r->example == 1) snprintf(about, sizeof about, ": example of %s", r->about);
+  else if (r->about) snprintf(about, sizeof about, ": example %zu of %s", r->example, r->about);
+  if (asprintf(&name, "%s%s%s%s", r->path, about, options ? " " : "", options ? options : "") < 0)
+    return NULL;
+  return name;
+}
+
+// Runs a script in all its runs; `text` is its text, also where the run reads the file.
+static int run_plans(const Run *script, const char *text, size_t length) {
   Plans plans = {0};
+  const CagTestOptions *options = script->options;
   int status = CAG_STATUS_OK;
   if (!read_plans(text, length, &options->session, &plans)) status = CAG_STATUS_LIMIT;
   for (size_t i = 0; i < plans.count && status == CAG_STATUS_OK; i++) {
-    Plan *p = &plans.items[i];
-    Run r = {.options = options,
-             .counts = counts,
-             .path = path,
-             .text = is_file ? NULL : text,
-             .length = length,
-             .plan = p};
-    if (asprintf(&r.name, "%s%s%s", path, p->options ? " " : "", p->options ? p->options : "") < 0)
-      status = CAG_STATUS_LIMIT;
-    else {
-      if (is_chosen(&r)) status = perform(&r);
-      free(r.name);
-    }
+    Run r = *script;
+    r.plan = &plans.items[i];
+    r.name = run_name(&r);
+    if (!r.name) status = CAG_STATUS_LIMIT;
+    else if (is_chosen(&r)) status = perform(&r);
+    free(r.name);
   }
   free_plans(&plans);
   return status;
@@ -678,7 +687,84 @@ static int run_plans(const char *path, const char *text, size_t length, bool is_
 
 int cag_test_text(const char *name, const char *text, size_t length, const CagTestOptions *options,
                   CagTestCounts *counts) {
-  return run_plans(name, text, length, false, options, counts);
+  const Run r = {
+      .options = options, .counts = counts, .path = name, .text = text, .length = length};
+  return run_plans(&r, text, length);
+}
+
+// --- Examples in the documentation of definitions ---
+
+// An example as a script in which all stands in the line, and the column, where it does in the
+// file: so failures are told by their place there. What it imports stands before it.
+static char *place_example(const CagDocEntry *e, size_t first, const char *part, size_t length,
+                           const char *import, size_t *size) {
+  char *text = NULL;
+  FILE *out = open_memstream(&text, size);
+  if (!out) return NULL;
+  size_t at_line = 1, line = first;
+  const char *at = part;
+  for (; at_line + 1 < e->lines[first]; at_line++) fputc('\n', out);
+  if (import) fprintf(out, "%s%s", import, at_line < e->lines[first] ? "" : ";");
+  while (at < part + length) {
+    for (; at_line < e->lines[line]; at_line++) fputc('\n', out);
+    const size_t n = strcspn(at, "\n");
+    fprintf(out, "%*s%.*s", (int)strlen("/// "), "", (int)n, at); // in place of the slashes
+    at += n + (at[n] == '\n');
+    line++;
+  }
+  fclose(out);
+  return text;
+}
+
+// Runs an example, which begins in the line of the entry's text. `script` has its number.
+static int run_example(const Run *script, const CagDocModule *m, const CagDocEntry *e, size_t line,
+                       const char *part, size_t length) {
+  const char *slash = strrchr(script->path, '/');
+  Run r = *script;
+  char *example = cag_doc_part_text(part, length, true);
+  char *import = cag_doc_script_import(m, slash ? slash + 1 : script->path, example);
+  char *folder =
+      slash ? strndup(script->path, slash == script->path ? 1 : (size_t)(slash - script->path))
+            : strdup(".");
+  r.about = e->name;
+  r.folder = folder;
+  r.text = place_example(e, line, part, length, import, &r.length);
+  const int status = r.text && folder ? run_plans(&r, r.text, r.length) : CAG_STATUS_LIMIT;
+  free((void *)(size_t)r.text);
+  free(folder);
+  free(import);
+  free(example);
+  return status;
+}
+
+static int run_examples_of(const Run *script, const CagDocModule *m, const CagDocEntry *e) {
+  int status = CAG_STATUS_OK;
+  size_t line = 0, n;
+  bool is_code;
+  Run r = *script;
+  for (const char *at = e->text; at && *at && status == CAG_STATUS_OK; at += n) {
+    n = cag_doc_part(at, &is_code);
+    if (is_code) {
+      r.example++;
+      status = run_example(&r, m, e, line, at, n);
+    }
+    for (size_t i = 0; i < n; i++) line += at[i] == '\n';
+  }
+  return status;
+}
+
+// A script with errors has no examples: its own run tells them.
+static int run_examples(const Run *script, const char *text, size_t length) {
+  if (!memmem(text, length, "///     ", 8)) return CAG_STATUS_OK;
+  CagSession *s = cag_session_new(&script->options->session);
+  CagDocModule m = {0};
+  int status = s ? CAG_STATUS_OK : CAG_STATUS_LIMIT;
+  if (s && cag_session_read_doc(s, script->path, text, length, &m) == CAG_STATUS_OK)
+    for (size_t i = 0; i < m.count && status == CAG_STATUS_OK; i++)
+      status = run_examples_of(script, &m, &m.entries[i]);
+  cag_doc_module_free(&m);
+  cag_session_free(s);
+  return status;
 }
 
 static char *read_whole(const char *path, size_t *length) {
@@ -718,7 +804,9 @@ int cag_test_file(const char *path, const CagTestOptions *options, CagTestCounts
     counts->failed++;
     return CAG_STATUS_FILE;
   }
-  int status = run_plans(path, text, length, true, options, counts);
+  const Run r = {.options = options, .counts = counts, .path = path};
+  int status = run_plans(&r, text, length);
+  if (status == CAG_STATUS_OK) status = run_examples(&r, text, length);
   free(text);
   return status;
 }

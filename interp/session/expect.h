@@ -18,6 +18,9 @@
 // the script (a -D that it has no param for, an error within an imported module) are matched by
 // their code alone.
 //
+// The examples in the documentation of its definitions, lines of /// indented by four, are tests as
+// well: each runs by itself, with what it names of the script imported.
+//
 // A picture beside the script, NAME.exr or NAME.png, is the reference of what the plain run shows.
 // It is rendered at the reference's size in the quality "normal", and compared: see
 // CAG_TEST_DELTA_E. Without POV-Ray pictures are left out.

@@ -299,6 +299,7 @@ typedef struct Run {
 static bool run(CagVm *vm, void *context) {
   Run *r = context;
   CagSession *s = r->session;
+  if (!r->path && s->options.folder && !vm->root) vm->root = realpath(s->options.folder, NULL);
   size_t k = r->path ? cag_load_file(vm, r->path, &r->status)
                      : cag_load_text(vm, r->name, r->text, r->length, CAG_PARSE_FILE);
   if (k == CAG_NO_MODULE) return false;

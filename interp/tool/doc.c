@@ -1,8 +1,10 @@
-// cag doc [NAME|PATH]: documentation on a terminal, or as a site with --html DIR.
+// cag doc [NAME|PATH ...]: documentation on a terminal, or as a site with --html DIR, which scripts
+// can be added to.
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "interp/tool/scripts.h"
@@ -69,26 +71,73 @@ static int document_script(CagTool *t, CagSession *s, const char *path) {
 
 static void say(void *context, const char *message) { cag_tool_say(context, "%s", message); }
 
-static int make_site(CagTool *t, CagSession *s, const char *operand) {
-  if (operand)
-    return cag_tool_fail(t, CAG_STATUS_USAGE, "leave the name away",
-                         "--html makes the site of all documentation, found '%s'", operand);
+typedef struct Paths {
+  char **items;
+  size_t count;
+} Paths;
+
+static int keep_path(void *context, const char *path) {
+  Paths *p = context;
+  char **items = realloc(p->items, (p->count + 1) * sizeof *items);
+  if (!items) return CAG_STATUS_LIMIT;
+  p->items = items;
+  p->items[p->count] = strdup(path);
+  return p->items[p->count++] ? CAG_STATUS_OK : CAG_STATUS_LIMIT;
+}
+
+static int reject_operand(CagTool *t, const char *operand) {
+  if (strcmp(operand, "-") == 0)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "save the script to a file",
+                         "a site tells of files and folders, found '-'");
+  return cag_tool_fail(t, CAG_STATUS_USAGE, "leave the name away, or name a script or a folder",
+                       "the site has all functions and modules, found '%s'", operand);
+}
+
+// Names have their pages anyhow; scripts and folders are added.
+static bool is_site_path(const char *operand) {
+  struct stat st;
+  return strcmp(operand, "-") != 0 && (is_path(operand) || stat(operand, &st) == 0);
+}
+
+static int make_site(CagTool *t, CagSession *s, int argc, char **argv) {
+  Paths paths = {0};
+  CagToolScripts scripts = {.tool = t, .each = keep_path, .context = &paths};
+  for (int i = 0; i < argc; i++)
+    if (!is_site_path(argv[i])) return reject_operand(t, argv[i]);
+  int status = argc ? cag_tool_each_script(&scripts, argc, argv) : CAG_STATUS_OK;
+  if (status == CAG_STATUS_OK) status = scripts.status;
   CagSiteOptions options = {.session = t->session,
                             .no_pictures = t->no_pictures,
                             .jobs = t->jobs,
+                            .scripts = (const char *const *)paths.items,
+                            .script_count = paths.count,
                             .say = say,
                             .context = t};
-  return cag_tool_finish(t, s, cag_session_write_site(s, t->html, &options));
+  if (status == CAG_STATUS_OK)
+    status = cag_tool_finish(t, s, cag_session_write_site(s, t->html, &options));
+  for (size_t i = 0; i < paths.count; i++) free(paths.items[i]);
+  free(paths.items);
+  return status;
+}
+
+static int show(CagTool *t, CagSession *s, const char *operand) {
+  if (operand && is_path(operand)) return document_script(t, s, operand);
+  return cag_session_document(s, operand, is_styled(t), stdout) ? CAG_STATUS_OK
+                                                                : reject(t, s, operand);
 }
 
 int cag_tool_doc(CagTool *t, int argc, char **argv) {
-  const char *operand = argc ? argv[0] : NULL;
   CagSession *s = cag_tool_session(t);
   if (!s) return CAG_STATUS_LIMIT;
   int status = CAG_STATUS_OK;
-  if (t->html) status = make_site(t, s, operand);
-  else if (operand && is_path(operand)) status = document_script(t, s, operand);
-  else if (!cag_session_document(s, operand, is_styled(t), stdout)) status = reject(t, s, operand);
+  if (t->html) {
+    status = make_site(t, s, argc, argv);
+  } else {
+    for (int i = 0; i < (argc ? argc : 1) && status == CAG_STATUS_OK; i++) {
+      if (i) putchar('\n');
+      status = show(t, s, argc ? argv[i] : NULL);
+    }
+  }
   cag_session_free(s);
   return status;
 }

@@ -138,6 +138,102 @@ try doc --html flange.cag/site --no-pictures
 status 3
 says 'flange.cag/site'
 
+# --- Scripts of the user ---
+
+script flange.cag '// A flange.
+import parts.gripper: jaw
+
+/// How far across.
+param width = 40 in 10..90 "mm, outside"
+/// A plate of this size.
+///
+/// - `size`: number, mm: how far across
+/// - `thickness`: number, mm: how thick,
+///   seen from the side
+///
+///     show plate(30)
+///     print volume(plate(2, thickness: 1)) // expect: 4
+plate(size, thickness = 3) = box([size, size, thickness])
+show plate(jaw(width))'
+mkdir -p parts
+script parts/gripper.cag '// Jaws.
+
+/// How far <apart> & jaws are.
+///
+///     print jaw(3)   // expect: 6
+jaw(x) = 2 * x'
+
+it 'a script tells of the parameters of its functions'
+try doc flange.cag parts/gripper.cag
+status 0
+prints 'number, mm: how thick, seen from the side; default 3'
+prints 'How far <apart>'
+
+it 'examples in the documentation of a script are tests'
+try test flange.cag parts -v
+status 0
+prints 'passed flange.cag: example of plate'
+prints 'passed parts/gripper.cag: example of jaw'
+prints '4 passed, 0 failed'
+
+it 'an example that does not do what it says is told by its place in the script'
+script off.cag '/// Twice.
+///
+///     print twice(3)   // expect: 7
+///
+/// And an error:
+///
+///     print twice(3,
+///       4)
+///
+/// And as a member:
+///
+///     y = 3
+///     print off.twice(y), twice(y)   // expect: 6 6
+twice(x) = 2 * x'
+try test off.cag
+status 1
+prints 'FAILED off.cag: example of twice'
+prints 'off.cag:3: another line is printed'
+prints 'FAILED off.cag: example 2 of twice'
+prints 'off.cag:7:15'
+prints '2 passed, 2 failed'
+try test off.cag --filter 'example 3 of twice'
+status 0
+prints '1 passed, 0 failed'
+
+it 'scripts and folders get pages in the site, in its index, and in its search'
+try doc --html own flange.cag parts --no-pictures
+status 0
+exists own/scripts/index.html
+exists own/scripts/flange.html
+exists own/scripts/parts.gripper.html
+grep -q 'how thick, seen from the side' own/scripts/flange.html || wrong 'the parameters are missing'
+grep -q 'How far &lt;apart&gt; &amp; jaws are' own/scripts/parts.gripper.html || wrong 'a text is not escaped'
+grep -q 'class="output"' own/scripts/flange.html || wrong 'the example was not run'
+grep -q 'href="scripts/flange.html#plate"' own/index.html || wrong 'the index lacks the function'
+grep -q '"flange.plate","script"' own/index.js || wrong 'the search lacks the function'
+! grep -q "$PWD" -r own || wrong 'the folder of the scripts is told'
+try_command node "$here/site_links.js" own
+status 0
+
+it 'a site has no part for scripts where there are none'
+! grep -q 'scripts/' site/index.html || wrong 'there is a link to scripts'
+
+it 'a wrong example of a script fails the site'
+try doc --html own off.cag --no-pictures
+status 1
+says 'an example of off.cag does not do what it says'
+
+it 'scripts with errors, and those that are not there, make no site'
+try doc --html none broken.cag --no-pictures
+status 1
+says 'broken.cag:1'
+try doc --html none nowhere.cag --no-pictures
+status 3
+says 'nowhere.cag'
+is_missing none
+
 it '--html takes no name'
 try doc --html site bspline
 status 2

@@ -1,0 +1,114 @@
+// The scripts that a site tells of beside the library: reading them, and what they are called.
+//
+// A script is called by its path without the folder that all of them have in common, so a site does
+// not tell where on a machine it was made.
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "interp/doc/site.h"
+#include "interp/eval/program.h"
+#include "interp/session/session.h"
+
+// --- Names ---
+
+// The bytes of a path up to its last slash, with it.
+static size_t folder_length(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+// The length of the folder that all paths begin with.
+static size_t common_folder(const char *const *paths, size_t count) {
+  size_t common = folder_length(paths[0]);
+  for (size_t i = 1; i < count; i++) {
+    size_t n = 0;
+    while (n < common && paths[i][n] == paths[0][n]) n++;
+    while (n > 0 && paths[0][n - 1] != '/') n--;
+    common = n;
+  }
+  return common;
+}
+
+static bool is_plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+}
+
+static bool is_taken(const CagSite *s, const char *page) {
+  if (strcmp(page, "index") == 0) return true; // the list of all of them
+  for (size_t i = 0; i < s->script_count; i++)
+    if (strcmp(s->scripts[i].page, page) == 0) return true;
+  return false;
+}
+
+// "parts/gripper.cag" is the page "parts.gripper": words that need no care in a path or an address.
+static char *page_name(const CagSite *s, const char *name) {
+  const size_t n = strlen(name);
+  char *stem = strndup(name, n > 4 && strcmp(name + n - 4, ".cag") == 0 ? n - 4 : n), *page;
+  if (!stem) abort();
+  for (char *at = stem; *at; at++)
+    if (!is_plain(*at)) *at = *at == '/' ? '.' : '_';
+  page = strdup(stem);
+  for (int i = 2; page && is_taken(s, page); i++) {
+    free(page);
+    if (asprintf(&page, "%s-%d", stem, i) < 0) abort();
+  }
+  free(stem);
+  return page;
+}
+
+// --- Reading ---
+
+static bool read_script(CagSite *s, const char *path, size_t common) {
+  size_t length;
+  const char *why;
+  char *text = cag_read_whole_file(path, &length, &why);
+  if (!text) {
+    cag_session_drop_vm(s->session);
+    cag_diagnostics_add(&s->session->diagnostics, CAG_ERR_module_unreadable, NULL, (CagSpan){0, 0},
+                        "cannot read %s: %s", path, why);
+    return false;
+  }
+  CagSiteScript *script = &s->scripts[s->script_count];
+  const size_t folder = folder_length(path);
+  const int status = cag_session_read_doc(s->session, path, text, length, &script->module);
+  free(text);
+  if (status != CAG_STATUS_OK) return false;
+  free(script->module.name);
+  script->module.name = strdup(path + common);
+  script->file = strdup(path + folder);
+  script->folder = folder ? strndup(path, folder) : strdup(".");
+  script->page = page_name(s, path + common);
+  s->script_count++;
+  if (!script->module.name || !script->file || !script->folder || !script->page) abort();
+  return true;
+}
+
+static bool is_again(const char *const *paths, size_t i) {
+  for (size_t k = 0; k < i; k++)
+    if (strcmp(paths[k], paths[i]) == 0) return true;
+  return false;
+}
+
+bool cag_site_read_scripts(CagSite *s) {
+  const char *const *paths = s->options->scripts;
+  const size_t count = s->options->script_count;
+  if (count == 0) return true;
+  s->scripts = calloc(count, sizeof *s->scripts);
+  if (!s->scripts) abort();
+  const size_t common = common_folder(paths, count);
+  for (size_t i = 0; i < count; i++)
+    if (!is_again(paths, i) && !read_script(s, paths[i], common)) return false;
+  return true;
+}
+
+void cag_site_free_scripts(CagSite *s) {
+  for (size_t i = 0; i < s->script_count; i++) {
+    CagSiteScript *script = &s->scripts[i];
+    cag_doc_module_free(&script->module);
+    free(script->file);
+    free(script->folder);
+    free(script->page);
+  }
+  free(s->scripts);
+}
