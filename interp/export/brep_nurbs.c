@@ -170,11 +170,17 @@ bool cag_brep_is_straight(const CagCurve *c) {
 
 // --- Surfaces ---
 
+static const char *what_it_is(const CagSurface *s) {
+  const CagSurface *inner;
+  CagTransform map;
+  return cag_surface_placed_view(s, &inner, &map) ? inner->kind->name : s->kind->name;
+}
+
 CagStatus cag_brep_surface(CagBrepWork *w, const CagSurface *s, CagSurface **out, CagError *err) {
   CagSurface *exact = NULL, *clamped = NULL;
   CagStatus status = cag_surface_to_nurbs(s, &exact, err);
   if (no_exact_form(status)) {
-    if (!(w->asked > 0)) return fail_inexact(w, s->kind->name, err);
+    if (!(w->asked > 0)) return fail_inexact(w, what_it_is(s), err);
     w->approximate = true;
     status = cag_brep_approximate(s, w->asked, &exact, err);
   }

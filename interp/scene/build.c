@@ -184,6 +184,13 @@ static void add_label(Build *b, const CagMesh *anchor, const char *text, const S
                  .material = material};
 }
 
+// What it was made as, wherever it was moved since.
+static const char *surface_name(const CagSurface *s) {
+  const CagSurface *inner;
+  CagTransform map;
+  return cag_surface_placed_view(s, &inner, &map) ? inner->kind->name : s->kind->name;
+}
+
 static void add_shape(Build *b, CagValue v, const Said *said) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagItem *item = NULL;
@@ -206,7 +213,7 @@ static void add_shape(Build *b, CagValue v, const Said *said) {
     if (item) item->placement = shape->placement;
     break;
   case CAG_SURFACE:
-    item = add_item(b, CAG_ITEM_SURFACE, name ? name : shape->as.surface->kind->name);
+    item = add_item(b, CAG_ITEM_SURFACE, name ? name : surface_name(shape->as.surface));
     if (item) item->as.surface = cag_surface_retain(shape->as.surface);
     break;
   case CAG_SOLID:
