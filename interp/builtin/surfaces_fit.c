@@ -196,8 +196,9 @@ static bool read_planes(CagCall *call, int argument, CagGridData *g) {
   g->lines = CAG_GRID_PLANES_NONE;
   if (!cag_given(call, argument)) return true;
   if (g->hold == CAG_GRID_HOLD_NONE)
-    return cag_fail_call(call, argument, CAG_ERR_value,
-                         "are positions along x, y or z: say which as `fixed: \"x\"`");
+    return cag_fail_call(
+        call, argument, CAG_ERR_value,
+        "wants `fixed` beside `planes`: \"x\", \"y\" or \"z\", along which they are positions");
   if (v.type != CAG_RECORD) {
     g->lines = v.type == CAG_TEXT ? CAG_GRID_PLANES_EITHER : CAG_GRID_PLANES_U;
     return read_positions(call, argument, v, g);
