@@ -239,3 +239,27 @@ CagStatus cag_curve_cuts(const CagCurve *c, double **out, size_t *n, CagError *e
   *n = inner + 2;
   return CAG_OK;
 }
+
+bool cag_curve_sampled_hull(const CagCurve *c, double a, double b, CagBounds *out) {
+  enum { PARTS = 16 };
+  CagError ignored;
+  CagVec3 p[3] = {{0, 0, 0}}, bend = {0, 0, 0}; // p: the last three
+  int found = 0;
+  *out = CAG_BOUNDS_EMPTY;
+  for (int i = 0; i <= PARTS; i++) {
+    const CagSide side = i < PARTS ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT;
+    CagVec3 at;
+    if (c->kind->eval(c, i < PARTS ? a + (b - a) * i / PARTS : b, 0, side, &at, &ignored)) continue;
+    p[0] = p[1];
+    p[1] = p[2];
+    p[2] = at;
+    cag_bounds_add(out, at);
+    if (++found < 3) continue;
+    bend.x = fmax(bend.x, fabs(p[0].x - 2 * p[1].x + p[2].x));
+    bend.y = fmax(bend.y, fabs(p[0].y - 2 * p[1].y + p[2].y));
+    bend.z = fmax(bend.z, fabs(p[0].z - 2 * p[1].z + p[2].z));
+  }
+  out->min = cag_sub(out->min, bend);
+  out->max = cag_add(out->max, bend);
+  return found > PARTS;
+}

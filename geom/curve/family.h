@@ -42,6 +42,11 @@ double cag_curve_stretch(CagVec3 x, CagVec3 y);
 // `rate` times as fast; NULL: no composite.
 const CagCurve *cag_curve_composite_piece(const CagCurve *c, double a, double b, double *local_a,
                                           double *local_b, double *rate);
+// A box that holds the curve over [a, b] where points are all that is known of it: that of some,
+// wider in each direction by the largest second difference there. A smooth curve leaves its chord
+// by an eighth of that; a corner between two points hides at most half of the difference that it
+// makes. False: some of the points cannot be evaluated, and are left out.
+bool cag_curve_sampled_hull(const CagCurve *c, double a, double b, CagBounds *out);
 // Points whose hull, plane and line are those of the curve (control points where there are some,
 // else samples); malloc'd.
 CagStatus cag_curve_gather(const CagCurve *c, CagVec3 **out, size_t *n, CagError *err);

@@ -48,31 +48,6 @@ static CagStatus fail_not_finite(const Function *c, double t, int k, CagError *e
                   "derivative %d of the function at t = %s is not finite", k, text);
 }
 
-// Derivatives of the image under a projective map: those of the homogeneous coordinates, and the
-// quotient rule.
-static CagStatus project(const Function *c, double t, int order, CagVec3 *d, CagError *err) {
-  double w[CAG_MAX_DERIVATIVE + 1] = {0};
-  const double(*m)[4] = c->map.m;
-  for (int k = 0; k <= order; k++) {
-    const CagVec3 p = d[k];
-    const double one = k == 0;
-    w[k] = m[3][0] * p.x + m[3][1] * p.y + m[3][2] * p.z + m[3][3] * one;
-    d[k] = cag_vec3(m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3] * one,
-                    m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3] * one,
-                    m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3] * one);
-  }
-  if (w[0] == 0) return fail_not_finite(c, t, 0, err);
-  for (int k = 0; k <= order; k++) {
-    double binomial = 1;
-    for (int i = 1; i <= k; i++) {
-      binomial = binomial * (k - i + 1) / i;
-      d[k] = cag_madd(d[k], -binomial * w[i], d[k - i]);
-    }
-    d[k] = cag_scaled(d[k], 1 / w[0]);
-  }
-  return CAG_OK;
-}
-
 static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, CagVec3 *out,
                       CagError *err) {
   (void)side;
@@ -86,7 +61,8 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
     scale *= rate;
     out[k] = cag_scaled(out[k], scale);
   }
-  if (c->mapped) status = project(c, t, order, out, err);
+  if (c->mapped && !cag_transform_derivatives(&c->map, order, out))
+    status = fail_not_finite(c, t, 0, err);
   for (int k = 0; !status && k <= order; k++)
     if (!isfinite(out[k].x) || !isfinite(out[k].y) || !isfinite(out[k].z))
       status = fail_not_finite(c, t, k, err);

@@ -90,6 +90,27 @@ void cag_transform_homogeneous(const CagTransform *t, const double h[4], double 
   memcpy(out, r, sizeof r);
 }
 
+bool cag_transform_derivatives(const CagTransform *t, int order, CagVec3 *d) {
+  double w[CAG_TRANSFORM_ORDER + 1] = {0};
+  for (int k = 0; k <= order; k++) {
+    const double from[4] = {d[k].x, d[k].y, d[k].z, k == 0};
+    double to[4];
+    cag_transform_homogeneous(t, from, to);
+    d[k] = cag_vec3(to[0], to[1], to[2]);
+    w[k] = to[3];
+  }
+  if (w[0] == 0) return false;
+  for (int k = 0; k <= order; k++) {
+    double binomial = 1;
+    for (int i = 1; i <= k; i++) {
+      binomial = binomial * (k - i + 1) / i;
+      d[k] = cag_madd(d[k], -binomial * w[i], d[k - i]);
+    }
+    d[k] = cag_scaled(d[k], 1 / w[0]);
+  }
+  return true;
+}
+
 static CagVec3 column(const CagTransform *t, int j) {
   return (CagVec3){t->m[0][j], t->m[1][j], t->m[2][j]};
 }

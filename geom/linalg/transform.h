@@ -25,6 +25,10 @@ CagTransform cag_transform_multiply(const CagTransform *a,
 // moved).
 CagVec3 cag_transform_point(const CagTransform *t, CagVec3 p);
 CagVec3 cag_transform_vector(const CagTransform *t, CagVec3 v);
+// Derivatives 0..order of a point that moves become those of its image: those of the homogeneous
+// coordinates, and the quotient rule. False: the point goes to infinity.
+#define CAG_TRANSFORM_ORDER 16
+bool cag_transform_derivatives(const CagTransform *t, int order, CagVec3 *d);
 void cag_transform_homogeneous(const CagTransform *t, const double h[4], double out[4]);
 CagStatus cag_transform_inverse(const CagTransform *t, CagTransform *out,
                                 CagError *err);          // fails: "singular-transform"

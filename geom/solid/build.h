@@ -9,6 +9,11 @@
 CagStatus cag_solid_block(CagSolidKind kind, size_t faces, CagSolid **out, CagError *err);
 // Takes the reference to the face.
 void cag_solid_add(CagSolid *s, CagSurface *face);
+// Takes the reference to the face, whose other side faces outward where `flip`.
+CagStatus cag_solid_add_turned(CagSolid *s, CagSurface *face, bool flip, CagError *err);
+// Adds the region in its frame as a flat face.
+CagStatus cag_solid_add_cap(CagSolid *s, const CagRegion *r, const CagTransform *frame, bool flip,
+                            CagError *err);
 // Adds an edge; the sides as in CagSolidEdge.
 CagStatus cag_solid_add_edge(CagSolid *s, size_t face_a, int side_a, size_t face_b, int side_b,
                              bool reversed, CagError *err);

@@ -30,6 +30,24 @@ CagStatus cag_solid_block(CagSolidKind kind, size_t faces, CagSolid **out, CagEr
 
 void cag_solid_add(CagSolid *s, CagSurface *face) { s->faces[s->face_count++] = face; }
 
+CagStatus cag_solid_add_turned(CagSolid *s, CagSurface *face, bool flip, CagError *err) {
+  CagSurface *turned = face;
+  CagStatus status = CAG_OK;
+  if (flip) {
+    status = cag_surface_flip(face, &turned, err);
+    cag_surface_release(face);
+  }
+  if (!status) cag_solid_add(s, turned);
+  return status;
+}
+
+CagStatus cag_solid_add_cap(CagSolid *s, const CagRegion *r, const CagTransform *frame, bool flip,
+                            CagError *err) {
+  CagSurface *face;
+  CagStatus status = cag_surface_planar(r, frame, &face, err);
+  return status ? status : cag_solid_add_turned(s, face, flip, err);
+}
+
 CagSolid *cag_solid_retain(const CagSolid *s) {
   CagSolid *mine = (CagSolid *)s;
   if (mine) mine->references++;
@@ -225,14 +243,9 @@ CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid
   if (moved->core) moved->core->references++;
   bool mirror = cag_transform_mirrors(t);
   for (size_t i = 0; !status && i < s->face_count; i++) {
-    CagSurface *face, *turned = NULL;
+    CagSurface *face;
     status = cag_surface_transform(s->faces[i], t, &face, err);
-    if (!status && mirror) {
-      status = cag_surface_flip(face, &turned, err);
-      cag_surface_release(face);
-      face = turned;
-    }
-    if (!status) cag_solid_add(moved, face);
+    if (!status) status = cag_solid_add_turned(moved, face, mirror, err);
   }
   for (size_t i = 0; !status && i < s->edge_count; i++) {
     struct CagSolidEdge e = s->edges[i];

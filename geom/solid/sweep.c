@@ -12,24 +12,6 @@
 // A point nearer to the axis than this part of the region's size lies on it.
 #define ON_AXIS 1e-9
 
-static CagStatus add_flipped(CagSolid *s, CagSurface *face, bool flip, CagError *err) {
-  CagSurface *turned = face;
-  CagStatus status = CAG_OK;
-  if (flip) {
-    status = cag_surface_flip(face, &turned, err);
-    cag_surface_release(face);
-  }
-  if (!status) cag_solid_add(s, turned);
-  return status;
-}
-
-static CagStatus add_cap(CagSolid *s, const CagRegion *r, const CagTransform *frame, bool flip,
-                         CagError *err) {
-  CagSurface *face;
-  CagStatus status = cag_surface_planar(r, frame, &face, err);
-  return status ? status : add_flipped(s, face, flip, err);
-}
-
 // --- Extrusion ---
 
 CagStatus cag_solid_extrude(const CagRegion *r, CagVec3 v, double twist, double scale,
@@ -44,7 +26,7 @@ CagStatus cag_solid_extrude(const CagRegion *r, CagVec3 v, double twist, double 
   for (size_t i = 0; !status && i < r->count; i++) {
     CagSurface *face;
     status = cag_surface_extrude(r->loops[i], v, twist, scale, &face, err);
-    if (!status) status = add_flipped(s, face, down, err);
+    if (!status) status = cag_solid_add_turned(s, face, down, err);
   }
   CagTransform foot = cag_transform_identity(), top = cag_translate(v);
   top.planar = foot.planar = false;
@@ -53,8 +35,8 @@ CagStatus cag_solid_extrude(const CagRegion *r, CagVec3 v, double twist, double 
   top.m[0][0] = top.m[1][1] = scale * cosine;
   top.m[1][0] = scale * sine;
   top.m[0][1] = -scale * sine;
-  if (!status) status = add_cap(s, r, &foot, !down, err);
-  if (!status && scale > 0) status = add_cap(s, r, &top, down, err);
+  if (!status) status = cag_solid_add_cap(s, r, &foot, !down, err);
+  if (!status && scale > 0) status = cag_solid_add_cap(s, r, &top, down, err);
   if (!status) status = cag_solid_match_edges(s, err);
   if (status) cag_solid_release(s);
   else *out = s;
@@ -278,9 +260,9 @@ CagStatus cag_solid_revolve(const CagRegion *r, CagVec3 axis, CagVec3 through, d
     // The material moves along w x r: the first cap faces back, the second ahead.
     bool ahead = g.sense < 0; // whether the region's normal is the way of the motion
     status = turned_plane(&g, from, &frame, err);
-    if (!status) status = add_cap(s, r, &frame, ahead, err);
+    if (!status) status = cag_solid_add_cap(s, r, &frame, ahead, err);
     if (!status) status = turned_plane(&g, to, &frame, err);
-    if (!status) status = add_cap(s, r, &frame, !ahead, err);
+    if (!status) status = cag_solid_add_cap(s, r, &frame, !ahead, err);
     if (!status) status = cap_edges(s, sides, r->count, caps, err);
   }
   free(sides);
@@ -302,7 +284,7 @@ static CagStatus add_tube_cap(CagSolid *s, const CagSurface *side, const CagCurv
   if (!status) status = cag_axes(center, cag_sub(x, center), cag_sub(y, center), &frame, err);
   CagRegion *disk = NULL;
   if (!status) status = cag_solid_disk(radius, &disk, err);
-  if (!status) status = add_cap(s, disk, &frame, first, err);
+  if (!status) status = cag_solid_add_cap(s, disk, &frame, first, err);
   cag_region_release(disk);
   return status;
 }

@@ -9,24 +9,6 @@
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 
-static CagStatus add_turned(CagSolid *s, CagSurface *face, bool flip, CagError *err) {
-  CagSurface *turned = face;
-  CagStatus status = CAG_OK;
-  if (flip) {
-    status = cag_surface_flip(face, &turned, err);
-    cag_surface_release(face);
-  }
-  if (!status) cag_solid_add(s, turned);
-  return status;
-}
-
-static CagStatus add_cap(CagSolid *s, const CagRegion *r, const CagTransform *frame, bool flip,
-                         CagError *err) {
-  CagSurface *face;
-  CagStatus status = cag_surface_planar(r, frame, &face, err);
-  return status ? status : add_turned(s, face, flip, err);
-}
-
 static CagStatus finish(CagSolid *s, CagStatus status, CagSolid **out, CagError *err) {
   if (!status && s->face_count > 1) status = cag_solid_match_edges(s, err);
   if (status) cag_solid_release(s);
@@ -77,7 +59,7 @@ CagStatus cag_solid_sweep(const CagRegion *r, const CagMotion *motion, CagSolid 
   for (size_t i = 0; !status && i < r->count; i++) {
     CagSurface *face;
     status = cag_surface_sweep(r->loops[i], motion, &face, err);
-    if (!status) status = add_turned(s, face, back, err);
+    if (!status) status = cag_solid_add_turned(s, face, back, err);
   }
   if (!status) status = check_home(s, motion, &closed, err);
   for (int end = 0; !status && !closed && end < 2; end++) {
@@ -89,7 +71,7 @@ CagStatus cag_solid_sweep(const CagRegion *r, const CagMotion *motion, CagSolid 
     CagTransform frame;
     cag_motion_domain(motion, &start, &stop, &angular);
     status = cag_motion_frame(motion, end == 0 ? start : stop, &frame, err);
-    if (!status) status = add_cap(s, r, &frame, (end == 0) != back, err);
+    if (!status) status = cag_solid_add_cap(s, r, &frame, (end == 0) != back, err);
   }
   return finish(s, status, out, err);
 }
@@ -172,7 +154,7 @@ static CagStatus add_loft_cap(CagSolid *s, const CagSurface *side, bool first, C
   if (status) return status;
   CagVec3 normal = cag_vec3(frame.m[0][2], frame.m[1][2], frame.m[2][2]);
   bool ahead = cag_dot(normal, way) > 0;
-  status = add_cap(s, region, &frame, ahead == first, err);
+  status = cag_solid_add_cap(s, region, &frame, ahead == first, err);
   cag_region_release(region);
   return status;
 }
@@ -222,7 +204,7 @@ static CagStatus loft_faces(const CagSurface *side, bool flip, CagSolid **out, C
   CagSolid *s;
   CagStatus status = cag_solid_block(CAG_SOLID_LOFT, 3, &s, err);
   if (status) return status;
-  status = add_turned(s, cag_surface_retain(side), flip, err);
+  status = cag_solid_add_turned(s, cag_surface_retain(side), flip, err);
   if (!status && !side->closed_v) {
     CagVec3 way;
     if (!side->pole_v0) {
@@ -304,7 +286,7 @@ CagStatus cag_solid_thicken(const CagSurface *s, double d, CagSolid **out, CagEr
     for (int k = 0; !status && k < 2; k++) {
       CagSurface *face = cag_surface_retain(faces[k]);
       if (d > 0) cag_solid_add(made, face);
-      else status = add_turned(made, face, true, err);
+      else status = cag_solid_add_turned(made, face, true, err);
     }
     if (status) cag_solid_release(made);
     else *out = made;

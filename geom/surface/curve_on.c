@@ -99,30 +99,6 @@ static CagStatus fail_infinite(CagError *err) {
                   "a point of the curve goes to infinity under the projection");
 }
 
-// Derivatives of the image: those of the homogeneous coordinates and the quotient rule.
-static CagStatus project(const CagTransform *map, int order, CagVec3 *d, CagError *err) {
-  double w[MOST_ORDER + 1] = {0};
-  const double(*m)[4] = map->m;
-  for (int k = 0; k <= order; k++) {
-    const CagVec3 p = d[k];
-    const double one = k == 0;
-    w[k] = m[3][0] * p.x + m[3][1] * p.y + m[3][2] * p.z + m[3][3] * one;
-    d[k] = cag_vec3(m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3] * one,
-                    m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3] * one,
-                    m[2][0] * p.x + m[2][1] * p.y + m[2][2] * p.z + m[2][3] * one);
-  }
-  if (w[0] == 0) return fail_infinite(err);
-  for (int k = 0; k <= order; k++) {
-    double binomial = 1;
-    for (int i = 1; i <= k; i++) {
-      binomial = binomial * (k - i + 1) / i;
-      d[k] = cag_madd(d[k], -binomial * w[i], d[k - i]);
-    }
-    d[k] = cag_scaled(d[k], 1 / w[0]);
-  }
-  return CAG_OK;
-}
-
 static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, CagVec3 *out,
                       CagError *err) {
   const OnSurface *c = (const OnSurface *)curve;
@@ -150,7 +126,7 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
   status = cag_surface_eval(s, x.at, y.at, order, x.side, y.side, partials, err);
   if (status) return status;
   compose(partials, &x, &y, order, out);
-  return c->mapped ? project(&c->map, order, out, err) : CAG_OK;
+  return !c->mapped || cag_transform_derivatives(&c->map, order, out) ? CAG_OK : fail_infinite(err);
 }
 
 // --- Breaks ---
@@ -339,26 +315,9 @@ static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCur
   return status ? status : along(c, plane, out, err);
 }
 
-// Points are all that is known of it: the box of some, wider in each direction by the largest
-// second difference there. A smooth curve leaves its chord by an eighth of that; a corner between
-// two points hides at most half of the difference that it makes.
 static CagBounds hull(const CagCurve *curve, double a, double b) {
-  enum { PARTS = 16 };
-  CagBounds box = CAG_BOUNDS_EMPTY;
-  CagError ignored;
-  CagVec3 p[PARTS + 1], bend = {0, 0, 0};
-  for (int i = 0; i <= PARTS; i++) {
-    const CagSide side = i < PARTS ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT;
-    const double t = i < PARTS ? a + (b - a) * i / PARTS : b;
-    if (eval(curve, t, 0, side, &p[i], &ignored)) p[i] = i ? p[i - 1] : cag_vec3(0, 0, 0);
-    cag_bounds_add(&box, p[i]);
-    if (i < 2) continue;
-    bend.x = fmax(bend.x, fabs(p[i - 2].x - 2 * p[i - 1].x + p[i].x));
-    bend.y = fmax(bend.y, fabs(p[i - 2].y - 2 * p[i - 1].y + p[i].y));
-    bend.z = fmax(bend.z, fabs(p[i - 2].z - 2 * p[i - 1].z + p[i].z));
-  }
-  box.min = cag_sub(box.min, bend);
-  box.max = cag_add(box.max, bend);
+  CagBounds box;
+  cag_curve_sampled_hull(curve, a, b, &box);
   return box;
 }
 

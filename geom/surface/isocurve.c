@@ -114,29 +114,11 @@ static CagStatus isocurve_reparametrize(const CagCurve *curve, double a, double 
                       running(c, curve->end), a, b, out, err);
 }
 
-// Points of the surface are all that is known of it: the box of some, wider in each direction by
-// the largest second difference there. A smooth curve leaves its chord by an eighth of that; a
-// corner between two points hides at most half of the difference that it makes.
 static CagBounds isocurve_hull(const CagCurve *curve, double a, double b) {
-  enum { PARTS = 16 };
   const Isocurve *c = (const Isocurve *)curve;
-  CagBounds box = CAG_BOUNDS_EMPTY;
+  CagBounds box;
   CagError ignored;
-  CagVec3 p[PARTS + 1], bend = {0, 0, 0};
-  for (int i = 0; i <= PARTS; i++) {
-    CagSide side = i < PARTS ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT;
-    if (isocurve_eval(curve, a + (b - a) * i / PARTS, 0, side, &p[i], &ignored)) {
-      cag_surface_bounds(c->surface, &box, &ignored);
-      return box;
-    }
-    cag_bounds_add(&box, p[i]);
-    if (i < 2) continue;
-    bend.x = fmax(bend.x, fabs(p[i - 2].x - 2 * p[i - 1].x + p[i].x));
-    bend.y = fmax(bend.y, fabs(p[i - 2].y - 2 * p[i - 1].y + p[i].y));
-    bend.z = fmax(bend.z, fabs(p[i - 2].z - 2 * p[i - 1].z + p[i].z));
-  }
-  box.min = cag_sub(box.min, bend);
-  box.max = cag_add(box.max, bend);
+  if (!cag_curve_sampled_hull(curve, a, b, &box)) cag_surface_bounds(c->surface, &box, &ignored);
   return box;
 }
 
