@@ -242,10 +242,121 @@ static void interpolation_meets_every_point(void **state) {
   cag_surface_release(s);
 }
 
+// Wigley's hull y = 5 (1 - (x/50)^2) (1 - (z/6)^2): with control points at x = -50, 0, 50 those of
+// 1 - s^2 over -1..1, which are 0, 2, 0, times those over 0..1, which are 1, 1, 0.
+enum { STATIONS = 8, DEPTHS = 7 };
+static void wigley(CagVec3 *data) {
+  static const double x[STATIONS] = {-50, -41, -30, -12, 5, 22, 37, 50};
+  for (int i = 0; i < STATIONS; i++)
+    for (int j = 0; j < DEPTHS; j++) {
+      const double s = x[i] / 50, t = (double)j / (DEPTHS - 1);
+      data[DEPTHS * i + j] = cag_vec3(x[i], 5 * (1 - s * s) * (1 - t * t), -6 * t);
+    }
+}
+
+static CagGridData hull_of(const CagVec3 *data, double *v, const double *planes) {
+  for (int i = 0; i < STATIONS * DEPTHS; i++) v[i] = (double)(i % DEPTHS) / (DEPTHS - 1);
+  return (CagGridData){.points = data,
+                       .r = STATIONS,
+                       .s = DEPTHS,
+                       .degree_u = 2,
+                       .degree_v = 2,
+                       .parameters = {NULL, v},
+                       .hold = CAG_GRID_HOLD_X,
+                       .slack = 1e-9,
+                       .lines = CAG_GRID_PLANES_U,
+                       .planes = planes,
+                       .plane_count = 3};
+}
+
+static void a_hull_in_its_stations_is_found_again(void **state) {
+  (void)state;
+  CagVec3 data[STATIONS * DEPTHS];
+  double v[STATIONS * DEPTHS], planes[3] = {-50, 0, 50};
+  wigley(data);
+  CagGridData g = hull_of(data, v, planes);
+  CagSurface *s = NULL;
+  CagSurfaceNurbsView view;
+  CagGridReport report;
+  MUST(cag_surface_fit(&g, 3, 3, &s, &report, err));
+  assert_true(cag_surface_nurbs_view(s, &view));
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      const double *h = view.homogeneous + 4 * (3 * i + j);
+      assert_true(h[0] == planes[i]); // to the bit: it is not solved for
+      assert_near(h[1], i == 1 && j < 2 ? 10 : 0, 1e-12, "y");
+      assert_near(h[2], -3 * j, 1e-12, "z");
+    }
+  // x = -50 + 100 u
+  for (int i = 0; i < STATIONS * DEPTHS; i++) {
+    assert_near(report.u[i], (data[i].x + 50) / 100, 1e-14, "u");
+    assert_true(report.u[i] == report.u[i / DEPTHS * DEPTHS]);
+  }
+  assert_true(report.largest < 1e-12 && report.rounds == 1 && report.planes_along == 0);
+  cag_grid_report_free(&report);
+  cag_surface_release(s);
+}
+
+static void planes_that_cannot_hold_the_data_are_refused(void **state) {
+  (void)state;
+  CagVec3 data[STATIONS * DEPTHS];
+  double v[STATIONS * DEPTHS], planes[3] = {-50, 0, 49};
+  wigley(data);
+  CagGridData g = hull_of(data, v, planes);
+  CagSurface *s = NULL;
+  MUST_FAIL(cag_surface_fit(&g, 3, 3, &s, NULL, err), "beyond-planes");
+  planes[1] = -50;
+  MUST_FAIL(cag_surface_fit(&g, 3, 3, &s, NULL, err), "planes-not-monotone");
+  planes[1] = NAN;
+  MUST_FAIL(cag_surface_fit(&g, 3, 3, &s, NULL, err), "not-finite");
+  MUST_FAIL(cag_surface_fit(&g, 4, 3, &s, NULL, err), "plane-count");
+  g.planes = NULL;
+  g.closed[0] = true;
+  MUST_FAIL(cag_surface_fit(&g, 3, 3, &s, NULL, err), "planes-closed");
+  g.closed[0] = false;
+  data[3 * DEPTHS].x = 6;
+  MUST_FAIL(cag_surface_fit(&g, 3, 3, &s, NULL, err), "coordinate-turns");
+}
+
+// Without planes: the border's own curves, the coordinate within the slack.
+static void parameters_move_to_the_coordinate(void **state) {
+  (void)state;
+  CagVec3 data[9 * 8];
+  for (int i = 0; i < 9; i++)
+    for (int j = 0; j < 8; j++)
+      data[8 * i + j] = cag_vec3(i + 0.05 * j * j, j + 0.3 * sin(i), sin(0.4 * i) * cos(0.3 * j));
+  CagGridData g = {.points = data,
+                   .r = 9,
+                   .s = 8,
+                   .degree_u = 3,
+                   .degree_v = 3,
+                   .hold = CAG_GRID_HOLD_X,
+                   .slack = 1e-11};
+  CagSurface *s = NULL;
+  CagGridReport report;
+  MUST(cag_surface_fit(&g, 6, 5, &s, &report, err));
+  double sum = 0;
+  for (int i = 0; i < 72; i++) {
+    CagVec3 off = cag_sub(surface_at(s, report.u[i], report.v[i]), data[i]);
+    assert_true(fabs(off.x) <= 1e-11);
+    sum += cag_dot(off, off);
+    if (i >= 8) assert_true(report.u[i] > report.u[i - 8]);
+  }
+  assert_near(report.rms, sqrt(sum / 72), 1e-14, "rms");
+  assert_true(report.rounds > 0 && report.rounds < 20 && report.planes == NULL);
+  assert_point(surface_at(s, 0, 0), data[0], 1e-14, "corner");
+  assert_point(surface_at(s, 3, 2), data[71], 1e-14, "corner");
+  cag_grid_report_free(&report);
+  cag_surface_release(s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(fits_of_the_reference),
       cmocka_unit_test(interpolation_meets_every_point),
+      cmocka_unit_test(a_hull_in_its_stations_is_found_again),
+      cmocka_unit_test(planes_that_cannot_hold_the_data_are_refused),
+      cmocka_unit_test(parameters_move_to_the_coordinate),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
