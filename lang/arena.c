@@ -60,6 +60,17 @@ char *cag_arena_copy(CagArena *a, const char *bytes, size_t length) {
   return copy;
 }
 
+void cag_arena_reset(CagArena *a) {
+  CagArenaBlock *kept = a->first;
+  if (!kept) return;
+  a->first = kept->next;
+  cag_arena_free(a);
+  memset(kept->bytes, 0, kept->used);
+  kept->used = 0;
+  kept->next = NULL;
+  a->first = kept;
+}
+
 void cag_arena_free(CagArena *a) {
   while (a->first) {
     CagArenaBlock *b = a->first;

@@ -15,6 +15,8 @@ typedef struct CagArena {
 void *cag_arena_alloc(CagArena *a, size_t size);
 char *cag_arena_copy(CagArena *a, const char *bytes, size_t length); // NUL-terminated copy
 void cag_arena_free(CagArena *a);
+// Forgets all that lies in it, and keeps a block for what comes.
+void cag_arena_reset(CagArena *a);
 
 // The same memory; ends the process with a message when there is none.
 void *cag_checked(void *memory);

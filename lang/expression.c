@@ -455,9 +455,27 @@ static CagExpr *pipe_expression(Parser *p) {
   return e;
 }
 
+// A single word between commas and brackets, as most expressions are: no operator need be looked
+// for.
+static bool at_single_word(Parser *p) {
+  switch (parse_kind(p)) {
+  case CAG_TOKEN_NUMBER:
+  case CAG_TOKEN_ANGLE:
+  case CAG_TOKEN_NAME:
+    switch (parse_kind_at(p, 1)) {
+    case CAG_TOKEN_COMMA:
+    case CAG_TOKEN_RIGHT_PAREN:
+    case CAG_TOKEN_RIGHT_SQUARE: return true;
+    default: return false;
+    }
+  default: return false;
+  }
+}
+
 // expr = lambda | "if" expr "then" expr "else" expr | pipe
 CagExpr *parse_expression(Parser *p) {
   if (parse_current(p)->newline_before && parse_at_next_definition(p)) return parse_missing(p);
+  if (at_single_word(p)) return parse_postfix(p);
   if (parse_kind(p) == CAG_TOKEN_IF) return parse_branch(p);
   if (at_lambda(p)) return parse_lambda(p);
   return pipe_expression(p);

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "lang/layout.h"
+#include "lang/parser.h"
 
 #define INDENT 2
 // Elements of a list at most so wide are set several to a line.
@@ -20,8 +21,10 @@ typedef struct Format {
   const CagModuleAst *module;
   const char *text;
   Layout layout;
-  size_t comment; // the next one that is not set yet
-  bool inner;     // what is set is part of something: an operand, an element, an argument
+  size_t comment;      // the next one that is not set yet
+  uint32_t comment_at; // where it begins; behind the text where there is none
+  bool begun;          // a statement has been set
+  bool inner;          // what is set is part of something: an operand, an element, an argument
 } Format;
 
 static Doc *expression(Format *f, const CagExpr *e);
@@ -49,10 +52,12 @@ static size_t newlines(const Format *f, uint32_t start, uint32_t end) {
   return n;
 }
 
+static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
 // Line ends in the white space right before the place.
 static size_t lines_before(const Format *f, uint32_t at) {
   size_t n = 0;
-  while (at > 0 && strchr(" \t\r\n", f->text[at - 1])) n += f->text[--at] == '\n';
+  while (at > 0 && is_blank(f->text[at - 1])) n += f->text[--at] == '\n';
   return n;
 }
 
@@ -69,9 +74,19 @@ static Doc *comment_text(Format *f, const CagComment *c) {
   return layout_text(&f->layout, f->text + c->span.start, end - c->span.start);
 }
 
-static bool comments_before(const Format *f, uint32_t offset) {
-  return f->comment < f->module->comment_count &&
-         f->module->comments[f->comment].span.start < offset;
+static inline bool comments_before(const Format *f, uint32_t offset) {
+  return f->comment_at < offset;
+}
+
+static void look_for_comment(Format *f) {
+  const CagModuleAst *m = f->module;
+  f->comment_at = f->comment < m->comment_count ? m->comments[f->comment].span.start : UINT32_MAX;
+}
+
+static const CagComment *next_comment(Format *f) {
+  const CagComment *c = &f->module->comments[f->comment++];
+  look_for_comment(f);
+  return c;
 }
 
 // Whether a line break is set behind the comment that was just taken: before the next one, or as a
@@ -93,18 +108,18 @@ static void set_comment(Format *f, Docs *out, const CagComment *c, uint32_t offs
     layout_add(out, before ? layout_comment(&f->layout, text) : layout_trailing(&f->layout, text));
   } else {
     layout_add(out, layout_inline(&f->layout, text));
-    if (!inner) layout_add(out, layout_word(&f->layout, " "));
+    if (!inner) layout_add(out, layout_plain(&f->layout, " ", 1));
   }
 }
 
 static bool set_each_comment(Format *f, Docs *out, uint32_t offset, bool inner) {
   const bool some = comments_before(f, offset);
-  while (comments_before(f, offset))
-    set_comment(f, out, &f->module->comments[f->comment++], offset, inner);
+  while (comments_before(f, offset)) set_comment(f, out, next_comment(f), offset, inner);
   return some;
 }
 
-static void set_comments(Format *f, Docs *out, uint32_t offset, bool inner) {
+static inline void set_comments(Format *f, Docs *out, uint32_t offset, bool inner) {
+  if (!comments_before(f, offset)) return;
   if (set_each_comment(f, out, offset, inner) && !inner && lines_before(f, offset) > 1)
     layout_add(out, layout_blank(&f->layout));
 }
@@ -113,11 +128,11 @@ static void set_comments(Format *f, Docs *out, uint32_t offset, bool inner) {
 static void set_span(Format *f, Docs *out, CagSpan span) {
   set_comments(f, out, span.start, false);
   layout_add(out, layout_text(&f->layout, f->text + span.start, span.end - span.start));
-  while (comments_before(f, span.end)) f->comment++; // within a text's { }
+  while (comments_before(f, span.end)) next_comment(f); // within a text's { }
 }
 
-static void set_word(Format *f, Docs *out, const char *word) {
-  layout_add(out, layout_word(&f->layout, word));
+static inline void set_word(Format *f, Docs *out, const char *word) {
+  layout_add(out, layout_plain(&f->layout, word, strlen(word)));
 }
 
 // A closing bracket, whose place in the source is the last byte of what it closes.
@@ -127,6 +142,8 @@ static void set_closer(Format *f, Docs *out, uint32_t end, const char *word) {
 }
 
 static Doc *span_doc(Format *f, CagSpan span) {
+  if (!comments_before(f, span.end))
+    return layout_text(&f->layout, f->text + span.start, span.end - span.start);
   Docs d = {0};
   set_span(f, &d, span);
   return layout_concat(&f->layout, &d);
@@ -178,18 +195,18 @@ static Doc *call(Format *f, const CagExpr *e) {
     const CagArgument *a = &e->as.call.arguments[i];
     clear = !comments_before(f, a->value->span.start);
     gathers = gathers && a->value->kind != CAG_EXPR_PIPE;
-    if (i) layout_add(&items, layout_line(&f->layout, " "));
+    if (i) layout_add(&items, layout_space(&f->layout));
     last = a->value;
     Doc *item = argument(f, a);
-    if (i + 1 < e->as.call.count) item = layout_pair(&f->layout, item, ",");
+    if (i + 1 < e->as.call.count) layout_comma(item);
     layout_add(&items, item);
   }
   clear = clear && !comments_before(f, e->span.end - 1);
   const bool hugs = last && clear && (opens_by_itself(last) || is_long_text(f, last));
   Docs end = {0};
   set_closer(f, &end, e->span.end, ")");
-  Doc *arguments =
-      layout_brackets(&f->layout, "(", &items, layout_concat(&f->layout, &end), INDENT, "", hugs);
+  Doc *arguments = layout_brackets(&f->layout, '(', &items, layout_concat(&f->layout, &end), INDENT,
+                                   false, hugs);
   arguments->gathers = gathers;
   arguments->opens =
       opens && e->as.call.count > 1 && opens_by_itself(e->as.call.arguments[0].value);
@@ -201,25 +218,25 @@ static bool is_small(const Doc *d) { return d->width <= SMALL_ITEM; }
 
 // Items of a list or record between its brackets.
 static Doc *items_doc(Format *f, const CagExpr *e, Doc *(*item)(Format *, const CagExpr *, size_t),
-                      uint32_t (*start)(const CagExpr *, size_t), size_t count, const char *open,
-                      const char *pad, const char *close) {
+                      uint32_t (*start)(const CagExpr *, size_t), size_t count, char open,
+                      const char *close) {
   Docs items = {0}, end = {0};
   bool small = e->kind == CAG_EXPR_LIST;
   for (size_t i = 0; i < count; i++) {
     const bool blank = i && blank_before(f, start(e, i));
     if (blank) layout_add(&items, layout_blank(&f->layout));
-    if (i) layout_add(&items, blank ? layout_hard(&f->layout) : layout_line(&f->layout, " "));
+    if (i) layout_add(&items, blank ? layout_hard(&f->layout) : layout_space(&f->layout));
     Doc *d = item(f, e, i);
     small = small && is_small(d);
-    if (i + 1 < count) d = layout_pair(&f->layout, d, ",");
+    if (i + 1 < count) layout_comma(d);
     layout_add(&items, d);
   }
   set_closer(f, &end, e->span.end, close);
   Doc *closing = layout_concat(&f->layout, &end);
-  if (count > 1 && small) return layout_filled(&f->layout, open, &items, closing, INDENT, pad);
-  return layout_brackets(&f->layout, open, &items, closing, INDENT, pad,
-                         count == 1 && e->kind == CAG_EXPR_LIST &&
-                             opens_by_itself(e->as.list.items[0]));
+  if (count > 1 && small) return layout_filled(&f->layout, open, &items, closing, INDENT);
+  return layout_brackets(
+      &f->layout, open, &items, closing, INDENT, e->kind == CAG_EXPR_RECORD && count,
+      count == 1 && e->kind == CAG_EXPR_LIST && opens_by_itself(e->as.list.items[0]));
 }
 
 static Doc *list_item(Format *f, const CagExpr *e, size_t i) {
@@ -261,13 +278,13 @@ static Doc *parameter(Format *f, const CagParameter *p) {
 static Doc *parameters(Format *f, const CagFunctionAst *fn) {
   Docs items = {0};
   for (size_t i = 0; i < fn->parameter_count; i++) {
-    if (i) layout_add(&items, layout_line(&f->layout, " "));
+    if (i) layout_add(&items, layout_space(&f->layout));
     Doc *d = parameter(f, &fn->parameters[i]);
-    if (i + 1 < fn->parameter_count) d = layout_pair(&f->layout, d, ",");
+    if (i + 1 < fn->parameter_count) layout_comma(d);
     layout_add(&items, d);
   }
-  Doc *d =
-      layout_brackets(&f->layout, "(", &items, layout_word(&f->layout, ")"), INDENT, "", false);
+  Doc *d = layout_brackets(&f->layout, '(', &items, layout_plain(&f->layout, ")", 1), INDENT, false,
+                           false);
   d->gathers = true;
   return d;
 }
@@ -276,13 +293,13 @@ static Doc *parameters(Format *f, const CagFunctionAst *fn) {
 static void set_value(Format *f, Docs *out, const CagExpr *value) {
   if (comments_before(f, value->span.start)) {
     Docs d = {0};
-    layout_add(&d, layout_line(&f->layout, " "));
+    layout_add(&d, layout_space(&f->layout));
     set_comments(f, &d, value->span.start, false);
     layout_add(&d, whole(f, value));
     layout_add(out, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &d)));
   } else if (value->kind == CAG_EXPR_IF) {
     Docs d = {0};
-    layout_add(&d, layout_line(&f->layout, " "));
+    layout_add(&d, layout_space(&f->layout));
     Doc *choice = whole(f, value);
     if (choice->kind == DOC_GROUP)
       choice->kind = DOC_CONCAT; // breaks where the line before it does
@@ -399,7 +416,7 @@ static Doc *chain(Format *f, const CagExpr *e) {
   for (size_t i = 0; i < n; i++) {
     set_operator(f, &item, links[i]);
     layout_add(&d, layout_concat(&f->layout, &item));
-    layout_add(&d, layout_line(&f->layout, " "));
+    layout_add(&d, layout_space(&f->layout));
     item = (Docs){0};
     layout_add(&item, within(f, links[i]->as.binary.right, parts || f->inner));
   }
@@ -420,7 +437,7 @@ static Doc *pipe(Format *f, const CagExpr *e) {
   layout_add(&d, expression(f, links[0]->as.binary.left));
   for (size_t i = 0; i < n; i++) {
     set_comments(f, &stages, links[i]->as.binary.op_span.start, true);
-    layout_add(&stages, layout_line(&f->layout, " "));
+    layout_add(&stages, layout_space(&f->layout));
     set_word(f, &stages, "|> ");
     layout_add(&stages, expression(f, links[i]->as.binary.right));
   }
@@ -480,8 +497,8 @@ static Doc *group(Format *f, const CagExpr *e) {
   const bool clear = !comments_before(f, e->as.unary.operand->span.start);
   layout_add(&items, part(f, e->as.unary.operand));
   set_closer(f, &end, e->span.end, ")");
-  layout_add(&d, layout_brackets(&f->layout, "(", &items, layout_concat(&f->layout, &end), INDENT,
-                                 "", clear && opens_by_itself(e->as.unary.operand)));
+  layout_add(&d, layout_brackets(&f->layout, '(', &items, layout_concat(&f->layout, &end), INDENT,
+                                 false, clear && opens_by_itself(e->as.unary.operand)));
   return layout_concat(&f->layout, &d);
 }
 
@@ -497,7 +514,7 @@ static Doc *branches(Format *f, const CagExpr *e) {
     set_word(f, &d, " then ");
     layout_add(&d, expression(f, e->as.branch.then));
     if (e->as.branch.then->kind == CAG_EXPR_BLOCK) set_word(f, &d, " ");
-    else layout_add(&d, layout_line(&f->layout, " "));
+    else layout_add(&d, layout_space(&f->layout));
     if (e->as.branch.otherwise->kind != CAG_EXPR_IF) break;
     e = e->as.branch.otherwise;
     word = "else if ";
@@ -528,7 +545,7 @@ static Doc *comprehension(Format *f, const CagExpr *e) {
   set_comments(f, &d, e->span.start, false);
   set_word(f, &d, "[for ");
   for (size_t i = 0; i < e->as.comprehension.count; i++) {
-    if (i) layout_add(&clauses, layout_line(&f->layout, " "));
+    if (i) layout_add(&clauses, layout_space(&f->layout));
     Docs item = {0};
     set_clause(f, &item, &e->as.comprehension.clauses[i]);
     set_word(f, &item, i + 1 < e->as.comprehension.count ? "," : ":");
@@ -541,7 +558,7 @@ static Doc *comprehension(Format *f, const CagExpr *e) {
     set_word(f, &d, " ");
     layout_add(&d, whole(f, e->as.comprehension.body));
   } else {
-    layout_add(&body, layout_line(&f->layout, " "));
+    layout_add(&body, layout_space(&f->layout));
     layout_add(&body, whole(f, e->as.comprehension.body));
     layout_add(&d, layout_nest(&f->layout, INDENT, &body));
   }
@@ -559,13 +576,13 @@ static Doc *block(Format *f, const CagExpr *e) {
   for (size_t i = 0; i <= n; i++) {
     const CagSpan span = i < n ? e->as.block.statements[i]->span : e->as.block.value->span;
     if (i && blank_before(f, span.start)) layout_add(&inner, layout_blank(&f->layout));
-    layout_add(&inner, n ? layout_hard(&f->layout) : layout_line(&f->layout, " "));
+    layout_add(&inner, n ? layout_hard(&f->layout) : layout_space(&f->layout));
     if (i < n) set_statement(f, &inner, e->as.block.statements[i]);
     else layout_add(&inner, whole(f, e->as.block.value));
   }
   set_comments(f, &inner, e->span.end - 1, false);
   layout_add(&d, layout_nest(&f->layout, INDENT, &inner));
-  layout_add(&d, n ? layout_hard(&f->layout) : layout_line(&f->layout, " "));
+  layout_add(&d, n ? layout_hard(&f->layout) : layout_space(&f->layout));
   set_word(f, &d, "}");
   return layout_group(&f->layout, layout_concat(&f->layout, &d));
 }
@@ -574,10 +591,8 @@ static Doc *bracketed(Format *f, const CagExpr *e) {
   Docs d = {0};
   set_comments(f, &d, e->span.start, false);
   if (e->kind == CAG_EXPR_LIST)
-    layout_add(&d, items_doc(f, e, list_item, list_start, e->as.list.count, "[", "", "]"));
-  else
-    layout_add(&d, items_doc(f, e, field_item, field_start, e->as.record.count, "{",
-                             e->as.record.count ? " " : "", "}"));
+    layout_add(&d, items_doc(f, e, list_item, list_start, e->as.list.count, '[', "]"));
+  else layout_add(&d, items_doc(f, e, field_item, field_start, e->as.record.count, '{', "}"));
   return layout_concat(&f->layout, &d);
 }
 
@@ -630,14 +645,14 @@ static void set_import(Format *f, Docs *d, const CagStatement *s) {
   set_span(f, d, s->as.import.path_span);
   if (s->as.import.alias) {
     set_word(f, d, " as ");
-    set_word(f, d, s->as.import.alias);
+    layout_add(d, layout_text(&f->layout, s->as.import.alias, strlen(s->as.import.alias)));
   }
   if (!s->as.import.name_count) return;
   Docs names = {0};
   for (size_t i = 0; i < s->as.import.name_count; i++) {
-    if (i) layout_add(&names, layout_line(&f->layout, " "));
+    if (i) layout_add(&names, layout_space(&f->layout));
     Doc *name = span_doc(f, s->as.import.names[i].decl->span);
-    if (i + 1 < s->as.import.name_count) name = layout_pair(&f->layout, name, ",");
+    if (i + 1 < s->as.import.name_count) layout_comma(name);
     layout_add(&names, name);
   }
   set_word(f, d, ": ");
@@ -710,9 +725,9 @@ static void set_list(Format *f, Docs *d, const CagStatement *s, const char *word
   }
   Docs items = {0}, nested = {0};
   for (size_t i = 0; i < s->as.list.count; i++) {
-    if (i) layout_add(&items, layout_line(&f->layout, " "));
+    if (i) layout_add(&items, layout_space(&f->layout));
     Doc *item = expression(f, s->as.list.items[i]);
-    if (i + 1 < s->as.list.count) item = layout_pair(&f->layout, item, ",");
+    if (i + 1 < s->as.list.count) layout_comma(item);
     layout_add(&items, item);
   }
   layout_add(&nested, layout_fill(&f->layout, &items));
@@ -726,8 +741,10 @@ static void set_assert(Format *f, Docs *d, const CagStatement *s) {
     return;
   }
   Docs parts = {0};
-  layout_add(&parts, layout_pair(&f->layout, expression(f, s->as.assertion.condition), ","));
-  layout_add(&parts, layout_line(&f->layout, " "));
+  Doc *condition = expression(f, s->as.assertion.condition);
+  layout_comma(condition);
+  layout_add(&parts, condition);
+  layout_add(&parts, layout_space(&f->layout));
   layout_add(&parts, expression(f, s->as.assertion.message));
   layout_add(d, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &parts)));
 }
@@ -745,17 +762,26 @@ static void set_statement(Format *f, Docs *d, const CagStatement *s) {
   }
 }
 
-char *cag_format(const CagModuleAst *m, size_t *length) {
-  Format f = {.module = m, .text = m->source->text};
+// Sets and prints a statement of the module, or (NULL) what stands behind the last.
+static void print_statement(void *context, const CagModuleAst *m, const CagStatement *s) {
+  Format *f = context;
+  Docs d = {0};
+  const uint32_t start = s ? s->span.start : (uint32_t)m->source->length;
+  f->module = m;
+  look_for_comment(f);
+  if (f->begun && blank_before(f, start)) layout_add(&d, layout_blank(&f->layout));
+  if (s) set_statement(f, &d, s);
+  else set_comments(f, &d, start, false);
+  layout_print(&f->layout, layout_concat(&f->layout, &d));
+  f->begun = true;
+}
+
+char *cag_format(const CagSource *source, CagDiagnostics *errors, size_t *length) {
+  Format f = {.text = source->text};
   layout_init(&f.layout, CAG_FORMAT_WIDTH);
-  for (size_t i = 0; i <= m->count; i++) {
-    Docs d = {0};
-    const uint32_t start =
-        i < m->count ? m->statements[i]->span.start : (uint32_t)m->source->length;
-    if (i && blank_before(&f, start)) layout_add(&d, layout_blank(&f.layout));
-    if (i < m->count) set_statement(&f, &d, m->statements[i]);
-    else set_comments(&f, &d, start, false);
-    layout_print(&f.layout, layout_concat(&f.layout, &d));
-  }
-  return layout_finish(&f.layout, length);
+  const bool sound = cag_parse_each(source, print_statement, &f, errors);
+  char *out = layout_finish(&f.layout, length);
+  if (sound) return out;
+  free(out);
+  return NULL;
 }

@@ -7,13 +7,15 @@
 #ifndef CAG_LANG_FORMAT_H
 #define CAG_LANG_FORMAT_H
 
-#include "lang/ast.h"
+#include "lang/diagnostic.h"
+#include "lang/source.h"
 
 // Columns that a line has, where its words allow it.
 #define CAG_FORMAT_WIDTH 100
 
-// The script of a tree that was parsed without errors (CAG_PARSE_FILE), laid out. Malloc'd and
-// NUL-terminated, `length` bytes. Formatting the result gives it again.
-char *cag_format(const CagModuleAst *m, size_t *length);
+// The script laid out: malloc'd and NUL-terminated, `length` bytes. Formatting the result gives it
+// again. NULL where the script has errors, which are told. Memory for trees goes by the longest
+// statement.
+char *cag_format(const CagSource *source, CagDiagnostics *errors, size_t *length);
 
 #endif

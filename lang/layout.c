@@ -36,8 +36,13 @@ static LayoutBlock *next_block(Layout *l, size_t size) {
   return made;
 }
 
+static size_t rounded(size_t size) {
+  return (size + _Alignof(max_align_t) - 1) / _Alignof(max_align_t) * _Alignof(max_align_t);
+}
+#define DOC_SIZE rounded(sizeof(Doc))
+
 void *layout_memory(Layout *l, size_t size) {
-  size = (size + _Alignof(max_align_t) - 1) / _Alignof(max_align_t) * _Alignof(max_align_t);
+  size = rounded(size);
   if (!l->block || l->block->size - l->block->used < size) {
     l->block = next_block(l, size);
     l->block->used = 0;
@@ -51,15 +56,16 @@ void *layout_memory(Layout *l, size_t size) {
 
 static uint32_t sum(uint32_t a, uint32_t b) { return a + b < DOC_ENDLESS ? a + b : DOC_ENDLESS; }
 
-void layout_add(Docs *list, Doc *d) {
-  if (list->tail) list->tail->next = d;
-  else list->head = d;
-  list->tail = d;
-}
-
-static Doc *new_doc(Layout *l, DocKind kind) {
-  Doc *d = layout_memory(l, sizeof *d);
-  *d = (Doc){.kind = kind};
+static inline Doc *new_doc(Layout *l, DocKind kind) {
+  LayoutBlock *b = l->block;
+  Doc *d;
+  if (b && b->size - b->used >= DOC_SIZE) {
+    d = (Doc *)(void *)(b->bytes + b->used);
+    b->used += DOC_SIZE;
+  } else {
+    d = layout_memory(l, sizeof *d);
+  }
+  *d = (Doc){.kind = (uint8_t)kind};
   return d;
 }
 
@@ -69,10 +75,18 @@ static uint32_t code_points(const char *text, size_t length) {
   return n;
 }
 
-Doc *layout_text(Layout *l, const char *text, size_t length) {
+Doc *layout_plain(Layout *l, const char *word, size_t length) {
   Doc *d = new_doc(l, DOC_TEXT);
-  d->text = text;
-  d->length = (uint32_t)length;
+  d->text = word;
+  d->length = d->first = d->width = (uint32_t)length;
+  return d;
+}
+
+Doc *layout_text(Layout *l, const char *text, size_t length) {
+  Doc *d = layout_plain(l, text, length);
+  size_t plain = 0;
+  while (plain < length && (signed char)text[plain] > '\n') plain++; // below: UTF-8, or a break
+  if (plain == length) return d;
   const char *end = memchr(text, '\n', length);
   d->first = code_points(text, end ? (size_t)(end - text) : length);
   d->width = end ? DOC_ENDLESS : d->first;
@@ -80,12 +94,10 @@ Doc *layout_text(Layout *l, const char *text, size_t length) {
   return d;
 }
 
-Doc *layout_word(Layout *l, const char *word) { return layout_text(l, word, strlen(word)); }
-
-Doc *layout_line(Layout *l, const char *flat) {
-  Doc *d = layout_word(l, flat);
-  d->kind = DOC_LINE;
-  d->first = 0;
+Doc *layout_space(Layout *l) {
+  Doc *d = new_doc(l, DOC_LINE);
+  d->text = " ";
+  d->length = d->width = 1;
   d->breaks = true;
   return d;
 }
@@ -112,13 +124,18 @@ Doc *layout_inline(Layout *l, Doc *text) {
 }
 
 static Doc *parent(Layout *l, DocKind kind, Doc *child) {
+  uint32_t width = 0, first = 0;
+  bool breaks = false;
+  for (const Doc *c = child; c; c = c->next) {
+    width = sum(width, c->width);
+    if (!breaks) first += c->first;
+    breaks = breaks || c->breaks;
+  }
   Doc *d = new_doc(l, kind);
   d->child = child;
-  for (const Doc *c = child; c; c = c->next) {
-    d->width = sum(d->width, c->width);
-    if (!d->breaks) d->first += c->first;
-    d->breaks = d->breaks || c->breaks;
-  }
+  d->width = width;
+  d->first = first;
+  d->breaks = breaks;
   return d;
 }
 
@@ -127,11 +144,10 @@ Doc *layout_concat(Layout *l, const Docs *parts) {
   return parent(l, DOC_CONCAT, parts->head);
 }
 
-Doc *layout_pair(Layout *l, Doc *d, const char *word) {
-  Docs parts = {0};
-  layout_add(&parts, d);
-  layout_add(&parts, layout_word(l, word));
-  return layout_concat(l, &parts);
+void layout_comma(Doc *d) {
+  d->comma = true;
+  d->width = sum(d->width, 1);
+  if (!d->breaks) d->first++;
 }
 
 Doc *layout_group(Layout *l, Doc *d) { return parent(l, DOC_GROUP, d); }
@@ -144,37 +160,39 @@ Doc *layout_nest(Layout *l, int indent, const Docs *parts) {
 
 Doc *layout_fill(Layout *l, const Docs *items) { return parent(l, DOC_FILL, items->head); }
 
-Doc *layout_brackets(Layout *l, const char *open, const Docs *items, Doc *close, int indent,
-                     const char *pad, bool hugs) {
+Doc *layout_brackets(Layout *l, char open, const Docs *items, Doc *close, int indent, bool padded,
+                     bool hugs) {
   Doc *d = parent(l, DOC_BRACKETS, items->head);
-  d->text = open;
-  d->length = (uint32_t)strlen(open);
-  d->pad = pad;
+  d->bracket = open;
+  d->padded = padded;
   d->close = close;
   d->indent = indent;
   d->hugs = hugs;
-  d->width = sum(sum(d->width, d->length + 2 * (uint32_t)strlen(pad)), close->width);
-  d->first = d->length + (items->head ? 0 : close->first);
+  d->width = sum(sum(d->width, padded ? 3 : 1), close->width);
+  d->first = 1 + (items->head ? 0 : close->first);
   d->breaks = items->head || close->breaks;
   return d;
 }
 
-Doc *layout_filled(Layout *l, const char *open, const Docs *items, Doc *close, int indent,
-                   const char *pad) {
-  Doc *d = layout_brackets(l, open, items, close, indent, pad, false);
+Doc *layout_filled(Layout *l, char open, const Docs *items, Doc *close, int indent) {
+  Doc *d = layout_brackets(l, open, items, close, indent, false, false);
   d->kind = DOC_FILLED;
   return d;
 }
 
 // ---- printing ----
 
-static void put(Layout *l, const char *bytes, size_t n) {
+static void reserve(Layout *l, size_t n) {
+  if (l->capacity - l->length >= n) return;
+  l->capacity = (l->length + n) * 2 + 4096;
+  l->out = cag_checked(realloc(l->out, l->capacity));
+}
+
+static inline void put(Layout *l, const char *bytes, size_t n) {
   if (!n) return;
-  if (l->capacity - l->length < n) {
-    l->capacity = (l->length + n) * 2 + 4096;
-    l->out = cag_checked(realloc(l->out, l->capacity));
-  }
-  memcpy(l->out + l->length, bytes, n);
+  reserve(l, n);
+  if (n == 1) l->out[l->length] = *bytes; // most words are
+  else memcpy(l->out + l->length, bytes, n);
   l->length += n;
 }
 
@@ -195,8 +213,21 @@ static void break_line(Layout *l) {
   l->pending = l->blank = l->closed = false;
 }
 
-static void put_text(Layout *l, const char *text, size_t length) {
+// A word without line breaks, of so many columns.
+static inline void put_word(Layout *l, const char *word, size_t length, uint32_t columns) {
   if (!length) return;
+  if (l->pending) break_line(l);
+  put(l, word, length);
+  l->column += columns;
+}
+
+static void put_text(Layout *l, const Doc *d) {
+  if (!d->breaks) {
+    put_word(l, d->text, d->length, d->first - d->comma);
+    return;
+  }
+  const char *text = d->text;
+  size_t length = d->length;
   if (l->pending) break_line(l);
   put(l, text, length);
   for (const char *end; (end = memchr(text, '\n', length)); l->column = 0, l->line++) {
@@ -221,9 +252,44 @@ static bool fits(const Layout *l, const Doc *d, uint32_t tail) {
 
 static void put_comment(Layout *l, const Doc *text, int indent) {
   if (l->length) put_line(l, indent);
-  put_text(l, text->text, text->length);
+  put_text(l, text);
   put_line(l, indent);
   l->closed = true;
+}
+
+// The column for the comments that wait, which end neighbouring lines; 0 where some code is long.
+static uint32_t common_column(const Layout *l) {
+  uint32_t most = 0;
+  for (size_t i = 0; i < l->trailing_count; i++)
+    if (l->trailing[i].column > most) most = l->trailing[i].column;
+  return most <= ALIGN_UNTIL ? most : 0;
+}
+
+static size_t gap_before(const LayoutTrailing *t, uint32_t column) {
+  return (column > t->column ? column - t->column : 0) + COMMENT_GAP;
+}
+
+// Moves the comments that wait to their column, the last one first.
+static void align_trailing(Layout *l) {
+  const uint32_t column = common_column(l);
+  size_t moved = 0, end = l->length;
+  for (size_t i = 0; i < l->trailing_count; i++) moved += gap_before(&l->trailing[i], column);
+  reserve(l, moved);
+  l->length += moved;
+  for (size_t i = l->trailing_count; i-- > 0;) {
+    const size_t at = l->trailing[i].at, gap = gap_before(&l->trailing[i], column);
+    memmove(l->out + at + moved, l->out + at, end - at);
+    moved -= gap;
+    memset(l->out + at + moved, ' ', gap);
+    end = at;
+  }
+  l->trailing_count = 0;
+}
+
+// Whether a comment at the end of this line stands below the last of those that wait.
+static bool joins_trailing(const Layout *l) {
+  const LayoutTrailing *last = &l->trailing[l->trailing_count - 1];
+  return l->line == last->line + 1 && l->indent == last->indent;
 }
 
 static void put_trailing(Layout *l, const Doc *text, int indent) {
@@ -239,6 +305,7 @@ static void put_trailing(Layout *l, const Doc *text, int indent) {
     put_line(l, indent);
     return;
   }
+  if (l->trailing_count && !joins_trailing(l)) align_trailing(l);
   if (l->trailing_count == l->trailing_capacity) {
     l->trailing_capacity = l->trailing_capacity * 2 + 64;
     l->trailing = cag_checked(realloc(l->trailing, l->trailing_capacity * sizeof *l->trailing));
@@ -249,7 +316,8 @@ static void put_trailing(Layout *l, const Doc *text, int indent) {
   put_line(l, indent);
 }
 
-static void print(Layout *l, const Doc *d, bool flat, int indent, uint32_t tail);
+static void print(Layout *l, const Doc *d, int indent, uint32_t tail);
+static void print_flat(Layout *l, const Doc *d);
 
 // The width behind d up to the next possible break.
 static uint32_t behind(const Doc *d, uint32_t tail) {
@@ -263,9 +331,9 @@ static uint32_t behind(const Doc *d, uint32_t tail) {
 
 static bool is_leaf(const Doc *d) { return d->kind <= DOC_INLINE; }
 
-static void print_children(Layout *l, const Doc *child, bool flat, int indent, uint32_t tail) {
+static void print_children(Layout *l, const Doc *child, int indent, uint32_t tail) {
   for (; child; child = child->next)
-    print(l, child, flat, indent, flat || is_leaf(child) ? 0 : behind(child, tail));
+    print(l, child, indent, is_leaf(child) ? 0 : behind(child, tail));
 }
 
 static void print_fill(Layout *l, const Doc *child, int indent, uint32_t tail) {
@@ -275,10 +343,11 @@ static void print_fill(Layout *l, const Doc *child, int indent, uint32_t tail) {
       const uint32_t after = item->next ? 0 : tail;
       const bool stays = whole && item->kind != DOC_BLANK && item->kind != DOC_HARD &&
                          column(l) + child->width + item->width + after <= l->width;
-      print(l, child, stays, indent, 0);
+      if (stays) print_flat(l, child);
+      else print(l, child, indent, 0);
     } else {
       whole = child->width < DOC_ENDLESS;
-      print(l, child, false, indent, child->next ? 0 : tail);
+      print(l, child, indent, child->next ? 0 : tail);
     }
   }
 }
@@ -292,7 +361,7 @@ static const Doc *last_of(const Doc *child) {
 static bool hugs(const Layout *l, const Doc *d, int indent) {
   const Doc *last = last_of(d->child);
   if (!d->hugs || !last) return false;
-  uint32_t width = column(l) + d->length;
+  uint32_t width = column(l) + 1;
   for (const Doc *c = d->child; c != last; c = c->next) width = sum(width, c->width);
   if (width + last->first > l->width) return false;
   return d->child == last || (uint32_t)(indent + d->indent) + last->width + 1 > l->width;
@@ -314,46 +383,69 @@ static bool opens(const Layout *l, const Doc *d, int indent) {
   if (!d->opens || gathers(l, d, indent)) return false;
   uint32_t rest = 0;
   for (const Doc *c = d->child->next; c; c = c->next) rest = sum(rest, c->width);
-  return rest <= REST_MAX && column(l) + d->length + d->child->first <= l->width;
+  return rest <= REST_MAX && column(l) + 1 + d->child->first <= l->width;
 }
 
-static void print_brackets(Layout *l, const Doc *d, bool flat, int indent, uint32_t tail) {
-  put_text(l, d->text, d->length);
-  if (flat) {
-    put_text(l, d->pad, strlen(d->pad));
-    print_children(l, d->child, true, indent, 0);
-    put_text(l, d->pad, strlen(d->pad));
-  } else if (hugs(l, d, indent)) {
+static void put_inline(Layout *l, const Doc *text) {
+  if (!l->pending && l->length && !strchr(" ([{", l->out[l->length - 1])) put_word(l, " ", 1, 1);
+  put_text(l, text);
+}
+
+// Prints the documents from `c` up to `end` on the line.
+static void print_all_flat(Layout *l, const Doc *c, const Doc *end) {
+  for (; c != end; c = c->next) print_flat(l, c);
+}
+
+// Prints what fits on the line.
+static void print_flat(Layout *l, const Doc *d) {
+  switch (d->kind) {
+  case DOC_TEXT:
+  case DOC_LINE: put_word(l, d->text, d->length, d->width - d->comma); break;
+  case DOC_INLINE: put_inline(l, d->child); break;
+  case DOC_BRACKETS:
+  case DOC_FILLED:
+    put_word(l, &d->bracket, 1, 1);
+    if (d->padded) put_word(l, " ", 1, 1);
+    print_all_flat(l, d->child, NULL);
+    if (d->padded) put_word(l, " ", 1, 1);
+    print_flat(l, d->close);
+    break;
+  default: print_all_flat(l, d->child, NULL);
+  }
+  if (d->comma) put_word(l, ",", 1, 1);
+}
+
+static void print_brackets(Layout *l, const Doc *d, int indent, uint32_t tail) {
+  put_word(l, &d->bracket, 1, 1);
+  if (hugs(l, d, indent)) {
     const Doc *last = last_of(d->child);
-    for (const Doc *c = d->child; c != last; c = c->next) print(l, c, true, indent, 0);
-    print(l, last, false, indent, d->close->first + tail);
+    print_all_flat(l, d->child, last);
+    print(l, last, indent, d->close->first + tail);
   } else if (opens(l, d, indent)) {
-    print(l, d->child, false, indent, 0);
-    for (const Doc *c = d->child->next; c; c = c->next) print(l, c, true, indent, 0);
+    print(l, d->child, indent, 0);
+    print_all_flat(l, d->child->next, NULL);
   } else if (d->child) {
-    put_line(l, indent + d->indent);
-    if (d->kind == DOC_FILLED) print_fill(l, d->child, indent + d->indent, 0);
-    else print_children(l, d->child, gathers(l, d, indent), indent + d->indent, 0);
+    const int inner = indent + d->indent;
+    put_line(l, inner);
+    if (d->kind == DOC_FILLED) print_fill(l, d->child, inner, 0);
+    else if (gathers(l, d, indent)) print_all_flat(l, d->child, NULL);
+    else print_children(l, d->child, inner, 0);
     if (d->close->kind == DOC_CONCAT) { // comments before the bracket stand with the items
       const Doc *bracket = last_of(d->close->child);
-      for (const Doc *c = d->close->child; c != bracket; c = c->next)
-        print(l, c, false, indent + d->indent, 0);
+      for (const Doc *c = d->close->child; c != bracket; c = c->next) print(l, c, inner, 0);
       put_line(l, indent);
-      print(l, bracket, false, indent, 0);
+      print(l, bracket, indent, 0);
       return;
     }
     put_line(l, indent);
   }
-  print(l, d->close, flat, indent, tail);
+  print(l, d->close, indent, tail);
 }
 
-static void print(Layout *l, const Doc *d, bool flat, int indent, uint32_t tail) {
+static void print_broken(Layout *l, const Doc *d, int indent, uint32_t tail) {
   switch (d->kind) {
-  case DOC_TEXT: put_text(l, d->text, d->length); break;
+  case DOC_TEXT: put_text(l, d); break;
   case DOC_LINE:
-    if (flat) put_text(l, d->text, d->length);
-    else put_line(l, indent);
-    break;
   case DOC_HARD: put_line(l, indent); break;
   case DOC_BLANK:
     put_line(l, indent);
@@ -361,64 +453,45 @@ static void print(Layout *l, const Doc *d, bool flat, int indent, uint32_t tail)
     break;
   case DOC_TRAILING: put_trailing(l, d->child, indent); break;
   case DOC_COMMENT: put_comment(l, d->child, indent); break;
-  case DOC_INLINE:
-    if (!l->pending && l->length && !strchr(" ([{", l->out[l->length - 1])) put_text(l, " ", 1);
-    put_text(l, d->child->text, d->child->length);
-    break;
-  case DOC_CONCAT: print_children(l, d->child, flat, indent, tail); break;
-  case DOC_NEST: print_children(l, d->child, flat, indent + d->indent, tail); break;
-  case DOC_GROUP: print_children(l, d->child, flat || fits(l, d, tail), indent, tail); break;
-  case DOC_FILL:
-    if (flat || fits(l, d, tail)) print_children(l, d->child, true, indent, tail);
-    else print_fill(l, d->child, indent, tail);
-    break;
+  case DOC_INLINE: put_inline(l, d->child); break;
+  case DOC_CONCAT:
+  case DOC_GROUP: print_children(l, d->child, indent, tail); break;
+  case DOC_NEST: print_children(l, d->child, indent + d->indent, tail); break;
+  case DOC_FILL: print_fill(l, d->child, indent, tail); break;
   case DOC_BRACKETS:
-  case DOC_FILLED: print_brackets(l, d, flat || fits(l, d, tail), indent, tail); break;
+  case DOC_FILLED: print_brackets(l, d, indent, tail); break;
   }
 }
 
+// Prints d, with `tail` columns to follow it before the line may be broken.
+static void print(Layout *l, const Doc *d, int indent, uint32_t tail) {
+  if (d->kind >= DOC_GROUP && fits(l, d, tail)) {
+    print_flat(l, d);
+    return;
+  }
+  print_broken(l, d, indent, tail + d->comma);
+  if (d->comma) put_word(l, ",", 1, 1);
+}
+
 void layout_print(Layout *l, Doc *d) {
-  print(l, d, false, 0, 0);
+  if (l->trailing_count && l->line > l->trailing[l->trailing_count - 1].line + 1) align_trailing(l);
+  print(l, d, 0, 0);
   if (l->length) put_line(l, 0);
   l->block = l->blocks;
   if (l->block) l->block->used = 0;
 }
 
-// The column for the comments of trailing[from..to), which end neighbouring lines.
-static uint32_t common_column(const Layout *l, size_t from, size_t to) {
-  uint32_t most = 0;
-  for (size_t i = from; i < to; i++)
-    if (l->trailing[i].column > most) most = l->trailing[i].column;
-  return most <= ALIGN_UNTIL ? most : 0;
-}
-
 char *layout_finish(Layout *l, size_t *length) {
-  Layout aligned = {0};
-  size_t done = 0;
-  for (size_t i = 0; i < l->trailing_count;) {
-    size_t end = i + 1;
-    while (end < l->trailing_count && l->trailing[end].line == l->trailing[end - 1].line + 1 &&
-           l->trailing[end].indent == l->trailing[i].indent)
-      end++;
-    const uint32_t column = common_column(l, i, end);
-    for (; i < end; i++) {
-      const LayoutTrailing *t = &l->trailing[i];
-      put(&aligned, l->out + done, t->at - done);
-      for (uint32_t c = t->column; c < column; c++) put(&aligned, " ", 1);
-      put(&aligned, "  ", COMMENT_GAP);
-      done = t->at;
-    }
-  }
-  put(&aligned, l->out + done, l->length - done);
-  if (aligned.length) put(&aligned, "\n", 1);
-  put(&aligned, "", 1);
-  *length = aligned.length - 1;
-  free(l->out);
+  if (l->trailing_count) align_trailing(l);
+  if (l->length) put(l, "\n", 1);
+  reserve(l, 1);
+  l->out[l->length] = 0;
+  *length = l->length;
   free(l->trailing);
   while (l->blocks) {
     LayoutBlock *next = l->blocks->next;
     free(l->blocks);
     l->blocks = next;
   }
-  return aligned.out;
+  return l->out;
 }

@@ -3,7 +3,8 @@
 // In the manner of Wadler ("A prettier printer", 2003): a document is text, a place for a line
 // break, or a combination; the printer sets each group on one line where it fits and breaks it
 // otherwise. Each document keeps its width on one line and the width up to its first possible
-// break, so no decision looks at more than the neighbours. Line breaks are lazy: one is printed
+// break, so no decision looks at more than the neighbours. Comments at the ends of
+// neighbouring lines are set one below the other. Line breaks are lazy: one is printed
 // when the next text comes, so breaks that meet are one, and a comment that stood at the end of a
 // line goes there again. Everything made since the last layout_print lives until the next.
 
@@ -23,8 +24,8 @@ typedef enum DocKind {
   DOC_COMMENT,  // a comment on a line of its own
   DOC_INLINE,   // a comment within the line, a space before it
   DOC_CONCAT,   // breaks as what it stands in
-  DOC_GROUP,    // on one line, or all its lines broken
   DOC_NEST,     // breaks as what it stands in, indented
+  DOC_GROUP,    // on one line, or all its lines broken
   DOC_FILL,     // each line broken only where the next item does not fit
   DOC_BRACKETS, // items between brackets: on one line, or one to a line
   DOC_FILLED    // items between brackets: on one line, or filled
@@ -35,19 +36,26 @@ typedef enum DocKind {
 
 typedef struct Doc Doc;
 struct Doc {
-  DocKind kind;
+  uint8_t kind;   // DocKind
   bool breaks;    // holds a place for a break
+  bool comma;     // a comma stands behind it, which both widths count
   bool hugs;      // BRACKETS: the last item may open on the line of the bracket
   bool opens;     // BRACKETS: the first item may open on their line, and the short rest close it
   bool gathers;   // BRACKETS: broken, all items may stand on one line of their own
+  bool padded;    // BRACKETS: on one line, with spaces within
+  char bracket;   // BRACKETS: the opening one
   uint32_t width; // on one line; DOC_ENDLESS: not possible
   uint32_t first; // up to the first possible break
-  int indent;
-  const char *text; // TEXT, LINE; the opening bracket
-  uint32_t length;
-  const char *pad; // within brackets on one line
-  Doc *child, *close;
-  Doc *next; // behind it in the same parent
+  union {
+    uint32_t length; // TEXT, LINE
+    int indent;      // NEST, BRACKETS
+  };
+  union {
+    const char *text; // TEXT, LINE
+    Doc *child;
+  };
+  Doc *close; // BRACKETS
+  Doc *next;  // behind it in the same parent
 };
 
 typedef struct Docs {
@@ -56,7 +64,7 @@ typedef struct Docs {
 
 typedef struct LayoutBlock LayoutBlock;
 typedef struct LayoutTrailing {
-  size_t at; // end of the code in the output
+  size_t at; // end of the code in the output, and beginning of the comment
   size_t line;
   uint32_t column, indent; // of the code
 } LayoutTrailing;
@@ -71,7 +79,7 @@ typedef struct Layout {
   bool pending, blank; // a line break waits, and leaves a line empty
   bool closed;         // the line ends in a comment
   int pending_indent;
-  LayoutTrailing *trailing;
+  LayoutTrailing *trailing; // those of neighbouring lines that are not aligned yet
   size_t trailing_count, trailing_capacity;
 } Layout;
 
@@ -79,31 +87,34 @@ void layout_init(Layout *l, uint32_t width);
 // Memory that lives as long as the documents.
 void *layout_memory(Layout *l, size_t size);
 
-void layout_add(Docs *list, Doc *d);
+static inline void layout_add(Docs *list, Doc *d) {
+  if (list->tail) list->tail->next = d;
+  else list->head = d;
+  list->tail = d;
+}
 Doc *layout_text(Layout *l, const char *text, size_t length); // borrowed; may hold line breaks
-Doc *layout_word(Layout *l, const char *word);                // borrowed
-Doc *layout_line(Layout *l, const char *flat);
+// A word of ASCII without line breaks, borrowed.
+Doc *layout_plain(Layout *l, const char *word, size_t length);
+Doc *layout_space(Layout *l); // a LINE that is a space on one line
 Doc *layout_hard(Layout *l);
 Doc *layout_blank(Layout *l);
 Doc *layout_trailing(Layout *l, Doc *text);
 Doc *layout_comment(Layout *l, Doc *text);
 Doc *layout_inline(Layout *l, Doc *text);
 Doc *layout_concat(Layout *l, const Docs *parts);
-Doc *layout_pair(Layout *l, Doc *d, const char *word); // d and a word behind it
+void layout_comma(Doc *d); // puts a comma behind it
 Doc *layout_group(Layout *l, Doc *d);
 Doc *layout_nest(Layout *l, int indent, const Docs *parts);
 Doc *layout_fill(Layout *l, const Docs *items); // items and LINEs in turn
 // `items`: items and LINEs in turn. `hugs`: where all but the last fit, the last may begin behind
 // them, so that its own brackets close with these.
-Doc *layout_brackets(Layout *l, const char *open, const Docs *items, Doc *close, int indent,
-                     const char *pad, bool hugs);
-Doc *layout_filled(Layout *l, const char *open, const Docs *items, Doc *close, int indent,
-                   const char *pad);
+Doc *layout_brackets(Layout *l, char open, const Docs *items, Doc *close, int indent, bool padded,
+                     bool hugs);
+Doc *layout_filled(Layout *l, char open, const Docs *items, Doc *close, int indent);
 
 // Prints a document and ends its line; forgets all documents.
 void layout_print(Layout *l, Doc *d);
-// The whole output, malloc'd and NUL-terminated: comments at the ends of neighbouring lines are set
-// one below the other. Releases the layout.
+// The whole output, malloc'd and NUL-terminated. Releases the layout.
 char *layout_finish(Layout *l, size_t *length);
 
 #endif

@@ -54,23 +54,25 @@ static void *grown(void *items, size_t *capacity, size_t size) {
 
 // ---- characters ----
 
-enum { IS_NAME = 1, IS_DIGIT = 2, IS_BLANK = 4 };
+// ENDS_RUN: is not itself within a text in quotes, or ends it.
+enum { IS_NAME = 1, IS_DIGIT = 2, IS_BLANK = 4, ENDS_RUN = 8 };
 
 static const byte classes[128] = {
-    [' '] = IS_BLANK, ['\t'] = IS_BLANK, ['\r'] = IS_BLANK, ['_'] = IS_NAME,  ['0'] = IS_DIGIT,
-    ['1'] = IS_DIGIT, ['2'] = IS_DIGIT,  ['3'] = IS_DIGIT,  ['4'] = IS_DIGIT, ['5'] = IS_DIGIT,
-    ['6'] = IS_DIGIT, ['7'] = IS_DIGIT,  ['8'] = IS_DIGIT,  ['9'] = IS_DIGIT, ['a'] = IS_NAME,
-    ['b'] = IS_NAME,  ['c'] = IS_NAME,   ['d'] = IS_NAME,   ['e'] = IS_NAME,  ['f'] = IS_NAME,
-    ['g'] = IS_NAME,  ['h'] = IS_NAME,   ['i'] = IS_NAME,   ['j'] = IS_NAME,  ['k'] = IS_NAME,
-    ['l'] = IS_NAME,  ['m'] = IS_NAME,   ['n'] = IS_NAME,   ['o'] = IS_NAME,  ['p'] = IS_NAME,
-    ['q'] = IS_NAME,  ['r'] = IS_NAME,   ['s'] = IS_NAME,   ['t'] = IS_NAME,  ['u'] = IS_NAME,
-    ['v'] = IS_NAME,  ['w'] = IS_NAME,   ['x'] = IS_NAME,   ['y'] = IS_NAME,  ['z'] = IS_NAME,
-    ['A'] = IS_NAME,  ['B'] = IS_NAME,   ['C'] = IS_NAME,   ['D'] = IS_NAME,  ['E'] = IS_NAME,
-    ['F'] = IS_NAME,  ['G'] = IS_NAME,   ['H'] = IS_NAME,   ['I'] = IS_NAME,  ['J'] = IS_NAME,
-    ['K'] = IS_NAME,  ['L'] = IS_NAME,   ['M'] = IS_NAME,   ['N'] = IS_NAME,  ['O'] = IS_NAME,
-    ['P'] = IS_NAME,  ['Q'] = IS_NAME,   ['R'] = IS_NAME,   ['S'] = IS_NAME,  ['T'] = IS_NAME,
-    ['U'] = IS_NAME,  ['V'] = IS_NAME,   ['W'] = IS_NAME,   ['X'] = IS_NAME,  ['Y'] = IS_NAME,
-    ['Z'] = IS_NAME,
+    [' '] = IS_BLANK, ['\t'] = IS_BLANK, ['\r'] = IS_BLANK, ['_'] = IS_NAME,   ['0'] = IS_DIGIT,
+    ['1'] = IS_DIGIT, ['2'] = IS_DIGIT,  ['3'] = IS_DIGIT,  ['4'] = IS_DIGIT,  ['5'] = IS_DIGIT,
+    ['6'] = IS_DIGIT, ['7'] = IS_DIGIT,  ['8'] = IS_DIGIT,  ['9'] = IS_DIGIT,  ['a'] = IS_NAME,
+    ['b'] = IS_NAME,  ['c'] = IS_NAME,   ['d'] = IS_NAME,   ['e'] = IS_NAME,   ['f'] = IS_NAME,
+    ['g'] = IS_NAME,  ['h'] = IS_NAME,   ['i'] = IS_NAME,   ['j'] = IS_NAME,   ['k'] = IS_NAME,
+    ['l'] = IS_NAME,  ['m'] = IS_NAME,   ['n'] = IS_NAME,   ['o'] = IS_NAME,   ['p'] = IS_NAME,
+    ['q'] = IS_NAME,  ['r'] = IS_NAME,   ['s'] = IS_NAME,   ['t'] = IS_NAME,   ['u'] = IS_NAME,
+    ['v'] = IS_NAME,  ['w'] = IS_NAME,   ['x'] = IS_NAME,   ['y'] = IS_NAME,   ['z'] = IS_NAME,
+    ['A'] = IS_NAME,  ['B'] = IS_NAME,   ['C'] = IS_NAME,   ['D'] = IS_NAME,   ['E'] = IS_NAME,
+    ['F'] = IS_NAME,  ['G'] = IS_NAME,   ['H'] = IS_NAME,   ['I'] = IS_NAME,   ['J'] = IS_NAME,
+    ['K'] = IS_NAME,  ['L'] = IS_NAME,   ['M'] = IS_NAME,   ['N'] = IS_NAME,   ['O'] = IS_NAME,
+    ['P'] = IS_NAME,  ['Q'] = IS_NAME,   ['R'] = IS_NAME,   ['S'] = IS_NAME,   ['T'] = IS_NAME,
+    ['U'] = IS_NAME,  ['V'] = IS_NAME,   ['W'] = IS_NAME,   ['X'] = IS_NAME,   ['Y'] = IS_NAME,
+    ['Z'] = IS_NAME,  ['"'] = ENDS_RUN,  ['{'] = ENDS_RUN,  ['\\'] = ENDS_RUN, ['\n'] = ENDS_RUN,
+    [0] = ENDS_RUN,
 };
 
 static bool is_digit(byte c) { return c < 128 && (classes[c] & IS_DIGIT); }
@@ -367,10 +369,21 @@ static void lex_number(CagLexer *lx, CagToken *t) {
 
 static void lex_name(CagLexer *lx, CagToken *t) {
   const char *text = lx->source->text;
-  bool ascii;
-  uint32_t start = t->span.start, end = name_end(lx, start, &ascii);
+  const uint32_t start = t->span.start;
+  uint32_t end = start, hash = CAG_NAME_HASH;
+  byte c;
+  for (; (c = (byte)text[end]) < 128 && (classes[c] & (IS_NAME | IS_DIGIT)); end++)
+    hash = cag_name_hash(hash, c);
+  bool ascii = c < 128;
   CagNameHead *head;
   utf8proc_uint8_t *composed = NULL;
+  if (ascii) {
+    head = cag_names_intern_hashed(lx->names, text + start, end - start, hash);
+    t->as.name = head->bytes;
+    finish(lx, t, head->token ? (CagTokenKind)head->token : CAG_TOKEN_NAME, end);
+    return;
+  }
+  end = name_end(lx, start, &ascii);
   if (!ascii && utf8proc_map((const byte *)text + start, (utf8proc_ssize_t)(end - start), &composed,
                              UTF8PROC_COMPOSE | UTF8PROC_STABLE) >= 0) {
     head = cag_names_intern(lx->names, (char *)composed, strlen((char *)composed));
@@ -383,6 +396,12 @@ static void lex_name(CagLexer *lx, CagToken *t) {
 }
 
 // ---- texts ----
+
+static void put_bytes(CagLexer *lx, size_t *length, const char *bytes, size_t n) {
+  while (lx->buffer_capacity - *length < n) lx->buffer = grown(lx->buffer, &lx->buffer_capacity, 1);
+  memcpy(lx->buffer + *length, bytes, n);
+  *length += n;
+}
 
 static void put_byte(CagLexer *lx, size_t *length, char c) {
   if (*length == lx->buffer_capacity) lx->buffer = grown(lx->buffer, &lx->buffer_capacity, 1);
@@ -458,7 +477,10 @@ static void text_not_closed(CagLexer *lx, CagToken *t, uint32_t quote, uint32_t 
 static void lex_text(CagLexer *lx, CagToken *t, uint32_t quote, uint32_t p, bool inside) {
   size_t length = 0;
   for (;;) {
-    byte c = at(lx, p);
+    const uint32_t from = p;
+    byte c;
+    while (!(c = at(lx, p), c < 128 && (classes[c] & ENDS_RUN))) p++;
+    put_bytes(lx, &length, lx->source->text + from, p - from);
     if (c == '"' || c == '{') break;
     if (c == '\n' || p >= lx->source->length) {
       lx->position = p;
@@ -607,6 +629,19 @@ static const byte single[128] = {
     [','] = CAG_TOKEN_COMMA,        [';'] = CAG_TOKEN_SEMICOLON,   ['?'] = CAG_TOKEN_QUESTION,
 };
 
+// Signs of one byte that begin longer ones too: alone where none of `lengthens` follows.
+static const byte alone[128] = {
+    ['.'] = CAG_TOKEN_DOT,     [':'] = CAG_TOKEN_COLON,   ['='] = CAG_TOKEN_EQUALS,
+    ['<'] = CAG_TOKEN_LESS,    ['>'] = CAG_TOKEN_GREATER, ['+'] = CAG_TOKEN_PLUS,
+    ['-'] = CAG_TOKEN_MINUS,   ['*'] = CAG_TOKEN_STAR,    ['/'] = CAG_TOKEN_SLASH,
+    ['%'] = CAG_TOKEN_PERCENT, ['|'] = CAG_TOKEN_BAR,     ['&'] = CAG_TOKEN_AMPERSAND,
+    ['^'] = CAG_TOKEN_CARET,
+};
+static const bool lengthens[256] = {
+    ['='] = true, ['>'] = true, ['<'] = true, ['.'] = true,
+    ['|'] = true, ['&'] = true, ['*'] = true,
+};
+
 // Characters of typeset mathematics and word processors, and what is written for them.
 static const struct {
   int32_t character;
@@ -639,6 +674,11 @@ static void unknown_character(CagLexer *lx, CagToken *t) {
 
 static void lex_sign(CagLexer *lx, CagToken *t) {
   const char *p = lx->source->text + t->span.start;
+  const byte one = (byte)*p;
+  if (one < 128 && alone[one] && !lengthens[(byte)p[1]]) {
+    finish(lx, t, alone[one], t->span.start + 1);
+    return;
+  }
   for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
     const Sign *s = &signs[i];
     if (*s->spelling != *p) continue;

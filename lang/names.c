@@ -20,10 +20,9 @@ void cag_names_release(CagNames *n) {
   n->slots = NULL;
 }
 
-// FNV-1a: names are short.
 static uint32_t hash_of(const char *bytes, size_t length) {
-  uint32_t h = 2166136261u;
-  for (size_t i = 0; i < length; i++) h = (h ^ (unsigned char)bytes[i]) * 16777619u;
+  uint32_t h = CAG_NAME_HASH;
+  for (size_t i = 0; i < length; i++) h = cag_name_hash(h, (unsigned char)bytes[i]);
   return h;
 }
 
@@ -43,7 +42,10 @@ static void grow(CagNames *n) {
 }
 
 CagNameHead *cag_names_intern(CagNames *n, const char *bytes, size_t length) {
-  uint32_t hash = hash_of(bytes, length);
+  return cag_names_intern_hashed(n, bytes, length, hash_of(bytes, length));
+}
+
+CagNameHead *cag_names_intern_hashed(CagNames *n, const char *bytes, size_t length, uint32_t hash) {
   size_t k = hash & (n->capacity - 1);
   for (CagNameHead *head; (head = n->slots[k]); k = (k + 1) & (n->capacity - 1))
     if (head->hash == hash && head->length == length && memcmp(head->bytes, bytes, length) == 0)

@@ -29,6 +29,14 @@ void cag_names_release(CagNames *n);
 // The one string for these bytes (which are NFC already).
 CagNameHead *cag_names_intern(CagNames *n, const char *bytes, size_t length);
 
+// The same for a caller that has taken the hash while it looked for the end of the name: FNV-1a,
+// from CAG_NAME_HASH on byte by byte.
+CagNameHead *cag_names_intern_hashed(CagNames *n, const char *bytes, size_t length, uint32_t hash);
+#define CAG_NAME_HASH 2166136261u
+static inline uint32_t cag_name_hash(uint32_t hash, unsigned char byte) {
+  return (hash ^ byte) * 16777619u;
+}
+
 static inline const CagNameHead *cag_name_head(const char *name) {
   return (const CagNameHead *)(const void *)(name - offsetof(CagNameHead, bytes));
 }

@@ -47,6 +47,9 @@ typedef struct Parser {
   size_t stack_size, stack_capacity;
   CagDecl **tops;
   size_t top_count, top_capacity;
+
+  CagParseEach *each; // takes the statements one by one; NULL: they are kept
+  void *each_context;
 } Parser;
 
 // ---- tokens ----

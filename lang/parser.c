@@ -490,6 +490,22 @@ static void recover(Parser *p, uint32_t start) {
   p->newlines = true;
 }
 
+static void show_comments(Parser *p) {
+  p->module->comments = p->lexer.comments;
+  p->module->comment_count = p->lexer.comment_count;
+}
+
+// Hands over a statement, and forgets its tree: unless the next word, which is read already, lies
+// in the same arena.
+static void hand_over(Parser *p, const CagStatement *s) {
+  show_comments(p);
+  p->each(p->each_context, p->module, s);
+  p->top_count = 0;
+  const CagTokenKind next = parse_current(p)->kind;
+  if (p->count == 1 && next != CAG_TOKEN_TEXT && next != CAG_TOKEN_TEXT_HEAD)
+    cag_arena_reset(&p->module->arena);
+}
+
 static void statements(Parser *p) {
   size_t capacity = 0, count = 0;
   CagStatement **list = NULL;
@@ -502,6 +518,10 @@ static void statements(Parser *p) {
     if (p->panic) recover(p, start);
     if (p->errors->count >= CAG_DIAGNOSTICS_MAX) break;
     if (!s) continue;
+    if (p->each) {
+      if (p->errors->count + p->errors->dropped == p->first_error) hand_over(p, s);
+      continue;
+    }
     if (count == capacity) {
       capacity = capacity ? 2 * capacity : 64;
       list = cag_checked(realloc(list, capacity * sizeof *list));
@@ -543,40 +563,66 @@ static void copy_results(Parser *p) {
   m->name_count = p->names.count;
 }
 
+// Parses into a module, with the names in an arena that may be another than the module's.
+static void parse_into(Parser *p, CagModuleAst *m, CagArena *names, CagDiagnostics *errors) {
+  const size_t before = errors->count;
+  p->module = m;
+  p->errors = errors;
+  p->first_error = errors->count + errors->dropped;
+  p->newlines = true;
+  p->habit = UINT32_MAX;
+  cag_names_init(&p->names, names);
+  cag_lexer_init(&p->lexer, m->source, &m->arena, &p->names, errors);
+  parse_peek(p, 0);
+  statements(p);
+  cag_diagnostics_sort(errors, before); // those of the lexer run a few words ahead
+}
+
+static void release(Parser *p) {
+  cag_lexer_release(&p->lexer);
+  cag_names_release(&p->names);
+  free(p->stack);
+  free(p->tops);
+  free(p);
+}
+
 // Parses; tells whether the first error was that the text ends too early.
 static CagModuleAst *parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors,
                            bool *cut_off) {
   CagModuleAst *m = cag_checked(calloc(1, sizeof *m));
-  Parser *p = cag_checked(calloc(1, sizeof *p));
   m->source = source;
-  size_t before = errors->count;
   *cut_off = false;
-  if (check_encoding(source, errors)) {
-    p->module = m;
-    p->errors = errors;
-    p->mode = mode;
-    p->first_error = errors->count + errors->dropped;
-    p->newlines = true;
-    p->habit = UINT32_MAX;
-    cag_names_init(&p->names, &m->arena);
-    cag_lexer_init(&p->lexer, source, &m->arena, &p->names, errors);
-    parse_peek(p, 0);
-    statements(p);
-    copy_results(p);
-    *cut_off = p->cut_off;
-    cag_diagnostics_sort(errors, before); // those of the lexer run a few words ahead
-    cag_lexer_release(&p->lexer);
-    cag_names_release(&p->names);
-  }
-  free(p->stack);
-  free(p->tops);
-  free(p);
+  if (!check_encoding(source, errors)) return m;
+  Parser *p = cag_checked(calloc(1, sizeof *p));
+  p->mode = mode;
+  parse_into(p, m, &m->arena, errors);
+  copy_results(p);
+  *cut_off = p->cut_off;
+  release(p);
   return m;
 }
 
 CagModuleAst *cag_parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors) {
   bool cut_off;
   return parse(source, mode, errors, &cut_off);
+}
+
+bool cag_parse_each(const CagSource *source, CagParseEach *each, void *context,
+                    CagDiagnostics *errors) {
+  const size_t before = errors->count + errors->dropped;
+  if (!check_encoding(source, errors)) return false;
+  CagModuleAst m = {.source = source};
+  CagArena names = {0};
+  Parser *p = cag_checked(calloc(1, sizeof *p));
+  p->each = each;
+  p->each_context = context;
+  parse_into(p, &m, &names, errors);
+  const bool sound = errors->count + errors->dropped == before;
+  if (sound) hand_over(p, NULL);
+  release(p);
+  cag_arena_free(&names);
+  cag_arena_free(&m.arena);
+  return sound;
 }
 
 void cag_module_ast_free(CagModuleAst *m) {

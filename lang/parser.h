@@ -22,6 +22,15 @@ typedef enum CagParseMode {
 CagModuleAst *cag_parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors);
 void cag_module_ast_free(CagModuleAst *m);
 
+// Parses a file for work that looks at each statement once: calls `each` for every statement while
+// the text has no errors, in order, and with NULL behind the last; `m` holds the comments up to the
+// next statement. A statement dies when `each` returns, so that a long file needs no more memory
+// than its longest statement. Gives whether there was no error: what `each` made is of no use
+// otherwise.
+typedef void CagParseEach(void *context, const CagModuleAst *m, const CagStatement *s);
+bool cag_parse_each(const CagSource *source, CagParseEach *each, void *context,
+                    CagDiagnostics *errors);
+
 // Whether a REPL text asks for another line: an open bracket, text or comment, or an operator at
 // the end.
 bool cag_parse_incomplete(const char *text, size_t length);

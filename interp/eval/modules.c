@@ -334,9 +334,15 @@ size_t cag_load_text(CagVm *vm, const char *name, const char *text, size_t lengt
   return k;
 }
 
-const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *text, size_t length) {
+const CagSource *cag_read_source(CagVm *vm, const char *name, const char *text, size_t length) {
   CagModuleUnit *m = new_unit(vm, name, NULL, text, length);
   m->state = CAG_MODULE_FAILED; // read, but not to be run
+  return check_text(vm, m) ? m->source : NULL;
+}
+
+const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *text, size_t length) {
+  CagModuleUnit *m = new_unit(vm, name, NULL, text, length);
+  m->state = CAG_MODULE_FAILED;
   const size_t before = vm->errors.count;
   if (check_text(vm, m)) m->ast = cag_parse(m->source, CAG_PARSE_FILE, &vm->errors);
   vm->failed = vm->errors.count > before;

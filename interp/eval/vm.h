@@ -288,6 +288,9 @@ _Noreturn void cag_vm_out_of_memory(CagVm *vm);
 size_t cag_load_file(CagVm *vm, const char *path, int *exit_status);
 size_t cag_load_text(CagVm *vm, const char *name, const char *text, size_t length,
                      CagParseMode mode);
+// The source of a script that is not to be run; it lives as long as the machine. NULL: it is no
+// text.
+const CagSource *cag_read_source(CagVm *vm, const char *name, const char *text, size_t length);
 // Parses a script that is not to be run; its tree lives as long as the machine. NULL: it has
 // errors.
 const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *text, size_t length);

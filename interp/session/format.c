@@ -13,9 +13,10 @@ typedef struct Layout {
 
 static bool lay_out(CagVm *vm, void *context) {
   Layout *l = context;
-  const CagModuleAst *m = cag_read_script(vm, l->name, l->text, l->length);
-  if (m) *l->out = cag_format(m, l->out_length);
-  return m != NULL;
+  const CagSource *source = cag_read_source(vm, l->name, l->text, l->length);
+  if (source) *l->out = cag_format(source, &vm->errors, l->out_length);
+  vm->failed = !*l->out;
+  return *l->out != NULL;
 }
 
 int cag_session_format(CagSession *s, const char *name, const char *text, size_t length, char **out,

@@ -77,18 +77,38 @@ int cag_tool_each_script(CagToolScripts *s, int count, char **paths) {
   return status;
 }
 
-char *cag_tool_read_file(const CagTool *t, const char *path, size_t *length) {
-  const bool input = strcmp(path, "-") == 0;
-  char bytes[65536], *text = NULL;
-  FILE *from = input ? stdin : fopen(path, "rb"), *into = NULL;
-  if (from) into = open_memstream(&text, length);
-  size_t n;
-  while (into && (n = fread(bytes, 1, sizeof bytes, from)) > 0) fwrite(bytes, 1, n, into);
-  const bool failed = !into || ferror(from);
-  if (failed) cag_tool_fail(t, CAG_STATUS_FILE, NULL, "cannot read %s: %s", path, strerror(errno));
-  if (into) fclose(into);
-  if (from && !input) fclose(from);
-  if (!failed) return text;
+// Bytes that are read at least at a time.
+#define READ_SIZE ((size_t)64 * 1024)
+
+// All that a file still gives, NUL-terminated; NULL with errno.
+static char *read_all(FILE *from, size_t *length) {
+  struct stat st;
+  size_t n = 0, capacity = READ_SIZE;
+  if (fstat(fileno(from), &st) == 0 && st.st_size > 0) capacity += (size_t)st.st_size;
+  char *text = malloc(capacity + 1);
+  while (text && !feof(from) && !ferror(from)) {
+    if (capacity - n < READ_SIZE / 2) {
+      char *more = realloc(text, 2 * capacity + 1);
+      if (!more) break;
+      text = more;
+      capacity *= 2;
+    }
+    n += fread(text + n, 1, capacity - n, from);
+  }
+  if (text && feof(from)) {
+    text[n] = 0;
+    *length = n;
+    return text;
+  }
   free(text);
   return NULL;
+}
+
+char *cag_tool_read_file(const CagTool *t, const char *path, size_t *length) {
+  const bool input = strcmp(path, "-") == 0;
+  FILE *from = input ? stdin : fopen(path, "rb");
+  char *text = from ? read_all(from, length) : NULL;
+  if (!text) cag_tool_fail(t, CAG_STATUS_FILE, NULL, "cannot read %s: %s", path, strerror(errno));
+  if (from && !input) fclose(from);
+  return text;
 }

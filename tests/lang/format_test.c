@@ -10,10 +10,13 @@
 // The layout of a text, or NULL where it has errors.
 static char *laid_out(const char *text, size_t length, char **tree, size_t *comments) {
   Parsed p = parse_bytes(text, length, CAG_PARSE_FILE);
-  char *out = NULL;
-  if (p.errors.count == 0) {
-    size_t n;
-    out = cag_format(p.module, &n);
+  size_t n;
+  CagDiagnostics errors = {0};
+  char *out = cag_format(p.source, &errors, &n);
+  assert_true((out != NULL) == (p.errors.count == 0));
+  assert_int_equal(errors.count, p.errors.count);
+  cag_diagnostics_free(&errors);
+  if (out) {
     assert_int_equal(strlen(out), n);
     if (tree) {
       FILE *f = open_memstream(tree, &n);
