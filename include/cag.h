@@ -45,13 +45,18 @@ typedef struct CagSessionOptions {
   size_t max_memory; // bytes (4 GiB)
   size_t max_depth;  // calls (10,000)
   size_t max_triangles;           // (100 million)
-  double max_time;                // seconds; 0: none
+  double max_time;                // seconds of a run and of all that is made of its scene; 0: none
   const char *const *module_path; // folders of modules (-I)
   size_t module_path_count;
   const char *folder; // below which texts read files and modules (NULL: the working folder)
   FILE *out;          // what print writes to (stdout)
   FILE *messages;     // what trace writes to (stderr)
   const volatile int *interrupt; // becomes nonzero to stop; may be NULL
+  // Called once, on a thread of the session's own, when work goes on well after max_time because it
+  // is in a step that cannot be ended; a program may wish to end then, after a word of
+  // cag_session_write_overdue. Not called for inputs (cag_session_input). May be NULL.
+  void (*overdue)(CagSession *s, void *context);
+  void *overdue_context;
 } CagSessionOptions;
 
 CAG_API const char *cag_version(void);
@@ -93,6 +98,8 @@ typedef struct CagErrorView {
   size_t line, column, end_line, end_column;
 } CagErrorView;
 CAG_API void cag_session_error(const CagSession *s, size_t i, CagErrorView *out);
+// Writes the error of a run that took longer than max_time. Any thread may call it, at any time.
+CAG_API void cag_session_write_overdue(const CagSession *s, CagStyle style, FILE *out);
 CAG_API void cag_session_write_diagnostics(const CagSession *s, CagStyle style, FILE *out);
 
 // --- What was shown ---

@@ -45,7 +45,7 @@ static bool call_read_mesh(CagCall *call, CagValue *result) {
                       .size = size,
                       .max_triangles = call->vm->max_triangles,
                       .max_memory = left > size ? left - size : 0,
-                      .interrupt = call->vm->interrupt,
+                      .interrupt = cag_vm_stop(call->vm),
                       .open = open_beside,
                       .context = &opener};
   CagMesh *m = NULL;

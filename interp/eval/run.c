@@ -18,7 +18,7 @@ bool cag_room_on_c_stack(const CagVm *vm) {
 
 bool cag_safe_point(CagVm *vm) {
   if (*vm->interrupt) return cag_vm_fail(vm, CAG_ERR_interrupted, "interrupted");
-  if (vm->limit_hit)
+  if (vm->stop)
     return cag_vm_fail(vm, CAG_ERR_limit_time,
                        "the script ran longer than the %g s it may (--max-time)", vm->max_time);
   if (vm->heap.debt >= vm->heap.threshold) cag_collect(vm);
@@ -27,7 +27,7 @@ bool cag_safe_point(CagVm *vm) {
 
 bool cag_keep_going(CagVm *vm) {
   if (*vm->interrupt) return cag_vm_fail(vm, CAG_ERR_interrupted, "interrupted");
-  if (vm->limit_hit)
+  if (vm->stop)
     return cag_vm_fail(vm, CAG_ERR_limit_time,
                        "the script ran longer than the %g s it may (--max-time)", vm->max_time);
   return true;
@@ -303,7 +303,7 @@ static inline bool reserve(CagVm *vm, CagValue *base, size_t registers) {
 // A collection or a stop is due.
 #define SAFE_POINT()                                                                               \
   do {                                                                                             \
-    if (vm->heap.debt >= vm->heap.threshold || *vm->interrupt || vm->limit_hit) {                  \
+    if (vm->heap.debt >= vm->heap.threshold || *vm->interrupt || vm->stop) {                  \
       SAVE();                                                                                      \
       vm->top = base + f->proto->registers;                                                        \
       if (!cag_safe_point(vm)) goto failed;                                                        \

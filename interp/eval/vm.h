@@ -208,8 +208,8 @@ struct CagVm {
   // Outside
   FILE *out, *trace;
   const volatile int *interrupt; // never NULL
-  volatile int limit_hit;        // set by the watchdog when the time is over
-  double max_time;               // seconds; 0: none
+  volatile int stop; // set by who watches the run, when it was interrupted or its time is over
+  double max_time;   // seconds; 0: none
   struct timespec started;
   size_t max_triangles;
   double tolerance;
@@ -218,11 +218,8 @@ struct CagVm {
   size_t include_count;
 };
 
-// What long geometry without calls of the script looks at, to end when it is not 0: the time limit
-// where there is one, which ends an interrupted run too, else the interrupt.
-static inline const volatile int *cag_vm_stop(const CagVm *vm) {
-  return vm->max_time > 0 ? &vm->limit_hit : vm->interrupt;
-}
+// What long geometry without calls of the script looks at, to end when it is not 0.
+static inline const volatile int *cag_vm_stop(const CagVm *vm) { return &vm->stop; }
 
 // Reserved globals.
 enum { CAG_GLOBAL_TIME, CAG_GLOBAL_FRAME, CAG_GLOBAL_FRAMES, CAG_GLOBAL_RESERVED };

@@ -19,6 +19,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "geom/stop.h"
+
 // Large enough that the cost of a system call disappears beside formatting and copying.
 #define BUFFER_SIZE ((size_t)1024 * 1024)
 // How many outputs may be open at once in one process; a batch has one or two per core.
@@ -283,6 +285,7 @@ static void append(struct CagAtomicFileState *s, const char *data, size_t n) {
 
 // Hands all n bytes to the system, however it splits them. After a failure nothing more is tried.
 static void write_through(struct CagAtomicFileState *s, const char *data, size_t n) {
+  if (!s->error && cag_stopped()) s->error = ECANCELED;
   if (s->in_memory && !s->error) append(s, data, n);
   s->taken += n;
   while (n > 0 && !s->error && !s->in_memory) {
@@ -361,6 +364,10 @@ uint64_t cag_atomic_file_size(const CagAtomicFile *f) {
 }
 
 static void fail_write(const struct CagAtomicFileState *s, int code, CagIoError *err) {
+  if (code == ECANCELED) {
+    cag_io_error_set(err, CAG_EXIT_INTERRUPTED, NULL, "interrupted");
+    return;
+  }
   const char *help = code == ENOSPC || code == EDQUOT ? "free some space, or write to another disk"
                      : code == EPIPE ? "the program that reads the output ended early"
                                      : NULL;

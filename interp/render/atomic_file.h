@@ -4,7 +4,8 @@
 // uses, and renamed when it is whole: a killed run leaves the old file or the new one. Errors of
 // writing are sticky: a writer need not look at each call, it learns of the first error from
 // cag_atomic_file_commit (or, to stop early, from cag_atomic_file_failed). Every opened file ends
-// with exactly one commit or abort.
+// with exactly one commit or abort. Work that is asked to end (geom/stop.h) meets an error of
+// status CAG_EXIT_INTERRUPTED at its next write.
 //
 //     CagAtomicFile *f = cag_atomic_file_open(path, &err);
 //     if (!f) return false;

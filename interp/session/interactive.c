@@ -115,6 +115,7 @@ static int start_input(CagSession *s, Input *in) {
   s->interactive = true;
   cag_diagnostics_free(&s->diagnostics);
   s->diagnostics = (CagDiagnostics){0};
+  cag_session_renew_time(s);
   return cag_session_work(s, evaluate_input, in);
 }
 
@@ -230,8 +231,8 @@ static bool ask_members(CagVm *vm, void *context) {
 void cag_session_members(CagSession *s, const char *path,
                          void (*give)(void *context, const char *name), void *context) {
   if (!s->vm || !s->interactive) return;
-  double limit = s->vm->max_time;
-  s->vm->max_time = MEMBERS_SECONDS;
+  const double limit = s->vm->max_time;
+  s->vm->max_time = s->time_left = MEMBERS_SECONDS;
   cag_session_work(s, ask_members, &(MemberQuestion){s, path, give, context});
   s->vm->max_time = limit;
   cag_diagnostics_free(&s->diagnostics);

@@ -100,10 +100,10 @@ typedef struct Job {
   char *source;
   size_t source_size;
   CagPovrayResult result;
+  const char *path; // of the picture
 } Job;
 
-static int write_source(CagSession *s, void *context) {
-  Job *j = context;
+static int write_source(CagSession *s, Job *j) {
   CagIoError io = {0};
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open_memory(&io);
@@ -142,7 +142,7 @@ static int render(Job *j) {
                       .quality = j->engine,
                       .threads = j->options->threads,
                       .time_limit = j->options->time_limit,
-                      .interrupted = j->session->options.interrupt,
+                      .interrupted = &j->session->vm->stop,
                       .progress = j->options->progress,
                       .progress_user = j->options->progress_context};
   if (!cag_povray_render(&job, &j->result, &io))
@@ -211,6 +211,17 @@ static bool write_exr(Job *j, const char *path, CagIoError *io) {
   return ok;
 }
 
+static int make_picture(CagSession *s, void *context) {
+  Job *j = context;
+  CagIoError io = {0};
+  int status = write_source(s, j);
+  if (status == CAG_STATUS_OK) status = render(j);
+  if (status == CAG_STATUS_OK &&
+      !(is_png(j->path) ? write_png(j, j->path, &io) : write_exr(j, j->path, &io)))
+    status = cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  return status;
+}
+
 static int frame_all(CagSession *s, void *context) {
   (void)context;
   cag_camera_frame_all(&s->scene, &s->scene.cameras[0]);
@@ -242,7 +253,7 @@ int cag_session_render(CagSession *s, const CagRenderOptions *options, const cha
   }
   int status = cag_session_build_scene(s);
   if (status != CAG_STATUS_OK) return status;
-  Job j = {.session = s, .options = options};
+  Job j = {.session = s, .options = options, .path = path};
   if (!find_quality(options->quality, &j.pov, &j.engine)) {
     cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
                         "the quality is draft, normal or final, found %s", options->quality);
@@ -264,13 +275,8 @@ int cag_session_render(CagSession *s, const CagRenderOptions *options, const cha
     j.camera.size[1] = options->height;
   }
   if (!check_region(&j)) return CAG_STATUS_USAGE;
-  CagIoError io = {0};
   j.index = camera;
-  status = cag_session_geometry(s, write_source, &j);
-  if (status == CAG_STATUS_OK) status = render(&j);
-  if (status == CAG_STATUS_OK &&
-      !(is_png(path) ? write_png(&j, path, &io) : write_exr(&j, path, &io)))
-    status = cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  status = cag_session_geometry(s, make_picture, &j);
   free(j.source);
   cag_povray_result_free(&j.result);
   return status;

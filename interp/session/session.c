@@ -2,13 +2,13 @@
 
 #include "interp/session/session.h"
 
-#include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "geom/stop.h"
 #include "geom/surface/crossing.h"
+#include "interp/session/watch.h"
 
 // The C stack of an evaluation: reserved address space; deep recursion through built-ins needs
 // about 1 KiB a call (several with sanitizers).
@@ -125,49 +125,7 @@ CagVm *cag_session_vm(CagSession *s) {
   return s->vm;
 }
 
-// Sets vm->limit_hit when the time is over, unless told before that the work is done.
-typedef struct Watch {
-  CagVm *vm;
-  pthread_mutex_t mutex;
-  pthread_cond_t done;
-  bool finished;
-  struct timespec deadline;
-} Watch;
-
-static void *watch(void *context) {
-  Watch *w = context;
-  pthread_mutex_lock(&w->mutex);
-  while (!w->finished && pthread_cond_timedwait(&w->done, &w->mutex, &w->deadline) != ETIMEDOUT) {}
-  if (!w->finished) w->vm->limit_hit = 1;
-  pthread_mutex_unlock(&w->mutex);
-  return NULL;
-}
-
-static bool start_watch(Watch *w, CagVm *vm, pthread_t *thread) {
-  w->vm = vm;
-  w->finished = false;
-  clock_gettime(CLOCK_REALTIME, &w->deadline);
-  double whole = (double)(time_t)vm->max_time;
-  w->deadline.tv_sec += (time_t)whole;
-  w->deadline.tv_nsec += (long)((vm->max_time - whole) * 1e9);
-  if (w->deadline.tv_nsec >= 1000000000) {
-    w->deadline.tv_nsec -= 1000000000;
-    w->deadline.tv_sec++;
-  }
-  pthread_mutex_init(&w->mutex, NULL);
-  pthread_cond_init(&w->done, NULL);
-  return pthread_create(thread, NULL, watch, w) == 0;
-}
-
-static void end_watch(Watch *w, pthread_t thread) {
-  pthread_mutex_lock(&w->mutex);
-  w->finished = true;
-  pthread_cond_signal(&w->done);
-  pthread_mutex_unlock(&w->mutex);
-  pthread_join(thread, NULL);
-  pthread_cond_destroy(&w->done);
-  pthread_mutex_destroy(&w->mutex);
-}
+void cag_session_renew_time(CagSession *s) { s->time_left = s->options.max_time; }
 
 typedef struct Task {
   CagVm *vm;
@@ -181,19 +139,32 @@ static void *perform(void *context) {
   Task *t = context;
   char here;
   t->vm->stack_low = &here - t->stack + 65536; // the guard and what the system keeps there
+  cag_stop_lend(&t->vm->stop);
   t->ok = cag_vm_protect(t->vm, t->work, t->context);
   return NULL;
+}
+
+static void tell_overdue(void *context) {
+  CagSession *s = context;
+  s->options.overdue(s, s->options.overdue_context);
 }
 
 int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void *context) {
   CagVm *vm = cag_session_vm(s);
   if (!vm) return CAG_STATUS_LIMIT;
   cag_vm_clear_error(vm);
-  vm->limit_hit = 0;
   Task task = {.vm = vm, .work = work, .context = context, .stack = C_STACK_BYTES};
-  Watch w;
-  pthread_t watcher, thread;
-  bool watched = vm->max_time > 0 && start_watch(&w, vm, &watcher);
+  // A limit that is crossed already ends the work as soon as it looks.
+  const double least = 1e-6;
+  CagWatch w = {.stop = &vm->stop,
+                .interrupt = s->options.interrupt,
+                .seconds = !(vm->max_time > 0)    ? 0
+                           : s->time_left > least ? s->time_left
+                                                  : least,
+                .overdue = s->options.overdue && !s->interactive ? tell_overdue : NULL,
+                .context = s};
+  cag_watch_begin(&w);
+  pthread_t thread;
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   bool started = false;
@@ -205,7 +176,7 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
   pthread_attr_destroy(&attributes);
   if (started) pthread_join(thread, NULL);
   else cag_vm_fail(vm, CAG_ERR_limit_memory, "the system gives no thread to evaluate on");
-  if (watched) end_watch(&w, watcher);
+  s->time_left -= cag_watch_end(&w);
   fflush(s->options.out);
   cag_diagnostics_move(&s->diagnostics, &vm->errors);
   vm->failed = false;
@@ -258,6 +229,30 @@ int cag_session_status(const CagSession *s) {
   }
 }
 
+// Why the flag of the machine is set.
+static CagErrorId why_stopped(const CagSession *s) {
+  const bool interrupted = s->options.interrupt && *s->options.interrupt;
+  return interrupted || !(s->options.max_time > 0) ? CAG_ERR_interrupted : CAG_ERR_limit_time;
+}
+
+static void add_time_limit(CagDiagnostics *d, double max_time) {
+  cag_diagnostics_add(d, CAG_ERR_limit_time, NULL, (CagSpan){0, 0},
+                      "the run took longer than the %g s it may (--max-time)", max_time);
+}
+
+static int fail_stopped(CagSession *s, CagErrorId id) {
+  if (id == CAG_ERR_limit_time) add_time_limit(&s->diagnostics, s->options.max_time);
+  else cag_diagnostics_add(&s->diagnostics, id, NULL, (CagSpan){0, 0}, "interrupted");
+  return cag_session_status(s);
+}
+
+void cag_session_write_overdue(const CagSession *s, CagStyle style, FILE *out) {
+  CagDiagnostics d = {0};
+  add_time_limit(&d, s->options.max_time);
+  cag_diagnostics_render(&d, (CagDiagnosticStyle)style, out);
+  cag_diagnostics_free(&d);
+}
+
 int cag_session_fail_geometry(CagSession *s, const CagError *err) {
   if (err->status == CAG_E_CALLBACK && s->vm && s->vm->failed) { // a function of the script
     cag_diagnostics_move(&s->diagnostics, &s->vm->errors);
@@ -266,19 +261,19 @@ int cag_session_fail_geometry(CagSession *s, const CagError *err) {
   CagErrorId id = err->reason ? cag_error_by_reason(err->reason) : CAG_ERR_COUNT;
   if (err->status == CAG_E_LIMIT) id = CAG_ERR_limit_triangles;
   else if (err->status == CAG_E_MEMORY) id = CAG_ERR_limit_memory;
-  else if (err->status == CAG_E_CALLBACK && s->options.interrupt && *s->options.interrupt)
-    id = CAG_ERR_interrupted;
+  else if (err->status == CAG_E_CALLBACK && s->vm && s->vm->stop) id = why_stopped(s);
   else if (id == CAG_ERR_COUNT) id = CAG_ERR_value;
-  const char *message = id == CAG_ERR_interrupted ? "interrupted" : err->message;
-  CagDiagnostic *d = cag_diagnostics_add(&s->diagnostics, id, NULL, (CagSpan){0, 0}, "%s", message);
+  if (id == CAG_ERR_interrupted || id == CAG_ERR_limit_time) return fail_stopped(s, id);
+  CagDiagnostic *d =
+      cag_diagnostics_add(&s->diagnostics, id, NULL, (CagSpan){0, 0}, "%s", err->message);
   if (err->reason && strcmp(err->reason, cag_error_info(id)->reason) != 0)
     d->reason = strdup(err->reason);
   return cag_session_status(s);
 }
 
 int cag_session_fail_io(CagSession *s, CagErrorId id, const CagIoError *err) {
-  if (err->exit_status == CAG_EXIT_INTERRUPTED) id = CAG_ERR_interrupted;
-  else if (err->exit_status == CAG_EXIT_LIMIT) id = CAG_ERR_limit_time;
+  if (err->exit_status == CAG_EXIT_INTERRUPTED) return fail_stopped(s, why_stopped(s));
+  if (err->exit_status == CAG_EXIT_LIMIT) id = CAG_ERR_limit_time;
   else if (err->exit_status == CAG_EXIT_RENDERER) id = CAG_ERR_renderer;
   else if (err->exit_status == CAG_EXIT_USAGE) id = CAG_ERR_picture_size;
   CagDiagnostic *d =
@@ -314,6 +309,7 @@ static bool run(CagVm *vm, void *context) {
 
 static int start_run(CagSession *s, Run *r) {
   cag_session_drop_vm(s);
+  cag_session_renew_time(s);
   free(s->script);
   s->script = strdup(r->path ? r->path : r->name);
   return cag_session_work(s, run, r);
@@ -395,7 +391,10 @@ static int look_for_crossings(CagSession *s, void *context) {
 }
 
 int cag_session_build_scene(CagSession *s) {
-  if (s->interactive) drop_scene(s);
+  if (s->interactive) {
+    drop_scene(s);
+    cag_session_renew_time(s);
+  }
   if (s->has_scene) return CAG_STATUS_OK;
   if (s->interactive) {
     cag_diagnostics_free(&s->diagnostics);
@@ -406,7 +405,7 @@ int cag_session_build_scene(CagSession *s) {
   CagScene *scene = &s->scene;
   if (s->options.tolerance > 0) scene->tolerance = s->options.tolerance;
   scene->max_triangles = s->options.max_triangles;
-  scene->interrupt = s->options.interrupt;
+  scene->interrupt = &s->vm->stop;
   if (!scene->script && s->script) scene->script = strdup(s->script);
   if (scene->item_count + scene->label_count == 0) {
     CagDiagnostic *d =

@@ -18,7 +18,8 @@ struct CagSession {
   char **names, **values; // params from outside
   size_t define_count;
   double frame, frames;
-  char *script; // name of the script, for metadata
+  double time_left; // seconds of max_time, of a run and what is made of its scene
+  char *script;     // name of the script, for metadata
   CagDiagnostics diagnostics;
   CagScene scene;
   bool has_scene;
@@ -31,8 +32,10 @@ struct CagSession {
 // Makes a machine when there is none. NULL: memory is out (a diagnostic says so).
 CagVm *cag_session_vm(CagSession *s);
 void cag_session_drop_vm(CagSession *s);
-// Runs work(vm, context) on the big stack, with the time limit, where running out of memory is
-// caught. Moves the machine's errors to the session's diagnostics. Gives the status.
+// What follows has all of max_time: a run, an input of the interactive session, its commands.
+void cag_session_renew_time(CagSession *s);
+// Runs work(vm, context) on the big stack, with what is left of the time limit, where running out
+// of memory is caught. Moves the machine's errors to the session's diagnostics. Gives the status.
 int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void *context);
 // The same for work that gives a status and adds its own diagnostics. Geometry may call functions
 // of the script (curves by a formula) whenever it is asked, so exports and pictures are made there

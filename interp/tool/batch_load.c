@@ -6,6 +6,7 @@
 #include <dirent.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,18 +15,26 @@
 
 #include "interp/tool/batch_child.h"
 
-// Seconds between looks: fifteen ticks of the kernel's clock for each processor.
-static const double LOOK_INTERVAL = 0.15;
+// Seconds between looks for an idle processor; and between looks at the shares of time, which are
+// fifteen ticks of the kernel's clock for each processor.
+static const double LOOK_INTERVAL = 0.008, SHARE_INTERVAL = 0.15;
 
-// Processors count as busy from this share on; processes are taken back above the second.
-static const double BUSY = 0.97, FULL = 0.995;
+// Below this share of their time the processors count as idle.
+static const double BUSY = 0.95;
 
-// The number grows by what would fill the processors, but at most threefold at a look; it shrinks
-// slowly.
-static const double GROW_MOST = 3, SHRINK = 0.97;
+// How many processes fewer may run after a second without an idle processor.
+static const double SINK = 1;
 
-// Memory that must be free, of all there is, before further processes are begun.
-static const double FREE_MEMORY = 0.25;
+// The most for each processor until one has ended.
+static const double MOST_UNKNOWN = 4;
+
+// Where so many processes keep a processor busy, they sleep: what waits at the end of a batch is
+// then begun at once, when it is no more than may run.
+static const double SLEEPERS = 2;
+
+// Memory that must be free, of all there is, before further processes are begun; and what processes
+// like the largest might take of it together.
+static const double FREE_MEMORY = 0.25, USED_MEMORY = 0.75;
 
 // Reads the ticks of all processors. False where there is no such file.
 static bool read_ticks(double *busy, double *total) {
@@ -43,46 +52,77 @@ static bool read_ticks(double *busy, double *total) {
   return n >= 4;
 }
 
-static bool has_memory(void) {
+// Whether one process more than `running` has room.
+static bool has_memory(const CagLoad *l, size_t running) {
   char line[128];
   double total = 0, available = 0;
   FILE *f = fopen("/proc/meminfo", "re");
-  while (f && fgets(line, sizeof line, f)) {
-    if (!strncmp(line, "MemTotal:", 9)) total = strtod(line + 9, NULL);
-    if (!strncmp(line, "MemAvailable:", 13)) available = strtod(line + 13, NULL);
+  while (f && !available && fgets(line, sizeof line, f)) {
+    if (!strncmp(line, "MemTotal:", 9)) total = 1024 * strtod(line + 9, NULL);
+    if (!strncmp(line, "MemAvailable:", 13)) available = 1024 * strtod(line + 13, NULL);
   }
   if (f) fclose(f);
-  return available > FREE_MEMORY * total;
+  return available > FREE_MEMORY * total &&
+         (double)l->largest * (double)(running + 1) < USED_MEMORY * total;
+}
+
+// How many threads of the machine compute or could, without this one; SIZE_MAX where nothing says.
+static size_t count_runnable(void) {
+  size_t n = 0;
+  FILE *f = fopen("/proc/loadavg", "re");
+  const bool ok = f && fscanf(f, "%*f %*f %*f %zu", &n) == 1;
+  if (f) fclose(f);
+  return !ok ? SIZE_MAX : n ? n - 1 : 0;
 }
 
 void cag_load_begin(CagLoad *l, size_t workers) {
-  *l = (CagLoad){.workers = workers, .limit = (double)workers, .seen = cag_child_now()};
+  const double now = cag_child_now();
+  *l = (CagLoad){.workers = workers, .limit = (double)workers, .looked = now, .seen = now};
   read_ticks(&l->busy, &l->total);
 }
 
-static void adapt(CagLoad *l, double share, size_t running) {
+// Whether the shares of time, taken over a while, say that a processor is idle. They know what runs
+// at a lower priority, which a count of threads does not.
+static bool was_idle(CagLoad *l, double now) {
+  double busy, total;
+  if (now - l->seen < SHARE_INTERVAL || !read_ticks(&busy, &total) || total <= l->total)
+    return false;
   const double processors = (double)sysconf(_SC_NPROCESSORS_ONLN);
-  const double wanted = (double)l->workers, busy = share * processors;
-  const double most = wanted * CAG_LOAD_MOST;
-  if (busy < BUSY * wanted && (double)running >= floor(l->limit) && has_memory()) {
-    const double factor = busy > 0 ? wanted / busy : GROW_MOST;
-    l->limit = fmin(most, fmax(l->limit * fmin(factor, GROW_MOST), l->limit + 1));
-  } else if (busy > FULL * wanted) {
-    l->limit = fmax(wanted, l->limit * SHRINK);
-  }
+  const double share = (busy - l->busy) / (total - l->total);
+  l->busy = busy;
+  l->total = total;
+  l->seen = now;
+  return share * processors < BUSY * (double)l->workers;
 }
 
-size_t cag_load_limit(CagLoad *l, size_t running) {
-  double busy, total;
-  const double now = cag_child_now();
-  if (now - l->seen >= LOOK_INTERVAL && read_ticks(&busy, &total) && total > l->total) {
-    adapt(l, (busy - l->busy) / (total - l->total), running);
-    l->busy = busy;
-    l->total = total;
-    l->seen = now;
-  }
-  return (size_t)l->limit;
+static void look(CagLoad *l, size_t running) {
+  const double now = cag_child_now(), passed = now - l->looked;
+  if (passed < LOOK_INTERVAL) return;
+  l->looked = now;
+  const bool idle = was_idle(l, now) | (count_runnable() < l->workers);
+  // One more than runs is enough: what was allowed and not used says nothing.
+  if (!idle) l->limit -= SINK * passed;
+  else if ((double)(running + 1) > l->limit) l->limit = (double)(running + 1);
+  const double least = (double)l->workers;
+  const double most = least * (l->largest ? CAG_LOAD_MOST : MOST_UNKNOWN);
+  l->limit = fmax(least, fmin(most, l->limit));
 }
+
+size_t cag_load_limit(CagLoad *l, size_t running, size_t waiting) {
+  look(l, running);
+  if (running < l->workers) return l->workers;
+  size_t limit = (size_t)l->limit;
+  const bool sleep = l->largest && l->limit >= SLEEPERS * (double)l->workers;
+  if (sleep && waiting <= limit && running + waiting > limit) limit = running + waiting;
+  if (limit > l->workers * CAG_LOAD_MOST) limit = l->workers * CAG_LOAD_MOST;
+  return running >= limit || has_memory(l, running) ? limit : running;
+}
+
+void cag_load_ended(CagLoad *l, size_t memory) {
+  if (memory > l->largest) l->largest = memory;
+}
+
+void cag_load_refused(CagLoad *l, size_t running) { l->limit = (double)running; }
 
 // Takes parent and pages in memory of a process from /proc/N/stat, whose second field is a name in
 // parentheses that may hold anything.

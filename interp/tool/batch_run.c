@@ -17,9 +17,10 @@
 #include "interp/tool/batch_result.h"
 #include "interp/tool/tiles.h"
 
-// Milliseconds between looks at everything; and while a process whose output is closed is about to
-// end.
+// Milliseconds between looks at everything; while further processes may be begun; and while a
+// process whose output is closed is about to end.
 #define LOOK_INTERVAL 50
+#define LOOK_INTERVAL_WAITING 10
 #define LOOK_INTERVAL_CLOSED 1
 
 // Seconds between looks at memory.
@@ -40,9 +41,10 @@ typedef struct {
   CagBatch *batch;
   Slot *slots;
   size_t running, capacity;
-  size_t next; // tasks before it are not waiting, but for those put back
-  bool again;  // there may be some of these
-  bool joins;  // run only what joins tiles
+  size_t next;    // tasks before it are not waiting, but for those put back
+  bool again;     // there may be some of these
+  bool joins;     // run only what joins tiles
+  size_t waiting; // tasks that are to be begun
   CagLoad load;
   CagBatchProgress progress;
   size_t limit_memory; // of a row's processes; 0: none
@@ -116,16 +118,18 @@ static void fail_start(Run *r, CagTask *task, const char *why) {
   task->state = CAG_TASK_FAILED;
   task->status = CAG_STATUS_LIMIT;
   task->message = strdup(why);
+  r->waiting--;
   r->status = cag_batch_end_task(r->batch, task);
 }
 
-static void start(Run *r, CagTask *task) {
+// False: the system has no process for now, and the task waits.
+static bool start(Run *r, CagTask *task) {
   CagBatch *b = r->batch;
   Slot *slot = &r->slots[r->running];
   Join work = {b, task};
   if (task->tile >= 0 && mkdir(b->tiles_folder, 0777) != 0 && errno != EEXIST) {
     fail_start(r, task, "the folder for its tiles cannot be made beside the file of jobs");
-    return;
+    return true;
   }
   char **words = task->joins ? NULL : cag_batch_command(b, task, b->threads);
   const bool started = task->joins ? cag_child_start_work(&slot->child, join, &work, 0)
@@ -134,19 +138,21 @@ static void start(Run *r, CagTask *task) {
   const int code = errno;
   free(words);
   task->attempts++;
-  if (!started && r->running) { // the system has no more for now
+  if (!started && r->running) {
     task->attempts--;
     r->again = true;
-    r->load.limit = (double)r->running;
-    return;
+    cag_load_refused(&r->load, r->running);
+    return false;
   }
   if (!started) {
     fail_start(r, task, strerror(code));
-    return;
+    return true;
   }
   task->state = CAG_TASK_RUNNING;
   slot->task = task;
   r->running++;
+  r->waiting--;
+  return true;
 }
 
 // What has ended goes to the journal, or back to what waits.
@@ -155,6 +161,7 @@ static void end(Run *r, Slot *slot) {
   CagTask *task = slot->task;
   task->seconds += slot->child.seconds;
   if (slot->child.memory > task->memory) task->memory = slot->child.memory;
+  cag_load_ended(&r->load, slot->child.memory);
   free(task->message);
   task->status =
       cag_child_result(&slot->child, b->tool->session.max_time, r->limit_memory, &task->message);
@@ -162,6 +169,7 @@ static void end(Run *r, Slot *slot) {
   r->again = true; // what joins this tile, or this one once more
   if (task->status != CAG_STATUS_OK && (size_t)task->attempts <= b->tool->retries) {
     task->state = CAG_TASK_WAITING;
+    r->waiting++;
     return;
   }
   task->state = task->status == CAG_STATUS_OK ? CAG_TASK_DONE : CAG_TASK_FAILED;
@@ -208,7 +216,10 @@ static void wait_for_news(Run *r, struct pollfd *waiting) {
     waiting[i] = (struct pollfd){.fd = r->slots[i].child.said, .events = POLLIN};
     closed |= waiting[i].fd < 0;
   }
-  poll(waiting, r->running, closed ? LOOK_INTERVAL_CLOSED : LOOK_INTERVAL);
+  const int interval = closed                                   ? LOOK_INTERVAL_CLOSED
+                       : r->waiting && r->running < r->capacity ? LOOK_INTERVAL_WAITING
+                                                                : LOOK_INTERVAL;
+  poll(waiting, r->running, interval);
 }
 
 // After Ctrl-C: all processes end, and what they did not finish waits for the next call.
@@ -228,11 +239,24 @@ static void stop_all(Run *r, struct pollfd *waiting) {
   }
 }
 
+static void begin_more(Run *r) {
+  while (r->running < r->capacity &&
+         r->running < cag_load_limit(&r->load, r->running, r->waiting)) {
+    CagTask *task = choose(r);
+    if (!task || !start(r, task)) return;
+  }
+}
+
+static size_t count_waiting(const Run *r) {
+  size_t n = 0;
+  for (size_t i = 0; i < r->batch->task_count; i++)
+    n += r->batch->tasks[i].state == CAG_TASK_WAITING && (!r->joins || r->batch->tasks[i].joins);
+  return n;
+}
+
 static void run_all(Run *r, struct pollfd *waiting) {
   while (r->status == CAG_STATUS_OK && !cag_tool_interrupt) {
-    const size_t limit = cag_load_limit(&r->load, r->running);
-    for (CagTask *task; r->running < limit && r->running < r->capacity && (task = choose(r));)
-      start(r, task);
+    begin_more(r);
     if (!r->running) return;
     wait_for_news(r, waiting);
     look(r);
@@ -253,6 +277,7 @@ static int run(CagBatch *b, bool joins) {
   struct pollfd *waiting = calloc(r.capacity, sizeof *waiting);
   if (r.slots && waiting) {
     cag_load_begin(&r.load, b->workers);
+    r.waiting = count_waiting(&r);
     cag_batch_progress_begin(&r.progress, b);
     run_all(&r, waiting);
     stop_all(&r, waiting);

@@ -179,9 +179,6 @@ static int render_frame(Film *f, long frame) {
   status = run_script(f);
   fflush(stdout); // prints stand before what is said of the picture
   if (status == CAG_STATUS_OK) {
-    // The limit of time is that of script and renderer together.
-    const double left = t->session.max_time - (now() - begun), least = 1e-3;
-    f->options.time_limit = t->session.max_time <= 0 ? 0 : left > least ? left : least;
     status =
         strcmp(path, "-") ? cag_session_render(f->session, &f->options, path) : render_to_output(f);
   }

@@ -2,11 +2,28 @@
 
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "interp/render/atomic_file.h"
 #include "interp/tool/tool.h"
 
+// The run is in a step that does not look up (a decomposition of a huge matrix): the program ends,
+// on the spot, as it does after a second Ctrl-C.
+static void end_overdue(CagSession *s, void *context) {
+  const CagTool *t = context;
+  // What was printed stands before, unless it is just that which takes so long.
+  if (ftrylockfile(stdout) == 0) {
+    fflush_unlocked(stdout);
+    funlockfile(stdout);
+  }
+  cag_session_write_overdue(s, t->style, stderr);
+  cag_atomic_files_cleanup();
+  _exit(CAG_STATUS_LIMIT);
+}
+
 CagSession *cag_tool_session(CagTool *t) {
+  t->session.overdue = end_overdue;
+  t->session.overdue_context = t;
   CagSession *s = cag_session_new(&t->session);
   if (!s) {
     cag_tool_fail(t, CAG_STATUS_LIMIT, NULL, "out of memory");

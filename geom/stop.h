@@ -1,0 +1,23 @@
+// Long work is asked to end.
+//
+// Who begins work on a thread lends it a flag, and takes it back at the end; loops that may run for
+// long look at it now and then, and fail with CAG_E_CALLBACK, "interrupted", when it is not 0. Why
+// it was set (a Ctrl-C, a limit of time) is known to who set it. The flag belongs to the thread, as
+// its stack does: threads know nothing of each other's, and work without a flag never ends early.
+
+#ifndef CAG_GEOM_STOP_H
+#define CAG_GEOM_STOP_H
+
+#include "geom/status.h"
+
+extern _Thread_local const volatile int *cag_stop_flag; // NULL: none
+
+// Lends the thread a flag (NULL: none); gives the one that it had.
+const volatile int *cag_stop_lend(const volatile int *flag);
+
+static inline bool cag_stopped(void) { return cag_stop_flag && *cag_stop_flag; }
+
+// Fails when the work is to end.
+CagStatus cag_stop_check(CagError *err);
+
+#endif

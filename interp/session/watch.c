@@ -1,0 +1,69 @@
+// The thread that looks at the clock while work runs.
+
+#include "interp/session/watch.h"
+
+#include <errno.h>
+#include <math.h>
+#include <time.h>
+
+// Seconds between looks at the interrupt, which a signal handler sets and which wakes nobody.
+static const double LOOK_INTERVAL = 0.02;
+
+// Seconds after its time until work is overdue: what looks at the flag has ended long before.
+static const double OVERDUE = 0.6;
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// Waits, with the mutex held, until the work is done or that many seconds have passed.
+static void wait_for_end(CagWatch *w, double seconds) {
+  const double until = now() + fmax(seconds, 0), whole = floor(until);
+  const struct timespec t = {(time_t)whole, (long)((until - whole) * 1e9)};
+  while (!w->finished && pthread_cond_timedwait(&w->done, &w->mutex, &t) != ETIMEDOUT) {}
+}
+
+static void *watch(void *context) {
+  CagWatch *w = context;
+  bool told = !w->overdue;
+  pthread_mutex_lock(&w->mutex);
+  while (!w->finished) {
+    const double passed = now() - w->begun;
+    const bool late = w->seconds > 0 && passed >= w->seconds;
+    if (late || (w->interrupt && *w->interrupt)) *w->stop = 1;
+    if (late && !told && passed >= w->seconds + OVERDUE) {
+      told = true;
+      w->overdue(w->context);
+    }
+    const double left = w->seconds > 0 && !late ? w->seconds - passed : LOOK_INTERVAL;
+    wait_for_end(w, fmin(left, LOOK_INTERVAL));
+  }
+  pthread_mutex_unlock(&w->mutex);
+  return NULL;
+}
+
+void cag_watch_begin(CagWatch *w) {
+  pthread_condattr_t attributes;
+  *w->stop = 0;
+  w->begun = now();
+  w->finished = false;
+  pthread_mutex_init(&w->mutex, NULL);
+  pthread_condattr_init(&attributes);
+  pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+  pthread_cond_init(&w->done, &attributes);
+  pthread_condattr_destroy(&attributes);
+  w->started = (w->seconds > 0 || w->interrupt) && pthread_create(&w->thread, NULL, watch, w) == 0;
+}
+
+double cag_watch_end(CagWatch *w) {
+  pthread_mutex_lock(&w->mutex);
+  w->finished = true;
+  pthread_cond_signal(&w->done);
+  pthread_mutex_unlock(&w->mutex);
+  if (w->started) pthread_join(w->thread, NULL);
+  pthread_cond_destroy(&w->done);
+  pthread_mutex_destroy(&w->mutex);
+  return now() - w->begun;
+}
