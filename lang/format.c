@@ -25,6 +25,7 @@ typedef struct Format {
   uint32_t comment_at; // where it begins; behind the text where there is none
   bool begun;          // a statement has been set
   bool inner;          // what is set is part of something: an operand, an element, an argument
+  bool data; // what was set last is data: words, and lists, records and calls of nothing else
 } Format;
 
 static Doc *expression(Format *f, const CagExpr *e);
@@ -191,6 +192,7 @@ static Doc *call(Format *f, const CagExpr *e) {
   bool clear = true; // no comment stands where hugging would swallow its line
   bool gathers = true, opens = !comments_before(f, e->span.end - 1);
   const CagExpr *last = NULL;
+  bool data = true;
   for (size_t i = 0; i < e->as.call.count; i++) {
     const CagArgument *a = &e->as.call.arguments[i];
     clear = !comments_before(f, a->value->span.start);
@@ -198,6 +200,7 @@ static Doc *call(Format *f, const CagExpr *e) {
     if (i) layout_add(&items, layout_space(&f->layout));
     last = a->value;
     Doc *item = argument(f, a);
+    data = data && f->data;
     if (i + 1 < e->as.call.count) layout_comma(item);
     layout_add(&items, item);
   }
@@ -211,8 +214,57 @@ static Doc *call(Format *f, const CagExpr *e) {
   arguments->opens =
       opens && e->as.call.count > 1 && opens_by_itself(e->as.call.arguments[0].value);
   layout_add(&d, arguments);
+  f->data = data;
   return layout_concat(&f->layout, &d);
 }
+
+// ---- tables ----
+
+static bool is_number(const CagExpr *e) {
+  if (e->kind == CAG_EXPR_NEGATE) e = e->as.unary.operand;
+  return e->kind == CAG_EXPR_NUMBER || e->kind == CAG_EXPR_ANGLE;
+}
+
+// Whether both are numbers, or lists of one shape; `words` is raised by the numbers in each.
+static bool have_one_shape(const CagExpr *a, const CagExpr *b, size_t *words) {
+  if (is_number(a)) {
+    ++*words;
+    return is_number(b);
+  }
+  if (a->kind != CAG_EXPR_LIST || b->kind != CAG_EXPR_LIST) return false;
+  const size_t n = a->as.list.count;
+  bool same = n > 0 && b->as.list.count == n;
+  for (size_t i = 0; i < n && same; i++)
+    same = have_one_shape(a->as.list.items[i], b->as.list.items[i], words);
+  return same;
+}
+
+// The numbers in each row of a list of such rows, all of one shape; 0 for anything else.
+static size_t table_words(const CagExpr *e) {
+  if (e->kind != CAG_EXPR_LIST || e->as.list.count < 2) return 0;
+  const CagExpr *first = e->as.list.items[0];
+  if (first->kind != CAG_EXPR_LIST) return 0;
+  size_t words = 0;
+  for (size_t i = 1; i < e->as.list.count; i++) {
+    words = 0;
+    if (!have_one_shape(first, e->as.list.items[i], &words)) return 0;
+  }
+  return words;
+}
+
+// Whether the rows can stand on a line each: no comment within breaks one.
+static bool rows_are_whole(const Docs *items) {
+  for (const Doc *d = items->head; d; d = d->next) {
+    const Doc *row = d;
+    if (d->kind == DOC_CONCAT)
+      for (row = d->child; row->next;) row = row->next;
+    if (row->kind > DOC_INLINE && (row->kind < DOC_BRACKETS || row->width >= DOC_ENDLESS))
+      return false;
+  }
+  return true;
+}
+
+// ---- lists and records ----
 
 static bool is_small(const Doc *d) { return d->width <= SMALL_ITEM; }
 
@@ -221,22 +273,28 @@ static Doc *items_doc(Format *f, const CagExpr *e, Doc *(*item)(Format *, const 
                       uint32_t (*start)(const CagExpr *, size_t), size_t count, char open,
                       const char *close) {
   Docs items = {0}, end = {0};
-  bool small = e->kind == CAG_EXPR_LIST;
+  const bool record = e->kind == CAG_EXPR_RECORD;
+  bool small = !record, data = true;
   for (size_t i = 0; i < count; i++) {
     const bool blank = i && blank_before(f, start(e, i));
     if (blank) layout_add(&items, layout_blank(&f->layout));
     if (i) layout_add(&items, blank ? layout_hard(&f->layout) : layout_space(&f->layout));
     Doc *d = item(f, e, i);
     small = small && is_small(d);
+    data = data && f->data;
     if (i + 1 < count) layout_comma(d);
     layout_add(&items, d);
   }
   set_closer(f, &end, e->span.end, close);
   Doc *closing = layout_concat(&f->layout, &end);
-  if (count > 1 && small) return layout_filled(&f->layout, open, &items, closing, INDENT);
-  return layout_brackets(
-      &f->layout, open, &items, closing, INDENT, e->kind == CAG_EXPR_RECORD && count,
-      count == 1 && e->kind == CAG_EXPR_LIST && opens_by_itself(e->as.list.items[0]));
+  f->data = data;
+  if (count > 1 && (small || (record && data)))
+    return layout_filled(&f->layout, open, &items, closing, INDENT, record);
+  const size_t words = table_words(e);
+  if (words && rows_are_whole(&items))
+    return layout_table(&f->layout, open, &items, closing, INDENT, words);
+  return layout_brackets(&f->layout, open, &items, closing, INDENT, record && count,
+                         count == 1 && !record && opens_by_itself(e->as.list.items[0]));
 }
 
 static Doc *list_item(Format *f, const CagExpr *e, size_t i) {
@@ -277,14 +335,17 @@ static Doc *parameter(Format *f, const CagParameter *p) {
 
 static Doc *parameters(Format *f, const CagFunctionAst *fn) {
   Docs items = {0};
+  bool small = fn->parameter_count > 1;
   for (size_t i = 0; i < fn->parameter_count; i++) {
     if (i) layout_add(&items, layout_space(&f->layout));
     Doc *d = parameter(f, &fn->parameters[i]);
+    small = small && is_small(d);
     if (i + 1 < fn->parameter_count) layout_comma(d);
     layout_add(&items, d);
   }
-  Doc *d = layout_brackets(&f->layout, '(', &items, layout_plain(&f->layout, ")", 1), INDENT, false,
-                           false);
+  Doc *close = layout_plain(&f->layout, ")", 1);
+  if (small) return layout_filled(&f->layout, '(', &items, close, INDENT, false);
+  Doc *d = layout_brackets(&f->layout, '(', &items, close, INDENT, false, false);
   d->gathers = true;
   return d;
 }
@@ -474,12 +535,14 @@ static Doc *range_end(Format *f, const CagExpr *e) {
 static Doc *range(Format *f, const CagExpr *e) {
   Docs d = {0};
   layout_add(&d, range_end(f, e->as.range.low));
+  const bool data = f->data;
   set_word(f, &d, e->as.range.open ? "..<" : "..");
   layout_add(&d, range_end(f, e->as.range.high));
   if (e->as.range.step) {
     set_word(f, &d, " by ");
     layout_add(&d, range_end(f, e->as.range.step));
   }
+  f->data = f->data && data;
   return layout_concat(&f->layout, &d);
 }
 
@@ -614,27 +677,48 @@ static Doc *member(Format *f, const CagExpr *e) {
   return layout_concat(&f->layout, &d);
 }
 
-static Doc *expression(Format *f, const CagExpr *e) {
+// What is computed from parts, and is no data.
+static Doc *computed(Format *f, const CagExpr *e) {
   switch (e->kind) {
   case CAG_EXPR_GROUP: return group(f, e);
-  case CAG_EXPR_LIST:
-  case CAG_EXPR_RECORD: return bracketed(f, e);
-  case CAG_EXPR_SPREAD: return prefixed(f, e, "...");
   case CAG_EXPR_COMPREHENSION: return comprehension(f, e);
   case CAG_EXPR_BLOCK: return block(f, e);
   case CAG_EXPR_LAMBDA: return lambda(f, e);
   case CAG_EXPR_IF: return branches(f, e);
-  case CAG_EXPR_NEGATE: return prefixed(f, e, "-");
   case CAG_EXPR_NOT: return prefixed(f, e, "not ");
   case CAG_EXPR_BINARY: return e->as.binary.op == CAG_OP_POWER ? power(f, e) : chain(f, e);
-  case CAG_EXPR_AND:
-  case CAG_EXPR_OR: return chain(f, e);
   case CAG_EXPR_PIPE: return pipe(f, e);
+  default: return chain(f, e); // and, or
+  }
+}
+
+static Doc *expression(Format *f, const CagExpr *e) {
+  Doc *d;
+  switch (e->kind) {
+  case CAG_EXPR_LIST:
+  case CAG_EXPR_RECORD: return bracketed(f, e);
+  case CAG_EXPR_SPREAD: return prefixed(f, e, "...");
+  case CAG_EXPR_NEGATE: return prefixed(f, e, "-");
   case CAG_EXPR_RANGE: return range(f, e);
   case CAG_EXPR_CALL: return call(f, e);
   case CAG_EXPR_INDEX: return index_of(f, e);
   case CAG_EXPR_MEMBER: return member(f, e);
-  default: return span_doc(f, e->span); // numbers, texts, names: as they are written
+  case CAG_EXPR_GROUP:
+  case CAG_EXPR_COMPREHENSION:
+  case CAG_EXPR_BLOCK:
+  case CAG_EXPR_LAMBDA:
+  case CAG_EXPR_IF:
+  case CAG_EXPR_NOT:
+  case CAG_EXPR_BINARY:
+  case CAG_EXPR_PIPE:
+  case CAG_EXPR_AND:
+  case CAG_EXPR_OR:
+    d = computed(f, e);
+    f->data = false;
+    return d;
+  default: // numbers, texts, names: as they are written
+    f->data = true;
+    return span_doc(f, e->span);
   }
 }
 

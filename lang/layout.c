@@ -174,9 +174,59 @@ Doc *layout_brackets(Layout *l, char open, const Docs *items, Doc *close, int in
   return d;
 }
 
-Doc *layout_filled(Layout *l, char open, const Docs *items, Doc *close, int indent) {
-  Doc *d = layout_brackets(l, open, items, close, indent, false, false);
+Doc *layout_filled(Layout *l, char open, const Docs *items, Doc *close, int indent, bool padded) {
+  Doc *d = layout_brackets(l, open, items, close, indent, padded, false);
   d->kind = DOC_FILLED;
+  return d;
+}
+
+static const Doc *last_of(const Doc *child) {
+  while (child && child->next) child = child->next;
+  return child;
+}
+
+// ---- tables ----
+
+static bool is_leaf(const Doc *d) { return d->kind <= DOC_INLINE; }
+static bool is_brackets(const Doc *d) { return d->kind >= DOC_BRACKETS; }
+
+// The brackets of an item of a table, behind its comments.
+static const Doc *row_of(const Doc *item) {
+  return item->kind == DOC_CONCAT ? last_of(item->child) : item;
+}
+
+static uint32_t word_width(const Doc *d) { return d->width - d->comma; }
+
+// Raises the widths of columns to those of the words of a row; gives what is behind the last.
+static uint32_t *widen_columns(const Doc *d, uint32_t *widths) {
+  if (!is_brackets(d)) {
+    if (*widths < word_width(d)) *widths = word_width(d);
+    return widths + 1;
+  }
+  for (const Doc *c = d->child; c; c = c->next)
+    if (c->kind != DOC_LINE) widths = widen_columns(c, widths);
+  return widths;
+}
+
+static const uint32_t *pad_words(Doc *d, const uint32_t *widths) {
+  if (!is_brackets(d)) {
+    d->pad = *widths - word_width(d);
+    return widths + 1;
+  }
+  for (Doc *c = d->child; c; c = c->next)
+    if (c->kind != DOC_LINE) widths = pad_words(c, widths);
+  return widths;
+}
+
+Doc *layout_table(Layout *l, char open, const Docs *items, Doc *close, int indent, size_t words) {
+  uint32_t *widths = layout_memory(l, words * sizeof *widths);
+  memset(widths, 0, words * sizeof *widths);
+  for (const Doc *item = items->head; item; item = item->next)
+    if (!is_leaf(item)) widen_columns(row_of(item), widths);
+  for (const Doc *item = items->head; item; item = item->next)
+    if (!is_leaf(item)) pad_words((Doc *)row_of(item), widths);
+  Doc *d = layout_brackets(l, open, items, close, indent, false, false);
+  d->kind = DOC_TABLE;
   return d;
 }
 
@@ -329,14 +379,13 @@ static uint32_t behind(const Doc *d, uint32_t tail) {
   return width + tail;
 }
 
-static bool is_leaf(const Doc *d) { return d->kind <= DOC_INLINE; }
-
 static void print_children(Layout *l, const Doc *child, int indent, uint32_t tail) {
   for (; child; child = child->next)
     print(l, child, indent, is_leaf(child) ? 0 : behind(child, tail));
 }
 
-static void print_fill(Layout *l, const Doc *child, int indent, uint32_t tail) {
+// `apart`: what has to be broken stands on lines of its own.
+static void print_fill(Layout *l, const Doc *child, int indent, uint32_t tail, bool apart) {
   for (bool whole = true; child; child = child->next) {
     if (child->kind == DOC_LINE && child->next) {
       const Doc *item = child->next;
@@ -346,22 +395,17 @@ static void print_fill(Layout *l, const Doc *child, int indent, uint32_t tail) {
       if (stays) print_flat(l, child);
       else print(l, child, indent, 0);
     } else {
-      whole = child->width < DOC_ENDLESS;
+      whole = apart ? fits(l, child, 0) : child->width < DOC_ENDLESS;
       print(l, child, indent, child->next ? 0 : tail);
     }
   }
-}
-
-static const Doc *last_of(const Doc *child) {
-  while (child && child->next) child = child->next;
-  return child;
 }
 
 // Whether the items but the last stand on this line, and the last opens on it.
 static bool hugs(const Layout *l, const Doc *d, int indent) {
   const Doc *last = last_of(d->child);
   if (!d->hugs || !last) return false;
-  uint32_t width = column(l) + 1;
+  uint32_t width = column(l);
   for (const Doc *c = d->child; c != last; c = c->next) width = sum(width, c->width);
   if (width + last->first > l->width) return false;
   return d->child == last || (uint32_t)(indent + d->indent) + last->width + 1 > l->width;
@@ -383,7 +427,7 @@ static bool opens(const Layout *l, const Doc *d, int indent) {
   if (!d->opens || gathers(l, d, indent)) return false;
   uint32_t rest = 0;
   for (const Doc *c = d->child->next; c; c = c->next) rest = sum(rest, c->width);
-  return rest <= REST_MAX && column(l) + 1 + d->child->first <= l->width;
+  return rest <= REST_MAX && column(l) + d->child->first <= l->width;
 }
 
 static void put_inline(Layout *l, const Doc *text) {
@@ -404,6 +448,7 @@ static void print_flat(Layout *l, const Doc *d) {
   case DOC_INLINE: put_inline(l, d->child); break;
   case DOC_BRACKETS:
   case DOC_FILLED:
+  case DOC_TABLE:
     put_word(l, &d->bracket, 1, 1);
     if (d->padded) put_word(l, " ", 1, 1);
     print_all_flat(l, d->child, NULL);
@@ -413,6 +458,44 @@ static void print_flat(Layout *l, const Doc *d) {
   default: print_all_flat(l, d->child, NULL);
   }
   if (d->comma) put_word(l, ",", 1, 1);
+}
+
+static uint32_t aligned_width(const Doc *d) {
+  if (!is_brackets(d)) return d->pad + d->width;
+  uint32_t width = 1 + d->comma + d->close->width;
+  for (const Doc *c = d->child; c; c = c->next)
+    width += c->kind == DOC_LINE ? c->width : aligned_width(c);
+  return width;
+}
+
+static void print_aligned(Layout *l, const Doc *d) {
+  if (!is_brackets(d)) {
+    for (uint32_t i = 0; i < d->pad; i++) put_word(l, " ", 1, 1);
+    print_flat(l, d);
+    return;
+  }
+  put_word(l, &d->bracket, 1, 1);
+  for (const Doc *c = d->child; c; c = c->next) {
+    if (c->kind == DOC_LINE) print_flat(l, c);
+    else print_aligned(l, c);
+  }
+  print_flat(l, d->close);
+  if (d->comma) put_word(l, ",", 1, 1);
+}
+
+// The rows of a table, each on a line where that is long enough.
+static void print_rows(Layout *l, const Doc *item, int indent) {
+  for (; item; item = item->next) {
+    const Doc *row = is_leaf(item) ? NULL : row_of(item);
+    if (!row || (uint32_t)indent + aligned_width(row) + item->comma > l->width) {
+      print(l, item, indent, 0);
+      continue;
+    }
+    if (row != item)
+      for (const Doc *c = item->child; c != row; c = c->next) print(l, c, indent, 0);
+    print_aligned(l, row);
+    if (row != item && item->comma) put_word(l, ",", 1, 1);
+  }
 }
 
 static void print_brackets(Layout *l, const Doc *d, int indent, uint32_t tail) {
@@ -427,7 +510,8 @@ static void print_brackets(Layout *l, const Doc *d, int indent, uint32_t tail) {
   } else if (d->child) {
     const int inner = indent + d->indent;
     put_line(l, inner);
-    if (d->kind == DOC_FILLED) print_fill(l, d->child, inner, 0);
+    if (d->kind == DOC_FILLED) print_fill(l, d->child, inner, 0, true);
+    else if (d->kind == DOC_TABLE) print_rows(l, d->child, inner);
     else if (gathers(l, d, indent)) print_all_flat(l, d->child, NULL);
     else print_children(l, d->child, inner, 0);
     if (d->close->kind == DOC_CONCAT) { // comments before the bracket stand with the items
@@ -457,9 +541,10 @@ static void print_broken(Layout *l, const Doc *d, int indent, uint32_t tail) {
   case DOC_CONCAT:
   case DOC_GROUP: print_children(l, d->child, indent, tail); break;
   case DOC_NEST: print_children(l, d->child, indent + d->indent, tail); break;
-  case DOC_FILL: print_fill(l, d->child, indent, tail); break;
+  case DOC_FILL: print_fill(l, d->child, indent, tail, false); break;
   case DOC_BRACKETS:
-  case DOC_FILLED: print_brackets(l, d, indent, tail); break;
+  case DOC_FILLED:
+  case DOC_TABLE: print_brackets(l, d, indent, tail); break;
   }
 }
 

@@ -28,7 +28,9 @@ typedef enum DocKind {
   DOC_GROUP,    // on one line, or all its lines broken
   DOC_FILL,     // each line broken only where the next item does not fit
   DOC_BRACKETS, // items between brackets: on one line, or one to a line
-  DOC_FILLED    // items between brackets: on one line, or filled
+  DOC_FILLED,   // items between brackets: on one line, or filled
+  DOC_TABLE     // rows of words between brackets: on one line, or one to a line, their words one
+                // below the other
 } DocKind;
 
 // Wider than any line: holds a break that must be.
@@ -54,8 +56,11 @@ struct Doc {
     const char *text; // TEXT, LINE
     Doc *child;
   };
-  Doc *close; // BRACKETS
-  Doc *next;  // behind it in the same parent
+  union {
+    Doc *close;   // BRACKETS
+    uint32_t pad; // a word of a TABLE: columns before it that make it end below the others
+  };
+  Doc *next; // behind it in the same parent
 };
 
 typedef struct Docs {
@@ -110,7 +115,10 @@ Doc *layout_fill(Layout *l, const Docs *items); // items and LINEs in turn
 // them, so that its own brackets close with these.
 Doc *layout_brackets(Layout *l, char open, const Docs *items, Doc *close, int indent, bool padded,
                      bool hugs);
-Doc *layout_filled(Layout *l, char open, const Docs *items, Doc *close, int indent);
+Doc *layout_filled(Layout *l, char open, const Docs *items, Doc *close, int indent, bool padded);
+// `items`: brackets of one shape, perhaps with comments before them, with `words` words each in
+// which no line can be broken.
+Doc *layout_table(Layout *l, char open, const Docs *items, Doc *close, int indent, size_t words);
 
 // Prints a document and ends its line; forgets all documents.
 void layout_print(Layout *l, Doc *d);

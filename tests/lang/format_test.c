@@ -108,6 +108,55 @@ static void long_lines_are_broken(void **state) {
   expect_layout("a = map(xs, x => { y = x; y })", "a = map(xs, x => {\n  y = x\n  y\n})\n");
 }
 
+static void rows_of_numbers_stand_one_below_the_other(void **state) {
+  (void)state;
+  expect_layout("net = [[[0,0,8],[0,18.5,24],[0,36,-4],[0,54,12]],[[18,0,26],[18,18,48],[18,36,30],"
+                "[18,54,24]],]",
+                "net = [\n"
+                "  [[ 0, 0,  8], [ 0, 18.5, 24], [ 0, 36, -4], [ 0, 54, 12]],\n"
+                "  [[18, 0, 26], [18,   18, 48], [18, 36, 30], [18, 54, 24]]\n"
+                "]\n");
+  // What fits on a line is no table.
+  expect_layout("m = [[1,20],[300,4]]", "m = [[1, 20], [300, 4]]\n");
+  // Comments and blank lines may stand between the rows.
+  expect_layout("m = [ // all\n[1000000000,2,3,4,5,6,7,8],\n\n[1,2,3,4,5,6,7,8], // two\n"
+                "/* three */ [1,2,3,4,5,6,7,8]]",
+                "m = [  // all\n  [1000000000, 2, 3, 4, 5, 6, 7, 8],\n\n"
+                "  [         1, 2, 3, 4, 5, 6, 7, 8],  // two\n"
+                "  /* three */ [         1, 2, 3, 4, 5, 6, 7, 8]\n]\n");
+  // Rows that are not alike are set as they are.
+  expect_layout("m = [[1000000000000, 2000000000000], [1, 2000000000000, 3], [100000000000000, x], "
+                "[1000000, 20000000, 3]]",
+                "m = [\n  [1000000000000, 2000000000000],\n  [1, 2000000000000, 3],\n"
+                "  [100000000000000, x],\n  [1000000, 20000000, 3]\n]\n");
+}
+
+static void records_of_data_are_filled(void **state) {
+  (void)state;
+  expect_layout(
+      "r = { name: \"a long name of a thing\", size: [10, 20, 30], at: f(1, -2), look: m.red, "
+      "turned: 0deg..90deg, end: true }",
+      "r = {\n  name: \"a long name of a thing\", size: [10, 20, 30], at: f(1, -2), look: "
+      "m.red,\n  turned: 0deg..90deg, end: true\n}\n");
+  // A field that has to be broken stands apart.
+  expect_layout("r = { a: 1, b: 2, xs: [" LONG ", " LONG ", 1], c: 3, d: 4 }",
+                "r = {\n  a: 1, b: 2,\n  xs: [\n    " LONG ",\n    " LONG ",\n    1\n  ],\n"
+                "  c: 3, d: 4\n}\n");
+  // Where something is computed, each field has its line.
+  expect_layout("r = { first: 1, second: 2, third: 2 * " LONG ", fourth: 4, fifth: 5, sixth: 6 }",
+                "r = {\n  first: 1,\n  second: 2,\n  third: 2*" LONG
+                ",\n  fourth: 4,\n  fifth: 5,\n  sixth: 6\n}\n");
+}
+
+static void short_parameters_are_filled(void **state) {
+  (void)state;
+  expect_layout(
+      "f(first = 1, second = 2, third = 3, fourth = 4, fifth = 5, sixth = 6, seventh = 7, "
+      "eighth = 8, ninth = 9) = 1",
+      "f(\n  first = 1, second = 2, third = 3, fourth = 4, fifth = 5, sixth = 6, "
+      "seventh = 7, eighth = 8,\n  ninth = 9\n) = 1\n");
+}
+
 // ---- properties ----
 
 static size_t scripts_seen;
@@ -222,7 +271,7 @@ static int check_file(const char *path, const struct stat *info, int kind, struc
 
 static void scripts_keep_their_trees(void **state) {
   (void)state;
-  static const char *const folders[] = {"stdlib", "examples", "tests"};
+  static const char *const folders[] = {"stdlib", "examples", "docs", "tests"};
   scripts_seen = 0;
   seed = 1;
   for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
@@ -237,6 +286,9 @@ int main(void) {
       cmocka_unit_test(labels_of_params_are_set_one_below_the_other),
       cmocka_unit_test(comments_keep_their_places),
       cmocka_unit_test(long_lines_are_broken),
+      cmocka_unit_test(rows_of_numbers_stand_one_below_the_other),
+      cmocka_unit_test(records_of_data_are_filled),
+      cmocka_unit_test(short_parameters_are_filled),
       cmocka_unit_test(scripts_keep_their_trees),
   };
   return cmocka_run_group_tests_name("layout", tests, NULL, NULL);
