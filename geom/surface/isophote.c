@@ -22,10 +22,10 @@ static double isophote_value(const CagLevel *level, const CagVec3 *d, int n, dou
 
 CagStatus cag_surface_isophote(const CagSurface *s, CagVec3 direction, double cosine,
                                double tolerance, CagCurveList *out, CagError *err) {
-  const double by_values = 0; // what is rounding follows from the values
   const CagRegion *region;
   CagTransform frame;
   if (cag_surface_planar_view(s, &region, &frame)) return CAG_OK;
-  CagLevel level = {2, isophote_value, {0, 0, 0}, direction, false, by_values, cosine};
-  return cag_surface_level_curves(s, &level, tolerance, out, err);
+  CagLevel level = {
+      .order = 2, .value = isophote_value, .direction = direction, .constant = cosine};
+  return cag_surface_level_curves(s, &level, tolerance, out, NULL, err);
 }

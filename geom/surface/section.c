@@ -264,9 +264,11 @@ static bool is_beside(const CagBounds *b, const CagPlane *plane) {
 
 // Trimmed surfaces are traced whole, and the runs end on their loops.
 static CagStatus trace_all(const CagSurface *s, const CagLevel *level, const CagQuadric *quadric,
-                           double tolerance, double size, CagCurveList *out, CagError *err) {
+                           double tolerance, double size, CagCurveList *out, bool *everywhere,
+                           CagError *err) {
   CagTraces traces;
   CagStatus status = cag_surface_trace(s, level, tolerance, &traces, err);
+  if (everywhere) *everywhere = traces.everywhere;
   for (size_t i = 0; !status && i < traces.count; i++) {
     CagCurve *c = NULL;
     status = cag_trace_curve(&traces.items[i], quadric, size, &c, err);
@@ -288,7 +290,7 @@ static CagStatus section_face(const CagSurface *s, const CagPlane *plane, double
     return section_flat(region, &frame, plane, size, out, err);
   CagLevel level = cag_level_plane(plane, size);
   bool quadric = cag_surface_quadric_view(s, &q);
-  return trace_all(s, &level, quadric ? &q : NULL, tolerance, size, out, err);
+  return trace_all(s, &level, quadric ? &q : NULL, tolerance, size, out, NULL, err);
 }
 
 CagStatus cag_surface_section(const CagSurface *s, const CagPlane *plane, double tolerance,
@@ -332,17 +334,17 @@ CagStatus cag_surface_contour(const CagSurface *s, CagVec3 direction, CagVec3 ey
   // A flat face is seen from one side or from its edge.
   if (cag_surface_planar_view(s, &region, &frame)) return CAG_OK;
   CagLevel level = cag_level_contour(direction, eye, central);
-  return cag_surface_level_curves(s, &level, tolerance, out, err);
+  return cag_surface_level_curves(s, &level, tolerance, out, NULL, err);
 }
 
 CagStatus cag_surface_level_curves(const CagSurface *s, const CagLevel *level, double tolerance,
-                                   CagCurveList *out, CagError *err) {
+                                   CagCurveList *out, bool *everywhere, CagError *err) {
   CagBounds box;
   CagStatus status = cag_surface_bounds(s, &box, err);
   if (status) return status;
   double size = size_of(&box);
   size_t first = out->count;
   if (!(tolerance > 0)) tolerance = DEFAULT_TOLERANCE * size;
-  status = trace_all(s, level, NULL, tolerance, size, out, err);
+  status = trace_all(s, level, NULL, tolerance, size, out, everywhere, err);
   return status ? status : join_list(out, first, MEET * size, err);
 }

@@ -31,13 +31,18 @@ CagTransform cag_plane_frame(const CagPlane *plane);
 
 // A function of a place of the surface, from the partials there.
 typedef struct CagLevel {
-  int order; // of the partials that its gradient needs, 1 or 2; its value needs one order less
+  int order; // of the partials that its gradient needs, 1 to 3; its value needs one order less
   // d holds the partials of total order n; gradient (by u and v) is wanted where it is not NULL.
   double (*value)(const struct CagLevel *level, const CagVec3 *d, int n, double *gradient);
   CagVec3 point, direction;
   bool central;
-  double zero;     // values below are rounding
-  double constant; // what further functions need
+  double zero;           // values below are rounding; 0: found by the values
+  double constant, unit; // what further functions need
+  int which;
+  // The function jumps or bends at breaks, so that each patch between them has its own values, and
+  // is not a number where the surface has no normal, also along an edge that is a pole: there it is
+  // continued from beside.
+  bool sided;
 } CagLevel;
 // Distance from a plane.
 CagLevel cag_level_plane(const CagPlane *plane, double size);
@@ -55,6 +60,7 @@ typedef struct CagTrace {
 typedef struct CagTraces {
   CagTrace *items;
   size_t count, capacity;
+  bool everywhere; // a sided function is 0, to rounding, on all of the surface
 } CagTraces;
 void cag_traces_free(CagTraces *t);
 
@@ -91,8 +97,9 @@ CagStatus cag_mesh_section(const CagMesh *m, const CagPlane *plane, CagCurveList
 CagStatus cag_surface_contour(const CagSurface *s, CagVec3 direction, CagVec3 eye, bool central,
                               double tolerance, CagCurveList *out, CagError *err);
 
-// The curves on which a function of the surface is 0, at `tolerance` as of sections.
+// The curves on which a function of the surface is 0, at `tolerance` as of sections. `everywhere`,
+// where it is not NULL, is that of the traces.
 CagStatus cag_surface_level_curves(const CagSurface *s, const CagLevel *level, double tolerance,
-                                   CagCurveList *out, CagError *err);
+                                   CagCurveList *out, bool *everywhere, CagError *err);
 
 #endif

@@ -5,6 +5,9 @@
 // the grid, seams and poles need no care: they run along the side of the cells that are negative,
 // and points that coincide in space are dropped. Between two crossings points are added until
 // Hermite cubics are within the tolerance.
+//
+// Functions that jump at breaks are traced patch by patch between them; runs that go on smoothly
+// from patch to patch are joined.
 
 #include <float.h>
 #include <math.h>
@@ -13,13 +16,17 @@
 #include <string.h>
 
 #include "geom/surface/family.h"
+#include "geom/surface/level_patch.h"
 #include "geom/surface/section.h"
 #include "geom/surface/trimmed.h"
 
 // Cells along the whole of a direction, and at least so many between two breaks.
 #define CELLS 40
 #define CELLS_BETWEEN_BREAKS 4
+#define CELLS_OF_PATCH 10
 #define CELLS_MOST 400
+// As often as the cells may be halved where the function is rough.
+#define HALVINGS_MOST 3
 // Grid lines added for loops smaller than a cell.
 #define FOLLOWED_MOST 32
 // Halvings between two crossings.
@@ -32,13 +39,23 @@
 #define TURN_COSINE 0.866
 // cos 40 degrees: where chords turn by more, a run has a corner.
 #define CORNER_COSINE 0.766
+// Sided runs that meet are one where their tangents agree up to this (1 - cosine): cubics with one
+// tangent for both then stay within a millionth.
+#define KINK 1e-8
 // Parts of the size below which points are one.
 #define SAME 1e-10
+#define SPECK 1e-8
+#define BESIDE_LOST 1e-3
 // A place has no tangent where its two parts cancel to this part, or the function changes by less
 // than so many roundings over the whole surface.
 #define FLAT 1e-9
 #define FLAT_ROUNDINGS 1e4
+// A function that is this many roundings at most is 0 throughout.
+#define CONSTANT_ROUNDINGS 100
 #define SLID 1e-5
+// A point between two others tells of the cubic's middle only if it is not nearer to one of them
+// than this part of the way: by a pole the middle of the parameters may be.
+#define LOPSIDED 0.2
 #define ROOT_ROUNDS 80
 #define NEWTON_ROUNDS 12
 
@@ -47,16 +64,21 @@ typedef struct Node {
   CagVec3 p, t;
   bool regular;   // t is the tangent
   bool branching; // two branches cross there
+  bool flat;      // the function does not change there
 } Node;
 
 typedef struct Tracer {
   const CagSurface *s;
   const CagLevel *level;
+  CagLevelPatch patch;     // what is traced now: all of the surface where the function is not sided
   const CagRegion *region; // of a trimmed surface; NULL: all of the rectangle belongs to it
   double tolerance, size;
+  double zero_beside; // what is rounding beside a pole
   double *lines[2];
-  size_t n[2]; // grid lines
-  size_t cells;
+  size_t n[2];     // grid lines
+  size_t cells[2]; // as many as there were before they were halved
+  size_t finer;
+  bool torn; // a run has a gap
   double *values;
   // Crossings of the edges along u (first) and along v.
   size_t edge_count;
@@ -82,7 +104,11 @@ static double plane_value(const CagLevel *l, const CagVec3 *d, int n, double *gr
 
 CagLevel cag_level_plane(const CagPlane *plane, double size) {
   const double rounding = 1e-13;
-  CagLevel l = {1, plane_value, plane->point, plane->normal, false, rounding * size, 0};
+  CagLevel l = {.order = 1,
+                .value = plane_value,
+                .point = plane->point,
+                .direction = plane->normal,
+                .zero = rounding * size};
   return l;
 }
 
@@ -100,41 +126,48 @@ static double contour_value(const CagLevel *l, const CagVec3 *d, int n, double *
 }
 
 CagLevel cag_level_contour(CagVec3 direction, CagVec3 point, bool central) {
-  CagLevel l = {2, contour_value, point, direction, central, 0, 0};
+  CagLevel l = {.order = 2,
+                .value = contour_value,
+                .point = point,
+                .direction = direction,
+                .central = central};
   return l;
 }
 
-static bool partials_at(Tracer *t, double u, double v, int n, CagVec3 *d) {
-  if (t->status) return false;
-  CagSide su = u >= t->s->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
-  CagSide sv = v >= t->s->v1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
-  t->status = cag_surface_eval(t->s, u, v, n, su, sv, d, t->err);
-  return t->status == CAG_OK;
-}
-
 static double value_at(Tracer *t, double u, double v) {
-  CagVec3 d[9] = {0};
-  int n = t->level->order - 1;
-  return partials_at(t, u, v, n, d) ? t->level->value(t->level, d, n, NULL) : 0;
+  double f = 0;
+  if (!t->status) t->status = cag_patch_value(&t->patch, u, v, &f, NULL, NULL, t->err);
+  return f;
 }
 
-static double settled(const Tracer *t, double f) { return fabs(f) <= t->level->zero ? 0 : f; }
+// What is rounding at this place.
+static double zero_at(const Tracer *t, double u, double v) {
+  return t->level->sided && cag_patch_is_beside(&t->patch, u, v) ? t->zero_beside : t->level->zero;
+}
+
+// The value, 0 where it is rounding.
+static double settled_at(Tracer *t, double u, double v) {
+  double f = value_at(t, u, v);
+  return fabs(f) <= zero_at(t, u, v) ? 0 : f;
+}
 
 // Point and tangent at the node's parameters; gives the value and its gradient.
 static double inspect(Tracer *t, Node *node, double gradient[2]) {
-  CagVec3 d[9] = {0};
-  int n = t->level->order;
+  CagVec3 d[4] = {0};
+  double f = 0;
   gradient[0] = gradient[1] = 0;
   node->regular = false;
-  if (!partials_at(t, node->u, node->v, n, d)) return 0;
-  double f = t->level->value(t->level, d, n, gradient);
-  CagVec3 su = d[cag_partial(n, 1, 0)], sv = d[cag_partial(n, 0, 1)];
+  if (!t->status) t->status = cag_patch_value(&t->patch, node->u, node->v, &f, gradient, d, t->err);
+  if (t->status) return 0;
+  CagVec3 su = d[cag_partial(1, 1, 0)], sv = d[cag_partial(1, 0, 1)];
   CagVec3 along = cag_madd(cag_scaled(su, -gradient[1]), gradient[0], sv);
   double magnitude = fabs(gradient[1]) * cag_norm(su) + fabs(gradient[0]) * cag_norm(sv);
-  double level =
-      fabs(gradient[0]) * (t->s->u1 - t->s->u0) + fabs(gradient[1]) * (t->s->v1 - t->s->v0);
+  const double *lo = t->patch.lo, *hi = t->patch.hi;
+  double level = fabs(gradient[0]) * (hi[0] - lo[0]) + fabs(gradient[1]) * (hi[1] - lo[1]);
   node->p = d[0];
-  node->regular = cag_norm(along) > FLAT * magnitude && level > FLAT_ROUNDINGS * t->level->zero;
+  node->flat = level <= FLAT_ROUNDINGS * t->level->zero;
+  node->regular = cag_norm(along) > FLAT * magnitude && !node->flat &&
+                  !cag_patch_is_collapsed(&t->patch, node->u, node->v);
   node->t = node->regular ? cag_unit(along) : cag_vec3(0, 0, 0);
   return f;
 }
@@ -149,8 +182,9 @@ static int by_size(const void *a, const void *b) {
 static bool make_lines(Tracer *t, int direction, size_t cells, const double *extra,
                        size_t extra_count) {
   const CagSurface *s = t->s;
-  double lo = direction ? s->v0 : s->u0, hi = direction ? s->v1 : s->u1;
-  size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
+  double lo = t->patch.lo[direction], hi = t->patch.hi[direction];
+  bool broken = s->kind->breaks && !t->level->sided;
+  size_t inner = broken ? s->kind->breaks(s, direction, NULL, 0) : 0;
   size_t between = cells / (inner + 1);
   if (between < CELLS_BETWEEN_BREAKS) between = CELLS_BETWEEN_BREAKS;
   if (between * (inner + 1) > CELLS_MOST) between = CELLS_MOST / (inner + 1) + 1;
@@ -188,7 +222,7 @@ static bool fill_values(Tracer *t) {
   if (!t->values) return false;
   for (size_t j = 0; j < t->n[1] && !t->status; j++)
     for (size_t i = 0; i < t->n[0] && !t->status; i++)
-      *value_of(t, i, j) = settled(t, value_at(t, t->lines[0][i], t->lines[1][j]));
+      *value_of(t, i, j) = settled_at(t, t->lines[0][i], t->lines[1][j]);
   return t->status == CAG_OK;
 }
 
@@ -219,14 +253,28 @@ static double roughness(Tracer *t) {
   return largest > 0 ? worst / largest : 0;
 }
 
+// Lines that are added to the even ones, by direction.
+typedef struct Extra {
+  double at[2][FOLLOWED_MOST];
+  size_t n[2];
+} Extra;
+
+static void add_extra(Extra *e, int direction, double x) {
+  if (e->n[direction] < FOLLOWED_MOST) e->at[direction][e->n[direction]++] = x;
+}
+
+static bool make_all_lines(Tracer *t, const Extra *e) {
+  return make_lines(t, 0, t->cells[0] * t->finer, e->at[0], e->n[0]) &&
+         make_lines(t, 1, t->cells[1] * t->finer, e->at[1], e->n[1]) && fill_values(t);
+}
+
 // Twice as fine until the function is smooth from one line to the next.
-static bool make_grid(Tracer *t) {
+static bool make_grid(Tracer *t, size_t finer) {
   const double smooth = 0.1;
-  for (t->cells = CELLS;; t->cells *= 2) {
-    if (!make_lines(t, 0, t->cells, NULL, 0) || !make_lines(t, 1, t->cells, NULL, 0) ||
-        !fill_values(t))
-      return false;
-    if (2 * t->cells > CELLS_MOST || roughness(t) <= smooth) return t->status == CAG_OK;
+  const Extra none = {.n = {0, 0}};
+  for (t->finer = finer;; t->finer *= 2) {
+    if (!make_all_lines(t, &none)) return false;
+    if (t->finer >> HALVINGS_MOST || roughness(t) <= smooth) return t->status == CAG_OK;
   }
 }
 
@@ -241,8 +289,8 @@ static bool go_to_critical(Tracer *t, Node *node, double hu, double hv, double *
   double u = node->u, v = node->v;
   for (int round = 0; round < rounds; round++) {
     double g[2], gu[2], gv[2];
-    double du = node->u + part * hu > t->s->u1 ? -part * hu : part * hu;
-    double dv = node->v + part * hv > t->s->v1 ? -part * hv : part * hv;
+    double du = node->u + part * hu > t->patch.hi[0] ? -part * hu : part * hu;
+    double dv = node->v + part * hv > t->patch.hi[1] ? -part * hv : part * hv;
     Node beside = *node;
     inspect(t, node, g);
     beside.u += du;
@@ -255,8 +303,9 @@ static bool go_to_critical(Tracer *t, Node *node, double hu, double hv, double *
     *determinant = a * c - b * b;
     if (t->status || !(fabs(*determinant) > 0)) return false;
     double su = (c * g[0] - b * g[1]) / *determinant, sv = (a * g[1] - b * g[0]) / *determinant;
-    node->u = inside(node->u - su, fmax(u - hu, t->s->u0), fmin(u + hu, t->s->u1));
-    node->v = inside(node->v - sv, fmax(v - hv, t->s->v0), fmin(v + hv, t->s->v1));
+    const double *lo = t->patch.lo, *hi = t->patch.hi;
+    node->u = inside(node->u - su, fmax(u - hu, lo[0]), fmin(u + hu, hi[0]));
+    node->v = inside(node->v - sv, fmax(v - hv, lo[1]), fmin(v + hv, hi[1]));
   }
   return true;
 }
@@ -271,7 +320,7 @@ static bool follow(Tracer *t, size_t i, size_t j, double *u, double *v) {
   if (!go_to_critical(t, &here, hu, hv, &bend, &determinant)) return false;
   *u = here.u;
   *v = here.v;
-  return determinant > 0 && bend * sign > 0 && settled(t, value_at(t, here.u, here.v)) * sign < 0;
+  return determinant > 0 && bend * sign > 0 && settled_at(t, here.u, here.v) * sign < 0;
 }
 
 static bool nearest_to_zero(const Tracer *t, size_t i, size_t j) {
@@ -282,14 +331,66 @@ static bool nearest_to_zero(const Tracer *t, size_t i, size_t j) {
   return f != 0;
 }
 
-static bool add_small_loops(Tracer *t) {
-  double us[FOLLOWED_MOST], vs[FOLLOWED_MOST];
-  size_t n = 0;
-  for (size_t j = 1; j + 1 < t->n[1] && n < FOLLOWED_MOST; j++)
-    for (size_t i = 1; i + 1 < t->n[0] && n < FOLLOWED_MOST && !t->status; i++)
-      if (nearest_to_zero(t, i, j) && follow(t, i, j, &us[n], &vs[n])) n++;
-  if (n == 0) return t->status == CAG_OK;
-  return make_lines(t, 0, t->cells, us, n) && make_lines(t, 1, t->cells, vs, n) && fill_values(t);
+static void find_small_loops(Tracer *t, Extra *e) {
+  double u, v;
+  for (size_t j = 1; j + 1 < t->n[1]; j++)
+    for (size_t i = 1; i + 1 < t->n[0] && e->n[0] < FOLLOWED_MOST && !t->status; i++)
+      if (nearest_to_zero(t, i, j) && follow(t, i, j, &u, &v)) {
+        add_extra(e, 0, u);
+        add_extra(e, 1, v);
+      }
+}
+
+// Between two ends along direction k where the function has one sign: a place with the other one,
+// looked for where it comes nearest to 0. A curve leaves the rectangle there and comes back.
+static bool find_dip(Tracer *t, int k, double fixed, double lo, double hi, double *out) {
+  const int rounds = 30;
+  double sign = 0, slopes[2] = {0, 0};
+  for (int round = 0; round < rounds && !t->status; round++) {
+    // The ends first, then places between: secant and bisection of the slope by turns.
+    double way = slopes[1] - slopes[0];
+    double x = round == 0                  ? lo
+               : round == 1                ? hi
+               : round % 2 == 0 && way > 0 ? lo - (hi - lo) * slopes[0] / way
+                                           : (lo + hi) / 2;
+    double f = 0, g[2] = {0, 0};
+    t->status = cag_patch_value(&t->patch, k ? fixed : x, k ? x : fixed, &f, g, NULL, t->err);
+    if (fabs(f) <= zero_at(t, k ? fixed : x, k ? x : fixed)) f = 0;
+    if (round == 0) sign = f < 0 ? -1 : 1;
+    if (f * sign < 0) {
+      *out = x;
+      return round > 1;
+    }
+    if (round < 2) {
+      slopes[round] = sign * g[k];
+      if (round == 0 ? slopes[0] >= 0 : slopes[1] <= 0) return false;
+    } else if (sign * g[k] < 0) {
+      lo = x;
+      slopes[0] = sign * g[k];
+    } else {
+      hi = x;
+      slopes[1] = sign * g[k];
+    }
+  }
+  return false;
+}
+
+static void find_dips(Tracer *t, Extra *e) {
+  for (int k = 0; k < 2; k++)
+    for (int end = 0; end < 2; end++)
+      for (size_t i = 0; i + 1 < t->n[k] && e->n[k] < FOLLOWED_MOST && !t->status; i++) {
+        const double *x = &t->lines[k][i];
+        double fixed = end ? t->patch.hi[1 - k] : t->patch.lo[1 - k], found;
+        if (find_dip(t, k, fixed, x[0], x[1], &found)) add_extra(e, k, found);
+      }
+}
+
+static bool add_lines(Tracer *t) {
+  Extra e = {.n = {0, 0}};
+  find_small_loops(t, &e);
+  find_dips(t, &e);
+  if (e.n[0] + e.n[1] == 0) return t->status == CAG_OK;
+  return !t->status && make_all_lines(t, &e);
 }
 
 // --- Crossings ---
@@ -309,7 +410,7 @@ static void find_crossing(Tracer *t, double u0, double v0, double f0, double u1,
   for (int round = 0; f0 != 0 && f1 != 0 && round < ROOT_ROUNDS && b - a > DBL_EPSILON; round++) {
     x = a + (b - a) * fa / (fa - fb);
     if (!(x > a && x < b)) x = (a + b) / 2;
-    double f = settled(t, value_at(t, u0 + x * (u1 - u0), v0 + x * (v1 - v0)));
+    double f = settled_at(t, u0 + x * (u1 - u0), v0 + x * (v1 - v0));
     if (f == 0 || t->status) break;
     bool left = negative(f) == negative(fa);
     if (left) {
@@ -339,17 +440,41 @@ static void find_crossing(Tracer *t, double u0, double v0, double f0, double u1,
   inspect(t, out, gradient);
 }
 
+// Whether two branches cross at a node without tangent: the gradient vanishes there as at a saddle.
+static bool is_saddle(Tracer *t, const Node *node) {
+  const double same = 1e-6; // parts of a cell
+  double bend, determinant;
+  double hu = (t->patch.hi[0] - t->patch.lo[0]) / (double)t->n[0];
+  double hv = (t->patch.hi[1] - t->patch.lo[1]) / (double)t->n[1];
+  Node here = *node;
+  return !cag_patch_is_collapsed(&t->patch, node->u, node->v) &&
+         go_to_critical(t, &here, hu, hv, &bend, &determinant) && determinant < 0 &&
+         fabs(here.u - node->u) <= same * hu && fabs(here.v - node->v) <= same * hv;
+}
+
 static void cross_edge(Tracer *t, size_t edge, size_t i0, size_t j0, size_t i1, size_t j1) {
   double f0 = *value_of(t, i0, j0), f1 = *value_of(t, i1, j1);
   t->links[edge][0] = t->links[edge][1] = -1;
-  if (negative(f0) != negative(f1))
-    find_crossing(t, t->lines[0][i0], t->lines[1][j0], f0, t->lines[0][i1], t->lines[1][j1], f1,
-                  &t->crossings[edge]);
+  if (negative(f0) == negative(f1)) return;
+  Node *node = &t->crossings[edge];
+  find_crossing(t, t->lines[0][i0], t->lines[1][j0], f0, t->lines[0][i1], t->lines[1][j1], f1,
+                node);
+  if (!node->regular && !t->status) node->branching = is_saddle(t, node);
 }
 
 static void link_pair(Tracer *t, size_t a, size_t b) {
   t->links[a][t->links[a][0] >= 0] = (int32_t)b;
   t->links[b][t->links[b][0] >= 0] = (int32_t)a;
+}
+
+// The value at the saddle of a cell whose edges are all crossed; in its middle where none is found.
+static double saddle_value(Tracer *t, size_t i, size_t j) {
+  const double *u = &t->lines[0][i], *v = &t->lines[1][j];
+  double hu = (u[1] - u[0]) / 2, hv = (v[1] - v[0]) / 2, bend, determinant;
+  Node middle = {.u = u[0] + hu, .v = v[0] + hv}, saddle = middle;
+  bool found = go_to_critical(t, &saddle, hu, hv, &bend, &determinant) && determinant < 0;
+  const Node *at = found ? &saddle : &middle;
+  return settled_at(t, at->u, at->v);
 }
 
 static void link_cell(Tracer *t, size_t i, size_t j) {
@@ -363,10 +488,8 @@ static void link_cell(Tracer *t, size_t i, size_t j) {
     if (corner[k] != corner[(k + 1) % 4]) crossed[n++] = edge[k];
   if (n == 2) link_pair(t, crossed[0], crossed[1]);
   if (n != 4) return;
-  double middle = value_at(t, (t->lines[0][i] + t->lines[0][i + 1]) / 2,
-                           (t->lines[1][j] + t->lines[1][j + 1]) / 2);
-  // The middle joins the two corners of its sign; the others are cut off.
-  bool with_first = negative(middle) == corner[0];
+  // The saddle between joins the two corners of its sign; the others are cut off.
+  bool with_first = negative(saddle_value(t, i, j)) == corner[0];
   link_pair(t, edge[0], edge[with_first ? 1 : 3]);
   link_pair(t, edge[2], edge[with_first ? 3 : 1]);
 }
@@ -414,8 +537,9 @@ static bool add_check(Tracer *t, CagVec3 p) {
 
 // The place of the curve near the middle of two others; false where Newton's method does not lead
 // there.
-static bool middle_of(Tracer *t, const Node *a, const Node *b, Node *out) {
-  double lu = t->s->u1 - t->s->u0, lv = t->s->v1 - t->s->v0;
+static bool middle_by_newton(Tracer *t, const Node *a, const Node *b, Node *out) {
+  const double *lo = t->patch.lo, *hi = t->patch.hi;
+  double lu = hi[0] - lo[0], lv = hi[1] - lo[1];
   double u = (a->u + b->u) / 2, v = (a->v + b->v) / 2;
   double reach = hypot((b->u - a->u) / lu, (b->v - a->v) / lv);
   *out = (Node){.u = u, .v = v};
@@ -423,11 +547,11 @@ static bool middle_of(Tracer *t, const Node *a, const Node *b, Node *out) {
     double g[2], f = inspect(t, out, g);
     if (t->status) return false;
     double x = g[0] * lu, y = g[1] * lv, square = x * x + y * y;
-    if (fabs(f) <= t->level->zero) return true;
+    if (fabs(f) <= zero_at(t, out->u, out->v)) return true;
     if (!(square > 0)) return false;
     double du = lu * f * x / square, dv = lv * f * y / square;
-    out->u = inside(out->u - du, t->s->u0, t->s->u1);
-    out->v = inside(out->v - dv, t->s->v0, t->s->v1);
+    out->u = inside(out->u - du, lo[0], hi[0]);
+    out->v = inside(out->v - dv, lo[1], hi[1]);
     if (hypot((out->u - u) / lu, (out->v - v) / lv) > reach) return false;
     if (hypot(du / lu, dv / lv) <= 4 * DBL_EPSILON) {
       inspect(t, out, g);
@@ -435,6 +559,42 @@ static bool middle_of(Tracer *t, const Node *a, const Node *b, Node *out) {
     }
   }
   return false;
+}
+
+// The same where that fails, as by a pole, where the curve may turn sharply in the parameters: the
+// crossing nearest to the middle on the line square to the way from a to b.
+static bool middle_across(Tracer *t, const Node *a, const Node *b, Node *out) {
+  const int places = 16;
+  const double *lo = t->patch.lo, *hi = t->patch.hi;
+  double lu = hi[0] - lo[0], lv = hi[1] - lo[1], u = (a->u + b->u) / 2, v = (a->v + b->v) / 2;
+  double du = -(b->v - a->v) / lv * lu / 2, dv = (b->u - a->u) / lu * lv / 2;
+  double f0 = settled_at(t, u, v), at[2][3] = {{u, v, f0}, {u, v, f0}};
+  for (int k = 1; k <= places && !t->status; k++)
+    for (int way = 0; way < 2; way++) {
+      double x = (way ? -1.0 : 1.0) * k / places, *last = at[way];
+      double next[3] = {inside(u + x * du, lo[0], hi[0]), inside(v + x * dv, lo[1], hi[1]), 0};
+      next[2] = settled_at(t, next[0], next[1]);
+      if (negative(next[2]) != negative(last[2])) {
+        *out = (Node){0};
+        find_crossing(t, last[0], last[1], last[2], next[0], next[1], next[2], out);
+        return !t->status;
+      }
+      memcpy(last, next, sizeof next);
+    }
+  return false;
+}
+
+// By a pole Newton's method may slide into it, to rounding: that is no point between the two.
+static bool is_between(const Node *a, const Node *m, const Node *b, double same) {
+  double h = cag_norm(cag_sub(b->p, a->p));
+  double near = fmin(cag_norm(cag_sub(m->p, a->p)), cag_norm(cag_sub(m->p, b->p)));
+  return h <= same || near > SLID * h;
+}
+
+static bool middle_of(Tracer *t, const Node *a, const Node *b, Node *out) {
+  double same = SAME * t->size;
+  if (middle_by_newton(t, a, b, out) && is_between(a, out, b, same)) return true;
+  return !t->status && middle_across(t, a, b, out) && is_between(a, out, b, same);
 }
 
 static CagVec3 aligned(CagVec3 tangent, CagVec3 chord) {
@@ -445,12 +605,18 @@ static CagVec3 aligned(CagVec3 tangent, CagVec3 chord) {
 static bool is_good(const Tracer *t, const Node *a, const Node *m, const Node *b) {
   CagVec3 chord = cag_sub(b->p, a->p);
   double h = cag_norm(chord);
-  // Where there is no tangent, that of the parabola through the three.
+  // Where there is no tangent, the one it will get: that of the other end mirrored, or of the
+  // parabola through the three.
+  CagVec3 along_chord = cag_scaled(chord, 1 / h);
   CagVec3 first = cag_sub(cag_sub(cag_scaled(m->p, 4), cag_scaled(a->p, 3)), b->p);
   CagVec3 last = cag_sub(cag_add(cag_scaled(b->p, 3), a->p), cag_scaled(m->p, 4));
   CagVec3 ta = a->regular ? aligned(a->t, chord) : cag_unit(first);
   CagVec3 tb = b->regular ? aligned(b->t, chord) : cag_unit(last);
+  if (!a->regular && b->regular) ta = cag_unit(cag_sub(cag_scaled(along_chord, 2), tb));
+  if (a->regular && !b->regular) tb = cag_unit(cag_sub(cag_scaled(along_chord, 2), ta));
   if (cag_dot(ta, tb) < TURN_COSINE) return false;
+  double before = cag_norm(cag_sub(m->p, a->p)), after = cag_norm(cag_sub(b->p, m->p));
+  if (fmin(before, after) < LOPSIDED * (before + after)) return false;
   CagVec3 middle = cag_madd(cag_scaled(cag_add(a->p, b->p), 0.5), h / 8, cag_sub(ta, tb));
   CagVec3 along = cag_unit(cag_madd(cag_scaled(chord, 1.5 / h), -0.25, cag_add(ta, tb)));
   CagVec3 off = cag_sub(m->p, middle);
@@ -462,7 +628,8 @@ static bool is_good(const Tracer *t, const Node *a, const Node *m, const Node *b
 // to the rounding of that.
 static bool find_branching(Tracer *t, const Node *a, const Node *b, Node *out) {
   const double roundings = 100, reach = 2;
-  double lu = t->s->u1 - t->s->u0, lv = t->s->v1 - t->s->v0, bend, determinant;
+  double lu = t->patch.hi[0] - t->patch.lo[0], lv = t->patch.hi[1] - t->patch.lo[1];
+  double bend, determinant;
   double far = reach * hypot((b->u - a->u) / lu, (b->v - a->v) / lv);
   *out = (Node){.u = (a->u + b->u) / 2, .v = (a->v + b->v) / 2};
   if (!go_to_critical(t, out, far * lu, far * lv, &bend, &determinant) || determinant >= 0)
@@ -470,7 +637,7 @@ static bool find_branching(Tracer *t, const Node *a, const Node *b, Node *out) {
   double g[2];
   double f = inspect(t, out, g);
   out->regular = false;
-  return !t->status && fabs(f) <= roundings * t->level->zero;
+  return !t->status && fabs(f) <= roundings * zero_at(t, out->u, out->v);
 }
 
 // Adds the points after a, b the last of them.
@@ -481,9 +648,6 @@ static bool refine(Tracer *t, const Node *a, const Node *b, int depth, int at_le
   if (t->status) return false;
   bool together = cag_norm(cag_sub(b->p, a->p)) <= same;
   if (together && (!found || cag_norm(cag_sub(m.p, a->p)) <= same)) return true;
-  // By a pole Newton's method may slide into it, to rounding: that is no point between the two.
-  double near = fmin(cag_norm(cag_sub(m.p, a->p)), cag_norm(cag_sub(m.p, b->p)));
-  if (found && !together && near <= SLID * cag_norm(cag_sub(b->p, a->p))) found = false;
   if (found && !together && at_least <= 0 && is_good(t, a, &m, b))
     return add_check(t, m.p) && add_node(t, b);
   Node branching;
@@ -493,18 +657,25 @@ static bool refine(Tracer *t, const Node *a, const Node *b, int depth, int at_le
     return refine(t, a, &branching, depth / 2, at_least) &&
            refine(t, &branching, b, depth / 2, at_least);
   }
-  if (stuck) return add_node(t, b);
+  if (stuck) {
+    // A way across where there is no curve: the cells are too large.
+    double h = cag_norm(cag_sub(b->p, a->p));
+    t->torn = t->torn || (h > t->tolerance && a->regular && b->regular);
+    return add_node(t, b);
+  }
   return refine(t, a, &m, depth + 1, at_least - 1) && refine(t, &m, b, depth + 1, at_least - 1);
 }
 
 // --- Runs ---
 
+static void free_trace(CagTrace *t) {
+  free(t->points);
+  free(t->tangents);
+  free(t->checks);
+}
+
 void cag_traces_free(CagTraces *t) {
-  for (size_t i = 0; i < t->count; i++) {
-    free(t->items[i].points);
-    free(t->items[i].tangents);
-    free(t->items[i].checks);
-  }
+  for (size_t i = 0; i < t->count; i++) free_trace(&t->items[i]);
   free(t->items);
   *t = (CagTraces){0};
 }
@@ -540,11 +711,7 @@ static bool keep_nodes(const Node *nodes, size_t n, const CagVec3 *checks, size_
   }
   if (ok && check_count > 0) memcpy(trace.checks, checks, check_count * sizeof *checks);
   ok = ok && add_trace(out, &trace);
-  if (!ok) {
-    free(trace.points);
-    free(trace.tangents);
-    free(trace.checks);
-  }
+  if (!ok) free_trace(&trace);
   return ok;
 }
 
@@ -605,6 +772,21 @@ static bool is_corner(const Tracer *t, size_t i) {
   return cag_dot(before, after) < CORNER_COSINE;
 }
 
+// Where a sided function is 0 over an area, to rounding, it has no curve there, or any.
+static bool is_lost(const Tracer *t, size_t i) {
+  return t->level->sided && t->run[i].flat && t->run[i + 1].flat;
+}
+
+// Nodes [from, to], unless they are a speck beside a lost one: what rounding leaves about such an
+// area.
+static bool keep_piece(Tracer *t, size_t from, size_t to, CagTraces *out) {
+  bool beside = (from > 0 && is_lost(t, from - 1)) || (to + 1 < t->run_count && is_lost(t, to));
+  double reach = 0;
+  for (size_t i = from + 1; i <= to; i++)
+    reach = fmax(reach, cag_norm(cag_sub(t->run[i].p, t->run[from].p)));
+  return (beside && reach <= BESIDE_LOST * t->size) || keep_run(t, from, to, out);
+}
+
 // Refines the run through these edges and cuts it at its corners.
 static bool keep_path(Tracer *t, const int32_t *path, size_t n, CagTraces *out) {
   t->run_count = t->check_count = 0;
@@ -613,12 +795,13 @@ static bool keep_path(Tracer *t, const int32_t *path, size_t n, CagTraces *out) 
   for (size_t k = 1; k < n; k++)
     if (!refine(t, &t->crossings[path[k - 1]], &t->crossings[path[k]], 0, at_least)) return false;
   size_t from = 0;
-  for (size_t i = 1; i + 1 < t->run_count; i++)
-    if (is_corner(t, i)) {
-      if (!keep_run(t, from, i, out)) return false;
-      from = i;
-    }
-  return keep_run(t, from, t->run_count - 1, out);
+  for (size_t i = 0; i + 1 < t->run_count; i++) {
+    bool lost = is_lost(t, i);
+    bool corner = i > 0 && is_corner(t, i);
+    if ((lost || corner) && i > from && !keep_piece(t, from, i, out)) return false;
+    if (lost || corner) from = lost ? i + 1 : i;
+  }
+  return keep_piece(t, from, t->run_count - 1, out);
 }
 
 static bool walk(Tracer *t, size_t start, bool *seen, int32_t *path, CagTraces *out) {
@@ -664,12 +847,25 @@ static void turn_trace(CagTrace *t) {
   for (size_t i = 0; i < t->count; i++) t->tangents[i] = cag_scaled(t->tangents[i], -1);
 }
 
-static bool goes_on(const CagTrace *a, const CagTrace *b, double same) {
+// How runs are joined: points nearer than `same` are one; `by_tangents`: these tell whether it goes
+// on smoothly, otherwise the chords do.
+typedef struct Joint {
+  double same;
+  bool by_tangents;
+} Joint;
+
+static bool is_smooth(const Joint *how, CagVec3 before, CagVec3 after, CagVec3 tangent,
+                      CagVec3 next_tangent) {
+  if (how->by_tangents) return cag_dot(tangent, next_tangent) > 1 - KINK;
+  return cag_dot(before, after) > CORNER_COSINE;
+}
+
+static bool goes_on(const CagTrace *a, const CagTrace *b, const Joint *how) {
   CagVec3 p = a->points[a->count - 1];
-  if (cag_norm(cag_sub(p, b->points[0])) > same) return false;
+  if (cag_norm(cag_sub(p, b->points[0])) > how->same) return false;
   CagVec3 before = cag_unit(cag_sub(p, a->points[a->count - 2]));
   CagVec3 after = cag_unit(cag_sub(b->points[1], b->points[0]));
-  return cag_dot(before, after) > CORNER_COSINE;
+  return is_smooth(how, before, after, a->tangents[a->count - 1], b->tangents[0]);
 }
 
 static bool append(CagTrace *a, const CagTrace *b) {
@@ -690,62 +886,86 @@ static bool append(CagTrace *a, const CagTrace *b) {
   return true;
 }
 
-static bool join_pair(CagTraces *t, size_t i, size_t j, double same, bool *joined) {
+static bool join_pair(CagTraces *t, size_t i, size_t j, const Joint *how, bool *joined) {
   CagTrace *a = &t->items[i], *b = &t->items[j];
   for (int turn = 0; turn < 4 && !*joined; turn++) {
-    *joined = goes_on(a, b, same);
+    *joined = goes_on(a, b, how);
     if (*joined) break;
     if (turn % 2 == 0) turn_trace(b);
     else turn_trace(a);
   }
   if (!*joined) return true;
   if (!append(a, b)) return false;
-  free(b->points);
-  free(b->tangents);
-  free(b->checks);
+  free_trace(b);
   t->items[j] = t->items[--t->count];
   return true;
 }
 
-static bool join_traces(CagTraces *t, double same) {
+// What is smaller than the tolerance and by itself only touches the level; open runs that are next
+// to nothing (by a pole, where values are rounding): their neighbours meet without them.
+static void drop_specks(CagTraces *t, double size, double tolerance) {
+  size_t kept = 0;
+  for (size_t i = 0; i < t->count; i++) {
+    CagTrace *a = &t->items[i];
+    double reach = 0;
+    for (size_t k = 1; k < a->count; k++)
+      reach = fmax(reach, cag_norm(cag_sub(a->points[k], a->points[0])));
+    if (reach <= (a->closed ? tolerance : SPECK * size)) {
+      free_trace(a);
+    } else {
+      t->items[kept++] = *a;
+    }
+  }
+  t->count = kept;
+}
+
+static bool join_traces(CagTraces *t, const Joint *how) {
   for (size_t i = 0; i < t->count; i++) {
     bool joined = true;
     while (joined) {
       joined = false;
       for (size_t j = i + 1; j < t->count && !joined; j++)
-        if (!join_pair(t, i, j, same, &joined)) return false;
+        if (!join_pair(t, i, j, how, &joined)) return false;
     }
   }
   return true;
 }
 
-// Tangents where the function gave none, by the parabola through the neighbours.
-static void complete_tangents(CagTrace *t, double same) {
+// The tangent of an end of an open run that has none: that of its neighbour, mirrored.
+static void complete_ends(CagTrace *t) {
   size_t n = t->count;
-  t->closed = n > 3 && cag_norm(cag_sub(t->points[0], t->points[n - 1])) <= same;
-  if (t->closed) {
-    // Only where it closes smoothly.
+  const size_t ends[2][2] = {{0, 1}, {n - 1, n - 2}};
+  for (int k = 0; k < 2; k++) {
+    size_t i = ends[k][0], next = ends[k][1];
+    if (cag_norm(t->tangents[i]) > 0) continue;
+    CagVec3 way = cag_unit(cag_sub(t->points[next], t->points[i]));
+    if (k == 1) way = cag_scaled(way, -1);
+    bool known = n > 2 && cag_norm(t->tangents[next]) > 0;
+    t->tangents[i] = known ? cag_unit(cag_sub(cag_scaled(way, 2), t->tangents[next])) : way;
+  }
+}
+
+// Tangents where the function gave none, by the parabola through the neighbours.
+static void complete_tangents(CagTrace *t, const Joint *how) {
+  size_t n = t->count;
+  bool comes_back = n > 3 && cag_norm(cag_sub(t->points[0], t->points[n - 1])) <= how->same;
+  t->closed = false;
+  if (comes_back) {
+    // Closed only where it goes on smoothly.
     CagVec3 before = cag_unit(cag_sub(t->points[n - 1], t->points[n - 2]));
     CagVec3 after = cag_unit(cag_sub(t->points[1], t->points[0]));
     t->points[n - 1] = t->points[0];
-    if (cag_dot(before, after) < CORNER_COSINE) t->closed = false;
-    else t->tangents[n - 1] = t->tangents[0];
+    t->closed = is_smooth(how, before, after, t->tangents[n - 1], t->tangents[0]);
+    if (t->closed) t->tangents[n - 1] = t->tangents[0];
   }
+  if (!t->closed) complete_ends(t);
   for (size_t i = 0; i < n; i++) {
     if (cag_norm(t->tangents[i]) > 0) continue;
-    bool first = i == 0 && !t->closed, last = i + 1 == n && !t->closed;
-    CagVec3 p = t->points[i];
     CagVec3 before = i > 0 ? t->points[i - 1] : t->points[n - 2];
     CagVec3 after = i + 1 < n ? t->points[i + 1] : t->points[1];
-    double a = cag_norm(cag_sub(p, before)), b = cag_norm(cag_sub(after, p));
-    CagVec3 d1 = cag_unit(cag_sub(p, before)), d2 = cag_unit(cag_sub(after, p));
-    if (first)
-      t->tangents[i] = n > 2 && cag_norm(t->tangents[1]) > 0
-                           ? cag_unit(cag_sub(cag_scaled(d2, 2), t->tangents[1]))
-                           : d2;
-    else if (last)
-      t->tangents[i] = n > 2 ? cag_unit(cag_sub(cag_scaled(d1, 2), t->tangents[i - 1])) : d1;
-    else t->tangents[i] = cag_unit(cag_madd(cag_scaled(d1, b), a, d2));
+    CagVec3 d1 = cag_sub(t->points[i], before), d2 = cag_sub(after, t->points[i]);
+    double a = cag_norm(d1), b = cag_norm(d2);
+    t->tangents[i] = cag_unit(cag_madd(cag_scaled(d1, b / a), a / b, d2));
   }
 }
 
@@ -757,11 +977,99 @@ static void tracer_free(Tracer *t) {
   free(t->links);
   free(t->run);
   free(t->checks);
+  t->lines[0] = t->lines[1] = t->values = NULL;
+  t->crossings = t->run = NULL;
+  t->links = NULL;
+  t->checks = NULL;
+  t->run_count = t->run_capacity = t->check_count = t->check_capacity = 0;
+}
+
+// --- Patches ---
+
+// The ends of the patches along a direction: of all of it where the function is not sided.
+static bool find_ends(const CagSurface *s, bool sided, int direction, double **out, size_t *n) {
+  size_t inner = sided && s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
+  *out = malloc((inner + 2) * sizeof **out);
+  if (!*out) return false;
+  (*out)[0] = direction ? s->v0 : s->u0;
+  if (inner > 0) s->kind->breaks(s, direction, *out + 1, inner);
+  (*out)[inner + 1] = direction ? s->v1 : s->u1;
+  *n = inner + 1;
+  return true;
+}
+
+// Whether the values are rounding: half of them below that away from the edges, all below the
+// most.
+static bool is_constant(const Tracer *t, double inner, double most) {
+  size_t n = t->n[0] * t->n[1], small = 0;
+  for (size_t k = 0; k < n; k++) small += fabs(t->values[k]) <= CONSTANT_ROUNDINGS * inner;
+  return 2 * small >= n && largest_value(t) <= CONSTANT_ROUNDINGS * most;
+}
+
+// Sets what counts as 0 on this patch; false where all of it does.
+static bool settle(Tracer *t, CagLevel *own) {
+  const double rounding = 1e-13;
+  if (own->zero > 0) return true;
+  if (own->sided) {
+    t->status = cag_patch_rounding(&t->patch, &own->zero, &t->zero_beside, t->err);
+    if (t->status || is_constant(t, own->zero, t->zero_beside)) return false;
+  } else {
+    own->zero = rounding * largest_value(t);
+  }
+  return fill_values(t);
+}
+
+static bool trace_grid(Tracer *t, CagLevel *own, size_t finer, CagTraces *out, bool *constant) {
+  double zero = own->zero;
+  t->torn = false;
+  bool ok = make_grid(t, finer);
+  bool settled = ok && settle(t, own);
+  *constant = ok && !settled && !t->status && own->sided;
+  if (!*constant) ok = settled && add_lines(t) && find_crossings(t) && walk_all(t, out);
+  own->zero = zero;
+  tracer_free(t);
+  return ok;
+}
+
+// Sided functions, which may change more sharply than surfaces, are traced once more with finer
+// cells while runs have gaps.
+static bool trace_patch(Tracer *t, CagLevel *own, CagTraces *out, bool *constant) {
+  size_t first = out->count;
+  for (size_t finer = 1;; finer = 2 * t->finer) {
+    if (!trace_grid(t, own, finer, out, constant)) return false;
+    if (!own->sided || !t->torn || t->finer >> HALVINGS_MOST) return true;
+    while (out->count > first) free_trace(&out->items[--out->count]);
+  }
+}
+
+static CagStatus trace_patches(Tracer *t, CagLevel *own, CagTraces *out) {
+  const CagSurface *s = t->s;
+  double *ends[2] = {NULL, NULL};
+  size_t n[2] = {0, 0};
+  bool ok =
+      find_ends(s, own->sided, 0, &ends[0], &n[0]) && find_ends(s, own->sided, 1, &ends[1], &n[1]);
+  for (int k = 0; k < 2; k++) {
+    size_t share = n[k] > 0 ? CELLS / n[k] : CELLS;
+    t->cells[k] = share < CELLS_OF_PATCH ? CELLS_OF_PATCH : share;
+  }
+  out->everywhere = ok;
+  for (size_t i = 0; ok && i < n[0]; i++)
+    for (size_t j = 0; ok && j < n[1]; j++) {
+      bool constant = false;
+      const double lo[2] = {ends[0][i], ends[1][j]}, hi[2] = {ends[0][i + 1], ends[1][j + 1]};
+      t->status = cag_patch_open(s, own, lo, hi, &t->patch, t->err);
+      ok = !t->status && trace_patch(t, own, out, &constant);
+      out->everywhere = out->everywhere && constant;
+    }
+  free(ends[0]);
+  free(ends[1]);
+  return ok ? CAG_OK : t->status ? t->status : cag_fail_memory(t->err);
 }
 
 CagStatus cag_surface_trace(const CagSurface *s, const CagLevel *level, double tolerance,
                             CagTraces *out, CagError *err) {
   CagBounds box;
+  *out = (CagTraces){0};
   CagStatus status = cag_surface_bounds(s, &box, err);
   if (status) return status;
   CagLevel own = *level;
@@ -769,19 +1077,12 @@ CagStatus cag_surface_trace(const CagSurface *s, const CagLevel *level, double t
   t.size = cag_norm(cag_sub(box.max, box.min));
   const CagSurface *whole;
   if (!cag_surface_trimmed_view(s, &whole, &t.region)) t.region = NULL;
-  *out = (CagTraces){0};
-  bool ok = make_grid(&t);
-  if (ok && own.zero == 0) {
-    const double rounding = 1e-13;
-    own.zero = rounding * largest_value(&t);
-    ok = fill_values(&t);
-  }
-  ok = ok && add_small_loops(&t) && find_crossings(&t) && walk_all(&t, out) &&
-       join_traces(out, SAME * 10 * t.size);
-  for (size_t i = 0; ok && i < out->count; i++)
-    complete_tangents(&out->items[i], SAME * 10 * t.size);
-  status = ok ? CAG_OK : t.status ? t.status : cag_fail_memory(err);
-  tracer_free(&t);
+  const Joint how = {SAME * 10 * t.size, own.sided};
+  status = trace_patches(&t, &own, out);
+  for (size_t i = 0; !status && own.sided && i < out->count; i++) complete_ends(&out->items[i]);
+  if (!status && !join_traces(out, &how)) status = cag_fail_memory(err);
+  for (size_t i = 0; !status && i < out->count; i++) complete_tangents(&out->items[i], &how);
+  if (!status && own.sided) drop_specks(out, t.size, tolerance);
   if (status) cag_traces_free(out);
   return status;
 }

@@ -1,13 +1,16 @@
-// Questions to the equation of a quadric, and plane sections.
+// Questions to the equation of a quadric, plane sections, and lines of curvature.
 
 #include "geom/surface/section.h"
 
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/surface/curvature_contour.h"
 #include "geom/surface/curvature_line.h"
 #include "geom/surface/motion.h"
+#include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
+#include "interp/eval/vm.h"
 
 static const char QUADRICS[] = "Quadrics";
 static const char SECTIONS[] = "Surfaces: sections";
@@ -255,6 +258,123 @@ static bool call_curvature_line(CagCall *call, CagValue *result) {
   return true;
 }
 
+// --- Contour lines of curvature ---
+
+#define CONTOUR_LEVELS_MOST 1000
+
+// One number, or a list or range of them. *out from malloc.
+static bool read_contour_levels(CagCall *call, int argument, double **out, size_t *n) {
+  static const char what[] = "a finite number (1/mm, Gaussian 1/mm2), or a list of them";
+  CagSequence levels = {.length = 1};
+  bool single = call->values[argument].type == CAG_NUMBER;
+  if (!single && call->values[argument].type != CAG_LIST &&
+      call->values[argument].type != CAG_RANGE)
+    return cag_fail_type(call, argument, what);
+  if (!single && !cag_sequence_open(call, argument, false, &levels)) return false;
+  *n = levels.length;
+  if (*n == 0)
+    return cag_fail_call(call, argument, CAG_ERR_value, "expects %s, found an empty one", what);
+  if (*n > CONTOUR_LEVELS_MOST)
+    return cag_fail_call(call, argument, CAG_ERR_value, "expects at most %d levels, found %zu",
+                         CONTOUR_LEVELS_MOST, *n);
+  *out = malloc(*n * sizeof **out);
+  if (!*out) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  for (size_t i = 0; i < *n; i++) {
+    CagValue v = single ? call->values[argument] : cag_sequence_element(call->vm, &levels, i);
+    if (v.type == CAG_NUMBER && isfinite(v.as.number)) {
+      (*out)[i] = v.as.number;
+      continue;
+    }
+    free(*out);
+    *out = NULL;
+    return single ? cag_fail_value(call, argument, what)
+                  : cag_fail_element(call, argument, i, v, "finite numbers");
+  }
+  return true;
+}
+
+typedef struct ContourQuestion {
+  CagCurvature of;
+  double level, tolerance;
+} ContourQuestion;
+
+// `everywhere` stays true only where all of this shape has the curvature, too.
+static CagStatus curvature_contours_of(CagValue v, const ContourQuestion *q, CagCurveList *out,
+                                       bool *everywhere, CagError *err) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  CagSurface *const *faces = NULL;
+  size_t n = 0;
+  if (v.type == CAG_SURFACE) {
+    faces = (CagSurface *const *)&shape->as.surface;
+    n = 1;
+  } else if (v.type == CAG_SOLID) {
+    faces = shape->as.solid->faces;
+    n = shape->as.solid->face_count;
+  }
+  if (n == 0)
+    return cag_fail(err, CAG_E_UNSUPPORTED, "no-curvature", "", -1,
+                    "%s has no surfaces to draw lines of equal curvature on",
+                    v.type == CAG_SOLID ? "a body of set operations or meshes"
+                                        : cag_type_article(v));
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < n; i++) {
+    bool all = false;
+    status = cag_surface_curvature_contour(faces[i], q->of, q->level, q->tolerance, out, &all, err);
+    *everywhere = *everywhere && all;
+  }
+  return status;
+}
+
+// The record of one level.
+static bool contour_record(CagCall *call, const CagList *shapes, const ContourQuestion *q,
+                           CagValue *result) {
+  static const char *const names[] = {"level", "curves", "everywhere"};
+  CagCurveList list = {0};
+  CagError err;
+  CagValue curves = cag_none();
+  bool ok = true, everywhere = true;
+  for (size_t i = 0; ok && i < shapes->length; i++)
+    ok = cag_geometry_ok(
+             call,
+             curvature_contours_of(cag_list_get(call->vm, shapes, i), q, &list, &everywhere, &err),
+             &err) &&
+         cag_keep_going(call->vm);
+  ok = ok && give_curves(call, &list, &curves);
+  cag_curve_list_free(&list);
+  if (!ok) return false;
+  CagValue values[] = {cag_number(q->level), curves, cag_bool(everywhere)};
+  *result = cag_record_new(call->vm, names, values, 3);
+  return true;
+}
+
+static bool call_curvature_contours(CagCall *call, CagValue *result) {
+  ContourQuestion q = {CAG_CURVATURE_GAUSSIAN, 0, 0};
+  double *levels = NULL;
+  size_t n = 0;
+  CagList *shapes;
+  int of;
+  if (!cag_arg_choice(call, 2, cag_curvatures, &of) || !read_tolerance(call, 3, &q.tolerance) ||
+      !read_shapes(call, call->values[0], &shapes))
+    return false;
+  if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects a surface");
+  if (!read_contour_levels(call, 1, &levels, &n)) return false;
+  q.of = (CagCurvature)of;
+  // Formulas are called back: the shapes and the records stay.
+  cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
+  CagBuilder *out = cag_builder_new(call->vm);
+  cag_root_push(call->vm, cag_builder_value(out));
+  bool ok = true;
+  for (size_t i = 0; ok && i < n; i++) {
+    CagValue record = cag_none();
+    q.level = levels[i] + 0.0; // no -0
+    ok = contour_record(call, shapes, &q, &record) && cag_builder_add(call->vm, out, record);
+  }
+  if (ok) *result = cag_builder_finish(call->vm, out);
+  cag_root_pop(call->vm, 2);
+  free(levels);
+  return ok;
+}
+
 // --- Frames along a path ---
 
 static bool call_path_frame(CagCall *call, CagValue *result) {
@@ -356,6 +476,19 @@ const CagBuiltin cag_builtins_sections[] = {
      "c = curvature_line(torus_surface(5, 2), 0deg, 0deg, \"min\")\n"
      "print near(length(c), 4 * pi) or near(length(c), 14 * pi) // expect: true",
      CAG_TAKES(SURFACE) | CAG_TAKES(SOLID), SECTIONS},
+    {"curvature_contours(G, levels, of = \"gaussian\", tolerance = none)", call_curvature_contours,
+     "list",
+     "The lines along which surfaces, or the faces of solids, bend alike: for each level a record "
+     "of `level`, `curves` (a list, as exact as that of `section`, empty where the level is not "
+     "reached) and `everywhere`, true where the whole has this curvature and no lines. `levels` is "
+     "a number or a list of them, signed by the normal: in 1/mm of the \"mean\" curvature or the "
+     "\"max\" or \"min\" of both principal ones, in 1/mm2 of the \"gaussian\". At a knot where "
+     "the curvature jumps each side has its own lines, that end there unless both agree. What "
+     "merely touches a level need not show.",
+     "c = curvature_contours(torus_surface(5, 2), [0, 1 / 20])\n"
+     "print [for l in c[0].curves: near(length(l), 10 * pi)] // expect: [true, true]\n"
+     "print [for l in c[1].curves: near(length(l), 2 * pi * 25 / 4)] // expect: [true, true]",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), SECTIONS},
     {"path_frame(C, t, orient = \"rmf\")", call_path_frame, "transform",
      "The frame that `sweep` carries along a path, at the parameter t: x along the frame's normal, "
      "y along its binormal, z along the tangent. `orient` as of sweep; fixed keeps the frame of "

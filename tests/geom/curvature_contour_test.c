@@ -1,0 +1,145 @@
+// Contour lines of curvature in the core: against closed forms, at jumps, poles and nowhere.
+
+#include "geom/surface/curvature_contour.h"
+#include "geom/surface/reshape.h"
+#include "support.h"
+
+static const double PI = 3.14159265358979323846;
+
+static double length_of(const CagCurve *c) {
+  double length;
+  OK(cag_curve_length(c, c->start, c->end, &length, &err));
+  return length;
+}
+
+static CagCurveList contours(const CagSurface *s, CagCurvature of, double level, bool *everywhere) {
+  CagCurveList list = {0};
+  OK(cag_surface_curvature_contour(s, of, level, 0, &list, everywhere, &err));
+  return list;
+}
+
+// K = cos t / (r d), d = R + r cos t: d = R / (1 - r^2 K).
+static void contours_of_a_torus_are_its_parallels(void **state) {
+  (void)state;
+  CagSurface *torus;
+  OK(cag_surface_torus(5, 2, &torus, &err));
+  for (int i = -6; i <= 2; i++) {
+    double k = 0.025 * i;
+    bool everywhere;
+    CagCurveList list = contours(torus, CAG_CURVATURE_GAUSSIAN, k, &everywhere);
+    assert_int_equal(list.count, 2);
+    assert_false(everywhere);
+    for (size_t j = 0; j < list.count; j++) {
+      double a, b;
+      CagTransform frame;
+      assert_true(list.items[j]->closed);
+      assert_true(cag_curve_arc_view(list.items[j], &a, &b, &frame));
+      NEAR(length_of(list.items[j]), 2 * PI * 5 / (1 - 4 * k), 1e-10);
+    }
+    cag_curve_list_free(&list);
+  }
+  cag_surface_release(torus);
+}
+
+// What has one curvature has it everywhere, and no curves, by whatever parameters.
+static void constant_curvature_is_told(void **state) {
+  (void)state;
+  static const double level[] = {0.25, -0.5, -0.5, -0.5};
+  CagSolid *ball;
+  CagSurface *exact;
+  OK(cag_solid_sphere(2, &ball, &err));
+  OK(cag_surface_to_nurbs(ball->faces[0], &exact, &err));
+  for (int of = 0; of < 4; of++)
+    for (int form = 0; form < 2; form++) {
+      const CagSurface *s = form ? exact : ball->faces[0];
+      bool everywhere;
+      CagCurveList list = contours(s, (CagCurvature)of, level[of], &everywhere);
+      assert_int_equal(list.count, 0);
+      assert_true(everywhere);
+      list = contours(s, (CagCurvature)of, level[of] * 1.01, &everywhere);
+      assert_int_equal(list.count, 0);
+      assert_false(everywhere);
+    }
+  cag_surface_release(exact);
+  cag_solid_release(ball);
+}
+
+// A cone's larger curvature is cot w / s at s along its side, w its half angle: at the tip it has
+// none.
+static void contours_come_up_to_the_tip_of_a_cone(void **state) {
+  (void)state;
+  CagCurve *side;
+  CagSurface *cone;
+  OK(cag_curve_line(cag_vec3(3, 0, 0), cag_vec3(0, 0, 4), 3, &side, &err));
+  OK(cag_surface_revolve(side, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, 2 * PI, &cone, &err));
+  for (double s = 4; s > 1e-2; s /= 3) {
+    bool everywhere;
+    CagCurveList up = contours(cone, CAG_CURVATURE_MAX, 4 / (3 * s), &everywhere);
+    CagCurveList down = contours(cone, CAG_CURVATURE_MIN, -4 / (3 * s), &everywhere);
+    assert_int_equal(up.count + down.count, 1);
+    NEAR(length_of(up.count ? up.items[0] : down.items[0]), 2 * PI * 0.6 * s, 1e-7 * s);
+    cag_curve_list_free(&up);
+    cag_curve_list_free(&down);
+  }
+  cag_surface_release(cone);
+  cag_curve_release(side);
+}
+
+// Sizes from a micrometre to kilometres, and far from the origin.
+static void contours_do_not_depend_on_size_or_place(void **state) {
+  (void)state;
+  CagSurface *torus, *scaled, *moved;
+  OK(cag_surface_torus(5, 2, &torus, &err));
+  for (double size = 1e-6; size < 1e7; size *= 1e3) {
+    CagTransform grow;
+    OK(cag_scale(cag_vec3(size, size, size), cag_vec3(0, 0, 0), &grow, &err));
+    CagTransform move = cag_translate(cag_vec3(100 * size, 0, 0));
+    OK(cag_surface_transform(torus, &grow, &scaled, &err));
+    OK(cag_surface_transform(scaled, &move, &moved, &err));
+    bool everywhere;
+    CagCurveList list = contours(moved, CAG_CURVATURE_GAUSSIAN, 0.05 / (size * size), &everywhere);
+    assert_int_equal(list.count, 2);
+    NEAR(length_of(list.items[0]) / size, 12.5 * PI, 1e-6);
+    cag_curve_list_free(&list);
+    cag_surface_release(scaled);
+    cag_surface_release(moved);
+  }
+  cag_surface_release(torus);
+}
+
+// z = x^2 for x < 0 and 2 x^2 beyond, of order 3 over two knot intervals: the larger curvature
+// jumps from 2 to 4 at x = 0. By x it is 2 a / (1 + 4 a^2 x^2)^(3/2) on each side.
+static void a_jump_over_the_level_has_no_curve(void **state) {
+  (void)state;
+  const double knots_u[] = {-1, -1, -1, 0, 1, 1, 1}, knots_v[] = {0, 0, 1, 1};
+  // Blossoms: f(-1, -1), f(-1, 0), f(0, 1), f(1, 1).
+  const double x[] = {-1, -0.5, 0.5, 1}, z[] = {1, 0, 0, 2};
+  CagVec3 net[8];
+  for (int i = 0; i < 8; i++) net[i] = cag_vec3(x[i / 2], i % 2, z[i / 2]);
+  CagSurface *s;
+  OK(cag_surface_nurbs(net, NULL, 4, 2, 2, 1, knots_u, knots_v, &s, &err));
+  bool everywhere;
+  CagCurveList list = contours(s, CAG_CURVATURE_MAX, 3, &everywhere);
+  assert_int_equal(list.count, 1); // at one side only
+  double at = sqrt((pow(4.0 / 3, 2.0 / 3) - 1) / 16);
+  CagVec3 p;
+  OK(cag_curve_point(list.items[0], list.items[0]->start, &p, &err));
+  NEAR(p.x, at, 1e-9);
+  NEAR(length_of(list.items[0]), 1, 1e-9);
+  cag_curve_list_free(&list);
+  list = contours(s, CAG_CURVATURE_MAX, 1, &everywhere);
+  assert_int_equal(list.count, 2);
+  cag_curve_list_free(&list);
+  cag_surface_release(s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(contours_of_a_torus_are_its_parallels),
+      cmocka_unit_test(constant_curvature_is_told),
+      cmocka_unit_test(contours_come_up_to_the_tip_of_a_cone),
+      cmocka_unit_test(contours_do_not_depend_on_size_or_place),
+      cmocka_unit_test(a_jump_over_the_level_has_no_curve),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
