@@ -2,8 +2,9 @@
 //
 // Where the nodes around a leaf are those of its grid, all is a grid. Elsewhere the grid keeps away
 // from the sides by one step, and each side's band between its nodes and the outermost row of the
-// grid is sewn up: of the two next segments that whose middle comes first gets the next triangle.
-// No triangle of a band is wider than a step of the grid, so the bound of plan.c holds for it too.
+// grid is sewn up: of the two next edges across it the shorter one is taken, if it does not lean by
+// more than a step. So no triangle of a band is wider than a step of the grid, and the bound of
+// plan.c holds for it too.
 
 #include <stdlib.h>
 #include <string.h>
@@ -28,10 +29,12 @@ typedef struct Chain {
   uint32_t first;
   uint32_t stride;
   size_t segments;
+  bool ends; // with the last node the leaf's side ends too
 } Chain;
 
 static uint32_t chain_vertex(const Tessellator *t, const Chain *c, size_t k) {
-  if (c->nodes) return tess_node_vertex(t, c->line, c->nodes + k, c->after, k == c->segments);
+  if (c->nodes)
+    return tess_node_vertex(t, c->line, c->nodes + k, c->after, c->ends && k == c->segments);
   return c->first + (uint32_t)k * c->stride;
 }
 
@@ -44,7 +47,16 @@ static Chain side_chain(const Tessellator *t, const Leaf *leaf, int side) {
   return (Chain){.nodes = t->nodes + leaf->nodes[side],
                  .line = line,
                  .after = side % 2 == 0,
-                 .segments = leaf->segments[side]};
+                 .segments = leaf->segments[side],
+                 .ends = true};
+}
+
+// Without the first and the last segment.
+static Chain inner_part(Chain side) {
+  side.nodes++;
+  side.segments -= 2;
+  side.ends = false;
+  return side;
 }
 
 // --- Triangles ---
@@ -80,11 +92,25 @@ static void add_quad(Fill *f, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
   }
 }
 
+// Is the edge across the band that takes the next segment of `low` better than that which takes the
+// next of `high`? x, y: the parameters at both ends of these segments.
+static bool is_low_better(const Fill *f, const double x[2], const double y[2], uint32_t a,
+                          uint32_t b, uint32_t c, uint32_t d) {
+  const double rounding = 1e-9; // of a step
+  double step = fmax(x[1] - x[0], y[1] - y[0]) * (1 + rounding);
+  bool low_leans = fabs(x[1] - y[0]) > step, high_leans = fabs(y[1] - x[0]) > step;
+  if (low_leans != high_leans) return high_leans;
+  if (low_leans) return x[0] + x[1] < y[0] + y[1];
+  if (one_point(f, a, b)) return false;
+  if (one_point(f, c, d)) return true;
+  const CagVec3 *p = f->mesh->positions;
+  return !tess_cut_ac(p[a], p[b], p[c], p[d]);
+}
+
 // Sews up the band between two chains, `low` on the right hand of `high` (so that a triangle low,
 // next low, high is counter-clockwise).
 static void sew(Fill *f, const Chain *low, const Chain *high) {
   const Tessellator *t = f->t;
-  const CagVec3 *p = f->mesh->positions;
   size_t i = 0, j = 0;
   uint32_t a = chain_vertex(t, low, 0), d = chain_vertex(t, high, 0);
   while (i < low->segments || j < high->segments) {
@@ -93,13 +119,9 @@ static void sew(Fill *f, const Chain *low, const Chain *high) {
              c = can_high ? chain_vertex(t, high, j + 1) : d;
     bool take_low = can_low;
     if (can_low && can_high) {
-      double x = chain_parameter(low, i) + chain_parameter(low, i + 1),
-             y = chain_parameter(high, j) + chain_parameter(high, j + 1);
-      double same = 1e-9 * (fabs(x) + fabs(y)); // rounding of equal parameters
-      if (fabs(x - y) > same) take_low = x < y;
-      else if (one_point(f, a, b)) take_low = false;
-      else if (one_point(f, c, d)) take_low = true;
-      else take_low = !tess_cut_ac(p[a], p[b], p[c], p[d]);
+      double x[2] = {chain_parameter(low, i), chain_parameter(low, i + 1)},
+             y[2] = {chain_parameter(high, j), chain_parameter(high, j + 1)};
+      take_low = is_low_better(f, x, y, a, b, c, d);
     }
     if (take_low) {
       add_triangle(f, a, b, d);
@@ -196,11 +218,31 @@ static void fill_regular(Fill *f, const Leaf *leaf, uint32_t first) {
 #undef VERTEX
 }
 
+// The quadrilaterals at the corners of a leaf, which belong to two bands each: made by themselves
+// they may be cut either way. Each lies between a corner, the nodes beside it and the grid's
+// corner.
+static void add_corners(Fill *f, const Leaf *leaf, uint32_t first) {
+  const Tessellator *t = f->t;
+  uint32_t nu = leaf->n[0] - 2, nv = leaf->n[1] - 2, stride = nv + 1;
+  Chain u0 = side_chain(t, leaf, SIDE_U0), u1 = side_chain(t, leaf, SIDE_U1);
+  Chain v0 = side_chain(t, leaf, SIDE_V0), v1 = side_chain(t, leaf, SIDE_V1);
+  size_t eu0 = u0.segments, eu1 = u1.segments, ev0 = v0.segments, ev1 = v1.segments;
+  add_quad(f, chain_vertex(t, &v0, 0), chain_vertex(t, &v0, 1), first, chain_vertex(t, &u0, 1));
+  add_quad(f, chain_vertex(t, &v0, ev0 - 1), chain_vertex(t, &v0, ev0), chain_vertex(t, &u1, 1),
+           first + nu * stride);
+  add_quad(f, first + nu * stride + nv, chain_vertex(t, &u1, eu1 - 1), chain_vertex(t, &u1, eu1),
+           chain_vertex(t, &v1, ev1 - 1));
+  add_quad(f, chain_vertex(t, &u0, eu0 - 1), first + nv, chain_vertex(t, &v1, 1),
+           chain_vertex(t, &v1, 0));
+}
+
 // The four bands around the inner grid and the grid itself.
 static void fill_stitched(Fill *f, const Leaf *leaf, uint32_t first) {
   uint32_t nu = leaf->n[0], nv = leaf->n[1], stride = nv - 1;
+  bool corners = true;
   double step[2];
   for (int d = 0; d < 2; d++) step[d] = (leaf->to[d] - leaf->from[d]) / leaf->n[d];
+  for (int side = 0; side < 4; side++) corners &= leaf->segments[side] > 1;
   for (uint32_t i = 0; i + 2 < nu; i++)
     for (uint32_t j = 0; j + 2 < nv; j++) {
       uint32_t a = first + i * stride + j;
@@ -212,6 +254,7 @@ static void fill_stitched(Fill *f, const Leaf *leaf, uint32_t first) {
     if (side == SIDE_U1) start += (nu - 2) * stride;
     if (side == SIDE_V1) start += nv - 2;
     Chain outer = side_chain(f->t, leaf, side);
+    if (corners) outer = inner_part(outer);
     Chain inner = {.from = leaf->from[along] + step[along],
                    .step = step[along],
                    .first = start,
@@ -220,6 +263,7 @@ static void fill_stitched(Fill *f, const Leaf *leaf, uint32_t first) {
     bool outer_is_low = side == SIDE_U1 || side == SIDE_V0;
     sew(f, outer_is_low ? &outer : &inner, outer_is_low ? &inner : &outer);
   }
+  if (corners) add_corners(f, leaf, first);
 }
 
 static CagStatus fill_leaf(Fill *f, const Leaf *leaf, CagError *err) {

@@ -10,17 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "geom/mesh/distance.h"
-#include "geom/mesh/tessellation.h"
+#include "geom/mesh/trial.h"
 #include "geom/surface/frames.h"
 
 enum {
   STEPS = 8, // of the sampling grid of a leaf; even, so that halves are known as well
   SIDE = STEPS + 1,
   SAMPLES = SIDE * SIDE,
-  TRIED = 8,          // quadrilaterals measured along each direction of a leaf
-  TRIED_WELL = 12,    // of so few as this that is enough
-  TRIED_LAST = 16,    // in the last check, of their middles alone
   MAX_DEPTH = 24,     // of halving: features of a 4000th of the domain, in both directions
   WORTH_HALVING = 32, // quadrilaterals
   MAX_CORRECTIONS = 8
@@ -56,10 +52,6 @@ typedef struct Sampled {
   double both[SAMPLES];    // the product of both turns where they have the same axis, else less
 } Sampled;
 
-// As fmax and fmin, without the calls. The first of larger() is a number.
-static inline double larger(double a, double b) { return b > a ? b : a; }
-static inline double smaller(double a, double b) { return b < a || isnan(a) ? b : a; }
-
 // --- Sampling ---
 
 static void find_lengths_and_normals(Sampled *s) {
@@ -71,8 +63,9 @@ static void find_lengths_and_normals(Sampled *s) {
     double length = cag_norm(n);
     s->speed[0][k] = cag_norm(s->du[k]);
     s->speed[1][k] = cag_norm(s->dv[k]);
-    s->has_normal[k] = length > parallel * s->speed[0][k] * s->speed[1][k] && length > 0 &&
-                       smaller(s->speed[0][k], s->speed[1][k]) > cag_partial_noise(s->points[k], 1);
+    s->has_normal[k] =
+        length > parallel * s->speed[0][k] * s->speed[1][k] && length > 0 &&
+        tess_smaller(s->speed[0][k], s->speed[1][k]) > cag_partial_noise(s->points[k], 1);
     s->normals[k] = s->has_normal[k] ? cag_scaled(n, 1 / length) : n;
   }
 }
@@ -174,18 +167,19 @@ static bool is_resolved(const CagTessellation *how, const Sampled *s, int direct
   const double *speed = s->speed[direction];
   int stride = direction == 0 ? SIDE : 1;
   double longest = 0, worst = 0;
-  for (int k = 0; k < SAMPLES; k++) longest = larger(longest, speed[k]);
+  for (int k = 0; k < SAMPLES; k++) longest = tess_larger(longest, speed[k]);
   for (int i = 0; i < SIDE; i++)
     for (int j = 0; j < STEPS; j++) {
       int k = direction == 0 ? j * SIDE + i : i * SIDE + j;
       CagVec3 step = cag_scaled(cag_sub(s->points[k + stride], s->points[k]), STEPS);
       CagVec3 mean = cag_scaled(cag_add(d[k], d[k + stride]), 0.5);
       double length = (speed[k] + speed[k + stride]) / 2;
-      worst = larger(worst, cag_norm(cag_sub(step, mean)));
-      worst = larger(worst, fabs(length - cag_norm(step)));
+      worst = tess_larger(worst, cag_norm(cag_sub(step, mean)));
+      worst = tess_larger(worst, fabs(length - cag_norm(step)));
     }
   // Within the tolerance it does not matter, and of a point all is rounding.
-  return worst <= larger(far * longest, how->tolerance) && are_turns_resolved(how, s, direction);
+  return worst <= tess_larger(far * longest, how->tolerance) &&
+         are_turns_resolved(how, s, direction);
 }
 
 // --- Needs and counts ---
@@ -196,17 +190,17 @@ static Needs needs_of(const Sampled *s, Range r) {
   for (int i = r.u0; i <= r.u1; i++)
     for (int j = r.v0; j <= r.v1; j++) {
       int k = i * SIDE + j;
-      n.uu = larger(n.uu, s->off_uu[k]);
-      n.uv = larger(n.uv, s->off_uv[k]);
-      n.vv = larger(n.vv, s->off_vv[k]);
-      n.length[0] = larger(n.length[0], s->speed[0][k]);
-      n.length[1] = larger(n.length[1], s->speed[1][k]);
-      if (i < r.u1 && j < r.v1 && larger(s->turn[0][k], s->turn[1][k]) <= turned_away * STEPS)
-        n.both = larger(n.both, s->both[k]);
+      n.uu = tess_larger(n.uu, s->off_uu[k]);
+      n.uv = tess_larger(n.uv, s->off_uv[k]);
+      n.vv = tess_larger(n.vv, s->off_vv[k]);
+      n.length[0] = tess_larger(n.length[0], s->speed[0][k]);
+      n.length[1] = tess_larger(n.length[1], s->speed[1][k]);
+      if (i < r.u1 && j < r.v1 && tess_larger(s->turn[0][k], s->turn[1][k]) <= turned_away * STEPS)
+        n.both = tess_larger(n.both, s->both[k]);
       for (int d = 0; d < 2; d++) {
         if (d == 0 ? i == r.u1 : j == r.v1) continue;
-        n.turn[d] = larger(n.turn[d], s->turn[d][k]);
-        if (s->turn[d][k] <= turned_away * STEPS) n.bend[d] = larger(n.bend[d], s->turn[d][k]);
+        n.turn[d] = tess_larger(n.turn[d], s->turn[d][k]);
+        if (s->turn[d][k] <= turned_away * STEPS) n.bend[d] = tess_larger(n.bend[d], s->turn[d][k]);
       }
     }
   n.uu *= part[0] * part[0];
@@ -252,15 +246,15 @@ static void try_counts(const Form *f, int which, double fixed, double n[2], doub
 static void best_counts(const Form *f, double square_ratio, double n[2]) {
   const double nearly = 1.1;
   double sum = nearly * (2 * sqrt(f->uu * f->vv) + f->uv) - f->uv, ratio = square_ratio;
-  double root = sqrt(larger(0, sum * sum - 4 * f->uu * f->vv));
-  if (f->uu > 0) ratio = smaller(ratio, (sum + root) / (2 * f->uu));
-  if (f->vv > 0 && sum + root > 0) ratio = larger(ratio, 2 * f->vv / (sum + root));
+  double root = sqrt(tess_larger(0, sum * sum - 4 * f->uu * f->vv));
+  if (f->uu > 0) ratio = tess_smaller(ratio, (sum + root) / (2 * f->uu));
+  if (f->vv > 0 && sum + root > 0) ratio = tess_larger(ratio, 2 * f->vv / (sum + root));
   double best = INFINITY;
   n[0] = n[1] = 1;
   if (f->uu <= 0 && f->uv <= 0 && f->vv <= 0) return;
   if (ratio > 0) {
-    double nu = larger(1, sqrt((f->uu + f->uv / ratio + f->vv / (ratio * ratio)) / f->limit));
-    double nv = larger(1, ratio * nu);
+    double nu = tess_larger(1, sqrt((f->uu + f->uv / ratio + f->vv / (ratio * ratio)) / f->limit));
+    double nv = tess_larger(1, ratio * nu);
     double rounded[2][2], products[2] = {INFINITY, INFINITY};
     try_counts(f, 0, ceil(nu), rounded[0], &products[0]);
     try_counts(f, 1, ceil(nv), rounded[1], &products[1]);
@@ -271,6 +265,12 @@ static void best_counts(const Form *f, double square_ratio, double n[2]) {
   try_counts(f, 0, 1, n, &best);
   try_counts(f, 1, 1, n, &best);
 }
+
+// Of the angle: where grids of unlike fineness are sewn edges lie elsewhere than in the grid.
+static const double closely = 0.95;
+// Of the tolerance. Edges need not be shorter than that for the angle: at a cusp the normal turns
+// at once.
+static const double shortest_edge = 0.2;
 
 // Counts for a leaf; correction scales the bound on the distance.
 static void counts_for(const CagTessellation *how, const Needs *needs, double correction,
@@ -284,7 +284,6 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
       needs->length[0] > 0 && needs->length[1] > 0 ? needs->length[1] / needs->length[0] : 1;
   best_counts(&(Form){uu, uv, vv, how->tolerance}, square_ratio, n);
   const double no_turn = 1e-7; // radians: rounding of normals
-  const double closely = 0.95; // of the angle: normals turn more between samples, and in seams
   double most[2];
   if (how->angle > 0) {
     double a = needs->bend[0] > no_turn ? needs->bend[0] : 0,
@@ -292,12 +291,9 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
            limit = closely * closely * how->angle * how->angle;
     best_counts(&(Form){a * a, a > 0 && b > 0 ? 2 * needs->both : 0, b * b, limit}, square_ratio,
                 most);
-    // Edges that are far shorter than the tolerance need not be shorter: at a cusp the normal turns
-    // at once.
-    const double shortest = 0.2; // of the tolerance
     for (int d = 0; d < 2; d++) {
-      double room = larger(1, ceil(needs->length[d] / (shortest * how->tolerance)));
-      n[d] = larger(n[d], smaller(most[d], room));
+      double room = tess_larger(1, ceil(needs->length[d] / (shortest_edge * how->tolerance)));
+      n[d] = tess_larger(n[d], tess_smaller(most[d], room));
     }
   }
   if (how->max_edge > 0) {
@@ -307,194 +303,130 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
     double a = between * needs->length[0], b = between * needs->length[1];
     best_counts(&(Form){a * a, 2 * a * b, b * b, how->max_edge * how->max_edge}, square_ratio,
                 most);
-    for (int d = 0; d < 2; d++) n[d] = larger(n[d], most[d]);
+    for (int d = 0; d < 2; d++) n[d] = tess_larger(n[d], most[d]);
   }
 }
 
-// --- Trial ---
+// --- Settling ---
 
-// Indices of at most `most` of n quadrilaterals, spread from first to last.
-static int spread(double n, int most, double *out) {
-  int count = n < most ? (int)n : most;
-  for (int k = 0; k < count; k++) out[k] = count == 1 ? 0 : floor(k * (n - 1) / (count - 1));
-  return count;
-}
-
-enum { AT_0, AT_THIRD, AT_HALF, AT_TWO_THIRDS, AT_1, PLACES };
-static const double place[PLACES] = {0, 1.0 / 3, 0.5, 2.0 / 3, 1};
-
-#define AT(i, j) at[(i)*stride + (j)]
-// Largest measured distance from points of the surface over one quadrilateral to its triangles, cut
-// one way. A point may lie over either: parameters are not evenly spread.
-// worst: what was found before; smaller ones are of no interest.
-static double cut_distance(const CagVec3 *at, int stride, bool cut_ac, double worst) {
-  CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
-  CagVec3 tried[3] = {AT(AT_HALF, AT_HALF), AT(cut_ac ? AT_TWO_THIRDS : AT_THIRD, AT_THIRD),
-                      AT(cut_ac ? AT_THIRD : AT_TWO_THIRDS, AT_TWO_THIRDS)};
-  CagVec3 end = cut_ac ? c : d, start = cut_ac ? a : b;
-  for (int k = 0; k < 3; k++) {
-    // The last of them lies over the other triangle.
-    bool first = k < 2;
-    double off = first ? cag_distance_to_triangle(tried[k], a, b, end)
-                       : cag_distance_to_triangle(tried[k], start, c, d);
-    if (off <= worst) continue;
-    off = smaller(off, first ? cag_distance_to_triangle(tried[k], start, c, d)
-                             : cag_distance_to_triangle(tried[k], a, b, end));
-    worst = larger(worst, off);
-  }
-  return worst;
-}
-
-// How far p, over the middle of the edge a b of a triangle a b c, lies off the mesh. Beside the
-// edge the neighbour takes over, whose plane is turned by up to that angle; at the border of a face
-// chords.c cares.
-static double off_edge(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c, double sine) {
-  CagVec3 ab = cag_sub(b, a), ac = cag_sub(c, a), ap = cag_sub(p, a), n = cag_cross(ab, ac);
-  double area = cag_norm(n), length = cag_norm(ab);
-  if (!(length > 0) || cag_triangle_is_thin(a, ab, ac, n))
-    return cag_distance_to_triangle(p, a, b, c);
-  double off = fabs(cag_dot(ap, n)) / area,
-         outside = cag_dot(ap, cag_cross(ab, n)) / (area * length);
-  if (outside <= 0) return off;
-  return smaller(off + outside * sine, sqrt(off * off + outside * outside));
-}
-
-// At the border of a leaf triangles may be cut either way when they are sewn to their neighbours.
-// sine: of the angle between neighbours along u and v.
-static double quad_distance(const CagVec3 *at, int stride, const double sine[2], bool border,
-                            double worst) {
-  CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);
-  bool cut_ac = tess_cut_ac(a, b, c, d);
-  worst = larger(worst, off_edge(AT(AT_HALF, AT_0), a, b, cut_ac ? c : d, sine[1]));
-  worst = larger(worst, off_edge(AT(AT_HALF, AT_1), c, d, cut_ac ? a : b, sine[1]));
-  worst = larger(worst, off_edge(AT(AT_0, AT_HALF), d, a, cut_ac ? c : b, sine[0]));
-  worst = larger(worst, off_edge(AT(AT_1, AT_HALF), b, c, cut_ac ? a : d, sine[0]));
-  worst = cut_distance(at, stride, cut_ac, worst);
-  return border ? cut_distance(at, stride, !cut_ac, worst) : worst;
-}
-#undef AT
-
-// Points of the surface over some quadrilaterals of a leaf: of each, those at the places given.
-typedef struct Trial {
-  int count[2];
-  int rows;
-  CagVec3 points[TRIED_LAST * TRIED_LAST * 9]; // also room for TRIED and PLACES
-} Trial;
-
-static CagStatus evaluate_trial(const CagSurface *surface, const Sampled *s, const double n[2],
-                                int most, const double *places, int place_count, Trial *trial,
-                                CagError *err) {
-  double ts[2][TRIED_LAST * TRIED_LAST * 3], chosen[TRIED_LAST * TRIED_LAST];
-  for (int d = 0; d < 2; d++) {
-    // Of strips as many more along them as are not needed across.
-    int across = n[1 - d] < most ? (int)n[1 - d] : most;
-    trial->count[d] = spread(n[d], most * most / across, chosen);
-    for (int k = 0; k < trial->count[d]; k++)
-      for (int p = 0; p < place_count; p++) {
-        double t = s->from[d] + (s->to[d] - s->from[d]) * ((chosen[k] + places[p]) / n[d]);
-        ts[d][k * place_count + p] = t < s->to[d] ? t : s->to[d];
-      }
-  }
-  trial->rows = trial->count[1] * place_count;
-  return cag_surface_eval_grid(surface, ts[0], (size_t)(trial->count[0] * place_count), ts[1],
-                               (size_t)trial->rows, trial->points, NULL, NULL, err);
-}
-
-// turn: of the normal over the leaf, by Needs.
-static CagStatus measure(const CagSurface *surface, const Sampled *s, const double turn[2],
-                         const double n[2], double *distance, CagError *err) {
-  Trial trial;
+static CagStatus try_distance(const TessTrial *trial, const Needs *needs, double *distance,
+                              CagError *err) {
   double sine[2];
-  for (int d = 0; d < 2; d++) sine[d] = sin(smaller(turn[d] / n[d], M_PI / 2));
-  CagStatus status = evaluate_trial(surface, s, n, TRIED, place, PLACES, &trial, err);
-  if (status != CAG_OK) return status;
-  *distance = 0;
-  for (int i = 0; i < trial.count[0]; i++)
-    for (int j = 0; j < trial.count[1]; j++) {
-      const CagVec3 *corner = trial.points + (i * trial.rows + j) * PLACES;
-      bool border = i == 0 || j == 0 || i + 1 == trial.count[0] || j + 1 == trial.count[1];
-      *distance = quad_distance(corner, trial.rows, sine, border, *distance);
-    }
-  return CAG_OK;
-}
-
-// Middles of more quadrilaterals, for leaves too large for measure() to see all.
-static CagStatus measure_middles(const CagSurface *surface, const Sampled *s, const double n[2],
-                                 double *distance, CagError *err) {
-  static const double ends_and_middle[3] = {0, 0.5, 1};
-  Trial trial;
-  CagStatus status = evaluate_trial(surface, s, n, TRIED_LAST, ends_and_middle, 3, &trial, err);
-  if (status != CAG_OK) return status;
-  *distance = 0;
-  for (int i = 0; i < trial.count[0]; i++)
-    for (int j = 0; j < trial.count[1]; j++) {
-      const CagVec3 *at = trial.points + (i * trial.rows + j) * 3, *far = at + 2 * trial.rows;
-      CagVec3 middle = at[trial.rows + 1], a = at[0], b = far[0], c = far[2], d = at[2];
-      bool cut_ac = tess_cut_ac(a, b, c, d);
-      double off = cag_distance_to_triangle(middle, a, b, cut_ac ? c : d);
-      if (off <= *distance) continue;
-      off = smaller(off, cag_distance_to_triangle(middle, cut_ac ? a : b, c, d));
-      *distance = larger(*distance, off);
-    }
-  return CAG_OK;
+  for (int d = 0; d < 2; d++) sine[d] = sin(tess_smaller(needs->turn[d] / trial->n[d], M_PI / 2));
+  return tess_try_distance(trial, sine, distance, err);
 }
 
 // Finds counts whose measured distance lies under the tolerance and not far under it. `surprise`:
 // not NULL where the leaf may be halved instead; set where the samples were blind to what is
 // between them.
-static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, const Sampled *s,
-                               double best[2], bool *surprise, CagError *err) {
+static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs needs, int *halved,
+                                 CagError *err) {
   const double surprising = 3; // times the tolerance, where the bound promised less than it
   // Strips that are twisted may be sewn to other nodes than those that are tried.
   const double sewn = 1.15, twisted = 0.05;
-  Range all = {0, STEPS, 0, STEPS};
-  Needs needs = needs_of(s, all);
   double tolerance = t->how.tolerance, correction = 1, limit = (double)t->how.max_triangles;
-  double smallest = INFINITY, n[2];
+  double smallest = INFINITY, best[2] = {1, 1}, *n = trial->n;
   for (int round = 0; round < MAX_CORRECTIONS; round++) {
     counts_for(&t->how, &needs, correction, n);
     double quads = n[0] * n[1], distance;
     if (quads >= smallest) break;
     if (quads > limit) return tess_limit(t, 2 * quads, err);
-    CagStatus status = measure(surface, s, needs.turn, n, &distance, err);
+    CagStatus status = try_distance(trial, &needs, &distance, err);
     if (status != CAG_OK) return status;
     double use = distance / tolerance;
-    if (use <= highest_use && larger(n[0], n[1]) > TRIED_WELL) {
-      status = measure_middles(surface, s, n, &distance, err);
+    if (use <= highest_use) {
+      status = tess_try_middles(trial, &distance, err);
       if (status != CAG_OK) return status;
-      use = larger(use, distance / tolerance);
+      use = tess_larger(use, distance / tolerance);
     }
-    if (smaller(n[0], n[1]) <= 1 && needs.uv > twisted * tolerance * quads) use *= sewn;
-    if (surprise && round == 0 && use > surprising) {
-      *surprise = true;
+    if (tess_smaller(n[0], n[1]) <= 1 && needs.uv > twisted * tolerance * quads) use *= sewn;
+    if (halved && round == 0 && use > surprising) {
+      *halved = needs.length[0] >= needs.length[1] ? 0 : 1;
       return CAG_OK;
     }
     if (use <= highest_use) {
       smallest = quads;
-      best[0] = n[0];
-      best[1] = n[1];
+      memcpy(best, n, sizeof best);
       if (use >= lowest_use || quads <= 1) break;
     }
     // Differences are blind to what happens between samples: then the counts themselves grow.
-    double largest = larger(needs.uu, larger(needs.uv, needs.vv));
+    double largest = tess_larger(needs.uu, tess_larger(needs.uv, needs.vv));
     if (use > highest_use && largest * correction < tolerance * 0.5) {
-      needs.uu = larger(needs.uu, tolerance);
-      needs.vv = larger(needs.vv, tolerance);
+      needs.uu = tess_larger(needs.uu, tolerance);
+      needs.vv = tess_larger(needs.vv, tolerance);
     }
-    correction *= smaller(16, larger(use / aimed_use, 1.0 / 16));
+    correction *= tess_smaller(16, tess_larger(use / aimed_use, 1.0 / 16));
   }
-  if (smallest < INFINITY) return CAG_OK;
+  if (smallest < INFINITY) {
+    memcpy(n, best, sizeof best);
+    return CAG_OK;
+  }
   // Corrections did not settle it; doubling does.
-  best[0] = n[0];
-  best[1] = n[1];
   for (double distance = INFINITY; distance > highest_use * tolerance;) {
-    best[0] *= 2;
-    best[1] *= 2;
-    if (best[0] * best[1] > limit) return tess_limit(t, 2 * best[0] * best[1], err);
-    CagStatus status = measure(surface, s, needs.turn, best, &distance, err);
+    n[0] *= 2;
+    n[1] *= 2;
+    if (n[0] * n[1] > limit) return tess_limit(t, 2 * n[0] * n[1], err);
+    CagStatus status = try_distance(trial, &needs, &distance, err);
     if (status != CAG_OK) return status;
   }
   return CAG_OK;
+}
+
+// Raises counts until the edges keep the angle and the length: between samples the normal turns
+// faster than from one to the next. Looked at only where the samples come near to what is allowed.
+static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Needs *needs,
+                              int *halved, CagError *err) {
+  const double near = 0.6, slight = 0.05;
+  const double surprising = 1.25; // more than that is needed in some part of the leaf only
+  const CagTessellation *how = &t->how;
+  const double free = shortest_edge * how->tolerance;
+  double *n = trial->n;
+  for (int round = 0; round < MAX_CORRECTIONS; round++) {
+    double turn[2], length[2];
+    for (int d = 0; d < 2; d++) {
+      turn[d] = needs->turn[d] / n[d];
+      length[d] = needs->length[d] / n[d];
+    }
+    bool turns = how->angle > 0 && turn[0] + turn[1] > near * how->angle,
+         runs = how->max_edge > 0 && length[0] + length[1] > near * how->max_edge;
+    if (!turns && !runs) return CAG_OK;
+    TessExcess found;
+    CagStatus status =
+        tess_try_edges(trial, closely * how->angle, free, how->max_edge, &found, err);
+    if (status != CAG_OK) return status;
+    if (tess_larger(found.diagonal, tess_larger(found.along[0], found.along[1])) <= 1)
+      return CAG_OK;
+    bool grown = false;
+    int worse = found.along[0] >= found.along[1] ? 0 : 1;
+    if (halved && n[worse] >= 4 && found.along[worse] > surprising) {
+      *halved = worse;
+      return CAG_OK;
+    }
+    for (int d = 0; d < 2; d++) {
+      // A direction that has next to no share in a diagonal does not mend it.
+      bool shares = turn[d] > slight * turn[1 - d] || length[d] > slight * length[1 - d];
+      double by = tess_larger(found.along[d], shares ? found.diagonal : 0);
+      double more = tess_smaller(ceil(n[d] * by), tess_larger(n[d], ceil(needs->length[d] / free)));
+      grown |= by > 1 && more > n[d];
+      if (by > 1) n[d] = more;
+    }
+    if (n[0] * n[1] > (double)how->max_triangles) return tess_limit(t, 2 * n[0] * n[1], err);
+    if (!grown) return CAG_OK;
+  }
+  return CAG_OK;
+}
+
+static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, const Sampled *s,
+                               double best[2], int *halved, CagError *err) {
+  TessTrial trial = {.surface = surface};
+  Needs needs = needs_of(s, (Range){0, STEPS, 0, STEPS});
+  memcpy(trial.from, s->from, sizeof trial.from);
+  memcpy(trial.to, s->to, sizeof trial.to);
+  CagStatus status = settle_distance(t, &trial, needs, halved, err);
+  if (status == CAG_OK && !(halved && *halved >= 0))
+    status = settle_edges(t, &trial, &needs, halved, err);
+  memcpy(best, trial.n, sizeof trial.n);
+  return status;
 }
 
 // --- Leaves ---
@@ -525,8 +457,8 @@ static bool is_sliver_pole(const CagTessellation *how, const Sampled *s, int dir
   // The parallels grow with the distance from the pole: the first one by the first sample.
   for (int i = 0; i < SIDE; i++) {
     int k = i * other + (end ? STEPS - 1 : 1) * stride;
-    base = larger(base, s->speed[1 - direction][k] * STEPS);
-    height = larger(height, s->speed[direction][k]);
+    base = tess_larger(base, s->speed[1 - direction][k] * STEPS);
+    height = tess_larger(height, s->speed[direction][k]);
   }
   return height > small * how->tolerance && base / n[1 - direction] < slim * height &&
          less[1 - direction] < gain * n[1 - direction];
@@ -552,7 +484,7 @@ static int halving(const CagTessellation *how, const CagSurface *surface, const 
       cost_of(how, s, (Range){0, half, 0, STEPS}) + cost_of(how, s, (Range){half, STEPS, 0, STEPS});
   double by_v =
       cost_of(how, s, (Range){0, STEPS, 0, half}) + cost_of(how, s, (Range){0, STEPS, half, STEPS});
-  if (smaller(by_u, by_v) > gain * whole) return -1;
+  if (tess_smaller(by_u, by_v) > gain * whole) return -1;
   return by_u <= by_v ? 0 : 1;
 }
 
@@ -589,12 +521,11 @@ static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], 
   double middle = d < 0 ? 0 : from[d] + (to[d] - from[d]) / 2;
   if (d < 0 || !(middle > from[d] && middle < to[d])) {
     double n[2];
-    bool surprise = false;
-    status = settle_counts(t, surface, &s, n, depth < MAX_DEPTH && d < 0 ? &surprise : NULL, err);
+    int halved = -1;
+    status = settle_counts(t, surface, &s, n, depth < MAX_DEPTH && d < 0 ? &halved : NULL, err);
     if (status != CAG_OK) return status;
-    if (!surprise) return add_leaf(t, face, &s, n, err);
-    Needs needs = needs_of(&s, (Range){0, STEPS, 0, STEPS});
-    d = needs.length[0] >= needs.length[1] ? 0 : 1;
+    if (halved < 0) return add_leaf(t, face, &s, n, err);
+    d = halved;
     middle = from[d] + (to[d] - from[d]) / 2;
   }
   double lower_to[2] = {to[0], to[1]}, upper_from[2] = {from[0], from[1]};

@@ -10,9 +10,9 @@
 typedef struct CagTessellation {
   double tolerance; // mm: largest distance between surface and mesh; <= 0: by the size (1/1000 of
                     // the diagonal of the bounds)
-  double angle;    // radians: most that the normal turns along one edge (an eighth more where grids
-                   // of unlike fineness are sewn); edges far shorter than the tolerance are free
-  double max_edge; // mm; <= 0: none
+  double angle;     // radians: most that the normal turns along one edge; what turns within a fifth
+                    // of the tolerance is free
+  double max_edge;  // mm; <= 0: none
   size_t max_triangles;          // CAG_E_LIMIT "triangle-limit" before memory is taken
   const volatile int *interrupt; // not NULL and not 0: stops with CAG_E_CALLBACK
 } CagTessellation;

@@ -1,0 +1,35 @@
+// Trying out how finely a leaf is divided: what is measured on the surface itself.
+
+#ifndef CAG_GEOM_MESH_TRIAL_H
+#define CAG_GEOM_MESH_TRIAL_H
+
+#include "geom/mesh/tessellation.h"
+
+// As fmax and fmin, without the calls. The first of tess_larger() is a number.
+static inline double tess_larger(double a, double b) { return b > a ? b : a; }
+static inline double tess_smaller(double a, double b) { return b < a || isnan(a) ? b : a; }
+
+// A rectangle of parameters and the counts of its grid that are tried.
+typedef struct TessTrial {
+  const CagSurface *surface;
+  double from[2], to[2], n[2];
+} TessTrial;
+
+// Largest distance found from the surface to the triangles, on the middles, thirds and edges of
+// some quadrilaterals. sine: of the angle between neighbours along u and v.
+CagStatus tess_try_distance(const TessTrial *trial, const double sine[2], double *distance,
+                            CagError *err);
+// The same on the middles of more quadrilaterals, for leaves too large for the former to see all;
+// of those that are not, it gives 0.
+CagStatus tess_try_middles(const TessTrial *trial, double *distance, CagError *err);
+
+// By how much edges of quadrilaterals exceed what is allowed: 1 where one just does not.
+typedef struct TessExcess {
+  double along[2], diagonal;
+} TessExcess;
+// angle: that the normal may turn along an edge; free: edges shorter than this may turn it more;
+// longest: length of edges; either 0: none.
+CagStatus tess_try_edges(const TessTrial *trial, double angle, double free, double longest,
+                         TessExcess *out, CagError *err);
+
+#endif
