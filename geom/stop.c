@@ -10,7 +10,6 @@ const volatile int *cag_stop_lend(const volatile int *flag) {
   return before;
 }
 
-CagStatus cag_stop_check(CagError *err) {
-  if (!cag_stopped()) return CAG_OK;
+CagStatus cag_stop_fail(CagError *err) {
   return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "it was stopped");
 }

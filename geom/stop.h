@@ -17,7 +17,11 @@ const volatile int *cag_stop_lend(const volatile int *flag);
 
 static inline bool cag_stopped(void) { return cag_stop_flag && *cag_stop_flag; }
 
+CagStatus cag_stop_fail(CagError *err);
+
 // Fails when the work is to end.
-CagStatus cag_stop_check(CagError *err);
+static inline CagStatus cag_stop_check(CagError *err) {
+  return cag_stopped() ? cag_stop_fail(err) : CAG_OK;
+}
 
 #endif

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "geom/stop.h"
+
 void cag_bspline_basis(const double *knots, int p, size_t span, double t, double *out) {
   out[0] = 1;
   for (int d = 1; d <= p; d++) {
@@ -45,13 +47,24 @@ void cag_bspline_derivatives(const double *knots, int p, size_t span, double t, 
   }
 }
 
+// Whether the piece between knots span and span + 1 is a Bezier curve as it stands: each end is a
+// knot p times.
+static bool is_bezier(const double *knots, int p, size_t span) {
+  return knots[span + 1 - (size_t)p] == knots[span] && knots[span + (size_t)p] == knots[span + 1];
+}
+
 // Bezier point j is the blossom at (p - j) times the left and j times the right end.
 void cag_bspline_piece(const double *homogeneous, const double *knots, int p, size_t span,
                        double *out) {
   double d[4 * (CAG_MAX_DEGREE + 1)];
   const double a = knots[span], b = knots[span + 1];
   const double *first = homogeneous + 4 * (span - (size_t)p);
-  for (int j = 0; j <= p; j++) {
+  if (is_bezier(knots, p, span)) {
+    memcpy(out, first, sizeof(double) * 4 * (size_t)(p + 1));
+    return;
+  }
+  // A thousand points take a second: who asked the work to end does not ask for the rest.
+  for (int j = 0; j <= p && !cag_stopped(); j++) {
     memcpy(d, first, sizeof(double) * 4 * (size_t)(p + 1));
     for (int s = 1; s <= p; s++) {
       const double u = s <= j ? b : a;

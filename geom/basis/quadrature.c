@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "geom/stop.h"
+
 // Halving an interval this often leaves less of it than rounding does.
 #define DEPTH 48
 // Where halving does not lower the estimate of the error by this factor, the integrand is rounding
@@ -44,6 +46,7 @@ typedef struct Estimate {
 
 static CagStatus estimate(const Task *task, double a, double b, Estimate *out) {
   const double half = (b - a) / 2, middle = a + half;
+  if (cag_stop_check(task->err)) return task->err->status;
   double k[CAG_INTEGRAND_PARTS] = {0}, g[CAG_INTEGRAND_PARTS] = {0}, m[CAG_INTEGRAND_PARTS] = {0};
   for (int i = 0; i < 8; i++)
     for (int side = -1; side <= 1; side += 2) {

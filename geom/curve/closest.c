@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "geom/curve/family.h"
+#include "geom/stop.h"
 
 // Two places whose distances differ by less than this part of the size count as equally near.
 #define EQUALLY_NEAR 1e-10
@@ -80,6 +81,7 @@ static double chord_parameter(const Part *part, CagVec3 target) {
 
 // Looks at one part: dropped, finished, or halved onto the list.
 static CagStatus step(Search *s, const Part *part, Parts *next, CagError *err) {
+  if (cag_stop_check(err)) return err->status;
   double u = chord_parameter(part, s->target);
   double sag = cag_curve_sag(s->c, part->a, part->b);
   double near = cag_norm(cag_sub(cag_lerp(part->p, part->q, u), s->target)) - sag;

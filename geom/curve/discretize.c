@@ -8,6 +8,7 @@
 
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
+#include "geom/stop.h"
 
 // More points than any picture or part needs: a tolerance that asks for more was mistyped.
 #define MOST_POINTS 5000000
@@ -35,6 +36,7 @@ static CagStatus fail_count(CagError *err) {
 
 static CagStatus append(Output *out, double t, CagError *err) {
   if (out->n >= MOST_POINTS) return fail_count(err);
+  if (cag_stop_check(err)) return err->status;
   if (out->n == out->capacity) {
     size_t capacity = out->capacity ? 2 * out->capacity : 64;
     double *grown = realloc(out->t, sizeof *grown * capacity);

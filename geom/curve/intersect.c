@@ -10,6 +10,7 @@
 
 #include "geom/curve/family.h"
 #include "geom/curve/intersect_clip.h"
+#include "geom/stop.h"
 
 // Parts of the size of the data: where a curve counts as a chord, where two points are one, where
 // meetings found twice are the same.
@@ -352,6 +353,7 @@ static CagStatus pair(CurveSearch *s, const Part *a, const Part *b, int depth, C
   double sag_a = cag_curve_sag(s->a, a->a, a->b), sag_b = cag_curve_sag(s->b, b->a, b->b);
   if (segments(a, b, &u, &v) > sag_a + sag_b + (ZERO * s->size + s->noise)) return CAG_OK;
   if (++s->pairs > MOST_PAIRS) return fail_overlap(err);
+  if (cag_stop_check(err)) return err->status;
   CagVec3 d = cag_sub(a->q, a->p), e = cag_sub(b->q, b->p);
   double da = cag_norm(d), db = cag_norm(e);
   double t = a->a + u * (a->b - a->a), w = b->a + v * (b->b - b->a);
@@ -392,9 +394,11 @@ CagStatus cag_curve_intersect(const CagCurve *a, const CagCurve *b, CagMeeting *
     free(parts_a);
     return status;
   }
-  for (size_t i = 0; !status && i < count_a; i++)
+  for (size_t i = 0; !status && i < count_a; i++) {
+    status = cag_stop_check(err);
     for (size_t k = 0; !status && k < count_b; k++)
       status = pair(&s, &parts_a[i], &parts_b[k], 2 * DEPTH, err);
+  }
   free(parts_a);
   free(parts_b);
   if (status) {

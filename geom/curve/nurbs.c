@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "geom/curve/family.h"
+#include "geom/stop.h"
 
 static const CagCurveKind kinds[3];
 
@@ -53,6 +54,7 @@ static CagStatus make_pieces(CagNurbs *c, CagError *err) {
     if (!(c->knots[i] < c->knots[i + 1])) continue;
     double *b = c->bezier + n * stride;
     cag_bspline_piece(c->homogeneous, c->knots, p, i, b);
+    if (cag_stop_check(err)) return err->status;
     if (!c->rational)
       for (int k = 0; k <= p; k++) b[4 * k + 3] = 1;
     // A joint is one point for both of its pieces.

@@ -17,6 +17,7 @@
 
 #include "geom/curve/family.h"
 #include "geom/curve/region_chain.h"
+#include "geom/stop.h"
 
 // Points nearer than this part of the size of all are one: what touches count as in intersections.
 #define SAME 1e-9
@@ -314,8 +315,9 @@ static CagStatus classify(const CagRegionPieces *s, Edges *edges, const Corners 
     CagRegionEdge *e = &edges->items[i];
     const CagVec3 p = corners->points[e->from], q = corners->points[e->to];
     const int axis = fabs(q.y - p.y) >= fabs(q.x - p.x);
-    int ray[2], left[2], right[2];
-    status = cast_clearly(s, edges, corners, &strips[axis], axis, i, ray, err);
+    int ray[2] = {0, 0}, left[2], right[2];
+    status = cag_stop_check(err);
+    if (!status) status = cast_clearly(s, edges, corners, &strips[axis], axis, i, ray, err);
     // Along +x an edge that goes up has its right side ahead; along +y one that goes to +x its
     // left.
     const bool right_ahead = axis ? q.y > p.y : q.x < p.x;

@@ -10,6 +10,7 @@
 #include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
 #include "geom/curve/region_arrange.h"
+#include "geom/stop.h"
 
 typedef struct Meetings {
   CagRegionPieces *pieces;
@@ -315,6 +316,7 @@ CagStatus cag_region_pieces_meet(CagRegionPieces *s, CagRegionCut **out, size_t 
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < s->n; i++) {
     const Box *a = &boxes[i];
+    status = cag_stop_check(err);
     for (size_t k = i + 1; !status && k < s->n && boxes[k].x0 <= a->x1; k++) {
       const Box *b = &boxes[k];
       if (b->y0 > a->y1 || a->y0 > b->y1) continue;

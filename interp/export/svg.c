@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/stop.h"
 #include "interp/export/pieces.h"
 #include "interp/export/svg_label.h"
 
@@ -333,8 +334,8 @@ static CagStatus draw_region(Picture *p, const CagItem *item, CagError *err) {
 }
 
 static CagStatus draw_item(Picture *p, const CagItem *item, CagError *err) {
-  CagStatus status = CAG_OK;
-  if (item->kind != CAG_ITEM_CURVE && item->kind != CAG_ITEM_REGION) return CAG_OK;
+  CagStatus status = cag_stop_check(err);
+  if (status || (item->kind != CAG_ITEM_CURVE && item->kind != CAG_ITEM_REGION)) return status;
   open_path(p, item);
   if (item->kind == CAG_ITEM_REGION) {
     status = draw_region(p, item, err);

@@ -69,3 +69,76 @@ it 'built-ins without an end of their own look at the clock'
 try eval 'join(0..1e9)' --max-time 0.3
 status 5
 says '--max-time'
+
+# --- Everything that runs for long ends soon after the limit ---
+
+# cag with a limit of a second, which must end it within two.
+soon() {
+  begun=$(date +%s%N)
+  try "$@" --max-time 1
+  took=$((($(date +%s%N) - begun) / 1000000))
+  status 5
+  says '--max-time'
+  [ $took -lt 2000 ] || wrong "it took $took ms"
+  no_temporaries .
+}
+
+script many.cag 'show sphere(1000), torus(300, 100)'
+script heavy.cag 'show difference(sphere(100), translate(sphere(100), [30, 0.1, 0.2]))'
+script high.cag 'c = interpolate([for i in 0..<20000: [i, sin(i * 1deg), cos(i * 3deg)]], degree: 25)
+print at(c, start(c))'
+script degree.cag 'c = bspline([for i in 0..5000: [i, sin(i * 1deg) * 100, i % 7]], degree: 999)
+print length(c)'
+script gon.cag 'r = region([for i in 0..<20000: [cos(i * 0.018deg), sin(i * 0.018deg)] * (100 + 10 * (i % 2))])
+print area(difference(r, rotate(r, Z, 0.01deg)))'
+script fit.cag 'c = fit([for i in 0..<200000: [i, sin(i * 1deg), cos(i * 3deg)]], degree: 40, count: 30000)
+print length(c)'
+script meet.cag 'a = bspline([for i in 0..3000: [i, sin(i * 40deg) * 100]])
+b = bspline([for i in 0..3000: [i + 0.5, cos(i * 30deg) * 100]])
+print len(intersect(a, b))'
+script unseen.cag 'a = [for i in 0..<6000: random(i, 6000)]
+print determinant(multiply(inverse(a), inverse(a)))'
+script glass.cag 'show sphere(100)'
+
+it '--max-time ends the meshing of an export'
+printf earlier > many.stl
+soon export many.cag -o many.stl --tolerance 1e-4
+holds many.stl earlier
+
+it '--max-time ends a set operation of heavy meshes at an export'
+soon export heavy.cag -o heavy.stl --tolerance 0.0002
+is_missing heavy.stl
+
+it '--max-time ends interpolations of high degree'
+soon run high.cag
+
+it '--max-time ends curves of high degree'
+soon run degree.cag
+
+it '--max-time ends set operations of regions'
+soon run gon.cag
+
+it '--max-time ends fits'
+soon run fit.cag
+
+it '--max-time ends intersections of curves'
+soon run meet.cag
+
+it '--max-time ends what does not look up'
+soon run unseen.cag
+
+it '--max-time ends the reading of a large file'
+awk 'BEGIN { print "ply\nformat ascii 1.0\nelement vertex 3000000\nproperty float x\nproperty float y\nproperty float z\nelement face 3000000\nproperty list uchar int vertex_indices\nend_header"
+  for (i = 0; i < 3000000; i++) print i % 1000, i / 1000, i % 7
+  for (i = 0; i < 3000000; i++) print 3, i, (i + 1) % 3000000, (i + 999) % 3000000 }' > large.ply
+script large.cag 'print read_mesh("large.ply")'
+soon run large.cag
+rm large.ply
+
+if have povray; then
+  it '--max-time is that of the script and the renderer together'
+  printf earlier > glass.png
+  soon render glass.cag -o glass.png --size 3000x2000 --quality final
+  holds glass.png earlier
+  is_missing glass.exr
+fi

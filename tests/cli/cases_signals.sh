@@ -114,3 +114,41 @@ kill -TERM $child 2> /dev/null
 wait $child
 code=$?
 status 130
+
+# --- Everything that runs for long ends soon after Ctrl-C ---
+
+# The geometry looks up: it ends by itself, before the alarm that ends what does not.
+script heavy.cag 'show difference(sphere(100), translate(sphere(100), [30, 0.1, 0.2]))'
+script degree.cag 'c = bspline([for i in 0..5000: [i, sin(i * 1deg) * 100, i % 7]], degree: 999)
+print length(c)'
+script gon.cag 'r = region([for i in 0..<20000: [cos(i * 0.018deg), sin(i * 0.018deg)] * (100 + 10 * (i % 2))])
+print area(difference(r, rotate(r, Z, 0.01deg)))'
+script meet.cag 'a = bspline([for i in 0..3000: [i, sin(i * 40deg) * 100]])
+b = bspline([for i in 0..3000: [i + 0.5, cos(i * 30deg) * 100]])
+print len(intersect(a, b))'
+stopped() {
+  begun=$(date +%s%N)
+  interrupted INT 1 "$@"
+  took=$((($(date +%s%N) - begun) / 1000000))
+  status 130
+  [ $took -lt 2500 ] || wrong "it took $took ms"
+  no_temporaries .
+}
+
+it 'Ctrl-C ends the meshing of an export'
+stopped export ball.cag -o ball.stl --tolerance 1e-6
+is_missing ball.stl
+
+it 'Ctrl-C ends a set operation at an export'
+stopped export heavy.cag -o heavy.stl --tolerance 0.0002
+
+it 'Ctrl-C ends curves of high degree'
+stopped run degree.cag
+
+it 'Ctrl-C ends set operations of regions and intersections of curves'
+stopped run gon.cag
+stopped run meet.cag
+
+it 'Ctrl-C within a limit of time is no crossed limit'
+stopped run degree.cag --max-time 60
+says_not '--max-time'
