@@ -159,6 +159,9 @@ CAG_API const char *cag_session_name(CagSession *s, size_t i, const char **sourc
 // Writes what is known of a name defined interactively, its text and documentation; false: no such
 // name.
 CAG_API bool cag_session_write_doc(CagSession *s, const char *name, FILE *out);
+// What the library calls something that the interactive session imported from it: after
+// `import std.materials as mat`, "mat.glazed" is "std.materials.glazed". False: it did not.
+CAG_API bool cag_session_library_name(CagSession *s, const char *name, char *out, size_t size);
 // Gives the names that may stand behind `path.`, a name or several with points between them, of the
 // interactive session.
 CAG_API void cag_session_members(CagSession *s, const char *path,

@@ -2,11 +2,14 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include "interp/doc/site.h"
 
-// Columns that a line has at most.
+// Columns that a line has at most, and those that a narrow terminal is taken to have at least.
 #define WIDTH 92
+#define NARROWEST 40
 // Where what is said about a parameter begins.
 #define NAME_COLUMN 24
 
@@ -14,8 +17,17 @@ static void heading(const CagDocWriter *w, const char *text) {
   fprintf(w->out, w->styled ? "\033[1m%s\033[0m\n" : "%s\n", text);
 }
 
+// The columns of a line: a narrow terminal has less.
+static size_t width_of(FILE *out) {
+  struct winsize size;
+  const int fd = fileno(out);
+  if (fd < 0 || !isatty(fd) || ioctl(fd, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return WIDTH;
+  return size.ws_col < NARROWEST ? NARROWEST : size.ws_col < WIDTH ? size.ws_col : WIDTH;
+}
+
 // Text wrapped at word ends; the first line goes on at column `at`, further ones begin at `indent`.
 static void write_wrapped(FILE *out, const char *text, size_t length, size_t indent, size_t at) {
+  const size_t width = width_of(out);
   size_t column = at;
   bool first = true;
   for (size_t i = 0; i < length;) {
@@ -24,7 +36,7 @@ static void write_wrapped(FILE *out, const char *text, size_t length, size_t ind
     size_t n = strcspn(text + i, " \n");
     if (i + n > length) n = length > i ? length - i : 0;
     if (n == 0) break;
-    if (!first && column + 1 + n > WIDTH) {
+    if (!first && column + 1 + n > width) {
       fprintf(out, "\n%*s", (int)indent, "");
       column = indent;
     } else if (!first) {
@@ -47,6 +59,21 @@ static void write_indented(FILE *out, const char *text, int indent) {
     const size_t n = strcspn(text, "\n");
     if (n) fprintf(out, "%*s%.*s\n", indent, "", (int)n, text);
     else fputc('\n', out);
+    text += n + (text[n] == '\n');
+  }
+}
+
+// Lines as they stand, but for prose that does not fit; scripts in it are indented by four.
+static void write_prose(FILE *out, const char *text, size_t indent) {
+  const size_t width = width_of(out);
+  while (*text) {
+    const size_t n = strcspn(text, "\n");
+    if (strncmp(text, "    ", 4) != 0 && indent + n > width) {
+      write_wrapped(out, text, n, indent, 0);
+    } else {
+      if (n) fprintf(out, "%*s%.*s", (int)indent, "", (int)n, text);
+      fputc('\n', out);
+    }
     text += n + (text[n] == '\n');
   }
 }
@@ -136,7 +163,7 @@ static bool tells_parameters(const CagDocEntry *e) {
 static void write_definition(const CagDocWriter *w, const CagDocEntry *e) {
   if (e->kind == CAG_DOC_PARAM) write_param(w, e);
   else fprintf(w->out, w->styled ? "\033[1m%s\033[0m\n" : "%s\n", e->signature);
-  if (e->text) write_indented(w->out, e->text, 2);
+  if (e->text) write_prose(w->out, e->text, 2);
 }
 
 void cag_doc_write_entry(const CagDocWriter *w, const CagDocModule *m, const CagDocEntry *e) {
@@ -148,7 +175,7 @@ void cag_doc_write_entry(const CagDocWriter *w, const CagDocModule *m, const Cag
 void cag_doc_write_module(const CagDocWriter *w, const CagDocModule *m) {
   heading(w, m->name);
   if (*m->purpose) fputc('\n', w->out);
-  write_indented(w->out, m->purpose, 0);
+  write_prose(w->out, m->purpose, 0);
   for (size_t i = 0; i < m->count; i++) {
     fputc('\n', w->out);
     write_definition(w, &m->entries[i]);
@@ -159,6 +186,7 @@ void cag_doc_write_module(const CagDocWriter *w, const CagDocModule *m) {
 // --- The overview ---
 
 static void write_family(const CagDocWriter *w, const char *family) {
+  const size_t width = width_of(w->out);
   size_t column = 0;
   heading(w, family);
   const char *last = "";
@@ -169,7 +197,7 @@ static void write_family(const CagDocWriter *w, const char *family) {
     if (strcmp(b->family, family) != 0 || strcmp(name, last) == 0) continue;
     last = name;
     const size_t n = strlen(name);
-    if (column && column + 1 + n > WIDTH) {
+    if (column && column + 1 + n > width) {
       fputc('\n', w->out);
       column = 0;
     }

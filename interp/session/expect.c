@@ -48,6 +48,7 @@ typedef struct Plan {
   Define *defines;
   size_t define_count;
   CagSessionOptions limits;
+  bool picture; // the reference picture is of this run
   Expected *expected;
   size_t count;
   char *problem; // with the options
@@ -142,7 +143,7 @@ static bool set_limit(Plan *p, const char *name, const char *value) {
 
 static void set_problem(Plan *p, const char *word) {
   static const char FORM[] =
-      "`%s` is no option of `// run:`; there are -D name=value, --max-depth, "
+      "`%s` is no option of `// run:`; there are -D name=value, --picture, --max-depth, "
       "--max-memory, --max-time and --max-triangles";
   free(p->problem);
   if (asprintf(&p->problem, FORM, word) < 0) p->problem = NULL;
@@ -158,6 +159,7 @@ static void read_options(Plans *plans, Plan *p, Piece text) {
     char *name = strdup(word);
     bool ok = name != NULL;
     if (ok && !strncmp(name, "-D", 2) && name[2]) ok = add_define(p, name + 2);
+    else if (ok && !strcmp(name, "--picture")) p->picture = true;
     else if (ok) {
       const char *value = next_word(at, word);
       ok = value && (!strcmp(name, "-D") ? add_define(p, word) : set_limit(p, name, word));
@@ -342,6 +344,7 @@ typedef struct Run {
   size_t example;     // its number among those, from 1
   const char *folder; // of an example: where it finds the script
   Plan *plan;
+  bool pictured; // the reference picture, where there is one, is of this run
   char *name;
   bool failed;
 } Run;
@@ -528,7 +531,8 @@ static bool render(Run *r, CagSession *s, const CagImage *reference, const char 
   cag_render_options_init(&options);
   options.width = (int)reference->width;
   options.height = (int)reference->height;
-  options.time_limit = CAG_TEST_SECONDS;
+  const double limit = r->options->session.max_time;
+  options.time_limit = limit > 0 ? limit : CAG_TEST_PICTURE_SECONDS;
   if (cag_session_render(s, &options, path) == CAG_STATUS_OK) return true;
   char *errors = rendered_errors(s);
   fail(r, 0, "the scene cannot be rendered", NULL, NULL, errors);
@@ -594,8 +598,7 @@ static CagSession *make_session(const Run *r, FILE *out) {
   CagSessionOptions options = r->plan->limits;
   options.out = out;
   options.folder = r->folder;
-  if (!(options.max_time > 0) || options.max_time > CAG_TEST_SECONDS)
-    options.max_time = CAG_TEST_SECONDS;
+  if (!(options.max_time > 0)) options.max_time = CAG_TEST_SECONDS;
   CagSession *s = cag_session_new(&options);
   for (size_t i = 0; s && !r->about && i < r->options->define_count; i++)
     cag_session_define(s, r->options->define_names[i], r->options->define_values[i]);
@@ -610,10 +613,9 @@ static bool expects_error(const Plan *p) {
   return false;
 }
 
-// The picture belongs to the plain run of a script that ends well.
+// The picture belongs to a run that ends well.
 static int test_reference(Run *r, CagSession *s) {
-  const bool none =
-      r->options->no_pictures || r->text || r->plan->options || expects_error(r->plan);
+  const bool none = r->options->no_pictures || r->text || !r->pictured || expects_error(r->plan);
   char *reference = none ? NULL : find_reference(r->path);
   if (!reference) return CAG_STATUS_OK;
   char *name = r->name;
@@ -667,6 +669,12 @@ static char *run_name(const Run *r) {
   return name;
 }
 
+static bool some_pictured(const Plans *plans) {
+  for (size_t i = 0; i < plans->count; i++)
+    if (plans->items[i].picture) return true;
+  return false;
+}
+
 // Runs a script in all its runs; `text` is its text, also where the run reads the file.
 static int run_plans(const Run *script, const char *text, size_t length) {
   Plans plans = {0};
@@ -676,6 +684,7 @@ static int run_plans(const Run *script, const char *text, size_t length) {
   for (size_t i = 0; i < plans.count && status == CAG_STATUS_OK; i++) {
     Run r = *script;
     r.plan = &plans.items[i];
+    r.pictured = some_pictured(&plans) ? r.plan->picture : !r.plan->options;
     r.name = run_name(&r);
     if (!r.name) status = CAG_STATUS_LIMIT;
     else if (is_chosen(&r)) status = perform(&r);

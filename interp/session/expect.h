@@ -14,14 +14,15 @@
 // line expects.
 //
 // A `run:` takes -D name=value (values with spaces in quotes), and --max-depth, --max-memory (in
-// bytes), --max-time and --max-triangles, for tests of the limits. Errors that have no place in
-// the script (a -D that it has no param for, an error within an imported module) are matched by
-// their code alone.
+// bytes), --max-time and --max-triangles, for tests of the limits, and --picture (below). Errors
+// that have no place in the script (a -D that it has no param for, an error within an imported
+// module) are matched by their code alone.
 //
 // The examples in the documentation of its definitions, lines of /// indented by four, are tests as
 // well: each runs by itself, with what it names of the script imported.
 //
-// A picture beside the script, NAME.exr or NAME.png, is the reference of what the plain run shows.
+// A picture beside the script, NAME.exr or NAME.png, is the reference of what the plain run shows,
+// or of what the run with --picture shows, where there is one: `run: -D time=0.5 --picture`.
 // It is rendered at the reference's size in the quality "normal", and compared: see
 // CAG_TEST_DELTA_E. Without POV-Ray pictures are left out.
 
@@ -30,8 +31,10 @@
 
 #include "cag.h"
 
-// The seconds that a run, or a rendering, may take.
+// The seconds that a run, or a rendering, may take, unless --max-time says otherwise: enough for
+// large scenes on a busy machine, and an end for what never ends.
 #define CAG_TEST_SECONDS 60.0
+#define CAG_TEST_PICTURE_SECONDS 900.0
 
 // A picture is as its reference when the mean of the colour difference CIEDE2000 is at most
 // CAG_TEST_DELTA_E (1 is just noticeable side by side), and no more than the share CAG_TEST_PIXELS

@@ -184,6 +184,21 @@ bool cag_session_write_doc(CagSession *s, const char *name, FILE *out) {
   return true;
 }
 
+bool cag_session_library_name(CagSession *s, const char *name, char *out, size_t size) {
+  const size_t n = strcspn(name, ".");
+  char *head = strndup(name, n);
+  const size_t i = head && s->vm && s->interactive ? find_name(s->vm, head) : (size_t)-1;
+  free(head);
+  if (i == (size_t)-1) return false;
+  const CagGlobal *g = &s->vm->globals[s->vm->outer_globals[i]];
+  const bool whole = g->value.type == CAG_MODULE; // of the name is the module, not a member of it
+  const CagModuleUnit *m =
+      whole ? s->vm->modules[((const CagModuleValue *)g->value.as.object)->module] : g->unit;
+  if (!m || m->path || strncmp(m->name, "std.", 4) != 0 || (!whole && name[n])) return false;
+  snprintf(out, size, "%s%s%s", m->name, whole ? "" : ".", whole ? name + n : name);
+  return true;
+}
+
 // --- Members ---
 
 // Tab does not wait for values that take longer.

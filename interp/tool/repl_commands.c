@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/ioctl.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -112,19 +113,56 @@ void cag_repl_command(CagRepl *repl, char *line) {
 
 // --- Help ---
 
+// Where the stories of commands begin (below the name in a narrow window), and the columns of a
+// line without a terminal.
+#define STORY_COLUMN 16
+#define NARROW_COLUMN 4
+#define NARROW 48
+#define WIDTH 92
+
+static size_t terminal_width(void) {
+  struct winsize size;
+  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known && size.ws_col < WIDTH ? size.ws_col : WIDTH;
+}
+
+// Words of a text behind column `at`; further lines begin at `indent`.
+static void print_wrapped(const char *text, size_t at, size_t indent) {
+  const size_t width = terminal_width();
+  for (bool first = true; *text; first = false) {
+    const size_t n = strcspn(text, " ");
+    if (!first && at + 1 + n > width) {
+      printf("\n%*s", (int)indent, "");
+      at = indent;
+    } else if (!first) {
+      putchar(' ');
+      at++;
+    }
+    printf("%.*s", (int)n, text);
+    at += n;
+    text += n + (text[n] == ' ');
+  }
+  putchar('\n');
+}
+
 static void list_commands(void) {
+  const bool narrow = terminal_width() < NARROW;
+  const int column = narrow ? NARROW_COLUMN : STORY_COLUMN;
   for (size_t i = 0; i < COUNT; i++) {
     char head[32];
     snprintf(head, sizeof head, "%s %s", commands[i].name, commands[i].operand);
-    printf("%-15s %s\n", head, commands[i].story);
+    if (narrow) printf("%s\n%*s", head, column, "");
+    else printf("%-*s", column, head);
+    print_wrapped(commands[i].story, (size_t)column, (size_t)column);
   }
-  puts(
-      "Anything else is a definition, a statement or an expression of the language. Tab completes\n"
-      "names, Ctrl-C stops what runs.");
+  print_wrapped("Anything else is a definition, a statement or an expression of the language. Tab "
+                "completes names, Ctrl-C stops what runs.",
+                0, 0);
 }
 
 // All built-in functions under the headings of their families.
 static void list_builtins(void) {
+  const size_t width = terminal_width();
   const char *signature, *family, *heading = "";
   size_t column = 0;
   char last[64] = "";
@@ -138,7 +176,7 @@ static void list_builtins(void) {
     } else if (strcmp(name, last) == 0) {
       continue;
     }
-    if (column + 1 + strlen(name) > 88) {
+    if (column + 1 + strlen(name) > width) {
       printf("\n   ");
       column = 3;
     }
@@ -174,13 +212,27 @@ static const char *nearest_name(const CagRepl *repl, const char *name) {
   return nearest;
 }
 
+// What `cag doc` tells of a name, or of what was imported under it from the library. It reads
+// modules with a session of its own: this one keeps its definitions.
+static bool document(const CagRepl *repl, const char *name) {
+  char whole[256];
+  const bool imported = cag_session_library_name(repl->session, name, whole, sizeof whole);
+  CagSession *s = cag_tool_session(repl->tool);
+  const bool styled = repl->interactive && repl->tool->style == CAG_STYLE_COLOR;
+  const bool told = s && cag_session_document(s, imported ? whole : name, styled, stdout);
+  cag_session_free(s);
+  return told;
+}
+
 static void show_doc(CagRepl *repl, char *name) {
+  char library[256];
   if (!*name) {
     list_builtins();
     return;
   }
-  if (explain_command(name) || cag_session_write_doc(repl->session, name, stdout) ||
-      cag_write_builtin_doc(name, stdout) || (is_error_code(name) && cag_explain(name, stdout)))
+  const bool own = !cag_session_library_name(repl->session, name, library, sizeof library);
+  if (explain_command(name) || (own && cag_session_write_doc(repl->session, name, stdout)) ||
+      document(repl, name) || (is_error_code(name) && cag_explain(name, stdout)))
     return;
   const char *nearest = nearest_name(repl, name);
   if (nearest)

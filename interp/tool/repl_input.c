@@ -10,6 +10,8 @@
 #include <histedit.h>
 #include <langinfo.h>
 #include <locale.h>
+#include <poll.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -127,15 +129,73 @@ static char *prompt(EditLine *editor) {
   return input_of(editor)->more ? next : first;
 }
 
+// --- Signals at the prompt: another size of the window, and Ctrl-Z ---
+
+static volatile sig_atomic_t window_changed, stop_asked;
+
+static void note(int signal) {
+  if (signal == SIGWINCH) window_changed = 1;
+  else stop_asked = 1;
+}
+
+// Draws the line anew for the new size. Terminals wrap what stands on them anew, so the line's
+// first row is counted up to by the new width.
+static void redraw(EditLine *editor) {
+  struct winsize size = {0};
+  const LineInfo *line = el_line(editor);
+  const char *first = prompt(editor);
+  window_changed = 0;
+  ioctl(STDOUT_FILENO, TIOCGWINSZ, &size);
+  size_t column = strlen(first);
+  for (const char *at = line->buffer; at < line->cursor; at++)
+    column += ((unsigned char)*at & 0xc0) != 0x80;
+  const size_t rows = size.ws_col ? column / size.ws_col : 0;
+  fputs("\r", stdout);
+  if (rows) printf("\033[%zuA", rows);
+  fputs("\033[J", stdout);
+  fflush(stdout);
+  el_resize(editor);
+  el_set(editor, EL_REFRESH);
+}
+
+// Gives the terminal back, stops, and goes on with the line when the shell says so.
+static void stop(EditLine *editor) {
+  stop_asked = 0;
+  el_set(editor, EL_PREP_TERM, 0);
+  fputs("\n", stdout);
+  fflush(stdout);
+  // The signal's own action: where nobody could wake the process, the system does not stop it.
+  const struct sigaction plain = {.sa_handler = SIG_DFL};
+  struct sigaction ours;
+  sigaction(SIGTSTP, &plain, &ours);
+  raise(SIGTSTP);
+  sigaction(SIGTSTP, &ours, NULL);
+  el_set(editor, EL_PREP_TERM, 1);
+  el_resize(editor);
+  el_set(editor, EL_REFRESH);
+}
+
+// Waits for a byte; a change of the window's size is seen meanwhile. False: a signal ends the line.
+static bool wait_for_byte(EditLine *editor) {
+  struct pollfd input = {.fd = STDIN_FILENO, .events = POLLIN};
+  for (;;) {
+    if (cag_tool_interrupt) return false;
+    if (window_changed) redraw(editor);
+    if (stop_asked) stop(editor);
+    if (poll(&input, 1, -1) >= 0) return true;
+    if (errno != EINTR) return false;
+  }
+}
+
 // Reads one character of UTF-8. A signal ends the line: libedit's own reader would go on.
 static int read_character(EditLine *editor, wchar_t *out) {
   (void)editor;
   mbstate_t state = {0};
   for (;;) {
     char byte;
-    if (cag_tool_interrupt) return -1; // it came while Tab was looking
+    if (!wait_for_byte(editor)) return -1;
     ssize_t n = read(STDIN_FILENO, &byte, 1);
-    if (n < 0 && errno == EINTR && !cag_tool_interrupt) continue; // the window changed its size
+    if (n < 0 && errno == EINTR && !cag_tool_interrupt) continue;
     if (n < 0) return -1;
     if (n == 0) return 0;
     size_t k = mbrtowc(out, &byte, 1, &state);
@@ -235,9 +295,15 @@ static CagReplRead edit_line(CagReplInput *in, char **line) {
   int n = 0;
   fflush(stdout);
   fflush(stderr);
+  struct sigaction on = {.sa_handler = note, .sa_flags = SA_RESTART}, window, stopping;
+  sigaction(SIGWINCH, &on, &window);
+  sigaction(SIGTSTP, &on, &stopping);
+  el_resize(in->editor); // it may have changed meanwhile
   el_set(in->editor, EL_PREP_TERM, 1);
   const char *text = el_gets(in->editor, &n);
   el_set(in->editor, EL_PREP_TERM, 0);
+  sigaction(SIGWINCH, &window, NULL);
+  sigaction(SIGTSTP, &stopping, NULL);
   if (cag_tool_interrupt) {
     fputs("^C\n", stdout);
     return CAG_REPL_INTERRUPTED;

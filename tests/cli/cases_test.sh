@@ -37,3 +37,81 @@ says 'nowhere'
 it 'no job at all is refused'
 try test good.cag --jobs 0
 status 2
+
+it 'the report in XML has the elements and counts that its readers ask for'
+script endless.cag 'f(n) = f(n + 1)
+print f(0)'
+script crash.cag 'f(x) = 1 / x
+g(x) = f(x - 1)
+print g(1)'
+try test good.cag bad.cag endless.cag crash.cag --max-time 1 --report all.xml
+status 1
+cat > junit.rng << 'END'
+<grammar xmlns="http://relaxng.org/ns/structure/1.0" datatypeLibrary="http://www.w3.org/2001/XMLSchema-datatypes">
+  <start><element name="testsuites"><optional><attribute name="name"/></optional>
+    <ref name="counts"/>
+    <zeroOrMore><element name="testsuite">
+      <attribute name="name"/><ref name="counts"/>
+      <zeroOrMore><element name="testcase">
+        <attribute name="name"/><attribute name="classname"/><attribute name="time"><data type="decimal"/></attribute>
+        <optional><choice>
+          <element name="failure"><attribute name="message"/><optional><attribute name="type"/></optional><text/></element>
+          <element name="skipped"><optional><attribute name="message"/></optional></element>
+        </choice></optional>
+      </element></zeroOrMore>
+    </element></zeroOrMore>
+  </element></start>
+  <define name="counts">
+    <attribute name="tests"><data type="nonNegativeInteger"/></attribute>
+    <attribute name="failures"><data type="nonNegativeInteger"/></attribute>
+    <optional><attribute name="errors"><data type="nonNegativeInteger"/></attribute></optional>
+    <optional><attribute name="skipped"><data type="nonNegativeInteger"/></attribute></optional>
+    <optional><attribute name="time"><data type="decimal"/></attribute></optional>
+
+  </define>
+</grammar>
+END
+try_command xmllint --noout --relaxng junit.rng all.xml
+status 0
+
+it 'a test that never ends is ended, and one that fails shows its calls'
+try test endless.cag crash.cag --max-time 1
+status 1
+prints 'E0603'
+prints 'called from crash.cag:2'
+prints '0 passed, 2 failed'
+
+it 'scripts of one name in several folders do not meet'
+if have povray; then
+  for folder in one two three; do
+    mkdir "$folder"
+    script "$folder/scene.cag" "show sphere(10) |> material({color: \"$([ $folder = two ] && echo red || echo teal)\"}), camera([90, -60, 40], size: [32, 24])"
+    "$CAG" render "$folder/scene.cag" -o "$folder/scene.png" > out 2> err || wrong 'there is no picture'
+  done
+  try test one two three --jobs 3
+  status 0
+  prints '6 passed, 0 failed'
+
+  it 'a picture that is not as its reference is kept, and --update renews the reference'
+  cp two/scene.png one/scene.png
+  try test one
+  status 1
+  prints 'one/scene.cag: the picture is not as one/scene.png'
+  try test one --update
+  status 0
+  prints 'renewed'
+  try test one
+  status 0
+
+  it 'the run with --picture is the one that the reference picture is of'
+  script film.cag 'show sphere(10 + 8 * time), camera([90, -60, 40], size: [32, 24])'
+  try render film.cag -o film.png -D time=1
+  try test film.cag
+  status 1
+  echo '// run: -D time=1 --picture' >> film.cag
+  try test film.cag -v
+  status 0
+  prints 'film.cag -D time=1 --picture (picture)'
+else
+  echo 'povray is missing: pictures of tests are not tested'
+fi

@@ -303,6 +303,47 @@ else
   keys ':quit' Enter
 fi
 
+# In a shell of a narrow window: stopping, going on, other sizes, many lines at once.
+if command -v tmux >/dev/null; then
+  sleep 0.2
+  tmux -L "$session" -f /dev/null new-session -d -s repl -x 40 -y 30 \
+    env XDG_STATE_HOME="$XDG_STATE_HOME" LC_ALL=C.UTF-8 TERM=screen NO_COLOR=1 PS1='shell> ' bash --norc
+  keys " $cag" Enter
+  shows 'a prompt waits in a shell' 'cag>'
+  keys 'forty = 40' Enter 'forty +'
+  wait_for 'cag> forty +'
+  keys C-z
+  wait_for 'shell>'
+  keys 'fg' Enter
+  wait_for 'cag> forty +'
+  keys ' 2' Enter
+  shows 'Ctrl-Z stops at the prompt, and fg goes on with the line' '42 : number'
+  keys -l 'len("0123456789012345678901234567890123456789"'
+  sleep 0.2
+  tmux -L "$session" resize-window -t repl -x 30 -y 30
+  sleep 0.2
+  tmux -L "$session" resize-window -t repl -x 60 -y 30
+  keys ')' Enter
+  shows 'a line goes on in a window of another size' 'cag> len("0123456789012345678901234567890123456789")'
+  shows 'and is read as it was typed' '40 : number'
+  keys C-l ':help at' Enter
+  wait_for 'cag>'
+  [ "$(screen | awk '{ if (length($0) > n) n = length($0) } END { print n + 0 }')" -le 60 ] &&
+    screen | sed 's/ *$//' | grep -qx '  turned. Outside of the domain is an error'
+  result 'documentation is wrapped in a narrow window' $? "$(screen)"
+  keys C-l ':help' Enter
+  shows 'the list of commands is wrapped as well' '                command or an error code; of all functions'
+  awk 'BEGIN { for (i = 1; i <= 500; i++) printf "v%d = %d + 1\n", i, i; print "v500" }' >lines.txt
+  tmux -L "$session" load-buffer lines.txt
+  tmux -L "$session" paste-buffer -t repl
+  shows '500 lines can be pasted' '501 : number'
+  keys 'import std.materials as mat' Enter C-l ':doc mat.glazed' Enter
+  shows 'documentation of what is imported by another name' 'glazed(color = "white")'
+  keys C-d
+  wait_for 'shell>'
+  tmux -L "$session" kill-session -t repl
+fi
+
 # The state's folder cannot be made below a file.
 if command -v tmux >/dev/null; then
   : >"$work/file"
