@@ -106,8 +106,7 @@ static bool take_next(CagCurveList *list, size_t to, CagVec3 at, double same, Ca
   return false;
 }
 
-// Replaces the curves [first, list->count) by what they are joined end to end.
-static CagStatus join_list(CagCurveList *list, size_t first, double same, CagError *err) {
+CagStatus cag_curve_list_join(CagCurveList *list, size_t first, double same, CagError *err) {
   for (size_t i = first; i < list->count; i++) {
     CagVec3 ends[2], end;
     if (list->items[i]->closed || !end_points(list->items[i], ends)) continue;
@@ -302,7 +301,7 @@ CagStatus cag_surface_section(const CagSurface *s, const CagPlane *plane, double
   size_t first = out->count;
   if (!(tolerance > 0)) tolerance = DEFAULT_TOLERANCE * size;
   status = section_face(s, plane, tolerance, size, out, err);
-  return status ? status : join_list(out, first, MEET * size, err);
+  return status ? status : cag_curve_list_join(out, first, MEET * size, err);
 }
 
 CagStatus cag_solid_section(const CagSolid *s, const CagPlane *plane, double tolerance,
@@ -324,7 +323,7 @@ CagStatus cag_solid_section(const CagSolid *s, const CagPlane *plane, double tol
   }
   for (size_t i = 0; !status && i < s->face_count; i++)
     status = section_face(s->faces[i], plane, tolerance, size, out, err);
-  return status ? status : join_list(out, first, MEET * size, err);
+  return status ? status : cag_curve_list_join(out, first, MEET * size, err);
 }
 
 CagStatus cag_surface_contour(const CagSurface *s, CagVec3 direction, CagVec3 eye, bool central,
@@ -346,5 +345,5 @@ CagStatus cag_surface_level_curves(const CagSurface *s, const CagLevel *level, d
   size_t first = out->count;
   if (!(tolerance > 0)) tolerance = DEFAULT_TOLERANCE * size;
   status = trace_all(s, level, NULL, tolerance, size, out, everywhere, err);
-  return status ? status : join_list(out, first, MEET * size, err);
+  return status ? status : cag_curve_list_join(out, first, MEET * size, err);
 }

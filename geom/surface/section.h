@@ -84,6 +84,9 @@ typedef struct CagCurveList {
 } CagCurveList;
 void cag_curve_list_free(CagCurveList *list);
 CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err); // takes c over
+// Replaces the curves [first, list->count) by what they are joined end to end, where ends are
+// nearer than `same`.
+CagStatus cag_curve_list_join(CagCurveList *list, size_t first, double same, CagError *err);
 
 // Sections with a plane are added to the list; what merely touches the plane may have none. The
 // tolerance is that of curves that are neither lines nor conics; 0: a millionth of the size.

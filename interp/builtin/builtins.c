@@ -15,7 +15,7 @@
 // clang-format off
 #define FAMILIES(X) \
   X(constants) X(numbers) X(angles) X(vectors) X(lists) X(texts) X(records) X(control) X(random) \
-  X(calculus) X(matrices) X(files) X(formula) X(transforms) X(curves) X(regions) X(bsplines) X(functions) X(frenet) X(hulls) X(conics) X(splines) X(surfaces) X(tensors) X(sections) X(triangles) X(solids) X(checks) X(mesh_files) X(figures) X(quality) X(robots) X(robot_files) X(inverse) X(scene)
+  X(calculus) X(matrices) X(files) X(formula) X(transforms) X(curves) X(regions) X(bsplines) X(functions) X(frenet) X(hulls) X(conics) X(splines) X(surfaces) X(tensors) X(sections) X(meetings) X(triangles) X(solids) X(checks) X(mesh_files) X(figures) X(quality) X(robots) X(robot_files) X(inverse) X(scene)
 // clang-format on
 
 #define X(family) extern const CagBuiltin cag_builtins_##family[];

@@ -1,0 +1,102 @@
+// Where surfaces meet curves, planes and each other, and where they are nearest to a point.
+
+#include <stdlib.h>
+
+#include "geom/surface/meet_curve.h"
+#include "geom/surface/meet_surface.h"
+#include "geom/surface/nearest.h"
+#include "interp/builtin/surfaces.h"
+#include "interp/eval/vm.h"
+
+static const char MEETINGS[] = "Surfaces: near and across";
+
+static bool call_closest(CagCall *call, CagValue *result) {
+  static const char *const names[] = {"u", "v", "point", "distance"};
+  CagSurface *s;
+  CagVec3 p;
+  CagError err;
+  CagSurfaceNearest found;
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_vec(call, 1, &p, NULL) ||
+      !cag_geometry_ok(call, cag_surface_closest(s, p, &found, &err), &err))
+    return false;
+  CagValue values[] = {cag_parameter_value(s->angular_u, found.u),
+                       cag_parameter_value(s->angular_v, found.v),
+                       cag_point(call->vm, found.point, 3), cag_number(found.distance)};
+  *result = cag_record_new(call->vm, names, values, 4);
+  return true;
+}
+
+static bool with_curve(CagCall *call, const CagSurface *s, const CagCurve *c, CagValue *result) {
+  static const char *const names[] = {"point", "u", "v", "t"};
+  CagSurfaceMeeting *found;
+  CagError err;
+  size_t n;
+  if (!cag_geometry_ok(call, cag_surface_intersect_curve(s, c, &found, &n, &err), &err))
+    return false;
+  CagBuilder *list = cag_builder_new(call->vm);
+  bool ok = true;
+  for (size_t i = 0; ok && i < n; i++) {
+    CagValue values[] = {
+        cag_point(call->vm, found[i].point, 3), cag_parameter_value(s->angular_u, found[i].u),
+        cag_parameter_value(s->angular_v, found[i].v), cag_parameter_value(c->angular, found[i].t)};
+    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 4));
+  }
+  free(found);
+  if (ok) *result = cag_builder_finish(call->vm, list);
+  return ok;
+}
+
+static bool give_curves(CagCall *call, const CagCurveList *list, CagValue *result) {
+  CagBuilder *out = cag_builder_new(call->vm);
+  bool ok = true;
+  for (size_t i = 0; ok && i < list->count; i++)
+    ok =
+        cag_builder_add(call->vm, out, cag_curve_value(call->vm, cag_curve_retain(list->items[i])));
+  if (ok) *result = cag_builder_finish(call->vm, out);
+  return ok;
+}
+
+static bool call_intersect(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagError err;
+  CagCurveList list = {0};
+  CagStatus status;
+  double tolerance = 0;
+  const CagValue other = call->values[1];
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  if (cag_given(call, 2) && call->values[2].type != CAG_NONE &&
+      !cag_arg_positive(call, 2, &tolerance))
+    return false;
+  if (other.type == CAG_CURVE) return with_curve(call, s, CAG_AS_SHAPE(other)->as.curve, result);
+  if (other.type == CAG_PLANE)
+    status = cag_surface_section(s, &CAG_AS_PLANE(other)->plane, tolerance, &list, &err);
+  else if (other.type == CAG_SURFACE)
+    status = cag_surface_intersect(s, CAG_AS_SHAPE(other)->as.surface, tolerance,
+                                   cag_vm_stop(call->vm), &list, &err);
+  else return cag_fail_type(call, 1, "a curve, a surface or a plane");
+  bool ok = cag_geometry_ok(call, status, &err) && give_curves(call, &list, result);
+  cag_curve_list_free(&list);
+  return ok;
+}
+
+const CagBuiltin cag_builtins_meetings[] = {
+    {"closest(S, P)", call_closest, "record",
+     "The place of the surface nearest to P: u, v, point and distance (mm). Of several that are "
+     "equally near it is one.",
+     "c = closest(sphere_surface(2), [0, 5, 0])\n"
+     "print near(c.point, [0, 2, 0]), near(c.distance, 3), c.u, c.v // expect: true true 90deg "
+     "90deg",
+     CAG_TAKES(SURFACE), MEETINGS},
+    {"intersect(S, A, tolerance = none)", call_intersect, "list",
+     "Where the surface meets a curve: records of point, u, v, and t of the curve, in the order of "
+     "t. Where it meets another surface or a plane: curves, lines and conics exactly, others as "
+     "cubics within the tolerance (none: a millionth of the size). Surfaces that only touch have "
+     "none; loops much smaller than the surfaces may be missed. Where they share a piece it is an "
+     "error (overlap).",
+     "c = intersect(sphere_surface(5), translate([0, 0, 3]) * bilinear([-9, -9], [-9, 9], [9, -9], "
+     "[9, 9]))\n"
+     "print len(c), near(length(c[0]), 8 * pi) // expect: 1 true\n"
+     "m = intersect(sphere_surface(3), line([-9, 0, 0], [9, 0, 0]))\n"
+     "print len(m), near(m[0].point, [-3, 0, 0]), near(m[0].t, 1/3) // expect: 2 true true",
+     CAG_TAKES(SURFACE), MEETINGS},
+    {0}};
