@@ -494,16 +494,15 @@ static Doc *pipe(Format *f, const CagExpr *e) {
   const CagExpr **links = layout_memory(&f->layout, n * sizeof *links);
   size_t at = n;
   for (const CagExpr *x = e; x->kind == CAG_EXPR_PIPE; x = x->as.binary.left) links[--at] = x;
-  Docs d = {0}, stages = {0};
-  layout_add(&d, expression(f, links[0]->as.binary.left));
+  Docs stages = {0};
+  Doc *head = expression(f, links[0]->as.binary.left);
   for (size_t i = 0; i < n; i++) {
     set_comments(f, &stages, links[i]->as.binary.op_span.start, true);
     layout_add(&stages, layout_space(&f->layout));
     set_word(f, &stages, "|> ");
     layout_add(&stages, expression(f, links[i]->as.binary.right));
   }
-  layout_add(&d, layout_nest(&f->layout, INDENT, &stages));
-  return layout_group(&f->layout, layout_concat(&f->layout, &d));
+  return layout_stages(&f->layout, head, layout_nest(&f->layout, INDENT, &stages));
 }
 
 static bool is_plain(const CagExpr *e) {

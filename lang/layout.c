@@ -152,6 +152,11 @@ void layout_comma(Doc *d) {
 
 Doc *layout_group(Layout *l, Doc *d) { return parent(l, DOC_GROUP, d); }
 
+Doc *layout_stages(Layout *l, Doc *head, Doc *rest) {
+  head->next = rest;
+  return parent(l, DOC_STAGES, head);
+}
+
 Doc *layout_nest(Layout *l, int indent, const Docs *parts) {
   Doc *d = parent(l, DOC_NEST, parts->head);
   d->indent = indent;
@@ -526,6 +531,19 @@ static void print_brackets(Layout *l, const Doc *d, int indent, uint32_t tail) {
   print(l, d->close, indent, tail);
 }
 
+// Whether the line so far is a closing bracket or two.
+static bool has_just_closed(const Layout *l, int indent) {
+  return !l->pending && l->length && strchr(")]}", l->out[l->length - 1]) &&
+         l->column <= (uint32_t)indent + 2;
+}
+
+static void print_stages(Layout *l, const Doc *head, int indent, uint32_t tail) {
+  const Doc *rest = head->next;
+  print(l, head, indent, behind(head, tail));
+  if (has_just_closed(l, indent) && fits(l, rest, tail)) print_flat(l, rest);
+  else print(l, rest, indent, tail);
+}
+
 static void print_broken(Layout *l, const Doc *d, int indent, uint32_t tail) {
   switch (d->kind) {
   case DOC_TEXT: put_text(l, d); break;
@@ -540,6 +558,7 @@ static void print_broken(Layout *l, const Doc *d, int indent, uint32_t tail) {
   case DOC_INLINE: put_inline(l, d->child); break;
   case DOC_CONCAT:
   case DOC_GROUP: print_children(l, d->child, indent, tail); break;
+  case DOC_STAGES: print_stages(l, d->child, indent, tail); break;
   case DOC_NEST: print_children(l, d->child, indent + d->indent, tail); break;
   case DOC_FILL: print_fill(l, d->child, indent, tail, false); break;
   case DOC_BRACKETS:

@@ -26,6 +26,8 @@ typedef enum DocKind {
   DOC_CONCAT,   // breaks as what it stands in
   DOC_NEST,     // breaks as what it stands in, indented
   DOC_GROUP,    // on one line, or all its lines broken
+  DOC_STAGES,   // a head and what follows it: on one line; or the head broken, and the rest behind
+                // its closing bracket; or as a group
   DOC_FILL,     // each line broken only where the next item does not fit
   DOC_BRACKETS, // items between brackets: on one line, or one to a line
   DOC_FILLED,   // items between brackets: on one line, or filled
@@ -109,6 +111,7 @@ Doc *layout_inline(Layout *l, Doc *text);
 Doc *layout_concat(Layout *l, const Docs *parts);
 void layout_comma(Doc *d); // puts a comma behind it
 Doc *layout_group(Layout *l, Doc *d);
+Doc *layout_stages(Layout *l, Doc *head, Doc *rest);
 Doc *layout_nest(Layout *l, int indent, const Docs *parts);
 Doc *layout_fill(Layout *l, const Docs *items); // items and LINEs in turn
 // `items`: items and LINEs in turn. `hugs`: where all but the last fit, the last may begin behind

@@ -148,6 +148,15 @@ static void records_of_data_are_filled(void **state) {
                 ",\n  fourth: 4,\n  fifth: 5,\n  sixth: 6\n}\n");
 }
 
+static void stages_stand_behind_a_closing_bracket(void **state) {
+  (void)state;
+  expect_layout("a = group([" LONG ", " LONG "]) |> f(1) |> g",
+                "a = group([\n  " LONG ",\n  " LONG "\n]) |> f(1) |> g\n");
+  expect_layout("a = group([" LONG ", " LONG "]) |> f(1) |> g(" LONG ", x) |> g(" LONG ")",
+                "a = group([\n  " LONG ",\n  " LONG "\n])\n  |> f(1)\n  |> g(" LONG
+                ", x)\n  |> g(" LONG ")\n");
+}
+
 static void short_parameters_are_filled(void **state) {
   (void)state;
   expect_layout(
@@ -289,6 +298,7 @@ int main(void) {
       cmocka_unit_test(rows_of_numbers_stand_one_below_the_other),
       cmocka_unit_test(records_of_data_are_filled),
       cmocka_unit_test(short_parameters_are_filled),
+      cmocka_unit_test(stages_stand_behind_a_closing_bracket),
       cmocka_unit_test(scripts_keep_their_trees),
   };
   return cmocka_run_group_tests_name("layout", tests, NULL, NULL);
