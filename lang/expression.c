@@ -249,6 +249,9 @@ CagExpr *parse_branch(Parser *p) {
 }
 
 // ---- operators ----
+//
+// Each function below may be given the operand that it begins with, read already: most expressions
+// are a single one, and nothing need be asked of each level for them.
 
 static CagExpr *unary(Parser *p);
 
@@ -277,8 +280,8 @@ static CagExpr *unary(Parser *p) {
 }
 
 // product = unary { ( "*" | "/" | "%" | "&" ) unary }
-static CagExpr *product(Parser *p) {
-  CagExpr *e = unary(p);
+static CagExpr *product(Parser *p, CagExpr *first) {
+  CagExpr *e = first ? first : unary(p);
   for (;;) {
     CagBinaryOp op;
     switch (parse_kind(p)) {
@@ -298,8 +301,8 @@ static CagExpr *product(Parser *p) {
 // sum = product { ( "+" | "-" | "|" ) product }
 //
 // A line that begins with `-` begins something new.
-static CagExpr *sum(Parser *p) {
-  CagExpr *e = product(p);
+static CagExpr *sum(Parser *p, CagExpr *first) {
+  CagExpr *e = product(p, first);
   for (;;) {
     CagBinaryOp op;
     switch (parse_kind(p)) {
@@ -313,7 +316,7 @@ static CagExpr *sum(Parser *p) {
     }
     CagSpan at = parse_here(p);
     parse_advance(p);
-    CagExpr *right = product(p);
+    CagExpr *right = product(p, NULL);
     e = parse_binary(p, CAG_EXPR_BINARY, op, at, e, right);
   }
 }
@@ -331,7 +334,7 @@ static CagExpr *range_end(Parser *p) {
                                               : "an unbounded range ends at inf");
     return parse_error_node(p);
   }
-  return sum(p);
+  return sum(p, NULL);
 }
 
 static void report_chained_range(Parser *p, const CagExpr *e) {
@@ -348,8 +351,8 @@ static void report_chained_range(Parser *p, const CagExpr *e) {
 }
 
 // operand = sum [ ( ".." | "..<" ) sum [ "by" sum ] ]
-CagExpr *parse_operand(Parser *p) {
-  CagExpr *low = sum(p);
+static CagExpr *operand(Parser *p, CagExpr *first) {
+  CagExpr *low = sum(p, first);
   if (!at_range(p)) return low;
   CagExpr *e = parse_new(p, CAG_EXPR_RANGE, low->span.start);
   e->as.range.low = low;
@@ -357,12 +360,14 @@ CagExpr *parse_operand(Parser *p) {
   parse_advance(p);
   e->as.range.high = range_end(p);
   if (at_range(p)) report_chained_range(p, e);
-  if (parse_accept(p, CAG_TOKEN_BY)) e->as.range.step = sum(p);
+  if (parse_accept(p, CAG_TOKEN_BY)) e->as.range.step = sum(p, NULL);
   parse_stack_on(p, e, low);
   parse_stack_on(p, e, e->as.range.high);
   parse_stack_on(p, e, e->as.range.step);
   return parse_finish(p, e);
 }
+
+CagExpr *parse_operand(Parser *p) { return operand(p, NULL); }
 
 static bool comparison_op(CagTokenKind kind, CagBinaryOp *op) {
   switch (kind) {
@@ -391,8 +396,8 @@ static void report_chained_comparison(Parser *p, const CagExpr *e) {
 }
 
 // comparison = operand [ ( "==" | "!=" | "<" | "<=" | ">" | ">=" | "in" ) operand ]
-static CagExpr *comparison(Parser *p) {
-  CagExpr *e = parse_operand(p);
+static CagExpr *comparison(Parser *p, CagExpr *first) {
+  CagExpr *e = operand(p, first);
   CagBinaryOp op;
   if (!comparison_op(parse_kind(p), &op)) return e;
   CagSpan at = parse_here(p);
@@ -408,51 +413,79 @@ static CagExpr *comparison(Parser *p) {
 }
 
 // negation = "not" negation | comparison
-CagExpr *parse_negation(Parser *p) {
-  if (parse_kind(p) != CAG_TOKEN_NOT) return comparison(p);
+static CagExpr *negation(Parser *p, CagExpr *first) {
+  if (first || parse_kind(p) != CAG_TOKEN_NOT) return comparison(p, first);
   CagExpr *e = parse_new(p, CAG_EXPR_NOT, parse_here(p).start);
   parse_advance(p);
   if (!parse_deeper(p)) return parse_error_node(p);
-  e->as.unary.operand = parse_negation(p);
+  e->as.unary.operand = negation(p, NULL);
   p->depth--;
   parse_stack_on(p, e, e->as.unary.operand);
   return parse_finish(p, e);
 }
 
+CagExpr *parse_negation(Parser *p) { return negation(p, NULL); }
+
 // conjunction = negation { "and" negation }
-static CagExpr *conjunction(Parser *p) {
-  CagExpr *e = parse_negation(p);
+static CagExpr *conjunction(Parser *p, CagExpr *first) {
+  CagExpr *e = negation(p, first);
   while (parse_kind(p) == CAG_TOKEN_AND) {
     CagSpan at = parse_here(p);
     parse_advance(p);
-    CagExpr *right = parse_negation(p);
+    CagExpr *right = negation(p, NULL);
     e = parse_binary(p, CAG_EXPR_AND, CAG_OP_ADD, at, e, right);
   }
   return e;
 }
 
 // disjunction = conjunction { "or" conjunction }
-static CagExpr *disjunction(Parser *p) {
-  CagExpr *e = conjunction(p);
+static CagExpr *disjunction(Parser *p, CagExpr *first) {
+  CagExpr *e = conjunction(p, first);
   while (parse_kind(p) == CAG_TOKEN_OR) {
     CagSpan at = parse_here(p);
     parse_advance(p);
-    CagExpr *right = conjunction(p);
+    CagExpr *right = conjunction(p, NULL);
     e = parse_binary(p, CAG_EXPR_OR, CAG_OP_ADD, at, e, right);
   }
   return e;
 }
 
 // pipe = disjunction { "|>" disjunction }
-static CagExpr *pipe_expression(Parser *p) {
-  CagExpr *e = disjunction(p);
+static CagExpr *pipe_expression(Parser *p, CagExpr *first) {
+  CagExpr *e = disjunction(p, first);
   while (parse_kind(p) == CAG_TOKEN_PIPE) {
     CagSpan at = parse_here(p);
     parse_advance(p);
-    CagExpr *right = disjunction(p);
+    CagExpr *right = disjunction(p, NULL);
     e = parse_binary(p, CAG_EXPR_PIPE, CAG_OP_ADD, at, e, right);
   }
   return e;
+}
+
+// What may stand between operands. (`^` is taken with them.)
+static bool is_operator(CagTokenKind kind) {
+  switch (kind) {
+  case CAG_TOKEN_RANGE:
+  case CAG_TOKEN_RANGE_OPEN:
+  case CAG_TOKEN_PIPE:
+  case CAG_TOKEN_EQUAL:
+  case CAG_TOKEN_NOT_EQUAL:
+  case CAG_TOKEN_LESS:
+  case CAG_TOKEN_LESS_EQUAL:
+  case CAG_TOKEN_GREATER:
+  case CAG_TOKEN_GREATER_EQUAL:
+  case CAG_TOKEN_PLUS:
+  case CAG_TOKEN_MINUS:
+  case CAG_TOKEN_STAR:
+  case CAG_TOKEN_SLASH:
+  case CAG_TOKEN_PERCENT:
+  case CAG_TOKEN_BAR:
+  case CAG_TOKEN_AMPERSAND:
+  case CAG_TOKEN_AND:
+  case CAG_TOKEN_IN:
+  case CAG_TOKEN_OR: return true;
+  default: return false;
+  }
 }
 
 // A single word between commas and brackets, as most expressions are: no operator need be looked
@@ -478,5 +511,7 @@ CagExpr *parse_expression(Parser *p) {
   if (at_single_word(p)) return parse_postfix(p);
   if (parse_kind(p) == CAG_TOKEN_IF) return parse_branch(p);
   if (at_lambda(p)) return parse_lambda(p);
-  return pipe_expression(p);
+  if (parse_kind(p) == CAG_TOKEN_NOT) return pipe_expression(p, NULL);
+  CagExpr *first = unary(p);
+  return is_operator(parse_kind(p)) ? pipe_expression(p, first) : first;
 }
