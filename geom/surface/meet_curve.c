@@ -385,6 +385,98 @@ static CagStatus tidy(Search *f, CagError *err) {
   return CAG_OK;
 }
 
+// --- Touches ---
+
+// Sine of the angle of curve and tangent plane below which a meeting may be a touch.
+#define SHALLOW 1e-2
+
+// Beyond a seam, too.
+static double around(double x, double low, double high, bool closed) {
+  if (closed && x < low) x += high - low;
+  if (closed && x > high) x -= high - low;
+  return within(x, low, high);
+}
+
+// The foot on the surface of the curve's point at t, from u, v on: its distance, and the sine of
+// the angle of the curve with the tangent plane.
+static CagStatus foot(const Search *s, double t, double *u, double *v, double *gap, double *slope,
+                      CagError *err) {
+  enum { STEPS = 8 };
+  CagVec3 p[2], q[4];
+  CagStatus status = cag_curve_eval(s->c, t, 1, CAG_SIDE_RIGHT, p, err);
+  for (int i = 0; !status && i < STEPS; i++) {
+    status = cag_surface_eval(s->s, *u, *v, 1, *u >= s->s->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
+                              *v >= s->s->v1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, q, err);
+    if (status) return status;
+    const CagVec3 r = cag_sub(p[0], q[0]), du = q[cag_partial(1, 1, 0)],
+                  dv = q[cag_partial(1, 0, 1)];
+    const double a = cag_dot(du, du), b = cag_dot(du, dv), c = cag_dot(dv, dv), det = a * c - b * b;
+    *gap = cag_norm(r);
+    *slope = cag_dot(cag_unit(p[1]), cag_unit(cag_cross(du, dv)));
+    if (!(det > 0)) break;
+    *u = around(*u + (c * cag_dot(du, r) - b * cag_dot(dv, r)) / det, s->s->u0, s->s->u1,
+                s->s->closed_u);
+    *v = around(*v + (a * cag_dot(dv, r) - b * cag_dot(du, r)) / det, s->s->v0, s->s->v1,
+                s->s->closed_v);
+  }
+  return status;
+}
+
+// Brings a touch to where the curve runs along the tangent plane, by the secant method. One that
+// then is no meeting stays as it was: it belongs to two crossings near to each other.
+static CagStatus settle(const Search *s, CagSurfaceMeeting *m, CagError *err) {
+  const double range = s->c->end - s->c->start, reach = 1e-2 * range;
+  double u = m->u, v = m->v, gap, slope, t = m->t, before = t + 1e-5 * range, other;
+  if (before > s->c->end) before = t - 1e-5 * range;
+  CagStatus status = foot(s, before, &u, &v, &gap, &other, err);
+  if (!status) status = foot(s, t, &u, &v, &gap, &slope, err);
+  for (int i = 0; !status && i < 20 && slope != 0 && slope != other; i++) {
+    const double next = within(t - slope * (t - before) / (slope - other),
+                               fmax(s->c->start, m->t - reach), fmin(s->c->end, m->t + reach));
+    if (next == t) break;
+    before = t;
+    other = slope;
+    t = next;
+    status = foot(s, t, &u, &v, &gap, &slope, err);
+  }
+  if (status || gap > MEET * s->size + s->noise || fabs(slope) > SHALLOW) return status;
+  *m = (CagSurfaceMeeting){.t = t, .u = u, .v = v};
+  return cag_curve_point(s->c, t, &m->point, err);
+}
+
+// Near a touch the curve is within rounding of the surface for a while: such meetings are one.
+static CagStatus merge_touches(Search *s, CagError *err) {
+  CagStatus status = CAG_OK;
+  size_t kept = 0;
+  for (size_t i = 0; !status && i < s->n;) {
+    CagSurfaceMeeting best = s->items[i];
+    double u = best.u, v = best.v, gap, slope, least;
+    status = foot(s, best.t, &u, &v, &gap, &least, err);
+    size_t next = i + 1;
+    while (!status && fabs(least) < SHALLOW && next < s->n) {
+      const CagSurfaceMeeting *m = &s->items[next];
+      bool on = false;
+      const double between = (s->items[next - 1].t + m->t) / 2;
+      if (cag_norm(cag_sub(m->point, s->items[next - 1].point)) > COMMON * s->size) break;
+      status = is_on(s, between, m->u, m->v, &on, err);
+      if (status || !on) break;
+      u = m->u;
+      v = m->v;
+      status = foot(s, m->t, &u, &v, &gap, &slope, err);
+      if (!status && fabs(slope) < fabs(least)) least = slope, best = *m;
+      next++;
+    }
+    if (!status && fabs(least) < SHALLOW) status = settle(s, &best, err);
+    // Two that settled in one place.
+    const bool again =
+        kept > 0 && fabs(s->items[kept - 1].t - best.t) <= MEET * (s->c->end - s->c->start);
+    if (!again) s->items[kept++] = best;
+    i = next;
+  }
+  if (!status) s->n = kept;
+  return status;
+}
+
 // --- The whole ---
 
 // Breaks of one direction with both ends; malloc'd.
@@ -447,6 +539,7 @@ CagStatus cag_surface_intersect_curve(const CagSurface *surface, const CagCurve 
   free(uc);
   free(vc);
   if (!status) status = tidy(&s, err);
+  if (!status) status = merge_touches(&s, err);
   if (status) {
     free(s.items);
     return status;

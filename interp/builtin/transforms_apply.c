@@ -3,13 +3,14 @@
 #include <string.h>
 
 #include "interp/builtin/transforms.h"
+#include "interp/eval/vm.h"
 #include "interp/value/jet.h"
 
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result);
 
 static bool point_is_finite(CagCall *call, CagVec3 p) {
   if (isfinite(p.x) && isfinite(p.y) && isfinite(p.z)) return true;
-  cag_fail_call(call, 0, CAG_ERR_not_finite, "takes this point to infinity");
+  cag_vm_fail_at(call->vm, 0, CAG_ERR_not_finite, "the transform takes this point to infinity");
   cag_fail_help(call->vm, "use `T * homogeneous(P)`, which keeps points at infinity");
   return false;
 }
