@@ -69,10 +69,21 @@ static bool ends_line(const Format *f, uint32_t at) {
   return *p == '\n' || *p == 0;
 }
 
+// A comment of several lines whose line ends are those of Windows, with ours.
+static Doc *mended_comment(Format *f, const char *text, size_t length) {
+  char *out = layout_memory(&f->layout, length);
+  size_t n = 0;
+  for (size_t i = 0; i < length; i++)
+    if (text[i] != '\r' || i + 1 == length || text[i + 1] != '\n') out[n++] = text[i];
+  return layout_text(&f->layout, out, n);
+}
+
 static Doc *comment_text(Format *f, const CagComment *c) {
-  uint32_t end = c->span.end;
-  while (end > c->span.start && strchr(" \t\r", f->text[end - 1])) end--;
-  return layout_text(&f->layout, f->text + c->span.start, end - c->span.start);
+  const char *text = f->text + c->span.start;
+  size_t length = c->span.end - c->span.start;
+  while (length && strchr(" \t\r", text[length - 1])) length--;
+  if (c->block && memchr(text, '\r', length)) return mended_comment(f, text, length);
+  return layout_text(&f->layout, text, length);
 }
 
 static inline bool comments_before(const Format *f, uint32_t offset) {
