@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "interp/render/atomic_file.h"
 #include "interp/tool/diff.h"
@@ -22,6 +23,13 @@ static void remember(Formatting *f, int status) {
 
 static void write_back(Formatting *f, const char *path, const char *text, size_t length) {
   CagIoError err = {0};
+  struct stat st;
+  if (stat(path, &st) == 0 && !S_ISREG(st.st_mode)) { // what was read from a pipe is gone
+    remember(f, cag_tool_fail(f->tool, CAG_STATUS_FILE,
+                              "`-` reads standard input and writes standard output",
+                              "cannot write %s anew: it is no file on a disk", path));
+    return;
+  }
   CagAtomicFile *file = cag_atomic_file_open(path, &err);
   if (file) cag_atomic_file_write(file, text, length);
   if (file && cag_atomic_file_commit(file, &err)) {

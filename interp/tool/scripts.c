@@ -80,13 +80,21 @@ int cag_tool_each_script(CagToolScripts *s, int count, char **paths) {
 // Bytes that are read at least at a time.
 #define READ_SIZE ((size_t)64 * 1024)
 
+// Beyond it a file is no script: one without an end would take all memory.
+#define READ_MAX ((size_t)1 << 30)
+
 // All that a file still gives, NUL-terminated; NULL with errno.
 static char *read_all(FILE *from, size_t *length) {
   struct stat st;
   size_t n = 0, capacity = READ_SIZE;
-  if (fstat(fileno(from), &st) == 0 && st.st_size > 0) capacity += (size_t)st.st_size;
+  const bool sized = fstat(fileno(from), &st) == 0 && st.st_size > 0;
+  if (sized && (size_t)st.st_size <= READ_MAX) capacity += (size_t)st.st_size;
   char *text = malloc(capacity + 1);
   while (text && !feof(from) && !ferror(from)) {
+    if (n > READ_MAX) {
+      errno = EFBIG;
+      break;
+    }
     if (capacity - n < READ_SIZE / 2) {
       char *more = realloc(text, 2 * capacity + 1);
       if (!more) break;

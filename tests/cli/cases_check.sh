@@ -38,3 +38,9 @@ says '<stdin>:2'
 it 'a script that is not there is told'
 try check nowhere.cag
 status 3
+
+it 'the examples, the cookbook and the library have nothing to warn of'
+try check "$root/examples" "$root/stdlib" "$root/docs/cookbook"
+status 0
+prints_nothing
+says_nothing
