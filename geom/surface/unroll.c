@@ -25,6 +25,10 @@ typedef struct Unrolling {
   int direction; // in which it is straight: 0: u
   double s0, s1, t0, t1;
   const CagChebyshev *angle;
+  // Ends of the smooth stretches along t, and up to each of them the integrals of the turning and
+  // of the walk (three numbers): a place needs those of its own stretch alone.
+  double *cuts, *sums;
+  size_t cut_count;
 } Unrolling;
 
 static CagStatus partials(const Unrolling *w, double s, double t, CagVec3 *d, CagError *err) {
@@ -65,14 +69,6 @@ static CagStatus turning(void *context, double t, double *out, CagError *err) {
   return status;
 }
 
-static CagStatus angle_at(void *context, double t, double *out, CagError *err) {
-  Unrolling *w = context;
-  out[0] = 0;
-  if (t <= w->t0) return CAG_OK;
-  double cuts[2] = {w->t0, t};
-  return cag_integrate(turning, w, cuts, 2, 1, INTEGRAL, out, err);
-}
-
 static CagStatus walking(void *context, double t, double *out, CagError *err) {
   const Unrolling *w = context;
   CagVec3 d[5], e, f;
@@ -86,13 +82,57 @@ static CagStatus walking(void *context, double t, double *out, CagError *err) {
   return CAG_OK;
 }
 
+// The integral from t0 to t of the turning (first = 0, one number) or the walk (first = 1, two).
+static CagStatus integral_to(Unrolling *w, double t, size_t first, double *out, CagError *err) {
+  size_t k = 0;
+  while (k + 1 < w->cut_count && w->cuts[k + 1] <= t) k++;
+  const size_t parts = first + 1;
+  double cuts[2] = {w->cuts[k], t}, rest[2] = {0, 0};
+  CagStatus status = CAG_OK;
+  if (t > cuts[0])
+    status =
+        cag_integrate(first == 0 ? turning : walking, w, cuts, 2, (int)parts, INTEGRAL, rest, err);
+  for (size_t i = 0; i < parts; i++) out[i] = w->sums[3 * k + first + i] + rest[i];
+  return status;
+}
+
+static CagStatus sum_up(Unrolling *w, size_t first, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (size_t k = 1; !status && k < w->cut_count; k++) {
+    const double cuts[2] = {w->cuts[k - 1], w->cuts[k]};
+    double *before = w->sums + 3 * (k - 1) + first, *after = before + 3;
+    double step[2];
+    status = cag_integrate(first == 0 ? turning : walking, w, cuts, 2, (int)first + 1, INTEGRAL,
+                           step, err);
+    for (size_t i = 0; !status && i <= first; i++) after[i] = before[i] + step[i];
+  }
+  return status;
+}
+
+static CagStatus make_cuts(Unrolling *w, CagError *err) {
+  const int across = 1 - w->direction;
+  size_t inner = w->s->kind->breaks ? w->s->kind->breaks(w->s, across, NULL, 0) : 0;
+  w->cuts = malloc((inner + 2) * sizeof *w->cuts);
+  w->sums = calloc(3 * (inner + 2), sizeof *w->sums);
+  if (!w->cuts || !w->sums) return cag_fail_memory(err);
+  if (inner > 0) w->s->kind->breaks(w->s, across, w->cuts + 1, inner);
+  w->cuts[0] = w->t0;
+  w->cuts[inner + 1] = w->t1;
+  w->cut_count = inner + 2;
+  return CAG_OK;
+}
+
+static CagStatus angle_at(void *context, double t, double *out, CagError *err) {
+  return integral_to(context, t, 0, out, err);
+}
+
 // Rows of the map [s - s0, 0, 0] -> p + (s - s0) R.
 static CagStatus rows_at(void *context, double t, double *out, CagError *err) {
   Unrolling *w = context;
-  double p[2] = {0, 0}, angle, cuts[2] = {w->t0, t};
+  double p[2], angle;
   CagVec3 d[5];
   CagStatus status = partials(w, w->s0, t, d, err);
-  if (!status && t > w->t0) status = cag_integrate(walking, w, cuts, 2, 2, INTEGRAL, p, err);
+  if (!status) status = integral_to(w, t, 1, p, err);
   if (status) return status;
   cag_chebyshev_series(w->angle, t, false, 0, &angle);
   double length = cag_norm(d[1]);
@@ -142,9 +182,12 @@ static CagStatus build(Unrolling *w, CagSurface **out, CagError *err) {
   CagMotion *motion = NULL;
   CagCurve *ruling = NULL, *shifted = NULL;
   CagSurface *made = NULL;
-  CagStatus status =
-      cag_chebyshev_fit(angle_at, w, w->t0, w->t1, 1, SERIES, "surface", &angle, err);
+  CagStatus status = make_cuts(w, err);
+  if (!status) status = sum_up(w, 0, err);
+  if (!status)
+    status = cag_chebyshev_fit(angle_at, w, w->t0, w->t1, 1, SERIES, "surface", &angle, err);
   w->angle = angle;
+  if (!status) status = sum_up(w, 1, err);
   if (!status)
     status = cag_chebyshev_fit(rows_at, w, w->t0, w->t1, 12, SERIES, "surface", &rows, err);
   bool angular = w->direction == 0 ? w->s->angular_v : w->s->angular_u;
@@ -164,12 +207,14 @@ static CagStatus build(Unrolling *w, CagSurface **out, CagError *err) {
   cag_motion_release(motion);
   cag_chebyshev_release(rows);
   cag_chebyshev_release(angle);
+  free(w->cuts);
+  free(w->sums);
   return status;
 }
 
 CagStatus cag_surface_unroll(const CagSurface *s, CagSurface **out, CagError *err) {
-  Unrolling u = {s, 0, s->u0, s->u1, s->v0, s->v1, NULL};
-  Unrolling v = {s, 1, s->v0, s->v1, s->u0, s->u1, NULL};
+  Unrolling u = {.s = s, .direction = 0, .s0 = s->u0, .s1 = s->u1, .t0 = s->v0, .t1 = s->v1};
+  Unrolling v = {.s = s, .direction = 1, .s0 = s->v0, .s1 = s->v1, .t0 = s->u0, .t1 = s->u1};
   bool by_u, by_v;
   CagStatus status = is_straight(&u, &by_u, err);
   if (!status) status = is_straight(&v, &by_v, err);
