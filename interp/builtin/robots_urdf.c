@@ -16,11 +16,19 @@
 
 static const char family[] = "Robots: links";
 
+// What is taken from the system stands here: running out of values' memory leaves the reading from
+// anywhere, and all of it is released by call_read_urdf.
 typedef struct Import {
   CagCall *call;
   const char *path; // of the .urdf file
-  CagUrdfTree tree;
+  const char *tip, *base;
+  bool shapes;
+  char *bytes;      // of the file, until they are read
+  CagUrdfTree tree; // its arena holds names of meshes as well
   CagUrdfRows rows;
+  CagRobotLink *plain;
+  CagRobot *robot; // until a value owns it
+  CagValue *result;
 } Import;
 
 // --- Meshes ---
@@ -66,29 +74,27 @@ static const char *const package_places[] = {"%1$s%3$s", "%1$s%2$s/%3$s", "%1$s.
                                              "%1$s../../%2$s/%3$s"};
 static const char *const plain_places[] = {"%1$s%3$s"};
 
-static bool read_near(const Import *m, const CagUrdfBody *b, const char *package, int package_size,
+static bool read_near(Import *m, const CagUrdfBody *b, const char *package, int package_size,
                       const char *rest, CagValue *out) {
   const char *const *places = package ? package_places : plain_places;
   size_t n = package ? sizeof package_places / sizeof *package_places : 1;
   const char *slash = strrchr(m->path, '/');
-  char *folder = strndup(m->path, slash ? (size_t)(slash + 1 - m->path) : 0);
-  char *name = strndup(package ? package : "", (size_t)package_size);
-  bool ok = false, found = folder && name;
-  if (!found) cag_fail_call(m->call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (size_t i = 0; folder && name && i < n; i++) {
-    char *path = NULL;
+  CagArena *texts = &m->tree.arena;
+  const char *folder = cag_arena_copy(texts, m->path, slash ? (size_t)(slash + 1 - m->path) : 0);
+  const char *name = cag_arena_copy(texts, package ? package : "", (size_t)package_size);
+  // The longest place has three of them and "../../" and "/".
+  const size_t room = strlen(folder) + strlen(name) + strlen(rest) + 16;
+  char *path = cag_arena_alloc(texts, room);
+  for (size_t i = 0; i < n; i++) {
+    bool found;
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wformat-nonliteral"
-    if (asprintf(&path, places[i], folder, name, rest) < 0) path = NULL;
+    snprintf(path, room, places[i], folder, name, rest);
 #pragma GCC diagnostic pop
-    ok = path && read_at(m, path, out, &found);
-    free(path);
-    if (ok || found) break;
+    const bool ok = read_at(m, path, out, &found);
+    if (ok || found) return ok;
     cag_vm_clear_error(m->call->vm);
   }
-  free(folder);
-  free(name);
-  if (ok || found) return ok;
   return fail_mesh(m, b, "there is no such file below the folders that the script may read",
                    package ? "put the package's folders beside the .urdf file, as in meshes/arm.stl"
                            : "put the file where the .urdf file says, seen from its own folder");
@@ -96,7 +102,7 @@ static bool read_near(const Import *m, const CagUrdfBody *b, const char *package
 
 // package://NAME/REST; else a path from the folder of the .urdf file. Absolute paths are of another
 // machine: their last name is looked for beside the file.
-static bool read_file(const Import *m, const CagUrdfBody *b, CagValue *out) {
+static bool read_file(Import *m, const CagUrdfBody *b, CagValue *out) {
   static const char package[] = "package://", model[] = "model://", file[] = "file://";
   const char *name = b->file;
   if (!can_be_read(name))
@@ -133,7 +139,7 @@ static CagTransform scaled(const double factors[3]) {
   return t;
 }
 
-static bool make_body(const Import *m, const CagUrdfBody *b, CagTransform *place, CagValue *out) {
+static bool make_body(Import *m, const CagUrdfBody *b, CagTransform *place, CagValue *out) {
   CagSolid *s = NULL;
   CagError err = {0};
   const double *size = b->size;
@@ -185,7 +191,7 @@ static const CagUrdfBody *drawn_bodies(const CagUrdfNode *n) {
   return n->visuals;
 }
 
-static bool add_bodies(const Import *m, const CagUrdfPlaced *placed, CagBuilder *into) {
+static bool add_bodies(Import *m, const CagUrdfPlaced *placed, CagBuilder *into) {
   CagVm *vm = m->call->vm;
   const CagUrdfNode *n = &m->tree.nodes[placed->node];
   for (const CagUrdfBody *b = drawn_bodies(n); b; b = b->next) {
@@ -205,7 +211,7 @@ static bool add_bodies(const Import *m, const CagUrdfPlaced *placed, CagBuilder 
 // --- Links ---
 
 // The shape of a row, named as its link: none, one body, or a group.
-static bool make_shape(const Import *m, const CagUrdfRow *row, CagValue *out) {
+static bool make_shape(Import *m, const CagUrdfRow *row, CagValue *out) {
   CagVm *vm = m->call->vm;
   CagBuilder *bodies = cag_builder_new(vm);
   *out = cag_none();
@@ -224,38 +230,37 @@ static bool make_shape(const Import *m, const CagUrdfRow *row, CagValue *out) {
   return true;
 }
 
-static bool make_links(const Import *m, CagRobotLink *plain, CagValue *list) {
+static bool make_links(Import *m, CagValue *list) {
   CagBuilder *links = cag_builder_new(m->call->vm);
   for (size_t i = 0; i < m->rows.row_count; i++) {
     CagValue shape;
-    plain[i] = m->rows.rows[i].link;
+    m->plain[i] = m->rows.rows[i].link;
     if (!make_shape(m, &m->rows.rows[i], &shape) ||
-        !cag_builder_add(m->call->vm, links, cag_link_value(m->call->vm, &plain[i], shape)))
+        !cag_builder_add(m->call->vm, links, cag_link_value(m->call->vm, &m->plain[i], shape)))
       return false;
   }
   *list = cag_builder_finish(m->call->vm, links);
   return true;
 }
 
-static bool make_robot(Import *m, CagValue *result) {
+static bool make_robot(Import *m) {
   CagCall *call = m->call;
   CagError err = {0};
-  CagRobot *robot = NULL;
   CagValue list;
-  CagRobotLink *plain = malloc((m->rows.row_count + 1) * sizeof *plain);
-  if (!plain)
+  m->plain = malloc((m->rows.row_count + 1) * sizeof *m->plain);
+  if (!m->plain)
     return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  bool ok = make_links(m, plain, &list);
-  CagRobotSpec spec = {.links = plain,
+  if (!make_links(m, &list)) return false;
+  CagText *name = CAG_AS_TEXT(cag_text_c(call->vm, m->tree.name));
+  CagRobotSpec spec = {.links = m->plain,
                        .link_count = m->rows.row_count,
                        .convention = CAG_ROBOT_CLASSIC,
                        .base = m->rows.base,
                        .tool = m->rows.tool};
-  CagStatus status = ok ? cag_robot_new(&spec, &robot, &err) : CAG_OK;
-  free(plain);
-  if (!ok || !cag_geometry_ok(call, status, &err)) return false;
-  CagText *name = CAG_AS_TEXT(cag_text_c(call->vm, m->tree.name));
-  *result = cag_robot_value(call->vm, robot, name, list);
+  const CagStatus status = cag_robot_new(&spec, &m->robot, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *m->result = cag_robot_value(call->vm, m->robot, name, list);
+  m->robot = NULL;
   return true;
 }
 
@@ -267,33 +272,40 @@ static bool name_or_none(CagCall *call, int argument, const char **out) {
          cag_arg_text(call, argument, out);
 }
 
-static bool read_chain(Import *m, const char *tip, const char *base, bool shapes, const char *bytes,
-                       size_t size) {
+static bool read_chain(Import *m, size_t size) {
   CagError err = {0};
   size_t *chain = NULL, n = 0;
   const char *slash = strrchr(m->path, '/');
-  CagStatus status = cag_urdf_read(slash ? slash + 1 : m->path, bytes, size, &m->tree, &err);
-  if (status == CAG_OK) status = cag_urdf_chain(&m->tree, base, tip, &chain, &n, &err);
+  CagStatus status = cag_urdf_read(slash ? slash + 1 : m->path, m->bytes, size, &m->tree, &err);
+  if (status == CAG_OK) status = cag_urdf_chain(&m->tree, m->base, m->tip, &chain, &n, &err);
   if (status == CAG_OK)
-    status = cag_urdf_rows(&m->tree, base ? base : tip, chain, n, shapes, &m->rows, &err);
+    status =
+        cag_urdf_rows(&m->tree, m->base ? m->base : m->tip, chain, n, m->shapes, &m->rows, &err);
   free(chain);
   return cag_geometry_ok(m->call, status, &err);
 }
 
+static bool read_robot(CagVm *vm, void *context) {
+  (void)vm;
+  Import *m = context;
+  size_t size;
+  if (!cag_vm_open_file(m->call, 0, m->path, &m->bytes, &size) || !read_chain(m, size))
+    return false;
+  free(m->bytes);
+  m->bytes = NULL;
+  return make_robot(m);
+}
+
 // path, tip, base, shapes
 static bool call_read_urdf(CagCall *call, CagValue *result) {
-  Import m = {.call = call};
-  const char *tip, *base;
-  char *bytes = NULL;
-  size_t size = 0;
-  bool shapes;
-  if (!cag_arg_text(call, 0, &m.path) || !name_or_none(call, 1, &tip) ||
-      !name_or_none(call, 2, &base) || !cag_arg_bool_or(call, 3, true, &shapes) ||
-      !cag_vm_open_file(call, 0, m.path, &bytes, &size))
+  Import m = {.call = call, .result = result};
+  if (!cag_arg_text(call, 0, &m.path) || !name_or_none(call, 1, &m.tip) ||
+      !name_or_none(call, 2, &m.base) || !cag_arg_bool_or(call, 3, true, &m.shapes))
     return false;
-  bool ok = read_chain(&m, tip, base, shapes, bytes, size);
-  free(bytes);
-  ok = ok && make_robot(&m, result);
+  const bool ok = cag_vm_call_back(call->vm, read_robot, &m);
+  free(m.bytes);
+  free(m.plain);
+  cag_robot_release(m.robot);
   cag_urdf_rows_free(&m.rows);
   cag_urdf_tree_free(&m.tree);
   return ok;

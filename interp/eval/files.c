@@ -5,10 +5,17 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "geom/stop.h"
 #include "interp/eval/vm.h"
 
 // Larger files are refused: no script or table is so large by right.
 #define FILE_MAX ((size_t)1 << 30)
+
+// Between chunks the reading of a file can be stopped.
+#define CHUNK ((size_t)16 << 20)
+
+// Reasons that are told apart by their place.
+static const char TOO_LARGE[] = "it is too large", OUT_OF_MEMORY[] = "there is no memory for it";
 
 static bool below(const char *path, const char *folder) {
   size_t n = strlen(folder);
@@ -48,56 +55,58 @@ char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *me
   return NULL;
 }
 
-char *cag_read_whole_file(const char *path, size_t *length, const char **why) {
-  FILE *f = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
-  if (!f) {
-    *why = strerror(errno);
-    return NULL;
-  }
-  struct stat st;
-  if (fstat(fileno(f), &st) == 0 && S_ISDIR(st.st_mode)) {
-    if (f != stdin) fclose(f);
-    *why = "it is a folder";
-    return NULL;
-  }
-  size_t capacity = st.st_size > 0 ? (size_t)st.st_size + 1 : 65536, n = 0;
-  char *bytes = capacity <= FILE_MAX ? malloc(capacity) : NULL;
-  *why = NULL;
-  while (bytes) {
-    n += fread(bytes + n, 1, capacity - 1 - n, f);
-    if (ferror(f)) {
-      *why = strerror(errno);
-      break;
-    }
-    if (n < capacity - 1) {
-      int c = fgetc(f);
-      if (c == EOF) break;
-      ungetc(c, f);
-      continue;
-    }
-    int c = fgetc(f);
+// Reads what is left of a file, at most `most` bytes, with a zero behind. NULL, with *why: it
+// cannot be read, or is larger.
+static char *read_rest(FILE *f, size_t first, size_t most, size_t *length, const char **why) {
+  size_t capacity = first + 1, n = 0;
+  char *bytes = malloc(capacity);
+  *why = bytes ? NULL : OUT_OF_MEMORY;
+  while (!*why) {
+    const size_t room = capacity - 1 - n;
+    n += fread(bytes + n, 1, room < CHUNK ? room : CHUNK, f);
+    if (ferror(f)) *why = strerror(errno);
+    else if (cag_stopped()) *why = "it was stopped";
+    else if (feof(f)) break;
+    if (*why || n < capacity - 1) continue;
+    const int c = fgetc(f); // the size that a file says may be all that it has
     if (c == EOF) break;
     ungetc(c, f);
-    if (capacity >= FILE_MAX) {
-      *why = "it is larger than 1 GiB";
-      break;
-    }
-    char *more = realloc(bytes, capacity * 2);
-    if (!more) {
-      *why = "there is not enough memory for it";
-      break;
-    }
-    bytes = more;
-    capacity *= 2;
+    if (n >= most) *why = TOO_LARGE;
+    else capacity = (capacity < most / 2 ? 2 * capacity : most) + 1;
+    char *more = *why ? NULL : realloc(bytes, capacity);
+    if (more) bytes = more;
+    else if (!*why) *why = OUT_OF_MEMORY;
   }
-  if (f != stdin) fclose(f);
-  if (!bytes || *why) {
-    if (!*why) *why = "it is too large";
+  if (*why) {
     free(bytes);
     return NULL;
   }
   bytes[n] = 0;
   *length = n;
+  return bytes;
+}
+
+static char *read_at_most(const char *path, size_t most, size_t *length, const char **why) {
+  const size_t first = 65536; // of pipes, which do not tell their size
+  char *bytes = NULL;
+  struct stat st;
+  FILE *f = strcmp(path, "-") == 0 ? stdin : fopen(path, "rbe");
+  if (!f) {
+    *why = strerror(errno);
+    return NULL;
+  }
+  const bool known = fstat(fileno(f), &st) == 0;
+  const size_t size = known && st.st_size > 0 ? (size_t)st.st_size : first;
+  if (known && S_ISDIR(st.st_mode)) *why = "it is a folder";
+  else if (known && st.st_size > 0 && size > most) *why = TOO_LARGE;
+  else bytes = read_rest(f, size < most ? size : most, most, length, why);
+  if (f != stdin) fclose(f);
+  return bytes;
+}
+
+char *cag_read_whole_file(const char *path, size_t *length, const char **why) {
+  char *bytes = read_at_most(path, FILE_MAX, length, why);
+  if (!bytes && *why == TOO_LARGE) *why = "it is larger than 1 GiB";
   return bytes;
 }
 
@@ -119,8 +128,16 @@ bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **byte
   free(folder);
   if (!real) return cag_fail_call(call, argument, CAG_ERR_file, "cannot read it: %s", message);
   const char *why;
-  *bytes = cag_read_whole_file(real, n, &why);
+  const size_t left = vm->heap.limit > vm->heap.bytes ? vm->heap.limit - vm->heap.bytes : 0;
+  *bytes = read_at_most(real, left < FILE_MAX ? left : FILE_MAX, n, &why);
   free(real);
+  if (!*bytes && !cag_keep_going(vm)) return false;
+  if (!*bytes && why == TOO_LARGE) {
+    if (left < FILE_MAX)
+      return cag_fail_call(call, argument, CAG_ERR_limit_memory,
+                           "%s is larger than the memory that is left (--max-memory)", path);
+    why = "it is larger than 1 GiB";
+  }
   if (!*bytes) return cag_fail_call(call, argument, CAG_ERR_file, "cannot read %s: %s", path, why);
   return true;
 }

@@ -142,3 +142,21 @@ if have povray; then
   holds glass.png earlier
   is_missing glass.exr
 fi
+
+it 'a file that is larger than the memory that is left is not read'
+head -c 60000000 /dev/zero > zeros.stl
+script zeros.cag 'print read_mesh("zeros.stl")'
+try run zeros.cag --max-memory 20M
+status 5
+says '--max-memory'
+says 'zeros.stl'
+rm zeros.stl
+
+it 'a robot that needs more memory than it may have'
+awk 'BEGIN { print "<robot name=\"long\"><link name=\"l0\"/>"
+  for (i = 1; i <= 20000; i++) printf "<link name=\"l%d\"><visual><geometry><box size=\"1 1 1\"/></geometry></visual></link><joint name=\"j%d\" type=\"revolute\"><parent link=\"l%d\"/><child link=\"l%d\"/><axis xyz=\"0 0 1\"/><origin xyz=\"1 0 0\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>\n", i, i, i - 1, i
+  print "</robot>" }' > long.urdf
+script long.cag 'print read_urdf("long.urdf")'
+try run long.cag --max-memory 8M
+status 5
+says '--max-memory'
