@@ -537,8 +537,26 @@ static bool has_just_closed(const Layout *l, int indent) {
          l->column <= (uint32_t)indent + 2;
 }
 
+// Whether a single stage that cannot stand on a line may begin behind its head, and break within
+// its own brackets.
+static bool begins_behind(const Layout *l, const Doc *head, const Doc *rest, int indent) {
+  const Doc *stage = rest->child->next->next; // behind a LINE and `|> `
+  if (!stage || stage->next || stage->kind != DOC_CONCAT || !is_brackets(last_of(stage->child)))
+    return false;
+  const uint32_t sign = sum(rest->child->width, rest->child->next->width);
+  return (uint32_t)(indent + rest->indent) + sign + stage->width > l->width &&
+         sum(column(l) + head->width, sign + stage->first) <= l->width;
+}
+
 static void print_stages(Layout *l, const Doc *head, int indent, uint32_t tail) {
   const Doc *rest = head->next;
+  if (begins_behind(l, head, rest, indent)) {
+    const Doc *stage = last_of(rest->child);
+    print_flat(l, head);
+    print_all_flat(l, rest->child, stage);
+    print(l, stage, indent, tail);
+    return;
+  }
   print(l, head, indent, behind(head, tail));
   if (has_just_closed(l, indent) && fits(l, rest, tail)) print_flat(l, rest);
   else print(l, rest, indent, tail);

@@ -156,6 +156,8 @@ static void stages_stand_behind_a_closing_bracket(void **state) {
   expect_layout("a = group([" LONG ", " LONG "]) |> f(1) |> g(" LONG ", x) |> g(" LONG ")",
                 "a = group([\n  " LONG ",\n  " LONG "\n])\n  |> f(1)\n  |> g(" LONG
                 ", x)\n  |> g(" LONG ")\n");
+  // A single stage that has to be broken begins behind its head.
+  expect_layout("a = b |> f(" LONG ", " LONG ")", "a = b |> f(\n  " LONG ",\n  " LONG "\n)\n");
 }
 
 static void short_parameters_are_filled(void **state) {
