@@ -12,6 +12,7 @@
 
 #include "geom/mesh/trial.h"
 #include "geom/surface/frames.h"
+#include "geom/surface/trimmed.h"
 
 enum {
   STEPS = 8, // of the sampling grid of a leaf; even, so that halves are known as well
@@ -309,6 +310,16 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
 
 // --- Settling ---
 
+static int longer_way(const Needs *needs) { return needs->length[0] >= needs->length[1] ? 0 : 1; }
+
+// Formulas, and what is made of them, may do anything between two samples; what has an exact form
+// is tame within its breaks.
+static bool is_known_by_points(const CagSurface *s) {
+  CagTransform map;
+  while (cag_surface_placed_view(s, &s, &map)) continue;
+  return !s->kind->to_nurbs && !cag_surface_trimmed_view(s, NULL, NULL);
+}
+
 static CagStatus try_distance(const TessTrial *trial, const Needs *needs, double *distance,
                               CagError *err) {
   double sine[2];
@@ -341,7 +352,7 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
     }
     if (tess_smaller(n[0], n[1]) <= 1 && needs.uv > twisted * tolerance * quads) use *= sewn;
     if (halved && round == 0 && use > surprising) {
-      *halved = needs.length[0] >= needs.length[1] ? 0 : 1;
+      *halved = longer_way(&needs);
       return CAG_OK;
     }
     if (use <= highest_use) {
@@ -376,7 +387,7 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
 // faster than from one to the next. Looked at only where the samples come near to what is allowed.
 static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Needs *needs,
                               int *halved, CagError *err) {
-  const double near = 0.6, slight = 0.05;
+  const double near = 0.6, slight = 0.05, few = 4;
   const double surprising = 1.25; // more than that is needed in some part of the leaf only
   const CagTessellation *how = &t->how;
   const double free = shortest_edge * how->tolerance;
@@ -394,12 +405,12 @@ static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Need
     CagStatus status =
         tess_try_edges(trial, closely * how->angle, free, how->max_edge, &found, err);
     if (status != CAG_OK) return status;
-    if (tess_larger(found.diagonal, tess_larger(found.along[0], found.along[1])) <= 1)
-      return CAG_OK;
+    double worst = tess_larger(found.diagonal, tess_larger(found.along[0], found.along[1]));
+    if (worst <= 1) return CAG_OK;
     bool grown = false;
-    int worse = found.along[0] >= found.along[1] ? 0 : 1;
-    if (halved && n[worse] >= 4 && found.along[worse] > surprising) {
-      *halved = worse;
+    int finer = n[0] >= n[1] ? 0 : 1;
+    if (halved && n[finer] >= few && worst > surprising) {
+      *halved = finer;
       return CAG_OK;
     }
     for (int d = 0; d < 2; d++) {
@@ -417,14 +428,22 @@ static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Need
 }
 
 static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, const Sampled *s,
-                               double best[2], int *halved, CagError *err) {
-  TessTrial trial = {.surface = surface};
+                               bool *suspect, double best[2], int *halved, CagError *err) {
+  TessTrial trial = {.surface = surface, .suspect = *suspect};
   Needs needs = needs_of(s, (Range){0, STEPS, 0, STEPS});
   memcpy(trial.from, s->from, sizeof trial.from);
   memcpy(trial.to, s->to, sizeof trial.to);
   CagStatus status = settle_distance(t, &trial, needs, halved, err);
   if (status == CAG_OK && !(halved && *halved >= 0))
     status = settle_edges(t, &trial, &needs, halved, err);
+  if (status == CAG_OK && halved && *halved < 0 && is_known_by_points(surface)) {
+    bool missed;
+    status = tess_try_scattered(&trial, t->how.tolerance, &missed, err);
+    if (status == CAG_OK && missed) {
+      *halved = longer_way(&needs);
+      *suspect = true;
+    }
+  }
   memcpy(best, trial.n, sizeof trial.n);
   return status;
 }
@@ -506,9 +525,9 @@ static CagStatus add_leaf(Tessellator *t, uint32_t face, const Sampled *s, const
   return t->quads > (double)t->how.max_triangles ? tess_limit(t, 2 * t->quads, err) : CAG_OK;
 }
 
-// The halves of a leaf, lower one first.
+// The halves of a leaf, lower one first. suspect: see TessTrial.
 static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], const double to[2],
-                           int depth, CagError *err) {
+                           int depth, bool suspect, CagError *err) {
   CagStatus status = tess_interrupted(t, err);
   if (status != CAG_OK) return status;
   const CagSurface *surface = t->faces[face].surface;
@@ -522,7 +541,8 @@ static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], 
   if (d < 0 || !(middle > from[d] && middle < to[d])) {
     double n[2];
     int halved = -1;
-    status = settle_counts(t, surface, &s, n, depth < MAX_DEPTH && d < 0 ? &halved : NULL, err);
+    status = settle_counts(t, surface, &s, &suspect, n, depth < MAX_DEPTH && d < 0 ? &halved : NULL,
+                           err);
     if (status != CAG_OK) return status;
     if (halved < 0) return add_leaf(t, face, &s, n, err);
     d = halved;
@@ -530,8 +550,8 @@ static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], 
   }
   double lower_to[2] = {to[0], to[1]}, upper_from[2] = {from[0], from[1]};
   lower_to[d] = upper_from[d] = middle;
-  status = plan_leaf(t, face, from, lower_to, depth + 1, err);
-  return status == CAG_OK ? plan_leaf(t, face, upper_from, to, depth + 1, err) : status;
+  status = plan_leaf(t, face, from, lower_to, depth + 1, suspect, err);
+  return status == CAG_OK ? plan_leaf(t, face, upper_from, to, depth + 1, suspect, err) : status;
 }
 
 static CagStatus find_breaks(Face *f, int direction, CagError *err) {
@@ -564,7 +584,7 @@ CagStatus tess_plan_face(Tessellator *t, uint32_t face, CagError *err) {
     for (size_t j = 0; j + 1 < f->break_count[1]; j++) {
       double from[2] = {f->breaks[0][i], f->breaks[1][j]},
              to[2] = {f->breaks[0][i + 1], f->breaks[1][j + 1]};
-      CagStatus status = plan_leaf(t, face, from, to, 0, err);
+      CagStatus status = plan_leaf(t, face, from, to, 0, false, err);
       if (status != CAG_OK) return status;
     }
   f->leaf_count = t->leaf_count - f->leaf;

@@ -5,6 +5,8 @@
 
 #include "geom/mesh/trial.h"
 
+#include <stdlib.h>
+
 #include "geom/mesh/distance.h"
 #include "geom/surface/frames.h"
 
@@ -205,4 +207,98 @@ CagStatus tess_try_edges(const TessTrial *trial, double angle, double free, doub
       out->diagonal = tess_larger(out->diagonal, tess_larger(ac, bd));
     }
   return CAG_OK;
+}
+
+// --- Scattered points ---
+
+// SCATTERED rows of points over the domain, each with SCATTERED_ALONG of them. From row to row they
+// are moved by the golden section of their distance, so that no two rows look at the same v, and
+// lines that run along u are met as well.
+enum { SCATTERED = 128, SCATTERED_ALONG = 32 };
+
+typedef struct Scatter {
+  const TessTrial *trial;
+  size_t n[2];
+  CagVec3 *corners; // of all quadrilaterals: (n[0] + 1) x (n[1] + 1)
+} Scatter;
+
+// Nearest of the quadrilaterals around the cell (i, j), but of that one alone where it is near
+// enough.
+static double distance_to_cells(const Scatter *s, size_t i, size_t j, CagVec3 p, double enough) {
+  size_t stride = s->n[1] + 1;
+  double least = INFINITY;
+  for (int around = 0; around < 2 && least > enough; around++)
+    for (size_t x = i - (around && i > 0); x <= i + around && x < s->n[0]; x++)
+      for (size_t y = j - (around && j > 0); y <= j + around && y < s->n[1]; y++) {
+        const CagVec3 *c = s->corners + x * stride + y;
+        CagVec3 a = c[0], b = c[stride], e = c[stride + 1], d = c[1];
+        bool cut = tess_cut_ac(a, b, e, d);
+        double off = tess_smaller(cag_distance_to_triangle(p, a, b, cut ? e : d),
+                                  cag_distance_to_triangle(p, cut ? a : b, e, d));
+        least = tess_smaller(least, off);
+      }
+  return least;
+}
+
+// Index of the quadrilateral along a direction in which a parameter lies.
+static size_t cell_of(const TessTrial *t, int d, double x) {
+  double k = floor((x - t->from[d]) / (t->to[d] - t->from[d]) * t->n[d]);
+  return k < 0 ? 0 : k >= t->n[d] ? (size_t)t->n[d] - 1 : (size_t)k;
+}
+
+static CagStatus evaluate_corners(const Scatter *s, CagError *err) {
+  // As many quadrilaterals may be in one row as there are points.
+  enum { MOST = 4 * SCATTERED * SCATTERED_ALONG + 1 };
+  double us[MOST], vs[MOST];
+  double *at[2] = {us, vs};
+  for (int d = 0; d < 2; d++)
+    for (size_t k = 0; k <= s->n[d]; k++)
+      at[d][k] = tess_mix(s->trial->from[d], s->trial->to[d], k, s->n[d]);
+  return cag_surface_eval_grid(s->trial->surface, us, s->n[0] + 1, vs, s->n[1] + 1, s->corners,
+                               NULL, NULL, err);
+}
+
+// One row of points, as far as they lie in the leaf.
+static CagStatus try_row(const Scatter *s, double u, double shift, double tolerance, bool *missed,
+                         CagError *err) {
+  const TessTrial *t = s->trial;
+  const double v0 = t->surface->v0, length = t->surface->v1 - v0;
+  double vs[SCATTERED_ALONG];
+  CagVec3 p[SCATTERED_ALONG];
+  size_t n = 0;
+  for (int j = 0; j < SCATTERED_ALONG; j++) {
+    double v = v0 + length * (j + shift) / SCATTERED_ALONG;
+    if (v >= t->from[1] && v < t->to[1]) vs[n++] = v;
+  }
+  CagStatus status = cag_surface_eval_grid(t->surface, &u, 1, vs, n, p, NULL, NULL, err);
+  for (size_t k = 0; status == CAG_OK && !*missed && k < n; k++) {
+    size_t x = cell_of(t, 0, u), y = cell_of(t, 1, vs[k]);
+    *missed = distance_to_cells(s, x, y, p[k], tolerance) > tolerance;
+  }
+  return status;
+}
+
+CagStatus tess_try_scattered(const TessTrial *trial, double tolerance, bool *missed,
+                             CagError *err) {
+  const double golden = 0.6180339887498949;
+  static const double beside[] = {0.5, 0, 0.25, 0.75}; // of the way from row to row
+  const CagSurface *f = trial->surface;
+  const int sets = trial->suspect ? 4 : 1;
+  double fraction = (trial->to[0] - trial->from[0]) / (f->u1 - f->u0) *
+                    ((trial->to[1] - trial->from[1]) / (f->v1 - f->v0));
+  Scatter s = {.trial = trial, .n = {(size_t)trial->n[0], (size_t)trial->n[1]}};
+  *missed = false;
+  if (trial->n[0] * trial->n[1] > fraction * sets * SCATTERED * SCATTERED_ALONG) return CAG_OK;
+  s.corners = malloc((s.n[0] + 1) * (s.n[1] + 1) * sizeof *s.corners);
+  if (!s.corners) return cag_fail_memory(err);
+  CagStatus status = evaluate_corners(&s, err);
+  for (int k = 0; k < sets; k++)
+    for (int i = 0; status == CAG_OK && !*missed && i < SCATTERED; i++) {
+      double u = f->u0 + (f->u1 - f->u0) * (i + beside[k]) / SCATTERED;
+      double shift = (i + beside[k] - beside[0]) * golden;
+      if (u >= trial->from[0] && u < trial->to[0])
+        status = try_row(&s, u, shift - floor(shift), tolerance, missed, err);
+    }
+  free(s.corners);
+  return status;
 }

@@ -13,6 +13,7 @@ static inline double tess_smaller(double a, double b) { return b < a || isnan(a)
 typedef struct TessTrial {
   const CagSurface *surface;
   double from[2], to[2], n[2];
+  bool suspect; // something thin was missed here before: tess_try_scattered looks more closely
 } TessTrial;
 
 // Largest distance found from the surface to the triangles, on the middles, thirds and edges of
@@ -31,5 +32,11 @@ typedef struct TessExcess {
 // longest: length of edges; either 0: none.
 CagStatus tess_try_edges(const TessTrial *trial, double angle, double free, double longest,
                          TessExcess *out, CagError *err);
+
+// Is the surface farther from the triangles than the tolerance somewhere on a fixed set of points,
+// which is the same for all leaves of a face? For surfaces of which nothing but points is known:
+// what is wider than a 64th of the domain is met, and lines much thinner than that. Leaves that are
+// finer than the set are not looked at.
+CagStatus tess_try_scattered(const TessTrial *trial, double tolerance, bool *missed, CagError *err);
 
 #endif

@@ -632,7 +632,6 @@ static void angles_and_edges_are_kept(void **state) {
       {"Bezier triangle", triangle, 0, true, 0, 0, 0},
       {"Moebius", moebius_surface, 0, true, 0, 0, 0},
       {"offset", offset_patch, 0, true, 0, 0, 0},
-      {"twisted rule", twisted_rule, 0, true, 0, 0, 0},
   };
   const double angles[] = {4, 8, 15, 25}, longest[] = {0, 0.7};
   const double free = 0.2; // of the tolerance
@@ -698,12 +697,55 @@ static void many_turns_take_no_more_than_they_need(void **state) {
   assert_true(counts[1] < 100 * counts[0]);
 }
 
+// A gentle wave with a thin feature at a place of chance: 3 high, e times lower at a distance of
+// `width` along u and v (0: not along that direction).
+static struct { double u, v, width_u, width_v; } feature;
+
+static void thin_feature(double u, double v, CagVec3 *p) {
+  double x = feature.width_u > 0 ? (u - feature.u) / feature.width_u : 0,
+         y = feature.width_v > 0 ? (v - feature.v) / feature.width_v : 0;
+  *p = cag_vec3(10 * u, 10 * v, 0.3 * sin(2 * u + v) + 3 * exp(-x * x - y * y));
+}
+
+static void thin_features_of_formulas_are_met(void **state) {
+  (void)state;
+  static Formula *f = thin_feature;
+  const double widths[][2] = {
+      {1.0 / 60, 1.0 / 60}, {1.0 / 100, 1.0 / 100}, {1.0 / 100, 0}, {0, 1.0 / 200}};
+  chance_state = 21;
+  for (int k = 0; k < 120; k++) {
+    feature.u = chance();
+    feature.v = chance();
+    feature.width_u = widths[k % 4][0];
+    feature.width_v = widths[k % 4][1];
+    CagSurface *s = formula(&f, 0, 1, 0, 1), *moved = scaled(formula(&f, 0, 1, 0, 1), 1, 50);
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    CagMesh *m, *n;
+    CagVec3 top;
+    how.tolerance = 0.2;
+    OK(cag_surface_tessellate(s, &how, &m, &err));
+    OK(cag_surface_point(s, feature.u, feature.v, &top, &err));
+    double off = INFINITY;
+    for (size_t t = 0; t < m->triangle_count; t++) off = fmin(off, to_triangle(m, t, top));
+    if (!(off <= how.tolerance))
+      fail_msg("a feature at %g, %g is %g off (%zu triangles)", feature.u, feature.v, off,
+               m->triangle_count);
+    OK(cag_surface_tessellate(moved, &how, &n, &err));
+    assert_int_equal(m->triangle_count, n->triangle_count);
+    cag_mesh_release(m);
+    cag_mesh_release(n);
+    cag_surface_release(s);
+    cag_surface_release(moved);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(no_point_is_farther_than_the_tolerance),
       cmocka_unit_test(angles_and_edges_are_kept),
       cmocka_unit_test(moved_copies_have_the_same_triangles),
       cmocka_unit_test(many_turns_take_no_more_than_they_need),
+      cmocka_unit_test(thin_features_of_formulas_are_met),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
