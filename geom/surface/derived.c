@@ -83,21 +83,23 @@ static const CagSurfaceKind part_kind = {
     .destroy = derived_destroy,
 };
 
-static CagStatus check_range(double a, double b, double lo, double hi, const char *name,
-                             CagError *err) {
+static CagStatus check_range(double a, double b, double lo, double hi, bool angular,
+                             const char *name, CagError *err) {
   char x[32], y[32], from[32], to[32];
   if (a < b && a >= lo && b <= hi) return CAG_OK;
+  const double shown = angular ? 180 / M_PI : 1;
+  const char *deg = angular ? "deg" : "";
   return cag_fail(err, CAG_E_DOMAIN, a < b ? "parameter-range" : "empty-range", name, -1,
-                  "`%s` must be a range within %s..%s, it is %s..%s (radians where it is an angle)",
-                  name, cag_number_text(lo, from), cag_number_text(hi, to), cag_number_text(a, x),
-                  cag_number_text(b, y));
+                  "`%s` must be a range within %s%s..%s%s, it is %s%s..%s%s", name,
+                  cag_number_text(shown * lo, from), deg, cag_number_text(shown * hi, to), deg,
+                  cag_number_text(shown * a, x), deg, cag_number_text(shown * b, y), deg);
 }
 
 CagStatus cag_surface_part(const CagSurface *s, double u0, double u1, double v0, double v1,
                            CagSurface **out, CagError *err) {
   CagSurfaceNurbsView view;
-  CagStatus status = check_range(u0, u1, s->u0, s->u1, "u", err);
-  if (!status) status = check_range(v0, v1, s->v0, s->v1, "v", err);
+  CagStatus status = check_range(u0, u1, s->u0, s->u1, s->angular_u, "u", err);
+  if (!status) status = check_range(v0, v1, s->v0, s->v1, s->angular_v, "v", err);
   if (status) return status;
   if (cag_surface_planar_view(s, NULL, NULL))
     return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,

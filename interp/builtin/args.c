@@ -101,7 +101,9 @@ bool cag_arg_finite(CagCall *call, int argument, double *out) {
 
 bool cag_arg_positive(CagCall *call, int argument, double *out) {
   if (!cag_arg_number(call, argument, out)) return false;
-  return (isfinite(*out) && *out > 0) || cag_fail_value(call, argument, "a number greater than 0");
+  return (isfinite(*out) && *out > 0) ||
+         cag_fail_value(call, argument,
+                        *out > 0 ? "a finite number greater than 0" : "a number greater than 0");
 }
 
 bool cag_arg_integer(CagCall *call, int argument, long low, long high, long *out) {

@@ -5,6 +5,7 @@
 // differentiated exactly; those of regions, solids and meshes are meshes.
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "geom/mesh/tessellate.h"
 #include "geom/surface/mapped.h"
@@ -12,6 +13,7 @@
 #include "geom/surface/trimmed.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
+#include "interp/eval/vm.h"
 
 // The point over x, y at the height z: `o` is the surface's offset by 1, so that o - s is the
 // normal.
@@ -33,6 +35,27 @@ static const char *const CURVES_LIFTED[2][2] = {
 static const char *const SHEETS[2][2] = {
     {SHEET("g(u, v)[0]", "g(u, v)[1]"), SHEET("g(u, v)[0]", "g(u, v)[1] * 1rad")},
     {SHEET("g(u, v)[0] * 1rad", "g(u, v)[1]"), SHEET("g(u, v)[0] * 1rad", "g(u, v)[1] * 1rad")}};
+
+#define LEAVES "expects a shape whose x and y are parameters of the surface as `G`"
+
+// What goes wrong within the functions made here is told of the mapping: their text is no part of
+// the script. Others keep their places.
+static bool tell_of_mapping(CagCall *call, int argument, const char *what) {
+  CagDiagnostics *errors = &call->vm->errors;
+  if (errors->count == 0 || !errors->items[0].source ||
+      strcmp(errors->items[0].source->name, "<formula>") != 0)
+    return false;
+  const CagErrorId id = errors->items[0].id;
+  char *message = errors->items[0].message ? strdup(errors->items[0].message) : NULL;
+  char *reason = errors->items[0].reason ? strdup(errors->items[0].reason) : NULL;
+  const char *said = message ? message : "";
+  if (strncmp(said, "at: ", 4) == 0) said += 4; // how points of a surface are asked for
+  cag_fail_call(call, argument, id, "%s: %s", what, said);
+  free(message);
+  free(errors->items[0].reason);
+  errors->items[0].reason = reason;
+  return false;
+}
 
 // The curve's smooth pieces one by one: a function has no corners of its own.
 static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue offset,
@@ -56,7 +79,7 @@ static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue o
     for (size_t i = 0; ok && i <= inner; i++) {
       CagValue piece, arguments[4] = {g, call->values[1], offset,
                                       cag_domain_value(vm, c->angular, cuts[i], cuts[i + 1])};
-      ok = cag_call(vm, lambda, arguments, 4, &piece);
+      ok = cag_call(vm, lambda, arguments, 4, &piece) || tell_of_mapping(call, 0, LEAVES);
       if (ok) pieces[made++] = cag_curve_retain(CAG_AS_SHAPE(piece)->as.curve);
     }
     cag_root_pop(vm, 1);
@@ -78,7 +101,7 @@ static bool map_surface(CagCall *call, CagValue value, const CagSurface *s, CagV
   CagValue arguments[5] = {value, call->values[1], offset,
                            cag_domain_value(call->vm, g->angular_u, g->u0, g->u1),
                            cag_domain_value(call->vm, g->angular_v, g->v0, g->v1)};
-  return cag_call(call->vm, lambda, arguments, 5, result);
+  return cag_call(call->vm, lambda, arguments, 5, result) || tell_of_mapping(call, 0, LEAVES);
 }
 
 static bool map_smooth(CagCall *call, CagValue g, const CagSurface *s, CagValue *result) {
@@ -221,7 +244,8 @@ bool cag_surfaces_remap(CagCall *call, CagValue *result) {
   if (b.type == CAG_UNSET || b.type == CAG_NONE)
     b = cag_domain_value(call->vm, s->angular_v, s->v0, s->v1);
   CagValue arguments[4] = {call->values[0], f, a, b};
-  if (!cag_call(call->vm, lambda, arguments, 4, result)) return false;
+  if (!cag_call(call->vm, lambda, arguments, 4, result))
+    return tell_of_mapping(call, 1, "expects a function that gives [u, v] of the surface as `f`");
   cag_shape_say_alike(*result, call->values[0]);
   return true;
 }

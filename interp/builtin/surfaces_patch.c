@@ -44,10 +44,12 @@ static bool read_vector(CagValue v, CagVec3 *out) {
 
 static bool read_line(CagCall *call, int argument, CagValue line, const char *what, size_t n,
                       CagVec3 *out) {
-  if (line.type != CAG_LIST || CAG_AS_LIST(line)->length != n)
-    return cag_fail_call(
-        call, argument, CAG_ERR_length, "expects %zu vectors %s, found %s", n, what,
-        line.type == CAG_LIST ? "a list of another length" : cag_type_article(line));
+  if (line.type != CAG_LIST)
+    return cag_fail_call(call, argument, CAG_ERR_length, "expects %zu vectors %s, found %s", n,
+                         what, cag_type_article(line));
+  if (CAG_AS_LIST(line)->length != n)
+    return cag_fail_call(call, argument, CAG_ERR_length, "expects %zu vectors %s, found %zu", n,
+                         what, CAG_AS_LIST(line)->length);
   for (size_t i = 0; i < n; i++) {
     CagValue v = cag_list_get(call->vm, CAG_AS_LIST(line), i);
     if (!read_vector(v, &out[i]))
@@ -65,9 +67,9 @@ static bool read_table(CagCall *call, int argument, size_t rows, size_t n, CagVe
   if (list->length != rows)
     return cag_fail_call(call, argument, CAG_ERR_length, "expects %zu rows as `%s`, found %zu",
                          rows, cag_parameter_name(call, argument), list->length);
-  char what[32];
+  char what[96];
   for (size_t i = 0; i < rows; i++) {
-    snprintf(what, sizeof what, "in row %zu", i);
+    snprintf(what, sizeof what, "in row %zu of `%s`", i, cag_parameter_name(call, argument));
     if (!read_line(call, argument, cag_list_get(call->vm, list, i), what, n, out + i * n))
       return false;
   }
@@ -153,8 +155,9 @@ static bool read_edges(CagCall *call, CagHermiteGrid *g, GridData *d) {
     char what[48];
     snprintf(what, sizeof what, "for %s in `edge_tangents`", names[k]);
     if (line.type == CAG_UNSET)
-      return cag_fail_call(call, 1, CAG_ERR_value,
-                           "expects a record with u0, u1, v0, v1: %s is missing", names[k]);
+      return cag_fail_call(
+          call, 1, CAG_ERR_value,
+          "expects a record with u0, u1, v0 and v1 as `edge_tangents`: %s is missing", names[k]);
     if (!read_line(call, 1, line, what, n, at)) return false;
     *into[k] = at;
     at += n;
@@ -198,9 +201,9 @@ bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
 // --- Triangles ---
 
 static bool read_triangle(CagCall *call, int argument, const CagList *rows, CagVec3 *out) {
-  char what[32];
+  char what[96];
   for (size_t i = 0; i < rows->length; i++) {
-    snprintf(what, sizeof what, "in row %zu", i);
+    snprintf(what, sizeof what, "in row %zu of `%s`", i, cag_parameter_name(call, argument));
     if (!read_line(call, argument, cag_list_get(call->vm, rows, i), what, i + 1, out)) return false;
     out += i + 1;
   }

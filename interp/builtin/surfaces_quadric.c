@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
 // --- Where an unbounded one ends: a box (a solid whose bounds count) or a range of z ---
@@ -25,8 +26,7 @@ static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_onl
   *z_only = true;
   if (!cag_arg_interval(call, argument, &box->min.z, &box->max.z, &angle)) return false;
   if (angle) return cag_fail_type(call, argument, "a box or a range of z");
-  return box->min.z < box->max.z ||
-         cag_fail_call(call, argument, CAG_ERR_value, "expects a range of z that is not empty");
+  return box->min.z < box->max.z || cag_fail_value(call, argument, "a range of z that ascends");
 }
 
 // One surface, or a group of the sheets or planes.
@@ -54,6 +54,18 @@ static bool give_patches(CagCall *call, const CagQuadric *q, int within, CagValu
 
 // --- By numbers ---
 
+// Ten that are not all numbers, or neither ten nor four.
+static bool fail_equation(CagCall *call, const CagList *list) {
+  for (size_t i = 0; list->length == 10 && i < 10; i++) {
+    CagValue v = cag_list_get(call->vm, list, i);
+    if (v.type != CAG_NUMBER) return cag_fail_element(call, 0, i, v, "10 numbers");
+  }
+  return cag_fail_call(call, 0, CAG_ERR_type,
+                       "expects the 10 numbers of a x^2 + b y^2 + c z^2 + d xy + e yz + f xz + "
+                       "g x + h y + j z + k = 0, or 4 rows of 4; found a list of %zu",
+                       list->length);
+}
+
 static bool read_equation(CagCall *call, CagQuadric *q) {
   CagList *list;
   CagError err;
@@ -65,15 +77,13 @@ static bool read_equation(CagCall *call, CagQuadric *q) {
     memcpy(q->c, x, sizeof q->c);
     return true;
   }
-  bool square = list->length == 4;
-  for (size_t i = 0; square && i < 4; i++) {
-    square = cag_as_vector(cag_list_get(call->vm, list, i), &x, &n) && n == 4;
-    if (square) memcpy(rows[i], x, sizeof rows[i]);
+  if (list->length != 4) return fail_equation(call, list);
+  for (size_t i = 0; i < 4; i++) {
+    CagValue row = cag_list_get(call->vm, list, i);
+    if (!cag_as_vector(row, &x, &n) || n != 4)
+      return cag_fail_element(call, 0, i, row, "4 rows of 4 numbers, or 10 numbers,");
+    memcpy(rows[i], x, sizeof rows[i]);
   }
-  if (!square)
-    return cag_fail_call(call, 0, CAG_ERR_type,
-                         "expects the 10 numbers of a x^2 + b y^2 + c z^2 + d xy + e yz + f xz + "
-                         "g x + h y + j z + k = 0, or 4 rows of 4");
   return cag_geometry_ok(call, cag_quadric_from_rows(rows, q, &err), &err);
 }
 
@@ -168,7 +178,8 @@ bool cag_arg_quadric(CagCall *call, CagQuadric *q) {
   if (v.type == CAG_SOLID && CAG_AS_SHAPE(v)->as.solid->kind == CAG_SOLID_SPHERE)
     return sphere_equation(call, CAG_AS_SHAPE(v)->as.solid, q);
   cag_fail(&err, CAG_E_UNSUPPORTED, "not-a-quadric", "", -1,
-           "expects a quadric, or its 10 numbers or 4 rows");
+           "expects a quadric, a sphere, or the 10 numbers or 4 rows of one, found a %s",
+           v.type == CAG_SURFACE ? CAG_AS_SHAPE(v)->as.surface->kind->name : cag_type_name(v));
   return cag_fail_geometry(call, &err);
 }
 

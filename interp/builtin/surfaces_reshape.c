@@ -86,6 +86,16 @@ bool cag_surfaces_split(CagCall *call, CagValue *result) {
   int direction;
   double t;
   if (!cag_arg_surface(call, 0, &s) || !read_place(call, s, 1, &direction, &t)) return false;
+  const double low = direction == 0 ? s->u0 : s->v0, high = direction == 0 ? s->u1 : s->v1;
+  if (!(t > low && t < high)) {
+    const double shown = (direction == 0 ? s->angular_u : s->angular_v) ? 180 / M_PI : 1;
+    const char *deg = shown == 1 ? "" : "deg";
+    char from[32], to[32], at[32];
+    return cag_fail_call(call, -1, CAG_ERR_parameter_range,
+                         "cuts within the domain, between %s%s and %s%s: `%c` is %s%s",
+                         cag_number_text(shown * low, from), deg, cag_number_text(shown * high, to),
+                         deg, "uv"[direction], cag_number_text(shown * t, at), deg);
+  }
   CagBuilder *parts = cag_builder_new(call->vm);
   for (int k = 0; k < 2; k++) {
     CagSurface *part = NULL;
