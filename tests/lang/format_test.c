@@ -157,7 +157,8 @@ static void stages_stand_behind_a_closing_bracket(void **state) {
                 "a = group([\n  " LONG ",\n  " LONG "\n])\n  |> f(1)\n  |> g(" LONG
                 ", x)\n  |> g(" LONG ")\n");
   // A single stage that has to be broken begins behind its head.
-  expect_layout("a = b |> f(" LONG ", " LONG ")", "a = b |> f(\n  " LONG ",\n  " LONG "\n)\n");
+  expect_layout("a = b |> f(" LONG ", " LONG ", 1, 2)",
+                "a = b |> f(\n  " LONG ",\n  " LONG ",\n  1,\n  2\n)\n");
 }
 
 static void short_parameters_are_filled(void **state) {
