@@ -120,7 +120,9 @@ const CagBuiltin cag_builtins_splines[] = {
      "\"ends\", knots = \"auto\", error = 1e-9, order = none)",
      cag_splines_fit_report, "record",
      "As fit, with its figures: curve, parameters, residuals (the curve less the data), rms (their "
-     "root mean square), largest, and the rounds taken to hold a coordinate.",
+     "root mean square), largest, and the rounds taken to hold a coordinate. Of rows of points, "
+     "with "
+     "a count for u and v, what fit_surface_report gives; that takes more arguments.",
      "r = fit_report([[0, 0], [1.5, 2], [3, 2.5], [4.5, 2], [6, 0]], degree: 2, count: 4, fixed: "
      "\"none\")\n"
      "print near(r.rms, 0.050231855, 1e-8) // expect: true",

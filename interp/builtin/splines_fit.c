@@ -140,7 +140,35 @@ bool cag_splines_fit(CagCall *call, CagValue *result) {
   return true;
 }
 
+// Whether the data are rows of points, which are fitted by a surface.
+static bool is_grid(CagCall *call) {
+  CagValue v = call->values[0];
+  for (int level = 0; level < 2; level++) {
+    if (v.type != CAG_LIST || CAG_AS_LIST(v)->length == 0) return false;
+    v = cag_list_get(call->vm, CAG_AS_LIST(v), 0);
+  }
+  return v.type == CAG_LIST;
+}
+
+// The same question of a grid, with what both have: the ends are those of curves alone.
+static bool report_surface(CagCall *call, CagValue *result) {
+  size_t rows;
+  const CagBuiltin *row = cag_builtin_rows(cag_builtin_find("fit_surface_report"), &rows);
+  CagValue *given = call->values, unset = cag_unset();
+  CagValue values[] = {given[0], given[1], given[2], given[3], given[5],
+                       unset,    unset,    given[4], unset,    given[6]};
+  CagCall other = {call->vm, row, values, sizeof values / sizeof *values};
+  if (given[2].type == CAG_UNSET)
+    return cag_fail_call(call, 2, CAG_ERR_arity,
+                         "of rows of points wants a `count`, two for u and v");
+  if (cag_given(call, 7))
+    return cag_fail_call(call, 7, CAG_ERR_value,
+                         "of rows of points takes a degree, not an `order`");
+  return row->function(&other, result);
+}
+
 bool cag_splines_fit_report(CagCall *call, CagValue *result) {
+  if (is_grid(call)) return report_surface(call, result);
   static const char *const names[] = {"curve", "parameters", "residuals",
                                       "rms",   "largest",    "rounds"};
   CagCurve *c;

@@ -19,11 +19,13 @@ static const char quadrics[] = "Quadrics";
 
 const CagBuiltin cag_builtins_surfaces[] = {
     // --- At one place, and data ---
-    {"at(S, u, v)", cag_surfaces_at, "list",
+    {"at(S, u, v, unit = false)", cag_surfaces_at, "list",
      "The point of the surface at u, v, as S(u, v) does. Parameters are natural: knots, or angles "
-     "of what is turned. Outside of the domain is an error (parameter-range).",
-     "print at(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0.5, 0.5) // expect: [2, 1, 0]", SIDES,
-     asked},
+     "of what is turned; with `unit` both are shares of the domain, 0..1. Outside of the domain is "
+     "an error (parameter-range).",
+     "print at(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 0.5, 0.5) // expect: [2, 1, 0]\n"
+     "print near(at(sphere_surface(3), 0.5, 0, unit: true), [3, 0, 0]) // expect: true",
+     SIDES, asked},
     {"partial(S, u, v, du = 1, dv = 0, side = \"right\")", cag_surfaces_partial, "list",
      "The partial derivative, du times by u and dv times by v (by angles: per radian). Where it "
      "jumps, at a knot, it is the limit from the right (at the end of the domain from the left), "
@@ -163,7 +165,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
     {"refine(S, u = true, v = true)", cag_surfaces_refine, "surface",
      "The same surface with a knot more in the middle of every knot interval, in both directions "
      "or in one (closed directions stay closed); or with a whole new list of knots for u, for v, "
-     "which holds the old ones: else an error (knots-not-superset).",
+     "which holds the old ones: else an error (knots-not-superset). \"midpoints\" says the first.",
      "s = bezier_surface([[[0, 0, 0], [0, 1, 0], [0, 2, 0]], [[1, 0, 0], [1, 1, 2], [1, 2, 0]]])\n"
      "print len(points(refine(s))), len(points(refine(s))[0]) // expect: 3 4",
      SURFACES, changed},
@@ -190,9 +192,12 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "parts = split(s, u: 0.5)\n"
      "print near(area(join_surfaces(parts[0], parts[1])), area(s), relative: 1e-8) // expect: true",
      SURFACES, changed},
-    {"continuity(A, B, edges = none, tolerance = 1e-9)", cag_surfaces_continuity, "record",
-     "How two surfaces meet along the edges nearest to each other, or those of `edges` (such as "
-     "[\"u1\", \"u0\"]): class (\"none\", \"C0\", "
+    {"continuity(A, B, edge = none, tolerance = 1e-9, edges = none)", cag_surfaces_continuity,
+     "record",
+     "How two surfaces meet along the edges nearest to each other, or along an `edge` of both "
+     "(such "
+     "as \"u1\", or [\"u1\", \"u0\"] of A and of B; also said as `edges`): class (\"none\", "
+     "\"C0\", "
      "\"G1\", "
      "\"C1\", \"G2\"), the largest gap (mm), angle between the tangent planes, jump of the "
      "derivative "
@@ -303,7 +308,8 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print near(volume(tube(path, t => 2 - t)), 35 * pi / 3, relative: 1e-8) // expect: true",
      CURVES, made},
     {"loft(curves, degree = 3, closed = false, caps = true)", cag_surfaces_loft, "solid or surface",
-     "The surface through curves in order: u runs along them over 0..1, v = i is curve i. In v it "
+     "The surface through curves, or regions without holes, in order: u runs along them over 0..1, "
+     "v = i is curve i. In v it "
      "is a spline of the degree; `closed` leads from the last curve back to the first. Of closed "
      "curves the ends get flat caps, and it is a solid.",
      "a = circle(2)\n"

@@ -26,7 +26,10 @@ bool cag_surfaces_at(CagCall *call, CagValue *result) {
   CagVec3 p;
   CagError err;
   double u, v;
-  if (!read_at(call, &s, &u, &v) ||
+  bool unit;
+  if (!cag_arg_side(call, 0, &s) || !cag_arg_bool_or(call, 3, false, &unit) ||
+      !cag_arg_parameter(call, 1, s->angular_u, s->u0, s->u1, unit, &u) ||
+      !cag_arg_parameter(call, 2, s->angular_v, s->v0, s->v1, unit, &v) ||
       !cag_geometry_ok(call, cag_surface_point(s, u, v, &p, &err), &err))
     return false;
   *result = cag_point(call->vm, p, 3);

@@ -35,8 +35,9 @@ static bool read_pair(CagCall *call, int argument, long fallback, long low, long
     return cag_fail_type(call, argument, "a whole number, or two for u and v");
   for (int k = 0; k < 2; k++) {
     if (x[k] != floor(x[k]) || x[k] < (double)low || x[k] > (double)high)
-      return cag_fail_call(call, argument, CAG_ERR_value, "expects whole numbers from %ld to %ld",
-                           low, high);
+      return cag_fail_call(call, argument, CAG_ERR_value,
+                           "expects whole numbers from %ld to %ld for u and v, found %g", low, high,
+                           x[k]);
     out[k] = (long)x[k];
   }
   return true;
@@ -362,9 +363,9 @@ bool cag_surfaces_is_developable(CagCall *call, CagValue *result) {
   CagBounds box;
   CagError err;
   double tolerance, worst = 0;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_number_or(call, 1, 1e-9, &tolerance) ||
-      !cag_geometry_ok(call, cag_surface_bounds(s, &box, &err), &err))
-    return false;
+  if (!cag_arg_surface(call, 0, &s) || !cag_arg_number_or(call, 1, 1e-9, &tolerance)) return false;
+  if (!(tolerance >= 0)) return cag_fail_value(call, 1, "a tolerance of 0 or more");
+  if (!cag_geometry_ok(call, cag_surface_bounds(s, &box, &err), &err)) return false;
   double size = cag_norm(cag_sub(box.max, box.min));
   for (int i = 0; i < PROBES; i++)
     for (int j = 0; j < PROBES; j++) {

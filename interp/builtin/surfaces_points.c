@@ -521,9 +521,10 @@ bool cag_arg_edges(CagCall *call, int argument, int out[2], bool *given) {
   CagValue v = call->values[argument];
   *given = v.type != CAG_UNSET && v.type != CAG_NONE;
   if (!*given) return true;
-  bool good = v.type == CAG_LIST && CAG_AS_LIST(v)->length == 2;
+  const bool both = v.type == CAG_TEXT;
+  bool good = both || (v.type == CAG_LIST && CAG_AS_LIST(v)->length == 2);
   for (int k = 0; good && k < 2; k++) {
-    CagValue one = cag_list_get(call->vm, CAG_AS_LIST(v), (size_t)k);
+    CagValue one = both ? v : cag_list_get(call->vm, CAG_AS_LIST(v), (size_t)k);
     out[k] = 0;
     while (sides[out[k]] && one.type == CAG_TEXT &&
            strcmp(sides[out[k]], CAG_AS_TEXT(one)->bytes) != 0)
@@ -532,7 +533,8 @@ bool cag_arg_edges(CagCall *call, int argument, int out[2], bool *given) {
   }
   return good ||
          cag_fail_value(call, argument,
-                        "a side of each surface, such as [\"u1\", \"u0\"] (u0, u1, v0, v1)");
+                        "a side of both surfaces, such as \"u1\" (u0, u1, v0, v1), or one of "
+                        "each, such as [\"u1\", \"u0\"]");
 }
 
 // A, B, ratio, shear, edges

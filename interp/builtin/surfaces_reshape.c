@@ -132,6 +132,11 @@ static bool read_refinement(CagCall *call, int argument, CagRefinement *out) {
     if (!v.as.boolean) out->how = CAG_REFINE_NOT;
     return true;
   }
+  if (v.type == CAG_TEXT) {
+    static const char *const names[] = {"midpoints", NULL};
+    int midpoints;
+    return cag_arg_choice(call, argument, names, &midpoints);
+  }
   out->how = CAG_REFINE_KNOTS;
   return cag_arg_numbers(call, argument, &out->knots, &out->count);
 }
@@ -212,7 +217,7 @@ bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
   int edges_given[2];
   bool given;
   if (!cag_arg_surface(call, 0, &a) || !cag_arg_surface(call, 1, &b) ||
-      !cag_arg_edges(call, 2, edges_given, &given) ||
+      !cag_arg_edges(call, cag_given(call, 4) ? 4 : 2, edges_given, &given) ||
       !cag_arg_number_or(call, 3, SEAM_TOLERANCE, &tolerance))
     return false;
   CagStatus status = cag_surface_seam_on(a, b, given ? edges_given : NULL, tolerance, &seam, &err);

@@ -251,6 +251,28 @@ bool cag_surfaces_tube(CagCall *call, CagValue *result) {
 
 // --- Lofts ---
 
+// A curve as it is, or the outline of a region without holes, placed. The curve is held for the
+// caller.
+static bool read_loft_curve(CagCall *call, size_t i, CagValue v, const CagCurve **out) {
+  CagError err;
+  if (v.type == CAG_CURVE) {
+    *out = cag_curve_retain(CAG_AS_SHAPE(v)->as.curve);
+    return true;
+  }
+  if (v.type != CAG_REGION) return cag_fail_element(call, 0, i, v, "curves or regions");
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  if (shape->as.region->count != 1)
+    return cag_fail_call(call, 0, CAG_ERR_value,
+                         "expects regions of one outline without holes, found %zu outlines in "
+                         "`curves`[%zu]; loft them one by one",
+                         shape->as.region->count, i);
+  CagCurve *placed = NULL;
+  CagStatus status =
+      cag_curve_transform(shape->as.region->loops[0], &shape->placement, &placed, &err);
+  *out = placed;
+  return cag_geometry_ok(call, status, &err);
+}
+
 bool cag_surfaces_loft(CagCall *call, CagValue *result) {
   CagList *list;
   CagError err;
@@ -264,13 +286,10 @@ bool cag_surfaces_loft(CagCall *call, CagValue *result) {
   if (!curves)
     return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   bool all_closed = true, ok = true;
+  size_t read = 0;
   for (size_t i = 0; ok && i < list->length; i++) {
-    CagValue v = cag_list_get(call->vm, list, i);
-    if (v.type != CAG_CURVE) ok = cag_fail_element(call, 0, i, v, "curves");
-    else {
-      curves[i] = CAG_AS_SHAPE(v)->as.curve;
-      all_closed = all_closed && curves[i]->closed;
-    }
+    ok = read_loft_curve(call, i, cag_list_get(call->vm, list, i), &curves[i]);
+    if (ok) all_closed = all_closed && curves[read++]->closed;
   }
   CagSurface *side = NULL;
   CagSolid *solid = NULL;
@@ -284,6 +303,7 @@ bool cag_surfaces_loft(CagCall *call, CagValue *result) {
       ok = give_surface(call, status, &err, &side, result);
     }
   }
+  for (size_t i = 0; i < read; i++) cag_curve_release((CagCurve *)curves[i]);
   free(curves);
   if (ok) cag_shape_say_alike(*result, cag_list_get(call->vm, list, 0));
   return ok;
