@@ -4,6 +4,10 @@
 // each step once whole and once in halves: the difference settles the length of the step, and
 // improves the result to order 5. A principal direction has no sense of its own: it takes that of
 // the direction before it.
+//
+// Into a pole of the parameters no step leads, and often it is an umbilic, too (of surfaces of
+// revolution). A line that heads straight into one where the surface is smooth goes on straight
+// behind it, along the parameter line that leaves the pole in its direction.
 
 #include "geom/surface/curvature_line.h"
 
@@ -23,8 +27,21 @@
 #define STEPS_MOST 20000
 #define FIRST_STEP 1e-3
 #define SMALLEST_STEP 1e-12
+// By a pole or an umbilic the directions are known to rounding that grows: steps shorter than this
+// may err by this part of themselves.
+#define NOISY_STEP 1e-4
+#define NOISE 1e-7
 // Part of the size within which a line that comes back to its start has closed.
 #define CLOSED 1e-6
+// Parts of the size from which a line passes over a pole, and from which at most, where an umbilic
+// or rounding has shortened its steps to this.
+#define AT_POLE 1e-4
+#define AT_POLE_MOST 0.1
+#define TIRED_STEP 1e-5
+// Sine of the angle by which a line may miss a pole, and leave it off the parameter line beyond.
+#define AIM 1e-5
+// cos 0.8 degrees: a sharper bend at a pole is a tip.
+#define SMOOTH_COSINE 0.9999
 
 CagStatus cag_surface_principal(const CagSurface *s, double u, double v, bool *found,
                                 CagPrincipal *out, CagError *err) {
@@ -142,6 +159,129 @@ static bool add_point(Walk *w, CagVec3 p, CagVec3 t) {
   return true;
 }
 
+// --- Poles ---
+
+// Edge `end` of direction k, all of it one point.
+typedef struct Pole {
+  int k, end;
+  CagVec3 point;
+} Pole;
+
+static Place place_by(const Walk *w, const Pole *pole, double off, double x) {
+  const CagSurface *s = w->s;
+  double lo = pole->k ? s->v0 : s->u0, hi = pole->k ? s->v1 : s->u1;
+  double along = pole->end ? hi - off : lo + off;
+  return pole->k ? (Place){x, along} : (Place){along, x};
+}
+
+// The direction in which the parameter line leaves, at `off` from the pole.
+static bool leaving(Walk *w, const Pole *pole, double off, double x, CagVec3 *point, CagVec3 *way) {
+  CagVec3 d[4];
+  Place at = place_by(w, pole, off, x);
+  if (!bring_in(w->s, &at)) return false;
+  w->status = cag_surface_eval(w->s, at.u, at.v, 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, w->err);
+  if (w->status) return false;
+  *point = d[0];
+  *way = cag_scaled(d[pole->k ? cag_partial(1, 0, 1) : cag_partial(1, 1, 0)], pole->end ? -1 : 1);
+  return cag_norm(*way) > 0;
+}
+
+// The pole that the line heads into from nearer than `near`.
+static bool find_pole(Walk *w, CagVec3 at, CagVec3 tangent, double near, Pole *out) {
+  const CagSurface *s = w->s;
+  const bool is_pole[2][2] = {{s->pole_u0, s->pole_u1}, {s->pole_v0, s->pole_v1}};
+  for (int i = 0; i < 4; i++) {
+    Pole pole = {i / 2, i % 2, {0, 0, 0}};
+    CagVec3 way;
+    if (!is_pole[i / 2][i % 2]) continue;
+    double x = pole.k ? s->u0 : s->v0;
+    if (!leaving(w, &pole, 0, x, &pole.point, &way)) continue;
+    CagVec3 off = cag_sub(pole.point, at);
+    if (cag_norm(off) <= near && cag_dot(off, tangent) > 0) {
+      *out = pole;
+      return true;
+    }
+  }
+  return false;
+}
+
+// Where the parameter line begins that leaves the pole along a direction; false where none does.
+static bool find_leaving(Walk *w, const Pole *pole, CagVec3 along, double *out) {
+  enum { TRIED = 72 };
+  const int halvings = 60;
+  const CagSurface *s = w->s;
+  double lo = pole->k ? s->u0 : s->v0, step = ((pole->k ? s->u1 : s->v1) - lo) / TRIED;
+  double best = -1, x = lo;
+  CagVec3 p, way, ways[2];
+  for (int i = 0; i <= TRIED && !w->status; i++)
+    if (leaving(w, pole, 0, fmin(lo + i * step, lo + TRIED * step), &p, &way) &&
+        cag_dot(cag_unit(way), along) > best) {
+      best = cag_dot(cag_unit(way), along);
+      x = lo + i * step;
+    }
+  double from = x - step, to = x + step;
+  if (!leaving(w, pole, 0, from, &p, &ways[0]) || !leaving(w, pole, 0, to, &p, &ways[1]))
+    return false;
+  CagVec3 side = cag_cross(cag_cross(ways[0], ways[1]), along);
+  if (!(cag_dot(ways[0], side) < 0 && cag_dot(ways[1], side) > 0)) return false;
+  for (int i = 0; i < halvings; i++) {
+    double middle = (from + to) / 2;
+    if (!leaving(w, pole, 0, middle, &p, &way)) return false;
+    if (cag_dot(way, side) < 0) from = middle;
+    else to = middle;
+  }
+  *out = (from + to) / 2;
+  return leaving(w, pole, 0, *out, &p, &way) && cag_dot(cag_unit(way), along) > SMOOTH_COSINE;
+}
+
+// Passes over a pole that is ahead, nearer than `near`: the place behind it, from which the line
+// goes on, and the pole as a point of the line.
+static bool pass_pole(Walk *w, Place *at, CagPrincipal *p, Place *way, CagVec3 *tangent,
+                      double near, double *gone) {
+  const double widest = 4, wider = 1.1;
+  Pole pole;
+  double x;
+  if (!find_pole(w, p->point, *tangent, near, &pole)) return false;
+  CagVec3 off = cag_sub(pole.point, p->point), back, beside;
+  double d = cag_norm(off);
+  // It must come along a parameter line: then it leads into the pole, not past it, and on in the
+  // direction that this line has there, which must be that of an arc from here.
+  Place edge = place_by(w, &pole, 0, 0);
+  double distance = fabs(pole.k ? at->v - edge.v : at->u - edge.u), line = pole.k ? at->u : at->v;
+  if (!leaving(w, &pole, distance, line, &beside, &back)) return false;
+  if (cag_norm(cag_cross(cag_unit(back), *tangent)) > AIM) return false;
+  CagVec3 arc = cag_unit(cag_sub(cag_scaled(off, 2 / d), *tangent));
+  if (!leaving(w, &pole, 0, line, &beside, &back)) return false;
+  CagVec3 along = cag_scaled(cag_unit(back), -1);
+  if (cag_dot(along, arc) < SMOOTH_COSINE) return false;
+  if (!find_leaving(w, &pole, along, &x)) return false;
+  CagVec3 point, ahead_of;
+  if (!leaving(w, &pole, 0, x, &point, &ahead_of)) return false;
+  for (double far = near > AT_POLE * w->size ? 2 * d : d; far <= widest * d; far *= wider) {
+    Place next = place_by(w, &pole, far / cag_norm(ahead_of), x);
+    CagPrincipal found;
+    Place next_way;
+    CagVec3 next_tangent, leads;
+    if (!bring_in(w->s, &next)) return false;
+    if (!way_at(w, next, along, &found, &next_way, &next_tangent)) {
+      if (w->status) return false;
+      continue; // still an umbilic
+    }
+    if (!leaving(w, &pole, far / cag_norm(ahead_of), x, &point, &leads) ||
+        cag_norm(cag_cross(cag_unit(leads), next_tangent)) > AIM)
+      return false;
+    *gone += d + cag_norm(cag_sub(found.point, pole.point));
+    *at = next;
+    *p = found;
+    *way = next_way;
+    *tangent = next_tangent;
+    return add_point(w, pole.point, along) && add_point(w, p->point, *tangent);
+  }
+  return false;
+}
+
+// --- The line ---
+
 // Walks on from a place until the line ends. True where it has come back to the start.
 static bool walk(Walk *w, Place at, CagVec3 sense) {
   CagPrincipal p;
@@ -150,9 +290,14 @@ static bool walk(Walk *w, Place at, CagVec3 sense) {
   double h = FIRST_STEP * w->size, gone = 0;
   if (!way_at(w, at, sense, &p, &way, &tangent)) return false;
   start = p.point;
-  for (int steps = 0; steps < STEPS_MOST && h > SMALLEST_STEP * w->size; steps++) {
+  for (int steps = 0; steps < STEPS_MOST; steps++) {
     Place whole, half, twice, next_way;
+    CagPrincipal next_p;
     CagVec3 next;
+    bool stopped = h <= SMALLEST_STEP * w->size;
+    double near = (h <= TIRED_STEP * w->size ? AT_POLE_MOST : AT_POLE) * w->size;
+    if (pass_pole(w, &at, &p, &way, &tangent, near, &gone)) h = FIRST_STEP * w->size;
+    else if (stopped || w->status) return false;
     // Once it is near its start, the step is to end there.
     CagVec3 home = cag_sub(start, p.point);
     double left = cag_norm(home);
@@ -161,7 +306,7 @@ static bool walk(Walk *w, Place at, CagVec3 sense) {
     if (returning && left <= CLOSED * w->size) return cag_dot(tangent, first) > 0;
     if (!one_step(w, at, tangent, h, &whole) || !one_step(w, at, tangent, h / 2, &half) ||
         !one_step(w, half, tangent, h / 2, &twice) ||
-        !way_at(w, twice, tangent, &p, &next_way, &next)) {
+        !way_at(w, twice, tangent, &next_p, &next_way, &next)) {
       if (w->status) return false;
       h /= 2; // up to the border, or the umbilic
       continue;
@@ -170,16 +315,25 @@ static bool walk(Walk *w, Place at, CagVec3 sense) {
     double speed = hypot(way.u, way.v);
     double error = hypot(twice.u - whole.u, twice.v - whole.v) / (15 * speed);
     double turn = cag_norm(cag_sub(next, tangent));
-    if (error > STEP_ERROR * w->size || turn > STEP_TURN) {
-      way_at(w, at, tangent, &p, &way, &tangent);
+    double allowed = STEP_ERROR * w->size;
+    if (h <= NOISY_STEP * w->size) allowed = fmax(allowed, NOISE * h);
+    if (error > allowed || turn > STEP_TURN) {
       h /= 2;
       continue;
     }
-    at = (Place){twice.u + (twice.u - whole.u) / 15, twice.v + (twice.v - whole.v) / 15};
-    if (!bring_in(w->s, &at) || !way_at(w, at, next, &p, &way, &tangent)) return false;
+    Place better = {twice.u + (twice.u - whole.u) / 15, twice.v + (twice.v - whole.v) / 15};
+    if (!bring_in(w->s, &better) || !way_at(w, better, next, &next_p, &next_way, &next)) {
+      if (w->status) return false;
+      h /= 2;
+      continue;
+    }
+    at = better;
+    p = next_p;
+    way = next_way;
+    tangent = next;
     if (!add_point(w, p.point, tangent)) return false;
     gone += h;
-    double grow = error > 0 ? 0.8 * pow(STEP_ERROR * w->size / error, 0.2) : 2;
+    double grow = error > 0 ? 0.8 * pow(allowed / error, 0.2) : 2;
     h *= fmin(2, fmax(0.5, grow));
     if (returning && cag_norm(cag_sub(start, p.point)) <= CLOSED * w->size)
       return cag_dot(tangent, first) > 0;

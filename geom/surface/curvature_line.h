@@ -18,9 +18,10 @@ CagStatus cag_surface_principal(const CagSurface *s, double u, double v, bool *f
                                 CagPrincipal *out, CagError *err);
 
 // The line of the larger (`larger`) or smaller principal curvature through a place, to both sides
-// until it comes back, leaves the surface, or meets an umbilic. Fails with "umbilic" where the
-// place is one. Exact where it is a line or an arc of a conic; else cubics, to about 1e-8 of its
-// size.
+// until it comes back, leaves the surface, or meets an umbilic. A pole of the parameters where the
+// surface is smooth it passes over, straight on, if it leads right into it. Fails with "umbilic"
+// where the place is one. Exact where it is a line or an arc of a conic; else cubics, to about 1e-8
+// of its size.
 CagStatus cag_surface_curvature_line(const CagSurface *s, double u, double v, bool larger,
                                      CagCurve **out, CagError *err);
 

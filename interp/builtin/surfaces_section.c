@@ -471,7 +471,8 @@ const CagBuiltin cag_builtins_sections[] = {
     {"curvature_line(S, u, v, by = \"max\")", call_curvature_line, "curve",
      "The line of curvature through a place: it follows the direction of the larger (\"max\") or "
      "smaller (\"min\") principal curvature until it closes, leaves the surface or meets an "
-     "umbilic. Lines and arcs of conics are exact, others cubics to 1e-8 of the size. An umbilic "
+     "umbilic; over a smooth pole of the parameters it goes on straight. Lines and arcs of conics "
+     "are exact, others cubics to 1e-8 of the size. An umbilic "
      "has no such line: an error (umbilic).",
      "c = curvature_line(torus_surface(5, 2), 0deg, 0deg, \"min\")\n"
      "print near(length(c), 4 * pi) or near(length(c), 14 * pi) // expect: true",
