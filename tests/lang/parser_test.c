@@ -150,6 +150,43 @@ static void the_repl_tells_calls_from_definitions(void **state) {
   release(&p);
 }
 
+// Writes a statement as cag_ast_dump writes those of a module.
+static void dump_one(void *context, const CagModuleAst *m, const CagStatement *s) {
+  CagStatement *alone[] = {(CagStatement *)(uintptr_t)s};
+  CagModuleAst module = {.source = m->source, .statements = alone, .count = s != NULL};
+  cag_ast_dump(context, &module);
+}
+
+static void statements_are_handed_over_one_by_one(void **state) {
+  (void)state;
+  // Names come again, and texts are read ahead of the statement that they belong to.
+  const char *text = "import \"a/b.cag\"\nx = 1\nshow x\nshow \"t\"; print \"u {x}\", x\n"
+                     "f(x, y = 2) = { z = x\n z }\nimport std.m as n: x2\nprint (x) => x";
+  Parsed p = parse_text(text);
+  assert_string_equal(errors_of(&p), "");
+  char *dumped;
+  size_t length;
+  FILE *f = open_memstream(&dumped, &length);
+  CagDiagnostics errors = {0};
+  assert_true(cag_parse_each(p.source, dump_one, f, &errors));
+  fclose(f);
+  dumped[strlen(dumped) - 1] = 0; // its last line end, which tree_of leaves out
+  assert_string_equal(dumped, tree_of(&p));
+  free(dumped);
+  release(&p);
+
+  // Behind an error, none is handed over.
+  p = parse_text("a = 1\nb = \nc = 3");
+  f = open_memstream(&dumped, &length);
+  assert_false(cag_parse_each(p.source, dump_one, f, &errors));
+  fclose(f);
+  assert_string_equal(dumped, "(= a 1)\n");
+  assert_int_equal(errors.count, p.errors.count);
+  cag_diagnostics_free(&errors);
+  free(dumped);
+  release(&p);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(operators_bind_as_in_the_table),
@@ -165,6 +202,7 @@ int main(void) {
       cmocka_unit_test(what_does_not_chain_shows_its_mend),
       cmocka_unit_test(the_repl_asks_for_more_when_something_is_open),
       cmocka_unit_test(the_repl_tells_calls_from_definitions),
+      cmocka_unit_test(statements_are_handed_over_one_by_one),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
