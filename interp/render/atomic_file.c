@@ -263,6 +263,40 @@ CagAtomicFile *cag_atomic_file_open(const char *path, CagIoError *err) {
   return &s->file;
 }
 
+// Opens a file without a name in the folder of the place: it goes when its owner does. *known is
+// false where the file system has none such, or something stands in the way that an open tells of.
+static bool try_folder(const char *path, bool exists, bool *known, CagIoError *err) {
+  struct CagAtomicFileState *s = new_state(path, err);
+  *known = true;
+  if (!s) return false;
+  const bool good = open_folder(s, exists, err);
+#ifdef O_TMPFILE
+  const int fd = good ? openat(s->folder, ".", O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600) : -1;
+#else
+  const int fd = -1;
+#endif
+  *known = !good || fd >= 0;
+  if (fd >= 0) close(fd);
+  dispose(s);
+  return good;
+}
+
+bool cag_atomic_file_try(const char *path, CagIoError *err) {
+  mode_t mode;
+  if (!strcmp(path, "-")) return true;
+  bool known = false, good = false;
+  switch (*path ? place_inspect(path, &mode, err) : PLACE_RENAMED) {
+  case PLACE_REFUSED: return false;
+  case PLACE_DIRECT: return true;
+  case PLACE_RENAMED:
+    if (*path) good = try_folder(path, mode != 0, &known, err);
+  }
+  if (known) return good;
+  CagAtomicFile *trial = cag_atomic_file_open(path, err);
+  cag_atomic_file_abort(trial);
+  return trial != NULL;
+}
+
 // Appends to the memory, which always has room for a zero byte more.
 static void append(struct CagAtomicFileState *s, const char *data, size_t n) {
   const size_t size = (size_t)s->taken;

@@ -46,6 +46,11 @@ typedef struct CagAtomicFile {
 // there.
 CagAtomicFile *cag_atomic_file_open(const char *path, CagIoError *err);
 
+// Whether cag_atomic_file_open would open the output, without leaving anything when it is killed
+// meanwhile; false, with `err`, when not. Of pipes and devices, which would notice, only that they
+// are there.
+bool cag_atomic_file_try(const char *path, CagIoError *err);
+
 // Opens a target in memory instead, for what is handed on (a scene for the renderer) and for tests:
 // the same writers serve both. End it with cag_atomic_file_commit_memory or cag_atomic_file_abort.
 CagAtomicFile *cag_atomic_file_open_memory(CagIoError *err);

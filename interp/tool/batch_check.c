@@ -234,11 +234,13 @@ static int by_path(const void *a, const void *b) {
   return order ? order : (p->order > q->order) - (p->order < q->order);
 }
 
-// The path with its folder resolved, so that two ways to one file are seen as one.
+// The path with its links resolved, or those of its folder where nothing stands yet, so that two
+// ways to one file are seen as one.
 static char *real_output(const CagBatch *b, const char *name) {
-  char *path = cag_batch_path(b, name), *out = NULL;
-  char *slash = path ? strrchr(path, '/') : NULL;
-  if (!slash) return path;
+  char *path = cag_batch_path(b, name);
+  char *out = path ? realpath(path, NULL) : NULL, *slash = path ? strrchr(path, '/') : NULL;
+  if (out) free(path);
+  if (out || !slash) return out ? out : path;
   *slash = '\0';
   char *folder = realpath(*path ? path : "/", NULL);
   if (folder && asprintf(&out, "%s/%s", strcmp(folder, "/") ? folder : "", slash + 1) < 0)
@@ -312,11 +314,9 @@ static bool check_place(CagBatch *b, size_t i) {
   CagIoError err;
   char *path = cag_batch_path(b, task->output);
   if (!path) return false;
-  CagAtomicFile *trial = cag_atomic_file_open(path, &err);
+  const bool good = cag_atomic_file_try(path, &err);
   free(path);
-  if (!trial) return cag_jobs_problem(&b->jobs, job, CODE_PLACE, err.help, "%s", err.message);
-  cag_atomic_file_abort(trial);
-  return true;
+  return good || cag_jobs_problem(&b->jobs, job, CODE_PLACE, err.help, "%s", err.message);
 }
 
 bool cag_batch_check(CagBatch *b) {

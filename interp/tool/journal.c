@@ -61,21 +61,29 @@ static bool keep_entry(CagJournal *j, size_t *capacity, const CagJournalEntry *e
   return true;
 }
 
-// Takes the whole lines of the text. A file that has lines but none of ours is somebody else's.
+// Whether a line begins as ours do, as far as it goes: a torn one does.
+static bool begins_as_ours(const char *line, size_t length) {
+  static const char START[] = "{\"what\":\"";
+  return memcmp(line, START, length < sizeof START - 1 ? length : sizeof START - 1) == 0;
+}
+
+// Takes the whole lines of the text. A file that has no line of ours and something that could not
+// become one is somebody else's.
 static bool read_lines(CagJournal *j, const char *text, size_t length, CagIoError *err) {
-  size_t capacity = 0, lines = 0, ours = 0;
+  size_t capacity = 0, others = 0, ours = 0;
   for (const char *at = text, *end = text + length; at < end;) {
     const char *newline = memchr(at, '\n', (size_t)(end - at));
+    const size_t n = (size_t)((newline ? newline : end) - at);
+    others += !begins_as_ours(at, n);
     if (!newline) break;
     CagJournalEntry e;
-    const bool good = read_entry(at, (size_t)(newline - at), &e);
+    const bool good = read_entry(at, n, &e);
     if (good && !keep_entry(j, &capacity, &e))
       return cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "out of memory");
     ours += good;
-    lines += newline > at;
     at = newline + 1;
   }
-  if (lines > 1 && !ours) return fail(j, "move it away", "is another file", err);
+  if (others && !ours) return fail(j, "move it away", "is another file", err);
   return true;
 }
 

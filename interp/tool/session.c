@@ -1,7 +1,6 @@
 // What the commands that run scripts share: the session, and the check of an output's place.
 
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "interp/render/atomic_file.h"
@@ -35,13 +34,7 @@ CagSession *cag_tool_session(CagTool *t) {
 }
 
 int cag_tool_check_output(const CagTool *t, const char *path) {
-  struct stat st;
-  // A pipe or a device is not opened on trial: its other end would notice.
-  if (!strcmp(path, "-")) return CAG_STATUS_OK;
-  if (stat(path, &st) == 0 && (S_ISFIFO(st.st_mode) || S_ISCHR(st.st_mode))) return CAG_STATUS_OK;
   CagIoError err;
-  CagAtomicFile *trial = cag_atomic_file_open(path, &err);
-  if (!trial) return cag_tool_fail(t, err.exit_status, err.help, "%s", err.message);
-  cag_atomic_file_abort(trial);
-  return CAG_STATUS_OK;
+  if (cag_atomic_file_try(path, &err)) return CAG_STATUS_OK;
+  return cag_tool_fail(t, err.exit_status, err.help, "%s", err.message);
 }

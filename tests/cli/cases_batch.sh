@@ -413,3 +413,44 @@ status 2
 try batch --help
 status 0
 prints 'cag batch poster.csv --tiles 4x4'
+
+it 'a file with a line that is no journal is left alone'
+printf 'script,output\nball.cag,line.stl\n' > line.csv
+echo 'a shopping list' > line.csv.journal
+try batch line.csv
+status 3
+says 'is another file'
+holds line.csv.journal 'a shopping list'
+truncate -s 1000 zeros.csv.journal
+cp line.csv zeros.csv
+try batch zeros.csv
+status 3
+
+it 'a journal that was torn at any place is taken up'
+printf 'script,output,r\nball.cag,torn1.stl,1\nball.cag,torn2.stl,2\n' > torn.csv
+try batch torn.csv
+cp torn.csv.journal whole.journal
+for size in 1 9 60 106 107 150; do
+  head -c $size whole.journal > torn.csv.journal
+  try batch torn.csv
+  status 0
+  prints_like '[012] done, 0 failed'
+  try batch torn.csv
+  prints_exactly '0 done, 0 failed, 2 left out (already done)'
+done
+
+it 'two names of one file are one output'
+ln -s torn1.stl link.stl
+printf 'script,output\nball.cag,torn1.stl\nball.cag,link.stl\n' > link.csv
+try batch link.csv
+status 2
+says 'E0914: row 2'
+
+it 'what a killed check leaves'
+printf 'script,output\n' > many.csv
+for i in $(seq 300); do echo "ball.cag,many$i.stl" >> many.csv; done
+for after in 0.01 0.02 0.03 0.04 0.05; do
+  timeout -s KILL $after "$CAG" batch many.csv --jobs 1 > out 2> err
+done
+sleep 0.5
+no_temporaries .
