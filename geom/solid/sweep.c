@@ -18,8 +18,8 @@ CagStatus cag_solid_extrude(const CagRegion *r, CagVec3 v, double twist, double 
                             CagSolid **out, CagError *err) {
   if (v.z == 0)
     return cag_fail(
-        err, CAG_E_ARGUMENT, "degenerate-direction", "V", -1,
-        "`V` must lead out of the plane of the region: its z, the height, must not be 0");
+        err, CAG_E_ARGUMENT, "degenerate-direction", "height", -1,
+        "`height` must lead out of the plane of the region: it, or its z, must not be 0");
   CagSolid *s;
   CagStatus status = cag_solid_block(CAG_SOLID_EXTRUSION, r->count + 2, &s, err);
   if (status) return status;

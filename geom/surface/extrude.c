@@ -169,8 +169,8 @@ CagStatus cag_surface_extrude(const CagCurve *c, CagVec3 v, double twist, double
                               CagSurface **out, CagError *err) {
   char text[32];
   if (!(cag_norm(v) > 0) || !isfinite(cag_norm(v)))
-    return cag_fail(err, CAG_E_ARGUMENT, "degenerate-direction", "vector", -1,
-                    "`vector` must be finite and not zero: give the way of the extrusion");
+    return cag_fail(err, CAG_E_ARGUMENT, "degenerate-direction", "height", -1,
+                    "`height` must be finite and not zero: say how far up, or where to");
   if (!isfinite(twist))
     return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "twist", -1, "`twist` must be finite");
   if (!(scale >= 0) || !isfinite(scale))

@@ -255,7 +255,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print near(volume(revolve(polygon([[0, 0], [2, 0], [0, 3]]))), 4 * pi) // expect: true\n"
      "print near(area(revolve(line([2, 0], [2, 5]))), 20 * pi) // expect: true",
      CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
-    {"extrude(C, V, twist = 0deg, scale = 1, caps = true)", cag_surfaces_extrude,
+    {"extrude(C, height, twist = 0deg, scale = 1, caps = true)", cag_surfaces_extrude,
      "solid or surface",
      "A curve carried along a vector, or up by a height (mm): a surface with u as in the curve and "
      "v "
@@ -484,8 +484,11 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "expect: "
      "true",
      LISTS, quadrics},
-    {"ellipsoid(a, b, c)", cag_surfaces_ellipsoid, "surface", "x^2/a^2 + y^2/b^2 + z^2/c^2 = 1.",
-     "print near(bounds(ellipsoid(3, 2, 1)).size, [6, 4, 2]) // expect: true", NUMBERS, quadrics},
+    {"ellipsoid(a, b, c, within = none)", cag_surfaces_ellipsoid, "surface",
+     "x^2/a^2 + y^2/b^2 + z^2/c^2 = 1, whole, or what lies in the box or range of z of `within`.",
+     "print near(bounds(ellipsoid(3, 2, 1)).size, [6, 4, 2]) // expect: true\n"
+     "print near(area(ellipsoid(2, 2, 2, within: 0..1)), 4 * pi) // expect: true",
+     NUMBERS, quadrics},
     {"hyperboloid(a, b, c, sheets = 1, within = none)", cag_surfaces_hyperboloid,
      "surface or group",
      "x^2/a^2 + y^2/b^2 - z^2/c^2 = 1, or -1 with `sheets: 2`, cut by `within`.",
@@ -520,10 +523,11 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print classify(s).class // expect: hyperbolic-cylinder",
      NUMBERS, quadrics},
     {"classify(Q)", cag_surfaces_classify, "record",
-     "Of a quadric, or of its ten numbers or four rows: `class` (17 kinds, imaginary ones too), "
+     "Of a quadric or sphere, or of ten numbers or four rows: `class` (17 kinds, imaginary ones "
+     "too), "
      "the "
      "canonical `frame`, `center` (none without one), `semi_axes`, and the ranks `rank3` and "
      "`rank4` of its matrices.",
      "print classify([1, 1, 1, 0, 0, 0, 0, 0, 0, 4]).class // expect: imaginary-ellipsoid",
-     SURFACES | CAG_TAKES(GROUP) | CAG_TAKES(LIST), quadrics},
+     SURFACES | CAG_TAKES(SOLID) | CAG_TAKES(GROUP) | CAG_TAKES(LIST), quadrics},
     {0}};

@@ -149,6 +149,12 @@ static bool read_knots(CagCall *call, int argument, int direction, size_t n, int
   if (!list && strcmp(type, "open") != 0 && strcmp(type, "periodic") != 0)
     return cag_fail_call(call, argument, CAG_ERR_value,
                          "expects \"open\", \"periodic\" or a list as `knots`, found \"%s\"", type);
+  if (n < 2) {
+    cag_fail(&err, CAG_E_ARGUMENT, "order-range", "net", direction,
+             "a surface wants at least 2 rows of at least 2 points, by %s there is %zu",
+             direction ? "v" : "u", n);
+    return cag_fail_geometry(call, &err);
+  }
   if (degree < 1 || n <= (size_t)degree) {
     cag_fail(&err, CAG_E_ARGUMENT, "order-range", "degree", direction,
              "`degree` in %s must lie in 1..%zu for %zu points, it is %d; add points or lower it",

@@ -9,12 +9,9 @@
 
 // --- Where an unbounded one ends: a box (a solid whose bounds count) or a range of z ---
 
-#define NO_PARAMETER (-1)
-
 static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_only, bool *given) {
   CagError err;
-  // An ellipsoid ends by itself and has no such parameter.
-  CagValue v = argument < 0 ? cag_none() : call->values[argument];
+  CagValue v = call->values[argument];
   *given = v.type != CAG_UNSET && v.type != CAG_NONE;
   *z_only = false;
   *box = (CagBounds){{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
@@ -110,7 +107,7 @@ bool cag_surfaces_ellipsoid(CagCall *call, CagValue *result) {
   if (!read_axes(call, 3, s)) return false;
   CagQuadric q = {
       {inverse_square(s[0]), inverse_square(s[1]), inverse_square(s[2]), 0, 0, 0, 0, 0, 0, -1}};
-  return give_patches(call, &q, NO_PARAMETER, result);
+  return give_patches(call, &q, 3, result);
 }
 
 bool cag_surfaces_hyperboloid(CagCall *call, CagValue *result) {
