@@ -3,7 +3,7 @@
 set -u
 cd "$(dirname "$0")/.."
 . tools/packages.sh
-if install_packages $BUILD_PACKAGES $TEST_PACKAGES && make -j"$(nproc)" test-programs; then
+if install_packages $BUILD_PACKAGES $TEST_PACKAGES && install_extra_packages $EXTRA_PACKAGES && make -j"$(nproc)" test-programs; then
   BUILD=build sh tests/run_all.sh
 else
   echo "the tests could not be built"

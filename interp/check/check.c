@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "interp/check/types.h"
+#include "interp/doc/doc.h"
 
 // Definitions are walked where they are used first; a chain of more than so many is not followed.
 #define DEPTH_MAX 1000
@@ -16,12 +17,24 @@ typedef struct Known {
   CagTypes types;
 } Known;
 
+// What a parameter of a built-in takes, by the place of its name in the signature.
+typedef struct Taken {
+  const char *const *parameter;
+  CagTypes types;
+} Taken;
+
+// Places for all parameters of all built-ins, and how many are looked at before the words are read
+// again.
+#define TAKEN_SIZE ((size_t)4096)
+#define TAKEN_TRIES 16
+
 typedef struct Check {
   CagVm *vm;
   const CagModuleUnit *unit;
   const CagModuleAst *ast;
   Known *known; // open addressing by the address of the declaration
   size_t known_count, known_size;
+  Taken *taken; // open addressing; NULL before the first
   // Definitions of the top level: what is known of them, and which others they use.
   CagTypes *top_types;
   bool *top_done, *top_busy, *reached;
@@ -49,6 +62,14 @@ static CagDiagnostic *warn(Check *c, CagErrorId id, CagSpan span, const char *me
   CagDiagnostic *d = report(c, id, span, message);
   d->severity = CAG_SEVERITY_WARNING;
   return d;
+}
+
+// "..., found a number".
+static void report_found(Check *c, CagErrorId id, CagSpan span, const char *wanted,
+                         CagTypes types) {
+  char found[256], text[512];
+  snprintf(text, sizeof text, "%s, found %s", wanted, cag_types_text(types, found, sizeof found));
+  report(c, id, span, text);
 }
 
 // ---- names ----
@@ -113,13 +134,8 @@ static const CagStatement *find_public(const Check *c, const CagStatement *impor
   if (!import || import->kind != CAG_STATEMENT_IMPORT || import->as.import.module == CAG_NO_MODULE)
     return NULL;
   const CagModuleUnit *m = c->vm->modules[import->as.import.module];
-  for (size_t low = 0, high = m->public_count; low < high;) {
-    const size_t middle = (low + high) / 2;
-    const int order = strcmp(m->publics[middle].name, name);
-    if (order == 0) return m->publics[middle].statement;
-    if (order < 0) low = middle + 1;
-    else high = middle;
-  }
+  for (size_t i = 0; i < m->public_count; i++)
+    if (strcmp(m->publics[i].name, name) == 0) return m->publics[i].statement;
   return NULL;
 }
 
@@ -167,6 +183,7 @@ typedef struct CallView {
   const CagExpr *piped;
   CagSpan span;
   size_t positional, named;
+  CagTypes piped_types, *types; // of the call's arguments, in its order
 } CallView;
 
 static const CagExpr *positional_argument(const CallView *v, size_t k) {
@@ -174,6 +191,13 @@ static const CagExpr *positional_argument(const CallView *v, size_t k) {
   for (size_t i = 0; v->e && i < v->e->as.call.count; i++)
     if (!v->e->as.call.arguments[i].name && k-- == 0) return v->e->as.call.arguments[i].value;
   return NULL;
+}
+
+static CagTypes first_types(const CallView *v) {
+  if (v->piped) return v->piped_types;
+  for (size_t i = 0; v->e && i < v->e->as.call.count; i++)
+    if (!v->e->as.call.arguments[i].name) return v->types[i];
+  return CAG_TYPES_ANY;
 }
 
 // What a call is held against: a row of the table, or a function of a script.
@@ -233,36 +257,92 @@ static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool t
   return true;
 }
 
-static CagTypes check_builtin_types(Check *c, const CagBuiltin *row, const CagSignature *s,
-                                    const CallView *v, const CagTypes *types) {
-  char expected[256], found[256], text[600];
-  for (size_t k = 0; k < v->positional; k++) {
-    const CagTypes taken = cag_types_taken(row, s, k);
-    if (types[k] & taken) continue;
-    const CagExpr *e = positional_argument(v, k);
-    snprintf(text, sizeof text, "%s expects %s, found %s", s->name,
-             cag_types_text(taken, expected, sizeof expected),
-             cag_types_text(types[k], found, sizeof found));
-    CagDiagnostic *d = report(c, CAG_ERR_type, e->span, text);
-    if (taken == CAG_TYPES(ANGLE) && types[k] == CAG_TYPES(NUMBER) && e->kind == CAG_EXPR_NUMBER)
-      cag_diagnostic_set_help(d, "write %gdeg or %grad", e->as.number, e->as.number);
-    break;
+// What a parameter takes. The words of the documentation are read once for each.
+static CagTypes types_taken(Check *c, const CagBuiltin *row, const CagSignature *s, size_t k) {
+  if (k >= s->count) return cag_types_taken(row, s, k);
+  if (!c->taken) c->taken = cag_checked(calloc(TAKEN_SIZE, sizeof *c->taken));
+  const char *const *key = &s->parameters[k];
+  size_t i = ((size_t)key >> 3) * 0x9E3779B97F4A7C15u >> 20 & (TAKEN_SIZE - 1);
+  for (size_t tries = 0; tries < TAKEN_TRIES; tries++, i = (i + 1) & (TAKEN_SIZE - 1)) {
+    if (c->taken[i].parameter == key) return c->taken[i].types;
+    if (c->taken[i].parameter) continue;
+    c->taken[i].parameter = key;
+    return c->taken[i].types = cag_types_taken(row, s, k);
   }
-  return cag_types_of_result(row->result);
+  return cag_types_taken(row, s, k);
+}
+
+// An argument that a parameter does not take.
+typedef struct Misfit {
+  const CagExpr *value;
+  size_t parameter;
+  CagTypes taken, found;
+} Misfit;
+
+static bool fits(Check *c, const CagBuiltin *row, const CagSignature *s, size_t k, CagTypes types,
+                 const CagExpr *value, Misfit *out) {
+  const CagTypes taken = types_taken(c, row, s, k);
+  *out = (Misfit){value, k, taken, types};
+  return types & taken;
+}
+
+// Whether the arguments are of types that a row takes; else the first that is not.
+static bool types_fit(Check *c, const CagBuiltin *row, const CagSignature *s, const CallView *v,
+                      Misfit *out) {
+  size_t k = 0;
+  if (v->piped && !fits(c, row, s, k++, v->piped_types, v->piped, out)) return false;
+  const Callee f = {s->name, s->parameters, s->count, s->required, s->positional_only, s->variadic};
+  for (size_t i = 0; v->e && i < v->e->as.call.count; i++) {
+    const CagArgument *a = &v->e->as.call.arguments[i];
+    const size_t parameter = a->name ? parameter_named(&f, a->name) : k++;
+    if (!fits(c, row, s, parameter, v->types[i], a->value, out)) return false;
+  }
+  return true;
+}
+
+// "a number", or in the words of the documentation where these are many: "a list of points".
+static const char *expected_text(const CagSignature *s, const Misfit *m, char *buffer,
+                                 size_t size) {
+  const CagTypes taken = m->taken & ~CAG_TYPES(NONE);
+  size_t count = 0;
+  for (size_t i = 0; i < CAG_TYPE_COUNT; i++) count += taken >> i & 1;
+  const CagDocParameter *said =
+      m->parameter < s->count ? cag_doc_parameter(s->name, s->parameters[m->parameter]) : NULL;
+  if (count <= 5 || !said) return cag_types_text(taken, buffer, size);
+  snprintf(buffer, size, "%s %.*s", strchr("aeiou", said->type[0]) ? "an" : "a",
+           (int)strcspn(said->type, ","), said->type);
+  return buffer;
+}
+
+static void report_misfit(Check *c, const CagSignature *s, const Misfit *m) {
+  char expected[256], found[256], text[800];
+  const bool named = m->parameter > 0 && m->parameter < s->count;
+  snprintf(text, sizeof text, "%s expects %s%s%s%s, found %s", s->name,
+           expected_text(s, m, expected, sizeof expected), named ? " as `" : "",
+           named ? s->parameters[m->parameter] : "", named ? "`" : "",
+           cag_types_text(m->found, found, sizeof found));
+  const CagExpr *e = m->value;
+  CagDiagnostic *d = report(c, CAG_ERR_type, e->span, text);
+  if (m->taken & CAG_TYPES(ANGLE) && !(m->taken & CAG_TYPES(NUMBER)) &&
+      m->found == CAG_TYPES(NUMBER) && e->kind == CAG_EXPR_NUMBER)
+    cag_diagnostic_set_help(d, "write %gdeg or %grad", e->as.number, e->as.number);
 }
 
 static CagTypes result_of(const CagBuiltin *row, CagTypes first) {
+  if (strcmp(row->signature, "error(message)") == 0) return CAG_TYPES_ANY; // it gives nothing back
   if (row->result && strncmp(row->result, "as ", 3) == 0) return first ? first : CAG_TYPES_ANY;
   return cag_types_of_result(row->result);
 }
 
 // Rows of one name are tried in order: a call is good when one of them takes it.
-static CagTypes check_builtin(Check *c, size_t index, const CallView *v, const CagTypes *types) {
-  size_t rows, candidates = 0, only = 0, fitting = 0;
+static CagTypes check_builtin(Check *c, size_t index, const CallView *v) {
+  size_t rows, candidates = 0, only = 0, fitting = 0, misfits = 0;
+  Misfit misfit, nearest = {0};
+  const CagSignature *missed = NULL;
   const CagBuiltin *row = cag_builtin_rows(index, &rows);
   CagTypes result = 0, served = 0;
   if (!row->function) return CAG_TYPES_ANY;
-  const CagTypes first = v->positional ? types[0] : CAG_TYPES_ANY;
+  const CagTypes first = first_types(v);
   for (size_t i = 0; i < rows; i++) {
     const CagSignature *s = cag_builtin_signature(index, i);
     served |= row[i].first ? row[i].first : CAG_TYPES_ANY;
@@ -274,14 +354,16 @@ static CagTypes check_builtin(Check *c, size_t index, const CallView *v, const C
     if (!check_arguments(c, &f, v, false)) continue;
     fitting++;
     result |= result_of(&row[i], first);
+    if (types_fit(c, &row[i], s, v, &misfit)) continue;
+    // Of several rows, that is meant which takes the most of the arguments.
+    if (misfits++ > 0 && misfit.parameter <= nearest.parameter) continue;
+    nearest = misfit;
+    missed = s;
   }
   const CagSignature *s = cag_builtin_signature(index, only);
   if (candidates == 0) {
-    char expected[256], found[256], text[600];
-    snprintf(text, sizeof text, "%s expects %s, found %s", s->name,
-             cag_types_text(served, expected, sizeof expected),
-             cag_types_text(first, found, sizeof found));
-    report(c, CAG_ERR_type, positional_argument(v, 0)->span, text);
+    const Misfit m = {v->piped ? v->piped : positional_argument(v, 0), 0, served, first};
+    report_misfit(c, s, &m);
     return CAG_TYPES_ANY;
   }
   if (fitting == 0) {
@@ -290,7 +372,7 @@ static CagTypes check_builtin(Check *c, size_t index, const CallView *v, const C
     check_arguments(c, &f, v, true);
     return CAG_TYPES_ANY;
   }
-  if (candidates == 1) check_builtin_types(c, &row[only], s, v, types);
+  if (misfits == fitting) report_misfit(c, missed, &nearest);
   return result;
 }
 
@@ -336,28 +418,36 @@ static bool is_attempt(const CagExpr *e) {
   return names_builtin(e) && strcmp(cag_builtin_name(e->as.name.index), "attempt") == 0;
 }
 
+// A curve is called with one parameter, a surface with two.
+static void check_shape_call(Check *c, CagTypes called, const CallView *v) {
+  const bool curve = called == CAG_TYPES(CURVE), surface = called == CAG_TYPES(SURFACE);
+  const bool number = !(first_types(v) & ~(CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE)));
+  if (curve && v->positional > 1)
+    report(c, CAG_ERR_arity, v->span, "a curve is called with one parameter");
+  if (surface && (v->positional > 2 || (v->positional == 1 && v->named == 0 && number)))
+    report(c, CAG_ERR_arity, v->span, "a surface is called with two parameters, u and v");
+}
+
 // A call, or a pipe into what is called.
 static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
-  CagTypes few[16], *types = few;
+  CagTypes few[16];
+  v->types = few;
   v->positional = v->piped != NULL;
   for (size_t i = 0; v->e && i < v->e->as.call.count; i++)
     if (v->e->as.call.arguments[i].name) v->named++;
     else v->positional++;
-  if (v->positional > 16) types = cag_checked(malloc(v->positional * sizeof *types));
-  size_t k = 0;
+  if (v->positional + v->named > 16)
+    v->types = cag_checked(malloc((v->positional + v->named) * sizeof *v->types));
   c->unjudged += is_attempt(callee);
-  if (v->piped) types[k++] = infer(c, v->piped);
+  if (v->piped) v->piped_types = infer(c, v->piped);
   const CagTypes called = infer(c, callee);
-  for (size_t i = 0; v->e && i < v->e->as.call.count; i++) {
-    const CagArgument *a = &v->e->as.call.arguments[i];
-    const CagTypes t = infer(c, a->value);
-    if (!a->name) types[k++] = t;
-  }
+  for (size_t i = 0; v->e && i < v->e->as.call.count; i++)
+    v->types[i] = infer(c, v->e->as.call.arguments[i].value);
   c->unjudged -= is_attempt(callee);
   CagTypes result = CAG_TYPES_ANY;
   const char *name = NULL;
   const CagFunctionAst *fn = function_of(c, callee, &name);
-  if (names_builtin(callee)) result = check_builtin(c, callee->as.name.index, v, types);
+  if (names_builtin(callee)) result = check_builtin(c, callee->as.name.index, v);
   else if (fn) result = check_function(c, name, fn, v);
   else if (!(called &
              (CAG_TYPES_FUNCTION | CAG_TYPES(CURVE) | CAG_TYPES(SURFACE) | CAG_TYPES(SOLID)))) {
@@ -365,8 +455,10 @@ static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
     snprintf(text, sizeof text, "a call needs a function, found %s",
              cag_types_text(called, found, sizeof found));
     report(c, CAG_ERR_not_function, callee->span, text);
+  } else {
+    check_shape_call(c, called, v);
   }
-  if (types != few) free(types);
+  if (v->types != few) free(v->types);
   return result;
 }
 
@@ -424,7 +516,11 @@ static CagTypes types_of_elements(const CagExpr *source, CagTypes types) {
 static CagTypes infer_comprehension(Check *c, const CagExpr *e) {
   for (size_t i = 0; i < e->as.comprehension.count; i++) {
     const CagClause *clause = &e->as.comprehension.clauses[i];
-    const CagTypes types = types_of_elements(clause->source, infer(c, clause->source));
+    const CagTypes source = infer(c, clause->source),
+                   types = types_of_elements(clause->source, source);
+    if (!(source & CAG_TYPES_LOOPED))
+      report_found(c, CAG_ERR_type, clause->source->span,
+                   "a comprehension runs over a list, a range, a text or a record", source);
     for (size_t k = 0; k < clause->name_count; k++)
       learn(c, clause->names[k], clause->pattern ? CAG_TYPES_ANY : types);
     if (clause->filter) expect_bool(c, clause->filter, "the condition");
@@ -509,6 +605,23 @@ static void infer_all(Check *c, CagExpr *const *items, size_t count) {
   for (size_t i = 0; i < count; i++) infer(c, items[i]);
 }
 
+// Members of values that have none, or few: those of a vector and of a range.
+static void check_member(Check *c, const CagExpr *e, CagTypes types) {
+  static const char *const ends[] = {"start", "end", "step"};
+  const CagTypes none = CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE) | CAG_TYPES(BOOL) | CAG_TYPES(TEXT) |
+                        CAG_TYPES(NONE) | CAG_TYPES_FUNCTION;
+  const char *name = e->as.member.name;
+  char found[256], text[400];
+  bool known = types & ~(none | CAG_TYPES(LIST) | CAG_TYPES(RANGE));
+  if (types & CAG_TYPES(LIST)) known |= strlen(name) == 1 && strchr("xyzw", *name);
+  for (size_t i = 0; types & CAG_TYPES(RANGE) && i < 3; i++) known |= strcmp(name, ends[i]) == 0;
+  if (types & CAG_TYPES(RANGE)) known |= strlen(name) == 1 && strchr("xyzw", *name); // as a list
+  if (known) return;
+  snprintf(text, sizeof text, "%s has no member `%s`", cag_types_text(types, found, sizeof found),
+           name);
+  report(c, CAG_ERR_field, e->as.member.name_span, text);
+}
+
 static CagTypes infer(Check *c, const CagExpr *e) {
   switch (e->kind) {
   case CAG_EXPR_NUMBER: return CAG_TYPES(NUMBER);
@@ -547,7 +660,7 @@ static CagTypes infer(Check *c, const CagExpr *e) {
   }
   case CAG_EXPR_INDEX: return infer_index(c, e);
   case CAG_EXPR_MEMBER: {
-    infer(c, e->as.member.object);
+    check_member(c, e, infer(c, e->as.member.object));
     const CagExpr *o = e->as.member.object;
     if (o->kind == CAG_EXPR_NAME && o->as.name.binding == CAG_BIND_DECL && o->as.name.decl &&
         o->as.name.decl->kind == CAG_DECL_IMPORT)
@@ -571,10 +684,32 @@ static bool literal(const CagExpr *e, double *x) {
   return true;
 }
 
+// A default that is written out, of another kind than its range, or not in its list.
+static bool is_elsewhere(const CagExpr *value, const CagExpr *domain) {
+  double x, y;
+  const bool word = value->kind == CAG_EXPR_TEXT, number = literal(value, &x);
+  if (domain->kind == CAG_EXPR_RANGE) return word;
+  if (domain->kind != CAG_EXPR_LIST || (!word && !number)) return false;
+  for (size_t i = 0; i < domain->as.list.count; i++) {
+    const CagExpr *e = domain->as.list.items[i];
+    const bool same_word = word && e->kind == CAG_EXPR_TEXT;
+    if (e->kind != CAG_EXPR_TEXT && !literal(e, &y)) return false; // not known
+    if (same_word && strcmp(e->as.text.bytes, value->as.text.bytes) == 0) return false;
+    if (number && literal(e, &y) && x == y && e->kind == value->kind) return false;
+  }
+  return true;
+}
+
 static void check_param(Check *c, const CagStatement *s) {
   const CagExpr *domain = s->as.param.domain;
   double value, low, high;
   char text[256];
+  if (domain && is_elsewhere(s->as.param.value, domain)) {
+    snprintf(text, sizeof text, "the default of %s is not in %s", s->as.param.decl->name,
+             domain->kind == CAG_EXPR_LIST ? "the list of what it may be" : "its range");
+    report(c, CAG_ERR_param_default, s->as.param.value->span, text);
+    return;
+  }
   if (!domain || domain->kind != CAG_EXPR_RANGE || !literal(s->as.param.value, &value) ||
       !literal(domain->as.range.low, &low) || !literal(domain->as.range.high, &high))
     return;
@@ -582,6 +717,15 @@ static void check_param(Check *c, const CagStatement *s) {
   snprintf(text, sizeof text, "the default of %s lies outside of its range",
            s->as.param.decl->name);
   report(c, CAG_ERR_param_default, s->as.param.value->span, text);
+}
+
+static void check_shown(Check *c, const CagExpr *e) {
+  const CagTypes unseen = CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE) | CAG_TYPES(BOOL) | CAG_TYPES(TEXT) |
+                          CAG_TYPES(NONE) | CAG_TYPES_FUNCTION;
+  const CagTypes types = infer(c, e);
+  if (types & ~unseen) return;
+  report_found(c, CAG_ERR_no_image, e->span,
+               "show wants shapes, lights, cameras or settings of the scene", types);
 }
 
 static void walk_statement(Check *c, const CagStatement *s) {
@@ -592,6 +736,8 @@ static void walk_statement(Check *c, const CagStatement *s) {
     break;
   case CAG_STATEMENT_DEFINITION: types_of_top(c, s->as.definition.decl); break;
   case CAG_STATEMENT_SHOW:
+    for (size_t i = 0; i < s->as.list.count; i++) check_shown(c, s->as.list.items[i]);
+    break;
   case CAG_STATEMENT_PRINT: infer_all(c, s->as.list.items, s->as.list.count); break;
   case CAG_STATEMENT_ASSERT:
     expect_bool(c, s->as.assertion.condition, "assert");
@@ -667,6 +813,7 @@ bool cag_check_module(CagVm *vm, const CagModuleUnit *m) {
   free(c.reached);
   free(c.edges);
   free(c.known);
+  free(c.taken);
   cag_diagnostics_free(&c.ignored);
   for (size_t i = before; i < vm->errors.count; i++)
     if (vm->errors.items[i].severity == CAG_SEVERITY_ERROR) return false;

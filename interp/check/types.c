@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "interp/doc/doc.h"
+
 #define SHAPES                                                                                     \
   (CAG_TYPES(CURVE) | CAG_TYPES(REGION) | CAG_TYPES(SURFACE) | CAG_TYPES(SOLID) |                  \
    CAG_TYPES(MESH) | CAG_TYPES(GROUP))
@@ -64,7 +66,7 @@ CagTypes cag_types_of_result(const char *result) {
 
 // --- Arguments ---
 
-// What rows take whose masks do not say it: functions whose first parameters are all of these
+// What rows take whose masks do not say it: functions whose required parameters are all of these
 // types.
 static const struct {
   const char *function;
@@ -96,26 +98,15 @@ static const struct {
     {"complex_roots", LISTS},
 };
 
-// Parameters whose name tells their type wherever they stand.
-static const struct {
-  const char *name;
-  CagTypes types;
-} parameters[] = {
-    {"angle", CAG_TYPES(ANGLE) | CAG_TYPES(RANGE) | CAG_TYPES(NONE)},
-    {"tolerance", NUMBERS | CAG_TYPES(ANGLE) | CAG_TYPES(NONE)},
-    {"caps", CAG_TYPES(BOOL)},
-    {"centered", CAG_TYPES(BOOL)},
-};
-
 CagTypes cag_types_taken(const CagBuiltin *row, const CagSignature *s, size_t parameter) {
   if (parameter == 0 && row->first) return row->first;
-  if (!row->first)
+  if (!row->first && (parameter < s->required || s->variadic))
     for (size_t i = 0; i < sizeof takers / sizeof *takers; i++)
       if (strcmp(takers[i].function, s->name) == 0) return takers[i].types;
   if (parameter >= s->count) return CAG_TYPES_ANY;
-  for (size_t i = 0; i < sizeof parameters / sizeof *parameters; i++)
-    if (strcmp(parameters[i].name, s->parameters[parameter]) == 0) return parameters[i].types;
-  return CAG_TYPES_ANY;
+  if (s->variadic) return CAG_TYPES_ANY; // several values, or a list of them
+  const CagDocParameter *said = cag_doc_parameter(s->name, s->parameters[parameter]);
+  return said ? cag_types_of_words(said->type) : CAG_TYPES_ANY;
 }
 
 // --- Operators ---
@@ -152,8 +143,13 @@ CagTypes cag_types_joined(CagBinaryOp op, CagTypes left, CagTypes right) {
   CagTypes result = 0;
   switch (op) {
   case CAG_OP_EQUAL:
-  case CAG_OP_NOT_EQUAL:
-  case CAG_OP_IN: return CAG_TYPES(BOOL);
+  case CAG_OP_NOT_EQUAL: return CAG_TYPES(BOOL);
+  case CAG_OP_IN: return right & CAG_TYPES_LOOPED ? CAG_TYPES(BOOL) : 0;
+  case CAG_OP_UNION:
+  case CAG_OP_INTERSECTION:
+    if (!(left & ~PLAIN) && !(left & LISTS)) return 0;
+    if (!(right & ~PLAIN) && !(right & LISTS)) return 0;
+    break;
   case CAG_OP_LESS_EQUAL:
   case CAG_OP_GREATER:
   case CAG_OP_GREATER_EQUAL: op = CAG_OP_LESS; break;

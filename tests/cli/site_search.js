@@ -9,7 +9,7 @@ const path = require("path");
 
 const [chromium, folder, word, page] = process.argv.slice(2);
 const profile = fs.mkdtempSync(path.join(os.tmpdir(), "cag-chromium-"));
-const browser = spawn(chromium, ["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe",
+const browser = spawn(chromium, ["--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--remote-debugging-pipe",
   `--user-data-dir=${profile}`], { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
 
 // The browser is spoken to over two pipes, in JSON with a zero byte behind each message.

@@ -47,6 +47,52 @@ static void arguments_are_counted_and_named(void **state) {
                       "E0302:2");
 }
 
+static void arguments_are_held_against_the_words_of_the_documentation(void **state) {
+  (void)state;
+  assert_string_equal(found("print rotate(Z, 30)"), "E0301:1");
+  assert_string_equal(found("print camera(eye: [1, 2, 3], fov: 35)"), "E0301:1");
+  assert_string_equal(found("print revolve(circle(5), 360)"), "E0301:1");
+  assert_string_equal(found("show sphere(2) |> material(\"red\")"), "E0301:1");
+  assert_string_equal(found("print len(3)"), "E0301:1");
+  assert_string_equal(found("print bspline(3)"), "E0301:1");
+  assert_string_equal(found("print bspline([[0, 0], [1, 1]], degree: \"2\")"), "E0301:1");
+  assert_string_equal(found("print read_csv(\"a.csv\", header: true)"), "");
+  assert_string_equal(found("print map(\"abc\", upper), first(\"abc\", 2)"), "");
+  assert_string_equal(found("print rotate(line([0, 0], [2, 0]), 90deg, [1, 0])"), "");
+  assert_string_equal(found("print max([1, 2]), max(1, 2), false and error(\"no\")"), "");
+  assert_string_equal(found("print tube(line([0, 0, 0], [0, 0, 5]), t => 2 - t)"), "");
+}
+
+static void calls_of_shapes_and_members_are_held_against_their_types(void **state) {
+  (void)state;
+  assert_string_equal(found("c = circle(2)\nprint c(0deg, 1)"), "E0302:2");
+  assert_string_equal(found("s = bilinear([0, 0], [0, 2], [4, 0], [4, 2])\nprint s(0)"), "E0302:2");
+  assert_string_equal(found("s = bilinear([0, 0], [0, 2], [4, 0], [4, 2])\nprint s(0, 1)"), "");
+  assert_string_equal(found("print [1, 2].x, (0..1).end, [1, 2].foo"), "E0306:1");
+  assert_string_equal(found("x = 3\nprint x.y"), "E0306:2");
+  assert_string_equal(found("show 3, \"text\""), "E0327:1 E0327:1");
+  assert_string_equal(found("print [for x in 5: x], 1 in 2"), "E0301:1 E0321:1");
+  assert_string_equal(found("print sphere(2) | 3"), "E0321:1");
+}
+
+static void defaults_of_params_are_in_their_range_or_list(void **state) {
+  (void)state;
+  assert_string_equal(found("param h = \"a\" in 1..3\nprint h"), "E0250:1");
+  assert_string_equal(found("param h = 2.5 in [1, 2, 3]\nprint h"), "E0250:1");
+  assert_string_equal(found("param h = \"c\" in [\"a\", \"b\"]\nprint h"), "E0250:1");
+  assert_string_equal(found("param h = \"b\" in [\"a\", \"b\"]\nprint h"), "");
+  assert_string_equal(found("param h = 2 in [1, 2, 3]\nprint h"), "");
+}
+
+static void functions_of_a_module_are_found_wherever_they_stand(void **state) {
+  (void)state;
+  assert_string_equal(found("import std.materials as m\nprint m.metal(1, 2, 3, 4, 5, 6)"),
+                      "E0302:2");
+  assert_string_equal(found("import std.kinematics: joint, freedoms\n"
+                            "print joint(\"screw\", foo: 1), freedoms(1, 2)"),
+                      "E0303:2 E0302:2");
+}
+
 static void types_that_cannot_be_are_found(void **state) {
   (void)state;
   assert_string_equal(found("print sin(30)"), "E0301:1");
@@ -116,6 +162,10 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(arguments_are_counted_and_named),
       cmocka_unit_test(types_that_cannot_be_are_found),
+      cmocka_unit_test(arguments_are_held_against_the_words_of_the_documentation),
+      cmocka_unit_test(calls_of_shapes_and_members_are_held_against_their_types),
+      cmocka_unit_test(defaults_of_params_are_in_their_range_or_list),
+      cmocka_unit_test(functions_of_a_module_are_found_wherever_they_stand),
       cmocka_unit_test(what_may_be_right_is_left_alone),
       cmocka_unit_test(definitions_that_nothing_uses_are_told),
       cmocka_unit_test(a_long_chain_of_definitions_is_no_trouble),
