@@ -15,6 +15,8 @@
 
 #define SERIES 1e-13
 #define INTEGRAL 1e-13
+// The series' angles begin here, so that those of a cylinder, all rounding, are a series at all.
+#define START 1.0
 // The tangent plane turns by less along a ruling of a developable surface; sine of the angle.
 #define SAME_PLANE 1e-7
 // Second derivatives along a straight direction, as a part of the first.
@@ -76,6 +78,7 @@ static CagStatus walking(void *context, double t, double *out, CagError *err) {
   CagStatus status = axes_at(w, t, d, &e, &f, err);
   if (status) return status;
   cag_chebyshev_series(w->angle, t, false, 0, &angle);
+  angle -= START;
   double along = cag_dot(d[2], e), across = cag_dot(d[2], f);
   out[0] = along * cos(angle) - across * sin(angle);
   out[1] = along * sin(angle) + across * cos(angle);
@@ -123,7 +126,9 @@ static CagStatus make_cuts(Unrolling *w, CagError *err) {
 }
 
 static CagStatus angle_at(void *context, double t, double *out, CagError *err) {
-  return integral_to(context, t, 0, out, err);
+  CagStatus status = integral_to(context, t, 0, out, err);
+  out[0] += START;
+  return status;
 }
 
 // Rows of the map [s - s0, 0, 0] -> p + (s - s0) R.
@@ -135,6 +140,7 @@ static CagStatus rows_at(void *context, double t, double *out, CagError *err) {
   if (!status) status = integral_to(w, t, 1, p, err);
   if (status) return status;
   cag_chebyshev_series(w->angle, t, false, 0, &angle);
+  angle -= START;
   double length = cag_norm(d[1]);
   const double rows[12] = {
       length * cos(angle), 0, 0, p[0], length * sin(angle), 0, 0, p[1], 0, 0, 0, 0};
