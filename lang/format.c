@@ -493,9 +493,7 @@ static Doc *chain(Format *f, const CagExpr *e) {
     layout_add(&item, within(f, links[i]->as.binary.right, parts || f->inner));
   }
   layout_add(&d, layout_concat(&f->layout, &item));
-  Docs nested = {0};
-  layout_add(&nested, layout_fill(&f->layout, &d));
-  return layout_nest(&f->layout, INDENT, &nested);
+  return layout_fill(&f->layout, INDENT, &d);
 }
 
 // a |> f |> g: all on a line, or each stage on its own.
@@ -750,9 +748,7 @@ static void set_import(Format *f, Docs *d, const CagStatement *s) {
     layout_add(&names, name);
   }
   set_word(f, d, ": ");
-  Docs nested = {0};
-  layout_add(&nested, layout_fill(&f->layout, &names));
-  layout_add(d, layout_nest(&f->layout, INDENT, &nested));
+  layout_add(d, layout_fill(&f->layout, INDENT, &names));
 }
 
 // Where the label of a param begins: it is the last word of the statement.
@@ -817,15 +813,14 @@ static void set_list(Format *f, Docs *d, const CagStatement *s, const char *word
     layout_add(d, expression(f, s->as.list.items[0]));
     return;
   }
-  Docs items = {0}, nested = {0};
+  Docs items = {0};
   for (size_t i = 0; i < s->as.list.count; i++) {
     if (i) layout_add(&items, layout_space(&f->layout));
     Doc *item = expression(f, s->as.list.items[i]);
     if (i + 1 < s->as.list.count) layout_comma(item);
     layout_add(&items, item);
   }
-  layout_add(&nested, layout_fill(&f->layout, &items));
-  layout_add(d, layout_nest(&f->layout, INDENT, &nested));
+  layout_add(d, layout_fill(&f->layout, INDENT, &items));
 }
 
 static void set_assert(Format *f, Docs *d, const CagStatement *s) {
@@ -834,13 +829,14 @@ static void set_assert(Format *f, Docs *d, const CagStatement *s) {
     layout_add(d, expression(f, s->as.assertion.condition));
     return;
   }
-  Docs parts = {0};
+  Docs parts = {0}, message = {0};
   Doc *condition = expression(f, s->as.assertion.condition);
   layout_comma(condition);
   layout_add(&parts, condition);
-  layout_add(&parts, layout_space(&f->layout));
-  layout_add(&parts, expression(f, s->as.assertion.message));
-  layout_add(d, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &parts)));
+  layout_add(&message, layout_space(&f->layout));
+  layout_add(&message, expression(f, s->as.assertion.message));
+  layout_add(&parts, layout_nest(&f->layout, INDENT, &message));
+  layout_add(d, layout_group(&f->layout, layout_concat(&f->layout, &parts)));
 }
 
 static void set_statement(Format *f, Docs *d, const CagStatement *s) {

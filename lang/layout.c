@@ -163,7 +163,11 @@ Doc *layout_nest(Layout *l, int indent, const Docs *parts) {
   return d;
 }
 
-Doc *layout_fill(Layout *l, const Docs *items) { return parent(l, DOC_FILL, items->head); }
+Doc *layout_fill(Layout *l, int indent, const Docs *items) {
+  Doc *d = parent(l, DOC_FILL, items->head);
+  d->indent = indent;
+  return d;
+}
 
 Doc *layout_brackets(Layout *l, char open, const Docs *items, Doc *close, int indent, bool padded,
                      bool hugs) {
@@ -389,9 +393,11 @@ static void print_children(Layout *l, const Doc *child, int indent, uint32_t tai
     print(l, child, indent, is_leaf(child) ? 0 : behind(child, tail));
 }
 
-// `apart`: what has to be broken stands on lines of its own.
-static void print_fill(Layout *l, const Doc *child, int indent, uint32_t tail, bool apart) {
-  for (bool whole = true; child; child = child->next) {
+// `rest`: the indentation of the lines behind the first. `apart`: what has to be broken stands on
+// lines of its own.
+static void print_fill(Layout *l, const Doc *child, int indent, int rest, uint32_t tail,
+                       bool apart) {
+  for (bool whole = true; child; child = child->next, indent = rest) {
     if (child->kind == DOC_LINE && child->next) {
       const Doc *item = child->next;
       const uint32_t after = item->next ? 0 : tail;
@@ -515,7 +521,7 @@ static void print_brackets(Layout *l, const Doc *d, int indent, uint32_t tail) {
   } else if (d->child) {
     const int inner = indent + d->indent;
     put_line(l, inner);
-    if (d->kind == DOC_FILLED) print_fill(l, d->child, inner, 0, true);
+    if (d->kind == DOC_FILLED) print_fill(l, d->child, inner, inner, 0, true);
     else if (d->kind == DOC_TABLE) print_rows(l, d->child, inner);
     else if (gathers(l, d, indent)) print_all_flat(l, d->child, NULL);
     else print_children(l, d->child, inner, 0);
@@ -578,7 +584,7 @@ static void print_broken(Layout *l, const Doc *d, int indent, uint32_t tail) {
   case DOC_GROUP: print_children(l, d->child, indent, tail); break;
   case DOC_STAGES: print_stages(l, d->child, indent, tail); break;
   case DOC_NEST: print_children(l, d->child, indent + d->indent, tail); break;
-  case DOC_FILL: print_fill(l, d->child, indent, tail, false); break;
+  case DOC_FILL: print_fill(l, d->child, indent, indent + d->indent, tail, false); break;
   case DOC_BRACKETS:
   case DOC_FILLED:
   case DOC_TABLE: print_brackets(l, d, indent, tail); break;

@@ -28,7 +28,8 @@ typedef enum DocKind {
   DOC_GROUP,    // on one line, or all its lines broken
   DOC_STAGES,   // a head and what follows it: on one line; or the head broken, and the rest behind
                 // its closing bracket; or as a group
-  DOC_FILL,     // each line broken only where the next item does not fit
+  DOC_FILL,     // each line broken only where the next item does not fit; those behind the first
+                // are indented
   DOC_BRACKETS, // items between brackets: on one line, or one to a line
   DOC_FILLED,   // items between brackets: on one line, or filled
   DOC_TABLE     // rows of words between brackets: on one line, or one to a line, their words one
@@ -52,7 +53,7 @@ struct Doc {
   uint32_t first; // up to the first possible break
   union {
     uint32_t length; // TEXT, LINE
-    int indent;      // NEST, BRACKETS
+    int indent;      // NEST, FILL, BRACKETS
   };
   union {
     const char *text; // TEXT, LINE
@@ -113,7 +114,7 @@ void layout_comma(Doc *d); // puts a comma behind it
 Doc *layout_group(Layout *l, Doc *d);
 Doc *layout_stages(Layout *l, Doc *head, Doc *rest);
 Doc *layout_nest(Layout *l, int indent, const Docs *parts);
-Doc *layout_fill(Layout *l, const Docs *items); // items and LINEs in turn
+Doc *layout_fill(Layout *l, int indent, const Docs *items); // items and LINEs in turn
 // `items`: items and LINEs in turn. `hugs`: where all but the last fit, the last may begin behind
 // them, so that its own brackets close with these.
 Doc *layout_brackets(Layout *l, char open, const Docs *items, Doc *close, int indent, bool padded,

@@ -161,6 +161,14 @@ static void stages_stand_behind_a_closing_bracket(void **state) {
                 "a = b |> f(\n  " LONG ",\n  " LONG ",\n  1,\n  2\n)\n");
 }
 
+static void the_first_operand_breaks_at_the_indentation_of_its_line(void **state) {
+  (void)state;
+  expect_layout("a = all(" LONG ", " LONG ", 1, 2) and b",
+                "a = all(\n  " LONG ",\n  " LONG ",\n  1,\n  2\n) and b\n");
+  expect_layout("a = b and all(" LONG ", " LONG ", 1, 2)",
+                "a = b and\n  all(\n    " LONG ",\n    " LONG ",\n    1,\n    2\n  )\n");
+}
+
 static void short_parameters_are_filled(void **state) {
   (void)state;
   expect_layout(
@@ -301,6 +309,7 @@ int main(void) {
       cmocka_unit_test(long_lines_are_broken),
       cmocka_unit_test(rows_of_numbers_stand_one_below_the_other),
       cmocka_unit_test(records_of_data_are_filled),
+      cmocka_unit_test(the_first_operand_breaks_at_the_indentation_of_its_line),
       cmocka_unit_test(short_parameters_are_filled),
       cmocka_unit_test(stages_stand_behind_a_closing_bracket),
       cmocka_unit_test(scripts_keep_their_trees),
