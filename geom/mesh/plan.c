@@ -507,6 +507,16 @@ static int halving(const CagTessellation *how, const CagSurface *surface, const 
   return by_u <= by_v ? 0 : 1;
 }
 
+// Steps of a part of the domain that keep a shape which is smaller than the tolerance from
+// vanishing: around a closed one three in all, from pole to pole two.
+static uint32_t least_steps(const CagSurface *s, int direction, double from, double to) {
+  bool closed = direction == 0 ? s->closed_u : s->closed_v;
+  bool poles = direction == 0 ? s->pole_u0 && s->pole_u1 : s->pole_v0 && s->pole_v1;
+  double length = direction == 0 ? s->u1 - s->u0 : s->v1 - s->v0;
+  double least = ceil((closed ? 3 : poles ? 2 : 1) * ((to - from) / length) - 1e-9);
+  return least > 1 ? (uint32_t)least : 1;
+}
+
 static CagStatus add_leaf(Tessellator *t, uint32_t face, const Sampled *s, const double n[2],
                           CagError *err) {
   CagStatus status =
@@ -519,6 +529,8 @@ static CagStatus add_leaf(Tessellator *t, uint32_t face, const Sampled *s, const
     leaf->from[d] = s->from[d];
     leaf->to[d] = s->to[d];
     leaf->n[d] = n[d] < UINT32_MAX / 4 ? (uint32_t)n[d] : UINT32_MAX / 4;
+    uint32_t least = least_steps(t->faces[face].surface, d, s->from[d], s->to[d]);
+    if (leaf->n[d] < least) leaf->n[d] = least;
   }
   // Those at poles become one triangle, all others two.
   t->quads += n[0] * n[1];

@@ -208,14 +208,18 @@ CagStatus tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid,
   CagTransform frame;
   if (!cag_surface_planar_view(f->surface, &region, &frame)) return CAG_OK;
   Outline o = {0};
-  size_t *counts = malloc((region->count + 1) * sizeof *counts);
+  size_t *counts = malloc((region->count + 1) * sizeof *counts), loops = 0;
   CagStatus status = counts ? CAG_OK : cag_fail_memory(err);
   for (size_t l = 0; status == CAG_OK && l < region->count; l++) {
     size_t before = o.count;
     status = outline_of_loop(t, &o, face, l, solid, region->loops[l], &frame, err);
-    counts[l] = o.count - before;
+    // Between the two pieces of a loop that is smaller than the tolerance there is nothing: they
+    // are one edge of the faces beside it.
+    if (o.count - before < 3) o.count = before;
+    else counts[loops++] = o.count - before;
   }
-  if (status == CAG_OK) status = triangulate_outline(t, f, &o, counts, region->count, &frame, err);
+  if (status == CAG_OK && loops > 0)
+    status = triangulate_outline(t, f, &o, counts, loops, &frame, err);
   free(counts);
   free(o.points);
   free(o.vertices);
