@@ -271,8 +271,14 @@ static bool shape_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimensi
     cag_charge_solid(call->vm, shape->as.solid, before);
     return cag_geometry_ok(call, status, &err);
   }
-  default: *out = cag_mesh_bounds(shape->as.mesh); return true;
+  default: *out = cag_mesh_bounds(shape->as.mesh);
   }
+  // A label is its place; a second vertex says its direction (figures.c).
+  if (shape->style && cag_record_get(shape->style, "label").type == CAG_TEXT) {
+    *out = CAG_BOUNDS_EMPTY;
+    cag_bounds_add(out, shape->as.mesh->positions[0]);
+  }
+  return true;
 }
 
 bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension) {
