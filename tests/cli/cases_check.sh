@@ -44,3 +44,25 @@ try check "$root/examples" "$root/stdlib" "$root/docs/cookbook"
 status 0
 prints_nothing
 says_nothing
+
+it 'the module path is looked through'
+mkdir -p shelf
+script shelf/tools.cag 'twice(x) = 2 * x'
+script uses.cag 'import tools: twice
+print twice(1, 2)'
+try check uses.cag -I shelf
+status 1
+says 'twice takes 1 argument, found 2'
+
+it 'the scripts of the library, the examples, the cookbook and the bench are right'
+try check "$root/stdlib" "$root/examples" "$root/docs" "$root/tests/bench"
+status 0
+says_nothing
+
+it 'so are the tests that expect no errors'
+# Those that hand what fails to a function (code, reason) mean the errors in them.
+grep -rL --include='*.cag' -e 'expect error' -e '(() =>' "$root/tests/language" "$root/tests/vectors" | tr '\n' '\0' > right
+[ "$(tr -cd '\0' < right | wc -c)" -gt 30 ] || wrong "there are few"
+ran='cag check' && timeout $LONGEST xargs -0 "$CAG" check < right > out 2> err
+code=$?
+! grep -A2 '^error' err > errors || wrong "$(cat errors)"
