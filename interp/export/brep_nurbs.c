@@ -28,6 +28,17 @@ static CagStatus fail_inexact(const CagBrepWork *w, const char *what, CagError *
                   w->item->name, what);
 }
 
+// A place where no cut is fine enough: which shape has it, and what to do.
+static CagStatus name_rough(const CagBrepWork *w, CagStatus status, const char *what,
+                            CagError *err) {
+  if (status != CAG_E_CONVERGENCE) return status;
+  return cag_fail(err, CAG_E_CONVERGENCE, "convergence", "", -1,
+                  "%s (%s) has a place that is not smooth, so that no B-spline of a sensible size "
+                  "comes within %g mm of it: give a larger --tolerance, cut the shape there, or "
+                  "write .stl, .obj, .ply or .glb",
+                  w->item->name, what, w->asked);
+}
+
 static CagStatus fail_weight(const CagBrepWork *w, double weight, CagError *err) {
   char text[32];
   return cag_fail(err, CAG_E_UNSUPPORTED, "export-weight", "weights", -1,
@@ -113,7 +124,7 @@ CagStatus cag_brep_curve(CagBrepWork *w, const CagCurve *c, CagCurve **out, CagE
   if (no_exact_form(status)) {
     if (!(w->asked > 0)) return fail_inexact(w, c->kind->name, err);
     w->approximate = true;
-    status = cag_curve_approximate(c, w->asked, &exact, err);
+    status = name_rough(w, cag_curve_approximate(c, w->asked, &exact, err), c->kind->name, err);
   }
   if (!status) status = cag_curve_clamp(exact, &clamped, err);
   if (!status) status = cag_curve_to_space(clamped, &space, err);
@@ -182,7 +193,7 @@ CagStatus cag_brep_surface(CagBrepWork *w, const CagSurface *s, CagSurface **out
   if (no_exact_form(status)) {
     if (!(w->asked > 0)) return fail_inexact(w, what_it_is(s), err);
     w->approximate = true;
-    status = cag_brep_approximate(s, w->asked, &exact, err);
+    status = name_rough(w, cag_brep_approximate(s, w->asked, &exact, err), what_it_is(s), err);
   }
   if (!status)
     status =
