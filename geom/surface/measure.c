@@ -49,6 +49,9 @@ static const double GAUSS[NODES] = {
 // A term that is below this part of what the extent of the surface allows is mostly rounding (the
 // flux through a wall that stands upright, say) and is not chased further.
 #define SMALLEST_TERM 1e-4
+// A surface whose extent is below this part of its distance from the origin is a point but for
+// rounding, and so is the area that it seems to have.
+#define POINT_EXTENT 1e-9
 #define MAX_TERMS 10
 
 typedef void Integrand(CagVec3 p, CagVec3 du, CagVec3 dv, double *out);
@@ -148,8 +151,10 @@ static CagStatus integrate(Integral *in, CagError *err) {
   if (!status) status = cell_ends(in->s, 1, &vs, &nv, err);
   in->budget = MAX_CELLS;
   for (int pass = 0; !status && pass < 2; pass++) {
+    const double point = POINT_EXTENT * in->reach;
+    const double least = fmax(SMALLEST_TERM * in->area, point * point);
     for (size_t k = 0; pass == 1 && k < in->terms; k++)
-      in->size[k] = fmax(in->size[k], SMALLEST_TERM * in->area * pow(in->reach, in->powers[k]));
+      in->size[k] = fmax(in->size[k], least * pow(in->reach, in->powers[k]));
     for (size_t i = 0; !status && i < nu; i++)
       for (size_t j = 0; !status && j < nv; j++) {
         Cell c = {us[i], us[i + 1], vs[j], vs[j + 1]};
