@@ -18,6 +18,7 @@
 #include "geom/surface/family.h"
 #include "geom/surface/level_patch.h"
 #include "geom/surface/section.h"
+#include "geom/surface/section_join.h"
 #include "geom/surface/trimmed.h"
 
 // Cells along the whole of a direction, and at least so many between two breaks.
@@ -37,14 +38,9 @@
 #define SHORT_RUN_DEPTH 2
 // cos 30 degrees: a tangent turns by no more from one point to the next.
 #define TURN_COSINE 0.866
-// cos 40 degrees: where chords turn by more, a run has a corner.
-#define CORNER_COSINE 0.766
-// Sided runs that meet are one where their tangents agree up to this (1 - cosine): cubics with one
-// tangent for both then stay within a millionth.
-#define KINK 1e-8
 // Parts of the size below which points are one.
 #define SAME 1e-10
-#define SPECK 1e-8
+// Part of the size up to which a run beside an area where the function is 0 is what rounding left.
 #define BESIDE_LOST 1e-3
 // A place has no tangent where its two parts cancel to this part, or the function changes by less
 // than so many roundings over the whole surface.
@@ -52,6 +48,7 @@
 #define FLAT_ROUNDINGS 1e4
 // A function that is this many roundings at most is 0 throughout.
 #define CONSTANT_ROUNDINGS 100
+// Part of the way between two points below which a third is one of them.
 #define SLID 1e-5
 // A point between two others tells of the cubic's middle only if it is not nearer to one of them
 // than this part of the way: by a pole the middle of the parameters may be.
@@ -668,18 +665,6 @@ static bool refine(Tracer *t, const Node *a, const Node *b, int depth, int at_le
 
 // --- Runs ---
 
-static void free_trace(CagTrace *t) {
-  free(t->points);
-  free(t->tangents);
-  free(t->checks);
-}
-
-void cag_traces_free(CagTraces *t) {
-  for (size_t i = 0; i < t->count; i++) free_trace(&t->items[i]);
-  free(t->items);
-  *t = (CagTraces){0};
-}
-
 static bool add_trace(CagTraces *out, const CagTrace *trace) {
   if (out->count == out->capacity) {
     size_t capacity = out->capacity ? 2 * out->capacity : 8;
@@ -711,7 +696,7 @@ static bool keep_nodes(const Node *nodes, size_t n, const CagVec3 *checks, size_
   }
   if (ok && check_count > 0) memcpy(trace.checks, checks, check_count * sizeof *checks);
   ok = ok && add_trace(out, &trace);
-  if (!ok) free_trace(&trace);
+  if (!ok) cag_trace_free(&trace);
   return ok;
 }
 
@@ -769,7 +754,7 @@ static bool is_corner(const Tracer *t, size_t i) {
   if (t->run[i].branching) return true;
   CagVec3 before = cag_unit(cag_sub(t->run[i].p, t->run[i - 1].p));
   CagVec3 after = cag_unit(cag_sub(t->run[i + 1].p, t->run[i].p));
-  return cag_dot(before, after) < CORNER_COSINE;
+  return cag_dot(before, after) < CAG_TRACE_CORNER;
 }
 
 // Where a sided function is 0 over an area, to rounding, it has no curve there, or any.
@@ -832,141 +817,6 @@ static bool walk_all(Tracer *t, CagTraces *out) {
   free(seen);
   free(path);
   return ok && t->status == CAG_OK;
-}
-
-// --- Runs that go on across a seam ---
-
-static void turn_trace(CagTrace *t) {
-  for (size_t i = 0, j = t->count - 1; i < j; i++, j--) {
-    CagVec3 p = t->points[i], d = t->tangents[i];
-    t->points[i] = t->points[j];
-    t->tangents[i] = t->tangents[j];
-    t->points[j] = p;
-    t->tangents[j] = d;
-  }
-  for (size_t i = 0; i < t->count; i++) t->tangents[i] = cag_scaled(t->tangents[i], -1);
-}
-
-// How runs are joined: points nearer than `same` are one; `by_tangents`: these tell whether it goes
-// on smoothly, otherwise the chords do.
-typedef struct Joint {
-  double same;
-  bool by_tangents;
-} Joint;
-
-static bool is_smooth(const Joint *how, CagVec3 before, CagVec3 after, CagVec3 tangent,
-                      CagVec3 next_tangent) {
-  if (how->by_tangents) return cag_dot(tangent, next_tangent) > 1 - KINK;
-  return cag_dot(before, after) > CORNER_COSINE;
-}
-
-static bool goes_on(const CagTrace *a, const CagTrace *b, const Joint *how) {
-  CagVec3 p = a->points[a->count - 1];
-  if (cag_norm(cag_sub(p, b->points[0])) > how->same) return false;
-  CagVec3 before = cag_unit(cag_sub(p, a->points[a->count - 2]));
-  CagVec3 after = cag_unit(cag_sub(b->points[1], b->points[0]));
-  return is_smooth(how, before, after, a->tangents[a->count - 1], b->tangents[0]);
-}
-
-static bool append(CagTrace *a, const CagTrace *b) {
-  CagVec3 *points = realloc(a->points, (a->count + b->count) * sizeof *points);
-  if (points) a->points = points;
-  CagVec3 *tangents = realloc(a->tangents, (a->count + b->count) * sizeof *tangents);
-  if (tangents) a->tangents = tangents;
-  CagVec3 *checks = realloc(a->checks, (a->check_count + b->check_count + 1) * sizeof *checks);
-  if (checks) a->checks = checks;
-  if (!points || !tangents || !checks) return false;
-  // The first point of b is there already.
-  memcpy(points + a->count, b->points + 1, (b->count - 1) * sizeof *points);
-  memcpy(tangents + a->count, b->tangents + 1, (b->count - 1) * sizeof *tangents);
-  if (b->check_count > 0)
-    memcpy(checks + a->check_count, b->checks, b->check_count * sizeof *checks);
-  a->count += b->count - 1;
-  a->check_count += b->check_count;
-  return true;
-}
-
-static bool join_pair(CagTraces *t, size_t i, size_t j, const Joint *how, bool *joined) {
-  CagTrace *a = &t->items[i], *b = &t->items[j];
-  for (int turn = 0; turn < 4 && !*joined; turn++) {
-    *joined = goes_on(a, b, how);
-    if (*joined) break;
-    if (turn % 2 == 0) turn_trace(b);
-    else turn_trace(a);
-  }
-  if (!*joined) return true;
-  if (!append(a, b)) return false;
-  free_trace(b);
-  t->items[j] = t->items[--t->count];
-  return true;
-}
-
-// What is smaller than the tolerance and by itself only touches the level; open runs that are next
-// to nothing (by a pole, where values are rounding): their neighbours meet without them.
-static void drop_specks(CagTraces *t, double size, double tolerance) {
-  size_t kept = 0;
-  for (size_t i = 0; i < t->count; i++) {
-    CagTrace *a = &t->items[i];
-    double reach = 0;
-    for (size_t k = 1; k < a->count; k++)
-      reach = fmax(reach, cag_norm(cag_sub(a->points[k], a->points[0])));
-    if (reach <= (a->closed ? tolerance : SPECK * size)) {
-      free_trace(a);
-    } else {
-      t->items[kept++] = *a;
-    }
-  }
-  t->count = kept;
-}
-
-static bool join_traces(CagTraces *t, const Joint *how) {
-  for (size_t i = 0; i < t->count; i++) {
-    bool joined = true;
-    while (joined) {
-      joined = false;
-      for (size_t j = i + 1; j < t->count && !joined; j++)
-        if (!join_pair(t, i, j, how, &joined)) return false;
-    }
-  }
-  return true;
-}
-
-// The tangent of an end of an open run that has none: that of its neighbour, mirrored.
-static void complete_ends(CagTrace *t) {
-  size_t n = t->count;
-  const size_t ends[2][2] = {{0, 1}, {n - 1, n - 2}};
-  for (int k = 0; k < 2; k++) {
-    size_t i = ends[k][0], next = ends[k][1];
-    if (cag_norm(t->tangents[i]) > 0) continue;
-    CagVec3 way = cag_unit(cag_sub(t->points[next], t->points[i]));
-    if (k == 1) way = cag_scaled(way, -1);
-    bool known = n > 2 && cag_norm(t->tangents[next]) > 0;
-    t->tangents[i] = known ? cag_unit(cag_sub(cag_scaled(way, 2), t->tangents[next])) : way;
-  }
-}
-
-// Tangents where the function gave none, by the parabola through the neighbours.
-static void complete_tangents(CagTrace *t, const Joint *how) {
-  size_t n = t->count;
-  bool comes_back = n > 3 && cag_norm(cag_sub(t->points[0], t->points[n - 1])) <= how->same;
-  t->closed = false;
-  if (comes_back) {
-    // Closed only where it goes on smoothly.
-    CagVec3 before = cag_unit(cag_sub(t->points[n - 1], t->points[n - 2]));
-    CagVec3 after = cag_unit(cag_sub(t->points[1], t->points[0]));
-    t->points[n - 1] = t->points[0];
-    t->closed = is_smooth(how, before, after, t->tangents[n - 1], t->tangents[0]);
-    if (t->closed) t->tangents[n - 1] = t->tangents[0];
-  }
-  if (!t->closed) complete_ends(t);
-  for (size_t i = 0; i < n; i++) {
-    if (cag_norm(t->tangents[i]) > 0) continue;
-    CagVec3 before = i > 0 ? t->points[i - 1] : t->points[n - 2];
-    CagVec3 after = i + 1 < n ? t->points[i + 1] : t->points[1];
-    CagVec3 d1 = cag_sub(t->points[i], before), d2 = cag_sub(after, t->points[i]);
-    double a = cag_norm(d1), b = cag_norm(d2);
-    t->tangents[i] = cag_unit(cag_madd(cag_scaled(d1, b / a), a / b, d2));
-  }
 }
 
 static void tracer_free(Tracer *t) {
@@ -1038,7 +888,7 @@ static bool trace_patch(Tracer *t, CagLevel *own, CagTraces *out, bool *constant
   for (size_t finer = 1;; finer = 2 * t->finer) {
     if (!trace_grid(t, own, finer, out, constant)) return false;
     if (!own->sided || !t->torn || t->finer >> HALVINGS_MOST) return true;
-    while (out->count > first) free_trace(&out->items[--out->count]);
+    while (out->count > first) cag_trace_free(&out->items[--out->count]);
   }
 }
 
@@ -1077,12 +927,9 @@ CagStatus cag_surface_trace(const CagSurface *s, const CagLevel *level, double t
   t.size = cag_norm(cag_sub(box.max, box.min));
   const CagSurface *whole;
   if (!cag_surface_trimmed_view(s, &whole, &t.region)) t.region = NULL;
-  const Joint how = {SAME * 10 * t.size, own.sided};
+  const CagTraceJoint how = {SAME * 10 * t.size, t.size, tolerance, own.sided};
   status = trace_patches(&t, &own, out);
-  for (size_t i = 0; !status && own.sided && i < out->count; i++) complete_ends(&out->items[i]);
-  if (!status && !join_traces(out, &how)) status = cag_fail_memory(err);
-  for (size_t i = 0; !status && i < out->count; i++) complete_tangents(&out->items[i], &how);
-  if (!status && own.sided) drop_specks(out, t.size, tolerance);
+  if (!status && !cag_traces_join(out, &how)) status = cag_fail_memory(err);
   if (status) cag_traces_free(out);
   return status;
 }
