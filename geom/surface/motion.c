@@ -212,12 +212,31 @@ static void square_to(const CagVec3 *toward, int n, Frame *f) {
 // The direction leans so far towards the tangent (sine of the angle) that it gives no frame.
 #define ALONG_TANGENT 1e-9
 
+// Where the curvature vanishes but for rounding, at an inflection or at the end of a natural
+// spline, the binormal is the limit from the side asked: that of its derivative. Fills `binormal`
+// with a multiple of the series of the limit; false: there is none.
+static bool limit_binormal(const CagMotion *t, double v, int n, CagSide side, CagVec3 *binormal) {
+  const double vanishing = 1e-12; // of what it grows to over the domain
+  CagVec3 bend[ORDER], next[ORDER];
+  Frame f;
+  CagError ignored;
+  if (n + 1 >= ORDER || tangent_series(t, v, n + 1, side, &f, bend, &ignored)) return false;
+  series_cross(f.t, bend, n + 1, next);
+  double length = t->end - t->start, grown = cag_norm(next[1]) * length;
+  double bends = cag_norm(bend[0]) + cag_norm(bend[1]) * length;
+  if (!(cag_norm(next[0]) <= vanishing * grown && grown > ALONG_TANGENT * bends)) return false;
+  for (int k = 0; k <= n; k++)
+    binormal[k] = side == CAG_SIDE_LEFT ? cag_scaled(next[k + 1], -1) : next[k + 1];
+  return true;
+}
+
 static CagStatus frenet(const CagMotion *t, double v, int n, CagSide side, Frame *out,
                         CagError *err) {
   CagVec3 bend[ORDER], binormal[ORDER];
   CagStatus status = tangent_series(t, v, n, side, out, bend, err);
   if (status) return status;
   series_cross(out->t, bend, n, binormal);
+  if (limit_binormal(t, v, n, side, binormal)) bend[0] = cag_vec3(0, 0, 0);
   char text[32];
   if (!(cag_norm(binormal[0]) > ALONG_TANGENT * cag_norm(bend[0])))
     return cag_fail(err, CAG_E_DEGENERATE, "path-straight", "path", -1,

@@ -321,6 +321,35 @@ static void lofts_reproduce_cubics(void **state) {
   for (int i = 0; i < 5; i++) cag_curve_release(sections[i]);
 }
 
+// At the ends of a natural spline, and at an inflection, the curvature is 0 but for rounding: there
+// Frenet's frame is the limit from its side.
+static void frenet_has_limits_where_the_curvature_vanishes(void **state) {
+  (void)state;
+  // The second differences at both ends are 0; the middle of the other bends the other way.
+  const CagVec3 ends[] = {{1.1, 0.7, 0}, {2.3, 1.4, 0.9}, {3.5, 2.1, 1.8},
+                          {5, 1, 3},     {6, 0, 1.2},     {7, -1, -0.6}};
+  const CagVec3 turning[] = {{-3, 0.1, 0}, {-1, 2.3, 0}, {1, -2.3, 0}, {3, -0.1, 0}};
+  CagCurve *c[2];
+  MUST(cag_curve_bezier(ends, NULL, 6, 3, &c[0], err));
+  MUST(cag_curve_bezier(turning, NULL, 4, 3, &c[1], err));
+  const double at[3] = {0, 1, 0.5};
+  for (int k = 0; k < 4; k++) {
+    bool left = k == 1 || k == 3;
+    double t = at[k < 2 ? k : 2], beside = t + (left ? -1 : 1) * 1e-6;
+    CagSide side = left ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+    CagMotion *m = along(c[k / 2], CAG_ORIENT_FRENET, 0, 1);
+    CagMotionSeries here, there;
+    MUST(cag_motion_at(m, t, 1, side, &here, err));
+    MUST(cag_motion_at(m, beside, 1, side, &there, err));
+    assert_point(here.x[0], there.x[0], 1e-5, "normal");
+    assert_point(here.y[0], there.y[0], 1e-5, "binormal");
+    assert_point(here.x[1], there.x[1], 1e-3, "its derivative");
+    cag_motion_release(m);
+  }
+  cag_curve_release(c[0]);
+  cag_curve_release(c[1]);
+}
+
 // Sections of different degree and knots, and a closed loft.
 static void lofts_unify_their_sections(void **state) {
   (void)state;
@@ -378,6 +407,7 @@ int main(void) {
       cmocka_unit_test(radii_may_be_functions),
       cmocka_unit_test(corners_are_mitred),
       cmocka_unit_test(transforms_sweep_too),
+      cmocka_unit_test(frenet_has_limits_where_the_curvature_vanishes),
       cmocka_unit_test(lofts_reproduce_cubics),
       cmocka_unit_test(lofts_unify_their_sections),
   };
