@@ -117,7 +117,7 @@ static void sort_corners(const uint32_t v[3], uint32_t out[3], bool *odd) {
   }
 }
 
-static void add_face(BoolWork *w, FaceTable *table, const BoolFace *face, int operand) {
+static void add_face(BoolWork *w, FaceTable *table, const BoolFace *face) {
   uint32_t v[3], u[3];
   bool odd, other;
   sort_corners(face->v, v, &odd);
@@ -126,7 +126,7 @@ static void add_face(BoolWork *w, FaceTable *table, const BoolFace *face, int op
     BoolFace *old = &w->faces[table->slots[at]];
     sort_corners(old->v, u, &other);
     if (memcmp(u, v, sizeof u)) continue;
-    old->times[operand] += odd == other ? 1 : -1;
+    for (int k = 0; k < 2; k++) old->times[k] += odd == other ? face->times[k] : -face->times[k];
     return;
   }
   table->slots[at] = (uint32_t)w->face_count;
@@ -156,7 +156,7 @@ static void add_faces(BoolWork *w, FaceTable *table, const CagMesh *m, const uin
     memcpy(f.v, triangles + 3 * t, sizeof f.v);
     f.times[operand] = 1;
     if (f.v[0] == f.v[1] || f.v[1] == f.v[2] || f.v[2] == f.v[0] || !find_axis(w, &f)) continue;
-    add_face(w, table, &f, operand);
+    add_face(w, table, &f);
   }
 }
 
@@ -175,6 +175,68 @@ static CagStatus read_operand(BoolWork *w, const Operand *o, int operand, FaceTa
   return status;
 }
 
+// --- Fans ---
+
+static bool has_fan(const BoolWork *w) {
+  uint32_t *count = calloc(w->points.n + 1, sizeof *count);
+  bool found = !count; // the search for flat faces runs out of memory then
+  for (size_t i = 0; !found && i < w->face_count; i++)
+    for (int k = 0; k < 3; k++) found = found || ++count[w->faces[i].v[k]] >= BOOL_FAN;
+  free(count);
+  return found;
+}
+
+static bool is_of(const BoolFace *f, int operand) {
+  return f->times[operand] == 1 && f->times[1 - operand] == 0;
+}
+
+// Triangulates the flat faces of an operand anew, where its triangles are in `parts` afterwards.
+static bool open_fans(BoolWork *w, int operand, const BoolSource *sources, BoolPart **parts,
+                      size_t *n) {
+  *n = 0;
+  *parts = malloc((w->face_count + 1) * sizeof **parts);
+  if (!*parts) return false;
+  for (uint32_t i = 0; i < w->face_count; i++) {
+    if (!is_of(&w->faces[i], operand)) continue;
+    BoolPart *p = &(*parts)[(*n)++];
+    *p = (BoolPart){.source = {i, i, i}};
+    memcpy(p->v, w->faces[i].v, sizeof p->v);
+  }
+  return bool_flatten(w, sources, true, parts, n);
+}
+
+// No more faces than before: their outlines are the same.
+static bool replace_fans(BoolWork *w, FaceTable *table) {
+  BoolSource *sources = malloc((w->face_count + 1) * sizeof *sources);
+  BoolPart *parts[2] = {NULL, NULL};
+  BoolFace *old = w->faces, *faces = NULL;
+  const size_t count = w->face_count;
+  size_t n[2] = {0, 0};
+  for (uint32_t i = 0; sources && i < count; i++) sources[i] = (BoolSource){i, false};
+  bool done = sources != NULL;
+  for (int k = 0; done && k < 2; k++) done = open_fans(w, k, sources, &parts[k], &n[k]);
+  if (done) faces = malloc((count + n[0] + n[1] + 1) * sizeof *faces);
+  done = faces != NULL;
+  if (done) {
+    memset(table->slots, 0xff, (table->mask + 1) * sizeof *table->slots);
+    w->faces = faces;
+    w->face_count = 0;
+    for (size_t i = 0; i < count; i++)
+      if (!is_of(&old[i], 0) && !is_of(&old[i], 1)) add_face(w, table, &old[i]);
+  }
+  for (int k = 0; done && k < 2; k++)
+    for (size_t i = 0; i < n[k]; i++) {
+      BoolFace f = old[parts[k][i].source[0]];
+      memcpy(f.v, parts[k][i].v, sizeof f.v);
+      if (find_axis(w, &f)) add_face(w, table, &f);
+    }
+  if (done) free(old);
+  free(sources);
+  free(parts[0]);
+  free(parts[1]);
+  return done;
+}
+
 static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
   const size_t triangles = o[0].mesh->triangle_count + o[1].mesh->triangle_count;
   const size_t vertices = o[0].mesh->vertex_count + o[1].mesh->vertex_count;
@@ -191,12 +253,16 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
     status = cag_fail_memory(w->err);
   else memset(table.slots, 0xff, (table.mask + 1) * sizeof *table.slots);
   for (int k = 0; !status && k < 2; k++) status = read_operand(w, &o[k], k, &table);
+  w->corners = w->points.n;
+  if (!status && has_fan(w) && !replace_fans(w, &table)) {
+    status = bool_stopped(w);
+    if (!status) status = cag_fail_memory(w->err);
+  }
   free(table.slots);
   size_t kept = 0;
   for (size_t f = 0; !status && f < w->face_count; f++)
     if (w->faces[f].times[0] || w->faces[f].times[1]) w->faces[kept++] = w->faces[f];
   w->face_count = kept;
-  w->corners = w->points.n;
   return status;
 }
 
@@ -209,6 +275,7 @@ static void free_work(BoolWork *w) {
   free(w->order);
   free(w->boxes);
   free(w->plane_of);
+  free(w->touched);
   free(w->contacts.items);
   free(w->pieces.items);
   free(w->winding);
@@ -226,9 +293,11 @@ static CagStatus solve(BoolWork *w, CagSetOperation op, CagMesh **out) {
   return status ? status : bool_build(w, op, out);
 }
 
-static CagStatus operate(CagSetOperation op, const Operand o[2], const volatile int *interrupt,
+static CagStatus operate(CagSetOperation op, const Operand o[2], const CagBooleanHow *how,
                          CagMesh **out, CagError *err) {
-  BoolWork w = {.meshes = {o[0].mesh, o[1].mesh}, .interrupt = interrupt, .err = err};
+  BoolWork w = {.meshes = {o[0].mesh, o[1].mesh}, .err = err};
+  w.whole = how->keep_flat;
+  w.interrupt = how->interrupt;
   CagStatus status = bool_stopped(&w);
   if (!status) status = read_operands(&w, o);
   if (!status) status = solve(&w, op, out);
@@ -239,12 +308,13 @@ static CagStatus operate(CagSetOperation op, const Operand o[2], const volatile 
 CagStatus cag_mesh_boolean(CagSetOperation op, const CagMesh *a, const CagMesh *b,
                            const volatile int *interrupt, CagMesh **out, CagError *err) {
   const Operand operands[2] = {{a, "a", -1}, {b, "b", -1}};
-  return operate(op, operands, interrupt, out, err);
+  const CagBooleanHow how = {.interrupt = interrupt};
+  return operate(op, operands, &how, out, err);
 }
 
 // Halves of the list first, so that each triangle goes through about log2 n operations. *out: a
 // mesh of the caller's own, or (*made false) an operand as it is.
-static CagStatus fold(CagSetOperation op, const Operand *o, size_t n, const volatile int *interrupt,
+static CagStatus fold(CagSetOperation op, const Operand *o, size_t n, const CagBooleanHow *how,
                       Operand *out, bool *made, CagError *err) {
   *out = o[0];
   *made = false;
@@ -252,11 +322,11 @@ static CagStatus fold(CagSetOperation op, const Operand *o, size_t n, const vola
   Operand half[2];
   bool own[2];
   CagMesh *m = NULL;
-  CagStatus status = fold(op, o, n / 2, interrupt, &half[0], &own[0], err);
+  CagStatus status = fold(op, o, n / 2, how, &half[0], &own[0], err);
   if (status) return status;
-  status = fold(op, o + n / 2, n - n / 2, interrupt, &half[1], &own[1], err);
+  status = fold(op, o + n / 2, n - n / 2, how, &half[1], &own[1], err);
   if (status) own[1] = false;
-  else status = operate(op, half, interrupt, &m, err);
+  else status = operate(op, half, how, &m, err);
   for (int k = 0; k < 2; k++)
     if (own[k]) cag_mesh_release((CagMesh *)half[k].mesh);
   out->mesh = m;
@@ -266,20 +336,22 @@ static CagStatus fold(CagSetOperation op, const Operand *o, size_t n, const vola
 
 // The first operand with the second; the first alone is united with nothing, which clears parts
 // that cross each other.
-static CagStatus finish(CagSetOperation op, const Operand o[2], size_t n,
-                        const volatile int *interrupt, CagMesh **out, CagError *err) {
-  if (n > 1) return operate(op, o, interrupt, out, err);
+static CagStatus finish(CagSetOperation op, const Operand o[2], size_t n, const CagBooleanHow *how,
+                        CagMesh **out, CagError *err) {
+  if (n > 1) return operate(op, o, how, out, err);
   CagMesh *empty = NULL;
   CagStatus status = cag_mesh_new(0, 0, false, false, false, &empty, err);
   if (status) return status;
   const Operand pair[2] = {o[0], {empty, o[0].argument, o[0].index}};
-  status = operate(CAG_UNION, pair, interrupt, out, err);
+  status = operate(CAG_UNION, pair, how, out, err);
   cag_mesh_release(empty);
   return status;
 }
 
 CagStatus cag_mesh_boolean_many(CagSetOperation op, const CagMesh *const *meshes, size_t n,
-                                const volatile int *interrupt, CagMesh **out, CagError *err) {
+                                const CagBooleanHow *how, CagMesh **out, CagError *err) {
+  const CagBooleanHow usual = {0};
+  if (!how) how = &usual;
   if (n == 0) return cag_mesh_new(0, 0, false, false, false, out, err);
   Operand *o = malloc(n * sizeof *o), pair[2];
   if (!o) return cag_fail_memory(err);
@@ -289,14 +361,14 @@ CagStatus cag_mesh_boolean_many(CagSetOperation op, const CagMesh *const *meshes
   if (n == 1) pair[0] = o[0], status = CAG_OK;
   else if (op == CAG_DIFFERENCE) {
     pair[0] = o[0];
-    status = fold(CAG_UNION, o + 1, n - 1, interrupt, &pair[1], &made[1], err);
+    status = fold(CAG_UNION, o + 1, n - 1, how, &pair[1], &made[1], err);
   } else {
-    status = fold(op, o, n / 2, interrupt, &pair[0], &made[0], err);
-    if (!status) status = fold(op, o + n / 2, n - n / 2, interrupt, &pair[1], &made[1], err);
+    status = fold(op, o, n / 2, how, &pair[0], &made[0], err);
+    if (!status) status = fold(op, o + n / 2, n - n / 2, how, &pair[1], &made[1], err);
     else made[0] = false;
   }
   if (status) made[1] = false;
-  else status = finish(op, pair, n, interrupt, out, err);
+  else status = finish(op, pair, n, how, out, err);
   for (int k = 0; k < 2; k++)
     if (made[k]) cag_mesh_release((CagMesh *)pair[k].mesh);
   free(o);

@@ -12,6 +12,11 @@
 
 typedef enum CagSetOperation { CAG_UNION, CAG_DIFFERENCE, CAG_INTERSECTION } CagSetOperation;
 
+typedef struct CagBooleanHow {
+  const volatile int *interrupt; // NULL, or: not 0 stops with CAG_E_CALLBACK
+  bool keep_flat; // flat faces stay in the triangles that they were cut to: edges stay short
+} CagBooleanHow;
+
 // The solid of a and b, bounded by a closed, consistently oriented mesh in which each edge is of
 // two triangles; without triangles where the solid is empty. Where parts touch along an edge or in
 // a point, each has vertices of its own there (weld does not join them).
@@ -19,6 +24,10 @@ typedef enum CagSetOperation { CAG_UNION, CAG_DIFFERENCE, CAG_INTERSECTION } Cag
 //   a, b       vertices are one point where their numbers are; each edge is run as often in one
 //              sense as in the other
 //   interrupt  NULL, or: not 0 stops with CAG_E_CALLBACK
+//
+// Flat faces, and the facets of ruled ones, get as few triangles as their outlines allow, within
+// 1e-12 of the largest coordinate; triangles of two materials, or with normals that do not agree,
+// are no one face.
 //
 // The time is that of sorting the triangles, and of what meets. Triangles that overlap in one plane
 // are cut along the edges of each other: two finely divided faces of long triangles, one on the
@@ -33,7 +42,9 @@ CagStatus cag_mesh_boolean(CagSetOperation op, const CagMesh *a, const CagMesh *
 
 // Of n >= 1 meshes: the union or intersection of all, or the first without all others. Errors name
 // the argument "meshes" and give the operand's number as the index.
+//
+//   how   NULL: as usual
 CagStatus cag_mesh_boolean_many(CagSetOperation op, const CagMesh *const *meshes, size_t n,
-                                const volatile int *interrupt, CagMesh **out, CagError *err);
+                                const CagBooleanHow *how, CagMesh **out, CagError *err);
 
 #endif

@@ -275,11 +275,26 @@ static bool doubt_around(BoolNet *n, uint32_t p) {
   return true;
 }
 
+static bool stands_on_corner(const BoolNet *n, uint32_t cell, uint32_t point) {
+  const int first = (n->axis + 1) % 3, second = (n->axis + 2) % 3;
+  for (int k = 0; k < 3; k++) {
+    const uint32_t v = bool_cells(n)[cell].v[k];
+    if (bool_compare(n->points, v, point, first) == 0 &&
+        bool_compare(n->points, v, point, second) == 0)
+      return true;
+  }
+  return false;
+}
+
 bool bool_net_add_point(BoolNet *n, uint32_t point) {
   if (!reserve(n)) return false;
   if (n->cell_of[point] != BOOL_NONE) return true;
   int edge;
   const uint32_t cell = locate(n, point, &edge);
+  if (n->simple && edge >= 0 && stands_on_corner(n, cell, point)) {
+    n->spoiled = true;
+    return false;
+  }
   note_vertex(n, point);
   if (edge < 0) split_cell(n, cell, point);
   else split_edge(n, cell, edge, point);
@@ -349,6 +364,10 @@ static bool push_crossed(BoolNet *n, BoolEdge edge) {
 
 // Puts in the point in which a segment crosses a fixed edge.
 static bool split_fixed(BoolNet *n, uint32_t cell, int e, uint32_t cut) {
+  if (n->simple) {
+    n->spoiled = true;
+    return false;
+  }
   const BoolCut *cuts = n->cuts.items;
   const uint32_t fixed = bool_cells(n)[cell].fixed[e];
   const uint32_t p = bool_points_meet(n->points, n->plane, cuts[cut], cuts[fixed]);
@@ -421,4 +440,11 @@ bool bool_net_add_segment(BoolNet *n, uint32_t a, uint32_t b, BoolCut cut) {
     a = target;
   }
   return true;
+}
+
+uint32_t bool_net_step(const BoolNet *n, uint32_t a, uint32_t b, uint32_t *cell, int *corner) {
+  const Exit exit = find_exit(n, a, b);
+  if (exit.target == BOOL_NONE) return BOOL_NONE;
+  return find_edge(n, (BoolEdge){a, exit.target, exit.cell}, cell, corner) ? exit.target
+                                                                           : BOOL_NONE;
 }

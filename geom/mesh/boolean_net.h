@@ -29,6 +29,8 @@ typedef struct BoolNet {
   size_t cell_of_room;
   uint32_t last; // cell that was changed last
   uint32_t random;
+  bool simple;  // points are apart as seen, and no segment may cross another ...
+  bool spoiled; // ... one was not so, and was not put in
 } BoolNet;
 
 typedef struct BoolEdge {
@@ -45,5 +47,8 @@ bool bool_net_add_point(BoolNet *n, uint32_t point);
 // Points that are in; where the segment crosses one put in before, the point of both is put in.
 bool bool_net_add_segment(BoolNet *n, uint32_t a, uint32_t b, BoolCut cut);
 bool bool_net_improve(BoolNet *n);
+// The next point on the way from a to b, along a segment that was put in; the cell to the left of
+// this step, and its corner opposite. BOOL_NONE: there is no such step.
+uint32_t bool_net_step(const BoolNet *n, uint32_t a, uint32_t b, uint32_t *cell, int *corner);
 
 #endif

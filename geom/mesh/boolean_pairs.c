@@ -233,7 +233,11 @@ static bool meet_from(BoolWork *w, const BoolFace *f, const BoolFace *g, const i
 
 static bool add_contact(BoolWork *w, uint32_t f, uint32_t a, uint32_t b, const BoolFace *other) {
   const BoolFace *face = &w->faces[f];
-  if (has_corner(face, a) && has_corner(face, b)) return true;
+  if (has_corner(face, a) && has_corner(face, b)) { // an edge of its own
+    for (int k = 0; k < 3 && a != b; k++)
+      if (face->v[k] != a && face->v[k] != b) w->touched[f] |= (uint8_t)(1u << (k + 1) % 3);
+    return true;
+  }
   if (!bool_list_reserve(&w->contacts, w->contacts.n + 1, sizeof(BoolContact))) return false;
   ((BoolContact *)w->contacts.items)[w->contacts.n++] =
       (BoolContact){f, a, b, {other->v[0], other->v[1], other->v[2], 0}};
@@ -293,6 +297,7 @@ static bool meet(BoolWork *w, uint32_t f, uint32_t g) {
   const BoolFace *one = &w->faces[f], *two = &w->faces[g];
   int side_f[3], side_g[3];
   bool edge;
+  if (bool_root(w->plane_of, f) == bool_root(w->plane_of, g)) return true; // cut together anyway
   if (are_beside(w, one, two) || find_sides(w, one, two, side_f, &edge)) return true;
   const bool flat = !side_f[0] && !side_f[1] && !side_f[2];
   if (edge && !flat) return true; // a common edge, and that is all
@@ -360,7 +365,8 @@ static void meet_within(Search *s, uint32_t i) {
 
 CagStatus bool_find_contacts(BoolWork *w) {
   w->plane_of = malloc((w->face_count + 1) * sizeof *w->plane_of);
-  if (!w->plane_of || !build_tree(w)) return cag_fail_memory(w->err);
+  w->touched = calloc(w->face_count + 1, 1);
+  if (!w->plane_of || !w->touched || !build_tree(w)) return cag_fail_memory(w->err);
   for (uint32_t f = 0; f < w->face_count; f++) w->plane_of[f] = f;
   Search s = {w, 0, CAG_OK};
   meet_within(&s, 0);

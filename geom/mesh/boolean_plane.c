@@ -3,11 +3,14 @@
 // A face that overlaps no other in its plane is triangulated with its contacts. Faces of one plane
 // that overlap are triangulated together, inside a large triangle and with their edges as segments;
 // each cell then is a piece of all faces that cover it. So pieces of two faces are either the same
-// or apart.
+// or apart. Neighbours of one flat face are a patch, whose outline alone is put in: how it was
+// divided into triangles does not matter.
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "geom/mesh/boolean_net.h"
+#include "geom/mesh/edges.h"
 
 // Groups of faces, or points and segments of one, between looks at the caller's wish to stop.
 #define STOP_INTERVAL 64
@@ -24,8 +27,15 @@ typedef struct Cover {
   int32_t times[2];
   uint32_t face; // the first; BOOL_NONE: nothing
   signed char facing;
-  uint32_t mark; // the last face that was tried, plus 1
+  uint32_t mark; // the last patch that covered it, plus 1
 } Cover;
+
+// An edge of a face of a group, as seen: the face is to its left.
+typedef struct Side {
+  uint32_t from, to, face, patch;
+  bool shared; // by more than two faces, so that it must stay
+  bool inner;  // between two faces of a patch
+} Side;
 
 typedef struct Cutter {
   BoolWork *w;
@@ -34,6 +44,10 @@ typedef struct Cutter {
   BoolList points; // of Spot
   BoolList covers; // of Cover
   BoolList stack;  // of uint32_t
+  BoolList sides;  // of Side: of the group, those of one patch side by side
+  BoolList walls;  // of uint32_t, by 3 * cell + corner: the last patch that ends there, plus 1
+  uint32_t *patch; // forest of the faces
+  uint8_t *shared; // of faces, by bits: edges of more than two faces, or touched by others
 } Cutter;
 
 typedef struct Spot {
@@ -149,77 +163,202 @@ static bool add_contacts(Cutter *c, uint32_t root) {
   return true;
 }
 
-static bool add_edges(Cutter *c, uint32_t root) {
-  for (size_t i = c->faces.start[root]; i < c->faces.start[root + 1]; i++) {
-    const BoolFace *f = &c->w->faces[c->faces.items[i]];
+static bool add_edges(Cutter *c) {
+  for (size_t i = 0; i < c->sides.n; i++) {
+    const Side *s = (Side *)c->sides.items + i;
     if (!goes_on(c, i)) return false;
-    for (int k = 0; k < 3; k++) {
-      const uint32_t a = f->v[k], b = f->v[(k + 1) % 3];
-      if (!bool_net_add_segment(&c->net, a, b, (BoolCut){a, b, BOOL_NONE, c->net.axis}))
-        return false;
-    }
+    if (!s->inner && !bool_net_add_segment(&c->net, s->from, s->to,
+                                           (BoolCut){s->from, s->to, BOOL_NONE, c->net.axis}))
+      return false;
   }
   return true;
 }
 
-static bool note_points(Cutter *c, uint32_t root, bool corners) {
+// Those of contacts and, of faces that are cut together, the ends of their edges.
+static bool note_points(Cutter *c, uint32_t root, bool edges) {
   c->points.n = 0;
   for (size_t i = c->contacts.start[root]; i < c->contacts.start[root + 1]; i++) {
     const BoolContact *k = (BoolContact *)c->w->contacts.items + c->contacts.items[i];
     if (!note_point(c, k->a) || !note_point(c, k->b)) return false;
   }
-  for (size_t i = c->faces.start[root]; corners && i < c->faces.start[root + 1]; i++)
-    for (int k = 0; k < 3; k++)
-      if (!note_point(c, c->w->faces[c->faces.items[i]].v[k])) return false;
+  for (size_t i = 0; edges && i < c->sides.n; i++) {
+    const Side *side = (Side *)c->sides.items + i;
+    if (!side->inner && (!note_point(c, side->from) || !note_point(c, side->to))) return false;
+  }
   return true;
 }
 
-// --- Which faces cover a cell ---
+// --- Patches ---
 
-static bool is_covered(Cutter *c, uint32_t cell, const BoolFace *f) {
-  for (int k = 0; k < 3; k++)
-    if (!bool_is_in_face(c->w, f, bool_cells(&c->net)[cell].v[k])) return false;
+// Finds which edges are of more than two faces, once and only where faces are cut together.
+static bool find_shared(Cutter *c) {
+  const BoolWork *w = c->w;
+  if (c->shared) return true;
+  uint32_t *triangles = malloc((3 * w->face_count + 1) * sizeof *triangles);
+  c->shared = malloc(w->face_count + 1);
+  size_t n = 0;
+  for (size_t i = 0; triangles && i < w->face_count; i++)
+    memcpy(triangles + 3 * i, w->faces[i].v, sizeof w->faces[i].v);
+  if (c->shared) memcpy(c->shared, w->touched, w->face_count);
+  CagMeshEdge *e = triangles && c->shared
+                       ? cag_mesh_edges(triangles, w->face_count, NULL, w->points.n, &n)
+                       : NULL;
+  for (size_t i = 0, uses; e && i < n; i += uses) {
+    for (uses = 1; i + uses < n && e[i + uses].low == e[i].low && e[i + uses].high == e[i].high;)
+      uses++;
+    for (size_t k = 0; uses > 2 && k < uses; k++)
+      c->shared[cag_mesh_edge_triangle(&e[i + k])] |=
+          (uint8_t)(1u << cag_mesh_edge_corner(&e[i + k]));
+  }
+  free(triangles);
+  free(e);
+  return e != NULL;
+}
+
+static int by_ends(const void *a, const void *b) {
+  const Side *p = a, *q = b;
+  const uint32_t low = p->from < p->to ? p->from : p->to, other = q->from < q->to ? q->from : q->to;
+  const uint32_t high = p->from ^ p->to ^ low, second = q->from ^ q->to ^ other;
+  if (low != other) return low < other ? -1 : 1;
+  if (high != second) return high < second ? -1 : 1;
+  return p->face < q->face ? -1 : p->face > q->face;
+}
+
+static bool list_sides(Cutter *c, uint32_t root) {
+  const signed char up = c->w->faces[root].axis;
+  c->sides.n = 0;
+  for (size_t i = c->faces.start[root]; i < c->faces.start[root + 1]; i++) {
+    const uint32_t face = c->faces.items[i];
+    const BoolFace *f = &c->w->faces[face];
+    const bool left = bool_turn(&c->w->points, f->v[0], f->v[1], f->v[2], up) > 0;
+    c->patch[face] = face;
+    if (!goes_on(c, i) || !bool_list_reserve(&c->sides, c->sides.n + 3, sizeof(Side))) return false;
+    for (int k = 0; k < 3; k++) {
+      const uint32_t a = f->v[k], b = f->v[(k + 1) % 3];
+      ((Side *)c->sides.items)[c->sides.n++] =
+          (Side){left ? a : b, left ? b : a, face, face, c->shared[face] >> k & 1, false};
+    }
+  }
   return true;
 }
 
-static bool try_cell(Cutter *c, uint32_t cell, uint32_t face, signed char facing) {
+// Has a face one normal everywhere?
+static bool is_flat(const CagMesh *m, uint32_t triangle, CagVec3 *normal) {
+  const double same_direction = 1 - 1e-12;
+  const uint32_t *k = m->triangles + 3 * (size_t)triangle;
+  *normal = m->normals ? m->normals[k[0]] : cag_vec3(0, 0, 0);
+  return !m->normals || (cag_dot(*normal, m->normals[k[1]]) >= same_direction &&
+                         cag_dot(*normal, m->normals[k[2]]) >= same_direction);
+}
+
+// Faces to two sides of an edge that have all in common.
+static bool are_one(const BoolWork *w, const Side *one, const Side *two) {
+  const double same_direction = 1 - 1e-12;
+  const BoolFace *f = &w->faces[one->face], *g = &w->faces[two->face];
+  CagVec3 n[2];
+  if (one->from != two->to || f->owner != g->owner || f->times[0] != g->times[0] ||
+      f->times[1] != g->times[1])
+    return false;
+  const CagMesh *m = w->meshes[f->owner];
+  if (m->labels && m->labels[f->triangle] != m->labels[g->triangle]) return false;
+  return is_flat(m, f->triangle, &n[0]) && is_flat(m, g->triangle, &n[1]) &&
+         (!m->normals || cag_dot(n[0], n[1]) >= same_direction);
+}
+
+static int by_patch(const void *a, const void *b) {
+  const Side *p = a, *q = b;
+  if (p->patch != q->patch) return p->patch < q->patch ? -1 : 1;
+  if (p->face != q->face) return p->face < q->face ? -1 : 1;
+  return p->from < q->from ? -1 : p->from > q->from;
+}
+
+// Joins the faces between which nothing changes, and sorts the sides by patches.
+static void find_patches(Cutter *c, bool alone) {
+  Side *s = c->sides.items;
+  if (!alone) qsort(s, c->sides.n, sizeof *s, by_ends);
+  for (size_t i = 0, same; !alone && i < c->sides.n; i += same) {
+    for (same = 1;
+         i + same < c->sides.n && ((s[i].from == s[i + same].from && s[i].to == s[i + same].to) ||
+                                   (s[i].from == s[i + same].to && s[i].to == s[i + same].from));)
+      same++;
+    if (same != 2 || s[i].shared || s[i + 1].shared || !are_one(c->w, &s[i], &s[i + 1])) continue;
+    const uint32_t a = bool_root(c->patch, s[i].face), b = bool_root(c->patch, s[i + 1].face);
+    c->patch[a < b ? b : a] = a < b ? a : b;
+    s[i].inner = s[i + 1].inner = true;
+  }
+  if (alone) return; // three by three
+  for (size_t i = 0; i < c->sides.n; i++) s[i].patch = bool_root(c->patch, s[i].face);
+  qsort(s, c->sides.n, sizeof *s, by_patch);
+}
+
+// --- Which patches cover a cell ---
+
+static bool cover(Cutter *c, uint32_t cell, uint32_t face, signed char facing) {
   const BoolFace *f = &c->w->faces[face];
-  Cover *cover = (Cover *)c->covers.items + cell;
-  if (cover->mark == face + 1) return true;
-  cover->mark = face + 1;
-  if (!is_covered(c, cell, f)) return true;
-  for (int k = 0; k < 2; k++) cover->times[k] += facing * f->times[k];
-  if (cover->face == BOOL_NONE) cover->face = face, cover->facing = facing;
+  Cover *at = (Cover *)c->covers.items + cell;
+  if (at->mark == face + 1) return true;
+  at->mark = face + 1;
+  for (int k = 0; k < 2; k++) at->times[k] += facing * f->times[k];
+  if (at->face == BOOL_NONE) at->face = face, at->facing = facing;
   if (!bool_list_reserve(&c->stack, c->stack.n + 1, sizeof(uint32_t))) return false;
   ((uint32_t *)c->stack.items)[c->stack.n++] = cell;
   return true;
 }
 
-// The next cell around v, counter-clockwise. No corner of a face is on the large triangle's edges:
-// the cells go all around.
-static uint32_t next_around(const Cutter *c, uint32_t cell, uint32_t v) {
-  const BoolCell *at = &bool_cells(&c->net)[cell];
-  const int k = at->v[0] == v ? 0 : at->v[1] == v ? 1 : 2;
-  return at->neighbour[(k + 1) % 3];
+// The cells along an outline, inside of it.
+static bool cover_sides(Cutter *c, const Side *s, size_t n, uint32_t face, signed char facing) {
+  uint32_t *walls = c->walls.items;
+  for (size_t i = 0; i < n; i++) {
+    uint32_t cell;
+    int e;
+    if (s[i].inner) continue;
+    for (uint32_t at = s[i].from; at != s[i].to;) {
+      at = bool_net_step(&c->net, at, s[i].to, &cell, &e);
+      if (at == BOOL_NONE) break; // not reached: the segment is in
+      walls[3 * (size_t)cell + (size_t)e] = face + 1;
+      if (!cover(c, cell, face, facing)) return false;
+    }
+  }
+  return true;
 }
 
-// From a covered cell at a corner of the face on to its neighbours. All corners are searched by
-// turns: some may have very many cells around them.
-static bool cover_cells(Cutter *c, uint32_t face, const BoolFace *rep) {
+static double cell_area(const Cutter *c, const uint32_t v[3]) {
+  const CagVec3 *p = c->w->points.at;
+  const CagVec3 n = cag_cross(cag_sub(p[v[1]], p[v[0]]), cag_sub(p[v[2]], p[v[0]]));
+  return fabs(c->net.axis == 0 ? n.x : c->net.axis == 1 ? n.y : n.z);
+}
+
+// The cells of a patch: from its outline on inward. *covered is their area.
+static bool cover_patch(Cutter *c, const Side *s, size_t n, const BoolFace *rep, double *covered) {
+  const uint32_t face = s->patch;
   const BoolFace *f = &c->w->faces[face];
   const int seen = bool_turn(&c->w->points, f->v[0], f->v[1], f->v[2], rep->axis);
   const signed char facing = (signed char)(seen * rep->sign);
-  uint32_t at[3];
-  for (int k = 0; k < 3; k++) at[k] = c->net.cell_of[f->v[k]];
-  for (int k = 0; c->stack.n == 0; k = (k + 1) % 3) {
-    if (!try_cell(c, at[k], face, facing)) return false;
-    at[k] = next_around(c, at[k], f->v[k]);
-  }
+  if (!cover_sides(c, s, n, face, facing)) return false;
   while (c->stack.n > 0) {
-    const BoolCell cell = bool_cells(&c->net)[((uint32_t *)c->stack.items)[--c->stack.n]];
-    for (int k = 0; k < 3; k++)
-      if (cell.neighbour[k] != BOOL_NONE && !try_cell(c, cell.neighbour[k], face, facing))
-        return false;
+    const uint32_t at = ((uint32_t *)c->stack.items)[--c->stack.n];
+    const BoolCell cell = bool_cells(&c->net)[at];
+    *covered += cell_area(c, cell.v);
+    for (int k = 0; k < 3; k++) {
+      const bool ends = ((uint32_t *)c->walls.items)[3 * (size_t)at + (size_t)k] == face + 1;
+      if (ends || cell.neighbour[k] == BOOL_NONE) continue;
+      if (!cover(c, cell.neighbour[k], face, facing)) return false;
+    }
+  }
+  return true;
+}
+
+// All patches. *overlaps: one lies on itself, so that its cells do not tell how often.
+static bool cover_cells(Cutter *c, const BoolFace *rep, bool *overlaps) {
+  const double same_area = 1e-6; // far above rounding, far below a triangle that counts twice
+  const Side *s = c->sides.items;
+  *overlaps = false;
+  for (size_t i = 0, n; i < c->sides.n; i += n) {
+    double covered = 0, given = 0;
+    for (n = 0; i + n < c->sides.n && s[i + n].patch == s[i].patch;) n++;
+    if (!goes_on(c, i / 3) || !cover_patch(c, s + i, n, rep, &covered)) return false;
+    for (size_t k = 0; k < n; k++) given += cell_area(c, c->w->faces[s[i + k].face].v) / 3;
+    if (n > 3 && fabs(covered - given) > same_area * given) *overlaps = true;
   }
   return true;
 }
@@ -245,17 +384,27 @@ static bool cut_alone(Cutter *c, uint32_t root) {
   return true;
 }
 
-static bool cut_together(Cutter *c, uint32_t root) {
+static bool triangulate_together(Cutter *c, uint32_t root, bool alone) {
+  if (!find_shared(c) || !list_sides(c, root)) return false;
+  find_patches(c, alone);
+  return note_points(c, root, true) && start_large(c, &c->w->faces[root]) && add_points(c) &&
+         add_edges(c) && add_contacts(c, root) && bool_net_improve(&c->net);
+}
+
+// alone: each face is a patch of its own.
+static bool cut_together(Cutter *c, uint32_t root, bool alone) {
   const BoolFace *rep = &c->w->faces[root];
-  if (!note_points(c, root, true) || !start_large(c, rep) || !add_points(c) ||
-      !add_edges(c, root) || !add_contacts(c, root) || !bool_net_improve(&c->net))
-    return false;
+  bool overlaps = false;
+  if (!triangulate_together(c, root, alone)) return false;
   const size_t n = c->net.cells.n;
-  if (!bool_list_reserve(&c->covers, n, sizeof(Cover))) return false;
+  if (!bool_list_reserve(&c->covers, n, sizeof(Cover)) ||
+      !bool_list_reserve(&c->walls, 3 * n, sizeof(uint32_t)))
+    return false;
   Cover *covers = c->covers.items;
   for (size_t i = 0; i < n; i++) covers[i] = (Cover){{0, 0}, BOOL_NONE, 0, 0};
-  for (size_t i = c->faces.start[root]; i < c->faces.start[root + 1]; i++)
-    if (!goes_on(c, i) || !cover_cells(c, c->faces.items[i], rep)) return false;
+  memset(c->walls.items, 0, 3 * n * sizeof(uint32_t));
+  if (!cover_cells(c, rep, &overlaps)) return false;
+  if (overlaps && !alone) return cut_together(c, root, true);
   for (uint32_t i = 0; i < n; i++)
     if (covers[i].face != BOOL_NONE && !add_cell(c, i, root, &covers[i])) return false;
   return true;
@@ -265,7 +414,7 @@ static bool cut_group(Cutter *c, uint32_t root) {
   const BoolFace *f = &c->w->faces[root];
   c->net.plane = f->v;
   c->net.axis = f->axis;
-  if (c->faces.start[root + 1] - c->faces.start[root] > 1) return cut_together(c, root);
+  if (c->faces.start[root + 1] - c->faces.start[root] > 1) return cut_together(c, root, false);
   if (c->contacts.start[root + 1] > c->contacts.start[root]) return cut_alone(c, root);
   return add_piece(
       c->w, (BoolPiece){{f->v[0], f->v[1], f->v[2]}, root, {f->times[0], f->times[1]}, root, 1});
@@ -273,7 +422,8 @@ static bool cut_group(Cutter *c, uint32_t root) {
 
 CagStatus bool_cut_faces(BoolWork *w) {
   Cutter c = {.w = w, .net = {.points = &w->points}};
-  bool done = sort_groups(w, w->face_count, false, &c.faces) &&
+  c.patch = malloc((w->face_count + 1) * sizeof *c.patch);
+  bool done = c.patch && sort_groups(w, w->face_count, false, &c.faces) &&
               sort_groups(w, w->contacts.n, true, &c.contacts) &&
               bool_list_reserve(&w->pieces, w->face_count + 1, sizeof(BoolPiece));
   CagStatus status = done ? CAG_OK : cag_fail_memory(w->err);
@@ -293,5 +443,9 @@ CagStatus bool_cut_faces(BoolWork *w) {
   free(c.points.items);
   free(c.covers.items);
   free(c.stack.items);
+  free(c.sides.items);
+  free(c.walls.items);
+  free(c.patch);
+  free(c.shared);
   return status;
 }

@@ -11,13 +11,6 @@
 #include "geom/mesh/boolean_work.h"
 #include "geom/mesh/edges.h"
 
-typedef struct Part {
-  uint32_t v[3];
-  uint32_t piece;
-  uint32_t origin; // the triangle that it was split from, or itself
-  bool turned;
-} Part;
-
 // A vertex of the result; its list is that of the other vertices of the same corners.
 typedef struct Vertex {
   CagVec3 normal;
@@ -39,8 +32,9 @@ typedef struct Pinch {
 typedef struct Builder {
   BoolWork *w;
   bool normals;
-  Part *parts;
+  BoolPart *parts;
   size_t n;
+  BoolSource *sources; // of the parts before flat faces were made
   uint32_t *triangles;
   uint32_t *corner; // forest of the corners 3 t + k
   uint32_t *head;   // of a corner's root: its vertices
@@ -62,7 +56,9 @@ static void take_piece(Builder *b, CagSetOperation op, uint32_t i) {
   const bool outer = is_inside(op, front[0] > 0, front[1] > 0);
   const bool inner = is_inside(op, front[0] + p->times[0] > 0, front[1] + p->times[1] > 0);
   if (inner == outer) return;
-  Part part = {{0, 0, 0}, i, 0, outer};
+  const uint32_t source = (uint32_t)b->n;
+  BoolPart part = {.source = {source, source, source}};
+  b->sources[source] = (BoolSource){p->face, (p->facing > 0) == outer};
   for (int k = 0; k < 3; k++)
     part.v[k] = bool_points_first(&w->points, p->v[outer && k ? 3 - k : k]);
   if (part.v[0] == part.v[1] || part.v[1] == part.v[2] || part.v[2] == part.v[0]) return;
@@ -70,7 +66,7 @@ static void take_piece(Builder *b, CagSetOperation op, uint32_t i) {
 }
 
 // Turned so that the least point comes first; gives whether the next is the greater of the others.
-static bool sorted_corners(const Part *p, uint32_t v[3]) {
+static bool sorted_corners(const BoolPart *p, uint32_t v[3]) {
   int least = 0;
   for (int k = 1; k < 3; k++)
     if (p->v[k] < p->v[least]) least = k;
@@ -86,16 +82,16 @@ static bool sorted_corners(const Part *p, uint32_t v[3]) {
 
 static int by_corners(const void *a, const void *b) {
   uint32_t v[3], u[3];
-  const Part *p = a, *q = b;
+  const BoolPart *p = a, *q = b;
   const bool back = sorted_corners(p, v), other = sorted_corners(q, u);
   for (int k = 0; k < 3; k++)
     if (v[k] != u[k]) return v[k] < u[k] ? -1 : 1;
   if (back != other) return back ? 1 : -1;
-  return p->piece < q->piece ? -1 : p->piece > q->piece;
+  return p->source[0] < q->source[0] ? -1 : p->source[0] > q->source[0];
 }
 
 // Of the same three corners, first the triangles of one sense, then those of the other.
-static size_t cancel(Part *p, size_t n) {
+static size_t cancel(BoolPart *p, size_t n) {
   uint32_t v[3];
   size_t ahead = 0;
   while (ahead < n && !sorted_corners(&p[ahead], v)) ahead++;
@@ -104,7 +100,7 @@ static size_t cancel(Part *p, size_t n) {
   return back > ahead ? back - ahead : ahead - back;
 }
 
-static bool same_corners(const Part *p, const Part *q) {
+static bool same_corners(const BoolPart *p, const BoolPart *q) {
   uint32_t v[3], u[3];
   sorted_corners(p, v);
   sorted_corners(q, u);
@@ -112,8 +108,8 @@ static bool same_corners(const Part *p, const Part *q) {
 }
 
 static int by_piece(const void *a, const void *b) {
-  const Part *p = a, *q = b;
-  return p->piece < q->piece ? -1 : p->piece > q->piece;
+  const BoolPart *p = a, *q = b;
+  return p->source[0] < q->source[0] ? -1 : p->source[0] > q->source[0];
 }
 
 static void cancel_opposites(Builder *b) {
@@ -181,7 +177,7 @@ static bool join_many(Builder *b, const CagMeshEdge *e, size_t n) {
                             : cag_vec3(0, fabs(d.y) <= fabs(d.z), fabs(d.y) > fabs(d.z));
   const CagVec3 x = cag_unit(cag_cross(d, least)), y = cag_cross(d, x);
   for (size_t i = 0; spokes && i < n; i++) {
-    const Part *p = &b->parts[cag_mesh_edge_triangle(&e[i])];
+    const BoolPart *p = &b->parts[cag_mesh_edge_triangle(&e[i])];
     const CagVec3 apex = cag_sub(at[p->v[(cag_mesh_edge_corner(&e[i]) + 2) % 3]], low);
     spokes[i] = (Spoke){atan2(cag_dot(apex, y), cag_dot(apex, x)), &e[i]};
   }
@@ -288,14 +284,14 @@ static bool split_pinched(Builder *b) {
   for (uint32_t i = 0; i < b->n; i++) b->parts[i].origin = i;
   for (size_t i = 0; i < parts.n; i++)
     for (int k = 0; k < 3; k++) {
-      const Part part = ((Part *)parts.items)[i];
+      const BoolPart part = ((BoolPart *)parts.items)[i];
       const uint32_t p = part.v[k], q = part.v[(k + 1) % 3];
       const Pinch key = {p < q ? p : q, p < q ? q : p, part.origin, 0};
       const Pinch *pinch = bsearch(&key, b->pinched.items, b->pinched.n, sizeof key, by_edge);
       if (!pinch) continue;
       if (!bool_list_reserve(&parts, parts.n + 1, sizeof part)) return false;
       b->parts = parts.items;
-      Part half = part;
+      BoolPart half = part;
       half.v[k] = pinch->middle;
       b->parts[parts.n++] = half;
       b->parts[i].v[(k + 1) % 3] = pinch->middle;
@@ -328,12 +324,11 @@ static void weights_at(const CagVec3 v[3], CagVec3 p, double weight[3]) {
   for (int k = 0; k < 3; k++) weight[k] = sum > 0 ? weight[k] / sum : 1 / 3.0;
 }
 
-static CagVec3 normal_at(const Builder *b, const Part *part, CagVec3 p) {
-  const BoolPiece *piece = &bool_pieces(b->w)[part->piece];
-  const BoolFace *face = &b->w->faces[piece->face];
+static CagVec3 normal_at(const Builder *b, const BoolSource *source, CagVec3 p) {
+  const BoolFace *face = &b->w->faces[source->face];
   const CagMesh *m = b->w->meshes[face->owner];
   const uint32_t *corner = m->triangles + 3 * (size_t)face->triangle;
-  const double sense = (piece->facing > 0) == part->turned ? -1 : 1;
+  const double sense = source->back ? -1 : 1;
   CagVec3 v[3], normal = {0, 0, 0};
   double weight[3];
   for (int k = 0; k < 3; k++) v[k] = m->positions[corner[k]];
@@ -353,10 +348,11 @@ static CagVec3 normal_at(const Builder *b, const Part *part, CagVec3 p) {
 
 static uint32_t vertex_of(Builder *b, uint32_t corner) {
   const double same_direction = 1 - 1e-6; // cosine of 0.08 degrees, as in cag_mesh_weld
-  const Part *part = &b->parts[corner / 3];
+  const BoolPart *part = &b->parts[corner / 3];
   const uint32_t root = bool_root(b->corner, corner), point = part->v[corner % 3];
   const CagVec3 none = {0, 0, 0};
-  const CagVec3 normal = b->normals ? normal_at(b, part, b->w->points.at[point]) : none;
+  const BoolSource *source = &b->sources[part->source[corner % 3]];
+  const CagVec3 normal = b->normals ? normal_at(b, source, b->w->points.at[point]) : none;
   for (uint32_t i = b->head[root]; i != BOOL_NONE; i = b->vertices[i].next)
     if (!b->normals || cag_dot(b->vertices[i].normal, normal) >= same_direction) return i;
   const uint32_t head = b->head[root], i = (uint32_t)b->vertex_count++;
@@ -394,14 +390,19 @@ CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out) {
   Builder b = {.w = w};
   b.normals = w->meshes[0]->normals || w->meshes[1]->normals;
   b.parts = malloc((w->pieces.n + 1) * sizeof *b.parts);
-  CagStatus status = b.parts ? CAG_OK : cag_fail_memory(w->err);
+  b.sources = malloc((w->pieces.n + 1) * sizeof *b.sources);
+  CagStatus status = b.parts && b.sources ? CAG_OK : cag_fail_memory(w->err);
   if (!status) {
     for (uint32_t i = 0; i < w->pieces.n; i++) take_piece(&b, op, i);
     cancel_opposites(&b);
-    if (!join_all(&b) || !make_vertices(&b)) status = cag_fail_memory(w->err);
+    const bool done = (w->whole || bool_flatten(w, b.sources, false, &b.parts, &b.n)) &&
+                      join_all(&b) && make_vertices(&b);
+    if (!done) status = bool_stopped(w);
+    if (!done && !status) status = cag_fail_memory(w->err);
   }
   if (!status) status = write_mesh(&b, out);
   free(b.parts);
+  free(b.sources);
   free(b.triangles);
   free(b.corner);
   free(b.head);

@@ -11,6 +11,7 @@
 //   boolean_pairs.c   which faces meet, and in what
 //   boolean_plane.c   faces cut along what they meet
 //   boolean_cells.c   winding numbers
+//   boolean_flat.c    flat faces in few triangles
 //   boolean_result.c  the closed mesh
 //
 // A build with CGAL asks CGAL for the pieces first (boolean_by_cgal.c, boolean_cgal.cpp).
@@ -113,8 +114,21 @@ typedef struct BoolPiece {
   signed char facing; // 1: in that face's sense; -1: turned
 } BoolPiece;
 
+// A face whose plane, normals and material a part has; back: the part runs against it.
+typedef struct BoolSource {
+  uint32_t face;
+  bool back;
+} BoolSource;
+
+// A triangle of the result; source: that of each corner, as numbers of a list.
+typedef struct BoolPart {
+  uint32_t v[3], source[3];
+  uint32_t origin; // the triangle that it was split from, or itself
+} BoolPart;
+
 typedef struct BoolWork {
   const CagMesh *meshes[2];
+  bool whole; // flat faces stay in the triangles that the cuts leave
   const volatile int *interrupt;
   CagError *err;
   BoolPoints points;
@@ -125,6 +139,7 @@ typedef struct BoolWork {
   uint32_t *order;        // of the faces
   CagBounds *boxes;       // in that order
   uint32_t *plane_of;     // forest of the faces that overlap others of their plane
+  uint8_t *touched;       // of faces, by bits: edges (from corner k on) along which another runs
   BoolList contacts;      // of BoolContact
   BoolList pieces;        // of BoolPiece
   int32_t (*winding)[2];  // in front of each piece
@@ -137,6 +152,15 @@ CagStatus bool_stopped(const BoolWork *w); // CAG_E_CALLBACK where the caller wa
 CagStatus bool_find_contacts(BoolWork *w);
 CagStatus bool_cut_faces(BoolWork *w);
 CagStatus bool_find_windings(BoolWork *w);
+// Flat faces that so many triangles meet in one point of are given rounder triangles before the
+// cut: two such fans, one on the other, would cross as often as the product of their triangles.
+#define BOOL_FAN 48
+
+// Gives flat faces of the parts few triangles; *parts is replaced. only_fans: only fans are
+// triangulated anew, and their outlines keep all points. False: no memory, or the caller wants an
+// end.
+bool bool_flatten(BoolWork *w, const BoolSource *sources, bool only_fans, BoolPart **parts,
+                  size_t *n);
 CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out);
 
 // The pieces of the result itself, all with the solid behind them. *taken: whether CGAL took the

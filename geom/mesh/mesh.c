@@ -54,6 +54,7 @@ void cag_mesh_release(CagMesh *m) {
   free(m->uv);
   free(m->triangles);
   free(m->weld);
+  free(m->labels);
   free(m);
 }
 

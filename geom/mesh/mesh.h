@@ -35,6 +35,7 @@ typedef struct CagMesh {
   double *uv;          // 2 per vertex; NULL: none
   uint32_t *triangles; // 3 per triangle, counter-clockwise seen from outside
   uint32_t *weld;
+  uint32_t *labels;    // of triangles: numbers of materials, 0: none said. NULL: all 0
   CagColorScale scale; // kind NONE unless there are uv
 } CagMesh;
 

@@ -104,8 +104,9 @@ static CagStatus join_meshes(const CagSolid *s, const CagTessellation *how, CagM
     *out = cag_mesh_retain(meshes[0]);
     return CAG_OK;
   }
-  CagStatus status = cag_mesh_boolean_many(operation_of(s), (const CagMesh *const *)meshes, n,
-                                           how->interrupt, out, err);
+  const CagBooleanHow set = {.interrupt = how->interrupt, .keep_flat = how->max_edge > 0};
+  CagStatus status =
+      cag_mesh_boolean_many(operation_of(s), (const CagMesh *const *)meshes, n, &set, out, err);
   if (status || (*out)->triangle_count <= how->max_triangles) return status;
   status = cag_fail(err, CAG_E_LIMIT, "triangle-limit", "tolerance", -1,
                     "the %s takes %zu triangles, the limit is %zu: use a larger tolerance",
