@@ -289,7 +289,9 @@ bool cag_surfaces_loft(CagCall *call, CagValue *result) {
   size_t read = 0;
   for (size_t i = 0; ok && i < list->length; i++) {
     ok = read_loft_curve(call, i, cag_list_get(call->vm, list, i), &curves[i]);
-    if (ok) all_closed = all_closed && curves[read++]->closed;
+    if (!ok) break;
+    all_closed = all_closed && curves[i]->closed;
+    read++;
   }
   CagSurface *side = NULL;
   CagSolid *solid = NULL;
