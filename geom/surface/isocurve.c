@@ -1,8 +1,9 @@
 // Curves on surfaces along which one parameter is fixed.
 //
 // Of NURBS surfaces they are NURBS curves, exactly: the net contracted with the basis at the fixed
-// parameter. Of any other kind they are curves of a kind of their own, "isocurve", which asks the
-// surface; they keep its parameter, for which there is no NURBS form in general.
+// parameter. Of revolutions they are circles and the turned profile. Of any other kind they are
+// curves of a kind of their own, "isocurve", which asks the surface and keeps its parameter; they
+// have a NURBS form where the surface has one with the same parameters.
 
 #include <math.h>
 #include <stdio.h>
@@ -150,9 +151,58 @@ static void isocurve_describe(const CagCurve *curve, char *buffer, size_t size) 
 
 static void isocurve_destroy(CagCurve *c) { cag_surface_release(((Isocurve *)c)->surface); }
 
+// The exact form is one of the curve where a few points, at no simple fractions, agree.
+static bool agrees(const CagCurve *curve, const CagCurve *exact) {
+  enum { POINTS = 7 };
+  const double offset = 0.37, same = 1e-11;
+  double size = 0, off = 0;
+  CagVec3 first = {0, 0, 0};
+  for (int i = 0; i < POINTS; i++) {
+    double t = curve->start + (curve->end - curve->start) * (i + offset) / POINTS;
+    CagVec3 p, q;
+    CagError ignored;
+    if (cag_curve_point(curve, t, &p, &ignored) || cag_curve_point(exact, t, &q, &ignored))
+      return false;
+    if (i == 0) first = p;
+    size = fmax(size, cag_norm(cag_sub(p, first)) + cag_norm(p));
+    off = fmax(off, cag_norm(cag_sub(p, q)));
+  }
+  return off <= same * size;
+}
+
+static CagStatus isocurve_to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) {
+  const Isocurve *c = (const Isocurve *)curve;
+  CagSurface *exact = NULL;
+  CagCurve *whole = NULL, *turned = NULL, *part = NULL, *made = NULL;
+  CagError ignored;
+  double a = running(c, curve->start), b = running(c, curve->end);
+  CagStatus status = cag_surface_to_nurbs(c->surface, &exact, &ignored);
+  if (!status) status = cag_surface_isocurve(exact, c->direction, c->at, &whole, &ignored);
+  if (!status) status = cag_curve_trim(whole, fmin(a, b), fmax(a, b), &part, &ignored);
+  if (!status && b < a) status = cag_curve_reverse(part, &turned, &ignored);
+  if (!status)
+    status =
+        cag_curve_reparametrize(turned ? turned : part, curve->start, curve->end, &made, &ignored);
+  bool good = status == CAG_OK && agrees(curve, made);
+  cag_surface_release(exact);
+  cag_curve_release(whole);
+  cag_curve_release(part);
+  cag_curve_release(turned);
+  if (good) {
+    *out = made;
+    return CAG_OK;
+  }
+  if (!status) cag_curve_release(made);
+  return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "curve", -1,
+                  "an isocurve of a %s surface has no exact NURBS form; approximate it to a "
+                  "tolerance",
+                  c->surface->kind->name);
+}
+
 static const CagCurveKind isocurve_kind = {
     .name = "isocurve",
     .eval = isocurve_eval,
+    .to_nurbs = isocurve_to_nurbs,
     .transform = isocurve_transform,
     .reverse = isocurve_reverse,
     .trim = isocurve_trim,
@@ -197,6 +247,35 @@ static CagStatus of_nurbs(const CagSurfaceNurbsView *view, int direction, double
   return status;
 }
 
+// --- Revolutions ---
+
+// The circle of a profile point, or the profile turned; false: the point lies on the axis, or the
+// turn is more than an arc takes.
+static bool of_revolution(const CagSurface *s, int direction, double at, CagCurve **out) {
+  const CagCurve *profile;
+  CagVec3 axis, through, p;
+  CagTransform turn = cag_transform_identity();
+  CagError ignored;
+  if (!cag_surface_revolution_view(s, &profile, &axis, &through, NULL, NULL)) return false;
+  if (direction == 1)
+    return cag_rotate(axis, at, through, &turn, &ignored) == CAG_OK &&
+           cag_curve_transform(profile, &turn, out, &ignored) == CAG_OK;
+  if (cag_curve_point(profile, at, &p, &ignored)) return false;
+  CagVec3 from = cag_sub(p, through), along = cag_scaled(axis, cag_dot(axis, from));
+  CagVec3 x = cag_sub(from, along), center = cag_add(through, along);
+  double radius = cag_norm(x);
+  if (radius <= CAG_SURFACE_SAME * (cag_norm(from) + cag_norm(through))) return false;
+  x = cag_scaled(x, 1 / radius);
+  const CagVec3 columns[4] = {x, cag_cross(axis, x), axis, center};
+  for (int j = 0; j < 4; j++) {
+    turn.m[0][j] = columns[j].x;
+    turn.m[1][j] = columns[j].y;
+    turn.m[2][j] = columns[j].z;
+  }
+  turn.planar = false;
+  return cag_curve_arc(radius, radius, s->v0, s->v1, &turn, out, &ignored) == CAG_OK;
+}
+
 CagStatus cag_surface_isocurve(const CagSurface *s, int direction, double at, CagCurve **out,
                                CagError *err) {
   // The check of the parameter, with its message, is that of a point.
@@ -209,6 +288,7 @@ CagStatus cag_surface_isocurve(const CagSurface *s, int direction, double at, Ca
   CagSurfaceNurbsView view;
   if (cag_surface_nurbs_view(s, &view))
     return of_nurbs(&view, direction, at, at >= hi ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, out, err);
+  if (of_revolution(s, direction, at, out)) return CAG_OK;
   double from = direction == 0 ? s->v0 : s->u0, to = direction == 0 ? s->v1 : s->u1;
   return isocurve_new(s, direction, at, from, to, from, to, out, err);
 }

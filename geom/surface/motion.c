@@ -648,6 +648,11 @@ CagStatus cag_motion_along(const CagCurve *path, const CagPathMotion *how, CagMo
   if (!status && !(isfinite(how->twist.start) && isfinite(how->twist.end)))
     status = cag_fail(err, CAG_E_ARGUMENT, "not-finite", "twist", -1, "`twist` must be finite");
   if (!status) status = cag_surface_space_curve(path, &m->path, err);
+  CagBounds box = CAG_BOUNDS_EMPTY;
+  if (!status) status = cag_curve_bounds(m->path, &box, err);
+  if (!status && cag_norm(cag_sub(box.max, box.min)) == 0)
+    status = cag_fail(err, CAG_E_DEGENERATE, "zero-tangent", "path", -1,
+                      "`path` is one point: it leads nowhere");
   if (!status) {
     m->start = m->path->start;
     m->end = m->path->end;

@@ -111,6 +111,10 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "(surface-open).",
      "print near(volume(sphere_surface(3)), 36 * pi, relative: 1e-8) // expect: true", SURFACES,
      asked},
+    {"centroid(S)", cag_surfaces_centroid, "list",
+     "The centroid of the body within a closed surface, or of an open surface itself.",
+     "print near(centroid(trim(sphere_surface(3), u: 0deg..90deg)), [0, 0, 1.5]) // expect: true",
+     SURFACES, asked},
     {"is_developable(S, tolerance = 1e-9)", cag_surfaces_is_developable, "bool",
      "Whether the surface can be unrolled into the plane without stretching: its Gaussian "
      "curvature, times the square of its size, is nowhere larger than the tolerance.",

@@ -15,7 +15,7 @@
   X(first_form) X(second_form) X(gaussian_curvature) X(mean_curvature) X(normal_curvature) \
   X(principal_curvatures) X(curvature_class) \
   /* surfaces_change.c: of the whole, and what is made of it */ \
-  X(area) X(volume) X(sample) X(to_nurbs) X(flip) X(isocurve) X(boundary) \
+  X(area) X(volume) X(centroid) X(sample) X(to_nurbs) X(flip) X(isocurve) X(boundary) \
   /* surfaces_make.c: of curves */ \
   X(revolve) X(extrude) X(ruled) X(bilinear) X(translational) X(sphere_surface) \
   X(torus_surface) \

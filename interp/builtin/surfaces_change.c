@@ -42,6 +42,25 @@ bool cag_surfaces_volume(CagCall *call, CagValue *result) {
   return true;
 }
 
+// Of the body within, or of an open surface itself.
+bool cag_surfaces_centroid(CagCall *call, CagValue *result) {
+  CagSurface *s;
+  CagError err;
+  CagVec3 center;
+  double terms[10] = {0}, area;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  CagStatus status = cag_surface_is_closed(s) ? cag_surface_volume_terms(s, terms, &err)
+                                              : cag_surface_area(s, &area, &center, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (terms[0] != 0)
+    center = cag_vec3(terms[1] / terms[0], terms[2] / terms[0], terms[3] / terms[0]);
+  else if (cag_surface_is_closed(s) &&
+           !cag_geometry_ok(call, cag_surface_area(s, &area, &center, &err), &err))
+    return false;
+  *result = cag_point(call->vm, center, 3);
+  return true;
+}
+
 // Most points that one call makes.
 #define POINTS_MAX 100000000
 
