@@ -164,13 +164,45 @@ static bool sphere_equation(CagCall *call, const CagSolid *s, CagQuadric *q) {
   return cag_geometry_ok(call, cag_quadric_transform(&own, &s->placement, q, &err), &err);
 }
 
+// Places on a meridian at which it must be as far from the center as at its ends.
+#define MERIDIAN_PROBES 9
+#define ON_SPHERE 1e-12 // part of the radius
+
+// The equation of a surface of revolution whose meridian is an arc about a point of the axis.
+static bool turned_sphere(const CagSurface *s, CagQuadric *q) {
+  const CagCurve *meridian;
+  CagVec3 axis, through, d[2], p;
+  CagError ignored;
+  if (!cag_surface_revolution_view(s, &meridian, &axis, &through, NULL, NULL)) return false;
+  const double t[2] = {meridian->start, meridian->end};
+  for (int i = 0; i < 2; i++) {
+    if (cag_curve_point(meridian, t[i], &p, &ignored)) return false;
+    d[i] = cag_sub(p, through);
+  }
+  const double rise = cag_dot(cag_sub(d[1], d[0]), cag_unit(axis));
+  const double along = (cag_dot(d[1], d[1]) - cag_dot(d[0], d[0])) / (2 * rise);
+  if (!isfinite(along)) return false;
+  const CagVec3 c = cag_madd(through, along, cag_unit(axis));
+  const double radius = cag_norm(cag_sub(cag_add(through, d[0]), c));
+  for (int i = 1; i <= MERIDIAN_PROBES; i++) {
+    const double at = t[0] + (t[1] - t[0]) * i / (MERIDIAN_PROBES + 1);
+    if (cag_curve_point(meridian, at, &p, &ignored) ||
+        !(fabs(cag_norm(cag_sub(p, c)) - radius) <= ON_SPHERE * radius))
+      return false;
+  }
+  *q = (CagQuadric){
+      {1, 1, 1, 0, 0, 0, -2 * c.x, -2 * c.y, -2 * c.z, cag_dot(c, c) - radius * radius}};
+  return true;
+}
+
 bool cag_arg_quadric(CagCall *call, CagQuadric *q) {
   CagError err;
   CagValue v = call->values[0];
   if (v.type == CAG_LIST) return read_equation(call, q);
   if (v.type == CAG_GROUP && CAG_AS_SHAPE(v)->as.items->length > 0)
     v = cag_list_get(call->vm, CAG_AS_SHAPE(v)->as.items, 0);
-  if (v.type == CAG_SURFACE && cag_surface_quadric_view(CAG_AS_SHAPE(v)->as.surface, q))
+  if (v.type == CAG_SURFACE && (cag_surface_quadric_view(CAG_AS_SHAPE(v)->as.surface, q) ||
+                                turned_sphere(CAG_AS_SHAPE(v)->as.surface, q)))
     return true;
   if (v.type == CAG_SOLID && CAG_AS_SHAPE(v)->as.solid->kind == CAG_SOLID_SPHERE)
     return sphere_equation(call, CAG_AS_SHAPE(v)->as.solid, q);
