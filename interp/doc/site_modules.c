@@ -91,16 +91,20 @@ static void write_module_example(const CagSitePage *p, const Book *b, const char
   free(import);
 }
 
-// Documentation is prose in which lines indented by four are a script.
-static void write_doc_text(const CagSitePage *p, const Book *b, const char *text) {
+// Documentation is prose in which lines indented by four are a script. Gives the text from its
+// first script on with `prose_only`, else its end.
+static const char *write_doc_text(const CagSitePage *p, const Book *b, const char *text,
+                                  bool prose_only) {
   bool is_code;
   for (size_t n; *text; text += n) {
     n = cag_doc_part(text, &is_code);
+    if (is_code && prose_only) break;
     char *part = cag_doc_part_text(text, n, is_code);
     if (is_code) write_module_example(p, b, part);
     else cag_html_markdown(p->site, p->out, p->root, b->module->name, part, strlen(part));
     free(part);
   }
+  return text;
 }
 
 // What is known of a parameter other than by its own /// line; NULL: nothing.
@@ -140,8 +144,9 @@ static void write_definition(const CagSitePage *p, const Book *b, const CagDocEn
   fprintf(p->out, "<section><p class=\"signature\" id=\"%s\"><code>", e->name);
   cag_html_script(p->out, p->root, e->signature, strlen(e->signature));
   fputs("</code></p>\n", p->out);
-  if (e->text) write_doc_text(p, b, e->text);
+  const char *examples = e->text ? write_doc_text(p, b, e->text, true) : "";
   write_arguments(p, b, e);
+  write_doc_text(p, b, examples, false);
   fputs("</section>\n", p->out);
 }
 

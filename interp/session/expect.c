@@ -19,6 +19,7 @@
 #include "interp/render/compare.h"
 #include "interp/render/exr.h"
 #include "interp/render/png.h"
+#include "interp/session/session.h"
 
 void cag_test_options_init(CagTestOptions *o) {
   *o = (CagTestOptions){0};
@@ -533,6 +534,8 @@ static bool render(Run *r, CagSession *s, const CagImage *reference, const char 
   options.height = (int)reference->height;
   const double limit = r->options->session.max_time;
   options.time_limit = limit > 0 ? limit : CAG_TEST_PICTURE_SECONDS;
+  s->options.max_time = options.time_limit; // the scene's meshes belong to the picture
+  cag_session_renew_time(s);
   if (cag_session_render(s, &options, path) == CAG_STATUS_OK) return true;
   char *errors = rendered_errors(s);
   fail(r, 0, "the scene cannot be rendered", NULL, NULL, errors);
