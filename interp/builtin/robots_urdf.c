@@ -27,7 +27,6 @@ typedef struct Import {
   CagUrdfTree tree; // its arena holds names of meshes as well
   CagUrdfRows rows;
   CagRobotLink *plain;
-  CagRobot *robot; // until a value owns it
   CagValue *result;
 } Import;
 
@@ -246,6 +245,7 @@ static bool make_links(Import *m, CagValue *list) {
 static bool make_robot(Import *m) {
   CagCall *call = m->call;
   CagError err = {0};
+  CagRobot *robot = NULL;
   CagValue list;
   m->plain = malloc((m->rows.row_count + 1) * sizeof *m->plain);
   if (!m->plain)
@@ -257,10 +257,9 @@ static bool make_robot(Import *m) {
                        .convention = CAG_ROBOT_CLASSIC,
                        .base = m->rows.base,
                        .tool = m->rows.tool};
-  const CagStatus status = cag_robot_new(&spec, &m->robot, &err);
+  const CagStatus status = cag_robot_new(&spec, &robot, &err);
   if (!cag_geometry_ok(call, status, &err)) return false;
-  *m->result = cag_robot_value(call->vm, m->robot, name, list);
-  m->robot = NULL;
+  *m->result = cag_robot_value(call->vm, robot, name, list);
   return true;
 }
 
@@ -305,7 +304,6 @@ static bool call_read_urdf(CagCall *call, CagValue *result) {
   const bool ok = cag_vm_call_back(call->vm, read_robot, &m);
   free(m.bytes);
   free(m.plain);
-  cag_robot_release(m.robot);
   cag_urdf_rows_free(&m.rows);
   cag_urdf_tree_free(&m.tree);
   return ok;

@@ -47,7 +47,7 @@ struct CagPage {
 
 static void take_bytes(CagVm *vm, size_t size) {
   CagHeap *h = &vm->heap;
-  if (size > h->limit || h->bytes > h->limit - size) cag_vm_out_of_memory(vm);
+  if (!cag_heap_has_room(vm, size)) cag_vm_out_of_memory(vm);
   h->bytes += size;
   h->debt += size;
 }
@@ -91,6 +91,11 @@ void *cag_alloc(CagVm *vm, CagType type, size_t size) {
   o->type = (uint8_t)type;
   o->mark = (uint8_t)(h->mark | h->depth << MARK_BITS);
   return o;
+}
+
+bool cag_heap_has_room(const CagVm *vm, size_t size) {
+  const CagHeap *h = &vm->heap;
+  return size <= h->limit && h->bytes <= h->limit - size;
 }
 
 void cag_heap_charge(CagVm *vm, size_t bytes) { take_bytes(vm, bytes); }

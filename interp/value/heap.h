@@ -19,6 +19,7 @@
 // crossed, the run ends there with the memory limit's error (a long jump to where the run began;
 // what C code holds from malloc at that moment is lost).
 void *cag_alloc(CagVm *vm, CagType type, size_t size);
+bool cag_heap_has_room(const CagVm *vm, size_t size); // for a cag_alloc
 void cag_heap_charge(CagVm *vm, size_t bytes);
 void cag_collect(CagVm *vm);
 

@@ -233,13 +233,23 @@ static CagShape *shape_new(CagVm *vm, CagType type) {
   return s;
 }
 
+// Running out of memory does not come back: what a new object would own is let go before.
+#define NEED_ROOM(vm, object, release, owned)                                                      \
+  do {                                                                                             \
+    if (cag_heap_has_room(vm, sizeof(object))) break;                                              \
+    release(owned);                                                                                \
+    cag_vm_out_of_memory(vm);                                                                      \
+  } while (0)
+
 CagValue cag_curve_value(CagVm *vm, CagCurve *c) {
+  NEED_ROOM(vm, CagShape, cag_curve_release, c);
   CagShape *s = shape_new(vm, CAG_CURVE);
   s->as.curve = c;
   return cag_object(CAG_CURVE, s);
 }
 
 CagValue cag_region_value(CagVm *vm, CagRegion *r, const CagTransform *placement) {
+  NEED_ROOM(vm, CagShape, cag_region_release, r);
   CagShape *s = shape_new(vm, CAG_REGION);
   s->as.region = r;
   if (placement) s->placement = *placement;
@@ -247,18 +257,21 @@ CagValue cag_region_value(CagVm *vm, CagRegion *r, const CagTransform *placement
 }
 
 CagValue cag_surface_value(CagVm *vm, CagSurface *surface) {
+  NEED_ROOM(vm, CagShape, cag_surface_release, surface);
   CagShape *s = shape_new(vm, CAG_SURFACE);
   s->as.surface = surface;
   return cag_object(CAG_SURFACE, s);
 }
 
 CagValue cag_solid_value(CagVm *vm, CagSolid *solid) {
+  NEED_ROOM(vm, CagShape, cag_solid_release, solid);
   CagShape *s = shape_new(vm, CAG_SOLID);
   s->as.solid = solid;
   return cag_object(CAG_SOLID, s);
 }
 
 CagValue cag_mesh_value(CagVm *vm, CagMesh *m) {
+  NEED_ROOM(vm, CagShape, cag_mesh_release, m);
   CagShape *s = shape_new(vm, CAG_MESH);
   s->as.mesh = m;
   cag_heap_charge(vm, m->vertex_count * 64 + m->triangle_count * 12);
@@ -304,6 +317,7 @@ CagValue cag_link_value(CagVm *vm, const CagRobotLink *link, CagValue shape) {
 }
 
 CagValue cag_robot_value(CagVm *vm, CagRobot *r, CagText *name, CagValue links) {
+  NEED_ROOM(vm, CagRobotValue, cag_robot_release, r);
   CagRobotValue *v = cag_alloc(vm, CAG_ROBOT, sizeof *v);
   v->robot = r;
   v->name = name;

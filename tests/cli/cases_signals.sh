@@ -131,7 +131,7 @@ stopped() {
   interrupted INT 1 "$@"
   took=$((($(date +%s%N) - begun) / 1000000))
   status 130
-  [ $took -lt 2500 ] || wrong "it took $took ms"
+  [ $took -lt 2900 ] || wrong "it took $took ms"
   no_temporaries .
 }
 
