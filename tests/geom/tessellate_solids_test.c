@@ -6,6 +6,7 @@
 #include "geom/mesh/check.h"
 #include "geom/mesh/distance.h"
 #include "geom/solid/csg.h"
+#include "geom/surface/loft.h"
 #include "tests/geom/support.h"
 
 static uint64_t chance_state = 1;
@@ -464,6 +465,120 @@ static void tubes_with_tight_bends_keep_their_volume(void **state) {
   cag_curve_release(c);
 }
 
+// --- Clips, lofts, tubes, uneven scales: points on the surfaces ---
+
+static const double helix_radius = 2, helix_pitch = 3, helix_turns = 4;
+
+static double to_helix_tube(CagVec3 p) {
+  // The nearest point of the helix has about the angle of p, on the turn of its height.
+  double end = helix_turns * 2 * M_PI, rise = helix_pitch / (2 * M_PI), best = INFINITY;
+  double near = atan2(p.y, p.x);
+  for (int turn = -1; turn <= helix_turns + 1; turn++) {
+    double t = near + turn * 2 * M_PI, step = 0.7;
+    for (int k = 0; k < 60; k++, step *= 0.7)
+      for (int side = -1; side <= 1; side += 2) {
+        double d[2];
+        for (int i = 0; i < 2; i++) {
+          double x = fmin(fmax(t + i * side * step, 0), end);
+          d[i] = cag_norm(
+              cag_sub(p, cag_vec3(helix_radius * cos(x), helix_radius * sin(x), rise * x)));
+        }
+        if (d[1] < d[0]) t = fmin(fmax(t + side * step, 0), end);
+        best = fmin(best, fmin(d[0], d[1]));
+      }
+  }
+  double off = fabs(best - 0.7);
+  // The caps, square to both ends.
+  double slope = hypot(helix_radius, rise);
+  CagVec3 first = {0, helix_radius / slope, rise / slope};
+  off = fmin(off, fabs(cag_dot(cag_sub(p, cag_vec3(helix_radius, 0, 0)), first)));
+  return fmin(off, fabs(cag_dot(cag_sub(p, cag_vec3(helix_radius, 0, rise * end)), first)));
+}
+static double to_clipped_torus(CagVec3 p) {
+  return fmin(fabs(p.x), fabs(hypot(hypot(p.x, p.y) - 5, p.z) - 2));
+}
+// To first order, which is enough near to it.
+static double to_ellipsoid(CagVec3 p) {
+  CagVec3 g = {p.x / 64, p.y, p.z / 9};
+  return fabs(cag_dot(p, g) - 1) / (2 * cag_norm(g));
+}
+static double to_frustum(CagVec3 p) {
+  double side = fabs(hypot(p.x, p.y) - (4 - p.z / 3)) * 3 / hypot(1, 3);
+  return fmin(side, fmin(fabs(p.z), fabs(p.z - 6)));
+}
+
+static CagSolid *helix_tube(void) {
+  CagCurve *c;
+  CagSolid *s;
+  OK(cag_curve_helix(helix_radius, helix_pitch, helix_turns, 0, &c, &err));
+  OK(cag_solid_tube(c, 0.7, &s, &err));
+  cag_curve_release(c);
+  return s;
+}
+static CagSolid *clipped_torus(void) {
+  CagPlane plane;
+  CagSolid *torus, *side;
+  OK(cag_solid_torus(5, 2, &torus, &err));
+  OK(cag_plane(cag_vec3(0, 0, 0), cag_vec3(1, 0, 0), &plane, &err));
+  OK(cag_solid_half_space(&plane, &side, &err));
+  return COMBINED(CAG_INTERSECTION, torus, side);
+}
+static CagSolid *ellipsoid(void) {
+  CagTransform t = cag_transform_identity();
+  t.m[0][0] = 8;
+  t.m[2][2] = 3;
+  return mapped(ball(1), &t);
+}
+// A cone from three circles; the middle one is no degree of freedom of it.
+static CagSolid *frustum(void) {
+  CagCurve *circles[3];
+  CagSurface *side;
+  CagSolid *s;
+  const double height[3] = {0, 2, 6};
+  for (int k = 0; k < 3; k++) {
+    CagTransform frame = cag_translate(cag_vec3(0, 0, height[k]));
+    double r = 4 - height[k] / 3;
+    frame.planar = false;
+    OK(cag_curve_arc(r, r, 0, 2 * M_PI, &frame, &circles[k], &err));
+  }
+  OK(cag_surface_loft((const CagCurve *const *)circles, 3, 1, false, &side, &err));
+  OK(cag_solid_loft(side, &s, &err));
+  cag_surface_release(side);
+  for (int k = 0; k < 3; k++) cag_curve_release(circles[k]);
+  return s;
+}
+
+static void points_of_other_solids_lie_on_their_surfaces(void **state) {
+  (void)state;
+  static const struct {
+    const char *name;
+    CagSolid *(*make)(void);
+    Distance *distance;
+    long genus;
+  } others[] = {{"tube", helix_tube, to_helix_tube, 0},
+                {"clipped torus", clipped_torus, to_clipped_torus, 0},
+                {"ellipsoid", ellipsoid, to_ellipsoid, 0},
+                {"loft", frustum, to_frustum, 0}};
+  const double tolerances[] = {0.1, 0.02};
+  const double first_order = 1.1; // what the distance to the ellipsoid leaves out
+  chance_state = 17;
+  for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
+    CagSolid *s = others[k].make();
+    for (int i = 0; i < 2; i++) {
+      CagMesh *m = mesh_of(s, tolerances[i]);
+      check_closed(others[k].name, m, others[k].genus, 1);
+      for (size_t t = 0; t < m->triangle_count; t++) {
+        CagVec3 p = point_in(m, t);
+        double d = others[k].distance(p);
+        if (!(d <= tolerances[i] * first_order))
+          fail_msg("%s at %g: %g %g %g is %g off", others[k].name, tolerances[i], p.x, p.y, p.z, d);
+      }
+      cag_mesh_release(m);
+    }
+    cag_solid_release(s);
+  }
+}
+
 // --- Seams ---
 
 // Vertices of one point have the same position, bit by bit, and each vertex at one end of a closed
@@ -518,6 +633,7 @@ int main(void) {
       cmocka_unit_test(units_do_not_matter),
       cmocka_unit_test(what_is_smaller_than_the_tolerance_is_closed),
       cmocka_unit_test(tubes_with_tight_bends_keep_their_volume),
+      cmocka_unit_test(points_of_other_solids_lie_on_their_surfaces),
       cmocka_unit_test(seams_agree_to_the_bit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
