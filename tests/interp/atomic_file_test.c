@@ -17,6 +17,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "geom/stop.h"
 #include "interp/render/atomic_file.h"
 
 static char folder[64];
@@ -336,6 +337,49 @@ static void memory_takes_the_same_writes(void **state) {
   cag_atomic_file_abort(cag_atomic_file_open_memory(NULL));
 }
 
+static void a_try_says_what_an_open_would_and_leaves_nothing(void **state) {
+  (void)state;
+  CagIoError err = {0};
+  assert_true(cag_atomic_file_try("new", &err));
+  assert_true(cag_atomic_file_try("-", &err));
+  assert_true(cag_atomic_file_try("/dev/null", &err));
+  assert_int_equal(count_entries(), 0);
+  put_file("old", "old");
+  assert_true(cag_atomic_file_try("old", &err));
+  assert_content("old", "old");
+  mkdir("dir", 0777);
+  symlink("nowhere", "link");
+  static const char *const REFUSED[] = {"", "dir", "link", "none/a", "old/a", "/proc/a", ".."};
+  for (size_t i = 0; i < sizeof REFUSED / sizeof *REFUSED; i++) {
+    CagIoError other = {0};
+    assert_false(cag_atomic_file_try(REFUSED[i], &err));
+    assert_null(cag_atomic_file_open(REFUSED[i], &other));
+    assert_int_equal(err.exit_status, other.exit_status);
+    assert_string_equal(err.message, other.message);
+  }
+  unlink("old");
+  unlink("link");
+  rmdir("dir");
+}
+
+static void work_that_is_to_end_writes_nothing(void **state) {
+  (void)state;
+  volatile int stop = 0;
+  CagIoError err = {0};
+  put_file("a", "earlier");
+  cag_stop_lend(&stop);
+  CagAtomicFile *f = open_file("a");
+  cag_atomic_file_text(f, "later");
+  stop = 1;
+  const bool written = cag_atomic_file_commit(f, &err);
+  cag_stop_lend(NULL);
+  assert_false(written);
+  assert_int_equal(err.exit_status, CAG_EXIT_INTERRUPTED);
+  assert_content("a", "earlier");
+  assert_int_equal(count_entries(), 1);
+  unlink("a");
+}
+
 static void standard_output_is_a_dash(void **state) {
   (void)state;
   fflush(stdout);
@@ -373,6 +417,8 @@ int main(void) {
       cmocka_unit_test(many_files_may_be_open_but_not_endlessly),
       cmocka_unit_test(a_long_name_has_room_for_its_temporary),
       cmocka_unit_test(memory_takes_the_same_writes),
+      cmocka_unit_test(a_try_says_what_an_open_would_and_leaves_nothing),
+      cmocka_unit_test(work_that_is_to_end_writes_nothing),
       cmocka_unit_test(standard_output_is_a_dash),
   };
   return cmocka_run_group_tests(tests, enter_folder, leave_folder);
