@@ -333,15 +333,21 @@ static CagStatus try_distance(const TessTrial *trial, const Needs *needs, double
 static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs needs, int *halved,
                                  CagError *err) {
   const double surprising = 3; // times the tolerance, where the bound promised less than it
+  const double blind = 4;      // times as many as the samples told: they did not see what is there
   // Strips that are twisted may be sewn to other nodes than those that are tried.
   const double sewn = 1.15, twisted = 0.05;
   double tolerance = t->how.tolerance, correction = 1, limit = (double)t->how.max_triangles;
-  double smallest = INFINITY, best[2] = {1, 1}, *n = trial->n;
+  double smallest = INFINITY, best[2] = {1, 1}, told = 0, *n = trial->n;
   for (int round = 0; round < MAX_CORRECTIONS; round++) {
     counts_for(&t->how, &needs, correction, n);
     double quads = n[0] * n[1], distance;
     if (quads >= smallest) break;
     if (quads > limit) return tess_limit(t, 2 * quads, err);
+    if (round == 0) told = tess_larger(quads, WORTH_HALVING);
+    if (halved && quads > blind * told) {
+      *halved = longer_way(&needs);
+      return CAG_OK;
+    }
     CagStatus status = try_distance(trial, &needs, &distance, err);
     if (status != CAG_OK) return status;
     double use = distance / tolerance;
