@@ -361,6 +361,12 @@ static uint32_t vertex_of(Builder *b, uint32_t corner) {
   return i;
 }
 
+static uint32_t label_of(const Builder *b, size_t part) {
+  const BoolFace *face = &b->w->faces[b->sources[b->parts[part].source[0]].face];
+  const CagMesh *m = b->w->meshes[face->owner];
+  return m->labels ? m->labels[face->triangle] : 0;
+}
+
 static CagStatus write_mesh(Builder *b, CagMesh **out) {
   CagMesh *m = NULL;
   const CagStatus status =
@@ -373,6 +379,14 @@ static CagStatus write_mesh(Builder *b, CagMesh **out) {
     m->weld[i] = b->vertices[i].first;
   }
   memcpy(m->triangles, b->triangles, 3 * b->n * sizeof *m->triangles);
+  if (b->w->meshes[0]->labels || b->w->meshes[1]->labels) {
+    m->labels = malloc((b->n + 1) * sizeof *m->labels);
+    for (size_t t = 0; m->labels && t < b->n; t++) m->labels[t] = label_of(b, t);
+    if (!m->labels) {
+      cag_mesh_release(m);
+      return cag_fail_memory(b->w->err);
+    }
+  }
   *out = m;
   return CAG_OK;
 }

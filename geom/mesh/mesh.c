@@ -132,6 +132,14 @@ CagStatus cag_mesh_from_faces(const CagVec3 *vertices, size_t n, const uint32_t 
 
 // --- Copies ---
 
+// Those of m become those of `to` from triangle `first` on.
+static bool copy_labels(const CagMesh *m, CagMesh *to, size_t first) {
+  if (!m->labels) return true;
+  if (!to->labels) to->labels = calloc(to->triangle_count + 1, sizeof *to->labels);
+  if (to->labels) memcpy(to->labels + first, m->labels, m->triangle_count * sizeof *m->labels);
+  return to->labels != NULL;
+}
+
 static CagStatus copy_mesh(const CagMesh *m, CagMesh **out, CagError *err) {
   CagMesh *c = NULL;
   CagStatus status = cag_mesh_new(m->vertex_count, m->triangle_count, m->normals != NULL,
@@ -144,6 +152,10 @@ static CagStatus copy_mesh(const CagMesh *m, CagMesh **out, CagError *err) {
   if (m->uv) memcpy(c->uv, m->uv, n * 2 * sizeof *m->uv);
   c->scale = m->scale;
   if (m->weld) memcpy(c->weld, m->weld, n * sizeof *m->weld);
+  if (!copy_labels(m, c, 0)) {
+    cag_mesh_release(c);
+    return cag_fail_memory(err);
+  }
   *out = c;
   return CAG_OK;
 }
@@ -248,6 +260,7 @@ CagStatus cag_mesh_append(CagMesh *const *meshes, size_t n, CagMesh **out, CagEr
   CagStatus status = cag_mesh_new(vertices, triangles, normals, uv, weld, &m, err);
   if (status != CAG_OK) return status;
   size_t v = 0, t = 0;
+  bool labelled = true;
   if (uv) m->scale = common_scale(meshes, n);
   for (size_t i = 0; i < n; i++) {
     const CagMesh *part = meshes[i];
@@ -260,8 +273,13 @@ CagStatus cag_mesh_append(CagMesh *const *meshes, size_t n, CagMesh **out, CagEr
     if (part->normals)
       memcpy(m->normals + v, part->normals, part->vertex_count * sizeof *m->normals);
     else if (normals) smooth_normals(m, v, part->vertex_count, t, part->triangle_count);
+    labelled = copy_labels(part, m, t) && labelled;
     v += part->vertex_count;
     t += part->triangle_count;
+  }
+  if (!labelled) {
+    cag_mesh_release(m);
+    return cag_fail_memory(err);
   }
   *out = m;
   return CAG_OK;

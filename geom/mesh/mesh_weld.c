@@ -100,6 +100,11 @@ static CagStatus build_welded(const CagMesh *m, const uint32_t *first, uint32_t 
   CagMesh *w = NULL;
   CagStatus status = cag_mesh_new(vertices, m->triangle_count, normals, uv, false, &w, err);
   if (status != CAG_OK) return status;
+  if (m->labels) w->labels = malloc((m->triangle_count + 1) * sizeof *w->labels);
+  if (m->labels && !w->labels) {
+    cag_mesh_release(w);
+    return cag_fail_memory(err);
+  }
   for (size_t v = 0; v < m->vertex_count; v++) {
     if (first[v] != v) continue;
     uint32_t to = number[v];
@@ -111,6 +116,7 @@ static CagStatus build_welded(const CagMesh *m, const uint32_t *first, uint32_t 
     uint32_t k[3];
     for (int j = 0; j < 3; j++) k[j] = number[first[m->triangles[3 * t + j]]];
     if (k[0] == k[1] || k[1] == k[2] || k[2] == k[0]) continue; // shrunk to an edge or a point
+    if (m->labels) w->labels[triangles] = m->labels[t];
     memcpy(w->triangles + 3 * triangles++, k, sizeof k);
   }
   w->triangle_count = triangles;

@@ -315,3 +315,63 @@ CagStatus cag_csg_side(const CagSolid *s, CagVec3 p, double slack, CagSideOfLeaf
   }
   return CAG_OK;
 }
+
+// --- Labels ---
+
+uint32_t cag_solid_first_label(const CagSolid *s) {
+  uint32_t label = s->label;
+  for (size_t i = 0; !label && s->core && i < s->core->count; i++)
+    label = cag_solid_first_label(s->core->operands[i]);
+  return label;
+}
+
+static CagStatus copy_solid(const CagSolid *s, CagSolid **out, CagError *err) {
+  CagSolid *c = NULL;
+  CagStatus status = cag_solid_block(s->kind, s->face_count, &c, err);
+  if (status) return status;
+  c->a = s->a;
+  c->b = s->b;
+  c->c = s->c;
+  c->centered = s->centered;
+  c->label = s->label;
+  c->placement = s->placement;
+  c->core = s->core;
+  if (c->core) c->core->references++;
+  for (size_t i = 0; i < s->face_count; i++) cag_solid_add(c, cag_surface_retain(s->faces[i]));
+  for (size_t i = 0; !status && i < s->edge_count; i++) {
+    const struct CagSolidEdge *e = &s->edges[i];
+    status =
+        cag_solid_add_edge(c, e->face[0], e->side[0], e->face[1], e->side[1], e->reversed, err);
+  }
+  if (status) cag_solid_release(c);
+  else *out = c;
+  return status;
+}
+
+// The same operation, of other operands.
+static CagStatus relabel_operands(const CagSolid *s, CagRelabel *relabel, void *context,
+                                  CagSolid **out, CagError *err) {
+  CagSolid *c = NULL;
+  CagStatus status = block(s->kind, s->core->count, &c, err);
+  if (status) return status;
+  c->placement = s->placement;
+  c->core->reach = s->core->reach;
+  c->core->interrupt = s->core->interrupt;
+  c->core->place = s->core->place;
+  for (size_t i = 0; !status && i < s->core->count; i++) {
+    status = cag_solid_relabel(s->core->operands[i], relabel, context, &c->core->operands[i], err);
+    if (!status) c->core->count++;
+  }
+  if (status) cag_solid_release(c);
+  else *out = c;
+  return status;
+}
+
+CagStatus cag_solid_relabel(const CagSolid *s, CagRelabel *relabel, void *context, CagSolid **out,
+                            CagError *err) {
+  if (s->core && s->core->count > 0 && !s->label && cag_solid_first_label(s))
+    return relabel_operands(s, relabel, context, out, err);
+  const CagStatus status = copy_solid(s, out, err);
+  if (!status) (*out)->label = relabel(context, s->label);
+  return status;
+}

@@ -15,6 +15,12 @@
 #include "geom/mesh/tessellate.h"
 #include "geom/solid/solid.h"
 
+// Where a script asked for a solid: a source and a part of it, as they are to the caller.
+typedef struct CagSolidPlace {
+  const void *source; // NULL: not known
+  uint32_t start, end;
+} CagSolidPlace;
+
 struct CagSolidCore {
   int references;
   size_t count;        // set operations
@@ -24,6 +30,7 @@ struct CagSolidCore {
   double tolerance;    // ... to this tolerance
   CagBounds reach;     // set operations: holds the body; infinite where that is not known
   const volatile int *interrupt; // set operations: stops their meshes; NULL: none
+  CagSolidPlace place;
 };
 
 // Whether the solid has no faces, so that cores and meshes are asked.
@@ -35,6 +42,14 @@ bool cag_solid_is_compound(const CagSolid *s);
 //   interrupt  not NULL and not 0: ends the making of a mesh; outlives the solid
 CagStatus cag_solid_combine(CagSetOperation op, CagSolid *const *operands, size_t n,
                             const volatile int *interrupt, CagSolid **out, CagError *err);
+// A copy in which each operand without operands of its own, or the solid where it has none, has the
+// label that `relabel` gives for its old one. Operations in which nothing is labelled count
+// as without operands.
+typedef uint32_t CagRelabel(void *context, uint32_t label);
+CagStatus cag_solid_relabel(const CagSolid *s, CagRelabel *relabel, void *context, CagSolid **out,
+                            CagError *err);
+// The label of the solid, or the first among its operands'; 0: nothing is labelled.
+uint32_t cag_solid_first_label(const CagSolid *s);
 // The side that the plane's normal leaves.
 CagStatus cag_solid_half_space(const CagPlane *plane, CagSolid **out, CagError *err);
 // Where the form is negative, bounded or not; fails for forms that are constant or not finite

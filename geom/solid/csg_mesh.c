@@ -258,14 +258,34 @@ static CagStatus operation_mesh(const CagSolid *s, const CagTessellation *how,
   return status;
 }
 
-// `how` has a tolerance; the window is finite.
-static CagStatus solid_mesh(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
+// Triangles without a label get that of the solid. The mesh is the caller's own.
+static CagStatus paint(CagMesh *m, uint32_t label, CagError *err) {
+  if (!label) return CAG_OK;
+  if (!m->labels) m->labels = calloc(m->triangle_count + 1, sizeof *m->labels);
+  if (!m->labels) return cag_fail_memory(err);
+  for (size_t t = 0; t < m->triangle_count; t++)
+    if (!m->labels[t]) m->labels[t] = label;
+  return CAG_OK;
+}
+
+static CagStatus plain_mesh(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
                             CagMesh **out, CagError *err) {
   CagQuadric q;
   if (s->kind == CAG_SOLID_MESH) return cag_mesh_transform(s->core->mesh, &s->placement, out, err);
   if (cag_solid_form(s, &q)) return cag_side_mesh(&q, window, how, out, err);
   if (is_operation(s)) return operation_mesh(s, how, window, out, err);
   return cag_solid_tessellate(s, how, out, err);
+}
+
+// `how` has a tolerance; the window is finite.
+static CagStatus solid_mesh(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
+                            CagMesh **out, CagError *err) {
+  CagMesh *m = NULL;
+  CagStatus status = plain_mesh(s, how, window, &m, err);
+  if (!status) status = paint(m, s->label, err);
+  if (status) cag_mesh_release(m);
+  else *out = m;
+  return status;
 }
 
 CagStatus cag_csg_mesh(const CagSolid *s, const CagTessellation *how, CagMesh **out,

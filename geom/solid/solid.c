@@ -238,6 +238,7 @@ CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid
   moved->b = s->b;
   moved->c = s->c;
   moved->centered = s->centered;
+  moved->label = s->label;
   moved->placement = cag_transform_multiply(t, &s->placement);
   moved->core = s->core;
   if (moved->core) moved->core->references++;

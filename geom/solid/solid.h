@@ -10,6 +10,8 @@
 #ifndef CAG_GEOM_SOLID_H
 #define CAG_GEOM_SOLID_H
 
+#include <stdint.h>
+
 #include "geom/surface/quadric.h"
 #include "geom/surface/surface.h"
 #include "geom/surface/swept.h"
@@ -42,6 +44,7 @@ typedef struct CagSolid {
   CagSolidKind kind;
   double a, b, c; // BOX size; SPHERE a; CYLINDER a = height, b = radius, c = top; TORUS a, b
   bool centered;  // BOX
+  uint32_t label; // what its triangles are labelled with as an operand (mesh.h); 0: nothing
   CagTransform placement; // from the primitive's own coordinates to the world
   size_t face_count;
   CagSurface **faces; // in the world; normals outward

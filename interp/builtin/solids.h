@@ -45,4 +45,7 @@ CagStatus cag_solid_of_patches(CagSurface *const *faces, size_t n, const CagQuad
 CagStatus cag_solid_rod(CagVec3 p, CagVec3 q, double radius, double top, CagSolid **out,
                         CagError *err);
 
+// The material behind a label of a solid or mesh (solids_csg.c); NULL: none.
+CagRecord *cag_solids_material(const CagVm *vm, uint32_t label);
+
 #endif

@@ -5,6 +5,7 @@
 
 #include "geom/solid/clip.h"
 #include "geom/solid/csg.h"
+#include "interp/builtin/scene.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/surfaces.h"
 #include "interp/eval/vm.h"
@@ -22,6 +23,69 @@ static bool give(CagCall *call, CagStatus status, const CagError *err, CagSolid 
 static void say_body(CagValue to, const CagShape *from) {
   CAG_AS_SHAPE(to)->material = from->material;
   CAG_AS_SHAPE(to)->tolerance = from->tolerance;
+}
+
+// Errors of a mesh come when the script has ended: then they tell where the solid was asked for.
+static void say_place(const CagCall *call, CagSolid *s) {
+  const CagSource *source;
+  CagSpan span;
+  if (!s->core || !cag_vm_place(call->vm, &source, &span)) return;
+  s->core->place = (CagSolidPlace){source, span.start, span.end};
+}
+
+// --- Materials of operands ---
+
+// Where operands have materials of their own, each face of the result has that of its operand:
+// labels of solids and meshes are numbers of records that the machine keeps. What none was said of
+// takes the material of the first.
+typedef struct Paint {
+  CagVm *vm;
+  bool mixed;       // labels are needed: there is more than one material
+  CagRecord *first; // NULL: none
+  CagRecord *said;  // of the shape at hand
+} Paint;
+
+CagRecord *cag_solids_material(const CagVm *vm, uint32_t label) {
+  const bool known = label > 0 && label <= vm->kept_count;
+  const CagValue v = known ? vm->kept[label - 1] : cag_unset();
+  return v.type == CAG_RECORD ? CAG_AS_RECORD(v) : NULL;
+}
+
+static uint32_t label_of(CagVm *vm, CagRecord *material) {
+  const CagValue v = cag_object(CAG_RECORD, material);
+  if (!material) return 0;
+  for (size_t i = 0; i < vm->kept_count; i++)
+    if (vm->kept[i].type == CAG_RECORD && cag_equal(vm, vm->kept[i], v)) return (uint32_t)i + 1;
+  return (uint32_t)cag_vm_keep(vm, v) + 1;
+}
+
+static uint32_t relabel(void *context, uint32_t label) {
+  const Paint *p = context;
+  CagRecord *own = cag_solids_material(p->vm, label);
+  if (!own) return label_of(p->vm, p->said ? p->said : p->first);
+  return p->said ? label_of(p->vm, cag_material_combine(p->vm, own, p->said)) : label;
+}
+
+static bool same_record(CagVm *vm, CagRecord *a, CagRecord *b) {
+  return a == b || (a && b && cag_equal(vm, cag_object(CAG_RECORD, a), cag_object(CAG_RECORD, b)));
+}
+
+// Looks at the materials of all operands before any is read.
+static bool find_paint(CagCall *call, const CagValue *items, size_t n, Paint *out) {
+  *out = (Paint){.vm = call->vm};
+  CagBuilder *builder = cag_builder_new(call->vm);
+  for (size_t i = 0; i < n; i++)
+    if (!cag_shapes_collect(call, items[i], builder)) return false;
+  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  for (size_t i = 0; i < shapes->length; i++) {
+    const CagValue v = cag_list_get(call->vm, shapes, i);
+    const CagShape *s = CAG_AS_SHAPE(v);
+    const uint32_t label = v.type == CAG_SOLID ? cag_solid_first_label(s->as.solid) : 0;
+    if (i == 0) out->first = s->material ? s->material : cag_solids_material(call->vm, label);
+    else if (s->material && !same_record(call->vm, s->material, out->first)) out->mixed = true;
+    out->mixed = out->mixed || label != 0;
+  }
+  return true;
 }
 
 // --- Operands ---
@@ -78,11 +142,14 @@ static CagStatus combine(CagCall *call, CagSetOperation op, const Operands *o, C
     *out = cag_solid_retain(o->s[0]);
     return CAG_OK;
   }
-  return cag_solid_combine(op, o->s, o->n, cag_vm_stop(call->vm), out, err);
+  const CagStatus status = cag_solid_combine(op, o->s, o->n, cag_vm_stop(call->vm), out, err);
+  if (!status) say_place(call, *out);
+  return status;
 }
 
 // A shape, or the union of those of a group or list. `said`: the first of them.
-static bool read_operand(CagCall *call, CagValue v, size_t index, CagSolid **out, CagValue *said) {
+static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, CagSolid **out,
+                         CagValue *said) {
   Operands parts;
   CagError err;
   CagBuilder *builder = cag_builder_new(call->vm);
@@ -96,8 +163,15 @@ static bool read_operand(CagCall *call, CagValue v, size_t index, CagSolid **out
   bool ok = true;
   *said = cag_list_get(call->vm, shapes, 0);
   for (size_t i = 0; ok && i < shapes->length; i++) {
-    ok = read_one(call, cag_list_get(call->vm, shapes, i), index, &parts.s[parts.n]);
-    if (ok) parts.n++;
+    const CagValue shape = cag_list_get(call->vm, shapes, i);
+    ok = read_one(call, shape, index, &parts.s[parts.n]);
+    if (!ok) break;
+    CagSolid *plain = parts.s[parts.n++];
+    if (!paint || !paint->mixed) continue;
+    paint->said = CAG_AS_SHAPE(shape)->material;
+    ok = cag_geometry_ok(
+        call, cag_solid_relabel(plain, relabel, paint, &parts.s[parts.n - 1], &err), &err);
+    if (ok) cag_solid_release(plain);
   }
   ok = ok && cag_geometry_ok(call, combine(call, CAG_UNION, &parts, out, &err), &err);
   operands_free(&parts);
@@ -137,14 +211,16 @@ static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValu
   if (n == 0)
     return cag_fail_call(call, -1, CAG_ERR_csg_operand, "expects solids, found an empty list");
   if (!operands_new(call, n, &o)) return false;
-  bool ok = true;
+  Paint paint;
+  bool ok = find_paint(call, items, n, &paint);
   for (size_t i = 0; ok && i < n; i++) {
     ok = (i % CAG_LOOK_UP != 0 || cag_keep_going(call->vm)) &&
-         read_operand(call, items[i], i, &o.s[o.n], i == 0 ? &said : &unused);
+         read_operand(call, items[i], i, &paint, &o.s[o.n], i == 0 ? &said : &unused);
     if (ok) o.n++;
   }
   ok = ok && give(call, combine(call, op, &o, &made, &err), &err, &made, result);
   if (ok) say_body(*result, CAG_AS_SHAPE(said));
+  if (ok && paint.mixed) CAG_AS_SHAPE(*result)->material = NULL; // its faces have theirs
   operands_free(&o);
   return ok;
 }
@@ -165,8 +241,10 @@ bool cag_solids_half_space(CagCall *call, CagValue *result) {
   CagPlane plane;
   CagSolid *s = NULL;
   CagError err;
-  return cag_arg_plane(call, 0, &plane) &&
-         give(call, cag_solid_half_space(&plane, &s, &err), &err, &s, result);
+  if (!cag_arg_plane(call, 0, &plane)) return false;
+  const CagStatus status = cag_solid_half_space(&plane, &s, &err);
+  if (!status) say_place(call, s);
+  return give(call, status, &err, &s, result);
 }
 
 // The part of a form's side within a box, or between two heights.
@@ -209,7 +287,9 @@ bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue
       n = 2;
     }
   }
-  ok = ok && give(call, bounded_form(call, q, ends, n, &made, &err), &err, &made, result);
+  CagStatus status = ok ? bounded_form(call, q, ends, n, &made, &err) : CAG_OK;
+  if (ok && !status) say_place(call, made);
+  ok = ok && give(call, status, &err, &made, result);
   for (int i = 0; i < 2; i++) cag_solid_release(ends[i]);
   return ok;
 }
@@ -293,6 +373,7 @@ static bool clip_solid(const Clip *c, CagValue v, CagBuilder *into) {
       cag_solid_combine(CAG_INTERSECTION, parts, 2, cag_vm_stop(c->call->vm), &made, &err);
   cag_solid_release(parts[0]);
   if (!cag_geometry_ok(c->call, status, &err)) return false;
+  say_place(c->call, made);
   CagValue value = cag_solid_value(c->call->vm, made);
   cag_shape_say_alike(value, v);
   // What lies outside as a whole is left out; where only a mesh could tell, it is kept.
@@ -373,7 +454,7 @@ bool cag_solids_clip(CagCall *call, CagValue *result) {
     CagError err;
     const CagPlane *plane = &CAG_AS_PLANE(call->values[1])->plane;
     if (!cag_geometry_ok(call, cag_solid_half_space(plane, &c.by, &err), &err)) return false;
-  } else if (!read_operand(call, call->values[1], 1, &c.by, &said)) {
+  } else if (!read_operand(call, call->values[1], 1, NULL, &c.by, &said)) {
     return false;
   }
   CagBuilder *shapes = cag_builder_new(call->vm), *kept = cag_builder_new(call->vm);

@@ -20,6 +20,8 @@ static uint32_t at_instruction(const CagFrame *f) {
   return k < 0 ? 0 : (uint32_t)k;
 }
 
+#define WHOLE_CALL (-2)
+
 // The call's argument spans at an instruction, or NULL.
 static const CagCallSite *find_site(const CagProto *p, uint32_t pc) {
   size_t low = 0, high = p->site_count;
@@ -70,6 +72,14 @@ static void add_chain(CagVm *vm, CagDiagnostic *d) {
   }
 }
 
+bool cag_vm_place(const CagVm *vm, const CagSource **source, CagSpan *span) {
+  if (!vm->frame_count) return false;
+  const CagFrame *f = &vm->frames[vm->frame_count - 1];
+  *source = f->proto->source;
+  *span = place_of(f, WHOLE_CALL);
+  return true;
+}
+
 static CagDiagnostic *set_error(CagVm *vm, CagErrorId id, int argument, const char *message) {
   cag_diagnostics_clear(&vm->errors);
   vm->failed = true;
@@ -84,8 +94,6 @@ static CagDiagnostic *set_error(CagVm *vm, CagErrorId id, int argument, const ch
   add_chain(vm, d);
   return d;
 }
-
-#define WHOLE_CALL (-2)
 
 static void vfail(CagVm *vm, CagErrorId id, int argument, const char *prefix, const char *format,
                   va_list args) {

@@ -265,6 +265,8 @@ bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool 
                     CagValue *result);
 
 // --- failure.c ---
+// Where the running call stands; false: nowhere.
+bool cag_vm_place(const CagVm *vm, const CagSource **source, CagSpan *span);
 // Sets the error at the current instruction of the top frame (or without place when there is none),
 // with the chain of calls.
 bool cag_vm_fail(CagVm *vm, CagErrorId id, const char *format, ...)

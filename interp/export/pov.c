@@ -34,6 +34,9 @@ static void write_materials(CagPovWriter *w, const bool *closed) {
   for (size_t i = 0; i < s->item_count; i++)
     used[s->items[i].material] |=
         closed[i] || !(s->materials[s->items[i].material].transmission > 0) ? CLOSED : THIN;
+  for (size_t i = 0; i < s->item_count; i++)
+    for (uint32_t k = 1; k <= s->items[i].label_count; k++)
+      used[cag_item_label_material(&s->items[i], k)] |= CLOSED;
   for (size_t i = 0; i < s->material_count; i++) {
     if (used[i] & CLOSED) pov_material(w, i, true);
     if (used[i] & THIN) pov_material(w, i, false);
@@ -143,6 +146,7 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
   const char *name = w->item_names[index];
   char material[64];
   CagStatus status = CAG_OK;
+  w->item = item;
   w->placement = cag_transform_identity();
   w->tolerance = item->tolerance;
   w->see_through = w->scene->materials[item->material].transmission > 0;

@@ -91,7 +91,7 @@ static void enlarge(CagPovWriter *w, const CagSolid *s, int depth) {
   pov_placement(w, "  ", &t);
 }
 
-static void write_operand(CagPovWriter *w, const CagSolid *s, int depth) {
+static void write_plain(CagPovWriter *w, const CagSolid *s, int depth) {
   CagQuadric q;
   if (is_operation(s)) {
     pov_csg(w, s, depth);
@@ -112,6 +112,21 @@ static void write_operand(CagPovWriter *w, const CagSolid *s, int depth) {
   pov_text(w, "\n");
   enlarge(w, s, depth);
   pov_text(w, "}");
+}
+
+// An operand with a material of its own has it inside, where that of the whole does not reach.
+static void write_operand(CagPovWriter *w, const CagSolid *s, int depth) {
+  char material[64];
+  if (!s->label || !w->item || !w->item->label_count) {
+    write_plain(w, s, depth);
+    return;
+  }
+  w->depth++;
+  pov_text(w, "object {\n");
+  write_plain(w, s, depth);
+  w->depth--;
+  pov_material_name(w, cag_item_label_material(w->item, s->label), true, material);
+  pov_printf(w, "\n  material { %s }\n}", material);
 }
 
 void pov_csg(CagPovWriter *w, const CagSolid *s, int depth) {

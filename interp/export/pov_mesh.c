@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "interp/export/pov_write.h"
+#include "interp/scene/item_mesh.h"
 
 #define NORMAL_DECIMALS 5
 // Largest scaled value that is written through 64-bit integers.
@@ -118,7 +119,31 @@ static void write_scale_places(CagPovWriter *w, const CagMesh *m) {
   pov_text(w, "\n  }\n");
 }
 
+// The parts of a mesh of several materials, each with its own.
+static CagStatus write_parts(CagPovWriter *w, const CagMesh *m, CagError *err) {
+  CagStatus status = CAG_OK;
+  pov_text(w, "union {\n");
+  for (size_t i = 0; !status && i < w->scene->material_count; i++) {
+    CagMesh *part = NULL;
+    char material[64];
+    status = cag_item_mesh_of(w->item, m, i, &part, err);
+    if (status || part->triangle_count == 0) {
+      cag_mesh_release(part);
+      continue;
+    }
+    pov_text(w, "object {\n");
+    status = pov_mesh(w, part, err);
+    cag_mesh_release(part);
+    pov_material_name(w, i, true, material);
+    pov_printf(w, "\n  material { %s }\n}\n", material);
+  }
+  pov_text(w, "}");
+  return status;
+}
+
 CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
+  if (m->labels && w->item && w->item->label_count && !w->in_operation)
+    return write_parts(w, m, err);
   if (m->triangle_count == 0) { // a shape without area: its name stands for something unseen
     pov_text(w, "sphere { // nothing is seen of it: it has no area\n  0, 1\n"
                 "  no_image no_shadow no_reflection\n}");

@@ -25,10 +25,11 @@ typedef struct CagPovWriter {
   // While a set operation is written (pov_csg.c): its operands carry their placement, and meshes
   // tell inside from outside.
   bool in_operation;
-  int depth;        // by so many steps lines are indented
-  double tolerance; // of the item being written, as its mesh would have it
-  bool see_through; // light passes through the item's material
-  CagError failure; // status not CAG_OK: writing an item failed on the way
+  const CagItem *item; // being written
+  int depth;           // by so many steps lines are indented
+  double tolerance;    // of the item being written, as its mesh would have it
+  bool see_through;    // light passes through the item's material
+  CagError failure;    // status not CAG_OK: writing an item failed on the way
 } CagPovWriter;
 
 // --- Text (pov_text.c) ---

@@ -10,7 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/solid/csg.h"
 #include "interp/builtin/shapes.h"
+#include "interp/builtin/solids.h"
 #include "interp/eval/vm.h"
 
 typedef struct Build {
@@ -191,6 +193,49 @@ static const char *surface_name(const CagSurface *s) {
   return cag_surface_placed_view(s, &inner, &map) ? inner->kind->name : s->kind->name;
 }
 
+// The materials of the labels that a body or mesh has, as far as the largest of them.
+typedef struct Labels {
+  Build *b;
+  CagItem *item;
+  CagRecord *outer;
+} Labels;
+
+static void note_label(const Labels *l, uint32_t label) {
+  CagItem *item = l->item;
+  if (label == 0 || (label <= item->label_count && item->label_materials[label - 1] != SIZE_MAX))
+    return;
+  if (label > item->label_count) {
+    size_t *more = realloc(item->label_materials, label * sizeof *more);
+    if (!more) {
+      l->b->failed = true;
+      return;
+    }
+    for (size_t i = item->label_count; i < label; i++) more[i] = SIZE_MAX;
+    item->label_materials = more;
+    item->label_count = label;
+  }
+  CagRecord *own = cag_solids_material(l->b->vm, label);
+  const size_t at =
+      material_of(l->b, cag_material_combine(l->b->vm, own, l->outer), DEFAULT_MATERIAL);
+  item->label_materials[label - 1] = own ? at : item->material;
+}
+
+static void note_solid_labels(const Labels *l, const CagSolid *s) {
+  note_label(l, s->label);
+  if (s->core && s->core->mesh && s->kind == CAG_SOLID_MESH && s->core->mesh->labels)
+    for (size_t t = 0; t < s->core->mesh->triangle_count; t++)
+      note_label(l, s->core->mesh->labels[t]);
+  for (size_t i = 0; s->core && i < s->core->count; i++) note_solid_labels(l, s->core->operands[i]);
+}
+
+static void note_labels(Build *b, CagItem *item, CagRecord *outer) {
+  const Labels l = {b, item, outer};
+  if (item->kind == CAG_ITEM_SOLID) note_solid_labels(&l, item->as.solid);
+  if (item->kind != CAG_ITEM_MESH || !item->as.mesh->labels) return;
+  for (size_t t = 0; t < item->as.mesh->triangle_count; t++)
+    note_label(&l, item->as.mesh->labels[t]);
+}
+
 static void add_shape(Build *b, CagValue v, const Said *said) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagItem *item = NULL;
@@ -227,6 +272,7 @@ static void add_shape(Build *b, CagValue v, const Said *said) {
   if (!item) return;
   item->material = material;
   item->tolerance = said->tolerance;
+  note_labels(b, item, said->material);
   item->line_radius = number_field(said->style, "radius", 0);
   item->dash = number_field(said->style, "dash", 0);
 }

@@ -4,6 +4,7 @@
 #include "interp/scene/item_mesh.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 // Radius of curves that say none, as a part of the diagonal of the scene's bounds.
 #define LINE_PART 0.0025
@@ -72,4 +73,44 @@ CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, C
   case CAG_ITEM_GROUND: return ground_mesh(s, item, out, err);
   }
   return cag_fail(err, CAG_E_ARGUMENT, "item-kind", "", -1, "an item of an unknown kind");
+}
+
+CagStatus cag_item_mesh_of(const CagItem *item, const CagMesh *m, size_t material, CagMesh **out,
+                           CagError *err) {
+  CagMesh *part = NULL;
+  uint32_t *number = malloc((m->vertex_count + 1) * sizeof *number);
+  if (!number) return cag_fail_memory(err);
+  memset(number, 0xff, m->vertex_count * sizeof *number);
+  CagStatus status = cag_mesh_new(m->vertex_count, m->triangle_count, m->normals != NULL,
+                                  m->uv != NULL, m->weld != NULL, &part, err);
+  if (status) {
+    free(number);
+    return status;
+  }
+  part->scale = m->scale;
+  part->vertex_count = part->triangle_count = 0;
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    if (cag_item_label_material(item, m->labels ? m->labels[t] : 0) != material) continue;
+    for (int k = 0; k < 3; k++) {
+      const uint32_t from = m->triangles[3 * t + (size_t)k];
+      if (number[from] == UINT32_MAX) number[from] = (uint32_t)part->vertex_count++;
+      const uint32_t to = number[from];
+      part->triangles[3 * part->triangle_count + (size_t)k] = to;
+      part->positions[to] = m->positions[from];
+      if (m->normals) part->normals[to] = m->normals[from];
+      if (m->uv) memcpy(part->uv + 2 * to, m->uv + 2 * from, 2 * sizeof *m->uv);
+      if (m->weld) part->weld[to] = m->weld[from];
+    }
+    part->triangle_count++;
+  }
+  // The first vertex of a point may be another one here: the first that came.
+  if (m->weld) memset(number, 0xff, m->vertex_count * sizeof *number);
+  for (uint32_t v = 0; m->weld && v < part->vertex_count; v++) {
+    uint32_t *first = &number[part->weld[v]];
+    if (*first == UINT32_MAX) *first = v;
+    part->weld[v] = *first;
+  }
+  free(number);
+  *out = part;
+  return CAG_OK;
 }

@@ -14,4 +14,9 @@ double cag_item_line_radius(const CagScene *s, const CagItem *item);
 CagStatus cag_curve_tube_mesh(const CagCurve *c, double radius, double dash,
                               const CagTessellation *how, CagMesh **out, CagError *err);
 
+// The triangles of an item's mesh that have a material of the scene, with the vertices that they
+// need; without triangles where there are none.
+CagStatus cag_item_mesh_of(const CagItem *item, const CagMesh *m, size_t material, CagMesh **out,
+                           CagError *err);
+
 #endif

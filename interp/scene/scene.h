@@ -62,6 +62,8 @@ typedef struct CagItem {
   } as;
   CagTransform placement;       // REGION only: where its plane lies
   size_t material;              // index into materials
+  size_t *label_materials;      // SOLID, MESH: likewise, by label less 1; NULL: no labels
+  size_t label_count;           // labels from there on have the item's
   double tolerance;             // mm; 0: the scene's
   double line_radius;           // CURVE: 0: by the size of the scene
   double dash;                  // CURVE: length of dashes in mm; 0: none
@@ -162,6 +164,12 @@ typedef struct CagScene {
 } CagScene;
 
 void cag_scene_free(CagScene *s);
+// Index of the material of an item's triangles or operands with this label.
+static inline size_t cag_item_label_material(const CagItem *item, uint32_t label) {
+  const size_t at =
+      label > 0 && label <= item->label_count ? item->label_materials[label - 1] : SIZE_MAX;
+  return at == SIZE_MAX ? item->material : at;
+}
 // Adds what is missing: a camera that frames everything (unless there is one), the studio light
 // (unless there is a light or a sky that lights). Computes bounds.
 CagStatus cag_scene_complete(CagScene *s, CagError *err);

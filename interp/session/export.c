@@ -13,6 +13,7 @@
 #include "interp/export/step.h"
 #include "interp/export/svg.h"
 #include "interp/export/urdf.h"
+#include "interp/scene/item_mesh.h"
 #include "interp/session/output.h"
 
 typedef int (*ExportFunction)(CagSession *s, const char *path);
@@ -31,9 +32,43 @@ static void free_parts(Parts *p) {
 
 // Meshes of all things shown; grounds and lines are for pictures only, unless nothing else was
 // shown.
-static int make_parts(CagSession *s, Parts *out) {
+static CagStatus add_part(Parts *p, CagMeshPart part, CagError *err) {
+  CagMeshPart *more = realloc(p->items, (p->count + 1) * sizeof *more);
+  if (!more) {
+    cag_mesh_release((CagMesh *)part.mesh);
+    return cag_fail_memory(err);
+  }
+  p->items = more;
+  p->items[p->count++] = part;
+  return CAG_OK;
+}
+
+// One part, or (apart) one for each material that faces of a set operation have. Takes the mesh.
+static CagStatus add_parts(Parts *p, const CagScene *scene, const CagItem *item, CagMesh *mesh,
+                           bool apart, CagError *err) {
+  CagStatus status = CAG_OK;
+  if (!apart || !mesh->labels || !item->label_count) {
+    const CagMaterial *material = &scene->materials[item->material];
+    return add_part(p, (CagMeshPart){.name = item->name, .mesh = mesh, .material = material}, err);
+  }
+  for (size_t i = 0; !status && i < scene->material_count; i++) {
+    CagMesh *m = NULL;
+    status = cag_item_mesh_of(item, mesh, i, &m, err);
+    if (status || m->triangle_count == 0) {
+      cag_mesh_release(m);
+      continue;
+    }
+    status = add_part(
+        p, (CagMeshPart){.name = item->name, .mesh = m, .material = &scene->materials[i]}, err);
+  }
+  cag_mesh_release(mesh);
+  return status;
+}
+
+// apart: parts have one material each.
+static int make_parts(CagSession *s, bool apart, Parts *out) {
   const CagScene *scene = &s->scene;
-  *out = (Parts){calloc(scene->item_count + 1, sizeof *out->items), 0};
+  *out = (Parts){NULL, 0};
   bool bodies = false;
   for (size_t i = 0; i < scene->item_count; i++)
     bodies |= scene->items[i].kind != CAG_ITEM_CURVE && scene->items[i].kind != CAG_ITEM_GROUND;
@@ -46,9 +81,8 @@ static int make_parts(CagSession *s, Parts *out) {
     CagStatus status = cag_item_mesh(scene, item, &mesh, &err);
     if (status == CAG_OK) {
       triangles += mesh->triangle_count;
-      out->items[out->count++] = (CagMeshPart){
-          .name = item->name, .mesh = mesh, .material = &scene->materials[item->material]};
-      if (triangles > scene->max_triangles)
+      status = add_parts(out, scene, item, mesh, apart, &err);
+      if (status == CAG_OK && triangles > scene->max_triangles)
         status = cag_fail(&err, CAG_E_LIMIT, "triangle-limit", "", -1,
                           "the meshes have more than the %zu triangles allowed (--max-triangles)",
                           scene->max_triangles);
@@ -155,7 +189,8 @@ static int write_meshes(CagSession *s, MeshOutput *m, const char *path, const ch
 // ending: of the file that goes with it; NULL: none.
 static int export_meshes(CagSession *s, const char *path, MeshWriter write, const char *ending) {
   Parts parts;
-  int status = make_parts(s, &parts);
+  const bool apart = write == write_obj || write == write_glb || write == write_gltf;
+  int status = make_parts(s, apart, &parts);
   if (status != CAG_STATUS_OK) return status;
   status = check_parts(s, &parts);
   if (status == CAG_STATUS_OK) {

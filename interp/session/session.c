@@ -1,6 +1,7 @@
 // Sessions: one machine a run, on a thread with a large stack, and what became of it.
 
 #include "interp/session/session.h"
+#include "geom/solid/csg.h"
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -253,6 +254,23 @@ void cag_session_write_overdue(const CagSession *s, CagStyle style, FILE *out) {
   cag_diagnostics_free(&d);
 }
 
+// Where the script asked for the set operation that is empty or has no end: the first thing shown
+// with the same error.
+static CagSolidPlace place_of_operation(const CagSession *s, const CagError *err) {
+  const CagSolidPlace none = {NULL, 0, 0};
+  if (!err->reason || (strcmp(err->reason, "csg-empty") && strcmp(err->reason, "solid-unbounded")))
+    return none;
+  for (size_t i = 0; s->has_scene && i < s->scene.item_count; i++) {
+    const CagItem *item = &s->scene.items[i];
+    CagBounds unused;
+    CagError again = {0};
+    if (item->kind != CAG_ITEM_SOLID || !item->as.solid->core) continue;
+    if (cag_csg_bounds(item->as.solid, &unused, &again) && !strcmp(again.message, err->message))
+      return item->as.solid->core->place;
+  }
+  return none;
+}
+
 int cag_session_fail_geometry(CagSession *s, const CagError *err) {
   if (err->status == CAG_E_CALLBACK && s->vm && s->vm->failed) { // a function of the script
     cag_diagnostics_move(&s->diagnostics, &s->vm->errors);
@@ -264,8 +282,9 @@ int cag_session_fail_geometry(CagSession *s, const CagError *err) {
   else if (err->status == CAG_E_CALLBACK && s->vm && s->vm->stop) id = why_stopped(s);
   else if (id == CAG_ERR_COUNT) id = CAG_ERR_value;
   if (id == CAG_ERR_interrupted || id == CAG_ERR_limit_time) return fail_stopped(s, id);
-  CagDiagnostic *d =
-      cag_diagnostics_add(&s->diagnostics, id, NULL, (CagSpan){0, 0}, "%s", err->message);
+  const CagSolidPlace place = place_of_operation(s, err);
+  CagDiagnostic *d = cag_diagnostics_add(&s->diagnostics, id, place.source,
+                                         (CagSpan){place.start, place.end}, "%s", err->message);
   if (err->reason && strcmp(err->reason, cag_error_info(id)->reason) != 0)
     d->reason = strdup(err->reason);
   return cag_session_status(s);
