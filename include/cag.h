@@ -131,7 +131,7 @@ typedef struct CagRenderOptions {
   const char *camera;     // its name; NULL: the first
   double exposure;        // stops, for .png
   int threads;            // 0: one for each processor
-  double time_limit;      // seconds of the renderer; 0: none
+  double time_limit;      // seconds of the renderer; 0: what is left of max_time
   CagRenderRegion region; // only this part is rendered and written
   void (*progress)(void *context, double percent, const char *phase);
   void *progress_context;

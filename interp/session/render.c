@@ -103,7 +103,8 @@ typedef struct Job {
   const char *path; // of the picture
 } Job;
 
-static int write_source(CagSession *s, Job *j) {
+static int write_source(CagSession *s, void *context) {
+  Job *j = context;
   CagIoError io = {0};
   CagError err = {0};
   CagAtomicFile *f = cag_atomic_file_open_memory(&io);
@@ -214,8 +215,7 @@ static bool write_exr(Job *j, const char *path, CagIoError *io) {
 static int make_picture(CagSession *s, void *context) {
   Job *j = context;
   CagIoError io = {0};
-  int status = write_source(s, j);
-  if (status == CAG_STATUS_OK) status = render(j);
+  int status = render(j);
   if (status == CAG_STATUS_OK &&
       !(is_png(j->path) ? write_png(j, j->path, &io) : write_exr(j, j->path, &io)))
     status = cag_session_fail_io(s, CAG_ERR_output_file, &io);
@@ -276,7 +276,11 @@ int cag_session_render(CagSession *s, const CagRenderOptions *options, const cha
   }
   if (!check_region(&j)) return CAG_STATUS_USAGE;
   j.index = camera;
-  status = cag_session_geometry(s, make_picture, &j);
+  status = cag_session_geometry(s, write_source, &j);
+  const double left = s->time_left;
+  if (options->time_limit > 0) s->time_left = INFINITY; // the renderer has a time of its own
+  if (status == CAG_STATUS_OK) status = cag_session_geometry(s, make_picture, &j);
+  if (options->time_limit > 0) s->time_left = left;
   free(j.source);
   cag_povray_result_free(&j.result);
   return status;
