@@ -50,6 +50,33 @@ says 'leaves nothing'
 says 'box, 2 x 2 x 2'
 says 'sphere, radius 9'
 
+it 'what leaves nothing or has no end is shown where it was asked for'
+script place.cag 'a = box(2)
+b = translate(box(1), [9, 0, 0])
+c = a & b
+show c'
+try export place.cag -o place.stl
+status 1
+says 'place.cag:3:5'
+script place.cag 'show half_space(plane(origin, Z)) | sphere(3)'
+try export place.cag -o place.stl
+status 1
+says 'place.cag:1:6'
+
+it 'faces keep the material of their operand'
+script hues.cag 'show (box(4) |> color("red")) - (sphere(2) |> color("blue")) - box(1)'
+try export hues.cag -o hues.obj
+status 0
+[ "$(grep -c ^usemtl hues.obj)" = 2 ] || wrong 'not two materials'
+[ "$(grep -c ^newmtl hues.mtl)" = 2 ] || wrong 'not two materials in the .mtl'
+try export hues.cag -o hues.pov
+status 0
+[ "$(grep -c '^ *material { M_' hues.pov)" -ge 4 ] || wrong 'operands without materials'
+script plain.cag 'show (box(4) |> color("red")) - sphere(2)'
+try export plain.cag -o plain.obj
+status 0
+[ "$(grep -c ^usemtl plain.obj)" = 1 ] || wrong 'not one material'
+
 it 'a half space alone has no end'
 script half.cag 'show half_space(plane(origin, Z))'
 try export half.cag -o half.pov

@@ -619,8 +619,90 @@ static void exact_numbers(void **state) {
   assert_false(s.full);
 }
 
+// A polygon with n corners and h holes takes n + 2 h - 2 triangles.
+static void flat_faces_have_few_triangles(void **state) {
+  (void)state;
+  CagMesh *m, *a = cube(0, 0, 0, 2), *b = cube(2, 0, 0, 2), *c = cube(1, 1, 1, 2);
+  m = operated(CAG_UNION, a, b); // flush: a box
+  assert_int_equal(m->triangle_count, 12);
+  assert_int_equal(m->vertex_count, 8);
+  NEAR(volume(m), 16, 1e-14);
+  cag_mesh_release(m);
+  m = operated(CAG_DIFFERENCE, a, c); // three squares, three L, three squares of the notch
+  assert_int_equal(m->triangle_count, 3 * 2 + 3 * 4 + 3 * 2);
+  NEAR(volume(m), 7, 1e-14);
+  cag_mesh_release(m);
+  const CagMesh *const both[2] = {a, b};
+  OK(cag_mesh_boolean_many(CAG_UNION, both, 2, &(CagBooleanHow){.keep_flat = true}, &m, &err));
+  assert_true(m->triangle_count > 12);
+  cag_mesh_release(m);
+  cag_mesh_release(a);
+  cag_mesh_release(b);
+  cag_mesh_release(c);
+  // A drilled plate; its hole's walls keep to quads, however the cut ran across them.
+  const uint32_t n = 40;
+  a = cube(-2, -2, -2, 4);
+  b = prism(n, 1, -3, 3);
+  m = operated(CAG_DIFFERENCE, a, b);
+  assert_int_equal(m->triangle_count, 4 * 2 + 2 * (n + 4) + 2 * n);
+  NEAR(volume(m), 64 - 4 * n / 2.0 * sin(2 * PI / n), 1e-12);
+  cag_mesh_release(m);
+  cag_mesh_release(a);
+  cag_mesh_release(b);
+}
+
+// Caps of 2,000 long triangles from one corner, one on the other and turned by next to nothing:
+// their edges would cross two million times.
+static void fans_on_each_other(void **state) {
+  (void)state;
+  const uint32_t n = 2000;
+  CagMesh *a = prism(n, 1, 0, 1), *b = rotated(prism(n, 1, 0, 1), cag_vec3(0, 0, 1), 1e-4);
+  for (int k = 0; k < 2; k++) { // both caps as fans
+    CagMesh *m = k ? b : a;
+    for (uint32_t i = 1; i + 1 < n; i++) {
+      const uint32_t at = 3 * (uint32_t)(m->triangle_count - 2 * (n - 2)) + 6 * (i - 1);
+      const uint32_t fans[6] = {0, i + 1, i, n, n + i, n + i + 1};
+      memcpy(m->triangles + at, fans, sizeof fans);
+    }
+  }
+  CagMesh *m = operated(CAG_INTERSECTION, a, b);
+  // The corners lie between: the 4,000-gon of both outlines.
+  assert_int_equal(m->triangle_count, 2 * (2 * n - 2) + 2 * 2 * n);
+  const double turn = 1e-4, step = 2 * PI / n, in = cos(step / 2);
+  const double area = n / 2.0 * in * in * 2 * (tan(turn / 2) + tan((step - turn) / 2));
+  NEAR(volume(m), area, 1e-11);
+  cag_mesh_release(m);
+  cag_mesh_release(a);
+  cag_mesh_release(b);
+}
+
+// Each face keeps the label of its operand, and two labels are no one face.
+static void labels_stay_with_their_faces(void **state) {
+  (void)state;
+  CagMesh *m, *part[2] = {cube(0, 0, 0, 2), cube(2, 0, 0, 2)};
+  for (uint32_t k = 0; k < 2; k++) {
+    part[k]->labels = malloc(part[k]->triangle_count * sizeof(uint32_t));
+    for (size_t t = 0; t < part[k]->triangle_count; t++) part[k]->labels[t] = 5 + k;
+  }
+  m = operated(CAG_UNION, part[0], part[1]);
+  double area[2] = {0, 0};
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    const CagVec3 o = m->positions[k[0]];
+    assert_true(m->labels[t] == 5 || m->labels[t] == 6);
+    area[m->labels[t] - 5] +=
+        cag_norm(cag_cross(cag_sub(m->positions[k[1]], o), cag_sub(m->positions[k[2]], o))) / 2;
+  }
+  for (int k = 0; k < 2; k++) NEAR(area[k], 5 * 4, 1e-13);
+  cag_mesh_release(m);
+  for (int k = 0; k < 2; k++) cag_mesh_release(part[k]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(flat_faces_have_few_triangles),
+      cmocka_unit_test(fans_on_each_other),
+      cmocka_unit_test(labels_stay_with_their_faces),
       cmocka_unit_test(exact_numbers),
       cmocka_unit_test(boxes_in_every_position),
       cmocka_unit_test(boxes_that_touch),
