@@ -120,8 +120,29 @@ static int make_site(CagTool *t, CagSession *s, int argc, char **argv) {
   return status;
 }
 
+typedef struct Showing {
+  CagTool *tool;
+  CagSession *session;
+  size_t count;
+} Showing;
+
+static int show_script(void *context, const char *path) {
+  Showing *w = context;
+  if (w->count++) putchar('\n');
+  return document_script(w->tool, w->session, path);
+}
+
+// A folder stands for the scripts below it.
+static int show_path(CagTool *t, CagSession *s, const char *path) {
+  Showing w = {t, s, 0};
+  CagToolScripts scripts = {.tool = t, .each = show_script, .context = &w};
+  char *paths[] = {(char *)(size_t)path};
+  const int status = cag_tool_each_script(&scripts, 1, paths);
+  return status == CAG_STATUS_OK ? scripts.status : status;
+}
+
 static int show(CagTool *t, CagSession *s, const char *operand) {
-  if (operand && is_path(operand)) return document_script(t, s, operand);
+  if (operand && is_path(operand)) return show_path(t, s, operand);
   return cag_session_document(s, operand, is_styled(t), stdout) ? CAG_STATUS_OK
                                                                 : reject(t, s, operand);
 }

@@ -168,6 +168,9 @@ try doc flange.cag parts/gripper.cag
 status 0
 prints 'number, mm: how thick, seen from the side; default 3'
 prints 'How far <apart>'
+try doc parts/
+status 0
+prints 'parts/gripper.cag'
 
 it 'examples in the documentation of a script are tests'
 try test flange.cag parts -v
