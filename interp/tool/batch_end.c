@@ -67,7 +67,7 @@ int cag_batch_end_task(CagBatch *b, CagTask *task) {
                  b->jobs.rows[task->row].number, task->output, task->seconds,
                  (double)task->memory / 1e6);
   CagIoError err;
-  if (cag_journal_add(&b->journal, &entry, &err)) return CAG_STATUS_OK;
+  if (cag_journal_write(&b->journal, &entry, &err)) return CAG_STATUS_OK;
   return cag_tool_fail(b->tool, err.exit_status, err.help, "%s", err.message);
 }
 

@@ -22,11 +22,14 @@ static const double LOOK_INTERVAL = 0.008, SHARE_INTERVAL = 0.15;
 // Below this share of their time the processors count as idle.
 static const double BUSY = 0.95;
 
+// How many processes more may run than do when a processor is idle, for each of them; one at least.
+static const double GROWTH = 0.125;
+
 // How many processes fewer may run after a second without an idle processor.
 static const double SINK = 1;
 
 // The most for each processor until one has ended.
-static const double MOST_UNKNOWN = 4;
+static const double MOST_UNKNOWN = 6;
 
 // Where so many processes keep a processor busy, they sleep: what waits at the end of a batch is
 // then begun at once, when it is no more than may run.
@@ -100,9 +103,9 @@ static void look(CagLoad *l, size_t running) {
   if (passed < LOOK_INTERVAL) return;
   l->looked = now;
   const bool idle = was_idle(l, now) | (count_runnable() < l->workers);
-  // One more than runs is enough: what was allowed and not used says nothing.
-  if (!idle) l->limit -= SINK * passed;
-  else if ((double)(running + 1) > l->limit) l->limit = (double)(running + 1);
+  // A few more than run are enough: what was allowed and not used says nothing.
+  const double more = (double)running + fmax(1, floor(GROWTH * (double)l->workers));
+  l->limit = idle ? fmax(l->limit, more) : l->limit - SINK * passed;
   const double least = (double)l->workers;
   const double most = least * (l->largest ? CAG_LOAD_MOST : MOST_UNKNOWN);
   l->limit = fmax(least, fmin(most, l->limit));

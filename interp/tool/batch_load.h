@@ -2,7 +2,7 @@
 //
 // A renderer may sleep: POV-Ray 3.7 waits for most of half a second between its steps, however
 // small the picture. One process for each processor would leave the machine idle then. So the
-// number that may run is raised by one whenever a processor is seen idle, and sinks slowly while
+// number that may run is raised a little whenever a processor is seen idle, and sinks slowly while
 // none is: rows that compute soon run one for each processor. Two things bound it: until a process
 // has ended nobody knows what they need, and only a few for each processor are begun; after that
 // there may be more, but never so many that the largest one seen would fill the memory that many

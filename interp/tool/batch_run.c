@@ -247,6 +247,13 @@ static void begin_more(Run *r) {
   }
 }
 
+static void sync_journal(Run *r) {
+  CagIoError err;
+  if (cag_journal_sync(&r->batch->journal, &err)) return;
+  const int status = cag_tool_fail(r->batch->tool, err.exit_status, err.help, "%s", err.message);
+  if (r->status == CAG_STATUS_OK) r->status = status;
+}
+
 static size_t count_waiting(const Run *r) {
   size_t n = 0;
   for (size_t i = 0; i < r->batch->task_count; i++)
@@ -260,6 +267,8 @@ static void run_all(Run *r, struct pollfd *waiting) {
     if (!r->running) return;
     wait_for_news(r, waiting);
     look(r);
+    begin_more(r); // processes first: the disk takes its time
+    sync_journal(r);
     see_to_memory(r);
     cag_batch_progress_show(&r->progress, r->batch, r->running);
   }
@@ -280,6 +289,7 @@ static int run(CagBatch *b, bool joins) {
     r.waiting = count_waiting(&r);
     cag_batch_progress_begin(&r.progress, b);
     run_all(&r, waiting);
+    sync_journal(&r);
     stop_all(&r, waiting);
     cag_batch_progress_clear(&r.progress);
     cag_batch_fail_joins(b);

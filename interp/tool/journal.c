@@ -187,14 +187,31 @@ void cag_journal_close(CagJournal *j) {
 
 // --- Writing ---
 
-bool cag_journal_add(CagJournal *j, const CagJournalEntry *e, CagIoError *err) {
+static bool fail_write(const CagJournal *j, CagIoError *err) {
+  return cag_io_error_set(err, CAG_EXIT_FILE, "free some space: what is done is not kept otherwise",
+                          "the journal '%s' cannot be written: %s", j->path, strerror(errno));
+}
+
+bool cag_journal_write(CagJournal *j, const CagJournalEntry *e, CagIoError *err) {
   char line[LINE_MAX_BYTES];
   const int n = snprintf(line, sizeof line,
                          "{\"what\":\"%s\",\"key\":\"%s\",\"seconds\":%.3f,\"memory\":%zu,"
                          "\"attempts\":%d}\n",
                          WHATS[e->what], e->key, e->seconds, e->memory, e->attempts);
   // One call for the line: what a kill leaves is none of it, or all, or a part that is passed over.
-  if (write(j->fd, line, (size_t)n) == n && fdatasync(j->fd) == 0) return true;
-  return cag_io_error_set(err, CAG_EXIT_FILE, "free some space: what is done is not kept otherwise",
-                          "the journal '%s' cannot be written: %s", j->path, strerror(errno));
+  const ssize_t written = write(j->fd, line, (size_t)n);
+  j->unsynced = true;
+  if (written == n) return true;
+  if (written >= 0) errno = ENOSPC;
+  return fail_write(j, err);
+}
+
+bool cag_journal_sync(CagJournal *j, CagIoError *err) {
+  if (!j->unsynced) return true;
+  j->unsynced = false;
+  return fdatasync(j->fd) == 0 || fail_write(j, err);
+}
+
+bool cag_journal_add(CagJournal *j, const CagJournalEntry *e, CagIoError *err) {
+  return cag_journal_write(j, e, err) && cag_journal_sync(j, err);
 }

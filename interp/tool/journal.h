@@ -1,7 +1,7 @@
 // The journal of a batch: what was done, kept so that a run that was killed goes on where it ended.
 //
 // A journal is a text of lines, each a JSON object, to which lines are only ever added; a line
-// counts when it is whole, and is on the disk when cag_journal_add returns. A kill can tear the
+// counts when it is whole, and is on the disk when cag_journal_sync returns. A kill can tear the
 // last line only: it is passed over, and the next line begins on a line of its own. Later lines
 // about a key stand for the earlier ones.
 //
@@ -38,6 +38,7 @@ typedef struct CagJournal {
   const char *path;         // the caller's
   CagJournalEntry *entries; // of keys that are known, by key
   size_t count;
+  bool unsynced;                  // lines were written that the disk may not have
   char job[CAG_JOURNAL_KEY_SIZE]; // the queue's job that was submitted and not collected; empty:
                                   // none
 } CagJournal;
@@ -51,7 +52,12 @@ void cag_journal_close(CagJournal *j);
 // The newest of the key that was there when the journal was opened, or NULL.
 const CagJournalEntry *cag_journal_find(const CagJournal *j, const char *key);
 
-// Adds a line, and waits until the disk has it.
+// Adds a line, which a kill leaves there; when power fails, the disk may not have it before the
+// next cag_journal_sync.
+bool cag_journal_write(CagJournal *j, const CagJournalEntry *entry, CagIoError *err);
+// Waits until the disk has all lines.
+bool cag_journal_sync(CagJournal *j, CagIoError *err);
+// Both.
 bool cag_journal_add(CagJournal *j, const CagJournalEntry *entry, CagIoError *err);
 
 #endif
