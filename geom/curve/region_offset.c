@@ -434,6 +434,115 @@ static CagStatus largest_disc(const CagRegion *r, double *out, CagError *err) {
 #define NO_DISTANCE 1e-12
 #define FAR 1e9
 
+// --- Convex polygons that shrink ---
+//
+// What is left is bounded by the moved lines of the edges alone, which come sorted by direction:
+// each cuts off the ends of the chain of those before it. Linear time, where an arrangement of all
+// strips near the middle would have each cross each.
+
+// A line with what lies to its left.
+typedef struct Half {
+  CagVec3 at, along; // along: unit
+} Half;
+
+typedef struct Chain {
+  Half *halves;
+  size_t first, end; // those that are left: first .. end - 1
+  double slack;      // lengths below are rounding
+} Chain;
+
+static CagVec3 meeting(const Half *a, const Half *b) {
+  const double t = cag_cross(cag_sub(b->at, a->at), b->along).z / cag_cross(a->along, b->along).z;
+  return cag_madd(a->at, t, a->along);
+}
+
+static bool leaves_out(const Half *h, CagVec3 p) {
+  return cag_cross(h->along, cag_sub(p, h->at)).z <= 0;
+}
+
+// False: nothing is left.
+static bool cut_chain(Chain *c, Half h) {
+  const Half *all = c->halves;
+  while (c->end - c->first > 1 && leaves_out(&h, meeting(&all[c->end - 2], &all[c->end - 1])))
+    c->end--;
+  while (c->end - c->first > 1 && leaves_out(&h, meeting(&all[c->first], &all[c->first + 1])))
+    c->first++;
+  if (c->end > c->first && !(cag_cross(all[c->end - 1].along, h.along).z > 0)) return false;
+  c->halves[c->end++] = h;
+  return true;
+}
+
+// The loop's edges moved to the left by `left`; false: it is no convex polygon that runs
+// counter-clockwise once.
+static bool move_edges(const CagVec3 *v, size_t n, double left, Half *out, size_t *count) {
+  double turned = 0;
+  *count = 0;
+  for (size_t i = 0; i < n; i++) {
+    const CagVec3 p = v[i], step = cag_sub(v[(i + 1) % n], p);
+    if (!(cag_norm(step) > 0)) continue;
+    const CagVec3 u = cag_unit(step);
+    if (*count > 0) {
+      const CagVec3 before = out[*count - 1].along;
+      const double sine = cag_cross(before, u).z;
+      if (sine < 0) return false;
+      turned += atan2(sine, cag_dot(before, u));
+      if (sine <= TURN && cag_dot(before, u) > 0) continue; // straight on: the same line
+    }
+    out[(*count)++] = (Half){cag_madd(p, left, cag_vec3(-u.y, u.x, 0)), u};
+  }
+  if (*count < 3) return false;
+  const CagVec3 first = out[0].along, last = out[*count - 1].along;
+  const double sine = cag_cross(last, first).z;
+  return sine > 0 && turned + atan2(sine, cag_dot(last, first)) < 3 * M_PI;
+}
+
+static CagStatus polygon_of(const Chain *c, CagRegion **out, CagError *err) {
+  const size_t n = c->end - c->first;
+  CagVec3 *v = malloc((n + 1) * sizeof *v);
+  if (!v) return cag_fail_memory(err);
+  size_t kept = 0;
+  for (size_t i = 0; i < n; i++) {
+    const CagVec3 p = meeting(&c->halves[c->first + i], &c->halves[c->first + (i + 1) % n]);
+    if (kept == 0 || cag_norm(cag_sub(p, v[kept - 1])) > c->slack) v[kept++] = p;
+  }
+  while (kept > 1 && !(cag_norm(cag_sub(v[kept - 1], v[0])) > c->slack)) kept--;
+  CagCurve *loop = NULL;
+  CagStatus status = CAG_OK;
+  *out = NULL;
+  if (kept > 2) {
+    status = cag_curve_polyline(v, kept, true, 2, &loop, err);
+    if (!status) status = cag_region_new(loop, NULL, 0, out, err);
+    cag_curve_release(loop);
+  }
+  free(v);
+  return status;
+}
+
+// *taken false: the region is no convex polygon. *out NULL: nothing is left.
+static CagStatus shrink_convex(const CagRegion *r, double d, double size, bool *taken,
+                               CagRegion **out, CagError *err) {
+  const CagVec3 *v;
+  size_t n, count;
+  bool closed;
+  *taken = false;
+  *out = NULL;
+  if (r->count != 1 || !cag_curve_vertices(r->loops[0], &v, &n, &closed)) return CAG_OK;
+  Half *moved = malloc((2 * n + 2) * sizeof *moved);
+  if (!moved) return cag_fail_memory(err);
+  Chain c = {moved + n + 1, 0, 0, NO_DISTANCE * size};
+  *taken = move_edges(v, n, d, moved, &count);
+  bool left = *taken;
+  for (size_t i = 0; left && i < count; i++) left = cut_chain(&c, moved[i]);
+  const Half *all = c.halves;
+  while (left && c.end - c.first > 2 &&
+         leaves_out(&all[c.first], meeting(&all[c.end - 2], &all[c.end - 1])))
+    c.end--;
+  left = left && c.end - c.first > 2 && cag_cross(all[c.end - 1].along, all[c.first].along).z > 0;
+  const CagStatus status = left ? polygon_of(&c, out, err) : CAG_OK;
+  free(moved);
+  return status;
+}
+
 CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagRegion **out,
                             CagError *err) {
   CagStatus status = cag_curve_check_number(d, "d", err);
@@ -454,6 +563,9 @@ CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagR
     *out = cag_region_retain(r);
     return CAG_OK;
   }
+  bool convex = false;
+  if (d < 0) status = shrink_convex(r, -d, size, &convex, out, err);
+  if (status || convex) return status || *out ? status : fail_empty(d, err);
   Raw raw = {.left = -d, .tolerance = tolerance}; // the region lies to the left of its boundary
   for (size_t i = 0; !status && i < r->count; i++) status = put_loop(&raw, r->loops[i], err);
   if (!status)
