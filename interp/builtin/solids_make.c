@@ -4,6 +4,7 @@
 
 #include "geom/solid/csg.h"
 #include "interp/builtin/solids.h"
+#include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 #include "interp/eval/vm.h"
 
@@ -45,9 +46,12 @@ bool cag_solids_sphere(CagCall *call, CagValue *result) {
 
 // A radius that may be 0 beside one that is not.
 static bool read_radius(CagCall *call, int argument, double fallback, double *out) {
+  char text[32];
   if (!cag_arg_number_or(call, argument, fallback, out)) return false;
   if (*out >= 0 && isfinite(*out)) return true;
-  return cag_fail_call(call, argument, CAG_ERR_value, "expects a radius of 0 or more");
+  return cag_fail_call(call, argument, CAG_ERR_value,
+                       "expects a finite radius of 0 or more as `%s`, found %s",
+                       cag_parameter_name(call, argument), cag_number_text(*out, text));
 }
 
 bool cag_solids_cylinder(CagCall *call, CagValue *result) {
