@@ -29,14 +29,15 @@ typedef struct CagBooleanHow {
 // 1e-12 of the largest coordinate; triangles of two materials, or with normals that do not agree,
 // are no one face.
 //
-// The time is that of sorting the triangles, and of what meets. Triangles that overlap in one plane
-// are cut along the edges of each other: two finely divided faces of long triangles, one on the
-// other, make as many pieces as their edges cross.
+// The time is that of sorting the triangles, and of what meets. Flat faces that overlap in one
+// plane are cut along the outlines of each other, however they are divided into triangles; where
+// their planes differ by rounding, each triangle is cut along those that it meets.
 //
 // Normals are interpolated from the operands (turned where b's surface bounds a hole of a; of faces
-// where an operand has none); no operand has normals: none. uv is dropped.
-// Fails with "mesh-open" (argument "a" or "b", index of a triangle), "mesh-inside-out",
-// "vertex-out-of-range" (not finite, or beyond 1e100), "mesh-too-large".
+// where an operand has none); no operand has normals: none. uv is dropped. Each triangle has the
+// label of the one that it is a part of. Fails with "mesh-open" (argument "a" or "b", index of a
+// triangle), "mesh-inside-out", "vertex-out-of-range" (not finite, or beyond 1e100),
+// "mesh-too-large".
 CagStatus cag_mesh_boolean(CagSetOperation op, const CagMesh *a, const CagMesh *b,
                            const volatile int *interrupt, CagMesh **out, CagError *err);
 
