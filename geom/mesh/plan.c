@@ -536,7 +536,7 @@ static CagStatus add_leaf(Tessellator *t, uint32_t face, const Sampled *s, const
     leaf->to[d] = s->to[d];
     leaf->n[d] = n[d] < UINT32_MAX / 4 ? (uint32_t)n[d] : UINT32_MAX / 4;
     uint32_t least = least_steps(t->faces[face].surface, d, s->from[d], s->to[d]);
-    if (leaf->n[d] < least) leaf->n[d] = least;
+    if (leaf->n[d] < least && !t->is_point) leaf->n[d] = least;
   }
   // Those at poles become one triangle, all others two.
   t->quads += n[0] * n[1];

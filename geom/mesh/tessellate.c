@@ -70,7 +70,8 @@ static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBoun
                     "only a bounded surface can be tessellated; this one reaches infinity");
   const double noise = rounding * fmax(cag_norm(bounds->min), cag_norm(bounds->max));
   if (!(t->how.tolerance > 0)) t->how.tolerance = t->size > 0 ? t->size * default_share : 1;
-  if (t->size <= noise) {
+  t->is_point = t->size <= noise;
+  if (t->is_point) {
     t->how.tolerance = fmax(t->how.tolerance, noise);
     t->how.angle = t->how.max_edge = 0;
   }

@@ -82,6 +82,7 @@ typedef struct Face {
 typedef struct Tessellator {
   CagTessellation how; // tolerance > 0
   double size;         // diagonal of the bounds
+  bool is_point;       // but for rounding: it may have no triangles
   Face *faces;
   size_t face_count;
   Leaf *leaves;
