@@ -26,7 +26,7 @@ static const double BUSY = 0.95;
 static const double GROWTH = 0.125;
 
 // How many processes fewer may run after a second without an idle processor.
-static const double SINK = 1;
+static const double SINK = 0.5;
 
 // The most for each processor until one has ended.
 static const double MOST_UNKNOWN = 6;
