@@ -143,8 +143,8 @@ static int show_path(CagTool *t, CagSession *s, const char *path) {
 
 static int show(CagTool *t, CagSession *s, const char *operand) {
   if (operand && is_path(operand)) return show_path(t, s, operand);
-  return cag_session_document(s, operand, is_styled(t), stdout) ? CAG_STATUS_OK
-                                                                : reject(t, s, operand);
+  if (cag_session_document(s, operand, is_styled(t), stdout)) return CAG_STATUS_OK;
+  return is_site_path(operand) ? show_path(t, s, operand) : reject(t, s, operand);
 }
 
 int cag_tool_doc(CagTool *t, int argc, char **argv) {

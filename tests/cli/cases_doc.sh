@@ -168,7 +168,7 @@ try doc flange.cag parts/gripper.cag
 status 0
 prints 'number, mm: how thick, seen from the side; default 3'
 prints 'How far <apart>'
-try doc parts/
+try doc parts
 status 0
 prints 'parts/gripper.cag'
 
