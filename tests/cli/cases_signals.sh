@@ -117,7 +117,7 @@ status 130
 
 # --- Everything that runs for long ends soon after Ctrl-C ---
 
-# The geometry looks up: it ends by itself, before the alarm that ends what does not.
+# The geometry looks up and ends by itself; at the latest the alarm ends it, two seconds after the signal.
 script heavy.cag 'show difference(sphere(100), translate(sphere(100), [30, 0.1, 0.2]))'
 script degree.cag 'c = bspline([for i in 0..5000: [i, sin(i * 1deg) * 100, i % 7]], degree: 999)
 print length(c)'
@@ -131,7 +131,7 @@ stopped() {
   interrupted INT 1 "$@"
   took=$((($(date +%s%N) - begun) / 1000000))
   status 130
-  [ $took -lt 2900 ] || wrong "it took $took ms"
+  [ $took -lt 3500 ] || wrong "it took $took ms"
   no_temporaries .
 }
 
