@@ -336,6 +336,43 @@ static void finish_weld(Tessellator *t) {
   }
 }
 
+static uint32_t root_of(uint32_t *weld, uint32_t k) {
+  while (weld[k] != k) k = weld[k] = weld[weld[k]];
+  return k;
+}
+
+// Are two corners of triangle k one point? Then they are welded, so that its neighbours meet.
+static bool weld_shrunk(CagMesh *m, const uint32_t *k, double noise) {
+  bool shrunk = false;
+  for (int j = 0; j < 3; j++) {
+    const uint32_t a = k[j], b = k[(j + 1) % 3];
+    const CagVec3 d = cag_sub(m->positions[a], m->positions[b]);
+    if (fabs(d.x) > noise || !(cag_dot(d, d) <= noise * noise)) continue;
+    const uint32_t p = root_of(m->weld, a), q = root_of(m->weld, b);
+    m->weld[p < q ? q : p] = p < q ? p : q;
+    shrunk = true;
+  }
+  return shrunk;
+}
+
+// Leaves out triangles that have shrunk to an edge or a point where nothing told of it before: a
+// part of a net may lie in one point that is no pole.
+static void drop_shrunk(CagMesh *m, double noise) {
+  size_t kept = 0;
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    if (weld_shrunk(m, k, noise)) continue;
+    if (kept < t) memcpy(m->triangles + 3 * kept, k, 3 * sizeof *k);
+    kept++;
+  }
+  if (kept == m->triangle_count) return;
+  m->triangle_count = kept;
+  for (uint32_t v = 0; v < m->vertex_count; v++) {
+    m->weld[v] = m->weld[m->weld[v]]; // the root's is set already: it comes first
+    m->positions[v] = m->positions[m->weld[v]];
+  }
+}
+
 // Mean of the triangles around a vertex where the surface has no normal.
 static void complete_normals(CagMesh *m) {
   unsigned char *missing = calloc(m->vertex_count + 1, 1);
@@ -404,6 +441,7 @@ CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
     return status;
   }
   f.mesh->triangle_count = f.triangles;
+  drop_shrunk(f.mesh, t->noise);
   if (t->needs_normals) complete_normals(f.mesh);
   *out = f.mesh;
   return CAG_OK;

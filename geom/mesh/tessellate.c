@@ -68,11 +68,11 @@ static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBoun
   if (!isfinite(t->size))
     return cag_fail(err, CAG_E_ARGUMENT, "surface-unbounded", "", -1,
                     "only a bounded surface can be tessellated; this one reaches infinity");
-  const double noise = rounding * fmax(cag_norm(bounds->min), cag_norm(bounds->max));
+  t->noise = rounding * fmax(cag_norm(bounds->min), cag_norm(bounds->max));
   if (!(t->how.tolerance > 0)) t->how.tolerance = t->size > 0 ? t->size * default_share : 1;
-  t->is_point = t->size <= noise;
+  t->is_point = t->size <= t->noise;
   if (t->is_point) {
-    t->how.tolerance = fmax(t->how.tolerance, noise);
+    t->how.tolerance = fmax(t->how.tolerance, t->noise);
     t->how.angle = t->how.max_edge = 0;
   }
   t->faces = calloc(n + 1, sizeof *t->faces);

@@ -82,7 +82,8 @@ typedef struct Face {
 typedef struct Tessellator {
   CagTessellation how; // tolerance > 0
   double size;         // diagonal of the bounds
-  bool is_point;       // but for rounding: it may have no triangles
+  double noise;        // points that are nearer to each other are one but for rounding
+  bool is_point;       // all of it is: it may have no triangles
   Face *faces;
   size_t face_count;
   Leaf *leaves;
