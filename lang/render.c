@@ -271,5 +271,5 @@ void cag_diagnostics_render(const CagDiagnostics *d, CagDiagnosticStyle style, F
     cag_diagnostic_render(&d->items[i], style, out);
   }
   if (d->dropped && style != CAG_DIAGNOSTIC_JSON)
-    fprintf(out, "\n%zu more error%s not shown\n", d->dropped, d->dropped == 1 ? "" : "s");
+    fprintf(out, "\n%zu more not shown\n", d->dropped);
 }

@@ -30,8 +30,6 @@ static void free_parts(Parts *p) {
   free(p->items);
 }
 
-// Meshes of all things shown; grounds and lines are for pictures only, unless nothing else was
-// shown.
 static CagStatus add_part(Parts *p, CagMeshPart part, CagError *err) {
   CagMeshPart *more = realloc(p->items, (p->count + 1) * sizeof *more);
   if (!more) {
@@ -65,7 +63,8 @@ static CagStatus add_parts(Parts *p, const CagScene *scene, const CagItem *item,
   return status;
 }
 
-// apart: parts have one material each.
+// Meshes of all things shown; grounds and lines are for pictures only, unless nothing else was
+// shown. apart: parts have one material each.
 static int make_parts(CagSession *s, bool apart, Parts *out) {
   const CagScene *scene = &s->scene;
   *out = (Parts){NULL, 0};

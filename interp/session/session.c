@@ -48,6 +48,7 @@ void cag_session_drop_vm(CagSession *s) {
   free(s->inputs);
   s->inputs = NULL;
   s->input_count = 0;
+  cag_session_renew_time(s);
 }
 
 void cag_session_free(CagSession *s) {
@@ -211,9 +212,16 @@ CagStatus cag_session_checked(const CagSession *s, CagStatus status, CagError *e
 
 // --- Status ---
 
+// Warnings may stand before the error that ended the work.
+static const CagDiagnostic *first_error(const CagDiagnostics *d) {
+  for (size_t i = 0; i < d->count; i++)
+    if (d->items[i].severity == CAG_SEVERITY_ERROR) return &d->items[i];
+  return d->items;
+}
+
 int cag_session_status(const CagSession *s) {
   if (s->diagnostics.count == 0) return CAG_STATUS_OK;
-  const CagDiagnostic *d = &s->diagnostics.items[0];
+  const CagDiagnostic *d = first_error(&s->diagnostics);
   switch (d->id) {
   case CAG_ERR_interrupted: return CAG_STATUS_INTERRUPTED;
   case CAG_ERR_limit_depth:
@@ -328,7 +336,6 @@ static bool run(CagVm *vm, void *context) {
 
 static int start_run(CagSession *s, Run *r) {
   cag_session_drop_vm(s);
-  cag_session_renew_time(s);
   free(s->script);
   s->script = strdup(r->path ? r->path : r->name);
   return cag_session_work(s, run, r);
@@ -391,7 +398,8 @@ static int complete_scene(CagSession *s, void *context) {
   return status == CAG_OK ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
 }
 
-// Surfaces that cross themselves are shown all the same, with a warning.
+// Surfaces that cross themselves are shown all the same, with a warning. The list keeps room for
+// the error that may follow.
 static int look_for_crossings(CagSession *s, void *context) {
   (void)context;
   char what[256];
@@ -402,6 +410,10 @@ static int look_for_crossings(CagSession *s, void *context) {
                          (item->kind == CAG_ITEM_SOLID &&
                           cag_solid_crosses_itself(item->as.solid, what, sizeof what));
     if (!crosses || s->vm->failed) continue;
+    if (s->diagnostics.count + 1 >= CAG_DIAGNOSTICS_MAX) {
+      s->diagnostics.dropped++;
+      continue;
+    }
     cag_diagnostics_add(&s->diagnostics, CAG_ERR_crosses_itself, NULL, (CagSpan){0, 0}, "%s: %s",
                         item->name ? item->name : "a shape", what)
         ->severity = CAG_SEVERITY_WARNING;

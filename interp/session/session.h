@@ -31,6 +31,7 @@ struct CagSession {
 
 // Makes a machine when there is none. NULL: memory is out (a diagnostic says so).
 CagVm *cag_session_vm(CagSession *s);
+// Ends the machine with all that it made, and renews the time: what follows is another run.
 void cag_session_drop_vm(CagSession *s);
 // What follows has all of max_time: a run, an input of the interactive session, its commands.
 void cag_session_renew_time(CagSession *s);

@@ -48,6 +48,21 @@ says 'triangles'
 holds ball.stl earlier
 no_temporaries .
 
+it 'a limit behind warnings is status 5, and told however many there are'
+script folds.cag 'path(x) = interpolate([[x, 0, 0], [x + 5, 0, 0], [x + 5, 1, 0], [x, 1, 0]])
+param count = 1
+show [for i in 0..<count: sweep(circle(3 + i / 1000), path(30 * i))]'
+try export folds.cag -o folds.stl --max-triangles 100
+status 5
+says 'warning: sweep'
+says 'the limit is 100'
+try export folds.cag -o folds.stl --max-triangles 100 -D count=25
+status 5
+says 'warning: sweep.19'
+says '6 more not shown'
+says 'the limit is 100'
+is_missing folds.stl
+
 it 'attempt does not catch a limit'
 script attempt.cag 'f(n) = f(n + 1)
 print attempt(() => f(0), e => "caught")'
@@ -131,7 +146,7 @@ it '--max-time ends the reading of a large file'
 awk 'BEGIN { print "ply\nformat ascii 1.0\nelement vertex 3000000\nproperty float x\nproperty float y\nproperty float z\nelement face 3000000\nproperty list uchar int vertex_indices\nend_header"
   for (i = 0; i < 3000000; i++) print i % 1000, i / 1000, i % 7
   for (i = 0; i < 3000000; i++) print 3, i, (i + 1) % 3000000, (i + 999) % 3000000 }' > large.ply
-script large.cag 'print read_mesh("large.ply")'
+script large.cag 'print [for i in 1..5: read_mesh("large.ply")]'
 soon run large.cag
 rm large.ply
 

@@ -158,6 +158,17 @@ static void examples_are_found_right(void **state) {
   assert_true(seen > 300);
 }
 
+static void a_check_has_all_of_the_time(void **state) {
+  (void)state;
+  CagSessionOptions options;
+  cag_session_options_init(&options);
+  options.max_time = 60;
+  CagSession *s = cag_session_new(&options);
+  for (int i = 0; i < 10; i++) // the watch may be late
+    assert_int_equal(cag_session_check_file(s, "stdlib/robots.cag"), CAG_STATUS_OK);
+  cag_session_free(s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(arguments_are_counted_and_named),
@@ -170,6 +181,7 @@ int main(void) {
       cmocka_unit_test(definitions_that_nothing_uses_are_told),
       cmocka_unit_test(a_long_chain_of_definitions_is_no_trouble),
       cmocka_unit_test(examples_are_found_right),
+      cmocka_unit_test(a_check_has_all_of_the_time),
   };
   return cmocka_run_group_tests_name("checker", tests, NULL, NULL);
 }
