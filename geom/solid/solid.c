@@ -476,17 +476,15 @@ void cag_solid_describe(const CagSolid *s, char *buffer, size_t size) {
     else snprintf(buffer, size, "cylinder, height %s, radius %s, top %s", a, b, c);
     return;
   case CAG_SOLID_TORUS: snprintf(buffer, size, "torus, major %s, minor %s", a, b); return;
-  case CAG_SOLID_EXTRUSION: snprintf(buffer, size, "extrusion, %zu faces", s->face_count); return;
+  case CAG_SOLID_EXTRUSION:
   case CAG_SOLID_REVOLUTION:
-    snprintf(buffer, size, "revolution, %zu %s", s->face_count,
+  case CAG_SOLID_SWEEP:
+  case CAG_SOLID_LOFT:
+  case CAG_SOLID_SHELL:
+    snprintf(buffer, size, "%s, %zu %s", cag_solid_kind_name(s->kind), s->face_count,
              s->face_count == 1 ? "face" : "faces");
     return;
   case CAG_SOLID_TUBE: snprintf(buffer, size, "tube, radius %s", a); return;
-  case CAG_SOLID_SWEEP: snprintf(buffer, size, "sweep, %zu faces", s->face_count); return;
-  case CAG_SOLID_LOFT: snprintf(buffer, size, "loft, %zu faces", s->face_count); return;
-  case CAG_SOLID_SHELL:
-    snprintf(buffer, size, "shell, %zu %s", s->face_count, s->face_count == 1 ? "face" : "faces");
-    return;
   case CAG_SOLID_MESH:
     snprintf(buffer, size, "polyhedron, %zu triangles", s->core->mesh->triangle_count);
     return;
