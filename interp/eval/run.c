@@ -303,7 +303,7 @@ static inline bool reserve(CagVm *vm, CagValue *base, size_t registers) {
 // A collection or a stop is due.
 #define SAFE_POINT()                                                                               \
   do {                                                                                             \
-    if (vm->heap.debt >= vm->heap.threshold || *vm->interrupt || vm->stop) {                  \
+    if (vm->heap.debt >= vm->heap.threshold || *vm->interrupt || vm->stop) {                       \
       SAVE();                                                                                      \
       vm->top = base + f->proto->registers;                                                        \
       if (!cag_safe_point(vm)) goto failed;                                                        \
