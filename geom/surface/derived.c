@@ -229,24 +229,11 @@ static CagStatus offset_point(const Derived *d, double u, double v, CagVec3 *out
 // Where the normal is a limit, derivatives are taken this share of the domain inside.
 #define FROM_POLE 1e-7
 
-static CagStatus offset_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
-                             CagVec3 *out, CagError *err) {
-  const Derived *d = (const Derived *)s;
-  const CagSurface *in = d->inner;
-  if (n == 0) return offset_point(d, u, v, out, err);
-  if (n + 1 > CAG_MAX_PARTIAL)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "derivative-order", "order", -1,
-                    "an offset has partial derivatives up to order %d, not %d", CAG_MAX_PARTIAL - 1,
-                    n);
-  CagVec3 point, all[SIDE * SIDE];
-  CagStatus status = offset_point(d, u, v, &point, err);
-  if (status) return status;
-  double hu = FROM_POLE * (in->u1 - in->u0), hv = FROM_POLE * (in->v1 - in->v0);
-  if (in->pole_u0 && u < in->u0 + hu) u = in->u0 + hu;
-  if (in->pole_u1 && u > in->u1 - hu) u = in->u1 - hu;
-  if (in->pole_v0 && v < in->v0 + hv) v = in->v0 + hv;
-  if (in->pole_v1 && v > in->v1 - hv) v = in->v1 - hv;
-  status = cag_surface_eval(in, u, v, n + 1, su, sv, all, err);
+// Partials of order n. *has_normal: false where the surface has none, so that they are no numbers.
+static CagStatus offset_partials(const Derived *d, double u, double v, int n, CagSide su,
+                                 CagSide sv, CagVec3 *out, bool *has_normal, CagError *err) {
+  CagVec3 all[SIDE * SIDE];
+  CagStatus status = cag_surface_eval(d->inner, u, v, n + 1, su, sv, all, err);
   if (status) return status;
   Series du, dv, normal, unit;
   for (int i = 0; i <= n; i++)
@@ -256,13 +243,46 @@ static CagStatus offset_eval(const CagSurface *s, double u, double v, int n, Cag
       dv.c[i][j] = cag_scaled(all[cag_partial(n + 1, i, j + 1)], f);
     }
   series_cross(&du, &dv, n, &normal);
+  *has_normal = cag_dot(normal.c[0][0], normal.c[0][0]) > 0;
+  if (!*has_normal) return CAG_OK;
   series_unit(&normal, n, &unit);
   for (int i = 0; i <= n; i++)
     for (int j = 0; i + j <= n; j++)
       out[cag_partial(n, i, j)] = cag_madd(all[cag_partial(n + 1, i, j)],
                                            d->distance * FACTORIAL[i] * FACTORIAL[j], unit.c[i][j]);
-  out[0] = point;
   return CAG_OK;
+}
+
+static CagStatus offset_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
+                             CagVec3 *out, CagError *err) {
+  const Derived *d = (const Derived *)s;
+  const CagSurface *in = d->inner;
+  if (n == 0) return offset_point(d, u, v, out, err);
+  if (n + 1 > CAG_MAX_PARTIAL)
+    return cag_fail(err, CAG_E_UNSUPPORTED, "derivative-order", "order", -1,
+                    "an offset has partial derivatives up to order %d, not %d", CAG_MAX_PARTIAL - 1,
+                    n);
+  CagVec3 point;
+  CagStatus status = offset_point(d, u, v, &point, err);
+  if (status) return status;
+  double hu = FROM_POLE * (in->u1 - in->u0), hv = FROM_POLE * (in->v1 - in->v0);
+  if (in->pole_u0 && u < in->u0 + hu) u = in->u0 + hu;
+  if (in->pole_u1 && u > in->u1 - hu) u = in->u1 - hu;
+  if (in->pole_v0 && v < in->v0 + hv) v = in->v0 + hv;
+  if (in->pole_v1 && v > in->v1 - hv) v = in->v1 - hv;
+  bool has_normal;
+  status = offset_partials(d, u, v, n, su, sv, out, &has_normal, err);
+  // A point within, as on the axis of a torus whose tube just reaches it.
+  if (!status && !has_normal) {
+    u += u + hu <= in->u1 && (su == CAG_SIDE_RIGHT || u - hu < in->u0) ? hu : -hu;
+    v += v + hv <= in->v1 && (sv == CAG_SIDE_RIGHT || v - hv < in->v0) ? hv : -hv;
+    status = offset_partials(d, u, v, n, su, sv, out, &has_normal, err);
+  }
+  if (!status && !has_normal)
+    status = cag_fail(err, CAG_E_DEGENERATE, "degenerate-normal", "", -1,
+                      "the surface has no normal here, so that its offset has no derivatives");
+  out[0] = point;
+  return status;
 }
 
 static const CagSurfaceKind offset_kind = {
