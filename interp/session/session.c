@@ -484,5 +484,6 @@ static bool describe(CagVm *vm, void *context) {
 }
 
 void cag_session_describe_scene(CagSession *s, FILE *out) {
+  if (s->interactive) cag_session_renew_time(s);
   cag_session_work(s, describe, &(Listing){s, out});
 }

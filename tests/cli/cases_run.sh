@@ -112,6 +112,12 @@ with_input input repl vase.cag
 status 0
 prints '121'
 
+it 'the limit of one input of the REPL leaves all of it to what follows'
+printf 'f(n) = if n == 0 then 0 else f(n - 1)\nshow [for i in 0..<20: sphere(1 + i)]\nf(1e12)\n:scene\n' > input
+with_input input repl --max-time 0.5
+says '--max-time'
+prints_exactly 'a list of 20 elements'
+
 it 'print without show needs no scene'
 script plain.cag 'print "only text"'
 try run plain.cag
