@@ -321,8 +321,9 @@ if command -v tmux >/dev/null; then
   keys -l 'len("0123456789012345678901234567890123456789"'
   sleep 0.2
   tmux -L "$session" resize-window -t repl -x 30 -y 30
-  sleep 0.2
+  sleep 0.5 # tmux tells of a size that has stood for a quarter of a second
   tmux -L "$session" resize-window -t repl -x 60 -y 30
+  sleep 0.5
   keys ')' Enter
   shows 'a line goes on in a window of another size' 'cag> len("0123456789012345678901234567890123456789")'
   shows 'and is read as it was typed' '40 : number'
