@@ -109,6 +109,12 @@ static bool breaks_next(const Format *f, uint32_t offset, bool inner) {
   return !inner && lines_before(f, offset) > 1;
 }
 
+// Sets a comment that a line break follows.
+static void set_last(Format *f, Docs *out, Doc *text, bool begins_line) {
+  layout_add(out,
+             begins_line ? layout_comment(&f->layout, text) : layout_trailing(&f->layout, text));
+}
+
 // Sets one comment; `inner`: before a closing bracket, so that no space stands behind it.
 static void set_comment(Format *f, Docs *out, const CagComment *c, uint32_t offset, bool inner) {
   const size_t before = lines_before(f, c->span.start);
@@ -117,7 +123,7 @@ static void set_comment(Format *f, Docs *out, const CagComment *c, uint32_t offs
   Doc *text = comment_text(f, c);
   if (before > 1) layout_add(out, layout_blank(&f->layout));
   if (alone) {
-    layout_add(out, before ? layout_comment(&f->layout, text) : layout_trailing(&f->layout, text));
+    set_last(f, out, text, before > 0);
   } else {
     layout_add(out, layout_inline(&f->layout, text));
     if (!inner) layout_add(out, layout_plain(&f->layout, " ", 1));
@@ -134,6 +140,16 @@ static inline void set_comments(Format *f, Docs *out, uint32_t offset, bool inne
   if (!comments_before(f, offset)) return;
   if (set_each_comment(f, out, offset, inner) && !inner && lines_before(f, offset) > 1)
     layout_add(out, layout_blank(&f->layout));
+}
+
+// Those before a bracket that stands on a line of its own.
+static void set_last_comments(Format *f, Docs *out, uint32_t offset) {
+  while (comments_before(f, offset)) {
+    const CagComment *c = next_comment(f);
+    const size_t before = lines_before(f, c->span.start);
+    if (before > 1) layout_add(out, layout_blank(&f->layout));
+    set_last(f, out, comment_text(f, c), before > 0);
+  }
 }
 
 // The words of the source in the span, after the comments before them.
@@ -651,7 +667,8 @@ static Doc *block(Format *f, const CagExpr *e) {
     if (i < n) set_statement(f, &inner, e->as.block.statements[i]);
     else layout_add(&inner, whole(f, e->as.block.value));
   }
-  set_comments(f, &inner, e->span.end - 1, false);
+  if (n) set_last_comments(f, &inner, e->span.end - 1);
+  else set_comments(f, &inner, e->span.end - 1, true);
   layout_add(&d, layout_nest(&f->layout, INDENT, &inner));
   layout_add(&d, n ? layout_hard(&f->layout) : layout_space(&f->layout));
   set_word(f, &d, "}");

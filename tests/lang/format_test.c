@@ -83,6 +83,9 @@ static void comments_keep_their_places(void **state) {
                 "x = [\n  1,  // one\n  2, /* two */\n  // three\n  3\n]\n");
   expect_layout("f(x)={// why\ny=x;// so\n\ny// last\n// end\n}",
                 "f(x) = {  // why\n  y = x  // so\n\n  y  // last\n  // end\n}\n");
+  expect_layout("f(x)={\ny=x\ny /* last */ }", "f(x) = {\n  y = x\n  y /* last */\n}\n");
+  expect_layout("f(x)={\ny=x\ny\n/* own */ }", "f(x) = {\n  y = x\n  y\n  /* own */\n}\n");
+  expect_layout("f(x)={ x /* last */ }", "f(x) = { x /* last */ }\n");
   expect_layout("a = b // c\n|> f", "a = b  // c\n  |> f\n");
   expect_layout("/* a\r\n b\r\n*/\r\na=1 // one\r\n", "/* a\n b\n*/\na = 1  // one\n");
   expect_layout("a = [b /* c */ +\n// own\nd]", "a = [\n  b + /* c */\n    // own\n    d\n]\n");
