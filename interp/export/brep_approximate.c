@@ -15,6 +15,9 @@
 
 // Cells of one direction; beyond, the surface has a place that no polynomial comes near.
 #define LINES_MAX 2048
+// A cell of this part of the domain that is still too far off holds a jump or a corner: further
+// cuts would only come nearer to it, one a round.
+#define NARROWEST 0x1p-40
 // Points of a cell's inside and edges at which the distance is measured, each way.
 #define PROBES 5
 // The probes may miss the farthest point; a bicubic's error between them is below this part more.
@@ -53,14 +56,18 @@ static CagStatus lines_first(const CagSurface *s, int direction, Lines *out, Cag
 
 // Halves the intervals that are marked.
 static CagStatus lines_halve(Lines *l, const bool *marked, CagError *err) {
+  const double narrowest = NARROWEST * (l->t[l->n - 1] - l->t[0]);
+  bool jumps = false;
   size_t more = 0;
-  for (size_t i = 0; i + 1 < l->n; i++) more += marked[i];
-  if (l->n + more > LINES_MAX)
+  for (size_t i = 0; i + 1 < l->n; i++) {
+    more += marked[i];
+    jumps |= marked[i] && l->t[i + 1] - l->t[i] <= narrowest;
+  }
+  if (jumps || l->n + more > LINES_MAX)
     return cag_fail(err, CAG_E_CONVERGENCE, "convergence", "surface", -1,
-                    "the surface is not smooth enough to be approximated: a finer cut than %d "
-                    "lines does not bring it within the tolerance; give a larger one, or cut the "
-                    "surface where it is sharp",
-                    LINES_MAX);
+                    "the surface is not smooth enough to be approximated: no cut of a sensible "
+                    "size brings it within the tolerance; give a larger one, or cut the surface "
+                    "where it is sharp");
   double *t = malloc((l->n + more) * sizeof *t);
   bool *broken = calloc(l->n + more, sizeof *broken);
   if (!t || !broken) {
