@@ -1,6 +1,7 @@
 # The Debian packages that cag needs, and their installation; read by setup.sh and test.sh.
 
-BUILD_PACKAGES="gcc libc6-dev make pkg-config libopenexr-dev liblapacke-dev libopenblas-dev libedit-dev libcjson-dev
+# LAPACK comes with Debian's own BLAS: that of OpenBLAS starts threads in every process, which spin for longer than most scripts take.
+BUILD_PACKAGES="gcc libc6-dev make pkg-config libopenexr-dev liblapacke-dev libedit-dev libcjson-dev
   libpng-dev libutf8proc-dev libglu1-mesa-dev zlib1g-dev libcmark-gfm-dev libcmark-gfm-extensions-dev libxml2-dev povray povray-includes"
 TEST_PACKAGES="munge slurm-client slurmctld slurmd libcmocka-dev clang-format tmux zsh mandoc groff-base vim dpkg-dev lintian libxml2-utils occt-draw admesh assimp-utils unzip liburdfdom-tools"
 # The Khronos validator of glTF runs on these; where they came from elsewhere, Debian's would be in their way.
