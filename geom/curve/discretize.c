@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
@@ -70,6 +71,16 @@ static double bezier_turn(const double *b, int p, double *length) {
   return turn;
 }
 
+// The same of the control points of a cubic.
+static double polygon_turn(const CagVec3 *q, double *length) {
+  double homogeneous[16];
+  for (int i = 0; i < 4; i++) {
+    const double row[4] = {q[i].x, q[i].y, q[i].z, 1};
+    memcpy(homogeneous + 4 * i, row, sizeof row);
+  }
+  return bezier_turn(homogeneous, 3, length);
+}
+
 // Turning of the tangent over [a, b], and about the length.
 static double turn_of(const CagCurve *c, double a, double b, double *length) {
   enum { SAMPLES = 4 };
@@ -85,6 +96,8 @@ static double turn_of(const CagCurve *c, double a, double b, double *length) {
                        fmin(1, (b - nurbs->cuts[i]) / h), part);
     return bezier_turn(part, nurbs->degree, length);
   }
+  CagVec3 q[4];
+  if (cag_curve_chord_cubic(c, a, b, q)) return polygon_turn(q, length);
   double turn = 0;
   CagVec3 before = {0, 0, 0}, d[2], from = {0, 0, 0};
   CagError ignored;

@@ -30,6 +30,9 @@ double cag_curve_remap(const CagCurve *c, double t, double a, double b);
 // Bound of the distance of the points over [a, b], where the curve is smooth, from the chord
 // between its ends. Goes to zero with the square of b - a.
 double cag_curve_sag(const CagCurve *c, double a, double b);
+// Control points of the cubic that meets the curve at a and b with its derivatives. False: points
+// between are not on it, to a part of its bend, or something cannot be evaluated.
+bool cag_curve_chord_cubic(const CagCurve *c, double a, double b, CagVec3 *q);
 // Interior breaks and both ends, malloc'd, ascending: *n values.
 CagStatus cag_curve_cuts(const CagCurve *c, double **out, size_t *n, CagError *err);
 // Axes of an arc kind: center + cos(angle) x + sin(angle) y, d angle / dt = rate.

@@ -8,14 +8,33 @@
 #include "geom/curve/function.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "geom/curve/family.h"
 
+// Highest derivative that is kept; higher ones are asked for rarely, and far apart.
+#define KNOWN_ORDER 2
+// Slots at first and at most: the parameters of a fine mesh, in less than 100 kB.
+#define FIRST_SLOTS 64
+#define MOST_SLOTS 1024
+
+// What the function gave for one parameter, up to the derivative `order`; -1: nothing yet.
+typedef struct Known {
+  double t;
+  int order;
+  CagVec3 d[KNOWN_ORDER + 1];
+} Known;
+
+// The function and its latest values, which bounds, chords and meshes ask for again and again, of
+// the curve and of its images. A value is kept in the one slot that its parameter hashes to.
 typedef struct Source {
   CagCurveFunction function;
   int references;
+  Known *known;
+  size_t slots, used; // slots: 0 or a power of two
 } Source;
 
 typedef struct Function {
@@ -25,6 +44,7 @@ typedef struct Function {
   CagTransform map;
   bool mapped;
   CagBounds box; // hull of the whole, which is asked for often
+  bool boxed;    // it is known
 } Function;
 
 static const CagCurveKind function_kind;
@@ -48,12 +68,61 @@ static CagStatus fail_not_finite(const Function *c, double t, int k, CagError *e
                   "derivative %d of the function at t = %s is not finite", k, text);
 }
 
+// --- Known values ---
+
+static Known *known_slot(Known *known, size_t slots, double t) {
+  uint64_t bits;
+  memcpy(&bits, &t, sizeof bits);
+  // The upper half of a product by the golden ratio depends on all bits.
+  return &known[(bits * UINT64_C(0x9e3779b97f4a7c15) >> 32) & (slots - 1)];
+}
+
+// Room for about twice the values used so far. Without memory, values are computed anew.
+static void known_grow(Source *s) {
+  const size_t slots = s->slots ? 2 * s->slots : FIRST_SLOTS;
+  Known *grown = malloc(slots * sizeof *grown);
+  if (!grown) return;
+  for (size_t i = 0; i < slots; i++) grown[i].order = -1;
+  s->used = 0;
+  for (size_t i = 0; i < s->slots; i++) {
+    if (s->known[i].order < 0) continue;
+    Known *to = known_slot(grown, slots, s->known[i].t);
+    s->used += to->order < 0;
+    *to = s->known[i];
+  }
+  free(s->known);
+  s->known = grown;
+  s->slots = slots;
+}
+
+// Value and derivatives of the function itself at its own parameter.
+static CagStatus source_eval(Source *s, double t, int order, CagVec3 *out, CagError *err) {
+  const CagCurveFunction *f = &s->function;
+  if (order > KNOWN_ORDER) return f->eval(f->context, t, order, out, err);
+  if (s->slots) {
+    const Known *k = known_slot(s->known, s->slots, t);
+    if (k->order >= order && k->t == t) {
+      memcpy(out, k->d, (size_t)(order + 1) * sizeof *out);
+      return CAG_OK;
+    }
+  }
+  CagStatus status = f->eval(f->context, t, order, out, err);
+  if (status) return status;
+  if (2 * s->used >= s->slots && s->slots < MOST_SLOTS) known_grow(s);
+  if (!s->slots) return CAG_OK;
+  Known *k = known_slot(s->known, s->slots, t);
+  s->used += k->order < 0;
+  k->t = t;
+  k->order = order;
+  memcpy(k->d, out, (size_t)(order + 1) * sizeof *out);
+  return CAG_OK;
+}
+
 static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, CagVec3 *out,
                       CagError *err) {
   (void)side;
   const Function *c = (const Function *)curve;
-  const CagCurveFunction *f = &c->source->function;
-  CagStatus status = f->eval(f->context, inner(c, t), order, out, err);
+  CagStatus status = source_eval(c->source, inner(c, t), order, out, err);
   if (status) return status;
   const double rate = (c->to - c->from) / (curve->end - curve->start);
   double scale = 1;
@@ -72,12 +141,12 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
 // Samples of a hull: a wave between two of them would have to be shorter than what a fair picture
 // of the curve needs.
 #define HULL_SAMPLES 33
-// The distance from the chord of the neighbours is four times that from the chord between samples;
-// waves that samples meet badly stay within.
+// In each coordinate, the distance from the chord of the neighbours is four times that from the
+// chord between samples; waves that samples meet badly stay within.
 static CagStatus sampled_box(const CagCurve *curve, double a, double b, int samples, CagBounds *out,
                              CagError *err) {
   CagVec3 before[2] = {{0, 0, 0}, {0, 0, 0}};
-  double sag = 0;
+  CagVec3 sag = {0, 0, 0};
   *out = CAG_BOUNDS_EMPTY;
   for (int i = 0; i < samples; i++) {
     CagVec3 p;
@@ -85,25 +154,40 @@ static CagStatus sampled_box(const CagCurve *curve, double a, double b, int samp
     CagStatus status = eval(curve, t, 0, CAG_SIDE_RIGHT, &p, err);
     if (status) return status;
     cag_bounds_add(out, p);
-    if (i >= 2)
-      sag = fmax(sag, cag_norm(cag_sub(before[1], cag_scaled(cag_add(before[0], p), 0.5))));
+    if (i >= 2) {
+      sag.x = fmax(sag.x, fabs(before[1].x - (before[0].x + p.x) / 2));
+      sag.y = fmax(sag.y, fabs(before[1].y - (before[0].y + p.y) / 2));
+      sag.z = fmax(sag.z, fabs(before[1].z - (before[0].z + p.z) / 2));
+    }
     before[0] = before[1];
     before[1] = p;
   }
-  const CagVec3 margin = cag_vec3(sag, sag, curve->dimension == 2 ? 0 : sag);
-  out->min = cag_sub(out->min, margin);
-  out->max = cag_add(out->max, margin);
+  out->min = cag_sub(out->min, sag);
+  out->max = cag_add(out->max, sag);
   return CAG_OK;
 }
 
+// The hull of the whole, found when it is first asked for.
+static CagStatus whole_box(const CagCurve *curve, CagBounds *out, CagError *err) {
+  Function *c = (Function *)curve;
+  if (!c->boxed) {
+    CagStatus status = sampled_box(curve, curve->start, curve->end, HULL_SAMPLES, &c->box, err);
+    if (status) return status;
+    c->boxed = true;
+  }
+  *out = c->box;
+  return CAG_OK;
+}
+
+// Without points, nothing is known: the box is then infinite.
 static CagBounds hull(const CagCurve *curve, double a, double b) {
-  const Function *c = (const Function *)curve;
   const int samples = 9; // of a part, which is asked for in halves of halves
   CagBounds box;
   CagError ignored;
-  if (a <= curve->start && b >= curve->end) return c->box;
-  if (sampled_box(curve, a, b, samples, &box, &ignored)) return c->box;
-  return box;
+  if (a > curve->start || b < curve->end)
+    if (!sampled_box(curve, a, b, samples, &box, &ignored)) return box;
+  if (!whole_box(curve, &box, &ignored)) return box;
+  return (CagBounds){{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
 }
 
 // Another curve of the same function.
@@ -125,18 +209,18 @@ static CagStatus make(const Function *like, double start, double end, double fro
   return CAG_OK;
 }
 
-// Fills the box and judges whether the ends meet; releases the curve where that fails.
+// Judges whether the ends meet; releases the curve where that fails.
 static CagStatus finish(CagCurve *curve, CagCurve **out, CagError *err) {
-  Function *c = (Function *)curve;
   CagVec3 ends[2];
-  CagStatus status = sampled_box(curve, curve->start, curve->end, HULL_SAMPLES, &c->box, err);
+  CagBounds box;
+  CagStatus status = whole_box(curve, &box, err);
   if (!status) status = eval(curve, curve->start, 0, CAG_SIDE_RIGHT, &ends[0], err);
   if (!status) status = eval(curve, curve->end, 0, CAG_SIDE_LEFT, &ends[1], err);
   if (status) {
     cag_curve_release(curve);
     return status;
   }
-  const CagVec3 corners[2] = {c->box.min, c->box.max};
+  const CagVec3 corners[2] = {box.min, box.max};
   curve->closed =
       cag_norm(cag_sub(ends[0], ends[1])) <= CAG_CURVE_SAME * cag_curve_size(corners, 2);
   *out = curve;
@@ -168,6 +252,7 @@ CagStatus cag_curve_function(const CagCurveFunction *f, int dimension, double st
   if (!status) status = finish(curve, out, err);
   source->references--;
   if (status) {
+    free(source->known);
     free(source);
     return status;
   }
@@ -219,6 +304,7 @@ static void destroy(CagCurve *curve) {
   Source *source = ((Function *)curve)->source;
   if (--source->references > 0) return;
   if (source->function.release) source->function.release(source->function.context);
+  free(source->known);
   free(source);
 }
 

@@ -1,4 +1,4 @@
-// Length, bounds, area, planarity.
+// Length, area, planarity.
 //
 // Lengths and areas are integrals over the smooth pieces; straight pieces and circles have closed
 // forms.
@@ -13,8 +13,6 @@
 
 // Relative error asked of integrals; the promise is 1e-10.
 #define INTEGRAL 1e-13
-// Part of the size of a curve that its box may be off by.
-#define BOX 1e-11
 // Part of its size that a curve may leave its plane or line by.
 #define FLAT 1e-9
 
@@ -183,69 +181,6 @@ CagStatus cag_curve_parameter_at_length(const CagCurve *c, double s, double *out
   return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "s", -1,
                   "`s` = %s lies outside 0..%s, the length of the curve", cag_number_text(s, a),
                   cag_number_text(walked, b));
-}
-
-// --- Bounds ---
-
-static bool inside(const CagBounds *outer, const CagBounds *inner, double slack) {
-  return inner->min.x >= outer->min.x - slack && inner->min.y >= outer->min.y - slack &&
-         inner->min.z >= outer->min.z - slack && inner->max.x <= outer->max.x + slack &&
-         inner->max.y <= outer->max.y + slack && inner->max.z <= outer->max.z + slack;
-}
-
-// Drops parts whose hull is in the box of the points found; halves the others.
-static CagStatus grow(const CagCurve *c, double a, double b, double slack, int depth,
-                      CagBounds *box, CagError *err) {
-  CagBounds hull = c->kind->hull(c, a, b);
-  double middle = a + (b - a) / 2;
-  if (depth == 0 || inside(box, &hull, slack) || !(a < middle && middle < b)) return CAG_OK;
-  CagVec3 p;
-  CagStatus status = cag_curve_eval(c, middle, 0, CAG_SIDE_RIGHT, &p, err);
-  if (status) return status;
-  cag_bounds_add(box, p);
-  status = grow(c, a, middle, slack, depth - 1, box, err);
-  return status ? status : grow(c, middle, b, slack, depth - 1, box, err);
-}
-
-CagStatus cag_curve_bounds(const CagCurve *c, CagBounds *out, CagError *err) {
-  const int depth = 60;
-  CagBounds box = c->kind->hull(c, c->start, c->end);
-  CagVec3 center, x, y;
-  double rate;
-  const CagVec3 *points;
-  size_t n;
-  bool ring;
-  if (!isfinite(cag_norm(cag_sub(box.max, box.min))))
-    return cag_fail(err, CAG_E_ARGUMENT, "size-out-of-range", "", -1,
-                    "the curve is too large to compute with");
-  // Hulls of these kinds are tight.
-  if (cag_curve_arc_axes(c, &center, &x, &y, &rate) || cag_curve_vertices(c, &points, &n, &ring)) {
-    *out = box;
-    return CAG_OK;
-  }
-  double slack = fmax(BOX * cag_norm(cag_sub(box.max, box.min)), cag_curve_noise(&box)), *cuts;
-  CagStatus status = cag_curve_cuts(c, &cuts, &n, err);
-  if (status) return status;
-  box = CAG_BOUNDS_EMPTY;
-  for (size_t i = 0; !status && i < n; i++) {
-    CagVec3 p;
-    status = cag_curve_point(c, cuts[i], &p, err);
-    if (!status) cag_bounds_add(&box, p);
-  }
-  for (size_t i = 0; !status && i + 1 < n; i++) {
-    double la, lb;
-    const CagCurve *piece = cag_curve_composite_piece(c, cuts[i], cuts[i + 1], &la, &lb, &rate);
-    if (piece && cag_curve_arc_axes(piece, &center, &x, &y, &rate)) {
-      CagBounds part = piece->kind->hull(piece, la, lb);
-      cag_bounds_add(&box, part.min);
-      cag_bounds_add(&box, part.max);
-    } else {
-      status = grow(c, cuts[i], cuts[i + 1], slack, depth, &box, err);
-    }
-  }
-  free(cuts);
-  if (!status) *out = box;
-  return status;
 }
 
 // --- Plane and line ---

@@ -42,9 +42,10 @@ static double nurbs_sag(const CagNurbs *c, double a, double b) {
 // A kind of which nothing is known but its points: the largest distance found, and half as much
 // again. The samples stand at multiples of the golden ratio, so that no wave meets them all at one
 // phase.
+#define GOLDEN 0.6180339887498949
 static double sampled_sag(const CagCurve *c, double a, double b) {
   enum { SAMPLES = 9 };
-  const double safety = 1.5, golden = 0.6180339887498949;
+  const double safety = 1.5;
   CagVec3 first, last, p;
   CagError ignored;
   if (cag_curve_eval(c, a, 0, CAG_SIDE_RIGHT, &first, &ignored) ||
@@ -52,11 +53,46 @@ static double sampled_sag(const CagCurve *c, double a, double b) {
     return INFINITY;
   double most = 0;
   for (int i = 1; i < SAMPLES; i++) {
-    const double share = i * golden - floor(i * golden);
+    const double share = i * GOLDEN - floor(i * GOLDEN);
     if (cag_curve_eval(c, a + (b - a) * share, 0, CAG_SIDE_RIGHT, &p, &ignored)) return INFINITY;
     most = fmax(most, from_segment(p, first, last));
   }
   return safety * most;
+}
+
+bool cag_curve_chord_cubic(const CagCurve *c, double a, double b, CagVec3 *q) {
+  // Part of the bend by which points of the curve may be off the cubic.
+  const double like = 1.0 / 8;
+  const double h = b - a;
+  CagVec3 d[4];
+  CagError ignored;
+  if (cag_curve_eval(c, a, 1, CAG_SIDE_RIGHT, d, &ignored) ||
+      cag_curve_eval(c, b, 1, CAG_SIDE_LEFT, d + 2, &ignored))
+    return false;
+  q[0] = d[0];
+  q[1] = cag_madd(d[0], h / 3, d[1]);
+  q[2] = cag_madd(d[2], -h / 3, d[3]);
+  q[3] = d[2];
+  const double bend = fmax(from_segment(q[1], q[0], q[3]), from_segment(q[2], q[0], q[3]));
+  for (int i = 1; i <= 2; i++) {
+    const double u = i * GOLDEN - floor(i * GOLDEN), v = 1 - u;
+    CagVec3 p, on = cag_scaled(q[0], v * v * v);
+    on = cag_madd(on, 3 * v * v * u, q[1]);
+    on = cag_madd(on, 3 * v * u * u, q[2]);
+    on = cag_madd(on, u * u * u, q[3]);
+    if (cag_curve_eval(c, a + h * u, 0, CAG_SIDE_RIGHT, &p, &ignored)) return false;
+    if (!(cag_norm(cag_sub(p, on)) <= like * bend)) return false;
+  }
+  return true;
+}
+
+// Where two points agree with the cubic through both ends along the tangents there, the curve is
+// taken for that cubic, which stays within 3/4 of the largest distance of its control points.
+static double smooth_sag(const CagCurve *c, double a, double b) {
+  const double cubic = 0.75, safety = 1.25; // the curve may be off by 1/8 of the bend
+  CagVec3 q[4];
+  if (!cag_curve_chord_cubic(c, a, b, q)) return sampled_sag(c, a, b);
+  return safety * cubic * fmax(from_segment(q[1], q[0], q[3]), from_segment(q[2], q[0], q[3]));
 }
 
 double cag_curve_sag(const CagCurve *c, double a, double b) {
@@ -78,5 +114,5 @@ double cag_curve_sag(const CagCurve *c, double a, double b) {
   if (cag_curve_vertices(c, &points, &n, &ring)) return 0;
   const CagCurve *piece = cag_curve_composite_piece(c, a, b, &a, &b, &rate);
   if (piece) return cag_curve_sag(piece, a, b);
-  return sampled_sag(c, a, b);
+  return smooth_sag(c, a, b);
 }

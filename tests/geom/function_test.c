@@ -2,6 +2,8 @@
 
 #include "geom/curve/function.h"
 #include "geom/curve/natural.h"
+#include "geom/mesh/tessellate.h"
+#include "geom/solid/solid.h"
 #include "geom/surface/function.h"
 #include "support.h"
 
@@ -177,12 +179,159 @@ static void a_natural_curve_has_its_curvature_and_torsion(void **state) {
   FAILS(cag_curve_natural(&equations, 40, &frame, 3, &c, &err), "frame-not-orthonormal");
 }
 
+// Sums of a_k cos(k t) + b_k sin(k t), k = 0..WAVES, in each coordinate.
+enum { WAVES = 9 };
+typedef struct Fourier {
+  double a[3][WAVES + 1], b[3][WAVES + 1];
+  size_t calls;
+} Fourier;
+
+static double fourier(const Fourier *f, int axis, int order, double t) {
+  double sum = 0;
+  for (int k = 0; k <= WAVES; k++)
+    sum += pow(k, order) * (f->a[axis][k] * cos(k * t + order * M_PI / 2) +
+                            f->b[axis][k] * sin(k * t + order * M_PI / 2));
+  return sum;
+}
+
+static CagStatus fourier_eval(void *context, double t, int order, CagVec3 *out, CagError *e) {
+  (void)e;
+  Fourier *f = context;
+  f->calls++;
+  for (int k = 0; k <= order; k++)
+    out[k] = cag_vec3(fourier(f, 0, k, t), fourier(f, 1, k, t), fourier(f, 2, k, t));
+  return CAG_OK;
+}
+
+static double random_share(uint64_t *state) {
+  *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+  return (double)(*state >> 11) / 9007199254740992.0;
+}
+
+// The largest value of a coordinate, from the roots of its derivative: bisected between signs that
+// change over steps far shorter than the shortest wave.
+static double fourier_top(const Fourier *f, int axis, double sign) {
+  enum { STEPS = 400 };
+  double best = sign * fourier(f, axis, 0, 0);
+  for (int i = 0; i < STEPS; i++) {
+    double a = 2 * M_PI * i / STEPS, b = 2 * M_PI * (i + 1) / STEPS;
+    if (sign * fourier(f, axis, 1, a) < 0 || sign * fourier(f, axis, 1, b) > 0) continue;
+    for (int k = 0; k < 60; k++) {
+      const double middle = (a + b) / 2;
+      if (sign * fourier(f, axis, 1, middle) > 0) a = middle;
+      else b = middle;
+    }
+    best = fmax(best, sign * fourier(f, axis, 0, a));
+  }
+  return best;
+}
+
+static void bounds_of_random_waves_are_those_of_their_summits(void **state) {
+  (void)state;
+  uint64_t seed = 28;
+  for (int round = 0; round < 200; round++) {
+    Fourier f = {.calls = 0};
+    for (int axis = 0; axis < 3; axis++)
+      for (int k = 0; k <= WAVES; k++) {
+        f.a[axis][k] = (random_share(&seed) - 0.5) / (1 + k);
+        f.b[axis][k] = (random_share(&seed) - 0.5) / (1 + k);
+      }
+    CagCurve *c;
+    CagBounds box;
+    const CagCurveFunction function = {fourier_eval, NULL, &f};
+    OK(cag_curve_function(&function, 3, 0, 2 * M_PI, true, &c, &err));
+    OK(cag_curve_bounds(c, &box, &err));
+    assert_true(f.calls < 1000);
+    const double low[3] = {box.min.x, box.min.y, box.min.z};
+    const double high[3] = {box.max.x, box.max.y, box.max.z};
+    for (int axis = 0; axis < 3; axis++) {
+      NEAR(high[axis], fourier_top(&f, axis, 1), 1e-10);
+      NEAR(-low[axis], fourier_top(&f, axis, -1), 1e-10);
+    }
+    cag_curve_release(c);
+  }
+}
+
+// Kinks, poles of the derivative and flat stretches, where slopes tell nothing.
+static CagStatus rough_eval(void *context, double t, int order, CagVec3 *out, CagError *e) {
+  (void)context;
+  (void)e;
+  const double x = t - 0.3;
+  out[0] = cag_vec3(-fabs(x), -sqrt(fabs(t - 0.7)), t < 0.5 ? 0 : (t - 0.5) * (t - 0.5));
+  for (int k = 1; k <= order; k++) out[k] = cag_vec3(k == 1 ? (x > 0 ? -1 : 1) : 0, NAN, 0);
+  return CAG_OK;
+}
+
+static void bounds_do_without_derivatives(void **state) {
+  (void)state;
+  CagCurve *c;
+  CagBounds box;
+  const CagCurveFunction function = {rough_eval, NULL, NULL};
+  OK(cag_curve_function(&function, 3, 0, 1, false, &c, &err));
+  OK(cag_curve_bounds(c, &box, &err));
+  near_vec(box.min, cag_vec3(-0.7, -sqrt(0.7), 0), 1e-9);
+  near_vec(box.max, cag_vec3(0, 0, 0.25), 1e-7); // y: the root of the last bits of t
+  cag_curve_release(c);
+}
+
+// A star, r = 10 + cos 5 t.
+static CagStatus star_eval(void *context, double t, int order, CagVec3 *out, CagError *e) {
+  (void)e;
+  ++*(size_t *)context;
+  for (int k = 0; k <= order; k++) {
+    const double turn = k * M_PI / 2;
+    // cos t cos 5t = (cos 4t + cos 6t) / 2, sin t cos 5t = (sin 6t - sin 4t) / 2
+    const double four = pow(4, k) / 2, six = pow(6, k) / 2;
+    out[k] = cag_vec3(10 * cos(t + turn) + four * cos(4 * t + turn) + six * cos(6 * t + turn),
+                      10 * sin(t + turn) - four * sin(4 * t + turn) + six * sin(6 * t + turn), 0);
+  }
+  return CAG_OK;
+}
+
+// The function is evaluated about once for each point that something needs, however often the
+// shape is moved, measured and meshed.
+static void a_solid_of_a_function_asks_for_few_points(void **state) {
+  (void)state;
+  size_t calls = 0;
+  CagCurve *c;
+  CagRegion *r;
+  CagSolid *solid, *moved;
+  const CagCurveFunction function = {star_eval, NULL, &calls};
+  OK(cag_curve_function(&function, 2, 0, 2 * M_PI, true, &c, &err));
+  OK(cag_region_new(c, NULL, 0, &r, &err));
+  OK(cag_solid_extrude(r, cag_vec3(0, 0, 5), 0, 1, &solid, &err));
+  CagTransform turn;
+  OK(cag_rotate(cag_vec3(1, 2, 3), 0.4, cag_vec3(0, 0, 0), &turn, &err));
+  for (int i = 0; i < 3; i++) {
+    OK(cag_solid_transform(solid, &turn, &moved, &err));
+    cag_solid_release(solid);
+    solid = moved;
+  }
+  CagBounds box;
+  CagMesh *mesh;
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  how.tolerance = 0.01;
+  OK(cag_solid_bounds(solid, &box, &err));
+  OK(cag_solid_tessellate(solid, &how, &mesh, &err));
+  assert_true(calls < 12000);
+  double terms[10];
+  cag_mesh_volume_terms(mesh, terms);
+  NEAR(terms[0], 5 * M_PI * 100.5, 0.003 * 5 * M_PI * 100.5); // area: pi (10^2 + 1 / 2)
+  cag_mesh_release(mesh);
+  cag_solid_release(solid);
+  cag_region_release(r);
+  cag_curve_release(c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_function_is_released_with_its_last_curve),
       cmocka_unit_test(a_function_that_fails_stays_with_its_caller),
       cmocka_unit_test(a_projection_has_the_derivatives_of_the_quotient),
       cmocka_unit_test(bounds_and_length_are_those_of_the_circle),
+      cmocka_unit_test(bounds_of_random_waves_are_those_of_their_summits),
+      cmocka_unit_test(bounds_do_without_derivatives),
+      cmocka_unit_test(a_solid_of_a_function_asks_for_few_points),
       cmocka_unit_test(points_that_are_not_finite_are_found),
       cmocka_unit_test(a_natural_curve_has_its_curvature_and_torsion),
   };

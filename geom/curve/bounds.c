@@ -1,0 +1,216 @@
+// The box of a curve.
+//
+// Parts whose hull is in the box of the points found so far add nothing; the others are halved. Of
+// NURBS that goes on to the bottom, for their hulls are certain. Where samples are all that is
+// known of a curve, a part is done as soon as each coordinate that may leave the box has one
+// summit there: this is climbed, which takes a few points where halves would take hundreds.
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/curve/family.h"
+#include "geom/curve/nurbs.h"
+
+// Part of the size of a curve that its box may be off by.
+#define BOX 1e-11
+// Halves of halves, at most: a parameter has no more bits.
+#define DEEPEST 60
+// A summit is believed in parts that are at most 2^-3 of a smooth piece ...
+#define SETTLED_DEPTH 3
+// ... and of which the hull exceeds the points by at most this part of what it does for the whole
+// of the parent. Smooth curves halve it twice, and corners once.
+#define SETTLED_SHRINK 0.6
+// Samples of a part that show its summits; those of a hull, so that they are known.
+#define STEPS 8
+
+static bool inside(const CagBounds *outer, const CagBounds *inner, double slack) {
+  return inner->min.x >= outer->min.x - slack && inner->min.y >= outer->min.y - slack &&
+         inner->min.z >= outer->min.z - slack && inner->max.x <= outer->max.x + slack &&
+         inner->max.y <= outer->max.y + slack && inner->max.z <= outer->max.z + slack;
+}
+
+// --- Hulls that are certain ---
+
+static CagStatus grow(const CagCurve *c, double a, double b, double slack, int depth,
+                      CagBounds *box, CagError *err) {
+  CagBounds hull = c->kind->hull(c, a, b);
+  double middle = a + (b - a) / 2;
+  if (depth == 0 || inside(box, &hull, slack) || !(a < middle && middle < b)) return CAG_OK;
+  CagVec3 p;
+  CagStatus status = cag_curve_eval(c, middle, 0, CAG_SIDE_RIGHT, &p, err);
+  if (status) return status;
+  cag_bounds_add(box, p);
+  status = grow(c, a, middle, slack, depth - 1, box, err);
+  return status ? status : grow(c, middle, b, slack, depth - 1, box, err);
+}
+
+// --- Samples ---
+
+typedef struct Samples {
+  double t[STEPS + 1];
+  CagVec3 p[STEPS + 1];
+} Samples;
+
+// How high a point is in the direction 0..5: -x, +x, -y, +y, -z, +z.
+static double height(CagVec3 p, int direction) {
+  const double x[3] = {p.x, p.y, p.z};
+  return direction % 2 ? x[direction / 2] : -x[direction / 2];
+}
+
+static double box_height(const CagBounds *box, int direction) {
+  return height(direction % 2 ? box->max : box->min, direction);
+}
+
+// By how much the hull exceeds the box, in the direction where that is most.
+static double excess(const CagBounds *hull, const CagBounds *box) {
+  double most = 0;
+  for (int k = 0; k < 6; k++) most = fmax(most, box_height(hull, k) - box_height(box, k));
+  return most;
+}
+
+// Index of the only summit of the samples in a direction; -1: there are several.
+static int summit(const Samples *s, int direction) {
+  int top = 0;
+  for (int i = 1; i <= STEPS; i++)
+    if (height(s->p[i], direction) > height(s->p[top], direction)) top = i;
+  for (int i = 1; i <= STEPS; i++) {
+    const double step = height(s->p[i], direction) - height(s->p[i - 1], direction);
+    if (i <= top ? step < 0 : step > 0) return -1;
+  }
+  return top;
+}
+
+// The slope in a direction; false: there is none.
+static bool slope(const CagCurve *c, double t, CagSide side, int direction, CagVec3 *p,
+                  double *out) {
+  CagVec3 d[2];
+  CagError ignored;
+  if (cag_curve_eval(c, t, 1, side, d, &ignored)) return false;
+  *p = d[0];
+  *out = height(d[1], direction);
+  return true;
+}
+
+// Adds the summit about sample `top` to the box: the root of the slope between its neighbours, by
+// false position (the Illinois variant). False: the slopes do not show one.
+static bool climb(const CagCurve *c, const Samples *s, int top, int direction, double slack,
+                  CagBounds *box) {
+  enum { ROUNDS = 60 };
+  const bool first = top == 0, last = top == STEPS;
+  double a = s->t[first ? 0 : top - 1], b = s->t[last ? STEPS : top + 1], up, down;
+  CagVec3 p;
+  if (!slope(c, a, CAG_SIDE_RIGHT, direction, &p, &up) ||
+      !slope(c, b, CAG_SIDE_LEFT, direction, &p, &down))
+    return false;
+  if ((first && up <= 0) || (last && down >= 0)) return true; // the sample is the summit
+  if (!(up > 0 && down < 0)) return false;
+  double before = a;
+  int kept = 0; // which end stood still in the last round: -1 or 1
+  for (int round = 0; round < ROUNDS; round++) {
+    double t = a + (b - a) * (up / (up - down)), at;
+    if (!(a < t && t < b)) return true;
+    if (!slope(c, t, CAG_SIDE_RIGHT, direction, &p, &at)) return false;
+    cag_bounds_add(box, p);
+    if (fabs(at * (t - before)) <= slack) return true;
+    before = t;
+    if (at > 0) {
+      a = t, up = at;
+      if (kept == 1) down /= 2;
+      kept = 1;
+    } else {
+      b = t, down = at;
+      if (kept == -1) up /= 2;
+      kept = -1;
+    }
+  }
+  return false;
+}
+
+// Whether the part has, in each direction in which its hull leaves the box, one summit; these are
+// then in the box.
+static CagStatus settle(const CagCurve *c, double a, double b, const CagBounds *hull, double slack,
+                        CagBounds *box, bool *settled, CagError *err) {
+  Samples s;
+  for (int i = 0; i <= STEPS; i++) {
+    s.t[i] = i == STEPS ? b : a + (b - a) * i / STEPS;
+    CagStatus status =
+        cag_curve_eval(c, s.t[i], 0, i == STEPS ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, &s.p[i], err);
+    if (status) return status;
+    cag_bounds_add(box, s.p[i]);
+  }
+  *settled = true;
+  for (int k = 0; *settled && k < 6; k++) {
+    if (box_height(hull, k) <= box_height(box, k) + slack) continue;
+    const int top = summit(&s, k);
+    *settled = top >= 0 && climb(c, &s, top, k, slack, box);
+  }
+  return CAG_OK;
+}
+
+// `before` is by how much the hull of the parent exceeds the box.
+static CagStatus grow_sampled(const CagCurve *c, double a, double b, double slack, int depth,
+                              double before, CagBounds *box, CagError *err) {
+  const CagBounds hull = c->kind->hull(c, a, b);
+  const double middle = a + (b - a) / 2, over = excess(&hull, box);
+  if (depth == DEEPEST || over <= slack || !(a < middle && middle < b)) return CAG_OK;
+  CagVec3 p;
+  CagStatus status = cag_curve_point(c, middle, &p, err);
+  if (status) return status;
+  cag_bounds_add(box, p);
+  if (depth >= SETTLED_DEPTH && over <= SETTLED_SHRINK * before) {
+    bool settled;
+    status = settle(c, a, b, &hull, slack, box, &settled, err);
+    if (status || settled) return status;
+  }
+  status = grow_sampled(c, a, middle, slack, depth + 1, over, box, err);
+  return status ? status : grow_sampled(c, middle, b, slack, depth + 1, over, box, err);
+}
+
+// --- All kinds ---
+
+// Adds the smooth piece over [a, b], whose ends are in the box.
+static CagStatus add_piece(const CagCurve *c, double a, double b, double slack, CagBounds *box,
+                           CagError *err) {
+  CagVec3 center, x, y;
+  double rate;
+  const CagCurve *piece = cag_curve_composite_piece(c, a, b, &a, &b, &rate);
+  if (piece) return add_piece(piece, a, b, slack, box, err);
+  if (cag_nurbs_data(c)) return grow(c, a, b, slack, DEEPEST, box, err);
+  if (!cag_curve_arc_axes(c, &center, &x, &y, &rate))
+    return grow_sampled(c, a, b, slack, 0, INFINITY, box, err);
+  const CagBounds part = c->kind->hull(c, a, b);
+  cag_bounds_add(box, part.min);
+  cag_bounds_add(box, part.max);
+  return CAG_OK;
+}
+
+CagStatus cag_curve_bounds(const CagCurve *c, CagBounds *out, CagError *err) {
+  CagBounds box = c->kind->hull(c, c->start, c->end);
+  CagVec3 center, x, y;
+  double rate;
+  const CagVec3 *points;
+  size_t n;
+  bool ring;
+  if (!isfinite(cag_norm(cag_sub(box.max, box.min))))
+    return cag_fail(err, CAG_E_ARGUMENT, "size-out-of-range", "", -1,
+                    "the curve is too large to compute with");
+  // Hulls of these kinds are tight.
+  if (cag_curve_arc_axes(c, &center, &x, &y, &rate) || cag_curve_vertices(c, &points, &n, &ring)) {
+    *out = box;
+    return CAG_OK;
+  }
+  double slack = fmax(BOX * cag_norm(cag_sub(box.max, box.min)), cag_curve_noise(&box)), *cuts;
+  CagStatus status = cag_curve_cuts(c, &cuts, &n, err);
+  if (status) return status;
+  box = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; !status && i < n; i++) {
+    CagVec3 p;
+    status = cag_curve_point(c, cuts[i], &p, err);
+    if (!status) cag_bounds_add(&box, p);
+  }
+  for (size_t i = 0; !status && i + 1 < n; i++)
+    status = add_piece(c, cuts[i], cuts[i + 1], slack, &box, err);
+  free(cuts);
+  if (!status) *out = box;
+  return status;
+}
