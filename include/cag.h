@@ -48,6 +48,9 @@ typedef struct CagSessionOptions {
   double max_time;                // seconds of a run and of all that is made of its scene; 0: none
   const char *const *module_path; // folders of modules (-I)
   size_t module_path_count;
+  // Set operations of solids in POV-Ray source: "native", "mesh", or "auto" (NULL): pictures mesh
+  // them, and a .pov file has them native where no two operands have faces that coincide.
+  const char *pov_csg;
   const char *folder; // below which texts read files and modules (NULL: the working folder)
   FILE *out;          // what print writes to (stdout)
   FILE *messages;     // what trace writes to (stderr)
@@ -61,8 +64,8 @@ typedef struct CagSessionOptions {
 
 CAG_API const char *cag_version(void);
 CAG_API void cag_session_options_init(CagSessionOptions *options);
-// NULL when memory is out. The options are copied, module_path, folder and what they point to must
-// outlive the session.
+// NULL when memory is out. The options are copied, module_path, folder, pov_csg and what they point
+// to must outlive the session.
 CAG_API CagSession *cag_session_new(const CagSessionOptions *options);
 CAG_API void cag_session_free(CagSession *s);
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/solid/general.h"
 #include "interp/export/pov_write.h"
 
 static void heading(CagPovWriter *w, const char *text) {
@@ -86,9 +87,23 @@ static void write_ground(CagPovWriter *w, const CagItem *item) {
   pov_text(w, "\n}");
 }
 
+static bool is_operation(const CagItem *item) {
+  return item->kind == CAG_ITEM_SOLID &&
+         (item->as.solid->kind == CAG_SOLID_UNION || item->as.solid->kind == CAG_SOLID_DIFFERENCE ||
+          item->as.solid->kind == CAG_SOLID_INTERSECTION);
+}
+
+static bool is_meshed(const CagPovWriter *w, const CagItem *item) {
+  const CagPovCsg csg = w->options->csg;
+  if (w->options->meshes_only) return true;
+  if (csg == CAG_POV_CSG_NATIVE || !is_operation(item)) return false;
+  return csg == CAG_POV_CSG_MESH ||
+         !cag_solid_in_general_position(item->as.solid, w->scene->interrupt);
+}
+
 static bool try_native(CagPovWriter *w, const CagItem *item) {
   if (item->kind == CAG_ITEM_GROUND) return write_ground(w, item), true;
-  if (w->options->meshes_only) return false;
+  if (is_meshed(w, item)) return false;
   switch (item->kind) {
   case CAG_ITEM_SOLID: return pov_try_solid(w, item->as.solid);
   case CAG_ITEM_SURFACE:

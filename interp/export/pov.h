@@ -2,7 +2,9 @@
 //
 // What the shape has a name for in POV-Ray keeps it (sphere, box, cylinder, cone, torus, quadric,
 // lathe, prism, bicubic_patch, polygon); everything else is a mesh2 with the exact surface's
-// normals. Each thing is a #declare under its own name, each material one under M_name.
+// normals. Set operations are the renderer's own only where operands have no faces in common, which
+// it could not tell apart (CagPovCsg). Each thing is a #declare under its own name, each material
+// one under M_name.
 //
 // Space: numbers are those of the script (millimetres, Z up). POV-Ray's left-handedness is a matter
 // of its default camera only: the camera here gives its own right, up and direction, from
@@ -26,14 +28,23 @@ typedef enum CagPovQuality {
   CAG_POV_FINAL   // and light from everywhere (radiosity), finer everything
 } CagPovQuality;
 
+// What set operations of solids become.
+typedef enum CagPovCsg {
+  CAG_POV_CSG_GENERAL, // the renderer's own where operands are in general position, else meshes
+  CAG_POV_CSG_NATIVE,  // the renderer's own
+  CAG_POV_CSG_MESH
+} CagPovCsg;
+
 typedef struct CagPovOptions {
   CagPovQuality quality;
   size_t camera;    // index into the scene's cameras
   int size[2];      // pixels; 0: those of the camera. Only their ratio is written
   bool meshes_only; // no native objects: to compare, or for a reader that knows meshes only
+  CagPovCsg csg;
 } CagPovOptions;
 
-#define CAG_POV_OPTIONS_DEFAULT ((CagPovOptions){CAG_POV_NORMAL, 0, {0, 0}, false})
+#define CAG_POV_OPTIONS_DEFAULT                                                                    \
+  ((CagPovOptions){CAG_POV_NORMAL, 0, {0, 0}, false, CAG_POV_CSG_GENERAL})
 
 // Writes the scene, which cag_scene_complete has gone over, to an open file. Geometry that cannot
 // be meshed is an error; errors of writing stay in the file until its commit.

@@ -238,7 +238,10 @@ static int export_text(CagSession *s, const char *path,
 }
 
 static CagStatus write_pov(CagSession *s, CagAtomicFile *f, CagError *err) {
-  return cag_export_pov(&s->scene, &(CagPovOptions){.quality = CAG_POV_NORMAL}, f, err);
+  CagPovOptions options = CAG_POV_OPTIONS_DEFAULT;
+  // export_pov has looked at the option.
+  (void)cag_session_pov_csg(s, CAG_POV_CSG_GENERAL, &options.csg);
+  return cag_export_pov(&s->scene, &options, f, err);
 }
 static CagStatus write_svg(CagSession *s, CagAtomicFile *f, CagError *err) {
   return cag_export_svg(&s->scene, 0, f, err);
@@ -247,7 +250,11 @@ static CagStatus write_json(CagSession *s, CagAtomicFile *f, CagError *err) {
   return cag_export_json(&s->scene, f, err);
 }
 
-static int export_pov(CagSession *s, const char *path) { return export_text(s, path, write_pov); }
+static int export_pov(CagSession *s, const char *path) {
+  CagPovCsg csg;
+  return cag_session_pov_csg(s, CAG_POV_CSG_GENERAL, &csg) ? export_text(s, path, write_pov)
+                                                           : CAG_STATUS_USAGE;
+}
 static int export_svg(CagSession *s, const char *path) { return export_text(s, path, write_svg); }
 static int export_json(CagSession *s, const char *path) { return export_text(s, path, write_json); }
 

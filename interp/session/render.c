@@ -59,6 +59,17 @@ int cag_session_find_camera(CagSession *s, const char *name, size_t *out) {
   return CAG_STATUS_USAGE;
 }
 
+bool cag_session_pov_csg(CagSession *s, CagPovCsg usual, CagPovCsg *out) {
+  const char *word = s->options.pov_csg ? s->options.pov_csg : "auto";
+  *out = usual;
+  if (strcmp(word, "auto") == 0) return true;
+  *out = strcmp(word, "native") == 0 ? CAG_POV_CSG_NATIVE : CAG_POV_CSG_MESH;
+  if (*out == CAG_POV_CSG_NATIVE || strcmp(word, "mesh") == 0) return true;
+  cag_diagnostics_add(&s->diagnostics, CAG_ERR_format_unknown, NULL, (CagSpan){0, 0},
+                      "expected set operations as native, mesh or auto, found %s", word);
+  return false;
+}
+
 // --- Metadata ---
 
 static bool add_matrix(CagExrMetadata *m, const char *name, const CagTransform *t,
@@ -96,6 +107,7 @@ typedef struct Job {
   CagCamera camera;
   size_t index; // of the camera
   CagPovQuality pov;
+  CagPovCsg csg;
   CagPovrayQuality engine;
   char *source;
   size_t source_size;
@@ -113,8 +125,10 @@ static int write_source(CagSession *s, void *context) {
   CagScene *scene = &s->scene;
   char plain[] = SKY_FILE, *image = scene->sky.image;
   if (image) scene->sky.image = plain;
-  CagPovOptions options = {
-      .quality = j->pov, .camera = j->index, .size = {j->camera.size[0], j->camera.size[1]}};
+  CagPovOptions options = {.quality = j->pov,
+                           .camera = j->index,
+                           .size = {j->camera.size[0], j->camera.size[1]},
+                           .csg = j->csg};
   CagStatus written = cag_session_checked(s, cag_export_pov(scene, &options, f, &err), &err);
   scene->sky.image = image;
   if (written != CAG_OK) {
@@ -259,6 +273,7 @@ int cag_session_render(CagSession *s, const CagRenderOptions *options, const cha
                         "the quality is draft, normal or final, found %s", options->quality);
     return CAG_STATUS_USAGE;
   }
+  if (!cag_session_pov_csg(s, CAG_POV_CSG_MESH, &j.csg)) return CAG_STATUS_USAGE;
   size_t camera;
   status = cag_session_find_camera(s, options->camera, &camera);
   if (status != CAG_STATUS_OK) return status;

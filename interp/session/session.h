@@ -8,6 +8,7 @@
 
 #include "cag.h"
 #include "interp/eval/program.h"
+#include "interp/export/pov.h"
 #include "interp/render/io_error.h"
 #include "interp/scene/scene.h"
 
@@ -48,6 +49,9 @@ int cag_session_status(const CagSession *s); // by the diagnostics there are
 // Adds an error of the core, or of files and renderers, and gives the status.
 int cag_session_fail_geometry(CagSession *s, const CagError *err);
 int cag_session_fail_io(CagSession *s, CagErrorId id, const CagIoError *err);
+// What set operations become in POV-Ray source, where "auto" means `usual`. False, after a
+// diagnostic: the option is none of its words.
+bool cag_session_pov_csg(CagSession *s, CagPovCsg usual, CagPovCsg *out);
 // Builds the scene and completes it with camera and light.
 int cag_session_build_scene(CagSession *s);
 

@@ -141,6 +141,13 @@ static bool set_engine(CagTool *t, const char *value) {
   return one_of(t, "--engine", value, CHOICES, 1, "the renderer that there is: povray", &i);
 }
 
+static bool set_pov_csg(CagTool *t, const char *value) {
+  static const char *const CHOICES[] = {"auto", "native", "mesh"};
+  size_t i;
+  t->session.pov_csg = value;
+  return one_of(t, "--pov-csg", value, CHOICES, 3, "there are auto, native and mesh", &i);
+}
+
 static bool set_threshold(CagTool *t, const char *value) {
   if (read_number(value, NULL, &t->threshold) && t->threshold >= 0) return true;
   return reject(t, "give a number from 0 on, such as 0.01", "--threshold", value,

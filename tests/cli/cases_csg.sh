@@ -7,10 +7,10 @@ alike() {
 give(s) = if native then s else tessellate(s, tolerance: 0.005)
 $2
 show camera([14, -30, 26], target: [4, 4, 3], fov: 34deg), sun([1, 1.5, -2]), sky([\"white\", \"lightblue\"])"
-  try export "$1.cag" -o "$1.pov"
+  try export "$1.cag" --pov-csg native -o "$1.pov"
   status 0
   grep -q -E '^#declare [a-z_]+ = (union|difference|intersection|merge) \{' "$1.pov" || wrong 'no operation of the renderer'
-  try render "$1.cag" -o "$1.exr" --size 96x72 --quality draft
+  try render "$1.cag" --pov-csg native -o "$1.exr" --size 96x72 --quality draft
   status 0
   try render "$1.cag" -o "$1_mesh.exr" --size 96x72 --quality draft -D native=false
   status 0
@@ -42,6 +42,59 @@ try export glass.cag -o glass.pov
 status 0
 grep -q 'merge {' glass.pov || wrong 'no merge'
 
+# written WORD: the object that NAME of the file became.
+written() { grep -q "^#declare $1 = $2" faces.pov || wrong "$1 is no $2"; }
+
+it 'operands whose faces coincide become a mesh in .pov, others the objects of the renderer'
+script faces.cag 'pot = revolve(bezier([[0, 0], [6, 0], [6, 8], [0, 8]]))
+cup = revolve(polyline([[0, 0], [5, 0], [5, 8], [4, 8], [4, 1], [0, 1]]))
+M = rotate([1, 2, 3], 22deg)
+show named(box(10, centered: true) & sphere(6.8), "faces_cross")
+show named(pot - translate(cylinder(9, 2), [0, 0, 2]), "free_form")
+show named(torus(5, 1) | translate(sphere(2), [5, 0, 0]), "ring")
+show named(sphere(5) & half_space(plane(origin, [1, 0, 1])), "cut")
+show named(box(8) - translate(cylinder(8, 2), [4, 4, 0]), "flush_ends")
+show named(M * box([3, 3, 1]) - M * translate(box([1, 1, 1]), [1, 1, 0]), "turned")
+show named(prism(rectangle(30, 20, radius: 4), 10) & prism(region(circle(13)), 10), "same_caps")
+show named(cylinder(9, 3) - translate(cylinder(2, 3), [0, 0, 3]), "same_wall")
+show named(cup | translate(box([3, 1, 1]), [3, 0, 8]), "same_rim")
+show named(torus(5, 1) | rotate(torus(5, 1), Z, 20deg), "same_torus")
+show named(box(5) - half_space(plane([0, 0, 5], -Z)), "same_plane")
+show named(tessellate(box(4)) | translate(box(2), [1, 1, 4]), "on_mesh")'
+try export faces.cag -o faces.pov
+status 0
+written faces_cross 'intersection {'
+written free_form 'difference {'
+written ring 'union {'
+written cut 'intersection {'
+for name in flush_ends turned same_caps same_wall same_rim same_torus same_plane on_mesh; do written $name 'mesh2 {'; done
+try export faces.cag --pov-csg mesh -o faces.pov
+status 0
+for name in faces_cross free_form ring cut flush_ends; do written $name 'mesh2 {'; done
+try export faces.cag --pov-csg native -o faces.pov
+status 0
+written same_caps 'intersection {'
+written flush_ends 'difference {'
+
+it 'a picture of faces that coincide has no speckles'
+script speckles.cag 'param whole = false
+body = if whole then translate(box([40, 40, 10]), [-20, -20, 0]) else prism(rectangle(30, 20, radius: 4), 10) & prism(region(circle(13)), 10)
+show body |> color("khaki")
+show camera([0, -1, 90], target: [0, 0, 10], fov: 12deg), sun([1, 1.5, -2])'
+try render speckles.cag -o speckles.exr --size 64x48 --quality draft
+status 0
+# The same body, built without a set operation: its flat top fills the picture.
+try render speckles.cag -D whole=true -o whole.exr --size 64x48 --quality draft
+status 0
+try compare speckles.exr whole.exr
+awk '$1 ~ /^[RGB]$/ { n++; if ($2 > 0.001) bad = 1 } END { exit bad || n != 3 }' out || wrong 'the face is speckled'
+
+it '--pov-csg takes three words'
+script one.cag 'show sphere(1)'
+try export one.cag --pov-csg both -o one.pov
+status 2
+says 'there are auto, native and mesh'
+
 it 'an operation that leaves nothing names its operands'
 script nothing.cag 'show box(2) - sphere(9)'
 try export nothing.cag -o nothing.stl
@@ -69,7 +122,7 @@ try export hues.cag -o hues.obj
 status 0
 [ "$(grep -c ^usemtl hues.obj)" = 2 ] || wrong 'not two materials'
 [ "$(grep -c ^newmtl hues.mtl)" = 2 ] || wrong 'not two materials in the .mtl'
-try export hues.cag -o hues.pov
+try export hues.cag --pov-csg native -o hues.pov
 status 0
 [ "$(grep -c '^ *material { M_' hues.pov)" -ge 4 ] || wrong 'operands without materials'
 script plain.cag 'show (box(4) |> color("red")) - sphere(2)'
