@@ -182,7 +182,7 @@ static void expect_then(Parser *p, const CagExpr *condition) {
     const char *found = parse_found(p, word, sizeof word);
     parse_help(
         parse_error(p, CAG_ERR_expected_word, parse_here(p), "expected `then`, found %s", found),
-        "write if c then a else b");
+        "write %s", cag_foreign_syntax(CAG_FOREIGN_if_braces));
     return;
   }
   parse_unexpected(p, condition, CAG_ERR_expected_word, "`then`");

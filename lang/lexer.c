@@ -9,6 +9,8 @@
 #include <string.h>
 #include <utf8proc.h>
 
+#include "lang/foreign.h"
+
 typedef unsigned char byte;
 
 // ---- errors and tokens ----
@@ -164,6 +166,18 @@ static bool skip_block_comment(CagLexer *lx, bool *newline) {
   return true;
 }
 
+// A `#`: a comment of another language, or a directive such as #declare.
+static void report_hash(CagLexer *lx, uint32_t start) {
+  const char *word = lx->source->text + start + 1;
+  CagDiagnostic *d =
+      report(lx, CAG_ERR_hash_comment, start, start + 1, "a comment does not begin with #");
+  if (strncmp(word, "include", 7) == 0)
+    help(d, "write %s", cag_foreign_syntax(CAG_FOREIGN_include_line));
+  else if (strncmp(word, "declare", 7) == 0 || strncmp(word, "local", 5) == 0)
+    help(d, "write %s", cag_foreign_syntax(CAG_FOREIGN_declare_line));
+  else help(d, "a comment begins with //; a color is a text: \"#ff8000\"");
+}
+
 // Passes blanks and comments. Gives false after an error that ends the text.
 static bool skip_blanks(CagLexer *lx, bool *newline) {
   for (;;) {
@@ -179,8 +193,7 @@ static bool skip_blanks(CagLexer *lx, bool *newline) {
       if (!skip_block_comment(lx, newline)) return false;
     } else if (c == '#') {
       uint32_t start = lx->position;
-      help(report(lx, CAG_ERR_hash_comment, start, start + 1, "a comment does not begin with #"),
-           "a comment begins with //; a colour is a text: \"#ff8000\"");
+      report_hash(lx, start);
       skip_line_comment(lx);
     } else if (c >= 128) { // no-break and other spaces that come along when text is pasted
       uint32_t n;
@@ -217,6 +230,8 @@ static const Unit *find_unit(const char *name, size_t length) {
       return &units[i];
   return NULL;
 }
+
+bool cag_lexer_is_unit(const char *name) { return find_unit(name, strlen(name)) != NULL; }
 
 // Reports a unit that is not known, with the one that was likely meant.
 static void unknown_unit(CagLexer *lx, uint32_t number, uint32_t start, uint32_t end) {
@@ -654,10 +669,35 @@ static const struct {
     {0x2192, "=>"},      {0xff0c, ","},   {0xff08, "("},  {0xff09, ")"},  {0xb0, "deg"},
 };
 
+// $fn and its like, of OpenSCAD: special variables, which are not here.
+static bool special_variable(CagLexer *lx, CagToken *t) {
+  static const struct {
+    const char *name;
+    CagForeignSyntax form;
+  } known[] = {{"$fn", CAG_FOREIGN_special_fn},
+               {"$fa", CAG_FOREIGN_special_fn},
+               {"$fs", CAG_FOREIGN_special_fn},
+               {"$t", CAG_FOREIGN_special_t},
+               {"$children", CAG_FOREIGN_special_children}};
+  const char *text = lx->source->text;
+  uint32_t start = t->span.start, end = start + 1;
+  while (at(lx, end) < 128 && classes[at(lx, end)] & (IS_NAME | IS_DIGIT)) end++;
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+    if (strlen(known[i].name) != end - start || memcmp(known[i].name, text + start, end - start))
+      continue;
+    help(report(lx, CAG_ERR_unknown_character, start, end, "`%s` is no name here", known[i].name),
+         "write %s", cag_foreign_syntax(known[i].form));
+    finish(lx, t, CAG_TOKEN_ERROR, end);
+    return true;
+  }
+  return false;
+}
+
 static void unknown_character(CagLexer *lx, CagToken *t) {
   uint32_t start = t->span.start, n;
   int32_t c = code_point(lx, start, &n);
   CagDiagnostic *d;
+  if (c == '$' && special_variable(lx, t)) return;
   if (c < 32 || c == 127)
     d = report(lx, CAG_ERR_unknown_character, start, start + n,
                "the control character U+%04X does not belong here", (unsigned)c);

@@ -139,4 +139,7 @@ const char *cag_token_what(CagTokenKind kind);
 // Whether a word of this spelling is reserved.
 bool cag_word_is_reserved(const char *word);
 
+// Whether a word is one of the units that stand directly behind a number.
+bool cag_lexer_is_unit(const char *name);
+
 #endif

@@ -8,6 +8,7 @@
 #ifndef CAG_LANG_PARSE_H
 #define CAG_LANG_PARSE_H
 
+#include "lang/foreign.h"
 #include "lang/lexer.h"
 #include "lang/parser.h"
 
@@ -97,6 +98,21 @@ const char *parse_quote(Parser *p, CagSpan span, char *buffer, size_t size, cons
 // Says what is wrong with the token behind a complete expression. `wanted` is what could have stood
 // there.
 void parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const char *wanted);
+
+// ---- forms of other languages ----
+
+// Each reports the form that stands here, in panic, and gives true; false: none of them is here.
+//
+// Behind a complete expression, which `before` is when it is known; where an expression is missing;
+// in place of the `=` of a definition with parameters; where a `:` divides an index or a list.
+bool parse_foreign_behind(Parser *p, const CagExpr *before);
+bool parse_foreign_value(Parser *p);
+bool parse_foreign_body(Parser *p);
+bool parse_foreign_colon(Parser *p, CagForeignSyntax id);
+// A word at the head of a statement; the next word stands on its line.
+bool parse_foreign_word(Parser *p);
+// Whether an expression goes on with such a form behind it, so that it is no statement by itself.
+bool parse_foreign_follows(Parser *p);
 
 // ---- brackets and lists ----
 

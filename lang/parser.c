@@ -95,7 +95,7 @@ CagStatement *parse_definition(Parser *p, bool top) {
     s->as.definition.decl->statement = s;
     s->as.definition.decl->doc = s->doc;
   }
-  expect(p, CAG_TOKEN_EQUALS, "`=`");
+  if (!f || !parse_foreign_body(p)) expect(p, CAG_TOKEN_EQUALS, "`=`");
   CagExpr *value = parse_expression(p);
   if (f) {
     f->body = value;
@@ -276,6 +276,7 @@ static bool is_one_of(const char *name, const char *const *words, size_t count) 
 static bool name_habit(Parser *p) {
   CagToken word = *parse_current(p), next = *parse_peek(p, 1);
   if (next.newline_before) return false;
+  if (parse_foreign_word(p)) return true;
   bool value_follows = parse_begins_expression(next.kind) && next.kind != CAG_TOKEN_MINUS &&
                        next.kind != CAG_TOKEN_LEFT_SQUARE &&
                        (next.kind != CAG_TOKEN_LEFT_PAREN || next.span.start > word.span.end);
@@ -288,10 +289,10 @@ static bool name_habit(Parser *p) {
   }
   if (IS_ONE_OF(word.as.name, "while", "foreach", "repeat", "until", "loop")) {
     if (next.kind == CAG_TOKEN_LEFT_PAREN && strcmp(word.as.name, "repeat") == 0) return false;
-    parse_help(
-        parse_error(p, CAG_ERR_loop, word.span, "there is no `%s`: nothing changes in cag",
-                    word.as.name),
-        "a list is built by [for x in xs: ...], a value by reduce or a function that calls itself");
+    parse_help(parse_error(p, CAG_ERR_loop, word.span, "there is no `%s`: nothing changes in cag",
+                           word.as.name),
+               "a list is built by [for x in xs: ...], a value by %s",
+               cag_foreign_syntax(CAG_FOREIGN_while_loop));
     return true;
   }
   if (next.kind == CAG_TOKEN_NAME &&
@@ -324,7 +325,7 @@ bool parse_habit(Parser *p, bool in_block) {
   }
   if (kind == CAG_TOKEN_FOR) {
     parse_help(parse_error(p, CAG_ERR_loop, here, "`for` is no statement: it stands in a list"),
-               "write [for x in xs: ...]");
+               "write %s", cag_foreign_syntax(CAG_FOREIGN_for_statement));
     return true;
   }
   if (!in_block) return false;
@@ -353,7 +354,7 @@ static CagStatement *expression_statement(Parser *p) {
   end_statement(p, s);
   if (p->mode == CAG_PARSE_REPL || p->panic) return s;
   if (parse_kind(p) == CAG_TOKEN_ASSIGN_OPERATOR || parse_kind(p) == CAG_TOKEN_QUESTION ||
-      parse_kind(p) == CAG_TOKEN_EQUALS)
+      parse_kind(p) == CAG_TOKEN_EQUALS || parse_foreign_follows(p))
     return s; // reported as what it is
   char text[QUOTE_SIZE];
   const char *said = parse_quote(p, e->span, text, sizeof text, "...");
@@ -423,6 +424,8 @@ static void end_of_statement(Parser *p, const CagStatement *s) {
   if (s && s->kind == CAG_STATEMENT_DEFINITION) before = s->as.definition.value;
   if (before && before->kind == CAG_EXPR_LAMBDA) before = before->as.function->body;
   if (s && s->kind == CAG_STATEMENT_EXPRESSION) before = s->as.expression;
+  if (s && (s->kind == CAG_STATEMENT_SHOW || s->kind == CAG_STATEMENT_PRINT) && s->as.list.count)
+    before = s->as.list.items[s->as.list.count - 1];
   parse_unexpected(p, before, CAG_ERR_expected_end, "the end of the line or `;`");
 }
 

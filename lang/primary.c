@@ -27,6 +27,10 @@ static CagClause clause(Parser *p) {
            parse_kind(p) != CAG_TOKEN_RIGHT_SQUARE) {}
     parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, NULL, "`,` or `]`");
   } else {
+    if (parse_kind(p) == CAG_TOKEN_LEFT_PAREN)
+      parse_help(parse_error(p, CAG_ERR_foreign_form, parse_here(p),
+                             "the loop of a comprehension stands without parentheses"),
+                 "write %s", cag_foreign_syntax(CAG_FOREIGN_for_parentheses));
     clause_name(p, &list);
     if (parse_kind(p) == CAG_TOKEN_COMMA && parse_kind_at(p, 1) == CAG_TOKEN_NAME) {
       parse_help(parse_error(p, CAG_ERR_expected_word, parse_here(p), "expected `in`, found `,`"),
@@ -97,6 +101,7 @@ static CagExpr *list_expression(Parser *p) {
     parse_list_push(p, &item, sizeof item);
     if (!parse_accept(p, CAG_TOKEN_COMMA)) break;
   }
+  parse_foreign_colon(p, CAG_FOREIGN_colon_range);
   parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, item, "`,` or `]`");
   e->as.list.items = parse_list_end(p, list, sizeof(CagExpr *), &e->as.list.count);
   return parse_finish(p, e);
@@ -358,6 +363,7 @@ CagExpr *parse_missing(Parser *p) {
   char word[64], before[QUOTE_SIZE];
   const char *found = parse_found(p, word, sizeof word);
   CagDiagnostic *d = NULL;
+  if (parse_foreign_value(p)) return parse_error_node(p);
   if ((p->bracket_count && kind == CAG_TOKEN_END) || (!p->newlines && parse_at_statement(p))) {
     parse_unexpected(p, NULL, CAG_ERR_expected_expression, "an expression");
   } else if (kind == CAG_TOKEN_DOT && parse_kind_at(p, 1) == CAG_TOKEN_NUMBER) {
@@ -517,6 +523,7 @@ static CagExpr *index_expression(Parser *p, CagExpr *object) {
   CagSpan at = parse_here(p);
   Opened o = parse_open(p, false);
   CagExpr *inside = parse_expression(p);
+  parse_foreign_colon(p, CAG_FOREIGN_colon_slice);
   parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, inside, "`]`");
   return parse_binary(p, CAG_EXPR_INDEX, CAG_OP_ADD, at, object, inside);
 }

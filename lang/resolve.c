@@ -5,6 +5,7 @@
 // stack of declarations; closing it puts back what each of them covered. So a look-up takes one
 // step, however many names a scope has.
 
+#include "lang/foreign.h"
 #include "lang/names.h"
 #include "lang/parser.h"
 
@@ -67,55 +68,9 @@ static CagDiagnostic *report(Resolver *r, CagErrorId id, CagSpan span, const cha
 
 static bool full(const Resolver *r) { return r->errors->count >= CAG_DIAGNOSTICS_MAX; }
 
-// Names of other languages for what is here.
-static const struct {
-  const char *said, *meant;
-} foreign[] = {
-    {"True", "true"},
-    {"TRUE", "true"},
-    {"False", "false"},
-    {"FALSE", "false"},
-    {"None", "none"},
-    {"null", "none"},
-    {"nil", "none"},
-    {"NULL", "none"},
-    {"undefined", "none"},
-    {"PI", "pi"},
-    {"M_PI", "pi"},
-    {"infinity", "inf"},
-    {"Infinity", "inf"},
-    {"size", "len"},
-    {"length_of", "len"},
-    {"count", "len"},
-    {"pow", "a ^ b"},
-    {"fold", "reduce"},
-    {"foldl", "reduce"},
-    {"str", "text"},
-    {"string", "text"},
-    {"tostring", "text"},
-    {"print_", "print"},
-    {"println", "print"},
-    {"echo", "print"},
-    {"arctan", "atan"},
-    {"arcsin", "asin"},
-    {"arccos", "acos"},
-    {"typeof", "type_of"},
-    {"sorted", "sort"},
-    {"reversed", "reverse"},
-    {"normalize", "unit"},
-    {"degrees", "in_degrees"},
-    {"radians", "in_radians"},
-    {"float", "number_of"},
-    {"log", "ln or log10"},
-    {"self", "the function's name"},
-    {"range", "0..<n"},
-};
-
 // The known name nearest to `name`: of the scopes around, the module, earlier inputs, the
 // built-ins.
 static const char *nearest(Resolver *r, const char *name) {
-  for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++)
-    if (strcmp(foreign[i].said, name) == 0) return foreign[i].meant;
   const CagResolveEnv *env = r->env;
   size_t count = 0, most = r->count + env->outer_count + env->builtin_count;
   const char **names = cag_checked(malloc((most + 1) * sizeof *names));
@@ -166,9 +121,10 @@ static void unknown_name(Resolver *r, const CagExpr *e) {
     cag_diagnostic_add_note(d, CAG_NOTE_RELATED, r->module->source, p->span, "the parameter");
     return;
   }
-  const char *near = nearest(r, name);
-  CagDiagnostic *d = report(r, CAG_ERR_unknown_name, e->span, "nothing is named %s", name);
-  if (near) cag_diagnostic_set_help(d, "did you mean %s?", near);
+  CagDiagnostic *d = report(r, CAG_ERR_unknown_name, e->span, "unknown name `%s`", name);
+  const char *form = cag_foreign_name(name), *near = form ? NULL : nearest(r, name);
+  if (form) cag_diagnostic_set_help(d, "write %s", form);
+  if (near) cag_diagnostic_set_help(d, "did you mean `%s`?", near);
 }
 
 // ---- scopes ----
@@ -291,7 +247,7 @@ static void check_in_module(Resolver *r, const CagStatement *import, const char 
   CagDiagnostic *d =
       report(r, CAG_ERR_not_in_module, span, "%s defines no %s", import->as.import.path, name);
   const char *near = names ? cag_nearest_name(name, names, count) : NULL;
-  if (near) cag_diagnostic_set_help(d, "did you mean %s?", near);
+  if (near) cag_diagnostic_set_help(d, "did you mean `%s`?", near);
 }
 
 static void walk_member(Resolver *r, CagExpr *e) {

@@ -456,6 +456,11 @@ const CagBuiltin cag_builtins_hulls[] = {
      "h = convex_hull([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]])\n"
      "print len(vertices(tessellate(h))), near(volume(h), 1 / 6) // expect: 4 true",
      0, "The plane"},
+    {"hull(points)", call_convex_hull, "region or solid",
+     "Another name of `convex_hull`: the smallest convex shape that holds all points or shapes.",
+     "print area(hull([[0, 0], [4, 0], [4, 2], [0, 2], [1, 1]])) // expect: 8\n"
+     "show hull([sphere(1), translate(sphere(2), [5, 0, 0])])",
+     0, "The plane"},
     {"curve_on(S, C)", call_curve_on, "curve",
      "The curve on the surface whose u and v are x and y of a plane curve; angles of the surface "
      "are radians there. It has the plane curve's parameter and domain, and exact derivatives up "

@@ -23,16 +23,19 @@ const CagBuiltin cag_builtins_transforms[] = {
      "The turn by the angle about Z through a point, counter-clockwise seen from above. About a "
      "point [x, y] it keeps plane things plane.",
      "print rotate(90deg) * [2, 0] // expect: [0, 2]", CAG_TAKES(ANGLE), family},
-    {"rotate(axis, angle, about = origin)", cag_transforms_rotate, "transform",
+    {"rotate(axis, angle = none, about = origin, rpy = none)", cag_transforms_rotate, "transform",
      "The turn by the angle about an axis through the point `about`, by the right hand: with the "
      "thumb along the axis it goes as the fingers do. A zero axis is an error.",
      "print rotate(X, 90deg) * [0, 1, 0] // expect: [0, 0, 1]", CAG_TAKES(LIST), family},
-    {"rotate(G, axis, angle = none, about = origin)", cag_transforms_rotate, "as G",
+    {"rotate(G, axis = none, angle = none, about = origin, rpy = none)", cag_transforms_rotate,
+     "as G",
      "G turned about an axis through a point; `rotate(G, angle)` and `rotate(G, angle, about)` "
-     "turn "
-     "about Z.",
+     "turn about Z. `rotate(G, rpy: [a, b, c])` turns about X by a, then about Y by b, then about "
+     "Z "
+     "by c, as `rpy(a, b, c)` does.",
      "print bounds(box([1, 2, 3]) |> rotate(Z, 90deg)).size // expect: [2, 1, 3]\n"
-     "print end_point(line([0, 0], [2, 0]) |> rotate(90deg)) // expect: [0, 2]",
+     "print end_point(line([0, 0], [2, 0]) |> rotate(90deg)) // expect: [0, 2]\n"
+     "print bounds(rotate(box([1, 2, 3]), rpy: [0deg, 90deg, 0deg])).size // expect: [3, 2, 1]",
      MOVED, family},
     {"scale(factor, about = origin)", cag_transforms_scale, "transform",
      "Stretches by a factor, or by one along each of x, y, z ([fx, fy] in the plane), away from "

@@ -5,9 +5,12 @@
 // is what is moved. A list as first argument may be a vector or a list of shapes, which the table
 // cannot tell apart; the first row then finds the shapes and reads its arguments as the second.
 
+#include <math.h>
 #include <string.h>
 
+#include "interp/builtin/support.h"
 #include "interp/builtin/transforms.h"
+#include "lang/foreign.h"
 
 // Reads the arguments from parameter `at` on.
 typedef bool (*MakeTransform)(CagCall *call, int at, CagTransform *out);
@@ -63,6 +66,16 @@ bool cag_transforms_translate(CagCall *call, CagValue *result) {
   return make_or_move(call, result, make_translate);
 }
 
+// An axis without an angle: three numbers (`dimension`) before a shape are meant as turns about x,
+// y and z.
+static bool fail_angle(CagCall *call, int dimension, CagVec3 axis) {
+  cag_fail_call(call, -1, CAG_ERR_arity, "needs an argument for `angle`");
+  if (dimension < 3) return false;
+  return cag_fail_help(
+      call->vm, "for turns about x, y and z write rpy: [%.15gdeg, %.15gdeg, %.15gdeg], as in %s",
+      axis.x, axis.y, axis.z, cag_foreign_call("rotate"));
+}
+
 static bool make_rotate(CagCall *call, int at, CagTransform *out) {
   static const CagVec3 zero = {0, 0, 0};
   CagError err;
@@ -73,8 +86,7 @@ static bool make_rotate(CagCall *call, int at, CagTransform *out) {
   bool plain = call->values[at].type == CAG_ANGLE;
   int next = plain ? at : at + 1;
   if (!plain && !cag_arg_vec(call, at, &axis, &axis_dimension)) return false;
-  if (!cag_given(call, next))
-    return cag_fail_call(call, -1, CAG_ERR_arity, "needs an argument for `angle`");
+  if (!cag_given(call, next)) return fail_angle(call, at > 0 ? axis_dimension : 0, axis);
   if (!cag_arg_angle(call, next, &angle)) return false;
   // By position it follows the angle; by its name it stands behind the place of an axis.
   size_t place = (size_t)next + 1;
@@ -88,7 +100,55 @@ static bool make_rotate(CagCall *call, int at, CagTransform *out) {
   out->planar = plain && about_dimension == 2;
   return true;
 }
+// The angles of `rpy` in radians, from a list of three.
+static bool read_rpy(CagCall *call, int argument, double rpy[3]) {
+  CagList *list;
+  if (!cag_arg_list(call, argument, &list)) return false;
+  if (list->length != 3)
+    return cag_fail_call(call, argument, CAG_ERR_type,
+                         "expects three angles as `rpy`, about x, y and z; found %zu",
+                         list->length);
+  for (size_t i = 0; i < 3; i++) {
+    const CagValue v = cag_list_get(call->vm, list, i);
+    if (v.type != CAG_ANGLE) {
+      cag_fail_element(call, argument, i, v, "an angle");
+      if (v.type != CAG_NUMBER) return false;
+      return cag_fail_help(call->vm, "write %.15gdeg", v.as.number);
+    }
+    rpy[i] = v.as.number * (M_PI / 180);
+  }
+  return true;
+}
+
+// rotate(G, rpy: [a, b, c]): about x, then y, then z, which stay where they are. `place` is that of
+// the parameter; `about` stands before it, and before that what `rpy` is given in place of.
+static bool rotate_rpy(CagCall *call, int place, CagValue *result) {
+  double rpy[3];
+  CagVec3 about;
+  int dimension;
+  for (int i = 1; i < place - 1; i++)
+    if (cag_given(call, i))
+      return cag_fail_call(call, place, CAG_ERR_value, "takes `rpy` in place of an axis and angle");
+  if (!holds_movables(call->vm, call->values[0]))
+    return cag_fail_call(call, 0, CAG_ERR_value, "takes `rpy` in place of an axis and angle");
+  if (!read_rpy(call, place, rpy) ||
+      !cag_arg_vec_or(call, place - 1, cag_vec3(0, 0, 0), &about, &dimension))
+    return false;
+  const CagTransform turn = cag_rpy(rpy[0], rpy[1], rpy[2]), there = cag_translate(about),
+                     back = cag_translate(cag_vec3(-about.x, -about.y, -about.z));
+  CagTransform t = cag_transform_multiply(&turn, &back);
+  t = cag_transform_multiply(&there, &t);
+  t.planar = false;
+  return cag_transform_apply(call->vm, &t, call->values[0], result);
+}
+
 bool cag_transforms_rotate(CagCall *call, CagValue *result) {
+  const CagSignature *s = cag_builtin_signature_of(call->builtin);
+  const int last = (int)s->count - 1;
+  if (strcmp(s->parameters[last], "rpy") == 0 && cag_given(call, last))
+    return rotate_rpy(call, last, result);
+  if (!cag_given(call, 1) && strcmp(s->parameters[0], "G") == 0)
+    return cag_fail_call(call, -1, CAG_ERR_arity, "needs an argument for `angle`");
   return make_or_move(call, result, make_rotate);
 }
 

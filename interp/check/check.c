@@ -7,6 +7,7 @@
 
 #include "interp/check/types.h"
 #include "interp/doc/doc.h"
+#include "lang/foreign.h"
 
 // Definitions are walked where they are used first; a chain of more than so many is not followed.
 #define DEPTH_MAX 1000
@@ -206,7 +207,7 @@ typedef struct Callee {
   const char *const *parameters;
   size_t count, required;
   const bool *positional_only;
-  bool variadic;
+  bool variadic, builtin;
 } Callee;
 
 static size_t parameter_named(const Callee *f, const char *name) {
@@ -214,6 +215,12 @@ static size_t parameter_named(const Callee *f, const char *name) {
     if (strcmp(f->parameters[i], name) == 0 && !(f->positional_only && f->positional_only[i]))
       return i;
   return f->count;
+}
+
+// Shows the form of a call of a built-in where other languages have another.
+static void help_call(const Callee *f, CagDiagnostic *d) {
+  const char *form = f->builtin ? cag_foreign_call(f->name) : NULL;
+  if (form) cag_diagnostic_set_help(d, "write %s", form);
 }
 
 // Whether the arguments fit the parameters; where `tell`, the first that does not is reported.
@@ -224,7 +231,7 @@ static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool t
       const CagExpr *extra = positional_argument(v, f->count);
       snprintf(text, sizeof text, "%s takes %zu argument%s, found %zu", f->name, f->count,
                f->count == 1 ? "" : "s", v->positional);
-      report(c, CAG_ERR_arity, extra ? extra->span : v->span, text);
+      help_call(f, report(c, CAG_ERR_arity, extra ? extra->span : v->span, text));
     }
     return false;
   }
@@ -242,15 +249,18 @@ static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool t
              k < f->count ? "%s has %s already, by position" : "%s has no parameter %s", f->name,
              a->name);
     CagDiagnostic *d = report(c, CAG_ERR_argument_name, a->name_span, text);
-    const char *nearest = k < f->count ? NULL : cag_nearest_name(a->name, f->parameters, f->count);
-    if (nearest) cag_diagnostic_set_help(d, "did you mean %s?", nearest);
+    if (k < f->count) return false;
+    const char *form = NULL, *meant = cag_foreign_argument(a->name, f->parameters, f->count, &form);
+    const char *nearest = cag_nearest_name(a->name, f->parameters, f->count);
+    if (meant) cag_diagnostic_set_help(d, "did you mean `%s`, as in %s?", meant, form);
+    else if (nearest) cag_diagnostic_set_help(d, "did you mean `%s`?", nearest);
     return false;
   }
   for (size_t k = v->positional; k < f->required && k < 64; k++) {
     if (given >> k & 1) continue;
     if (tell) {
-      snprintf(text, sizeof text, "%s needs %s", f->name, f->parameters[k]);
-      report(c, CAG_ERR_arity, v->span, text);
+      snprintf(text, sizeof text, "%s needs an argument for `%s`", f->name, f->parameters[k]);
+      help_call(f, report(c, CAG_ERR_arity, v->span, text));
     }
     return false;
   }
@@ -291,7 +301,8 @@ static bool types_fit(Check *c, const CagBuiltin *row, const CagSignature *s, co
                       Misfit *out) {
   size_t k = 0;
   if (v->piped && !fits(c, row, s, k++, v->piped_types, v->piped, out)) return false;
-  const Callee f = {s->name, s->parameters, s->count, s->required, s->positional_only, s->variadic};
+  const Callee f = {s->name,     s->parameters, s->count, s->required, s->positional_only,
+                    s->variadic, true};
   for (size_t i = 0; v->e && i < v->e->as.call.count; i++) {
     const CagArgument *a = &v->e->as.call.arguments[i];
     const size_t parameter = a->name ? parameter_named(&f, a->name) : k++;
@@ -326,6 +337,8 @@ static void report_misfit(Check *c, const CagSignature *s, const Misfit *m) {
   if (m->taken & CAG_TYPES(ANGLE) && !(m->taken & CAG_TYPES(NUMBER)) &&
       m->found == CAG_TYPES(NUMBER) && e->kind == CAG_EXPR_NUMBER)
     cag_diagnostic_set_help(d, "write %gdeg or %grad", e->as.number, e->as.number);
+  else if (cag_foreign_call(s->name))
+    cag_diagnostic_set_help(d, "write %s", cag_foreign_call(s->name));
 }
 
 static CagTypes result_of(const CagBuiltin *row, CagTypes first) {
@@ -349,8 +362,8 @@ static CagTypes check_builtin(Check *c, size_t index, const CallView *v) {
     if (row[i].first && !(row[i].first & first)) continue;
     candidates++;
     only = i;
-    const Callee f = {s->name,     s->parameters,      s->count,
-                      s->required, s->positional_only, s->variadic};
+    const Callee f = {s->name,     s->parameters, s->count, s->required, s->positional_only,
+                      s->variadic, true};
     if (!check_arguments(c, &f, v, false)) continue;
     fitting++;
     result |= result_of(&row[i], first);
@@ -367,8 +380,8 @@ static CagTypes check_builtin(Check *c, size_t index, const CallView *v) {
     return CAG_TYPES_ANY;
   }
   if (fitting == 0) {
-    const Callee f = {s->name,     s->parameters,      s->count,
-                      s->required, s->positional_only, s->variadic};
+    const Callee f = {s->name,     s->parameters, s->count, s->required, s->positional_only,
+                      s->variadic, true};
     check_arguments(c, &f, v, true);
     return CAG_TYPES_ANY;
   }
@@ -382,7 +395,7 @@ static CagTypes check_function(Check *c, const char *name, const CagFunctionAst 
   if (fn->parameter_count > 32)
     parameters = cag_checked(malloc(fn->parameter_count * sizeof *parameters));
   for (size_t i = 0; i < fn->parameter_count; i++) parameters[i] = fn->parameters[i].decl->name;
-  const Callee f = {name, parameters, fn->parameter_count, fn->required_count, NULL, false};
+  const Callee f = {name, parameters, fn->parameter_count, fn->required_count, NULL, false, false};
   check_arguments(c, &f, v, true);
   if (parameters != few) free(parameters);
   return CAG_TYPES_ANY;
@@ -619,7 +632,10 @@ static void check_member(Check *c, const CagExpr *e, CagTypes types) {
   if (known) return;
   snprintf(text, sizeof text, "%s has no member `%s`", cag_types_text(types, found, sizeof found),
            name);
-  report(c, CAG_ERR_field, e->as.member.name_span, text);
+  CagDiagnostic *d = report(c, CAG_ERR_field, e->as.member.name_span, text);
+  if (cag_foreign_member(name)) cag_diagnostic_set_help(d, "write %s", cag_foreign_member(name));
+  else if (cag_builtin_find(name) != (size_t)-1)
+    cag_diagnostic_set_help(d, "a function stands behind |>: write x |> %s(...)", name);
 }
 
 static CagTypes infer(Check *c, const CagExpr *e) {

@@ -8,6 +8,7 @@
 #include "interp/builtin/apply.h"
 #include "interp/builtin/jets.h"
 #include "interp/value/jet.h"
+#include "lang/foreign.h"
 
 static const char *function_name(const char *name) { return name ? name : "this function"; }
 
@@ -43,8 +44,11 @@ static bool fail_unknown_name(CagVm *vm, const char *function, const char *name,
                               const char *const *names, size_t n, int argument) {
   cag_vm_fail_at(vm, argument, CAG_ERR_argument_name, "%s has no parameter `%s`",
                  function_name(function), name);
+  const char *form = NULL, *meant = cag_foreign_argument(name, names, n, &form);
   const char *nearest = cag_nearest_name(name, names, n);
-  if (nearest) {
+  if (meant) {
+    cag_fail_help(vm, "did you mean `%s`, as in %s?", meant, form);
+  } else if (nearest) {
     cag_fail_help(vm, "did you mean `%s`?", nearest);
   } else if (n) {
     CagString s = {0};
@@ -115,15 +119,24 @@ static bool fail_no_row(CagVm *vm, size_t index, CagValue first) {
   if (first.type == CAG_NUMBER && served.bytes && strcmp(served.bytes, "an angle") == 0)
     cag_fail_help(vm, "write %sdeg or %srad", found.bytes + strlen("the number "),
                   found.bytes + strlen("the number "));
+  else if (cag_foreign_call(cag_builtin_name(index)))
+    cag_fail_help(vm, "write %s", cag_foreign_call(cag_builtin_name(index)));
   cag_string_free(&served);
   cag_string_free(&found);
   return false;
 }
 
+// Shows how a function is called: its signature, after the form where other languages have another.
+static bool help_call(CagVm *vm, const CagBuiltin *row, const CagSignature *s) {
+  const char *form = cag_foreign_call(s->name);
+  if (form) return cag_fail_help(vm, "write %s; the signature is %s", form, row->signature);
+  return cag_fail_help(vm, "%s", row->signature);
+}
+
 static bool fail_builtin_arity(CagVm *vm, const CagBuiltin *row, const CagSignature *s,
                                size_t found) {
   fail_arity(vm, s->name, s->required, s->count, s->variadic, found);
-  return cag_fail_help(vm, "%s", row->signature);
+  return help_call(vm, row, s);
 }
 
 // Moves named arguments to their parameters; `order` tells afterwards where each parameter came
@@ -181,7 +194,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
     for (size_t i = 0; i < s->required; i++)
       if (values[i].type == CAG_UNSET) {
         cag_vm_fail(vm, CAG_ERR_arity, "%s needs an argument for `%s`", s->name, s->parameters[i]);
-        return cag_fail_help(vm, "%s", b->signature);
+        return help_call(vm, b, s);
       }
     total = s->count;
   } else {

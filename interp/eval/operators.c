@@ -8,6 +8,7 @@
 #include "interp/builtin/jets.h"
 #include "interp/eval/vm.h"
 #include "interp/value/jet.h"
+#include "lang/foreign.h"
 
 static const char *symbol(CagBinaryOp op) {
   static const char *const symbols[] = {"+",  "-",  "*", "/",  "%", "^",  "|", "&",
@@ -622,7 +623,10 @@ static bool fail_field(CagVm *vm, CagValue object, const char *name) {
   size_t n = 0;
   const char *const *members = object.type >= CAG_TRANSFORM ? cag_value_members(object, &n) : NULL;
   const char *nearest = n ? cag_nearest_name(name, members, n) : NULL;
-  if (nearest) cag_fail_help(vm, "did you mean `%s`?", nearest);
+  if (cag_foreign_member(name)) cag_fail_help(vm, "write %s", cag_foreign_member(name));
+  else if (cag_builtin_find(name) != (size_t)-1)
+    cag_fail_help(vm, "a function stands behind |>: write x |> %s(...)", name);
+  else if (nearest) cag_fail_help(vm, "did you mean `%s`?", nearest);
   else if (object.type == CAG_RANGE) cag_fail_help(vm, "a range has start, end and step");
   else if (n && n <= 12) {
     CagString s = {0};

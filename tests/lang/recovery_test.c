@@ -59,7 +59,7 @@ static void habits_of_other_languages_get_their_mend(void **state) {
   expect_mend("x = 1 # one", "E0115", "//");
   expect_mend("x = True", "E0201", "true");
   expect_mend("x = null", "E0201", "none");
-  expect_mend("for i in 0..3: print i", "E0161", "[for x in xs: ...]");
+  expect_mend("for i in 0..3: print i", "E0161", "show [for i in 0..3: ");
   expect_mend("while x < 3", "E0161", "reduce");
   expect_mend("x = 1 if true else 2", "E0162", "if c then 1 else b");
   expect_mend("x = [1 for i in 0..3]", "E0163", "[for x in xs: 1]");
