@@ -10,6 +10,12 @@
 // these calls. A session may be used by one thread at a time; different sessions are independent of
 // each other. Evaluation happens on a thread of the session's own, whose stack is large enough for
 // deep recursion.
+//
+// A callback (a value, progress, a name) is called while a call is under way. From there, calls
+// that evaluate, build a scene, document or clear are refused: with CAG_STATUS_USAGE, false or NULL
+// by their result, and without a trace in the diagnostics. Questions about diagnostics and names
+// are answered; cag_session_free takes effect when the call under way returns. A question about an
+// element that does not exist answers NULL, false, or a view of NULL texts.
 
 #ifndef CAG_H
 #define CAG_H

@@ -238,6 +238,7 @@ static int make(CagSite *s) {
 }
 
 int cag_session_write_site(CagSession *session, const char *folder, const CagSiteOptions *options) {
+  if (!cag_session_begin(session)) return CAG_STATUS_USAGE;
   CagSite s = {.session = session, .options = options, .folder = folder};
   const int status = make(&s);
   for (size_t i = 0; i < s.count; i++) {
@@ -249,5 +250,5 @@ int cag_session_write_site(CagSession *session, const char *folder, const CagSit
   free(s.modules);
   cag_site_free_scripts(&s);
   free(s.examples);
-  return status;
+  return cag_session_end(session, status);
 }

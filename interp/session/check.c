@@ -18,8 +18,9 @@ static bool check(CagVm *vm, void *context) {
 }
 
 static int start_check(CagSession *s, Check *c) {
+  if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   cag_session_drop_vm(s);
-  return cag_session_work(s, check, c);
+  return cag_session_end(s, cag_session_work(s, check, c));
 }
 
 int cag_session_check_file(CagSession *s, const char *path) {

@@ -28,11 +28,12 @@ int cag_session_read_doc(CagSession *s, const char *name, const char *text, size
 
 int cag_session_document_text(CagSession *s, const char *name, const char *text, size_t length,
                               bool styled, FILE *out) {
+  if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   CagDocModule m;
   const int status = cag_session_read_doc(s, name, text, length, &m);
   if (status == CAG_STATUS_OK) cag_doc_write_module(&(CagDocWriter){out, styled}, &m);
   cag_doc_module_free(&m);
-  return status;
+  return cag_session_end(s, status);
 }
 
 // Writes a library module (`member` NULL), or one definition of it. False: there is no such.
@@ -76,7 +77,7 @@ static bool write_guide(const char *name, FILE *out) {
   return d != NULL;
 }
 
-bool cag_session_document(CagSession *s, const char *name, bool styled, FILE *out) {
+static bool document(CagSession *s, const char *name, bool styled, FILE *out) {
   const CagDocWriter w = {out, styled};
   if (!name) return cag_doc_write_overview(&w), true;
   const size_t index = cag_builtin_find(name);
@@ -85,8 +86,16 @@ bool cag_session_document(CagSession *s, const char *name, bool styled, FILE *ou
          cag_explain(name, out);
 }
 
+bool cag_session_document(CagSession *s, const char *name, bool styled, FILE *out) {
+  if (!cag_session_begin(s)) return false;
+  const bool found = document(s, name, styled, out);
+  cag_session_end(s, CAG_STATUS_OK);
+  return found;
+}
+
 void cag_session_document_names(CagSession *s, void (*give)(void *context, const char *name),
                                 void *context) {
+  if (!cag_session_begin(s)) return;
   for (size_t i = 0; i < cag_builtin_count(); i++) give(context, cag_builtin_name(i));
   for (size_t i = 0; cag_doc_module_name(i); i++) {
     const char *text, *module = cag_doc_module_name(i);
@@ -110,4 +119,5 @@ void cag_session_document_names(CagSession *s, void (*give)(void *context, const
     give(context, code);
     give(context, reason);
   }
+  cag_session_end(s, CAG_STATUS_OK);
 }

@@ -447,7 +447,7 @@ static int write_output(CagSession *s, void *context) {
   return o->format->write(s, o->path);
 }
 
-int cag_session_export(CagSession *s, const char *path, const char *format) {
+static int export_scene(CagSession *s, const char *path, const char *format) {
   const char *slash = strrchr(path, '/');
   const char *dot = strrchr(slash ? slash : path, '.');
   const char *name = format ? format : dot ? dot + 1 : "";
@@ -468,4 +468,9 @@ int cag_session_export(CagSession *s, const char *path, const char *format) {
   int status = cag_session_build_scene(s);
   return status == CAG_STATUS_OK ? cag_session_geometry(s, write_output, &(Output){f, path})
                                  : status;
+}
+
+int cag_session_export(CagSession *s, const char *path, const char *format) {
+  if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
+  return cag_session_end(s, export_scene(s, path, format));
 }

@@ -24,6 +24,7 @@ int cag_session_format(CagSession *s, const char *name, const char *text, size_t
   Layout l = {name, text, length, out, out_length};
   *out = NULL;
   *out_length = 0;
+  if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   cag_session_drop_vm(s);
-  return cag_session_work(s, lay_out, &l);
+  return cag_session_end(s, cag_session_work(s, lay_out, &l));
 }

@@ -111,12 +111,13 @@ static bool evaluate_input(CagVm *vm, void *context) {
 }
 
 static int start_input(CagSession *s, Input *in) {
+  if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   if (!s->interactive) cag_session_drop_vm(s);
   s->interactive = true;
   cag_diagnostics_free(&s->diagnostics);
   s->diagnostics = (CagDiagnostics){0};
   cag_session_renew_time(s);
-  return cag_session_work(s, evaluate_input, in);
+  return cag_session_end(s, cag_session_work(s, evaluate_input, in));
 }
 
 int cag_session_input(CagSession *s, const char *text, size_t length,
@@ -148,11 +149,11 @@ static const CagDecl *find_decl(const CagVm *vm, size_t i) {
 
 const char *cag_session_name(CagSession *s, size_t i, const char **source_text,
                              size_t *source_length) {
+  if (source_text) *source_text = NULL;
+  if (source_length) *source_length = 0;
   if (!s->vm || !s->interactive || i >= s->vm->outer_count) return NULL;
   const CagVm *vm = s->vm;
   const CagDecl *d = source_text || source_length ? find_decl(vm, i) : NULL;
-  if (source_text) *source_text = NULL;
-  if (source_length) *source_length = 0;
   if (!d) return vm->outer_names[i];
   const CagSpan span = d->statement->span;
   const CagModuleUnit *m = vm->globals[vm->outer_globals[i]].unit;
@@ -245,13 +246,14 @@ static bool ask_members(CagVm *vm, void *context) {
 
 void cag_session_members(CagSession *s, const char *path,
                          void (*give)(void *context, const char *name), void *context) {
-  if (!s->vm || !s->interactive) return;
+  if (!s->vm || !s->interactive || !cag_session_begin(s)) return;
   const double limit = s->vm->max_time;
   s->vm->max_time = s->time_left = MEMBERS_SECONDS;
   cag_session_work(s, ask_members, &(MemberQuestion){s, path, give, context});
   s->vm->max_time = limit;
   cag_diagnostics_free(&s->diagnostics);
   s->diagnostics = (CagDiagnostics){0};
+  cag_session_end(s, CAG_STATUS_OK);
 }
 
 // --- The session as a script ---
@@ -288,4 +290,8 @@ void cag_session_write_script(CagSession *s, FILE *out) {
   write_statements(s, CAG_STATEMENT_SHOW, out);
 }
 
-void cag_session_clear(CagSession *s) { cag_session_drop_vm(s); }
+void cag_session_clear(CagSession *s) {
+  if (!cag_session_begin(s)) return;
+  cag_session_drop_vm(s);
+  cag_session_end(s, CAG_STATUS_OK);
+}

@@ -256,7 +256,7 @@ static bool check_region(const Job *j) {
   return false;
 }
 
-int cag_session_render(CagSession *s, const CagRenderOptions *options, const char *path) {
+static int render_scene(CagSession *s, const CagRenderOptions *options, const char *path) {
   const char *dot = strrchr(path, '.');
   if (!dot || (strcasecmp(dot, ".exr") != 0 && strcasecmp(dot, ".png") != 0)) {
     CagDiagnostic *d =
@@ -299,4 +299,16 @@ int cag_session_render(CagSession *s, const CagRenderOptions *options, const cha
   free(j.source);
   cag_povray_result_free(&j.result);
   return status;
+}
+
+int cag_session_render(CagSession *s, const CagRenderOptions *options, const char *path) {
+  if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
+  CagRenderOptions usual;
+  cag_render_options_init(&usual);
+  if (options) {
+    const char *quality = options->quality ? options->quality : usual.quality;
+    usual = *options;
+    usual.quality = quality;
+  }
+  return cag_session_end(s, render_scene(s, &usual, path));
 }

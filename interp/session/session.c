@@ -51,8 +51,18 @@ void cag_session_drop_vm(CagSession *s) {
   cag_session_renew_time(s);
 }
 
+bool cag_session_begin(CagSession *s) { return !atomic_exchange(&s->busy, true); }
+
+int cag_session_end(CagSession *s, int status) {
+  s->busy = false;
+  if (s->free_pending) cag_session_free(s);
+  return status;
+}
+
 void cag_session_free(CagSession *s) {
   if (!s) return;
+  s->free_pending = s->busy;
+  if (s->busy) return;
   cag_session_drop_vm(s);
   cag_session_clear_defines(s);
   free(s->script);
@@ -335,10 +345,11 @@ static bool run(CagVm *vm, void *context) {
 }
 
 static int start_run(CagSession *s, Run *r) {
+  if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   cag_session_drop_vm(s);
   free(s->script);
   s->script = strdup(r->path ? r->path : r->name);
-  return cag_session_work(s, run, r);
+  return cag_session_end(s, cag_session_work(s, run, r));
 }
 
 int cag_session_run_file(CagSession *s, const char *path) {
@@ -354,6 +365,8 @@ int cag_session_run_text(CagSession *s, const char *name, const char *text, size
 size_t cag_session_error_count(const CagSession *s) { return s->diagnostics.count; }
 
 void cag_session_error(const CagSession *s, size_t i, CagErrorView *out) {
+  *out = (CagErrorView){0};
+  if (i >= s->diagnostics.count) return;
   const CagDiagnostic *d = &s->diagnostics.items[i];
   const CagErrorInfo *info = cag_error_info(d->id);
   *out = (CagErrorView){.code = info->code,
@@ -453,15 +466,20 @@ int cag_session_build_scene(CagSession *s) {
 }
 
 int cag_session_scene(CagSession *s, CagShownCounts *out) {
+  *out = (CagShownCounts){0};
+  if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   int status = cag_session_build_scene(s);
-  if (status != CAG_STATUS_OK) return status;
-  *out = (CagShownCounts){s->scene.item_count, s->scene.camera_count, s->scene.light_count};
-  return CAG_STATUS_OK;
+  if (status == CAG_STATUS_OK)
+    *out = (CagShownCounts){s->scene.item_count, s->scene.camera_count, s->scene.light_count};
+  return cag_session_end(s, status);
 }
 
 const char *cag_session_camera(CagSession *s, size_t i) {
-  if (cag_session_build_scene(s) != CAG_STATUS_OK || i >= s->scene.camera_count) return NULL;
-  return s->scene.cameras[i].name;
+  if (!cag_session_begin(s)) return NULL;
+  const bool built = cag_session_build_scene(s) == CAG_STATUS_OK;
+  const char *name = built && i < s->scene.camera_count ? s->scene.cameras[i].name : NULL;
+  cag_session_end(s, CAG_STATUS_OK);
+  return name;
 }
 
 typedef struct Listing {
@@ -484,6 +502,7 @@ static bool describe(CagVm *vm, void *context) {
 }
 
 void cag_session_describe_scene(CagSession *s, FILE *out) {
+  if (!cag_session_begin(s)) return;
   if (s->interactive) cag_session_renew_time(s);
-  cag_session_work(s, describe, &(Listing){s, out});
+  cag_session_end(s, cag_session_work(s, describe, &(Listing){s, out}));
 }

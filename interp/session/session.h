@@ -6,6 +6,8 @@
 #ifndef CAG_INTERP_SESSION_H
 #define CAG_INTERP_SESSION_H
 
+#include <stdatomic.h>
+
 #include "cag.h"
 #include "interp/eval/program.h"
 #include "interp/export/pov.h"
@@ -27,8 +29,16 @@ struct CagSession {
   // Modules of the interactive session in order: their shows make its scene.
   size_t *inputs;
   size_t input_count;
-  char text[256]; // for answers that are texts
+  char text[256];    // for answers that are texts
+  atomic_bool busy;  // inside a call that uses the machine
+  bool free_pending; // a callback freed the session: the call under way does it at its end
 };
+
+// Calls that use the machine begin and end here. False: another is under way, so this one comes
+// from a callback and is refused. The diagnostics stay those of the call under way.
+bool cag_session_begin(CagSession *s);
+// Gives the status back, so that it can end a return statement. May free the session.
+int cag_session_end(CagSession *s, int status);
 
 // Makes a machine when there is none. NULL: memory is out (a diagnostic says so).
 CagVm *cag_session_vm(CagSession *s);

@@ -79,6 +79,9 @@ bool cag_builtin_row(size_t i, const char **signature, const char **summary, con
     }
     i -= rows;
   }
+  const char **const outs[] = {signature, summary, example, family};
+  for (size_t k = 0; k < sizeof outs / sizeof *outs; k++)
+    if (outs[k]) *outs[k] = NULL;
   return false;
 }
 
@@ -97,11 +100,11 @@ bool cag_explain(const char *code, FILE *out) {
 
 bool cag_error_kind(size_t i, const char **code, const char **reason, const char **title,
                     const char **example) {
-  if (i >= CAG_ERR_COUNT) return false;
-  const CagErrorInfo *e = cag_error_info((CagErrorId)i);
+  static const CagErrorInfo none = {0};
+  const CagErrorInfo *e = i < CAG_ERR_COUNT ? cag_error_info((CagErrorId)i) : &none;
   if (code) *code = e->code;
   if (reason) *reason = e->reason;
   if (title) *title = e->title;
   if (example) *example = e->example;
-  return true;
+  return e != &none;
 }
