@@ -1,9 +1,9 @@
 // The program `cag`: reads the command line, calls the command, and ends with its status.
 //
-// Signals: the first Ctrl-C (or SIGTERM, SIGHUP) asks what runs to stop, which leaves nothing half
-// written. A second one, or an alarm where that takes too long (a single long step of geometry does
-// not look up), ends the program at once, after the temporaries of output files are removed. A
-// standard output that nobody reads shows as a failed write, not as a signal.
+// Signals: the first Ctrl-C (or SIGTERM, SIGHUP, SIGXCPU) asks what runs to stop, which leaves
+// nothing half written. A second one, or an alarm where that takes too long (a single long step of
+// geometry does not look up), ends the program at once, after the temporaries of output files are
+// removed. A standard output that nobody reads shows as a failed write, not as a signal.
 
 #include <fcntl.h>
 #include <locale.h>
@@ -47,8 +47,10 @@ static void on_signal(int number) {
 }
 
 static void catch_signals(void) {
-  static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM};
+  static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM, SIGXCPU};
+  // A write beyond the limit of a file's size (ulimit -f) fails as one on a full disk does.
   signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);
   for (size_t i = 0; i < sizeof SIGNALS / sizeof *SIGNALS; i++) {
     struct sigaction action = {.sa_handler = on_signal}, before; // reads are to end, not to resume
     sigemptyset(&action.sa_mask);

@@ -123,6 +123,10 @@ static const char *plain_text(Parser *p, const char *what) {
     return "";
   }
   const char *text = t->as.text.bytes;
+  if (strlen(text) != t->as.text.length)
+    parse_help(
+        parse_error(p, CAG_ERR_text_not_plain, t->span, "%s has no character \\u{0} in it", what),
+        "leave the character out");
   parse_advance(p);
   return text;
 }

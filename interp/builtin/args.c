@@ -168,9 +168,14 @@ bool cag_arg_bool_or(CagCall *call, int argument, bool fallback, bool *out) {
   return true;
 }
 
+bool cag_text_is_c(const CagText *t) { return strlen(t->bytes) == t->length; }
+
 bool cag_arg_text(CagCall *call, int argument, const char **out) {
   CagValue v = call->values[argument];
   if (v.type != CAG_TEXT) return cag_fail_type(call, argument, "a text");
+  if (!cag_text_is_c(CAG_AS_TEXT(v)))
+    return cag_fail_call(call, argument, CAG_ERR_value,
+                         "expects a text without the character \\u{0}");
   *out = CAG_AS_TEXT(v)->bytes;
   return true;
 }
@@ -190,7 +195,9 @@ bool cag_arg_choice(CagCall *call, int argument, const char *const *choices, int
   CagValue v = call->values[argument];
   size_t n = 0;
   for (; choices[n]; n++) {
-    if (v.type != CAG_TEXT || strcmp(choices[n], CAG_AS_TEXT(v)->bytes) != 0) continue;
+    if (v.type != CAG_TEXT || !cag_text_is_c(CAG_AS_TEXT(v)) ||
+        strcmp(choices[n], CAG_AS_TEXT(v)->bytes) != 0)
+      continue;
     *out = (int)n;
     return true;
   }

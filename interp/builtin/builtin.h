@@ -78,6 +78,8 @@ bool cag_arg_angle_or(CagCall *call, int argument, double fallback, double *radi
 bool cag_arg_degrees(CagCall *call, int argument, double *degrees);
 bool cag_arg_bool_or(CagCall *call, int argument, bool fallback, bool *out);
 bool cag_arg_text(CagCall *call, int argument, const char **out);
+// Whether a text ends where its bytes have their first zero, so that C functions see all of it.
+bool cag_text_is_c(const CagText *t);
 // One of the NULL-terminated choices; unset: the first. *out is its index.
 bool cag_arg_choice(CagCall *call, int argument, const char *const *choices, int *out);
 bool cag_arg_list(CagCall *call, int argument, CagList **out); // ranges become lists

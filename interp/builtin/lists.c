@@ -417,9 +417,9 @@ static bool call_concat(CagCall *call, CagValue *result) {
 }
 
 static bool index_in_text(CagCall *call, const CagText *t, CagValue *result) {
-  const char *part;
-  if (!cag_arg_text(call, 1, &part)) return false;
-  const char *found = strstr(t->bytes, part);
+  if (call->values[1].type != CAG_TEXT) return cag_fail_type(call, 1, "a text");
+  const CagText *part = CAG_AS_TEXT(call->values[1]);
+  const char *found = memmem(t->bytes, t->length, part->bytes, part->length);
   *result = cag_none();
   if (!found) return true;
   size_t k = 0;

@@ -25,7 +25,8 @@ bool cag_color_read(CagCall *call, int argument, const char *what, CagValue v, C
   size_t n;
   if (v.type == CAG_TEXT) {
     const char *text = CAG_AS_TEXT(v)->bytes;
-    return cag_color_from_text(text, out) || fail_color(call, argument, what, text);
+    return (cag_text_is_c(CAG_AS_TEXT(v)) && cag_color_from_text(text, out)) ||
+           fail_color(call, argument, what, text);
   }
   if (v.type != CAG_LIST || !cag_as_vector(v, &x, &n) || n != 3)
     return cag_fail_call(call, argument, CAG_ERR_type,
@@ -195,7 +196,7 @@ bool cag_scenes_area_light(CagCall *call, CagValue *result) {
 static bool is_image(CagValue v) {
   if (v.type != CAG_TEXT) return false;
   const CagText *t = CAG_AS_TEXT(v);
-  return t->length > 4 && strcmp(t->bytes + t->length - 4, ".exr") == 0;
+  return t->length > 4 && cag_text_is_c(t) && strcmp(t->bytes + t->length - 4, ".exr") == 0;
 }
 
 bool cag_scenes_sky(CagCall *call, CagValue *result) {

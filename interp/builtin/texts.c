@@ -10,8 +10,10 @@
 static const char FAMILY[] = "Text";
 
 static bool read_text(CagCall *call, int argument, const CagText **out) {
-  const char *bytes;
-  if (!cag_arg_text(call, argument, &bytes)) return false;
+  if (call->values[argument].type != CAG_TEXT) {
+    cag_fail_type(call, argument, "a text");
+    return false;
+  }
   *out = CAG_AS_TEXT(call->values[argument]);
   return true;
 }

@@ -403,6 +403,7 @@ static void fail_write(const struct CagAtomicFileState *s, int code, CagIoError 
     return;
   }
   const char *help = code == ENOSPC || code == EDQUOT ? "free some space, or write to another disk"
+                     : code == EFBIG ? "raise the limit of a file's size (ulimit -f), or write less"
                      : code == EPIPE ? "the program that reads the output ended early"
                                      : NULL;
   cag_io_error_set(err, CAG_EXIT_FILE, help, "writing '%s' failed: %s%s", s->shown, strerror(code),

@@ -317,7 +317,20 @@ static size_t line_of(const char *text, const char *at) {
   return line;
 }
 
+// The first \u0000 of a text, where it would end early; NULL: there is none.
+static const char *find_zero(const char *text, size_t length) {
+  for (const char *at = text; (at = memchr(at, '\\', (size_t)(text + length - at))); at += 2) {
+    if (text + length - at < 6) break;
+    if (memcmp(at, "\\u0000", 6) == 0) return at;
+  }
+  return NULL;
+}
+
 static bool read_json(CagJobs *jobs, const char *text, size_t length) {
+  const char *zero = find_zero(text, length);
+  if (zero)
+    return cag_jobs_problem(jobs, NULL, CODE_FILE, "leave the character out",
+                            "line %zu: expected texts without \\u0000", line_of(text, zero));
   const char *stopped = text;
   // The zero behind the text makes cJSON look that nothing else follows.
   cJSON *list = cJSON_ParseWithLengthOpts(text, length + 1, &stopped, true);

@@ -152,3 +152,19 @@ stopped run meet.cag
 it 'Ctrl-C within a limit of time is no crossed limit'
 stopped run degree.cag --max-time 60
 says_not '--max-time'
+
+# --- Limits of the system ---
+
+it 'a write beyond the limit of a file'"'"'s size is a failed write, and leaves nothing'
+mkdir -p limited
+try_command sh -c 'ulimit -f 40; exec "$1" export ball.cag -o limited/ball.stl --tolerance 0.01' sh "$CAG"
+status 3
+says 'ulimit -f'
+is_missing limited/ball.stl
+no_temporaries limited
+
+it 'a text in JSON with a zero is no name of a file'
+printf '[{"script": "ball.cag", "output": "ball.png\\u0000x"}]' > zero.json
+try batch zero.json
+status 2
+says '\u0000'
