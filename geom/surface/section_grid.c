@@ -63,23 +63,34 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static bool make_lines(CagTracer *t, int direction, size_t cells, const double *extra,
-                       size_t extra_count) {
+// The ends of the smooth stretches of the patch along a direction; n is their number.
+static double *stretch_ends(const CagTracer *t, int direction, size_t *n) {
   const CagSurface *s = t->s;
   double lo = t->patch.lo[direction], hi = t->patch.hi[direction];
-  bool broken = s->kind->breaks && !t->level->sided;
-  size_t inner = broken ? s->kind->breaks(s, direction, NULL, 0) : 0;
-  size_t between = cells / (inner + 1);
-  if (between < CELLS_BETWEEN_BREAKS) between = CELLS_BETWEEN_BREAKS;
-  if (between * (inner + 1) > CELLS_MOST) between = CELLS_MOST / (inner + 1) + 1;
+  size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0, kept = 1;
   double *ends = malloc((inner + 2) * sizeof *ends);
-  double *lines = malloc(((inner + 1) * between + 1 + extra_count) * sizeof *lines);
-  if (ends && lines) {
-    ends[0] = lo;
-    if (inner > 0) s->kind->breaks(s, direction, ends + 1, inner);
-    ends[inner + 1] = hi;
-    size_t n = 0;
-    for (size_t i = 0; i <= inner; i++)
+  if (!ends) return NULL;
+  if (inner > 0) s->kind->breaks(s, direction, ends + 1, inner);
+  ends[0] = lo;
+  for (size_t i = 1; i <= inner; i++)
+    if (ends[i] > lo && ends[i] < hi) ends[kept++] = ends[i];
+  ends[kept] = hi;
+  *n = kept;
+  return ends;
+}
+
+static bool make_lines(CagTracer *t, int direction, size_t cells, const double *extra,
+                       size_t extra_count) {
+  double lo = t->patch.lo[direction], hi = t->patch.hi[direction];
+  size_t stretches = 0, n = 0;
+  double *ends = stretch_ends(t, direction, &stretches);
+  if (!ends) return false;
+  size_t between = cells / stretches;
+  if (between < CELLS_BETWEEN_BREAKS) between = CELLS_BETWEEN_BREAKS;
+  if (between * stretches > CELLS_MOST) between = CELLS_MOST / stretches + 1;
+  double *lines = malloc((stretches * between + 1 + extra_count) * sizeof *lines);
+  if (lines) {
+    for (size_t i = 0; i < stretches; i++)
       for (size_t k = 0; k < between; k++)
         lines[n++] = ends[i] + (ends[i + 1] - ends[i]) * (double)k / (double)between;
     lines[n++] = hi;
@@ -95,7 +106,7 @@ static bool make_lines(CagTracer *t, int direction, size_t cells, const double *
   free(ends);
   free(t->lines[direction]);
   t->lines[direction] = lines;
-  return ends && lines;
+  return lines != NULL;
 }
 
 static double *value_of(const CagTracer *t, size_t i, size_t j) {

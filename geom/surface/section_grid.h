@@ -32,7 +32,8 @@ typedef struct CagTracer {
   size_t n[2];     // grid lines
   size_t cells[2]; // as many as there were before they were halved
   size_t finer;
-  bool torn; // a run has a gap
+  bool torn;      // a run has a gap
+  int branchings; // found between two crossings
   double *values;
   // Crossings of the edges along u (first) and along v.
   size_t edge_count;

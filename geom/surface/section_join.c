@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Sided runs that meet are one where their tangents agree up to this (1 - cosine): cubics with one
+// Runs that meet are one where their tangents agree up to this (1 - cosine): cubics with one
 // tangent for both then stay within a millionth.
 #define KINK 1e-8
 // Part of the size below which an open run is next to nothing.
@@ -38,7 +38,8 @@ static void turn_trace(CagTrace *t) {
 
 static bool is_smooth(const CagTraceJoint *how, CagVec3 before, CagVec3 after, CagVec3 tangent,
                       CagVec3 next_tangent) {
-  if (how->sided) return cag_dot(tangent, next_tangent) > 1 - KINK;
+  const bool known = cag_norm(tangent) > 0 && cag_norm(next_tangent) > 0;
+  if (how->sided || known) return cag_dot(tangent, next_tangent) > 1 - KINK;
   return cag_dot(before, after) > CAG_TRACE_CORNER;
 }
 

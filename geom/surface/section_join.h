@@ -8,8 +8,8 @@
 // cos 40 degrees: where chords turn by more, a run has a corner.
 #define CAG_TRACE_CORNER 0.766
 
-// How runs are joined: points nearer than `same` are one. Where `sided`, tangents tell whether one
-// goes on smoothly, and specks are dropped; otherwise the chords tell.
+// How runs are joined: points nearer than `same` are one. Tangents tell whether one goes on
+// smoothly, and where they are unknown the chords do, unless `sided`: then specks are dropped.
 typedef struct CagTraceJoint {
   double same, size, tolerance;
   bool sided;

@@ -20,9 +20,14 @@
 
 // Cells along the whole of a direction, and at least so many on a patch.
 #define CELLS 40
-#define CELLS_OF_PATCH 10
-// Halvings between two crossings.
+#define CELLS_OF_PATCH 4
+#define CELLS_OF_SIDED_PATCH 10
+// Unit normals on both sides of a break that are farther apart than this make it an edge.
+#define CREASE 1e-7
+// Halvings between two crossings, and places looked for there where branches cross, each of which
+// may be followed by half as many halvings.
 #define DEPTH_MOST 12
+#define BRANCHINGS_MOST 4
 // A run that crosses fewer edges than this is halved so often whatever the error, so that there are
 // points to judge its kind by.
 #define SHORT_RUN 4
@@ -235,9 +240,11 @@ static bool refine(CagTracer *t, const CagTraceNode *a, const CagTraceNode *b, i
   if (found && !together && at_least <= 0 && is_good(t, a, &m, b))
     return add_check(t, m.p) && add_node(t, b);
   CagTraceNode branching;
-  bool stuck = !found || depth == DEPTH_MOST;
-  if (stuck && !a->branching && !b->branching && find_branching(t, a, b, &branching)) {
+  bool stuck = !found || depth >= DEPTH_MOST;
+  bool tried = a->branching || b->branching || t->branchings >= BRANCHINGS_MOST;
+  if (stuck && !tried && find_branching(t, a, b, &branching)) {
     branching.branching = true;
+    t->branchings++;
     return refine(t, a, &branching, depth / 2, at_least) &&
            refine(t, &branching, b, depth / 2, at_least);
   }
@@ -364,8 +371,10 @@ static bool keep_path(CagTracer *t, const int32_t *path, size_t n, CagTraces *ou
   t->run_count = t->check_count = 0;
   int at_least = n <= SHORT_RUN ? SHORT_RUN_DEPTH : 0;
   if (!add_node(t, &t->crossings[path[0]])) return false;
-  for (size_t k = 1; k < n; k++)
+  for (size_t k = 1; k < n; k++) {
+    t->branchings = 0;
     if (!refine(t, &t->crossings[path[k - 1]], &t->crossings[path[k]], 0, at_least)) return false;
+  }
   size_t from = 0;
   for (size_t i = 0; i + 1 < t->run_count; i++) {
     bool lost = is_lost(t, i);
@@ -423,16 +432,55 @@ static void tracer_free(CagTracer *t) {
 
 // --- Patches ---
 
-// The ends of the patches along a direction: of all of it where the function is not sided.
-static bool find_ends(const CagSurface *s, bool sided, int direction, double **out, size_t *n) {
-  size_t inner = sided && s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
-  *out = malloc((inner + 2) * sizeof **out);
-  if (!*out) return false;
-  (*out)[0] = direction ? s->v0 : s->u0;
-  if (inner > 0) s->kind->breaks(s, direction, *out + 1, inner);
-  (*out)[inner + 1] = direction ? s->v1 : s->u1;
-  *n = inner + 1;
-  return true;
+static CagStatus unit_normal(const CagSurface *s, const double at[2], CagSide side_u,
+                             CagSide side_v, CagVec3 *out, CagError *err) {
+  CagVec3 d[4];
+  CagStatus status = cag_surface_eval(s, at[0], at[1], 1, side_u, side_v, d, err);
+  if (!status) *out = cag_unit(cag_cross(d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)]));
+  return status;
+}
+
+// Whether the surface has an edge along the break of a direction: its normals jump somewhere.
+static CagStatus is_crease(const CagSurface *s, int direction, double x, bool *out, CagError *err) {
+  // At no simple fractions of the break.
+  static const double places[] = {0.0131, 0.1417, 0.2713, 0.4231, 0.5819, 0.7283, 0.8611, 0.9857};
+  const double lo = direction ? s->u0 : s->v0, hi = direction ? s->u1 : s->v1;
+  CagStatus status = CAG_OK;
+  *out = false;
+  for (size_t i = 0; !status && !*out && i < sizeof places / sizeof *places; i++) {
+    CagVec3 n[2];
+    const double w = lo + places[i] * (hi - lo), at[2] = {direction ? w : x, direction ? x : w};
+    for (int k = 0; !status && k < 2; k++) {
+      const CagSide side = k ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT;
+      status = unit_normal(s, at, direction ? CAG_SIDE_RIGHT : side,
+                           direction ? side : CAG_SIDE_RIGHT, &n[k], err);
+    }
+    // Where there is no normal nothing is known.
+    const bool known = !status && cag_norm(n[0]) > 0 && cag_norm(n[1]) > 0;
+    *out = known && cag_norm(cag_sub(n[0], n[1])) > CREASE;
+  }
+  return status;
+}
+
+// The ends of the patches along a direction: at edges of the surface, and at all breaks where the
+// function is sided.
+static CagStatus find_ends(const CagSurface *s, bool sided, int direction, double **out, size_t *n,
+                           CagError *err) {
+  size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0, kept = 1;
+  double *ends = malloc((inner + 2) * sizeof *ends);
+  *out = ends;
+  if (!ends) return cag_fail_memory(err);
+  ends[0] = direction ? s->v0 : s->u0;
+  if (inner > 0) s->kind->breaks(s, direction, ends + 1, inner);
+  for (size_t i = 1; i <= inner; i++) {
+    bool crease = sided;
+    CagStatus status = sided ? CAG_OK : is_crease(s, direction, ends[i], &crease, err);
+    if (status) return status;
+    if (crease) ends[kept++] = ends[i];
+  }
+  ends[kept] = direction ? s->v1 : s->u1;
+  *n = kept;
+  return CAG_OK;
 }
 
 // Whether the values are rounding: half of them below that away from the edges, all below the
@@ -443,6 +491,23 @@ static bool is_constant(const CagTracer *t, double inner, double most) {
   return 2 * small >= n && cag_tracer_largest(t) <= CONSTANT_ROUNDINGS * most;
 }
 
+// The largest value that a contour's function could have on the patch: normals seen from the front.
+static double contour_scale(CagTracer *t) {
+  enum { TRIED = 5 };
+  double largest = 0;
+  for (int i = 0; i < TRIED * TRIED && !t->status; i++) {
+    CagVec3 d[4] = {0};
+    double f, at[2], part[2] = {i / TRIED / (TRIED - 1.0), i % TRIED / (TRIED - 1.0)};
+    for (int k = 0; k < 2; k++)
+      at[k] = t->patch.lo[k] + part[k] * (t->patch.hi[k] - t->patch.lo[k]);
+    t->status = cag_patch_value(&t->patch, at[0], at[1], &f, NULL, d, t->err);
+    CagVec3 sight = t->level->central ? cag_sub(d[0], t->level->point) : t->level->direction;
+    CagVec3 normal = cag_cross(d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)]);
+    largest = fmax(largest, cag_norm(normal) * cag_norm(sight));
+  }
+  return largest;
+}
+
 // Sets what counts as 0 on this patch; false where all of it does.
 static bool settle(CagTracer *t, CagLevel *own) {
   const double rounding = 1e-13;
@@ -451,7 +516,8 @@ static bool settle(CagTracer *t, CagLevel *own) {
     t->status = cag_patch_rounding(&t->patch, &own->zero, &t->zero_beside, t->err);
     if (t->status || is_constant(t, own->zero, t->zero_beside)) return false;
   } else {
-    own->zero = rounding * cag_tracer_largest(t);
+    own->zero = rounding * contour_scale(t);
+    if (t->status || cag_tracer_largest(t) <= CONSTANT_ROUNDINGS * own->zero) return false;
   }
   return cag_tracer_fill(t);
 }
@@ -461,20 +527,19 @@ static bool trace_grid(CagTracer *t, CagLevel *own, size_t finer, CagTraces *out
   t->torn = false;
   bool ok = cag_tracer_make_grid(t, finer);
   bool settled = ok && settle(t, own);
-  *constant = ok && !settled && !t->status && own->sided;
+  *constant = ok && !settled && !t->status;
   if (!*constant) ok = settled && cag_tracer_link(t) && walk_all(t, out);
   own->zero = zero;
   tracer_free(t);
   return ok;
 }
 
-// Sided functions, which may change more sharply than surfaces, are traced once more with finer
-// cells while runs have gaps.
+// Traced once more with finer cells while runs have gaps.
 static bool trace_patch(CagTracer *t, CagLevel *own, CagTraces *out, bool *constant) {
   size_t first = out->count;
   for (size_t finer = 1;; finer = 2 * t->finer) {
     if (!trace_grid(t, own, finer, out, constant)) return false;
-    if (!own->sided || !t->torn || t->finer >> CAG_TRACER_HALVINGS) return true;
+    if (!t->torn || t->finer >> CAG_TRACER_HALVINGS) return true;
     while (out->count > first) cag_trace_free(&out->items[--out->count]);
   }
 }
@@ -483,11 +548,13 @@ static CagStatus trace_patches(CagTracer *t, CagLevel *own, CagTraces *out) {
   const CagSurface *s = t->s;
   double *ends[2] = {NULL, NULL};
   size_t n[2] = {0, 0};
-  bool ok =
-      find_ends(s, own->sided, 0, &ends[0], &n[0]) && find_ends(s, own->sided, 1, &ends[1], &n[1]);
+  for (int k = 0; !t->status && k < 2; k++)
+    t->status = find_ends(s, own->sided, k, &ends[k], &n[k], t->err);
+  bool ok = !t->status;
   for (int k = 0; k < 2; k++) {
     size_t share = n[k] > 0 ? CELLS / n[k] : CELLS;
-    t->cells[k] = share < CELLS_OF_PATCH ? CELLS_OF_PATCH : share;
+    size_t least = own->sided ? CELLS_OF_SIDED_PATCH : CELLS_OF_PATCH;
+    t->cells[k] = share < least ? least : share;
   }
   out->everywhere = ok;
   for (size_t i = 0; ok && i < n[0]; i++)

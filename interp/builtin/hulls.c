@@ -151,9 +151,9 @@ static bool hull_of_shapes(CagCall *call, CagValue *result) {
 }
 
 static bool is_list_of_shapes(CagVm *vm, CagValue v) {
-  if (v.type != CAG_LIST || CAG_AS_LIST(v)->length == 0) return false;
-  const CagValue first = cag_list_get(vm, CAG_AS_LIST(v), 0);
-  return cag_is_shape(first) || is_list_of_shapes(vm, first);
+  if (v.type != CAG_LIST) return false;
+  while (v.type == CAG_LIST && CAG_AS_LIST(v)->length > 0) v = cag_list_get(vm, CAG_AS_LIST(v), 0);
+  return cag_is_shape(v);
 }
 
 static bool call_convex_hull(CagCall *call, CagValue *result) {

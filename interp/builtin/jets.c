@@ -31,22 +31,25 @@ static bool fail_at(CagCall *call, int argument) {
 
 // --- Reading ---
 
+// Deeper values hold no coordinates.
+#define DEPTH_MOST 100
+
 // The shape of the jets among the arguments.
-static bool find_shape(CagValue v, CagSeries *like) {
+static bool find_shape(CagValue v, CagSeries *like, int depth) {
   if (v.type == CAG_JET) {
     *like = cag_series_shape(CAG_AS_JET(v));
     return true;
   }
-  if (v.type != CAG_LIST || CAG_AS_LIST(v)->dim != 0) return false;
+  if (v.type != CAG_LIST || CAG_AS_LIST(v)->dim != 0 || depth > DEPTH_MOST) return false;
   const CagList *l = CAG_AS_LIST(v);
   for (size_t i = 0; i < l->length; i++)
-    if (find_shape(l->as.items[i], like)) return true;
+    if (find_shape(l->as.items[i], like, depth + 1)) return true;
   return false;
 }
 
 static void shape_of_call(const CagCall *call, CagSeries *like) {
   for (size_t i = 0; i < call->count; i++)
-    if (find_shape(call->values[i], like)) return;
+    if (find_shape(call->values[i], like, 0)) return;
 }
 
 static bool read_series(CagCall *call, CagValue v, const CagSeries *like, CagSeries *out) {

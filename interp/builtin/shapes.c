@@ -3,6 +3,7 @@
 
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/robots.h"
+#include "interp/eval/vm.h"
 
 #include <float.h>
 #include <stdio.h>
@@ -153,6 +154,7 @@ static CagValue inherit(CagVm *vm, CagValue item, const CagShape *group) {
 }
 
 bool cag_shapes_collect(CagCall *call, CagValue v, CagBuilder *into) {
+  if (!cag_may_go_deeper(call->vm, "collected")) return false;
   if (v.type == CAG_LIST) {
     CagList *list = CAG_AS_LIST(v);
     for (size_t i = 0; i < list->length; i++)

@@ -182,9 +182,9 @@ static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, 
 
 // Operations of regions are rows of their own; a list is asked for what it holds.
 static bool holds_region(CagVm *vm, CagValue v) {
-  if (v.type != CAG_LIST || CAG_AS_LIST(v)->dim != 0 || CAG_AS_LIST(v)->length == 0)
-    return v.type == CAG_REGION;
-  return holds_region(vm, cag_list_get(vm, CAG_AS_LIST(v), 0));
+  while (v.type == CAG_LIST && CAG_AS_LIST(v)->dim == 0 && CAG_AS_LIST(v)->length > 0)
+    v = cag_list_get(vm, CAG_AS_LIST(v), 0);
+  return v.type == CAG_REGION;
 }
 
 static bool call_of_regions(CagCall *call, const char *name, CagValue *result, bool *done) {

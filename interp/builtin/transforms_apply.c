@@ -34,6 +34,7 @@ static bool apply_vectors(CagCall *call, const CagTransform *t, const double *x,
 
 static bool apply_list(CagCall *call, const CagTransform *t, CagValue v, CagValue *result) {
   CagList *list = CAG_AS_LIST(v);
+  if (!cag_may_go_deeper(call->vm, "moved")) return false;
   size_t dim = list->dim == 1 ? list->length : list->dim;
   if (list->length == 0) {
     *result = v;

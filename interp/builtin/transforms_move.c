@@ -19,9 +19,12 @@ typedef bool (*MakeTransform)(CagCall *call, int at, CagTransform *out);
 #define PARAMETERS_MAX 8
 
 static bool holds_movables(CagVm *vm, CagValue v) {
-  if (v.type != CAG_LIST) return v.type < 64 && (CAG_TAKES_MOVABLE >> v.type & 1);
-  const CagList *list = CAG_AS_LIST(v);
-  return list->dim == 0 && list->length > 0 && holds_movables(vm, cag_list_get(vm, list, 0));
+  while (v.type == CAG_LIST) {
+    const CagList *list = CAG_AS_LIST(v);
+    if (list->dim != 0 || list->length == 0) return false;
+    v = cag_list_get(vm, list, 0);
+  }
+  return v.type < 64 && (CAG_TAKES_MOVABLE >> v.type & 1);
 }
 
 // The row of the same function that has what is moved as its first parameter.

@@ -130,6 +130,7 @@ static bool packed_sum(CagVm *vm, CagBinaryOp op, const CagList *a, const CagLis
 
 static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
   CagValue x, y;
+  if (!cag_may_go_deeper(vm, "added")) return false;
   if (!cag_as_list(vm, a, &x) || !cag_as_list(vm, b, &y)) return false;
   const CagList *l = CAG_AS_LIST(x), *m = CAG_AS_LIST(y);
   if (l->length != m->length) {
@@ -164,6 +165,7 @@ static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue
 static bool list_scaled(CagVm *vm, CagBinaryOp op, CagValue list, CagValue factor, bool swapped,
                         CagValue *result) {
   CagValue x;
+  if (!cag_may_go_deeper(vm, "multiplied")) return false;
   if (!cag_as_list(vm, list, &x)) return false;
   const CagList *l = CAG_AS_LIST(x);
   if (l->dim && factor.type == CAG_NUMBER) {

@@ -210,7 +210,8 @@ static bool run_show(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
     const CagExpr *e = s->as.list.items[i];
     CagValue v;
     if (!evaluate(vm, m, e, &v)) return false;
-    if (!cag_value_is_shown(v)) {
+    if (!cag_value_is_shown(vm, v)) {
+      if (vm->failed) return false;
       CagString found = {0};
       cag_describe_value(vm, &found, v);
       CagDiagnostic *d = cag_diagnostics_add(

@@ -16,6 +16,12 @@ bool cag_room_on_c_stack(const CagVm *vm) {
   return vm->stack_low == NULL || &here - vm->stack_low > C_STACK_RESERVE;
 }
 
+bool cag_may_go_deeper(CagVm *vm, const char *done) {
+  if (cag_room_on_c_stack(vm)) return true;
+  if (!vm->failed) cag_vm_fail(vm, CAG_ERR_limit_depth, "the values nest too deep to be %s", done);
+  return false;
+}
+
 bool cag_safe_point(CagVm *vm) {
   if (*vm->interrupt) return cag_vm_fail(vm, CAG_ERR_interrupted, "interrupted");
   if (vm->stop)

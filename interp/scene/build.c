@@ -279,7 +279,8 @@ static void add_shape(Build *b, CagValue v, const Said *said) {
 
 static void add_shapes(Build *b, CagValue v, const Said *around) {
   const CagShape *shape = CAG_AS_SHAPE(v);
-  if (shape->hidden) return;
+  b->failed = b->failed || !cag_may_go_deeper(b->vm, "shown");
+  if (shape->hidden || b->failed) return;
   Said said = {cag_material_combine(b->vm, shape->material, around->material),
                shape->name ? shape->name->bytes : around->name,
                shape->style ? shape->style : around->style,
@@ -402,13 +403,14 @@ static void add_setting(Build *b, const CagSceneValue *v, const char *name) {
 
 // --- What is shown ---
 
-bool cag_value_is_shown(CagValue v) {
+bool cag_value_is_shown(CagVm *vm, CagValue v) {
+  if (!cag_may_go_deeper(vm, "shown")) return false;
   if (v.type == CAG_LIST) {
     // Lists of numbers and vectors are packed, and so are no shapes.
     const CagList *list = CAG_AS_LIST(v);
     if (list->dim != 0) return false;
     for (size_t i = 0; i < list->length; i++)
-      if (!cag_value_is_shown(list->as.items[i])) return false;
+      if (!cag_value_is_shown(vm, list->as.items[i])) return false;
     return true;
   }
   return cag_is_shape(v) || v.type == CAG_ROBOT || v.type == CAG_CAMERA || v.type == CAG_LIGHT ||
@@ -423,6 +425,7 @@ static void add_robot(Build *b, CagValue v, const char *name) {
 }
 
 static void add_value(Build *b, CagValue v, const char *name) {
+  b->failed = b->failed || !cag_may_go_deeper(b->vm, "shown");
   if (v.type == CAG_LIST) {
     const CagList *list = CAG_AS_LIST(v);
     for (size_t i = 0; i < list->length && !b->failed; i++)
@@ -444,9 +447,10 @@ bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene 
   keep_material(&b, plain, plain.name);
   keep_material(&b, line, "ink");
   for (size_t i = 0; i < n && !b.failed; i++) {
-    if (!cag_value_is_shown(shown[i].value)) {
+    if (!cag_value_is_shown(vm, shown[i].value)) {
       cag_scene_free(out);
-      return cag_vm_fail(vm, CAG_ERR_no_image,
+      return !vm->failed &&
+             cag_vm_fail(vm, CAG_ERR_no_image,
                          "show expects shapes, lights, cameras and lists of these, found %s",
                          cag_type_article(shown[i].value));
     }

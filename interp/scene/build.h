@@ -22,6 +22,6 @@ typedef struct CagShown {
 bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene *out);
 
 // A value that can be shown: a shape, camera, light, setting, robot, or a list of these.
-bool cag_value_is_shown(CagValue v);
+bool cag_value_is_shown(CagVm *vm, CagValue v);
 
 #endif

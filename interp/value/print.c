@@ -365,11 +365,8 @@ bool cag_equal(CagVm *vm, CagValue a, CagValue b) {
     b = cag_plain(b);
   }
   if (a.type != b.type) return false;
-  if ((a.type == CAG_LIST || a.type == CAG_RECORD) && !cag_room_on_c_stack(vm)) {
-    if (!vm->failed)
-      cag_vm_fail(vm, CAG_ERR_limit_depth, "the values nest too deep to be compared");
+  if ((a.type == CAG_LIST || a.type == CAG_RECORD) && !cag_may_go_deeper(vm, "compared"))
     return false;
-  }
   switch (a.type) {
   case CAG_NONE: return true;
   case CAG_BOOL: return a.as.boolean == b.as.boolean;
