@@ -5,6 +5,9 @@
 
 #include "lang/parse.h"
 
+const char parse_minus_help[] = "a line that begins with `-` starts a new statement; to go on with "
+                                "the line above, end that line with `-`";
+
 // Reports a form, in panic. Gives true.
 static bool report_form(Parser *p, CagSpan span, CagForeignSyntax id, const char *message) {
   parse_help(parse_error(p, CAG_ERR_foreign_form, span, "%s", message), "write %s",
@@ -116,7 +119,25 @@ static bool text_behind(Parser *p, const CagExpr *before) {
   return false;
 }
 
+// Behind an expression in the { } of a text, which is meant to hold braces. A `:` with its format
+// directly behind it is another habit.
+static bool brace_in_text(Parser *p) {
+  if (p->bracket_count == 0 || p->brackets[p->bracket_count - 1].closer != CAG_TOKEN_TEXT_TAIL)
+    return false;
+  char word[64];
+  const CagToken t = *parse_current(p);
+  if (t.kind == CAG_TOKEN_COLON && parse_peek(p, 1)->span.start == t.span.end) return false;
+  if (t.kind != CAG_TOKEN_COLON && t.kind != CAG_TOKEN_LEFT_BRACE && t.kind != CAG_TOKEN_NAME &&
+      t.kind != CAG_TOKEN_SEMICOLON && t.kind != CAG_TOKEN_EQUALS)
+    return false;
+  parse_help(parse_error(p, CAG_ERR_expected_separator, t.span, "expected `}`, found %s",
+                         parse_found(p, word, sizeof word)),
+             "%s", cag_lexer_brace_help);
+  return true;
+}
+
 bool parse_foreign_behind(Parser *p, const CagExpr *before) {
+  if (brace_in_text(p)) return true;
   if (p->panic || parse_current(p)->newline_before) return false;
   switch (parse_kind(p)) {
   case CAG_TOKEN_LEFT_BRACE: return before && braces_behind(p, before);

@@ -39,6 +39,9 @@ static void help(CagDiagnostic *d, const char *format, ...) {
   cag_diagnostic_set_help(d, "%s", text);
 }
 
+const char cag_lexer_brace_help[] = "the { } of a text hold an expression; write \\{ for a brace "
+                                    "itself, or `...` for the whole text";
+
 static byte at(const CagLexer *lx, uint32_t offset) { return (byte)lx->source->text[offset]; }
 
 static void finish(CagLexer *lx, CagToken *t, CagTokenKind kind, uint32_t end) {
@@ -481,8 +484,10 @@ static uint32_t lex_escape(CagLexer *lx, uint32_t backslash, size_t *length) {
 
 static void text_not_closed(CagLexer *lx, CagToken *t, uint32_t quote, uint32_t end) {
   while (end > quote + 1 && (at(lx, end - 1) == '\r' || at(lx, end - 1) == ' ')) end--;
-  help(report(lx, CAG_ERR_text_not_closed, quote, end, "this text does not end on its line"),
-       "close it with \"; a line break inside is \\n");
+  CagDiagnostic *d =
+      report(lx, CAG_ERR_text_not_closed, quote, end, "this text does not end on its line");
+  if (lx->text_count) help(d, "%s", cag_lexer_brace_help);
+  else help(d, "close it with \"; a line break inside is \\n");
   lx->text_count = 0;
   t->kind = CAG_TOKEN_ERROR;
 }

@@ -139,6 +139,9 @@ const char *cag_token_what(CagTokenKind kind);
 // Whether a word of this spelling is reserved.
 bool cag_word_is_reserved(const char *word);
 
+// What to write for a brace in a text.
+extern const char cag_lexer_brace_help[];
+
 // Whether a word is one of the units that stand directly behind a number.
 bool cag_lexer_is_unit(const char *name);
 

@@ -354,8 +354,8 @@ static bool habit_behind(Parser *p, const CagExpr *before) {
 }
 
 void parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const char *wanted) {
-  if (p->panic || report_unclosed(p) || habit_behind(p, before)) return;
-  if (parse_foreign_behind(p, before)) return;
+  if (p->panic || report_unclosed(p) || parse_foreign_behind(p, before) || habit_behind(p, before))
+    return;
   char word[64];
   CagTokenKind kind = parse_kind(p);
   const char *found = parse_found(p, word, sizeof word);

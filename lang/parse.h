@@ -101,6 +101,9 @@ void parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const cha
 
 // ---- forms of other languages ----
 
+// What to do where a line that begins with `-` was meant to go on with the line above.
+extern const char parse_minus_help[];
+
 // Each reports the form that stands here, in panic, and gives true; false: none of them is here.
 //
 // Behind a complete expression, which `before` is when it is known; where an expression is missing;

@@ -353,6 +353,7 @@ bool parse_habit(Parser *p, bool in_block) {
 // An expression where a statement should stand.
 static CagStatement *expression_statement(Parser *p) {
   CagStatement *s = new_statement(p, CAG_STATEMENT_EXPRESSION);
+  const bool below = p->previous.span.end > 0; // another statement
   CagExpr *e = parse_expression(p);
   s->as.expression = e;
   end_statement(p, s);
@@ -367,6 +368,8 @@ static CagStatement *expression_statement(Parser *p) {
   if (e->kind == CAG_EXPR_BINARY && e->as.binary.op == CAG_OP_EQUAL &&
       e->as.binary.left->kind == CAG_EXPR_NAME)
     parse_help(d, "to define %s write =", e->as.binary.left->as.name.id);
+  else if (below && p->module->source->text[e->span.start] == '-')
+    parse_help(d, "%s", parse_minus_help);
   else parse_help(d, "write print %s, or show it, or give it a name", said);
   return s;
 }

@@ -200,7 +200,8 @@ static void close_block(Parser *p, Opened o, const CagExpr *value) {
       !parse_at_statement(p) && (parse_is_word(kind) || parse_begins_expression(kind))) {
     parse_help(parse_error(p, CAG_ERR_expression_statement, value->span,
                            "this value is not the last thing of its block, so nothing uses it"),
-               "give it a name, or leave it out");
+               "%s",
+               kind == CAG_TOKEN_MINUS ? parse_minus_help : "give it a name, or leave it out");
     return;
   }
   if (kind == CAG_TOKEN_COMMA && !ended)
@@ -282,7 +283,7 @@ static CagExpr *template(Parser *p) {
     if (kind == CAG_TOKEN_TEXT_MIDDLE || kind == CAG_TOKEN_TEXT_TAIL) {
       CagSpan span = {p->previous.span.end - 1, parse_here(p).start + 1};
       parse_help(parse_mend(p, CAG_ERR_empty_interpolation, span, "there is nothing in these { }"),
-                 "the braces themselves are written \\{ and \\}");
+                 "%s", cag_lexer_brace_help);
       part = parse_error_node(p);
     } else {
       part = parse_expression(p);

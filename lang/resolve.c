@@ -6,6 +6,7 @@
 // step, however many names a scope has.
 
 #include "lang/foreign.h"
+#include "lang/lexer.h"
 #include "lang/names.h"
 #include "lang/parser.h"
 
@@ -43,6 +44,7 @@ typedef struct Resolver {
   const char *param;              // name of the param whose default or domain is walked; NULL: none
   const CagFunctionAst *defaults; // function whose defaults are walked; NULL: none
   size_t default_index;
+  size_t templates; // texts with { } around
 } Resolver;
 
 #define NOT_FOUND ((size_t)-1)
@@ -125,6 +127,7 @@ static void unknown_name(Resolver *r, const CagExpr *e) {
   const char *form = cag_foreign_name(name), *near = form ? NULL : nearest(r, name);
   if (form) cag_diagnostic_set_help(d, "write %s", form);
   if (near) cag_diagnostic_set_help(d, "did you mean `%s`?", near);
+  else if (!form && r->templates) cag_diagnostic_set_help(d, "%s", cag_lexer_brace_help);
 }
 
 // ---- scopes ----
@@ -416,6 +419,10 @@ static void walk(Resolver *r, CagExpr *e) {
   case CAG_EXPR_ERROR: break;
   case CAG_EXPR_NAME: walk_name(r, e); break;
   case CAG_EXPR_TEMPLATE:
+    r->templates++;
+    walk_all(r, e->as.list.items, e->as.list.count);
+    r->templates--;
+    break;
   case CAG_EXPR_LIST: walk_all(r, e->as.list.items, e->as.list.count); break;
   case CAG_EXPR_GROUP:
   case CAG_EXPR_SPREAD:

@@ -160,10 +160,10 @@ CagStatus cag_curve_parameter_at_length(const CagCurve *c, double s, double *out
   status = cag_curve_cuts(c, &cuts, &n, err);
   if (status) return status;
   bool found = false;
-  for (size_t i = 0; !status && !found && s >= 0 && i + 1 < n; i++) {
+  for (size_t i = 0; !status && !found && i + 1 < n; i++) {
     status = piece_length(c, cuts[i], cuts[i + 1], &part, err);
     if (status) break;
-    if (s <= walked + part) {
+    if (s >= 0 && s <= walked + part) {
       found = true;
       if (s == walked) *out = cuts[i];
       else if (s == walked + part) *out = cuts[i + 1];

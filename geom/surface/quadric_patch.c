@@ -516,7 +516,7 @@ static CagStatus find_pieces(const CagQuadricForm *f, const CagBounds *within, b
   }
   return cag_fail(err, CAG_E_ARGUMENT, "quadric-unbounded", "within", -1,
                   needs_box ? "a quadric of class %s has no end in any direction of its surface: "
-                              "give `within` a box of three ranges"
+                              "give `within` a box, as box([4, 4, 4], centered: true)"
                             : "a quadric of class %s has no end: give `within` a range of z or a "
                               "box",
                   f->name);

@@ -51,6 +51,8 @@ typedef struct CagBuiltin {
 bool cag_fail_call(CagCall *call, int argument, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 // The same with the mend that stands behind the carets. Call after the failure was set.
+// Mentions, in the last error, that the name it stands at hides a built-in function. Gives false.
+bool cag_fail_hidden(CagVm *vm);
 bool cag_fail_help(CagVm *vm, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // A geometry error: "bspline: `knots` must not decrease: ...", code by its reason; underlines the
 // argument that err names when the call has one.

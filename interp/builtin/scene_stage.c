@@ -12,12 +12,20 @@ static bool fail_color(CagCall *call, int argument, const char *what, const char
   const char *const *names = cag_color_names(&n);
   cag_fail_call(
       call, argument, CAG_ERR_color,
-      "expects a colour as `%s`: a CSS name, \"#0a8\", \"#00aa88\" or [r, g, b]; \"%s\" is "
+      "expects a color as `%s`: a CSS name, \"#0a8\", \"#00aa88\" or [r, g, b]; \"%s\" is "
       "none",
       what, text);
   const char *nearest = cag_nearest_name(text, names, n);
   if (nearest) cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
   return false;
+}
+
+// A fourth part, that other programs take for opacity.
+static void fail_alpha(CagCall *call, const double x[4]) {
+  cag_fail_help(call->vm,
+                "a color has no opacity; write material(G, { color: [%.6g, %.6g, %.6g], "
+                "transmission: %.6g })",
+                x[0], x[1], x[2], 1 - x[3]);
 }
 
 bool cag_color_read(CagCall *call, int argument, const char *what, CagValue v, CagColor *out) {
@@ -28,14 +36,18 @@ bool cag_color_read(CagCall *call, int argument, const char *what, CagValue v, C
     return (cag_text_is_c(CAG_AS_TEXT(v)) && cag_color_from_text(text, out)) ||
            fail_color(call, argument, what, text);
   }
-  if (v.type != CAG_LIST || !cag_as_vector(v, &x, &n) || n != 3)
-    return cag_fail_call(call, argument, CAG_ERR_type,
-                         "expects a colour as `%s`: a CSS name, \"#0a8\" or [r, g, b]; found %s",
-                         what, cag_type_article(v));
+  const bool numbers = v.type == CAG_LIST && cag_as_vector(v, &x, &n);
+  if (!numbers || n != 3) {
+    cag_fail_call(call, argument, CAG_ERR_type,
+                  "expects a color as `%s`: a CSS name, \"#0a8\" or [r, g, b]; found %s", what,
+                  cag_type_article(v));
+    if (numbers && n == 4) fail_alpha(call, x);
+    return false;
+  }
   for (size_t i = 0; i < 3; i++)
     if (!(x[i] >= 0 && isfinite(x[i])))
       return cag_fail_call(call, argument, CAG_ERR_value,
-                           "expects parts of 0 or more in the colour `%s`, found %g", what, x[i]);
+                           "expects parts of 0 or more in the color `%s`, found %g", what, x[i]);
   *out = (CagColor){x[0], x[1], x[2]};
   return true;
 }

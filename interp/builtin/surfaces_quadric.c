@@ -18,7 +18,11 @@ static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_onl
   if (!*given) return true;
   if (v.type == CAG_SOLID)
     return cag_geometry_ok(call, cag_solid_bounds(CAG_AS_SHAPE(v)->as.solid, box, &err), &err);
-  if (v.type != CAG_RANGE) return cag_fail_type(call, argument, "a box or a range of z");
+  if (v.type != CAG_RANGE) {
+    cag_fail_type(call, argument, "a box or a range of z");
+    return cag_fail_help(call->vm,
+                         "write within: box([4, 4, 4], centered: true), or within: -2..2");
+  }
   bool angle;
   *z_only = true;
   if (!cag_arg_interval(call, argument, &box->min.z, &box->max.z, &angle)) return false;

@@ -467,7 +467,12 @@ static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
     char found[256], text[320];
     snprintf(text, sizeof text, "a call needs a function, found %s",
              cag_types_text(called, found, sizeof found));
-    report(c, CAG_ERR_not_function, callee->span, text);
+    CagDiagnostic *d = report(c, CAG_ERR_not_function, callee->span, text);
+    const size_t hidden =
+        callee->kind == CAG_EXPR_NAME ? cag_builtin_find(callee->as.name.id) : (size_t)-1;
+    if (hidden != (size_t)-1 && cag_builtin_rows(hidden, &(size_t){0})->function)
+      cag_diagnostic_set_help(d, "`%s` is defined here and hides the built-in function; rename it",
+                              callee->as.name.id);
   } else {
     check_shape_call(c, called, v);
   }
@@ -593,16 +598,35 @@ static CagTypes infer_negation(Check *c, const CagExpr *e) {
   return CAG_TYPES_ANY;
 }
 
+// A range from a number to an angle, or back.
+static void check_mixed_range(Check *c, const CagExpr *e, CagTypes low, CagTypes high) {
+  char text[320];
+  if (!((low == CAG_TYPES(NUMBER) && high == CAG_TYPES(ANGLE)) ||
+        (low == CAG_TYPES(ANGLE) && high == CAG_TYPES(NUMBER))))
+    return;
+  const CagExpr *number = low == CAG_TYPES(NUMBER) ? e->as.range.low : e->as.range.high;
+  snprintf(text, sizeof text, "a range needs two numbers or two angles, found %s and %s",
+           low == CAG_TYPES(NUMBER) ? "a number" : "an angle",
+           high == CAG_TYPES(NUMBER) ? "a number" : "an angle");
+  CagDiagnostic *d = report(c, CAG_ERR_type, e->span, text);
+  if (number->kind == CAG_EXPR_NUMBER)
+    cag_diagnostic_set_help(d, "give the number a unit: %.15gdeg", number->as.number);
+}
+
 static CagTypes infer_range(Check *c, const CagExpr *e) {
   const CagExpr *ends[] = {e->as.range.low, e->as.range.high, e->as.range.step};
   char found[256], text[320];
+  CagTypes types[3] = {0};
+  bool known = true;
   for (int i = 0; i < 3 && ends[i]; i++) {
-    const CagTypes types = infer(c, ends[i]);
-    if (types & (CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE))) continue;
+    types[i] = infer(c, ends[i]);
+    if (types[i] & (CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE))) continue;
     snprintf(text, sizeof text, "the ends and the step of a range are numbers or angles, found %s",
-             cag_types_text(types, found, sizeof found));
+             cag_types_text(types[i], found, sizeof found));
     report(c, CAG_ERR_type, ends[i]->span, text);
+    known = false;
   }
+  if (known) check_mixed_range(c, e, types[0], types[1]);
   return CAG_TYPES(RANGE);
 }
 

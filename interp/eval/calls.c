@@ -236,5 +236,5 @@ bool cag_call_native(CagVm *vm, CagValue callee, CagValue *arguments, size_t cou
   cag_vm_fail_at(vm, -1, CAG_ERR_not_function, "a call of something that is no function: %s",
                  s.bytes);
   cag_string_free(&s);
-  return false;
+  return cag_fail_hidden(vm);
 }

@@ -153,6 +153,19 @@ bool cag_fail_help(CagVm *vm, const char *format, ...) {
   return false;
 }
 
+bool cag_fail_hidden(CagVm *vm) {
+  if (!vm->failed || vm->errors.count == 0) return false;
+  const CagDiagnostic *d = &vm->errors.items[vm->errors.count - 1];
+  char name[64];
+  const size_t length = d->span.end - d->span.start;
+  if (!d->source || d->help || length >= sizeof name) return false;
+  memcpy(name, d->source->text + d->span.start, length);
+  name[length] = 0;
+  const size_t index = cag_builtin_find(name);
+  if (index == (size_t)-1 || !cag_builtin_rows(index, &(size_t){0})->function) return false;
+  return cag_fail_help(vm, "`%s` is defined here and hides the built-in function; rename it", name);
+}
+
 // Where parameter `parameter` of the running built-in stands in the call of the source; WHOLE_CALL:
 // nowhere.
 static int argument_of(const CagCall *call, int parameter) {
@@ -199,6 +212,8 @@ bool cag_fail_type(CagCall *call, int argument, const char *expected) {
     cag_fail_help(call->vm, "write %sdeg or %srad", n, n);
   } else if (v.type == CAG_ANGLE && strcmp(expected, "a number") == 0) {
     cag_fail_help(call->vm, "in_degrees(a) and in_radians(a) give numbers");
+  } else if (strstr(expected, "function")) {
+    cag_fail_hidden(call->vm);
   }
   return false;
 }

@@ -434,6 +434,18 @@ bool cag_contains(CagVm *vm, CagValue needle, CagValue haystack, bool *result) {
 
 // --- Ranges ---
 
+// A range from a number to an angle, or back: the number is taken for degrees.
+static bool fail_mixed_range(CagVm *vm, CagValue low, CagValue high) {
+  char a[32], b[32];
+  cag_number_text(low.as.number, a);
+  cag_number_text(high.as.number, b);
+  const char *a_unit = low.type == CAG_ANGLE ? "deg" : "";
+  const char *b_unit = high.type == CAG_ANGLE ? "deg" : "";
+  cag_vm_fail(vm, CAG_ERR_type, "a range needs two numbers or two angles, found %s%s and %s%s", a,
+              a_unit, b, b_unit);
+  return cag_fail_help(vm, "write %sdeg..%sdeg", a, b);
+}
+
 bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool open,
                     CagValue *result) {
   bool angle = low.type == CAG_ANGLE;
@@ -443,6 +455,7 @@ bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool 
     if (parts[i].type == type) continue;
     if (parts[i].type == CAG_JET)
       return cag_vm_fail(vm, CAG_ERR_not_differentiable, "a range cannot be differentiated");
+    if (i == 1 && is_scalar(parts[i])) return fail_mixed_range(vm, parts[0], parts[1]);
     CagString s = {0};
     cag_describe_value(vm, &s, parts[i]);
     if (i == 0 || !is_scalar(parts[i]))
@@ -450,7 +463,7 @@ bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool 
                   s.bytes);
     else
       cag_vm_fail(vm, CAG_ERR_type, "the range begins with %s, but its %s is %s",
-                  angle ? "an angle" : "a number", i == 1 ? "end" : "step", s.bytes);
+                  angle ? "an angle" : "a number", "step", s.bytes);
     cag_string_free(&s);
     return false;
   }
