@@ -2,8 +2,11 @@
 //
 // Parts of the curve are kept while their chord, less the bound of the distance from it, is nearer
 // than the best point found; Newton's method takes that point to the local minimum. The bound
-// shrinks with the square of the step, so only the parts about the minima live on.
+// shrinks with the square of the step, so only the parts about the minima live on. There the
+// distance changes with the square of the parameter, and is flat but for rounding: the last steps
+// go by its slope.
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -26,6 +29,8 @@ typedef struct Search {
   double slack;
   double t, distance; // best so far
   CagVec3 point;
+  double *cuts; // ends of the smooth pieces
+  size_t cut_count;
 } Search;
 
 typedef struct Parts {
@@ -101,10 +106,10 @@ static CagStatus step(Search *s, const Part *part, Parts *next, CagError *err) {
 // The smooth pieces, halved a few times so that round ones have chords worth the name.
 static CagStatus first_parts(Search *s, Parts *list, CagError *err) {
   enum { HALVES = 4 };
-  double *cuts;
-  size_t n;
-  CagStatus status = cag_curve_cuts(s->c, &cuts, &n, err);
+  CagStatus status = cag_curve_cuts(s->c, &s->cuts, &s->cut_count, err);
   if (status) return status;
+  const double *cuts = s->cuts;
+  const size_t n = s->cut_count;
   const size_t pieces = n > 8 ? 1 : HALVES;
   for (size_t i = 0; !status && i + 1 < n; i++) {
     Part part = {.b = cuts[i]};
@@ -120,7 +125,52 @@ static CagStatus first_parts(Search *s, Parts *list, CagError *err) {
       if (!status) status = push(list, part, err);
     }
   }
-  free(cuts);
+  return status;
+}
+
+// How far the line from the target leans along the curve, and the step to where it does not.
+static CagStatus lean(const Search *s, double t, CagSide side, CagVec3 *point, double *off,
+                      double *step, CagError *err) {
+  CagVec3 d[3];
+  CagStatus status = cag_curve_eval(s->c, t, 2, side, d, err);
+  if (status) return status;
+  const CagVec3 r = cag_sub(d[0], s->target);
+  const double f = cag_dot(r, d[1]), vv = cag_dot(d[1], d[1]), slope = vv + cag_dot(r, d[2]);
+  *point = d[0];
+  *off = vv > 0 ? fabs(f) / sqrt(vv) : 0;
+  *step = slope > 0 ? -f / slope : 0;
+  return CAG_OK;
+}
+
+// From the best place to where the line to the target is perpendicular, on one side of it. Only
+// steps that change the distance by no more than rounding are taken: others were taken before.
+static CagStatus square_up(Search *s, double low, double high, double rounding, CagError *err) {
+  enum { ROUNDS = 8 };
+  CagVec3 point;
+  double t = s->t, off, step, next_off, next_step;
+  CagSide side = t >= high ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+  CagStatus status = lean(s, t, side, &point, &off, &step, err);
+  for (int i = 0; !status && i < ROUNDS; i++) {
+    const double next = fmin(high, fmax(low, t + step));
+    if (next == t) break;
+    side = next >= high ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+    status = lean(s, next, side, &point, &next_off, &next_step, err);
+    const double distance = cag_norm(cag_sub(point, s->target));
+    if (status || !(next_off < off) || !(fabs(distance - s->distance) <= rounding)) break;
+    t = s->t = next;
+    s->point = point;
+    s->distance = distance;
+    off = next_off;
+    step = next_step;
+  }
+  return status;
+}
+
+static CagStatus finish(Search *s, double rounding, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i + 1 < s->cut_count; i++)
+    if (s->cuts[i] <= s->t && s->t <= s->cuts[i + 1])
+      status = square_up(s, s->cuts[i], s->cuts[i + 1], rounding, err);
   return status;
 }
 
@@ -144,8 +194,12 @@ CagStatus cag_curve_closest(const CagCurve *c, CagVec3 p, double *t, CagVec3 *po
     now = next;
     next = swap;
   }
+  // Of the coordinates, which the distance inherits.
+  const double rounding = 4 * DBL_EPSILON * (s.distance + cag_norm(s.point));
+  if (!status) status = finish(&s, rounding, err);
   free(now.items);
   free(next.items);
+  free(s.cuts);
   if (status) return status;
   if (t) *t = s.t;
   if (point) *point = s.point;

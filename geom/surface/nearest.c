@@ -1,10 +1,10 @@
-// The place of a surface that is nearest to a point.
+// The point of a surface that is nearest to a given one.
 //
-// The parameter rectangle is cut into cells, each smooth patch into some and bent ones into more. A
-// cell lies in a ball about its middle, which tells how near it may come; from cells that may beat
-// the best place so far, the nearest first, Newton's method goes to where the line from the point
-// is normal to the surface. Edges, seams and poles are kept by taking steps within the rectangle,
-// or around it where the surface is closed.
+// Cells of the surface are taken by the lower bounds of their distances, the lowest first, and
+// halved until none can hold a nearer point than the best one found. Newton's method finds
+// candidates: from the lowest place of each patch, and from any known point that is nearer than the
+// best one. It stays within a smooth piece of the surface; where it ends at a crease or a seam it
+// goes on in the piece across, as long as that leads nearer.
 
 #include "geom/surface/nearest.h"
 
@@ -12,121 +12,89 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "geom/stop.h"
 #include "geom/surface/curve_on.h"
+#include "geom/surface/nearest_cells.h"
 #include "geom/surface/trimmed.h"
 
-// Cells of a patch in each direction, for a whole surface of one patch and for one of many.
-#define CELLS_FEW 8
-#define CELLS_MANY 2
-#define PATCHES_FEW 16
-// A cell whose inside leaves the mean of its corners by more than this part of its radius is
-// quartered, so often at most.
-#define BENT 0.2
-#define QUARTERINGS 5
-#define CELLS_MOST 60000
-// The ball holds the samples of a cell; its surface may reach out of it by this much.
-#define BALL_SAFETY 1.2
 #define STEPS 60
+// Places count as equally near when their distances differ by less than this part of the size: of
+// surfaces with certain bounds, and of those that are sampled.
+#define EQUALLY_NEAR 1e-13
+#define EQUALLY_NEAR_SAMPLED 1e-10
+// Cells taken, at which the best point so far is given: surfaces all of whose points are equally
+// near, but for rounding, never run out of cells.
+#define MOST_CELLS 20000
+#define MOST_CELLS_SAMPLED 3000
+// Distances within this part of the size are the same but for rounding.
+#define ROUNDING (4 * DBL_EPSILON)
+// Cells across the outline of a region are halved down to this part of the domain.
+#define FINEST 1e-6
 
-typedef struct Cell {
-  double u[2], v[2];
-  double bound; // the distance of its ball
-} Cell;
+// A part of the parameter rectangle where the surface is smooth. A ring is all of a closed
+// direction without breaks.
+typedef struct Piece {
+  double low[2], high[2];
+  bool ring[2];
+} Piece;
 
 typedef struct Search {
   const CagSurface *s;
   CagVec3 p;
   const CagRegion *region; // only its inside counts; NULL: all
-  Cell *cells;
-  size_t count, capacity;
+  CagDistanceCells cells;
+  double *cuts[2]; // breaks and both ends
+  size_t pieces[2];
   CagSurfaceNearest best;
-  double size; // of the farthest sample from the point: what rounding is a part of
 } Search;
 
-// --- Cells ---
+// --- Pieces ---
 
-static CagStatus push(Search *f, const Cell *cell, CagError *err) {
-  if (f->count == f->capacity) {
-    size_t capacity = f->capacity ? 2 * f->capacity : 256;
-    Cell *grown = realloc(f->cells, capacity * sizeof *grown);
-    if (!grown) return cag_fail_memory(err);
-    f->cells = grown;
-    f->capacity = capacity;
+static bool is_closed(const Search *f, int k) { return k ? f->s->closed_v : f->s->closed_u; }
+
+static Piece piece_of(const Search *f, const size_t at[2]) {
+  Piece out;
+  for (int k = 0; k < 2; k++) {
+    out.low[k] = f->cuts[k][at[k]];
+    out.high[k] = f->cuts[k][at[k] + 1];
+    out.ring[k] = is_closed(f, k) && f->pieces[k] == 1;
   }
-  f->cells[f->count++] = *cell;
-  return CAG_OK;
+  return out;
 }
 
-static CagStatus add_cell(Search *f, Cell cell, int depth, CagError *err) {
-  enum { SIDE = 3 };
-  CagVec3 g[SIDE][SIDE];
-  const double us[SIDE] = {cell.u[0], cell.u[0] + (cell.u[1] - cell.u[0]) / 2, cell.u[1]};
-  const double vs[SIDE] = {cell.v[0], cell.v[0] + (cell.v[1] - cell.v[0]) / 2, cell.v[1]};
-  CagStatus status = cag_surface_eval_grid(f->s, us, SIDE, vs, SIDE, &g[0][0], NULL, NULL, err);
-  if (status) return status;
-  double radius = 0, bend = 0;
-  for (int i = 0; i < SIDE; i++)
-    for (int j = 0; j < SIDE; j++) {
-      radius = fmax(radius, cag_norm(cag_sub(g[i][j], g[1][1])));
-      f->size = fmax(f->size, cag_norm(cag_sub(g[i][j], f->p)));
-      CagVec3 mean = cag_lerp(cag_lerp(g[0][0], g[2][0], i / 2.0),
-                              cag_lerp(g[0][2], g[2][2], i / 2.0), j / 2.0);
-      bend = fmax(bend, cag_norm(cag_sub(g[i][j], mean)));
-    }
-  if (bend > BENT * radius && depth < QUARTERINGS && f->count < CELLS_MOST) {
-    for (int k = 0; !status && k < 4; k++) {
-      Cell part = {.u = {us[k & 1], us[(k & 1) + 1]}, .v = {vs[k >> 1], vs[(k >> 1) + 1]}};
-      status = add_cell(f, part, depth + 1, err);
-    }
-    return status;
+static size_t piece_at(const Search *f, int k, double x) {
+  size_t low = 0, high = f->pieces[k];
+  while (high - low > 1) {
+    const size_t middle = (low + high) / 2;
+    if (f->cuts[k][middle] <= x) low = middle;
+    else high = middle;
   }
-  cell.bound = cag_norm(cag_sub(g[1][1], f->p)) - BALL_SAFETY * radius - bend;
-  return push(f, &cell, err);
+  return low;
 }
 
-// Breaks of one direction with both ends; malloc'd.
-static CagStatus cuts_of(const CagSurface *s, int direction, double **out, size_t *n,
-                         CagError *err) {
-  const size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
-  double *cuts = malloc(sizeof(double) * (inner + 2));
-  if (!cuts) return cag_fail_memory(err);
-  cuts[0] = direction ? s->v0 : s->u0;
-  if (inner) s->kind->breaks(s, direction, cuts + 1, inner);
-  cuts[inner + 1] = direction ? s->v1 : s->u1;
-  *out = cuts;
-  *n = inner + 1;
+static CagStatus find_cuts(Search *f, CagError *err) {
+  for (int k = 0; k < 2; k++) {
+    const CagSurface *s = f->s;
+    const size_t inner = s->kind->breaks ? s->kind->breaks(s, k, NULL, 0) : 0;
+    double *cuts = malloc(sizeof(double) * (inner + 2));
+    if (!cuts) return cag_fail_memory(err);
+    cuts[0] = k ? s->v0 : s->u0;
+    if (inner) s->kind->breaks(s, k, cuts + 1, inner);
+    cuts[inner + 1] = k ? s->v1 : s->u1;
+    f->cuts[k] = cuts;
+    f->pieces[k] = inner + 1;
+  }
   return CAG_OK;
-}
-
-static double between(const double *cuts, size_t k, size_t parts) {
-  const size_t i = k / parts, part = k % parts;
-  return part ? cuts[i] + (cuts[i + 1] - cuts[i]) * (double)part / (double)parts : cuts[i];
-}
-
-static CagStatus make_cells(Search *f, CagError *err) {
-  double *uc = NULL, *vc = NULL;
-  size_t nu = 0, nv = 0;
-  CagStatus status = cuts_of(f->s, 0, &uc, &nu, err);
-  if (!status) status = cuts_of(f->s, 1, &vc, &nv, err);
-  const size_t parts = nu * nv <= PATCHES_FEW ? CELLS_FEW : CELLS_MANY;
-  for (size_t i = 0; !status && i < nu * parts; i++)
-    for (size_t j = 0; !status && j < nv * parts; j++) {
-      Cell cell = {.u = {between(uc, i, parts), between(uc, i + 1, parts)},
-                   .v = {between(vc, j, parts), between(vc, j + 1, parts)}};
-      status = add_cell(f, cell, 0, err);
-    }
-  free(uc);
-  free(vc);
-  return status;
 }
 
 // --- Newton's method ---
 
-// x + d within [low, high], or around where the direction is closed.
-static double stepped(double x, double d, double low, double high, bool closed) {
-  double range = high - low, y = x + fmin(fmax(d, -range / 2), range / 2);
-  if (closed && y < low) return y + range;
-  if (closed && y > high) return y - range;
+// x + d within the piece, or around it.
+static double stepped(const Piece *in, int k, double x, double d) {
+  const double low = in->low[k], high = in->high[k], range = high - low;
+  const double y = x + fmin(fmax(d, -range / 2), range / 2);
+  if (in->ring[k] && y < low) return y + range;
+  if (in->ring[k] && y > high) return y - range;
   return fmin(fmax(y, low), high);
 }
 
@@ -161,100 +129,322 @@ static void model_step(const CagVec3 *d, CagVec3 r, const bool fixed[2], double 
   out[1] = -(h[0] * g[1] - h[1] * g[0]) / det;
 }
 
-// A parameter at an end, from which the distance falls only beyond it.
-static bool held(double x, double low, double high, bool closed, double slope) {
-  return !closed && ((x <= low && slope > 0) || (x >= high && slope < 0));
+// A place in a piece, with all that a step needs.
+typedef struct Place {
+  double at[2], distance;
+  double off; // how far the line to the point leans along the directions that are free
+  bool fixed[2];
+  CagVec3 r, d[9];
+} Place;
+
+static CagStatus look(const Search *f, const Piece *in, CagVec3 p, const double at[2], Place *out,
+                      CagError *err) {
+  CagSide side[2];
+  for (int k = 0; k < 2; k++) {
+    out->at[k] = at[k];
+    side[k] = at[k] >= in->high[k] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+  }
+  CagStatus status = cag_surface_eval(f->s, at[0], at[1], 2, side[0], side[1], out->d, err);
+  if (status) return status;
+  out->r = cag_sub(out->d[0], p);
+  out->distance = cag_norm(out->r);
+  out->off = 0;
+  for (int k = 0; k < 2; k++) {
+    // At an end from which the distance falls only beyond it.
+    const CagVec3 along = out->d[k ? cag_partial(2, 0, 1) : cag_partial(2, 1, 0)];
+    const double slope = cag_dot(out->r, along), speed = cag_norm(along);
+    out->fixed[k] =
+        !in->ring[k] && ((at[k] <= in->low[k] && slope > 0) || (at[k] >= in->high[k] && slope < 0));
+    if (!out->fixed[k] && speed > 0) out->off = fmax(out->off, fabs(slope) / speed);
+  }
+  return CAG_OK;
 }
 
-static CagStatus descend(const Search *f, double u, double v, CagSurfaceNearest *out,
-                         CagError *err) {
-  const CagSurface *s = f->s;
-  CagVec3 d[9];
-  CagStatus status = cag_surface_eval(s, u, v, 2, u >= s->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
-                                      v >= s->v1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, err);
+// Goes to the local minimum of the piece. Near it the distance no longer changes but for rounding,
+// and the slope tells which place is better.
+static CagStatus descend(const Search *f, const Piece *in, CagVec3 p, const double start[2],
+                         CagSurfaceNearest *out, CagError *err) {
+  Place here, there;
+  const double same = ROUNDING * f->cells.size;
+  CagStatus status = look(f, in, p, start, &here, err);
   for (int i = 0; !status && i < STEPS; i++) {
-    const CagVec3 r = cag_sub(d[0], f->p);
-    const double distance = cag_norm(r);
-    *out = (CagSurfaceNearest){u, v, distance, d[0]};
-    const bool fixed[2] = {held(u, s->u0, s->u1, s->closed_u, cag_dot(r, d[cag_partial(2, 1, 0)])),
-                           held(v, s->v0, s->v1, s->closed_v, cag_dot(r, d[cag_partial(2, 0, 1)]))};
     double step[2];
-    model_step(d, r, fixed, step);
+    model_step(here.d, here.r, here.fixed, step);
     // Shorter steps until the distance falls.
-    bool nearer = false;
-    for (double share = 1; !status && !nearer && share > 1e-4; share /= 4) {
-      const double a = stepped(u, share * step[0], s->u0, s->u1, s->closed_u);
-      const double b = stepped(v, share * step[1], s->v0, s->v1, s->closed_v);
-      if (a == u && b == v) break;
-      CagVec3 e[9];
-      status = cag_surface_eval(s, a, b, 2, a >= s->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
-                                b >= s->v1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, e, err);
-      if (status || !(cag_norm(cag_sub(e[0], f->p)) < distance)) continue;
-      nearer = true;
-      u = a;
-      v = b;
-      for (int k = 0; k < 9; k++) d[k] = e[k];
+    bool better = false;
+    for (double part = 1; !status && !better && part > 1e-4; part /= 4) {
+      const double at[2] = {stepped(in, 0, here.at[0], part * step[0]),
+                            stepped(in, 1, here.at[1], part * step[1])};
+      if (at[0] == here.at[0] && at[1] == here.at[1]) break;
+      status = look(f, in, p, at, &there, err);
+      const bool level = fabs(there.distance - here.distance) <= same;
+      better = !status && (level ? there.off < here.off / 2 : there.distance < here.distance);
     }
-    if (!nearer) break;
+    if (!better) break;
+    here = there;
+  }
+  if (!status) *out = (CagSurfaceNearest){here.at[0], here.at[1], here.distance, here.d[0]};
+  return status;
+}
+
+// The piece beside the place at an end of its own: 0 none, else whether the parameter changes.
+static bool beside(const Search *f, int k, size_t piece, double *x, size_t *out) {
+  const size_t last = f->pieces[k] - 1;
+  const bool low = *x <= f->cuts[k][piece], high = *x >= f->cuts[k][piece + 1];
+  if (last == 0 || (!low && !high)) return false;
+  const bool around = low ? piece == 0 : piece == last;
+  if (around && !is_closed(f, k)) return false;
+  *out = low ? (around ? last : piece - 1) : (around ? 0 : piece + 1);
+  if (around) *x = low ? f->cuts[k][last + 1] : f->cuts[k][0];
+  return true;
+}
+
+// From a place of a piece to the minimum that descending leads to, over creases.
+static CagStatus descend_over(const Search *f, const size_t start[2], const double from[2],
+                              CagVec3 p, CagSurfaceNearest *out, CagError *err) {
+  size_t piece[2] = {start[0], start[1]};
+  Piece in = piece_of(f, piece);
+  CagStatus status = descend(f, &in, p, from, out, err);
+  bool moved = true;
+  // Each crossing leads nearer by more than rounding; many in a row are no use.
+  for (int crossings = 0; !status && moved && crossings < STEPS; crossings++) {
+    moved = false;
+    for (int ways = 1; !status && !moved && ways < 4; ways++) {
+      double at[2] = {out->u, out->v};
+      size_t next[2] = {piece[0], piece[1]};
+      if ((ways & 1) && !beside(f, 0, piece[0], &at[0], &next[0])) continue;
+      if ((ways & 2) && !beside(f, 1, piece[1], &at[1], &next[1])) continue;
+      CagSurfaceNearest found;
+      in = piece_of(f, next);
+      status = descend(f, &in, p, at, &found, err);
+      moved = !status && found.distance < out->distance - ROUNDING * f->cells.size;
+      if (!moved) continue;
+      *out = found;
+      piece[0] = next[0];
+      piece[1] = next[1];
+    }
   }
   return status;
 }
 
-static CagStatus try_place(Search *f, const Cell *cell, CagError *err) {
-  CagSurfaceNearest found = {0};
-  CagStatus status =
-      descend(f, (cell->u[0] + cell->u[1]) / 2, (cell->v[0] + cell->v[1]) / 2, &found, err);
-  if (status || !(found.distance < f->best.distance)) return status;
+// --- Candidates ---
+
+static CagStatus offer(Search *f, const CagSurfaceNearest *found, CagError *err) {
   bool inside = true;
+  if (!(found->distance < f->best.distance)) return CAG_OK;
+  CagStatus status = CAG_OK;
   if (f->region)
-    status = cag_region_contains(f->region, cag_vec3(found.u, found.v, 0), &inside, err);
-  if (!status && inside) f->best = found;
+    status = cag_region_contains(f->region, cag_vec3(found->u, found->v, 0), &inside, err);
+  if (!status && inside) f->best = *found;
   return status;
 }
 
-static int by_bound(const void *a, const void *b) {
-  const Cell *x = a, *y = b;
-  return (x->bound > y->bound) - (x->bound < y->bound);
+// A parameter of a cell as one of the surface, exactly or nearly, and its piece.
+static double own_parameter(const Search *f, int k, double x, const double range[2],
+                            size_t *piece) {
+  const CagSurface *s = f->s, *exact = f->cells.exact;
+  double middle = range[0] + (range[1] - range[0]) / 2;
+  if (exact) {
+    const double low = k ? s->v0 : s->u0, high = k ? s->v1 : s->u1;
+    const double a = k ? exact->v0 : exact->u0, b = k ? exact->v1 : exact->u1;
+    if (low != a || high != b) {
+      x = x >= b ? high : low + (x - a) / (b - a) * (high - low);
+      middle = low + (middle - a) / (b - a) * (high - low);
+    }
+  }
+  *piece = piece_at(f, k, middle);
+  return fmin(fmax(x, f->cuts[k][*piece]), f->cuts[k][*piece + 1]);
+}
+
+// Parameters of a point of the surface that a cell of other parameters knows, by descending to it
+// from the nearest of some samples.
+static CagStatus parameters_of(const Search *f, CagVec3 q, size_t piece[2], double at[2],
+                               CagError *err) {
+  enum { SAMPLES = 9, KEPT = 4 };
+  struct {
+    double distance, at[2];
+    size_t piece[2];
+  } kept[KEPT];
+  size_t n = 0;
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < f->pieces[0]; i++)
+    for (size_t j = 0; !status && j < f->pieces[1]; j++)
+      for (int k = 0; !status && k < SAMPLES * SAMPLES; k++) {
+        const size_t place[2] = {i, j};
+        const double part[2] = {(k / SAMPLES + 0.5) / SAMPLES, (k % SAMPLES + 0.5) / SAMPLES};
+        double x[2];
+        CagVec3 point;
+        for (int m = 0; m < 2; m++) {
+          const double *ends = f->cuts[m] + place[m];
+          x[m] = ends[0] + part[m] * (ends[1] - ends[0]);
+        }
+        status = cag_surface_point(f->s, x[0], x[1], &point, err);
+        const double distance = cag_norm(cag_sub(point, q));
+        if (status || (n == KEPT && distance >= kept[KEPT - 1].distance)) continue;
+        size_t to = n < KEPT ? n++ : KEPT - 1;
+        for (; to > 0 && kept[to - 1].distance > distance; to--) kept[to] = kept[to - 1];
+        kept[to].distance = distance;
+        for (int m = 0; m < 2; m++) {
+          kept[to].at[m] = x[m];
+          kept[to].piece[m] = place[m];
+        }
+      }
+  CagSurfaceNearest best = {.distance = INFINITY}, found;
+  for (size_t k = 0; !status && k < n; k++) {
+    status = descend_over(f, kept[k].piece, kept[k].at, q, &found, err);
+    if (!status && found.distance < best.distance) best = found;
+  }
+  at[0] = best.u;
+  at[1] = best.v;
+  for (int k = 0; k < 2; k++) piece[k] = piece_at(f, k, at[k]);
+  return status;
+}
+
+static CagStatus try_cell(Search *f, const CagDistanceCell *cell, CagError *err) {
+  const bool known = cell->least < f->best.distance * f->best.distance;
+  if (!known && !cell->whole) return CAG_OK;
+  size_t piece[2];
+  double at[2];
+  CagSurfaceNearest found;
+  CagStatus status = CAG_OK;
+  const double *from = cell->whole ? cell->low_at : cell->least_at;
+  at[0] = own_parameter(f, 0, from[0], cell->u, &piece[0]);
+  at[1] = own_parameter(f, 1, from[1], cell->v, &piece[1]);
+  status = descend_over(f, piece, at, f->p, &found, err);
+  if (!status) status = offer(f, &found, err);
+  const double least = sqrt(cell->least), same = EQUALLY_NEAR * f->cells.size;
+  if (status || !(least < f->best.distance - same)) return status;
+  // The known point itself, where that led elsewhere.
+  if (f->cells.same) {
+    at[0] = own_parameter(f, 0, cell->least_at[0], cell->u, &piece[0]);
+    at[1] = own_parameter(f, 1, cell->least_at[1], cell->v, &piece[1]);
+  } else {
+    status = parameters_of(f, cell->least_point, piece, at, err);
+  }
+  if (!status) status = descend_over(f, piece, at, f->p, &found, err);
+  if (!status) status = offer(f, &found, err);
+  if (status || !f->region || !(least < f->best.distance)) return status;
+  found = (CagSurfaceNearest){at[0], at[1], least, cell->least_point};
+  return offer(f, &found, err);
 }
 
 // --- Outlines ---
 
-static CagStatus try_loops(Search *f, CagError *err) {
+static CagStatus try_loops(Search *f, const CagTransform *flat, CagError *err) {
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < f->region->count; i++) {
     const CagCurve *loop = f->region->loops[i];
     CagCurve *curve;
-    CagVec3 flat, point;
+    CagVec3 at, point;
     double t, distance;
-    status = cag_curve_on_surface(f->s, loop, &curve, err);
+    status = flat ? cag_curve_transform(loop, flat, &curve, err)
+                  : cag_curve_on_surface(f->s, loop, &curve, err);
     if (status) return status;
     status = cag_curve_closest(curve, f->p, &t, &point, &distance, err);
     cag_curve_release(curve);
-    if (!status && distance < f->best.distance) status = cag_curve_point(loop, t, &flat, err);
+    if (!status && distance < f->best.distance) status = cag_curve_point(loop, t, &at, err);
     if (!status && distance < f->best.distance)
-      f->best = (CagSurfaceNearest){flat.x, flat.y, distance, point};
+      f->best = (CagSurfaceNearest){at.x, at.y, distance, point};
   }
   return status;
+}
+
+// Whether a cell lies outside the region, or is so small that its part inside is its outline's.
+static CagStatus is_outside(const Search *f, const CagDistanceCell *cell, bool *out,
+                            CagError *err) {
+  double middle[2], reach = 0;
+  *out = false;
+  if (!f->region) return CAG_OK;
+  bool fine = true;
+  for (int k = 0; k < 2; k++) {
+    const double *range = k ? cell->v : cell->u;
+    size_t unused;
+    double end[2];
+    for (int side = 0; side < 2; side++)
+      end[side] = own_parameter(f, k, range[side], range, &unused);
+    middle[k] = (end[0] + end[1]) / 2;
+    reach = hypot(reach, (end[1] - end[0]) / 2);
+    fine = fine && end[1] - end[0] < FINEST * (f->cuts[k][f->pieces[k]] - f->cuts[k][0]);
+  }
+  const CagVec3 at = {middle[0], middle[1], 0};
+  bool inside;
+  CagStatus status = cag_region_contains(f->region, at, &inside, err);
+  if (status || (inside && !fine)) return status;
+  double nearest = INFINITY;
+  for (size_t i = 0; !status && i < f->region->count; i++) {
+    double distance;
+    status = cag_curve_closest(f->region->loops[i], at, NULL, NULL, &distance, err);
+    nearest = fmin(nearest, distance);
+  }
+  *out = nearest > reach ? !inside : fine;
+  return status;
+}
+
+// --- All ---
+
+static CagStatus search_cells(Search *f, CagError *err) {
+  CagStatus status = CAG_OK;
+  const bool sampled = !f->cells.exact;
+  const int most = sampled ? MOST_CELLS_SAMPLED : MOST_CELLS;
+  for (int i = 0; !status && i < most; i++) {
+    const double share = sampled ? EQUALLY_NEAR_SAMPLED : EQUALLY_NEAR;
+    CagDistanceCell cell;
+    bool found, outside = false;
+    // Nearer by more than that, squared.
+    double nearer = f->best.distance - share * f->cells.size;
+    if (!(nearer > 0)) break;
+    status = cag_stop_check(err);
+    if (!status) status = cag_distance_cells_next(&f->cells, nearer * nearer, &cell, &found, err);
+    if (status || !found) break;
+    status = is_outside(f, &cell, &outside, err);
+    if (!status && !outside) status = try_cell(f, &cell, err);
+    nearer = fmax(0, f->best.distance - share * f->cells.size);
+    if (outside || !(cell.bound < nearer * nearer)) cag_distance_cells_drop(&f->cells, &cell);
+    else if (!status) status = cag_distance_cells_halve(&f->cells, &cell, nearer * nearer, err);
+  }
+  return status;
+}
+
+// Of a flat piece: the foot of the perpendicular where that is within, else a point of its outline.
+static CagStatus closest_planar(Search *f, const CagTransform *frame, CagError *err) {
+  CagVec3 a = cag_transform_vector(frame, cag_vec3(1, 0, 0));
+  CagVec3 b = cag_transform_vector(frame, cag_vec3(0, 1, 0));
+  const CagVec3 r = cag_sub(f->p, cag_transform_point(frame, cag_vec3(0, 0, 0)));
+  const CagVec3 n = cag_cross(a, b);
+  const double det = cag_dot(n, n);
+  if (det > 0) {
+    CagSurfaceNearest found = {.u = cag_dot(cag_cross(r, b), n) / det,
+                               .v = cag_dot(cag_cross(a, r), n) / det};
+    found.point = cag_transform_point(frame, cag_vec3(found.u, found.v, 0));
+    found.distance = cag_norm(cag_sub(found.point, f->p));
+    CagStatus status = offer(f, &found, err);
+    if (status) return status;
+  }
+  return isfinite(f->best.distance) ? CAG_OK : try_loops(f, frame, err);
 }
 
 CagStatus cag_surface_closest(const CagSurface *s, CagVec3 p, CagSurfaceNearest *out,
                               CagError *err) {
   Search f = {.s = s, .p = p, .best = {.distance = INFINITY}};
+  CagTransform frame;
   if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))
     return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "P", -1, "`P` must be finite");
-  if (!cag_surface_planar_view(s, &f.region, NULL)) cag_surface_trimmed_view(s, NULL, &f.region);
-  CagStatus status = make_cells(&f, err);
-  if (f.count) qsort(f.cells, f.count, sizeof *f.cells, by_bound);
-  // Cells that cannot be nearer by more than rounding are not looked at.
-  for (size_t i = 0; !status && i < f.count; i++) {
-    if (f.cells[i].bound > f.best.distance - DBL_EPSILON * f.size) break;
-    status = try_place(&f, &f.cells[i], err);
+  CagStatus status;
+  if (cag_surface_planar_view(s, &f.region, &frame)) {
+    status = closest_planar(&f, &frame, err);
+  } else {
+    if (cag_surface_trimmed_view(s, NULL, &f.region)) cag_surface_trimmed_view(s, &f.s, &f.region);
+    status = find_cuts(&f, err);
+    if (!status) status = cag_distance_cells_make(&f.cells, f.s, p, f.region != NULL, err);
+    if (!status && f.region) status = try_loops(&f, NULL, err);
+    if (!status) status = search_cells(&f, err);
+    cag_distance_cells_free(&f.cells);
+    free(f.cuts[0]);
+    free(f.cuts[1]);
+    // A seam is at the start.
+    if (s->closed_u && f.best.u >= s->u1) f.best.u = s->u0;
+    if (s->closed_v && f.best.v >= s->v1) f.best.v = s->v0;
   }
-  if (!status && f.region) status = try_loops(&f, err);
-  free(f.cells);
-  // A seam is at the start.
-  if (s->closed_u && f.best.u >= s->u1) f.best.u = s->u0;
-  if (s->closed_v && f.best.v >= s->v1) f.best.v = s->v0;
   if (!status) *out = f.best;
   return status;
 }

@@ -1,0 +1,284 @@
+// Nearest points of surfaces and curves: random shapes against a dense search, and closed forms.
+
+#include "surface_support.h"
+
+#include "geom/surface/nearest.h"
+#include "geom/surface/quadric.h"
+#include "geom/surface/trimmed.h"
+
+static uint64_t state_of_random;
+
+// In 0..1 (Knuth's linear congruential generator).
+static double random_number(void) {
+  state_of_random = state_of_random * 6364136223846793005u + 1442695040888963407u;
+  return (double)(state_of_random >> 11) / 9007199254740992.0;
+}
+
+static double between(double a, double b) { return a + random_number() * (b - a); }
+
+static int whole(int from, int to) { return from + (int)(random_number() * (to + 1 - from)); }
+
+static CagVec3 anywhere(double size) {
+  const double x = between(0, size), y = between(0, size);
+  return cag_vec3(x, y, between(0, size));
+}
+
+// --- A search that knows nothing of slopes ---
+
+typedef struct Dense {
+  const CagSurface *s;
+  CagVec3 p;
+} Dense;
+
+static double distance_at(const Dense *d, double u, double v) {
+  return cag_norm(cag_sub(surface_at(d->s, u, v), d->p));
+}
+
+// Steps to the nearest of the places around, shorter ones when there is none nearer.
+static double creep(const Dense *d, double u, double v, double du, double dv) {
+  const CagSurface *s = d->s;
+  double best = distance_at(d, u, v);
+  for (int round = 0; round < 90; round++) {
+    const double a = u, b = v;
+    for (int k = 0; k < 9; k++) {
+      const double x = fmin(fmax(a + (k / 3 - 1) * du, s->u0), s->u1);
+      const double y = fmin(fmax(b + (k % 3 - 1) * dv, s->v0), s->v1);
+      const double found = distance_at(d, x, y);
+      if (!(found < best)) continue;
+      best = found;
+      u = x;
+      v = y;
+    }
+    if (u != a || v != b) continue;
+    du /= 2;
+    dv /= 2;
+  }
+  return best;
+}
+
+#define GRID 16
+static double dense_distance(const CagSurface *s, CagVec3 p) {
+  const Dense d = {s, p};
+  const double du = (s->u1 - s->u0) / GRID, dv = (s->v1 - s->v0) / GRID;
+  double at[GRID + 1][GRID + 1], best = INFINITY;
+  for (int i = 0; i <= GRID; i++)
+    for (int j = 0; j <= GRID; j++) at[i][j] = distance_at(&d, s->u0 + i * du, s->v0 + j * dv);
+  for (int i = 0; i <= GRID; i++)
+    for (int j = 0; j <= GRID; j++) {
+      bool lowest = true;
+      for (int k = 0; lowest && k < 9; k++) {
+        const int x = i + k / 3 - 1, y = j + k % 3 - 1;
+        lowest = x < 0 || y < 0 || x > GRID || y > GRID || at[i][j] <= at[x][y];
+      }
+      if (lowest) best = fmin(best, creep(&d, s->u0 + i * du, s->v0 + j * dv, du / 2, dv / 2));
+    }
+  return best;
+}
+
+static CagVec3 beside(const CagSurface *s) {
+  CagBounds box;
+  MUST(cag_surface_bounds(s, &box, err));
+  const CagVec3 size = cag_sub(box.max, box.min);
+  const double x = between(-0.3, 1.3), y = between(-0.3, 1.3), z = between(-0.3, 1.3);
+  return cag_vec3(box.min.x + x * size.x, box.min.y + y * size.y, box.min.z + z * size.z);
+}
+
+// The point lies on the surface where it says, and nothing that the dense search finds is nearer.
+static void assert_nearest(const CagSurface *s, const char *what, int turn) {
+  CagSurfaceNearest found;
+  const CagVec3 p = beside(s);
+  MUST(cag_surface_closest(s, p, &found, err));
+  assert_point(surface_at(s, found.u, found.v), found.point, 1e-12, what);
+  assert_near(cag_norm(cag_sub(found.point, p)), found.distance, 1e-12, what);
+  const double dense = dense_distance(s, p);
+  if (found.distance > dense + 1e-9)
+    fail_msg("%s %d: found %.17g, but %.17g is nearer", what, turn, found.distance, dense);
+}
+
+// --- Random surfaces ---
+
+static CagSurface *random_net(bool bilinear, bool rational, bool creased) {
+  const int p = bilinear ? 1 : whole(1, 3), q = bilinear ? 1 : whole(1, 3);
+  const int nu = p + 1 + whole(0, 3), nv = q + 1 + whole(0, 3);
+  CagVec3 net[49];
+  double weights[49], ku[16], kv[16];
+  CagSurface *s;
+  for (int k = 0; k < nu * nv; k++) {
+    const CagVec3 jitter = anywhere(3);
+    net[k] = cag_add(cag_vec3(2 * (k / nv), 2 * (k % nv), 0), jitter);
+    weights[k] = between(0.3, 3.3);
+  }
+  // All inner knots at one place: creases of every kind, where there are enough of them.
+  for (int i = 0; i < nu + p + 1; i++)
+    ku[i] = i <= p ? 0 : i >= nu ? 1 : creased ? 0.4 : (double)(i - p) / (nu - p);
+  for (int i = 0; i < nv + q + 1; i++) kv[i] = i <= q ? 0 : i >= nv ? nv - q : i - q;
+  if (creased && nu - p - 1 > p) return NULL;
+  MUST(cag_surface_nurbs(net, rational ? weights : NULL, (size_t)nu, (size_t)nv, p, q, ku, kv, &s,
+                         err));
+  return s;
+}
+
+static void nearest_points_of_creased_surfaces_are_right(void **state) {
+  (void)state;
+  state_of_random = 20240601;
+  for (int i = 0; i < 1200; i++) {
+    CagSurface *s = random_net(true, i % 2, false);
+    assert_nearest(s, "creased surface", i);
+    cag_surface_release(s);
+  }
+}
+
+static void nearest_points_of_tensor_surfaces_are_right(void **state) {
+  (void)state;
+  state_of_random = 77;
+  for (int i = 0; i < 200; i++) {
+    CagSurface *s = random_net(false, i % 2, i % 4 < 2);
+    if (!s) continue;
+    assert_nearest(s, "tensor surface", i);
+    cag_surface_release(s);
+  }
+}
+
+static CagSurface *random_revolution(void) {
+  CagVec3 p[5];
+  CagCurve *profile;
+  CagSurface *s;
+  for (int i = 0; i < 5; i++) p[i] = cag_vec3(between(1, 5), 0, between(1.5 * i, 1.5 * i + 1));
+  MUST(cag_curve_polyline(p, 5, false, 3, &profile, err));
+  MUST(cag_surface_revolve(profile, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, between(1, 6.28), &s,
+                           err));
+  cag_curve_release(profile);
+  return s;
+}
+
+static CagSurface *random_ellipsoid(void) {
+  CagTransform frame = cag_transform_identity();
+  CagSurface *s;
+  for (int k = 0; k < 9; k++) frame.m[k / 3][k % 3] = between(-2, 2);
+  MUST(cag_surface_quadric(CAG_SHAPE_ELLIPSOID, &frame, 0, 2 * M_PI, 0, M_PI, &s, err));
+  return s;
+}
+
+// Without an exact form: cells are sampled.
+static CagSurface *random_twist(void) {
+  CagVec3 p[5];
+  CagCurve *section;
+  CagSurface *s;
+  for (int i = 0; i < 5; i++) p[i] = cag_vec3(between(0, 8), between(0, 8), 0);
+  MUST(cag_curve_polyline(p, 5, false, 2, &section, err));
+  MUST(cag_surface_extrude(section, cag_vec3(0, 0, 3), between(0, 2), between(0.5, 1.5), &s, err));
+  cag_curve_release(section);
+  return s;
+}
+
+static CagSurface *random_tube(void) {
+  CagVec3 p[5];
+  CagCurve *path;
+  CagSurface *s;
+  for (int i = 0; i < 5; i++) p[i] = cag_vec3(between(0, 8), between(0, 8), 2 * i);
+  MUST(cag_curve_bezier(p, NULL, 5, 3, &path, err));
+  MUST(cag_surface_tube(path, between(0.2, 1), &s, err));
+  cag_curve_release(path);
+  return s;
+}
+
+static void nearest_points_of_other_kinds_are_right(void **state) {
+  (void)state;
+  static CagSurface *(*const make[])(void) = {random_revolution, random_ellipsoid, random_twist,
+                                              random_tube};
+  static const char *const name[] = {"revolution", "ellipsoid", "twist", "tube"};
+  state_of_random = 4711;
+  for (int i = 0; i < 100; i++) {
+    CagSurface *s = make[i % 4]();
+    assert_nearest(s, name[i % 4], i);
+    cag_surface_release(s);
+  }
+}
+
+// The distance from a torus is that of two circles.
+static void nearest_points_of_a_torus_have_closed_form(void **state) {
+  (void)state;
+  state_of_random = 5;
+  for (int i = 0; i < 300; i++) {
+    const double major = between(2, 5), minor = between(0.5, 3);
+    CagSurface *s;
+    CagSurfaceNearest found;
+    MUST(cag_surface_torus(major, minor, &s, err));
+    // Every tenth on the axis, every tenth in the circle's middle: rings of nearest points.
+    CagVec3 p = anywhere(8);
+    if (i % 10 == 0) p = cag_vec3(0, 0, p.z);
+    if (i % 10 == 5) p = cag_vec3(0, major, 0);
+    MUST(cag_surface_closest(s, p, &found, err));
+    const double rho = hypot(p.x, p.y);
+    const double near = fabs(hypot(rho - major, p.z) - minor);
+    const double far = fabs(hypot(rho + major, p.z) - minor); // of a spindle
+    assert_near(found.distance, fmin(near, far), 1e-13, "distance");
+    cag_surface_release(s);
+  }
+}
+
+// The line to the point is perpendicular to the surface to rounding, not to its square root.
+static void nearest_points_are_perpendicular(void **state) {
+  (void)state;
+  state_of_random = 99;
+  int inner = 0;
+  for (int i = 0; i < 200; i++) {
+    CagSurface *s = random_net(false, i % 2, false);
+    CagSurfaceNearest found;
+    CagVec3 d[4];
+    const CagVec3 p = beside(s);
+    MUST(cag_surface_closest(s, p, &found, err));
+    const double u = (found.u - s->u0) / (s->u1 - s->u0), v = (found.v - s->v0) / (s->v1 - s->v0);
+    MUST(cag_surface_eval(s, found.u, found.v, 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err));
+    const CagVec3 r = cag_sub(found.point, p);
+    const double off_u = fabs(cag_dot(r, cag_unit(d[cag_partial(1, 1, 0)])));
+    const double off_v = fabs(cag_dot(r, cag_unit(d[cag_partial(1, 0, 1)])));
+    // Not at creases.
+    const double crease = 1e-3;
+    if (u > 0 && u < 1 && v > 0 && v < 1 && fmax(off_u, off_v) < crease) {
+      inner++;
+      assert_true(fmax(off_u, off_v) < 1e-13 * 20);
+    }
+    cag_surface_release(s);
+  }
+  assert_true(inner > 40);
+}
+
+// Of a half of a square cut off along its diagonal: inside, beyond the cut, and over the cut-off
+// corner, where the whole surface is nearer.
+static void trimmed_surfaces_count_within_their_outlines(void **state) {
+  (void)state;
+  const CagVec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  const CagVec3 net[] = {{0, 0, 0}, {0, 4, 0}, {4, 0, 0}, {4, 4, 0}};
+  CagCurve *outline;
+  CagRegion *region;
+  CagSurface *whole_surface, *s;
+  CagSurfaceNearest found;
+  MUST(cag_curve_polyline(corners, 3, true, 2, &outline, err));
+  MUST(cag_region_new(outline, NULL, 0, &region, err));
+  MUST(cag_surface_bezier(net, NULL, 2, 2, &whole_surface, err));
+  MUST(cag_surface_trimmed(whole_surface, region, &s, err));
+  MUST(cag_surface_closest(s, cag_vec3(1, 1, 2), &found, err));
+  assert_near(found.distance, 2, 1e-14, "inside");
+  MUST(cag_surface_closest(s, cag_vec3(3, 3, 0), &found, err));
+  assert_near(found.distance, sqrt(2), 1e-12, "beyond the cut");
+  assert_point(found.point, cag_vec3(2, 2, 0), 1e-9, "point");
+  MUST(cag_surface_closest(s, cag_vec3(4, 4, 1), &found, err));
+  assert_near(found.distance, 3, 1e-12, "over the corner");
+  cag_surface_release(s);
+  cag_surface_release(whole_surface);
+  cag_region_release(region);
+  cag_curve_release(outline);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(nearest_points_of_creased_surfaces_are_right),
+      cmocka_unit_test(nearest_points_of_tensor_surfaces_are_right),
+      cmocka_unit_test(nearest_points_of_other_kinds_are_right),
+      cmocka_unit_test(nearest_points_of_a_torus_have_closed_form),
+      cmocka_unit_test(nearest_points_are_perpendicular),
+      cmocka_unit_test(trimmed_surfaces_count_within_their_outlines),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
