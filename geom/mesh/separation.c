@@ -1,14 +1,17 @@
 // Distances of shapes.
 //
 // Two trees of boxes are walked together for the pairs of chords and triangles that are nearest;
-// from these Newton's method, damped and kept within bounds, finds the nearest points of the exact
-// shapes.
+// from these Newton's method, damped and kept within smooth pieces, finds the nearest points of the
+// exact shapes. A second walk goes to the pairs that may still be nearer: those whose chords and
+// triangles, less what the shapes may leave them by, are nearer than the points found.
 
 #include "geom/mesh/separation.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/curve/family.h"
 #include "geom/mesh/distance.h"
 
 // Pairs from which the exact search starts: neighbours share their nearest point, so that several
@@ -16,6 +19,10 @@
 #define CANDIDATES 24
 #define LEAF 4
 #define ROUNDS 100
+// Pairs of the second walk. Shapes that run along each other at one distance have any number.
+#define MOST_PAIRS 4000
+// Pairs are equally near when their distances differ by less than this part of the size.
+#define EQUALLY_NEAR 1e-11
 // Shapes nearer than this part of their size meet.
 #define TOUCHING 1e-10
 
@@ -53,7 +60,8 @@ CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double toleran
                               .curve = c,
                               .at = {(t[i - 1] + t[i]) / 2, 0},
                               .low = {t[i - 1], 0},
-                              .high = {t[i], 0}},
+                              .high = {t[i], 0},
+                              .sag = cag_curve_sag(c, t[i - 1], t[i])},
                     err);
     before = p;
   }
@@ -61,23 +69,63 @@ CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double toleran
   return status;
 }
 
+// The smooth pieces of a surface along both directions.
+typedef struct Pieces {
+  double *cuts[2]; // breaks and both ends
+  size_t n[2];
+  bool closed[2];
+} Pieces;
+
+static CagStatus find_pieces(const CagSurface *s, Pieces *out, CagError *err) {
+  for (int k = 0; k < 2; k++) {
+    const size_t inner = s->kind->breaks ? s->kind->breaks(s, k, NULL, 0) : 0;
+    double *cuts = out->cuts[k] = malloc(sizeof(double) * (inner + 2));
+    if (!cuts) return cag_fail_memory(err);
+    cuts[0] = k ? s->v0 : s->u0;
+    if (inner) s->kind->breaks(s, k, cuts + 1, inner);
+    cuts[inner + 1] = k ? s->v1 : s->u1;
+    out->n[k] = inner + 1;
+    out->closed[k] = k ? s->closed_v : s->closed_u;
+  }
+  return CAG_OK;
+}
+
+// The piece around the part.
+static void limit_part(const Pieces *pieces, CagPart *part) {
+  for (int k = 0; k < 2; k++) {
+    const double *cuts = pieces->cuts[k];
+    size_t low = 0, high = pieces->n[k];
+    while (high - low > 1) {
+      const size_t middle = (low + high) / 2;
+      if (cuts[middle] <= part->at[k]) low = middle;
+      else high = middle;
+    }
+    part->low[k] = cuts[low];
+    part->high[k] = cuts[low + 1];
+    part->ring[k] = pieces->closed[k] && pieces->n[k] == 1;
+  }
+}
+
 CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface *surface,
-                             CagError *err) {
-  CagStatus status = CAG_OK;
+                             double tolerance, CagError *err) {
   const bool exact = surface && m->uv;
+  Pieces pieces = {0};
+  CagStatus status = exact ? find_pieces(surface, &pieces, err) : CAG_OK;
   for (size_t t = 0; !status && t < m->triangle_count; t++) {
     const uint32_t *k = m->triangles + 3 * t;
     CagPart part = {.flat = !exact, .at = {0.5, 0.5}, .high = {1, 1}};
     for (int i = 0; i < 3; i++) part.p[i] = m->positions[k[i]];
     if (exact) {
       part.surface = surface;
+      part.sag = tolerance;
       for (int x = 0; x < 2; x++)
         part.at[x] = (m->uv[2 * k[0] + x] + m->uv[2 * k[1] + x] + m->uv[2 * k[2] + x]) / 3;
-      part.low[0] = surface->u0, part.high[0] = surface->u1;
-      part.low[1] = surface->v0, part.high[1] = surface->v1;
+      limit_part(&pieces, &part);
     }
     status = push(parts, part, err);
   }
+  free(pieces.cuts[0]);
+  free(pieces.cuts[1]);
   return status;
 }
 
@@ -123,6 +171,7 @@ static double chord_distance(const CagPart *a, const CagPart *b) {
 
 typedef struct Node {
   CagBounds box;
+  double sag;          // the largest of its parts
   size_t first, count; // parts by `order`
   size_t left;         // children left and left + 1; 0: a leaf
 } Node;
@@ -141,6 +190,13 @@ static CagBounds box_of(const Tree *t, size_t first, size_t count) {
   for (size_t i = 0; i < count; i++)
     for (int k = 0; k < 3; k++) cag_bounds_add(&box, t->parts->items[t->order[first + i]].p[k]);
   return box;
+}
+
+static Node node_of(const Tree *t, size_t first, size_t count) {
+  Node node = {.box = box_of(t, first, count), .first = first, .count = count};
+  for (size_t i = 0; i < count; i++)
+    node.sag = fmax(node.sag, t->parts->items[t->order[first + i]].sag);
+  return node;
 }
 
 // Parts below the middle of the box first; halves by number where all are on one side.
@@ -169,14 +225,14 @@ static CagStatus grow_tree(const CagParts *parts, Tree *t, CagError *err) {
   t->nodes = malloc(2 * parts->n * sizeof *t->nodes);
   if (!t->order || !t->nodes) return cag_fail_memory(err);
   for (size_t i = 0; i < parts->n; i++) t->order[i] = i;
-  t->nodes[0] = (Node){box_of(t, 0, parts->n), 0, parts->n, 0};
+  t->nodes[0] = node_of(t, 0, parts->n);
   for (size_t i = 0; i < t->n; i++) {
     Node *node = &t->nodes[i];
     if (node->count <= LEAF) continue;
     const size_t low = divide(t, node), rest = node->count - low;
     node->left = t->n;
-    t->nodes[t->n++] = (Node){box_of(t, node->first, low), node->first, low, 0};
-    t->nodes[t->n++] = (Node){box_of(t, node->first + low, rest), node->first + low, rest, 0};
+    t->nodes[t->n++] = node_of(t, node->first, low);
+    t->nodes[t->n++] = node_of(t, node->first + low, rest);
   }
   return CAG_OK;
 }
@@ -186,6 +242,24 @@ static double gap(const CagBounds *a, const CagBounds *b) {
   const double y = fmax(0, fmax(a->min.y - b->max.y, b->min.y - a->max.y));
   const double z = fmax(0, fmax(a->min.z - b->max.z, b->min.z - a->max.z));
   return sqrt(x * x + y * y + z * z);
+}
+
+// That of the boxes of two parts, which is far cheaper than that of their chords.
+static double part_gap(const CagPart *a, const CagPart *b) {
+  CagBounds box[2];
+  for (int i = 0; i < 2; i++) {
+    const CagVec3 *p = i ? b->p : a->p;
+    box[i].min = box[i].max = p[0];
+    for (int k = 1; k < 3; k++) {
+      box[i].min = cag_vec3(p[k].x < box[i].min.x ? p[k].x : box[i].min.x,
+                            p[k].y < box[i].min.y ? p[k].y : box[i].min.y,
+                            p[k].z < box[i].min.z ? p[k].z : box[i].min.z);
+      box[i].max = cag_vec3(p[k].x > box[i].max.x ? p[k].x : box[i].max.x,
+                            p[k].y > box[i].max.y ? p[k].y : box[i].max.y,
+                            p[k].z > box[i].max.z ? p[k].z : box[i].max.z);
+    }
+  }
+  return gap(&box[0], &box[1]);
 }
 
 // The nearest pairs so far, ascending.
@@ -215,14 +289,14 @@ static void keep(Nearest *s, double d, const CagPart *a, const CagPart *b) {
 
 static void walk(const Tree *a, size_t i, const Tree *b, size_t k, Nearest *s) {
   const Node *x = &a->nodes[i], *y = &b->nodes[k];
-  if (gap(&x->box, &y->box) >= worst(s) || (s->n && s->distance[0] == 0)) return;
+  if (gap(&x->box, &y->box) >= worst(s)) return;
   if (s->interrupt && *s->interrupt) return;
   if (!x->left && !y->left) {
     for (size_t m = 0; m < x->count; m++)
       for (size_t n = 0; n < y->count; n++) {
         const CagPart *p = &a->parts->items[a->order[x->first + m]];
         const CagPart *q = &b->parts->items[b->order[y->first + n]];
-        keep(s, chord_distance(p, q), p, q);
+        if (part_gap(p, q) < worst(s)) keep(s, chord_distance(p, q), p, q);
       }
     return;
   }
@@ -257,8 +331,9 @@ static CagStatus look(const CagPart *part, const double *x, Place *out, CagError
     *out = (Place){.p = d[0], .d = {d[1]}, .dd = {d[2]}};
   } else if (part->surface) {
     CagVec3 d[9];
-    CagStatus status =
-        cag_surface_eval(part->surface, x[0], x[1], 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err);
+    const CagSide su = x[0] >= part->high[0] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+    const CagSide sv = x[1] >= part->high[1] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+    CagStatus status = cag_surface_eval(part->surface, x[0], x[1], 2, su, sv, d, err);
     if (status) return status;
     *out = (Place){d[0],
                    {d[cag_partial(2, 1, 0)], d[cag_partial(2, 0, 1)]},
@@ -309,12 +384,35 @@ static CagStatus slope(const Pair *pair, const double *x, Slope *out, CagError *
   return CAG_OK;
 }
 
+// A flat triangle is one point where its first parameter is 0. From there the second one chooses
+// the way to go: along the side on which the distance falls more.
+static CagStatus leave_corners(Pair *pair, Slope *here, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (int side = 0, at = 0; !status && side < 2; at += pair->free[side++]) {
+    if (!pair->part[side]->flat || pair->x[at] > 0) continue;
+    const CagVec3 *p = pair->part[side]->p;
+    // The slope by the first parameter changes linearly with the second.
+    Slope end[2];
+    for (int k = 0; !status && k < 2; k++) {
+      pair->x[at + 1] = k;
+      status = slope(pair, pair->x, &end[k], err);
+    }
+    if (status) break;
+    const double along[2] = {end[0].g[at] / (cag_norm(cag_sub(p[1], p[0])) + DBL_MIN),
+                             end[1].g[at] / (cag_norm(cag_sub(p[2], p[0])) + DBL_MIN)};
+    const int k = along[1] < along[0];
+    pair->x[at + 1] = k;
+    *here = end[k];
+  }
+  return status;
+}
+
 static void limits(const Pair *pair, int i, double *low, double *high, bool *ring) {
   const int side = i >= pair->free[0], k = side ? i - pair->free[0] : i;
   const CagPart *part = pair->part[side];
   *low = part->low[k];
   *high = part->high[k];
-  *ring = part->surface && (k == 0 ? part->surface->closed_u : part->surface->closed_v);
+  *ring = part->ring[k];
 }
 
 // Solves (h + damping scale) d = -g for the free parameters (Cholesky); false: not positive.
@@ -360,6 +458,8 @@ static CagStatus refine(Pair *pair, double *out, CagVec3 *point, CagError *err) 
   for (int round = 0; !status && pair->n && round < ROUNDS && damping < 1e12; round++) {
     bool fixed[4];
     double d[4], x[4];
+    status = leave_corners(pair, &here, err);
+    if (status) break;
     for (int i = 0; i < pair->n; i++) {
       double low, high;
       bool ring;
@@ -390,47 +490,110 @@ static CagStatus refine(Pair *pair, double *out, CagVec3 *point, CagError *err) 
   return status;
 }
 
+// --- The search ---
+
+typedef struct Search {
+  const Tree *a, *b;
+  double size, best;
+  CagVec3 point; // of the second shape
+  size_t pairs;  // that the second walk may still refine
+  const volatile int *interrupt;
+  CagStatus status;
+  CagError *err;
+} Search;
+
+// Shapes nearer than this meet; what may be nearer than the best by less than this is not looked
+// at.
+static double touching(const Search *s) { return TOUCHING * s->size; }
+
+// A point or a flat triangle.
+static bool is_exact(const CagPart *part) { return !part->curve && !part->surface; }
+
+// Lowers the best distance by what the pair leads to; `chords` is that of their chords.
+static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chords) {
+  Pair pair = {.part = {a, b}};
+  double d = INFINITY;
+  CagVec3 p;
+  for (int side = 0; side < 2; side++) {
+    pair.free[side] = freedom(pair.part[side]);
+    for (int k = 0; k < pair.free[side]; k++) pair.x[pair.n++] = pair.part[side]->at[k];
+  }
+  s->status = refine(&pair, &d, &p, s->err);
+  // Points and flat triangles are their own chords.
+  if (is_exact(a) && is_exact(b)) d = chords;
+  if (s->status || d >= s->best) return;
+  s->best = d;
+  s->point = p;
+}
+
+static bool is_over(const Search *s) {
+  return s->status || s->pairs == 0 || s->best <= touching(s) || (s->interrupt && *s->interrupt);
+}
+
+// All pairs that may be nearer than the best, the nearer ones first.
+static void certify(Search *s, size_t i, size_t k) {
+  const Node *x = &s->a->nodes[i], *y = &s->b->nodes[k];
+  const double slack = EQUALLY_NEAR * s->size;
+  if (is_over(s) || gap(&x->box, &y->box) - x->sag - y->sag >= s->best - slack) return;
+  if (!x->left && !y->left) {
+    for (size_t m = 0; m < x->count; m++)
+      for (size_t n = 0; n < y->count && !is_over(s); n++) {
+        const CagPart *p = &s->a->parts->items[s->a->order[x->first + m]];
+        const CagPart *q = &s->b->parts->items[s->b->order[y->first + n]];
+        const double least = s->best - slack + p->sag + q->sag;
+        if (part_gap(p, q) >= least) continue;
+        const double chords = chord_distance(p, q);
+        if (chords >= least) continue;
+        s->pairs--;
+        try_pair(s, p, q, chords);
+      }
+    return;
+  }
+  const bool first = x->left && (!y->left || x->count >= y->count);
+  const Node *child = first ? &s->a->nodes[x->left] : &s->b->nodes[y->left];
+  const CagBounds *other = first ? &y->box : &x->box;
+  const size_t nearer = gap(&child[1].box, other) < gap(&child[0].box, other);
+  for (size_t turn = 0; turn < 2; turn++) {
+    const size_t c = turn ? 1 - nearer : nearer;
+    if (first) certify(s, x->left + c, k);
+    else certify(s, i, y->left + c);
+  }
+}
+
+static void find_nearest(Search *s) {
+  Nearest nearest = {.interrupt = s->interrupt};
+  const CagBounds *box[2] = {&s->a->nodes[0].box, &s->b->nodes[0].box};
+  for (int i = 0; i < 2; i++) s->size = fmax(s->size, cag_norm(cag_sub(box[i]->max, box[i]->min)));
+  walk(s->a, 0, s->b, 0, &nearest);
+  for (size_t i = 0; i < nearest.n && !is_over(s); i++)
+    try_pair(s, nearest.a[i], nearest.b[i], nearest.distance[i]);
+  certify(s, 0, 0);
+}
+
 CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, double *out, CagVec3 *point,
                              const volatile int *interrupt, CagError *err) {
   if (a->n == 0 || b->n == 0)
     return cag_fail(err, CAG_E_DEGENERATE, "zero-area", "", -1,
                     "a surface without area has no triangles to measure from");
   Tree first = {0}, second = {0};
-  Nearest nearest = {.interrupt = interrupt};
-  double best = INFINITY, size = 0;
+  Search s = {&first,    &second, .best = INFINITY, .pairs = MOST_PAIRS, .interrupt = interrupt,
+              .err = err};
   CagStatus status = grow_tree(a, &first, err);
   if (!status) status = grow_tree(b, &second, err);
   if (!status) {
-    walk(&first, 0, &second, 0, &nearest);
-    const CagBounds *box[2] = {&first.nodes[0].box, &second.nodes[0].box};
-    for (int i = 0; i < 2; i++) size = fmax(size, cag_norm(cag_sub(box[i]->max, box[i]->min)));
-    if (interrupt && *interrupt)
-      status = cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the search was interrupted");
+    find_nearest(&s);
+    status = s.status;
   }
-  const bool meet = nearest.n && nearest.distance[0] == 0;
-  for (size_t i = 0; !status && !meet && i < nearest.n; i++) {
-    Pair pair = {.part = {nearest.a[i], nearest.b[i]}};
-    double d = INFINITY;
-    CagVec3 p;
-    for (int side = 0; side < 2; side++) {
-      pair.free[side] = freedom(pair.part[side]);
-      for (int k = 0; k < pair.free[side]; k++) pair.x[pair.n++] = pair.part[side]->at[k];
-    }
-    status = refine(&pair, &d, &p, err);
-    // Flat pairs are exact as they are.
-    const bool flat = !nearest.a[i]->curve && !nearest.a[i]->surface && !nearest.b[i]->curve &&
-                      !nearest.b[i]->surface;
-    if (!status && flat) d = nearest.distance[i];
-    if (status || d >= best) continue;
-    best = d;
-    if (point) *point = p;
-  }
+  if (!status && interrupt && *interrupt)
+    status = cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the search was interrupted");
   free(first.order);
   free(first.nodes);
   free(second.order);
   free(second.nodes);
-  if (!status) *out = meet || best <= TOUCHING * size ? 0 : best;
-  return status;
+  if (status) return status;
+  *out = s.best <= touching(&s) ? 0 : s.best;
+  if (point) *point = s.point;
+  return CAG_OK;
 }
 
 // --- Inside ---

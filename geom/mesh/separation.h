@@ -13,7 +13,9 @@ typedef struct CagPart {
   const CagSurface *surface; // borrowed
   bool flat;                 // the triangle itself
   double at[2];              // parameters within the part
-  double low[2], high[2];    // where the search may go
+  double low[2], high[2];    // where the search may go: the smooth piece around
+  bool ring[2];              // may go around: a closed direction without breaks
+  double sag;                // how far the exact shape may leave its chord or triangle
 } CagPart;
 
 typedef struct CagParts {
@@ -23,13 +25,15 @@ typedef struct CagParts {
 
 CagStatus cag_parts_add_point(CagParts *parts, CagVec3 p, CagError *err);
 CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double tolerance, CagError *err);
-// The mesh of a surface, which has its parameters; surface NULL: the mesh is the shape.
+// The mesh of a surface, which has its parameters, to the tolerance; surface NULL: the mesh is the
+// shape.
 CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface *surface,
-                             CagError *err);
+                             double tolerance, CagError *err);
 void cag_parts_free(CagParts *parts);
 
 // The least distance of two sets of parts; 0 where they meet. Parts are compared by their chords
-// and flat triangles, and the nearest pairs then on the exact shapes (Newton's method).
+// and flat triangles, and then on the exact shapes (Newton's method) all pairs that the sag of
+// their parts allows to be nearer than the nearest one found.
 //
 //   point      of b, where they do not meet; may be NULL
 //   interrupt  NULL, or: not 0 stops with CAG_E_CALLBACK

@@ -216,7 +216,7 @@ static CagStatus body_add_surface(const CagVm *vm, Body *b, const CagSurface *s,
   how.interrupt = cag_vm_stop(vm);
   CagStatus status = cag_surface_tessellate(s, &how, &m, err);
   if (status) return status;
-  status = cag_parts_add_mesh(&b->parts, m, flat ? NULL : s, err);
+  status = cag_parts_add_mesh(&b->parts, m, flat ? NULL : s, tolerance, err);
   cag_mesh_release(m);
   return status;
 }
@@ -258,7 +258,7 @@ static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, 
   how.interrupt = cag_vm_stop(vm);
   CagStatus status = cag_solid_tessellate(s, &how, &m, err);
   if (status) return status;
-  status = cag_parts_add_mesh(&b->parts, m, NULL, err);
+  status = cag_parts_add_mesh(&b->parts, m, NULL, 0, err);
   cag_mesh_release(m);
   return status;
 }
@@ -272,7 +272,7 @@ static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tol
   case CAG_REGION:
     return body_add_region(vm, b, shape->as.region, &shape->placement, tolerance, err);
   case CAG_SURFACE: return body_add_face(vm, b, shape->as.surface, tolerance, err);
-  case CAG_MESH: return cag_parts_add_mesh(&b->parts, shape->as.mesh, NULL, err);
+  case CAG_MESH: return cag_parts_add_mesh(&b->parts, shape->as.mesh, NULL, 0, err);
   default:
     if (cag_solid_is_compound(shape->as.solid))
       return body_add_compound(vm, b, shape->as.solid, tolerance, err);
@@ -478,9 +478,8 @@ const CagBuiltin cag_builtins_hulls[] = {
     {"distance(G, P)", call_distance, "number",
      "The least distance (mm) of a shape or group from a point or another shape; 0 where they "
      "meet, and within a solid or closed mesh. It is that of the exact shapes, not of their "
-     "meshes, by Newton's method from the nearest places of their meshes; where several places "
-     "are equally near to 1e-4 of the size, it may be that of any of them. `distance(P, G)` is the "
-     "same.",
+     "meshes: every place whose mesh is near enough is tried by Newton's method. "
+     "`distance(P, G)` is the same.",
      "print near(distance(sphere(2), translate(sphere(1), [5, 0, 0])), 2) // expect: true\n"
      "print near(distance([0, 0, 5], torus(3, 1)), sqrt(34) - 1) // expect: true\n"
      "print distance(box(2), [1, 1, 1]) // expect: 0",

@@ -81,8 +81,9 @@ static bool call_intersect(CagCall *call, CagValue *result) {
 
 const CagBuiltin cag_builtins_meetings[] = {
     {"closest(S, P)", call_closest, "record",
-     "The place of the surface nearest to P: u, v, point and distance (mm). Of several that are "
-     "equally near it is one.",
+     "The point of the surface nearest to P: u, v, point and distance (mm). If several are equally "
+     "near, it is one of them. For surfaces with an exact NURBS form, bounds make sure that no "
+     "other point is nearer. Others are sampled as finely as they bend.",
      "c = closest(sphere_surface(2), [0, 5, 0])\n"
      "print near(c.point, [0, 2, 0]), near(c.distance, 3), c.u, c.v // expect: true true 90deg "
      "90deg",

@@ -184,12 +184,12 @@ static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state
   OK(cag_surface_torus(5, 1, &s, &err));
   OK(cag_surface_transform(s, &lift, &moved, &err));
   OK(cag_surface_tessellate(s, &how, &m, &err));
-  OK(cag_parts_add_mesh(&a, m, s, &err));
+  OK(cag_parts_add_mesh(&a, m, s, how.tolerance, &err));
   NEAR(cag_mesh_winding(m, cag_vec3(5, 0, 0.3)), 1, 1e-9);
   NEAR(cag_mesh_winding(m, cag_vec3(0, 0, 0.3)), 0, 1e-9);
   cag_mesh_release(m);
   OK(cag_surface_tessellate(moved, &how, &m, &err));
-  OK(cag_parts_add_mesh(&b, m, moved, &err));
+  OK(cag_parts_add_mesh(&b, m, moved, how.tolerance, &err));
   OK(cag_parts_distance(&a, &b, &distance, &foot, NULL, &err));
   NEAR(distance, 5, 1e-12);
   NEAR(foot.z, 6, 1e-9);

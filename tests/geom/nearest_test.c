@@ -271,8 +271,75 @@ static void trimmed_surfaces_count_within_their_outlines(void **state) {
   cag_curve_release(outline);
 }
 
+// --- Curves ---
+
+static CagCurve *random_curve(int kind) {
+  CagVec3 p[7];
+  double weights[7], knots[11];
+  CagCurve *c = NULL;
+  CagTransform frame = cag_transform_identity();
+  for (int i = 0; i < 7; i++) {
+    p[i] = anywhere(10);
+    weights[i] = between(0.1, 3);
+  }
+  for (int i = 0; i < 11; i++) knots[i] = i < 4 ? 0 : i > 6 ? 4 : i - 3;
+  switch (kind) {
+  case 0: MUST(cag_curve_bezier(p, NULL, 6, 3, &c, err)); break;
+  case 1: MUST(cag_curve_nurbs(p, weights, 7, 3, knots, 3, &c, err)); break;
+  case 2: MUST(cag_curve_polyline(p, 7, false, 3, &c, err)); break;
+  case 3: MUST(cag_curve_arc(weights[0], weights[1], 0, 5, &frame, &c, err)); break;
+  default: MUST(cag_curve_helix(2 + weights[0], 1, 3, weights[1], &c, err)); break;
+  }
+  return c;
+}
+
+static double curve_distance(const CagCurve *c, CagVec3 p, double t) {
+  CagVec3 q;
+  MUST(cag_curve_point(c, t, &q, err));
+  return cag_norm(cag_sub(p, q));
+}
+
+// Samples, and thirds of the intervals about the lowest of them.
+static double dense_curve_distance(const CagCurve *c, CagVec3 p) {
+  enum { SAMPLES = 300 };
+  double best = INFINITY, at[SAMPLES + 1], h = (c->end - c->start) / SAMPLES;
+  for (int i = 0; i <= SAMPLES; i++) at[i] = curve_distance(c, p, fmin(c->end, c->start + h * i));
+  for (int i = 0; i <= SAMPLES; i++) {
+    if ((i > 0 && at[i - 1] < at[i]) || (i < SAMPLES && at[i + 1] < at[i])) continue;
+    double a = fmax(c->start, c->start + h * (i - 1)), b = fmin(c->end, c->start + h * (i + 1));
+    for (int k = 0; k < 80; k++) {
+      const double x = a + (b - a) / 3, y = b - (b - a) / 3;
+      if (curve_distance(c, p, x) < curve_distance(c, p, y)) b = y;
+      else a = x;
+    }
+    best = fmin(best, fmin(at[i], curve_distance(c, p, (a + b) / 2)));
+  }
+  return best;
+}
+
+static void nearest_points_of_curves_are_right_and_perpendicular(void **state) {
+  (void)state;
+  state_of_random = 1234;
+  for (int i = 0; i < 300; i++) {
+    CagCurve *c = random_curve(i % 5);
+    const CagVec3 p = anywhere(12);
+    CagVec3 q, d[2];
+    double t, distance, to_corner = INFINITY;
+    MUST(cag_curve_closest(c, p, &t, &q, &distance, err));
+    const double dense = dense_curve_distance(c, p);
+    if (distance > dense + 1e-9) fail_msg("curve %d: %.17g, but %.17g", i, distance, dense);
+    MUST(cag_curve_eval(c, t, 1, CAG_SIDE_RIGHT, d, err));
+    for (int k = 0; i % 5 == 2 && k < 7; k++) to_corner = fmin(to_corner, fabs(t - k));
+    // Rounding of coordinates of up to 12, whose differences are turned into a slope.
+    if (t > c->start && t < c->end && to_corner > 0)
+      assert_near(cag_dot(cag_sub(q, p), cag_unit(d[1])), 0, 3e-14, "leaning");
+    cag_curve_release(c);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(nearest_points_of_curves_are_right_and_perpendicular),
       cmocka_unit_test(nearest_points_of_creased_surfaces_are_right),
       cmocka_unit_test(nearest_points_of_tensor_surfaces_are_right),
       cmocka_unit_test(nearest_points_of_other_kinds_are_right),
