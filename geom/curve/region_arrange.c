@@ -6,6 +6,10 @@
 // edge, by a ray from its middle; the edges whose two sides differ by the rule, chained to loops
 // with the region to their left (region_chain.c).
 //
+// Edges run from corner to corner, so where ends were moved together they may meet what their
+// pieces did not. They are cut there in turn, until nothing meets but at corners (as in snap
+// rounding, Hobby 1999); only then do rays tell on which side of an edge another one lies.
+//
 // Every walk is a chain from corner to corner, so counts balance at each corner however points were
 // moved together: winding numbers stay those of closed curves.
 
@@ -21,6 +25,8 @@
 
 // Points nearer than this part of the size of all are one: what touches count as in intersections.
 #define SAME 1e-9
+// Edges whose ends were moved are cut again where they then meet, so many times at most.
+#define ROUNDS 16
 // Where rounding left loops open the tolerance grows by a factor, so many times.
 #define GROWTH 8
 #define ATTEMPTS 4
@@ -61,7 +67,15 @@ static CagStatus corner_at(Corners *c, CagVec3 p, double tolerance, size_t *out,
         *out = v;
       }
   if (*out != none) return CAG_OK;
-  if (c->n == c->capacity) return cag_fail_memory(err);
+  if (c->n == c->capacity) {
+    const size_t capacity = 2 * c->capacity + 8;
+    CagVec3 *points = realloc(c->points, sizeof *points * capacity);
+    if (points) c->points = points;
+    size_t *next = realloc(c->next, sizeof *next * capacity);
+    if (next) c->next = next;
+    if (!points || !next) return cag_fail_memory(err);
+    c->capacity = capacity;
+  }
   const size_t b = bucket(c, x, y);
   c->points[c->n] = p;
   c->next[c->n] = c->heads[b];
@@ -93,36 +107,39 @@ typedef struct Edges {
   size_t n;
 } Edges;
 
+// Corners at the ends of the pieces. They come before meetings, so that meetings are moved to them
+// and not they to meetings.
+static CagStatus make_corners(CagRegionPieces *s, Corners *corners, CagError *err) {
+  CagStatus status = corners_new(corners, 2 * s->n, s->tolerance, err);
+  for (size_t i = 0; !status && i < s->n; i++) {
+    CagRegionPiece *piece = &s->items[i];
+    status = corner_at(corners, piece->p, s->tolerance, &piece->from, err);
+    if (!status) status = corner_at(corners, piece->q, s->tolerance, &piece->to, err);
+  }
+  return status;
+}
+
 // Cuts the pieces at their meetings; what shrank to a corner is dropped.
 static CagStatus make_edges(const CagRegionPieces *s, const CagRegionCut *cuts, size_t cut_count,
                             Corners *corners, Edges *out, CagError *err) {
   out->items = malloc(sizeof *out->items * (s->n + cut_count + 1));
   if (!out->items) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
-  // The given corners come first, so that meetings are moved to them and not they to meetings.
-  for (size_t i = 0; !status && i < s->n; i++) {
-    size_t ignored;
-    status = corner_at(corners, s->items[i].p, s->tolerance, &ignored, err);
-    if (!status) status = corner_at(corners, s->items[i].q, s->tolerance, &ignored, err);
-  }
   size_t k = 0;
   for (size_t i = 0; !status && i < s->n; i++) {
     const CagRegionPiece *piece = &s->items[i];
-    size_t from, to;
+    size_t from = piece->from, to = piece->to;
     double a = piece->a;
-    status = corner_at(corners, piece->p, s->tolerance, &from, err);
     for (bool last = false; !status && !last;) {
       last = k == cut_count || cuts[k].piece != i;
       const double b = last ? piece->b : cuts[k].t;
-      status = corner_at(corners, last ? piece->q : cuts[k].point, s->tolerance, &to, err);
-      if (!last) k++;
+      if (last) to = piece->to;
+      else status = corner_at(corners, cuts[k++].point, s->tolerance, &to, err);
       // What is left at the end of a piece belongs to the edge before it.
       if (!status && last && from == to && a > piece->a) out->items[out->n - 1].b = b;
       if (status || from == to || (!(b > a) && !last)) continue;
-      const CagWalk *walk = &s->walks[piece->walk];
-      CagRegionEdge e = {.from = from, .to = to, .piece = i, .a = a, .b = b};
-      e.count[walk->operand] = walk->sign;
-      out->items[out->n++] = e;
+      out->items[out->n++] =
+          (CagRegionEdge){from, to, i, a, b, {piece->count[0], piece->count[1]}, 0};
       from = to;
       a = b;
     }
@@ -197,6 +214,59 @@ static CagStatus join_alike(const CagRegionPieces *s, Edges *edges, CagError *er
       edges->items[kept++] = edges->items[i];
   edges->n = kept;
   return CAG_OK;
+}
+
+// --- Until nothing meets ---
+
+// Edges no longer than this, in tolerances, are straight: their ends were moved by one each, and
+// there may be no room for their parameters.
+#define SPECK 4
+
+// The edges as the pieces, which run from corner to corner.
+static CagStatus pieces_of_edges(CagRegionPieces *s, Edges *edges, const Corners *corners,
+                                 CagError *err) {
+  CagRegionPiece *items = malloc(sizeof *items * (edges->n + 1));
+  if (!items) return cag_fail_memory(err);
+  for (size_t i = 0; i < edges->n; i++) {
+    CagRegionEdge *e = &edges->items[i];
+    items[i] = s->items[e->piece];
+    items[i].a = e->a;
+    items[i].b = e->b;
+    items[i].p = corners->points[e->from];
+    items[i].q = corners->points[e->to];
+    items[i].from = e->from;
+    items[i].to = e->to;
+    items[i].part = NULL;
+    for (int o = 0; o < 2; o++) items[i].count[o] = e->count[o];
+    items[i].straight |=
+        hypot(items[i].q.x - items[i].p.x, items[i].q.y - items[i].p.y) <= SPECK * s->tolerance;
+    e->piece = i;
+  }
+  cag_region_pieces_free(s);
+  s->items = items;
+  s->n = s->capacity = edges->n;
+  return CAG_OK;
+}
+
+// Cuts pieces where they meet, moves what is near together to corners, and cuts what that made meet
+// again, until nothing does.
+static CagStatus cut_pieces(CagRegionPieces *s, Corners *corners, Edges *edges, CagError *err) {
+  CagStatus status = make_corners(s, corners, err);
+  for (int round = 0; !status && round < ROUNDS; round++) {
+    CagRegionCut *cuts = NULL;
+    size_t cut_count = 0;
+    const size_t before = s->n;
+    status = cag_region_pieces_meet(s, round > 0, &cuts, &cut_count, err);
+    free(edges->items);
+    *edges = (Edges){0};
+    if (!status) status = make_edges(s, cuts, cut_count, corners, edges, err);
+    free(cuts);
+    const bool cut = edges->n != before;
+    if (!status) status = join_alike(s, edges, err);
+    if (!status) status = pieces_of_edges(s, edges, corners, err);
+    if (round > 0 && !cut) break;
+  }
+  return status;
 }
 
 // --- Winding numbers ---
@@ -339,17 +409,11 @@ static CagStatus classify(const CagRegionPieces *s, Edges *edges, const Corners 
 static CagStatus attempt(const CagWalk *walks, size_t n, double tolerance, double thin,
                          CagFaceRule rule, int parameter, CagRegion **out, CagError *err) {
   CagRegionPieces pieces = {.walks = walks, .tolerance = tolerance, .thin = fmax(tolerance, thin)};
-  CagRegionCut *cuts = NULL;
   Corners corners = {0};
   Edges edges = {0};
-  size_t cut_count = 0;
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < n; i++) status = cag_region_pieces_add(&pieces, i, err);
-  if (!status) status = cag_region_pieces_meet(&pieces, &cuts, &cut_count, err);
-  if (!status) status = corners_new(&corners, 2 * pieces.n + cut_count, tolerance, err);
-  if (!status) status = make_edges(&pieces, cuts, cut_count, &corners, &edges, err);
-  free(cuts);
-  if (!status) status = join_alike(&pieces, &edges, err);
+  if (!status) status = cut_pieces(&pieces, &corners, &edges, err);
   if (!status) status = classify(&pieces, &edges, &corners, rule, parameter, err);
   if (!status)
     status = cag_region_chain(&pieces, edges.items, edges.n, corners.points, corners.n, out, err);

@@ -29,10 +29,13 @@ CagStatus cag_region_arrange(const CagWalk *walks, size_t n, CagFaceRule rule, i
 
 typedef struct CagRegionPiece {
   size_t walk;
-  double a, b;   // over the walk's curve
-  CagVec3 p, q;  // its ends
-  bool straight; // a segment from p to q
-  bool round;    // part of a circle: center, radius
+  size_t source;   // number of the piece of the walk that it is part of
+  int count[2];    // how often it is run, forwards less backwards, by operand
+  double a, b;     // over the walk's curve
+  CagVec3 p, q;    // its ends
+  size_t from, to; // the corners there, once pieces have been cut
+  bool straight;   // a segment from p to q
+  bool round;      // part of a circle: center, radius
   CagVec3 center;
   double radius;
   CagCurve *part; // the piece as a curve, made when first asked for
@@ -69,7 +72,10 @@ typedef struct CagRegionCut {
   CagVec3 point;
 } CagRegionCut;
 
-// Cuts of all pieces, by piece and t; *out is malloc'd.
-CagStatus cag_region_pieces_meet(CagRegionPieces *s, CagRegionCut **out, size_t *n, CagError *err);
+// Cuts of all pieces, by piece and t; *out is malloc'd. `again`: the pieces were cut before, and
+// their ends moved together; what that may have made meet is looked for, and their ends are no
+// cuts.
+CagStatus cag_region_pieces_meet(CagRegionPieces *s, bool again, CagRegionCut **out, size_t *n,
+                                 CagError *err);
 
 #endif

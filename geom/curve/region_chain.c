@@ -226,6 +226,17 @@ static CagStatus fit_ends(CagCurve **curve, CagVec3 from, CagVec3 to, double tol
   return CAG_OK;
 }
 
+// Whether edge f goes on straight from e, which starts at p or on the way from p: they are of one
+// segment, and the corner between them, if others met it there, was not moved off it.
+static bool runs_on(const Chain *c, CagVec3 p, const CagRegionEdge *e, const CagRegionEdge *f) {
+  const double moved = 1e-3; // tolerances
+  if (c->s->items[e->piece].source != c->s->items[f->piece].source) return false;
+  const CagVec3 between = cag_sub(c->corners[edge_end(e)], p),
+                d = cag_sub(c->corners[edge_end(f)], p);
+  return fabs(d.x * between.y - d.y * between.x) <= moved * c->s->tolerance * hypot(d.x, d.y) &&
+         cag_dot(d, between) > 0;
+}
+
 // A run of segments, without the corners at which others met them.
 static CagStatus straight_run(const Chain *c, const size_t *loop, size_t n, CagCurve **out,
                               CagError *err) {
@@ -235,7 +246,7 @@ static CagStatus straight_run(const Chain *c, const size_t *loop, size_t n, CagC
   for (size_t i = 0; i < n; i++) {
     const CagRegionEdge *e = loop_edge(c, loop, i);
     if (i == 0) p[m++] = c->corners[edge_start(e)];
-    if (i + 1 < n && loop_edge(c, loop, i + 1)->piece == e->piece) continue;
+    if (i + 1 < n && runs_on(c, p[m - 1], e, loop_edge(c, loop, i + 1))) continue;
     p[m++] = c->corners[edge_end(e)];
   }
   CagStatus status = m == 2 ? cag_curve_line(p[0], p[1], 2, out, err)
@@ -256,8 +267,9 @@ static CagStatus run_curve(const Chain *c, const size_t *loop, size_t n, CagCurv
     return straight_run(c, loop, n, out, err);
   const bool forward = e->keep > 0;
   const double a = forward ? e->a : f->a, b = forward ? f->b : e->b;
-  // What rounding left of a piece between two corners.
-  if (!(b - a > DBL_EPSILON * 8 * fmax(fabs(a), fabs(b))))
+  // A speck of a bent piece, or what rounding left of one.
+  if ((n == 1 && c->s->items[e->piece].straight) ||
+      !(b - a > DBL_EPSILON * 8 * fmax(fabs(a), fabs(b))))
     return cag_curve_line(c->corners[edge_start(e)], c->corners[edge_end(f)], 2, out, err);
   CagCurve *part;
   CagStatus status = cag_curve_trim(curve, a, b, &part, err);

@@ -14,11 +14,17 @@
 
 typedef struct Meetings {
   CagRegionPieces *pieces;
+  bool again;
+  double tolerance; // an end this near to a piece lies on it
   CagRegionCut *items;
   size_t n, capacity;
 } Meetings;
 
+static bool same(CagVec3 p, CagVec3 q) { return p.x == q.x && p.y == q.y; }
+
 static CagStatus cut(Meetings *m, size_t piece, double t, CagVec3 point, CagError *err) {
+  const CagRegionPiece *p = &m->pieces->items[piece];
+  if (m->again && (same(point, p->p) || same(point, p->q))) return CAG_OK;
   if (m->n == m->capacity) {
     size_t capacity = m->capacity ? 2 * m->capacity : 64;
     CagRegionCut *grown = realloc(m->items, sizeof *grown * capacity);
@@ -26,7 +32,6 @@ static CagStatus cut(Meetings *m, size_t piece, double t, CagVec3 point, CagErro
     m->items = grown;
     m->capacity = capacity;
   }
-  const CagRegionPiece *p = &m->pieces->items[piece];
   m->items[m->n++] = (CagRegionCut){piece, fmin(fmax(t, p->a), p->b), point};
   return CAG_OK;
 }
@@ -38,11 +43,11 @@ static CagStatus cut_both(Meetings *m, size_t i, double t, size_t k, double u, C
 }
 
 static bool near(const Meetings *m, CagVec3 p, CagVec3 q) {
-  return hypot(p.x - q.x, p.y - q.y) <= m->pieces->tolerance;
+  return hypot(p.x - q.x, p.y - q.y) <= m->tolerance;
 }
 
 static bool in_box(const Meetings *m, const CagRegionPiece *piece, CagVec3 p) {
-  const double slack = m->pieces->tolerance;
+  const double slack = m->tolerance;
   return p.x >= fmin(piece->p.x, piece->q.x) - slack &&
          p.x <= fmax(piece->p.x, piece->q.x) + slack &&
          p.y >= fmin(piece->p.y, piece->q.y) - slack && p.y <= fmax(piece->p.y, piece->q.y) + slack;
@@ -61,27 +66,41 @@ static double along(const CagRegionPiece *piece, double u) {
   return u == 1 ? piece->b : piece->a + (piece->b - piece->a) * u;
 }
 
-static CagStatus end_on_segment(Meetings *m, size_t segment, CagVec3 end, CagError *err) {
+// Cuts the segment where an end of another lies on it; *found: it does.
+static CagStatus end_on_segment(Meetings *m, size_t segment, CagVec3 end, bool *found,
+                                CagError *err) {
   const CagRegionPiece *piece = &m->pieces->items[segment];
   if (!in_box(m, piece, end)) return CAG_OK;
   const double u = foot(piece, end);
   if (!near(m, cag_lerp(piece->p, piece->q, u), end)) return CAG_OK;
+  *found = true;
   return cut(m, segment, along(piece, u), end, err);
 }
 
+// How far the point lies to the left of the segment's line, times the segment's length.
+static double beside(const CagRegionPiece *piece, CagVec3 p) {
+  const CagVec3 d = cag_sub(piece->q, piece->p), r = cag_sub(p, piece->p);
+  return d.x * r.y - d.y * r.x;
+}
+
+static bool on_two_sides(double g, double h) { return (g < 0 && h > 0) || (g > 0 && h < 0); }
+
+// Segments with an end of one on the other do not cross besides: that end becomes a corner of both.
+// Others cross where each has its ends on two sides of the other's line. What rounding does to the
+// place of a crossing at a small angle is along both of them.
 static CagStatus meet_segments(Meetings *m, size_t i, size_t k, bool ends_only, CagError *err) {
   const CagRegionPiece *a = &m->pieces->items[i], *b = &m->pieces->items[k];
-  CagStatus status = end_on_segment(m, i, b->p, err);
-  if (!status) status = end_on_segment(m, i, b->q, err);
-  if (!status) status = end_on_segment(m, k, a->p, err);
-  if (!status) status = end_on_segment(m, k, a->q, err);
-  if (status || ends_only) return status;
-  const CagVec3 d = cag_sub(a->q, a->p), e = cag_sub(b->q, b->p), r = cag_sub(b->p, a->p);
-  const double det = d.x * e.y - d.y * e.x;
-  if (det == 0) return CAG_OK;
-  const double u = (r.x * e.y - r.y * e.x) / det, v = (r.x * d.y - r.y * d.x) / det;
-  if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1)) return CAG_OK;
-  return cut_both(m, i, along(a, u), k, along(b, v), cag_lerp(a->p, a->q, u), err);
+  bool touch = false;
+  CagStatus status = end_on_segment(m, i, b->p, &touch, err);
+  if (!status) status = end_on_segment(m, i, b->q, &touch, err);
+  if (!status) status = end_on_segment(m, k, a->p, &touch, err);
+  if (!status) status = end_on_segment(m, k, a->q, &touch, err);
+  if (status || ends_only || touch) return status;
+  const double g = beside(b, a->p), h = beside(b, a->q);
+  if (!on_two_sides(g, h) || !on_two_sides(beside(a, b->p), beside(a, b->q))) return CAG_OK;
+  const double u = g / (g - h);
+  const CagVec3 point = cag_lerp(a->p, a->q, u);
+  return cut_both(m, i, along(a, u), k, along(b, foot(b, point)), point, err);
 }
 
 // --- Circles ---
@@ -123,7 +142,7 @@ static CagStatus cut_pair(Meetings *m, size_t i, size_t k, CagVec3 from, CagVec3
 // Piece i is part of a circle, k a segment or part of a circle.
 static CagStatus meet_circle(Meetings *m, size_t i, size_t k, CagError *err) {
   const CagRegionPiece *a = &m->pieces->items[i], *b = &m->pieces->items[k];
-  const double r = a->radius, tolerance = m->pieces->tolerance;
+  const double r = a->radius, tolerance = m->tolerance;
   if (b->straight) {
     const CagVec3 d = cag_sub(b->q, b->p);
     const double length = cag_norm(d);
@@ -190,7 +209,7 @@ static CagStatus lies_on(Meetings *m, size_t i, CagVec3 p, bool *out, double *t,
   }
   if (piece->round) {
     const CagVec3 r = cag_sub(p, piece->center);
-    *out = fabs(cag_norm(r) - piece->radius) <= m->pieces->tolerance;
+    *out = fabs(cag_norm(r) - piece->radius) <= m->tolerance;
     if (!*out) return CAG_OK;
     const int axis = fabs(r.x) > fabs(r.y);
     CagVec3 there;
@@ -202,7 +221,7 @@ static CagStatus lies_on(Meetings *m, size_t i, CagVec3 p, bool *out, double *t,
   double distance;
   CagStatus status = part_of(m, i, &part, err);
   if (!status) status = cag_curve_closest(part, p, t, &closest, &distance, err);
-  *out = !status && distance <= m->pieces->tolerance;
+  *out = !status && distance <= m->tolerance;
   return status;
 }
 
@@ -294,16 +313,22 @@ typedef enum Meet { NEVER, AT_ENDS, ANYWHERE } Meet;
 
 // Pieces of one group do not cross, but an end of one may touch another. Neighbours of one curve
 // that is bent do not meet at all: they were parted where one coordinate turns, the other keeps
-// them apart.
-static Meet may_meet(const CagRegionPieces *s, const CagRegionPiece *a, const CagRegionPiece *b) {
+// them apart. Pieces that were cut where they meet are met again where their ends were moved to.
+static Meet may_meet(const CagRegionPieces *s, const CagRegionPiece *a, const CagRegionPiece *b,
+                     bool again) {
   const int group = s->walks[a->walk].group;
   if (a->walk == b->walk && (a->b == b->a || b->b == a->a) && !a->straight && !b->straight)
     return NEVER;
+  if (again) return a->straight && b->straight ? ANYWHERE : AT_ENDS;
   return group >= 0 && group == s->walks[b->walk].group ? AT_ENDS : ANYWHERE;
 }
 
-CagStatus cag_region_pieces_meet(CagRegionPieces *s, CagRegionCut **out, size_t *n, CagError *err) {
-  Meetings m = {.pieces = s};
+CagStatus cag_region_pieces_meet(CagRegionPieces *s, bool again, CagRegionCut **out, size_t *n,
+                                 CagError *err) {
+  // Corners are farther apart than the tolerance. So where one is less than half of that from a
+  // segment between two others, the angle there is greater than 120 degrees, both parts are shorter
+  // than the segment by a part of the tolerance, and cutting again and again comes to an end.
+  Meetings m = {.pieces = s, .again = again, .tolerance = again ? s->tolerance / 2 : s->tolerance};
   Box *boxes = malloc(sizeof *boxes * (s->n + 1));
   if (!boxes) return cag_fail_memory(err);
   const double slack = s->tolerance;
@@ -321,7 +346,7 @@ CagStatus cag_region_pieces_meet(CagRegionPieces *s, CagRegionCut **out, size_t 
       const Box *b = &boxes[k];
       if (b->y0 > a->y1 || a->y0 > b->y1) continue;
       const CagRegionPiece *p = &s->items[a->piece], *q = &s->items[b->piece];
-      const Meet where = may_meet(s, p, q);
+      const Meet where = may_meet(s, p, q, again);
       if (where == NEVER) continue;
       status = p->straight && q->straight
                    ? meet_segments(&m, a->piece, b->piece, where == AT_ENDS, err)

@@ -28,6 +28,7 @@ static CagStatus add(CagRegionPieces *s, CagRegionPiece piece, CagError *err) {
     s->items = grown;
     s->capacity = capacity;
   }
+  piece.source = s->n;
   s->items[s->n++] = piece;
   return CAG_OK;
 }
@@ -54,6 +55,7 @@ static CagStatus add_part(CagRegionPieces *s, size_t walk, double a, double b, b
                           CagError *err) {
   const CagCurve *c = s->walks[walk].curve;
   CagRegionPiece piece = {.walk = walk, .a = a, .b = b, .straight = straight};
+  piece.count[s->walks[walk].operand] = s->walks[walk].sign;
   CagStatus status = cag_curve_eval(c, a, 0, CAG_SIDE_RIGHT, &piece.p, err);
   if (!status) status = cag_curve_eval(c, b, 0, CAG_SIDE_LEFT, &piece.q, err);
   if (!straight) find_circle(c, &piece);
