@@ -38,4 +38,10 @@ CagStatus cag_solid_check_size(double size, const char *name, long index, CagErr
 // A disk of the XY plane about the origin.
 CagStatus cag_solid_disk(double radius, CagRegion **out, CagError *err);
 
+// Tells which faces of a closed shell to turn so that its parts look outward, and inward where they
+// are within an odd number of others. part[f], below `parts`: the part of face f; the faces of one
+// agree.
+CagStatus cag_solid_nest(CagSurface *const *faces, size_t n, const size_t *part, size_t parts,
+                         bool *turn, CagError *err);
+
 #endif

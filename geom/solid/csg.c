@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/mesh/orient.h"
 #include "geom/solid/build.h"
 
 bool cag_solid_is_compound(const CagSolid *s) { return s->core != NULL; }
@@ -108,8 +109,7 @@ CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err) {
   if (terms[0] == 0)
     return cag_fail(err, CAG_E_DEGENERATE, "mesh-flat", "", -1,
                     "the mesh encloses no volume: its faces lie on each other");
-  if (terms[0] < 0) status = cag_mesh_flip(m, &outward, err);
-  else outward = cag_mesh_retain(m);
+  status = cag_mesh_outward(m, &outward, err);
   if (!status) status = block(CAG_SOLID_MESH, 0, &s, err);
   if (status) {
     cag_mesh_release(outward);

@@ -182,32 +182,28 @@ static CagStatus pair_edges(CagSolid *s, Boundaries *all, Link *links, size_t *c
   return CAG_OK;
 }
 
-// Which faces must be turned so that neighbours agree; faces without links keep their side.
-static void orient(size_t faces, const Link *links, size_t count, bool *turn, bool *known) {
+// Which faces must be turned so that neighbours agree; faces without links keep their side. part:
+// the number of each face's connected part, `none` before. Gives the number of parts.
+static size_t orient(size_t faces, const Link *links, size_t count, bool *turn, size_t *part) {
+  const size_t none = SIZE_MAX;
+  size_t parts = 0;
+  for (size_t f = 0; f < faces; f++) part[f] = none;
   for (size_t seed = 0; seed < faces; seed++) {
-    if (known[seed]) continue;
-    known[seed] = true;
+    if (part[seed] != none) continue;
+    part[seed] = parts++;
     for (bool changed = true; changed;) {
       changed = false;
       for (size_t k = 0; k < count; k++) {
         const Link *l = &links[k];
-        if (known[l->a] == known[l->b]) continue;
-        size_t from = known[l->a] ? l->a : l->b, to = known[l->a] ? l->b : l->a;
+        if ((part[l->a] == none) == (part[l->b] == none)) continue;
+        size_t from = part[l->a] != none ? l->a : l->b, to = part[l->a] != none ? l->b : l->a;
         turn[to] = turn[from] != !l->agrees;
-        known[to] = changed = true;
+        part[to] = part[from];
+        changed = true;
       }
     }
   }
-}
-
-static CagStatus signed_volume(const CagSolid *s, double *out, CagError *err) {
-  double terms[10] = {0};
-  for (size_t i = 0; i < s->face_count; i++) {
-    CagStatus status = cag_surface_volume_terms(s->faces[i], terms, err);
-    if (status) return status;
-  }
-  *out = terms[0];
-  return CAG_OK;
+  return parts;
 }
 
 // Turns the faces that `turn` names, with their edges.
@@ -230,18 +226,31 @@ static CagStatus turn_faces(CagSolid *s, const bool *turn, CagError *err) {
   return CAG_OK;
 }
 
-static CagStatus face_outward(CagSolid *s, const Link *links, size_t count, CagError *err) {
-  bool *turn = calloc(2 * s->face_count + 1, sizeof *turn);
-  if (!turn) return cag_fail_memory(err);
-  orient(s->face_count, links, count, turn, turn + s->face_count);
-  CagStatus status = turn_faces(s, turn, err);
-  double volume = 0;
-  if (!status) status = signed_volume(s, &volume, err);
-  if (!status && volume < 0) {
-    for (size_t i = 0; i < s->face_count; i++) turn[i] = true;
-    status = turn_faces(s, turn, err);
+// Parts with edges that correspond to no single other one close only together: they become one
+// part, the first of them.
+static void join_unpaired(const Boundaries *all, size_t faces, size_t *part) {
+  size_t first = SIZE_MAX;
+  for (size_t i = 0; i < all->n; i++) {
+    if (all->at[i].paired) continue;
+    const size_t other = part[all->at[i].face];
+    if (first == SIZE_MAX) first = other;
+    for (size_t f = 0; f < faces; f++)
+      if (part[f] == other) part[f] = first;
   }
+}
+
+static CagStatus face_outward(CagSolid *s, const Boundaries *all, const Link *links, size_t count,
+                              CagError *err) {
+  bool *turn = calloc(s->face_count + 1, sizeof *turn);
+  size_t *part = malloc((s->face_count + 1) * sizeof *part);
+  CagStatus status = turn && part ? CAG_OK : cag_fail_memory(err);
+  size_t parts = status ? 0 : orient(s->face_count, links, count, turn, part);
+  if (!status) join_unpaired(all, s->face_count, part);
+  if (!status) status = turn_faces(s, turn, err);
+  if (!status) status = cag_solid_nest(s->faces, s->face_count, part, parts, turn, err);
+  if (!status) status = turn_faces(s, turn, err);
   free(turn);
+  free(part);
   return status;
 }
 
@@ -266,7 +275,7 @@ CagStatus cag_solid_shell(CagSurface *const *faces, size_t n, CagSolid **out, Ca
   for (size_t i = 0; !status && i < n; i++) cag_solid_add(s, cag_surface_retain(faces[i]));
   if (!status) status = pair_edges(s, &all, links, &count, err);
   if (!status) status = check_closed(&all, err);
-  if (!status) status = face_outward(s, links, count, err);
+  if (!status) status = face_outward(s, &all, links, count, err);
   free(links);
   boundaries_free(&all);
   if (status) cag_solid_release(s);

@@ -440,6 +440,13 @@ CagStatus cag_surface_flip(const CagSurface *s, CagSurface **out, CagError *err)
     cag_region_release(image);
     return status;
   }
+  const CagCurve *profile;
+  CagVec3 axis, through;
+  double from, to;
+  // The same profile turned the other way, where that leaves the ends of the turn where they are.
+  if (cag_surface_revolution_view(s, &profile, &axis, &through, &from, &to) &&
+      (from == -to || (from == 0 && to == 2 * M_PI)))
+    return cag_surface_revolve(profile, cag_scaled(axis, -1), through, from, to, out, err);
   CagTransform identity = cag_transform_identity();
   return cag_surface_placed(s, &identity, true, out, err);
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/mesh/orient.h"
 #include "interp/export/brep_build.h"
 
 // Ends and edges that are meant to meet do so to this part of a shape's size: what the checks of
@@ -186,11 +187,21 @@ static CagStatus fail_mesh(const CagItem *item, CagError *err) {
                   item->name);
 }
 
+// The normals of a closed surface point outward, as those of a solid.
+static CagStatus add_surface(CagBrepWork *w, const CagSurface *s, CagError *err) {
+  CagSurface *outward;
+  CagStatus status = cag_surface_outward(s, &outward, err);
+  if (status) return status;
+  status = cag_brep_add_surface(w, outward, 0, err);
+  cag_surface_release(outward);
+  return status;
+}
+
 static CagStatus add_faces(CagBrepWork *w, CagError *err) {
   const CagItem *item = w->item;
   switch (item->kind) {
   case CAG_ITEM_REGION: return cag_brep_add_region(w, item->as.region, &item->placement, 0, err);
-  case CAG_ITEM_SURFACE: return cag_brep_add_surface(w, item->as.surface, 0, err);
+  case CAG_ITEM_SURFACE: return add_surface(w, item->as.surface, err);
   case CAG_ITEM_SOLID: {
     CagStatus status = CAG_OK;
     const CagSolid *solid = item->as.solid;
@@ -239,7 +250,11 @@ static CagStatus add_bounded(CagBrepWork *w, CagBrepShape *shape, CagError *err)
                  "%s does not close within %g mm: some of its faces have an edge that no other "
                  "shares; show its surfaces instead, or write a mesh",
                  w->item->name, w->same);
-  if (!status && shape->kind == CAG_BREP_SOLID)
+  // A closed surface is the boundary of a solid.
+  if (!status && closed && w->item->kind == CAG_ITEM_SURFACE &&
+      cag_surface_is_closed(w->item->as.surface))
+    shape->kind = CAG_BREP_SOLID;
+  if (!status && w->item->kind == CAG_ITEM_SOLID)
     status = find_hollows(b, shape->first, w->item->as.solid, err);
   shape->count = b->shell_count - shape->first;
   for (size_t i = 0; i < w->side_count; i++) cag_curve_release(w->sides[i].curve);

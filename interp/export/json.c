@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/mesh/orient.h"
 #include "geom/solid/csg.h"
 
 #define DEPTH_MAX 512 // the form nests to about 12, and set operations of operations by 2 each
@@ -442,6 +443,25 @@ static CagStatus put_solid(Writer *w, const CagSolid *s, CagError *err) {
 
 // --- Items ---
 
+// What is closed has its normals outward in the file.
+static CagStatus put_outward_surface(Writer *w, const CagSurface *s, CagError *err) {
+  CagSurface *outward;
+  CagStatus status = cag_surface_outward(s, &outward, err);
+  if (status) return status;
+  status = put_surface(w, outward, err);
+  cag_surface_release(outward);
+  return status;
+}
+
+static CagStatus put_outward_mesh(Writer *w, const CagMesh *m, CagError *err) {
+  CagMesh *outward;
+  CagStatus status = cag_mesh_outward(m, &outward, err);
+  if (status) return status;
+  put_mesh(w, outward);
+  cag_mesh_release(outward);
+  return CAG_OK;
+}
+
 static const char *const item_names[] = {
     [CAG_ITEM_CURVE] = "curve", [CAG_ITEM_REGION] = "region", [CAG_ITEM_SURFACE] = "surface",
     [CAG_ITEM_SOLID] = "solid", [CAG_ITEM_MESH] = "mesh",     [CAG_ITEM_GROUND] = "ground"};
@@ -462,7 +482,7 @@ static CagStatus put_item_data(Writer *w, const CagItem *item, CagError *err) {
     break;
   case CAG_ITEM_SURFACE:
     key(w, "surface");
-    status = put_surface(w, item->as.surface, err);
+    status = put_outward_surface(w, item->as.surface, err);
     break;
   case CAG_ITEM_SOLID:
     key(w, "solid");
@@ -470,7 +490,7 @@ static CagStatus put_item_data(Writer *w, const CagItem *item, CagError *err) {
     break;
   case CAG_ITEM_MESH:
     key(w, "mesh");
-    put_mesh(w, item->as.mesh);
+    status = put_outward_mesh(w, item->as.mesh, err);
     break;
   case CAG_ITEM_GROUND:
     key_number(w, "z", item->ground_z);

@@ -13,9 +13,9 @@
 //   items       [{name, kind, material (index), tolerance, ...}], by kind further:
 //     "curve"   line_radius, dash, curve: CURVE
 //     "region"  placement, region: REGION
-//     "surface" surface: SURFACE
+//     "surface" surface: SURFACE; of a closed one the normals point outward
 //     "solid"   solid: SOLID
-//     "mesh"    mesh: MESH
+//     "mesh"    mesh: MESH; likewise
 //     "ground"  z, size (null: infinite)
 //   cameras     [{name, projection "perspective" | "orthographic", eye, target, up, fov | width,
 //   size,

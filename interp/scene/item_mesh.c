@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/mesh/orient.h"
+
 // Radius of curves that say none, as a part of the diagonal of the scene's bounds.
 #define LINE_PART 0.0025
 // Side of an endless ground, in diagonals of the scene's bounds.
@@ -59,6 +61,20 @@ static CagStatus ground_mesh(const CagScene *s, const CagItem *item, CagMesh **o
   return CAG_OK;
 }
 
+// A closed surface with its normals outward, whatever its parameters say.
+static CagStatus surface_mesh(const CagSurface *s, const CagTessellation *how, CagMesh **out,
+                              CagError *err) {
+  CagMesh *m = NULL;
+  CagStatus status = cag_surface_tessellate(s, how, &m, err);
+  if (status || !cag_surface_is_closed(s)) {
+    if (!status) *out = m;
+    return status;
+  }
+  status = cag_mesh_outward(m, out, err);
+  cag_mesh_release(m);
+  return status;
+}
+
 CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err) {
   CagTessellation how = how_fine(s, item);
   switch (item->kind) {
@@ -67,9 +83,9 @@ CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, C
     return cag_curve_tube_mesh(item->as.curve, radius, item->dash, &how, out, err);
   }
   case CAG_ITEM_REGION: return region_mesh(item, &how, out, err);
-  case CAG_ITEM_SURFACE: return cag_surface_tessellate(item->as.surface, &how, out, err);
+  case CAG_ITEM_SURFACE: return surface_mesh(item->as.surface, &how, out, err);
   case CAG_ITEM_SOLID: return cag_solid_tessellate(item->as.solid, &how, out, err);
-  case CAG_ITEM_MESH: *out = cag_mesh_retain(item->as.mesh); return CAG_OK;
+  case CAG_ITEM_MESH: return cag_mesh_outward(item->as.mesh, out, err);
   case CAG_ITEM_GROUND: return ground_mesh(s, item, out, err);
   }
   return cag_fail(err, CAG_E_ARGUMENT, "item-kind", "", -1, "an item of an unknown kind");

@@ -6,6 +6,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+#include "geom/mesh/orient.h"
 #include "interp/export/iges.h"
 #include "interp/export/json.h"
 #include "interp/export/mesh_formats.h"
@@ -63,9 +64,41 @@ static CagStatus add_parts(Parts *p, const CagScene *scene, const CagItem *item,
   return status;
 }
 
+// Warns that a part of a file for printing encloses nothing. The list of diagnostics keeps room for
+// the error that may follow.
+static CagStatus warn_open(CagSession *s, const CagItem *item, const CagMesh *mesh, CagError *err) {
+  const bool region = item->kind == CAG_ITEM_REGION;
+  size_t open = 0;
+  if (item->kind == CAG_ITEM_SOLID || item->kind == CAG_ITEM_CURVE) return CAG_OK;
+  CagStatus status = cag_mesh_open_edges(mesh, &open, err);
+  if (status || open == 0) return status;
+  if (s->diagnostics.count + 1 >= CAG_DIAGNOSTICS_MAX) {
+    s->diagnostics.dropped++;
+    return CAG_OK;
+  }
+  CagDiagnostic *d =
+      cag_diagnostics_add(&s->diagnostics, CAG_ERR_open_in_file, NULL, (CagSpan){0, 0},
+                          "%s is %s, not a solid: %zu open edge%s", item->name,
+                          region                           ? "a flat region"
+                          : item->kind == CAG_ITEM_SURFACE ? "an open surface"
+                                                           : "an open mesh",
+                          open, open == 1 ? "" : "s");
+  d->severity = CAG_SEVERITY_WARNING;
+  cag_diagnostic_set_help(d, region ? "`prism` makes it printable"
+                             : item->kind == CAG_ITEM_SURFACE
+                                 ? "`thicken` or `solid` makes it printable"
+                                 : "add the missing faces, or `weld` them");
+  return CAG_OK;
+}
+
+typedef enum MeshUse {
+  FOR_PRINTING = 1, // parts should be solids
+  ONE_MATERIAL = 2  // parts have one material each
+} MeshUse;
+
 // Meshes of all things shown; grounds and lines are for pictures only, unless nothing else was
-// shown. apart: parts have one material each.
-static int make_parts(CagSession *s, bool apart, Parts *out) {
+// shown. use: of MeshUse.
+static int make_parts(CagSession *s, unsigned use, Parts *out) {
   const CagScene *scene = &s->scene;
   *out = (Parts){NULL, 0};
   bool bodies = false;
@@ -80,7 +113,9 @@ static int make_parts(CagSession *s, bool apart, Parts *out) {
     CagStatus status = cag_item_mesh(scene, item, &mesh, &err);
     if (status == CAG_OK) {
       triangles += mesh->triangle_count;
-      status = add_parts(out, scene, item, mesh, apart, &err);
+      if (use & FOR_PRINTING) status = warn_open(s, item, mesh, &err);
+      if (status != CAG_OK) cag_mesh_release(mesh);
+      else status = add_parts(out, scene, item, mesh, use & ONE_MATERIAL, &err);
       if (status == CAG_OK && triangles > scene->max_triangles)
         status = cag_fail(&err, CAG_E_LIMIT, "triangle-limit", "", -1,
                           "the meshes have more than the %zu triangles allowed (--max-triangles)",
@@ -185,11 +220,11 @@ static int write_meshes(CagSession *s, MeshOutput *m, const char *path, const ch
   return cag_session_fail_geometry(s, &err);
 }
 
-// ending: of the file that goes with it; NULL: none.
-static int export_meshes(CagSession *s, const char *path, MeshWriter write, const char *ending) {
+// ending: of the file that goes with it; NULL: none. use: of MeshUse.
+static int export_meshes(CagSession *s, const char *path, MeshWriter write, const char *ending,
+                         unsigned use) {
   Parts parts;
-  const bool apart = write == write_obj || write == write_glb || write == write_gltf;
-  int status = make_parts(s, apart, &parts);
+  int status = make_parts(s, use, &parts);
   if (status != CAG_STATUS_OK) return status;
   status = check_parts(s, &parts);
   if (status == CAG_STATUS_OK) {
@@ -203,22 +238,22 @@ static int export_meshes(CagSession *s, const char *path, MeshWriter write, cons
 }
 
 static int export_obj(CagSession *s, const char *path) {
-  return export_meshes(s, path, write_obj, ".mtl");
+  return export_meshes(s, path, write_obj, ".mtl", ONE_MATERIAL);
 }
 static int export_stl(CagSession *s, const char *path) {
-  return export_meshes(s, path, write_stl, NULL);
+  return export_meshes(s, path, write_stl, NULL, FOR_PRINTING);
 }
 static int export_ply(CagSession *s, const char *path) {
-  return export_meshes(s, path, write_ply, NULL);
+  return export_meshes(s, path, write_ply, NULL, 0);
 }
 static int export_glb(CagSession *s, const char *path) {
-  return export_meshes(s, path, write_glb, NULL);
+  return export_meshes(s, path, write_glb, NULL, ONE_MATERIAL);
 }
 static int export_gltf(CagSession *s, const char *path) {
-  return export_meshes(s, path, write_gltf, ".bin");
+  return export_meshes(s, path, write_gltf, ".bin", ONE_MATERIAL);
 }
 static int export_3mf(CagSession *s, const char *path) {
-  return export_meshes(s, path, write_3mf, NULL);
+  return export_meshes(s, path, write_3mf, NULL, FOR_PRINTING);
 }
 
 // --- Scenes as text ---

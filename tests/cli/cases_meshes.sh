@@ -90,6 +90,43 @@ try run bodies_of.cag -D 'file=für 100% von "mir" #1.gltf'
 status 0
 prints "$all_the_same"
 
+# A profile from the axis that climbs the outside gives a surface whose normals point inward. Volumes by Pappus.
+it 'closed surfaces and meshes face outward in every mesh file, whatever their normals'
+script inward.cag 'show revolve(polyline([[0, 0], [10, 0], [10, 5], [0, 5]]))
+show translate([30, 0, 0]) * revolve(polyline([[5, 1], [5, -1], [9, -1], [9, 1], [5, 1]]))
+show translate([60, 0, 0]) * mesh([[0, 0, 0], [6, 0, 0], [0, 6, 0], [0, 0, 6]], [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+show translate([90, 0, 0]) * revolve(reverse(polyline([[0, 0], [3, 3], [0, 6]])))
+show translate([120, 0, 0]) * solid([sphere_surface(10), sphere_surface(5)])'
+script inward_of.cag 'param file = "inward.stl"
+wanted = pi * 100 * 5 + pi * (81 - 25) * 2 + 36 + 2 * pi * 27 / 3 + 4 / 3 * pi * (1000 - 125)
+print "{near(volume(read_mesh(file)), wanted, relative: 3e-3)}"'
+for format in stl obj ply glb gltf; do
+  try export inward.cag -o "inward.$format" --tolerance 0.003
+  status 0
+  says_nothing
+  try run inward_of.cag -D "file=inward.$format"
+  prints_exactly true
+done
+script normal.cag 'print round(normal(revolve(polyline([[0, 0], [10, 0], [10, 5], [0, 5]])), 1.5, 0deg), 9)'
+try run normal.cag
+prints_exactly '[-1, 0, 0]'
+
+it 'open surfaces are named where a file is for printing'
+script sheets.cag 'show revolve(polyline([[0, 0], [10, 0], [10, 5]])) |> named("cup")
+show mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2]]) |> named("tent")
+show region(polyline([[0, 0], [9, 0], [0, 9]], closed: true)) |> named("sail"), box(1)'
+for format in stl 3mf; do
+  try export sheets.cag -o "sheets.$format"
+  status 0
+  says_like 'cup is an open surface, not a solid: [0-9]* open edges'
+  says '`thicken` or `solid` makes it printable'
+  says 'tent is an open mesh, not a solid: 3 open edges'
+  says 'sail is a flat region, not a solid: 3 open edges'
+  says_not box
+done
+try export sheets.cag -o sheets.ply
+says_nothing
+
 it 'copies are written once'
 [ "$(wc -c < bodies.glb)" -lt "$(($(wc -c < bodies.ply) * 3 / 4))" ] || wrong 'the .glb holds every copy'
 

@@ -102,11 +102,38 @@ static void poles_are_vertices_without_an_edge(void **state) {
   assert_int_equal(b.vertex_count, 2);
   assert_int_equal(b.edge_count, 1);
   assert_int_equal(b.use_count, 2);
-  assert_int_equal(b.shapes[0].kind, CAG_BREP_SHEET);
+  assert_int_equal(b.shapes[0].kind, CAG_BREP_SOLID); // closed, so it bounds one
   assert_true(b.shells[0].closed);
   check_loops(&b);
   cag_brep_free(&b);
   fixture_end(&f);
+}
+
+// The profile climbs the outside, which makes the normals of its revolution point inward, or comes
+// down. The volume is that of a cone: pi r^2 h / 3.
+static void a_closed_surface_is_a_solid_with_its_normals_outward(void **state) {
+  (void)state;
+  for (int down = 0; down < 2; down++) {
+    const CagVec3 up[3] = {{0, 0, 0}, {3, 0, 4}, {0, 0, 8}}, back[3] = {up[2], up[1], up[0]};
+    Fixture f;
+    fixture_begin(&f);
+    CagCurve *profile;
+    CagSurface *s;
+    OK(cag_curve_polyline(down ? back : up, 3, false, 3, &profile, &err));
+    OK(cag_surface_revolve(profile, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), 0, 2 * M_PI, &s, &err));
+    cag_curve_release(profile);
+    fixture_surface(&f, "top", s);
+    CagBrep b = boundary_of(&f);
+    assert_int_equal(b.shapes[0].kind, CAG_BREP_SOLID);
+    check_closed(&b);
+    check_loops(&b);
+    double terms[10] = {0};
+    for (size_t i = 0; i < b.face_count; i++)
+      OK(cag_surface_volume_terms(b.faces[i].surface, terms, &err));
+    assert_true(fabs(terms[0] - 2 * M_PI * 9 * 4 / 3) < 1e-9);
+    cag_brep_free(&b);
+    fixture_end(&f);
+  }
 }
 
 // A sphere with a wall: its outer face and, turned inwards, its inner one.
@@ -255,6 +282,7 @@ int main(void) {
       cmocka_unit_test(a_box_has_8_corners_12_edges_and_6_flat_faces),
       cmocka_unit_test(a_cylinder_has_a_seam_and_two_circles),
       cmocka_unit_test(poles_are_vertices_without_an_edge),
+      cmocka_unit_test(a_closed_surface_is_a_solid_with_its_normals_outward),
       cmocka_unit_test(a_sphere_in_a_sphere_is_a_hollow),
       cmocka_unit_test(creases_part_faces_and_smooth_knots_do_not),
       cmocka_unit_test(what_is_not_exact_needs_a_tolerance),

@@ -1,0 +1,209 @@
+// Closed meshes and surfaces are turned outward, cavities inward; what is open stays.
+
+#include "tests/geom/support.h"
+
+#include "geom/mesh/orient.h"
+#include "geom/surface/quadric.h"
+
+static uint32_t state_of_random = 1;
+// Uniform in 0..1 (Numerical Recipes' linear congruence).
+static double random_unit(void) {
+  state_of_random = state_of_random * 1664525u + 1013904223u;
+  return (state_of_random >> 8) / 16777216.0;
+}
+
+typedef struct Draft {
+  CagVec3 vertices[4096];
+  uint32_t indices[16384], counts[4096];
+  size_t vertex_count, index_count, face_count;
+} Draft;
+
+static void add_face(Draft *d, const uint32_t *corners, size_t n, bool turned) {
+  for (size_t k = 0; k < n; k++) d->indices[d->index_count++] = corners[turned ? n - 1 - k : k];
+  d->counts[d->face_count++] = (uint32_t)n;
+}
+
+// A box of quadrilaterals. inside_out: all of them are turned; mixed: each at random as well.
+static void add_box(Draft *d, CagVec3 least, CagVec3 most, bool inside_out, bool mixed) {
+  static const uint32_t SIDES[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                       {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  const uint32_t first = (uint32_t)d->vertex_count;
+  for (int k = 0; k < 8; k++)
+    d->vertices[d->vertex_count++] =
+        cag_vec3(k & 1 ? most.x : least.x, k & 2 ? most.y : least.y, k & 4 ? most.z : least.z);
+  for (int f = 0; f < 6; f++) {
+    uint32_t corners[4];
+    for (int k = 0; k < 4; k++) corners[k] = first + SIDES[f][k];
+    add_face(d, corners, 4, inside_out != (mixed && random_unit() < 0.5));
+  }
+}
+
+static CagMesh *mesh_of(const Draft *d) {
+  CagMesh *m;
+  OK(cag_mesh_from_faces(d->vertices, d->vertex_count, d->indices, d->counts, d->face_count, &m,
+                         &err));
+  return m;
+}
+
+static double volume_of(const CagMesh *m) {
+  double terms[10];
+  cag_mesh_volume_terms(m, terms);
+  return terms[0];
+}
+
+static CagMesh *outward(CagMesh *m) {
+  CagMesh *out;
+  OK(cag_mesh_outward(m, &out, &err));
+  cag_mesh_release(m);
+  return out;
+}
+
+static void a_mesh_inside_out_is_turned_with_its_normals(void **state) {
+  (void)state;
+  static Draft d;
+  memset(&d, 0, sizeof d);
+  add_box(&d, cag_vec3(100, 0, 0), cag_vec3(102, 3, 4), true, false);
+  CagMesh *given = mesh_of(&d), *with, *turned;
+  OK(cag_mesh_new(given->vertex_count, given->triangle_count, true, false, false, &with, &err));
+  memcpy(with->positions, given->positions, given->vertex_count * sizeof *with->positions);
+  memcpy(with->triangles, given->triangles, 3 * given->triangle_count * sizeof *with->triangles);
+  const CagVec3 middle = cag_vec3(101, 1.5, 2);
+  for (size_t v = 0; v < with->vertex_count; v++)
+    with->normals[v] = cag_unit(cag_sub(middle, with->positions[v])); // inward
+  turned = outward(with);
+  NEAR(volume_of(turned), 24, 1e-9);
+  for (size_t v = 0; v < turned->vertex_count; v++)
+    assert_true(cag_dot(turned->normals[v], cag_sub(turned->positions[v], middle)) > 0);
+  cag_mesh_release(turned);
+  cag_mesh_release(given);
+}
+
+// Boxes within boxes, and boxes beside each other in them, each inside out or not: the volume is
+// that of the odd layers.
+static void nested_parts_alternate(void **state) {
+  (void)state;
+  static Draft d;
+  for (int round = 0; round < 200; round++) {
+    memset(&d, 0, sizeof d);
+    double sum = 0;
+    const size_t groups = 1 + (size_t)(4 * random_unit()), layers = 1 + (size_t)(5 * random_unit());
+    const double wall = 0.01 + random_unit();
+    // All in one more box, in half of the rounds.
+    const bool around = random_unit() < 0.5;
+    for (size_t g = 0; g < groups; g++)
+      for (size_t k = 0; k < layers; k++) {
+        const double half = wall * (double)(layers - k), x = 2.5 * wall * (double)(layers * g);
+        const bool cavity = (k + around) % 2 == 1;
+        add_box(&d, cag_vec3(x - half, -half, -half), cag_vec3(x + half, half, half),
+                random_unit() < 0.5, round % 2);
+        sum += (cavity ? -8 : 8) * half * half * half;
+      }
+    if (around) {
+      add_box(&d, cag_vec3(-100, -100, -100), cag_vec3(100, 100, 100), random_unit() < 0.5, false);
+      sum += 8e6;
+    }
+    CagMesh *m = outward(mesh_of(&d));
+    NEAR(volume_of(m), sum, 1e-12 * fmax(fabs(sum), 8e6));
+    assert_true(cag_mesh_is_watertight(m, NULL));
+    cag_mesh_release(m);
+  }
+}
+
+static void parts_beside_each_other_or_crossing_all_face_out(void **state) {
+  (void)state;
+  static Draft d;
+  memset(&d, 0, sizeof d);
+  add_box(&d, cag_vec3(0, 0, 0), cag_vec3(4, 4, 4), true, false);
+  add_box(&d, cag_vec3(1, 1, 3), cag_vec3(2, 2, 5), true, false);  // crosses
+  add_box(&d, cag_vec3(4, 0, 0), cag_vec3(5, 1, 1), true, false);  // touches along a face
+  add_box(&d, cag_vec3(9, 9, 9), cag_vec3(8, 8, 8), false, false); // given from its far corner
+  CagMesh *m = outward(mesh_of(&d));
+  NEAR(volume_of(m), 64 + 2 + 1 + 1, 1e-9);
+  cag_mesh_release(m);
+}
+
+static void open_parts_stay_as_they_are(void **state) {
+  (void)state;
+  static Draft d;
+  memset(&d, 0, sizeof d);
+  add_box(&d, cag_vec3(0, 0, 0), cag_vec3(1, 1, 1), true, false);
+  d.face_count--; // without its last side
+  d.index_count -= 4;
+  CagMesh *m = mesh_of(&d), *same;
+  OK(cag_mesh_outward(m, &same, &err));
+  assert_ptr_equal(same, m);
+  size_t open;
+  OK(cag_mesh_open_edges(m, &open, &err));
+  assert_int_equal(open, 4);
+  cag_mesh_release(same);
+  cag_mesh_release(m);
+}
+
+// A vertex with one normal that a turned and a kept triangle share gets a second one.
+static void triangles_that_disagree_share_no_normal_afterwards(void **state) {
+  (void)state;
+  static const uint32_t FACES[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 3, 2}}; // last: inward
+  CagMesh *m;
+  OK(cag_mesh_new(4, 4, true, false, false, &m, &err));
+  for (uint32_t v = 0; v < 4; v++) {
+    m->positions[v] = cag_vec3(v == 1, v == 2, v == 3);
+    m->normals[v] = cag_vec3(0, 0, 1);
+  }
+  memcpy(m->triangles, FACES, sizeof FACES);
+  m = outward(m);
+  NEAR(volume_of(m), 1.0 / 6, 1e-15);
+  assert_true(cag_mesh_is_watertight(m, NULL));
+  for (size_t t = 0; t < 4; t++)
+    for (size_t k = 0; k < 3; k++) NEAR(m->normals[m->triangles[3 * t + k]].z, t == 3 ? -1 : 1, 0);
+  cag_mesh_release(m);
+}
+
+// A lathe of random profiles from the axis to the axis, up the outside or down; volumes by Pappus
+// (the sum over the pieces of a profile of pi/3 dz (r0^2 + r0 r1 + r1^2)).
+static void closed_surfaces_are_turned_outward(void **state) {
+  (void)state;
+  for (int round = 0; round < 60; round++) {
+    enum { MOST = 8 };
+    CagVec3 p[MOST];
+    const size_t n = 3 + (size_t)(random_unit() * (MOST - 2));
+    double six = 0;
+    for (size_t k = 0; k < n; k++)
+      p[k] =
+          cag_vec3(k == 0 || k + 1 == n ? 0 : 1 + 5 * random_unit(), 0, (double)k + random_unit());
+    if (round % 2)
+      for (size_t k = 0; k < n / 2; k++) {
+        const CagVec3 swap = p[k];
+        p[k] = p[n - 1 - k];
+        p[n - 1 - k] = swap;
+      }
+    for (size_t k = 0; k + 1 < n; k++)
+      six += M_PI / 3 * fabs(p[k + 1].z - p[k].z) *
+             (p[k].x * p[k].x + p[k].x * p[k + 1].x + p[k + 1].x * p[k + 1].x);
+    CagCurve *profile;
+    CagSurface *s, *out;
+    OK(cag_curve_polyline(p, n, 3, false, &profile, &err));
+    const bool full = round % 3 > 0;
+    OK(cag_surface_revolve(profile, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), full ? 0 : 0.5,
+                           (full ? 0 : 0.5) + 2 * M_PI, &s, &err));
+    OK(cag_surface_outward(s, &out, &err));
+    double terms[10] = {0};
+    OK(cag_surface_volume_terms(out, terms, &err));
+    NEAR(terms[0], six, 1e-9 * six);
+    if (full) assert_true(cag_surface_revolution_view(out, NULL, NULL, NULL, NULL, NULL));
+    cag_surface_release(out);
+    cag_surface_release(s);
+    cag_curve_release(profile);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_mesh_inside_out_is_turned_with_its_normals),
+      cmocka_unit_test(nested_parts_alternate),
+      cmocka_unit_test(parts_beside_each_other_or_crossing_all_face_out),
+      cmocka_unit_test(open_parts_stay_as_they_are),
+      cmocka_unit_test(triangles_that_disagree_share_no_normal_afterwards),
+      cmocka_unit_test(closed_surfaces_are_turned_outward),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
