@@ -12,6 +12,10 @@
 // Products of three coordinates stay far from the ends of the range of doubles.
 #define MOST_COORDINATE 1e100
 
+// Points of one plane or place may be so far apart, of the largest coordinate: tens of thousands of
+// units of rounding, since operands were turned and moved before.
+#define SNAP 1e-11
+
 // An operand and its name in messages: an argument, or one of a list (index; -1: not).
 typedef struct Operand {
   const CagMesh *mesh;
@@ -81,7 +85,7 @@ static CagStatus check_closed(BoolWork *w, const Operand *o, const uint32_t *tri
 static CagStatus check_sense(BoolWork *w, const Operand *o) {
   const double rounding = 1e-9; // of the volume of thin meshes
   const CagMesh *m = o->mesh;
-  double sum = 0, size = 0;
+  double sum = 0, size = 0, area = 0, most = 0;
   for (size_t t = 0; t < m->triangle_count; t++) {
     const uint32_t *k = m->triangles + 3 * t;
     const CagVec3 tip = m->positions[m->triangles[0]];
@@ -89,9 +93,12 @@ static CagStatus check_sense(BoolWork *w, const Operand *o) {
     const double volume = cag_dot(a, cag_cross(b, cag_sub(m->positions[k[2]], tip)));
     sum += volume;
     size += fabs(volume);
+    area += cag_norm(cag_cross(cag_sub(b, a), cag_sub(m->positions[k[2]], m->positions[k[0]])));
   }
+  for (size_t i = 0; i < m->vertex_count; i++) most = fmax(most, cag_norm(m->positions[i]));
   char name[64];
-  if (sum >= -rounding * size) return CAG_OK;
+  // What other operations left within rounding may be turned either way.
+  if (sum >= -rounding * size - SNAP * most * area) return CAG_OK;
   return cag_fail(w->err, CAG_E_ARGUMENT, "mesh-inside-out", o->argument, o->index,
                   "the triangles of %s must run counter-clockwise as seen from outside, its volume "
                   "is %g: turn it with `flip`",
@@ -237,6 +244,68 @@ static bool replace_fans(BoolWork *w, FaceTable *table) {
   return done;
 }
 
+// --- What is one within rounding ---
+
+static double slack_of(const BoolWork *w) {
+  double size = 0;
+  for (size_t i = 0; i < w->points.n; i++) {
+    const CagVec3 p = w->points.at[i];
+    size = fmax(size, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
+  }
+  return SNAP * size;
+}
+
+// The points of the plane, in the sense of the face.
+static void set_plane(BoolWork *w, BoolFace *f, const uint32_t *plane) {
+  memcpy(f->plane, f->v, sizeof f->plane);
+  if (!plane || plane[0] == BOOL_NONE) return;
+  memcpy(f->plane, plane, sizeof f->plane);
+  if (bool_normal_sign(&w->points, f->plane, f->axis) == f->sign) return;
+  f->plane[1] = plane[2];
+  f->plane[2] = plane[1];
+}
+
+// Corners get their new numbers; plane: of each face, or NULL. Faces that become one are kept once,
+// those that lose their area go.
+static void renumber(BoolWork *w, FaceTable *table, const uint32_t *number, const uint32_t *plane) {
+  const size_t count = w->face_count;
+  memset(table->slots, 0xff, (table->mask + 1) * sizeof *table->slots);
+  w->face_count = 0;
+  for (size_t i = 0; i < count; i++) {
+    BoolFace f = w->faces[i];
+    for (int k = 0; k < 3; k++) f.v[k] = number[f.v[k]];
+    if (f.v[0] == f.v[1] || f.v[1] == f.v[2] || f.v[2] == f.v[0] || !find_axis(w, &f)) continue;
+    set_plane(w, &f, plane ? plane + 3 * i : NULL);
+    add_face(w, table, &f);
+  }
+  bool_forget_pairs(w);
+}
+
+// Faces that cancel out go.
+static void drop_faces(BoolWork *w) {
+  size_t kept = 0;
+  for (size_t f = 0; f < w->face_count; f++)
+    if (w->faces[f].times[0] || w->faces[f].times[1]) w->faces[kept++] = w->faces[f];
+  w->face_count = kept;
+}
+
+static CagStatus snap(BoolWork *w, FaceTable *table) {
+  uint32_t *number = malloc((w->points.n + 1) * sizeof *number);
+  uint32_t *plane = malloc((3 * w->face_count + 3) * sizeof *plane);
+  bool found;
+  CagStatus status = number && plane ? CAG_OK : cag_fail_memory(w->err);
+  w->slack = slack_of(w);
+  if (!status) status = bool_find_twins(w, number, &found);
+  if (!status && found) renumber(w, table, number, NULL);
+  if (!status && found) drop_faces(w);
+  if (!status) status = bool_find_planes(w, number, plane, &found);
+  if (!status && found) renumber(w, table, number, plane);
+  if (!status && found) drop_faces(w);
+  free(number);
+  free(plane);
+  return status;
+}
+
 static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
   const size_t triangles = o[0].mesh->triangle_count + o[1].mesh->triangle_count;
   const size_t vertices = o[0].mesh->vertex_count + o[1].mesh->vertex_count;
@@ -258,11 +327,11 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
     status = bool_stopped(w);
     if (!status) status = cag_fail_memory(w->err);
   }
+  for (size_t f = 0; !status && f < w->face_count; f++) set_plane(w, &w->faces[f], NULL);
+  if (!status) drop_faces(w);
+  if (!status) status = snap(w, &table);
+  w->corners = w->points.n;
   free(table.slots);
-  size_t kept = 0;
-  for (size_t f = 0; !status && f < w->face_count; f++)
-    if (w->faces[f].times[0] || w->faces[f].times[1]) w->faces[kept++] = w->faces[f];
-  w->face_count = kept;
   return status;
 }
 
@@ -271,9 +340,7 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
 static void free_work(BoolWork *w) {
   bool_points_free(&w->points);
   free(w->faces);
-  free(w->nodes);
-  free(w->order);
-  free(w->boxes);
+  bool_forget_pairs(w);
   free(w->plane_of);
   free(w->touched);
   free(w->contacts.items);

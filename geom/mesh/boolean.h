@@ -2,8 +2,11 @@
 //
 // What decides (which triangles meet, where, what lies inside) is exact: the operands' coordinates
 // are taken as they are, and points of intersection are rounded to doubles only after everything is
-// decided. A point is inside a mesh where the mesh winds around it a positive number of times, so
-// meshes may have several parts, cavities, and parts that touch, cross or repeat each other.
+// decided. Before that, corners that coincide to 1e-11 of the largest coordinate become one, and
+// faces of the operands that lie in one plane as nearly are put into it exactly
+// (boolean_snap.c). A point is inside a mesh where the mesh winds around it a positive number of
+// times, so meshes may have several parts, cavities, and parts that touch, cross or repeat each
+// other.
 
 #ifndef CAG_GEOM_MESH_BOOLEAN_H
 #define CAG_GEOM_MESH_BOOLEAN_H
@@ -30,8 +33,7 @@ typedef struct CagBooleanHow {
 // are no one face.
 //
 // The time is that of sorting the triangles, and of what meets. Flat faces that overlap in one
-// plane are cut along the outlines of each other, however they are divided into triangles; where
-// their planes differ by rounding, each triangle is cut along those that it meets.
+// plane are cut along the outlines of each other, however they are divided into triangles.
 //
 // Normals are interpolated from the operands (turned where b's surface bounds a hole of a; of faces
 // where an operand has none); no operand has normals: none. uv is dropped. Each triangle has the

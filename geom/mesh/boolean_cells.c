@@ -62,7 +62,7 @@ static void tie(Forest *f, uint32_t a, const Winding at_a, uint32_t b, const Win
 // --- Around an edge ---
 
 static const uint32_t *plane_of(const BoolWork *w, uint32_t piece) {
-  return w->faces[bool_pieces(w)[piece].plane].v;
+  return w->faces[bool_pieces(w)[piece].plane].plane;
 }
 
 // The sign of the sine of the angle from one leaf to the other, about the edge's direction, which
@@ -192,12 +192,12 @@ static int side_of_ray(const Ray *r, uint32_t a, uint32_t b) {
 static void cross_face(void *context, uint32_t face) {
   Ray *r = context;
   const BoolFace *f = &r->w->faces[face];
-  const int seen = bool_normal_sign(&r->w->points, f->v, 0);
+  const int seen = bool_normal_sign(&r->w->points, f->plane, 0);
   if (seen == 0) return;
   for (int k = 0; k < 3; k++)
     if (side_of_ray(r, f->v[k], f->v[(k + 1) % 3]) != seen) return;
   // Ahead of the start: the face's front is towards +x and the start behind it, or the reverse.
-  if (bool_side(&r->w->points, f->v, r->from) * seen >= 0) return;
+  if (bool_side(&r->w->points, f->plane, r->from) * seen >= 0) return;
   for (int k = 0; k < 2; k++) r->sum[k] += seen * f->times[k];
 }
 

@@ -41,7 +41,8 @@ static CagBounds face_box(const BoolWork *w, uint32_t f) {
     const CagVec3 p = w->points.at[w->faces[f].v[k]];
     add_box(&box, &(CagBounds){p, p});
   }
-  return box;
+  const CagVec3 room = {w->slack, w->slack, w->slack};
+  return (CagBounds){cag_sub(box.min, room), cag_add(box.max, room)};
 }
 
 // --- The tree ---
@@ -226,7 +227,7 @@ static bool meet_from(BoolWork *w, const BoolFace *f, const BoolFace *g, const i
     if (side[k] == 0 && (has_corner(g, a) || bool_is_in_face(w, g, a)) && !add_meeting(m, a))
       return false;
     if (side[k] * side[(k + 1) % 3] >= 0 || !goes_through(w, g, a, b)) continue;
-    if (!add_meeting(m, bool_points_cross(&w->points, a, b, g->v))) return false;
+    if (!add_meeting(m, bool_points_cross(&w->points, a, b, g->plane))) return false;
   }
   return true;
 }
@@ -240,7 +241,7 @@ static bool add_contact(BoolWork *w, uint32_t f, uint32_t a, uint32_t b, const B
   }
   if (!bool_list_reserve(&w->contacts, w->contacts.n + 1, sizeof(BoolContact))) return false;
   ((BoolContact *)w->contacts.items)[w->contacts.n++] =
-      (BoolContact){f, a, b, {other->v[0], other->v[1], other->v[2], 0}};
+      (BoolContact){f, a, b, {other->plane[0], other->plane[1], other->plane[2], 0}};
   return true;
 }
 
@@ -284,7 +285,7 @@ static bool find_sides(BoolWork *w, const BoolFace *f, const BoolFace *g, int si
   int above = 0, below = 0, shared = 0;
   for (int k = 0; k < 3; k++) {
     const bool both = has_corner(g, f->v[k]);
-    side[k] = both ? 0 : bool_side(&w->points, g->v, f->v[k]);
+    side[k] = both ? 0 : bool_side(&w->points, g->plane, f->v[k]);
     above += side[k] > 0;
     below += side[k] < 0;
     shared += both;
@@ -293,7 +294,8 @@ static bool find_sides(BoolWork *w, const BoolFace *f, const BoolFace *g, int si
   return above + shared == 3 ? shared < 2 : below + shared == 3 && shared < 2;
 }
 
-static bool meet(BoolWork *w, uint32_t f, uint32_t g) {
+static bool meet(void *context, uint32_t f, uint32_t g) {
+  BoolWork *w = context;
   const BoolFace *one = &w->faces[f], *two = &w->faces[g];
   int side_f[3], side_g[3];
   bool edge;
@@ -313,6 +315,8 @@ static bool meet(BoolWork *w, uint32_t f, uint32_t g) {
 
 typedef struct Search {
   BoolWork *work;
+  BoolPairVisit *visit;
+  void *context;
   size_t leaves;
   CagStatus status;
 } Search;
@@ -331,7 +335,7 @@ static void meet_leaves(Search *s, const BoolNode *a, const BoolNode *b) {
     if (a != b && !boxes_meet(box, &b->box)) continue;
     for (uint32_t k = a == b ? i + 1 : 0; k < b->count; k++) {
       const uint32_t g = w->order[b->first + k];
-      if (!boxes_meet(box, &w->boxes[b->first + k]) || meet(w, f, g)) continue;
+      if (!boxes_meet(box, &w->boxes[b->first + k]) || s->visit(s->context, f, g)) continue;
       s->status = cag_fail_memory(w->err);
       return;
     }
@@ -363,12 +367,26 @@ static void meet_within(Search *s, uint32_t i) {
   meet_nodes(s, i + 1, a->right);
 }
 
+void bool_forget_pairs(BoolWork *w) {
+  free(w->nodes);
+  free(w->order);
+  free(w->boxes);
+  w->nodes = NULL;
+  w->order = NULL;
+  w->boxes = NULL;
+}
+
+CagStatus bool_visit_pairs(BoolWork *w, BoolPairVisit *visit, void *context) {
+  if (!w->nodes && !build_tree(w)) return cag_fail_memory(w->err);
+  Search s = {w, visit, context, 0, CAG_OK};
+  meet_within(&s, 0);
+  return s.status;
+}
+
 CagStatus bool_find_contacts(BoolWork *w) {
   w->plane_of = malloc((w->face_count + 1) * sizeof *w->plane_of);
   w->touched = calloc(w->face_count + 1, 1);
-  if (!w->plane_of || !w->touched || !build_tree(w)) return cag_fail_memory(w->err);
+  if (!w->plane_of || !w->touched) return cag_fail_memory(w->err);
   for (uint32_t f = 0; f < w->face_count; f++) w->plane_of[f] = f;
-  Search s = {w, 0, CAG_OK};
-  meet_within(&s, 0);
-  return s.status;
+  return bool_visit_pairs(w, meet, w);
 }

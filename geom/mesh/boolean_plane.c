@@ -412,7 +412,7 @@ static bool cut_together(Cutter *c, uint32_t root, bool alone) {
 
 static bool cut_group(Cutter *c, uint32_t root) {
   const BoolFace *f = &c->w->faces[root];
-  c->net.plane = f->v;
+  c->net.plane = f->plane;
   c->net.axis = f->axis;
   if (c->faces.start[root + 1] - c->faces.start[root] > 1) return cut_together(c, root, false);
   if (c->contacts.start[root + 1] > c->contacts.start[root]) return cut_alone(c, root);

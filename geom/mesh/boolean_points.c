@@ -12,10 +12,10 @@
 #include "geom/mesh/predicates.h"
 
 #define UNIT (DBL_EPSILON / 2)
-// Limbs of one computation. Coordinates span at most 2150 bits; a point of three planes takes 7
-// times that, a sum over three such points 21 times, 710 limbs; fewer than 200 such numbers are
-// made at a time.
-#define SPACE_LIMBS ((size_t)1 << 18)
+// Limbs of one computation. Coordinates span at most 2150 bits; a corner put on three planes takes
+// 7 times that, a point of planes through such corners about 60 times, 2000 limbs; fewer than 500
+// such numbers are made at a time.
+#define SPACE_LIMBS ((size_t)1 << 20)
 #define BLOCK_LIMBS ((size_t)1 << 14)
 
 static int sign(double x) { return (x > 0) - (x < 0); }
@@ -270,13 +270,29 @@ int bool_turn(BoolPoints *p, uint32_t a, uint32_t b, uint32_t c, int axis) {
 
 // --- Planes ---
 
-static void exact_normal(BoolPoints *p, const uint32_t plane[3], CagExact n[3]) {
-  const CagVec3 a = p->at[plane[0]], b = p->at[plane[1]], c = p->at[plane[2]];
-  CagExact u[3], v[3];
-  for (int k = 0; k < 3; k++) {
-    u[k] = cag_exact_step(&p->space, coordinate(b, k), coordinate(a, k));
-    v[k] = cag_exact_step(&p->space, coordinate(c, k), coordinate(a, k));
+static bool is_given(const BoolPoints *p, uint32_t i) { return p->exact[i] == BOOL_NONE; }
+
+static bool are_given(const BoolPoints *p, const uint32_t plane[3]) {
+  return is_given(p, plane[0]) && is_given(p, plane[1]) && is_given(p, plane[2]);
+}
+
+// The way from a to b, times a positive number.
+static void exact_way(BoolPoints *p, uint32_t a, uint32_t b, CagExact way[3]) {
+  if (is_given(p, a) && is_given(p, b)) {
+    for (int k = 0; k < 3; k++)
+      way[k] = cag_exact_step(&p->space, coordinate(p->at[b], k), coordinate(p->at[a], k));
+    return;
   }
+  const BoolHomogeneous g = exact_point(p, a), h = exact_point(p, b);
+  for (int k = 0; k < 3; k++)
+    way[k] = cag_exact_minor(&p->space, part(&h, k), part(&g, k), h.w, g.w);
+}
+
+// The normal, times a positive number.
+static void exact_normal(BoolPoints *p, const uint32_t plane[3], CagExact n[3]) {
+  CagExact u[3], v[3];
+  exact_way(p, plane[0], plane[1], u);
+  exact_way(p, plane[0], plane[2], v);
   for (int k = 0; k < 3; k++) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
     n[k] = cag_exact_minor(&p->space, u[i], u[j], v[i], v[j]);
@@ -286,6 +302,13 @@ static void exact_normal(BoolPoints *p, const uint32_t plane[3], CagExact n[3]) 
 void bool_normal(BoolPoints *p, const uint32_t plane[3], CagExact normal[3]) {
   p->space.used = 0;
   exact_normal(p, plane, normal);
+}
+
+// How far the coordinates of the way from a to b may be off because the points are rounded.
+static void way_off(const BoolPoints *p, uint32_t a, uint32_t b, double off[3]) {
+  for (int k = 0; k < 3; k++)
+    off[k] = (is_given(p, a) ? 0 : 2 * UNIT * fabs(coordinate(p->at[a], k))) +
+             (is_given(p, b) ? 0 : 2 * UNIT * fabs(coordinate(p->at[b], k)));
 }
 
 // A normal in doubles, and how far its coordinates may be off.
@@ -298,6 +321,15 @@ static void near_normal(const BoolPoints *p, const uint32_t plane[3], double n[3
     const double two = coordinate(u, j) * coordinate(v, i);
     n[k] = one - two;
     off[k] = 8 * UNIT * (fabs(one) + fabs(two)) + DBL_MIN;
+  }
+  if (are_given(p, plane)) return;
+  double du[3], dv[3];
+  way_off(p, plane[0], plane[1], du);
+  way_off(p, plane[0], plane[2], dv);
+  for (int k = 0; k < 3; k++) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    off[k] += 1.01 * (du[i] * (fabs(coordinate(v, j)) + dv[j]) + fabs(coordinate(u, i)) * dv[j] +
+                      du[j] * (fabs(coordinate(v, i)) + dv[i]) + fabs(coordinate(u, j)) * dv[i]);
   }
 }
 
@@ -340,21 +372,20 @@ int bool_normals_cross(BoolPoints *p, const uint32_t m[3], const uint32_t n[3], 
   return cag_exact_minor(&p->space, e[i], e[j], f[i], f[j]).sign;
 }
 
-// n . q - n . a w: the side of a plane through a.
+// n . (q - a), times a positive number: the side of a plane through a.
 static CagExact exact_side(BoolPoints *p, const CagExact n[3], uint32_t a,
                            const BoolHomogeneous *q) {
   const BoolHomogeneous o = exact_point(p, a);
   CagExact sum = {0};
   for (int k = 0; k < 3; k++) {
-    const CagExact base = times(p, part(&o, k), q->w);
-    const CagExact step = cag_exact_difference(&p->space, part(q, k), base);
+    const CagExact step = cag_exact_minor(&p->space, part(q, k), part(&o, k), q->w, o.w);
     sum = cag_exact_sum(&p->space, sum, times(p, n[k], step));
   }
   return sum;
 }
 
 int bool_side(BoolPoints *p, const uint32_t plane[3], uint32_t d) {
-  if (p->exact[d] == BOOL_NONE)
+  if (is_given(p, d) && are_given(p, plane))
     return cag_side_of_plane(p->at[plane[0]], p->at[plane[1]], p->at[plane[2]], p->at[d]);
   double n[3], off[3], value = 0, bound = DBL_MIN;
   near_normal(p, plane, n, off);
@@ -383,10 +414,11 @@ uint32_t bool_points_cross(BoolPoints *p, uint32_t a, uint32_t b, const uint32_t
   const BoolHomogeneous from = exact_point(p, a), to = exact_point(p, b);
   const CagExact s = exact_side(p, n, plane[0], &from), t = exact_side(p, n, plane[0], &to);
   BoolHomogeneous h;
+  // The sides come with the weights of the points: s of `from`, t of `to`.
   h.x = cag_exact_minor(&p->space, to.x, from.x, t, s);
   h.y = cag_exact_minor(&p->space, to.y, from.y, t, s);
   h.z = cag_exact_minor(&p->space, to.z, from.z, t, s);
-  h.w = cag_exact_difference(&p->space, s, t);
+  h.w = cag_exact_minor(&p->space, to.w, from.w, t, s);
   return add_exact(p, h);
 }
 
@@ -395,15 +427,17 @@ static void exact_cut(BoolPoints *p, BoolCut c, CagExact n[3], CagExact *offset)
   if (c.c != BOOL_NONE) exact_normal(p, (const uint32_t[3]){c.a, c.b, c.c}, n);
   else {
     const int i = (c.axis + 1) % 3, j = (c.axis + 2) % 3;
-    const CagVec3 a = p->at[c.a], b = p->at[c.b];
+    CagExact way[3];
+    exact_way(p, c.a, c.b, way);
     n[c.axis] = (CagExact){NULL, 0, 0, 0};
-    n[i] = cag_exact_step(&p->space, coordinate(b, j), coordinate(a, j));
-    n[j] = cag_exact_step(&p->space, coordinate(a, i), coordinate(b, i));
+    n[i] = way[j];
+    n[j] = cag_exact_negative(way[i]);
   }
   const BoolHomogeneous o = exact_point(p, c.a);
   *offset = (CagExact){NULL, 0, 0, 0};
   for (int k = 0; k < 3; k++)
     *offset = cag_exact_sum(&p->space, *offset, times(p, n[k], part(&o, k)));
+  for (int k = 0; k < 3 && !is_given(p, c.a); k++) n[k] = times(p, n[k], o.w);
 }
 
 static void exact_cross(BoolPoints *p, const CagExact a[3], const CagExact b[3], CagExact out[3]) {
@@ -413,13 +447,10 @@ static void exact_cross(BoolPoints *p, const CagExact a[3], const CagExact b[3],
   }
 }
 
-uint32_t bool_points_meet(BoolPoints *p, const uint32_t plane[3], BoolCut one, BoolCut two) {
-  p->space.used = 0;
-  CagExact n[3][3], offset[3], sum[3] = {{0}}, w = {0};
-  exact_cut(p, (BoolCut){plane[0], plane[1], plane[2], 0}, n[0], &offset[0]);
-  exact_cut(p, one, n[1], &offset[1]);
-  exact_cut(p, two, n[2], &offset[2]);
-  for (int i = 0; i < 3; i++) { // Cramer's rule
+// The point with n[i] . x = offset[i], by Cramer's rule.
+static uint32_t add_solution(BoolPoints *p, CagExact n[3][3], const CagExact offset[3]) {
+  CagExact sum[3] = {{0}}, w = {0};
+  for (int i = 0; i < 3; i++) {
     CagExact across[3];
     exact_cross(p, n[(i + 1) % 3], n[(i + 2) % 3], across);
     for (int k = 0; k < 3; k++)
@@ -427,7 +458,31 @@ uint32_t bool_points_meet(BoolPoints *p, const uint32_t plane[3], BoolCut one, B
     if (i > 0) continue;
     for (int k = 0; k < 3; k++) w = cag_exact_sum(&p->space, w, times(p, n[0][k], across[k]));
   }
-  return add_exact(p, (BoolHomogeneous){sum[0], sum[1], sum[2], w});
+  return w.sign ? add_exact(p, (BoolHomogeneous){sum[0], sum[1], sum[2], w}) : BOOL_NONE;
+}
+
+uint32_t bool_points_meet(BoolPoints *p, const uint32_t plane[3], BoolCut one, BoolCut two) {
+  p->space.used = 0;
+  CagExact n[3][3], offset[3];
+  exact_cut(p, (BoolCut){plane[0], plane[1], plane[2], 0}, n[0], &offset[0]);
+  exact_cut(p, one, n[1], &offset[1]);
+  exact_cut(p, two, n[2], &offset[2]);
+  return add_solution(p, n, offset);
+}
+
+uint32_t bool_points_put(BoolPoints *p, uint32_t i, const uint32_t (*planes)[3], int n,
+                         const int kept[2]) {
+  p->space.used = 0;
+  CagExact normal[3][3], offset[3];
+  const BoolHomogeneous at = exact_point(p, i);
+  for (int k = 0; k < n; k++)
+    exact_cut(p, (BoolCut){planes[k][0], planes[k][1], planes[k][2], 0}, normal[k], &offset[k]);
+  for (int k = n; k < 3; k++) { // the plane of all points with this coordinate
+    for (int axis = 0; axis < 3; axis++)
+      normal[k][axis] = axis == kept[k - n] ? at.w : (CagExact){NULL, 0, 0, 0};
+    offset[k] = part(&at, kept[k - n]);
+  }
+  return add_solution(p, normal, offset);
 }
 
 uint32_t bool_points_centroid(BoolPoints *p, const uint32_t v[3]) {

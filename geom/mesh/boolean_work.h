@@ -8,6 +8,7 @@
 //
 //   boolean.c         operands, operations of two and of many
 //   boolean_points.c  points: of the operands, and where a line or planes meet, exactly
+//   boolean_snap.c    corners and planes that are one within rounding
 //   boolean_pairs.c   which faces meet, and in what
 //   boolean_plane.c   faces cut along what they meet
 //   boolean_cells.c   winding numbers
@@ -88,12 +89,17 @@ int bool_normals_cross(BoolPoints *p, const uint32_t m[3], const uint32_t n[3], 
 uint32_t bool_points_cross(BoolPoints *p, uint32_t a, uint32_t b, const uint32_t plane[3]);
 // The point in which three planes meet; they do meet in one.
 uint32_t bool_points_meet(BoolPoints *p, const uint32_t plane[3], BoolCut one, BoolCut two);
+// Point i moved onto n planes (1 to 3), along the axes that are not kept: 3 - n coordinates stay as
+// they are. Planes and kept axes are independent.
+uint32_t bool_points_put(BoolPoints *p, uint32_t i, const uint32_t (*planes)[3], int n,
+                         const int kept[2]);
 uint32_t bool_points_centroid(BoolPoints *p, const uint32_t v[3]);
 
 // --- Faces and pieces ---
 
 typedef struct BoolFace {
   uint32_t v[3];
+  uint32_t plane[3];        // points of its plane, in the same sense: its corners, or others
   int32_t times[2];         // how often operand a (b) has the face; turned ones count -1
   uint32_t owner, triangle; // operand and its triangle whose sense v has
   signed char axis, sign;   // an axis along which it is seen with area, and the sign of that area
@@ -132,9 +138,10 @@ typedef struct BoolWork {
   const volatile int *interrupt;
   CagError *err;
   BoolPoints points;
-  size_t corners; // points 0 .. corners - 1 are those of the operands
+  size_t corners; // points 0 .. corners - 1 are those of the operands, as given and as snapped
   BoolFace *faces;
   size_t face_count;
+  double slack;           // faces closer than this may be in one plane
   struct BoolNode *nodes; // a tree of boxes over `order`
   uint32_t *order;        // of the faces
   CagBounds *boxes;       // in that order
@@ -149,6 +156,20 @@ static inline BoolPiece *bool_pieces(const BoolWork *w) { return w->pieces.items
 
 CagStatus bool_stopped(const BoolWork *w); // CAG_E_CALLBACK where the caller wants an end
 
+// Calls with each pair of faces whose boxes are no farther apart than twice the slack. False: no
+// memory.
+typedef bool BoolPairVisit(void *context, uint32_t f, uint32_t g);
+CagStatus bool_visit_pairs(BoolWork *w, BoolPairVisit *visit, void *context);
+// Forgets the boxes: faces have changed.
+void bool_forget_pairs(BoolWork *w);
+
+// Finds which points of the operands are one within rounding: number[i] is the first of them.
+// *found: there are some.
+CagStatus bool_find_twins(BoolWork *w, uint32_t *number, bool *found);
+// Finds the planes that faces of both operands have in common within rounding, and gives the
+// numbers of their corners on these planes; the points of planes go to `plane`, 3 for each face,
+// BOOL_NONE where it has no such plane.
+CagStatus bool_find_planes(BoolWork *w, uint32_t *number, uint32_t *plane, bool *found);
 CagStatus bool_find_contacts(BoolWork *w);
 CagStatus bool_cut_faces(BoolWork *w);
 CagStatus bool_find_windings(BoolWork *w);

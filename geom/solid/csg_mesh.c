@@ -7,7 +7,9 @@
 // greater than everything given does: it must stay away from the window's faces.
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "geom/solid/csg.h"
 
@@ -66,11 +68,11 @@ static CagSetOperation operation_of(const CagSolid *s) {
                                            : CAG_INTERSECTION;
 }
 
-// Meshes of the operands that matter within the window. *nothing: one that is missing leaves
-// nothing.
+// Meshes of the operands that matter within the window, and which operands these are. *nothing: one
+// that is missing leaves nothing.
 static CagStatus operand_meshes(const CagSolid *s, const CagTessellation *how,
-                                const CagBounds *window, CagMesh **meshes, size_t *n, bool *nothing,
-                                CagError *err) {
+                                const CagBounds *window, CagMesh **meshes, size_t *operands,
+                                size_t *n, bool *nothing, CagError *err) {
   CagStatus status = CAG_OK;
   *n = 0;
   *nothing = false;
@@ -87,6 +89,7 @@ static CagStatus operand_meshes(const CagSolid *s, const CagTessellation *how,
     }
     status = solid_mesh(operand, how, window, &meshes[*n], err);
     if (status) return status;
+    operands[*n] = i;
     if (meshes[*n]->triangle_count > 0) {
       ++*n;
     } else {
@@ -97,8 +100,27 @@ static CagStatus operand_meshes(const CagSolid *s, const CagTessellation *how,
   return status;
 }
 
+// Meshes of operands are no words of a script: errors name the operand instead.
+static CagStatus name_operand(const CagSolid *s, const size_t *operands, size_t n, CagStatus status,
+                              CagError *err) {
+  char mesh[32], operand[80], text[sizeof err->message];
+  if (strcmp(err->argument, "meshes") != 0 || err->index < 0 || (size_t)err->index >= n)
+    return status;
+  const size_t i = operands[err->index];
+  snprintf(mesh, sizeof mesh, "`meshes[%ld]`", err->index);
+  const char *at = strstr(err->message, mesh);
+  if (!at) return status;
+  cag_solid_describe(s->core->operands[i], operand, sizeof operand);
+  snprintf(text, sizeof text, "%.*soperand %zu of the %s (%s)%s", (int)(at - err->message),
+           err->message, i + 1, cag_solid_kind_name(s->kind), operand, at + strlen(mesh));
+  memcpy(err->message, text, sizeof text);
+  snprintf(err->argument, sizeof err->argument, "operands");
+  err->index = (long)i;
+  return status;
+}
+
 static CagStatus join_meshes(const CagSolid *s, const CagTessellation *how, CagMesh *const *meshes,
-                             size_t n, CagMesh **out, CagError *err) {
+                             const size_t *operands, size_t n, CagMesh **out, CagError *err) {
   if (n == 0) return empty_mesh(out, err);
   if (n == 1) {
     *out = cag_mesh_retain(meshes[0]);
@@ -107,7 +129,8 @@ static CagStatus join_meshes(const CagSolid *s, const CagTessellation *how, CagM
   const CagBooleanHow set = {.interrupt = how->interrupt, .keep_flat = how->max_edge > 0};
   CagStatus status =
       cag_mesh_boolean_many(operation_of(s), (const CagMesh *const *)meshes, n, &set, out, err);
-  if (status || (*out)->triangle_count <= how->max_triangles) return status;
+  if (status) return name_operand(s, operands, n, status, err);
+  if ((*out)->triangle_count <= how->max_triangles) return CAG_OK;
   status = cag_fail(err, CAG_E_LIMIT, "triangle-limit", "tolerance", -1,
                     "the %s takes %zu triangles, the limit is %zu: use a larger tolerance",
                     cag_solid_kind_name(s->kind), (*out)->triangle_count, how->max_triangles);
@@ -120,13 +143,15 @@ static CagStatus core_mesh(const CagSolid *s, const CagTessellation *how, const 
                            CagMesh **out, CagError *err) {
   if (is_empty(window)) return empty_mesh(out, err);
   CagMesh **meshes = malloc((s->core->count + 1) * sizeof *meshes);
-  if (!meshes) return cag_fail_memory(err);
-  size_t n = 0;
+  size_t *operands = malloc((s->core->count + 1) * sizeof *operands), n = 0;
   bool nothing;
-  CagStatus status = operand_meshes(s, how, window, meshes, &n, &nothing, err);
-  if (!status) status = nothing ? empty_mesh(out, err) : join_meshes(s, how, meshes, n, out, err);
+  CagStatus status = meshes && operands ? CAG_OK : cag_fail_memory(err);
+  if (!status) status = operand_meshes(s, how, window, meshes, operands, &n, &nothing, err);
+  if (!status)
+    status = nothing ? empty_mesh(out, err) : join_meshes(s, how, meshes, operands, n, out, err);
   for (size_t i = 0; i < n; i++) cag_mesh_release(meshes[i]);
   free(meshes);
+  free(operands);
   return status;
 }
 
