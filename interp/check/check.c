@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "interp/check/circle.h"
+#include "interp/check/constant.h"
 #include "interp/check/types.h"
 #include "interp/doc/doc.h"
 #include "lang/foreign.h"
@@ -45,6 +47,8 @@ typedef struct Check {
   size_t unjudged;        // calls of `attempt` around
   CagDiagnostics ignored; // what is said of them
   size_t depth;           // definitions that are walked within one another
+  CagConstants constants;
+  bool *top_bad; // definitions with errors
 } Check;
 
 static CagTypes infer(Check *c, const CagExpr *e);
@@ -115,7 +119,7 @@ static CagTypes types_of_top(Check *c, const CagDecl *decl) {
   const size_t k = decl->index;
   if (c->top_done[k]) return c->top_types[k];
   if (c->top_busy[k] || c->depth > DEPTH_MAX) return CAG_TYPES_ANY;
-  const size_t outer = c->top;
+  const size_t outer = c->top, errors = c->vm->errors.count + c->vm->errors.dropped;
   const CagStatement *s = decl->statement;
   c->top_busy[k] = true;
   c->depth++;
@@ -126,6 +130,7 @@ static CagTypes types_of_top(Check *c, const CagDecl *decl) {
   c->top = outer;
   c->depth--;
   c->top_done[k] = true;
+  if (c->vm->errors.count + c->vm->errors.dropped > errors) c->top_bad[k] = true;
   return c->top_types[k];
 }
 
@@ -630,12 +635,22 @@ static CagTypes infer_range(Check *c, const CagExpr *e) {
   return CAG_TYPES(RANGE);
 }
 
+static size_t error_count(const Check *c) { return c->vm->errors.count + c->vm->errors.dropped; }
+
+// A call that looks right is tried where all that it is given is written out.
+static void try_call(Check *c, const CagExpr *e, size_t errors_before) {
+  if (!c->unjudged && error_count(c) == errors_before) cag_check_constant(&c->constants, e);
+}
+
 static CagTypes infer_pipe(Check *c, const CagExpr *e) {
   const CagExpr *right = e->as.binary.right;
   CallView v = {.e = right->kind == CAG_EXPR_CALL ? right : NULL,
                 .piped = e->as.binary.left,
                 .span = right->span};
-  return check_call(c, v.e ? right->as.call.callee : right, &v);
+  const size_t before = error_count(c);
+  const CagTypes types = check_call(c, v.e ? right->as.call.callee : right, &v);
+  try_call(c, e, before);
+  return types;
 }
 
 static void infer_all(Check *c, CagExpr *const *items, size_t count) {
@@ -696,7 +711,10 @@ static CagTypes infer(Check *c, const CagExpr *e) {
   case CAG_EXPR_RANGE: return infer_range(c, e);
   case CAG_EXPR_CALL: {
     CallView v = {.e = e, .span = e->span};
-    return check_call(c, e->as.call.callee, &v);
+    const size_t before = error_count(c);
+    const CagTypes types = check_call(c, e->as.call.callee, &v);
+    try_call(c, e, before);
+    return types;
   }
   case CAG_EXPR_INDEX: return infer_index(c, e);
   case CAG_EXPR_MEMBER: {
@@ -837,25 +855,40 @@ static void warn_unused(Check *c) {
   }
 }
 
-bool cag_check_module(CagVm *vm, const CagModuleUnit *m) {
-  const size_t n = m->ast->top_count, before = vm->errors.count;
+// Definitions that errors from number `from` on lie in are not evaluated.
+static void mark_bad(Check *c, size_t from) {
+  for (size_t i = from; i < c->vm->errors.count; i++)
+    for (size_t k = 0; k < c->ast->top_count; k++) {
+      const CagSpan s = c->ast->tops[k]->statement->span, at = c->vm->errors.items[i].span;
+      if (s.start <= at.start && at.end <= s.end) c->top_bad[k] = true;
+    }
+}
+
+bool cag_check_module(CagVm *vm, CagModuleUnit *m) {
+  const size_t n = m->ast->top_count, known = vm->errors.count;
   Check c = {.vm = vm, .unit = m, .ast = m->ast, .top = n};
   c.top_types = cag_checked(calloc(n + 1, sizeof *c.top_types));
   c.top_done = cag_checked(calloc(n + 1, 1));
   c.top_busy = cag_checked(calloc(n + 1, 1));
   c.reached = cag_checked(calloc(n + 1, 1));
+  c.top_bad = cag_checked(calloc(n + 1, 1));
+  c.constants = (CagConstants){.vm = vm, .unit = m, .is_bad = c.top_bad};
+  vm->failed = false;
+  cag_check_circles(m->ast, &vm->errors);
+  mark_bad(&c, known);
   for (size_t i = 0; i < m->ast->count; i++) walk_statement(&c, m->ast->statements[i]);
-  warn_unused(&c);
-  cag_diagnostics_sort(&vm->errors, before);
+  if (known == m->first_error) warn_unused(&c); // what an unknown name was meant to be is not known
+  cag_diagnostics_sort(&vm->errors, m->first_error);
   free(c.top_types);
   free(c.top_done);
   free(c.top_busy);
   free(c.reached);
+  free(c.top_bad);
   free(c.edges);
   free(c.known);
   free(c.taken);
   cag_diagnostics_free(&c.ignored);
-  for (size_t i = before; i < vm->errors.count; i++)
+  for (size_t i = known; i < vm->errors.count; i++)
     if (vm->errors.items[i].severity == CAG_SEVERITY_ERROR) return false;
   return true;
 }

@@ -9,8 +9,8 @@
 
 #include "interp/eval/vm.h"
 
-// Checks a module that was loaded (parsed, resolved, its imports loaded). Errors and warnings go to
-// vm->errors; false where there are errors.
-bool cag_check_module(CagVm *vm, const CagModuleUnit *m);
+// Checks a module whose names were resolved, which may have failed for some of them and of its
+// imports. Errors and warnings go to vm->errors; false where there are errors.
+bool cag_check_module(CagVm *vm, CagModuleUnit *m);
 
 #endif

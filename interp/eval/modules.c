@@ -2,7 +2,8 @@
 // values.
 //
 // A module is loaded when its imports are: they come first, so that names asked of them are known.
-// All errors of syntax of all files are reported together; only without them are names resolved.
+// All errors of syntax of all files are reported together. Names of a file are resolved where its
+// own syntax is sound; what a module that failed defines is taken for granted.
 
 #include <stdlib.h>
 #include <string.h>
@@ -276,14 +277,15 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
   size_t before = vm->errors.count;
   m->ast = cag_parse(m->source, mode, &vm->errors);
   bool sound = vm->errors.count == before;
+  m->resolved = sound;
   m->state = CAG_MODULE_LOADING;
   for (size_t i = 0; i < m->ast->count; i++) {
     CagStatement *s = m->ast->statements[i];
     if (s->kind != CAG_STATEMENT_IMPORT) continue;
     s->as.import.module = sound ? load_import(vm, m, s) : CAG_NO_MODULE;
-    if (s->as.import.module == CAG_NO_MODULE) sound = false;
   }
-  if (vm->errors.count == before) {
+  m->first_error = vm->errors.count;
+  if (sound) {
     make_globals(vm, m);
     bind_imports(vm, m);
     resolve_unit(vm, m);

@@ -12,9 +12,11 @@ typedef struct Check {
 static bool check(CagVm *vm, void *context) {
   const Check *c = context;
   int status;
-  const size_t k = c->path ? cag_load_file(vm, c->path, &status)
-                           : cag_load_text(vm, c->name, c->text, c->length, CAG_PARSE_FILE);
-  return k != CAG_NO_MODULE && cag_check_module(vm, vm->modules[k]);
+  const size_t k = vm->module_count; // imports come behind
+  const size_t loaded = c->path ? cag_load_file(vm, c->path, &status)
+                                : cag_load_text(vm, c->name, c->text, c->length, CAG_PARSE_FILE);
+  if (loaded == CAG_NO_MODULE && (k >= vm->module_count || !vm->modules[k]->resolved)) return false;
+  return cag_check_module(vm, vm->modules[k]) && loaded != CAG_NO_MODULE;
 }
 
 static int start_check(CagSession *s, Check *c) {

@@ -1,0 +1,176 @@
+// Circles of definitions, found in a graph: node 2k is the value of definition k, node 2k + 1 a call
+// of it. The search is depth first with a stack of its own, since chains may be long.
+
+#include <stdlib.h>
+
+#include "interp/check/circle.h"
+
+typedef struct Edge {
+  size_t to;
+  CagSpan span; // of the name
+} Edge;
+
+typedef struct Node {
+  Edge *edges;
+  size_t count, capacity, next; // next: the edge to follow
+  enum { NEW, OPEN, DONE } state;
+} Node;
+
+typedef struct Graph {
+  const CagModuleAst *ast;
+  Node *nodes;
+  size_t from; // whose expression is walked
+} Graph;
+
+static const CagFunctionAst *function_of(const CagStatement *s) {
+  if (s->kind != CAG_STATEMENT_DEFINITION || s->as.definition.value->kind != CAG_EXPR_LAMBDA)
+    return NULL;
+  return s->as.definition.value->as.function;
+}
+
+// ---- edges ----
+
+static void walk(Graph *g, const CagExpr *e);
+
+static const CagDecl *top_of(const CagExpr *e) {
+  if (e->kind != CAG_EXPR_NAME || e->as.name.binding != CAG_BIND_DECL) return NULL;
+  return e->as.name.decl->kind == CAG_DECL_TOP ? e->as.name.decl : NULL;
+}
+
+static void add_edge(Graph *g, const CagExpr *name, bool called) {
+  const CagDecl *d = top_of(name);
+  Node *n = &g->nodes[g->from];
+  if (!d) return;
+  if (n->count == n->capacity) {
+    n->capacity = 2 * n->capacity + 4;
+    n->edges = cag_checked(realloc(n->edges, n->capacity * sizeof *n->edges));
+  }
+  n->edges[n->count++] = (Edge){2 * d->index + called, name->span};
+}
+
+static void walk_callee(Graph *g, const CagExpr *callee) {
+  const CagDecl *d = top_of(callee);
+  if (d && function_of(d->statement)) add_edge(g, callee, true);
+  else walk(g, callee);
+}
+
+static void walk_arguments(Graph *g, const CagExpr *call) {
+  for (size_t i = 0; i < call->as.call.count; i++) walk(g, call->as.call.arguments[i].value);
+}
+
+static void walk_block(Graph *g, const CagExpr *e) {
+  for (size_t i = 0; i < e->as.block.count; i++) {
+    const CagStatement *s = e->as.block.statements[i];
+    walk(g, s->kind == CAG_STATEMENT_ASSERT ? s->as.assertion.condition : s->as.definition.value);
+  }
+  walk(g, e->as.block.value);
+}
+
+static void walk(Graph *g, const CagExpr *e) {
+  switch (e->kind) {
+  case CAG_EXPR_NAME: add_edge(g, e, false); break;
+  case CAG_EXPR_GROUP:
+  case CAG_EXPR_SPREAD:
+  case CAG_EXPR_NEGATE:
+  case CAG_EXPR_NOT: walk(g, e->as.unary.operand); break;
+  case CAG_EXPR_TEMPLATE:
+  case CAG_EXPR_LIST:
+    for (size_t i = 0; i < e->as.list.count; i++) walk(g, e->as.list.items[i]);
+    break;
+  case CAG_EXPR_RECORD:
+    for (size_t i = 0; i < e->as.record.count; i++) walk(g, e->as.record.fields[i].value);
+    break;
+  case CAG_EXPR_BLOCK: walk_block(g, e); break;
+  case CAG_EXPR_BINARY:
+  case CAG_EXPR_INDEX:
+    walk(g, e->as.binary.left);
+    walk(g, e->as.binary.right);
+    break;
+  case CAG_EXPR_AND:
+  case CAG_EXPR_OR: walk(g, e->as.binary.left); break;
+  case CAG_EXPR_PIPE:
+    walk(g, e->as.binary.left);
+    if (e->as.binary.right->kind == CAG_EXPR_CALL) {
+      walk_callee(g, e->as.binary.right->as.call.callee);
+      walk_arguments(g, e->as.binary.right);
+    } else {
+      walk_callee(g, e->as.binary.right);
+    }
+    break;
+  case CAG_EXPR_CALL:
+    walk_callee(g, e->as.call.callee);
+    walk_arguments(g, e);
+    break;
+  case CAG_EXPR_RANGE:
+    walk(g, e->as.range.low);
+    walk(g, e->as.range.high);
+    if (e->as.range.step) walk(g, e->as.range.step);
+    break;
+  case CAG_EXPR_IF: walk(g, e->as.branch.condition); break;
+  case CAG_EXPR_MEMBER: walk(g, e->as.member.object); break;
+  case CAG_EXPR_COMPREHENSION: walk(g, e->as.comprehension.clauses[0].source); break;
+  default: break;
+  }
+}
+
+// ---- search ----
+
+// The path from its node `at` on is a circle that the edge at `span` closes. A circle of calls alone
+// is a recursion, and no concern here.
+static void report_circle(const Graph *g, const size_t *path, size_t length, size_t at,
+                          CagSpan span, CagDiagnostics *errors) {
+  CagString s = {0};
+  const char *first = NULL;
+  for (size_t i = at; i < length; i++) {
+    if (path[i] % 2) continue;
+    const char *name = g->ast->tops[path[i] / 2]->name;
+    if (!first) first = name;
+    cag_string_printf(&s, "%s -> ", name);
+  }
+  if (first)
+    cag_diagnostics_add(errors, CAG_ERR_circle, g->ast->source, span,
+                        "the value of `%s` needs itself: %s%s", first, s.bytes, first);
+  cag_string_free(&s);
+}
+
+static void search(Graph *g, size_t start, size_t *path, CagDiagnostics *errors) {
+  size_t length = 0;
+  path[length++] = start;
+  g->nodes[start].state = OPEN;
+  while (length) {
+    Node *n = &g->nodes[path[length - 1]];
+    if (n->next == n->count) {
+      n->state = DONE;
+      length--;
+      continue;
+    }
+    const Edge edge = n->edges[n->next++];
+    Node *to = &g->nodes[edge.to];
+    if (to->state == NEW) {
+      to->state = OPEN;
+      path[length++] = edge.to;
+    } else if (to->state == OPEN) {
+      size_t at = length;
+      while (path[--at] != edge.to) {}
+      report_circle(g, path, length, at, edge.span, errors);
+    }
+  }
+}
+
+void cag_check_circles(const CagModuleAst *ast, CagDiagnostics *errors) {
+  const size_t n = ast->top_count;
+  Graph g = {.ast = ast, .nodes = cag_checked(calloc(2 * n + 1, sizeof(Node)))};
+  size_t *path = cag_checked(malloc((2 * n + 1) * sizeof *path));
+  for (size_t k = 0; k < n; k++) {
+    const CagStatement *s = ast->tops[k]->statement;
+    const CagFunctionAst *f = function_of(s);
+    g.from = 2 * k + (f != NULL);
+    if (f) walk(&g, f->body);
+    else walk(&g, s->kind == CAG_STATEMENT_PARAM ? s->as.param.value : s->as.definition.value);
+  }
+  for (size_t i = 0; i < 2 * n; i++)
+    if (g.nodes[i].state == NEW) search(&g, i, path, errors);
+  for (size_t i = 0; i < 2 * n; i++) free(g.nodes[i].edges);
+  free(g.nodes);
+  free(path);
+}

@@ -1,0 +1,22 @@
+// Calls of built-ins whose arguments are all written out: they are evaluated, so that what they
+// reject is known before the script runs.
+
+#ifndef CAG_INTERP_CHECK_CONSTANT_H
+#define CAG_INTERP_CHECK_CONSTANT_H
+
+#include "interp/eval/vm.h"
+
+// A call or a pipe is constant when it calls built-ins that are quick and ask nothing of the
+// outside, with literals, built-in constants, other such calls, and definitions of these. `is_bad`
+// tells of a definition of the top level whether an error in it is known already.
+typedef struct CagConstants {
+  CagVm *vm;
+  CagModuleUnit *unit;
+  const bool *is_bad; // by the index of the definition
+  size_t evaluated;
+} CagConstants;
+
+// Evaluates a call or a pipe if it is constant; its error goes to vm->errors.
+void cag_check_constant(CagConstants *c, const CagExpr *e);
+
+#endif
