@@ -159,6 +159,9 @@ CAG_API int cag_session_input(CagSession *s, const char *text, size_t length,
                               void *context);
 // Runs a script file into the interactive session: its definitions stay.
 CAG_API int cag_session_input_file(CagSession *s, const char *path);
+// Takes what is shown by this text, the name of a definition as a rule, out of the scene; gives how
+// many times it was shown.
+CAG_API size_t cag_session_hide(CagSession *s, const char *text);
 // Whether a text asks for another line.
 CAG_API bool cag_input_is_incomplete(const char *text, size_t length);
 // Names defined interactively, newest of each, in the order of definition: NULL at the end of the

@@ -262,12 +262,45 @@ static void write_span(const CagModuleUnit *m, CagSpan span, FILE *out) {
   fprintf(out, "%.*s\n", (int)(span.end - span.start), m->source->text + span.start);
 }
 
+// Whether what is shown was written so.
+static bool is_written(const CagModuleUnit *m, const CagExpr *e, const char *text) {
+  const size_t length = e->span.end - e->span.start;
+  return strlen(text) == length && memcmp(m->source->text + e->span.start, text, length) == 0;
+}
+
+size_t cag_session_hide(CagSession *s, const char *text) {
+  size_t hidden = 0;
+  for (size_t i = 0; s->vm && s->interactive && i < s->input_count; i++) {
+    const CagModuleUnit *m = s->vm->modules[s->inputs[i]];
+    for (size_t k = 0; k < m->ast->count; k++) {
+      CagStatement *show = m->ast->statements[k];
+      if (show->kind != CAG_STATEMENT_SHOW) continue;
+      size_t kept = 0;
+      for (size_t n = 0; n < show->as.list.count; n++)
+        if (is_written(m, show->as.list.items[n], text)) hidden++;
+        else show->as.list.items[kept++] = show->as.list.items[n];
+      show->as.list.count = kept;
+    }
+  }
+  return hidden;
+}
+
+static void write_show(const CagModuleUnit *m, const CagStatement *show, FILE *out) {
+  for (size_t n = 0; n < show->as.list.count; n++) {
+    const CagSpan span = show->as.list.items[n]->span;
+    fprintf(out, "%s%.*s%s", n ? ", " : "show ", (int)(span.end - span.start),
+            m->source->text + span.start, n + 1 == show->as.list.count ? "\n" : "");
+  }
+}
+
 // Writes the statements of a kind of all inputs that ran.
 static void write_statements(const CagSession *s, CagStatementKind kind, FILE *out) {
   for (size_t i = 0; i < s->input_count; i++) {
     const CagModuleUnit *m = s->vm->modules[s->inputs[i]];
     for (size_t k = 0; k < m->ast->count; k++)
-      if (m->ast->statements[k]->kind == kind) write_span(m, m->ast->statements[k]->span, out);
+      if (m->ast->statements[k]->kind != kind) continue;
+      else if (kind == CAG_STATEMENT_SHOW) write_show(m, m->ast->statements[k], out);
+      else write_span(m, m->ast->statements[k]->span, out);
   }
 }
 

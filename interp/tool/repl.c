@@ -119,14 +119,38 @@ static bool wants_more(CagRepl *repl, const Text *t) {
 
 static bool is_blank(const char *line) { return line[strspn(line, " \t")] == 0; }
 
+// The command that a word alone means, as in other programs, where nothing of this name is defined.
+static const char *plain_command(const CagRepl *repl, const char *line) {
+  static const struct {
+    const char *word, *command;
+  } plain[] = {{"help", ":help"}, {"exit", ":quit"}, {"quit", ":quit"}};
+  line += strspn(line, " \t");
+  const size_t n = strcspn(line, " \t(;");
+  const char *rest = line + n + strspn(line + n, " \t");
+  if (strcmp(rest, "") != 0 && strcmp(rest, "()") != 0 && strcmp(rest, ";") != 0) return NULL;
+  for (size_t i = 0; i < sizeof plain / sizeof *plain; i++) {
+    if (strlen(plain[i].word) != n || strncmp(plain[i].word, line, n) != 0) continue;
+    const char *name;
+    for (size_t k = 0; (name = cag_session_name(repl->session, k, NULL, NULL)); k++)
+      if (strcmp(name, plain[i].word) == 0) return NULL;
+    return plain[i].command;
+  }
+  return NULL;
+}
+
 static void take_line(CagRepl *repl, Text *t, char *line) {
   if (!t->bytes && is_blank(line)) return;
-  if (!t->bytes && line[strspn(line, " \t")] == ':') {
-    cag_repl_command(repl, line + strspn(line, " \t"));
+  const char *plain = t->bytes ? NULL : plain_command(repl, line);
+  if (!t->bytes && (plain || line[strspn(line, " \t")] == ':')) {
+    char *command = strdup(plain ? plain : line + strspn(line, " \t"));
+    cag_repl_remember(repl->input, line, strlen(line));
+    if (command) cag_repl_command(repl, command);
+    free(command);
     return;
   }
   add_line(t, line);
   if (!t->bytes || wants_more(repl, t)) return;
+  cag_repl_remember(repl->input, t->bytes, t->length);
   cag_repl_evaluate(repl, t->bytes, t->length);
   clear_text(t);
 }
@@ -157,6 +181,12 @@ static bool go_on(CagRepl *repl) {
   return true;
 }
 
+// Ctrl-C drops a text that is not complete; the history keeps it.
+static void drop_text(CagRepl *repl, Text *t) {
+  if (t->bytes) cag_repl_remember(repl->input, t->bytes, t->length);
+  clear_text(t);
+}
+
 static void read_texts(CagRepl *repl) {
   Text text = {0};
   char *line;
@@ -164,7 +194,7 @@ static void read_texts(CagRepl *repl) {
     repl->before = text.bytes;
     CagReplRead read = cag_repl_read(repl->input, text.bytes != NULL, &line);
     if (read == CAG_REPL_END) break;
-    if (read == CAG_REPL_INTERRUPTED) clear_text(&text);
+    if (read == CAG_REPL_INTERRUPTED) drop_text(repl, &text);
     else take_line(repl, &text, line);
   }
   // What the end of the input cut off says so itself.

@@ -40,6 +40,8 @@ void cag_repl_input_free(CagReplInput *in);
 // The next line without its end, valid until the next call. `more`: the text so far asks for
 // another line.
 CagReplRead cag_repl_read(CagReplInput *in, bool more, char **line);
+// Adds a complete text, of one line or several, to the history that a terminal has.
+void cag_repl_remember(CagReplInput *in, const char *text, size_t length);
 // Without a terminal: the line to come, which stays to be read; NULL: none.
 const char *cag_repl_peek(CagReplInput *in);
 

@@ -18,7 +18,7 @@
 typedef enum Operand { NOTHING, MAYBE, NEEDED } Operand;
 
 typedef void Perform(CagRepl *repl, char *operand);
-static Perform show_help, show_doc, show_type, show_time, list_names, show_scene, load, reload,
+static Perform show_help, show_doc, show_type, show_time, list_names, show_scene, hide, load, reload,
     save, edit, render, export_scene, clear, quit;
 
 // In the order of :help.
@@ -37,6 +37,7 @@ static const struct Command {
     {":time", "EXPR", NEEDED, false, show_time, "a value, and how long it took"},
     {":list", "", NOTHING, false, list_names, "the definitions"},
     {":scene", "", NOTHING, false, show_scene, "what is shown"},
+    {":hide", "NAME", NEEDED, false, hide, "take what `show NAME` shows out of the scene"},
     {":load", "FILE", NEEDED, true, load, "add the definitions of a script"},
     {":reload", "", NOTHING, false, reload, "begin anew with the scripts that were loaded"},
     {":save", "FILE", NEEDED, true, save, "write the definitions and what is shown as a script"},
@@ -236,10 +237,10 @@ static void show_doc(CagRepl *repl, char *name) {
     return;
   const char *nearest = nearest_name(repl, name);
   if (nearest)
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "nothing is named `%s`; did you mean `%s`?", name,
+    cag_repl_fail(repl, CAG_STATUS_USAGE, "unknown name `%s`; did you mean `%s`?", name,
                   nearest);
   else
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "nothing is named `%s`; :doc lists the functions", name);
+    cag_repl_fail(repl, CAG_STATUS_USAGE, "unknown name `%s`; :doc lists the functions", name);
 }
 
 static void show_help(CagRepl *repl, char *name) {
@@ -308,6 +309,11 @@ static void list_names(CagRepl *repl, char *operand) {
 static void show_scene(CagRepl *repl, char *operand) {
   (void)operand;
   cag_session_describe_scene(repl->session, stdout);
+}
+
+static void hide(CagRepl *repl, char *operand) {
+  if (cag_session_hide(repl->session, operand) > 0) return;
+  cag_repl_fail(repl, CAG_STATUS_USAGE, "`%s` is not shown; :scene lists what is", operand);
 }
 
 // A path that begins with ~/ is below the user's folder. To be freed.

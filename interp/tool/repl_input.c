@@ -1,8 +1,9 @@
 // Lines of the REPL: from libedit on a terminal, else as they come.
 //
-// The history is a plain file of lines, $XDG_STATE_HOME/cag/history (~/.local/state without it). A
-// line is appended when it is entered, so that sessions side by side keep each other's; the file is
-// cut at the start when it has grown. Whatever goes wrong with it is passed over: history is a
+// The history is a file of lines, $XDG_STATE_HOME/cag/history (~/.local/state without it), one for
+// each text; newlines within a text are stored as LINE_BREAK, which no script holds. A text is
+// appended when it is complete, so that sessions side by side keep each other's; the file is cut at
+// the start when it has grown. Whatever goes wrong with it is passed over: history is a
 // comfort.
 
 #include <errno.h>
@@ -24,6 +25,8 @@
 // Lines of history that are remembered, and those that the file may have before it is cut.
 #define HISTORY_LINES 2000
 #define HISTORY_FILE_LINES 4000
+// Stands for a newline in the file: the ASCII unit separator.
+#define LINE_BREAK '\x1f'
 
 struct CagReplInput {
   CagRepl *repl;
@@ -100,6 +103,11 @@ static void cut_history(const CagReplInput *in, size_t lines) {
   free(path);
 }
 
+static void replace_all(char *text, char from, char to) {
+  for (; *text; text++)
+    if (*text == from) *text = to;
+}
+
 static void load_history(CagReplInput *in) {
   char *line = NULL;
   size_t capacity = 0, lines = 0;
@@ -108,12 +116,25 @@ static void load_history(CagReplInput *in) {
   if (!f) return;
   while ((n = getline(&line, &capacity, f)) >= 0) {
     if (n > 0 && line[n - 1] == '\n') line[n - 1] = 0;
+    replace_all(line, LINE_BREAK, '\n');
     remember(in, line);
     lines++;
   }
   free(line);
   fclose(f);
   if (lines > HISTORY_FILE_LINES) cut_history(in, lines);
+}
+
+void cag_repl_remember(CagReplInput *in, const char *text, size_t length) {
+  while (length && (text[length - 1] == '\n' || text[length - 1] == ' ')) length--;
+  char *copy = in->editor ? strndup(text, length) : NULL;
+  const bool again = copy && in->last && strcmp(in->last, copy) == 0;
+  if (copy && *copy && !again) {
+    remember(in, copy);
+    replace_all(copy, '\n', LINE_BREAK);
+    append_line(in, copy);
+  }
+  free(copy);
 }
 
 // --- The line editor ---
@@ -312,12 +333,10 @@ static CagReplRead edit_line(CagReplInput *in, char **line) {
     putchar('\n');
     return CAG_REPL_END;
   }
-  size_t length = strcspn(text, "\r\n");
+  size_t length = strlen(text); // a text from the history has newlines within
+  while (length && (text[length - 1] == '\n' || text[length - 1] == '\r')) length--;
   if (!keep_line(in, text, length)) return CAG_REPL_END;
   *line = in->line;
-  bool again = in->last && strcmp(in->last, in->line) == 0;
-  remember(in, in->line);
-  if (length && !again) append_line(in, in->line);
   return CAG_REPL_LINE;
 }
 
