@@ -49,6 +49,7 @@ typedef struct Check {
   size_t depth;           // definitions that are walked within one another
   CagConstants constants;
   bool *top_bad; // definitions with errors
+  size_t thunks; // functions without parameters around: their calls may be meant to fail
 } Check;
 
 static CagTypes infer(Check *c, const CagExpr *e);
@@ -557,7 +558,10 @@ static void walk_function(Check *c, const CagFunctionAst *fn) {
     learn(c, fn->parameters[i].decl, CAG_TYPES_ANY);
     if (fn->parameters[i].fallback) infer(c, fn->parameters[i].fallback);
   }
+  const bool thunk = fn->parameter_count == 0;
+  c->thunks += thunk;
   infer(c, fn->body);
+  c->thunks -= thunk;
 }
 
 static CagTypes infer_block(Check *c, const CagExpr *e) {
@@ -639,7 +643,8 @@ static size_t error_count(const Check *c) { return c->vm->errors.count + c->vm->
 
 // A call that looks right is tried where all that it is given is written out.
 static void try_call(Check *c, const CagExpr *e, size_t errors_before) {
-  if (!c->unjudged && error_count(c) == errors_before) cag_check_constant(&c->constants, e);
+  if (!c->unjudged && !c->thunks && error_count(c) == errors_before)
+    cag_check_constant(&c->constants, e);
 }
 
 static CagTypes infer_pipe(Check *c, const CagExpr *e) {

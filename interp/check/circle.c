@@ -1,5 +1,5 @@
-// Circles of definitions, found in a graph: node 2k is the value of definition k, node 2k + 1 a call
-// of it. The search is depth first with a stack of its own, since chains may be long.
+// Circles of definitions, found in a graph: node 2k is the value of definition k, node 2k + 1 a
+// call of it. The search is depth first with a stack of its own, since chains may be long.
 
 #include <stdlib.h>
 
@@ -115,8 +115,8 @@ static void walk(Graph *g, const CagExpr *e) {
 
 // ---- search ----
 
-// The path from its node `at` on is a circle that the edge at `span` closes. A circle of calls alone
-// is a recursion, and no concern here.
+// The path from its node `at` on is a circle that the edge at `span` closes. A circle of calls
+// alone is a recursion, and no concern here.
 static void report_circle(const Graph *g, const size_t *path, size_t length, size_t at,
                           CagSpan span, CagDiagnostics *errors) {
   CagString s = {0};
@@ -168,8 +168,8 @@ void cag_check_circles(const CagModuleAst *ast, CagDiagnostics *errors) {
     if (f) walk(&g, f->body);
     else walk(&g, s->kind == CAG_STATEMENT_PARAM ? s->as.param.value : s->as.definition.value);
   }
-  for (size_t i = 0; i < 2 * n; i++)
-    if (g.nodes[i].state == NEW) search(&g, i, path, errors);
+  for (size_t k = 0; k < n; k++) // as a run does: from values
+    if (g.nodes[2 * k].state == NEW) search(&g, 2 * k, path, errors);
   for (size_t i = 0; i < 2 * n; i++) free(g.nodes[i].edges);
   free(g.nodes);
   free(path);

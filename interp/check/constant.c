@@ -31,7 +31,8 @@ static bool is_quick(const CagBuiltin *row) {
                                          "Scene",
                                          "Looks and names"};
   for (size_t i = 0; i < sizeof families / sizeof *families; i++)
-    if (row->family && strcmp(row->family, families[i]) == 0) return true;
+    if (row->family && strcmp(row->family, families[i]) == 0)
+      return strncmp(row->signature, "read_", strlen("read_")) != 0;
   return false;
 }
 
@@ -83,7 +84,7 @@ static bool is_constant(const CagConstants *c, const CagExpr *e, size_t *nodes) 
   switch (e->kind) {
   case CAG_EXPR_NUMBER:
   case CAG_EXPR_ANGLE: return fabs(e->as.number) <= NUMBER_MAX;
-  case CAG_EXPR_TEXT:
+  case CAG_EXPR_TEXT: return !strchr(e->as.text.bytes, '.'); // else it may name a file
   case CAG_EXPR_TRUE:
   case CAG_EXPR_FALSE:
   case CAG_EXPR_NONE: return true;

@@ -124,9 +124,9 @@ typedef struct CagModuleUnit {
   enum { CAG_MODULE_LOADING, CAG_MODULE_LOADED, CAG_MODULE_FAILED } state;
   bool resolved;      // its syntax is sound, and its names are bound where they are known
   size_t first_error; // where the errors of its names begin in those of the machine
-  bool asserted;   // its asserts have run
-  bool adopted;    // its definitions are those of the interactive session
-  size_t *imports; // module number of each import statement, in order
+  bool asserted;      // its asserts have run
+  bool adopted;       // its definitions are those of the interactive session
+  size_t *imports;    // module number of each import statement, in order
   size_t import_count;
   struct CagPublicName {
     const char *name;

@@ -18,8 +18,8 @@
 typedef enum Operand { NOTHING, MAYBE, NEEDED } Operand;
 
 typedef void Perform(CagRepl *repl, char *operand);
-static Perform show_help, show_doc, show_type, show_time, list_names, show_scene, hide, load, reload,
-    save, edit, render, export_scene, clear, quit;
+static Perform show_help, show_doc, show_type, show_time, list_names, show_scene, hide, load,
+    reload, save, edit, render, export_scene, clear, quit;
 
 // In the order of :help.
 static const struct Command {
@@ -237,10 +237,8 @@ static void show_doc(CagRepl *repl, char *name) {
     return;
   const char *nearest = nearest_name(repl, name);
   if (nearest)
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "unknown name `%s`; did you mean `%s`?", name,
-                  nearest);
-  else
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "unknown name `%s`; :doc lists the functions", name);
+    cag_repl_fail(repl, CAG_STATUS_USAGE, "unknown name `%s`; did you mean `%s`?", name, nearest);
+  else cag_repl_fail(repl, CAG_STATUS_USAGE, "unknown name `%s`; :doc lists the functions", name);
 }
 
 static void show_help(CagRepl *repl, char *name) {

@@ -110,6 +110,47 @@ static void types_that_cannot_be_are_found(void **state) {
   assert_string_equal(found("param h = 10 in 20..30\nprint h"), "E0250:1");
 }
 
+static void literal_mistakes_are_found(void **state) {
+  (void)state;
+  assert_string_equal(found("show sphere(-3)"), "E0314:1");
+  assert_string_equal(found("show color(box(1), \"redd\")"), "E0501:1");
+  assert_string_equal(found("show box([1, 2])"), "E0301:1");
+  assert_string_equal(found("s = box(1)\nshow s |> color(\"redd\")"), "E0501:2");
+  assert_string_equal(found("print sqrt(2 - 3), acos(2)"), "E0307:1 E0314:1");
+  assert_string_equal(found("show group(sphere(-1), sphere(-2), sphere(1))"), "E0314:1 E0314:1");
+  assert_string_equal(found("s = sphere(-3)\nshow s, color(s, \"redd\")"), "E0314:1");
+  assert_string_equal(found("f(s) = color(s, \"redd\")\nshow f(box(1))"), "");
+  assert_string_equal(found("r = -3\nf(x) = if x then sphere(r) else 0\nprint f(false)"),
+                      "E0314:2");
+  assert_string_equal(found("code(f) = attempt(f, e => e.code)\nprint code(() => sphere(-3))"), "");
+  assert_string_equal(found("param r = 3 in -5..5\nshow sphere(r - 4)"), ""); // -D may change it
+  assert_string_equal(found("print read_text(\"none.txt\"), sky(\"none.exr\")"), "");
+}
+
+static void circles_of_definitions_are_found(void **state) {
+  (void)state;
+  assert_string_equal(found("a = b\nb = a\nprint a"), "E0311:2");
+  assert_string_equal(found("a = a + 1\nprint a"), "E0311:1");
+  assert_string_equal(found("f(x) = a + x\na = 2 |> f\nprint a"), "E0311:1");
+  assert_string_equal(found("a = [b]\nb = { x: c }\nc = { y = a; y }\nprint c"), "E0311:3");
+  // What need not be evaluated closes no circle.
+  assert_string_equal(found("a = if time > 0 then b else 1\nb = a\nprint b"), "");
+  assert_string_equal(found("f(n) = if n == 0 then 1 else n * f(n - 1)\nprint f(3)"), "");
+  assert_string_equal(found("f(n) = g(n)\ng(n) = f(n)\nprint f(3)"), "");
+  assert_string_equal(found("a = x => b(x)\nb(x) = if x > 0 then a(x - 1) else 1\nprint a(1)"), "");
+  assert_string_equal(found("a = [for i in 1..0: a]\nprint a"), "");
+}
+
+static void one_pass_reports_everything(void **state) {
+  (void)state;
+  assert_string_equal(found("show sphere(-3)\nprint hieght\nshow box([1, 2])\na = b\nb = a\n"
+                            "print sin(30), colour\nshow color(box(1), \"redd\")"),
+                      "E0314:1 E0201:2 E0301:3 E0311:5 E0301:6 E0201:6 E0501:7");
+  assert_string_equal(found("import nowhere\nprint sphere(-2), hieght, nowhere.x"),
+                      "E0240:1 E0314:2 E0201:2");
+  assert_string_equal(found("import nowhere: a\nprint a(1), sin(30)"), "E0240:1 E0301:2");
+}
+
 static void what_may_be_right_is_left_alone(void **state) {
   (void)state;
   assert_string_equal(found("f(x) = sin(x) + x\nprint f(1)"), ""); // x could be anything
@@ -177,6 +218,9 @@ int main(void) {
       cmocka_unit_test(calls_of_shapes_and_members_are_held_against_their_types),
       cmocka_unit_test(defaults_of_params_are_in_their_range_or_list),
       cmocka_unit_test(functions_of_a_module_are_found_wherever_they_stand),
+      cmocka_unit_test(literal_mistakes_are_found),
+      cmocka_unit_test(circles_of_definitions_are_found),
+      cmocka_unit_test(one_pass_reports_everything),
       cmocka_unit_test(what_may_be_right_is_left_alone),
       cmocka_unit_test(definitions_that_nothing_uses_are_told),
       cmocka_unit_test(a_long_chain_of_definitions_is_no_trouble),
