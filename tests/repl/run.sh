@@ -87,6 +87,26 @@ prints 'a unique beginning names a command' '' ':q'
 prints ':scene tells what is shown' 's: sphere, radius 10' 's = sphere(10)
 show s
 :scene'
+prints ':hide takes what is shown out of the scene' 'b: box, 1 x 1 x 1' 's = sphere(10)
+b = box(1)
+show s, b
+show s
+:hide s
+:scene'
+prints ':hide takes an expression too' '' 'show sphere(3)
+:hide sphere(3)
+:scene'
+complains ':hide names what is not shown' 2 '`t` is not shown' 't = 3
+:hide t'
+prints 'exit ends' '1 : number' '1
+exit
+2'
+prints 'quit() ends' '1 : number' '1
+quit()
+2'
+prints 'quit may be defined' '5 : number' 'quit = 5
+quit'
+prints 'help lists the commands' "$(printf ':help\n' | "$cag" repl)" 'help'
 prints ':help shows documentation of a definition' 'r = 3
   the radius' '/// the radius
 r = 3
@@ -106,7 +126,7 @@ printf '%s\n' ':doc' | "$cag" repl 2>&1 | grep -qw 'bspline'
 result ':doc lists the built-ins' $?
 
 complains 'an error shows its line' 1 '1 | sin(30)' 'sin(30)'
-complains 'an error of names gives the nearest' 1 'did you mean radius?' 'radius = 3
+complains 'an error of names gives the nearest' 1 'did you mean `radius`?' 'radius = 3
 raduis'
 complains 'an unknown command gives the nearest' 2 'did you mean `:help`?' ':hlep'
 complains 'an input cut off says what is open' 1 'never closed' '[1, 2'
@@ -282,6 +302,14 @@ else
   shows 'letters of all alphabets can be typed' '0.5 : number'
   keys 'радиус = 8' Enter 'рад' Tab ' + 1' Enter
   shows 'Tab completes letters of all alphabets' '9 : number'
+  keys 'half(n) = {' Enter
+  wait_for '...>'
+  keys '  k = n / 2' Enter '  k + 1' Enter '}' Enter 'half(4)' Enter
+  shows 'a definition of several lines' '3 : number'
+  keys ':clear' Enter C-l Up Up Up
+  wait_for '}'
+  keys Enter 'half(6)' Enter
+  shows 'a definition of several lines comes back whole' '4 : number'
   keys '1000 + 1' Enter
   shows 'a value to find again' '1001 : number'
   keys Up BSpace '3' Enter
@@ -296,10 +324,16 @@ else
   result 'Ctrl-D ends' $?
   grep -qxF '1000 + 3' "$XDG_STATE_HOME/cag/history"
   result 'the history is kept' $?
+  grep -qxF "$(printf 'half(n) = {\037  k = n / 2\037  k + 1\037}')" "$XDG_STATE_HOME/cag/history"
+  result 'the history keeps texts of several lines whole' $?
   open_terminal
   shows 'a prompt waits again' 'cag>'
   keys Up Enter
   shows 'history is there in the next session' '1003 : number'
+  keys C-l Up Up Up Up
+  wait_for '}'
+  keys Enter 'half(8)' Enter
+  shows 'so are its texts of several lines' '5 : number'
   keys ':quit' Enter
 fi
 
@@ -330,7 +364,8 @@ if command -v tmux >/dev/null; then
   keys C-l ':help degree' Enter
   wait_for 'cag>'
   # A word of a longer line would stand at the left edge.
-  ! screen | sed -n '/->/,/Example/p' | grep -v -e '->' -e '^ ' | grep -q .
+  told=$(screen | sed -n '/->/,/Example/p')
+  [ "$(printf '%s\n' "$told" | grep -c '^  ')" -ge 4 ] && ! printf '%s\n' "$told" | grep -v -e '->' -e '^ ' | grep -q .
   result 'documentation is wrapped in a narrow window' $? "$(screen)"
   keys C-l ':help' Enter
   shows 'the list of commands is wrapped as well' '                command or an error code; of all functions'
