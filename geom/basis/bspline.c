@@ -79,6 +79,31 @@ void cag_bspline_piece(const double *homogeneous, const double *knots, int p, si
   }
 }
 
+void cag_bspline_piece_derivatives(const double *homogeneous, const double *knots, int p,
+                                   size_t span, double t, int order, double *out) {
+  double net[4 * (CAG_MAX_DEGREE + 1)], d[4 * (CAG_MAX_DEGREE + 1)];
+  const double *k = knots + (span - (size_t)p); // the piece lies between k[p] and k[p + 1]
+  memcpy(net, homogeneous + 4 * (span - (size_t)p), sizeof(double) * 4 * (size_t)(p + 1));
+  for (int m = 0; m <= order; m++) {
+    const int q = p - m; // the degree of this derivative, of q + 1 points over k[m + 1] ..
+    double *value = out + 4 * m;
+    for (int c = 0; c < 4; c++) value[c] = 0;
+    if (q < 0) continue;
+    memcpy(d, net, sizeof(double) * 4 * (size_t)(q + 1));
+    for (int s = 1; s <= q; s++)
+      for (int i = q; i >= s; i--) {
+        const double lo = k[m + i], hi = k[p + 1 + i - s];
+        for (int c = 0; c < 4; c++)
+          d[4 * i + c] = cag_mix(d[4 * (i - 1) + c], d[4 * i + c], (t - lo) / (hi - lo));
+      }
+    memcpy(value, d + 4 * q, sizeof(double) * 4);
+    for (int i = 0; i < q; i++) {
+      const double factor = q / (k[p + 1 + i] - k[m + 1 + i]);
+      for (int c = 0; c < 4; c++) net[4 * i + c] = factor * (net[4 * (i + 1) + c] - net[4 * i + c]);
+    }
+  }
+}
+
 void cag_bspline_insert(double *homogeneous, double *knots, size_t n, int p, double t) {
   const size_t r = cag_knots_span(knots, n, p, t, false, 0);
   double *h = homogeneous;

@@ -1,18 +1,23 @@
-// Adaptive Gauss-Kronrod integration. The recursion is bounded; nothing allocates.
+// Adaptive Gauss-Kronrod integration (Piessens et al., QUADPACK, 1983): of all intervals the one
+// with the largest error is halved, until the sum of the errors is within the tolerance.
+//
+// No interval is given up for a lack of gain: beside a peak or a near cusp, halves only begin to
+// gain when they are as small as what makes it. Intervals whose error is rounding of their own
+// integral, or which cannot be halved, are set aside.
 
 #include "geom/basis/quadrature.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "geom/stop.h"
 
-// Halving an interval this often leaves less of it than rounding does.
-#define DEPTH 48
-// Where halving does not lower the estimate of the error by this factor, the integrand is rounding
-// noise: a kink lowers it by 4, a square root by about 2.8.
-#define IMPROVES 0.8
-// The first halvings may show more of the integrand than was seen before.
-#define SETTLED (DEPTH - 5)
+// Intervals of one piece, beside which further ones would only follow noise. A cusp takes about 50.
+#define MOST_INTERVALS 4000
+// Error of an interval that is rounding, as a part of its integral of absolute values.
+#define ROUNDING (4 * DBL_EPSILON)
 
 // Nodes and weights of the 15-point Kronrod rule, from the outermost; Gauss weights belong to every
 // second node (Piessens et al., QUADPACK, 1983).
@@ -34,7 +39,6 @@ typedef struct Task {
   CagIntegrand f;
   void *context;
   int parts;
-  double limit; // error allowed to one interval
   CagError *err;
 } Task;
 
@@ -72,42 +76,95 @@ static CagStatus estimate(const Task *task, double a, double b, Estimate *out) {
   return CAG_OK;
 }
 
-static CagStatus refine(const Task *task, double a, double b, const Estimate *known, int depth,
-                        double *sum) {
+// --- Intervals ---
+
+typedef struct Interval {
+  double a, b;
+  Estimate e;
+} Interval;
+
+// A heap, the largest error first, and the sums over all intervals.
+typedef struct Pool {
+  Interval *items;
+  size_t count, capacity;
+  size_t made;
+  double error, size;              // of the intervals on the heap; of all
+  double sum[CAG_INTEGRAND_PARTS]; // of the intervals that were set aside
+} Pool;
+
+static CagStatus push(Pool *pool, const Interval *interval, CagError *err) {
+  if (pool->count == pool->capacity) {
+    const size_t capacity = pool->capacity ? 2 * pool->capacity : 32;
+    Interval *grown = realloc(pool->items, capacity * sizeof *grown);
+    if (!grown) return cag_fail_memory(err);
+    pool->items = grown;
+    pool->capacity = capacity;
+  }
+  size_t i = pool->count++;
+  for (; i > 0 && pool->items[(i - 1) / 2].e.error < interval->e.error; i = (i - 1) / 2)
+    pool->items[i] = pool->items[(i - 1) / 2];
+  pool->items[i] = *interval;
+  return CAG_OK;
+}
+
+static Interval pop(Pool *pool) {
+  Interval *items = pool->items;
+  const Interval top = items[0], last = items[--pool->count];
+  size_t i = 0;
+  for (size_t child; (child = 2 * i + 1) < pool->count; i = child) {
+    if (child + 1 < pool->count && items[child + 1].e.error > items[child].e.error) child++;
+    if (!(items[child].e.error > last.e.error)) break;
+    items[i] = items[child];
+  }
+  if (pool->count > 0) items[i] = last;
+  return top;
+}
+
+static CagStatus add_interval(const Task *task, Pool *pool, double a, double b) {
+  Interval interval = {.a = a, .b = b};
+  CagStatus status = estimate(task, a, b, &interval.e);
+  if (status) return status;
+  pool->size += interval.e.size;
+  pool->made++;
   const double middle = a + (b - a) / 2;
-  if (known->error <= task->limit || depth == 0 || !(a < middle && middle < b)) {
-    for (int p = 0; p < task->parts; p++) sum[p] += known->value[p];
-    return CAG_OK;
+  if (interval.e.error > ROUNDING * interval.e.size && a < middle && middle < b) {
+    pool->error += interval.e.error;
+    return push(pool, &interval, task->err);
   }
-  Estimate left, right;
-  CagStatus status = estimate(task, a, middle, &left);
-  if (!status) status = estimate(task, middle, b, &right);
-  if (!status && depth < SETTLED && left.error + right.error > IMPROVES * known->error) {
-    for (int p = 0; p < task->parts; p++) sum[p] += left.value[p] + right.value[p];
-    return CAG_OK;
-  }
-  if (!status) status = refine(task, a, middle, &left, depth - 1, sum);
-  if (!status) status = refine(task, middle, b, &right, depth - 1, sum);
-  return status;
+  for (int p = 0; p < task->parts; p++) pool->sum[p] += interval.e.value[p];
+  return CAG_OK;
+}
+
+static double heap_error(const Pool *pool) {
+  double sum = 0;
+  for (size_t i = 0; i < pool->count; i++) sum += pool->items[i].e.error;
+  return sum;
 }
 
 CagStatus cag_integrate(CagIntegrand f, void *context, const double *cuts, size_t n, int parts,
                         double tolerance, double *out, CagError *err) {
-  Task task = {f, context, parts, 0, err};
-  Estimate e;
-  double size = 0;
-  for (size_t i = 0; i + 1 < n; i++) {
-    CagStatus status = estimate(&task, cuts[i], cuts[i + 1], &e);
-    if (status) return status;
-    size += e.size;
+  const Task task = {f, context, parts, err};
+  Pool pool = {0};
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i + 1 < n; i++)
+    status = add_interval(&task, &pool, cuts[i], cuts[i + 1]);
+  const size_t most = pool.made + MOST_INTERVALS;
+  while (!status && pool.count > 0 && pool.made < most) {
+    if (pool.error <= tolerance * pool.size) {
+      // The running sum may be off by rounding of what it once was.
+      pool.error = heap_error(&pool);
+      if (pool.error <= tolerance * pool.size) break;
+    }
+    const Interval worst = pop(&pool);
+    const double middle = worst.a + (worst.b - worst.a) / 2;
+    pool.error -= worst.e.error;
+    pool.size -= worst.e.size;
+    status = add_interval(&task, &pool, worst.a, middle);
+    if (!status) status = add_interval(&task, &pool, middle, worst.b);
   }
-  task.limit = tolerance * size / sqrt((double)n);
-  double sum[CAG_INTEGRAND_PARTS] = {0};
-  for (size_t i = 0; i + 1 < n; i++) {
-    CagStatus status = estimate(&task, cuts[i], cuts[i + 1], &e);
-    if (!status) status = refine(&task, cuts[i], cuts[i + 1], &e, DEPTH, sum);
-    if (status) return status;
-  }
-  for (int p = 0; p < parts; p++) out[p] = sum[p];
-  return CAG_OK;
+  if (!status) memcpy(out, pool.sum, sizeof(double) * (size_t)parts);
+  for (size_t i = 0; !status && i < pool.count; i++)
+    for (int p = 0; p < parts; p++) out[p] += pool.items[i].e.value[p];
+  free(pool.items);
+  return status;
 }

@@ -5,14 +5,15 @@
 
 #include "geom/status.h"
 
-#define CAG_INTEGRAND_PARTS 8
+#define CAG_INTEGRAND_PARTS 10
 
 // Writes the integrand's `parts` numbers at t.
 typedef CagStatus (*CagIntegrand)(void *context, double t, double *out, CagError *err);
 
-// Integral over the pieces cuts[0]..cuts[1], .., each smooth inside; `n` cuts. Relative error of
-// every part at most about `tolerance` of the largest part's integral of absolute values. Kinks and
-// cusps inside a piece are found by bisection.
+// Integral over the pieces cuts[0]..cuts[1], .., each smooth inside; `n` cuts. Error of every part
+// at most about `tolerance` of the largest part's integral of absolute values. Kinks, cusps and
+// peaks inside a piece are found by bisection. An integrand that is noise to more than the
+// tolerance ends the search after some thousands of intervals.
 CagStatus cag_integrate(CagIntegrand f, void *context, const double *cuts, size_t n, int parts,
                         double tolerance, double *out, CagError *err);
 

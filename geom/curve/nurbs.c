@@ -41,6 +41,30 @@ static void taylor_about(const double *b, int p, double h, bool right, double *o
   }
 }
 
+// A piece is narrow where differences of its Bezier points, over powers of its length, lose digits
+// that those of the control points, over the knots around it, keep.
+static bool is_narrow(const CagNurbs *c, size_t span) {
+  const double part = 0.01;
+  const size_t p = (size_t)c->degree;
+  return p > 1 &&
+         c->knots[span + 1] - c->knots[span] < part * (c->knots[span + p] - c->knots[span + 1 - p]);
+}
+
+static void narrow_taylor(const CagNurbs *c, size_t span, double *out) {
+  const int p = c->degree;
+  for (int right = 0; right < 2; right++) {
+    double *at = out + right * 4 * (p + 1), d[4 * (CAG_NURBS_TAYLOR + 1)], factor = 1;
+    cag_bspline_piece_derivatives(c->homogeneous, c->knots, p, span, c->knots[span + (size_t)right],
+                                  p, d);
+    // The ends stay those of the Bezier points, which neighbours share.
+    for (int k = 1; k <= p; k++) {
+      factor /= k;
+      for (int i = 0; i < 4; i++)
+        at[4 * k + i] = i == 3 && !c->rational ? 0 : factor * d[4 * k + i];
+    }
+  }
+}
+
 static CagStatus make_pieces(CagNurbs *c, CagError *err) {
   const int p = c->degree;
   const size_t stride = 4 * (size_t)(p + 1);
@@ -78,6 +102,14 @@ static CagStatus make_pieces(CagNurbs *c, CagError *err) {
       for (int right = 0; right < 2; right++)
         taylor_about(c->bezier + i * stride, p, c->cuts[i + 1] - c->cuts[i], right,
                      c->taylor + (2 * i + (size_t)right) * stride);
+  for (size_t i = (size_t)p, piece = 0; i < c->count; i++) {
+    if (!(c->knots[i] < c->knots[i + 1])) continue;
+    if (is_narrow(c, i)) {
+      c->has_narrow = true;
+      if (c->taylor) narrow_taylor(c, i, c->taylor + 2 * piece * stride);
+    }
+    piece++;
+  }
   // Equally spaced cuts are found without a search; rounding is mended by a step to a neighbour.
   double step = (c->base.end - c->base.start) / (double)n;
   bool even = true;
@@ -302,6 +334,17 @@ static void homogeneous_derivatives(const CagNurbs *c, size_t piece, double t, i
   }
   const double length = c->cuts[piece + 1] - c->cuts[piece];
   double u = t == c->cuts[piece + 1] ? 1 : (t - c->cuts[piece]) / length;
+  if (order > 0 && c->has_narrow) {
+    const size_t span =
+        cag_knots_span(c->knots, c->count, c->degree, c->cuts[piece], false, c->count);
+    if (is_narrow(c, span)) {
+      cag_bspline_piece_derivatives(c->homogeneous, c->knots, c->degree, span, t, order, out);
+      for (int k = 1; k <= order && !c->rational; k++) out[4 * k + 3] = 0;
+      // The point is that of order 0, to the last bit.
+      cag_bezier_derivatives(cag_nurbs_bezier(c, piece), c->degree, u, 0, out);
+      return;
+    }
+  }
   cag_bezier_derivatives(cag_nurbs_bezier(c, piece), c->degree, u, order, out);
   double scale = 1;
   for (int k = 1; k <= order; k++) {

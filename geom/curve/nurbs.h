@@ -27,6 +27,8 @@ typedef struct CagNurbs {
   double *bezier;  // pieces x (degree + 1) x 4
   double *taylor;  // pieces x 2 x (degree + 1) x 4: about the left end, about the right; or NULL
   double per_unit; // pieces per unit of t where the cuts are equally spaced, else 0
+  bool has_narrow; // some piece is much shorter than the knots around: its derivatives are not
+                   // taken from its Bezier form
 } CagNurbs;
 
 typedef enum CagNurbsKind { CAG_NURBS_BEZIER, CAG_NURBS_BSPLINE, CAG_NURBS_RATIONAL } CagNurbsKind;

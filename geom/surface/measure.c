@@ -3,13 +3,15 @@
 // Integrals are taken cell by cell between the breaks, where the surface is smooth, by the tensor
 // product of the 15 point Gauss-Kronrod rule; a cell whose inner 7 point Gauss rule disagrees is
 // halved across the direction that disagrees more. A flat piece has closed form: moments of its
-// region by Green's theorem, along the boundary curves, with the same rule.
+// region by Green's theorem, along the boundary curves.
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/basis/quadrature.h"
+#include "geom/curve/family.h"
 #include "geom/surface/family.h"
 #include "geom/surface/trimmed.h"
 
@@ -43,7 +45,7 @@ static const double GAUSS[NODES] = {
 // A cell is done when its rules differ by less than this part of the whole; the Kronrod value is
 // far better than the difference says, so the promised 1e-8 has room.
 #define CELL_TOLERANCE 1e-10
-#define MAX_DEPTH 24
+#define MAX_DEPTH 60
 // No surface that converges needs as many cells; one that does not must still end.
 #define MAX_CELLS 20000
 // A term that is below this part of what the extent of the surface allows is mostly rounding (the
@@ -198,35 +200,33 @@ static void flux_terms(CagVec3 p, CagVec3 du, CagVec3 dv, double *out) {
 
 // --- Flat pieces ---
 
+// Error of the moments of a region, as a part of the largest that its box allows.
+#define MOMENTS 1e-13
+
 // Moments of x^i y^j over the region, i + j <= 3, in the order of MOMENT.
 static const int MOMENT[MAX_TERMS][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1},
                                          {0, 2}, {3, 0}, {2, 1}, {1, 2}, {0, 3}};
 
-// Line integral of x^(i + 1) y^j / (i + 1) dy over [a, b], halved until the rules agree.
-static CagStatus boundary_moments(const CagCurve *c, double a, double b, CagVec3 middle,
-                                  const double *size, int depth, double *sum, CagError *err) {
-  double fine[MAX_TERMS] = {0}, coarse[MAX_TERMS] = {0}, h = (b - a) / 2;
-  for (int k = 0; k < NODES; k++) {
-    CagVec3 d[2];
-    CagStatus status = cag_curve_eval(c, (a + b) / 2 + h * NODE[k], 1, CAG_SIDE_RIGHT, d, err);
-    if (status) return status;
-    double x = d[0].x - middle.x, y = d[0].y - middle.y;
-    const double px[5] = {1, x, x * x, x * x * x, x * x * x * x}, py[4] = {1, y, y * y, y * y * y};
-    for (int m = 0; m < MAX_TERMS; m++) {
-      int i = MOMENT[m][0], j = MOMENT[m][1];
-      double value = px[i + 1] * py[j] / (i + 1) * d[1].y * h;
-      fine[m] += KRONROD[k] * value;
-      coarse[m] += GAUSS[k] * value;
-    }
+// The integrands of the line integrals of x^(i + 1) y^j / (i + 1) dy, each as a part of what the
+// box allows.
+typedef struct Boundary {
+  const CagCurve *c;
+  CagVec3 middle;
+  double size[MAX_TERMS];
+} Boundary;
+
+static CagStatus boundary_terms(void *context, double t, double *out, CagError *err) {
+  const Boundary *b = context;
+  CagVec3 d[2];
+  CagStatus status = cag_curve_eval(b->c, t, 1, CAG_SIDE_RIGHT, d, err);
+  if (status) return status;
+  double x = d[0].x - b->middle.x, y = d[0].y - b->middle.y;
+  const double px[5] = {1, x, x * x, x * x * x, x * x * x * x}, py[4] = {1, y, y * y, y * y * y};
+  for (int m = 0; m < MAX_TERMS; m++) {
+    int i = MOMENT[m][0], j = MOMENT[m][1];
+    out[m] = b->size[m] > 0 ? px[i + 1] * py[j] / (i + 1) * d[1].y / b->size[m] : 0;
   }
-  double error = 0;
-  for (int m = 0; m < MAX_TERMS; m++) error = fmax(error, fabs(fine[m] - coarse[m]) / size[m]);
-  if (error <= CELL_TOLERANCE || depth >= MAX_DEPTH) {
-    for (int m = 0; m < MAX_TERMS; m++) sum[m] += fine[m];
-    return CAG_OK;
-  }
-  CagStatus status = boundary_moments(c, a, (a + b) / 2, middle, size, depth + 1, sum, err);
-  return status ? status : boundary_moments(c, (a + b) / 2, b, middle, size, depth + 1, sum, err);
+  return CAG_OK;
 }
 
 // About the middle of the region's box, which keeps the powers small.
@@ -236,22 +236,20 @@ static CagStatus region_moments(const CagRegion *r, CagVec3 *middle, double *out
   if (status) return status;
   *middle = cag_lerp(box.min, box.max, 0.5);
   CagVec3 half = cag_scaled(cag_sub(box.max, box.min), 0.5);
-  double size[MAX_TERMS];
+  Boundary b = {.middle = *middle};
   for (int m = 0; m < MAX_TERMS; m++) {
-    size[m] = half.x * half.y * pow(half.x, MOMENT[m][0]) * pow(half.y, MOMENT[m][1]);
+    b.size[m] = half.x * half.y * pow(half.x, MOMENT[m][0]) * pow(half.y, MOMENT[m][1]);
     out[m] = 0;
   }
   for (size_t l = 0; !status && l < r->count; l++) {
-    const CagCurve *c = r->loops[l];
-    size_t inner = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
-    double *ends = malloc((inner + 2) * sizeof *ends);
-    if (!ends) return cag_fail_memory(err);
-    ends[0] = c->start;
-    if (inner > 0) c->kind->breaks(c, ends + 1, inner);
-    ends[inner + 1] = c->end;
-    for (size_t i = 0; !status && i <= inner; i++)
-      status = boundary_moments(c, ends[i], ends[i + 1], *middle, size, 0, out, err);
-    free(ends);
+    double *cuts, part[MAX_TERMS];
+    size_t n;
+    b.c = r->loops[l];
+    status = cag_curve_cuts(b.c, &cuts, &n, err);
+    if (status) break;
+    status = cag_integrate(boundary_terms, &b, cuts, n, MAX_TERMS, MOMENTS, part, err);
+    free(cuts);
+    for (int m = 0; !status && m < MAX_TERMS; m++) out[m] += b.size[m] * part[m];
   }
   return status;
 }

@@ -283,6 +283,63 @@ static void the_closest_point_is_the_global_one(void **state) {
   cag_curve_release(exact);
 }
 
+// Speeds with peaks and near cusps, against mpmath with 40 digits: ellipses 4 E(1 - b^2), the
+// parabola with the middle weight w, the cubic [0, 0], [1, 1], [k, 1], [1, 0], which has a cusp at
+// k = 0.
+static void lengths_of_uneven_speed_are_right(void **state) {
+  (void)state;
+  CagCurve *c = ellipse(1, 1e-4, 0, 2 * M_PI);
+  NEAR(length_of(c), 4.0000002019326954, 1e-12);
+  cag_curve_release(c);
+  static const double parabola[][2] = {{1e2, 2.8165856059646152},
+                                       {1e4, 2.8283073248631982},
+                                       {1e6, 2.8284259266073696},
+                                       {1e8, 2.8284271127647879}};
+  for (size_t i = 0; i < 4; i++) {
+    static const CagVec3 p[3] = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}};
+    const double weights[3] = {1, parabola[i][0], 1};
+    OK(cag_curve_bezier(p, weights, 3, 2, &c, &err));
+    NEAR(length_of(c), parabola[i][1], 1e-10);
+    cag_curve_release(c);
+  }
+  static const double cubic[][2] = {{0, 1.8284271247461901},     {1e-9, 1.8284271246175104},
+                                    {1e-6, 1.8284269960680730},  {1e-3, 1.8282993367024019},
+                                    {-1e-3, 1.8285566963225382}, {-1e-6, 1.8284272534273859}};
+  for (size_t i = 0; i < 6; i++) {
+    const CagVec3 p[4] = {{0, 0, 0}, {1, 1, 0}, {cubic[i][0], 1, 0}, {1, 0, 0}};
+    OK(cag_curve_bezier(p, NULL, 4, 2, &c, &err));
+    NEAR(length_of(c), cubic[i][1], 1e-12);
+    cag_curve_release(c);
+  }
+}
+
+// Weights times powers of a number give the same points at another speed, and so the same length.
+static void lengths_do_not_depend_on_the_speed(void **state) {
+  (void)state;
+  uint64_t random = 31;
+  for (int i = 0; i < 200; i++) {
+    CagVec3 p[5];
+    double plain[5], uneven[5], number[20];
+    const int n = 3 + i % 3;
+    for (int k = 0; k < 20; k++) {
+      random = random * 6364136223846793005u + 1442695040888963407u;
+      number[k] = (double)(random >> 11) / 9007199254740992.0;
+    }
+    const double factor = pow(10, 8 * number[19] - 4);
+    for (int k = 0; k < n; k++) {
+      p[k] = cag_vec3(10 * number[3 * k], 10 * number[3 * k + 1], 10 * number[3 * k + 2]);
+      plain[k] = 0.5 + number[15 + k % 4];
+      uneven[k] = plain[k] * pow(factor, k);
+    }
+    CagCurve *a, *b;
+    OK(cag_curve_bezier(p, plain, (size_t)n, 3, &a, &err));
+    OK(cag_curve_bezier(p, uneven, (size_t)n, 3, &b, &err));
+    NEAR(length_of(b) / length_of(a), 1, 1e-10);
+    cag_curve_release(a);
+    cag_curve_release(b);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(an_ellipse_has_the_perimeter_of_the_elliptic_integral),
@@ -294,6 +351,8 @@ int main(void) {
       cmocka_unit_test(planes_and_lines_are_recognised),
       cmocka_unit_test(polylines_keep_the_tolerance),
       cmocka_unit_test(a_circle_takes_the_fewest_points),
+      cmocka_unit_test(lengths_of_uneven_speed_are_right),
+      cmocka_unit_test(lengths_do_not_depend_on_the_speed),
       cmocka_unit_test(the_closest_point_is_the_global_one),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

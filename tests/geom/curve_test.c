@@ -539,6 +539,72 @@ static void polylines_have_corners_on_both_sides(void **state) {
   cag_curve_release(c);
 }
 
+// Inner knots 1e-7 apart; control points (7 i^2 + 3 i) mod 11, (5 i^2 + i) mod 7. Derivatives by
+// exact fractions, at 1 + 2^-25 between the knots and from the right at the first one.
+static void derivatives_keep_their_digits_between_close_knots(void **state) {
+  (void)state;
+  static const double knots3[] = {0, 0, 0, 0, 1, 1 + 1e-7, 2, 2, 2, 2};
+  static const double knots5[] = {0, 0, 0, 0, 0, 0, 1, 1 + 1e-7, 1.5, 2, 2, 2, 2, 2, 2};
+  static const struct {
+    int degree;
+    size_t n;
+    const double *knots;
+    double t, expected[3][2];
+    int orders;
+  } cases[] = {
+      {3,
+       6,
+       knots3,
+       1 + 0x1p-25,
+       {{7.499998153389552, 7.499998664779049},
+        {38.60162254798628, 16.389765259691984},
+        {-1019999876.4044732, -959999924.4394981}},
+       3},
+      {3,
+       6,
+       knots3,
+       1,
+       {{7.499996550000613, 7.499997750000373},
+        {68.99998770000177, 44.99999250000104},
+        {-1019999876.4044732, -959999924.4394981}},
+       3},
+      {5,
+       9,
+       knots5,
+       1 + 0x1p-25,
+       {{-2.3148148699525453, -3.148148123247141},
+        {-11.481482042518635, 5.185184235736654},
+        {158.8888346429665, 268.88882894412495}},
+       3},
+      {5,
+       9,
+       knots5,
+       1,
+       {{-2.3148145277776453, -3.148148277777554},
+        {-11.48148677777414, 5.185176222225625},
+        {158.88877966669966, 268.88878666669234}},
+       3},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    CagVec3 p[9], d[4], many[4];
+    for (size_t k = 0; k < cases[i].n; k++)
+      p[k] = cag_vec3((double)((7 * k * k + 3 * k) % 11), (double)((5 * k * k + k) % 7), 0);
+    CagCurve *c;
+    OK(cag_curve_nurbs(p, NULL, cases[i].n, cases[i].degree, cases[i].knots, 2, &c, &err));
+    OK(cag_curve_eval(c, cases[i].t, cases[i].orders, CAG_SIDE_RIGHT, d, &err));
+    OK(cag_curve_eval_many(c, &cases[i].t, 1, cases[i].orders, many, &err));
+    for (int k = 0; k < cases[i].orders; k++) {
+      const CagVec3 exact = {cases[i].expected[k][0], cases[i].expected[k][1], 0};
+      // Rounding of t between the knots is 2e-9 of their distance.
+      near_vec(d[k + 1], exact, 1e-12 * cag_norm(exact));
+      near_vec(many[k + 1], exact, 1e-12 * cag_norm(exact));
+    }
+    OK(cag_curve_point(c, cases[i].t, &many[0], &err));
+    near_vec(d[0], many[0], 0);
+    cag_curve_release(c);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_reference_curves_have_their_points_and_derivatives),
@@ -559,6 +625,7 @@ int main(void) {
       cmocka_unit_test(bad_data_are_named),
       cmocka_unit_test(joining_wants_ends_that_meet),
       cmocka_unit_test(a_composite_has_an_exact_nurbs_form),
+      cmocka_unit_test(derivatives_keep_their_digits_between_close_knots),
       cmocka_unit_test(polylines_have_corners_on_both_sides),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

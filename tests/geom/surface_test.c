@@ -721,6 +721,54 @@ static void bounds_are_tight_between_samples(void **state) {
   cag_surface_release(s);
 }
 
+// The parabola [0, 0], [1, 1], [2, 0] with the middle weight w turned about the x axis, its length
+// extruded and its area as a prism, against mpmath with 40 digits.
+static void integrals_of_uneven_surfaces_are_right(void **state) {
+  (void)state;
+  static const struct {
+    double weight, length, area, turned_area, turned_volume;
+  } cases[] = {
+      {1e2, 2.8165856059646152, 0.99957010128011681, 8.8097363770118865, 2.0919031593887972},
+      {1e4, 2.8283073248631982, 0.99999991096512311, 8.8850127849046535, 2.0943945639145109},
+      {1e6, 2.8284259266073696, 0.99999999998649134, 8.8857583481313851, 2.0943951023104125},
+  };
+  const CagVec3 p[3] = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}}, x_axis = {1, 0, 0}, o = {0, 0, 0};
+  for (size_t i = 0; i < 3; i++) {
+    const double weights[3] = {1, cases[i].weight, 1};
+    CagCurve *both[2], *outline;
+    CagSurface *s;
+    CagRegion *region;
+    double area = 0, terms[10] = {0};
+    MUST(cag_curve_bezier(p, weights, 3, 2, &both[0], err));
+    MUST(cag_curve_line(p[2], p[0], 2, &both[1], err));
+    MUST(cag_surface_extrude(both[0], cag_vec3(0, 0, 3), 0, 1, &s, err));
+    MUST(cag_surface_area(s, &area, NULL, err));
+    assert_near(area, 3 * cases[i].length, 1e-8, "wall");
+    cag_surface_release(s);
+    MUST(cag_surface_revolve(both[0], x_axis, o, 0, 2 * M_PI, &s, err));
+    MUST(cag_surface_area(s, &area, NULL, err));
+    MUST(cag_surface_volume_terms(s, terms, err));
+    assert_near(area, cases[i].turned_area, 1e-8, "turned area");
+    assert_near(fabs(terms[0]), cases[i].turned_volume, 1e-8, "turned volume");
+    cag_surface_release(s);
+    MUST(cag_curve_join(both, 2, &outline, err));
+    MUST(cag_region_new(outline, NULL, 0, &region, err));
+    MUST(cag_region_area(region, &area, NULL, err));
+    assert_near(area, cases[i].area, 1e-10, "region");
+    // The flux through the lid of a prism of height 3 is the area times 3 / 3.
+    const CagTransform lid = cag_translate(cag_vec3(0, 0, 3));
+    double flux[10] = {0};
+    MUST(cag_surface_planar(region, &lid, &s, err));
+    MUST(cag_surface_volume_terms(s, flux, err));
+    assert_near(flux[0], cases[i].area, 1e-10, "lid");
+    cag_surface_release(s);
+    cag_region_release(region);
+    cag_curve_release(outline);
+    cag_curve_release(both[0]);
+    cag_curve_release(both[1]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bezier_patches_have_the_partials_of_the_worked_example),
@@ -747,6 +795,7 @@ int main(void) {
       cmocka_unit_test(tubes_are_mitred_at_corners),
       cmocka_unit_test(planar_pieces_measure_their_region),
       cmocka_unit_test(isocurves_run_on_the_surface),
+      cmocka_unit_test(integrals_of_uneven_surfaces_are_right),
       cmocka_unit_test(bounds_are_tight_between_samples),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
