@@ -155,6 +155,10 @@ CagStatus cag_curve_approximate(const CagCurve *c, double tolerance, CagCurve **
                                 CagError *err) {
   if (!(tolerance > 0))
     return cag_fail(err, CAG_E_ARGUMENT, "value", "tolerance", -1, "`tolerance` must be positive");
+  if (cag_curve_resting_view(c, NULL)) {
+    *out = cag_curve_retain(c);
+    return CAG_OK;
+  }
   CagStatus status = cag_curve_to_nurbs(c, out, err);
   if (status != CAG_E_UNSUPPORTED) return status;
   double *cuts;

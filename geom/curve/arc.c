@@ -87,7 +87,7 @@ CagStatus cag_curve_arc(double a, double b, double start, double end, const CagT
   if (!(start < end))
     return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "range", -1,
                     "the range %.12gdeg..%.12gdeg has no length; its start must be less than its "
-                    "end (reverse(C) runs the other way round)",
+                    "end",
                     start * (180 / M_PI), end * (180 / M_PI));
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++)

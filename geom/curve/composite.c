@@ -166,21 +166,16 @@ static CagStatus join_straight(CagCurve *const *curves, size_t n, int dimension,
   return status;
 }
 
-CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagError *err) {
-  if (n == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-few-curves", "curves", -1,
-                    "there is no curve to join");
-  CagStatus status = check_joints(curves, n, err);
-  if (status) return status;
+// Joins curves that meet and of which none is a point.
+static CagStatus join_moving(CagCurve *const *curves, size_t n, int dimension, CagCurve **out,
+                             CagError *err) {
+  if (n == 1 && curves[0]->dimension < dimension) return cag_curve_to_space(curves[0], out, err);
   if (n == 1) {
     *out = cag_curve_retain(curves[0]);
     return CAG_OK;
   }
-  int dimension = 2;
-  for (size_t i = 0; i < n; i++)
-    if (curves[i]->dimension == 3) dimension = 3;
   bool done;
-  status = join_straight(curves, n, dimension, &done, out, err);
+  CagStatus status = join_straight(curves, n, dimension, &done, out, err);
   if (status || done) return status;
 
   const size_t count = flatten(curves, n, NULL, NULL);
@@ -213,6 +208,27 @@ CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagE
   for (size_t i = 0; i < owned; i++) cag_curve_release(pieces[i]);
   free(pieces);
   free(cuts);
+  return status;
+}
+
+CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagError *err) {
+  if (n == 0)
+    return cag_fail(err, CAG_E_ARGUMENT, "too-few-curves", "curves", -1,
+                    "there is no curve to join");
+  CagStatus status = check_joints(curves, n, err);
+  if (status) return status;
+  // A point adds nothing to what it meets.
+  CagCurve **moving = malloc(n * sizeof *moving);
+  if (!moving) return cag_fail_memory(err);
+  int dimension = 2;
+  size_t count = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (curves[i]->dimension == 3) dimension = 3;
+    if (!cag_curve_resting_view(curves[i], NULL)) moving[count++] = curves[i];
+  }
+  status = count ? join_moving(moving, count, dimension, out, err)
+                 : join_moving(curves, 1, dimension, out, err);
+  free(moving);
   return status;
 }
 

@@ -218,11 +218,13 @@ static CagStatus check_triangle(CagVec3 p, CagVec3 apex, CagVec3 q, CagError *er
 CagStatus cag_conic_arc(CagVec3 p, CagVec3 apex, CagVec3 q, double weight, int dimension,
                         CagCurve **out, CagError *err) {
   char text[32];
-  if (!(weight > 0) || !isfinite(weight))
+  if (!(weight >= 0) || !isfinite(weight))
     return cag_fail(err, CAG_E_ARGUMENT, "negative-weight", "weight", -1,
-                    "the weight of the apex must be positive and finite; this is %s",
+                    "the weight of the apex must be finite and 0 or more; this is %s",
                     cag_number_text(weight, text));
   CagStatus status = check_triangle(p, apex, q, err);
+  // Without weight the apex has no pull: the arc is its chord.
+  if (!status && weight == 0) return cag_curve_line(p, q, dimension, out, err);
   const CagVec3 points[3] = {p, apex, q};
   const double weights[3] = {1, weight, 1};
   return status ? status

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "geom/curve/family.h"
+#include "geom/curve/nurbs.h"
 
 // A parameter this many ulps outside the domain is the end: it was computed.
 #define SNAP_ULPS 16
@@ -164,6 +165,14 @@ CagStatus cag_curve_transform_nurbs(const CagCurve *c, const CagTransform *t, Ca
   return status;
 }
 
+// A parameter that was an angle stays one: kinds tell angles by their own rate of turning, which
+// another range of the parameter changes. An image as a NURBS has a parameter of its own.
+static CagStatus keep_unit(const CagCurve *c, CagStatus status, CagCurve **made) {
+  if (status || (*made)->references > 1 || (*made)->angular == c->angular) return status;
+  if (!cag_nurbs_data(*made) || cag_nurbs_data(c)) (*made)->angular = c->angular;
+  return status;
+}
+
 CagStatus cag_curve_transform(const CagCurve *c, const CagTransform *t, CagCurve **out,
                               CagError *err) {
   for (int i = 0; i < 4; i++)
@@ -171,7 +180,7 @@ CagStatus cag_curve_transform(const CagCurve *c, const CagTransform *t, CagCurve
       if (!isfinite(t->m[i][j]))
         return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "T", -1,
                         "the transform has an entry that is not a finite number");
-  return c->kind->transform(c, t, out, err);
+  return keep_unit(c, c->kind->transform(c, t, out, err), out);
 }
 
 CagStatus cag_curve_to_space(const CagCurve *c, CagCurve **out, CagError *err) {
@@ -181,11 +190,11 @@ CagStatus cag_curve_to_space(const CagCurve *c, CagCurve **out, CagError *err) {
   }
   CagTransform t = cag_transform_identity();
   t.planar = false;
-  return c->kind->transform(c, &t, out, err);
+  return keep_unit(c, c->kind->transform(c, &t, out, err), out);
 }
 
 CagStatus cag_curve_reverse(const CagCurve *c, CagCurve **out, CagError *err) {
-  return c->kind->reverse(c, out, err);
+  return keep_unit(c, c->kind->reverse(c, out, err), out);
 }
 
 double cag_curve_remap(const CagCurve *c, double t, double a, double b) {
@@ -204,8 +213,26 @@ static CagStatus check_range(const CagCurve *c, double a, double b, CagError *er
                   parameter_text(c, a, x), parameter_text(c, b, y));
 }
 
+// Whether the range leaves the domain of a closed curve by more than rounding.
+static bool leaves_domain(const CagCurve *c, double a, double b) {
+  const double slack = SNAP_ULPS * DBL_EPSILON * fmax(fabs(c->start), fabs(c->end));
+  return c->closed && c->start < c->end && (a < c->start - slack || b > c->end + slack);
+}
+
+static CagStatus trim_closed(const CagCurve *c, double a, double b, CagCurve **out, CagError *err) {
+  const double period = c->end - c->start;
+  const double slack = SNAP_ULPS * DBL_EPSILON * fmax(fabs(a), fabs(b));
+  char x[48], y[48], z[48];
+  if (b - a > period + slack)
+    return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "range", -1,
+                    "the range %s..%s is longer than one turn of the closed curve, %s",
+                    parameter_text(c, a, x), parameter_text(c, b, y), parameter_text(c, period, z));
+  return keep_unit(c, cag_curve_trim_over_seam(c, a, b, out, err), out);
+}
+
 CagStatus cag_curve_trim(const CagCurve *c, double a, double b, CagCurve **out, CagError *err) {
   CagStatus status = check_range(c, a, b, err);
+  if (!status && leaves_domain(c, a, b)) return trim_closed(c, a, b, out, err);
   if (!status) status = snap(c, &a, "range", err);
   if (!status) status = snap(c, &b, "range", err);
   if (!status) status = check_range(c, a, b, err);
@@ -214,7 +241,27 @@ CagStatus cag_curve_trim(const CagCurve *c, double a, double b, CagCurve **out, 
     *out = cag_curve_retain(c);
     return CAG_OK;
   }
-  return c->kind->trim(c, a, b, out, err);
+  return keep_unit(c, c->kind->trim(c, a, b, out, err), out);
+}
+
+CagStatus cag_curve_halves(const CagCurve *c, double t, CagCurve *out[2], CagError *err) {
+  CagStatus status = snap(c, &t, "t", err);
+  if (status) return status;
+  out[0] = out[1] = NULL;
+  for (int i = 0; !status && i < 2; i++) {
+    const double a = i ? t : c->start, b = i ? c->end : t;
+    CagVec3 p;
+    if (a < b) {
+      status = cag_curve_trim(c, a, b, &out[i], err);
+      continue;
+    }
+    status = cag_curve_point(c, t, &p, err);
+    if (!status) status = cag_curve_resting(p, c->dimension, t, t, c->angular, &out[i], err);
+  }
+  if (!status) return CAG_OK;
+  cag_curve_release(out[0]);
+  cag_curve_release(out[1]);
+  return status;
 }
 
 CagStatus cag_curve_reparametrize(const CagCurve *c, double a, double b, CagCurve **out,
@@ -226,6 +273,19 @@ CagStatus cag_curve_reparametrize(const CagCurve *c, double a, double b, CagCurv
     return CAG_OK;
   }
   return c->kind->reparametrize(c, a, b, out, err);
+}
+
+CagStatus cag_curve_reparametrize_as(const CagCurve *c, double a, double b, bool angular,
+                                     CagCurve **out, CagError *err) {
+  CagStatus status = check_range(c, a, b, err);
+  if (status) return status;
+  if (a == c->start && b == c->end && angular == c->angular) {
+    *out = cag_curve_retain(c);
+    return CAG_OK;
+  }
+  status = c->kind->reparametrize(c, a, b, out, err);
+  if (!status) (*out)->angular = angular;
+  return status;
 }
 
 CagStatus cag_curve_cuts(const CagCurve *c, double **out, size_t *n, CagError *err) {

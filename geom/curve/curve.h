@@ -56,7 +56,7 @@ struct CagCurve {
   const CagCurveKind *kind;
   int references;    // a curve belongs to one thread, or is shared read-only
   int dimension;     // 2 or 3
-  double start, end; // domain; start < end
+  double start, end; // domain; start < end, except of a point, which may have start == end
   bool angular;      // the parameter is an angle
   bool closed;       // the ends meet (to rounding), judged at construction
 };
@@ -68,6 +68,9 @@ void cag_curve_release(CagCurve *c); // NULL is fine
 CagStatus cag_curve_line(CagVec3 p, CagVec3 q, int dimension, CagCurve **out, CagError *err);
 CagStatus cag_curve_polyline(const CagVec3 *points, size_t n, bool closed, int dimension,
                              CagCurve **out, CagError *err);
+// Kind "point": one point over [start, end], start <= end. No tangent, length 0, never closed.
+CagStatus cag_curve_resting(CagVec3 p, int dimension, double start, double end, bool angular,
+                            CagCurve **out, CagError *err);
 // Points center + a cos(t) x + b sin(t) y for t in [start, end] radians. Circle: a == b. frame: x,
 // y, center as columns (planar: dimension 2).
 CagStatus cag_curve_arc(double a, double b, double start, double end, const CagTransform *frame,
@@ -109,6 +112,7 @@ typedef struct CagNurbsView {
 bool cag_curve_nurbs_view(const CagCurve *c, CagNurbsView *out); // false: not a NURBS kind
 // Vertices of a line or polyline (without the repeated first of a closed one); false: another kind.
 bool cag_curve_vertices(const CagCurve *c, const CagVec3 **points, size_t *n, bool *closed);
+bool cag_curve_resting_view(const CagCurve *c, CagVec3 *p); // p may be NULL; false: no point
 // Data of an arc kind.
 bool cag_curve_arc_view(const CagCurve *c, double *a, double *b, CagTransform *frame);
 bool cag_curve_helix_view(const CagCurve *c, double *radius, double *pitch, double *turns,
@@ -148,9 +152,18 @@ CagStatus cag_curve_to_nurbs(const CagCurve *c, CagCurve **out,
 CagStatus cag_curve_transform(const CagCurve *c, const CagTransform *t, CagCurve **out,
                               CagError *err);
 CagStatus cag_curve_reverse(const CagCurve *c, CagCurve **out, CagError *err);
+// The part over [a, b]; of a closed curve the range may run over the seam, at most one turn.
 CagStatus cag_curve_trim(const CagCurve *c, double a, double b, CagCurve **out, CagError *err);
+// The parts before and after t, anywhere in the domain: that of no length is a point over [t, t].
+CagStatus cag_curve_halves(const CagCurve *c, double t, CagCurve *out[2], CagError *err);
 CagStatus cag_curve_reparametrize(const CagCurve *c, double a, double b, CagCurve **out,
                                   CagError *err);
+// The same over a range of angles (radians) or of numbers.
+CagStatus cag_curve_reparametrize_as(const CagCurve *c, double a, double b, bool angular,
+                                     CagCurve **out, CagError *err);
+// The curve without the stretches over which it stays in one point: for what is carried along it.
+// The domain stays. A curve that rests as a whole is given back.
+CagStatus cag_curve_without_stops(const CagCurve *c, CagCurve **out, CagError *err);
 // The curve as one of space (dimension 3), or its image under the map [x, y] -> [x, 0, y] used by
 // revolve.
 CagStatus cag_curve_to_space(const CagCurve *c, CagCurve **out, CagError *err);

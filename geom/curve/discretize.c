@@ -162,6 +162,7 @@ static CagStatus one_piece(const CagCurve *c, double a, double b, const Limits *
 CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle, double **out,
                                size_t *n, CagError *err) {
   char text[32];
+  if (cag_curve_resting_view(c, NULL)) return cag_curve_cuts(c, out, n, err);
   if (!(tolerance > 0))
     return cag_fail(err, CAG_E_ARGUMENT, "tolerance-not-positive", "tolerance", -1,
                     "`tolerance` must be positive; this is %s", cag_number_text(tolerance, text));

@@ -35,6 +35,12 @@ double cag_curve_sag(const CagCurve *c, double a, double b);
 bool cag_curve_chord_cubic(const CagCurve *c, double a, double b, CagVec3 *q);
 // Interior breaks and both ends, malloc'd, ascending: *n values.
 CagStatus cag_curve_cuts(const CagCurve *c, double **out, size_t *n, CagError *err);
+// Straight from points[i] at t[i] to the next; t ascends strictly.
+CagStatus cag_curve_polyline_over(const CagVec3 *points, const double *t, size_t n, int dimension,
+                                  CagCurve **out, CagError *err);
+// What cag_curve_trim does for [a, b], a < b <= a + period, of a closed curve, wherever it lies.
+CagStatus cag_curve_trim_over_seam(const CagCurve *c, double a, double b, CagCurve **out,
+                                   CagError *err);
 // Axes of an arc kind: center + cos(angle) x + sin(angle) y, d angle / dt = rate.
 bool cag_curve_arc_axes(const CagCurve *c, CagVec3 *center, CagVec3 *x, CagVec3 *y, double *rate);
 // Bound of |C''| over [a, b]; false: no helix.

@@ -33,6 +33,7 @@ typedef struct Known {
 typedef struct Source {
   CagCurveFunction function;
   int references;
+  bool angular; // its own parameter
   Known *known;
   size_t slots, used; // slots: 0 or a power of two
 } Source;
@@ -59,7 +60,7 @@ static double inner(const Function *c, double t) {
 static CagStatus fail_not_finite(const Function *c, double t, int k, CagError *err) {
   char text[48];
   const double inside = inner(c, t);
-  if (c->base.angular) snprintf(text, sizeof text, "%.12gdeg", inside * (180 / M_PI));
+  if (c->source->angular) snprintf(text, sizeof text, "%.12gdeg", inside * (180 / M_PI));
   else cag_number_text(inside, text);
   if (k == 0)
     return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
@@ -241,7 +242,7 @@ CagStatus cag_curve_function(const CagCurveFunction *f, int dimension, double st
   Source *source = malloc(sizeof *source);
   if (!source) return cag_fail_memory(err);
   // The context is the caller's until all is well.
-  *source = (Source){.function = *f, .references = 0};
+  *source = (Source){.function = *f, .references = 0, .angular = angular};
   source->function.release = NULL;
   Function like = {.source = source, .map = cag_transform_identity()};
   like.base.dimension = dimension;

@@ -206,8 +206,21 @@ CagStatus cag_curve_nurbs(const CagVec3 *points, const double *weights, size_t n
   return status;
 }
 
+// Degree 0. The weight cancels, but must be one.
+static CagStatus single_point(const CagVec3 *point, const double *weight, int dimension,
+                              CagCurve **out, CagError *err) {
+  if (weight && *weight == 0)
+    return cag_fail(err, CAG_E_DEGENERATE, "zero-denominator", "weights", 0,
+                    "the weight of a single control point must not be 0");
+  if (weight && !(*weight > 0 && isfinite(*weight)))
+    return cag_fail(err, CAG_E_ARGUMENT, "negative-weight", "weights", 0,
+                    "the weight of a single control point must be positive and finite");
+  return cag_curve_resting(*point, dimension, 0, 1, false, out, err);
+}
+
 CagStatus cag_curve_bezier(const CagVec3 *points, const double *weights, size_t n, int dimension,
                            CagCurve **out, CagError *err) {
+  if (n == 1) return single_point(points, weights, dimension, out, err);
   CagStatus status = cag_degree_check(n,
                                       n < 2                ? 1
                                       : n > CAG_MAX_DEGREE ? CAG_MAX_DEGREE + 1

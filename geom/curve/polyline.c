@@ -89,6 +89,11 @@ CagStatus cag_curve_polyline(const CagVec3 *points, size_t n, bool closed, int d
   return status;
 }
 
+CagStatus cag_curve_polyline_over(const CagVec3 *points, const double *t, size_t n, int dimension,
+                                  CagCurve **out, CagError *err) {
+  return make(points, t, n, false, &polyline_kind, dimension, out, err);
+}
+
 bool cag_curve_vertices(const CagCurve *curve, const CagVec3 **points, size_t *n, bool *closed) {
   if (curve->kind != &line_kind && curve->kind != &polyline_kind) return false;
   const Polyline *c = (const Polyline *)curve;

@@ -632,6 +632,16 @@ static CagStatus probe(const CagMotion *m, CagError *err) {
   return CAG_OK;
 }
 
+// The path in space, without the stretches over which it stays in one point.
+static CagStatus moving_path(const CagCurve *path, CagCurve **out, CagError *err) {
+  CagCurve *space;
+  CagStatus status = cag_surface_space_curve(path, &space, err);
+  if (status) return status;
+  status = cag_curve_without_stops(space, out, err);
+  cag_curve_release(space);
+  return status;
+}
+
 CagStatus cag_motion_along(const CagCurve *path, const CagPathMotion *how, CagMotion **out,
                            CagError *err) {
   CagMotion *m = calloc(1, sizeof *m);
@@ -647,7 +657,7 @@ CagStatus cag_motion_along(const CagCurve *path, const CagPathMotion *how, CagMo
                       "`orient` must not be the zero vector: give a direction such as Z");
   if (!status && !(isfinite(how->twist.start) && isfinite(how->twist.end)))
     status = cag_fail(err, CAG_E_ARGUMENT, "not-finite", "twist", -1, "`twist` must be finite");
-  if (!status) status = cag_surface_space_curve(path, &m->path, err);
+  if (!status) status = moving_path(path, &m->path, err);
   CagBounds box = CAG_BOUNDS_EMPTY;
   if (!status) status = cag_curve_bounds(m->path, &box, err);
   if (!status && cag_norm(cag_sub(box.max, box.min)) == 0)

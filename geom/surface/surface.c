@@ -42,6 +42,10 @@ void cag_surface_release(CagSurface *s) {
 }
 
 CagStatus cag_surface_space_curve(const CagCurve *c, CagCurve **out, CagError *err) {
+  CagVec3 p;
+  // A point may have a single parameter; a surface needs a range.
+  if (cag_curve_resting_view(c, &p) && c->start == c->end)
+    return cag_curve_resting(p, 3, c->start, c->start + 1, c->angular, out, err);
   if (c->dimension == 3) {
     *out = cag_curve_retain(c);
     return CAG_OK;

@@ -27,8 +27,8 @@ static bool read_nurbs(CagCall *call, const CagNurbs **out) {
   return cag_fail_geometry(call, &err);
 }
 
-static CagValue range_of(CagCall *call, double a, double b) {
-  return cag_domain_value(call->vm, false, a, b);
+static CagValue range_of(CagCall *call, const CagNurbs *c, double a, double b) {
+  return cag_domain_value(call->vm, c->base.angular, a, b);
 }
 
 bool cag_bsplines_spans(CagCall *call, CagValue *result) {
@@ -36,7 +36,8 @@ bool cag_bsplines_spans(CagCall *call, CagValue *result) {
   if (!read_nurbs(call, &c)) return false;
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < c->pieces; i++)
-    if (!cag_builder_add(call->vm, list, range_of(call, c->cuts[i], c->cuts[i + 1]))) return false;
+    if (!cag_builder_add(call->vm, list, range_of(call, c, c->cuts[i], c->cuts[i + 1])))
+      return false;
   *result = cag_builder_finish(call->vm, list);
   return true;
 }
@@ -54,12 +55,12 @@ bool cag_bsplines_support(CagCall *call, CagValue *result) {
   for (size_t k = (size_t)i; k < c->count; k += c->distinct) {
     const double a = fmax(c->knots[k], c->base.start), b = fmin(c->knots[k + p + 1], c->base.end);
     if (!(a < b)) continue;
-    if (from < to && a > to && !cag_builder_add(call->vm, list, range_of(call, from, to)))
+    if (from < to && a > to && !cag_builder_add(call->vm, list, range_of(call, c, from, to)))
       return false;
     from = from < to && a <= to ? from : a;
     to = b;
   }
-  const CagValue last = from < to ? range_of(call, from, to) : cag_none();
+  const CagValue last = from < to ? range_of(call, c, from, to) : cag_none();
   if (c->periodic && !cag_builder_add(call->vm, list, last)) return false;
   *result = c->periodic ? cag_builder_finish(call->vm, list) : last;
   return true;
@@ -77,7 +78,7 @@ bool cag_bsplines_acting_points(CagCall *call, CagValue *result) {
   double t;
   int side;
   if (!read_nurbs(call, &c) ||
-      !cag_arg_parameter(call, 1, false, c->base.start, c->base.end, false, &t) ||
+      !cag_arg_parameter(call, 1, c->base.angular, c->base.start, c->base.end, false, &t) ||
       !cag_arg_choice(call, 2, sides, &side))
     return false;
   const size_t p = (size_t)c->degree;
@@ -87,7 +88,7 @@ bool cag_bsplines_acting_points(CagCall *call, CagValue *result) {
     if (!cag_builder_add(call->vm, indices, cag_number((double)(i % c->distinct))) ||
         !cag_builder_add(call->vm, points, control_point(call, c, i)))
       return false;
-  CagValue values[] = {range_of(call, c->knots[span], c->knots[span + 1]),
+  CagValue values[] = {range_of(call, c, c->knots[span], c->knots[span + 1]),
                        cag_builder_finish(call->vm, indices), cag_builder_finish(call->vm, points)};
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
@@ -126,7 +127,7 @@ bool cag_bsplines_straight_spans(CagCall *call, CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = (size_t)c->degree; i < c->count; i++) {
     if (!(c->knots[i] < c->knots[i + 1]) || !collinear(c, i)) continue;
-    if (!cag_builder_add(call->vm, list, range_of(call, c->knots[i], c->knots[i + 1])))
+    if (!cag_builder_add(call->vm, list, range_of(call, c, c->knots[i], c->knots[i + 1])))
       return false;
   }
   *result = cag_builder_finish(call->vm, list);
@@ -141,7 +142,7 @@ bool cag_bsplines_denominator(CagCall *call, CagValue *result) {
   long order;
   int side;
   if (!read_nurbs(call, &c) ||
-      !cag_arg_parameter(call, 1, false, c->base.start, c->base.end, false, &t) ||
+      !cag_arg_parameter(call, 1, c->base.angular, c->base.start, c->base.end, false, &t) ||
       !cag_arg_integer_or(call, 2, 0, 0, CAG_MAX_DERIVATIVE, &order) ||
       !cag_arg_choice(call, 3, sides, &side))
     return false;

@@ -19,7 +19,9 @@ const CagBuiltin cag_builtins_conics[] = {
      "The parabola y^2 = 4 a x with its vertex in `center`. A range of numbers t is the quadratic "
      "form [a t^2, 2 a t]; a range of angles between -90deg and 90deg the tangent form [tan(t)^2, "
      "2 sqrt(a) tan(t)]. Instead of it, `x` gives the range of x on the upper half, or `y` that of "
-     "y (domain). With a normal it lies in space.",
+     "y (domain). A range that runs down gives the curve over the ascending range, reversed. With "
+     "a "
+     "normal it lies in space.",
      "c = parabola(1, -1..2)\n"
      "print c(-1), c(2) // expect: [1, -2] [4, 4]\n"
      "print domain(parabola(1, x: 1..4)) // expect: 1..2",
@@ -29,7 +31,9 @@ const CagBuiltin cag_builtins_conics[] = {
      "The hyperbola x^2/a^2 - y^2/b^2 = 1. A range of numbers t is the hyperbolic form [a cosh(t), "
      "b sinh(t)], the right branch; a range of angles between two odd multiples of 90deg the "
      "secant form [a / cos(t), b tan(t)], within 90deg..270deg the left branch. Instead of it, `x` "
-     "gives the range of x on the upper half of the right branch, or `y` that of y (domain).",
+     "gives the range of x on the upper half of the right branch, or `y` that of y (domain). A "
+     "range "
+     "that runs down gives the curve over the ascending range, reversed.",
      "h = hyperbola(2, 1, -60deg..60deg)\n"
      "print near(h(60deg), [4, sqrt(3)]) // expect: true\n"
      "print near(h(0deg), hyperbola(2, 1, -1..1)(0)) // expect: true",
@@ -48,8 +52,9 @@ const CagBuiltin cag_builtins_conics[] = {
      "curve",
      "The arc of a conic from P to Q whose end tangents meet in the apex, as a rational Bezier "
      "curve of degree 2. How far it bulges is said by one of: `weight` of the apex (1: a parabola, "
-     "less: an ellipse, more: a hyperbola), `rho` = weight/(1 + weight), the share of the way from "
-     "the chord's middle to the apex, or `shoulder`, a point inside the triangle that it goes "
+     "less: an ellipse, more: a hyperbola, 0: the chord, which is a line), `rho` = weight/(1 + "
+     "weight), the fraction of the way from the chord's middle to the apex, or `shoulder`, a point "
+     "inside the triangle that it goes "
      "through.",
      "q = conic_arc([1, 0], [1, 1], [0, 1], weight: sqrt(0.5))\n"
      "print near(norm(q(0.3)), 1) // expect: true\n"

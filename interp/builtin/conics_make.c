@@ -77,6 +77,18 @@ static bool hyperbola_at(CagCall *call, double a, double b, double value, bool i
   return true;
 }
 
+// The curve over a range; from the larger to the smaller parameter it is that over the ascending
+// range, reversed.
+static bool give_ranged(CagCall *call, CagStatus status, const CagError *err, bool backwards,
+                        CagCurve **made, CagValue *result) {
+  if (status || !backwards) return give(call, status, err, made, result);
+  CagCurve *reversed = NULL;
+  CagError why;
+  status = cag_curve_reverse(*made, &reversed, &why);
+  cag_curve_release(*made);
+  return give(call, status, &why, &reversed, result);
+}
+
 // Exactly one of range, x and y, of which the last two stand at `x_at` and after.
 static bool read_range(CagCall *call, int range_at, int x_at, double a, double b, Inverse inverse,
                        double *from, double *to, bool *angle) {
@@ -110,9 +122,9 @@ bool cag_conics_parabola(CagCall *call, CagValue *result) {
       !read_range(call, 1, 4, a, 0, parabola_at, &from, &to, &angle) ||
       !read_frame(call, 2, &frame))
     return false;
-  CagStatus status = cag_curve_parabola(a, angle ? CAG_FORM_TANGENT : CAG_FORM_QUADRATIC, from, to,
-                                        &frame, &c, &err);
-  return give(call, status, &err, &c, result);
+  CagStatus status = cag_curve_parabola(a, angle ? CAG_FORM_TANGENT : CAG_FORM_QUADRATIC,
+                                        fmin(from, to), fmax(from, to), &frame, &c, &err);
+  return give_ranged(call, status, &err, from > to, &c, result);
 }
 
 bool cag_conics_hyperbola(CagCall *call, CagValue *result) {
@@ -125,9 +137,9 @@ bool cag_conics_hyperbola(CagCall *call, CagValue *result) {
       !read_range(call, 2, 5, a, b, hyperbola_at, &from, &to, &angle) ||
       !read_frame(call, 3, &frame))
     return false;
-  CagStatus status = cag_curve_hyperbola(a, b, angle ? CAG_FORM_SECANT : CAG_FORM_HYPERBOLIC, from,
-                                         to, &frame, &c, &err);
-  return give(call, status, &err, &c, result);
+  CagStatus status = cag_curve_hyperbola(a, b, angle ? CAG_FORM_SECANT : CAG_FORM_HYPERBOLIC,
+                                         fmin(from, to), fmax(from, to), &frame, &c, &err);
+  return give_ranged(call, status, &err, from > to, &c, result);
 }
 
 // --- By equation ---
@@ -305,8 +317,9 @@ bool cag_conics_conic_arc(CagCall *call, CagValue *result) {
         "needs one of `rho`, `shoulder` and `weight` to say how far the arc bulges");
   if (cag_conics_said(call, 3)) {
     if (!cag_arg_finite(call, 3, &rho)) return false;
-    if (!(rho > 0 && rho < 1))
-      return cag_fail_value(call, 3, "a number between 0 and 1 (0.5: a parabola)");
+    if (!(rho >= 0 && rho < 1))
+      return cag_fail_value(call, 3,
+                            "a number from 0 (the chord) to less than 1 (0.5: a parabola)");
     weight = rho / (1 - rho);
   } else if (cag_conics_said(call, 4)) {
     if (!cag_arg_vec(call, 4, &shoulder, NULL) ||

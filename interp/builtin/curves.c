@@ -122,15 +122,23 @@ const CagBuiltin cag_builtins_curves[] = {
     // --- Another curve ---
     {"reverse(C)", cag_curves_reverse, "curve", "The curve run backwards over the same domain.",
      "print start_point(reverse(line([0, 0], [1, 2]))) // expect: [1, 2]", CURVES, changed},
-    {"trim(C, range)", cag_curves_trim, "curve", "The part over a range of the parameter.",
-     "print near(length(trim(circle(1), 0deg..180deg)), pi) // expect: true", CURVES, changed},
+    {"trim(C, range)", cag_curves_trim, "curve",
+     "The part over a range of the parameter. On a closed curve the range may run over the seam, "
+     "up to one whole turn.",
+     "print near(length(trim(circle(1), 0deg..180deg)), pi) // expect: true\n"
+     "print start_point(trim(circle(1), 270deg..450deg)) // expect: [0, -1]",
+     CURVES, changed},
     {"reparametrize(C, range)", cag_curves_reparametrize, "curve",
-     "The same points over another range of the parameter.",
-     "print domain(reparametrize(line([0, 0], [1, 0]), 0..5)) // expect: 0..5", CURVES, changed},
+     "The same points over another range of the parameter, of numbers or of angles.",
+     "print domain(reparametrize(line([0, 0], [1, 0]), 0..5)) // expect: 0..5\n"
+     "print reparametrize(circle(2), 0..1)(0.25) // expect: [0, 2]",
+     CURVES, changed},
     {"split(C, t)", cag_curves_split, "list",
-     "The two parts before and after t. A t at an end is an error.",
-     "print [for c in split(line([0, 0], [4, 0]), 0.25): length(c)] // expect: [1, 3]", CURVES,
-     changed},
+     "The two parts before and after t. At an end of the curve one of them is a point: its domain "
+     "is t..t, its length 0, and it has no tangent.",
+     "print [for c in split(line([0, 0], [4, 0]), 0.25): length(c)] // expect: [1, 3]\n"
+     "print split(line([0, 0], [4, 0]), 1)[1] // expect: point, [4, 0], t in 1..1",
+     CURVES, changed},
     {"join_curves(C, ...)", cag_curves_join_curves, "curve",
      "The curves, or one list of them, one after the other. Each must start where the one before "
      "ends: else an error that tells the gap.",
@@ -156,12 +164,16 @@ const CagBuiltin cag_builtins_curves[] = {
      "space, right-handed about the normal.",
      "print circle(2)(90deg) // expect: [0, 2]", NUMBERS, made},
     {"arc(radius, range, center = [0, 0], normal = none)", cag_curves_arc, "curve",
-     "The part of a circle over a range of angles.",
-     "print start_point(arc(2, 90deg..180deg)) // expect: [0, 2]", NUMBERS, made},
+     "The part of a circle over a range of angles. A range from the larger angle to the smaller "
+     "one "
+     "runs clockwise: `arc(r, b..a)` is `reverse(arc(r, a..b))`, with the domain a..b.",
+     "print start_point(arc(2, 90deg..180deg)) // expect: [0, 2]\n"
+     "print end_point(arc(2, 180deg..90deg)) // expect: [0, 2]",
+     NUMBERS, made},
     {"ellipse(a, b, range = 0deg..360deg, center = [0, 0], normal = none)", cag_curves_ellipse,
      "curve",
      "The ellipse [a cos t, b sin t] about the center, t an angle (not that of the ray to the "
-     "point).",
+     "point). A range from the larger angle to the smaller one runs clockwise, as of `arc`.",
      "print ellipse(3, 2)(90deg) // expect: [0, 2]", NUMBERS, made},
     {"arc_through(P, Q, R)", cag_curves_arc_through, "curve",
      "The arc from P through Q to R, by the angle turned. Points on one line are an error "
@@ -177,7 +189,7 @@ const CagBuiltin cag_builtins_curves[] = {
      "print near(end_point(helix(10, 5, 3)), [10, 0, 15]) // expect: true", NUMBERS, made},
     {"bezier(points, weights = none)", cag_curves_bezier, "curve",
      "The Bezier curve of these control points over 0..1, rational with weights (positive, one for "
-     "each point).",
+     "each point). A single control point gives a curve of degree 0, which stays in that point.",
      "print bezier([[0, 0], [1, 2], [2, 0]])(0.5) // expect: [1, 1]", LISTS, splines},
     {"bspline(points, degree = 3, knots = \"open\", closed = false, weights = none, order = none)",
      cag_curves_bspline, "curve",

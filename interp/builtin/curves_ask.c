@@ -190,6 +190,7 @@ bool cag_curves_degree(CagCall *call, CagValue *result) {
   if (!cag_arg_curve(call, 0, &c)) return false;
   if (cag_curve_nurbs_view(c, &nurbs)) *result = cag_number(nurbs.degree);
   else if (cag_curve_vertices(c, &points, &n, &closed)) *result = cag_number(1);
+  else if (cag_curve_resting_view(c, NULL)) *result = cag_number(0);
   else return fail_no_data(call, c, "degree");
   return true;
 }
@@ -200,9 +201,14 @@ bool cag_curves_points(CagCall *call, CagValue *result) {
   const CagVec3 *points;
   size_t n;
   bool closed;
+  CagVec3 rest;
   if (!cag_arg_curve(call, 0, &c)) return false;
   if (cag_curve_vertices(c, &points, &n, &closed)) {
     *result = cag_points_value(call->vm, points, n, c->dimension);
+    return true;
+  }
+  if (cag_curve_resting_view(c, &rest)) {
+    *result = cag_points_value(call->vm, &rest, 1, c->dimension);
     return true;
   }
   if (!cag_curve_nurbs_view(c, &nurbs)) return fail_no_data(call, c, "control points");

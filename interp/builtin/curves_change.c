@@ -37,24 +37,29 @@ bool cag_curves_reparametrize(CagCall *call, CagValue *result) {
   CagCurve *c, *out = NULL;
   CagError err;
   double from, to;
-  if (!cag_arg_curve(call, 0, &c) || !cag_arg_parameter_range(call, 1, c->angular, &from, &to))
-    return false;
-  CagStatus status = cag_curve_reparametrize(c, from, to, &out, &err);
+  bool angle;
+  if (!cag_arg_curve(call, 0, &c) || !cag_arg_interval(call, 1, &from, &to, &angle)) return false;
+  if (angle) {
+    from *= CAG_RADIANS_PER_DEGREE;
+    to *= CAG_RADIANS_PER_DEGREE;
+  }
+  CagStatus status = cag_curve_reparametrize_as(c, from, to, angle, &out, &err);
   return give(call, status, &err, &out, result);
 }
 
 bool cag_curves_split(CagCall *call, CagValue *result) {
-  CagCurve *c, *first = NULL, *second = NULL;
+  CagCurve *c, *halves[2] = {NULL, NULL};
   CagError err;
   CagValue parts[2];
   double t;
   if (!cag_arg_curve(call, 0, &c) ||
       !cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, &t))
     return false;
-  CagStatus status = cag_curve_trim(c, c->start, t, &first, &err);
-  if (!give(call, status, &err, &first, &parts[0])) return false;
-  status = cag_curve_trim(c, t, c->end, &second, &err);
-  if (!give(call, status, &err, &second, &parts[1])) return false;
+  if (!cag_geometry_ok(call, cag_curve_halves(c, t, halves, &err), &err)) return false;
+  for (int i = 0; i < 2; i++) {
+    parts[i] = cag_curve_value(call->vm, halves[i]);
+    cag_shape_say_alike(parts[i], call->values[0]);
+  }
   *result = cag_list_values(call->vm, parts, 2);
   return true;
 }

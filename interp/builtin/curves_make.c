@@ -72,14 +72,19 @@ static bool read_turn(CagCall *call, int argument, double *from, double *to) {
   return !cag_given(call, argument) || cag_arg_parameter_range(call, argument, true, from, to);
 }
 
+// The arc over a range of angles; from the larger to the smaller one it runs clockwise.
 static bool give_arc(CagCall *call, double a, double b, double from, double to, int frame_at,
                      CagValue *result) {
   CagTransform frame;
   CagCurve *c = NULL;
   CagError err;
   if (!cag_arg_circle_frame(call, frame_at, &frame)) return false;
-  CagStatus status = cag_curve_arc(a, b, from, to, &frame, &c, &err);
-  return give(call, status, &err, &c, result);
+  CagStatus status = cag_curve_arc(a, b, fmin(from, to), fmax(from, to), &frame, &c, &err);
+  if (status != CAG_OK || from < to) return give(call, status, &err, &c, result);
+  CagCurve *clockwise = NULL;
+  status = cag_curve_reverse(c, &clockwise, &err);
+  cag_curve_release(c);
+  return give(call, status, &err, &clockwise, result);
 }
 
 bool cag_curves_circle(CagCall *call, CagValue *result) {

@@ -290,7 +290,7 @@ bool cag_surfaces_loft(CagCall *call, CagValue *result) {
   for (size_t i = 0; ok && i < list->length; i++) {
     ok = read_loft_curve(call, i, cag_list_get(call->vm, list, i), &curves[i]);
     if (!ok) break;
-    all_closed = all_closed && curves[i]->closed;
+    all_closed = all_closed && (curves[i]->closed || cag_curve_resting_view(curves[i], NULL));
     read++;
   }
   CagSurface *side = NULL;

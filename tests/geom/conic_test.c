@@ -459,7 +459,10 @@ static void an_arc_of_a_triangle_bulges_as_its_weight_says(void **state) {
   FAILS(cag_conic_shoulder_weight(p, apex, q, cag_vec3(2, 2, 0), &weight, &err),
         "shoulder-outside");
   FAILS(cag_conic_arc(p, cag_lerp(p, q, 0.5), q, 1, 2, &c, &err), "collinear-points");
-  FAILS(cag_conic_arc(p, apex, q, 0, 2, &c, &err), "negative-weight");
+  FAILS(cag_conic_arc(p, apex, q, -1, 2, &c, &err), "negative-weight");
+  OK(cag_conic_arc(p, apex, q, 0, 2, &c, &err)); // the chord
+  near_vec(at(c, 0.25), cag_vec3(0.75, 0.25, 0), 0);
+  cag_curve_release(c);
 }
 
 // --- Circles and lines that touch ---

@@ -461,7 +461,9 @@ static void bad_data_are_named(void **state) {
   six[3].y = NAN;
   FAILS(cag_curve_nurbs(six, NULL, 4, 2, good, 3, &c, &err), "not-finite");
   assert_int_equal(err.index, 3);
-  FAILS(cag_curve_bezier(six, NULL, 1, 3, &c, &err), "too-few-points");
+  FAILS(cag_curve_bezier(six, NULL, 0, 3, &c, &err), "too-few-points");
+  FAILS(cag_curve_bezier(six, none, 1, 3, &c, &err), "zero-denominator");
+  FAILS(cag_curve_bezier(six, negative + 2, 1, 3, &c, &err), "negative-weight");
   FAILS(cag_curve_polyline(six, 1, false, 3, &c, &err), "too-few-points");
   FAILS(cag_curve_polyline(six, 2, true, 3, &c, &err), "too-few-points");
   CagTransform frame = cag_transform_identity();
