@@ -2,6 +2,7 @@
 #
 #   make             program and libraries          make test            all suites, closing with `N passed, N failed`
 #   make test-sanitize  under ASan and UBSan        make bench           figures against peers
+#   make coverage    lines and branches by folder   make mutate N=100    how many random changes the tests notice
 #   make format      clang-format everything        make check-format / check-layers
 #   make install PREFIX=/usr/local DESTDIR=      make deb             Debian packages
 
@@ -64,7 +65,7 @@ GEOM_OBJ := $(call obj,$(GEOM_SRC)) $(CGAL_OBJ)
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o $(BUILD)/obj/gen/documents.o
 TOOL_OBJ := $(call obj,$(TOOL_SRC) $(MAIN_SRC))
 
-.PHONY: all clean unit unit-lang unit-geom unit-interp test test-programs test-sanitize bench format check-format check-layers install deb editors
+.PHONY: all clean unit unit-lang unit-geom unit-interp test test-programs test-sanitize coverage mutate bench format check-format check-layers install deb editors
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -148,6 +149,14 @@ test: test-programs
 test-sanitize:
 	$(MAKE) BUILD=$(BUILD)-sanitize OPT=-O1 SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" test
 
+# Tests that fail here, such as those of time, do not stop the report.
+coverage:
+	-$(MAKE) BUILD=$(BUILD)-coverage OPT=-O0 SANITIZE=--coverage test
+	BUILD=$(BUILD)-coverage sh tools/coverage.sh
+# How many of N random changes to the code the tests notice; SEED= draws others.
+mutate:
+	N=$(N) SEED=$(SEED) sh tools/mutate.sh
+
 $(BUILD)/tests/bench/%: tests/bench/%.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(LDLIBS_ALL)
@@ -208,6 +217,6 @@ editors: $(BUILD)/tools/tables
 	$(BUILD)/tools/tables | sh tools/editors.sh editors
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-coverage $(BUILD)-mutate
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
