@@ -151,7 +151,7 @@ test-sanitize:
 
 # Tests that fail here, such as those of time, do not stop the report.
 coverage:
-	-$(MAKE) BUILD=$(BUILD)-coverage OPT=-O0 SANITIZE=--coverage test
+	-$(MAKE) BUILD=$(BUILD)-coverage OPT=-O0 SANITIZE="--coverage -DCAG_ONE_COPY" test
 	BUILD=$(BUILD)-coverage sh tools/coverage.sh
 # How many of N random changes to the code the tests notice; SEED= draws others.
 mutate:

@@ -7,13 +7,13 @@
 
 #include <string.h>
 
+#include "geom/basis/wide.h"
 #include "geom/curve/nurbs.h"
 
 typedef double Quad __attribute__((vector_size(32), aligned(8)));
 
 // Functions of vectors are inlined, so how these are passed without wide registers is no matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
-#define INLINE static inline __attribute__((always_inline))
 
 // The piece of t, as cag_nurbs_piece has it; equally spaced cuts need no search and so no branch
 // that depends on where t was before.
@@ -115,7 +115,7 @@ static void evaluate_plain(const CagNurbs *c, const double *t, size_t n, int ord
   evaluate_kind(c, t, n, order, out);
 }
 
-#ifdef __x86_64__
+#if defined(__x86_64__) && !defined(CAG_ONE_COPY)
 __attribute__((target("avx2"))) static void evaluate_wide(const CagNurbs *c, const double *t,
                                                           size_t n, int order, CagVec3 *out) {
   evaluate_kind(c, t, n, order, out);

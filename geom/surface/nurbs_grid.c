@@ -11,15 +11,6 @@
 
 #include "geom/surface/tensor.h"
 
-// The widest vector unit of the machine is chosen when the program starts; the arithmetic is the
-// same in each (no contraction), so are the results.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
-    !defined(__SANITIZE_ADDRESS__)
-#define WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define WIDEST
-#endif
-
 // What is known of one row u and one run of columns in the same span of v.
 typedef struct Run {
   size_t n;            // columns

@@ -14,16 +14,11 @@
 #ifndef CAG_GEOM_SURFACE_TENSOR_H
 #define CAG_GEOM_SURFACE_TENSOR_H
 
+#include "geom/basis/wide.h"
 #include "geom/surface/surface.h"
 
 // Basis tables live on the stack; higher degrees serve nobody and lose all accuracy.
 #define MAX_DEGREE 63
-
-#if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline))
-#else
-#define INLINE static inline
-#endif
 
 typedef struct Direction {
   int degree;
