@@ -150,25 +150,33 @@ static CagStatus pair_sides(CagBrepWork *w, Pair *pairs, CagError *err) {
 
 // --- Long sides that meet several short ones ---
 
-// A vertex of another side without partner that lies within the side, at its parameter t.
-static CagStatus vertex_within(const CagBrepWork *w, const Pair *pairs, size_t index, double *t,
-                               bool *found, CagError *err) {
+static bool near_box(const CagBounds *box, CagVec3 p, double off) {
+  return p.x >= box->min.x - off && p.x <= box->max.x + off && p.y >= box->min.y - off &&
+         p.y <= box->max.y + off && p.z >= box->min.z - off && p.z <= box->max.z + off;
+}
+
+// A vertex of another side without partner that lies within the side, at its parameter t: the one
+// nearest to the middle, so that halves of halves soon have none left. `count`: sides that `pairs`
+// tells of.
+static CagStatus vertex_within(const CagBrepWork *w, const Pair *pairs, size_t count, size_t index,
+                               double *t, bool *found, CagError *err) {
   const CagBrepSide *s = &w->sides[index];
-  CagBounds box = s->curve->kind->hull(s->curve, s->curve->start, s->curve->end);
+  const double start = s->curve->start, end = s->curve->end, middle = (start + end) / 2;
+  CagBounds box = s->curve->kind->hull(s->curve, start, end);
   *found = false;
-  for (size_t k = 0; k < w->side_count && !*found; k++) {
+  for (size_t k = 0; k < count; k++) {
     if (k == index || pairs[k].with != SIZE_MAX) continue;
     const size_t ends[2] = {w->sides[k].from, w->sides[k].to};
-    for (int e = 0; e < 2 && !*found; e++) {
-      if (ends[e] == s->from || ends[e] == s->to) continue;
+    for (int e = 0; e < 2; e++) {
       CagVec3 p = w->brep->vertices[ends[e]], q;
-      double off = w->same, distance;
-      if (p.x < box.min.x - off || p.x > box.max.x + off || p.y < box.min.y - off ||
-          p.y > box.max.y + off || p.z < box.min.z - off || p.z > box.max.z + off)
-        continue;
-      CagStatus status = cag_curve_closest(s->curve, p, t, &q, &distance, err);
+      double at, distance;
+      if (ends[e] == s->from || ends[e] == s->to || !near_box(&box, p, w->same)) continue;
+      CagStatus status = cag_curve_closest(s->curve, p, &at, &q, &distance, err);
       if (status) return status;
-      *found = distance <= off && *t > s->curve->start && *t < s->curve->end;
+      if (distance > w->same || !(at > start && at < end)) continue;
+      if (*found && fabs(at - middle) >= fabs(*t - middle)) continue;
+      *found = true;
+      *t = at;
     }
   }
   return CAG_OK;
@@ -200,38 +208,45 @@ static CagStatus cut_side(CagBrepWork *w, size_t index, double t, CagError *err)
   return CAG_OK;
 }
 
+// The parts that are cut off stand behind the sides that `pairs` tells of.
 static CagStatus cut_sides(CagBrepWork *w, const Pair *pairs, bool *any, CagError *err) {
   size_t n = w->side_count;
   *any = false;
   for (size_t i = 0; i < n; i++) {
     bool found;
-    double t;
+    double t = 0;
     if (pairs[i].with != SIZE_MAX) continue;
-    CagStatus status = vertex_within(w, pairs, i, &t, &found, err);
+    CagStatus status = vertex_within(w, pairs, n, i, &t, &found, err);
     if (!status && found) status = cut_side(w, i, t, err), *any = true;
     if (status) return status;
   }
   return CAG_OK;
 }
 
-// A side can be cut as often as others end on it; more rounds than this are no closed body.
+// Each round halves the places that sides are to be cut at; more rounds than this are no closed
+// body.
 #define CUT_ROUNDS 64
+
+// Makes vertices and finds partners; *pairs has an element for each side afterwards.
+static CagStatus match_sides(CagBrepWork *w, size_t first_vertex, Pair **pairs, CagError *err) {
+  Pair *fresh = realloc(*pairs, (w->side_count + 1) * sizeof *fresh);
+  if (!fresh) return cag_fail_memory(err);
+  *pairs = fresh;
+  for (size_t i = 0; i < w->side_count; i++) fresh[i] = (Pair){SIZE_MAX, false};
+  CagStatus status = make_vertices(w, first_vertex, err);
+  return status ? status : pair_sides(w, fresh, err);
+}
 
 static CagStatus find_pairs(CagBrepWork *w, Pair **pairs, CagError *err) {
   size_t first_vertex = w->brep->vertex_count;
   *pairs = NULL;
-  for (int round = 0; round < CUT_ROUNDS; round++) {
-    Pair *fresh = realloc(*pairs, (w->side_count + 1) * sizeof *fresh);
-    if (!fresh) return cag_fail_memory(err);
-    *pairs = fresh;
-    for (size_t i = 0; i < w->side_count; i++) fresh[i] = (Pair){SIZE_MAX, false};
-    CagStatus status = make_vertices(w, first_vertex, err);
-    bool any = false;
-    if (!status) status = pair_sides(w, fresh, err);
-    if (!status) status = cut_sides(w, fresh, &any, err);
-    if (status || !any) return status;
+  bool any = true;
+  CagStatus status = match_sides(w, first_vertex, pairs, err);
+  for (int round = 0; !status && any && round < CUT_ROUNDS; round++) {
+    status = cut_sides(w, *pairs, &any, err);
+    if (!status && any) status = match_sides(w, first_vertex, pairs, err);
   }
-  return CAG_OK;
+  return status;
 }
 
 // --- The result ---

@@ -95,7 +95,12 @@ g = bspline_surface([for i in 0..5: [for j in 0..6: [c(i, j) * cos(i * 60deg), c
 shape rational - none 'g = bezier_surface([[[0,0,0], [0,10,3], [0,20,0]], [[10,0,4], [10,10,9], [10,20,2]], [[20,0,0], [20,10,2], [20,20,5]]],
   weights: [[1, 2, 1], [0.5, 3, 1], [1, 1, 2]])'
 shape region 310.1592653589793 none 'g = region(circle(10), holes: [[[-2, -1], [2, -1], [2, 1]]])'
-shape ellipsoid - none 'g = ellipsoid(3, 4, 5)'
+# Closed surfaces are solids, whichever way their normals look: 4/3 pi a b c; pi r^2 h; pi (R^2 - r^2) h; 4/3 pi (10^3 - 5^3).
+shape ellipsoid - 251.32741228718345 'g = ellipsoid(3, 4, 5)'
+shape climbing 942.4777960769379 1570.7963267948965 'g = revolve(polyline([[0, 0], [10, 0], [10, 5], [0, 5]]))'
+shape descending 942.4777960769379 1570.7963267948965 'g = revolve(polyline([[0, 5], [10, 5], [10, 0], [0, 0]]))'
+shape turned_ring - 351.85837720205683 'g = revolve(polyline([[5, 1], [5, -1], [9, -1], [9, 1], [5, 1]]))'
+shape inverted_shells 1570.7963267948967 3665.191429188092 'g = solid([flip(sphere_surface(10)), sphere_surface(5)])'
 shape hyperboloid - none 'g = hyperboloid(3, 4, 5, within: -6..6)'
 shape two_sheets - none 'g = hyperboloid(3, 4, 5, sheets: 2, within: -9..9)'
 shape paraboloid - none 'g = paraboloid(3, 4, within: 0..6)'
@@ -188,6 +193,13 @@ cmp -s named.step again.step || wrong 'the files differ'
 
 it 'lines of an .igs have 80 columns'
 awk 'length($0) != 80 { exit 1 }' plate.igs || wrong 'a line is longer or shorter'
+
+it 'a section that runs around more than once is written'
+script around.cag 'show loft([arc(22, 90deg..720deg), translate(circle(5), [0, 0, 10])], degree: 1)'
+for format in step igs; do
+  try export around.cag -o "around.$format"
+  status 0
+done
 
 it 'a helix without a tolerance is an error that tells the mend'
 script coil.cag 'show helix(10, 5, 3) |> named("coil")'

@@ -4,6 +4,7 @@
 
 #include "tests/interp/scene_fixture.h"
 
+#include "geom/solid/build.h"
 #include "interp/export/brep.h"
 #include "interp/export/iges.h"
 #include "interp/export/step.h"
@@ -134,6 +135,41 @@ static void a_closed_surface_is_a_solid_with_its_normals_outward(void **state) {
     cag_brep_free(&b);
     fixture_end(&f);
   }
+}
+
+static CagSurface *patch(CagVec3 p00, CagVec3 p01, CagVec3 p10, CagVec3 p11) {
+  CagSurface *s;
+  OK(cag_surface_bilinear(p00, p01, p10, p11, &s, &err));
+  return s;
+}
+
+// A box whose front is of many strips, each of which ends on the long edges of the top and the
+// bottom. Strips have 3 edges each and one more; the other sides 8.
+static void long_edges_meet_as_many_short_ones_as_there_are(void **state) {
+  (void)state;
+  enum { STRIPS = 150 };
+  const double n = STRIPS;
+  CagSolid *s;
+  OK(cag_solid_block(CAG_SOLID_SHELL, STRIPS + 5, &s, &err));
+  const CagVec3 a = {0, 0, 0}, b = {n, 0, 0}, c = {n, 7, 0}, d = {0, 7, 0};
+  const CagVec3 up = {0, 0, 5};
+  for (int k = 0; k < STRIPS; k++) {
+    const CagVec3 from = {k, 0, 0}, to = {k + 1, 0, 0};
+    cag_solid_add(s, patch(from, cag_add(from, up), to, cag_add(to, up)));
+  }
+  cag_solid_add(s, patch(a, b, d, c));
+  cag_solid_add(s, patch(cag_add(a, up), cag_add(d, up), cag_add(b, up), cag_add(c, up)));
+  cag_solid_add(s, patch(d, c, cag_add(d, up), cag_add(c, up)));
+  cag_solid_add(s, patch(a, d, cag_add(a, up), cag_add(d, up)));
+  cag_solid_add(s, patch(b, cag_add(b, up), c, cag_add(c, up)));
+  Fixture f;
+  fixture_begin(&f);
+  fixture_solid(&f, "strips", s);
+  CagBrep brep = boundary_of(&f);
+  assert_int_equal(brep.edge_count, 3 * STRIPS + 1 + 8);
+  check_loops(&brep);
+  cag_brep_free(&brep);
+  fixture_end(&f);
 }
 
 // A sphere with a wall: its outer face and, turned inwards, its inner one.
@@ -283,6 +319,7 @@ int main(void) {
       cmocka_unit_test(a_cylinder_has_a_seam_and_two_circles),
       cmocka_unit_test(poles_are_vertices_without_an_edge),
       cmocka_unit_test(a_closed_surface_is_a_solid_with_its_normals_outward),
+      cmocka_unit_test(long_edges_meet_as_many_short_ones_as_there_are),
       cmocka_unit_test(a_sphere_in_a_sphere_is_a_hollow),
       cmocka_unit_test(creases_part_faces_and_smooth_knots_do_not),
       cmocka_unit_test(what_is_not_exact_needs_a_tolerance),
