@@ -1,6 +1,7 @@
 // Tessellation of plane trimmed faces: their loops as points, the points as triangles.
 //
-// Where a loop is the edge of other faces of a solid it takes the nodes of their sides, exactly.
+// Where a loop is the edge of other faces of a solid it takes the nodes of their sides, exactly;
+// where it meets other plane faces its edges are straight, and their corners are united in the end.
 // Flat as it is, nothing is added inside.
 
 #include <stdlib.h>
@@ -61,6 +62,10 @@ static CagStatus find_pieces(const Tessellator *t, const CagSolid *solid, uint32
   return CAG_OK;
 }
 
+static bool is_same(Tessellator *t, uint32_t a, uint32_t b) {
+  return a != NO_INDEX && b != NO_INDEX && tess_find(t, a) == tess_find(t, b);
+}
+
 // Appends the nodes of a piece, from its start or from its end; the last one is left to the next
 // piece when that begins there.
 static CagStatus append_piece(Tessellator *t, Outline *o, size_t first, const Line *line,
@@ -70,13 +75,12 @@ static CagStatus append_piece(Tessellator *t, Outline *o, size_t first, const Li
     const Node *node = &t->nodes[at];
     uint32_t v = node->corner != NO_INDEX ? t->corners[node->corner].quadrant[3] : node->vertex[1];
     v = tess_find(t, v);
-    if (o->count > first && tess_find(t, o->vertices[o->count - 1]) == v) continue;
+    if (o->count > first && is_same(t, o->vertices[o->count - 1], v)) continue;
     CagStatus status = add_point(o, t->positions[v], v, err);
     if (status != CAG_OK) return status;
   }
   // The loop closes on its first point.
-  while (o->count > first + 1 &&
-         tess_find(t, o->vertices[o->count - 1]) == tess_find(t, o->vertices[first]))
+  while (o->count > first + 1 && is_same(t, o->vertices[o->count - 1], o->vertices[first]))
     o->count--;
   return CAG_OK;
 }
@@ -109,9 +113,131 @@ static CagStatus outline_of_pieces(Tessellator *t, Outline *o, Piece *pieces, si
   uint32_t start = node_root(t, pieces[0].line, false);
   if (n > 1 && cag_norm(cag_sub(t->positions[start], t->positions[end])) <= rounding * t->size)
     tess_unite(t, start, end);
-  while (o->count > first + 1 &&
-         tess_find(t, o->vertices[o->count - 1]) == tess_find(t, o->vertices[first]))
+  while (o->count > first + 1 && is_same(t, o->vertices[o->count - 1], o->vertices[first]))
     o->count--;
+  return status;
+}
+
+// Whether the ends of the pieces meet, each with that of another.
+static bool do_chain(Tessellator *t, const Piece *pieces, size_t n, double slack) {
+  for (size_t i = 0; i < 2 * n; i++) {
+    const CagVec3 p = t->positions[node_root(t, pieces[i / 2].line, i % 2)];
+    bool met = false;
+    for (size_t k = 0; k < 2 * n && !met; k++)
+      met = k != i &&
+            cag_norm(cag_sub(t->positions[node_root(t, pieces[k / 2].line, k % 2)], p)) <= slack;
+    if (!met) return false;
+  }
+  return true;
+}
+
+// The piece that begins (*backwards: ends) at p, goes on in this direction, and is not used yet.
+static Piece *piece_from(Tessellator *t, Piece *pieces, size_t n, CagVec3 p, CagVec3 along,
+                         double slack, bool *backwards) {
+  for (size_t k = 0; k < n; k++)
+    for (int last = 0; last < 2 && !pieces[k].used; last++) {
+      const Line *line = pieces[k].line;
+      const CagVec3 from = t->positions[node_root(t, line, last)];
+      const size_t next = line->node + (last ? line->node_count - 2 : 1);
+      const Node *node = &t->nodes[next];
+      const uint32_t v =
+          node->corner != NO_INDEX ? t->corners[node->corner].quadrant[3] : node->vertex[1];
+      if (cag_norm(cag_sub(from, p)) > slack) continue;
+      const CagVec3 way = cag_unit(cag_sub(t->positions[v], from));
+      if (cag_dot(way, along) < 0.5) continue; // the chord of a piece turns by less than this
+      *backwards = last;
+      return &pieces[k];
+    }
+  return NULL;
+}
+
+// The point of the loop at a break, in space.
+static CagStatus loop_point(const CagCurve *curve, const CagTransform *frame, double at,
+                            CagVec3 *out, CagError *err) {
+  CagStatus status = cag_curve_point(curve, at, out, err);
+  if (!status) *out = cag_transform_point(frame, *out);
+  return status;
+}
+
+// Appends a piece; its first point may be there already.
+static CagStatus append_from(Tessellator *t, Outline *o, size_t first, const Piece *piece,
+                             bool backwards, double slack, CagError *err) {
+  const uint32_t from = node_root(t, piece->line, backwards);
+  if (o->count > first && cag_norm(cag_sub(o->points[o->count - 1], t->positions[from])) <= slack) {
+    if (o->vertices[o->count - 1] != NO_INDEX) tess_unite(t, o->vertices[o->count - 1], from);
+    o->count--;
+  }
+  return append_piece(t, o, first, piece->line, backwards, err);
+}
+
+// Appends the pieces that follow each other from break *k on, and moves *k to the break where they
+// end.
+static CagStatus append_run(Tessellator *t, Outline *o, size_t first, const CagVec3 *corners,
+                            size_t n_corners, Piece *pieces, size_t n, Piece *piece, bool backwards,
+                            double slack, size_t *k, CagError *err) {
+  CagStatus status = CAG_OK;
+  while (piece && !status) {
+    piece->used = true;
+    const CagVec3 reached = t->positions[node_root(t, piece->line, !backwards)];
+    status = append_from(t, o, first, piece, backwards, slack, err);
+    for (size_t j = *k + 1; j < n_corners; j++)
+      if (cag_norm(cag_sub(corners[j], reached)) <= slack) {
+        *k = j;
+        return status;
+      }
+    if (status || o->count < first + 2) break;
+    const CagVec3 along = cag_unit(cag_sub(reached, o->points[o->count - 2]));
+    piece = piece_from(t, pieces, n, reached, along, slack, &backwards);
+  }
+  ++*k;
+  return status;
+}
+
+static void close_outline(Tessellator *t, Outline *o, size_t first, double slack) {
+  if (o->count < first + 2 || cag_norm(cag_sub(o->points[o->count - 1], o->points[first])) > slack)
+    return;
+  uint32_t *start = &o->vertices[first], last = o->vertices[o->count - 1];
+  if (*start == NO_INDEX) *start = last;
+  else tess_unite(t, *start, last);
+  o->count--;
+}
+
+// Along the loop: pieces where they begin, else its own corners.
+static CagStatus outline_between(Tessellator *t, Outline *o, const CagCurve *curve,
+                                 const CagTransform *frame, Piece *pieces, size_t n, double slack,
+                                 CagError *err) {
+  const size_t first = o->count, breaks = curve->kind->breaks(curve, NULL, 0);
+  double *at = malloc((breaks + 2) * sizeof *at);
+  CagVec3 *corners = malloc((breaks + 2) * sizeof *corners);
+  CagStatus status = at && corners ? CAG_OK : cag_fail_memory(err);
+  if (!status) {
+    at[0] = curve->start;
+    curve->kind->breaks(curve, at + 1, breaks);
+    at[breaks + 1] = curve->end;
+  }
+  for (size_t k = 0; !status && k < breaks + 2; k++)
+    status = loop_point(curve, frame, at[k], &corners[k], err);
+  for (size_t i = 0; i < n; i++) pieces[i].used = false;
+  for (size_t k = 0; !status && k <= breaks;) {
+    CagVec3 along;
+    bool backwards = false;
+    status = cag_curve_tangent(curve, at[k], CAG_SIDE_RIGHT, &along, err);
+    if (status) break;
+    along = cag_unit(cag_transform_vector(frame, along));
+    Piece *piece = piece_from(t, pieces, n, corners[k], along, slack, &backwards);
+    if (piece) {
+      status =
+          append_run(t, o, first, corners, breaks + 2, pieces, n, piece, backwards, slack, &k, err);
+      continue;
+    }
+    const bool there =
+        o->count > first && cag_norm(cag_sub(o->points[o->count - 1], corners[k])) <= slack;
+    if (!there) status = add_point(o, corners[k], NO_INDEX, err);
+    k++;
+  }
+  free(at);
+  free(corners);
+  if (!status) close_outline(t, o, first, slack);
   return status;
 }
 
@@ -160,9 +286,11 @@ static CagStatus outline_of_loop(Tessellator *t, Outline *o, uint32_t face, size
   size_t n = 0;
   CagStatus status = CAG_OK;
   if (solid) status = find_pieces(t, solid, face, (int)loop + 4, &pieces, &n, err);
-  if (status == CAG_OK)
-    status =
-        n > 0 ? outline_of_pieces(t, o, pieces, n, err) : outline_of_curve(t, o, curve, frame, err);
+  const double rounding = 4e-6; // of the size: edges of shells gape by 1e-6 at most
+  if (status == CAG_OK && n == 0) status = outline_of_curve(t, o, curve, frame, err);
+  else if (status == CAG_OK && !do_chain(t, pieces, n, rounding * t->size) && curve->kind->breaks)
+    status = outline_between(t, o, curve, frame, pieces, n, rounding * t->size, err);
+  else if (status == CAG_OK) status = outline_of_pieces(t, o, pieces, n, err);
   free(pieces);
   return status;
 }
@@ -182,6 +310,9 @@ static CagStatus own_vertices(Tessellator *t, const Outline *o, const CagTransfo
     xy[2 * k + 1] = flat.y;
     status = tess_new_vertex(t, o->points[k], normal, flat.x, flat.y, &vertices[k], err);
     if (status == CAG_OK) tess_unite(t, o->vertices[k], vertices[k]);
+    if (status == CAG_OK && o->vertices[k] == NO_INDEX)
+      status = tess_grow(&t->own, t->own_count, &t->own_capacity, sizeof *t->own, err);
+    if (status == CAG_OK && o->vertices[k] == NO_INDEX) t->own[t->own_count++] = vertices[k];
   }
   return status;
 }
@@ -224,4 +355,37 @@ CagStatus tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid,
   free(o.points);
   free(o.vertices);
   return status;
+}
+
+// --- Corners between plane faces ---
+
+typedef struct Place {
+  CagVec3 at;
+  uint32_t vertex;
+} Place;
+
+static int by_x(const void *a, const void *b) {
+  const Place *p = a, *q = b;
+  if (p->at.x != q->at.x) return p->at.x < q->at.x ? -1 : 1;
+  return p->vertex < q->vertex ? -1 : p->vertex > q->vertex;
+}
+
+CagStatus tess_unite_corners(Tessellator *t, CagError *err) {
+  const double slack = 4e-6 * t->size; // edges of shells gape by 1e-6 at most
+  if (t->own_count == 0) return CAG_OK;
+  Place *places = malloc((t->own_count + 2 * t->line_count) * sizeof *places);
+  if (!places) return cag_fail_memory(err);
+  size_t n = 0;
+  for (size_t i = 0; i < t->own_count; i++) places[n++].vertex = t->own[i];
+  for (size_t i = 0; i < t->line_count; i++)
+    for (int last = 0; last < 2 && t->lines[i].border; last++)
+      places[n++].vertex = node_root(t, &t->lines[i], last);
+  for (size_t i = 0; i < n; i++) places[i].at = t->positions[places[i].vertex];
+  qsort(places, n, sizeof *places, by_x);
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = i + 1; k < n && places[k].at.x - places[i].at.x <= slack; k++)
+      if (cag_norm(cag_sub(places[k].at, places[i].at)) <= slack)
+        tess_unite(t, places[i].vertex, places[k].vertex);
+  free(places);
+  return CAG_OK;
 }

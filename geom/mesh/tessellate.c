@@ -56,6 +56,7 @@ static void release(Tessellator *t) {
   free(t->normals);
   free(t->uv);
   free(t->weld);
+  free(t->own);
 }
 
 static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBounds *bounds,
@@ -109,6 +110,7 @@ static CagStatus run(Tessellator *t, const CagSolid *solid, CagMesh **out, CagEr
   if (status == CAG_OK) status = tess_make_nodes(t, err);
   for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
     if (t->faces[k].planar) status = tess_planar_face(t, k, solid, err);
+  if (status == CAG_OK && solid) status = tess_unite_corners(t, err);
   return status == CAG_OK ? tess_fill(t, out, err) : status;
 }
 

@@ -104,6 +104,8 @@ typedef struct Tessellator {
   double *uv;
   uint32_t *weld;
   size_t vertex_count, vertex_capacity;
+  uint32_t *own; // vertices of planar faces that no other face has given them
+  size_t own_count, own_capacity;
   bool needs_normals; // some vertex has a zero normal yet
 } Tessellator;
 
@@ -124,6 +126,8 @@ CagStatus tess_join_lines(Tessellator *t, uint32_t master, uint32_t slave, bool 
                           CagError *err);
 CagStatus tess_make_nodes(Tessellator *t, CagError *err);
 CagStatus tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid, CagError *err);
+// Makes one of the corners of planar faces of a solid that lie in one place.
+CagStatus tess_unite_corners(Tessellator *t, CagError *err);
 CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err);
 
 CagStatus tess_new_vertex(Tessellator *t, CagVec3 position, CagVec3 normal, double u, double v,

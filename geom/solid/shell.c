@@ -2,34 +2,25 @@
 //
 // Each boundary edge of each face must lie on boundary edges of other faces (or of itself), to
 // SHELL_GAP of the size. Edges that correspond as a whole make the edge table and carry the
-// orientation from face to face; the volume then decides which side is out.
+// orientation from face to face; the volume then decides which side is out. Faces whose edges are
+// shared by several others are cut first (shell_split.c), and loops of planar faces meet several
+// faces (shell_loop.c), so that no edge is left.
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "geom/solid/build.h"
+#include "geom/solid/shell.h"
 #include "geom/surface/trimmed.h"
 
 // How far edges may gape, as part of the size of the solid (geometry of files and of rounding
 // scripts).
 #define SHELL_GAP 1e-6
-#define PROBES 9
+#define PROBES CAG_SHELL_PROBES
+// Rounds of cuts, each of which may call for others on the opposite sides; and faces after them.
+#define ROUNDS_MOST 12
+#define FACES_MOST 4000
 
-typedef struct Boundary {
-  size_t face;
-  int side;
-  CagCurve *curve;   // in space
-  CagVec3 p[PROBES]; // at equal steps of its parameter
-  bool paired;
-} Boundary;
-
-typedef struct Boundaries {
-  Boundary *at;
-  size_t n;
-  double size;
-} Boundaries;
-
-static void boundaries_free(Boundaries *b) {
+static void boundaries_free(CagShellBoundaries *b) {
   for (size_t i = 0; i < b->n; i++) cag_curve_release(b->at[i].curve);
   free(b->at);
 }
@@ -52,10 +43,11 @@ static CagStatus side_curve(const CagSurface *face, int side, CagCurve **out, Ca
   return status;
 }
 
-static CagStatus collect(CagSurface *const *faces, size_t n, Boundaries *out, CagError *err) {
+static CagStatus collect(CagSurface *const *faces, size_t n, CagShellBoundaries *out,
+                         CagError *err) {
   size_t most = 0;
   for (size_t f = 0; f < n; f++) most += (size_t)cag_solid_side_end(faces[f]);
-  *out = (Boundaries){calloc(most ? most : 1, sizeof(Boundary)), 0, 0};
+  *out = (CagShellBoundaries){calloc(most ? most : 1, sizeof(CagShellBoundary)), 0, 0, 0};
   if (!out->at) return cag_fail_memory(err);
   CagBounds box = CAG_BOUNDS_EMPTY;
   CagStatus status = CAG_OK;
@@ -67,7 +59,7 @@ static CagStatus collect(CagSurface *const *faces, size_t n, Boundaries *out, Ca
     cag_bounds_add(&box, part.max);
     for (int k = cag_solid_first_side(faces[f]); !status && k < cag_solid_side_end(faces[f]); k++) {
       if (!cag_solid_side_is_edge(faces[f], k)) continue;
-      Boundary *b = &out->at[out->n];
+      CagShellBoundary *b = &out->at[out->n];
       b->face = f;
       b->side = k;
       status = side_curve(faces[f], k, &b->curve, err);
@@ -77,14 +69,21 @@ static CagStatus collect(CagSurface *const *faces, size_t n, Boundaries *out, Ca
     }
   }
   if (status) boundaries_free(out);
-  else out->size = cag_norm(cag_sub(box.max, box.min));
+  out->size = cag_norm(cag_sub(box.max, box.min));
+  out->slack = SHELL_GAP * out->size;
+  for (size_t i = 0; !status && i < out->n; i++) { // an edge that is a point needs no partner
+    CagShellBoundary *b = &out->at[i];
+    b->paired = true;
+    for (int k = 1; k < PROBES && b->paired; k++)
+      b->paired = cag_norm(cag_sub(b->p[k], b->p[0])) <= out->slack;
+  }
   return status;
 }
 
 // Distance of the farthest probe of b from the other boundaries, stopping above `enough`.
-static CagStatus gap_of(const Boundaries *all, size_t index, double enough, double *gap,
+static CagStatus gap_of(const CagShellBoundaries *all, size_t index, double enough, double *gap,
                         CagVec3 *where, CagError *err) {
-  const Boundary *b = &all->at[index];
+  const CagShellBoundary *b = &all->at[index];
   *gap = 0;
   for (int i = 0; i < PROBES; i++) {
     double nearest = INFINITY;
@@ -104,33 +103,50 @@ static CagStatus gap_of(const Boundaries *all, size_t index, double enough, doub
   return CAG_OK;
 }
 
-static CagStatus check_closed(const Boundaries *all, CagError *err) {
+static const char *side_name(int side) {
+  static const char *const NAMES[] = {"u = start", "u = end", "v = start", "v = end"};
+  return side < 4 ? NAMES[side] : "boundary";
+}
+
+// Says what is wrong with edges that have no partner: a gap, or neighbors with edges of their own
+// division. origin: the caller's numbers of faces.
+static CagStatus check_closed(const CagShellBoundaries *all, const size_t *origin, CagError *err) {
+  char x[32], y[32], z[32], g[32];
+  const CagShellBoundary *divided = NULL;
   for (size_t i = 0; i < all->n; i++) {
-    if (all->at[i].paired) continue;
+    const CagShellBoundary *b = &all->at[i];
     double gap;
     CagVec3 where = {0, 0, 0};
-    CagStatus status = gap_of(all, i, SHELL_GAP * all->size, &gap, &where, err);
+    if (b->paired) continue;
+    CagStatus status = gap_of(all, i, all->slack, &gap, &where, err);
     if (status) return status;
-    if (gap <= SHELL_GAP * all->size) continue;
-    static const char *const SIDE[] = {"u = start", "u = end", "v = start", "v = end"};
-    char x[32], y[32], z[32], g[32];
+    if (!divided) divided = b;
+    if (gap <= all->slack) continue;
+    const size_t face = origin[b->face];
     bool alone = !isfinite(gap);
-    return cag_fail(err, CAG_E_ARGUMENT, "solid-open", "surfaces", (long)all->at[i].face,
+    return cag_fail(err, CAG_E_ARGUMENT, "solid-open", "surfaces", (long)face,
                     "the surfaces must close: surface %zu has an open edge (%s) at [%s, %s, %s], "
                     "%s%s; add the missing face or move the edges together",
-                    all->at[i].face, all->at[i].side < 4 ? SIDE[all->at[i].side] : "boundary",
-                    cag_number_text(where.x, x), cag_number_text(where.y, y),
-                    cag_number_text(where.z, z),
+                    face, side_name(b->side), cag_number_text(where.x, x),
+                    cag_number_text(where.y, y), cag_number_text(where.z, z),
                     alone ? "with no other edge to meet" : "the nearest other edge is away by ",
                     alone ? "" : cag_number_text(gap, g));
   }
-  return CAG_OK;
+  if (!divided) return CAG_OK;
+  const size_t face = origin[divided->face];
+  const CagVec3 at = divided->p[0];
+  return cag_fail(err, CAG_E_ARGUMENT, "solid-open", "surfaces", (long)face,
+                  "the surfaces must share whole edges: the edge of surface %zu (%s) from "
+                  "[%s, %s, %s] on is divided otherwise by its neighbors; divide it at their "
+                  "corners",
+                  face, side_name(divided->side), cag_number_text(at.x, x),
+                  cag_number_text(at.y, y), cag_number_text(at.z, z));
 }
 
 // How two boundaries run along each other: +1, -1, or 0 where they are different edges. Equal
 // parameters are not asked for: ends and every probe must lie on the other.
-static CagStatus relation(const Boundary *a, const Boundary *b, double slack, int *out,
-                          CagError *err) {
+static CagStatus relation(const CagShellBoundary *a, const CagShellBoundary *b, double slack,
+                          int *out, CagError *err) {
   *out = 0;
   double forward = fmax(cag_norm(cag_sub(a->p[0], b->p[0])),
                         cag_norm(cag_sub(a->p[PROBES - 1], b->p[PROBES - 1])));
@@ -151,32 +167,24 @@ static CagStatus relation(const Boundary *a, const Boundary *b, double slack, in
   return CAG_OK;
 }
 
-// Boundary sense of a side: whether its parameter runs with the face on its left (seen from
-// outside).
-static int boundary_sense(int side) { return side == 0 || side == 3 ? -1 : 1; }
-
-typedef struct Link {
-  size_t a, b; // faces
-  bool agrees; // their orientations agree
-} Link;
-
-static CagStatus pair_edges(CagSolid *s, Boundaries *all, Link *links, size_t *count,
+static CagStatus pair_edges(CagSolid *s, CagShellBoundaries *all, CagShellLinks *links,
                             CagError *err) {
-  *count = 0;
   for (size_t i = 0; i < all->n; i++) {
-    Boundary *a = &all->at[i];
+    CagShellBoundary *a = &all->at[i];
     for (size_t j = i + 1; j < all->n && !a->paired; j++) {
-      Boundary *b = &all->at[j];
+      CagShellBoundary *b = &all->at[j];
       int how;
       if (b->paired) continue;
-      CagStatus status = relation(a, b, SHELL_GAP * all->size, &how, err);
+      CagStatus status = relation(a, b, all->slack, &how, err);
       if (status) return status;
       if (how == 0) continue;
       a->paired = b->paired = true;
       status = cag_solid_add_edge(s, a->face, a->side, b->face, b->side, how < 0, err);
       if (status) return status;
-      links[(*count)++] =
-          (Link){a->face, b->face, boundary_sense(a->side) * boundary_sense(b->side) * how < 0};
+      const CagShellLink link = {a->face, b->face,
+                                 cag_shell_sense(a->side) * cag_shell_sense(b->side) * how < 0};
+      status = cag_shell_add_link(links, link, err);
+      if (status) return status;
     }
   }
   return CAG_OK;
@@ -184,7 +192,7 @@ static CagStatus pair_edges(CagSolid *s, Boundaries *all, Link *links, size_t *c
 
 // Which faces must be turned so that neighbours agree; faces without links keep their side. part:
 // the number of each face's connected part, `none` before. Gives the number of parts.
-static size_t orient(size_t faces, const Link *links, size_t count, bool *turn, size_t *part) {
+static size_t orient(size_t faces, const CagShellLinks *links, bool *turn, size_t *part) {
   const size_t none = SIZE_MAX;
   size_t parts = 0;
   for (size_t f = 0; f < faces; f++) part[f] = none;
@@ -193,8 +201,8 @@ static size_t orient(size_t faces, const Link *links, size_t count, bool *turn, 
     part[seed] = parts++;
     for (bool changed = true; changed;) {
       changed = false;
-      for (size_t k = 0; k < count; k++) {
-        const Link *l = &links[k];
+      for (size_t k = 0; k < links->n; k++) {
+        const CagShellLink *l = &links->at[k];
         if ((part[l->a] == none) == (part[l->b] == none)) continue;
         size_t from = part[l->a] != none ? l->a : l->b, to = part[l->a] != none ? l->b : l->a;
         turn[to] = turn[from] != !l->agrees;
@@ -226,31 +234,63 @@ static CagStatus turn_faces(CagSolid *s, const bool *turn, CagError *err) {
   return CAG_OK;
 }
 
-// Parts with edges that correspond to no single other one close only together: they become one
-// part, the first of them.
-static void join_unpaired(const Boundaries *all, size_t faces, size_t *part) {
-  size_t first = SIZE_MAX;
-  for (size_t i = 0; i < all->n; i++) {
-    if (all->at[i].paired) continue;
-    const size_t other = part[all->at[i].face];
-    if (first == SIZE_MAX) first = other;
-    for (size_t f = 0; f < faces; f++)
-      if (part[f] == other) part[f] = first;
-  }
-}
-
-static CagStatus face_outward(CagSolid *s, const Boundaries *all, const Link *links, size_t count,
-                              CagError *err) {
+static CagStatus face_outward(CagSolid *s, const CagShellLinks *links, CagError *err) {
   bool *turn = calloc(s->face_count + 1, sizeof *turn);
   size_t *part = malloc((s->face_count + 1) * sizeof *part);
   CagStatus status = turn && part ? CAG_OK : cag_fail_memory(err);
-  size_t parts = status ? 0 : orient(s->face_count, links, count, turn, part);
-  if (!status) join_unpaired(all, s->face_count, part);
+  size_t parts = status ? 0 : orient(s->face_count, links, turn, part);
   if (!status) status = turn_faces(s, turn, err);
   if (!status) status = cag_solid_nest(s->faces, s->face_count, part, parts, turn, err);
   if (!status) status = turn_faces(s, turn, err);
   free(turn);
   free(part);
+  return status;
+}
+
+// Edges as a whole, then loops. *left: some are shared otherwise.
+static CagStatus pair_all(const CagShellFaces *faces, CagShellBoundaries *all, CagSolid **out,
+                          CagShellLinks *links, bool *left, CagError *err) {
+  CagSolid *s = NULL;
+  CagStatus status = cag_solid_block(CAG_SOLID_SHELL, faces->n, &s, err);
+  if (status) return status;
+  for (size_t i = 0; i < faces->n; i++) cag_solid_add(s, cag_surface_retain(faces->at[i]));
+  links->n = 0;
+  status = pair_edges(s, all, links, err);
+  if (!status) status = cag_shell_pair_loops(s, all, links, err);
+  *left = false;
+  for (size_t i = 0; i < all->n; i++) *left = *left || !all->at[i].paired;
+  if (status) cag_solid_release(s);
+  else *out = s;
+  return status;
+}
+
+// Pairs the edges, cutting faces as long as that helps. The faces are replaced by their parts.
+static CagStatus join_faces(CagShellFaces *faces, CagSolid **out, CagError *err) {
+  CagShellLinks links = {0};
+  CagSolid *s = NULL;
+  CagStatus status = CAG_OK;
+  bool split = true;
+  for (int round = 0; !status && split; round++) {
+    CagShellBoundaries all;
+    CagShellFaces parts = {0};
+    bool left;
+    status = collect(faces->at, faces->n, &all, err);
+    if (status) break;
+    cag_solid_release(s);
+    s = NULL;
+    status = pair_all(faces, &all, &s, &links, &left, err);
+    split = !status && left && round < ROUNDS_MOST && faces->n < FACES_MOST;
+    if (split) status = cag_shell_split(&all, faces, &split, &parts, err);
+    if (!status && !split && left) status = check_closed(&all, faces->origin, err);
+    boundaries_free(&all);
+    if (status || !split) continue;
+    cag_shell_free_faces(faces);
+    *faces = parts;
+  }
+  if (!status) status = face_outward(s, &links, err);
+  free(links.at);
+  if (status) cag_solid_release(s);
+  else *out = s;
   return status;
 }
 
@@ -264,21 +304,10 @@ CagStatus cag_solid_shell(CagSurface *const *faces, size_t n, CagSolid **out, Ca
   if (n == 0)
     return cag_fail(err, CAG_E_ARGUMENT, "solid-open", "surfaces", -1,
                     "`surfaces` must hold at least one surface");
-  Boundaries all;
-  CagStatus status = collect(faces, n, &all, err);
-  if (status) return status;
-  CagSolid *s = NULL;
-  size_t count = 0;
-  Link *links = malloc((all.n + 1) * sizeof *links);
-  if (!links) status = cag_fail_memory(err);
-  if (!status) status = cag_solid_block(CAG_SOLID_SHELL, n, &s, err);
-  for (size_t i = 0; !status && i < n; i++) cag_solid_add(s, cag_surface_retain(faces[i]));
-  if (!status) status = pair_edges(s, &all, links, &count, err);
-  if (!status) status = check_closed(&all, err);
-  if (!status) status = face_outward(s, &all, links, count, err);
-  free(links);
-  boundaries_free(&all);
-  if (status) cag_solid_release(s);
-  else *out = s;
+  CagShellFaces own = {0};
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < n; i++) status = cag_shell_add_face(&own, faces[i], i, err);
+  if (!status) status = join_faces(&own, out, err);
+  cag_shell_free_faces(&own);
   return status;
 }
