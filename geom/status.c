@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 CagStatus cag_fail(CagError *err, CagStatus status, const char *reason, const char *argument,
                    long index, const char *format, ...) {
@@ -18,6 +19,10 @@ CagStatus cag_fail(CagError *err, CagStatus status, const char *reason, const ch
   vsnprintf(err->message, sizeof err->message, format, values);
   va_end(values);
   return status;
+}
+
+bool cag_is_empty_shape(const CagError *err) {
+  return err->reason && strcmp(err->reason, "empty-shape") == 0;
 }
 
 CagStatus cag_fail_memory(CagError *err) {

@@ -38,6 +38,8 @@ typedef struct CagError {
 CagStatus cag_fail(CagError *err, CagStatus status, const char *reason, const char *argument,
                    long index, const char *format, ...) __attribute__((format(printf, 6, 7)));
 CagStatus cag_fail_memory(CagError *err);
+// Whether the call failed because nothing is left of a shape ("empty-shape").
+bool cag_is_empty_shape(const CagError *err);
 
 // Shortest text of a double that reads back the same, for messages: buffer of at least 32 bytes;
 // gives buffer.

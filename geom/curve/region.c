@@ -36,13 +36,22 @@ static CagRegion *allocate(size_t n) {
   CagRegion *r = calloc(1, sizeof *r);
   if (!r) return NULL;
   r->references = 1;
-  r->loops = calloc(n, sizeof(CagCurve *));
-  r->outer = calloc(n, sizeof(size_t));
+  r->loops = calloc(n + 1, sizeof(CagCurve *));
+  r->outer = calloc(n + 1, sizeof(size_t));
   r->count = n;
   if (r->loops && r->outer) return r;
   cag_region_release(r);
   return NULL;
 }
+
+CagStatus cag_region_empty(CagRegion **out, CagError *err) {
+  CagRegion *r = allocate(0);
+  if (!r) return cag_fail_memory(err);
+  *out = r;
+  return CAG_OK;
+}
+
+bool cag_region_is_empty(const CagRegion *r) { return r->count == 0; }
 
 CagStatus cag_region_take(CagCurve **loops, const size_t *outer, size_t n, CagRegion **out,
                           CagError *err) {
@@ -441,6 +450,9 @@ CagStatus cag_region_regular_polygon(size_t n, double radius, CagRegion **out, C
 CagStatus cag_region_area(const CagRegion *r, double *area, CagVec3 *centroid, CagError *err) {
   double total = 0;
   CagVec3 moment = {0, 0, 0};
+  if (centroid && cag_region_is_empty(r))
+    return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
+                    "the region is empty: it has no centroid");
   for (size_t i = 0; i < r->count; i++) {
     double a;
     CagVec3 c;
@@ -469,6 +481,9 @@ CagStatus cag_region_perimeter(const CagRegion *r, double *out, CagError *err) {
 
 CagStatus cag_region_bounds(const CagRegion *r, CagBounds *out, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
+  if (cag_region_is_empty(r))
+    return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
+                    "the region is empty: it has no bounds");
   for (size_t i = 0; i < r->count; i++) {
     CagBounds part;
     CagStatus status = cag_curve_bounds(r->loops[i], &part, err);

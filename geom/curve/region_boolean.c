@@ -19,15 +19,9 @@ static bool in_difference(const int winding[2], int n) {
 
 static bool in_intersection(const int winding[2], int n) { return winding[0] + winding[1] >= n; }
 
-typedef struct Rule {
-  const char *name, *why;
-  CagFaceRule face;
-} Rule;
-
-static const Rule rules[] = {
-    [CAG_REGION_UNION] = {"union", "all of them are thinner than can be told", in_union},
-    [CAG_REGION_DIFFERENCE] = {"difference", "the others cover the first region", in_difference},
-    [CAG_REGION_INTERSECTION] = {"intersection", "no point lies in all of them", in_intersection}};
+static const CagFaceRule rules[] = {[CAG_REGION_UNION] = in_union,
+                                    [CAG_REGION_DIFFERENCE] = in_difference,
+                                    [CAG_REGION_INTERSECTION] = in_intersection};
 
 CagStatus cag_region_combine(CagRegionOp op, const CagRegion *const *regions, size_t n,
                              CagRegion **out, CagError *err) {
@@ -39,11 +33,11 @@ CagStatus cag_region_combine(CagRegionOp op, const CagRegion *const *regions, si
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < regions[i]->count; k++)
       walks[count++] = (CagWalk){regions[i]->loops[k], i > 0, 1, (int)i};
-  CagStatus status = cag_region_arrange(walks, count, rules[op].face, (int)n, 0, out, err);
+  *out = NULL;
+  CagStatus status = CAG_OK;
+  if (count > 0) status = cag_region_arrange(walks, count, rules[op], (int)n, 0, out, err);
   free(walks);
-  if (status || *out) return status;
-  return cag_fail(err, CAG_E_DEGENERATE, "region-empty", "", -1, "nothing is left of the %s: %s",
-                  rules[op].name, rules[op].why);
+  return status || *out ? status : cag_region_empty(out, err);
 }
 
 CagStatus cag_region_boolean(CagRegionOp op, const CagRegion *a, const CagRegion *b,

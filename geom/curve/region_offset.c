@@ -411,13 +411,6 @@ static bool is_inside(const int winding[2], int parameter) {
   return winding[0] > 0;
 }
 
-static CagStatus fail_empty(double d, CagError *err) {
-  char text[32];
-  return cag_fail(err, CAG_E_DEGENERATE, "region-empty", "d", -1,
-                  "nothing is left: no point of the region is %s or more away from its boundary",
-                  cag_number_text(fabs(d), text));
-}
-
 // The largest disc in the region has at most the region's area, and fits into its box.
 static CagStatus largest_disc(const CagRegion *r, double *out, CagError *err) {
   double area;
@@ -548,12 +541,13 @@ CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagR
   CagStatus status = cag_curve_check_number(d, "d", err);
   CagBounds box;
   double disc = 0;
+  if (!status && cag_region_is_empty(r)) return cag_region_empty(out, err);
   if (!status) status = cag_region_bounds(r, &box, err);
   if (!status && d < 0) status = largest_disc(r, &disc, err);
   if (status) return status;
   const double size = cag_norm(cag_sub(box.max, box.min)), slack = 1e-6;
   char text[32];
-  if (d < 0 && -d > disc * (1 + slack)) return fail_empty(d, err);
+  if (d < 0 && -d > disc * (1 + slack)) return cag_region_empty(out, err);
   if (d > FAR * size)
     return cag_fail(err, CAG_E_ARGUMENT, "too-far", "d", -1,
                     "`d` is %s, more than 1e9 times the size of the region: what it grows to is a "
@@ -565,7 +559,7 @@ CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagR
   }
   bool convex = false;
   if (d < 0) status = shrink_convex(r, -d, size, &convex, out, err);
-  if (status || convex) return status || *out ? status : fail_empty(d, err);
+  if (status || convex) return status || *out ? status : cag_region_empty(out, err);
   Raw raw = {.left = -d, .tolerance = tolerance}; // the region lies to the left of its boundary
   for (size_t i = 0; !status && i < r->count; i++) status = put_loop(&raw, r->loops[i], err);
   if (!status)
@@ -573,5 +567,5 @@ CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagR
   for (size_t i = 0; i < raw.n; i++) cag_curve_release(raw.curves[i]);
   free(raw.curves);
   free(raw.walks);
-  return status || *out ? status : fail_empty(d, err);
+  return status || *out ? status : cag_region_empty(out, err);
 }

@@ -132,7 +132,7 @@ CagStatus cag_surface_tessellate(const CagSurface *s, const CagTessellation *how
 CagStatus cag_solid_tessellate(const CagSolid *s, const CagTessellation *how, CagMesh **out,
                                CagError *err) {
   CagBounds bounds;
-  if (cag_solid_is_compound(s)) return cag_csg_tessellate(s, how, out, err);
+  if (cag_solid_is_compound(s)) return cag_csg_mesh(s, how, out, err);
   CagStatus status = cag_solid_bounds(s, &bounds, err);
   if (status != CAG_OK) return status;
   Tessellator t;

@@ -45,6 +45,15 @@ size_t cag_solid_kept_bytes(const CagSolid *s) {
          (size_t)s->core->references;
 }
 
+CagStatus cag_solid_empty(CagSolid **out, CagError *err) {
+  CagSolid *s = NULL;
+  const CagStatus status = block(CAG_SOLID_UNION, 0, &s, err);
+  if (status) return status;
+  s->core->reach = CAG_BOUNDS_EMPTY;
+  *out = s;
+  return CAG_OK;
+}
+
 // --- Sides ---
 
 CagStatus cag_solid_half_space(const CagPlane *plane, CagSolid **out, CagError *err) {
@@ -88,9 +97,7 @@ CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err) {
   CagVec3 edge[2];
   double terms[10] = {0};
   char x[32], y[32], z[32];
-  if (m->triangle_count == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "mesh-open", "", -1,
-                    "the mesh has no triangles: it encloses nothing");
+  if (m->triangle_count == 0) return cag_solid_empty(out, err);
   if (!cag_mesh_is_watertight(m, edge))
     return cag_fail(err, CAG_E_ARGUMENT, "mesh-open", "", -1,
                     "the mesh must be closed: its edge from [%s, %s, %s] to [%.9g, %.9g, %.9g] has "

@@ -50,25 +50,28 @@ CagStatus cag_solid_relabel(const CagSolid *s, CagRelabel *relabel, void *contex
                             CagError *err);
 // The label of the solid, or the first among its operands'; 0: nothing is labelled.
 uint32_t cag_solid_first_label(const CagSolid *s);
+// The solid without any points: a union of none.
+CagStatus cag_solid_empty(CagSolid **out, CagError *err);
 // The side that the plane's normal leaves.
 CagStatus cag_solid_half_space(const CagPlane *plane, CagSolid **out, CagError *err);
 // Where the form is negative, bounded or not; fails for forms that are constant or not finite
 // ("quadric-imaginary").
 CagStatus cag_solid_quadric(const CagQuadric *form, CagSolid **out, CagError *err);
-// The body within a closed mesh, turned outward: "mesh-open" with an open edge, "mesh-flat".
+// The body within a closed mesh, turned outward: "mesh-open" with an open edge, "mesh-flat". That
+// of a mesh without triangles is empty.
 CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err);
 
 // Form of a half space or quadric in the world; false: another kind.
 bool cag_solid_form(const CagSolid *s, CagQuadric *out);
 
-// What cag_solid_tessellate, cag_solid_bounds and cag_solid_mass do for these kinds. "csg-empty",
-// "solid-unbounded". The mass of a body that is empty is 0.
-CagStatus cag_csg_tessellate(const CagSolid *s, const CagTessellation *how, CagMesh **out,
-                             CagError *err);
+// What cag_solid_tessellate, cag_solid_bounds and cag_solid_mass do for these kinds:
+// "solid-unbounded". A body that is empty has a mesh without triangles, no bounds ("empty-shape")
+// and the mass 0.
+CagStatus cag_csg_mesh(const CagSolid *s, const CagTessellation *how, CagMesh **out, CagError *err);
 CagStatus cag_csg_bounds(const CagSolid *s, CagBounds *out, CagError *err);
 CagStatus cag_csg_mass(const CagSolid *s, CagMassProperties *out, CagError *err);
-// The same as cag_csg_tessellate, but an empty body is a mesh without triangles.
-CagStatus cag_csg_mesh(const CagSolid *s, const CagTessellation *how, CagMesh **out, CagError *err);
+// Whether nothing is left of the solid, by a mesh where that must tell; faces hold something.
+CagStatus cag_solid_is_empty(const CagSolid *s, bool *out, CagError *err);
 // Bytes of the mesh that the solid keeps, its part where several share it.
 size_t cag_solid_kept_bytes(const CagSolid *s);
 // Bounds that hold the solid, quickly told; infinite where it is unbounded or that is not known.

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "geom/solid/csg.h"
 
@@ -45,6 +46,28 @@ static CagStatus placed(const CagSolid *s, size_t index, CagSolid **out, CagErro
 
 // --- Bounds ---
 
+static CagStatus fail_empty(const CagSolid *s, CagError *err) {
+  char first[80], second[80];
+  if (!s->core->count)
+    return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
+                    s->kind == CAG_SOLID_UNION ? "the solid is empty: it has no bounds"
+                                               : "the form is nowhere negative");
+  cag_solid_describe(s->core->operands[0], first, sizeof first);
+  if (s->core->count < 2)
+    return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1, "the %s of (%s) is empty",
+                    cag_solid_kind_name(s->kind), first);
+  cag_solid_describe(s->core->operands[1], second, sizeof second);
+  return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
+                  s->kind == CAG_SOLID_UNION ? "the %s of (%s) and (%s)%s is empty: all of them are"
+                  : s->kind == CAG_SOLID_DIFFERENCE
+                      ? "the %s of (%s) and (%s)%s leaves nothing: the first lies within what is "
+                        "taken away; make it larger or move it"
+                      : "the %s of (%s) and (%s)%s leaves nothing: they do not overlap; move them "
+                        "together",
+                  cag_solid_kind_name(s->kind), first, second,
+                  s->core->count > 2 ? " and others" : "");
+}
+
 // The body ends between its mesh and its reach: where these are no farther apart than the
 // tolerance, at the reach, which is exact more often.
 static void snap(CagBounds *b, const CagBounds *reach, double tolerance) {
@@ -57,21 +80,22 @@ static void snap(CagBounds *b, const CagBounds *reach, double tolerance) {
 
 static CagStatus mesh_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
   CagMesh *m;
-  CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagStatus status = mesh_at(s, FINE_SHARE, &m, err);
   if (status) return status;
   *out = cag_mesh_bounds(m);
-  bool empty = m->triangle_count == 0;
+  const bool empty = m->triangle_count == 0;
   cag_mesh_release(m);
+  if (empty) return fail_empty(s, err);
   CagBounds reach;
   status = cag_solid_reach(s, &reach, err);
   if (status) return status;
   snap(out, &reach, FINE_SHARE * cag_norm(cag_sub(reach.max, reach.min)));
-  return empty ? cag_csg_tessellate(s, &how, &m, err) : CAG_OK; // which tells why
+  return CAG_OK;
 }
 
 static CagStatus union_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
+  bool empty = true;
   for (size_t i = 0; i < s->core->count; i++) {
     CagSolid *part;
     CagBounds one;
@@ -79,10 +103,13 @@ static CagStatus union_bounds(const CagSolid *s, CagBounds *out, CagError *err) 
     if (status) return status;
     status = cag_solid_bounds(part, &one, err);
     cag_solid_release(part);
+    if (status && cag_is_empty_shape(err)) continue;
     if (status) return status;
+    empty = false;
     cag_bounds_add(&box, one.min);
     cag_bounds_add(&box, one.max);
   }
+  if (empty) return fail_empty(s, err);
   *out = box;
   return CAG_OK;
 }
@@ -168,6 +195,16 @@ CagStatus cag_csg_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
   case CAG_SOLID_DIFFERENCE: return difference_bounds(s, out, err);
   default: return mesh_bounds(s, out, err);
   }
+}
+
+CagStatus cag_solid_is_empty(const CagSolid *s, bool *out, CagError *err) {
+  CagBounds unused;
+  *out = false;
+  if (!cag_solid_is_compound(s)) return CAG_OK;
+  const CagStatus status = cag_csg_bounds(s, &unused, err);
+  *out = status && cag_is_empty_shape(err);
+  // What reaches to infinity is not empty.
+  return *out || (status && !strcmp(err->reason, "solid-unbounded")) ? CAG_OK : status;
 }
 
 // --- Mass ---

@@ -331,31 +331,3 @@ CagStatus cag_csg_mesh(const CagSolid *s, const CagTessellation *how, CagMesh **
   if (!(own.tolerance > 0)) return empty_mesh(out, err); // everything lies in one point
   return solid_mesh(s, &own, &reach, out, err);
 }
-
-static CagStatus fail_empty(const CagSolid *s, CagError *err) {
-  char first[80], second[80];
-  if (!is_operation(s))
-    return cag_fail(err, CAG_E_DEGENERATE, "csg-empty", "", -1, "the form is nowhere negative");
-  cag_solid_describe(s->core->operands[0], first, sizeof first);
-  if (s->core->count < 2)
-    return cag_fail(err, CAG_E_DEGENERATE, "csg-empty", "", -1, "the %s of (%s) is empty",
-                    cag_solid_kind_name(s->kind), first);
-  cag_solid_describe(s->core->operands[1], second, sizeof second);
-  return cag_fail(err, CAG_E_DEGENERATE, "csg-empty", "", -1,
-                  s->kind == CAG_SOLID_DIFFERENCE
-                      ? "the %s of (%s) and (%s)%s leaves nothing: the first lies within what is "
-                        "taken away; make it larger or move it"
-                      : "the %s of (%s) and (%s)%s leaves nothing: they do not overlap; move them "
-                        "together",
-                  cag_solid_kind_name(s->kind), first, second,
-                  s->core->count > 2 ? " and others" : "");
-}
-
-CagStatus cag_csg_tessellate(const CagSolid *s, const CagTessellation *how, CagMesh **out,
-                             CagError *err) {
-  CagStatus status = cag_csg_mesh(s, how, out, err);
-  if (status || (*out)->triangle_count > 0) return status;
-  cag_mesh_release(*out);
-  *out = NULL;
-  return fail_empty(s, err);
-}

@@ -493,7 +493,8 @@ void cag_solid_describe(const CagSolid *s, char *buffer, size_t size) {
   case CAG_SOLID_UNION:
   case CAG_SOLID_DIFFERENCE:
   case CAG_SOLID_INTERSECTION:
-    snprintf(buffer, size, "%s of %zu solids", cag_solid_kind_name(s->kind), s->core->count);
+    if (s->core->count == 0) snprintf(buffer, size, "empty solid");
+    else snprintf(buffer, size, "%s of %zu solids", cag_solid_kind_name(s->kind), s->core->count);
     return;
   }
 }

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "geom/solid/build.h"
+#include "geom/solid/csg.h"
 
 // A point nearer to the axis than this part of the region's size lies on it.
 #define ON_AXIS 1e-9
@@ -20,6 +21,7 @@ CagStatus cag_solid_extrude(const CagRegion *r, CagVec3 v, double twist, double 
     return cag_fail(
         err, CAG_E_ARGUMENT, "degenerate-direction", "height", -1,
         "`height` must lead out of the plane of the region: it, or its z, must not be 0");
+  if (cag_region_is_empty(r)) return cag_solid_empty(out, err);
   CagSolid *s;
   CagStatus status = cag_solid_block(CAG_SOLID_EXTRUSION, r->count + 2, &s, err);
   if (status) return status;
@@ -234,6 +236,7 @@ static CagStatus cap_edges(CagSolid *s, const Sides *sides, size_t loops, size_t
 CagStatus cag_solid_revolve(const CagRegion *r, CagVec3 axis, CagVec3 through, double from,
                             double to, CagSolid **out, CagError *err) {
   Setting g;
+  if (cag_region_is_empty(r)) return cag_solid_empty(out, err);
   CagStatus status = set_plane(axis, through, &g, err);
   if (!status) status = check_side(r, &g, err);
   CagSolid *s = NULL;

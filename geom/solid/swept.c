@@ -5,6 +5,7 @@
 
 #include "geom/basis/bernstein.h"
 #include "geom/solid/build.h"
+#include "geom/solid/csg.h"
 #include "geom/surface/family.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
@@ -51,6 +52,7 @@ static CagStatus check_home(const CagSolid *s, const CagMotion *m, bool *closed,
 
 CagStatus cag_solid_sweep(const CagRegion *r, const CagMotion *motion, CagSolid **out,
                           CagError *err) {
+  if (cag_region_is_empty(r)) return cag_solid_empty(out, err);
   CagSolid *s;
   CagStatus status = cag_solid_block(CAG_SOLID_SWEEP, r->count + 2, &s, err);
   if (status) return status;

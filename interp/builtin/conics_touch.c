@@ -151,11 +151,12 @@ bool cag_conics_rounded_region(CagCall *call, CagValue *result) {
   CagError err;
   double radius;
   if (!cag_arg_positive(call, 1, &radius)) return false;
-  CagCurve **loops = calloc(region->count, sizeof *loops);
+  CagCurve **loops = calloc(region->count + 1, sizeof *loops);
   CagStatus status = loops ? CAG_OK : cag_fail_memory(&err);
   for (size_t i = 0; !status && i < region->count; i++)
     status = cag_curve_rounded(region->loops[i], radius, &loops[i], &err);
-  if (!status) status = cag_region_from_loops(loops, region->count, &out, &err);
+  if (!status && cag_region_is_empty(region)) out = cag_region_retain(region);
+  else if (!status) status = cag_region_from_loops(loops, region->count, &out, &err);
   for (size_t i = 0; loops && i < region->count; i++) cag_curve_release(loops[i]);
   free(loops);
   if (!cag_geometry_ok(call, status, &err)) return false;

@@ -193,6 +193,7 @@ bool cag_curves_closest(CagCall *call, CagValue *result) {
 // --- Area ---
 
 // Signed area and centroid of a closed plane curve or a region, where it lies.
+// centroid: NULL where it is not wanted.
 static bool read_area(CagCall *call, double *area, CagVec3 *centroid, int *dimension) {
   CagError err;
   CagValue v = call->values[0];
@@ -207,16 +208,15 @@ static bool read_area(CagCall *call, double *area, CagVec3 *centroid, int *dimen
   CagVec3 x = cag_transform_vector(place, cag_vec3(1, 0, 0));
   CagVec3 y = cag_transform_vector(place, cag_vec3(0, 1, 0));
   *area *= cag_norm(cag_cross(x, y));
-  *centroid = cag_transform_point(place, *centroid);
+  if (centroid) *centroid = cag_transform_point(place, *centroid);
   *dimension = place->planar ? 2 : 3;
   return true;
 }
 
 bool cag_curves_area(CagCall *call, CagValue *result) {
   double area;
-  CagVec3 centroid;
   int dimension;
-  if (!read_area(call, &area, &centroid, &dimension)) return false;
+  if (!read_area(call, &area, NULL, &dimension)) return false;
   *result = cag_number(fabs(area));
   return true;
 }

@@ -121,9 +121,9 @@ static CagStatus add_shape(const CagVm *vm, Cloud *cloud, CagValue v, CagError *
   if (v.type == CAG_CURVE) return add_curve(cloud, shape->as.curve, shape->tolerance, err);
   if (v.type == CAG_REGION) return add_region(cloud, shape, err);
   CagMesh *m;
-  CagStatus status = mesh_of(vm, v, shape->tolerance, &m, err);
-  if (status) return status;
   cloud->plane = false;
+  CagStatus status = mesh_of(vm, v, shape->tolerance, &m, err);
+  if (status) return cag_is_empty_shape(err) ? CAG_OK : status;
   status = cloud_add(cloud, m->positions, m->vertex_count, err);
   cag_mesh_release(m);
   return status;
@@ -263,10 +263,12 @@ static CagStatus body_add_compound(const CagVm *vm, Body *b, const CagSolid *s, 
   return status;
 }
 
+// Of an empty shape nothing is added.
 static CagStatus body_add_shape(const CagVm *vm, Body *b, CagValue v, double tolerance,
                                 CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagStatus status = CAG_OK;
+  if (v.type == CAG_REGION && cag_region_is_empty(shape->as.region)) return CAG_OK;
   switch (v.type) {
   case CAG_CURVE: return body_add_curve(b, shape->as.curve, tolerance, err);
   case CAG_REGION:
@@ -295,6 +297,7 @@ static CagStatus side_of(CagVm *vm, CagValue v, CagVec3 p, int *side, CagError *
   CagVec3 foot;
   *side = 1;
   CagStatus status = CAG_OK;
+  if (v.type == CAG_MESH && shape->as.mesh->triangle_count == 0) return CAG_OK;
   if (v.type == CAG_MESH) box = cag_mesh_bounds(shape->as.mesh);
   else status = cag_solid_bounds(shape->as.solid, &box, err);
   if (status) return status;
@@ -347,8 +350,9 @@ static CagStatus holds(CagVm *vm, CagValue v, CagVec3 p, bool *inside, CagError 
 }
 
 static bool is_body(CagValue v) {
-  return v.type == CAG_SOLID ||
-         (v.type == CAG_MESH && cag_mesh_is_watertight(CAG_AS_SHAPE(v)->as.mesh, NULL));
+  if (v.type != CAG_MESH) return v.type == CAG_SOLID;
+  const CagMesh *m = CAG_AS_SHAPE(v)->as.mesh;
+  return m->triangle_count == 0 || cag_mesh_is_watertight(m, NULL);
 }
 
 static bool call_contains(CagCall *call, CagValue *result) {

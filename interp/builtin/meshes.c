@@ -202,6 +202,8 @@ static CagStatus tessellate_shape(CagVm *vm, CagValue v, const CagTessellation *
   case CAG_MESH: *out = cag_mesh_retain(shape->as.mesh); return CAG_OK;
   case CAG_REGION: {
     CagSurface *flat = NULL;
+    if (cag_region_is_empty(shape->as.region))
+      return cag_mesh_new(0, 0, false, false, false, out, err);
     CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &flat, err);
     if (status == CAG_OK) status = cag_surface_tessellate(flat, &own, out, err);
     cag_surface_release(flat);

@@ -197,10 +197,11 @@ static bool offset(CagCall *call, CagValue *result) {
   const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
   double d, tolerance;
   CagRegion *out = NULL;
-  CagBounds box;
+  CagBounds box = {{0, 0, 0}, {1, 1, 0}};
   CagError err;
   if (!cag_arg_number(call, 1, &d) ||
-      !cag_geometry_ok(call, cag_region_bounds(shape->as.region, &box, &err), &err) ||
+      (!cag_region_is_empty(shape->as.region) &&
+       !cag_geometry_ok(call, cag_region_bounds(shape->as.region, &box, &err), &err)) ||
       !cag_arg_number_or(call, 2, part * cag_norm(cag_sub(box.max, box.min)), &tolerance))
     return false;
   if (!(tolerance > 0))
@@ -222,14 +223,18 @@ static bool inertia(CagCall *call, CagValue *result) {
   if (!shape->placement.planar)
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "takes regions of the plane; this one was moved into space");
-  CagStatus status =
-      cag_region_second_moments(shape->as.region, &area, &center, &xx, &xy, &yy, &err);
+  const bool empty = cag_region_is_empty(shape->as.region);
+  area = xx = xy = yy = 0;
+  CagStatus status = CAG_OK;
+  if (!empty)
+    status = cag_region_second_moments(shape->as.region, &area, &center, &xx, &xy, &yy, &err);
   if (!cag_geometry_ok(call, status, &err)) return false;
   CagValue matrix = cag_list_vectors(call->vm, 2, 2, &m);
   m[0] = density * yy;
   m[1] = m[2] = 0 - density * xy;
   m[3] = density * xx;
-  CagValue values[] = {cag_number(density * area), cag_point(call->vm, center, 2), matrix};
+  const CagValue at = empty ? cag_none() : cag_point(call->vm, center, 2);
+  CagValue values[] = {cag_number(density * area), at, matrix};
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }
@@ -247,20 +252,20 @@ const CagBuiltin cag_builtins_regions[] = {
      REGIONS, sets},
     {"difference(R, ...)", subtract, "region",
      "The points of the first region that are in none of the others, as `A - B`. Where nothing is "
-     "left it is an error (region-empty).",
+     "left the region is empty (see `is_empty`).",
      "ring = difference(rectangle(4, 4), rectangle(2, 2))\n"
      "print area(ring), len(boundary(ring)) // expect: 12 2",
      REGIONS, sets},
     {"intersection(R, ...)", intersect, "region",
-     "The points that are in all of the regions, as `A & B`. Where there are none it is an error "
-     "(region-empty).",
+     "The points that are in all of the regions, as `A & B`. Where there are none the "
+     "region is empty (see `is_empty`).",
      "lens = region(circle(1)) & region(circle(1, center: [1, 0]))\n"
      "print near(area(lens), 2 * pi / 3 - sqrt(3) / 2) // expect: true",
      REGIONS, sets},
     {"offset(R, d, tolerance = none)", offset, "region",
      "The points at most d (mm) away from the region, its corners gone round in arcs; with a "
      "negative d those of it at least so far from its boundary. Holes shrink and grow; pieces may "
-     "join, part or vanish; where nothing is left it is an error (region-empty). Lines and circles "
+     "join, part or vanish; where nothing is left the region is empty. Lines and circles "
      "are exact, others within the tolerance (none: 1e-6 of the size).",
      "r = offset(rectangle(4, 3), 1)\n"
      "print near(area(r), 12 + 14 + pi), area(offset(rectangle(4, 3), -1)) // expect: true 2",

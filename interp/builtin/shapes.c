@@ -239,6 +239,7 @@ static CagStatus region_bounds(const CagShape *shape, CagBounds *out, int *dimen
   const CagTransform *place = &shape->placement;
   *dimension = place->planar ? 2 : 3;
   *out = CAG_BOUNDS_EMPTY;
+  if (cag_region_is_empty(shape->as.region)) return cag_region_bounds(shape->as.region, out, err);
   for (size_t i = 0; i < shape->as.region->count; i++) {
     CagCurve *moved = NULL;
     CagBounds loop;
@@ -256,31 +257,56 @@ void cag_charge_solid(CagVm *vm, const CagSolid *s, size_t before) {
   if (now > before) cag_heap_charge(vm, now - before);
 }
 
-static bool shape_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension) {
+static bool is_label(const CagShape *mesh) {
+  return mesh->style && cag_record_get(mesh->style, "label").type == CAG_TEXT;
+}
+
+// *empty: nothing is left of the shape, and `err` says why.
+static CagStatus shape_bounds(CagVm *vm, CagValue v, CagBounds *out, int *dimension, bool *empty,
+                              CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
-  CagError err;
+  CagStatus status = CAG_OK;
   *dimension = 3;
   switch (v.type) {
   case CAG_CURVE:
     *dimension = shape->as.curve->dimension;
-    return cag_geometry_ok(call, cag_curve_bounds(shape->as.curve, out, &err), &err);
-  case CAG_REGION: return cag_geometry_ok(call, region_bounds(shape, out, dimension, &err), &err);
-  case CAG_SURFACE:
-    return cag_geometry_ok(call, cag_surface_bounds(shape->as.surface, out, &err), &err);
+    status = cag_curve_bounds(shape->as.curve, out, err);
+    break;
+  case CAG_REGION: status = region_bounds(shape, out, dimension, err); break;
+  case CAG_SURFACE: status = cag_surface_bounds(shape->as.surface, out, err); break;
   case CAG_SOLID: {
     const size_t before = cag_solid_kept_bytes(shape->as.solid);
-    const CagStatus status = cag_solid_bounds(shape->as.solid, out, &err);
+    status = cag_solid_bounds(shape->as.solid, out, err);
+    cag_charge_solid(vm, shape->as.solid, before);
+    break;
+  }
+  default:
+    *out = cag_mesh_bounds(shape->as.mesh);
+    if (is_label(shape)) { // its place; a second vertex says its direction (figures.c)
+      *out = CAG_BOUNDS_EMPTY;
+      cag_bounds_add(out, shape->as.mesh->positions[0]);
+    } else if (shape->as.mesh->triangle_count == 0) {
+      status = cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
+                        "the mesh is empty: it has no triangles");
+    }
+  }
+  *empty = status && cag_is_empty_shape(err);
+  return *empty ? CAG_OK : status;
+}
+
+bool cag_value_is_empty(CagCall *call, CagValue v, bool *out) {
+  const CagShape *shape = CAG_AS_SHAPE(v);
+  CagError err;
+  CagStatus status = CAG_OK;
+  *out = false;
+  if (v.type == CAG_REGION) *out = cag_region_is_empty(shape->as.region);
+  if (v.type == CAG_MESH) *out = shape->as.mesh->triangle_count == 0 && !is_label(shape);
+  if (v.type == CAG_SOLID) {
+    const size_t before = cag_solid_kept_bytes(shape->as.solid);
+    status = cag_solid_is_empty(shape->as.solid, out, &err);
     cag_charge_solid(call->vm, shape->as.solid, before);
-    return cag_geometry_ok(call, status, &err);
   }
-  default: *out = cag_mesh_bounds(shape->as.mesh);
-  }
-  // A label is its place; a second vertex says its direction (figures.c).
-  if (shape->style && cag_record_get(shape->style, "label").type == CAG_TEXT) {
-    *out = CAG_BOUNDS_EMPTY;
-    cag_bounds_add(out, shape->as.mesh->positions[0]);
-  }
-  return true;
+  return cag_geometry_ok(call, status, &err);
 }
 
 bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension) {
@@ -290,14 +316,21 @@ bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension)
   *out = CAG_BOUNDS_EMPTY;
   *dimension = 2;
   size_t n = CAG_AS_LIST(list)->length;
-  if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one shape");
+  CagError err;
+  cag_fail(&err, CAG_E_DEGENERATE, "empty-shape", "", -1, "there is no shape in it");
+  bool all_empty = true;
   for (size_t i = 0; i < n; i++) {
     CagBounds one;
+    bool empty;
     int d;
     if (i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) return false;
-    if (!shape_bounds(call, cag_list_get(call->vm, CAG_AS_LIST(list), i), &one, &d)) return false;
+    const CagValue shape = cag_list_get(call->vm, CAG_AS_LIST(list), i);
+    CagStatus status = shape_bounds(call->vm, shape, &one, &d, &empty, &err);
+    if (status) return cag_geometry_ok(call, status, &err);
+    if (empty) continue;
+    all_empty = false;
     bounds_join(out, &one);
     if (d == 3) *dimension = 3;
   }
-  return true;
+  return !all_empty || cag_fail_geometry(call, &err);
 }

@@ -160,7 +160,8 @@ static void add_count(CagString *s, size_t n, const char *one, const char *many)
 }
 
 static void describe_region(CagString *s, const CagRegion *r) {
-  cag_string_printf(s, "region of ");
+  cag_string_printf(s, cag_region_is_empty(r) ? "empty region" : "region of ");
+  if (cag_region_is_empty(r)) return;
   add_count(s, r->count, "curve", "curves");
 }
 

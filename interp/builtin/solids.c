@@ -78,13 +78,13 @@ const CagBuiltin cag_builtins_solids[] = {
     {"difference(G, ...)", cag_solids_difference, "solid",
      "What lies in the first solid and in none of the others; `a - b`. Operands as of `union`. "
      "When "
-     "nothing is left the volume is 0, and showing it is an error (csg-empty).",
+     "nothing is left the solid is empty (see `is_empty`).",
      "print near(volume(difference(box(3), translate(box(1), [1, 1, 1]))), 26) // expect: true\n"
      "print volume(box(2) - translate(box(1), [5, 0, 0])) // expect: 8",
      OPERANDS, operations},
     {"intersection(G, ...)", cag_solids_intersection, "solid",
      "What lies in all of the solids; `a & b`. Operands as of `union`. When nothing is left the "
-     "volume is 0, and showing it is an error (csg-empty).",
+     "solid is empty (see `is_empty`).",
      "print volume(intersection(box(2), translate(box(2), [1, 1, 1]))) // expect: 1\n"
      "print volume(box(1) & translate(box(1), [3, 0, 0])) // expect: 0",
      OPERANDS, operations},
@@ -93,10 +93,28 @@ const CagBuiltin cag_builtins_solids[] = {
      "closed meshes give solids, curves the pieces of them, surfaces, regions and open meshes the "
      "mesh of what lies inside, to the tolerance of G. Groups and lists are clipped shape by "
      "shape; "
-     "a shape that lies outside is left out. When nothing is left it is an error (csg-empty).",
+     "a shape that lies outside is left out. When nothing is left of a solid, the solid is empty; "
+     "of a "
+     "surface, region or open mesh, the mesh; of curves, groups and lists, the group.",
      "c = clip(line([-5, 0, 0], [5, 0, 0]), sphere(2))\n"
      "print near(length(c), 4, 1e-9) // expect: true\n"
      "print near(area(clip(rectangle(4, 4), plane(origin, X))), 8) // expect: true",
+     CAG_TAKES_SHAPES | CAG_TAKES(LIST), operations},
+
+    {"is_empty(G)", cag_solids_is_empty, "bool",
+     "Whether nothing is left of a region, solid or mesh, or of all shapes of a group or list; "
+     "also "
+     "of the list of an intersection. Empty shapes are values: their length, area and volume are "
+     "0, "
+     "set operations go on with them, sections and boundaries of them are empty lists, an "
+     "extrusion "
+     "of one is an empty solid. Bounds, a centroid and the nearest point are the error "
+     "empty-shape. "
+     "Showing one adds nothing, with a warning.",
+     "lost = box(1) - box(2)\n"
+     "print is_empty(lost), volume(lost), volume(box(3) | lost) // expect: true 0 27\n"
+     "print is_empty(circle(1) |> region), is_empty(intersect(circle(1), circle(3))) // expect: "
+     "false true",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), operations},
 
     // --- Copies ---

@@ -11,7 +11,7 @@
   /* solids_make.c */ \
   X(box) X(sphere) X(cylinder) X(cone) X(prism) X(rod) X(torus) X(solid) \
   /* solids_csg.c */ \
-  X(union) X(difference) X(intersection) X(half_space) X(clip) \
+  X(union) X(difference) X(intersection) X(half_space) X(clip) X(is_empty) \
   /* solids_copies.c */ \
   X(around) X(rows) X(mirrored) \
   /* solids_measure.c */ \

@@ -447,6 +447,40 @@ static bool clip_shape(const Clip *c, CagValue v, CagBuilder *into) {
   return m->triangle_count == 0 || cag_builder_add(c->call->vm, into, value);
 }
 
+// Nothing of a shape: an empty solid of what has an inside, else an empty mesh.
+static bool clipped_away(CagCall *call, CagValue v, CagValue *result) {
+  CagSolid *s = NULL;
+  CagMesh *m = NULL;
+  CagError err;
+  const bool body = v.type == CAG_SOLID ||
+                    (v.type == CAG_MESH && cag_mesh_is_watertight(CAG_AS_SHAPE(v)->as.mesh, NULL));
+  const CagStatus status =
+      body ? cag_solid_empty(&s, &err) : cag_mesh_new(0, 0, false, false, false, &m, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = body ? cag_solid_value(call->vm, s) : cag_mesh_value(call->vm, m);
+  cag_shape_say_alike(*result, v);
+  return true;
+}
+
+bool cag_solids_is_empty(CagCall *call, CagValue *result) {
+  CagBuilder *builder = cag_builder_new(call->vm);
+  const CagValue v = call->values[0];
+  *result = cag_bool(false);
+  // The places of an intersection are records.
+  if (v.type == CAG_LIST && CAG_AS_LIST(v)->length > 0 &&
+      !cag_is_shape(cag_list_get(call->vm, CAG_AS_LIST(v), 0)))
+    return true;
+  if (!cag_shapes_collect(call, v, builder)) return false;
+  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
+  bool empty = true;
+  for (size_t i = 0; empty && i < shapes->length; i++)
+    if (!cag_keep_going(call->vm) ||
+        !cag_value_is_empty(call, cag_list_get(call->vm, shapes, i), &empty))
+      return false;
+  *result = cag_bool(empty);
+  return true;
+}
+
 bool cag_solids_clip(CagCall *call, CagValue *result) {
   Clip c = {call, NULL};
   CagValue said;
@@ -466,10 +500,9 @@ bool cag_solids_clip(CagCall *call, CagValue *result) {
   if (!ok) return false;
   CagValue parts = cag_builder_finish(call->vm, kept);
   size_t n = CAG_AS_LIST(parts)->length;
-  if (n == 0)
-    return cag_fail_call(call, -1, CAG_ERR_csg_empty,
-                         "leaves nothing: no part of the shape lies within the solid");
   CagType first = call->values[0].type;
+  if (n == 0 && first != CAG_GROUP && first != CAG_LIST && first != CAG_CURVE)
+    return clipped_away(call, call->values[0], result);
   bool single = n == 1 && first != CAG_GROUP && first != CAG_LIST;
   *result =
       single ? cag_list_get(call->vm, CAG_AS_LIST(parts), 0) : cag_group_value(call->vm, parts);

@@ -161,9 +161,11 @@ bool cag_solids_volume(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool read_massive(CagCall *call, Body *body) {
+// *empty: nothing is left of the shapes.
+static bool read_massive(CagCall *call, Body *body, bool *empty) {
   if (!read_body(call, true, body)) return false;
-  return body->volume != 0 ||
+  *empty = body->volume == 0 && body->area == 0;
+  return body->volume != 0 || *empty ||
          cag_fail_call(call, 0, CAG_ERR_value, "expects a body with a volume, found none");
 }
 
@@ -174,7 +176,11 @@ static CagValue center_value(CagCall *call, const Body *body) {
 
 bool cag_solids_centroid(CagCall *call, CagValue *result) {
   Body body;
-  if (!read_massive(call, &body)) return false;
+  bool empty;
+  if (!read_massive(call, &body, &empty)) return false;
+  if (empty)
+    return cag_fail_call(call, 0, CAG_ERR_empty_shape,
+                         "expects a body with a volume, found an empty one");
   *result = center_value(call, &body);
   return true;
 }
@@ -182,16 +188,18 @@ bool cag_solids_centroid(CagCall *call, CagValue *result) {
 bool cag_solids_inertia(CagCall *call, CagValue *result) {
   static const char *const names[] = {"mass", "center", "matrix"};
   Body body;
+  bool empty;
   double density = 1, *m;
   if (cag_given(call, 1) && !cag_arg_positive(call, 1, &density)) return false;
-  if (!read_massive(call, &body)) return false;
+  if (!read_massive(call, &body, &empty)) return false;
   CagValue matrix = cag_list_vectors(call->vm, 3, 3, &m);
   for (int i = 0; i < 3; i++) {
     const int j = (i + 1) % 3;
     m[3 * i + i] = density * body.moment[i];
     m[3 * i + j] = m[3 * j + i] = 0 - density * body.product[i];
   }
-  CagValue values[] = {cag_number(density * body.volume), center_value(call, &body), matrix};
+  const CagValue center = empty ? cag_none() : center_value(call, &body);
+  CagValue values[] = {cag_number(density * body.volume), center, matrix};
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }

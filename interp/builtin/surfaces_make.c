@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "geom/solid/csg.h"
 #include "interp/builtin/surfaces.h"
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
@@ -55,6 +56,11 @@ bool cag_region_revolved(CagCall *call, const CagRegion *region, const CagTransf
   CagError err;
   CagVec3 centroid;
   double area;
+  if (cag_region_is_empty(region)) {
+    CagSolid *nothing = NULL;
+    const CagStatus made = cag_solid_empty(&nothing, &err);
+    return give_solid(call, made, &err, nothing, result);
+  }
   CagVec3 a = cag_unit(axis);
   CagVec3 x = cag_transform_vector(place, cag_vec3(1, 0, 0));
   CagVec3 n = cag_unit(cag_cross(x, cag_transform_vector(place, cag_vec3(0, 1, 0))));

@@ -179,6 +179,7 @@ static bool section_of(CagCall *call, CagValue v, const CagPlane *plane, double 
     if (!status) status = cag_surface_section(flat, plane, tolerance, list, &err);
     cag_surface_release(flat);
   } else return cag_fail_type(call, 0, "surfaces, solids, meshes or regions");
+  if (status && cag_is_empty_shape(&err)) return true;
   return cag_geometry_ok(call, status, &err);
 }
 

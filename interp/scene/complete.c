@@ -32,6 +32,7 @@ static void join(CagBounds *into, const CagBounds *b) {
 
 static CagStatus region_bounds(const CagItem *item, CagBounds *out, CagError *err) {
   *out = CAG_BOUNDS_EMPTY;
+  if (cag_region_is_empty(item->as.region)) return cag_region_bounds(item->as.region, out, err);
   for (size_t i = 0; i < item->as.region->count; i++) {
     CagCurve *placed = NULL;
     CagBounds loop;
@@ -52,7 +53,10 @@ static CagStatus item_bounds(const CagItem *item, CagBounds *out, CagError *err)
   case CAG_ITEM_REGION: return region_bounds(item, out, err);
   case CAG_ITEM_SURFACE: return cag_surface_bounds(item->as.surface, out, err);
   case CAG_ITEM_SOLID: return cag_solid_bounds(item->as.solid, out, err);
-  case CAG_ITEM_MESH: *out = cag_mesh_bounds(item->as.mesh); return CAG_OK;
+  case CAG_ITEM_MESH:
+    *out = cag_mesh_bounds(item->as.mesh);
+    if (item->as.mesh->triangle_count > 0) return CAG_OK;
+    return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1, "the mesh has no triangles");
   case CAG_ITEM_GROUND: return CAG_OK;
   }
   return CAG_OK;
@@ -286,14 +290,32 @@ static CagStatus add_studio(CagScene *s, CagError *err) {
   return status;
 }
 
-CagStatus cag_scene_complete(CagScene *s, CagError *err) {
-  CagStatus status = CAG_OK;
+// Bounds of all items; those that are empty are taken out.
+static CagStatus find_bounds(CagScene *s, CagError *err) {
   s->bounds = CAG_BOUNDS_EMPTY;
-  for (size_t i = 0; status == CAG_OK && i < s->item_count; i++) {
-    CagBounds one;
-    status = item_bounds(&s->items[i], &one, err);
+  s->empties = malloc((s->item_count + 1) * sizeof *s->empties);
+  if (!s->empties) return cag_fail_memory(err);
+  CagStatus status = CAG_OK;
+  size_t kept = 0;
+  for (size_t i = 0; i < s->item_count; i++) {
+    CagBounds one = CAG_BOUNDS_EMPTY;
+    if (status == CAG_OK) status = item_bounds(&s->items[i], &one, err);
+    const bool empty = status != CAG_OK && cag_is_empty_shape(err);
+    if (empty) {
+      s->empties[s->empty_count++] = s->items[i];
+      status = CAG_OK;
+      continue;
+    }
     if (status == CAG_OK) join(&s->bounds, &one);
+    s->items[kept++] = s->items[i];
   }
+  s->item_count = kept;
+  return status;
+}
+
+CagStatus cag_scene_complete(CagScene *s, CagError *err) {
+  CagStatus status = find_bounds(s, err);
+  if (status == CAG_OK && s->item_count + s->label_count == 0) return CAG_OK;
   if (status == CAG_OK && s->camera_count == 0) status = add_camera(s, err);
   bool lit = s->light_count > 0 || s->sky.color_count > 0 || s->sky.image;
   if (status == CAG_OK && !lit) status = add_studio(s, err);

@@ -30,6 +30,7 @@ static void free_item(CagItem *item) {
 
 void cag_scene_free(CagScene *s) {
   for (size_t i = 0; i < s->item_count; i++) free_item(&s->items[i]);
+  for (size_t i = 0; i < s->empty_count; i++) free_item(&s->empties[i]);
   for (size_t i = 0; i < s->label_count; i++) free(s->labels[i].text);
   for (size_t i = 0; i < s->material_count; i++) {
     free(s->materials[i].name);
@@ -38,6 +39,7 @@ void cag_scene_free(CagScene *s) {
   }
   for (size_t i = 0; i < s->camera_count; i++) free(s->cameras[i].name);
   free(s->items);
+  free(s->empties);
   free(s->labels);
   free(s->materials);
   free(s->cameras);

@@ -143,6 +143,8 @@ typedef struct CagSky {
 typedef struct CagScene {
   CagItem *items;
   size_t item_count;
+  CagItem *empties; // shown items of which nothing is left, taken out by cag_scene_complete
+  size_t empty_count;
   CagLabel *labels;
   size_t label_count;
   CagMaterial *materials;
@@ -171,7 +173,8 @@ static inline size_t cag_item_label_material(const CagItem *item, uint32_t label
   return at == SIZE_MAX ? item->material : at;
 }
 // Adds what is missing: a camera that frames everything (unless there is one), the studio light
-// (unless there is a light or a sky that lights). Computes bounds.
+// (unless there is a light or a sky that lights). Computes bounds, and takes out items that are
+// empty; where these are all there is, nothing else is done.
 CagStatus cag_scene_complete(CagScene *s, CagError *err);
 // Moves a camera, keeping its direction, so that it frames all items for the shape of its picture
 // (size): used by cag_scene_complete, and again when a picture of another size is asked for.

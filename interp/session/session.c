@@ -272,12 +272,11 @@ void cag_session_write_overdue(const CagSession *s, CagStyle style, FILE *out) {
   cag_diagnostics_free(&d);
 }
 
-// Where the script asked for the set operation that is empty or has no end: the first thing shown
-// with the same error.
+// Where the script asked for the set operation that has no end: the first thing shown with the same
+// error.
 static CagSolidPlace place_of_operation(const CagSession *s, const CagError *err) {
   const CagSolidPlace none = {NULL, 0, 0};
-  if (!err->reason || (strcmp(err->reason, "csg-empty") && strcmp(err->reason, "solid-unbounded")))
-    return none;
+  if (!err->reason || strcmp(err->reason, "solid-unbounded")) return none;
   for (size_t i = 0; s->has_scene && i < s->scene.item_count; i++) {
     const CagItem *item = &s->scene.items[i];
     CagBounds unused;
@@ -411,8 +410,40 @@ static int complete_scene(CagSession *s, void *context) {
   return status == CAG_OK ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
 }
 
-// Surfaces that cross themselves are shown all the same, with a warning. The list keeps room for
-// the error that may follow.
+// The list of diagnostics keeps room for the error that may follow.
+static void warn_shown(CagSession *s, CagErrorId id, CagSolidPlace place, const char *name,
+                       const char *what) {
+  if (s->diagnostics.count + 1 >= CAG_DIAGNOSTICS_MAX) {
+    s->diagnostics.dropped++;
+    return;
+  }
+  cag_diagnostics_add(&s->diagnostics, id, place.source, (CagSpan){place.start, place.end},
+                      "%s: %s", name ? name : "a shape", what)
+      ->severity = CAG_SEVERITY_WARNING;
+}
+
+static void warn_of_empties(CagSession *s) {
+  for (size_t i = 0; i < s->scene.empty_count; i++) {
+    const CagItem *item = &s->scene.empties[i];
+    CagSolidPlace place = {NULL, 0, 0};
+    if (item->kind == CAG_ITEM_SOLID && item->as.solid->core) place = item->as.solid->core->place;
+    warn_shown(s, CAG_ERR_empty_shape, place, item->name,
+               "the shape is empty, so it adds nothing to the scene");
+  }
+}
+
+static int fail_nothing_shown(CagSession *s) {
+  const bool empty = s->scene.empty_count > 0;
+  CagDiagnostic *d = cag_diagnostics_add(
+      &s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0}, "%s shows %s",
+      s->script ? s->script : "the session", empty ? "nothing but empty shapes" : "no shape");
+  cag_diagnostic_set_help(d, empty ? "`is_empty` tells what is empty"
+                                   : "add `show` and a shape: show sphere(10)");
+  drop_scene(s);
+  return CAG_STATUS_SCRIPT;
+}
+
+// Surfaces that cross themselves are shown all the same, with a warning.
 static int look_for_crossings(CagSession *s, void *context) {
   (void)context;
   char what[256];
@@ -423,13 +454,7 @@ static int look_for_crossings(CagSession *s, void *context) {
                          (item->kind == CAG_ITEM_SOLID &&
                           cag_solid_crosses_itself(item->as.solid, what, sizeof what));
     if (!crosses || s->vm->failed) continue;
-    if (s->diagnostics.count + 1 >= CAG_DIAGNOSTICS_MAX) {
-      s->diagnostics.dropped++;
-      continue;
-    }
-    cag_diagnostics_add(&s->diagnostics, CAG_ERR_crosses_itself, NULL, (CagSpan){0, 0}, "%s: %s",
-                        item->name ? item->name : "a shape", what)
-        ->severity = CAG_SEVERITY_WARNING;
+    warn_shown(s, CAG_ERR_crosses_itself, (CagSolidPlace){NULL, 0, 0}, item->name, what);
   }
   return CAG_STATUS_OK;
 }
@@ -451,15 +476,11 @@ int cag_session_build_scene(CagSession *s) {
   scene->max_triangles = s->options.max_triangles;
   scene->interrupt = &s->vm->stop;
   if (!scene->script && s->script) scene->script = strdup(s->script);
-  if (scene->item_count + scene->label_count == 0) {
-    CagDiagnostic *d =
-        cag_diagnostics_add(&s->diagnostics, CAG_ERR_nothing_to_show, NULL, (CagSpan){0, 0},
-                            "%s shows no shape", s->script ? s->script : "the session");
-    cag_diagnostic_set_help(d, "add `show` and a shape: show sphere(10)");
-    drop_scene(s);
-    return CAG_STATUS_SCRIPT;
-  }
+  if (scene->item_count + scene->label_count == 0) return fail_nothing_shown(s);
   status = cag_session_geometry(s, complete_scene, NULL);
+  if (status == CAG_STATUS_OK) warn_of_empties(s);
+  if (status == CAG_STATUS_OK && scene->item_count + scene->label_count == 0)
+    return fail_nothing_shown(s);
   if (status == CAG_STATUS_OK) status = cag_session_geometry(s, look_for_crossings, NULL);
   if (status != CAG_STATUS_OK) drop_scene(s);
   return status;
