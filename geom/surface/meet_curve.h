@@ -8,6 +8,7 @@
 typedef struct CagSurfaceMeeting {
   double t, u, v;
   CagVec3 point;
+  int multiplicity; // 1: it crosses; the order of contact where it touches
 } CagSurfaceMeeting;
 
 // Ascending by t; *out is malloc'd (NULL where there are none). Seams and joints count once. Fails

@@ -190,10 +190,13 @@ const CagBuiltin cag_builtins_bsplines[] = {
      CURVES, near},
     {"intersect(C, A)", cag_bsplines_intersect, "list",
      "All places where the curve meets another curve, a surface or a plane, crossings and touches, "
-     "in the order of t: records of point, t, and t2 of the other curve or u and v of the surface. "
-     "Where they share more than single points it is an error (overlap).",
+     "in the order of t: records of point, t, t2 of the other curve or u and v of the surface, and "
+     "multiplicity: 1 where they cross, the order of contact where they touch (2 as a rule). "
+     "Points within 1e-9 of the size are one. Where they share more than single points it is an "
+     "error (overlap).",
      "m = intersect(circle(5), line([-10, 3], [10, 3]))\n"
      "print len(m), near(m[0].point, [4, 3]), near(m[0].t2, 0.7) // expect: 2 true true\n"
+     "print intersect(circle(2), circle(1.9, center: [0.1, 0]))[0].multiplicity // expect: 2\n"
      "print len(intersect(helix(10, 5, 3), plane([0, 0, 4], Z))) // expect: 1\n"
      "s = intersect(line([-9, 0, 0], [9, 0, 0]), sphere_surface(3))\n"
      "print len(s), near(s[0].point, [-3, 0, 0]) // expect: 2 true",

@@ -7,7 +7,7 @@
 #include "interp/builtin/bsplines.h"
 
 static bool with_curve(CagCall *call, const CagCurve *a, const CagCurve *b, CagBuilder *list) {
-  static const char *const names[] = {"point", "t", "t2"};
+  static const char *const names[] = {"point", "t", "t2", "multiplicity"};
   CagMeeting *found;
   CagError err;
   size_t n;
@@ -15,17 +15,17 @@ static bool with_curve(CagCall *call, const CagCurve *a, const CagCurve *b, CagB
   const int dimension = a->dimension == 2 && b->dimension == 2 ? 2 : 3;
   bool ok = true;
   for (size_t i = 0; ok && i < n; i++) {
-    CagValue values[] = {cag_point(call->vm, found[i].point, dimension),
-                         cag_parameter_value(a->angular, found[i].t),
-                         cag_parameter_value(b->angular, found[i].t2)};
-    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 3));
+    CagValue values[] = {
+        cag_point(call->vm, found[i].point, dimension), cag_parameter_value(a->angular, found[i].t),
+        cag_parameter_value(b->angular, found[i].t2), cag_number(found[i].multiplicity)};
+    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 4));
   }
   free(found);
   return ok;
 }
 
 static bool with_plane(CagCall *call, const CagCurve *c, const CagPlane *plane, CagBuilder *list) {
-  static const char *const names[] = {"point", "t"};
+  static const char *const names[] = {"point", "t", "multiplicity"};
   CagMeeting *found;
   CagError err;
   size_t n;
@@ -34,15 +34,16 @@ static bool with_plane(CagCall *call, const CagCurve *c, const CagPlane *plane, 
   bool ok = true;
   for (size_t i = 0; ok && i < n; i++) {
     CagValue values[] = {cag_point(call->vm, found[i].point, c->dimension),
-                         cag_parameter_value(c->angular, found[i].t)};
-    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2));
+                         cag_parameter_value(c->angular, found[i].t),
+                         cag_number(found[i].multiplicity)};
+    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 3));
   }
   free(found);
   return ok;
 }
 
 static bool with_surface(CagCall *call, const CagCurve *c, const CagSurface *s, CagBuilder *list) {
-  static const char *const names[] = {"point", "t", "u", "v"};
+  static const char *const names[] = {"point", "t", "u", "v", "multiplicity"};
   CagSurfaceMeeting *found;
   CagError err;
   size_t n;
@@ -50,11 +51,11 @@ static bool with_surface(CagCall *call, const CagCurve *c, const CagSurface *s, 
     return false;
   bool ok = true;
   for (size_t i = 0; ok && i < n; i++) {
-    CagValue values[] = {cag_point(call->vm, found[i].point, 3),
-                         cag_parameter_value(c->angular, found[i].t),
-                         cag_parameter_value(s->angular_u, found[i].u),
-                         cag_parameter_value(s->angular_v, found[i].v)};
-    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 4));
+    CagValue values[] = {
+        cag_point(call->vm, found[i].point, 3), cag_parameter_value(c->angular, found[i].t),
+        cag_parameter_value(s->angular_u, found[i].u),
+        cag_parameter_value(s->angular_v, found[i].v), cag_number(found[i].multiplicity)};
+    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5));
   }
   free(found);
   return ok;

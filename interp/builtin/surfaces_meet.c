@@ -27,7 +27,7 @@ static bool call_closest(CagCall *call, CagValue *result) {
 }
 
 static bool with_curve(CagCall *call, const CagSurface *s, const CagCurve *c, CagValue *result) {
-  static const char *const names[] = {"point", "u", "v", "t"};
+  static const char *const names[] = {"point", "u", "v", "t", "multiplicity"};
   CagSurfaceMeeting *found;
   CagError err;
   size_t n;
@@ -38,8 +38,9 @@ static bool with_curve(CagCall *call, const CagSurface *s, const CagCurve *c, Ca
   for (size_t i = 0; ok && i < n; i++) {
     CagValue values[] = {
         cag_point(call->vm, found[i].point, 3), cag_parameter_value(s->angular_u, found[i].u),
-        cag_parameter_value(s->angular_v, found[i].v), cag_parameter_value(c->angular, found[i].t)};
-    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 4));
+        cag_parameter_value(s->angular_v, found[i].v), cag_parameter_value(c->angular, found[i].t),
+        cag_number(found[i].multiplicity)};
+    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5));
   }
   free(found);
   if (ok) *result = cag_builder_finish(call->vm, list);
@@ -89,8 +90,9 @@ const CagBuiltin cag_builtins_meetings[] = {
      "90deg",
      CAG_TAKES(SURFACE), MEETINGS},
     {"intersect(S, A, tolerance = none)", call_intersect, "list",
-     "Where the surface meets a curve: records of point, u, v, and t of the curve, in the order of "
-     "t. Where it meets another surface or a plane: curves, lines and conics exactly, others as "
+     "Where the surface meets a curve: records of point, u, v, t of the curve, and multiplicity (2 "
+     "where they touch), in the order of t. Where it meets another surface or a plane: curves, "
+     "lines and conics exactly, others as "
      "cubics within the tolerance (none: a millionth of the size). Surfaces that only touch have "
      "none; loops much smaller than the surfaces may be missed. Where they share a piece it is an "
      "error (overlap).",

@@ -91,11 +91,180 @@ static void rational_circles_meet_like_circles(void **state) {
   cag_curve_release(q);
 }
 
+// --- Random comparisons ---
+
+static double uniform(uint64_t *seed, double low, double high) {
+  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+  return low + (high - low) * (double)(*seed >> 11) / 9007199254740992.0;
+}
+
+static CagCurve *circle_at(double x, double y, double radius) {
+  CagTransform frame = cag_translate(cag_vec3(x, y, 0));
+  CagCurve *c;
+  frame.planar = true;
+  OK(cag_curve_arc(radius, radius, 0, 2 * M_PI, &frame, &c, &err));
+  return c;
+}
+
+static CagCurve *as_spline(CagCurve *c) {
+  CagCurve *spline;
+  OK(cag_curve_to_nurbs(c, &spline, &err));
+  cag_curve_release(c);
+  return spline;
+}
+
+// Meets a and b, which it releases.
+static size_t meet(CagCurve *a, CagCurve *b, CagMeeting **out) {
+  size_t n;
+  OK(cag_curve_intersect(a, b, out, &n, &err));
+  cag_curve_release(a);
+  cag_curve_release(b);
+  return n;
+}
+
+static void assert_one_touch(CagCurve *a, CagCurve *b, CagVec3 at) {
+  CagMeeting *m;
+  assert_int_equal(meet(a, b, &m), 1);
+  assert_int_equal(m[0].multiplicity, 2);
+  near_vec(m[0].point, at, 1e-7);
+  free(m);
+}
+
+static void circles_that_touch_meet_once(void **state) {
+  (void)state;
+  uint64_t seed = 1;
+  for (int i = 0; i < 300; i++) {
+    const double x = uniform(&seed, -9, 9), y = uniform(&seed, -9, 9), r = uniform(&seed, 1, 5),
+                 angle = uniform(&seed, 0, 2 * M_PI), other = uniform(&seed, 0.1, 0.95) * r,
+                 way = i % 2 ? r - other : r + other, c = cos(angle), s = sin(angle);
+    CagCurve *a = circle_at(x, y, r), *b = circle_at(x + way * c, y + way * s, other);
+    if (i % 3 == 0) a = as_spline(a);
+    if (i % 5 == 0) b = as_spline(b);
+    assert_one_touch(a, b, cag_vec3(x + r * c, y + r * s, 0));
+  }
+}
+
+static void tangents_of_a_circle_meet_it_once(void **state) {
+  (void)state;
+  uint64_t seed = 2;
+  for (int i = 0; i < 720; i++) {
+    const double r = i < 360 ? 5 : uniform(&seed, 0.5, 7), before = uniform(&seed, 1, 30),
+                 after = uniform(&seed, 1, 30), angle = i % 360 * M_PI / 180, c = cos(angle),
+                 s = sin(angle);
+    const CagVec3 at = cag_vec3(r * c, r * s, 0);
+    CagCurve *line, *circle = circle_at(0, 0, r);
+    OK(cag_curve_line(cag_madd(at, -before, cag_vec3(-s, c, 0)),
+                      cag_madd(at, after, cag_vec3(-s, c, 0)), 2, &line, &err));
+    if (i % 2) circle = as_spline(circle);
+    assert_one_touch(line, circle, at);
+  }
+}
+
+static void the_order_of_contact_is_told(void **state) {
+  (void)state;
+  // The circle of curvature at a parabola's vertex has contact of order 4, a cubic's tangent at its
+  // inflection one of order 3.
+  const CagVec3 parabola[] = {{-1, 1, 0}, {0, -1, 0}, {1, 1, 0}};
+  const CagVec3 cubic[] = {{-1, -1, 0}, {-1.0 / 3, 1, 0}, {1.0 / 3, -1, 0}, {1, 1, 0}};
+  CagCurve *c, *line;
+  CagMeeting *m;
+  OK(cag_curve_bezier(parabola, NULL, 3, 2, &c, &err));
+  assert_int_equal(meet(c, circle_at(0, 0.5, 0.5), &m), 1);
+  assert_int_equal(m[0].multiplicity, 4);
+  free(m);
+  OK(cag_curve_bezier(cubic, NULL, 4, 2, &c, &err));
+  OK(cag_curve_line(cag_vec3(-2, 0, 0), cag_vec3(2, 0, 0), 2, &line, &err));
+  assert_int_equal(meet(c, line, &m), 1);
+  assert_int_equal(m[0].multiplicity, 3);
+  near_vec(m[0].point, cag_vec3(0, 0, 0), 1e-7);
+  free(m);
+}
+
+// Twice the area of a triangle with whole coordinates: exact.
+static double turn(CagVec3 a, CagVec3 b, CagVec3 c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Crossings of two polylines; -1 where three points are on one line.
+static int count_crossings(const CagVec3 *p, size_t np, const CagVec3 *q, size_t nq) {
+  int count = 0;
+  for (size_t i = 0; i + 1 < np; i++)
+    for (size_t k = 0; k + 1 < nq; k++) {
+      const double a = turn(p[i], p[i + 1], q[k]), b = turn(p[i], p[i + 1], q[k + 1]),
+                   c = turn(q[k], q[k + 1], p[i]), d = turn(q[k], q[k + 1], p[i + 1]);
+      if (a == 0 || b == 0 || c == 0 || d == 0) return -1;
+      count += (a < 0) != (b < 0) && (c < 0) != (d < 0);
+    }
+  return count;
+}
+
+// A polyline as a rational B-spline of degree 1 with weights far apart and uneven knots.
+static CagCurve *rational_polyline(const CagVec3 *p, size_t n, uint64_t *seed) {
+  double weights[8], knots[10];
+  knots[0] = 0;
+  for (size_t i = 0; i < n; i++) {
+    weights[i] = pow(10, uniform(seed, -2, 2));
+    knots[i + 1] = i ? knots[i] + pow(10, uniform(seed, -2, 0)) : 0;
+  }
+  knots[n + 1] = knots[n];
+  CagCurve *c;
+  OK(cag_curve_nurbs(p, weights, n, 1, knots, 2, &c, &err));
+  return c;
+}
+
+static void polylines_with_any_weights_cross_as_segments_do(void **state) {
+  (void)state;
+  uint64_t seed = 3;
+  for (int i = 0; i < 400; i++) {
+    CagVec3 p[2][6];
+    for (int k = 0; k < 12; k++)
+      p[k / 6][k % 6] = cag_vec3(floor(uniform(&seed, -20, 21)), floor(uniform(&seed, -20, 21)), 0);
+    const int wanted = count_crossings(p[0], 6, p[1], 6);
+    if (wanted < 0) continue;
+    CagMeeting *m;
+    const size_t n = meet(rational_polyline(p[0], 6, &seed), rational_polyline(p[1], 6, &seed), &m);
+    assert_int_equal(n, wanted);
+    for (size_t f = 0; f < n; f++) assert_int_equal(m[f].multiplicity, 1);
+    free(m);
+  }
+}
+
+// Weights times powers of a number only change how a Bezier curve is run through.
+static void rational_beziers_meet_alike_however_they_are_run_through(void **state) {
+  (void)state;
+  uint64_t seed = 4;
+  for (int i = 0; i < 300; i++) {
+    CagCurve *c[2][2];
+    for (int k = 0; k < 2; k++) {
+      CagVec3 p[4];
+      double weights[4], uneven[4], factor = pow(10, uniform(&seed, -2, 2));
+      for (int j = 0; j < 4; j++) {
+        p[j] = cag_vec3(uniform(&seed, -5, 5), uniform(&seed, -5, 5), 0);
+        weights[j] = uniform(&seed, 0.5, 2);
+        uneven[j] = weights[j] * pow(factor, j);
+      }
+      OK(cag_curve_bezier(p, weights, 4, 2, &c[k][0], &err));
+      OK(cag_curve_bezier(p, uneven, 4, 2, &c[k][1], &err));
+    }
+    CagMeeting *m[2];
+    const size_t n = meet(c[0][0], c[1][0], &m[0]);
+    assert_int_equal(meet(c[0][1], c[1][1], &m[1]), n);
+    for (size_t f = 0; f < n; f++) near_vec(m[0][f].point, m[1][f].point, 1e-7);
+    free(m[0]);
+    free(m[1]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(chebyshev_graphs_meet_their_mirror_images_n_squared_times),
       cmocka_unit_test(a_line_meets_a_chebyshev_graph_n_times_or_touches_it),
       cmocka_unit_test(rational_circles_meet_like_circles),
+      cmocka_unit_test(circles_that_touch_meet_once),
+      cmocka_unit_test(tangents_of_a_circle_meet_it_once),
+      cmocka_unit_test(the_order_of_contact_is_told),
+      cmocka_unit_test(polylines_with_any_weights_cross_as_segments_do),
+      cmocka_unit_test(rational_beziers_meet_alike_however_they_are_run_through),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
