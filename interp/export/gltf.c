@@ -6,6 +6,7 @@
 
 #include "interp/export/gltf.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -429,35 +430,52 @@ static void write_base64(const unsigned char *bytes, size_t n, CagAtomicFile *fi
 }
 
 // The document with the data as text in it.
-static CagStatus write_embedded(const Plan *p, const Text *t, CagAtomicFile *file, CagError *err) {
+static void write_embedded(const Text *t, const CagGltfData *d, CagAtomicFile *file) {
+  cag_atomic_file_write(file, t->at, t->data_at);
+  cag_atomic_file_text(file, ",\"uri\":\"data:application/octet-stream;base64,");
+  write_base64((const unsigned char *)d->bytes, d->size, file);
+  cag_atomic_file_text(file, "\"");
+  cag_atomic_file_write(file, t->at + t->data_at, t->length - t->data_at);
+}
+
+// FNV-1a (Fowler, Noll, Vo), 64 bits.
+static uint64_t hash_of(const char *bytes, size_t n) {
+  uint64_t hash = 14695981039346656037u;
+  for (size_t i = 0; i < n; i++) hash = (hash ^ (unsigned char)bytes[i]) * 1099511628211u;
+  return hash;
+}
+
+static CagStatus make_data(const Plan *p, const char *stem, CagGltfData *out, CagError *err) {
   CagIoError io;
-  char *bytes = NULL;
-  size_t size = 0;
+  if (p->data_bytes == 0) return CAG_OK;
   CagAtomicFile *memory = cag_atomic_file_open_memory(&io);
   if (!memory) return cag_fail_memory(err);
   cag_gltf_write_data(p, memory);
-  if (!cag_atomic_file_commit_memory(memory, &bytes, &size, &io)) return cag_fail_memory(err);
-  cag_atomic_file_write(file, t->at, t->data_at);
-  cag_atomic_file_text(file, ",\"uri\":\"data:application/octet-stream;base64,");
-  write_base64((const unsigned char *)bytes, size, file);
-  cag_atomic_file_text(file, "\"");
-  cag_atomic_file_write(file, t->at + t->data_at, t->length - t->data_at);
-  free(bytes);
+  if (!cag_atomic_file_commit_memory(memory, &out->bytes, &out->size, &io))
+    return cag_fail_memory(err);
+  if (!stem) return CAG_OK;
+  const size_t room = strlen(stem) + sizeof "-0123456789abcdef.bin";
+  out->name = malloc(room);
+  if (!out->name) return cag_fail_memory(err);
+  snprintf(out->name, room, "%s-%016" PRIx64 ".bin", stem, hash_of(out->bytes, out->size));
   return CAG_OK;
 }
 
-CagStatus cag_export_gltf(const CagMeshPart *parts, size_t n, const char *data_name,
-                          CagAtomicFile *data, CagAtomicFile *file, CagError *err) {
+CagStatus cag_export_gltf(const CagMeshPart *parts, size_t n, const char *stem, CagAtomicFile *file,
+                          CagGltfData *data, CagError *err) {
   Plan p;
   Text t = {0};
+  *data = (CagGltfData){0};
   CagStatus status = cag_gltf_plan(parts, n, &p, err);
   if (status != CAG_OK) return status;
-  status = cag_gltf_text(&p, data ? data_name : NULL, &t, err);
-  if (status == CAG_OK && !data && p.data_bytes > 0) status = write_embedded(&p, &t, file, err);
+  status = make_data(&p, stem, data, err);
+  if (status == CAG_OK) status = cag_gltf_text(&p, data->name, &t, err);
+  if (status == CAG_OK && !stem && data->bytes) write_embedded(&t, data, file);
   else if (status == CAG_OK) cag_atomic_file_write(file, t.at, t.length);
-  if (status == CAG_OK && data) {
-    cag_atomic_file_expect(data, p.data_bytes);
-    cag_gltf_write_data(&p, data);
+  if (status != CAG_OK || !stem) {
+    free(data->name);
+    free(data->bytes);
+    *data = (CagGltfData){0};
   }
   cag_gltf_text_free(&t);
   cag_gltf_plan_free(&p);

@@ -39,10 +39,17 @@ CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file
 // the Khronos extensions for ior, transmission, clear coat and strong emission where a material has
 // them.
 CagStatus cag_export_glb(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
-// The same as JSON, its data in a file beside it that has the name data_name; data NULL: in the
-// JSON itself.
-CagStatus cag_export_gltf(const CagMeshPart *parts, size_t n, const char *data_name,
-                          CagAtomicFile *data, CagAtomicFile *file, CagError *err);
+// The data of a .gltf file, for a file beside it. Release name and bytes with free.
+typedef struct CagGltfData {
+  char *name; // "part-0123456789abcdef.bin": what the JSON refers to; NULL: there is no data
+  char *bytes;
+  size_t size;
+} CagGltfData;
+
+// The same as JSON. stem: begins the name of the data, which ends with a hash of its content, so
+// that no JSON ever stands beside data that is not its own; NULL: the data is in the JSON itself.
+CagStatus cag_export_gltf(const CagMeshPart *parts, size_t n, const char *stem, CagAtomicFile *file,
+                          CagGltfData *data, CagError *err);
 // 3MF, core specification: an object each part, closed ones as models and open ones as surfaces,
 // colours as base materials.
 CagStatus cag_export_3mf(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);

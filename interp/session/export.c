@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "geom/mesh/orient.h"
 #include "interp/export/iges.h"
@@ -174,9 +175,6 @@ static CagStatus write_ply(const MeshOutput *m, CagError *err) {
 static CagStatus write_glb(const MeshOutput *m, CagError *err) {
   return cag_export_glb(m->parts, m->count, m->file, err);
 }
-static CagStatus write_gltf(const MeshOutput *m, CagError *err) {
-  return cag_export_gltf(m->parts, m->count, m->beside_name, m->beside, m->file, err);
-}
 static CagStatus write_3mf(const MeshOutput *m, CagError *err) {
   return cag_export_3mf(m->parts, m->count, m->file, err);
 }
@@ -220,6 +218,97 @@ static int write_meshes(CagSession *s, MeshOutput *m, const char *path, const ch
   return cag_session_fail_geometry(s, &err);
 }
 
+// --- .gltf ---
+
+// The data that a .gltf file of ours at the path refers to, which the next one leaves without use;
+// NULL: none. Its name stands at the end of the file.
+static char *former_data(const char *path, const char *stem) {
+  enum { TAIL = 4096, HASH_DIGITS = 16 };
+  char tail[TAIL + 1], *name = NULL;
+  FILE *f = fopen(path, "rb");
+  if (!f) return NULL;
+  if (fseek(f, -TAIL, SEEK_END) != 0) rewind(f);
+  tail[fread(tail, 1, TAIL, f)] = 0;
+  fclose(f);
+  const char *at = strstr(tail, ".bin\"}]}");
+  if (!at || at - tail <= HASH_DIGITS) return NULL;
+  const char *hash = at - HASH_DIGITS;
+  const bool ours = strspn(hash, "0123456789abcdef") == HASH_DIGITS && hash[-1] == '-';
+  if (!ours || asprintf(&name, "%s-%.*s.bin", stem, HASH_DIGITS, hash) < 0) return NULL;
+  return name;
+}
+
+// Writes the data under the name of its content first and renames the JSON last: whenever the
+// program is stopped, the JSON that stands there has its own data.
+static int write_gltf_data(CagSession *s, const CagGltfData *data, const char *folder) {
+  CagIoError io = {0};
+  char *path = NULL;
+  if (!data->name) return CAG_STATUS_OK;
+  if (asprintf(&path, "%s%s", folder, data->name) < 0) return CAG_STATUS_LIMIT;
+  CagAtomicFile *f = cag_atomic_file_open(path, &io);
+  free(path);
+  if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  cag_atomic_file_expect(f, data->size);
+  cag_atomic_file_write(f, data->bytes, data->size);
+  return commit(s, f);
+}
+
+// Puts both files into their places; the data that the former JSON referred to goes.
+static int commit_gltf(CagSession *s, CagAtomicFile *f, const CagGltfData *data, const char *path,
+                       const char *stem, const char *folder) {
+  char *former = former_data(path, stem);
+  const char *slash = former ? strrchr(former, '/') : NULL;
+  const char *former_name = slash ? slash + 1 : former;
+  int status = write_gltf_data(s, data, folder);
+  if (status == CAG_STATUS_OK) status = commit(s, f);
+  else cag_atomic_file_abort(f);
+  if (status == CAG_STATUS_OK && former && (!data->name || strcmp(former_name, data->name) != 0))
+    unlink(former);
+  free(former);
+  return status;
+}
+
+// stem: the path without its ending, NULL where no file can be beside it; folder: what of it comes
+// before the name.
+static int write_gltf_files(CagSession *s, const Parts *parts, const char *path, const char *stem,
+                            const char *folder) {
+  CagIoError io = {0};
+  CagError err = {0};
+  CagGltfData data;
+  CagAtomicFile *f = cag_atomic_file_open(path, &io);
+  if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  const char *name = stem ? stem + strlen(folder) : NULL;
+  int status = CAG_STATUS_OK;
+  CagStatus made = cag_export_gltf(parts->items, parts->count, name, f, &data, &err);
+  if (cag_session_checked(s, made, &err) != CAG_OK) {
+    cag_atomic_file_abort(f);
+    status = cag_session_fail_geometry(s, &err);
+  } else {
+    cag_atomic_file_flush(f);
+    // The commit of a file that failed tells why.
+    status = !stem || cag_atomic_file_failed(f) ? commit(s, f)
+                                                : commit_gltf(s, f, &data, path, stem, folder);
+  }
+  free(data.name);
+  free(data.bytes);
+  return status;
+}
+
+static int write_gltf(CagSession *s, const Parts *parts, const char *path) {
+  struct stat at;
+  const bool special = stat(path, &at) == 0 && !S_ISREG(at.st_mode); // a device or a pipe
+  char *stem = special ? NULL : path_beside(path, ""), *folder = stem ? strdup(stem) : NULL;
+  if (folder) {
+    char *slash = strrchr(folder, '/');
+    if (slash) slash[1] = 0;
+    else folder[0] = 0;
+  }
+  int status = write_gltf_files(s, parts, path, folder ? stem : NULL, folder ? folder : "");
+  free(stem);
+  free(folder);
+  return status;
+}
+
 // ending: of the file that goes with it; NULL: none. use: of MeshUse.
 static int export_meshes(CagSession *s, const char *path, MeshWriter write, const char *ending,
                          unsigned use) {
@@ -250,7 +339,13 @@ static int export_glb(CagSession *s, const char *path) {
   return export_meshes(s, path, write_glb, NULL, ONE_MATERIAL);
 }
 static int export_gltf(CagSession *s, const char *path) {
-  return export_meshes(s, path, write_gltf, ".bin", ONE_MATERIAL);
+  Parts parts;
+  int status = make_parts(s, ONE_MATERIAL, &parts);
+  if (status != CAG_STATUS_OK) return status;
+  status = check_parts(s, &parts);
+  if (status == CAG_STATUS_OK) status = write_gltf(s, &parts, path);
+  free_parts(&parts);
+  return status;
 }
 static int export_3mf(CagSession *s, const char *path) {
   return export_meshes(s, path, write_3mf, NULL, FOR_PRINTING);

@@ -59,7 +59,7 @@ static CagStatus write_glb(const CagMeshPart *p, CagAtomicFile *f, CagError *e) 
 }
 
 static CagStatus write_gltf(const CagMeshPart *p, CagAtomicFile *f, CagError *e) {
-  return cag_export_gltf(p, 1, NULL, NULL, f, e);
+  return cag_export_gltf(p, 1, NULL, f, &(CagGltfData){0}, e);
 }
 static CagStatus write_3mf(const CagMeshPart *p, CagAtomicFile *f, CagError *e) {
   return cag_export_3mf(p, 1, f, e);

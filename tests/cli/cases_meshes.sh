@@ -73,15 +73,53 @@ grep -q 'base64,' embedded.gltf || wrong 'no data in it'
 try run bodies_of.cag -D file=embedded.gltf
 prints "$all_the_same"
 
-it 'a .gltf and its .bin stand there anew, or neither'
+it 'the data of a .gltf is named by its content'
 mkdir half
-echo old > half/bodies.gltf
-mkdir half/bodies.bin
-try export bodies.cag -o half/bodies.gltf
-status 3
-says 'bodies.bin'
-holds half/bodies.gltf old
+script half/body.cag 'param size = 1
+show box(size)'
+try export half/body.cag -o half/body.gltf
+status 0
+first=$(cd half && ls body-*.bin)
+grep -qF "\"uri\":\"$first\"" half/body.gltf || wrong 'the .gltf does not name it'
+cp half/body.gltf half/before
+try export half/body.cag -o half/body.gltf
+same half/body.gltf half/before
+exists "half/$first"
+try export half/body.cag -o half/body.gltf -D size=2
+second=$(cd half && ls body-*.bin)
+[ "$first" != "$second" ] || wrong 'other data has the same name'
+grep -qF "\"uri\":\"$second\"" half/body.gltf || wrong 'the .gltf does not name it'
 no_temporaries half
+
+it 'where the data cannot be written, the .gltf stays, with its own data'
+rm "half/$second"
+try export half/body.cag -o half/body.gltf
+mkdir "half/$second"
+cp half/body.gltf half/before
+try export half/body.cag -o half/body.gltf -D size=2
+status 3
+says "$second"
+same half/body.gltf half/before
+exists "half/$first"
+no_temporaries half
+rmdir "half/$second"
+
+# Stopped by force at each of its renames in turn. What stands there is the first body or the second, never a mixture.
+if have strace && strace -o /dev/null true 2> /dev/null; then
+  it 'a .gltf that is killed between its renames has its own data'
+  script half/read.cag 'print round(volume(read_mesh("body.gltf")))'
+  for rename in 1 2; do
+    ran="strace cag export body.cag, killed at rename $rename" code=0
+    strace -f -o /dev/null -e trace=rename,renameat,renameat2 -e "inject=rename,renameat,renameat2:signal=KILL:when=$rename" \
+      "$CAG" export half/body.cag -o half/body.gltf -D size=2 > out 2> err
+    try run half/read.cag
+    status 0
+    prints_like '^[18]$'
+  done
+  try export half/body.cag -o half/body.gltf -D size=2
+  try run half/read.cag
+  prints_exactly 8
+fi
 
 it 'the name of a .bin may have any characters'
 try export bodies.cag -o 'für 100% von "mir" #1.gltf'

@@ -68,7 +68,7 @@ static char *written(Format format, const CagMeshPart *parts, size_t n, size_t *
   case STL: status = cag_export_stl(parts, n, "solid work", f, &err); break;
   case PLY: status = cag_export_ply(parts, n, f, &err); break;
   case GLB: status = cag_export_glb(parts, n, f, &err); break;
-  case GLTF: status = cag_export_gltf(parts, n, NULL, NULL, f, &err); break;
+  case GLTF: status = cag_export_gltf(parts, n, NULL, f, &(CagGltfData){0}, &err); break;
   case THREEMF: status = cag_export_3mf(parts, n, f, &err); break;
   }
   assert_int_equal(status, CAG_OK);

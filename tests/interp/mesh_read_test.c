@@ -632,7 +632,7 @@ static CagStatus export_stl(const CagMeshPart *p, size_t n, CagAtomicFile *f, Ca
   return cag_export_stl(p, n, NULL, f, e);
 }
 static CagStatus export_gltf(const CagMeshPart *p, size_t n, CagAtomicFile *f, CagError *e) {
-  return cag_export_gltf(p, n, NULL, NULL, f, e);
+  return cag_export_gltf(p, n, NULL, f, &(CagGltfData){0}, e);
 }
 
 static void what_was_written_is_read(void **state) {
