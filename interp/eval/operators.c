@@ -241,15 +241,26 @@ static CagValue *raise_top(CagVm *vm) {
 }
 
 // Set operations of solids and regions, by the built-in that does them: the rows of its name serve
-// the types of the first operand.
+// the types of the first operand. A list on the right of `-` and `|` gives its elements as
+// operands; others are the union of their shapes.
 static bool solids(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
   const char *name = op == CAG_OP_UNION          ? "union"
                      : op == CAG_OP_INTERSECTION ? "intersection"
                                                  : "difference";
   size_t index = cag_builtin_find(name);
   if (index == (size_t)-1) return fail_operands(vm, op, a, b, NULL);
+  CagValue operands[2] = {a, b};
+  const bool several = b.type == CAG_LIST && op != CAG_OP_INTERSECTION;
+  if (several) { // one list of them
+    const CagList *list = CAG_AS_LIST(b);
+    CagBuilder *builder = cag_builder_new(vm);
+    if (!cag_builder_add(vm, builder, a)) return false;
+    for (size_t i = 0; i < list->length; i++)
+      if (!cag_builder_add(vm, builder, cag_list_get(vm, list, i))) return false;
+    operands[0] = cag_builder_finish(vm, builder);
+  }
   CagValue *top = raise_top(vm);
-  bool ok = cag_call(vm, vm->builtin_values[index], (CagValue[]){a, b}, 2, result);
+  bool ok = cag_call(vm, vm->builtin_values[index], operands, several ? 1 : 2, result);
   vm->top = top;
   return ok;
 }
@@ -257,6 +268,21 @@ static bool solids(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *
 static bool is_body(CagValue v) {
   return v.type == CAG_SOLID || v.type == CAG_REGION || v.type == CAG_MESH ||
          v.type == CAG_SURFACE || v.type == CAG_GROUP;
+}
+
+// A list of bodies, or of lists of such; an empty one may be.
+static bool is_bodies(CagVm *vm, CagValue v) {
+  while (v.type == CAG_LIST) {
+    const CagList *list = CAG_AS_LIST(v);
+    if (list->length == 0) return true;
+    if (list->dim != 0) return false;
+    v = cag_list_get(vm, list, 0);
+  }
+  return is_body(v);
+}
+
+static bool are_bodies(CagVm *vm, CagValue a, CagValue b) {
+  return (is_body(a) && is_bodies(vm, b)) || (is_bodies(vm, a) && is_body(b));
 }
 
 // What to say to a pair that nothing joins.
@@ -299,7 +325,7 @@ bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue 
     break;
   case CAG_OP_SUBTRACT:
     if (is_list(a) && is_list(b)) return list_sum(vm, op, a, b, result);
-    if (is_body(a) && is_body(b)) return solids(vm, op, a, b, result);
+    if (are_bodies(vm, a, b)) return solids(vm, op, a, b, result);
     break;
   case CAG_OP_MULTIPLY:
     if (a.type == CAG_TRANSFORM) return moved(vm, &CAG_AS_TRANSFORM(a)->t, b, result);
@@ -311,7 +337,7 @@ bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue 
     break;
   case CAG_OP_UNION:
   case CAG_OP_INTERSECTION:
-    if (is_body(a) && is_body(b)) return solids(vm, op, a, b, result);
+    if (are_bodies(vm, a, b)) return solids(vm, op, a, b, result);
     break;
   default: break;
   }
