@@ -150,8 +150,11 @@ test-sanitize:
 	$(MAKE) BUILD=$(BUILD)-sanitize OPT=-O1 SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" test
 
 # Tests that fail here, such as those of time, do not stop the report.
+COVERAGE_EXIT := $(BUILD)-coverage/exit.o
 coverage:
-	-$(MAKE) BUILD=$(BUILD)-coverage OPT=-O0 SANITIZE="--coverage -DCAG_ONE_COPY" test
+	@mkdir -p $(BUILD)-coverage
+	$(CC) -std=c17 $(WARN) -fPIC -c tests/coverage/exit.c -o $(COVERAGE_EXIT)
+	-$(MAKE) BUILD=$(BUILD)-coverage OPT=-O0 SANITIZE="--coverage -DCAG_ONE_COPY" LDFLAGS="-Wl,--wrap=_exit $(COVERAGE_EXIT)" test
 	BUILD=$(BUILD)-coverage sh tools/coverage.sh
 # How many of N random changes to the code the tests notice; SEED= draws others.
 mutate:
