@@ -110,8 +110,9 @@ bool cag_curves_boundary(CagCall *call, CagValue *result) {
 
 // --- Set operations and offsets ---
 
-// What moves regions of the plane `place` into the plane `base`, where both are one plane.
-static CagStatus between_planes(const CagTransform *base, const CagTransform *place, int index,
+// What moves regions of the plane `place` into the plane `base`, where both are one plane. Operands
+// are counted from 1.
+static CagStatus between_planes(const CagTransform *base, const CagTransform *place, size_t operand,
                                 CagTransform *out, CagError *err) {
   const double same = 1e-9; // part of the distances by which the planes may differ
   CagTransform back;
@@ -122,57 +123,101 @@ static CagStatus between_planes(const CagTransform *base, const CagTransform *pl
   if (!(fabs(out->m[2][0]) <= same && fabs(out->m[2][1]) <= same &&
         fabs(out->m[2][3]) <= same * reach))
     return cag_fail(err, CAG_E_ARGUMENT, "region-planes", "", -1,
-                    "region %d lies in another plane of space than region 0; set operations join "
-                    "regions of one plane: make them first and move the result",
-                    index);
+                    "operand %zu lies in another plane of space than the first region; set "
+                    "operations join regions of one plane: make them first and move the result",
+                    operand);
   for (int i = 0; i < 4; i++) out->m[2][i] = out->m[i][2] = i == 2;
   out->planar = true;
   return CAG_OK;
 }
 
-// Region i of the call, in the plane of `base`; *out has one reference.
-static bool read_operand(CagCall *call, int argument, CagValue v, int i, const CagTransform *base,
-                         CagRegion **out) {
+// Operands of a set operation, read one after the other.
+typedef struct Operands {
+  CagCall *call;
+  CagTransform base; // the plane of the first region
+  bool based;
+  CagValue first; // the first shape; unset: none yet
+  CagRegion **regions;
+  size_t n;
+} Operands;
+
+// A region or closed plane curve in the plane of all; *out has one reference.
+static bool read_shape(Operands *o, CagValue v, size_t operand, CagRegion **out) {
   CagError err;
   if (v.type != CAG_REGION && v.type != CAG_CURVE)
-    return cag_fail_call(call, argument, CAG_ERR_type, "expects regions, found %s as number %d",
-                         cag_type_article(v), i);
+    return cag_fail_call(o->call, -1, CAG_ERR_type, "expects regions, found %s as operand %zu",
+                         cag_type_article(v), operand);
   const CagShape *shape = CAG_AS_SHAPE(v);
+  if (o->first.type == CAG_UNSET) o->first = v;
   if (v.type == CAG_CURVE)
-    return cag_geometry_ok(call, cag_region_new(shape->as.curve, NULL, 0, out, &err), &err);
-  if (!memcmp(base->m, shape->placement.m, sizeof base->m)) {
+    return cag_geometry_ok(o->call, cag_region_new(shape->as.curve, NULL, 0, out, &err), &err);
+  if (!o->based) o->base = shape->placement;
+  o->based = true;
+  if (!memcmp(o->base.m, shape->placement.m, sizeof o->base.m)) {
     *out = cag_region_retain(shape->as.region);
     return true;
   }
   CagTransform t;
-  CagStatus status = between_planes(base, &shape->placement, i, &t, &err);
+  CagStatus status = between_planes(&o->base, &shape->placement, operand, &t, &err);
   if (!status) status = cag_region_transform(shape->as.region, &t, out, &err);
-  return cag_geometry_ok(call, status, &err);
+  return cag_geometry_ok(o->call, status, &err);
+}
+
+// The union of the shapes of an operand; of none the empty region.
+static bool unite_shapes(Operands *o, const CagList *shapes, size_t operand, CagRegion **out) {
+  CagError err;
+  CagRegion **parts = malloc((shapes->length + 1) * sizeof *parts);
+  if (!parts)
+    return cag_fail_call(o->call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  size_t n = 0;
+  bool ok = true;
+  for (; ok && n < shapes->length; n += ok)
+    ok = (n % CAG_LOOK_UP != 0 || cag_keep_going(o->call->vm)) &&
+         read_shape(o, cag_list_get(o->call->vm, shapes, n), operand, &parts[n]);
+  if (ok)
+    ok = cag_geometry_ok(
+        o->call,
+        cag_region_combine(CAG_REGION_UNION, (const CagRegion *const *)parts, n, out, &err), &err);
+  for (size_t i = 0; i < n; i++) cag_region_release(parts[i]);
+  free(parts);
+  return ok;
+}
+
+// A region, a closed plane curve, or the union of those of a group or list.
+static bool read_operand(Operands *o, CagValue v) {
+  if (v.type != CAG_LIST && v.type != CAG_GROUP) {
+    if (!read_shape(o, v, o->n + 1, &o->regions[o->n])) return false;
+    o->n++;
+    return true;
+  }
+  CagBuilder *builder = cag_builder_new(o->call->vm);
+  if (!cag_shapes_collect(o->call, v, builder)) return false;
+  const CagList *shapes = CAG_AS_LIST(cag_builder_finish(o->call->vm, builder));
+  if (!unite_shapes(o, shapes, o->n + 1, &o->regions[o->n])) return false;
+  o->n++;
+  return true;
 }
 
 static bool combine(CagCall *call, CagRegionOp op, CagValue *result) {
   CagValue *items;
-  size_t n, read = 0;
+  size_t n;
   CagRegion *out = NULL;
   CagError err;
   if (!cag_arg_several(call, 0, &items, &n)) return false;
   if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one region");
-  const bool listed = items != call->values;
-  const CagTransform base =
-      items[0].type == CAG_REGION ? CAG_AS_SHAPE(items[0])->placement : cag_transform_identity();
-  CagRegion **regions = malloc(n * sizeof *regions);
-  bool ok = regions != NULL;
+  Operands o = {.call = call, .base = cag_transform_identity(), .first = cag_unset()};
+  o.regions = malloc(n * sizeof *o.regions);
+  bool ok = o.regions != NULL;
   if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (; ok && read < n; read += ok)
-    ok = read_operand(call, listed ? 0 : (int)read, items[read], (int)read, &base, &regions[read]);
+  while (ok && o.n < n) ok = read_operand(&o, items[o.n]);
   if (ok)
     ok = cag_geometry_ok(
-        call, cag_region_combine(op, (const CagRegion *const *)regions, n, &out, &err), &err);
-  for (size_t i = 0; i < read; i++) cag_region_release(regions[i]);
-  free(regions);
+        call, cag_region_combine(op, (const CagRegion *const *)o.regions, n, &out, &err), &err);
+  for (size_t i = 0; i < o.n; i++) cag_region_release(o.regions[i]);
+  free(o.regions);
   if (!ok) return false;
-  *result = cag_region_value(call->vm, out, &base);
-  cag_shape_say_alike(*result, items[0]);
+  *result = cag_region_value(call->vm, out, &o.base);
+  if (o.first.type != CAG_UNSET) cag_shape_say_alike(*result, o.first);
   return true;
 }
 
@@ -244,20 +289,25 @@ static const char sets[] = "Regions: set operations and offsets";
 
 const CagBuiltin cag_builtins_regions[] = {
     {"union(R, ...)", unite, "region",
-     "The points of any of the regions (or of one list of them), as `A | B`. The boundary is made "
-     "of pieces of theirs, each of its own kind; a region may have several outlines, each with its "
-     "holes.",
+     "The points of any of the regions (or of one list of them), as `A | B`. A closed plane curve "
+     "counts as its inside, a list or group among the operands as the union of its shapes. The "
+     "boundary is made of pieces of theirs, each of its own kind; a region may have several "
+     "outlines, each with its holes.",
      "r = rectangle(4, 2) | region(circle(1))\n"
      "print area(r), area(union(rectangle(2, 2), rectangle(4, 1))) // expect: 8 6",
      REGIONS, sets},
     {"difference(R, ...)", subtract, "region",
-     "The points of the first region that are in none of the others, as `A - B`. Where nothing is "
+     "The points of the first region that are in none of the others, as `A - B`. Operands as of "
+     "`union`. Where nothing is "
      "left the region is empty (see `is_empty`).",
      "ring = difference(rectangle(4, 4), rectangle(2, 2))\n"
-     "print area(ring), len(boundary(ring)) // expect: 12 2",
+     "print area(ring), len(boundary(ring)) // expect: 12 2\n"
+     "pins = [for x in [-1, 1]: translate(rectangle(0.5, 0.5), [x, 0])]\n"
+     "print area(difference(rectangle(4, 4), pins)) // expect: 15.5",
      REGIONS, sets},
     {"intersection(R, ...)", intersect, "region",
-     "The points that are in all of the regions, as `A & B`. Where there are none the "
+     "The points that are in all of the regions, as `A & B`. Operands as of `union`. Where there "
+     "are none the "
      "region is empty (see `is_empty`).",
      "lens = region(circle(1)) & region(circle(1, center: [1, 0]))\n"
      "print near(area(lens), 2 * pi / 3 - sqrt(3) / 2) // expect: true",

@@ -67,7 +67,7 @@ const CagBuiltin cag_builtins_solids[] = {
      CAG_TAKES(PLANE), primitives},
 
     // --- Set operations ---
-    {"union(G, ...)", cag_solids_union, "solid",
+    {"union(G, ...)", cag_solids_union, "region or solid",
      "What lies in any of the solids, given one by one or as one list; `a | b`. Closed meshes and "
      "surfaces count as the bodies in them, a group as the union of its shapes. POV-Ray gets an "
      "operation of its own, everything else a mesh whose operands keep the tolerance. The result "
@@ -75,14 +75,14 @@ const CagBuiltin cag_builtins_solids[] = {
      "print near(volume(union(box(1), translate(box(1), [0.5, 0, 0]))), 1.5) // expect: true\n"
      "print volume([box(1), translate(box(1), [3, 0, 0])] |> union) // expect: 2",
      OPERANDS, operations},
-    {"difference(G, ...)", cag_solids_difference, "solid",
+    {"difference(G, ...)", cag_solids_difference, "region or solid",
      "What lies in the first solid and in none of the others; `a - b`. Operands as of `union`. "
      "When "
      "nothing is left the solid is empty (see `is_empty`).",
      "print near(volume(difference(box(3), translate(box(1), [1, 1, 1]))), 26) // expect: true\n"
      "print volume(box(2) - translate(box(1), [5, 0, 0])) // expect: 8",
      OPERANDS, operations},
-    {"intersection(G, ...)", cag_solids_intersection, "solid",
+    {"intersection(G, ...)", cag_solids_intersection, "region or solid",
      "What lies in all of the solids; `a & b`. Operands as of `union`. When nothing is left the "
      "solid is empty (see `is_empty`).",
      "print volume(intersection(box(2), translate(box(2), [1, 1, 1]))) // expect: 1\n"

@@ -147,7 +147,8 @@ static CagStatus combine(CagCall *call, CagSetOperation op, const Operands *o, C
   return status;
 }
 
-// A shape, or the union of those of a group or list. `said`: the first of them.
+// A shape, or the union of those of a group or list: of none, an empty solid. `said`: the first of
+// them, if there is one.
 static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, CagSolid **out,
                          CagValue *said) {
   Operands parts;
@@ -155,10 +156,7 @@ static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, 
   CagBuilder *builder = cag_builder_new(call->vm);
   if (!cag_shapes_collect(call, v, builder)) return false;
   const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
-  if (shapes->length == 0)
-    return cag_fail_call(call, -1, CAG_ERR_csg_operand,
-                         "expects solids, found an empty %s as operand %zu",
-                         v.type == CAG_LIST ? "list" : "group", index + 1);
+  if (shapes->length == 0) return cag_geometry_ok(call, cag_solid_empty(out, &err), &err);
   if (!operands_new(call, shapes->length, &parts)) return false;
   bool ok = true;
   *said = cag_list_get(call->vm, shapes, 0);
@@ -180,11 +178,31 @@ static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, 
 
 // --- union, difference, intersection ---
 
-// Operations of regions are rows of their own; a list is asked for what it holds.
+// Operations of regions are rows of their own; a list or group is asked for the first shape in it.
 static bool holds_region(CagVm *vm, CagValue v) {
-  while (v.type == CAG_LIST && CAG_AS_LIST(v)->dim == 0 && CAG_AS_LIST(v)->length > 0)
-    v = cag_list_get(vm, CAG_AS_LIST(v), 0);
-  return v.type == CAG_REGION;
+  for (;;) {
+    const CagList *items = v.type == CAG_GROUP ? CAG_AS_SHAPE(v)->as.items
+                           : v.type == CAG_LIST && CAG_AS_LIST(v)->dim == 0 ? CAG_AS_LIST(v)
+                                                                            : NULL;
+    if (!items || items->length == 0) return v.type == CAG_REGION;
+    v = cag_list_get(vm, items, 0);
+  }
+}
+
+// Of operands that are empty lists and groups the next one tells.
+static bool is_of_regions(CagCall *call) {
+  CagValue *items;
+  size_t n;
+  if (call->values[0].type == CAG_LIST && CAG_AS_LIST(call->values[0])->dim != 0) return false;
+  if (!cag_arg_several(call, 0, &items, &n)) return false;
+  for (size_t i = 0; i < n; i++) {
+    if (holds_region(call->vm, items[i])) return true;
+    const bool nothing =
+        (items[i].type == CAG_LIST && CAG_AS_LIST(items[i])->length == 0) ||
+        (items[i].type == CAG_GROUP && CAG_AS_SHAPE(items[i])->as.items->length == 0);
+    if (!nothing) return false;
+  }
+  return false;
 }
 
 static bool call_of_regions(CagCall *call, const char *name, CagValue *result, bool *done) {
@@ -204,7 +222,7 @@ static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValu
   CagError err;
   CagSolid *made = NULL;
   bool done = false;
-  if (holds_region(call->vm, call->values[0])) {
+  if (is_of_regions(call)) {
     if (!call_of_regions(call, name, result, &done) || done) return done;
   }
   if (!cag_arg_several(call, 0, &items, &n)) return false;
@@ -219,7 +237,7 @@ static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValu
     if (ok) o.n++;
   }
   ok = ok && give(call, combine(call, op, &o, &made, &err), &err, &made, result);
-  if (ok) say_body(*result, CAG_AS_SHAPE(said));
+  if (ok && said.type != CAG_UNSET) say_body(*result, CAG_AS_SHAPE(said));
   if (ok && paint.mixed) CAG_AS_SHAPE(*result)->material = NULL; // its faces have theirs
   operands_free(&o);
   return ok;
