@@ -433,3 +433,9 @@ static void describe(const CagCurve *curve, char *buffer, size_t size) {
 static const CagCurveKind composite_kind = {"composite", eval,    NULL,     to_nurbs,
                                             transform,   reverse, trim,     reparametrize,
                                             hull,        breaks,  describe, destroy};
+
+void cag_curve_lay_flat(CagCurve *c) {
+  c->dimension = 2;
+  if (c->kind != &composite_kind) return;
+  for (size_t i = 0; i < ((Composite *)c)->n; i++) ((Composite *)c)->pieces[i]->dimension = 2;
+}

@@ -85,6 +85,10 @@ CagStatus cag_conic_branches(const CagConic *c, double from, double to, CagCurve
 // The equation of a circle, ellipse, parabola, hyperbola, their arcs, and Bezier curves of degree 2
 // in the plane. Fails with "not-a-conic".
 CagStatus cag_conic_of_curve(const CagCurve *c, CagConic *out, CagError *err);
+// The same of a curve of space that lies in a plane, in coordinates of that plane: `frame` carries
+// them to space.
+CagStatus cag_conic_of_space_curve(const CagCurve *c, CagTransform *frame, CagConic *out,
+                                   CagError *err);
 // The point at x with the smaller or larger y. Fails with "domain".
 CagStatus cag_conic_point_at(const CagConic *c, double x, bool upper, CagVec3 *out, CagError *err);
 // The arc over x in [from, to] (from > to runs the other way) on the branch of the smaller or

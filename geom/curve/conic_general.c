@@ -404,6 +404,33 @@ CagStatus cag_conic_of_curve(const CagCurve *c, CagConic *out, CagError *err) {
   return not_a_conic(err);
 }
 
+// Axes of the plane: those of z = 0 where it is parallel to that, else x is level. The origin is
+// the point of the plane nearest to that of space.
+static CagStatus plane_frame(CagPlane plane, CagTransform *out, CagError *err) {
+  CagVec3 n = plane.normal;
+  if (n.z < 0 || (n.z == 0 && (n.y < 0 || (n.y == 0 && n.x < 0)))) n = cag_scaled(n, -1);
+  CagVec3 x = {-n.y, n.x, 0};
+  const double level = 1e-12; // the sine of an angle that rounding makes
+  if (cag_norm(x) <= level) x = cag_vec3(1, 0, 0);
+  return cag_axes(cag_scaled(n, cag_dot(plane.point, n)), x, cag_cross(n, x), out, err);
+}
+
+CagStatus cag_conic_of_space_curve(const CagCurve *c, CagTransform *frame, CagConic *out,
+                                   CagError *err) {
+  CagPlane plane;
+  CagTransform into;
+  CagCurve *flat;
+  if (c->dimension != 3 || !cag_curve_is_planar(c, &plane)) return not_a_conic(err);
+  CagStatus status = plane_frame(plane, frame, err);
+  if (!status) status = cag_transform_inverse(frame, &into, err);
+  if (!status) status = cag_curve_transform(c, &into, &flat, err);
+  if (status) return status;
+  cag_curve_lay_flat(flat);
+  status = cag_conic_of_curve(flat, out, err);
+  cag_curve_release(flat);
+  return status;
+}
+
 // --- Segments ---
 
 static CagStatus fail_segment(double x, CagError *err) {

@@ -7,6 +7,7 @@
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
 #include "geom/surface/family.h"
+#include "geom/surface/loft.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 
@@ -98,50 +99,38 @@ CagStatus cag_solid_tube_along(const CagCurve *path, const CagAlong *radius, Cag
 
 // --- Lofts ---
 
-// The edge at v as a plane curve of the frame; it is a NURBS curve, since a loft is a NURBS
-// surface.
-static CagStatus flat_edge(const CagSurface *side, double v, int which, CagRegion **out,
-                           CagTransform *frame, CagError *err) {
-  CagCurve *edge, *flat;
-  CagStatus status = cag_surface_isocurve(side, 1, v, &edge, err);
-  if (status) return status;
+// The frame of the plane in which the edge lies.
+static CagStatus edge_frame(const CagSurface *side, const CagCurve *edge, double v, int which,
+                            CagTransform *frame, CagError *err) {
   CagPlane own = {{0, 0, 0}, {0, 0, 1}};
-  CagNurbsView view;
-  CagTransform into;
   if (!cag_curve_is_planar(edge, &own))
-    status = cag_fail(err, CAG_E_ARGUMENT, "section-not-plane", "curves", which,
-                      "the %s section must lie in a plane to get a cap: flatten it or take "
-                      "`caps: false`",
-                      v == side->v0 ? "first" : "last");
+    return cag_fail(err, CAG_E_ARGUMENT, "section-not-plane", "curves", which,
+                    "the %s section must lie in a plane to get a cap: flatten it or take "
+                    "`caps: false`",
+                    v == side->v0 ? "first" : "last");
   CagVec3 n = own.normal;
   CagVec3 x = fabs(n.x) < 0.8 ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
   x = cag_cross(cag_cross(n, x), n);
-  if (!status) status = cag_axes(own.point, x, cag_cross(n, x), frame, err);
+  return cag_axes(own.point, x, cag_cross(n, x), frame, err);
+}
+
+// The edge at v as a plane curve of the frame, with the parameter of the side.
+static CagStatus flat_edge(const CagSurface *side, double v, int which, CagRegion **out,
+                           CagTransform *frame, CagError *err) {
+  const CagCurve *end;
+  CagCurve *edge = NULL, *flat = NULL;
+  CagTransform into;
+  CagStatus status = CAG_OK;
+  if (cag_surface_across_end(side, v == side->v0, &end)) edge = cag_curve_retain(end);
+  else status = cag_surface_isocurve(side, 1, v, &edge, err);
+  if (!status) status = edge_frame(side, edge, v, which, frame, err);
   if (!status) status = cag_transform_inverse(frame, &into, err);
-  if (!status && !cag_curve_nurbs_view(edge, &view))
-    status = cag_fail(err, CAG_E_UNSUPPORTED, "not-nurbs", "curves", which,
-                      "the section has no control points");
-  CagVec3 *points = NULL;
-  double *weights = NULL;
+  if (!status) status = cag_curve_transform(edge, &into, &flat, err);
   if (!status) {
-    points = malloc(view.count * sizeof *points);
-    weights = malloc(view.count * sizeof *weights);
-    if (!points || !weights) status = cag_fail_memory(err);
-  }
-  for (size_t i = 0; !status && i < view.count; i++) {
-    points[i] = cag_transform_point(&into, cag_project(view.homogeneous + 4 * i));
-    points[i].z = 0;
-    weights[i] = view.homogeneous[4 * i + 3];
-  }
-  if (!status)
-    status = cag_curve_nurbs(points, view.rational ? weights : NULL, view.count, view.degree,
-                             view.knots, 2, &flat, err);
-  if (!status) {
+    cag_curve_lay_flat(flat);
     status = cag_region_new(flat, NULL, 0, out, err);
-    cag_curve_release(flat);
   }
-  free(points);
-  free(weights);
+  cag_curve_release(flat);
   cag_curve_release(edge);
   return status;
 }

@@ -24,22 +24,14 @@ static CagStatus gather(const CagNet *sections, size_t n, int degree, CagNet *ou
   return CAG_OK;
 }
 
-static CagStatus open_loft(const CagNet *sections, size_t n, int degree, CagSurface **out,
-                           CagError *err) {
-  CagNet net;
-  int p = degree < (int)n - 1 ? degree : (int)n - 1;
-  CagStatus status = gather(sections, n, p, &net, err);
-  if (status) return status;
-  double *at = malloc(n * sizeof *at);
-  if (!at) status = cag_fail_memory(err);
-  for (size_t j = 0; at && j < n; j++) at[j] = (double)j;
-  if (!status) {
-    cag_net_averaged_knots(at, n, p, net.knots);
-    status = cag_net_interpolate(&net, at, err);
-  }
-  if (!status) status = cag_net_to_surface(&net, 1, &sections[0], out, err);
+// Data rows, one for each section, become the coefficients of the spline that meets row j at v = j.
+static CagStatus open_spline(CagNet *net, CagError *err) {
+  double *at = malloc(net->count * sizeof *at);
+  if (!at) return cag_fail_memory(err);
+  for (size_t j = 0; j < net->count; j++) at[j] = (double)j;
+  cag_net_averaged_knots(at, net->count, net->degree, net->knots);
+  CagStatus status = cag_net_interpolate(net, at, err);
   free(at);
-  cag_net_free(&net);
   return status;
 }
 
@@ -67,8 +59,7 @@ static CagStatus solve_circulant(CagNet *net, CagError *err) {
   return status;
 }
 
-static CagStatus closed_loft(const CagNet *sections, size_t n, int degree, CagSurface **out,
-                             CagError *err) {
+static CagStatus check_closed(int degree, size_t n, CagError *err) {
   if (degree % 2 == 0)
     return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
                     "`degree` of a closed loft must be odd, it is %d: take %d", degree, degree + 1);
@@ -77,21 +68,53 @@ static CagStatus closed_loft(const CagNet *sections, size_t n, int degree, CagSu
                     "`degree` must be less than the number of curves of a closed loft (%zu), it is "
                     "%d",
                     n, degree);
-  CagNet net, wrapped = {0};
-  size_t p = (size_t)degree;
-  CagStatus status = gather(sections, n, degree, &net, err);
-  if (status) return status;
-  status = solve_circulant(&net, err);
+  return CAG_OK;
+}
+
+// The same for a spline that runs on from the last row to the first.
+static CagStatus closed_spline(CagNet *net, CagError *err) {
+  const size_t n = net->count, p = (size_t)net->degree;
+  CagNet wrapped;
+  CagStatus status = solve_circulant(net, err);
   // The first rows again, and the ends clamped: the knots -p..n + p, the range 0..n.
-  if (!status) status = cag_net_new(degree, n + p, net.width, &wrapped, err);
-  if (!status) {
-    memcpy(wrapped.data, net.data, n * net.width * sizeof *net.data);
-    memcpy(wrapped.data + n * net.width, net.data, p * net.width * sizeof *net.data);
-    for (size_t i = 0; i < n + 2 * p + 1; i++) wrapped.knots[i] = (double)i - (double)p;
-    status = cag_net_to_surface(&wrapped, 1, &sections[0], out, err);
-  }
+  if (!status) status = cag_net_new(net->degree, n + p, net->width, &wrapped, err);
+  if (status) return status;
+  memcpy(wrapped.data, net->data, n * net->width * sizeof *net->data);
+  memcpy(wrapped.data + n * net->width, net->data, p * net->width * sizeof *net->data);
+  for (size_t i = 0; i < n + 2 * p + 1; i++) wrapped.knots[i] = (double)i - (double)p;
+  cag_net_free(net);
+  *net = wrapped;
+  return CAG_OK;
+}
+
+static int loft_degree(size_t n, int degree, bool closed) {
+  return closed || degree < (int)n - 1 ? degree : (int)n - 1;
+}
+
+// Sections with an exact form, as one NURBS surface.
+static CagStatus loft_nets(const CagNet *sections, size_t n, int degree, bool closed,
+                           CagSurface **out, CagError *err) {
+  CagNet net;
+  CagStatus status = gather(sections, n, loft_degree(n, degree, closed), &net, err);
+  if (status) return status;
+  status = closed ? closed_spline(&net, err) : open_spline(&net, err);
+  if (!status) status = cag_net_to_surface(&net, 1, &sections[0], out, err);
   cag_net_free(&net);
-  cag_net_free(&wrapped);
+  return status;
+}
+
+// Sections of any kind: the spline is linear in them, so its coefficients are those of the unit
+// rows.
+static CagStatus loft_curves(const CagCurve *const *curves, size_t n, int degree, bool closed,
+                             CagSurface **out, CagError *err) {
+  CagNet net;
+  CagStatus status = cag_net_new(loft_degree(n, degree, closed), n, n, &net, err);
+  if (status) return status;
+  memset(net.data, 0, n * n * sizeof *net.data);
+  for (size_t j = 0; j < n; j++) net.data[j * n + j] = 1;
+  status = closed ? closed_spline(&net, err) : open_spline(&net, err);
+  if (!status) status = cag_surface_across(curves, &net, out, err);
+  cag_net_free(&net);
   return status;
 }
 
@@ -99,7 +122,7 @@ CagStatus cag_surface_loft(const CagCurve *const *curves, size_t n, int degree, 
                            CagSurface **out, CagError *err) {
   CagNet *sections = calloc(n, sizeof *sections);
   if (!sections) return cag_fail_memory(err);
-  CagStatus status = CAG_OK;
+  CagStatus status = closed ? check_closed(degree, n, err) : CAG_OK;
   for (size_t i = 0; !status && i < n; i++) {
     status = cag_net_of_curve(curves[i], &sections[i], err);
     if (status && err->index < 0) {
@@ -107,10 +130,10 @@ CagStatus cag_surface_loft(const CagCurve *const *curves, size_t n, int degree, 
       memcpy(err->argument, "curves", sizeof "curves");
     }
   }
+  const bool formulas = status == CAG_E_UNSUPPORTED;
   if (!status) status = cag_nets_unify(sections, n, err);
-  if (!status)
-    status = closed ? closed_loft(sections, n, degree, out, err)
-                    : open_loft(sections, n, degree, out, err);
+  if (!status) status = loft_nets(sections, n, degree, closed, out, err);
+  if (formulas) status = loft_curves(curves, n, degree, closed, out, err);
   for (size_t i = 0; i < n; i++) cag_net_free(&sections[i]);
   free(sections);
   return status;

@@ -3,9 +3,19 @@
 #ifndef CAG_GEOM_LOFT_H
 #define CAG_GEOM_LOFT_H
 
+#include "geom/surface/net.h"
 #include "geom/surface/surface.h"
 
-// The NURBS surface with v = i on curve i. Curves are made compatible in u over 0..1; in v a spline
+// The surface through curves whose v = i is curve i: of a spline by v, given as the coefficients
+// for unit data (`cardinal`: a row for each coefficient, a column for each curve). u in 0..1 is the
+// fraction of each curve's domain.
+CagStatus cag_surface_across(const CagCurve *const *curves, const CagNet *cardinal,
+                             CagSurface **out, CagError *err);
+// The first or last curve of such a surface, over 0..1; false: another kind.
+bool cag_surface_across_end(const CagSurface *s, bool first, const CagCurve **out);
+
+// The NURBS surface with v = i on curve i. Where a curve has no exact form, the surface of
+// cag_surface_across. Curves are made compatible in u over 0..1; in v a spline
 // of the degree (lower where there are too few curves) passes them. Closed: v runs on from the last
 // curve to the first, whose copy is v = n; the degree is then odd.
 CagStatus cag_surface_loft(const CagCurve *const *curves, size_t n, int degree, bool closed,

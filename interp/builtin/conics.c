@@ -91,7 +91,9 @@ const CagBuiltin cag_builtins_conics[] = {
      "axes [a, b] (of a hyperbola a is real), p of a parabola (y^2 = 4 p x in its axes), "
      "eccentricity, foci, lines [p, q, r] that it consists of, standard (angle that removes the xy "
      "term, coefficients in those axes, alpha x^2 + beta y^2 = kappa about the center), and the "
-     "symmetric matrix. What does not exist is none.",
+     "symmetric matrix. What does not exist is none. Of a curve of space that lies in a plane, "
+     "center, vertex and foci are points of space; all else is in coordinates of the plane, which "
+     "`frame` carries to space.",
      "k = classify(conic([2, -72, 23, 140, -20, 50]))\n"
      "print k.class, k.center, near(k.axes, [2, sqrt(2)]) // expect: hyperbola [1, 2] true",
      CURVES, general},

@@ -37,6 +37,28 @@ static CagValue lines_value(CagCall *call, const CagConicClass *k) {
 }
 
 // The values of the text: turned by the angle that removes the xy term, then moved to the center.
+// Points of the conic's plane as the script sees them: in space where the plane lies there.
+static CagValue plane_points(CagCall *call, const CagVec3 *p, size_t n, const CagTransform *frame) {
+  CagVec3 moved[2];
+  for (size_t i = 0; i < n; i++) moved[i] = frame ? cag_transform_point(frame, p[i]) : p[i];
+  return cag_points_value(call->vm, moved, n, frame ? 3 : 2);
+}
+
+static CagValue plane_point(CagCall *call, CagVec3 p, const CagTransform *frame) {
+  return frame ? cag_point(call->vm, cag_transform_point(frame, p), 3) : cag_point(call->vm, p, 2);
+}
+
+// The conic of a curve of the plane, or of space with the frame of its plane.
+static bool read_placed_conic(CagCall *call, CagConic *out, CagTransform *frame, bool *placed) {
+  CagError err;
+  CagCurve *c;
+  *placed =
+      call->values[0].type == CAG_CURVE && CAG_AS_SHAPE(call->values[0])->as.curve->dimension == 3;
+  if (!*placed) return cag_arg_conic(call, 0, out);
+  return cag_arg_curve(call, 0, &c) &&
+         cag_geometry_ok(call, cag_conic_of_space_curve(c, frame, out, &err), &err);
+}
+
 static CagValue standard_value(CagCall *call, const CagConicClass *k) {
   static const char *const names[] = {"angle", "coefficients", "alpha", "beta", "kappa"};
   CagValue values[] = {angle_value(k->book_angle), row_value(call, k->rotated, 6), cag_none(),
@@ -47,33 +69,38 @@ static CagValue standard_value(CagCall *call, const CagConicClass *k) {
 
 bool cag_conics_classify(CagCall *call, CagValue *result) {
   static const char *const names[] = {
-      "class", "discriminant", "central",      "center", "vertex", "angle",    "a",     "b",
-      "p",     "axes",         "eccentricity", "foci",   "lines",  "standard", "matrix"};
+      "class", "discriminant", "central",      "center", "vertex", "angle",    "a",      "b",
+      "p",     "axes",         "eccentricity", "foci",   "lines",  "standard", "matrix", "frame"};
   CagConic conic;
   CagConicClass k;
   CagError err;
-  if (!cag_arg_conic(call, 0, &conic) ||
+  CagTransform place;
+  bool placed;
+  if (!read_placed_conic(call, &conic, &place, &placed) ||
       !cag_geometry_ok(call, cag_conic_classify(&conic, &k, &err), &err))
     return false;
+  const CagTransform *frame = placed ? &place : NULL;
   CagVm *vm = call->vm;
   const bool curve = k.a > 0, parabola = curve && k.eccentricity == 1, round = curve && !parabola;
   const double axes[2] = {k.a, k.b};
   CagValue values[] = {cag_text_c(vm, k.name),
                        cag_number(k.discriminant),
                        cag_bool(!parabola),
-                       k.has_center ? cag_point(vm, k.center, 2) : cag_none(),
-                       parabola ? cag_point(vm, k.center, 2) : cag_none(),
+                       k.has_center ? plane_point(call, k.center, frame) : cag_none(),
+                       parabola ? plane_point(call, k.center, frame) : cag_none(),
                        curve ? angle_value(k.angle) : cag_none(),
                        round ? cag_number(k.a) : cag_none(),
                        round ? cag_number(k.b) : cag_none(),
                        parabola ? cag_number(k.a) : cag_none(),
                        round ? row_value(call, axes, 2) : cag_none(),
                        curve ? cag_number(k.eccentricity) : cag_none(),
-                       cag_points_value(vm, k.foci, k.focus_count, 2),
+                       plane_points(call, k.foci, k.focus_count, frame),
                        lines_value(call, &k),
                        standard_value(call, &k),
-                       matrix_value(call, &conic)};
-  *result = cag_record_new(vm, names, values, sizeof values / sizeof *values);
+                       matrix_value(call, &conic),
+                       placed ? cag_transform_value(vm, frame) : cag_none()};
+  // Conics of the plane need no frame.
+  *result = cag_record_new(vm, names, values, sizeof values / sizeof *values - (placed ? 0 : 1));
   return true;
 }
 

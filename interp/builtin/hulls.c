@@ -8,6 +8,7 @@
 #include "geom/solid/csg.h"
 #include "geom/surface/curve_on.h"
 #include "interp/builtin/shapes.h"
+#include "interp/builtin/surfaces.h"
 #include "interp/eval/vm.h"
 
 // --- Hulls ---
@@ -175,7 +176,7 @@ static bool call_curve_on(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagCurve *c, *on = NULL;
   CagError err;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_curve(call, 1, &c) ||
+  if (!cag_arg_side(call, 0, &s) || !cag_arg_curve(call, 1, &c) ||
       !cag_geometry_ok(call, cag_curve_on_surface(s, c, &on, &err), &err))
     return false;
   *result = cag_curve_value(call->vm, on);
@@ -466,13 +467,14 @@ const CagBuiltin cag_builtins_hulls[] = {
      "show hull([sphere(1), translate(sphere(2), [5, 0, 0])])",
      0, "The plane"},
     {"curve_on(S, C)", call_curve_on, "curve",
-     "The curve on the surface whose u and v are x and y of a plane curve; angles of the surface "
+     "The curve on the surface, or on the side of a swept solid, whose u and v are x and y of a "
+     "plane curve; angles of the surface "
      "are radians there. It has the plane curve's parameter and domain, and exact derivatives up "
      "to order 8. Along a direction in which the surface is closed it may go round several times; "
      "along others it must stay in the domain (curve-outside). It has no exact NURBS form.",
      "c = curve_on(torus_surface(5, 1), line([0, 0], [tau, 3 * tau]))\n"
      "print is_closed(c), length(c) > 3 * tau // expect: true true",
-     CAG_TAKES(SURFACE), "Curves: made"},
+     CAG_TAKES(SURFACE) | CAG_TAKES(SOLID), "Curves: made"},
     {"contains(G, P)", call_contains, "bool",
      "Whether a solid or closed mesh contains P; its boundary, to 1e-9 of its size, belongs to it. "
      "Solids are asked exactly but for walls and gaps thinner than 1e-3 of their size.",

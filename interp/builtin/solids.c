@@ -29,14 +29,20 @@ const CagBuiltin cag_builtins_solids[] = {
      NUMBERS | CAG_TAKES(LIST), primitives},
     {"sphere(radius)", cag_solids_sphere, "solid", "The ball about the origin.",
      "print near(volume(sphere(3)), 36 * pi) // expect: true", NUMBERS, primitives},
-    {"cylinder(height, radius, top = radius)", cag_solids_cylinder, "solid",
-     "A cylinder standing on z = 0; with another radius on top a frustum, with 0 a cone.",
-     "print near(volume(cylinder(5, 2)), 20 * pi) // expect: true", NUMBERS, primitives},
-    {"cone(height, radius)", cag_solids_cone, "solid", "A cone standing on z = 0.",
+    {"cylinder(height, radius, top = radius, centered = false)", cag_solids_cylinder, "solid",
+     "A cylinder standing on z = 0, or with the middle of its axis in the origin; with another "
+     "radius on top a frustum, with 0 a cone.",
+     "print near(volume(cylinder(5, 2)), 20 * pi) // expect: true\n"
+     "print bounds(cylinder(4, 1, centered: true)).min // expect: [-1, -1, -2]",
+     NUMBERS, primitives},
+    {"cone(height, radius, centered = false)", cag_solids_cone, "solid",
+     "A cone standing on z = 0, or with the middle of its axis in the origin.",
      "print near(volume(cone(3, 2)), 4 * pi) // expect: true", NUMBERS, primitives},
-    {"prism(region, height)", cag_solids_prism, "solid",
-     "A region, closed plane curve or list of points carried up by the height (mm).",
-     "print near(volume(prism([[0, 0], [4, 0], [0, 3]], 5)), 30) // expect: true",
+    {"prism(region, height, centered = false)", cag_solids_prism, "solid",
+     "A region, closed plane curve or list of points carried up by the height (mm). Centered, the "
+     "prism reaches as far below the region as above it.",
+     "print near(volume(prism([[0, 0], [4, 0], [0, 3]], 5)), 30) // expect: true\n"
+     "print bounds(prism(rectangle(2, 2), 4, centered: true)).max // expect: [1, 1, 2]",
      CAG_TAKES(REGION) | CAG_TAKES(CURVE) | CAG_TAKES(LIST), primitives},
     {"rod(P, Q, radius, top = radius)", cag_solids_rod, "solid",
      "A cylinder from P to Q; with another radius at Q a frustum or cone. One point twice is an "
@@ -199,10 +205,11 @@ const CagBuiltin cag_builtins_solids[] = {
      "print bounds(control_net(c)).max // expect: [2, 2]",
      CAG_TAKES(CURVE) | CAG_TAKES(SURFACE), figures},
     {"isolines(S, nu, nv)", cag_solids_isolines, "group",
-     "nu lines where u is fixed and nv lines where v is, evenly over the surface, both ends in.",
+     "nu lines where u is fixed and nv lines where v is, evenly over the surface or the side of a "
+     "swept solid, both ends in.",
      "s = bilinear([0, 0], [0, 2], [4, 0], [4, 2])\n"
      "print bounds(isolines(s, 3, 2)).max // expect: [4, 2, 0]",
-     CAG_TAKES(SURFACE), figures},
+     CAG_TAKES(SURFACE) | CAG_TAKES(SOLID), figures},
     {"arrow(P, V, radius = none)", cag_solids_arrow, "group",
      "An arrow at P along V; none: a shaft as thick as suits its length.",
      "print near(bounds(arrow(origin, [0, 0, 10])).max.z, 10) // expect: true", LISTS, figures},

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "interp/builtin/solids.h"
+#include "interp/builtin/surfaces.h"
 
 static bool add_line(CagCall *call, CagBuilder *list, const CagVec3 *points, size_t n, bool closed,
                      int dimension) {
@@ -92,7 +93,7 @@ static bool add_isolines(CagCall *call, CagBuilder *list, const CagSurface *s, i
 bool cag_solids_isolines(CagCall *call, CagValue *result) {
   CagSurface *s;
   long nu, nv;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer(call, 1, 0, ISOLINES_MAX, &nu) ||
+  if (!cag_arg_side(call, 0, &s) || !cag_arg_integer(call, 1, 0, ISOLINES_MAX, &nu) ||
       !cag_arg_integer(call, 2, 0, ISOLINES_MAX, &nv))
     return false;
   CagBuilder *list = cag_builder_new(call->vm);

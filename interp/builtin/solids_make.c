@@ -54,32 +54,49 @@ static bool read_radius(CagCall *call, int argument, double fallback, double *ou
                        cag_parameter_name(call, argument), cag_number_text(*out, text));
 }
 
+// A cylinder or frustum about Z, on z = 0 or with its middle there.
+static bool give_upright(CagCall *call, double height, double radius, double top, bool centered,
+                         CagValue *result) {
+  CagSolid *s = NULL, *moved = NULL;
+  CagError err;
+  CagStatus status = cag_solid_cylinder(height, radius, top, &s, &err);
+  if (status != CAG_OK || !centered) return give(call, status, &err, &s, result);
+  const CagTransform down = cag_translate(cag_vec3(0, 0, -height / 2));
+  status = cag_solid_transform(s, &down, &moved, &err);
+  cag_solid_release(s);
+  return give(call, status, &err, &moved, result);
+}
+
 bool cag_solids_cylinder(CagCall *call, CagValue *result) {
   double height, radius, top;
-  CagSolid *s = NULL;
-  CagError err;
+  bool centered;
   if (!cag_arg_positive(call, 0, &height) || !read_radius(call, 1, 0, &radius) ||
-      !read_radius(call, 2, radius, &top))
+      !read_radius(call, 2, radius, &top) || !cag_arg_bool_or(call, 3, false, &centered))
     return false;
-  return give(call, cag_solid_cylinder(height, radius, top, &s, &err), &err, &s, result);
+  return give_upright(call, height, radius, top, centered, result);
 }
 
 bool cag_solids_cone(CagCall *call, CagValue *result) {
   double height, radius;
-  CagSolid *s = NULL;
-  CagError err;
-  if (!cag_arg_positive(call, 0, &height) || !cag_arg_positive(call, 1, &radius)) return false;
-  return give(call, cag_solid_cylinder(height, radius, 0, &s, &err), &err, &s, result);
+  bool centered;
+  if (!cag_arg_positive(call, 0, &height) || !cag_arg_positive(call, 1, &radius) ||
+      !cag_arg_bool_or(call, 2, false, &centered))
+    return false;
+  return give_upright(call, height, radius, 0, centered, result);
 }
 
 bool cag_solids_prism(CagCall *call, CagValue *result) {
   double height;
   if (!cag_arg_finite(call, 1, &height)) return false;
-  // The first two arguments of an extrusion; the rest are not given.
-  CagValue values[5] = {call->values[0], call->values[1], cag_unset(), cag_unset(), cag_unset()};
+  // The first two and the last argument of an extrusion; the others are not given.
+  CagValue values[6] = {call->values[0], call->values[1],
+                        cag_unset(),     cag_unset(),
+                        cag_unset(),     cag_given(call, 2) ? call->values[2] : cag_unset()};
+  bool centered;
+  if (!cag_arg_bool_or(call, 2, false, &centered)) return false;
   CagCall extrude = *call;
   extrude.values = values;
-  extrude.count = 5;
+  extrude.count = 6;
   return cag_surfaces_extrude(&extrude, result);
 }
 

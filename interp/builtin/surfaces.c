@@ -122,22 +122,26 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "expect: true false",
      SURFACES, asked},
     {"sample(S, nu, nv)", cag_surfaces_sample, "list",
-     "Rows of points: nu by nv (2 at least) in equal steps of the parameters.",
+     "Rows of points: nu by nv (2 at least) in equal steps of the parameters. Of a swept solid "
+     "those of its side.",
      "print sample(bilinear([0, 0], [0, 2], [4, 0], [4, 2]), 2, 3)[1] // expect: [[4, 0, 0], [4, "
      "1, "
      "0], [4, 2, 0]]",
-     SURFACES, asked},
+     SIDES, asked},
     {"to_nurbs(S)", cag_surfaces_to_nurbs, "surface",
-     "The exact rational B-spline of the surface; one that has none is an error (no-exact-form).",
-     "print degree(to_nurbs(sphere_surface(1))) // expect: [2, 2]", SURFACES, changed},
+     "The exact rational B-spline of the surface, or of the side of a swept solid; one that has "
+     "none "
+     "is an error (no-exact-form).",
+     "print degree(to_nurbs(sphere_surface(1))) // expect: [2, 2]", SIDES, changed},
     {"flip(S)", cag_surfaces_flip, "surface", "The same surface with its normals turned over.",
      "s = flip(sphere_surface(1))\n"
      "print near(normal(s, 90deg, 0deg), -X) // expect: true",
      SURFACES, changed},
     {"isocurve(S, u = none, v = none)", cag_surfaces_isocurve, "curve",
-     "The curve on the surface where u, or v, has this value.",
-     "print near(length(isocurve(sphere_surface(1), u: 90deg)), tau) // expect: true", SURFACES,
-     changed},
+     "The curve on the surface, or on the side of a swept solid, where u, or v, has this value.",
+     "print near(length(isocurve(sphere_surface(1), u: 90deg)), tau) // expect: true\n"
+     "print near(length(isocurve(prism(circle(2), 5), v: 0.5)), 4 * pi) // expect: true",
+     SIDES, changed},
     {"boundary(S)", cag_surfaces_boundary, "list",
      "The curves around the surface; none where it is closed.",
      "print len(boundary(bilinear([0, 0], [0, 2], [4, 0], [4, 2]))) // expect: 4", SURFACES,
@@ -259,14 +263,17 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print near(volume(revolve(polygon([[0, 0], [2, 0], [0, 3]]))), 4 * pi) // expect: true\n"
      "print near(area(revolve(line([2, 0], [2, 5]))), 20 * pi) // expect: true",
      CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
-    {"extrude(C, height, twist = 0deg, scale = 1, caps = true)", cag_surfaces_extrude,
-     "solid or surface",
+    {"extrude(C, height, twist = 0deg, scale = 1, caps = true, centered = false)",
+     cag_surfaces_extrude, "solid or surface",
      "A curve carried along a vector, or up by a height (mm): a surface with u as in the curve and "
      "v "
      "in 0..1. Of a region, a list of points or a closed plane curve a solid with its caps; "
      "`caps: false` leaves the sides alone. On the way it turns by the twist and grows to the "
      "scale "
-     "about the z axis.",
+     "about the z axis. The twist is counted at the end of the way: positive turns "
+     "counterclockwise "
+     "as seen from the tip of z, so that an edge climbs like a right-handed thread. Centered, the "
+     "result is moved back by half the vector.",
      "print near(volume(extrude(rectangle(4, 3), 5)), 60) // expect: true\n"
      "print near(area(extrude(line([0, 0], [4, 0]), [0, 0, 5])), 20) // expect: true",
      CURVES | CAG_TAKES(REGION) | CAG_TAKES(LIST), made},
@@ -315,7 +322,8 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "The surface through curves, or regions without holes, in order: u runs along them over 0..1, "
      "v = i is curve i. In v it "
      "is a spline of the degree; `closed` leads from the last curve back to the first. Of closed "
-     "curves the ends get flat caps, and it is a solid.",
+     "curves the ends get flat caps, and it is a solid. If one of the curves has no exact NURBS "
+     "form, such as a formula or a helix, u is the fraction of every curve's domain.",
      "a = circle(2)\n"
      "tower = loft([for z in [0, 3, 5]: translate(a, [0, 0, z])])\n"
      "print near(volume(tower), 20 * pi, relative: 1e-8) // expect: true",

@@ -72,7 +72,7 @@ bool cag_surfaces_sample(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagError err;
   long n, m;
-  if (!cag_arg_surface(call, 0, &s) || !cag_arg_integer(call, 1, 2, POINTS_MAX, &n) ||
+  if (!cag_arg_side(call, 0, &s) || !cag_arg_integer(call, 1, 2, POINTS_MAX, &n) ||
       !cag_arg_integer(call, 2, 2, POINTS_MAX / n, &m))
     return false;
   size_t nu = (size_t)n, nv = (size_t)m;
@@ -97,7 +97,7 @@ bool cag_surfaces_sample(CagCall *call, CagValue *result) {
 bool cag_surfaces_to_nurbs(CagCall *call, CagValue *result) {
   CagSurface *s, *out = NULL;
   CagError err;
-  if (!cag_arg_surface(call, 0, &s)) return false;
+  if (!cag_arg_side(call, 0, &s)) return false;
   return give(call, cag_surface_to_nurbs(s, &out, &err), &err, &out, result);
 }
 
@@ -113,7 +113,7 @@ bool cag_surfaces_isocurve(CagCall *call, CagValue *result) {
   CagCurve *c = NULL;
   CagError err;
   double at;
-  if (!cag_arg_surface(call, 0, &s)) return false;
+  if (!cag_arg_side(call, 0, &s)) return false;
   bool u = cag_given(call, 1) && call->values[1].type != CAG_NONE;
   bool v = cag_given(call, 2) && call->values[2].type != CAG_NONE;
   if (u == v)

@@ -158,7 +158,7 @@ typedef struct Extrusion {
   CagVec3 v;
   bool height; // v is a height along the section's normal
   double twist, scale;
-  bool caps;
+  bool caps, centered;
 } Extrusion;
 
 static bool read_extrusion(CagCall *call, Extrusion *e) {
@@ -170,7 +170,7 @@ static bool read_extrusion(CagCall *call, Extrusion *e) {
   if (!e->height && v.type != CAG_LIST) return cag_fail_type(call, 1, "a height or a vector");
   if (!e->height && !cag_arg_vec(call, 1, &e->v, NULL)) return false;
   return cag_arg_angle_or(call, 2, 0, &e->twist) && cag_arg_number_or(call, 3, 1, &e->scale) &&
-         cag_arg_bool_or(call, 4, true, &e->caps);
+         cag_arg_bool_or(call, 4, true, &e->caps) && cag_arg_bool_or(call, 5, false, &e->centered);
 }
 
 // The sides of a region, one for each of its curves, without caps.
@@ -217,6 +217,7 @@ bool cag_surfaces_extrude(CagCall *call, CagValue *result) {
   CagValue v = call->values[0];
   if (!read_extrusion(call, &e)) return false;
   const CagCurve *c = v.type == CAG_CURVE ? CAG_AS_SHAPE(v)->as.curve : NULL;
+  CagVec3 way = e.v;
   bool ok;
   if (c && (!c->closed || c->dimension == 3 || !e.caps)) {
     CagSurface *s = NULL;
@@ -224,8 +225,13 @@ bool cag_surfaces_extrude(CagCall *call, CagValue *result) {
     ok = give(call, status, &err, &s, result);
   } else {
     if (!cag_arg_region(call, 0, &region, &place)) return false;
+    if (e.height) way = cag_transform_vector(&place, e.v);
     ok = extrude_region(call, region, e, &place, result);
     cag_region_release(region);
+  }
+  if (ok && e.centered) {
+    const CagTransform back = cag_translate(cag_scaled(way, -0.5));
+    ok = cag_transform_apply(call->vm, &back, *result, result);
   }
   if (ok && cag_is_shape(v)) cag_shape_say_alike(*result, v);
   return ok;

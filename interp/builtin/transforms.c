@@ -32,7 +32,9 @@ const CagBuiltin cag_builtins_transforms[] = {
      "G turned about an axis through a point; `rotate(G, angle)` and `rotate(G, angle, about)` "
      "turn about Z. `rotate(G, rpy: [a, b, c])` turns about X by a, then about Y by b, then about "
      "Z "
-     "by c, as `rpy(a, b, c)` does.",
+     "by c, as `rpy(a, b, c)` does. A plane curve or region turned about Z through a point with z "
+     "= "
+     "0 stays in the plane.",
      "print bounds(box([1, 2, 3]) |> rotate(Z, 90deg)).size // expect: [2, 1, 3]\n"
      "print end_point(line([0, 0], [2, 0]) |> rotate(90deg)) // expect: [0, 2]\n"
      "print bounds(rotate(box([1, 2, 3]), rpy: [0deg, 90deg, 0deg])).size // expect: [3, 2, 1]",

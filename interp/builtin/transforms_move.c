@@ -101,8 +101,11 @@ static bool make_rotate(CagCall *call, int at, CagTransform *out) {
   }
   if (!cag_geometry_ok(call, cag_rotate(axis, angle, about, out, &err), &err)) return false;
   out->planar = plain && about_dimension == 2;
+  // What is moved about a line along Z stays in the plane of the drawing.
+  if (at > 0 && axis.x == 0 && axis.y == 0 && about.z == 0) out->planar = true;
   return true;
 }
+
 // The angles of `rpy` in radians, from a list of three.
 static bool read_rpy(CagCall *call, int argument, double rpy[3]) {
   CagList *list;
