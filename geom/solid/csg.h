@@ -69,7 +69,10 @@ bool cag_solid_form(const CagSolid *s, CagQuadric *out);
 // and the mass 0.
 CagStatus cag_csg_mesh(const CagSolid *s, const CagTessellation *how, CagMesh **out, CagError *err);
 CagStatus cag_csg_bounds(const CagSolid *s, CagBounds *out, CagError *err);
-CagStatus cag_csg_mass(const CagSolid *s, CagMassProperties *out, CagError *err);
+CagStatus cag_csg_mass(const CagSolid *s, double tolerance, CagMassProperties *out, CagError *err);
+// As cag_solid_mass; set operations by a mesh of this tolerance (mm; 0: one that is good to 2e-3).
+CagStatus cag_solid_mass_within(const CagSolid *s, double tolerance, CagMassProperties *out,
+                                CagError *err);
 // Whether nothing is left of the solid, by a mesh where that must tell; faces hold something.
 CagStatus cag_solid_is_empty(const CagSolid *s, bool *out, CagError *err);
 // Bytes of the mesh that the solid keeps, its part where several share it.

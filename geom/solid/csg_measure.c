@@ -268,8 +268,8 @@ static void add_mass(CagMassProperties *whole, const CagMassProperties *part) {
 }
 
 // Bodies of a union that keep away from each other: exact. *done: they do.
-static CagStatus mass_of_parts(const CagSolid *s, CagMassProperties *out, bool *done,
-                               CagError *err) {
+static CagStatus mass_of_parts(const CagSolid *s, double tolerance, CagMassProperties *out,
+                               bool *done, CagError *err) {
   size_t n = s->core->count;
   *done = false;
   if (s->kind != CAG_SOLID_UNION || n > PAIRS_MOST) return CAG_OK;
@@ -289,7 +289,7 @@ static CagStatus mass_of_parts(const CagSolid *s, CagMassProperties *out, bool *
     CagMassProperties one;
     status = placed(s, i, &part, err);
     if (status) break;
-    status = cag_solid_mass(part, &one, err);
+    status = cag_solid_mass_within(part, tolerance, &one, err);
     cag_solid_release(part);
     if (!status) add_mass(out, &one);
   }
@@ -297,26 +297,34 @@ static CagStatus mass_of_parts(const CagSolid *s, CagMassProperties *out, bool *
   return status;
 }
 
+CagStatus cag_solid_mass_within(const CagSolid *s, double tolerance, CagMassProperties *out,
+                                CagError *err) {
+  return cag_solid_is_compound(s) ? cag_csg_mass(s, tolerance, out, err)
+                                  : cag_solid_mass(s, out, err);
+}
+
 // A mesh whose faces lie within the tolerance of the surface misses at most the tolerance times the
-// area: that is made small against the volume.
-CagStatus cag_csg_mass(const CagSolid *s, CagMassProperties *out, CagError *err) {
+// area: where none is given, that is made small against the volume.
+CagStatus cag_csg_mass(const CagSolid *s, double tolerance, CagMassProperties *out, CagError *err) {
   CagMesh *m = NULL;
   CagMassProperties first;
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
   bool done = false;
   CagStatus status = CAG_OK;
+  how.tolerance = tolerance;
   if (s->kind == CAG_SOLID_MESH) {
     status = cag_mesh_transform(s->core->mesh, &s->placement, &m, err);
   } else {
-    if (s->core->count) status = mass_of_parts(s, out, &done, err);
+    if (s->core->count) status = mass_of_parts(s, tolerance, out, &done, err);
     if (status || done) return status;
-    status = mesh_at(s, FINE_SHARE, &m, err);
+    status = tolerance > 0 ? cag_csg_mesh(s, &how, &m, err) : mesh_at(s, FINE_SHARE, &m, err);
   }
   if (status) return status;
   status = mass_of_mesh(m, &first, err);
   cag_mesh_release(m);
   if (status) return status;
   *out = first;
-  if (s->kind == CAG_SOLID_MESH || !(first.volume > 0)) return CAG_OK;
+  if (s->kind == CAG_SOLID_MESH || tolerance > 0 || !(first.volume > 0)) return CAG_OK;
   CagBounds reach;
   status = cag_solid_reach(s, &reach, err);
   if (status) return status;

@@ -439,7 +439,7 @@ CagStatus cag_solid_mass(const CagSolid *s, CagMassProperties *out, CagError *er
   CagMassProperties m = {0};
   Body body;
   double scale;
-  if (cag_solid_is_compound(s)) return cag_csg_mass(s, out, err);
+  if (cag_solid_is_compound(s)) return cag_csg_mass(s, 0, out, err);
   if (!closed_form(s, &body)) {
     CagStatus status = area_of_faces(s, &m, err);
     if (!status) status = volume_of_faces(s, &m, err);

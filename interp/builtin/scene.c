@@ -66,7 +66,9 @@ const CagBuiltin cag_builtins_scene[] = {
      "G with a name, for exports, messages and `--camera`. A name said nearer to the shape holds.",
      "show sphere(10) |> named(\"ball\")", SHAPES | STAGE, said},
     {"tolerance(G, t)", cag_scenes_tolerance, "as G",
-     "G with its own largest distance (mm) between mesh and true surface.",
+     "G with its own largest distance (mm) between mesh and true surface. Volume, area, centroid "
+     "and "
+     "inertia of set operations are those of that mesh.",
      "show sphere(10) |> tolerance(0.01)", SHAPES, said},
     {"hidden(G)", cag_scenes_hidden, "as G", "G, not shown.", "show sphere(10) |> hidden", SHAPES,
      said},

@@ -11,9 +11,9 @@ typedef struct Body {
   double moment[3], product[3];
 } Body;
 
-static CagStatus solid_body(const CagSolid *s, Body *out, CagError *err) {
+static CagStatus solid_body(const CagSolid *s, double tolerance, Body *out, CagError *err) {
   CagMassProperties mass;
-  CagStatus status = cag_solid_mass(s, &mass, err);
+  CagStatus status = cag_solid_mass_within(s, tolerance, &mass, err);
   if (status != CAG_OK) return status;
   const CagVec3 c = mass.volume_centroid;
   *out = (Body){.area = mass.area, .volume = mass.volume, .center = {c.x, c.y, c.z}};
@@ -120,7 +120,7 @@ static bool shape_body(CagCall *call, CagValue v, bool volume, Body *out) {
   switch (v.type) {
   case CAG_SOLID: {
     const size_t before = cag_solid_kept_bytes(shape->as.solid);
-    const CagStatus status = solid_body(shape->as.solid, out, &err);
+    const CagStatus status = solid_body(shape->as.solid, shape->tolerance, out, &err);
     cag_charge_solid(call->vm, shape->as.solid, before);
     return cag_geometry_ok(call, status, &err);
   }

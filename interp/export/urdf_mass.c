@@ -3,6 +3,7 @@
 // What closes no volume (curves, regions, open surfaces and meshes) has none.
 
 #include "geom/mesh/mesh.h"
+#include "geom/solid/csg.h"
 #include "interp/export/urdf.h"
 
 #define CUBIC_METRES 1e-9 // of a cubic millimetre
@@ -25,9 +26,10 @@ static CagUrdfMass mass_of_terms(const double given[10], CagVec3 about, double d
   return m;
 }
 
-static CagStatus solid_mass(const CagSolid *s, double density, CagUrdfMass *out, CagError *err) {
+static CagStatus solid_mass(const CagSolid *s, double tolerance, double density, CagUrdfMass *out,
+                            CagError *err) {
   CagMassProperties p;
-  CagStatus status = cag_solid_mass(s, &p, err);
+  CagStatus status = cag_solid_mass_within(s, tolerance, &p, err);
   if (status != CAG_OK || !(p.volume > 0)) return status;
   out->mass = p.volume * density * CUBIC_METRES;
   out->center = p.volume_centroid;
@@ -74,7 +76,7 @@ static CagStatus surface_mass(const CagSurface *s, double density, CagUrdfMass *
 CagStatus cag_urdf_item_mass(const CagItem *item, double density, CagUrdfMass *out, CagError *err) {
   *out = (CagUrdfMass){0};
   switch (item->kind) {
-  case CAG_ITEM_SOLID: return solid_mass(item->as.solid, density, out, err);
+  case CAG_ITEM_SOLID: return solid_mass(item->as.solid, item->tolerance, density, out, err);
   case CAG_ITEM_MESH: return mesh_mass(item->as.mesh, density, out, err);
   case CAG_ITEM_SURFACE: return surface_mass(item->as.surface, density, out, err);
   default: return CAG_OK;
