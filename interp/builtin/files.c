@@ -538,7 +538,7 @@ static bool write_json_transform(CagCall *call, CagString *s, const CagTransform
 }
 
 static bool write_json(CagCall *call, CagString *s, CagValue v, int depth) {
-  if (depth > CAG_DEPTH_MOST) return cag_fail_depth(call);
+  if (!cag_may_nest(call, depth)) return false;
   switch (v.type) {
   case CAG_NONE: cag_string_add(s, "null", strlen("null")); return true;
   case CAG_BOOL: cag_string_printf(s, "%s", v.as.boolean ? "true" : "false"); return true;

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "interp/builtin/support.h"
+#include "interp/eval/vm.h"
 
 static const char FAMILY[] = "Lists";
 #define LISTS (CAG_TYPE_BIT(LIST) | CAG_TYPE_BIT(RANGE))
@@ -438,7 +439,7 @@ static bool call_index_of(CagCall *call, CagValue *result) {
       *result = cag_number((double)i);
       return true;
     }
-    if (!may_go_on(call, i)) return false;
+    if (call->vm->failed || !may_go_on(call, i)) return false;
   }
   return true;
 }

@@ -102,7 +102,7 @@ static CagValue round_value(CagValue v, int digits) {
 }
 
 static bool round_list(CagCall *call, CagValue value, int digits, int depth, CagValue *result) {
-  if (depth > CAG_DEPTH_MOST) return cag_fail_depth(call);
+  if (!cag_may_nest(call, depth)) return false;
   const CagList *list = CAG_AS_LIST(value);
   if (list->dim > 0) {
     double *numbers;

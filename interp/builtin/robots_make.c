@@ -122,7 +122,7 @@ static bool read_links(CagCall *call, const CagList *list, CagRobotLink **out) {
 // Flattens lists of links in the list, so that what stands for several rows may be one element.
 static bool flatten_links(CagCall *call, CagValue v, CagBuilder *into, int depth) {
   if (v.type != CAG_LIST) return cag_builder_add(call->vm, into, v);
-  if (depth > CAG_DEPTH_MOST) return cag_fail_depth(call);
+  if (!cag_may_nest(call, depth)) return false;
   const CagList *list = CAG_AS_LIST(v);
   for (size_t i = 0; i < list->length; i++)
     if (!flatten_links(call, cag_list_get(call->vm, list, i), into, depth + 1)) return false;

@@ -18,8 +18,10 @@ static bool all_finite(const CagCall *call) {
   return true;
 }
 
-// The arguments as they stand in a call, for messages.
+// The arguments as they stand in a call, for messages, which show so many bytes of them.
+#define ARGUMENTS_MOST 120
 static void print_arguments(const CagCall *call, CagString *out) {
+  out->most = ARGUMENTS_MOST;
   for (size_t i = 0; i < call->count && call->values[i].type != CAG_UNSET; i++) {
     if (i > 0) cag_string_add(out, ", ", 2);
     cag_print_value(call->vm, out, call->values[i], true);
@@ -32,8 +34,8 @@ static bool check_result(CagCall *call, double x) {
   if (isfinite(x) || (isinf(x) && !all_finite(call))) return true;
   CagString arguments = {0};
   print_arguments(call, &arguments);
-  cag_fail_call(call, 0, CAG_ERR_not_finite, "%s for %.120s",
-                isnan(x) ? "is undefined" : "overflows", arguments.bytes);
+  cag_fail_call(call, 0, CAG_ERR_not_finite, "%s for %.*s", isnan(x) ? "is undefined" : "overflows",
+                ARGUMENTS_MOST, arguments.bytes);
   cag_string_free(&arguments);
   return false;
 }
@@ -51,6 +53,11 @@ bool cag_give_angle(CagCall *call, double degrees, CagValue *result) {
 bool cag_fail_depth(CagCall *call) {
   return cag_fail_call(call, 0, CAG_ERR_value, "expects lists that nest at most %d deep",
                        CAG_DEPTH_MOST);
+}
+
+bool cag_may_nest(CagCall *call, int depth) {
+  if (depth > CAG_DEPTH_MOST) return cag_fail_depth(call);
+  return cag_keep_going(call->vm);
 }
 
 // --- Sequences ---
@@ -153,7 +160,7 @@ static bool mix_values(CagCall *call, CagValue a, CagValue b, double t, int dept
 
 static bool mix_lists(CagCall *call, const CagList *a, const CagList *b, double t, int depth,
                       CagValue *out) {
-  if (depth > CAG_DEPTH_MOST) return cag_fail_depth(call);
+  if (!cag_may_nest(call, depth)) return false;
   if (a->length != b->length)
     return cag_fail_call(call, 1, CAG_ERR_length,
                          "expects lists of one length, found %zu and %zu elements", a->length,

@@ -6,6 +6,7 @@
 #include <utf8proc.h>
 
 #include "interp/builtin/support.h"
+#include "interp/eval/vm.h"
 
 static const char FAMILY[] = "Text";
 
@@ -23,7 +24,7 @@ static bool read_text(CagCall *call, int argument, const CagText **out) {
 static bool print_places(CagCall *call, CagString *s, CagValue v, int digits, int depth);
 
 static bool print_list(CagCall *call, CagString *s, const CagList *list, int digits, int depth) {
-  if (depth > CAG_DEPTH_MOST) return cag_fail_depth(call);
+  if (!cag_may_nest(call, depth)) return false;
   cag_string_add(s, "[", 1);
   for (size_t i = 0; i < list->length; i++) {
     if (i > 0) cag_string_add(s, ", ", 2);
@@ -53,7 +54,7 @@ static bool call_text(CagCall *call, CagValue *result) {
   if (!cag_given(call, 1)) {
     cag_print_value(call->vm, &s, call->values[0], false);
     *result = cag_text_from_string(call->vm, &s);
-    return true;
+    return !call->vm->failed;
   }
   long digits;
   if (!cag_arg_integer(call, 1, 0, PLACES_MOST, &digits)) return false;
@@ -125,7 +126,7 @@ static bool call_join(CagCall *call, CagValue *result) {
     cag_print_value(call->vm, &s, cag_sequence_element(call->vm, &xs, i), false);
   }
   *result = cag_text_from_string(call->vm, &s);
-  return true;
+  return !call->vm->failed;
 }
 
 static bool call_starts_with(CagCall *call, CagValue *result) {

@@ -185,7 +185,7 @@ static bool near_lists(Nearness *by, const CagList *a, const CagList *b, bool *o
       *out = near_numbers(by, a->as.numbers[i], b->as.numbers[i]);
     return true;
   }
-  if (++by->depth > CAG_DEPTH_MOST) return cag_fail_depth(by->call);
+  if (!cag_may_nest(by->call, ++by->depth)) return false;
   for (size_t i = 0; i < a->length && *out; i++)
     if (!near_values(by, cag_list_get(by->call->vm, a, i), cag_list_get(by->call->vm, b, i), out))
       return false;

@@ -299,7 +299,7 @@ void cag_vm_trace(CagCall *call, CagValue value, const char *label) {
   if (label && *label) cag_string_printf(&s, "%s: ", label);
   cag_print_value(vm, &s, value, true);
   cag_string_add(&s, "\n", 1);
-  fwrite(s.bytes, 1, s.length, vm->trace);
+  if (!vm->stop) fwrite(s.bytes, 1, s.length, vm->trace);
   fflush(vm->trace);
   cag_string_free(&s);
 }

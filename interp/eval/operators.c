@@ -438,7 +438,7 @@ bool cag_contains(CagVm *vm, CagValue needle, CagValue haystack, bool *result) {
         for (size_t k = 0; *result && k < n; k++) *result = x[k] == l->as.numbers[i * l->dim + k];
       }
     }
-    return true;
+    return !vm->failed;
   }
   case CAG_RECORD:
     if (needle.type != CAG_TEXT) break;

@@ -182,6 +182,7 @@ static bool run_print(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
     if (i) cag_string_add(&line, " ", 1);
     cag_print_value(vm, &line, v, false);
   }
+  ok = ok && !vm->failed && cag_keep_going(vm);
   if (ok) {
     cag_string_add(&line, "\n", 1);
     fwrite(line.bytes, 1, line.length, vm->out);

@@ -17,6 +17,7 @@ bool cag_room_on_c_stack(const CagVm *vm) {
 }
 
 bool cag_may_go_deeper(CagVm *vm, const char *done) {
+  if (vm->stop) return !vm->failed && cag_keep_going(vm);
   if (cag_room_on_c_stack(vm)) return true;
   if (!vm->failed) cag_vm_fail(vm, CAG_ERR_limit_depth, "the values nest too deep to be %s", done);
   return false;
@@ -242,6 +243,7 @@ static bool fail_assert(CagVm *vm, CagValue message, const CagValue *parts, size
     cag_print_value(vm, &s, parts[2 * i], false);
     cag_string_add(&s, " is ", 4);
     size_t before = s.length;
+    s.most = before + 200;
     cag_print_value(vm, &s, parts[2 * i + 1], true);
     if (s.length - before > 200) { // a long list tells nothing more
       s.length = before + 200;
@@ -693,6 +695,7 @@ next:
   CASE(TEMPLATE) {
     SAVE();
     R(i.a) = join_template(vm, &R(i.b), i.c);
+    if (vm->failed) goto failed;
     NEXT_INSTRUCTION;
   }
   CASE(ITERATE) {

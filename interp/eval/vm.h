@@ -246,7 +246,8 @@ bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *con
 bool cag_safe_point(CagVm *vm);
 // Whether the C stack has room for more recursion: deep values are walked only so far.
 bool cag_room_on_c_stack(const CagVm *vm);
-// The same, with an error where there is none: `done` tells what is done to the values.
+// The same, with an error where there is none, or where the run must stop: values that share their
+// parts take endlessly long to walk. `done` tells what is done to the values.
 bool cag_may_go_deeper(CagVm *vm, const char *done);
 
 // --- callback.c: calls of the script from geometry ---

@@ -458,5 +458,6 @@ bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene 
   }
   if (!b.failed) return true;
   cag_scene_free(out);
-  return cag_vm_fail(vm, CAG_ERR_limit_memory, "the scene needs more memory than there is");
+  return !vm->failed &&
+         cag_vm_fail(vm, CAG_ERR_limit_memory, "the scene needs more memory than there is");
 }

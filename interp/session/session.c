@@ -153,6 +153,8 @@ static void *perform(void *context) {
   t->vm->stack_low = &here - t->stack + 65536; // the guard and what the system keeps there
   cag_stop_lend(&t->vm->stop);
   t->ok = cag_vm_protect(t->vm, t->work, t->context);
+  // What was cut short because the work must stop may not have told so.
+  if (t->ok && t->vm->stop) t->ok = cag_keep_going(t->vm);
   return NULL;
 }
 

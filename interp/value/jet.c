@@ -34,24 +34,27 @@ CagValue cag_jet_variable(CagVm *vm, int variables, int order, uint32_t level, i
 
 // Deeper values hold no coordinates.
 #define DEPTH_MOST 100
+// Nor do values of more parts: lists that share theirs would be walked endlessly.
+#define PARTS_MOST 4000000
 
-static bool holds_jet(CagValue v, int depth) {
+static bool holds_jet(CagValue v, int depth, size_t *parts) {
   if (v.type == CAG_JET) return true;
-  if (depth > DEPTH_MOST) return false;
+  if (depth > DEPTH_MOST || ++*parts > PARTS_MOST) return false;
   if (v.type == CAG_LIST && CAG_AS_LIST(v)->dim == 0) {
     const CagList *l = CAG_AS_LIST(v);
     for (size_t i = 0; i < l->length; i++)
-      if (holds_jet(l->as.items[i], depth + 1)) return true;
+      if (holds_jet(l->as.items[i], depth + 1, parts)) return true;
   } else if (v.type == CAG_RECORD) {
     const CagRecord *r = CAG_AS_RECORD(v);
     for (size_t i = 0; i < r->layout->count; i++)
-      if (holds_jet(r->fields[i], depth + 1)) return true;
+      if (holds_jet(r->fields[i], depth + 1, parts)) return true;
   }
   return false;
 }
-bool cag_holds_jet(CagValue v) { return holds_jet(v, 0); }
+bool cag_holds_jet(CagValue v) { return holds_jet(v, 0, &(size_t){0}); }
 
 CagValue cag_without_jets(CagVm *vm, CagValue v) {
+  if (vm->stop) return cag_none(); // the next safe point ends the run
   if (!cag_holds_jet(v)) return v;
   if (v.type == CAG_JET) return cag_plain(v);
   if (v.type == CAG_RECORD) {

@@ -153,9 +153,18 @@ static bool is_word(const CagText *t) {
   return true;
 }
 
-static void print_numbers(CagString *s, const double *x, size_t n) {
+// Whether no more is to be printed: the run must stop, or the text is long enough. Values that
+// share their parts print endlessly.
+static bool is_cut(CagVm *vm, const CagString *s) {
+  if (s->length > vm->heap.limit && !vm->failed)
+    cag_vm_fail(vm, CAG_ERR_limit_memory,
+                "the printed value does not fit the memory (--max-memory)");
+  return vm->stop || (s->most && s->length > s->most) || s->length > vm->heap.limit;
+}
+
+static void print_numbers(CagVm *vm, CagString *s, const double *x, size_t n) {
   add(s, "[");
-  for (size_t i = 0; i < n; i++) {
+  for (size_t i = 0; i < n && !is_cut(vm, s); i++) {
     if (i) add(s, ", ");
     cag_print_number(s, x[i]);
   }
@@ -164,13 +173,13 @@ static void print_numbers(CagString *s, const double *x, size_t n) {
 
 static void print_list(CagVm *vm, CagString *s, const CagList *l) {
   if (l->dim == 1) {
-    print_numbers(s, l->as.numbers, l->length);
+    print_numbers(vm, s, l->as.numbers, l->length);
     return;
   }
   add(s, "[");
-  for (size_t i = 0; i < l->length; i++) {
+  for (size_t i = 0; i < l->length && !is_cut(vm, s); i++) {
     if (i) add(s, ", ");
-    if (l->dim) print_numbers(s, l->as.numbers + i * l->dim, l->dim);
+    if (l->dim) print_numbers(vm, s, l->as.numbers + i * l->dim, l->dim);
     else cag_print_value(vm, s, l->as.items[i], true);
   }
   add(s, "]");
@@ -178,7 +187,7 @@ static void print_list(CagVm *vm, CagString *s, const CagList *l) {
 
 static void print_record(CagVm *vm, CagString *s, const CagRecord *r) {
   add(s, "{");
-  for (size_t i = 0; i < r->layout->count; i++) {
+  for (size_t i = 0; i < r->layout->count && !is_cut(vm, s); i++) {
     if (i) add(s, ", ");
     const CagText *name = r->layout->names[i];
     if (is_word(name)) add(s, name->bytes);
@@ -237,7 +246,7 @@ void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted) {
     add(s, "[");
     for (int i = 0; i < 4; i++) {
       if (i) add(s, ", ");
-      print_numbers(s, t->m[i], 4);
+      print_numbers(vm, s, t->m[i], 4);
     }
     add(s, "]");
     break;
@@ -292,9 +301,9 @@ void cag_describe_value(CagVm *vm, CagString *s, CagValue v) {
       add(s, "an empty list");
       return;
     }
-    CagString inner = {0};
+    CagString inner = {.most = DESCRIBED_MAX};
     if (l->length <= 8) cag_print_value(vm, &inner, v, true);
-    if (inner.length && inner.length <= DESCRIBED_MAX)
+    if (inner.length && inner.length <= DESCRIBED_MAX && !vm->stop)
       cag_string_printf(s, "the list %s", inner.bytes);
     else
       cag_string_printf(s, "a list of %zu %s", l->length, l->length == 1 ? "element" : "elements");

@@ -319,6 +319,7 @@ bool cag_as_list(CagVm *vm, CagValue v, CagValue *list);
 typedef struct CagString { // growing bytes
   char *bytes;
   size_t length, capacity;
+  size_t most; // where the printing of a value breaks off; 0: nowhere
 } CagString;
 void cag_string_add(CagString *s, const char *bytes, size_t n);
 void cag_string_printf(CagString *s, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -274,6 +274,11 @@ else
   shows 'Ctrl-C stops an evaluation' 'interrupted'
   keys '5 * 5' Enter
   shows 'the session goes on after Ctrl-C' '25 : number'
+  keys C-l 'double(n, t) = if n == 0 then t else double(n - 1, [t, t])' Enter
+  keys 'double(60, 1)' Enter
+  sleep 0.2
+  keys C-c
+  shows 'Ctrl-C stops the printing of what shares its parts' 'interrupted'
   if command -v povray >/dev/null; then
     keys 'show ball, camera([90, -60, 40], size: [4000, 4000])' Enter ':render large.png' Enter
     sleep 1
