@@ -45,8 +45,8 @@ CagValue cag_text_from_string(CagVm *vm, CagString *s); // frees s
 // for brackets.
 #define CAG_DEPTH_MOST 1000
 bool cag_fail_depth(CagCall *call);
-// Whether values that nest so deep may be followed further; false, with the error set, as well where
-// the run must stop: values that share their parts take endlessly long.
+// Whether values that nest so deep may be followed further; false, with the error set, as well
+// where the run must stop: values that share their parts take endlessly long.
 bool cag_may_nest(CagCall *call, int depth);
 // Order of two numbers, angles or texts: -1, 0, 1. False when they have none (no error is set).
 bool cag_order(CagValue a, CagValue b, int *order);
