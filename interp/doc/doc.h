@@ -96,6 +96,13 @@ typedef struct CagDocWriter {
 } CagDocWriter;
 
 void cag_doc_write_overview(const CagDocWriter *w);
+// What is said of a word of the language and of a topic; `more`: below something. False: nothing.
+bool cag_doc_write_word(const CagDocWriter *w, const char *word, bool more);
+// Row i of these; `see` is NULL for words. False behind the last.
+bool cag_doc_word_row(size_t i, const char **word, const char **see, const char **example);
+// Text wrapped at word ends, and lines as they stand, both indented.
+void cag_doc_write_wrapped(FILE *out, const char *text, size_t length, size_t indent);
+void cag_doc_write_indented(FILE *out, const char *text, int indent);
 void cag_doc_write_builtin(const CagDocWriter *w, size_t index);
 void cag_doc_write_module(const CagDocWriter *w, const CagDocModule *m);
 void cag_doc_write_entry(const CagDocWriter *w, const CagDocModule *m, const CagDocEntry *e);

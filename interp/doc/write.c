@@ -54,7 +54,11 @@ static void write_wrapped(FILE *out, const char *text, size_t length, size_t ind
   fputc('\n', out);
 }
 
-static void write_indented(FILE *out, const char *text, int indent) {
+void cag_doc_write_wrapped(FILE *out, const char *text, size_t length, size_t indent) {
+  write_wrapped(out, text, length, indent, 0);
+}
+
+void cag_doc_write_indented(FILE *out, const char *text, int indent) {
   while (*text) {
     const size_t n = strcspn(text, "\n");
     if (n) fprintf(out, "%*s%.*s\n", indent, "", (int)n, text);
@@ -121,7 +125,7 @@ static void write_row(const CagDocWriter *w, const CagBuiltin *row) {
   Errors errors = {w->out, 0};
   cag_doc_reasons(row->summary, write_error, &errors);
   fputs("\n  Example\n", w->out);
-  write_indented(w->out, row->example, 4);
+  cag_doc_write_indented(w->out, row->example, 4);
 }
 
 void cag_doc_write_builtin(const CagDocWriter *w, size_t index) {
@@ -224,8 +228,9 @@ void cag_doc_write_overview(const CagDocWriter *w) {
   heading(w, "Manual");
   for (size_t i = 0; cag_site_guide(i, &name, &title); i++)
     fprintf(w->out, "  %-18s %s\n", name, title);
-  fputs("\n`cag doc NAME` tells of a function, a module, a chapter or an error code, `cag doc "
-        "FILE.cag` of a "
-        "script,\n`cag doc --html DIR` makes all of it a site.\n",
+  fputs("\n`cag doc NAME` tells of a function, a module, a word of the language such as `if` or "
+        "`|>`, a "
+        "topic such as\n`gear`, a chapter or an error code, `cag doc FILE.cag` of a script, "
+        "`cag doc --html DIR` makes all of it\na site.\n",
         w->out);
 }

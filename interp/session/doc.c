@@ -81,7 +81,9 @@ static bool document(CagSession *s, const char *name, bool styled, FILE *out) {
   const CagDocWriter w = {out, styled};
   if (!name) return cag_doc_write_overview(&w), true;
   const size_t index = cag_builtin_find(name);
-  if (index != (size_t)-1) return cag_doc_write_builtin(&w, index), true;
+  if (index != (size_t)-1) cag_doc_write_builtin(&w, index);
+  const bool is_word = cag_doc_write_word(&w, name, index != (size_t)-1);
+  if (is_word || index != (size_t)-1) return true;
   return write_library(s, name, NULL, &w) || write_member(s, name, &w) || write_guide(name, out) ||
          cag_explain(name, out);
 }
@@ -113,7 +115,8 @@ void cag_session_document_names(CagSession *s, void (*give)(void *context, const
       }
     cag_doc_module_free(&m);
   }
-  const char *chapter, *title, *code, *reason;
+  const char *chapter, *title, *code, *reason, *word;
+  for (size_t i = 0; cag_doc_word_row(i, &word, NULL, NULL); i++) give(context, word);
   for (size_t i = 0; cag_site_guide(i, &chapter, &title); i++) give(context, chapter);
   for (size_t i = 0; cag_error_kind(i, &code, &reason, NULL, NULL); i++) {
     give(context, code);

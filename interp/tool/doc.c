@@ -9,6 +9,7 @@
 
 #include "interp/tool/scripts.h"
 #include "lang/diagnostic.h"
+#include "lang/foreign.h"
 
 // --- The nearest of all names ---
 
@@ -35,7 +36,9 @@ static int reject(CagTool *t, CagSession *s, const char *name) {
   char help[300] = "`cag doc` alone lists all functions and modules";
   cag_session_document_names(s, keep_name, &names);
   const char *nearest = cag_nearest_name(name, (const char *const *)names.items, names.count);
-  if (nearest) snprintf(help, sizeof help, "did you mean `cag doc %.200s`?", nearest);
+  const char *form = cag_foreign_name(name);
+  if (form) snprintf(help, sizeof help, "in cag write %.280s", form);
+  else if (nearest) snprintf(help, sizeof help, "did you mean `cag doc %.200s`?", nearest);
   const int status = cag_tool_fail(t, CAG_STATUS_USAGE, help,
                                    "there is no function, module or error code '%s'", name);
   for (size_t i = 0; i < names.count; i++) free(names.items[i]);

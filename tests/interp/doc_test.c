@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "interp/doc/doc.h"
+#include "interp/session/expect.h"
 
 static CagSession *open_session(void) {
   CagSessionOptions options;
@@ -177,9 +178,71 @@ static void of_several_words_the_first_is_the_default(void **state) {
   assert_int_equal(cag_doc_default("0..1"), 4);
 }
 
+// ---- Words of the language, and topics ----
+
+static bool is_documented(CagSession *s, const char *name) {
+  FILE *out = fopen("/dev/null", "w");
+  assert_non_null(out);
+  const bool found = cag_session_document(s, name, false, out);
+  fclose(out);
+  return found;
+}
+
+static void every_word_of_the_language_is_told(void **state) {
+  (void)state;
+  static const char *const words[] = {
+      "and",    "as",  "assert", "by",    "else",  "false", "for",  "if",   "import", "in",
+      "none",   "not", "or",     "param", "print", "show",  "then", "true", "time",   "frame",
+      "frames", "|>",  "=>",     "==",    "!=",    "<",     "<=",   ">",    ">=",     "+",
+      "-",      "*",   "/",      "%",     "^",     "|",     "&",    "..",   "..<",    "...",
+      "=",      "{}",  "[]",     "//",    "///",   "gear",  "hull", "text", "film",   "light"};
+  CagSession *s = open_session();
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+    if (!is_documented(s, words[i])) fail_msg("nothing tells of %s", words[i]);
+  cag_session_free(s);
+}
+
+static void topics_refer_to_what_is_told(void **state) {
+  (void)state;
+  CagSession *s = open_session();
+  const char *word, *see;
+  for (size_t i = 0; cag_doc_word_row(i, &word, &see, NULL); i++) {
+    char *names = see ? strdup(see) : NULL, *rest = NULL;
+    for (char *n = names ? strtok_r(names, " ", &rest) : NULL; n; n = strtok_r(NULL, " ", &rest))
+      if (!is_documented(s, n)) fail_msg("%s refers to %s, of which nothing tells", word, n);
+    free(names);
+  }
+  cag_session_free(s);
+}
+
+static void tell_failure(void *context, const CagTestFailure *f) {
+  (void)context;
+  print_error("%s: %s; expected %s, got %s\n", f->test, f->message, f->expected ? f->expected : "",
+              f->got ? f->got : "");
+}
+
+static void examples_of_words_run(void **state) {
+  (void)state;
+  CagTestOptions options;
+  CagTestCounts counts = {0};
+  const char *word, *example;
+  cag_test_options_init(&options);
+  options.failure = tell_failure;
+  for (size_t i = 0; cag_doc_word_row(i, &word, NULL, &example); i++) {
+    assert_true(strstr(example, "print ") || strstr(example, "show ") ||
+                strstr(example, "assert "));
+    assert_int_equal(cag_test_text(word, example, strlen(example), &options, &counts), 0);
+  }
+  assert_int_equal(counts.failed, 0);
+  assert_true(counts.passed > 50);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_parameter_of_a_built_in_is_told),
+      cmocka_unit_test(every_word_of_the_language_is_told),
+      cmocka_unit_test(topics_refer_to_what_is_told),
+      cmocka_unit_test(examples_of_words_run),
       cmocka_unit_test(every_built_in_has_result_summary_example_and_family),
       cmocka_unit_test(every_public_definition_of_the_library_is_told),
       cmocka_unit_test(no_row_of_parameters_is_left_over),
