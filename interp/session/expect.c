@@ -19,6 +19,7 @@
 #include "interp/render/compare.h"
 #include "interp/render/exr.h"
 #include "interp/render/png.h"
+#include "interp/session/expect_near.h"
 #include "interp/session/session.h"
 
 void cag_test_options_init(CagTestOptions *o) {
@@ -55,9 +56,18 @@ typedef struct Plan {
   char *problem; // with the options
 } Plan;
 
+// A comment that looks like an expectation.
+typedef struct Miss {
+  Piece text;
+  const char *meant;
+  size_t line;
+} Miss;
+
 typedef struct Plans {
   Plan *items;
   size_t count;
+  Miss *misses;
+  size_t miss_count;
   bool memory; // ran out
 } Plans;
 
@@ -83,6 +93,7 @@ static void free_plans(Plans *plans) {
     free(p->problem);
   }
   free(plans->items);
+  free(plans->misses);
 }
 
 static Plan *add_plan(Plans *plans, const CagSessionOptions *limits, size_t line) {
@@ -209,6 +220,14 @@ static void add_errors(Reader *r, Piece text, bool alone) {
   }
 }
 
+static void note_miss(Reader *r, Piece text) {
+  const char *meant = cag_test_meant(text.start, (size_t)(text.end - text.start));
+  if (!meant) return;
+  Miss *miss = grow((void **)&r->plans->misses, &r->plans->miss_count, sizeof *miss);
+  if (miss) *miss = (Miss){text, meant, r->line};
+  else r->plans->memory = true;
+}
+
 // What stands behind the `//` of a comment.
 static void read_comment(Reader *r, Piece text, bool alone) {
   Piece rest;
@@ -220,6 +239,8 @@ static void read_comment(Reader *r, Piece text, bool alone) {
   } else if (begins_with(text, "run:", &rest)) {
     Plan *p = add_plan(r->plans, r->limits, r->line);
     if (p) read_options(r->plans, p, rest);
+  } else {
+    note_miss(r, text);
   }
 }
 
@@ -345,7 +366,8 @@ typedef struct Run {
   size_t example;     // its number among those, from 1
   const char *folder; // of an example: where it finds the script
   Plan *plan;
-  bool pictured; // the reference picture, where there is one, is of this run
+  const Plans *plans; // in the first run of a script: what else was read of it
+  bool pictured;      // the reference picture, where there is one, is of this run
   char *name;
   bool failed;
 } Run;
@@ -632,6 +654,17 @@ static int test_reference(Run *r, CagSession *s) {
   return status;
 }
 
+static void report_misses(Run *r) {
+  for (size_t i = 0; r->plans && i < r->plans->miss_count; i++) {
+    const Miss *miss = &r->plans->misses[i];
+    char message[160];
+    const int shown = (int)(miss->text.end - miss->text.start);
+    snprintf(message, sizeof message, "`// %.*s` expects nothing; write `// %s`",
+             shown < 60 ? shown : 60, miss->text.start, miss->meant);
+    fail(r, miss->line, message, NULL, NULL, NULL);
+  }
+}
+
 static int perform(Run *r) {
   double begin = now();
   char *output = NULL;
@@ -644,6 +677,7 @@ static int perform(Run *r) {
     end_run(r, CAG_TEST_FAILED, 0, NULL);
     status = CAG_STATUS_OK;
   } else if (s) {
+    report_misses(r);
     status = r->text ? cag_session_run_text(s, r->path, r->text, r->length)
                      : cag_session_run_file(s, r->path);
     fflush(out);
@@ -687,6 +721,7 @@ static int run_plans(const Run *script, const char *text, size_t length) {
   for (size_t i = 0; i < plans.count && status == CAG_STATUS_OK; i++) {
     Run r = *script;
     r.plan = &plans.items[i];
+    r.plans = i == 0 ? &plans : NULL;
     r.pictured = some_pictured(&plans) ? r.plan->picture : !r.plan->options;
     r.name = run_name(&r);
     if (!r.name) status = CAG_STATUS_LIMIT;

@@ -115,3 +115,40 @@ if have povray; then
 else
   echo 'povray is missing: pictures of tests are not tested'
 fi
+
+script miss.cag 'print 1 // Expect: 1
+print 2 // expects: 2
+print 3 // expect : 3
+print 4 // exepct: 5
+print 5 // expected error: E0301
+print 6 // expect error E0301
+print 7 // expert: nobody
+// What to expect: nothing. Except: this.'
+
+it 'comments that look like expectations are reported'
+try test miss.cag
+status 1
+prints 'miss.cag:1: `// Expect: 1` expects nothing; write `// expect:`'
+prints 'miss.cag:2: `// expects: 2` expects nothing; write `// expect:`'
+prints 'miss.cag:3: `// expect : 3` expects nothing; write `// expect:`'
+prints 'miss.cag:4: `// exepct: 5` expects nothing; write `// expect:`'
+prints 'miss.cag:5: `// expected error: E0301` expects nothing; write `// expect error:`'
+prints 'miss.cag:6: `// expect error E0301` expects nothing; write `// expect error:`'
+! grep -q 'miss.cag:[78]' out || wrong 'prose is taken for an expectation'
+prints '0 passed, 1 failed'
+
+it 'failures are reported as JSON, one object a line'
+try test bad.cag miss.cag --diagnostics json
+status 1
+prints '0 passed, 2 failed'
+says '"severity":"error"'
+says '"file":"bad.cag","line":1,"test":"bad.cag","expected":"a>b","got":"a<b"'
+says '"file":"miss.cag","line":6,"test":"miss.cag"'
+[ "$(wc -l < err)" -eq 7 ] || wrong 'there is not one line for each failure'
+if have python3; then
+  try_command python3 -c 'import json; print(sorted({json.loads(l)["severity"] for l in open("err")}))'
+  prints "['error']"
+fi
+try test good.cag --diagnostics json
+status 0
+says_nothing

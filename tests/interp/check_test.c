@@ -81,6 +81,9 @@ static void defaults_of_params_are_in_their_range_or_list(void **state) {
   assert_string_equal(found("param h = 2.5 in [1, 2, 3]\nprint h"), "E0250:1");
   assert_string_equal(found("param h = \"c\" in [\"a\", \"b\"]\nprint h"), "E0250:1");
   assert_string_equal(found("param h = \"b\" in [\"a\", \"b\"]\nprint h"), "");
+  // What is computed is not judged without a run.
+  assert_string_equal(found("param x = 2 * 5 in [10, 20]\nprint x"), "");
+  assert_string_equal(found("param x = 2 * 5 in [30, 20]\nprint x"), "");
   assert_string_equal(found("param h = 2 in [1, 2, 3]\nprint h"), "");
 }
 

@@ -104,6 +104,33 @@ static void lengths_beyond_a_curve_name_its_length(void **state) {
          NULL);
 }
 
+static void a_circle_names_its_definitions(void **state) {
+  (void)state;
+  expect("a = b\nb = a\nprint a", "E0311", "the value of `a` needs itself: a -> b -> a", NULL);
+  expect("a = [b]\nb = { x: c }\nc = a\nprint b", "E0311", "needs itself: b -> c -> a -> b", NULL);
+  // The message ends there.
+  CagSession *s;
+  const CagErrorView e = first_error(&s, "a = b\nb = a\nprint a");
+  static const char end[] = "a -> b -> a";
+  assert_string_equal(e.message + strlen(e.message) - strlen(end), end);
+  cag_session_free(s);
+}
+
+// The carets stand below the argument that is wrong, not below the whole call.
+static void carets_stand_below_the_argument(void **state) {
+  (void)state;
+  CagSession *s;
+  CagErrorView e = first_error(&s, "show sky(0..1)");
+  assert_string_equal(e.code, "E0301");
+  assert_int_equal(e.column, 10);
+  assert_int_equal(e.end_column, 14);
+  cag_session_free(s);
+  e = first_error(&s, "show color(box(1), 3)");
+  assert_int_equal(e.column, 20);
+  assert_int_equal(e.end_column, 21);
+  cag_session_free(s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_line_that_begins_with_minus_is_explained),
@@ -114,6 +141,8 @@ int main(void) {
       cmocka_unit_test(mixed_ranges_name_the_angles),
       cmocka_unit_test(hidden_built_ins_are_mentioned),
       cmocka_unit_test(lengths_beyond_a_curve_name_its_length),
+      cmocka_unit_test(a_circle_names_its_definitions),
+      cmocka_unit_test(carets_stand_below_the_argument),
   };
   return cmocka_run_group_tests_name("messages", tests, NULL, NULL);
 }
