@@ -1,7 +1,6 @@
 // Regions: making them from loops, their measures, and whether a point is inside.
 //
-// Every question about a loop is asked of the exact curve, except crossings, which are looked for
-// on polygons far finer than any drawing.
+// Every question about a loop is asked of the exact curve.
 
 #include "geom/curve/region.h"
 
@@ -10,12 +9,10 @@
 #include <string.h>
 
 #include "geom/curve/family.h"
+#include "geom/curve/region_check.h"
 
 // Points this near to a loop, as a part of its size, lie on it.
 #define ON_BOUNDARY 1e-10
-// Chord tolerance of the polygons that are searched for crossings, as a part of the size.
-#define CROSSING_TOLERANCE 1e-5
-#define CROSSING_ANGLE (M_PI / 18)
 
 CagRegion *cag_region_retain(const CagRegion *r) {
   CagRegion *mine = (CagRegion *)r;
@@ -154,94 +151,6 @@ static CagStatus loop_within(const CagCurve *inner, const CagCurve *outer, bool 
   return CAG_OK;
 }
 
-// --- Crossings ---
-
-typedef struct Edge {
-  CagVec3 p, q;
-  double min_x, max_x;
-  size_t loop, index, count; // edge `index` of `count` of its loop
-} Edge;
-
-typedef struct Edges {
-  Edge *items;
-  size_t n, capacity;
-} Edges;
-
-static CagStatus add_edges(const CagCurve *c, size_t loop, Edges *edges, CagError *err) {
-  double *t;
-  size_t n;
-  CagStatus status =
-      cag_curve_discretize(c, CROSSING_TOLERANCE * loop_size(c), CROSSING_ANGLE, &t, &n, err);
-  if (status) return status;
-  CagVec3 *p = malloc(sizeof *p * n);
-  status = p ? cag_curve_eval_many(c, t, n, 0, p, err) : cag_fail_memory(err);
-  if (!status && edges->n + n > edges->capacity) {
-    size_t capacity = 2 * (edges->n + n);
-    Edge *grown = realloc(edges->items, sizeof *grown * capacity);
-    if (grown) {
-      edges->items = grown;
-      edges->capacity = capacity;
-    } else {
-      status = cag_fail_memory(err);
-    }
-  }
-  if (!status) p[n - 1] = p[0];
-  for (size_t i = 0; !status && i + 1 < n; i++)
-    edges->items[edges->n++] =
-        (Edge){p[i], p[i + 1], fmin(p[i].x, p[i + 1].x), fmax(p[i].x, p[i + 1].x), loop, i, n - 1};
-  free(p);
-  free(t);
-  return status;
-}
-
-static int by_min_x(const void *a, const void *b) {
-  double x = ((const Edge *)a)->min_x, y = ((const Edge *)b)->min_x;
-  return (x > y) - (x < y);
-}
-
-static double side(CagVec3 a, CagVec3 b, CagVec3 p) {
-  return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
-}
-
-// Edges that cross in their interiors; those that touch do not.
-static bool cross(const Edge *e, const Edge *f) {
-  if (fmax(e->p.y, e->q.y) < fmin(f->p.y, f->q.y) || fmax(f->p.y, f->q.y) < fmin(e->p.y, e->q.y))
-    return false;
-  if (e->loop == f->loop) {
-    size_t gap = e->index > f->index ? e->index - f->index : f->index - e->index;
-    if (gap == 1 || gap == e->count - 1) return false;
-  }
-  return side(e->p, e->q, f->p) * side(e->p, e->q, f->q) < 0 &&
-         side(f->p, f->q, e->p) * side(f->p, f->q, e->q) < 0;
-}
-
-static CagStatus check_crossings(CagCurve *const *loops, size_t n, const char *argument, long shift,
-                                 CagError *err) {
-  Edges edges = {0};
-  CagStatus status = CAG_OK;
-  for (size_t i = 0; !status && i < n; i++) status = add_edges(loops[i], i, &edges, err);
-  if (!status) qsort(edges.items, edges.n, sizeof(Edge), by_min_x);
-  for (size_t i = 0; !status && i < edges.n; i++)
-    for (size_t k = i + 1; k < edges.n && edges.items[k].min_x <= edges.items[i].max_x; k++) {
-      const Edge *e = &edges.items[i], *f = &edges.items[k];
-      if (!cross(e, f)) continue;
-      long a = (long)(e->loop < f->loop ? e->loop : f->loop) + shift;
-      long b = (long)(e->loop < f->loop ? f->loop : e->loop) + shift;
-      CagVec3 at = cag_lerp(e->p, e->q, 0.5);
-      status =
-          a == b
-              ? cag_fail(err, CAG_E_ARGUMENT, "region-crossing", a < 0 ? "C" : argument, a,
-                         "the boundary crosses itself near [%.6g, %.6g]", at.x, at.y)
-              : cag_fail(err, CAG_E_ARGUMENT, "region-crossing", argument, b,
-                         "%s[%ld] crosses %s near [%.6g, %.6g]; boundaries of a region must "
-                         "not cross",
-                         argument, b, a < 0 ? "the outer boundary" : "another of them", at.x, at.y);
-      break;
-    }
-  free(edges.items);
-  return status;
-}
-
 // --- Construction ---
 
 static CagStatus check_loop(const CagCurve *c, const char *argument, long index, CagError *err) {
@@ -291,7 +200,7 @@ CagStatus cag_region_new(const CagCurve *outer, CagCurve *const *holes, size_t h
   if (!r) return cag_fail_memory(err);
   for (size_t i = 0; !status && i <= hole_count; i++)
     status = oriented(i ? holes[i - 1] : outer, i > 0, &r->loops[i], err);
-  if (!status) status = check_crossings(r->loops, r->count, "holes", -1, err);
+  if (!status) status = cag_region_check_holes(r->loops, r->count, err);
   for (size_t i = 1; !status && i <= hole_count; i++) {
     bool within;
     status = loop_within(r->loops[i], r->loops[0], &within, err);
@@ -320,7 +229,7 @@ CagStatus cag_region_from_loops(CagCurve *const *loops, size_t n, CagRegion **ou
                     "a region wants at least one closed curve");
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < n; i++) status = check_loop(loops[i], "curves", (long)i, err);
-  if (!status) status = check_crossings(loops, n, "curves", 0, err);
+  if (!status) status = cag_region_check_loops(loops, n, err);
   if (status) return status;
   bool *within = calloc(n * n, sizeof *within); // within[i * n + k]: loop i lies in loop k
   size_t *depth = calloc(n, sizeof *depth);

@@ -74,6 +74,10 @@ static void bad_holes_are_named(void **state) {
   FAILS(cag_region_new(outer, overlap, 2, &r, &err), "region-crossing");
   assert_int_equal(err.index, 1);
   FAILS(cag_region_new(outer, nested, 2, &r, &err), "region-crossing");
+  CagCurve *const twice[2] = {in, in};
+  FAILS(cag_region_new(outer, twice, 2, &r, &err), "region-crossing");
+  assert_string_equal(err.message, "holes[0] and holes[1] are one curve; leave one of them out");
+  FAILS(cag_region_new(outer, &outer, 1, &r, &err), "hole-outside");
   OK(cag_curve_line(cag_vec3(0, 0, 0), cag_vec3(1, 0, 0), 2, &open, &err));
   FAILS(cag_region_new(open, NULL, 0, &r, &err), "region-not-closed");
   FAILS(cag_region_new(outer, &open, 1, &r, &err), "region-not-closed");
@@ -82,6 +86,108 @@ static void bad_holes_are_named(void **state) {
   FAILS(cag_region_new(bow, NULL, 0, &r, &err), "region-crossing");
   CagCurve *all[8] = {outer, in, out, across, near, within, open, bow};
   for (int i = 0; i < 8; i++) cag_curve_release(all[i]);
+}
+
+static void crossings_are_told_where_they_are(void **state) {
+  (void)state;
+  // y = x / 5 and y = (100 - x) 1.02 / 94.9 cross where both are 1.02.
+  static const CagVec3 p[4] = {{0, 0, 0}, {100, 20, 0}, {100, 0, 0}, {0, 102.0 / 94.9, 0}};
+  CagCurve *c;
+  CagRegion *r;
+  OK(cag_curve_polyline(p, 4, true, 2, &c, &err));
+  FAILS(cag_region_new(c, NULL, 0, &r, &err), "region-crossing");
+  assert_non_null(strstr(err.message, "near [5.1, 1.02]"));
+  cag_curve_release(c);
+}
+
+// --- Holes and loops that share edges: rectangles of a grid, counted by its cells ---
+
+enum { GRID = 6, CELLS = GRID * GRID };
+
+typedef struct Rectangle {
+  int x0, y0, x1, y1;
+} Rectangle;
+
+static unsigned random_below(unsigned n) {
+  static uint64_t state = 7;
+  state = state * 6364136223846793005u + 1442695040888963407u;
+  return (unsigned)((state >> 33) % n);
+}
+
+static Rectangle random_rectangle(void) {
+  const int x = (int)random_below(GRID), y = (int)random_below(GRID);
+  return (Rectangle){x, y, x + 1 + (int)random_below((unsigned)(GRID - x)),
+                     y + 1 + (int)random_below((unsigned)(GRID - y))};
+}
+
+static bool has_cell(const Rectangle *r, int cell) {
+  const int x = cell % GRID, y = cell / GRID;
+  return x >= r->x0 && x < r->x1 && y >= r->y0 && y < r->y1;
+}
+
+static CagCurve *turned_rectangle(const Rectangle *r, double angle) {
+  CagVec3 p[4] = {{r->x0, r->y0, 0}, {r->x1, r->y0, 0}, {r->x1, r->y1, 0}, {r->x0, r->y1, 0}};
+  for (int i = 0; i < 4; i++)
+    p[i] = cag_vec3(p[i].x * cos(angle) - p[i].y * sin(angle),
+                    p[i].x * sin(angle) + p[i].y * cos(angle), 0);
+  CagCurve *c;
+  OK(cag_curve_polyline(p, 4, true, 2, &c, &err));
+  return c;
+}
+
+// How the cells of two rectangles lie to each other.
+typedef struct Cells {
+  int common, first, second; // in both; in the first or the second only
+} Cells;
+
+static Cells compare_cells(const Rectangle *a, const Rectangle *b) {
+  Cells c = {0, 0, 0};
+  for (int i = 0; i < CELLS; i++) {
+    const bool in_a = has_cell(a, i), in_b = has_cell(b, i);
+    c.common += in_a && in_b;
+    c.first += in_a && !in_b;
+    c.second += in_b && !in_a;
+  }
+  return c;
+}
+
+static void loops_that_overlap_are_refused_and_others_measured(void **state) {
+  (void)state;
+  int holes = 0, loops = 0;
+  for (int i = 0; i < 2000; i++) {
+    const double angle = i % 2 ? i * 0.01 : 0;
+    Rectangle r[3] = {{0, 0, GRID, GRID}, random_rectangle(), random_rectangle()};
+    if (i % 3 == 0) r[0] = random_rectangle();
+    if (i % 5 == 0) r[2] = r[1];
+    const Cells one = compare_cells(&r[0], &r[1]), two = compare_cells(&r[0], &r[2]),
+                both = compare_cells(&r[1], &r[2]);
+    CagCurve *c[3];
+    CagRegion *made;
+    double area;
+    for (int k = 0; k < 3; k++) c[k] = turned_rectangle(&r[k], angle);
+    const bool good =
+        one.second == 0 && two.second == 0 && both.common == 0 && one.first > 0 && two.first > 0;
+    if (good) {
+      OK(cag_region_new(c[0], c + 1, 2, &made, &err));
+      OK(cag_region_area(made, &area, NULL, &err));
+      NEAR(area, one.common + one.first - one.common - two.common, 1e-11);
+      cag_region_release(made);
+      holes++;
+    } else {
+      assert_int_not_equal(cag_region_new(c[0], c + 1, 2, &made, &err), CAG_OK);
+    }
+    if (both.common == 0 || (both.first == 0) != (both.second == 0)) {
+      OK(cag_region_from_loops(c + 1, 2, &made, &err));
+      OK(cag_region_area(made, &area, NULL, &err));
+      NEAR(area, both.first + both.second, 1e-11);
+      cag_region_release(made);
+      loops++;
+    } else {
+      FAILS(cag_region_from_loops(c + 1, 2, &made, &err), "region-crossing");
+    }
+    for (int k = 0; k < 3; k++) cag_curve_release(c[k]);
+  }
+  assert_true(holes > 100 && loops > 500); // both happen
 }
 
 // A square in a ring in a square: even depths are outer loops.
@@ -170,6 +276,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(holes_take_their_area_away),
       cmocka_unit_test(bad_holes_are_named),
+      cmocka_unit_test(crossings_are_told_where_they_are),
+      cmocka_unit_test(loops_that_overlap_are_refused_and_others_measured),
       cmocka_unit_test(loops_nest_by_the_even_odd_rule),
       cmocka_unit_test(rounded_rectangles_are_exact),
       cmocka_unit_test(regular_polygons_have_their_area),
