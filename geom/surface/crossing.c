@@ -1,16 +1,22 @@
 // Surfaces that cross themselves: profiles by the crossings of their edges, sweeps by the curvature
 // of the path against the reach of the section (the surface folds where the section passes the
-// centre of curvature).
+// centre of curvature), and tubes by the distance between parts of their path.
 
 #include "geom/surface/crossing.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "geom/curve/family.h"
 #include "geom/surface/swept.h"
 
 #define PROFILE_SAMPLES 400
 #define PATH_SAMPLES 200
 #define SECTION_SAMPLES 64
+// Disks of a tube, by its length and thickness.
+#define TUBE_FEW 400
+#define TUBE_MANY 4000
 // Beyond the centre of curvature by more than this part.
 #define BEYOND 1e-6
 
@@ -91,6 +97,137 @@ static bool sweep_folds(const CagCurve *section, const CagMotion *motion, char *
   return false;
 }
 
+// --- Tubes that come near to themselves ---
+
+// The disk of a tube at a parameter of its path.
+typedef struct Disk {
+  CagVec3 p;
+  double radius, t;
+} Disk;
+
+// A circle about the origin of the section's plane; false: another section.
+static bool is_round_section(const CagCurve *section, double *radius) {
+  CagVec3 center, x, y;
+  double rate;
+  if (!cag_curve_arc_axes(section, &center, &x, &y, &rate) || !section->closed) return false;
+  *radius = cag_norm(x);
+  return fabs(cag_norm(y) - *radius) <= BEYOND * *radius &&
+         fabs(cag_dot(x, y)) <= BEYOND * *radius * *radius && cag_norm(center) <= BEYOND * *radius;
+}
+
+static bool disk_at(const CagMotion *motion, double radius, Disk *d) {
+  CagMotionSeries m;
+  CagError err;
+  if (cag_curve_point(cag_motion_path(motion), d->t, &d->p, &err) ||
+      cag_motion_at(motion, d->t, 0, CAG_SIDE_RIGHT, &m, &err))
+    return false;
+  d->radius = radius * cag_norm(m.x[0]);
+  return true;
+}
+
+// n + 1 disks in even steps of the parameter; false where something fails.
+static bool sample_disks(const CagMotion *motion, double radius, Disk *out, int n) {
+  const CagCurve *path = cag_motion_path(motion);
+  for (int i = 0; i <= n; i++) {
+    out[i].t = path->start + (path->end - path->start) * i / n;
+    if (!disk_at(motion, radius, &out[i])) return false;
+  }
+  return true;
+}
+
+// Steps that are about a quarter of the smallest radius long, within limits.
+static int steps_for(const Disk *disks) {
+  double length = 0, least = INFINITY;
+  for (int i = 0; i < TUBE_FEW; i++) {
+    length += cag_norm(cag_sub(disks[i + 1].p, disks[i].p));
+    if (disks[i].radius > 0) least = fmin(least, disks[i].radius);
+  }
+  return (int)fmin(TUBE_MANY, fmax(TUBE_FEW, 4 * length / least));
+}
+
+// Whether no pair of neighbours of i and k is nearer: the line between them is then square to the
+// path at both ends, and their disks lie in one plane. Of neighbours on a path the nearer pair is
+// between them.
+static bool is_least_distance(const Disk *disks, int i, int k, double d) {
+  const double alike = 1e-9; // of the distance: along a helix all are the same
+  for (int a = -1; a <= 1; a++)
+    for (int b = -1; b <= 1; b++)
+      if (cag_norm(cag_sub(disks[i + a].p, disks[k + b].p)) < d * (1 - alike)) return false;
+  return true;
+}
+
+// The first pair of parts of the path that are nearer to each other than the tube is thick.
+static bool find_meeting(const Disk *disks, int n, int *first, int *second) {
+  for (int i = 1; i < n; i++)
+    for (int k = i + 2; k < n; k++) {
+      const CagVec3 apart = cag_sub(disks[k].p, disks[i].p);
+      const double both = (disks[i].radius + disks[k].radius) * (1 - BEYOND);
+      if (cag_dot(apart, apart) >= both * both) continue;
+      if (!is_least_distance(disks, i, k, cag_norm(apart))) continue;
+      *first = i;
+      *second = k;
+      return true;
+    }
+  return false;
+}
+
+static bool tube_meets_itself(const CagCurve *section, const CagMotion *motion, char *what,
+                              size_t size) {
+  Disk few[TUBE_FEW + 1], *disks;
+  double radius;
+  int i, k;
+  if (!cag_motion_path(motion) || !is_round_section(section, &radius) ||
+      !sample_disks(motion, radius, few, TUBE_FEW))
+    return false;
+  const int n = steps_for(few);
+  disks = malloc(((size_t)n + 1) * sizeof *disks);
+  const bool meets =
+      disks && sample_disks(motion, radius, disks, n) && find_meeting(disks, n, &i, &k);
+  if (meets) {
+    const bool angle = cag_motion_path(motion)->angular;
+    const double shown = angle ? 180 / M_PI : 1;
+    snprintf(what, size,
+             "its path at v = %.4g%s is %.4g from that at v = %.4g%s, where the tube is %.4g "
+             "thick, so that it crosses itself",
+             shown * disks[i].t, angle ? "deg" : "", cag_norm(cag_sub(disks[k].p, disks[i].p)),
+             shown * disks[k].t, angle ? "deg" : "", disks[i].radius + disks[k].radius);
+  }
+  free(disks);
+  return meets;
+}
+
+// --- Lofts without thickness ---
+
+static bool loft_is_flat(const CagSurface *side, char *what, size_t size) {
+  enum { SAMPLES = 12 };
+  const double flat = 1e-9; // of the size
+  CagVec3 p[(SAMPLES + 1) * (SAMPLES + 1)];
+  CagBounds box = CAG_BOUNDS_EMPTY;
+  CagError err;
+  size_t n = 0;
+  for (int i = 0; i <= SAMPLES; i++)
+    for (int j = 0; j <= SAMPLES; j++, n++) {
+      const double u = side->u0 + (side->u1 - side->u0) * i / SAMPLES;
+      const double v = side->v0 + (side->v1 - side->v0) * j / SAMPLES;
+      if (cag_surface_point(side, u, v, &p[n], &err)) return false;
+      cag_bounds_add(&box, p[n]);
+    }
+  // The largest triangle with the first point and the one farthest from it.
+  const double extent = cag_norm(cag_sub(box.max, box.min));
+  CagVec3 far = {0, 0, 0}, normal = {0, 0, 0};
+  for (size_t i = 1; i < n; i++)
+    if (cag_norm(cag_sub(p[i], p[0])) > cag_norm(far)) far = cag_sub(p[i], p[0]);
+  for (size_t i = 1; i < n; i++) {
+    const CagVec3 across = cag_cross(far, cag_sub(p[i], p[0]));
+    if (cag_norm(across) > cag_norm(normal)) normal = across;
+  }
+  normal = cag_unit(normal);
+  for (size_t i = 1; i < n; i++)
+    if (fabs(cag_dot(cag_sub(p[i], p[0]), normal)) > flat * extent) return false;
+  snprintf(what, size, "its sections lie in one plane, so that the loft has no thickness");
+  return true;
+}
+
 bool cag_surface_crosses_itself(const CagSurface *s, char *what, size_t size) {
   const CagCurve *curve;
   const CagMotion *motion;
@@ -98,11 +235,17 @@ bool cag_surface_crosses_itself(const CagSurface *s, char *what, size_t size) {
   double from, to;
   if (cag_surface_revolution_view(s, &curve, &axis, &through, &from, &to))
     return profile_crosses(curve, cag_unit(axis), through, what, size);
-  return cag_surface_swept_view(s, &curve, &motion) && sweep_folds(curve, motion, what, size);
+  return cag_surface_swept_view(s, &curve, &motion) &&
+         (sweep_folds(curve, motion, what, size) || tube_meets_itself(curve, motion, what, size));
 }
 
 bool cag_solid_crosses_itself(const CagSolid *s, char *what, size_t size) {
   for (size_t i = 0; i < s->face_count; i++)
     if (cag_surface_crosses_itself(s->faces[i], what, size)) return true;
   return false;
+}
+
+bool cag_solid_is_flat(const CagSolid *s, char *what, size_t size) {
+  const CagSurface *side = s->kind == CAG_SOLID_LOFT ? cag_solid_side(s) : NULL;
+  return side && loft_is_flat(side, what, size);
 }

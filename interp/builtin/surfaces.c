@@ -298,7 +298,12 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "as may be. On the way the section turns by `twist` and grows to `scale`, evenly, or as "
      "functions of the path's parameter say. Of a region, a list of points or a closed plane curve "
      "a solid with caps, whose u and v are those of the side; else, and with `caps: false`, the "
-     "surface, u as in the section and v as in the path. Corners of the path are mitred.",
+     "surface, u as in the section and v as in the path. Corners of the path are mitred. A "
+     "positive "
+     "twist turns counterclockwise as seen from the end of the path, like a right-handed screw. On "
+     "a helix about Z, x of the section points at the axis with \"frenet\" and with `orient: Z`, "
+     "and y lies nearest to Z. \"rmf\" and \"fixed\" start with X and Y turned the shortest way "
+     "that carries Z to the path.",
      "path = polyline([[0, 0, 0], [0, 0, 5]])\n"
      "print near(volume(sweep(rectangle(4, 2), path)), 40, relative: 1e-8) // expect: true\n"
      "print near(volume(sweep(circle(1), circle(5))), 10 * pi^2, relative: 1e-8) // expect: true",

@@ -445,7 +445,7 @@ static int fail_nothing_shown(CagSession *s) {
   return CAG_STATUS_SCRIPT;
 }
 
-// Surfaces that cross themselves are shown all the same, with a warning.
+// Surfaces that cross themselves and flat lofts are shown all the same, with a warning.
 static int look_for_crossings(CagSession *s, void *context) {
   (void)context;
   char what[256];
@@ -455,8 +455,11 @@ static int look_for_crossings(CagSession *s, void *context) {
                           cag_surface_crosses_itself(item->as.surface, what, sizeof what)) ||
                          (item->kind == CAG_ITEM_SOLID &&
                           cag_solid_crosses_itself(item->as.solid, what, sizeof what));
-    if (!crosses || s->vm->failed) continue;
-    warn_shown(s, CAG_ERR_crosses_itself, (CagSolidPlace){NULL, 0, 0}, item->name, what);
+    if (s->vm->failed) continue;
+    if (crosses)
+      warn_shown(s, CAG_ERR_crosses_itself, (CagSolidPlace){NULL, 0, 0}, item->name, what);
+    else if (item->kind == CAG_ITEM_SOLID && cag_solid_is_flat(item->as.solid, what, sizeof what))
+      warn_shown(s, CAG_ERR_flat_loft, (CagSolidPlace){NULL, 0, 0}, item->name, what);
   }
   return CAG_STATUS_OK;
 }
