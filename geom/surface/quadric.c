@@ -6,8 +6,12 @@
 // class (reference 06a, 6.4). Before that, lengths are measured in units of the quadric's own size,
 // so that the decisions do not depend on the unit of the drawing.
 
+// Where the coefficients are integers of a moderate size, ranks and the constant are found by exact
+// integers instead: a determinant is then 0 or it is not.
+
 #include "geom/surface/quadric.h"
 
+#include <float.h>
 #include <math.h>
 
 // An eigenvalue below this part of the largest is zero: a coefficient in a script has fewer digits
@@ -150,6 +154,84 @@ static bool points_down(CagVec3 v) {
   return best < 0;
 }
 
+// --- Exact ranks ---
+
+// Twice the coefficients are integers up to this: determinants of order 4 have less than 70 bits,
+// and no eigenvalue is so small that its sign is rounding.
+#define EXACT_MOST 16384
+
+__extension__ typedef __int128 Integer;
+
+typedef struct ExactRanks {
+  int rank3, rank4;
+  double k1; // the constant once the squares are completed, where no linear term remains
+} ExactRanks;
+
+// Of the rows and columns given, by the first row.
+static Integer minor_of(const Integer m[4][4], const int *rows, const int *columns, int n) {
+  if (n == 0) return 1;
+  Integer sum = 0;
+  for (int j = 0; j < n; j++) {
+    int rest[3] = {0};
+    for (int k = 0, at = 0; k < n; k++)
+      if (k != j) rest[at++] = columns[k];
+    const Integer part = m[rows[0]][columns[j]] * minor_of(m, rows + 1, rest, n - 1);
+    sum += j % 2 ? -part : part;
+  }
+  return sum;
+}
+
+// The n of `size` places that the set bits of a mask name; false: another number of bits.
+static bool places_of(unsigned mask, int size, int n, int *out) {
+  int count = 0;
+  for (int i = 0; i < size; i++)
+    if (mask & (1u << i)) {
+      if (count < n) out[count] = i;
+      count++;
+    }
+  return count == n;
+}
+
+// The order of the largest minor that is not 0.
+static int rank_of(const Integer m[4][4], int size) {
+  for (int n = size; n > 0; n--)
+    for (unsigned a = 0; a < 1u << size; a++)
+      for (unsigned b = 0; b < 1u << size; b++) {
+        int rows[4], columns[4];
+        if (places_of(a, size, n, rows) && places_of(b, size, n, columns) &&
+            minor_of(m, rows, columns, n) != 0)
+          return n;
+      }
+  return 0;
+}
+
+static bool exact_ranks(const CagQuadric *q, ExactRanks *out) {
+  double rows[4][4];
+  Integer m[4][4];
+  cag_quadric_rows(q, rows);
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) {
+      const double twice = 2 * rows[i][j];
+      if (twice != floor(twice) || fabs(twice) > EXACT_MOST) return false;
+      m[i][j] = (Integer)twice;
+    }
+  const Integer(*rows_of)[4] = (const Integer(*)[4])m;
+  out->rank3 = rank_of(rows_of, 3);
+  out->rank4 = rank_of(rows_of, 4);
+  // With n = rank3 the sums of principal minors of order n, and of those of order n + 1 with the
+  // last row, are the products of the eigenvalues without and with the constant.
+  Integer without = 0, with = 0;
+  for (unsigned a = 0; a < 8; a++) {
+    int places[4];
+    if (!places_of(a, 3, out->rank3, places)) continue;
+    without += minor_of(rows_of, places, places, out->rank3);
+    places[out->rank3] = 3;
+    with += minor_of(rows_of, places, places, out->rank3 + 1);
+  }
+  out->k1 = (double)with / (double)without / 2;
+  return true;
+}
+
 // --- Reduction ---
 
 // The equation in its eigenbasis, with lengths in units of `size` and divided by about the largest
@@ -171,6 +253,19 @@ static double power_of_two(double x) {
   return ldexp(1, exponent - 1);
 }
 
+// Between the eigenvalues (the diagonal) that are 0 and those that are not, of a known rank.
+static double rank_limit(const double m[3][3], int rank) {
+  double sizes[3] = {fabs(m[0][0]), fabs(m[1][1]), fabs(m[2][2])};
+  for (int i = 0; i < 2; i++)
+    for (int k = 0; k < 2; k++)
+      if (sizes[k] > sizes[k + 1]) {
+        const double swap = sizes[k];
+        sizes[k] = sizes[k + 1];
+        sizes[k + 1] = swap;
+      }
+  return rank == 3 ? 0 : sizes[2 - rank];
+}
+
 static void reduce(const CagQuadric *q, Reduced *r) {
   const double *c = q->c;
   double m[3][3] = {
@@ -183,11 +278,16 @@ static void reduce(const CagQuadric *q, Reduced *r) {
   r->k1 = c[9] / (largest * r->size * r->size);
   r->rank3 = 0;
   r->g = 0;
+  ExactRanks exact;
+  const bool is_exact = exact_ranks(q, &exact);
+  double terms = 1; // of which k1 is the sum, with what the rounding of each counts
+  const double zero =
+      is_exact ? rank_limit((const double(*)[3])m, exact.rank3) : RANK_TOLERANCE * largest;
   for (int i = 0; i < 3; i++) {
     r->lam[i] = m[i][i] / largest;
     r->lin[i] = cag_dot(r->v[i], linear) / (largest * r->size);
     r->center[i] = 0;
-    if (fabs(r->lam[i]) <= RANK_TOLERANCE) {
+    if (fabs(m[i][i]) <= zero) {
       r->lam[i] = 0;
       r->g = hypot(r->g, r->lin[i]);
       continue;
@@ -195,9 +295,18 @@ static void reduce(const CagQuadric *q, Reduced *r) {
     r->rank3++;
     r->center[i] = -r->lin[i] / (2 * r->lam[i]);
     r->k1 -= r->lin[i] * r->lin[i] / (4 * r->lam[i]);
+    terms += r->lin[i] * r->lin[i] / (4 * fabs(r->lam[i]));
+    // Eigenvalues have rounding of the largest one.
+    terms += 4 * (DBL_EPSILON / REST_TOLERANCE) * r->center[i] * r->center[i];
+  }
+  if (is_exact) {
+    if (exact.rank4 < r->rank3 + 2) r->g = 0;
+    if (exact.rank4 == r->rank3) r->k1 = 0;
+    else if (r->g == 0) r->k1 = exact.k1 / (largest * r->size * r->size);
+    return;
   }
   if (r->g <= REST_TOLERANCE) r->g = 0;
-  if (fabs(r->k1) <= REST_TOLERANCE) r->k1 = 0;
+  if (fabs(r->k1) <= REST_TOLERANCE * terms) r->k1 = 0;
 }
 
 // The roles of the eigenvectors: which is e1, e2, e3, and their senses.

@@ -438,6 +438,66 @@ static void what_has_no_surface_says_why(void **state) {
   MUST_FAIL(cag_quadric_patches(&far, &box, false, &list, &n, err), "quadric-outside");
 }
 
+// Affine maps keep the class. Each standard form, its signs and zeros with other integers, is taken
+// through affine maps with small integers, which is exact: many of the matrices are nearly
+// singular.
+static void integer_matrices_keep_their_class_under_congruence(void **state) {
+  (void)state;
+  static const struct {
+    const char *name;
+    int squares[3], linear_z, constant;
+  } forms[] = {
+      {"ellipsoid", {1, 1, 1}, 0, -1},
+      {"imaginary-ellipsoid", {1, 1, 1}, 0, 1},
+      {"hyperboloid-1", {1, 1, -1}, 0, -1},
+      {"hyperboloid-2", {1, 1, -1}, 0, 1},
+      {"cone", {1, 1, -1}, 0, 0},
+      {"point", {1, 1, 1}, 0, 0},
+      {"elliptic-paraboloid", {1, 1, 0}, -1, 0},
+      {"hyperbolic-paraboloid", {1, -1, 0}, -1, 0},
+      {"elliptic-cylinder", {1, 1, 0}, 0, -1},
+      {"imaginary-elliptic-cylinder", {1, 1, 0}, 0, 1},
+      {"hyperbolic-cylinder", {1, -1, 0}, 0, -1},
+      {"parabolic-cylinder", {1, 0, 0}, -1, 0},
+      {"intersecting-planes", {1, -1, 0}, 0, 0},
+      {"line", {1, 1, 0}, 0, 0},
+      {"parallel-planes", {1, 0, 0}, 0, -1},
+      {"imaginary-parallel-planes", {1, 0, 0}, 0, 1},
+      {"coincident-planes", {1, 0, 0}, 0, 0},
+  };
+  enum { FORMS = sizeof forms / sizeof *forms };
+  uint64_t random = 8;
+  for (int i = 0; i < 250 * FORMS; i++) {
+    long r[24], t[4][4] = {{0}}, m[4][4] = {{0}}, moved[4][4] = {{0}};
+    for (int k = 0; k < 24; k++) {
+      random = random * 6364136223846793005u + 1442695040888963407u;
+      r[k] = (long)(random >> 33);
+    }
+    const long sign = r[0] % 2 ? 1 : -1;
+    for (int k = 0; k < 3; k++) m[k][k] = sign * forms[i % FORMS].squares[k] * (1 + r[1 + k] % 3);
+    m[2][3] = m[3][2] = sign * forms[i % FORMS].linear_z;
+    m[3][3] = sign * forms[i % FORMS].constant * (1 + r[4] % 3);
+    for (int k = 0; k < 12; k++) t[k / 4][k % 4] = r[5 + k] % 9 - 4;
+    t[3][3] = 1;
+    if (t[0][0] * (t[1][1] * t[2][2] - t[1][2] * t[2][1]) -
+            t[0][1] * (t[1][0] * t[2][2] - t[1][2] * t[2][0]) +
+            t[0][2] * (t[1][0] * t[2][1] - t[1][1] * t[2][0]) ==
+        0)
+      continue;
+    for (int k = 0; k < 256; k++)
+      moved[k / 64][k / 16 % 4] +=
+          t[k / 4 % 4][k / 64] * m[k / 4 % 4][k % 4] * t[k % 4][k / 16 % 4];
+    double rows[4][4];
+    CagQuadric q;
+    CagQuadricForm f;
+    for (int k = 0; k < 16; k++) rows[k / 4][k % 4] = (double)moved[k / 4][k % 4];
+    MUST(cag_quadric_from_rows((const double(*)[4])rows, &q, err));
+    MUST(cag_quadric_classify(&q, &f, err));
+    if (strcmp(f.name, forms[i % FORMS].name) != 0)
+      fail_msg("number %d: expected %s, found %s", i, forms[i % FORMS].name, f.name);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_class_is_told_as_in_the_reference),
@@ -449,6 +509,7 @@ int main(void) {
       cmocka_unit_test(all_shapes_lie_on_their_equation),
       cmocka_unit_test(pieces_are_cut_at_the_range_of_z),
       cmocka_unit_test(pieces_within_a_box),
+      cmocka_unit_test(integer_matrices_keep_their_class_under_congruence),
       cmocka_unit_test(what_has_no_surface_says_why),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
