@@ -118,6 +118,27 @@ static CagStatus push(Plane *p, uint32_t triangle, int side, CagError *err) {
 
 // --- The outline ---
 
+// Parts of a chord of the outline, so that the normals of the surface turn by no more than the
+// angle along each: between the chord's ends they turn evenly, nearly.
+static CagStatus parts_for_turn(const Plane *p, const CagCurve *loop, double from, double to,
+                                double length, const CagTessellation *how, size_t *parts,
+                                CagError *err) {
+  const double closely = 0.9;
+  CagVec3 at, normal[2];
+  *parts = 1;
+  if (!(how->angle > 0) || length <= SHORT_EDGE * how->tolerance) return CAG_OK;
+  for (int k = 0; k < 2; k++) {
+    CagStatus status = cag_curve_point(loop, k ? to : from, &at, err);
+    if (!status) status = cag_surface_normal(p->inner, at.x, at.y, &normal[k], err);
+    if (status) return status;
+  }
+  const double turn =
+      atan2(cag_norm(cag_cross(normal[0], normal[1])), cag_dot(normal[0], normal[1]));
+  const double most = length / (SHORT_EDGE * how->tolerance);
+  *parts = (size_t)fmax(1, ceil(fmin(turn / (closely * how->angle), most)));
+  return CAG_OK;
+}
+
 // Discretizes a loop in space; the last point of it is the first one again and is left out.
 static CagStatus outline_loop(Plane *p, const CagSurface *s, size_t loop,
                               const CagTessellation *how, size_t *count, CagError *err) {
@@ -135,8 +156,11 @@ static CagStatus outline_loop(Plane *p, const CagSurface *s, size_t loop,
     status = cag_curve_point(on, at[k], &a, err);
     if (!status) status = cag_curve_point(on, at[k + 1], &b, err);
     if (status) break;
-    double edges = how->max_edge > 0 ? ceil(cag_norm(cag_sub(b, a)) / how->max_edge) : 1;
-    size_t parts = edges > 1 ? (size_t)edges : 1;
+    const double length = cag_norm(cag_sub(b, a));
+    double edges = how->max_edge > 0 ? ceil(length / how->max_edge) : 1;
+    size_t parts = 1;
+    status = parts_for_turn(p, region->loops[loop], at[k], at[k + 1], length, how, &parts, err);
+    if (edges > (double)parts) parts = (size_t)edges;
     for (size_t j = 0; !status && j < parts; j++) {
       uint32_t vertex;
       double t = at[k] + (at[k + 1] - at[k]) * (double)j / (double)parts;
@@ -474,9 +498,8 @@ static CagStatus judge(const Plane *p, uint32_t t, const CagTessellation *how, b
     if (status) return status;
     if (from_line(x[k], x[next], q) > how->tolerance) *bad = true;
     double turn = atan2(cag_norm(cag_cross(n[k], n[next])), cag_dot(n[k], n[next]));
-    if (how->angle > 0 && turn > 1.5 * how->angle && length > SHORT_EDGE * how->tolerance)
-      *bad = true;
-    if (how->max_edge > 0 && length > 1.5 * how->max_edge) *bad = true;
+    if (how->angle > 0 && turn > how->angle && length > SHORT_EDGE * how->tolerance) *bad = true;
+    if (how->max_edge > 0 && length > how->max_edge) *bad = true;
     double flat = apart(at(p, c[k]), at(p, c[next]));
     if (flat > longest) {
       longest = flat;

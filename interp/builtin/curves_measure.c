@@ -1,6 +1,7 @@
 // Measures of whole curves and regions, and their division.
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "interp/builtin/curves.h"
 
@@ -134,6 +135,112 @@ static CagStatus walk_chords(const CagCurve *c, size_t n, double chord, double *
   return status;
 }
 
+// Chords count as equal when they differ by less than this part of the length.
+#define EQUAL_CHORDS 1e-12
+#define CHORD_ROUNDS 400
+
+// How much longer the chord before t[i] is than the one after it, with t[i] moved to x.
+static CagStatus chord_excess(const CagCurve *c, const CagVec3 *p, size_t i, double x, CagVec3 *at,
+                              double *out, CagError *err) {
+  CagStatus status = cag_curve_point(c, x, at, err);
+  *out = cag_norm(cag_sub(*at, p[i - 1])) - cag_norm(cag_sub(p[i + 1], *at));
+  return status;
+}
+
+// Moves t[i] between its neighbours to where its two chords are equal. The chord before it is
+// shorter at the left neighbour, and longer at the right one.
+static CagStatus even_out(const CagCurve *c, CagVec3 *p, double *t, size_t i, CagError *err) {
+  double low = t[i - 1], high = t[i + 1], excess;
+  CagStatus status = CAG_OK;
+  for (int k = 0; !status && k < HALVINGS; k++) {
+    const double middle = k == 0 ? t[i] : low + (high - low) / 2;
+    status = chord_excess(c, p, i, middle, &p[i], &excess, err);
+    if (excess > 0) high = middle;
+    else low = middle;
+  }
+  t[i] = low + (high - low) / 2;
+  return status ? status : cag_curve_point(c, t[i], &p[i], err);
+}
+
+// The excess at every inner point, and their largest.
+static CagStatus all_excesses(const CagCurve *c, size_t n, const double *t, CagVec3 *p, double *e,
+                              double *worst, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i <= n; i++) status = cag_curve_point(c, t[i], &p[i], err);
+  *worst = 0;
+  for (size_t i = 1; !status && i < n; i++) {
+    e[i] = cag_norm(cag_sub(p[i], p[i - 1])) - cag_norm(cag_sub(p[i + 1], p[i]));
+    *worst = fmax(*worst, fabs(e[i]));
+  }
+  return status;
+}
+
+// A step of Newton's method for all inner points at once: the system has three diagonals. `next`
+// gets the parameters; false: they would not ascend.
+static CagStatus newton_chords(const CagCurve *c, size_t n, const double *t, const CagVec3 *p,
+                               const double *e, double *room, double *next, bool *ok,
+                               CagError *err) {
+  double *up = room, *step = room + n + 1;
+  CagStatus status = CAG_OK;
+  *ok = false;
+  CagVec3 d[3][2];
+  for (size_t i = 1; i < n; i++) {
+    for (size_t k = 0; !status && k < 3; k++)
+      status = cag_curve_eval(c, t[i - 1 + k], 1, CAG_SIDE_RIGHT, d[k], err);
+    if (status) return status;
+    const CagVec3 before = cag_unit(cag_sub(p[i], p[i - 1]));
+    const CagVec3 after = cag_unit(cag_sub(p[i + 1], p[i]));
+    const double below = i > 1 ? -cag_dot(before, d[0][1]) : 0;
+    const double above = i + 1 < n ? -cag_dot(after, d[2][1]) : 0;
+    const double own =
+        cag_dot(before, d[1][1]) + cag_dot(after, d[1][1]) - (i > 1 ? below * up[i - 1] : 0);
+    if (!(fabs(own) > 0)) return CAG_OK;
+    up[i] = above / own;
+    step[i] = (-e[i] - (i > 1 ? below * step[i - 1] : 0)) / own;
+  }
+  for (size_t i = n - 1; i > 1; i--) step[i - 1] -= up[i - 1] * step[i];
+  next[0] = t[0];
+  next[n] = t[n];
+  *ok = true;
+  for (size_t i = 1; i < n; i++) {
+    next[i] = t[i] + step[i];
+    *ok = *ok && next[i] > next[i - 1];
+  }
+  *ok = *ok && next[n] > next[n - 1];
+  return CAG_OK;
+}
+
+// Any start: points are evened out one after the other until Newton's method takes over.
+static CagStatus equalize_chords(const CagCurve *c, size_t n, double *t, double length,
+                                 CagError *err) {
+  const double enough = EQUAL_CHORDS * length;
+  double *room = malloc(sizeof *room * 5 * (n + 1)), worst, tried;
+  CagVec3 *p = malloc(sizeof *p * 2 * (n + 1));
+  CagStatus status = room && p ? CAG_OK : cag_fail_memory(err);
+  double *e = room, *next = room + (n + 1), *next_e = room + 2 * (n + 1);
+  if (!status) status = all_excesses(c, n, t, p, e, &worst, err);
+  for (int round = 0; !status && worst > enough && round < CHORD_ROUNDS; round++) {
+    bool ok;
+    status = newton_chords(c, n, t, p, e, room + 3 * (n + 1), next, &ok, err);
+    tried = INFINITY;
+    if (!status && ok) status = all_excesses(c, n, next, p + n + 1, next_e, &tried, err);
+    if (!status && tried < 0.5 * worst) {
+      memcpy(t, next, sizeof *t * (n + 1));
+    } else {
+      for (size_t i = 1; !status && i < n; i++) status = even_out(c, p, t, i, err);
+    }
+    if (!status) status = all_excesses(c, n, t, p, e, &worst, err);
+  }
+  free(room);
+  free(p);
+  if (!status && worst > 1e3 * enough)
+    return cag_fail(err, CAG_E_CONVERGENCE, "convergence", "by", -1,
+                    "found no %zu equal chords; their lengths still differ by %.3g mm", n, worst);
+  return status;
+}
+
+// Points at equal distances, each the first one at its distance from the one before, where they
+// end at the curve's end. A curve that turns back may have none of these; then others.
 static CagStatus divide_by_chord(const CagCurve *c, size_t n, double *t, CagError *err) {
   double length, low = 0, rest;
   CagStatus status = cag_curve_length(c, c->start, c->end, &length, err);
@@ -144,7 +251,12 @@ static CagStatus divide_by_chord(const CagCurve *c, size_t n, double *t, CagErro
     if (rest >= 0) low = middle;
     else high = middle;
   }
-  return status == CAG_OK && n > 1 ? walk_chords(c, n, low, t, &rest, err) : status;
+  if (status == CAG_OK && n > 1) status = walk_chords(c, n, low, t, &rest, err);
+  if (status || n < 2 || fabs(rest) <= EQUAL_CHORDS * length) return status;
+  status = divide_by_length(c, n, t, err);
+  t[0] = c->start;
+  t[n] = c->end;
+  return status ? status : equalize_chords(c, n, t, length, err);
 }
 
 bool cag_curves_divide(CagCall *call, CagValue *result) {

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/mesh/split.h"
 #include "geom/mesh/tessellate.h"
 #include "geom/solid/csg.h"
 #include "interp/builtin/solids.h"
@@ -215,6 +216,17 @@ static CagStatus tessellate_shape(CagVm *vm, CagValue v, const CagTessellation *
   }
 }
 
+// Grids are made for the longest edge, but flat faces and what is sewn to grids need not keep it.
+static CagStatus keep_edges(CagMesh **mesh, const CagTessellation *how, CagError *err) {
+  CagMesh *fine;
+  if (!(how->max_edge > 0)) return CAG_OK;
+  CagStatus status = cag_mesh_split_edges(*mesh, how->max_edge, how->max_triangles, &fine, err);
+  if (status) return status;
+  cag_mesh_release(*mesh);
+  *mesh = fine;
+  return CAG_OK;
+}
+
 static bool read_how(CagCall *call, CagTessellation *how) {
   *how = CAG_TESSELLATION_DEFAULT;
   if (call->vm->max_triangles > 0) how->max_triangles = call->vm->max_triangles;
@@ -246,6 +258,10 @@ bool cag_solids_tessellate(CagCall *call, CagValue *result) {
   else if (status == CAG_OK) status = cag_mesh_append(meshes, n, &whole, &err);
   for (size_t i = 0; i < n; i++) cag_mesh_release(meshes[i]);
   free(meshes);
+  if (status == CAG_OK) {
+    status = keep_edges(&whole, &how, &err);
+    if (status) cag_mesh_release(whole);
+  }
   if (!give(call, status, &err, &whole, result)) return false;
   cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
   return true;

@@ -186,10 +186,11 @@ const CagBuiltin cag_builtins_solids[] = {
     {"tessellate(G, tolerance = none, angle = 15deg, max_edge = none)", cag_solids_tessellate,
      "mesh",
      "Triangles whose distance from the true surface is at most the tolerance (mm; none: by the "
-     "size "
-     "of G), along whose edges the normal turns by at most the angle, and whose edges are at most "
-     "so "
-     "long. A curve has no faces: an error.",
+     "size of G), along whose edges the normal turns by at most the angle, and whose edges are at "
+     "most `max_edge` long. The angle has two exceptions: edges shorter than a fifth of the "
+     "tolerance, and cusps, poles and creases, where the normal turns at one point. "
+     "`max_edge` has none: flat faces, set operations and meshes keep it as well. A curve has no "
+     "faces: an error.",
      "m = tessellate(sphere(10), tolerance: 0.01)\n"
      "print abs(volume(m) / volume(sphere(10)) - 1) < 0.003 // expect: true",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), meshes},

@@ -193,8 +193,11 @@ const CagBuiltin cag_builtins_transforms[] = {
      "direction.",
      "print homogeneous([1, 2, 3], 2) // expect: [2, 4, 6, 2]", LISTS, family},
     {"dehomogenize(h)", cag_transforms_dehomogenize, "list",
-     "The point of homogeneous coordinates; a point at infinity (w = 0) gives its direction.",
-     "print dehomogenize([2, 4, 6, 2]) // expect: [1, 2, 3]", LISTS, family},
+     "The point of the homogeneous coordinates [x, y, z, w], or [x, y, w] in the plane. A point at "
+     "infinity (w = 0) gives its direction; if all coordinates are 0, there is no point: an "
+     "error.",
+     "print dehomogenize([2, 4, 6, 2]), dehomogenize([2, 4, 2]) // expect: [1, 2, 3] [1, 2]", LISTS,
+     family},
     {"mix(A, B, t)", cag_transforms_mix, "transform",
      "Between two rigid transforms: the turn by the shortest way (slerp), the position along a "
      "line.",

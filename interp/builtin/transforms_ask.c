@@ -149,10 +149,20 @@ bool cag_transforms_dehomogenize(CagCall *call, CagValue *result) {
   const double *h;
   size_t n;
   if (!cag_arg_numbers(call, 0, &h, &n)) return false;
-  if (n != 4)
-    return cag_fail_call(call, 0, CAG_ERR_value, "expects [x, y, z, w], found %zu numbers", n);
-  double w = h[3] == 0 ? 1 : h[3];
-  *result = cag_point(call->vm, cag_vec3(h[0] / w, h[1] / w, h[2] / w), 3);
+  if (n != 3 && n != 4)
+    return cag_fail_call(call, 0, CAG_ERR_value,
+                         "expects [x, y, w] or [x, y, z, w], found %zu numbers", n);
+  bool zero = true;
+  for (size_t i = 0; i < n; i++) zero = zero && h[i] == 0;
+  if (zero)
+    return cag_fail_call(call, 0, CAG_ERR_value,
+                         "expects homogeneous coordinates of which one is not 0; all 0 are no "
+                         "point");
+  const double w = h[n - 1] == 0 ? 1 : h[n - 1];
+  const CagVec3 p = cag_vec3(h[0] / w, h[1] / w, n == 4 ? h[2] / w : 0);
+  if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))
+    return cag_fail_call(call, 0, CAG_ERR_not_finite, "overflows");
+  *result = cag_point(call->vm, p, n == 4 ? 3 : 2);
   return true;
 }
 

@@ -351,24 +351,7 @@ static bool equal_records(CagVm *vm, const CagRecord *a, const CagRecord *b) {
   return true;
 }
 
-// A range stands wherever a list is read: it equals the list of its elements.
-static bool equal_range_list(CagVm *vm, const CagRange *r, const CagList *l) {
-  if (!isfinite(r->start) || !isfinite(r->end)) return false;
-  size_t n;
-  if (!cag_range_count(vm, r, &n) || n != l->length) return false;
-  for (size_t i = 0; i < n; i++) {
-    CagValue x = cag_list_get(vm, l, i);
-    if (x.type != (r->angle ? CAG_ANGLE : CAG_NUMBER) || x.as.number != cag_range_element(r, i, n))
-      return false;
-  }
-  return true;
-}
-
 bool cag_equal(CagVm *vm, CagValue a, CagValue b) {
-  if (a.type == CAG_RANGE && b.type == CAG_LIST)
-    return equal_range_list(vm, CAG_AS_RANGE(a), CAG_AS_LIST(b));
-  if (a.type == CAG_LIST && b.type == CAG_RANGE)
-    return equal_range_list(vm, CAG_AS_RANGE(b), CAG_AS_LIST(a));
   if (a.type == CAG_JET || b.type == CAG_JET) {
     a = cag_plain(a);
     b = cag_plain(b);
