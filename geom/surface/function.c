@@ -5,6 +5,8 @@
 
 #include "geom/surface/function.h"
 
+#include "geom/surface/trimmed.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -132,4 +134,27 @@ CagStatus cag_surface_function(const CagSurfaceFunction *f, double u0, double u1
   cag_surface_judge(s);
   *out = s;
   return CAG_OK;
+}
+
+bool cag_surface_is_formula(const CagSurface *s) {
+  CagTransform map;
+  const CagRegion *region;
+  while (cag_surface_placed_view(s, &s, &map) || cag_surface_trimmed_view(s, &s, &region)) continue;
+  return s->kind == &function_kind;
+}
+
+CagStatus cag_surface_eval_beside(const CagSurface *s, const double lo[2], const double hi[2],
+                                  const double at[2], int n, CagVec3 *out, CagError *err) {
+  // Parts of the rectangle, different so that no simple line through the place is met.
+  static const double steps[2] = {1e-9, 1.37e-9};
+  double beside[2];
+  for (int k = 0; k < 2; k++) {
+    const double step = steps[k] * (hi[k] - lo[k]);
+    beside[k] = at[k] < (lo[k] + hi[k]) / 2 ? at[k] + step : at[k] - step;
+  }
+  CagStatus status = CAG_OK;
+  if (n > 0)
+    status = cag_surface_eval(s, beside[0], beside[1], n, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, out, err);
+  return status ? status
+                : cag_surface_eval(s, at[0], at[1], 0, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, out, err);
 }

@@ -22,5 +22,12 @@ typedef struct CagSurfaceFunction {
 CagStatus cag_surface_function(const CagSurfaceFunction *f, double u0, double u1, bool angular_u,
                                double v0, double v1, bool angular_v, CagSurface **out,
                                CagError *err);
+// Whether it is of this kind, perhaps placed or trimmed.
+bool cag_surface_is_formula(const CagSurface *s);
+// As cag_surface_eval, for such surfaces: a formula may have derivatives all about a place and none
+// there, on an edge as sqrt(v) at 0, or at a point as |(u, v)|. They are taken a little beside,
+// towards the middle of the rectangle lo .. hi; the point is that of the place itself.
+CagStatus cag_surface_eval_beside(const CagSurface *s, const double lo[2], const double hi[2],
+                                  const double at[2], int n, CagVec3 *out, CagError *err);
 
 #endif

@@ -10,6 +10,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "geom/surface/function.h"
+
 // The step, as a part of the patch, and the number of places: what the polynomial leaves out of a
 // smooth function, (2e-3)^6 of its sixth derivative, is as small as the rounding of 1e-16 / 2e-3^2
 // in the places themselves.
@@ -58,6 +60,8 @@ static CagStatus find_collapsed(CagLevelPatch *p, CagError *err) {
 CagStatus cag_patch_open(const CagSurface *s, const CagLevel *level, const double lo[2],
                          const double hi[2], CagLevelPatch *out, CagError *err) {
   *out = (CagLevelPatch){.s = s, .level = level, .lo = {lo[0], lo[1]}, .hi = {hi[0], hi[1]}};
+  // Sided functions are continued to such places by themselves.
+  out->formula = !level->sided && cag_surface_is_formula(s);
   return level->sided ? find_collapsed(out, err) : CAG_OK;
 }
 
@@ -93,7 +97,8 @@ static CagStatus plain_value(const CagLevelPatch *p, const double at[2], double 
                              double *gradient, CagVec3 *partials, CagError *err) {
   CagVec3 d[16] = {0};
   int n = gradient ? p->level->order : p->level->order - 1;
-  CagStatus status = partials_at(p, at[0], at[1], n, d, err);
+  CagStatus status = p->formula ? cag_surface_eval_beside(p->s, p->lo, p->hi, at, n, d, err)
+                                : partials_at(p, at[0], at[1], n, d, err);
   if (status) return status;
   *f = p->level->value(p->level, d, n, gradient);
   if (!partials) return CAG_OK;

@@ -11,6 +11,7 @@ typedef struct CagLevelPatch {
   const CagLevel *level;
   double lo[2], hi[2];
   bool collapsed[2][2]; // by direction, lower and upper edge: no normal anywhere on it
+  bool formula;         // partials are taken beside the place
 } CagLevelPatch;
 
 CagStatus cag_patch_open(const CagSurface *s, const CagLevel *level, const double lo[2],

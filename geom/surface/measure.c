@@ -13,6 +13,7 @@
 #include "geom/basis/quadrature.h"
 #include "geom/curve/family.h"
 #include "geom/surface/family.h"
+#include "geom/surface/function.h"
 #include "geom/surface/trimmed.h"
 
 // Nodes of the 15 point Kronrod rule on -1..1 (the odd ones are those of the 7 point Gauss rule)
@@ -354,13 +355,16 @@ static double coordinate(CagVec3 p, int axis) { return axis == 0 ? p.x : axis ==
 // Climbs sign * coordinate from (u, v) within the cell; gives the best value met.
 static CagStatus climb(const CagSurface *s, const Cell *c, double u, double v, int axis,
                        double sign, double *best, CagError *err) {
+  const bool formula = cag_surface_is_formula(s);
   double here = -INFINITY, step_limit = 1;
   double lu = c->u1 - c->u0, lv = c->v1 - c->v0, last_u = u, last_v = v;
   for (int k = 0; k < NEWTON_STEPS; k++) {
     CagVec3 d[9];
     CagSide su = u >= c->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
     CagSide sv = v >= c->v1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
-    CagStatus status = cag_surface_eval(s, u, v, 2, su, sv, d, err);
+    const double lo[2] = {c->u0, c->v0}, hi[2] = {c->u1, c->v1}, at[2] = {u, v};
+    CagStatus status = formula ? cag_surface_eval_beside(s, lo, hi, at, 2, d, err)
+                               : cag_surface_eval(s, u, v, 2, su, sv, d, err);
     if (status) return status;
     double value = sign * coordinate(d[0], axis);
     if (value > *best) *best = value;
