@@ -151,8 +151,13 @@ CagStatus cag_curve_to_nurbs(const CagCurve *c, CagCurve **out, CagError *err) {
                   c->kind->name);
 }
 
+// A planar transform that maps all of space to the plane: see cag_curve_flatten.
+static bool flattens(const CagTransform *t) {
+  return t->planar && t->m[2][0] == 0 && t->m[2][1] == 0 && t->m[2][2] == 0 && t->m[2][3] == 0;
+}
+
 int cag_curve_image_dimension(const CagCurve *c, const CagTransform *t) {
-  return c->dimension == 2 && t->planar ? 2 : 3;
+  return (c->dimension == 2 && t->planar) || flattens(t) ? 2 : 3;
 }
 
 CagStatus cag_curve_transform_nurbs(const CagCurve *c, const CagTransform *t, CagCurve **out,
@@ -190,6 +195,16 @@ CagStatus cag_curve_to_space(const CagCurve *c, CagCurve **out, CagError *err) {
   }
   CagTransform t = cag_transform_identity();
   t.planar = false;
+  return keep_unit(c, c->kind->transform(c, &t, out, err), out);
+}
+
+CagStatus cag_curve_flatten(const CagCurve *c, const CagTransform *frame, CagCurve **out,
+                            CagError *err) {
+  CagTransform t;
+  CagStatus status = cag_transform_inverse(frame, &t, err);
+  if (status) return status;
+  for (int k = 0; k < 4; k++) t.m[2][k] = 0;
+  t.planar = true;
   return keep_unit(c, c->kind->transform(c, &t, out, err), out);
 }
 

@@ -169,6 +169,9 @@ CagStatus cag_curve_without_stops(const CagCurve *c, CagCurve **out, CagError *e
 void cag_curve_lay_flat(CagCurve *c);
 // The curve as one of space (dimension 3), or its image under the map [x, y] -> [x, 0, y] used by
 // revolve.
+// The curve's image in the plane of the frame's x and y axes, in these coordinates: a plane curve.
+CagStatus cag_curve_flatten(const CagCurve *c, const CagTransform *frame, CagCurve **out,
+                            CagError *err);
 CagStatus cag_curve_to_space(const CagCurve *c, CagCurve **out, CagError *err);
 
 // Parameters of a polyline that stays within `tolerance` of the curve and turns by at most `angle`

@@ -218,9 +218,14 @@ const CagBuiltin cag_builtins_curves[] = {
     // --- Regions ---
     {"region(outline, holes = [])", cag_curves_region, "region",
      "The piece of the plane within a closed plane curve or a list of points, less its holes, "
-     "likewise given. Open or crossing outlines and holes outside are errors "
+     "likewise given. A list of closed curves that do not cross bounds what an odd number of them "
+     "surrounds. Boundaries in space must lie in one plane, and the region stays there: "
+     "region(section(G, plane)) is the cut face. Open or crossing outlines and holes outside are "
+     "errors "
      "(region-not-closed, region-crossing, hole-outside).",
-     "print near(area(region(circle(2), holes: [circle(1)])), 3 * pi) // expect: true",
+     "print near(area(region(circle(2), holes: [circle(1)])), 3 * pi) // expect: true\n"
+     "print near(area(region(section(box(4), plane([2, 2, 2], [1, 0, 1])))), 16 * sqrt(2)) // "
+     "expect: true",
      CURVES | CAG_TAKES(LIST), regions},
     {"polygon(points, holes = [])", cag_curves_polygon, "region",
      "The region within these points, less its holes.",

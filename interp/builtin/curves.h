@@ -41,4 +41,9 @@ bool cag_arg_circle_frame(CagCall *call, int at, CagTransform *out);
 // Weights, one for each of n points; NULL where there are none. "weight-count".
 bool cag_arg_weights(CagCall *call, int argument, size_t n, const double **out);
 
+// Brings loops given in space into the x, y plane of a frame, as plane curves; *in_space: it is not
+// that of the world. Fails with "not-planar".
+bool cag_region_loops_plane(CagCall *call, CagCurve **loops, size_t n, CagTransform *frame,
+                            bool *in_space);
+
 #endif

@@ -39,26 +39,48 @@ static bool read_loop(CagCall *call, int argument, CagValue v, CagCurve **out) {
   return ok;
 }
 
-bool cag_curves_region(CagCall *call, CagValue *result) {
-  CagList *holes = NULL;
-  CagCurve *outer = NULL, **loops = NULL;
+// The loops of a list of curves.
+static const CagList *list_of_curves(CagCall *call, CagValue v) {
+  if (v.type != CAG_LIST || CAG_AS_LIST(v)->dim != 0 || CAG_AS_LIST(v)->length == 0) return NULL;
+  const CagList *list = CAG_AS_LIST(v);
+  for (size_t i = 0; i < list->length; i++)
+    if (cag_list_get(call->vm, list, i).type != CAG_CURVE) return NULL;
+  return list;
+}
+
+// The region that the loops bound, the holes last, where it is.
+static bool bounded_by(CagCall *call, CagCurve **loops, size_t outer, size_t holes,
+                       CagValue *result) {
+  CagTransform frame;
+  bool in_space;
   CagRegion *region = NULL;
   CagError err;
+  if (!cag_region_loops_plane(call, loops, outer + holes, &frame, &in_space)) return false;
+  CagStatus status = outer == 1 ? cag_region_new(loops[0], loops + 1, holes, &region, &err)
+                                : cag_region_from_loops(loops, outer + holes, &region, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_region_value(call->vm, region, in_space ? &frame : NULL);
+  return true;
+}
+
+bool cag_curves_region(CagCall *call, CagValue *result) {
+  CagList *holes = NULL;
   if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
-  size_t n = holes ? holes->length : 0, read = 0;
-  if (!read_loop(call, 0, call->values[0], &outer)) return false;
-  loops = malloc((n + 1) * sizeof *loops);
+  const CagList *several = list_of_curves(call, call->values[0]);
+  const size_t outer = several ? several->length : 1, n = outer + (holes ? holes->length : 0);
+  CagCurve **loops = malloc(n * sizeof *loops);
   bool ok = loops != NULL;
+  size_t read = 0;
   if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (; ok && read < n; read += ok)
-    ok = read_loop(call, 1, cag_list_get(call->vm, holes, read), &loops[read]);
-  if (ok) {
-    CagStatus status = cag_region_new(outer, loops, n, &region, &err);
-    ok = give(call, status, &err, &region, result);
+  for (; ok && read < n; read += ok) {
+    const CagValue v = read >= outer ? cag_list_get(call->vm, holes, read - outer)
+                       : several     ? cag_list_get(call->vm, several, read)
+                                     : call->values[0];
+    ok = read_loop(call, read >= outer, v, &loops[read]);
   }
+  ok = ok && bounded_by(call, loops, outer, n - outer, result);
   for (size_t i = 0; i < read; i++) cag_curve_release(loops[i]);
   free(loops);
-  cag_curve_release(outer);
   return ok;
 }
 

@@ -1,0 +1,65 @@
+// Loops of a region that are given in space: their common plane, and their images in it.
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/surface/section.h"
+#include "interp/builtin/curves.h"
+
+// Part of the size within which curves lie in a plane.
+#define WITHIN 1e-9
+
+// The plane through the foot of the origin, its normal towards the side of Z, or else Y or X.
+static CagPlane upright(const CagPlane *plane) {
+  const CagVec3 n = plane->normal;
+  const double least = 1e-9, first = fabs(n.z) > least ? n.z : fabs(n.y) > least ? n.y : n.x;
+  const CagVec3 normal = first < 0 ? cag_scaled(n, -1) : n;
+  return (CagPlane){cag_scaled(normal, cag_dot(plane->point, normal)), normal};
+}
+
+static bool lies_in(const CagCurve *c, const CagPlane *plane, double size) {
+  enum { LOOKS = 32 };
+  for (int i = 0; i < LOOKS; i++) {
+    CagVec3 p;
+    CagError ignored;
+    if (cag_curve_point(c, c->start + (c->end - c->start) * i / LOOKS, &p, &ignored) ||
+        fabs(cag_dot(cag_sub(p, plane->point), plane->normal)) > WITHIN * size)
+      return false;
+  }
+  return true;
+}
+
+static double reach_of(const CagCurve *c) {
+  const CagBounds b = c->kind->hull(c, c->start, c->end);
+  return fmax(cag_norm(b.min), cag_norm(b.max));
+}
+
+bool cag_region_loops_plane(CagCall *call, CagCurve **loops, size_t n, CagTransform *frame,
+                            bool *in_space) {
+  CagPlane plane;
+  CagError err;
+  *in_space = false;
+  for (size_t i = 0; i < n; i++) *in_space = *in_space || loops[i]->dimension == 3;
+  if (!*in_space) return true;
+  bool common = cag_curve_is_planar(loops[0], &plane);
+  plane = upright(&plane);
+  for (size_t i = 0; common && i < n; i++)
+    common = cag_curve_is_planar(loops[i], NULL) && lies_in(loops[i], &plane, reach_of(loops[i]));
+  if (!common) {
+    const CagStatus status =
+        cag_fail(&err, CAG_E_ARGUMENT, "not-planar", "", -1,
+                 "expected boundaries that lie in one plane, found %s of space",
+                 n > 1 ? "curves" : "a curve");
+    return cag_geometry_ok(call, status, &err);
+  }
+  *frame = cag_plane_frame(&plane);
+  *in_space = cag_norm(plane.point) > 0 || plane.normal.z != 1;
+  for (size_t i = 0; i < n; i++) {
+    CagCurve *flat = NULL;
+    const CagStatus status = cag_curve_flatten(loops[i], frame, &flat, &err);
+    if (!cag_geometry_ok(call, status, &err)) return false;
+    cag_curve_release(loops[i]);
+    loops[i] = flat;
+  }
+  return true;
+}
