@@ -278,6 +278,16 @@ void inverse_keep(InverseTask *t, const double *found, CagConfiguration configur
   out->free |= free;
 }
 
+void inverse_keep_point(InverseTask *t, CagVec3 point, CagVec3 w, const double *q,
+                        CagConfiguration configuration, unsigned free) {
+  CagRobotFrame f;
+  forward(t->chain, q, &f);
+  const CagVec3 at = cag_madd(cag_madd(cag_madd(f.p, point.x, f.x), point.y, f.y), point.z, f.z);
+  if (cag_norm(cag_sub(at, w)) > POSE_ERROR * t->chain->reach) return;
+  t->target = f;
+  inverse_keep(t, q, configuration, free);
+}
+
 // --- Wrists ---
 
 // Joints 4, 5 and 6 for the pose of the tool seen from frame 3.
@@ -329,6 +339,14 @@ static void solve_pair(InverseTask *t, const CagRobotFrame *seen, const InverseA
   inverse_strip_left(r4, q[3], &f);
   q[4] = inverse_value(r5, atan2(f.x.y, f.x.x));
   inverse_keep(t, q, (CagConfiguration){arm->shoulder, arm->elbow, 0}, arm->free);
+}
+
+static void solve_arm_point(InverseTask *t, CagVec3 point, CagVec3 w) {
+  InverseArm arms[INVERSE_ARMS_MAX];
+  const size_t n = inverse_arms(t->chain, point, w, t->near, arms);
+  for (size_t i = 0; i < n; i++)
+    inverse_keep_point(t, point, w, arms[i].q,
+                       (CagConfiguration){arms[i].shoulder, arms[i].elbow, 0}, arms[i].free);
 }
 
 static void solve_arm(InverseTask *t, InverseKind kind) {
@@ -506,6 +524,49 @@ void cag_robot_inverse(const CagRobot *r, const CagTransform *target, const doub
   if (out->count) out->status = out->free ? CAG_INVERSE_SINGULAR : CAG_INVERSE_OK;
   else if (t.placed && c.n < 6) out->status = CAG_INVERSE_ORIENTATION;
   else out->status = CAG_INVERSE_UNREACHABLE;
+}
+
+static bool has_point_inverse(const InverseChain *c) {
+  const InverseKind kind = kind_of(c);
+  return kind == INVERSE_RRR || (kind == INVERSE_PLANE && inverse_plane_turns(c) <= 2);
+}
+
+bool cag_robot_has_point_inverse(const CagRobot *r) {
+  InverseChain c;
+  return chain_of(r, &c) && has_point_inverse(&c);
+}
+
+void cag_robot_inverse_point(const CagRobot *r, CagVec3 point, const double *near,
+                             CagInverse *out) {
+  static const double zeros[CAG_INVERSE_JOINTS_MAX] = {0};
+  InverseChain c;
+  out->count = 0;
+  out->free = 0;
+  out->status = CAG_INVERSE_NO_CLOSED_FORM;
+  if (!chain_of(r, &c) || !has_point_inverse(&c)) return;
+  InverseTask t = {.chain = &c, .near = near ? near : zeros, .out = out};
+  const CagTransform before = cag_robot_rigid_inverse(&c.before);
+  const CagVec3 w = cag_transform_point(&before, point);
+  const double(*m)[4] = c.after.m;
+  const CagVec3 tip = cag_vec3(m[0][3], m[1][3], m[2][3]);
+  if (kind_of(&c) == INVERSE_PLANE) inverse_plane_point(&t, tip, w);
+  else solve_arm_point(&t, tip, w);
+  sort_solutions(out);
+  if (out->count) out->status = out->free ? CAG_INVERSE_SINGULAR : CAG_INVERSE_OK;
+  else out->status = CAG_INVERSE_UNREACHABLE;
+}
+
+CagConfiguration cag_robot_branches(const CagRobot *r) {
+  InverseChain c;
+  switch (chain_of(r, &c) ? kind_of(&c) : INVERSE_NONE) {
+  case INVERSE_ARM_WRIST: return (CagConfiguration){1, c.row[2].turns, 1};
+  case INVERSE_ARM_PAIR:
+  case INVERSE_RRR: return (CagConfiguration){1, c.row[2].turns, 0};
+  case INVERSE_PARALLEL_6: return (CagConfiguration){1, 1, 1};
+  case INVERSE_PARALLEL_5: return (CagConfiguration){1, 1, 0};
+  case INVERSE_PLANE: return (CagConfiguration){0, inverse_plane_turns(&c) >= 2, 0};
+  default: return (CagConfiguration){0};
+  }
 }
 
 bool cag_robot_configuration(const CagRobot *r, const double *q, CagConfiguration *out) {

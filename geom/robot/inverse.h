@@ -33,8 +33,8 @@ typedef enum CagInverseStatus {
 // Which of the branches: +1 or -1, 0 where a chain has no such choice or, at a singular pose, it
 // makes no difference.
 //   shoulder   the point that the first three joints place lies before or behind the first axis
-//   elbow      sign of the sine of joint 3 (of arms with a forearm along axis 4: of d4 cos - a3
-//   sin) wrist      sign of the sine of joint 5
+//   elbow      sign of the sine of joint 3 (of planar arms of the second turning joint, of arms
+//   with a forearm along axis 4: of d4 cos - a3 sin) wrist      sign of the sine of joint 5
 typedef struct CagConfiguration {
   int shoulder, elbow, wrist;
 } CagConfiguration;
@@ -57,6 +57,13 @@ bool cag_robot_has_inverse(const CagRobot *r);
 // free joints.
 void cag_robot_inverse(const CagRobot *r, const CagTransform *target, const double *near,
                        CagInverse *out);
+// The same for a point that the tool's origin is to reach, whatever its orientation: of chains that
+// reach a point in finitely many ways, which are planar chains of one or two turning joints (and a
+// slide) and three turning joints in any arrangement.
+bool cag_robot_has_point_inverse(const CagRobot *r);
+void cag_robot_inverse_point(const CagRobot *r, CagVec3 point, const double *near, CagInverse *out);
+// Which choices a chain has: 1 in each branch that it tells apart, 0 in the others.
+CagConfiguration cag_robot_branches(const CagRobot *r);
 // The branch that joint values belong to; false for a chain without closed form.
 bool cag_robot_configuration(const CagRobot *r, const double *q, CagConfiguration *out);
 

@@ -242,7 +242,16 @@ typedef struct Plane {
   double slide_sense;
   double foot[2], start; // what stands before the first turn: its end, its turn
   double rest;           // angle behind the last turn
+  double last_sense;     // of the last row
 } Plane;
+
+// Sines this small are of a stretched or folded arm, whose branches coincide: joint values there
+// are known to the root of the rounding only.
+#define STRAIGHT 1e-7
+
+static int elbow_sign(double theta) {
+  return fabs(sin(theta)) < STRAIGHT ? 0 : sign_of(sin(theta));
+}
 
 static void plane_of(const InverseChain *c, Plane *p) {
   *p = (Plane){.slide = c->n};
@@ -263,10 +272,75 @@ static void plane_of(const InverseChain *c, Plane *p) {
     }
     p->height += sense * r->shift;
     p->rest = angle;
+    p->last_sense = sense;
     if (i + 1 < c->n) sense *= r->cosine < 0 ? -1 : 1;
   }
   p->length[p->n - 1] = inverse_length(x, y);
   p->lead[p->n - 1] = atan2(y, x);
+}
+
+size_t inverse_plane_turns(const InverseChain *c) {
+  Plane p;
+  plane_of(c, &p);
+  return p.n;
+}
+
+// Joint values of the plane's turning joints, for the angles of x behind each turn.
+static CagConfiguration plane_joints(const InverseChain *c, const Plane *p, const double *x_angle,
+                                     double *q) {
+  CagConfiguration label = {0};
+  double before = p->start;
+  for (size_t k = 0; k < p->n; k++) {
+    const double theta = p->sense[k] * (x_angle[k] - before);
+    q[p->joint[k]] = inverse_value(&c->row[p->joint[k]], theta);
+    before = x_angle[k];
+    // A slide between two turns may turn x by a constant angle.
+    if (k + 1 < p->n)
+      for (size_t j = p->joint[k] + 1; j < p->joint[k + 1]; j++)
+        before += p->sense[k] * (c->row[p->joint[k]].cosine < 0 ? -1 : 1) * c->row[j].angle;
+    if (k == 1) label.elbow = elbow_sign(theta);
+  }
+  return label;
+}
+
+void inverse_plane_point(InverseTask *t, CagVec3 point, CagVec3 w) {
+  const InverseChain *c = t->chain;
+  const InverseRow *end = &c->row[c->n - 1];
+  Plane p;
+  plane_of(c, &p);
+  const size_t last = p.n - 1;
+  // The point becomes part of the last link.
+  const CagVec3 tip = inverse_turn_x(point, end->sine, end->cosine);
+  const double across = p.last_sense * tip.y;
+  const double x = p.length[last] * cos(p.lead[last]) + tip.x * cos(p.rest) - across * sin(p.rest);
+  const double y = p.length[last] * sin(p.lead[last]) + tip.x * sin(p.rest) + across * cos(p.rest);
+  p.length[last] = inverse_length(x, y);
+  p.lead[last] = atan2(y, x);
+  double q[CAG_INVERSE_JOINTS_MAX] = {0}, p1[2], p2[2];
+  if (p.slide < c->n) q[p.slide] = p.slide_sense * (w.z - p.height - p.last_sense * tip.z);
+  const double to[2] = {w.x - p.foot[0], w.y - p.foot[1]};
+  const double nothing = INVERSE_NOTHING * c->reach;
+  unsigned free = 0;
+  int n = 1;
+  p1[0] = p2[0] = atan2(to[1], to[0]);
+  if (p.n == 2 && p.length[1] < nothing) { // the second joint turns the tool about the point
+    p2[0] = p1[0] - p.lead[0] + p.lead[1] +
+            p.sense[1] * inverse_theta(&c->row[p.joint[1]], t->near[p.joint[1]]);
+    free = 1u << p.joint[1];
+  } else if (p.n == 2 && inverse_length(to[0], to[1]) < nothing &&
+             fabs(p.length[0] - p.length[1]) < nothing) { // folded, and turned as one likes
+    p1[0] =
+        p.start + p.lead[0] + p.sense[0] * inverse_theta(&c->row[p.joint[0]], t->near[p.joint[0]]);
+    p2[0] = p1[0] + M_PI;
+    free = 1u << p.joint[0];
+  } else if (p.n == 2 && p.length[0] >= nothing) {
+    n = two_links(p.length[0], p.length[1], to[0], to[1], c->reach, p1, p2);
+  }
+  for (int i = 0; i < n; i++) {
+    const double x_angle[2] = {p1[i] - p.lead[0], p.n == 2 ? p2[i] - p.lead[1] : 0};
+    const CagConfiguration label = plane_joints(c, &p, x_angle, q);
+    inverse_keep_point(t, point, w, q, free ? (CagConfiguration){0} : label, free);
+  }
 }
 
 // Solves for the angles of the links; `turn` is the whole turn of the tool.
@@ -284,7 +358,7 @@ void inverse_plane(InverseTask *t) {
                          p.length[last] * sin(turn + p.lead[last])};
   const double x = f.p.x - p.foot[0] - tip[0], y = f.p.y - p.foot[1] - tip[1];
   const double nothing = INVERSE_NOTHING * c->reach;
-  double p1[2], p2[2];
+  double p1[2] = {0}, p2[2] = {0};
   int n = 1;
   if (p.n == 3) n = two_links(p.length[0], p.length[1], x, y, c->reach, p1, p2);
   else if (p.n == 2)
@@ -301,18 +375,7 @@ void inverse_plane(InverseTask *t) {
     if (p.n >= 2) x_angle[0] = p1[i] - p.lead[0];
     if (p.n == 3) x_angle[1] = p2[i] - p.lead[1];
     if (p.n == 2 && p.length[0] < nothing) x_angle[0] = t->near[p.joint[0]], free = 1;
-    double before = p.start;
-    CagConfiguration label = {0};
-    for (size_t k = 0; k < p.n; k++) {
-      const double theta = p.sense[k] * (x_angle[k] - before);
-      q[p.joint[k]] = inverse_value(&c->row[p.joint[k]], theta);
-      before = x_angle[k];
-      // A slide between two turns may turn x by a constant angle.
-      if (k + 1 < p.n)
-        for (size_t j = p.joint[k] + 1; j < p.joint[k + 1]; j++)
-          before += p.sense[k] * (c->row[p.joint[k]].cosine < 0 ? -1 : 1) * c->row[j].angle;
-      if (k == 1 && p.n == 3) label.elbow = sign_of(sin(theta));
-    }
+    const CagConfiguration label = plane_joints(c, &p, x_angle, q);
     inverse_keep(t, q, label, free);
   }
 }
@@ -321,5 +384,5 @@ void inverse_plane_labels(const InverseChain *c, const double *q, CagConfigurati
   Plane p;
   plane_of(c, &p);
   *out = (CagConfiguration){0};
-  if (p.n == 3) out->elbow = sign_of(sin(inverse_theta(&c->row[p.joint[1]], q[p.joint[1]])));
+  if (p.n >= 2) out->elbow = elbow_sign(inverse_theta(&c->row[p.joint[1]], q[p.joint[1]]));
 }

@@ -112,6 +112,12 @@ bool inverse_is_parallel(const InverseChain *c);
 void inverse_plane(InverseTask *t);
 void inverse_plane_labels(const InverseChain *c, const double *q, CagConfiguration *out);
 bool inverse_is_plane(const InverseChain *c);
+size_t inverse_plane_turns(const InverseChain *c);
+// Of chains of one or two turning joints: all ways to bring `point` of the last frame to w.
+void inverse_plane_point(InverseTask *t, CagVec3 point, CagVec3 w);
+// Keeps a solution that brings `point` of the last frame to w; its own pose becomes the target.
+void inverse_keep_point(InverseTask *t, CagVec3 point, CagVec3 w, const double *q,
+                        CagConfiguration configuration, unsigned free);
 
 // Keeps a solution if it is none of those found.
 void inverse_keep(InverseTask *t, const double *q, CagConfiguration configuration, unsigned free);

@@ -264,6 +264,90 @@ static void descend(const Problem *p, State *s, double damping_start, size_t ste
   }
 }
 
+// Solves the n equations of a symmetric matrix (its lower part is overwritten) by Cholesky's
+// factors. False: it is not positive definite.
+static bool solve_definite(double m[][CAG_ROBOT_JOINTS_MAX], size_t n, double *x) {
+  for (size_t k = 0; k < n; k++) {
+    for (size_t j = 0; j < k; j++) m[k][k] -= m[k][j] * m[k][j];
+    if (!(m[k][k] > 0)) return false;
+    m[k][k] = sqrt(m[k][k]);
+    for (size_t i = k + 1; i < n; i++) {
+      for (size_t j = 0; j < k; j++) m[i][k] -= m[i][j] * m[k][j];
+      m[i][k] /= m[k][k];
+    }
+  }
+  for (size_t k = 0; k < n; k++) {
+    for (size_t j = 0; j < k; j++) x[k] -= m[k][j] * x[j];
+    x[k] /= m[k][k];
+  }
+  for (size_t k = n; k-- > 0;) {
+    for (size_t j = k + 1; j < n; j++) x[k] -= m[j][k] * x[j];
+    x[k] /= m[k][k];
+  }
+  return true;
+}
+
+// The gradient of half the squared error, in the problem's units: for the rotation vector this is
+// exact, since it lies along the axis of the turn that is left.
+static double gradient(const State *s, size_t joint) {
+  return -dot_six(s->columns[joint], s->error);
+}
+
+// Second derivatives of half the squared error over the free joints, from differences of the
+// gradient; the lower part.
+static void second_derivatives(const Problem *p, const State *s, const size_t *free, size_t n,
+                               double m[][CAG_ROBOT_JOINTS_MAX]) {
+  const double h = 1e-5; // the error, h squared, is below that of the rounding, 1e-16 / h
+  State sides[2];
+  for (size_t k = 0; k < n; k++) {
+    for (int side = 0; side < 2; side++) {
+      memcpy(sides[side].q, s->q, p->n * sizeof *s->q);
+      sides[side].q[free[k]] += (side ? h : -h) * p->unit[free[k]];
+      evaluate(p, &sides[side]);
+    }
+    for (size_t i = k; i < n; i++)
+      m[i][k] = (gradient(&sides[1], free[i]) - gradient(&sides[0], free[i])) / (2 * h);
+  }
+}
+
+// Brings the nearest place to rest. Where a target is out of reach the error that stays bends the
+// way as much as the chain does, and the steps above, which leave that out, creep; these are
+// Newton's own, damped until they help, within the limits.
+static void rest_nearest(const Problem *p, State *s) {
+  const int rounds = 100;
+  const double raise = 8, lower = 0.1, most = 1e8, still = 1e-14;
+  double m[CAG_ROBOT_JOINTS_MAX][CAG_ROBOT_JOINTS_MAX], x[CAG_ROBOT_JOINTS_MAX], damping = 1e-3;
+  double step[CAG_ROBOT_JOINTS_MAX];
+  State next;
+  for (int round = 0; round < rounds && damping < most; round++) {
+    size_t free[CAG_ROBOT_JOINTS_MAX], n = 0;
+    double steep = 0;
+    for (size_t i = 0; i < p->n; i++) {
+      const double g = gradient(s, i);
+      step[i] = 0;
+      if ((s->q[i] <= p->low[i] && g > 0) || (s->q[i] >= p->high[i] && g < 0)) continue;
+      free[n++] = i;
+      steep = fmax(steep, fabs(g));
+    }
+    if (!(steep > still * s->square)) return;
+    second_derivatives(p, s, free, n, m);
+    for (size_t k = 0; k < n; k++) m[k][k] += damping, x[k] = -gradient(s, free[k]);
+    if (!solve_definite(m, n, x)) {
+      damping *= raise;
+      continue;
+    }
+    for (size_t k = 0; k < n; k++)
+      step[free[k]] = fmax(-STEP_MAX, fmin(STEP_MAX, x[k])) * p->unit[free[k]];
+    take_step(p, s, step, &next);
+    if (next.square < s->square) {
+      *s = next;
+      damping = fmax(damping * lower, DAMPING_LEAST);
+    } else {
+      damping *= raise;
+    }
+  }
+}
+
 // --- Freedom to spare ---
 
 // The part of `rates` (in units of the problem) that leaves the tool where it is; joints that are
@@ -404,9 +488,11 @@ CagRobotFound cag_robot_search(const CagRobot *r, const CagTransform *target,
     found = found || solved;
     if ((found && left == 0) || p.n == 0) break;
   }
-  if (!found && search->starts != 1)
+  if (!found && search->starts != 1) {
     descend(&p, &best, DAMPING * best.square + DAMPING_LEAST, DESCENT_STEPS);
-  polish(&p, &best);
+    rest_nearest(&p, &best);
+  }
+  if (found || search->starts == 1) polish(&p, &best);
   if (found && search->stay_near && p.n > p.rows) settle(&p, &best, near);
   memcpy(q, best.q, p.n * sizeof *q);
   return (CagRobotFound){content(&p, &best), best.position, best.rotation, steps};

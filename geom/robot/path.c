@@ -47,7 +47,10 @@ static bool solve_closed(const CagRobot *r, const CagTransform *target, const Ca
                          const double *near, double *q) {
   CagInverse all;
   double nearest = INFINITY;
-  cag_robot_inverse(r, target, near, &all);
+  const double(*m)[4] = target->m;
+  if (goal->position_only)
+    cag_robot_inverse_point(r, cag_vec3(m[0][3], m[1][3], m[2][3]), near, &all);
+  else cag_robot_inverse(r, target, near, &all);
   for (size_t i = 0; i < all.count; i++) {
     CagInverseSolution *s = &all.solutions[i];
     const CagConfiguration *c = &s->configuration;
@@ -62,17 +65,46 @@ static bool solve_closed(const CagRobot *r, const CagTransform *target, const Ca
   return nearest < INFINITY;
 }
 
+// A branch that is asked for must be one that the arm tells apart.
+static CagStatus check_branches(const CagRobot *r, const CagRobotGoal *goal, bool closed,
+                                CagError *err) {
+  const CagConfiguration has = cag_robot_branches(r);
+  const int wanted[] = {goal->shoulder, goal->elbow, goal->wrist};
+  const int there[] = {has.shoulder, has.elbow, has.wrist};
+  static const char *const names[] = {"shoulder", "elbow", "wrist"};
+  for (int i = 0; i < 3; i++) {
+    if (!wanted[i]) continue;
+    if (!closed)
+      return cag_fail(
+          err, CAG_E_UNSUPPORTED, "no-closed-form", "config", -1,
+          goal->position_only && cag_robot_has_inverse(r)
+              ? "a point leaves the tool's orientation open, so that the branches have "
+                "no names; give a pose, or choose by `near`"
+              : "the arm has no closed form, so that its branches have no names; choose "
+                "by `near`");
+    if (!there[i])
+      return cag_fail(err, CAG_E_UNSUPPORTED, "no-closed-form", "config", -1,
+                      "the arm has no choice of `%s`; `ik_all` tells its branches", names[i]);
+  }
+  return CAG_OK;
+}
+
 CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const CagRobotGoal *goal,
                           double *q, CagRobotFound *found, CagError *err) {
   double home[CAG_ROBOT_JOINTS_MAX];
-  const bool closed = !goal->position_only && cag_robot_has_inverse(r);
+  const bool closed =
+      goal->position_only ? cag_robot_has_point_inverse(r) : cag_robot_has_inverse(r);
   const bool branch = goal->shoulder || goal->elbow || goal->wrist;
+  *found = (CagRobotFound){0};
   cag_robot_home(r, home);
+  CagStatus status = check_branches(r, goal, closed, err);
+  if (status != CAG_OK) return status;
   if (closed && solve_closed(r, target, goal, goal->near ? goal->near : home, q)) {
     CagTransform pose;
     *found = (CagRobotFound){.solved = true};
     cag_robot_forward(r, q, &pose);
     cag_robot_pose_distance(&pose, target, &found->position, &found->rotation);
+    if (goal->position_only) found->rotation = 0;
     return CAG_OK;
   }
   double tolerance = goal->tolerance > 0 ? goal->tolerance : TOLERANCE_DEFAULT;
@@ -82,10 +114,6 @@ CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const C
                            .position_only = goal->position_only,
                            .alternatives = ALTERNATIVES,
                            .stay_near = true};
-  if (branch && !closed)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "no-closed-form", "config", -1,
-                    "the arm has no closed form, so that its branches have no names; choose by "
-                    "`near`");
   *found = cag_robot_search(r, target, &search, q);
   if (branch && found->solved)
     return cag_fail(err, CAG_E_DEGENERATE, "unreachable", "config", -1,

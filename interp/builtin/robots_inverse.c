@@ -37,7 +37,11 @@ static CagValue solution_value(CagVm *vm, const CagRobot *r, const CagInverseSol
   return cag_record_new(vm, names, values, 3);
 }
 
-static bool fail_no_closed_form(CagCall *call) {
+static bool fail_no_closed_form(CagCall *call, const CagRobot *r, bool point) {
+  if (point && cag_robot_has_inverse(r))
+    return cag_fail_call(call, 1, CAG_ERR_no_closed_form,
+                         "expects a pose, since the arm reaches a point in infinitely many ways; "
+                         "`ik` finds one of them");
   return cag_fail_call(call, 0, CAG_ERR_no_closed_form,
                        "expects an arm whose inverse has a closed form; `ik` solves any other "
                        "numerically");
@@ -51,11 +55,15 @@ static bool ik_all(CagCall *call, CagValue *result) {
   CagTransform target;
   CagInverse all;
   double near[CAG_ROBOT_JOINTS_MAX];
-  if (!cag_arg_robot(call, 0, &r) || !cag_arg_pose(call, 1, &target) ||
+  const bool point = call->values[1].type == CAG_LIST;
+  CagVec3 at = {0, 0, 0};
+  if (!cag_arg_robot(call, 0, &r) ||
+      !(point ? cag_arg_vec(call, 1, &at, NULL) : cag_arg_pose(call, 1, &target)) ||
       !cag_arg_joints_or_home(call, 2, r, false, near))
     return false;
-  cag_robot_inverse(r, &target, near, &all);
-  if (all.status == CAG_INVERSE_NO_CLOSED_FORM) return fail_no_closed_form(call);
+  if (point) cag_robot_inverse_point(r, at, near, &all);
+  else cag_robot_inverse(r, &target, near, &all);
+  if (all.status == CAG_INVERSE_NO_CLOSED_FORM) return fail_no_closed_form(call, r, point);
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < all.count; i++)
     if (!cag_builder_add(call->vm, list, solution_value(call->vm, r, &all.solutions[i])))
@@ -72,7 +80,7 @@ static bool configuration(CagCall *call, CagValue *result) {
   CagConfiguration c;
   double q[CAG_ROBOT_JOINTS_MAX];
   if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints(call, 1, r, false, q)) return false;
-  if (!cag_robot_configuration(r, q, &c)) return fail_no_closed_form(call);
+  if (!cag_robot_configuration(r, q, &c)) return fail_no_closed_form(call, r, false);
   *result = config_value(call->vm, &c);
   return true;
 }
@@ -88,7 +96,9 @@ const CagBuiltin cag_builtins_inverse[] = {
      "six joints, \"singular\"), `solutions` (records of `q`, `config` with the branch, 1 or -1, "
      "as shoulder, elbow and wrist, and `free`), `free`: the joints, from 1, that are free in a "
      "singular family and stand where `near` has them. Arms are known by their structure: any with "
-     "a spherical wrist or with axes 2, 3, 4 parallel, SCARA and planar arms, those of slides.",
+     "a spherical wrist or with axes 2, 3, 4 parallel, SCARA and planar arms, those of slides. A "
+     "point as T leaves the tool's orientation open, for arms that reach it in finitely many ways: "
+     "planar and SCARA arms of two turning joints, and any three turning joints.",
      ARM "all = ik_all(puma, fk(puma, [35deg, -60deg, 100deg, 25deg, -40deg, 110deg]))\n"
          "print all.status, len(all.solutions), all.solutions[0].config // expect: ok 8 {shoulder: "
          "1, elbow: 1, wrist: 1}",
@@ -96,7 +106,9 @@ const CagBuiltin cag_builtins_inverse[] = {
     {"configuration(robot, q)", configuration, "record",
      "The branch that joint values belong to, 1 or -1 each: shoulder (before or behind the first "
      "axis), elbow (the side to which it is bent), wrist (the sign of the sine of joint 5), as far "
-     "as the arm has them.",
+     "as the arm has them; the elbow of a planar or SCARA arm is the sign of the sine of its "
+     "second "
+     "turning joint.",
      ARM "print configuration(puma, [35deg, -60deg, 100deg, 25deg, -40deg, 110deg]) // expect: "
          "{shoulder: 1, elbow: -1, wrist: -1}",
      CAG_TAKES(ROBOT), "Robots: inverse kinematics"},

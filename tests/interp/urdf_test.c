@@ -413,6 +413,32 @@ static void masses_are_those_of_the_shapes(void **state) {
   free(text);
 }
 
+// A tube without lids, a sheet, a flat mesh, and a curve close no volume.
+static void open_shapes_have_no_mass(void **state) {
+  (void)state;
+  static const char *const open[] = {"extrude(circle(30), 100, caps: false)",
+                                     "mesh([[0, 0, 0], [100, 0, 0], [0, 100, 0]], [[0, 1, 2]])",
+                                     "revolve(polyline([[20, 0], [30, 50], [25, 90]]))"};
+  const double water = 1000 * M_PI * 0.03 * 0.03 * 0.1;
+  for (size_t i = 0; i < sizeof open / sizeof *open; i++) {
+    char script[512];
+    snprintf(script, sizeof script, "show robot([revolute(a: 100, shape: %s)])\n", open[i]);
+    free(run(script, "open.urdf"));
+    char *text = read_whole("open.urdf");
+    assert_null(strstr(text, "<mass"));
+    free(text);
+    // Beside a body it adds nothing, wherever it lies.
+    snprintf(script, sizeof script,
+             "show robot([revolute(a: 100, shape: [cylinder(100, 30), translate(%s, [500, 0, "
+             "0])])])\n",
+             open[i]);
+    free(run(script, "beside.urdf"));
+    text = read_whole("beside.urdf");
+    assert_true(fabs(number_after(text, "<mass value=\"") - water) < 1e-9 * water);
+    free(text);
+  }
+}
+
 static void rates_and_efforts_are_in_metres(void **state) {
   (void)state;
   static Robot robot;
@@ -560,6 +586,7 @@ int main(void) {
       cmocka_unit_test(what_was_written_is_read_back),
       cmocka_unit_test(axes_in_any_direction_are_read),
       cmocka_unit_test(masses_are_those_of_the_shapes),
+      cmocka_unit_test(open_shapes_have_no_mass),
       cmocka_unit_test(rates_and_efforts_are_in_metres),
       cmocka_unit_test(what_is_no_robot_is_refused),
       cmocka_unit_test(deep_and_large_files_are_refused),
