@@ -81,6 +81,8 @@ CAG_API void cag_session_define(CagSession *s, const char *name, const char *val
 CAG_API void cag_session_clear_defines(CagSession *s);
 // time, frame and frames of the scripts run later; frames >= 1.
 CAG_API void cag_session_set_frame(CagSession *s, double frame, double frames);
+// Whether time is frame/frames, for films that repeat, in place of frame/(frames - 1).
+CAG_API void cag_session_set_loop(CagSession *s, bool loop);
 
 // Runs a script anew: prints, asserts; what it shows is kept until the next run. "-" is standard
 // input. The status says how it ended, and the diagnostics why.
@@ -135,12 +137,13 @@ typedef struct CagRenderRegion {
 } CagRenderRegion;
 
 typedef struct CagRenderOptions {
-  int width, height;      // pixels; 0: the camera's
-  const char *quality;    // "draft", "normal", "final"
-  const char *camera;     // its name; NULL: the first
-  double exposure;        // stops, for .png
-  int threads;            // 0: one for each processor
-  double time_limit;      // seconds of the renderer; 0: what is left of max_time
+  int width, height;   // pixels; 0: the camera's
+  const char *quality; // "draft", "normal", "final"
+  int samples;         // of a lens for each pixel (cameras with an aperture); 0: by the quality
+  const char *camera;  // its name, or top, bottom, front, back, left, right, iso; NULL: the first
+  double exposure;     // stops, for .png
+  int threads;         // 0: one for each processor
+  double time_limit;   // seconds of the renderer; 0: what is left of max_time
   CagRenderRegion region; // only this part is rendered and written
   void (*progress)(void *context, double percent, const char *phase);
   void *progress_context;

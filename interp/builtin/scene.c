@@ -16,9 +16,11 @@ const CagBuiltin cag_builtins_scene[] = {
      cag_scenes_camera, "camera",
      "A camera at `eye` that looks at `target`. `fov` is the horizontal angle of view; an "
      "\"orthographic\" one sees `width` mm (none: what it would see at the target). `size` is in "
-     "pixels. With an `aperture` (mm) only what is at the distance `focus` (mm; none: the target) "
-     "is "
-     "sharp. When the view is along `up`, Y is up. One point as eye and target is an error.",
+     "pixels. With an `aperture` (mm, the diameter of the lens) only what is at the distance "
+     "`focus` (mm; "
+     "none: the target) is sharp; a point at the distance z is as wide as a disc of aperture "
+     "|z - focus| / z there. A camera that is reflected gives the mirrored picture. When the view "
+     "is along `up`, Y is up. One point as eye and target is an error.",
      "print camera([100, -200, 80]).fov // expect: 40deg", LISTS, stage},
     {"sun(direction, color = \"white\", strength = 1)", cag_scenes_sun, "light",
      "Parallel light that goes along `direction`. With strength 1 a white matte face square to it "

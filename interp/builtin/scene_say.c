@@ -141,6 +141,7 @@ static CagValue with_field(CagVm *vm, CagValue v, const char *name, CagValue val
   values[n++] = value;
   CagValue copy = cag_scene_value(vm, v.type, old->kind, cag_record_new(vm, names, values, n));
   CAG_AS_SCENE(copy)->placement = old->placement;
+  CAG_AS_SCENE(copy)->mirrored = old->mirrored;
   return copy;
 }
 

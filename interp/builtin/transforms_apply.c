@@ -90,6 +90,7 @@ static bool apply_scene(CagCall *call, const CagTransform *t, CagValue v, CagVal
   CagValue record = cag_record_from_texts(call->vm, old->fields->layout->names, fields, n);
   *result = cag_scene_value(call->vm, v.type, old->kind, record);
   CAG_AS_SCENE(*result)->placement = cag_transform_identity();
+  CAG_AS_SCENE(*result)->mirrored = old->mirrored != cag_transform_mirrors(t);
   return true;
 }
 

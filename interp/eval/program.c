@@ -78,13 +78,19 @@ static bool is_within(CagVm *vm, CagModuleUnit *m, const CagStatement *s, CagVal
   return false;
 }
 
+// A text may stand in quotes, as it does in a script, or be written as it is.
+static bool is_quoted(const char *value) {
+  const size_t n = strlen(value);
+  return n >= 2 && value[0] == '"' && value[n - 1] == '"';
+}
+
 static bool set_param(CagVm *vm, CagModuleUnit *m, const CagStatement *s, const CagDefine *d) {
   size_t g = m->tops[s->as.param.decl->index];
   CagValue standard, v;
   if (!cag_vm_force(vm, g, &standard)) return false;
   if (s->as.param.domain && !is_within(vm, m, s, standard, CAG_ERR_param_default)) return false;
   if (!d) return true;
-  if (standard.type == CAG_TEXT) v = cag_text_c(vm, d->value);
+  if (standard.type == CAG_TEXT && !is_quoted(d->value)) v = cag_text_c(vm, d->value);
   else if (!evaluate_define(vm, d->name, d->value, &v)) return false;
   if (!same_type(standard, v)) {
     vm->failed = true;
@@ -128,9 +134,10 @@ static bool set_time(CagVm *vm, const CagModuleUnit *m, const CagDefine *defines
     given[k] = true;
   }
   if (!given[CAG_GLOBAL_TIME])
-    values[CAG_GLOBAL_TIME] = values[CAG_GLOBAL_FRAMES] > 1
-                                  ? values[CAG_GLOBAL_FRAME] / (values[CAG_GLOBAL_FRAMES] - 1)
-                                  : 0;
+    values[CAG_GLOBAL_TIME] =
+        values[CAG_GLOBAL_FRAMES] > 1
+            ? values[CAG_GLOBAL_FRAME] / (values[CAG_GLOBAL_FRAMES] - (vm->loop ? 0 : 1))
+            : 0;
   for (size_t k = 0; k < CAG_GLOBAL_RESERVED; k++) vm->globals[k].value = cag_number(values[k]);
   return true;
 }

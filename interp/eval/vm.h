@@ -214,6 +214,7 @@ struct CagVm {
   double max_time;   // seconds; 0: none
   struct timespec started;
   size_t max_triangles;
+  bool loop; // time is frame/frames
   double tolerance;
   char *root;     // real path of the folder of the main script; NULL: none (no file may be read)
   char **include; // real paths of the module path

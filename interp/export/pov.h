@@ -37,6 +37,7 @@ typedef enum CagPovCsg {
 
 typedef struct CagPovOptions {
   CagPovQuality quality;
+  int samples;      // of a lens for each pixel; 0: by the quality
   size_t camera;    // index into the scene's cameras
   int size[2];      // pixels; 0: those of the camera. Only their ratio is written
   bool meshes_only; // no native objects: to compare, or for a reader that knows meshes only
@@ -44,7 +45,7 @@ typedef struct CagPovOptions {
 } CagPovOptions;
 
 #define CAG_POV_OPTIONS_DEFAULT                                                                    \
-  ((CagPovOptions){CAG_POV_NORMAL, 0, {0, 0}, false, CAG_POV_CSG_GENERAL})
+  ((CagPovOptions){.quality = CAG_POV_NORMAL, .csg = CAG_POV_CSG_GENERAL})
 
 // Writes the scene, which cag_scene_complete has gone over, to an open file. Geometry that cannot
 // be meshed is an error; errors of writing stay in the file until its commit.

@@ -368,7 +368,7 @@ static CagPovrayEnd render_in_folder(const CagPovrayJob *job, const char *progra
                              edges[2],
                              edges[3],
                              (char *)QUALITIES[q].quality,
-                             (char *)QUALITIES[q].antialias,
+                             job->lens ? "-A" : (char *)QUALITIES[q].antialias,
                              (char *)QUALITIES[q].method,
                              (char *)QUALITIES[q].depth,
                              "-J",

@@ -48,9 +48,10 @@ typedef struct CagPovrayJob {
   // Only this part is rendered, the rest of the picture stays black; a width of 0: all of it.
   int region_x, region_y, region_width, region_height;
   CagPovrayQuality quality;
-  bool alpha;                               // write a channel A: the background is transparent
-  int threads;                              // 0: one for each processor
-  double time_limit;                        // seconds, 0 for none
+  bool lens;         // samples of a lens smooth the edges as well: no further antialiasing
+  bool alpha;        // write a channel A: the background is transparent
+  int threads;       // 0: one for each processor
+  double time_limit; // seconds, 0 for none
   const volatile sig_atomic_t *interrupted; // the run ends when it becomes nonzero; may be NULL
   CagPovrayProgress progress;               // may be NULL
   void *progress_user;

@@ -321,7 +321,8 @@ static void add_camera(Build *b, const CagSceneValue *v, const char *name) {
                  .width = number_field(r, "width", 0),
                  .size = {(int)size.x, (int)size.y},
                  .focus = number_field(r, "focus", 0),
-                 .aperture = number_field(r, "aperture", 0)};
+                 .aperture = number_field(r, "aperture", 0),
+                 .mirrored = v->mirrored != cag_transform_mirrors(place)};
   CagVec3 view = cag_sub(c.target, c.eye);
   CagVec3 up = cag_transform_vector(place, point_field(r, "up", cag_vec3(0, 0, 1)));
   c.up = square_up(view, up);

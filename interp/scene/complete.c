@@ -14,8 +14,6 @@
 
 #include "interp/scene/scene.h"
 
-// Part of half the picture that stays free on each side.
-#define MARGIN 0.09
 static const double AUTOMATIC_FOV = 0.52; // radians, about 30 degrees: a calm perspective
 // From the target to the automatic camera.
 static const CagVec3 THREE_QUARTERS = {0.62, -1, 0.55};
@@ -30,131 +28,19 @@ static void join(CagBounds *into, const CagBounds *b) {
   cag_bounds_add(into, b->max);
 }
 
-static CagStatus region_bounds(const CagItem *item, CagBounds *out, CagError *err) {
-  *out = CAG_BOUNDS_EMPTY;
-  if (cag_region_is_empty(item->as.region)) return cag_region_bounds(item->as.region, out, err);
-  for (size_t i = 0; i < item->as.region->count; i++) {
-    CagCurve *placed = NULL;
-    CagBounds loop;
-    CagStatus status =
-        cag_curve_transform(item->as.region->loops[i], &item->placement, &placed, err);
-    if (status == CAG_OK) status = cag_curve_bounds(placed, &loop, err);
-    cag_curve_release(placed);
-    if (status != CAG_OK) return status;
-    join(out, &loop);
-  }
-  return CAG_OK;
-}
-
-static CagStatus item_bounds(const CagItem *item, CagBounds *out, CagError *err) {
-  *out = CAG_BOUNDS_EMPTY;
-  switch (item->kind) {
-  case CAG_ITEM_CURVE: return cag_curve_bounds(item->as.curve, out, err);
-  case CAG_ITEM_REGION: return region_bounds(item, out, err);
-  case CAG_ITEM_SURFACE: return cag_surface_bounds(item->as.surface, out, err);
-  case CAG_ITEM_SOLID: return cag_solid_bounds(item->as.solid, out, err);
-  case CAG_ITEM_MESH:
-    *out = cag_mesh_bounds(item->as.mesh);
-    if (item->as.mesh->triangle_count > 0) return CAG_OK;
-    return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1, "the mesh has no triangles");
-  case CAG_ITEM_GROUND: return CAG_OK;
-  }
-  return CAG_OK;
-}
-
-static CagVec3 corner(const CagBounds *b, int k) {
-  return cag_vec3(k & 1 ? b->max.x : b->min.x, k & 2 ? b->max.y : b->min.y,
-                  k & 4 ? b->max.z : b->min.z);
-}
-
-// --- Camera ---
-
 static CagVec3 column(const CagTransform *t, int j) {
   return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
 }
 
-// How far the corners reach in the picture's direction a (0: right, 1: down), as limits of where
-// the eye may stand at depth 0: each corner at (x, z) asks for x - k z <= e + k d and
-// e - k d <= x + k z, with k the tangent of half the angle of view and d the distance.
-typedef struct Reach {
-  double high, low;
-} Reach;
-
-static void reach(const CagBounds *boxes, size_t n, const CagTransform *frame, CagVec3 center,
-                  int a, double k, Reach *out) {
-  *out = (Reach){-INFINITY, INFINITY};
-  for (size_t i = 0; i < n; i++) {
-    if (boxes[i].min.x > boxes[i].max.x) continue;
-    for (int c = 0; c < 8; c++) {
-      CagVec3 p = cag_sub(corner(&boxes[i], c), center);
-      double x = cag_dot(p, column(frame, a)), z = cag_dot(p, column(frame, 2));
-      out->high = fmax(out->high, x - k * z);
-      out->low = fmin(out->low, x + k * z);
-    }
-  }
-}
-
-// Moves the camera, its direction kept, so that all boxes just fit.
-static void fit(CagCamera *c, const CagBounds *boxes, size_t n, CagVec3 center, double radius) {
-  CagTransform frame = cag_camera_frame(c);
-  CagVec3 view = column(&frame, 2);
-  double aspect = (double)c->size[0] / c->size[1];
-  double k[2] = {c->orthographic ? 0 : tan(c->fov / 2) * (1 - MARGIN), 0};
-  Reach r[2];
-  k[1] = k[0] / aspect;
-  for (int a = 0; a < 2; a++) reach(boxes, n, &frame, center, a, k[a], &r[a]);
-  double middle[2], distance = 2 * radius;
-  for (int a = 0; a < 2; a++) {
-    middle[a] = (r[a].high + r[a].low) / 2;
-    if (!c->orthographic) {
-      double needed = (r[a].high - r[a].low) / (2 * k[a]);
-      distance = a == 0 ? needed : fmax(distance, needed);
-    }
-  }
-  if (c->orthographic) {
-    double wide = r[0].high - r[0].low, tall = (r[1].high - r[1].low) * aspect;
-    c->width = fmax(fmax(wide, tall), 1e-9 * radius) / (1 - MARGIN);
-  }
-  // A single point has no reach: any distance shows it.
-  if (!(distance > 0)) distance = 2 * radius;
-  CagVec3 on_axis =
-      cag_madd(cag_madd(center, middle[0], column(&frame, 0)), middle[1], column(&frame, 1));
-  c->target = on_axis;
-  c->eye = cag_madd(on_axis, -distance, view);
-}
+// --- Camera ---
 
 static bool is_flat(const CagBounds *b) {
   CagVec3 size = cag_sub(b->max, b->min);
   return size.z <= FLAT * fmax(size.x, size.y);
 }
 
-// The box to frame: where nothing is shown, some room about the origin.
-static CagBounds framed(const CagScene *s) {
-  if (s->bounds.min.x <= s->bounds.max.x) return s->bounds;
-  return (CagBounds){{-50, -50, 0}, {50, 50, 50}};
-}
-
-static double radius_of(const CagBounds *b) {
-  double radius = cag_norm(cag_sub(b->max, b->min)) / 2;
-  return radius > 0 ? radius : 1;
-}
-
-// A box whose bounds cannot be told, or for which memory is out, does not count.
-void cag_camera_frame_all(const CagScene *s, CagCamera *camera) {
-  CagBounds whole = framed(s);
-  CagError err;
-  size_t n = s->item_count;
-  bool empty = !(s->bounds.min.x <= s->bounds.max.x);
-  CagBounds *boxes = empty ? NULL : malloc(n * sizeof *boxes);
-  for (size_t i = 0; boxes && i < n; i++)
-    if (item_bounds(&s->items[i], &boxes[i], &err) != CAG_OK) boxes[i] = CAG_BOUNDS_EMPTY;
-  fit(camera, boxes ? boxes : &whole, boxes ? n : 1, cag_lerp(whole.min, whole.max, 0.5),
-      radius_of(&whole));
-  free(boxes);
-}
-
 static CagStatus add_camera(CagScene *s, CagError *err) {
-  CagBounds whole = framed(s);
+  CagBounds whole = cag_scene_framed(s);
   CagVec3 center = cag_lerp(whole.min, whole.max, 0.5);
   bool flat = is_flat(&whole);
   CagCamera *c = malloc(sizeof *c);
@@ -170,6 +56,7 @@ static CagStatus add_camera(CagScene *s, CagError *err) {
                    .target = center,
                    .orthographic = flat,
                    .fov = AUTOMATIC_FOV,
+                   .framed = true,
                    .size = {1280, 720}};
   CagVec3 up = flat ? cag_vec3(0, 1, 0) : cag_vec3(0, 0, 1);
   c->up = cag_unit(cag_madd(up, -cag_dot(up, back), back));
@@ -261,14 +148,15 @@ static CagStatus add_paper_light(CagScene *s, CagError *err) {
 }
 
 static CagStatus add_studio(CagScene *s, CagError *err) {
-  CagBounds whole = framed(s);
+  CagBounds whole = cag_scene_framed(s);
   CagVec3 center = cag_lerp(whole.min, whole.max, 0.5), up = cag_vec3(0, 0, 1);
-  double radius = radius_of(&whole);
+  double radius = cag_scene_radius(&whole);
   CagTransform frame = cag_camera_frame(&s->cameras[0]);
   s->studio = true;
   if (is_flat(&whole) && s->cameras[0].orthographic) return add_paper_light(s, err);
   // The camera's right and back along the ground; looked at from straight above, as it sees them.
   CagVec3 right = column(&frame, 0), back = cag_cross(right, up);
+  if (s->cameras[0].mirrored) back = cag_scaled(back, -1);
   if (cag_norm(back) == 0) back = cag_vec3(0, -1, 0);
   s->lights = malloc(STUDIO_COUNT * sizeof *s->lights);
   if (!s->lights) return cag_fail_memory(err);
@@ -299,7 +187,7 @@ static CagStatus find_bounds(CagScene *s, CagError *err) {
   size_t kept = 0;
   for (size_t i = 0; i < s->item_count; i++) {
     CagBounds one = CAG_BOUNDS_EMPTY;
-    if (status == CAG_OK) status = item_bounds(&s->items[i], &one, err);
+    if (status == CAG_OK) status = cag_item_bounds(&s->items[i], NULL, &one, err);
     const bool empty = status != CAG_OK && cag_is_empty_shape(err);
     if (empty) {
       s->empties[s->empty_count++] = s->items[i];

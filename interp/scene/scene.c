@@ -66,7 +66,10 @@ CagMaterial cag_material_default(void) {
 CagTransform cag_camera_frame(const CagCamera *c) {
   CagTransform frame;
   CagError err;
-  if (cag_look_at(c->eye, c->target, c->up, &frame, &err) == CAG_OK) return frame;
+  if (cag_look_at(c->eye, c->target, c->up, &frame, &err) == CAG_OK) {
+    for (int i = 0; i < 3 && c->mirrored; i++) frame.m[i][0] = 0.0 - frame.m[i][0];
+    return frame;
+  }
   // Eye and target are the same point: constructors refuse that, a far-fetched transform may not.
   cag_look_at(cag_vec3(0, 0, 0), cag_vec3(0, 1, 0), cag_vec3(0, 0, 1), &frame, &err);
   frame.m[0][3] = c->eye.x;

@@ -116,7 +116,9 @@ typedef struct CagCamera {
   double fov;             // horizontal, radians (perspective)
   double width;           // mm (orthographic)
   int size[2];            // pixels
-  double focus, aperture; // mm; aperture 0: everything is sharp
+  double focus, aperture; // mm, the aperture a lens's diameter; 0: everything is sharp
+  bool mirrored;          // the picture is seen in a mirror: its frame is left-handed
+  bool framed;            // stands where it sees everything, whatever the picture's shape
 } CagCamera;
 
 typedef enum CagLightKind {
@@ -179,6 +181,16 @@ CagStatus cag_scene_complete(CagScene *s, CagError *err);
 // Moves a camera, keeping its direction, so that it frames all items for the shape of its picture
 // (size): used by cag_scene_complete, and again when a picture of another size is asked for.
 void cag_camera_frame_all(const CagScene *s, CagCamera *camera);
+// The names of the standard views, NULL behind the last; and a camera of such a name, added behind
+// the others. It frames what is shown, without perspective.
+const char *cag_standard_view(size_t i);
+CagStatus cag_scene_add_view(CagScene *s, const char *name, CagError *err);
+// Bounds of an item under a transform (NULL: none); a ground has none.
+CagStatus cag_item_bounds(const CagItem *item, const CagTransform *t, CagBounds *out,
+                          CagError *err);
+// The box to frame: where nothing is shown, some room about the origin; and half its diagonal.
+CagBounds cag_scene_framed(const CagScene *s);
+double cag_scene_radius(const CagBounds *b);
 // Camera to world: columns x (right), y (down), z (view), origin.
 CagTransform cag_camera_frame(const CagCamera *c);
 CagMaterial cag_material_default(void);

@@ -39,6 +39,12 @@ static bool find_quality(const char *name, CagPovQuality *pov, CagPovrayQuality 
   return false;
 }
 
+static int add_view(CagSession *s, void *name) {
+  CagError err = {0};
+  const CagStatus status = cag_session_checked(s, cag_scene_add_view(&s->scene, name, &err), &err);
+  return status == CAG_OK ? CAG_STATUS_OK : cag_session_fail_geometry(s, &err);
+}
+
 int cag_session_find_camera(CagSession *s, const char *name, size_t *out) {
   *out = 0;
   if (!name) return CAG_STATUS_OK;
@@ -51,11 +57,21 @@ int cag_session_find_camera(CagSession *s, const char *name, size_t *out) {
     }
     if (n < 64) names[n++] = s->scene.cameras[i].name;
   }
+  for (size_t i = 0; cag_standard_view(i); i++) {
+    if (strcmp(cag_standard_view(i), name) == 0) {
+      *out = s->scene.camera_count;
+      return cag_session_geometry(s, add_view, (void *)(size_t)name);
+    }
+    if (n < 64) names[n++] = cag_standard_view(i);
+  }
   CagDiagnostic *d = cag_diagnostics_add(&s->diagnostics, CAG_ERR_camera_unknown, NULL,
                                          (CagSpan){0, 0}, "there is no camera `%s`", name);
   const char *nearest = cag_nearest_name(name, names, n);
   if (nearest) cag_diagnostic_set_help(d, "did you mean `%s`?", nearest);
-  else if (n) cag_diagnostic_set_help(d, "the scene has `%s`", names[0]);
+  else
+    cag_diagnostic_set_help(
+        d, "the scene has `%s`, and always top, bottom, front, back, left, right and iso",
+        names[0]);
   return CAG_STATUS_USAGE;
 }
 
@@ -126,6 +142,7 @@ static int write_source(CagSession *s, void *context) {
   char plain[] = SKY_FILE, *image = scene->sky.image;
   if (image) scene->sky.image = plain;
   CagPovOptions options = {.quality = j->pov,
+                           .samples = j->options->samples,
                            .camera = j->index,
                            .size = {j->camera.size[0], j->camera.size[1]},
                            .csg = j->csg};
@@ -155,6 +172,7 @@ static int render(Job *j) {
                       .region_width = j->options->region.width,
                       .region_height = j->options->region.height,
                       .quality = j->engine,
+                      .lens = j->camera.aperture > 0,
                       .threads = j->options->threads,
                       .time_limit = j->options->time_limit,
                       .interrupted = &j->session->vm->stop,
@@ -237,8 +255,7 @@ static int make_picture(CagSession *s, void *context) {
 }
 
 static int frame_all(CagSession *s, void *context) {
-  (void)context;
-  cag_camera_frame_all(&s->scene, &s->scene.cameras[0]);
+  cag_camera_frame_all(&s->scene, context);
   return CAG_STATUS_OK;
 }
 
@@ -277,14 +294,14 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
   size_t camera;
   status = cag_session_find_camera(s, options->camera, &camera);
   if (status != CAG_STATUS_OK) return status;
-  if (options->width > 0 &&
-      s->scene.automatic_camera) { // it frames what it shows for the picture's shape
-    s->scene.cameras[0].size[0] = options->width;
-    s->scene.cameras[0].size[1] = options->height;
-    status = cag_session_geometry(s, frame_all, NULL);
+  CagCamera *chosen = &s->scene.cameras[camera];
+  if (options->width > 0 && chosen->framed) { // for the picture's shape
+    chosen->size[0] = options->width;
+    chosen->size[1] = options->height;
+    status = cag_session_geometry(s, frame_all, chosen);
     if (status != CAG_STATUS_OK) return status;
   }
-  j.camera = s->scene.cameras[camera];
+  j.camera = *chosen;
   if (options->width > 0) {
     j.camera.size[0] = options->width;
     j.camera.size[1] = options->height;

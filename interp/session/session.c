@@ -102,6 +102,8 @@ void cag_session_set_frame(CagSession *s, double frame, double frames) {
   s->frames = frames;
 }
 
+void cag_session_set_loop(CagSession *s, bool loop) { s->loop = loop; }
+
 // --- The machine and its thread ---
 
 static bool add_folder(CagVm *vm, const char *path) {
@@ -338,6 +340,7 @@ static bool run(CagVm *vm, void *context) {
   if (k == CAG_NO_MODULE) return false;
   CagDefine *defines = calloc(s->define_count ? s->define_count : 1, sizeof *defines);
   if (!defines) cag_vm_out_of_memory(vm);
+  vm->loop = s->loop;
   for (size_t i = 0; i < s->define_count; i++) defines[i] = (CagDefine){s->names[i], s->values[i]};
   bool ok = cag_program_set_params(vm, vm->modules[k], defines, s->define_count, s->frame,
                                    s->frames, false);

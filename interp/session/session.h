@@ -21,6 +21,7 @@ struct CagSession {
   char **names, **values; // params from outside
   size_t define_count;
   double frame, frames;
+  bool loop;
   double time_left; // seconds of max_time, of a run and what is made of its scene
   char *script;     // name of the script, for metadata
   CagDiagnostics diagnostics;

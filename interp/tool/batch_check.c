@@ -314,7 +314,7 @@ static bool check_place(CagBatch *b, size_t i) {
   CagIoError err;
   char *path = cag_batch_path(b, task->output);
   if (!path) return false;
-  const bool good = cag_atomic_file_try(path, &err);
+  const bool good = cag_tool_try_place(path, &err);
   free(path);
   return good || cag_jobs_problem(&b->jobs, job, CODE_PLACE, err.help, "%s", err.message);
 }

@@ -284,6 +284,24 @@ static bool set_threads(CagTool *t, const char *value) {
   return true;
 }
 
+static bool set_samples(CagTool *t, const char *value) {
+  size_t n = 0;
+  const size_t most = 10000;
+  if (!read_count(t, "--samples", value, &n)) return false;
+  t->samples = (int)(n < most ? n : most);
+  return true;
+}
+
+static bool set_loop(CagTool *t, const char *value) {
+  (void)value;
+  return t->loop = true;
+}
+
+static bool set_progress(CagTool *t, const char *value) {
+  (void)value;
+  return t->progress = true;
+}
+
 static bool set_retries(CagTool *t, const char *value) {
   long n;
   if (!read_whole(value, &value, &n) || *value)

@@ -38,7 +38,7 @@ static int check(const CagTool *t) {
     return cag_tool_fail(t, CAG_STATUS_USAGE, "give it with --format, such as --format stl",
                          "the output '%s' has no ending that says its format", t->output);
   if (!is_format(format)) return reject_format(t, format);
-  return cag_tool_check_output(t, t->output);
+  return cag_tool_check_place(t, t->output);
 }
 
 int cag_tool_export(CagTool *t, int argc, char **argv) {
@@ -51,6 +51,7 @@ int cag_tool_export(CagTool *t, int argc, char **argv) {
   status = cag_session_run_file(s, argv[0]);
   if (status == CAG_STATUS_OK) {
     fflush(stdout);
+    cag_tool_make_folder(t->output);
     status = cag_session_export(s, t->output, t->format);
   }
   status = cag_tool_finish(t, s, status);

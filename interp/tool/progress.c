@@ -1,17 +1,32 @@
-// A bar on one line of the terminal, drawn over itself.
+// A bar on one line of the terminal, drawn over itself; or, asked for by --progress, lines for
+// where there is no terminal. Both tell how long what is left will take, at the pace so far.
 
 #include "interp/tool/progress.h"
 
 #include <string.h>
 #include <sys/ioctl.h>
+#include <time.h>
 #include <unistd.h>
 
 // Columns beside the bar, for the frame, the percentage and the phase; and the widest bar.
-#define BESIDE 44
+#define BESIDE 64
 #define WIDEST 40
+// Seconds of a picture before its pace tells anything.
+#define PACE_TIME 1.0
+// Percent between two lines, and seconds.
+#define LINE_PERCENT 10
+#define LINE_TIME 10.0
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
 
 void cag_progress_begin(CagProgress *p, const CagTool *t) {
-  *p = (CagProgress){.shown = isatty(STDERR_FILENO) && !t->quiet && t->style != CAG_STYLE_JSON,
+  const bool bar = isatty(STDERR_FILENO) && !t->quiet && t->style != CAG_STYLE_JSON;
+  *p = (CagProgress){.shown = bar,
+                     .lines = t->progress && !bar,
                      .first = t->first_frame,
                      .frame = t->first_frame,
                      .last = t->last_frame,
@@ -25,8 +40,40 @@ static int bar_width(void) {
   return room < 0 ? 0 : room > WIDEST ? WIDEST : room;
 }
 
+// " about 40 s left": of this picture, and of the film's that follow. Empty while nothing is known.
+static void left_words(const CagProgress *p, double percent, char *out, size_t size) {
+  const double spent = now() - p->begun;
+  out[0] = '\0';
+  if (!(percent > 1) || spent < PACE_TIME) return;
+  const double whole = 100 * spent / percent;
+  const double left = whole - spent + (double)(p->last - p->frame) * whole;
+  if (left < 100) snprintf(out, size, ", about %.0f s left", left);
+  else snprintf(out, size, ", about %.0f min left", left / 60);
+}
+
+static void show_line(CagProgress *p, double percent, const char *phase) {
+  const double at = now();
+  const int part = (int)percent / LINE_PERCENT;
+  if (part <= p->tenths && at - p->line_time < LINE_TIME) return;
+  char left[64];
+  left_words(p, percent, left, sizeof left);
+  if (p->last > p->first) fprintf(stderr, "frame %ld of %ld..%ld: ", p->frame, p->first, p->last);
+  fprintf(stderr, "%.0f%% %s%s\n", percent, phase, left);
+  fflush(stderr);
+  p->tenths = part;
+  p->line_time = at;
+}
+
 void cag_progress_show(void *context, double percent, const char *phase) {
   CagProgress *p = context;
+  if (!(p->begun > 0) || p->begun_frame != p->frame) {
+    p->begun = p->line_time = now();
+    p->begun_frame = p->frame;
+  }
+  if (p->lines) {
+    show_line(p, percent, phase);
+    return;
+  }
   const int tenths = percent < 0 ? 0 : percent > 100 ? 1000 : (int)(10 * percent);
   if (!p->shown || (p->dirty && tenths == p->tenths && !strcmp(phase, p->phase))) return;
   const int width = bar_width(), full = width * tenths / 1000;
@@ -34,7 +81,9 @@ void cag_progress_show(void *context, double percent, const char *phase) {
   if (p->last > p->first) fprintf(stderr, "frame %ld of %ld..%ld  ", p->frame, p->first, p->last);
   if (width > 0) fputc('[', stderr);
   for (int i = 0; i < width; i++) fputc(i < full ? '#' : '-', stderr);
-  fprintf(stderr, "%s%3d%% %s", width > 0 ? "] " : "", tenths / 10, phase);
+  char left[64];
+  left_words(p, percent, left, sizeof left);
+  fprintf(stderr, "%s%3d%% %s%s", width > 0 ? "] " : "", tenths / 10, phase, left);
   fflush(stderr);
   p->dirty = true;
   p->tenths = tenths;
@@ -44,4 +93,6 @@ void cag_progress_show(void *context, double percent, const char *phase) {
 void cag_progress_end(CagProgress *p) {
   if (p->dirty) fputs("\r\033[K", stderr);
   p->dirty = false;
+  p->tenths = -1;
+  p->begun = 0;
 }

@@ -1,4 +1,4 @@
-// The progress bar of a renderer, on a terminal; nothing on a pipe.
+// The progress bar of a renderer, on a terminal; on a pipe lines, when asked for.
 
 #ifndef CAG_INTERP_TOOL_PROGRESS_H
 #define CAG_INTERP_TOOL_PROGRESS_H
@@ -11,6 +11,9 @@ typedef struct CagProgress {
   bool dirty; // the bar stands on the line
   int tenths; // what it shows, so that it is drawn only when that changes; -1: nothing
   const char *phase;
+  bool lines;              // instead of a bar; `tenths` is then of the last one
+  double begun, line_time; // of this picture, and of the last line; 0: nothing rendered yet
+  long begun_frame;
 } CagProgress;
 
 void cag_progress_begin(CagProgress *p, const CagTool *t);

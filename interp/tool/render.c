@@ -114,6 +114,9 @@ static int check(const CagTool *t, double *frames) {
   int status = check_ending(t);
   if (status == CAG_STATUS_OK) status = check_pattern(t);
   if (status == CAG_STATUS_OK && t->has_frames) status = find_length(t, frames);
+  if (status == CAG_STATUS_OK && t->loop && !t->has_frames)
+    status = cag_tool_fail(t, CAG_STATUS_USAGE, "add --frames, such as --frames 0..47",
+                           "--loop is for films, but no frames are asked for");
   return status;
 }
 
@@ -171,7 +174,7 @@ static int render_frame(Film *f, long frame) {
   snprintf(path, sizeof path, "%s", t->output);
   if (t->has_frames && !cag_frames_name(t->output, frame, path, sizeof path))
     return cag_tool_fail(t, CAG_STATUS_FILE, NULL, "the name of frame %ld is too long", frame);
-  int status = cag_tool_check_output(t, path);
+  int status = cag_tool_check_place(t, path);
   if (status != CAG_STATUS_OK) return status;
 
   if (t->has_frames) cag_session_set_frame(f->session, (double)frame, f->frames);
@@ -179,6 +182,7 @@ static int render_frame(Film *f, long frame) {
   status = run_script(f);
   fflush(stdout); // prints stand before what is said of the picture
   if (status == CAG_STATUS_OK) {
+    cag_tool_make_folder(path);
     status =
         strcmp(path, "-") ? cag_session_render(f->session, &f->options, path) : render_to_output(f);
   }
@@ -214,6 +218,8 @@ int cag_tool_render(CagTool *t, int argc, char **argv) {
   f.options.width = t->width;
   f.options.height = t->height;
   f.options.camera = t->camera;
+  f.options.samples = t->samples;
+  cag_session_set_loop(f.session, t->loop);
   f.options.exposure = t->exposure;
   f.options.progress = cag_progress_show;
   f.options.progress_context = &f.progress;

@@ -1,6 +1,10 @@
 // What the commands that run scripts share: the session, and the check of an output's place.
 
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "interp/render/atomic_file.h"
@@ -37,4 +41,40 @@ int cag_tool_check_output(const CagTool *t, const char *path) {
   CagIoError err;
   if (cag_atomic_file_try(path, &err)) return CAG_STATUS_OK;
   return cag_tool_fail(t, err.exit_status, err.help, "%s", err.message);
+}
+
+bool cag_tool_try_place(const char *path, CagIoError *err) {
+  char above[PATH_MAX], place[PATH_MAX];
+  struct stat st;
+  snprintf(above, sizeof above, "%s", path);
+  snprintf(place, sizeof place, "%s", path);
+  // A file in the nearest folder that is there shows whether one can be made in it.
+  for (char *slash = strrchr(above, '/'); slash && slash > above; slash = strrchr(above, '/')) {
+    *slash = '\0';
+    if (stat(above, &st) == 0 || errno != ENOENT) break;
+    memcpy(place, above, sizeof place);
+  }
+  return cag_atomic_file_try(place, err);
+}
+
+int cag_tool_check_place(const CagTool *t, const char *path) {
+  CagIoError err;
+  if (cag_tool_try_place(path, &err)) return CAG_STATUS_OK;
+  return cag_tool_fail(t, err.exit_status, err.help, "%s", err.message);
+}
+
+void cag_tool_make_folder(const char *path) {
+  char folder[PATH_MAX];
+  snprintf(folder, sizeof folder, "%s", path);
+  char *last = strrchr(folder, '/');
+  if (!last) return;
+  *last = '\0';
+  for (char *slash = folder; slash; slash = strchr(slash + 1, '/')) {
+    if (slash == folder) continue;
+    *slash = '\0';
+    const bool made = mkdir(folder, 0777) == 0 || errno == EEXIST || errno == EISDIR;
+    *slash = '/';
+    if (!made) return; // writing the file tells why
+  }
+  (void)!mkdir(folder, 0777);
 }

@@ -18,6 +18,7 @@
 #include <stdio.h>
 
 #include "cag.h"
+#include "interp/render/io_error.h"
 
 typedef struct CagTool CagTool;
 typedef int CagToolFunction(CagTool *t, int argc, char **argv);
@@ -59,7 +60,9 @@ struct CagTool {
   int width, height;           // --size
   const char *quality, *camera;
   double exposure;
-  bool has_frames;
+  bool has_frames, loop;        // --frames, --loop
+  int samples;                  // --samples; 0: by the quality
+  bool progress;                // --progress
   long first_frame, last_frame; // --frames
   double threshold;
   const char *heatmap;
@@ -115,6 +118,11 @@ void cag_tool_say(const CagTool *t, const char *format, ...) __attribute__((form
 
 // Checks that the output can be written, before a long calculation: 0, or a status after a message.
 int cag_tool_check_output(const CagTool *t, const char *path);
+// The same where folders that are missing will be made; and makes them. That they cannot be made is
+// told when the file is opened.
+int cag_tool_check_place(const CagTool *t, const char *path);
+bool cag_tool_try_place(const char *path, CagIoError *err);
+void cag_tool_make_folder(const char *path);
 
 // Nonzero after Ctrl-C or SIGTERM; t->session.interrupt points to it. A second signal ends the
 // program at once, without temporaries left behind. Who handles Ctrl-C and goes on (the REPL)

@@ -305,6 +305,7 @@ CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue rec
   CagSceneValue *s = cag_alloc(vm, type, sizeof *s);
   s->kind = kind;
   s->fields = CAG_AS_RECORD(record);
+  s->mirrored = false;
   s->placement = cag_transform_identity();
   return cag_object(type, s);
 }

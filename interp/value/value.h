@@ -188,6 +188,7 @@ typedef struct CagSceneValue {
   CagRecord *fields; // all arguments by name, defaults filled in; colours as [r, g, b] linear
   CagTransform
       placement; // moved by transforms: applied to eye, target, direction ... by the scene builder
+  bool mirrored; // a camera that an odd number of mirrors has moved: it gives the mirrored picture
 } CagSceneValue;
 
 // --- Robots ---

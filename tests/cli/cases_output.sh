@@ -58,12 +58,22 @@ status 3
 says 'taken.stl'
 prints_nothing
 
-it 'an output in a folder that is not there'
-try export ball.cag -o nowhere/ball.stl
+it 'a folder that is missing is made'
+try export ball.cag -o made/for/it/ball.stl
+status 0
+cmp -s made/for/it/ball.stl ball.stl || wrong 'the file is not that of another folder'
+
+it 'no folder is made for a script that fails'
+script failing.cag 'show 1/0'
+try export failing.cag -o unmade/ball.stl
+status 1
+is_missing unmade
+
+it 'an output in a folder that cannot be made'
+try export ball.cag -o /proc/nowhere/below/ball.stl
 status 3
-says 'nowhere/ball.stl'
+says '/proc/nowhere'
 prints_nothing
-is_missing nowhere
 
 it 'an output below a file'
 try export ball.cag -o ball.stl/more.stl
@@ -84,7 +94,7 @@ try export ball.cag -o '' --format stl
 status 2
 
 it 'render checks its output before it works'
-try render ball.cag -o nowhere/ball.png
+try render ball.cag -o ball.stl/ball.png
 status 3
 prints_nothing
 

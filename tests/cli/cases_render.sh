@@ -206,3 +206,110 @@ status 3
 says 'TMPDIR'
 holds kept.exr earlier
 unset TMPDIR
+
+# --- Cameras ---
+
+# The mirrored scene through the mirrored camera is the same picture; the light is mirrored with them.
+script mirror.cag 'G = [sphere(10), translate(box([6, 4, 20]), [12, -9, 0]), translate(cylinder(14, 3), [-20, 5, 3])]
+param m = false
+flip(x) = if m then reflect(x, [1, 0.4, 0.3], [3, 1, 0]) else x
+show flip(G) |> material({color: "#d04030"})
+show flip(camera(eye: [60, -70, 40], target: [0, 0, 5], fov: 40deg))
+show flip(sun(direction: [-1, 1, -2]))'
+it 'a mirrored camera sees the mirrored scene as the camera sees the scene'
+try render mirror.cag -o mirror_a.exr $quick
+status 0
+try render mirror.cag -o mirror_b.exr $quick -D m=true
+status 0
+try compare mirror_a.exr mirror_b.exr --threshold 0.02
+status 0
+
+# In the plane of the mirror, eye and target stay: the picture is turned over, left for right.
+script flip.cag 'param m = false
+param side = 1
+show translate(sphere(6), [side * 10, 0, 0]) |> material({color: "#d04030"})
+show translate(box([2, 2, 9]), [-side * 14 - 1, -1, 0])
+eye = camera(eye: [0, -80, 30], target: origin, fov: 40deg)
+show if m then reflect(eye, X) else eye
+show sun(direction: [0, 1, -2])'
+it 'a mirrored camera gives the mirrored picture'
+try render flip.cag -o flip_a.exr $quick -D m=true
+try render flip.cag -o flip_b.exr $quick -D side=-1
+try compare flip_a.exr flip_b.exr --threshold 0.02
+status 0
+try render flip.cag -o flip_c.exr $quick
+try compare flip_a.exr flip_c.exr --threshold 0.02
+status 1
+
+it 'the standard views always work'
+for view in top bottom front back left right iso; do
+  try render mirror.cag -o "view_$view.exr" $quick --camera $view
+  status 0
+done
+try render mirror.cag -o nowhere.png $quick --camera sideways
+status 2
+says 'top, bottom, front, back, left, right'
+
+it 'a camera of the script wins over a standard view of its name'
+script named.cag 'show sphere(10)
+show camera(eye: [60, 0, 20], target: origin, fov: 30deg) |> named("front")'
+try render named.cag -o front_a.exr $quick --camera front
+try render named.cag -o front_b.exr $quick
+try compare front_a.exr front_b.exr
+status 0
+
+# A rod that stands askew: the box along the axes is a cube 700 mm wide.
+script rod.cag 'show rotate(cylinder(1000, 4), Y, 45deg) |> translate([-353.55, 0, -353.55]) |> material({color: "black"})
+show background("white")
+show sun(direction: [0, 0, -1])'
+it 'framing fills the picture for long and thin shapes'
+for view in front top iso; do
+  try export rod.cag -o rod.json
+  try render rod.cag -o "rod_$view.png" --size 100x100 --quality draft --camera $view
+  status 0
+  python3 "$here/png_extent.py" "rod_$view.png" 0.80 0.97 > extent || wrong "$view: $(cat extent)"
+done
+try render rod.cag -o rod_own.png --size 100x100 --quality draft
+python3 "$here/png_extent.py" rod_own.png 0.80 0.97 > extent || wrong "$(cat extent)"
+
+# --- Depth of field ---
+
+# A white edge behind the plane of focus, on black: a thin lens shows a point as a disc that is A |z - f| / z wide at the distance f,
+# so that the edge is smeared with the standard deviation of a disc across, a quarter of its diameter.
+script edge.cag 'param lens = 100
+show translate(box([4000, 1, 8000]), [0, 1000, -4000]) |> material({color: "black", emission: [0.5, 0.5, 0.5], roughness: 1})
+show background("black")
+show camera(eye: [0, -1000, 0], target: origin, fov: 40deg, aperture: lens, focus: 1000)
+show point_light([0, 0, 100000], strength: 0)'
+it 'an aperture blurs as the thin lens formula says'
+for lens in 100 50; do
+  try render edge.cag -o edge.png --size 400x24 --quality final -D lens=$lens
+  status 0
+  python3 "$here/png_blur.py" edge.png $lens 1000 2000 40 0.03 > blur || wrong "$(cat blur)"
+done
+it '--samples sets how finely a lens is sampled, and draft blurs too'
+try render edge.cag -o edge.png --size 400x24 --samples 200
+python3 "$here/png_blur.py" edge.png 100 1000 2000 40 0.03 > blur || wrong "$(cat blur)"
+try render edge.cag -o edge.png --size 400x24 --quality draft
+python3 "$here/png_blur.py" edge.png 100 1000 2000 40 0.25 > blur || wrong "$(cat blur)"
+
+it '--progress prints lines where there is no terminal'
+try render ball.cag -o ball.png $quick --progress
+status 0
+says '100%'
+
+# --- Films ---
+
+it '--loop makes time frame/frames'
+script loop.cag 'print time
+show sphere(10)'
+try render loop.cag -o 'made/for/the_film/loop.%d.png' --frames 0..3 --loop $quick
+status 0
+prints_exactly '0
+0.25
+0.5
+0.75'
+[ -s made/for/the_film/loop.3.png ] || wrong 'the folder of the film was not made'
+try render loop.cag -o loop.png --loop $quick
+status 2
+says '--frames'
