@@ -48,6 +48,7 @@ struct CagSurface {
   bool angular_u, angular_v;
   bool closed_u, closed_v;                 // S(u0, v) == S(u1, v) for all v; likewise v
   bool pole_u0, pole_u1, pole_v0, pole_v1; // the edge u = u0 (...) is one point
+  bool unrolled; // laid flat by cag_surface_unroll: its edges are one outline
 };
 
 CagSurface *cag_surface_retain(const CagSurface *s);

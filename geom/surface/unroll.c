@@ -230,5 +230,7 @@ CagStatus cag_surface_unroll(const CagSurface *s, CagSurface **out, CagError *er
                     "the surface is straight along neither u nor v, so it cannot be unrolled: only "
                     "cylinders, cones, planes and ruled surfaces can");
   status = check_planes(by_v ? &v : &u, err);
-  return status ? status : build(by_v ? &v : &u, out, err);
+  if (!status) status = build(by_v ? &v : &u, out, err);
+  if (!status) (*out)->unrolled = true;
+  return status;
 }

@@ -143,9 +143,12 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print near(length(isocurve(prism(circle(2), 5), v: 0.5)), 4 * pi) // expect: true",
      SIDES, changed},
     {"boundary(S)", cag_surfaces_boundary, "list",
-     "The curves around the surface; none where it is closed.",
-     "print len(boundary(bilinear([0, 0], [0, 2], [4, 0], [4, 2]))) // expect: 4", SURFACES,
-     changed},
+     "The curves around the surface: its open edges, or its outlines if it is trimmed or unrolled; "
+     "none where it is closed.",
+     "print len(boundary(bilinear([0, 0], [0, 2], [4, 0], [4, 2]))) // expect: 4\n"
+     "sheet = boundary(unroll(revolve(line([1, 0], [1, 5]))))\n"
+     "print len(sheet), near(length(sheet[0]), 2 * (5 + tau)) // expect: 1 true",
+     SURFACES, changed},
 
     {"trim(S, curves = none, u = none, v = none)", cag_surfaces_trim, "surface",
      "The part over ranges of the parameters, which stay as they are; exact control points where "

@@ -133,6 +133,39 @@ static bool add_curve(CagCall *call, CagBuilder *list, CagStatus status, const C
          cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
 }
 
+static bool is_unrolled(const CagSurface *s) {
+  const CagSurface *inner;
+  CagTransform map;
+  return (cag_surface_placed_view(s, &inner, &map) ? inner : s)->unrolled;
+}
+
+// The four edges, one after the other in the sense of u to v, as one closed curve.
+static CagStatus outline(const CagSurface *s, CagCurve **out, CagError *err) {
+  const struct {
+    bool pole;
+    int direction;
+    double at;
+    bool back;
+  } sides[] = {{s->pole_v0, 1, s->v0, false},
+               {s->pole_u1, 0, s->u1, false},
+               {s->pole_v1, 1, s->v1, true},
+               {s->pole_u0, 0, s->u0, true}};
+  CagCurve *edges[4] = {NULL};
+  size_t n = 0;
+  CagStatus status = CAG_OK;
+  for (int i = 0; !status && i < 4; i++) {
+    if (sides[i].pole) continue;
+    CagCurve *edge = NULL;
+    status = cag_surface_isocurve(s, sides[i].direction, sides[i].at, &edge, err);
+    if (!status && sides[i].back) status = cag_curve_reverse(edge, &edges[n++], err);
+    else if (!status) edges[n++] = cag_curve_retain(edge);
+    cag_curve_release(edge);
+  }
+  if (!status) status = cag_curve_join(edges, n, out, err);
+  for (size_t i = 0; i < n; i++) cag_curve_release(edges[i]);
+  return status;
+}
+
 bool cag_surfaces_boundary(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagError err;
@@ -154,6 +187,12 @@ bool cag_surfaces_boundary(CagCall *call, CagValue *result) {
       CagStatus status = cag_trimmed_loop(s, i, &c, &err);
       if (!add_curve(call, list, status, &err, c)) return false;
     }
+    *result = cag_builder_finish(call->vm, list);
+    return true;
+  }
+  if (is_unrolled(s)) {
+    const CagStatus status = outline(s, &c, &err);
+    if (!add_curve(call, list, status, &err, c)) return false;
     *result = cag_builder_finish(call->vm, list);
     return true;
   }
