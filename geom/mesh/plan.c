@@ -40,6 +40,7 @@ typedef struct Needs {
   double turn[2];   // of the normal
   double bend[2];   // the same, but for where it turns at once, at cusps
   double both;      // of bends, about the same axis
+  double diagonal;  // the same along the diagonal that is cut: negative where they cancel there
   double length[2]; // of lines
 } Needs;
 
@@ -49,8 +50,9 @@ typedef struct Sampled {
   double speed[2][SAMPLES]; // the lengths of du and dv
   bool has_normal[SAMPLES];
   double off_uu[SAMPLES], off_uv[SAMPLES], off_vv[SAMPLES];
-  double turn[2][SAMPLES]; // of the normal on the way to the next sample
-  double both[SAMPLES];    // the product of both turns where they have the same axis, else less
+  double turn[2][SAMPLES];  // of the normal on the way to the next sample
+  double both[SAMPLES];     // the product of both turns where they have the same axis, else less
+  double diagonal[SAMPLES]; // of that sign which it has along the shorter diagonal, which is cut
 } Sampled;
 
 // --- Sampling ---
@@ -111,15 +113,21 @@ static void find_turns(Sampled *s) {
       }
 }
 
-// Along a diagonal the turns add up where they have the same axis.
+// Along a diagonal the turns add up where they have the same axis, or cancel. Where the lines of
+// the grid cross aslant, as on twisted bodies, one diagonal is clearly the shorter one.
 static void find_common_turns(Sampled *s) {
+  const double aslant = 0.1; // cosine of the angle between the lines
   for (int i = 0; i < STEPS; i++)
     for (int j = 0; j < STEPS; j++) {
       int k = i * SIDE + j;
       CagVec3 u = cag_sub(s->normals[k + SIDE], s->normals[k]),
               v = cag_sub(s->normals[k + 1], s->normals[k]);
       bool known = s->has_normal[k] && s->has_normal[k + SIDE] && s->has_normal[k + 1];
-      s->both[k] = known ? fabs(cag_dot(u, v)) * STEPS * STEPS : 0;
+      const double common = known ? cag_dot(u, v) * STEPS * STEPS : 0;
+      const double lean = cag_dot(s->du[k], s->dv[k]);
+      const bool clear = fabs(lean) > aslant * s->speed[0][k] * s->speed[1][k];
+      s->both[k] = fabs(common);
+      s->diagonal[k] = clear ? (lean > 0 ? -common : common) : fabs(common);
     }
 }
 
@@ -186,7 +194,7 @@ static bool is_resolved(const CagTessellation *how, const Sampled *s, int direct
 // --- Needs and counts ---
 
 static Needs needs_of(const Sampled *s, Range r) {
-  Needs n = {0};
+  Needs n = {.diagonal = -INFINITY};
   double part[2] = {(double)(r.u1 - r.u0) / STEPS, (double)(r.v1 - r.v0) / STEPS};
   for (int i = r.u0; i <= r.u1; i++)
     for (int j = r.v0; j <= r.v1; j++) {
@@ -196,8 +204,11 @@ static Needs needs_of(const Sampled *s, Range r) {
       n.vv = tess_larger(n.vv, s->off_vv[k]);
       n.length[0] = tess_larger(n.length[0], s->speed[0][k]);
       n.length[1] = tess_larger(n.length[1], s->speed[1][k]);
-      if (i < r.u1 && j < r.v1 && tess_larger(s->turn[0][k], s->turn[1][k]) <= turned_away * STEPS)
+      if (i < r.u1 && j < r.v1 &&
+          tess_larger(s->turn[0][k], s->turn[1][k]) <= turned_away * STEPS) {
         n.both = tess_larger(n.both, s->both[k]);
+        n.diagonal = tess_larger(n.diagonal, s->diagonal[k]);
+      }
       for (int d = 0; d < 2; d++) {
         if (d == 0 ? i == r.u1 : j == r.v1) continue;
         n.turn[d] = tess_larger(n.turn[d], s->turn[d][k]);
@@ -207,6 +218,7 @@ static Needs needs_of(const Sampled *s, Range r) {
   n.uu *= part[0] * part[0];
   n.uv *= part[0] * part[1];
   n.both *= part[0] * part[1];
+  n.diagonal = n.diagonal > -INFINITY ? n.diagonal * part[0] * part[1] : 0;
   n.vv *= part[1] * part[1];
   for (int d = 0; d < 2; d++) {
     n.turn[d] *= part[d];
@@ -290,8 +302,17 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
     double a = needs->bend[0] > no_turn ? needs->bend[0] : 0,
            b = needs->bend[1] > no_turn ? needs->bend[1] : 0,
            limit = closely * closely * how->angle * how->angle;
-    best_counts(&(Form){a * a, a > 0 && b > 0 ? 2 * needs->both : 0, b * b, limit}, square_ratio,
-                most);
+    // Where turns cancel along the diagonals, both sides of a quadrilateral may have the whole
+    // angle.
+    const double cancelled = -0.5; // of what they would be about one axis
+    const double sewn = 0.94;      // where bands are sewn, edges lean a little more
+    if (needs->diagonal < cancelled * a * b) {
+      most[0] = tess_larger(1, ceil(a / (sewn * closely * how->angle)));
+      most[1] = tess_larger(1, ceil(b / (sewn * closely * how->angle)));
+    } else {
+      best_counts(&(Form){a * a, a > 0 && b > 0 ? 2 * needs->both : 0, b * b, limit}, square_ratio,
+                  most);
+    }
     for (int d = 0; d < 2; d++) {
       double room = tess_larger(1, ceil(needs->length[d] / (shortest_edge * how->tolerance)));
       n[d] = tess_larger(n[d], tess_smaller(most[d], room));
