@@ -10,6 +10,7 @@
 
 #include "geom/curve/intersect.h"
 #include "geom/mesh/tessellate.h"
+#include "geom/surface/family.h"
 
 // Curves meet whose ends are nearer than this part of the size: traced ends are far better.
 #define MEET 1e-7
@@ -327,6 +328,12 @@ static CagStatus section_face(const CagSurface *s, const CagPlane *plane, double
   if (status || is_beside(&box, plane)) return status;
   if (cag_surface_planar_view(s, &region, &frame))
     return section_flat(region, &frame, plane, size, out, err);
+  CagCurve *circles[2];
+  bool bitangent;
+  status = cag_torus_bitangent(s, plane, circles, &bitangent, err);
+  for (int k = 0; !status && bitangent && k < 2; k++)
+    status = cag_curve_list_add(out, circles[k], err);
+  if (status || bitangent) return status;
   CagLevel level = cag_level_plane(plane, size);
   bool quadric = cag_surface_quadric_view(s, &q);
   size_t first = out->count;
