@@ -95,13 +95,13 @@ try export one.cag --pov-csg both -o one.pov
 status 2
 says 'there are auto, native and mesh'
 
-it 'an operation that leaves nothing names its operands'
+it 'an operation that leaves nothing warns, and is no output alone'
 script nothing.cag 'show box(2) - sphere(9)'
 try export nothing.cag -o nothing.stl
 status 1
-says 'leaves nothing'
-says 'box, 2 x 2 x 2'
-says 'sphere, radius 9'
+says 'nothing.cag:1:6'
+says 'the shape is empty'
+says 'shows nothing but empty shapes'
 
 it 'what leaves nothing or has no end is shown where it was asked for'
 script place.cag 'a = box(2)
