@@ -126,6 +126,11 @@ bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **byte
   char *real =
       cag_allowed_path(vm, path, folder && *folder ? folder : vm->root, message, sizeof message);
   free(folder);
+  // Then the folders of -I, in their order, as for modules.
+  for (size_t i = 0; !real && path[0] != '/' && i < vm->include_count; i++) {
+    char ignored[512];
+    real = cag_allowed_path(vm, path, vm->include[i], ignored, sizeof ignored);
+  }
   if (!real) return cag_fail_call(call, argument, CAG_ERR_file, "cannot read it: %s", message);
   const char *why;
   const size_t left = vm->heap.limit > vm->heap.bytes ? vm->heap.limit - vm->heap.bytes : 0;

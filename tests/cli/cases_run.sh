@@ -129,3 +129,25 @@ ran='cag run vase.cag <&-' && "$CAG" run -q vase.cag > out 2> err <&-
 code=$?
 status 0
 prints_exactly 'height 120'
+
+it 'files that a script reads are looked for beside it, then in the folders of -I'
+mkdir -p data_one data_two reading
+printf '1,2\n' > data_one/numbers.csv
+printf '3,4\n' > data_two/numbers.csv
+printf '{"a": 5}' > data_two/record.json
+printf 'solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n' > data_two/flat.stl
+printf '<robot name="arm"><link name="base"/><link name="tip"/><joint name="j" type="revolute"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>' > data_two/arm.urdf
+script reading/all.cag 'print read_csv("numbers.csv")
+print read_json("record.json").a, area(read_mesh("flat.stl")), read_urdf("arm.urdf").joints'
+try run reading/all.cag -I data_one -I data_two
+status 0
+prints_exactly '[[1, 2]]
+5 0.5 1'
+try run reading/all.cag -I data_two -I data_one
+prints '[[3, 4]]'
+printf '7,8\n' > reading/numbers.csv
+try run reading/all.cag -I data_one -I data_two
+prints '[[7, 8]]'
+try run reading/all.cag -I data_one
+status 1
+says 'record.json'
