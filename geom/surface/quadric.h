@@ -54,15 +54,15 @@ CagStatus cag_quadric_transform(const CagQuadric *q, const CagTransform *t, CagQ
                                 CagError *err);
 
 // The real surface within a box (unbounded classes need one: "quadric-unbounded"), as parametric
-// patches in world coordinates: one sheet, two sheets or planes; each a CagSurface of kind
+// patches in world coordinates: one sheet, two sheets, planes or strips; each a CagSurface of kind
 // "quadric" (or planar). *out is a malloc'd array of *n surfaces. An imaginary one has none
 // ("quadric-imaginary"), nor has one that passes the box by ("quadric-outside").
 //
 // What is cut: planes exactly at the box. Everything else at a range of canonical coordinates,
 // those of the box's corners in the canonical frame (which is the box itself where the frame's axes
-// are the world's): ellipsoids, hyperboloids, cones, elliptic paraboloids and elliptic cylinders in
-// the direction of their axis alone, a hyperbolic paraboloid at its x and y range, a parabolic or
-// hyperbolic cylinder at the ranges of all three. With `z_only` the range is within->min.z to
+// are the world's): ellipsoids, hyperboloids, cones and elliptic paraboloids in the direction of
+// their axis alone, a hyperbolic paraboloid at its x and y range, cylinders at the ranges of all
+// three: an elliptic one falls into at most four strips. With `z_only` the range is within->min.z to
 // within->max.z, measured from the world's origin along the axis (its sense that goes up), and the
 // classes that it does not bound are "quadric-unbounded".
 CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool z_only,

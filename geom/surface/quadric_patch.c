@@ -260,9 +260,10 @@ bool cag_surface_quadric_frame(const CagSurface *s, CagTransform *frame) {
 
 // --- Pieces within a box ---
 
-// The pieces found so far; at most two sheets, nappes, branches or planes.
+// The pieces found so far: sheets, nappes, branches, planes, or the strips of a cylinder.
+#define PIECES_MOST 8
 typedef struct Pieces {
-  CagSurface *s[2];
+  CagSurface *s[PIECES_MOST];
   size_t n;
 } Pieces;
 
@@ -295,6 +296,56 @@ static CagStatus add_around(Pieces *p, CagQuadricShape shape, const CagTransform
   return add(p, shape, frame, 0, 2 * M_PI, v0, v1, err);
 }
 
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+// Angles at which a cos(u) or b sin(u) is at a limit, in 0..2 pi.
+static size_t limit_angles(double limit, double semi, bool sine, double *out) {
+  if (!(fabs(limit) < semi)) return 0;
+  const double at = sine ? asin(limit / semi) : acos(limit / semi);
+  out[0] = at < 0 ? at + 2 * M_PI : at;
+  out[1] = sine ? M_PI - at : 2 * M_PI - at;
+  return 2;
+}
+
+// An elliptic cylinder between z0 and z1: whole, or the strips along its rulings that lie within
+// the range of x and y as well. A strip runs on over u = 0 where that is within.
+static CagStatus cylinder_pieces(const Clip *c, Pieces *p, double z0, double z1, CagError *err) {
+  const CagQuadricForm *f = c->form;
+  const double a = f->semi[0], b = f->semi[1];
+  const CagTransform frame = scaled_frame(f, a, b, 1);
+  double cuts[9];
+  size_t n = limit_angles(c->lo.x, a, false, cuts);
+  n += limit_angles(c->hi.x, a, false, cuts + n);
+  n += limit_angles(c->lo.y, b, true, cuts + n);
+  n += limit_angles(c->hi.y, b, true, cuts + n);
+  qsort(cuts, n, sizeof *cuts, ascending);
+  size_t count = 0;
+  for (size_t i = 0; i < n; i++)
+    if (count == 0 || cuts[i] > cuts[count - 1]) cuts[count++] = cuts[i];
+  if (count == 0) cuts[count++] = 0;
+  bool within[8];
+  size_t inside = 0;
+  for (size_t i = 0; i < count; i++) {
+    const double to = i + 1 < count ? cuts[i + 1] : cuts[0] + 2 * M_PI;
+    const double middle = cuts[i] + (to - cuts[i]) / 2, x = a * cos(middle), y = b * sin(middle);
+    within[i] = x >= c->lo.x && x <= c->hi.x && y >= c->lo.y && y <= c->hi.y;
+    inside += within[i];
+  }
+  if (inside == count) return add_around(p, CAG_SHAPE_ELLIPTIC_CYLINDER, &frame, z0, z1, err);
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < count; i++) {
+    if (!within[i] || within[(i + count - 1) % count]) continue;
+    size_t end = i;
+    while (within[end % count]) end++;
+    const double to = cuts[end % count] + (end >= count ? 2 * M_PI : 0);
+    status = add(p, CAG_SHAPE_ELLIPTIC_CYLINDER, &frame, cuts[i], to, z0, z1, err);
+  }
+  return status;
+}
+
 static CagStatus pieces_about_axis(const Clip *c, Pieces *p, CagError *err) {
   const CagQuadricForm *f = c->form;
   double a = f->semi[0], b = f->semi[1], h = f->semi[2];
@@ -323,9 +374,7 @@ static CagStatus pieces_about_axis(const Clip *c, Pieces *p, CagError *err) {
     up = scaled_frame(f, a, b, 1);
     if (z1 <= 0) return CAG_OK;
     return add_around(p, CAG_SHAPE_ELLIPTIC_PARABOLOID, &up, z0 > 0 ? sqrt(z0) : 0, sqrt(z1), err);
-  default:
-    up = scaled_frame(f, a, b, 1);
-    return add_around(p, CAG_SHAPE_ELLIPTIC_CYLINDER, &up, z0, z1, err);
+  default: return cylinder_pieces(c, p, z0, z1, err);
   }
 }
 
@@ -525,7 +574,7 @@ static CagStatus find_pieces(const CagQuadricForm *f, const CagBounds *within, b
 CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool z_only,
                               CagSurface ***out, size_t *n, CagError *err) {
   CagQuadricForm form;
-  Pieces pieces = {{NULL, NULL}, 0};
+  Pieces pieces = {.n = 0};
   CagStatus status = cag_quadric_classify(q, &form, err);
   if (!status && within) status = check_within(within, z_only, err);
   if (!status) status = find_pieces(&form, within, z_only, &pieces, err);

@@ -527,8 +527,10 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "x^2/a^2 + y^2/b^2 - z^2/c^2 = 0, cut by `within`.",
      "print classify(elliptic_cone(1, 2, 1, within: -1..1)).class // expect: cone", NUMBERS,
      quadrics},
-    {"elliptic_cylinder(a, b, within = none)", cag_surfaces_elliptic_cylinder, "surface",
-     "x^2/a^2 + y^2/b^2 = 1 along Z, cut by `within`.",
+    {"elliptic_cylinder(a, b, within = none)", cag_surfaces_elliptic_cylinder, "surface or group",
+     "x^2/a^2 + y^2/b^2 = 1 along Z, cut by `within`: at the ends of a range of z, and at all "
+     "sides "
+     "of a box, which may leave a group of strips.",
      "print near(area(elliptic_cylinder(1, 1, within: 0..3)), 6 * pi, relative: 1e-8) // expect: "
      "true",
      NUMBERS, quadrics},

@@ -423,6 +423,57 @@ static void pieces_within_a_box(void **state) {
   release(list, n);
 }
 
+// Elliptic cylinders within random boxes: their strips stay within, and are as
+// wide as the part of all angles that is in the box says.
+static void cylinders_end_at_all_sides_of_a_box(void **state) {
+  (void)state;
+  enum { ANGLES = 20000 };
+  uint64_t random = 12;
+  int cut = 0;
+  for (int i = 0; i < 100; i++) {
+    double r[6];
+    for (int k = 0; k < 6; k++) {
+      random = random * 6364136223846793005u + 1442695040888963407u;
+      r[k] = (double)(random >> 11) / 9007199254740992.0;
+    }
+    const double radius = 3;
+    const CagQuadric q = {{1, 1, 0, 0, 0, 0, 0, 0, 0, -radius * radius}};
+    const CagBounds box = {{-4 + 6 * r[0], -4 + 6 * r[1], 1},
+                           {-4 + 6 * r[0] + 1 + 5 * r[2], -4 + 6 * r[1] + 1 + 5 * r[3], 3}};
+    int within = 0;
+    for (int k = 0; k < ANGLES; k++) {
+      const double t = 2 * M_PI * k / ANGLES, x = radius * cos(t), y = radius * sin(t);
+      within += x >= box.min.x && x <= box.max.x && y >= box.min.y && y <= box.max.y;
+    }
+    CagSurface **list;
+    CagError why;
+    size_t n = 0;
+    double sum = 0, area;
+    if (cag_quadric_patches(&q, &box, false, &list, &n, &why)) {
+      assert_string_equal(why.reason, "quadric-outside");
+      assert_true(within <= 1);
+      continue;
+    }
+    cut += within < ANGLES;
+    for (size_t k = 0; k < n; k++) {
+      CagBounds part;
+      MUST(cag_surface_area(list[k], &area, NULL, err));
+      MUST(cag_surface_bounds(list[k], &part, err));
+      sum += area;
+      const double slack = 1e-12;
+      assert_true(part.min.x >= box.min.x - slack && part.max.x <= box.max.x + slack);
+      assert_true(part.min.y >= box.min.y - slack && part.max.y <= box.max.y + slack);
+      assert_near(part.min.z, 1, slack, "bottom");
+      assert_near(part.max.z, 3, slack, "top");
+    }
+    // Each end of a strip lies between two angles.
+    const double coarse = 8.0 / ANGLES;
+    assert_near(sum / (2 * M_PI * radius * 2), (double)within / ANGLES, coarse, "area");
+    release(list, n);
+  }
+  assert_true(cut > 30);
+}
+
 static void what_has_no_surface_says_why(void **state) {
   (void)state;
   CagSurface **list;
@@ -510,6 +561,7 @@ int main(void) {
       cmocka_unit_test(pieces_are_cut_at_the_range_of_z),
       cmocka_unit_test(pieces_within_a_box),
       cmocka_unit_test(integer_matrices_keep_their_class_under_congruence),
+      cmocka_unit_test(cylinders_end_at_all_sides_of_a_box),
       cmocka_unit_test(what_has_no_surface_says_why),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
