@@ -62,9 +62,9 @@ CagStatus cag_quadric_transform(const CagQuadric *q, const CagTransform *t, CagQ
 // those of the box's corners in the canonical frame (which is the box itself where the frame's axes
 // are the world's): ellipsoids, hyperboloids, cones and elliptic paraboloids in the direction of
 // their axis alone, a hyperbolic paraboloid at its x and y range, cylinders at the ranges of all
-// three: an elliptic one falls into at most four strips. With `z_only` the range is within->min.z to
-// within->max.z, measured from the world's origin along the axis (its sense that goes up), and the
-// classes that it does not bound are "quadric-unbounded".
+// three: an elliptic one falls into at most four strips. With `z_only` the range is within->min.z
+// to within->max.z, measured from the world's origin along the axis (its sense that goes up), and
+// the classes that it does not bound are "quadric-unbounded".
 CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool z_only,
                               CagSurface ***out, size_t *n, CagError *err);
 // The equation behind a surface of kind "quadric"; false: another kind.
