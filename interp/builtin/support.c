@@ -50,6 +50,58 @@ bool cag_give_angle(CagCall *call, double degrees, CagValue *result) {
   return check_result(call, degrees);
 }
 
+// Records and lists of results nest less deep; deeper ones are the arguments' own.
+#define RESULT_DEPTH 4
+
+static bool all_defined(const double *x, size_t n) {
+  int undefined = 0;
+  for (size_t i = 0; i < n; i++) undefined |= isnan(x[i]);
+  return !undefined;
+}
+
+static bool is_defined(CagValue v, int depth) {
+  switch (v.type) {
+  case CAG_NUMBER:
+  case CAG_ANGLE: return !isnan(v.as.number);
+  case CAG_TRANSFORM: return all_defined(&CAG_AS_TRANSFORM(v)->t.m[0][0], 16);
+  case CAG_LIST: {
+    const CagList *l = CAG_AS_LIST(v);
+    if (l->owner || depth == 0) return true;
+    if (l->dim > 0) return all_defined(l->as.numbers, l->length * l->dim);
+    for (size_t i = 0; i < l->length; i++)
+      if (!is_defined(l->as.items[i], depth - 1)) return false;
+    return true;
+  }
+  case CAG_RECORD: {
+    const CagRecord *r = CAG_AS_RECORD(v);
+    for (size_t i = 0; depth > 0 && i < r->layout->count; i++)
+      if (!is_defined(r->fields[i], depth - 1)) return false;
+    return true;
+  }
+  default: return true;
+  }
+}
+
+// Families whose results are parts of their arguments, which are defined.
+static bool rearranges(const CagBuiltin *b) {
+  return b->family && (strcmp(b->family, "Lists") == 0 || strcmp(b->family, "Records") == 0);
+}
+
+bool cag_check_defined(CagCall *call, CagValue result) {
+  if (result.type == CAG_NUMBER || result.type == CAG_ANGLE) {
+    if (!isnan(result.as.number)) return true;
+  } else if (result.type < CAG_FIRST_OBJECT || rearranges(call->builtin) ||
+             is_defined(result, RESULT_DEPTH)) {
+    return true;
+  }
+  CagString arguments = {0};
+  print_arguments(call, &arguments);
+  cag_fail_call(call, -1, CAG_ERR_not_finite, "gives numbers that are undefined for %.120s",
+                arguments.bytes);
+  cag_string_free(&arguments);
+  return false;
+}
+
 bool cag_fail_depth(CagCall *call) {
   return cag_fail_call(call, 0, CAG_ERR_value, "expects lists that nest at most %d deep",
                        CAG_DEPTH_MOST);

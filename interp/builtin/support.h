@@ -22,6 +22,9 @@ const char *cag_value_words(CagVm *vm, CagValue v, char *buffer, size_t size);
 
 // Gives x, or the error E0307 when x is no number or infinite though every argument is finite.
 bool cag_give_number(CagCall *call, double x, CagValue *result);
+// Fails where a number that the call made is undefined (NaN), at any depth of its result. Parts of
+// lists that were there before were checked when they were made.
+bool cag_check_defined(CagCall *call, CagValue result);
 bool cag_give_angle(CagCall *call, double degrees, CagValue *result);
 
 // --- Sequences: what is read as a list, element by element, without making a list of a range ---

@@ -275,6 +275,10 @@ CagStatus cag_export_pov(const CagScene *scene, const CagPovOptions *options, Ca
   if (!closed || !make_names(&w)) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < scene->item_count; i++) closed[i] = is_closed(&scene->items[i]);
   if (!status) status = write_all(&w, closed, err);
+  if (!status && w.failure.status) {
+    *err = w.failure;
+    status = w.failure.status;
+  }
   free(closed);
   free(w.item_names);
   free(w.material_names);

@@ -19,7 +19,8 @@ typedef struct Writer {
   Id *vertex, *edge; // vertex points and edge curves, 0: not yet written
   Id *styled;
   size_t styled_count, styled_room;
-  bool failed; // memory is out
+  bool failed;    // memory is out
+  bool undefined; // a number was not finite
 } Writer;
 
 // --- Text ---
@@ -31,6 +32,7 @@ static void put_id(Writer *w, Id id) { cag_atomic_file_printf(w->file, "#%zu", i
 // Reals have a point, also with an exponent.
 static void put_real(Writer *w, double x) {
   char text[40];
+  w->undefined |= !isfinite(x);
   cag_number_text(x == 0 ? 0 : x, text);
   char *e = strchr(text, 'e');
   if (e) *e++ = 0;
@@ -521,5 +523,8 @@ CagStatus cag_export_step(const CagBrep *brep, const char *script, CagAtomicFile
   free(w.vertex);
   free(w.edge);
   free(w.styled);
+  if (w.undefined && !w.failed)
+    return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+                    "a number of the file overflows or is undefined");
   return w.failed ? cag_fail_memory(err) : CAG_OK;
 }

@@ -201,11 +201,30 @@ static CagStatus find_bounds(CagScene *s, CagError *err) {
   return status;
 }
 
+static bool is_finite(CagVec3 p) { return isfinite(p.x) && isfinite(p.y) && isfinite(p.z); }
+
+// What is too large for its own size has cameras and lights at no place.
+static CagStatus check_finite(const CagScene *s, CagError *err) {
+  const CagBounds *b = &s->bounds;
+  bool good = !(b->min.x <= b->max.x) || is_finite(cag_sub(b->max, b->min));
+  for (size_t i = 0; i < s->camera_count; i++) {
+    const CagCamera *c = &s->cameras[i];
+    good = good && is_finite(c->eye) && is_finite(c->target) && is_finite(c->up);
+  }
+  for (size_t i = 0; i < s->light_count; i++)
+    good = good && is_finite(s->lights[i].position) && is_finite(s->lights[i].direction);
+  if (good) return CAG_OK;
+  return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+                  "the scene is too large for the range of numbers: from [%g, %g, %g] to "
+                  "[%g, %g, %g]",
+                  b->min.x, b->min.y, b->min.z, b->max.x, b->max.y, b->max.z);
+}
+
 CagStatus cag_scene_complete(CagScene *s, CagError *err) {
   CagStatus status = find_bounds(s, err);
   if (status == CAG_OK && s->item_count + s->label_count == 0) return CAG_OK;
   if (status == CAG_OK && s->camera_count == 0) status = add_camera(s, err);
   bool lit = s->light_count > 0 || s->sky.color_count > 0 || s->sky.image;
   if (status == CAG_OK && !lit) status = add_studio(s, err);
-  return status;
+  return status == CAG_OK ? check_finite(s, err) : status;
 }

@@ -75,7 +75,7 @@ static CagStatus surface_mesh(const CagSurface *s, const CagTessellation *how, C
   return status;
 }
 
-CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err) {
+static CagStatus make_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err) {
   CagTessellation how = how_fine(s, item);
   switch (item->kind) {
   case CAG_ITEM_CURVE: {
@@ -89,6 +89,22 @@ CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, C
   case CAG_ITEM_GROUND: return ground_mesh(s, item, out, err);
   }
   return cag_fail(err, CAG_E_ARGUMENT, "item-kind", "", -1, "an item of an unknown kind");
+}
+
+CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err) {
+  CagMesh *m;
+  CagStatus status = make_mesh(s, item, &m, err);
+  if (status) return status;
+  for (size_t i = 0; i < m->vertex_count; i++) {
+    const CagVec3 p = m->positions[i];
+    if (isfinite(p.x) && isfinite(p.y) && isfinite(p.z)) continue;
+    cag_mesh_release(m);
+    return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+                    "%s has points whose coordinates overflow or are undefined",
+                    item->name ? item->name : "a shape");
+  }
+  *out = m;
+  return CAG_OK;
 }
 
 CagStatus cag_item_mesh_of(const CagItem *item, const CagMesh *m, size_t material, CagMesh **out,
