@@ -1,5 +1,4 @@
-// Items as meshes: surfaces and solids tessellated, regions flat, curves as tubes, grounds as
-// squares.
+// Items as meshes: surfaces and solids tessellated, regions flat, curves as tubes.
 
 #include "interp/scene/item_mesh.h"
 
@@ -10,8 +9,6 @@
 
 // Radius of curves that say none, as a part of the diagonal of the scene's bounds.
 #define LINE_PART 0.0025
-// Side of an endless ground, in diagonals of the scene's bounds.
-#define GROUND_PART 20
 
 static double diagonal(const CagBounds *b) {
   double d = b->min.x <= b->max.x ? cag_norm(cag_sub(b->max, b->min)) : 0;
@@ -39,28 +36,6 @@ static CagStatus region_mesh(const CagItem *item, const CagTessellation *how, Ca
   return status;
 }
 
-static CagStatus ground_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err) {
-  static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
-  CagMesh *m = NULL;
-  CagStatus status = cag_mesh_new(4, 2, true, true, false, &m, err);
-  if (status != CAG_OK) return status;
-  double side =
-      isfinite(item->ground_size) ? item->ground_size : GROUND_PART * diagonal(&s->bounds);
-  bool empty = !(s->bounds.min.x <= s->bounds.max.x) || isfinite(item->ground_size);
-  CagVec3 center = empty ? cag_vec3(0, 0, 0) : cag_lerp(s->bounds.min, s->bounds.max, 0.5);
-  for (int i = 0; i < 4; i++) {
-    double x = i == 1 || i == 2 ? 1 : 0, y = i >= 2 ? 1 : 0;
-    m->positions[i] =
-        cag_vec3(center.x + (x - 0.5) * side, center.y + (y - 0.5) * side, item->ground_z);
-    m->normals[i] = cag_vec3(0, 0, 1);
-    m->uv[2 * i] = x;
-    m->uv[2 * i + 1] = y;
-  }
-  for (int i = 0; i < 6; i++) m->triangles[i] = triangles[i];
-  *out = m;
-  return CAG_OK;
-}
-
 // A closed surface with its normals outward, whatever its parameters say.
 static CagStatus surface_mesh(const CagSurface *s, const CagTessellation *how, CagMesh **out,
                               CagError *err) {
@@ -86,9 +61,9 @@ static CagStatus make_mesh(const CagScene *s, const CagItem *item, CagMesh **out
   case CAG_ITEM_SURFACE: return surface_mesh(item->as.surface, &how, out, err);
   case CAG_ITEM_SOLID: return cag_solid_tessellate(item->as.solid, &how, out, err);
   case CAG_ITEM_MESH: return cag_mesh_outward(item->as.mesh, out, err);
-  case CAG_ITEM_GROUND: return ground_mesh(s, item, out, err);
+  case CAG_ITEM_GROUND: break; // for pictures, which have a plane of their own
   }
-  return cag_fail(err, CAG_E_ARGUMENT, "item-kind", "", -1, "an item of an unknown kind");
+  return cag_fail(err, CAG_E_ARGUMENT, "item-kind", "", -1, "a ground is no mesh");
 }
 
 CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err) {

@@ -195,8 +195,8 @@ double cag_scene_radius(const CagBounds *b);
 CagTransform cag_camera_frame(const CagCamera *c);
 CagMaterial cag_material_default(void);
 
-// Mesh of one item at its tolerance (curves as tubes of their line radius, regions flat); *out has
-// one reference.
+// Mesh of one item at its tolerance (curves as tubes of their line radius, regions flat), its
+// closed parts outward; not of a ground. *out has one reference.
 CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err);
 
 #endif

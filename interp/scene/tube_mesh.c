@@ -4,6 +4,10 @@
 // at the ends of dashes. Each run is a tube of its own: rings of SIDES vertices in
 // rotation-minimizing frames (double reflection, Wang et al. 2008), with flat caps. A ball stands
 // at each sharp corner. A closed smooth curve is one run whose last ring is its first.
+//
+// Runs and balls are closed each by itself and overlap. No two of them share an edge: their
+// vertices would weld, and an edge of four triangles is not the edge of a solid. So at a corner the
+// ends of the runs stop short of it by different lengths, and the ball's rings lie askew.
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +18,10 @@
 #define BALL_RINGS 5
 // A curve follows its points to this part of the radius.
 #define CHORD_PART 0.1
+// How far runs end before a sharp corner and begin behind it, as parts of the radius: within the
+// ball, and different, so that a run back along the same line has no ring in common.
+#define SHORT_AT_END 0.03
+#define SHORT_AT_START 0.05
 // Cosine of the turn from which a corner gets a ball: 25 degrees.
 static const double SHARP_COSINE = 0.9063;
 static const double PI = 3.14159265358979323846;
@@ -154,6 +162,13 @@ static CagStatus add_run(Buffer *b, const CagVec3 *p, size_t n, bool closed, dou
   return CAG_OK;
 }
 
+// A direction turned by no angle that rings of tubes along the axes have: a rotation with the
+// columns (9, -20, 12)/25, (12, 15, 16)/25 and (-20, 0, 15)/25.
+static CagVec3 askew(CagVec3 n) {
+  return cag_vec3((9 * n.x + 12 * n.y - 20 * n.z) / 25, (15 * n.y - 20 * n.x) / 25,
+                  (12 * n.x + 16 * n.y + 15 * n.z) / 25);
+}
+
 static CagStatus add_ball(Buffer *b, CagVec3 p, double radius, CagError *err) {
   CagStatus status = reserve(b, BALL_RINGS * SIDES + 2, 2 * SIDES * (size_t)(BALL_RINGS + 1), err);
   if (status != CAG_OK) return status;
@@ -162,14 +177,15 @@ static CagStatus add_ball(Buffer *b, CagVec3 p, double radius, CagError *err) {
     double a = PI * i / (BALL_RINGS + 1);
     for (int k = 0; k < SIDES; k++) {
       double c = 2 * PI * k / SIDES;
-      CagVec3 n = cag_vec3(sin(a) * cos(c), sin(a) * sin(c), -cos(a));
+      CagVec3 n = askew(cag_vec3(sin(a) * cos(c), sin(a) * sin(c), -cos(a)));
       add_vertex(b, cag_madd(p, radius, n), n);
     }
   }
   for (int i = 0; i + 1 < BALL_RINGS; i++)
     add_side(b, start + (size_t)i * SIDES, start + (size_t)(i + 1) * SIDES);
-  size_t low = add_vertex(b, cag_madd(p, -radius, cag_vec3(0, 0, 1)), cag_vec3(0, 0, -1));
-  size_t high = add_vertex(b, cag_madd(p, radius, cag_vec3(0, 0, 1)), cag_vec3(0, 0, 1));
+  const CagVec3 up = askew(cag_vec3(0, 0, 1));
+  size_t low = add_vertex(b, cag_madd(p, -radius, up), cag_scaled(up, -1));
+  size_t high = add_vertex(b, cag_madd(p, radius, up), up);
   size_t top = start + (size_t)(BALL_RINGS - 1) * SIDES;
   for (size_t k = 0; k < SIDES; k++) {
     size_t l = (k + 1) % SIDES;
@@ -185,6 +201,25 @@ static bool is_sharp(CagVec3 a, CagVec3 b, CagVec3 c) {
   return cag_dot(cag_unit(cag_sub(b, a)), cag_unit(cag_sub(c, b))) < SHARP_COSINE;
 }
 
+// The point on the way from a corner to the next point, at most half of it.
+static CagVec3 short_of(CagVec3 corner, CagVec3 next, double length) {
+  double whole = cag_norm(cag_sub(next, corner));
+  return cag_lerp(corner, next, fmin(length / whole, 0.5));
+}
+
+// An open run through p[0 .. n) whose ends at sharp corners stop short of them.
+static CagStatus add_part(Buffer *b, const CagVec3 *p, size_t n, bool sharp_start, bool sharp_end,
+                          double radius, CagError *err) {
+  CagVec3 *q = malloc((n + 1) * sizeof *q);
+  if (!q) return cag_fail_memory(err);
+  memcpy(q, p, n * sizeof *q);
+  if (sharp_start) q[0] = short_of(p[0], p[1], SHORT_AT_START * radius);
+  if (sharp_end) q[n - 1] = short_of(p[n - 1], p[n - 2], SHORT_AT_END * radius);
+  CagStatus status = add_run(b, q, n, false, radius, err);
+  free(q);
+  return status;
+}
+
 // Runs between the sharp corners, and a ball at each.
 static CagStatus add_path(Buffer *b, const CagVec3 *p, size_t n, bool closed, double radius,
                           CagError *err) {
@@ -197,7 +232,7 @@ static CagStatus add_path(Buffer *b, const CagVec3 *p, size_t n, bool closed, do
   for (size_t i = 1; status == CAG_OK && i < n; i++) {
     bool last = i + 1 == n;
     if (!last && !is_sharp(p[i - 1], p[i], p[i + 1])) continue;
-    status = add_run(b, p + from, i - from + 1, false, radius, err);
+    status = add_part(b, p + from, i - from + 1, from > 0 || closed, !last || closed, radius, err);
     if (status == CAG_OK && (!last || closed)) status = add_ball(b, p[i], radius, err);
     from = i;
   }

@@ -165,6 +165,41 @@ done
 try export sheets.cag -o sheets.ply
 says_nothing
 
+it 'lines alone are written as closed tubes that share no edge'
+script wires.cag 'param which = 0
+square = polyline([[0, 0], [10, 0], [10, 10], [0, 10]], closed: true)
+hairpin = polyline([[0, 0, 0], [10, 0, 0], [0, 0, 0], [0, 10, 0], [0, 10, 10], [3, 3, 3]])
+walk = polyline([for k in 0..60: [7 * sin(k * 101deg), 7 * sin(k * 67deg), 7 * sin(k * 43deg)]])
+steps = polyline([for k in 0..40: [floor((k + 1) / 2), floor(k / 2) % 3, 0]])
+shapes = [square, hairpin, walk, steps, circle(4), helix(3, 2, 4)]
+show shapes[which]'
+printf 'print is_watertight(read_mesh("wires.stl"))\n' > tight.cag
+for which in 0 1 2 3 4 5; do
+  try export wires.cag -o wires.stl -D which=$which
+  status 0
+  says_nothing
+  try run tight.cag
+  prints_exactly true
+done
+
+# Its corner of three equal control points has no partials to cross; the plane has the normal [-1, -2, 2] / 3 there as elsewhere.
+it 'normals in a .ply are those of the surface, also where control points coincide'
+script corner.cag 'f(x, y) = [x, y, (x + 2*y) / 2]
+show bezier_surface([[f(0,0), f(0,0), f(0,2), f(0,3)], [f(0,0), f(1,1), f(1,2), f(1,3)], [f(2,0), f(2,1), f(2,2), f(2,3)], [f(3,0), f(3,1), f(3,2), f(3,3)]])'
+try export corner.cag -o corner.ply
+status 0
+# Six floats first, of 4 bytes each; then two more and three colours.
+size=$((8 * 4 + 3)) head=$(grep -abo end_header corner.ply | cut -d: -f1)
+count=$(sed -n 's/^element vertex //p' corner.ply | head -1)
+tail -c +$((head + 12)) corner.ply | head -c $((count * size)) > corner_vertices
+k=0
+while [ $k -lt "$count" ]; do
+  od -An -tf4 -w12 -j$((k * size + 12)) -N12 corner_vertices
+  k=$((k + 1))
+done > corner_normals
+[ "$(wc -l < corner_normals)" -eq "$count" ] || wrong 'normals are missing'
+awk '{ d = ($1 + 1/3)^2 + ($2 + 2/3)^2 + ($3 - 2/3)^2; if (!(d < 1e-12)) exit 1 }' corner_normals || wrong 'a normal is another'
+
 it 'copies are written once'
 [ "$(wc -c < bodies.glb)" -lt "$(($(wc -c < bodies.ply) * 3 / 4))" ] || wrong 'the .glb holds every copy'
 

@@ -175,3 +175,38 @@ try export ball.cag -o alias.stl
 status 0
 [ -L alias.stl ] || wrong 'the link was replaced'
 cmp -s target.stl ball.stl || wrong 'the target was not written'
+
+it 'an output is written where standard input is closed'
+"$CAG" export curve.cag -o closed.svg <&- > out 2> err
+code=$?
+status 0
+exists closed.svg
+
+# Capitals are twice as high as the middle one stands below its place; the text above has its foot as far above the place as
+# the text below has its head below.
+it 'a label above stands as far above its place as one below stands below'
+script labels.cag 'show line([0, 0], [40, 20])
+show label([10, 5], "Above", place: "above", size: 3), label([10, 5], "Center", place: "center", size: 3)
+show label([10, 5], "Below", place: "below", size: 3)'
+try export labels.cag -o labels.svg
+status 0
+foot() { sed -n "s/.*<text x=\"10\" y=\"-\([0-9.]*\)\".*text-anchor=\"middle\".*>$1<.*/\1/p" labels.svg; }
+echo "$(foot Above) $(foot Center) $(foot Below)" > feet
+awk '{ d = ($1 - 5) - (5 - ($3 + 2 * (5 - $2))); exit !(NF == 3 && $1 > 5 && $2 < 5 && $3 < $2 && d * d < 1e-8) }' feet ||
+  wrong "they stand at $(cat feet)"
+
+it 'a .json has samples of formulas, and labels'
+script data.cag 'show curve(t => [t, t^2, exp(t)], 0..2) |> named("wave")
+show label([1, 2, 3], "here", place: "above_left", mark: "dot", size: 4)'
+try export data.cag -o data.json
+status 0
+script data_of.cag 'data = read_json("data.json")
+s = data.items[0].curve.samples
+print len(s.parameters) == len(s.points), s.parameters[0], s.parameters[-1]
+print [for [t, p] in zip(s.parameters, s.points) if not near(p, [t, t^2, exp(t)]): t]
+l = data.labels[0]
+print len(data.labels), l.text, l.at, l.place, l.mark, l.size'
+try run data_of.cag
+prints_exactly 'true 0 2
+[]
+1 here [1, 2, 3] above_left dot 4'

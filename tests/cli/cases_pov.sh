@@ -89,3 +89,27 @@ script knot.cag 'show tube(bezier([[0, 0, 0], [30, 0, 0], [30, 30, 10], [0, 30, 
 try export knot.cag -o knot.pov
 status 0
 grep -q 'normal_vectors' knot.pov || wrong 'there are no normals'
+
+it 'a mesh of several colors has a part of each, and says what it is'
+script lump.cag 'lump = tessellate(color(box(4), "red") - color(translate(cylinder(9, 1), [2, 2, -1]), "blue")) |> named("lump")
+show lump
+show mesh([[9, 0, 0], [10, 0, 0], [9, 1, 0]], [[0, 1, 2]]) |> named("leaf")
+print len(faces(lump))'
+try export lump.cag -o lump.pov
+status 0
+grep -q '^// lump: mesh$' lump.pov || wrong 'there is no comment of the lump'
+grep -q '^// leaf: mesh$' lump.pov || wrong 'there is no comment of the leaf'
+[ "$(grep -c 'color rgb <1, 0, 0>' lump.pov)" -eq 1 ] && [ "$(grep -c 'color rgb <0, 0, 1>' lump.pov)" -eq 1 ] || wrong 'a color is missing'
+sum=$(awk '/^\/\/ leaf/ { exit } /mesh2 \{/ { s += $4 } END { print s }' lump.pov)
+prints_exactly "$sum"
+
+# The full light is within 0.8 of the cone; it points along -[1, 2, 3] from [10, 20, 30], on whatever point of that line.
+it 'a spot light keeps its place, direction and cone'
+script spot.cag 'show box(9), spot_light([10, 20, 30], origin, angle: 40deg)'
+try export spot.cag -o spot.pov
+status 0
+sed -n '/light_source { \/\/ spot/,/^}/p' spot.pov > spot
+grep -q '<10, 20, 30>' spot || wrong 'it is at another place'
+grep -q 'spotlight radius 16 falloff 20 ' spot || wrong 'its cone is another'
+tr -d '<>,' < spot | awk '/point_at/ { for (i = 1; i < NF; i++) if ($i == "point_at") { x = 10 - $(i+1); y = 20 - $(i+2); z = 30 - $(i+3) }
+  exit !(x > 0 && (y - 2*x)^2 + (z - 3*x)^2 < 1e-12) }' || wrong 'it points elsewhere'

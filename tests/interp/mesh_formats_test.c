@@ -348,8 +348,23 @@ static void what_single_precision_cannot_hold_is_an_error(void **state) {
   cag_mesh_release(m);
 }
 
+// As the C library prints them.
+static void indices_are_decimal_whatever_their_length(void **state) {
+  (void)state;
+  uint64_t n = 1;
+  for (int digits = 1; digits <= 20; digits++, n *= 10)
+    for (int k = -1; k <= 1; k++) {
+      const uint64_t x = k < 0 ? n - 1 : k > 0 ? n / 9 * 8 + (uint64_t)digits : n;
+      char found[21] = {0}, expected[21];
+      *cag_mesh_write_index(found, x) = 0;
+      snprintf(expected, sizeof expected, "%llu", (unsigned long long)x);
+      assert_string_equal(found, expected);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(indices_are_decimal_whatever_their_length),
       cmocka_unit_test(numbers_read_back_as_the_same_float),
       cmocka_unit_test(stl_has_the_triangles_that_have_an_area),
       cmocka_unit_test(obj_shares_points_and_keeps_normals_apart),
