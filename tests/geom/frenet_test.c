@@ -38,7 +38,7 @@ static void frames_of_lines_and_of_nothing(void **state) {
   assert_false(f.has_normal);
   assert_true(f.curvature == 0 && speed == 3);
   d[0] = cag_vec3(0, 0, 0);
-  FAILS(cag_frenet_of(d, &speed, &f, &err), "singular-point");
+  FAILS_AT(cag_frenet_of(d, &speed, &f, &err), "singular-point", 0);
 }
 
 // C(t) = t e with t = sin u: d^n sin u. And t = u^2 about u = 1 with C = t^4, which is u^8.
@@ -56,7 +56,7 @@ static void the_chain_rule_holds_to_any_order(void **state) {
     NEAR(out[k].z, k < 2 ? 2 : 0, 0);
   }
   const double still[1] = {0};
-  FAILS(cag_chain_derivatives(d, still, 1, out, &err), "parameter-stands-still");
+  FAILS_AT(cag_chain_derivatives(d, still, 1, out, &err), "parameter-stands-still", 0);
 }
 
 static void a_triad_that_turns_has_a_skew_derivative(void **state) {
@@ -77,10 +77,9 @@ static void a_triad_that_turns_has_a_skew_derivative(void **state) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) NEAR(a[i][j] + a[j][i], 0, 1e-15);
   dm[0] = m[0];
-  FAILS(cag_triad_derivative(m, dm, a, &err), "triad-not-rigid");
-  assert_int_equal(err.index, 0);
+  FAILS_AT(cag_triad_derivative(m, dm, a, &err), "triad-not-rigid", 0);
   const CagVec3 skew[3] = {{1, 0, 0}, {0, 1, 0}, {0, 1e-3, 1}};
-  FAILS(cag_triad_derivative(skew, dm, a, &err), "frame-not-orthonormal");
+  FAILS_AMONG(cag_triad_derivative(skew, dm, a, &err), "frame-not-orthonormal", 1, 2);
 }
 
 // --- Curves of polynomials by Bezier points ---

@@ -127,11 +127,11 @@ static void bad_faces_are_named(void **state) {
   (void)state;
   CagMeshCheck c;
   const uint32_t twice[] = {0, 1, 2, 1}, beyond[] = {0, 1, 9}, two[] = {2};
-  FAILS(cag_faces_check(cube_vertices, 8, twice, fours, 1, &c, &err), "face-degenerate");
-  FAILS(cag_faces_check(cube_vertices, 8, twice, two, 1, &c, &err), "face-degenerate");
-  FAILS(cag_faces_check(cube_vertices, 8, beyond, threes, 1, &c, &err), "face-index");
+  FAILS_AT(cag_faces_check(cube_vertices, 8, twice, fours, 1, &c, &err), "face-degenerate", 0);
+  FAILS_AT(cag_faces_check(cube_vertices, 8, twice, two, 1, &c, &err), "face-degenerate", 0);
+  FAILS_AT(cag_faces_check(cube_vertices, 8, beyond, threes, 1, &c, &err), "face-index", 0);
   CagVec3 p[3] = {{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}};
-  FAILS(cag_faces_check(p, 3, cube_faces, threes, 0, &c, &err), "vertex-not-finite");
+  FAILS_AT(cag_faces_check(p, 3, cube_faces, threes, 0, &c, &err), "vertex-not-finite", 2);
   OK(cag_faces_check(cube_vertices, 8, cube_faces, fours, 0, &c, &err));
   assert_true(!c.closed && c.euler == 0);
 }

@@ -91,20 +91,18 @@ static void bad_faces_are_named(void **state) {
   (void)state;
   CagMesh *m;
   uint32_t three = 3, two = 2, four = 4;
-  FAILS(cag_mesh_from_faces(cube_vertices, 8, (uint32_t[]){0, 1, 8}, &three, 1, &m, &err),
-        "face-index");
-  assert_int_equal(err.index, 0);
-  FAILS(cag_mesh_from_faces(cube_vertices, 8, (uint32_t[]){0, 1}, &two, 1, &m, &err),
-        "face-degenerate");
-  FAILS(cag_mesh_from_faces(cube_vertices, 8, (uint32_t[]){0, 1, 3, 0}, &four, 1, &m, &err),
-        "face-degenerate");
+  FAILS_AT(cag_mesh_from_faces(cube_vertices, 8, (uint32_t[]){0, 1, 8}, &three, 1, &m, &err),
+           "face-index", 0);
+  FAILS_AT(cag_mesh_from_faces(cube_vertices, 8, (uint32_t[]){0, 1}, &two, 1, &m, &err),
+           "face-degenerate", 0);
+  FAILS_AT(cag_mesh_from_faces(cube_vertices, 8, (uint32_t[]){0, 1, 3, 0}, &four, 1, &m, &err),
+           "face-degenerate", 0);
   // Two corners exchanged: a bow tie.
-  FAILS(cag_mesh_from_faces(cube_vertices, 8, (uint32_t[]){0, 1, 2, 3}, &four, 1, &m, &err),
-        "face-degenerate");
+  FAILS_AT(cag_mesh_from_faces(cube_vertices, 8, (uint32_t[]){0, 1, 2, 3}, &four, 1, &m, &err),
+           "face-degenerate", 0);
   CagVec3 line[4] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {NAN, 0, 0}};
-  FAILS(cag_mesh_from_faces(line, 4, (uint32_t[]){0, 1, 2}, &three, 1, &m, &err),
-        "vertex-not-finite");
-  assert_int_equal(err.index, 3);
+  FAILS_AT(cag_mesh_from_faces(line, 4, (uint32_t[]){0, 1, 2}, &three, 1, &m, &err),
+           "vertex-not-finite", 3);
 }
 
 static void a_concave_face_is_cut_within_its_outline(void **state) {

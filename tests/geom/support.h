@@ -28,6 +28,14 @@ static CagError err;
     assert_int_not_equal((call), CAG_OK);                                                          \
     assert_string_equal(err.reason, why);                                                          \
   } while (0)
+// Fails about one of the elements number `low` to `high`, or about element `at`.
+#define FAILS_AMONG(call, why, low, high)                                                          \
+  do {                                                                                             \
+    FAILS(call, why);                                                                              \
+    if (err.index < (low) || err.index > (high))                                                   \
+      fail_msg("%s: element %ld, not in %d..%d", #call, err.index, (int)(low), (int)(high));       \
+  } while (0)
+#define FAILS_AT(call, why, at) FAILS_AMONG(call, why, at, at)
 #define NEAR(a, b, tolerance)                                                                      \
   do {                                                                                             \
     double near_a = (a), near_b = (b);                                                             \

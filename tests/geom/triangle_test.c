@@ -67,9 +67,8 @@ static void coordinates_outside_are_told(void **state) {
   (void)state;
   CagTriangleJet j;
   FAILS(cag_triangle_at(cubic, 3, (double[]){0.5, 0.5, 0.5}, &j, &err), "parameter-range");
-  FAILS(cag_triangle_at(cubic, 3, (double[]){1.2, -0.1, -0.1}, &j, &err), "parameter-range");
-  assert_int_equal(err.index, 1);
-  FAILS(cag_triangle_at(cubic, 3, (double[]){NAN, 0.5, 0.5}, &j, &err), "parameter-range");
+  FAILS_AT(cag_triangle_at(cubic, 3, (double[]){1.2, -0.1, -0.1}, &j, &err), "parameter-range", 1);
+  FAILS_AT(cag_triangle_at(cubic, 3, (double[]){NAN, 0.5, 0.5}, &j, &err), "parameter-range", 0);
 }
 
 int main(void) {
