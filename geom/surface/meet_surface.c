@@ -28,6 +28,10 @@
 #define JOINED 1e-7
 // Sine of the angle of the normals below which the surfaces touch.
 #define TOUCH 1e-6
+// Surfaces share a piece where, all about a place at which they touch, to this part of the longest
+// step, they are no farther apart than that part of the size.
+#define COMMON_REACH 0.25
+#define COMMON 1e-9
 // cos 12 degrees: a tangent turns by no more in one step.
 #define TURN_MOST 0.978
 #define DEFAULT_TOLERANCE 1e-6
@@ -172,15 +176,18 @@ static Found locate(March *m, CagVec3 q, CagVec3 n, CagVec3 along, Node *node) {
   return NONE;
 }
 
+static bool belongs_to(March *m, int k, const Node *node, bool *out) {
+  const CagVec3 p = cag_vec3(node->at[k][0], node->at[k][1], 0);
+  *out = true;
+  if (!m->side[k].region) return true;
+  CagStatus status = cag_region_contains(m->side[k].region, p, out, m->err);
+  return status == CAG_OK || fail(m, status);
+}
+
 static bool belongs(March *m, const Node *node) {
-  for (int k = 0; k < 2; k++) {
-    bool inside = true;
-    if (!m->side[k].region) continue;
-    CagVec3 p = cag_vec3(node->at[k][0], node->at[k][1], 0);
-    CagStatus status = cag_region_contains(m->side[k].region, p, &inside, m->err);
-    if (status) return fail(m, status);
-    if (!inside) return false;
-  }
+  bool inside;
+  for (int k = 0; k < 2; k++)
+    if (!belongs_to(m, k, node, &inside) || !inside) return false;
   return true;
 }
 
@@ -613,36 +620,53 @@ static bool add_parts(March *m, const Run *run, CagCurveList *out) {
 
 // --- The whole ---
 
-// Whether the surfaces are one all about a place where they touch, not along a line only.
-static bool is_common(March *m, const Node *node, bool *out) {
-  const double reach = 1e-3 * m->step_most, same = 1e-4 * reach;
+// Whether a place of the first surface, beside one where they touch, lies on the second; `known`:
+// whether there is such a place.
+static bool is_shared(March *m, const double at[2], bool *known, bool *out) {
   const CagSurface *a = m->side[0].s;
+  const Node place = {.at = {{at[0], at[1]}}};
+  const double low[2] = {a->u0, a->v0}, high[2] = {a->u1, a->v1};
+  bool inside = true;
+  *known = false;
+  for (int d = 0; d < 2; d++)
+    if (!(at[d] >= low[d] && at[d] <= high[d])) return true;
+  if (!belongs_to(m, 0, &place, &inside) || !inside) return m->status == CAG_OK;
+  CagVec3 p;
+  CagSurfaceNearest nearest;
+  CagStatus status = cag_surface_point(a, at[0], at[1], &p, m->err);
+  if (!status) status = cag_surface_closest(m->side[1].s, p, &nearest, m->err);
+  if (status) return fail(m, status);
+  *known = true;
+  *out = nearest.distance <= COMMON * m->size;
+  return true;
+}
+
+// Whether the surfaces are one all about a place where they touch, not along lines only. Two lines
+// along which surfaces touch or cross may meet there: so it is tried in many directions, and as far
+// away as surfaces part that touch to the third order.
+static bool is_common(March *m, const Node *node, bool *out) {
+  enum { DIRECTIONS = 10, RINGS = 2 };
   Tangential t;
   int tried = 0;
   *out = false;
   if (!look(m, 0, node->at[0], &t)) return false;
-  for (int k = 0; k < 4; k++) {
-    const CagVec3 d = k < 2 ? t.du : t.dv;
-    const double step = (k % 2 ? -1 : 1) * reach / fmax(cag_norm(d), DBL_MIN);
-    Node beside = *node;
-    beside.at[0][k < 2 ? 0 : 1] += step;
-    const double *at = beside.at[0];
-    if (at[0] < a->u0 || at[0] > a->u1 || at[1] < a->v0 || at[1] > a->v1) continue;
-    CagVec3 p;
-    CagSurfaceNearest nearest;
-    CagStatus status = cag_surface_point(a, at[0], at[1], &p, m->err);
-    if (!status) status = cag_surface_closest(m->side[1].s, p, &nearest, m->err);
-    if (status) return fail(m, status);
-    if (nearest.distance > same) return true;
-    tried++;
+  for (int i = 0; i < DIRECTIONS * RINGS; i++) {
+    const double reach = COMMON_REACH * m->step_most * (1 + i / DIRECTIONS) / RINGS;
+    const double angle = 2 * M_PI * (i + 0.25) / DIRECTIONS;
+    const double at[2] = {node->at[0][0] + reach * cos(angle) / fmax(cag_norm(t.du), DBL_MIN),
+                          node->at[0][1] + reach * sin(angle) / fmax(cag_norm(t.dv), DBL_MIN)};
+    bool known, shared;
+    if (!is_shared(m, at, &known, &shared)) return false;
+    if (known && !shared) return true;
+    tried += known;
   }
-  *out = tried >= 2;
+  *out = tried >= DIRECTIONS / 2;
   return true;
 }
 
-// Some of the places that touch are looked at.
+// The places that touch are looked at, up to some hundred of them.
 static bool find_common(March *m, bool *out) {
-  const size_t looks = 8;
+  const size_t looks = 100;
   size_t found = 0, every = m->touching / looks + 1;
   *out = false;
   for (size_t i = 0; !*out && i < m->seed_count; i++) {
