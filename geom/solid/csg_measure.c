@@ -52,11 +52,11 @@ static CagStatus fail_empty(const CagSolid *s, CagError *err) {
     return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
                     s->kind == CAG_SOLID_UNION ? "the solid is empty: it has no bounds"
                                                : "the form is nowhere negative");
-  cag_solid_describe(s->core->operands[0], first, sizeof first);
+  cag_solid_describe_form(s->core->operands[0], first, sizeof first);
   if (s->core->count < 2)
     return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1, "the %s of (%s) is empty",
                     cag_solid_kind_name(s->kind), first);
-  cag_solid_describe(s->core->operands[1], second, sizeof second);
+  cag_solid_describe_form(s->core->operands[1], second, sizeof second);
   return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
                   s->kind == CAG_SOLID_UNION ? "the %s of (%s) and (%s)%s is empty: all of them are"
                   : s->kind == CAG_SOLID_DIFFERENCE

@@ -110,7 +110,7 @@ static CagStatus name_operand(const CagSolid *s, const size_t *operands, size_t 
   snprintf(mesh, sizeof mesh, "`meshes[%ld]`", err->index);
   const char *at = strstr(err->message, mesh);
   if (!at) return status;
-  cag_solid_describe(s->core->operands[i], operand, sizeof operand);
+  cag_solid_describe_form(s->core->operands[i], operand, sizeof operand);
   snprintf(text, sizeof text, "%.*soperand %zu of the %s (%s)%s", (int)(at - err->message),
            err->message, i + 1, cag_solid_kind_name(s->kind), operand, at + strlen(mesh));
   memcpy(err->message, text, sizeof text);

@@ -98,7 +98,11 @@ CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid
 CagStatus cag_solid_bounds(const CagSolid *s, CagBounds *out, CagError *err);
 CagStatus cag_solid_mass(const CagSolid *s, CagMassProperties *out,
                          CagError *err); // closed forms of primitives, else integrals over faces
-void cag_solid_describe(const CagSolid *s, char *buffer, size_t size); // "sphere, radius 10"
-const char *cag_solid_kind_name(CagSolidKind kind);                    // "box"
+// "sphere, radius 10, at [1, 2, 3]": what it is with the sizes that it has, then what else its
+// transforms did: "scaled by", "turned by", "mapped by" and where its own origin came. The form
+// alone leaves these out.
+void cag_solid_describe(const CagSolid *s, char *buffer, size_t size);
+void cag_solid_describe_form(const CagSolid *s, char *buffer, size_t size);
+const char *cag_solid_kind_name(CagSolidKind kind); // "box"
 
 #endif

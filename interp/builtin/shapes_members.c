@@ -180,7 +180,7 @@ static void describe_staged(CagVm *vm, CagString *s, CagValue v) {
 }
 
 void cag_describe_shape(CagVm *vm, CagString *s, CagValue v) {
-  char text[200] = "";
+  char text[400] = "";
   switch (v.type) {
   case CAG_CURVE: describe_curve(s, CAG_AS_SHAPE(v)->as.curve); return;
   case CAG_SURFACE: describe_surface(s, CAG_AS_SHAPE(v)->as.surface); return;
