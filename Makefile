@@ -1,6 +1,6 @@
 # The only build. `make` leaves the program at build/cag; BUILD= chooses another folder.
 #
-#   make             program and libraries          make test            all suites, closing with `N passed, N failed`
+#   make             program and libraries          make test            all suites, closing with `N passed, N failed, N skipped`
 #   make test-sanitize  under ASan and UBSan        make bench           figures against peers
 #   make coverage    lines and branches by folder   make mutate N=100    how many random changes the tests notice
 #   make format      clang-format everything        make check-format / check-layers

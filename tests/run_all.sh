@@ -1,39 +1,43 @@
 #!/bin/sh
-# Runs all suites of a build (BUILD, default build) and adds up. The last line is `N passed, N failed`; the exit status is 0 when
-# nothing failed. A suite that crashes, or does not say how many of its tests passed, counts as one failure more.
+# Runs all suites of a build (BUILD, default build) and adds up. The last line is `N passed, N failed, N skipped`; the exit status is
+# 0 when nothing failed. A test is skipped when it needs a tool that is missing: it has neither passed nor failed. A suite that
+# crashes, or does not say how many of its tests passed, counts as one failure more.
 set -u
 cd "$(dirname "$0")/.."
 BUILD=${BUILD:-build}
-passed=0 failed=0
+passed=0 failed=0 skipped=0
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 
-# add NAME PASSED FAILED STATUS: adds a suite, and shows its output when something is wrong with it.
+# add NAME PASSED FAILED SKIPPED STATUS: adds a suite, and shows its output when something is wrong with it.
 add() {
   suite_failed=$3
-  [ "$4" -eq 0 ] || [ "$3" -gt 0 ] || suite_failed=1
-  [ "$2" -gt 0 ] || [ "$suite_failed" -gt 0 ] || suite_failed=1
+  [ "$5" -eq 0 ] || [ "$3" -gt 0 ] || suite_failed=1
+  [ $(($2 + $4)) -gt 0 ] || [ "$suite_failed" -gt 0 ] || suite_failed=1
   [ "$suite_failed" -eq 0 ] || tail -n 200 "$log"
-  echo "$1: $2 passed, $suite_failed failed"
-  passed=$((passed + $2)) failed=$((failed + suite_failed))
+  [ "$4" -eq 0 ] || [ "$suite_failed" -gt 0 ] || grep -e '^skipped: ' -e ' is skipped: ' -e '^\[  SKIPPED \] [a-z_0-9]*$' "$log" | sort -u
+  echo "$1: $2 passed, $suite_failed failed, $4 skipped"
+  passed=$((passed + $2)) failed=$((failed + suite_failed)) skipped=$((skipped + $4))
 }
 
-# A program of C tests. cmocka writes its counts to standard error, one pair for each group.
+# A program of C tests. cmocka writes its counts to standard error, some lines for each group: `[  PASSED  ] 3 test(s).`,
+# `[  SKIPPED ] 1 test(s), listed below:`. in_all PATTERN: the sum of the numbers at \(\).
+in_all() { sed -n "s/$1/\1/p" "$log" | awk '{ n += $1 } END { print n + 0 }'; }
 unit() {
   "$1" > "$log" 2>&1
   status=$?
-  add "${1#"$BUILD"/}" "$(sed -n 's/^\[  PASSED  \] \([0-9]*\) test(s).*/\1/p' "$log" | awk '{ n += $1 } END { print n + 0 }')" \
-    "$(sed -n 's/^\[  FAILED  \].*[ :]\([0-9]*\) test(s).*/\1/p' "$log" | awk '{ n += $1 } END { print n + 0 }')" $status
+  add "${1#"$BUILD"/}" "$(in_all '^\[  PASSED  \] \([0-9]*\) test(s).*')" "$(in_all '^\[  FAILED  \].*[ :]\([0-9]*\) test(s).*')" \
+    "$(in_all '^\[  SKIPPED \].*[ :]\([0-9]*\) test(s).*')" $status
 }
 
-# A command whose last line is `N passed, N failed`.
+# A command whose last line is `N passed, N failed, N skipped`.
 counted() {
   name=$1
   shift
   "$@" > "$log" 2>&1
   status=$?
-  counts=$(tail -n 1 "$log" | sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\1 \2/p')
-  add "$name" ${counts:-0 1} $status
+  counts=$(tail -n 1 "$log" | sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed, \([0-9]*\) skipped$/\1 \2 \3/p')
+  add "$name" ${counts:-0 1 0} $status
 }
 
 # A check that passes or fails as a whole.
@@ -42,7 +46,7 @@ check() {
   shift
   "$@" > "$log" 2>&1
   status=$?
-  if [ $status -eq 0 ]; then add "$name" 1 0 0; else add "$name" 0 1 $status; fi
+  if [ $status -eq 0 ]; then add "$name" 1 0 0 0; else add "$name" 0 1 0 $status; fi
 }
 
 case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
@@ -62,7 +66,8 @@ check "layers" make -s check-layers
 if command -v clang-format > /dev/null; then
   check "format" make -s check-format
 else
-  echo "format: not checked, clang-format is not here"
+  echo "skipped: clang-format is missing" > "$log"
+  add "format" 0 0 1 0
 fi
-echo "$passed passed, $failed failed"
+echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

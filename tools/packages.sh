@@ -3,12 +3,13 @@
 # LAPACK comes with Debian's own BLAS: that of OpenBLAS starts threads in every process, which spin for longer than most scripts take.
 BUILD_PACKAGES="gcc libc6-dev make pkg-config libopenexr-dev liblapacke-dev libedit-dev libcjson-dev
   libpng-dev libutf8proc-dev libglu1-mesa-dev zlib1g-dev libcmark-gfm-dev libcmark-gfm-extensions-dev libxml2-dev povray povray-includes"
-TEST_PACKAGES="munge slurm-client slurmctld slurmd libcmocka-dev clang-format tmux zsh mandoc groff-base vim dpkg-dev lintian libxml2-utils occt-draw admesh assimp-utils unzip liburdfdom-tools"
+TEST_PACKAGES="munge slurm-client slurmctld slurmd libcmocka-dev clang-format tmux zsh mandoc groff-base vim strace g++ dpkg-dev lintian libxml2-utils occt-draw admesh assimp-utils unzip liburdfdom-tools"
 # The Khronos validator of glTF runs on these; where they came from elsewhere, Debian's would be in their way.
 command -v node > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES nodejs"
 command -v npm > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES npm"
+command -v python3 > /dev/null 2>&1 || TEST_PACKAGES="$TEST_PACKAGES python3"
 
-# Tests that need these are left out where they cannot be had: they are large, and not needed by anything else.
+# Tests that need these are skipped where they cannot be had: they are large, and not needed by anything else.
 EXTRA_PACKAGES="chromium"
 # The seconds that their download may take.
 EXTRA_SECONDS=240
@@ -30,7 +31,7 @@ install_extra_packages() {
   $as_root timeout $EXTRA_SECONDS apt-get update -q
   $as_root timeout $EXTRA_SECONDS apt-get install -q -y --no-install-recommends --download-only $missing &&
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $missing ||
-    echo "these could not be installed, and their tests are left out:$missing"
+    echo "these could not be installed, and their tests are skipped:$missing"
 }
 
 # Sets `missing` to those of the packages that are not here, and `as_root` to what makes one root.

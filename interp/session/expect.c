@@ -381,7 +381,7 @@ static void fail(Run *r, size_t line, const char *message, const char *expected,
 }
 
 static void end_run(Run *r, CagTestOutcome outcome, double seconds, const char *remark) {
-  size_t *counts[] = {&r->counts->passed, &r->counts->failed, &r->counts->left_out};
+  size_t *counts[] = {&r->counts->passed, &r->counts->failed, &r->counts->skipped};
   ++*counts[outcome];
   if (r->options->ended) r->options->ended(r->options->context, r->name, outcome, seconds, remark);
 }
@@ -595,7 +595,7 @@ static int test_picture(Run *r, CagSession *s, const char *reference_path) {
   const char *remark = NULL;
   r->failed = false;
   if (!cag_find_povray(version, sizeof version)) {
-    end_run(r, CAG_TEST_LEFT_OUT, 0, version);
+    end_run(r, CAG_TEST_SKIPPED, 0, version);
     return CAG_STATUS_OK;
   }
   if (!read_picture(reference_path, &reference, &err)) {

@@ -24,7 +24,7 @@
 // A picture beside the script, NAME.exr or NAME.png, is the reference of what the plain run shows,
 // or of what the run with --picture shows, where there is one: `run: -D time=0.5 --picture`.
 // It is rendered at the reference's size in the quality "normal", and compared: see
-// CAG_TEST_DELTA_E. Without POV-Ray pictures are left out.
+// CAG_TEST_DELTA_E. Without POV-Ray pictures are skipped.
 
 #ifndef CAG_INTERP_SESSION_EXPECT_H
 #define CAG_INTERP_SESSION_EXPECT_H
@@ -45,7 +45,7 @@
 #define CAG_TEST_PIXEL 0.1
 #define CAG_TEST_PIXELS 0.01
 
-typedef enum CagTestOutcome { CAG_TEST_PASSED, CAG_TEST_FAILED, CAG_TEST_LEFT_OUT } CagTestOutcome;
+typedef enum CagTestOutcome { CAG_TEST_PASSED, CAG_TEST_FAILED, CAG_TEST_SKIPPED } CagTestOutcome;
 
 // Something that is not as expected.
 typedef struct CagTestFailure {
@@ -65,7 +65,7 @@ typedef struct CagTestOptions {
   bool update;        // write the reference pictures instead of comparing with them
   bool no_pictures;   // do not render
   void (*failure)(void *context, const CagTestFailure *failure);
-  // A run has ended; `remark` says more (why it was left out, that a picture was renewed) or is
+  // A run has ended; `remark` says more (why it was skipped, that a picture was renewed) or is
   // NULL.
   void (*ended)(void *context, const char *test, CagTestOutcome outcome, double seconds,
                 const char *remark);
@@ -73,7 +73,7 @@ typedef struct CagTestOptions {
 } CagTestOptions;
 
 typedef struct CagTestCounts {
-  size_t passed, failed, left_out; // runs, and pictures
+  size_t passed, failed, skipped; // runs, and pictures
 } CagTestCounts;
 
 // Zero, but for the session's defaults.

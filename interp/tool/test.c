@@ -3,7 +3,8 @@
 // scripts.h says which scripts, interp/session/expect.h says what a test is. Workers take the
 // scripts in their order; what is said of a script is kept until those before it are told, so the
 // report does not depend on the number of workers. It goes to standard output: what failed, with -v
-// also what passed, and at last `N passed, N failed`.
+// also what passed, and at last `N passed, N failed, N skipped`: a picture is skipped where there
+// is no POV-Ray to render it.
 
 #include <cJSON.h>
 #include <pthread.h>
@@ -50,9 +51,9 @@ static void add_text(cJSON *object, const char *name, const char *text) {
 }
 
 // The fields of a diagnostic, and what was expected and found.
-static void report_json(FILE *out, const CagTestFailure *f) {
+static void report_json(FILE *out, const char *severity, const CagTestFailure *f) {
   cJSON *object = cJSON_CreateObject();
-  add_text(object, "severity", "error");
+  add_text(object, "severity", severity);
   cJSON_AddNullToObject(object, "code");
   add_text(object, "message", f->message);
   add_text(object, "file", f->file);
@@ -88,7 +89,7 @@ static void report_failure(void *context, const CagTestFailure *f) {
   if (!s->failure) s->failure = open_memstream(&s->failure_text, &s->failure_length);
   if (s->failure) report_text(s->failure, f);
   if (s->testing->tool->style == CAG_STYLE_JSON) {
-    report_json(s->messages, f);
+    report_json(s->messages, "error", f);
     return;
   }
   fprintf(s->out, "FAILED %s\n", f->test);
@@ -103,13 +104,27 @@ static void keep_case(Script *s, const char *test, CagTestOutcome outcome, doubl
   CagJunitCase *cases = realloc(s->cases, (s->case_count + 1) * sizeof *cases);
   if (!cases) return;
   s->cases = cases;
-  const bool left_out = outcome == CAG_TEST_LEFT_OUT;
+  const bool skipped = outcome == CAG_TEST_SKIPPED;
   cases[s->case_count++] = (CagJunitCase){
       strdup(test), seconds,
       outcome == CAG_TEST_FAILED ? (s->failure_text ? s->failure_text : strdup("")) : NULL,
-      left_out && remark ? strdup(remark) : NULL};
+      skipped && remark ? strdup(remark) : NULL};
   if (outcome != CAG_TEST_FAILED) free(s->failure_text);
   s->failure_text = NULL;
+}
+
+static void report_skipped(const Script *s, const char *test, const char *why) {
+  const CagTool *tool = s->testing->tool;
+  if (tool->quiet) return;
+  if (tool->style != CAG_STYLE_JSON) {
+    fprintf(s->messages, "cag test: %s is skipped: %s\n", test, why);
+    return;
+  }
+  char *message = NULL;
+  if (asprintf(&message, "skipped: %s", why) < 0) return;
+  report_json(s->messages, "note",
+              &(CagTestFailure){.test = test, .file = s->path, .message = message});
+  free(message);
 }
 
 static void report_end(void *context, const char *test, CagTestOutcome outcome, double seconds,
@@ -117,9 +132,8 @@ static void report_end(void *context, const char *test, CagTestOutcome outcome, 
   Script *s = context;
   const CagTool *tool = s->testing->tool;
   keep_case(s, test, outcome, seconds, remark);
-  if (outcome == CAG_TEST_LEFT_OUT) {
-    if (!tool->quiet && tool->style != CAG_STYLE_JSON)
-      fprintf(s->messages, "cag test: %s is left out: %s\n", test, remark);
+  if (outcome == CAG_TEST_SKIPPED) {
+    report_skipped(s, test, remark);
   } else if (remark && !tool->quiet) {
     fprintf(s->out, "%s: %s\n", test, remark);
   } else if (tool->verbose && outcome == CAG_TEST_PASSED) {
@@ -186,7 +200,7 @@ static int tell(Testing *t, CagTestCounts *counts, int *file_status) {
     fwrite(s->told, 1, s->told_length, stderr);
     counts->passed += s->counts.passed;
     counts->failed += s->counts.failed;
-    counts->left_out += s->counts.left_out;
+    counts->skipped += s->counts.skipped;
     if (s->status == CAG_STATUS_FILE) *file_status = CAG_STATUS_FILE;
     else status = s->status;
   }
@@ -297,8 +311,7 @@ int cag_tool_test(CagTool *tool, int argc, char **argv) {
   if (status == CAG_STATUS_OK && t.count == 0 && scripts.status == CAG_STATUS_OK)
     cag_tool_say(tool, "there is no script to test");
   if (status == CAG_STATUS_OK) status = write_report(&t);
-  if (counts.left_out) printf("%zu pictures not compared\n", counts.left_out);
-  printf("%zu passed, %zu failed\n", counts.passed, counts.failed);
+  printf("%zu passed, %zu failed, %zu skipped\n", counts.passed, counts.failed, counts.skipped);
   release(&t);
   if (status != CAG_STATUS_OK) return status;
   if (scripts.status != CAG_STATUS_OK) return scripts.status;

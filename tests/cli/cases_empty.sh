@@ -8,7 +8,7 @@ for ending in stl obj ply glb gltf 3mf pov json svg; do
   status 0
   says 'region.2: the shape is empty, so it adds nothing to the scene'
 done
-if have povray; then
+if needs povray; then
   try render part.cag -o part.png --size 48x32 --quality draft
   status 0
 fi

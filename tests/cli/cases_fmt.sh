@@ -121,15 +121,17 @@ status 0
 same target.cag neat.expected
 [ "$(stat -c %a target.cag)" = 640 ] || wrong 'its permissions are others'
 
-it 'what cannot be written is told'
+it 'what is write-protected is told'
 mkdir -p kept
 cp loose.cag kept/a.cag
-if [ "$(id -u)" != 0 ]; then
+if needs_no_root; then
   chmod 444 kept/a.cag
   try fmt kept/a.cag
   status 3
   says 'write-protected'
 fi
+
+it 'what cannot be written is told'
 ln -sf nowhere.cag dangling.cag
 try fmt dangling.cag
 status 3

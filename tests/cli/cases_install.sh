@@ -56,7 +56,7 @@ status 0
 exists vase.stl
 
 it 'a client in C++ builds'
-if command -v c++ > /dev/null; then
+if needs c++; then
   printf '#include <cag.h>\nint main() { return cag_version() == nullptr; }\n' > client.cpp
   try_command c++ -Wall -Wextra -Werror $sanitize client.cpp $(pkg-config $flags --cflags --libs libcag) -o client
   status 0
@@ -87,7 +87,7 @@ bash_proposes() {
   proposes "$line" "$expected"
 }
 it 'bash completes commands, options, their values, and files by their endings'
-if have bash; then
+if needs bash; then
   bash_proposes 'cag ren' render cag ren
   bash_proposes 'cag run ' 'a.cag b c.cag parts' cag run ''
   bash_proposes 'cag render a.cag --qu' '--quality' cag render a.cag --qu
@@ -99,8 +99,6 @@ if have bash; then
   bash_proposes 'cag explain E015' "$("$CAG" explain | sed -n 's/^ *\(E015[0-9]\).*/\1/p' | sort | paste -sd' ')" cag explain E015
   bash_proposes 'cag doc bspl' 'bspline bspline_surface' cag doc bspl
   bash_proposes 'cag fmt --d' '--diagnostics --diff' cag fmt --d
-else
-  echo 'bash is missing: its completion is not tested'
 fi
 
 zsh_proposes() {
@@ -112,7 +110,7 @@ zsh_proposes() {
   proposes "$1" "$2"
 }
 it 'zsh completes commands, options, their values, and files by their endings'
-if have zsh; then
+if needs zsh; then
   zsh_proposes 'cag ren' render
   zsh_proposes 'cag run ' 'a.cag b\ c.cag parts'
   zsh_proposes 'cag render a.cag --qu' '--quality'
@@ -120,8 +118,6 @@ if have zsh; then
   zsh_proposes 'cag export --format=g' 'glb gltf'
   zsh_proposes 'cag compare ' 'parts x.exr y.png'
   zsh_proposes 'cag doc bspl' 'bspline bspline_surface'
-else
-  echo 'zsh is missing: its completion is not tested'
 fi
 cd ..
 
@@ -138,22 +134,28 @@ done
 grep -q ':render' "$prefix/share/man/man1/cag-repl.1" || wrong 'cag-repl.1 lacks the commands of the REPL'
 grep -q 'bspline' "$prefix/share/man/man7/cag-language.7" || wrong 'cag-language.7 lacks the built-in names'
 
-it 'the man pages are set without warnings'
-for page in "$prefix"/share/man/man?/*; do
-  if have mandoc; then
+it 'mandoc has nothing to say about the man pages'
+if needs mandoc; then
+  for page in "$prefix"/share/man/man?/*; do
     try_command mandoc -Tlint -W warning "$page"
     [ ! -s out ] || wrong 'mandoc has something to say'
-  fi
-  if have groff; then
+  done
+fi
+
+it 'groff sets the man pages without warnings'
+if needs groff; then
+  for page in "$prefix"/share/man/man?/*; do
     try_command groff -ww -man -Tutf8 -K utf8 "$page"
     says_nothing
-  fi
-done
+  done
+fi
 
 # --- The Debian packages ---
 
 it 'the Debian packages hold the installation and say what they depend on'
-if have dpkg-shlibdeps && [ -z "$sanitize" ]; then
+if [ -n "$sanitize" ]; then
+  skip 'this is a build with sanitizers'
+elif needs dpkg-shlibdeps; then
   ran='make deb'
   env -u MAKEFLAGS -u MAKELEVEL make -s -o all -C "$root" deb BUILD="$BUILD" > out 2> err
   code=$?
@@ -175,12 +177,10 @@ if have dpkg-shlibdeps && [ -z "$sanitize" ]; then
   grep -q 'libcag.so.0 -> ' libcag0.list || wrong 'libcag0 lacks libcag.so.0'
   grep -q 'usr/include/cag.h$' libcag-dev.list || wrong 'libcag-dev lacks cag.h'
   ! awk '$2 != "root/root"' cag.list libcag0.list libcag-dev.list | grep -q . || wrong 'a file is not owned by root'
-  if have lintian; then
+  if needs lintian; then
     try_command lintian --allow-root --tag-display-limit 0 "$BUILD"/deb/*.deb
     ! grep '^E:' out || wrong 'lintian finds errors'
   fi
-else
-  echo 'dpkg-dev is missing, or this is a build with sanitizers: the Debian packages are not tested'
 fi
 
 it 'the README shows the example of the library as it is'

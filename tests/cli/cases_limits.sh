@@ -152,8 +152,8 @@ soon run large.cag
 within=1
 rm large.ply
 
-if have povray; then
-  it '--max-time is that of the script and the renderer together'
+it '--max-time is that of the script and the renderer together'
+if needs povray; then
   printf earlier > glass.png
   soon render glass.cag -o glass.png --size 3000x2000 --quality final
   holds glass.png earlier

@@ -1,7 +1,5 @@
 # Mesh files: written, read back by cag, and by programs that are not ours: assimp, admesh, unzip, xmllint, the Khronos
-# validator. A program that is not here leaves its tests out.
-
-have() { command -v "$1" > /dev/null 2>&1; }
+# validator. Where a program is missing its tests are skipped.
 
 # The validator comes from npm, once for a build folder. The version is the newest of the years since 2024.
 validator=$BUILD/npm
@@ -10,7 +8,20 @@ if have node && have npm && [ ! -d "$validator/node_modules/gltf-validator" ]; t
   timeout 90 npm install --prefix "$validator" --fetch-retries=1 --fetch-timeout=30000 --no-audit --no-fund --silent gltf-validator@2.0.0-dev.3.10 > npm_out 2>&1 < /dev/null ||
     echo "the Khronos validator could not be installed: $(tail -n 1 npm_out)"
 fi
-can_validate() { have node && [ -d "$validator/node_modules/gltf-validator" ]; }
+can_validate() {
+  needs node || return
+  [ -d "$validator/node_modules/gltf-validator" ] || {
+    skip 'the Khronos validator is missing'
+    return 1
+  }
+}
+can_trace() {
+  needs strace || return
+  strace -o /dev/null true 2> /dev/null || {
+    skip 'strace may not trace'
+    return 1
+  }
+}
 # What it must find no fault with.
 validate() {
   ran="gltf-validator $*"
@@ -105,8 +116,8 @@ no_temporaries half
 rmdir "half/$second"
 
 # Stopped by force at each of its renames in turn. What stands there is the first body or the second, never a mixture.
-if have strace && strace -o /dev/null true 2> /dev/null; then
-  it 'a .gltf that is killed between its renames has its own data'
+it 'a .gltf that is killed between its renames has its own data'
+if can_trace; then
   script half/read.cag 'print round(volume(read_mesh("body.gltf")))'
   for rename in 1 2; do
     ran="strace cag export body.cag, killed at rename $rename" code=0
@@ -212,7 +223,7 @@ for format in gltf glb ply 3mf obj stl pov; do
 done
 [ "$(grep -o COLOR_0 colors.gltf | wc -l)" -eq 3 ] || wrong 'the moved copy of a map shares its mesh, the others have colours of their own'
 grep -q uv_mapping colors.pov || wrong 'the .pov has no colours'
-if have unzip && have xmllint; then
+if needs unzip xmllint; then
   unzip -p colors.3mf 3D/3dmodel.model > colors.xml
   xmllint --noout colors.xml || wrong 'the .3mf is no XML'
   [ "$(grep -c '<m:colorgroup' colors.xml)" -eq 3 ] || wrong 'the .3mf has not a group of colours for each mesh'
@@ -230,8 +241,8 @@ status 1
 says 'a ground is for pictures'
 is_missing ground.3mf
 
+it 'the Khronos validator has nothing to say about .gltf and .glb'
 if can_validate; then
-  it 'the Khronos validator has nothing to say about .gltf and .glb'
   script open.cag 'show bilinear([0, 0, 0], [0, 2, 1], [4, 0, 0], [4, 2, 0]) |> color("teal")
 show line([0, 0, 0], [1, 2, 3])
 show revolve(line([5, 0], [0, 3]))
@@ -241,8 +252,8 @@ show sphere(1e-3), translate(sphere(2), [1e5, 0, 0]), sphere(1) |> material({emi
   validate bodies.glb bodies.gltf embedded.gltf open.glb open.gltf colors.glb colors.gltf 'für 100% von "mir" #1.gltf'
 fi
 
-if have admesh; then
-  it 'admesh finds no open edge and as many facets'
+it 'admesh finds no open edge and as many facets'
+if needs admesh; then
   try_command admesh bodies.stl
   status 0
   prints_like "Number of facets *: *$triangles  *$triangles"
@@ -251,47 +262,49 @@ if have admesh; then
   prints_like 'Number of parts *: *17 '
 fi
 
-if have assimp; then
-  for format in stl ply obj; do
-    it "assimp finds as many triangles in .$format"
-    try_command assimp info "bodies.$format"
-    status 0
-    prints_like "^Faces: *$triangles$"
-  done
-  for format in glb gltf 3mf; do
-    it "what assimp makes of .$format is the same body"
-    [ -e "bodies.$format" ] || try export bodies.cag -o "bodies.$format"
-    try_command assimp export "bodies.$format" "of_$format.stl"
-    status 0
-    # assimp leaves glTF's metres and Y up as they are: a .glb of its own is what we read.
-    case $format in
-      3mf) try run bodies_of.cag -D "file=of_$format.stl" ;;
-      *) script turned.cag "m = read_mesh(\"of_$format.stl\")
+for format in stl ply obj; do
+  it "assimp finds as many triangles in .$format"
+  needs assimp || continue
+  try_command assimp info "bodies.$format"
+  status 0
+  prints_like "^Faces: *$triangles$"
+done
+for format in glb gltf 3mf; do
+  it "what assimp makes of .$format is the same body"
+  needs assimp || continue
+  [ -e "bodies.$format" ] || try export bodies.cag -o "bodies.$format"
+  try_command assimp export "bodies.$format" "of_$format.stl"
+  status 0
+  # assimp leaves glTF's metres and Y up as they are: a .glb of its own is what we read.
+  case $format in
+    3mf) try run bodies_of.cag -D "file=of_$format.stl" ;;
+    *) script turned.cag "m = read_mesh(\"of_$format.stl\")
 show scale(1000) * rotate(X, 90deg) * m"
-        try export turned.cag -o turned.obj
-        try run bodies_of.cag -D file=turned.obj ;;
-    esac
-    status 0
-    prints "$all_the_same"
-  done
-  for format in stlb stl ply plyb obj; do
-    it "cag reads what assimp writes: $format"
-    try_command assimp export bodies.obj "theirs.${format%b}" "-f$format"
-    status 0
-    try run bodies_of.cag -D "file=theirs.${format%b}"
-    status 0
-    prints 'volume true, area true'
-    prints 'closed true'
-  done
-  for format in glb2 gltf2; do
-    it "cag reads what assimp writes: $format"
-    try_command assimp export bodies.glb "theirs.${format%2}" "-f$format"
-    status 0
-    try run bodies_of.cag -D "file=theirs.${format%2}"
-    status 0
-    prints "$all_the_same"
-  done
-fi
+      try export turned.cag -o turned.obj
+      try run bodies_of.cag -D file=turned.obj ;;
+  esac
+  status 0
+  prints "$all_the_same"
+done
+for format in stlb stl ply plyb obj; do
+  it "cag reads what assimp writes: $format"
+  needs assimp || continue
+  try_command assimp export bodies.obj "theirs.${format%b}" "-f$format"
+  status 0
+  try run bodies_of.cag -D "file=theirs.${format%b}"
+  status 0
+  prints 'volume true, area true'
+  prints 'closed true'
+done
+for format in glb2 gltf2; do
+  it "cag reads what assimp writes: $format"
+  needs assimp || continue
+  try_command assimp export bodies.glb "theirs.${format%2}" "-f$format"
+  status 0
+  try run bodies_of.cag -D "file=theirs.${format%2}"
+  status 0
+  prints "$all_the_same"
+done
 
 it '.3mf is the same twice'
 try export bodies.cag -o bodies.3mf
@@ -300,8 +313,8 @@ status 0
 cmp -s bodies.3mf again.3mf || wrong 'the files differ'
 begins_with bodies.3mf 504b0304
 
-if have unzip && have xmllint; then
-  it '.3mf is a sound archive of sound XML'
+it '.3mf is a sound archive of sound XML'
+if needs unzip xmllint; then
   try_command unzip -t bodies.3mf
   status 0
   prints 'No errors detected'
@@ -310,10 +323,12 @@ if have unzip && have xmllint; then
   unzip -p bodies.3mf 3D/3dmodel.model > model.xml
   try_command xmllint --noout model.xml
   status 0
+fi
 
-  # Counts by XPath, without the namespace.
-  in_model() { xmllint --xpath "$(echo "$1" | sed 's/@@\([a-z]*\)/*[local-name()="\1"]/g')" model.xml; }
-  it '.3mf keeps the rules of the core specification'
+# Counts by XPath, without the namespace.
+in_model() { xmllint --xpath "$(echo "$1" | sed 's/@@\([a-z]*\)/*[local-name()="\1"]/g')" model.xml; }
+it '.3mf keeps the rules of the core specification'
+if needs unzip xmllint; then
   ran='xmllint model.xml'
   : > out
   : > err

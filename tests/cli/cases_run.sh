@@ -87,13 +87,13 @@ it 'test counts what passed'
 script good_test.cag 'print 1 + 1   // expect: 2'
 try test good_test.cag
 status 0
-[ "$(tail -n 1 out)" = '1 passed, 0 failed' ] || wrong 'the last line is not the count'
+[ "$(tail -n 1 out)" = '1 passed, 0 failed, 0 skipped' ] || wrong 'the last line is not the count'
 
 it 'test counts what failed'
 script bad_test.cag 'print 1 + 1   // expect: 3'
 try test bad_test.cag
 status 1
-[ "$(tail -n 1 out)" = '0 passed, 1 failed' ] || wrong 'the last line is not the count'
+[ "$(tail -n 1 out)" = '0 passed, 1 failed, 0 skipped' ] || wrong 'the last line is not the count'
 
 it 'the REPL works with a pipe'
 printf 'x = 3\nx + 1\n:quit\n' > input

@@ -1,11 +1,13 @@
 # cag batch --engine-queue slurm, on a real Slurm of this one machine: its own munge, controller and node,
-# on loopback, in this folder; everything is shut down at the end. Left out where that cannot be.
+# on loopback, in this folder; everything is shut down at the end. Skipped where that cannot be.
 
 script ball.cag 'param r = 10
 show sphere(r)'
 printf 'script,output,r\nball.cag,a.stl,1\nball.cag,b.stl,2\nball.cag,c.stl,-3\n' > jobs.csv
 
+# All tests but this one need a Slurm.
 it 'a Slurm that is not there: the rows are reported, and can be run later'
+slurm_first=$test_name
 mkdir empty
 ln -s "$(command -v povray)" empty/povray
 (PATH=$PWD/empty; SLURM_CONF=/nowhere "$CAG" batch jobs.csv --engine-queue slurm > out 2> err)
@@ -20,9 +22,9 @@ for program in munged mungekey slurmctld slurmd sbatch squeue; do
   PATH=$PATH:/usr/sbin command -v $program > /dev/null 2>&1 || slurm_missing="$slurm_missing $program"
 done
 if [ "$(id -u)" -ne 0 ]; then
-  echo 'cag batch with Slurm is left out: it takes root'
+  skip_behind slurm "$slurm_first" 'it takes root'
 elif [ -n "$slurm_missing" ]; then
-  echo "cag batch with Slurm is left out: there is no$slurm_missing (apt-get install slurmctld slurmd munge slurm-client)"
+  skip_behind slurm "$slurm_first" "there is no$slurm_missing (apt-get install slurmctld slurmd munge slurm-client)"
 else
 
 PATH=$PATH:/usr/sbin
@@ -98,7 +100,7 @@ start_node > /dev/null 2>&1
 waits_for node_is idle
 
 if ! node_is idle; then
-  echo "cag batch with Slurm is left out: its node does not begin here: $(tail -n 2 slurm/node.log | head -n 1)"
+  skip_behind slurm "$slurm_first" "its node does not begin here: $(tail -n 2 slurm/node.log | head -n 1)"
   end_slurm
 else
 

@@ -10,7 +10,7 @@ status 1
 prints 'bad.cag:1'
 prints 'expected: a>b'
 prints 'got:      a<b'
-prints '0 passed, 1 failed'
+prints '0 passed, 1 failed, 0 skipped'
 
 it 'the report does not depend on how many run at once'
 for i in 1 2 3 4 5 6 7 8; do cp bad.cag "many_$i.cag"; done
@@ -23,8 +23,10 @@ same out one_by_one
 it 'the report in XML is well formed and tells all'
 try test good.cag bad.cag also_good.cag --report tests.xml
 status 1
-try_command xmllint --noout tests.xml
-status 0
+if needs xmllint; then
+  try_command xmllint --noout tests.xml
+  status 0
+fi
 try_command cat tests.xml
 prints 'tests="3" failures="1"'
 prints 'expected: a&gt;b'
@@ -71,18 +73,20 @@ cat > junit.rng << 'END'
   </define>
 </grammar>
 END
-try_command xmllint --noout --relaxng junit.rng all.xml
-status 0
+if needs xmllint; then
+  try_command xmllint --noout --relaxng junit.rng all.xml
+  status 0
+fi
 
 it 'a test that never ends is ended, and one that fails shows its calls'
 try test endless.cag crash.cag --max-time 1
 status 1
 prints 'E0603'
 prints 'called from crash.cag:2'
-prints '0 passed, 2 failed'
+prints '0 passed, 2 failed, 0 skipped'
 
 it 'scripts of one name in several folders do not meet'
-if have povray; then
+if needs povray; then
   for folder in one two three; do
     mkdir "$folder"
     script "$folder/scene.cag" "show sphere(10) |> material({color: \"$([ $folder = two ] && echo red || echo teal)\"}), camera([90, -60, 40], size: [32, 24])"
@@ -90,9 +94,11 @@ if have povray; then
   done
   try test one two three --jobs 3
   status 0
-  prints '6 passed, 0 failed'
+  prints '6 passed, 0 failed, 0 skipped'
+fi
 
-  it 'a picture that is not as its reference is kept, and --update renews the reference'
+it 'a picture that is not as its reference is kept, and --update renews the reference'
+if needs povray; then
   cp two/scene.png one/scene.png
   try test one
   status 1
@@ -102,8 +108,10 @@ if have povray; then
   prints 'renewed'
   try test one
   status 0
+fi
 
-  it 'the run with --picture is the one that the reference picture is of'
+it 'the run with --picture is the one that the reference picture is of'
+if needs povray; then
   script film.cag 'show sphere(10 + 8 * time), camera([90, -60, 40], size: [32, 24])'
   try render film.cag -o film.png -D time=1
   try test film.cag
@@ -112,9 +120,73 @@ if have povray; then
   try test film.cag -v
   status 0
   prints 'film.cag -D time=1 --picture (picture)'
-else
-  echo 'povray is missing: pictures of tests are not tested'
 fi
+
+it 'a picture is skipped where POV-Ray is missing, and neither passes nor fails'
+mkdir no_programs still
+script still/ball.cag 'print 1 // expect: 1
+show sphere(10), camera([90, -60, 40], size: [32, 24])'
+printf 'no picture' > still/ball.png
+without_povray() {
+  ran="PATH without povray: cag $*"
+  PATH=$PWD/no_programs "$CAG" "$@" < /dev/null > out 2> err
+  code=$?
+  check_end
+}
+without_povray test still --report still.xml
+status 0
+prints_exactly '1 passed, 0 failed, 1 skipped'
+says 'cag test: still/ball.cag (picture) is skipped: '
+says 'POV-Ray'
+[ "$(grep -c 'tests="2" failures="0" errors="0" skipped="1"' still.xml)" -eq 2 ] || wrong 'the report in XML does not count it'
+! needs xmllint || xmllint --noout --relaxng junit.rng still.xml 2> err || wrong 'the report in XML is not as its readers ask for'
+grep -q '<testcase classname="still/ball.cag" name="still/ball.cag (picture)" time="0.000"><skipped message=' still.xml || wrong 'the report in XML does not name it'
+without_povray test bad.cag still
+status 1
+prints '1 passed, 1 failed, 1 skipped'
+without_povray test still -q
+says_nothing
+without_povray test still --no-pictures
+prints_exactly '1 passed, 0 failed, 0 skipped'
+
+it 'what is skipped is a note in JSON'
+script still/ball.cag 'show sphere(10), camera([90, -60, 40], size: [32, 24])'
+without_povray test still --diagnostics json
+status 0
+prints_exactly '1 passed, 0 failed, 1 skipped'
+says '{"severity":"note","code":null,"message":"skipped: '
+says '"file":"still/ball.cag","test":"still/ball.cag (picture)"}'
+[ "$(wc -l < err)" -eq 1 ] || wrong 'there is not one line'
+
+it 'a test of the command line that lacks its tool is skipped, and one that fails besides has failed'
+cat > counted.sh << 'END'
+here=$1
+passed=0 failed=0 skipped=0
+. "$here/harness.sh"
+ran=nothing code=0
+: > out
+: > err
+it 'as a whole'
+needs no-such-program || :
+it 'in part'
+prints_nothing
+needs sh no-such-program || :
+says_nothing
+it 'in part, and the rest fails'
+needs no-such-program || :
+prints 'something'
+it 'what there is'
+needs sh && says_nothing
+it ''
+echo "$passed passed, $failed failed, $skipped skipped"
+END
+mkdir counted
+try_command sh -c 'cd counted && sh ../counted.sh "$1"' sh "$here"
+status 0
+says_nothing
+prints 'skipped: as a whole: no-such-program is missing'
+prints 'FAILED: in part, and the rest fails'
+[ "$(tail -n 1 out)" = '1 passed, 1 failed, 2 skipped' ] || wrong 'the last line is not the count'
 
 script miss.cag 'print 1 // Expect: 1
 print 2 // expects: 2
@@ -135,18 +207,18 @@ prints 'miss.cag:4: `// exepct: 5` expects nothing; write `// expect:`'
 prints 'miss.cag:5: `// expected error: E0301` expects nothing; write `// expect error:`'
 prints 'miss.cag:6: `// expect error E0301` expects nothing; write `// expect error:`'
 ! grep -q 'miss.cag:[78]' out || wrong 'prose is taken for an expectation'
-prints '0 passed, 1 failed'
+prints '0 passed, 1 failed, 0 skipped'
 
 it 'failures are reported as JSON, one object a line'
 try test bad.cag miss.cag --diagnostics json
 status 1
-prints '0 passed, 2 failed'
+prints '0 passed, 2 failed, 0 skipped'
 says '"severity":"error"'
 says '"file":"bad.cag","line":1,"test":"bad.cag","expected":"a>b","got":"a<b"'
 says '"file":"miss.cag","line":6,"test":"miss.cag"'
 cp err lines
 [ "$(wc -l < lines)" -eq 7 ] || wrong 'there is not one line for each failure'
-if have python3; then
+if needs python3; then
   try_command python3 -c 'import json; print(sorted({json.loads(l)["severity"] for l in open("lines")}))'
   prints "['error']"
 fi

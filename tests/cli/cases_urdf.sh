@@ -1,8 +1,7 @@
 # Robots as URDF: accepted by urdfdom's check_urdf, written whole or not at all, read back as they were.
 
-have() { command -v "$1" > /dev/null 2>&1; }
 accepted() {
-  have check_urdf || return 0
+  needs check_urdf || return 0
   try_command check_urdf "$1"
   status 0
   prints 'Successfully Parsed XML'
@@ -33,7 +32,7 @@ it 'check_urdf accepts it'
 accepted arm.urdf
 
 it 'xmllint finds it well-formed'
-if have xmllint; then
+if needs xmllint; then
   try_command xmllint --noout arm.urdf
   status 0
 fi

@@ -5,7 +5,13 @@
 #   status 3                               what the exit status must be
 #   says 'missing.cag'                     a text that standard error must hold; `prints`: standard output
 #
-# A test fails at its first expectation that does not hold, and is shown with what was run.
+# A test fails at its first expectation that does not hold, and is shown with what was run. One that cannot be made here, or
+# not as a whole, is skipped:
+#
+#   if needs admesh; then ...              what the test, or a part of it, cannot do without
+#   skip 'it takes root'                   another reason
+#
+# It has neither passed nor failed, unless another of its expectations does not hold.
 
 test_name= test_state=
 
@@ -13,14 +19,46 @@ it() {
   case $test_state in
     good) passed=$((passed + 1)) ;;
     bad) failed=$((failed + 1)) ;;
+    skipped) skipped=$((skipped + 1)) ;;
   esac
   test_name=$1 test_state=
   [ -z "$1" ] || test_state=good
   ran= code=
 }
 
-wrong() {
+skip() {
   [ "$test_state" = good ] || return 0
+  test_state=skipped
+  echo "skipped: $test_name: $1"
+}
+have() { command -v "$1" > /dev/null 2>&1; }
+needs() {
+  for program in "$@"; do
+    have "$program" || {
+      skip "$program is missing"
+      return 1
+    }
+  done
+}
+# What root is never refused.
+needs_no_root() {
+  [ "$(id -u)" -ne 0 ] || {
+    skip 'root may do all'
+    return 1
+  }
+}
+# skip_behind NAME TEST REASON: skips all tests of cases_NAME.sh that stand behind this one.
+skip_behind() {
+  sed "1,/^ *it '$2'\$/d" "$here/cases_$1.sh" | sed -n "s/^ *it '\(.*\)'$/\1/p" > behind
+  while IFS= read -r behind; do
+    it "$behind"
+    skip "$3"
+  done < behind
+  it ''
+}
+
+wrong() {
+  [ "$test_state" = good ] || [ "$test_state" = skipped ] || return 0
   test_state=bad
   echo "FAILED: $test_name"
   echo "  $1"
@@ -57,7 +95,6 @@ status() { [ "$code" -eq "$1" ] || wrong "expected status $1"; }
 says() { grep -qF -e "$1" err || wrong "standard error lacks: $1"; }
 says_not() { ! grep -qF -e "$1" err || wrong "standard error has: $1"; }
 prints() { grep -qF -e "$1" out || wrong "standard output lacks: $1"; }
-have() { command -v "$1" > /dev/null 2>&1; }
 says_nothing() { [ ! -s err ] || wrong "standard error is not empty"; }
 prints_nothing() { [ ! -s out ] || wrong "standard output is not empty"; }
 prints_exactly() { [ "$(cat out)" = "$1" ] || wrong "standard output is not: $1"; }

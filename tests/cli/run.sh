@@ -1,14 +1,14 @@
 #!/bin/sh
 # Tests of the command line: the real program, run on real files. BUILD is the folder of the build (default build).
 #   sh tests/cli/run.sh [NAME ...]      all the files cases_*.sh, or some: usage bad_input ...
-# The last line is `N passed, N failed`.
+# The last line is `N passed, N failed, N skipped`.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 BUILD=${BUILD:-$root/build}
 case $BUILD in /*) ;; *) BUILD=$root/$BUILD ;; esac
 CAG=$BUILD/cag
-passed=0 failed=0
+passed=0 failed=0 skipped=0
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 . "$here/harness.sh"
@@ -21,5 +21,5 @@ for name in "$@"; do
   it ''
   cd "$root" || exit 1
 done
-echo "$passed passed, $failed failed"
+echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

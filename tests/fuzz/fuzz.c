@@ -422,7 +422,7 @@ int main(int argc, char **argv) {
     complain(WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM ? "it does not end" : "a crash",
              shared->script);
   }
-  printf("%zu passed, %zu failed\n", calls + mutations - shared->failed, shared->failed);
+  printf("%zu passed, %zu failed, 0 skipped\n", calls + mutations - shared->failed, shared->failed);
   free(rows);
   globfree(&scripts);
   return shared->failed > 0;

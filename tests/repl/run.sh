@@ -1,8 +1,10 @@
 #!/bin/sh
-# Tests of the REPL: through a pipe, and through a real terminal (tmux). The last line counts.
+# Tests of the REPL: through a pipe, and through a real terminal (tmux). The last line is `N passed, N failed, N
+# skipped`: what needs a tool that is missing is skipped.
 #
 #   BUILD=build sh tests/repl/run.sh
 
+script=$(cd "$(dirname "$0")" && pwd)/run.sh
 build=${BUILD:-build}
 case $build in /*) ;; *) build=$PWD/$build ;; esac
 cag=$build/cag
@@ -10,6 +12,7 @@ work=$(mktemp -d) || exit 1
 session=cag-repl-$$
 passed=0
 failed=0
+skipped=0
 trap 'tmux -L "$session" kill-server 2>/dev/null; rm -rf "$work"' EXIT
 trap 'exit 130' INT TERM
 cd "$work" || exit 1
@@ -24,6 +27,22 @@ result() {
     echo "FAILED $1"
     [ -z "$3" ] || printf '%s\n' "$3" | sed 's/^/  /'
   fi
+}
+
+# skip REASON NAME ...: counts tests that cannot be made here.
+skip() {
+  reason=$1
+  shift
+  for name in "$@"; do
+    skipped=$((skipped + 1))
+    echo "skipped: $name: $reason"
+  done
+}
+
+# skip_part REASON WORDS: the same of all tests in the part of this file between the lines `# WORDS` and `# End: WORDS`.
+skip_part() {
+  sed -n "/^# $2\$/,/^# End: $2\$/s/^ *\(shows\|completes\|result\) '\([^']*\)'.*/\2/p" "$script" >"$work/part"
+  while IFS= read -r line; do skip "$1" "$line"; done <"$work/part"
 }
 
 # --- Through a pipe ---
@@ -167,7 +186,7 @@ if command -v povray >/dev/null; then
     grep -q 'wrote ball.png' && [ -s ball.png ]
   result ':render writes a picture and says its path' $?
 else
-  echo 'povray is missing: :render is not tested'
+  skip 'povray is missing' ':render writes a picture and says its path'
 fi
 printf '%s\n' 'x = 3' ':edit' 'x' | VISUAL='sed -i s/3/8/' "$cag" repl 2>&1 | grep -q '^8 : number$'
 result ':edit takes back what the editor left' $?
@@ -224,10 +243,11 @@ open_terminal() {
     env XDG_STATE_HOME="$XDG_STATE_HOME" LC_ALL=C.UTF-8 TERM=screen NO_COLOR=1 "$cag"
 }
 
+# What a session shows
 if ! command -v tmux >/dev/null; then
-  echo 'tmux is missing: the REPL is not tested on a terminal'
+  skip_part 'tmux is missing' 'What a session shows'
 elif ! open_terminal; then
-  echo 'tmux does not start: the REPL is not tested on a terminal'
+  skip_part 'tmux does not start' 'What a session shows'
 else
   shows 'a prompt waits' 'cag>'
   keys '1 + 2' Enter
@@ -290,6 +310,8 @@ else
     result 'a render that was stopped leaves nothing' $? "$(ls)"
     keys ':clear' Enter 'show sphere(10), camera([90, -60, 40], size: [32, 24])' Enter ':render' Enter
     shows ':render says the path of the picture' 'wrote scene.png'
+  else
+    skip 'povray is missing' 'Ctrl-C stops a render and keeps the session' 'a render that was stopped leaves nothing' ':render says the path of the picture'
   fi
   keys 'never evaluated'
   wait_for 'cag> never evaluated'
@@ -341,9 +363,12 @@ else
   shows 'so are its texts of several lines' '5 : number'
   keys ':quit' Enter
 fi
+# End: What a session shows
 
-# In a shell of a narrow window: stopping, going on, other sizes, many lines at once.
-if command -v tmux >/dev/null; then
+# In a shell of a narrow window: stopping, going on, other sizes, many lines at once
+if ! command -v tmux >/dev/null; then
+  skip_part 'tmux is missing' 'In a shell of a narrow window: stopping, going on, other sizes, many lines at once'
+else
   sleep 0.2
   tmux -L "$session" -f /dev/null new-session -d -s repl -x 40 -y 30 \
     env XDG_STATE_HOME="$XDG_STATE_HOME" LC_ALL=C.UTF-8 TERM=screen NO_COLOR=1 PS1='shell> ' bash --norc
@@ -384,18 +409,24 @@ if command -v tmux >/dev/null; then
   wait_for 'shell>'
   tmux -L "$session" kill-session -t repl
 fi
+# End: In a shell of a narrow window: stopping, going on, other sizes, many lines at once
 
 # The state's folder cannot be made below a file.
-if command -v tmux >/dev/null; then
-  : >"$work/file"
-  XDG_STATE_HOME=$work/file/state
+: >"$work/file"
+XDG_STATE_HOME=$work/file/state
+unwritable='a history that cannot be written harms nothing'
+if ! command -v tmux >/dev/null; then
+  skip 'tmux is missing' "$unwritable"
+else
   sleep 0.2
   if open_terminal 2>/dev/null; then
     keys '4 * 4' Enter
-    shows 'a history that cannot be written harms nothing' '16 : number'
+    shows "$unwritable" '16 : number'
     keys C-d
+  else
+    skip 'tmux does not start' "$unwritable"
   fi
 fi
 
-echo "$passed passed, $failed failed"
+echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed = 0 ]

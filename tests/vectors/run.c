@@ -388,6 +388,6 @@ int main(int argc, char **argv) {
   }
   size_t passed = 0, failed = 0;
   for (int i = 2; i < argc; i++) run_file(argv[1], argv[i], &passed, &failed);
-  printf("%zu passed, %zu failed\n", passed, failed);
+  printf("%zu passed, %zu failed, 0 skipped\n", passed, failed);
   return failed ? 1 : 0;
 }
