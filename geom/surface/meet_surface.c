@@ -6,6 +6,10 @@
 // cubic through both ends, with their tangents, passes within the tolerance of the place in the
 // middle. A run ends where it comes home, where a surface ends, or where the surfaces touch and
 // have no direction; there one looks a little ahead, since two branches may cross.
+//
+// A run stays in one patch of each surface: at a crease it ends as at an edge, and the end is a
+// seed in the patches beyond. So corners lie on the creases, and what is joined at last does not
+// depend on where the seeds were.
 
 #include "geom/surface/meet_surface.h"
 
@@ -14,6 +18,7 @@
 #include <stdlib.h>
 
 #include "geom/mesh/tessellate.h"
+#include "geom/surface/meet_seed.h"
 #include "geom/surface/nearest.h"
 #include "geom/surface/trimmed.h"
 
@@ -26,6 +31,8 @@
 #define SAME 1e-11
 #define STEP_LEAST 1e-9
 #define JOINED 1e-7
+// Part of a patch's width up to which the end of a run lies on its edge.
+#define BESIDE 1e-7
 // Sine of the angle of the normals below which the surfaces touch.
 #define TOUCH 1e-6
 // Surfaces share a piece where, all about a place at which they touch, to this part of the longest
@@ -42,38 +49,12 @@
 #define NEWTON_STEPS 40
 #define SEED_TRIANGLES 4000000
 
-typedef struct Side {
-  const CagSurface *s;
-  const CagRegion *region; // its inside belongs; NULL: all
-  CagMesh *mesh;
-} Side;
-
-typedef struct Node {
-  CagVec3 x, tangent; // unit
-  double at[2][2];    // u, v on each
-} Node;
-
 typedef struct Run {
-  Node *nodes;
+  CagMarchNode *nodes;
   CagVec3 *middles; // between node i and the next, on the curve
   size_t n, capacity;
   bool closed;
 } Run;
-
-typedef struct March {
-  Side side[2];
-  double size, tolerance, step_most, step_first;
-  Node *seeds;
-  size_t seed_count, seed_capacity, touching;
-  const volatile int *interrupt;
-  CagError *err;
-  CagStatus status; // of what failed for good
-} March;
-
-static bool fail(March *m, CagStatus status) {
-  m->status = status;
-  return false;
-}
 
 // --- Places ---
 
@@ -81,13 +62,16 @@ typedef struct Tangential {
   CagVec3 p, du, dv, normal;
 } Tangential;
 
-static bool look(March *m, int k, const double at[2], Tangential *out) {
+// What side k is like at the node, seen from the node's patch.
+static bool look(CagMarch *m, int k, const CagMarchNode *node, Tangential *out) {
   const CagSurface *s = m->side[k].s;
+  const double *at = node->at[k];
+  const bool last[2] = {at[0] >= cag_march_range(m, k, node, 0)[1],
+                        at[1] >= cag_march_range(m, k, node, 1)[1]};
   CagVec3 d[4];
-  CagStatus status =
-      cag_surface_eval(s, at[0], at[1], 1, at[0] >= s->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
-                       at[1] >= s->v1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, m->err);
-  if (status) return fail(m, status);
+  CagStatus status = cag_surface_eval(s, at[0], at[1], 1, last[0] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
+                                      last[1] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, m->err);
+  if (status) return cag_march_fail(m, status);
   *out = (Tangential){.p = d[0], .du = d[cag_partial(1, 1, 0)], .dv = d[cag_partial(1, 0, 1)]};
   out->normal = cag_unit(cag_cross(out->du, out->dv));
   // At poles the normal is a limit.
@@ -108,41 +92,45 @@ static double stepped(double x, double d, double low, double high, bool closed) 
 
 // A step of u (or v) that would pass a pole goes on beyond it, where the other parameter is half
 // its range further.
-static bool pass_pole(const CagSurface *s, int d, double step, double at[2]) {
-  const double low[2] = {s->u0, s->v0}, high[2] = {s->u1, s->v1};
-  const bool pole_low[2] = {s->pole_u0, s->pole_v0}, pole_high[2] = {s->pole_u1, s->pole_v1};
-  const bool closed[2] = {s->closed_u, s->closed_v};
-  const double y = at[d] + step, range = high[1 - d] - low[1 - d];
-  if (!closed[1 - d]) return false;
-  if (y < low[d] && pole_low[d]) at[d] = fmin(2 * low[d] - y, high[d]);
-  else if (y > high[d] && pole_high[d]) at[d] = fmax(2 * high[d] - y, low[d]);
+static bool pass_pole(CagMarch *m, int k, int d, double step, CagMarchNode *node) {
+  const CagSurface *s = m->side[k].s;
+  const double *own = cag_march_range(m, k, node, d), *other = cag_march_range(m, k, node, 1 - d);
+  const bool pole_low = d ? s->pole_v0 : s->pole_u0, pole_high = d ? s->pole_v1 : s->pole_u1;
+  double *at = node->at[k], y = at[d] + step, range = other[1] - other[0];
+  if (!m->side[k].patches.wraps[1 - d]) return false;
+  if (y < own[0] && pole_low && own[0] == (d ? s->v0 : s->u0)) at[d] = fmin(2 * own[0] - y, own[1]);
+  else if (y > own[1] && pole_high && own[1] == (d ? s->v1 : s->u1))
+    at[d] = fmax(2 * own[1] - y, own[0]);
   else return false;
-  at[1 - d] += at[1 - d] + range / 2 > high[1 - d] ? -range / 2 : range / 2;
+  at[1 - d] += at[1 - d] + range / 2 > other[1] ? -range / 2 : range / 2;
   return true;
 }
 
 // Moves the parameters so that the point comes to x, as far as the tangent plane tells.
-static void move_to(const CagSurface *s, const Tangential *t, CagVec3 x, double at[2]) {
+static void move_to(CagMarch *m, int k, const Tangential *t, CagVec3 x, CagMarchNode *node) {
   CagVec3 r = cag_sub(x, t->p);
   double a = cag_dot(t->du, t->du), b = cag_dot(t->du, t->dv), c = cag_dot(t->dv, t->dv);
   double damping = 1e-14 * (a + c) + DBL_MIN;
   double det = (a + damping) * (c + damping) - b * b;
   double g = cag_dot(r, t->du), h = cag_dot(r, t->dv);
   double du = ((c + damping) * g - b * h) / det, dv = ((a + damping) * h - b * g) / det;
-  if (pass_pole(s, 0, du, at) || pass_pole(s, 1, dv, at)) return;
-  at[0] = stepped(at[0], du, s->u0, s->u1, s->closed_u);
-  at[1] = stepped(at[1], dv, s->v0, s->v1, s->closed_v);
+  if (pass_pole(m, k, 0, du, node) || pass_pole(m, k, 1, dv, node)) return;
+  for (int d = 0; d < 2; d++) {
+    const double *range = cag_march_range(m, k, node, d);
+    node->at[k][d] =
+        stepped(node->at[k][d], d ? dv : du, range[0], range[1], m->side[k].patches.wraps[d]);
+  }
 }
 
 typedef enum Found { FOUND, NONE, TANGENT, FAILED } Found;
 
 // The place of both surfaces in the plane through q that is normal to n (n zero: the nearest to
 // where they are), from the node's parameters; its tangent is turned to `along`.
-static Found locate(March *m, CagVec3 q, CagVec3 n, CagVec3 along, Node *node) {
+static Found locate(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 along, CagMarchNode *node) {
   double last = INFINITY;
   for (int i = 0; i < NEWTON_STEPS; i++) {
     Tangential t[2];
-    if (!look(m, 0, node->at[0], &t[0]) || !look(m, 1, node->at[1], &t[1])) return FAILED;
+    if (!look(m, 0, node, &t[0]) || !look(m, 1, node, &t[1])) return FAILED;
     CagVec3 middle = cag_lerp(t[0].p, t[1].p, 0.5);
     CagVec3 cross = cag_cross(t[0].normal, t[1].normal);
     double gap = cag_norm(cag_sub(t[0].p, t[1].p));
@@ -171,20 +159,20 @@ static Found locate(March *m, CagVec3 q, CagVec3 n, CagVec3 along, Node *node) {
       x = cag_madd(x, cag_dot(third, cag_sub(through, middle)), cross);
       x = cag_madd(middle, 1 / det, x);
     }
-    for (int k = 0; k < 2; k++) move_to(m->side[k].s, &t[k], x, node->at[k]);
+    for (int k = 0; k < 2; k++) move_to(m, k, &t[k], x, node);
   }
   return NONE;
 }
 
-static bool belongs_to(March *m, int k, const Node *node, bool *out) {
+static bool belongs_to(CagMarch *m, int k, const CagMarchNode *node, bool *out) {
   const CagVec3 p = cag_vec3(node->at[k][0], node->at[k][1], 0);
   *out = true;
   if (!m->side[k].region) return true;
   CagStatus status = cag_region_contains(m->side[k].region, p, out, m->err);
-  return status == CAG_OK || fail(m, status);
+  return status == CAG_OK || cag_march_fail(m, status);
 }
 
-static bool belongs(March *m, const Node *node) {
+static bool belongs(CagMarch *m, const CagMarchNode *node) {
   bool inside;
   for (int k = 0; k < 2; k++)
     if (!belongs_to(m, k, node, &inside) || !inside) return false;
@@ -193,15 +181,15 @@ static bool belongs(March *m, const Node *node) {
 
 // --- Runs ---
 
-static bool add_node(March *m, Run *run, const Node *node, CagVec3 middle_before) {
+static bool add_node(CagMarch *m, Run *run, const CagMarchNode *node, CagVec3 middle_before) {
   if (run->n >= NODES_MOST) return false;
   if (run->n == run->capacity) {
     size_t capacity = run->capacity ? 2 * run->capacity : 64;
-    Node *nodes = realloc(run->nodes, capacity * sizeof *nodes);
+    CagMarchNode *nodes = realloc(run->nodes, capacity * sizeof *nodes);
     if (nodes) run->nodes = nodes;
     CagVec3 *middles = realloc(run->middles, capacity * sizeof *middles);
     if (middles) run->middles = middles;
-    if (!nodes || !middles) return fail(m, cag_fail_memory(m->err));
+    if (!nodes || !middles) return cag_march_fail(m, cag_fail_memory(m->err));
     run->capacity = capacity;
   }
   if (run->n) run->middles[run->n - 1] = middle_before;
@@ -209,7 +197,7 @@ static bool add_node(March *m, Run *run, const Node *node, CagVec3 middle_before
   return true;
 }
 
-static CagVec3 hermite(const Node *a, const Node *b, double t) {
+static CagVec3 hermite(const CagMarchNode *a, const CagMarchNode *b, double t) {
   double length = cag_norm(cag_sub(b->x, a->x)), s = 1 - t;
   CagVec3 p = cag_scaled(a->x, s * s * (1 + 2 * t));
   p = cag_madd(p, t * t * (1 + 2 * s), b->x);
@@ -220,7 +208,8 @@ static CagVec3 hermite(const Node *a, const Node *b, double t) {
 typedef enum Step { STEPPED, TOO_LONG, ENDED, BROKEN } Step;
 
 // From a by h along its tangent to b, with the place in the middle.
-static Step try_step(March *m, const Node *a, double h, bool leap, Node *b, CagVec3 *middle) {
+static Step try_step(CagMarch *m, const CagMarchNode *a, double h, bool leap, CagMarchNode *b,
+                     CagVec3 *middle) {
   *b = *a;
   Found found = locate(m, cag_madd(a->x, h, a->tangent), a->tangent, a->tangent, b);
   if (found == FAILED) return BROKEN;
@@ -230,7 +219,7 @@ static Step try_step(March *m, const Node *a, double h, bool leap, Node *b, CagV
   if (cag_dot(a->tangent, b->tangent) < TURN_MOST || cag_norm(d) > 1.1 * h) return TOO_LONG;
   // The cubic's chord length is its parameter: the speed of arcs, to their third order.
   CagVec3 guess = hermite(a, b, 0.5);
-  Node between = *a;
+  CagMarchNode between = *a;
   *middle = guess;
   if (leap) return STEPPED;
   found = locate(m, guess, cag_unit(d), a->tangent, &between);
@@ -241,9 +230,10 @@ static Step try_step(March *m, const Node *a, double h, bool leap, Node *b, CagV
 }
 
 // Whether the run, going from a to b, passes its start.
-static bool comes_home(const March *m, const Run *run, const Node *a, const Node *b) {
+static bool comes_home(const CagMarch *m, const Run *run, const CagMarchNode *a,
+                       const CagMarchNode *b) {
   if (run->n < 4) return false;
-  const Node *start = &run->nodes[0];
+  const CagMarchNode *start = &run->nodes[0];
   CagVec3 chord = cag_sub(b->x, a->x), to = cag_sub(start->x, a->x);
   double length = cag_norm(chord), along = cag_dot(to, chord) / (length * length);
   if (!(along > 0 && along <= 1 + 1e-9) || cag_dot(start->tangent, a->tangent) < TURN_MOST)
@@ -256,19 +246,38 @@ static bool comes_home(const March *m, const Run *run, const Node *a, const Node
   return cag_norm(cag_sub(hermite(a, b, t), start->x)) <= 4 * m->tolerance + JOINED * m->size;
 }
 
-// Beyond a place without a direction, straight on.
-static bool leap_over(March *m, const Node *a, double h, Node *b, CagVec3 *middle) {
+// Whether both surfaces pass x within the tolerance, near the node.
+static bool is_on_both(CagMarch *m, const CagMarchNode *node, CagVec3 x) {
+  enum { STEPS = 12 };
+  for (int k = 0; k < 2; k++) {
+    CagMarchNode n = *node;
+    double off = INFINITY;
+    for (int i = 0; i < STEPS && off > m->tolerance; i++) {
+      Tangential t;
+      if (!look(m, k, &n, &t)) return false;
+      off = cag_norm(cag_sub(t.p, x));
+      move_to(m, k, &t, x, &n);
+    }
+    if (off > m->tolerance) return false;
+  }
+  return true;
+}
+
+// Beyond a place without a direction, straight on, where the way there lies on both surfaces.
+static bool leap_over(CagMarch *m, const CagMarchNode *a, double h, CagMarchNode *b,
+                      CagVec3 *middle) {
   for (double far = h; far < m->step_most; far *= 2) {
-    if (try_step(m, a, far, true, b, middle) == STEPPED &&
-        cag_norm(cag_sub(b->x, cag_madd(a->x, far, a->tangent))) < far / 4)
-      return true;
+    bool leaps = try_step(m, a, far, true, b, middle) == STEPPED &&
+                 cag_norm(cag_sub(b->x, cag_madd(a->x, far, a->tangent))) < far / 4;
+    for (int i = 1; leaps && i < 4; i++) leaps = is_on_both(m, a, hermite(a, b, i / 4.0));
+    if (leaps) return true;
     if (m->status) return false;
   }
   return false;
 }
 
 // Newton's method may fail beside a pole, where parameters turn fast, though nothing ends there.
-static bool is_near_pole(const March *m, CagVec3 x, double reach) {
+static bool is_near_pole(const CagMarch *m, CagVec3 x, double reach) {
   for (int k = 0; k < 2; k++) {
     const CagSurface *s = m->side[k].s;
     const double u[4] = {s->u0, s->u1, (s->u0 + s->u1) / 2, (s->u0 + s->u1) / 2};
@@ -287,13 +296,13 @@ static bool is_near_pole(const March *m, CagVec3 x, double reach) {
 
 // A surface ends before h: the last place is found by halving and takes the place of a last node
 // that is as near as none.
-static bool add_end(March *m, Run *run, double h) {
+static bool add_end(CagMarch *m, Run *run, double h) {
   const int halvings = 60;
-  Node a = run->nodes[run->n - 1], last = a;
+  CagMarchNode a = run->nodes[run->n - 1], last = a;
   double low = 0, high = h;
   CagVec3 middle;
   for (int i = 0; i < halvings && high - low > SAME * m->size; i++) {
-    Node b;
+    CagMarchNode b;
     double half = (low + high) / 2;
     Step step = try_step(m, &a, half, true, &b, &middle);
     if (step == BROKEN) return false;
@@ -305,20 +314,57 @@ static bool add_end(March *m, Run *run, double h) {
     run->nodes[run->n - 1] = last;
     return true;
   }
-  Node between = a;
+  CagMarchNode between = a;
   middle = hermite(&a, &last, 0.5);
   if (locate(m, middle, cag_unit(cag_sub(last.x, a.x)), a.tangent, &between) == FOUND)
     middle = between.x;
   return m->status == CAG_OK && add_node(m, run, &last, middle);
 }
 
+// Moves the end of a run onto the edge of the patch that it is next to, to rounding: to where the
+// edge passes the other surface.
+static bool move_to_edge(CagMarch *m, int k, int d, double edge, CagMarchNode *end) {
+  enum { STEPS = 6 };
+  CagMarchNode node = *end;
+  CagVec3 x = end->x;
+  double gap = INFINITY;
+  node.at[k][d] = edge;
+  for (int i = 0; i < STEPS; i++) {
+    Tangential own, other;
+    if (!look(m, k, &node, &own) || !look(m, 1 - k, &node, &other)) return false;
+    const CagVec3 along = d ? own.du : own.dv;
+    const double rate = cag_dot(other.normal, along);
+    if (fabs(rate) <= TOUCH * cag_norm(along)) return true;
+    const double *range = cag_march_range(m, k, &node, 1 - d);
+    const double step = cag_dot(other.normal, cag_sub(other.p, own.p)) / rate;
+    gap = cag_norm(cag_sub(own.p, other.p));
+    x = own.p;
+    node.at[k][1 - d] = fmin(fmax(node.at[k][1 - d] + step, range[0]), range[1]);
+    move_to(m, 1 - k, &other, cag_madd(own.p, step, along), &node);
+  }
+  if (gap > SAME * m->size || cag_norm(cag_sub(x, end->x)) > JOINED * m->size) return true;
+  node.x = x;
+  *end = node;
+  return true;
+}
+
+static bool settle_end(CagMarch *m, CagMarchNode *end) {
+  for (int k = 0; k < 2; k++)
+    for (int d = 0; d < 2; d++) {
+      const double *range = cag_march_range(m, k, end, d), near = BESIDE * (range[1] - range[0]);
+      for (int i = 0; i < 2 && !m->side[k].patches.wraps[d]; i++)
+        if (fabs(end->at[k][d] - range[i]) <= near) return move_to_edge(m, k, d, range[i], end);
+    }
+  return true;
+}
+
 // Goes on from the last node until the run ends or is closed.
-static bool go_on(March *m, Run *run) {
+static bool go_on(CagMarch *m, Run *run) {
   double h = m->step_first, least = STEP_LEAST * m->size;
   while (run->n < NODES_MOST) {
     if (m->interrupt && *m->interrupt)
-      return fail(m, cag_fail(m->err, CAG_E_CALLBACK, "interrupted", "", -1, "stopped"));
-    Node a = run->nodes[run->n - 1], b;
+      return cag_march_fail(m, cag_fail(m->err, CAG_E_CALLBACK, "interrupted", "", -1, "stopped"));
+    CagMarchNode a = run->nodes[run->n - 1], b;
     CagVec3 middle;
     Step step = try_step(m, &a, h, false, &b, &middle);
     if (step == BROKEN) return false;
@@ -330,11 +376,12 @@ static bool go_on(March *m, Run *run) {
       }
       bool open = step == ENDED && !is_near_pole(m, a.x, 4 * h);
       if (open || !leap_over(m, &a, 64 * least, &b, &middle))
-        return m->status == CAG_OK && (step != ENDED || add_end(m, run, h));
+        return m->status == CAG_OK &&
+               (step != ENDED || (add_end(m, run, h) && settle_end(m, &run->nodes[run->n - 1])));
     }
     if (comes_home(m, run, &a, &b)) {
       // The last piece ends in the start itself.
-      Node home = run->nodes[0], between = a;
+      CagMarchNode home = run->nodes[0], between = a;
       CagVec3 d = cag_sub(home.x, a.x), guess = hermite(&a, &home, 0.5);
       run->closed = true;
       if (cag_norm(d) <= 16 * least) {
@@ -352,7 +399,7 @@ static bool go_on(March *m, Run *run) {
 
 static void turn_round(Run *run) {
   for (size_t i = 0; i < run->n / 2; i++) {
-    Node swap = run->nodes[i];
+    CagMarchNode swap = run->nodes[i];
     run->nodes[i] = run->nodes[run->n - 1 - i];
     run->nodes[run->n - 1 - i] = swap;
   }
@@ -364,168 +411,42 @@ static void turn_round(Run *run) {
   for (size_t i = 0; i < run->n; i++) run->nodes[i].tangent = cag_scaled(run->nodes[i].tangent, -1);
 }
 
-static bool trace(March *m, const Node *seed, Run *run) {
+static bool trace(CagMarch *m, const CagMarchNode *seed, Run *run) {
   if (!add_node(m, run, seed, seed->x) || !go_on(m, run)) return m->status == CAG_OK;
   if (run->closed) return true;
   turn_round(run);
   return go_on(m, run);
 }
 
-// --- Seeds ---
+// --- Seeds beside ---
 
-// Parameters of a triangle's corners, brought together where they lie at both sides of a seam.
-static void corner_parameters(const Side *side, const uint32_t *corner, double out[3][2]) {
-  const CagSurface *s = side->s;
-  const double range[2] = {s->u1 - s->u0, s->v1 - s->v0};
-  const bool closed[2] = {s->closed_u, s->closed_v};
-  for (int d = 0; d < 2; d++) {
-    double high = -INFINITY;
-    for (int k = 0; k < 3; k++) {
-      out[k][d] = side->mesh->uv[2 * corner[k] + (size_t)d];
-      high = fmax(high, out[k][d]);
-    }
-    for (int k = 0; closed[d] && k < 3; k++)
-      if (high - out[k][d] > range[d] / 2) out[k][d] += range[d];
-  }
-}
-
-typedef struct Facet {
-  CagVec3 p[3];
-  double at[3][2];
-  CagBounds box;
-} Facet;
-
-static Facet facet_of(const Side *side, size_t i) {
-  Facet f = {.box = CAG_BOUNDS_EMPTY};
-  const uint32_t *corner = side->mesh->triangles + 3 * i;
-  for (int k = 0; k < 3; k++) {
-    f.p[k] = side->mesh->positions[corner[k]];
-    cag_bounds_add(&f.box, f.p[k]);
-  }
-  corner_parameters(side, corner, f.at);
-  return f;
-}
-
-// Where the edges of f pass through g: adds points with the parameters on both to the sum.
-static int pierce(const Facet *f, const Facet *g, int which, Node *sum) {
-  CagVec3 e1 = cag_sub(g->p[1], g->p[0]), e2 = cag_sub(g->p[2], g->p[0]), n = cag_cross(e1, e2);
-  double nn = cag_dot(n, n);
-  int count = 0;
-  if (nn == 0) return 0;
-  for (int k = 0; k < 3; k++) {
-    int l = (k + 1) % 3;
-    double h0 = cag_dot(n, cag_sub(f->p[k], g->p[0])), h1 = cag_dot(n, cag_sub(f->p[l], g->p[0]));
-    if ((h0 < 0) == (h1 < 0)) continue;
-    double t = h0 / (h0 - h1);
-    CagVec3 x = cag_lerp(f->p[k], f->p[l], t), r = cag_sub(x, g->p[0]);
-    double b = cag_dot(cag_cross(r, e2), n) / nn, c = cag_dot(cag_cross(e1, r), n) / nn;
-    const double slack = 1e-9;
-    if (b < -slack || c < -slack || b + c > 1 + slack) continue;
-    for (int d = 0; d < 2; d++) {
-      sum->at[which][d] += f->at[k][d] + t * (f->at[l][d] - f->at[k][d]);
-      sum->at[1 - which][d] +=
-          g->at[0][d] + b * (g->at[1][d] - g->at[0][d]) + c * (g->at[2][d] - g->at[0][d]);
-    }
-    sum->x = cag_add(sum->x, x);
-    count++;
-  }
-  return count;
-}
-
-// The corners of f that lie on g, for facets of one plane: of a piece in common.
-static int rest(const Facet *f, const Facet *g, int which, Node *sum) {
-  CagVec3 e1 = cag_sub(g->p[1], g->p[0]), e2 = cag_sub(g->p[2], g->p[0]), n = cag_cross(e1, e2);
-  double nn = cag_dot(n, n), flat = 1e-9 * sqrt(sqrt(nn));
-  int count = 0;
-  if (nn == 0) return 0;
-  for (int k = 0; k < 3; k++) {
-    CagVec3 r = cag_sub(f->p[k], g->p[0]);
-    if (fabs(cag_dot(n, r)) > flat * sqrt(nn)) return 0;
-    double b = cag_dot(cag_cross(r, e2), n) / nn, c = cag_dot(cag_cross(e1, r), n) / nn;
-    if (b < 0 || c < 0 || b + c > 1) continue;
-    for (int d = 0; d < 2; d++) {
-      sum->at[which][d] += f->at[k][d];
-      sum->at[1 - which][d] +=
-          g->at[0][d] + b * (g->at[1][d] - g->at[0][d]) + c * (g->at[2][d] - g->at[0][d]);
-    }
-    sum->x = cag_add(sum->x, f->p[k]);
-    count++;
-  }
-  return count;
-}
-
-static double into(double x, double low, double high, bool closed) {
-  if (closed && x > high) x -= high - low;
-  return fmin(fmax(x, low), high);
-}
-
-static bool add_seed(March *m, const Facet *f, const Facet *g) {
-  Node sum = {0};
-  int count = pierce(f, g, 0, &sum) + pierce(g, f, 1, &sum);
-  if (count == 0) count = rest(f, g, 0, &sum) + rest(g, f, 1, &sum);
-  if (count == 0) return true;
+// The end of a run in the other patches that have it.
+static bool add_seeds_beside(CagMarch *m, const CagMarchNode *end) {
+  CagPatchPlace places[2][9];
+  size_t n[2];
   for (int k = 0; k < 2; k++) {
-    const CagSurface *s = m->side[k].s;
-    sum.at[k][0] = into(sum.at[k][0] / count, s->u0, s->u1, s->closed_u);
-    sum.at[k][1] = into(sum.at[k][1] / count, s->v0, s->v1, s->closed_v);
+    const CagPatchPlace own = {{end->patch[k][0], end->patch[k][1]},
+                               {end->at[k][0], end->at[k][1]}};
+    n[k] = cag_patches_beside(&m->side[k].patches, &own, BESIDE, places[k]);
   }
-  sum.x = cag_scaled(sum.x, 1.0 / count);
-  if (m->seed_count == m->seed_capacity) {
-    size_t capacity = m->seed_capacity ? 2 * m->seed_capacity : 256;
-    Node *grown = realloc(m->seeds, capacity * sizeof *grown);
-    if (!grown) return fail(m, cag_fail_memory(m->err));
-    m->seeds = grown;
-    m->seed_capacity = capacity;
+  for (size_t i = 1; i < n[0] * n[1]; i++) {
+    CagMarchNode seed = *end;
+    for (int k = 0; k < 2; k++) {
+      const CagPatchPlace *place = &places[k][k ? i % n[1] : i / n[1]];
+      for (int d = 0; d < 2; d++) {
+        seed.at[k][d] = place->at[d];
+        seed.patch[k][d] = place->patch[d];
+      }
+    }
+    if (!cag_march_add_seed(m, &seed)) return false;
   }
-  m->seeds[m->seed_count++] = sum;
   return true;
 }
 
-static bool apart(const CagBounds *a, const CagBounds *b) {
-  return a->min.x > b->max.x || b->min.x > a->max.x || a->min.y > b->max.y || b->min.y > a->max.y ||
-         a->min.z > b->max.z || b->min.z > a->max.z;
-}
-
-static int by_low(const void *a, const void *b) {
-  const Facet *x = a, *y = b;
-  return (x->box.min.x > y->box.min.x) - (x->box.min.x < y->box.min.x);
-}
-
-static double low_of(const Facet *f) { return f->box.min.x; }
-
-// All pairs of triangles whose boxes meet, swept along x.
-static bool find_seeds(March *m) {
-  Facet *list[2] = {NULL, NULL};
-  size_t n[2], first = 0;
-  bool ok = true;
-  for (int k = 0; k < 2; k++) {
-    n[k] = m->side[k].mesh->triangle_count;
-    list[k] = malloc((n[k] + 1) * sizeof *list[k]);
-    ok = ok && list[k];
-    for (size_t i = 0; ok && i < n[k]; i++) list[k][i] = facet_of(&m->side[k], i);
-    if (ok && n[k]) qsort(list[k], n[k], sizeof *list[k], by_low);
-  }
-  if (!ok) fail(m, cag_fail_memory(m->err));
-  // The longest reach along x of a facet of the second tells how far back others may begin.
-  double reach = 0;
-  for (size_t i = 0; ok && i < n[1]; i++)
-    reach = fmax(reach, list[1][i].box.max.x - list[1][i].box.min.x);
-  for (size_t i = 0; ok && i < n[0]; i++) {
-    const Facet *f = &list[0][i];
-    while (first < n[1] && low_of(&list[1][first]) < f->box.min.x - reach) first++;
-    for (size_t j = first; ok && j < n[1] && low_of(&list[1][j]) <= f->box.max.x; j++)
-      if (!apart(&f->box, &list[1][j].box)) ok = add_seed(m, f, &list[1][j]);
-  }
-  free(list[0]);
-  free(list[1]);
-  return ok;
-}
-
-// Whether the place lies on the run.
-static bool lies_on(const March *m, const Run *run, CagVec3 x) {
-  double near = 8 * m->tolerance + JOINED * m->size;
+// Whether the place lies on the run, or so near.
+static bool lies_on(const Run *run, CagVec3 x, double near) {
   for (size_t i = 0; i + 1 < run->n; i++) {
-    const Node *a = &run->nodes[i], *b = &run->nodes[i + 1];
+    const CagMarchNode *a = &run->nodes[i], *b = &run->nodes[i + 1];
     CagVec3 chord = cag_sub(b->x, a->x);
     double square = cag_dot(chord, chord);
     if (square == 0 || cag_norm(cag_sub(x, a->x)) > 1.5 * sqrt(square)) continue;
@@ -537,22 +458,44 @@ static bool lies_on(const March *m, const Run *run, CagVec3 x) {
   return false;
 }
 
-// --- Curves ---
+// Whether a seed in a run's patches lies on it.
+static bool has_seed(const CagMarch *m, const Run *run, const CagMarchNode *seed) {
+  const CagMarchNode *first = &run->nodes[0];
+  for (int k = 0; k < 2; k++)
+    for (int d = 0; d < 2; d++)
+      if (first->patch[k][d] != seed->patch[k][d]) return false;
+  return lies_on(run, seed->x, 8 * m->tolerance + JOINED * m->size);
+}
 
-static bool add_curve(March *m, const Run *run, size_t first, size_t last, bool closed,
-                      CagCurveList *out) {
-  size_t n = last - first + 1;
-  // What a seed at a pole or at a corner of an outline leaves.
+static double reach_of(const Run *run, size_t first, size_t last) {
   double reach = 0;
   for (size_t i = first; i <= last; i++)
     reach = fmax(reach, cag_norm(cag_sub(run->nodes[i].x, run->nodes[first].x)));
-  if (n < 2 || reach <= JOINED * m->size) return true;
+  return reach;
+}
+
+// Whether a run is found already: along a crease, from the patch on its other side.
+static bool is_twin(const CagMarch *m, const Run *run, const Run *other) {
+  const double reach = reach_of(run, 0, run->n - 1);
+  const double near = reach > 16 * m->tolerance ? m->tolerance : JOINED * m->size;
+  for (size_t i = 0; i < run->n; i++)
+    if (!lies_on(other, run->nodes[i].x, near)) return false;
+  return true;
+}
+
+// --- Curves ---
+
+static bool add_curve(CagMarch *m, const Run *run, size_t first, size_t last, bool closed,
+                      CagCurveList *out) {
+  size_t n = last - first + 1;
+  // What a seed at a pole or at a corner of an outline leaves.
+  if (n < 2 || reach_of(run, first, last) <= JOINED * m->size) return true;
   CagTrace t = {.count = n, .check_count = n - 1, .closed = closed};
   t.points = malloc(n * sizeof *t.points);
   t.tangents = malloc(n * sizeof *t.tangents);
   t.checks = malloc(n * sizeof *t.checks);
   bool ok = t.points && t.tangents && t.checks;
-  if (!ok) fail(m, cag_fail_memory(m->err));
+  if (!ok) cag_march_fail(m, cag_fail_memory(m->err));
   for (size_t i = 0; ok && i < n; i++) {
     t.points[i] = run->nodes[first + i].x;
     t.tangents[i] = run->nodes[first + i].tangent;
@@ -564,16 +507,16 @@ static bool add_curve(March *m, const Run *run, size_t first, size_t last, bool 
   free(t.points);
   free(t.tangents);
   free(t.checks);
-  return ok && (status == CAG_OK || fail(m, status));
+  return ok && (status == CAG_OK || cag_march_fail(m, status));
 }
 
 // The place between two nodes at which the run leaves an outline; `inside` belongs.
-static bool find_border(March *m, Node inside, Node outside, Node *out) {
+static bool find_border(CagMarch *m, CagMarchNode inside, CagMarchNode outside, CagMarchNode *out) {
   const int halvings = 48;
   for (int i = 0; i < halvings; i++) {
     CagVec3 d = cag_sub(outside.x, inside.x);
     if (cag_norm(d) <= SAME * m->size) break;
-    Node half = inside;
+    CagMarchNode half = inside;
     if (locate(m, hermite(&inside, &outside, 0.5), cag_unit(d), inside.tangent, &half) != FOUND)
       break;
     if (belongs(m, &half)) inside = half;
@@ -585,15 +528,15 @@ static bool find_border(March *m, Node inside, Node outside, Node *out) {
 }
 
 // The parts of a run that lie within the outlines.
-static bool add_parts(March *m, const Run *run, CagCurveList *out) {
+static bool add_parts(CagMarch *m, const Run *run, CagCurveList *out) {
   if (!m->side[0].region && !m->side[1].region)
     return add_curve(m, run, 0, run->n - 1, run->closed, out);
   Run part = {0};
   bool ok = true, whole = run->closed, was = false;
   for (size_t i = 0; ok && i < run->n; i++) {
-    const Node *node = &run->nodes[i];
+    const CagMarchNode *node = &run->nodes[i];
     bool is = belongs(m, node);
-    Node border;
+    CagMarchNode border;
     if (m->status) ok = false;
     whole = whole && is;
     if (ok && is && !was && i > 0)
@@ -622,9 +565,9 @@ static bool add_parts(March *m, const Run *run, CagCurveList *out) {
 
 // Whether a place of the first surface, beside one where they touch, lies on the second; `known`:
 // whether there is such a place.
-static bool is_shared(March *m, const double at[2], bool *known, bool *out) {
+static bool is_shared(CagMarch *m, const double at[2], bool *known, bool *out) {
   const CagSurface *a = m->side[0].s;
-  const Node place = {.at = {{at[0], at[1]}}};
+  const CagMarchNode place = {.at = {{at[0], at[1]}}};
   const double low[2] = {a->u0, a->v0}, high[2] = {a->u1, a->v1};
   bool inside = true;
   *known = false;
@@ -635,7 +578,7 @@ static bool is_shared(March *m, const double at[2], bool *known, bool *out) {
   CagSurfaceNearest nearest;
   CagStatus status = cag_surface_point(a, at[0], at[1], &p, m->err);
   if (!status) status = cag_surface_closest(m->side[1].s, p, &nearest, m->err);
-  if (status) return fail(m, status);
+  if (status) return cag_march_fail(m, status);
   *known = true;
   *out = nearest.distance <= COMMON * m->size;
   return true;
@@ -644,12 +587,12 @@ static bool is_shared(March *m, const double at[2], bool *known, bool *out) {
 // Whether the surfaces are one all about a place where they touch, not along lines only. Two lines
 // along which surfaces touch or cross may meet there: so it is tried in many directions, and as far
 // away as surfaces part that touch to the third order.
-static bool is_common(March *m, const Node *node, bool *out) {
+static bool is_common(CagMarch *m, const CagMarchNode *node, bool *out) {
   enum { DIRECTIONS = 10, RINGS = 2 };
   Tangential t;
   int tried = 0;
   *out = false;
-  if (!look(m, 0, node->at[0], &t)) return false;
+  if (!look(m, 0, node, &t)) return false;
   for (int i = 0; i < DIRECTIONS * RINGS; i++) {
     const double reach = COMMON_REACH * m->step_most * (1 + i / DIRECTIONS) / RINGS;
     const double angle = 2 * M_PI * (i + 0.25) / DIRECTIONS;
@@ -665,12 +608,12 @@ static bool is_common(March *m, const Node *node, bool *out) {
 }
 
 // The places that touch are looked at, up to some hundred of them.
-static bool find_common(March *m, bool *out) {
+static bool find_common(CagMarch *m, bool *out) {
   const size_t looks = 100;
   size_t found = 0, every = m->touching / looks + 1;
   *out = false;
   for (size_t i = 0; !*out && i < m->seed_count; i++) {
-    Node seed = m->seeds[i];
+    CagMarchNode seed = m->seeds[i];
     const CagVec3 none = {0, 0, 0};
     Found how = locate(m, seed.x, none, none, &seed);
     if (how == FAILED) return false;
@@ -679,45 +622,62 @@ static bool find_common(March *m, bool *out) {
   return true;
 }
 
-static bool march_all(March *m, CagCurveList *out) {
-  Run *runs = NULL;
-  size_t n = 0, capacity = 0;
+static void free_run(Run *run) {
+  free(run->nodes);
+  free(run->middles);
+}
+
+typedef struct Runs {
+  Run *items;
+  size_t n, capacity;
+} Runs;
+
+// Takes the run over, unless it is a point or found already, and looks for what goes on from it.
+static bool keep_run(CagMarch *m, Runs *runs, Run *run) {
+  bool kept = run->n > 1 && reach_of(run, 0, run->n - 1) > JOINED * m->size;
+  for (size_t k = 0; kept && k < runs->n; k++) kept = !is_twin(m, run, &runs->items[k]);
+  if (kept && runs->n == runs->capacity) {
+    size_t capacity = runs->capacity ? 2 * runs->capacity : 8;
+    Run *grown = realloc(runs->items, capacity * sizeof *grown);
+    if (grown) {
+      runs->items = grown;
+      runs->capacity = capacity;
+    } else kept = cag_march_fail(m, cag_fail_memory(m->err));
+  }
+  if (!kept) {
+    free_run(run);
+    return m->status == CAG_OK;
+  }
+  runs->items[runs->n++] = *run;
+  return run->closed ||
+         (add_seeds_beside(m, &run->nodes[0]) && add_seeds_beside(m, &run->nodes[run->n - 1]));
+}
+
+static bool march_from(CagMarch *m, Runs *runs, CagMarchNode seed) {
+  const CagVec3 none = {0, 0, 0};
+  const Found found = locate(m, seed.x, none, none, &seed);
+  m->touching += found == TANGENT;
+  if (found != FOUND) return found != FAILED;
+  for (size_t k = 0; k < runs->n; k++)
+    if (has_seed(m, &runs->items[k], &seed)) return true;
+  Run run = {0};
+  if (trace(m, &seed, &run)) return keep_run(m, runs, &run);
+  free_run(&run);
+  return false;
+}
+
+static bool march_all(CagMarch *m, CagCurveList *out) {
+  Runs runs = {0};
   bool ok = true;
-  for (size_t i = 0; ok && i < m->seed_count; i++) {
-    Node seed = m->seeds[i];
-    CagVec3 none = {0, 0, 0};
-    Found found = locate(m, seed.x, none, none, &seed);
-    if (found == FAILED) ok = false;
-    if (found == TANGENT) m->touching++;
-    if (found != FOUND) continue;
-    bool known = false;
-    for (size_t k = 0; !known && k < n; k++) known = lies_on(m, &runs[k], seed.x);
-    if (known) continue;
-    Run run = {0};
-    ok = trace(m, &seed, &run);
-    if (n == capacity) {
-      capacity = capacity ? 2 * capacity : 8;
-      Run *grown = realloc(runs, capacity * sizeof *grown);
-      if (!grown) {
-        free(run.nodes);
-        free(run.middles);
-        ok = fail(m, cag_fail_memory(m->err));
-        break;
-      }
-      runs = grown;
-    }
-    runs[n++] = run;
-  }
-  for (size_t i = 0; ok && i < n; i++) ok = add_parts(m, &runs[i], out);
-  for (size_t i = 0; i < n; i++) {
-    free(runs[i].nodes);
-    free(runs[i].middles);
-  }
-  free(runs);
+  // Runs add seeds.
+  for (size_t i = 0; ok && i < m->seed_count; i++) ok = march_from(m, &runs, m->seeds[i]);
+  for (size_t i = 0; ok && i < runs.n; i++) ok = add_parts(m, &runs.items[i], out);
+  for (size_t i = 0; i < runs.n; i++) free_run(&runs.items[i]);
+  free(runs.items);
   return ok;
 }
 
-static CagStatus prepare(March *m, const CagSurface *a, const CagSurface *b, double tolerance,
+static CagStatus prepare(CagMarch *m, const CagSurface *a, const CagSurface *b, double tolerance,
                          CagError *err) {
   const CagSurface *s[2] = {a, b};
   double size[2] = {0, 0};
@@ -751,24 +711,28 @@ static CagStatus prepare(March *m, const CagSurface *a, const CagSurface *b, dou
     how.max_triangles = SEED_TRIANGLES;
     how.interrupt = m->interrupt;
     status = cag_surface_tessellate(s[k], &how, &m->side[k].mesh, err);
+    if (!status) status = cag_patches_open(s[k], &m->side[k].patches, err);
   }
   return status;
 }
 
 CagStatus cag_surface_intersect(const CagSurface *a, const CagSurface *b, double tolerance,
                                 const volatile int *interrupt, CagCurveList *out, CagError *err) {
-  March m = {.interrupt = interrupt, .err = err};
+  CagMarch m = {.interrupt = interrupt, .err = err};
   CagStatus status = prepare(&m, a, b, tolerance, err);
   size_t first = out->count;
   if (!status && !m.side[0].mesh) return CAG_OK; // one is a point
-  if (!status && (!find_seeds(&m) || !march_all(&m, out))) status = m.status;
+  if (!status && (!cag_march_find_seeds(&m) || !march_all(&m, out))) status = m.status;
   bool common = false;
   if (!status && m.touching && !find_common(&m, &common)) status = m.status;
   if (!status && common)
     status = cag_fail(err, CAG_E_DEGENERATE, "overlap", "", -1,
                       "the surfaces share a piece: they meet in more than curves");
   if (!status) status = cag_curve_list_join(out, first, JOINED * m.size, err);
-  for (int k = 0; k < 2; k++) cag_mesh_release(m.side[k].mesh);
+  for (int k = 0; k < 2; k++) {
+    cag_mesh_release(m.side[k].mesh);
+    cag_patches_free(&m.side[k].patches);
+  }
   free(m.seeds);
   return status;
 }

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/surface/crease.h"
 #include "geom/surface/family.h"
 #include "geom/surface/section_grid.h"
 #include "geom/surface/section_join.h"
@@ -22,8 +23,6 @@
 #define CELLS 40
 #define CELLS_OF_PATCH 4
 #define CELLS_OF_SIDED_PATCH 10
-// Unit normals on both sides of a break that are farther apart than this make it an edge.
-#define CREASE 1e-7
 // Halvings between two crossings, and places looked for there where branches cross, each of which
 // may be followed by half as many halvings.
 #define DEPTH_MOST 12
@@ -432,57 +431,6 @@ static void tracer_free(CagTracer *t) {
 
 // --- Patches ---
 
-static CagStatus unit_normal(const CagSurface *s, const double at[2], CagSide side_u,
-                             CagSide side_v, CagVec3 *out, CagError *err) {
-  CagVec3 d[4];
-  CagStatus status = cag_surface_eval(s, at[0], at[1], 1, side_u, side_v, d, err);
-  if (!status) *out = cag_unit(cag_cross(d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)]));
-  return status;
-}
-
-// Whether the surface has an edge along the break of a direction: its normals jump somewhere.
-static CagStatus is_crease(const CagSurface *s, int direction, double x, bool *out, CagError *err) {
-  // At no simple fractions of the break.
-  static const double places[] = {0.0131, 0.1417, 0.2713, 0.4231, 0.5819, 0.7283, 0.8611, 0.9857};
-  const double lo = direction ? s->u0 : s->v0, hi = direction ? s->u1 : s->v1;
-  CagStatus status = CAG_OK;
-  *out = false;
-  for (size_t i = 0; !status && !*out && i < sizeof places / sizeof *places; i++) {
-    CagVec3 n[2];
-    const double w = lo + places[i] * (hi - lo), at[2] = {direction ? w : x, direction ? x : w};
-    for (int k = 0; !status && k < 2; k++) {
-      const CagSide side = k ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT;
-      status = unit_normal(s, at, direction ? CAG_SIDE_RIGHT : side,
-                           direction ? side : CAG_SIDE_RIGHT, &n[k], err);
-    }
-    // Where there is no normal nothing is known.
-    const bool known = !status && cag_norm(n[0]) > 0 && cag_norm(n[1]) > 0;
-    *out = known && cag_norm(cag_sub(n[0], n[1])) > CREASE;
-  }
-  return status;
-}
-
-// The ends of the patches along a direction: at edges of the surface, and at all breaks where the
-// function is sided.
-static CagStatus find_ends(const CagSurface *s, bool sided, int direction, double **out, size_t *n,
-                           CagError *err) {
-  size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0, kept = 1;
-  double *ends = malloc((inner + 2) * sizeof *ends);
-  *out = ends;
-  if (!ends) return cag_fail_memory(err);
-  ends[0] = direction ? s->v0 : s->u0;
-  if (inner > 0) s->kind->breaks(s, direction, ends + 1, inner);
-  for (size_t i = 1; i <= inner; i++) {
-    bool crease = sided;
-    CagStatus status = sided ? CAG_OK : is_crease(s, direction, ends[i], &crease, err);
-    if (status) return status;
-    if (crease) ends[kept++] = ends[i];
-  }
-  ends[kept] = direction ? s->v1 : s->u1;
-  *n = kept;
-  return CAG_OK;
-}
-
 // Whether the values are rounding: half of them below that away from the edges, all below the
 // most.
 static bool is_constant(const CagTracer *t, double inner, double most) {
@@ -549,7 +497,7 @@ static CagStatus trace_patches(CagTracer *t, CagLevel *own, CagTraces *out) {
   double *ends[2] = {NULL, NULL};
   size_t n[2] = {0, 0};
   for (int k = 0; !t->status && k < 2; k++)
-    t->status = find_ends(s, own->sided, k, &ends[k], &n[k], t->err);
+    t->status = cag_surface_patch_ends(s, own->sided, k, &ends[k], &n[k], t->err);
   bool ok = !t->status;
   for (int k = 0; k < 2; k++) {
     size_t share = n[k] > 0 ? CELLS / n[k] : CELLS;

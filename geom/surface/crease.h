@@ -1,0 +1,34 @@
+// The patches of a surface: what its creases, along which the normal jumps, cut it into.
+
+#ifndef CAG_GEOM_SURFACE_CREASE_H
+#define CAG_GEOM_SURFACE_CREASE_H
+
+#include "geom/surface/surface.h"
+
+// The ends of the patches along a direction (n + 1 values, to be freed): the edges of the surface
+// and the breaks where its normals jump, or all breaks.
+CagStatus cag_surface_patch_ends(const CagSurface *s, bool all, int direction, double **out,
+                                 size_t *n, CagError *err);
+
+typedef struct CagPatches {
+  const CagSurface *s;
+  double *ends[2]; // n[d] + 1 of them
+  size_t n[2];
+  bool wraps[2]; // one patch that goes on smoothly over the seam
+} CagPatches;
+
+CagStatus cag_patches_open(const CagSurface *s, CagPatches *out, CagError *err);
+void cag_patches_free(CagPatches *p);
+// The number of the patch about a parameter.
+size_t cag_patches_find(const CagPatches *p, int direction, double x);
+
+typedef struct CagPatchPlace {
+  size_t patch[2];
+  double at[2];
+} CagPatchPlace;
+// The same place in all patches that have it: first as it is given. On their edges up to `near` of
+// a patch's width counts. The count, of at most 9.
+size_t cag_patches_beside(const CagPatches *p, const CagPatchPlace *place, double near,
+                          CagPatchPlace out[9]);
+
+#endif

@@ -1,0 +1,41 @@
+// What marching along the curves in which two surfaces meet begins from: seeds, where the triangles
+// of their meshes meet.
+
+#ifndef CAG_GEOM_SURFACE_MEET_SEED_H
+#define CAG_GEOM_SURFACE_MEET_SEED_H
+
+#include "geom/mesh/mesh.h"
+#include "geom/surface/crease.h"
+
+typedef struct CagMarchSide {
+  const CagSurface *s;
+  const CagRegion *region; // its inside belongs; NULL: all
+  CagMesh *mesh;
+  CagPatches patches;
+} CagMarchSide;
+
+typedef struct CagMarchNode {
+  CagVec3 x, tangent; // unit
+  double at[2][2];    // u, v on each
+  size_t patch[2][2]; // they lie in, by u and v
+} CagMarchNode;
+
+typedef struct CagMarch {
+  CagMarchSide side[2];
+  double size, tolerance, step_most, step_first;
+  CagMarchNode *seeds;
+  size_t seed_count, seed_capacity, touching;
+  const volatile int *interrupt;
+  CagError *err;
+  CagStatus status; // of what failed for good
+} CagMarch;
+
+// Gives false, with the status of what failed for good.
+bool cag_march_fail(CagMarch *m, CagStatus status);
+// The range of the node's patch of side k in a direction: two values.
+const double *cag_march_range(const CagMarch *m, int k, const CagMarchNode *node, int direction);
+bool cag_march_add_seed(CagMarch *m, const CagMarchNode *seed);
+// Adds seeds where triangles meet, with their parameters on both sides.
+bool cag_march_find_seeds(CagMarch *m);
+
+#endif
