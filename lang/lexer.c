@@ -690,7 +690,7 @@ static bool special_variable(CagLexer *lx, CagToken *t) {
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
     if (strlen(known[i].name) != end - start || memcmp(known[i].name, text + start, end - start))
       continue;
-    help(report(lx, CAG_ERR_unknown_character, start, end, "`%s` is no name here", known[i].name),
+    help(report(lx, CAG_ERR_unknown_character, start, end, "unknown name `%s`", known[i].name),
          "write %s", cag_foreign_syntax(known[i].form));
     finish(lx, t, CAG_TOKEN_ERROR, end);
     return true;

@@ -165,7 +165,7 @@ CagStatus cag_curve_reparametrize_as(const CagCurve *c, double a, double b, bool
 // The domain stays. A curve that rests as a whole is given back.
 CagStatus cag_curve_without_stops(const CagCurve *c, CagCurve **out, CagError *err);
 // Makes a curve of space that lies in z = 0, but for rounding, one of the plane. The caller has
-// just made it: nobody else refers to it.
+// just made it: nothing else refers to it.
 void cag_curve_lay_flat(CagCurve *c);
 // The curve as one of space (dimension 3), or its image under the map [x, y] -> [x, 0, y] used by
 // revolve.

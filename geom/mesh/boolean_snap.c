@@ -16,7 +16,7 @@
 
 // Sine of the largest angle between faces of one plane, squared.
 #define PARALLEL 1e-6
-// Faces that are no higher than so many slacks tell no plane.
+// Faces lower than this many slacks do not determine a plane.
 #define THIN 1e3
 // Planes of a corner are independent where the volume that their normals span is above this.
 #define INDEPENDENT 1e-5

@@ -100,7 +100,7 @@ static CagStatus operand_meshes(const CagSolid *s, const CagTessellation *how,
   return status;
 }
 
-// Meshes of operands are no words of a script: errors name the operand instead.
+// A script does not name the meshes of operands, so errors name the operand instead.
 static CagStatus name_operand(const CagSolid *s, const size_t *operands, size_t n, CagStatus status,
                               CagError *err) {
   char mesh[32], operand[80], text[sizeof err->message];

@@ -9,7 +9,7 @@
 // Whether a revolution's profile crosses itself, or a section swept along a path reaches beyond the
 // bend of the path, so that the surface folds there, or parts of a tube's path are nearer to each
 // other than the tube is thick. Looked for at samples: crossings smaller than these, and sweeps of
-// other sections whose parts meet, are not found. `what` (of `size`) tells of the first place.
+// other sections whose parts meet, are not found. `what` (of `size`) names the first location.
 bool cag_surface_crosses_itself(const CagSurface *s, char *what, size_t size);
 // The same of a solid's faces.
 bool cag_solid_crosses_itself(const CagSolid *s, char *what, size_t size);

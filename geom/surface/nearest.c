@@ -206,7 +206,7 @@ static CagStatus descend_over(const Search *f, const size_t start[2], const doub
   Piece in = piece_of(f, piece);
   CagStatus status = descend(f, &in, p, from, out, err);
   bool moved = true;
-  // Each crossing leads nearer by more than rounding; many in a row are no use.
+  // Each crossing must get nearer by more than rounding; many in a row do not help.
   for (int crossings = 0; !status && moved && crossings < STEPS; crossings++) {
     moved = false;
     for (int ways = 1; !status && !moved && ways < 4; ways++) {

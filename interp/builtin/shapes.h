@@ -62,7 +62,7 @@ bool cag_arg_direction(CagCall *call, int argument, CagVec3 fallback, CagVec3 *o
 bool cag_arg_plane(CagCall *call, int argument, CagPlane *out);
 // A region from a region, closed plane curve or list of points; *out has one reference of its own.
 bool cag_arg_region(CagCall *call, int argument, CagRegion **out, CagTransform *placement);
-// Whether nothing is left of a shape that is no group.
+// Whether nothing is left of a shape other than a group.
 bool cag_value_is_empty(CagCall *call, CagValue v, bool *out);
 // Bounds of a shape, group or list, of what is not empty in it; `dimension` is 2 when everything is
 // of the plane. Fails with "empty-shape" where nothing is left.

@@ -6,9 +6,9 @@
 
 #include "interp/eval/vm.h"
 
-// A call or a pipe is constant when it calls built-ins that are quick and ask nothing of the
-// outside, with literals, built-in constants, other such calls, and definitions of these. `is_bad`
-// tells of a definition of the top level whether an error in it is known already.
+// A call or a pipe is constant if it calls quick built-ins that read neither files nor params, with
+// literals, built-in constants, other such calls, and definitions of these. `is_bad` tells whether
+// a definition of the top level already has a reported error.
 typedef struct CagConstants {
   CagVm *vm;
   CagModuleUnit *unit;

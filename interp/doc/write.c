@@ -228,7 +228,7 @@ void cag_doc_write_overview(const CagDocWriter *w) {
   heading(w, "Manual");
   for (size_t i = 0; cag_site_guide(i, &name, &title); i++)
     fprintf(w->out, "  %-18s %s\n", name, title);
-  fputs("\n`cag doc NAME` tells of a function, a module, a word of the language such as `if` or "
+  fputs("\n`cag doc NAME` shows a function, a module, a word of the language such as `if` or "
         "`|>`, a "
         "topic such as\n`gear`, a chapter or an error code, `cag doc FILE.cag` of a script, "
         "`cag doc --html DIR` makes all of it\na site.\n",

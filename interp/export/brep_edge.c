@@ -156,8 +156,8 @@ static bool near_box(const CagBounds *box, CagVec3 p, double off) {
 }
 
 // A vertex of another side without partner that lies within the side, at its parameter t: the one
-// nearest to the middle, so that halves of halves soon have none left. `count`: sides that `pairs`
-// tells of.
+// nearest to the middle, so that repeated halving ends soon. `count` is the number of sides in
+// `pairs`.
 static CagStatus vertex_within(const CagBrepWork *w, const Pair *pairs, size_t count, size_t index,
                                double *t, bool *found, CagError *err) {
   const CagBrepSide *s = &w->sides[index];
@@ -208,7 +208,7 @@ static CagStatus cut_side(CagBrepWork *w, size_t index, double t, CagError *err)
   return CAG_OK;
 }
 
-// The parts that are cut off stand behind the sides that `pairs` tells of.
+// Appends the parts that are cut off after the sides in `pairs`.
 static CagStatus cut_sides(CagBrepWork *w, const Pair *pairs, bool *any, CagError *err) {
   size_t n = w->side_count;
   *any = false;
@@ -223,8 +223,8 @@ static CagStatus cut_sides(CagBrepWork *w, const Pair *pairs, bool *any, CagErro
   return CAG_OK;
 }
 
-// Each round halves the places that sides are to be cut at; more rounds than this are no closed
-// body.
+// Each round halves the number of cuts that are left. A body that needs more rounds than this is
+// not closed.
 #define CUT_ROUNDS 64
 
 // Makes vertices and finds partners; *pairs has an element for each side afterwards.

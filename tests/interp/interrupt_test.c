@@ -1,5 +1,5 @@
 // An interrupt ends whatever runs: values that share their parts take endlessly long to be walked,
-// whoever walks them.
+// any code that walks them.
 
 #include <pthread.h>
 #include <setjmp.h>

@@ -40,7 +40,7 @@ static void a_line_that_begins_with_minus_is_explained(void **state) {
   expect("a = box(3)\n  - translate(box(1), [1, 1, 1])\nshow a", "E0150", "alone", help);
   expect("a = box(3)\n- box(1) - box(2)\nshow a", "E0150", "alone", help);
   expect("a = {\n  b = box(3)\n  b\n  - box(1)\n}\nshow a", "E0150", "not the last", help);
-  // The mend that the message names.
+  // The fix that the message names.
   CagSession *s;
   const CagErrorView e = first_error(&s, "a = box(3) -\n  translate(box(1), [1, 1, 1])\nshow a\nb");
   assert_int_equal(e.line, 4);
