@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "geom/surface/family.h"
+#include "geom/surface/nearest.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 
@@ -74,10 +75,59 @@ static CagStatus part_grid(const CagSurface *s, const double *us, size_t nu, con
   return cag_surface_eval_grid(((const Derived *)s)->inner, us, nu, vs, nv, points, du, dv, err);
 }
 
+// The parameter of the exact form at which the inner surface has `at`. In every exact form the
+// lines of constant u and v are those of the surface, only their parameters may differ: the form of
+// an arc does not run by the angle. Two points of the line tell the same parameter, or there is
+// none.
+static CagStatus part_cut(const CagSurface *s, const CagSurface *exact, int direction, double at,
+                          double *out, CagError *err) {
+  const CagSurface *inner = ((const Derived *)s)->inner;
+  const double ends[2] = {direction == 0 ? inner->u0 : inner->v0,
+                          direction == 0 ? inner->u1 : inner->v1};
+  const double exact_ends[2] = {direction == 0 ? exact->u0 : exact->v0,
+                                direction == 0 ? exact->u1 : exact->v1};
+  for (int i = 0; i < 2; i++)
+    if (at == ends[i]) {
+      *out = exact_ends[i];
+      return CAG_OK;
+    }
+  const double stations[2] = {0.4, 0.7}; // across, of the part
+  double found[2];
+  for (int i = 0; i < 2; i++) {
+    CagVec3 p;
+    CagSurfaceNearest near;
+    double u = direction == 0 ? at : s->u0 + stations[i] * (s->u1 - s->u0);
+    double v = direction == 1 ? at : s->v0 + stations[i] * (s->v1 - s->v0);
+    CagStatus status = cag_surface_point(inner, u, v, &p, err);
+    if (!status) status = cag_surface_closest(exact, p, &near, err);
+    if (status) return status;
+    found[i] = direction == 0 ? near.u : near.v;
+  }
+  const double rounding = CAG_SURFACE_SAME * (exact_ends[1] - exact_ends[0]);
+  *out = fabs(found[0] - at) <= rounding ? at : found[0];
+  if (fabs(found[0] - found[1]) <= rounding) return CAG_OK;
+  return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,
+                  "a part of a %s surface has no exact NURBS form; approximate it to a tolerance",
+                  inner->kind->name);
+}
+
+static CagStatus part_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
+  CagSurface *exact;
+  double at[4];
+  const double cuts[4] = {s->u0, s->u1, s->v0, s->v1};
+  CagStatus status = cag_surface_to_nurbs(((const Derived *)s)->inner, &exact, err);
+  if (status) return status;
+  for (int i = 0; !status && i < 4; i++) status = part_cut(s, exact, i / 2, cuts[i], &at[i], err);
+  if (!status) status = cag_surface_nurbs_part(exact, at[0], at[1], at[2], at[3], out, err);
+  cag_surface_release(exact);
+  return status;
+}
+
 static const CagSurfaceKind part_kind = {
     .name = "part",
     .eval = part_eval,
     .eval_grid = part_grid,
+    .to_nurbs = part_to_nurbs,
     .breaks = same_breaks,
     .describe = derived_describe,
     .destroy = derived_destroy,
