@@ -3,9 +3,10 @@
 // Where the triangles of their meshes meet are the seeds. From each that lies on no curve found yet
 // one goes both ways along the cross product of the normals: a step is tried, a place of both
 // surfaces in the plane at its end is found by Newton's method, and the step is shortened until the
-// cubic through both ends, with their tangents, passes within the tolerance of the place in the
-// middle. A run ends where it comes home, where a surface ends, or where the surfaces touch and
-// have no direction; there one looks a little ahead, since two branches may cross.
+// cubic through both ends, with their tangents, passes within the tolerance of the places in the
+// middle and at the quarters. A run ends where it comes home, where a surface ends, or where the
+// surfaces touch and have no direction; there one looks a little ahead, since two branches may
+// cross.
 //
 // A run stays in one patch of each surface: at a crease it ends as at an edge, and the end is a
 // seed in the patches beyond. So corners lie on the creases, and what is joined at last does not
@@ -226,7 +227,16 @@ static Step try_step(CagMarch *m, const CagMarchNode *a, double h, bool leap, Ca
   if (found == FAILED) return BROKEN;
   if (found != FOUND) return TOO_LONG;
   *middle = between.x;
-  return cag_norm(cag_sub(guess, between.x)) <= m->tolerance / 2 ? STEPPED : TOO_LONG;
+  if (cag_norm(cag_sub(guess, between.x)) > m->tolerance / 2) return TOO_LONG;
+  // Where the curve bends both ways the cubic may pass its middle, but not the quarters.
+  for (int i = 1; i < 4; i += 2) {
+    CagMarchNode quarter = between;
+    guess = hermite(a, b, i / 4.0);
+    found = locate(m, guess, cag_unit(d), a->tangent, &quarter);
+    if (found == FAILED) return BROKEN;
+    if (found != FOUND || cag_norm(cag_sub(guess, quarter.x)) > m->tolerance) return TOO_LONG;
+  }
+  return STEPPED;
 }
 
 // Whether the run, going from a to b, passes its start.
