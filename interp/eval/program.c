@@ -206,10 +206,8 @@ static bool add_shown(CagVm *vm, CagModuleUnit *m, const CagExpr *e, CagValue v)
     vm->shown = shown;
     vm->shown_capacity = capacity;
   }
-  vm->shown[vm->shown_count++] = (CagShown){.value = v,
-                                            .name = e->kind == CAG_EXPR_NAME ? e->as.name.id : NULL,
-                                            .source = m->source,
-                                            .span = e->span};
+  vm->shown[vm->shown_count++] =
+      (CagShown){.value = v, .expr = e, .source = m->source, .span = e->span};
   return true;
 }
 

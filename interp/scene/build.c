@@ -5,6 +5,7 @@
 
 #include "interp/scene/build.h"
 #include "interp/builtin/robots.h"
+#include "interp/scene/lead.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -277,12 +278,14 @@ static void add_shape(Build *b, CagValue v, const Said *said) {
   item->dash = number_field(said->style, "dash", 0);
 }
 
-static void add_shapes(Build *b, CagValue v, const Said *around) {
+static void add_shapes(Build *b, CagValue v, const Said *around, CagLead lead) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   b->failed = b->failed || !cag_may_go_deeper(b->vm, "shown");
   if (shape->hidden || b->failed) return;
   Said said = {cag_material_combine(b->vm, shape->material, around->material),
-               shape->name ? shape->name->bytes : around->name,
+               shape->name ? shape->name->bytes
+               : lead.name ? lead.name
+                           : around->name,
                shape->style ? shape->style : around->style,
                shape->tolerance > 0 ? shape->tolerance : around->tolerance};
   if (v.type != CAG_GROUP) {
@@ -290,8 +293,10 @@ static void add_shapes(Build *b, CagValue v, const Said *around) {
     return;
   }
   const CagList *items = shape->as.items;
+  const CagLead unnamed = {0};
+  const CagLeadParts parts = cag_lead_parts(shape->name ? unnamed : lead, items->length);
   for (size_t i = 0; i < items->length && !b->failed; i++)
-    add_shapes(b, cag_list_get(b->vm, items, i), &said);
+    add_shapes(b, cag_list_get(b->vm, items, i), &said, cag_lead_part(&parts, i));
 }
 
 // --- Cameras, lights, settings ---
@@ -419,25 +424,26 @@ bool cag_value_is_shown(CagVm *vm, CagValue v) {
 }
 
 // A robot is shown at home.
-static void add_robot(Build *b, CagValue v, const char *name) {
+static void add_robot(Build *b, CagValue v, CagLead lead) {
   CagValue group;
-  if (cag_robot_at_home(b->vm, v, &group)) add_shapes(b, group, &(Said){NULL, name, NULL, 0});
+  if (cag_robot_at_home(b->vm, v, &group)) add_shapes(b, group, &(Said){0}, lead);
   else b->failed = true;
 }
 
-static void add_value(Build *b, CagValue v, const char *name) {
+static void add_value(Build *b, CagValue v, CagLead lead) {
   b->failed = b->failed || !cag_may_go_deeper(b->vm, "shown");
   if (v.type == CAG_LIST) {
     const CagList *list = CAG_AS_LIST(v);
+    const CagLeadParts parts = cag_lead_parts(lead, list->length);
     for (size_t i = 0; i < list->length && !b->failed; i++)
-      add_value(b, cag_list_get(b->vm, list, i), name);
+      add_value(b, cag_list_get(b->vm, list, i), cag_lead_part(&parts, i));
     return;
   }
-  if (v.type == CAG_CAMERA) add_camera(b, CAG_AS_SCENE(v), name);
+  if (v.type == CAG_CAMERA) add_camera(b, CAG_AS_SCENE(v), lead.name);
   else if (v.type == CAG_LIGHT) add_light(b, CAG_AS_SCENE(v));
-  else if (v.type == CAG_SETTING) add_setting(b, CAG_AS_SCENE(v), name);
-  else if (v.type == CAG_ROBOT) add_robot(b, v, name);
-  else if (cag_is_shape(v)) add_shapes(b, v, &(Said){NULL, name, NULL, 0});
+  else if (v.type == CAG_SETTING) add_setting(b, CAG_AS_SCENE(v), lead.name);
+  else if (v.type == CAG_ROBOT) add_robot(b, v, lead);
+  else if (cag_is_shape(v)) add_shapes(b, v, &(Said){0}, lead);
 }
 
 bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene *out) {
@@ -455,7 +461,7 @@ bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene 
                          "show expects shapes, lights, cameras and lists of these, found %s",
                          cag_type_article(shown[i].value));
     }
-    add_value(&b, shown[i].value, shown[i].name);
+    add_value(&b, shown[i].value, cag_lead(shown[i].expr));
   }
   if (!b.failed) return true;
   cag_scene_free(out);

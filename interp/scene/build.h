@@ -5,18 +5,20 @@
 
 #include "interp/scene/scene.h"
 #include "interp/value/value.h"
+#include "lang/ast.h"
 #include "lang/source.h"
 
 // One value of a `show` statement, in the order of the file.
 typedef struct CagShown {
   CagValue value;
-  const char *name; // the shown expression when it is a name, else NULL
+  const CagExpr *expr; // NULL: not of a script
   const CagSource *source;
   CagSpan span;
 } CagShown;
 
-// Takes lists and groups apart into items, cameras, lights and settings. What was shown without a
-// name gets one of its kind ("curve", "box" ...); names are unique. The scene has neither automatic
+// Takes lists and groups apart into items, cameras, lights and settings. What nobody named is named
+// after the definition to which the shown expression leads (lead.h), else by its kind ("curve",
+// "box" ...); names are unique. The scene has neither automatic
 // camera nor studio light yet: see cag_scene_complete. False: error set (E0327 for a value that
 // cannot be shown), and *out is empty.
 bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene *out);

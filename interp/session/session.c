@@ -9,6 +9,7 @@
 
 #include "geom/stop.h"
 #include "geom/surface/crossing.h"
+#include "interp/scene/lead.h"
 #include "interp/session/watch.h"
 
 // The C stack of an evaluation: reserved address space; deep recursion through built-ins needs
@@ -516,12 +517,19 @@ typedef struct Listing {
   FILE *out;
 } Listing;
 
+// What was named keeps its name; else that of the definition.
+static const char *shown_name(const CagShown *shown) {
+  const CagText *own = cag_is_shape(shown->value) ? CAG_AS_SHAPE(shown->value)->name : NULL;
+  return own ? own->bytes : cag_lead(shown->expr).name;
+}
+
 static bool describe(CagVm *vm, void *context) {
   Listing *l = context;
   if (l->session->interactive && !rerun_shows(vm, l->session)) return false;
   for (size_t i = 0; i < vm->shown_count; i++) {
     CagString text = {0};
-    if (vm->shown[i].name) cag_string_printf(&text, "%s: ", vm->shown[i].name);
+    const char *name = shown_name(&vm->shown[i]);
+    if (name) cag_string_printf(&text, "%s: ", name);
     if (vm->shown[i].value.type == CAG_LIST) cag_describe_value(vm, &text, vm->shown[i].value);
     else cag_print_value(vm, &text, vm->shown[i].value, false);
     fprintf(l->out, "%s\n", text.bytes ? text.bytes : "");

@@ -193,6 +193,26 @@ grep -q "COLOUR_RGB('',1.,0.,0.)" named.step || wrong 'the colour is not there'
 grep -q "MANIFOLD_SOLID_BREP('It''s " named.step || wrong 'the name is not there'
 grep -q "FILE_SCHEMA(('AUTOMOTIVE_DESIGN" named.step || wrong 'the schema is not that of AP214'
 
+it 'what is shown without a name is named after its definition in the .step'
+script leads.cag 'lid = sphere(4)
+cup = box(3)
+leg(h) = cylinder(h, 1)
+parts = [cup, lid]
+show lid |> color("red")
+show translate(cup, [30, 0, 0])
+show [translate(cup, [0, 9, 0]) |> color("teal"), leg(7) |> rotate(X, 9deg)]
+show around(translate(lid, [50, 0, 0]), 2)
+show lid |> translate([0, 0, 40]) |> named("top")
+show group(cup, lid) |> translate([0, 99, 0])
+show [for p in parts, i in 1..1: translate(p, [0, 0, -50 * i])]
+show translate([0, 0, 77]) * lid
+show sphere(9) |> translate([200, 0, 0])'
+try export leads.cag -o leads.step
+status 0
+grep -o "MANIFOLD_SOLID_BREP('[^']*'" leads.step | cut -d "'" -f 2 | tr '\n' ' ' > found
+echo 'lid cup cup.2 leg lid.2 lid.3 top cup.3 lid.4 parts parts.2 lid.5 sphere ' > wanted
+tr -d '\n' < wanted | cmp -s - found || wrong "the names are $(cat found)"
+
 it 'an exact file twice gives the same bytes'
 try export named.cag -o again.step
 cmp -s named.step again.step || wrong 'the files differ'

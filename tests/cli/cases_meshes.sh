@@ -160,6 +160,22 @@ script normal.cag 'print round(normal(revolve(polyline([[0, 0], [10, 0], [10, 5]
 try run normal.cag
 prints_exactly '[-1, 0, 0]'
 
+it 'what is shown without a name is named after its definition in the .3mf'
+script leads.cag 'lid = sphere(4)
+leg = cylinder(9, 1)
+show lid |> color("red")
+show [translate(leg, [30, 0, 0]), scale(lid, 2)]
+show around(translate(leg, [50, 0, 0]), 2)
+show lid |> translate([0, 0, 40]) |> named("top")'
+try export leads.cag -o leads.3mf
+status 0
+python3 - leads.3mf > found 2> err << 'E2' || wrong 'the file is not read'
+import re, sys, zipfile
+model = zipfile.ZipFile(sys.argv[1]).read("3D/3dmodel.model").decode()
+print(*re.findall('<object [^>]*name="([^"]*)"', model))
+E2
+[ "$(cat found)" = 'lid leg lid.2 leg.2 leg.3 top' ] || wrong "the names are $(cat found)"
+
 it 'open surfaces are named where a file is for printing'
 script sheets.cag 'show revolve(polyline([[0, 0], [10, 0], [10, 5]])) |> named("cup")
 show mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2]]) |> named("tent")
