@@ -443,6 +443,8 @@ CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
   f.mesh->triangle_count = f.triangles;
   drop_shrunk(f.mesh, t->noise);
   if (t->needs_normals) complete_normals(f.mesh);
-  *out = f.mesh;
-  return CAG_OK;
+  status = tess_turn_edges(t, f.mesh, err);
+  if (status == CAG_OK) *out = f.mesh;
+  else cag_mesh_release(f.mesh);
+  return status;
 }

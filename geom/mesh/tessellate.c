@@ -105,7 +105,7 @@ static CagStatus run(Tessellator *t, const CagSolid *solid, CagMesh **out, CagEr
   for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
     if (!t->faces[k].planar) status = tess_plan_face(t, k, err);
   for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
-    if (!t->faces[k].planar) status = tess_make_lines(t, k, err);
+    if (!t->faces[k].planar) status = tess_make_even_lines(t, k, err);
   if (status == CAG_OK && solid) status = join_edges(t, solid, err);
   if (status == CAG_OK) status = tess_make_nodes(t, err);
   for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)

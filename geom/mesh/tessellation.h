@@ -4,9 +4,9 @@
 // where the curvature varies (plan.c). A leaf has a grid of nu x nv quadrilaterals. The sides of
 // leaves lie on lines, u = const or v = const; each line is divided once, for the leaves on both of
 // its sides, at the seam for both ends of the domain, and at edges of a solid for both faces
-// (lines.c). The nodes of lines become vertices (nodes.c). Then each leaf's grid is filled in and
-// stitched to the nodes around it (fill.c), and plane faces are triangulated from the nodes of
-// their loops (planar.c).
+// (lines.c, even.c). The nodes of lines become vertices (nodes.c). Then each leaf's grid is filled
+// in and stitched to the nodes around it (fill.c), edges of triangles that lean off the surface are
+// turned (turn_edges.c), and plane faces are triangulated from the nodes of their loops (planar.c).
 //
 // Vertices of lines come first in the mesh, interiors of leaves after them. While it is built,
 // `weld` is a union-find forest over the vertices of lines whose roots are the least members.
@@ -21,8 +21,8 @@
 enum { SIDE_U0, SIDE_U1, SIDE_V0, SIDE_V1 };
 
 typedef struct Leaf {
-  double from[2], to[2]; // [0]: u, [1]: v
-  uint32_t n[2];
+  double from[2], to[2];     // [0]: u, [1]: v
+  uint32_t n[2], planned[2]; // as it is, and before tess_make_even_lines
   uint32_t face;
   uint32_t line[4];     // by side
   size_t nodes[4];      // index of the side's first node among all nodes
@@ -116,6 +116,8 @@ CagStatus tess_limit(const Tessellator *t, double triangles, CagError *err);
 
 CagStatus tess_plan_face(Tessellator *t, uint32_t face, CagError *err);
 CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err);
+// Lines as tess_make_lines, with the counts of thin leaves raised to those beside them.
+CagStatus tess_make_even_lines(Tessellator *t, uint32_t face, CagError *err);
 // Divides the atoms of a line until its chords keep the tolerance, where it is a border or a
 // crease.
 CagStatus tess_refine_chords(Tessellator *t, Line *line, CagError *err);
@@ -129,6 +131,8 @@ CagStatus tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid,
 // Makes one of the corners of planar faces of a solid that lie in one place.
 CagStatus tess_unite_corners(Tessellator *t, CagError *err);
 CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err);
+// Turns edges of triangles that lean off the surface.
+CagStatus tess_turn_edges(const Tessellator *t, CagMesh *m, CagError *err);
 
 CagStatus tess_new_vertex(Tessellator *t, CagVec3 position, CagVec3 normal, double u, double v,
                           uint32_t *out, CagError *err);
