@@ -156,11 +156,20 @@ static void write_item_comment(CagPovWriter *w, const CagItem *item) {
   pov_comment(w, "", line);
 }
 
+// Opaque in all of its parts?
+static bool is_opaque(const CagPovWriter *w, const CagItem *item) {
+  bool opaque = !w->see_through;
+  for (size_t k = 0; k <= item->label_count; k++)
+    opaque &= !(w->scene->materials[cag_item_label_material(item, (uint32_t)k)].transmission > 0);
+  return opaque;
+}
+
 static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError *err) {
   const CagItem *item = &w->scene->items[index];
   const char *name = w->item_names[index];
   char material[64];
   CagStatus status = CAG_OK;
+  bool meshed = false;
   w->item = item;
   w->placement = cag_transform_identity();
   w->tolerance = item->tolerance;
@@ -170,7 +179,8 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
     status = pov_curve(w, item, name, err);
   } else {
     pov_printf(w, "#declare %s = ", name);
-    if (!try_native(w, item)) status = write_mesh(w, item, err);
+    meshed = !try_native(w, item);
+    if (meshed) status = write_mesh(w, item, err);
     if (!status && w->failure.status) {
       *err = w->failure;
       status = w->failure.status;
@@ -182,6 +192,10 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
   if (item->kind == CAG_ITEM_MESH && item->as.mesh->scale.kind && item->as.mesh->triangle_count)
     pov_scale_material(w, item->material, &item->as.mesh->scale);
   else pov_printf(w, "  material { %s }\n", material);
+  // At its outline a mesh is seen from the front where its smooth normals look to the back already.
+  // The renderer turns them around, and lights what is behind: black specks. Of an opaque body what
+  // is behind lies in its own shadow, so that light from both sides is right.
+  if (meshed && closed && is_opaque(w, item)) pov_text(w, "  double_illuminate\n");
   pov_placement(w, "  ", &w->placement);
   pov_text(w, w->unit != 1 ? "  scale unit\n}\n\n" : "}\n\n");
   return CAG_OK;

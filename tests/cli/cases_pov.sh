@@ -113,3 +113,16 @@ grep -q '<10, 20, 30>' spot || wrong 'it is at another place'
 grep -q 'spotlight radius 16 falloff 20 ' spot || wrong 'its cone is another'
 tr -d '<>,' < spot | awk '/point_at/ { for (i = 1; i < NF; i++) if ($i == "point_at") { x = 10 - $(i+1); y = 20 - $(i+2); z = 30 - $(i+3) }
   exit !(x > 0 && (y - 2*x)^2 + (z - 3*x)^2 < 1e-12) }' || wrong 'it points elsewhere'
+
+# At outlines smooth normals of meshes look away where their triangles do not yet.
+it 'opaque closed meshes take light on both sides, sheets and glass do not'
+script sides.cag 'c = [for a in 0..3: bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [0, -0.4, 0]], closed: true) |> rotate(Z, 40deg*a) |> translate([0, 0, 10*a])]
+show loft(c) |> named("blade")
+show loft(c) |> translate([20, 0, 0]) |> material({transmission: 0.5}) |> named("glass")
+show loft(c, caps: false) |> translate([40, 0, 0]) |> named("sleeve")'
+try export sides.cag -o sides.pov
+status 0
+sides() { awk -v name="$1" '/^object \{/ { inside = 1 } inside && $1 == name { mine = 1 } mine && /double_illuminate/ { n++ } /^}/ { inside = mine = 0 } END { print n + 0 }' sides.pov; }
+[ "$(sides blade)" -eq 1 ] || wrong 'the blade takes light on one side'
+[ "$(sides glass)" -eq 0 ] || wrong 'the glass takes light on both sides'
+[ "$(sides sleeve)" -eq 0 ] || wrong 'the sleeve takes light on both sides'

@@ -313,3 +313,10 @@ prints_exactly '0
 try render loop.cag -o loop.png --loop $quick
 status 2
 says '--frames'
+
+it 'the outline of a twisted blade has no dark specks'
+script blade.cag 'c = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)
+show loft([for k in 0..4: c |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])])'
+try render blade.cag -o blade.png --size 1440x1080 --region 160x400+580+100 --quality draft
+status 0
+python3 "$here/png_specks.py" blade.png > specks || wrong "$(cat specks)"
