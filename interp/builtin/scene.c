@@ -54,9 +54,12 @@ const CagBuiltin cag_builtins_scene[] = {
      "emission, texture (\"wood\", \"marble\", \"concrete\", \"clay\"), color2, texture_scale "
      "(mm), "
      "pov, name, density and reflectivity, all of which may be left out; `std.materials` has ready "
-     "ones. A material said nearer to the shape holds. An unknown field is an error that offers "
-     "the "
-     "nearest.",
+     "ones. density (kg/m^3) is that of bodies in URDF files. reflectivity is a share of light "
+     "that "
+     "scripts may read again, as for a sensor of their own; pictures and exports do not use it: "
+     "what "
+     "is seen of mirrors is metallic, roughness, ior and coat. A material said nearer to the shape "
+     "holds. An unknown field is an error that offers the nearest.",
      "show sphere(10) |> material({color: \"teal\", roughness: 0.2})", SHAPES | CAG_TAKES(SETTING),
      said},
     {"color(G, color)", cag_scenes_color, "as G",

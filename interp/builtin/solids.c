@@ -95,7 +95,8 @@ const CagBuiltin cag_builtins_solids[] = {
      "print volume(box(1) & translate(box(1), [3, 0, 0])) // expect: 0",
      OPERANDS, operations},
     {"clip(G, solid)", cag_solids_clip, "shape",
-     "The part of G within a solid, or on the side of a plane that its normal leaves. Solids and "
+     "The part of G within a solid, or behind a plane: on the side opposite to its normal. Solids "
+     "and "
      "closed meshes give solids, curves the pieces of them, surfaces, regions and open meshes the "
      "mesh of what lies inside, to the tolerance of G. Groups and lists are clipped shape by "
      "shape; "
