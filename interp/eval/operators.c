@@ -550,9 +550,27 @@ static size_t byte_of_character(const CagText *t, size_t k) {
   return i;
 }
 
+// "abcdef"[0..4 by 2]: the characters one by one.
+static bool text_steps(CagVm *vm, const CagText *t, const CagRange *r, CagValue *result) {
+  CagString s = {0};
+  size_t n, k;
+  bool ok = cag_range_count(vm, r, &n);
+  for (size_t i = 0; ok && i < n; i++) {
+    ok = resolve(vm, cag_range_element(r, i, n), t->characters, "text", &k);
+    if (!ok) break;
+    const size_t a = byte_of_character(t, k), b = byte_of_character(t, k + 1);
+    cag_string_add(&s, t->bytes + a, b - a);
+  }
+  if (ok) *result = cag_text_new(vm, s.bytes ? s.bytes : "", s.length);
+  cag_string_free(&s);
+  return ok;
+}
+
 static bool index_text(CagVm *vm, const CagText *t, CagValue index, CagValue *result) {
   size_t from, count = 1;
   if (index.type == CAG_RANGE) {
+    const CagRange *r = CAG_AS_RANGE(index);
+    if (r->stepped && r->step != 1) return text_steps(vm, t, r, result);
     if (!resolve_part(vm, CAG_AS_RANGE(index), t->characters, "text", &from, &count)) return false;
   } else if (!resolve(vm, index.as.number, t->characters, "text", &from)) {
     return false;
