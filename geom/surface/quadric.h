@@ -58,13 +58,11 @@ CagStatus cag_quadric_transform(const CagQuadric *q, const CagTransform *t, CagQ
 // "quadric" (or planar). *out is a malloc'd array of *n surfaces. An imaginary one has none
 // ("quadric-imaginary"), nor has one that passes the box by ("quadric-outside").
 //
-// What is cut: planes exactly at the box. Everything else at a range of canonical coordinates,
-// those of the box's corners in the canonical frame (which is the box itself where the frame's axes
-// are the world's): ellipsoids, hyperboloids, cones and elliptic paraboloids in the direction of
-// their axis alone, a hyperbolic paraboloid at its x and y range, cylinders at the ranges of all
-// three: an elliptic one falls into at most four strips. With `z_only` the range is within->min.z
-// to within->max.z, measured from the world's origin along the axis (its sense that goes up), and
-// the classes that it does not bound are "quadric-unbounded".
+// What lies outside the box is cut off, in x, y and z of the world. Planes and what ends at
+// constant parameters are exact (a range along the axis, the rulings of a cylinder); other pieces
+// are patches trimmed by splines that keep to 1e-11 of the box's diagonal. With `z_only` the range
+// is within->min.z to within->max.z of the world's z, whichever way the axis points, and quadrics
+// that it does not bound are "quadric-unbounded".
 CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool z_only,
                               CagSurface ***out, size_t *n, CagError *err);
 // The equation behind a surface of kind "quadric"; false: another kind.

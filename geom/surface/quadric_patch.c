@@ -10,6 +10,7 @@
 
 #include "geom/surface/family.h"
 #include "geom/surface/quadric.h"
+#include "geom/surface/quadric_within.h"
 
 typedef enum Function {
   ZERO,
@@ -260,8 +261,9 @@ bool cag_surface_quadric_frame(const CagSurface *s, CagTransform *frame) {
 
 // --- Pieces within a box ---
 
-// The pieces found so far: sheets, nappes, branches, planes, or the strips of a cylinder.
-#define PIECES_MOST 8
+// The pieces found so far: sheets, nappes, branches, planes, or what a box leaves of them: no box
+// leaves more than 18, as its edges meet a quadric in 24 points.
+#define PIECES_MOST 32
 typedef struct Pieces {
   CagSurface *s[PIECES_MOST];
   size_t n;
@@ -269,7 +271,10 @@ typedef struct Pieces {
 
 typedef struct Clip {
   const CagQuadricForm *form;
-  CagVec3 lo, hi; // canonical coordinates
+  CagVec3 lo, hi; // canonical coordinates that the box reaches; infinite without one
+  CagQuadricSide sides[CAG_QUADRIC_SIDES];
+  size_t side_count;
+  double size;
 } Clip;
 
 // The unit form's frame: columns times the semi-axes (with signs), origin shifted by nothing.
@@ -283,123 +288,65 @@ static CagTransform scaled_frame(const CagQuadricForm *f, double a, double b, do
   return t;
 }
 
-static CagStatus add(Pieces *p, CagQuadricShape shape, const CagTransform *frame, double u0,
-                     double u1, double v0, double v1, CagError *err) {
-  if (!(u1 > u0) || !(v1 > v0)) return CAG_OK;
-  CagStatus status = cag_surface_quadric(shape, frame, u0, u1, v0, v1, &p->s[p->n], err);
-  if (!status) p->n++;
-  return status;
+static CagStatus add_within(Pieces *p, const Clip *c, const CagQuadricSheet *sheet, CagError *err) {
+  return cag_quadric_sheet_within(sheet, c->sides, c->side_count, p->s, PIECES_MOST, &p->n, err);
 }
 
-static CagStatus add_around(Pieces *p, CagQuadricShape shape, const CagTransform *frame, double v0,
-                            double v1, CagError *err) {
-  return add(p, shape, frame, 0, 2 * M_PI, v0, v1, err);
-}
-
-static int ascending(const void *a, const void *b) {
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-// Angles at which a cos(u) or b sin(u) is at a limit, in 0..2 pi.
-static size_t limit_angles(double limit, double semi, bool sine, double *out) {
-  if (!(fabs(limit) < semi)) return 0;
-  const double at = sine ? asin(limit / semi) : acos(limit / semi);
-  out[0] = at < 0 ? at + 2 * M_PI : at;
-  out[1] = sine ? M_PI - at : 2 * M_PI - at;
-  return 2;
-}
-
-// An elliptic cylinder between z0 and z1: whole, or the strips along its rulings that lie within
-// the range of x and y as well. A strip runs on over u = 0 where that is within.
-static CagStatus cylinder_pieces(const Clip *c, Pieces *p, double z0, double z1, CagError *err) {
-  const CagQuadricForm *f = c->form;
-  const double a = f->semi[0], b = f->semi[1];
-  const CagTransform frame = scaled_frame(f, a, b, 1);
-  double cuts[9];
-  size_t n = limit_angles(c->lo.x, a, false, cuts);
-  n += limit_angles(c->hi.x, a, false, cuts + n);
-  n += limit_angles(c->lo.y, b, true, cuts + n);
-  n += limit_angles(c->hi.y, b, true, cuts + n);
-  qsort(cuts, n, sizeof *cuts, ascending);
-  size_t count = 0;
-  for (size_t i = 0; i < n; i++)
-    if (count == 0 || cuts[i] > cuts[count - 1]) cuts[count++] = cuts[i];
-  if (count == 0) cuts[count++] = 0;
-  bool within[8];
-  size_t inside = 0;
-  for (size_t i = 0; i < count; i++) {
-    const double to = i + 1 < count ? cuts[i + 1] : cuts[0] + 2 * M_PI;
-    const double middle = cuts[i] + (to - cuts[i]) / 2, x = a * cos(middle), y = b * sin(middle);
-    within[i] = x >= c->lo.x && x <= c->hi.x && y >= c->lo.y && y <= c->hi.y;
-    inside += within[i];
-  }
-  if (inside == count) return add_around(p, CAG_SHAPE_ELLIPTIC_CYLINDER, &frame, z0, z1, err);
-  CagStatus status = CAG_OK;
-  for (size_t i = 0; !status && i < count; i++) {
-    if (!within[i] || within[(i + count - 1) % count]) continue;
-    size_t end = i;
-    while (within[end % count]) end++;
-    const double to = cuts[end % count] + (end >= count ? 2 * M_PI : 0);
-    status = add(p, CAG_SHAPE_ELLIPTIC_CYLINDER, &frame, cuts[i], to, z0, z1, err);
-  }
-  return status;
+static CagStatus add_around(Pieces *p, const Clip *c, CagQuadricShape shape,
+                            const CagTransform *frame, double v0, double v1, CagError *err) {
+  return add_within(p, c, &(CagQuadricSheet){shape, *frame, 0, 2 * M_PI, v0, v1, c->size}, err);
 }
 
 static CagStatus pieces_about_axis(const Clip *c, Pieces *p, CagError *err) {
   const CagQuadricForm *f = c->form;
   double a = f->semi[0], b = f->semi[1], h = f->semi[2];
   CagTransform up = scaled_frame(f, a, b, h), down = scaled_frame(f, a, b, -h);
-  double z0 = c->lo.z, z1 = c->hi.z;
   CagStatus status;
   switch (f->class_id) {
-  case CAG_QUADRIC_ELLIPSOID:
-    if (z0 >= h || z1 <= -h) return CAG_OK;
-    return add_around(p, CAG_SHAPE_ELLIPSOID, &up, z1 >= h ? 0 : acos(z1 / h),
-                      z0 <= -h ? M_PI : acos(z0 / h), err);
+  case CAG_QUADRIC_ELLIPSOID: return add_around(p, c, CAG_SHAPE_ELLIPSOID, &up, 0, M_PI, err);
   case CAG_QUADRIC_HYPERBOLOID_ONE:
-    return add_around(p, CAG_SHAPE_HYPERBOLOID_ONE, &up, asinh(z0 / h), asinh(z1 / h), err);
+    return add_around(p, c, CAG_SHAPE_HYPERBOLOID_ONE, &up, -INFINITY, INFINITY, err);
   case CAG_QUADRIC_HYPERBOLOID_TWO:
-    status = z1 > h ? add_around(p, CAG_SHAPE_HYPERBOLOID_TWO, &up, z0 > h ? acosh(z0 / h) : 0,
-                                 acosh(z1 / h), err)
-                    : CAG_OK;
-    if (status || z0 >= -h) return status;
-    return add_around(p, CAG_SHAPE_HYPERBOLOID_TWO, &down, z1 < -h ? acosh(-z1 / h) : 0,
-                      acosh(-z0 / h), err);
-  case CAG_QUADRIC_CONE:
-    status = add_around(p, CAG_SHAPE_CONE, &up, fmax(z0 / h, 0), z1 / h, err);
+    status = add_around(p, c, CAG_SHAPE_HYPERBOLOID_TWO, &up, 0, INFINITY, err);
     if (status) return status;
-    return add_around(p, CAG_SHAPE_CONE, &up, z0 / h, fmin(z1 / h, 0), err);
+    return add_around(p, c, CAG_SHAPE_HYPERBOLOID_TWO, &down, 0, INFINITY, err);
+  case CAG_QUADRIC_CONE:
+    status = add_around(p, c, CAG_SHAPE_CONE, &up, 0, INFINITY, err);
+    if (status) return status;
+    return add_around(p, c, CAG_SHAPE_CONE, &up, -INFINITY, 0, err);
   case CAG_QUADRIC_ELLIPTIC_PARABOLOID:
     up = scaled_frame(f, a, b, 1);
-    if (z1 <= 0) return CAG_OK;
-    return add_around(p, CAG_SHAPE_ELLIPTIC_PARABOLOID, &up, z0 > 0 ? sqrt(z0) : 0, sqrt(z1), err);
-  default: return cylinder_pieces(c, p, z0, z1, err);
+    return add_around(p, c, CAG_SHAPE_ELLIPTIC_PARABOLOID, &up, 0, INFINITY, err);
+  default:
+    up = scaled_frame(f, a, b, 1);
+    return add_around(p, c, CAG_SHAPE_ELLIPTIC_CYLINDER, &up, -INFINITY, INFINITY, err);
   }
 }
 
-static CagStatus pieces_by_rectangle(const Clip *c, Pieces *p, CagError *err) {
+// Shapes without angles: over somewhat more of u than the box reaches.
+static CagStatus add_across(Pieces *p, const Clip *c, CagQuadricShape shape,
+                            const CagTransform *frame, double u0, double u1, CagError *err) {
+  const double room = (u1 - u0) / 64;
+  return add_within(
+      p, c, &(CagQuadricSheet){shape, *frame, u0 - room, u1 + room, -INFINITY, INFINITY, c->size},
+      err);
+}
+
+static CagStatus pieces_across(const Clip *c, Pieces *p, CagError *err) {
   const CagQuadricForm *f = c->form;
   double a = f->semi[0], b = f->semi[1];
   CagTransform frame = scaled_frame(f, a, b, 1);
   if (f->class_id == CAG_QUADRIC_HYPERBOLIC_PARABOLOID)
-    return add(p, CAG_SHAPE_HYPERBOLIC_PARABOLOID, &frame, c->lo.x / a, c->hi.x / a, c->lo.y / b,
-               c->hi.y / b, err);
+    return add_across(p, c, CAG_SHAPE_HYPERBOLIC_PARABOLOID, &frame, c->lo.x / a, c->hi.x / a, err);
   if (f->class_id == CAG_QUADRIC_PARABOLIC_CYLINDER) {
     frame = scaled_frame(f, a, a, 1);
-    if (c->hi.x <= 0) return CAG_OK;
-    double reach = sqrt(c->hi.x / a);
-    return add(p, CAG_SHAPE_PARABOLIC_CYLINDER, &frame, fmax(c->lo.y / (2 * a), -reach),
-               fmin(c->hi.y / (2 * a), reach), c->lo.z, c->hi.z, err);
+    return add_across(p, c, CAG_SHAPE_PARABOLIC_CYLINDER, &frame, c->lo.y / (2 * a),
+                      c->hi.y / (2 * a), err);
   }
   for (int side = 0; side < 2; side++) {
-    double far = side == 0 ? c->hi.x : -c->lo.x;
-    if (far <= a) continue;
-    double reach = acosh(far / a);
     frame = scaled_frame(f, side == 0 ? a : -a, b, 1);
-    CagStatus status =
-        add(p, CAG_SHAPE_HYPERBOLIC_CYLINDER, &frame, fmax(asinh(c->lo.y / b), -reach),
-            fmin(asinh(c->hi.y / b), reach), c->lo.z, c->hi.z, err);
+    CagStatus status = add_across(p, c, CAG_SHAPE_HYPERBOLIC_CYLINDER, &frame, asinh(c->lo.y / b),
+                                  asinh(c->hi.y / b), err);
     if (status) return status;
   }
   return CAG_OK;
@@ -489,20 +436,20 @@ static CagStatus pieces_of_planes(const CagQuadricForm *f, const CagBounds *box,
   }
 }
 
-// Box corners in canonical coordinates, or the range along the axis.
+// The sides of the box, or the two of the range of z, and the canonical coordinates it reaches.
 static CagStatus set_clip(const CagQuadricForm *f, const CagBounds *within, bool z_only, Clip *out,
                           CagError *err) {
-  *out = (Clip){f, {-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
+  *out = (Clip){.form = f, .size = cag_norm(cag_vec3(f->semi[0], f->semi[1], f->semi[2]))};
   if (!within) return CAG_OK;
-  if (z_only) {
-    CagVec3 axis = cag_vec3(f->frame.m[0][2], f->frame.m[1][2], f->frame.m[2][2]);
-    CagVec3 o = cag_vec3(f->frame.m[0][3], f->frame.m[1][3], f->frame.m[2][3]);
-    bool up = axis.z > 0 || (axis.z == 0 && axis.x + axis.y > 0);
-    double shift = cag_dot(o, axis);
-    out->lo.z = (up ? within->min.z : -within->max.z) - shift;
-    out->hi.z = (up ? within->max.z : -within->min.z) - shift;
-    return CAG_OK;
+  const CagVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const double lo[3] = {within->min.x, within->min.y, within->min.z};
+  const double hi[3] = {within->max.x, within->max.y, within->max.z};
+  for (int i = z_only ? 2 : 0; i < 3; i++) {
+    out->sides[out->side_count++] = (CagQuadricSide){axes[i], hi[i]};
+    out->sides[out->side_count++] = (CagQuadricSide){cag_scaled(axes[i], -1), -lo[i]};
   }
+  out->size = z_only ? within->max.z - within->min.z : cag_norm(cag_sub(within->max, within->min));
+  if (z_only) return CAG_OK;
   CagTransform back;
   CagStatus status = cag_transform_inverse(&f->frame, &back, err);
   if (status) return status;
@@ -515,6 +462,21 @@ static CagStatus set_clip(const CagQuadricForm *f, const CagBounds *within, bool
   out->lo = box.min;
   out->hi = box.max;
   return CAG_OK;
+}
+
+// Directions of z across the axis below this part of those along it are rounding.
+#define LEVEL 1e-9
+
+// Whether all planes of constant z meet the quadric in ellipses, so that a range of z bounds it.
+static bool is_bounded_by_z(const CagQuadricForm *f) {
+  const double a = f->frame.m[2][0] * f->semi[0], b = f->frame.m[2][1] * f->semi[1];
+  const double along = fabs(f->frame.m[2][2]);
+  switch (f->class_id) {
+  case CAG_QUADRIC_ELLIPSOID: return true;
+  case CAG_QUADRIC_ELLIPTIC_PARABOLOID:
+  case CAG_QUADRIC_ELLIPTIC_CYLINDER: return along > LEVEL;
+  default: return hypot(a, b) < along * f->semi[2] * (1 - LEVEL);
+  }
 }
 
 static CagStatus check_within(const CagBounds *w, bool z_only, CagError *err) {
@@ -542,12 +504,13 @@ static CagStatus find_pieces(const CagQuadricForm *f, const CagBounds *within, b
   case CAG_QUADRIC_CONE:
   case CAG_QUADRIC_ELLIPTIC_PARABOLOID:
   case CAG_QUADRIC_ELLIPTIC_CYLINDER:
-    if (within) return pieces_about_axis(&clip, p, err);
+    if (within && (!z_only || is_bounded_by_z(f))) return pieces_about_axis(&clip, p, err);
+    needs_box = z_only;
     break;
   case CAG_QUADRIC_HYPERBOLIC_PARABOLOID:
   case CAG_QUADRIC_HYPERBOLIC_CYLINDER:
   case CAG_QUADRIC_PARABOLIC_CYLINDER:
-    if (within && !z_only) return pieces_by_rectangle(&clip, p, err);
+    if (within && !z_only) return pieces_across(&clip, p, err);
     needs_box = true;
     break;
   case CAG_QUADRIC_INTERSECTING_PLANES:

@@ -339,10 +339,14 @@ static bool is_about_axis(CagQuadricClass c) {
          c == CAG_QUADRIC_ELLIPTIC_PARABOLOID || c == CAG_QUADRIC_ELLIPTIC_CYLINDER;
 }
 
+#define WHOLE_TURN (2 * M_PI * (1 - 1e-12))
+
 bool cag_solids_are_quadric(CagSurface *const *faces, size_t n, CagQuadric *q) {
   for (size_t i = 0; i < n; i++) {
     CagQuadric other;
     if (!cag_surface_quadric_view(faces[i], &other)) return false;
+    // A strip of a turn is no body's side: what lies beside it is not known.
+    if (faces[i]->angular_u && faces[i]->u1 - faces[i]->u0 < WHOLE_TURN) return false;
     if (i == 0) *q = other;
     for (int k = 0; k < 10; k++)
       if (q->c[k] != other.c[k] && q->c[k] != -other.c[k]) return false;

@@ -496,15 +496,20 @@ const CagBuiltin cag_builtins_surfaces[] = {
     {"quadric(coefficients, within = none)", cag_surfaces_quadric, "surface or group",
      "The real surface of a x^2 + b y^2 + c z^2 + d xy + e yz + f xz + g x + h y + j z + k = 0 "
      "from "
-     "its ten numbers, or from 4 rows of 4; two sheets or planes are a group. An unbounded one "
-     "ends "
-     "at the box or range of z of `within`. One without real points is an error "
-     "(quadric-imaginary), as is an unbounded one without `within` (quadric-unbounded).",
+     "its ten numbers, or from 4 rows of 4; two sheets or planes are a group. `within` cuts it at "
+     "all sides of a box, or at a range of the equation's own z; transforms of the result carry "
+     "the "
+     "cut along. Where that is not along parameters, it is trimmed by curves that keep to 1e-11 of "
+     "the box's diagonal. One without real points is an error (quadric-imaginary), as is one that "
+     "has no end within the range, or without `within` (quadric-unbounded).",
+     "b = box([4, 6, 9], centered: true)\n"
+     "print near(bounds(quadric([1, 1, -1, 0, 0, 0, 0, 0, 0, -1], within: b)).max.y, 3) // expect: "
+     "true\n"
      "print near(area(quadric([1, 1, 1, 0, 0, 0, 0, 0, 0, -4])), 16 * pi, relative: 1e-8) // "
      "expect: "
      "true",
      LISTS, quadrics},
-    {"ellipsoid(a, b, c, within = none)", cag_surfaces_ellipsoid, "surface",
+    {"ellipsoid(a, b, c, within = none)", cag_surfaces_ellipsoid, "surface or group",
      "x^2/a^2 + y^2/b^2 + z^2/c^2 = 1, whole, or what lies in the box or range of z of `within`.",
      "print near(bounds(ellipsoid(3, 2, 1)).size, [6, 4, 2]) // expect: true\n"
      "print near(area(ellipsoid(2, 2, 2, within: 0..1)), 4 * pi) // expect: true",
@@ -514,7 +519,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "x^2/a^2 + y^2/b^2 - z^2/c^2 = 1, or -1 with `sheets: 2`, cut by `within`.",
      "print classify(hyperboloid(1, 1, 1, within: -2..2)).class // expect: hyperboloid-1", NUMBERS,
      quadrics},
-    {"paraboloid(a, b, within = none)", cag_surfaces_paraboloid, "surface",
+    {"paraboloid(a, b, within = none)", cag_surfaces_paraboloid, "surface or group",
      "z = x^2/a^2 + y^2/b^2, cut by `within`.",
      "print near(bounds(paraboloid(1, 1, within: 0..4)).max, [2, 2, 4]) // expect: true", NUMBERS,
      quadrics},
@@ -528,9 +533,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "print classify(elliptic_cone(1, 2, 1, within: -1..1)).class // expect: cone", NUMBERS,
      quadrics},
     {"elliptic_cylinder(a, b, within = none)", cag_surfaces_elliptic_cylinder, "surface or group",
-     "x^2/a^2 + y^2/b^2 = 1 along Z, cut by `within`: at the ends of a range of z, and at all "
-     "sides "
-     "of a box, which may leave a group of strips.",
+     "x^2/a^2 + y^2/b^2 = 1 along Z, cut by `within`; a box may leave a group of strips.",
      "print near(area(elliptic_cylinder(1, 1, within: 0..3)), 6 * pi, relative: 1e-8) // expect: "
      "true",
      NUMBERS, quadrics},

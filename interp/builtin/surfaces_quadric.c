@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/surface/trimmed.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
@@ -205,9 +206,11 @@ bool cag_arg_quadric(CagCall *call, CagQuadric *q) {
   if (v.type == CAG_LIST) return read_equation(call, q);
   if (v.type == CAG_GROUP && CAG_AS_SHAPE(v)->as.items->length > 0)
     v = cag_list_get(call->vm, CAG_AS_SHAPE(v)->as.items, 0);
-  if (v.type == CAG_SURFACE && (cag_surface_quadric_view(CAG_AS_SHAPE(v)->as.surface, q) ||
-                                turned_sphere(CAG_AS_SHAPE(v)->as.surface, q)))
-    return true;
+  if (v.type == CAG_SURFACE) {
+    const CagSurface *whole = CAG_AS_SHAPE(v)->as.surface;
+    cag_surface_trimmed_view(whole, &whole, NULL);
+    if (cag_surface_quadric_view(whole, q) || turned_sphere(whole, q)) return true;
+  }
   if (v.type == CAG_SOLID && CAG_AS_SHAPE(v)->as.solid->kind == CAG_SOLID_SPHERE)
     return sphere_equation(call, CAG_AS_SHAPE(v)->as.solid, q);
   cag_fail(&err, CAG_E_UNSUPPORTED, "not-a-quadric", "", -1,

@@ -83,16 +83,16 @@ static CagSurface *turned_spline(void) {
 }
 
 static CagSurface *hyperboloid(double turn) {
-  CagQuadric q = {{1 / 400.0, 1 / 400.0, -1 / 625.0, 0, 0, 0, 0, 0, 0, -1}}, turned;
+  CagQuadric q = {{1 / 400.0, 1 / 400.0, -1 / 625.0, 0, 0, 0, 0, 0, 0, -1}};
   CagTransform t;
   CagSurface **patches, *s;
   size_t n;
   CagBounds box = {{-INFINITY, -INFINITY, -35}, {INFINITY, INFINITY, 30}};
   OK(cag_rotate(cag_vec3(1, 0, 0), turn, cag_vec3(0, 0, 0), &t, &err));
-  OK(cag_quadric_transform(&q, &t, &turned, &err));
-  OK(cag_quadric_patches(&turned, &box, true, &patches, &n, &err));
+  OK(cag_quadric_patches(&q, &box, true, &patches, &n, &err));
   assert_int_equal(n, 1);
-  s = patches[0];
+  OK(cag_surface_transform(patches[0], &t, &s, &err));
+  cag_surface_release(patches[0]);
   free(patches);
   return s;
 }

@@ -1,0 +1,425 @@
+// The part of a sheet of a quadric between planes: from cells of its parameter plane to surfaces.
+//
+// Cells that share a piece of a line of constant u are one; what is left of those lines and the
+// ends of the cells in v are the edges of the outline. They are followed with the inside on the
+// left. Where an outline is a rectangle, the piece is a patch; elsewhere a patch that is trimmed by
+// splines, which interpolate the exact outline.
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geom/surface/quadric_within.h"
+#include "geom/surface/trimmed.h"
+
+// Ends of cells at one place of u that are nearer than this are one.
+#define SAME_VERTEX 1e-11
+
+typedef struct Vertex {
+  double u, v;
+} Vertex;
+
+typedef enum EdgeKind { EDGE_LOW, EDGE_HIGH, EDGE_ACROSS } EdgeKind;
+
+typedef struct Edge {
+  EdgeKind kind;
+  size_t cell; // of low and high ones
+  size_t from, to;
+  bool used;
+} Edge;
+
+// The vertices of a cell: [at its left or right end][low or high].
+typedef struct Ends {
+  size_t at[2][2];
+} Ends;
+
+typedef struct Outline {
+  const CagQuadricCells *c;
+  Vertex *vertices;
+  size_t vertex_count;
+  Ends *ends;
+  Edge *edges;
+  size_t edge_count;
+  size_t *path; // edges of the loop under way
+  size_t path_count;
+} Outline;
+
+static bool is_folded(const CagQuadricCells *c, const CagQuadricBound *b, size_t place) {
+  return b->side >= 0 && (c->places[place].folds & (1u << b->side));
+}
+
+// --- Vertices and edges ---
+
+typedef struct End {
+  double v;
+  size_t cell;
+  int right, high; // which end of the cell
+} End;
+
+static int by_value(const void *a, const void *b) {
+  const double x = ((const End *)a)->v, y = ((const End *)b)->v;
+  return (x > y) - (x < y);
+}
+
+static void add_edge(Outline *o, EdgeKind kind, size_t cell, size_t from, size_t to) {
+  o->edges[o->edge_count++] = (Edge){kind, cell, from, to, false};
+}
+
+// Whether a cell on that side of the place covers the line between two neighboring vertices.
+static bool is_covered(const Outline *o, size_t place, int right_end, size_t vertex) {
+  const CagQuadricCells *c = o->c;
+  for (size_t i = 0; i < c->cell_count; i++)
+    if (c->cells[i].place + (size_t)right_end == place && o->ends[i].at[right_end][0] <= vertex &&
+        o->ends[i].at[right_end][1] > vertex)
+      return true;
+  return false;
+}
+
+// The ends of the cells that begin or end at a place, as vertices, and the edges between these;
+// false: an end at infinity.
+static bool add_vertices(Outline *o, size_t place, End *ends) {
+  const CagQuadricCells *c = o->c;
+  size_t n = 0;
+  for (size_t i = 0; i < c->cell_count; i++)
+    for (int right = 0; right < 2; right++)
+      for (int high = 0; c->cells[i].place + (size_t)right == place && high < 2; high++) {
+        const CagQuadricBound *b = high ? &c->cells[i].high : &c->cells[i].low;
+        const double v = cag_quadric_bound_at(c, b, c->places[place].u, is_folded(c, b, place));
+        if (!isfinite(v)) return false;
+        ends[n++] = (End){v, i, right, high};
+      }
+  qsort(ends, n, sizeof *ends, by_value);
+  const size_t first = o->vertex_count;
+  for (size_t i = 0; i < n; i++) {
+    const Vertex *last = &o->vertices[o->vertex_count - 1];
+    if (i == 0 || ends[i].v - last->v > SAME_VERTEX * (1 + fabs(last->v)))
+      o->vertices[o->vertex_count++] = (Vertex){c->places[place].u, ends[i].v};
+    o->ends[ends[i].cell].at[ends[i].right][ends[i].high] = o->vertex_count - 1;
+  }
+  for (size_t i = first; i + 1 < o->vertex_count; i++) {
+    const bool before = is_covered(o, place, 1, i), behind = is_covered(o, place, 0, i);
+    if (before && !behind) add_edge(o, EDGE_ACROSS, 0, i, i + 1);
+    if (behind && !before) add_edge(o, EDGE_ACROSS, 0, i + 1, i);
+  }
+  return true;
+}
+
+static bool add_all(Outline *o, End *room) {
+  const CagQuadricCells *c = o->c;
+  for (size_t k = 0; k < c->place_count; k++)
+    if (!add_vertices(o, k, room)) return false;
+  for (size_t i = 0; i < c->cell_count; i++) {
+    add_edge(o, EDGE_LOW, i, o->ends[i].at[0][0], o->ends[i].at[1][0]);
+    add_edge(o, EDGE_HIGH, i, o->ends[i].at[1][1], o->ends[i].at[0][1]);
+  }
+  return true;
+}
+
+// --- Loops ---
+
+// The edge that follows; where several leave a vertex, the one that turns back beside the edge that
+// arrives, so that pieces which touch in a point stay loops of their own.
+static Edge *next_edge(const Outline *o, const Edge *arrives) {
+  Edge *found = NULL;
+  for (size_t i = 0; i < o->edge_count; i++) {
+    Edge *e = &o->edges[i];
+    if (e->used || e->from != arrives->to) continue;
+    const bool turns = (arrives->kind == EDGE_LOW && e->kind == EDGE_HIGH) ||
+                       (arrives->kind == EDGE_HIGH && e->kind == EDGE_LOW);
+    if (!found || turns) found = e;
+  }
+  return found;
+}
+
+static void follow(Outline *o, size_t start) {
+  Edge *e = &o->edges[start];
+  const size_t home = e->from;
+  o->path_count = 0;
+  while (e) {
+    e->used = true;
+    o->path[o->path_count++] = (size_t)(e - o->edges);
+    e = e->to == home ? NULL : next_edge(o, e);
+  }
+}
+
+// Whether the loop runs once around a rectangle, which it then gives.
+static bool is_rectangle(const Outline *o, double u[2], double v[2]) {
+  const CagQuadricCells *c = o->c;
+  bool have[2] = {false, false};
+  u[0] = INFINITY, u[1] = -INFINITY;
+  for (size_t i = 0; i < o->path_count; i++) {
+    const Edge *e = &o->edges[o->path[i]];
+    const Vertex *at = &o->vertices[e->from];
+    u[0] = fmin(u[0], at->u), u[1] = fmax(u[1], at->u);
+    if (e->kind == EDGE_ACROSS) continue;
+    const bool high = e->kind == EDGE_HIGH;
+    const CagQuadricBound *b = high ? &c->cells[e->cell].high : &c->cells[e->cell].low;
+    if (!cag_quadric_bound_is_straight(c, b)) return false;
+    if (have[high] && at->v != v[high]) return false;
+    have[high] = true;
+    v[high] = at->v;
+  }
+  for (size_t i = 0; i < o->path_count; i++) {
+    const Edge *e = &o->edges[o->path[i]];
+    const double at = o->vertices[e->from].u;
+    if (e->kind == EDGE_ACROSS && at != u[0] && at != u[1]) return false;
+  }
+  return have[0] && have[1] && v[0] < v[1];
+}
+
+// --- Splines ---
+
+#define DEGREE 7
+// Interpolating pieces are halved down to this part of an edge.
+#define LEAST_PIECE 1e-6
+
+typedef struct Spline {
+  CagVec3 *points; // DEGREE per piece, and the first one
+  size_t count, room;
+  bool failed; // no memory
+} Spline;
+
+static void push(Spline *s, CagVec3 p) {
+  if (s->failed) return;
+  if (s->count == s->room) {
+    const size_t room = s->room ? 2 * s->room : 256;
+    CagVec3 *more = realloc(s->points, room * sizeof *more);
+    if (!more) {
+      s->failed = true;
+      return;
+    }
+    s->points = more;
+    s->room = room;
+  }
+  s->points[s->count++] = p;
+}
+
+// An edge of a cell from left to right, with a parameter 0..1 in which it is smooth: about a fold,
+// v goes with the square root of u.
+typedef struct Graph {
+  const CagQuadricCells *c;
+  const CagQuadricBound *bound;
+  double from, to;
+  bool folded[2];
+} Graph;
+
+static CagVec3 graph_at(const Graph *g, double s) {
+  const double w = g->to - g->from;
+  double u = g->from + w * s;
+  if (g->folded[0] && g->folded[1]) u = g->from + w * s * s * (3 - 2 * s);
+  else if (g->folded[0]) u = g->from + w * s * s;
+  else if (g->folded[1]) u = g->to - w * (1 - s) * (1 - s);
+  const bool end = s == 0 ? g->folded[0] : s == 1 ? g->folded[1] : false;
+  if (s == 1) u = g->to;
+  return cag_vec3(u, cag_quadric_bound_at(g->c, g->bound, u, end), 0);
+}
+
+// Bernstein polynomials of the degree at t.
+static void bernstein(double t, double out[DEGREE + 1]) {
+  out[0] = 1;
+  for (int d = 1; d <= DEGREE; d++) {
+    out[d] = t * out[d - 1];
+    for (int i = d - 1; i > 0; i--) out[i] = (1 - t) * out[i] + t * out[i - 1];
+    out[0] *= 1 - t;
+  }
+}
+
+static double node(int i) { return (1 - cos(M_PI * i / DEGREE)) / 2; }
+
+// The control points of the polynomial through points at the nodes: Gauss with pivots.
+static void interpolate(CagVec3 p[DEGREE + 1]) {
+  double m[DEGREE + 1][DEGREE + 1];
+  for (int i = 0; i <= DEGREE; i++) bernstein(node(i), m[i]);
+  for (int k = 0; k <= DEGREE; k++) {
+    int best = k;
+    for (int i = k + 1; i <= DEGREE; i++)
+      if (fabs(m[i][k]) > fabs(m[best][k])) best = i;
+    for (int j = 0; j <= DEGREE; j++) {
+      const double swap = m[k][j];
+      m[k][j] = m[best][j];
+      m[best][j] = swap;
+    }
+    const CagVec3 swap = p[k];
+    p[k] = p[best];
+    p[best] = swap;
+    for (int i = 0; i <= DEGREE; i++) {
+      if (i == k) continue;
+      const double f = m[i][k] / m[k][k];
+      for (int j = k; j <= DEGREE; j++) m[i][j] -= f * m[k][j];
+      p[i] = cag_madd(p[i], -f, p[k]);
+    }
+  }
+  for (int k = 0; k <= DEGREE; k++) p[k] = cag_scaled(p[k], 1 / m[k][k]);
+}
+
+static CagVec3 in_space(const Graph *g, CagVec3 uv) {
+  const CagQuadricSheet *sheet = g->c->sheet;
+  return cag_transform_point(&sheet->frame, cag_quadric_unit_point(sheet->shape, uv.x, uv.y));
+}
+
+// Whether the polynomial is the edge between s0 and s1, to the tolerance in space.
+static bool is_near(const Graph *g, double s0, double s1, const CagVec3 p[DEGREE + 1]) {
+  const double probes[] = {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98};
+  for (size_t k = 0; k < sizeof probes / sizeof *probes; k++) {
+    double b[DEGREE + 1];
+    CagVec3 fitted = {0, 0, 0};
+    bernstein(probes[k], b);
+    for (int i = 0; i <= DEGREE; i++) fitted = cag_madd(fitted, b[i], p[i]);
+    const CagVec3 exact = in_space(g, graph_at(g, s0 + (s1 - s0) * probes[k]));
+    // No nearer than rounding of the coordinates and of their angles.
+    const double least = 64 * 2.2e-16 * cag_norm(exact);
+    if (!(cag_norm(cag_sub(in_space(g, fitted), exact)) <= fmax(1e-11 * g->c->sheet->size, least)))
+      return false;
+  }
+  return true;
+}
+
+static void fit(Spline *out, const Graph *g, double s0, double s1, bool backwards) {
+  CagVec3 p[DEGREE + 1];
+  for (int i = 0; i <= DEGREE; i++) p[i] = graph_at(g, i == DEGREE ? s1 : s0 + (s1 - s0) * node(i));
+  interpolate(p);
+  if (s1 - s0 > LEAST_PIECE && !is_near(g, s0, s1, p)) {
+    const double half = s0 + (s1 - s0) / 2;
+    fit(out, g, backwards ? half : s0, backwards ? s1 : half, backwards);
+    fit(out, g, backwards ? s0 : half, backwards ? half : s1, backwards);
+    return;
+  }
+  // The first point is the last one of the piece before.
+  for (int i = 1; i <= DEGREE; i++) push(out, p[backwards ? DEGREE - i : i]);
+}
+
+static void add_line(Spline *out, const Vertex *a, const Vertex *b) {
+  for (int i = 1; i <= DEGREE; i++)
+    push(out, cag_lerp(cag_vec3(a->u, a->v, 0), cag_vec3(b->u, b->v, 0), (double)i / DEGREE));
+}
+
+static void add_to_spline(const Outline *o, const Edge *e, Spline *out) {
+  const CagQuadricCells *c = o->c;
+  const CagQuadricCell *cell = &c->cells[e->cell];
+  const CagQuadricBound *b = e->kind == EDGE_HIGH ? &cell->high : &cell->low;
+  if (e->kind == EDGE_ACROSS || cag_quadric_bound_is_straight(c, b)) {
+    add_line(out, &o->vertices[e->from], &o->vertices[e->to]);
+    return;
+  }
+  const Graph g = {c,
+                   b,
+                   c->places[cell->place].u,
+                   c->places[cell->place + 1].u,
+                   {is_folded(c, b, cell->place), is_folded(c, b, cell->place + 1)}};
+  fit(out, &g, 0, 1, e->kind == EDGE_HIGH);
+  // It ends in the vertex itself.
+  const Vertex *end = &o->vertices[e->to];
+  if (!out->failed) out->points[out->count - 1] = cag_vec3(end->u, end->v, 0);
+}
+
+static CagStatus loop_curve(const Outline *o, CagCurve **out, CagError *err) {
+  Spline s = {NULL, 0, 0, false};
+  const Vertex *home = &o->vertices[o->edges[o->path[0]].from];
+  push(&s, cag_vec3(home->u, home->v, 0));
+  for (size_t i = 0; i < o->path_count; i++) add_to_spline(o, &o->edges[o->path[i]], &s);
+  double *knots = malloc((s.count + DEGREE + 1) * sizeof *knots);
+  CagStatus status = s.failed || !knots ? cag_fail_memory(err) : CAG_OK;
+  if (!status) {
+    for (size_t i = 0; i < s.count + DEGREE + 1; i++)
+      knots[i] = i == 0 ? 0 : (double)((i - 1) / DEGREE);
+    knots[s.count + DEGREE] = knots[s.count + DEGREE - 1];
+    status = cag_curve_nurbs(s.points, NULL, s.count, DEGREE, knots, 2, out, err);
+  }
+  free(s.points);
+  free(knots);
+  return status;
+}
+
+// --- Surfaces ---
+
+static CagStatus add_patch(const Outline *o, const double u[2], const double v[2],
+                           CagSurface **list, size_t most, size_t *n, CagError *err) {
+  if (*n == most) return CAG_OK;
+  const CagQuadricSheet *sheet = o->c->sheet;
+  CagStatus status =
+      cag_surface_quadric(sheet->shape, &sheet->frame, u[0], u[1], v[0], v[1], &list[*n], err);
+  if (!status) ++*n;
+  return status;
+}
+
+// An outer loop with its holes.
+static CagStatus add_trimmed(const Outline *o, const CagRegion *all, size_t outer,
+                             CagSurface **list, size_t most, size_t *n, CagError *err) {
+  if (*n == most) return CAG_OK;
+  CagCurve **holes = malloc(all->count * sizeof *holes);
+  if (!holes) return cag_fail_memory(err);
+  size_t count = 0;
+  for (size_t i = 0; i < all->count; i++)
+    if (i != outer && all->outer[i] == outer) holes[count++] = all->loops[i];
+  CagRegion *region = NULL;
+  CagSurface *whole = NULL;
+  CagBounds box;
+  const CagQuadricSheet *s = o->c->sheet;
+  CagStatus status = cag_region_new(all->loops[outer], holes, count, &region, err);
+  if (!status) status = cag_region_bounds(region, &box, err);
+  if (!status)
+    status = cag_surface_quadric(s->shape, &s->frame, box.min.x, box.max.x, fmax(box.min.y, s->v0),
+                                 fmin(box.max.y, s->v1), &whole, err);
+  if (!status) status = cag_surface_trimmed(whole, region, &list[*n], err);
+  if (!status) ++*n;
+  if (whole) cag_surface_release(whole);
+  cag_region_release(region);
+  free(holes);
+  return status;
+}
+
+static CagStatus add_regions(const Outline *o, CagCurve *const *loops, size_t loop_count,
+                             CagSurface **list, size_t most, size_t *n, CagError *err) {
+  CagRegion *all = NULL;
+  CagStatus status = cag_region_from_loops(loops, loop_count, &all, err);
+  for (size_t i = 0; !status && i < all->count; i++)
+    if (all->outer[i] == i) status = add_trimmed(o, all, i, list, most, n, err);
+  cag_region_release(all);
+  return status;
+}
+
+static CagStatus add_surfaces(Outline *o, CagSurface **list, size_t most, size_t *n,
+                              CagError *err) {
+  CagCurve **loops = malloc((o->edge_count + 1) * sizeof *loops);
+  double(*patches)[2][2] = malloc((o->edge_count + 1) * sizeof *patches);
+  size_t count = 0;
+  bool plain = true;
+  CagStatus status = loops && patches ? CAG_OK : cag_fail_memory(err);
+  for (size_t i = 0; !status && i < o->edge_count; i++) {
+    if (o->edges[i].used) continue;
+    follow(o, i);
+    plain = is_rectangle(o, patches[count][0], patches[count][1]) && plain;
+    status = loop_curve(o, &loops[count], err);
+    if (!status) count++;
+  }
+  for (size_t i = 0; !status && plain && i < count; i++)
+    status = add_patch(o, patches[i][0], patches[i][1], list, most, n, err);
+  if (!status && !plain) status = add_regions(o, loops, count, list, most, n, err);
+  for (size_t i = 0; i < count; i++) cag_curve_release(loops[i]);
+  free(loops);
+  free(patches);
+  return status;
+}
+
+CagStatus cag_quadric_outline(const CagQuadricCells *c, CagSurface **list, size_t most, size_t *n,
+                              CagError *err) {
+  // Four ends of every cell are vertices; between neighboring ones there is one edge at most.
+  const size_t cells = c->cell_count;
+  Outline o = {.c = c};
+  o.vertices = malloc(4 * cells * sizeof *o.vertices);
+  o.ends = malloc(cells * sizeof *o.ends);
+  o.edges = malloc(6 * cells * sizeof *o.edges);
+  o.path = malloc(6 * cells * sizeof *o.path);
+  End *room = malloc(4 * cells * sizeof *room);
+  CagStatus status = CAG_OK;
+  if (!o.vertices || !o.ends || !o.edges || !o.path || !room) status = cag_fail_memory(err);
+  else if (!add_all(&o, room))
+    status = cag_fail(err, CAG_E_ARGUMENT, "quadric-unbounded", "within", -1,
+                      "the quadric has no end within `within`: give a box");
+  else status = add_surfaces(&o, list, most, n, err);
+  free(o.vertices);
+  free(o.ends);
+  free(o.edges);
+  free(o.path);
+  free(room);
+  return status;
+}
