@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -262,6 +263,15 @@ static CagStatus add_bounded(CagBrepWork *w, CagBrepShape *shape, CagError *err)
   return status;
 }
 
+// Errors of the geometry do not know which shape was written.
+static CagStatus name_shape(const CagItem *item, CagStatus status, CagError *err) {
+  char said[sizeof err->message];
+  if (status == CAG_E_CALLBACK || strstr(err->message, item->name)) return status;
+  memcpy(said, err->message, sizeof said);
+  snprintf(err->message, sizeof err->message, "%.80s: %.300s", item->name, said);
+  return status;
+}
+
 static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item, CagError *err) {
   CagBrepWork w = {.brep = b, .scene = scene, .item = item, .asked = shape_tolerance(scene, item)};
   CagBrepShape shape = {.name = item->name, .material = &scene->materials[item->material]};
@@ -272,7 +282,7 @@ static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item
   } else {
     status = add_bounded(&w, &shape, err);
   }
-  if (status) return status;
+  if (status) return name_shape(item, status, err);
   shape.approximate = w.approximate;
   shape.tolerance = w.asked;
   b->shapes[b->shape_count++] = shape;
