@@ -117,6 +117,8 @@ $(BUILD)/tests/lang/%: tests/lang/%.c $(BUILD)/liblang.a
 	@mkdir -p $(@D)
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/liblang.a -o $@ -lcmocka $(LDLIBS_ALL)
+# Tests of failing allocations put functions of their own (tests/geom/faults.h) in place of these.
+$(BUILD)/tests/geom/memory_%: LDLIBS_ALL += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free
 $(BUILD)/tests/geom/%: tests/geom/%.c $(BUILD)/libgeom.a
 	@mkdir -p $(@D)
 	@echo "cc $<"

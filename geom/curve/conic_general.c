@@ -420,8 +420,11 @@ CagStatus cag_conic_of_space_curve(const CagCurve *c, CagTransform *frame, CagCo
   CagPlane plane;
   CagTransform into;
   CagCurve *flat;
-  if (c->dimension != 3 || !cag_curve_is_planar(c, &plane)) return not_a_conic(err);
-  CagStatus status = plane_frame(plane, frame, err);
+  bool planar;
+  if (c->dimension != 3) return not_a_conic(err);
+  CagStatus status = cag_curve_is_planar(c, &planar, &plane, err);
+  if (!status && !planar) status = not_a_conic(err);
+  if (!status) status = plane_frame(plane, frame, err);
   if (!status) status = cag_transform_inverse(frame, &into, err);
   if (!status) status = cag_curve_transform(c, &into, &flat, err);
   if (status) return status;

@@ -239,29 +239,30 @@ static double from_line(CagVec3 p, CagVec3 a, CagVec3 unit) {
   return cag_norm(cag_cross(cag_sub(p, a), unit));
 }
 
-bool cag_curve_is_straight(const CagCurve *c) {
+CagStatus cag_curve_is_straight(const CagCurve *c, bool *is, CagError *err) {
   CagVec3 *p, a, b;
   size_t n;
-  CagError ignored;
-  if (cag_curve_gather(c, &p, &n, &ignored)) return false;
+  const CagStatus status = cag_curve_gather(c, &p, &n, err);
+  if (status) return status;
   double size = longest(p, n, &a, &b);
   CagVec3 unit = cag_unit(cag_sub(b, a));
-  bool straight = true;
-  for (size_t i = 0; i < n; i++) straight = straight && from_line(p[i], a, unit) <= FLAT * size;
+  *is = true;
+  for (size_t i = 0; i < n; i++) *is = *is && from_line(p[i], a, unit) <= FLAT * size;
   free(p);
-  return straight;
+  return CAG_OK;
 }
 
 // A straight curve lies in many planes: one of them is given.
-bool cag_curve_is_planar(const CagCurve *c, CagPlane *plane) {
+CagStatus cag_curve_is_planar(const CagCurve *c, bool *is, CagPlane *plane, CagError *err) {
   if (c->dimension == 2) {
+    *is = true;
     if (plane) *plane = (CagPlane){{0, 0, 0}, {0, 0, 1}};
-    return true;
+    return CAG_OK;
   }
   CagVec3 *p, a, b, off = {0, 0, 0};
   size_t n;
-  CagError ignored;
-  if (cag_curve_gather(c, &p, &n, &ignored)) return false;
+  const CagStatus status = cag_curve_gather(c, &p, &n, err);
+  if (status) return status;
   double size = longest(p, n, &a, &b), farthest = -1;
   CagVec3 unit = cag_unit(cag_sub(b, a));
   for (size_t i = 0; i < n; i++)
@@ -275,12 +276,12 @@ bool cag_curve_is_planar(const CagCurve *c, CagPlane *plane) {
     CagVec3 other = fabs(unit.z) < 0.9 ? cag_vec3(0, 0, 1) : cag_vec3(1, 0, 0);
     normal = cag_unit(cag_madd(other, -cag_dot(other, unit), unit));
   }
-  bool planar = true;
+  *is = true;
   for (size_t i = 0; i < n; i++)
-    planar = planar && fabs(cag_dot(cag_sub(p[i], a), normal)) <= FLAT * size;
+    *is = *is && fabs(cag_dot(cag_sub(p[i], a), normal)) <= FLAT * size;
   free(p);
-  if (planar && plane) *plane = (CagPlane){a, normal};
-  return planar;
+  if (*is && plane) *plane = (CagPlane){a, normal};
+  return CAG_OK;
 }
 
 // --- Area ---
@@ -336,14 +337,17 @@ static CagStatus integrate_green(AreaContext *a, double *sum, CagError *err) {
 
 CagStatus cag_curve_area(const CagCurve *c, double *area, CagVec3 *centroid, CagError *err) {
   CagPlane plane;
+  bool planar;
   if (!c->closed)
     return cag_fail(err, CAG_E_ARGUMENT, "not-closed", "C", -1,
                     "only a closed curve bounds an area; the ends of this one do not meet");
-  if (!cag_curve_is_planar(c, &plane))
+  CagStatus status = cag_curve_is_planar(c, &planar, &plane, err);
+  if (status) return status;
+  if (!planar)
     return cag_fail(err, CAG_E_ARGUMENT, "not-planar", "C", -1,
                     "only a plane curve bounds an area; this one does not lie in a plane");
   AreaContext a = {c, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  CagStatus status = cag_curve_point(c, c->start, &a.origin, err);
+  status = cag_curve_point(c, c->start, &a.origin, err);
   if (status) return status;
   if (c->dimension == 3) {
     CagVec3 n = plane.normal;

@@ -200,7 +200,9 @@ static CagStatus search_all(Search *s, const double *cuts, size_t n) {
   }
   for (int k = 0; !status && k < CAG_VANISHINGS; k++) {
     s->kind = (CagVanishing)k;
-    if (k == CAG_FLAT && cag_curve_is_planar(s->curve, NULL)) {
+    bool planar = false;
+    if (k == CAG_FLAT) status = cag_curve_is_planar(s->curve, &planar, NULL, s->err);
+    if (planar) {
       status = add(&s->found->stretches[k], s->curve->start, s->err);
       if (!status) status = add(&s->found->stretches[k], s->curve->end, s->err);
       continue;

@@ -103,7 +103,10 @@ CagStatus cag_solid_tube_along(const CagCurve *path, const CagAlong *radius, Cag
 static CagStatus edge_frame(const CagSurface *side, const CagCurve *edge, double v, int which,
                             CagTransform *frame, CagError *err) {
   CagPlane own = {{0, 0, 0}, {0, 0, 1}};
-  if (!cag_curve_is_planar(edge, &own))
+  bool planar;
+  const CagStatus status = cag_curve_is_planar(edge, &planar, &own, err);
+  if (status) return status;
+  if (!planar)
     return cag_fail(err, CAG_E_ARGUMENT, "section-not-plane", "curves", which,
                     "the %s section must lie in a plane to get a cap: flatten it or take "
                     "`caps: false`",

@@ -154,9 +154,9 @@ static CagStatus cross(const CagCurve *plane, int direction, double at, Numbers 
   size_t n;
   CagStatus status = cag_curve_intersect_plane(plane, &line, &meetings, &n, err);
   // Along the line it runs on one side of the break, which does not show.
-  if (status && strcmp(err->reason, "overlap") == 0) return CAG_OK;
+  if (status) return strcmp(err->reason, "overlap") == 0 ? CAG_OK : status;
   for (size_t i = 0; !status && i < n; i++) status = push(list, meetings[i].t, err);
-  if (n) free(meetings);
+  free(meetings);
   return status;
 }
 

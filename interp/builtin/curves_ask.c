@@ -252,14 +252,20 @@ bool cag_curves_is_closed(CagCall *call, CagValue *result) {
 
 bool cag_curves_is_planar(CagCall *call, CagValue *result) {
   CagCurve *c;
+  CagError err;
+  bool is;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  *result = cag_bool(cag_curve_is_planar(c, NULL));
+  if (!cag_geometry_ok(call, cag_curve_is_planar(c, &is, NULL, &err), &err)) return false;
+  *result = cag_bool(is);
   return true;
 }
 
 bool cag_curves_is_straight(CagCall *call, CagValue *result) {
   CagCurve *c;
+  CagError err;
+  bool is;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  *result = cag_bool(cag_curve_is_straight(c));
+  if (!cag_geometry_ok(call, cag_curve_is_straight(c, &is, &err), &err)) return false;
+  *result = cag_bool(is);
   return true;
 }

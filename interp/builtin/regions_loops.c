@@ -41,22 +41,26 @@ bool cag_region_loops_plane(CagCall *call, CagCurve **loops, size_t n, CagTransf
   *in_space = false;
   for (size_t i = 0; i < n; i++) *in_space = *in_space || loops[i]->dimension == 3;
   if (!*in_space) return true;
-  bool common = cag_curve_is_planar(loops[0], &plane);
-  plane = upright(&plane);
-  for (size_t i = 0; common && i < n; i++)
-    common = cag_curve_is_planar(loops[i], NULL) && lies_in(loops[i], &plane, reach_of(loops[i]));
+  bool common = true;
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && common && i < n; i++) {
+    status = cag_curve_is_planar(loops[i], &common, i == 0 ? &plane : NULL, &err);
+    if (status || !common) break;
+    if (i == 0) plane = upright(&plane);
+    common = lies_in(loops[i], &plane, reach_of(loops[i]));
+  }
+  if (!cag_geometry_ok(call, status, &err)) return false;
   if (!common) {
-    const CagStatus status =
-        cag_fail(&err, CAG_E_ARGUMENT, "not-planar", "", -1,
-                 "expected boundaries that lie in one plane, found %s of space",
-                 n > 1 ? "curves" : "a curve");
+    status = cag_fail(&err, CAG_E_ARGUMENT, "not-planar", "", -1,
+                      "expected boundaries that lie in one plane, found %s of space",
+                      n > 1 ? "curves" : "a curve");
     return cag_geometry_ok(call, status, &err);
   }
   *frame = cag_plane_frame(&plane);
   *in_space = cag_norm(plane.point) > 0 || plane.normal.z != 1;
   for (size_t i = 0; i < n; i++) {
     CagCurve *flat = NULL;
-    const CagStatus status = cag_curve_flatten(loops[i], frame, &flat, &err);
+    status = cag_curve_flatten(loops[i], frame, &flat, &err);
     if (!cag_geometry_ok(call, status, &err)) return false;
     cag_curve_release(loops[i]);
     loops[i] = flat;

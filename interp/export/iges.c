@@ -153,12 +153,17 @@ static Pointer name(Writer *w, const char *text) {
 // --- NURBS ---
 
 // `flat`: a curve in the parameters of a surface.
-static Pointer nurbs_curve(Writer *w, const CagCurve *c, bool flat, int status) {
+static CagStatus nurbs_curve(Writer *w, const CagCurve *c, bool flat, int use, Pointer *out,
+                             CagError *err) {
   CagNurbsView v = {0};
   CagPlane plane = {{0, 0, 0}, {0, 0, 1}};
+  bool planar = true, straight = false;
+  CagStatus status = flat ? CAG_OK : cag_curve_is_straight(c, &straight, err);
+  if (!status && !flat) status = cag_curve_is_planar(c, &planar, &plane, err);
+  if (status) return status;
+  planar = planar && !straight;
   cag_curve_nurbs_view(c, &v);
-  bool planar = flat || (!cag_curve_is_straight(c) && cag_curve_is_planar(c, &plane));
-  Pointer p = begin(w, 126, 0, status);
+  *out = begin(w, 126, 0, use);
   put_integer(w, (long)v.count - 1);
   put_integer(w, v.degree);
   put_integer(w, planar);
@@ -174,8 +179,8 @@ static Pointer nurbs_curve(Writer *w, const CagCurve *c, bool flat, int status) 
   put_real(w, c->start);
   put_real(w, c->end);
   put_point(w, planar ? plane.normal : cag_vec3(0, 0, 0));
-  end(w, status == FREE);
-  return p;
+  end(w, use == FREE);
+  return CAG_OK;
 }
 
 // Points and weights with u running fastest.
@@ -243,10 +248,9 @@ static CagStatus add_use(Writer *w, const CagBrepUse *use, const CagTransform *m
   if (use->reversed) status = cag_curve_reverse(c, &run, err);
   else run = cag_curve_retain(c);
   if (!status && map) status = cag_curve_transform(run, map, &flat, err);
-  if (!status) {
-    if (map) chain->flat[chain->count] = nurbs_curve(w, flat, true, PART_FLAT);
-    chain->space[chain->count++] = nurbs_curve(w, run, false, PART);
-  }
+  if (!status && map)
+    status = nurbs_curve(w, flat, true, PART_FLAT, &chain->flat[chain->count], err);
+  if (!status) status = nurbs_curve(w, run, false, PART, &chain->space[chain->count++], err);
   cag_curve_release(run);
   cag_curve_release(flat);
   return status;
@@ -314,7 +318,8 @@ static CagStatus write_shape(Writer *w, const CagBrepShape *s, CagError *err) {
   Pointer paint = color(w, s->material->color), title = name(w, s->name);
   w->color = paint;
   w->name = title;
-  if (s->kind == CAG_BREP_CURVE) return nurbs_curve(w, s->curve, false, FREE), CAG_OK;
+  Pointer curve;
+  if (s->kind == CAG_BREP_CURVE) return nurbs_curve(w, s->curve, false, FREE, &curve, err);
   for (size_t k = s->first; k < s->first + s->count; k++)
     for (size_t i = b->shells[k].first; i < b->shells[k].first + b->shells[k].count; i++) {
       if (cag_atomic_file_failed(w->parameters)) return CAG_OK;

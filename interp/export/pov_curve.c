@@ -95,9 +95,12 @@ CagStatus pov_curve(CagPovWriter *w, const CagItem *item, const char *name, CagE
   pov_text(w, "#local line_radius = ");
   pov_number(w, radius);
   pov_printf(w, ";\n#declare %s = ", name);
-  if (item->dash <= 0 && cag_curve_is_straight(c)) {
+  bool straight;
+  CagStatus status = cag_curve_is_straight(c, &straight, err);
+  if (status) return status;
+  if (item->dash <= 0 && straight) {
     CagVec3 p, q;
-    CagStatus status = cag_curve_point(c, c->start, &p, err);
+    status = cag_curve_point(c, c->start, &p, err);
     if (!status) status = cag_curve_point(c, c->end, &q, err);
     if (!status) write_rod(w, p, q);
     return status;

@@ -1,0 +1,151 @@
+// Faults on purpose: each operation is run again and again, and every time another of its
+// allocations fails, another call of the caller's functions fails, or another allocation sets the
+// flag that stops it. The operation must report the fault, or do without what it asked for (such as
+// room for values that it would only remember) and find the same; and it must release all memory
+// that it took.
+//
+// The Makefile links the tests that include this (memory_*_test) with --wrap, so that malloc,
+// calloc, realloc and free of the geometry core come through here.
+
+#ifndef CAG_TESTS_GEOM_FAULTS_H
+#define CAG_TESTS_GEOM_FAULTS_H
+
+#include "geom/stop.h"
+#include "support.h"
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t n, size_t size);
+void *__real_realloc(void *p, size_t size);
+void __real_free(void *p);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t n, size_t size);
+void *__wrap_realloc(void *p, size_t size);
+void __wrap_free(void *p);
+
+typedef enum Fault { FAULT_NONE, FAULT_MEMORY, FAULT_CALLBACK, FAULT_STOP } Fault;
+
+static struct {
+  Fault kind;
+  size_t chances, at; // allocations or calls so far; the one that has the fault
+  long blocks;        // allocated and not freed
+  double result;      // what the operation found, by which two runs are compared
+  volatile int stop;
+} fault;
+
+// For operations: adds a number to what was found.
+static inline void fault_found(double x) { fault.result = 1.25 * fault.result + x; }
+
+// Whether this allocation or call is the one with the fault. A function that failed goes on
+// failing.
+static bool fault_falls(Fault kind) {
+  if (fault.kind != kind) return false;
+  const size_t chance = ++fault.chances;
+  return chance == fault.at || (kind == FAULT_CALLBACK && fault.at && chance > fault.at);
+}
+
+static bool fault_in_allocation(void) {
+  if (fault_falls(FAULT_STOP)) fault.stop = 1;
+  return fault_falls(FAULT_MEMORY);
+}
+
+void *__wrap_malloc(size_t size) {
+  if (fault_in_allocation()) return NULL;
+  void *p = __real_malloc(size);
+  if (p) memset(p, 0xa5, size); // what is read before it is written shows
+  fault.blocks += p != NULL;
+  return p;
+}
+void *__wrap_calloc(size_t n, size_t size) {
+  if (fault_in_allocation()) return NULL;
+  void *p = __real_calloc(n, size);
+  fault.blocks += p != NULL;
+  return p;
+}
+void *__wrap_realloc(void *p, size_t size) {
+  if (fault_in_allocation()) return NULL;
+  void *larger = __real_realloc(p, size);
+  fault.blocks += !p && larger;
+  return larger;
+}
+void __wrap_free(void *p) {
+  fault.blocks -= p != NULL;
+  __real_free(p);
+}
+
+// For functions of the caller: fails when the fault falls on this call.
+static inline CagStatus fault_in_call(CagError *e) {
+  if (!fault_falls(FAULT_CALLBACK)) return CAG_OK;
+  return cag_fail(e, CAG_E_CALLBACK, "function-failed", "", -1, "the function failed");
+}
+
+// Runs the operation and releases what it gives. `given` is what it works on.
+typedef CagStatus (*FaultyOperation)(const void *given, CagError *e);
+
+static inline CagStatus run_with_fault(FaultyOperation operation, const void *given, Fault kind,
+                                       size_t at, CagError *e) {
+  fault.kind = kind;
+  fault.chances = 0;
+  fault.at = at;
+  fault.stop = 0;
+  fault.result = 0;
+  e->reason = "";
+  CagStatus status = operation(given, e);
+  fault.kind = FAULT_NONE;
+  fault.stop = 0;
+  return status;
+}
+
+static inline bool fault_is_reported(Fault kind, CagStatus status, const CagError *e) {
+  switch (kind) {
+  case FAULT_MEMORY: return status == CAG_E_MEMORY && e->status == CAG_E_MEMORY;
+  case FAULT_CALLBACK: return status == CAG_E_CALLBACK && !strcmp(e->reason, "function-failed");
+  default: return status == CAG_E_CALLBACK && !strcmp(e->reason, "interrupted");
+  }
+}
+
+// How densely faults are tried: all of the first FAULT_FIRST, then ever fewer.
+#ifndef FAULT_FIRST
+#define FAULT_FIRST 24
+#define FAULT_THINNING 5
+#endif
+
+static int fault_problems;
+
+// Runs the operation with one fault after the other.
+static inline void try_faults_of(Fault kind, const char *name, const char *kind_name,
+                                 FaultyOperation operation, const void *given) {
+  static const char *const WORD[] = {"", "allocation", "call", "stop at allocation"};
+  CagError e;
+  const long before = fault.blocks;
+  const CagStatus usual = run_with_fault(operation, given, kind, 0, &e);
+  const double result = fault.result;
+  const size_t most = fault.chances;
+  if (fault.blocks != before) {
+    print_error("%s of %s: %ld blocks are not freed\n", name, kind_name, fault.blocks - before);
+    fault_problems++;
+  }
+  for (size_t at = 1; at <= most; at += at < FAULT_FIRST ? 1 : 1 + at / FAULT_THINNING) {
+    const long blocks = fault.blocks;
+    const CagStatus status = run_with_fault(operation, given, kind, at, &e);
+    const bool same = status == usual && fault.result == result;
+#ifdef FAULT_STRICT
+    if (kind == FAULT_MEMORY && same) print_error("SURVIVED ");
+    else
+#endif
+        if ((same || fault_is_reported(kind, status, &e)) && fault.blocks == blocks)
+      continue;
+    fault_problems++;
+    print_error("%s of %s, %s %zu of %zu: status %d \"%s\", %ld blocks are not freed\n", name,
+                kind_name, WORD[kind], at, most, (int)status, e.reason, fault.blocks - blocks);
+  }
+}
+
+static inline void try_faults(const char *name, const char *kind_name, FaultyOperation operation,
+                              const void *given) {
+  cag_stop_lend(&fault.stop);
+  for (Fault kind = FAULT_MEMORY; kind <= FAULT_STOP; kind++)
+    try_faults_of(kind, name, kind_name, operation, given);
+  cag_stop_lend(NULL);
+}
+
+#endif
