@@ -18,6 +18,8 @@
 #define MOST_INTERVALS 4000
 // Error of an interval that is rounding, as a part of its integral of absolute values.
 #define ROUNDING (4 * DBL_EPSILON)
+// Up to so many cuts need no allocation: inner integrals have few.
+#define FEW_CUTS 8
 
 // Nodes and weights of the 15-point Kronrod rule, from the outermost; Gauss weights belong to every
 // second node (Piessens et al., QUADPACK, 1983).
@@ -36,7 +38,7 @@ static const double gauss[4] = {
     0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
 
 typedef struct Task {
-  CagIntegrand f;
+  CagPieceIntegrand f;
   void *context;
   int parts;
   CagError *err;
@@ -48,7 +50,7 @@ typedef struct Estimate {
   double error;
 } Estimate;
 
-static CagStatus estimate(const Task *task, double a, double b, Estimate *out) {
+static CagStatus estimate(const Task *task, size_t piece, double a, double b, Estimate *out) {
   const double half = (b - a) / 2, middle = a + half;
   if (cag_stop_check(task->err)) return task->err->status;
   double k[CAG_INTEGRAND_PARTS] = {0}, g[CAG_INTEGRAND_PARTS] = {0}, m[CAG_INTEGRAND_PARTS] = {0};
@@ -56,7 +58,8 @@ static CagStatus estimate(const Task *task, double a, double b, Estimate *out) {
     for (int side = -1; side <= 1; side += 2) {
       if (i == 7 && side > 0) continue;
       double f[CAG_INTEGRAND_PARTS];
-      CagStatus status = task->f(task->context, middle + side * half * node[i], f, task->err);
+      CagStatus status =
+          task->f(task->context, piece, middle + side * half * node[i], f, task->err);
       if (status) return status;
       for (int p = 0; p < task->parts; p++) {
         k[p] += kronrod[i] * f[p];
@@ -79,6 +82,7 @@ static CagStatus estimate(const Task *task, double a, double b, Estimate *out) {
 // --- Intervals ---
 
 typedef struct Interval {
+  size_t piece;
   double a, b;
   Estimate e;
 } Interval;
@@ -120,9 +124,9 @@ static Interval pop(Pool *pool) {
   return top;
 }
 
-static CagStatus add_interval(const Task *task, Pool *pool, double a, double b) {
-  Interval interval = {.a = a, .b = b};
-  CagStatus status = estimate(task, a, b, &interval.e);
+static CagStatus add_interval(const Task *task, Pool *pool, size_t piece, double a, double b) {
+  Interval interval = {.piece = piece, .a = a, .b = b};
+  CagStatus status = estimate(task, piece, a, b, &interval.e);
   if (status) return status;
   pool->size += interval.e.size;
   pool->made++;
@@ -141,13 +145,13 @@ static double heap_error(const Pool *pool) {
   return sum;
 }
 
-CagStatus cag_integrate(CagIntegrand f, void *context, const double *cuts, size_t n, int parts,
-                        double tolerance, double *out, CagError *err) {
+CagStatus cag_integrate_pieces(CagPieceIntegrand f, void *context, const double (*ranges)[2],
+                               size_t n, int parts, double tolerance, double *out, CagError *err) {
   const Task task = {f, context, parts, err};
   Pool pool = {0};
   CagStatus status = CAG_OK;
-  for (size_t i = 0; !status && i + 1 < n; i++)
-    status = add_interval(&task, &pool, cuts[i], cuts[i + 1]);
+  for (size_t i = 0; !status && i < n; i++)
+    status = add_interval(&task, &pool, i, ranges[i][0], ranges[i][1]);
   const size_t most = pool.made + MOST_INTERVALS;
   while (!status && pool.count > 0 && pool.made < most) {
     if (pool.error <= tolerance * pool.size) {
@@ -159,12 +163,40 @@ CagStatus cag_integrate(CagIntegrand f, void *context, const double *cuts, size_
     const double middle = worst.a + (worst.b - worst.a) / 2;
     pool.error -= worst.e.error;
     pool.size -= worst.e.size;
-    status = add_interval(&task, &pool, worst.a, middle);
-    if (!status) status = add_interval(&task, &pool, middle, worst.b);
+    status = add_interval(&task, &pool, worst.piece, worst.a, middle);
+    if (!status) status = add_interval(&task, &pool, worst.piece, middle, worst.b);
   }
   if (!status) memcpy(out, pool.sum, sizeof(double) * (size_t)parts);
   for (size_t i = 0; !status && i < pool.count; i++)
     for (int p = 0; p < parts; p++) out[p] += pool.items[i].e.value[p];
   free(pool.items);
+  return status;
+}
+
+// --- Pieces of one parameter ---
+
+typedef struct Single {
+  CagIntegrand f;
+  void *context;
+} Single;
+
+static CagStatus call_single(void *context, size_t piece, double t, double *out, CagError *err) {
+  (void)piece;
+  const Single *single = context;
+  return single->f(single->context, t, out, err);
+}
+
+CagStatus cag_integrate(CagIntegrand f, void *context, const double *cuts, size_t n, int parts,
+                        double tolerance, double *out, CagError *err) {
+  Single single = {f, context};
+  double few[FEW_CUTS][2], (*ranges)[2] = n <= FEW_CUTS ? few : malloc(n * sizeof *ranges);
+  if (!ranges) return cag_fail_memory(err);
+  for (size_t i = 0; i + 1 < n; i++) {
+    ranges[i][0] = cuts[i];
+    ranges[i][1] = cuts[i + 1];
+  }
+  CagStatus status = cag_integrate_pieces(call_single, &single, (const double(*)[2])ranges,
+                                          n > 0 ? n - 1 : 0, parts, tolerance, out, err);
+  if (ranges != few) free(ranges);
   return status;
 }

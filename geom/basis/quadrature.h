@@ -3,6 +3,8 @@
 #ifndef CAG_GEOM_QUADRATURE_H
 #define CAG_GEOM_QUADRATURE_H
 
+#include <stddef.h>
+
 #include "geom/status.h"
 
 #define CAG_INTEGRAND_PARTS 10
@@ -16,5 +18,11 @@ typedef CagStatus (*CagIntegrand)(void *context, double t, double *out, CagError
 // tolerance ends the search after some thousands of intervals.
 CagStatus cag_integrate(CagIntegrand f, void *context, const double *cuts, size_t n, int parts,
                         double tolerance, double *out, CagError *err);
+
+// The same over n ranges that have parameters of their own: `piece` says in which of them t is.
+typedef CagStatus (*CagPieceIntegrand)(void *context, size_t piece, double t, double *out,
+                                       CagError *err);
+CagStatus cag_integrate_pieces(CagPieceIntegrand f, void *context, const double (*ranges)[2],
+                               size_t n, int parts, double tolerance, double *out, CagError *err);
 
 #endif

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "geom/basis/quadrature.h"
 #include "geom/curve/family.h"
+#include "geom/curve/line_integral.h"
 #include "geom/curve/nurbs.h"
 
 // Relative error asked of integrals; the promise is 1e-10.
@@ -40,11 +40,10 @@ static CagStatus cuts_within(const CagCurve *c, double a, double b, double **out
 
 // --- Length ---
 
-static CagStatus speed(void *context, double t, double *out, CagError *err) {
-  CagVec3 d[2];
-  CagStatus status = cag_curve_eval(context, t, 1, CAG_SIDE_RIGHT, d, err);
-  out[0] = status ? 0 : cag_norm(d[1]);
-  return status;
+static void speed(void *context, CagVec3 p, CagVec3 d, double *out) {
+  (void)context;
+  (void)p;
+  out[0] = cag_norm(d);
 }
 
 // Length of curves of constant speed, and false for others.
@@ -94,8 +93,7 @@ static CagStatus piece_length(const CagCurve *c, double a, double b, double *out
     *out = status ? 0 : cag_norm(cag_sub(ends[1], ends[0]));
     return status;
   }
-  const double cuts[2] = {a, b};
-  return cag_integrate(speed, (void *)c, cuts, 2, 1, INTEGRAL, out, err);
+  return cag_curve_integrate(c, a, b, speed, NULL, 1, INTEGRAL, out, err);
 }
 
 CagStatus cag_curve_length(const CagCurve *c, double a, double b, double *out, CagError *err) {
@@ -292,16 +290,12 @@ typedef struct AreaContext {
 } AreaContext;
 
 // x dy - y dx, x^2 dy, y^2 dx in the axes of the plane.
-static CagStatus green(void *context, double t, double *out, CagError *err) {
+static void green(void *context, CagVec3 p, CagVec3 d, double *out) {
   const AreaContext *a = context;
-  CagVec3 d[2];
-  CagStatus status = cag_curve_eval(a->c, t, 1, CAG_SIDE_RIGHT, d, err);
-  if (status) return status;
-  CagVec3 r = cag_sub(d[0], a->origin);
+  CagVec3 r = cag_sub(p, a->origin);
   double x = cag_dot(r, a->x), y = cag_dot(r, a->y);
-  double dx = cag_dot(d[1], a->x), dy = cag_dot(d[1], a->y);
+  double dx = cag_dot(d, a->x), dy = cag_dot(d, a->y);
   store(out, cag_vec3(x * dy - y * dx, x * x * dy, y * y * dx));
-  return CAG_OK;
 }
 
 // The same integrals over a straight edge from p to q.
@@ -327,12 +321,7 @@ static CagStatus integrate_green(AreaContext *a, double *sum, CagError *err) {
     }
     return CAG_OK;
   }
-  double *cuts;
-  CagStatus status = cag_curve_cuts(a->c, &cuts, &n, err);
-  if (status) return status;
-  status = cag_integrate(green, a, cuts, n, 3, INTEGRAL, sum, err);
-  free(cuts);
-  return status;
+  return cag_curve_integrate(a->c, a->c->start, a->c->end, green, a, 3, INTEGRAL, sum, err);
 }
 
 CagStatus cag_curve_area(const CagCurve *c, double *area, CagVec3 *centroid, CagError *err) {

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "geom/basis/quadrature.h"
 #include "geom/curve/family.h"
+#include "geom/curve/line_integral.h"
 #include "geom/surface/family.h"
 #include "geom/surface/function.h"
 #include "geom/surface/trimmed.h"
@@ -211,23 +211,18 @@ static const int MOMENT[MAX_TERMS][2] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1},
 // The integrands of the line integrals of x^(i + 1) y^j / (i + 1) dy, each as a part of what the
 // box allows.
 typedef struct Boundary {
-  const CagCurve *c;
   CagVec3 middle;
   double size[MAX_TERMS];
 } Boundary;
 
-static CagStatus boundary_terms(void *context, double t, double *out, CagError *err) {
+static void boundary_terms(void *context, CagVec3 p, CagVec3 d, double *out) {
   const Boundary *b = context;
-  CagVec3 d[2];
-  CagStatus status = cag_curve_eval(b->c, t, 1, CAG_SIDE_RIGHT, d, err);
-  if (status) return status;
-  double x = d[0].x - b->middle.x, y = d[0].y - b->middle.y;
+  double x = p.x - b->middle.x, y = p.y - b->middle.y;
   const double px[5] = {1, x, x * x, x * x * x, x * x * x * x}, py[4] = {1, y, y * y, y * y * y};
   for (int m = 0; m < MAX_TERMS; m++) {
     int i = MOMENT[m][0], j = MOMENT[m][1];
-    out[m] = b->size[m] > 0 ? px[i + 1] * py[j] / (i + 1) * d[1].y / b->size[m] : 0;
+    out[m] = b->size[m] > 0 ? px[i + 1] * py[j] / (i + 1) * d.y / b->size[m] : 0;
   }
-  return CAG_OK;
 }
 
 // About the middle of the region's box, which keeps the powers small.
@@ -243,13 +238,10 @@ static CagStatus region_moments(const CagRegion *r, CagVec3 *middle, double *out
     out[m] = 0;
   }
   for (size_t l = 0; !status && l < r->count; l++) {
-    double *cuts, part[MAX_TERMS];
-    size_t n;
-    b.c = r->loops[l];
-    status = cag_curve_cuts(b.c, &cuts, &n, err);
-    if (status) break;
-    status = cag_integrate(boundary_terms, &b, cuts, n, MAX_TERMS, MOMENTS, part, err);
-    free(cuts);
+    double part[MAX_TERMS];
+    const CagCurve *loop = r->loops[l];
+    status = cag_curve_integrate(loop, loop->start, loop->end, boundary_terms, &b, MAX_TERMS,
+                                 MOMENTS, part, err);
     for (int m = 0; !status && m < MAX_TERMS; m++) out[m] += b.size[m] * part[m];
   }
   return status;

@@ -1,6 +1,7 @@
 // Lengths, bounds, areas, discretization and closest points against closed forms.
 
 #include "geom/curve/curve.h"
+#include "geom/curve/region.h"
 #include "support.h"
 
 static CagCurve *ellipse(double a, double b, double from, double to) {
@@ -294,25 +295,40 @@ static void the_closest_point_is_the_global_one(void **state) {
   cag_curve_release(exact);
 }
 
-// Speeds with peaks and near cusps, against mpmath with 40 digits: ellipses 4 E(1 - b^2), the
-// parabola with the middle weight w, the cubic [0, 0], [1, 1], [k, 1], [1, 0], which has a cusp at
-// k = 0.
+// Speeds with peaks and near cusps, against mpmath with 40 digits or more: ellipses 4 E(1 - b^2),
+// the parabola with the middle weight w, the cubic [0, 0], [1, 1], [k, 1], [1, 0], which has a cusp
+// at k = 0.
 static void lengths_of_uneven_speed_are_right(void **state) {
   (void)state;
   CagCurve *c = ellipse(1, 1e-4, 0, 2 * M_PI);
   NEAR(length_of(c), 4.0000002019326954, 1e-12);
   cag_curve_release(c);
-  static const double parabola[][2] = {{1e2, 2.8165856059646152},
-                                       {1e4, 2.8283073248631982},
-                                       {1e6, 2.8284259266073696},
-                                       {1e8, 2.8284271127647879}};
-  for (size_t i = 0; i < 4; i++) {
+  static const double parabola[][2] = {{1e2, 2.8165856059646152},  {1e4, 2.8283073248631982},
+                                       {1e6, 2.8284259266073696},  {1e8, 2.8284271127647879},
+                                       {1e10, 2.8284271246263761}, {1e12, 2.8284271247449920},
+                                       {1e15, 2.8284271247461889}};
+  for (size_t i = 0; i < sizeof parabola / sizeof *parabola; i++) {
     static const CagVec3 p[3] = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}};
     const double weights[3] = {1, parabola[i][0], 1};
     OK(cag_curve_bezier(p, weights, 3, 2, &c, &err));
-    NEAR(length_of(c), parabola[i][1], 1e-10);
+    NEAR(length_of(c), parabola[i][1], 1e-13);
     cag_curve_release(c);
   }
+  static const CagVec3 wave[4] = {{0, 0, 0}, {1, 1, 0}, {2, -1, 0}, {3, 0, 0}};
+  OK(cag_curve_bezier(wave, (const double[]){1, 1e12, 1e-3, 1}, 4, 2, &c, &err));
+  NEAR(length_of(c), 3.6502815398722857, 1e-13);
+  cag_curve_release(c);
+  OK(cag_curve_bezier(wave, (const double[]){1, 1e6, 1e12, 1e3}, 4, 2, &c, &err));
+  NEAR(length_of(c), 4.0968825395385815, 1e-13);
+  // Its parts add up, wherever it is cut.
+  for (int k = 1; k < 20; k++) {
+    const double t = k % 2 ? pow(10, -k) : 1 - pow(10, -k);
+    double before, after;
+    OK(cag_curve_length(c, 0, t, &before, &err));
+    OK(cag_curve_length(c, t, 1, &after, &err));
+    NEAR(before + after, 4.0968825395385815, 1e-13);
+  }
+  cag_curve_release(c);
   static const double cubic[][2] = {{0, 1.8284271247461901},     {1e-9, 1.8284271246175104},
                                     {1e-6, 1.8284269960680730},  {1e-3, 1.8282993367024019},
                                     {-1e-3, 1.8285566963225382}, {-1e-6, 1.8284272534273859}};
@@ -336,7 +352,7 @@ static void lengths_do_not_depend_on_the_speed(void **state) {
       random = random * 6364136223846793005u + 1442695040888963407u;
       number[k] = (double)(random >> 11) / 9007199254740992.0;
     }
-    const double factor = pow(10, 8 * number[19] - 4);
+    const double factor = pow(10, 24 * number[19] - 12);
     for (int k = 0; k < n; k++) {
       p[k] = cag_vec3(10 * number[3 * k], 10 * number[3 * k + 1], 10 * number[3 * k + 2]);
       plain[k] = 0.5 + number[15 + k % 4];
@@ -345,10 +361,35 @@ static void lengths_do_not_depend_on_the_speed(void **state) {
     CagCurve *a, *b;
     OK(cag_curve_bezier(p, plain, (size_t)n, 3, &a, &err));
     OK(cag_curve_bezier(p, uneven, (size_t)n, 3, &b, &err));
-    NEAR(length_of(b) / length_of(a), 1, 1e-10);
+    NEAR(length_of(b) / length_of(a), 1, 1e-12);
     cag_curve_release(a);
     cag_curve_release(b);
   }
+}
+
+// With its middle weight a conic reaches the corner of its triangle, whose area and second moments
+// are those of the region within curve and chord.
+static void areas_of_uneven_speed_are_right(void **state) {
+  (void)state;
+  static const CagVec3 p[3] = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}}, chord[2] = {{2, 0, 0}, {0, 0, 0}};
+  CagCurve *parts[2], *loop;
+  CagRegion *region;
+  double area, xx, xy, yy;
+  CagVec3 center;
+  OK(cag_curve_bezier(p, (const double[]){1, 1e12, 1}, 3, 2, &parts[0], &err));
+  OK(cag_curve_polyline(chord, 2, false, 2, &parts[1], &err));
+  OK(cag_curve_join(parts, 2, &loop, &err));
+  OK(cag_region_new(loop, NULL, 0, &region, &err));
+  OK(cag_region_second_moments(region, &area, &center, &xx, &xy, &yy, &err));
+  NEAR(area, 1, 1e-13);
+  near_vec(center, cag_vec3(1, 1.0 / 3, 0), 1e-13);
+  NEAR(xx, 1.0 / 6, 1e-13);
+  NEAR(xy, 0, 1e-13);
+  NEAR(yy, 1.0 / 18, 1e-13);
+  cag_region_release(region);
+  cag_curve_release(loop);
+  cag_curve_release(parts[0]);
+  cag_curve_release(parts[1]);
 }
 
 int main(void) {
@@ -364,6 +405,7 @@ int main(void) {
       cmocka_unit_test(a_circle_takes_the_fewest_points),
       cmocka_unit_test(lengths_of_uneven_speed_are_right),
       cmocka_unit_test(lengths_do_not_depend_on_the_speed),
+      cmocka_unit_test(areas_of_uneven_speed_are_right),
       cmocka_unit_test(the_closest_point_is_the_global_one),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
