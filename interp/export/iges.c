@@ -26,6 +26,7 @@ typedef struct Writer {
   long parameter_lines, first_line, entities;
   int type, form, status;
   Pointer color, name;
+  bool undefined; // a number was not finite
 } Writer;
 
 // --- Lines ---
@@ -61,6 +62,7 @@ static void put_pointer(Writer *w, Pointer p) { put_integer(w, p); }
 // Reals have a point, and an exponent of D is one of double precision.
 static void put_real(Writer *w, double x) {
   char text[40], out[48];
+  w->undefined |= !isfinite(x);
   cag_number_text(x == 0 ? 0 : x, text);
   char *e = strchr(text, 'e');
   if (e) *e++ = 0;
@@ -416,6 +418,9 @@ static CagStatus write_sections(Writer *w, Sections *s, const char *script, CagA
   snprintf(counts, sizeof counts, "S%7dG%7ldD%7ldP%7ld", 1, global, 2 * w->entities,
            w->parameter_lines);
   cag_atomic_file_printf(file, "%-72sT%7d\n", counts, 1);
+  if (w->undefined && whole)
+    return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+                    "a number of the file overflows or is undefined");
   return whole ? CAG_OK : cag_fail_memory(err);
 }
 

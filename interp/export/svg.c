@@ -41,15 +41,17 @@ typedef struct Picture {
   CagBounds box;
   FILE *out; // paths
   CagVec3 last;
-  bool drawing; // the pen is down at `last`
+  bool drawing;   // the pen is down at `last`
+  bool undefined; // a number was not finite
 } Picture;
 
 // --- Numbers ---
 
-static double rounded(const Picture *p, double x) {
+static double rounded(Picture *p, double x) {
   double unit = pow(10, floor(log10(p->size * ROUNDING_PART)));
   double steps = round(x / unit);
   double result = unit < 1 ? steps / round(1 / unit) : steps * unit;
+  p->undefined |= !isfinite(result);
   return result == 0 ? 0 : result; // no -0
 }
 
@@ -374,7 +376,7 @@ static void draw_labels(Picture *p) {
     const CagLabel *l = &s->labels[i];
     if (!look_at_label(p, l, &at, &along)) continue;
     ColorText color = color_text(s->materials[l->material].color);
-    cag_svg_label(p->out, l, at, along, color.text, diagonal, &p->box);
+    if (!cag_svg_label(p->out, l, at, along, color.text, diagonal, &p->box)) p->undefined = true;
   }
 }
 
@@ -435,7 +437,7 @@ static CagStatus set_view(Picture *p, size_t camera, const CagBounds *all, CagEr
 
 // --- The file ---
 
-static void write_number(CagAtomicFile *f, const Picture *p, double x) {
+static void write_number(CagAtomicFile *f, Picture *p, double x) {
   char text[32];
   cag_atomic_file_text(f, cag_number_text(rounded(p, x), text));
 }
@@ -487,6 +489,9 @@ CagStatus cag_export_svg(const CagScene *scene, size_t camera, CagAtomicFile *fi
     status = cag_fail(err, CAG_E_DEGENERATE, "svg-nothing-visible", "camera", (long)camera,
                       "all curves lie behind the camera");
   if (!status) write_file(&p, file, paths, n);
+  if (!status && p.undefined)
+    status = cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+                      "a number of the picture overflows or is undefined");
   free(paths);
   return status;
 }

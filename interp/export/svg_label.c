@@ -36,21 +36,28 @@ void cag_svg_escape(FILE *out, const char *text, size_t n) {
 
 // --- Numbers: to a thousandth of a letter ---
 
-static double rounded(double x, double size) {
+// Where a label is written.
+typedef struct Pen {
+  FILE *file;
+  bool undefined; // a number was not finite
+} Pen;
+
+static double rounded(Pen *out, double x, double size) {
   double unit = pow(10, floor(log10(size)) - 3), steps = round(x / unit);
   double y = unit < 1 ? steps / round(1 / unit) : steps * unit;
+  out->undefined |= !isfinite(y);
   return y == 0 ? 0 : y;
 }
 
-static void attribute(FILE *out, const char *name, double x, double size) {
+static void attribute(Pen *out, const char *name, double x, double size) {
   char text[32];
-  fprintf(out, " %s=\"%s\"", name, cag_number_text(rounded(x, size), text));
+  fprintf(out->file, " %s=\"%s\"", name, cag_number_text(rounded(out, x, size), text));
 }
 
-static void point(FILE *out, const char *command, CagVec3 p, double size) {
+static void point(Pen *out, const char *command, CagVec3 p, double size) {
   char x[32], y[32];
-  fprintf(out, "%s%s %s", command, cag_number_text(rounded(p.x, size), x),
-          cag_number_text(rounded(-p.y, size), y));
+  fprintf(out->file, "%s%s %s", command, cag_number_text(rounded(out, p.x, size), x),
+          cag_number_text(rounded(out, -p.y, size), y));
 }
 
 // --- Marks ---
@@ -60,45 +67,45 @@ static void cover(CagBounds *box, CagVec3 p, double radius) {
   cag_bounds_add(box, cag_add(p, cag_vec3(radius, radius, 0)));
 }
 
-static void put_circle(FILE *out, CagVec3 p, double size, const char *color, bool filled) {
-  fputs("  <circle", out);
+static void put_circle(Pen *out, CagVec3 p, double size, const char *color, bool filled) {
+  fputs("  <circle", out->file);
   attribute(out, "cx", p.x, size);
   attribute(out, "cy", -p.y, size);
   attribute(out, "r", MARK_RADIUS * size, size);
-  if (filled) fprintf(out, " fill=\"%s\" stroke=\"none\"/>\n", color);
+  if (filled) fprintf(out->file, " fill=\"%s\" stroke=\"none\"/>\n", color);
   else {
     attribute(out, "stroke-width", MARK_STROKE * size, size);
-    fprintf(out, " fill=\"#ffffff\" stroke=\"%s\"/>\n", color);
+    fprintf(out->file, " fill=\"#ffffff\" stroke=\"%s\"/>\n", color);
   }
 }
 
-static void put_cross(FILE *out, CagVec3 p, double size, const char *color) {
+static void put_cross(Pen *out, CagVec3 p, double size, const char *color) {
   const double r = MARK_RADIUS * size;
-  fputs("  <path", out);
+  fputs("  <path", out->file);
   attribute(out, "stroke-width", MARK_STROKE * size, size);
-  fprintf(out, " stroke=\"%s\" d=\"", color);
+  fprintf(out->file, " stroke=\"%s\" d=\"", color);
   point(out, "M ", cag_add(p, cag_vec3(-r, -r, 0)), size);
   point(out, " L ", cag_add(p, cag_vec3(r, r, 0)), size);
   point(out, " M ", cag_add(p, cag_vec3(-r, r, 0)), size);
   point(out, " L ", cag_add(p, cag_vec3(r, -r, 0)), size);
-  fputs("\"/>\n", out);
+  fputs("\"/>\n", out->file);
 }
 
 // A slender head with a notched back, its tip at p.
-static void put_arrow(FILE *out, CagVec3 p, CagVec3 along, double size, const char *color) {
+static void put_arrow(Pen *out, CagVec3 p, CagVec3 along, double size, const char *color) {
   if (cag_norm(along) == 0) return; // seen from its end
   const CagVec3 a = cag_unit(along), across = cag_vec3(-a.y, a.x, 0);
   const CagVec3 back = cag_madd(p, -ARROW_LENGTH * size, a);
   const double half = ARROW_WIDTH / 2 * size, notch = 0.25 * ARROW_LENGTH * size;
-  fprintf(out, "  <path fill=\"%s\" stroke=\"none\" d=\"", color);
+  fprintf(out->file, "  <path fill=\"%s\" stroke=\"none\" d=\"", color);
   point(out, "M ", p, size);
   point(out, " L ", cag_madd(back, half, across), size);
   point(out, " L ", cag_madd(back, notch, a), size);
   point(out, " L ", cag_madd(back, -half, across), size);
-  fputs(" Z\"/>\n", out);
+  fputs(" Z\"/>\n", out->file);
 }
 
-static void put_mark(FILE *out, const CagLabel *l, CagVec3 at, CagVec3 along, const char *color,
+static void put_mark(Pen *out, const CagLabel *l, CagVec3 at, CagVec3 along, const char *color,
                      double size, CagBounds *box) {
   switch (l->mark) {
   case CAG_LABEL_NONE: return;
@@ -137,35 +144,35 @@ static size_t index_length(const char *text) {
 }
 
 // Writes the text with the runs after a _ lowered where `name`; gives its width in letters.
-static double put_runs(FILE *out, const char *text, bool name, double size) {
+static double put_runs(Pen *out, const char *text, bool name, double size) {
   double width = 0, lowered = 0;
   while (*text) {
     size_t n = name ? strcspn(text, "_") : strlen(text), m = 0;
     if (text[n] == '_') m = index_length(text + n + 1);
     if (text[n] == '_' && m == 0) n++;
-    fputs("<tspan", out);
+    fputs("<tspan", out->file);
     if (lowered != 0) attribute(out, "dy", -lowered, size);
-    fputc('>', out);
-    cag_svg_escape(out, text, n);
-    fputs("</tspan>", out);
+    fputc('>', out->file);
+    cag_svg_escape(out->file, text, n);
+    fputs("</tspan>", out->file);
     width += letters(text, n);
     text += n;
     lowered = 0;
     if (m == 0) continue;
     lowered = INDEX_DROP * size;
-    fputs("<tspan", out);
+    fputs("<tspan", out->file);
     attribute(out, "dy", lowered, size);
     attribute(out, "font-size", INDEX_SIZE * size, size);
-    fputc('>', out);
-    cag_svg_escape(out, text + 1, m);
-    fputs("</tspan>", out);
+    fputc('>', out->file);
+    cag_svg_escape(out->file, text + 1, m);
+    fputs("</tspan>", out->file);
     width += INDEX_SIZE * letters(text + 1, m);
     text += m + 1;
   }
   return width;
 }
 
-static void put_text(FILE *out, const CagLabel *l, CagVec3 at, CagVec3 along, const char *color,
+static void put_text(Pen *out, const CagLabel *l, CagVec3 at, CagVec3 along, const char *color,
                      double size, CagBounds *box) {
   static const struct {
     int x, y;
@@ -187,22 +194,22 @@ static void put_text(FILE *out, const CagLabel *l, CagVec3 at, CagVec3 along, co
   CagVec3 x = turned ? cag_unit(along) : cag_vec3(1, 0, 0);
   if (x.x < -1e-9 || (fabs(x.x) <= 1e-9 && x.y < 0)) x = cag_scaled(x, -1);
   const CagVec3 y = cag_vec3(-x.y, x.x, 0), from = cag_madd(cag_madd(at, dx, x), dy, y);
-  fputs("  <text", out);
+  fputs("  <text", out->file);
   attribute(out, "x", from.x, size);
   attribute(out, "y", -from.y, size);
   attribute(out, "font-size", size, size);
-  if (name) fputs(" font-style=\"italic\"", out);
-  fprintf(out, " text-anchor=\"%s\" stroke=\"none\" fill=\"%s\"", anchors[sx + 1], color);
+  if (name) fputs(" font-style=\"italic\"", out->file);
+  fprintf(out->file, " text-anchor=\"%s\" stroke=\"none\" fill=\"%s\"", anchors[sx + 1], color);
   if (turned) {
     char angle[32], cx[32], cy[32];
-    fprintf(out, " transform=\"rotate(%s %s %s)\"",
-            cag_number_text(rounded(-atan2(x.y, x.x) * degrees, 10), angle),
-            cag_number_text(rounded(from.x, size), cx),
-            cag_number_text(rounded(-from.y, size), cy));
+    fprintf(out->file, " transform=\"rotate(%s %s %s)\"",
+            cag_number_text(rounded(out, -atan2(x.y, x.x) * degrees, 10), angle),
+            cag_number_text(rounded(out, from.x, size), cx),
+            cag_number_text(rounded(out, -from.y, size), cy));
   }
-  fputc('>', out);
+  fputc('>', out->file);
   const double width = put_runs(out, l->text, name, size) * LETTER * size;
-  fputs("</text>\n", out);
+  fputs("</text>\n", out->file);
   const double left = (sx - 1) / 2.0 * width;
   const double bottom = -INDEX_DROP * size;
   for (int i = 0; i < 4; i++)
@@ -210,10 +217,12 @@ static void put_text(FILE *out, const CagLabel *l, CagVec3 at, CagVec3 along, co
                                  i & 2 ? CAPITAL * size : bottom, y));
 }
 
-void cag_svg_label(FILE *out, const CagLabel *label, CagVec3 at, CagVec3 along, const char *color,
+bool cag_svg_label(FILE *file, const CagLabel *label, CagVec3 at, CagVec3 along, const char *color,
                    double unit, CagBounds *box) {
+  Pen pen = {file, false};
   const double size = label->size > 0 ? label->size : TEXT_PART * unit;
   cag_bounds_add(box, at);
-  put_mark(out, label, at, along, color, size, box);
-  if (*label->text) put_text(out, label, at, along, color, size, box);
+  put_mark(&pen, label, at, along, color, size, box);
+  if (*label->text) put_text(&pen, label, at, along, color, size, box);
+  return !pen.undefined;
 }

@@ -2,6 +2,7 @@
 
 #include "interp/export/urdf.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "interp/export/mesh_formats.h"
@@ -10,14 +11,20 @@
 
 // --- Text ---
 
-static void put(CagAtomicFile *f, const char *text) { cag_atomic_file_text(f, text); }
+typedef struct Writer {
+  CagAtomicFile *file;
+  bool undefined; // a number was not finite
+} Writer;
 
-static void put_number(CagAtomicFile *f, double x) {
+static void put(Writer *f, const char *text) { cag_atomic_file_text(f->file, text); }
+
+static void put_number(Writer *f, double x) {
   char text[40];
+  f->undefined |= !isfinite(x);
   put(f, cag_number_text(x == 0 ? 0 : x, text));
 }
 
-static void put_numbers(CagAtomicFile *f, const double *x, int n) {
+static void put_numbers(Writer *f, const double *x, int n) {
   for (int i = 0; i < n; i++) {
     if (i > 0) put(f, " ");
     put_number(f, x[i]);
@@ -25,7 +32,7 @@ static void put_numbers(CagAtomicFile *f, const double *x, int n) {
 }
 
 // An attribute's text. Control characters have no place in XML.
-static void put_text(CagAtomicFile *f, const char *text) {
+static void put_text(Writer *f, const char *text) {
   for (const char *c = text; *c; c++) {
     char one[2] = {(unsigned char)*c < ' ' || *c == 0x7f ? '_' : *c, 0};
     const char *entity = *c == '&'   ? "&amp;"
@@ -37,14 +44,14 @@ static void put_text(CagAtomicFile *f, const char *text) {
   }
 }
 
-static void put_attribute(CagAtomicFile *f, const char *name, const char *text) {
-  cag_atomic_file_printf(f, " %s=\"", name);
+static void put_attribute(Writer *f, const char *name, const char *text) {
+  cag_atomic_file_printf(f->file, " %s=\"", name);
   put_text(f, text);
   put(f, "\"");
 }
 
-static void put_value(CagAtomicFile *f, const char *name, double x) {
-  cag_atomic_file_printf(f, " %s=\"", name);
+static void put_value(Writer *f, const char *name, double x) {
+  cag_atomic_file_printf(f->file, " %s=\"", name);
   put_number(f, x);
   put(f, "\"");
 }
@@ -64,11 +71,11 @@ static void roll_pitch_yaw(const CagTransform *t, double rpy[3]) {
   rpy[0] = atan2(s * t->m[0][2] - c * t->m[1][2], c * t->m[1][1] - s * t->m[0][1]);
 }
 
-static void put_origin(CagAtomicFile *f, const char *margin, const CagTransform *t) {
+static void put_origin(Writer *f, const char *margin, const CagTransform *t) {
   double rpy[3], xyz[3];
   roll_pitch_yaw(t, rpy);
   for (int i = 0; i < 3; i++) xyz[i] = t->m[i][3] * METRES;
-  cag_atomic_file_printf(f, "%s<origin xyz=\"", margin);
+  cag_atomic_file_printf(f->file, "%s<origin xyz=\"", margin);
   put_numbers(f, xyz, 3);
   put(f, "\" rpy=\"");
   put_numbers(f, rpy, 3);
@@ -77,7 +84,7 @@ static void put_origin(CagAtomicFile *f, const char *margin, const CagTransform 
 
 // --- Links ---
 
-static void put_geometry(CagAtomicFile *f, const CagUrdfShape *s, const char *folder) {
+static void put_geometry(Writer *f, const CagUrdfShape *s, const char *folder) {
   double side[3];
   for (int i = 0; i < 3; i++) side[i] = s->size[i] * METRES;
   put(f, "      <geometry>\n        ");
@@ -104,8 +111,7 @@ static void put_geometry(CagAtomicFile *f, const CagUrdfShape *s, const char *fo
   put(f, "\n      </geometry>\n");
 }
 
-static void put_shape(const CagUrdf *u, CagAtomicFile *f, const CagUrdfShape *s,
-                      const char *folder) {
+static void put_shape(const CagUrdf *u, Writer *f, const CagUrdfShape *s, const char *folder) {
   put(f, "    <visual>\n");
   put_origin(f, "      ", &s->place);
   put_geometry(f, s, folder);
@@ -117,7 +123,7 @@ static void put_shape(const CagUrdf *u, CagAtomicFile *f, const CagUrdfShape *s,
   put(f, "    </collision>\n");
 }
 
-static void put_mass(CagAtomicFile *f, const CagUrdfMass *m) {
+static void put_mass(Writer *f, const CagUrdfMass *m) {
   static const char *const names[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
   static const int row[] = {0, 0, 0, 1, 1, 2}, column[] = {0, 1, 2, 1, 2, 2};
   CagTransform place = cag_translate(m->center);
@@ -131,7 +137,7 @@ static void put_mass(CagAtomicFile *f, const CagUrdfMass *m) {
   put(f, "/>\n    </inertial>\n");
 }
 
-static void put_link(const CagUrdf *u, CagAtomicFile *f, const CagUrdfLink *l, const char *folder) {
+static void put_link(const CagUrdf *u, Writer *f, const CagUrdfLink *l, const char *folder) {
   put(f, "  <link");
   put_attribute(f, "name", l->name);
   if (!l->shapes) {
@@ -146,7 +152,7 @@ static void put_link(const CagUrdf *u, CagAtomicFile *f, const CagUrdfLink *l, c
 
 // --- Joints ---
 
-static void put_joint(const CagUrdf *u, CagAtomicFile *f, const CagUrdfJoint *j) {
+static void put_joint(const CagUrdf *u, Writer *f, const CagUrdfJoint *j) {
   bool turns = strcmp(j->type, "revolute") == 0, moves = strcmp(j->type, "fixed") != 0;
   double unit = turns ? 1 : METRES;
   put(f, "  <joint");
@@ -178,7 +184,7 @@ static void put_joint(const CagUrdf *u, CagAtomicFile *f, const CagUrdfJoint *j)
 
 // --- The file ---
 
-static void put_materials(const CagUrdf *u, CagAtomicFile *f) {
+static void put_materials(const CagUrdf *u, Writer *f) {
   for (size_t i = 0; i < u->material_count; i++) {
     const CagUrdfMaterial *m = &u->materials[i];
     double rgba[4] = {m->color.r, m->color.g, m->color.b, m->alpha};
@@ -191,7 +197,9 @@ static void put_materials(const CagUrdf *u, CagAtomicFile *f) {
   }
 }
 
-void cag_export_urdf(const CagUrdf *u, const char *folder, CagAtomicFile *f) {
+CagStatus cag_export_urdf(const CagUrdf *u, const char *folder, CagAtomicFile *file,
+                          CagError *err) {
+  Writer writer = {file, false}, *f = &writer;
   put(f, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
          "<!-- written by cag; lengths in metres, angles in radians, masses in kg -->\n");
   if (u->coupled)
@@ -204,6 +212,9 @@ void cag_export_urdf(const CagUrdf *u, const char *folder, CagAtomicFile *f) {
   for (size_t i = 0; i < u->link_count; i++) put_link(u, f, &u->links[i], folder);
   for (size_t i = 0; i < u->joint_count; i++) put_joint(u, f, &u->joints[i]);
   put(f, "</robot>\n");
+  if (!writer.undefined) return CAG_OK;
+  return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+                  "the robot %s has a number in the file that overflows or is undefined", u->name);
 }
 
 CagStatus cag_export_urdf_mesh(const CagUrdfShape *s, CagAtomicFile *file, CagError *err) {

@@ -507,8 +507,15 @@ static int write_urdf(CagSession *s, const CagUrdf *u, const char *path) {
   if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
   char *folder = path_beside(path, "_meshes");
   const char *slash = folder ? strrchr(folder, '/') : NULL;
-  cag_export_urdf(u, slash ? slash + 1 : folder ? folder : "", f);
-  int status = u->meshes && folder ? write_urdf_meshes(s, u, folder) : CAG_STATUS_OK;
+  CagError err = {0};
+  int status = cag_export_urdf(u,
+                               slash    ? slash + 1
+                               : folder ? folder
+                                        : "",
+                               f, &err)
+                   ? cag_session_fail_geometry(s, &err)
+                   : CAG_STATUS_OK;
+  if (status == CAG_STATUS_OK && u->meshes && folder) status = write_urdf_meshes(s, u, folder);
   free(folder);
   if (status == CAG_STATUS_OK) return commit(s, f);
   cag_atomic_file_abort(f);

@@ -210,3 +210,33 @@ try run data_of.cag
 prints_exactly 'true 0 2
 []
 1 here [1, 2, 3] above_left dot 4'
+
+# --- Exports that fail ---
+
+# fails_whole FORMAT SCRIPT WHY [OPTION ...]: the export ends with the message; neither a new file nor a temporary is
+# left, and a file that was there before stays as it was.
+fails_whole() {
+  format=$1 why=$3
+  printf '%s\n' "$2" > "fails_$format.cag"
+  shift 3
+  it "an export that fails leaves no .$format file: $why"
+  mkdir -p "fails_$format"
+  try export "fails_$format.cag" "$@" -o "fails_$format/new.$format"
+  status 1
+  says "$why"
+  [ -z "$(ls -A "fails_$format")" ] || wrong "files are left: $(ls -A "fails_$format")"
+  echo old > "fails_$format/old.$format"
+  try export "fails_$format.cag" "$@" -o "fails_$format/old.$format"
+  status 1
+  holds "fails_$format/old.$format" old
+  [ "$(ls -A "fails_$format")" = "old.$format" ] || wrong "files are left: $(ls -A "fails_$format")"
+}
+
+wave='show surface((u, v) => [u, v, if u > 0.3 and u < 0.4 then sqrt(v - 2) else 0], 0..1, 0..1)'
+fails_whole step "$wave" 'sqrt expects a number of 0 or more' --tolerance 0.01
+fails_whole igs "$wave" 'sqrt expects a number of 0 or more' --tolerance 0.01
+undefined='overflows or is undefined'
+fails_whole pov 'show sphere(1), point_light([0, 0, 100], color: [10, 1, 1], strength: 1.7e308)' "$undefined"
+fails_whole svg 'show circle(1), label([1.7e308, -1.7e308], "a"), label([-1.7e308, 0], "b")' "$undefined"
+fails_whole urdf 'show robot([revolute(a: 1, shape: material(box([1, 1, 1]), {density: 1.7e308})),
+  revolute(a: 1, shape: material(box([1e3, 1e3, 1e3]), {density: 1.7e308}))])' "$undefined"

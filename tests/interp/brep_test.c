@@ -313,6 +313,29 @@ static void an_iges_file_counts_its_lines(void **state) {
   fixture_end(&f);
 }
 
+static void a_number_that_is_not_finite_is_an_error(void **state) {
+  (void)state;
+  typedef CagStatus Export(const CagBrep *, const char *, CagAtomicFile *, CagError *);
+  Export *const exports[] = {cag_export_step, cag_export_iges};
+  const double numbers[] = {NAN, INFINITY, -INFINITY};
+  Fixture f;
+  CagBrep b;
+  CagIoError io;
+  fixture_begin(&f);
+  fixture_solid(&f, "can", cylinder());
+  OK(cag_brep_of_scene(&f.scene, &b, &err));
+  for (int i = 0; i < 6; i++) {
+    CagError why = {0};
+    CagAtomicFile *file = cag_atomic_file_open_memory(&io);
+    b.accuracy = numbers[i / 2];
+    assert_int_not_equal(exports[i % 2](&b, "can", file, &why), CAG_OK);
+    assert_string_equal(why.reason, "not-finite");
+    cag_atomic_file_abort(file);
+  }
+  cag_brep_free(&b);
+  fixture_end(&f);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_box_has_8_corners_12_edges_and_6_flat_faces),
@@ -326,6 +349,7 @@ int main(void) {
       cmocka_unit_test(a_weight_of_zero_is_an_error),
       cmocka_unit_test(names_of_any_kind_are_written_safely),
       cmocka_unit_test(an_iges_file_counts_its_lines),
+      cmocka_unit_test(a_number_that_is_not_finite_is_an_error),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
