@@ -7,9 +7,9 @@
 
 #include <fcntl.h>
 #include <locale.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "interp/clock.h"
 #include "interp/render/atomic_file.h"
 #include "interp/tool/cli.h"
 
@@ -22,12 +22,6 @@ static const double SAME_WISH = 0.3;
 // Seconds that what runs has to stop by itself: renderers, their folders and the script need less.
 static const unsigned PATIENCE = 2;
 
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static void end_now(void) {
   cag_atomic_files_cleanup();
   _exit(CAG_STATUS_INTERRUPTED);
@@ -38,10 +32,10 @@ static void on_signal(int number) {
   if (number == SIGALRM) {
     end_now();
   } else if (!cag_tool_interrupt) {
-    first = now();
+    first = cag_clock_seconds();
     cag_tool_interrupt = 1;
     alarm(PATIENCE);
-  } else if (now() - first > SAME_WISH) {
+  } else if (cag_clock_seconds() - first > SAME_WISH) {
     end_now();
   }
 }

@@ -490,16 +490,27 @@ static void sort_solutions(CagInverse *out) {
     }
 }
 
-void cag_robot_inverse(const CagRobot *r, const CagTransform *target, const double *near,
-                       CagInverse *out) {
+// A task without solutions yet.
+static InverseTask begin_task(const InverseChain *c, const double *near, CagInverse *out) {
   static const double zeros[CAG_INVERSE_JOINTS_MAX] = {0};
-  InverseChain c;
   out->count = 0;
   out->free = 0;
   out->status = CAG_INVERSE_NO_CLOSED_FORM;
+  return (InverseTask){.chain = c, .near = near ? near : zeros, .out = out};
+}
+
+// Sorts what was found; `none`: the status without solutions.
+static void end_task(CagInverse *out, CagInverseStatus none) {
+  sort_solutions(out);
+  out->status = out->count == 0 ? none : out->free ? CAG_INVERSE_SINGULAR : CAG_INVERSE_OK;
+}
+
+void cag_robot_inverse(const CagRobot *r, const CagTransform *target, const double *near,
+                       CagInverse *out) {
+  InverseChain c;
+  InverseTask t = begin_task(&c, near, out);
   const InverseKind kind = chain_of(r, &c) ? kind_of(&c) : INVERSE_NONE;
   if (kind == INVERSE_NONE) return;
-  InverseTask t = {.chain = &c, .near = near ? near : zeros, .out = out};
   const CagTransform before = cag_robot_rigid_inverse(&c.before);
   const CagTransform after = cag_robot_rigid_inverse(&c.after);
   CagTransform pose = cag_transform_multiply(&before, target);
@@ -520,10 +531,7 @@ void cag_robot_inverse(const CagRobot *r, const CagTransform *target, const doub
   }
   for (size_t i = 0; i < out->count && (kind == INVERSE_ARM_PAIR || kind == INVERSE_RRR); i++)
     cag_robot_configuration(r, out->solutions[i].q, &out->solutions[i].configuration);
-  sort_solutions(out);
-  if (out->count) out->status = out->free ? CAG_INVERSE_SINGULAR : CAG_INVERSE_OK;
-  else if (t.placed && c.n < 6) out->status = CAG_INVERSE_ORIENTATION;
-  else out->status = CAG_INVERSE_UNREACHABLE;
+  end_task(out, t.placed && c.n < 6 ? CAG_INVERSE_ORIENTATION : CAG_INVERSE_UNREACHABLE);
 }
 
 static bool has_point_inverse(const InverseChain *c) {
@@ -538,22 +546,16 @@ bool cag_robot_has_point_inverse(const CagRobot *r) {
 
 void cag_robot_inverse_point(const CagRobot *r, CagVec3 point, const double *near,
                              CagInverse *out) {
-  static const double zeros[CAG_INVERSE_JOINTS_MAX] = {0};
   InverseChain c;
-  out->count = 0;
-  out->free = 0;
-  out->status = CAG_INVERSE_NO_CLOSED_FORM;
+  InverseTask t = begin_task(&c, near, out);
   if (!chain_of(r, &c) || !has_point_inverse(&c)) return;
-  InverseTask t = {.chain = &c, .near = near ? near : zeros, .out = out};
   const CagTransform before = cag_robot_rigid_inverse(&c.before);
   const CagVec3 w = cag_transform_point(&before, point);
   const double(*m)[4] = c.after.m;
   const CagVec3 tip = cag_vec3(m[0][3], m[1][3], m[2][3]);
   if (kind_of(&c) == INVERSE_PLANE) inverse_plane_point(&t, tip, w);
   else solve_arm_point(&t, tip, w);
-  sort_solutions(out);
-  if (out->count) out->status = out->free ? CAG_INVERSE_SINGULAR : CAG_INVERSE_OK;
-  else out->status = CAG_INVERSE_UNREACHABLE;
+  end_task(out, CAG_INVERSE_UNREACHABLE);
 }
 
 CagConfiguration cag_robot_branches(const CagRobot *r) {

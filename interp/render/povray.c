@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "interp/clock.h"
 #include "interp/render/exr.h"
 #include "interp/render/image.h"
 #include "interp/render/povray_process.h"
@@ -23,12 +24,6 @@
 #define VERSION_TIME_LIMIT 20.0
 // Largest picture file that is taken back: half floats of the largest image.
 #define PICTURE_SIZE_MAX ((size_t)1 << 33)
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // Where POV-Ray is.
 
@@ -396,7 +391,7 @@ bool cag_povray_render(const CagPovrayJob *job, CagPovrayResult *out, CagIoError
   if (!cag_povray_check_files(job->scene, job->scene_size, err)) return false;
   if (!find_program(program, err) || !make_folder(folder, err)) return false;
   library_path(program, library);
-  const double begun = now();
+  const double begun = cag_clock_seconds();
   CagPovrayLog log = {.progress = job->progress, .progress_user = job->progress_user};
   *out = (CagPovrayResult){0};
   bool ok = prepare_folder(job, folder, library, err);
@@ -409,7 +404,7 @@ bool cag_povray_render(const CagPovrayJob *job, CagPovrayResult *out, CagIoError
     }
   }
   remove_folder(folder);
-  out->seconds = now() - begun;
+  out->seconds = cag_clock_seconds() - begun;
   memcpy(out->version, log.version, sizeof out->version);
   return ok;
 }

@@ -12,21 +12,15 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "interp/clock.h"
 #include "interp/render/sandbox.h"
 
 // How often the flag, the clock and the process are looked at, in milliseconds.
 #define WATCH_INTERVAL 40
 // The same once the output is closed: the process is about to end.
 #define WATCH_INTERVAL_CLOSED 4
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // In the child, after fork: only calls that are safe in a signal handler.
 static void become(const CagPovrayProcess *p, int output) {
@@ -64,7 +58,8 @@ typedef struct {
 static bool should_end(Follow *f) {
   const CagPovrayProcess *p = f->process;
   if (p->interrupted && *p->interrupted) f->end.kind = CAG_POVRAY_INTERRUPTED;
-  else if (p->time_limit > 0 && now() - f->begun > p->time_limit) f->end.kind = CAG_POVRAY_TIME;
+  else if (p->time_limit > 0 && cag_clock_seconds() - f->begun > p->time_limit)
+    f->end.kind = CAG_POVRAY_TIME;
   else return false;
   return true;
 }
@@ -157,7 +152,7 @@ CagPovrayEnd cag_povray_process_run(const CagPovrayProcess *process, CagPovrayLo
     Follow f = {.process = process,
                 .log = log,
                 .child = child,
-                .begun = now(),
+                .begun = cag_clock_seconds(),
                 .output = ends[0],
                 .folder = folder};
     end = follow(&f);

@@ -12,9 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "interp/clock.h"
 #include "interp/doc/doc.h"
 #include "interp/render/compare.h"
 #include "interp/render/exr.h"
@@ -386,12 +386,6 @@ static void end_run(Run *r, CagTestOutcome outcome, double seconds, const char *
   if (r->options->ended) r->options->ended(r->options->context, r->name, outcome, seconds, remark);
 }
 
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static char *rendered_errors(const CagSession *s) {
   char *text = NULL;
   size_t size;
@@ -589,7 +583,7 @@ static bool render_and_compare(Run *r, CagSession *s, const CagImage *reference,
 
 static int test_picture(Run *r, CagSession *s, const char *reference_path) {
   char version[256];
-  double begin = now();
+  double begin = cag_clock_seconds();
   CagImage reference;
   CagIoError err = {0};
   const char *remark = NULL;
@@ -609,7 +603,7 @@ static int test_picture(Run *r, CagSession *s, const char *reference_path) {
   }
   const volatile int *interrupt = r->options->session.interrupt;
   if (interrupt && *interrupt) return CAG_STATUS_INTERRUPTED;
-  end_run(r, r->failed ? CAG_TEST_FAILED : CAG_TEST_PASSED, now() - begin, remark);
+  end_run(r, r->failed ? CAG_TEST_FAILED : CAG_TEST_PASSED, cag_clock_seconds() - begin, remark);
   return CAG_STATUS_OK;
 }
 
@@ -666,7 +660,7 @@ static void report_misses(Run *r) {
 }
 
 static int perform(Run *r) {
-  double begin = now();
+  double begin = cag_clock_seconds();
   char *output = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&output, &size);
@@ -686,7 +680,7 @@ static int perform(Run *r) {
       // What an error left unprinted is no failure of its own.
       if (!r->failed) check_output(r, output, size);
       bool ok = !r->failed;
-      end_run(r, ok ? CAG_TEST_PASSED : CAG_TEST_FAILED, now() - begin, NULL);
+      end_run(r, ok ? CAG_TEST_PASSED : CAG_TEST_FAILED, cag_clock_seconds() - begin, NULL);
       status = ok && status == CAG_STATUS_OK ? test_reference(r, s) : CAG_STATUS_OK;
     }
   }

@@ -6,21 +6,17 @@
 #include <math.h>
 #include <time.h>
 
+#include "interp/clock.h"
+
 // Seconds between looks at the interrupt, which a signal handler sets and which wakes nobody.
 static const double LOOK_INTERVAL = 0.02;
 
 // Seconds after its time until work is overdue: what looks at the flag has ended long before.
 static const double OVERDUE = 0.6;
 
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 // Waits, with the mutex held, until the work is done or that many seconds have passed.
 static void wait_for_end(CagWatch *w, double seconds) {
-  const double until = now() + fmax(seconds, 0), whole = floor(until);
+  const double until = cag_clock_seconds() + fmax(seconds, 0), whole = floor(until);
   const struct timespec t = {(time_t)whole, (long)((until - whole) * 1e9)};
   while (!w->finished && pthread_cond_timedwait(&w->done, &w->mutex, &t) != ETIMEDOUT) {}
 }
@@ -30,7 +26,7 @@ static void *watch(void *context) {
   bool told = !w->overdue;
   pthread_mutex_lock(&w->mutex);
   while (!w->finished) {
-    const double passed = now() - w->begun;
+    const double passed = cag_clock_seconds() - w->begun;
     const bool late = w->seconds > 0 && passed >= w->seconds;
     if (late || (w->interrupt && *w->interrupt)) *w->stop = 1;
     if (late && !told && passed >= w->seconds + OVERDUE) {
@@ -47,7 +43,7 @@ static void *watch(void *context) {
 void cag_watch_begin(CagWatch *w) {
   pthread_condattr_t attributes;
   *w->stop = 0;
-  w->begun = now();
+  w->begun = cag_clock_seconds();
   w->finished = false;
   pthread_mutex_init(&w->mutex, NULL);
   pthread_condattr_init(&attributes);
@@ -65,5 +61,5 @@ double cag_watch_end(CagWatch *w) {
   if (w->started) pthread_join(w->thread, NULL);
   pthread_cond_destroy(&w->done);
   pthread_mutex_destroy(&w->mutex);
-  return now() - w->begun;
+  return cag_clock_seconds() - w->begun;
 }

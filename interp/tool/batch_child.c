@@ -11,8 +11,9 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "interp/clock.h"
 
 // Seconds from asking a process to end until it is killed. The program ends itself after two when
 // it can (see main.c), with its temporaries removed.
@@ -23,12 +24,6 @@ static const double PATIENCE = 4;
 
 // Milliseconds between looks of cag_child_run.
 #define LOOK_INTERVAL 20
-
-double cag_child_now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // --- Starting ---
 
@@ -52,7 +47,7 @@ static bool settle(int output, bool whole, const char *folder, pid_t parent) {
 // errno when there is no child.
 static int begin(CagChild *c, const char *folder, double limit, bool whole) {
   int ends[2];
-  *c = (CagChild){.said = -1, .limit = limit, .begun = cag_child_now()};
+  *c = (CagChild){.said = -1, .limit = limit, .begun = cag_clock_seconds()};
   c->text = calloc(1, 1);
   if (!c->text) return errno = ENOMEM, -1;
   if (pipe2(ends, O_CLOEXEC) != 0) return cag_child_free(c), -1;
@@ -125,13 +120,13 @@ static void take_text(CagChild *c) {
 void cag_child_stop(CagChild *c, CagChildStop why) {
   if (c->stop != CAG_CHILD_RUNS) return;
   c->stop = why;
-  c->asked = cag_child_now();
+  c->asked = cag_clock_seconds();
   kill(-c->pid, SIGTERM);
   kill(c->pid, SIGTERM);
 }
 
 static void see_to_limits(CagChild *c) {
-  const double now = cag_child_now();
+  const double now = cag_clock_seconds();
   if (c->limit > 0 && now - c->begun > c->limit) cag_child_stop(c, CAG_CHILD_STOP_TIME);
   if (c->stop == CAG_CHILD_RUNS || c->killed || now - c->asked < PATIENCE) return;
   c->killed = true;
@@ -149,7 +144,7 @@ bool cag_child_look(CagChild *c) {
   }
   kill(-c->pid, SIGKILL); // whatever it left
   take_text(c);
-  c->seconds = cag_child_now() - c->begun;
+  c->seconds = cag_clock_seconds() - c->begun;
   c->memory = done > 0 ? (size_t)usage.ru_maxrss * 1024 : 0;
   if (done < 0) c->status = EXEC_FAILED << 8; // somebody else waited for it
   return true;

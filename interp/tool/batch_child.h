@@ -56,7 +56,4 @@ void cag_child_free(CagChild *c);
 // `interrupted` may be NULL.
 int cag_child_run(char *const *words, double limit, const volatile int *interrupted, char **text);
 
-// Seconds of a clock that only goes forward.
-double cag_child_now(void);
-
 #endif

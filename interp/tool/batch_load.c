@@ -13,6 +13,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "interp/clock.h"
 #include "interp/tool/batch_child.h"
 
 // Seconds between looks for an idle processor; and between looks at the shares of time, which are
@@ -79,7 +80,7 @@ static size_t count_runnable(void) {
 }
 
 void cag_load_begin(CagLoad *l, size_t workers) {
-  const double now = cag_child_now();
+  const double now = cag_clock_seconds();
   *l = (CagLoad){.workers = workers, .limit = (double)workers, .looked = now, .seen = now};
   read_ticks(&l->busy, &l->total);
 }
@@ -99,7 +100,7 @@ static bool was_idle(CagLoad *l, double now) {
 }
 
 static void look(CagLoad *l, size_t running) {
-  const double now = cag_child_now(), passed = now - l->looked;
+  const double now = cag_clock_seconds(), passed = now - l->looked;
   if (passed < LOOK_INTERVAL) return;
   l->looked = now;
   const bool idle = was_idle(l, now) | (count_runnable() < l->workers);

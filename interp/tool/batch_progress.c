@@ -5,6 +5,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "interp/clock.h"
 #include "interp/tool/batch_child.h"
 
 // Columns beside the bar, and the widest bar.
@@ -32,7 +33,7 @@ static Counts count(const CagBatch *b) {
 void cag_batch_progress_begin(CagBatchProgress *p, const CagBatch *b) {
   const CagTool *t = b->tool;
   *p = (CagBatchProgress){.shown = isatty(STDERR_FILENO) && !t->quiet && t->style != CAG_STYLE_JSON,
-                          .begun = cag_child_now(),
+                          .begun = cag_clock_seconds(),
                           .left = count(b).waiting};
 }
 
@@ -53,7 +54,7 @@ static void write_rest(const CagBatchProgress *p, const Counts *c) {
 }
 
 void cag_batch_progress_show(CagBatchProgress *p, const CagBatch *b, size_t at_work) {
-  const double now = cag_child_now();
+  const double now = cag_clock_seconds();
   if (!p->shown || now - p->seen < DRAW_INTERVAL) return;
   p->seen = now;
   const Counts c = count(b);

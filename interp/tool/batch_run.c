@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "interp/clock.h"
 #include "interp/tool/batch.h"
 #include "interp/tool/batch_child.h"
 #include "interp/tool/batch_load.h"
@@ -194,7 +195,7 @@ static void look(Run *r) {
 
 // Stops what takes too much memory.
 static void see_to_memory(Run *r) {
-  const double now = cag_child_now();
+  const double now = cag_clock_seconds();
   if (!r->limit_memory || !r->running || now - r->memory_seen < MEMORY_INTERVAL) return;
   r->memory_seen = now;
   pid_t *processes = malloc(r->running * sizeof *processes);

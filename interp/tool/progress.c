@@ -5,8 +5,9 @@
 
 #include <string.h>
 #include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
+
+#include "interp/clock.h"
 
 // Columns beside the bar, for the frame, the percentage and the phase; and the widest bar.
 #define BESIDE 64
@@ -16,12 +17,6 @@
 // Percent between two lines, and seconds.
 #define LINE_PERCENT 10
 #define LINE_TIME 10.0
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 void cag_progress_begin(CagProgress *p, const CagTool *t) {
   const bool bar = isatty(STDERR_FILENO) && !t->quiet && t->style != CAG_STYLE_JSON;
@@ -42,7 +37,7 @@ static int bar_width(void) {
 
 // " about 40 s left": of this picture, and of the film's that follow. Empty while nothing is known.
 static void left_words(const CagProgress *p, double percent, char *out, size_t size) {
-  const double spent = now() - p->begun;
+  const double spent = cag_clock_seconds() - p->begun;
   out[0] = '\0';
   if (!(percent > 1) || spent < PACE_TIME) return;
   const double whole = 100 * spent / percent;
@@ -52,7 +47,7 @@ static void left_words(const CagProgress *p, double percent, char *out, size_t s
 }
 
 static void show_line(CagProgress *p, double percent, const char *phase) {
-  const double at = now();
+  const double at = cag_clock_seconds();
   const int part = (int)percent / LINE_PERCENT;
   if (part <= p->tenths && at - p->line_time < LINE_TIME) return;
   char left[64];
@@ -67,7 +62,7 @@ static void show_line(CagProgress *p, double percent, const char *phase) {
 void cag_progress_show(void *context, double percent, const char *phase) {
   CagProgress *p = context;
   if (!(p->begun > 0) || p->begun_frame != p->frame) {
-    p->begun = p->line_time = now();
+    p->begun = p->line_time = cag_clock_seconds();
     p->begun_frame = p->frame;
   }
   if (p->lines) {

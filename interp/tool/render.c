@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "interp/clock.h"
 #include "interp/tool/frames.h"
 #include "interp/tool/progress.h"
 #include "interp/tool/tool.h"
@@ -29,12 +29,6 @@ typedef struct {
   CagProgress progress;
   double frames; // length of the film
 } Film;
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // --- The command line ---
 
@@ -170,7 +164,7 @@ static int render_to_output(Film *f) {
 static int render_frame(Film *f, long frame) {
   const CagTool *t = f->tool;
   char path[PATH_MAX];
-  const double begun = now();
+  const double begun = cag_clock_seconds();
   snprintf(path, sizeof path, "%s", t->output);
   if (t->has_frames && !cag_frames_name(t->output, frame, path, sizeof path))
     return cag_tool_fail(t, CAG_STATUS_FILE, NULL, "the name of frame %ld is too long", frame);
@@ -189,7 +183,7 @@ static int render_frame(Film *f, long frame) {
   cag_progress_end(&f->progress);
   status = cag_tool_finish(f->tool, f->session, status);
   if (status == CAG_STATUS_OK && t->verbose)
-    cag_tool_say(t, "wrote %s in %.1f s", path, now() - begun);
+    cag_tool_say(t, "wrote %s in %.1f s", path, cag_clock_seconds() - begun);
   return status;
 }
 

@@ -8,9 +8,9 @@
 #include <strings.h>
 #include <sys/ioctl.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "interp/clock.h"
 #include "interp/tool/progress.h"
 #include "interp/tool/repl.h"
 #include "lang/diagnostic.h"
@@ -273,16 +273,10 @@ static bool ask(CagRepl *repl, const char *command, const char *text, bool only_
 
 static void show_type(CagRepl *repl, char *text) { ask(repl, ":type", text, true); }
 
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static void show_time(CagRepl *repl, char *text) {
-  double begin = now();
+  double begin = cag_clock_seconds();
   if (!ask(repl, ":time", text, false)) return;
-  double seconds = now() - begin;
+  double seconds = cag_clock_seconds() - begin;
   if (seconds < 1) printf("%.3g ms\n", seconds * 1e3);
   else printf("%.3g s\n", seconds);
 }

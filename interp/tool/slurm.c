@@ -15,6 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "interp/clock.h"
 #include "interp/render/atomic_file.h"
 #include "interp/tool/batch_child.h"
 #include "interp/tool/batch_progress.h"
@@ -295,7 +296,7 @@ static int ask(Array *a, bool *silent) {
                          name,     "--format=%K %T", NULL};
   const int code = cag_child_run(words, ANSWER_LIMIT, &cag_tool_interrupt, &said);
   int status = CAG_STATUS_OK;
-  const double now = cag_child_now();
+  const double now = cag_clock_seconds();
   a->asked = now;
   if (code == 0) {
     a->answered = now;
@@ -323,7 +324,7 @@ static int follow(Array *a, bool *over) {
   size_t open;
   bool silent = false;
   *over = false;
-  a->answered = cag_child_now();
+  a->answered = cag_clock_seconds();
   cag_batch_progress_begin(&a->progress, a->batch);
   int status = collect(a, &open);
   while (status == CAG_STATUS_OK && open && !silent) {
@@ -331,7 +332,7 @@ static int follow(Array *a, bool *over) {
       cag_batch_progress_clear(&a->progress);
       return tell_interrupted(a);
     }
-    if (cag_child_now() - a->asked > ASK_INTERVAL) status = ask(a, &silent);
+    if (cag_clock_seconds() - a->asked > ASK_INTERVAL) status = ask(a, &silent);
     cag_batch_progress_show(&a->progress, a->batch, open);
     poll(NULL, 0, LOOK_INTERVAL);
     if (status == CAG_STATUS_OK) status = collect(a, &open);
