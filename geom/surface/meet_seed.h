@@ -20,15 +20,29 @@ typedef struct CagMarchNode {
   size_t patch[2][2]; // they lie in, by u and v
 } CagMarchNode;
 
-typedef struct CagMarch {
+typedef enum CagMarchFound {
+  CAG_MARCH_FOUND,
+  CAG_MARCH_NONE,
+  CAG_MARCH_TANGENT, // a place without a direction
+  CAG_MARCH_FAILED
+} CagMarchFound;
+
+typedef struct CagMarch CagMarch;
+// The place of a curve in the plane through q that is normal to n (n zero: the nearest to where
+// they are), from the node's parameters; its tangent is turned to `along`.
+typedef CagMarchFound CagMarchLocate(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 along,
+                                     CagMarchNode *node);
+
+struct CagMarch {
   CagMarchSide side[2];
   double size, tolerance, step_most, step_first;
   CagMarchNode *seeds;
   size_t seed_count, seed_capacity, touching;
+  CagMarchLocate *locate; // of crossings, or of touches
   const volatile int *interrupt;
   CagError *err;
   CagStatus status; // of what failed for good
-} CagMarch;
+};
 
 // Gives false, with the status of what failed for good.
 bool cag_march_fail(CagMarch *m, CagStatus status);

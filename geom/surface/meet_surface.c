@@ -19,7 +19,7 @@
 #include <stdlib.h>
 
 #include "geom/mesh/tessellate.h"
-#include "geom/surface/meet_seed.h"
+#include "geom/surface/meet_place.h"
 #include "geom/surface/nearest.h"
 #include "geom/surface/trimmed.h"
 
@@ -28,14 +28,11 @@
 #define SEED_EDGE (1.0 / 25)
 #define STEP_MOST (1.0 / 12)
 #define STEP_FIRST (1.0 / 100)
-// Parts of the size of both: where two points are one, the shortest step, ends that are joined.
-#define SAME 1e-11
+// Parts of the size of both: the shortest step, ends that are joined.
 #define STEP_LEAST 1e-9
 #define JOINED 1e-7
 // Part of a patch's width up to which the end of a run lies on its edge.
 #define BESIDE 1e-7
-// Sine of the angle of the normals below which the surfaces touch.
-#define TOUCH 1e-6
 // Surfaces share a piece where, all about a place at which they touch, to this part of the longest
 // step, they are no farther apart than that part of the size.
 #define COMMON_REACH 0.25
@@ -47,7 +44,6 @@
 // triangles.
 #define APART_MOST 1000
 #define NODES_MOST 200000
-#define NEWTON_STEPS 40
 #define SEED_TRIANGLES 4000000
 
 typedef struct Run {
@@ -56,129 +52,6 @@ typedef struct Run {
   size_t n, capacity;
   bool closed;
 } Run;
-
-// --- Places ---
-
-typedef struct Tangential {
-  CagVec3 p, du, dv, normal;
-} Tangential;
-
-// What side k is like at the node, seen from the node's patch.
-static bool look(CagMarch *m, int k, const CagMarchNode *node, Tangential *out) {
-  const CagSurface *s = m->side[k].s;
-  const double *at = node->at[k];
-  const bool last[2] = {at[0] >= cag_march_range(m, k, node, 0)[1],
-                        at[1] >= cag_march_range(m, k, node, 1)[1]};
-  CagVec3 d[4];
-  CagStatus status = cag_surface_eval(s, at[0], at[1], 1, last[0] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
-                                      last[1] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, m->err);
-  if (status) return cag_march_fail(m, status);
-  *out = (Tangential){.p = d[0], .du = d[cag_partial(1, 1, 0)], .dv = d[cag_partial(1, 0, 1)]};
-  out->normal = cag_unit(cag_cross(out->du, out->dv));
-  // At poles the normal is a limit.
-  if (cag_norm(out->normal) == 0) {
-    CagError ignored;
-    if (cag_surface_normal(s, at[0], at[1], &out->normal, &ignored) != CAG_OK)
-      out->normal = cag_vec3(0, 0, 0);
-  }
-  return true;
-}
-
-static double stepped(double x, double d, double low, double high, bool closed) {
-  double range = high - low, y = x + fmin(fmax(d, -range / 4), range / 4);
-  if (closed && y < low) return y + range;
-  if (closed && y > high) return y - range;
-  return fmin(fmax(y, low), high);
-}
-
-// A step of u (or v) that would pass a pole goes on beyond it, where the other parameter is half
-// its range further.
-static bool pass_pole(CagMarch *m, int k, int d, double step, CagMarchNode *node) {
-  const CagSurface *s = m->side[k].s;
-  const double *own = cag_march_range(m, k, node, d), *other = cag_march_range(m, k, node, 1 - d);
-  const bool pole_low = d ? s->pole_v0 : s->pole_u0, pole_high = d ? s->pole_v1 : s->pole_u1;
-  double *at = node->at[k], y = at[d] + step, range = other[1] - other[0];
-  if (!m->side[k].patches.wraps[1 - d]) return false;
-  if (y < own[0] && pole_low && own[0] == (d ? s->v0 : s->u0)) at[d] = fmin(2 * own[0] - y, own[1]);
-  else if (y > own[1] && pole_high && own[1] == (d ? s->v1 : s->u1))
-    at[d] = fmax(2 * own[1] - y, own[0]);
-  else return false;
-  at[1 - d] += at[1 - d] + range / 2 > other[1] ? -range / 2 : range / 2;
-  return true;
-}
-
-// Moves the parameters so that the point comes to x, as far as the tangent plane tells.
-static void move_to(CagMarch *m, int k, const Tangential *t, CagVec3 x, CagMarchNode *node) {
-  CagVec3 r = cag_sub(x, t->p);
-  double a = cag_dot(t->du, t->du), b = cag_dot(t->du, t->dv), c = cag_dot(t->dv, t->dv);
-  double damping = 1e-14 * (a + c) + DBL_MIN;
-  double det = (a + damping) * (c + damping) - b * b;
-  double g = cag_dot(r, t->du), h = cag_dot(r, t->dv);
-  double du = ((c + damping) * g - b * h) / det, dv = ((a + damping) * h - b * g) / det;
-  if (pass_pole(m, k, 0, du, node) || pass_pole(m, k, 1, dv, node)) return;
-  for (int d = 0; d < 2; d++) {
-    const double *range = cag_march_range(m, k, node, d);
-    node->at[k][d] =
-        stepped(node->at[k][d], d ? dv : du, range[0], range[1], m->side[k].patches.wraps[d]);
-  }
-}
-
-typedef enum Found { FOUND, NONE, TANGENT, FAILED } Found;
-
-// The place of both surfaces in the plane through q that is normal to n (n zero: the nearest to
-// where they are), from the node's parameters; its tangent is turned to `along`.
-static Found locate(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 along, CagMarchNode *node) {
-  double last = INFINITY;
-  for (int i = 0; i < NEWTON_STEPS; i++) {
-    Tangential t[2];
-    if (!look(m, 0, node, &t[0]) || !look(m, 1, node, &t[1])) return FAILED;
-    CagVec3 middle = cag_lerp(t[0].p, t[1].p, 0.5);
-    CagVec3 cross = cag_cross(t[0].normal, t[1].normal);
-    double gap = cag_norm(cag_sub(t[0].p, t[1].p));
-    bool planar = cag_norm(n) > 0;
-    double off = planar ? fabs(cag_dot(n, cag_sub(middle, q))) : 0;
-    if (gap + off <= SAME * m->size && (gap + off >= last || gap + off == 0)) {
-      if (cag_norm(cross) < TOUCH) return TANGENT;
-      node->x = middle;
-      node->tangent = cag_unit(cross);
-      if (cag_dot(node->tangent, along) < 0) node->tangent = cag_scaled(node->tangent, -1);
-      return FOUND;
-    }
-    if (i > 8 && gap + off > last / 2 && gap + off > SAME * m->size) return NONE;
-    last = fmin(last, gap + off);
-    // The point of three planes: both tangent planes and the given one, or the one across.
-    CagVec3 third = planar ? n : cag_unit(cross), through = planar ? q : middle;
-    CagVec3 c0 = cag_cross(t[1].normal, third), c1 = cag_cross(third, t[0].normal);
-    double det = cag_dot(t[0].normal, c0);
-    CagVec3 x;
-    if (fabs(det) < TOUCH * TOUCH) {
-      // Parallel planes: the middle, in the given plane.
-      x = planar ? cag_madd(middle, cag_dot(n, cag_sub(q, middle)), n) : middle;
-    } else {
-      x = cag_scaled(c0, cag_dot(t[0].normal, cag_sub(t[0].p, middle)));
-      x = cag_madd(x, cag_dot(t[1].normal, cag_sub(t[1].p, middle)), c1);
-      x = cag_madd(x, cag_dot(third, cag_sub(through, middle)), cross);
-      x = cag_madd(middle, 1 / det, x);
-    }
-    for (int k = 0; k < 2; k++) move_to(m, k, &t[k], x, node);
-  }
-  return NONE;
-}
-
-static bool belongs_to(CagMarch *m, int k, const CagMarchNode *node, bool *out) {
-  const CagVec3 p = cag_vec3(node->at[k][0], node->at[k][1], 0);
-  *out = true;
-  if (!m->side[k].region) return true;
-  CagStatus status = cag_region_contains(m->side[k].region, p, out, m->err);
-  return status == CAG_OK || cag_march_fail(m, status);
-}
-
-static bool belongs(CagMarch *m, const CagMarchNode *node) {
-  bool inside;
-  for (int k = 0; k < 2; k++)
-    if (!belongs_to(m, k, node, &inside) || !inside) return false;
-  return true;
-}
 
 // --- Runs ---
 
@@ -212,10 +85,10 @@ typedef enum Step { STEPPED, TOO_LONG, ENDED, BROKEN } Step;
 static Step try_step(CagMarch *m, const CagMarchNode *a, double h, bool leap, CagMarchNode *b,
                      CagVec3 *middle) {
   *b = *a;
-  Found found = locate(m, cag_madd(a->x, h, a->tangent), a->tangent, a->tangent, b);
-  if (found == FAILED) return BROKEN;
-  if (found == NONE) return ENDED;
-  if (found == TANGENT) return TOO_LONG;
+  CagMarchFound found = m->locate(m, cag_madd(a->x, h, a->tangent), a->tangent, a->tangent, b);
+  if (found == CAG_MARCH_FAILED) return BROKEN;
+  if (found == CAG_MARCH_NONE) return ENDED;
+  if (found == CAG_MARCH_TANGENT) return TOO_LONG;
   CagVec3 d = cag_sub(b->x, a->x);
   if (cag_dot(a->tangent, b->tangent) < TURN_MOST || cag_norm(d) > 1.1 * h) return TOO_LONG;
   // The cubic's chord length is its parameter: the speed of arcs, to their third order.
@@ -223,18 +96,19 @@ static Step try_step(CagMarch *m, const CagMarchNode *a, double h, bool leap, Ca
   CagMarchNode between = *a;
   *middle = guess;
   if (leap) return STEPPED;
-  found = locate(m, guess, cag_unit(d), a->tangent, &between);
-  if (found == FAILED) return BROKEN;
-  if (found != FOUND) return TOO_LONG;
+  found = m->locate(m, guess, cag_unit(d), a->tangent, &between);
+  if (found == CAG_MARCH_FAILED) return BROKEN;
+  if (found != CAG_MARCH_FOUND) return TOO_LONG;
   *middle = between.x;
   if (cag_norm(cag_sub(guess, between.x)) > m->tolerance / 2) return TOO_LONG;
   // Where the curve bends both ways the cubic may pass its middle, but not the quarters.
   for (int i = 1; i < 4; i += 2) {
     CagMarchNode quarter = between;
     guess = hermite(a, b, i / 4.0);
-    found = locate(m, guess, cag_unit(d), a->tangent, &quarter);
-    if (found == FAILED) return BROKEN;
-    if (found != FOUND || cag_norm(cag_sub(guess, quarter.x)) > m->tolerance) return TOO_LONG;
+    found = m->locate(m, guess, cag_unit(d), a->tangent, &quarter);
+    if (found == CAG_MARCH_FAILED) return BROKEN;
+    if (found != CAG_MARCH_FOUND || cag_norm(cag_sub(guess, quarter.x)) > m->tolerance)
+      return TOO_LONG;
   }
   return STEPPED;
 }
@@ -263,10 +137,10 @@ static bool is_on_both(CagMarch *m, const CagMarchNode *node, CagVec3 x) {
     CagMarchNode n = *node;
     double off = INFINITY;
     for (int i = 0; i < STEPS && off > m->tolerance; i++) {
-      Tangential t;
-      if (!look(m, k, &n, &t)) return false;
+      CagMarchTangent t;
+      if (!cag_march_look(m, k, &n, &t)) return false;
       off = cag_norm(cag_sub(t.p, x));
-      move_to(m, k, &t, x, &n);
+      cag_march_move(m, k, &t, x, &n);
     }
     if (off > m->tolerance) return false;
   }
@@ -311,7 +185,7 @@ static bool add_end(CagMarch *m, Run *run, double h) {
   CagMarchNode a = run->nodes[run->n - 1], last = a;
   double low = 0, high = h;
   CagVec3 middle;
-  for (int i = 0; i < halvings && high - low > SAME * m->size; i++) {
+  for (int i = 0; i < halvings && high - low > CAG_MARCH_SAME * m->size; i++) {
     CagMarchNode b;
     double half = (low + high) / 2;
     Step step = try_step(m, &a, half, true, &b, &middle);
@@ -326,7 +200,7 @@ static bool add_end(CagMarch *m, Run *run, double h) {
   }
   CagMarchNode between = a;
   middle = hermite(&a, &last, 0.5);
-  if (locate(m, middle, cag_unit(cag_sub(last.x, a.x)), a.tangent, &between) == FOUND)
+  if (m->locate(m, middle, cag_unit(cag_sub(last.x, a.x)), a.tangent, &between) == CAG_MARCH_FOUND)
     middle = between.x;
   return m->status == CAG_OK && add_node(m, run, &last, middle);
 }
@@ -340,19 +214,21 @@ static bool move_to_edge(CagMarch *m, int k, int d, double edge, CagMarchNode *e
   double gap = INFINITY;
   node.at[k][d] = edge;
   for (int i = 0; i < STEPS; i++) {
-    Tangential own, other;
-    if (!look(m, k, &node, &own) || !look(m, 1 - k, &node, &other)) return false;
+    CagMarchTangent own, other;
+    if (!cag_march_look(m, k, &node, &own) || !cag_march_look(m, 1 - k, &node, &other))
+      return false;
     const CagVec3 along = d ? own.du : own.dv;
     const double rate = cag_dot(other.normal, along);
-    if (fabs(rate) <= TOUCH * cag_norm(along)) return true;
+    if (fabs(rate) <= CAG_MARCH_TOUCH * cag_norm(along)) return true;
     const double *range = cag_march_range(m, k, &node, 1 - d);
     const double step = cag_dot(other.normal, cag_sub(other.p, own.p)) / rate;
     gap = cag_norm(cag_sub(own.p, other.p));
     x = own.p;
     node.at[k][1 - d] = fmin(fmax(node.at[k][1 - d] + step, range[0]), range[1]);
-    move_to(m, 1 - k, &other, cag_madd(own.p, step, along), &node);
+    cag_march_move(m, 1 - k, &other, cag_madd(own.p, step, along), &node);
   }
-  if (gap > SAME * m->size || cag_norm(cag_sub(x, end->x)) > JOINED * m->size) return true;
+  if (gap > CAG_MARCH_SAME * m->size || cag_norm(cag_sub(x, end->x)) > JOINED * m->size)
+    return true;
   node.x = x;
   *end = node;
   return true;
@@ -398,7 +274,8 @@ static bool go_on(CagMarch *m, Run *run) {
         run->nodes[run->n - 1] = home;
         return true;
       }
-      if (locate(m, guess, cag_unit(d), a.tangent, &between) == FOUND) guess = between.x;
+      if (m->locate(m, guess, cag_unit(d), a.tangent, &between) == CAG_MARCH_FOUND)
+        guess = between.x;
       return m->status == CAG_OK && add_node(m, run, &home, guess);
     }
     if (!add_node(m, run, &b, middle)) return m->status == CAG_OK;
@@ -525,11 +402,12 @@ static bool find_border(CagMarch *m, CagMarchNode inside, CagMarchNode outside, 
   const int halvings = 48;
   for (int i = 0; i < halvings; i++) {
     CagVec3 d = cag_sub(outside.x, inside.x);
-    if (cag_norm(d) <= SAME * m->size) break;
+    if (cag_norm(d) <= CAG_MARCH_SAME * m->size) break;
     CagMarchNode half = inside;
-    if (locate(m, hermite(&inside, &outside, 0.5), cag_unit(d), inside.tangent, &half) != FOUND)
+    if (m->locate(m, hermite(&inside, &outside, 0.5), cag_unit(d), inside.tangent, &half) !=
+        CAG_MARCH_FOUND)
       break;
-    if (belongs(m, &half)) inside = half;
+    if (cag_march_belongs(m, &half)) inside = half;
     else outside = half;
     if (m->status) return false;
   }
@@ -545,7 +423,7 @@ static bool add_parts(CagMarch *m, const Run *run, CagCurveList *out) {
   bool ok = true, whole = run->closed, was = false;
   for (size_t i = 0; ok && i < run->n; i++) {
     const CagMarchNode *node = &run->nodes[i];
-    bool is = belongs(m, node);
+    bool is = cag_march_belongs(m, node);
     CagMarchNode border;
     if (m->status) ok = false;
     whole = whole && is;
@@ -583,7 +461,7 @@ static bool is_shared(CagMarch *m, const double at[2], bool *known, bool *out) {
   *known = false;
   for (int d = 0; d < 2; d++)
     if (!(at[d] >= low[d] && at[d] <= high[d])) return true;
-  if (!belongs_to(m, 0, &place, &inside) || !inside) return m->status == CAG_OK;
+  if (!cag_march_belongs_to(m, 0, &place, &inside) || !inside) return m->status == CAG_OK;
   CagVec3 p;
   CagSurfaceNearest nearest;
   CagStatus status = cag_surface_point(a, at[0], at[1], &p, m->err);
@@ -599,10 +477,10 @@ static bool is_shared(CagMarch *m, const double at[2], bool *known, bool *out) {
 // away as surfaces part that touch to the third order.
 static bool is_common(CagMarch *m, const CagMarchNode *node, bool *out) {
   enum { DIRECTIONS = 10, RINGS = 2 };
-  Tangential t;
+  CagMarchTangent t;
   int tried = 0;
   *out = false;
-  if (!look(m, 0, node, &t)) return false;
+  if (!cag_march_look(m, 0, node, &t)) return false;
   for (int i = 0; i < DIRECTIONS * RINGS; i++) {
     const double reach = COMMON_REACH * m->step_most * (1 + i / DIRECTIONS) / RINGS;
     const double angle = 2 * M_PI * (i + 0.25) / DIRECTIONS;
@@ -625,9 +503,9 @@ static bool find_common(CagMarch *m, bool *out) {
   for (size_t i = 0; !*out && i < m->seed_count; i++) {
     CagMarchNode seed = m->seeds[i];
     const CagVec3 none = {0, 0, 0};
-    Found how = locate(m, seed.x, none, none, &seed);
-    if (how == FAILED) return false;
-    if (how == TANGENT && found++ % every == 0 && !is_common(m, &seed, out)) return false;
+    CagMarchFound how = m->locate(m, seed.x, none, none, &seed);
+    if (how == CAG_MARCH_FAILED) return false;
+    if (how == CAG_MARCH_TANGENT && found++ % every == 0 && !is_common(m, &seed, out)) return false;
   }
   return true;
 }
@@ -665,9 +543,9 @@ static bool keep_run(CagMarch *m, Runs *runs, Run *run) {
 
 static bool march_from(CagMarch *m, Runs *runs, CagMarchNode seed) {
   const CagVec3 none = {0, 0, 0};
-  const Found found = locate(m, seed.x, none, none, &seed);
-  m->touching += found == TANGENT;
-  if (found != FOUND) return found != FAILED;
+  const CagMarchFound found = m->locate(m, seed.x, none, none, &seed);
+  m->touching += found == CAG_MARCH_TANGENT;
+  if (found != CAG_MARCH_FOUND) return found != CAG_MARCH_FAILED;
   for (size_t k = 0; k < runs->n; k++)
     if (has_seed(m, &runs->items[k], &seed)) return true;
   Run run = {0};
@@ -728,7 +606,7 @@ static CagStatus prepare(CagMarch *m, const CagSurface *a, const CagSurface *b, 
 
 CagStatus cag_surface_intersect(const CagSurface *a, const CagSurface *b, double tolerance,
                                 const volatile int *interrupt, CagCurveList *out, CagError *err) {
-  CagMarch m = {.interrupt = interrupt, .err = err};
+  CagMarch m = {.locate = cag_march_locate_crossing, .interrupt = interrupt, .err = err};
   CagStatus status = prepare(&m, a, b, tolerance, err);
   size_t first = out->count;
   if (!status && !m.side[0].mesh) return CAG_OK; // one is a point
