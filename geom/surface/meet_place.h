@@ -25,5 +25,7 @@ bool cag_march_belongs(CagMarch *m, const CagMarchNode *node);
 // Functions to stand in `locate` of a march.
 CagMarchFound cag_march_locate_crossing(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 along,
                                         CagMarchNode *node);
+CagMarchFound cag_march_locate_touch(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 along,
+                                     CagMarchNode *node);
 
 #endif

@@ -1,5 +1,5 @@
 // Seeds of the curves in which two surfaces meet: all pairs of triangles of their meshes whose
-// boxes meet, swept along x.
+// boxes meet, swept along an axis.
 
 #include "geom/surface/meet_seed.h"
 
@@ -36,7 +36,9 @@ static void corner_parameters(const CagMarchSide *side, const uint32_t *corner, 
 typedef struct Facet {
   CagVec3 p[3];
   double at[3][2];
+  CagVec3 normal; // unit, or zero
   CagBounds box;
+  double low, high; // along the axis of the sweep
 } Facet;
 
 static Facet facet_of(const CagMarchSide *side, size_t i) {
@@ -46,6 +48,7 @@ static Facet facet_of(const CagMarchSide *side, size_t i) {
     f.p[k] = side->mesh->positions[corner[k]];
     cag_bounds_add(&f.box, f.p[k]);
   }
+  f.normal = cag_unit(cag_cross(cag_sub(f.p[1], f.p[0]), cag_sub(f.p[2], f.p[0])));
   corner_parameters(side, corner, f.at);
   return f;
 }
@@ -103,15 +106,15 @@ static double into(double x, double low, double high, bool closed) {
   return fmin(fmax(x, low), high);
 }
 
-bool cag_march_add_seed(CagMarch *m, const CagMarchNode *seed) {
-  if (m->seed_count == m->seed_capacity) {
-    size_t capacity = m->seed_capacity ? 2 * m->seed_capacity : 256;
-    CagMarchNode *grown = realloc(m->seeds, capacity * sizeof *grown);
+bool cag_march_add_seed(CagMarch *m, CagMarchSeeds *list, const CagMarchNode *seed) {
+  if (list->count == list->capacity) {
+    const size_t capacity = list->capacity ? 2 * list->capacity : 256;
+    CagMarchNode *grown = realloc(list->items, capacity * sizeof *grown);
     if (!grown) return cag_march_fail(m, cag_fail_memory(m->err));
-    m->seeds = grown;
-    m->seed_capacity = capacity;
+    list->items = grown;
+    list->capacity = capacity;
   }
-  m->seeds[m->seed_count++] = *seed;
+  list->items[list->count++] = *seed;
   return true;
 }
 
@@ -137,45 +140,161 @@ static bool add_seed(CagMarch *m, const Facet *f, const Facet *g) {
       settle(m, k, k ? g : f, d, &sum);
     }
   sum.x = cag_scaled(sum.x, 1.0 / count);
-  return cag_march_add_seed(m, &sum);
+  return cag_march_add_seed(m, &m->crossings, &sum);
 }
 
-static bool apart(const CagBounds *a, const CagBounds *b) {
-  return a->min.x > b->max.x || b->min.x > a->max.x || a->min.y > b->max.y || b->min.y > a->max.y ||
-         a->min.z > b->max.z || b->min.z > a->max.z;
+// --- Seeds of touches ---
+
+// cos 37 degrees: normals of facets about a touch differ by no more.
+#define PARALLEL 0.8
+// Parts of the longest step: of the cells in which one seed is enough.
+#define CELL (1.0 / 8)
+
+// Whether all corners of f lie farther than the margin on one side of the plane of g.
+static bool is_beyond(const Facet *f, const Facet *g, double margin) {
+  double low = INFINITY, high = -INFINITY;
+  for (int k = 0; k < 3; k++) {
+    const double h = cag_dot(g->normal, cag_sub(f->p[k], g->p[0]));
+    low = fmin(low, h);
+    high = fmax(high, h);
+  }
+  return low > margin || high < -margin;
+}
+
+// The point of the facet near x, and its parameters.
+static CagVec3 foot_on(const Facet *f, CagVec3 x, double at[2]) {
+  const CagVec3 e1 = cag_sub(f->p[1], f->p[0]), e2 = cag_sub(f->p[2], f->p[0]),
+                n = cag_cross(e1, e2), r = cag_sub(x, f->p[0]);
+  const double nn = cag_dot(n, n);
+  double b = fmax(0, cag_dot(cag_cross(r, e2), n) / nn),
+         c = fmax(0, cag_dot(cag_cross(e1, r), n) / nn);
+  if (b + c > 1) {
+    const double sum = b + c;
+    b /= sum;
+    c /= sum;
+  }
+  for (int d = 0; d < 2; d++)
+    at[d] = f->at[0][d] + b * (f->at[1][d] - f->at[0][d]) + c * (f->at[2][d] - f->at[0][d]);
+  return cag_madd(cag_madd(f->p[0], b, e1), c, e2);
+}
+
+static bool add_touch_seed(CagMarch *m, const Facet *f, const Facet *g, double margin) {
+  if (!(fabs(cag_dot(f->normal, g->normal)) > PARALLEL) || is_beyond(f, g, margin) ||
+      is_beyond(g, f, margin))
+    return true;
+  CagMarchNode seed = {0};
+  const CagVec3 middle = cag_scaled(cag_add(f->p[0], cag_add(f->p[1], f->p[2])), 1.0 / 3);
+  const CagVec3 on_g = foot_on(g, middle, seed.at[1]), on_f = foot_on(f, on_g, seed.at[0]);
+  seed.x = cag_lerp(on_f, on_g, 0.5);
+  for (int k = 0; k < 2; k++)
+    for (int d = 0; d < 2; d++) settle(m, k, k ? g : f, d, &seed);
+  return cag_march_add_seed(m, &m->touches, &seed);
+}
+
+// A seed's patches, its cell of space, and its number.
+typedef struct CellSeed {
+  size_t patch[4];
+  double cell[3];
+  size_t number;
+} CellSeed;
+
+static int compare_cells(const CellSeed *x, const CellSeed *y) {
+  for (int k = 0; k < 4; k++)
+    if (x->patch[k] != y->patch[k]) return x->patch[k] > y->patch[k] ? 1 : -1;
+  for (int k = 0; k < 3; k++)
+    if (x->cell[k] != y->cell[k]) return x->cell[k] > y->cell[k] ? 1 : -1;
+  return 0;
+}
+
+static int by_cell(const void *a, const void *b) {
+  const CellSeed *x = a, *y = b;
+  const int order = compare_cells(x, y);
+  return order ? order : (x->number > y->number) - (x->number < y->number);
+}
+
+// Keeps the first seed of each cell.
+static bool thin_seeds(CagMarch *m, CagMarchSeeds *seeds) {
+  const double width = CELL * m->step_most;
+  CellSeed *list = malloc((seeds->count + 1) * sizeof *list);
+  CagMarchNode *kept = malloc((seeds->count + 1) * sizeof *kept);
+  size_t n = 0;
+  for (size_t i = 0; list && i < seeds->count; i++) {
+    const CagMarchNode *s = &seeds->items[i];
+    list[i] = (CellSeed){{s->patch[0][0], s->patch[0][1], s->patch[1][0], s->patch[1][1]},
+                         {floor(s->x.x / width), floor(s->x.y / width), floor(s->x.z / width)},
+                         i};
+  }
+  const bool ok = list && kept;
+  if (ok && seeds->count) qsort(list, seeds->count, sizeof *list, by_cell);
+  for (size_t i = 0; ok && i < seeds->count; i++)
+    if (i == 0 || compare_cells(&list[i - 1], &list[i]) != 0)
+      kept[n++] = seeds->items[list[i].number];
+  free(list);
+  if (!ok) {
+    free(kept);
+    return cag_march_fail(m, cag_fail_memory(m->err));
+  }
+  free(seeds->items);
+  *seeds = (CagMarchSeeds){kept, n, seeds->count + 1};
+  return true;
+}
+
+// --- Pairs of facets ---
+
+// Whether boxes are farther apart than the margin.
+static bool are_apart(const CagBounds *a, const CagBounds *b, double margin) {
+  return a->min.x > b->max.x + margin || b->min.x > a->max.x + margin ||
+         a->min.y > b->max.y + margin || b->min.y > a->max.y + margin ||
+         a->min.z > b->max.z + margin || b->min.z > a->max.z + margin;
+}
+
+static bool add_seeds(CagMarch *m, const Facet *f, const Facet *g, double margin) {
+  if (are_apart(&f->box, &g->box, margin)) return true;
+  return (are_apart(&f->box, &g->box, 0) || add_seed(m, f, g)) && add_touch_seed(m, f, g, margin);
 }
 
 static int by_low(const void *a, const void *b) {
   const Facet *x = a, *y = b;
-  return (x->box.min.x > y->box.min.x) - (x->box.min.x < y->box.min.x);
+  return (x->low > y->low) - (x->low < y->low);
 }
 
-static double low_of(const Facet *f) { return f->box.min.x; }
+static double component(CagVec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-// All pairs of triangles whose boxes meet, swept along x.
-bool cag_march_find_seeds(CagMarch *m) {
+// The axis along which the mesh is longest.
+static int longest_axis(const CagMesh *mesh) {
+  const CagBounds box = cag_mesh_bounds(mesh);
+  const CagVec3 d = cag_sub(box.max, box.min);
+  return d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
+}
+
+bool cag_march_find_seeds(CagMarch *m, double margin) {
   Facet *list[2] = {NULL, NULL};
   size_t n[2], first = 0;
   bool ok = true;
+  const int axis = longest_axis(m->side[0].mesh);
   for (int k = 0; k < 2; k++) {
     n[k] = m->side[k].mesh->triangle_count;
     list[k] = malloc((n[k] + 1) * sizeof *list[k]);
     ok = ok && list[k];
-    for (size_t i = 0; ok && i < n[k]; i++) list[k][i] = facet_of(&m->side[k], i);
+    for (size_t i = 0; ok && i < n[k]; i++) {
+      list[k][i] = facet_of(&m->side[k], i);
+      list[k][i].low = component(list[k][i].box.min, axis);
+      list[k][i].high = component(list[k][i].box.max, axis);
+    }
     if (ok && n[k]) qsort(list[k], n[k], sizeof *list[k], by_low);
   }
   if (!ok) cag_march_fail(m, cag_fail_memory(m->err));
-  // The longest reach along x of a facet of the second tells how far back others may begin.
-  double reach = 0;
+  // The longest reach along the axis of a facet of the second tells how far back others may begin.
+  double reach = margin;
   for (size_t i = 0; ok && i < n[1]; i++)
-    reach = fmax(reach, list[1][i].box.max.x - list[1][i].box.min.x);
+    reach = fmax(reach, list[1][i].high - list[1][i].low + margin);
   for (size_t i = 0; ok && i < n[0]; i++) {
     const Facet *f = &list[0][i];
-    while (first < n[1] && low_of(&list[1][first]) < f->box.min.x - reach) first++;
-    for (size_t j = first; ok && j < n[1] && low_of(&list[1][j]) <= f->box.max.x; j++)
-      if (!apart(&f->box, &list[1][j].box)) ok = add_seed(m, f, &list[1][j]);
+    while (first < n[1] && list[1][first].low < f->low - reach) first++;
+    for (size_t j = first; ok && j < n[1] && list[1][j].low <= f->high + margin; j++)
+      ok = add_seeds(m, f, &list[1][j], margin);
   }
   free(list[0]);
   free(list[1]);
-  return ok;
+  return ok && thin_seeds(m, &m->touches);
 }

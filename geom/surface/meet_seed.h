@@ -1,5 +1,5 @@
 // What marching along the curves in which two surfaces meet begins from: seeds, where the triangles
-// of their meshes meet.
+// of their meshes meet or are near to each other.
 
 #ifndef CAG_GEOM_SURFACE_MEET_SEED_H
 #define CAG_GEOM_SURFACE_MEET_SEED_H
@@ -20,6 +20,11 @@ typedef struct CagMarchNode {
   size_t patch[2][2]; // they lie in, by u and v
 } CagMarchNode;
 
+typedef struct CagMarchSeeds {
+  CagMarchNode *items;
+  size_t count, capacity;
+} CagMarchSeeds;
+
 typedef enum CagMarchFound {
   CAG_MARCH_FOUND,
   CAG_MARCH_NONE,
@@ -35,10 +40,11 @@ typedef CagMarchFound CagMarchLocate(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 
 
 struct CagMarch {
   CagMarchSide side[2];
-  double size, tolerance, step_most, step_first;
-  CagMarchNode *seeds;
-  size_t seed_count, seed_capacity, touching;
-  CagMarchLocate *locate; // of crossings, or of touches
+  double size, tolerance, mesh_tolerance, step_most, step_first, least_run;
+  CagMarchSeeds crossings, touches; // that runs start from
+  CagMarchSeeds *seeds;             // of the runs that are marched
+  size_t touching;                  // seeds of crossings where the surfaces touch
+  CagMarchLocate *locate;           // of crossings, or of touches
   const volatile int *interrupt;
   CagError *err;
   CagStatus status; // of what failed for good
@@ -48,8 +54,9 @@ struct CagMarch {
 bool cag_march_fail(CagMarch *m, CagStatus status);
 // The range of the node's patch of side k in a direction: two values.
 const double *cag_march_range(const CagMarch *m, int k, const CagMarchNode *node, int direction);
-bool cag_march_add_seed(CagMarch *m, const CagMarchNode *seed);
-// Adds seeds where triangles meet, with their parameters on both sides.
-bool cag_march_find_seeds(CagMarch *m);
+bool cag_march_add_seed(CagMarch *m, CagMarchSeeds *list, const CagMarchNode *seed);
+// Adds seeds with their parameters on both sides: crossings where triangles meet, and touches where
+// triangles of nearly one direction are no farther apart than `margin`, one for each cell of space.
+bool cag_march_find_seeds(CagMarch *m, double margin);
 
 #endif

@@ -6,7 +6,8 @@
 // cubic through both ends, with their tangents, passes within the tolerance of the places in the
 // middle and at the quarters. A run ends where it comes home, where a surface ends, or where the
 // surfaces touch and have no direction; there one looks a little ahead, since two branches may
-// cross.
+// cross. Curves along which the surfaces touch are marched in the same way, from places where the
+// meshes are near to each other and nearly parallel; only how a place is found differs.
 //
 // A run stays in one patch of each surface: at a crease it ends as at an edge, and the end is a
 // seed in the patches beyond. So corners lie on the creases, and what is joined at last does not
@@ -37,6 +38,10 @@
 // step, they are no farther apart than that part of the size.
 #define COMMON_REACH 0.25
 #define COMMON 1e-9
+// Parts of the meshes' tolerance within which they are near a touch, and of the size below which a
+// run along which surfaces touch is a single place where they do.
+#define TOUCH_MARGIN 3
+#define TOUCH_LEAST 1e-3
 // cos 12 degrees: a tangent turns by no more in one step.
 #define TURN_MOST 0.978
 #define DEFAULT_TOLERANCE 1e-6
@@ -325,7 +330,7 @@ static bool add_seeds_beside(CagMarch *m, const CagMarchNode *end) {
         seed.patch[k][d] = place->patch[d];
       }
     }
-    if (!cag_march_add_seed(m, &seed)) return false;
+    if (!cag_march_add_seed(m, m->seeds, &seed)) return false;
   }
   return true;
 }
@@ -500,8 +505,8 @@ static bool find_common(CagMarch *m, bool *out) {
   const size_t looks = 100;
   size_t found = 0, every = m->touching / looks + 1;
   *out = false;
-  for (size_t i = 0; !*out && i < m->seed_count; i++) {
-    CagMarchNode seed = m->seeds[i];
+  for (size_t i = 0; !*out && i < m->seeds->count; i++) {
+    CagMarchNode seed = m->seeds->items[i];
     const CagVec3 none = {0, 0, 0};
     CagMarchFound how = m->locate(m, seed.x, none, none, &seed);
     if (how == CAG_MARCH_FAILED) return false;
@@ -520,9 +525,14 @@ typedef struct Runs {
   size_t n, capacity;
 } Runs;
 
+static void free_runs(Runs *runs) {
+  for (size_t i = 0; i < runs->n; i++) free_run(&runs->items[i]);
+  free(runs->items);
+}
+
 // Takes the run over, unless it is a point or found already, and looks for what goes on from it.
 static bool keep_run(CagMarch *m, Runs *runs, Run *run) {
-  bool kept = run->n > 1 && reach_of(run, 0, run->n - 1) > JOINED * m->size;
+  bool kept = run->n > 1 && reach_of(run, 0, run->n - 1) > m->least_run;
   for (size_t k = 0; kept && k < runs->n; k++) kept = !is_twin(m, run, &runs->items[k]);
   if (kept && runs->n == runs->capacity) {
     size_t capacity = runs->capacity ? 2 * runs->capacity : 8;
@@ -554,15 +564,33 @@ static bool march_from(CagMarch *m, Runs *runs, CagMarchNode seed) {
   return false;
 }
 
-static bool march_all(CagMarch *m, CagCurveList *out) {
-  Runs runs = {0};
+static bool march_all(CagMarch *m, Runs *runs) {
   bool ok = true;
   // Runs add seeds.
-  for (size_t i = 0; ok && i < m->seed_count; i++) ok = march_from(m, &runs, m->seeds[i]);
-  for (size_t i = 0; ok && i < runs.n; i++) ok = add_parts(m, &runs.items[i], out);
-  for (size_t i = 0; i < runs.n; i++) free_run(&runs.items[i]);
-  free(runs.items);
+  for (size_t i = 0; ok && i < m->seeds->count; i++) ok = march_from(m, runs, m->seeds->items[i]);
   return ok;
+}
+
+static bool march_touches(CagMarch *m, Runs *runs) {
+  m->locate = cag_march_locate_touch;
+  m->least_run = TOUCH_LEAST * m->size;
+  m->seeds = &m->touches;
+  return march_all(m, runs);
+}
+
+static bool march_crossings(CagMarch *m, Runs *runs) {
+  m->locate = cag_march_locate_crossing;
+  m->least_run = JOINED * m->size;
+  m->touching = 0;
+  m->seeds = &m->crossings;
+  return march_all(m, runs);
+}
+
+// Touches come first: beside them the surfaces are so near to each other that they seem to cross,
+// but what lies on a known run is left alone.
+static bool find_runs(CagMarch *m, Runs *runs, bool *common) {
+  return cag_march_find_seeds(m, TOUCH_MARGIN * m->mesh_tolerance) && march_touches(m, runs) &&
+         march_crossings(m, runs) && (m->touching == 0 || find_common(m, common));
 }
 
 static CagStatus prepare(CagMarch *m, const CagSurface *a, const CagSurface *b, double tolerance,
@@ -581,6 +609,8 @@ static CagStatus prepare(CagMarch *m, const CagSurface *a, const CagSurface *b, 
   double smaller = fmin(size[0], size[1]);
   m->size = fmax(size[0], size[1]);
   m->tolerance = tolerance > 0 ? tolerance : DEFAULT_TOLERANCE * m->size;
+  m->least_run = JOINED * m->size;
+  m->mesh_tolerance = SEED_MESH * smaller;
   m->step_most = STEP_MOST * smaller;
   m->step_first = STEP_FIRST * smaller;
   if (!status && !(m->size <= APART_MOST * smaller))
@@ -593,7 +623,7 @@ static CagStatus prepare(CagMarch *m, const CagSurface *a, const CagSurface *b, 
                : CAG_OK;
   for (int k = 0; !status && k < 2; k++) {
     CagTessellation how = CAG_TESSELLATION_DEFAULT;
-    how.tolerance = SEED_MESH * smaller;
+    how.tolerance = m->mesh_tolerance;
     // Where it is the larger one, as fine as it would be alone.
     how.max_edge = fmax(SEED_EDGE * smaller, size[k] / 200);
     how.max_triangles = SEED_TRIANGLES;
@@ -609,18 +639,22 @@ CagStatus cag_surface_intersect(const CagSurface *a, const CagSurface *b, double
   CagMarch m = {.locate = cag_march_locate_crossing, .interrupt = interrupt, .err = err};
   CagStatus status = prepare(&m, a, b, tolerance, err);
   size_t first = out->count;
-  if (!status && !m.side[0].mesh) return CAG_OK; // one is a point
-  if (!status && (!cag_march_find_seeds(&m) || !march_all(&m, out))) status = m.status;
+  Runs runs = {0};
   bool common = false;
-  if (!status && m.touching && !find_common(&m, &common)) status = m.status;
+  if (!status && !m.side[0].mesh) return CAG_OK; // one is a point
+  if (!status && !find_runs(&m, &runs, &common)) status = m.status;
   if (!status && common)
     status = cag_fail(err, CAG_E_DEGENERATE, "overlap", "", -1,
                       "the surfaces share a piece: they meet in more than curves");
+  for (size_t i = 0; !status && i < runs.n; i++)
+    if (!add_parts(&m, &runs.items[i], out)) status = m.status;
   if (!status) status = cag_curve_list_join(out, first, JOINED * m.size, err);
+  free_runs(&runs);
   for (int k = 0; k < 2; k++) {
     cag_mesh_release(m.side[k].mesh);
     cag_patches_free(&m.side[k].patches);
   }
-  free(m.seeds);
+  free(m.crossings.items);
+  free(m.touches.items);
   return status;
 }

@@ -93,13 +93,16 @@ const CagBuiltin cag_builtins_meetings[] = {
      "Where the surface meets a curve: records of point, u, v, t of the curve, and multiplicity (2 "
      "where they touch), in the order of t. Where it meets another surface or a plane: curves, "
      "lines and conics exactly, others as "
-     "cubics within the tolerance (none: a millionth of the size). Surfaces that only touch have "
-     "none; loops much smaller than the surfaces may be missed. Where they share a piece it is an "
-     "error (overlap).",
+     "cubics within the tolerance (none: a millionth of the size). These are the curves where "
+     "they cross and the curves along which they touch; along the latter the normals of both are "
+     "parallel. Surfaces that touch at single points have no curve there, and loops much smaller "
+     "than the surfaces may be missed. Where they share a piece it is an error (overlap).",
      "c = intersect(sphere_surface(5), translate([0, 0, 3]) * bilinear([-9, -9], [-9, 9], [9, -9], "
      "[9, 9]))\n"
      "print len(c), near(length(c[0]), 8 * pi) // expect: 1 true\n"
      "m = intersect(sphere_surface(3), line([-9, 0, 0], [9, 0, 0]))\n"
-     "print len(m), near(m[0].point, [-3, 0, 0]), near(m[0].t, 1/3) // expect: 2 true true",
+     "print len(m), near(m[0].point, [-3, 0, 0]), near(m[0].t, 1/3) // expect: 2 true true\n"
+     "touch = intersect(sphere_surface(2), elliptic_cylinder(2, 2, within: -5..5))\n"
+     "print len(touch), near(length(touch[0]), 4 * pi) // expect: 1 true",
      CAG_TAKES(SURFACE), MEETINGS},
     {0}};
