@@ -1,0 +1,135 @@
+// Reports of the checker, and what it knows of names.
+
+#include "interp/check/walk.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// Definitions are walked where they are used first; a longer chain is not followed.
+#define DEPTH_MAX 1000
+
+// ---- reports ----
+
+CagDiagnostic *check_report(Check *c, CagErrorId id, CagSpan span, const char *message) {
+  if (c->unjudged) {
+    cag_diagnostics_clear(&c->ignored);
+    return cag_diagnostics_add(&c->ignored, id, c->ast->source, span, "%s", message);
+  }
+  return cag_diagnostics_add(&c->vm->errors, id, c->ast->source, span, "%s", message);
+}
+
+CagDiagnostic *check_warn(Check *c, CagErrorId id, CagSpan span, const char *message) {
+  CagDiagnostic *d = check_report(c, id, span, message);
+  d->severity = CAG_SEVERITY_WARNING;
+  return d;
+}
+
+void check_report_found(Check *c, CagErrorId id, CagSpan span, const char *wanted, CagTypes types) {
+  char found[256], text[512];
+  snprintf(text, sizeof text, "%s, found %s", wanted, cag_types_text(types, found, sizeof found));
+  check_report(c, id, span, text);
+}
+
+size_t check_error_count(const Check *c) { return c->vm->errors.count + c->vm->errors.dropped; }
+
+// ---- names ----
+
+static size_t slot_of(const Check *c, const CagDecl *decl) {
+  size_t i = ((size_t)decl >> 4) * 0x9E3779B97F4A7C15u >> 20 & (c->known_size - 1);
+  while (c->known[i].decl && c->known[i].decl != decl) i = (i + 1) & (c->known_size - 1);
+  return i;
+}
+
+void check_learn(Check *c, const CagDecl *decl, CagTypes types) {
+  if (!decl) return;
+  if (2 * (c->known_count + 1) > c->known_size) {
+    Check old = *c;
+    c->known_size = old.known_size ? 2 * old.known_size : 256;
+    c->known = cag_checked(calloc(c->known_size, sizeof *c->known));
+    for (size_t i = 0; i < old.known_size; i++)
+      if (old.known[i].decl) c->known[slot_of(c, old.known[i].decl)] = old.known[i];
+    free(old.known);
+  }
+  const size_t i = slot_of(c, decl);
+  c->known_count += !c->known[i].decl;
+  c->known[i] = (Known){decl, types};
+}
+
+static CagTypes types_known(const Check *c, const CagDecl *decl) {
+  if (!c->known_size) return CAG_TYPES_ANY;
+  const Known *k = &c->known[slot_of(c, decl)];
+  return k->decl ? k->types : CAG_TYPES_ANY;
+}
+
+static void use_top(Check *c, size_t used) {
+  if (c->edge_count == c->edge_capacity) {
+    c->edge_capacity = 2 * c->edge_capacity + 64;
+    c->edges = cag_checked(realloc(c->edges, 2 * c->edge_capacity * sizeof *c->edges));
+  }
+  c->edges[2 * c->edge_count] = c->top;
+  c->edges[2 * c->edge_count++ + 1] = used;
+}
+
+CagTypes check_types_of_top(Check *c, const CagDecl *decl) {
+  const size_t k = decl->index;
+  if (c->top_done[k]) return c->top_types[k];
+  if (c->top_busy[k] || c->depth > DEPTH_MAX) return CAG_TYPES_ANY;
+  const size_t outer = c->top, errors = check_error_count(c);
+  const CagStatement *s = decl->statement;
+  c->top_busy[k] = true;
+  c->depth++;
+  c->top = k;
+  c->top_types[k] =
+      check_infer(c, s->kind == CAG_STATEMENT_PARAM ? s->as.param.value : s->as.definition.value);
+  if (s->kind == CAG_STATEMENT_PARAM && s->as.param.domain) check_infer(c, s->as.param.domain);
+  c->top = outer;
+  c->depth--;
+  c->top_done[k] = true;
+  if (check_error_count(c) > errors) c->top_bad[k] = true;
+  return c->top_types[k];
+}
+
+const CagStatement *check_find_public(const Check *c, const CagStatement *import,
+                                      const char *name) {
+  if (!import || import->kind != CAG_STATEMENT_IMPORT || import->as.import.module == CAG_NO_MODULE)
+    return NULL;
+  const CagModuleUnit *m = c->vm->modules[import->as.import.module];
+  for (size_t i = 0; i < m->public_count; i++)
+    if (strcmp(m->publics[i].name, name) == 0) return m->publics[i].statement;
+  return NULL;
+}
+
+void check_deprecated(Check *c, const CagStatement *s, const char *name, CagSpan span) {
+  const char *said = s && s->doc ? strstr(s->doc, "deprecated:") : NULL;
+  if (!said) return;
+  said += strlen("deprecated:");
+  said += strspn(said, " ");
+  CagDiagnostic *d = cag_diagnostics_add(&c->vm->errors, CAG_ERR_deprecated, c->ast->source, span,
+                                         "%s is deprecated", name);
+  d->severity = CAG_SEVERITY_WARNING;
+  cag_diagnostic_set_help(d, "%.*s", (int)strcspn(said, "\n"), said);
+}
+
+static CagTypes types_of_builtin(size_t index) {
+  if (index >= cag_builtin_count()) return CAG_TYPES(NUMBER); // time, frame, frames
+  size_t rows;
+  const CagBuiltin *row = cag_builtin_rows(index, &rows);
+  return row->function ? CAG_TYPES(BUILTIN) : cag_types_of_result(row->result);
+}
+
+CagTypes check_infer_name(Check *c, const CagExpr *e) {
+  const CagDecl *decl = e->as.name.decl;
+  if (e->as.name.binding == CAG_BIND_BUILTIN) return types_of_builtin(e->as.name.index);
+  if (e->as.name.binding != CAG_BIND_DECL || !decl) return CAG_TYPES_ANY;
+  switch (decl->kind) {
+  case CAG_DECL_TOP:
+    use_top(c, decl->index);
+    check_deprecated(c, decl->statement, decl->name, e->span);
+    return check_types_of_top(c, decl);
+  case CAG_DECL_IMPORT: return CAG_TYPES(MODULE);
+  case CAG_DECL_IMPORTED:
+    check_deprecated(c, check_find_public(c, decl->statement, decl->name), decl->name, e->span);
+    return CAG_TYPES_ANY;
+  default: return types_known(c, decl);
+  }
+}

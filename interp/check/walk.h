@@ -1,0 +1,74 @@
+// What the files of the checker share: its state, its reports, what it knows of names, and the walk
+// of expressions.
+
+#ifndef CAG_INTERP_CHECK_WALK_H
+#define CAG_INTERP_CHECK_WALK_H
+
+#include "interp/check/constant.h"
+#include "interp/check/types.h"
+
+// What is known of a definition, parameter or name of a comprehension.
+typedef struct Known {
+  const CagDecl *decl;
+  CagTypes types;
+} Known;
+
+// What a parameter of a built-in takes, by the place of its name in the signature.
+typedef struct Taken {
+  const char *const *parameter;
+  CagTypes types;
+} Taken;
+
+typedef struct Check {
+  CagVm *vm;
+  const CagModuleUnit *unit;
+  const CagModuleAst *ast;
+  Known *known; // open addressing by the address of the declaration
+  size_t known_count, known_size;
+  Taken *taken; // open addressing; NULL before the first
+  // Definitions of the top level: what is known of them, and which others they use.
+  CagTypes *top_types;
+  bool *top_done, *top_busy, *reached;
+  size_t *edges; // pairs: user, used
+  size_t edge_count, edge_capacity;
+  size_t top;             // whose value is walked; the number of tops for statements
+  size_t unjudged;        // calls of `attempt` around
+  CagDiagnostics ignored; // what is said of them
+  size_t depth;           // definitions that are walked within one another
+  CagConstants constants;
+  bool *top_bad; // definitions with errors
+  size_t thunks; // functions without parameters around: their calls may be meant to fail
+} Check;
+
+// ---- reports ----
+
+// Adds an error with its message; what is said inside of `attempt` is not kept.
+CagDiagnostic *check_report(Check *c, CagErrorId id, CagSpan span, const char *message);
+CagDiagnostic *check_warn(Check *c, CagErrorId id, CagSpan span, const char *message);
+// Reports "WANTED, found a number".
+void check_report_found(Check *c, CagErrorId id, CagSpan span, const char *wanted, CagTypes types);
+size_t check_error_count(const Check *c);
+
+// ---- names ----
+
+// Notes the types of a parameter or of a name of a block or a comprehension.
+void check_learn(Check *c, const CagDecl *decl, CagTypes types);
+// The types of a definition of the top level, which is walked now unless it was.
+CagTypes check_types_of_top(Check *c, const CagDecl *decl);
+// The statement that defines an imported name, or the member of an imported module; NULL: unknown.
+const CagStatement *check_find_public(const Check *c, const CagStatement *import, const char *name);
+// Warns where a definition is used whose documentation says `deprecated: ...`.
+void check_deprecated(Check *c, const CagStatement *s, const char *name, CagSpan span);
+CagTypes check_infer_name(Check *c, const CagExpr *e);
+
+// ---- expressions ----
+
+// The types that an expression may have; what is wrong in it is reported.
+CagTypes check_infer(Check *c, const CagExpr *e);
+void check_infer_all(Check *c, CagExpr *const *items, size_t count);
+CagTypes check_infer_call(Check *c, const CagExpr *e);
+CagTypes check_infer_pipe(Check *c, const CagExpr *e);
+// Reports a condition that is never true or false; `of` names what asks for it.
+void check_expect_bool(Check *c, const CagExpr *e, const char *of);
+
+#endif
