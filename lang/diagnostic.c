@@ -153,6 +153,12 @@ void cag_diagnostics_sort(CagDiagnostics *d, size_t from) {
   }
 }
 
+void cag_diagnostics_sort_last(CagDiagnostics *d) {
+  size_t from = d->count;
+  while (from > 0 && d->items[from - 1].source == d->items[d->count - 1].source) from--;
+  cag_diagnostics_sort(d, from);
+}
+
 // ---- the nearest name ----
 
 // Longer names are not compared: nobody misspells them one letter at a time.

@@ -86,6 +86,8 @@ void cag_diagnostics_move(CagDiagnostics *to, CagDiagnostics *from);
 
 // Puts the items from number `from` on, all of one source, in the order of the text.
 void cag_diagnostics_sort(CagDiagnostics *d, size_t from);
+// The same for the items at the end that have the source of the last one.
+void cag_diagnostics_sort_last(CagDiagnostics *d);
 
 typedef enum CagDiagnosticStyle {
   CAG_DIAGNOSTIC_TEXT,

@@ -48,6 +48,8 @@ typedef struct Parser {
   size_t stack_size, stack_capacity;
   CagDecl **tops;
   size_t top_count, top_capacity;
+  const char **damaged_names;
+  size_t damaged_name_count, damaged_name_capacity;
 
   CagParseEach *each; // takes the statements one by one; NULL: they are kept
   void *each_context;

@@ -1,6 +1,7 @@
 // Statements, and the parse as a whole.
 
 #include "lang/parser.h"
+#include "lang/damage.h"
 #include "lang/parse.h"
 
 #include <stdlib.h>
@@ -500,6 +501,27 @@ static void recover(Parser *p, uint32_t start) {
   p->newlines = true;
 }
 
+static void add_damaged_name(void *context, const char *name) {
+  Parser *p = context;
+  if (p->damaged_name_count == p->damaged_name_capacity) {
+    p->damaged_name_capacity = 2 * p->damaged_name_capacity + 64;
+    p->damaged_names =
+        cag_checked(realloc(p->damaged_names, p->damaged_name_capacity * sizeof(char *)));
+  }
+  p->damaged_names[p->damaged_name_count++] = name;
+}
+
+// Goes on behind a statement that could not be read, of which `s` is what was read; NULL: nothing.
+static void pass_damaged(Parser *p, CagStatement *s, uint32_t start) {
+  recover(p, start);
+  if (s) s->damage = CAG_DAMAGED;
+  if (p->each) return; // nobody asks for names
+  const CagToken *next = parse_current(p);
+  const CagSpan passed = {start, next->kind == CAG_TOKEN_END ? (uint32_t)p->module->source->length
+                                                             : next->span.start};
+  cag_damaged_names(&p->lexer, passed, add_damaged_name, p);
+}
+
 static void show_comments(Parser *p) {
   p->module->comments = p->lexer.comments;
   p->module->comment_count = p->lexer.comment_count;
@@ -525,7 +547,7 @@ static void statements(Parser *p) {
     uint32_t start = parse_current(p)->span.start;
     CagStatement *s = statement(p);
     end_of_statement(p, s);
-    if (p->panic) recover(p, start);
+    if (p->panic) pass_damaged(p, s, start);
     if (p->errors->count >= CAG_DIAGNOSTICS_MAX) break;
     if (!s) continue;
     if (p->each) {
@@ -571,6 +593,21 @@ static void copy_results(Parser *p) {
   if (bytes) memcpy(m->comments, p->lexer.comments, bytes);
   m->comment_count = p->lexer.comment_count;
   m->name_count = p->names.count;
+  bytes = p->damaged_name_count * sizeof *m->damaged_names;
+  m->damaged_names = cag_arena_alloc(&m->arena, bytes);
+  if (bytes) memcpy(m->damaged_names, p->damaged_names, bytes);
+  m->damaged_name_count = p->damaged_name_count;
+}
+
+// Marks the statements in which errors since number `from` lie.
+static void mark_mended(CagModuleAst *m, const CagDiagnostics *errors, size_t from) {
+  for (size_t i = from; i < errors->count; i++)
+    for (size_t k = 0; k < m->count; k++) {
+      CagStatement *s = m->statements[k];
+      const CagSpan at = errors->items[i].span;
+      if (s->damage == CAG_SOUND && s->span.start <= at.start && at.start < s->span.end)
+        s->damage = CAG_MENDED;
+    }
 }
 
 // Parses into a module, with the names in an arena that may be another than the module's.
@@ -593,6 +630,7 @@ static void release(Parser *p) {
   cag_names_release(&p->names);
   free(p->stack);
   free(p->tops);
+  free(p->damaged_names);
   free(p);
 }
 
@@ -605,8 +643,10 @@ static CagModuleAst *parse(const CagSource *source, CagParseMode mode, CagDiagno
   if (!check_encoding(source, errors)) return m;
   Parser *p = cag_checked(calloc(1, sizeof *p));
   p->mode = mode;
+  const size_t before = errors->count;
   parse_into(p, m, &m->arena, errors);
   copy_results(p);
+  mark_mended(m, errors, before);
   *cut_off = p->cut_off;
   release(p);
   return m;

@@ -23,6 +23,8 @@ typedef struct Entry {
 typedef struct Current {
   CagDecl *decl;
   uint32_t scope; // depth of the scope that it belongs to: 0 is the module
+  bool damaged;   // text that could not be read may define it: nothing is known of it then
+  bool head;      // an expression stands alone that begins with it: a `=` may be missing
 } Current;
 
 // A block that is being walked, to tell a name used too early from one that is nowhere.
@@ -140,7 +142,9 @@ static size_t open_scope(Resolver *r) {
 static void close_scope(Resolver *r, size_t mark) {
   while (r->count > mark) {
     Entry *e = &r->entries[--r->count];
-    *current_of(r, e->decl->name) = (Current){e->covered, e->covered_scope};
+    Current *c = current_of(r, e->decl->name);
+    c->decl = e->covered;
+    c->scope = e->covered_scope;
   }
   r->scope--;
 }
@@ -161,6 +165,11 @@ static const char *role_of(const CagDecl *d) {
   }
 }
 
+// What stands in first columns within a statement that could not be read passes for definitions.
+static bool is_damaged(const CagDecl *d) {
+  return d->statement && d->statement->damage == CAG_DAMAGED;
+}
+
 // Puts a name in force. Two in one scope, and one that hides a name of an inner scope around, are
 // errors.
 static void declare(Resolver *r, CagDecl *d) {
@@ -168,7 +177,7 @@ static void declare(Resolver *r, CagDecl *d) {
   if (is_blank(d->name)) return;
   Current *c = current_of(r, d->name);
   if (c->decl && c->scope == r->scope) {
-    report_twice(r, d, c->decl);
+    if (!is_damaged(d) && !is_damaged(c->decl)) report_twice(r, d, c->decl);
     return;
   }
   if (c->decl && c->scope > 0) {
@@ -183,7 +192,8 @@ static void declare(Resolver *r, CagDecl *d) {
     r->entries = cag_checked(realloc(r->entries, r->capacity * sizeof *r->entries));
   }
   r->entries[r->count++] = (Entry){d, c->decl, c->scope};
-  *c = (Current){d, r->scope};
+  c->decl = d;
+  c->scope = r->scope;
 }
 
 // ---- expressions ----
@@ -219,6 +229,7 @@ static void walk_name(Resolver *r, CagExpr *e) {
     e->as.name.decl = decl;
     return;
   }
+  if (current_of(r, name)->damaged) return;
   const CagResolveEnv *env = r->env;
   size_t outer = env->find_outer && !r->param ? env->find_outer(env->context, name) : NOT_FOUND;
   size_t builtin =
@@ -229,7 +240,7 @@ static void walk_name(Resolver *r, CagExpr *e) {
   } else if (builtin != NOT_FOUND) {
     e->as.name.binding = CAG_BIND_BUILTIN;
     e->as.name.index = builtin;
-  } else {
+  } else if (!current_of(r, name)->head || cag_foreign_name(name)) {
     unknown_name(r, e);
   }
 }
@@ -464,7 +475,7 @@ static void declare_import(Resolver *r, CagStatement *s) {
   for (size_t i = 0; i < s->as.import.name_count; i++) {
     CagImportName *n = &s->as.import.names[i];
     declare(r, n->decl);
-    check_in_module(r, s, n->name, n->decl->span);
+    if (s->damage != CAG_DAMAGED) check_in_module(r, s, n->name, n->decl->span);
   }
 }
 
@@ -478,6 +489,7 @@ static void declare_tops(Resolver *r) {
 }
 
 static void walk_statement(Resolver *r, CagStatement *s) {
+  if (s->damage == CAG_DAMAGED) return;
   switch (s->kind) {
   case CAG_STATEMENT_IMPORT: break;
   case CAG_STATEMENT_PARAM:
@@ -497,10 +509,40 @@ static void walk_statement(Resolver *r, CagStatement *s) {
   }
 }
 
+// The name with which an expression begins; NULL: it begins with something else.
+static const char *head_of(const CagExpr *e) {
+  for (;;) switch (e->kind) {
+    case CAG_EXPR_NAME: return e->as.name.id;
+    case CAG_EXPR_CALL: e = e->as.call.callee; break;
+    case CAG_EXPR_MEMBER: e = e->as.member.object; break;
+    case CAG_EXPR_RANGE: e = e->as.range.low; break;
+    case CAG_EXPR_BINARY:
+    case CAG_EXPR_AND:
+    case CAG_EXPR_OR:
+    case CAG_EXPR_PIPE:
+    case CAG_EXPR_INDEX: e = e->as.binary.left; break;
+    default: return NULL;
+    }
+}
+
+// Marks what syntax errors may have kept from being defined.
+static void mark_damaged(Resolver *r) {
+  const CagModuleAst *m = r->module;
+  for (size_t i = 0; i < m->damaged_name_count; i++)
+    current_of(r, m->damaged_names[i])->damaged = true;
+  for (size_t i = 0; i < m->count; i++) {
+    const CagStatement *s = m->statements[i];
+    if (s->kind != CAG_STATEMENT_EXPRESSION || s->damage == CAG_SOUND) continue;
+    const char *name = head_of(s->as.expression);
+    if (name) current_of(r, name)->head = true;
+  }
+}
+
 void cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *errors) {
   Resolver r = {.module = m, .env = env, .errors = errors};
   size_t before = errors->count;
   r.current = cag_checked(calloc(m->name_count + 1, sizeof *r.current));
+  mark_damaged(&r);
   declare_tops(&r);
   for (size_t i = 0; i < m->count; i++) walk_statement(&r, m->statements[i]);
   cag_diagnostics_sort(errors, before);

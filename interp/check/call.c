@@ -253,7 +253,7 @@ static const CagFunctionAst *function_of(const Check *c, const CagExpr *e, const
     if (decl && decl->kind == CAG_DECL_IMPORT)
       s = check_find_public(c, decl->statement, e->as.member.name);
   }
-  if (!s || s->kind != CAG_STATEMENT_DEFINITION) return NULL;
+  if (!s || s->kind != CAG_STATEMENT_DEFINITION || s->damage != CAG_SOUND) return NULL;
   const CagExpr *value = s->as.definition.value;
   return value->kind == CAG_EXPR_LAMBDA ? value->as.function : NULL;
 }

@@ -64,6 +64,7 @@ static void check_shown(Check *c, const CagExpr *e) {
 }
 
 static void walk_statement(Check *c, const CagStatement *s) {
+  if (s->damage != CAG_SOUND) return;
   switch (s->kind) {
   case CAG_STATEMENT_PARAM:
     check_types_of_top(c, s->as.param.decl);
@@ -132,8 +133,11 @@ static void warn_unused(Check *c) {
   }
 }
 
-// Definitions that errors from number `from` on lie in are not evaluated.
+// Definitions that errors from number `from` on lie in are not evaluated, nor are those that syntax
+// errors touched.
 static void mark_bad(Check *c, size_t from) {
+  for (size_t k = 0; k < c->ast->top_count; k++)
+    c->top_bad[k] = c->ast->tops[k]->statement->damage != CAG_SOUND;
   for (size_t i = from; i < c->vm->errors.count; i++)
     for (size_t k = 0; k < c->ast->top_count; k++) {
       const CagSpan s = c->ast->tops[k]->statement->span, at = c->vm->errors.items[i].span;
@@ -154,8 +158,9 @@ bool cag_check_module(CagVm *vm, CagModuleUnit *m) {
   cag_check_circles(m->ast, &vm->errors);
   mark_bad(&c, known);
   for (size_t i = 0; i < m->ast->count; i++) walk_statement(&c, m->ast->statements[i]);
-  if (known == m->first_error) warn_unused(&c); // what an unknown name was meant to be is not known
-  cag_diagnostics_sort(&vm->errors, m->first_error);
+  // What an unknown name was meant to be is not known, nor what could not be read.
+  if (m->sound && known == m->first_error) warn_unused(&c);
+  cag_diagnostics_sort_last(&vm->errors);
   free(c.top_types);
   free(c.top_done);
   free(c.top_busy);

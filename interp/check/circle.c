@@ -1,5 +1,6 @@
-// Circles of definitions, found in a graph: node 2k is the value of definition k, node 2k + 1 a
-// call of it. The search is depth first with a stack of its own, since chains may be long.
+// Circles of definitions without syntax errors, found in a graph: node 2k is the value of
+// definition k, node 2k + 1 a call of it. The search is depth first with a stack of its own, since
+// chains may be long.
 
 #include <stdlib.h>
 
@@ -163,6 +164,7 @@ void cag_check_circles(const CagModuleAst *ast, CagDiagnostics *errors) {
   size_t *path = cag_checked(malloc((2 * n + 1) * sizeof *path));
   for (size_t k = 0; k < n; k++) {
     const CagStatement *s = ast->tops[k]->statement;
+    if (s->damage != CAG_SOUND) continue;
     const CagFunctionAst *f = function_of(s);
     g.from = 2 * k + (f != NULL);
     if (f) walk(&g, f->body);

@@ -72,6 +72,7 @@ static void use_top(Check *c, size_t used) {
 
 CagTypes check_types_of_top(Check *c, const CagDecl *decl) {
   const size_t k = decl->index;
+  if (decl->statement->damage != CAG_SOUND) return CAG_TYPES_ANY;
   if (c->top_done[k]) return c->top_types[k];
   if (c->top_busy[k] || c->depth > DEPTH_MAX) return CAG_TYPES_ANY;
   const size_t outer = c->top, errors = check_error_count(c);

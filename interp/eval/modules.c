@@ -2,8 +2,8 @@
 // values.
 //
 // A module is loaded when its imports are: they come first, so that names asked of them are known.
-// All errors of syntax of all files are reported together. Names of a file are resolved where its
-// own syntax is sound; what a module that failed defines is taken for granted.
+// All errors of syntax of all files are reported together, and those of names in what could be read
+// of a file. What a module that failed defines is taken for granted.
 
 #include <stdlib.h>
 #include <string.h>
@@ -276,21 +276,23 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
   if (!check_text(vm, m)) return CAG_NO_MODULE;
   size_t before = vm->errors.count;
   m->ast = cag_parse(m->source, mode, &vm->errors);
-  bool sound = vm->errors.count == before;
-  m->resolved = sound;
+  m->sound = vm->errors.count == before;
+  m->resolved = m->sound || mode == CAG_PARSE_FILE; // the REPL takes no part of an input
   m->state = CAG_MODULE_LOADING;
   for (size_t i = 0; i < m->ast->count; i++) {
     CagStatement *s = m->ast->statements[i];
     if (s->kind != CAG_STATEMENT_IMPORT) continue;
-    s->as.import.module = sound ? load_import(vm, m, s) : CAG_NO_MODULE;
+    s->as.import.module =
+        m->resolved && s->damage == CAG_SOUND ? load_import(vm, m, s) : CAG_NO_MODULE;
   }
   m->first_error = vm->errors.count;
-  if (sound) {
+  if (m->resolved) {
     make_globals(vm, m);
     bind_imports(vm, m);
     resolve_unit(vm, m);
+    cag_diagnostics_sort_last(&vm->errors);
   }
-  sound = vm->errors.count == before;
+  const bool sound = vm->errors.count == before;
   m->state = sound ? CAG_MODULE_LOADED : CAG_MODULE_FAILED;
   return sound ? m->number : CAG_NO_MODULE;
 }

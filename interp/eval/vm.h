@@ -122,7 +122,8 @@ typedef struct CagModuleUnit {
   size_t *tops;   // globals of the tops, by CagDecl.index
   CagValue value; // the module as a value
   enum { CAG_MODULE_LOADING, CAG_MODULE_LOADED, CAG_MODULE_FAILED } state;
-  bool resolved;      // its syntax is sound, and its names are bound where they are known
+  bool sound;         // it has no syntax errors
+  bool resolved;      // its names are bound where they are known
   size_t first_error; // where the errors of its names begin in those of the machine
   bool asserted;      // its asserts have run
   bool adopted;       // its definitions are those of the interactive session

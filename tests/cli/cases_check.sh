@@ -24,6 +24,16 @@ try check unused.cag
 status 0
 says 'warning: nothing uses a'
 
+it 'what stands behind a syntax error is checked, too'
+script damaged.cag 'a = [1, 2
+b = a + hieght
+show sphere(-3), b'
+try check damaged.cag
+status 1
+says 'this bracket is not closed'
+says 'unknown name `hieght`'
+says 'sphere expects a number greater than 0, found the number -3'
+
 it 'JSON for editors'
 try check wrong.cag unused.cag --diagnostics json
 status 1

@@ -154,6 +154,75 @@ static void one_pass_reports_everything(void **state) {
   assert_string_equal(found("import nowhere: a\nprint a(1), sin(30)"), "E0240:1 E0301:2");
 }
 
+static void one_pass_goes_on_behind_syntax_errors(void **state) {
+  (void)state;
+  assert_string_equal(found("a = 1 +* 2\nb = sphere(-3)\nprint hieght\nprint sin(30), a, b"),
+                      "E0120:1 E0314:2 E0201:3 E0301:4");
+  assert_string_equal(found("f(x) = {\n  y = x *\n}\nprint f(1, 2), hieght"), "E0120:3 E0201:4");
+  assert_string_equal(found("let n = 3\nprint n + \"a\"\nc = d\nd = c"), "E0152:1 E0321:2 E0311:4");
+  assert_string_equal(found("import nowhere\nx = [1, 2\nshow sphere(-1)"),
+                      "E0240:1 E0123:2 E0314:3");
+  assert_string_equal(found("cube(3)\nshow cube(4)"), "E0150:1 E0201:1 E0201:2");
+}
+
+static void what_a_damaged_statement_defines_is_not_unknown(void **state) {
+  (void)state;
+  assert_string_equal(found("f(x) = 3 +* 1\nprint f(1, 2, 3).y"), "E0120:1");
+  assert_string_equal(found("module knob(r, h) { cylinder(h, r); }\nshow knob(3, r)"),
+                      "E0152:1 E0168:1");
+  assert_string_equal(found("sphere = [1, 2\nprint sphere(-3)"), "E0123:1"); // hides the built-in
+  assert_string_equal(found("import std.materials: glass, *\nprint glass(1, 2), materials.x"),
+                      "E0129:1");
+  assert_string_equal(found("a = `text\nb = 3\nprint `b`, b, a"), "E0122:3");
+  assert_string_equal(found("print b\n/* no end\nb = 3"), "E0103:2");
+  assert_string_equal(found("area(r) r * r\nprint half(2)\nhalf(r) r / 2"), "E0168:1 E0168:3");
+  assert_string_equal(found("f = (x, y) => x + (y *\nprint x, y, f(1)"), "E0123:1");
+  assert_string_equal(found("l = [for i in 0..3:\ni + ]\nprint l, i"), "E0120:2");
+}
+
+// A script whose every bracket, quote and `=` is a blank in turn has errors of syntax only.
+static const char whole[] =
+    "/// Ring of holes.\n"
+    "import std.materials: steel\n"
+    "param count = 6 in 3..12 \"Number of holes\"\n"
+    "width = 12.5mm\n"
+    "names = [\"a\", `b`, \"c {width}\"]\n"
+    "hole(r, h = 4) = {\n"
+    "  wide = (r + 1) / 2\n"
+    "  assert wide > 0, \"no width\"\n"
+    "  cylinder(h, wide) |> translate([0, 0, -(h / 2)])\n"
+    "}\n"
+    "holes = [for i in 0..<count, k in [0, 1]:\n"
+    "  hole(1) |> rotate([0, 0, 1], i * 60deg + k * 1deg)]\n"
+    "area_of = (a, b) => { c = a * b\n"
+    "  if c > 3 then c else (c + 1) }\n"
+    "style = { color: \"red\", size: [1, 2], sum: sum([for x in 0..3: x]) }\n"
+    "print len(names), area_of(2, 3), style.size[0]\n"
+    "show difference(sphere(width), holes)\n";
+
+static void a_missing_character_gives_errors_of_syntax_only(void **state) {
+  (void)state;
+  assert_string_equal(found(whole), "E0900:2");
+  for (size_t i = 0; i < strlen(whole); i++) {
+    if (!strchr("()[]{}\"`=", whole[i])) continue;
+    char text[sizeof whole];
+    snprintf(text, sizeof text, "%.*s %s", (int)i, whole, whole + i + 1);
+    const char *codes = found(text);
+    for (const char *c = codes; (c = strchr(c, 'E')); c++)
+      if (strncmp(c, "E01", 3) != 0 && strncmp(c, "E0900", 5) != 0)
+        fail_msg("without character %zu: %s\n%s", i, codes, text);
+  }
+}
+
+static void scripts_cut_off_anywhere_are_checked(void **state) {
+  (void)state;
+  char text[sizeof whole];
+  for (size_t i = 0; i < sizeof whole; i++) {
+    snprintf(text, sizeof text, "%.*s", (int)i, whole);
+    found(text);
+  }
+}
+
 static void what_may_be_right_is_left_alone(void **state) {
   (void)state;
   assert_string_equal(found("f(x) = sin(x) + x\nprint f(1)"), ""); // x could be anything
@@ -224,6 +293,10 @@ int main(void) {
       cmocka_unit_test(literal_mistakes_are_found),
       cmocka_unit_test(circles_of_definitions_are_found),
       cmocka_unit_test(one_pass_reports_everything),
+      cmocka_unit_test(one_pass_goes_on_behind_syntax_errors),
+      cmocka_unit_test(what_a_damaged_statement_defines_is_not_unknown),
+      cmocka_unit_test(a_missing_character_gives_errors_of_syntax_only),
+      cmocka_unit_test(scripts_cut_off_anywhere_are_checked),
       cmocka_unit_test(what_may_be_right_is_left_alone),
       cmocka_unit_test(definitions_that_nothing_uses_are_told),
       cmocka_unit_test(a_long_chain_of_definitions_is_no_trouble),

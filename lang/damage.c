@@ -1,0 +1,133 @@
+// Names that a text which could not be parsed may define.
+//
+// The text is searched by its characters, since a bracket or a quote that is missing turns what
+// follows into something else for the lexer. A name counts as defined before a `=`, as a parameter,
+// and between `for` and `in`. Two names that begin the text are a definition of another language
+// (`module f(x) {`, `def f(x):`): all names of its head count. So do all names of an import.
+
+#include "lang/damage.h"
+
+#include <stdlib.h>
+
+// Parameters of deeper brackets are not looked for.
+#define NESTING_MAX 64
+
+typedef struct Word {
+  const char *name;
+  uint32_t end;
+  bool defined;
+} Word;
+
+typedef struct Search {
+  CagLexer probe;
+  const char *text;
+  uint32_t end;
+  Word *words; // of the brackets that are open
+  size_t count, capacity;
+  size_t opened[NESTING_MAX]; // where the words of each open bracket begin
+  uint32_t at[NESTING_MAX];   // where the bracket stands
+  size_t depth;
+  bool first, head, loop, import; // at the first word; in the head of a definition of another
+                                  // language; between `for` and `in`; in an import
+  CagDamagedName *found;
+  void *context;
+} Search;
+
+static bool is_name_byte(unsigned char c) {
+  return c >= 128 || c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Whether the text at `p`, behind blanks, goes on with `=` or `=>`, and not with `==`.
+static bool before_equals(const Search *s, uint32_t p) {
+  while (p < s->end && (s->text[p] == ' ' || s->text[p] == '\t')) p++;
+  return p < s->end && s->text[p] == '=' && s->text[p + 1] != '=';
+}
+
+static void add_word(Search *s, const CagToken *t) {
+  if (s->count == s->capacity) {
+    s->capacity = 2 * s->capacity + 64;
+    s->words = cag_checked(realloc(s->words, s->capacity * sizeof *s->words));
+  }
+  const bool defined = s->head || s->loop || s->import || before_equals(s, t->span.end);
+  s->words[s->count++] = (Word){t->as.name, t->span.end, defined};
+}
+
+// Whether a name follows at `p` on the same line, behind blanks.
+static bool before_name(const Search *s, uint32_t p) {
+  const uint32_t start = p;
+  while (p < s->end && (s->text[p] == ' ' || s->text[p] == '\t')) p++;
+  return p > start && p < s->end && is_name_byte((unsigned char)s->text[p]);
+}
+
+// Hands over the words since number `from`; those of a parameter list are all defined.
+static void take_words(Search *s, size_t from, bool parameters) {
+  for (size_t i = from; i < s->count; i++)
+    if (parameters || s->words[i].defined) s->found(s->context, s->words[i].name);
+  s->count = from;
+}
+
+// The name before a bracket of parameters is that of the function.
+static void close_bracket(Search *s, uint32_t p) {
+  if (s->depth == 0) return;
+  if (--s->depth >= NESTING_MAX) return;
+  const bool parameters = before_equals(s, p + 1);
+  size_t from = s->opened[s->depth];
+  if (parameters && from > 0 && s->words[from - 1].end == s->at[s->depth]) from--;
+  take_words(s, from, parameters);
+}
+
+// Reads the name or the reserved word at `p`; gives its end.
+static uint32_t read_word(Search *s, uint32_t p) {
+  CagToken t;
+  s->probe.position = p;
+  cag_lexer_next(&s->probe, &t);
+  if (s->first) {
+    s->head = t.kind == CAG_TOKEN_NAME && before_name(s, t.span.end);
+    s->import = t.kind == CAG_TOKEN_IMPORT;
+    s->first = false;
+  }
+  if (t.kind == CAG_TOKEN_NAME) add_word(s, &t);
+  else if (t.kind == CAG_TOKEN_FOR) s->loop = true;
+  else if (t.kind == CAG_TOKEN_IN) s->loop = false;
+  return t.span.end > p ? t.span.end : p + 1;
+}
+
+static void read_sign(Search *s, uint32_t p) {
+  switch (s->text[p]) {
+  case '(':
+    if (s->depth < NESTING_MAX) {
+      s->opened[s->depth] = s->count;
+      s->at[s->depth] = p;
+    }
+    s->depth++;
+    break;
+  case ')': close_bracket(s, p); break;
+  case '=':
+  case '{':
+  case ':':
+  case '\n': s->head = s->loop = false; break;
+  default: break;
+  }
+}
+
+void cag_damaged_names(const CagLexer *lexer, CagSpan span, CagDamagedName *found, void *context) {
+  Search s = {.text = lexer->source->text, .end = span.end, .first = true};
+  s.found = found;
+  s.context = context;
+  cag_lexer_probe(&s.probe, lexer, span.start);
+  for (uint32_t p = span.start; p < span.end;) {
+    if (is_name_byte((unsigned char)s.text[p])) {
+      p = read_word(&s, p);
+    } else if (is_digit(s.text[p])) { // with the unit behind it
+      while (p < span.end && (is_digit(s.text[p]) || is_name_byte((unsigned char)s.text[p]))) p++;
+    } else {
+      read_sign(&s, p++);
+    }
+    if (s.depth == 0 && s.text[p] == '\n') take_words(&s, 0, false);
+  }
+  take_words(&s, 0, false);
+  cag_lexer_release(&s.probe);
+  free(s.words);
+}
