@@ -39,10 +39,13 @@ static bool is_name_byte(unsigned char c) {
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// Whether the text at `p`, behind blanks, goes on with `=` or `=>`, and not with `==`.
-static bool before_equals(const Search *s, uint32_t p) {
+// What the text at `p`, behind blanks, goes on with.
+typedef enum Sequel { OTHER, EQUALS, ARROW } Sequel;
+
+static Sequel sequel(const Search *s, uint32_t p) {
   while (p < s->end && (s->text[p] == ' ' || s->text[p] == '\t')) p++;
-  return p < s->end && s->text[p] == '=' && s->text[p + 1] != '=';
+  if (p >= s->end || s->text[p] != '=' || s->text[p + 1] == '=') return OTHER;
+  return s->text[p + 1] == '>' ? ARROW : EQUALS;
 }
 
 static void add_word(Search *s, const CagToken *t) {
@@ -50,7 +53,7 @@ static void add_word(Search *s, const CagToken *t) {
     s->capacity = 2 * s->capacity + 64;
     s->words = cag_checked(realloc(s->words, s->capacity * sizeof *s->words));
   }
-  const bool defined = s->head || s->loop || s->import || before_equals(s, t->span.end);
+  const bool defined = s->head || s->loop || s->import || sequel(s, t->span.end) != OTHER;
   s->words[s->count++] = (Word){t->as.name, t->span.end, defined};
 }
 
@@ -68,14 +71,14 @@ static void take_words(Search *s, size_t from, bool parameters) {
   s->count = from;
 }
 
-// The name before a bracket of parameters is that of the function.
+// The name before the parameters of a definition is that of the function.
 static void close_bracket(Search *s, uint32_t p) {
   if (s->depth == 0) return;
   if (--s->depth >= NESTING_MAX) return;
-  const bool parameters = before_equals(s, p + 1);
+  const Sequel next = sequel(s, p + 1);
   size_t from = s->opened[s->depth];
-  if (parameters && from > 0 && s->words[from - 1].end == s->at[s->depth]) from--;
-  take_words(s, from, parameters);
+  if (next == EQUALS && from > 0 && s->words[from - 1].end == s->at[s->depth]) from--;
+  take_words(s, from, next != OTHER);
 }
 
 // Reads the name or the reserved word at `p`; gives its end.

@@ -534,7 +534,9 @@ static void mark_damaged(Resolver *r) {
     const CagStatement *s = m->statements[i];
     if (s->kind != CAG_STATEMENT_EXPRESSION || s->damage == CAG_SOUND) continue;
     const char *name = head_of(s->as.expression);
-    if (name) current_of(r, name)->head = true;
+    if (!name) continue;
+    if (s->damage == CAG_DAMAGED) current_of(r, name)->damaged = true;
+    else current_of(r, name)->head = true;
   }
 }
 

@@ -176,6 +176,9 @@ static void what_a_damaged_statement_defines_is_not_unknown(void **state) {
   assert_string_equal(found("a = `text\nb = 3\nprint `b`, b, a"), "E0122:3");
   assert_string_equal(found("print b\n/* no end\nb = 3"), "E0103:2");
   assert_string_equal(found("area(r) r * r\nprint half(2)\nhalf(r) r / 2"), "E0168:1 E0168:3");
+  assert_string_equal(found("scan [for i in 0..3: i]\nprint scan + 1"), "E0161:1"); // a built-in
+  assert_string_equal(
+      found("print attempt() => cos(1), e => 3)\nprint attempt(() => sin(1), e => 3)"), "E0144:1");
   assert_string_equal(found("f = (x, y) => x + (y *\nprint x, y, f(1)"), "E0123:1");
   assert_string_equal(found("l = [for i in 0..3:\ni + ]\nprint l, i"), "E0120:2");
 }
