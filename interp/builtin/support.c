@@ -31,7 +31,8 @@ static void print_arguments(const CagCall *call, CagString *out) {
 
 static bool check_result(CagCall *call, double x) {
   // What is infinite because an argument was is no overflow.
-  if (isfinite(x) || (isinf(x) && !all_finite(call))) return true;
+  // (NaN is asked for first, as in operators.c.)
+  if (!isnan(x) && (isfinite(x) || !all_finite(call))) return true;
   CagString arguments = {0};
   print_arguments(call, &arguments);
   cag_fail_call(call, 0, CAG_ERR_not_finite, "%s for %.*s", isnan(x) ? "is undefined" : "overflows",
