@@ -4,12 +4,12 @@
 // twist and 1 + k the scale reached at v = 1. Its j-th derivative is
 // (i a)^j (1 + k v) e^(i a v) + j k (i a)^(j - 1) e^(i a v). z is neither turned nor scaled.
 
-#include <complex.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/linalg/complex.h"
 #include "geom/surface/family.h"
 
 typedef struct Extrusion {

@@ -3,7 +3,6 @@
 // Decompositions are LAPACK's. A matrix counts as singular where its reciprocal condition number is
 // below the rounding error: its solution would be noise.
 
-#include <complex.h>
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +10,7 @@
 // LAPACKE's complex type is C's.
 #include <lapacke.h>
 
+#include "geom/linalg/complex.h"
 #include "interp/builtin/support.h"
 
 static const char FAMILY[] = "Matrices";

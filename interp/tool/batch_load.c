@@ -103,10 +103,11 @@ static void look(CagLoad *l, size_t running) {
   const double now = cag_clock_seconds(), passed = now - l->looked;
   if (passed < LOOK_INTERVAL) return;
   l->looked = now;
-  const bool idle = was_idle(l, now) | (count_runnable() < l->workers);
+  const bool idle = was_idle(l, now);
+  const bool has_room = idle || count_runnable() < l->workers;
   // A few more than run are enough: what was allowed and not used says nothing.
   const double more = (double)running + fmax(1, floor(GROWTH * (double)l->workers));
-  l->limit = idle ? fmax(l->limit, more) : l->limit - SINK * passed;
+  l->limit = has_room ? fmax(l->limit, more) : l->limit - SINK * passed;
   const double least = (double)l->workers;
   const double most = least * (l->largest ? CAG_LOAD_MOST : MOST_UNKNOWN);
   l->limit = fmax(least, fmin(most, l->limit));
