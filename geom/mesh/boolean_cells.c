@@ -179,14 +179,12 @@ typedef struct Ray {
   Winding sum; // of what it leaves, less what it enters
 } Ray;
 
-static int order_of(double a, double b) { return (a > b) - (a < b); }
-
 // The side of the line a, b, seen along x, on which the moved ray is.
 static int side_of_ray(const Ray *r, uint32_t a, uint32_t b) {
   const int side = bool_turn(&r->w->points, a, b, r->from, 0);
   if (side) return side;
-  const CagVec3 p = r->w->points.at[a], q = r->w->points.at[b];
-  return p.z != q.z ? order_of(p.z, q.z) : order_of(q.y, p.y);
+  const int rise = bool_compare(&r->w->points, a, b, 2);
+  return rise ? -rise : bool_compare(&r->w->points, a, b, 1);
 }
 
 static void cross_face(void *context, uint32_t face) {
