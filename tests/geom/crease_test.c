@@ -213,23 +213,35 @@ static CagSurface *curved_net(int degree_u, int degree_v) {
   return s;
 }
 
-// Sections with planes are traced in another way: as zeros of a function of one surface.
+// A corner of the net may lie behind the plane by less than anything that is traced.
+static size_t count_long(const CagCurveList *l) {
+  size_t n = 0;
+  for (size_t i = 0; i < l->count; i++) {
+    double own;
+    OK(cag_curve_length(l->items[i], l->items[i]->start, l->items[i]->end, &own, &err));
+    n += own > 1e-5;
+  }
+  return n;
+}
+
+// Sections with planes are traced in another way: as zeros of a function of one surface. A
+// tolerance bounds the distance of a curve; its length may be off by several tolerances.
 static void curved_nets_meet_a_flat_sheet_as_they_do_its_plane(void **state) {
   (void)state;
   seed = 3;
   for (int round = 0; round < 25; round++) {
     CagSurface *s = curved_net(1 + (round % 3 == 1), 1 + (round % 3 == 2)), *sheet;
-    const CagPlane plane = {cag_vec3(0, 0, uniform(-0.5, 0.5)),
-                            cag_unit(cag_vec3(uniform(-0.7, 0.7), uniform(-0.7, 0.7), 1))};
+    const double height = uniform(-0.5, 0.5), x = uniform(-0.7, 0.7), y = uniform(-0.7, 0.7);
+    const CagPlane plane = {cag_vec3(0, 0, height), cag_unit(cag_vec3(x, y, 1))};
     CagTransform frame = cag_plane_frame(&plane);
     CagVec3 corner[4];
     for (int i = 0; i < 4; i++)
       corner[i] = cag_transform_point(&frame, cag_vec3(i & 2 ? 9 : -9, i & 1 ? 9 : -9, 0));
     OK(cag_surface_bilinear(corner[0], corner[1], corner[2], corner[3], &sheet, &err));
     CagCurveList met = {0}, cut = {0};
-    OK(cag_surface_intersect(s, sheet, 1e-5, NULL, &met, &err));
-    OK(cag_surface_section(s, &plane, 1e-5, &cut, &err));
-    assert_int_equal(met.count, cut.count);
+    OK(cag_surface_intersect(s, sheet, 1e-6, NULL, &met, &err));
+    OK(cag_surface_section(s, &plane, 1e-6, &cut, &err));
+    assert_int_equal(count_long(&met), count_long(&cut));
     NEAR(total_length(&met), total_length(&cut), 1e-5);
     cag_curve_list_free(&met);
     cag_curve_list_free(&cut);
