@@ -65,7 +65,7 @@ GEOM_OBJ := $(call obj,$(GEOM_SRC)) $(CGAL_OBJ)
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o $(BUILD)/obj/gen/documents.o
 TOOL_OBJ := $(call obj,$(TOOL_SRC) $(MAIN_SRC))
 
-.PHONY: all clean unit unit-lang unit-geom unit-interp test test-programs test-sanitize coverage mutate bench format check-format check-layers install deb editors
+.PHONY: all clean unit unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize coverage mutate bench format check-format check-layers install deb editors
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -148,8 +148,13 @@ test-programs: all $(BUILD)/tools/tables $(call UNIT,lang) $(call UNIT,geom) $(c
 test: test-programs
 	BUILD=$(BUILD) sh tests/run_all.sh
 
+# All suites under AddressSanitizer and UndefinedBehaviorSanitizer. The programs by Clang, in a folder of their own, are for the shorter
+# run that tools/test.sh makes.
+SANITIZED := OPT=-O1 SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer"
 test-sanitize:
-	$(MAKE) BUILD=$(BUILD)-sanitize OPT=-O1 SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" test
+	$(MAKE) BUILD=$(BUILD)-sanitize $(SANITIZED) test
+test-programs-clang:
+	$(MAKE) BUILD=$(BUILD)-clang CC=clang $(SANITIZED) test-programs
 
 # Tests that fail here, such as those of time, do not stop the report.
 COVERAGE_EXIT := $(BUILD)-coverage/exit.o
@@ -222,6 +227,6 @@ editors: $(BUILD)/tools/tables
 	$(BUILD)/tools/tables | sh tools/editors.sh editors
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-coverage $(BUILD)-mutate
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-coverage $(BUILD)-mutate
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)

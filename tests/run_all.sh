@@ -1,7 +1,8 @@
 #!/bin/sh
-# Runs all suites of a build (BUILD, default build) and adds up. The last line is `N passed, N failed, N skipped`; the exit status is
-# 0 when nothing failed. A test is skipped when it needs a tool that is missing: it has neither passed nor failed. A suite that
-# crashes, or does not say how many of its tests passed, counts as one failure more.
+# Runs all suites of a build (BUILD, default build) and adds up. SANITIZED names a second build, with which those suites run as well that
+# need nothing but the build. The last line is `N passed, N failed, N skipped`; the exit status is 0 when nothing failed. A test is
+# skipped when it needs a tool that is missing: it has neither passed nor failed. A suite that crashes, or does not say how many of its
+# tests passed, counts as one failure more.
 set -u
 cd "$(dirname "$0")/.."
 BUILD=${BUILD:-build}
@@ -20,13 +21,13 @@ add() {
   passed=$((passed + $2)) failed=$((failed + suite_failed)) skipped=$((skipped + $4))
 }
 
-# A program of C tests. cmocka writes its counts to standard error, some lines for each group: `[  PASSED  ] 3 test(s).`,
-# `[  SKIPPED ] 1 test(s), listed below:`. in_all PATTERN: the sum of the numbers at \(\).
+# unit PROGRAM NAME: a program of C tests. cmocka writes its counts to standard error, some lines for each group:
+# `[  PASSED  ] 3 test(s).`, `[  SKIPPED ] 1 test(s), listed below:`. in_all PATTERN: the sum of the numbers at \(\).
 in_all() { sed -n "s/$1/\1/p" "$log" | awk '{ n += $1 } END { print n + 0 }'; }
 unit() {
   "$1" > "$log" 2>&1
   status=$?
-  add "${1#"$BUILD"/}" "$(in_all '^\[  PASSED  \] \([0-9]*\) test(s).*')" "$(in_all '^\[  FAILED  \].*[ :]\([0-9]*\) test(s).*')" \
+  add "$2" "$(in_all '^\[  PASSED  \] \([0-9]*\) test(s).*')" "$(in_all '^\[  FAILED  \].*[ :]\([0-9]*\) test(s).*')" \
     "$(in_all '^\[  SKIPPED \].*[ :]\([0-9]*\) test(s).*')" $status
 }
 
@@ -49,19 +50,36 @@ check() {
   if [ $status -eq 0 ]; then add "$name" 1 0 0 0; else add "$name" 0 1 0 $status; fi
 }
 
+# unit_suites BUILD NAME: all programs of C tests of a build; NAME goes before the names of its suites.
+unit_suites() {
+  for source in tests/lang/*_test.c tests/geom/*_test.c tests/interp/*_test.c; do
+    [ ! -e "$source" ] || unit "$1/${source%.c}" "$2${source%.c}"
+  done
+}
+
+# vector_suites BUILD NAME: the worked examples.
+vector_suites() {
+  for vectors in tests/data/0*.json; do
+    counted "$2$vectors" env BUILD="$1" tests/vectors/run "$vectors"
+  done
+}
+
 case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
-for source in tests/lang/*_test.c tests/geom/*_test.c tests/interp/*_test.c; do
-  [ ! -e "$source" ] || unit "$BUILD/${source%.c}"
-done
+unit_suites "$BUILD" ""
 counted "cag test" "$BUILD/cag" test tests/language tests/scenes
 counted "cag test examples" "$BUILD/cag" test --no-pictures examples stdlib
 counted "tests/cli" env BUILD="$BUILD" sh tests/cli/run.sh
 counted "tests/repl" env BUILD="$BUILD" sh tests/repl/run.sh
 counted "tests/editors" env BUILD="$BUILD" sh tests/editors/run.sh
-for vectors in tests/data/0*.json; do
-  counted "$vectors" env BUILD="$BUILD" tests/vectors/run "$vectors"
-done
+vector_suites "$BUILD" ""
 counted "tests/fuzz" "$BUILD/tests/fuzz/fuzz" 8
+if [ -n "${SANITIZED:-}" ]; then
+  case $SANITIZED in /*) ;; *) SANITIZED=$PWD/$SANITIZED ;; esac
+  unit_suites "$SANITIZED" "sanitized "
+  counted "sanitized cag test" "$SANITIZED/cag" test --no-pictures tests/language
+  vector_suites "$SANITIZED" "sanitized "
+  counted "sanitized tests/fuzz" "$SANITIZED/tests/fuzz/fuzz" 2
+fi
 check "layers" make -s check-layers
 if command -v clang-format > /dev/null; then
   check "format" make -s check-format
