@@ -131,8 +131,124 @@ static void carets_stand_below_the_argument(void **state) {
   cag_session_free(s);
 }
 
+// What operators and the forms around values say to values that they do not take.
+static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
+  (void)state;
+  static const struct {
+    const char *script, *message, *help; // help NULL: none
+  } rows[] = {
+      {"print [1] + 30deg", "does not join the list [1] and the angle 30deg",
+       "to add an element, write [...list, x]"},
+      {"print 1 + 30deg", "does not join the number 1 and the angle 30deg", "write 1deg or 1rad"},
+      {"print 30deg - 1", "does not join the angle 30deg and the number 1", "write 1deg or 1rad"},
+      {"print 30deg * 30deg", "does not join the angle 30deg and the angle 30deg",
+       "an angle times a number is an angle"},
+      {"print 30deg ^ 2", "does not join the angle 30deg and the number 2", NULL},
+      {"print 2 / 30deg", "does not join the number 2 and the angle 30deg", NULL},
+      {"print [1, 2] + [1, 2, 3]", "of a list of 2 and a list of 3 elements",
+       "write the 2-D point [x, y] as [x, y, 0]"},
+      {"print [1, 2] + [1]", "of a list of 2 and a list of 1 elements", "write [...a, ...b]"},
+      {"print [1, 2] - [1]", "of a list of 2 and a list of 1 elements", NULL},
+      {"print [1, 2] * [1, 2]", "does not join the list [1, 2] and the list [1, 2]",
+       "write dot(a, b) or cross(a, b)"},
+      {"print [1, 2] + 1", "does not join the list [1, 2] and the number 1", "write [...list, x]"},
+      {"print \"a\" + 1", "does not join the text \"a\" and the number 1",
+       "put the value into the text"},
+      {"print 1 + \"a\"", "does not join the number 1 and the text \"a\"",
+       "put the value into the text"},
+      {"print true & false", "does not join true and false", "write `and`"},
+      {"print true | false", "does not join true and false", "write `or`"},
+      {"print sphere(1) * translate(X)", "does not join a solid and a transform",
+       "the transform comes first"},
+      {"print [1, \"a\", 2, 3, 4] + [1, 2, 3, 4, 5]",
+       "does not join the text \"a\" and the number 2", "put the value into the text"},
+      {"print 2 * [1, \"a\", 2, 3, 4]", "does not join the number 2 and the text \"a\"", NULL},
+      {"print [1, 2] / 0", "division of 1 by 0", NULL},
+      {"print [1, 1e300] * 1e300", "too large for a number", NULL},
+      {"print -{a: 1}", "found a record", NULL},
+      {"print 1 < 2deg", "cannot compare the number 1 with the angle 2deg", "write 1deg or 1rad"},
+      {"print 2deg < 1", "cannot compare the angle 2deg with the number 1", "write 1deg or 1rad"},
+      {"print \"a\" < 1", "cannot compare the text \"a\" with the number 1", NULL},
+      {"print 3 in 0deg..5deg", "does not join the number 3 and the range 0deg..5deg",
+       "both sides must be numbers, or both angles"},
+      {"print 1 in 2", "does not join the number 1 and the number 2", "looks in a range, a list"},
+      {"print 1 in \"a\"", "does not join the number 1 and the text \"a\"",
+       "looks in a range, a list"},
+      {"print \"a\"..2", "a range goes between numbers or between angles, found the text \"a\"",
+       NULL},
+      {"print 1..2deg", "found 1 and 2deg", "write 1deg..2deg"},
+      {"print 1deg..2", "found 1deg and 2", "write 1deg..2deg"},
+      {"print 1..2 by 1deg", "the range begins with a number, but its step is the angle 1deg",
+       NULL},
+      {"print 1deg..2deg by 1", "the range begins with an angle, but its step is the number 1",
+       NULL},
+      {"print 1..2 by 0", "a finite number other than 0", NULL},
+      {"print [1, 2][0.5]", "an index is a whole number, found 0.5", NULL},
+      {"print [1, 2][2]", "index 2 lies outside of a list of 2", "0 to 1, or -2 to -1"},
+      {"print [][0]", "index 0 lies outside of a list of 0", NULL},
+      {"print \"abc\"[3]", "index 3 lies outside of a text of 3", "0 to 2, or -3 to -1"},
+      {"print \"abc\"[1..7]", "index 7 lies outside of a text of 3", "0 to 2, or -3 to -1"},
+      {"print [1, 2][1..5]", "index 5 lies outside of a list of 2", "0 to 1, or -2 to -1"},
+      {"print [1, 2][-3..1]", "index -3 lies outside of a list of 2", "0 to 1, or -2 to -1"},
+      {"print [1, 2][0..4 by 2]", "index 2 lies outside of a list of 2", "0 to 1, or -2 to -1"},
+      {"print \"ab\"[0..4 by 2]", "index 2 lies outside of a text of 2", "0 to 1, or -2 to -1"},
+      {"print (1..3)[5]", "index 5 lies outside of a range of 3", "0 to 2, or -3 to -1"},
+      {"print [1, 2][0deg..1deg]", "indices are numbers, found a range of angles", NULL},
+      {"print [1, 2][0.5..1]", "indices are whole numbers", NULL},
+      {"print [1, 2][0..0.5]", "indices are whole numbers", NULL},
+      {"print [1, 2][\"a\"]", "an index is a number or a range, found the text \"a\"", NULL},
+      {"print {a: 1}[1]", "a field of a record is named by a text, found the number 1", NULL},
+      {"print 1[0]", "only lists, ranges, texts and records have elements, found the number 1",
+       NULL},
+      {"print {a: 1}[\"b\"]", "the record has no field `b`", "its fields are a"},
+      {"print {alpha: 1}.alpah", "the record has no field `alpah`", "did you mean `alpha`?"},
+      {"print {}.a", "the record has no field `a`", NULL},
+      {"print [1, 2].z", "a vector of 2 numbers has no `z`", NULL},
+      {"print [\"a\", \"b\"].x", "of a vector of 2 to 4 numbers", NULL},
+      {"print (1..3).first", "a range has no member `first`", "write x |> first(...)"},
+      {"print (1..3).middle", "a range has no member `middle`", "a range has start, end and step"},
+      {"print translate(X).orign", "a transform has no member `orign`", "did you mean `origin`?"},
+      {"print robot([revolute()]).x", "a robot has no member `x`", "it has joints"},
+      {"import std.robots as r\nprint r.pume560", "std.robots defines no pume560", "puma560"},
+      {"print if \"a\" then 1 else 2", "a condition must be true or false, found the text \"a\"",
+       "len(...) > 0"},
+      {"print if [1] then 1 else 2", "a condition must be true or false, found the list [1]",
+       "len(...) > 0"},
+      {"print if none then 1 else 2", "a condition must be true or false, found none",
+       "compare it: ... != none"},
+      {"print not 1", "must be true or false, found the number 1", "compare it: ... != 0"},
+      {"print true and 1", "the right side of `and` must be true or false", "compare it: ... != 0"},
+      {"print false or \"a\"", "the right side of `or` must be true or false", "len(...) > 0"},
+      {"print [for [a, b] in [1]: a]", "a list of 2 elements, found the number 1", NULL},
+      {"print [for [a, b] in [[1, 2, 3]]: a]", "the pattern has 2 names, the element 3 parts",
+       NULL},
+      {"print [for x in 3: x]", "found the number 3", "to count, write 0..<n"},
+      {"print [...3]", "spreads a list, found the number 3", NULL},
+      {"print {...3}", "spreads a record, found the number 3", NULL},
+      {"print 3(1)", "no function: the number 3", NULL},
+      {"assert [for i in 0..200: i] == [1]", "assertion failed", "5 ..., [1] is [1]"},
+      {"assert {a: 1} == {b: 1}", "assertion failed", "{a: 1} is {a: 1}, {b: 1} is {b: 1}"},
+      {"show 3", "found the number 3", "to write a value, use `print`"},
+  };
+  size_t bad = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    CagSession *s;
+    const CagErrorView e = first_error(&s, rows[i].script);
+    const bool helped = rows[i].help ? e.help && strstr(e.help, rows[i].help) : !e.help;
+    if (!strstr(e.message, rows[i].message) || !helped) {
+      bad++;
+      print_error("%s\n  gives: %s\n  help: %s\n  instead of: %s\n  help: %s\n", rows[i].script,
+                  e.message, e.help ? e.help : "none", rows[i].message,
+                  rows[i].help ? rows[i].help : "none");
+    }
+    cag_session_free(s);
+  }
+  assert_int_equal(bad, 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(values_of_a_wrong_type_are_named_with_what_to_write),
       cmocka_unit_test(a_line_that_begins_with_minus_is_explained),
       cmocka_unit_test(braces_in_texts_are_explained),
       cmocka_unit_test(turns_about_three_axes_point_to_rpy),
