@@ -190,6 +190,103 @@ else
 fi
 printf '%s\n' 'x = 3' ':edit' 'x' | VISUAL='sed -i s/3/8/' "$cag" repl 2>&1 | grep -q '^8 : number$'
 result ':edit takes back what the editor left' $?
+# --- Commands ---
+
+complains 'a beginning of several commands names them' 2 '`:s` could be :scene, :save' ':s'
+complains 'a command without operand takes none' 2 ':list takes nothing behind it, found `x`' ':list x   '
+complains 'a word that is like no command leads to the list' 2 'there is no command `:qqqqqq`; :help lists them' ':qqqqqq'
+complains ':doc gives the nearest built-in' 2 'unknown name `sphree`; did you mean `sphere`?' ':doc sphree'
+complains ':doc gives the nearest definition' 2 'did you mean `flange_width`?' 'flange_width = 3
+:doc flange_widht'
+complains ':doc of what is like nothing leads to the list' 2 ':doc lists the functions' ':doc qqqqqqqqqq'
+complains ':doc of a code that is no error leads to the list' 2 'unknown name `E9999`' ':doc E9999'
+complains ':reload wants a script' 2 'no script was loaded; :load FILE does' ':reload'
+complains ':clear forgets the scripts, too' 2 'no script was loaded' ':load part.cag
+:clear
+:reload'
+complains ':save says where it cannot write' 3 'cannot write missing/x.cag' 'x = 3
+:save missing/x.cag'
+complains ':export says where it cannot write' 3 'missing' 'show box(1)
+:export missing/x.stl'
+complains ':export names a format that there is not' 2 'there is no format `qqq`' 'show box(1)
+:export x.qqq'
+complains ':time of a statement wants an expression' 2 ':time wants an expression' ':time x = 1'
+complains ':type of an error is the error' 1 'sin expects an angle' ':type sin(1)'
+complains 'a diagnostic tells the first failure by the status' 1 'there is no command' 'sin(1)
+:view'
+prints ':help of a command tells what it does' ':load FILE
+  add the definitions of a script' ':help :load'
+prints ':doc of an error code explains it' "$("$cag" explain E0301)" ':doc E0301'
+prints ':list tells imports and the first line of definitions' 'puma560 (imported)
+f(x) = { ...
+a = 1' 'import std.robots: puma560
+f(x) = {
+  y = x
+  y + 1
+}
+a = 1
+:list'
+got=$(printf ':load ~/part.cag\nwidth\n:export ~/home.stl\n' | HOME="$work" "$cag" repl 2>&1)
+[ "$got" = "40 : number
+wrote $work/home.stl" ]
+result 'a path that begins with ~ is below the folder of the user' $? "$got"
+prints 'a line that divides goes on' '4 : number' '8
+  / 2'
+prints 'a comment ends the input before it' '8 : number
+2 : number' '8
+// half
+2'
+prints 'words that go on with the line before' 'true : bool
+[1, 3] : list' 'true
+and true
+[for i in 1..4
+by 2: i]'
+prints 'help() is the command, help(x) is none' "$(printf ':help\n' | "$cag" repl)" 'help()'
+prints 'a block comment at the beginning of a line begins an input' '8 : number
+3 : number' '8
+/* three */ 3'
+got=$(printf ':view\nsin(1)\n' | "$cag" repl --diagnostics json 2>&1)
+printf '%s\n' "$got" | head -n 1 | grep -q '^{.*"message":"there is no command `:view`' &&
+  printf '%s\n' "$got" | sed -n 2p | grep -q '^{.*"code":"E0301"'
+result 'errors of the program are JSON where errors of scripts are' $? "$got"
+
+cat >all.cag <<'END'
+import std.robots: puma560
+/// how wide
+/// it is
+width = 40
+f(x) = x * width
+assert f(1) == 40
+show box(width), sphere(f(2))
+END
+printf '%s\n' ':load all.cag' ':hide sphere(f(2))' ':save again.cag' | "$cag" repl >/dev/null 2>&1
+sed 's/, sphere(f(2))//' all.cag | diff - again.cag >difference
+result ':save keeps imports, documentation and asserts' $? "$(cat difference)"
+
+# edits NAME EXPECTED EDITOR INPUT: what INPUT prints with an editor.
+edits() {
+  got=$(printf '%s\n' "$4" | VISUAL="$3" EDITOR=false "$cag" repl 2>&1)
+  [ "$got" = "$2" ]
+  result "$1" $? "expected: $2
+got:      $got"
+}
+edits ':edit of a script loads it' '41 : number' 'sed -i s/40/41/' ':edit part.cag
+width'
+edits ':edit takes the script loaded last, and loads all again' '41 : number
+42 : number' 'sed -i s/41/42/' ':load part.cag
+width
+:edit
+width'
+edits 'an editor that fails is named' 'error: the editor `false` failed; VISUAL or EDITOR names another
+3 : number' '' 'x = 3
+:edit
+x'
+got=$(printf 'x = 3\n:edit\n' | TMPDIR="$work/missing" VISUAL=true "$cag" repl 2>&1)
+[ "${got#*cannot write "$work"/missing/cag-}" != "$got" ]
+result ':edit says where it cannot write' $? "$got"
+got=$(printf 'x = 3\n:edit\nx\n' | TMPDIR="$work" VISUAL='sed -i s/3/5/' "$cag" repl 2>&1)
+[ "$got" = '5 : number' ] && [ -z "$(find "$work" -name 'cag-*')" ]
+result ':edit leaves no file' $? "$got"
 [ ! -e "$XDG_STATE_HOME/cag/history" ]
 result 'a pipe leaves no history' $?
 
