@@ -144,6 +144,13 @@ $(BUILD)/tests/fuzz/fuzz: tests/fuzz/fuzz.c $(BUILD)/libcag.a
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(LDLIBS_ALL)
 
+# Allocations that the wrapped functions make fail.
+WRAPPED := malloc calloc realloc strdup strndup realpath asprintf vasprintf open_memstream
+$(BUILD)/tests/fuzz/memory: tests/fuzz/memory.c $(BUILD)/libcag.a
+	@mkdir -p $(@D)
+	@echo "cc $<"
+	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(foreach f,$(WRAPPED),-Wl,--wrap=$(f)) $(LDLIBS_ALL)
+
 test-programs: all $(BUILD)/tools/tables $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz
 test: test-programs
 	BUILD=$(BUILD) sh tests/run_all.sh

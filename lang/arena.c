@@ -4,7 +4,6 @@
 #include "lang/arena.h"
 
 #include <stdalign.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,12 +17,6 @@ struct CagArenaBlock {
 // megabytes).
 #define FIRST_BLOCK ((size_t)4 << 10)
 #define LARGEST_BLOCK ((size_t)256 << 10)
-
-void *cag_checked(void *memory) {
-  if (memory) return memory;
-  fputs("cag: out of memory\n", stderr);
-  exit(5); // a limit was crossed (command line, exit status)
-}
 
 static CagArenaBlock *block_new(size_t size) {
   CagArenaBlock *b = cag_checked(calloc(1, sizeof *b + size));

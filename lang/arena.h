@@ -5,20 +5,18 @@
 
 #include <stddef.h>
 
+#include "lang/memory.h"
+
 typedef struct CagArenaBlock CagArenaBlock;
 typedef struct CagArena {
   CagArenaBlock *first;
 } CagArena;
 
-// Zeroed memory, aligned for any type. Ends the process with a message when memory is out: a syntax
-// tree is small beside its limits.
+// Zeroed memory, aligned for any type. When there is none, the work is left (lang/memory.h).
 void *cag_arena_alloc(CagArena *a, size_t size);
 char *cag_arena_copy(CagArena *a, const char *bytes, size_t length); // NUL-terminated copy
 void cag_arena_free(CagArena *a);
 // Forgets all that lies in it, and keeps a block for what comes.
 void cag_arena_reset(CagArena *a);
-
-// The same memory; ends the process with a message when there is none.
-void *cag_checked(void *memory);
 
 #endif

@@ -50,8 +50,9 @@ static Sequel sequel(const Search *s, uint32_t p) {
 
 static void add_word(Search *s, const CagToken *t) {
   if (s->count == s->capacity) {
-    s->capacity = 2 * s->capacity + 64;
-    s->words = cag_checked(realloc(s->words, s->capacity * sizeof *s->words));
+    const size_t capacity = 2 * s->capacity + 64;
+    s->words = cag_checked(realloc(s->words, capacity * sizeof *s->words));
+    s->capacity = capacity;
   }
   const bool defined = s->head || s->loop || s->import || sequel(s, t->span.end) != OTHER;
   s->words[s->count++] = (Word){t->as.name, t->span.end, defined};
@@ -115,10 +116,18 @@ static void read_sign(Search *s, uint32_t p) {
   }
 }
 
+static void release_search(void *search) {
+  Search *s = search;
+  cag_lexer_release(&s->probe);
+  free(s->words);
+}
+
 void cag_damaged_names(const CagLexer *lexer, CagSpan span, CagDamagedName *found, void *context) {
   Search s = {.text = lexer->source->text, .end = span.end, .first = true};
   s.found = found;
   s.context = context;
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, release_search, &s);
   cag_lexer_probe(&s.probe, lexer, span.start);
   for (uint32_t p = span.start; p < span.end;) {
     if (is_name_byte((unsigned char)s.text[p])) {
@@ -131,6 +140,5 @@ void cag_damaged_names(const CagLexer *lexer, CagSpan span, CagDamagedName *foun
     if (s.depth == 0 && s.text[p] == '\n') take_words(&s, 0, false);
   }
   take_words(&s, 0, false);
-  cag_lexer_release(&s.probe);
-  free(s.words);
+  cag_cleanup_run(&cleanup);
 }

@@ -39,8 +39,11 @@ CagErrorId cag_error_by_reason(const char *reason) {
 // not meet.
 static _Thread_local CagDiagnostic scratch;
 
+// The message of an error whose own message found no memory. It is not freed.
+static char no_memory[] = "out of memory";
+
 static void release(CagDiagnostic *d) {
-  free(d->message);
+  if (d->message != no_memory) free(d->message);
   free(d->help);
   free(d->reason);
   for (size_t i = 0; i < d->note_count; i++) free(d->notes[i].text);
@@ -54,22 +57,6 @@ void cag_diagnostics_clear(CagDiagnostics *d) {
   d->dropped = 0;
 }
 
-void cag_diagnostics_free(CagDiagnostics *d) {
-  cag_diagnostics_clear(d);
-  free(d->items);
-  *d = (CagDiagnostics){0};
-}
-
-static bool make_room(CagDiagnostics *d) {
-  if (d->count < d->capacity) return true;
-  size_t capacity = d->capacity ? 2 * d->capacity : 4;
-  CagDiagnostic *items = realloc(d->items, capacity * sizeof *items);
-  if (!items) return false;
-  d->items = items;
-  d->capacity = capacity;
-  return true;
-}
-
 static CagDiagnostic *thrown_away(CagDiagnostics *d) {
   d->dropped++;
   release(&scratch);
@@ -78,13 +65,16 @@ static CagDiagnostic *thrown_away(CagDiagnostics *d) {
 
 CagDiagnostic *cag_diagnostics_add(CagDiagnostics *d, CagErrorId id, const CagSource *source,
                                    CagSpan span, const char *format, ...) {
-  if (d->count >= CAG_DIAGNOSTICS_MAX || !make_room(d)) return thrown_away(d);
+  if (d->count >= CAG_DIAGNOSTICS_MAX) return thrown_away(d);
   va_list args;
   va_start(args, format);
   char *message;
   int n = vasprintf(&message, format, args);
   va_end(args);
-  if (n < 0) return thrown_away(d);
+  if (n < 0) {
+    message = no_memory;
+    id = CAG_ERR_limit_memory;
+  }
   CagDiagnostic *fresh = &d->items[d->count++];
   *fresh = (CagDiagnostic){
       .severity = CAG_SEVERITY_ERROR, .id = id, .message = message, .source = source, .span = span};
@@ -131,7 +121,7 @@ void cag_diagnostic_add_note(CagDiagnostic *d, int kind, const CagSource *source
 
 void cag_diagnostics_move(CagDiagnostics *to, CagDiagnostics *from) {
   for (size_t i = 0; i < from->count; i++) {
-    if (to->count < CAG_DIAGNOSTICS_MAX && make_room(to)) {
+    if (to->count < CAG_DIAGNOSTICS_MAX) {
       to->items[to->count++] = from->items[i];
     } else {
       release(&from->items[i]);

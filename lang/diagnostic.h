@@ -61,19 +61,20 @@ typedef struct CagDiagnostic {
 } CagDiagnostic;
 
 // A list of diagnostics that a parse or a run fills. At most CAG_DIAGNOSTICS_MAX errors are kept;
-// `dropped` counts the others.
+// `dropped` counts the others. The list needs no memory of its own, so that exhausted memory can
+// always be reported.
 #define CAG_DIAGNOSTICS_MAX 20
 typedef struct CagDiagnostics {
-  CagDiagnostic *items;
-  size_t count, capacity;
+  CagDiagnostic items[CAG_DIAGNOSTICS_MAX];
+  size_t count;
   size_t dropped;
 } CagDiagnostics;
 
-void cag_diagnostics_free(CagDiagnostics *d);
 void cag_diagnostics_clear(CagDiagnostics *d);
 
-// Adds an error with a printf-made message. The pointer stays valid until the next add. When the
-// list is full or memory is out, gives a scratch diagnostic that is thrown away, never NULL.
+// Adds an error with a printf-made message. Where there is no memory for the message, the error
+// added is that of exhausted memory. The pointer stays valid until the next add. When the list is
+// full, gives a scratch diagnostic that is thrown away, never NULL.
 CagDiagnostic *cag_diagnostics_add(CagDiagnostics *d, CagErrorId id, const CagSource *source,
                                    CagSpan span, const char *format, ...)
     __attribute__((format(printf, 5, 6)));

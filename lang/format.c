@@ -26,6 +26,8 @@ typedef struct Format {
   bool begun;          // a statement has been set
   bool inner;          // what is set is part of something: an operand, an element, an argument
   bool data; // what was set last is data: words, and lists, records and calls of nothing else
+  char *out; // the whole text, when the last statement is printed
+  size_t length;
 } Format;
 
 static Doc *expression(Format *f, const CagExpr *e);
@@ -881,14 +883,14 @@ static void print_statement(void *context, const CagModuleAst *m, const CagState
   else set_comments(f, &d, start, false);
   layout_print(&f->layout, layout_concat(&f->layout, &d));
   f->begun = true;
+  if (!s) f->out = layout_finish(&f->layout, &f->length);
 }
 
 char *cag_format(const CagSource *source, CagDiagnostics *errors, size_t *length) {
   Format f = {.text = source->text};
   layout_init(&f.layout, CAG_FORMAT_WIDTH);
-  const bool sound = cag_parse_each(source, print_statement, &f, errors);
-  char *out = layout_finish(&f.layout, length);
-  if (sound) return out;
-  free(out);
-  return NULL;
+  cag_parse_each(source, print_statement, &f, errors);
+  layout_release(&f.layout);
+  *length = f.length;
+  return f.out;
 }

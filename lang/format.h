@@ -14,8 +14,8 @@
 #define CAG_FORMAT_WIDTH 100
 
 // The script laid out: malloc'd and NUL-terminated, `length` bytes. Formatting the result gives it
-// again. NULL where the script has errors, which are told. Memory for trees goes by the longest
-// statement.
+// again. NULL where the script has errors or memory is out, which is reported. Memory for trees
+// goes by the longest statement.
 char *cag_format(const CagSource *source, CagDiagnostics *errors, size_t *length);
 
 #endif

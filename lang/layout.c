@@ -243,8 +243,9 @@ Doc *layout_table(Layout *l, char open, const Docs *items, Doc *close, int inden
 
 static void reserve(Layout *l, size_t n) {
   if (l->capacity - l->length >= n) return;
-  l->capacity = (l->length + n) * 2 + 4096;
-  l->out = cag_checked(realloc(l->out, l->capacity));
+  const size_t capacity = (l->length + n) * 2 + 4096;
+  l->out = cag_checked(realloc(l->out, capacity));
+  l->capacity = capacity;
 }
 
 static inline void put(Layout *l, const char *bytes, size_t n) {
@@ -366,8 +367,9 @@ static void put_trailing(Layout *l, const Doc *text, int indent) {
   }
   if (l->trailing_count && !joins_trailing(l)) align_trailing(l);
   if (l->trailing_count == l->trailing_capacity) {
-    l->trailing_capacity = l->trailing_capacity * 2 + 64;
-    l->trailing = cag_checked(realloc(l->trailing, l->trailing_capacity * sizeof *l->trailing));
+    const size_t capacity = l->trailing_capacity * 2 + 64;
+    l->trailing = cag_checked(realloc(l->trailing, capacity * sizeof *l->trailing));
+    l->trailing_capacity = capacity;
   }
   l->trailing[l->trailing_count++] = (LayoutTrailing){l->length, l->line, l->column, l->indent};
   put(l, text->text, text->length);
@@ -615,11 +617,17 @@ char *layout_finish(Layout *l, size_t *length) {
   reserve(l, 1);
   l->out[l->length] = 0;
   *length = l->length;
+  char *out = l->out;
+  l->out = NULL;
+  return out;
+}
+
+void layout_release(Layout *l) {
+  free(l->out);
   free(l->trailing);
   while (l->blocks) {
     LayoutBlock *next = l->blocks->next;
     free(l->blocks);
     l->blocks = next;
   }
-  return l->out;
 }

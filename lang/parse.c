@@ -120,20 +120,26 @@ bool parse_token_is(Parser *p, const CagToken *t, const char *name) {
 #define VAIN_LIMIT ((size_t)1 << 20)
 #define VAIN_LENGTH 64
 
+void parse_probe_end(Parser *p) {
+  cag_lexer_release(&p->probe);
+  p->probe = (CagLexer){0};
+  cag_source_free(p->probe_source);
+  p->probe_source = NULL;
+}
+
 // The token behind the bracket that closes the one at `start`; ERROR when it is not found.
 static CagTokenKind kind_behind_bracket(Parser *p, uint32_t start) {
-  CagLexer probe;
-  cag_lexer_probe(&probe, &p->lexer, start);
+  cag_lexer_probe(&p->probe, &p->lexer, start);
   CagToken t;
   size_t open = 0, seen = 0, most = p->vain < VAIN_LIMIT ? LONGEST_PARAMETER_LIST : VAIN_LENGTH;
   do {
-    cag_lexer_next(&probe, &t);
+    cag_lexer_next(&p->probe, &t);
     if (closer_of(t.kind) != CAG_TOKEN_END) open++;
     else if (is_closer(t.kind)) open--;
   } while (open && ++seen < most && t.kind != CAG_TOKEN_END && t.kind != CAG_TOKEN_ERROR);
-  if (open == 0) cag_lexer_next(&probe, &t);
+  if (open == 0) cag_lexer_next(&p->probe, &t);
   else p->vain += seen;
-  cag_lexer_release(&probe);
+  parse_probe_end(p);
   return open == 0 ? t.kind : CAG_TOKEN_ERROR;
 }
 

@@ -21,6 +21,8 @@ typedef struct Bracket {
 
 typedef struct Parser {
   CagLexer lexer;
+  CagLexer probe;          // reads far ahead, or the text of probe_source
+  CagSource *probe_source; // a word of a path; NULL: none
   CagNames names;
   CagModuleAst *module;
   CagDiagnostics *errors;
@@ -50,6 +52,8 @@ typedef struct Parser {
   size_t top_count, top_capacity;
   const char **damaged_names;
   size_t damaged_name_count, damaged_name_capacity;
+  CagStatement **statements;
+  size_t statement_count, statement_capacity;
 
   CagParseEach *each; // takes the statements one by one; NULL: they are kept
   void *each_context;
@@ -60,6 +64,7 @@ typedef struct Parser {
 CagToken *parse_peek(Parser *p, unsigned n); // n = 0: the current one
 void parse_advance(Parser *p);
 void parse_skip(Parser *p); // the same, in panic too
+void parse_probe_end(Parser *p);
 
 static inline CagTokenKind parse_kind(Parser *p) {
   return p->panic ? CAG_TOKEN_END : p->ahead[p->first].kind;

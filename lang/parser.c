@@ -159,17 +159,14 @@ static bool word_of_path(Parser *p, const char *path, CagToken *word) {
   size_t length = strlen(start);
   if (length > 4 && strcmp(start + length - 4, ".cag") == 0) length -= 4;
   char *name = cag_arena_copy(&p->module->arena, start, length);
-  CagSource *source = cag_source_new("", name, length);
-  if (!source) return false;
-  CagLexer probe;
-  cag_lexer_init(&probe, source, &p->module->arena, &p->names, NULL);
+  p->probe_source = cag_checked(cag_source_new("", name, length));
+  cag_lexer_init(&p->probe, p->probe_source, &p->module->arena, &p->names, NULL);
   CagToken end;
-  cag_lexer_next(&probe, word);
-  cag_lexer_next(&probe, &end);
+  cag_lexer_next(&p->probe, word);
+  cag_lexer_next(&p->probe, &end);
   bool good = word->kind == CAG_TOKEN_NAME && word->span.start == 0 && word->span.end == length &&
               end.kind == CAG_TOKEN_END;
-  cag_lexer_release(&probe);
-  cag_source_free(source);
+  parse_probe_end(p);
   return good;
 }
 
@@ -504,9 +501,9 @@ static void recover(Parser *p, uint32_t start) {
 static void add_damaged_name(void *context, const char *name) {
   Parser *p = context;
   if (p->damaged_name_count == p->damaged_name_capacity) {
-    p->damaged_name_capacity = 2 * p->damaged_name_capacity + 64;
-    p->damaged_names =
-        cag_checked(realloc(p->damaged_names, p->damaged_name_capacity * sizeof(char *)));
+    const size_t capacity = 2 * p->damaged_name_capacity + 64;
+    p->damaged_names = cag_checked(realloc(p->damaged_names, capacity * sizeof(char *)));
+    p->damaged_name_capacity = capacity;
   }
   p->damaged_names[p->damaged_name_count++] = name;
 }
@@ -539,8 +536,6 @@ static void hand_over(Parser *p, const CagStatement *s) {
 }
 
 static void statements(Parser *p) {
-  size_t capacity = 0, count = 0;
-  CagStatement **list = NULL;
   for (;;) {
     while (parse_accept(p, CAG_TOKEN_SEMICOLON)) {}
     if (parse_kind(p) == CAG_TOKEN_END) break;
@@ -554,17 +549,13 @@ static void statements(Parser *p) {
       if (p->errors->count + p->errors->dropped == p->first_error) hand_over(p, s);
       continue;
     }
-    if (count == capacity) {
-      capacity = capacity ? 2 * capacity : 64;
-      list = cag_checked(realloc(list, capacity * sizeof *list));
+    if (p->statement_count == p->statement_capacity) {
+      size_t capacity = p->statement_capacity ? 2 * p->statement_capacity : 64;
+      p->statements = cag_checked(realloc(p->statements, capacity * sizeof *p->statements));
+      p->statement_capacity = capacity;
     }
-    list[count++] = s;
+    p->statements[p->statement_count++] = s;
   }
-  CagModuleAst *m = p->module;
-  m->statements = cag_arena_alloc(&m->arena, count * sizeof *list);
-  if (count) memcpy(m->statements, list, count * sizeof *list);
-  m->count = count;
-  free(list);
 }
 
 static bool check_encoding(const CagSource *source, CagDiagnostics *errors) {
@@ -585,6 +576,10 @@ static bool check_encoding(const CagSource *source, CagDiagnostics *errors) {
 
 static void copy_results(Parser *p) {
   CagModuleAst *m = p->module;
+  const size_t statement_bytes = p->statement_count * sizeof *m->statements;
+  m->statements = cag_arena_alloc(&m->arena, statement_bytes);
+  if (statement_bytes) memcpy(m->statements, p->statements, statement_bytes);
+  m->count = p->statement_count;
   m->tops = cag_arena_alloc(&m->arena, p->top_count * sizeof *m->tops);
   if (p->top_count) memcpy(m->tops, p->tops, p->top_count * sizeof *m->tops);
   m->top_count = p->top_count;
@@ -611,10 +606,10 @@ static void mark_mended(CagModuleAst *m, const CagDiagnostics *errors, size_t fr
 }
 
 // Parses into a module, with the names in an arena that may be another than the module's.
-static void parse_into(Parser *p, CagModuleAst *m, CagArena *names, CagDiagnostics *errors) {
+static void parse_into(Parser *p, CagArena *names) {
+  CagModuleAst *m = p->module;
+  CagDiagnostics *errors = p->errors;
   const size_t before = errors->count;
-  p->module = m;
-  p->errors = errors;
   p->first_error = errors->count + errors->dropped;
   p->newlines = true;
   p->habit = UINT32_MAX;
@@ -627,29 +622,48 @@ static void parse_into(Parser *p, CagModuleAst *m, CagArena *names, CagDiagnosti
 
 static void release(Parser *p) {
   cag_lexer_release(&p->lexer);
+  parse_probe_end(p);
   cag_names_release(&p->names);
   free(p->stack);
   free(p->tops);
   free(p->damaged_names);
+  free(p->statements);
   free(p);
 }
 
-// Parses; tells whether the first error was that the text ends too early.
+static void fail_memory(const CagSource *source, CagDiagnostics *errors) {
+  cag_diagnostics_add(errors, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
+                      "there is not enough memory to read %s", source->name);
+}
+
+static void parse_module(void *context) {
+  Parser *p = context;
+  const size_t before = p->errors->count;
+  parse_into(p, &p->module->arena);
+  copy_results(p);
+  mark_mended(p->module, p->errors, before);
+}
+
+// Parses; tells whether the first error was that the text ends too early. NULL: memory is out.
 static CagModuleAst *parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors,
                            bool *cut_off) {
-  CagModuleAst *m = cag_checked(calloc(1, sizeof *m));
-  m->source = source;
   *cut_off = false;
-  if (!check_encoding(source, errors)) return m;
-  Parser *p = cag_checked(calloc(1, sizeof *p));
-  p->mode = mode;
-  const size_t before = errors->count;
-  parse_into(p, m, &m->arena, errors);
-  copy_results(p);
-  mark_mended(m, errors, before);
-  *cut_off = p->cut_off;
-  release(p);
-  return m;
+  CagModuleAst *m = calloc(1, sizeof *m);
+  Parser *p = calloc(1, sizeof *p);
+  bool done = m && p;
+  if (done) m->source = source;
+  if (done && check_encoding(source, errors)) {
+    p->module = m;
+    p->errors = errors;
+    p->mode = mode;
+    done = cag_memory_guard(parse_module, p);
+    *cut_off = p->cut_off;
+  }
+  if (p) release(p);
+  if (done) return m;
+  fail_memory(source, errors);
+  cag_module_ast_free(m);
+  return NULL;
 }
 
 CagModuleAst *cag_parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors) {
@@ -657,22 +671,37 @@ CagModuleAst *cag_parse(const CagSource *source, CagParseMode mode, CagDiagnosti
   return parse(source, mode, errors, &cut_off);
 }
 
+typedef struct EachParse {
+  Parser *parser;
+  CagArena names;
+  bool sound;
+} EachParse;
+
+static void parse_each(void *context) {
+  EachParse *e = context;
+  Parser *p = e->parser;
+  parse_into(p, &e->names);
+  e->sound = p->errors->count + p->errors->dropped == p->first_error;
+  if (e->sound) hand_over(p, NULL);
+}
+
 bool cag_parse_each(const CagSource *source, CagParseEach *each, void *context,
                     CagDiagnostics *errors) {
-  const size_t before = errors->count + errors->dropped;
   if (!check_encoding(source, errors)) return false;
   CagModuleAst m = {.source = source};
-  CagArena names = {0};
-  Parser *p = cag_checked(calloc(1, sizeof *p));
-  p->each = each;
-  p->each_context = context;
-  parse_into(p, &m, &names, errors);
-  const bool sound = errors->count + errors->dropped == before;
-  if (sound) hand_over(p, NULL);
-  release(p);
-  cag_arena_free(&names);
+  EachParse e = {.parser = calloc(1, sizeof(Parser))};
+  if (e.parser) {
+    e.parser->module = &m;
+    e.parser->errors = errors;
+    e.parser->each = each;
+    e.parser->each_context = context;
+  }
+  const bool done = e.parser && cag_memory_guard(parse_each, &e);
+  if (e.parser) release(e.parser);
+  cag_arena_free(&e.names);
   cag_arena_free(&m.arena);
-  return sound;
+  if (!done) fail_memory(source, errors);
+  return done && e.sound;
 }
 
 void cag_module_ast_free(CagModuleAst *m) {
@@ -687,7 +716,7 @@ bool cag_parse_incomplete(const char *text, size_t length) {
   CagDiagnostics errors = {0};
   bool cut_off;
   cag_module_ast_free(parse(source, CAG_PARSE_REPL, &errors, &cut_off));
-  cag_diagnostics_free(&errors);
+  cag_diagnostics_clear(&errors);
   cag_source_free(source);
   return cut_off;
 }

@@ -17,8 +17,9 @@ typedef enum CagParseMode {
 // sanitizers too.
 #define CAG_MAX_HEIGHT 4000
 
-// Parses a source. Always gives a tree (release with cag_module_ast_free); errors go to `errors`,
-// up to 20 of them, and the tree then has ERROR expressions where nothing could be read.
+// Parses a source. Gives a tree (release with cag_module_ast_free), or NULL when memory is out;
+// errors go to `errors`, up to 20 of them, and the tree then has ERROR expressions where nothing
+// could be read.
 CagModuleAst *cag_parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors);
 void cag_module_ast_free(CagModuleAst *m);
 
@@ -26,7 +27,7 @@ void cag_module_ast_free(CagModuleAst *m);
 // the text has no errors, in order, and with NULL behind the last; `m` holds the comments up to the
 // next statement. A statement dies when `each` returns, so that a long file needs no more memory
 // than its longest statement. Gives whether there was no error: what `each` made is of no use
-// otherwise.
+// otherwise. `each` may leave the work when memory is out (lang/memory.h).
 typedef void CagParseEach(void *context, const CagModuleAst *m, const CagStatement *s);
 bool cag_parse_each(const CagSource *source, CagParseEach *each, void *context,
                     CagDiagnostics *errors);
@@ -55,7 +56,8 @@ typedef struct CagResolveEnv {
 
 // Binds every NAME of the tree, sets owners and selves, and reports unknown names (with the
 // nearest), names defined twice, names that hide one of an inner scope around them, imported names
-// that are not there, `m.x` of an imported module that has no x.
-void cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *errors);
+// that are not there, `m.x` of an imported module that has no x. False: memory is out, which is
+// reported too.
+bool cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *errors);
 
 #endif

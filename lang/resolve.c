@@ -47,6 +47,7 @@ typedef struct Resolver {
   const CagFunctionAst *defaults; // function whose defaults are walked; NULL: none
   size_t default_index;
   size_t templates; // texts with { } around
+  CagArena scratch; // lists that live as long as the resolver
 } Resolver;
 
 #define NOT_FOUND ((size_t)-1)
@@ -77,14 +78,12 @@ static bool full(const Resolver *r) { return r->errors->count >= CAG_DIAGNOSTICS
 static const char *nearest(Resolver *r, const char *name) {
   const CagResolveEnv *env = r->env;
   size_t count = 0, most = r->count + env->outer_count + env->builtin_count;
-  const char **names = cag_checked(malloc((most + 1) * sizeof *names));
+  const char **names = cag_arena_alloc(&r->scratch, (most + 1) * sizeof *names);
   for (size_t i = r->count; i-- > 0;)
     if (!is_blank(r->entries[i].decl->name)) names[count++] = r->entries[i].decl->name;
   for (size_t i = 0; i < env->outer_count; i++) names[count++] = env->outer_names[i];
   for (size_t i = 0; i < env->builtin_count; i++) names[count++] = env->builtin_names[i];
-  const char *best = cag_nearest_name(name, names, count);
-  free(names);
-  return best;
+  return cag_nearest_name(name, names, count);
 }
 
 // The definition of a block around that comes below the place where its name is used; NULL: none.
@@ -188,8 +187,9 @@ static void declare(Resolver *r, CagDecl *d) {
                             d->name);
   }
   if (r->count == r->capacity) {
-    r->capacity = r->capacity ? 2 * r->capacity : 64;
-    r->entries = cag_checked(realloc(r->entries, r->capacity * sizeof *r->entries));
+    size_t capacity = r->capacity ? 2 * r->capacity : 64;
+    r->entries = cag_checked(realloc(r->entries, capacity * sizeof *r->entries));
+    r->capacity = capacity;
   }
   r->entries[r->count++] = (Entry){d, c->decl, c->scope};
   c->decl = d;
@@ -392,27 +392,25 @@ static void walk_call(Resolver *r, CagExpr *e) {
   walk(r, e->as.call.callee);
   Given few[FEW], *given = few;
   size_t named = 0, count = e->as.call.count;
-  if (count > FEW) given = cag_checked(malloc(count * sizeof *given));
+  if (count > FEW) given = cag_arena_alloc(&r->scratch, count * sizeof *given);
   for (size_t i = 0; i < count; i++) {
     CagArgument *a = &e->as.call.arguments[i];
     walk(r, a->value);
     if (a->name) given[named++] = (Given){a->name, a->name_span};
   }
   check_twice(r, given, named, CAG_ERR_argument_twice, "argument");
-  if (given != few) free(given);
 }
 
 static void walk_record(Resolver *r, CagExpr *e) {
   Given few[FEW], *given = few;
   size_t named = 0, count = e->as.record.count;
-  if (count > FEW) given = cag_checked(malloc(count * sizeof *given));
+  if (count > FEW) given = cag_arena_alloc(&r->scratch, count * sizeof *given);
   for (size_t i = 0; i < count; i++) {
     CagField *f = &e->as.record.fields[i];
     walk(r, f->value);
     if (f->name) given[named++] = (Given){f->name, f->name_span};
   }
   check_twice(r, given, named, CAG_ERR_field_twice, "field");
-  if (given != few) free(given);
 }
 
 static void walk_all(Resolver *r, CagExpr **items, size_t count) {
@@ -540,14 +538,25 @@ static void mark_damaged(Resolver *r) {
   }
 }
 
-void cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *errors) {
+static void resolve(void *context) {
+  Resolver *r = context;
+  const CagModuleAst *m = r->module;
+  r->current = cag_checked(calloc(m->name_count + 1, sizeof *r->current));
+  mark_damaged(r);
+  declare_tops(r);
+  for (size_t i = 0; i < m->count; i++) walk_statement(r, m->statements[i]);
+}
+
+bool cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *errors) {
   Resolver r = {.module = m, .env = env, .errors = errors};
-  size_t before = errors->count;
-  r.current = cag_checked(calloc(m->name_count + 1, sizeof *r.current));
-  mark_damaged(&r);
-  declare_tops(&r);
-  for (size_t i = 0; i < m->count; i++) walk_statement(&r, m->statements[i]);
+  const size_t before = errors->count;
+  const bool done = cag_memory_guard(resolve, &r);
   cag_diagnostics_sort(errors, before);
   free(r.current);
   free(r.entries);
+  cag_arena_free(&r.scratch);
+  if (!done)
+    cag_diagnostics_add(errors, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
+                        "there is not enough memory for the names of %s", m->source->name);
+  return done;
 }

@@ -6,10 +6,13 @@
 // machines may share it. The order of names is that of their first rows.
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "interp/builtin/jets.h"
 #include "interp/builtin/support.h"
+#include "lang/arena.h"
 
 // All families, in the order in which the documentation lists them.
 // clang-format off
@@ -81,6 +84,7 @@ static CagValue make_constant(CagVm *vm, const char *name) {
 typedef struct Name {
   const char *name;
   size_t first, count; // its rows
+  size_t jet;          // what differentiates it (jets.h)
 } Name;
 
 typedef struct Table {
@@ -92,15 +96,14 @@ typedef struct Table {
   uint32_t *slots; // open addressing by hash of the name: index + 1, 0 where empty
 } Table;
 
+// Made once for the process, when first asked for, and never freed. Where memory is out it stays
+// empty, and is tried again at the next question.
 static Table table;
-static pthread_once_t table_once = PTHREAD_ONCE_INIT;
+static CagArena table_arena;
+static atomic_bool table_ready;
+static pthread_mutex_t table_mutex = PTHREAD_MUTEX_INITIALIZER;
 
-// Memory of the table lives as long as the process; without it nothing can run.
-static void *take(size_t n, size_t size) {
-  void *p = calloc(n ? n : 1, size);
-  if (!p) abort();
-  return p;
-}
+static void *take(size_t n, size_t size) { return cag_arena_alloc(&table_arena, n * size); }
 
 static char *copy_text(const char *s, size_t n) {
   char *copy = take(n + 1, 1);
@@ -209,7 +212,8 @@ static size_t *number_names(CagSignature *signatures) {
   return name_of;
 }
 
-static void build_table(void) {
+static void build_table(void *context) {
+  (void)context;
   // Collect the rows in the order of the families.
   for (size_t f = 0; f < FAMILY_COUNT; f++)
     for (const CagBuiltin *b = families[f]; b->signature; b++) table.row_count++;
@@ -232,6 +236,7 @@ static void build_table(void) {
   for (size_t i = 0; i < table.name_count; i++) {
     table.name_texts[i] = table.names[i].name;
     table.names[i].first = first;
+    table.names[i].jet = cag_jet_row(table.names[i].name);
     first += table.names[i].count;
   }
   table.rows = take(table.row_count, sizeof *table.rows);
@@ -242,44 +247,52 @@ static void build_table(void) {
     table.rows[to] = *all[r];
     table.signatures[to] = parsed[r];
   }
-  free(filled);
-  free(name_of);
-  free(parsed);
-  free(all);
 }
 
-static const Table *get_table(void) {
-  pthread_once(&table_once, build_table);
-  return &table;
+bool cag_builtins_ready(void) {
+  if (table_ready) return true;
+  pthread_mutex_lock(&table_mutex);
+  if (!table_ready && cag_memory_guard(build_table, NULL)) table_ready = true;
+  if (!table_ready) {
+    cag_arena_free(&table_arena);
+    table = (Table){0};
+  }
+  pthread_mutex_unlock(&table_mutex);
+  return table_ready;
 }
 
 // --- Questions ---
 
-size_t cag_builtin_count(void) { return get_table()->name_count; }
+size_t cag_builtin_count(void) { return cag_builtins_ready() ? table.name_count : 0; }
 
 size_t cag_builtin_find(const char *name) {
-  get_table();
+  if (!cag_builtins_ready()) return (size_t)-1;
   uint32_t found = table.slots[find_slot(name)];
   return found ? found - 1 : (size_t)-1;
 }
 
-const char *cag_builtin_name(size_t index) { return get_table()->names[index].name; }
+size_t cag_builtin_jet(size_t index) { return table.names[index].jet; }
+
+const char *cag_builtin_name(size_t index) { return table.names[index].name; }
 
 const CagBuiltin *cag_builtin_rows(size_t index, size_t *rows) {
-  const Name *name = &get_table()->names[index];
+  const Name *name = &table.names[index];
   *rows = name->count;
   return table.rows + name->first;
 }
 
-const char *const *cag_builtin_names(void) { return get_table()->name_texts; }
+const char *const *cag_builtin_names(void) {
+  static const char *const none[] = {NULL};
+  return cag_builtins_ready() ? table.name_texts : none;
+}
 
 const CagSignature *cag_builtin_signature(size_t index, size_t row) {
-  size_t at = get_table()->names[index].first + row;
+  size_t at = table.names[index].first + row;
   return table.rows[at].function ? &table.signatures[at] : NULL;
 }
 
 const CagSignature *cag_builtin_signature_of(const CagBuiltin *row) {
-  return row->function ? &get_table()->signatures[row - table.rows] : NULL;
+  return row->function ? &table.signatures[row - table.rows] : NULL;
 }
 
 static bool row_serves(size_t at, CagType first) {
@@ -288,7 +301,7 @@ static bool row_serves(size_t at, CagType first) {
 }
 
 size_t cag_builtin_select(size_t index, CagType first, size_t positional) {
-  const Name *name = &get_table()->names[index];
+  const Name *name = &table.names[index];
   size_t found = (size_t)-1;
   for (size_t row = 0; row < name->count; row++) {
     if (!row_serves(name->first + row, first)) continue;
@@ -305,7 +318,7 @@ void cag_builtin_served(size_t index, CagString *out) {
       CAG_VALUE_TYPES(X)
 #undef X
   };
-  const Name *name = &get_table()->names[index];
+  const Name *name = &table.names[index];
   uint64_t mask = 0;
   for (size_t row = 0; row < name->count; row++) mask |= table.rows[name->first + row].first;
   // Two tags are called a function.
@@ -322,6 +335,6 @@ void cag_builtin_served(size_t index, CagString *out) {
 }
 
 CagValue cag_builtin_constant(CagVm *vm, size_t index) {
-  const Name *name = &get_table()->names[index];
+  const Name *name = &table.names[index];
   return table.rows[name->first].function ? cag_unset() : make_constant(vm, name->name);
 }

@@ -72,8 +72,10 @@ static bool reader_open(CagCall *call, Reader *r) {
 static bool call_read_text(CagCall *call, CagValue *result) {
   Reader r;
   if (!reader_open(call, &r)) return false;
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free, r.bytes);
   *result = cag_text_new(call->vm, r.at, (size_t)(r.end - r.at));
-  free(r.bytes);
+  cag_cleanup_run(&cleanup);
   return true;
 }
 
@@ -115,6 +117,7 @@ static bool read_cell(Csv *c) {
 
 static CagValue cell_value(Csv *c) {
   double x;
+  cag_string_check(c->r.call->vm, &c->cell);
   if (c->cell.length == 0) return cag_none();
   if (!cag_read_number(c->cell.bytes, c->cell.length, &x))
     return cag_text_new(c->r.call->vm, c->cell.bytes, c->cell.length);
@@ -165,8 +168,7 @@ static bool read_names(Csv *c, CagText **names) {
     CagString s = {0};
     if (c->row[i].type == CAG_NONE) cag_string_printf(&s, "column%zu", i + 1);
     else cag_print_value(vm, &s, c->row[i], false);
-    names[i] = cag_intern(vm, s.bytes ? s.bytes : "", s.length);
-    cag_string_free(&s);
+    names[i] = cag_intern_string(vm, &s);
     for (size_t j = 0; j < i; j++)
       if (names[j] == names[i])
         return fail_at(&c->r, c->row_start, "two columns are named \"%s\"", names[i]->bytes);
@@ -212,18 +214,24 @@ static bool read_records(Csv *c, CagBuilder *built) {
   CagVm *vm = c->r.call->vm;
   size_t columns = c->count;
   CagRecord *first = NULL;
-  CagText **names = malloc(columns * sizeof(CagText *));
-  bool found = true, good = names != NULL;
-  if (!good) cag_fail_call(c->r.call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  good = good && read_names(c, names) && read_row(c, &found);
+  CagCleanup cleanup;
+  CagText **names = cag_temporary(&cleanup, columns, sizeof(CagText *));
+  bool found = true, good = read_names(c, names) && read_row(c, &found);
   for (size_t n = 0; good && found; n++) {
     CagValue record;
     good = row_record(c, names, columns, &first, &record) && cag_builder_add(vm, built, record);
     if (n % ROWS_BETWEEN_CHECKS == ROWS_BETWEEN_CHECKS - 1) good = good && cag_keep_going(vm);
     good = good && read_row(c, &found);
   }
-  free(names);
+  cag_cleanup_run(&cleanup);
   return good;
+}
+
+static void free_csv(void *context) {
+  Csv *c = context;
+  cag_string_free(&c->cell);
+  free(c->row);
+  free(c->r.bytes);
 }
 
 static bool read_separator(CagCall *call, char *out) {
@@ -240,6 +248,8 @@ static bool call_read_csv(CagCall *call, CagValue *result) {
   bool found, header = false, asked = cag_given(call, 2) && call->values[2].type != CAG_NONE;
   if (asked && !cag_arg_bool_or(call, 2, false, &header)) return false;
   if (!read_separator(call, &c.separator) || !reader_open(call, &c.r)) return false;
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_csv, &c);
   CagBuilder *built = cag_builder_new(call->vm);
   bool good = read_row(&c, &found);
   if (good && found) {
@@ -247,9 +257,7 @@ static bool call_read_csv(CagCall *call, CagValue *result) {
     good = header ? read_records(&c, built) : read_lists(&c, built);
   }
   if (good) *result = cag_builder_finish(call->vm, built);
-  cag_string_free(&c.cell);
-  free(c.row);
-  free(c.r.bytes);
+  cag_cleanup_run(&cleanup);
   return good;
 }
 
@@ -387,21 +395,22 @@ static void join_fields(Fields *f) {
   qsort(f->fields, f->count, sizeof *f->fields, by_place);
 }
 
-static bool give_fields(Reader *r, Fields *f, CagValue *out) {
+static CagValue give_fields(Reader *r, Fields *f) {
   join_fields(f);
-  CagText **names = malloc((f->count ? f->count : 1) * sizeof(CagText *));
-  CagValue *values = malloc((f->count ? f->count : 1) * sizeof *values);
-  bool good = names && values;
-  if (!good) cag_fail_call(r->call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (size_t i = 0; good && i < f->count; i++) {
+  CagCleanup first, second;
+  CagText **names = cag_temporary(&first, f->count, sizeof(CagText *));
+  CagValue *values = cag_temporary(&second, f->count, sizeof *values);
+  for (size_t i = 0; i < f->count; i++) {
     names[i] = f->fields[i].name;
     values[i] = f->fields[i].value;
   }
-  if (good) *out = cag_record_from_texts(r->call->vm, names, values, f->count);
-  free(names);
-  free(values);
-  return good;
+  CagValue record = cag_record_from_texts(r->call->vm, names, values, f->count);
+  cag_cleanup_run(&second);
+  cag_cleanup_run(&first);
+  return record;
 }
+
+static void free_fields(void *fields) { free(((Fields *)fields)->fields); }
 
 // text ":" value
 static bool read_field(Reader *r, int depth, Fields *f) {
@@ -409,7 +418,7 @@ static bool read_field(Reader *r, int depth, Fields *f) {
   CagString s = {0};
   if (!next_is(r, '"')) return fail_at(r, r->at, "expected a name in quotes");
   bool good = read_json_text(r, &s);
-  CagText *name = good ? cag_intern(r->call->vm, s.bytes ? s.bytes : "", s.length) : NULL;
+  CagText *name = good ? cag_intern_string(r->call->vm, &s) : NULL;
   cag_string_free(&s);
   if (!good) return false;
   if (!next_is(r, ':')) return fail_at(r, r->at, "expected `:`");
@@ -419,14 +428,16 @@ static bool read_field(Reader *r, int depth, Fields *f) {
 // "{" [ field { "," field } ] "}"
 static bool read_json_record(Reader *r, int depth, CagValue *out) {
   Fields f = {0};
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_fields, &f);
   bool good = true;
   if (!next_is(r, '}')) {
     do good = read_field(r, depth, &f);
     while (good && next_is(r, ','));
     if (good && !next_is(r, '}')) good = fail_at(r, r->at, "expected `,` or `}`");
   }
-  good = good && give_fields(r, &f, out);
-  free(f.fields);
+  if (good) *out = give_fields(r, &f);
+  cag_cleanup_run(&cleanup);
   return good;
 }
 
@@ -471,10 +482,12 @@ static bool read_json_value(Reader *r, int depth, CagValue *out) {
 static bool call_read_json(CagCall *call, CagValue *result) {
   Reader r;
   if (!reader_open(call, &r)) return false;
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free, r.bytes);
   bool good = read_json_value(&r, 0, result);
   skip_blank(&r);
   if (good && r.at < r.end) good = fail_at(&r, r.at, "something follows the value");
-  free(r.bytes);
+  cag_cleanup_run(&cleanup);
   return good;
 }
 

@@ -353,6 +353,7 @@ static bool call_formula(CagCall *call, CagValue *result) {
   write_text(&p, ") => ");
   bool good = parse_formula(&p);
   cag_string_add(&p.out, "", 1);
+  cag_string_check(call->vm, &p.out);
   good = good && cag_vm_compile_lambda(call->vm, p.out.bytes, result);
   cag_string_free(&p.out);
   return good;

@@ -27,11 +27,12 @@ typedef struct Formula {
 } Formula;
 
 static Formula *formula_new(CagVm *vm, CagValue function, int variables) {
-  Formula *f = calloc(1, sizeof *f);
-  if (!f) cag_vm_out_of_memory(vm);
+  CagCleanup cleanup;
+  Formula *f = cag_temporary(&cleanup, 1, sizeof *f);
   f->vm = vm;
   f->variables = variables;
   f->slot = cag_vm_keep(vm, function);
+  cag_cleanup_pop(&cleanup);
   return f;
 }
 
@@ -273,10 +274,12 @@ static bool call_natural_curve(CagCall *call, CagValue *result) {
       (twisted && !cag_arg_function(call, 2, &torsion)) ||
       (cag_given(call, 3) && !cag_arg_transform(call, 3, &frame)))
     return false;
-  Equations *e = calloc(1, sizeof *e);
-  if (!e) cag_vm_out_of_memory(call->vm);
+  CagCleanup cleanup;
+  Equations *e = cag_checked(calloc(1, sizeof *e));
+  cag_cleanup_push(&cleanup, equations_free, e);
   e->curvature = formula_new(call->vm, curvature, 1);
   if (twisted) e->torsion = formula_new(call->vm, torsion, 1);
+  cag_cleanup_pop(&cleanup);
   const CagNaturalEquations equations = {equations_eval, equations_free, e};
   CagStatus status =
       cag_curve_natural(&equations, length, &frame, twisted || !frame.planar ? 3 : 2, &c, &err);

@@ -7,7 +7,6 @@
 #include "interp/builtin/jets.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,14 +58,12 @@ static bool read_series(CagCall *call, CagValue v, const CagSeries *like, CagSer
 // What the built-in gives for plain numbers.
 static bool plain_result(CagCall *call, CagValue *value) {
   CagValue plain[ARGUMENTS_MOST], *values = plain;
-  if (call->count > ARGUMENTS_MOST) {
-    values = malloc(call->count * sizeof *values);
-    if (!values) cag_vm_out_of_memory(call->vm);
-  }
+  CagCleanup cleanup;
+  if (call->count > ARGUMENTS_MOST) values = cag_temporary(&cleanup, call->count, sizeof *values);
   for (size_t i = 0; i < call->count; i++) values[i] = cag_without_jets(call->vm, call->values[i]);
   CagCall with = {call->vm, call->builtin, values, call->count};
   bool ok = call->builtin->function(&with, value);
-  if (values != plain) free(values);
+  if (values != plain) cag_cleanup_run(&cleanup);
   return ok;
 }
 
@@ -798,17 +795,10 @@ static const struct {
 };
 #define COUNT (sizeof differentiated / sizeof *differentiated)
 
-// Row + 1 of each built-in, made once like the table of built-ins.
-static uint8_t *row_of;
-static pthread_once_t rows_once = PTHREAD_ONCE_INIT;
-
-static void make_rows(void) {
-  row_of = calloc(cag_builtin_count(), 1);
-  if (!row_of) abort();
-  for (size_t i = 0; i < COUNT; i++) {
-    size_t index = cag_builtin_find(differentiated[i].name);
-    if (index != (size_t)-1) row_of[index] = (uint8_t)(i + 1);
-  }
+size_t cag_jet_row(const char *name) {
+  for (size_t i = 0; i < COUNT; i++)
+    if (strcmp(differentiated[i].name, name) == 0) return i + 1;
+  return 0;
 }
 
 static bool refuse(CagCall *call, CagValue *result) {
@@ -817,13 +807,13 @@ static bool refuse(CagCall *call, CagValue *result) {
 }
 
 CagBuiltinFunction cag_jet_function(const CagCall *call, size_t index) {
-  pthread_once(&rows_once, make_rows);
-  if (!row_of[index]) {
+  const size_t row = cag_builtin_jet(index);
+  if (!row) {
     // Rows that tell their types read the argument without asking again.
     bool reads = call->count > 0 && call->values[0].type == CAG_JET && call->builtin->first != 0;
     return reads ? refuse : call->builtin->function;
   }
   for (size_t i = 0; i < call->count; i++)
-    if (cag_holds_jet(call->values[i])) return differentiated[row_of[index] - 1].function;
+    if (cag_holds_jet(call->values[i])) return differentiated[row - 1].function;
   return call->builtin->function;
 }

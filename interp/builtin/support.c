@@ -156,12 +156,6 @@ CagValue cag_sequence_element(CagVm *vm, CagSequence *s, size_t i) {
   return character;
 }
 
-CagValue cag_text_from_string(CagVm *vm, CagString *s) {
-  CagValue text = cag_text_new(vm, s->length ? s->bytes : "", s->length);
-  cag_string_free(s);
-  return text;
-}
-
 // --- Order ---
 
 bool cag_order(CagValue a, CagValue b, int *order) {

@@ -41,7 +41,6 @@ CagValue cag_sequence_element(CagVm *vm, CagSequence *s, size_t i);
 size_t cag_character_size(const char *s);
 // Where character k of a text begins.
 const char *cag_text_at(const CagText *t, size_t k);
-CagValue cag_text_from_string(CagVm *vm, CagString *s); // frees s
 
 // --- Values ---
 // Values nest as deep as a script likes, functions that follow them so deep only: the same bound as

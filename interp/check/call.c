@@ -2,7 +2,6 @@
 
 #include "interp/check/walk.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "interp/doc/doc.h"
@@ -107,7 +106,7 @@ static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool t
 // What a parameter takes. The words of the documentation are read once for each.
 static CagTypes types_taken(Check *c, const CagBuiltin *row, const CagSignature *s, size_t k) {
   if (k >= s->count) return cag_types_taken(row, s, k);
-  if (!c->taken) c->taken = cag_checked(calloc(TAKEN_SIZE, sizeof *c->taken));
+  if (!c->taken) c->taken = cag_arena_alloc(&c->memory, TAKEN_SIZE * sizeof *c->taken);
   const char *const *key = &s->parameters[k];
   size_t i = ((size_t)key >> 3) * 0x9E3779B97F4A7C15u >> 20 & (TAKEN_SIZE - 1);
   for (size_t tries = 0; tries < TAKEN_TRIES; tries++, i = (i + 1) & (TAKEN_SIZE - 1)) {
@@ -230,11 +229,10 @@ static CagTypes check_function(Check *c, const char *name, const CagFunctionAst 
                                const CallView *v) {
   const char *few[32], **parameters = few;
   if (fn->parameter_count > 32)
-    parameters = cag_checked(malloc(fn->parameter_count * sizeof *parameters));
+    parameters = cag_arena_alloc(&c->memory, fn->parameter_count * sizeof *parameters);
   for (size_t i = 0; i < fn->parameter_count; i++) parameters[i] = fn->parameters[i].decl->name;
   const Callee f = {name, parameters, fn->parameter_count, fn->required_count, NULL, false, false};
   check_arguments(c, &f, v, true);
-  if (parameters != few) free(parameters);
   return CAG_TYPES_ANY;
 }
 
@@ -287,7 +285,7 @@ static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
     if (v->e->as.call.arguments[i].name) v->named++;
     else v->positional++;
   if (v->positional + v->named > 16)
-    v->types = cag_checked(malloc((v->positional + v->named) * sizeof *v->types));
+    v->types = cag_arena_alloc(&c->memory, (v->positional + v->named) * sizeof *v->types);
   c->unjudged += is_attempt(callee);
   if (v->piped) v->piped_types = check_infer(c, v->piped);
   const CagTypes called = check_infer(c, callee);
@@ -313,7 +311,6 @@ static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
   } else {
     check_shape_call(c, called, v);
   }
-  if (v->types != few) free(v->types);
   return result;
 }
 

@@ -2,7 +2,6 @@
 
 #include "interp/check/check.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "interp/check/circle.h"
@@ -145,14 +144,22 @@ static void mark_bad(Check *c, size_t from) {
     }
 }
 
+static void free_check(void *context) {
+  Check *c = context;
+  cag_arena_free(&c->memory);
+  cag_diagnostics_clear(&c->ignored);
+}
+
 bool cag_check_module(CagVm *vm, CagModuleUnit *m) {
   const size_t n = m->ast->top_count, known = vm->errors.count;
   Check c = {.vm = vm, .unit = m, .ast = m->ast, .top = n};
-  c.top_types = cag_checked(calloc(n + 1, sizeof *c.top_types));
-  c.top_done = cag_checked(calloc(n + 1, 1));
-  c.top_busy = cag_checked(calloc(n + 1, 1));
-  c.reached = cag_checked(calloc(n + 1, 1));
-  c.top_bad = cag_checked(calloc(n + 1, 1));
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_check, &c);
+  c.top_types = cag_arena_alloc(&c.memory, (n + 1) * sizeof *c.top_types);
+  c.top_done = cag_arena_alloc(&c.memory, n + 1);
+  c.top_busy = cag_arena_alloc(&c.memory, n + 1);
+  c.reached = cag_arena_alloc(&c.memory, n + 1);
+  c.top_bad = cag_arena_alloc(&c.memory, n + 1);
   c.constants = (CagConstants){.vm = vm, .unit = m, .is_bad = c.top_bad};
   vm->failed = false;
   cag_check_circles(m->ast, &vm->errors);
@@ -161,15 +168,7 @@ bool cag_check_module(CagVm *vm, CagModuleUnit *m) {
   // What an unknown name was meant to be is not known, nor what could not be read.
   if (m->sound && known == m->first_error) warn_unused(&c);
   cag_diagnostics_sort_last(&vm->errors);
-  free(c.top_types);
-  free(c.top_done);
-  free(c.top_busy);
-  free(c.reached);
-  free(c.top_bad);
-  free(c.edges);
-  free(c.known);
-  free(c.taken);
-  cag_diagnostics_free(&c.ignored);
+  cag_cleanup_run(&cleanup);
   for (size_t i = known; i < vm->errors.count; i++)
     if (vm->errors.items[i].severity == CAG_SEVERITY_ERROR) return false;
   return true;

@@ -2,9 +2,10 @@
 // definition k, node 2k + 1 a call of it. The search is depth first with a stack of its own, since
 // chains may be long.
 
-#include <stdlib.h>
+#include <string.h>
 
 #include "interp/check/circle.h"
+#include "lang/arena.h"
 
 typedef struct Edge {
   size_t to;
@@ -21,6 +22,7 @@ typedef struct Graph {
   const CagModuleAst *ast;
   Node *nodes;
   size_t from; // whose expression is walked
+  CagArena memory;
 } Graph;
 
 static const CagFunctionAst *function_of(const CagStatement *s) {
@@ -43,8 +45,10 @@ static void add_edge(Graph *g, const CagExpr *name, bool called) {
   Node *n = &g->nodes[g->from];
   if (!d) return;
   if (n->count == n->capacity) {
+    const Edge *const old = n->edges;
     n->capacity = 2 * n->capacity + 4;
-    n->edges = cag_checked(realloc(n->edges, n->capacity * sizeof *n->edges));
+    n->edges = cag_arena_alloc(&g->memory, n->capacity * sizeof *n->edges);
+    if (old) memcpy(n->edges, old, n->count * sizeof *n->edges);
   }
   n->edges[n->count++] = (Edge){2 * d->index + called, name->span};
 }
@@ -128,6 +132,7 @@ static void report_circle(const Graph *g, const size_t *path, size_t length, siz
     if (!first) first = name;
     cag_string_printf(&s, "%s -> ", name);
   }
+  if (s.failed) cag_memory_leave();
   if (first)
     cag_diagnostics_add(errors, CAG_ERR_circle, g->ast->source, span,
                         "the value of `%s` needs itself: %s%s", first, s.bytes, first);
@@ -158,10 +163,15 @@ static void search(Graph *g, size_t start, size_t *path, CagDiagnostics *errors)
   }
 }
 
+static void free_graph(void *g) { cag_arena_free(&((Graph *)g)->memory); }
+
 void cag_check_circles(const CagModuleAst *ast, CagDiagnostics *errors) {
   const size_t n = ast->top_count;
-  Graph g = {.ast = ast, .nodes = cag_checked(calloc(2 * n + 1, sizeof(Node)))};
-  size_t *path = cag_checked(malloc((2 * n + 1) * sizeof *path));
+  Graph g = {.ast = ast};
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_graph, &g);
+  g.nodes = cag_arena_alloc(&g.memory, (2 * n + 1) * sizeof *g.nodes);
+  size_t *path = cag_arena_alloc(&g.memory, (2 * n + 1) * sizeof *path);
   for (size_t k = 0; k < n; k++) {
     const CagStatement *s = ast->tops[k]->statement;
     if (s->damage != CAG_SOUND) continue;
@@ -172,7 +182,5 @@ void cag_check_circles(const CagModuleAst *ast, CagDiagnostics *errors) {
   }
   for (size_t k = 0; k < n; k++) // as a run does: from values
     if (g.nodes[2 * k].state == NEW) search(&g, 2 * k, path, errors);
-  for (size_t i = 0; i < 2 * n; i++) free(g.nodes[i].edges);
-  free(g.nodes);
-  free(path);
+  cag_cleanup_run(&cleanup);
 }

@@ -134,5 +134,5 @@ void cag_check_constant(CagConstants *c, const CagExpr *e) {
   vm->failed = false;
   if (vm->stop) c->evaluated = CALLS_MAX; // interrupted: said once
   cag_diagnostics_move(&vm->errors, &found);
-  cag_diagnostics_free(&found);
+  cag_diagnostics_clear(&found);
 }

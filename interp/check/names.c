@@ -2,7 +2,6 @@
 
 #include "interp/check/walk.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 // Definitions are walked where they are used first; a longer chain is not followed.
@@ -43,12 +42,12 @@ static size_t slot_of(const Check *c, const CagDecl *decl) {
 void check_learn(Check *c, const CagDecl *decl, CagTypes types) {
   if (!decl) return;
   if (2 * (c->known_count + 1) > c->known_size) {
-    Check old = *c;
-    c->known_size = old.known_size ? 2 * old.known_size : 256;
-    c->known = cag_checked(calloc(c->known_size, sizeof *c->known));
-    for (size_t i = 0; i < old.known_size; i++)
-      if (old.known[i].decl) c->known[slot_of(c, old.known[i].decl)] = old.known[i];
-    free(old.known);
+    Known *const old = c->known;
+    const size_t old_size = c->known_size;
+    c->known_size = old_size ? 2 * old_size : 256;
+    c->known = cag_arena_alloc(&c->memory, c->known_size * sizeof *c->known);
+    for (size_t i = 0; i < old_size; i++)
+      if (old[i].decl) c->known[slot_of(c, old[i].decl)] = old[i];
   }
   const size_t i = slot_of(c, decl);
   c->known_count += !c->known[i].decl;
@@ -63,8 +62,10 @@ static CagTypes types_known(const Check *c, const CagDecl *decl) {
 
 static void use_top(Check *c, size_t used) {
   if (c->edge_count == c->edge_capacity) {
+    const size_t *const old = c->edges;
     c->edge_capacity = 2 * c->edge_capacity + 64;
-    c->edges = cag_checked(realloc(c->edges, 2 * c->edge_capacity * sizeof *c->edges));
+    c->edges = cag_arena_alloc(&c->memory, 2 * c->edge_capacity * sizeof *c->edges);
+    if (old) memcpy(c->edges, old, 2 * c->edge_count * sizeof *c->edges);
   }
   c->edges[2 * c->edge_count] = c->top;
   c->edges[2 * c->edge_count++ + 1] = used;

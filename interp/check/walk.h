@@ -6,6 +6,7 @@
 
 #include "interp/check/constant.h"
 #include "interp/check/types.h"
+#include "lang/arena.h"
 
 // What is known of a definition, parameter or name of a comprehension.
 typedef struct Known {
@@ -36,8 +37,9 @@ typedef struct Check {
   CagDiagnostics ignored; // what is said of them
   size_t depth;           // definitions that are walked within one another
   CagConstants constants;
-  bool *top_bad; // definitions with errors
-  size_t thunks; // functions without parameters around: their calls may be meant to fail
+  bool *top_bad;   // definitions with errors
+  CagArena memory; // of all this
+  size_t thunks;   // functions without parameters around: their calls may be meant to fail
 } Check;
 
 // ---- reports ----

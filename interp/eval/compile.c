@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "interp/eval/vm.h"
+#include "lang/arena.h"
 
 // More elements than this are pushed one by one instead of standing in registers together.
 #define LIST_IN_REGISTERS 32
@@ -20,7 +21,9 @@ typedef struct Unit {
   CagProto *proto;
   struct Unit *outer;
   const CagFunctionAst *function; // NULL: a definition's initialiser or a statement
+  CagArena *scratch;              // of what is needed while compiling; one for nested functions
   const CagDecl **captured;       // decl of each capture
+  size_t captured_capacity;
   uint32_t next;
   bool failed;
 } Unit;
@@ -103,8 +106,17 @@ static int32_t add_constant(Unit *u, CagValue v) {
   return (int32_t)p->constant_count++;
 }
 
+// An array of the scratch memory with room for one more.
+static void *grown_scratch(Unit *u, void *p, size_t count, size_t *capacity, size_t size) {
+  if (count < *capacity) return p;
+  *capacity = *capacity ? *capacity * 2 : 16;
+  void *more = cag_arena_alloc(u->scratch, *capacity * size);
+  if (count) memcpy(more, p, count * size);
+  return more;
+}
+
 static void add_patch(Unit *u, Patches *list, size_t at) {
-  list->at = grown(u->vm, list->at, list->count, &list->capacity, sizeof *list->at);
+  list->at = grown_scratch(u, list->at, list->count, &list->capacity, sizeof *list->at);
   list->at[list->count++] = at;
 }
 
@@ -115,7 +127,6 @@ static void patch_to(Unit *u, size_t at, size_t target) {
 // Jumps of the list lead to `target`; the list is done with.
 static void patch_all(Unit *u, Patches *list, size_t target) {
   for (size_t i = 0; i < list->count; i++) patch_to(u, list->at[i], target);
-  free(list->at);
   *list = (Patches){0};
 }
 
@@ -147,12 +158,12 @@ static bool constant_value(Unit *u, const CagExpr *e, CagValue *out) {
     return true;
   case CAG_EXPR_LIST: {
     size_t n = e->as.list.count;
-    CagValue *values = malloc((n ? n : 1) * sizeof *values);
-    if (!values) cag_vm_out_of_memory(u->vm);
+    CagCleanup cleanup;
+    CagValue *values = cag_temporary(&cleanup, n, sizeof *values);
     bool all = true;
     for (size_t i = 0; all && i < n; i++) all = constant_value(u, e->as.list.items[i], &values[i]);
     if (all) *out = cag_list_values(u->vm, values, n);
-    free(values);
+    cag_cleanup_run(&cleanup);
     return all;
   }
   default: return false;
@@ -184,8 +195,8 @@ static uint16_t capture_index(Unit *u, const CagDecl *d) {
   else if (d->owner == outer->function) c = (struct CagCapture){true, (uint16_t)d->index};
   else c = (struct CagCapture){false, capture_index(outer, d)};
   CagProto *p = u->proto;
-  size_t capacity = p->capture_capacity;
-  u->captured = grown(u->vm, u->captured, p->capture_count, &capacity, sizeof *u->captured);
+  u->captured =
+      grown_scratch(u, u->captured, p->capture_count, &u->captured_capacity, sizeof *u->captured);
   p->captures =
       grown(u->vm, p->captures, p->capture_count, &p->capture_capacity, sizeof *p->captures);
   p->captures[p->capture_count] = c;
@@ -403,15 +414,15 @@ static void compile_record(Unit *u, const CagExpr *e, uint32_t target) {
   while (plain < n && e->as.record.fields[plain].name) plain++;
   uint32_t mark = u->next;
   uint32_t first = take(u, (uint32_t)plain);
-  CagText **names = malloc((plain ? plain : 1) * sizeof *names);
-  if (!names) cag_vm_out_of_memory(u->vm);
+  CagCleanup cleanup;
+  CagText **names = cag_temporary(&cleanup, plain, sizeof *names);
   for (size_t i = 0; i < plain; i++) {
     const CagField *f = &e->as.record.fields[i];
     names[i] = cag_intern(u->vm, f->name, strlen(f->name));
     compile_to(u, f->value, first + (uint32_t)i);
   }
   CagLayout *layout = cag_layout_new(u->vm, names, plain);
-  free(names);
+  cag_cleanup_run(&cleanup);
   uint32_t r = plain == n ? target : take(u, 1);
   emit(u, e->span, CAG_CODE_RECORD, r, first,
        (uint32_t)add_constant(u, cag_object(CAG_INTERNAL, layout)));
@@ -756,8 +767,12 @@ static CagProto *new_proto(CagVm *vm, CagModuleUnit *m, const char *name) {
 
 static CagProto *compile_function(Unit *outer, CagModuleUnit *m, CagVm *vm,
                                   const CagFunctionAst *f) {
-  Unit u = {
-      .vm = vm, .module = m, .outer = outer, .function = f, .proto = new_proto(vm, m, f->name)};
+  Unit u = {.vm = vm,
+            .module = m,
+            .outer = outer,
+            .function = f,
+            .proto = new_proto(vm, m, f->name),
+            .scratch = outer->scratch};
   CagProto *p = u.proto;
   p->is_function = true;
   p->parameter_count = f->parameter_count;
@@ -777,24 +792,33 @@ static CagProto *compile_function(Unit *outer, CagModuleUnit *m, CagVm *vm,
   }
   p->body = (uint32_t)here(&u);
   compile_tail(&u, f->body);
-  free(u.captured);
   return u.failed ? NULL : p;
 }
 
+static void free_scratch(void *scratch) { cag_arena_free(scratch); }
+
 CagProto *cag_compile_expression(CagVm *vm, CagModuleUnit *m, const CagExpr *e, const char *name) {
-  Unit u = {.vm = vm, .module = m, .proto = new_proto(vm, m, name)};
+  CagArena scratch = {0};
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_scratch, &scratch);
+  Unit u = {.vm = vm, .module = m, .proto = new_proto(vm, m, name), .scratch = &scratch};
   uint32_t r = take(&u, 1);
   compile_to(&u, e, r);
   emit(&u, e->span, CAG_CODE_RETURN, r, 0, 0);
+  cag_cleanup_run(&cleanup);
   return u.failed ? NULL : u.proto;
 }
 
 CagProto *cag_compile_assert(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
-  Unit u = {.vm = vm, .module = m, .proto = new_proto(vm, m, NULL)};
+  CagArena scratch = {0};
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_scratch, &scratch);
+  Unit u = {.vm = vm, .module = m, .proto = new_proto(vm, m, NULL), .scratch = &scratch};
   uint32_t r = take(&u, 1);
   compile_assert(&u, s);
   emit_wide(&u, s->span, CAG_CODE_BOOL, r, 1);
   emit(&u, s->span, CAG_CODE_RETURN, r, 0, 0);
+  cag_cleanup_run(&cleanup);
   return u.failed ? NULL : u.proto;
 }
 

@@ -80,7 +80,22 @@ bool cag_vm_place(const CagVm *vm, const CagSource **source, CagSpan *span) {
   return true;
 }
 
+static const char *memory_message(const CagVm *vm, char *buffer, size_t size) {
+  static const char *const units[] = {"B", "KiB", "MiB", "GiB"};
+  double limit = (double)vm->heap.limit;
+  size_t unit = 0;
+  for (; unit < 3 && limit >= 1024; unit++) limit /= 1024;
+  snprintf(buffer, size, "the script needs more memory than the %.3g %s it may have (--max-memory)",
+           limit, units[unit]);
+  return buffer;
+}
+
 static CagDiagnostic *set_error(CagVm *vm, CagErrorId id, int argument, const char *message) {
+  char buffer[128];
+  if (vm->starved) { // the message may have lost what it should tell
+    id = CAG_ERR_limit_memory;
+    message = memory_message(vm, buffer, sizeof buffer);
+  }
   cag_diagnostics_clear(&vm->errors);
   vm->failed = true;
   const CagSource *source = NULL;
@@ -101,7 +116,8 @@ static void vfail(CagVm *vm, CagErrorId id, int argument, const char *prefix, co
   if (vasprintf(&message, format, args) < 0) message = NULL;
   CagString s = {0};
   if (prefix) cag_string_printf(&s, "%s ", prefix);
-  cag_string_printf(&s, "%s", message ? message : format);
+  if (message) cag_string_add(&s, message, strlen(message));
+  vm->starved |= !message || s.failed;
   free(message);
   set_error(vm, id, argument, s.bytes);
   cag_string_free(&s);
@@ -233,6 +249,7 @@ bool cag_fail_geometry(CagCall *call, const CagError *err) {
   if (id == CAG_ERR_COUNT) id = CAG_ERR_value;
   CagString message = {0};
   cag_string_printf(&message, "%s: %s", s->name, err->message);
+  call->vm->starved |= message.failed;
   CagDiagnostic *d = set_error(call->vm, id, argument_of(call, parameter), message.bytes);
   cag_string_free(&message);
   if (err->reason && strcmp(err->reason, cag_error_info(id)->reason) != 0)
@@ -245,17 +262,15 @@ void cag_vm_clear_error(CagVm *vm) {
   vm->failed = false;
 }
 
+bool cag_vm_fail_memory(CagVm *vm) {
+  char message[128];
+  set_error(vm, CAG_ERR_limit_memory, WHOLE_CALL, memory_message(vm, message, sizeof message));
+  return false;
+}
+
 _Noreturn void cag_vm_out_of_memory(CagVm *vm) {
-  char limit[64];
-  double gib = (double)vm->heap.limit / (1 << 30);
-  snprintf(limit, sizeof limit, gib >= 1 ? "%.3g GiB" : "%.3g MiB", gib >= 1 ? gib : gib * 1024);
-  cag_vm_fail(vm, CAG_ERR_limit_memory,
-              "the script needs more memory than the %s it may have (--max-memory)", limit);
-  if (!vm->escape) {
-    fputs("cag: out of memory\n", stderr);
-    abort();
-  }
-  longjmp(*vm->escape, 1);
+  cag_vm_fail_memory(vm);
+  cag_memory_leave();
 }
 
 // --- What a script sees of its errors ---
@@ -299,6 +314,7 @@ void cag_vm_trace(CagCall *call, CagValue value, const char *label) {
   if (label && *label) cag_string_printf(&s, "%s: ", label);
   cag_print_value(vm, &s, value, true);
   cag_string_add(&s, "\n", 1);
+  cag_string_check(vm, &s);
   if (!vm->stop) fwrite(s.bytes, 1, s.length, vm->trace);
   fflush(vm->trace);
   cag_string_free(&s);

@@ -15,7 +15,8 @@
 #define CHUNK ((size_t)16 << 20)
 
 // Reasons that are told apart by their place.
-static const char TOO_LARGE[] = "it is too large", OUT_OF_MEMORY[] = "there is no memory for it";
+static const char TOO_LARGE[] = "it is too large";
+const char cag_file_out_of_memory[] = "there is no memory for it";
 
 static bool below(const char *path, const char *folder) {
   size_t n = strlen(folder);
@@ -30,15 +31,25 @@ static bool is_allowed(const CagVm *vm, const char *real) {
   return false;
 }
 
+char *cag_vm_real_path(CagVm *vm, const char *path) {
+  char *real = realpath(path, NULL);
+  vm->starved |= !real && errno == ENOMEM;
+  return real;
+}
+
 char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *message,
                        size_t size) {
   char *joined = NULL;
   const char *asked = path;
   if (path[0] != '/' && beside) {
-    if (asprintf(&joined, "%s/%s", beside, path) < 0) return NULL;
+    if (asprintf(&joined, "%s/%s", beside, path) < 0) {
+      vm->starved = true;
+      snprintf(message, size, "%s: %s", path, cag_file_out_of_memory);
+      return NULL;
+    }
     asked = joined;
   }
-  char *real = realpath(asked, NULL);
+  char *real = cag_vm_real_path(vm, asked);
   int why = errno;
   // Whether a file outside exists is not told: only a missing one below the folders is called
   // missing.
@@ -60,7 +71,7 @@ char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *me
 static char *read_rest(FILE *f, size_t first, size_t most, size_t *length, const char **why) {
   size_t capacity = first + 1, n = 0;
   char *bytes = malloc(capacity);
-  *why = bytes ? NULL : OUT_OF_MEMORY;
+  *why = bytes ? NULL : cag_file_out_of_memory;
   while (!*why) {
     const size_t room = capacity - 1 - n;
     n += fread(bytes + n, 1, room < CHUNK ? room : CHUNK, f);
@@ -75,7 +86,7 @@ static char *read_rest(FILE *f, size_t first, size_t most, size_t *length, const
     else capacity = (capacity < most / 2 ? 2 * capacity : most) + 1;
     char *more = *why ? NULL : realloc(bytes, capacity);
     if (more) bytes = more;
-    else if (!*why) *why = OUT_OF_MEMORY;
+    else if (!*why) *why = cag_file_out_of_memory;
   }
   if (*why) {
     free(bytes);
@@ -118,7 +129,7 @@ bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **byte
     const CagSource *s = vm->frames[vm->frame_count - 1].proto->source;
     for (size_t i = 0; i < vm->module_count; i++)
       if (vm->modules[i]->source == s && vm->modules[i]->path)
-        folder = strdup(vm->modules[i]->path);
+        folder = cag_checked(strdup(vm->modules[i]->path));
     char *slash = folder ? strrchr(folder, '/') : NULL;
     if (slash) *slash = 0;
   }
@@ -143,6 +154,7 @@ bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **byte
                            "%s is larger than the memory that is left (--max-memory)", path);
     why = "it is larger than 1 GiB";
   }
+  vm->starved |= !*bytes && why == cag_file_out_of_memory;
   if (!*bytes) return cag_fail_call(call, argument, CAG_ERR_file, "cannot read %s: %s", path, why);
   return true;
 }

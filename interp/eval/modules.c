@@ -28,7 +28,10 @@ static CagModuleUnit *new_unit(CagVm *vm, const char *name, const char *path, co
   m->name = strdup(name);
   m->path = path ? strdup(path) : NULL;
   m->source = cag_source_new(name, text, length);
-  if (!m->name || !m->source) cag_vm_out_of_memory(vm);
+  if (!m->name || !m->source || (path && !m->path)) {
+    cag_module_free(m);
+    cag_vm_out_of_memory(vm);
+  }
   m->number = vm->module_count;
   vm->modules[vm->module_count++] = m;
   return m;
@@ -59,7 +62,9 @@ static char *folder_of(const CagVm *vm, const CagModuleUnit *m) {
 
 static size_t find_standard(CagVm *vm, const char *name) {
   for (size_t i = 0; i < vm->module_count; i++)
-    if (!vm->modules[i]->path && strcmp(vm->modules[i]->name, name) == 0) return i;
+    if (!vm->modules[i]->path && vm->modules[i]->state != CAG_MODULE_LOST &&
+        strcmp(vm->modules[i]->name, name) == 0)
+      return i;
   for (const CagStdlibFile *f = cag_stdlib; f->module; f++)
     if (strcmp(f->module, name) == 0)
       return load_unit(vm, new_unit(vm, name, NULL, f->text, f->length), CAG_PARSE_FILE);
@@ -92,7 +97,7 @@ static size_t load_path(CagVm *vm, CagModuleUnit *from, const CagStatement *s, c
                         const char *shown) {
   for (size_t i = 0; i < vm->module_count; i++) {
     CagModuleUnit *m = vm->modules[i];
-    if (!m->path || strcmp(m->path, real) != 0) continue;
+    if (!m->path || m->state == CAG_MODULE_LOST || strcmp(m->path, real) != 0) continue;
     if (m->state != CAG_MODULE_LOADING) return i;
     fail_circle(vm, from, s, m);
     return CAG_NO_MODULE;
@@ -103,10 +108,13 @@ static size_t load_path(CagVm *vm, CagModuleUnit *from, const CagStatement *s, c
   if (!text) {
     cag_diagnostics_add(&vm->errors, CAG_ERR_module_unreadable, from->source,
                         s->as.import.path_span, "cannot read %s: %s", shown, why);
+    vm->starved |= why == cag_file_out_of_memory;
     return CAG_NO_MODULE;
   }
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free, text);
   CagModuleUnit *m = new_unit(vm, shown, real, text, length);
-  free(text);
+  cag_cleanup_run(&cleanup);
   return load_unit(vm, m, CAG_PARSE_FILE);
 }
 
@@ -128,6 +136,19 @@ static void suggest_module(CagDiagnostic *d, const char *name) {
   if (nearest) cag_diagnostic_set_help(d, "did you mean `%s`?", nearest);
 }
 
+typedef struct ImportPaths {
+  char *relative, *folder; // what the import says, and where it says it
+  char *real, *shown;      // of the file that is found
+} ImportPaths;
+
+static void free_paths(void *paths) {
+  ImportPaths *p = paths;
+  free(p->relative);
+  free(p->folder);
+  free(p->real);
+  free(p->shown);
+}
+
 static size_t load_import(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
   const char *name = s->as.import.path;
   if (!s->as.import.is_text && strncmp(name, "std.", 4) == 0) {
@@ -139,20 +160,25 @@ static size_t load_import(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
                      name);
     return k;
   }
-  char *relative = relative_path(s), *folder = folder_of(vm, m);
+  ImportPaths p = {.relative = relative_path(s), .folder = folder_of(vm, m)};
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_paths, &p);
+  vm->starved |= !p.relative || (!p.folder && (m->path || vm->root));
+  const char *const relative = p.relative, *const folder = p.folder;
   char message[512];
-  char *real =
-      relative && folder ? cag_allowed_path(vm, relative, folder, message, sizeof message) : NULL;
-  bool exists = real != NULL;
-  char *shown = exists ? shown_path(m, relative) : NULL;
-  for (size_t i = 0; !real && !s->as.import.is_text && i < vm->include_count; i++) {
+  if (relative && folder) p.real = cag_allowed_path(vm, relative, folder, message, sizeof message);
+  if (p.real) p.shown = shown_path(m, relative);
+  for (size_t i = 0; relative && !p.real && !s->as.import.is_text && i < vm->include_count; i++) {
     char ignored[512];
-    real = cag_allowed_path(vm, relative, vm->include[i], ignored, sizeof ignored);
-    if (real) shown = strdup(real);
+    p.real = cag_allowed_path(vm, relative, vm->include[i], ignored, sizeof ignored);
+    if (p.real) p.shown = strdup(p.real);
   }
   size_t k = CAG_NO_MODULE;
-  if (real) {
-    k = load_path(vm, m, s, real, shown);
+  vm->starved |= p.real && !p.shown;
+  if (vm->starved) {
+    // The error is that of the run, when it ends.
+  } else if (p.real) {
+    k = load_path(vm, m, s, p.real, p.shown);
   } else {
     bool outside = folder && strstr(message, "outside") != NULL;
     CagDiagnostic *d = cag_diagnostics_add(
@@ -170,10 +196,7 @@ static size_t load_import(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
       }
     }
   }
-  free(real);
-  free(shown);
-  free(relative);
-  free(folder);
+  cag_cleanup_run(&cleanup);
   return k;
 }
 
@@ -276,6 +299,10 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
   if (!check_text(vm, m)) return CAG_NO_MODULE;
   size_t before = vm->errors.count;
   m->ast = cag_parse(m->source, mode, &vm->errors);
+  if (!m->ast) {
+    m->state = CAG_MODULE_LOST;
+    return CAG_NO_MODULE;
+  }
   m->sound = vm->errors.count == before;
   m->resolved = m->sound || mode == CAG_PARSE_FILE; // the REPL takes no part of an input
   m->state = CAG_MODULE_LOADING;
@@ -302,6 +329,7 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
 static void set_root(CagVm *vm, const char *real) {
   if (vm->root) return;
   vm->root = strdup(real);
+  vm->starved |= !vm->root;
   char *slash = vm->root ? strrchr(vm->root, '/') : NULL;
   if (slash) slash[slash == vm->root ? 1 : 0] = 0;
 }
@@ -316,15 +344,19 @@ size_t cag_load_file(CagVm *vm, const char *path, int *exit_status) {
     cag_diagnostics_add(&vm->errors, CAG_ERR_module_unreadable, NULL, (CagSpan){0, 0},
                         "cannot read %s: %s", path, why);
     vm->failed = true;
+    vm->starved |= why == cag_file_out_of_memory;
     *exit_status = 3;
     return CAG_NO_MODULE;
   }
-  char *real = input ? NULL : realpath(path, NULL);
+  CagCleanup text_cleanup, real_cleanup;
+  cag_cleanup_push(&text_cleanup, free, text);
+  char *real = input ? NULL : cag_vm_real_path(vm, path);
+  cag_cleanup_push(&real_cleanup, free, real);
   if (real) set_root(vm, real);
   else if (!vm->root) vm->root = getcwd(NULL, 0);
   CagModuleUnit *m = new_unit(vm, input ? "<stdin>" : path, real, text, length);
-  free(real);
-  free(text);
+  cag_cleanup_run(&real_cleanup);
+  cag_cleanup_run(&text_cleanup);
   size_t k = load_unit(vm, m, CAG_PARSE_FILE);
   vm->failed = k == CAG_NO_MODULE;
   return k;

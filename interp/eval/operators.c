@@ -226,9 +226,7 @@ static CagValue join_texts(CagVm *vm, const CagText *a, const CagText *b) {
   CagString s = {0};
   cag_string_add(&s, a->bytes, a->length);
   cag_string_add(&s, b->bytes, b->length);
-  CagValue v = cag_text_new(vm, s.bytes, s.length);
-  cag_string_free(&s);
-  return v;
+  return cag_text_from_string(vm, &s);
 }
 
 // Puts the top of the stack above the registers of the running frame, which the loop does not see
@@ -563,8 +561,8 @@ static bool text_steps(CagVm *vm, const CagText *t, const CagRange *r, CagValue 
     const size_t a = byte_of_character(t, k), b = byte_of_character(t, k + 1);
     cag_string_add(&s, t->bytes + a, b - a);
   }
-  if (ok) *result = cag_text_new(vm, s.bytes ? s.bytes : "", s.length);
-  cag_string_free(&s);
+  if (ok) *result = cag_text_from_string(vm, &s);
+  else cag_string_free(&s);
   return ok;
 }
 

@@ -192,6 +192,7 @@ static bool run_print(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
   ok = ok && !vm->failed && cag_keep_going(vm);
   if (ok) {
     cag_string_add(&line, "\n", 1);
+    cag_string_check(vm, &line);
     fwrite(line.bytes, 1, line.length, vm->out);
   }
   cag_string_free(&line);

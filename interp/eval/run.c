@@ -190,16 +190,16 @@ static CagValue record_set(CagVm *vm, const CagRecord *r, CagText *name, CagValu
     CAG_AS_RECORD(copy)->fields[at] = v;
     return copy;
   }
-  CagText **names = malloc((n + 1) * sizeof *names);
-  CagValue *values = malloc((n + 1) * sizeof *values);
-  if (!names || !values) cag_vm_out_of_memory(vm);
+  CagCleanup first, second;
+  CagText **names = cag_temporary(&first, n + 1, sizeof *names);
+  CagValue *values = cag_temporary(&second, n + 1, sizeof *values);
   memcpy(names, r->layout->names, n * sizeof *names);
   memcpy(values, r->fields, n * sizeof *values);
   names[n] = name;
   values[n] = v;
   CagValue out = cag_record_with_layout(vm, cag_layout_new(vm, names, n + 1), values);
-  free(names);
-  free(values);
+  cag_cleanup_run(&second);
+  cag_cleanup_run(&first);
   return out;
 }
 
@@ -224,9 +224,7 @@ static bool record_spread(CagVm *vm, CagValue *target, CagValue v) {
 static CagValue join_template(CagVm *vm, const CagValue *parts, size_t n) {
   CagString s = {0};
   for (size_t i = 0; i < n; i++) cag_print_value(vm, &s, parts[i], false);
-  CagValue v = cag_text_new(vm, s.bytes ? s.bytes : "", s.length);
-  cag_string_free(&s);
-  return v;
+  return cag_text_from_string(vm, &s);
 }
 
 static bool fail_assert(CagVm *vm, CagValue message, const CagValue *parts, size_t n) {
@@ -834,25 +832,37 @@ bool cag_vm_force(CagVm *vm, size_t global, CagValue *result) {
   return ok;
 }
 
+typedef struct Work {
+  CagVm *vm;
+  bool (*work)(CagVm *vm, void *context);
+  void *context;
+  bool ok;
+} Work;
+
+static void do_work(void *context) {
+  Work *w = context;
+  w->ok = w->work(w->vm, w->context);
+}
+
 bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *context) {
-  jmp_buf here, *outer = vm->escape;
-  size_t frames = vm->frame_count, roots = vm->root_count;
-  CagValue *top = vm->top;
-  CagNative *native = vm->native;
-  bool ok = false;
-  vm->escape = &here;
-  if (setjmp(here) == 0) {
-    ok = work(vm, context);
-  } else {
+  const size_t frames = vm->frame_count, roots = vm->root_count;
+  CagValue *const top = vm->top;
+  CagNative *const native = vm->native;
+  Work w = {vm, work, context, false};
+  const bool done = cag_memory_guard(do_work, &w);
+  if (vm->starved || (!done && !vm->failed)) cag_vm_fail_memory(vm);
+  if (!done) {
     vm->frame_count = frames;
     vm->root_count = roots;
     vm->top = top;
     vm->native = native;
     for (size_t i = 0; i < vm->global_count; i++)
       if (vm->globals[i].state == CAG_GLOBAL_RUNNING) vm->globals[i].state = CAG_GLOBAL_NEW;
+    for (size_t i = 0; i < vm->module_count; i++)
+      if (vm->modules[i]->state == CAG_MODULE_LOADING) vm->modules[i]->state = CAG_MODULE_LOST;
     cag_collect(vm);
-    ok = false;
   }
-  vm->escape = outer;
+  const bool ok = done && w.ok && !vm->starved;
+  vm->starved = false;
   return ok;
 }

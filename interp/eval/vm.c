@@ -64,9 +64,7 @@ static void set_reserved(CagVm *vm, const char *name, double value) {
   vm->globals[g].state = CAG_GLOBAL_DONE;
 }
 
-CagVm *cag_vm_new(const CagVmOptions *options) {
-  CagVm *vm = calloc(1, sizeof *vm);
-  if (!vm) return NULL;
+static void set_up(CagVm *vm, const CagVmOptions *options) {
   cag_heap_init(vm, options->max_memory);
   vm->frame_limit = options->max_depth;
   vm->max_time = options->max_time;
@@ -74,23 +72,43 @@ CagVm *cag_vm_new(const CagVmOptions *options) {
   vm->out = options->out;
   vm->trace = options->trace;
   vm->interrupt = options->interrupt ? options->interrupt : &never;
+}
+
+static bool reserve_stacks(CagVm *vm) {
   vm->stack = reserve_memory(stack_values(vm) * sizeof *vm->stack);
   vm->frames = calloc(vm->frame_limit, sizeof *vm->frames);
   vm->tails = reserve_memory(tail_bytes(vm));
-  if (!vm->stack || !vm->frames || !vm->tails) {
-    cag_vm_free(vm);
-    return NULL;
-  }
+  if (!vm->stack || !vm->frames || !vm->tails) return false;
   vm->top = vm->high_water = vm->stack;
   vm->stack_end = vm->stack + stack_values(vm);
+  return true;
+}
+
+static bool start(CagVm *vm, void *context) {
+  (void)context;
   make_builtins(vm);
   set_reserved(vm, "time", 0);
   set_reserved(vm, "frame", 0);
   set_reserved(vm, "frames", 1);
-  return vm;
+  return true;
 }
 
-static void free_module(CagModuleUnit *m) {
+CagVm *cag_vm_new(const CagVmOptions *options, CagDiagnostics *errors) {
+  CagVm *vm = cag_builtins_ready() ? calloc(1, sizeof *vm) : NULL;
+  bool ready = vm != NULL;
+  if (ready) {
+    set_up(vm, options);
+    ready = reserve_stacks(vm) && cag_vm_protect(vm, start, NULL);
+    cag_diagnostics_move(errors, &vm->errors);
+  }
+  if (ready) return vm;
+  if (errors->count == 0)
+    cag_diagnostics_add(errors, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
+                        "there is not enough memory to start");
+  cag_vm_free(vm);
+  return NULL;
+}
+void cag_module_free(CagModuleUnit *m) {
   free(m->name);
   free(m->path);
   if (m->ast) cag_module_ast_free(m->ast);
@@ -112,8 +130,8 @@ void cag_vm_free(CagVm *vm) {
     next = p->next;
     cag_proto_free(p);
   }
-  cag_diagnostics_free(&vm->errors);
-  for (size_t i = 0; i < vm->module_count; i++) free_module(vm->modules[i]);
+  cag_diagnostics_clear(&vm->errors);
+  for (size_t i = 0; i < vm->module_count; i++) cag_module_free(vm->modules[i]);
   free(vm->modules);
   free(vm->globals);
   free(vm->roots);

@@ -13,7 +13,6 @@
 #ifndef CAG_INTERP_VM_H
 #define CAG_INTERP_VM_H
 
-#include <setjmp.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <time.h>
@@ -121,7 +120,8 @@ typedef struct CagModuleUnit {
   CagModuleAst *ast;
   size_t *tops;   // globals of the tops, by CagDecl.index
   CagValue value; // the module as a value
-  enum { CAG_MODULE_LOADING, CAG_MODULE_LOADED, CAG_MODULE_FAILED } state;
+  // LOST: memory was out while it was loaded; the next import loads it again.
+  enum { CAG_MODULE_LOADING, CAG_MODULE_LOADED, CAG_MODULE_FAILED, CAG_MODULE_LOST } state;
   bool sound;         // it has no syntax errors
   bool resolved;      // its names are bound where they are known
   size_t first_error; // where the errors of its names begin in those of the machine
@@ -142,6 +142,7 @@ typedef struct CagModuleUnit {
 #define CAG_SMALL_MAX 512
 #define CAG_SMALL_STEP 16
 #define CAG_SMALL_CLASSES (CAG_SMALL_MAX / CAG_SMALL_STEP + 1)
+#define CAG_GRAY_FIRST 64
 typedef struct CagPage CagPage;
 typedef struct CagHeap {
   CagObject *free_lists[CAG_SMALL_CLASSES];
@@ -153,8 +154,10 @@ typedef struct CagHeap {
   size_t limit;     // --max-memory
   uint8_t mark;     // mark of live objects in the last collection: 1 or 2
   uint8_t depth;    // of calls of the script by geometry: what is older is not collected (heap.c)
-  CagObject **gray;
+  CagObject **gray; // marked objects whose references are not; NULL: gray_first
   size_t gray_count, gray_capacity;
+  CagObject *gray_first[CAG_GRAY_FIRST];
+  bool gray_lost; // memory was out for one: marked objects are to be looked through again
   size_t collections;
 } CagHeap;
 
@@ -197,7 +200,9 @@ struct CagVm {
   // The error of the run: `failed` says that errors.items[0] is set.
   CagDiagnostics errors;
   bool failed;
-  jmp_buf *escape; // where running out of memory leads
+  // Something is incomplete since memory was out: a printed value, a message, a path. The run ends
+  // with that error, whatever it was needed for.
+  bool starved;
 
   // Definitions of earlier texts of the REPL, oldest first.
   const char **outer_names;
@@ -240,8 +245,8 @@ void cag_proto_free(CagProto *p);
 // --- run.c ---
 bool cag_vm_run(CagVm *vm, const CagProto *proto, CagValue *result); // a unit without parameters
 bool cag_vm_force(CagVm *vm, size_t global, CagValue *result);
-// Runs `work` where running out of memory is caught: false with the error set. The only place that
-// a run may begin at.
+// Runs `work` where running out of memory is caught (lang/memory.h): false with the error set. The
+// only place that a run may begin at.
 bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *context);
 // Whether the run must stop (interrupt, time, memory): sets the error and gives false. Collects
 // when due.
@@ -285,7 +290,10 @@ bool cag_vm_fail_in(CagVm *vm, CagValue function, CagErrorId id, const char *for
 bool cag_vm_fail_at(CagVm *vm, int argument, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 void cag_vm_clear_error(CagVm *vm);
+// Sets the error of the memory limit and leaves the innermost cag_vm_protect.
 _Noreturn void cag_vm_out_of_memory(CagVm *vm);
+// Only the first of these.
+bool cag_vm_fail_memory(CagVm *vm);
 
 // --- modules.c ---
 #define CAG_NO_MODULE ((size_t)-1)
@@ -300,10 +308,13 @@ const CagSource *cag_read_source(CagVm *vm, const char *name, const char *text, 
 // Parses a script that is not to be run; its tree lives as long as the machine. NULL: it has
 // errors.
 const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *text, size_t length);
+// realpath, malloc'd. NULL: there is no such file; or memory is out, which the machine remembers.
+char *cag_vm_real_path(CagVm *vm, const char *path);
 // Whether a file may be read: below the root or the module path. Gives the real path (malloc'd) or
 // NULL with the reason in message.
 char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *message, size_t size);
 // Reads a whole file. NULL: *why is what went wrong (static or strerror text).
+extern const char cag_file_out_of_memory[]; // one of them
 char *cag_read_whole_file(const char *path, size_t *length, const char **why);
 
 // --- vm.c ---
@@ -313,8 +324,10 @@ typedef struct CagVmOptions {
   FILE *out, *trace;
   const volatile int *interrupt; // NULL: none
 } CagVmOptions;
-CagVm *cag_vm_new(const CagVmOptions *options);
+// NULL: memory is out, or max_memory is less than the built-ins need; `errors` says so.
+CagVm *cag_vm_new(const CagVmOptions *options, CagDiagnostics *errors);
 void cag_vm_free(CagVm *vm);
+void cag_module_free(CagModuleUnit *m);
 size_t cag_vm_add_global(CagVm *vm, const char *name);
 
 #endif

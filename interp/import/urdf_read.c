@@ -37,6 +37,7 @@ typedef struct Reader {
   CagError *err;
   CagStatus status;
   xmlParserCtxtPtr context;
+  const xmlDoc *document;
   NamedColor *colors;
   size_t color_count, color_room, node_room, edge_room, body_count;
 } Reader;
@@ -70,12 +71,16 @@ static const xmlNode *child(const xmlNode *n, const char *name) {
   return NULL;
 }
 
+static void free_text(void *text) { xmlFree(text); }
+
 // A copy in the arena; NULL: the attribute is not there.
 static const char *attribute(Reader *r, const xmlNode *n, const char *name) {
   xmlChar *text = xmlGetNoNsProp((xmlNode *)n, (const xmlChar *)name);
   if (!text) return NULL;
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_text, text);
   char *copy = cag_arena_copy(&r->tree->arena, (const char *)text, strlen((const char *)text));
-  xmlFree(text);
+  cag_cleanup_run(&cleanup);
   return copy;
 }
 
@@ -386,6 +391,11 @@ static void refuse_document_type(void *context, const xmlChar *name, const xmlCh
   xmlStopParser(parser);
 }
 
+static void read_tree(void *context) {
+  Reader *r = context;
+  read_document(r, r->document);
+}
+
 static void parse(Reader *r, const char *bytes, size_t size) {
   r->context->_private = r;
   r->context->sax->internalSubset = refuse_document_type;
@@ -393,7 +403,9 @@ static void parse(Reader *r, const char *bytes, size_t size) {
                                   XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
                                       XML_PARSE_BIG_LINES | XML_PARSE_NOCDATA);
   const xmlError *fault = xmlCtxtGetLastError(r->context);
-  if (doc && r->status == CAG_OK) read_document(r, doc);
+  r->document = doc;
+  if (doc && r->status == CAG_OK && !cag_memory_guard(read_tree, r))
+    r->status = cag_fail_memory(r->err);
   if (!doc && r->status == CAG_OK) {
     const char *told = fault && fault->message ? fault->message : "no XML";
     fail_at(r, syntax, fault ? fault->line : 1, "%.*s", (int)strcspn(told, "\n"), told);

@@ -522,17 +522,21 @@ static int write_urdf(CagSession *s, const CagUrdf *u, const char *path) {
   return status;
 }
 
+static void free_urdf(void *u) { cag_urdf_free(u); }
+
 static int export_urdf(CagSession *s, const char *path) {
   const CagRobotValue *robot;
-  CagUrdf u;
+  CagUrdf u = {0};
   CagUrdfHow how = {s->scene.tolerance, s->scene.bounds, s->scene.max_triangles,
                     s->scene.interrupt};
   int status = find_robot(s, &robot);
   if (status != CAG_STATUS_OK) return status;
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_urdf, &u);
   status = cag_urdf_of_robot(s->vm, robot, &how, &u)
                ? write_urdf(s, &u, path)
                : cag_session_fail_geometry(s, &(CagError){.status = CAG_E_CALLBACK});
-  cag_urdf_free(&u);
+  cag_cleanup_run(&cleanup);
   return status;
 }
 

@@ -79,6 +79,7 @@ static void give_value(CagVm *vm, CagValue v, void *context) {
   if (!in->value) return;
   CagString s = {0};
   cag_print_value(vm, &s, v, true);
+  cag_string_check(vm, &s);
   in->value(in->context, s.bytes ? s.bytes : "", cag_type_name(v));
   cag_string_free(&s);
 }
@@ -114,10 +115,10 @@ static int start_input(CagSession *s, Input *in) {
   if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   if (!s->interactive) cag_session_drop_vm(s);
   s->interactive = true;
-  cag_diagnostics_free(&s->diagnostics);
-  s->diagnostics = (CagDiagnostics){0};
+  cag_diagnostics_clear(&s->diagnostics);
   cag_session_renew_time(s);
-  return cag_session_end(s, cag_session_work(s, evaluate_input, in));
+  return cag_session_end(s, s->define_lost ? cag_session_fail_memory(s)
+                                           : cag_session_work(s, evaluate_input, in));
 }
 
 int cag_session_input(CagSession *s, const char *text, size_t length,
@@ -251,8 +252,7 @@ void cag_session_members(CagSession *s, const char *path,
   s->vm->max_time = s->time_left = MEMBERS_SECONDS;
   cag_session_work(s, ask_members, &(MemberQuestion){s, path, give, context});
   s->vm->max_time = limit;
-  cag_diagnostics_free(&s->diagnostics);
-  s->diagnostics = (CagDiagnostics){0};
+  cag_diagnostics_clear(&s->diagnostics);
   cag_session_end(s, CAG_STATUS_OK);
 }
 

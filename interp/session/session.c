@@ -3,6 +3,7 @@
 #include "interp/session/session.h"
 #include "geom/solid/csg.h"
 
+#include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,8 +42,7 @@ static void drop_scene(CagSession *s) {
 
 void cag_session_drop_vm(CagSession *s) {
   drop_scene(s);
-  cag_diagnostics_free(&s->diagnostics);
-  s->diagnostics = (CagDiagnostics){0};
+  cag_diagnostics_clear(&s->diagnostics);
   cag_vm_free(s->vm);
   s->vm = NULL;
   s->interactive = false;
@@ -81,6 +81,7 @@ void cag_session_define(CagSession *s, const char *name, const char *value) {
   if (!names || !values || !n || !v) {
     free(n);
     free(v);
+    s->define_lost = true;
     return;
   }
   s->names[s->define_count] = n;
@@ -96,6 +97,7 @@ void cag_session_clear_defines(CagSession *s) {
   free(s->values);
   s->names = s->values = NULL;
   s->define_count = 0;
+  s->define_lost = false;
 }
 
 void cag_session_set_frame(CagSession *s, double frame, double frames) {
@@ -109,7 +111,7 @@ void cag_session_set_loop(CagSession *s, bool loop) { s->loop = loop; }
 
 static bool add_folder(CagVm *vm, const char *path) {
   char *real = realpath(path, NULL);
-  if (!real) return true; // a folder that is not there holds no modules
+  if (!real) return errno != ENOMEM; // a folder that is not there holds no modules
   char **include = realloc(vm->include, (vm->include_count + 1) * sizeof *include);
   if (!include) {
     free(real);
@@ -129,14 +131,17 @@ CagVm *cag_session_vm(CagSession *s) {
                                      .max_time = o->max_time,
                                      .out = o->out,
                                      .trace = o->messages,
-                                     .interrupt = o->interrupt});
-  if (!s->vm) {
-    cag_diagnostics_add(&s->diagnostics, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
-                        "there is not enough memory to start");
-    return NULL;
-  }
+                                     .interrupt = o->interrupt},
+                     &s->diagnostics);
+  if (!s->vm) return NULL;
   s->vm->tolerance = o->tolerance;
-  for (size_t i = 0; i < o->module_path_count; i++) add_folder(s->vm, o->module_path[i]);
+  for (size_t i = 0; i < o->module_path_count; i++)
+    if (!add_folder(s->vm, o->module_path[i])) {
+      cag_vm_free(s->vm);
+      s->vm = NULL;
+      cag_session_fail_memory(s);
+      break;
+    }
   return s->vm;
 }
 
@@ -217,6 +222,7 @@ static bool perform_geometry(CagVm *vm, void *context) {
 int cag_session_geometry(CagSession *s, int (*work)(CagSession *s, void *context), void *context) {
   GeometryTask t = {s, work, context, CAG_STATUS_OK};
   int status = cag_session_work(s, perform_geometry, &t);
+  if (t.status == CAG_STATUS_LIMIT && s->diagnostics.count == 0) cag_session_fail_memory(s);
   return t.status != CAG_STATUS_OK ? t.status : status;
 }
 
@@ -226,6 +232,12 @@ CagStatus cag_session_checked(const CagSession *s, CagStatus status, CagError *e
 }
 
 // --- Status ---
+
+int cag_session_fail_memory(CagSession *s) {
+  cag_diagnostics_add(&s->diagnostics, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
+                      "there is not enough memory");
+  return CAG_STATUS_LIMIT;
+}
 
 // Warnings may stand before the error that ended the work.
 static const CagDiagnostic *first_error(const CagDiagnostics *d) {
@@ -274,7 +286,7 @@ void cag_session_write_overdue(const CagSession *s, CagStyle style, FILE *out) {
   CagDiagnostics d = {0};
   add_time_limit(&d, s->options.max_time);
   cag_diagnostics_render(&d, (CagDiagnosticStyle)style, out);
-  cag_diagnostics_free(&d);
+  cag_diagnostics_clear(&d);
 }
 
 // Where the script asked for the set operation that has no end: the first thing shown with the same
@@ -335,7 +347,8 @@ typedef struct Run {
 static bool run(CagVm *vm, void *context) {
   Run *r = context;
   CagSession *s = r->session;
-  if (!r->path && s->options.folder && !vm->root) vm->root = realpath(s->options.folder, NULL);
+  if (!r->path && s->options.folder && !vm->root)
+    vm->root = cag_vm_real_path(vm, s->options.folder);
   size_t k = r->path ? cag_load_file(vm, r->path, &r->status)
                      : cag_load_text(vm, r->name, r->text, r->length, CAG_PARSE_FILE);
   if (k == CAG_NO_MODULE) return false;
@@ -354,7 +367,8 @@ static int start_run(CagSession *s, Run *r) {
   cag_session_drop_vm(s);
   free(s->script);
   s->script = strdup(r->path ? r->path : r->name);
-  return cag_session_end(s, cag_session_work(s, run, r));
+  const bool ready = s->script && !s->define_lost;
+  return cag_session_end(s, ready ? cag_session_work(s, run, r) : cag_session_fail_memory(s));
 }
 
 int cag_session_run_file(CagSession *s, const char *path) {
@@ -474,17 +488,17 @@ int cag_session_build_scene(CagSession *s) {
     cag_session_renew_time(s);
   }
   if (s->has_scene) return CAG_STATUS_OK;
-  if (s->interactive) {
-    cag_diagnostics_free(&s->diagnostics);
-    s->diagnostics = (CagDiagnostics){0};
-  }
+  if (s->interactive) { cag_diagnostics_clear(&s->diagnostics); }
   int status = cag_session_work(s, build, s);
   if (status != CAG_STATUS_OK) return status;
   CagScene *scene = &s->scene;
   if (s->options.tolerance > 0) scene->tolerance = s->options.tolerance;
   scene->max_triangles = s->options.max_triangles;
   scene->interrupt = &s->vm->stop;
-  if (!scene->script && s->script) scene->script = strdup(s->script);
+  if (!scene->script && s->script && !(scene->script = strdup(s->script))) {
+    drop_scene(s);
+    return cag_session_fail_memory(s);
+  }
   if (scene->item_count + scene->label_count == 0) return fail_nothing_shown(s);
   status = cag_session_geometry(s, complete_scene, NULL);
   if (status == CAG_STATUS_OK) warn_of_empties(s);
@@ -532,6 +546,7 @@ static bool describe(CagVm *vm, void *context) {
     if (name) cag_string_printf(&text, "%s: ", name);
     if (vm->shown[i].value.type == CAG_LIST) cag_describe_value(vm, &text, vm->shown[i].value);
     else cag_print_value(vm, &text, vm->shown[i].value, false);
+    cag_string_check(vm, &text);
     fprintf(l->out, "%s\n", text.bytes ? text.bytes : "");
     cag_string_free(&text);
   }

@@ -20,6 +20,7 @@ struct CagSession {
   bool interactive;       // the machine keeps its definitions
   char **names, **values; // params from outside
   size_t define_count;
+  bool define_lost; // memory was out for one: no script runs until they are cleared
   double frame, frames;
   bool loop;
   double time_left; // seconds of max_time, of a run and what is made of its scene
@@ -57,6 +58,7 @@ int cag_session_geometry(CagSession *s, int (*work)(CagSession *s, void *context
 // Sees to it that an error of such a function that was overlooked is none that stays unknown.
 CagStatus cag_session_checked(const CagSession *s, CagStatus status, CagError *err);
 int cag_session_status(const CagSession *s); // by the diagnostics there are
+int cag_session_fail_memory(CagSession *s);  // adds the error of exhausted memory
 // Adds an error of the core, or of files and renderers, and gives the status.
 int cag_session_fail_geometry(CagSession *s, const CagError *err);
 int cag_session_fail_io(CagSession *s, CagErrorId id, const CagIoError *err);

@@ -115,17 +115,24 @@ void cag_root_pop(CagVm *vm, size_t n) { vm->root_count -= n; }
 
 // --- Marking ---
 
+// The list of gray objects begins in the heap itself. Where there is no memory for a longer one,
+// the objects that do not fit stay marked, and are found by a walk over the heap.
+static bool grow_gray(CagHeap *h) {
+  const size_t capacity = h->gray_capacity * 2;
+  const bool first = h->gray == h->gray_first;
+  CagObject **gray = realloc(first ? NULL : h->gray, capacity * sizeof *gray);
+  if (!gray) return false;
+  if (first) memcpy(gray, h->gray_first, sizeof h->gray_first);
+  h->gray = gray;
+  h->gray_capacity = capacity;
+  return true;
+}
+
 static void mark_object(CagHeap *h, CagObject *o) {
   if (!o || (o->mark & MARK_MASK) == h->mark) return;
   o->mark = (uint8_t)((o->mark & ~MARK_MASK) | h->mark);
-  if (h->gray_count == h->gray_capacity) {
-    size_t capacity = h->gray_capacity ? h->gray_capacity * 2 : 1024;
-    CagObject **gray = realloc(h->gray, capacity * sizeof *gray);
-    if (!gray) abort(); // a few MB at most beside what the system has given already
-    h->gray = gray;
-    h->gray_capacity = capacity;
-  }
-  h->gray[h->gray_count++] = o;
+  if (h->gray_count == h->gray_capacity && !grow_gray(h)) h->gray_lost = true;
+  else h->gray[h->gray_count++] = o;
 }
 
 static void mark_value(CagHeap *h, CagValue v) {
@@ -313,12 +320,36 @@ static void sweep(CagHeap *h) {
   }
 }
 
+static void drain(CagHeap *h) {
+  while (h->gray_count) scan(h, h->gray[--h->gray_count]);
+}
+
+// Marks what marked objects refer to, whether that was done or not.
+static void scan_again(CagHeap *h, CagObject *o) {
+  if ((o->mark & MARK_MASK) != h->mark) return;
+  scan(h, o);
+  drain(h);
+}
+
+static void scan_heap_again(CagHeap *h) {
+  for (CagPage *page = h->pages; page; page = page->next) {
+    char *cell = (char *)page->cells;
+    for (size_t i = 0; i < page->count; i++, cell += page->cell)
+      if (((CagObject *)cell)->type != CELL_FREE) scan_again(h, (CagObject *)cell);
+  }
+  for (CagObject *o = h->large; o; o = o->next) scan_again(h, o);
+}
+
 void cag_collect(CagVm *vm) {
   CagHeap *h = &vm->heap;
   h->mark = h->mark == 1 ? 2 : 1;
   h->gray_count = 0;
   mark_roots(vm);
-  while (h->gray_count) scan(h, h->gray[--h->gray_count]);
+  drain(h);
+  while (h->gray_lost) { // each time more objects are marked
+    h->gray_lost = false;
+    scan_heap_again(h);
+  }
   sweep(h);
   h->debt = 0;
   size_t room = h->limit > h->bytes ? (h->limit - h->bytes) / 2 : 0;
@@ -342,11 +373,13 @@ void cag_heap_free(CagVm *vm) {
     destroy(o);
     free(o);
   }
-  free(h->gray);
+  if (h->gray != h->gray_first) free(h->gray);
   memset(h, 0, sizeof *h);
 }
 
 void cag_heap_init(CagVm *vm, size_t limit) {
   vm->heap = (CagHeap){.limit = limit, .mark = 1, .threshold = DEBT_MIN};
   if (vm->heap.threshold > limit / 4) vm->heap.threshold = limit / 4;
+  vm->heap.gray = vm->heap.gray_first;
+  vm->heap.gray_capacity = CAG_GRAY_FIRST;
 }

@@ -158,12 +158,13 @@ static void grow(CagVm *vm, CagBuilder *b) {
 // Turns packed data into values: an element of another kind came.
 static void unpack(CagVm *vm, CagBuilder *b) {
   cag_heap_charge(vm, b->capacity * sizeof(CagValue));
-  CagValue *items = malloc((b->capacity ? b->capacity : 1) * sizeof *items);
-  if (!items) cag_vm_out_of_memory(vm);
+  CagCleanup cleanup;
+  CagValue *items = cag_temporary(&cleanup, b->capacity, sizeof *items);
   const double *x = b->data;
   uint32_t dim = b->dim;
   for (size_t i = 0; i < b->length; i++)
     items[i] = dim == 1 ? cag_number(x[i]) : cag_vector(vm, x + i * dim, dim);
+  cag_cleanup_pop(&cleanup);
   free(b->data);
   b->data = items;
   b->dim = 0;

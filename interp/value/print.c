@@ -13,14 +13,23 @@
 
 // --- Growing bytes ---
 
+// The bytes of strings that have failed; never written to.
+static char no_bytes[1];
+
+static void fail_string(CagString *s) {
+  if (!s->failed) free(s->bytes);
+  *s = (CagString){.bytes = no_bytes, .most = s->most, .failed = true};
+}
+
 void cag_string_add(CagString *s, const char *bytes, size_t n) {
+  if (s->failed) return;
   if (s->length + n + 1 > s->capacity) {
     size_t capacity = s->capacity ? s->capacity * 2 : 64;
     while (capacity < s->length + n + 1) capacity *= 2;
     char *p = realloc(s->bytes, capacity);
     if (!p) {
-      fputs("cag: out of memory\n", stderr);
-      abort();
+      fail_string(s);
+      return;
     }
     s->bytes = p;
     s->capacity = capacity;
@@ -43,7 +52,10 @@ void cag_string_printf(CagString *s, const char *format, ...) {
     return;
   }
   char *big = malloc((size_t)n + 1);
-  if (!big) return;
+  if (!big) {
+    fail_string(s);
+    return;
+  }
   va_start(args, format);
   vsnprintf(big, (size_t)n + 1, format, args);
   va_end(args);
@@ -52,8 +64,34 @@ void cag_string_printf(CagString *s, const char *format, ...) {
 }
 
 void cag_string_free(CagString *s) {
-  free(s->bytes);
+  if (!s->failed) free(s->bytes);
   *s = (CagString){0};
+}
+
+void cag_string_check(CagVm *vm, CagString *s) {
+  if (!s->failed) return;
+  cag_string_free(s);
+  cag_vm_out_of_memory(vm);
+}
+
+static void free_string(void *s) { cag_string_free(s); }
+
+CagValue cag_text_from_string(CagVm *vm, CagString *s) {
+  cag_string_check(vm, s);
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_string, s);
+  CagValue text = cag_text_new(vm, s->length ? s->bytes : "", s->length);
+  cag_cleanup_run(&cleanup);
+  return text;
+}
+
+CagText *cag_intern_string(CagVm *vm, CagString *s) {
+  cag_string_check(vm, s);
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_string, s);
+  CagText *text = cag_intern(vm, s->length ? s->bytes : "", s->length);
+  cag_cleanup_run(&cleanup);
+  return text;
 }
 
 // --- Numbers ---
@@ -211,11 +249,7 @@ static void print_range(CagString *s, const CagRange *r) {
   add(s, unit);
 }
 
-void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted) {
-  if (!cag_room_on_c_stack(vm)) { // nested hundreds of thousands deep
-    add(s, "...");
-    return;
-  }
+static void print_value(CagVm *vm, CagString *s, CagValue v, bool quoted) {
   switch (v.type) {
   case CAG_NONE: add(s, "none"); break;
   case CAG_BOOL: add(s, v.as.boolean ? "true" : "false"); break;
@@ -267,14 +301,20 @@ void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted) {
   }
 }
 
+void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted) {
+  if (cag_room_on_c_stack(vm)) print_value(vm, s, v, quoted);
+  else add(s, "..."); // nested hundreds of thousands deep
+  vm->starved |= s->failed;
+}
+
 // Longer values are named by their type and size alone.
 #define DESCRIBED_MAX 40
 
-void cag_describe_value(CagVm *vm, CagString *s, CagValue v) {
+static void describe_value(CagVm *vm, CagString *s, CagValue v) {
   switch (v.type) {
   case CAG_NONE: add(s, "none"); return;
   case CAG_BOOL: add(s, v.as.boolean ? "true" : "false"); return;
-  case CAG_JET: cag_describe_value(vm, s, cag_plain(v)); return;
+  case CAG_JET: describe_value(vm, s, cag_plain(v)); return;
   case CAG_NUMBER:
     add(s, "the number ");
     cag_print_number(s, v.as.number);
@@ -320,6 +360,11 @@ void cag_describe_value(CagVm *vm, CagString *s, CagValue v) {
     return;
   default: add(s, cag_type_article(v)); return;
   }
+}
+
+void cag_describe_value(CagVm *vm, CagString *s, CagValue v) {
+  describe_value(vm, s, v);
+  vm->starved |= s->failed;
 }
 
 // --- Equality ---

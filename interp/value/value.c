@@ -183,21 +183,21 @@ CagValue cag_record_with_layout(CagVm *vm, CagLayout *l, const CagValue *values)
 }
 
 CagValue cag_record_from_texts(CagVm *vm, CagText *const *names, const CagValue *values, size_t n) {
-  CagText **interned = malloc((n ? n : 1) * sizeof *interned);
-  if (!interned) cag_vm_out_of_memory(vm);
+  CagCleanup cleanup;
+  CagText **interned = cag_temporary(&cleanup, n, sizeof *interned);
   for (size_t i = 0; i < n; i++)
     interned[i] = names[i]->interned ? names[i] : cag_intern(vm, names[i]->bytes, names[i]->length);
   CagLayout *l = cag_layout_new(vm, interned, n);
-  free(interned);
+  cag_cleanup_run(&cleanup);
   return cag_record_with_layout(vm, l, values);
 }
 
 CagValue cag_record_new(CagVm *vm, const char *const *names, const CagValue *values, size_t n) {
-  CagText **texts = malloc((n ? n : 1) * sizeof *texts);
-  if (!texts) cag_vm_out_of_memory(vm);
+  CagCleanup cleanup;
+  CagText **texts = cag_temporary(&cleanup, n, sizeof *texts);
   for (size_t i = 0; i < n; i++) texts[i] = cag_intern(vm, names[i], strlen(names[i]));
   CagLayout *l = cag_layout_new(vm, texts, n);
-  free(texts);
+  cag_cleanup_run(&cleanup);
   return cag_record_with_layout(vm, l, values);
 }
 
@@ -233,46 +233,49 @@ static CagShape *shape_new(CagVm *vm, CagType type) {
   return s;
 }
 
-// Running out of memory does not come back: what a new object would own is let go before.
-#define NEED_ROOM(vm, object, release, owned)                                                      \
-  do {                                                                                             \
-    if (cag_heap_has_room(vm, sizeof(object))) break;                                              \
-    release(owned);                                                                                \
-    cag_vm_out_of_memory(vm);                                                                      \
-  } while (0)
+// A new shape owns its geometry, also when there is no memory for the shape.
+static CagShape *shape_of(CagVm *vm, CagType type, void (*release)(void *), void *owned) {
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, release, owned);
+  CagShape *s = shape_new(vm, type);
+  cag_cleanup_pop(&cleanup);
+  return s;
+}
+
+static void release_curve(void *c) { cag_curve_release(c); }
+static void release_region(void *r) { cag_region_release(r); }
+static void release_surface(void *s) { cag_surface_release(s); }
+static void release_solid(void *s) { cag_solid_release(s); }
+static void release_mesh(void *m) { cag_mesh_release(m); }
+static void release_robot(void *r) { cag_robot_release(r); }
 
 CagValue cag_curve_value(CagVm *vm, CagCurve *c) {
-  NEED_ROOM(vm, CagShape, cag_curve_release, c);
-  CagShape *s = shape_new(vm, CAG_CURVE);
+  CagShape *s = shape_of(vm, CAG_CURVE, release_curve, c);
   s->as.curve = c;
   return cag_object(CAG_CURVE, s);
 }
 
 CagValue cag_region_value(CagVm *vm, CagRegion *r, const CagTransform *placement) {
-  NEED_ROOM(vm, CagShape, cag_region_release, r);
-  CagShape *s = shape_new(vm, CAG_REGION);
+  CagShape *s = shape_of(vm, CAG_REGION, release_region, r);
   s->as.region = r;
   if (placement) s->placement = *placement;
   return cag_object(CAG_REGION, s);
 }
 
 CagValue cag_surface_value(CagVm *vm, CagSurface *surface) {
-  NEED_ROOM(vm, CagShape, cag_surface_release, surface);
-  CagShape *s = shape_new(vm, CAG_SURFACE);
+  CagShape *s = shape_of(vm, CAG_SURFACE, release_surface, surface);
   s->as.surface = surface;
   return cag_object(CAG_SURFACE, s);
 }
 
 CagValue cag_solid_value(CagVm *vm, CagSolid *solid) {
-  NEED_ROOM(vm, CagShape, cag_solid_release, solid);
-  CagShape *s = shape_new(vm, CAG_SOLID);
+  CagShape *s = shape_of(vm, CAG_SOLID, release_solid, solid);
   s->as.solid = solid;
   return cag_object(CAG_SOLID, s);
 }
 
 CagValue cag_mesh_value(CagVm *vm, CagMesh *m) {
-  NEED_ROOM(vm, CagShape, cag_mesh_release, m);
-  CagShape *s = shape_new(vm, CAG_MESH);
+  CagShape *s = shape_of(vm, CAG_MESH, release_mesh, m);
   s->as.mesh = m;
   cag_heap_charge(vm, m->vertex_count * 64 + m->triangle_count * 12);
   return cag_object(CAG_MESH, s);
@@ -318,8 +321,10 @@ CagValue cag_link_value(CagVm *vm, const CagRobotLink *link, CagValue shape) {
 }
 
 CagValue cag_robot_value(CagVm *vm, CagRobot *r, CagText *name, CagValue links) {
-  NEED_ROOM(vm, CagRobotValue, cag_robot_release, r);
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, release_robot, r);
   CagRobotValue *v = cag_alloc(vm, CAG_ROBOT, sizeof *v);
+  cag_cleanup_pop(&cleanup);
   v->robot = r;
   v->name = name;
   v->links = CAG_AS_LIST(links);

@@ -21,6 +21,7 @@
 #include "geom/robot/robot.h"
 #include "geom/solid/solid.h"
 #include "geom/surface/surface.h"
+#include "lang/memory.h"
 
 typedef struct CagVm CagVm;
 typedef struct CagObject CagObject;
@@ -317,14 +318,22 @@ bool cag_as_vector(CagValue v, const double **x, size_t *n); // a list with dim 
 bool cag_as_list(CagVm *vm, CagValue v, CagValue *list);
 
 // --- Printed form (language, section 7) ---
-typedef struct CagString { // growing bytes
-  char *bytes;
+// Growing bytes, with a NUL behind. When there is no memory for them the string becomes the empty
+// text, stays so, and says so by `failed`: who uses its bytes looks at that once. Error messages
+// need not (see `starved` of the machine).
+typedef struct CagString {
+  char *bytes; // NULL: nothing was added
   size_t length, capacity;
   size_t most; // where the printing of a value breaks off; 0: nowhere
+  bool failed;
 } CagString;
 void cag_string_add(CagString *s, const char *bytes, size_t n);
 void cag_string_printf(CagString *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void cag_string_free(CagString *s);
+// Leaves the run when the string has failed.
+void cag_string_check(CagVm *vm, CagString *s);
+CagValue cag_text_from_string(CagVm *vm, CagString *s); // frees s
+CagText *cag_intern_string(CagVm *vm, CagString *s);    // frees s
 void cag_print_number(CagString *s, double x);
 // quoted: texts in quotes (inside lists and records).
 void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted);

@@ -177,3 +177,13 @@ script long.cag 'print read_urdf("long.urdf")'
 try run long.cag --max-memory 3M
 status 5
 says '--max-memory'
+
+it 'a limit below what the built-ins need'
+for limit in 1 10K; do
+  try eval --max-memory $limit 1+1
+  status 5
+  says '--max-memory'
+done
+try export ball.cag -o ball.stl --max-memory 10K
+status 5
+says '--max-memory'

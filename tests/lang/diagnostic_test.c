@@ -15,7 +15,7 @@ static char *rendered(const char *text, uint32_t start, uint32_t end, const char
   FILE *f = open_memstream(&out, &size);
   cag_diagnostics_render(&list, style, f);
   fclose(f);
-  cag_diagnostics_free(&list);
+  cag_diagnostics_clear(&list);
   cag_source_free(source);
   return out;
 }
@@ -54,7 +54,7 @@ static void the_example_of_the_language_is_met_exactly(void **state) {
                            "   |                    ^^ write 30deg or 30rad\n"
                            "   = called from spring.cag:20:9 in coil\n");
   free(out);
-  cag_diagnostics_free(&list);
+  cag_diagnostics_clear(&list);
   cag_source_free(source);
 }
 
@@ -164,7 +164,7 @@ static void notes_say_calls_tail_calls_and_what_is_left_out(void **state) {
                       "  = called from a.cag:1:3 in g (tail call)\n  = ... 9,980 more calls ...\n"
                       "  = called from a.cag:1:1\n");
   free(out);
-  cag_diagnostics_free(&list);
+  cag_diagnostics_clear(&list);
   cag_source_free(source);
 }
 
@@ -183,8 +183,8 @@ static void the_list_keeps_twenty_and_counts_the_rest(void **state) {
   assert_non_null(thrown);
   cag_diagnostic_set_help(thrown, "y");
   cag_diagnostic_add_note(thrown, CAG_NOTE_CALL, NULL, (CagSpan){0, 0}, "z");
-  cag_diagnostics_free(&a);
-  cag_diagnostics_free(&b);
+  cag_diagnostics_clear(&a);
+  cag_diagnostics_clear(&b);
 }
 
 static void the_nearest_name_is_within_a_third(void **state) {

@@ -15,7 +15,7 @@ static char *laid_out(const char *text, size_t length, char **tree, size_t *comm
   char *out = cag_format(p.source, &errors, &n);
   assert_true((out != NULL) == (p.errors.count == 0));
   assert_int_equal(errors.count, p.errors.count);
-  cag_diagnostics_free(&errors);
+  cag_diagnostics_clear(&errors);
   if (out) {
     assert_int_equal(strlen(out), n);
     if (tree) {

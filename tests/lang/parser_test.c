@@ -182,7 +182,7 @@ static void statements_are_handed_over_one_by_one(void **state) {
   fclose(f);
   assert_string_equal(dumped, "(= a 1)\n");
   assert_int_equal(errors.count, p.errors.count);
-  cag_diagnostics_free(&errors);
+  cag_diagnostics_clear(&errors);
   free(dumped);
   release(&p);
 }

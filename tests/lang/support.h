@@ -76,7 +76,7 @@ static inline Parsed resolve_text(const char *text) {
 static inline void release(Parsed *p) {
   free(p->text);
   cag_module_ast_free(p->module);
-  cag_diagnostics_free(&p->errors);
+  cag_diagnostics_clear(&p->errors);
   cag_source_free(p->source);
 }
 

@@ -1,0 +1,331 @@
+// Scripts with allocations that fail.
+//
+//     memory [-n POINTS] [-s SEED] [-b NAME] [-a ALLOCATION] [-x] [FILE...]
+//
+// Each script runs once as it is, and POINTS times (4) with failing allocations, which are drawn
+// from SEED (1): at every other point one allocation fails, at the others all from that one on. The
+// scripts are the files named, or the examples of the built-ins (-b: of one of them). With -x what
+// the files show is exported too, in every format. -a runs a single point: number ALLOCATION fails,
+// or with a minus sign all from there on, in the process itself.
+//
+// A run passes when it ends with an error, or with the output of the run that had its memory. The
+// program is linked with wrapped allocation functions, so only allocations of cag itself fail. Runs
+// are made in children of this process: a crash costs one run, which is shown. Memory that a run
+// loses is shown too where the program is built with AddressSanitizer.
+
+#include <dirent.h>
+#include <errno.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cag.h"
+
+#define SECONDS 10.0 // for one run
+#define HANG 60      // seconds until a run counts as endless
+
+// --- Allocations that fail ---
+
+static size_t made;     // allocations so far in this run
+static size_t failing;  // the number of the first that fails, from 1; 0: none
+static bool failing_on; // all after it fail as well
+
+// With -a a debugger stops here.
+static __attribute__((noinline)) bool fail(void) {
+  __asm__ volatile("");
+  return true;
+}
+
+static bool is_failing(void) {
+  const size_t n = __atomic_add_fetch(&made, 1, __ATOMIC_RELAXED);
+  return (n == failing || (failing_on && failing && n > failing)) && fail();
+}
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *old, size_t size);
+char *__real_strdup(const char *text);
+char *__real_strndup(const char *text, size_t n);
+char *__real_realpath(const char *path, char *resolved);
+int __real_vasprintf(char **out, const char *format, va_list args);
+FILE *__real_open_memstream(char **text, size_t *size);
+
+void *__wrap_malloc(size_t size) { return is_failing() ? NULL : __real_malloc(size); }
+void *__wrap_calloc(size_t count, size_t size) {
+  return is_failing() ? NULL : __real_calloc(count, size);
+}
+void *__wrap_realloc(void *old, size_t size) {
+  return is_failing() ? NULL : __real_realloc(old, size);
+}
+char *__wrap_strdup(const char *text) { return is_failing() ? NULL : __real_strdup(text); }
+char *__wrap_strndup(const char *text, size_t n) {
+  return is_failing() ? NULL : __real_strndup(text, n);
+}
+char *__wrap_realpath(const char *path, char *resolved) {
+  if (!is_failing()) return __real_realpath(path, resolved);
+  errno = ENOMEM;
+  return NULL;
+}
+int __wrap_vasprintf(char **out, const char *format, va_list args) {
+  return is_failing() ? -1 : __real_vasprintf(out, format, args);
+}
+int __wrap_asprintf(char **out, const char *format, ...) {
+  va_list args;
+  va_start(args, format);
+  const int n = is_failing() ? -1 : __real_vasprintf(out, format, args);
+  va_end(args);
+  return n;
+}
+FILE *__wrap_open_memstream(char **text, size_t *size) {
+  return is_failing() ? NULL : __real_open_memstream(text, size);
+}
+
+// Of builds with AddressSanitizer alone.
+__attribute__((weak)) int __lsan_do_recoverable_leak_check(void);
+
+// --- Work ---
+
+// A script, or its export in one format.
+typedef struct Job {
+  const char *name; // of the file or built-in
+  const char *text; // of an example; NULL: the file is read
+  const char *format;
+} Job;
+
+typedef struct Shared {
+  size_t job, point, passed, failed;
+  long failing; // as -a
+  bool lost;    // memory
+} Shared;
+
+static Job *jobs;
+static size_t job_count;
+static Shared *shared;
+static char folder[] = "/tmp/cag-memory-XXXXXX"; // of exports
+
+static size_t draw(uint64_t *state, size_t n) {
+  *state += 0x9e3779b97f4a7c15u; // splitmix64
+  uint64_t z = *state;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return (size_t)((z ^ (z >> 31)) % n);
+}
+
+// Runs a job with failing allocations as of -a. Gives the status, and the output, which the caller
+// frees.
+static int run_job(const Job *j, long point, char **output, size_t *allocations) {
+  CagSessionOptions options;
+  size_t size = 0;
+  char path[64];
+  *output = NULL;
+  cag_session_options_init(&options);
+  options.max_time = SECONDS;
+  options.out = __real_open_memstream(output, &size);
+  options.messages = fopen("/dev/null", "w");
+  alarm(HANG);
+  made = 0;
+  failing = (size_t)labs(point);
+  failing_on = point < 0;
+  CagSession *s = cag_session_new(&options);
+  int status = CAG_STATUS_LIMIT;
+  if (s && j->text)
+    status = cag_session_run_text(s, "tests/language/example.cag", j->text, strlen(j->text));
+  else if (s) status = cag_session_run_file(s, j->name);
+  if (status == CAG_STATUS_OK && j->format) {
+    snprintf(path, sizeof path, "%s/out.%s", folder, j->format);
+    status = cag_session_export(s, path, NULL);
+  }
+  *allocations = made;
+  if (status != CAG_STATUS_OK && s)
+    cag_session_write_diagnostics(s, CAG_STYLE_TEXT, options.messages);
+  cag_session_free(s);
+  failing = 0;
+  alarm(0);
+  fclose(options.out);
+  fclose(options.messages);
+  return status;
+}
+
+static void complain(const char *what) {
+  const Job *j = &jobs[shared->job];
+  shared->failed++;
+  printf("--- %s, with -a %ld%s%s: %s\n%s\n", what, shared->failing,
+         j->format ? ", exported as " : "", j->format ? j->format : "", j->name,
+         j->text ? j->text : "");
+  fflush(stdout);
+}
+
+static void try_point(const Job *j, long point, int expected_status, const char *expected) {
+  char *output;
+  size_t ignored;
+  shared->failing = point;
+  const int status = run_job(j, point, &output, &ignored);
+  const bool other = status == CAG_STATUS_OK &&
+                     (expected_status != CAG_STATUS_OK || strcmp(output, expected) != 0);
+  free(output);
+  if (__lsan_do_recoverable_leak_check && __lsan_do_recoverable_leak_check()) {
+    complain("lost memory");
+    shared->lost = true;
+  } else if (other) {
+    complain("another result");
+  } else {
+    shared->passed++;
+  }
+}
+
+// Runs the points of one job that are left.
+static void try_job(size_t points, uint64_t seed) {
+  const Job *j = &jobs[shared->job], empty = {.name = "", .text = ""};
+  char *expected, *output;
+  size_t allocations = 0, start = 0;
+  run_job(&empty, 0, &output, &start);
+  free(output);
+  const int status = run_job(j, 0, &expected, &allocations);
+  while (shared->point < points) {
+    uint64_t state = seed + shared->job * 0x2545f4914f6cdd1du + shared->point++;
+    // One of sixteen points lies in the start of the session, which is the same for all.
+    const size_t first = draw(&state, 16) == 0 || start >= allocations ? 0 : start;
+    const long point = (long)(1 + first + draw(&state, allocations - first));
+    try_point(j, shared->point % 2 ? point : -point, status, expected);
+    if (shared->lost) break;
+  }
+  free(expected);
+}
+
+// Each allocation of the start of a session fails in turn, in processes that have had no session
+// before: the tables of built-ins are made once for a process.
+static void try_start(void) {
+  static const Job start = {"the start of a session", "", NULL};
+  jobs = (Job *)&start;
+  for (long point = 1, more = 1; more; point++) {
+    shared->failing = point;
+    shared->lost = true; // until the child says that all went well
+    fflush(stdout);
+    const pid_t child = fork();
+    if (child < 0) exit(2);
+    if (child == 0) {
+      char *output;
+      size_t allocations;
+      const int status = run_job(&start, point, &output, &allocations);
+      const bool reached = (size_t)point <= allocations;
+      free(output);
+      shared->job = reached;
+      // Without its first allocation there is no session at all; a second one has all its memory.
+      if (point == 1)
+        failing = 1, made = 0, shared->lost = cag_session_new(&(CagSessionOptions){0});
+      else shared->lost = status == CAG_STATUS_OK && reached;
+      failing = 0;
+      if (run_job(&start, 0, &output, &allocations) != CAG_STATUS_OK) shared->lost = true;
+      free(output);
+      exit(0);
+    }
+    int status;
+    waitpid(child, &status, 0);
+    more = shared->job;
+    shared->job = 0;
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) complain("a crash");
+    else if (shared->lost) complain("no error");
+    else shared->passed++;
+  }
+  shared->lost = false;
+}
+
+// --- Jobs ---
+
+static void add_job(Job j) {
+  jobs = realloc(jobs, (job_count + 1) * sizeof *jobs);
+  if (!jobs) exit(2);
+  jobs[job_count++] = j;
+}
+
+static void add_examples(const char *only) {
+  const char *signature, *example;
+  for (size_t i = 0; cag_builtin_row(i, &signature, NULL, &example, NULL); i++) {
+    const size_t n = strcspn(signature, "(");
+    if (example && (!only || (strlen(only) == n && strncmp(only, signature, n) == 0)))
+      add_job((Job){signature, example, NULL});
+  }
+}
+
+static void add_file(const char *name, bool exports) {
+  char *output;
+  size_t ignored;
+  const Job plain = {name, NULL, NULL};
+  add_job(plain);
+  for (const char *const *f = cag_export_formats(); exports && *f; f++) {
+    const Job j = {name, NULL, *f};
+    if (run_job(&j, 0, &output, &ignored) == CAG_STATUS_OK) add_job(j);
+    free(output);
+  }
+}
+
+static void remove_folder(void) {
+  DIR *d = opendir(folder);
+  char path[512];
+  for (struct dirent *f; d && (f = readdir(d));) {
+    snprintf(path, sizeof path, "%s/%s", folder, f->d_name);
+    if (f->d_name[0] != '.') unlink(path);
+  }
+  if (d) closedir(d);
+  rmdir(folder);
+}
+
+// Runs jobs in children, one after the other as they crash, until all are done.
+static void run_all(size_t points, uint64_t seed) {
+  while (shared->job < job_count) {
+    fflush(stdout);
+    const pid_t child = fork();
+    if (child < 0) exit(2);
+    if (child == 0) {
+      for (; shared->job < job_count; shared->job++, shared->point = 0) {
+        try_job(points, seed);
+        if (shared->lost) break; // a new child begins without what is lost
+      }
+      exit(0);
+    }
+    int status;
+    waitpid(child, &status, 0);
+    const bool endless = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM;
+    const bool ended = WIFEXITED(status) && (WEXITSTATUS(status) == 0 || shared->lost);
+    if (!ended) complain(endless ? "it does not end" : "a crash");
+    shared->lost = false;
+  }
+}
+
+int main(int argc, char **argv) {
+  size_t points = 4;
+  uint64_t seed = 1;
+  long single = 0;
+  const char *only = NULL;
+  bool exports = false;
+  for (int option; (option = getopt(argc, argv, "n:s:b:a:x")) != -1;) {
+    switch (option) {
+    case 'n': points = strtoul(optarg, NULL, 10); break;
+    case 's': seed = strtoull(optarg, NULL, 10); break;
+    case 'b': only = optarg; break;
+    case 'a': single = strtol(optarg, NULL, 10); break;
+    case 'x': exports = true; break;
+    default: return 2;
+    }
+  }
+  shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED || !mkdtemp(folder)) return 2;
+  setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+  if (!only && !single) try_start();
+  jobs = NULL;
+  if (optind == argc) add_examples(only);
+  for (int i = optind; i < argc; i++) add_file(argv[i], exports);
+  for (; single && shared->job < job_count; shared->job++)
+    try_point(&jobs[shared->job], single, CAG_STATUS_SCRIPT, "");
+  run_all(points, seed);
+  remove_folder();
+  printf("%zu passed, %zu failed, 0 skipped\n", shared->passed, shared->failed);
+  return shared->failed > 0;
+}
