@@ -19,7 +19,8 @@ const CagBuiltin cag_builtins_scene[] = {
      "pixels. With an `aperture` (mm, the diameter of the lens) only what is at the distance "
      "`focus` (mm; "
      "none: the target) is sharp; a point at the distance z is as wide as a disc of aperture "
-     "|z - focus| / z there. A camera that is reflected gives the mirrored picture. When the view "
+     "|z - focus| / z there; an orthographic camera shows everything sharp. A camera that is "
+     "reflected gives the mirrored picture. When the view "
      "is along `up`, Y is up. One point as eye and target is an error.",
      "print camera([100, -200, 80]).fov // expect: 40deg", LISTS, stage},
     {"sun(direction, color = \"white\", strength = 1)", cag_scenes_sun, "light",

@@ -24,30 +24,82 @@ static void write_axis(CagPovWriter *w, const char *word, CagVec3 axis, double l
   pov_text(w, "\n");
 }
 
-// How POV-Ray samples a lens: it stops early where what it has seen so far is even enough.
+// --- The lens ---
+//
+// POV-Ray 3.7 deflects the rays of a pixel by half its `aperture` times the points of a pattern
+// (tracepixel.cpp), each moved at random within a square. Up to 37 samples the pattern is a grid;
+// more are spread evenly over the disc of radius 1/2. Such a pattern is wider or narrower than a
+// disc, so the aperture is scaled: the blur gets the second moment of the disc that the formula of
+// a thin lens gives.
+
+// The second moment of a disc of radius 1/2 along an axis.
+#define DISC_MOMENT (1.0 / 16)
+// From this number on POV-Ray may stop early, where the first samples of a pixel agree. With fewer
+// they would miss the rim of the lens.
+#define SAMPLES_TO_STOP_EARLY 19
+// Coordinates of the only point of the pattern of one sample, which is not centered: (-1/4, 1/4).
+#define FIRST_POINT 0.25
+
+// The grids that fill the lens evenly. Their second moments along both axes are alike: the sum of
+// x^2 by the number of points, and that of the random moves.
 static const struct {
-  int samples;
-  const char *evenness;
-} LENS[] = {[CAG_POV_DRAFT] = {4, "variance 1/100 confidence 0.9"},
-            [CAG_POV_NORMAL] = {7, "variance 1/200 confidence 0.9"},
-            [CAG_POV_FINAL] = {80, "variance 1/100000 confidence 0.99"}};
-// POV-Ray's rays start within a disc whose diameter is half of what it calls aperture.
-#define APERTURE_OF_DIAMETER 2
+  int points;
+  double sum, moves;
+} GRIDS[] = {{1, 0, 1.0 / 12},
+             {4, 1.0 / 4, 1.0 / 48},
+             {7, 1.0 / 4, 1.0 / 144},
+             {19, 8.0 / 9, 1.0 / 324},
+             {37, 31.0 / 16, 1.0 / 576}};
+enum { GRID_COUNT = sizeof GRIDS / sizeof *GRIDS };
+
+static const int LENS_SAMPLES[] = {[CAG_POV_DRAFT] = 1, [CAG_POV_NORMAL] = 4, [CAG_POV_FINAL] = 80};
+
+// The number asked for, or that of the next grid: what POV-Ray adds to a small grid is lopsided.
+static int lens_samples(const CagPovOptions *o) {
+  const int samples = o->samples > 0 ? o->samples : LENS_SAMPLES[o->quality];
+  for (int i = 0; i < GRID_COUNT; i++)
+    if (samples <= GRIDS[i].points) return GRIDS[i].points;
+  return samples;
+}
+
+// The second moment of the pattern along an axis, about its center.
+static double pattern_moment(int samples) {
+  for (int i = 0; i < GRID_COUNT; i++)
+    if (samples == GRIDS[i].points) return GRIDS[i].sum / samples + GRIDS[i].moves;
+  const int more = samples - GRIDS[GRID_COUNT - 1].points;
+  const double moves = 1 / (12.0 * samples); // within squares of the side sqrt(1 / samples)
+  return (GRIDS[GRID_COUNT - 1].sum + more * DISC_MOMENT) / samples + moves;
+}
+
+// What POV-Ray calls the aperture: the patterns lie within a disc whose diameter is half of it.
+static double pov_aperture(const CagPovOptions *o, double diameter) {
+  return 2 * diameter * sqrt(DISC_MOMENT / pattern_moment(lens_samples(o)));
+}
+
+static double focus_distance(const CagCamera *c) {
+  const double to_target = cag_norm(cag_sub(c->target, c->eye));
+  return c->focus > 0 ? c->focus : to_target > 0 ? to_target : 1;
+}
+
+// How far the location must move so that the middle of the pattern is at the camera's eye. The
+// pattern's axes are up x view and view x (up x view), of which POV-Ray subtracts the second.
+static CagVec3 lens_shift(const CagPovOptions *o, const CagCamera *c, CagVec3 up, CagVec3 view) {
+  if (!cag_camera_has_lens(c) || lens_samples(o) > 1) return cag_vec3(0, 0, 0);
+  CagVec3 x = cag_cross(up, view), y = cag_cross(view, x);
+  return cag_scaled(cag_add(x, y), FIRST_POINT * pov_aperture(o, c->aperture) / 2);
+}
 
 // A thin lens of diameter A focused at the distance f shows a point at the distance z as a disc
 // that is A |z - f| / z wide in the plane of focus.
 static void write_focus(CagPovWriter *w, const CagCamera *c, CagVec3 view) {
-  if (!(c->aperture > 0)) return;
-  double focus = c->focus > 0 ? c->focus : cag_norm(cag_sub(c->target, c->eye));
-  const CagPovQuality quality = w->options->quality;
-  const int samples = w->options->samples > 0 ? w->options->samples : LENS[quality].samples;
+  if (!cag_camera_has_lens(c)) return;
+  const int samples = lens_samples(w->options);
   pov_text(w, "  aperture ");
-  pov_length(w, APERTURE_OF_DIAMETER * c->aperture);
+  pov_length(w, pov_aperture(w->options, c->aperture));
   pov_text(w, "\n  focal_point ");
-  pov_place_vec(w, cag_madd(c->eye, focus, view));
-  // A number that was asked for is to be used.
-  pov_printf(w, "\n  blur_samples %d %s\n", samples,
-             LENS[w->options->samples > 0 ? CAG_POV_FINAL : quality].evenness);
+  pov_place_vec(w, cag_madd(c->eye, focus_distance(c), view));
+  if (samples < SAMPLES_TO_STOP_EARLY) pov_printf(w, "\n  blur_samples %d, %d\n", samples, samples);
+  else pov_printf(w, "\n  blur_samples %d variance 1/100000 confidence 0.99\n", samples);
 }
 
 void pov_camera(CagPovWriter *w) {
@@ -59,13 +111,14 @@ void pov_camera(CagPovWriter *w) {
   double aspect = (double)size[0] / size[1];
 
   pov_comment(w, "", c->name ? c->name : "camera");
+  CagVec3 shift = lens_shift(w->options, c, up, view);
   pov_printf(w,
              "// For pictures of %d x %d pixels; right, up and direction make it right-handed.\n",
              size[0], size[1]);
   pov_text(w, "camera {\n");
   pov_text(w, c->orthographic ? "  orthographic\n" : "  perspective\n");
   pov_text(w, "  location  ");
-  pov_place_vec(w, eye);
+  pov_place_vec(w, cag_add(eye, shift));
   pov_text(w, "\n");
   if (c->orthographic) { // right and up span the picture
     write_axis(w, "right", right, c->width, true);
@@ -74,7 +127,9 @@ void pov_camera(CagPovWriter *w) {
   } else { // a picture of height 1 at this distance
     write_axis(w, "right", right, aspect, false);
     write_axis(w, "up", up, 1, false);
-    write_axis(w, "direction", view, aspect / 2 / tan(c->fov / 2), false);
+    // The part of the plane in focus that is seen stays the same when the location moves.
+    CagVec3 middle = cag_madd(view, -1 / focus_distance(c), shift);
+    write_axis(w, "direction", middle, aspect / 2 / tan(c->fov / 2), false);
   }
   write_focus(w, c, view);
   pov_text(w, "}\n");

@@ -63,6 +63,8 @@ CagMaterial cag_material_default(void) {
                        .texture_scale = 10};
 }
 
+bool cag_camera_has_lens(const CagCamera *c) { return c->aperture > 0 && !c->orthographic; }
+
 CagTransform cag_camera_frame(const CagCamera *c) {
   CagTransform frame;
   CagError err;

@@ -172,7 +172,7 @@ static int render(Job *j) {
                       .region_width = j->options->region.width,
                       .region_height = j->options->region.height,
                       .quality = j->engine,
-                      .lens = j->camera.aperture > 0,
+                      .lens = cag_camera_has_lens(&j->camera),
                       .threads = j->options->threads,
                       .time_limit = j->options->time_limit,
                       .interrupted = &j->session->vm->stop,

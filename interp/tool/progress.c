@@ -35,13 +35,14 @@ static int bar_width(void) {
   return room < 0 ? 0 : room > WIDEST ? WIDEST : room;
 }
 
-// " about 40 s left": of this picture, and of the film's that follow. Empty while nothing is known.
+// ", about 40 s left": of this picture at the pace of its phase, and of the film's that follow.
+// Empty while nothing is known.
 static void left_words(const CagProgress *p, double percent, char *out, size_t size) {
-  const double spent = cag_clock_seconds() - p->begun;
+  const double at = cag_clock_seconds(), spent = at - p->phase_begun;
   out[0] = '\0';
   if (!(percent > 1) || spent < PACE_TIME) return;
-  const double whole = 100 * spent / percent;
-  const double left = whole - spent + (double)(p->last - p->frame) * whole;
+  const double here = spent * (100 - percent) / percent;
+  const double left = here + (double)(p->last - p->frame) * (at - p->begun + here);
   if (left < 100) snprintf(out, size, ", about %.0f s left", left);
   else snprintf(out, size, ", about %.0f min left", left / 60);
 }
@@ -65,12 +66,17 @@ void cag_progress_show(void *context, double percent, const char *phase) {
     p->begun = p->line_time = cag_clock_seconds();
     p->begun_frame = p->frame;
   }
+  if (!p->phase || strcmp(phase, p->phase) != 0) {
+    p->phase = phase;
+    p->phase_begun = cag_clock_seconds();
+    p->tenths = -1;
+  }
   if (p->lines) {
     show_line(p, percent, phase);
     return;
   }
   const int tenths = percent < 0 ? 0 : percent > 100 ? 1000 : (int)(10 * percent);
-  if (!p->shown || (p->dirty && tenths == p->tenths && !strcmp(phase, p->phase))) return;
+  if (!p->shown || (p->dirty && tenths == p->tenths)) return;
   const int width = bar_width(), full = width * tenths / 1000;
   fputs("\r\033[K", stderr);
   if (p->last > p->first) fprintf(stderr, "frame %ld of %ld..%ld  ", p->frame, p->first, p->last);
@@ -82,7 +88,6 @@ void cag_progress_show(void *context, double percent, const char *phase) {
   fflush(stderr);
   p->dirty = true;
   p->tenths = tenths;
-  p->phase = phase;
 }
 
 void cag_progress_end(CagProgress *p) {
@@ -90,4 +95,5 @@ void cag_progress_end(CagProgress *p) {
   p->dirty = false;
   p->tenths = -1;
   p->begun = 0;
+  p->phase = NULL;
 }

@@ -277,21 +277,42 @@ python3 "$here/png_extent.py" rod_own.png 0.80 0.97 > extent || wrong "$(cat ext
 # A white edge behind the plane of focus, on black: a thin lens shows a point as a disc that is A |z - f| / z wide at the distance f,
 # so that the edge is smeared with the standard deviation of a disc across, a quarter of its diameter.
 script edge.cag 'param lens = 100
-show translate(box([4000, 1, 8000]), [0, 1000, -4000]) |> material({color: "black", emission: [0.5, 0.5, 0.5], roughness: 1})
+param level = false
+show translate(box([4000, 1, 8000]), if level then [-2000, 1000, -8000] else [0, 1000, -4000]) |> material({color: "black", emission: [0.5, 0.5, 0.5], roughness: 1})
 show background("black")
 show camera(eye: [0, -1000, 0], target: origin, fov: 40deg, aperture: lens, focus: 1000)
 show point_light([0, 0, 100000], strength: 0)'
-it 'an aperture blurs as the thin lens formula says'
-for lens in 100 50; do
-  try render edge.cag -o edge.png --size 400x24 --quality final -D lens=$lens
-  status 0
-  python3 "$here/png_blur.py" edge.png $lens 1000 2000 40 0.03 > blur || wrong "$(cat blur)"
+it 'an aperture blurs as the thin lens formula says at every quality'
+for quality in draft normal final; do
+  for lens in 100 50; do
+    try render edge.cag -o edge.png --size 400x200 --region 400x80+0+60 --quality $quality -D lens=$lens
+    status 0
+    python3 "$here/png_blur.py" edge.png $lens 1000 2000 40 0.05 > blur || wrong "$quality: $(cat blur)"
+  done
+  try render edge.cag -o edge.png --size 400x400 --region 80x400+160+0 --quality $quality -D level=true
+  python3 "$here/png_blur.py" edge.png 100 1000 2000 40 0.05 level > blur || wrong "$quality: $(cat blur)"
 done
-it '--samples sets how finely a lens is sampled, and draft blurs too'
-try render edge.cag -o edge.png --size 400x24 --samples 200
-python3 "$here/png_blur.py" edge.png 100 1000 2000 40 0.03 > blur || wrong "$(cat blur)"
-try render edge.cag -o edge.png --size 400x24 --quality draft
-python3 "$here/png_blur.py" edge.png 100 1000 2000 40 0.25 > blur || wrong "$(cat blur)"
+it '--samples sets how finely a lens is sampled, not the amount of blur'
+for samples in 1 2 5 10 20 40 200; do
+  try render edge.cag -o edge.png --size 400x200 --region 400x80+0+60 --samples $samples
+  python3 "$here/png_blur.py" edge.png 100 1000 2000 40 0.05 > blur || wrong "$samples: $(cat blur)"
+done
+it 'an orthographic camera has no depth of field'
+for lens in 0 50; do
+  script flat.cag "show box(100)
+show camera(eye: [300, -1000, 300], target: [50, 50, 50], kind: \"orthographic\", width: 300, aperture: $lens)"
+  try render flat.cag -o flat_$lens.png --size 60x40
+done
+try compare flat_0.png flat_50.png --threshold 0.05
+status 0
+
+it 'a terminal shows the progress and the time that is left, unless the command is quiet'
+# Refraction that takes seconds: the time is known after the first.
+script slow.cag 'show [for i in 0..20: sphere(8) |> translate([(i % 5)*14, floor(i/5)*14, 0])] |> material({color: "white", transmission: 1, ior: 1.5})'
+python3 "$here/on_terminal.py" "$CAG" render slow.cag -o slow.png --size 240x180 --threads 1 > shown || wrong "$(cat shown)"
+grep -q '% rendering, about [0-9]* s left' shown || wrong "$(tail -2 shown)"
+python3 "$here/on_terminal.py" "$CAG" render ball.cag -o ball.png $quick -q > shown
+[ -z "$(cat shown)" ] || wrong "$(cat shown)"
 
 it '--progress prints lines where there is no terminal'
 try render ball.cag -o ball.png $quick --progress
