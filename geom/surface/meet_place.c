@@ -5,23 +5,36 @@
 #include <float.h>
 #include <math.h>
 
+#include "geom/surface/function.h"
+
 #define NEWTON_STEPS 40
 
-bool cag_march_look(CagMarch *m, int k, const CagMarchNode *node, CagMarchTangent *out) {
+bool cag_march_partials(CagMarch *m, int k, const CagMarchNode *node, int order, CagVec3 *out) {
   const CagSurface *s = m->side[k].s;
-  const double *at = node->at[k];
-  const bool last[2] = {at[0] >= cag_march_range(m, k, node, 0)[1],
-                        at[1] >= cag_march_range(m, k, node, 1)[1]};
+  const double *at = node->at[k], lo[2] = {s->u0, s->v0}, hi[2] = {s->u1, s->v1};
+  CagSide side[2];
+  bool on_edge = false;
+  for (int d = 0; d < 2; d++) {
+    side[d] = at[d] >= cag_march_range(m, k, node, d)[1] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+    on_edge = on_edge || at[d] <= lo[d] || at[d] >= hi[d];
+  }
+  const CagStatus status =
+      on_edge && cag_surface_is_formula(s)
+          ? cag_surface_eval_beside(s, lo, hi, at, order, out, m->err)
+          : cag_surface_eval(s, at[0], at[1], order, side[0], side[1], out, m->err);
+  return status == CAG_OK || cag_march_fail(m, status);
+}
+
+bool cag_march_look(CagMarch *m, int k, const CagMarchNode *node, CagMarchTangent *out) {
   CagVec3 d[4];
-  CagStatus status = cag_surface_eval(s, at[0], at[1], 1, last[0] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
-                                      last[1] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, m->err);
-  if (status) return cag_march_fail(m, status);
+  if (!cag_march_partials(m, k, node, 1, d)) return false;
   *out = (CagMarchTangent){.p = d[0], .du = d[cag_partial(1, 1, 0)], .dv = d[cag_partial(1, 0, 1)]};
   out->normal = cag_unit(cag_cross(out->du, out->dv));
   // At poles the normal is a limit.
   if (cag_norm(out->normal) == 0) {
     CagError ignored;
-    if (cag_surface_normal(s, at[0], at[1], &out->normal, &ignored) != CAG_OK)
+    if (cag_surface_normal(m->side[k].s, node->at[k][0], node->at[k][1], &out->normal, &ignored) !=
+        CAG_OK)
       out->normal = cag_vec3(0, 0, 0);
   }
   return true;

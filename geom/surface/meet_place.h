@@ -14,6 +14,8 @@ typedef struct CagMarchTangent {
   CagVec3 p, du, dv, normal;
 } CagMarchTangent;
 
+// Partials of side k up to the order, as cag_surface_eval gives them, seen from the node's patch.
+bool cag_march_partials(CagMarch *m, int k, const CagMarchNode *node, int order, CagVec3 *out);
 // What side k is like at the node, seen from the node's patch.
 bool cag_march_look(CagMarch *m, int k, const CagMarchNode *node, CagMarchTangent *out);
 // Moves the parameters so that the point comes to x, as far as the tangent plane tells.

@@ -224,7 +224,15 @@ static bool move_to_edge(CagMarch *m, int k, int d, double edge, CagMarchNode *e
       return false;
     const CagVec3 along = d ? own.du : own.dv;
     const double rate = cag_dot(other.normal, along);
-    if (fabs(rate) <= CAG_MARCH_TOUCH * cag_norm(along)) return true;
+    if (fabs(rate) <= CAG_MARCH_TOUCH * cag_norm(along)) {
+      // Of a touch the edge has the nearest place, to second order.
+      if (m->locate == cag_march_locate_touch &&
+          cag_norm(cag_sub(own.p, end->x)) <= JOINED * m->size) {
+        node.x = own.p;
+        *end = node;
+      }
+      return true;
+    }
     const double *range = cag_march_range(m, k, &node, 1 - d);
     const double step = cag_dot(other.normal, cag_sub(other.p, own.p)) / rate;
     gap = cag_norm(cag_sub(own.p, other.p));
@@ -586,11 +594,15 @@ static bool march_crossings(CagMarch *m, Runs *runs) {
   return march_all(m, runs);
 }
 
+static bool find_seeds(CagMarch *m) {
+  return cag_march_find_seeds(m, TOUCH_MARGIN * m->mesh_tolerance);
+}
+
 // Touches come first: beside them the surfaces are so near to each other that they seem to cross,
 // but what lies on a known run is left alone.
 static bool find_runs(CagMarch *m, Runs *runs, bool *common) {
-  return cag_march_find_seeds(m, TOUCH_MARGIN * m->mesh_tolerance) && march_touches(m, runs) &&
-         march_crossings(m, runs) && (m->touching == 0 || find_common(m, common));
+  return find_seeds(m) && march_touches(m, runs) && march_crossings(m, runs) &&
+         (m->touching == 0 || find_common(m, common));
 }
 
 static CagStatus prepare(CagMarch *m, const CagSurface *a, const CagSurface *b, double tolerance,
@@ -634,27 +646,49 @@ static CagStatus prepare(CagMarch *m, const CagSurface *a, const CagSurface *b, 
   return status;
 }
 
+static void close_march(CagMarch *m) {
+  for (int k = 0; k < 2; k++) {
+    cag_mesh_release(m->side[k].mesh);
+    cag_patches_free(&m->side[k].patches);
+  }
+  free(m->crossings.items);
+  free(m->touches.items);
+}
+
+// The runs as curves, joined.
+static CagStatus add_runs(CagMarch *m, const Runs *runs, CagCurveList *out) {
+  const size_t first = out->count;
+  for (size_t i = 0; i < runs->n; i++)
+    if (!add_parts(m, &runs->items[i], out)) return m->status;
+  return cag_curve_list_join(out, first, JOINED * m->size, m->err);
+}
+
 CagStatus cag_surface_intersect(const CagSurface *a, const CagSurface *b, double tolerance,
                                 const volatile int *interrupt, CagCurveList *out, CagError *err) {
-  CagMarch m = {.locate = cag_march_locate_crossing, .interrupt = interrupt, .err = err};
+  CagMarch m = {.interrupt = interrupt, .err = err};
   CagStatus status = prepare(&m, a, b, tolerance, err);
-  size_t first = out->count;
   Runs runs = {0};
   bool common = false;
-  if (!status && !m.side[0].mesh) return CAG_OK; // one is a point
-  if (!status && !find_runs(&m, &runs, &common)) status = m.status;
+  const bool are_two = !status && m.side[0].mesh; // none is a point
+  if (are_two && !find_runs(&m, &runs, &common)) status = m.status;
   if (!status && common)
     status = cag_fail(err, CAG_E_DEGENERATE, "overlap", "", -1,
                       "the surfaces share a piece: they meet in more than curves");
-  for (size_t i = 0; !status && i < runs.n; i++)
-    if (!add_parts(&m, &runs.items[i], out)) status = m.status;
-  if (!status) status = cag_curve_list_join(out, first, JOINED * m.size, err);
+  if (!status && are_two) status = add_runs(&m, &runs, out);
   free_runs(&runs);
-  for (int k = 0; k < 2; k++) {
-    cag_mesh_release(m.side[k].mesh);
-    cag_patches_free(&m.side[k].patches);
-  }
-  free(m.crossings.items);
-  free(m.touches.items);
+  close_march(&m);
+  return status;
+}
+
+CagStatus cag_surface_touches(const CagSurface *a, const CagSurface *b, double tolerance,
+                              const volatile int *interrupt, CagCurveList *out, CagError *err) {
+  CagMarch m = {.interrupt = interrupt, .err = err};
+  CagStatus status = prepare(&m, a, b, tolerance, err);
+  Runs runs = {0};
+  const bool are_two = !status && m.side[0].mesh;
+  if (are_two && !(find_seeds(&m) && march_touches(&m, &runs))) status = m.status;
+  if (!status && are_two) status = add_runs(&m, &runs, out);
+  free_runs(&runs);
+  close_march(&m);
   return status;
 }

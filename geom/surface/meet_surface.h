@@ -13,5 +13,8 @@
 //   interrupt  NULL, or: not 0 stops with CAG_E_CALLBACK
 CagStatus cag_surface_intersect(const CagSurface *a, const CagSurface *b, double tolerance,
                                 const volatile int *interrupt, CagCurveList *out, CagError *err);
+// Only the curves along which they touch. Where they share a piece there are none.
+CagStatus cag_surface_touches(const CagSurface *a, const CagSurface *b, double tolerance,
+                              const volatile int *interrupt, CagCurveList *out, CagError *err);
 
 #endif

@@ -67,14 +67,8 @@ static double curvature_along(const CagMarchTangent *t, const CagVec3 second[3],
 static bool look_at_side(CagMarch *m, int k, const CagMarchNode *node, CagMarchTangent *t,
                          CagVec3 second[3]) {
   enum { ORDER = 2 };
-  const double *at = node->at[k];
-  CagSide side[2];
-  for (int d = 0; d < 2; d++)
-    side[d] = at[d] >= cag_march_range(m, k, node, d)[1] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
   CagVec3 d[(ORDER + 1) * (ORDER + 1)];
-  CagStatus status =
-      cag_surface_eval(m->side[k].s, at[0], at[1], ORDER, side[0], side[1], d, m->err);
-  if (status) return cag_march_fail(m, status);
+  if (!cag_march_partials(m, k, node, ORDER, d)) return false;
   *t = (CagMarchTangent){
       .p = d[0], .du = d[cag_partial(ORDER, 1, 0)], .dv = d[cag_partial(ORDER, 0, 1)]};
   t->normal = cag_unit(cag_cross(t->du, t->dv));

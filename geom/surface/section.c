@@ -11,12 +11,16 @@
 #include "geom/curve/intersect.h"
 #include "geom/mesh/tessellate.h"
 #include "geom/surface/family.h"
+#include "geom/surface/function.h"
+#include "geom/surface/section_edges.h"
 
 // Curves meet whose ends are nearer than this part of the size: traced ends are far better.
 #define MEET 1e-7
 // A face within this part of the size of the plane lies in it and is not cut.
 #define WITHIN 1e-9
 #define DEFAULT_TOLERANCE 1e-6
+// Tolerances within which a traced curve runs along an exact one.
+#define NEAR_RUN 8
 
 // --- Lists ---
 
@@ -342,15 +346,30 @@ static CagStatus section_face(const CagSurface *s, const CagPlane *plane, double
   return status;
 }
 
+// Edges in the plane and curves along which it touches the surface. Formulas may have no
+// derivatives on their edges, which both need: they are traced from the plane's other side too.
+static CagStatus add_edges_and_touches(const CagSurface *s, const CagPlane *plane,
+                                       const CagBounds *box, double tolerance, CagCurveList *out,
+                                       CagError *err) {
+  const CagPlane turned = {plane->point, cag_scaled(plane->normal, -1)};
+  if (cag_surface_is_formula(s)) return section_face(s, &turned, tolerance, size_of(box), out, err);
+  CagStatus status = cag_section_edges(s, plane, size_of(box), out, err);
+  if (status || cag_surface_planar_view(s, NULL, NULL)) return status;
+  return cag_section_touches(s, plane, box, tolerance, out, err);
+}
+
 CagStatus cag_surface_section(const CagSurface *s, const CagPlane *plane, double tolerance,
                               CagCurveList *out, CagError *err) {
   CagBounds box;
   CagStatus status = cag_surface_bounds(s, &box, err);
-  if (status) return status;
+  if (status || is_beside(&box, plane)) return status;
   double size = size_of(&box);
   size_t first = out->count;
   if (!(tolerance > 0)) tolerance = DEFAULT_TOLERANCE * size;
-  status = section_face(s, plane, tolerance, size, out, err);
+  // The most exact first, which stay where a curve is found again.
+  status = add_edges_and_touches(s, plane, &box, tolerance, out, err);
+  if (!status) status = section_face(s, plane, tolerance, size, out, err);
+  if (!status) cag_curve_list_drop_covered(out, first, NEAR_RUN * tolerance + MEET * size);
   return status ? status : cag_curve_list_join(out, first, MEET * size, err);
 }
 

@@ -88,7 +88,9 @@ CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err); //
 // nearer than `same`.
 CagStatus cag_curve_list_join(CagCurveList *list, size_t first, double same, CagError *err);
 
-// Sections with a plane are added to the list; what merely touches the plane may have none. The
+// Sections with a plane are added to the list. Those of a surface include curves along which the
+// plane touches it, and edges and creases in the plane. Of a solid they are the outline of the part
+// on the negative side, so that they close: what merely touches the plane may have none. The
 // tolerance is that of curves that are neither lines nor conics; 0: a millionth of the size.
 CagStatus cag_surface_section(const CagSurface *s, const CagPlane *plane, double tolerance,
                               CagCurveList *out, CagError *err);

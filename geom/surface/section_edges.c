@@ -1,0 +1,200 @@
+// Edges and creases of a surface that lie in a plane, and curves along which the plane touches it:
+// what a section has besides the curves along which the surface passes the plane.
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geom/curve/family.h"
+#include "geom/surface/crease.h"
+#include "geom/surface/family.h"
+#include "geom/surface/meet_surface.h"
+#include "geom/surface/section_edges.h"
+#include "geom/surface/trimmed.h"
+
+// An edge lies in the plane when it is this near to it, as a part of the surface's size.
+#define WITHIN 1e-9
+// The square that stands for the plane reaches this far beyond the surface's sphere.
+#define MARGIN 1.1
+
+typedef struct Cut {
+  const CagPlane *plane;
+  double size;
+  CagCurveList *out;
+  CagError *err;
+} Cut;
+
+// --- Pieces in the plane ---
+
+// Whether the curve is in the plane at places of a smooth piece.
+static CagStatus is_within(const Cut *c, const CagCurve *curve, double a, double b, bool *out) {
+  enum { PLACES = 9 };
+  *out = true;
+  for (int i = 0; i <= PLACES && *out; i++) {
+    CagVec3 p;
+    CagStatus status = cag_curve_point(curve, a + (b - a) * i / PLACES, &p, c->err);
+    if (status) return status;
+    *out = fabs(cag_dot(c->plane->normal, cag_sub(p, c->plane->point))) <= WITHIN * c->size;
+  }
+  return CAG_OK;
+}
+
+// The piece as a line or an arc of a conic; false: it is none, or has no tangents that tell.
+static bool simplified(const Cut *c, const CagCurve *piece, CagCurve **out) {
+  enum { POINTS = 17 };
+  CagVec3 points[POINTS], tangents[POINTS], checks[POINTS];
+  CagTrace trace = {POINTS, POINTS - 1, piece->closed, points, tangents, checks};
+  const double step = (piece->end - piece->start) / (POINTS - 1);
+  CagError ignored;
+  for (int i = 0; i < POINTS; i++) {
+    const bool last = i == POINTS - 1;
+    const double t = last ? piece->end : piece->start + step * i;
+    CagVec3 d[2];
+    if (cag_curve_eval(piece, t, 1, last ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, &ignored) ||
+        (!last && cag_curve_point(piece, t + step / 2, &checks[i], &ignored)))
+      return false;
+    points[i] = d[0];
+    tangents[i] = cag_unit(d[1]);
+  }
+  if (piece->closed) points[POINTS - 1] = points[0];
+  if (cag_trace_curve(&trace, NULL, c->size, out, &ignored)) return false;
+  CagNurbsView view;
+  if (!cag_curve_nurbs_view(*out, &view)) return true;
+  cag_curve_release(*out);
+  return false;
+}
+
+static CagStatus add_piece(const Cut *c, const CagCurve *curve, double a, double b) {
+  CagCurve *piece = NULL, *simple = NULL;
+  CagStatus status = CAG_OK;
+  if (a <= curve->start && b >= curve->end) piece = cag_curve_retain(curve);
+  else status = cag_curve_trim(curve, a, b, &piece, c->err);
+  if (status) return status;
+  if (!simplified(c, piece, &simple)) return cag_curve_list_add(c->out, piece, c->err);
+  cag_curve_release(piece);
+  return cag_curve_list_add(c->out, simple, c->err);
+}
+
+// The pieces of an edge in the plane, those that follow each other as one.
+static CagStatus add_edge(const Cut *c, const CagCurve *edge) {
+  CagCurve *space = NULL;
+  double *cuts = NULL, from = 0;
+  size_t n = 0;
+  bool open = false;
+  CagStatus status = cag_surface_space_curve(edge, &space, c->err);
+  if (!status) status = cag_curve_cuts(space, &cuts, &n, c->err);
+  for (size_t i = 0; !status && i + 1 < n; i++) {
+    bool within;
+    status = is_within(c, space, cuts[i], cuts[i + 1], &within);
+    if (status) break;
+    if (within && !open) from = cuts[i];
+    if (!within && open) status = add_piece(c, space, from, cuts[i]);
+    open = within;
+  }
+  if (!status && open) status = add_piece(c, space, from, cuts[n - 1]);
+  free(cuts);
+  cag_curve_release(space);
+  return status;
+}
+
+// --- Edges ---
+
+static CagStatus add_line(const Cut *c, const CagSurface *s, int direction, double at) {
+  CagCurve *edge = NULL;
+  CagStatus status = cag_surface_isocurve(s, direction, at, &edge, c->err);
+  if (!status) status = add_edge(c, edge);
+  cag_curve_release(edge);
+  return status;
+}
+
+// Edges of the parameter rectangle that are neither poles nor smooth seams, and creases.
+static CagStatus add_lines_of(const Cut *c, const CagSurface *s, int d, const double *ends,
+                              size_t n, bool wraps) {
+  const bool closed = d ? s->closed_v : s->closed_u;
+  const bool pole[2] = {d ? s->pole_v0 : s->pole_u0, d ? s->pole_v1 : s->pole_u1};
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i <= n; i++) {
+    const bool edge = i == 0 || i == n, seam = closed && (wraps || i == n);
+    if (!edge || !(seam || pole[i > 0])) status = add_line(c, s, d, ends[i]);
+  }
+  return status;
+}
+
+static CagStatus add_lines(const Cut *c, const CagSurface *s) {
+  CagPatches patches;
+  CagStatus status = cag_patches_open(s, &patches, c->err);
+  if (status) return status;
+  for (int d = 0; !status && d < 2; d++)
+    status = add_lines_of(c, s, d, patches.ends[d], patches.n[d], patches.wraps[d]);
+  cag_patches_free(&patches);
+  return status;
+}
+
+CagStatus cag_section_edges(const CagSurface *s, const CagPlane *plane, double size,
+                            CagCurveList *out, CagError *err) {
+  const Cut c = {plane, size, out, err};
+  const CagRegion *region;
+  CagTransform frame;
+  const bool planar = cag_surface_planar_view(s, &region, &frame);
+  if (!planar && !cag_surface_trimmed_view(s, NULL, &region)) return add_lines(&c, s);
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < region->count; i++) {
+    CagCurve *loop = NULL;
+    status = planar ? cag_curve_transform(region->loops[i], &frame, &loop, err)
+                    : cag_trimmed_loop(s, i, &loop, err);
+    if (!status) status = add_edge(&c, loop);
+    cag_curve_release(loop);
+  }
+  return status;
+}
+
+// --- Touches ---
+
+CagStatus cag_section_touches(const CagSurface *s, const CagPlane *plane, const CagBounds *box,
+                              double tolerance, CagCurveList *out, CagError *err) {
+  const CagTransform frame = cag_plane_frame(plane);
+  const CagVec3 middle = cag_lerp(box->min, box->max, 0.5);
+  const double half = MARGIN * cag_norm(cag_sub(box->max, box->min)) / 2,
+               off = cag_dot(plane->normal, cag_sub(middle, plane->point));
+  const CagVec3 center = cag_madd(middle, -off, plane->normal);
+  const CagVec3 x = cag_vec3(half * frame.m[0][0], half * frame.m[1][0], half * frame.m[2][0]);
+  const CagVec3 y = cag_vec3(half * frame.m[0][1], half * frame.m[1][1], half * frame.m[2][1]);
+  const CagVec3 low = cag_sub(center, x), high = cag_add(center, x);
+  CagSurface *square = NULL;
+  CagStatus status = cag_surface_bilinear(cag_sub(low, y), cag_add(low, y), cag_sub(high, y),
+                                          cag_add(high, y), &square, err);
+  if (!status) status = cag_surface_touches(s, square, tolerance, NULL, out, err);
+  cag_surface_release(square);
+  return status;
+}
+
+// --- What is found twice ---
+
+// Whether all of c runs along `on`.
+static bool runs_along(const CagCurve *c, const CagCurve *on, double near) {
+  enum { PLACES = 9 };
+  const CagBounds box = on->kind->hull(on, on->start, on->end);
+  for (int i = 0; i <= PLACES; i++) {
+    CagVec3 p, foot;
+    double t, distance;
+    CagError ignored;
+    if (cag_curve_point(c, c->start + (c->end - c->start) * i / PLACES, &p, &ignored)) return false;
+    if (p.x < box.min.x - near || p.y < box.min.y - near || p.z < box.min.z - near ||
+        p.x > box.max.x + near || p.y > box.max.y + near || p.z > box.max.z + near ||
+        cag_curve_closest(on, p, &t, &foot, &distance, &ignored) || distance > near)
+      return false;
+  }
+  return true;
+}
+
+void cag_curve_list_drop_covered(CagCurveList *list, size_t first, double near) {
+  for (size_t i = list->count; i-- > first;) {
+    bool covered = false;
+    for (size_t k = first; k < list->count && !covered; k++)
+      covered = k != i && runs_along(list->items[i], list->items[k], near);
+    if (!covered) continue;
+    cag_curve_release(list->items[i]);
+    list->count--;
+    memmove(list->items + i, list->items + i + 1, (list->count - i) * sizeof *list->items);
+  }
+}
