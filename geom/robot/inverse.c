@@ -14,6 +14,8 @@
 #define ROUGH_ERROR 1e-2
 #define FINE_ERROR 1e-12
 #define DAMPING 1e-14
+// Steps of Gauss and Newton: where two solutions are nearly one, a step only halves the error.
+#define MOST_STEPS 40
 // Solutions nearer than this are one: stretched arms are known to the root of the rounding only.
 #define SAME_SOLUTION 1e-7
 
@@ -265,7 +267,8 @@ void inverse_keep(InverseTask *t, const double *found, CagConfiguration configur
   memcpy(q, found, t->chain->n * sizeof *q);
   if (out->count == CAG_INVERSE_SOLUTIONS_MAX) return;
   if (!t->exact) {
-    for (int i = 0; i < 4 && !reproduces(t, q, FINE_ERROR) && reproduces(t, q, ROUGH_ERROR); i++)
+    for (int i = 0;
+         i < MOST_STEPS && !reproduces(t, q, FINE_ERROR) && reproduces(t, q, ROUGH_ERROR); i++)
       improve(t, q);
     if (!reproduces(t, q, POSE_ERROR)) return;
   }

@@ -222,7 +222,7 @@ static void all_solutions_are_found(void **state) {
     CagRobot *plain = make(s, false), *built = make(s, true);
     assert_true(cag_robot_has_inverse(plain));
     assert_true(cag_robot_has_inverse(built));
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 1000; i++) {
       double q[6];
       for (size_t j = 0; j < s->n; j++)
         q[j] = s->rows[j].kind == P ? 50 + 400 * random_share() : (2 * random_share() - 1) * 3.1;
