@@ -83,13 +83,13 @@ static char *plain_text(cmark_node *heading) {
 }
 
 static void anchor_heading(const Document *d, cmark_node *node) {
-  char *text = plain_text(node), *anchor = cag_html_anchor(text), *html;
+  char *text = plain_text(node), *anchor = cag_html_anchor(text);
   if (d->is_guide && cmark_node_get_heading_level(node) > 1) {
     char url[512];
     snprintf(url, sizeof url, "guide/%s.html#%s", d->about, anchor);
     cag_site_find(d->site, text, "guide", url, "", 0);
   }
-  if (asprintf(&html, "<a class=\"anchor\" id=\"%s\"></a>", anchor) < 0) abort();
+  char *html = cag_doc_text("<a class=\"anchor\" id=\"%s\"></a>", anchor);
   cmark_node *mark = cmark_node_new(CMARK_NODE_HTML_INLINE);
   cmark_node_set_literal(mark, html);
   cmark_node_prepend_child(node, mark);
@@ -106,17 +106,14 @@ static void change_link(const Document *d, cmark_node *node) {
   if (strstr(url, "://") || *url == '#') return;
   for (size_t i = 0; dot && cag_site_guide(i, &name, &title); i++) {
     if (strlen(name) != (size_t)(dot - url) || strncmp(url, name, strlen(name)) != 0) continue;
-    char *page;
-    if (asprintf(&page, "%sguide/%s.html%s", d->root, name, dot + 3) < 0) abort();
+    char *page = cag_doc_text("%sguide/%s.html%s", d->root, name, dot + 3);
     cmark_node_set_url(node, page);
     free(page);
     return;
   }
   if (strncmp(url, "cookbook/", 9) == 0 && strstr(url, ".cag")) {
-    char *page;
-    if (asprintf(&page, "%scookbook/index.html#%.*s", d->root, (int)strcspn(url + 9, "."),
-                 url + 9) < 0)
-      abort();
+    char *page =
+        cag_doc_text("%scookbook/index.html#%.*s", d->root, (int)strcspn(url + 9, "."), url + 9);
     cmark_node_set_url(node, page);
     free(page);
     return;

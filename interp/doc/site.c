@@ -25,8 +25,7 @@ const CagDocument *cag_document(const char *path) {
 
 void cag_site_write(CagSite *s, const char *path, const char *text, size_t length) {
   if (!s->final || s->failed) return;
-  char *full;
-  if (asprintf(&full, "%s/%s", s->folder, path) < 0) abort();
+  char *full = cag_doc_text("%s/%s", s->folder, path);
   CagAtomicFile *f = cag_atomic_file_open(full, &s->error);
   if (f) cag_atomic_file_write(f, text, length);
   s->failed = !f || !cag_atomic_file_commit(f, &s->error);
@@ -34,8 +33,7 @@ void cag_site_write(CagSite *s, const char *path, const char *text, size_t lengt
 }
 
 static bool make_folder(CagSite *s, const char *name) {
-  char *path;
-  if (asprintf(&path, "%s%s%s", s->folder, *name ? "/" : "", name) < 0) abort();
+  char *path = cag_doc_text("%s%s%s", s->folder, *name ? "/" : "", name);
   const bool made = mkdir(path, 0777) == 0 || errno == EEXIST;
   if (!made)
     cag_io_error_set(&s->error, CAG_EXIT_FILE, "the folder above it must be there, and writable",
@@ -46,15 +44,12 @@ static bool make_folder(CagSite *s, const char *name) {
 
 // Pictures of earlier sites that no page shows any more.
 static void remove_old_pictures(const CagSite *s) {
-  char *path;
-  if (asprintf(&path, "%s/pictures", s->folder) < 0) abort();
+  char *path = cag_doc_text("%s/pictures", s->folder);
   DIR *folder = opendir(path);
   for (struct dirent *f; folder && (f = readdir(folder));) {
-    char *name, *full;
+    char *name = cag_doc_text("pictures/%s", f->d_name);
+    char *full = cag_doc_text("%s/%s", s->folder, name);
     bool used = strlen(f->d_name) != 20 || f->d_name[16] != '.'; // 16 digits and .svg or .png
-    if (asprintf(&name, "pictures/%s", f->d_name) < 0 ||
-        asprintf(&full, "%s/%s", s->folder, name) < 0)
-      abort();
     for (size_t i = 0; i < s->count && !used; i++)
       used = s->examples[i].picture && strcmp(s->examples[i].picture, name) == 0;
     if (!used) unlink(full);

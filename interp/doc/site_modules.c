@@ -64,12 +64,10 @@ typedef struct Book {
 
 // The line that imports the module, as its purpose shows it; malloc'd.
 static char *import_line(const CagDocModule *m) {
-  char *line;
   const char *shown = strstr(m->purpose, m->name);
   const char *begin = shown && shown - m->purpose >= 7 ? shown - 7 : NULL;
   if (begin && strncmp(begin, "import ", 7) == 0) return strndup(begin, strcspn(begin, "\n"));
-  if (asprintf(&line, "import %s", m->name) < 0) abort();
-  return line;
+  return cag_doc_text("import %s", m->name);
 }
 
 // What an example of the module begins with; NULL: it says it itself. malloc'd.
@@ -79,8 +77,8 @@ static char *example_import(const Book *b, const char *text) {
 }
 
 static void write_module_example(const CagSitePage *p, const Book *b, const char *text) {
-  char *import = example_import(b, text), *whole;
-  if (asprintf(&whole, "%s%s%s", import ? import : "", import ? "\n" : "", text) < 0) abort();
+  char *import = example_import(b, text);
+  char *whole = cag_doc_text("%s%s%s", import ? import : "", import ? "\n" : "", text);
   cag_html_example(p->site,
                    &(CagSiteSpot){.out = p->out,
                                   .root = p->root,

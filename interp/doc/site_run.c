@@ -79,8 +79,7 @@ static bool is_shape(CagSession *s, const char *expression, Type t) {
   for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
     if (strcmp(t.name, shapes[i]) == 0) return true;
   if (strcmp(t.name, "list") != 0) return false;
-  char *first;
-  if (asprintf(&first, "(%s)[0]", expression) < 0) abort();
+  char *first = cag_doc_text("(%s)[0]", expression);
   t = type_of(s, first);
   const bool shape = strcmp(t.name, "list") != 0 && is_shape(s, first, t);
   free(first);
@@ -116,7 +115,7 @@ static char *last_shape(CagSession *s) {
     const Type t = type_of(s, copy);
     char *posed = NULL;
     if (is_shape(s, copy, t)) return copy;
-    if (strcmp(t.name, "robot") == 0 && asprintf(&posed, "posed(%s)", copy) < 0) posed = NULL;
+    if (strcmp(t.name, "robot") == 0) posed = cag_doc_text("posed(%s)", copy);
     free(copy);
     if (posed) return posed;
   }
@@ -156,11 +155,9 @@ static uint64_t hash_text(uint64_t h, const char *text) {
 }
 
 static char *picture_name(const char *text, const char *shape, const char *ending) {
-  char *name;
   uint64_t h = hash_text(14695981039346656037u, CAG_VERSION);
   h = hash_text(hash_text(h, text), shape ? shape : "");
-  if (asprintf(&name, "pictures/%016llx.%s", (unsigned long long)h, ending) < 0) abort();
-  return name;
+  return cag_doc_text("pictures/%016llx.%s", (unsigned long long)h, ending);
 }
 
 // Makes the picture of a session's scene, where it is not there yet.
@@ -169,8 +166,8 @@ static void make_picture(const CagSite *site, CagSession *s, CagSiteExample *e, 
   if (cag_session_scene(s, &counts) != CAG_STATUS_OK || counts.items == 0) return;
   const bool drawing = is_drawing(&s->scene);
   if (!drawing && !site->renders) return;
-  char *name = picture_name(e->text, shape, drawing ? "svg" : "png"), *path;
-  if (asprintf(&path, "%s/%s", site->folder, name) < 0) abort();
+  char *name = picture_name(e->text, shape, drawing ? "svg" : "png");
+  char *path = cag_doc_text("%s/%s", site->folder, name);
   int status = CAG_STATUS_OK;
   if (access(path, R_OK) != 0 && drawing) {
     status = cag_session_export(s, path, "svg");
@@ -195,9 +192,9 @@ static void picture(const CagSite *site, CagSession *ran, CagSiteExample *e, FIL
     make_picture(site, ran, e, NULL);
     return;
   }
-  char *shape = choose_shape(site, e, out), *text;
+  char *shape = choose_shape(site, e, out);
   if (!shape) return;
-  if (asprintf(&text, "%s\nshow %s\n", e->text, shape) < 0) abort();
+  char *text = cag_doc_text("%s\nshow %s\n", e->text, shape);
   CagSession *s = open_session(site, e, out, out);
   if (s && cag_session_run_text(s, NAME, text, strlen(text)) == CAG_STATUS_OK)
     make_picture(site, s, e, shape);

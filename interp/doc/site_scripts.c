@@ -51,7 +51,7 @@ static char *page_name(const CagSite *s, const char *name) {
   page = strdup(stem);
   for (int i = 2; page && is_taken(s, page); i++) {
     free(page);
-    if (asprintf(&page, "%s-%d", stem, i) < 0) abort();
+    page = cag_doc_text("%s-%d", stem, i);
   }
   free(stem);
   return page;

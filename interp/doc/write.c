@@ -1,5 +1,6 @@
 // Documentation as text for a terminal.
 
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -82,20 +83,29 @@ static void write_prose(FILE *out, const char *text, size_t indent) {
   }
 }
 
+char *cag_doc_text(const char *format, ...) {
+  char *text;
+  va_list args;
+  va_start(args, format);
+  const int n = vasprintf(&text, format, args);
+  va_end(args);
+  if (n >= 0) return text;
+  fputs("cag: out of memory\n", stderr);
+  abort();
+}
+
 // --- Built-ins ---
 
 static void write_parameter(FILE *out, const CagDocParameter *p, const char *name,
                             const char *fallback) {
   const int used = fprintf(out, "    %s", name);
-  char *text;
   const char *type = p ? p->type : "any value", *meaning = p ? p->meaning : "";
-  const int n = asprintf(&text, "%s%s%s%s%.*s", type, *meaning ? ": " : "", meaning,
-                         fallback ? "; default " : "",
-                         fallback ? (int)cag_doc_default(fallback) : 0, fallback ? fallback : "");
-  if (n < 0) return;
+  char *text = cag_doc_text(
+      "%s%s%s%s%.*s", type, *meaning ? ": " : "", meaning, fallback ? "; default " : "",
+      fallback ? (int)cag_doc_default(fallback) : 0, fallback ? fallback : "");
   if (used + 2 > NAME_COLUMN) fprintf(out, "\n%*s", NAME_COLUMN, "");
   else fprintf(out, "%*s", NAME_COLUMN - used, "");
-  write_wrapped(out, text, (size_t)n, NAME_COLUMN, NAME_COLUMN);
+  write_wrapped(out, text, strlen(text), NAME_COLUMN, NAME_COLUMN);
   free(text);
 }
 
