@@ -55,9 +55,7 @@ void cag_conic_nurbs(CagConicArc arc, double from, double to, CagConicNurbs *out
 // Ascending, distinct values of a within (lo, hi), to `same`; returns their number.
 size_t cag_surface_tidy_breaks(double *a, size_t n, double lo, double hi);
 
-// The two circles (of a torus that is stretched: ellipses) in which a plane cuts a torus that it
-// touches twice. *is: it is such a plane.
-CagStatus cag_torus_bitangent(const CagSurface *s, const CagPlane *plane, CagCurve *out[2],
-                              bool *is, CagError *err);
+// The radii of a surface of kind "torus"; false: another kind.
+bool cag_surface_torus_view(const CagSurface *s, double *major, double *minor);
 
 #endif

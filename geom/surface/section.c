@@ -268,44 +268,6 @@ static bool is_beside(const CagBounds *b, const CagPlane *plane) {
 
 // --- Tracing ---
 
-static bool is_near(CagVec3 a, CagVec3 b, double same) { return cag_norm(cag_sub(a, b)) <= same; }
-
-// Do both run along the same points, in whatever sense?
-static bool are_one(const CagCurve *a, const CagCurve *b, double same) {
-  enum { LOOKS = 7 };
-  CagVec3 p[2], q[2];
-  if (a->closed != b->closed || !end_points(a, p) || !end_points(b, q)) return false;
-  if (!a->closed && !(is_near(p[0], q[0], same) && is_near(p[1], q[1], same)) &&
-      !(is_near(p[0], q[1], same) && is_near(p[1], q[0], same)))
-    return false;
-  const CagBounds box = a->kind->hull(a, a->start, a->end);
-  for (int i = 0; i < LOOKS; i++) {
-    CagVec3 at, near;
-    double t, distance;
-    CagError ignored;
-    if (cag_curve_point(b, b->start + (b->end - b->start) * i / LOOKS, &at, &ignored)) return false;
-    if (at.x < box.min.x - same || at.y < box.min.y - same || at.z < box.min.z - same ||
-        at.x > box.max.x + same || at.y > box.max.y + same || at.z > box.max.z + same ||
-        cag_curve_closest(a, at, &t, &near, &distance, &ignored) || distance > same)
-      return false;
-  }
-  return true;
-}
-
-// A surface that touches the plane along a line of cells lies to the same side of it in the cells
-// on both sides, and each has a run.
-static void drop_doubled(CagCurveList *list, size_t first, double same) {
-  size_t kept = first;
-  for (size_t i = first; i < list->count; i++) {
-    bool known = false;
-    for (size_t k = first; k < kept && !known; k++)
-      known = are_one(list->items[k], list->items[i], same);
-    if (known) cag_curve_release(list->items[i]);
-    else list->items[kept++] = list->items[i];
-  }
-  list->count = kept;
-}
-
 // Trimmed surfaces are traced whole, and the runs end on their loops.
 static CagStatus trace_all(const CagSurface *s, const CagLevel *level, const CagQuadric *quadric,
                            double tolerance, double size, CagCurveList *out, bool *everywhere,
@@ -332,17 +294,16 @@ static CagStatus section_face(const CagSurface *s, const CagPlane *plane, double
   if (status || is_beside(&box, plane)) return status;
   if (cag_surface_planar_view(s, &region, &frame))
     return section_flat(region, &frame, plane, size, out, err);
-  CagCurve *circles[2];
   bool bitangent;
-  status = cag_torus_bitangent(s, plane, circles, &bitangent, err);
-  for (int k = 0; !status && bitangent && k < 2; k++)
-    status = cag_curve_list_add(out, circles[k], err);
+  status = cag_section_villarceau(s, plane, size, out, &bitangent, err);
   if (status || bitangent) return status;
   CagLevel level = cag_level_plane(plane, size);
   bool quadric = cag_surface_quadric_view(s, &q);
   size_t first = out->count;
   status = trace_all(s, &level, quadric ? &q : NULL, tolerance, size, out, NULL, err);
-  if (!status) drop_doubled(out, first, MEET * size);
+  // A surface that touches the plane along a line of cells lies to the same side of it in the cells
+  // on both sides, and each has a run.
+  if (!status) cag_curve_list_drop_covered(out, first, MEET * size);
   return status;
 }
 

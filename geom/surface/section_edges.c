@@ -99,52 +99,52 @@ static CagStatus add_edge(const Cut *c, const CagCurve *edge) {
 
 // --- Edges ---
 
-static CagStatus add_line(const Cut *c, const CagSurface *s, int direction, double at) {
-  CagCurve *edge = NULL;
-  CagStatus status = cag_surface_isocurve(s, direction, at, &edge, c->err);
-  if (!status) status = add_edge(c, edge);
-  cag_curve_release(edge);
-  return status;
-}
-
-// Edges of the parameter rectangle that are neither poles nor smooth seams, and creases.
-static CagStatus add_lines_of(const Cut *c, const CagSurface *s, int d, const double *ends,
-                              size_t n, bool wraps) {
+// Lines of parameters: the edges that are neither poles nor smooth seams, and the creases.
+static CagStatus add_lines(const CagPatches *patches, int d, CagCurveList *out, CagError *err) {
+  const CagSurface *s = patches->s;
   const bool closed = d ? s->closed_v : s->closed_u;
   const bool pole[2] = {d ? s->pole_v0 : s->pole_u0, d ? s->pole_v1 : s->pole_u1};
+  const size_t n = patches->n[d];
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i <= n; i++) {
-    const bool edge = i == 0 || i == n, seam = closed && (wraps || i == n);
-    if (!edge || !(seam || pole[i > 0])) status = add_line(c, s, d, ends[i]);
+    const bool edge = i == 0 || i == n, seam = closed && (patches->wraps[d] || i == n);
+    if (edge && (seam || pole[i > 0])) continue;
+    CagCurve *line = NULL;
+    status = cag_surface_isocurve(s, d, patches->ends[d][i], &line, err);
+    if (!status) status = cag_curve_list_add(out, line, err);
   }
   return status;
 }
 
-static CagStatus add_lines(const Cut *c, const CagSurface *s) {
-  CagPatches patches;
-  CagStatus status = cag_patches_open(s, &patches, c->err);
-  if (status) return status;
-  for (int d = 0; !status && d < 2; d++)
-    status = add_lines_of(c, s, d, patches.ends[d], patches.n[d], patches.wraps[d]);
-  cag_patches_free(&patches);
+CagStatus cag_surface_lines(const CagSurface *s, CagCurveList *out, CagError *err) {
+  const CagRegion *region;
+  CagTransform frame;
+  CagStatus status = CAG_OK;
+  const bool planar = cag_surface_planar_view(s, &region, &frame);
+  if (!planar && !cag_surface_trimmed_view(s, NULL, &region)) {
+    CagPatches patches;
+    status = cag_patches_open(s, &patches, err);
+    if (status) return status;
+    for (int d = 0; !status && d < 2; d++) status = add_lines(&patches, d, out, err);
+    cag_patches_free(&patches);
+    return status;
+  }
+  for (size_t i = 0; !status && i < region->count; i++) {
+    CagCurve *loop = NULL;
+    status = planar ? cag_curve_transform(region->loops[i], &frame, &loop, err)
+                    : cag_trimmed_loop(s, i, &loop, err);
+    if (!status) status = cag_curve_list_add(out, loop, err);
+  }
   return status;
 }
 
 CagStatus cag_section_edges(const CagSurface *s, const CagPlane *plane, double size,
                             CagCurveList *out, CagError *err) {
   const Cut c = {plane, size, out, err};
-  const CagRegion *region;
-  CagTransform frame;
-  const bool planar = cag_surface_planar_view(s, &region, &frame);
-  if (!planar && !cag_surface_trimmed_view(s, NULL, &region)) return add_lines(&c, s);
-  CagStatus status = CAG_OK;
-  for (size_t i = 0; !status && i < region->count; i++) {
-    CagCurve *loop = NULL;
-    status = planar ? cag_curve_transform(region->loops[i], &frame, &loop, err)
-                    : cag_trimmed_loop(s, i, &loop, err);
-    if (!status) status = add_edge(&c, loop);
-    cag_curve_release(loop);
-  }
+  CagCurveList lines = {0};
+  CagStatus status = cag_surface_lines(s, &lines, err);
+  for (size_t i = 0; !status && i < lines.count; i++) status = add_edge(&c, lines.items[i]);
+  cag_curve_list_free(&lines);
   return status;
 }
 

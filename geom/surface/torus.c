@@ -121,42 +121,9 @@ CagStatus cag_surface_torus(double major, double minor, CagSurface **out, CagErr
   return CAG_OK;
 }
 
-// The two circles of Villarceau (1848): a plane through the center that is inclined by asin(r / R)
-// touches a ring twice and cuts it in circles of radius R, whose centers lie r beside its own on
-// the plane's level line.
-CagStatus cag_torus_bitangent(const CagSurface *s, const CagPlane *plane, CagCurve *out[2],
-                              bool *is, CagError *err) {
-  const double rounding = 1e-12, full_turn = 6.283185307179586;
-  const CagSurface *inner = s;
-  CagTransform map = cag_transform_identity();
-  *is = false;
-  map.planar = false;
-  cag_surface_placed_view(s, &inner, &map);
-  if (inner->kind != &torus_kind) return CAG_OK;
-  const Torus *t = (const Torus *)inner;
-  const CagVec3 n = plane->normal, o = cag_vec3(map.m[0][3], map.m[1][3], map.m[2][3]);
-  CagVec3 back; // the plane's normal in the coordinates of the torus
-  back.x = n.x * map.m[0][0] + n.y * map.m[1][0] + n.z * map.m[2][0];
-  back.y = n.x * map.m[0][1] + n.y * map.m[1][1] + n.z * map.m[2][1];
-  back.z = n.x * map.m[0][2] + n.y * map.m[1][2] + n.z * map.m[2][2];
-  const double stretch = cag_norm(back), off = cag_dot(n, cag_sub(o, plane->point)),
-               slope = hypot(back.x, back.y) / stretch;
-  if (!(t->minor < t->major) || fabs(off) > rounding * stretch * t->major ||
-      fabs(slope - t->minor / t->major) > rounding)
-    return CAG_OK;
-  const CagVec3 z = cag_unit(back), x = cag_unit(cag_cross(cag_vec3(0, 0, 1), z)),
-                y = cag_cross(z, x);
-  CagStatus status = CAG_OK;
-  for (int k = 0; !status && k < 2; k++) {
-    const CagVec3 c = cag_scaled(x, k ? -t->minor : t->minor);
-    const CagTransform frame = {
-        {{x.x, y.x, z.x, c.x}, {x.y, y.y, z.y, c.y}, {x.z, y.z, z.z, c.z}, {0, 0, 0, 1}}, false};
-    CagCurve *circle = NULL;
-    status = cag_curve_arc(t->major, t->major, 0, full_turn, &frame, &circle, err);
-    if (status) break;
-    status = cag_curve_transform(circle, &map, &out[k], err);
-    cag_curve_release(circle);
-  }
-  *is = !status;
-  return status;
+bool cag_surface_torus_view(const CagSurface *s, double *major, double *minor) {
+  if (s->kind != &torus_kind) return false;
+  *major = ((const Torus *)s)->major;
+  *minor = ((const Torus *)s)->minor;
+  return true;
 }

@@ -457,8 +457,8 @@ const CagBuiltin cag_builtins_sections[] = {
      "The curves in which a plane cuts surfaces, solids, meshes and regions. Lines and conics are "
      "exact, closed ones whole; other curves are cubics within the tolerance (none: a millionth of "
      "the size), of meshes polylines. Curves that meet end to end are joined, so that a solid "
-     "gives "
-     "closed curves. What only touches the plane need not show.",
+     "gives closed curves. Sections of surfaces include the curves along which the plane touches "
+     "them, and edges and creases that lie in it.",
      "c = section(sphere(5), plane([0, 0, 3], Z))\n"
      "print len(c), near(length(c[0]), 8 * pi) // expect: 1 true",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), SECTIONS},
