@@ -1,13 +1,16 @@
 // Curves as tubes.
 //
-// The curve becomes points; the points are cut into runs at sharp corners and, where it is dashed,
-// at the ends of dashes. Each run is a tube of its own: rings of SIDES vertices in
-// rotation-minimizing frames (double reflection, Wang et al. 2008), with flat caps. A ball stands
-// at each sharp corner. A closed smooth curve is one run whose last ring is its first.
+// The curve becomes points, with a ring of SIDES vertices around each, in rotation-minimizing
+// frames (double reflection, Wang et al. 2008). Open ends have flat caps. A closed smooth curve is
+// a loop of rings whose last is its first.
 //
-// Runs and balls are closed each by itself and overlap. No two of them share an edge: their
-// vertices would weld, and an edge of four triangles is not the edge of a solid. So at a corner the
-// ends of the runs stop short of it by different lengths, and the ball's rings lie askew.
+// At a sharp corner the tubes on both sides meet in the plane that bisects them on the inside, and
+// a wedge of a ball joins them on the outside, so that the whole path is one shell that does not
+// overlap itself there (add_joint). Where a segment is too short for that, or the curve goes back
+// along itself, the path is cut: its parts are closed each by itself and overlap with a ball at the
+// corner. Parts and balls share no edge: their vertices would weld, and an edge of four triangles
+// is not the edge of a solid. So the parts stop short of such a corner by different lengths, and
+// the ball's rings lie askew.
 
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +25,13 @@
 // ball, and different, so that a run back along the same line has no ring in common.
 #define SHORT_AT_END 0.03
 #define SHORT_AT_START 0.05
-// Cosine of the turn from which a corner gets a ball: 25 degrees.
+// A joint takes at most this part of the segments that it joins on the inside.
+#define JOINT_PART 0.49
+// Where a path comes back to its open end the ring there is turned by one of these angles, so that
+// it shares no vertices with the other rings at that point: they would weld.
+#define TURN_AT_START 0.1
+#define TURN_AT_END (-0.17)
+// Cosine of the turn from which a corner is sharp: 25 degrees.
 static const double SHARP_COSINE = 0.9063;
 static const double PI = 3.14159265358979323846;
 
@@ -118,47 +127,171 @@ static void add_cap(Buffer *b, size_t ring, CagVec3 p, CagVec3 outward, bool at_
   }
 }
 
-static void add_side(Buffer *b, size_t ring, size_t next) {
+// Vertex k of a ring belongs to vertex k + shift of the next.
+static void add_side(Buffer *b, size_t ring, size_t next, size_t shift) {
   for (size_t k = 0; k < SIDES; k++) {
-    size_t l = (k + 1) % SIDES;
-    add_triangle(b, ring + k, ring + l, next + l);
-    add_triangle(b, ring + k, next + l, next + k);
+    size_t l = (k + 1) % SIDES, m = next + (k + shift) % SIDES, n = next + (l + shift) % SIDES;
+    add_triangle(b, ring + k, ring + l, n);
+    add_triangle(b, ring + k, n, m);
   }
 }
 
-// A tube through n points. Of a closed one the last point is the first.
-static CagStatus add_run(Buffer *b, const CagVec3 *p, size_t n, bool closed, double radius,
-                         CagError *err) {
-  if (n < 2) return CAG_OK;
-  CagStatus status = reserve(b, (n + 2) * SIDES + 2, 2 * SIDES * (n + 1), err);
+// --- Joints ---
+
+// A corner where two tubes meet. Vertex k of both rings is at the angle 2 PI k / SIDES, counted
+// from `outward` (of the tube that ends: outward[0]; of the one that begins: outward[1]) towards
+// `axis`.
+typedef struct Joint {
+  size_t ends, begins; // first vertices of the rings
+  CagVec3 outward[2], axis;
+} Joint;
+
+// How far the tubes are cut back on the inside of a corner, in radii: the tangent of half its turn.
+static double joint_depth(CagVec3 t, CagVec3 u) {
+  return cag_norm(cag_cross(t, u)) / (1 + cag_dot(t, u));
+}
+
+// The vertices of the ball's wedge: `step` counts from the ring that ends to the one that begins,
+// `k` from -SIDES/4 to SIDES/4, where the wedge runs out in a point.
+typedef struct Wedge {
+  const Joint *joint;
+  size_t steps, inner; // first vertex between the rings
+} Wedge;
+
+static size_t wedge_vertex(const Wedge *w, size_t step, int k) {
+  const int quarter = SIDES / 4;
+  const size_t around = (size_t)((k + SIDES) % SIDES);
+  if (step == 0 || k == -quarter || k == quarter) return w->joint->ends + around;
+  if (step == w->steps) return w->joint->begins + around;
+  return w->inner + (step - 1) * (size_t)(2 * quarter - 1) + (size_t)(k + quarter - 1);
+}
+
+static void add_wedge(Buffer *b, const Wedge *w) {
+  const int quarter = SIDES / 4;
+  for (size_t i = 0; i < w->steps; i++)
+    for (int k = -quarter; k < quarter; k++) {
+      size_t near = wedge_vertex(w, i, k), far = wedge_vertex(w, i, k + 1);
+      size_t next_near = wedge_vertex(w, i + 1, k), next_far = wedge_vertex(w, i + 1, k + 1);
+      if (far != next_far) add_triangle(b, near, far, next_far);
+      if (near != next_near) add_triangle(b, near, next_far, next_near);
+    }
+}
+
+// The joint at p of a tube along t that goes on along u: its two rings, and the wedge between.
+static CagStatus add_joint(Buffer *b, CagVec3 p, CagVec3 t, CagVec3 u, double radius, Joint *out,
+                           CagError *err) {
+  const int quarter = SIDES / 4;
+  const double turn = atan2(cag_norm(cag_cross(t, u)), cag_dot(t, u)), depth = joint_depth(t, u);
+  const double rounding = 1e-9; // a quarter of a turn has SIDES / 4 steps
+  const size_t steps = (size_t)ceil(turn * SIDES / (2 * PI) - rounding);
+  CagStatus status = reserve(b, (steps + 2) * SIDES, steps * SIDES, err);
   if (status != CAG_OK) return status;
-  CagVec3 t = tangent_at(p, n, closed, 0), first = perpendicular(t), r = first;
-  // The frame comes back turned: each ring takes its share of the difference.
-  double twist = 0;
-  for (size_t i = 1; closed && i < n; i++) {
-    CagVec3 u = tangent_at(p, n, closed, i);
+  CagVec3 o = cag_unit(cag_madd(cag_scaled(u, -1), cag_dot(t, u), t)), a = cag_cross(t, o);
+  *out = (Joint){.outward = {o, cag_madd(cag_scaled(o, cos(turn)), sin(turn), t)}, .axis = a};
+  size_t *const firsts[] = {&out->ends, &out->begins};
+  for (int side = 0; side < 2; side++) {
+    *firsts[side] = b->vertices;
+    for (int k = 0; k < SIDES; k++) {
+      // Both rings have the ends of the axis, which are not to differ by rounding.
+      const double c = k % (SIDES / 2) == quarter ? 0 : cos(2 * PI * k / SIDES);
+      const double s = sin(2 * PI * k / SIDES);
+      CagVec3 n = cag_madd(cag_scaled(out->outward[side], c), s, a);
+      CagVec3 cut = cag_madd(cag_scaled(a, s), c, cag_madd(o, depth, t)); // in the bisecting plane
+      const bool inside = k > quarter && k < SIDES - quarter;
+      add_vertex(b, cag_madd(p, radius, inside ? cut : n), n);
+    }
+  }
+  const Wedge wedge = {out, steps, b->vertices};
+  for (size_t i = 1; i < steps; i++)
+    for (int k = 1 - quarter; k < quarter; k++) {
+      const double at = turn * (double)i / (double)steps, angle = 2 * PI * k / SIDES;
+      CagVec3 level = cag_madd(cag_scaled(o, cos(at)), sin(at), t);
+      CagVec3 n = cag_madd(cag_scaled(level, cos(angle)), sin(angle), a);
+      add_vertex(b, cag_madd(p, radius, n), n);
+    }
+  add_wedge(b, &wedge);
+  return CAG_OK;
+}
+
+// --- Runs ---
+
+// An end of a run: a joint or, where that is NULL, a cap, whose ring may be turned.
+typedef struct RunEnd {
+  const Joint *joint;
+  double turn;
+} RunEnd;
+
+// By what angle the frame that starts as `first` must be turned to arrive at a joint with a vertex
+// on one of its vertices, and how many vertices of the joint are passed over.
+static double turn_to_joint(const CagVec3 *p, size_t n, CagVec3 first, const Joint *to,
+                            size_t *shift) {
+  CagVec3 t = tangent_at(p, n, false, 0), r = first;
+  for (size_t i = 1; i < n; i++) {
+    CagVec3 u = tangent_at(p, n, false, i);
     r = carry(p[i - 1], t, r, p[i], u);
     t = u;
   }
-  if (closed) {
-    twist = atan2(cag_dot(cag_cross(r, first), t), cag_dot(r, first));
-    r = first;
-    t = tangent_at(p, n, closed, 0);
+  const double angle = atan2(cag_dot(r, to->axis), cag_dot(r, to->outward[0]));
+  const long steps = lround(angle * SIDES / (2 * PI));
+  *shift = (size_t)((steps + SIDES) % SIDES);
+  return 2 * PI * (double)steps / SIDES - angle;
+}
+
+// An open tube through n points. Between two joints each ring takes its share of the turn.
+static CagStatus add_run(Buffer *b, const CagVec3 *p, size_t n, RunEnd from, RunEnd to,
+                         double radius, CagError *err) {
+  if (n < 2) return CAG_OK;
+  CagStatus status = reserve(b, (n + 2) * SIDES + 2, 2 * SIDES * (n + 1), err);
+  if (status != CAG_OK) return status;
+  CagVec3 t = tangent_at(p, n, false, 0);
+  CagVec3 r = from.joint ? from.joint->outward[1] : perpendicular(t);
+  size_t shift = 0, ring = from.joint ? from.joint->begins : b->vertices;
+  const double arrive = to.joint ? turn_to_joint(p, n, r, to.joint, &shift) : 0;
+  const double begin = from.joint ? 0 : arrive + from.turn, end = arrive + to.turn;
+  if (!from.joint) {
+    add_ring(b, p[0], t, r, begin, radius);
+    add_cap(b, ring, p[0], cag_scaled(t, -1), false);
   }
-  size_t rings = closed ? n - 1 : n, start = b->vertices;
-  CagVec3 begin = t;
+  for (size_t i = 1; i < n; i++) {
+    CagVec3 u = tangent_at(p, n, false, i);
+    r = carry(p[i - 1], t, r, p[i], u);
+    t = u;
+    const bool joins = to.joint && i + 1 == n;
+    const size_t next = joins ? to.joint->ends : b->vertices;
+    const double turn = begin + (end - begin) * (double)i / (double)(n - 1);
+    if (!joins) add_ring(b, p[i], t, r, turn, radius);
+    add_side(b, ring, next, joins ? shift : 0);
+    ring = next;
+  }
+  if (!to.joint) add_cap(b, ring, p[n - 1], t, true);
+  return CAG_OK;
+}
+
+// A closed smooth tube through n points, the last of which is the first.
+static CagStatus add_loop(Buffer *b, const CagVec3 *p, size_t n, double radius, CagError *err) {
+  if (n < 2) return CAG_OK;
+  CagStatus status = reserve(b, n * SIDES, 2 * SIDES * n, err);
+  if (status != CAG_OK) return status;
+  const CagVec3 begin = tangent_at(p, n, true, 0), first = perpendicular(begin);
+  CagVec3 t = begin, r = first;
+  // The frame comes back turned: each ring takes its share of the difference.
+  for (size_t i = 1; i < n; i++) {
+    CagVec3 u = tangent_at(p, n, true, i);
+    r = carry(p[i - 1], t, r, p[i], u);
+    t = u;
+  }
+  const double twist = atan2(cag_dot(cag_cross(r, first), t), cag_dot(r, first));
+  const size_t rings = n - 1, start = b->vertices;
+  t = begin;
+  r = first;
   for (size_t i = 0; i < rings; i++) {
-    CagVec3 u = tangent_at(p, n, closed, i);
+    CagVec3 u = tangent_at(p, n, true, i);
     if (i > 0) r = carry(p[i - 1], t, r, p[i], u);
     t = u;
     add_ring(b, p[i], t, r, twist * (double)i / (double)rings, radius);
   }
-  for (size_t i = 0; i + 1 < rings; i++) add_side(b, start + i * SIDES, start + (i + 1) * SIDES);
-  if (closed) add_side(b, start + (rings - 1) * SIDES, start);
-  else {
-    add_cap(b, start, p[0], cag_scaled(begin, -1), false);
-    add_cap(b, start + (rings - 1) * SIDES, p[n - 1], t, true);
-  }
+  for (size_t i = 0; i < rings; i++)
+    add_side(b, start + i * SIDES, start + (i + 1) % rings * SIDES, 0);
   return CAG_OK;
 }
 
@@ -182,7 +315,7 @@ static CagStatus add_ball(Buffer *b, CagVec3 p, double radius, CagError *err) {
     }
   }
   for (int i = 0; i + 1 < BALL_RINGS; i++)
-    add_side(b, start + (size_t)i * SIDES, start + (size_t)(i + 1) * SIDES);
+    add_side(b, start + (size_t)i * SIDES, start + (size_t)(i + 1) * SIDES, 0);
   const CagVec3 up = askew(cag_vec3(0, 0, 1));
   size_t low = add_vertex(b, cag_madd(p, -radius, up), cag_scaled(up, -1));
   size_t high = add_vertex(b, cag_madd(p, radius, up), up);
@@ -207,36 +340,111 @@ static CagVec3 short_of(CagVec3 corner, CagVec3 next, double length) {
   return cag_lerp(corner, next, fmin(length / whole, 0.5));
 }
 
-// An open run through p[0 .. n) whose ends at sharp corners stop short of them.
-static CagStatus add_part(Buffer *b, const CagVec3 *p, size_t n, bool sharp_start, bool sharp_end,
-                          double radius, CagError *err) {
-  CagVec3 *q = malloc((n + 1) * sizeof *q);
+// The points of a path, and what is at one of its corners. Of a closed path the last point is the
+// first, and the path begins at a sharp corner.
+typedef struct Path {
+  const CagVec3 *points;
+  size_t count;
+  bool closed;
+  double radius;
+} Path;
+
+// The directions in which a path comes to point i and leaves it; false at an open end.
+static bool directions_at(const Path *h, size_t i, CagVec3 *t, CagVec3 *u, double *shortest) {
+  const CagVec3 *p = h->points;
+  const size_t n = h->count;
+  if (!h->closed && (i == 0 || i + 1 == n)) return false;
+  CagVec3 before = cag_sub(p[i], i > 0 ? p[i - 1] : p[n - 2]);
+  CagVec3 after = cag_sub(i + 1 < n ? p[i + 1] : p[1], p[i]);
+  *t = cag_unit(before);
+  *u = cag_unit(after);
+  *shortest = fmin(cag_norm(before), cag_norm(after));
+  return true;
+}
+
+// Adds the joint at point i if there is room for one.
+static CagStatus try_joint(Buffer *b, const Path *h, size_t i, Joint *joint, bool *joined,
+                           CagError *err) {
+  CagVec3 t, u;
+  double shortest;
+  *joined = directions_at(h, i, &t, &u, &shortest) &&
+            h->radius * joint_depth(t, u) <= JOINT_PART * shortest;
+  return *joined ? add_joint(b, h->points[i], t, u, h->radius, joint, err) : CAG_OK;
+}
+
+// Whether an open path comes back to its end, point i.
+static bool comes_back(const Path *h, size_t i) {
+  const double near = 1e-6 * h->radius; // vertices this close may weld
+  for (size_t j = 0; j < h->count; j++)
+    if (j != i && cag_norm(cag_sub(h->points[j], h->points[i])) <= near) return true;
+  return false;
+}
+
+// The run from point i to point k, which stops short of sharp corners that have no joint.
+static CagStatus add_part(Buffer *b, const Path *h, size_t i, size_t k, const Joint *from,
+                          const Joint *to, CagError *err) {
+  const size_t n = k - i + 1;
+  const CagVec3 *p = h->points + i;
+  CagVec3 *q = malloc(n * sizeof *q);
   if (!q) return cag_fail_memory(err);
   memcpy(q, p, n * sizeof *q);
-  if (sharp_start) q[0] = short_of(p[0], p[1], SHORT_AT_START * radius);
-  if (sharp_end) q[n - 1] = short_of(p[n - 1], p[n - 2], SHORT_AT_END * radius);
-  CagStatus status = add_run(b, q, n, false, radius, err);
+  RunEnd begin = {from, 0}, end = {to, 0};
+  if (!from && (i > 0 || h->closed)) q[0] = short_of(p[0], p[1], SHORT_AT_START * h->radius);
+  else if (!from && comes_back(h, i)) begin.turn = TURN_AT_START;
+  if (!to && (k + 1 < h->count || h->closed))
+    q[n - 1] = short_of(p[n - 1], p[n - 2], SHORT_AT_END * h->radius);
+  else if (!to && comes_back(h, k)) end.turn = TURN_AT_END;
+  CagStatus status = add_run(b, q, n, begin, end, h->radius, err);
   free(q);
   return status;
 }
 
-// Runs between the sharp corners, and a ball at each.
-static CagStatus add_path(Buffer *b, const CagVec3 *p, size_t n, bool closed, double radius,
-                          CagError *err) {
-  bool sharp_seam = closed && n > 2 && is_sharp(p[n - 2], p[0], p[1]);
-  bool any = sharp_seam;
-  for (size_t i = 1; i + 1 < n; i++) any = any || is_sharp(p[i - 1], p[i], p[i + 1]);
-  if (closed && !any) return add_run(b, p, n, true, radius, err);
-  CagStatus status = CAG_OK;
-  size_t from = 0;
+// Runs between the sharp corners, and a joint or a ball at each.
+static CagStatus add_corners(Buffer *b, const Path *h, CagError *err) {
+  const CagVec3 *p = h->points;
+  const size_t n = h->count;
+  Joint start = {0}, from, to;
+  bool starts, joined;
+  CagStatus status = try_joint(b, h, 0, &start, &starts, err);
+  if (status == CAG_OK && h->closed && !starts) status = add_ball(b, p[0], h->radius, err);
+  bool begins = starts;
+  from = start;
+  size_t at = 0;
   for (size_t i = 1; status == CAG_OK && i < n; i++) {
-    bool last = i + 1 == n;
+    const bool last = i + 1 == n;
     if (!last && !is_sharp(p[i - 1], p[i], p[i + 1])) continue;
-    status = add_part(b, p + from, i - from + 1, from > 0 || closed, !last || closed, radius, err);
-    if (status == CAG_OK && (!last || closed)) status = add_ball(b, p[i], radius, err);
-    from = i;
+    to = start;
+    joined = starts;
+    if (!last) status = try_joint(b, h, i, &to, &joined, err);
+    if (status == CAG_OK && !last && !joined) status = add_ball(b, p[i], h->radius, err);
+    if (status == CAG_OK)
+      status = add_part(b, h, at, i, begins ? &from : NULL, joined ? &to : NULL, err);
+    from = to;
+    begins = joined;
+    at = i;
   }
   return status;
+}
+
+// The closed path p from its point `start` on.
+static CagStatus add_closed_corners(Buffer *b, const CagVec3 *p, size_t n, size_t start,
+                                    double radius, CagError *err) {
+  CagVec3 *q = malloc(n * sizeof *q);
+  if (!q) return cag_fail_memory(err);
+  for (size_t i = 0; i < n; i++) q[i] = p[(start + i) % (n - 1)];
+  CagStatus status = add_corners(b, &(Path){q, n, true, radius}, err);
+  free(q);
+  return status;
+}
+
+static CagStatus add_path(Buffer *b, const CagVec3 *p, size_t n, bool closed, double radius,
+                          CagError *err) {
+  if (n < 2) return CAG_OK;
+  if (!closed) return add_corners(b, &(Path){p, n, false, radius}, err);
+  for (size_t i = 0; n > 2 && i + 1 < n; i++)
+    if (is_sharp(p[i > 0 ? i - 1 : n - 2], p[i], p[i + 1]))
+      return add_closed_corners(b, p, n, i, radius, err);
+  return add_loop(b, p, n, radius, err);
 }
 
 // Whole dashes, as many as fit with gaps as long between them; both ends of an open curve are

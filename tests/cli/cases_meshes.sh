@@ -209,6 +209,23 @@ for which in 0 1 2 3 4 5; do
   prints_exactly true
 done
 
+# Points, radius, and what stl_tube.py needs to know: the length and the turns.
+it 'the tube of a path with corners is one closed shell, without overlaps'
+while IFS='|' read -r curve radius expected; do
+  script path.cag "show $curve |> line_style(radius: $radius)"
+  try export path.cag -o path.stl
+  status 0
+  says_nothing
+  python3 "$here/stl_tube.py" path.stl $radius $expected > shells || wrong "$curve: $(cat shells)"
+done <<'PATHS'
+polyline([[0, 0], [10, 0], [10, 10], [0, 10]], closed: true)|0.5|40 90 90 90 90
+polyline([[0, 0], [10, 0], [10, 7]])|1.5|17 90
+polyline([[3, 0, 0], [3, 10, 0], [3, 10, 7], [3, -10, 7]])|0.25|37 90 90
+polyline([[0, 0], [10, 0], [5, 5*sqrt(3)], [20, 5*sqrt(3)]])|0.5|35 120 120
+polyline([[-3, 0], [0, 4], [3, 0]], closed: true)|0.1|16 126.86989764584402 126.86989764584402 106.26020470831196
+polyline([[0, 0, 1], [6, 0, 1], [6 + 3*sqrt(3), 3, 1], [6 + 3*sqrt(3), 9, 1]])|0.3|18 30 60
+PATHS
+
 # Its corner of three equal control points has no partials to cross; the plane has the normal [-1, -2, 2] / 3 there as elsewhere.
 it 'normals in a .ply are those of the surface, also where control points coincide'
 script corner.cag 'f(x, y) = [x, y, (x + 2*y) / 2]
