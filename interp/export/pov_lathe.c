@@ -207,19 +207,23 @@ static bool find_along(const CagSolid *s, const CagTransform *low, const CagTran
 }
 
 // A side of a straight extrusion is ruled along one vector; a twisted one is not, whatever its ends
-// are.
+// are, and where its middle is, too: after whole turns all is as it was. Its tangents tell.
 static bool side_is_straight(const CagSurface *s, CagVec3 along, double size) {
   CagError err;
   const int samples = 8;
   for (int i = 0; i <= samples; i++) {
     double u = s->u0 + (s->u1 - s->u0) * i / samples;
-    CagVec3 a, m, b;
-    if (cag_surface_point(s, u, s->v0, &a, &err) || cag_surface_point(s, u, s->v1, &b, &err) ||
+    CagVec3 a[4], m, b;
+    if (cag_surface_eval(s, u, s->v0, 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, a, &err) ||
+        cag_surface_point(s, u, s->v1, &b, &err) ||
         cag_surface_point(s, u, (s->v0 + s->v1) / 2, &m, &err))
       return false;
-    CagVec3 d = cag_sub(b, a);
-    if (cag_dot(d, along) < 0) d = cag_scaled(d, -1);
-    if (!nearly(d, along, size) || !nearly(m, cag_lerp(a, b, 0.5), size)) return false;
+    const CagVec3 way = cag_sub(b, a[0]);
+    const CagVec3 tangent = cag_scaled(a[cag_partial(1, 0, 1)], s->v1 - s->v0);
+    const CagVec3 d = cag_dot(way, along) < 0 ? cag_scaled(way, -1) : way;
+    if (!nearly(d, along, size) || !nearly(m, cag_lerp(a[0], b, 0.5), size) ||
+        !nearly(tangent, way, size))
+      return false;
   }
   return true;
 }

@@ -90,6 +90,14 @@ try export knot.cag -o knot.pov
 status 0
 grep -q 'normal_vectors' knot.pov || wrong 'there are no normals'
 
+# After whole turns its ends, and with an even number of them its middle too, are where those of a prism are.
+it 'what turns by whole turns is no prism'
+script screws.cag 'for_turns(n) = extrude(polygon([[0, 0], [9, 0], [0, 4]]), 20, twist: n * 360deg) |> translate([30 * n, 0, 0])
+show [for n in 1..4: for_turns(n)]'
+try export screws.cag -o screws.pov
+status 0
+[ "$(grep -c 'mesh2 {' screws.pov)" -eq 4 ] || wrong 'they are not all meshes'
+
 it 'a mesh of several colors has a part of each, and says what it is'
 script lump.cag 'lump = tessellate(color(box(4), "red") - color(translate(cylinder(9, 1), [2, 2, -1]), "blue")) |> named("lump")
 show lump
