@@ -30,12 +30,15 @@ static double finest_steps(const Tessellator *t, const Leaf *leaf, int side) {
   double most = leaf->n[along];
   if (line->pole) return most;
   const size_t end = line->atom + line->atom_count;
-  for (size_t a = first_atom(t, line, leaf->from[along]); a < end; a++) {
-    const Atom *atom = &t->atoms[a];
-    if (!(atom->from < leaf->to[along])) break;
+  for (size_t a = first_atom(t, line, leaf->from[along]), next; a < end; a = next) {
+    double steps = t->atoms[a].n;
+    if (!(t->atoms[a].from < leaf->to[along])) break;
+    // Slants of a strip beside it cut a line between the corners of leaves.
+    for (next = a + 1; next < end && !t->atoms[next].corner; next++) steps += t->atoms[next].n;
     const double rounding = 1e-9;
-    const double part = (atom->to - atom->from) / (leaf->to[along] - leaf->from[along]);
-    most = fmax(most, ceil(atom->n / part * (1 - rounding)));
+    const double part =
+        (t->atoms[next - 1].to - t->atoms[a].from) / (leaf->to[along] - leaf->from[along]);
+    most = fmax(most, ceil(steps / part * (1 - rounding)));
   }
   return most;
 }
@@ -77,6 +80,7 @@ static CagStatus is_thin(const Tessellator *t, const Leaf *leaf, int side, bool 
 }
 
 static CagStatus even_leaf(const Tessellator *t, Leaf *leaf, bool *raised, CagError *err) {
+  if (tess_is_strip(leaf)) return CAG_OK;
   for (int side = 0; side < 4; side++) {
     const int along = 1 - side / 2;
     const double n = finest_steps(t, leaf, side);

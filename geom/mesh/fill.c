@@ -266,7 +266,100 @@ static void fill_stitched(Fill *f, const Leaf *leaf, uint32_t first) {
   if (corners) add_corners(f, leaf, first);
 }
 
+// --- Strips ---
+
+// Vertices on two sides of a strip, one after the other, each with the slant on which it lies. Both
+// rails of a strip begin at its corner with the least slant and end at the one with the largest.
+typedef struct Rail {
+  uint32_t *vertices;
+  double *slants;
+  size_t segments;
+} Rail;
+
+static double slant_of(const Leaf *leaf, double u, double v) {
+  const Slants *s = &leaf->slants;
+  const double across = s->along == 1 ? u - leaf->from[0] : v - leaf->from[1];
+  return (s->along == 1 ? v : u) - s->slope * across;
+}
+
+static void add_to_rail(const Tessellator *t, const Leaf *leaf, int side, bool backwards, Rail *r) {
+  const Chain chain = side_chain(t, leaf, side);
+  const double at = side % 2 == 0 ? leaf->from[side / 2] : leaf->to[side / 2];
+  const size_t first = r->segments;
+  for (size_t k = 0; k <= chain.segments; k++) {
+    const size_t node = backwards ? chain.segments - k : k;
+    const double x = chain_parameter(&chain, node);
+    r->vertices[first + k] = chain_vertex(t, &chain, node);
+    r->slants[first + k] = side < 2 ? slant_of(leaf, at, x) : slant_of(leaf, x, at);
+  }
+  r->segments += chain.segments;
+}
+
+// Is the edge from the next vertex of the low rail (b) to d better than that from a to the next
+// vertex of the high rail (c)? The one along a slant is.
+static bool is_low_along(const Fill *f, const Leaf *leaf, const Rail *low, size_t i,
+                         const Rail *high, size_t j) {
+  const double alike = 1e-6; // of a step
+  const double to_low = fabs(low->slants[i + 1] - high->slants[j]),
+               to_high = fabs(high->slants[j + 1] - low->slants[i]);
+  if (fabs(to_low - to_high) > alike * leaf->slants.step) return to_low < to_high;
+  const CagVec3 *p = f->mesh->positions;
+  return !tess_cut_ac(p[low->vertices[i]], p[low->vertices[i + 1]], p[high->vertices[j + 1]],
+                      p[high->vertices[j]]);
+}
+
+// Sews the rails, `low` on the right hand. They have both ends in common: so both move on at once
+// there, as a triangle with all corners on one side is none.
+static void sew_rails(Fill *f, const Leaf *leaf, const Rail *low, const Rail *high) {
+  const size_t last_low = low->segments - 1, last_high = high->segments - 1;
+  const uint32_t *a = low->vertices, *b = high->vertices;
+  size_t i = 1, j = 1;
+  add_triangle(f, a[0], a[1], b[1]);
+  while (i < last_low || j < last_high) {
+    const bool take_low =
+        j == last_high || (i < last_low && is_low_along(f, leaf, low, i, high, j));
+    if (take_low) {
+      add_triangle(f, a[i], a[i + 1], b[j]);
+      i++;
+    } else {
+      add_triangle(f, a[i], b[j + 1], b[j]);
+      j++;
+    }
+  }
+  add_triangle(f, a[i], a[i + 1], b[j]);
+}
+
+static CagStatus fill_strip(Fill *f, const Leaf *leaf, CagError *err) {
+  const Tessellator *t = f->t;
+  size_t room = 4;
+  for (int side = 0; side < 4; side++) room += leaf->segments[side];
+  uint32_t *vertices = malloc(2 * room * sizeof *vertices);
+  double *slants = malloc(2 * room * sizeof *slants);
+  const CagStatus status = vertices && slants ? CAG_OK : cag_fail_memory(err);
+  if (status == CAG_OK) {
+    Rail low = {vertices, slants, 0}, high = {vertices + room, slants + room, 0};
+    const bool rising = leaf->slants.slope > 0;
+    // The corner with the least slant: at the start of both sides, or at the end of one.
+    if (!rising || leaf->slants.along == 1) {
+      add_to_rail(t, leaf, rising ? SIDE_U1 : SIDE_V0, false, &low);
+      add_to_rail(t, leaf, rising ? SIDE_V1 : SIDE_U1, rising, &low);
+      add_to_rail(t, leaf, rising ? SIDE_V0 : SIDE_U0, rising, &high);
+      add_to_rail(t, leaf, rising ? SIDE_U0 : SIDE_V1, false, &high);
+    } else {
+      add_to_rail(t, leaf, SIDE_U0, true, &low);
+      add_to_rail(t, leaf, SIDE_V0, false, &low);
+      add_to_rail(t, leaf, SIDE_V1, false, &high);
+      add_to_rail(t, leaf, SIDE_U1, true, &high);
+    }
+    sew_rails(f, leaf, &low, &high);
+  }
+  free(vertices);
+  free(slants);
+  return status;
+}
+
 static CagStatus fill_leaf(Fill *f, const Leaf *leaf, CagError *err) {
+  if (tess_is_strip(leaf)) return fill_strip(f, leaf, err);
   if (!leaf->regular && (leaf->n[0] == 1 || leaf->n[1] == 1)) {
     // A strip: the sides across it are single segments.
     bool along_u = leaf->segments[SIDE_U0] == 1 && leaf->segments[SIDE_U1] == 1;
@@ -307,7 +400,7 @@ static void look_at_sides(Tessellator *t, Leaf *leaf) {
       leaf->regular = fabs(x - (double)(k - low)) <= even;
     }
   }
-  if (leaf->regular) return;
+  if (leaf->regular || tess_is_strip(leaf)) return;
   const uint32_t *s = leaf->segments;
   bool strip_u = leaf->n[1] == 1 && s[SIDE_U0] == 1 && s[SIDE_U1] == 1,
        strip_v = leaf->n[0] == 1 && s[SIDE_V0] == 1 && s[SIDE_V1] == 1;

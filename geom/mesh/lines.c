@@ -1,9 +1,9 @@
 // Tessellation, step 2: the lines that leaves share, and how finely each is divided.
 //
-// A line is cut into atoms at the corners of the leaves on both of its sides; an atom takes the
-// larger of what the two leaves beside it need. So neighbours have the same points, whatever their
-// grids are. Edges of a solid join a line of one face to one of another: both get the corners of
-// both.
+// A line is cut into atoms at the corners of the leaves on both of its sides, and where the slants
+// of strips meet it; an atom takes the larger of what the two leaves beside it need. So neighbours
+// have the same points, whatever their grids are. Edges of a solid join a line of one face to one
+// of another: both get the corners of both.
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +17,7 @@ typedef struct LeafSide {
   double coordinate; // at a seam that of the lower end of the domain
   double from, to;
   double n;
+  double slant, spacing; // where slants of a strip meet the side: slant + k * spacing; or 0 spacing
 } LeafSide;
 
 static int compare(double a, double b) { return a < b ? -1 : a > b; }
@@ -44,26 +45,108 @@ static bool pole_at(const CagSurface *s, int side) {
   return poles[side];
 }
 
+// Where the slants of a strip meet one of its sides.
+static void find_slants(const Leaf *leaf, LeafSide *side, double at) {
+  const Slants *s = &leaf->slants;
+  const double from = leaf->from[1 - s->along];
+  if (!tess_is_strip(leaf)) return;
+  if (side->fixed != s->along) {
+    side->slant = s->phase + s->slope * (at - from);
+    side->spacing = s->step;
+  } else if (s->slope != 0) {
+    side->slant = from + (at - s->phase) / s->slope;
+    side->spacing = s->step / fabs(s->slope);
+  }
+}
+
 static LeafSide *collect_sides(const Tessellator *t, const Face *f) {
   LeafSide *sides = malloc((4 * f->leaf_count + 1) * sizeof *sides);
   for (size_t k = 0; sides && k < f->leaf_count; k++) {
     const Leaf *leaf = &t->leaves[f->leaf + k];
     for (int side = 0; side < 4; side++) {
       int fixed = side / 2, along = 1 - fixed;
-      double at = side % 2 == 0 ? leaf->from[fixed] : leaf->to[fixed];
+      const double own = side % 2 == 0 ? leaf->from[fixed] : leaf->to[fixed];
+      double at = own;
       if (closed_in(f->surface, fixed) && at == end_of(f->surface, 2 * fixed + 1))
         at = end_of(f->surface, 2 * fixed);
-      sides[4 * k + (size_t)side] =
-          (LeafSide){(uint32_t)(f->leaf + k), side,          fixed, at, leaf->from[along],
-                     leaf->to[along],         leaf->n[along]};
+      LeafSide *to = &sides[4 * k + (size_t)side];
+      *to = (LeafSide){.leaf = (uint32_t)(f->leaf + k),
+                       .side = side,
+                       .fixed = fixed,
+                       .coordinate = at,
+                       .from = leaf->from[along],
+                       .to = leaf->to[along],
+                       .n = leaf->n[along]};
+      find_slants(leaf, to, own);
     }
   }
   if (sides) qsort(sides, 4 * f->leaf_count, sizeof *sides, by_line);
   return sides;
 }
 
-static int by_number(const void *a, const void *b) {
-  return compare(*(const double *)a, *(const double *)b);
+// A place where a line is cut: at a corner of a leaf, or at a slant of a strip.
+typedef struct Mark {
+  double at, nearest; // nearest: no other mark may be that near to one at a slant
+  bool corner;
+} Mark;
+
+typedef struct Marks {
+  Mark *all;
+  size_t count, capacity;
+} Marks;
+
+static int by_place(const void *a, const void *b) {
+  const Mark *p = a, *q = b;
+  const int order = compare(p->at, q->at);
+  return order ? order : q->corner - p->corner;
+}
+
+static CagStatus add_mark(Marks *m, Mark mark, CagError *err) {
+  const CagStatus status = tess_grow(&m->all, m->count, &m->capacity, sizeof *m->all, err);
+  if (status == CAG_OK) m->all[m->count++] = mark;
+  return status;
+}
+
+static CagStatus mark_slants(Marks *m, const LeafSide *side, CagError *err) {
+  const double nearest = 0.05; // of the way from slant to slant
+  CagStatus status = CAG_OK;
+  if (!(side->spacing > 0)) return CAG_OK;
+  for (double k = ceil((side->from - side->slant) / side->spacing); status == CAG_OK; k++) {
+    const double at = side->slant + k * side->spacing;
+    if (at >= side->to) break;
+    status = add_mark(m, (Mark){at, nearest * side->spacing, false}, err);
+  }
+  return status;
+}
+
+// The places at which `count` sides cut their line, in order. Where strips lie on both sides of the
+// line the slants of one serve both.
+static CagStatus find_marks(Marks *m, const LeafSide *sides, size_t count, CagError *err) {
+  CagStatus status = CAG_OK;
+  const LeafSide *last = NULL; // whose slants were marked
+  m->count = 0;
+  for (size_t k = 0; status == CAG_OK && k < count; k++) {
+    status = add_mark(m, (Mark){sides[k].from, 0, true}, err);
+    if (status == CAG_OK) status = add_mark(m, (Mark){sides[k].to, 0, true}, err);
+    if (status != CAG_OK || !(sides[k].spacing > 0)) continue;
+    if (last && last->from == sides[k].from && last->to == sides[k].to) continue;
+    status = mark_slants(m, &sides[k], err);
+    last = &sides[k];
+  }
+  if (status != CAG_OK) return status;
+  qsort(m->all, m->count, sizeof *m->all, by_place);
+  size_t kept = 0;
+  for (size_t k = 0; k < m->count; k++) {
+    const Mark mark = m->all[k];
+    if (kept > 0 && mark.at == m->all[kept - 1].at) continue;
+    if (!mark.corner && kept > 0 && mark.at - m->all[kept - 1].at < mark.nearest) continue;
+    while (mark.corner && kept > 0 && !m->all[kept - 1].corner &&
+           mark.at - m->all[kept - 1].at < m->all[kept - 1].nearest)
+      kept--;
+    m->all[kept++] = mark;
+  }
+  m->count = kept;
+  return CAG_OK;
 }
 
 static CagStatus push_atom(Tessellator *t, double from, double to, CagError *err) {
@@ -91,18 +174,14 @@ static uint32_t steps(double needed) {
 
 // Atoms of the line on which `count` sides lie.
 static CagStatus cut_line(Tessellator *t, Line *line, const LeafSide *sides, size_t count,
-                          double *corners, CagError *err) {
-  for (size_t k = 0; k < count; k++) {
-    corners[2 * k] = sides[k].from;
-    corners[2 * k + 1] = sides[k].to;
-  }
-  qsort(corners, 2 * count, sizeof *corners, by_number);
+                          Marks *marks, CagError *err) {
+  CagStatus status = find_marks(marks, sides, count, err);
   line->atom = t->atom_count;
-  for (size_t k = 0; k + 1 < 2 * count; k++) {
-    if (corners[k] == corners[k + 1]) continue;
-    CagStatus status = push_atom(t, corners[k], corners[k + 1], err);
-    if (status != CAG_OK) return status;
+  for (size_t k = 0; status == CAG_OK && k + 1 < marks->count; k++) {
+    status = push_atom(t, marks->all[k].at, marks->all[k + 1].at, err);
+    if (status == CAG_OK) t->atoms[t->atom_count - 1].corner = marks->all[k].corner;
   }
+  if (status != CAG_OK) return status;
   line->atom_count = t->atom_count - line->atom;
   for (size_t k = 0; k < count; k++) {
     double per_length = sides[k].n / (sides[k].to - sides[k].from);
@@ -148,8 +227,8 @@ CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err) {
   Face *f = &t->faces[face];
   size_t count = 4 * f->leaf_count;
   LeafSide *sides = collect_sides(t, f);
-  double *corners = malloc((2 * count + 1) * sizeof *corners);
-  CagStatus status = sides && corners ? CAG_OK : cag_fail_memory(err);
+  Marks marks = {0};
+  CagStatus status = sides ? CAG_OK : cag_fail_memory(err);
   f->line = t->line_count;
   for (size_t k = 0, next; status == CAG_OK && k < count; k = next) {
     for (next = k + 1; next < count && sides[next].fixed == sides[k].fixed &&
@@ -159,7 +238,7 @@ CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err) {
     if (status != CAG_OK) break;
     Line *line = &t->lines[t->line_count++];
     *line = new_line(f, face, &sides[k]);
-    status = cut_line(t, line, sides + k, next - k, corners, err);
+    status = cut_line(t, line, sides + k, next - k, &marks, err);
     if (status == CAG_OK && (line->border || line->is_break))
       status = tess_refine_chords(t, line, err);
     for (size_t j = k; j < next; j++)
@@ -167,7 +246,7 @@ CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err) {
   }
   f->line_count = t->line_count - f->line;
   free(sides);
-  free(corners);
+  free(marks.all);
   return status;
 }
 

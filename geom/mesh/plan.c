@@ -305,7 +305,7 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
     // Where turns cancel along the diagonals, both sides of a quadrilateral may have the whole
     // angle.
     const double cancelled = -0.5; // of what they would be about one axis
-    const double sewn = 0.94;      // where bands are sewn, edges lean a little more
+    const double sewn = 0.9;       // where bands are sewn, edges lean a little more
     if (needs->diagonal < cancelled * a * b) {
       most[0] = tess_larger(1, ceil(a / (sewn * closely * how->angle)));
       most[1] = tess_larger(1, ceil(b / (sewn * closely * how->angle)));
@@ -332,14 +332,6 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
 // --- Settling ---
 
 static int longer_way(const Needs *needs) { return needs->length[0] >= needs->length[1] ? 0 : 1; }
-
-// Formulas, and what is made of them, may do anything between two samples; what has an exact form
-// is tame within its breaks.
-static bool is_known_by_points(const CagSurface *s) {
-  CagTransform map;
-  while (cag_surface_placed_view(s, &s, &map)) continue;
-  return !s->kind->to_nurbs && !cag_surface_trimmed_view(s, NULL, NULL);
-}
 
 static CagStatus try_distance(const TessTrial *trial, const Needs *needs, double *distance,
                               CagError *err) {
@@ -463,7 +455,7 @@ static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, 
   CagStatus status = settle_distance(t, &trial, needs, halved, err);
   if (status == CAG_OK && !(halved && *halved >= 0))
     status = settle_edges(t, &trial, &needs, halved, err);
-  if (status == CAG_OK && halved && *halved < 0 && is_known_by_points(surface)) {
+  if (status == CAG_OK && halved && *halved < 0 && tess_is_known_by_points(surface)) {
     bool missed;
     status = tess_try_scattered(&trial, t->how.tolerance, &missed, err);
     if (status == CAG_OK && missed) {

@@ -103,7 +103,10 @@ static CagStatus join_edges(Tessellator *t, const CagSolid *solid, CagError *err
 static CagStatus run(Tessellator *t, const CagSolid *solid, CagMesh **out, CagError *err) {
   CagStatus status = CAG_OK;
   for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
-    if (!t->faces[k].planar) status = tess_plan_face(t, k, err);
+    if (!t->faces[k].planar) {
+      status = tess_plan_face(t, k, err);
+      if (status == CAG_OK) status = tess_plan_strips(t, k, err);
+    }
   for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
     if (!t->faces[k].planar) status = tess_make_even_lines(t, k, err);
   if (status == CAG_OK && solid) status = join_edges(t, solid, err);

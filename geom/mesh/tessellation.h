@@ -8,6 +8,11 @@
 // in and stitched to the nodes around it (fill.c), edges of triangles that lean off the surface are
 // turned (turn_edges.c), and plane faces are triangulated from the nodes of their loops (planar.c).
 //
+// Where the surface bends least along lines that cross those of both parameters aslant, as on a
+// thread, whole cells become strips instead of leaves with grids (strips.c). A strip is a leaf
+// without points inside. Its long sides are lines along one parameter, and the nodes on all of its
+// sides lie where lines of least bending meet them; such lines are called slants.
+//
 // Vertices of lines come first in the mesh, interiors of leaves after them. While it is built,
 // `weld` is a union-find forest over the vertices of lines whose roots are the least members.
 
@@ -20,8 +25,16 @@
 
 enum { SIDE_U0, SIDE_U1, SIDE_V0, SIDE_V1 };
 
+// The slants of a strip: along - slope * (across - from[across]) = phase + k * step, where `along`
+// is the parameter of direction `along` and `across` the other one.
+typedef struct Slants {
+  int along;
+  double slope, phase, step; // step > 0 in a strip, else 0
+} Slants;
+
 typedef struct Leaf {
   double from[2], to[2];     // [0]: u, [1]: v
+  Slants slants;             // of a strip; its n are 1
   uint32_t n[2], planned[2]; // as it is, and before tess_make_even_lines
   uint32_t face;
   uint32_t line[4];     // by side
@@ -115,6 +128,9 @@ CagStatus tess_interrupted(const Tessellator *t, CagError *err);
 CagStatus tess_limit(const Tessellator *t, double triangles, CagError *err);
 
 CagStatus tess_plan_face(Tessellator *t, uint32_t face, CagError *err);
+// Makes strips of cells where that takes clearly fewer triangles than the leaves found by
+// tess_plan_face.
+CagStatus tess_plan_strips(Tessellator *t, uint32_t face, CagError *err);
 CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err);
 // Lines as tess_make_lines, with the counts of thin leaves raised to those beside them.
 CagStatus tess_make_even_lines(Tessellator *t, uint32_t face, CagError *err);
@@ -141,6 +157,8 @@ void tess_unite(Tessellator *t, uint32_t a, uint32_t b);
 // The vertex by which the leaves of its own face after (or before) the line see a node.
 uint32_t tess_node_vertex(const Tessellator *t, const Line *line, const Node *node, bool after,
                           bool node_is_end);
+static inline bool tess_is_strip(const Leaf *leaf) { return leaf->slants.step > 0; }
+
 static inline double tess_mix(double a, double b, size_t k, size_t n) {
   return k == 0 ? a : k == n ? b : a + (b - a) * ((double)k / (double)n);
 }

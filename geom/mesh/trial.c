@@ -9,6 +9,7 @@
 
 #include "geom/mesh/distance.h"
 #include "geom/surface/frames.h"
+#include "geom/surface/trimmed.h"
 
 enum {
   TRIED = 8,       // quadrilaterals measured along each direction of a leaf
@@ -16,6 +17,47 @@ enum {
   TRIED_LAST = 16, // in the last check, of their middles alone
   EDGES = 24       // whose edges are measured along each direction
 };
+
+// --- Sheared parameters ---
+
+// As cag_surface_eval_frames at the points of the surface that the trial's parameters mean. normals
+// may be NULL.
+static CagStatus evaluate_line(const TessTrial *t, const double *us, size_t nu, const double *vs,
+                               size_t nv, CagVec3 *points, CagVec3 *normals, CagError *err) {
+  return normals
+             ? cag_surface_eval_frames(t->surface, us, nu, vs, nv, points, NULL, NULL, normals, err)
+             : cag_surface_eval_grid(t->surface, us, nu, vs, nv, points, NULL, NULL, err);
+}
+
+static CagStatus evaluate_sheared(const TessTrial *t, const double *us, size_t nu, const double *vs,
+                                  size_t nv, CagVec3 *points, CagVec3 *normals, CagError *err) {
+  const bool along_v = t->along == 1;
+  const size_t n = along_v ? nv : nu, lines = along_v ? nu : nv;
+  double *shifted = malloc((n + 1) * sizeof *shifted);
+  CagVec3 *line = malloc((2 * n + 1) * sizeof *line), *line_normals = normals ? line + n : NULL;
+  CagStatus status = shifted && line ? CAG_OK : cag_fail_memory(err);
+  for (size_t k = 0; status == CAG_OK && k < lines; k++) {
+    const double *across = along_v ? us + k : vs + k, *along = along_v ? vs : us;
+    const double shift = t->slope * (*across - t->from[1 - t->along]);
+    for (size_t i = 0; i < n; i++) shifted[i] = along[i] + shift;
+    status = along_v ? evaluate_line(t, across, 1, shifted, n, line, line_normals, err)
+                     : evaluate_line(t, shifted, n, across, 1, line, line_normals, err);
+    for (size_t i = 0; status == CAG_OK && i < n; i++) {
+      const size_t at = along_v ? k * nv + i : i * nv + k;
+      points[at] = line[i];
+      if (normals) normals[at] = line_normals[i];
+    }
+  }
+  free(shifted);
+  free(line);
+  return status;
+}
+
+static CagStatus evaluate(const TessTrial *t, const double *us, size_t nu, const double *vs,
+                          size_t nv, CagVec3 *points, CagVec3 *normals, CagError *err) {
+  return t->slope == 0 ? evaluate_line(t, us, nu, vs, nv, points, normals, err)
+                       : evaluate_sheared(t, us, nu, vs, nv, points, normals, err);
+}
 
 // Indices of at most `most` of n quadrilaterals, spread from first to last.
 static int spread(double n, int most, double *out) {
@@ -99,8 +141,8 @@ static CagStatus evaluate_places(const TessTrial *t, int most, const double *pla
       }
   }
   grid->rows = grid->count[1] * place_count;
-  return cag_surface_eval_grid(t->surface, ts[0], (size_t)(grid->count[0] * place_count), ts[1],
-                               (size_t)grid->rows, grid->points, NULL, NULL, err);
+  return evaluate(t, ts[0], (size_t)(grid->count[0] * place_count), ts[1], (size_t)grid->rows,
+                  grid->points, NULL, err);
 }
 
 CagStatus tess_try_distance(const TessTrial *trial, const double sine[2], double *distance,
@@ -187,8 +229,7 @@ CagStatus tess_try_edges(const TessTrial *trial, double angle, double free, doub
   CagVec3 p[4 * EDGES * EDGES], q[4 * EDGES * EDGES]; // points and normals
   size_t n[2], step[2];
   for (int d = 0; d < 2; d++) n[d] = corners_along(trial, d, ts[d], &step[d]);
-  CagStatus status =
-      cag_surface_eval_frames(trial->surface, ts[0], n[0], ts[1], n[1], p, NULL, NULL, q, err);
+  CagStatus status = evaluate(trial, ts[0], n[0], ts[1], n[1], p, q, err);
   if (status != CAG_OK) return status;
   *out = (TessExcess){{0, 0}, 0};
   for (size_t i = 0; i + 1 < n[0]; i += step[0])
@@ -197,11 +238,13 @@ CagStatus tess_try_edges(const TessTrial *trial, double angle, double free, doub
       double u = tess_larger(excess_of(&most, p, q, a, b), excess_of(&most, p, q, d, c));
       double v = tess_larger(excess_of(&most, p, q, a, d), excess_of(&most, p, q, b, c));
       bool cut_ac = tess_cut_ac(p[a], p[b], p[c], p[d]);
-      // What turns within sides that are free turns in the diagonal as well.
+      // What turns within sides that are free turns in the diagonal as well; strips do without
+      // that, and may be cut either way.
+      const bool strip = trial->slope != 0;
       EdgeLimits across = most;
-      if (is_free(&most, p, a, b) || is_free(&most, p, a, d)) across.angle = 0;
-      double ac = cut_ac ? excess_of(&across, p, q, a, c) : 0,
-             bd = !cut_ac ? excess_of(&across, p, q, b, d) : 0;
+      if (!strip && (is_free(&most, p, a, b) || is_free(&most, p, a, d))) across.angle = 0;
+      double ac = cut_ac || strip ? excess_of(&across, p, q, a, c) : 0,
+             bd = !cut_ac || strip ? excess_of(&across, p, q, b, d) : 0;
       out->along[0] = tess_larger(out->along[0], u);
       out->along[1] = tess_larger(out->along[1], v);
       out->diagonal = tess_larger(out->diagonal, tess_larger(ac, bd));
@@ -210,6 +253,12 @@ CagStatus tess_try_edges(const TessTrial *trial, double angle, double free, doub
 }
 
 // --- Scattered points ---
+
+bool tess_is_known_by_points(const CagSurface *s) {
+  CagTransform map;
+  while (cag_surface_placed_view(s, &s, &map)) continue;
+  return !s->kind->to_nurbs && !cag_surface_trimmed_view(s, NULL, NULL);
+}
 
 // SCATTERED rows of points over the domain, each with SCATTERED_ALONG of them. From row to row they
 // are moved by the golden section of their distance, so that no two rows look at the same v, and
@@ -254,8 +303,7 @@ static CagStatus evaluate_corners(const Scatter *s, CagError *err) {
   for (int d = 0; d < 2; d++)
     for (size_t k = 0; k <= s->n[d]; k++)
       at[d][k] = tess_mix(s->trial->from[d], s->trial->to[d], k, s->n[d]);
-  return cag_surface_eval_grid(s->trial->surface, us, s->n[0] + 1, vs, s->n[1] + 1, s->corners,
-                               NULL, NULL, err);
+  return evaluate(s->trial, us, s->n[0] + 1, vs, s->n[1] + 1, s->corners, NULL, err);
 }
 
 // One row of points, as far as they lie in the leaf.
@@ -265,16 +313,20 @@ static CagStatus try_row(const Scatter *s, double u, double shift, double tolera
   const double v0 = t->surface->v0, length = t->surface->v1 - v0;
   double vs[SCATTERED_ALONG];
   CagVec3 p[SCATTERED_ALONG];
-  size_t n = 0;
+  size_t n = 0, cell[SCATTERED_ALONG][2];
   for (int j = 0; j < SCATTERED_ALONG; j++) {
-    double v = v0 + length * (j + shift) / SCATTERED_ALONG;
-    if (v >= t->from[1] && v < t->to[1]) vs[n++] = v;
+    const double v = v0 + length * (j + shift) / SCATTERED_ALONG;
+    double at[2] = {u, v};
+    at[t->along] -= t->slope * (at[1 - t->along] - t->from[1 - t->along]);
+    if (!(at[0] >= t->from[0] && at[0] < t->to[0] && at[1] >= t->from[1] && at[1] < t->to[1]))
+      continue;
+    for (int d = 0; d < 2; d++) cell[n][d] = cell_of(t, d, at[d]);
+    vs[n++] = v;
   }
+  if (n == 0) return CAG_OK;
   CagStatus status = cag_surface_eval_grid(t->surface, &u, 1, vs, n, p, NULL, NULL, err);
-  for (size_t k = 0; status == CAG_OK && !*missed && k < n; k++) {
-    size_t x = cell_of(t, 0, u), y = cell_of(t, 1, vs[k]);
-    *missed = distance_to_cells(s, x, y, p[k], tolerance) > tolerance;
-  }
+  for (size_t k = 0; status == CAG_OK && !*missed && k < n; k++)
+    *missed = distance_to_cells(s, cell[k][0], cell[k][1], p[k], tolerance) > tolerance;
   return status;
 }
 
@@ -296,8 +348,7 @@ CagStatus tess_try_scattered(const TessTrial *trial, double tolerance, bool *mis
     for (int i = 0; status == CAG_OK && !*missed && i < SCATTERED; i++) {
       double u = f->u0 + (f->u1 - f->u0) * (i + beside[k]) / SCATTERED;
       double shift = (i + beside[k] - beside[0]) * golden;
-      if (u >= trial->from[0] && u < trial->to[0])
-        status = try_row(&s, u, shift - floor(shift), tolerance, missed, err);
+      status = try_row(&s, u, shift - floor(shift), tolerance, missed, err);
     }
   free(s.corners);
   return status;

@@ -9,10 +9,14 @@
 static inline double tess_larger(double a, double b) { return b > a ? b : a; }
 static inline double tess_smaller(double a, double b) { return b < a || isnan(a) ? b : a; }
 
-// A rectangle of parameters and the counts of its grid that are tried.
+// A rectangle of parameters and the counts of its grid that are tried. Where `slope` is not 0 the
+// rectangle is one of sheared parameters: of the other direction, and of `along` less slope times
+// the way from `from` in the other direction.
 typedef struct TessTrial {
   const CagSurface *surface;
   double from[2], to[2], n[2];
+  int along;
+  double slope;
   bool suspect; // something thin was missed here before: tess_try_scattered looks more closely
 } TessTrial;
 
@@ -32,6 +36,10 @@ typedef struct TessExcess {
 // longest: length of edges; either 0: none.
 CagStatus tess_try_edges(const TessTrial *trial, double angle, double free, double longest,
                          TessExcess *out, CagError *err);
+
+// Formulas, and what is made of them, may do anything between two samples; what has an exact form
+// is tame within its breaks.
+bool tess_is_known_by_points(const CagSurface *s);
 
 // Is the surface farther from the triangles than the tolerance somewhere on a fixed set of points,
 // which is the same for all leaves of a face? For surfaces of which nothing but points is known:

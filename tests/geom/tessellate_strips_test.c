@@ -1,0 +1,222 @@
+// Twisted bodies in few triangles: cells become strips whose edges lie along the directions in
+// which the surface bends least. Counts are held against what is known of polygons around a circle,
+// and the meshes are looked at densely, as those of other surfaces.
+
+#include <complex.h>
+#include <stdio.h>
+
+#include "geom/curve/function.h"
+#include "geom/solid/solid.h"
+#include "geom/surface/reshape.h"
+#include "tests/geom/dense_support.h"
+
+// --- Sections ---
+
+// (a + b t) e^(i t), by which arcs and spirals of Archimedes are made.
+typedef struct Spiral {
+  double a, b;
+} Spiral;
+
+static CagStatus spiral_eval(void *context, double t, int order, CagVec3 *out, CagError *e) {
+  (void)e;
+  const Spiral *s = context;
+  double complex turn = cexp(I * t), lower = 0;
+  for (int k = 0; k <= order; k++) {
+    const double complex p = (s->a + s->b * t) * turn + k * s->b * lower;
+    out[k] = cag_vec3(creal(p), cimag(p), 0);
+    lower = turn;
+    turn *= I;
+  }
+  return CAG_OK;
+}
+
+static CagCurve *spiral(double from, double to, double r_from, double r_to) {
+  Spiral *s = malloc(sizeof *s);
+  assert_non_null(s);
+  s->b = (r_to - r_from) / (to - from);
+  s->a = r_from - s->b * from;
+  CagCurve *c;
+  OK(cag_curve_function(&(CagCurveFunction){spiral_eval, free, s}, 2, from, to, false, &c, &err));
+  return c;
+}
+
+enum { PARTS = 4 };
+
+// Around the axis: crest, flank, root, flank; `ends`: where they end, of a turn.
+static CagCurve *thread_section(const double ends[PARTS], double outer, double inner) {
+  const double radii[PARTS + 1] = {outer, outer, inner, inner, outer};
+  CagCurve *parts[PARTS], *c;
+  for (int k = 0; k < PARTS; k++)
+    parts[k] = spiral(2 * M_PI * (k ? ends[k - 1] : 0), 2 * M_PI * ends[k], radii[k], radii[k + 1]);
+  OK(cag_curve_join(parts, PARTS, &c, &err));
+  for (int k = 0; k < PARTS; k++) cag_curve_release(parts[k]);
+  return c;
+}
+
+static CagCurve *wavy_section(double radius, double wave) {
+  enum { POINTS_AROUND = 8 };
+  CagVec3 p[POINTS_AROUND];
+  for (int k = 0; k < POINTS_AROUND; k++) {
+    const double r = radius * between(1 - wave, 1 + wave), a = 2 * M_PI * k / POINTS_AROUND;
+    p[k] = cag_vec3(r * cos(a), r * sin(a), 0);
+  }
+  CagCurve *c;
+  OK(cag_curve_nurbs_closed(p, NULL, POINTS_AROUND, 3, 2, &c, &err));
+  return c;
+}
+
+static CagSolid *twisted(CagCurve *section, double height, double turns, double scale) {
+  CagRegion *r;
+  CagSolid *s;
+  OK(cag_region_new(section, NULL, 0, &r, &err));
+  OK(cag_solid_extrude(r, cag_vec3(0, 0, height), 2 * M_PI * turns, scale, &s, &err));
+  cag_region_release(r);
+  cag_curve_release(section);
+  return s;
+}
+
+// --- The thread M10 ---
+
+// Crest, flanks and root of a metric thread take 2/16, 5/16, 4/16 and 5/16 of its pitch; the flanks
+// stand at 60 degrees to each other.
+static const double metric[PARTS] = {2 / 16.0, 7 / 16.0, 11 / 16.0, 1};
+static const double pitch = 1.5, outer = 5;
+enum { TURNS = 27 };
+
+static double inner_radius(void) { return outer - 5 * pitch / 16 * sqrt(3); }
+
+static CagSolid *m10(void) {
+  return twisted(thread_section(metric, outer, inner_radius()), pitch * TURNS, TURNS, 1);
+}
+
+// Of the section, by the integral of r^2 / 2, times the height.
+static double m10_volume(void) {
+  const double r = inner_radius();
+  const double area = M_PI * (2 * outer * outer + 4 * r * r) / 16 +
+                      M_PI * 10 / 16 * (outer * outer + outer * r + r * r) / 3;
+  return area * pitch * TURNS;
+}
+
+static CagMesh *mesh_of(const CagSolid *s, double tolerance) {
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  CagMesh *m;
+  how.tolerance = tolerance;
+  OK(cag_solid_tessellate(s, &how, &m, &err));
+  return m;
+}
+
+// A polygon of n sides in a circle lacks (2 pi / n)^2 / 6 of its area. So 30 quadrilaterals a turn
+// on each of the four strips of the thread miss less than 0.77 % of it: two triangles for each of
+// 27 turns. Half as many again are granted for the ends, the tolerance that is not used up and the
+// flanks.
+static void a_thread_takes_few_triangles_for_its_volume(void **state) {
+  (void)state;
+  const double n = 30, most_missed = 0.0077;
+  assert_true(pow(2 * M_PI / n, 2) / 6 < most_missed);
+  const double most = 1.5 * 2 * n * TURNS * PARTS;
+  CagSolid *s = m10();
+  double missed = 1;
+  size_t count = 0;
+  for (double tolerance = 0.05; missed > most_missed; tolerance *= 0.9) {
+    CagMesh *m = mesh_of(s, tolerance);
+    double terms[10];
+    cag_mesh_volume_terms(m, terms);
+    missed = fabs(terms[0] / m10_volume() - 1);
+    count = m->triangle_count;
+    cag_mesh_release(m);
+  }
+  if (!(count <= most)) fail_msg("%zu triangles, more than %g", count, most);
+  cag_solid_release(s);
+}
+
+// By the sagitta of a chord at a distance of r from the axis, r (1 - cos(pi / n)).
+static void coarser_tolerances_take_fewer_triangles(void **state) {
+  (void)state;
+  CagSolid *s = m10();
+  double last = INFINITY;
+  for (double tolerance = 1e-3; tolerance < 0.05; tolerance *= 2) {
+    CagMesh *m = mesh_of(s, tolerance);
+    const double n = M_PI / acos(1 - tolerance / outer), count = (double)m->triangle_count;
+    if (!(count < 2 * 2 * n * TURNS * PARTS && count < last))
+      fail_msg("%g at %g, %g before", count, tolerance, last);
+    last = count;
+    cag_mesh_release(m);
+  }
+  cag_solid_release(s);
+}
+
+// --- Any twisted body ---
+
+static void check_body(const char *name, const CagSolid *s, double tolerance) {
+  const CagTessellation how = {
+      .tolerance = tolerance, .angle = M_PI / 12, .max_triangles = 10 * 1000 * 1000};
+  double worst[2];
+  CagMesh *m;
+  CagVec3 edge[2];
+  OK(cag_solid_tessellate(s, &how, &m, &err));
+  if (!cag_mesh_is_watertight(m, edge)) fail_msg("%s at %g has a gap", name, tolerance);
+  cag_mesh_release(m);
+  for (size_t k = 0; k < s->face_count; k++) {
+    const CagSurface *side = s->faces[k];
+    if (cag_surface_planar_view(side, NULL, NULL)) continue;
+    OK(cag_surface_tessellate(side, &how, &m, &err));
+    const double d = largest_distance(side, m, tolerance, worst);
+    if (!(d <= tolerance))
+      fail_msg("%s at %g: %g off at %g, %g", name, tolerance, d, worst[0], worst[1]);
+    check_edges(name, m, how.angle, 0.2 * tolerance, INFINITY);
+    cag_mesh_release(m);
+  }
+}
+
+static void twisted_bodies_keep_tolerance_and_angle(void **state) {
+  (void)state;
+  enum { BODIES = 8 };
+  chance_state = 4711;
+  for (int k = 0; k < BODIES; k++) {
+    char name[64];
+    const double r = between(3, 12), depth = between(0.05, 0.4);
+    const double a = between(0.05, 0.4), b = a + between(0.05, 0.3), c = b + between(0.05, 0.2);
+    const double ends[PARTS] = {a, b, c, 1};
+    const double turns = (k % 4 < 2 ? 1 : -1) * between(1, 8);
+    CagCurve *section =
+        k % 2 ? wavy_section(r, depth / 2) : thread_section(ends, r, r * (1 - depth));
+    CagSolid *s = twisted(section, between(10, 50), turns, k % 3 == 2 ? between(0.5, 1.5) : 1);
+    snprintf(name, sizeof name, "body %d", k);
+    check_body(name, s, 0.2);
+    check_body(name, s, 0.02);
+    cag_solid_release(s);
+  }
+}
+
+// Parameters change their places, and nothing else.
+static void strips_run_along_either_parameter(void **state) {
+  (void)state;
+  const CagTessellation how = {
+      .tolerance = 0.02, .angle = M_PI / 12, .max_triangles = 10 * 1000 * 1000};
+  CagCurve *c = thread_section(metric, outer, inner_radius());
+  CagSurface *s, *t;
+  CagMesh *m, *n;
+  double worst[2];
+  OK(cag_surface_extrude(c, cag_vec3(0, 0, 4 * pitch), 8 * M_PI, 1, &s, &err));
+  OK(cag_surface_transpose(s, &t, &err));
+  OK(cag_surface_tessellate(s, &how, &m, &err));
+  OK(cag_surface_tessellate(t, &how, &n, &err));
+  NEAR((double)n->triangle_count, (double)m->triangle_count, 0.02 * (double)m->triangle_count);
+  assert_true(largest_distance(t, n, how.tolerance, worst) <= how.tolerance);
+  check_edges("transposed", n, how.angle, 0, INFINITY);
+  cag_mesh_release(m);
+  cag_mesh_release(n);
+  cag_surface_release(s);
+  cag_surface_release(t);
+  cag_curve_release(c);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_thread_takes_few_triangles_for_its_volume),
+      cmocka_unit_test(coarser_tolerances_take_fewer_triangles),
+      cmocka_unit_test(twisted_bodies_keep_tolerance_and_angle),
+      cmocka_unit_test(strips_run_along_either_parameter),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
