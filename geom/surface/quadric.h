@@ -60,7 +60,8 @@ CagStatus cag_quadric_transform(const CagQuadric *q, const CagTransform *t, CagQ
 //
 // What lies outside the box is cut off, in x, y and z of the world. Planes and what ends at
 // constant parameters are exact (a range along the axis, the rulings of a cylinder); other pieces
-// are patches trimmed by splines that keep to 1e-11 of the box's diagonal. With `z_only` the range
+// are patches trimmed by splines that keep to 1e-11 of the box's diagonal, or to rounding of their
+// coordinates where these are far larger. With `z_only` the range
 // is within->min.z to within->max.z of the world's z, whichever way the axis points, and quadrics
 // that it does not bound are "quadric-unbounded".
 CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool z_only,
@@ -69,6 +70,10 @@ CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool
 bool cag_surface_quadric_view(const CagSurface *s, CagQuadric *equation);
 // The affine map from its unit form.
 bool cag_surface_quadric_frame(const CagSurface *s, CagTransform *frame);
+
+// Parameters (u, v) at which a coordinate, 0..2 of the world, of a surface of kind "quadric" has an
+// extreme (or a saddle) inside the domain; their number. None: another kind.
+size_t cag_surface_quadric_extremes(const CagSurface *s, int axis, CagVec3 out[2]);
 
 // The parametric forms of real quadrics (reference 06a, table of parametric forms), each in units
 // of its semi-axes: they are the lengths of the frame's columns.

@@ -251,24 +251,74 @@ static void interpolate(CagVec3 p[DEGREE + 1]) {
   for (int k = 0; k <= DEGREE; k++) p[k] = cag_scaled(p[k], 1 / m[k][k]);
 }
 
-static CagVec3 in_space(const Graph *g, CagVec3 uv) {
-  const CagQuadricSheet *sheet = g->c->sheet;
-  return cag_transform_point(&sheet->frame, cag_quadric_unit_point(sheet->shape, uv.x, uv.y));
+// By u and by v, of the unit form.
+static void unit_partials(CagQuadricShape shape, double u, double v, CagVec3 out[2]) {
+  const double c = cos(u), s = sin(u);
+  double r, dr, dz; // about an axis: the radius and both derivatives
+  switch (shape) {
+  case CAG_SHAPE_ELLIPSOID: r = sin(v), dr = cos(v), dz = -sin(v); break;
+  case CAG_SHAPE_HYPERBOLOID_ONE: r = cosh(v), dr = sinh(v), dz = cosh(v); break;
+  case CAG_SHAPE_HYPERBOLOID_TWO: r = sinh(v), dr = cosh(v), dz = sinh(v); break;
+  case CAG_SHAPE_CONE: r = v, dr = 1, dz = 1; break;
+  case CAG_SHAPE_ELLIPTIC_PARABOLOID: r = v, dr = 1, dz = 2 * v; break;
+  case CAG_SHAPE_ELLIPTIC_CYLINDER: r = 1, dr = 0, dz = 1; break;
+  case CAG_SHAPE_HYPERBOLIC_PARABOLOID:
+    out[0] = cag_vec3(1, 0, 2 * u);
+    out[1] = cag_vec3(0, 1, -2 * v);
+    return;
+  case CAG_SHAPE_PARABOLIC_CYLINDER:
+    out[0] = cag_vec3(2 * u, 2, 0);
+    out[1] = cag_vec3(0, 0, 1);
+    return;
+  default:
+    out[0] = cag_vec3(sinh(u), cosh(u), 0);
+    out[1] = cag_vec3(0, 0, 1);
+    return;
+  }
+  out[0] = cag_vec3(-s * r, c * r, 0);
+  out[1] = cag_vec3(c * dr, s * dr, dz);
 }
 
-// Whether the polynomial is the edge between s0 and s1, to the tolerance in space.
-static bool is_near(const Graph *g, double s0, double s1, const CagVec3 p[DEGREE + 1]) {
+// Rounding of a few operations, as a part of their terms.
+#define ROUNDING (16 * 2.220446049250313e-16)
+// Part of the size of the result that outlines may be off.
+#define OUTLINE 1e-11
+
+// Whether the point of the quadric with these parameters is on the cut, to the tolerance. Where the
+// point lies along the edge does not matter: beside a fold the roots, which are the square root of
+// a difference there, move it along the edge by far more than across.
+static bool is_on_cut(const Graph *g, CagVec3 uv) {
+  const CagQuadricSheet *sheet = g->c->sheet;
+  const CagQuadricCut *cut = &g->c->cuts[g->bound->side];
+  const CagVec3 x = cag_quadric_unit_point(sheet->shape, uv.x, uv.y);
+  const CagVec3 normal = cag_vec3(cut->a, cut->b, cut->c);
+  const double off = fabs(cag_dot(normal, x) - cut->d);
+  if (off <= ROUNDING * (fabs(cut->a * x.x) + fabs(cut->b * x.y) + fabs(cut->c * x.z))) return true;
+  CagVec3 d[2];
+  double slope[2];
+  unit_partials(sheet->shape, uv.x, uv.y, d);
+  for (int k = 0; k < 2; k++) {
+    slope[k] = cag_dot(normal, d[k]);
+    d[k] = cag_transform_vector(&sheet->frame, d[k]);
+  }
+  // The shortest way du, dv on the quadric with slope . (du, dv) = off.
+  const double uu = cag_dot(d[0], d[0]), uw = cag_dot(d[0], d[1]), vv = cag_dot(d[1], d[1]);
+  const double steep =
+      vv * slope[0] * slope[0] - 2 * uw * slope[0] * slope[1] + uu * slope[1] * slope[1];
+  const double size = cag_norm(cag_transform_point(&sheet->frame, x));
+  const double enough = fmax(OUTLINE * sheet->size, ROUNDING * size);
+  return off * off * (uu * vv - uw * uw) <= enough * enough * steep;
+}
+
+// Whether the polynomial keeps to the edge.
+static bool is_near(const Graph *g, const CagVec3 p[DEGREE + 1]) {
   const double probes[] = {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98};
   for (size_t k = 0; k < sizeof probes / sizeof *probes; k++) {
     double b[DEGREE + 1];
     CagVec3 fitted = {0, 0, 0};
     bernstein(probes[k], b);
     for (int i = 0; i <= DEGREE; i++) fitted = cag_madd(fitted, b[i], p[i]);
-    const CagVec3 exact = in_space(g, graph_at(g, s0 + (s1 - s0) * probes[k]));
-    // No nearer than rounding of the coordinates and of their angles.
-    const double least = 64 * 2.2e-16 * cag_norm(exact);
-    if (!(cag_norm(cag_sub(in_space(g, fitted), exact)) <= fmax(1e-11 * g->c->sheet->size, least)))
-      return false;
+    if (!is_on_cut(g, fitted)) return false;
   }
   return true;
 }
@@ -277,7 +327,7 @@ static void fit(Spline *out, const Graph *g, double s0, double s1, bool backward
   CagVec3 p[DEGREE + 1];
   for (int i = 0; i <= DEGREE; i++) p[i] = graph_at(g, i == DEGREE ? s1 : s0 + (s1 - s0) * node(i));
   interpolate(p);
-  if (s1 - s0 > LEAST_PIECE && !is_near(g, s0, s1, p)) {
+  if (s1 - s0 > LEAST_PIECE && !is_near(g, p)) {
     const double half = s0 + (s1 - s0) / 2;
     fit(out, g, backwards ? half : s0, backwards ? s1 : half, backwards);
     fit(out, g, backwards ? s0 : half, backwards ? half : s1, backwards);

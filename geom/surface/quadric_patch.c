@@ -259,6 +259,61 @@ bool cag_surface_quadric_frame(const CagSurface *s, CagTransform *frame) {
   return true;
 }
 
+// --- Extremes ---
+
+// Where the normal of the unit form is along m: its gradient (x, +-y, +-z or a constant) is a
+// multiple of m. A cylinder's are whole rulings and a cone's its apex; so they are where the
+// boundary of a piece has its own.
+static size_t unit_extremes(CagQuadricShape shape, CagVec3 m, CagVec3 out[2]) {
+  double square;
+  switch (shape) {
+  case CAG_SHAPE_ELLIPSOID: square = cag_dot(m, m); break;
+  case CAG_SHAPE_HYPERBOLOID_ONE: square = m.x * m.x + m.y * m.y - m.z * m.z; break;
+  case CAG_SHAPE_HYPERBOLOID_TWO: square = m.z * m.z - m.x * m.x - m.y * m.y; break;
+  case CAG_SHAPE_ELLIPTIC_PARABOLOID:
+  case CAG_SHAPE_HYPERBOLIC_PARABOLOID: {
+    if (m.z == 0) return 0;
+    const double x = -m.x / (2 * m.z), y = -m.y / (2 * m.z);
+    const bool saddle = shape == CAG_SHAPE_HYPERBOLIC_PARABOLOID;
+    out[0] = saddle ? cag_vec3(x, -y, x * x - y * y) : cag_vec3(x, y, x * x + y * y);
+    return 1;
+  }
+  default: return 0;
+  }
+  if (!(square > 0)) return 0;
+  if (shape != CAG_SHAPE_ELLIPSOID) m.z = -m.z;
+  out[0] = cag_scaled(m, 1 / sqrt(square));
+  out[1] = cag_scaled(out[0], -1);
+  return 2;
+}
+
+// The parameters of a point of the unit form, of the sheet that it has; angles in -pi..pi.
+static CagVec3 unit_parameters(CagQuadricShape shape, CagVec3 p) {
+  const double u = atan2(p.y, p.x), r = hypot(p.x, p.y);
+  switch (shape) {
+  case CAG_SHAPE_ELLIPSOID: return cag_vec3(u, atan2(r, p.z), 0);
+  case CAG_SHAPE_HYPERBOLOID_ONE: return cag_vec3(u, asinh(p.z), 0);
+  case CAG_SHAPE_HYPERBOLOID_TWO: return cag_vec3(u, asinh(r), 0);
+  case CAG_SHAPE_HYPERBOLIC_PARABOLOID: return cag_vec3(p.x, p.y, 0);
+  default: return cag_vec3(u, r, 0);
+  }
+}
+
+size_t cag_surface_quadric_extremes(const CagSurface *s, int axis, CagVec3 out[2]) {
+  if (s->kind != &quadric_kind) return 0;
+  const Patch *p = (const Patch *)s;
+  const double *row = p->frame.m[axis];
+  const size_t all = unit_extremes(p->shape, cag_vec3(row[0], row[1], row[2]), out);
+  size_t n = 0;
+  for (size_t i = 0; i < all; i++) {
+    if (p->shape == CAG_SHAPE_HYPERBOLOID_TWO && out[i].z < 0) continue; // of the other sheet
+    CagVec3 at = unit_parameters(p->shape, out[i]);
+    while (s->angular_u && at.x < s->u0) at.x += 2 * M_PI;
+    if (at.x >= s->u0 && at.x <= s->u1 && at.y >= s->v0 && at.y <= s->v1) out[n++] = at;
+  }
+  return n;
+}
+
 // --- Pieces within a box ---
 
 // The pieces found so far: sheets, nappes, branches, planes, or what a box leaves of them: no box

@@ -15,6 +15,7 @@
 #include "geom/basis/quadrature.h"
 #include "geom/surface/curve_on.h"
 #include "geom/surface/family.h"
+#include "geom/surface/quadric.h"
 #include "geom/surface/reshape.h"
 
 // Loops may leave the domain by this part of it, which rounding of their own is.
@@ -345,6 +346,23 @@ static CagStatus inner_extremes(const Trimmed *w, double best[6], CagError *err)
   return CAG_OK;
 }
 
+static CagStatus quadric_extremes(const Trimmed *w, double best[6], CagError *err) {
+  for (int axis = 0; axis < 3; axis++) {
+    CagVec3 at[2], p;
+    const size_t n = cag_surface_quadric_extremes(w->inner, axis, at);
+    for (size_t i = 0; i < n; i++) {
+      bool inside;
+      CagStatus status = cag_region_contains(w->region, at[i], &inside, err);
+      if (!status && inside) status = cag_surface_point(w->inner, at[i].x, at[i].y, &p, err);
+      if (status) return status;
+      if (!inside) continue;
+      best[2 * axis] = fmax(best[2 * axis], -coordinate(p, axis));
+      best[2 * axis + 1] = fmax(best[2 * axis + 1], coordinate(p, axis));
+    }
+  }
+  return CAG_OK;
+}
+
 CagStatus cag_trimmed_bounds(const CagSurface *s, CagBounds *out, CagError *err) {
   const Trimmed *w = (const Trimmed *)s;
   CagBounds box = CAG_BOUNDS_EMPTY;
@@ -362,7 +380,8 @@ CagStatus cag_trimmed_bounds(const CagSurface *s, CagBounds *out, CagError *err)
   }
   if (status) return status;
   double best[6] = {-box.min.x, box.max.x, -box.min.y, box.max.y, -box.min.z, box.max.z};
-  status = inner_extremes(w, best, err);
+  status = cag_surface_quadric_view(w->inner, NULL) ? quadric_extremes(w, best, err)
+                                                    : inner_extremes(w, best, err);
   if (status) return status;
   *out = (CagBounds){{-best[0], -best[2], -best[4]}, {best[1], best[3], best[5]}};
   return CAG_OK;

@@ -240,6 +240,51 @@ static void ranges_of_z_are_those_of_the_equation(void **state) {
   assert_true(bounded > ROUNDS && unbounded > ROUNDS);
 }
 
+static size_t outline_points(const CagSurface *s) {
+  const CagRegion *region;
+  size_t sum = 0;
+  if (!cag_surface_trimmed_view(s, NULL, &region)) return 0;
+  for (size_t i = 0; i < region->count; i++) {
+    CagNurbsView v;
+    assert_true(cag_curve_nurbs_view(region->loops[i], &v));
+    sum += v.count;
+  }
+  return sum;
+}
+
+// A paraboloid r^2 = t about an axis that is level but for an angle a: with w across the axis, z =
+// t sin a + w cos a and y = w sin a - t cos a. The planes z = 1 and z = -1 cut it in circles of
+// (x, w) with center - cot a / 2 and radius sqrt(cot^2 a / 4 +- 1 / sin a). The largest y is
+// sin^2 a / (4 cos a), at w = tan a / 2; the least is at the far side of the larger circle.
+static void outlines_that_are_nearly_level_stay_small(void **state) {
+  (void)state;
+  const double angles[] = {0.1, 0.01, 0.001};
+  for (int i = 0; i < 3; i++) {
+    const double a = angles[i], c = cos(a), s = sin(a);
+    // t = z s - y c and w = y s + z c.
+    const CagQuadric q = {{1, s * s, c * c, 0, 2 * s * c, 0, 0, c, -s, 0}};
+    const CagBounds range = {{0, 0, -1}, {0, 0, 1}};
+    CagSurface **list = NULL;
+    size_t n = 0;
+    CagBounds b;
+    MUST(cag_quadric_patches(&q, &range, true, &list, &n, err));
+    assert_int_equal(n, 1);
+    const size_t count = outline_points(list[0]);
+    assert_true(count > 0 && count < 20000);
+    MUST(cag_surface_bounds(list[0], &b, err));
+    const double r = sqrt(c * c / (4 * s * s) + 1 / s), far = -c / (2 * s) - r;
+    // To the rounding of the largest coordinate.
+    const double size = far * far, slack = 1e-11 + 1e-14 * size;
+    assert_near(b.max.x, r, slack, "x");
+    assert_near(b.min.x, -r, slack, "-x");
+    assert_near(b.max.y, s * s / (4 * c), slack, "y");
+    assert_near(b.min.y, far * s - (1 - far * c) / s * c, slack, "-y");
+    assert_near(b.max.z, 1, slack, "z");
+    assert_near(b.min.z, -1, slack, "-z");
+    release(list, n);
+  }
+}
+
 static double area_of(const double c[10], const CagBounds *box, bool z_only) {
   CagQuadric q;
   CagSurface **list = NULL;
@@ -285,6 +330,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(boxes_cut_quadrics_of_all_classes),
       cmocka_unit_test(ranges_of_z_are_those_of_the_equation),
+      cmocka_unit_test(outlines_that_are_nearly_level_stay_small),
       cmocka_unit_test(areas_within_boxes_have_closed_forms),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
