@@ -71,6 +71,20 @@ bool cag_surface_quadric_view(const CagSurface *s, CagQuadric *equation);
 // The affine map from its unit form.
 bool cag_surface_quadric_frame(const CagSurface *s, CagTransform *frame);
 
+// Where pieces of cag_quadric_patches came from, for the body that they bound.
+typedef struct CagQuadricWithin {
+  CagBounds box; // the box, or the range of z
+  bool z_only;
+  CagTransform frame; // of the box -> world: transforms of the pieces move it
+  size_t pieces;      // how many belong together
+  bool trimmed;       // this piece is
+  bool negated;       // the equation behind them has the other sign than that of the caller
+} CagQuadricWithin;
+
+// Of a patch or a trimmed patch of cag_quadric_patches with a box or range; false: another surface,
+// or a part of one.
+bool cag_surface_quadric_within(const CagSurface *s, CagQuadricWithin *out);
+
 // Parameters (u, v) at which a coordinate, 0..2 of the world, of a surface of kind "quadric" has an
 // extreme (or a saddle) inside the domain; their number. None: another kind.
 size_t cag_surface_quadric_extremes(const CagSurface *s, int axis, CagVec3 out[2]);

@@ -11,6 +11,7 @@
 #include "geom/surface/family.h"
 #include "geom/surface/quadric.h"
 #include "geom/surface/quadric_within.h"
+#include "geom/surface/trimmed.h"
 
 typedef enum Function {
   ZERO,
@@ -56,6 +57,7 @@ typedef struct Patch {
   CagQuadricShape shape;
   CagTransform frame;
   CagQuadric equation;
+  CagQuadricWithin within; // no pieces: not known
 } Patch;
 
 static const CagSurfaceKind quadric_kind;
@@ -208,7 +210,11 @@ static CagStatus patch_transform(const CagSurface *s, const CagTransform *t, Cag
   CagTransform frame = cag_transform_multiply(t, &p->frame), unused;
   if (cag_transform_inverse(t, &unused, err)) return cag_surface_placed(s, t, false, out, err);
   CagStatus status = cag_surface_quadric(p->shape, &frame, s->u0, s->u1, s->v0, s->v1, out, err);
-  return status;
+  if (status) return status;
+  Patch *moved = (Patch *)*out;
+  moved->within = p->within;
+  if (p->within.pieces) moved->within.frame = cag_transform_multiply(t, &p->within.frame);
+  return CAG_OK;
 }
 
 static void patch_describe(const CagSurface *s, char *buffer, size_t size) {
@@ -257,6 +263,13 @@ bool cag_surface_quadric_frame(const CagSurface *s, CagTransform *frame) {
   if (s->kind != &quadric_kind) return false;
   *frame = ((const Patch *)s)->frame;
   return true;
+}
+
+bool cag_surface_quadric_within(const CagSurface *s, CagQuadricWithin *out) {
+  const bool trimmed = cag_surface_trimmed_view(s, &s, NULL);
+  if (s->kind != &quadric_kind) return false;
+  *out = ((const Patch *)s)->within;
+  return out->pieces > 0 && out->trimmed == trimmed;
 }
 
 // --- Extremes ---
@@ -589,6 +602,27 @@ static CagStatus find_pieces(const CagQuadricForm *f, const CagBounds *within, b
                   f->name);
 }
 
+// Whether q has the other sign than the equation behind the patch.
+static bool is_negated(const CagQuadric *q, const CagQuadric *of_patch) {
+  double sum = 0;
+  for (int i = 0; i < 10; i++) sum += q->c[i] * of_patch->c[i];
+  return sum < 0;
+}
+
+// Tells the pieces, which nobody else knows yet, where they came from.
+static void set_within(const Pieces *pieces, const CagQuadric *q, const CagBounds *box,
+                       bool z_only) {
+  for (size_t i = 0; i < pieces->n; i++) {
+    const CagSurface *whole = pieces->s[i];
+    const bool trimmed = cag_surface_trimmed_view(whole, &whole, NULL);
+    if (whole->kind != &quadric_kind) continue;
+    Patch *p = (Patch *)whole;
+    p->within = (CagQuadricWithin){*box,      z_only,  cag_transform_identity(),
+                                   pieces->n, trimmed, is_negated(q, &p->equation)};
+    p->within.frame.planar = false;
+  }
+}
+
 CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool z_only,
                               CagSurface ***out, size_t *n, CagError *err) {
   CagQuadricForm form;
@@ -600,6 +634,7 @@ CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool
     status =
         cag_fail(err, CAG_E_DEGENERATE, "quadric-outside", "within", -1,
                  "the quadric (%s) does not pass through `within`: move or enlarge it", form.name);
+  if (!status && within) set_within(&pieces, q, within, z_only);
   CagSurface **list = NULL;
   if (!status) {
     list = malloc(pieces.n * sizeof *list);

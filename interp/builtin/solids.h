@@ -35,12 +35,6 @@ bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **coun
 // The body where a form is negative, cut by the argument `within` where it is given: a solid or a
 // range of z (solids_csg.c).
 bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue *result);
-// Whether the surfaces are patches of one quadric, and its equation.
-bool cag_solids_are_quadric(CagSurface *const *faces, size_t n, CagQuadric *q);
-// The body that such patches bound together with flat ends.
-CagStatus cag_solid_of_patches(CagSurface *const *faces, size_t n, const CagQuadric *q,
-                               const volatile int *interrupt, CagSolid **out, CagError *err);
-
 // A cylinder, frustum or cone from p to q.
 CagStatus cag_solid_rod(CagVec3 p, CagVec3 q, double radius, double top, CagSolid **out,
                         CagError *err);

@@ -158,13 +158,12 @@ static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **fac
   return true;
 }
 
-// Surfaces that close, or patches of one quadric that its form closes.
+// Surfaces that close, or pieces of one quadric that its form and flat faces close.
 static CagStatus close_faces(CagCall *call, CagSurface **faces, size_t n, CagSolid **out,
                              CagError *err) {
-  CagQuadric q;
   CagStatus status = cag_solid_shell(faces, n, out, err);
-  if (status == CAG_OK || !cag_solids_are_quadric(faces, n, &q)) return status;
-  return cag_solid_of_patches(faces, n, &q, cag_vm_stop(call->vm), out, err);
+  if (status == CAG_OK || !cag_solid_has_quadric_body(faces, n)) return status;
+  return cag_solid_quadric_body(faces, n, cag_vm_stop(call->vm), out, err);
 }
 
 static bool solid_of_mesh(CagCall *call, CagValue v, CagValue *result) {
@@ -179,7 +178,7 @@ static bool solid_of_mesh(CagCall *call, CagValue v, CagValue *result) {
 static bool solid_of_faces(CagCall *call, const CagList *shapes, CagValue *result) {
   CagError err;
   CagSolid *s = NULL;
-  CagSurface **faces = malloc(shapes->length * sizeof *faces);
+  CagSurface **faces = calloc(shapes->length, sizeof *faces);
   if (!faces) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
   size_t n = 0;
   bool ok = collect_faces(call, shapes, faces, &n) &&
