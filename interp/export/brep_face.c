@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "geom/curve/approximate.h"
+#include "geom/curve/family.h"
 #include "geom/curve/nurbs_ops.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
@@ -204,19 +205,20 @@ CagStatus cag_brep_add_surface(CagBrepWork *w, const CagSurface *s, size_t sourc
 
 // --- Regions ---
 
-// The pieces of a loop between its corners; of a clamped curve of space, whose reference it takes.
-static CagStatus add_between_corners(CagBrepWork *w, CagCurve *rest, size_t face, CagError *err) {
+// The pieces of a part of a loop between its corners; of a clamped curve of space, whose reference
+// it takes. *order: of the next side.
+static CagStatus add_between_corners(CagBrepWork *w, CagCurve *rest, size_t face, size_t loop,
+                                     size_t *order, CagError *err) {
   double *corners = NULL;
-  size_t n = 0, loop;
-  CagStatus status = add_loop(w, face, &loop, err);
-  if (!status) status = cag_brep_curve_corners(rest, &corners, &n, err);
+  size_t n = 0;
+  CagStatus status = cag_brep_curve_corners(rest, &corners, &n, err);
   for (size_t i = 0; !status && i < n; i++) {
     CagCurve *parts[2];
     status = cag_curve_split(rest, corners[i], parts, err);
     if (status) break;
     cag_curve_release(rest);
     rest = parts[1];
-    status = add_side(w, parts[0], false, face, loop, i, err);
+    status = add_side(w, parts[0], false, face, loop, (*order)++, err);
   }
   if (!status) status = add_side(w, cag_curve_retain(rest), false, face, loop, n, err);
   free(corners);
@@ -230,18 +232,63 @@ static CagStatus add_outline(CagBrepWork *w, const CagCurve *outline, const CagT
   CagStatus status = cag_brep_curve(w, outline, &flat, err);
   if (!status) status = cag_curve_transform(flat, frame, &placed, err);
   cag_curve_release(flat);
-  return status ? status : add_between_corners(w, placed, face, err);
+  size_t loop = 0, order = 0;
+  if (!status) status = add_loop(w, face, &loop, err);
+  if (status) {
+    cag_curve_release(placed);
+    return status;
+  }
+  return add_between_corners(w, placed, face, loop, &order, err);
 }
 
-static CagStatus add_trim_sides(CagBrepWork *w, const CagCurve *loop, size_t face, CagError *err) {
-  CagBounds box;
-  CagCurve *near = NULL, *clamped = NULL;
-  CagStatus status = cag_curve_bounds(loop, &box, err);
-  double size = status ? 0 : cag_norm(cag_sub(box.max, box.min));
-  if (!status) status = cag_curve_approximate(loop, TRIM_NEAR * size, &near, err);
+// Points of a stretch of a loop that are no farther apart than this part of the size are one: it
+// runs along a pole of the surface.
+#define POLE 1e-12
+
+static CagStatus is_collapsed(const CagCurve *c, double a, double b, double slack, bool *out,
+                              CagError *err) {
+  CagVec3 from, p;
+  CagStatus status = cag_curve_point(c, a, &from, err);
+  *out = true;
+  for (int k = 1; !status && *out && k <= 4; k++) {
+    status = cag_curve_point(c, a + (b - a) * k / 4, &p, err);
+    *out = !status && cag_norm(cag_sub(p, from)) <= slack;
+  }
+  return status;
+}
+
+static CagStatus add_trim_part(CagBrepWork *w, const CagCurve *c, double a, double b, double size,
+                               size_t face, size_t loop, size_t *order, CagError *err) {
+  CagCurve *part = NULL, *near = NULL, *clamped = NULL;
+  CagStatus status = CAG_OK;
+  if (a == c->start && b == c->end) part = cag_curve_retain(c);
+  else status = cag_curve_trim(c, a, b, &part, err);
+  if (!status) status = cag_curve_approximate(part, TRIM_NEAR * size, &near, err);
   if (!status) status = cag_brep_curve(w, near, &clamped, err);
+  cag_curve_release(part);
   cag_curve_release(near);
-  return status ? status : add_between_corners(w, clamped, face, err);
+  return status ? status : add_between_corners(w, clamped, face, loop, order, err);
+}
+
+// The stretches of a loop that are no poles.
+static CagStatus add_trim_sides(CagBrepWork *w, const CagCurve *c, size_t face, CagError *err) {
+  CagBounds box;
+  double *cuts = NULL;
+  size_t n = 0, loop, order = 0;
+  CagStatus status = add_loop(w, face, &loop, err);
+  if (!status) status = cag_curve_bounds(c, &box, err);
+  if (!status) status = cag_curve_cuts(c, &cuts, &n, err);
+  const double size = status ? 0 : cag_norm(cag_sub(box.max, box.min));
+  for (size_t i = 0, first = 0; !status && i + 1 < n; i++) {
+    bool pole;
+    status = is_collapsed(c, cuts[i], cuts[i + 1], POLE * size, &pole, err);
+    const size_t end = pole ? i : i + 1;
+    if (!status && first < end && (pole || i + 2 == n))
+      status = add_trim_part(w, c, cuts[first], cuts[end], size, face, loop, &order, err);
+    if (pole) first = i + 1;
+  }
+  free(cuts);
+  return status;
 }
 
 // The rectangle about the outline, along the axes of the plane.

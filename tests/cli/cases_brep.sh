@@ -112,6 +112,15 @@ shape trimmed - none 'g = bspline_surface([for i in 0..5: [for j in 0..6: [i * 1
   |> trim([circle(0.8, center: [1.5, 2]), circle(0.3, center: [1.5, 2])])'
 # r^2 (cos u0 - cos u1) (v1 - v0), v around.
 shape trimmed_ball 229.5442203702878 none 'g = sphere_surface(10) |> trim([[1, 0.5], [3, 0.5], [3, 2], [1, 2]])'
+# Quadrics within boxes: a sphere less six caps, a cone of 45 degrees over a rectangle of 4 by 6, strips of a cylinder, a
+# cylinder that leans by 45 degrees between level planes.
+shape caged_ball 125.66370614359172 none 'g = ellipsoid(5, 5, 5, within: box([8, 8, 8], centered: true))'
+shape tent 33.941125496954278 none 'g = elliptic_cone(1, 1, 1, within: box([4, 6, 9]) |> translate([-2, -3, 0]))'
+shape strips 234.60083680112753 none 'g = elliptic_cylinder(20, 20, within: box([30, 34, 10], centered: true))'
+shape leaning 17.771531752633464 none 'g = quadric([1, 0.5, 0.5, 0, -1, 0, 0, 0, 0, -1], within: -1..1)'
+shape boxed_hyperboloid - none 'g = hyperboloid(2, 1, 1, within: box([5, 3, 10], centered: true))'
+shape boxed_sheets - none 'g = hyperboloid(1, 1, 1, sheets: 2, within: box([3, 3, 4], centered: true)) |> rotate([1, 2, 3], 40deg)'
+shape boxed_paraboloid - none 'g = paraboloid(1, 1, within: box([2, 2, 10], centered: true))'
 
 # line NAME LENGTH 'script that defines g' [options]: the expected numbers stand in place of those of a shape.
 line() {
