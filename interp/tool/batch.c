@@ -94,6 +94,12 @@ static int read_jobs(CagBatch *b) {
   return CAG_STATUS_USAGE;
 }
 
+static bool has_film(const CagBatch *b) {
+  for (size_t i = 0; i < b->jobs.count; i++)
+    if (b->rows[i].film) return true;
+  return false;
+}
+
 // Runs what is missing; gives the status of the program.
 static int run_missing(CagBatch *b) {
   CagIoError err;
@@ -113,6 +119,9 @@ static int run(CagBatch *b) {
   settle_workers(b);
   const int status = read_jobs(b);
   if (status != CAG_STATUS_OK) return status;
+  if (b->tool->loop && !has_film(b))
+    return cag_tool_fail(b->tool, CAG_STATUS_USAGE, "fill in frames, such as 0..47",
+                         "--loop is for films, but no row has frames");
   // The report is written at the end; that it cannot be is said before.
   const int place = cag_tool_check_output(b->tool, b->report_path);
   if (place != CAG_STATUS_OK) return place;

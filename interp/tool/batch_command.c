@@ -41,6 +41,7 @@ static void add_output(Words *w, const char *path, bool film) {
 
 static void add_film(const CagBatch *b, const CagBatchRow *row, long frame, Words *w) {
   add(w, "--frames=%ld..%ld", frame, frame);
+  if (b->tool->loop) add(w, "--loop");
   for (size_t i = 0; i < b->tool->define_count; i++)
     if (!strcmp(b->tool->defines[i].name, "frames")) return;
   add(w, "-Dframes=%ld", row->last + 1);

@@ -224,12 +224,14 @@ static bool hash_row(const CagBatch *b, size_t i, Hash script, Hash *h) {
   return add_params(b, h, job);
 }
 
-// The length of a film is seen by its script.
-static void task_key(const CagBatchRow *row, CagTask *task, const CagTask *whole, Hash h) {
+// The length of a film is seen by its script, and whether it repeats.
+static void task_key(const CagBatch *b, const CagBatchRow *row, CagTask *task, const CagTask *whole,
+                     Hash h) {
   add_text(&h, whole->output);
   if (row->film) {
     add_bytes(&h, &task->frame, sizeof task->frame);
     add_bytes(&h, &row->last, sizeof row->last);
+    if (b->tool->loop) add_text(&h, "loop");
   }
   if (row->tile_columns) {
     const int tiles[] = {row->tile_columns, row->lines, task->tile};
@@ -259,7 +261,7 @@ bool cag_batch_make_keys(CagBatch *b) {
       CagTask *task = &b->tasks[row->task + k];
       // The tasks of a picture are its tiles and what joins them.
       const CagTask *whole = &b->tasks[row->task + k / (tiles + 1) * (tiles + 1) + tiles];
-      task_key(row, task, whole, h);
+      task_key(b, row, task, whole, h);
       ok = place_tile(b, task);
     }
   }

@@ -116,6 +116,31 @@ says_not 'film.01.png'
 try render film.cag -o whole.%02d.png --frames 0..3 --size 32x24 --quality draft
 same film.02.png whole.02.png
 
+# The script asserts the time of a film that repeats, of 4 frames: 0, 1/4, 1/2, 3/4.
+it '--loop makes time frame/frames in the films of a table'
+script loops.cag 'assert time == frame / 4
+show sphere(10)'
+table loops.csv <<'END'
+script,output,frames,size,quality
+loops.cag,loops.%02d.png,0..3,32x24,draft
+END
+try batch loops.csv
+status 1
+try batch loops.csv --loop
+status 0
+prints_exactly '1 done, 0 failed, 0 left out (already done)'
+try batch loops.csv --loop
+prints_exactly '0 done, 0 failed, 1 left out (already done)'
+try batch loops.csv
+status 1
+table still.csv <<'END'
+script,output,size,quality
+loops.cag,still.png,32x24,draft
+END
+try batch still.csv --loop
+status 2
+says 'no row has frames'
+
 it 'all problems of a file are told at once, with their rows'
 table bad.csv <<'END'
 script,output,size,frames,quality,tiles
