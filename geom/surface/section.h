@@ -85,7 +85,7 @@ typedef struct CagCurveList {
 void cag_curve_list_free(CagCurveList *list);
 CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err); // takes c over
 // Replaces the curves [first, list->count) by what they are joined end to end, where ends are
-// nearer than `same`.
+// nearer than `same`. Where more than two ends meet, those with the smallest turn are joined.
 CagStatus cag_curve_list_join(CagCurveList *list, size_t first, double same, CagError *err);
 
 // Sections with a plane are added to the list. Those of a surface include curves along which the

@@ -250,11 +250,109 @@ static void curved_nets_meet_a_flat_sheet_as_they_do_its_plane(void **state) {
   }
 }
 
+// --- Runs that meet in one point ---
+
+// Rays from one point, in pairs that are straight lines: in every order, and whichever way they
+// run, the lines go on straight.
+#define LINES 4
+#define RAYS (2 * LINES)
+
+static void shuffle(CagVec3 ends[][2], size_t n) {
+  for (size_t i = n; i > 1; i--) {
+    const size_t k = (size_t)uniform(0, (double)i);
+    for (int e = 0; e < 2; e++) {
+      const CagVec3 swap = ends[i - 1][e];
+      ends[i - 1][e] = ends[k][e];
+      ends[k][e] = swap;
+    }
+    if (uniform(0, 1) < 0.5) {
+      const CagVec3 swap = ends[i - 1][0];
+      ends[i - 1][0] = ends[i - 1][1];
+      ends[i - 1][1] = swap;
+    }
+  }
+}
+
+static int by_value(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static size_t joined_lengths(CagVec3 ends[][2], size_t n, double *out) {
+  CagCurveList list = {0};
+  for (size_t i = 0; i < n; i++) {
+    CagCurve *c;
+    OK(cag_curve_line(ends[i][0], ends[i][1], 3, &c, &err));
+    OK(cag_curve_list_add(&list, c, &err));
+  }
+  OK(cag_curve_list_join(&list, 0, 1e-9, &err));
+  const size_t count = list.count;
+  for (size_t i = 0; i < count; i++)
+    OK(cag_curve_length(list.items[i], list.items[i]->start, list.items[i]->end, &out[i], &err));
+  qsort(out, count, sizeof *out, by_value);
+  cag_curve_list_free(&list);
+  return count;
+}
+
+static void lines_through_a_point_go_on_straight_in_every_order(void **state) {
+  (void)state;
+  seed = 5;
+  for (int trial = 0; trial < 200; trial++) {
+    const CagVec3 p = direction();
+    CagVec3 ends[RAYS][2];
+    double expected[LINES], found[RAYS];
+    for (size_t i = 0; i < LINES; i++) {
+      const CagVec3 d = direction();
+      const double a = uniform(0.5, 2), b = uniform(0.5, 2);
+      ends[2 * i][0] = ends[2 * i + 1][0] = p;
+      ends[2 * i][1] = cag_madd(p, a, d);
+      ends[2 * i + 1][1] = cag_madd(p, -b, d);
+      expected[i] = a + b;
+    }
+    qsort(expected, LINES, sizeof *expected, by_value);
+    for (int order = 0; order < 5; order++) {
+      shuffle(ends, RAYS);
+      assert_int_equal(joined_lengths(ends, RAYS, found), LINES);
+      for (size_t i = 0; i < LINES; i++) NEAR(found[i], expected[i], 1e-12);
+    }
+  }
+}
+
+// Segments between few points, with equal turns among them: the edges of a cube without some.
+static void segments_are_joined_alike_in_every_order(void **state) {
+  (void)state;
+  enum { EDGES = 12 };
+  seed = 6;
+  for (int trial = 0; trial < 200; trial++) {
+    CagVec3 ends[EDGES][2];
+    double first[EDGES], again[EDGES];
+    size_t n = 0;
+    CagVec3 frame[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    if (trial % 2) turn(frame, 1);
+    for (int corner = 0; corner < 8; corner++)
+      for (int axis = 0; axis < 3; axis++) {
+        if (corner >> axis & 1 || uniform(0, 1) < 0.2) continue;
+        CagVec3 p = {0, 0, 0};
+        for (int k = 0; k < 3; k++) p = cag_madd(p, (corner >> k & 1) * (k + 1.0), frame[k]);
+        ends[n][0] = p;
+        ends[n++][1] = cag_madd(p, axis + 1.0, frame[axis]);
+      }
+    const size_t count = joined_lengths(ends, n, first);
+    for (int order = 0; order < 8; order++) {
+      shuffle(ends, n);
+      assert_int_equal(joined_lengths(ends, n, again), count);
+      for (size_t i = 0; i < count; i++) NEAR(again[i], first[i], 1e-12);
+    }
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(creased_nets_meet_a_flat_sheet_as_their_cells_do),
       cmocka_unit_test(creased_nets_meet_each_other_as_their_cells_do),
       cmocka_unit_test(curved_nets_meet_a_flat_sheet_as_they_do_its_plane),
+      cmocka_unit_test(lines_through_a_point_go_on_straight_in_every_order),
+      cmocka_unit_test(segments_are_joined_alike_in_every_order),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
