@@ -151,7 +151,7 @@ $(BUILD)/tests/fuzz/memory: tests/fuzz/memory.c $(BUILD)/libcag.a
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(foreach f,$(WRAPPED),-Wl,--wrap=$(f)) $(LDLIBS_ALL)
 
-test-programs: all $(BUILD)/tools/tables $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz
+test-programs: all $(BUILD)/tools/tables $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz $(BUILD)/tests/fuzz/memory
 test: test-programs
 	BUILD=$(BUILD) sh tests/run_all.sh
 
@@ -163,12 +163,12 @@ test-sanitize:
 test-programs-clang:
 	$(MAKE) BUILD=$(BUILD)-clang CC=clang $(SANITIZED) test-programs
 
-# Tests that fail here, such as those of time, do not stop the report.
+# Tests that fail here, such as those of time, do not stop the report. More allocations fail than in `make test`.
 COVERAGE_EXIT := $(BUILD)-coverage/exit.o
 coverage:
 	@mkdir -p $(BUILD)-coverage
 	$(CC) -std=c17 $(WARN) -fPIC -c tests/coverage/exit.c -o $(COVERAGE_EXIT)
-	-$(MAKE) BUILD=$(BUILD)-coverage OPT=-O0 SANITIZE="--coverage -DCAG_ONE_COPY" LDFLAGS="-Wl,--wrap=_exit $(COVERAGE_EXIT)" test
+	-MEMORY_POINTS=30 $(MAKE) BUILD=$(BUILD)-coverage OPT=-O0 SANITIZE="--coverage -DCAG_ONE_COPY" LDFLAGS="-Wl,--wrap=_exit $(COVERAGE_EXIT)" test
 	BUILD=$(BUILD)-coverage sh tools/coverage.sh
 # How many of N random changes to the code the tests notice; SEED= draws others.
 mutate:

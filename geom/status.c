@@ -25,7 +25,18 @@ bool cag_is_empty_shape(const CagError *err) {
   return err->reason && strcmp(err->reason, "empty-shape") == 0;
 }
 
+static _Thread_local bool memory_was_out;
+
+void cag_note_memory(void) { memory_was_out = true; }
+
+bool cag_memory_was_out(void) {
+  const bool out = memory_was_out;
+  memory_was_out = false;
+  return out;
+}
+
 CagStatus cag_fail_memory(CagError *err) {
+  cag_note_memory();
   return cag_fail(err, CAG_E_MEMORY, "out-of-memory", "", -1, "there is no memory left");
 }
 

@@ -2,7 +2,8 @@
 // element at fault.
 //
 // A function that can fail returns CagStatus and takes `CagError *err` last (never NULL). Outputs
-// are initialised only on CAG_OK. Nothing in geom/ prints, exits or keeps global state.
+// are initialised only on CAG_OK. Nothing in geom/ prints, exits or keeps global state, but for a
+// note of each thread that memory was out.
 
 #ifndef CAG_GEOM_STATUS_H
 #define CAG_GEOM_STATUS_H
@@ -38,6 +39,11 @@ typedef struct CagError {
 CagStatus cag_fail(CagError *err, CagStatus status, const char *reason, const char *argument,
                    long index, const char *format, ...) __attribute__((format(printf, 6, 7)));
 CagStatus cag_fail_memory(CagError *err);
+// Notes that memory was out, as cag_fail_memory does, where no status can be given.
+void cag_note_memory(void);
+// Whether that happened on this thread since the last question. Who calls the core asks this also
+// after CAG_OK: on its way up a failure may have been taken for a no.
+bool cag_memory_was_out(void);
 // Whether the call failed because nothing is left of a shape ("empty-shape").
 bool cag_is_empty_shape(const CagError *err);
 

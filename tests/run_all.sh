@@ -73,6 +73,10 @@ counted "tests/repl" env BUILD="$BUILD" sh tests/repl/run.sh
 counted "tests/editors" env BUILD="$BUILD" sh tests/editors/run.sh
 vector_suites "$BUILD" ""
 counted "tests/fuzz" "$BUILD/tests/fuzz/fuzz" 8
+counted "tests/fuzz/memory" "$BUILD/tests/fuzz/memory" -n "${MEMORY_POINTS:-3}"
+counted "tests/fuzz/memory scripts" "$BUILD/tests/fuzz/memory" -n "${MEMORY_POINTS:-3}" -x tests/fuzz/scripts/*.cag
+counted "tests/fuzz/memory language" "$BUILD/tests/fuzz/memory" -n "${MEMORY_POINTS:-3}" \
+  tests/language/modules/*.cag tests/language/values/*.cag tests/language/words/*.cag
 if [ -n "${SANITIZED:-}" ]; then
   case $SANITIZED in /*) ;; *) SANITIZED=$PWD/$SANITIZED ;; esac
   unit_suites "$SANITIZED" "sanitized "

@@ -212,7 +212,7 @@ size_t cag_chebyshev_breaks(const CagChebyshev *c, double *out, size_t capacity)
   size_t n = 0;
   double last = -INFINITY;
   double *side = malloc(4 * (size_t)c->parts * sizeof *side);
-  if (!side) return 0;
+  if (!side) return cag_note_memory(), 0;
   double *right = side + 2 * c->parts;
   for (size_t i = 1; i < c->count; i++) {
     double t = c->pieces[i].a;

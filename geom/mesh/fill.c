@@ -469,7 +469,7 @@ static void drop_shrunk(CagMesh *m, double noise) {
 // Mean of the triangles around a vertex where the surface has no normal.
 static void complete_normals(CagMesh *m) {
   unsigned char *missing = calloc(m->vertex_count + 1, 1);
-  if (!missing) return;
+  if (!missing) return cag_note_memory();
   for (size_t v = 0; v < m->vertex_count; v++)
     missing[v] = cag_dot(m->normals[v], m->normals[v]) == 0;
   for (size_t t = 0; t < m->triangle_count; t++) {

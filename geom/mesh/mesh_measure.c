@@ -132,6 +132,7 @@ long cag_mesh_euler_characteristic(const CagMesh *m) {
       cag_mesh_edges(m->triangles, m->triangle_count, m->weld, m->vertex_count, &n);
   unsigned char *used = calloc(m->vertex_count + 1, 1);
   long euler = 0;
+  if (!edges || !used) cag_note_memory();
   if (edges && used) {
     for (size_t i = 0; i < n; i += uses_of(edges + i, n - i)) euler--;
     for (size_t t = 0; t < m->triangle_count; t++) {

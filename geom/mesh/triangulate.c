@@ -127,12 +127,12 @@ typedef struct Flips {
   size_t *stack, depth, capacity; // places whose edges are to be looked at
 } Flips;
 
-// Without memory an edge is not looked at: the triangulation stays valid.
+// Without memory an edge is not looked at: the triangulation stays valid, but is not the best.
 static void push(Flips *f, size_t place) {
   if (f->depth == f->capacity) {
     size_t capacity = f->capacity ? 2 * f->capacity : 256;
     size_t *stack = realloc(f->stack, capacity * sizeof *stack);
-    if (!stack) return;
+    if (!stack) return cag_note_memory();
     f->stack = stack;
     f->capacity = capacity;
   }

@@ -198,7 +198,7 @@ static double reach_of(const CagRobot *r) {
 // Gauss-Jordan elimination with row pivots of an n x n matrix.
 static bool invert(const double *matrix, size_t n, double *out) {
   double *m = malloc(n * n * sizeof *m);
-  if (!m) return false;
+  if (!m) return cag_note_memory(), false;
   memcpy(m, matrix, n * n * sizeof *m);
   for (size_t i = 0; i < n * n; i++) out[i] = i % (n + 1) == 0;
   bool regular = true;

@@ -113,7 +113,7 @@ static size_t breaks(const CagSurface *surface, int direction, double *out, size
   for (size_t k = 0; direction == 0 && k < s->n; k++)
     if (s->curve[k]->kind->breaks) most += s->curve[k]->kind->breaks(s->curve[k], NULL, 0);
   double *all = malloc(most * sizeof *all);
-  if (!all) return 0;
+  if (!all) return cag_note_memory(), 0;
   if (direction == 1) {
     n = s->spline.count + (size_t)s->spline.degree + 1;
     memcpy(all, s->spline.knots, n * sizeof *all);

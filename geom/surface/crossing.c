@@ -181,6 +181,7 @@ static bool tube_meets_itself(const CagCurve *section, const CagMotion *motion, 
     return false;
   const int n = steps_for(few);
   disks = malloc(((size_t)n + 1) * sizeof *disks);
+  if (!disks) cag_note_memory();
   const bool meets =
       disks && sample_disks(motion, radius, disks, n) && find_meeting(disks, n, &i, &k);
   if (meets) {

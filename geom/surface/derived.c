@@ -50,7 +50,7 @@ static size_t inner_breaks(const CagSurface *s, int direction, int inner, double
   size_t n = from->kind->breaks ? from->kind->breaks(from, inner, NULL, 0) : 0;
   if (n == 0) return 0;
   double *all = malloc(n * sizeof *all);
-  if (!all) return 0;
+  if (!all) return cag_note_memory(), 0;
   from->kind->breaks(from, inner, all, n);
   n = cag_surface_tidy_breaks(all, n, direction == 0 ? s->u0 : s->v0,
                               direction == 0 ? s->u1 : s->v1);

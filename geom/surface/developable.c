@@ -251,7 +251,7 @@ static size_t developable_breaks(const CagSurface *s, int direction, double *out
   size_t of_t = cag_chebyshev_breaks(w->t, NULL, 0);
   size_t of_a = w->a->kind->breaks ? w->a->kind->breaks(w->a, NULL, 0) : 0, n = of_t;
   double *all = malloc((of_t + of_a + 1) * sizeof *all);
-  if (!all) return 0;
+  if (!all) return cag_note_memory(), 0;
   cag_chebyshev_breaks(w->t, all, of_t);
   if (of_a > 0) w->a->kind->breaks(w->a, all + n, of_a);
   for (size_t i = 0; i < of_a; i++) all[of_t + i] = (all[of_t + i] - w->s0) / (w->s1 - w->s0);

@@ -130,7 +130,7 @@ static size_t isocurve_breaks(const CagCurve *curve, double *out, size_t capacit
   size_t n = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
   if (n == 0) return 0;
   double *all = malloc(n * sizeof *all);
-  if (!all) return 0;
+  if (!all) return cag_note_memory(), 0;
   s->kind->breaks(s, direction, all, n);
   for (size_t i = 0; i < n; i++) all[i] = (all[i] - c->offset) / c->factor;
   n = cag_surface_tidy_breaks(all, n, curve->start, curve->end);

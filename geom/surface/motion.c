@@ -729,7 +729,7 @@ size_t cag_motion_breaks(const CagMotion *m, double *out, size_t capacity) {
     if (functions[i]) most += cag_chebyshev_breaks(functions[i], NULL, 0);
   if (most == 0) return 0;
   double *all = malloc(most * sizeof *all);
-  if (!all) return 0;
+  if (!all) return cag_note_memory(), 0;
   if (n > 0) m->path->kind->breaks(m->path, all, n);
   for (int i = 0; i < 3; i++)
     if (functions[i]) n += cag_chebyshev_breaks(functions[i], all + n, most - n);

@@ -138,7 +138,7 @@ static size_t coons_breaks(const CagSurface *s, int direction, double *out, size
   for (int k = 0; k < 2; k++)
     counts[k] = pair[k]->kind->breaks ? pair[k]->kind->breaks(pair[k], NULL, 0) : 0;
   double *all = malloc((counts[0] + counts[1] + 1) * sizeof *all);
-  if (!all) return 0;
+  if (!all) return cag_note_memory(), 0;
   for (int k = 0; k < 2; k++) {
     const CagCurve *e = pair[k];
     if (counts[k] > 0) e->kind->breaks(e, all + n, counts[k]);

@@ -132,7 +132,7 @@ static size_t ruled_breaks(const CagSurface *s, int direction, double *out, size
   size_t na = curve_breaks(p->a, NULL, 0), nb = curve_breaks(p->b, NULL, 0);
   if (na + nb == 0) return 0;
   double *all = malloc((na + nb) * sizeof *all);
-  if (!all) return 0;
+  if (!all) return cag_note_memory(), 0;
   curve_breaks(p->a, all, na);
   curve_breaks(p->b, all + na, nb);
   for (size_t i = 0; i < na + nb; i++) {

@@ -60,7 +60,7 @@ static size_t trimmed_breaks(const CagSurface *s, int direction, double *out, si
   if (!w->inner->kind->breaks) return 0;
   size_t all = w->inner->kind->breaks(w->inner, direction, NULL, 0), n = 0;
   double *at = malloc((all + 1) * sizeof *at);
-  if (!at) return 0;
+  if (!at) return cag_note_memory(), 0;
   w->inner->kind->breaks(w->inner, direction, at, all);
   double lo = direction == 0 ? s->u0 : s->v0, hi = direction == 0 ? s->u1 : s->v1;
   for (size_t i = 0; i < all; i++)

@@ -210,6 +210,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   *result = cag_none();
   CagBuiltinFunction function = vm->differentiation ? cag_jet_function(&call, index) : b->function;
   bool ok = function(&call, result) && !vm->failed; // a comparison deep in a value may have failed
+  if (cag_memory_was_out()) ok = cag_vm_fail_memory(vm);
   ok = ok && cag_check_defined(&call, *result);
   vm->native = native.outer;
   vm->top = top;

@@ -319,8 +319,8 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
     resolve_unit(vm, m);
     cag_diagnostics_sort_last(&vm->errors);
   }
-  const bool sound = vm->errors.count == before;
-  m->state = sound ? CAG_MODULE_LOADED : CAG_MODULE_FAILED;
+  const bool sound = vm->errors.count == before && !vm->starved;
+  m->state = sound ? CAG_MODULE_LOADED : vm->starved ? CAG_MODULE_LOST : CAG_MODULE_FAILED;
   return sound ? m->number : CAG_NO_MODULE;
 }
 

@@ -850,6 +850,7 @@ bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *con
   CagNative *const native = vm->native;
   Work w = {vm, work, context, false};
   const bool done = cag_memory_guard(do_work, &w);
+  vm->starved |= cag_memory_was_out();
   if (vm->starved || (!done && !vm->failed)) cag_vm_fail_memory(vm);
   if (!done) {
     vm->frame_count = frames;

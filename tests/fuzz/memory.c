@@ -180,14 +180,15 @@ static void try_point(const Job *j, long point, int expected_status, const char 
   }
 }
 
-// Runs the points of one job that are left.
-static void try_job(size_t points, uint64_t seed) {
+// Runs the points of one job that are left, or a single one.
+static void try_job(size_t points, uint64_t seed, long single) {
   const Job *j = &jobs[shared->job], empty = {.name = "", .text = ""};
   char *expected, *output;
   size_t allocations = 0, start = 0;
   run_job(&empty, 0, &output, &start);
   free(output);
   const int status = run_job(j, 0, &expected, &allocations);
+  if (single) try_point(j, single, status, expected);
   while (shared->point < points) {
     uint64_t state = seed + shared->job * 0x2545f4914f6cdd1du + shared->point++;
     // One of sixteen points lies in the start of the session, which is the same for all.
@@ -285,7 +286,7 @@ static void run_all(size_t points, uint64_t seed) {
     if (child < 0) exit(2);
     if (child == 0) {
       for (; shared->job < job_count; shared->job++, shared->point = 0) {
-        try_job(points, seed);
+        try_job(points, seed, 0);
         if (shared->lost) break; // a new child begins without what is lost
       }
       exit(0);
@@ -294,6 +295,7 @@ static void run_all(size_t points, uint64_t seed) {
     waitpid(child, &status, 0);
     const bool endless = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM;
     const bool ended = WIFEXITED(status) && (WEXITSTATUS(status) == 0 || shared->lost);
+    if (!ended && !endless) psignal(WIFSIGNALED(status) ? WTERMSIG(status) : 0, "memory");
     if (!ended) complain(endless ? "it does not end" : "a crash");
     shared->lost = false;
   }
@@ -322,8 +324,7 @@ int main(int argc, char **argv) {
   jobs = NULL;
   if (optind == argc) add_examples(only);
   for (int i = optind; i < argc; i++) add_file(argv[i], exports);
-  for (; single && shared->job < job_count; shared->job++)
-    try_point(&jobs[shared->job], single, CAG_STATUS_SCRIPT, "");
+  for (; single && shared->job < job_count; shared->job++) try_job(0, 0, single);
   run_all(points, seed);
   remove_folder();
   printf("%zu passed, %zu failed, 0 skipped\n", shared->passed, shared->failed);
