@@ -19,8 +19,9 @@
 #define CANDIDATES 24
 #define LEAF 4
 #define ROUNDS 100
-// Pairs of the second walk. Shapes that run along each other at one distance have any number.
-#define MOST_PAIRS 4000
+// Pairs that lead to one and the same distance, after which shapes count as running along each
+// other: there are any number of such pairs.
+#define SAME_PAIRS 4000
 // Pairs are equally near when their distances differ by less than this part of the size.
 #define EQUALLY_NEAR 1e-11
 // Shapes nearer than this part of their size meet.
@@ -492,11 +493,20 @@ static CagStatus refine(Pair *pair, double *out, CagVec3 *point, CagError *err) 
 
 // --- The search ---
 
+// Two nodes, with a lower bound of their distance.
+typedef struct Task {
+  double bound;
+  size_t i, k;
+} Task;
+
 typedef struct Search {
   const Tree *a, *b;
   double size, best;
-  CagVec3 point; // of the second shape
-  size_t pairs;  // that the second walk may still refine
+  double farthest; // that a pair led to
+  CagVec3 point;   // of the second shape
+  size_t pairs, most;
+  Task *tasks; // a heap, the lowest bound first
+  size_t count, room;
   const volatile int *interrupt;
   CagStatus status;
   CagError *err;
@@ -505,6 +515,8 @@ typedef struct Search {
 // Shapes nearer than this meet; what may be nearer than the best by less than this is not looked
 // at.
 static double touching(const Search *s) { return TOUCHING * s->size; }
+
+static double equally_near(const Search *s) { return EQUALLY_NEAR * s->size; }
 
 // A point or a flat triangle.
 static bool is_exact(const CagPart *part) { return !part->curve && !part->surface; }
@@ -521,42 +533,96 @@ static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chord
   s->status = refine(&pair, &d, &p, s->err);
   // Points and flat triangles are their own chords.
   if (is_exact(a) && is_exact(b)) d = chords;
-  if (s->status || d >= s->best) return;
+  if (s->status) return;
+  s->pairs++;
+  s->farthest = fmax(s->farthest, d);
+  if (d >= s->best) return;
   s->best = d;
   s->point = p;
 }
 
+// Shapes that touch, or run along each other at one distance.
 static bool is_over(const Search *s) {
-  return s->status || s->pairs == 0 || s->best <= touching(s) || (s->interrupt && *s->interrupt);
+  return s->status || s->best <= touching(s) || (s->interrupt && *s->interrupt) ||
+         (s->pairs >= SAME_PAIRS && s->farthest - s->best <= equally_near(s));
 }
 
-// All pairs that may be nearer than the best, the nearer ones first.
-static void certify(Search *s, size_t i, size_t k) {
+static void push_task(Search *s, Task task) {
+  if (s->status || task.bound >= s->best - equally_near(s)) return;
+  if (s->count == s->room) {
+    const size_t room = s->room ? 2 * s->room : 256;
+    Task *grown = realloc(s->tasks, room * sizeof *grown);
+    if (!grown) {
+      s->status = cag_fail_memory(s->err);
+      return;
+    }
+    s->tasks = grown;
+    s->room = room;
+  }
+  size_t i = s->count++;
+  for (; i > 0 && s->tasks[(i - 1) / 2].bound > task.bound; i = (i - 1) / 2)
+    s->tasks[i] = s->tasks[(i - 1) / 2];
+  s->tasks[i] = task;
+}
+
+static Task pop_task(Search *s) {
+  Task *tasks = s->tasks;
+  const Task top = tasks[0], last = tasks[--s->count];
+  size_t i = 0;
+  for (size_t child; (child = 2 * i + 1) < s->count; i = child) {
+    if (child + 1 < s->count && tasks[child + 1].bound < tasks[child].bound) child++;
+    if (!(tasks[child].bound < last.bound)) break;
+    tasks[i] = tasks[child];
+  }
+  tasks[i] = last;
+  return top;
+}
+
+static void push_nodes(Search *s, size_t i, size_t k) {
   const Node *x = &s->a->nodes[i], *y = &s->b->nodes[k];
-  const double slack = EQUALLY_NEAR * s->size;
-  if (is_over(s) || gap(&x->box, &y->box) - x->sag - y->sag >= s->best - slack) return;
+  push_task(s, (Task){gap(&x->box, &y->box) - x->sag - y->sag, i, k});
+}
+
+static void fail_uncertain(Search *s, double bound) {
+  s->status = cag_fail(s->err, CAG_E_LIMIT, "convergence", "", -1,
+                       "more than %zu pairs of places of the shapes are nearly equally near, at %g "
+                       "to %g mm: which is the nearest is not certain",
+                       s->most, fmax(0, bound), s->best);
+}
+
+static void try_parts(Search *s, const Node *x, const Node *y) {
+  for (size_t m = 0; m < x->count; m++)
+    for (size_t n = 0; n < y->count && !is_over(s); n++) {
+      const CagPart *p = &s->a->parts->items[s->a->order[x->first + m]];
+      const CagPart *q = &s->b->parts->items[s->b->order[y->first + n]];
+      const double least = s->best - equally_near(s) + p->sag + q->sag;
+      if (part_gap(p, q) >= least) continue;
+      const double chords = chord_distance(p, q);
+      if (chords >= least) continue;
+      if (s->pairs < s->most) try_pair(s, p, q, chords);
+      else fail_uncertain(s, chords - p->sag - q->sag);
+    }
+}
+
+static void go_on(Search *s, const Task *task) {
+  const Node *x = &s->a->nodes[task->i], *y = &s->b->nodes[task->k];
   if (!x->left && !y->left) {
-    for (size_t m = 0; m < x->count; m++)
-      for (size_t n = 0; n < y->count && !is_over(s); n++) {
-        const CagPart *p = &s->a->parts->items[s->a->order[x->first + m]];
-        const CagPart *q = &s->b->parts->items[s->b->order[y->first + n]];
-        const double least = s->best - slack + p->sag + q->sag;
-        if (part_gap(p, q) >= least) continue;
-        const double chords = chord_distance(p, q);
-        if (chords >= least) continue;
-        s->pairs--;
-        try_pair(s, p, q, chords);
-      }
+    try_parts(s, x, y);
     return;
   }
   const bool first = x->left && (!y->left || x->count >= y->count);
-  const Node *child = first ? &s->a->nodes[x->left] : &s->b->nodes[y->left];
-  const CagBounds *other = first ? &y->box : &x->box;
-  const size_t nearer = gap(&child[1].box, other) < gap(&child[0].box, other);
-  for (size_t turn = 0; turn < 2; turn++) {
-    const size_t c = turn ? 1 - nearer : nearer;
-    if (first) certify(s, x->left + c, k);
-    else certify(s, i, y->left + c);
+  for (size_t half = 0; half < 2; half++)
+    if (first) push_nodes(s, x->left + half, task->k);
+    else push_nodes(s, task->i, y->left + half);
+}
+
+// All pairs that may be nearer than the best, in the order of the bounds of their nodes.
+static void certify(Search *s) {
+  push_nodes(s, 0, 0);
+  while (s->count > 0 && !is_over(s)) {
+    const Task task = pop_task(s);
+    if (task.bound >= s->best - equally_near(s)) break;
+    go_on(s, &task);
   }
 }
 
@@ -567,17 +633,16 @@ static void find_nearest(Search *s) {
   walk(s->a, 0, s->b, 0, &nearest);
   for (size_t i = 0; i < nearest.n && !is_over(s); i++)
     try_pair(s, nearest.a[i], nearest.b[i], nearest.distance[i]);
-  certify(s, 0, 0);
+  certify(s);
 }
 
-CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, double *out, CagVec3 *point,
-                             const volatile int *interrupt, CagError *err) {
+CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, double *out,
+                             CagVec3 *point, const volatile int *interrupt, CagError *err) {
   if (a->n == 0 || b->n == 0)
     return cag_fail(err, CAG_E_DEGENERATE, "zero-area", "", -1,
                     "a surface without area has no triangles to measure from");
   Tree first = {0}, second = {0};
-  Search s = {&first,    &second, .best = INFINITY, .pairs = MOST_PAIRS, .interrupt = interrupt,
-              .err = err};
+  Search s = {&first, &second, .best = INFINITY, .most = most, .interrupt = interrupt, .err = err};
   CagStatus status = grow_tree(a, &first, err);
   if (!status) status = grow_tree(b, &second, err);
   if (!status) {
@@ -590,6 +655,7 @@ CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, double *out, 
   free(first.nodes);
   free(second.order);
   free(second.nodes);
+  free(s.tasks);
   if (status) return status;
   *out = s.best <= touching(&s) ? 0 : s.best;
   if (point) *point = s.point;

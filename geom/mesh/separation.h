@@ -33,14 +33,19 @@ void cag_parts_free(CagParts *parts);
 
 // The least distance of two sets of parts; 0 where they meet. Parts are compared by their chords
 // and flat triangles, and then on the exact shapes (Newton's method) all pairs that the sag of
-// their parts allows to be nearer than the nearest one found.
+// their parts allows to be nearer than the nearest one found, those with the lowest bounds first.
+// Shapes that run along each other at one distance have that: it ends the search when thousands of
+// pairs lead to it and none to another.
 //
+//   most       pairs to compare on the exact shapes
 //   point      of b, where they do not meet; may be NULL
 //   interrupt  NULL, or: not 0 stops with CAG_E_CALLBACK
 //
-// Fails with "zero-area" where a set is empty, as that of a surface which is one point.
-CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, double *out, CagVec3 *point,
-                             const volatile int *interrupt, CagError *err);
+// Fails with "zero-area" where a set is empty, as that of a surface which is one point, and with
+// "convergence" where more pairs than `most` may be the nearest and lead to different distances.
+#define CAG_PARTS_PAIRS 100000
+CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, double *out,
+                             CagVec3 *point, const volatile int *interrupt, CagError *err);
 
 // How often a closed mesh winds about p: 1 inside, 0 outside, fractions on the boundary only.
 double cag_mesh_winding(const CagMesh *m, CagVec3 p);

@@ -310,7 +310,8 @@ static CagStatus side_of(CagVm *vm, CagValue v, CagVec3 p, int *side, CagError *
   status = body_add_shape(vm, &body, v, tolerance, err);
   if (!status) status = cag_parts_add_point(&point.parts, p, err);
   if (!status)
-    status = cag_parts_distance(&point.parts, &body.parts, &distance, &foot, cag_vm_stop(vm), err);
+    status = cag_parts_distance(&point.parts, &body.parts, CAG_PARTS_PAIRS, &distance, &foot,
+                                cag_vm_stop(vm), err);
   body_free(&body);
   body_free(&point);
   if (status) return status;
@@ -428,8 +429,8 @@ static CagStatus measure(CagVm *vm, Side side[2], double *out, CagError *err) {
   CagStatus status = fill_side(vm, &side[0], err);
   if (!status) status = fill_side(vm, &side[1], err);
   if (!status)
-    status = cag_parts_distance(&side[0].body.parts, &side[1].body.parts, out, NULL,
-                                cag_vm_stop(vm), err);
+    status = cag_parts_distance(&side[0].body.parts, &side[1].body.parts, CAG_PARTS_PAIRS, out,
+                                NULL, cag_vm_stop(vm), err);
   if (status || *out == 0) return status;
   status = swallows(vm, &side[0], &side[1], &within, err);
   if (!status && !within) status = swallows(vm, &side[1], &side[0], &within, err);
@@ -485,7 +486,9 @@ const CagBuiltin cag_builtins_hulls[] = {
      "The least distance (mm) of a shape or group from a point or another shape; 0 where they "
      "meet, and within a solid or closed mesh. It is that of the exact shapes, not of their "
      "meshes: every place whose mesh is near enough is tried by Newton's method. "
-     "`distance(P, G)` is the same.",
+     "Shapes that run along each other have the distance to which thousands of places lead. Where "
+     "100,000 places lead to different distances and others may be nearer, that is an error "
+     "(convergence). `distance(P, G)` is the same.",
      "print near(distance(sphere(2), translate(sphere(1), [5, 0, 0])), 2) // expect: true\n"
      "print near(distance([0, 0, 5], torus(3, 1)), sqrt(34) - 1) // expect: true\n"
      "print distance(box(2), [1, 1, 1]) // expect: 0",

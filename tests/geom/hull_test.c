@@ -170,6 +170,41 @@ static void curves_on_a_torus_have_the_derivatives_of_its_formula(void **state) 
   cag_surface_release(s);
 }
 
+// A curve that rises and falls by 1e-4 above a line: of many places that are nearly equally near
+// the nearest is found, by samples 1e-10 high. Too few pairs are an error, never an uncertain
+// distance.
+static void one_of_many_places_is_the_nearest(void **state) {
+  (void)state;
+  enum { POINTS = 400, SAMPLES = 200000 };
+  CagVec3 p[POINTS];
+  double knots[POINTS + 4], distance, least = INFINITY;
+  uint64_t random = 5;
+  for (int i = 0; i < POINTS; i++) {
+    random = random * 6364136223846793005u + 1442695040888963407u;
+    p[i] = cag_vec3(i, 1 + 1e-4 * (double)(random >> 11) / 9007199254740992.0, 0);
+  }
+  for (int i = 0; i < POINTS + 4; i++) knots[i] = fmin(fmax(i - 3, 0), POINTS - 3);
+  const CagVec3 ends[2] = {{0, 0, 0}, {POINTS, 0, 0}};
+  CagCurve *wave, *line;
+  CagParts a = {0}, b = {0};
+  OK(cag_curve_nurbs(p, NULL, POINTS, 3, knots, 2, &wave, &err));
+  OK(cag_curve_polyline(ends, 2, false, 2, &line, &err));
+  for (int i = 0; i <= SAMPLES; i++) {
+    CagVec3 at;
+    OK(cag_curve_point(wave, wave->end * i / SAMPLES, &at, &err));
+    least = fmin(least, at.y);
+  }
+  OK(cag_parts_add_curve(&a, wave, 1e-5, &err));
+  OK(cag_parts_add_curve(&b, line, 1e-5, &err));
+  OK(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, NULL, NULL, &err));
+  NEAR(distance, least, 1e-10);
+  FAILS(cag_parts_distance(&a, &b, 2, &distance, NULL, NULL, &err), "convergence");
+  cag_parts_free(&a);
+  cag_parts_free(&b);
+  cag_curve_release(wave);
+  cag_curve_release(line);
+}
+
 static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state) {
   (void)state;
   CagSurface *s, *moved;
@@ -189,14 +224,17 @@ static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state
   cag_mesh_release(m);
   OK(cag_surface_tessellate(moved, &how, &m, &err));
   OK(cag_parts_add_mesh(&b, m, moved, how.tolerance, &err));
-  OK(cag_parts_distance(&a, &b, &distance, &foot, NULL, &err));
+  OK(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, &foot, NULL, &err));
+  // The circles of both tori are at one distance all around.
   NEAR(distance, 5, 1e-12);
   NEAR(foot.z, 6, 1e-9);
   NEAR(hypot(foot.x, foot.y), 5, 1e-7);
+  // They are so all around: a few pairs do not show that.
+  FAILS(cag_parts_distance(&a, &b, 20, &distance, NULL, NULL, &err), "convergence");
   cag_parts_free(&b);
   b = (CagParts){0};
   OK(cag_parts_add_point(&b, cag_vec3(8, 0, 4), &err));
-  OK(cag_parts_distance(&a, &b, &distance, NULL, NULL, &err));
+  OK(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, NULL, NULL, &err));
   NEAR(distance, 4, 1e-12); // 3-4-5
   cag_parts_free(&a);
   cag_parts_free(&b);
@@ -213,6 +251,7 @@ int main(void) {
       cmocka_unit_test(hulls_hold_all_points),
       cmocka_unit_test(flat_sets_have_no_solid),
       cmocka_unit_test(curves_on_a_torus_have_the_derivatives_of_its_formula),
+      cmocka_unit_test(one_of_many_places_is_the_nearest),
       cmocka_unit_test(tori_are_as_far_apart_as_their_circles_less_their_tubes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
