@@ -53,8 +53,9 @@ CagStatus cag_mesh_append(CagMesh *const *meshes, size_t n, CagMesh **out, CagEr
 CagBounds cag_mesh_bounds(const CagMesh *m);
 // Closed and consistently oriented: each edge (of welded vertices) lies in two triangles with
 // opposite senses. *edge: a failing one, as two positions.
-bool cag_mesh_is_watertight(const CagMesh *m, CagVec3 edge[2]);
-long cag_mesh_euler_characteristic(const CagMesh *m); // of the welded mesh
+CagStatus cag_mesh_watertight(const CagMesh *m, bool *watertight, CagVec3 edge[2], CagError *err);
+bool cag_mesh_is_watertight(const CagMesh *m, CagVec3 edge[2]); // false where memory is out
+long cag_mesh_euler_characteristic(const CagMesh *m);           // of the welded mesh
 double cag_mesh_area(const CagMesh *m);
 void cag_mesh_volume_terms(const CagMesh *m, double terms[10]); // as cag_surface_volume_terms
 CagStatus cag_mesh_weld(const CagMesh *m, double tolerance, CagMesh **out,

@@ -97,12 +97,14 @@ static bool collect_uses(const CagMesh *m, Uses *out) {
   return true;
 }
 
-bool cag_mesh_is_watertight(const CagMesh *m, CagVec3 edge[2]) {
+CagStatus cag_mesh_watertight(const CagMesh *m, bool *watertight, CagVec3 edge[2], CagError *err) {
   CagVec3 none = {0, 0, 0};
   if (edge) edge[0] = edge[1] = none;
-  if (m->triangle_count == 0 || m->vertex_count > UINT32_MAX / 2) return false;
+  *watertight = false;
+  if (m->triangle_count == 0 || m->vertex_count > UINT32_MAX / 2) return CAG_OK;
   Uses uses;
   bool closed = collect_uses(m, &uses);
+  const CagStatus status = closed ? CAG_OK : cag_fail_memory(err);
   for (size_t v = 0; closed && v < m->vertex_count; v++)
     for (size_t k = uses.start[v]; k < uses.start[v + 1] && closed; k += 2) {
       const uint32_t *use = uses.use + k;
@@ -116,6 +118,14 @@ bool cag_mesh_is_watertight(const CagMesh *m, CagVec3 edge[2]) {
     }
   free(uses.start);
   free(uses.use);
+  *watertight = closed;
+  return status;
+}
+
+bool cag_mesh_is_watertight(const CagMesh *m, CagVec3 edge[2]) {
+  CagError err;
+  bool closed;
+  cag_mesh_watertight(m, &closed, edge, &err);
   return closed;
 }
 

@@ -220,10 +220,11 @@ static CagStatus put_samples(Writer *w, const CagCurve *c, CagError *err) {
 
 static CagStatus put_other_curve(Writer *w, const CagCurve *c, CagError *err) {
   CagCurve *nurbs;
-  CagError none;
-  if (cag_curve_to_nurbs(c, &nurbs, &none)) return put_samples(w, c, err);
+  CagStatus status = cag_curve_to_nurbs(c, &nurbs, err);
+  if (status == CAG_E_MEMORY) return status;
+  if (status) return put_samples(w, c, err);
   key(w, "nurbs");
-  CagStatus status = put_curve(w, nurbs, err);
+  status = put_curve(w, nurbs, err);
   cag_curve_release(nurbs);
   return status;
 }
@@ -314,9 +315,9 @@ static CagStatus put_surface(Writer *w, const CagSurface *s, CagError *err);
 static CagStatus put_other_surface(Writer *w, const CagSurface *s, CagError *err) {
   CagSurface *nurbs;
   CagMesh *mesh;
-  CagError none;
-  CagStatus status;
-  if (cag_surface_to_nurbs(s, &nurbs, &none) == CAG_OK) {
+  CagStatus status = cag_surface_to_nurbs(s, &nurbs, err);
+  if (status == CAG_E_MEMORY) return status;
+  if (status == CAG_OK) {
     key(w, "nurbs");
     status = put_surface(w, nurbs, err);
     cag_surface_release(nurbs);

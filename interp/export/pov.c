@@ -15,23 +15,18 @@ static void heading(CagPovWriter *w, const char *text) {
 
 // --- What is drawn and of what ---
 
-static bool is_closed(const CagItem *item) {
-  switch (item->kind) {
-  case CAG_ITEM_CURVE:
-  case CAG_ITEM_SOLID:
-  case CAG_ITEM_GROUND: return true;
-  case CAG_ITEM_REGION: return false;
-  case CAG_ITEM_SURFACE: return cag_surface_is_closed(item->as.surface);
-  case CAG_ITEM_MESH: return cag_mesh_is_watertight(item->as.mesh, (CagVec3[2]){{0, 0, 0}});
-  }
-  return true;
+static CagStatus find_closed(const CagItem *item, bool *closed, CagError *err) {
+  *closed = item->kind != CAG_ITEM_REGION;
+  if (item->kind == CAG_ITEM_SURFACE) *closed = cag_surface_is_closed(item->as.surface);
+  return item->kind == CAG_ITEM_MESH ? cag_mesh_watertight(item->as.mesh, closed, NULL, err)
+                                     : CAG_OK;
 }
 
-static void write_materials(CagPovWriter *w, const bool *closed) {
+static CagStatus write_materials(CagPovWriter *w, const bool *closed, CagError *err) {
   const CagScene *s = w->scene;
   enum { THIN = 1, CLOSED = 2 };
   unsigned char *used = calloc(s->material_count + 1, 1);
-  if (!used) return; // the caller's next allocation reports it
+  if (!used) return cag_fail_memory(err);
   for (size_t i = 0; i < s->item_count; i++)
     used[s->items[i].material] |=
         closed[i] || !(s->materials[s->items[i].material].transmission > 0) ? CLOSED : THIN;
@@ -43,6 +38,7 @@ static void write_materials(CagPovWriter *w, const bool *closed) {
     if (used[i] & THIN) pov_material(w, i, false);
   }
   free(used);
+  return CAG_OK;
 }
 
 // --- Settings ---
@@ -262,7 +258,8 @@ static CagStatus write_all(CagPovWriter *w, const bool *closed, CagError *err) {
   pov_lights(w);
   pov_sky(w);
   heading(w, "Materials");
-  write_materials(w, closed);
+  CagStatus status = write_materials(w, closed, err);
+  if (status) return status;
   heading(w, "Things");
   return write_items(w, closed, err);
 }
@@ -287,7 +284,8 @@ CagStatus cag_export_pov(const CagScene *scene, const CagPovOptions *options, Ca
   bool *closed = malloc(scene->item_count * sizeof *closed);
   CagStatus status = CAG_OK;
   if (!closed || !make_names(&w)) status = cag_fail_memory(err);
-  for (size_t i = 0; !status && i < scene->item_count; i++) closed[i] = is_closed(&scene->items[i]);
+  for (size_t i = 0; !status && i < scene->item_count; i++)
+    status = find_closed(&scene->items[i], &closed[i], err);
   if (!status) status = write_all(&w, closed, err);
   if (!status && w.failure.status) {
     *err = w.failure;

@@ -251,14 +251,16 @@ static CagStatus write_objects(Model *m, bool *shown, CagError *err) {
     CagVec3 edge[2];
     float *p = NULL;
     // Before the positions are made: the check takes as much memory as the mesh.
-    bool closed = cag_mesh_is_watertight(m->parts[i].mesh, edge);
+    bool closed;
+    CagStatus status = cag_mesh_watertight(m->parts[i].mesh, &closed, edge, err);
+    if (status != CAG_OK) return status;
     if (is_component(m, i)) shown[i] = shown[m->copies[i].original];
     else {
-      CagStatus status = cag_mesh_floats(&m->parts[i], &p, NULL, NULL, err);
+      status = cag_mesh_floats(&m->parts[i], &p, NULL, NULL, err);
       if (status != CAG_OK) return status;
       shown[i] = cag_mesh_kept_triangles(m->parts[i].mesh, p) > 0;
     }
-    CagStatus status = shown[i] ? write_object(m, i, closed, p, err) : CAG_OK;
+    if (shown[i]) status = write_object(m, i, closed, p, err);
     free(p);
     if (status != CAG_OK) return status;
   }

@@ -40,14 +40,15 @@ static CagStatus solid_mass(const CagSolid *s, double tolerance, double density,
 
 // Integrals are taken about the middle of the bounds: about a far origin they lose their digits.
 static CagStatus mesh_mass(const CagMesh *m, double density, CagUrdfMass *out, CagError *err) {
-  CagVec3 edge[2];
-  if (m->triangle_count == 0 || !cag_mesh_is_watertight(m, edge)) return CAG_OK;
+  bool closed;
+  CagStatus status = cag_mesh_watertight(m, &closed, NULL, err);
+  if (status != CAG_OK || !closed) return status;
   CagBounds box = cag_mesh_bounds(m);
   CagVec3 middle = cag_lerp(box.min, box.max, 0.5);
   CagTransform shift = cag_translate(cag_scaled(middle, -1));
   CagMesh *near;
   double terms[10] = {0};
-  CagStatus status = cag_mesh_transform(m, &shift, &near, err);
+  status = cag_mesh_transform(m, &shift, &near, err);
   if (status != CAG_OK) return status;
   cag_mesh_volume_terms(near, terms);
   cag_mesh_release(near);

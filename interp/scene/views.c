@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "interp/scene/scene.h"
+#include "lang/memory.h"
 
 // Part of half the picture that stays free on each side.
 #define MARGIN 0.09
@@ -159,16 +160,21 @@ static Reach reach_of_box(const Framing *f, int a, const CagBounds *box) {
   return out;
 }
 
-// Both boxes hold the item, so that the nearer limits do. One that cannot be told does not count.
+// Both boxes hold the item, so that the nearer limits do. One that cannot be told does not count;
+// without memory the work is left, so that a picture never depends on what memory there is.
 static void add_item(const Framing *f, const CagItem *item, Reach r[2]) {
   CagBounds box;
   CagError err = {0};
-  if (cag_item_bounds(item, NULL, &box, &err) != CAG_OK || box.min.x > box.max.x) return;
+  CagStatus status = cag_item_bounds(item, NULL, &box, &err);
+  if (status == CAG_E_MEMORY) cag_memory_leave();
+  if (status != CAG_OK || box.min.x > box.max.x) return;
   for (int a = 0; a < 2; a++) {
     Reach one = reach_of_box(f, a, &box);
     const CagTransform t = reach_transform(f, a);
     CagBounds seen;
-    if (cag_item_bounds(item, &t, &seen, &err) == CAG_OK && seen.min.x <= seen.max.x) {
+    status = cag_item_bounds(item, &t, &seen, &err);
+    if (status == CAG_E_MEMORY) cag_memory_leave();
+    if (status == CAG_OK && seen.min.x <= seen.max.x) {
       one.high = fmin(one.high, seen.max.x);
       one.low = fmax(one.low, f->k[a] == 0 ? seen.min.x : seen.min.y);
     }

@@ -143,13 +143,19 @@ static int check_parts(CagSession *s, const Parts *parts) {
 }
 
 // Name of the file that goes with another one, such as part.mtl with part.obj; NULL for standard
-// output.
-static char *path_beside(const char *path, const char *ending) {
-  if (strcmp(path, "-") == 0) return NULL;
+// output. False: no memory.
+static bool path_beside(const char *path, const char *ending, char **out) {
+  *out = NULL;
+  if (strcmp(path, "-") == 0) return true;
   const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
   size_t stem = dot && (!slash || dot > slash) ? (size_t)(dot - path) : strlen(path);
-  char *out = NULL;
-  return asprintf(&out, "%.*s%s", (int)stem, path, ending) < 0 ? NULL : out;
+  return asprintf(out, "%.*s%s", (int)stem, path, ending) >= 0;
+}
+
+static int fail_memory(CagSession *s) {
+  CagError err;
+  cag_fail_memory(&err);
+  return cag_session_fail_geometry(s, &err);
 }
 
 typedef struct MeshOutput {
@@ -297,13 +303,17 @@ static int write_gltf_files(CagSession *s, const Parts *parts, const char *path,
 static int write_gltf(CagSession *s, const Parts *parts, const char *path) {
   struct stat at;
   const bool special = stat(path, &at) == 0 && !S_ISREG(at.st_mode); // a device or a pipe
-  char *stem = special ? NULL : path_beside(path, ""), *folder = stem ? strdup(stem) : NULL;
+  char *stem = NULL, *folder = NULL;
+  if (!special && (!path_beside(path, "", &stem) || (stem && !(folder = strdup(stem))))) {
+    free(stem);
+    return fail_memory(s);
+  }
   if (folder) {
     char *slash = strrchr(folder, '/');
     if (slash) slash[1] = 0;
     else folder[0] = 0;
   }
-  int status = write_gltf_files(s, parts, path, folder ? stem : NULL, folder ? folder : "");
+  int status = write_gltf_files(s, parts, path, stem, folder ? folder : "");
   free(stem);
   free(folder);
   return status;
@@ -317,9 +327,11 @@ static int export_meshes(CagSession *s, const char *path, MeshWriter write, cons
   if (status != CAG_STATUS_OK) return status;
   status = check_parts(s, &parts);
   if (status == CAG_STATUS_OK) {
-    char *beside = ending ? path_beside(path, ending) : NULL;
+    char *beside = NULL;
     MeshOutput m = {.parts = parts.items, .count = parts.count};
-    status = write_meshes(s, &m, path, beside, write);
+    status = ending && !path_beside(path, ending, &beside)
+                 ? fail_memory(s)
+                 : write_meshes(s, &m, path, beside, write);
     free(beside);
   }
   free_parts(&parts);
@@ -478,7 +490,7 @@ static int write_urdf_meshes(CagSession *s, const CagUrdf *u, const char *folder
     for (const CagUrdfShape *m = u->links[i].shapes; m && status == CAG_STATUS_OK; m = m->next) {
       char *path = NULL;
       if (m->kind != CAG_URDF_MESH) continue;
-      if (asprintf(&path, "%s/%s", folder, m->file) < 0) return CAG_STATUS_LIMIT;
+      if (asprintf(&path, "%s/%s", folder, m->file) < 0) return fail_memory(s);
       CagAtomicFile *f = cag_atomic_file_open(path, &io);
       free(path);
       if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
@@ -503,9 +515,13 @@ static int write_urdf(CagSession *s, const CagUrdf *u, const char *path) {
     cag_diagnostic_set_help(d, "write to a file: -o arm.urdf");
     return CAG_STATUS_USAGE;
   }
+  char *folder;
+  if (!path_beside(path, "_meshes", &folder)) return fail_memory(s);
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
-  if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
-  char *folder = path_beside(path, "_meshes");
+  if (!f) {
+    free(folder);
+    return cag_session_fail_io(s, CAG_ERR_output_file, &io);
+  }
   const char *slash = folder ? strrchr(folder, '/') : NULL;
   CagError err = {0};
   int status = cag_export_urdf(u,

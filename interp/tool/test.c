@@ -33,6 +33,7 @@ typedef struct Script {
   size_t failure_length;
   int status;
   bool done;
+  bool lost; // no memory for a case of the report
 } Script;
 
 struct Testing {
@@ -102,11 +103,16 @@ static void keep_case(Script *s, const char *test, CagTestOutcome outcome, doubl
   if (s->failure) fclose(s->failure);
   s->failure = NULL;
   CagJunitCase *cases = realloc(s->cases, (s->case_count + 1) * sizeof *cases);
-  if (!cases) return;
-  s->cases = cases;
+  char *name = strdup(test);
+  if (cases) s->cases = cases;
+  s->lost = s->lost || !cases || !name;
+  if (s->lost) {
+    free(name);
+    return;
+  }
   const bool skipped = outcome == CAG_TEST_SKIPPED;
   cases[s->case_count++] = (CagJunitCase){
-      strdup(test), seconds,
+      name, seconds,
       outcome == CAG_TEST_FAILED ? (s->failure_text ? s->failure_text : strdup("")) : NULL,
       skipped && remark ? strdup(remark) : NULL};
   if (outcome != CAG_TEST_FAILED) free(s->failure_text);
@@ -160,6 +166,7 @@ static void test_script(Script *s) {
   if (!s->out || !s->messages) s->status = CAG_STATUS_LIMIT;
   else if (strcmp(s->path, "-") == 0) s->status = test_input(s, &options);
   else s->status = cag_test_file(s->path, &options, &s->counts);
+  if (s->lost && s->status == CAG_STATUS_OK) s->status = CAG_STATUS_LIMIT;
   if (s->out) fclose(s->out);
   if (s->messages) fclose(s->messages);
 }

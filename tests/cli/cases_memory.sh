@@ -1,8 +1,12 @@
-# The program when memory is out: an allocation of each place in it fails once.
+# The program when memory is out, or the system fails: an allocation of each place in it fails once, and so does a call of
+# the system (fail_memory.c).
 
 script vase.cag '/// how tall
 param height = 200
 show revolve(bspline([[30, 0], [50, 60], [20, 150], [30, height]]), Z)'
+script shapes.cag 'show box(10) |> material({color: "red", name: "clay"}), moved(cylinder(2, 5), translate([20, 0, 0]))
+show circle(4) |> line_style(radius: 0.5, dash: 3), bilinear([0, 0, 9], [0, 9, 9], [9, 0, 9], [9, 9, 12]), rectangle(3, 4)'
+script arm.cag 'show robot([revolute(a: 100, limits: -90deg..90deg, shape: box([100, 10, 10])), revolute(a: 50)])'
 script wrong.cag 'print sin(30)'
 script long.cag '// A list that
 // is laid out.
@@ -35,19 +39,24 @@ f(a) = a * x
 :export ball.stl
 x'
 
-# exhausts WHAT ARGUMENT ...: runs cag with the arguments once for each place that allocates. It ends by itself, with what it
-# writes when nothing fails or with an error that it tells.
-exhausts() {
-  it "memory is out: $1"
-  shift
+# fails_at WHAT NAME ARGUMENT ...: runs cag with the arguments once for each place that asks for WHAT (memory, system), which fails
+# there, beyond the places before which the number is `beyond`. It ends by itself, with what it writes when nothing fails or with an error that it tells. A file that it leaves is whole.
+fails_at() {
+  it "$1 fails: $2"
+  what=$1
+  shift 2
   ran="cag $*"
-  LD_PRELOAD=./fail_memory.so CAG_FAIL_COUNT=count "$CAG" "$@" < "$from" > expected 2> err
+  clear_outputs
+  CAG_FAIL_WHAT=$what LD_PRELOAD=./fail_memory.so CAG_FAIL_COUNT=count "$CAG" "$@" < "$from" > expected 2> err
   as_usual=$?
-  place=1
+  rm -rf whole
+  mkdir whole
+  [ -z "$made" ] || cp "$made" whole/
+  place=$((beyond + 1))
   last=$(cat count)
   while [ "$place" -le "$last" ]; do
-    rm -rf a.stl b.obj c.stl ball.stl saved.cag jobs.*.journal jobs.*.report.csv done.csv report.xml
-    timeout $LONGEST env LD_PRELOAD=./fail_memory.so CAG_FAIL_PLACE=$place "$CAG" "$@" < "$from" > out 2> err
+    clear_outputs
+    timeout $LONGEST env CAG_FAIL_WHAT=$what LD_PRELOAD=./fail_memory.so CAG_FAIL_PLACE=$place "$CAG" "$@" < "$from" > out 2> err
     code=$?
     if [ $code -eq 134 ]; then # what cannot go on without memory, and has no way to tell, aborts
       place=$((place + 1))
@@ -56,18 +65,25 @@ exhausts() {
     check_end
     if [ $code -eq "$as_usual" ]; then
       [ "$code" -ne 0 ] || [ -s err ] || [ -n "$varies" ] || cmp -s out expected || wrong "place $place: it writes something else"
+      [ "$code" -ne 0 ] || [ -z "$made" ] || [ -e "$made" ] || wrong "place $place: $made is missing"
     else
-      [ -s err ] || wrong "place $place: status $code without an error"
+      [ -s err ] || grep -q 'Cannot allocate\|Input/output' out || wrong "place $place: status $code without an error"
     fi
+    [ -z "$made" ] || [ ! -e "$made" ] || [ -n "$varies" ] || cmp -s "$made" "whole/$made" || wrong "place $place: $made is not whole"
     [ "$test_state" = good ] || {
-      ran="CAG_FAIL_PLACE=$place $ran"
+      ran="CAG_FAIL_WHAT=$what CAG_FAIL_PLACE=$place $ran"
       break
     }
     place=$((place + 1))
   done
 }
+clear_outputs() { rm -rf a.stl b.obj c.stl ball.stl saved.cag jobs.*.journal jobs.*.report.csv done.csv report.xml made.*; }
+exhausts() {
+  fails_at memory "$@"
+  fails_at system "$@"
+}
 
-it 'the library that lets memory be out is built'
+it 'the library that lets calls fail is built'
 if ldd "$CAG" | grep -q 'libasan'; then
   skip 'AddressSanitizer has an allocator of its own'
 elif needs cc; then
@@ -75,7 +91,7 @@ elif needs cc; then
   status 0
 fi
 if [ -e fail_memory.so ]; then
-  from=/dev/null varies=
+  from=/dev/null varies= made= beyond=0
   exhausts 'a value' eval '1 + 1'
   exhausts 'an error' run wrong.cag
   exhausts 'a script that is checked' check vase.cag --diagnostics json
@@ -86,8 +102,20 @@ if [ -e fail_memory.so ]; then
   exhausts 'an unknown option' run --defnie vase.cag
   exhausts 'an error that is explained' explain E0301
   exhausts 'a film that cannot be' render vase.cag -o a%d.png --frames 5..3
-  exhausts 'tests' test tested.cag long.cag --junit report.xml
-  varies=yes # times
+  exhausts 'tests' test --jobs 1 tested.cag long.cag --report report.xml
+  # What goes before an export is that of any run.
+  for what in memory system; do
+    CAG_FAIL_WHAT=$what LD_PRELOAD=./fail_memory.so CAG_FAIL_COUNT=before_$what "$CAG" run shapes.cag > out 2>&1
+  done
+  for made in made.stl made.obj made.ply made.glb made.gltf made.3mf made.pov made.igs made.step made.svg made.json; do
+    for what in memory system; do
+      beyond=$(cat before_$what)
+      fails_at $what "$made" export shapes.cag -o $made
+    done
+  done
+  made=made.urdf beyond=0
+  exhausts "$made" export arm.cag -o $made
+  made= varies=yes # times
   exhausts 'a batch' batch jobs.csv --jobs 2
   exhausts 'jobs in JSON' batch jobs.json --report done.csv
   from=input.txt

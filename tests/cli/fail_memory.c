@@ -1,9 +1,12 @@
-// Loaded before a program (LD_PRELOAD), this makes one of its allocations fail: the first of the
-// place in the program that is number CAG_FAIL_PLACE, in the order in which places first allocate.
-// Allocations of libraries go on. The number of places is written to the file CAG_FAIL_COUNT.
+// Loaded before a program (LD_PRELOAD), this makes one of its allocations fail, or of its calls of
+// the system: the first of the place in the program that is number CAG_FAIL_PLACE, in the order in
+// which places first call. CAG_FAIL_WHAT says which calls are counted: "memory" or "system". Calls
+// of libraries go on. The number of places is written to the file CAG_FAIL_COUNT.
 
+#include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <link.h>
 #include <pthread.h>
 #include <stdarg.h>
@@ -12,6 +15,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define PLACES_MAX 8192
 
@@ -19,6 +24,7 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static uintptr_t low, high; // the program's code
 static uintptr_t places[PLACES_MAX];
 static size_t count, failing;
+static bool of_system, ended;
 
 static int find_program(struct dl_phdr_info *info, size_t size, void *context) {
   (void)size, (void)context;
@@ -37,6 +43,8 @@ __attribute__((constructor)) static void begin(void) {
   unsetenv("LD_PRELOAD");
   dl_iterate_phdr(find_program, NULL);
   failing = place ? strtoul(place, NULL, 10) : 0;
+  const char *what = getenv("CAG_FAIL_WHAT");
+  of_system = what && strcmp(what, "system") == 0;
 }
 
 __attribute__((destructor)) static void end(void) {
@@ -47,10 +55,17 @@ __attribute__((destructor)) static void end(void) {
   fclose(f);
 }
 
-static bool is_failing(const void *caller) {
+// What is counted ends with the program's main function: destructors, such as those that write
+// counters of coverage, have all.
+static void stop(void) { ended = true; }
+static void begin_to_count(void) { atexit(stop); }
+
+static bool is_failing(const void *caller, bool system) {
+  static pthread_once_t once = PTHREAD_ONCE_INIT;
   const uintptr_t at = (uintptr_t)caller;
-  if (at < low || at >= high) return false;
+  if (system != of_system || at < low || at >= high || ended) return false;
   bool fails = false;
+  pthread_once(&once, begin_to_count);
   pthread_mutex_lock(&lock);
   size_t i = 0;
   while (i < count && places[i] != at) i++;
@@ -59,7 +74,7 @@ static bool is_failing(const void *caller) {
     fails = count == failing;
   }
   pthread_mutex_unlock(&lock);
-  if (fails) errno = ENOMEM;
+  if (fails) errno = system ? EIO : ENOMEM;
   return fails;
 }
 
@@ -70,23 +85,25 @@ void *__libc_malloc(size_t size);
 void *__libc_calloc(size_t n, size_t size);
 void *__libc_realloc(void *old, size_t size);
 
-void *malloc(size_t size) { return is_failing(CALLER) ? NULL : __libc_malloc(size); }
-void *calloc(size_t n, size_t size) { return is_failing(CALLER) ? NULL : __libc_calloc(n, size); }
-void *realloc(void *old, size_t size) {
-  return is_failing(CALLER) ? NULL : __libc_realloc(old, size);
+void *malloc(size_t size) { return is_failing(CALLER, false) ? NULL : __libc_malloc(size); }
+void *calloc(size_t n, size_t size) {
+  return is_failing(CALLER, false) ? NULL : __libc_calloc(n, size);
 }
-char *strdup(const char *text) { return is_failing(CALLER) ? NULL : NEXT(strdup)(text); }
+void *realloc(void *old, size_t size) {
+  return is_failing(CALLER, false) ? NULL : __libc_realloc(old, size);
+}
+char *strdup(const char *text) { return is_failing(CALLER, false) ? NULL : NEXT(strdup)(text); }
 char *strndup(const char *text, size_t n) {
-  return is_failing(CALLER) ? NULL : NEXT(strndup)(text, n);
+  return is_failing(CALLER, false) ? NULL : NEXT(strndup)(text, n);
 }
 char *realpath(const char *path, char *out) {
-  return is_failing(CALLER) ? NULL : NEXT(realpath)(path, out);
+  return is_failing(CALLER, false) ? NULL : NEXT(realpath)(path, out);
 }
 int vasprintf(char **out, const char *format, va_list list) {
-  return is_failing(CALLER) ? -1 : NEXT(vasprintf)(out, format, list);
+  return is_failing(CALLER, false) ? -1 : NEXT(vasprintf)(out, format, list);
 }
 int asprintf(char **out, const char *format, ...) {
-  if (is_failing(CALLER)) return -1;
+  if (is_failing(CALLER, false)) return -1;
   va_list list;
   va_start(list, format);
   const int n = NEXT(vasprintf)(out, format, list);
@@ -94,5 +111,135 @@ int asprintf(char **out, const char *format, ...) {
   return n;
 }
 FILE *open_memstream(char **text, size_t *size) {
-  return is_failing(CALLER) ? NULL : NEXT(open_memstream)(text, size);
+  return is_failing(CALLER, false) ? NULL : NEXT(open_memstream)(text, size);
+}
+
+// Of the system. What is closed is closed all the same.
+#define FAIL(value)                                                                                \
+  if (is_failing(CALLER, true)) return value
+
+FILE *fopen(const char *path, const char *mode) {
+  FAIL(NULL);
+  return NEXT(fopen)(path, mode);
+}
+int fclose(FILE *f) {
+  const bool fails = is_failing(CALLER, true);
+  const int result = NEXT(fclose)(f);
+  if (fails) errno = EIO;
+  return fails ? EOF : result;
+}
+int fflush(FILE *f) {
+  FAIL(EOF);
+  return NEXT(fflush)(f);
+}
+int fseek(FILE *f, long offset, int whence) {
+  FAIL(-1);
+  return NEXT(fseek)(f, offset, whence);
+}
+size_t fread(void *to, size_t size, size_t n, FILE *f) {
+  FAIL(0);
+  return NEXT(fread)(to, size, n, f);
+}
+int open(const char *path, int flags, ...) {
+  FAIL(-1);
+  va_list list;
+  va_start(list, flags);
+  const mode_t mode = flags & O_CREAT ? va_arg(list, mode_t) : 0;
+  va_end(list);
+  return NEXT(open)(path, flags, mode);
+}
+int openat(int folder, const char *path, int flags, ...) {
+  FAIL(-1);
+  va_list list;
+  va_start(list, flags);
+  const mode_t mode = flags & O_CREAT ? va_arg(list, mode_t) : 0;
+  va_end(list);
+  return NEXT(openat)(folder, path, flags, mode);
+}
+int close(int fd) {
+  const bool fails = is_failing(CALLER, true);
+  const int result = NEXT(close)(fd);
+  if (fails) errno = EIO;
+  return fails ? -1 : result;
+}
+ssize_t read(int fd, void *to, size_t n) {
+  FAIL(-1);
+  return NEXT(read)(fd, to, n);
+}
+ssize_t write(int fd, const void *from, size_t n) {
+  FAIL(-1);
+  return NEXT(write)(fd, from, n);
+}
+int stat(const char *path, struct stat *out) {
+  FAIL(-1);
+  return NEXT(stat)(path, out);
+}
+int lstat(const char *path, struct stat *out) {
+  FAIL(-1);
+  return NEXT(lstat)(path, out);
+}
+int fstat(int fd, struct stat *out) {
+  FAIL(-1);
+  return NEXT(fstat)(fd, out);
+}
+int access(const char *path, int mode) {
+  FAIL(-1);
+  return NEXT(access)(path, mode);
+}
+int faccessat(int folder, const char *path, int mode, int flags) {
+  FAIL(-1);
+  return NEXT(faccessat)(folder, path, mode, flags);
+}
+int mkdir(const char *path, mode_t mode) {
+  FAIL(-1);
+  return NEXT(mkdir)(path, mode);
+}
+char *mkdtemp(char *pattern) {
+  FAIL(NULL);
+  return NEXT(mkdtemp)(pattern);
+}
+int mkstemps(char *pattern, int ending) {
+  FAIL(-1);
+  return NEXT(mkstemps)(pattern, ending);
+}
+int rename(const char *from, const char *to) {
+  FAIL(-1);
+  return NEXT(rename)(from, to);
+}
+int renameat(int from_folder, const char *from, int to_folder, const char *to) {
+  FAIL(-1);
+  return NEXT(renameat)(from_folder, from, to_folder, to);
+}
+int fchmod(int fd, mode_t mode) {
+  FAIL(-1);
+  return NEXT(fchmod)(fd, mode);
+}
+int ftruncate(int fd, off_t size) {
+  FAIL(-1);
+  return NEXT(ftruncate)(fd, size);
+}
+int fdatasync(int fd) {
+  FAIL(-1);
+  return NEXT(fdatasync)(fd);
+}
+DIR *opendir(const char *path) {
+  FAIL(NULL);
+  return NEXT(opendir)(path);
+}
+int pipe2(int fds[2], int flags) {
+  FAIL(-1);
+  return NEXT(pipe2)(fds, flags);
+}
+pid_t fork(void) {
+  FAIL(-1);
+  return NEXT(fork)();
+}
+ssize_t getrandom(void *to, size_t n, unsigned flags) {
+  FAIL(-1);
+  return ((ssize_t(*)(void *, size_t, unsigned))dlsym(RTLD_NEXT, "getrandom"))(to, n, flags);
+}
+int pthread_create(pthread_t *out, const pthread_attr_t *attributes, void *(*work)(void *),
+                   void *context) {
+  if (is_failing(CALLER, true)) return EAGAIN;
+  return NEXT(pthread_create)(out, attributes, work, context);
 }
