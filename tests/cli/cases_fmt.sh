@@ -180,3 +180,30 @@ done
 it 'the examples, the cookbook and the library have the layout'
 try fmt --check "$root/examples" "$root/stdlib" "$root/docs/cookbook"
 status 0
+
+it '--diff is what patch makes the layout of, for any lines'
+if needs patch; then
+  # Scripts of 0 to 60 lines, laid out or not, some without the newline of the last: drawn with a fixed seed.
+  for seed in 1 2 3 4 5 6 7 8 9 10 11 12; do
+    awk -v seed=$seed 'BEGIN {
+      srand(seed)
+      n = int(rand() * 60)
+      for (i = 0; i < n; i++) {
+        loose = rand() < (seed % 4) / 4
+        line = loose ? "x" i "=" i "+1" : "x" i " = " i " + 1"
+        printf "%s%s", line, i + 1 == n && seed % 3 == 0 ? "" : "\n"
+      }
+    }' > drawn.cag
+    cp drawn.cag formatted.cag
+    try fmt formatted.cag
+    status 0
+    try fmt --diff drawn.cag
+    if cmp -s drawn.cag formatted.cag; then
+      prints_nothing
+      continue
+    fi
+    status 1
+    patch -s drawn.cag out > patched 2>&1 || wrong "seed $seed: patch fails: $(cat patched)"
+    same drawn.cag formatted.cag
+  done
+fi

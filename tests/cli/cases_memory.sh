@@ -98,9 +98,7 @@ if [ -e fail_memory.so ]; then
   exhausts 'the layout' fmt --diff long.cag
   exhausts 'documentation' doc sphere
   exhausts 'documentation of a script' doc vase.cag
-  exhausts 'help' batch --help
   exhausts 'an unknown option' run --defnie vase.cag
-  exhausts 'an error that is explained' explain E0301
   exhausts 'a film that cannot be' render vase.cag -o a%d.png --frames 5..3
   exhausts 'tests' test --jobs 1 tested.cag long.cag --report report.xml
   # What goes before an export is that of any run.
