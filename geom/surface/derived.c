@@ -50,7 +50,7 @@ static size_t inner_breaks(const CagSurface *s, int direction, int inner, double
   size_t n = from->kind->breaks ? from->kind->breaks(from, inner, NULL, 0) : 0;
   if (n == 0) return 0;
   double *all = malloc(n * sizeof *all);
-  if (!all) return cag_note_memory(), 0;
+  if (!all) return 0;
   from->kind->breaks(from, inner, all, n);
   n = cag_surface_tidy_breaks(all, n, direction == 0 ? s->u0 : s->v0,
                               direction == 0 ? s->u1 : s->v1);
@@ -361,4 +361,11 @@ CagStatus cag_surface_offset(const CagSurface *s, double d, CagSurface **out, Ca
   status = cag_surface_point(*out, (s->u0 + s->u1) / 2, (s->v0 + s->v1) / 2, &probe, err);
   if (status) cag_surface_release(*out);
   return status;
+}
+
+bool cag_surface_offset_view(const CagSurface *s, const CagSurface **inner, double *d) {
+  if (s->kind != &offset_kind) return false;
+  *inner = ((const Derived *)s)->inner;
+  *d = ((const Derived *)s)->distance;
+  return true;
 }

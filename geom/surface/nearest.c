@@ -15,6 +15,7 @@
 #include "geom/stop.h"
 #include "geom/surface/curve_on.h"
 #include "geom/surface/nearest_cells.h"
+#include "geom/surface/nearest_core.h"
 #include "geom/surface/trimmed.h"
 
 #define STEPS 60
@@ -405,6 +406,20 @@ static CagStatus search_cells(Search *f, CagError *err) {
   return status;
 }
 
+// What a core leads to; *certain: nothing can be nearer.
+static CagStatus try_core(Search *f, bool *certain, CagError *err) {
+  double bound;
+  bool known;
+  CagSurfaceNearest found;
+  *certain = false;
+  CagStatus status = cag_surface_nearest_by_core(f->s, f->p, &bound, &found, &known, err);
+  if (status || !known || !(bound > 0)) return status;
+  status = offer(f, &found, err);
+  const double size = fmax(f->cells.size, cag_norm(cag_sub(found.point, f->p)));
+  *certain = f->best.distance - bound <= EQUALLY_NEAR * size;
+  return status;
+}
+
 // Of a flat piece: the foot of the perpendicular where that is within, else a point of its outline.
 static CagStatus closest_planar(Search *f, const CagTransform *frame, CagError *err) {
   CagVec3 a = cag_transform_vector(frame, cag_vec3(1, 0, 0));
@@ -437,7 +452,9 @@ CagStatus cag_surface_closest(const CagSurface *s, CagVec3 p, CagSurfaceNearest 
     status = find_cuts(&f, err);
     if (!status) status = cag_distance_cells_make(&f.cells, f.s, p, f.region != NULL, err);
     if (!status && f.region) status = try_loops(&f, NULL, err);
-    if (!status) status = search_cells(&f, err);
+    bool certain = false;
+    if (!status) status = try_core(&f, &certain, err);
+    if (!status && !certain) status = search_cells(&f, err);
     cag_distance_cells_free(&f.cells);
     free(f.cuts[0]);
     free(f.cuts[1]);

@@ -14,6 +14,8 @@ typedef struct Sweep {
   CagSurface base;
   CagCurve *section; // as given: dimension 2 or 3
   CagMotion *motion;
+  CagCurve *center; // of a tube of one radius all along; else NULL
+  double radius;
 } Sweep;
 
 static const CagSurfaceKind sweep_kind, tube_kind;
@@ -98,6 +100,7 @@ static void sweep_destroy(CagSurface *surface) {
   Sweep *s = (Sweep *)surface;
   cag_curve_release(s->section);
   cag_motion_release(s->motion);
+  cag_curve_release(s->center);
 }
 
 // --- Exact forms ---
@@ -311,7 +314,20 @@ CagStatus cag_surface_tube(const CagCurve *path, double radius, CagSurface **out
     return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", "radius", -1,
                     "`radius` must be positive, it is %s", cag_number_text(radius, text));
   CagAlong one = {1, 1, NULL};
-  return tube_of(path, radius, &one, out, err);
+  CagStatus status = tube_of(path, radius, &one, out, err);
+  if (status) return status;
+  Sweep *s = (Sweep *)*out;
+  s->center = cag_curve_retain(path);
+  s->radius = radius;
+  return CAG_OK;
+}
+
+bool cag_surface_tube_view(const CagSurface *surface, const CagCurve **center, double *radius) {
+  const Sweep *s = (const Sweep *)surface;
+  if (surface->kind != &tube_kind || !s->center || cag_motion_has_corner(s->motion)) return false;
+  *center = s->center;
+  *radius = s->radius;
+  return true;
 }
 
 CagStatus cag_surface_tube_along(const CagCurve *path, const CagAlong *radius, CagSurface **out,

@@ -4,6 +4,7 @@
 
 #include "geom/surface/nearest.h"
 #include "geom/surface/quadric.h"
+#include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 
 static uint64_t state_of_random;
@@ -217,6 +218,48 @@ static void nearest_points_of_a_torus_have_closed_form(void **state) {
   }
 }
 
+// From outside, tubes and offsets are as far away as their center line or surface less their
+// distance from it: tubes about circles and helices, offsets of spheres and tori, moved.
+static void tubes_and_offsets_have_closed_forms(void **state) {
+  (void)state;
+  state_of_random = 77;
+  for (int i = 0; i < 200; i++) {
+    const double major = between(3, 5), minor = between(0.5, 1), d = between(0.1, 0.4);
+    const CagTransform flat = cag_transform_identity();
+    CagTransform move = cag_translate(anywhere(3)), turn;
+    CagSurface *s, *moved;
+    CagCurve *circle;
+    CagSurfaceNearest found;
+    MUST(cag_rotate(cag_vec3(1, 2, 2), between(0, 3), cag_vec3(0, 0, 0), &turn, err));
+    move = cag_transform_multiply(&move, &turn);
+    move.planar = false;
+    CagVec3 p = anywhere(12);
+    const double ring = hypot(hypot(p.x, p.y) - major, p.z);
+    double expected = ring - minor;
+    if (i % 2 == 0) {
+      MUST(cag_curve_arc(major, major, 0, 2 * M_PI, &flat, &circle, err));
+      MUST(cag_surface_tube(circle, minor, &s, err));
+      cag_curve_release(circle);
+    } else {
+      CagSurface *torus;
+      MUST(cag_surface_torus(major, minor, &torus, err));
+      MUST(cag_surface_offset(torus, d, &s, err));
+      cag_surface_release(torus);
+      expected -= d;
+    }
+    if (expected > 0.01) {
+      MUST(cag_surface_closest(s, p, &found, err));
+      assert_near(found.distance, expected, 1e-12, "distance");
+      MUST(cag_surface_transform(s, &move, &moved, err));
+      MUST(cag_surface_closest(moved, cag_transform_point(&move, p), &found, err));
+      assert_near(found.distance, expected, 1e-12, "distance of the moved one");
+      assert_point(surface_at(moved, found.u, found.v), found.point, 1e-12, "place");
+      cag_surface_release(moved);
+    }
+    cag_surface_release(s);
+  }
+}
+
 // The line to the point is perpendicular to the surface to rounding, not to its square root.
 static void nearest_points_are_perpendicular(void **state) {
   (void)state;
@@ -344,6 +387,7 @@ int main(void) {
       cmocka_unit_test(nearest_points_of_tensor_surfaces_are_right),
       cmocka_unit_test(nearest_points_of_other_kinds_are_right),
       cmocka_unit_test(nearest_points_of_a_torus_have_closed_form),
+      cmocka_unit_test(tubes_and_offsets_have_closed_forms),
       cmocka_unit_test(nearest_points_are_perpendicular),
       cmocka_unit_test(trimmed_surfaces_count_within_their_outlines),
   };
