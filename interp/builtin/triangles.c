@@ -83,8 +83,9 @@ static bool triangle_split(CagCall *call, CagValue *result) {
   if (!read_coordinates(call, 1, w) || !cag_arg_triangle(call, 0, &net, &degree)) return false;
   size_t n = cag_triangle_count(degree);
   CagVec3 *parts = malloc(3 * n * sizeof *parts);
-  CagStatus status = cag_fail_memory(&err);
-  if (parts)
+  CagStatus status = CAG_OK;
+  if (!parts) status = cag_fail_memory(&err);
+  else
     status = cag_triangle_split(net, degree, w, (CagVec3 *const[]){parts, parts + n, parts + 2 * n},
                                 &err);
   bool ok = cag_geometry_ok(call, status, &err);

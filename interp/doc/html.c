@@ -116,7 +116,7 @@ void cag_html_prose(FILE *out, const char *root, const char *text, size_t length
 // The script without its `// expect` comments: what it prints is shown below it. malloc'd.
 static char *without_expectations(const char *text, size_t length) {
   char *out = strndup(text, length), *to = out;
-  if (!out) abort();
+  if (!out) cag_memory_leave();
   for (char *at = out; *at;) {
     const bool expects = strncmp(at, "// expect", 9) == 0 && (at[9] == ':' || at[9] == ' ');
     if (!expects) {
@@ -158,7 +158,7 @@ void cag_html_example(CagSite *s, const CagSiteSpot *spot, const char *text, siz
 
 char *cag_html_anchor(const char *heading) {
   char *out = malloc(strlen(heading) + 2), *to = out;
-  if (!out) abort();
+  if (!out) cag_memory_leave();
   for (const char *at = heading; *at; at++) {
     if (is_digit(*at) || is_letter(*at)) *to++ = *at >= 'A' && *at <= 'Z' ? *at + 32 : *at;
     else if (to > out && to[-1] != '-' && (*at == ' ' || *at == '-' || *at == '.')) *to++ = '-';

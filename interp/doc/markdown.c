@@ -36,7 +36,7 @@ static void change_block(const Document *d, cmark_node *node) {
   char *html = NULL;
   size_t length = 0;
   FILE *out = open_memstream(&html, &length);
-  if (!out) abort();
+  if (!out) cag_memory_leave();
   if (plain || !d->is_guide || strstr(info, "fragment")) {
     fputs("<pre><code>", out);
     cag_html_script(out, d->root, text, strlen(text));
@@ -57,7 +57,7 @@ static void change_code(const Document *d, cmark_node *node) {
   char *html = NULL;
   size_t length = 0;
   FILE *out = open_memstream(&html, &length);
-  if (!out) abort();
+  if (!out) cag_memory_leave();
   fputs("<code>", out);
   cag_html_script(out, d->root, text, strlen(text));
   fputs("</code>", out);
@@ -72,7 +72,7 @@ static char *plain_text(cmark_node *heading) {
   size_t length = 0;
   FILE *out = open_memstream(&text, &length);
   cmark_iter *it = cmark_iter_new(heading);
-  if (!out) abort();
+  if (!out) cag_memory_leave();
   while (cmark_iter_next(it) != CMARK_EVENT_DONE) {
     const char *part = cmark_node_get_literal(cmark_iter_get_node(it));
     if (part) fputs(part, out);
@@ -156,8 +156,9 @@ static void change_all(const Document *d, cmark_node *root) {
     if (event != CMARK_EVENT_ENTER) continue;
     if (count == capacity) {
       capacity = capacity ? 2 * capacity : 256;
-      nodes = realloc(nodes, capacity * sizeof *nodes);
-      if (!nodes) abort();
+      cmark_node **more = realloc(nodes, capacity * sizeof *nodes);
+      if (!more) free(nodes);
+      nodes = cag_checked(more);
     }
     nodes[count++] = cmark_iter_get_node(it);
   }

@@ -11,7 +11,7 @@
 
 static char *copy(const char *text, size_t n) {
   char *out = strndup(text, n);
-  if (!out) abort();
+  if (!out) cag_memory_leave();
   return out;
 }
 
@@ -41,7 +41,7 @@ static char *copy_span(const CagSource *s, CagSpan span) {
 
 static void read_arguments(const CagSource *s, const CagFunctionAst *f, CagDocEntry *e) {
   e->arguments = calloc(f->parameter_count + 1, sizeof *e->arguments);
-  if (!e->arguments) abort();
+  if (!e->arguments) cag_memory_leave();
   for (size_t i = 0; i < f->parameter_count; i++) {
     const CagParameter *p = &f->parameters[i];
     e->arguments[i].name = copy(p->decl->name, strlen(p->decl->name));
@@ -55,7 +55,7 @@ static void find_lines(const CagModuleAst *ast, const CagStatement *st, size_t c
                        CagDocEntry *e) {
   size_t i = 0;
   e->lines = calloc(count + 1, sizeof *e->lines);
-  if (!e->lines) abort();
+  if (!e->lines) cag_memory_leave();
   while (i < ast->comment_count && ast->comments[i].span.start < st->span.start) i++;
   while (count > 0 && i-- > 0)
     if (ast->comments[i].doc)
@@ -80,7 +80,7 @@ static void add_meaning(CagDocArgument *a, const char *text, size_t n) {
   const size_t spaces = strspn(text, " ");
   if (asprintf(&a->meaning, "%s%s%.*s", old ? old : "", old ? " " : "", (int)(n - spaces),
                text + spaces) < 0)
-    abort();
+    cag_memory_leave();
   free(old);
 }
 
@@ -175,7 +175,7 @@ static char *read_purpose(const CagModuleAst *ast) {
 void cag_doc_module_read(const CagModuleAst *ast, const char *name, CagDocModule *out) {
   *out = (CagDocModule){.name = copy(name, strlen(name)), .purpose = read_purpose(ast)};
   out->entries = calloc(ast->top_count + 1, sizeof *out->entries);
-  if (!out->entries) abort();
+  if (!out->entries) cag_memory_leave();
   for (size_t i = 0; i < ast->top_count; i++)
     if (ast->tops[i]->name[0] != '_') read_entry(ast, ast->tops[i], &out->entries[out->count++]);
 }
@@ -219,7 +219,7 @@ char *cag_doc_part_text(const char *text, size_t length, bool is_code) {
   char *part = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&part, &size);
-  if (!out) abort();
+  if (!out) cag_memory_leave();
   for (const char *at = text; at < text + length;) {
     const size_t n = strcspn(at, "\n"), indent = is_code && n >= 4 ? 4 : 0;
     fprintf(out, "%.*s\n", (int)(n - indent), at + indent);
@@ -280,7 +280,7 @@ char *cag_doc_script_import(const CagDocModule *m, const char *file, const char 
   size_t size = 0, names = 0;
   if (has_word(example, "import", false)) return NULL;
   FILE *out = open_memstream(&line, &size);
-  if (!out) abort();
+  if (!out) cag_memory_leave();
   find_module_name(m, file, stem, sizeof stem);
   const bool whole = has_members_of(example, stem);
   fprintf(out, "import \"%s\"%s%s", file, whole ? " as " : "", whole ? stem : "");

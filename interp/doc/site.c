@@ -68,12 +68,18 @@ static const struct {
                 {"Cookbook", "cookbook/index.html"}, {"Library", "library/index.html"},
                 {"Scripts", "scripts/index.html"},   {"Errors", "errors.html"}};
 
+static void drop_page(void *page) {
+  CagSitePage *p = page;
+  if (p->out) fclose(p->out);
+  free(p->text);
+}
+
 void cag_site_begin(CagSite *s, CagSitePage *p, const char *path, const char *title,
                     const char *section) {
   const char *root = strchr(path, '/') ? "../" : "";
   *p = (CagSitePage){.site = s, .path = path, .title = title, .root = root};
-  p->out = open_memstream(&p->text, &p->length);
-  if (!p->out) abort();
+  p->out = cag_checked(open_memstream(&p->text, &p->length));
+  cag_cleanup_push(&p->cleanup, drop_page, p);
   fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
         p->out);
@@ -101,8 +107,9 @@ void cag_site_begin(CagSite *s, CagSitePage *p, const char *path, const char *ti
 void cag_site_end(CagSitePage *p) {
   fprintf(p->out, "</main>\n<footer>cag %s</footer>\n</body>\n</html>\n", cag_version());
   fclose(p->out);
+  p->out = NULL;
   cag_site_write(p->site, p->path, p->text, p->length);
-  free(p->text);
+  cag_cleanup_run(&p->cleanup);
 }
 
 // --- The search ---
@@ -135,8 +142,7 @@ void cag_site_find(CagSite *s, const char *name, const char *kind, const char *u
 static void write_pages(CagSite *s) {
   char *index = NULL;
   size_t length = 0;
-  s->index = open_memstream(&index, &length);
-  if (!s->index) abort();
+  s->index = cag_checked(open_memstream(&index, &length));
   s->index_count = 0;
   fputs("const cagIndex = [\n", s->index);
   cag_site_functions(s);
@@ -147,6 +153,7 @@ static void write_pages(CagSite *s) {
   cag_site_errors(s);
   fputs("\n];\n", s->index);
   fclose(s->index);
+  s->index = NULL;
   cag_site_write(s, "index.js", index, length);
   free(index);
 }
@@ -156,7 +163,7 @@ static void write_pages(CagSite *s) {
 static bool read_modules(CagSite *s) {
   while (cag_doc_module_name(s->module_count)) s->module_count++;
   s->modules = calloc(s->module_count + 1, sizeof *s->modules);
-  if (!s->modules) abort();
+  if (!s->modules) cag_memory_leave();
   for (size_t i = 0; i < s->module_count; i++) {
     const char *text;
     size_t length;
@@ -232,10 +239,23 @@ static int make(CagSite *s) {
   return judge(s);
 }
 
+typedef struct Making {
+  CagSite site;
+  int status;
+} Making;
+
+static void make_site(void *context) {
+  Making *m = context;
+  m->status = make(&m->site);
+}
+
 int cag_session_write_site(CagSession *session, const char *folder, const CagSiteOptions *options) {
   if (!cag_session_begin(session)) return CAG_STATUS_USAGE;
-  CagSite s = {.session = session, .options = options, .folder = folder};
-  const int status = make(&s);
+  Making m = {.site = {.session = session, .options = options, .folder = folder}};
+  const bool done = cag_memory_guard(make_site, &m);
+  const int status = done ? m.status : cag_session_fail_memory(session);
+  CagSite s = m.site;
+  if (s.index) fclose(s.index);
   for (size_t i = 0; i < s.count; i++) {
     CagSiteExample *e = &s.examples[i];
     char *const texts[] = {e->text, e->folder, e->function, e->output, e->picture, e->failure};

@@ -88,6 +88,7 @@ typedef struct CagSitePage {
   FILE *out;
   char *text;
   size_t length;
+  CagCleanup cleanup; // until its end
 } CagSitePage;
 
 // Begins a page at a path such as "functions/sin.html"; `section` marks its link at the top.

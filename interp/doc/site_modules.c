@@ -39,7 +39,7 @@ void cag_site_begin_parameters(const CagSitePage *p) {
 static void write_said_parameter(const CagSitePage *p, const CagDocArgument *a) {
   const char *colon = strstr(a->meaning, ": ");
   char *type = strndup(a->meaning, colon ? (size_t)(colon - a->meaning) : 0);
-  if (!type) abort();
+  if (!type) cag_memory_leave();
   const CagDocParameter said = {"", a->name, type, colon ? colon + 2 : a->meaning};
   cag_site_parameter(p, &said, a->name, a->fallback);
   free(type);

@@ -131,7 +131,7 @@ static void write_family(const CagSitePage *p, const char *family) {
 // The families in the order of the table; the caller frees the list.
 static const char **list_families(size_t *count) {
   const char **families = calloc(cag_builtin_count() + 1, sizeof *families);
-  if (!families) abort();
+  if (!families) cag_memory_leave();
   *count = 0;
   for (size_t i = 0; i < cag_builtin_count(); i++) {
     size_t k = 0;

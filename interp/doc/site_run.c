@@ -33,14 +33,15 @@ const CagSiteExample *cag_site_example(CagSite *s, const CagSiteSpot *spot, cons
     if (is_same(&s->examples[i], spot->folder, text, length)) return &s->examples[i];
   if (s->final) return NULL;
   if (s->count == s->capacity) {
-    s->capacity = s->capacity ? 2 * s->capacity : 512;
-    s->examples = realloc(s->examples, s->capacity * sizeof *s->examples);
-    if (!s->examples) abort();
+    const size_t capacity = s->capacity ? 2 * s->capacity : 512;
+    s->examples = cag_checked(realloc(s->examples, capacity * sizeof *s->examples));
+    s->capacity = capacity;
   }
   CagSiteExample *e = &s->examples[s->count++];
-  *e = (CagSiteExample){.about = spot->about, .text = strndup(text, length)};
-  if (spot->function) e->function = strdup(spot->function);
-  if (spot->folder) e->folder = strdup(spot->folder);
+  *e = (CagSiteExample){.about = spot->about};
+  e->text = cag_checked(strndup(text, length));
+  if (spot->function) e->function = cag_checked(strdup(spot->function));
+  if (spot->folder) e->folder = cag_checked(strdup(spot->folder));
   return NULL;
 }
 
@@ -236,7 +237,7 @@ static void run_example(const CagSite *site, CagSiteExample *e) {
   FILE *out = open_memstream(&e->output, &length), *messages = open_memstream(&told, &told_length);
   FILE *quiet = fopen("/dev/null", "w");
   CagSession *s = out && messages && quiet ? open_session(site, e, out, messages) : NULL;
-  if (!s) abort();
+  if (!s) cag_memory_leave();
   const int status = cag_session_run_text(s, NAME, e->text, strlen(e->text));
   const bool fails = strstr(e->text, "// expect error:") != NULL;
   if (status != CAG_STATUS_OK) cag_session_write_diagnostics(s, CAG_STYLE_TEXT, out);
@@ -261,18 +262,30 @@ static void run_example(const CagSite *site, CagSiteExample *e) {
 typedef struct Running {
   CagSite *site;
   pthread_mutex_t mutex;
+  bool starved; // memory was out for an example
 } Running;
+
+typedef struct OneExample {
+  const CagSite *site;
+  CagSiteExample *example;
+} OneExample;
+
+static void run_one(void *context) {
+  const OneExample *one = context;
+  run_example(one->site, one->example);
+}
 
 static void *work(void *context) {
   Running *r = context;
   CagSite *s = r->site;
   const volatile int *stop = s->options->session.interrupt;
   pthread_mutex_lock(&r->mutex);
-  while (s->next < s->count && !(stop && *stop)) {
-    CagSiteExample *e = &s->examples[s->next++];
+  while (s->next < s->count && !r->starved && !(stop && *stop)) {
+    OneExample one = {s, &s->examples[s->next++]};
     pthread_mutex_unlock(&r->mutex);
-    run_example(s, e);
+    const bool done = cag_memory_guard(run_one, &one);
     pthread_mutex_lock(&r->mutex);
+    r->starved |= !done;
   }
   pthread_mutex_unlock(&r->mutex);
   return NULL;
@@ -284,7 +297,7 @@ void cag_site_run(CagSite *s) {
   if (jobs > s->count) jobs = s->count;
   Running r = {.site = s};
   pthread_t *threads = calloc(jobs + 1, sizeof *threads);
-  if (!threads) abort();
+  if (!threads) cag_memory_leave();
   pthread_mutex_init(&r.mutex, NULL);
   size_t started = 0;
   while (started < jobs && pthread_create(&threads[started], NULL, work, &r) == 0) started++;
@@ -292,4 +305,5 @@ void cag_site_run(CagSite *s) {
   for (size_t i = 0; i < started; i++) pthread_join(threads[i], NULL);
   pthread_mutex_destroy(&r.mutex);
   free(threads);
+  if (r.starved) cag_memory_leave();
 }

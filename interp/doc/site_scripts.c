@@ -37,7 +37,7 @@ static bool is_plain(char c) {
 static bool is_taken(const CagSite *s, const char *page) {
   if (strcmp(page, "index") == 0) return true; // the list of all of them
   for (size_t i = 0; i < s->script_count; i++)
-    if (strcmp(s->scripts[i].page, page) == 0) return true;
+    if (s->scripts[i].page && strcmp(s->scripts[i].page, page) == 0) return true;
   return false;
 }
 
@@ -45,7 +45,7 @@ static bool is_taken(const CagSite *s, const char *page) {
 static char *page_name(const CagSite *s, const char *name) {
   const size_t n = strlen(name);
   char *stem = strndup(name, n > 4 && strcmp(name + n - 4, ".cag") == 0 ? n - 4 : n), *page;
-  if (!stem) abort();
+  if (!stem) cag_memory_leave();
   for (char *at = stem; *at; at++)
     if (!is_plain(*at)) *at = *at == '/' ? '.' : '_';
   page = strdup(stem);
@@ -73,14 +73,18 @@ static bool read_script(CagSite *s, const char *path, size_t common) {
   const size_t folder = folder_length(path);
   const int status = cag_session_read_doc(s->session, path, text, length, &script->module);
   free(text);
-  if (status != CAG_STATUS_OK) return false;
+  if (status != CAG_STATUS_OK) {
+    cag_doc_module_free(&script->module);
+    return false;
+  }
   free(script->module.name);
   script->module.name = strdup(path + common);
   script->file = strdup(path + folder);
   script->folder = folder ? strndup(path, folder) : strdup(".");
-  script->page = page_name(s, path + common);
+  script->page = NULL;
   s->script_count++;
-  if (!script->module.name || !script->file || !script->folder || !script->page) abort();
+  if (!script->module.name || !script->file || !script->folder) cag_memory_leave();
+  script->page = cag_checked(page_name(s, path + common));
   return true;
 }
 
@@ -95,7 +99,7 @@ bool cag_site_read_scripts(CagSite *s) {
   const size_t count = s->options->script_count;
   if (count == 0) return true;
   s->scripts = calloc(count, sizeof *s->scripts);
-  if (!s->scripts) abort();
+  if (!s->scripts) cag_memory_leave();
   const size_t common = common_folder(paths, count);
   for (size_t i = 0; i < count; i++)
     if (!is_again(paths, i) && !read_script(s, paths[i], common)) return false;

@@ -90,8 +90,7 @@ char *cag_doc_text(const char *format, ...) {
   const int n = vasprintf(&text, format, args);
   va_end(args);
   if (n >= 0) return text;
-  fputs("cag: out of memory\n", stderr);
-  abort();
+  cag_memory_leave();
 }
 
 // --- Built-ins ---

@@ -179,8 +179,12 @@ static bool run_assert(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
   return false;
 }
 
+static void free_line(void *line) { cag_string_free(line); }
+
 static bool run_print(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
   CagString line = {0};
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, free_line, &line);
   bool ok = true;
   for (size_t i = 0; ok && i < s->as.list.count; i++) {
     CagValue v;
@@ -195,7 +199,7 @@ static bool run_print(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
     cag_string_check(vm, &line);
     fwrite(line.bytes, 1, line.length, vm->out);
   }
-  cag_string_free(&line);
+  cag_cleanup_run(&cleanup);
   return ok;
 }
 

@@ -26,14 +26,25 @@ int cag_session_read_doc(CagSession *s, const char *name, const char *text, size
   return cag_session_work(s, read, &r);
 }
 
+typedef struct Written {
+  CagDocWriter writer;
+  const CagDocModule *module;
+} Written;
+
+static void write_read(void *context) {
+  const Written *w = context;
+  cag_doc_write_module(&w->writer, w->module);
+}
+
 int cag_session_document_text(CagSession *s, const char *name, const char *text, size_t length,
                               bool styled, FILE *out) {
   if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   CagDocModule m;
   const int status = cag_session_read_doc(s, name, text, length, &m);
-  if (status == CAG_STATUS_OK) cag_doc_write_module(&(CagDocWriter){out, styled}, &m);
+  Written w = {{out, styled}, &m};
+  const bool done = status != CAG_STATUS_OK || cag_memory_guard(write_read, &w);
   cag_doc_module_free(&m);
-  return cag_session_end(s, status);
+  return cag_session_end(s, done ? status : cag_session_fail_memory(s));
 }
 
 // Writes a library module (`member` NULL), or one definition of it. False: there is no such.
@@ -88,11 +99,24 @@ static bool document(CagSession *s, const char *name, bool styled, FILE *out) {
          cag_explain(name, out);
 }
 
+typedef struct Question {
+  CagSession *session;
+  const char *name;
+  bool styled, found;
+  FILE *out;
+} Question;
+
+static void answer(void *context) {
+  Question *q = context;
+  q->found = document(q->session, q->name, q->styled, q->out);
+}
+
 bool cag_session_document(CagSession *s, const char *name, bool styled, FILE *out) {
   if (!cag_session_begin(s)) return false;
-  const bool found = document(s, name, styled, out);
+  Question q = {s, name, styled, false, out};
+  if (!cag_memory_guard(answer, &q)) cag_session_fail_memory(s);
   cag_session_end(s, CAG_STATUS_OK);
-  return found;
+  return q.found;
 }
 
 void cag_session_document_names(CagSession *s, void (*give)(void *context, const char *name),

@@ -757,20 +757,35 @@ static char *place_example(const CagDocEntry *e, size_t first, const char *part,
   return text;
 }
 
+// What an example is made of.
+typedef struct Head {
+  const CagDocModule *module;
+  const char *file, *part;
+  size_t length;
+  char *example, *import; // import: NULL where it needs none
+} Head;
+
+static void read_head(void *context) {
+  Head *h = context;
+  h->example = cag_doc_part_text(h->part, h->length, true);
+  h->import = cag_doc_script_import(h->module, h->file, h->example);
+}
+
 // Runs an example, which begins in the line of the entry's text. `script` has its number.
 static int run_example(const Run *script, const CagDocModule *m, const CagDocEntry *e, size_t line,
                        const char *part, size_t length) {
   const char *slash = strrchr(script->path, '/');
   Run r = *script;
-  char *example = cag_doc_part_text(part, length, true);
-  char *import = cag_doc_script_import(m, slash ? slash + 1 : script->path, example);
+  Head head = {m, slash ? slash + 1 : script->path, part, length, NULL, NULL};
+  const bool read = cag_memory_guard(read_head, &head);
+  char *const example = head.example, *const import = head.import;
   char *folder =
       slash ? strndup(script->path, slash == script->path ? 1 : (size_t)(slash - script->path))
             : strdup(".");
   r.about = e->name;
   r.folder = folder;
   r.text = place_example(e, line, part, length, import, &r.length);
-  const int status = r.text && folder ? run_plans(&r, r.text, r.length) : CAG_STATUS_LIMIT;
+  const int status = read && r.text && folder ? run_plans(&r, r.text, r.length) : CAG_STATUS_LIMIT;
   free((void *)(size_t)r.text);
   free(folder);
   free(import);
