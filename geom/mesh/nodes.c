@@ -72,10 +72,22 @@ static bool cross_normal(const CagSurface *s, const CagVec3 d[4], CagVec3 *out) 
 
 // Normal where the partials are no help: the surface's own limit, else that a little further
 // inside, else zero (the mean of the triangles is put there in the end).
-static CagVec3 limit_normal(const CagSurface *s, double u, double v) {
+//
+// Before a break within the domain, where the surface's limit is that behind it, it is the normal a
+// little before.
+static CagVec3 limit_normal(const CagSurface *s, double u, double v, bool after_u, bool after_v) {
   const double inside = 1e-4; // of the way to the middle of the domain
+  const double beside = 1e-6; // of the domain
+  const bool before_u = !after_u && u > s->u0 && u < s->u1;
+  const bool before_v = !after_v && v > s->v0 && v < s->v1;
   CagError ignored;
   CagVec3 n, d[4];
+  if ((before_u || before_v) &&
+      cag_surface_eval(s, before_u ? u - beside * (s->u1 - s->u0) : u,
+                       before_v ? v - beside * (s->v1 - s->v0) : v, 1, CAG_SIDE_RIGHT,
+                       CAG_SIDE_RIGHT, d, &ignored) == CAG_OK &&
+      cross_normal(s, d, &n))
+    return n;
   if (cag_surface_normal(s, u, v, &n, &ignored) == CAG_OK) return n;
   u += inside * ((s->u0 + s->u1) / 2 - u);
   v += inside * ((s->v0 + s->v1) / 2 - v);
@@ -91,7 +103,7 @@ static CagStatus sided_vertex(const CagSurface *s, double u, double v, bool afte
                                       after_v ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, d, err);
   if (status != CAG_OK) return status;
   *point = d[0];
-  if (!cross_normal(s, d, normal)) *normal = limit_normal(s, u, v);
+  if (!cross_normal(s, d, normal)) *normal = limit_normal(s, u, v, after_u, after_v);
   return CAG_OK;
 }
 
@@ -298,7 +310,7 @@ static CagStatus row_of_nodes(Tessellator *t, Line *line, bool after, const Row 
     CagVec3 normal;
     node_parameters(line, node->t, after, &u, &v);
     if (!cag_normal_of_partials(s, row->points[k], row->du[k], row->dv[k], &normal))
-      normal = limit_normal(s, u, v);
+      normal = limit_normal(s, u, v, after || line->fixed != 0, after || line->fixed == 0);
     uint32_t other = node->vertex[!after];
     if (other != NO_INDEX && alike(t->normals[other], normal)) normal = t->normals[other];
     status = tess_new_vertex(t, row->points[k], normal, u, v, &node->vertex[after], err);

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "geom/surface/family.h"
 
@@ -16,6 +17,10 @@ typedef struct Revolution {
   CagVec3 axis;      // unit
   CagVec3 through;
   double on_axis; // a profile point nearer to the axis than this lies on it
+  // Where the profile crosses the axis, or touches it, between its ends: the surface is one point
+  // there, and its normal turns round.
+  double *meets;
+  size_t meet_count;
 } Revolution;
 
 static const CagSurfaceKind revolution_kind;
@@ -146,10 +151,93 @@ static CagStatus revolution_transform(const CagSurface *s, const CagTransform *t
   return status;
 }
 
+static int by_value(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
 static size_t revolution_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
   const Revolution *r = (const Revolution *)s;
-  if (direction == 1 || !r->profile->kind->breaks) return 0;
-  return r->profile->kind->breaks(r->profile, out, capacity);
+  if (direction == 1) return 0;
+  const CagCurveKind *kind = r->profile->kind;
+  const size_t own = kind->breaks ? kind->breaks(r->profile, out, capacity) : 0;
+  if (out && capacity >= own + r->meet_count && r->meet_count) {
+    memcpy(out + own, r->meets, r->meet_count * sizeof *out);
+    qsort(out, own + r->meet_count, sizeof *out, by_value);
+  }
+  return own + r->meet_count;
+}
+
+// --- Where the profile meets the axis ---
+
+// Samples between two breaks of the profile, and steps that narrow a minimum down to rounding.
+enum { MEET_SAMPLES = 32, MEET_STEPS = 90 };
+
+static CagStatus axis_distance(const Revolution *r, double t, double *out, CagError *err) {
+  CagVec3 p, axial, radial;
+  CagStatus status = cag_curve_eval(r->profile, t, 0, CAG_SIDE_RIGHT, &p, err);
+  if (status) return status;
+  split(r, cag_sub(p, r->through), &axial, &radial);
+  *out = cag_norm(radial);
+  return CAG_OK;
+}
+
+// The least distance from the axis between two parameters that enclose it, by golden sections.
+static CagStatus least_distance(const Revolution *r, double from, double to, double *at,
+                                double *distance, CagError *err) {
+  const double golden = 0.6180339887498949;
+  double t[2] = {to - golden * (to - from), from + golden * (to - from)}, d[2];
+  CagStatus status = axis_distance(r, t[0], &d[0], err);
+  if (!status) status = axis_distance(r, t[1], &d[1], err);
+  for (int i = 0; !status && i < MEET_STEPS; i++) {
+    const int worse = d[0] < d[1] ? 1 : 0;
+    *(worse ? &to : &from) = t[worse];
+    t[worse] = t[!worse];
+    d[worse] = d[!worse];
+    t[!worse] = worse ? to - golden * (to - from) : from + golden * (to - from);
+    status = axis_distance(r, t[!worse], &d[!worse], err);
+  }
+  *at = d[0] < d[1] ? t[0] : t[1];
+  *distance = fmin(d[0], d[1]);
+  return status;
+}
+
+// Between two breaks, which are breaks of the surface anyway.
+static CagStatus find_meets(Revolution *r, double from, double to, CagError *err) {
+  double d[MEET_SAMPLES + 1];
+  const double step = (to - from) / MEET_SAMPLES;
+  for (int i = 0; i <= MEET_SAMPLES; i++) {
+    CagStatus status = axis_distance(r, i < MEET_SAMPLES ? from + i * step : to, &d[i], err);
+    if (status) return status;
+  }
+  for (int i = 1; i < MEET_SAMPLES; i++) {
+    if (d[i] > d[i - 1] || d[i] >= d[i + 1] || d[i - 1] <= r->on_axis) continue;
+    double at, distance;
+    CagStatus status =
+        least_distance(r, from + (i - 1) * step, from + (i + 1) * step, &at, &distance, err);
+    if (status) return status;
+    if (distance > r->on_axis) continue;
+    double *more = realloc(r->meets, (r->meet_count + 1) * sizeof *more);
+    if (!more) return cag_fail_memory(err);
+    r->meets = more;
+    r->meets[r->meet_count++] = at;
+  }
+  return CAG_OK;
+}
+
+static CagStatus find_all_meets(Revolution *r, CagError *err) {
+  const CagCurve *c = r->profile;
+  const size_t inner = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
+  double *cuts = malloc((inner + 2) * sizeof *cuts);
+  if (!cuts) return cag_fail_memory(err);
+  if (inner) c->kind->breaks(c, cuts + 1, inner);
+  cuts[0] = c->start;
+  cuts[inner + 1] = c->end;
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i <= inner; i++)
+    if (cuts[i + 1] > cuts[i]) status = find_meets(r, cuts[i], cuts[i + 1], err);
+  free(cuts);
+  return status;
 }
 
 static void revolution_describe(const CagSurface *s, char *buffer, size_t size) {
@@ -160,7 +248,11 @@ static void revolution_describe(const CagSurface *s, char *buffer, size_t size) 
            cag_number_text(r->axis.z, z));
 }
 
-static void revolution_destroy(CagSurface *s) { cag_curve_release(((Revolution *)s)->profile); }
+static void revolution_destroy(CagSurface *s) {
+  Revolution *r = (Revolution *)s;
+  cag_curve_release(r->profile);
+  free(r->meets);
+}
 
 static const CagSurfaceKind revolution_kind = {
     .name = "revolution",
@@ -212,6 +304,11 @@ CagStatus cag_surface_revolve(const CagCurve *profile, CagVec3 axis, CagVec3 thr
   }
   double size = cag_norm(cag_sub(box.max, box.min)) + cag_norm(cag_sub(box.min, through));
   r->on_axis = CAG_SURFACE_SAME * size;
+  status = find_all_meets(r, err);
+  if (status) {
+    cag_surface_release(s);
+    return status;
+  }
   cag_surface_judge(s);
   *out = s;
   return CAG_OK;

@@ -226,6 +226,32 @@ polyline([[-3, 0], [0, 4], [3, 0]], closed: true)|0.1|16 126.86989764584402 126.
 polyline([[0, 0, 1], [6, 0, 1], [6 + 3*sqrt(3), 3, 1], [6 + 3*sqrt(3), 9, 1]])|0.3|18 30 60
 PATHS
 
+# The normal turns by at most 15 degrees along an edge (tessellate.h), and a triangle's own is among those of its corners.
+it 'triangles lie along the surface, also of lathes, trimmed and thickened sheets, and set operations'
+script lean.cag 'param which = 0
+profile = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)
+blade = loft([for k in 0..4: profile |> scale(1 - 0.1*k) |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])], caps: true)
+hub = cylinder(20, 6) |> rotate(X, 90deg) |> translate([0, 10, 0])
+sheet = bezier_surface([[[0,0,0], [0,10,5], [0,20,0]], [[10,0,5], [10,10,-8], [10,20,5]], [[20,0,0], [20,10,5], [20,20,0]]])
+shapes = [
+  union(hub, blade, blade |> rotate(Y, 120deg), blade |> rotate(Y, 240deg)),
+  revolve(polyline([[0, 0], [10, 0], [10, 5], [6, 9], [0, 9]])),
+  revolve(line([-10, 0, 0], [10, 0, 20])),
+  revolve(line([-10, 0, 0], [7, 0, 20]), angle: 0deg..200deg),
+  revolve(bspline([[-8, 0], [6, 5], [-6, 10], [8, 16]])),
+  revolve(bspline([[4, 0], [0, 4], [-4, 8], [0, 12], [4, 16]], degree: 2)),
+  clip(sheet, sphere(8) |> translate([10, 10, 0])),
+  thicken(sheet, 1),
+  difference(sphere(10), cylinder(30, 4) |> translate([0, 0, -15])),
+  intersection(revolve(bspline([[0, 0], [10, 0], [4, 8], [12, 14], [0, 18]])), box([30, 30, 12]) |> translate([-10, -10, 0]))
+]
+show shapes[which]'
+for which in 0 1 2 3 4 5 6 7 8 9; do
+  try export lean.cag -o lean.glb -D which=$which
+  status 0
+  python3 "$here/glb_lean.py" lean.glb 15 > lean || wrong "shape $which: $(cat lean)"
+done
+
 # Its corner of three equal control points has no partials to cross; the plane has the normal [-1, -2, 2] / 3 there as elsewhere.
 it 'normals in a .ply are those of the surface, also where control points coincide'
 script corner.cag 'f(x, y) = [x, y, (x + 2*y) / 2]

@@ -104,10 +104,38 @@ static void triangles_of_twisted_extrusions_lie_along_the_surface(void **state) 
   }
 }
 
+// A profile that crosses the axis: the surface is one point there, and its normal turns round.
+static void triangles_of_revolutions_across_the_axis_lie_along_the_surface(void **state) {
+  (void)state;
+  enum { SHAPES = 16 };
+  for (int k = 0; k < SHAPES; k++) {
+    CagVec3 p[4];
+    for (int i = 0; i < 4; i++) {
+      const double radius = between(2, 10);
+      p[i] = cag_vec3(i % 2 ? radius : -radius, 0, 5 * i + between(-1, 1));
+    }
+    const double from = between(0, 3), to = k % 2 ? from + 2 * M_PI : from + between(0.5, 6);
+    CagCurve *c;
+    CagSurface *s;
+    CagMesh *m;
+    const bool straight = k % 4 < 2;
+    OK(straight ? cag_curve_line(p[0], p[1], 3, &c, &err)
+                : cag_curve_bezier(p, NULL, 4, 3, &c, &err));
+    OK(cag_surface_revolve(c, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), from, to, &s, &err));
+    OK(cag_surface_tessellate(s, NULL, &m, &err));
+    const double lean = largest_lean(m);
+    if (!(lean <= most)) fail_msg("%d: normals lean by %.1f degrees", k, lean * 180 / M_PI);
+    cag_mesh_release(m);
+    cag_surface_release(s);
+    cag_curve_release(c);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(triangles_of_blades_lie_along_the_surface),
       cmocka_unit_test(triangles_of_twisted_extrusions_lie_along_the_surface),
+      cmocka_unit_test(triangles_of_revolutions_across_the_axis_lie_along_the_surface),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
