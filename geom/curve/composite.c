@@ -214,7 +214,7 @@ static CagStatus join_moving(CagCurve *const *curves, size_t n, int dimension, C
 CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagError *err) {
   if (n == 0)
     return cag_fail(err, CAG_E_ARGUMENT, "too-few-curves", "curves", -1,
-                    "there is no curve to join");
+                    "expected at least 1 curve, found none");
   CagStatus status = check_joints(curves, n, err);
   if (status) return status;
   // A point adds nothing to what it meets.

@@ -1,6 +1,6 @@
 // Curves that stay in one point: the degenerate half of a split, a Bezier curve of degree 0.
 //
-// The domain may be one parameter. All derivatives are zero, so there is no tangent.
+// The domain may be a single parameter. All derivatives are zero, and the tangent is undefined.
 
 #include <stdio.h>
 

@@ -34,8 +34,9 @@
 #define JOINED 1e-7
 // Part of a patch's width up to which the end of a run lies on its edge.
 #define BESIDE 1e-7
-// Surfaces share a piece where, all about a place at which they touch, to this part of the longest
-// step, they are no farther apart than that part of the size.
+// How to tell a shared piece from a touch: sample points around the place where the surfaces touch,
+// at distances of up to COMMON_REACH times the longest step. The surfaces share a piece if they are
+// within COMMON times the size of each other at all of these points.
 #define COMMON_REACH 0.25
 #define COMMON 1e-9
 // Parts of the meshes' tolerance within which they are near a touch, and of the size below which a
