@@ -587,16 +587,14 @@ static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], 
 
 static CagStatus find_breaks(Face *f, int direction, CagError *err) {
   const CagSurface *s = f->surface;
-  double from = direction == 0 ? s->u0 : s->v0, to = direction == 0 ? s->u1 : s->v1;
-  size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
-  double *all = malloc((inner + 2) * sizeof *all);
-  if (!all) return cag_fail_memory(err);
-  if (inner > 0) s->kind->breaks(s, direction, all + 1, inner);
-  all[0] = from;
-  size_t count = 1;
+  double *all;
+  size_t n, count = 1;
+  CagStatus status = cag_surface_cuts(s, direction, &all, &n, err);
+  if (status) return status;
+  const double from = all[0], to = all[n];
   // Breaks nearer to each other than this are one: no cell is that thin but by rounding.
   double thin = 1e-12 * (to - from);
-  for (size_t k = 1; k <= inner; k++)
+  for (size_t k = 1; k < n; k++)
     if (all[k] > all[count - 1] + thin && all[k] < to - thin) all[count++] = all[k];
   all[count++] = to;
   f->breaks[direction] = all;

@@ -78,17 +78,12 @@ typedef struct Pieces {
 } Pieces;
 
 static CagStatus find_pieces(const CagSurface *s, Pieces *out, CagError *err) {
-  for (int k = 0; k < 2; k++) {
-    const size_t inner = s->kind->breaks ? s->kind->breaks(s, k, NULL, 0) : 0;
-    double *cuts = out->cuts[k] = malloc(sizeof(double) * (inner + 2));
-    if (!cuts) return cag_fail_memory(err);
-    cuts[0] = k ? s->v0 : s->u0;
-    if (inner) s->kind->breaks(s, k, cuts + 1, inner);
-    cuts[inner + 1] = k ? s->v1 : s->u1;
-    out->n[k] = inner + 1;
+  CagStatus status = CAG_OK;
+  for (int k = 0; !status && k < 2; k++) {
+    status = cag_surface_cuts(s, k, &out->cuts[k], &out->n[k], err);
     out->closed[k] = k ? s->closed_v : s->closed_u;
   }
-  return CAG_OK;
+  return status;
 }
 
 // The piece around the part.

@@ -35,20 +35,6 @@ static CagStatus jumps_at(const CagSurface *s, int direction, double before, dou
   return status;
 }
 
-// The edges of the surface and all its breaks.
-static CagStatus list_breaks(const CagSurface *s, int direction, double **out, size_t *n,
-                             CagError *err) {
-  const size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
-  double *ends = malloc((inner + 2) * sizeof *ends);
-  *out = ends;
-  if (!ends) return cag_fail_memory(err);
-  ends[0] = direction ? s->v0 : s->u0;
-  if (inner > 0) s->kind->breaks(s, direction, ends + 1, inner);
-  ends[inner + 1] = direction ? s->v1 : s->u1;
-  *n = inner + 1;
-  return CAG_OK;
-}
-
 // Whether the surface has an edge along a line of a direction: its normals jump somewhere from
 // `before` to `after`, which are one break, or both edges of a seam. `across` are the breaks of the
 // other direction.
@@ -71,7 +57,7 @@ static CagStatus keep_creases(const CagSurface *s, int direction, double *ends, 
                               CagError *err) {
   double *across;
   size_t count, kept = 1;
-  CagStatus status = list_breaks(s, 1 - direction, &across, &count, err);
+  CagStatus status = cag_surface_cuts(s, 1 - direction, &across, &count, err);
   for (size_t i = 1; !status && i < *n; i++) {
     bool crease;
     status = is_crease(s, direction, ends[i], ends[i], across, count, &crease, err);
@@ -85,7 +71,7 @@ static CagStatus keep_creases(const CagSurface *s, int direction, double *ends, 
 
 CagStatus cag_surface_patch_ends(const CagSurface *s, bool all, int direction, double **out,
                                  size_t *n, CagError *err) {
-  const CagStatus status = list_breaks(s, direction, out, n, err);
+  const CagStatus status = cag_surface_cuts(s, direction, out, n, err);
   return status || all || *n < 2 ? status : keep_creases(s, direction, *out, n, err);
 }
 
@@ -98,7 +84,7 @@ static CagStatus find_wrap(CagPatches *p, int direction, CagError *err) {
   size_t count;
   bool crease = false;
   if (!(direction ? s->closed_v : s->closed_u) || p->n[direction] > 1) return CAG_OK;
-  CagStatus status = list_breaks(s, 1 - direction, &across, &count, err);
+  CagStatus status = cag_surface_cuts(s, 1 - direction, &across, &count, err);
   if (!status) status = is_crease(s, direction, ends[1], ends[0], across, count, &crease, err);
   p->wraps[direction] = !status && !crease;
   free(across);

@@ -133,25 +133,11 @@ static CagStatus refine(Integral *in, const Cell *c, int depth, CagError *err) {
   return status ? status : refine(in, &b, depth + 1, err);
 }
 
-// The ends of the smooth cells in one direction, malloc'd: *n + 1 numbers.
-static CagStatus cell_ends(const CagSurface *s, int direction, double **out, size_t *n,
-                           CagError *err) {
-  size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
-  double *ends = malloc((inner + 2) * sizeof *ends);
-  if (!ends) return cag_fail_memory(err);
-  ends[0] = direction == 0 ? s->u0 : s->v0;
-  if (inner > 0) s->kind->breaks(s, direction, ends + 1, inner);
-  ends[inner + 1] = direction == 0 ? s->u1 : s->v1;
-  *out = ends;
-  *n = inner + 1;
-  return CAG_OK;
-}
-
 static CagStatus integrate(Integral *in, CagError *err) {
   double *us = NULL, *vs = NULL;
   size_t nu, nv;
-  CagStatus status = cell_ends(in->s, 0, &us, &nu, err);
-  if (!status) status = cell_ends(in->s, 1, &vs, &nv, err);
+  CagStatus status = cag_surface_cuts(in->s, 0, &us, &nu, err);
+  if (!status) status = cag_surface_cuts(in->s, 1, &vs, &nv, err);
   in->budget = MAX_CELLS;
   for (int pass = 0; !status && pass < 2; pass++) {
     const double point = POINT_EXTENT * in->reach;
@@ -472,8 +458,8 @@ CagStatus cag_surface_bounds(const CagSurface *s, CagBounds *out, CagError *err)
   double *us = NULL, *vs = NULL;
   size_t nu = 0, nv = 0;
   CagVec3 *points = malloc((SAMPLES_FEW + 1) * (SAMPLES_FEW + 1) * sizeof *points);
-  CagStatus status = points ? cell_ends(s, 0, &us, &nu, err) : cag_fail_memory(err);
-  if (!status) status = cell_ends(s, 1, &vs, &nv, err);
+  CagStatus status = points ? cag_surface_cuts(s, 0, &us, &nu, err) : cag_fail_memory(err);
+  if (!status) status = cag_surface_cuts(s, 1, &vs, &nv, err);
   double best[6];
   for (int e = 0; e < 6; e++) best[e] = -INFINITY;
   size_t n = nu * nv <= FEW_CELLS ? SAMPLES_FEW : SAMPLES_MANY;

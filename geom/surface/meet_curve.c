@@ -407,25 +407,6 @@ static CagStatus foot(void *context, double t, double at[2], double *gap, double
 
 // --- The whole ---
 
-// Breaks of one direction with both ends; malloc'd.
-static CagStatus surface_cuts(const CagSurface *s, int direction, double **out, size_t *n,
-                              CagError *err) {
-  const size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
-  double *cuts = malloc(sizeof(double) * (inner + 2));
-  if (!cuts) return cag_fail_memory(err);
-  cuts[0] = direction ? s->v0 : s->u0;
-  if (inner) s->kind->breaks(s, direction, cuts + 1, inner);
-  cuts[inner + 1] = direction ? s->v1 : s->u1;
-  *out = cuts;
-  *n = inner + 2;
-  return CAG_OK;
-}
-
-static double between(const double *cuts, size_t k) {
-  const size_t i = k / FIRST, part = k % FIRST;
-  return part ? cuts[i] + (cuts[i + 1] - cuts[i]) * (double)part / FIRST : cuts[i];
-}
-
 static CagStatus search_all(Search *s, const double *tc, size_t nt, const double *uc, size_t nu,
                             const double *vc, size_t nv, CagError *err) {
   const size_t parts = (nt - 1) * FIRST;
@@ -433,15 +414,15 @@ static CagStatus search_all(Search *s, const double *tc, size_t nt, const double
   if (!list) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < parts; i++) {
-    list[i] = (Part){.a = between(tc, i), .b = between(tc, i + 1)};
+    list[i] = (Part){.a = cag_cut_part(tc, i, FIRST), .b = cag_cut_part(tc, i + 1, FIRST)};
     list[i].low = tc[i / FIRST];
     list[i].high = tc[i / FIRST + 1];
     status = make_part(s, &list[i], err);
   }
-  for (size_t i = 0; !status && i < (nu - 1) * FIRST; i++)
-    for (size_t j = 0; !status && j < (nv - 1) * FIRST; j++) {
-      Cell cell = {.u = {between(uc, i), between(uc, i + 1)},
-                   .v = {between(vc, j), between(vc, j + 1)},
+  for (size_t i = 0; !status && i < nu * FIRST; i++)
+    for (size_t j = 0; !status && j < nv * FIRST; j++) {
+      Cell cell = {.u = {cag_cut_part(uc, i, FIRST), cag_cut_part(uc, i + 1, FIRST)},
+                   .v = {cag_cut_part(vc, j, FIRST), cag_cut_part(vc, j + 1, FIRST)},
                    .low = {uc[i / FIRST], vc[j / FIRST]},
                    .high = {uc[i / FIRST + 1], vc[j / FIRST + 1]}};
       status = make_cell(s, &cell, err);
@@ -473,8 +454,8 @@ CagStatus cag_surface_intersect_curve(const CagSurface *surface, const CagCurve 
   double *tc = NULL, *uc = NULL, *vc = NULL;
   size_t nt, nu, nv;
   status = cag_curve_cuts(curve, &tc, &nt, err);
-  if (!status) status = surface_cuts(surface, 0, &uc, &nu, err);
-  if (!status) status = surface_cuts(surface, 1, &vc, &nv, err);
+  if (!status) status = cag_surface_cuts(surface, 0, &uc, &nu, err);
+  if (!status) status = cag_surface_cuts(surface, 1, &vc, &nv, err);
   if (!status) status = search_all(&s, tc, nt, uc, nu, vc, nv, err);
   free(tc);
   free(uc);

@@ -74,18 +74,10 @@ static size_t piece_at(const Search *f, int k, double x) {
 }
 
 static CagStatus find_cuts(Search *f, CagError *err) {
-  for (int k = 0; k < 2; k++) {
-    const CagSurface *s = f->s;
-    const size_t inner = s->kind->breaks ? s->kind->breaks(s, k, NULL, 0) : 0;
-    double *cuts = malloc(sizeof(double) * (inner + 2));
-    if (!cuts) return cag_fail_memory(err);
-    cuts[0] = k ? s->v0 : s->u0;
-    if (inner) s->kind->breaks(s, k, cuts + 1, inner);
-    cuts[inner + 1] = k ? s->v1 : s->u1;
-    f->cuts[k] = cuts;
-    f->pieces[k] = inner + 1;
-  }
-  return CAG_OK;
+  CagStatus status = CAG_OK;
+  for (int k = 0; !status && k < 2; k++)
+    status = cag_surface_cuts(f->s, k, &f->cuts[k], &f->pieces[k], err);
+  return status;
 }
 
 // --- Newton's method ---

@@ -318,35 +318,16 @@ static CagStatus bound_samples(CagDistanceCells *c, CagDistanceCell *cell, CagEr
   return CAG_OK;
 }
 
-// Breaks of one direction with both ends; malloc'd.
-static CagStatus cuts_of(const CagSurface *s, int direction, double **out, size_t *n,
-                         CagError *err) {
-  const size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
-  double *cuts = malloc(sizeof(double) * (inner + 2));
-  if (!cuts) return cag_fail_memory(err);
-  cuts[0] = direction ? s->v0 : s->u0;
-  if (inner) s->kind->breaks(s, direction, cuts + 1, inner);
-  cuts[inner + 1] = direction ? s->v1 : s->u1;
-  *out = cuts;
-  *n = inner + 1;
-  return CAG_OK;
-}
-
-static double between(const double *cuts, size_t k, size_t parts) {
-  const size_t i = k / parts, part = k % parts;
-  return part ? cuts[i] + (cuts[i + 1] - cuts[i]) * (double)part / (double)parts : cuts[i];
-}
-
 static CagStatus push_samples(CagDistanceCells *c, CagError *err) {
   double *uc = NULL, *vc = NULL;
   size_t nu = 0, nv = 0;
-  CagStatus status = cuts_of(c->s, 0, &uc, &nu, err);
-  if (!status) status = cuts_of(c->s, 1, &vc, &nv, err);
+  CagStatus status = cag_surface_cuts(c->s, 0, &uc, &nu, err);
+  if (!status) status = cag_surface_cuts(c->s, 1, &vc, &nv, err);
   const size_t parts = nu * nv <= PATCHES_FEW ? CELLS_FEW : CELLS_MANY;
   for (size_t i = 0; !status && i < nu * parts; i++)
     for (size_t j = 0; !status && j < nv * parts; j++) {
-      CagDistanceCell cell = {.u = {between(uc, i, parts), between(uc, i + 1, parts)},
-                              .v = {between(vc, j, parts), between(vc, j + 1, parts)},
+      CagDistanceCell cell = {.u = {cag_cut_part(uc, i, parts), cag_cut_part(uc, i + 1, parts)},
+                              .v = {cag_cut_part(vc, j, parts), cag_cut_part(vc, j + 1, parts)},
                               .whole = true};
       status = bound_samples(c, &cell, err);
       if (!status) status = push(c, &cell, err);

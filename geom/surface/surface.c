@@ -101,6 +101,24 @@ CagStatus cag_surface_eval(const CagSurface *s, double u, double v, int n, CagSi
                        err);
 }
 
+CagStatus cag_surface_cuts(const CagSurface *s, int direction, double **out, size_t *n,
+                           CagError *err) {
+  const size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
+  double *cuts = malloc((inner + 2) * sizeof *cuts);
+  *out = cuts;
+  if (!cuts) return cag_fail_memory(err);
+  cuts[0] = direction ? s->v0 : s->u0;
+  if (inner > 0) s->kind->breaks(s, direction, cuts + 1, inner);
+  cuts[inner + 1] = direction ? s->v1 : s->u1;
+  *n = inner + 1;
+  return CAG_OK;
+}
+
+double cag_cut_part(const double *cuts, size_t k, size_t parts) {
+  const size_t i = k / parts, part = k % parts;
+  return part ? cuts[i] + (cuts[i + 1] - cuts[i]) * (double)part / (double)parts : cuts[i];
+}
+
 CagStatus cag_surface_point(const CagSurface *s, double u, double v, CagVec3 *out, CagError *err) {
   return cag_surface_eval(s, u, v, 0, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, out, err);
 }

@@ -120,6 +120,11 @@ CagStatus cag_surface_eval_grid(const CagSurface *s, const double *us, size_t nu
 CagStatus cag_surface_normal(const CagSurface *s, double u, double v, CagVec3 *out,
                              CagError *err); // its limit at poles where there is one
 CagStatus cag_surface_bounds(const CagSurface *s, CagBounds *out, CagError *err);
+// The ends of the smooth stretches along a direction, ascending: *n + 1 values, malloc'd.
+CagStatus cag_surface_cuts(const CagSurface *s, int direction, double **out, size_t *n,
+                           CagError *err);
+// End number k of the stretches when each is cut into `parts` equal ones.
+double cag_cut_part(const double *cuts, size_t k, size_t parts);
 // Integrals over the exact surface (adaptive tensor Gauss-Kronrod, 1e-8 relative); volume by the
 // divergence theorem, first moment for the centroid.
 typedef struct CagMassProperties {

@@ -1,15 +1,10 @@
 // Creased surfaces that meet each other: random comparisons with the segments in which their flat
 // cells meet, by clipping lines.
 
+#include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
 #include "geom/surface/meet_surface.h"
-
-static uint64_t seed;
-static double uniform(double low, double high) {
-  seed = seed * 6364136223846793005u + 1442695040888963407u;
-  return low + (high - low) * (double)(seed >> 11) / 9007199254740992.0;
-}
 
 #define NET 5
 #define SEGMENTS 512

@@ -5,7 +5,7 @@
 #include "geom/curve/intersect.h"
 #include "geom/curve/nurbs_ops.h"
 #include "geom/surface/meet_curve.h"
-#include "support.h"
+#include "meet_support.h"
 
 static const CagVec3 zigzag[6] = {{0, 1, 0},  {1, 2, 1}, {2.5, 0, 0.5},
                                   {4, 2, -1}, {5, 0, 0}, {6, 3, 1}};
@@ -270,21 +270,6 @@ static void joining_keeps_the_knots_of_the_parts(void **state) {
 
 // --- Curves against surfaces ---
 
-static size_t meetings(const CagSurface *s, const CagCurve *c) {
-  CagSurfaceMeeting *m;
-  size_t n;
-  OK(cag_surface_intersect_curve(s, c, &m, &n, &err));
-  for (size_t i = 0; i < n; i++) {
-    CagVec3 p, q;
-    OK(cag_curve_point(c, m[i].t, &p, &err));
-    OK(cag_surface_point(s, m[i].u, m[i].v, &q, &err));
-    near_vec(p, q, 1e-7);
-    if (i) assert_true(m[i].t >= m[i - 1].t);
-  }
-  free(m);
-  return n;
-}
-
 static void lines_meet_a_torus_in_up_to_four_points(void **state) {
   (void)state;
   CagSurface *s;
@@ -304,7 +289,7 @@ static void lines_meet_a_torus_in_up_to_four_points(void **state) {
   for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
     CagCurve *c;
     OK(cag_curve_line(lines[i].p, lines[i].q, 3, &c, &err));
-    size_t n = meetings(s, c);
+    size_t n = meetings(s, c, 1e-7, 0);
     if (n != lines[i].n) fail_msg("line %zu: %zu meetings, not %zu", i, n, lines[i].n);
     cag_curve_release(c);
   }
@@ -326,7 +311,7 @@ static void a_helix_meets_a_patch_as_often_as_its_plane(void **state) {
   size_t n;
   OK(cag_curve_intersect_plane(h, &plane, &m, &n, &err));
   assert_true(n >= 3);
-  assert_int_equal(meetings(s, h), n);
+  assert_int_equal(meetings(s, h, 1e-7, 0), n);
   free(m);
   cag_curve_release(h);
   // A line within the surface.

@@ -1,17 +1,12 @@
 // Where curves and surfaces meet surfaces: random comparisons with counts by whole numbers, and
 // closed forms.
 
-#include "tests/geom/support.h"
+#include "tests/geom/meet_support.h"
+#include "tests/geom/random.h"
 
 #include "geom/solid/solid.h"
-#include "geom/surface/meet_curve.h"
 #include "geom/surface/meet_surface.h"
 
-static uint64_t seed;
-static double uniform(double low, double high) {
-  seed = seed * 6364136223846793005u + 1442695040888963407u;
-  return low + (high - low) * (double)(seed >> 11) / 9007199254740992.0;
-}
 static CagVec3 whole_point(double size) {
   const double x = floor(uniform(-size, size + 1)), y = floor(uniform(-size, size + 1));
   return cag_vec3(x, y, floor(uniform(-size, size + 1)));
@@ -66,18 +61,9 @@ static int passes(CagVec3 a, CagVec3 b, CagVec3 o, CagVec3 e, CagVec3 f) {
   return left == 0 || left == 4;
 }
 
-static size_t meetings(CagSurface *s, CagCurve *c) {
-  CagSurfaceMeeting *m;
-  size_t n;
-  OK(cag_surface_intersect_curve(s, c, &m, &n, &err));
-  for (size_t i = 0; i < n; i++) {
-    CagVec3 p, q;
-    OK(cag_curve_point(c, m[i].t, &p, &err));
-    OK(cag_surface_point(s, m[i].u, m[i].v, &q, &err));
-    near_vec(p, q, 1e-6);
-    assert_int_equal(m[i].multiplicity, 1);
-  }
-  free(m);
+// Crossings of both, which are released.
+static size_t crossings(CagSurface *s, CagCurve *c) {
+  const size_t n = meetings(s, c, 1e-6, 1);
   cag_surface_release(s);
   cag_curve_release(c);
   return n;
@@ -103,7 +89,7 @@ static void polylines_pass_a_flat_patch_as_segments_do(void **state) {
     const double weights[4] = {1, w, x, w * x}, knots[4] = {0, 0, 1, 1};
     CagSurface *s;
     OK(cag_surface_nurbs(corners, weights, 2, 2, 1, 1, knots, knots, &s, &err));
-    assert_int_equal(meetings(s, polyline(p)), wanted);
+    assert_int_equal(crossings(s, polyline(p)), wanted);
   }
 }
 
@@ -127,7 +113,7 @@ static void polylines_pass_a_folded_net_as_segments_do(void **state) {
           wanted = n < 0 ? -1 : wanted + n;
         }
     if (wanted < 0) continue;
-    assert_int_equal(meetings(net(q), polyline(p)), wanted);
+    assert_int_equal(crossings(net(q), polyline(p)), wanted);
   }
 }
 
