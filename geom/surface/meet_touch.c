@@ -17,6 +17,8 @@
 #define SAME_CURVATURE 1e-6
 // Part of the larger curvature by which the smaller one is damped where no direction is given.
 #define DAMPING 1e-3
+// Part of the curvatures up to which their difference along a touch may be rounding.
+#define ALONG 2e-8
 // Surfaces do not touch whose gap is this many times what the curvatures close in a step.
 #define OUT_OF_REACH 8
 // Steps that shrink no further are as good as they get below this part of the size.
@@ -152,6 +154,8 @@ static CagMarchFound finish(const CagMarch *m, const Pair *p, double off, const 
   if (!(apart <= CAG_MARCH_SAME * m->size) || hypot(p->turned.x, p->turned.y) > CAG_MARCH_TOUCH)
     return CAG_MARCH_NONE;
   eigen(difference, &small, &large, &kernel);
+  // Else it is a single place, however slowly the surfaces part.
+  if (fabs(small) > ALONG * (largest(&p->shape[0]) + largest(&p->shape[1]))) return CAG_MARCH_NONE;
   node->x = cag_lerp(p->t[0].p, p->t[1].p, 0.5);
   node->tangent = cag_unit(in_space(p, kernel));
   if (cag_dot(node->tangent, along) < 0) node->tangent = cag_scaled(node->tangent, -1);
