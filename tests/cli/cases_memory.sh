@@ -6,6 +6,7 @@ param height = 200
 show revolve(bspline([[30, 0], [50, 60], [20, 150], [30, height]]), Z)'
 script shapes.cag 'show box(10) |> material({color: "red", name: "clay"}), moved(cylinder(2, 5), translate([20, 0, 0]))
 show circle(4) |> line_style(radius: 0.5, dash: 3), bilinear([0, 0, 9], [0, 9, 9], [9, 0, 9], [9, 9, 12]), rectangle(3, 4)'
+script picture.cag 'show box(10), camera([30, -20, 15], size: [16, 12])'
 script arm.cag 'show robot([revolute(a: 100, limits: -90deg..90deg, shape: box([100, 10, 10])), revolute(a: 50)])'
 script wrong.cag 'print sin(30)'
 script long.cag '// A list that
@@ -111,6 +112,12 @@ if [ -e fail_memory.so ]; then
       fails_at $what "$made" export shapes.cag -o $made
     done
   done
+  if have povray; then
+    made=made.png beyond=0
+    for what in memory system; do
+      fails_at $what 'a picture' render picture.cag -o $made --quality draft
+    done
+  fi
   made=made.urdf beyond=0
   exhausts "$made" export arm.cag -o $made
   made= varies=yes # times
