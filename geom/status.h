@@ -44,6 +44,11 @@ void cag_note_memory(void);
 // Whether that happened on this thread since the last question. Who calls the core asks this also
 // after CAG_OK: on its way up a failure may have been taken for a no.
 bool cag_memory_was_out(void);
+// Whether a call failed for a reason that another way cannot avoid: no memory is left, or the
+// caller wants an end. Whoever tries another way after a failure passes these on.
+static inline bool cag_is_final(CagStatus status) {
+  return status == CAG_E_MEMORY || status == CAG_E_CALLBACK;
+}
 // Whether the call failed because nothing is left of a shape ("empty-shape").
 bool cag_is_empty_shape(const CagError *err);
 

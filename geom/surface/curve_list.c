@@ -38,32 +38,39 @@ CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err) {
 // --- What is found twice ---
 
 // Whether all of c runs along `on`.
-static bool runs_along(const CagCurve *c, const CagCurve *on, double near) {
+static CagStatus runs_along(const CagCurve *c, const CagCurve *on, double near, bool *does,
+                            CagError *err) {
   enum { PLACES = 9 };
+  *does = false;
   const CagBounds box = on->kind->hull(on, on->start, on->end);
   for (int i = 0; i <= PLACES; i++) {
     CagVec3 p, foot;
     double t, distance;
-    CagError ignored;
-    if (cag_curve_point(c, c->start + (c->end - c->start) * i / PLACES, &p, &ignored)) return false;
+    CagStatus status = cag_curve_point(c, c->start + (c->end - c->start) * i / PLACES, &p, err);
+    if (status) return status;
     if (p.x < box.min.x - near || p.y < box.min.y - near || p.z < box.min.z - near ||
-        p.x > box.max.x + near || p.y > box.max.y + near || p.z > box.max.z + near ||
-        cag_curve_closest(on, p, &t, &foot, &distance, &ignored) || distance > near)
-      return false;
+        p.x > box.max.x + near || p.y > box.max.y + near || p.z > box.max.z + near)
+      return CAG_OK;
+    status = cag_curve_closest(on, p, &t, &foot, &distance, err);
+    if (status || distance > near) return status;
   }
-  return true;
+  *does = true;
+  return CAG_OK;
 }
 
-void cag_curve_list_drop_covered(CagCurveList *list, size_t first, double near) {
+CagStatus cag_curve_list_drop_covered(CagCurveList *list, size_t first, double near,
+                                      CagError *err) {
+  CagStatus status = CAG_OK;
   for (size_t i = list->count; i-- > first;) {
     bool covered = false;
-    for (size_t k = first; k < list->count && !covered; k++)
-      covered = k != i && runs_along(list->items[i], list->items[k], near);
+    for (size_t k = first; k < list->count && !status && !covered; k++)
+      if (k != i) status = runs_along(list->items[i], list->items[k], near, &covered, err);
     if (!covered) continue;
     cag_curve_release(list->items[i]);
     list->count--;
     memmove(list->items + i, list->items + i + 1, (list->count - i) * sizeof *list->items);
   }
+  return status;
 }
 
 // --- Pairs of ends ---

@@ -12,7 +12,8 @@
 typedef struct Derived {
   CagSurface base;
   CagSurface *inner;
-  double distance; // offset
+  double distance;         // offset
+  CagKeptBreaks breaks[2]; // by direction
 } Derived;
 
 static const CagSurfaceKind part_kind, transposed_kind, offset_kind;
@@ -25,14 +26,26 @@ static CagStatus make(const CagSurfaceKind *kind, const CagSurface *inner, doubl
   Derived *d = (Derived *)s;
   d->inner = cag_surface_retain(inner);
   d->distance = distance;
-  s->angular_u = kind == &transposed_kind ? inner->angular_v : inner->angular_u;
-  s->angular_v = kind == &transposed_kind ? inner->angular_u : inner->angular_v;
+  const bool transposed = kind == &transposed_kind;
+  s->angular_u = transposed ? inner->angular_v : inner->angular_u;
+  s->angular_v = transposed ? inner->angular_u : inner->angular_v;
+  status = cag_surface_keep_breaks(inner, transposed, u0, u1, &d->breaks[0], err);
+  if (!status) status = cag_surface_keep_breaks(inner, !transposed, v0, v1, &d->breaks[1], err);
+  if (status) {
+    cag_surface_release(s);
+    return status;
+  }
   cag_surface_judge(s);
   *out = s;
   return CAG_OK;
 }
 
-static void derived_destroy(CagSurface *s) { cag_surface_release(((Derived *)s)->inner); }
+static void derived_destroy(CagSurface *s) {
+  Derived *d = (Derived *)s;
+  cag_surface_release(d->inner);
+  free(d->breaks[0].at);
+  free(d->breaks[1].at);
+}
 
 static void derived_describe(const CagSurface *s, char *buffer, size_t size) {
   const Derived *d = (const Derived *)s;
@@ -43,24 +56,8 @@ static void derived_describe(const CagSurface *s, char *buffer, size_t size) {
   else snprintf(buffer, size, "of a %s surface", d->inner->kind->name);
 }
 
-// Breaks of the inner surface within the domain.
-static size_t inner_breaks(const CagSurface *s, int direction, int inner, double *out,
-                           size_t capacity) {
-  const CagSurface *from = ((const Derived *)s)->inner;
-  size_t n = from->kind->breaks ? from->kind->breaks(from, inner, NULL, 0) : 0;
-  if (n == 0) return 0;
-  double *all = malloc(n * sizeof *all);
-  if (!all) return 0;
-  from->kind->breaks(from, inner, all, n);
-  n = cag_surface_tidy_breaks(all, n, direction == 0 ? s->u0 : s->v0,
-                              direction == 0 ? s->u1 : s->v1);
-  for (size_t i = 0; i < n && i < capacity; i++) out[i] = all[i];
-  free(all);
-  return n;
-}
-
-static size_t same_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
-  return inner_breaks(s, direction, direction, out, capacity);
+static size_t derived_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
+  return cag_surface_kept_breaks(&((const Derived *)s)->breaks[direction], out, capacity);
 }
 
 // --- Parts ---
@@ -128,7 +125,7 @@ static const CagSurfaceKind part_kind = {
     .eval = part_eval,
     .eval_grid = part_grid,
     .to_nurbs = part_to_nurbs,
-    .breaks = same_breaks,
+    .breaks = derived_breaks,
     .describe = derived_describe,
     .destroy = derived_destroy,
 };
@@ -185,15 +182,11 @@ static CagStatus transposed_to_nurbs(const CagSurface *s, CagSurface **out, CagE
   return status;
 }
 
-static size_t transposed_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
-  return inner_breaks(s, direction, 1 - direction, out, capacity);
-}
-
 static const CagSurfaceKind transposed_kind = {
     .name = "transposed",
     .eval = transposed_eval,
     .to_nurbs = transposed_to_nurbs,
-    .breaks = transposed_breaks,
+    .breaks = derived_breaks,
     .describe = derived_describe,
     .destroy = derived_destroy,
 };
@@ -338,7 +331,7 @@ static CagStatus offset_eval(const CagSurface *s, double u, double v, int n, Cag
 static const CagSurfaceKind offset_kind = {
     .name = "offset",
     .eval = offset_eval,
-    .breaks = same_breaks,
+    .breaks = derived_breaks,
     .describe = derived_describe,
     .destroy = derived_destroy,
 };

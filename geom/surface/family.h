@@ -52,6 +52,15 @@ typedef struct CagConicNurbs {
 } CagConicNurbs;
 void cag_conic_nurbs(CagConicArc arc, double from, double to, CagConicNurbs *out);
 
+// The breaks of the surface that another kind is made of, within the range of that kind; kept with
+// it. Free `at`.
+typedef struct CagKeptBreaks {
+  double *at;
+  size_t n;
+} CagKeptBreaks;
+CagStatus cag_surface_keep_breaks(const CagSurface *inner, int direction, double lo, double hi,
+                                  CagKeptBreaks *out, CagError *err);
+size_t cag_surface_kept_breaks(const CagKeptBreaks *kept, double *out, size_t capacity);
 // Ascending, distinct values of a within (lo, hi), to `same`; returns their number.
 size_t cag_surface_tidy_breaks(double *a, size_t n, double lo, double hi);
 

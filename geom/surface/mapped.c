@@ -108,7 +108,7 @@ static size_t slot_of(const Mapping *m, uint64_t key) {
 
 static uint32_t divide(Mapping *m, uint32_t a, uint32_t b) {
   Vertex p = m->vertices[a], q = m->vertices[b], middle;
-  if (!map_vertex(m, cag_lerp(p.from, q.from, 0.5), &middle)) return NONE;
+  if (m->status || !map_vertex(m, cag_lerp(p.from, q.from, 0.5), &middle)) return NONE;
   double off = cag_norm(cag_sub(middle.to, cag_lerp(p.to, q.to, 0.5)));
   double span = hypot((q.from.x - p.from.x) / (m->s->u1 - m->s->u0),
                       (q.from.y - p.from.y) / (m->s->v1 - m->s->v0));

@@ -376,32 +376,36 @@ static bool same_parameters(const CagSurface *s, const CagSurface *exact) {
   return true;
 }
 
-static bool exact_form(CagDistanceCells *c, const CagSurface *s, bool own_parameters) {
+// c->exact stays NULL where there is none that serves.
+static CagStatus exact_form(CagDistanceCells *c, const CagSurface *s, bool own_parameters,
+                            CagError *err) {
   CagSurfaceNurbsView is;
-  CagError ignored;
-  if (cag_surface_to_nurbs(s, &c->exact, &ignored)) {
+  const CagStatus status = cag_surface_to_nurbs(s, &c->exact, err);
+  if (status) {
     c->exact = NULL;
-    return false;
+    return cag_is_final(status) ? status : CAG_OK;
   }
   bool serves = cag_surface_nurbs_view(c->exact, &is);
   for (size_t k = 0; serves && k < is.nu * is.nv; k++) serves = is.homogeneous[4 * k + 3] > 0;
   c->same = serves && same_parameters(s, c->exact);
-  if (serves && (c->same || !own_parameters)) return true;
+  if (serves && (c->same || !own_parameters)) return CAG_OK;
   cag_surface_release(c->exact);
   c->exact = NULL;
-  return false;
+  return CAG_OK;
 }
 
 CagStatus cag_distance_cells_make(CagDistanceCells *c, const CagSurface *s, CagVec3 p,
                                   bool own_parameters, CagError *err) {
   *c = (CagDistanceCells){.s = s, .p = p};
-  if (!exact_form(c, s, own_parameters)) {
+  CagStatus status = exact_form(c, s, own_parameters, err);
+  if (status) return status;
+  if (!c->exact) {
     c->same = true;
     return push_samples(c, err);
   }
   CagSurfaceNurbsView is;
   cag_surface_nurbs_view(c->exact, &is);
-  CagStatus status = prepare_patches(c, &is, err);
+  status = prepare_patches(c, &is, err);
   return status ? status : push_patches(c, err);
 }
 

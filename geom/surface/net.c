@@ -96,7 +96,7 @@ CagStatus cag_net_trim(CagNet *net, double a, double b, CagError *err) {
 }
 
 // Removes knot number r, the last of its equals, where that changes nothing.
-static void drop_knot(CagNet *net, size_t r) {
+static CagStatus drop_knot(CagNet *net, size_t r, CagError *err) {
   // Inverse of Boehm's insertion, from both sides to the middle (Tiller 1992).
   size_t p = (size_t)net->degree, n = net->count, width = net->width;
   double t = net->knots[r];
@@ -104,7 +104,7 @@ static void drop_knot(CagNet *net, size_t r) {
   for (size_t i = 0; i < n + p + 1; i++) times += net->knots[i] == t;
   size_t s = (size_t)times, first = r - p, last = r - s;
   double *work = malloc((last - first + 3) * width * sizeof *work);
-  if (!work) return; // one knot too many does no harm
+  if (!work) return cag_fail_memory(err);
   size_t off = first - 1;
   memcpy(work, net->data + off * width, width * sizeof *work);
   memcpy(work + (last + 1 - off) * width, net->data + (last + 1) * width, width * sizeof *work);
@@ -130,12 +130,13 @@ static void drop_knot(CagNet *net, size_t r) {
           (n - gone - 1) * width * sizeof *net->data);
   memmove(net->knots + r, net->knots + r + 1, (n + p - r) * sizeof *net->knots);
   net->count--;
+  return CAG_OK;
 }
 
-void cag_net_drop(CagNet *net, double t) {
+CagStatus cag_net_drop(CagNet *net, double t, CagError *err) {
   size_t r = 0;
   while (r + 1 < net->count + (size_t)net->degree + 1 && net->knots[r + 1] <= t) r++;
-  drop_knot(net, r);
+  return drop_knot(net, r, err);
 }
 
 static void raise_pieces(const CagNet *net, CagNet *next) {
@@ -183,10 +184,13 @@ CagStatus cag_net_raise(CagNet *net, CagError *err) {
   if (!status)
     status = cag_net_new(p + 1, (net->count - 1) / (size_t)p * (size_t)(p + 1) + 1, net->width,
                          &next, err);
-  if (!status) {
-    raise_pieces(net, &next);
-    for (size_t i = 0; i < n; i++)
-      for (int m = p + 1; m > times[i] + 1; m--) cag_net_drop(&next, cuts[i]);
+  if (!status) raise_pieces(net, &next);
+  for (size_t i = 0; !status && i < n; i++)
+    for (int m = p + 1; !status && m > times[i] + 1; m--)
+      status = cag_net_drop(&next, cuts[i], err);
+  if (status) {
+    cag_net_free(&next);
+  } else {
     cag_net_free(net);
     *net = next;
   }

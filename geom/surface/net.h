@@ -27,7 +27,7 @@ CagStatus cag_net_trim(CagNet *net, double a, double b, CagError *err);
 // The degree raised by one; smoothness at the knots stays, as do the points. Clamps the ends.
 CagStatus cag_net_raise(CagNet *net, CagError *err);
 // Takes out one of the inner knots t, where the net is so smooth that this changes nothing.
-void cag_net_drop(CagNet *net, double t);
+CagStatus cag_net_drop(CagNet *net, double t, CagError *err);
 // Gives the net the inner knots of `other` that it lacks.
 CagStatus cag_net_take_knots(CagNet *net, const CagNet *other, CagError *err);
 // Knots moved affinely to [a, b]; the ends exactly.

@@ -395,12 +395,13 @@ static CagStatus composite_surface(const Composite *c, CagSurface **out, CagErro
     }
     double at = 0;
     const double *steps = direction == 0 ? c->hu : c->hv;
-    for (size_t i = 0; i + 1 < (direction == 0 ? m : n); i++) {
+    for (size_t i = 0; !status && i + 1 < (direction == 0 ? m : n); i++) {
       at += steps[i];
-      cag_net_drop(&net, at);
-      cag_net_drop(&net, at);
+      status = cag_net_drop(&net, at, err);
+      if (!status) status = cag_net_drop(&net, at, err);
     }
-    status = cag_net_to_surface(&net, direction, &across, direction == 0 ? &pieces : out, err);
+    if (!status)
+      status = cag_net_to_surface(&net, direction, &across, direction == 0 ? &pieces : out, err);
   }
   cag_net_free(&net);
   cag_net_free(&across);

@@ -109,7 +109,7 @@ static CagStatus section_flat(const CagRegion *region, const CagTransform *frame
   double *cuts;
   size_t count;
   CagStatus status = cut_loops(region, p, l.along, &cuts, &count, err);
-  if (status && status != CAG_E_MEMORY) {
+  if (status && !cag_is_final(status)) {
     // An edge lies in the plane. It belongs to the face on the negative side, so that of two faces
     // that meet there one has it.
     l.searched = cag_madd(p, -WITHIN * size, across);
@@ -175,8 +175,7 @@ static CagStatus section_face(const CagSurface *s, const CagPlane *plane, double
   status = trace_all(s, &level, quadric ? &q : NULL, tolerance, size, out, NULL, err);
   // A surface that touches the plane along a line of cells lies to the same side of it in the cells
   // on both sides, and each has a run.
-  if (!status) cag_curve_list_drop_covered(out, first, MEET * size);
-  return status;
+  return status ? status : cag_curve_list_drop_covered(out, first, MEET * size, err);
 }
 
 // Edges in the plane and curves along which it touches the surface. Formulas may have no
@@ -202,7 +201,8 @@ CagStatus cag_surface_section(const CagSurface *s, const CagPlane *plane, double
   // The most exact first, which stay where a curve is found again.
   status = add_edges_and_touches(s, plane, &box, tolerance, out, err);
   if (!status) status = section_face(s, plane, tolerance, size, out, err);
-  if (!status) cag_curve_list_drop_covered(out, first, NEAR_RUN * tolerance + MEET * size);
+  if (!status)
+    status = cag_curve_list_drop_covered(out, first, NEAR_RUN * tolerance + MEET * size, err);
   return status ? status : cag_curve_list_join(out, first, MEET * size, err);
 }
 

@@ -19,6 +19,6 @@ CagStatus cag_section_villarceau(const CagSurface *s, const CagPlane *plane, dou
                                  CagCurveList *out, bool *is, CagError *err);
 // Drops curves from number `first` on that run along another one, to `near`: of two that run along
 // each other the later one.
-void cag_curve_list_drop_covered(CagCurveList *list, size_t first, double near);
+CagStatus cag_curve_list_drop_covered(CagCurveList *list, size_t first, double near, CagError *err);
 
 #endif

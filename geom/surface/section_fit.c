@@ -86,19 +86,23 @@ static bool fits(const CagTrace *t, const Chart *chart, const CagConic *k, doubl
 }
 
 // The conic through five of the points. Fewer than two more to try it by would prove nothing.
-static bool guess(const CagTrace *t, const Chart *chart, CagConic *out) {
+static CagStatus guess(const CagTrace *t, const Chart *chart, CagConic *out, bool *found,
+                       CagError *err) {
   enum { NEEDED = 5, TRIED = 2 };
   CagVec3 p[NEEDED];
-  CagError err;
+  *found = false;
   size_t distinct = t->closed ? t->count - 1 : t->count;
-  if (distinct + t->check_count < NEEDED + TRIED) return false;
+  if (distinct + t->check_count < NEEDED + TRIED) return CAG_OK;
   for (size_t i = 0; i < NEEDED; i++) {
     size_t at = t->closed ? i * distinct / NEEDED : i * (distinct - 1) / (NEEDED - 1);
     p[i] = in_chart(chart, distinct >= NEEDED
                                ? t->points[at]
                                : point_of(t, i < distinct ? i : t->count + i - distinct));
   }
-  return cag_conic_from_conditions(p, NEEDED, NULL, 0, CAG_CONIC_GENERAL, out, &err) == CAG_OK;
+  const CagStatus status =
+      cag_conic_from_conditions(p, NEEDED, NULL, 0, CAG_CONIC_GENERAL, out, err);
+  *found = !status;
+  return cag_is_final(status) ? status : CAG_OK;
 }
 
 // The frame of the conic's own axes in the world: x, y turned by the angle about its center.
@@ -159,8 +163,10 @@ static CagStatus conic_arc(const CagTrace *t, const CagQuadric *quadric, const S
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) scaled.m[i][j] *= chart.unit;
     cag_quadric_section(quadric, &scaled, &conic);
-  } else if (!guess(t, &chart, &conic)) {
-    return CAG_OK;
+  } else {
+    bool found;
+    const CagStatus status = guess(t, &chart, &conic, &found, err);
+    if (status || !found) return status;
   }
   if (!fits(t, &chart, &conic, size)) return CAG_OK;
   if (cag_conic_classify(&conic, &k, err) != CAG_OK || !(k.a > 0)) return CAG_OK;

@@ -116,10 +116,7 @@ static double *value_of(const CagTracer *t, size_t i, size_t j) {
 bool cag_tracer_fill(CagTracer *t) {
   free(t->values);
   t->values = malloc(t->n[0] * t->n[1] * sizeof *t->values);
-  if (!t->values) {
-    t->status = cag_fail_memory(t->err);
-    return false;
-  }
+  if (!t->values) t->status = cag_fail_memory(t->err);
   for (size_t j = 0; j < t->n[1] && !t->status; j++)
     for (size_t i = 0; i < t->n[0] && !t->status; i++)
       *value_of(t, i, j) = cag_tracer_settled(t, t->lines[0][i], t->lines[1][j]);

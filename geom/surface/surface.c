@@ -366,3 +366,20 @@ size_t cag_surface_tidy_breaks(double *a, size_t n, double lo, double hi) {
       a[kept++] = a[i];
   return kept;
 }
+
+CagStatus cag_surface_keep_breaks(const CagSurface *inner, int direction, double lo, double hi,
+                                  CagKeptBreaks *out, CagError *err) {
+  *out = (CagKeptBreaks){0};
+  const size_t n = inner->kind->breaks ? inner->kind->breaks(inner, direction, NULL, 0) : 0;
+  if (n == 0) return CAG_OK;
+  out->at = malloc(n * sizeof *out->at);
+  if (!out->at) return cag_fail_memory(err);
+  inner->kind->breaks(inner, direction, out->at, n);
+  out->n = cag_surface_tidy_breaks(out->at, n, lo, hi);
+  return CAG_OK;
+}
+
+size_t cag_surface_kept_breaks(const CagKeptBreaks *kept, double *out, size_t capacity) {
+  for (size_t i = 0; i < kept->n && i < capacity; i++) out[i] = kept->at[i];
+  return kept->n;
+}

@@ -25,6 +25,7 @@ typedef struct Trimmed {
   CagSurface base;
   CagSurface *inner;
   CagRegion *region;
+  CagKeptBreaks breaks[2]; // by direction
 } Trimmed;
 
 static const CagSurfaceKind trimmed_kind;
@@ -56,20 +57,7 @@ static CagStatus trimmed_transform(const CagSurface *s, const CagTransform *t, C
 }
 
 static size_t trimmed_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
-  const Trimmed *w = (const Trimmed *)s;
-  if (!w->inner->kind->breaks) return 0;
-  size_t all = w->inner->kind->breaks(w->inner, direction, NULL, 0), n = 0;
-  double *at = malloc((all + 1) * sizeof *at);
-  if (!at) return cag_note_memory(), 0;
-  w->inner->kind->breaks(w->inner, direction, at, all);
-  double lo = direction == 0 ? s->u0 : s->v0, hi = direction == 0 ? s->u1 : s->v1;
-  for (size_t i = 0; i < all; i++)
-    if (at[i] > lo && at[i] < hi) {
-      if (n < capacity) out[n] = at[i];
-      n++;
-    }
-  free(at);
-  return n;
+  return cag_surface_kept_breaks(&((const Trimmed *)s)->breaks[direction], out, capacity);
 }
 
 static void trimmed_describe(const CagSurface *s, char *buffer, size_t size) {
@@ -79,8 +67,11 @@ static void trimmed_describe(const CagSurface *s, char *buffer, size_t size) {
 }
 
 static void trimmed_destroy(CagSurface *s) {
-  cag_surface_release(((Trimmed *)s)->inner);
-  cag_region_release(((Trimmed *)s)->region);
+  Trimmed *w = (Trimmed *)s;
+  cag_surface_release(w->inner);
+  cag_region_release(w->region);
+  free(w->breaks[0].at);
+  free(w->breaks[1].at);
 }
 
 static const CagSurfaceKind trimmed_kind = {
@@ -123,8 +114,11 @@ CagStatus cag_surface_trimmed(const CagSurface *inner, const CagRegion *region, 
   w->region = cag_region_retain((CagRegion *)region);
   s->angular_u = inner->angular_u;
   s->angular_v = inner->angular_v;
-  *out = s;
-  return CAG_OK;
+  status = cag_surface_keep_breaks(inner, 0, s->u0, s->u1, &w->breaks[0], err);
+  if (!status) status = cag_surface_keep_breaks(inner, 1, s->v0, s->v1, &w->breaks[1], err);
+  if (status) cag_surface_release(s);
+  else *out = s;
+  return status;
 }
 
 bool cag_surface_trimmed_view(const CagSurface *s, const CagSurface **inner,
