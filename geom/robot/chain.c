@@ -195,21 +195,17 @@ static double reach_of(const CagRobot *r) {
 
 // --- Couplings ---
 
-// Gauss-Jordan elimination with row pivots of an n x n matrix.
-static bool invert(const double *matrix, size_t n, double *out) {
-  double *m = malloc(n * n * sizeof *m);
-  if (!m) return cag_note_memory(), false;
-  memcpy(m, matrix, n * n * sizeof *m);
+// Gauss-Jordan elimination with row pivots of an n x n matrix, which becomes the identity. False:
+// it is singular.
+static bool invert(double *m, size_t n, double *out) {
+  double largest = 0;
+  for (size_t i = 0; i < n * n; i++) largest = fmax(largest, fabs(m[i]));
   for (size_t i = 0; i < n * n; i++) out[i] = i % (n + 1) == 0;
-  bool regular = true;
-  for (size_t k = 0; k < n && regular; k++) {
+  for (size_t k = 0; k < n; k++) {
     size_t pivot = k;
-    double largest = 0;
-    for (size_t i = 0; i < n * n; i++) largest = fmax(largest, fabs(matrix[i]));
     for (size_t i = k + 1; i < n; i++)
       if (fabs(m[i * n + k]) > fabs(m[pivot * n + k])) pivot = i;
-    regular = fabs(m[pivot * n + k]) > COUPLING_SINGULAR * largest;
-    if (!regular) break;
+    if (!(fabs(m[pivot * n + k]) > COUPLING_SINGULAR * largest)) return false;
     for (size_t j = 0; j < n; j++) {
       double a = m[k * n + j], b = out[k * n + j];
       m[k * n + j] = m[pivot * n + j];
@@ -231,8 +227,7 @@ static bool invert(const double *matrix, size_t n, double *out) {
       }
     }
   }
-  free(m);
-  return regular;
+  return true;
 }
 
 static CagStatus fill_coupling(CagRobot *r, const CagRobotSpec *spec, CagError *err) {
@@ -248,7 +243,12 @@ static CagStatus fill_coupling(CagRobot *r, const CagRobotSpec *spec, CagError *
     if (!isfinite(r->coupling[i]) || !isfinite(r->coupling_offset[i / n]))
       return cag_fail(err, CAG_E_ARGUMENT, "coupling-singular", "coupling", (long)(i / n),
                       "row %zu of the coupling has a number that is infinite or none", i / n + 1);
-  if (invert(r->coupling, n, r->coupling_inverse)) return CAG_OK;
+  double *work = malloc(n * n * sizeof *work);
+  if (!work) return cag_fail_memory(err);
+  memcpy(work, r->coupling, n * n * sizeof *work);
+  const bool regular = invert(work, n, r->coupling_inverse);
+  free(work);
+  if (regular) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, "coupling-singular", "coupling", -1,
                   "the coupling matrix is singular: the motors' angles do not determine the "
                   "joints'; each joint needs a motor of its own");
