@@ -15,7 +15,7 @@ VERSION := 0.1.0
 SONAME  := libcag.so.0
 CC      ?= cc
 OPT     ?= -O3
-# (The ABI of wide vectors between functions of one file is nobody else's business.)
+# Wide vectors never cross a file boundary, so their ABI does not matter.
 WARN    := -Wall -Wextra -Werror -Wno-psabi
 SANITIZE ?=
 # CGAL=1 has CGAL do set operations of meshes: a program under the GPL. Give it a BUILD of its own.
@@ -117,7 +117,7 @@ $(BUILD)/tests/lang/%: tests/lang/%.c $(BUILD)/liblang.a
 	@mkdir -p $(@D)
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/liblang.a -o $@ -lcmocka $(LDLIBS_ALL)
-# Tests of failing allocations put functions of their own (tests/geom/faults.h) in place of these.
+# Tests of failing allocations replace these functions with their own (tests/geom/faults.h).
 $(BUILD)/tests/geom/memory_%: LDLIBS_ALL += -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free
 $(BUILD)/tests/geom/%: tests/geom/%.c $(BUILD)/libgeom.a
 	@mkdir -p $(@D)
@@ -144,7 +144,7 @@ $(BUILD)/tests/fuzz/fuzz: tests/fuzz/fuzz.c $(BUILD)/libcag.a
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(LDLIBS_ALL)
 
-# Allocations that the wrapped functions make fail.
+# Allocation functions that the tests wrap to make them fail.
 WRAPPED := malloc calloc realloc strdup strndup realpath asprintf vasprintf open_memstream
 $(BUILD)/tests/fuzz/memory: tests/fuzz/memory.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
@@ -155,15 +155,15 @@ test-programs: all $(BUILD)/tools/tables $(call UNIT,lang) $(call UNIT,geom) $(c
 test: test-programs
 	BUILD=$(BUILD) sh tests/run_all.sh
 
-# All suites under AddressSanitizer and UndefinedBehaviorSanitizer. The programs by Clang, in a folder of their own, are for the shorter
-# run that tools/test.sh makes.
+# Builds and runs all suites under AddressSanitizer and UndefinedBehaviorSanitizer. The Clang programs have a directory of their own and
+# serve the shorter run of tools/test.sh.
 SANITIZED := OPT=-O1 SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer"
 test-sanitize:
 	$(MAKE) BUILD=$(BUILD)-sanitize $(SANITIZED) test
 test-programs-clang:
 	$(MAKE) BUILD=$(BUILD)-clang CC=clang $(SANITIZED) test-programs
 
-# Tests that fail here, such as those of time, do not stop the report. More allocations fail than in `make test`.
+# A failing test, such as a timing test, does not stop the report. More allocations fail than in `make test`.
 COVERAGE_EXIT := $(BUILD)-coverage/exit.o
 coverage:
 	@mkdir -p $(BUILD)-coverage

@@ -2,8 +2,8 @@
 // element at fault.
 //
 // A function that can fail returns CagStatus and takes `CagError *err` last (never NULL). Outputs
-// are initialised only on CAG_OK. Nothing in geom/ prints, exits or keeps global state, but for a
-// note of each thread that memory was out.
+// are initialised only on CAG_OK. Nothing in geom/ prints, exits, or keeps global state, except for
+// a per-thread flag that records exhausted memory.
 
 #ifndef CAG_GEOM_STATUS_H
 #define CAG_GEOM_STATUS_H
@@ -39,10 +39,11 @@ typedef struct CagError {
 CagStatus cag_fail(CagError *err, CagStatus status, const char *reason, const char *argument,
                    long index, const char *format, ...) __attribute__((format(printf, 6, 7)));
 CagStatus cag_fail_memory(CagError *err);
-// Notes that memory was out, as cag_fail_memory does, where no status can be given.
+// Records that memory ran out, as cag_fail_memory does, where a function cannot return a status.
 void cag_note_memory(void);
-// Whether that happened on this thread since the last question. Who calls the core asks this also
-// after CAG_OK: on its way up a failure may have been taken for a no.
+// Returns whether memory ran out on this thread since the last call. Callers of the geometry core
+// check this even after CAG_OK, because an intermediate function may have treated the failure as a
+// negative answer.
 bool cag_memory_was_out(void);
 // Whether a call failed for a reason that another way cannot avoid: no memory is left, or the
 // caller wants an end. Whoever tries another way after a failure passes these on.

@@ -18,7 +18,7 @@
 #define MOST_INTERVALS 4000
 // Error of an interval that is rounding, as a part of its integral of absolute values.
 #define ROUNDING (4 * DBL_EPSILON)
-// Up to so many cuts need no allocation: inner integrals have few.
+// This many cuts need no allocation. Inner integrals have few.
 #define FEW_CUTS 8
 
 // Nodes and weights of the 15-point Kronrod rule, from the outermost; Gauss weights belong to every
@@ -173,7 +173,7 @@ CagStatus cag_integrate_pieces(CagPieceIntegrand f, void *context, const double 
   return status;
 }
 
-// --- Pieces of one parameter ---
+// --- Pieces with separate parameters ---
 
 typedef struct Single {
   CagIntegrand f;

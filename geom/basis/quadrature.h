@@ -19,7 +19,8 @@ typedef CagStatus (*CagIntegrand)(void *context, double t, double *out, CagError
 CagStatus cag_integrate(CagIntegrand f, void *context, const double *cuts, size_t n, int parts,
                         double tolerance, double *out, CagError *err);
 
-// The same over n ranges that have parameters of their own: `piece` says in which of them t is.
+// Integrates over n ranges, each with its own parameter. `piece` is the index of the range that
+// contains t.
 typedef CagStatus (*CagPieceIntegrand)(void *context, size_t piece, double t, double *out,
                                        CagError *err);
 CagStatus cag_integrate_pieces(CagPieceIntegrand f, void *context, const double (*ranges)[2],

@@ -144,7 +144,7 @@ CagStatus cag_curve_bounds(const CagCurve *c, CagBounds *out,
 // Signed area (counter-clockwise positive) and centroid of a closed plane curve, by Green's
 // theorem, 1e-10 relative.
 CagStatus cag_curve_area(const CagCurve *c, double *area, CagVec3 *centroid, CagError *err);
-// Whether it lies in a plane or on a line, to 1e-9 of its size; plane may be NULL.
+// Tests whether the curve lies in a plane or on a line, within 1e-9 of its size. plane may be NULL.
 CagStatus cag_curve_is_planar(const CagCurve *c, bool *is, CagPlane *plane, CagError *err);
 CagStatus cag_curve_is_straight(const CagCurve *c, bool *is, CagError *err);
 CagStatus cag_curve_to_nurbs(const CagCurve *c, CagCurve **out,

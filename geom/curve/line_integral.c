@@ -1,10 +1,10 @@
 // Integrals along curves, piece by piece between breaks.
 //
-// With weights 1, w, 1 a rational curve of degree 2 runs through half of its length while its
-// parameter is within 1 / w of an end. A double near 1 is off by 1e-16, so that a length by
-// parameters of the domain would be off by 1e-16 w. Such pieces are therefore cut in the middle,
-// and both halves have their distance from the end as their parameter. Weights are positive: no
-// piece is that fast anywhere but at its ends.
+// A rational curve of degree 2 with weights 1, w, 1 covers half of its length while its parameter
+// is within 1 / w of an end. A double near 1 has an error of 1e-16, so integrating over the curve's
+// own parameter would give a length with a relative error of 1e-16 w. Such pieces are therefore
+// split in the middle, and the parameter of each half is the distance from the end of the piece.
+// Weights are positive, so a piece is this fast only at its ends.
 
 #include "geom/curve/line_integral.h"
 
@@ -16,17 +16,17 @@
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
-// Weights of a piece that differ by more than this factor count as far apart: below, rounding of
+// A piece whose weights differ by more than this factor is split. Below it, the rounding of
 // parameters costs less than 1e-14 of an integral.
 #define FAR_APART 32
 
-// A part of a curve with a parameter of its own: the curve's, or (points not NULL) the distance
-// from the start or the end of a Bezier piece.
+// A part of a curve with its own parameter: the curve's parameter if `points` is NULL, otherwise
+// the distance from the start or the end of a Bezier piece.
 typedef struct Stretch {
   const CagCurve *curve;
   const double *points; // homogeneous
   int degree;
-  double width; // of the piece
+  double width; // width of the piece
   bool from_end;
 } Stretch;
 
@@ -65,7 +65,7 @@ static bool has_weights_far_apart(const CagNurbs *c, size_t piece) {
   return least > 0 && most > FAR_APART * least;
 }
 
-// The smooth part of the curve between a and b.
+// Adds the smooth part of the curve between a and b.
 static CagStatus add_smooth(Stretches *all, const CagCurve *c, double a, double b, CagError *err) {
   double la, lb, rate;
   const CagCurve *part = cag_curve_composite_piece(c, a, b, &la, &lb, &rate);
@@ -85,8 +85,8 @@ static CagStatus add_smooth(Stretches *all, const CagCurve *c, double a, double 
   return status;
 }
 
-// De Casteljau's algorithm; the derivative is n w0 w1 / w^2 (p1 - p0) of the last two points, a
-// difference of points without cancellation of weights (Farin 1983).
+// De Casteljau's algorithm. The derivative is n w0 w1 / w^2 (p1 - p0) of the last two points. This
+// difference of points avoids the cancellation of weights (Farin 1983).
 static void bezier_at(const Stretch *s, double t, CagVec3 *p, CagVec3 *d, double *room) {
   const double x = t / s->width, y = s->from_end ? x : 1 - x, z = s->from_end ? 1 - x : x;
   const size_t n = (size_t)s->degree;

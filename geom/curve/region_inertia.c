@@ -6,7 +6,7 @@
 // Error of an integral over a smooth piece, as a part of it.
 #define INTEGRAL 1e-11
 
-// d(x^3 / 3) dy, x^2 y / 2 dy and - y^3 / 3 dx about the center.
+// d(x^3 / 3) dy, x^2 y / 2 dy, and -y^3 / 3 dx about the center.
 static void integrand(void *context, CagVec3 p, CagVec3 d, double *out) {
   const CagVec3 *center = context;
   const double x = p.x - center->x, y = p.y - center->y;

@@ -156,8 +156,8 @@ static inline BoolPiece *bool_pieces(const BoolWork *w) { return w->pieces.items
 
 CagStatus bool_stopped(const BoolWork *w); // CAG_E_CALLBACK where the caller wants an end
 
-// Calls with each pair of faces whose boxes are no farther apart than twice the slack. False: no
-// memory.
+// Calls `visit` with each pair of faces whose boxes are at most twice the slack apart. Returns
+// false if memory ran out.
 typedef bool BoolPairVisit(void *context, uint32_t f, uint32_t g);
 CagStatus bool_visit_pairs(BoolWork *w, BoolPairVisit *visit, void *context);
 // Forgets the boxes: faces have changed.
@@ -177,9 +177,9 @@ CagStatus bool_find_windings(BoolWork *w);
 // cut: two such fans, one on the other, would cross as often as the product of their triangles.
 #define BOOL_FAN 48
 
-// Gives flat faces of the parts few triangles; *parts is replaced. only_fans: only fans are
-// triangulated anew, and their outlines keep all points. False: no memory, or the caller wants an
-// end.
+// Gives flat faces of the parts few triangles and replaces *parts. If only_fans is set, only fans
+// are triangulated again, and their outlines keep all points. Returns false if memory ran out or
+// the caller canceled.
 bool bool_flatten(BoolWork *w, const BoolSource *sources, bool only_fans, BoolPart **parts,
                   size_t *n);
 CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out);

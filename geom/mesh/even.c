@@ -33,7 +33,7 @@ static double finest_steps(const Tessellator *t, const Leaf *leaf, int side) {
   for (size_t a = first_atom(t, line, leaf->from[along]), next; a < end; a = next) {
     double steps = t->atoms[a].n;
     if (!(t->atoms[a].from < leaf->to[along])) break;
-    // Slants of a strip beside it cut a line between the corners of leaves.
+    // Slants of an adjacent strip cut a line between the corners of leaves.
     for (next = a + 1; next < end && !t->atoms[next].corner; next++) steps += t->atoms[next].n;
     const double rounding = 1e-9;
     const double part =

@@ -268,8 +268,8 @@ static void fill_stitched(Fill *f, const Leaf *leaf, uint32_t first) {
 
 // --- Strips ---
 
-// Vertices on two sides of a strip, one after the other, each with the slant on which it lies. Both
-// rails of a strip begin at its corner with the least slant and end at the one with the largest.
+// The vertices of two sides of a strip in order, each with its slant. Both rails of a strip begin
+// at the corner with the least slant and end at the corner with the greatest.
 typedef struct Rail {
   uint32_t *vertices;
   double *slants;
@@ -295,11 +295,11 @@ static void add_to_rail(const Tessellator *t, const Leaf *leaf, int side, bool b
   r->segments += chain.segments;
 }
 
-// Is the edge from the next vertex of the low rail (b) to d better than that from a to the next
-// vertex of the high rail (c)? The one along a slant is.
+// Compares the edge from the next vertex of the low rail (b) to d with the edge from a to the next
+// vertex of the high rail (c). True if the former follows the slants more closely.
 static bool is_low_along(const Fill *f, const Leaf *leaf, const Rail *low, size_t i,
                          const Rail *high, size_t j) {
-  const double alike = 1e-6; // of a step
+  const double alike = 1e-6; // fraction of a step
   const double to_low = fabs(low->slants[i + 1] - high->slants[j]),
                to_high = fabs(high->slants[j + 1] - low->slants[i]);
   if (fabs(to_low - to_high) > alike * leaf->slants.step) return to_low < to_high;
@@ -308,8 +308,8 @@ static bool is_low_along(const Fill *f, const Leaf *leaf, const Rail *low, size_
                       p[high->vertices[j]]);
 }
 
-// Sews the rails, `low` on the right hand. They have both ends in common: so both move on at once
-// there, as a triangle with all corners on one side is none.
+// Sews the rails, with `low` on the right. The rails share both ends. There both advance at once,
+// because a triangle with all corners on one side would be degenerate.
 static void sew_rails(Fill *f, const Leaf *leaf, const Rail *low, const Rail *high) {
   const size_t last_low = low->segments - 1, last_high = high->segments - 1;
   const uint32_t *a = low->vertices, *b = high->vertices;
@@ -339,7 +339,7 @@ static CagStatus fill_strip(Fill *f, const Leaf *leaf, CagError *err) {
   if (status == CAG_OK) {
     Rail low = {vertices, slants, 0}, high = {vertices + room, slants + room, 0};
     const bool rising = leaf->slants.slope > 0;
-    // The corner with the least slant: at the start of both sides, or at the end of one.
+    // The corner with the least slant is the start of both sides or the end of one.
     if (!rising || leaf->slants.along == 1) {
       add_to_rail(t, leaf, rising ? SIDE_U1 : SIDE_V0, false, &low);
       add_to_rail(t, leaf, rising ? SIDE_V1 : SIDE_U1, rising, &low);

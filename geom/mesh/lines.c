@@ -1,9 +1,9 @@
 // Tessellation, step 2: the lines that leaves share, and how finely each is divided.
 //
 // A line is cut into atoms at the corners of the leaves on both of its sides, and where the slants
-// of strips meet it; an atom takes the larger of what the two leaves beside it need. So neighbours
-// have the same points, whatever their grids are. Edges of a solid join a line of one face to one
-// of another: both get the corners of both.
+// of strips meet it. An atom takes the larger count that the two leaves beside it need. Neighbors
+// therefore have the same points, whatever their grids are. Edges of a solid join a line of one
+// face to a line of another, and both lines receive the corners of both.
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +17,7 @@ typedef struct LeafSide {
   double coordinate; // at a seam that of the lower end of the domain
   double from, to;
   double n;
-  double slant, spacing; // where slants of a strip meet the side: slant + k * spacing; or 0 spacing
+  double slant, spacing; // slants meet the side at slant + k * spacing; spacing is 0 without slants
 } LeafSide;
 
 static int compare(double a, double b) { return a < b ? -1 : a > b; }
@@ -45,7 +45,7 @@ static bool pole_at(const CagSurface *s, int side) {
   return poles[side];
 }
 
-// Where the slants of a strip meet one of its sides.
+// Finds where the slants of a strip meet one of its sides.
 static void find_slants(const Leaf *leaf, LeafSide *side, double at) {
   const Slants *s = &leaf->slants;
   const double from = leaf->from[1 - s->along];
@@ -84,9 +84,9 @@ static LeafSide *collect_sides(const Tessellator *t, const Face *f) {
   return sides;
 }
 
-// A place where a line is cut: at a corner of a leaf, or at a slant of a strip.
+// A location at which a line is cut: a corner of a leaf or a slant of a strip.
 typedef struct Mark {
-  double at, nearest; // nearest: no other mark may be that near to one at a slant
+  double at, nearest; // a slant mark has no other mark within `nearest`
   bool corner;
 } Mark;
 
@@ -108,7 +108,7 @@ static CagStatus add_mark(Marks *m, Mark mark, CagError *err) {
 }
 
 static CagStatus mark_slants(Marks *m, const LeafSide *side, CagError *err) {
-  const double nearest = 0.05; // of the way from slant to slant
+  const double nearest = 0.05; // fraction of the distance between slants
   CagStatus status = CAG_OK;
   if (!(side->spacing > 0)) return CAG_OK;
   for (double k = ceil((side->from - side->slant) / side->spacing); status == CAG_OK; k++) {
@@ -119,11 +119,11 @@ static CagStatus mark_slants(Marks *m, const LeafSide *side, CagError *err) {
   return status;
 }
 
-// The places at which `count` sides cut their line, in order. Where strips lie on both sides of the
-// line the slants of one serve both.
+// Finds the locations at which `count` sides cut their line, in order. If strips lie on both sides
+// of the line, the slants of one of them serve both.
 static CagStatus find_marks(Marks *m, const LeafSide *sides, size_t count, CagError *err) {
   CagStatus status = CAG_OK;
-  const LeafSide *last = NULL; // whose slants were marked
+  const LeafSide *last = NULL; // the side whose slants were marked last
   m->count = 0;
   for (size_t k = 0; status == CAG_OK && k < count; k++) {
     status = add_mark(m, (Mark){sides[k].from, 0, true}, err);

@@ -1,5 +1,5 @@
-// Closed meshes with their normals outward, for files whose readers take the outside from the order
-// of the corners.
+// Orients closed meshes so that their normals point outward, for file formats that take the
+// orientation from the order of the corners.
 
 #ifndef CAG_GEOM_MESH_ORIENT_H
 #define CAG_GEOM_MESH_ORIENT_H

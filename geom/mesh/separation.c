@@ -19,8 +19,8 @@
 #define CANDIDATES 24
 #define LEAF 4
 #define ROUNDS 100
-// Pairs that lead to one and the same distance, after which shapes count as running along each
-// other: there are any number of such pairs.
+// After this many pairs at the same distance, the shapes count as running along each other: the
+// number of such pairs is unlimited.
 #define SAME_PAIRS 4000
 // Pairs are equally near when their distances differ by less than this part of the size.
 #define EQUALLY_NEAR 1e-11
@@ -488,7 +488,7 @@ static CagStatus refine(Pair *pair, double *out, CagVec3 *point, CagError *err) 
 
 // --- The search ---
 
-// Two nodes, with a lower bound of their distance.
+// Two nodes with a lower bound of their distance.
 typedef struct Task {
   double bound;
   size_t i, k;
@@ -497,10 +497,10 @@ typedef struct Task {
 typedef struct Search {
   const Tree *a, *b;
   double size, best;
-  double farthest; // that a pair led to
-  CagVec3 point;   // of the second shape
+  double farthest; // largest distance found for a pair
+  CagVec3 point;   // on the second shape
   size_t pairs, most;
-  Task *tasks; // a heap, the lowest bound first
+  Task *tasks; // a heap with the lowest bound first
   size_t count, room;
   const volatile int *interrupt;
   CagStatus status;
@@ -536,7 +536,8 @@ static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chord
   s->point = p;
 }
 
-// Shapes that touch, or run along each other at one distance.
+// True if the search can stop: it failed, or the shapes touch or run along each other at a constant
+// distance.
 static bool is_over(const Search *s) {
   return s->status || s->best <= touching(s) || (s->interrupt && *s->interrupt) ||
          (s->pairs >= SAME_PAIRS && s->farthest - s->best <= equally_near(s));
@@ -579,10 +580,11 @@ static void push_nodes(Search *s, size_t i, size_t k) {
 }
 
 static void fail_uncertain(Search *s, double bound) {
-  s->status = cag_fail(s->err, CAG_E_LIMIT, "convergence", "", -1,
-                       "more than %zu pairs of places of the shapes are nearly equally near, at %g "
-                       "to %g mm: which is the nearest is not certain",
-                       s->most, fmax(0, bound), s->best);
+  s->status =
+      cag_fail(s->err, CAG_E_LIMIT, "convergence", "", -1,
+               "more than %zu pairs of points on the shapes are nearly equally close, at %g "
+               "to %g mm; cannot determine which pair is the closest",
+               s->most, fmax(0, bound), s->best);
 }
 
 static void try_parts(Search *s, const Node *x, const Node *y) {
@@ -611,7 +613,7 @@ static void go_on(Search *s, const Task *task) {
     else push_nodes(s, task->i, y->left + half);
 }
 
-// All pairs that may be nearer than the best, in the order of the bounds of their nodes.
+// Tests all pairs that may be closer than the best one, in the order of the bounds of their nodes.
 static void certify(Search *s) {
   push_nodes(s, 0, 0);
   while (s->count > 0 && !is_over(s)) {

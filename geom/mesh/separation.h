@@ -31,18 +31,19 @@ CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface
                              double tolerance, CagError *err);
 void cag_parts_free(CagParts *parts);
 
-// The least distance of two sets of parts; 0 where they meet. Parts are compared by their chords
-// and flat triangles, and then on the exact shapes (Newton's method) all pairs that the sag of
-// their parts allows to be nearer than the nearest one found, those with the lowest bounds first.
-// Shapes that run along each other at one distance have that: it ends the search when thousands of
-// pairs lead to it and none to another.
+// Computes the minimum distance of two sets of parts, or 0 if they meet. Chords and flat triangles
+// are compared first. Then the exact shapes are compared by Newton's method, for every pair that
+// may be closer than the best one given the sag of its parts, in the order of the lower bounds. If
+// the shapes run along each other at a constant distance, the search ends as soon as thousands of
+// pairs lead to that distance and none to another.
 //
-//   most       pairs to compare on the exact shapes
-//   point      of b, where they do not meet; may be NULL
-//   interrupt  NULL, or: not 0 stops with CAG_E_CALLBACK
+//   most       maximum number of pairs to compare on the exact shapes
+//   point      closest point on b if the shapes do not meet; may be NULL
+//   interrupt  may be NULL; a value other than 0 stops with CAG_E_CALLBACK
 //
-// Fails with "zero-area" where a set is empty, as that of a surface which is one point, and with
-// "convergence" where more pairs than `most` may be the nearest and lead to different distances.
+// Fails with "zero-area" if a set is empty, such as the set of a surface that is a single point,
+// and with "convergence" if more than `most` pairs may be the closest and lead to different
+// distances.
 #define CAG_PARTS_PAIRS 100000
 CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, double *out,
                              CagVec3 *point, const volatile int *interrupt, CagError *err);

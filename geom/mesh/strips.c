@@ -1,20 +1,22 @@
-// Tessellation, step 1 b: cells become strips where their grids would lie aslant.
+// Tessellation, step 1 b: cells become strips where grids would not follow the surface.
 //
-// A grid takes many triangles where the surface bends along both of its parameters and yet is
-// straight between them: a thread has horizontal sections and helices for parameters, while its
-// flanks are straight along lines of neither. There rows of the grid need not follow the one
-// parameter. Across a row, from one line along which only the other parameter changes (a rail) to
-// the next, the surface bends least along the direction conjugate to the rail: that in which the
-// second fundamental form has no mixed term. Edges along it, the slants, may be long: mostly one
-// reaches across a whole flank.
+// A grid takes many triangles if the surface bends along both of its parameters but is straight in
+// a direction between them. A thread is an example: its parameter lines are horizontal sections and
+// helices, while its flanks are straight along lines that are neither. The rows of a mesh do not
+// have to follow both parameters. A rail is a line along which only one parameter changes. From one
+// rail to the next, the surface bends least along the direction conjugate to the rail, in which the
+// second fundamental form has no mixed term. Edges along this direction, called slants, may be
+// long: usually one slant crosses a whole flank.
 //
-// All strips of a run of neighbouring cells have slants with the same steps, each goes on where the
-// one before it ends, and the nodes on their sides are where slants meet them. Otherwise a triangle
-// of a narrow strip would lean: over the middle of a chord of its rail the surface bulges.
+// All strips of a run of neighboring cells use the same step between slants. Each strip continues
+// the slants of the strip before it, and the nodes on its sides are where slants meet them.
+// Otherwise, the triangles of a narrow strip would lean, because the surface bulges over the middle
+// of a chord of its rail.
 //
-// Slants are straight in the parameters of a strip, and steps are even. So strips suit what moves
-// along a parameter without changing: twisted extrusions, sweeps along helices. Elsewhere they
-// take more triangles than leaves, or do not keep the tolerance, and leaves stay.
+// Slants are straight in the parameters of a strip, and steps are equal. Strips therefore suit
+// shapes that move along a parameter without changing, such as twisted extrusions and sweeps along
+// helices. For other shapes, strips take more triangles than leaves or exceed the tolerance, and
+// the leaves are kept.
 
 #include <stdlib.h>
 #include <string.h>
@@ -25,27 +27,29 @@ enum {
   ALONG = 5,          // samples along a cell
   MOST_PIECES = 256,  // of a cell, between samples across it
   LEAST_PIECES = 4,   //
-  ALL_PIECES = 1024,  // of a run, but for the least of its cells
-  LOOKS = 3,          // samples in both directions that tell whether strips are worth a try
-  WORTH_STRIPS = 256, // quadrilaterals
+  ALL_PIECES = 1024,  // of a run, unless its cells need more for LEAST_PIECES
+  LOOKS = 3,          // samples in both directions that decide whether to try strips
+  WORTH_STRIPS = 256, // least number of quadrilaterals for which strips are tried
   ROUNDS = 6
 };
 
-// Of the tolerance: see plan.c. Chords of creases must keep it by themselves (chords.c).
+// Fractions of the tolerance; see plan.c. Chords of creases must keep it on their own (chords.c).
 static const double highest_use = 0.9, aimed_use = 0.84, lowest_use = 0.72, chord_use = 0.88;
-// Of the angle, and the edges that are free of it, of the tolerance: see plan.c.
+// Fraction of the angle, and the length of edges exempt from it as a fraction of the tolerance; see
+// plan.c.
 static const double closely = 0.95, shortest_edge = 0.2;
-// Of the quadrilaterals of leaves: strips must take less, as their triangles are longer.
+// Strips must take less than this fraction of the quadrilaterals of leaves, because their triangles
+// are longer.
 static const double gain = 0.5;
-// Of the length of a cell: slants that climb more would be cut off at both ends.
+// Fraction of the length of a cell: steeper slants would be cut off at both ends.
 static const double steepest = 0.75;
-static const double inset = 1e-6; // of a cell, as in plan.c
+static const double inset = 1e-6; // fraction of a cell, as in plan.c
 
-// What the surface does at a sample. `across` and `along` a strip: [0] and [1].
+// Derivatives of the surface at a sample. Index [0] is across a strip, [1] along it.
 typedef struct Bend {
-  double uu, uv, vv;           // second fundamental form
-  double chord;                // the second partial along, less what is parallel to the first
-  CagVec3 partial[2], turn[2]; // of the unit normal
+  double uu, uv, vv; // second fundamental form
+  double chord;      // second partial along the strip, without its component parallel to the first
+  CagVec3 partial[2], turn[2]; // turn: change of the unit normal
 } Bend;
 
 typedef struct Cell {
@@ -57,10 +61,10 @@ typedef struct Cell {
 
 typedef struct Strip {
   double from, to, slope;
-  double turn[2]; // of the normal, over one quadrilateral
+  double turn[2]; // change of the normal over one quadrilateral
 } Strip;
 
-// A row of cells that become strips, or do not, together.
+// A row of cells that either all become strips or all stay leaves.
 typedef struct Run {
   const Tessellator *t;
   const CagSurface *surface;
@@ -69,9 +73,9 @@ typedef struct Run {
   double low, high; // across
   Cell *cells;
   size_t cell_count;
-  bool closed;             // from the last cell back to the first
-  double tolerance, angle; // that are aimed at
-  double steps;            // along all of it
+  bool closed;             // the last cell is followed by the first
+  double tolerance, angle; // targets
+  double steps;            // along the whole run
   Strip *strips;
   size_t strip_count, strip_capacity;
 } Run;
@@ -82,7 +86,7 @@ static CagVec3 off_normal(CagVec3 x, CagVec3 normal) {
   return cag_sub(x, cag_scaled(normal, cag_dot(x, normal)));
 }
 
-// false: the surface has no second partials there, or no normal.
+// Evaluates a sample. Returns false if the surface has no second partials or no normal there.
 static bool look(const CagSurface *s, int along, double across, double at, Bend *out) {
   const double parallel = 1e-6; // sine of the angle between the partials
   CagVec3 d[9];
@@ -113,8 +117,8 @@ static double sample_at(double from, double to, double part) {
   return from + (to - from) * (inset + (1 - 2 * inset) * part);
 }
 
-// Does a cell bend along the rails, so that slants have a direction, and do they save anything? By
-// a few samples.
+// Decides from a few samples whether a cell bends along the rails, so that slants have a direction,
+// and whether strips would save triangles.
 static void judge_cell(const Run *r, const Cell *c, bool *usable, bool *worthwhile) {
   const double saving = 0.8;
   const double length = r->to - r->from;
@@ -142,16 +146,16 @@ static bool sample_cell(const Run *r, Cell *c) {
   return true;
 }
 
-// Runs that become strips, all along one direction of a face.
+// Runs that become strips, all along the same direction of a face.
 typedef struct Plan {
   Run *runs;
   size_t count, capacity;
-  double saved; // quadrilaterals
+  double saved; // number of quadrilaterals
 } Plan;
 
 // --- Strips ---
 
-// The slope of the slants between two samples across: conjugate to the rails in the mean.
+// The slope of the slants between two samples across: conjugate to the rails on average.
 static double slope_of(const Cell *c, int first, int last) {
   double mixed = 0, bent = 0;
   for (int k = first * ALONG; k < (last + 1) * ALONG; k++) {
@@ -161,8 +165,8 @@ static double slope_of(const Cell *c, int first, int last) {
   return bent > 0 ? -mixed / bent : 0;
 }
 
-// Do the sides and both diagonals of a quadrilateral with the sides a, b keep the limits of edges?
-// turn: of the normal along both.
+// Tests whether the sides and both diagonals of a quadrilateral with the sides a and b respect the
+// limits of edges. turn: change of the normal along both sides.
 static bool are_edges_within(const Run *r, const CagVec3 side[2], const CagVec3 turn[2]) {
   const CagTessellation *how = &r->t->how;
   const double free = shortest_edge * how->tolerance;
@@ -177,7 +181,7 @@ static bool are_edges_within(const Run *r, const CagVec3 side[2], const CagVec3 
   return true;
 }
 
-// Is one strip between two samples across enough?
+// Tests whether a single strip suffices between two samples across.
 static bool is_strip(const Run *r, const Cell *c, int first, int last, Strip *out) {
   const double piece = (c->to - c->from) / c->pieces, width = (last - first) * piece,
                step = (r->to - r->from) / r->steps, slope = slope_of(c, first, last);
@@ -201,14 +205,14 @@ static bool is_strip(const Run *r, const Cell *c, int first, int last, Strip *ou
   return true;
 }
 
-// As few strips as will do for the steps that are set, from the lower end of the cell on. false:
-// there are none, or more than `most` in all.
+// Finds the fewest strips that suffice for the chosen number of steps, starting at the lower end of
+// the cell. *possible is false if there are none, or more than `most` in all.
 static CagStatus cut_cell(Run *r, const Cell *c, double most, bool *possible, CagError *err) {
   for (int first = 0, last; *possible && first < c->pieces; first = last) {
     Strip strip, wider;
     last = first + 1;
     *possible = is_strip(r, c, first, last, &strip) && (double)r->strip_count + 1 <= most;
-    // The farthest sample that can be reached.
+    // Finds the last sample that one strip can reach.
     for (int low = last, high = c->pieces; *possible && low < high;) {
       const int middle = (low + high + 1) / 2;
       if (is_strip(r, c, first, middle, &wider)) strip = wider, last = low = middle;
@@ -232,7 +236,7 @@ static CagStatus cut_run(Run *r, double most, bool *possible, CagError *err) {
   return status;
 }
 
-// The least number of steps along the rails that any strip has to have.
+// The least number of steps along the rails that any strip needs.
 static double least_steps(const Run *r) {
   const CagTessellation *how = &r->t->how;
   const double length = r->to - r->from;
@@ -254,10 +258,10 @@ static double least_steps(const Run *r) {
   return n;
 }
 
-// Around a closed face slants come back to a slant if the steps divide the way that they climb.
-// Three steps at least keep what is smaller than the tolerance from vanishing.
+// On a closed face, slants join up after one turn if the step divides the distance by which they
+// climb. At least three steps are used, so that shapes smaller than the tolerance do not vanish.
 static void close_run(Run *r) {
-  const double nearly = 1.15, rounding = 1e-6; // more steps are not taken for the former
+  const double nearly = 1.15, rounding = 1e-6; // limit on the increase of steps, and rounding
   double climb = 0;
   for (size_t k = 0; k < r->strip_count; k++)
     climb += r->strips[k].slope * (r->strips[k].to - r->strips[k].from);
@@ -267,7 +271,7 @@ static void close_run(Run *r) {
   if (around < nearly * share * r->steps || around <= 3) r->steps = around / share;
 }
 
-// Steps and strips with a small product.
+// Chooses the steps and strips with the smallest product among a few tries.
 static CagStatus plan_run(Run *r, double most_quads, bool *possible, CagError *err) {
   enum { TRIES = 8 };
   const double finer = 1.13, rounding = 1 + 1e-9, least = least_steps(r) * rounding;
@@ -277,7 +281,7 @@ static CagStatus plan_run(Run *r, double most_quads, bool *possible, CagError *e
   for (int k = 0; status == CAG_OK && k < TRIES; k++) {
     bool found;
     r->steps = least * pow(finer, k);
-    if ((double)r->cell_count * r->steps >= best) break; // each cell has a strip at least
+    if ((double)r->cell_count * r->steps >= best) break; // each cell has at least one strip
     status = cut_run(r, best / r->steps, &found, err);
     if (status == CAG_OK && found) best = (double)r->strip_count * r->steps, steps = r->steps;
   }
@@ -288,7 +292,7 @@ static CagStatus plan_run(Run *r, double most_quads, bool *possible, CagError *e
   return status;
 }
 
-// --- Trying them out ---
+// --- Trials ---
 
 static TessTrial trial_of(const Run *r, const Strip *strip) {
   TessTrial trial = {.surface = r->surface, .along = r->along, .slope = strip->slope};
@@ -305,8 +309,8 @@ static TessTrial trial_of(const Run *r, const Strip *strip) {
   return trial;
 }
 
-// By how much of the tolerance and of the limits of edges a strip is off. INFINITY: something thin
-// was missed.
+// Computes the error of a strip relative to the tolerance and to the limits of edges. It is
+// INFINITY if a thin feature was missed.
 static CagStatus try_strip(const Run *r, const Strip *strip, double *use, double *excess,
                            CagError *err) {
   const CagTessellation *how = &r->t->how;
@@ -341,7 +345,8 @@ static CagStatus try_run(const Run *r, double *use, double *excess, CagError *er
   return status == CAG_OK ? tess_interrupted(r->t, err) : status;
 }
 
-// Strips that keep the tolerance and the limits of edges, and are not much finer than need be.
+// Finds strips that keep the tolerance and the limits of edges without being much finer than
+// necessary.
 static CagStatus settle_run(Run *r, double most_quads, bool *settled, CagError *err) {
   const double tolerance = r->t->how.tolerance, rounding = 1e-9;
   Run best = *r;
@@ -361,7 +366,7 @@ static CagStatus settle_run(Run *r, double most_quads, bool *settled, CagError *
     if (use > highest_use || use < lowest_use)
       r->tolerance *= fmin(4, fmax(1.0 / 4, aimed_use / use));
     if (use > highest_use || excess > 1 + rounding) continue;
-    // Fewer quadrilaterals than the last that would do, or plan_run had found none.
+    // These are fewer quadrilaterals than the last solution had; otherwise plan_run finds none.
     free(best.strips);
     best = *r;
     r->strips = NULL;
@@ -393,7 +398,7 @@ static bool has_pole(const CagSurface *s, int direction, double from, double to)
                         : (s->pole_v0 && from == s->v0) || (s->pole_v1 && to == s->v1);
 }
 
-// The leaves of the run's cells are taken away and its strips put in their place.
+// Replaces the leaves of the run's cells with its strips.
 static CagStatus replace_leaves(Tessellator *t, uint32_t face, const Run *r, CagError *err) {
   Face *f = &t->faces[face];
   const int across = 1 - r->along;
@@ -428,7 +433,7 @@ static CagStatus replace_leaves(Tessellator *t, uint32_t face, const Run *r, Cag
   return CAG_OK;
 }
 
-// Strips for the run's cells, taken into the plan where they are worth it.
+// Finds strips for the run's cells and adds them to the plan if they save triangles.
 static CagStatus try_cells(Run *r, Plan *plan, CagError *err) {
   double quads = 0;
   bool possible = true, settled = false;
@@ -460,8 +465,8 @@ static CagStatus try_cells(Run *r, Plan *plan, CagError *err) {
   return status;
 }
 
-// Runs of usable cells in one row of cells, from `from` to `to` along. `quads`: of the leaves of
-// each cell. cells: room for all of the row.
+// Plans the runs of usable cells in one row of cells that extends along the strips from run.from to
+// run.to. quads: quadrilaterals in the leaves of each cell. cells: room for the whole row.
 static CagStatus plan_row(const Tessellator *t, const Face *f, Run run, const double *quads,
                           Cell *cells, Plan *plan, CagError *err) {
   const CagSurface *s = f->surface;

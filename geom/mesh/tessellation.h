@@ -1,17 +1,18 @@
-// The inside of tessellation: what its steps hand to each other.
+// The internals of tessellation: the data that its steps share.
 //
 // A face's parameter rectangle is cut at the breaks into smooth cells, these by halving into leaves
 // where the curvature varies (plan.c). A leaf has a grid of nu x nv quadrilaterals. The sides of
 // leaves lie on lines, u = const or v = const; each line is divided once, for the leaves on both of
 // its sides, at the seam for both ends of the domain, and at edges of a solid for both faces
 // (lines.c, even.c). The nodes of lines become vertices (nodes.c). Then each leaf's grid is filled
-// in and stitched to the nodes around it (fill.c), edges of triangles that lean off the surface are
-// turned (turn_edges.c), and plane faces are triangulated from the nodes of their loops (planar.c).
+// in and stitched to the nodes around it (fill.c), edges of triangles that lean away from the
+// surface are flipped (turn_edges.c), and plane faces are triangulated from the nodes of their
+// loops (planar.c).
 //
-// Where the surface bends least along lines that cross those of both parameters aslant, as on a
-// thread, whole cells become strips instead of leaves with grids (strips.c). A strip is a leaf
-// without points inside. Its long sides are lines along one parameter, and the nodes on all of its
-// sides lie where lines of least bending meet them; such lines are called slants.
+// If the surface bends least along lines that cross both families of parameter lines at an angle,
+// as on a thread, whole cells become strips instead of leaves with grids (strips.c). A strip is a
+// leaf without interior points. Its long sides are lines along one parameter. The nodes on all of
+// its sides lie where lines of least bending, called slants, meet them.
 //
 // Vertices of lines come first in the mesh, interiors of leaves after them. While it is built,
 // `weld` is a union-find forest over the vertices of lines whose roots are the least members.
@@ -25,8 +26,8 @@
 
 enum { SIDE_U0, SIDE_U1, SIDE_V0, SIDE_V1 };
 
-// The slants of a strip: along - slope * (across - from[across]) = phase + k * step, where `along`
-// is the parameter of direction `along` and `across` the other one.
+// The slants of a strip are given by along - slope * (across - from[across]) = phase + k * step,
+// where `along` is the parameter of the direction `along` and `across` is the other parameter.
 typedef struct Slants {
   int along;
   double slope, phase, step; // step > 0 in a strip, else 0
@@ -128,7 +129,7 @@ CagStatus tess_interrupted(const Tessellator *t, CagError *err);
 CagStatus tess_limit(const Tessellator *t, double triangles, CagError *err);
 
 CagStatus tess_plan_face(Tessellator *t, uint32_t face, CagError *err);
-// Makes strips of cells where that takes clearly fewer triangles than the leaves found by
+// Replaces cells with strips if these take clearly fewer triangles than the leaves found by
 // tess_plan_face.
 CagStatus tess_plan_strips(Tessellator *t, uint32_t face, CagError *err);
 CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err);
@@ -147,7 +148,7 @@ CagStatus tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid,
 // Makes one of the corners of planar faces of a solid that lie in one place.
 CagStatus tess_unite_corners(Tessellator *t, CagError *err);
 CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err);
-// Turns edges of triangles that lean off the surface.
+// Flips edges of triangles that lean away from the surface.
 CagStatus tess_turn_edges(const Tessellator *t, CagMesh *m, CagError *err);
 
 CagStatus tess_new_vertex(Tessellator *t, CagVec3 position, CagVec3 normal, double u, double v,

@@ -20,8 +20,8 @@ enum {
 
 // --- Sheared parameters ---
 
-// As cag_surface_eval_frames at the points of the surface that the trial's parameters mean. normals
-// may be NULL.
+// Evaluates the surface at the trial's parameters as cag_surface_eval_frames does. normals may be
+// NULL.
 static CagStatus evaluate_line(const TessTrial *t, const double *us, size_t nu, const double *vs,
                                size_t nv, CagVec3 *points, CagVec3 *normals, CagError *err) {
   return normals
@@ -238,8 +238,8 @@ CagStatus tess_try_edges(const TessTrial *trial, double angle, double free, doub
       double u = tess_larger(excess_of(&most, p, q, a, b), excess_of(&most, p, q, d, c));
       double v = tess_larger(excess_of(&most, p, q, a, d), excess_of(&most, p, q, b, c));
       bool cut_ac = tess_cut_ac(p[a], p[b], p[c], p[d]);
-      // What turns within sides that are free turns in the diagonal as well; strips do without
-      // that, and may be cut either way.
+      // If a side is exempt from the angle limit, its turn appears in the diagonal as well. Strips
+      // have no such exemption and may be cut either way.
       const bool strip = trial->slope != 0;
       EdgeLimits across = most;
       if (!strip && (is_free(&most, p, a, b) || is_free(&most, p, a, d))) across.angle = 0;

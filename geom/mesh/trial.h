@@ -9,9 +9,9 @@
 static inline double tess_larger(double a, double b) { return b > a ? b : a; }
 static inline double tess_smaller(double a, double b) { return b < a || isnan(a) ? b : a; }
 
-// A rectangle of parameters and the counts of its grid that are tried. Where `slope` is not 0 the
-// rectangle is one of sheared parameters: of the other direction, and of `along` less slope times
-// the way from `from` in the other direction.
+// A rectangle of parameters, and the counts of its grid to try. If `slope` is not 0, the rectangle
+// is sheared: its coordinates are the other parameter, and the parameter of `along` less the slope
+// times the distance from `from` in the other direction.
 typedef struct TessTrial {
   const CagSurface *surface;
   double from[2], to[2], n[2];

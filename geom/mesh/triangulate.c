@@ -127,7 +127,8 @@ typedef struct Flips {
   size_t *stack, depth, capacity; // places whose edges are to be looked at
 } Flips;
 
-// Without memory an edge is not looked at: the triangulation stays valid, but is not the best.
+// If memory runs out, the edge is not tested again: the triangulation stays valid but is not
+// optimal.
 static void push(Flips *f, size_t place) {
   if (f->depth == f->capacity) {
     size_t capacity = f->capacity ? 2 * f->capacity : 256;

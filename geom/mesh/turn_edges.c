@@ -1,12 +1,13 @@
-// Tessellation, step 5: triangles that lean off the surface are mended by turning edges.
+// Tessellation, step 5: edges are flipped where triangles lean away from the surface.
 //
-// Where bands are sewn, at a sharp leading edge say, a triangle may be much thinner than it is
-// long: its base bends away from the surface by less than the tolerance, but by as much as the
-// triangle is high, and so it stands on edge. Its points are where they should be, yet in a picture
-// it is a dark speck: its shadow falls on it while its normals look at the light. Even counts
-// (even.c) avoid most of them; of what is left the edge between two such triangles is turned to the
-// other diagonal of their quadrilateral where the worse one of both then leans less. Points stay,
-// and so do the sides of what has normals of its own: seams and creases.
+// Where bands are sewn, for example at a sharp leading edge, a triangle may be much thinner than it
+// is long. Its base departs from the surface by less than the tolerance, but by as much as the
+// triangle's height, so that the triangle is nearly perpendicular to the surface. Its points are
+// correct, but it appears as a dark speck in a picture: it is in shadow while its normals face the
+// light. Even counts (even.c) avoid most of these triangles. The edge between two of the others is
+// flipped to the other diagonal of their quadrilateral if that reduces the larger of their two
+// angles to the surface. Points do not move, and edges at which normals change (seams and creases)
+// are not flipped.
 
 #include <stdlib.h>
 #include <string.h>

@@ -14,7 +14,7 @@
 #define ROUGH_ERROR 1e-2
 #define FINE_ERROR 1e-12
 #define DAMPING 1e-14
-// Steps of Gauss and Newton: where two solutions are nearly one, a step only halves the error.
+// Gauss-Newton steps. Where two solutions nearly coincide, a step only halves the error.
 #define MOST_STEPS 40
 // Solutions nearer than this are one: stretched arms are known to the root of the rounding only.
 #define SAME_SOLUTION 1e-7
@@ -493,7 +493,7 @@ static void sort_solutions(CagInverse *out) {
     }
 }
 
-// A task without solutions yet.
+// Begins a task without solutions.
 static InverseTask begin_task(const InverseChain *c, const double *near, CagInverse *out) {
   static const double zeros[CAG_INVERSE_JOINTS_MAX] = {0};
   out->count = 0;
@@ -502,7 +502,7 @@ static InverseTask begin_task(const InverseChain *c, const double *near, CagInve
   return (InverseTask){.chain = c, .near = near ? near : zeros, .out = out};
 }
 
-// Sorts what was found; `none`: the status without solutions.
+// Sorts the solutions. `none` is the status if there are none.
 static void end_task(CagInverse *out, CagInverseStatus none) {
   sort_solutions(out);
   out->status = out->count == 0 ? none : out->free ? CAG_INVERSE_SINGULAR : CAG_INVERSE_OK;

@@ -1,8 +1,8 @@
 // Bodies that pieces of a quadric bound together with flat faces.
 //
-// The body is what the side of the quadric and a box have in common. Pieces that a box or a range
-// of z left know it. Of other patches it has the range of canonical coordinates that the patches
-// have.
+// The body is the intersection of a box and one side of the quadric. Pieces cut by a box or a range
+// of z store that box. For other patches, the box is the range of the canonical coordinates of the
+// patches.
 
 #include <math.h>
 #include <string.h>
@@ -32,7 +32,7 @@ static const CagSurface *whole_of(const CagSurface *piece) {
   return piece;
 }
 
-// All pieces of one box or range, each once.
+// Tests whether the pieces are all those of one box or range, each exactly once.
 static bool are_all_within(CagSurface *const *pieces, size_t n, CagQuadricWithin *out) {
   CagQuadricWithin other;
   if (!cag_surface_quadric_within(pieces[0], out) || out->pieces != n) return false;
@@ -85,7 +85,7 @@ static bool is_about_axis(CagQuadricClass c) {
          c == CAG_QUADRIC_ELLIPTIC_PARABOLOID || c == CAG_QUADRIC_ELLIPTIC_CYLINDER;
 }
 
-// The box, in coordinates of a frame, that cuts the body off.
+// Finds the box that bounds the body, in coordinates of a frame.
 static CagStatus find_box(const CagQuadricForm *form, CagSurface *const *pieces, size_t n,
                           CagBounds *box, CagTransform *frame, CagError *err) {
   CagQuadricWithin within;
@@ -99,7 +99,7 @@ static CagStatus find_box(const CagQuadricForm *form, CagSurface *const *pieces,
   CagStatus status = local_bounds(frame, pieces, n, box, err);
   if (status) return status;
   if (all ||
-      is_about_axis(form->class_id)) { // room, so that the box touches nothing beside the cut
+      is_about_axis(form->class_id)) { // a margin, so that the box touches nothing but the cut
     const double room = cag_norm(cag_sub(box->max, box->min));
     box->min.x -= room, box->min.y -= room, box->max.x += room, box->max.y += room;
   }
