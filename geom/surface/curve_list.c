@@ -1,8 +1,8 @@
-// Growing lists of curves: what is found twice, and curves that meet end to end.
+// Growing lists of curves: removes duplicates and joins curves end to end.
 //
-// Where two ends meet, the curves are joined. Where more than two meet, those are joined that go on
-// with the smallest turn, then those of the rest, and so on. So the curves do not depend on the
-// order in which they were found.
+// Curves are joined where two ends meet. If more than two ends meet, the pair with the smallest
+// turn is joined first, then the next pair of the rest, and so on. The result therefore does not
+// depend on the order in which the curves were found.
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,8 +10,8 @@
 
 #include "geom/surface/section_edges.h"
 
-// Turns, and directions where turns are equal, are compared in steps of this size, which is far
-// above the rounding of a tangent.
+// Turns, and the directions that decide between equal turns, are compared in steps of this size,
+// which is far above the rounding error of a tangent.
 #define STEPS_OF_TURN 1e6
 
 void cag_curve_list_free(CagCurveList *list) {
@@ -35,9 +35,9 @@ CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err) {
   return CAG_OK;
 }
 
-// --- What is found twice ---
+// --- Duplicates ---
 
-// Whether all of c runs along `on`.
+// Tests whether all of c runs along `on`.
 static CagStatus runs_along(const CagCurve *c, const CagCurve *on, double near, bool *does,
                             CagError *err) {
   enum { PLACES = 9 };
@@ -101,7 +101,9 @@ static End end_of(const CagCurve *c, size_t curve, bool last) {
   if (!cag_curve_eval(c, t, 1, last ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, &ignored)) {
     out.at = d[0];
     out.way = cag_scaled(cag_unit(d[1]), last ? -1 : 1);
-  } else out.met = cag_curve_point(c, t, &out.at, &ignored) != CAG_OK; // nothing meets no point
+  } else
+    out.met =
+        cag_curve_point(c, t, &out.at, &ignored) != CAG_OK; // an end without a point meets nothing
   return out;
 }
 
@@ -137,7 +139,7 @@ static void joints_free(Joints *j) {
   free(j->pairs);
 }
 
-// Curves that are closed, or whose own ends meet, are left as they are.
+// Curves that are closed, or whose own ends meet, are not joined.
 static bool find_ends(const CagCurveList *list, size_t first, double same, Joints *j) {
   const size_t n = list->count - first;
   j->end_count = 2 * n;
@@ -159,7 +161,7 @@ static bool find_ends(const CagCurveList *list, size_t first, double same, Joint
 
 static void match_ends(Joints *j) {
   for (size_t i = 0; i < j->end_count; i++) {
-    j->ends[i].mate = i; // itself: none
+    j->ends[i].mate = i; // an end that is its own mate has none
     j->ends[i].met = false;
   }
   if (j->pair_count > 0) qsort(j->pairs, j->pair_count, sizeof *j->pairs, by_turn);
@@ -208,7 +210,8 @@ static CagStatus join_parts(CagCurve *const *parts, size_t n, bool closed, CagCu
   return cag_curve_join(parts, n, out, err);
 }
 
-// The end at which the run through the curve begins, so that the curve is run forward.
+// Returns the end at which the run through the curve begins. The run starts with this curve in its
+// forward direction.
 static size_t first_end(const Joints *j, size_t curve) {
   size_t start = 2 * curve;
   while (j->ends[start].mate != start) {
@@ -218,7 +221,8 @@ static size_t first_end(const Joints *j, size_t curve) {
   return start;
 }
 
-// The curves of a run from its first end on, turned as they are run. The list gives them away.
+// Collects the curves of a run from its first end on, each in the direction of the run. Ownership
+// moves from the list to the caller.
 static CagStatus take_run(const Joints *j, CagCurveList *list, size_t first, size_t start,
                           CagCurve **parts, size_t *n, CagError *err) {
   CagStatus status = CAG_OK;
@@ -240,7 +244,7 @@ static CagStatus take_run(const Joints *j, CagCurveList *list, size_t first, siz
   return status;
 }
 
-// Joins the run through a curve, which takes the curve's place.
+// Joins the run through a curve and replaces the curve with the result.
 static CagStatus join_run(const Joints *j, CagCurveList *list, size_t first, size_t curve,
                           CagCurve **parts, CagCurveList *out, CagError *err) {
   const size_t start = first_end(j, curve);
@@ -270,7 +274,7 @@ CagStatus cag_curve_list_join(CagCurveList *list, size_t first, double same, Cag
   if (!status) match_ends(&j);
   for (size_t i = 0; !status && i < n; i++)
     if (list->items[first + i]) status = join_run(&j, list, first, i, parts, &out, err);
-  // What an error leaves behind.
+  // Releases what remains after an error.
   for (size_t i = 0; status && i < n; i++)
     if (list->items[first + i]) cag_curve_release(list->items[first + i]);
   list->count = first;

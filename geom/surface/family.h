@@ -64,7 +64,7 @@ size_t cag_surface_kept_breaks(const CagKeptBreaks *kept, double *out, size_t ca
 // Ascending, distinct values of a within (lo, hi), to `same`; returns their number.
 size_t cag_surface_tidy_breaks(double *a, size_t n, double lo, double hi);
 
-// The radii of a surface of kind "torus"; false: another kind.
+// Gets the radii of a surface of kind "torus". Returns false for another kind.
 bool cag_surface_torus_view(const CagSurface *s, double *major, double *minor);
 
 #endif

@@ -1,4 +1,4 @@
-// Places that two surfaces have in common, by Newton's method on the parameters of both.
+// Common points of two surfaces, found by Newton's method on the parameters of both.
 
 #include "geom/surface/meet_place.h"
 

@@ -1,5 +1,5 @@
-// Seeds of the curves in which two surfaces meet: all pairs of triangles of their meshes whose
-// boxes meet, swept along an axis.
+// Seeds of the curves in which two surfaces meet. The seeds are found from all pairs of triangles
+// of the two meshes whose boxes meet, by a sweep along an axis.
 
 #include "geom/surface/meet_seed.h"
 
@@ -145,12 +145,12 @@ static bool add_seed(CagMarch *m, const Facet *f, const Facet *g) {
 
 // --- Seeds of touches ---
 
-// cos 37 degrees: normals of facets about a touch differ by no more.
+// cos 37 degrees: the normals of two facets near a touch differ by at most this angle.
 #define PARALLEL 0.8
-// Parts of the longest step: of the cells in which one seed is enough.
+// Size of the cells of space, as a fraction of the longest step. One seed per cell is enough.
 #define CELL (1.0 / 8)
 
-// Whether all corners of f lie farther than the margin on one side of the plane of g.
+// Tests whether all corners of f lie farther than the margin from the plane of g, on the same side.
 static bool is_beyond(const Facet *f, const Facet *g, double margin) {
   double low = INFINITY, high = -INFINITY;
   for (int k = 0; k < 3; k++) {
@@ -161,7 +161,7 @@ static bool is_beyond(const Facet *f, const Facet *g, double margin) {
   return low > margin || high < -margin;
 }
 
-// The point of the facet near x, and its parameters.
+// Finds a point of the facet near x, and its parameters.
 static CagVec3 foot_on(const Facet *f, CagVec3 x, double at[2]) {
   const CagVec3 e1 = cag_sub(f->p[1], f->p[0]), e2 = cag_sub(f->p[2], f->p[0]),
                 n = cag_cross(e1, e2), r = cag_sub(x, f->p[0]);
@@ -191,7 +191,7 @@ static bool add_touch_seed(CagMarch *m, const Facet *f, const Facet *g, double m
   return cag_march_add_seed(m, &m->touches, &seed);
 }
 
-// A seed's patches, its cell of space, and its number.
+// A seed's patches, cell of space, and index.
 typedef struct CellSeed {
   size_t patch[4];
   double cell[3];
@@ -212,7 +212,7 @@ static int by_cell(const void *a, const void *b) {
   return order ? order : (x->number > y->number) - (x->number < y->number);
 }
 
-// Keeps the first seed of each cell.
+// Keeps only the first seed of each cell.
 static bool thin_seeds(CagMarch *m, CagMarchSeeds *seeds) {
   const double width = CELL * m->step_most;
   CellSeed *list = malloc((seeds->count + 1) * sizeof *list);
@@ -241,7 +241,7 @@ static bool thin_seeds(CagMarch *m, CagMarchSeeds *seeds) {
 
 // --- Pairs of facets ---
 
-// Whether boxes are farther apart than the margin.
+// Tests whether boxes are farther apart than the margin.
 static bool are_apart(const CagBounds *a, const CagBounds *b, double margin) {
   return a->min.x > b->max.x + margin || b->min.x > a->max.x + margin ||
          a->min.y > b->max.y + margin || b->min.y > a->max.y + margin ||
@@ -284,7 +284,8 @@ bool cag_march_find_seeds(CagMarch *m, double margin) {
     if (ok && n[k]) qsort(list[k], n[k], sizeof *list[k], by_low);
   }
   if (!ok) cag_march_fail(m, cag_fail_memory(m->err));
-  // The longest reach along the axis of a facet of the second tells how far back others may begin.
+  // The greatest extent of a facet of the second mesh along the axis determines how far back the
+  // sweep must look.
   double reach = margin;
   for (size_t i = 0; ok && i < n[1]; i++)
     reach = fmax(reach, list[1][i].high - list[1][i].low + margin);

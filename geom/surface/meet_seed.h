@@ -1,5 +1,5 @@
-// What marching along the curves in which two surfaces meet begins from: seeds, where the triangles
-// of their meshes meet or are near to each other.
+// The seeds from which the curves in which two surfaces meet are marched: points where the
+// triangles of their meshes meet or are close to each other.
 
 #ifndef CAG_GEOM_SURFACE_MEET_SEED_H
 #define CAG_GEOM_SURFACE_MEET_SEED_H
@@ -28,23 +28,23 @@ typedef struct CagMarchSeeds {
 typedef enum CagMarchFound {
   CAG_MARCH_FOUND,
   CAG_MARCH_NONE,
-  CAG_MARCH_TANGENT, // a place without a direction
+  CAG_MARCH_TANGENT, // a point at which the curve has no direction
   CAG_MARCH_FAILED
 } CagMarchFound;
 
 typedef struct CagMarch CagMarch;
-// The place of a curve in the plane through q that is normal to n (n zero: the nearest to where
-// they are), from the node's parameters; its tangent is turned to `along`.
+// Locates the point of a curve in the plane through q perpendicular to n, starting from the node's
+// parameters. If n is zero, it locates the nearest point. The tangent is oriented along `along`.
 typedef CagMarchFound CagMarchLocate(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 along,
                                      CagMarchNode *node);
 
 struct CagMarch {
   CagMarchSide side[2];
   double size, tolerance, mesh_tolerance, step_most, step_first, least_run;
-  CagMarchSeeds crossings, touches; // that runs start from
-  CagMarchSeeds *seeds;             // of the runs that are marched
-  size_t touching;                  // seeds of crossings where the surfaces touch
-  CagMarchLocate *locate;           // of crossings, or of touches
+  CagMarchSeeds crossings, touches; // starting points of runs
+  CagMarchSeeds *seeds;             // seeds of the current kind
+  size_t touching;                  // number of crossing seeds at which the surfaces touch
+  CagMarchLocate *locate;           // locates crossings or touches
   const volatile int *interrupt;
   CagError *err;
   CagStatus status; // of what failed for good
@@ -55,8 +55,9 @@ bool cag_march_fail(CagMarch *m, CagStatus status);
 // The range of the node's patch of side k in a direction: two values.
 const double *cag_march_range(const CagMarch *m, int k, const CagMarchNode *node, int direction);
 bool cag_march_add_seed(CagMarch *m, CagMarchSeeds *list, const CagMarchNode *seed);
-// Adds seeds with their parameters on both sides: crossings where triangles meet, and touches where
-// triangles of nearly one direction are no farther apart than `margin`, one for each cell of space.
+// Adds seeds with their parameters on both sides. Crossings are where triangles meet. Touches are
+// where triangles with nearly the same direction are within `margin` of each other, one for each
+// cell of space.
 bool cag_march_find_seeds(CagMarch *m, double margin);
 
 #endif

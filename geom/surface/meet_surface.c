@@ -1,17 +1,18 @@
 // The curves in which two surfaces meet, by marching.
 //
-// Where the triangles of their meshes meet are the seeds. From each that lies on no curve found yet
-// one goes both ways along the cross product of the normals: a step is tried, a place of both
-// surfaces in the plane at its end is found by Newton's method, and the step is shortened until the
-// cubic through both ends, with their tangents, passes within the tolerance of the places in the
-// middle and at the quarters. A run ends where it comes home, where a surface ends, or where the
-// surfaces touch and have no direction; there one looks a little ahead, since two branches may
-// cross. Curves along which the surfaces touch are marched in the same way, from places where the
-// meshes are near to each other and nearly parallel; only how a place is found differs.
+// Seeds are points where the triangles of their meshes meet. From each seed that is not on a known
+// curve, a run is marched in both directions along the cross product of the normals. Each step
+// locates a common point of both surfaces in the plane at the end of the step, by Newton's method.
+// The step is shortened until the cubic through both ends, with their tangents, passes within the
+// tolerance of the points at its middle and quarters. A run ends where it returns to its start,
+// where a surface ends, or where the surfaces touch and have no direction. There the march looks a
+// little ahead, because two branches may cross. Curves along which the surfaces touch are marched
+// in the same way, starting where the meshes are close to each other and nearly parallel. Only the
+// method that locates a point differs.
 //
-// A run stays in one patch of each surface: at a crease it ends as at an edge, and the end is a
-// seed in the patches beyond. So corners lie on the creases, and what is joined at last does not
-// depend on where the seeds were.
+// A run stays in one patch of each surface. At a crease it ends as at an edge, and its end becomes
+// a seed in the patches beyond. Corners therefore lie on the creases, and the joined result does
+// not depend on the location of the seeds.
 
 #include "geom/surface/meet_surface.h"
 
@@ -39,8 +40,8 @@
 // within COMMON times the size of each other at all of these points.
 #define COMMON_REACH 0.25
 #define COMMON 1e-9
-// Parts of the meshes' tolerance within which they are near a touch, and of the size below which a
-// run along which surfaces touch is a single place where they do.
+// The meshes are near a touch within this multiple of their tolerance. A run of touches that is
+// shorter than this fraction of the size is a single point of contact.
 #define TOUCH_MARGIN 3
 #define TOUCH_LEAST 1e-3
 // cos 12 degrees: a tangent turns by no more in one step.
@@ -226,7 +227,7 @@ static bool move_to_edge(CagMarch *m, int k, int d, double edge, CagMarchNode *e
     const CagVec3 along = d ? own.du : own.dv;
     const double rate = cag_dot(other.normal, along);
     if (fabs(rate) <= CAG_MARCH_TOUCH * cag_norm(along)) {
-      // Of a touch the edge has the nearest place, to second order.
+      // For touches, the nearest point on the edge is accurate to second order.
       if (m->locate == cag_march_locate_touch &&
           cag_norm(cag_sub(own.p, end->x)) <= JOINED * m->size) {
         node.x = own.p;
@@ -599,8 +600,8 @@ static bool find_seeds(CagMarch *m) {
   return cag_march_find_seeds(m, TOUCH_MARGIN * m->mesh_tolerance);
 }
 
-// Touches come first: beside them the surfaces are so near to each other that they seem to cross,
-// but what lies on a known run is left alone.
+// Touches come first. Near a touch, the surfaces are so close that they seem to cross, but points
+// on a known run are skipped.
 static bool find_runs(CagMarch *m, Runs *runs, bool *common) {
   return find_seeds(m) && march_touches(m, runs) && march_crossings(m, runs) &&
          (m->touching == 0 || find_common(m, common));
@@ -656,7 +657,7 @@ static void close_march(CagMarch *m) {
   free(m->touches.items);
 }
 
-// The runs as curves, joined.
+// Converts the runs to curves and joins them.
 static CagStatus add_runs(CagMarch *m, const Runs *runs, CagCurveList *out) {
   const size_t first = out->count;
   for (size_t i = 0; i < runs->n; i++)
@@ -670,7 +671,7 @@ CagStatus cag_surface_intersect(const CagSurface *a, const CagSurface *b, double
   CagStatus status = prepare(&m, a, b, tolerance, err);
   Runs runs = {0};
   bool common = false;
-  const bool are_two = !status && m.side[0].mesh; // none is a point
+  const bool are_two = !status && m.side[0].mesh; // neither is a point
   if (are_two && !find_runs(&m, &runs, &common)) status = m.status;
   if (!status && common)
     status = cag_fail(err, CAG_E_DEGENERATE, "overlap", "", -1,

@@ -13,7 +13,8 @@
 //   interrupt  NULL, or: not 0 stops with CAG_E_CALLBACK
 CagStatus cag_surface_intersect(const CagSurface *a, const CagSurface *b, double tolerance,
                                 const volatile int *interrupt, CagCurveList *out, CagError *err);
-// Only the curves along which they touch. Where they share a piece there are none.
+// Finds only the curves along which the surfaces touch. Surfaces that share a piece have none
+// there.
 CagStatus cag_surface_touches(const CagSurface *a, const CagSurface *b, double tolerance,
                               const volatile int *interrupt, CagCurveList *out, CagError *err);
 

@@ -1,11 +1,13 @@
-// Places of curves along which two surfaces touch, by Newton's method on the parameters of both.
+// Points of curves along which two surfaces touch, found by Newton's method on the parameters of
+// both.
 //
-// Move the point of the first by a in the common tangent plane, and that of the second by b. The
-// points come to lie on one normal when b - a = t, the tangential part of what leads from the
-// second to the first, and the normals become parallel when n - W1 a + W2 b = 0, where n is the
-// tangential part of their difference and W1, W2 are the shape operators, both for one sense of the
-// normal. So (W1 - W2) a = n + W2 t. Along a curve of touches W1 - W2 has rank 1, and its kernel is
-// the tangent of the curve: there it is solved across the curve only.
+// Move the point of the first surface by a in the common tangent plane, and the point of the second
+// by b. Let t be the tangential part of the vector from the second point to the first. Both points
+// lie on one normal if b - a = t. Let n be the tangential part of the difference of the normals,
+// and let W1 and W2 be the shape operators for the same orientation of the normal. The normals
+// become parallel if n - W1 a + W2 b = 0. It follows that (W1 - W2) a = n + W2 t. Along a curve of
+// touches, W1 - W2 has rank 1, and its kernel is the tangent of the curve. There the equation is
+// solved across the curve only.
 
 #include <float.h>
 #include <math.h>
@@ -13,18 +15,19 @@
 #include "geom/surface/meet_place.h"
 
 #define NEWTON_STEPS 40
-// Part of the curvatures below which their difference is none.
+// Curvatures whose difference is below this fraction of their size count as equal.
 #define SAME_CURVATURE 1e-6
-// Part of the larger curvature by which the smaller one is damped where no direction is given.
+// Where no direction is given, the smaller curvature is damped by this fraction of the larger one.
 #define DAMPING 1e-3
-// Part of the curvatures up to which their difference along a touch may be rounding.
+// A difference along a touch that is below this fraction of the curvatures may be rounding.
 #define ALONG 2e-8
-// Surfaces do not touch whose gap is this many times what the curvatures close in a step.
+// The surfaces do not touch if their gap exceeds this multiple of what the curvatures can close in
+// one step.
 #define OUT_OF_REACH 8
-// Steps that shrink no further are as good as they get below this part of the size.
+// If steps no longer shrink, the result is accepted once they are below this fraction of the size.
 #define SETTLED 1e-8
 
-// A symmetric matrix of the tangent plane: xx, xy, yy.
+// A symmetric matrix in the tangent plane: xx, xy, yy.
 typedef struct Shape {
   double xx, xy, yy;
 } Shape;
@@ -45,7 +48,7 @@ typedef struct Pair {
   CagMarchTangent t[2];
   CagVec3 normal, e1, e2; // of the common tangent plane
   Shape shape[2];
-  Plane2 beside, turned; // t and n of the equations
+  Plane2 beside, turned; // t and n in the equations above
   double gap;            // along the normal
 } Pair;
 
@@ -80,7 +83,8 @@ static bool look_at_side(CagMarch *m, int k, const CagMarchNode *node, CagMarchT
   return true;
 }
 
-// False with a status of CAG_OK: a side has no normal there, or the normals are far from parallel.
+// Evaluates both sides. Returns false with the status CAG_OK if a side has no normal there or the
+// normals are far from parallel.
 static bool look_at_both(CagMarch *m, const CagMarchNode *node, Pair *out) {
   CagVec3 second[2][3];
   for (int k = 0; k < 2; k++)
@@ -106,18 +110,19 @@ static bool look_at_both(CagMarch *m, const CagMarchNode *node, Pair *out) {
   return true;
 }
 
-// Eigenvectors of the matrix: that of the eigenvalue of least magnitude, and across.
+// Computes the eigenvalues and eigenvectors of the matrix, sorted by magnitude.
 static void eigen(const Shape *w, double *small, double *large, Plane2 *kernel) {
   const double middle = (w->xx + w->yy) / 2, spread = hypot((w->xx - w->yy) / 2, w->xy),
                turn = atan2(w->xy, (w->xx - w->yy) / 2) / 2;
-  // cos, sin of turn go with middle + spread.
+  // (cos, sin) of the angle belong to the eigenvalue middle + spread.
   const bool first = fabs(middle + spread) < fabs(middle - spread);
   *small = first ? middle + spread : middle - spread;
   *large = first ? middle - spread : middle + spread;
   *kernel = first ? (Plane2){cos(turn), sin(turn)} : (Plane2){-sin(turn), cos(turn)};
 }
 
-// The step a that solves M a = g in the plane n x = h, or across the kernel; false: there is none.
+// Finds the step a that solves M a = g in the plane n x = h, or across the kernel. Returns false if
+// there is none.
 static bool solve(const Shape *m, Plane2 g, Plane2 n, double h, double least, Plane2 *out) {
   const double nn = hypot(n.x, n.y);
   if (nn > 0) {
@@ -187,7 +192,7 @@ CagMarchFound cag_march_locate_touch(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 
       return finish(m, &p, off, &w, along, node);
     if (i > 8 && step > last / 2)
       return step <= SETTLED * m->size ? finish(m, &p, off, &w, along, node) : CAG_MARCH_NONE;
-    // So near to parallel normals the gap no longer changes by much.
+    // So close to parallel normals, the gap no longer changes much.
     if (i > 1 && fabs(p.gap) > CAG_MARCH_SAME * m->size + OUT_OF_REACH * largest(&w) * step * step)
       return CAG_MARCH_NONE;
     last = fmin(last, step);

@@ -55,15 +55,15 @@ CagStatus cag_quadric_transform(const CagQuadric *q, const CagTransform *t, CagQ
 
 // The real surface within a box (unbounded classes need one: "quadric-unbounded"), as parametric
 // patches in world coordinates: one sheet, two sheets, planes or strips; each a CagSurface of kind
-// "quadric" (or planar). *out is a malloc'd array of *n surfaces. An imaginary one has none
-// ("quadric-imaginary"), nor has one that passes the box by ("quadric-outside").
+// "quadric" (or planar). *out is a malloc'd array of *n surfaces. An imaginary quadric has none
+// ("quadric-imaginary"), and neither does one that lies outside the box ("quadric-outside").
 //
-// What lies outside the box is cut off, in x, y and z of the world. Planes and what ends at
-// constant parameters are exact (a range along the axis, the rulings of a cylinder); other pieces
-// are patches trimmed by splines that keep to 1e-11 of the box's diagonal, or to rounding of their
-// coordinates where these are far larger. With `z_only` the range
-// is within->min.z to within->max.z of the world's z, whichever way the axis points, and quadrics
-// that it does not bound are "quadric-unbounded".
+// Parts outside the box are cut off, along x, y, and z of the world. Planes, and pieces that end at
+// constant parameters (a range along the axis, the rulings of a cylinder), are exact. Other pieces
+// are patches trimmed by splines that are accurate to 1e-11 of the box's diagonal, or to the
+// rounding of their coordinates if these are far larger. With `z_only`, the range is within->min.z
+// to within->max.z along the world's z, whatever the direction of the axis. Quadrics that this
+// range does not bound are "quadric-unbounded".
 CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool z_only,
                               CagSurface ***out, size_t *n, CagError *err);
 // The equation behind a surface of kind "quadric"; false: another kind.
@@ -71,22 +71,23 @@ bool cag_surface_quadric_view(const CagSurface *s, CagQuadric *equation);
 // The affine map from its unit form.
 bool cag_surface_quadric_frame(const CagSurface *s, CagTransform *frame);
 
-// Where pieces of cag_quadric_patches came from, for the body that they bound.
+// The origin of a piece made by cag_quadric_patches, from which the body is built.
 typedef struct CagQuadricWithin {
   CagBounds box; // the box, or the range of z
   bool z_only;
-  CagTransform frame; // of the box -> world: transforms of the pieces move it
-  size_t pieces;      // how many belong together
-  bool trimmed;       // this piece is
-  bool negated;       // the equation behind them has the other sign than that of the caller
+  CagTransform frame; // box to world; transforms of the pieces move it
+  size_t pieces;      // number of pieces that belong together
+  bool trimmed;       // whether this piece is trimmed
+  bool negated;       // the caller's equation has the opposite sign of the stored one
 } CagQuadricWithin;
 
-// Of a patch or a trimmed patch of cag_quadric_patches with a box or range; false: another surface,
-// or a part of one.
+// Gets the origin of a patch or a trimmed patch of cag_quadric_patches with a box or range. Returns
+// false for another surface or a part of one.
 bool cag_surface_quadric_within(const CagSurface *s, CagQuadricWithin *out);
 
-// Parameters (u, v) at which a coordinate, 0..2 of the world, of a surface of kind "quadric" has an
-// extreme (or a saddle) inside the domain; their number. None: another kind.
+// Finds the parameters (u, v) at which a world coordinate (axis 0 to 2) of a surface of kind
+// "quadric" has an extreme or a saddle inside the domain. Returns their number, which is 0 for
+// another kind.
 size_t cag_surface_quadric_extremes(const CagSurface *s, int axis, CagVec3 out[2]);
 
 // The parametric forms of real quadrics (reference 06a, table of parametric forms), each in units

@@ -251,10 +251,10 @@ static void interpolate(CagVec3 p[DEGREE + 1]) {
   for (int k = 0; k <= DEGREE; k++) p[k] = cag_scaled(p[k], 1 / m[k][k]);
 }
 
-// By u and by v, of the unit form.
+// The partials of the unit form by u and by v.
 static void unit_partials(CagQuadricShape shape, double u, double v, CagVec3 out[2]) {
   const double c = cos(u), s = sin(u);
-  double r, dr, dz; // about an axis: the radius and both derivatives
+  double r, dr, dz; // radius about the axis, and the derivatives of radius and height
   switch (shape) {
   case CAG_SHAPE_ELLIPSOID: r = sin(v), dr = cos(v), dz = -sin(v); break;
   case CAG_SHAPE_HYPERBOLOID_ONE: r = cosh(v), dr = sinh(v), dz = cosh(v); break;
@@ -279,14 +279,14 @@ static void unit_partials(CagQuadricShape shape, double u, double v, CagVec3 out
   out[1] = cag_vec3(c * dr, s * dr, dz);
 }
 
-// Rounding of a few operations, as a part of their terms.
+// Rounding error of a few operations, as a fraction of their terms.
 #define ROUNDING (16 * 2.220446049250313e-16)
-// Part of the size of the result that outlines may be off.
+// Tolerance of outlines, as a fraction of the size of the result.
 #define OUTLINE 1e-11
 
-// Whether the point of the quadric with these parameters is on the cut, to the tolerance. Where the
-// point lies along the edge does not matter: beside a fold the roots, which are the square root of
-// a difference there, move it along the edge by far more than across.
+// Tests whether the point of the quadric with these parameters is on the cut, within the tolerance.
+// Its location along the edge does not matter. Near a fold, the roots are square roots of a
+// difference, and their error moves the point far more along the edge than across it.
 static bool is_on_cut(const Graph *g, CagVec3 uv) {
   const CagQuadricSheet *sheet = g->c->sheet;
   const CagQuadricCut *cut = &g->c->cuts[g->bound->side];
@@ -301,7 +301,7 @@ static bool is_on_cut(const Graph *g, CagVec3 uv) {
     slope[k] = cag_dot(normal, d[k]);
     d[k] = cag_transform_vector(&sheet->frame, d[k]);
   }
-  // The shortest way du, dv on the quadric with slope . (du, dv) = off.
+  // The shortest step (du, dv) on the quadric with slope . (du, dv) = off.
   const double uu = cag_dot(d[0], d[0]), uw = cag_dot(d[0], d[1]), vv = cag_dot(d[1], d[1]);
   const double steep =
       vv * slope[0] * slope[0] - 2 * uw * slope[0] * slope[1] + uu * slope[1] * slope[1];
@@ -310,7 +310,7 @@ static bool is_on_cut(const Graph *g, CagVec3 uv) {
   return off * off * (uu * vv - uw * uw) <= enough * enough * steep;
 }
 
-// Whether the polynomial keeps to the edge.
+// Tests whether the polynomial stays close to the edge.
 static bool is_near(const Graph *g, const CagVec3 p[DEGREE + 1]) {
   const double probes[] = {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98};
   for (size_t k = 0; k < sizeof probes / sizeof *probes; k++) {

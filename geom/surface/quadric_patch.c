@@ -57,7 +57,7 @@ typedef struct Patch {
   CagQuadricShape shape;
   CagTransform frame;
   CagQuadric equation;
-  CagQuadricWithin within; // no pieces: not known
+  CagQuadricWithin within; // 0 pieces: unknown
 } Patch;
 
 static const CagSurfaceKind quadric_kind;
@@ -274,9 +274,9 @@ bool cag_surface_quadric_within(const CagSurface *s, CagQuadricWithin *out) {
 
 // --- Extremes ---
 
-// Where the normal of the unit form is along m: its gradient (x, +-y, +-z or a constant) is a
-// multiple of m. A cylinder's are whole rulings and a cone's its apex; so they are where the
-// boundary of a piece has its own.
+// Finds the points at which the normal of the unit form is parallel to m, that is, at which its
+// gradient (x, +-y, +-z or a constant) is a multiple of m. A cylinder has whole rulings of such
+// points, and a cone has only its apex. The boundary of a piece has the same extremes.
 static size_t unit_extremes(CagQuadricShape shape, CagVec3 m, CagVec3 out[2]) {
   double square;
   switch (shape) {
@@ -300,7 +300,7 @@ static size_t unit_extremes(CagQuadricShape shape, CagVec3 m, CagVec3 out[2]) {
   return 2;
 }
 
-// The parameters of a point of the unit form, of the sheet that it has; angles in -pi..pi.
+// The parameters of a point of the unit form on its own sheet. Angles are in -pi..pi.
 static CagVec3 unit_parameters(CagQuadricShape shape, CagVec3 p) {
   const double u = atan2(p.y, p.x), r = hypot(p.x, p.y);
   switch (shape) {
@@ -319,7 +319,7 @@ size_t cag_surface_quadric_extremes(const CagSurface *s, int axis, CagVec3 out[2
   const size_t all = unit_extremes(p->shape, cag_vec3(row[0], row[1], row[2]), out);
   size_t n = 0;
   for (size_t i = 0; i < all; i++) {
-    if (p->shape == CAG_SHAPE_HYPERBOLOID_TWO && out[i].z < 0) continue; // of the other sheet
+    if (p->shape == CAG_SHAPE_HYPERBOLOID_TWO && out[i].z < 0) continue; // on the other sheet
     CagVec3 at = unit_parameters(p->shape, out[i]);
     while (s->angular_u && at.x < s->u0) at.x += 2 * M_PI;
     if (at.x >= s->u0 && at.x <= s->u1 && at.y >= s->v0 && at.y <= s->v1) out[n++] = at;
@@ -602,14 +602,14 @@ static CagStatus find_pieces(const CagQuadricForm *f, const CagBounds *within, b
                   f->name);
 }
 
-// Whether q has the other sign than the equation behind the patch.
+// Tests whether q has the opposite sign of the equation stored in the patch.
 static bool is_negated(const CagQuadric *q, const CagQuadric *of_patch) {
   double sum = 0;
   for (int i = 0; i < 10; i++) sum += q->c[i] * of_patch->c[i];
   return sum < 0;
 }
 
-// Tells the pieces, which nobody else knows yet, where they came from.
+// Records the origin of the pieces, which are not shared yet.
 static void set_within(const Pieces *pieces, const CagQuadric *q, const CagBounds *box,
                        bool z_only) {
   for (size_t i = 0; i < pieces->n; i++) {

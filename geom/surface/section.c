@@ -19,7 +19,7 @@
 // A face within this part of the size of the plane lies in it and is not cut.
 #define WITHIN 1e-9
 #define DEFAULT_TOLERANCE 1e-6
-// Tolerances within which a traced curve runs along an exact one.
+// A traced curve runs along an exact one within this many tolerances.
 #define NEAR_RUN 8
 
 // --- Flat faces ---
@@ -178,8 +178,9 @@ static CagStatus section_face(const CagSurface *s, const CagPlane *plane, double
   return status ? status : cag_curve_list_drop_covered(out, first, MEET * size, err);
 }
 
-// Edges in the plane and curves along which it touches the surface. Formulas may have no
-// derivatives on their edges, which both need: they are traced from the plane's other side too.
+// Adds edges in the plane and curves along which the plane touches the surface. Both need
+// derivatives, which a formula may not have on its edges. Formulas are therefore also traced from
+// the other side of the plane.
 static CagStatus add_edges_and_touches(const CagSurface *s, const CagPlane *plane,
                                        const CagBounds *box, double tolerance, CagCurveList *out,
                                        CagError *err) {
@@ -198,7 +199,7 @@ CagStatus cag_surface_section(const CagSurface *s, const CagPlane *plane, double
   double size = size_of(&box);
   size_t first = out->count;
   if (!(tolerance > 0)) tolerance = DEFAULT_TOLERANCE * size;
-  // The most exact first, which stay where a curve is found again.
+  // The most exact curves come first, because the first of two equal curves is kept.
   status = add_edges_and_touches(s, plane, &box, tolerance, out, err);
   if (!status) status = section_face(s, plane, tolerance, size, out, err);
   if (!status)

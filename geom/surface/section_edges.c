@@ -1,5 +1,5 @@
-// Edges and creases of a surface that lie in a plane, and curves along which the plane touches it:
-// what a section has besides the curves along which the surface passes the plane.
+// Edges and creases of a surface that lie in a plane, and curves along which the plane touches the
+// surface: the parts of a section where the surface does not cross the plane.
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,9 +12,9 @@
 #include "geom/surface/section_edges.h"
 #include "geom/surface/trimmed.h"
 
-// An edge lies in the plane when it is this near to it, as a part of the surface's size.
+// An edge lies in the plane if its distance is below this fraction of the surface's size.
 #define WITHIN 1e-9
-// The square that stands for the plane reaches this far beyond the surface's sphere.
+// The square that represents the plane extends beyond the surface's bounding sphere by this factor.
 #define MARGIN 1.1
 
 typedef struct Cut {
@@ -26,7 +26,7 @@ typedef struct Cut {
 
 // --- Pieces in the plane ---
 
-// Whether the curve is in the plane at places of a smooth piece.
+// Tests several points of a smooth piece to find out whether the curve is in the plane.
 static CagStatus is_within(const Cut *c, const CagCurve *curve, double a, double b, bool *out) {
   enum { PLACES = 9 };
   *out = true;
@@ -39,7 +39,8 @@ static CagStatus is_within(const Cut *c, const CagCurve *curve, double a, double
   return CAG_OK;
 }
 
-// The piece as a line or an arc of a conic; false: it is none, or has no tangents that tell.
+// Converts the piece to a line or an arc of a conic. Returns false if it is neither, or has no
+// usable tangents.
 static bool simplified(const Cut *c, const CagCurve *piece, CagCurve **out) {
   enum { POINTS = 17 };
   CagVec3 points[POINTS], tangents[POINTS], checks[POINTS];
@@ -75,7 +76,7 @@ static CagStatus add_piece(const Cut *c, const CagCurve *curve, double a, double
   return cag_curve_list_add(c->out, simple, c->err);
 }
 
-// The pieces of an edge in the plane, those that follow each other as one.
+// Adds the pieces of an edge in the plane, and merges consecutive ones.
 static CagStatus add_edge(const Cut *c, const CagCurve *edge) {
   CagCurve *space = NULL;
   double *cuts = NULL, from = 0;
@@ -99,7 +100,7 @@ static CagStatus add_edge(const Cut *c, const CagCurve *edge) {
 
 // --- Edges ---
 
-// Lines of parameters: the edges that are neither poles nor smooth seams, and the creases.
+// Adds parameter lines: the edges that are neither poles nor smooth seams, and the creases.
 static CagStatus add_lines(const CagPatches *patches, int d, CagCurveList *out, CagError *err) {
   const CagSurface *s = patches->s;
   const bool closed = d ? s->closed_v : s->closed_u;

@@ -1,10 +1,10 @@
-// Plane sections of tori through their center that touch them twice: the circles of Villarceau
+// Sections of tori by planes through their center that touch them twice: the Villarceau circles
 // (1848).
 //
-// The section branches where the plane touches, so that it cannot be traced to rounding. The torus
-// is recognized in whatever form it has: as a torus, perhaps moved or stretched, or by the circles
-// that its parameter lines are, as in a revolution, a NURBS surface or a tube. Of a part of a torus
-// the circles are cut where they cross its edges.
+// The section branches where the plane touches, so tracing cannot find it to rounding accuracy. The
+// torus is recognized in any form: as a torus, possibly moved or stretched, or by its circular
+// parameter lines, as in a revolution, a NURBS surface, or a tube. On a part of a torus, the
+// circles are cut where they cross its edges.
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,12 +15,12 @@
 #include "geom/surface/section_edges.h"
 #include "geom/surface/trimmed.h"
 
-// Parts of the size within which points are those of a torus, and within which they are on the
-// surface.
+// Fractions of the size: points within the first are on the torus, points within the second are on
+// the surface.
 #define ON_TORUS 1e-11
 #define ON_SURFACE 1e-10
-// Part of the larger radius within which the plane passes the center, and by which the sine of its
-// slope may differ.
+// The plane may miss the center by this fraction of the larger radius, and the sine of its slope
+// may differ by as much.
 #define ROUNDING 1e-12
 
 static const double FULL_TURN = 6.283185307179586;
@@ -56,7 +56,7 @@ static bool point_at(const CagSurface *s, int direction, double along, double ac
                            &ignored) == CAG_OK;
 }
 
-// The circle that a line of parameters is, by three of its points and two more.
+// Finds the circle that is a parameter line, from three of its points. Two more points confirm it.
 static bool circle_of_line(const CagSurface *s, int direction, double across, double near,
                            Circle *out) {
   static const double along[5] = {0.05, 0.37, 0.71, 0.22, 0.93};
@@ -79,7 +79,7 @@ static bool lies_on_torus(const TorusForm *form, const Circle *axis, CagVec3 p, 
   return fabs(hypot(beside, z) - form->minor) <= near;
 }
 
-// A torus whose lines along a direction go round its tube.
+// Finds a torus whose parameter lines in a direction are circles around its tube.
 static bool is_torus_along(const CagSurface *s, int direction, double near, TorusForm *out) {
   enum { PLACES = 16 };
   static const double across[3] = {0.11, 0.43, 0.83};
@@ -120,8 +120,8 @@ static bool find_torus(const CagSurface *s, TorusForm *out) {
 
 // --- The circles ---
 
-// The frame of the plane in the coordinates of the torus, x along its level line; false: the plane
-// does not touch twice.
+// The frame of the plane in the coordinates of the torus, with x along its horizontal line. Returns
+// false if the plane does not touch twice.
 static bool touches_twice(const TorusForm *form, const CagPlane *plane, CagVec3 axes[3]) {
   const CagTransform *map = &form->map;
   const CagVec3 n = plane->normal, o = cag_vec3(map->m[0][3], map->m[1][3], map->m[2][3]);
@@ -138,8 +138,9 @@ static bool touches_twice(const TorusForm *form, const CagPlane *plane, CagVec3 
          fabs(slope - form->minor / form->major) <= ROUNDING;
 }
 
-// A plane through the center that is inclined by asin(r / R) touches a ring twice and cuts it in
-// circles of radius R, whose centers lie r beside its own on the plane's level line.
+// A plane through the center that is inclined by asin(r / R) touches a ring torus twice and cuts it
+// in two circles of radius R. Their centers lie at the distance r from the torus center, on the
+// plane's horizontal line.
 static CagStatus circle_beside(const TorusForm *form, const CagVec3 axes[3], double side,
                                CagCurve **out, CagError *err) {
   const CagVec3 x = axes[0], y = axes[1], z = axes[2], c = cag_scaled(x, side * form->minor);
@@ -187,7 +188,7 @@ static CagStatus is_on(const CagSurface *s, const CagCurve *circle, double t, do
   return status;
 }
 
-// The arcs of the circle on the surface, from one cut to the next; neighbours are joined later.
+// Adds the arcs of the circle on the surface, from one cut to the next. Neighbors are joined later.
 static CagStatus add_arcs(const CagSurface *s, const CagCurve *circle, const Cuts *cuts,
                           double near, CagCurveList *out, CagError *err) {
   const double range = circle->end - circle->start;
@@ -239,7 +240,7 @@ CagStatus cag_section_villarceau(const CagSurface *s, const CagPlane *plane, dou
     cag_curve_release(circle);
   }
   cag_curve_list_free(&edges);
-  // An edge that runs along a circle: the section is traced.
+  // If an edge runs along a circle, the section is traced instead.
   if (status && status != CAG_E_MEMORY) *is = false;
   for (size_t i = 0; *is && !status && i < found.count; i++)
     status = cag_curve_list_add(out, cag_curve_retain(found.items[i]), err);
