@@ -1,11 +1,12 @@
-// The time that has passed.
+// Elapsed time.
 
 #ifndef CAG_INTERP_CLOCK_H
 #define CAG_INTERP_CLOCK_H
 
 #include <time.h>
 
-// Seconds since some time before the program began; changes of the date do not matter.
+// Returns the seconds since a fixed time before the program started. Changes of the system date do
+// not affect it.
 static inline double cag_clock_seconds(void) {
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);

@@ -12,7 +12,8 @@ typedef struct CagArena {
   CagArenaBlock *first;
 } CagArena;
 
-// Zeroed memory, aligned for any type. When there is none, the work is left (lang/memory.h).
+// Returns zeroed memory, aligned for any type. If memory runs out, control returns to the guard
+// (lang/memory.h).
 void *cag_arena_alloc(CagArena *a, size_t size);
 char *cag_arena_copy(CagArena *a, const char *bytes, size_t length); // NUL-terminated copy
 void cag_arena_free(CagArena *a);

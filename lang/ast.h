@@ -212,17 +212,17 @@ typedef struct CagImportName {
   const char *name;
 } CagImportName;
 
-// What syntax errors left of a statement. Of one that is not sound only the names that it defines
-// are of use.
+// The effect of syntax errors on a statement. If a statement is not sound, only the names that it
+// defines are used.
 typedef enum CagDamage {
   CAG_SOUND,
-  CAG_MENDED, // it was read as what was probably meant
-  CAG_DAMAGED // some of it could not be read, and is ERROR expressions
+  CAG_MENDED, // the probable meaning was used
+  CAG_DAMAGED // parts could not be read and became ERROR expressions
 } CagDamage;
 
 struct CagStatement {
   CagStatementKind kind;
-  CagDamage damage; // of a statement of the module
+  CagDamage damage; // for statements at the top level of the module
   CagSpan span;
   const char *doc;
   union {
@@ -272,7 +272,7 @@ typedef struct CagModuleAst {
   CagComment *comments;
   size_t comment_count;
   size_t name_count; // number of different names, reserved words included
-  // Names that text which could not be read may define; some may come several times.
+  // Names that unreadable text may define, possibly with repetitions.
   const char **damaged_names;
   size_t damaged_name_count;
 } CagModuleAst;

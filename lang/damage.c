@@ -1,15 +1,15 @@
-// Names that a text which could not be parsed may define.
+// Names that unparsable text may define.
 //
-// The text is searched by its characters, since a bracket or a quote that is missing turns what
-// follows into something else for the lexer. A name counts as defined before a `=`, as a parameter,
-// and between `for` and `in`. Two names that begin the text are a definition of another language
-// (`module f(x) {`, `def f(x):`): all names of its head count. So do all names of an import.
+// The search works on characters, because after a missing bracket or quote the lexer misreads the
+// rest of the text. A name counts as defined before a `=`, as a parameter, and between `for` and
+// `in`. If the text begins with two names, it is a definition in another language (`module f(x) {`,
+// `def f(x):`), and all names of its head count. All names of an import count, too.
 
 #include "lang/damage.h"
 
 #include <stdlib.h>
 
-// Parameters of deeper brackets are not looked for.
+// Parameters in deeper brackets are ignored.
 #define NESTING_MAX 64
 
 typedef struct Word {
@@ -22,12 +22,12 @@ typedef struct Search {
   CagLexer probe;
   const char *text;
   uint32_t end;
-  Word *words; // of the brackets that are open
+  Word *words; // of the open brackets
   size_t count, capacity;
-  size_t opened[NESTING_MAX]; // where the words of each open bracket begin
-  uint32_t at[NESTING_MAX];   // where the bracket stands
+  size_t opened[NESTING_MAX]; // index of the first word of each open bracket
+  uint32_t at[NESTING_MAX];   // offset of each open bracket
   size_t depth;
-  bool first, head, loop, import; // at the first word; in the head of a definition of another
+  bool first, head, loop, import; // at the first word; in the head of a definition in another
                                   // language; between `for` and `in`; in an import
   CagDamagedName *found;
   void *context;
@@ -39,7 +39,7 @@ static bool is_name_byte(unsigned char c) {
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// What the text at `p`, behind blanks, goes on with.
+// What follows the text at `p` after blanks.
 typedef enum Sequel { OTHER, EQUALS, ARROW } Sequel;
 
 static Sequel sequel(const Search *s, uint32_t p) {
@@ -58,21 +58,21 @@ static void add_word(Search *s, const CagToken *t) {
   s->words[s->count++] = (Word){t->as.name, t->span.end, defined};
 }
 
-// Whether a name follows at `p` on the same line, behind blanks.
+// Tests whether a name follows at `p` on the same line after blanks.
 static bool before_name(const Search *s, uint32_t p) {
   const uint32_t start = p;
   while (p < s->end && (s->text[p] == ' ' || s->text[p] == '\t')) p++;
   return p > start && p < s->end && is_name_byte((unsigned char)s->text[p]);
 }
 
-// Hands over the words since number `from`; those of a parameter list are all defined.
+// Reports the words from index `from` on. All words of a parameter list count as defined.
 static void take_words(Search *s, size_t from, bool parameters) {
   for (size_t i = from; i < s->count; i++)
     if (parameters || s->words[i].defined) s->found(s->context, s->words[i].name);
   s->count = from;
 }
 
-// The name before the parameters of a definition is that of the function.
+// The name before the parameters of a definition is the name of the function.
 static void close_bracket(Search *s, uint32_t p) {
   if (s->depth == 0) return;
   if (--s->depth >= NESTING_MAX) return;
@@ -82,7 +82,7 @@ static void close_bracket(Search *s, uint32_t p) {
   take_words(s, from, next != OTHER);
 }
 
-// Reads the name or the reserved word at `p`; gives its end.
+// Reads the name or the reserved word at `p` and returns its end.
 static uint32_t read_word(Search *s, uint32_t p) {
   CagToken t;
   s->probe.position = p;
@@ -132,7 +132,7 @@ void cag_damaged_names(const CagLexer *lexer, CagSpan span, CagDamagedName *foun
   for (uint32_t p = span.start; p < span.end;) {
     if (is_name_byte((unsigned char)s.text[p])) {
       p = read_word(&s, p);
-    } else if (is_digit(s.text[p])) { // with the unit behind it
+    } else if (is_digit(s.text[p])) { // including its unit
       while (p < span.end && (is_digit(s.text[p]) || is_name_byte((unsigned char)s.text[p]))) p++;
     } else {
       read_sign(&s, p++);

@@ -1,4 +1,4 @@
-// Names that a text which could not be parsed may define.
+// Names that unparsable text may define.
 
 #ifndef CAG_LANG_DAMAGE_H
 #define CAG_LANG_DAMAGE_H
@@ -7,8 +7,8 @@
 
 typedef void CagDamagedName(void *context, const char *name);
 
-// Calls `found` for each name that the text of the span may define, as far as can be told; a name
-// may come several times. `lexer` is one of the same text.
+// Calls `found` for each name that the text of the span may define, as far as this can be
+// determined. A name may be reported several times. `lexer` must read the same text.
 void cag_damaged_names(const CagLexer *lexer, CagSpan span, CagDamagedName *found, void *context);
 
 #endif

@@ -39,7 +39,7 @@ CagErrorId cag_error_by_reason(const char *reason) {
 // not meet.
 static _Thread_local CagDiagnostic scratch;
 
-// The message of an error whose own message found no memory. It is not freed.
+// The message of an error for which there was no memory. It is not freed.
 static char no_memory[] = "out of memory";
 
 static void release(CagDiagnostic *d) {

@@ -61,8 +61,8 @@ typedef struct CagDiagnostic {
 } CagDiagnostic;
 
 // A list of diagnostics that a parse or a run fills. At most CAG_DIAGNOSTICS_MAX errors are kept;
-// `dropped` counts the others. The list needs no memory of its own, so that exhausted memory can
-// always be reported.
+// `dropped` counts the others. The list itself allocates nothing, so exhausted memory can always be
+// reported.
 #define CAG_DIAGNOSTICS_MAX 20
 typedef struct CagDiagnostics {
   CagDiagnostic items[CAG_DIAGNOSTICS_MAX];
@@ -72,9 +72,9 @@ typedef struct CagDiagnostics {
 
 void cag_diagnostics_clear(CagDiagnostics *d);
 
-// Adds an error with a printf-made message. Where there is no memory for the message, the error
-// added is that of exhausted memory. The pointer stays valid until the next add. When the list is
-// full, gives a scratch diagnostic that is thrown away, never NULL.
+// Adds an error with a message formatted as by printf. If there is no memory for the message, the
+// error added is that of exhausted memory. The pointer is valid until the next call. If the list is
+// full, returns a scratch diagnostic that is discarded; never returns NULL.
 CagDiagnostic *cag_diagnostics_add(CagDiagnostics *d, CagErrorId id, const CagSource *source,
                                    CagSpan span, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
@@ -87,7 +87,7 @@ void cag_diagnostics_move(CagDiagnostics *to, CagDiagnostics *from);
 
 // Puts the items from number `from` on, all of one source, in the order of the text.
 void cag_diagnostics_sort(CagDiagnostics *d, size_t from);
-// The same for the items at the end that have the source of the last one.
+// Sorts only the items at the end that share the source of the last one.
 void cag_diagnostics_sort_last(CagDiagnostics *d);
 
 typedef enum CagDiagnosticStyle {

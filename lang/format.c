@@ -26,7 +26,7 @@ typedef struct Format {
   bool begun;          // a statement has been set
   bool inner;          // what is set is part of something: an operand, an element, an argument
   bool data; // what was set last is data: words, and lists, records and calls of nothing else
-  char *out; // the whole text, when the last statement is printed
+  char *out; // the whole text, once the last statement is printed
   size_t length;
 } Format;
 

@@ -13,9 +13,9 @@
 // Columns that a line has, where its words allow it.
 #define CAG_FORMAT_WIDTH 100
 
-// The script laid out: malloc'd and NUL-terminated, `length` bytes. Formatting the result gives it
-// again. NULL where the script has errors or memory is out, which is reported. Memory for trees
-// goes by the longest statement.
+// Formats a script. Returns a malloc'd, NUL-terminated text of `length` bytes. Formatting the
+// result does not change it. Returns NULL if the script has errors or memory runs out, and reports
+// the reason. The memory for syntax trees depends on the longest statement only.
 char *cag_format(const CagSource *source, CagDiagnostics *errors, size_t *length);
 
 #endif

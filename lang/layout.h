@@ -7,7 +7,7 @@
 // neighbouring lines are set one below the other. Line breaks are lazy: one is printed
 // when the next text comes, so breaks that meet are one, and a comment that stood at the end of a
 // line goes there again. Everything made since the last layout_print lives until the next.
-// Exhausted memory leaves the work (lang/memory.h).
+// If memory runs out, control returns to the guard (lang/memory.h).
 
 #ifndef CAG_LANG_LAYOUT_H
 #define CAG_LANG_LAYOUT_H
@@ -127,9 +127,9 @@ Doc *layout_table(Layout *l, char open, const Docs *items, Doc *close, int inden
 
 // Prints a document and ends its line; forgets all documents.
 void layout_print(Layout *l, Doc *d);
-// The whole output, malloc'd and NUL-terminated.
+// Returns the whole output, malloc'd and NUL-terminated.
 char *layout_finish(Layout *l, size_t *length);
-// Releases the layout, at any time; the output of layout_finish stays.
+// Releases the layout. Allowed at any time; the output of layout_finish remains valid.
 void layout_release(Layout *l);
 
 #endif

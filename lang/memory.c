@@ -7,7 +7,7 @@
 
 typedef struct Guard {
   struct Guard *outer;
-  CagCleanup *cleanups; // those pushed before it
+  CagCleanup *cleanups; // those pushed before this guard
   jmp_buf left;
 } Guard;
 
@@ -25,7 +25,7 @@ bool cag_memory_guard(void (*work)(void *context), void *context) {
 }
 
 _Noreturn void cag_memory_leave(void) {
-  if (!innermost) abort(); // a mistake in the code: all work that leaves runs in a guard
+  if (!innermost) abort(); // a bug: work that leaves must run in a guard
   while (cleanups != innermost->cleanups) cag_cleanup_run(cleanups);
   longjmp(innermost->left, 1);
 }

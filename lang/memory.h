@@ -1,9 +1,10 @@
-// Work that may run out of memory anywhere.
+// Work that may run out of memory at any point.
 //
-// A parser or a printer allocates in a hundred places, each of which would have to tell its callers
-// that there was no memory. Such work runs in a guard instead: a failed allocation leaves the work
-// by a jump, and the guard reports it. What the work has taken is released by who called the guard,
-// where its context leads there, or else by a cleanup. Guards nest, and each thread has its own.
+// A parser or a printer allocates in a hundred places. Without a guard, each of them would have to
+// report failure to its callers. Such work runs in a guard instead: a failed allocation jumps out
+// of the work, and the guard reports the failure. The caller of the guard releases whatever is
+// reachable from its context; cleanups release the rest. Guards can be nested, and each thread has
+// its own.
 
 #ifndef CAG_LANG_MEMORY_H
 #define CAG_LANG_MEMORY_H
@@ -11,16 +12,16 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-// Runs work(context). False: memory ran out, and the work was left where it stood.
+// Runs work(context). Returns false if memory ran out and the work was abandoned.
 bool cag_memory_guard(void (*work)(void *context), void *context);
-// Leaves the work of this thread's innermost guard, after the cleanups pushed in it. There must be
-// one.
+// Abandons the work of this thread's innermost guard, after running the cleanups pushed in it.
+// There must be a guard.
 _Noreturn void cag_memory_leave(void);
-// The same memory; leaves the innermost guard when it is NULL.
+// Returns `memory`, or abandons the work of the innermost guard if it is NULL.
 void *cag_checked(void *memory);
 
-// What is to be done when the work is left before the cleanup is popped: a variable of the function
-// that holds what is to be released. The last one pushed is popped first.
+// An action to run if the work is abandoned before the cleanup is popped. It is a local variable of
+// the function that holds the resource. Cleanups are popped in reverse order.
 typedef struct CagCleanup {
   struct CagCleanup *outer;
   void (*release)(void *what);
@@ -28,9 +29,9 @@ typedef struct CagCleanup {
 } CagCleanup;
 void cag_cleanup_push(CagCleanup *c, void (*release)(void *what), void *what);
 void cag_cleanup_pop(CagCleanup *c);
-// Pops it, and does it.
+// Pops the cleanup and runs it.
 void cag_cleanup_run(CagCleanup *c);
-// Memory for n things, freed when the cleanup runs.
+// Allocates n items that are freed when the cleanup runs.
 void *cag_temporary(CagCleanup *c, size_t n, size_t size);
 
 #endif

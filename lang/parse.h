@@ -21,7 +21,7 @@ typedef struct Bracket {
 
 typedef struct Parser {
   CagLexer lexer;
-  CagLexer probe;          // reads far ahead, or the text of probe_source
+  CagLexer probe;          // reads far ahead, or reads the text of probe_source
   CagSource *probe_source; // a word of a path; NULL: none
   CagNames names;
   CagModuleAst *module;

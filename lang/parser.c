@@ -508,11 +508,11 @@ static void add_damaged_name(void *context, const char *name) {
   p->damaged_names[p->damaged_name_count++] = name;
 }
 
-// Goes on behind a statement that could not be read, of which `s` is what was read; NULL: nothing.
+// Skips an unreadable statement. `s` is the part that was read, or NULL.
 static void pass_damaged(Parser *p, CagStatement *s, uint32_t start) {
   recover(p, start);
   if (s) s->damage = CAG_DAMAGED;
-  if (p->each) return; // nobody asks for names
+  if (p->each) return; // the names are not needed
   const CagToken *next = parse_current(p);
   const CagSpan passed = {start, next->kind == CAG_TOKEN_END ? (uint32_t)p->module->source->length
                                                              : next->span.start};
@@ -594,7 +594,7 @@ static void copy_results(Parser *p) {
   m->damaged_name_count = p->damaged_name_count;
 }
 
-// Marks the statements in which errors since number `from` lie.
+// Marks the statements that contain errors numbered `from` or higher.
 static void mark_mended(CagModuleAst *m, const CagDiagnostics *errors, size_t from) {
   for (size_t i = from; i < errors->count; i++)
     for (size_t k = 0; k < m->count; k++) {
@@ -633,7 +633,7 @@ static void release(Parser *p) {
 
 static void fail_memory(const CagSource *source, CagDiagnostics *errors) {
   cag_diagnostics_add(errors, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
-                      "there is not enough memory to read %s", source->name);
+                      "not enough memory to read %s", source->name);
 }
 
 static void parse_module(void *context) {
@@ -644,7 +644,8 @@ static void parse_module(void *context) {
   mark_mended(p->module, p->errors, before);
 }
 
-// Parses; tells whether the first error was that the text ends too early. NULL: memory is out.
+// Parses. *cut_off is set if the first error was that the text ended too early. Returns NULL if
+// memory ran out.
 static CagModuleAst *parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors,
                            bool *cut_off) {
   *cut_off = false;

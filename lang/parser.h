@@ -17,17 +17,17 @@ typedef enum CagParseMode {
 // sanitizers too.
 #define CAG_MAX_HEIGHT 4000
 
-// Parses a source. Gives a tree (release with cag_module_ast_free), or NULL when memory is out;
-// errors go to `errors`, up to 20 of them, and the tree then has ERROR expressions where nothing
-// could be read.
+// Parses a source. Returns a tree (release it with cag_module_ast_free), or NULL if memory ran out.
+// Up to 20 errors are added to `errors`, and the tree has ERROR expressions in place of unreadable
+// text.
 CagModuleAst *cag_parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors);
 void cag_module_ast_free(CagModuleAst *m);
 
-// Parses a file for work that looks at each statement once: calls `each` for every statement while
-// the text has no errors, in order, and with NULL behind the last; `m` holds the comments up to the
-// next statement. A statement dies when `each` returns, so that a long file needs no more memory
-// than its longest statement. Gives whether there was no error: what `each` made is of no use
-// otherwise. `each` may leave the work when memory is out (lang/memory.h).
+// Parses a file for work that handles each statement once. Calls `each` for every statement in
+// order as long as the text has no errors, and with NULL after the last one; `m` holds the comments
+// up to the next statement. A statement is released when `each` returns, so a long file needs no
+// more memory than its longest statement. Returns whether there was no error; if there was, discard
+// the results of `each`. `each` may abandon the work if memory runs out (lang/memory.h).
 typedef void CagParseEach(void *context, const CagModuleAst *m, const CagStatement *s);
 bool cag_parse_each(const CagSource *source, CagParseEach *each, void *context,
                     CagDiagnostics *errors);
@@ -54,10 +54,10 @@ typedef struct CagResolveEnv {
                      const char *const **names, size_t *count);
 } CagResolveEnv;
 
-// Binds every NAME of the tree, sets owners and selves, and reports unknown names (with the
-// nearest), names defined twice, names that hide one of an inner scope around them, imported names
-// that are not there, `m.x` of an imported module that has no x. False: memory is out, which is
-// reported too.
+// Binds every NAME of the tree and sets owners and selves. Reports unknown names (with the nearest
+// known name), names defined twice, names that hide a name of an enclosing inner scope, imported
+// names that do not exist, and `m.x` of an imported module without x. Returns false if memory ran
+// out, which is also reported.
 bool cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *errors);
 
 #endif

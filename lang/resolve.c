@@ -23,8 +23,8 @@ typedef struct Entry {
 typedef struct Current {
   CagDecl *decl;
   uint32_t scope; // depth of the scope that it belongs to: 0 is the module
-  bool damaged;   // text that could not be read may define it: nothing is known of it then
-  bool head;      // an expression stands alone that begins with it: a `=` may be missing
+  bool damaged;   // unreadable text may define it, so nothing is known about it
+  bool head;      // begins an expression that is a statement; a `=` may be missing
 } Current;
 
 // A block that is being walked, to tell a name used too early from one that is nowhere.
@@ -47,7 +47,7 @@ typedef struct Resolver {
   const CagFunctionAst *defaults; // function whose defaults are walked; NULL: none
   size_t default_index;
   size_t templates; // texts with { } around
-  CagArena scratch; // lists that live as long as the resolver
+  CagArena scratch; // holds lists that live as long as the resolver
 } Resolver;
 
 #define NOT_FOUND ((size_t)-1)
@@ -164,7 +164,7 @@ static const char *role_of(const CagDecl *d) {
   }
 }
 
-// What stands in first columns within a statement that could not be read passes for definitions.
+// Text in the first columns of an unreadable statement may be definitions.
 static bool is_damaged(const CagDecl *d) {
   return d->statement && d->statement->damage == CAG_DAMAGED;
 }
@@ -507,7 +507,7 @@ static void walk_statement(Resolver *r, CagStatement *s) {
   }
 }
 
-// The name with which an expression begins; NULL: it begins with something else.
+// Returns the name with which an expression begins, or NULL.
 static const char *head_of(const CagExpr *e) {
   for (;;) switch (e->kind) {
     case CAG_EXPR_NAME: return e->as.name.id;
@@ -523,7 +523,7 @@ static const char *head_of(const CagExpr *e) {
     }
 }
 
-// Marks what syntax errors may have kept from being defined.
+// Marks names whose definitions syntax errors may have hidden.
 static void mark_damaged(Resolver *r) {
   const CagModuleAst *m = r->module;
   for (size_t i = 0; i < m->damaged_name_count; i++)
@@ -557,6 +557,6 @@ bool cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *erro
   cag_arena_free(&r.scratch);
   if (!done)
     cag_diagnostics_add(errors, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
-                        "there is not enough memory for the names of %s", m->source->name);
+                        "not enough memory for the names of %s", m->source->name);
   return done;
 }

@@ -23,7 +23,7 @@ const char *cag_value_words(CagVm *vm, CagValue v, char *buffer, size_t size) {
   CagString s = {0};
   cag_describe_value(vm, &s, v);
   size_t n = s.length;
-  if (n < size) { // nothing, too, when memory is out
+  if (n < size) { // n is also 0 if memory ran out
     if (n) memcpy(buffer, s.bytes, n);
     buffer[n] = 0;
   } else {

@@ -114,8 +114,8 @@ size_t cag_builtin_find(const char *name); // (size_t)-1: none
 const char *cag_builtin_name(size_t index);
 const CagBuiltin *cag_builtin_rows(size_t index, size_t *rows); // the rows of that name
 const char *const *cag_builtin_names(void);                     // NULL at the end
-// Makes the table that the questions here are answered from. False: memory is out, there are no
-// names yet; the next question tries again. A machine that runs has the table.
+// Makes the table on which the functions below rely. Returns false if memory ran out; the table is
+// then empty, and the next call tries again. A running machine always has the table.
 bool cag_builtins_ready(void);
 size_t cag_builtin_jet(size_t index); // cag_jet_row of its name
 

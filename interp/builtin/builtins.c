@@ -84,7 +84,7 @@ static CagValue make_constant(CagVm *vm, const char *name) {
 typedef struct Name {
   const char *name;
   size_t first, count; // its rows
-  size_t jet;          // what differentiates it (jets.h)
+  size_t jet;          // row of its differentiated form (jets.h)
 } Name;
 
 typedef struct Table {
@@ -96,8 +96,8 @@ typedef struct Table {
   uint32_t *slots; // open addressing by hash of the name: index + 1, 0 where empty
 } Table;
 
-// Made once for the process, when first asked for, and never freed. Where memory is out it stays
-// empty, and is tried again at the next question.
+// Made once per process at the first use, and never freed. If memory runs out, the table stays
+// empty, and the next use tries again.
 static Table table;
 static CagArena table_arena;
 static atomic_bool table_ready;

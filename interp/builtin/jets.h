@@ -10,7 +10,8 @@
 // differentiated form or one that says that there is none.
 CagBuiltinFunction cag_jet_function(const CagCall *call, size_t index);
 
-// Number of the differentiated form of the built-in with this name, from 1; 0: there is none.
+// Row of the differentiated form of the built-in with this name, counted from 1. 0 means there is
+// none.
 size_t cag_jet_row(const char *name);
 
 // T * v where v holds jets: points of 2, 3 or 4 coordinates and lists of these.

@@ -138,7 +138,7 @@ bool cag_robots_posed(CagCall *call, CagValue *result) {
       !cag_arg_joints_or_home(call, 1, r, limits, q))
     return false;
   CagValue holding = cag_given(call, 2) ? call->values[2] : cag_none();
-  // Looked at before it is moved, so that errors name this function.
+  // Checked before it is moved, so that errors name this function.
   if (holding.type != CAG_NONE && !cag_shapes_collect(call, holding, cag_builder_new(call->vm)))
     return false;
   return give_drawing(call, CAG_AS_ROBOT(call->values[0]), q, holding, result);

@@ -55,8 +55,8 @@ const CagBuiltin cag_builtins_solids[] = {
      "The body within closed surfaces: one, or a list or group of surfaces and regions whose edges "
      "meet. An open shell is an error that tells the gap (solid-open). Of a closed mesh the body "
      "in "
-     "it, else the error names an open edge (mesh-open). Pieces of a quadric that a box or a "
-     "range of z cut are closed by flat faces. The 10 numbers or 4 rows of a quadric (see "
+     "it, otherwise the error names an open edge (mesh-open). Pieces of a quadric cut by a box or "
+     "a range of z are closed by flat faces. The 10 numbers or 4 rows of a quadric (see "
      "`quadric`) mean the side where its form is "
      "negative: all of it, to be cut by what it is intersected with or taken from, or the part "
      "`within` a solid or a range of z.",

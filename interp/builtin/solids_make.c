@@ -158,7 +158,8 @@ static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **fac
   return true;
 }
 
-// Surfaces that close, or pieces of one quadric that its form and flat faces close.
+// Closes a list of surfaces: either they already close, or they are pieces of one quadric that flat
+// faces close.
 static CagStatus close_faces(CagCall *call, CagSurface **faces, size_t n, CagSolid **out,
                              CagError *err) {
   CagStatus status = cag_solid_shell(faces, n, out, err);

@@ -30,8 +30,8 @@ static void print_arguments(const CagCall *call, CagString *out) {
 }
 
 static bool check_result(CagCall *call, double x) {
-  // What is infinite because an argument was is no overflow.
-  // (NaN is asked for first, as in operators.c.)
+  // A result that is infinite because an argument was infinite is not an overflow. (The test for
+  // NaN comes first for the reason given in operators.c.)
   if (!isnan(x) && (isfinite(x) || !all_finite(call))) return true;
   CagString arguments = {0};
   print_arguments(call, &arguments);

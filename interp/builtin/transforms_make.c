@@ -218,7 +218,7 @@ typedef struct Unknown {
 static bool read_side(CagCall *call, int side, const CagRecord *frames, Unknown *unknown) {
   CagList *names;
   if (!cag_arg_list(call, side, &names)) return false;
-  call->values[side] = cag_object(CAG_LIST, names); // a range is empty here, which is no list yet
+  call->values[side] = cag_object(CAG_LIST, names); // replaces an empty range with an empty list
   for (size_t i = 0; i < names->length; i++) {
     CagValue name = cag_list_get(call->vm, names, i);
     if (name.type != CAG_TEXT)

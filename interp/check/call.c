@@ -1,4 +1,4 @@
-// Calls, held against the rows of built-ins and the functions of scripts.
+// Checks calls against the rows of built-ins and the functions of scripts.
 
 #include "interp/check/walk.h"
 
@@ -271,9 +271,9 @@ static void check_shape_call(Check *c, CagTypes called, const CallView *v) {
   const bool curve = called == CAG_TYPES(CURVE), surface = called == CAG_TYPES(SURFACE);
   const bool number = !(first_types(v) & ~(CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE)));
   if (curve && v->positional > 1)
-    check_report(c, CAG_ERR_arity, v->span, "a curve is called with one parameter");
+    check_report(c, CAG_ERR_arity, v->span, "a curve takes one parameter");
   if (surface && (v->positional > 2 || (v->positional == 1 && v->named == 0 && number)))
-    check_report(c, CAG_ERR_arity, v->span, "a surface is called with two parameters, u and v");
+    check_report(c, CAG_ERR_arity, v->span, "a surface takes two parameters, u and v");
 }
 
 // A call, or a pipe into what is called.

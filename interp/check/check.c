@@ -1,4 +1,4 @@
-// The walk over the statements of a module, and which definitions are reached.
+// Checks the statements of a module, and finds which definitions are reached.
 
 #include "interp/check/check.h"
 
@@ -132,8 +132,8 @@ static void warn_unused(Check *c) {
   }
 }
 
-// Definitions that errors from number `from` on lie in are not evaluated, nor are those that syntax
-// errors touched.
+// Definitions that contain an error numbered `from` or higher are not evaluated, and neither are
+// those damaged by syntax errors.
 static void mark_bad(Check *c, size_t from) {
   for (size_t k = 0; k < c->ast->top_count; k++)
     c->top_bad[k] = c->ast->tops[k]->statement->damage != CAG_SOUND;
@@ -165,7 +165,8 @@ bool cag_check_module(CagVm *vm, CagModuleUnit *m) {
   cag_check_circles(m->ast, &vm->errors);
   mark_bad(&c, known);
   for (size_t i = 0; i < m->ast->count; i++) walk_statement(&c, m->ast->statements[i]);
-  // What an unknown name was meant to be is not known, nor what could not be read.
+  // Unused names are reported only if everything was read and no name is unknown. Otherwise an
+  // unknown name or unread text may be a use.
   if (m->sound && known == m->first_error) warn_unused(&c);
   cag_diagnostics_sort_last(&vm->errors);
   cag_cleanup_run(&cleanup);

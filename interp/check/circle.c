@@ -1,6 +1,6 @@
-// Circles of definitions without syntax errors, found in a graph: node 2k is the value of
-// definition k, node 2k + 1 a call of it. The search is depth first with a stack of its own, since
-// chains may be long.
+// Finds circular definitions in scripts without syntax errors. In the graph, node 2k is the value
+// of definition k, and node 2k + 1 is a call of it. The depth-first search uses its own stack
+// because chains may be long.
 
 #include <string.h>
 

@@ -1,10 +1,10 @@
-// Reports of the checker, and what it knows of names.
+// Reports of the checker, and what is known of names.
 
 #include "interp/check/walk.h"
 
 #include <string.h>
 
-// Definitions are walked where they are used first; a longer chain is not followed.
+// Definitions are checked at their first use. The checker does not follow longer chains.
 #define DEPTH_MAX 1000
 
 // ---- reports ----

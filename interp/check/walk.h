@@ -1,5 +1,5 @@
-// What the files of the checker share: its state, its reports, what it knows of names, and the walk
-// of expressions.
+// The internals of the checker: its state, its reports, the types of names, and the inference of
+// types of expressions.
 
 #ifndef CAG_INTERP_CHECK_WALK_H
 #define CAG_INTERP_CHECK_WALK_H
@@ -37,14 +37,14 @@ typedef struct Check {
   CagDiagnostics ignored; // what is said of them
   size_t depth;           // definitions that are walked within one another
   CagConstants constants;
-  bool *top_bad;   // definitions with errors
-  CagArena memory; // of all this
-  size_t thunks;   // functions without parameters around: their calls may be meant to fail
+  bool *top_bad;   // top-level definitions with errors
+  CagArena memory; // holds all of the above
+  size_t thunks;   // enclosing functions without parameters, in which calls may be meant to fail
 } Check;
 
 // ---- reports ----
 
-// Adds an error with its message; what is said inside of `attempt` is not kept.
+// Adds an error with its message. Errors inside `attempt` are discarded.
 CagDiagnostic *check_report(Check *c, CagErrorId id, CagSpan span, const char *message);
 CagDiagnostic *check_warn(Check *c, CagErrorId id, CagSpan span, const char *message);
 // Reports "WANTED, found a number".
@@ -53,24 +53,25 @@ size_t check_error_count(const Check *c);
 
 // ---- names ----
 
-// Notes the types of a parameter or of a name of a block or a comprehension.
+// Records the types of a parameter, or of a name in a block or a comprehension.
 void check_learn(Check *c, const CagDecl *decl, CagTypes types);
-// The types of a definition of the top level, which is walked now unless it was.
+// Returns the types of a top-level definition, and checks the definition first if necessary.
 CagTypes check_types_of_top(Check *c, const CagDecl *decl);
 // The statement that defines an imported name, or the member of an imported module; NULL: unknown.
 const CagStatement *check_find_public(const Check *c, const CagStatement *import, const char *name);
-// Warns where a definition is used whose documentation says `deprecated: ...`.
+// Warns about the use of a definition whose documentation contains `deprecated: ...`.
 void check_deprecated(Check *c, const CagStatement *s, const char *name, CagSpan span);
 CagTypes check_infer_name(Check *c, const CagExpr *e);
 
 // ---- expressions ----
 
-// The types that an expression may have; what is wrong in it is reported.
+// Infers the types that an expression may have, and reports errors in it.
 CagTypes check_infer(Check *c, const CagExpr *e);
 void check_infer_all(Check *c, CagExpr *const *items, size_t count);
 CagTypes check_infer_call(Check *c, const CagExpr *e);
 CagTypes check_infer_pipe(Check *c, const CagExpr *e);
-// Reports a condition that is never true or false; `of` names what asks for it.
+// Reports a condition that can be neither true nor false. `of` names the construct that requires
+// it.
 void check_expect_bool(Check *c, const CagExpr *e, const char *of);
 
 #endif

@@ -21,7 +21,7 @@ typedef struct Unit {
   CagProto *proto;
   struct Unit *outer;
   const CagFunctionAst *function; // NULL: a definition's initialiser or a statement
-  CagArena *scratch;              // of what is needed while compiling; one for nested functions
+  CagArena *scratch;              // temporary memory, shared by nested functions
   const CagDecl **captured;       // decl of each capture
   size_t captured_capacity;
   uint32_t next;
@@ -106,7 +106,7 @@ static int32_t add_constant(Unit *u, CagValue v) {
   return (int32_t)p->constant_count++;
 }
 
-// An array of the scratch memory with room for one more.
+// Grows an array in the scratch memory to make room for one more item.
 static void *grown_scratch(Unit *u, void *p, size_t count, size_t *capacity, size_t size) {
   if (count < *capacity) return p;
   *capacity = *capacity ? *capacity * 2 : 16;

@@ -85,14 +85,13 @@ static const char *memory_message(const CagVm *vm, char *buffer, size_t size) {
   double limit = (double)vm->heap.limit;
   size_t unit = 0;
   for (; unit < 3 && limit >= 1024; unit++) limit /= 1024;
-  snprintf(buffer, size, "the script needs more memory than the %.3g %s it may have (--max-memory)",
-           limit, units[unit]);
+  snprintf(buffer, size, "exceeded the memory limit of %.3g %s (--max-memory)", limit, units[unit]);
   return buffer;
 }
 
 static CagDiagnostic *set_error(CagVm *vm, CagErrorId id, int argument, const char *message) {
   char buffer[128];
-  if (vm->starved) { // the message may have lost what it should tell
+  if (vm->starved) { // the message may be incomplete
     id = CAG_ERR_limit_memory;
     message = memory_message(vm, buffer, sizeof buffer);
   }

@@ -14,9 +14,9 @@
 // Between chunks the reading of a file can be stopped.
 #define CHUNK ((size_t)16 << 20)
 
-// Reasons that are told apart by their place.
+// Reasons that are distinguished by their address.
 static const char TOO_LARGE[] = "it is too large";
-const char cag_file_out_of_memory[] = "there is no memory for it";
+const char cag_file_out_of_memory[] = "out of memory";
 
 static bool below(const char *path, const char *folder) {
   size_t n = strlen(folder);

@@ -1,9 +1,9 @@
 // Loading of modules: where they are, their syntax trees, their names, and the slots of their
 // values.
 //
-// A module is loaded when its imports are: they come first, so that names asked of them are known.
-// All errors of syntax of all files are reported together, and those of names in what could be read
-// of a file. What a module that failed defines is taken for granted.
+// A module is loaded after its imports, so that their names are known. The syntax errors of all
+// files are reported together, along with unknown names in the readable parts of a file. Names from
+// a module that failed to load count as defined.
 
 #include <stdlib.h>
 #include <string.h>
@@ -137,8 +137,8 @@ static void suggest_module(CagDiagnostic *d, const char *name) {
 }
 
 typedef struct ImportPaths {
-  char *relative, *folder; // what the import says, and where it says it
-  char *real, *shown;      // of the file that is found
+  char *relative, *folder; // path as written; directory of the importing file
+  char *real, *shown;      // paths of the file that was found
 } ImportPaths;
 
 static void free_paths(void *paths) {
@@ -176,7 +176,7 @@ static size_t load_import(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
   size_t k = CAG_NO_MODULE;
   vm->starved |= p.real && !p.shown;
   if (vm->starved) {
-    // The error is that of the run, when it ends.
+    // The run reports this error when it ends.
   } else if (p.real) {
     k = load_path(vm, m, s, p.real, p.shown);
   } else {
@@ -304,7 +304,7 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
     return CAG_NO_MODULE;
   }
   m->sound = vm->errors.count == before;
-  m->resolved = m->sound || mode == CAG_PARSE_FILE; // the REPL takes no part of an input
+  m->resolved = m->sound || mode == CAG_PARSE_FILE; // the REPL rejects a whole input
   m->state = CAG_MODULE_LOADING;
   for (size_t i = 0; i < m->ast->count; i++) {
     CagStatement *s = m->ast->statements[i];

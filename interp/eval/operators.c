@@ -32,8 +32,8 @@ static bool fail_operands(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, con
 // Result that is no finite number: an error, unless an infinite operand was written.
 static bool check_number(CagVm *vm, CagBinaryOp op, double a, double b, double r, CagValue *result,
                          CagType type) {
-  // NaN is asked for first: without traps GCC 12 reads `finite, or infinite and ...` as true for
-  // it.
+  // The test for NaN comes first because, without traps, GCC 12 evaluates `finite, or infinite and
+  // ...` as true for NaN.
   if (!isnan(r) &&
       (fabs(r) <= DBL_MAX || ((isinf(a) || isinf(b)) && !(op == CAG_OP_DIVIDE && b == 0)))) {
     *result = type == CAG_ANGLE ? cag_angle(r) : cag_number(r);
@@ -488,8 +488,8 @@ bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool 
       cag_vm_fail(vm, CAG_ERR_type, "a range goes between numbers or between angles, found %s",
                   s.bytes);
     else
-      cag_vm_fail(vm, CAG_ERR_type, "the range begins with %s, but its step is %s",
-                  angle ? "an angle" : "a number", s.bytes);
+      cag_vm_fail(vm, CAG_ERR_type, "the step of a range of %s, found %s",
+                  angle ? "angles must be an angle" : "numbers must be a number", s.bytes);
     cag_string_free(&s);
     return false;
   }

@@ -26,8 +26,8 @@ bool cag_may_go_deeper(CagVm *vm, const char *done) {
 bool cag_safe_point(CagVm *vm) {
   if (*vm->interrupt) return cag_vm_fail(vm, CAG_ERR_interrupted, "interrupted");
   if (vm->stop)
-    return cag_vm_fail(vm, CAG_ERR_limit_time,
-                       "the script ran longer than the %g s it may (--max-time)", vm->max_time);
+    return cag_vm_fail(vm, CAG_ERR_limit_time, "exceeded the time limit of %g s (--max-time)",
+                       vm->max_time);
   if (vm->heap.debt >= vm->heap.threshold) cag_collect(vm);
   return true;
 }
@@ -35,8 +35,8 @@ bool cag_safe_point(CagVm *vm) {
 bool cag_keep_going(CagVm *vm) {
   if (*vm->interrupt) return cag_vm_fail(vm, CAG_ERR_interrupted, "interrupted");
   if (vm->stop)
-    return cag_vm_fail(vm, CAG_ERR_limit_time,
-                       "the script ran longer than the %g s it may (--max-time)", vm->max_time);
+    return cag_vm_fail(vm, CAG_ERR_limit_time, "exceeded the time limit of %g s (--max-time)",
+                       vm->max_time);
   return true;
 }
 

@@ -120,10 +120,10 @@ typedef struct CagModuleUnit {
   CagModuleAst *ast;
   size_t *tops;   // globals of the tops, by CagDecl.index
   CagValue value; // the module as a value
-  // LOST: memory was out while it was loaded; the next import loads it again.
+  // LOST means that memory ran out while loading; the next import loads the module again.
   enum { CAG_MODULE_LOADING, CAG_MODULE_LOADED, CAG_MODULE_FAILED, CAG_MODULE_LOST } state;
   bool sound;         // it has no syntax errors
-  bool resolved;      // its names are bound where they are known
+  bool resolved;      // its known names are bound
   size_t first_error; // where the errors of its names begin in those of the machine
   bool asserted;      // its asserts have run
   bool adopted;       // its definitions are those of the interactive session
@@ -154,10 +154,10 @@ typedef struct CagHeap {
   size_t limit;     // --max-memory
   uint8_t mark;     // mark of live objects in the last collection: 1 or 2
   uint8_t depth;    // of calls of the script by geometry: what is older is not collected (heap.c)
-  CagObject **gray; // marked objects whose references are not; NULL: gray_first
+  CagObject **gray; // marked objects with unmarked references; NULL: gray_first
   size_t gray_count, gray_capacity;
   CagObject *gray_first[CAG_GRAY_FIRST];
-  bool gray_lost; // memory was out for one: marked objects are to be looked through again
+  bool gray_lost; // memory ran out for the list, so marked objects must be scanned again
   size_t collections;
 } CagHeap;
 
@@ -200,8 +200,8 @@ struct CagVm {
   // The error of the run: `failed` says that errors.items[0] is set.
   CagDiagnostics errors;
   bool failed;
-  // Something is incomplete since memory was out: a printed value, a message, a path. The run ends
-  // with that error, whatever it was needed for.
+  // Set if memory ran out while making a printed value, a message, or a path, which is then
+  // incomplete. The run ends with that error.
   bool starved;
 
   // Definitions of earlier texts of the REPL, oldest first.
@@ -245,8 +245,8 @@ void cag_proto_free(CagProto *p);
 // --- run.c ---
 bool cag_vm_run(CagVm *vm, const CagProto *proto, CagValue *result); // a unit without parameters
 bool cag_vm_force(CagVm *vm, size_t global, CagValue *result);
-// Runs `work` where running out of memory is caught (lang/memory.h): false with the error set. The
-// only place that a run may begin at.
+// Runs `work` in a guard against exhausted memory (lang/memory.h). Returns false with the error set
+// if memory ran out. Every run must start here.
 bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *context);
 // Whether the run must stop (interrupt, time, memory): sets the error and gives false. Collects
 // when due.
@@ -292,7 +292,7 @@ bool cag_vm_fail_at(CagVm *vm, int argument, CagErrorId id, const char *format, 
 void cag_vm_clear_error(CagVm *vm);
 // Sets the error of the memory limit and leaves the innermost cag_vm_protect.
 _Noreturn void cag_vm_out_of_memory(CagVm *vm);
-// Only the first of these.
+// Sets the error of the memory limit and returns false.
 bool cag_vm_fail_memory(CagVm *vm);
 
 // --- modules.c ---
@@ -308,13 +308,14 @@ const CagSource *cag_read_source(CagVm *vm, const char *name, const char *text, 
 // Parses a script that is not to be run; its tree lives as long as the machine. NULL: it has
 // errors.
 const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *text, size_t length);
-// realpath, malloc'd. NULL: there is no such file; or memory is out, which the machine remembers.
+// Returns the result of realpath, malloc'd. NULL means that the file does not exist or that memory
+// ran out; the machine records the latter.
 char *cag_vm_real_path(CagVm *vm, const char *path);
 // Whether a file may be read: below the root or the module path. Gives the real path (malloc'd) or
 // NULL with the reason in message.
 char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *message, size_t size);
 // Reads a whole file. NULL: *why is what went wrong (static or strerror text).
-extern const char cag_file_out_of_memory[]; // one of them
+extern const char cag_file_out_of_memory[]; // a value of *why
 char *cag_read_whole_file(const char *path, size_t *length, const char **why);
 
 // --- vm.c ---
@@ -324,7 +325,8 @@ typedef struct CagVmOptions {
   FILE *out, *trace;
   const volatile int *interrupt; // NULL: none
 } CagVmOptions;
-// NULL: memory is out, or max_memory is less than the built-ins need; `errors` says so.
+// Returns NULL if memory ran out, or if max_memory is less than the built-ins need; `errors` has
+// the reason.
 CagVm *cag_vm_new(const CagVmOptions *options, CagDiagnostics *errors);
 void cag_vm_free(CagVm *vm);
 void cag_module_free(CagModuleUnit *m);

@@ -205,8 +205,8 @@ CagStatus cag_brep_add_surface(CagBrepWork *w, const CagSurface *s, size_t sourc
 
 // --- Regions ---
 
-// The pieces of a part of a loop between its corners; of a clamped curve of space, whose reference
-// it takes. *order: of the next side.
+// Adds the pieces between corners of a part of a loop. Takes ownership of the clamped space curve
+// `rest`. *order is the index of the next side.
 static CagStatus add_between_corners(CagBrepWork *w, CagCurve *rest, size_t face, size_t loop,
                                      size_t *order, CagError *err) {
   double *corners = NULL;
@@ -241,8 +241,8 @@ static CagStatus add_outline(CagBrepWork *w, const CagCurve *outline, const CagT
   return add_between_corners(w, placed, face, loop, &order, err);
 }
 
-// Points of a stretch of a loop that are no farther apart than this part of the size are one: it
-// runs along a pole of the surface.
+// If all points of a stretch of a loop lie within this fraction of the size of each other, the
+// stretch runs along a pole of the surface.
 #define POLE 1e-12
 
 static CagStatus is_collapsed(const CagCurve *c, double a, double b, double slack, bool *out,
@@ -270,7 +270,7 @@ static CagStatus add_trim_part(CagBrepWork *w, const CagCurve *c, double a, doub
   return status ? status : add_between_corners(w, clamped, face, loop, order, err);
 }
 
-// The stretches of a loop that are no poles.
+// Adds the stretches of a loop that are not poles.
 static CagStatus add_trim_sides(CagBrepWork *w, const CagCurve *c, size_t face, CagError *err) {
   CagBounds box;
   double *cuts = NULL;

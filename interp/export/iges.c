@@ -26,7 +26,7 @@ typedef struct Writer {
   long parameter_lines, first_line, entities;
   int type, form, status;
   Pointer color, name;
-  bool undefined; // a number was not finite
+  bool undefined; // whether a number was not finite
 } Writer;
 
 // --- Lines ---
@@ -420,7 +420,7 @@ static CagStatus write_sections(Writer *w, Sections *s, const char *script, CagA
   cag_atomic_file_printf(file, "%-72sT%7d\n", counts, 1);
   if (w->undefined && whole)
     return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
-                    "a number of the file overflows or is undefined");
+                    "a number in the file overflows or is undefined");
   return whole ? CAG_OK : cag_fail_memory(err);
 }
 

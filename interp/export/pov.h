@@ -23,7 +23,7 @@
 #include "interp/scene/scene.h"
 
 typedef enum CagPovQuality {
-  CAG_POV_DRAFT,  // hard shadows, one ray for each pixel, coarse bicubic patches
+  CAG_POV_DRAFT,  // hard shadows, one ray per pixel, coarse bicubic patches
   CAG_POV_NORMAL, // soft shadows
   CAG_POV_FINAL   // and light from everywhere (radiosity), finer everything
 } CagPovQuality;
@@ -37,7 +37,7 @@ typedef enum CagPovCsg {
 
 typedef struct CagPovOptions {
   CagPovQuality quality;
-  int samples;      // of a lens for each pixel; 0: by the quality (draft 1, normal 4, final 80)
+  int samples;      // lens samples per pixel; 0: by the quality (draft 1, normal 4, final 80)
   size_t camera;    // index into the scene's cameras
   int size[2];      // pixels; 0: those of the camera. Only their ratio is written
   bool meshes_only; // no native objects: to compare, or for a reader that knows meshes only

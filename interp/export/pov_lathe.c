@@ -206,8 +206,9 @@ static bool find_along(const CagSolid *s, const CagTransform *low, const CagTran
   return cag_norm(*along) > 0;
 }
 
-// A side of a straight extrusion is ruled along one vector; a twisted one is not, whatever its ends
-// are, and where its middle is, too: after whole turns all is as it was. Its tangents tell.
+// Tests whether a side of an extrusion is ruled along one vector, as the side of an extrusion
+// without twist is. After whole turns, the ends and the middle of a twisted side look straight, so
+// the tangents are compared as well.
 static bool side_is_straight(const CagSurface *s, CagVec3 along, double size) {
   CagError err;
   const int samples = 8;

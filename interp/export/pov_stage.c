@@ -27,21 +27,21 @@ static void write_axis(CagPovWriter *w, const char *word, CagVec3 axis, double l
 // --- The lens ---
 //
 // POV-Ray 3.7 deflects the rays of a pixel by half its `aperture` times the points of a pattern
-// (tracepixel.cpp), each moved at random within a square. Up to 37 samples the pattern is a grid;
-// more are spread evenly over the disc of radius 1/2. Such a pattern is wider or narrower than a
-// disc, so the aperture is scaled: the blur gets the second moment of the disc that the formula of
-// a thin lens gives.
+// (tracepixel.cpp), and moves each point randomly within a square. For up to 37 samples, the
+// pattern is a grid; more samples are spread evenly over the disc of radius 1/2. The second moment
+// of such a pattern differs from that of a disc. The aperture is therefore scaled, so that the blur
+// has the second moment given by the thin lens formula.
 
 // The second moment of a disc of radius 1/2 along an axis.
 #define DISC_MOMENT (1.0 / 16)
-// From this number on POV-Ray may stop early, where the first samples of a pixel agree. With fewer
-// they would miss the rim of the lens.
+// From this number on, POV-Ray may stop early if the first samples of a pixel agree. Fewer initial
+// samples would miss the rim of the lens.
 #define SAMPLES_TO_STOP_EARLY 19
-// Coordinates of the only point of the pattern of one sample, which is not centered: (-1/4, 1/4).
+// The pattern of one sample has a single point, which is not centered: (-1/4, 1/4).
 #define FIRST_POINT 0.25
 
-// The grids that fill the lens evenly. Their second moments along both axes are alike: the sum of
-// x^2 by the number of points, and that of the random moves.
+// The grids that fill the lens evenly, with equal second moments along both axes: the sum of x^2
+// divided by the number of points, and the moment of the random moves.
 static const struct {
   int points;
   double sum, moves;
@@ -54,7 +54,8 @@ enum { GRID_COUNT = sizeof GRIDS / sizeof *GRIDS };
 
 static const int LENS_SAMPLES[] = {[CAG_POV_DRAFT] = 1, [CAG_POV_NORMAL] = 4, [CAG_POV_FINAL] = 80};
 
-// The number asked for, or that of the next grid: what POV-Ray adds to a small grid is lopsided.
+// Returns the requested number of samples, or rounds it up to the next grid. The points that
+// POV-Ray adds to a small grid are lopsided.
 static int lens_samples(const CagPovOptions *o) {
   const int samples = o->samples > 0 ? o->samples : LENS_SAMPLES[o->quality];
   for (int i = 0; i < GRID_COUNT; i++)
@@ -67,11 +68,12 @@ static double pattern_moment(int samples) {
   for (int i = 0; i < GRID_COUNT; i++)
     if (samples == GRIDS[i].points) return GRIDS[i].sum / samples + GRIDS[i].moves;
   const int more = samples - GRIDS[GRID_COUNT - 1].points;
-  const double moves = 1 / (12.0 * samples); // within squares of the side sqrt(1 / samples)
+  const double moves = 1 / (12.0 * samples); // within squares of side sqrt(1 / samples)
   return (GRIDS[GRID_COUNT - 1].sum + more * DISC_MOMENT) / samples + moves;
 }
 
-// What POV-Ray calls the aperture: the patterns lie within a disc whose diameter is half of it.
+// Returns POV-Ray's aperture for a lens diameter: the patterns lie within a disc of half that
+// diameter.
 static double pov_aperture(const CagPovOptions *o, double diameter) {
   return 2 * diameter * sqrt(DISC_MOMENT / pattern_moment(lens_samples(o)));
 }
@@ -81,8 +83,8 @@ static double focus_distance(const CagCamera *c) {
   return c->focus > 0 ? c->focus : to_target > 0 ? to_target : 1;
 }
 
-// How far the location must move so that the middle of the pattern is at the camera's eye. The
-// pattern's axes are up x view and view x (up x view), of which POV-Ray subtracts the second.
+// Returns how far to move the location so that the middle of the pattern is at the camera's eye.
+// The axes of the pattern are up x view and view x (up x view), and POV-Ray subtracts the second.
 static CagVec3 lens_shift(const CagPovOptions *o, const CagCamera *c, CagVec3 up, CagVec3 view) {
   if (!cag_camera_has_lens(c) || lens_samples(o) > 1) return cag_vec3(0, 0, 0);
   CagVec3 x = cag_cross(up, view), y = cag_cross(view, x);
@@ -127,7 +129,7 @@ void pov_camera(CagPovWriter *w) {
   } else { // a picture of height 1 at this distance
     write_axis(w, "right", right, aspect, false);
     write_axis(w, "up", up, 1, false);
-    // The part of the plane in focus that is seen stays the same when the location moves.
+    // Moving the location does not change the visible part of the plane in focus.
     CagVec3 middle = cag_madd(view, -1 / focus_distance(c), shift);
     write_axis(w, "direction", middle, aspect / 2 / tan(c->fov / 2), false);
   }

@@ -525,6 +525,6 @@ CagStatus cag_export_step(const CagBrep *brep, const char *script, CagAtomicFile
   free(w.styled);
   if (w.undefined && !w.failed)
     return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
-                    "a number of the file overflows or is undefined");
+                    "a number in the file overflows or is undefined");
   return w.failed ? cag_fail_memory(err) : CAG_OK;
 }

@@ -42,7 +42,7 @@ typedef struct Picture {
   FILE *out; // paths
   CagVec3 last;
   bool drawing;   // the pen is down at `last`
-  bool undefined; // a number was not finite
+  bool undefined; // whether a number was not finite
 } Picture;
 
 // --- Numbers ---
@@ -491,7 +491,7 @@ CagStatus cag_export_svg(const CagScene *scene, size_t camera, CagAtomicFile *fi
   if (!status) write_file(&p, file, paths, n);
   if (!status && p.undefined)
     status = cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
-                      "a number of the picture overflows or is undefined");
+                      "a number in the drawing overflows or is undefined");
   free(paths);
   return status;
 }

@@ -36,10 +36,10 @@ void cag_svg_escape(FILE *out, const char *text, size_t n) {
 
 // --- Numbers: to a thousandth of a letter ---
 
-// Where a label is written.
+// The location at which a label is written.
 typedef struct Pen {
   FILE *file;
-  bool undefined; // a number was not finite
+  bool undefined; // whether a number was not finite
 } Pen;
 
 static double rounded(Pen *out, double x, double size) {

@@ -7,12 +7,12 @@
 
 #include "interp/scene/scene.h"
 
-// Writes a label whose place and direction (zero: none) in the picture, y up, are given, and adds
-// what it covers to the box. `color`: as "#rrggbb". `unit`: the picture's diagonal.
+// Writes a label at a location and along a direction (zero: none) in the picture, with y up, and
+// extends the box by its area. `color` has the form "#rrggbb". `unit` is the picture's diagonal.
 //
-// A text without a size is a fortieth of the diagonal high. A mark is a third of the size of the
-// text it would have. The widths of letters are estimated, since fonts differ. False: a number in
-// it is not finite.
+// The default height of a text is a fortieth of the diagonal. A mark has a third of the size that
+// its text would have. The widths of letters are estimated because fonts differ. Returns false if a
+// number in the label is not finite.
 bool cag_svg_label(FILE *out, const CagLabel *label, CagVec3 at, CagVec3 along, const char *color,
                    double unit, CagBounds *box);
 // Text of an element: with & < > " and control characters replaced.

@@ -13,7 +13,7 @@
 
 typedef struct Writer {
   CagAtomicFile *file;
-  bool undefined; // a number was not finite
+  bool undefined; // whether a number was not finite
 } Writer;
 
 static void put(Writer *f, const char *text) { cag_atomic_file_text(f->file, text); }
@@ -214,7 +214,7 @@ CagStatus cag_export_urdf(const CagUrdf *u, const char *folder, CagAtomicFile *f
   put(f, "</robot>\n");
   if (!writer.undefined) return CAG_OK;
   return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
-                  "the robot %s has a number in the file that overflows or is undefined", u->name);
+                  "a number in the description of the robot %s overflows or is undefined", u->name);
 }
 
 CagStatus cag_export_urdf_mesh(const CagUrdfShape *s, CagAtomicFile *file, CagError *err) {

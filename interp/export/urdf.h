@@ -101,8 +101,8 @@ void cag_urdf_mass_join(CagUrdfMass *whole, const CagUrdfMass *part);
 // A plain cylinder (radius, length) or box (three sides) at its place.
 CagUrdfMass cag_urdf_plain_mass(const CagUrdfShape *shape, double density);
 
-// The XML text; meshes are called `folder`/FILE in it. Fails with "not-finite" where a number is
-// not.
+// Writes the XML text, in which meshes are called `folder`/FILE. Fails with "not-finite" if a
+// number is not finite.
 CagStatus cag_export_urdf(const CagUrdf *u, const char *folder, CagAtomicFile *file, CagError *err);
 // One mesh as a binary STL in metres.
 CagStatus cag_export_urdf_mesh(const CagUrdfShape *shape, CagAtomicFile *file, CagError *err);

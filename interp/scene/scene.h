@@ -193,7 +193,8 @@ CagBounds cag_scene_framed(const CagScene *s);
 double cag_scene_radius(const CagBounds *b);
 // Camera to world: columns x (right), y (down), z (view), origin.
 CagTransform cag_camera_frame(const CagCamera *c);
-// Whether it blurs what is out of focus. Orthographic cameras do not: all their rays are parallel.
+// Tests whether the camera has depth of field. Orthographic cameras do not, because all their rays
+// are parallel.
 bool cag_camera_has_lens(const CagCamera *c);
 CagMaterial cag_material_default(void);
 

@@ -1,16 +1,16 @@
 // Curves as tubes.
 //
-// The curve becomes points, with a ring of SIDES vertices around each, in rotation-minimizing
-// frames (double reflection, Wang et al. 2008). Open ends have flat caps. A closed smooth curve is
-// a loop of rings whose last is its first.
+// The curve is sampled, and a ring of SIDES vertices is placed around each point in
+// rotation-minimizing frames (double reflection, Wang et al. 2008). Open ends have flat caps. A
+// closed smooth curve is a loop of rings whose last ring is the first.
 //
-// At a sharp corner the tubes on both sides meet in the plane that bisects them on the inside, and
-// a wedge of a ball joins them on the outside, so that the whole path is one shell that does not
-// overlap itself there (add_joint). Where a segment is too short for that, or the curve goes back
-// along itself, the path is cut: its parts are closed each by itself and overlap with a ball at the
-// corner. Parts and balls share no edge: their vertices would weld, and an edge of four triangles
-// is not the edge of a solid. So the parts stop short of such a corner by different lengths, and
-// the ball's rings lie askew.
+// At a sharp corner, the tubes on both sides meet on the inside in the plane that bisects them. On
+// the outside, a wedge of a ball joins them. The whole path is then one shell that does not overlap
+// itself at the corner (add_joint). If a segment is too short for that, or the curve reverses, the
+// path is cut: its parts are closed separately and overlap a ball at the corner. Parts and balls
+// must not share an edge, because their vertices would be welded, and a solid must not have an edge
+// with four triangles. Therefore the parts stop at different distances from such a corner, and the
+// rings of the ball are rotated.
 
 #include <stdlib.h>
 #include <string.h>
@@ -25,13 +25,13 @@
 // ball, and different, so that a run back along the same line has no ring in common.
 #define SHORT_AT_END 0.03
 #define SHORT_AT_START 0.05
-// A joint takes at most this part of the segments that it joins on the inside.
+// A joint takes at most this fraction of the adjacent segments on the inside.
 #define JOINT_PART 0.49
-// Where a path comes back to its open end the ring there is turned by one of these angles, so that
-// it shares no vertices with the other rings at that point: they would weld.
+// If a path returns to its open end, the ring there is turned by one of these angles. It then
+// shares no vertices with the other rings at that point, which would be welded.
 #define TURN_AT_START 0.1
 #define TURN_AT_END (-0.17)
-// Cosine of the turn from which a corner is sharp: 25 degrees.
+// Cosine of the turn from which a corner counts as sharp: 25 degrees.
 static const double SHARP_COSINE = 0.9063;
 static const double PI = 3.14159265358979323846;
 
@@ -127,7 +127,7 @@ static void add_cap(Buffer *b, size_t ring, CagVec3 p, CagVec3 outward, bool at_
   }
 }
 
-// Vertex k of a ring belongs to vertex k + shift of the next.
+// Vertex k of a ring is connected to vertex k + shift of the next.
 static void add_side(Buffer *b, size_t ring, size_t next, size_t shift) {
   for (size_t k = 0; k < SIDES; k++) {
     size_t l = (k + 1) % SIDES, m = next + (k + shift) % SIDES, n = next + (l + shift) % SIDES;
@@ -138,21 +138,21 @@ static void add_side(Buffer *b, size_t ring, size_t next, size_t shift) {
 
 // --- Joints ---
 
-// A corner where two tubes meet. Vertex k of both rings is at the angle 2 PI k / SIDES, counted
-// from `outward` (of the tube that ends: outward[0]; of the one that begins: outward[1]) towards
-// `axis`.
+// A corner where two tubes meet. Vertex k of both rings is at the angle 2 PI k / SIDES, measured
+// from `outward` towards `axis`. outward[0] belongs to the tube that ends, outward[1] to the one
+// that begins.
 typedef struct Joint {
   size_t ends, begins; // first vertices of the rings
   CagVec3 outward[2], axis;
 } Joint;
 
-// How far the tubes are cut back on the inside of a corner, in radii: the tangent of half its turn.
+// How far the tubes are cut back on the inside of a corner, in radii: the tangent of half the turn.
 static double joint_depth(CagVec3 t, CagVec3 u) {
   return cag_norm(cag_cross(t, u)) / (1 + cag_dot(t, u));
 }
 
-// The vertices of the ball's wedge: `step` counts from the ring that ends to the one that begins,
-// `k` from -SIDES/4 to SIDES/4, where the wedge runs out in a point.
+// The vertices of the wedge of a ball. `step` counts from the ring that ends to the ring that
+// begins. `k` runs from -SIDES/4 to SIDES/4, where the wedge ends in a point.
 typedef struct Wedge {
   const Joint *joint;
   size_t steps, inner; // first vertex between the rings
@@ -177,12 +177,13 @@ static void add_wedge(Buffer *b, const Wedge *w) {
     }
 }
 
-// The joint at p of a tube along t that goes on along u: its two rings, and the wedge between.
+// Adds the joint at p between a tube along t and a tube along u: two rings and the wedge between
+// them.
 static CagStatus add_joint(Buffer *b, CagVec3 p, CagVec3 t, CagVec3 u, double radius, Joint *out,
                            CagError *err) {
   const int quarter = SIDES / 4;
   const double turn = atan2(cag_norm(cag_cross(t, u)), cag_dot(t, u)), depth = joint_depth(t, u);
-  const double rounding = 1e-9; // a quarter of a turn has SIDES / 4 steps
+  const double rounding = 1e-9; // a quarter turn has SIDES / 4 steps
   const size_t steps = (size_t)ceil(turn * SIDES / (2 * PI) - rounding);
   CagStatus status = reserve(b, (steps + 2) * SIDES, steps * SIDES, err);
   if (status != CAG_OK) return status;
@@ -192,7 +193,7 @@ static CagStatus add_joint(Buffer *b, CagVec3 p, CagVec3 t, CagVec3 u, double ra
   for (int side = 0; side < 2; side++) {
     *firsts[side] = b->vertices;
     for (int k = 0; k < SIDES; k++) {
-      // Both rings have the ends of the axis, which are not to differ by rounding.
+      // Both rings share the ends of the axis, which must not differ by rounding.
       const double c = k % (SIDES / 2) == quarter ? 0 : cos(2 * PI * k / SIDES);
       const double s = sin(2 * PI * k / SIDES);
       CagVec3 n = cag_madd(cag_scaled(out->outward[side], c), s, a);
@@ -215,14 +216,14 @@ static CagStatus add_joint(Buffer *b, CagVec3 p, CagVec3 t, CagVec3 u, double ra
 
 // --- Runs ---
 
-// An end of a run: a joint or, where that is NULL, a cap, whose ring may be turned.
+// An end of a run: a joint, or a cap if `joint` is NULL. The ring of a cap may be turned.
 typedef struct RunEnd {
   const Joint *joint;
   double turn;
 } RunEnd;
 
-// By what angle the frame that starts as `first` must be turned to arrive at a joint with a vertex
-// on one of its vertices, and how many vertices of the joint are passed over.
+// Returns the angle by which to turn the frame that starts as `first`, so that the vertices of the
+// last ring coincide with those of the joint. Also counts the vertices of the joint to skip.
 static double turn_to_joint(const CagVec3 *p, size_t n, CagVec3 first, const Joint *to,
                             size_t *shift) {
   CagVec3 t = tangent_at(p, n, false, 0), r = first;
@@ -237,7 +238,7 @@ static double turn_to_joint(const CagVec3 *p, size_t n, CagVec3 first, const Joi
   return 2 * PI * (double)steps / SIDES - angle;
 }
 
-// An open tube through n points. Between two joints each ring takes its share of the turn.
+// Adds an open tube through n points. Between two joints, the turn is distributed over the rings.
 static CagStatus add_run(Buffer *b, const CagVec3 *p, size_t n, RunEnd from, RunEnd to,
                          double radius, CagError *err) {
   if (n < 2) return CAG_OK;
@@ -267,7 +268,7 @@ static CagStatus add_run(Buffer *b, const CagVec3 *p, size_t n, RunEnd from, Run
   return CAG_OK;
 }
 
-// A closed smooth tube through n points, the last of which is the first.
+// Adds a closed smooth tube through n points, the last of which is the first.
 static CagStatus add_loop(Buffer *b, const CagVec3 *p, size_t n, double radius, CagError *err) {
   if (n < 2) return CAG_OK;
   CagStatus status = reserve(b, n * SIDES, 2 * SIDES * n, err);
@@ -340,8 +341,8 @@ static CagVec3 short_of(CagVec3 corner, CagVec3 next, double length) {
   return cag_lerp(corner, next, fmin(length / whole, 0.5));
 }
 
-// The points of a path, and what is at one of its corners. Of a closed path the last point is the
-// first, and the path begins at a sharp corner.
+// The points of a path, and the state of its corners. The last point of a closed path is its first,
+// and the path begins at a sharp corner.
 typedef struct Path {
   const CagVec3 *points;
   size_t count;
@@ -349,7 +350,7 @@ typedef struct Path {
   double radius;
 } Path;
 
-// The directions in which a path comes to point i and leaves it; false at an open end.
+// The directions in which a path reaches point i and leaves it. Returns false at an open end.
 static bool directions_at(const Path *h, size_t i, CagVec3 *t, CagVec3 *u, double *shortest) {
   const CagVec3 *p = h->points;
   const size_t n = h->count;
@@ -372,15 +373,15 @@ static CagStatus try_joint(Buffer *b, const Path *h, size_t i, Joint *joint, boo
   return *joined ? add_joint(b, h->points[i], t, u, h->radius, joint, err) : CAG_OK;
 }
 
-// Whether an open path comes back to its end, point i.
+// Tests whether an open path returns to its end, point i.
 static bool comes_back(const Path *h, size_t i) {
-  const double near = 1e-6 * h->radius; // vertices this close may weld
+  const double near = 1e-6 * h->radius; // vertices this close may be welded
   for (size_t j = 0; j < h->count; j++)
     if (j != i && cag_norm(cag_sub(h->points[j], h->points[i])) <= near) return true;
   return false;
 }
 
-// The run from point i to point k, which stops short of sharp corners that have no joint.
+// Adds the run from point i to point k, which stops short of sharp corners without joints.
 static CagStatus add_part(Buffer *b, const Path *h, size_t i, size_t k, const Joint *from,
                           const Joint *to, CagError *err) {
   const size_t n = k - i + 1;
@@ -399,7 +400,7 @@ static CagStatus add_part(Buffer *b, const Path *h, size_t i, size_t k, const Jo
   return status;
 }
 
-// Runs between the sharp corners, and a joint or a ball at each.
+// Adds the runs between the sharp corners, and a joint or a ball at each corner.
 static CagStatus add_corners(Buffer *b, const Path *h, CagError *err) {
   const CagVec3 *p = h->points;
   const size_t n = h->count;
@@ -426,7 +427,7 @@ static CagStatus add_corners(Buffer *b, const Path *h, CagError *err) {
   return status;
 }
 
-// The closed path p from its point `start` on.
+// Adds the closed path p, starting at its point `start`.
 static CagStatus add_closed_corners(Buffer *b, const CagVec3 *p, size_t n, size_t start,
                                     double radius, CagError *err) {
   CagVec3 *q = malloc(n * sizeof *q);

@@ -111,7 +111,7 @@ void cag_session_set_loop(CagSession *s, bool loop) { s->loop = loop; }
 
 static bool add_folder(CagVm *vm, const char *path) {
   char *real = realpath(path, NULL);
-  if (!real) return errno != ENOMEM; // a folder that is not there holds no modules
+  if (!real) return errno != ENOMEM; // a missing folder contains no modules
   char **include = realloc(vm->include, (vm->include_count + 1) * sizeof *include);
   if (!include) {
     free(real);
@@ -235,7 +235,7 @@ CagStatus cag_session_checked(const CagSession *s, CagStatus status, CagError *e
 
 int cag_session_fail_memory(CagSession *s) {
   cag_diagnostics_add(&s->diagnostics, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
-                      "there is not enough memory");
+                      "not enough memory");
   return CAG_STATUS_LIMIT;
 }
 
@@ -273,7 +273,7 @@ static CagErrorId why_stopped(const CagSession *s) {
 
 static void add_time_limit(CagDiagnostics *d, double max_time) {
   cag_diagnostics_add(d, CAG_ERR_limit_time, NULL, (CagSpan){0, 0},
-                      "the run took longer than the %g s it may (--max-time)", max_time);
+                      "exceeded the time limit of %g s (--max-time)", max_time);
 }
 
 static int fail_stopped(CagSession *s, CagErrorId id) {

@@ -20,7 +20,7 @@ struct CagSession {
   bool interactive;       // the machine keeps its definitions
   char **names, **values; // params from outside
   size_t define_count;
-  bool define_lost; // memory was out for one: no script runs until they are cleared
+  bool define_lost; // memory ran out for a definition; no script runs until definitions are cleared
   double frame, frames;
   bool loop;
   double time_left; // seconds of max_time, of a run and what is made of its scene

@@ -120,8 +120,9 @@ static int run(CagBatch *b) {
   const int status = read_jobs(b);
   if (status != CAG_STATUS_OK) return status;
   if (b->tool->loop && !has_film(b))
-    return cag_tool_fail(b->tool, CAG_STATUS_USAGE, "fill in frames, such as 0..47",
-                         "--loop is for films, but no row has frames");
+    return cag_tool_fail(b->tool, CAG_STATUS_USAGE,
+                         "add a column `frames` with values such as 0..47",
+                         "--loop applies to films, but no row has frames");
   // The report is written at the end; that it cannot be is said before.
   const int place = cag_tool_check_output(b->tool, b->report_path);
   if (place != CAG_STATUS_OK) return place;

@@ -224,7 +224,7 @@ static bool hash_row(const CagBatch *b, size_t i, Hash script, Hash *h) {
   return add_params(b, h, job);
 }
 
-// The length of a film is seen by its script, and whether it repeats.
+// The script can read the length of the film and whether it repeats, so both are part of the key.
 static void task_key(const CagBatch *b, const CagBatchRow *row, CagTask *task, const CagTask *whole,
                      Hash h) {
   add_text(&h, whole->output);

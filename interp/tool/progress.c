@@ -35,8 +35,8 @@ static int bar_width(void) {
   return room < 0 ? 0 : room > WIDEST ? WIDEST : room;
 }
 
-// ", about 40 s left": of this picture at the pace of its phase, and of the film's that follow.
-// Empty while nothing is known.
+// Formats ", about 40 s left", estimated from the pace of the current phase and the remaining
+// pictures of the film. The text is empty until an estimate is possible.
 static void left_words(const CagProgress *p, double percent, char *out, size_t size) {
   const double at = cag_clock_seconds(), spent = at - p->phase_begun;
   out[0] = '\0';

@@ -8,11 +8,12 @@
 typedef struct CagProgress {
   bool shown; // standard error is a terminal, and is to be used
   long frame, first, last;
-  bool dirty;        // the bar stands on the line
-  int tenths;        // what it shows, so that it is drawn only when that changes; -1: nothing
-  const char *phase; // of the renderer; NULL: not begun
-  bool lines;        // instead of a bar; `tenths` is then of the last one
-  // Of this picture, its phase, and the last line; 0: nothing rendered yet.
+  bool dirty;        // whether the bar is on the screen
+  int tenths;        // shown value in tenths; the bar is redrawn only when it changes; -1: nothing
+  const char *phase; // phase of the renderer; NULL: not started
+  bool lines;        // print lines instead of a bar; `tenths` then belongs to the last line
+  // Start times of this picture and its phase, and the time of the last line; 0: nothing rendered
+  // yet.
   double begun, phase_begun, line_time;
   long begun_frame;
 } CagProgress;

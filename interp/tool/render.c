@@ -110,7 +110,7 @@ static int check(const CagTool *t, double *frames) {
   if (status == CAG_STATUS_OK && t->has_frames) status = find_length(t, frames);
   if (status == CAG_STATUS_OK && t->loop && !t->has_frames)
     status = cag_tool_fail(t, CAG_STATUS_USAGE, "add --frames, such as --frames 0..47",
-                           "--loop is for films, but no frames are asked for");
+                           "--loop applies to films, but --frames is missing");
   return status;
 }
 

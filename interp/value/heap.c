@@ -115,8 +115,8 @@ void cag_root_pop(CagVm *vm, size_t n) { vm->root_count -= n; }
 
 // --- Marking ---
 
-// The list of gray objects begins in the heap itself. Where there is no memory for a longer one,
-// the objects that do not fit stay marked, and are found by a walk over the heap.
+// The list of gray objects starts in the heap itself. If memory runs out for a longer list, the
+// objects that do not fit stay marked, and a scan of the heap finds them later.
 static bool grow_gray(CagHeap *h) {
   const size_t capacity = h->gray_capacity * 2;
   const bool first = h->gray == h->gray_first;
@@ -324,7 +324,7 @@ static void drain(CagHeap *h) {
   while (h->gray_count) scan(h, h->gray[--h->gray_count]);
 }
 
-// Marks what marked objects refer to, whether that was done or not.
+// Marks the objects that a marked object refers to, even if that was done before.
 static void scan_again(CagHeap *h, CagObject *o) {
   if ((o->mark & MARK_MASK) != h->mark) return;
   scan(h, o);
@@ -346,7 +346,7 @@ void cag_collect(CagVm *vm) {
   h->gray_count = 0;
   mark_roots(vm);
   drain(h);
-  while (h->gray_lost) { // each time more objects are marked
+  while (h->gray_lost) { // each pass marks more objects
     h->gray_lost = false;
     scan_heap_again(h);
   }

@@ -13,7 +13,7 @@
 
 // --- Growing bytes ---
 
-// The bytes of strings that have failed; never written to.
+// The bytes of a failed string. Never written to.
 static char no_bytes[1];
 
 static void fail_string(CagString *s) {

@@ -233,7 +233,7 @@ static CagShape *shape_new(CagVm *vm, CagType type) {
   return s;
 }
 
-// A new shape owns its geometry, also when there is no memory for the shape.
+// Makes a shape that takes over its geometry, and releases the geometry if memory runs out.
 static CagShape *shape_of(CagVm *vm, CagType type, void (*release)(void *), void *owned) {
   CagCleanup cleanup;
   cag_cleanup_push(&cleanup, release, owned);
