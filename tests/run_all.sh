@@ -1,8 +1,7 @@
 #!/bin/sh
-# Runs all suites of a build (BUILD, default build) and adds up. SANITIZED names a second build, with which those suites run as well that
-# need nothing but the build. The last line is `N passed, N failed, N skipped`; the exit status is 0 when nothing failed. A test is
-# skipped when it needs a tool that is missing: it has neither passed nor failed. A suite that crashes, or does not say how many of its
-# tests passed, counts as one failure more.
+# Runs all suites of a build (BUILD, default build) and sums up the results. SANITIZED names a second build, with which the suites that need
+# only a build run again. The last line is `N passed, N failed, N skipped`; the exit status is 0 if nothing failed. A test is skipped, that
+# is, neither passed nor failed, if it needs a tool that is missing. A suite that crashes or prints no counts adds one failure.
 set -u
 cd "$(dirname "$0")/.."
 BUILD=${BUILD:-build}
@@ -21,8 +20,8 @@ add() {
   passed=$((passed + $2)) failed=$((failed + suite_failed)) skipped=$((skipped + $4))
 }
 
-# unit PROGRAM NAME: a program of C tests. cmocka writes its counts to standard error, some lines for each group:
-# `[  PASSED  ] 3 test(s).`, `[  SKIPPED ] 1 test(s), listed below:`. in_all PATTERN: the sum of the numbers at \(\).
+# unit PROGRAM NAME: runs a program of C tests. cmocka writes its counts to standard error, with several lines per group: `[  PASSED  ] 3
+# test(s).`, `[  SKIPPED ] 1 test(s), listed below:`. in_all PATTERN: sums up the numbers at \(\).
 in_all() { sed -n "s/$1/\1/p" "$log" | awk '{ n += $1 } END { print n + 0 }'; }
 unit() {
   "$1" > "$log" 2>&1
@@ -50,14 +49,14 @@ check() {
   if [ $status -eq 0 ]; then add "$name" 1 0 0 0; else add "$name" 0 1 0 $status; fi
 }
 
-# unit_suites BUILD NAME: all programs of C tests of a build; NAME goes before the names of its suites.
+# unit_suites BUILD NAME: runs all programs of C tests of a build. NAME is a prefix of the names of its suites.
 unit_suites() {
   for source in tests/lang/*_test.c tests/geom/*_test.c tests/interp/*_test.c; do
     [ ! -e "$source" ] || unit "$1/${source%.c}" "$2${source%.c}"
   done
 }
 
-# vector_suites BUILD NAME: the worked examples.
+# vector_suites BUILD NAME: runs the worked examples.
 vector_suites() {
   for vectors in tests/data/0*.json; do
     counted "$2$vectors" env BUILD="$1" tests/vectors/run "$vectors"

@@ -1,11 +1,11 @@
 #!/bin/sh
-# Runs all tests, after installing what they need and building; a part of them also in a build by Clang with sanitizers. The last line is
-# `N passed, N failed, N skipped`.
+# Installs what the tests need, builds, and runs all tests. Some of them also run in a Clang build with sanitizers. The last line is `N
+# passed, N failed, N skipped`.
 set -u
 cd "$(dirname "$0")/.."
 . tools/packages.sh
 
-# Clang's sanitizers come in a package of its version.
+# Clang's sanitizers are in a separate package for each version.
 install_clang() {
   install_packages clang && install_packages "libclang-rt-$(clang -dumpversion | cut -d . -f 1)-dev"
 }

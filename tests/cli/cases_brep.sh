@@ -112,8 +112,8 @@ shape trimmed - none 'g = bspline_surface([for i in 0..5: [for j in 0..6: [i * 1
   |> trim([circle(0.8, center: [1.5, 2]), circle(0.3, center: [1.5, 2])])'
 # r^2 (cos u0 - cos u1) (v1 - v0), v around.
 shape trimmed_ball 229.5442203702878 none 'g = sphere_surface(10) |> trim([[1, 0.5], [3, 0.5], [3, 2], [1, 2]])'
-# Quadrics within boxes: a sphere less six caps, a cone of 45 degrees over a rectangle of 4 by 6, strips of a cylinder, a
-# cylinder that leans by 45 degrees between level planes.
+# Quadrics within boxes: a sphere without six caps, a cone of 45 degrees over a rectangle of 4 by 6, strips of a cylinder, and a cylinder
+# tilted by 45 degrees between horizontal planes.
 shape caged_ball 125.66370614359172 none 'g = ellipsoid(5, 5, 5, within: box([8, 8, 8], centered: true))'
 shape tent 33.941125496954278 none 'g = elliptic_cone(1, 1, 1, within: box([4, 6, 9]) |> translate([-2, -3, 0]))'
 shape strips 234.60083680112753 none 'g = elliptic_cylinder(20, 20, within: box([30, 34, 10], centered: true))'

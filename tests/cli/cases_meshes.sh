@@ -209,7 +209,7 @@ for which in 0 1 2 3 4 5; do
   prints_exactly true
 done
 
-# Points, radius, and what stl_tube.py needs to know: the length and the turns.
+# Points, radius, and the arguments of stl_tube.py: the length and the turns.
 it 'the tube of a path with corners is one closed shell, without overlaps'
 while IFS='|' read -r curve radius expected; do
   script path.cag "show $curve |> line_style(radius: $radius)"

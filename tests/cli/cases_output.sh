@@ -213,8 +213,8 @@ prints_exactly 'true 0 2
 
 # --- Exports that fail ---
 
-# fails_whole FORMAT SCRIPT WHY [OPTION ...]: the export ends with the message; neither a new file nor a temporary is
-# left, and a file that was there before stays as it was.
+# fails_whole FORMAT SCRIPT WHY [OPTION ...]: tests that an export fails with the message, that it leaves neither a new nor a temporary
+# file, and that an existing file does not change.
 fails_whole() {
   format=$1 why=$3
   printf '%s\n' "$2" > "fails_$format.cag"

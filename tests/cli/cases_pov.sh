@@ -90,8 +90,8 @@ try export knot.cag -o knot.pov
 status 0
 grep -q 'normal_vectors' knot.pov || wrong 'there are no normals'
 
-# After whole turns its ends, and with an even number of them its middle too, are where those of a prism are.
-it 'what turns by whole turns is no prism'
+# After whole turns, its ends look like those of a prism. If their number is even, the middle does, too.
+it 'a body twisted by whole turns is not a prism'
 script screws.cag 'for_turns(n) = extrude(polygon([[0, 0], [9, 0], [0, 4]]), 20, twist: n * 360deg) |> translate([30 * n, 0, 0])
 show [for n in 1..4: for_turns(n)]'
 try export screws.cag -o screws.pov

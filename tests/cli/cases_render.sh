@@ -307,7 +307,7 @@ try compare flat_0.png flat_50.png --threshold 0.05
 status 0
 
 it 'a terminal shows the progress and the time that is left, unless the command is quiet'
-# Refraction that takes seconds: the time is known after the first.
+# Refraction takes seconds to render; the first estimate appears after one second.
 script slow.cag 'show [for i in 0..20: sphere(8) |> translate([(i % 5)*14, floor(i/5)*14, 0])] |> material({color: "white", transmission: 1, ior: 1.5})'
 python3 "$here/on_terminal.py" "$CAG" render slow.cag -o slow.png --size 240x180 --threads 1 > shown || wrong "$(cat shown)"
 grep -q '% rendering, about [0-9]* s left' shown || wrong "$(tail -2 shown)"

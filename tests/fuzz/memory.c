@@ -1,17 +1,18 @@
-// Scripts with allocations that fail.
+// Runs scripts with failing allocations.
 //
 //     memory [-n POINTS] [-s SEED] [-b NAME] [-a ALLOCATION] [-x] [FILE...]
 //
-// Each script runs once as it is, and POINTS times (4) with failing allocations, which are drawn
-// from SEED (1): at every other point one allocation fails, at the others all from that one on. The
-// scripts are the files named, or the examples of the built-ins (-b: of one of them). With -x what
-// the files show is exported too, in every format. -a runs a single point: number ALLOCATION fails,
-// or with a minus sign all from there on, in the process itself.
+// Each script runs once without failures, and POINTS times (default 4) with failing allocations,
+// which are drawn from SEED (default 1). At every second point, one allocation fails; at the
+// others, it and all later ones fail. The scripts are the given files, or the examples of the
+// built-ins (-b: of one of them). With -x, the files are also exported in every format. -a runs a
+// single point in the process itself: allocation number ALLOCATION fails, or with a minus sign all
+// allocations from this one on.
 //
-// A run passes when it ends with an error, or with the output of the run that had its memory. The
-// program is linked with wrapped allocation functions, so only allocations of cag itself fail. Runs
-// are made in children of this process: a crash costs one run, which is shown. Memory that a run
-// loses is shown too where the program is built with AddressSanitizer.
+// A run passes if it ends with an error or with the output of the run without failures. The program
+// is linked with wrapped allocation functions, so only allocations of cag itself fail. Runs are
+// made in child processes: a crash ends one run and is reported. If the program is built with
+// AddressSanitizer, memory leaks are reported as well.
 
 #include <dirent.h>
 #include <errno.h>
@@ -28,16 +29,16 @@
 
 #include "cag.h"
 
-#define SECONDS 10.0 // for one run
+#define SECONDS 10.0 // limit of one run
 #define HANG 60      // seconds until a run counts as endless
 
 // --- Allocations that fail ---
 
 static size_t made;     // allocations so far in this run
-static size_t failing;  // the number of the first that fails, from 1; 0: none
-static bool failing_on; // all after it fail as well
+static size_t failing;  // index of the first allocation that fails, from 1; 0: none
+static bool failing_on; // whether all later allocations fail as well
 
-// With -a a debugger stops here.
+// With -a, set a breakpoint here.
 static __attribute__((noinline)) bool fail(void) {
   __asm__ volatile("");
   return true;
@@ -87,7 +88,7 @@ FILE *__wrap_open_memstream(char **text, size_t *size) {
   return is_failing() ? NULL : __real_open_memstream(text, size);
 }
 
-// Of builds with AddressSanitizer alone.
+// Available only in builds with AddressSanitizer.
 __attribute__((weak)) int __lsan_do_recoverable_leak_check(void);
 
 // --- Work ---
@@ -95,20 +96,20 @@ __attribute__((weak)) int __lsan_do_recoverable_leak_check(void);
 // A script, or its export in one format.
 typedef struct Job {
   const char *name; // of the file or built-in
-  const char *text; // of an example; NULL: the file is read
+  const char *text; // of an example; NULL: read the file
   const char *format;
 } Job;
 
 typedef struct Shared {
   size_t job, point, passed, failed;
   long failing; // as -a
-  bool lost;    // memory
+  bool lost;    // whether memory leaked
 } Shared;
 
 static Job *jobs;
 static size_t job_count;
 static Shared *shared;
-static char folder[] = "/tmp/cag-memory-XXXXXX"; // of exports
+static char folder[] = "/tmp/cag-memory-XXXXXX"; // receives exports
 
 static size_t draw(uint64_t *state, size_t n) {
   *state += 0x9e3779b97f4a7c15u; // splitmix64
@@ -118,8 +119,8 @@ static size_t draw(uint64_t *state, size_t n) {
   return (size_t)((z ^ (z >> 31)) % n);
 }
 
-// Runs a job with failing allocations as of -a. Gives the status, and the output, which the caller
-// frees.
+// Runs a job with failing allocations as given by -a. Returns the status and the output, which the
+// caller frees.
 static int run_job(const Job *j, long point, char **output, size_t *allocations) {
   CagSessionOptions options;
   size_t size = 0;
@@ -171,16 +172,16 @@ static void try_point(const Job *j, long point, int expected_status, const char 
                      (expected_status != CAG_STATUS_OK || strcmp(output, expected) != 0);
   free(output);
   if (__lsan_do_recoverable_leak_check && __lsan_do_recoverable_leak_check()) {
-    complain("lost memory");
+    complain("memory leak");
     shared->lost = true;
   } else if (other) {
-    complain("another result");
+    complain("a different result");
   } else {
     shared->passed++;
   }
 }
 
-// Runs the points of one job that are left, or a single one.
+// Runs the remaining points of one job, or a single one.
 static void try_job(size_t points, uint64_t seed, long single) {
   const Job *j = &jobs[shared->job], empty = {.name = "", .text = ""};
   char *expected, *output;
@@ -192,7 +193,8 @@ static void try_job(size_t points, uint64_t seed, long single) {
   if (single) try_point(j, single, status, expected);
   while (shared->point < points) {
     uint64_t state = seed + shared->job * 0x2545f4914f6cdd1du + shared->point++;
-    // One of sixteen points lies in the start of the session, which is the same for all.
+    // One in sixteen points fails during the start of the session, which is the same for all
+    // scripts.
     const size_t first = draw(&state, 16) == 0 || start >= allocations ? 0 : start;
     const long point = (long)(1 + first + draw(&state, allocations - first));
     try_point(j, shared->point % 2 ? point : -point, status, expected);
@@ -201,14 +203,14 @@ static void try_job(size_t points, uint64_t seed, long single) {
   free(expected);
 }
 
-// Each allocation of the start of a session fails in turn, in processes that have had no session
-// before: the tables of built-ins are made once for a process.
+// Fails each allocation of the start of a session in turn, each in a new process, because the
+// tables of built-ins are made once per process.
 static void try_start(void) {
   static const Job start = {"the start of a session", "", NULL};
   jobs = (Job *)&start;
   for (long point = 1, more = 1; more; point++) {
     shared->failing = point;
-    shared->lost = true; // until the child says that all went well
+    shared->lost = true; // until the child reports success
     fflush(stdout);
     const pid_t child = fork();
     if (child < 0) exit(2);
@@ -219,7 +221,8 @@ static void try_start(void) {
       const bool reached = (size_t)point <= allocations;
       free(output);
       shared->job = reached;
-      // Without its first allocation there is no session at all; a second one has all its memory.
+      // If the first allocation fails, there is no session at all, and a second session has all its
+      // memory.
       if (point == 1)
         failing = 1, made = 0, shared->lost = cag_session_new(&(CagSessionOptions){0});
       else shared->lost = status == CAG_STATUS_OK && reached;
@@ -279,7 +282,7 @@ static void remove_folder(void) {
   rmdir(folder);
 }
 
-// Runs jobs in children, one after the other as they crash, until all are done.
+// Runs jobs in child processes, and starts a new one after each crash, until all are done.
 static void run_all(size_t points, uint64_t seed) {
   while (shared->job < job_count) {
     fflush(stdout);
@@ -288,7 +291,7 @@ static void run_all(size_t points, uint64_t seed) {
     if (child == 0) {
       for (; shared->job < job_count; shared->job++, shared->point = 0) {
         try_job(points, seed, 0);
-        if (shared->lost) break; // a new child begins without what is lost
+        if (shared->lost) break; // a new child starts without the leak
       }
       exit(0);
     }
@@ -297,7 +300,7 @@ static void run_all(size_t points, uint64_t seed) {
     const bool endless = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM;
     const bool ended = WIFEXITED(status) && (WEXITSTATUS(status) == 0 || shared->lost);
     if (!ended && !endless) psignal(WIFSIGNALED(status) ? WTERMSIG(status) : 0, "memory");
-    if (!ended) complain(endless ? "it does not end" : "a crash");
+    if (!ended) complain(endless ? "it does not terminate" : "a crash");
     shared->lost = false;
   }
 }

@@ -472,8 +472,8 @@ static void bodies_on_a_grid(void **state) {
   }
 }
 
-// Corners of the pieces are rounded thirds, which snapping moves off the plane of the cut by less
-// than a double tells. A ray in this plane has to pass an edge on its true side.
+// The corners of the pieces are rounded thirds. Snapping moves them off the plane of the cut by
+// less than a double can represent. A ray in this plane has to pass an edge on its true side.
 static void pieces_of_a_tetrahedron_join_again(void **state) {
   (void)state;
   const CagVec3 v[4] = {{3, 3, 0}, {2, 3, 3}, {1, 1, 2}, {3, 2, 2}};

@@ -208,7 +208,8 @@ static CagSurface *curved_net(int degree_u, int degree_v) {
   return s;
 }
 
-// A corner of the net may lie behind the plane by less than anything that is traced.
+// Counts curves that are not tiny: a corner of the net may lie behind the plane by less than the
+// length of any traced curve.
 static size_t count_long(const CagCurveList *l) {
   size_t n = 0;
   for (size_t i = 0; i < l->count; i++) {
@@ -219,8 +220,8 @@ static size_t count_long(const CagCurveList *l) {
   return n;
 }
 
-// Sections with planes are traced in another way: as zeros of a function of one surface. A
-// tolerance bounds the distance of a curve; its length may be off by several tolerances.
+// Sections with planes are traced by a different method: as zeros of a function of one surface. A
+// tolerance bounds the distance of a curve; its length may differ by several tolerances.
 static void curved_nets_meet_a_flat_sheet_as_they_do_its_plane(void **state) {
   (void)state;
   seed = 3;
@@ -247,8 +248,8 @@ static void curved_nets_meet_a_flat_sheet_as_they_do_its_plane(void **state) {
 
 // --- Runs that meet in one point ---
 
-// Rays from one point, in pairs that are straight lines: in every order, and whichever way they
-// run, the lines go on straight.
+// Rays from one point that form pairs of straight lines. In every order and direction of the rays,
+// the lines continue straight.
 #define LINES 4
 #define RAYS (2 * LINES)
 
@@ -313,7 +314,7 @@ static void lines_through_a_point_go_on_straight_in_every_order(void **state) {
   }
 }
 
-// Segments between few points, with equal turns among them: the edges of a cube without some.
+// Segments between few points with equal turns: edges of a cube, some of them removed.
 static void segments_are_joined_alike_in_every_order(void **state) {
   (void)state;
   enum { EDGES = 12 };

@@ -295,9 +295,9 @@ static void the_closest_point_is_the_global_one(void **state) {
   cag_curve_release(exact);
 }
 
-// Speeds with peaks and near cusps, against mpmath with 40 digits or more: ellipses 4 E(1 - b^2),
-// the parabola with the middle weight w, the cubic [0, 0], [1, 1], [k, 1], [1, 0], which has a cusp
-// at k = 0.
+// Curves with peaks of speed and near cusps, compared with mpmath results of at least 40 digits:
+// ellipses 4 E(1 - b^2), the parabola with the middle weight w, and the cubic [0, 0], [1, 1], [k,
+// 1], [1, 0], which has a cusp at k = 0.
 static void lengths_of_uneven_speed_are_right(void **state) {
   (void)state;
   CagCurve *c = ellipse(1, 1e-4, 0, 2 * M_PI);
@@ -320,7 +320,7 @@ static void lengths_of_uneven_speed_are_right(void **state) {
   cag_curve_release(c);
   OK(cag_curve_bezier(wave, (const double[]){1, 1e6, 1e12, 1e3}, 4, 2, &c, &err));
   NEAR(length_of(c), 4.0968825395385815, 1e-13);
-  // Its parts add up, wherever it is cut.
+  // The lengths of its parts add up, wherever it is cut.
   for (int k = 1; k < 20; k++) {
     const double t = k % 2 ? pow(10, -k) : 1 - pow(10, -k);
     double before, after;
@@ -367,8 +367,8 @@ static void lengths_do_not_depend_on_the_speed(void **state) {
   }
 }
 
-// With its middle weight a conic reaches the corner of its triangle, whose area and second moments
-// are those of the region within curve and chord.
+// As its middle weight grows, a conic approaches two sides of its triangle, so the area and second
+// moments of the region between curve and chord approach those of the triangle.
 static void areas_of_uneven_speed_are_right(void **state) {
   (void)state;
   static const CagVec3 p[3] = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}}, chord[2] = {{2, 0, 0}, {0, 0, 0}};

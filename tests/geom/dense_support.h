@@ -1,7 +1,7 @@
-// Meshes against their surfaces, by dense sampling: for tests of tessellation.
+// Compares meshes with their surfaces by dense sampling, for tests of tessellation.
 //
-// Points are looked for in the triangles around their parameters first: that is a bound from
-// above. Only where it is over the tolerance all triangles are asked.
+// The search for a point starts with the triangles near its parameters, which give an upper bound
+// of the distance. All triangles are searched only if this bound exceeds the tolerance.
 
 #ifndef CAG_TESTS_GEOM_DENSE_SUPPORT_H
 #define CAG_TESTS_GEOM_DENSE_SUPPORT_H

@@ -170,10 +170,9 @@ static void curves_on_a_torus_have_the_derivatives_of_its_formula(void **state) 
   cag_surface_release(s);
 }
 
-// A curve that rises and falls by 1e-4 above a line: of many places that are nearly equally near
-// the nearest is found, by samples 1e-10 high. Too few pairs are an error, never an uncertain
-// distance.
-static void one_of_many_places_is_the_nearest(void **state) {
+// A curve rises and falls by 1e-4 above a line. The nearest of its many nearly equal minima is
+// found, as samples 1e-10 apart confirm. Too few pairs are an error, never an uncertain distance.
+static void the_nearest_of_many_minima_is_found(void **state) {
   (void)state;
   enum { POINTS = 400, SAMPLES = 200000 };
   CagVec3 p[POINTS];
@@ -225,11 +224,11 @@ static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state
   OK(cag_surface_tessellate(moved, &how, &m, &err));
   OK(cag_parts_add_mesh(&b, m, moved, how.tolerance, &err));
   OK(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, &foot, NULL, &err));
-  // The circles of both tori are at one distance all around.
+  // The circles of both tori have a constant distance.
   NEAR(distance, 5, 1e-12);
   NEAR(foot.z, 6, 1e-9);
   NEAR(hypot(foot.x, foot.y), 5, 1e-7);
-  // They are so all around: a few pairs do not show that.
+  // The distance is constant all around, which a few pairs cannot show.
   FAILS(cag_parts_distance(&a, &b, 20, &distance, NULL, NULL, &err), "convergence");
   cag_parts_free(&b);
   b = (CagParts){0};
@@ -251,7 +250,7 @@ int main(void) {
       cmocka_unit_test(hulls_hold_all_points),
       cmocka_unit_test(flat_sets_have_no_solid),
       cmocka_unit_test(curves_on_a_torus_have_the_derivatives_of_its_formula),
-      cmocka_unit_test(one_of_many_places_is_the_nearest),
+      cmocka_unit_test(the_nearest_of_many_minima_is_found),
       cmocka_unit_test(tori_are_as_far_apart_as_their_circles_less_their_tubes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

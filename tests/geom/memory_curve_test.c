@@ -1,5 +1,5 @@
-// Curves of every kind when memory runs out, when a function of the caller fails, and when work is
-// stopped: each is reported, and nothing leaks.
+// Tests curves of every kind with exhausted memory, with failing functions of the caller, and with
+// interrupted work. Each fault is reported, and nothing leaks.
 
 #include <stdio.h>
 
@@ -123,7 +123,7 @@ MAKER(projected) {
   cag_curve_release(c);
   return status;
 }
-MAKER(stopping) { // a wave that first stays in one point
+MAKER(stopping) { // a wave that first stays at one point
   CagCurve *parts[2] = {0};
   CagStatus status = cag_curve_resting(cag_vec3(0, 0, 0), 2, 0, 1, false, &parts[0], e);
   if (!status) status = make_wave(&parts[1], e);
@@ -168,7 +168,7 @@ static double along(const CagCurve *c, double fraction) {
   return c->start + fraction * (c->end - c->start);
 }
 
-// What is asked of one curve. Each question releases what it was given.
+// Operations on one curve. Each operation releases its result.
 #define QUESTION(name) static CagStatus name(const void *given, CagError *e)
 #define CURVE const CagCurve *c = given
 // Takes the address because the caller evaluates it before the call that makes the curve.
@@ -597,7 +597,7 @@ static void questions_to_a_curve_report_faults(void **state) {
   assert_int_equal(fault_problems, 0);
 }
 
-// What is asked of two curves.
+// Operations on two curves.
 typedef struct Pair {
   const CagCurve *a, *b;
 } Pair;
@@ -650,7 +650,7 @@ static void questions_to_two_curves_report_faults(void **state) {
   fault_problems = 0;
   for (int k = 0; k < KIND_COUNT; k++)
     for (int l = 0; l < KIND_COUNT; l++) {
-      // Each kind with the function and with its neighbor in the list.
+      // Each kind is combined with the function and with its neighbor in the list.
       if (KINDS[l].make != function && l != (k + 1) % KIND_COUNT) continue;
       Pair pair;
       CagCurve *a, *b;

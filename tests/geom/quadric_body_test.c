@@ -1,4 +1,5 @@
-// Bodies that pieces of quadrics bound: volumes against closed forms and sums over grids.
+// Bodies that pieces of quadrics bound: volumes compared with closed forms and with sums over
+// grids.
 
 #include "geom/solid/csg.h"
 #include "geom/surface/trimmed.h"
@@ -16,7 +17,7 @@ static CagSolid *body_of(const CagQuadric *q, const CagBounds *within, bool z_on
     list[i] = moved;
   }
   assert_true(cag_solid_has_quadric_body(list, n));
-  // One piece less does not tell what the others bound.
+  // If a piece is missing, the others do not define the body.
   if (n > 1 && cag_surface_trimmed_view(list[0], NULL, NULL))
     assert_false(cag_solid_has_quadric_body(list, n - 1));
   MUST(cag_solid_quadric_body(list, n, NULL, &s, err));
@@ -25,7 +26,8 @@ static CagSolid *body_of(const CagQuadric *q, const CagBounds *within, bool z_on
   return s;
 }
 
-// By a mesh to this part of the box, which must be closed.
+// Measures the volume of a mesh with this tolerance, as a fraction of the box. The mesh must be
+// closed.
 static double volume_of(const CagSolid *s, double tolerance) {
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
   CagMassProperties mass;
@@ -38,7 +40,7 @@ static double volume_of(const CagSolid *s, double tolerance) {
   return mass.volume;
 }
 
-// Length of the part of z0..z1 where a z^2 + b z + c <= 0.
+// Length of the part of z0..z1 in which a z^2 + b z + c <= 0.
 static double length_within(double a, double b, double c, double z0, double z1) {
   double cut[4] = {z0, z0, z0, z1}, sum = 0;
   int n = 1;
@@ -59,7 +61,8 @@ static double length_within(double a, double b, double c, double z0, double z1) 
   return sum;
 }
 
-// Volume of the part of the box where the form is negative: closed forms along z, sums over x, y.
+// Volume of the part of the box in which the form is negative: closed form along z, sum over x and
+// y.
 static double sum_over_grid(const CagQuadric *q, const CagBounds *box) {
   enum { STEPS = 200 };
   const CagVec3 size = cag_sub(box->max, box->min);
@@ -118,7 +121,7 @@ static void bodies_have_closed_forms(void **state) {
   const double volume = M_PI * (4 * 125 / 3.0 - 6 * 14 / 3.0);
   assert_near(volume_of(s, 1e-3) / volume, 1, 1e-3, "ball");
   cag_solid_release(s);
-  // Later transforms carry the cut along.
+  // Later transforms move the cut as well.
   CagTransform turn, stretch;
   MUST(cag_rotate(cag_vec3(1, 2, 3), 0.7, cag_vec3(1, 0, 0), &turn, err));
   MUST(cag_scale(cag_vec3(1, 2, 0.5), cag_vec3(0, 0, 0), &stretch, err));
@@ -127,8 +130,8 @@ static void bodies_have_closed_forms(void **state) {
   s = body_of(&ball, &cube, false, &turn);
   assert_near(volume_of(s, 1e-3) / volume, 1, 1e-3, "moved ball");
   cag_solid_release(s);
-  // A paraboloid r^2 = t about an axis that is level but for 0.1 rad: the plane z = c cuts off
-  // pi R^4 / 2 with R^2 = cot^2 / 4 + c / sin.
+  // A paraboloid r^2 = t about an axis at 0.1 rad to the horizontal. The plane z = c cuts off pi
+  // R^4 / 2 with R^2 = cot^2 / 4 + c / sin.
   const double cosine = cos(0.1), sine = sin(0.1);
   const CagQuadric level = {
       {1, sine * sine, cosine * cosine, 0, 2 * sine * cosine, 0, 0, cosine, -sine, 0}};
@@ -138,8 +141,8 @@ static void bodies_have_closed_forms(void **state) {
   s = body_of(&level, &range, true, NULL);
   assert_near(volume_of(s, 2e-3) / slab, 1, 2e-3, "paraboloid");
   cag_solid_release(s);
-  // The side of a saddle is where its form is negative: z > x^2 - y^2 or z < x^2 - y^2, over the
-  // square of 2 from z = -1 to z = 3.
+  // The body of a saddle is where its form is negative: z > x^2 - y^2 or z < x^2 - y^2, over a
+  // square of side 2 from z = -1 to z = 3.
   const CagQuadric above = {{1, -1, 0, 0, 0, 0, 0, 0, -1, 0}};
   const CagQuadric below = {{-1, 1, 0, 0, 0, 0, 0, 0, 1, 0}};
   const CagBounds tower = {{-1, -1, -1}, {1, 1, 3}};

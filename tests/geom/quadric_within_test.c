@@ -209,10 +209,10 @@ static size_t outline_points(const CagSurface *s) {
   return sum;
 }
 
-// A paraboloid r^2 = t about an axis that is level but for an angle a: with w across the axis, z =
-// t sin a + w cos a and y = w sin a - t cos a. The planes z = 1 and z = -1 cut it in circles of
-// (x, w) with center - cot a / 2 and radius sqrt(cot^2 a / 4 +- 1 / sin a). The largest y is
-// sin^2 a / (4 cos a), at w = tan a / 2; the least is at the far side of the larger circle.
+// A paraboloid r^2 = t about an axis at a small angle a to the horizontal. With w perpendicular to
+// the axis, z = t sin a + w cos a and y = w sin a - t cos a. The planes z = 1 and z = -1 cut it in
+// circles of (x, w) with center - cot a / 2 and radius sqrt(cot^2 a / 4 +- 1 / sin a). The largest
+// y is sin^2 a / (4 cos a), at w = tan a / 2. The least y is at the far side of the larger circle.
 static void outlines_that_are_nearly_level_stay_small(void **state) {
   (void)state;
   const double angles[] = {0.1, 0.01, 0.001};
@@ -230,7 +230,7 @@ static void outlines_that_are_nearly_level_stay_small(void **state) {
     assert_true(count > 0 && count < 20000);
     MUST(cag_surface_bounds(list[0], &b, err));
     const double r = sqrt(c * c / (4 * s * s) + 1 / s), far = -c / (2 * s) - r;
-    // To the rounding of the largest coordinate.
+    // Accurate to the rounding of the largest coordinate.
     const double size = far * far, slack = 1e-11 + 1e-14 * size;
     assert_near(b.max.x, r, slack, "x");
     assert_near(b.min.x, -r, slack, "-x");

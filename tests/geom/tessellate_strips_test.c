@@ -1,6 +1,6 @@
-// Twisted bodies in few triangles: cells become strips whose edges lie along the directions in
-// which the surface bends least. Counts are held against what is known of polygons around a circle,
-// and the meshes are looked at densely, as those of other surfaces.
+// Meshes of twisted bodies need few triangles: cells become strips whose edges follow the
+// directions in which the surface bends least. Counts are compared with those of polygons around a
+// circle, and the meshes are sampled densely.
 
 #include <complex.h>
 #include <stdio.h>
@@ -12,7 +12,7 @@
 
 // --- Sections ---
 
-// (a + b t) e^(i t), by which arcs and spirals of Archimedes are made.
+// (a + b t) e^(i t), from which arcs and Archimedean spirals are made.
 typedef struct Spiral {
   double a, b;
 } Spiral;
@@ -42,7 +42,8 @@ static CagCurve *spiral(double from, double to, double r_from, double r_to) {
 
 enum { PARTS = 4 };
 
-// Around the axis: crest, flank, root, flank; `ends`: where they end, of a turn.
+// A section around the axis: crest, flank, root, flank. `ends`: where they end, as fractions of a
+// turn.
 static CagCurve *thread_section(const double ends[PARTS], double outer, double inner) {
   const double radii[PARTS + 1] = {outer, outer, inner, inner, outer};
   CagCurve *parts[PARTS], *c;
@@ -77,8 +78,8 @@ static CagSolid *twisted(CagCurve *section, double height, double turns, double 
 
 // --- The thread M10 ---
 
-// Crest, flanks and root of a metric thread take 2/16, 5/16, 4/16 and 5/16 of its pitch; the flanks
-// stand at 60 degrees to each other.
+// Crest, flanks, and root of a metric thread take 2/16, 5/16, 4/16, and 5/16 of its pitch. The
+// angle between the flanks is 60 degrees.
 static const double metric[PARTS] = {2 / 16.0, 7 / 16.0, 11 / 16.0, 1};
 static const double pitch = 1.5, outer = 5;
 enum { TURNS = 27 };
@@ -89,7 +90,7 @@ static CagSolid *m10(void) {
   return twisted(thread_section(metric, outer, inner_radius()), pitch * TURNS, TURNS, 1);
 }
 
-// Of the section, by the integral of r^2 / 2, times the height.
+// The area of the section, by the integral of r^2 / 2, times the height.
 static double m10_volume(void) {
   const double r = inner_radius();
   const double area = M_PI * (2 * outer * outer + 4 * r * r) / 16 +
@@ -105,10 +106,10 @@ static CagMesh *mesh_of(const CagSolid *s, double tolerance) {
   return m;
 }
 
-// A polygon of n sides in a circle lacks (2 pi / n)^2 / 6 of its area. So 30 quadrilaterals a turn
-// on each of the four strips of the thread miss less than 0.77 % of it: two triangles for each of
-// 27 turns. Half as many again are granted for the ends, the tolerance that is not used up and the
-// flanks.
+// The area of a polygon with n sides is less than that of its circle by the fraction (2 pi / n)^2 /
+// 6. With 30 quadrilaterals per turn, each of the four strips of the thread misses less than 0.77
+// %. Each quadrilateral has two triangles, and there are 27 turns. The limit is 1.5 times this
+// count, because of the ends, the flanks, and tolerance that is not used up.
 static void a_thread_takes_few_triangles_for_its_volume(void **state) {
   (void)state;
   const double n = 30, most_missed = 0.0077;
@@ -129,7 +130,7 @@ static void a_thread_takes_few_triangles_for_its_volume(void **state) {
   cag_solid_release(s);
 }
 
-// By the sagitta of a chord at a distance of r from the axis, r (1 - cos(pi / n)).
+// The limit comes from the sagitta of a chord at the distance r from the axis, r (1 - cos(pi / n)).
 static void coarser_tolerances_take_fewer_triangles(void **state) {
   (void)state;
   CagSolid *s = m10();
@@ -188,7 +189,7 @@ static void twisted_bodies_keep_tolerance_and_angle(void **state) {
   }
 }
 
-// Parameters change their places, and nothing else.
+// Swaps the parameters and changes nothing else.
 static void strips_run_along_either_parameter(void **state) {
   (void)state;
   const CagTessellation how = {

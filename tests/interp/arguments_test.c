@@ -1,11 +1,10 @@
-// Calls of every built-in with one argument of another kind.
+// Calls of every built-in with one argument of a different type.
 //
-// The calls are those of the examples in the table of built-ins. In each, one argument after the
-// other is replaced by a value of another type, and each parameter that the call leaves out is
-// given one. Where the documentation of the parameter (interp/doc/parameters.def, by way of
-// interp/check) rules the type out, the call must fail, in its place and with the function's name.
-// Everywhere else it may fail too, but only with an error of a known kind, and it prints no
-// undefined number.
+// The calls are those of the examples in the table of built-ins. In each call, every argument in
+// turn is replaced by a value of another type, and every omitted parameter is given one. If the
+// documentation of the parameter (interp/doc/parameters.def, via interp/check) rules the type out,
+// the call must fail at its own location, with the function's name. Otherwise the call may fail as
+// well, but only with an error of a known kind, and it must not print an undefined number.
 
 #include <ctype.h>
 #include <setjmp.h>
@@ -22,7 +21,7 @@
 
 #define LONGEST 8192 // bytes of one script
 #define ARGUMENTS 24 // of one call
-// Limits of one script: some values ask for a great deal.
+// Limits of one script, because some values cause a great amount of work.
 #define SECONDS 2.0
 #define MEMORY ((size_t)256 << 20)
 #define TRIANGLES 50000
@@ -62,14 +61,14 @@ typedef struct Argument {
 } Argument;
 
 typedef struct Call {
-  size_t from, open, close; // of its name and its parentheses
+  size_t from, open, close; // of the name and the parentheses
   Argument arguments[ARGUMENTS];
   size_t count;
 } Call;
 
 static bool in_word(char c) { return isalnum((unsigned char)c) || c == '_'; }
 
-// Behind a text or a comment that begins at `at`; `at` where none does.
+// Skips a text or a comment that begins at `at`. Returns `at` if there is none.
 static size_t behind_quoted(const char *s, size_t at) {
   if (s[at] == '/' && s[at + 1] == '/') return at + strcspn(s + at, "\n");
   if (s[at] != '"') return at;
@@ -78,7 +77,7 @@ static size_t behind_quoted(const char *s, size_t at) {
   return s[at] ? at + 1 : at;
 }
 
-// The next comma or closing bracket that belongs to the bracket which `at` stands in.
+// The next comma or closing bracket that belongs to the bracket containing `at`.
 static size_t item_end(const char *s, size_t at) {
   for (int depth = 0; s[at];) {
     size_t behind = behind_quoted(s, at);
@@ -131,8 +130,8 @@ static bool read_call(const char *text, size_t open, const CagSignature *s, Call
   return false;
 }
 
-// The next call of the function from `at` on that is no pipe: there the first argument stands
-// elsewhere.
+// The next call of the function from `at` on that is not in a pipe. In a pipe, the first argument
+// is elsewhere.
 static bool find_call(const char *text, size_t at, const CagSignature *s, Call *out) {
   const size_t n = strlen(s->name);
   while (text[at]) {
@@ -171,7 +170,7 @@ static size_t line_at(const char *text, size_t at) {
   return line;
 }
 
-// The word nan, other than within a longer word.
+// Tests for the word nan that is not part of a longer word.
 static bool undefined(const char *text) {
   for (const char *s = strstr(text, "nan"); s; s = strstr(s + 1, "nan"))
     if ((s == text || !isalpha((unsigned char)s[-1])) && !isalpha((unsigned char)s[3])) return true;
@@ -185,12 +184,12 @@ static const char *judge(CagSession *s, int status, const char *output, bool rul
     if (ruled_out) return "it takes a type that its documentation rules out";
     return undefined(output) ? "an undefined number is printed" : NULL;
   }
-  if (cag_session_error_count(s) == 0) return "it fails without an error";
+  if (cag_session_error_count(s) == 0) return "the script fails without an error";
   cag_session_error(s, 0, &e);
   if (!e.code || strcmp(e.code, "E0000") == 0 || strcmp(e.code, "E0399") == 0)
     return "an error without a code";
   if (!ruled_out) return NULL;
-  if (e.line < first || e.line > last) return "the error stands elsewhere";
+  if (e.line < first || e.line > last) return "the error is at another location";
   return e.message && strstr(e.message, name) ? NULL : "the message does not name the function";
 }
 
@@ -227,7 +226,7 @@ static void run_with(Run *r, const CagSignature *s, const char *text, const Call
   free(output);
 }
 
-// Whether no row of the name takes the type as this parameter.
+// Tests whether all rows of the name reject the type for this parameter.
 static bool rules_out(size_t index, const CagBuiltin *row, const CagSignature *s, size_t parameter,
                       size_t positional, CagType type) {
   if (parameter >= s->count || type == CAG_NONE) return false;

@@ -154,7 +154,7 @@ static void one_pass_reports_everything(void **state) {
   assert_string_equal(found("import nowhere: a\nprint a(1), sin(30)"), "E0240:1 E0301:2");
 }
 
-static void one_pass_goes_on_behind_syntax_errors(void **state) {
+static void checking_continues_after_syntax_errors(void **state) {
   (void)state;
   assert_string_equal(found("a = 1 +* 2\nb = sphere(-3)\nprint hieght\nprint sin(30), a, b"),
                       "E0120:1 E0314:2 E0201:3 E0301:4");
@@ -165,7 +165,7 @@ static void one_pass_goes_on_behind_syntax_errors(void **state) {
   assert_string_equal(found("cube(3)\nshow cube(4)"), "E0150:1 E0201:1 E0201:2");
 }
 
-static void what_a_damaged_statement_defines_is_not_unknown(void **state) {
+static void names_of_a_damaged_statement_are_not_unknown(void **state) {
   (void)state;
   assert_string_equal(found("f(x) = 3 +* 1\nprint f(1, 2, 3).y"), "E0120:1");
   assert_string_equal(found("module knob(r, h) { cylinder(h, r); }\nshow knob(3, r)"),
@@ -183,7 +183,7 @@ static void what_a_damaged_statement_defines_is_not_unknown(void **state) {
   assert_string_equal(found("l = [for i in 0..3:\ni + ]\nprint l, i"), "E0120:2");
 }
 
-// A script whose every bracket, quote and `=` is a blank in turn has errors of syntax only.
+// In this script, replacing any bracket, quote, or `=` with a blank causes only syntax errors.
 static const char whole[] =
     "/// Ring of holes.\n"
     "import std.materials: steel\n"
@@ -203,7 +203,7 @@ static const char whole[] =
     "print len(names), area_of(2, 3), style.size[0]\n"
     "show difference(sphere(width), holes)\n";
 
-static void a_missing_character_gives_errors_of_syntax_only(void **state) {
+static void a_missing_character_causes_only_syntax_errors(void **state) {
   (void)state;
   assert_string_equal(found(whole), "E0900:2");
   for (size_t i = 0; i < strlen(whole); i++) {
@@ -296,9 +296,9 @@ int main(void) {
       cmocka_unit_test(literal_mistakes_are_found),
       cmocka_unit_test(circles_of_definitions_are_found),
       cmocka_unit_test(one_pass_reports_everything),
-      cmocka_unit_test(one_pass_goes_on_behind_syntax_errors),
-      cmocka_unit_test(what_a_damaged_statement_defines_is_not_unknown),
-      cmocka_unit_test(a_missing_character_gives_errors_of_syntax_only),
+      cmocka_unit_test(checking_continues_after_syntax_errors),
+      cmocka_unit_test(names_of_a_damaged_statement_are_not_unknown),
+      cmocka_unit_test(a_missing_character_causes_only_syntax_errors),
       cmocka_unit_test(scripts_cut_off_anywhere_are_checked),
       cmocka_unit_test(what_may_be_right_is_left_alone),
       cmocka_unit_test(definitions_that_nothing_uses_are_told),

@@ -1,4 +1,5 @@
-// Memory that is out is a status of the C interface, at the start of a session as in a run.
+// The C interface reports exhausted memory as a status, both when a session starts and during a
+// run.
 
 #include <setjmp.h>
 #include <stdarg.h>

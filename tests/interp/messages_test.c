@@ -131,11 +131,11 @@ static void carets_stand_below_the_argument(void **state) {
   cag_session_free(s);
 }
 
-// What operators and the forms around values say to values that they do not take.
+// Messages of operators and other constructs for values of a wrong type.
 static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
   (void)state;
   static const struct {
-    const char *script, *message, *help; // help NULL: none
+    const char *script, *message, *help; // help is NULL if there is none
   } rows[] = {
       {"print [1] + 30deg", "does not join the list [1] and the angle 30deg",
        "to add an element, write [...list, x]"},
@@ -237,7 +237,7 @@ static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
     const bool helped = rows[i].help ? e.help && strstr(e.help, rows[i].help) : !e.help;
     if (!strstr(e.message, rows[i].message) || !helped) {
       bad++;
-      print_error("%s\n  gives: %s\n  help: %s\n  instead of: %s\n  help: %s\n", rows[i].script,
+      print_error("%s\n  gives: %s\n  help: %s\n  expected: %s\n  help: %s\n", rows[i].script,
                   e.message, e.help ? e.help : "none", rows[i].message,
                   rows[i].help ? rows[i].help : "none");
     }

@@ -1,8 +1,8 @@
-// Every operator between values of every two types.
+// Every operator with values of every pair of types.
 //
-// The checker (interp/check) knows without running which types an operator joins, and what it
-// gives: the machine must agree. Formulas show the same of numbers with derivatives, whose
-// derivative must be the slope that two points of the curve give.
+// The checker (interp/check) knows without running which types an operator accepts and what it
+// returns. The machine must agree. Formulas test the same for numbers with derivatives: the
+// derivative must be the slope between two points of the curve.
 
 #include <ctype.h>
 #include <math.h>
@@ -100,7 +100,7 @@ static bool names_type(CagTypes types, const char *name) {
   return false;
 }
 
-// The word nan, other than within a longer word.
+// Tests for the word nan that is not part of a longer word.
 static bool undefined(const char *text) {
   for (const char *s = strstr(text, "nan"); s; s = strstr(s + 1, "nan"))
     if ((s == text || !isalpha((unsigned char)s[-1])) && !isalpha((unsigned char)s[3])) return true;
@@ -115,13 +115,13 @@ static CagSession *quiet_session(void) {
   return cag_session_new(&options);
 }
 
-// Evaluates an expression. Gives what is wrong with how it ended: NULL where it is right.
+// Evaluates an expression. Returns a description of what is wrong with the outcome, or NULL.
 static const char *evaluate(CagSession *s, const char *text, int *status, Answer *out) {
   CagErrorView e;
   *out = (Answer){"", ""};
   *status = cag_session_input(s, text, strlen(text), take, out);
   if (*status == CAG_STATUS_OK) return undefined(out->text) ? "an undefined number" : NULL;
-  if (cag_session_error_count(s) == 0) return "it fails without an error";
+  if (cag_session_error_count(s) == 0) return "the script fails without an error";
   cag_session_error(s, 0, &e);
   if (!e.code || !e.message || !*e.message || strcmp(e.code, "E0000") == 0)
     return "an error without code or words";
@@ -155,7 +155,7 @@ static void operators_join_the_types_that_the_checker_says(void **state) {
   assert_int_equal(bad, 0);
 }
 
-// What takes one value: all but values of these types are errors.
+// Constructs that take one value: values of all types but these are errors.
 static void other_forms_take_the_types_that_they_say(void **state) {
   (void)state;
   static const CagTypes numbers = CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE);
@@ -315,8 +315,8 @@ static const char *const formulas[] = {
     "at(sphere_surface(2), t * 1rad, t * 0.5rad).x",
 };
 
-// The exact derivative against the slope between two points near PLACE: the error of the latter is
-// that of the third derivative, some times STEP^2, and rounding over STEP.
+// Compares the exact derivative with the slope between two points near PLACE. The error of the
+// slope is that of the third derivative, a small multiple of STEP^2, plus rounding divided by STEP.
 #define STEP 1e-5
 #define SLACK 1e-6
 

@@ -1,10 +1,9 @@
-// What a scene is made of: tubes of curves, colors, the meshes of items, cameras and standard
-// views.
+// The parts of a scene: tubes of curves, colors, meshes of items, cameras, and standard views.
 
 #include "interp/scene/scene.h"
 #include "scene_fixture.h"
 
-// A tube has twelve sides: the area of its section as part of r^2.
+// A tube has twelve sides. This is the area of its section divided by r^2.
 #define SECTION (6 * sin(M_PI / 6))
 
 static CagCurve *polyline(const CagVec3 *p, size_t n, bool closed) {
@@ -13,7 +12,7 @@ static CagCurve *polyline(const CagVec3 *p, size_t n, bool closed) {
   return c;
 }
 
-// An item of a fixture with one curve, as a mesh; NULL with the reason where that fails.
+// The mesh of an item with one curve. NULL with the reason if making it fails.
 static CagMesh *tube_of(CagCurve *c, double radius, double dash, size_t most, CagError *err) {
   Fixture f;
   CagMesh *m = NULL;
@@ -53,8 +52,8 @@ static void a_line_is_a_prism_along_it(void **state) {
   is_volume(polyline(p, 2, false), 2, 0, 50 * 4 * SECTION, 1e-9);
 }
 
-// Of 90 with dashes of 10 nine steps, five of which are drawn; of 95, likewise, each longer. Where
-// not three steps fit all is drawn.
+// A length of 90 with dashes of 10 has nine steps, and five of them are drawn. A length of 95 has
+// the same, each slightly longer. If three steps do not fit, the whole line is drawn.
 static void dashes_fill_a_line_from_end_to_end(void **state) {
   (void)state;
   const CagVec3 even[] = {{0, 0, 0}, {20, 0, 0}, {90, 0, 0}}, odd[] = {{0, 0, 0}, {95, 0, 0}};
@@ -63,8 +62,8 @@ static void dashes_fill_a_line_from_end_to_end(void **state) {
   is_volume(polyline(odd, 2, false), 1, 40, 95 * SECTION, 1e-9);
 }
 
-// The points of a circle are its chords: their length is that of the tube, up to the turns between
-// them, in which sections are no more across the chord.
+// A circle is sampled as chords. The length of its tube is that of the chords, except at the turns
+// between them, where sections are not perpendicular to the chord.
 static void dashes_of_a_closed_curve_are_as_many_as_gaps(void **state) {
   (void)state;
   CagCurve *c;
@@ -75,7 +74,7 @@ static void dashes_of_a_closed_curve_are_as_many_as_gaps(void **state) {
   is_volume(c, 0.5, 7, length / 2 * 0.25 * SECTION, 0.01 * length / 2 * 0.25 * SECTION);
 }
 
-// Six frustums between like dodecagons, at every 30 degrees from pole to pole.
+// Six frustums between regular dodecagons, at every 30 degrees from pole to pole.
 static double ball_volume(void) {
   double v = 0;
   for (int i = 0; i < 6; i++) {
@@ -86,7 +85,7 @@ static double ball_volume(void) {
   return v;
 }
 
-// A ball stands at each corner; the runs stop short of it by 0.03 and 0.05 of the radius.
+// There is a ball at each corner. The runs stop 0.03 and 0.05 of the radius before it.
 static void corners_have_balls(void **state) {
   (void)state;
   const CagVec3 square[] = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {0, 100, 0}};
@@ -109,7 +108,7 @@ static void tubes_keep_the_limit_of_triangles(void **state) {
   cag_curve_release(c);
 }
 
-// Values of the definition of sRGB: IEC 61966-2-1.
+// Values from the definition of sRGB: IEC 61966-2-1.
 static void colors_are_read_in_any_case(void **state) {
   (void)state;
   static const char *const same[] = {"#008080", "teal", "TEAL", "Teal"};
@@ -137,7 +136,7 @@ static CagMesh *two_triangles(bool labels) {
   return m;
 }
 
-// What has overflowed is no mesh to write.
+// A mesh whose coordinates have overflowed cannot be written.
 static void meshes_without_finite_corners_are_refused(void **state) {
   (void)state;
   for (int axis = 0; axis < 4; axis++) {
@@ -161,7 +160,7 @@ static void meshes_without_finite_corners_are_refused(void **state) {
   }
 }
 
-static void a_ground_is_no_mesh(void **state) {
+static void a_ground_is_not_a_mesh(void **state) {
   (void)state;
   Fixture f;
   CagMesh *m = NULL;
@@ -205,7 +204,7 @@ int main(void) {
       cmocka_unit_test(tubes_keep_the_limit_of_triangles),
       cmocka_unit_test(colors_are_read_in_any_case),
       cmocka_unit_test(meshes_without_finite_corners_are_refused),
-      cmocka_unit_test(a_ground_is_no_mesh),
+      cmocka_unit_test(a_ground_is_not_a_mesh),
       cmocka_unit_test(a_mesh_without_triangles_has_no_bounds),
       cmocka_unit_test(an_unknown_view_is_an_error),
   };

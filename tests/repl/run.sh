@@ -263,7 +263,7 @@ printf '%s\n' ':load all.cag' ':hide sphere(f(2))' ':save again.cag' | "$cag" re
 sed 's/, sphere(f(2))//' all.cag | diff - again.cag >difference
 result ':save keeps imports, documentation and asserts' $? "$(cat difference)"
 
-# edits NAME EXPECTED EDITOR INPUT: what INPUT prints with an editor.
+# edits NAME EXPECTED EDITOR INPUT: compares what INPUT prints when EDITOR is the editor.
 edits() {
   got=$(printf '%s\n' "$4" | VISUAL="$3" EDITOR=false "$cag" repl 2>&1)
   [ "$got" = "$2" ]
