@@ -8,7 +8,7 @@ if ! command -v gcovr > /dev/null; then
   exit 1
 fi
 
-# In one process: with -j gcovr has waited for itself forever.
+# gcovr runs in a single process because with -j it can deadlock.
 csv=$(mktemp)
 trap 'rm -f "$csv"' EXIT
 gcovr --root . --object-directory "$BUILD" --filter '(geom|interp|lang)/' --csv -o "$csv" "$BUILD"

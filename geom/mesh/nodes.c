@@ -73,11 +73,11 @@ static bool cross_normal(const CagSurface *s, const CagVec3 d[4], CagVec3 *out) 
 // Normal where the partials are no help: the surface's own limit, else that a little further
 // inside, else zero (the mean of the triangles is put there in the end).
 //
-// Before a break within the domain, where the surface's limit is that behind it, it is the normal a
-// little before.
+// Before a break inside the domain, the surface's own limit is the one after the break. There this
+// function evaluates the normal a little before the break instead.
 static CagVec3 limit_normal(const CagSurface *s, double u, double v, bool after_u, bool after_v) {
   const double inside = 1e-4; // of the way to the middle of the domain
-  const double beside = 1e-6; // of the domain
+  const double beside = 1e-6; // fraction of the domain
   const bool before_u = !after_u && u > s->u0 && u < s->u1;
   const bool before_v = !after_v && v > s->v0 && v < s->v1;
   CagError ignored;

@@ -159,7 +159,7 @@ static CagMarchFound finish(const CagMarch *m, const Pair *p, double off, const 
   if (!(apart <= CAG_MARCH_SAME * m->size) || hypot(p->turned.x, p->turned.y) > CAG_MARCH_TOUCH)
     return CAG_MARCH_NONE;
   eigen(difference, &small, &large, &kernel);
-  // Else it is a single place, however slowly the surfaces part.
+  // Otherwise it is a single point, however slowly the surfaces separate.
   if (fabs(small) > ALONG * (largest(&p->shape[0]) + largest(&p->shape[1]))) return CAG_MARCH_NONE;
   node->x = cag_lerp(p->t[0].p, p->t[1].p, 0.5);
   node->tangent = cag_unit(in_space(p, kernel));

@@ -398,7 +398,7 @@ static CagStatus search_cells(Search *f, CagError *err) {
   return status;
 }
 
-// What a core leads to; *certain: nothing can be nearer.
+// Tries the nearest point of the core. *certain is set if no other point can be nearer.
 static CagStatus try_core(Search *f, bool *certain, CagError *err) {
   double bound;
   bool known;

@@ -1,4 +1,4 @@
-// Nearest points of tubes and offsets by way of center lines and surfaces.
+// Nearest points of tubes and offsets, found from their center lines and base surfaces.
 
 #include "geom/surface/nearest_core.h"
 
@@ -15,7 +15,7 @@ static CagStatus take(const CagSurface *s, CagVec3 p, double u, double v, CagSur
   return status;
 }
 
-// The place at which the plane section at the foot on the center line is nearest.
+// Finds the nearest point of the plane section at the foot on the center line.
 static CagStatus by_line(const CagSurface *s, const CagCurve *center, double radius, CagVec3 p,
                          double *bound, CagSurfaceNearest *out, CagError *err) {
   double t, distance;
@@ -57,7 +57,7 @@ CagStatus cag_surface_nearest_by_core(const CagSurface *s, CagVec3 p, double *bo
         cag_surface_nearest_by_core(inner, cag_transform_point(&back, p), bound, out, known, err);
   if (status || !*known) return status;
   *bound *= scale;
-  // v may run backwards.
+  // v may run in the opposite direction.
   CagSurfaceNearest other;
   const double u = out->u, v = out->v;
   status = take(s, p, u, v, out, err);

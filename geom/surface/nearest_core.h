@@ -1,14 +1,14 @@
-// Nearest points of surfaces all of whose points are at one distance from something simpler.
+// Nearest points of surfaces with a core: a simpler curve or surface at a constant distance.
 
 #ifndef CAG_GEOM_SURFACE_NEAREST_CORE_H
 #define CAG_GEOM_SURFACE_NEAREST_CORE_H
 
 #include "geom/surface/nearest.h"
 
-// A tube is at its radius from its center line, an offset at its distance from its surface: from
-// outside no point of them is nearer than the nearest one of these less that distance. *bound: that
-// lower bound, and *out: the place of the surface that it leads to. *known: there is one, as of
-// images of such surfaces by similarities.
+// The core of a tube is its center line, and the core of an offset is its base surface. For a point
+// outside, the distance of the core less the constant distance is a lower bound, which is stored in
+// *bound. *out is the point of the surface that belongs to the nearest point of the core. *known is
+// set if the surface is a tube, an offset, or the image of one by a similarity.
 CagStatus cag_surface_nearest_by_core(const CagSurface *s, CagVec3 p, double *bound,
                                       CagSurfaceNearest *out, bool *known, CagError *err);
 

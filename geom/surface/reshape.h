@@ -43,7 +43,7 @@ CagStatus cag_surface_part(const CagSurface *s, double u0, double u1, double v0,
 CagStatus cag_surface_transpose(const CagSurface *s, CagSurface **out, CagError *err);
 // S + d n; partials up to order CAG_MAX_PARTIAL - 1.
 CagStatus cag_surface_offset(const CagSurface *s, double d, CagSurface **out, CagError *err);
-// The surface and the distance; false: no offset.
+// Gets the base surface and the distance of an offset. Returns false for another surface.
 bool cag_surface_offset_view(const CagSurface *s, const CagSurface **inner, double *d);
 
 // A developable surface laid flat into z = 0 with its parameters, lengths kept; it is straight

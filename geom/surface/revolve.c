@@ -17,8 +17,8 @@ typedef struct Revolution {
   CagVec3 axis;      // unit
   CagVec3 through;
   double on_axis; // a profile point nearer to the axis than this lies on it
-  // Where the profile crosses the axis, or touches it, between its ends: the surface is one point
-  // there, and its normal turns round.
+  // Parameters between the ends at which the profile crosses or touches the axis. The surface is a
+  // single point there, and its normal is reversed.
   double *meets;
   size_t meet_count;
 } Revolution;
@@ -170,7 +170,7 @@ static size_t revolution_breaks(const CagSurface *s, int direction, double *out,
 
 // --- Where the profile meets the axis ---
 
-// Samples between two breaks of the profile, and steps that narrow a minimum down to rounding.
+// Samples between two breaks of the profile, and steps that refine a minimum to rounding accuracy.
 enum { MEET_SAMPLES = 32, MEET_STEPS = 90 };
 
 static CagStatus axis_distance(const Revolution *r, double t, double *out, CagError *err) {
@@ -182,7 +182,7 @@ static CagStatus axis_distance(const Revolution *r, double t, double *out, CagEr
   return CAG_OK;
 }
 
-// The least distance from the axis between two parameters that enclose it, by golden sections.
+// Finds the minimum distance from the axis between two parameters by golden-section search.
 static CagStatus least_distance(const Revolution *r, double from, double to, double *at,
                                 double *distance, CagError *err) {
   const double golden = 0.6180339887498949;
@@ -202,7 +202,7 @@ static CagStatus least_distance(const Revolution *r, double from, double to, dou
   return status;
 }
 
-// Between two breaks, which are breaks of the surface anyway.
+// Searches between two breaks, which are breaks of the surface already.
 static CagStatus find_meets(Revolution *r, double from, double to, CagError *err) {
   double d[MEET_SAMPLES + 1];
   const double step = (to - from) / MEET_SAMPLES;

@@ -12,8 +12,9 @@ CagStatus cag_surface_sweep(const CagCurve *section, const CagMotion *motion, Ca
 // A circle whose radius changes along the path.
 CagStatus cag_surface_tube_along(const CagCurve *path, const CagAlong *radius, CagSurface **out,
                                  CagError *err);
-// The center line of a tube of one radius without corners: all points of the tube are that far from
-// the point of the line with their parameter v. false: another surface.
+// Gets the center line of a tube with a constant radius and no corners. Every point of the tube is
+// at this distance from the point of the line with the same parameter v. Returns false for another
+// surface.
 bool cag_surface_tube_view(const CagSurface *s, const CagCurve **center, double *radius);
 // Section and motion of a sweep or tube; false: another kind.
 bool cag_surface_swept_view(const CagSurface *s, const CagCurve **section,

@@ -14,7 +14,7 @@ typedef struct Sweep {
   CagSurface base;
   CagCurve *section; // as given: dimension 2 or 3
   CagMotion *motion;
-  CagCurve *center; // of a tube of one radius all along; else NULL
+  CagCurve *center; // of a tube of constant radius; otherwise NULL
   double radius;
 } Sweep;
 

@@ -83,10 +83,9 @@ static bool call_intersect(CagCall *call, CagValue *result) {
 const CagBuiltin cag_builtins_meetings[] = {
     {"closest(S, P)", call_closest, "record",
      "The point of the surface nearest to P: u, v, point and distance (mm). If several are equally "
-     "near, it is one of them. For surfaces with an exact NURBS form, and from outside for tubes "
-     "and "
-     "offsets away from their ends, bounds make sure that no other point is nearer. Others are "
-     "sampled as finely as they bend: of a formula no bounds are known.",
+     "near, it is one of them. Bounds guarantee that no other point is nearer for surfaces with an "
+     "exact NURBS form. For points outside tubes and offsets and away from their ends, they do as "
+     "well. Other surfaces are sampled as finely as they bend: a formula has no known bounds.",
      "c = closest(sphere_surface(2), [0, 5, 0])\n"
      "print near(c.point, [0, 2, 0]), near(c.distance, 3), c.u, c.v // expect: true true 90deg "
      "90deg",

@@ -262,7 +262,7 @@ static void run_example(const CagSite *site, CagSiteExample *e) {
 typedef struct Running {
   CagSite *site;
   pthread_mutex_t mutex;
-  bool starved; // memory was out for an example
+  bool starved; // memory ran out for an example
 } Running;
 
 typedef struct OneExample {

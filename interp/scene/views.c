@@ -160,8 +160,9 @@ static Reach reach_of_box(const Framing *f, int a, const CagBounds *box) {
   return out;
 }
 
-// Both boxes hold the item, so that the nearer limits do. One that cannot be told does not count;
-// without memory the work is left, so that a picture never depends on what memory there is.
+// Both boxes contain the item, so the tighter limit is used on each side. A box that cannot be
+// computed is ignored. If memory runs out, the work is abandoned, so that a picture never depends
+// on the available memory.
 static void add_item(const Framing *f, const CagItem *item, Reach r[2]) {
   CagBounds box;
   CagError err = {0};

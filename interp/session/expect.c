@@ -757,12 +757,12 @@ static char *place_example(const CagDocEntry *e, size_t first, const char *part,
   return text;
 }
 
-// What an example is made of.
+// The parts of an example.
 typedef struct Head {
   const CagDocModule *module;
   const char *file, *part;
   size_t length;
-  char *example, *import; // import: NULL where it needs none
+  char *example, *import; // import: NULL if it needs none
 } Head;
 
 static void read_head(void *context) {

@@ -142,8 +142,8 @@ static int check_parts(CagSession *s, const Parts *parts) {
   return CAG_STATUS_SCRIPT;
 }
 
-// Name of the file that goes with another one, such as part.mtl with part.obj; NULL for standard
-// output. False: no memory.
+// Makes the name of the file that accompanies another one, such as part.mtl with part.obj; NULL for
+// standard output. Returns false if memory ran out.
 static bool path_beside(const char *path, const char *ending, char **out) {
   *out = NULL;
   if (strcmp(path, "-") == 0) return true;

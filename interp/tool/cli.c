@@ -63,7 +63,7 @@ static const double COUNT_MAX = 1e15;
 static bool read_count(const CagTool *t, const char *option, const char *value, size_t *out) {
   double n;
   if (!read_number(value, NULL, &n) || n < 1 || n > COUNT_MAX || n != floor(n))
-    return reject(t, "give a whole number from 1 on", option, value, "that is no count");
+    return reject(t, "give a whole number from 1 on", option, value, "expected a count");
   *out = (size_t)n;
   return true;
 }
@@ -81,7 +81,8 @@ static bool set_output(CagTool *t, const char *value) {
                   "-o is given twice: '%s' and '%s'", t->output, value);
     return false;
   }
-  if (!*value) return reject(t, "name a file, or - for standard output", "-o", value, "no name");
+  if (!*value)
+    return reject(t, "name a file, or - for standard output", "-o", value, "expected a name");
   t->output = value;
   return true;
 }
@@ -96,7 +97,7 @@ static bool set_size(CagTool *t, const char *value) {
   long w, h;
   const char *at = value;
   if (!read_whole(at, &at, &w) || *at++ != 'x' || !read_whole(at, &at, &h) || *at)
-    return reject(t, HELP, "--size", value, "that is no size");
+    return reject(t, HELP, "--size", value, "expected a size");
   if (w < 1 || h < 1 || (size_t)w > CAG_IMAGE_SIDE_MAX || (size_t)h > CAG_IMAGE_SIDE_MAX)
     return reject(t, HELP, "--size", value, "sides are from 1 to 131072 pixels");
   t->width = (int)w;
@@ -132,7 +133,7 @@ static bool set_frames(CagTool *t, const char *value) {
 static bool set_exposure(CagTool *t, const char *value) {
   if (read_number(value, NULL, &t->exposure)) return true;
   return reject(t, "give a number of stops, such as 0.5 or -1", "--exposure", value,
-                "that is no number");
+                "expected a number");
 }
 
 static bool set_engine(CagTool *t, const char *value) {
@@ -151,7 +152,7 @@ static bool set_pov_csg(CagTool *t, const char *value) {
 static bool set_threshold(CagTool *t, const char *value) {
   if (read_number(value, NULL, &t->threshold) && t->threshold >= 0) return true;
   return reject(t, "give a number from 0 on, such as 0.01", "--threshold", value,
-                "that is no difference");
+                "expected a number of at least 0");
 }
 
 static bool set_heatmap(CagTool *t, const char *value) {
@@ -176,7 +177,7 @@ static bool set_define(CagTool *t, const char *value) {
   const char *equals = strchr(value, '=');
   if (!equals || equals == value)
     return reject(t, "write -D name=value, such as -D height=200", "-D", value,
-                  "a name, = and a value are wanted");
+                  "expected NAME=VALUE");
   char *name = strndup(value, (size_t)(equals - value));
   t->defines = grow(t->defines, t->define_count, sizeof *t->defines);
   if (!name) return false;
@@ -186,7 +187,7 @@ static bool set_define(CagTool *t, const char *value) {
 
 static bool set_include(CagTool *t, const char *value) {
   const char **path = (const char **)(size_t)t->session.module_path;
-  if (!*value) return reject(t, "name a folder", "-I", value, "no name");
+  if (!*value) return reject(t, "name a folder", "-I", value, "expected a name");
   path = grow(path, t->session.module_path_count, sizeof *path);
   path[t->session.module_path_count++] = value;
   t->session.module_path = path;
@@ -196,7 +197,7 @@ static bool set_include(CagTool *t, const char *value) {
 static bool set_tolerance(CagTool *t, const char *value) {
   if (read_number(value, "mm", &t->session.tolerance) && t->session.tolerance > 0) return true;
   return reject(t, "give millimetres above 0, such as 0.05", "--tolerance", value,
-                "that is no distance");
+                "expected a distance");
 }
 
 static bool set_max_memory(CagTool *t, const char *value) {
@@ -212,14 +213,14 @@ static bool set_max_memory(CagTool *t, const char *value) {
   }
   if (!begins || *end || !(bytes >= 1) || bytes > COUNT_MAX)
     return reject(t, "give bytes, or a number with K, M, G or T: 512M", "--max-memory", value,
-                  "that is no size");
+                  "expected a size");
   t->session.max_memory = (size_t)bytes;
   return true;
 }
 
 static bool set_max_time(CagTool *t, const char *value) {
   if (read_number(value, "s", &t->session.max_time) && t->session.max_time > 0) return true;
-  return reject(t, "give seconds above 0, such as 60", "--max-time", value, "that is no time");
+  return reject(t, "give seconds above 0, such as 60", "--max-time", value, "expected a time");
 }
 
 static bool set_max_depth(CagTool *t, const char *value) {
@@ -269,10 +270,10 @@ static bool set_region(CagTool *t, const char *value) {
   const char *at = value, *between = "x++";
   for (int i = 0; i < 4; i++) {
     if (!read_whole(at, &at, &n[i]) || n[i] > (long)CAG_IMAGE_SIDE_MAX || *at != between[i])
-      return reject(t, HELP, "--region", value, "that is no region");
+      return reject(t, HELP, "--region", value, "expected a region");
     at += i < 3;
   }
-  if (n[0] < 1 || n[1] < 1) return reject(t, HELP, "--region", value, "that is nothing");
+  if (n[0] < 1 || n[1] < 1) return reject(t, HELP, "--region", value, "the region is empty");
   t->region = (CagRenderRegion){(int)n[2], (int)n[3], (int)n[0], (int)n[1]};
   return true;
 }
@@ -305,7 +306,7 @@ static bool set_progress(CagTool *t, const char *value) {
 static bool set_retries(CagTool *t, const char *value) {
   long n;
   if (!read_whole(value, &value, &n) || *value)
-    return reject(t, "give a whole number, such as 2", "--retries", value, "that is no count");
+    return reject(t, "give a whole number, such as 2", "--retries", value, "expected a count");
   t->retries = (size_t)n;
   return true;
 }
@@ -327,7 +328,7 @@ static bool set_tiles(CagTool *t, const char *value) {
   t->tiles = value;
   return cag_tiles_read(value, &columns, &lines) ||
          reject(t, "write columns x lines, such as 4x3; at most 64x64", "--tiles", value,
-                "these are no tiles");
+                "expected tiles");
 }
 
 static bool set_element(CagTool *t, const char *value) {
@@ -335,7 +336,7 @@ static bool set_element(CagTool *t, const char *value) {
   const char *end;
   t->element = value;
   return (read_whole(value, &end, &n) && !*end) ||
-         reject(t, "it is the number of the array's task", "--element", value, "that is no number");
+         reject(t, "it is the number of the array's task", "--element", value, "expected a number");
 }
 
 static bool set_html(CagTool *t, const char *value) {
@@ -555,7 +556,7 @@ static bool check_operands(const CagTool *t, int count, char **operands) {
            c->operands, c->name);
   if (count < c->least) {
     if (count)
-      cag_tool_fail(t, CAG_STATUS_USAGE, help, "%s are wanted, found only '%s'", c->operands,
+      cag_tool_fail(t, CAG_STATUS_USAGE, help, "expected %s, found only '%s'", c->operands,
                     operands[0]);
     else cag_tool_fail(t, CAG_STATUS_USAGE, help, "%s is missing", c->operands);
     return false;

@@ -92,7 +92,7 @@ static int find_length(const CagTool *t, double *frames) {
     if (end == d->value || *end || !(*frames >= 1) || *frames > INT_MAX ||
         *frames != (double)(long)*frames)
       return cag_tool_fail(t, CAG_STATUS_USAGE, "with --frames give a whole number, such as 96",
-                           "-D frames=%s is no length of a film", d->value);
+                           "-D frames=%s: expected the length of a film", d->value);
   }
   if (*frames > (double)t->last_frame) return CAG_STATUS_OK;
   return cag_tool_fail(t, CAG_STATUS_USAGE, "the frames of a film of N are 0..N-1",

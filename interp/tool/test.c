@@ -33,7 +33,7 @@ typedef struct Script {
   size_t failure_length;
   int status;
   bool done;
-  bool lost; // no memory for a case of the report
+  bool lost; // memory ran out for a case of the report
 } Script;
 
 struct Testing {

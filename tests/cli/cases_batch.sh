@@ -164,7 +164,7 @@ try batch bad.csv
 status 2
 prints_nothing
 says "bad.csv:2: E0913: row 1: the script 'nothere.cag' cannot be read"
-says "bad.csv:3: E0912: row 2: size '64x': that is no size"
+says "bad.csv:3: E0912: row 2: size '64x': expected a size"
 says "bad.csv:4: E0912: row 3: quality 'best'"
 says "bad.csv:5: E0916: row 4: there is no format '.foo'"
 says 'bad.csv:6: E0915: row 5: cannot write'

@@ -183,7 +183,7 @@ status 0
 
 it '--diff is what patch makes the layout of, for any lines'
 if needs patch; then
-  # Scripts of 0 to 60 lines, laid out or not, some without the newline of the last: drawn with a fixed seed.
+  # Random scripts of 0 to 60 lines with a fixed seed, formatted or not. Some lack the final newline.
   for seed in 1 2 3 4 5 6 7 8 9 10 11 12; do
     awk -v seed=$seed 'BEGIN {
       srand(seed)

@@ -1,5 +1,5 @@
-# The program when memory is out, or the system fails: an allocation of each place in it fails once, and so does a call of
-# the system (fail_memory.c).
+# Tests the program with exhausted memory and failing system calls: each location in its code that allocates or calls the
+# system fails once (fail_memory.c).
 
 script vase.cag '/// how tall
 param height = 200
@@ -40,8 +40,9 @@ f(a) = a * x
 :export ball.stl
 x'
 
-# fails_at WHAT NAME ARGUMENT ...: runs cag with the arguments once for each place that asks for WHAT (memory, system), which fails
-# there, beyond the places before which the number is `beyond`. It ends by itself, with what it writes when nothing fails or with an error that it tells. A file that it leaves is whole.
+# fails_at WHAT NAME ARGUMENT ...: runs cag with the arguments once for each location that requests WHAT (memory, system), which fails
+# there. The first `beyond` locations are skipped. The program must end by itself, with its usual output or with an error message, and
+# any file that it leaves must be complete.
 fails_at() {
   it "$1 fails: $2"
   what=$1
@@ -59,18 +60,18 @@ fails_at() {
     clear_outputs
     timeout $LONGEST env CAG_FAIL_WHAT=$what LD_PRELOAD=./fail_memory.so CAG_FAIL_PLACE=$place "$CAG" "$@" < "$from" > out 2> err
     code=$?
-    if [ $code -eq 134 ]; then # what cannot go on without memory, and has no way to tell, aborts
+    if [ $code -eq 134 ]; then # without memory, the program may abort if it cannot report the error
       place=$((place + 1))
       continue
     fi
     check_end
     if [ $code -eq "$as_usual" ]; then
-      [ "$code" -ne 0 ] || [ -s err ] || [ -n "$varies" ] || cmp -s out expected || wrong "place $place: it writes something else"
+      [ "$code" -ne 0 ] || [ -s err ] || [ -n "$varies" ] || cmp -s out expected || wrong "place $place: the output differs"
       [ "$code" -ne 0 ] || [ -z "$made" ] || [ -e "$made" ] || wrong "place $place: $made is missing"
     else
       [ -s err ] || grep -q 'Cannot allocate\|Input/output' out || wrong "place $place: status $code without an error"
     fi
-    [ -z "$made" ] || [ ! -e "$made" ] || [ -n "$varies" ] || cmp -s "$made" "whole/$made" || wrong "place $place: $made is not whole"
+    [ -z "$made" ] || [ ! -e "$made" ] || [ -n "$varies" ] || cmp -s "$made" "whole/$made" || wrong "place $place: $made is incomplete"
     [ "$test_state" = good ] || {
       ran="CAG_FAIL_WHAT=$what CAG_FAIL_PLACE=$place $ran"
       break
@@ -102,7 +103,7 @@ if [ -e fail_memory.so ]; then
   exhausts 'an unknown option' run --defnie vase.cag
   exhausts 'a film that cannot be' render vase.cag -o a%d.png --frames 5..3
   exhausts 'tests' test --jobs 1 tested.cag long.cag --report report.xml
-  # What goes before an export is that of any run.
+  # The locations before an export are those of any run.
   for what in memory system; do
     CAG_FAIL_WHAT=$what LD_PRELOAD=./fail_memory.so CAG_FAIL_COUNT=before_$what "$CAG" run shapes.cag > out 2>&1
   done

@@ -226,7 +226,7 @@ polyline([[-3, 0], [0, 4], [3, 0]], closed: true)|0.1|16 126.86989764584402 126.
 polyline([[0, 0, 1], [6, 0, 1], [6 + 3*sqrt(3), 3, 1], [6 + 3*sqrt(3), 9, 1]])|0.3|18 30 60
 PATHS
 
-# The normal turns by at most 15 degrees along an edge (tessellate.h), and a triangle's own is among those of its corners.
+# The normal turns by at most 15 degrees along an edge (tessellate.h), and the normal of a triangle lies among those of its corners.
 it 'triangles lie along the surface, also of lathes, trimmed and thickened sheets, and set operations'
 script lean.cag 'param which = 0
 profile = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)

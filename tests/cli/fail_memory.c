@@ -1,7 +1,7 @@
-// Loaded before a program (LD_PRELOAD), this makes one of its allocations fail, or of its calls of
-// the system: the first of the place in the program that is number CAG_FAIL_PLACE, in the order in
-// which places first call. CAG_FAIL_WHAT says which calls are counted: "memory" or "system". Calls
-// of libraries go on. The number of places is written to the file CAG_FAIL_COUNT.
+// A library for LD_PRELOAD that makes one allocation or system call of a program fail: the first
+// call at the location in its code with the number CAG_FAIL_PLACE. Locations are numbered in the
+// order of their first calls. CAG_FAIL_WHAT selects the calls: "memory" or "system". Calls made by
+// libraries do not fail. The number of locations is written to the file CAG_FAIL_COUNT.
 
 #include <dirent.h>
 #include <dlfcn.h>
@@ -34,10 +34,10 @@ static int find_program(struct dl_phdr_info *info, size_t size, void *context) {
     low = info->dlpi_addr + p->p_vaddr;
     high = low + p->p_memsz;
   }
-  return 1; // the first is the program
+  return 1; // the first entry is the program
 }
 
-// Programs that this one starts have their memory.
+// Programs started by this one do not fail.
 __attribute__((constructor)) static void begin(void) {
   const char *place = getenv("CAG_FAIL_PLACE");
   unsetenv("LD_PRELOAD");
@@ -55,8 +55,8 @@ __attribute__((destructor)) static void end(void) {
   fclose(f);
 }
 
-// What is counted ends with the program's main function: destructors, such as those that write
-// counters of coverage, have all.
+// Counting stops at the end of the program's main function. Destructors, such as those that write
+// coverage counters, do not fail.
 static void stop(void) { ended = true; }
 static void begin_to_count(void) { atexit(stop); }
 
@@ -114,7 +114,7 @@ FILE *open_memstream(char **text, size_t *size) {
   return is_failing(CALLER, false) ? NULL : NEXT(open_memstream)(text, size);
 }
 
-// Of the system. What is closed is closed all the same.
+// System calls. A file is closed even if closing it fails.
 #define FAIL(value)                                                                                \
   if (is_failing(CALLER, true)) return value
 

@@ -189,7 +189,7 @@ static void try_job(size_t points, uint64_t seed, long single) {
   run_job(&empty, 0, &output, &start);
   free(output);
   const int status = run_job(j, 0, &expected, &allocations);
-  if (status == CAG_STATUS_LIMIT) complain("it fails with all its memory");
+  if (status == CAG_STATUS_LIMIT) complain("it fails although it has all its memory");
   if (single) try_point(j, single, status, expected);
   while (shared->point < points) {
     uint64_t state = seed + shared->job * 0x2545f4914f6cdd1du + shared->point++;

@@ -171,7 +171,8 @@ static void curves_on_a_torus_have_the_derivatives_of_its_formula(void **state) 
 }
 
 // A curve rises and falls by 1e-4 above a line. The nearest of its many nearly equal minima is
-// found, as samples 1e-10 apart confirm. Too few pairs are an error, never an uncertain distance.
+// found, compared with samples accurate to 1e-10. Too few pairs are an error, never an uncertain
+// distance.
 static void the_nearest_of_many_minima_is_found(void **state) {
   (void)state;
   enum { POINTS = 400, SAMPLES = 200000 };

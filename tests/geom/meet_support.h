@@ -1,4 +1,4 @@
-// What the tests of curves that meet surfaces share.
+// Shared by the tests of curves that meet surfaces.
 
 #ifndef CAG_TESTS_GEOM_MEET_SUPPORT_H
 #define CAG_TESTS_GEOM_MEET_SUPPORT_H
@@ -6,8 +6,8 @@
 #include "geom/surface/meet_curve.h"
 #include "tests/geom/support.h"
 
-// How often the curve meets the surface. All places are on both to `near`, in order, and have the
-// multiplicity, if it is not 0.
+// Counts the points at which the curve meets the surface. Asserts that every point is on both
+// within `near`, that the points are in order, and that they have the multiplicity, if it is not 0.
 static inline size_t meetings(const CagSurface *s, const CagCurve *c, double near,
                               int multiplicity) {
   CagSurfaceMeeting *m;

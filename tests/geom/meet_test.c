@@ -61,7 +61,7 @@ static int passes(CagVec3 a, CagVec3 b, CagVec3 o, CagVec3 e, CagVec3 f) {
   return left == 0 || left == 4;
 }
 
-// Crossings of both, which are released.
+// Counts the crossings of both, and releases them.
 static size_t crossings(CagSurface *s, CagCurve *c) {
   const size_t n = meetings(s, c, 1e-6, 1);
   cag_surface_release(s);

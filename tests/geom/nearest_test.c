@@ -218,8 +218,9 @@ static void nearest_points_of_a_torus_have_closed_form(void **state) {
   }
 }
 
-// From outside, tubes and offsets are as far away as their center line or surface less their
-// distance from it: tubes about circles and helices, offsets of spheres and tori, moved.
+// For a point outside, the distance to a tube or an offset is that to its center line or base
+// surface less its radius or offset: moved tubes about circles and helices, and moved offsets of
+// spheres and tori.
 static void tubes_and_offsets_have_closed_forms(void **state) {
   (void)state;
   state_of_random = 77;

@@ -1,4 +1,4 @@
-// Random numbers for comparisons that are the same in every run: set the seed first.
+// Reproducible random numbers for comparisons. Set the seed first.
 
 #ifndef CAG_TESTS_GEOM_RANDOM_H
 #define CAG_TESTS_GEOM_RANDOM_H

@@ -104,7 +104,7 @@ static void triangles_of_twisted_extrusions_lie_along_the_surface(void **state) 
   }
 }
 
-// A profile that crosses the axis: the surface is one point there, and its normal turns round.
+// A profile crosses the axis: the surface is a single point there, and its normal is reversed.
 static void triangles_of_revolutions_across_the_axis_lie_along_the_surface(void **state) {
   (void)state;
   enum { SHAPES = 16 };
