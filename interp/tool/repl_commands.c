@@ -88,10 +88,10 @@ static void fail_unknown(CagRepl *repl, const char *name, size_t several) {
         n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", n ? ", " : "", commands[i].name);
     cag_repl_fail(repl, CAG_STATUS_USAGE, "`%s` could be %s", name, list);
   } else if (nearest) {
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "there is no command `%s`; did you mean `%s`?", name,
+    cag_repl_fail(repl, CAG_STATUS_USAGE, "unknown command `%s`; did you mean `%s`?", name,
                   nearest);
   } else {
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "there is no command `%s`; :help lists them", name);
+    cag_repl_fail(repl, CAG_STATUS_USAGE, "unknown command `%s`; :help lists all commands", name);
   }
 }
 
@@ -107,8 +107,7 @@ void cag_repl_command(CagRepl *repl, char *line) {
     cag_repl_fail(repl, CAG_STATUS_USAGE, "%s wants something behind it: %s %s", c->name, c->name,
                   c->operand);
   else if (c->wants == NOTHING && *operand)
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "%s takes nothing behind it, found `%s`", c->name,
-                  operand);
+    cag_repl_fail(repl, CAG_STATUS_USAGE, "%s takes no argument, found `%s`", c->name, operand);
   else c->perform(repl, operand);
 }
 
@@ -267,7 +266,7 @@ static bool ask(CagRepl *repl, const char *command, const char *text, bool only_
   cag_repl_finish(repl, status);
   if (status != CAG_STATUS_OK) return false;
   if (answer.count == 0)
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "%s wants an expression, found a statement", command);
+    cag_repl_fail(repl, CAG_STATUS_USAGE, "%s expects an expression, found a statement", command);
   return answer.count > 0;
 }
 
@@ -325,7 +324,7 @@ static void load(CagRepl *repl, char *operand) {
 static void reload(CagRepl *repl, char *operand) {
   (void)operand;
   if (repl->loaded_count == 0) {
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "no script was loaded; :load FILE does");
+    cag_repl_fail(repl, CAG_STATUS_USAGE, "no script is loaded; use :load FILE");
     return;
   }
   cag_session_clear(repl->session);

@@ -117,7 +117,7 @@ try render film.cag -o whole.%02d.png --frames 0..3 --size 32x24 --quality draft
 same film.02.png whole.02.png
 
 # The script asserts the time of each frame of a repeating film of 4 frames: 0, 1/4, 1/2, 3/4.
-it '--loop makes time frame/frames in the films of a table'
+it '--loop sets time to frame/frames in the films of a table'
 script loops.cag 'assert time == frame / 4
 show sphere(10)'
 table loops.csv <<'END'

@@ -24,7 +24,7 @@ try check unused.cag
 status 0
 says 'warning: nothing uses a'
 
-it 'what stands behind a syntax error is checked, too'
+it 'statements after a syntax error are checked'
 script damaged.cag 'a = [1, 2
 b = a + hieght
 show sphere(-3), b'

@@ -181,7 +181,7 @@ it 'the examples, the cookbook and the library have the layout'
 try fmt --check "$root/examples" "$root/stdlib" "$root/docs/cookbook"
 status 0
 
-it '--diff is what patch makes the layout of, for any lines'
+it 'patch applies the output of --diff, for random scripts'
 if needs patch; then
   # Random scripts of 0 to 60 lines with a fixed seed, formatted or not. Some lack the final newline.
   for seed in 1 2 3 4 5 6 7 8 9 10 11 12; do

@@ -178,7 +178,7 @@ try run long.cag --max-memory 3M
 status 5
 says '--max-memory'
 
-it 'a limit below what the built-ins need'
+it 'a memory limit that is too small for the built-ins'
 for limit in 1 10K; do
   try eval --max-memory $limit 1+1
   status 5

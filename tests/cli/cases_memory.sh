@@ -85,7 +85,7 @@ exhausts() {
   fails_at system "$@"
 }
 
-it 'the library that lets calls fail is built'
+it 'the library that makes calls fail is built'
 if ldd "$CAG" | grep -q 'libasan'; then
   skip 'AddressSanitizer has an allocator of its own'
 elif needs cc; then
@@ -101,7 +101,7 @@ if [ -e fail_memory.so ]; then
   exhausts 'documentation' doc sphere
   exhausts 'documentation of a script' doc vase.cag
   exhausts 'an unknown option' run --defnie vase.cag
-  exhausts 'a film that cannot be' render vase.cag -o a%d.png --frames 5..3
+  exhausts 'an invalid range of frames' render vase.cag -o a%d.png --frames 5..3
   exhausts 'tests' test --jobs 1 tested.cag long.cag --report report.xml
   # The locations before an export are those of any run.
   for what in memory system; do

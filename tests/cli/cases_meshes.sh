@@ -227,7 +227,7 @@ polyline([[0, 0, 1], [6, 0, 1], [6 + 3*sqrt(3), 3, 1], [6 + 3*sqrt(3), 9, 1]])|0
 PATHS
 
 # The normal turns by at most 15 degrees along an edge (tessellate.h), and the normal of a triangle lies among those of its corners.
-it 'triangles lie along the surface, also of lathes, trimmed and thickened sheets, and set operations'
+it 'triangles follow the surface, also for surfaces of revolution, trimmed and thickened surfaces, and set operations'
 script lean.cag 'param which = 0
 profile = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)
 blade = loft([for k in 0..4: profile |> scale(1 - 0.1*k) |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])], caps: true)

@@ -219,7 +219,7 @@ fails_whole() {
   format=$1 why=$3
   printf '%s\n' "$2" > "fails_$format.cag"
   shift 3
-  it "an export that fails leaves no .$format file: $why"
+  it "a failed export leaves no .$format file: $why"
   mkdir -p "fails_$format"
   try export "fails_$format.cag" "$@" -o "fails_$format/new.$format"
   status 1

@@ -282,7 +282,7 @@ show translate(box([4000, 1, 8000]), if level then [-2000, 1000, -8000] else [0,
 show background("black")
 show camera(eye: [0, -1000, 0], target: origin, fov: 40deg, aperture: lens, focus: 1000)
 show point_light([0, 0, 100000], strength: 0)'
-it 'an aperture blurs as the thin lens formula says at every quality'
+it 'the blur of an aperture follows the thin lens formula at every quality'
 for quality in draft normal final; do
   for lens in 100 50; do
     try render edge.cag -o edge.png --size 400x200 --region 400x80+0+60 --quality $quality -D lens=$lens
@@ -292,7 +292,7 @@ for quality in draft normal final; do
   try render edge.cag -o edge.png --size 400x400 --region 80x400+160+0 --quality $quality -D level=true
   python3 "$here/png_blur.py" edge.png 100 1000 2000 40 0.05 level > blur || wrong "$quality: $(cat blur)"
 done
-it '--samples sets how finely a lens is sampled, not the amount of blur'
+it '--samples sets the number of lens samples, not the amount of blur'
 for samples in 1 2 5 10 20 40 200; do
   try render edge.cag -o edge.png --size 400x200 --region 400x80+0+60 --samples $samples
   python3 "$here/png_blur.py" edge.png 100 1000 2000 40 0.05 > blur || wrong "$samples: $(cat blur)"
@@ -306,7 +306,7 @@ done
 try compare flat_0.png flat_50.png --threshold 0.05
 status 0
 
-it 'a terminal shows the progress and the time that is left, unless the command is quiet'
+it 'a terminal shows the progress and the time left, unless the command is quiet'
 # Refraction takes seconds to render; the first estimate appears after one second.
 script slow.cag 'show [for i in 0..20: sphere(8) |> translate([(i % 5)*14, floor(i/5)*14, 0])] |> material({color: "white", transmission: 1, ior: 1.5})'
 python3 "$here/on_terminal.py" "$CAG" render slow.cag -o slow.png --size 240x180 --threads 1 > shown || wrong "$(cat shown)"

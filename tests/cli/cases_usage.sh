@@ -199,7 +199,7 @@ try run --diagnostics json
 status 2
 says_like '^{"severity":"error",.*"message":".*"help":".*"}$'
 
-it 'values of options that cannot be are refused, with what to write'
+it 'invalid values of options are rejected with a hint'
 printf 'print 1\n' > option.cag
 # refuses MESSAGE HELP ARGUMENT ...
 refuses() {
@@ -248,7 +248,7 @@ refuses '--frames sets `frame`' 'leave one of them out' render option.cag -o a%d
 refuses "expected A B, found only 'a.png'" 'cag compare A B' compare a.png
 refuses 'FILE is missing' 'cag export FILE' export
 
-it 'sizes and times may have their units'
+it 'sizes and times may have units'
 for size in 512M 512MB 512MiB 536870912 .5G; do
   try eval "--max-memory=$size" 1+1
   status 0

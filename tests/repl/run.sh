@@ -149,7 +149,7 @@ complains 'an error of names gives the nearest' 1 'did you mean `radius`?' 'radi
 raduis'
 complains 'an unknown command gives the nearest' 2 'did you mean `:help`?' ':hlep'
 complains 'an input cut off says what is open' 1 'never closed' '[1, 2'
-complains 'a command that is not there says so' 2 'there is no command `:view`' ':view'
+complains 'a command that is not there says so' 2 'unknown command `:view`' ':view'
 complains 'a command without its operand says what it wants' 2 ':load FILE' ':load'
 complains ':type of a statement wants an expression' 2 'wants an expression' ':type x = 1'
 complains 'a script that is missing has status 3' 3 'missing.cag' ':load missing.cag'
@@ -192,27 +192,27 @@ printf '%s\n' 'x = 3' ':edit' 'x' | VISUAL='sed -i s/3/8/' "$cag" repl 2>&1 | gr
 result ':edit takes back what the editor left' $?
 # --- Commands ---
 
-complains 'a beginning of several commands names them' 2 '`:s` could be :scene, :save' ':s'
-complains 'a command without operand takes none' 2 ':list takes nothing behind it, found `x`' ':list x   '
-complains 'a word that is like no command leads to the list' 2 'there is no command `:qqqqqq`; :help lists them' ':qqqqqq'
+complains 'an ambiguous command lists the candidates' 2 '`:s` could be :scene, :save' ':s'
+complains 'a command without operands rejects one' 2 ':list takes no argument, found `x`' ':list x   '
+complains 'a word unlike any command refers to the list' 2 'unknown command `:qqqqqq`; :help lists all commands' ':qqqqqq'
 complains ':doc gives the nearest built-in' 2 'unknown name `sphree`; did you mean `sphere`?' ':doc sphree'
 complains ':doc gives the nearest definition' 2 'did you mean `flange_width`?' 'flange_width = 3
 :doc flange_widht'
-complains ':doc of what is like nothing leads to the list' 2 ':doc lists the functions' ':doc qqqqqqqqqq'
-complains ':doc of a code that is no error leads to the list' 2 'unknown name `E9999`' ':doc E9999'
-complains ':reload wants a script' 2 'no script was loaded; :load FILE does' ':reload'
-complains ':clear forgets the scripts, too' 2 'no script was loaded' ':load part.cag
+complains ':doc of an unknown word refers to the list' 2 ':doc lists the functions' ':doc qqqqqqqqqq'
+complains ':doc of an unknown error code reports it' 2 'unknown name `E9999`' ':doc E9999'
+complains ':reload requires a loaded script' 2 'no script is loaded; use :load FILE' ':reload'
+complains ':clear also forgets the loaded script' 2 'no script is loaded' ':load part.cag
 :clear
 :reload'
-complains ':save says where it cannot write' 3 'cannot write missing/x.cag' 'x = 3
+complains ':save reports where it cannot write' 3 'cannot write missing/x.cag' 'x = 3
 :save missing/x.cag'
-complains ':export says where it cannot write' 3 'missing' 'show box(1)
+complains ':export reports where it cannot write' 3 'missing' 'show box(1)
 :export missing/x.stl'
-complains ':export names a format that there is not' 2 'there is no format `qqq`' 'show box(1)
+complains ':export rejects an unknown format' 2 'there is no format `qqq`' 'show box(1)
 :export x.qqq'
-complains ':time of a statement wants an expression' 2 ':time wants an expression' ':time x = 1'
+complains ':time rejects a statement' 2 ':time expects an expression' ':time x = 1'
 complains ':type of an error is the error' 1 'sin expects an angle' ':type sin(1)'
-complains 'a diagnostic tells the first failure by the status' 1 'there is no command' 'sin(1)
+complains 'the exit status is that of the first failure' 1 'unknown command' 'sin(1)
 :view'
 prints ':help of a command tells what it does' ':load FILE
   add the definitions of a script' ':help :load'
@@ -229,7 +229,7 @@ a = 1
 got=$(printf ':load ~/part.cag\nwidth\n:export ~/home.stl\n' | HOME="$work" "$cag" repl 2>&1)
 [ "$got" = "40 : number
 wrote $work/home.stl" ]
-result 'a path that begins with ~ is below the folder of the user' $? "$got"
+result 'a path that begins with ~ is in the home directory' $? "$got"
 prints 'a line that divides goes on' '4 : number' '8
   / 2'
 prints 'a comment ends the input before it' '8 : number
@@ -246,9 +246,9 @@ prints 'a block comment at the beginning of a line begins an input' '8 : number
 3 : number' '8
 /* three */ 3'
 got=$(printf ':view\nsin(1)\n' | "$cag" repl --diagnostics json 2>&1)
-printf '%s\n' "$got" | head -n 1 | grep -q '^{.*"message":"there is no command `:view`' &&
+printf '%s\n' "$got" | head -n 1 | grep -q '^{.*"message":"unknown command `:view`' &&
   printf '%s\n' "$got" | sed -n 2p | grep -q '^{.*"code":"E0301"'
-result 'errors of the program are JSON where errors of scripts are' $? "$got"
+result 'errors of the program are JSON if errors of scripts are' $? "$got"
 
 cat >all.cag <<'END'
 import std.robots: puma560
@@ -283,7 +283,7 @@ edits 'an editor that fails is named' 'error: the editor `false` failed; VISUAL 
 x'
 got=$(printf 'x = 3\n:edit\n' | TMPDIR="$work/missing" VISUAL=true "$cag" repl 2>&1)
 [ "${got#*cannot write "$work"/missing/cag-}" != "$got" ]
-result ':edit says where it cannot write' $? "$got"
+result ':edit reports where it cannot write' $? "$got"
 got=$(printf 'x = 3\n:edit\nx\n' | TMPDIR="$work" VISUAL='sed -i s/3/5/' "$cag" repl 2>&1)
 [ "$got" = '5 : number' ] && [ -z "$(find "$work" -name 'cag-*')" ]
 result ':edit leaves no file' $? "$got"
