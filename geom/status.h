@@ -45,8 +45,8 @@ void cag_note_memory(void);
 // check this even after CAG_OK, because an intermediate function may have treated the failure as a
 // negative answer.
 bool cag_memory_was_out(void);
-// Whether a call failed for a reason that another way cannot avoid: no memory is left, or the
-// caller wants an end. Whoever tries another way after a failure passes these on.
+// Tests whether a call failed for a reason that an alternative method cannot avoid: memory ran out
+// or the caller canceled. Code that tries an alternative after a failure must return these errors.
 static inline bool cag_is_final(CagStatus status) {
   return status == CAG_E_MEMORY || status == CAG_E_CALLBACK;
 }

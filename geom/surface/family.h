@@ -52,8 +52,8 @@ typedef struct CagConicNurbs {
 } CagConicNurbs;
 void cag_conic_nurbs(CagConicArc arc, double from, double to, CagConicNurbs *out);
 
-// The breaks of the surface that another kind is made of, within the range of that kind; kept with
-// it. Free `at`.
+// The breaks of the surface on which another surface is based, within the range of the latter,
+// which stores them. Free `at`.
 typedef struct CagKeptBreaks {
   double *at;
   size_t n;

@@ -376,7 +376,7 @@ static bool same_parameters(const CagSurface *s, const CagSurface *exact) {
   return true;
 }
 
-// c->exact stays NULL where there is none that serves.
+// c->exact stays NULL if there is no usable exact form.
 static CagStatus exact_form(CagDistanceCells *c, const CagSurface *s, bool own_parameters,
                             CagError *err) {
   CagSurfaceNurbsView is;

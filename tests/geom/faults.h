@@ -1,12 +1,12 @@
-// Faults on purpose: each operation is run again and again, and every time another of its
-// allocations fails, another call of the caller's functions fails, or another allocation sets the
-// flag that stops it. The operation must report the fault (memory that is out may only be noted,
-// cag_memory_was_out), or do without what it asked for, such as room for values that it would only
-// remember, and find the same. Work that was stopped may end as it likes. All must release the
-// memory that they took.
+// Fault injection. Each operation runs repeatedly, with a different fault each time: an allocation
+// fails, a function supplied by the caller fails, or an allocation sets the flag that stops the
+// operation. The operation must report the fault or do without the allocation (such as that of a
+// cache) and return the same result. Instead of an error, it may only record exhausted memory
+// (cag_memory_was_out). A stopped operation may end in any way. Every operation must release all
+// memory that it allocated.
 //
-// The Makefile links the tests that include this (memory_*_test) with --wrap, so that malloc,
-// calloc, realloc and free of the geometry core come through here.
+// The Makefile links the tests that include this header (memory_*_test) with --wrap, so that
+// malloc, calloc, realloc, and free of the geometry core call the functions below.
 
 #ifndef CAG_TESTS_GEOM_FAULTS_H
 #define CAG_TESTS_GEOM_FAULTS_H
@@ -27,17 +27,16 @@ typedef enum Fault { FAULT_NONE, FAULT_MEMORY, FAULT_CALLBACK, FAULT_STOP } Faul
 
 static struct {
   Fault kind;
-  size_t chances, at; // allocations or calls so far; the one that has the fault
+  size_t chances, at; // allocations or calls so far; index of the one with the fault
   long blocks;        // allocated and not freed
-  double result;      // what the operation found, by which two runs are compared
+  double result;      // result of the operation, for comparing two runs
   volatile int stop;
 } fault;
 
-// For operations: adds a number to what was found.
+// Operations call this to add a number to their result.
 static inline void fault_found(double x) { fault.result = 1.25 * fault.result + x; }
 
-// Whether this allocation or call is the one with the fault. A function that failed goes on
-// failing.
+// Tests whether this allocation or call has the fault. A function that has failed keeps failing.
 static bool fault_falls(Fault kind) {
   if (fault.kind != kind) return false;
   const size_t chance = ++fault.chances;
@@ -52,7 +51,7 @@ static bool fault_in_allocation(void) {
 void *__wrap_malloc(size_t size) {
   if (fault_in_allocation()) return NULL;
   void *p = __real_malloc(size);
-  if (p) memset(p, 0xa5, size); // what is read before it is written shows
+  if (p) memset(p, 0xa5, size); // makes reads of uninitialized memory visible
   fault.blocks += p != NULL;
   return p;
 }
@@ -73,13 +72,13 @@ void __wrap_free(void *p) {
   __real_free(p);
 }
 
-// For functions of the caller: fails when the fault falls on this call.
+// Functions supplied by the caller call this; it fails if the fault is at this call.
 static inline CagStatus fault_in_call(CagError *e) {
   if (!fault_falls(FAULT_CALLBACK)) return CAG_OK;
   return cag_fail(e, CAG_E_CALLBACK, "function-failed", "", -1, "the function failed");
 }
 
-// Runs the operation and releases what it gives. `given` is what it works on.
+// Runs the operation on `given` and releases its result.
 typedef CagStatus (*FaultyOperation)(const void *given, CagError *e);
 
 static inline CagStatus run_with_fault(FaultyOperation operation, const void *given, Fault kind,
@@ -89,7 +88,7 @@ static inline CagStatus run_with_fault(FaultyOperation operation, const void *gi
   fault.at = at;
   fault.stop = 0;
   fault.result = 0;
-  cag_memory_was_out(); // forgets
+  cag_memory_was_out(); // resets the record
   e->reason = "";
   CagStatus status = operation(given, e);
   fault.kind = FAULT_NONE;
@@ -105,8 +104,8 @@ static inline bool fault_is_reported(Fault kind, CagStatus status, const CagErro
   }
 }
 
-// How densely faults are tried: all of the first ones, then ever fewer, each a part of its number
-// after the one before.
+// Density of the faults: all of the first ones, then intervals that grow in proportion to the index
+// of the fault.
 typedef struct FaultSteps {
   size_t first, part;
 } FaultSteps;
@@ -116,7 +115,7 @@ static FaultSteps fault_steps;
 
 static int fault_problems;
 
-// Runs the operation with one fault after the other.
+// Runs the operation with each fault in turn.
 static inline void try_faults_of(Fault kind, const char *name, const char *kind_name,
                                  FaultyOperation operation, const void *given) {
   static const char *const WORD[] = {"", "allocation", "call", "stop at allocation"};

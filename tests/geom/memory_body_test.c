@@ -1,5 +1,5 @@
-// Regions, solids, meshes, fits of surfaces and robots when memory runs out and when work is
-// stopped: each is reported, and nothing leaks.
+// Tests regions, solids, meshes, surface fits, and robots with exhausted memory and with
+// interrupted work. Each fault is reported, and nothing leaks.
 
 #include "faults.h"
 #include "geom/curve/region.h"

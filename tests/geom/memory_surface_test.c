@@ -1,5 +1,5 @@
-// Surfaces of every kind when memory runs out, when a function of the caller fails, and when work
-// is stopped: each is reported, and nothing leaks.
+// Tests surfaces of every kind with exhausted memory, with failing functions of the caller, and
+// with interrupted work. Each fault is reported, and nothing leaks.
 
 #include <stdio.h>
 
@@ -303,7 +303,7 @@ MAKER(coons) {
 typedef struct Kind {
   const char *name;
   CagStatus (*make)(CagSurface **out, CagError *e);
-  bool quick; // questions that take long are asked of it
+  bool quick; // slow operations are tested with it
 } Kind;
 #define ROW(name)                                                                                  \
   { #name, name, false }
@@ -353,7 +353,7 @@ enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 static double along_u(const CagSurface *s, double f) { return s->u0 + f * (s->u1 - s->u0); }
 static double along_v(const CagSurface *s, double f) { return s->v0 + f * (s->v1 - s->v0); }
 
-// What is asked of one surface. Each question releases what it was given.
+// Operations on one surface. Each operation releases its result.
 #define QUESTION(name) static CagStatus name(const void *given, CagError *e)
 #define SURFACE const CagSurface *s = given
 #define FOUND(call, ...)                                                                           \
