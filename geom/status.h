@@ -41,9 +41,8 @@ CagStatus cag_fail(CagError *err, CagStatus status, const char *reason, const ch
 CagStatus cag_fail_memory(CagError *err);
 // Records that memory ran out, as cag_fail_memory does, where a function cannot return a status.
 void cag_note_memory(void);
-// Returns whether memory ran out on this thread since the last call. Callers of the geometry core
-// check this even after CAG_OK, because an intermediate function may have treated the failure as a
-// negative answer.
+// Returns whether memory ran out on this thread since the last call. Callers check this even after
+// CAG_OK, because an intermediate function may have treated the failure as a negative answer.
 bool cag_memory_was_out(void);
 // Tests whether a call failed for a reason that an alternative method cannot avoid: memory ran out
 // or the caller canceled. Code that tries an alternative after a failure must return these errors.

@@ -12,8 +12,7 @@ typedef struct CagArena {
   CagArenaBlock *first;
 } CagArena;
 
-// Returns zeroed memory, aligned for any type. If memory runs out, control returns to the guard
-// (lang/memory.h).
+// Returns zeroed, aligned memory. If memory runs out, abandons the work (lang/memory.h).
 void *cag_arena_alloc(CagArena *a, size_t size);
 char *cag_arena_copy(CagArena *a, const char *bytes, size_t length); // NUL-terminated copy
 void cag_arena_free(CagArena *a);

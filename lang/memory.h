@@ -1,10 +1,9 @@
 // Work that may run out of memory at any point.
 //
-// A parser or a printer allocates in a hundred places. Without a guard, each of them would have to
-// report failure to its callers. Such work runs in a guard instead: a failed allocation jumps out
-// of the work, and the guard reports the failure. The caller of the guard releases whatever is
-// reachable from its context; cleanups release the rest. Guards can be nested, and each thread has
-// its own.
+// A parser or a printer allocates at a hundred locations. Such work runs in a guard: a failed
+// allocation jumps out of the work, and the guard reports the failure. The caller of the guard
+// releases everything reachable from its context, and cleanups release the rest. Guards can be
+// nested, and each thread has its own.
 
 #ifndef CAG_LANG_MEMORY_H
 #define CAG_LANG_MEMORY_H

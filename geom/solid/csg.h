@@ -61,9 +61,8 @@ CagStatus cag_solid_quadric(const CagQuadric *form, CagSolid **out, CagError *er
 // of a mesh without triangles is empty.
 CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err);
 
-// Tests whether the surfaces are pieces of one quadric that bound a body together with flat faces:
-// either all pieces that a box or a range of z left, or patches that are cut perpendicular to the
-// axis.
+// Tests whether the surfaces are pieces of one quadric that bound a body with flat faces: all those
+// that a box or a range of z left, or patches cut perpendicular to the axis.
 bool cag_solid_has_quadric_body(CagSurface *const *pieces, size_t n);
 // Makes this body: the part within the box or range on the side of the quadric that contains its
 // axis. For a hyperbolic paraboloid, it is the side on which its original form is negative.

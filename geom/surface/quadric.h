@@ -85,9 +85,8 @@ typedef struct CagQuadricWithin {
 // false for another surface or a part of one.
 bool cag_surface_quadric_within(const CagSurface *s, CagQuadricWithin *out);
 
-// Finds the parameters (u, v) at which a world coordinate (axis 0 to 2) of a surface of kind
-// "quadric" has an extreme or a saddle inside the domain. Returns their number, which is 0 for
-// another kind.
+// Finds the extremes and saddles of a world coordinate (axis 0 to 2) inside the domain (u, v) of a
+// surface of kind "quadric". Returns their number, which is 0 for another kind.
 size_t cag_surface_quadric_extremes(const CagSurface *s, int axis, CagVec3 out[2]);
 
 // The parametric forms of real quadrics (reference 06a, table of parametric forms), each in units

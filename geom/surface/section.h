@@ -84,16 +84,14 @@ typedef struct CagCurveList {
 } CagCurveList;
 void cag_curve_list_free(CagCurveList *list);
 CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err); // takes c over
-// Replaces the curves [first, list->count) with the curves that result from joining them end to
-// end, where ends are closer than `same`. If more than two ends meet, those with the smallest turn
-// are joined.
+// Joins the curves [first, list->count) end to end, where ends are closer than `same`. If more than
+// two ends meet, those with the smallest turn are joined.
 CagStatus cag_curve_list_join(CagCurveList *list, size_t first, double same, CagError *err);
 
-// Adds sections with a plane to the list. The section of a surface includes the curves along which
-// the plane touches it, and the edges and creases in the plane. The section of a solid is the
-// outline of the part on the negative side of the plane, so that its curves are closed; a plane
-// that only touches the solid may give none. The tolerance applies to curves that are neither lines
-// nor conics; 0 means a millionth of the size.
+// Adds sections with a plane to the list. The section of a surface includes touching curves, edges,
+// and creases in the plane. The section of a solid is the outline of the part on the negative side
+// of the plane, so its curves are closed; a plane that only touches the solid may give none. The
+// tolerance is for curves that are neither lines nor conics; 0 means a millionth of the size.
 CagStatus cag_surface_section(const CagSurface *s, const CagPlane *plane, double tolerance,
                               CagCurveList *out, CagError *err);
 CagStatus cag_solid_section(const CagSolid *s, const CagPlane *plane, double tolerance,

@@ -12,9 +12,8 @@ CagStatus cag_surface_sweep(const CagCurve *section, const CagMotion *motion, Ca
 // A circle whose radius changes along the path.
 CagStatus cag_surface_tube_along(const CagCurve *path, const CagAlong *radius, CagSurface **out,
                                  CagError *err);
-// Gets the center line of a tube with a constant radius and no corners. Every point of the tube is
-// at this distance from the point of the line with the same parameter v. Returns false for another
-// surface.
+// Gets the center line of a tube of constant radius without corners. A point of the tube has this
+// distance from the point of the line with the same v. Returns false for another surface.
 bool cag_surface_tube_view(const CagSurface *s, const CagCurve **center, double *radius);
 // Section and motion of a sweep or tube; false: another kind.
 bool cag_surface_swept_view(const CagSurface *s, const CagCurve **section,

@@ -308,8 +308,7 @@ const CagSource *cag_read_source(CagVm *vm, const char *name, const char *text, 
 // Parses a script that is not to be run; its tree lives as long as the machine. NULL: it has
 // errors.
 const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *text, size_t length);
-// Returns the result of realpath, malloc'd. NULL means that the file does not exist or that memory
-// ran out; the machine records the latter.
+// Returns a malloc'd realpath, or NULL if there is no file or memory ran out (which is recorded).
 char *cag_vm_real_path(CagVm *vm, const char *path);
 // Whether a file may be read: below the root or the module path. Gives the real path (malloc'd) or
 // NULL with the reason in message.
@@ -325,8 +324,7 @@ typedef struct CagVmOptions {
   FILE *out, *trace;
   const volatile int *interrupt; // NULL: none
 } CagVmOptions;
-// Returns NULL if memory ran out, or if max_memory is less than the built-ins need; `errors` has
-// the reason.
+// Returns NULL, with an error, if memory ran out or max_memory is too small for the built-ins.
 CagVm *cag_vm_new(const CagVmOptions *options, CagDiagnostics *errors);
 void cag_vm_free(CagVm *vm);
 void cag_module_free(CagModuleUnit *m);

@@ -193,8 +193,7 @@ CagBounds cag_scene_framed(const CagScene *s);
 double cag_scene_radius(const CagBounds *b);
 // Camera to world: columns x (right), y (down), z (view), origin.
 CagTransform cag_camera_frame(const CagCamera *c);
-// Tests whether the camera has depth of field. Orthographic cameras do not, because all their rays
-// are parallel.
+// Tests whether the camera has depth of field. The rays of orthographic cameras are parallel.
 bool cag_camera_has_lens(const CagCamera *c);
 CagMaterial cag_material_default(void);
 
