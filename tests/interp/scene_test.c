@@ -85,14 +85,35 @@ static double ball_volume(void) {
   return v;
 }
 
-// There is a ball at each corner. The runs stop 0.03 and 0.05 of the radius before it.
-static void corners_have_balls(void **state) {
+// What a corner of 90 degrees adds to two tubes of radius 1 that end at it. A wedge in three steps
+// of 30 degrees fills the outer side: each step adds sin(30 degrees) / 2 times the integral of the
+// squared width of half a section. The bisecting plane cuts both tubes on the inner side: each
+// loses the first moment of that half times tan(45 degrees).
+static double corner_volume(void) {
+  double moment = 0, squares = 0;
+  for (int k = -3; k < 3; k++) {
+    const double a = M_PI * k / 6, b = M_PI * (k + 1) / 6;
+    const double x0 = cos(a), y0 = sin(a), x1 = cos(b), y1 = sin(b);
+    moment += (x0 * y1 - x1 * y0) / 2 * (x0 + x1) / 3;
+    squares += (y1 - y0) * (x0 * x0 + x0 * x1 + x1 * x1) / 3;
+  }
+  return 3 * 0.5 / 2 * squares - 2 * moment;
+}
+
+static void corners_are_filled_by_wedges(void **state) {
   (void)state;
   const CagVec3 square[] = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {0, 100, 0}};
   const CagVec3 open[] = {{0, 0, 0}, {100, 0, 0}, {100, 100, 0}};
-  const double ball = ball_volume();
-  is_volume(polyline(square, 4, true), 1, 0, 4 * (100 - 0.08) * SECTION + 4 * ball, 1e-6);
-  is_volume(polyline(open, 3, false), 1, 0, (200 - 0.08) * SECTION + ball, 1e-6);
+  const double corner = corner_volume();
+  is_volume(polyline(square, 4, true), 1, 0, 400 * SECTION + 4 * corner, 1e-6);
+  is_volume(polyline(open, 3, false), 1, 0, 200 * SECTION + corner, 1e-6);
+}
+
+// The tubes end 0.03 and 0.05 of the radius before the center of the ball.
+static void a_path_that_turns_back_has_a_ball(void **state) {
+  (void)state;
+  const CagVec3 p[] = {{0, 0, 0}, {100, 0, 0}, {50, 0, 0}};
+  is_volume(polyline(p, 3, false), 1, 0, (150 - 0.08) * SECTION + ball_volume(), 1e-6);
 }
 
 static void tubes_keep_the_limit_of_triangles(void **state) {
@@ -200,7 +221,8 @@ int main(void) {
       cmocka_unit_test(a_line_is_a_prism_along_it),
       cmocka_unit_test(dashes_fill_a_line_from_end_to_end),
       cmocka_unit_test(dashes_of_a_closed_curve_are_as_many_as_gaps),
-      cmocka_unit_test(corners_have_balls),
+      cmocka_unit_test(corners_are_filled_by_wedges),
+      cmocka_unit_test(a_path_that_turns_back_has_a_ball),
       cmocka_unit_test(tubes_keep_the_limit_of_triangles),
       cmocka_unit_test(colors_are_read_in_any_case),
       cmocka_unit_test(meshes_without_finite_corners_are_refused),
