@@ -23,19 +23,16 @@ static CagError err;
   do {                                                                                             \
     if ((call) != CAG_OK) fail_msg("%s: %s", #call, err.message);                                  \
   } while (0)
-#define FAILS(call, why)                                                                           \
+// Fails about one of the elements number `low` to `high`, about element `at`, or about no element.
+#define FAILS_AMONG(call, why, low, high)                                                          \
   do {                                                                                             \
     assert_int_not_equal((call), CAG_OK);                                                          \
     assert_string_equal(err.reason, why);                                                          \
-  } while (0)
-// Fails about one of the elements number `low` to `high`, or about element `at`.
-#define FAILS_AMONG(call, why, low, high)                                                          \
-  do {                                                                                             \
-    FAILS(call, why);                                                                              \
     if (err.index < (low) || err.index > (high))                                                   \
       fail_msg("%s: element %ld, not in %d..%d", #call, err.index, (int)(low), (int)(high));       \
   } while (0)
 #define FAILS_AT(call, why, at) FAILS_AMONG(call, why, at, at)
+#define FAILS(call, why) FAILS_AT(call, why, -1)
 #define NEAR(a, b, tolerance)                                                                      \
   do {                                                                                             \
     double near_a = (a), near_b = (b);                                                             \
