@@ -44,7 +44,7 @@ says_like '[Ff]older\|directory'
 it 'a file that may not be read'
 script locked.cag 'print 1'
 chmod 000 locked.cag
-if needs_no_root; then fails locked.cag 3 'locked.cag'; fi
+if needs_permissions; then fails locked.cag 3 'locked.cag'; fi
 chmod 600 locked.cag
 
 it 'ten megabytes on one line run'

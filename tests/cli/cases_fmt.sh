@@ -124,7 +124,7 @@ same target.cag neat.expected
 it 'what is write-protected is told'
 mkdir -p kept
 cp loose.cag kept/a.cag
-if needs_no_root; then
+if needs_permissions; then
   chmod 444 kept/a.cag
   try fmt kept/a.cag
   status 3

@@ -82,7 +82,7 @@ status 3
 it 'an output that is write-protected'
 printf earlier > kept.stl
 chmod 400 kept.stl
-if needs_no_root; then
+if needs_permissions; then
   try export ball.cag -o kept.stl
   status 3
   holds kept.stl earlier
