@@ -143,6 +143,20 @@ static void add_box(Text *t, const CagSolid *s, const double size[3]) {
   if (s->centered) add(t, ", centered");
 }
 
+// A half space has no sizes: its plane tells where it is, wherever it was moved.
+static void add_half_space(Text *t, const CagSolid *s) {
+  CagQuadric form;
+  add(t, "half space");
+  if (!cag_solid_form(s, &form)) return;
+  const CagVec3 row = cag_vec3(form.c[6], form.c[7], form.c[8]);
+  const double length = cag_norm(row), offset = form.c[9] / length;
+  const CagVec3 normal = cag_scaled(row, 1 / length);
+  add(t, " behind the plane through ");
+  add_vector(t, cag_scaled(normal, -offset));
+  add(t, ", normal ");
+  add_vector(t, normal);
+}
+
 static void add_form(Text *t, const CagSolid *s, const double scale[3]) {
   // A cylinder's height is along z, its radii are across.
   const bool upright = s->kind == CAG_SOLID_CYLINDER;
@@ -166,7 +180,7 @@ static void add_form(Text *t, const CagSolid *s, const double scale[3]) {
     return;
   case CAG_SOLID_TUBE: add_number(t, "tube, radius ", size[0]); return;
   case CAG_SOLID_MESH: add(t, "polyhedron, %zu triangles", s->core->mesh->triangle_count); return;
-  case CAG_SOLID_HALF_SPACE:
+  case CAG_SOLID_HALF_SPACE: add_half_space(t, s); return;
   case CAG_SOLID_QUADRIC: add(t, "%s", cag_solid_kind_name(s->kind)); return;
   case CAG_SOLID_UNION:
   case CAG_SOLID_DIFFERENCE:
@@ -231,7 +245,7 @@ static void describe(const CagSolid *s, bool placed, char *buffer, size_t size) 
   const Placed p = take_apart(s);
   bool sized = scales_sizes(s, &p);
   add_form(&t, s, sized ? p.scale : as_made);
-  if (placed) add_placement(&t, s, &p, sized);
+  if (placed && s->kind != CAG_SOLID_HALF_SPACE) add_placement(&t, s, &p, sized);
 }
 
 void cag_solid_describe(const CagSolid *s, char *buffer, size_t size) {

@@ -166,7 +166,9 @@ leg = cylinder(9, 1)
 show lid |> color("red")
 show [translate(leg, [30, 0, 0]), scale(lid, 2)]
 show around(translate(leg, [50, 0, 0]), 2)
-show lid |> translate([0, 0, 40]) |> named("top")'
+show lid |> translate([0, 0, 40]) |> named("top")
+cut = lid - leg
+show cut |> translate([0, 0, 90]), lid - leg, lid | leg, extrude(circle(3), 2), lid & leg'
 try export leads.cag -o leads.3mf
 status 0
 python3 - leads.3mf > found 2> err << 'E2' || wrong 'the file is not read'
@@ -174,7 +176,7 @@ import re, sys, zipfile
 model = zipfile.ZipFile(sys.argv[1]).read("3D/3dmodel.model").decode()
 print(*re.findall('<object [^>]*name="([^"]*)"', model))
 E2
-[ "$(cat found)" = 'lid leg lid.2 leg.2 leg.3 top' ] || wrong "the names are $(cat found)"
+[ "$(cat found)" = 'lid leg lid.2 leg.2 leg.3 top cut difference union extrusion intersection' ] || wrong "the names are $(cat found)"
 
 it 'open surfaces are named where a file is for printing'
 script sheets.cag 'show revolve(polyline([[0, 0], [10, 0], [10, 5]])) |> named("cup")
