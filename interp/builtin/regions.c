@@ -63,7 +63,22 @@ static bool bounded_by(CagCall *call, CagCurve **loops, size_t outer, size_t hol
   return true;
 }
 
-bool cag_curves_region(CagCall *call, CagValue *result) {
+// What no curve bounds has no points, so that there is nothing to take holes out of.
+static bool bounded_by_none(CagCall *call, CagValue *result) {
+  CagList *holes = NULL;
+  CagRegion *region = NULL;
+  CagError err;
+  if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
+  const CagStatus status = holes && holes->length
+                               ? cag_fail(&err, CAG_E_ARGUMENT, "hole-outside", "holes", 0,
+                                          "the outline is empty: holes[0] does not lie within it")
+                               : cag_region_empty(&region, &err);
+  return give(call, status, &err, &region, result);
+}
+
+static bool is_empty_list(CagValue v) { return v.type == CAG_LIST && CAG_AS_LIST(v)->length == 0; }
+
+static bool bounded_by_some(CagCall *call, CagValue *result) {
   CagList *holes = NULL;
   if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
   const CagList *several = list_of_curves(call, call->values[0]);
@@ -84,9 +99,14 @@ bool cag_curves_region(CagCall *call, CagValue *result) {
   return ok;
 }
 
+bool cag_curves_region(CagCall *call, CagValue *result) {
+  return is_empty_list(call->values[0]) ? bounded_by_none(call, result)
+                                        : bounded_by_some(call, result);
+}
+
 bool cag_curves_polygon(CagCall *call, CagValue *result) {
   if (call->values[0].type != CAG_LIST) return cag_fail_type(call, 0, "a list of points");
-  return cag_curves_region(call, result);
+  return bounded_by_some(call, result);
 }
 
 bool cag_curves_rectangle(CagCall *call, CagValue *result) {
