@@ -57,3 +57,8 @@ const char *cag_number_text(double x, char *buffer) {
   }
   return buffer;
 }
+
+const char *cag_article(const char *word) {
+  const bool vowel = *word && strchr("aeiouAEIOU", *word) && strncmp(word, "uni", 3) != 0;
+  return vowel ? "an" : "a";
+}

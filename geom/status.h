@@ -55,5 +55,7 @@ bool cag_is_empty_shape(const CagError *err);
 // Shortest text of a double that reads back the same, for messages: buffer of at least 32 bytes;
 // gives buffer.
 const char *cag_number_text(double x, char *buffer);
+// The article of a word by its first letter: "an" offset, "a" line, "a" union.
+const char *cag_article(const char *word);
 
 #endif

@@ -95,9 +95,10 @@ CagStatus cag_knots_check(const double *knots, size_t n, int p, CagError *err) {
     size_t most = end ? (size_t)p + 1 : (size_t)p;
     if (run > most)
       return cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", "knots", (long)i,
-                      "the knot %s occurs more than %zu times: an %s knot of degree %d may be "
+                      "the knot %s occurs more than %zu times: %s %s knot of degree %d may be "
                       "repeated %zu times, more would tear the curve",
-                      cag_number_text(knots[i], a), most, end ? "end" : "inner", p, most);
+                      cag_number_text(knots[i], a), most, cag_article(end ? "end" : "inner"),
+                      end ? "end" : "inner", p, most);
   }
   return CAG_OK;
 }

@@ -105,8 +105,8 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
   const CagSurface *s = c->surface;
   if (order > MOST_ORDER)
     return cag_fail(err, CAG_E_UNSUPPORTED, "derivative-order", "order", -1,
-                    "a curve on a %s surface has derivatives up to order %d, not %d", s->kind->name,
-                    MOST_ORDER, order);
+                    "a curve on %s %s surface has derivatives up to order %d, not %d",
+                    cag_article(s->kind->name), s->kind->name, MOST_ORDER, order);
   CagVec3 d[MOST_ORDER + 1], partials[(MOST_ORDER + 1) * (MOST_ORDER + 1)];
   // The first derivatives tell the sides even where only a point is asked for.
   const int known = order > 1 ? order : 1;
@@ -323,7 +323,8 @@ static CagBounds hull(const CagCurve *curve, double a, double b) {
 
 static void describe(const CagCurve *curve, char *buffer, size_t size) {
   const OnSurface *c = (const OnSurface *)curve;
-  snprintf(buffer, size, "a %s in a %s surface%s", c->plane->kind->name, c->surface->kind->name,
+  snprintf(buffer, size, "%s %s in %s %s surface%s", cag_article(c->plane->kind->name),
+           c->plane->kind->name, cag_article(c->surface->kind->name), c->surface->kind->name,
            c->mapped ? ", moved" : "");
 }
 

@@ -51,9 +51,11 @@ static void derived_describe(const CagSurface *s, char *buffer, size_t size) {
   const Derived *d = (const Derived *)s;
   char text[32];
   if (s->kind == &offset_kind)
-    snprintf(buffer, size, "of a %s surface by %s", d->inner->kind->name,
-             cag_number_text(d->distance, text));
-  else snprintf(buffer, size, "of a %s surface", d->inner->kind->name);
+    snprintf(buffer, size, "of %s %s surface by %s", cag_article(d->inner->kind->name),
+             d->inner->kind->name, cag_number_text(d->distance, text));
+  else
+    snprintf(buffer, size, "of %s %s surface", cag_article(d->inner->kind->name),
+             d->inner->kind->name);
 }
 
 static size_t derived_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
@@ -104,8 +106,8 @@ static CagStatus part_cut(const CagSurface *s, const CagSurface *exact, int dire
   *out = fabs(found[0] - at) <= rounding ? at : found[0];
   if (fabs(found[0] - found[1]) <= rounding) return CAG_OK;
   return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,
-                  "a part of a %s surface has no exact NURBS form; approximate it to a tolerance",
-                  inner->kind->name);
+                  "a part of %s %s surface has no exact NURBS form; approximate it to a tolerance",
+                  cag_article(inner->kind->name), inner->kind->name);
 }
 
 static CagStatus part_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {

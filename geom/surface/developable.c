@@ -263,7 +263,8 @@ static size_t developable_breaks(const CagSurface *s, int direction, double *out
 
 static void developable_describe(const CagSurface *s, char *buffer, size_t size) {
   const Developable *w = (const Developable *)s;
-  snprintf(buffer, size, "between a %s and a %s", w->a->kind->name, w->b->kind->name);
+  snprintf(buffer, size, "between %s %s and %s %s", cag_article(w->a->kind->name), w->a->kind->name,
+           cag_article(w->b->kind->name), w->b->kind->name);
 }
 
 static void developable_destroy(CagSurface *s) {

@@ -142,9 +142,9 @@ static size_t extrusion_breaks(const CagSurface *s, int direction, double *out, 
 static void extrusion_describe(const CagSurface *s, char *buffer, size_t size) {
   const Extrusion *e = (const Extrusion *)s;
   char x[32], y[32], z[32], a[32];
-  int n = snprintf(buffer, size, "of a %s along [%s, %s, %s]", e->section->kind->name,
-                   cag_number_text(e->along.x, x), cag_number_text(e->along.y, y),
-                   cag_number_text(e->along.z, z));
+  int n = snprintf(buffer, size, "of %s %s along [%s, %s, %s]", cag_article(e->section->kind->name),
+                   e->section->kind->name, cag_number_text(e->along.x, x),
+                   cag_number_text(e->along.y, y), cag_number_text(e->along.z, z));
   if (e->twist != 0 && n > 0 && (size_t)n < size)
     n += snprintf(buffer + n, size - (size_t)n, ", twist %sdeg",
                   cag_number_text(e->twist * (180 / M_PI), a));

@@ -35,8 +35,9 @@ static CagStatus isocurve_eval(const CagCurve *curve, double t, int order, CagSi
   const Isocurve *c = (const Isocurve *)curve;
   if (order > CAG_MAX_PARTIAL)
     return cag_fail(err, CAG_E_UNSUPPORTED, "derivative-order", "order", -1,
-                    "an isocurve of a %s surface has derivatives up to order %d, not %d",
-                    c->surface->kind->name, CAG_MAX_PARTIAL, order);
+                    "an isocurve of %s %s surface has derivatives up to order %d, not %d",
+                    cag_article(c->surface->kind->name), c->surface->kind->name, CAG_MAX_PARTIAL,
+                    order);
   CagVec3 d[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)];
   double w = running(c, t);
   if (c->factor < 0) side = side == CAG_SIDE_LEFT ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT;
@@ -145,8 +146,9 @@ static void isocurve_describe(const CagCurve *curve, char *buffer, size_t size) 
   char text[32];
   // Degrees to ten places: 30deg is no double of radians.
   double shown = angular ? round(c->at * 180 / M_PI * 1e10) / 1e10 : c->at;
-  snprintf(buffer, size, "of a %s surface at %c = %s%s", c->surface->kind->name,
-           c->direction == 0 ? 'u' : 'v', cag_number_text(shown, text), angular ? "deg" : "");
+  snprintf(buffer, size, "of %s %s surface at %c = %s%s", cag_article(c->surface->kind->name),
+           c->surface->kind->name, c->direction == 0 ? 'u' : 'v', cag_number_text(shown, text),
+           angular ? "deg" : "");
 }
 
 static void isocurve_destroy(CagCurve *c) { cag_surface_release(((Isocurve *)c)->surface); }
@@ -194,9 +196,9 @@ static CagStatus isocurve_to_nurbs(const CagCurve *curve, CagCurve **out, CagErr
   }
   if (!status) cag_curve_release(made);
   return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "curve", -1,
-                  "an isocurve of a %s surface has no exact NURBS form; approximate it to a "
+                  "an isocurve of %s %s surface has no exact NURBS form; approximate it to a "
                   "tolerance",
-                  c->surface->kind->name);
+                  cag_article(c->surface->kind->name), c->surface->kind->name);
 }
 
 static const CagCurveKind isocurve_kind = {

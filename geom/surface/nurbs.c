@@ -385,7 +385,8 @@ CagStatus cag_surface_nurbs_swapped(const CagSurface *s, CagSurface **out, CagEr
   const Nurbs *b = as_nurbs(s);
   if (!b)
     return cag_fail(err, CAG_E_UNSUPPORTED, "not-nurbs", "surface", -1,
-                    "the surface is a %s: convert it to a NURBS first", s->kind->name);
+                    "the surface is %s %s: convert it to a NURBS first", cag_article(s->kind->name),
+                    s->kind->name);
   size_t nu = b->u.count, nv = b->v.count;
   double *h = malloc(4 * nu * nv * sizeof *h);
   if (!h) return cag_fail_memory(err);

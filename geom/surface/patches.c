@@ -153,8 +153,11 @@ static size_t coons_breaks(const CagSurface *s, int direction, double *out, size
 
 static void coons_describe(const CagSurface *s, char *buffer, size_t size) {
   const Coons *c = (const Coons *)s;
-  snprintf(buffer, size, "between a %s, a %s, a %s and a %s", c->side[0]->kind->name,
-           c->side[1]->kind->name, c->side[2]->kind->name, c->side[3]->kind->name);
+  snprintf(buffer, size, "between %s %s, %s %s, %s %s and %s %s",
+           cag_article(c->side[0]->kind->name), c->side[0]->kind->name,
+           cag_article(c->side[1]->kind->name), c->side[1]->kind->name,
+           cag_article(c->side[2]->kind->name), c->side[2]->kind->name,
+           cag_article(c->side[3]->kind->name), c->side[3]->kind->name);
 }
 
 static void coons_destroy(CagSurface *s) {

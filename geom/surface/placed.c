@@ -106,8 +106,8 @@ static void placed_describe(const CagSurface *s, char *buffer, size_t size) {
   const Placed *p = (const Placed *)s;
   char inner[160] = "";
   if (p->inner->kind->describe) p->inner->kind->describe(p->inner, inner, sizeof inner);
-  snprintf(buffer, size, "of a %s surface%s%s%s", p->inner->kind->name, *inner ? ", " : "", inner,
-           p->flip ? ", flipped" : "");
+  snprintf(buffer, size, "of %s %s surface%s%s%s", cag_article(p->inner->kind->name),
+           p->inner->kind->name, *inner ? ", " : "", inner, p->flip ? ", flipped" : "");
 }
 
 static void placed_destroy(CagSurface *s) { cag_surface_release(((Placed *)s)->inner); }

@@ -243,8 +243,8 @@ static CagStatus find_all_meets(Revolution *r, CagError *err) {
 static void revolution_describe(const CagSurface *s, char *buffer, size_t size) {
   const Revolution *r = (const Revolution *)s;
   char x[32], y[32], z[32];
-  snprintf(buffer, size, "of a %s about [%s, %s, %s]", r->profile->kind->name,
-           cag_number_text(r->axis.x, x), cag_number_text(r->axis.y, y),
+  snprintf(buffer, size, "of %s %s about [%s, %s, %s]", cag_article(r->profile->kind->name),
+           r->profile->kind->name, cag_number_text(r->axis.x, x), cag_number_text(r->axis.y, y),
            cag_number_text(r->axis.z, z));
 }
 

@@ -147,7 +147,8 @@ static size_t ruled_breaks(const CagSurface *s, int direction, double *out, size
 
 static void ruled_describe(const CagSurface *s, char *buffer, size_t size) {
   const Pair *p = (const Pair *)s;
-  snprintf(buffer, size, "between a %s and a %s", p->b->kind->name, p->a->kind->name);
+  snprintf(buffer, size, "between %s %s and %s %s", cag_article(p->b->kind->name), p->b->kind->name,
+           cag_article(p->a->kind->name), p->a->kind->name);
 }
 
 static void pair_destroy(CagSurface *s) {
@@ -326,7 +327,8 @@ static size_t translational_breaks(const CagSurface *s, int direction, double *o
 
 static void translational_describe(const CagSurface *s, char *buffer, size_t size) {
   const Pair *p = (const Pair *)s;
-  snprintf(buffer, size, "of a %s along a %s", p->a->kind->name, p->b->kind->name);
+  snprintf(buffer, size, "of %s %s along %s %s", cag_article(p->a->kind->name), p->a->kind->name,
+           cag_article(p->b->kind->name), p->b->kind->name);
 }
 
 CagStatus cag_surface_translational(const CagCurve *a, const CagCurve *b, CagSurface **out,

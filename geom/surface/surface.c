@@ -331,8 +331,8 @@ bool cag_surface_is_closed(const CagSurface *s) {
 CagStatus cag_surface_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
   if (s->kind->to_nurbs) return s->kind->to_nurbs(s, out, err);
   return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,
-                  "a %s surface has no exact NURBS form; approximate it to a tolerance",
-                  s->kind->name);
+                  "%s %s surface has no exact NURBS form; approximate it to a tolerance",
+                  cag_article(s->kind->name), s->kind->name);
 }
 
 CagStatus cag_surface_transform_placed(const CagSurface *s, const CagTransform *t, CagSurface **out,

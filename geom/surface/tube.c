@@ -77,10 +77,12 @@ static void sweep_describe(const CagSurface *surface, char *buffer, size_t size)
   static const char *const orients[] = {"", ", Frenet frame", ", fixed", ", upright"};
   const CagCurve *path = cag_motion_path(s->motion);
   if (!path) {
-    snprintf(buffer, size, "of a %s by transforms", s->section->kind->name);
+    snprintf(buffer, size, "of %s %s by transforms", cag_article(s->section->kind->name),
+             s->section->kind->name);
     return;
   }
-  snprintf(buffer, size, "of a %s along a %s%s", s->section->kind->name, path->kind->name,
+  snprintf(buffer, size, "of %s %s along %s %s%s", cag_article(s->section->kind->name),
+           s->section->kind->name, cag_article(path->kind->name), path->kind->name,
            orients[cag_motion_how(s->motion)->orient]);
 }
 
@@ -92,8 +94,11 @@ static void tube_describe(const CagSurface *surface, char *buffer, size_t size) 
   char text[32];
   cag_curve_arc_view(s->section, &a, &b, &frame);
   if (cag_motion_is_plain(s->motion))
-    snprintf(buffer, size, "along a %s, radius %s", path->kind->name, cag_number_text(a, text));
-  else snprintf(buffer, size, "along a %s, radius changing", path->kind->name);
+    snprintf(buffer, size, "along %s %s, radius %s", cag_article(path->kind->name),
+             path->kind->name, cag_number_text(a, text));
+  else
+    snprintf(buffer, size, "along %s %s, radius changing", cag_article(path->kind->name),
+             path->kind->name);
 }
 
 static void sweep_destroy(CagSurface *surface) {
@@ -220,9 +225,9 @@ static CagStatus sweep_to_nurbs(const CagSurface *surface, CagSurface **out, Cag
       return round_to_nurbs(s, path, &circle, out, err);
   }
   return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "path", -1,
-                  "a %s has an exact NURBS form only without twist along straight pieces, "
+                  "%s %s has an exact NURBS form only without twist along straight pieces, "
                   "unscaled along an arc, or fixed; approximate it to a tolerance",
-                  surface->kind->name);
+                  cag_article(surface->kind->name), surface->kind->name);
 }
 
 // --- Construction ---

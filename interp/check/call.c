@@ -156,8 +156,8 @@ static const char *expected_text(const CagSignature *s, const Misfit *m, char *b
   const CagDocParameter *said =
       m->parameter < s->count ? cag_doc_parameter(s->name, s->parameters[m->parameter]) : NULL;
   if (count <= 5 || !said) return cag_types_text(taken, buffer, size);
-  snprintf(buffer, size, "%s %.*s", strchr("aeiou", said->type[0]) ? "an" : "a",
-           (int)strcspn(said->type, ","), said->type);
+  snprintf(buffer, size, "%s %.*s", cag_article(said->type), (int)strcspn(said->type, ","),
+           said->type);
   return buffer;
 }
 

@@ -509,7 +509,8 @@ static bool fail_index(CagVm *vm, double at, size_t n, const char *what) {
   cag_number_text(at, text);
   if (at != rint(at))
     return cag_vm_fail(vm, CAG_ERR_index, "an index is a whole number, found %s", text);
-  cag_vm_fail(vm, CAG_ERR_index, "index %s lies outside of a %s of %zu", text, what, n);
+  cag_vm_fail(vm, CAG_ERR_index, "index %s lies outside of %s %s of %zu", text, cag_article(what),
+              what, n);
   if (n) cag_fail_help(vm, "0 to %zu, or -%zu to -1", n - 1, n);
   return false;
 }

@@ -272,8 +272,9 @@ static void read_limits(Reader *r, const xmlNode *n, CagUrdfEdge *e) {
   bool slides = e->kind == CAG_URDF_PRISMATIC;
   double unit = slides ? MILLIMETRES : 1;
   if (!l && e->kind != CAG_URDF_CONTINUOUS)
-    fail_at(r, syntax, e->line, "the joint \"%.60s\" lacks its <limit>, which a %s joint has",
-            e->name, slides ? "prismatic" : "revolute");
+    fail_at(r, syntax, e->line, "the joint \"%.60s\" lacks its <limit>, which %s %s joint has",
+            e->name, cag_article(slides ? "prismatic" : "revolute"),
+            slides ? "prismatic" : "revolute");
   numbers(r, l, "lower", &e->low, 1);
   numbers(r, l, "upper", &e->high, 1);
   numbers(r, l, "velocity", &e->speed, 1);
