@@ -551,7 +551,7 @@ static bool write_json_transform(CagCall *call, CagString *s, const CagTransform
 }
 
 static bool write_json(CagCall *call, CagString *s, CagValue v, int depth) {
-  if (!cag_may_nest(call, depth)) return false;
+  if (!cag_may_nest(call, depth) || !cag_string_fits(call->vm, s)) return false;
   switch (v.type) {
   case CAG_NONE: cag_string_add(s, "null", strlen("null")); return true;
   case CAG_BOOL: cag_string_printf(s, "%s", v.as.boolean ? "true" : "false"); return true;

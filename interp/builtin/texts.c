@@ -24,7 +24,7 @@ static bool read_text(CagCall *call, int argument, const CagText **out) {
 static bool print_places(CagCall *call, CagString *s, CagValue v, int digits, int depth);
 
 static bool print_list(CagCall *call, CagString *s, const CagList *list, int digits, int depth) {
-  if (!cag_may_nest(call, depth)) return false;
+  if (!cag_may_nest(call, depth) || !cag_string_fits(call->vm, s)) return false;
   cag_string_add(s, "[", 1);
   for (size_t i = 0; i < list->length; i++) {
     if (i > 0) cag_string_add(s, ", ", 2);
@@ -118,7 +118,8 @@ static bool call_join(CagCall *call, CagValue *result) {
   if (!cag_sequence_open(call, 0, true, &xs)) return false;
   CagString s = {0};
   for (size_t i = 0; i < xs.length; i++) {
-    if (i % KEEP_GOING_EVERY == 0 && !cag_keep_going(call->vm)) {
+    if ((i % KEEP_GOING_EVERY == 0 && !cag_keep_going(call->vm)) ||
+        !cag_string_fits(call->vm, &s)) {
       cag_string_free(&s);
       return false;
     }
@@ -144,6 +145,10 @@ static bool call_replace(CagCall *call, CagValue *result) {
   CagString s = {0};
   const char *from = t->bytes, *end = t->bytes + t->length, *found;
   while ((found = find_part(from, end, old)) != NULL) {
+    if (!cag_keep_going(call->vm) || !cag_string_fits(call->vm, &s)) {
+      cag_string_free(&s);
+      return false;
+    }
     cag_string_add(&s, from, (size_t)(found - from));
     cag_string_add(&s, new->bytes, new->length);
     from = found + old->length;

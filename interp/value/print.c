@@ -191,13 +191,17 @@ static bool is_word(const CagText *t) {
   return true;
 }
 
-// Whether no more is to be printed: the run must stop, or the text is long enough. Values that
-// share their parts print endlessly.
-static bool is_cut(CagVm *vm, const CagString *s) {
-  if (s->length > vm->heap.limit && !vm->failed)
+bool cag_string_fits(CagVm *vm, const CagString *s) {
+  if (s->length <= vm->heap.limit) return true;
+  if (!vm->failed)
     cag_vm_fail(vm, CAG_ERR_limit_memory,
                 "the printed value does not fit the memory (--max-memory)");
-  return vm->stop || (s->most && s->length > s->most) || s->length > vm->heap.limit;
+  return false;
+}
+
+// Whether no more is to be printed: the run must stop, or the text is long enough.
+static bool is_cut(CagVm *vm, const CagString *s) {
+  return !cag_string_fits(vm, s) || vm->stop || (s->most && s->length > s->most);
 }
 
 static void print_numbers(CagVm *vm, CagString *s, const double *x, size_t n) {

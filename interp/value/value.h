@@ -334,6 +334,9 @@ void cag_string_free(CagString *s);
 void cag_string_check(CagVm *vm, CagString *s);
 CagValue cag_text_from_string(CagVm *vm, CagString *s); // frees s
 CagText *cag_intern_string(CagVm *vm, CagString *s);    // frees s
+// Whether a text still fits the memory of the machine; if not, that is the error. Ask while a text
+// of a value grows: the form of a value that shares its parts may be much longer than the value.
+bool cag_string_fits(CagVm *vm, const CagString *s);
 void cag_print_number(CagString *s, double x);
 // quoted: texts in quotes (inside lists and records).
 void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted);

@@ -18,6 +18,30 @@ try run memory.cag --max-memory 20M
 status 5
 says 'memory.cag:1:'
 
+it '--max-memory bounds the texts of values that share their parts'
+# Two times as long with each of 60 steps, though each step makes one list.
+for text in 'json(f(60, "a"))' 'json(f(60, { a: none }))' 'text(f(60, 1), digits: 2)' 'text(f(60, "a"))' 'join(f(60, 1))' \
+  '"{f(60, 1)}"'; do
+  script shared.cag "f(n, t) = if n == 0 then t else f(n - 1, [t, t])
+print len($text)"
+  (ulimit -v 2000000; try run shared.cag --max-memory 20M; echo "$code" > ended)
+  code=$(cat ended)
+  ran="cag run: $text"
+  status 5
+  says '--max-memory'
+  try run shared.cag --max-time 0.5
+  status 5
+done
+script replaced.cag 'print len(replace(join(repeat("a", 9000)), "a", join(repeat("b", 9000))))'
+script shared.cag 'f(n, t) = if n == 0 then t else f(n - 1, [t, t])
+print f(60, 1), { a: f(60, "a") }'
+try run shared.cag --max-memory 20M
+status 5
+says '--max-memory'
+try run replaced.cag --max-memory 20M
+status 5
+says '--max-memory'
+
 it 'what is freed does not count'
 script fold.cag 'print reduce(0..<300000, [0, 0], (acc, i) => acc + [i, 1])'
 try run fold.cag --max-memory 24M
