@@ -9,7 +9,7 @@ table() { cat > "$1"; }
 column() { cut -d, -f"$2" "$1" | tail -n +2 | tr '\n' ' ' | sed 's/ $//'; }
 column_is() { [ "$(column "$1" "$2")" = "$3" ] || wrong "column $2 of $1 is $(column "$1" "$2"), not $3"; }
 
-it 'rows of a CSV are renders and exports, params are columns'
+it 'rows of a CSV are renders and exports, params are columns' povray
 table jobs.csv <<'END'
 script,output,size,quality,tolerance,r
 ball.cag,a.png,32x24,draft,,5
@@ -29,19 +29,19 @@ no_temporaries .
 try export ball.cag -o expected.stl --tolerance 0.1 -D r=20
 same b.stl expected.stl
 
-it 'a second call does nothing'
+it 'a second call does nothing' povray
 try batch jobs.csv
 status 0
 prints_exactly '0 done, 0 failed, 3 left out (already done)'
 column_is jobs.report.csv 4 'already done already done already done'
 
-it 'a changed row runs again, and an output that is gone'
+it 'a changed row runs again, and an output that is gone' povray
 sed -i 's/,20$/,21/' jobs.csv
 rm c.obj
 try batch jobs.csv
 prints_exactly '2 done, 0 failed, 1 left out (already done)'
 
-it 'a changed script runs all its rows again'
+it 'a changed script runs all its rows again' povray
 echo '// more' >> ball.cag
 try batch jobs.csv
 prints_exactly '3 done, 0 failed, 0 left out (already done)'
@@ -63,7 +63,7 @@ prints_exactly '1 done, 0 failed, 0 left out (already done)'
 try batch module.csv
 prints_exactly '0 done, 0 failed, 1 left out (already done)'
 
-it '--fresh forgets what was done'
+it '--fresh forgets what was done' povray
 try batch jobs.csv --fresh
 prints_exactly '3 done, 0 failed, 0 left out (already done)'
 
@@ -99,7 +99,7 @@ try batch quotes.csv
 status 0
 exists 'q 1.stl'
 
-it 'a film is one row, resumed by its frames'
+it 'a film is one row, resumed by its frames' povray
 script film.cag 'show sphere(10 + frame / frames)'
 table film.csv <<'END'
 script,output,frames,size,quality
@@ -237,7 +237,7 @@ case $* in *version*) exec /usr/bin/povray "$@" ;; esac
 exit 1
 END
 chmod +x flaky/povray
-it 'a renderer that fails is tried again'
+it 'a renderer that fails is tried again' povray
 table flaky.csv <<'END'
 script,output,size,quality
 ball.cag,flaky.png,32x24,draft
@@ -288,7 +288,7 @@ ball.cag,k5.png,32x24,draft
 END
 mkdir temporary
 for signal in TERM KILL; do
-  it "after SIG$signal nothing runs, nothing is half-written, and a second call does the rest"
+  it "after SIG$signal nothing runs, nothing is half-written, and a second call does the rest" povray
   rm -f many.csv.journal k*.stl k*.png
   ran="cag batch (SIG$signal)"
   (PATH=$PWD/hanging:$PATH TMPDIR=$PWD/temporary exec "$CAG" batch many.csv --jobs 2 > out 2> err) &
@@ -315,7 +315,7 @@ for signal in TERM KILL; do
   prints_exactly '3 done, 0 failed, 2 left out (already done)'
 done
 
-it 'a torn last line of the journal is passed over'
+it 'a torn last line of the journal is passed over' povray
 printf '{"what":"done","key":"00' >> many.csv.journal
 try batch many.csv
 status 0
@@ -366,7 +366,7 @@ holds module.csv.journal 'my
 own
 text'
 
-it 'a picture in tiles is the picture'
+it 'a picture in tiles is the picture' povray
 table tiles.csv <<'END'
 script,output,size,quality,tiles
 ball.cag,t.exr,200x150,draft,3x2
@@ -384,7 +384,7 @@ is_missing tiles.csv.tiles
 try batch tiles.csv
 prints_exactly '0 done, 0 failed, 4 left out (already done)'
 
-it 'tiles in a folder with odd letters'
+it 'tiles in a folder with odd letters' povray
 mkdir 'o d%d'
 cp ball.cag 'o d%d'
 printf 'script,output,size,quality,tiles\nball.cag,t.exr,200x150,draft,2x2\n' > 'o d%d/a%d.csv'
@@ -394,7 +394,7 @@ try compare 'o d%d/t.exr' whole.exr
 status 0
 [ "$(ls 'o d%d' | wc -l)" -eq 5 ] || wrong "something is left: $(ls 'o d%d')"
 
-it '--tiles is for all pictures'
+it '--tiles is for all pictures' povray
 table all.csv <<'END'
 script,output,size,quality
 ball.cag,all.exr,200x150,draft
@@ -410,7 +410,7 @@ try batch all.csv --tiles 20x20
 status 2
 says 'smaller than 32 pixels'
 
-it 'a region of a picture is a part of it'
+it 'a region of a picture is a part of it' povray
 try render ball.cag -o region.exr --size 200x150 --quality draft --region 64x32+32+64
 status 0
 try compare region.exr whole.exr

@@ -18,18 +18,18 @@ show camera([14, -30, 26], target: [4, 4, 3], fov: 34deg), sun([1, 1.5, -2]), sk
   awk '$1 ~ /^[RGB]$/ { n++; if ($2 > 0.012) bad = 1 } END { exit bad || n != 3 }' out || wrong 'the pictures differ'
 }
 
-it 'a box and a ball with three bores'
+it 'a box and a ball with three bores' povray
 alike die 'bore = translate(cylinder(14, 3), [0, 0, -7])
 die = (box(10, centered: true) & sphere(6.8)) - bore - rotate(bore, X, 90deg) - rotate(bore, Y, 90deg)
 show give(die) |> translate([4, 4, 4]) |> color("tomato")'
 
-it 'a bore whose ends lie in the faces, and a pin left in it'
+it 'a bore whose ends lie in the faces, and a pin left in it' povray
 alike flush 'show give(box(8) - (translate(box([6, 6, 8]), [1, 1, 0]) - translate(cylinder(8, 2), [4, 4, 0]))) |> color("teal")'
 
-it 'half spaces and quadrics'
+it 'half spaces and quadrics' povray
 alike bowl 'show give((sphere(5) - solid([1, 1, 0, 0, 0, 0, 0, 0, -4, -3])) & half_space(plane(origin, [1, 0, 0.5]))) |> translate([4, 4, 3]) |> color("gold")'
 
-it 'lathes, prisms, meshes and moved operations'
+it 'lathes, prisms, meshes and moved operations' povray
 alike kinds 'pot = revolve(bezier([[0, 0], [6, 0], [6, 8], [0, 8]]))
 star = extrude(polygon([for k in 0..9: polar(if k % 2 == 0 then 5 else 2, 36deg * k)]), 9)
 show give(pot - translate(star, [0, 0, 2])) |> color("orchid")
@@ -76,7 +76,7 @@ status 0
 written same_caps 'intersection {'
 written flush_ends 'difference {'
 
-it 'a picture of faces that coincide has no speckles'
+it 'a picture of faces that coincide has no speckles' povray
 script speckles.cag 'param whole = false
 body = if whole then translate(box([40, 40, 10]), [-20, -20, 0]) else prism(rectangle(30, 20, radius: 4), 10) & prism(region(circle(13)), 10)
 show body |> color("khaki")

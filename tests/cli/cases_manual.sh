@@ -44,14 +44,16 @@ while IFS= read -r line; do
     cag) ;;
     *) continue ;; # installing, and building embed.c: cases_install.sh
   esac
-  it "the command line of $page: $line"
+  tools=
+  case $line in *'cag render'* | *'cag batch'* | *'cag compare'*) tools=povray ;; esac
+  it "the command line of $page: $line" $tools
   printf '%s\n' "$line" | shortened > line.sh
   rm -f jobs.csv.journal
   try_command env PATH="$PWD/bin:$PATH" sh ./line.sh
   status 0
 done < lines
 
-it 'a batch makes the folders of its outputs'
+it 'a batch makes the folders of its outputs' povray
 [ -s pictures/low.png ] && [ -s pictures/high.stl ] && [ -s pictures/film.0001.png ] && [ -s json/low.png ] || wrong 'an output of the table is missing'
 
 it 'a text is given to a param with quotes or without'

@@ -160,7 +160,7 @@ script normal.cag 'print round(normal(revolve(polyline([[0, 0], [10, 0], [10, 5]
 try run normal.cag
 prints_exactly '[-1, 0, 0]'
 
-it 'what is shown without a name is named after its definition in the .3mf'
+it 'what is shown without a name is named after its definition in the .3mf' python3
 script leads.cag 'lid = sphere(4)
 leg = cylinder(9, 1)
 show lid |> color("red")

@@ -16,7 +16,7 @@ native() {
   status 0
   grep -q "= $2 {" "$1.pov" || wrong "there is no $2"
   ! grep -q 'mesh2 {' "$1.pov" || wrong 'there is a mesh'
-  it "$1 as $2 looks like its mesh"
+  it "$1 as $2 looks like its mesh" povray
   try render "$1.cag" -o "$1.exr" $quick
   status 0
   try render "$1_mesh.cag" -o "$1_mesh.exr" $quick
@@ -29,7 +29,7 @@ native() {
   status 1
 }
 printf 'show sphere(0.001) |> translate([0, 0, 9000])%s\n' "$lit" > empty.cag
-it 'a picture of nothing, to compare with'
+it 'a picture of nothing, to compare with' povray
 try render empty.cag -o empty.exr $quick
 status 0
 
@@ -66,7 +66,7 @@ native sheet polygon 'g = polygon([[-25, -20], [25, -20], [15, 20], [-25, 20]], 
 
 # curve NAME OBJECT 'script': a line of some thickness.
 native_curve() {
-  it "$1 is written as $2"
+  it "$1 is written as $2" povray
   printf '%s\nshow g |> line_style(radius: 2)%s\n' "$3" "$lit" > "$1.cag"
   try export "$1.cag" -o "$1.pov"
   status 0

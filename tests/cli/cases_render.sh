@@ -10,7 +10,7 @@ mkdir temporary
 TMPDIR=$PWD/temporary
 export TMPDIR
 
-it 'render writes a PNG'
+it 'render writes a PNG' povray
 try render ball.cag -o ball.png $quick
 status 0
 prints_exactly 'frame 0 of 1, time 0'
@@ -18,7 +18,7 @@ says_nothing
 begins_with ball.png 89504e470d0a1a0a
 no_temporaries temporary
 
-it 'render writes an EXR, the same one twice'
+it 'render writes an EXR, the same one twice' povray
 try render ball.cag -o ball.exr $quick
 status 0
 begins_with ball.exr 762f3101
@@ -26,22 +26,22 @@ try render ball.cag -o again.exr $quick
 try compare ball.exr again.exr
 status 0
 
-it 'the picture shows something'
+it 'the picture shows something' povray
 script nothing.cag 'show sphere(0.001) |> translate([0, 0, 9000])
 show camera(eye: [60, 0, 20], target: origin, fov: 30deg)'
 try render nothing.cag -o nothing.exr $quick
 try compare ball.exr nothing.exr --threshold 0.05
 status 1
 
-it 'the EXR tells what it is of'
+it 'the EXR tells what it is of' povray
 grep -q -a 'cag.script' ball.exr || wrong 'no script in the header'
 grep -q -a 'worldToCamera' ball.exr || wrong 'no camera in the header'
 
-it '--size sets the size'
+it '--size sets the size' povray
 # Width and height stand big-endian behind the 16 first bytes of a PNG.
 [ "$(od -An -v -tx1 -j16 -N8 ball.png | tr -d ' \n')" = 0000004000000030 ] || wrong 'it is not 64 by 48'
 
-it 'a camera is chosen by name'
+it 'a camera is chosen by name' povray
 try render ball.cag -o top.exr $quick --camera top
 status 0
 try compare ball.exr top.exr --threshold 0.02
@@ -54,13 +54,13 @@ status 2
 says 'top'
 holds kept.png earlier
 
-it '--exposure brightens a PNG'
+it '--exposure brightens a PNG' povray
 try render ball.cag -o bright.png $quick --exposure 2
 status 0
 try compare ball.png bright.png
 status 1
 
-it 'a picture may go to standard output'
+it 'a picture may go to standard output' povray
 try render ball.cag -o - --format png $quick
 status 0
 begins_with out 89504e470d0a1a0a
@@ -70,7 +70,7 @@ try render ball.cag -o - $quick
 status 2
 says '--format'
 
-it '--frames renders a film'
+it '--frames renders a film' povray
 try render ball.cag -o 'film.%03d.png' --frames 1..2 $quick
 status 0
 prints_exactly 'frame 1 of 3, time 0.5
@@ -79,19 +79,19 @@ is_missing film.000.png
 begins_with film.001.png 89504e470d0a1a0a
 begins_with film.002.png 89504e470d0a1a0a
 
-it '-D frames makes the film longer'
+it '-D frames makes the film longer' povray
 try render ball.cag -o 'part.%d.png' --frames 1..1 -D frames=5 $quick
 status 0
 prints_exactly 'frame 1 of 5, time 0.25'
 exists part.1.png
 
-it 'a film from standard input'
+it 'a film from standard input' povray
 with_input ball.cag render - -o 'piped.%d.png' --frames 0..1 $quick
 status 0
 exists piped.0.png
 exists piped.1.png
 
-it 'a percent sign in a film is written twice'
+it 'a percent sign in a film is written twice' povray
 try render ball.cag -o '100%%.%d.png' --frames 3..3 $quick
 status 0
 exists '100%.3.png'
@@ -116,7 +116,7 @@ says '0..5'
 try render ball.cag -o 'f.%04d.png' --frames 0..5 -D time=0.5 $quick
 status 2
 
-it 'a script that fails in a frame ends the film'
+it 'a script that fails in a frame ends the film' povray
 script breaks.cag 'assert frame < 1, "the second frame"
 show sphere(10)'
 try render breaks.cag -o 'breaks.%d.png' --frames 0..3 $quick
@@ -126,7 +126,7 @@ exists breaks.0.png
 is_missing breaks.1.png
 is_missing breaks.2.png
 
-it 'there is no progress on a pipe'
+it 'there is no progress on a pipe' povray
 try render ball.cag -o quiet.png $quick
 says_nothing
 
@@ -199,7 +199,7 @@ status 5
 holds kept.exr earlier
 no_temporaries temporary
 
-it 'a disk for temporary files that is not there'
+it 'a disk for temporary files that is not there' povray
 ran='cag render with a wrong TMPDIR' && TMPDIR=/nowhere "$CAG" render ball.cag -o kept.exr $quick > out 2> err
 code=$?
 status 3
@@ -216,7 +216,7 @@ flip(x) = if m then reflect(x, [1, 0.4, 0.3], [3, 1, 0]) else x
 show flip(G) |> material({color: "#d04030"})
 show flip(camera(eye: [60, -70, 40], target: [0, 0, 5], fov: 40deg))
 show flip(sun(direction: [-1, 1, -2]))'
-it 'a mirrored camera sees the mirrored scene as the camera sees the scene'
+it 'a mirrored camera sees the mirrored scene as the camera sees the scene' povray
 try render mirror.cag -o mirror_a.exr $quick
 status 0
 try render mirror.cag -o mirror_b.exr $quick -D m=true
@@ -232,7 +232,7 @@ show translate(box([2, 2, 9]), [-side * 14 - 1, -1, 0])
 eye = camera(eye: [0, -80, 30], target: origin, fov: 40deg)
 show if m then reflect(eye, X) else eye
 show sun(direction: [0, 1, -2])'
-it 'a mirrored camera gives the mirrored picture'
+it 'a mirrored camera gives the mirrored picture' povray
 try render flip.cag -o flip_a.exr $quick -D m=true
 try render flip.cag -o flip_b.exr $quick -D side=-1
 try compare flip_a.exr flip_b.exr --threshold 0.02
@@ -241,7 +241,7 @@ try render flip.cag -o flip_c.exr $quick
 try compare flip_a.exr flip_c.exr --threshold 0.02
 status 1
 
-it 'the standard views always work'
+it 'the standard views always work' povray
 for view in top bottom front back left right iso; do
   try render mirror.cag -o "view_$view.exr" $quick --camera $view
   status 0
@@ -250,7 +250,7 @@ try render mirror.cag -o nowhere.png $quick --camera sideways
 status 2
 says 'top, bottom, front, back, left, right'
 
-it 'a camera of the script wins over a standard view of its name'
+it 'a camera of the script wins over a standard view of its name' povray
 script named.cag 'show sphere(10)
 show camera(eye: [60, 0, 20], target: origin, fov: 30deg) |> named("front")'
 try render named.cag -o front_a.exr $quick --camera front
@@ -262,7 +262,7 @@ status 0
 script rod.cag 'show rotate(cylinder(1000, 4), Y, 45deg) |> translate([-353.55, 0, -353.55]) |> material({color: "black"})
 show background("white")
 show sun(direction: [0, 0, -1])'
-it 'framing fills the picture for long and thin shapes'
+it 'framing fills the picture for long and thin shapes' povray python3
 for view in front top iso; do
   try export rod.cag -o rod.json
   try render rod.cag -o "rod_$view.png" --size 100x100 --quality draft --camera $view
@@ -282,7 +282,7 @@ show translate(box([4000, 1, 8000]), if level then [-2000, 1000, -8000] else [0,
 show background("black")
 show camera(eye: [0, -1000, 0], target: origin, fov: 40deg, aperture: lens, focus: 1000)
 show point_light([0, 0, 100000], strength: 0)'
-it 'the blur of an aperture follows the thin lens formula at every quality'
+it 'the blur of an aperture follows the thin lens formula at every quality' povray python3
 for quality in draft normal final; do
   for lens in 100 50; do
     try render edge.cag -o edge.png --size 400x200 --region 400x80+0+60 --quality $quality -D lens=$lens
@@ -292,12 +292,12 @@ for quality in draft normal final; do
   try render edge.cag -o edge.png --size 400x400 --region 80x400+160+0 --quality $quality -D level=true
   python3 "$here/png_blur.py" edge.png 100 1000 2000 40 0.05 level > blur || wrong "$quality: $(cat blur)"
 done
-it '--samples sets the number of lens samples, not the amount of blur'
+it '--samples sets the number of lens samples, not the amount of blur' povray python3
 for samples in 1 2 5 10 20 40 200; do
   try render edge.cag -o edge.png --size 400x200 --region 400x80+0+60 --samples $samples
   python3 "$here/png_blur.py" edge.png 100 1000 2000 40 0.05 > blur || wrong "$samples: $(cat blur)"
 done
-it 'an orthographic camera has no depth of field'
+it 'an orthographic camera has no depth of field' povray
 for lens in 0 50; do
   script flat.cag "show box(100)
 show camera(eye: [300, -1000, 300], target: [50, 50, 50], kind: \"orthographic\", width: 300, aperture: $lens)"
@@ -306,7 +306,7 @@ done
 try compare flat_0.png flat_50.png --threshold 0.05
 status 0
 
-it 'a terminal shows the progress and the time left, unless the command is quiet'
+it 'a terminal shows the progress and the time left, unless the command is quiet' povray python3
 # Refraction takes seconds to render; the first estimate appears after one second.
 script slow.cag 'show [for i in 0..20: sphere(8) |> translate([(i % 5)*14, floor(i/5)*14, 0])] |> material({color: "white", transmission: 1, ior: 1.5})'
 python3 "$here/on_terminal.py" "$CAG" render slow.cag -o slow.png --size 240x180 --threads 1 > shown || wrong "$(cat shown)"
@@ -314,14 +314,14 @@ grep -q '% rendering, about [0-9]* s left' shown || wrong "$(tail -2 shown)"
 python3 "$here/on_terminal.py" "$CAG" render ball.cag -o ball.png $quick -q > shown
 [ -z "$(cat shown)" ] || wrong "$(cat shown)"
 
-it '--progress prints lines where there is no terminal'
+it '--progress prints lines where there is no terminal' povray
 try render ball.cag -o ball.png $quick --progress
 status 0
 says '100%'
 
 # --- Films ---
 
-it '--loop makes time frame/frames'
+it '--loop makes time frame/frames' povray
 script loop.cag 'print time
 show sphere(10)'
 try render loop.cag -o 'made/for/the_film/loop.%d.png' --frames 0..3 --loop $quick
@@ -335,7 +335,7 @@ try render loop.cag -o loop.png --loop $quick
 status 2
 says '--frames'
 
-it 'the outline of a twisted blade has no dark specks'
+it 'the outline of a twisted blade has no dark specks' povray python3
 script blade.cag 'c = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)
 show loft([for k in 0..4: c |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])])'
 try render blade.cag -o blade.png --size 1440x1080 --region 160x400+580+100 --quality draft

@@ -95,7 +95,7 @@ holds out.png earlier
 rm -rf temporary/*
 PATH=${PATH#*:}
 
-it 'Ctrl-C during a film keeps the frames that are whole'
+it 'Ctrl-C during a film keeps the frames that are whole' povray
 script film.cag 'show sphere(10 + frame)'
 interrupted INT 2 render film.cag -o 'film.%04d.png' --frames 0..999 --size 64x48 --quality draft
 status 130

@@ -9,7 +9,7 @@ printf 'script,output,r\nball.cag,a.stl,1\nball.cag,b.stl,2\nball.cag,c.stl,-3\n
 it 'a Slurm that is not there: the rows are reported, and can be run later'
 slurm_first=$test_name
 mkdir empty
-ln -s "$(command -v povray)" empty/povray
+! have povray || ln -s "$(command -v povray)" empty/povray
 (PATH=$PWD/empty; SLURM_CONF=/nowhere "$CAG" batch jobs.csv --engine-queue slurm > out 2> err)
 code=$?
 ran='cag batch --engine-queue slurm (without Slurm)'
@@ -129,7 +129,7 @@ try batch jobs.csv --engine-queue slurm
 prints_exactly '0 done, 0 failed, 3 left out (already done)'
 [ "$(squeue -h -t all -o %F | sort -u | wc -l)" -eq 2 ] || wrong 'there are not two jobs'
 
-it 'more rows than an array may have elements, and a picture in tiles'
+it 'more rows than an array may have elements, and a picture in tiles' povray
 {
   echo script,output,r,size,quality,tiles
   for i in 1 2 3 4 5 6 7; do echo "ball.cag,m$i.stl,$i,,,"; done
@@ -189,7 +189,7 @@ says "taking up Slurm's job"
 try batch wait.csv
 prints_exactly '0 done, 0 failed, 3 left out (already done)'
 
-it 'a job that somebody cancels: its rows are reported and can be resumed'
+it 'a job that somebody cancels: its rows are reported and can be resumed' povray
 rm -f go wait.csv.journal w?.*
 ran='cag batch --engine-queue slurm (scancel)'
 begin_waiting
@@ -204,7 +204,7 @@ try batch wait.csv --engine-queue slurm
 status 0
 prints_exactly '2 done, 0 failed, 1 left out (already done)'
 
-it 'a node that is lost: its rows are reported and can be resumed'
+it 'a node that is lost: its rows are reported and can be resumed' povray
 rm -f go wait.csv.journal w?.*
 ran='cag batch --engine-queue slurm (the node dies)'
 begin_waiting

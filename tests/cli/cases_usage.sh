@@ -182,7 +182,7 @@ try explain E9999
 status 2
 says 'E9999'
 
-it 'info tells versions, what was found and the limits'
+it 'info tells versions, what was found and the limits' povray
 try info
 status 0
 for line in '^cag ' '^OpenEXR  *3' '^LAPACK  *3' '^POV-Ray  *3\.7' '^memory  *4G' '^depth  *10000'; do prints_like "$line"; done

@@ -8,7 +8,8 @@
 # A test fails at its first expectation that does not hold, and is shown with what was run. One that cannot be made here, or
 # not as a whole, is skipped:
 #
-#   if needs admesh; then ...              what the test, or a part of it, cannot do without
+#   it 'a picture is as said' povray       what the whole test cannot do without: `try` does nothing where it is missing
+#   if needs admesh; then ...              what a part of the test cannot do without
 #   skip 'it takes root'                   another reason
 #
 # It has neither passed nor failed, unless another of its expectations does not hold.
@@ -19,17 +20,26 @@ it() {
   case $test_state in
     good) passed=$((passed + 1)) ;;
     bad) failed=$((failed + 1)) ;;
-    skipped) skipped=$((skipped + 1)) ;;
+    skipped | left_out) skipped=$((skipped + 1)) ;;
   esac
   test_name=$1 test_state=
   [ -z "$1" ] || test_state=good
   ran= code= bound=
+  [ $# -eq 0 ] || shift
+  needs "$@" || test_state=left_out
 }
 
 skip() {
   [ "$test_state" = good ] || return 0
   test_state=skipped
   echo "skipped: $test_name: $1"
+}
+# Whether the test is left out as a whole; what it would have run is none of its business then.
+is_left_out() {
+  [ "$test_state" = left_out ] || return 1
+  code=0
+  : > out
+  : > err
 }
 have() { command -v "$1" > /dev/null 2>&1; }
 needs() {
@@ -55,7 +65,7 @@ needs_permissions() {
 }
 # skip_behind NAME TEST REASON: skips all tests of cases_NAME.sh that stand behind this one.
 skip_behind() {
-  sed "1,/^ *it '$2'\$/d" "$here/cases_$1.sh" | sed -n "s/^ *it '\(.*\)'$/\1/p" > behind
+  sed "1,/^ *it '$2'[a-z0-9 ]*\$/d" "$here/cases_$1.sh" | sed -n "s/^ *it '\(.*\)'[a-z0-9 ]*$/\1/p" > behind
   while IFS= read -r behind; do
     it "$behind"
     skip "$3"
@@ -77,6 +87,7 @@ wrong() {
 LONGEST=120
 try() { with_input /dev/null "$@"; }
 with_input() {
+  is_left_out && return
   input=$1
   shift
   ran="cag $*"
@@ -86,6 +97,7 @@ with_input() {
 }
 # Another command than cag.
 try_command() {
+  is_left_out && return
   ran=$*
   "$@" < /dev/null > out 2> err
   code=$?
