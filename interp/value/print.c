@@ -192,7 +192,7 @@ static bool is_word(const CagText *t) {
 }
 
 bool cag_string_fits(CagVm *vm, const CagString *s) {
-  if (s->length <= vm->heap.limit) return true;
+  if (!s->failed && s->length <= vm->heap.limit) return true;
   if (!vm->failed)
     cag_vm_fail(vm, CAG_ERR_limit_memory,
                 "the printed value does not fit the memory (--max-memory)");
