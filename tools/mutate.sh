@@ -3,25 +3,108 @@
 #
 #     N=100 SEED=1 sh tools/mutate.sh
 #
+# SKIP=20 leaves out the first 20 changes of the seed, to go on where an earlier run ended. FOLDERS="geom/curve" changes these alone.
+#
 # Works on a copy of the tree in build-mutate/. Each change replaces one operator or constant on one line of geom, interp or lang, by
 # the table tools/mutations.txt. A change that does not compile, or that leaves the object file as it was, is drawn again. The suites
-# run until one fails. Changes that no suite notices are printed, and kept in build-mutate/survivors.txt.
+# run until one fails, first those that are quick and likely to notice: unit tests that include the changed file's header, the other
+# unit tests of its part, scripts, vectors, the rest, and the command line last. Each has a limit of memory, and one of time: that of
+# the unchanged code times 4, and 10 s. Changes that no suite notices are printed, and kept in build-mutate/survivors.txt.
 set -eu
 cd "$(dirname "$0")/.."
-N=${N:-100} SEED=${SEED:-1}
+N=${N:-100} SEED=${SEED:-1} SKIP=${SKIP:-0} FOLDERS=${FOLDERS:-geom interp lang}
 [ -n "$N" ] || N=100
 [ -n "$SEED" ] || SEED=1
 TREE=$PWD/build-mutate/tree
+MEMORY=4000000 # KiB
+
+# The suites, by name. A unit test is its program, which is linked again when it is its turn.
+run_suite() {
+  case $1 in
+  build/tests/*_test) "$1" ;;
+  scripts) build/cag test --no-pictures tests/language stdlib ;;
+  vectors) for file in tests/data/0*.json; do BUILD=build tests/vectors/run "$file" || return 1; done ;;
+  examples) build/cag test --no-pictures examples ;;
+  fuzz) build/tests/fuzz/fuzz 1 ;;
+  repl) BUILD=$TREE/build sh tests/repl/run.sh ;;
+  scenes) build/cag test tests/scenes ;;
+  cli) BUILD=$TREE/build sh tests/cli/run.sh ;;
+  esac
+}
+# `sh tools/mutate.sh --suite NAME`, in the copy, runs one: timeout wants a program.
+if [ "${1:-}" = --suite ]; then
+  TREE=$PWD
+  run_suite "$2"
+  exit
+fi
 
 mkdir -p "$TREE"
 git ls-files -z | xargs -0 cp -p --parents -t "$TREE"
 cd "$TREE"
-make -s -j"$(nproc)" test-programs > ../build.log 2>&1 || { tail ../build.log; exit 1; }
+TIMES=$TREE/../times
+mkdir -p "$TIMES"
+build() { make -s -j"$(nproc)" OPT=-O1 CFLAGS=-Wno-error "$@" > ../build.log 2>&1; }
+build test-programs || { tail ../build.log; exit 1; }
+
+link_suite() {
+  case $1 in
+  build/tests/*_test) build "$1" ;;
+  vectors) build build/tests/vectors/run ;;
+  fuzz) build build/tests/fuzz/fuzz ;;
+  *) build all ;;
+  esac
+}
+
+# Runs a suite within limits: limited SECONDS SUITE.
+limited() {
+  (
+    ulimit -v "$MEMORY"
+    exec timeout -k 5 "$1" sh "$TREE/tools/mutate.sh" --suite "$2"
+  ) > /dev/null 2>&1
+}
+
+# The seconds that a suite takes when nothing is changed, asked once; 0: it fails here, and tells nothing.
+usual_time() {
+  kept=$TIMES/$(echo "$1" | tr / _)
+  if [ ! -s "$kept" ]; then
+    began=$(date +%s)
+    if limited 1800 "$1"; then echo $(($(date +%s) - began + 1)) > "$kept"; else echo 0 > "$kept"; fi
+  fi
+  cat "$kept"
+}
+
+# The suites in the order in which they are asked about a change to the file.
+suites_for() {
+  header=${1%.c}.h
+  part=${1%%/*}
+  {
+    grep -l "\"$header\"" tests/*/*_test.c || true
+    grep -l "\"$(dirname "$1")/" tests/"$part"/*_test.c || true
+    ls tests/"$part"/*_test.c
+  } | sed 's|^|build/|; s|\.c$||' | awk '!seen[$0]++'
+  echo scripts
+  echo vectors
+  ls tests/*/*_test.c | grep -v "^tests/$part/" | sed 's|^|build/|; s|\.c$||'
+  printf '%s\n' examples fuzz repl scenes cli
+}
+
+# Prints the suite that fails, and succeeds when one does: the change is noticed.
+who_notices() {
+  for suite in $(suites_for "$1"); do
+    seconds=$(cat "$TIMES/$(echo "$suite" | tr / _)")
+    [ "$seconds" -gt 0 ] || continue
+    if ! link_suite "$suite" || ! limited $((4 * seconds + 10)) "$suite"; then
+      echo "$suite"
+      return 0
+    fi
+  done
+  return 1
+}
 
 # Prints every change that the table allows: file, line, column, old, new, separated by tabs.
 list_changes() {
-  find geom interp lang -name '*.c' | sort | xargs awk -F '\t' '
-    FILENAME != "tools/mutations.txt" && FNR == 1 { file = FILENAME }
+  # shellcheck disable=SC2086
+  find $FOLDERS -name '*.c' | sort | xargs awk -F '\t' '
     NR == FNR { old[++n] = $1; new[n] = $2; next }
     /^ *(\/\/|#)/ || /"/ || /^static_assert/ { next }
     {
@@ -40,42 +123,31 @@ apply_change() {
     { print }' "$1" > ../changed.c && cp ../changed.c "$1"
 }
 
-# Succeeds when a suite fails: the change is noticed. A suite that takes far longer than it should has failed.
-is_noticed() {
-  for program in build/tests/*/*_test; do
-    timeout 120 "$program" > /dev/null 2>&1 || return 0
-  done
-  timeout 300 build/cag test --no-pictures tests/language stdlib > /dev/null 2>&1 || return 0
-  for vectors in tests/data/0*.json; do
-    BUILD=build timeout 300 tests/vectors/run "$vectors" > /dev/null 2>&1 || return 0
-  done
-  BUILD=$PWD/build timeout 900 sh tests/repl/run.sh > /dev/null 2>&1 || return 0
-  BUILD=$PWD/build timeout 1800 sh tests/cli/run.sh > /dev/null 2>&1 || return 0
-  timeout 600 build/cag test tests/scenes > /dev/null 2>&1 || return 0
-  return 1
-}
-
 # The changes in random order; the same SEED gives the same order for the same sources.
 list_changes | awk -v seed="$SEED" 'BEGIN { srand(seed) } { printf "%.9f\t%s\n", rand(), $0 }' | sort -n | cut -f 2- > ../changes.txt
 : > ../survivors.txt
+for suite in $(suites_for geom/status.c); do usual_time "$suite" > /dev/null; done
 
 tried=0 noticed=0
 tab=$(printf '\t')
-while [ "$tried" -lt "$N" ] && IFS=$tab read -r file line column old new <&3; do
+while [ "$tried" -lt $((SKIP + N)) ] && IFS=$tab read -r file line column old new <&3; do
   object=build/obj/${file%.c}.o
   cp -p "$file" ../original.c
   cp -p "$object" ../original.o
   apply_change "$file" "$line" "$column" "$old" "$new"
-  if make -s "$object" > ../build.log 2>&1 && ! cmp -s "$object" ../original.o && make -s -j"$(nproc)" test-programs > ../build.log 2>&1; then
+  if build "$object" && ! cmp -s "$object" ../original.o; then
     tried=$((tried + 1))
     change="$file:$line: \`$old\` -> \`$new\`: $(sed -n "${line}s/^ *//p" ../original.c)"
-    if is_noticed; then
+    if [ "$tried" -le "$SKIP" ]; then
+      :
+    elif suite=$(who_notices "$file"); then
       noticed=$((noticed + 1))
+      echo "$suite: $change"
     else
       echo "not noticed: $change"
       echo "$change" >> ../survivors.txt
     fi
   fi
-  cp "../original.c" "$file"
+  cp ../original.c "$file"
 done 3< ../changes.txt
-awk -v noticed="$noticed" -v tried="$tried" 'BEGIN { printf "%d of %d changes noticed (%.0f %%)\n", noticed, tried, tried ? 100 * noticed / tried : 0 }'
+awk -v noticed="$noticed" -v tried="$((tried - SKIP))" 'BEGIN { printf "%d of %d changes noticed (%.0f %%)\n", noticed, tried, tried ? 100 * noticed / tried : 0 }'
