@@ -273,7 +273,7 @@ static CagStatus join_faces(CagShellFaces *faces, CagSolid **out, CagError *err)
   for (int round = 0; !status && split; round++) {
     CagShellBoundaries all;
     CagShellFaces parts = {0};
-    bool left;
+    bool left = false;
     status = collect(faces->at, faces->n, &all, err);
     if (status) break;
     cag_solid_release(s);
