@@ -151,7 +151,7 @@ complains 'an unknown command gives the nearest' 2 'did you mean `:help`?' ':hle
 complains 'an input cut off says what is open' 1 'never closed' '[1, 2'
 complains 'a command that is not there says so' 2 'unknown command `:view`' ':view'
 complains 'a command without its operand says what it wants' 2 ':load FILE' ':load'
-complains ':type of a statement wants an expression' 2 'wants an expression' ':type x = 1'
+complains ':type rejects a statement' 2 'expects an expression' ':type x = 1'
 complains 'a script that is missing has status 3' 3 'missing.cag' ':load missing.cag'
 complains 'nothing fails' 0 '' 'x = 1'
 
@@ -362,7 +362,7 @@ else
   keys ':sc' Tab Enter
   shows 'Tab completes commands' 'cag> :scene'
   keys ':load par' Tab 't' Tab Enter 'width' Enter
-  shows 'Tab completes files' '40 : number'
+  shows 'Tab completes files' '42 : number'
   echo 'span = 3' >gripper.cag
   completes 'Tab completes modules of the library' 'import std.ro' 'import std.robots'
   completes 'Tab completes scripts that can be imported' 'import gri' 'import gripper'
