@@ -3,13 +3,14 @@
 #
 #     N=100 SEED=1 sh tools/mutate.sh
 #
-# SKIP=20 leaves out the first 20 changes of the seed, to go on where an earlier run ended. FOLDERS="geom/curve" changes these alone.
+# SKIP=20 skips the first 20 changes of the seed, to continue an earlier run. FOLDERS="geom/curve" changes only files in these folders.
 #
 # Works on a copy of the tree in build-mutate/. Each change replaces one operator or constant on one line of geom, interp or lang, by
-# the table tools/mutations.txt. A change that does not compile, or that leaves the object file as it was, is drawn again. The suites
-# run until one fails, first those that are quick and likely to notice: unit tests that include the changed file's header, the other
-# unit tests of its part, scripts, vectors, the rest, and the command line last. Each has a limit of memory, and one of time: that of
-# the unchanged code times 4, and 10 s. Changes that no suite notices are printed, and kept in build-mutate/survivors.txt.
+# the table tools/mutations.txt. A change that does not compile, or does not change the object file, is replaced with another one. The
+# suites run until one fails, starting with those that are quick and likely to detect the change: unit tests that include the changed
+# file's header, the other unit tests of its part, scripts, vectors, the rest, and finally the command line. Each suite has a memory limit
+# and a time limit, which is 10 s plus 4 times the time for the unchanged code. Undetected changes are printed and stored in
+# build-mutate/survivors.txt.
 set -eu
 cd "$(dirname "$0")/.."
 N=${N:-100} SEED=${SEED:-1} SKIP=${SKIP:-0} FOLDERS=${FOLDERS:-geom interp lang}
@@ -18,7 +19,7 @@ N=${N:-100} SEED=${SEED:-1} SKIP=${SKIP:-0} FOLDERS=${FOLDERS:-geom interp lang}
 TREE=$PWD/build-mutate/tree
 MEMORY=4000000 # KiB
 
-# The suites, by name. A unit test is its program, which is linked again when it is its turn.
+# Runs a suite by name. The name of a unit test is its program, which is linked again before it runs.
 run_suite() {
   case $1 in
   build/tests/*_test) "$1" ;;
@@ -31,7 +32,7 @@ run_suite() {
   cli) BUILD=$TREE/build sh tests/cli/run.sh ;;
   esac
 }
-# `sh tools/mutate.sh --suite NAME`, in the copy, runs one: timeout wants a program.
+# `sh tools/mutate.sh --suite NAME`, in the copy, runs one suite, because timeout needs a program.
 if [ "${1:-}" = --suite ]; then
   TREE=$PWD
   run_suite "$2"
@@ -63,7 +64,7 @@ limited() {
   ) > /dev/null 2>&1
 }
 
-# The seconds that a suite takes when nothing is changed, asked once; 0: it fails here, and tells nothing.
+# The time in seconds that a suite takes for the unchanged code, measured once. 0 means that it fails, so it cannot detect anything.
 usual_time() {
   kept=$TIMES/$(echo "$1" | tr / _)
   if [ ! -s "$kept" ]; then
@@ -73,7 +74,7 @@ usual_time() {
   cat "$kept"
 }
 
-# The suites in the order in which they are asked about a change to the file.
+# The suites in the order in which they run for a change to the file.
 suites_for() {
   header=${1%.c}.h
   part=${1%%/*}
@@ -88,7 +89,7 @@ suites_for() {
   printf '%s\n' examples fuzz repl scenes cli
 }
 
-# Prints the suite that fails, and succeeds when one does: the change is noticed.
+# Prints the suite that fails, and succeeds if there is one: the change is detected.
 who_notices() {
   for suite in $(suites_for "$1"); do
     seconds=$(cat "$TIMES/$(echo "$suite" | tr / _)")

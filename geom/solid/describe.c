@@ -143,7 +143,7 @@ static void add_box(Text *t, const CagSolid *s, const double size[3]) {
   if (s->centered) add(t, ", centered");
 }
 
-// A half space has no sizes: its plane tells where it is, wherever it was moved.
+// A half space has no size. It is described by its plane after all transforms.
 static void add_half_space(Text *t, const CagSolid *s) {
   CagQuadric form;
   add(t, "half space");

@@ -220,10 +220,8 @@ const CagBuiltin cag_builtins_curves[] = {
      "The piece of the plane within a closed plane curve or a list of points, less its holes, "
      "likewise given. A list of closed curves that do not cross bounds what an odd number of them "
      "surrounds. Boundaries in space must lie in one plane, and the region stays there: "
-     "region(section(G, plane)) is the cut face, and region([]) is empty, as where the plane "
-     "misses "
-     "G. Open or crossing outlines and holes outside are "
-     "errors "
+     "region(section(G, plane)) is the cut face. region([]) is the empty region, which is the cut "
+     "face if the plane misses G. Open or crossing outlines and holes outside are errors "
      "(region-not-closed, region-crossing, hole-outside).",
      "print near(area(region(circle(2), holes: [circle(1)])), 3 * pi) // expect: true\n"
      "print near(area(region(section(box(4), plane([2, 2, 2], [1, 0, 1])))), 16 * sqrt(2)) // "

@@ -63,16 +63,16 @@ static bool bounded_by(CagCall *call, CagCurve **loops, size_t outer, size_t hol
   return true;
 }
 
-// What no curve bounds has no points, so that there is nothing to take holes out of.
+// A region without boundary curves is empty, so it cannot have holes.
 static bool bounded_by_none(CagCall *call, CagValue *result) {
   CagList *holes = NULL;
   CagRegion *region = NULL;
   CagError err;
   if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
-  const CagStatus status = holes && holes->length
-                               ? cag_fail(&err, CAG_E_ARGUMENT, "hole-outside", "holes", 0,
-                                          "the outline is empty: holes[0] does not lie within it")
-                               : cag_region_empty(&region, &err);
+  const CagStatus status =
+      holes && holes->length ? cag_fail(&err, CAG_E_ARGUMENT, "hole-outside", "holes", 0,
+                                        "the outline is empty, so holes[0] does not lie within it")
+                             : cag_region_empty(&region, &err);
   return give(call, status, &err, &region, result);
 }
 

@@ -199,7 +199,7 @@ bool cag_string_fits(CagVm *vm, const CagString *s) {
   return false;
 }
 
-// Whether no more is to be printed: the run must stop, or the text is long enough.
+// Tests whether printing must end: the run must stop, or the text is long enough.
 static bool is_cut(CagVm *vm, const CagString *s) {
   return !cag_string_fits(vm, s) || vm->stop || (s->most && s->length > s->most);
 }

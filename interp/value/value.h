@@ -334,8 +334,8 @@ void cag_string_free(CagString *s);
 void cag_string_check(CagVm *vm, CagString *s);
 CagValue cag_text_from_string(CagVm *vm, CagString *s); // frees s
 CagText *cag_intern_string(CagVm *vm, CagString *s);    // frees s
-// Whether a text still fits the memory of the machine; if not, that is the error. Ask while a text
-// of a value grows: the form of a value that shares its parts may be much longer than the value.
+// Tests whether a text fits in the machine's memory, and sets the error if it does not. Call this
+// while a text grows: the printed form of a value with shared parts may be much longer than it.
 bool cag_string_fits(CagVm *vm, const CagString *s);
 void cag_print_number(CagString *s, double x);
 // quoted: texts in quotes (inside lists and records).

@@ -19,7 +19,7 @@ status 5
 says 'memory.cag:1:'
 
 it '--max-memory bounds the texts of values that share their parts'
-# Two times as long with each of 60 steps, though each step makes one list.
+# Each of 60 steps makes one list but doubles the length of the printed text.
 for text in 'json(f(60, "a"))' 'json(f(60, { a: none }))' 'text(f(60, 1), digits: 2)' 'text(f(60, "a"))' 'join(f(60, 1))' \
   '"{f(60, 1)}"'; do
   script shared.cag "f(n, t) = if n == 0 then t else f(n - 1, [t, t])

@@ -8,8 +8,8 @@
 # A test fails at its first expectation that does not hold, and is shown with what was run. One that cannot be made here, or
 # not as a whole, is skipped:
 #
-#   it 'a picture is as said' povray       what the whole test cannot do without: `try` does nothing where it is missing
-#   if needs admesh; then ...              what a part of the test cannot do without
+#   it 'a picture is as said' povray       a program that the whole test needs: without it, `try` does nothing
+#   if needs admesh; then ...              a program that a part of the test needs
 #   skip 'it takes root'                   another reason
 #
 # It has neither passed nor failed, unless another of its expectations does not hold.
@@ -34,7 +34,7 @@ skip() {
   test_state=skipped
   echo "skipped: $test_name: $1"
 }
-# Whether the test is left out as a whole; what it would have run is none of its business then.
+# Tests whether the whole test is skipped. Its commands then do nothing.
 is_left_out() {
   [ "$test_state" = left_out ] || return 1
   code=0
@@ -50,8 +50,8 @@ needs() {
     }
   done
 }
-# For tests of files that may not be read or written: root may do both, so that `try` runs cag without that right until
-# the test ends.
+# For tests of files without read or write permission: root ignores permissions, so `try` runs cag without this privilege
+# until the test ends.
 bound=
 needs_permissions() {
   [ "$(id -u)" -eq 0 ] || return 0

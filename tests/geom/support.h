@@ -23,7 +23,8 @@ static CagError err;
   do {                                                                                             \
     if ((call) != CAG_OK) fail_msg("%s: %s", #call, err.message);                                  \
   } while (0)
-// Fails about one of the elements number `low` to `high`, about element `at`, or about no element.
+// Assert that a call fails and names an element from `low` to `high`, the element `at`, or no
+// element.
 #define FAILS_AMONG(call, why, low, high)                                                          \
   do {                                                                                             \
     assert_int_not_equal((call), CAG_OK);                                                          \
