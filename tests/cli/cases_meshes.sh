@@ -212,7 +212,7 @@ for which in 0 1 2 3 4 5; do
 done
 
 # Points, radius, and the arguments of stl_tube.py: the length and the turns.
-it 'the tube of a path with corners is one closed shell, without overlaps'
+it 'the tube of a path with corners is one closed shell, without overlaps' python3
 while IFS='|' read -r curve radius expected; do
   script path.cag "show $curve |> line_style(radius: $radius)"
   try export path.cag -o path.stl
@@ -229,7 +229,7 @@ polyline([[0, 0, 1], [6, 0, 1], [6 + 3*sqrt(3), 3, 1], [6 + 3*sqrt(3), 9, 1]])|0
 PATHS
 
 # The normal turns by at most 15 degrees along an edge (tessellate.h), and the normal of a triangle lies among those of its corners.
-it 'triangles follow the surface, also for surfaces of revolution, trimmed and thickened surfaces, and set operations'
+it 'triangles follow the surface, also for surfaces of revolution, trimmed and thickened surfaces, and set operations' python3
 script lean.cag 'param which = 0
 profile = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)
 blade = loft([for k in 0..4: profile |> scale(1 - 0.1*k) |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])], caps: true)
