@@ -107,7 +107,8 @@ static bool chords_cross(CagVec3 p0, CagVec3 p1, CagVec3 q0, CagVec3 q1, double 
 static CagStatus search(const Corner *k, double radius, double *s, double *u, bool *found,
                         CagError *err) {
   CagVec3 *points = malloc(sizeof *points * 2 * (SAMPLES + 1));
-  CagStatus status = points ? CAG_OK : cag_fail_memory(err);
+  if (!points) return cag_fail_memory(err);
+  CagStatus status = CAG_OK;
   const double step_a = (k->ta - k->a->start) / SAMPLES, step_b = (k->b->end - k->tb) / SAMPLES;
   CagVec3 *p = points, *q = points + SAMPLES + 1;
   Parallel x;

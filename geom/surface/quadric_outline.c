@@ -90,8 +90,8 @@ static bool add_vertices(Outline *o, size_t place, End *ends) {
   qsort(ends, n, sizeof *ends, by_value);
   const size_t first = o->vertex_count;
   for (size_t i = 0; i < n; i++) {
-    const Vertex *last = &o->vertices[o->vertex_count - 1];
-    if (i == 0 || ends[i].v - last->v > SAME_VERTEX * (1 + fabs(last->v)))
+    const double last = i ? o->vertices[o->vertex_count - 1].v : 0;
+    if (i == 0 || ends[i].v - last > SAME_VERTEX * (1 + fabs(last)))
       o->vertices[o->vertex_count++] = (Vertex){c->places[place].u, ends[i].v};
     o->ends[ends[i].cell].at[ends[i].right][ends[i].high] = o->vertex_count - 1;
   }

@@ -308,6 +308,7 @@ static CagVec3 place_normal(const CagTransform *t, CagVec3 n) {
 static CagStatus fill_vertices(CagGltf *g, const Primitive *p, const CagTransform *place,
                                size_t first, CagError *err) {
   CagMeshDraft *d = g->draft;
+  if (p->positions.count == 0) return CAG_OK; // the draft may have no arrays yet
   copy_vectors(&p->positions, d->positions + first);
   if (p->has_normals) copy_vectors(&p->normals, d->normals + first);
   if (p->has_uv) copy_numbers(&p->uv, d->uv + 2 * first, 2);
