@@ -111,7 +111,7 @@ static CagTypes infer_index(Check *c, const CagExpr *e) {
   const CagTypes types = check_infer(c, e->as.binary.left);
   check_infer(c, e->as.binary.right);
   if (types & indexable) return types == CAG_TYPES(TEXT) ? types : CAG_TYPES_ANY;
-  snprintf(text, sizeof text, "[ ] wants a list, a range, a text or a record, found %s",
+  snprintf(text, sizeof text, "[ ] expects a list, a range, a text or a record, found %s",
            cag_types_text(types, found, sizeof found));
   check_report(c, CAG_ERR_type, e->as.binary.left->span, text);
   return CAG_TYPES_ANY;

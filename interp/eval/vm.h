@@ -308,7 +308,8 @@ const CagSource *cag_read_source(CagVm *vm, const char *name, const char *text, 
 // Parses a script that is not to be run; its tree lives as long as the machine. NULL: it has
 // errors.
 const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *text, size_t length);
-// Returns a malloc'd realpath, or NULL if there is no file or memory ran out (which is recorded).
+// Returns the absolute path, which the caller frees. NULL: the file does not exist, or memory ran
+// out, which is recorded.
 char *cag_vm_real_path(CagVm *vm, const char *path);
 // Whether a file may be read: below the root or the module path. Gives the real path (malloc'd) or
 // NULL with the reason in message.

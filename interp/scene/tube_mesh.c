@@ -4,8 +4,8 @@
 // rotation-minimizing frames (double reflection, Wang et al. 2008). Open ends have flat caps. A
 // closed smooth curve is a loop of rings whose last ring is the first.
 //
-// At a sharp corner, the tubes on both sides meet on the inside in the plane that bisects them. On
-// the outside, a wedge of a ball joins them. The whole path is then one shell that does not overlap
+// At a sharp corner, the tubes are cut at the plane that bisects them. A wedge of a ball fills the
+// gap on the outer side of the corner. The whole path is then one shell that does not overlap
 // itself at the corner (add_joint). If a segment is too short for that, or the curve reverses, the
 // path is cut: its parts are closed separately and overlap a ball at the corner. Parts and balls
 // must not share an edge, because their vertices would be welded, and a solid must not have an edge

@@ -117,8 +117,8 @@ static inline double largest_distance(const CagSurface *s, const CagMesh *m, dou
   return largest;
 }
 
-// Edges turn the normal by no more than that, unless they are that short, and are no longer than
-// that.
+// Along each edge longer than `free`, the normal turns by at most `angle`. No edge is longer than
+// `longest`.
 static inline void check_edges(const char *name, const CagMesh *m, double angle, double free,
                                double longest) {
   for (size_t t = 0; t < m->triangle_count; t++)
