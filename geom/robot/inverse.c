@@ -493,12 +493,15 @@ static void sort_solutions(CagInverse *out) {
     }
 }
 
-// Begins a task without solutions.
-static InverseTask begin_task(const InverseChain *c, const double *near, CagInverse *out) {
-  static const double zeros[CAG_INVERSE_JOINTS_MAX] = {0};
+// The result for a robot without a closed form: no solutions.
+static void clear_solutions(CagInverse *out) {
   out->count = 0;
   out->free = 0;
   out->status = CAG_INVERSE_NO_CLOSED_FORM;
+}
+
+static InverseTask begin_task(const InverseChain *c, const double *near, CagInverse *out) {
+  static const double zeros[CAG_INVERSE_JOINTS_MAX] = {0};
   return (InverseTask){.chain = c, .near = near ? near : zeros, .out = out};
 }
 
@@ -510,10 +513,11 @@ static void end_task(CagInverse *out, CagInverseStatus none) {
 
 void cag_robot_inverse(const CagRobot *r, const CagTransform *target, const double *near,
                        CagInverse *out) {
+  clear_solutions(out);
   InverseChain c;
-  InverseTask t = begin_task(&c, near, out);
   const InverseKind kind = chain_of(r, &c) ? kind_of(&c) : INVERSE_NONE;
   if (kind == INVERSE_NONE) return;
+  InverseTask t = begin_task(&c, near, out);
   const CagTransform before = cag_robot_rigid_inverse(&c.before);
   const CagTransform after = cag_robot_rigid_inverse(&c.after);
   CagTransform pose = cag_transform_multiply(&before, target);
@@ -549,9 +553,10 @@ bool cag_robot_has_point_inverse(const CagRobot *r) {
 
 void cag_robot_inverse_point(const CagRobot *r, CagVec3 point, const double *near,
                              CagInverse *out) {
+  clear_solutions(out);
   InverseChain c;
-  InverseTask t = begin_task(&c, near, out);
   if (!chain_of(r, &c) || !has_point_inverse(&c)) return;
+  InverseTask t = begin_task(&c, near, out);
   const CagTransform before = cag_robot_rigid_inverse(&c.before);
   const CagVec3 w = cag_transform_point(&before, point);
   const double(*m)[4] = c.after.m;
