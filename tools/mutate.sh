@@ -5,12 +5,12 @@
 #
 # SKIP=20 skips the first 20 changes of the seed, to continue an earlier run. FOLDERS="geom/curve" changes only files in these folders.
 #
-# Works on a copy of the tree in build-mutate/. Each change replaces one operator or constant on one line of geom, interp or lang, by
-# the table tools/mutations.txt. A change that does not compile, or does not change the object file, is replaced with another one. The
-# suites run until one fails, starting with those that are quick and likely to detect the change: unit tests that include the changed
-# file's header, the other unit tests of its part, scripts, vectors, the rest, and finally the command line. Each suite has a memory limit
-# and a time limit, which is 10 s plus 4 times the time for the unchanged code. Undetected changes are printed and stored in
-# build-mutate/survivors.txt.
+# Works on a copy of the tree in build-mutate/. First, every suite runs once in a build that counts which lines it reaches; the counts are
+# kept in build-mutate/reach/. Each change then replaces one operator or constant on one line of geom, interp or lang, by the table
+# tools/mutations.txt. A change that does not compile, or does not change the object file, is replaced with another one. The suites that
+# reach the line run until one fails, starting with those that are quick and likely to detect the change: unit tests that include the
+# changed file's header, then all others by their time. Each suite has a memory limit and a time limit, which is 10 s plus 4 times the time
+# for the unchanged code. Undetected changes are printed and stored in build-mutate/survivors.txt.
 set -eu
 cd "$(dirname "$0")/.."
 N=${N:-100} SEED=${SEED:-1} SKIP=${SKIP:-0} FOLDERS=${FOLDERS:-geom interp lang}
@@ -19,42 +19,38 @@ N=${N:-100} SEED=${SEED:-1} SKIP=${SKIP:-0} FOLDERS=${FOLDERS:-geom interp lang}
 TREE=$PWD/build-mutate/tree
 MEMORY=4000000 # KiB
 
-# Runs a suite by name. The name of a unit test is its program, which is linked again before it runs.
+# Runs a suite by name, with the programs of the folder B. The name of a unit test is that of its source.
 run_suite() {
   case $1 in
-  build/tests/*_test) "$1" ;;
-  scripts) build/cag test --no-pictures tests/language stdlib ;;
-  vectors) for file in tests/data/0*.json; do BUILD=build tests/vectors/run "$file" || return 1; done ;;
-  examples) build/cag test --no-pictures examples ;;
-  fuzz) build/tests/fuzz/fuzz 1 ;;
-  repl) BUILD=$TREE/build sh tests/repl/run.sh ;;
-  scenes) build/cag test tests/scenes ;;
-  cli) BUILD=$TREE/build sh tests/cli/run.sh ;;
+  tests/*_test) "$B/$1" ;;
+  scripts/*) "$B/cag" test --no-pictures "tests/language/${1#scripts/}" ;;
+  stdlib | examples) "$B/cag" test --no-pictures "$1" ;;
+  vectors) for file in tests/data/0*.json; do BUILD=$B tests/vectors/run "$file" || return 1; done ;;
+  fuzz) "$B/tests/fuzz/fuzz" 1 ;;
+  repl) BUILD=$PWD/$B sh tests/repl/run.sh ;;
+  scenes) "$B/cag" test tests/scenes ;;
+  cli/*) BUILD=$PWD/$B sh tests/cli/run.sh "${1#cli/}" ;;
   esac
 }
 # `sh tools/mutate.sh --suite NAME`, in the copy, runs one suite, because timeout needs a program.
 if [ "${1:-}" = --suite ]; then
-  TREE=$PWD
   run_suite "$2"
   exit
 fi
 
+all_suites() {
+  ls tests/*/*_test.c | sed 's|\.c$||'
+  ls tests/language | sed 's|^|scripts/|'
+  printf '%s\n' stdlib examples vectors fuzz repl scenes
+  ls tests/cli/cases_*.sh | sed 's|.*/cases_\(.*\)\.sh|cli/\1|'
+}
+
 mkdir -p "$TREE"
 git ls-files -z | xargs -0 cp -p --parents -t "$TREE"
 cd "$TREE"
-TIMES=$TREE/../times
-mkdir -p "$TIMES"
-build() { make -s -j"$(nproc)" OPT=-O1 CFLAGS=-Wno-error "$@" > ../build.log 2>&1; }
-build test-programs || { tail ../build.log; exit 1; }
-
-link_suite() {
-  case $1 in
-  build/tests/*_test) build "$1" ;;
-  vectors) build build/tests/vectors/run ;;
-  fuzz) build build/tests/fuzz/fuzz ;;
-  *) build all ;;
-  esac
-}
+REACH=$TREE/../reach
+export OPT=-O1
+build() { make -s -j"$(nproc)" CC="${CC:-cc}" CFLAGS=-Wno-error "$@" > ../build.log 2>&1; }
 
 # Runs a suite within limits: limited SECONDS SUITE.
 limited() {
@@ -64,37 +60,70 @@ limited() {
   ) > /dev/null 2>&1
 }
 
-# The time in seconds that a suite takes for the unchanged code, measured once. 0 means that it fails, so it cannot detect anything.
-usual_time() {
-  kept=$TIMES/$(echo "$1" | tr / _)
-  if [ ! -s "$kept" ]; then
-    began=$(date +%s)
-    if limited 1800 "$1"; then echo $(($(date +%s) - began + 1)) > "$kept"; else echo 0 > "$kept"; fi
-  fi
-  cat "$kept"
+# Counts the lines that a suite reaches, in $REACH/SUITE/, and writes its time in seconds to $REACH/SUITE.time. 0 means that the suite
+# fails for the unchanged code, so it cannot detect anything.
+measure_suite() {
+  [ ! -s "$REACH/$1.time" ] || return 0
+  mkdir -p "$REACH/$1"
+  began=$(date +%s)
+  time=0
+  GCOV_PREFIX=$REACH/$1 GCOV_PREFIX_STRIP=$(echo "$TREE/build-reach/obj" | tr -cd / | wc -c) B=build-reach limited 1800 "$1" &&
+    time=$(($(date +%s) - began + 1))
+  echo "$time" > "$REACH/$1.time"
+}
+
+# The coverage build, unless every suite has been measured. gcov finds the notes of the compiler beside the counts.
+measure_suites() {
+  for suite in $(all_suites); do
+    [ -s "$REACH/$suite.time" ] || break
+    suite=
+  done
+  [ -n "$suite" ] || return 0
+  mkdir -p build-reach "$REACH"
+  cc -std=c17 -fPIC -c tests/coverage/exit.c -o build-reach/exit.o
+  build BUILD=build-reach OPT=-O0 SANITIZE="--coverage -DCAG_ONE_COPY" LDFLAGS="-Wl,--wrap=_exit build-reach/exit.o" test-programs
+  for suite in $(all_suites); do measure_suite "$suite"; done
+  mkdir -p "$REACH/notes"
+  (cd build-reach/obj && find geom interp lang -name '*.gcno' | xargs cp --parents -t "$REACH/notes")
+}
+
+# reaches SUITE FILE LINE: whether the suite runs the line. A line without code of its own, in a table or in a statement of several lines,
+# counts as reached.
+reaches() {
+  counts=$REACH/$1/${2%.c}.gcda
+  [ -e "$counts" ] || return 1
+  cp "$REACH/notes/${2%.c}.gcno" ../line.gcno
+  cp "$counts" ../line.gcda
+  ! gcov --stdout ../line.gcda 2> /dev/null |
+    awk -F : -v file="$2" -v line="$3" '
+      $3 == "Source" { here = $4 == file }
+      here && $2 + 0 == line && $1 ~ /#####/ { found = 1 }
+      END { exit !found }'
 }
 
 # The suites in the order in which they run for a change to the file.
 suites_for() {
-  header=${1%.c}.h
-  part=${1%%/*}
   {
-    grep -l "\"$header\"" tests/*/*_test.c || true
-    grep -l "\"$(dirname "$1")/" tests/"$part"/*_test.c || true
-    ls tests/"$part"/*_test.c
-  } | sed 's|^|build/|; s|\.c$||' | awk '!seen[$0]++'
-  echo scripts
-  echo vectors
-  ls tests/*/*_test.c | grep -v "^tests/$part/" | sed 's|^|build/|; s|\.c$||'
-  printf '%s\n' examples fuzz repl scenes cli
+    grep -l "\"${1%.c}\.h\"" tests/*/*_test.c | sed 's|\.c$||' || true
+    all_suites | while read -r suite; do echo "$(cat "$REACH/$suite.time") $suite"; done | sort -n | cut -d ' ' -f 2
+  } | awk '!seen[$0]++'
 }
 
-# Prints the suite that fails, and succeeds if there is one: the change is detected.
+link_suite() {
+  case $1 in
+  tests/*_test) build "build/$1" ;;
+  vectors) build build/tests/vectors/run ;;
+  fuzz) build build/tests/fuzz/fuzz ;;
+  *) build all ;;
+  esac
+}
+
+# Prints the suite that fails, and succeeds if there is one: the change to the line is detected.
 who_notices() {
   for suite in $(suites_for "$1"); do
-    seconds=$(cat "$TIMES/$(echo "$suite" | tr / _)")
-    [ "$seconds" -gt 0 ] || continue
-    if ! link_suite "$suite" || ! limited $((4 * seconds + 10)) "$suite"; then
+    seconds=$(cat "$REACH/$suite.time")
+    if [ "$seconds" -eq 0 ] || ! reaches "$suite" "$1" "$2"; then continue; fi
+    if ! link_suite "$suite" || ! B=build limited $((4 * seconds + 10)) "$suite"; then
       echo "$suite"
       return 0
     fi
@@ -126,8 +155,9 @@ apply_change() {
 
 # The changes in random order; the same SEED gives the same order for the same sources.
 list_changes | awk -v seed="$SEED" 'BEGIN { srand(seed) } { printf "%.9f\t%s\n", rand(), $0 }' | sort -n | cut -f 2- > ../changes.txt
-: > ../survivors.txt
-for suite in $(suites_for geom/status.c); do usual_time "$suite" > /dev/null; done
+[ "$SKIP" -gt 0 ] || : > ../survivors.txt
+measure_suites
+build test-programs || { tail ../build.log; exit 1; }
 
 tried=0 noticed=0
 tab=$(printf '\t')
@@ -141,7 +171,7 @@ while [ "$tried" -lt $((SKIP + N)) ] && IFS=$tab read -r file line column old ne
     change="$file:$line: \`$old\` -> \`$new\`: $(sed -n "${line}s/^ *//p" ../original.c)"
     if [ "$tried" -le "$SKIP" ]; then
       :
-    elif suite=$(who_notices "$file"); then
+    elif suite=$(who_notices "$file" "$line"); then
       noticed=$((noticed + 1))
       echo "$suite: $change"
     else
