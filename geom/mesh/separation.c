@@ -3,7 +3,8 @@
 // Two trees of boxes are walked together for the pairs of chords and triangles that are nearest;
 // from these Newton's method, damped and kept within smooth pieces, finds the nearest points of the
 // exact shapes. A second walk goes to the pairs that may still be nearer: those whose chords and
-// triangles, less what the shapes may leave them by, are nearer than the points found.
+// triangles, less what the shapes may leave them by, are nearer than the points found. Parts with
+// cores have bounds without such a margin.
 
 #include "geom/mesh/separation.h"
 
@@ -17,6 +18,8 @@
 // Pairs from which the exact search starts: neighbours share their nearest point, so that several
 // are needed for each place.
 #define CANDIDATES 24
+// The search for them ends after this many pairs: the second walk finds what it missed.
+#define MOST_LOOKED 50000
 #define LEAF 4
 #define ROUNDS 100
 // After this many pairs at the same distance, the shapes count as running along each other: the
@@ -41,7 +44,20 @@ static CagStatus push(CagParts *parts, CagPart part, CagError *err) {
   return CAG_OK;
 }
 
-void cag_parts_free(CagParts *parts) { free(parts->items); }
+void cag_parts_free(CagParts *parts) {
+  free(parts->items);
+  free(parts->cores);
+}
+
+// Stores the core; *out is one more than its index.
+static CagStatus add_core(CagParts *parts, const CagCore *core, size_t *out, CagError *err) {
+  CagCore *grown = realloc(parts->cores, (parts->core_count + 1) * sizeof *grown);
+  if (!grown) return cag_fail_memory(err);
+  parts->cores = grown;
+  parts->cores[parts->core_count++] = *core;
+  *out = parts->core_count;
+  return CAG_OK;
+}
 
 CagStatus cag_parts_add_point(CagParts *parts, CagVec3 p, CagError *err) {
   return push(parts, (CagPart){.p = {p, p, p}}, err);
@@ -50,19 +66,32 @@ CagStatus cag_parts_add_point(CagParts *parts, CagVec3 p, CagError *err) {
 CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double tolerance, CagError *err) {
   const double turn = 0.3; // radians
   double *t = NULL;
-  size_t n = 0;
+  size_t n = 0, core = 0;
+  CagCore last = {.radius = -1}, next;
   CagVec3 before = {0, 0, 0}, p;
   CagStatus status = cag_curve_discretize(c, tolerance, turn, &t, &n, err);
   for (size_t i = 0; !status && i < n; i++) {
     status = cag_curve_point(c, t[i], &p, err);
-    if (!status && i > 0)
+    if (status || i == 0) {
+      before = p;
+      continue;
+    }
+    const double sag = cag_curve_sag(c, t[i - 1], t[i]);
+    if (sag == 0 || !cag_curve_core(c, t[i - 1], t[i], &next)) {
+      core = 0;
+    } else if (core == 0 || memcmp(&last, &next, sizeof next) != 0) {
+      status = add_core(parts, &next, &core, err);
+      last = next;
+    }
+    if (!status)
       status = push(parts,
                     (CagPart){.p = {before, p, p},
                               .curve = c,
                               .at = {(t[i - 1] + t[i]) / 2, 0},
                               .low = {t[i - 1], 0},
                               .high = {t[i], 0},
-                              .sag = cag_curve_sag(c, t[i - 1], t[i])},
+                              .sag = sag,
+                              .core = core},
                     err);
     before = p;
   }
@@ -75,13 +104,34 @@ typedef struct Pieces {
   double *cuts[2]; // breaks and both ends
   size_t n[2];
   bool closed[2];
+  size_t *core;   // of each piece along u, as in CagPart
+  bool *straight; // each piece along u is flat, with straight edges
 } Pieces;
 
-static CagStatus find_pieces(const CagSurface *s, Pieces *out, CagError *err) {
+static void pieces_free(Pieces *pieces) {
+  free(pieces->cuts[0]);
+  free(pieces->cuts[1]);
+  free(pieces->core);
+  free(pieces->straight);
+}
+
+static CagStatus find_pieces(CagParts *parts, const CagSurface *s, Pieces *out, CagError *err) {
   CagStatus status = CAG_OK;
   for (int k = 0; !status && k < 2; k++) {
     status = cag_surface_cuts(s, k, &out->cuts[k], &out->n[k], err);
     out->closed[k] = k ? s->closed_v : s->closed_u;
+  }
+  if (status) return status;
+  const size_t n = out->n[0];
+  out->core = calloc(n, sizeof *out->core);
+  out->straight = calloc(n, sizeof *out->straight);
+  if (!out->core || !out->straight) return cag_fail_memory(err);
+  for (size_t i = 0; !status && i < n; i++) {
+    const double *ends = out->cuts[0] + i;
+    CagCore core;
+    out->straight[i] = cag_surface_is_straight(s, ends[0], ends[1]);
+    if (!out->straight[i] && cag_surface_core(s, ends[0], ends[1], &core))
+      status = add_core(parts, &core, &out->core[i], err);
   }
   return status;
 }
@@ -99,6 +149,9 @@ static void limit_part(const Pieces *pieces, CagPart *part) {
     part->low[k] = cuts[low];
     part->high[k] = cuts[low + 1];
     part->ring[k] = pieces->closed[k] && pieces->n[k] == 1;
+    if (k > 0) continue;
+    part->core = pieces->core[low];
+    if (pieces->straight[low]) part->sag = 0;
   }
 }
 
@@ -106,7 +159,7 @@ CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface
                              double tolerance, CagError *err) {
   const bool exact = surface && m->uv;
   Pieces pieces = {0};
-  CagStatus status = exact ? find_pieces(surface, &pieces, err) : CAG_OK;
+  CagStatus status = exact ? find_pieces(parts, surface, &pieces, err) : CAG_OK;
   for (size_t t = 0; !status && t < m->triangle_count; t++) {
     const uint32_t *k = m->triangles + 3 * t;
     CagPart part = {.flat = !exact, .at = {0.5, 0.5}, .high = {1, 1}};
@@ -120,8 +173,7 @@ CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface
     }
     status = push(parts, part, err);
   }
-  free(pieces.cuts[0]);
-  free(pieces.cuts[1]);
+  pieces_free(&pieces);
   return status;
 }
 
@@ -163,11 +215,52 @@ static double chord_distance(const CagPart *a, const CagPart *b) {
   return nearest;
 }
 
+// --- Bounds by cores ---
+
+// The hull of up to three points, from which all points of a part have one distance.
+typedef struct Hull {
+  CagPart part; // with the points alone
+  double radius;
+} Hull;
+
+static Hull hull_of_core(const CagCore *core) {
+  return (Hull){{.p = {core->p[0], core->p[1], core->p[1]}}, core->radius};
+}
+
+// False: the part is known to its sag only.
+static bool hull_of_part(const CagParts *parts, const CagPart *part, Hull *out) {
+  if (part->core) *out = hull_of_core(&parts->cores[part->core - 1]);
+  else *out = (Hull){.part = *part};
+  return part->core || part->sag == 0;
+}
+
+// The largest distance of a point of the hull from a core's point or infinite line, which is as far
+// from all of its part as the core is: that of a corner, as the distance is a convex function.
+static double reach(const Hull *from, const Hull *core) {
+  const CagVec3 *to = core->part.p, along = cag_unit(cag_sub(to[1], to[0]));
+  double most = 0;
+  for (int i = 0; i < 3; i++) {
+    const CagVec3 r = cag_sub(from->part.p[i], to[0]);
+    most = fmax(most, cag_norm(cag_madd(r, -cag_dot(r, along), along)));
+  }
+  return most;
+}
+
+// A lower bound of the distance of two parts by their hulls: one is outside the other, or within.
+static double hull_bound(const Hull *a, const Hull *b) {
+  const double beside = chord_distance(&a->part, &b->part) - a->radius - b->radius;
+  const double within = fabs(b->radius - a->radius);
+  if (beside >= within) return beside;
+  const Hull *inner = a->radius < b->radius ? a : b, *outer = inner == a ? b : a;
+  return fmax(beside, within - reach(inner, outer));
+}
+
 // --- Trees of boxes ---
 
 typedef struct Node {
   CagBounds box;
   double sag;          // the largest of its parts
+  size_t core;         // that of all parts; 0: none, or several
   size_t first, count; // parts by `order`
   size_t left;         // children left and left + 1; 0: a leaf
 } Node;
@@ -190,8 +283,12 @@ static CagBounds box_of(const Tree *t, size_t first, size_t count) {
 
 static Node node_of(const Tree *t, size_t first, size_t count) {
   Node node = {.box = box_of(t, first, count), .first = first, .count = count};
-  for (size_t i = 0; i < count; i++)
-    node.sag = fmax(node.sag, t->parts->items[t->order[first + i]].sag);
+  node.core = t->parts->items[t->order[first]].core;
+  for (size_t i = 0; i < count; i++) {
+    const CagPart *part = &t->parts->items[t->order[first + i]];
+    node.sag = fmax(node.sag, part->sag);
+    if (part->core != node.core) node.core = 0;
+  }
   return node;
 }
 
@@ -263,6 +360,7 @@ typedef struct Nearest {
   size_t n;
   double distance[CANDIDATES];
   const CagPart *a[CANDIDATES], *b[CANDIDATES];
+  size_t looked;                 // pairs of parts compared so far
   const volatile int *interrupt; // not NULL and not 0: the search ends
 } Nearest;
 
@@ -286,8 +384,9 @@ static void keep(Nearest *s, double d, const CagPart *a, const CagPart *b) {
 static void walk(const Tree *a, size_t i, const Tree *b, size_t k, Nearest *s) {
   const Node *x = &a->nodes[i], *y = &b->nodes[k];
   if (gap(&x->box, &y->box) >= worst(s)) return;
-  if (s->interrupt && *s->interrupt) return;
+  if ((s->interrupt && *s->interrupt) || s->looked >= MOST_LOOKED) return;
   if (!x->left && !y->left) {
+    s->looked += x->count * y->count;
     for (size_t m = 0; m < x->count; m++)
       for (size_t n = 0; n < y->count; n++) {
         const CagPart *p = &a->parts->items[a->order[x->first + m]];
@@ -576,7 +675,13 @@ static Task pop_task(Search *s) {
 
 static void push_nodes(Search *s, size_t i, size_t k) {
   const Node *x = &s->a->nodes[i], *y = &s->b->nodes[k];
-  push_task(s, (Task){gap(&x->box, &y->box) - x->sag - y->sag, i, k});
+  double bound = gap(&x->box, &y->box) - x->sag - y->sag;
+  if (x->core && y->core && bound < s->best - equally_near(s)) {
+    const Hull p = hull_of_core(&s->a->parts->cores[x->core - 1]);
+    const Hull q = hull_of_core(&s->b->parts->cores[y->core - 1]);
+    bound = fmax(bound, hull_bound(&p, &q));
+  }
+  push_task(s, (Task){bound, i, k});
 }
 
 static void fail_uncertain(Search *s, double bound) {
@@ -596,6 +701,10 @@ static void try_parts(Search *s, const Node *x, const Node *y) {
       if (part_gap(p, q) >= least) continue;
       const double chords = chord_distance(p, q);
       if (chords >= least) continue;
+      Hull a, b;
+      if (hull_of_part(s->a->parts, p, &a) && hull_of_part(s->b->parts, q, &b) &&
+          hull_bound(&a, &b) >= s->best - equally_near(s))
+        continue;
       if (s->pairs < s->most) try_pair(s, p, q, chords);
       else fail_uncertain(s, chords - p->sag - q->sag);
     }

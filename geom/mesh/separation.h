@@ -4,6 +4,7 @@
 #define CAG_GEOM_MESH_SEPARATION_H
 
 #include "geom/mesh/mesh.h"
+#include "geom/surface/core.h"
 #include "geom/surface/surface.h"
 
 // Small parts of a shape: points, chords of curves, triangles of exact surfaces, flat triangles.
@@ -16,11 +17,14 @@ typedef struct CagPart {
   double low[2], high[2];    // where the search may go: the smooth piece around
   bool ring[2];              // may go around: a closed direction without breaks
   double sag;                // how far the exact shape may leave its chord or triangle
+  size_t core;               // one more than the index of its core; 0: none
 } CagPart;
 
 typedef struct CagParts {
   CagPart *items;
   size_t n, capacity;
+  CagCore *cores;
+  size_t core_count;
 } CagParts;
 
 CagStatus cag_parts_add_point(CagParts *parts, CagVec3 p, CagError *err);
@@ -33,9 +37,11 @@ void cag_parts_free(CagParts *parts);
 
 // Computes the minimum distance of two sets of parts, or 0 if they meet. Chords and flat triangles
 // are compared first. Then the exact shapes are compared by Newton's method, for every pair that
-// may be closer than the best one given the sag of its parts, in the order of the lower bounds. If
-// the shapes run along each other at a constant distance, the search ends as soon as thousands of
-// pairs lead to that distance and none to another.
+// may be closer than the best one given the sag of its parts, in the order of the lower bounds. The
+// cores of spheres, cylinders, circles and straight parts have bounds that are exact: shapes that
+// run along each other at a constant distance, such as concentric spheres, need few pairs. For
+// other shapes at a constant distance the search ends when thousands of pairs lead to that distance
+// and none to another.
 //
 //   most       maximum number of pairs to compare on the exact shapes
 //   point      closest point on b if the shapes do not meet; may be NULL

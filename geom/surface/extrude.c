@@ -197,3 +197,11 @@ CagStatus cag_surface_extrude(const CagCurve *c, CagVec3 v, double twist, double
   *out = s;
   return CAG_OK;
 }
+
+bool cag_surface_extrusion_view(const CagSurface *s, const CagCurve **section, CagVec3 *along) {
+  const Extrusion *e = (const Extrusion *)s;
+  if (s->kind != &extrusion_kind || !is_plain(e)) return false;
+  *section = e->section;
+  *along = e->along;
+  return true;
+}

@@ -106,6 +106,8 @@ bool cag_surface_nurbs_view(const CagSurface *s, CagSurfaceNurbsView *out);
 // Profile, axis and angles of a revolution, for exporters with lathes.
 bool cag_surface_revolution_view(const CagSurface *s, const CagCurve **profile, CagVec3 *axis,
                                  CagVec3 *through, double *from, double *to);
+// Section and direction of an extrusion without twist and scale; false: another surface.
+bool cag_surface_extrusion_view(const CagSurface *s, const CagCurve **section, CagVec3 *along);
 // What a surface seen through an affine map shows: S(u, v) is `map` of `inner`, with v run
 // backwards where it was turned over. false: it has an image of its own.
 bool cag_surface_placed_view(const CagSurface *s, const CagSurface **inner, CagTransform *map);

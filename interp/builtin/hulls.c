@@ -486,8 +486,10 @@ const CagBuiltin cag_builtins_hulls[] = {
      "The least distance (mm) of a shape or group from a point or another shape; 0 where they "
      "meet, and within a solid or closed mesh. It is that of the exact shapes, not of their "
      "meshes: every place whose mesh is near enough is tried by Newton's method. "
-     "For shapes that run along each other, the search stops when thousands of pairs have the same "
-     "distance. If 100,000 pairs have different distances and others may be closer, it is an error "
+     "Spheres, cylinders, circles, planes and lines at a constant distance from each other have a "
+     "certain one. For other shapes that run along each other, the search stops when thousands of "
+     "pairs have the same distance. If 100,000 pairs have different distances and others may be "
+     "closer, it is an error "
      "(convergence). `distance(P, G)` is the same.",
      "print near(distance(sphere(2), translate(sphere(1), [5, 0, 0])), 2) // expect: true\n"
      "print near(distance([0, 0, 5], torus(3, 1)), sqrt(34) - 1) // expect: true\n"

@@ -5,6 +5,7 @@
 #include "geom/mesh/separation.h"
 #include "geom/mesh/tessellate.h"
 #include "geom/surface/curve_on.h"
+#include "geom/surface/quadric.h"
 #include "support.h"
 
 static CagMesh *hull_of(const CagVec3 *points, size_t n) {
@@ -243,6 +244,126 @@ static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state
   cag_surface_release(moved);
 }
 
+// --- Shapes at a constant distance ---
+
+static double between(uint64_t *state, double from, double to) {
+  return from + (to - from) * random_number(state);
+}
+
+static void add_surface(CagParts *parts, const CagSurface *s) {
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  CagMesh *m;
+  how.tolerance = 0.01;
+  OK(cag_surface_tessellate(s, &how, &m, &err));
+  OK(cag_parts_add_mesh(parts, m, s, how.tolerance, &err));
+  cag_mesh_release(m);
+}
+
+// Takes the surfaces. So few pairs tell the distance only if bounds show that no other is closer.
+static double distance_by_few_pairs(CagSurface *s[2], size_t most, uint64_t *state) {
+  CagParts parts[2] = {{0}, {0}};
+  CagTransform move = cag_translate(cag_vec3(between(state, -9, 9), 2, 3)), turn;
+  double distance = -1;
+  OK(cag_rotate(cag_vec3(1, 2, between(state, -3, 3)), between(state, 0, 3), cag_vec3(0, 0, 0),
+                &turn, &err));
+  move = cag_transform_multiply(&move, &turn);
+  CagSurface *moved[2];
+  for (int i = 0; i < 2; i++) {
+    OK(cag_surface_transform(s[i], &move, &moved[i], &err));
+    add_surface(&parts[i], moved[i]);
+  }
+  OK(cag_parts_distance(&parts[0], &parts[1], most, &distance, NULL, NULL, &err));
+  for (int i = 0; i < 2; i++) {
+    cag_parts_free(&parts[i]);
+    cag_surface_release(moved[i]);
+    cag_surface_release(s[i]);
+  }
+  return distance;
+}
+
+static CagSurface *quadric(CagQuadricShape shape, double radius, double z, double height) {
+  CagTransform frame = cag_transform_identity();
+  frame.m[0][0] = frame.m[1][1] = radius;
+  frame.m[2][2] = shape == CAG_SHAPE_ELLIPSOID ? radius : 1;
+  frame.m[2][3] = z;
+  CagSurface *s;
+  OK(cag_surface_quadric(shape, &frame, 0, 2 * M_PI, 0,
+                         shape == CAG_SHAPE_ELLIPSOID ? M_PI : height, &s, &err));
+  return s;
+}
+
+// A rectangle with rounded corners, carried upwards.
+static CagSurface *wall(double width, double depth, double radius) {
+  CagCurve *outline;
+  CagSurface *s;
+  const CagVec3 corners[4] = {
+      {-width, -depth, 0}, {width, -depth, 0}, {width, depth, 0}, {-width, depth, 0}};
+  CagCurve *sides[8];
+  for (int i = 0; i < 4; i++) {
+    const CagVec3 a = corners[i], b = corners[(i + 1) % 4], to = cag_unit(cag_sub(b, a));
+    const CagVec3 ends[2] = {cag_madd(a, radius, to), cag_madd(b, -radius, to)};
+    CagTransform frame = cag_translate(cag_madd(ends[1], radius, cag_vec3(-to.y, to.x, 0)));
+    frame.planar = true;
+    OK(cag_curve_polyline(ends, 2, false, 2, &sides[2 * i], &err));
+    OK(cag_curve_arc(radius, radius, (i - 1) * M_PI / 2, i * M_PI / 2, &frame, &sides[2 * i + 1],
+                     &err));
+  }
+  OK(cag_curve_join(sides, 8, &outline, &err));
+  OK(cag_surface_extrude(outline, cag_vec3(0, 0, 3), 0, 1, &s, &err));
+  for (int i = 0; i < 8; i++) cag_curve_release(sides[i]);
+  cag_curve_release(outline);
+  return s;
+}
+
+static void shapes_at_a_constant_distance_need_few_pairs(void **state) {
+  (void)state;
+  uint64_t random = 11;
+  for (int i = 0; i < 12; i++) {
+    const double r = between(&random, 1, 3), gap = between(&random, 0.1, 2);
+    const double z = between(&random, 0, 0.5) * gap;
+    CagSurface *spheres[2] = {quadric(CAG_SHAPE_ELLIPSOID, r, z, 0),
+                              quadric(CAG_SHAPE_ELLIPSOID, r + gap, 0, 0)};
+    NEAR(distance_by_few_pairs(spheres, 60, &random), gap - z, 1e-12);
+    CagSurface *pipes[2] = {quadric(CAG_SHAPE_ELLIPTIC_CYLINDER, r, z, 4),
+                            quadric(CAG_SHAPE_ELLIPTIC_CYLINDER, r + gap, 0, 5)};
+    NEAR(distance_by_few_pairs(pipes, 60, &random), gap, 1e-12);
+    CagSurface *ball_in_pipe[2] = {quadric(CAG_SHAPE_ELLIPSOID, r, 4, 0),
+                                   quadric(CAG_SHAPE_ELLIPTIC_CYLINDER, r + gap, 0, 8)};
+    NEAR(distance_by_few_pairs(ball_in_pipe, 60, &random), gap, 1e-12);
+    CagSurface *walls[2] = {wall(3, 2, 0.5), wall(3 + gap, 2 + gap, 0.5 + gap)};
+    // Beside the edges where flat and round parts meet there are more.
+    NEAR(distance_by_few_pairs(walls, 500, &random), gap, 1e-12);
+  }
+}
+
+// All points of a circle, and of a helix, are as far from the axis.
+static void curves_at_a_constant_distance_need_few_pairs(void **state) {
+  (void)state;
+  const CagTransform flat = cag_transform_identity();
+  const CagVec3 axis[2] = {{0, 0, -1}, {0, 0, 9}};
+  CagCurve *inner, *outer, *line, *coil;
+  CagParts a = {0}, b = {0}, c = {0}, d = {0};
+  double distance = -1;
+  OK(cag_curve_arc(2, 2, 0, 2 * M_PI, &flat, &inner, &err));
+  OK(cag_curve_arc(5, 5, 0, 4, &flat, &outer, &err));
+  OK(cag_curve_polyline(axis, 2, false, 3, &line, &err));
+  OK(cag_curve_helix(3, 2, -4, 0, &coil, &err));
+  OK(cag_parts_add_curve(&a, inner, 1e-3, &err));
+  OK(cag_parts_add_curve(&b, outer, 1e-3, &err));
+  OK(cag_parts_add_curve(&c, line, 1e-3, &err));
+  OK(cag_parts_add_curve(&d, coil, 1e-3, &err));
+  OK(cag_parts_distance(&a, &b, 60, &distance, NULL, NULL, &err));
+  NEAR(distance, 3, 1e-14 * 8);
+  OK(cag_parts_distance(&c, &d, 60, &distance, NULL, NULL, &err));
+  NEAR(distance, 3, 1e-14 * 8);
+  CagCurve *curves[] = {inner, outer, line, coil};
+  CagParts *parts[] = {&a, &b, &c, &d};
+  for (int i = 0; i < 4; i++) {
+    cag_parts_free(parts[i]);
+    cag_curve_release(curves[i]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sides_are_exact),
@@ -253,6 +374,8 @@ int main(void) {
       cmocka_unit_test(curves_on_a_torus_have_the_derivatives_of_its_formula),
       cmocka_unit_test(the_nearest_of_many_minima_is_found),
       cmocka_unit_test(tori_are_as_far_apart_as_their_circles_less_their_tubes),
+      cmocka_unit_test(shapes_at_a_constant_distance_need_few_pairs),
+      cmocka_unit_test(curves_at_a_constant_distance_need_few_pairs),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
