@@ -111,6 +111,10 @@ $(BUILD)/tools/tables: tools/tables.c $(filter-out %/interp/main.o,$(TOOL_OBJ)) 
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
 
+# Allocation functions that tests wrap to make them fail (tests/fuzz/failing.h).
+WRAPPED := malloc calloc realloc strdup strndup realpath asprintf vasprintf open_memstream
+WRAP := $(foreach f,$(WRAPPED),-Wl,--wrap=$(f))
+
 # C unit tests (cmocka): one program per file of tests/lang, tests/geom, tests/interp.
 UNIT = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/*_test.c))
 $(BUILD)/tests/lang/%: tests/lang/%.c $(BUILD)/liblang.a
@@ -123,6 +127,11 @@ $(BUILD)/tests/geom/%: tests/geom/%.c $(BUILD)/libgeom.a
 	@mkdir -p $(@D)
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libgeom.a -o $@ -lcmocka $(LDLIBS_ALL)
+# Tests of the parts of the program that the library lacks. Allocations can fail in them.
+$(BUILD)/tests/interp/tool_%: tests/interp/tool_%.c $(filter-out %/interp/main.o,$(TOOL_OBJ)) $(BUILD)/libcag.a
+	@mkdir -p $(@D)
+	@echo "cc $<"
+	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ -lcmocka $(WRAP) $(LDLIBS_ALL)
 $(BUILD)/tests/interp/%: tests/interp/%.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	@echo "cc $<"
@@ -144,12 +153,10 @@ $(BUILD)/tests/fuzz/fuzz: tests/fuzz/fuzz.c $(BUILD)/libcag.a
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(LDLIBS_ALL)
 
-# Allocation functions that the tests wrap to make them fail.
-WRAPPED := malloc calloc realloc strdup strndup realpath asprintf vasprintf open_memstream
 $(BUILD)/tests/fuzz/memory: tests/fuzz/memory.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	@echo "cc $<"
-	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(foreach f,$(WRAPPED),-Wl,--wrap=$(f)) $(LDLIBS_ALL)
+	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(WRAP) $(LDLIBS_ALL)
 
 test-programs: all $(BUILD)/tools/tables $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz $(BUILD)/tests/fuzz/memory
 test: test-programs
