@@ -83,44 +83,6 @@ static void take_member(void *context, const char *name) {
   cag_repl_propose_text(m->proposals, name, strlen(name), m->prefix);
 }
 
-// --- Named arguments ---
-
-// The `name =` and `name` of a signature f(a, b = 1) become `name: `.
-static void propose_parameters(CagReplProposals *p, const char *signature, size_t length,
-                               const char *prefix) {
-  const char *end = signature + length, *at = memchr(signature, '(', length);
-  int depth = 0;
-  for (; at && at < end; at++) {
-    if (strchr(")]}", *at) && --depth == 0) return;
-    bool begins = depth == 0 || (depth == 1 && *at == ',');
-    if (strchr("([{", *at)) depth++;
-    if (!begins || depth != 1) continue;
-    const char *from = at + 1;
-    while (from < end && *from == ' ') from++;
-    const char *to = from;
-    while (to < end && is_word(*to)) to++;
-    char name[64];
-    if (to > from && (size_t)(to - from) < sizeof name - 3) {
-      int n = snprintf(name, sizeof name, "%.*s: ", (int)(to - from), from);
-      cag_repl_propose_text(p, name, (size_t)n, prefix);
-    }
-  }
-}
-
-static void propose_arguments_of(CagRepl *repl, CagReplProposals *p, const char *function,
-                                 const char *prefix) {
-  const char *text, *name;
-  size_t length, n = strlen(function);
-  for (size_t i = 0; (name = cag_session_name(repl->session, i, &text, &length)); i++) {
-    if (strcmp(name, function) != 0) continue;
-    if (text && length > n && text[n] == '(') propose_parameters(p, text, length, prefix);
-    return; // it hides a built-in
-  }
-  for (size_t i = 0; cag_builtin_row(i, &text, NULL, NULL, NULL); i++)
-    if (strncmp(text, function, n) == 0 && text[n] == '(')
-      propose_parameters(p, text, strlen(text), prefix);
-}
-
 // --- Where the cursor is ---
 
 // Brackets that nest deeper are not looked into.
@@ -152,21 +114,28 @@ static const char *scan_text(Open *o, const char *at) {
   return at;
 }
 
+static bool is_comment(const char *at) { return *at == '/' && (at[1] == '/' || at[1] == '*'); }
+
+// The last character of the comment at `at`, which ends with its line or at */.
+static const char *end_of_comment(const char *at) {
+  if (at[1] == '/') return at + strcspn(at, "\n") - 1;
+  const char *end = strstr(at + 2, "*/");
+  return end ? end + 1 : at + strlen(at) - 1;
+}
+
+// Takes a character, or a comment up to its last character; gives back the last one taken.
+static const char *scan_one(Open *o, const char *at) {
+  const char in = innermost(o);
+  if (in == '"' || in == '`') return scan_text(o, at);
+  if (is_comment(at)) return end_of_comment(at);
+  if (strchr("([{\"`", *at)) enter(o, *at, at);
+  else if (strchr(")]}", *at) && o->count) o->count--;
+  return at;
+}
+
 static Open scan(const char *text) {
   Open o = {.count = 0};
-  for (const char *at = text; *at; at++) {
-    const char in = innermost(&o);
-    if (in == '"' || in == '`') {
-      at = scan_text(&o, at);
-    } else if (*at == '/' && at[1] == '/') {
-      at += strcspn(at, "\n");
-      if (!*at) break;
-    } else if (strchr("([{\"`", *at)) {
-      enter(&o, *at, at);
-    } else if (strchr(")]}", *at) && o.count) {
-      o.count--;
-    }
-  }
+  for (const char *at = text; *at; at++) at = scan_one(&o, at);
   return o;
 }
 
@@ -191,6 +160,41 @@ static void propose_in_text(CagReplProposals *p, const char *text, const Open *o
   if (strncmp(line, "import", 6) == 0 || (function && reads_file(function)))
     propose_files(p, quote + 1);
   free(function);
+}
+
+// --- Named arguments ---
+
+// The `name =` and `name` of a signature (a, b = 1) become `name: `.
+static void propose_parameters(CagReplProposals *p, const char *list, const char *prefix) {
+  Open o = {.count = 0};
+  for (const char *at = list; *at; at++) {
+    const bool begins = o.count == 0 || (o.count == 1 && *at == ',');
+    at = scan_one(&o, at);
+    if (o.count == 0) return;
+    if (!begins) continue;
+    const char *from = at + 1;
+    while (isspace((unsigned char)*from) || is_comment(from))
+      from = is_comment(from) ? end_of_comment(from) + 1 : from + 1;
+    const char *to = from;
+    while (is_word(*to)) to++;
+    char *name = NULL;
+    if (to > from && asprintf(&name, "%.*s: ", (int)(to - from), from) >= 0)
+      cag_repl_propose_text(p, name, strlen(name), prefix);
+    free(name);
+  }
+}
+
+static void propose_arguments_of(CagRepl *repl, CagReplProposals *p, const char *function,
+                                 const char *prefix) {
+  const char *text, *name;
+  const size_t n = strlen(function);
+  for (size_t i = 0; (name = cag_session_name(repl->session, i, &text, NULL)); i++) {
+    if (strcmp(name, function) != 0) continue;
+    if (text && text[n] == '(') propose_parameters(p, text + n, prefix);
+    return; // it hides a built-in
+  }
+  for (size_t i = 0; cag_builtin_row(i, &text, NULL, NULL, NULL); i++)
+    if (strncmp(text, function, n) == 0 && text[n] == '(') propose_parameters(p, text + n, prefix);
 }
 
 static void propose_words(CagRepl *repl, CagReplProposals *p, const char *text) {
@@ -234,11 +238,11 @@ CagReplProposals cag_repl_propose(CagRepl *repl, const char *text) {
   } else if (!text[n]) {
     propose_commands(&p, text);
   } else {
-    char *command = strndup(text, n);
+    char command[32]; // holds every command whole
+    snprintf(command, sizeof command, "%.*s", (int)n, text);
     const char *rest = text + n + strspn(text + n, " \t");
-    if (command && cag_repl_command_takes_file(command)) propose_files(&p, rest);
+    if (cag_repl_command_takes_file(command)) propose_files(&p, rest);
     else propose_words(repl, &p, rest);
-    free(command);
   }
   if (p.count) qsort(p.items, p.count, sizeof *p.items, by_bytes);
   return p;

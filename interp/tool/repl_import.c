@@ -16,7 +16,7 @@
 static bool dotted(char *path) {
   size_t n = strlen(path);
   if (n > 4 && strcmp(path + n - 4, ".cag") == 0) path[n - 4] = 0;
-  else if (n == 0 || path[n - 1] != '/') return false;
+  else if (path[n - 1] != '/') return false;
   for (char *at = path; (at = strchr(at, '/'));) *at = '.';
   return true;
 }

@@ -379,7 +379,7 @@ else
   keys 'import std.robots as robots' Enter 'plate(width, thickness = 2) = width' Enter 'ball = sphere(5)' Enter 'turned = rotate(Z, 30deg)' Enter
   completes 'Tab completes members of a module' 'robots.puma5' 'robots.puma560'
   completes 'Tab completes members of a transform' 'turned.ori' 'turned.origin'
-  completes 'Tab completes members of members' 'robots.puma560.dof' 'robots.puma560.dof'
+  completes 'Tab completes members of members' 'robots.puma560.conv' 'robots.puma560.convention'
   completes 'Tab completes arguments of functions defined here' 'plate(1, thickn' 'plate(1, thickness:'
   keys 'bspline(' Enter '[[0, 0], [1, 1]], degr' Tab '1)' Enter
   shows 'Tab completes named arguments of the line before' '...> [[0, 0], [1, 1]], degree: 1)'
