@@ -126,7 +126,7 @@ static char *without_expectations(const char *text, size_t length) {
     while (to > out && to[-1] == ' ') to--;
     at += strcspn(at, "\n");
     // A line that had nothing else goes away with its end.
-    if (to > out && to[-1] == '\n' && *at) at++;
+    if ((to == out || to[-1] == '\n') && *at) at++;
   }
   *to = 0;
   return out;

@@ -222,7 +222,7 @@ static int judge(CagSite *s) {
 static int make(CagSite *s) {
   if (!cag_site_read_scripts(s)) return cag_session_status(s->session);
   if (!make_folders(s)) return cag_session_fail_io(s->session, CAG_ERR_output_file, &s->error);
-  if (!read_modules(s)) return CAG_STATUS_SCRIPT;
+  if (!read_modules(s)) return cag_session_status(s->session);
   find_renderer(s);
   write_pages(s);
   cag_site_run(s);
