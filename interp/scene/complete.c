@@ -88,9 +88,12 @@ static const CagColor STUDIO_SKY[] = {
     {0.30, 0.30, 0.31}, {0.44, 0.44, 0.45}, {0.50, 0.51, 0.53}, {0.58, 0.60, 0.63}};
 #define SKY_COUNT (sizeof STUDIO_SKY / sizeof *STUDIO_SKY)
 static const CagColor FLOOR = {0.52, 0.52, 0.52};
-// Radii between the floor and the lowest point, so that a flat thing there and the floor are not
-// one plane; no shadow shows it.
-#define FLOOR_GAP 5e-4
+// The floor lies a little below the lowest point, so that a flat thing there and the floor are not
+// one plane. Across a wide gap one sees into the dark under the edge of a thing, so it is as narrow
+// as the tolerance of the renderer allows: a shadow is not cast across 1e-3 mm and less.
+#define FLOOR_GAP_LEAST 2e-5 // radii
+#define FLOOR_GAP_MOST 5e-4  // radii
+#define FLOOR_GAP_OF_SHADOWS 1.5e-3
 static const CagColor PAPER = {1, 1, 1};
 
 static CagStatus set_sky(CagScene *s, const CagColor *colors, size_t n, CagError *err) {
@@ -99,6 +102,10 @@ static CagStatus set_sky(CagScene *s, const CagColor *colors, size_t n, CagError
   memcpy(s->sky.colors, colors, n * sizeof *colors);
   s->sky.color_count = n;
   return CAG_OK;
+}
+
+static double floor_gap(double radius) {
+  return fmax(FLOOR_GAP_LEAST * radius, fmin(FLOOR_GAP_MOST * radius, FLOOR_GAP_OF_SHADOWS));
 }
 
 static CagStatus add_floor(CagScene *s, double z, CagError *err) {
@@ -174,7 +181,7 @@ static CagStatus add_studio(CagScene *s, CagError *err) {
   s->light_count = STUDIO_COUNT;
   CagStatus status = s->has_background ? CAG_OK : set_sky(s, STUDIO_SKY, SKY_COUNT, err);
   bool floor = !s->has_background && !has_ground(s) && s->cameras[0].eye.z > whole.min.z;
-  if (status == CAG_OK && floor) status = add_floor(s, whole.min.z - FLOOR_GAP * radius, err);
+  if (status == CAG_OK && floor) status = add_floor(s, whole.min.z - floor_gap(radius), err);
   return status;
 }
 
