@@ -167,7 +167,7 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
   CagStatus status = CAG_OK;
   bool meshed = false;
   w->item = item;
-  w->placement = cag_transform_identity();
+  w->placement = w->outer = cag_transform_identity();
   w->tolerance = item->tolerance;
   w->see_through = w->scene->materials[item->material].transmission > 0;
   write_item_comment(w, item);
@@ -188,9 +188,10 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
   if (item->kind == CAG_ITEM_MESH && item->as.mesh->scale.kind && item->as.mesh->triangle_count)
     pov_scale_material(w, item->material, &item->as.mesh->scale);
   else pov_printf(w, "  material { %s }\n", material);
-  // At its outline a mesh is seen from the front where its smooth normals look to the back already.
-  // The renderer turns them around, and lights what is behind: black specks. Of an opaque body what
-  // is behind lies in its own shadow, so that light from both sides is right.
+  // Where the smooth normals of a mesh look away from a ray, the renderer turns them around, and
+  // lights what is behind: black specks. The camera sees no such place (pov_facing.c), but a mirror
+  // may. Of an opaque body what is behind lies in its own shadow, so that light from both sides is
+  // right.
   if (meshed && closed && is_opaque(w, item)) pov_text(w, "  double_illuminate\n");
   pov_placement(w, "  ", &w->placement);
   pov_text(w, w->unit != 1 ? "  scale unit\n}\n\n" : "}\n\n");

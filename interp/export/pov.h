@@ -2,9 +2,9 @@
 //
 // What the shape has a name for in POV-Ray keeps it (sphere, box, cylinder, cone, torus, quadric,
 // lathe, prism, bicubic_patch, polygon); everything else is a mesh2 with the exact surface's
-// normals. Set operations are the renderer's own only where operands have no faces in common, which
-// it could not tell apart (CagPovCsg). Each thing is a #declare under its own name, each material
-// one under M_name.
+// normals, turned a little along the outline that the camera sees (pov_facing.c). Set operations
+// are the renderer's own only where operands have no faces in common, which it could not tell apart
+// (CagPovCsg). Each thing is a #declare under its own name, each material one under M_name.
 //
 // Space: numbers are those of the script (millimetres, Z up). POV-Ray's left-handedness is a matter
 // of its default camera only: the camera here gives its own right, up and direction, from

@@ -133,8 +133,10 @@ void pov_csg(CagPovWriter *w, const CagSolid *s, int depth) {
   const char *word = s->kind == CAG_SOLID_UNION        ? w->see_through ? "merge" : "union"
                      : s->kind == CAG_SOLID_DIFFERENCE ? "difference"
                                                        : "intersection";
-  bool outer = w->in_operation;
+  const bool inside = w->in_operation;
+  const CagTransform outer = w->outer;
   w->in_operation = true;
+  w->outer = cag_transform_multiply(&outer, &s->placement);
   w->depth++;
   pov_printf(w, "%s {\n", word);
   for (size_t i = 0; i < s->core->count && !w->failure.status; i++) {
@@ -143,7 +145,8 @@ void pov_csg(CagPovWriter *w, const CagSolid *s, int depth) {
     if (i + 1 == s->core->count) w->depth--; // the line of the closing brace
     pov_text(w, "\n");
   }
-  w->in_operation = outer;
+  w->in_operation = inside;
+  w->outer = outer;
   pov_placement(w, "  ", &s->placement);
   pov_text(w, "}");
 }

@@ -3,6 +3,10 @@
 // Numbers are written with a fixed count of decimals that follows from the size of the mesh: a
 // 10^-8th of it for positions, 1e-5 for normals. That is beyond what the renderer resolves, and
 // formats several times faster than shortest numbers.
+//
+// The renderer keeps vertices in single precision. Far from the origin, neighboring triangles would
+// not quite meet, and rays would pass between them. A mesh there is written about a point near its
+// middle, and translated to its place.
 
 #include <stdlib.h>
 #include <string.h>
@@ -50,18 +54,18 @@ static char *put_fixed(char *at, double x, int decimals) {
 #define FACES_PER_LINE 8
 
 static void write_vectors(CagPovWriter *w, const char *word, const CagVec3 *v, size_t n,
-                          int decimals) {
+                          CagVec3 origin, int decimals) {
   pov_printf(w, "  %s {\n    %zu", word, n);
   for (size_t i = 0; i < n; i++) {
     char *at = cag_atomic_file_reserve(w->file, VECTOR_ROOM);
     *at++ = ',';
     if (i % VECTORS_PER_LINE == 0) memcpy(at, "\n    ", 5), at += 5;
     *at++ = '<';
-    at = put_fixed(at, v[i].x, decimals);
+    at = put_fixed(at, v[i].x - origin.x, decimals);
     *at++ = ',';
-    at = put_fixed(at, v[i].y, decimals);
+    at = put_fixed(at, v[i].y - origin.y, decimals);
     *at++ = ',';
-    at = put_fixed(at, v[i].z, decimals);
+    at = put_fixed(at, v[i].z - origin.z, decimals);
     *at++ = '>';
     cag_atomic_file_advance(w->file, at);
   }
@@ -87,11 +91,26 @@ static void write_faces(CagPovWriter *w, const CagMesh *m) {
   pov_text(w, "\n  }\n");
 }
 
+// Distances from the origin, in radii of the mesh, from which it is written about its middle:
+// single precision is at least twice as fine there.
+#define FAR_RADII 2
+
+// The point that the mesh is written about: the origin, or near the middle of a mesh that is far
+// from it. A multiple of a power of ten, so that few digits are needed.
+static CagVec3 mesh_origin(const CagMesh *m) {
+  const CagBounds b = cag_mesh_bounds(m);
+  const double radius = cag_norm(cag_sub(b.max, b.min)) / 2;
+  const CagVec3 middle = cag_lerp(b.min, b.max, 0.5);
+  if (!(radius > 0) || cag_norm(middle) < FAR_RADII * radius) return cag_vec3(0, 0, 0);
+  const double unit = pow(10, floor(log10(radius)));
+  return cag_vec3(pov_round(middle.x, unit), pov_round(middle.y, unit), pov_round(middle.z, unit));
+}
+
 // Decimals that resolve a 10^-8th of the largest coordinate.
-static int position_decimals(const CagMesh *m) {
+static int position_decimals(const CagMesh *m, CagVec3 origin) {
   double largest = 0;
   for (size_t i = 0; i < m->vertex_count; i++) {
-    CagVec3 p = m->positions[i];
+    CagVec3 p = cag_sub(m->positions[i], origin);
     largest = fmax(largest, fmax(fabs(p.x), fmax(fabs(p.y), fabs(p.z))));
   }
   if (largest == 0) return 0;
@@ -141,6 +160,24 @@ static CagStatus write_parts(CagPovWriter *w, const CagMesh *m, CagError *err) {
   return status;
 }
 
+static void write_triangles(CagPovWriter *w, const CagMesh *m, CagVec3 origin, int decimals) {
+  const CagVec3 none = {0, 0, 0};
+  pov_printf(w, "mesh2 { // %zu triangles\n", m->triangle_count);
+  write_vectors(w, "vertex_vectors", m->positions, m->vertex_count, origin, decimals);
+  if (m->normals)
+    write_vectors(w, "normal_vectors", m->normals, m->vertex_count, none, NORMAL_DECIMALS);
+  if (m->scale.kind && m->uv) write_scale_places(w, m);
+  write_faces(w, m);
+  // Any direction will do that no face is likely to lie along.
+  if (w->in_operation) pov_text(w, "  inside_vector <0.3071, 0.2117, 0.9278>\n");
+  CagTransform place = cag_transform_identity();
+  place.m[0][3] = origin.x;
+  place.m[1][3] = origin.y;
+  place.m[2][3] = origin.z;
+  pov_placement(w, "  ", &place);
+  pov_text(w, "}");
+}
+
 CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
   if (m->labels && w->item && w->item->label_count && !w->in_operation)
     return write_parts(w, m, err);
@@ -149,19 +186,17 @@ CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
                 "  no_image no_shadow no_reflection\n}");
     return CAG_OK;
   }
-  int decimals = position_decimals(m);
-  CagBounds b = cag_mesh_bounds(m);
-  double reach = fmax(cag_norm(b.min), cag_norm(b.max));
+  const CagVec3 origin = mesh_origin(m);
+  const int decimals = position_decimals(m, origin);
+  const CagBounds b = cag_mesh_bounds(m);
+  const double reach = fmax(cag_norm(cag_sub(b.min, origin)), cag_norm(cag_sub(b.max, origin)));
   if (!(reach * powers_of_ten[decimals] < INTEGER_MAX))
     return cag_fail(err, CAG_E_DEGENERATE, "mesh-empty", "", -1,
                     "the mesh is too large for the renderer's numbers");
-  pov_printf(w, "mesh2 { // %zu triangles\n", m->triangle_count);
-  write_vectors(w, "vertex_vectors", m->positions, m->vertex_count, decimals);
-  if (m->normals) write_vectors(w, "normal_vectors", m->normals, m->vertex_count, NORMAL_DECIMALS);
-  if (m->scale.kind && m->uv) write_scale_places(w, m);
-  write_faces(w, m);
-  // Any direction will do that no face is likely to lie along.
-  if (w->in_operation) pov_text(w, "  inside_vector <0.3071, 0.2117, 0.9278>\n");
-  pov_text(w, "}");
+  CagMesh *facing = NULL;
+  CagStatus status = pov_facing_mesh(w, m, &facing, err);
+  if (status) return status;
+  write_triangles(w, facing, origin, decimals);
+  cag_mesh_release(facing);
   return CAG_OK;
 }

@@ -22,6 +22,7 @@ typedef struct CagPovWriter {
   // Where the thing just written stands, to be said behind its material, so that a pattern moves
   // with it. Set by pov_try_solid, taken and reset by the caller.
   CagTransform placement;
+  CagTransform outer; // of the set operations around what is being written
   // While a set operation is written (pov_csg.c): its operands carry their placement, and meshes
   // tell inside from outside.
   bool in_operation;
@@ -90,5 +91,8 @@ bool pov_try_polygon(CagPovWriter *w, const CagRegion *r, const CagTransform *pl
 // Declares the curve as a round line.
 CagStatus pov_curve(CagPovWriter *w, const CagItem *item, const char *name, CagError *err);
 CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err); // pov_mesh.c
+// The mesh with normals that the camera sees from the side from which it sees their triangles.
+CagStatus pov_facing_mesh(const CagPovWriter *w, const CagMesh *m, CagMesh **out,
+                          CagError *err); // pov_facing.c
 
 #endif

@@ -134,3 +134,39 @@ sides() { awk -v name="$1" '/^object \{/ { inside = 1 } inside && $1 == name { m
 [ "$(sides blade)" -eq 1 ] || wrong 'the blade takes light on one side'
 [ "$(sides glass)" -eq 0 ] || wrong 'the glass takes light on both sides'
 [ "$(sides sleeve)" -eq 0 ] || wrong 'the sleeve takes light on both sides'
+
+# sheets NAME 'script': no triangle is shaded on the side that the camera does not see, in perspective or without.
+sheets() {
+  it "$1: the camera sees the side that is shaded" python3
+  script "$1.cag" "blade = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)
+$2"
+  try export "$1.cag" -o "$1.pov"
+  status 0
+  python3 "$here/pov_facing.py" "$1.pov" > sides || wrong "$(cat sides)"
+  printf '\nshow camera(eye: [80, 30, -50], kind: "orthographic", width: 60)\n' >> "$1.cag"
+  try export "$1.cag" -o "$1.pov"
+  status 0
+  python3 "$here/pov_facing.py" "$1.pov" > sides || wrong "without perspective: $(cat sides)"
+}
+sheets lofted_sheet 'show loft([for k in 0..4: blade |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])], caps: false)'
+sheets lathe_sheet 'show revolve(bspline([[10, 0, 0], [16, 0, 6], [4, 0, 14], [8, 0, 22], [14, 0, 30]]), angle: 300deg)'
+sheets half_cylinder 'show revolve(line([10, 0, 0], [10, 0, 30]), angle: 180deg)'
+sheets patch_sheet 'show bspline_surface([for i in 0..4: [for j in 0..4: [10*i, 10*j, 8*sin(70deg*i)*cos(80deg*j)]]])'
+sheets saddle 'show surface((u, v) => [u, v, u*u/12 - v*v/12], -12..12, -12..12)'
+sheets twisted_sleeve 'show extrude(blade, 20, twist: 90deg, caps: false)'
+sheets closed_blade 'show loft([for k in 0..4: blade |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])])'
+sheets far_sheet 'show translate(loft([for k in 0..4: blade |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])], caps: false), [20000, 30000, 10000])'
+
+# The renderer keeps vertices in single precision: 0.002 mm at 30 m.
+it 'what is far from the origin looks like the same at the origin' povray
+for at in '0, 0, 0' '20000, 30000, 10000'; do
+  script "at_$at.cag" "c = bspline([[-5, 0, 0], [-2, 4, 0], [2, 4, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -2, 0]], closed: true)
+b = loft([for k in 0..4: c |> rotate(Z, 30deg*k) |> translate([0, 0, 4*k])])
+show translate(b - translate(sphere(3), [1, 1, 7]) - (b |> scale(0.6) |> rotate(Y, 80deg) |> translate([-8, 0, 10])), [$at])
+show translate(loft([for k in 0..4: c |> rotate(Z, 30deg*k) |> translate([20, 0, 4*k])], caps: false), [$at])
+show sun(direction: [-1, 1, -2])"
+  try render "at_$at.cag" -o "at_$at.exr" --size 480x360 --quality draft
+  status 0
+done
+try compare 'at_0, 0, 0.exr' 'at_20000, 30000, 10000.exr' --threshold 0.002
+status 0

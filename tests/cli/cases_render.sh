@@ -342,6 +342,17 @@ try render blade.cag -o blade.png --size 1440x1080 --region 160x400+580+100 --qu
 status 0
 python3 "$here/png_specks.py" blade.png > specks || wrong "$(cat specks)"
 
+it 'the outlines of open sheets have no dark specks' povray python3
+script sleeve.cag 'c = bspline([[-5, 0, 0], [-2, 0.9, 0], [2, 0.9, 0], [5, 0.2, 0], [2, -0.1, 0], [-2, -0.5, 0]], closed: true)
+show loft([for k in 0..4: c |> rotate(Z, 30deg*k) |> translate([0, 0, 10*k])], caps: false)'
+try render sleeve.cag -o sleeve.png --size 1440x1080 --region 140x420+640+100 --quality draft
+status 0
+python3 "$here/png_specks.py" sleeve.png > specks || wrong "sleeve: $(cat specks)"
+script saddle.cag 'show surface((u, v) => [u, v, u*u/12 - v*v/12], -12..12, -12..12)'
+try render saddle.cag -o saddle.png --size 1440x1080 --region 260x200+690+300 --quality draft
+status 0
+python3 "$here/png_specks.py" saddle.png > specks || wrong "saddle: $(cat specks)"
+
 # The floor of the studio is a little below what stands on it: the dark inside is not seen under the edge.
 it 'a sleeve meets the floor without dark specks' povray python3
 script standing.cag 'show revolve(line([200, 0, 0], [200, 0, 300]), angle: 180deg)'
