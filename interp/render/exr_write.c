@@ -23,20 +23,25 @@ typedef struct {
   char complaint[256];
 } Sink;
 
-static void keep_complaint(exr_const_context_t ctxt, exr_result_t code, const char *message) {
-  void *user = NULL;
-  (void)code;
-  if (!ctxt || exr_get_user_data(ctxt, &user) != EXR_ERR_SUCCESS || !user) return;
-  Sink *sink = user;
+static void keep_first(Sink *sink, const char *message) {
   if (!sink->complaint[0])
     strncpy(sink->complaint, message ? message : "", sizeof sink->complaint - 1);
 }
 
+static void keep_complaint(exr_const_context_t ctxt, exr_result_t code, const char *message) {
+  void *user = NULL;
+  (void)code;
+  if (ctxt && exr_get_user_data(ctxt, &user) == EXR_ERR_SUCCESS && user) keep_first(user, message);
+}
+
+// The library holds its lock during this call, and its error function would wait for the lock. So
+// errors are kept here.
 static int64_t sink_write(exr_const_context_t ctxt, void *user, const void *data, uint64_t n,
                           uint64_t offset, exr_stream_error_func_ptr_t error_cb) {
   Sink *sink = user;
+  (void)ctxt, (void)error_cb;
   if (n > SIZE_MAX / 4 || offset > SIZE_MAX / 4) {
-    error_cb(ctxt, EXR_ERR_WRITE_IO, "the file grows too large");
+    keep_first(sink, "the file grows too large");
     return -1;
   }
   size_t end = (size_t)(offset + n);
@@ -44,7 +49,7 @@ static int64_t sink_write(exr_const_context_t ctxt, void *user, const void *data
     size_t capacity = end + end / 2 + 65536;
     unsigned char *bytes = realloc(sink->bytes, capacity);
     if (!bytes) {
-      error_cb(ctxt, EXR_ERR_OUT_OF_MEMORY, "no memory for the compressed picture");
+      keep_first(sink, "no memory for the compressed picture");
       return -1;
     }
     sink->bytes = bytes;

@@ -16,7 +16,7 @@ static bool failing_on; // whether all later allocations fail as well
 
 // With -a of tests/fuzz/memory, set a breakpoint here.
 static __attribute__((noinline)) bool fail_allocation(void) {
-  __asm__ volatile("");
+  errno = ENOMEM;
   return true;
 }
 
@@ -46,9 +46,7 @@ char *__wrap_strndup(const char *text, size_t n) {
   return is_failing() ? NULL : __real_strndup(text, n);
 }
 char *__wrap_realpath(const char *path, char *resolved) {
-  if (!is_failing()) return __real_realpath(path, resolved);
-  errno = ENOMEM;
-  return NULL;
+  return is_failing() ? NULL : __real_realpath(path, resolved);
 }
 int __wrap_vasprintf(char **out, const char *format, va_list args) {
   return is_failing() ? -1 : __real_vasprintf(out, format, args);
