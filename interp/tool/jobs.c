@@ -59,17 +59,19 @@ static CagJob *add_row(CagJobs *jobs, size_t line) {
   return row;
 }
 
-// Without the blanks around it, malloc'd; NULL where nothing is left.
-static char *trimmed(const char *text, size_t length) {
-  while (length && strchr(" \t\r\n", text[0])) text++, length--;
+// Without the blanks around it, malloc'd; NULL when memory is out.
+static char *trimmed(const char *text) {
+  text += strspn(text, " \t\r\n");
+  size_t length = strlen(text);
   while (length && strchr(" \t\r\n", text[length - 1])) length--;
-  return length ? strndup(text, length) : NULL;
+  return strndup(text, length);
 }
 
-// Gives the row a field under the column's name. False when memory is out.
-static bool set_field(CagJob *row, const char *column, const char *text, size_t length) {
-  char *value = trimmed(text, length);
-  if (!value) return true;
+// Gives the row a field under the column's name; blanks are none. False when memory is out.
+static bool set_field(CagJob *row, const char *column, const char *text) {
+  if (!text[strspn(text, " \t\r\n")]) return true;
+  char *value = trimmed(text);
+  if (!value) return false;
   for (size_t i = 0; i < CAG_JOB_COLUMN_COUNT; i++) {
     if (strcmp(column, cag_job_column_names[i]) != 0) continue;
     free(row->cells[i]);
@@ -223,8 +225,7 @@ static char find_separator(const char *text, size_t length) {
 static bool take_names(CagJobs *jobs, Record *names) {
   bool ok = true;
   for (size_t i = 0; ok && i < names->count; i++) {
-    char *name = trimmed(names->fields[i], strlen(names->fields[i]));
-    if (!name) name = strdup("");
+    char *name = trimmed(names->fields[i]);
     free(names->fields[i]);
     names->fields[i] = name;
     ok = name != NULL;
@@ -241,7 +242,7 @@ static bool take_row(CagJobs *jobs, const Record *names, const Record *record, s
                           "a field begins with a quote that nothing closes");
   for (size_t i = 0; ok && i < record->count; i++) {
     const char *text = record->fields[i], *name = i < names->count ? names->fields[i] : "";
-    if (*name) ok = set_field(row, name, text, strlen(text));
+    if (*name) ok = set_field(row, name, text);
     else if (text[strspn(text, " \t\r")])
       ok = cag_jobs_problem(jobs, row, CODE_FILE, "put a field that holds the separator in quotes",
                             "the row has more fields than there are named columns: '%.80s'", text);
@@ -294,7 +295,7 @@ static bool take_member(CagJobs *jobs, CagJob *row, const cJSON *member) {
       return cag_jobs_problem(jobs, row, CODE_COLUMN, "leave one of them out",
                               "'%s' is given twice", member->string);
   char *text = value_text(member);
-  const bool ok = text && set_field(row, member->string, text, strlen(text));
+  const bool ok = text && set_field(row, member->string, text);
   free(text);
   return ok;
 }
