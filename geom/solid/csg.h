@@ -33,7 +33,7 @@ struct CagSolidCore {
   CagSolidPlace place;
 };
 
-// Whether the solid has no faces, so that cores and meshes are asked.
+// Whether the solid has a core, so that cores and meshes are asked where no faces are.
 bool cag_solid_is_compound(const CagSolid *s);
 
 // Union, difference (of the first and all others) or intersection of n >= 1 solids. Operands that
@@ -65,7 +65,9 @@ CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err);
 // that a box or a range of z left, or patches cut perpendicular to the axis.
 bool cag_solid_has_quadric_body(CagSurface *const *pieces, size_t n);
 // Makes this body: the part within the box or range on the side of the quadric that contains its
-// axis. For a hyperbolic paraboloid, it is the side on which its original form is negative.
+// axis. For a hyperbolic paraboloid, it is the side on which its original form is negative. The
+// body is an intersection. It has exact faces too, unless rounding hides in which order the quadric
+// passes the sides of the box.
 CagStatus cag_solid_quadric_body(CagSurface *const *pieces, size_t n, const volatile int *interrupt,
                                  CagSolid **out, CagError *err);
 

@@ -200,7 +200,7 @@ CagStatus cag_csg_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
 CagStatus cag_solid_is_empty(const CagSolid *s, bool *out, CagError *err) {
   CagBounds unused;
   *out = false;
-  if (!cag_solid_is_compound(s)) return CAG_OK;
+  if (s->face_count > 0) return CAG_OK;
   const CagStatus status = cag_csg_bounds(s, &unused, err);
   *out = status && cag_is_empty_shape(err);
   // What reaches to infinity is not empty.
@@ -299,8 +299,7 @@ static CagStatus mass_of_parts(const CagSolid *s, double tolerance, CagMassPrope
 
 CagStatus cag_solid_mass_within(const CagSolid *s, double tolerance, CagMassProperties *out,
                                 CagError *err) {
-  return cag_solid_is_compound(s) ? cag_csg_mass(s, tolerance, out, err)
-                                  : cag_solid_mass(s, out, err);
+  return s->face_count == 0 ? cag_csg_mass(s, tolerance, out, err) : cag_solid_mass(s, out, err);
 }
 
 // A mesh whose faces lie within the tolerance of the surface misses at most the tolerance times the

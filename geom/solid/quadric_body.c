@@ -3,11 +3,20 @@
 // The body is the intersection of a box and one side of the quadric. Pieces cut by a box or a range
 // of z store that box. For other patches, the box is the range of the canonical coordinates of the
 // patches.
+//
+// The body is kept as a set operation, for its mesh and for exporters that have such operations.
+// Its boundary is known exactly as well: the pieces, and on each side of the box the part in which
+// the section of the quadric is negative. The arcs that bound this part are the curves in which the
+// pieces end.
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "geom/curve/conic_side.h"
+#include "geom/solid/build.h"
 #include "geom/solid/csg.h"
+#include "geom/surface/section.h"
 #include "geom/surface/trimmed.h"
 
 #define WHOLE_TURN (2 * M_PI * (1 - 1e-12))
@@ -123,6 +132,110 @@ static CagStatus placed_box(const CagBounds *box, const CagTransform *frame, Cag
   return status;
 }
 
+// --- The boundary ---
+
+#define SIDES 6
+#define FACES_MOST (SIDES * CAG_CONIC_PARTS)
+
+typedef struct Boundary {
+  CagSurface **faces;
+  size_t n;
+  bool decided; // the faces are known
+} Boundary;
+
+// The frame of a side of the box: its origin is the middle of the side, and its normal is outward,
+// or inward for a box that is mirrored later.
+static CagTransform frame_of_side(const CagBounds *box, int side, bool mirrored,
+                                  CagBounds *rectangle) {
+  const CagVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const CagVec3 size = cag_sub(box->max, box->min);
+  const double sizes[3] = {size.x, size.y, size.z};
+  const int axis = side / 2, sign = side % 2 ? 1 : -1;
+  const int turn = mirrored ? -sign : sign;
+  const int x = (axis + (turn > 0 ? 1 : 2)) % 3, y = (axis + (turn > 0 ? 2 : 1)) % 3;
+  const CagVec3 middle =
+      cag_madd(cag_lerp(box->min, box->max, 0.5), sign * sizes[axis] / 2, axes[axis]);
+  const CagVec3 normal = cag_scaled(axes[axis], turn);
+  *rectangle = (CagBounds){{-sizes[x] / 2, -sizes[y] / 2, 0}, {sizes[x] / 2, sizes[y] / 2, 0}};
+  return (CagTransform){.m = {{axes[x].x, axes[y].x, normal.x, middle.x},
+                              {axes[x].y, axes[y].y, normal.y, middle.y},
+                              {axes[x].z, axes[y].z, normal.z, middle.z},
+                              {0, 0, 0, 1}}};
+}
+
+// Adds the flat faces on one side. q: the form in coordinates of the box.
+static CagStatus add_caps(Boundary *b, const CagQuadric *q, const CagBounds *box,
+                          const CagTransform *frame, int side, CagError *err) {
+  CagBounds rectangle;
+  CagConic section;
+  CagRegion *parts[CAG_CONIC_PARTS];
+  size_t n = 0;
+  const CagTransform local = frame_of_side(box, side, cag_transform_mirrors(frame), &rectangle);
+  const CagTransform place = cag_transform_multiply(frame, &local);
+  cag_quadric_section(q, &local, &section);
+  CagStatus status = cag_conic_negative_parts(&section, &rectangle, parts, &n, &b->decided, err);
+  for (size_t i = 0; i < n; i++) {
+    if (!status) status = cag_surface_planar(parts[i], &place, &b->faces[b->n], err);
+    if (!status) b->n++;
+    cag_region_release(parts[i]);
+  }
+  return status;
+}
+
+// Adds a piece with its normal along the gradient of the form. Its middle is no pole, nor apex of a
+// cone.
+static CagStatus add_outward(Boundary *b, const CagSurface *piece, const CagQuadric *q,
+                             CagError *err) {
+  const CagSurface *whole = whole_of(piece);
+  CagVec3 d[4];
+  const double off_middle = 0.47;
+  CagStatus status = cag_surface_eval(whole, whole->u0 + off_middle * (whole->u1 - whole->u0),
+                                      whole->v0 + off_middle * (whole->v1 - whole->v0), 1,
+                                      CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err);
+  if (status) return status;
+  const CagVec3 normal = cag_cross(d[cag_partial(1, 1, 0)], d[cag_partial(1, 0, 1)]);
+  if (cag_dot(normal, cag_quadric_gradient(q, d[0])) > 0)
+    b->faces[b->n] = cag_surface_retain(piece);
+  else status = cag_surface_quadric_turn(piece, &b->faces[b->n], err);
+  if (!status) b->n++;
+  return status;
+}
+
+// Tests whether whole patches and caps share all edges.
+static bool do_close(const Boundary *b) {
+  CagSolid *shell = NULL;
+  CagError err;
+  const bool closed = cag_solid_shell(b->faces, b->n, &shell, &err) == CAG_OK;
+  cag_solid_release(shell);
+  return closed;
+}
+
+// Gives the body its faces. Without these it has its mesh alone.
+static CagStatus set_faces(CagSolid *body, CagSurface *const *pieces, size_t n, const CagQuadric *q,
+                           const CagBounds *box, const CagTransform *frame, CagError *err) {
+  Boundary b = {calloc(n + FACES_MOST, sizeof *b.faces), 0, true};
+  CagTransform back;
+  CagQuadric local;
+  CagQuadricWithin within;
+  CagStatus status = b.faces ? CAG_OK : cag_fail_memory(err);
+  if (!status) status = cag_transform_inverse(frame, &back, err);
+  if (!status) status = cag_quadric_transform(q, &back, &local, err);
+  for (size_t i = 0; !status && b.decided && i < n; i++)
+    status = add_outward(&b, pieces[i], q, err);
+  for (int side = 0; !status && b.decided && side < SIDES; side++)
+    status = add_caps(&b, &local, box, frame, side, err);
+  if (!status && b.decided && !are_all_within(pieces, n, &within)) b.decided = do_close(&b);
+  if (!status && b.decided) {
+    free(body->faces);
+    body->faces = b.faces;
+    body->face_count = b.n;
+    return CAG_OK;
+  }
+  for (size_t i = 0; i < b.n; i++) cag_surface_release(b.faces[i]);
+  free(b.faces);
+  return cag_is_final(status) ? status : CAG_OK;
+}
+
 CagStatus cag_solid_quadric_body(CagSurface *const *pieces, size_t n, const volatile int *interrupt,
                                  CagSolid **out, CagError *err) {
   CagQuadric q;
@@ -130,7 +243,7 @@ CagStatus cag_solid_quadric_body(CagSurface *const *pieces, size_t n, const vola
   CagQuadricWithin within;
   CagBounds box;
   CagTransform frame;
-  CagSolid *parts[2] = {NULL};
+  CagSolid *parts[2] = {NULL}, *body = NULL;
   cag_surface_quadric_view(whole_of(pieces[0]), &q);
   CagStatus status = cag_quadric_classify(&q, &form, err);
   if (!status && form.class_id == CAG_QUADRIC_HYPERBOLIC_PARABOLOID &&
@@ -139,8 +252,11 @@ CagStatus cag_solid_quadric_body(CagSurface *const *pieces, size_t n, const vola
   if (!status) status = find_box(&form, pieces, n, &box, &frame, err);
   if (!status) status = cag_solid_quadric(&q, &parts[0], err);
   if (!status) status = placed_box(&box, &frame, &parts[1], err);
-  if (!status) status = cag_solid_combine(CAG_INTERSECTION, parts, 2, interrupt, out, err);
+  if (!status) status = cag_solid_combine(CAG_INTERSECTION, parts, 2, interrupt, &body, err);
+  if (!status) status = set_faces(body, pieces, n, &q, &box, &frame, err);
   cag_solid_release(parts[0]);
   cag_solid_release(parts[1]);
+  if (status) cag_solid_release(body);
+  else *out = body;
   return status;
 }

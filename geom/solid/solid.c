@@ -274,7 +274,7 @@ static void box_bounds(const CagSolid *s, CagBounds *out) {
 
 CagStatus cag_solid_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
-  if (cag_solid_is_compound(s)) return cag_csg_bounds(s, out, err);
+  if (s->face_count == 0) return cag_csg_bounds(s, out, err);
   if (s->kind == CAG_SOLID_BOX) {
     box_bounds(s, out);
     return CAG_OK;
@@ -286,8 +286,16 @@ CagStatus cag_solid_bounds(const CagSolid *s, CagBounds *out, CagError *err) {
     cag_bounds_add(&box, face.min);
     cag_bounds_add(&box, face.max);
   }
-  *out = box;
-  return CAG_OK;
+  // The bounds of a set operation whose faces are known lie within its reach, which is exact where
+  // the operation ends at the side of a box.
+  CagStatus status = CAG_OK;
+  CagBounds reach = box;
+  if (cag_solid_is_compound(s)) status = cag_solid_reach(s, &reach, err);
+  *out = (CagBounds){cag_vec3(fmax(box.min.x, reach.min.x), fmax(box.min.y, reach.min.y),
+                              fmax(box.min.z, reach.min.z)),
+                     cag_vec3(fmin(box.max.x, reach.max.x), fmin(box.max.y, reach.max.y),
+                              fmin(box.max.z, reach.max.z))};
+  return status;
 }
 
 // --- Mass ---
@@ -439,7 +447,7 @@ CagStatus cag_solid_mass(const CagSolid *s, CagMassProperties *out, CagError *er
   CagMassProperties m = {0};
   Body body;
   double scale;
-  if (cag_solid_is_compound(s)) return cag_csg_mass(s, 0, out, err);
+  if (s->face_count == 0) return cag_csg_mass(s, 0, out, err);
   if (!closed_form(s, &body)) {
     CagStatus status = area_of_faces(s, &m, err);
     if (!status) status = volume_of_faces(s, &m, err);

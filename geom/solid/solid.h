@@ -5,7 +5,8 @@
 // transform is applied to faces and kept beside the primitive.
 //
 // The kinds from MESH on have no faces: bodies within a mesh, unbounded sides, and set operations.
-// They answer by triangles; see csg.h.
+// They answer by triangles; see csg.h. The body of a quadric within a box is a set operation that
+// has faces, without a table of their edges: its measures and exact files are those of the faces.
 
 #ifndef CAG_GEOM_SOLID_H
 #define CAG_GEOM_SOLID_H

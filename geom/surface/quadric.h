@@ -85,6 +85,10 @@ typedef struct CagQuadricWithin {
 // false for another surface or a part of one.
 bool cag_surface_quadric_within(const CagSurface *s, CagQuadricWithin *out);
 
+// The same piece with the other normal, and of the same kind: u runs backwards. For patches of kind
+// "quadric", and these trimmed.
+CagStatus cag_surface_quadric_turn(const CagSurface *s, CagSurface **out, CagError *err);
+
 // Finds the extremes and saddles of a world coordinate (axis 0 to 2) inside the domain (u, v) of a
 // surface of kind "quadric". Returns their number, which is 0 for another kind.
 size_t cag_surface_quadric_extremes(const CagSurface *s, int axis, CagVec3 out[2]);

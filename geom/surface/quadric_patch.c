@@ -272,6 +272,35 @@ bool cag_surface_quadric_within(const CagSurface *s, CagQuadricWithin *out) {
   return out->pieces > 0 && out->trimmed == trimmed;
 }
 
+// --- The other normal ---
+
+// The shapes are symmetric in the coordinate that is odd in u.
+static CagStatus turn_patch(const Patch *p, CagSurface **out, CagError *err) {
+  const int odd = p->shape == CAG_SHAPE_HYPERBOLIC_PARABOLOID ? 0 : 1;
+  CagTransform frame = p->frame;
+  for (int i = 0; i < 3; i++) frame.m[i][odd] = -frame.m[i][odd];
+  const CagSurface *s = &p->base;
+  CagStatus status = cag_surface_quadric(p->shape, &frame, -s->u1, -s->u0, s->v0, s->v1, out, err);
+  if (!status) ((Patch *)*out)->within = p->within;
+  return status;
+}
+
+CagStatus cag_surface_quadric_turn(const CagSurface *s, CagSurface **out, CagError *err) {
+  const CagSurface *whole = s;
+  const CagRegion *region;
+  if (!cag_surface_trimmed_view(s, &whole, &region)) return turn_patch((const Patch *)s, out, err);
+  CagTransform mirror = cag_transform_identity();
+  mirror.m[0][0] = -1;
+  CagRegion *image = NULL;
+  CagSurface *turned = NULL;
+  CagStatus status = cag_region_transform(region, &mirror, &image, err);
+  if (!status) status = turn_patch((const Patch *)whole, &turned, err);
+  if (!status) status = cag_surface_trimmed(turned, image, out, err);
+  if (turned) cag_surface_release(turned);
+  cag_region_release(image);
+  return status;
+}
+
 // --- Extremes ---
 
 // Finds the points at which the normal of the unit form is parallel to m, that is, at which its

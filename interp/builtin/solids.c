@@ -56,7 +56,7 @@ const CagBuiltin cag_builtins_solids[] = {
      "meet. An open shell is an error that tells the gap (solid-open). Of a closed mesh the body "
      "in "
      "it, otherwise the error names an open edge (mesh-open). Pieces of a quadric cut by a box or "
-     "a range of z are closed by flat faces. The 10 numbers or 4 rows of a quadric (see "
+     "a range of z are closed by exact flat faces. The 10 numbers or 4 rows of a quadric (see "
      "`quadric`) mean the side where its form is "
      "negative: all of it, to be cut by what it is intersected with or taken from, or the part "
      "`within` a solid or a range of z.",

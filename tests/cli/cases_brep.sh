@@ -121,6 +121,14 @@ shape leaning 17.771531752633464 none 'g = quadric([1, 0.5, 0.5, 0, -1, 0, 0, 0,
 shape boxed_hyperboloid - none 'g = hyperboloid(2, 1, 1, within: box([5, 3, 10], centered: true))'
 shape boxed_sheets - none 'g = hyperboloid(1, 1, 1, sheets: 2, within: box([3, 3, 4], centered: true)) |> rotate([1, 2, 3], 40deg)'
 shape boxed_paraboloid - none 'g = paraboloid(1, 1, within: box([2, 2, 10], centered: true))'
+# Their bodies, closed by flat faces: the ball without its caps, a pyramid of 4 by 6 under the cone, an oblique cylinder, and two bodies.
+shape ball_body 295.309709437441 435.634181297764 'g = solid(ellipsoid(5, 5, 5, within: box([8, 8, 8], centered: true)))'
+shape tent_body - - 'g = solid(elliptic_cone(1, 1, 1, within: box([4, 6, 9]) |> translate([-2, -3, 0])))'
+shape leaning_body 26.657297628950204 8.885765876316732 'g = solid(quadric([1, 0.5, 0.5, 0, -1, 0, 0, 0, 0, -1], within: -1..1))'
+shape hyperboloid_body - - 'g = solid(hyperboloid(2, 1, 1, within: box([5, 3, 10], centered: true)))'
+shape sheets_body - - 'g = solid(hyperboloid(1, 1, 1, sheets: 2, within: box([3, 3, 4], centered: true))) |> rotate([1, 2, 3], 40deg)'
+shape saddle_body - - 'g = solid(hyperbolic_paraboloid(1, 1, within: box([3, 2, 1])))'
+shape mirrored_body - - 'g = solid(hyperboloid(2, 1, 1, within: box([5, 3, 10]))) |> reflect(plane([0, 0, 0], [1, 1, 0]))'
 
 # line NAME LENGTH 'script that defines g' [options]: the expected numbers stand in place of those of a shape.
 line() {

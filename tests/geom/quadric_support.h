@@ -8,7 +8,7 @@
 
 static uint64_t state_of_random = 1;
 
-static double random_in(double from, double to) {
+static inline double random_in(double from, double to) {
   state_of_random = state_of_random * 6364136223846793005u + 1442695040888963407u;
   return from + (to - from) * (double)(state_of_random >> 11) / 9007199254740992.0;
 }
@@ -28,7 +28,7 @@ static const double UNITS[][10] = {
 enum { CLASSES = 17, REAL = 12 };
 
 // Semi-axes, then turned (a third of them not), then moved.
-static CagQuadric random_quadric(const double unit[10], bool turned) {
+static inline CagQuadric random_quadric(const double unit[10], bool turned) {
   CagQuadric q, out;
   memcpy(q.c, unit, sizeof q.c);
   CagTransform t, turn;
