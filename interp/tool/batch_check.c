@@ -109,7 +109,7 @@ static bool check_values(CagBatch *b, const CagJob *job, const CagBatchRow *row,
 static bool check_pattern(CagBatch *b, const CagJob *job, const CagBatchRow *row) {
   static const char HELP[] = "write the number as %04d, such as film.%04d.png, and a % as %%";
   const char *output = job->cells[CAG_JOB_output];
-  const int places = output && row->renders ? cag_frames_places(output) : 0;
+  const int places = row->renders ? cag_frames_places(output) : 0;
   if (!row->film && places > 0)
     return cag_jobs_problem(&b->jobs, job, CODE_VALUE, "fill in frames, such as 0..47",
                             "the output '%s' has a place for a frame's number, but the row has no "
@@ -167,7 +167,7 @@ static bool check_row(CagBatch *b, size_t i) {
   CagTool scratch = {0};
   bool ok = check_script(b, job) && check_format(b, job, row);
   ok = ok && check_values(b, job, row, &scratch);
-  row->film = scratch.has_frames;
+  row->film = row->renders && scratch.has_frames;
   row->first = scratch.first_frame;
   row->last = scratch.last_frame;
   return ok && check_pattern(b, job, row) && check_tiles(b, job, row, &scratch) &&
@@ -308,9 +308,6 @@ static bool check_place(CagBatch *b, size_t i) {
   const CagTask *task =
       row->task_count ? &b->tasks[row->task + (size_t)(row->tile_columns * row->lines)] : NULL;
   if (!task) return true;
-  if (!strcmp(task->output, "-"))
-    return cag_jobs_problem(&b->jobs, job, CODE_PLACE, "name a file",
-                            "rows cannot share standard output");
   CagIoError err;
   char *path = cag_batch_path(b, task->output);
   if (!path) return false;

@@ -128,10 +128,6 @@ static bool start(Run *r, CagTask *task) {
   CagBatch *b = r->batch;
   Slot *slot = &r->slots[r->running];
   Join work = {b, task};
-  if (task->tile >= 0 && mkdir(b->tiles_folder, 0777) != 0 && errno != EEXIST) {
-    fail_start(r, task, "the folder for its tiles cannot be made beside the file of jobs");
-    return true;
-  }
   char **words = task->joins ? NULL : cag_batch_command(b, task, b->threads);
   const bool started = task->joins ? cag_child_start_work(&slot->child, join, &work, 0)
                                    : words && cag_child_start(&slot->child, words, b->folder,

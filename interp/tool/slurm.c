@@ -170,7 +170,6 @@ static bool prepare(const Array *a, char **script, CagIoError *err) {
   const CagBatch *b = a->batch;
   char *plan = NULL;
   mkdir(b->queue_folder, 0777);
-  mkdir(b->tiles_folder, 0777); // removed at the end when nothing is in it
   bool ok = mkdir(a->folder, 0777) == 0 ||
             cag_io_error_set(err, CAG_EXIT_FILE, NULL, "the folder '%s' cannot be made", a->folder);
   ok = ok && asprintf(&plan, "%s/plan.json", a->folder) >= 0 &&
