@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "interp/render/exr.h"
+#include "interp/render/exr_complaint.h"
 
 // Largest file taken into memory: an uncompressed float picture of CAG_IMAGE_SAMPLES_MAX and its
 // header fit.
@@ -29,7 +30,7 @@ typedef struct {
   const unsigned char *bytes;
   size_t size;
   const char *shown;
-  char complaint[256];
+  CagExrComplaint complaint;
 } Source;
 
 static bool fail(CagIoError *err, const Source *source, const char *what) {
@@ -44,21 +45,7 @@ static bool fail_code(CagIoError *err, const Source *source, exr_result_t code) 
         "cannot read '%s' as EXR: its compression, for channels like these, is not one that "
         "OpenEXRCore decodes rightly",
         source->shown);
-  return fail(err, source,
-              source->complaint[0] ? source->complaint : exr_get_default_error_message(code));
-}
-
-// The library's messages may begin with the file's name, which ours say already.
-static void keep_complaint(exr_const_context_t ctxt, exr_result_t code, const char *message) {
-  void *user = NULL;
-  (void)code;
-  if (!ctxt || exr_get_user_data(ctxt, &user) != EXR_ERR_SUCCESS || !user) return;
-  Source *source = user;
-  if (source->complaint[0] || !message) return;
-  size_t named = strlen(source->shown);
-  if (!strncmp(message, source->shown, named) && !strncmp(message + named, ": ", 2))
-    message += named + 2;
-  snprintf(source->complaint, sizeof source->complaint, "%s", message);
+  return fail(err, source, cag_exr_complaint_text(&source->complaint, code));
 }
 
 static int64_t source_read(exr_const_context_t ctxt, void *user, void *buffer, uint64_t n,
@@ -143,7 +130,7 @@ static void put_row(const PartReader *r, const exr_coding_channel_info_t *c, flo
 
 // The last step of the decoder, in the place of the library's, which in 3.1 confuses coarser
 // samplings. The chunk's data are its rows from above, and in each row the samples of the channels
-// that have one there.
+// that have one there. Windows begin and end between samples: the library checks this.
 static exr_result_t unpack(exr_decode_pipeline_t *d) {
   const PartReader *r = d->decoding_user_data;
   const uint8_t *at = d->unpacked_buffer;
@@ -154,13 +141,10 @@ static exr_result_t unpack(exr_decode_pipeline_t *d) {
       const exr_coding_channel_info_t *c = &d->channels[i];
       const int64_t xs = c->x_samples;
       if (y % c->y_samples != 0) continue;
-      int64_t x = r->x0;
-      while (x % xs != 0) x++;
-      const int64_t end = r->x0 + d->chunk.width;
-      const int64_t count = x < end ? (end - x + xs - 1) / xs : 0;
+      const int64_t count = d->chunk.width / xs;
       const uint64_t bytes = (uint64_t)count * (uint64_t)c->bytes_per_element;
       if (bytes > rest) return EXR_ERR_CORRUPT_CHUNK;
-      put_row(r, c, cag_image_plane(r->image, r->first_channel + (size_t)i), at, x, y, count);
+      put_row(r, c, cag_image_plane(r->image, r->first_channel + (size_t)i), at, r->x0, y, count);
       at += bytes;
       rest -= bytes;
     }
@@ -197,13 +181,14 @@ static exr_result_t read_chunk(PartReader *r, const exr_chunk_info_t *chunk, int
     r->decoder.unpack_and_convert_fn = unpack;
     r->decoder.decoding_user_data = r;
   }
+  // The library does not check the size of a chunk that is not compressed.
+  if (!r->decompress && chunk->packed_size != chunk->unpacked_size) return EXR_ERR_CORRUPT_CHUNK;
   return exr_decoding_run(r->file, r->part, &r->decoder);
 }
 
 static exr_result_t read_scanlines(PartReader *r) {
   int32_t lines = 0;
   exr_result_t rv = exr_get_scanlines_per_chunk(r->file, r->part, &lines);
-  if (!rv && lines < 1) rv = EXR_ERR_CORRUPT_CHUNK;
   for (int64_t y = r->data.min.y; !rv && y <= r->data.max.y; y += lines) {
     exr_chunk_info_t chunk;
     rv = exr_read_scanline_chunk_info(r->file, r->part, (int)y, &chunk);
@@ -249,7 +234,7 @@ static exr_result_t read_part(exr_context_t file, int part, size_t first_channel
 static void name_channel(CagImage *image, size_t c, exr_context_t file, int part,
                          const char *channel) {
   const char *name = NULL;
-  if (part == 0 || exr_get_name(file, part, &name) != EXR_ERR_SUCCESS || !name) {
+  if (part == 0 || exr_get_name(file, part, &name) != EXR_ERR_SUCCESS) {
     cag_image_set_name(image, c, channel);
     return;
   }
@@ -265,8 +250,7 @@ static void name_channel(CagImage *image, size_t c, exr_context_t file, int part
 // where OpenEXRCore 3.1 errs for coarser samplings, and in B44 for channels that are not half, up
 // to reading beyond its memory: such files are refused.
 static bool survey_channels(exr_context_t file, const Source *source, int part,
-                            const exr_attr_chlist_t *list, exr_storage_t storage, bool *all_half,
-                            CagIoError *err) {
+                            const exr_attr_chlist_t *list, bool *all_half, CagIoError *err) {
   exr_compression_t kind;
   exr_result_t rv = exr_get_compression(file, part, &kind);
   if (rv) return fail_code(err, source, rv);
@@ -276,8 +260,6 @@ static bool survey_channels(exr_context_t file, const Source *source, int part,
     const exr_attr_chlist_entry_t *c = &list->entries[i];
     const bool coarse = c->x_sampling != 1 || c->y_sampling != 1;
     *all_half &= c->pixel_type == EXR_PIXEL_HALF;
-    if (c->x_sampling < 1 || c->y_sampling < 1 || (coarse && storage == EXR_STORAGE_TILED))
-      return fail(err, source, "a channel has a sampling that cannot be");
     if ((structured && coarse) || (b44 && c->pixel_type != EXR_PIXEL_HALF))
       return fail_code(err, source, EXR_ERR_FEATURE_NOT_IMPLEMENTED);
   }
@@ -297,8 +279,7 @@ static bool survey(exr_context_t file, const Source *source, int parts, size_t *
     if (rv) return fail_code(err, source, rv);
     if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
       return fail(err, source, "it holds deep data (several samples per pixel)");
-    if (!survey_channels(file, source, p, list, storage, all_half, err)) return false;
-    if (list->num_channels < 1) return fail(err, source, "a part has no channels");
+    if (!survey_channels(file, source, p, list, all_half, err)) return false;
     *channels += (size_t)list->num_channels;
   }
   return true;
@@ -306,14 +287,12 @@ static bool survey(exr_context_t file, const Source *source, int parts, size_t *
 
 // Takes the facts of the header that the list can hold.
 static bool read_metadata(exr_context_t file, CagExrMetadata *out, CagIoError *err) {
-  int32_t count = 0;
-  if (exr_get_attribute_count(file, 0, &count) != EXR_ERR_SUCCESS) return true;
   bool ok = true;
-  for (int32_t i = 0; ok && i < count; i++) {
-    const exr_attribute_t *a;
-    if (exr_get_attribute_by_index(file, 0, EXR_ATTR_LIST_FILE_ORDER, i, &a) != EXR_ERR_SUCCESS)
-      continue;
-    if (!a->name || !a->name[0] || cag_exr_name_is_reserved(a->name)) continue;
+  const exr_attribute_t *a;
+  for (int32_t i = 0; ok && exr_get_attribute_by_index(file, 0, EXR_ATTR_LIST_FILE_ORDER, i, &a) ==
+                                EXR_ERR_SUCCESS;
+       i++) {
+    if (cag_exr_name_is_reserved(a->name)) continue;
     double matrix[16];
     switch (a->type) {
     case EXR_ATTR_STRING:
@@ -348,7 +327,6 @@ static bool read_open(exr_context_t file, const Source *source, CagImage *out, b
 
   int64_t width = (int64_t)display.max.x - display.min.x + 1;
   int64_t height = (int64_t)display.max.y - display.min.y + 1;
-  if (width < 1 || height < 1) return fail(err, source, "its display window is empty");
   CagIoError inner;
   if (!cag_image_create(out, (size_t)width, (size_t)height, channels, &inner))
     return cag_io_error_set(err, inner.exit_status, inner.help, "cannot read '%s' as EXR: %.300s",
@@ -372,16 +350,27 @@ static bool read_open(exr_context_t file, const Source *source, CagImage *out, b
 // Opens the bytes of `source`, to be closed with exr_finish when the result is 0.
 static exr_result_t open_source(Source *source, exr_context_t *file) {
   exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  setup.error_handler_fn = keep_complaint;
+  setup.error_handler_fn = cag_exr_complaint_keep;
   setup.user_data = source;
   setup.read_fn = source_read;
   setup.size_fn = source_size;
   setup.max_image_width = setup.max_image_height = (int)CAG_IMAGE_SIDE_MAX;
-  setup.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
-  *file = NULL;
-  const exr_result_t rv = exr_start_read(file, source->shown, &setup);
-  if (rv && *file) exr_finish(file);
-  return rv;
+  setup.flags = EXR_CONTEXT_FLAG_STRICT_HEADER | EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION;
+  return exr_start_read(file, source->shown, &setup);
+}
+
+static bool read_source(Source *source, CagImage *out, CagExrMetadata *metadata, bool *all_half,
+                        CagIoError *err) {
+  exr_context_t file;
+  const exr_result_t rv = open_source(source, &file);
+  if (rv) return fail_code(err, source, rv);
+  bool ok = read_open(file, source, out, all_half, err);
+  if (ok && metadata && !read_metadata(file, metadata, err)) {
+    cag_image_free(out);
+    ok = false;
+  }
+  exr_finish(&file);
+  return ok;
 }
 
 bool cag_exr_read_pixels(const void *bytes, size_t size, const char *shown, CagImage *out,
@@ -390,15 +379,9 @@ bool cag_exr_read_pixels(const void *bytes, size_t size, const char *shown, CagI
   if (!size) return fail(err, &source, "the file is empty");
   if (size < sizeof MAGIC || memcmp(bytes, MAGIC, sizeof MAGIC) != 0)
     return fail(err, &source, "it is not an EXR file (its first bytes are not those of one)");
-  exr_context_t file;
-  exr_result_t rv = open_source(&source, &file);
-  if (rv) return fail_code(err, &source, rv);
-  bool ok = read_open(file, &source, out, all_half, err);
-  if (ok && metadata && !read_metadata(file, metadata, err)) {
-    cag_image_free(out);
-    ok = false;
-  }
-  exr_finish(&file);
+  cag_exr_complaint_listen(&source.complaint);
+  const bool ok = read_source(&source, out, metadata, all_half, err);
+  cag_exr_complaint_listen(NULL);
   return ok;
 }
 

@@ -11,6 +11,7 @@
 
 #include "interp/render/atomic_file.h"
 #include "interp/render/exr.h"
+#include "interp/render/exr_complaint.h"
 
 // Names up to this many bytes need no flag in the file for long ones.
 #define SHORT_NAME_MAX 31
@@ -20,36 +21,20 @@ typedef struct {
   unsigned char *bytes;
   size_t size, capacity;
   const char *shown;
-  char complaint[256];
+  CagExrComplaint complaint;
 } Sink;
 
-static void keep_first(Sink *sink, const char *message) {
-  if (!sink->complaint[0])
-    strncpy(sink->complaint, message ? message : "", sizeof sink->complaint - 1);
-}
-
-static void keep_complaint(exr_const_context_t ctxt, exr_result_t code, const char *message) {
-  void *user = NULL;
-  (void)code;
-  if (ctxt && exr_get_user_data(ctxt, &user) == EXR_ERR_SUCCESS && user) keep_first(user, message);
-}
-
-// The library holds its lock during this call, and its error function would wait for the lock. So
-// errors are kept here.
 static int64_t sink_write(exr_const_context_t ctxt, void *user, const void *data, uint64_t n,
                           uint64_t offset, exr_stream_error_func_ptr_t error_cb) {
   Sink *sink = user;
-  (void)ctxt, (void)error_cb;
-  if (n > SIZE_MAX / 4 || offset > SIZE_MAX / 4) {
-    keep_first(sink, "the file grows too large");
-    return -1;
-  }
-  size_t end = (size_t)(offset + n);
+  (void)error_cb;
+  // No sum overflows: a picture has at most CAG_IMAGE_SAMPLES_MAX samples.
+  const size_t end = (size_t)(offset + n);
   if (end > sink->capacity) {
     size_t capacity = end + end / 2 + 65536;
     unsigned char *bytes = realloc(sink->bytes, capacity);
     if (!bytes) {
-      keep_first(sink, "no memory for the compressed picture");
+      cag_exr_complaint_keep(ctxt, EXR_ERR_OUT_OF_MEMORY, "no memory for the compressed picture");
       return -1;
     }
     sink->bytes = bytes;
@@ -150,9 +135,10 @@ static bool check_names(const char *path, const CagImage *image, CagIoError *err
 static bool encode(Sink *sink, const CagImage *image, CagExrPixels pixels,
                    const CagExrMetadata *metadata, CagIoError *err) {
   exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  setup.error_handler_fn = keep_complaint;
+  setup.error_handler_fn = cag_exr_complaint_keep;
   setup.user_data = sink;
   setup.write_fn = sink_write;
+  cag_exr_complaint_listen(&sink->complaint);
   exr_context_t file = NULL;
   exr_result_t rv = exr_start_write(&file, sink->shown, EXR_WRITE_FILE_DIRECTLY, &setup);
   if (!rv) rv = write_header(file, image, pixels, metadata);
@@ -161,9 +147,10 @@ static bool encode(Sink *sink, const CagImage *image, CagExrPixels pixels,
     exr_result_t finished = exr_finish(&file);
     if (!rv) rv = finished;
   }
+  cag_exr_complaint_listen(NULL);
   if (rv == EXR_ERR_SUCCESS) return true;
   return cag_io_error_set(err, CAG_EXIT_FILE, NULL, "cannot write '%s' as EXR: %s", sink->shown,
-                          sink->complaint[0] ? sink->complaint : exr_get_default_error_message(rv));
+                          cag_exr_complaint_text(&sink->complaint, rv));
 }
 
 bool cag_exr_write(const char *path, const CagImage *image, CagExrPixels pixels,
