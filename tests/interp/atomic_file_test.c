@@ -7,13 +7,17 @@
 
 #include <cmocka.h>
 #include <dirent.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/time.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -160,12 +164,19 @@ static void permissions_are_kept_or_those_of_the_umask(void **state) {
 
 static void places_that_are_no_files_are_refused(void **state) {
   (void)state;
-  static const struct {
+  char long_name[300] = {0};
+  memset(long_name, 'n', 256);
+  const struct {
     const char *path, *says;
   } ROWS[] = {
-      {"", "empty name"},  {".", "folder"},     {"sub", "it is a folder"},     {"sub/", "folder"},
-      {"no/a", "No such"}, {"file/a", "Not a"}, {"dangling", "symbolic link"},
+      {"", "empty name"},     {".", "folder"},         {"sub", "it is a folder"},
+      {"sub/", "folder"},     {"no/a", "No such"},     {"file/a", "Not a"},
+      {"new/", "a folder's"}, {"no/.", "a folder's"},  {"no/..", "a folder's"},
+      {"socket", "a socket"}, {long_name, "too long"}, {"dangling", "symbolic link"},
   };
+  const int s = socket(AF_UNIX, SOCK_STREAM, 0);
+  const struct sockaddr_un place = {.sun_family = AF_UNIX, .sun_path = "socket"};
+  assert_int_equal(bind(s, (const struct sockaddr *)&place, sizeof place), 0);
   mkdir("sub", 0777);
   put_file("file", "");
   assert_int_equal(symlink("nowhere", "dangling"), 0);
@@ -175,6 +186,8 @@ static void places_that_are_no_files_are_refused(void **state) {
     if (!strstr(err.message, ROWS[i].says)) fail_msg("%s: %s", ROWS[i].path, err.message);
     assert_int_equal(err.exit_status, CAG_EXIT_FILE);
   }
+  close(s);
+  unlink("socket");
   unlink("dangling");
   unlink("file");
   rmdir("sub");
@@ -206,6 +219,64 @@ static void a_device_is_written_not_replaced(void **state) {
   struct stat st;
   stat("/dev/null", &st);
   assert_true(S_ISCHR(st.st_mode));
+}
+
+static int fifo; // the reading end of the one below
+static size_t fifo_bytes, ticks;
+
+static void drain_fifo(void) {
+  char bytes[4096];
+  for (ssize_t n; (n = read(fifo, bytes, sizeof bytes)) > 0; fifo_bytes += (size_t)n)
+    for (ssize_t i = 0; i < n; i++)
+      if (bytes[i] != (char)((fifo_bytes + (size_t)i) % 251)) _exit(1);
+}
+
+// At every second signal a write that waits is only interrupted.
+static void on_tick(int number) {
+  (void)number;
+  const int saved = errno;
+  if (ticks++ % 2) drain_fifo();
+  errno = saved;
+}
+
+// A write to a FIFO waits for its reader, and signals interrupt it.
+static void signals_lose_nothing_that_is_written(void **state) {
+  (void)state;
+  enum { SIZE = 500000 };
+  assert_int_equal(mkfifo("fifo", 0600), 0);
+  fifo = open("fifo", O_RDONLY | O_NONBLOCK);
+  const struct sigaction action = {.sa_handler = on_tick};
+  struct sigaction before;
+  const struct itimerval often = {{0, 3000}, {0, 3000}}, never = {{0, 0}, {0, 0}};
+  sigaction(SIGALRM, &action, &before);
+  CagAtomicFile *f = open_file("fifo");
+  char *bytes = malloc(SIZE);
+  for (size_t i = 0; i < SIZE; i++) bytes[i] = (char)(i % 251);
+  setitimer(ITIMER_REAL, &often, NULL);
+  cag_atomic_file_write(f, bytes, SIZE);
+  const bool good = cag_atomic_file_commit(f, NULL);
+  setitimer(ITIMER_REAL, &never, NULL);
+  sigaction(SIGALRM, &before, NULL);
+  drain_fifo();
+  assert_true(good);
+  assert_int_equal(fifo_bytes, SIZE);
+  free(bytes);
+  close(fifo);
+  unlink("fifo");
+}
+
+static void a_device_that_cannot_be_opened_is_told(void **state) {
+  (void)state;
+  const pid_t child = fork();
+  if (child == 0) {
+    setsid(); // a process without a terminal has no /dev/tty
+    CagIoError err = {0};
+    CagAtomicFile *f = cag_atomic_file_open("/dev/tty", &err);
+    _exit(!f && strstr(err.message, "cannot write '/dev/tty'") ? 0 : 1);
+  }
+  int status;
+  waitpid(child, &status, 0);
+  assert_int_equal(status, 0);
 }
 
 static void a_full_disk_is_an_error(void **state) {
@@ -335,6 +406,15 @@ static void memory_takes_the_same_writes(void **state) {
   assert_true(size == 0 && bytes[0] == 0);
   free(bytes);
   cag_atomic_file_abort(cag_atomic_file_open_memory(NULL));
+  volatile int stop = 1;
+  CagIoError err = {0};
+  f = cag_atomic_file_open_memory(NULL);
+  cag_atomic_file_text(f, "text");
+  cag_stop_lend(&stop);
+  const bool written = cag_atomic_file_commit_memory(f, &bytes, &size, &err);
+  cag_stop_lend(NULL);
+  assert_false(written);
+  assert_int_equal(err.exit_status, CAG_EXIT_INTERRUPTED);
 }
 
 static void a_try_says_what_an_open_would_and_leaves_nothing(void **state) {
@@ -349,6 +429,8 @@ static void a_try_says_what_an_open_would_and_leaves_nothing(void **state) {
   assert_content("old", "old");
   mkdir("dir", 0777);
   symlink("nowhere", "link");
+  if (geteuid() == 0) assert_true(cag_atomic_file_try("/cag-file-of-a-test", &err));
+  assert_int_equal(access("/cag-file-of-a-test", F_OK), -1);
   static const char *const REFUSED[] = {"", "dir", "link", "none/a", "old/a", "/proc/a", ".."};
   for (size_t i = 0; i < sizeof REFUSED / sizeof *REFUSED; i++) {
     CagIoError other = {0};
@@ -371,6 +453,8 @@ static void work_that_is_to_end_writes_nothing(void **state) {
   CagAtomicFile *f = open_file("a");
   cag_atomic_file_text(f, "later");
   stop = 1;
+  cag_atomic_file_flush(f);
+  cag_atomic_file_expect(f, 1 << 30); // no room is taken any more
   const bool written = cag_atomic_file_commit(f, &err);
   cag_stop_lend(NULL);
   assert_false(written);
@@ -386,6 +470,7 @@ static void standard_output_is_a_dash(void **state) {
   int saved = dup(STDOUT_FILENO), to = open("out", O_WRONLY | O_CREAT, 0666);
   dup2(to, STDOUT_FILENO);
   printf("before ");
+  cag_atomic_file_abort(open_file("-")); // leaves it open
   CagAtomicFile *f = open_file("-");
   cag_atomic_file_text(f, "data ");
   bool ok = cag_atomic_file_commit(f, NULL);
@@ -409,6 +494,8 @@ int main(void) {
       cmocka_unit_test(places_that_are_no_files_are_refused),
       cmocka_unit_test(a_link_stays_a_link),
       cmocka_unit_test(a_device_is_written_not_replaced),
+      cmocka_unit_test(signals_lose_nothing_that_is_written),
+      cmocka_unit_test(a_device_that_cannot_be_opened_is_told),
       cmocka_unit_test(a_full_disk_is_an_error),
       cmocka_unit_test(a_file_that_cannot_grow_leaves_the_old_one),
       cmocka_unit_test(a_signal_leaves_no_temporary),

@@ -105,6 +105,11 @@ static void pictures_of_other_shape_are_refused(void **state) {
   assert_int_equal(err.exit_status, CAG_EXIT_SCRIPT);
   assert_false(cag_compare_images(&a, "a.exr", &c, "c.exr", 0, &r, &err));
   assert_non_null(strstr(err.message, "'a.exr' has a channel 'R', but 'c.exr' has none"));
+  CagImage d = picture(2, 2, (const char *const[]){"R", "G", "B", "A"}, 4), map;
+  assert_false(cag_compare_images(&a, "a.exr", &d, "d.exr", 0, &r, &err));
+  assert_non_null(strstr(err.message, "'d.exr' has a channel 'A', but 'a.exr' has none"));
+  assert_false(cag_compare_heatmap(&a, &d, &map, &err));
+  cag_image_free(&d);
   cag_image_free(&a);
   cag_image_free(&b);
   cag_image_free(&c);
@@ -154,6 +159,68 @@ static void middle_gray_has_lightness_50(void **state) {
   assert_true(fabs(lab[0] - 50) < 1e-12 && fabs(lab[1]) < 1e-12 && fabs(lab[2]) < 1e-12);
 }
 
+static void assert_print(const CagCompareReport *r, const char *expected) {
+  char *text = NULL;
+  size_t n;
+  FILE *out = open_memstream(&text, &n);
+  cag_compare_print(r, out);
+  fclose(out);
+  if (!strstr(text, expected)) fail_msg("expected %s in:\n%s", expected, text);
+  free(text);
+}
+
+static void the_table_tells_what_cannot_be_compared(void **state) {
+  (void)state;
+  static const struct {
+    float x[2], y[2];
+    const char *row;
+  } ROWS[] = {
+      {{1, 2}, {1, 2}, "Z                       0            0              -       same\n"},
+      {{1, 0}, {0, 0}, "Z                0.707107            1           0, 0    3.01 dB\n"},
+      {{NAN, NAN}, {NAN, NAN}, "-       same\n"},
+      {{NAN, NAN}, {1, 2}, "-          -\n"},
+      {{1, 2}, {INFINITY, 2}, "-          -\n"},
+      {{NAN, 2}, {1, INFINITY}, "NaN or infinite: 1 in the first, 1 in the second, 2 unlike\n"},
+      {{1, 2}, {1, NAN}, "NaN or infinite: 0 in the first, 1 in the second, 1 unlike\n"},
+      {{1, 2}, {1, 3}, "pixels that differ by more than 0.5: 1 of 2 (50%)\n"},
+  };
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+    CagImage a = picture(2, 1, Z, 1), b = picture(2, 1, Z, 1);
+    memcpy(a.data, ROWS[i].x, sizeof ROWS[i].x);
+    memcpy(b.data, ROWS[i].y, sizeof ROWS[i].y);
+    CagCompareReport r;
+    assert_true(cag_compare_images(&a, "a", &b, "b", 0.5, &r, NULL));
+    assert_print(&r, ROWS[i].row);
+    cag_compare_report_free(&r);
+    cag_image_free(&a);
+    cag_image_free(&b);
+  }
+}
+
+static void pictures_without_colors_have_no_color_difference(void **state) {
+  (void)state;
+  static const char *const DATA[] = {"depth", "id"}, *const GRAY[] = {"Y", "id"};
+  for (int gray = 0; gray < 2; gray++) {
+    CagImage a = picture(2, 1, gray ? GRAY : DATA, 2), b = picture(2, 1, gray ? GRAY : DATA, 2);
+    CagCompareReport r;
+    assert_true(cag_compare_images(&a, "a", &b, "b", 0, &r, NULL));
+    assert_true(r.has_color == (gray == 1));
+    assert_print(&r, gray ? "(CIEDE2000): mean 0, largest 0\n" : "0 of 2 (0%)");
+    cag_compare_report_free(&r);
+    cag_image_free(&a);
+    cag_image_free(&b);
+  }
+}
+
+static void the_heatmap_of_equal_pictures_is_black(void **state) {
+  (void)state;
+  CagImage a = picture(2, 2, Z, 1), map;
+  assert_true(cag_compare_heatmap(&a, &a, &map, NULL));
+  for (size_t i = 0; i < 4 * 4; i++) assert_true(map.data[i] == 0);
+  cag_image_free(&map);
+  cag_image_free(&a);
+}
+
 static void the_heatmap_runs_to_white_at_the_worst_pixel(void **state) {
   (void)state;
   CagImage a = picture(4, 1, Z, 1), b = picture(4, 1, Z, 1), map;
@@ -182,6 +249,9 @@ int main(void) {
       cmocka_unit_test(black_against_white_is_a_hundred),
       cmocka_unit_test(middle_gray_has_lightness_50),
       cmocka_unit_test(the_heatmap_runs_to_white_at_the_worst_pixel),
+      cmocka_unit_test(the_heatmap_of_equal_pictures_is_black),
+      cmocka_unit_test(the_table_tells_what_cannot_be_compared),
+      cmocka_unit_test(pictures_without_colors_have_no_color_difference),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -188,6 +188,95 @@ static void bad_requests_and_files_are_errors(void **state) {
   cag_image_free(&image);
 }
 
+// Keywords that PNG does not allow are only warned of by the library.
+static void texts_with_odd_keywords_do_no_harm(void **state) {
+  (void)state;
+  const float light[1] = {1};
+  char long_key[120] = {0};
+  memset(long_key, 'k', sizeof long_key - 1);
+  const CagPngText texts[3] = {{" Two  spaces ", "a"}, {long_key, "b"}, {"Title", "c"}};
+  CagImage image = gray_row(light, 1), again;
+  CagIoError err = {0};
+  if (!cag_png_write(path, &image, NULL, texts, 3, &err)) fail_msg("%s", err.message);
+  assert_true(cag_png_read(path, &again, NULL));
+  assert_int_equal(again.width, 1);
+  cag_image_free(&again);
+  cag_image_free(&image);
+}
+
+// The cyclic redundancy check of PNG (ISO 3309), bit by bit.
+static uint32_t crc(const unsigned char *bytes, size_t n) {
+  uint32_t c = ~0u;
+  for (size_t i = 0; i < n; i++) {
+    c ^= bytes[i];
+    for (int k = 0; k < 8; k++) c = c & 1 ? c >> 1 ^ 0xedb88320u : c >> 1;
+  }
+  return ~c;
+}
+
+static void put_chunk(FILE *f, const char *type, const void *data, size_t n) {
+  unsigned char bytes[64] = {0};
+  memcpy(bytes, type, 4);
+  memcpy(bytes + 4, data, n);
+  const uint32_t numbers[2] = {(uint32_t)n, crc(bytes, n + 4)};
+  for (int k = 24; k >= 0; k -= 8) fputc((int)(numbers[0] >> k & 255), f);
+  fwrite(bytes, 1, n + 4, f);
+  for (int k = 24; k >= 0; k -= 8) fputc((int)(numbers[1] >> k & 255), f);
+}
+
+// Heads of files: a picture of too many pixels is refused before memory is taken for it.
+static void a_png_too_large_is_refused(void **state) {
+  (void)state;
+  static const struct {
+    unsigned width, height;
+    const char *says;
+  } ROWS[] = {{60000, 60000, "too large"}, {200000, 1, ""}, {0, 1, ""}};
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+    const unsigned w = ROWS[i].width, h = ROWS[i].height;
+    const unsigned char head[13] = {(unsigned char)(w >> 24),
+                                    (unsigned char)(w >> 16),
+                                    (unsigned char)(w >> 8),
+                                    (unsigned char)w,
+                                    (unsigned char)(h >> 24),
+                                    (unsigned char)(h >> 16),
+                                    (unsigned char)(h >> 8),
+                                    (unsigned char)h,
+                                    8,
+                                    2};
+    FILE *f = fopen(path, "wb");
+    fwrite("\x89PNG\r\n\x1a\n", 1, 8, f);
+    put_chunk(f, "IHDR", head, sizeof head);
+    put_chunk(f, "IDAT", "\0\0\0\0", 4);
+    put_chunk(f, "IEND", "", 0);
+    fclose(f);
+    CagImage out;
+    CagIoError err = {0};
+    assert_false(cag_png_read(path, &out, &err));
+    if (!strstr(err.message, path) || !strstr(err.message, ROWS[i].says))
+      fail_msg("%u by %u: %s", w, h, err.message);
+  }
+}
+
+// A disk that is full is met while rows are written, when there are more than the buffer holds.
+static void a_full_disk_is_told_under_way(void **state) {
+  (void)state;
+  enum { SIDE = 900 };
+  CagImage image;
+  assert_true(cag_image_create(&image, SIDE, SIDE, 4, NULL));
+  for (size_t c = 0; c < 4; c++)
+    cag_image_set_name(&image, c, (const char *[]){"R", "G", "B", "A"}[c]);
+  uint32_t x = 1;
+  for (size_t i = 0; i < 4 * SIDE * SIDE; i++)
+    image.data[i] = (float)((x = x * 1664525u + 1013904223u) >> 8) * 0x1p-24f;
+  const CagPngOptions deep = {.bits = 16, .drop_alpha = true};
+  CagIoError err = {0};
+  assert_false(cag_png_write("/dev/full", &image, &deep, NULL, 0, &err));
+  assert_non_null(strstr(err.message, "No space left"));
+  assert_false(cag_png_write("/nowhere/a.png", &image, &deep, NULL, 0, &err));
+  assert_non_null(strstr(err.message, "/nowhere/a.png"));
+  cag_image_free(&image);
+}
+
 static void a_png_cut_anywhere_is_an_error(void **state) {
   (void)state;
   float light[50];
@@ -220,6 +309,9 @@ int main(void) {
       cmocka_unit_test(texts_are_stored),
       cmocka_unit_test(bad_requests_and_files_are_errors),
       cmocka_unit_test(a_png_cut_anywhere_is_an_error),
+      cmocka_unit_test(texts_with_odd_keywords_do_no_harm),
+      cmocka_unit_test(a_png_too_large_is_refused),
+      cmocka_unit_test(a_full_disk_is_told_under_way),
   };
   return cmocka_run_group_tests(tests, make_file, remove_file);
 }

@@ -242,6 +242,15 @@ static void files_outside_the_folder_are_refused(void **state) {
       {"height_field { tga\n N }", "line 2"},
       {"text { ttf \"~/font.ttf\" \"text\" 1, 0 }", "~/font.ttf"},
       {"// \"\n#include \"\\x2fetc/passwd\"", "line 2"},
+      {"/* one\n*/ /*\n/**/ */\n#include \"/a\"", "line 4"},
+      {"#include \"\"", "names the file ''"},
+      {"#include \"..\"", "'..'"},
+      {"#include \"a/..\"", "'a/..'"},
+      {"#include \"a\\\"b\"", "line 1"},
+      {"#include \"/open", "'/open'"},
+      {"pigment { image_map \"/x.png\" }", "'/x.png'"},
+      {"pigment { image_map { png concat(\"a\", \"b\") } }", "computes"},
+      {"pigment { image_map { concat(\"a\", \"b\") } }", "computes"},
   };
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     CagPovrayJob job = job_for(ROWS[i].scene);
@@ -264,6 +273,18 @@ static void names_in_the_folder_and_other_texts_are_let_through(void **state) {
       "text { ttf internal 1 \"/a\" 1, 0 }",
       "pigment { image_map { exr \"sky..v2.exr\" map_type 1 } }",
       "#declare Png = 1; #declare s = \"unended",
+      "#declare s = \"unended\\",
+      "#include \"a..b.inc\"",
+      "#include \"..b.inc\"",
+      "#include \"a/..b\"",
+      "#include \"b../a\"",
+      "pigment { image_map { N } }",
+      "pigment { image_map N }",
+      "image_map",
+      "png + 1",
+      "/*/ \"#include \"/etc/passwd\" */",
+      "// ends in a slash /",
+      "/",
       "/* unended /* twice */",
       "#",
       "",
@@ -275,28 +296,38 @@ static void names_in_the_folder_and_other_texts_are_let_through(void **state) {
   }
 }
 
-// Puts a shell script in the place of POV-Ray while `job` runs, expects it to fail, and gives the
-// error.
-static CagIoError run_fake(const char *script, CagPovrayJob job) {
-  char place[96], path[160];
-  snprintf(place, sizeof place, "%s/bin", folder);
-  mkdir(place, 0777);
-  snprintf(path, sizeof path, "%s/povray", place);
-  FILE *f = fopen(path, "w");
+// Puts a shell script in the place of POV-Ray: bin/povray in our folder.
+static char fake_bin[80], fake_program[96];
+
+static void begin_fake(const char *script) {
+  snprintf(fake_bin, sizeof fake_bin, "%s/bin", folder);
+  snprintf(fake_program, sizeof fake_program, "%s/bin/povray", folder);
+  mkdir(fake_bin, 0777);
+  FILE *f = fopen(fake_program, "w");
   fprintf(f, "#!/bin/sh\n%s\n", script);
   fclose(f);
-  chmod(path, 0755);
+  chmod(fake_program, 0755);
+}
+
+static void end_fake(void) {
+  unlink(fake_program);
+  rmdir(fake_bin);
+}
+
+// Puts it there while `job` runs, expects the job to fail, and gives the error.
+static CagIoError run_fake(const char *script, CagPovrayJob job) {
   char list[4300];
-  snprintf(list, sizeof list, "%s:%s", place, real_path);
+  const size_t files_before = count_entries();
+  begin_fake(script);
+  snprintf(list, sizeof list, "%s:%s", fake_bin, real_path);
   setenv("PATH", list, 1);
   CagPovrayResult result;
   CagIoError err = {0};
   bool ok = cag_povray_render(&job, &result, &err);
   setenv("PATH", real_path, 1);
-  unlink(path);
-  rmdir(place);
+  end_fake();
   assert_false(ok);
-  assert_int_equal(count_entries(), 0);
+  assert_int_equal(count_entries(), files_before);
   return err;
 }
 
@@ -336,6 +367,68 @@ static void a_povray_without_picture_is_told(void **state) {
   (void)state;
   CagIoError err = run_fake("exit 0", job_for(SQUARE));
   assert_non_null(strstr(err.message, "wrote no picture"));
+  static const char *const SCRIPTS[] = {": > out.exr", "mkdir out.exr", "echo x > out.exr; exit 3",
+                                        "echo The disk is full; exit 0",
+                                        "echo 'Render Statistics'; : > out.exr; sleep 0.2; exit 0"};
+  static const char *const SAYS[] = {"wrote no picture", "wrote no picture", "exit status 3",
+                                     "wrote no picture; its last lines were:\nThe disk is full",
+                                     "wrote no picture"};
+  for (size_t i = 0; i < sizeof SCRIPTS / sizeof *SCRIPTS; i++) {
+    err = run_fake(SCRIPTS[i], job_for(SQUARE));
+    if (!strstr(err.message, SAYS[i])) fail_msg("%s: %s", SCRIPTS[i], err.message);
+  }
+}
+
+// The line of the scene that an error names, where it is of the scene and has it.
+static void the_line_of_an_error_is_shown(void **state) {
+  (void)state;
+  static const struct {
+    const char *file, *line, *says;
+  } ROWS[] = {
+      {"scene.pov", "1", "'scene.pov': Bad\none"}, {"scene.pov", "2", "'scene.pov': Bad\ntwo"},
+      {"scene.pov", "3", "'scene.pov': Bad"},      {"scene.pov", "4", "'scene.pov': Bad\nfour"},
+      {"scene.pov", "99", "'scene.pov': Bad"},     {"a.inc", "1", "'a.inc': Bad"},
+  };
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+    char script[128];
+    snprintf(script, sizeof script, "echo \"File '%s' line %s: Parse Error: Bad\"; exit 1",
+             ROWS[i].file, ROWS[i].line);
+    const CagIoError err = run_fake(script, job_for("one\n \t two\r\n\t\nfour"));
+    const size_t n = strlen(err.message), k = strlen(ROWS[i].says);
+    if (n < k || strcmp(err.message + n - k, ROWS[i].says) != 0) fail_msg("%s", err.message);
+  }
+  char scene[400];
+  memset(scene, 'x', sizeof scene - 1);
+  scene[sizeof scene - 1] = 0;
+  const CagIoError err =
+      run_fake("echo \"File 'scene.pov' line 1: Error: Bad\"; exit 1", job_for(scene));
+  assert_int_equal(strspn(strrchr(err.message, '\n') + 1, "x"), 120); // of a long line
+}
+
+// The arguments of a job, as POV-Ray gets them.
+static void a_job_becomes_arguments(void **state) {
+  (void)state;
+  static const struct {
+    CagPovrayJob job;
+    const char *arguments;
+  } ROWS[] = {
+      {{.threads = 1}, "+W64 +H48 +WT1 +SC1 +EC64 +SR1 +ER48 +Q8 -A +AM1 +R1 -J -UA"},
+      {{.threads = 9999, .quality = CAG_POVRAY_FINAL, .alpha = true},
+       "+WT512 +SC1 +EC64 +SR1 +ER48 +Q9 +A0.02 +AM2 +R4 -J +UA"},
+      {{.threads = 2, .quality = CAG_POVRAY_NORMAL}, "+WT2 +SC1 +EC64 +SR1 +ER48 +Q9 +A0.1"},
+      {{.threads = 2, .quality = CAG_POVRAY_NORMAL, .lens = true}, "+ER48 +Q9 -A +AM2"},
+      {{.threads = 2, .region_x = 8, .region_y = 4, .region_width = 16, .region_height = 10},
+       "+SC9 +EC24 +SR5 +ER14"},
+  };
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+    CagPovrayJob job = ROWS[i].job;
+    job.scene = SQUARE;
+    job.scene_size = strlen(SQUARE);
+    job.width = 64;
+    job.height = 48;
+    const CagIoError err = run_fake("echo \"$*\" | cut -c 1-99; exit 1", job);
+    if (!strstr(err.message, ROWS[i].arguments)) fail_msg("%zu: %s", i, err.message);
+  }
 }
 
 static void a_povray_that_is_no_program_is_told(void **state) {
@@ -401,14 +494,166 @@ static void the_process_is_kept_in_its_folder(void **state) {
 
 static void impossible_sizes_are_refused(void **state) {
   (void)state;
-  CagPovrayJob job = job_for(SQUARE);
-  CagPovrayResult result;
-  CagIoError err = {0};
-  job.width = 0;
-  assert_false(cag_povray_render(&job, &result, &err));
-  assert_int_equal(err.exit_status, CAG_EXIT_USAGE);
-  job.width = 1 << 20;
-  assert_false(cag_povray_render(&job, &result, &err));
+  static const int SIZES[][2] = {{0, 1}, {1, 0}, {1 << 20, 1}, {1, 1 << 20}, {-5, 1}};
+  for (size_t i = 0; i < sizeof SIZES / sizeof *SIZES; i++) {
+    CagPovrayJob job = job_for(SQUARE);
+    CagPovrayResult result;
+    CagIoError err = {0};
+    job.width = SIZES[i][0];
+    job.height = SIZES[i][1];
+    assert_false(cag_povray_render(&job, &result, &err));
+    assert_int_equal(err.exit_status, CAG_EXIT_USAGE);
+  }
+}
+
+static void only_ordinary_files_stand_beside_the_scene(void **state) {
+  (void)state;
+  char long_name[300] = {0}, source[96], unsafe[96], dangling[96];
+  memset(long_name, 'n', 256);
+  snprintf(source, sizeof source, "%s/source", folder);
+  snprintf(unsafe, sizeof unsafe, "%s/unsafe", folder);
+  snprintf(dangling, sizeof dangling, "%s/dangling", folder);
+  FILE *f = fopen(source, "w");
+  fputs("// nothing\n", f);
+  fclose(f);
+  f = fopen(unsafe, "w");
+  fputs("#include \"/etc/passwd\"\n", f);
+  fclose(f);
+  const struct {
+    CagPovrayFile file;
+    const char *says; // NULL: it is taken
+  } ROWS[] = {
+      {{"", source}, "cannot be the name"},
+      {{".hidden", source}, "cannot be the name"},
+      {{"a/b", source}, "cannot be the name"},
+      {{long_name, source}, "cannot be the name"},
+      {{"a", folder}, "not an ordinary file"},
+      {{"a", "/dev/null"}, "not an ordinary file"},
+      {{"a", dangling}, "No such file"},
+      {{"a.inc", unsafe}, "outside the scene's folder"},
+      {{"plain", source}, NULL},
+      {{"a.inc", source}, NULL},
+      {{"a.txt", unsafe}, NULL},
+  };
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+    CagPovrayJob job = job_for(SQUARE);
+    job.files = &ROWS[i].file;
+    job.file_count = 1;
+    const CagIoError err = run_fake("exit 1", job);
+    if (!strstr(err.message, ROWS[i].says ? ROWS[i].says : "exit status 1"))
+      fail_msg("%s from %s: %s", ROWS[i].file.name, ROWS[i].file.source, err.message);
+  }
+  unlink(source);
+  unlink(unsafe);
+}
+
+static void povray_is_found_on_any_path(void **state) {
+  (void)state;
+  // bin/povray says its version; a folder of that name is passed over.
+  char other[80], other_program[96], real[4096], paths[4300];
+  snprintf(other, sizeof other, "%s/other", folder);
+  snprintf(other_program, sizeof other_program, "%s/povray", other);
+  mkdir(other, 0777);
+  mkdir(other_program, 0777);
+  begin_fake("echo 'POV-Ray 9.9.9 x'");
+  assert_non_null(realpath(fake_program, real));
+  char before[4096];
+  assert_non_null(getcwd(before, sizeof before));
+  snprintf(paths, sizeof paths, "/nowhere:%s:%s", other, fake_bin);
+  char long_list[9000] = "/";
+  memset(long_list + 1, 'n', 5000);
+  strcpy(long_list + 5001, ":bin");
+  const struct {
+    const char *folder, *list;
+    bool found;
+  } ROWS[] = {
+      {folder, paths, true},      {folder, "bin", true},    {folder, "nowhere:./bin", true},
+      {fake_bin, ":/none", true}, {folder, "other", false}, {folder, "/none", false},
+      {folder, long_list, true},
+  };
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+    char found[4096], version[64];
+    CagIoError err = {0};
+    assert_int_equal(chdir(ROWS[i].folder), 0);
+    setenv("PATH", ROWS[i].list, 1);
+    const bool good = cag_povray_find(found, sizeof found, version, &err);
+    setenv("PATH", real_path, 1);
+    assert_int_equal(chdir(before), 0);
+    if (good != ROWS[i].found) fail_msg("%.40s: %s", ROWS[i].list, err.message);
+    if (!good) continue;
+    assert_string_equal(found, real);
+    assert_string_equal(version, "9.9.9");
+  }
+  end_fake();
+  rmdir(other_program);
+  rmdir(other);
+}
+
+static void an_empty_path_is_that_of_the_system(void **state) {
+  (void)state;
+  char found[4096];
+  const bool there = access("/usr/bin/povray", X_OK) == 0 || access("/bin/povray", X_OK) == 0 ||
+                     access("/usr/local/bin/povray", X_OK) == 0;
+  for (int unset = 0; unset < 2; unset++) {
+    if (unset) unsetenv("PATH");
+    else setenv("PATH", "", 1);
+    char version[64];
+    const bool good = cag_povray_find(found, sizeof found, version, NULL);
+    setenv("PATH", real_path, 1);
+    assert_true(good == there);
+  }
+}
+
+static void a_povray_that_tells_no_version_is_told(void **state) {
+  (void)state;
+  char version[64];
+  static const struct {
+    const char *script, *says;
+  } ROWS[] = {{"echo hello", "\nhello"},
+              {"kill -KILL $$", "killed by signal 9"},
+              {"exit 4", "exit status 4"},
+              {"kill -TERM $$", "killed by signal 15"}};
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+    begin_fake(ROWS[i].script);
+    setenv("PATH", fake_bin, 1);
+    CagIoError err = {0};
+    const bool good = cag_povray_find(NULL, 0, version, &err);
+    setenv("PATH", real_path, 1);
+    end_fake();
+    assert_false(good);
+    if (!strstr(err.message, ROWS[i].says)) fail_msg("%s: %s", ROWS[i].script, err.message);
+  }
+}
+
+static void a_temporary_folder_that_cannot_be_is_told(void **state) {
+  (void)state;
+  char version[64], long_name[5000] = "/";
+  begin_fake("echo POV-Ray 9.9.9; exit 1");
+  memset(long_name + 1, 'n', 4500);
+  const struct {
+    const char *folder, *says; // says: NULL where it is not needed
+  } ROWS[] = {{"/nowhere/at/all", "No such file"},
+              {long_name, "File name too long"},
+              {"relative", NULL}, // then it is /tmp
+              {"", NULL}};
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+    CagPovrayJob job = job_for(SQUARE);
+    CagPovrayResult result;
+    CagIoError found = {0}, rendered = {0};
+    setenv("TMPDIR", ROWS[i].folder, 1);
+    setenv("PATH", fake_bin, 1);
+    const bool good = cag_povray_find(NULL, 0, version, &found);
+    assert_false(cag_povray_render(&job, &result, &rendered));
+    setenv("TMPDIR", folder, 1);
+    setenv("PATH", real_path, 1);
+    assert_true(good == !ROWS[i].says);
+    if (good) continue;
+    assert_non_null(strstr(found.message, ROWS[i].says));
+    assert_non_null(strstr(rendered.message, ROWS[i].says));
+    assert_int_equal(rendered.exit_status, CAG_EXIT_FILE);
+    assert_non_null(strstr(rendered.help, "TMPDIR"));
+  }
+  end_fake();
 }
 
 static void the_version_is_found(void **state) {
@@ -438,7 +683,14 @@ int main(void) {
       cmocka_unit_test(a_child_that_stays_does_not_hold_the_run),
       cmocka_unit_test(the_process_sees_no_configuration_and_no_secrets),
       cmocka_unit_test(the_process_is_kept_in_its_folder),
+      cmocka_unit_test(the_line_of_an_error_is_shown),
+      cmocka_unit_test(a_job_becomes_arguments),
       cmocka_unit_test(impossible_sizes_are_refused),
+      cmocka_unit_test(only_ordinary_files_stand_beside_the_scene),
+      cmocka_unit_test(povray_is_found_on_any_path),
+      cmocka_unit_test(an_empty_path_is_that_of_the_system),
+      cmocka_unit_test(a_povray_that_tells_no_version_is_told),
+      cmocka_unit_test(a_temporary_folder_that_cannot_be_is_told),
       cmocka_unit_test(the_version_is_found),
   };
   return cmocka_run_group_tests(tests, prepare, finish);
