@@ -208,6 +208,36 @@ void cag_chebyshev_series(const CagChebyshev *c, double t, bool left, int n, dou
   piece_series(c, piece_at(c, t, left), t, n, out);
 }
 
+// With T_i(x) = cos(i acos(x)).
+static CagInterval series_range(const double *c, CagInterval x) {
+  const CagInterval angle = {acos(x.hi), acos(x.lo)};
+  CagInterval sum = cag_interval(c[0]);
+  for (int i = 1; i <= DEGREE; i++)
+    if (c[i] != 0)
+      sum = cag_interval_add(
+          sum, cag_interval_scaled(cag_interval_cos(cag_interval_scaled(angle, i)), c[i]));
+  return sum;
+}
+
+void cag_chebyshev_ranges(const CagChebyshev *c, double a, double b, int n, CagInterval *out) {
+  const Piece *p = piece_at(c, a + (b - a) / 2, false);
+  const double half = (p->b - p->a) / 2, middle = (p->a + p->b) / 2;
+  const CagInterval x = {fmax(-1, (a - middle) / half), fmin(1, (b - middle) / half)};
+  for (int part = 0; part < c->parts; part++) {
+    double factor = 1;
+    for (int k = 0; k <= n; k++) {
+      const double *series = p->series + ((size_t)part * ORDERS + (size_t)k) * COUNT;
+      out[part * (n + 1) + k] = cag_interval_scaled(series_range(series, x), factor);
+      factor /= half * (k + 1);
+    }
+  }
+}
+
+size_t cag_chebyshev_joints(const CagChebyshev *c, double *out, size_t capacity) {
+  for (size_t i = 1; i < c->count && i <= capacity; i++) out[i - 1] = c->pieces[i].a;
+  return c->count - 1;
+}
+
 size_t cag_chebyshev_breaks(const CagChebyshev *c, double *out, size_t capacity) {
   size_t n = 0;
   double last = -INFINITY;

@@ -7,6 +7,7 @@
 #ifndef CAG_GEOM_CHEBYSHEV_H
 #define CAG_GEOM_CHEBYSHEV_H
 
+#include "geom/basis/interval.h"
 #include "geom/status.h"
 
 // Writes the function's `parts` numbers at t.
@@ -25,6 +26,11 @@ CagChebyshev *cag_chebyshev_retain(const CagChebyshev *c);
 void cag_chebyshev_release(CagChebyshev *c); // NULL is fine
 // Taylor coefficients 0..n about t (limit from the left where `left`): out[part * (n + 1) + k].
 void cag_chebyshev_series(const CagChebyshev *c, double t, bool left, int n, double *out);
+// Ranges of these coefficients about all t of [a, b], which has no end of a piece inside;
+// n <= CAG_CHEBYSHEV_DERIVATIVES.
+void cag_chebyshev_ranges(const CagChebyshev *c, double a, double b, int n, CagInterval *out);
+// The ends of the pieces between a and b; returns their number.
+size_t cag_chebyshev_joints(const CagChebyshev *c, double *out, size_t capacity);
 // Where the first derivative jumps; as of curves.
 size_t cag_chebyshev_breaks(const CagChebyshev *c, double *out, size_t capacity);
 

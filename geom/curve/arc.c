@@ -125,6 +125,14 @@ bool cag_curve_arc_axes(const CagCurve *curve, CagVec3 *center, CagVec3 *x, CagV
   return true;
 }
 
+bool cag_curve_arc_coil(const CagCurve *curve, CagCoil *out) {
+  if (!is_arc(curve)) return false;
+  const Arc *c = (const Arc *)curve;
+  *out = (CagCoil){
+      .center = c->center, .x = c->x, .y = c->y, .radius = 1, .phase = c->phase, .rate = c->rate};
+  return true;
+}
+
 static double angle_at(const Arc *c, double t) {
   if (c->base.closed && t == c->base.end) t = c->base.start;
   return c->phase + c->rate * t;

@@ -43,6 +43,15 @@ CagStatus cag_curve_trim_over_seam(const CagCurve *c, double a, double b, CagCur
                                    CagError *err);
 // Axes of an arc kind: center + cos(angle) x + sin(angle) y, d angle / dt = rate.
 bool cag_curve_arc_axes(const CagCurve *c, CagVec3 *center, CagVec3 *x, CagVec3 *y, double *rate);
+// An arc or a helix: center + r(angle) (cos(angle) x + sin(angle) y) + climb angle z, where angle
+// is phase + rate t and r(angle) is radius + growth angle.
+typedef struct CagCoil {
+  CagVec3 center, x, y, z;
+  double radius, growth, climb, phase, rate;
+} CagCoil;
+bool cag_curve_coil(const CagCurve *c, CagCoil *out); // false: another kind
+// The same of an arc alone.
+bool cag_curve_arc_coil(const CagCurve *c, CagCoil *out);
 // Bound of |C''| over [a, b]; false: no helix.
 bool cag_curve_helix_bend(const CagCurve *c, double a, double b, double *out);
 // Largest factor by which x u + y v lengthens the unit vector (u, v).

@@ -110,6 +110,15 @@ static void derivatives(const Helix *c, double t, int order, CagVec3 *out) {
   }
 }
 
+bool cag_curve_coil(const CagCurve *curve, CagCoil *out) {
+  if (curve->kind != &helix_kind) return cag_curve_arc_coil(curve, out);
+  const Helix *c = (const Helix *)curve;
+  *out = (CagCoil){
+      c->center, c->x,   c->y, c->z, c->radius, c->taper / (2 * M_PI), c->pitch / (2 * M_PI),
+      c->phase,  c->rate};
+  return true;
+}
+
 // C'' = r e'' + 2 growth e' by the angle, with two vectors at right angles.
 bool cag_curve_helix_bend(const CagCurve *curve, double a, double b, double *out) {
   if (curve->kind != &helix_kind) return false;

@@ -19,6 +19,8 @@ void cag_surface_judge(CagSurface *s);
 // exactly; knows no exact form of its own beyond that of `inner`.
 CagStatus cag_surface_placed(const CagSurface *inner, const CagTransform *t, bool flip,
                              CagSurface **out, CagError *err);
+// Whether the surface is one seen through a map with v run backwards.
+bool cag_surface_is_flipped(const CagSurface *s);
 // For kinds that have no image of their own: affine maps give a placed surface, projective ones
 // need the exact NURBS form.
 CagStatus cag_surface_transform_placed(const CagSurface *s, const CagTransform *t, CagSurface **out,

@@ -17,9 +17,10 @@
 #include <string.h>
 
 #include "geom/surface/family.h"
+#include "geom/surface/motion_parts.h"
 
+#define NODES CAG_MOTION_NODES
 // Gauss-Legendre nodes that sample phi' on a segment, and so the degree of phi.
-#define NODES 8
 static const double NODE[NODES] = {
     -0.960289856497536231683560868569, -0.796666477413626739591553936476,
     -0.525532409916328985817739049189, -0.183434642495649804939476142360,
@@ -38,34 +39,6 @@ static const double WEIGHT[NODES] = {
 #define LEAST_SINE 0.5
 // A path turns a corner where its unit tangents differ by more than this.
 #define CORNER 1e-9
-
-typedef struct Segment {
-  double v0, v1;
-  CagVec3 a;
-  double phi[NODES + 1]; // coefficients of powers of s, -1..1 over the segment
-  size_t piece;
-} Segment;
-
-// A smooth piece of the path with its mitres: the shift of the circle along the tangent at either
-// end, as factors of cos u and sin u.
-typedef struct Piece {
-  double v0, v1;
-  double start[2], end[2];
-} Piece;
-
-struct CagMotion {
-  int references;
-  CagCurve *path; // NULL: of maps
-  CagPathMotion how;
-  CagChebyshev *rows;
-  double start, end;
-  bool angular, corner;
-  CagVec3 fixed[3]; // x, y, z of CAG_ORIENT_FIXED
-  Segment *segments;
-  size_t count, room;
-  Piece *pieces;
-  size_t piece_count;
-};
 
 // --- Truncated power series in v ---
 
@@ -122,7 +95,7 @@ typedef struct Frame {
   CagVec3 c[ORDER], t[ORDER], n1[ORDER], n2[ORDER]; // series: k-th derivative over k!
 } Frame;
 
-static void angle_series(const Segment *g, double v, int n, double *out) {
+static void angle_series(const CagMotionSegment *g, double v, int n, double *out) {
   double half = (g->v1 - g->v0) / 2, s = (v - (g->v0 + g->v1) / 2) / half;
   // Taylor shift of the polynomial to s, by repeated synthetic division.
   double a[NODES + 1];
@@ -145,8 +118,8 @@ static CagStatus zero_tangent(double v, CagError *err) {
 }
 
 // Unit tangent and reference frame at v on segment g, as series of order n; C alongside.
-static CagStatus reference(const CagMotion *t, const Segment *g, double v, int n, CagSide side,
-                           Frame *out, CagError *err) {
+static CagStatus reference(const CagMotion *t, const CagMotionSegment *g, double v, int n,
+                           CagSide side, Frame *out, CagError *err) {
   CagVec3 c[ORDER + 1], velocity[ORDER], a[ORDER] = {g->a}, across[ORDER];
   CagStatus status = cag_curve_eval(t->path, v, n + 1, side, c, err);
   if (status) return status;
@@ -164,8 +137,8 @@ static CagStatus reference(const CagMotion *t, const Segment *g, double v, int n
   return CAG_OK;
 }
 
-static CagStatus minimising(const CagMotion *t, const Segment *g, double v, int n, CagSide side,
-                            Frame *out, CagError *err) {
+static CagStatus minimising(const CagMotion *t, const CagMotionSegment *g, double v, int n,
+                            CagSide side, Frame *out, CagError *err) {
   Frame e;
   CagStatus status = reference(t, g, v, n, side, &e, err);
   if (status) return status;
@@ -280,8 +253,8 @@ static CagStatus standing(const CagMotion *t, double v, int n, CagSide side, Fra
   return CAG_OK;
 }
 
-static CagStatus frame_on(const CagMotion *t, const Segment *g, double v, int n, CagSide side,
-                          Frame *out, CagError *err) {
+static CagStatus frame_on(const CagMotion *t, const CagMotionSegment *g, double v, int n,
+                          CagSide side, Frame *out, CagError *err) {
   switch (t->how.orient) {
   case CAG_ORIENT_FRENET: return frenet(t, v, n, side, out, err);
   case CAG_ORIENT_UP: return upright(t, v, n, side, out, err);
@@ -291,7 +264,7 @@ static CagStatus frame_on(const CagMotion *t, const Segment *g, double v, int n,
   return minimising(t, g, v, n, side, out, err);
 }
 
-static const Segment *segment_at(const CagMotion *t, double v, CagSide side) {
+const CagMotionSegment *cag_motion_segment(const CagMotion *t, double v, CagSide side) {
   size_t low = 0, high = t->count;
   while (high - low > 1) {
     size_t middle = (low + high) / 2;
@@ -303,7 +276,7 @@ static const Segment *segment_at(const CagMotion *t, double v, CagSide side) {
 }
 
 // Shears the spokes along the tangent, into the mitres of the piece.
-static void shear(const Piece *p, double v, int n, Frame *f) {
+static void shear(const CagMotionPiece *p, double v, int n, Frame *f) {
   for (int axis = 0; axis < 2; axis++) {
     double slope = (p->end[axis] - p->start[axis]) / (p->v1 - p->v0);
     double shift[ORDER] = {p->start[axis] + slope * (v - p->v0), slope};
@@ -327,13 +300,13 @@ static void along_series(const CagMotion *m, const CagAlong *a, double t, CagSid
   if (n > 0) out[1] = rate;
 }
 
-static bool is_constant(const CagAlong *a, double value) {
+bool cag_along_is_constant(const CagAlong *a, double value) {
   return !a->function && a->start == value && a->end == value;
 }
 
 static CagStatus path_at(const CagMotion *m, double v, int n, CagSide side, CagMotionSeries *out,
                          CagError *err) {
-  const Segment *g = segment_at(m, v, side);
+  const CagMotionSegment *g = cag_motion_segment(m, v, side);
   Frame f;
   CagStatus status = frame_on(m, g, v, n, side, &f, err);
   if (status) return status;
@@ -343,7 +316,7 @@ static CagStatus path_at(const CagMotion *m, double v, int n, CagSide side, CagM
   memcpy(out->x, f.n1, size);
   memcpy(out->y, f.n2, size);
   memcpy(out->z, f.t, size);
-  if (!is_constant(&m->how.twist, 0)) {
+  if (!cag_along_is_constant(&m->how.twist, 0)) {
     double angle[ORDER], s[ORDER], c[ORDER];
     CagVec3 a[ORDER], b[ORDER];
     along_series(m, &m->how.twist, v, side, n, angle);
@@ -355,7 +328,7 @@ static CagStatus path_at(const CagMotion *m, double v, int n, CagSide side, CagM
     series_scale(f.n1, s, n, b);
     for (int k = 0; k <= n; k++) out->y[k] = cag_sub(a[k], b[k]);
   }
-  if (!is_constant(&m->how.scale, 1)) {
+  if (!cag_along_is_constant(&m->how.scale, 1)) {
     double k[ORDER];
     CagVec3 a[ORDER];
     CagVec3 *spokes[] = {out->x, out->y, out->z};
@@ -389,7 +362,8 @@ CagStatus cag_motion_at(const CagMotion *m, double t, int n, CagSide side, CagMo
 
 // phi over the segment from samples of phi', by Legendre series; phi = 0 at its start. False: the
 // segment is too long.
-static CagStatus integrate_angle(const CagMotion *t, Segment *g, bool *good, CagError *err) {
+static CagStatus integrate_angle(const CagMotion *t, CagMotionSegment *g, bool *good,
+                                 CagError *err) {
   double half = (g->v1 - g->v0) / 2, rate[NODES];
   *good = true;
   for (int i = 0; i < NODES; i++) {
@@ -430,10 +404,10 @@ static CagStatus integrate_angle(const CagMotion *t, Segment *g, bool *good, Cag
   return CAG_OK;
 }
 
-static CagStatus add_segment(CagMotion *t, const Segment *g, CagError *err) {
+static CagStatus add_segment(CagMotion *t, const CagMotionSegment *g, CagError *err) {
   if (t->count == t->room) {
     size_t room = t->room ? 2 * t->room : 16;
-    Segment *grown = realloc(t->segments, room * sizeof *grown);
+    CagMotionSegment *grown = realloc(t->segments, room * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     t->segments = grown;
     t->room = room;
@@ -453,13 +427,13 @@ static CagStatus divide(CagMotion *t, size_t piece, double v0, double v1, int de
                         CagError *err) {
   if (t->how.orient != CAG_ORIENT_RMF) {
     // Other frames need no angle: the segment only tells the piece.
-    Segment plain = {.v0 = v0, .v1 = v1, .piece = piece};
+    CagMotionSegment plain = {.v0 = v0, .v1 = v1, .piece = piece};
     return add_segment(t, &plain, err);
   }
   CagVec3 c[2];
   CagStatus status = cag_curve_eval(t->path, (v0 + v1) / 2, 1, CAG_SIDE_RIGHT, c, err);
   if (status) return status;
-  Segment g = {.v0 = v0, .v1 = v1, .a = fixed_vector(cag_unit(c[1])), .piece = piece};
+  CagMotionSegment g = {.v0 = v0, .v1 = v1, .a = fixed_vector(cag_unit(c[1])), .piece = piece};
   bool good;
   status = integrate_angle(t, &g, &good, err);
   if (status) return status;
@@ -497,7 +471,7 @@ static CagStatus transport(CagMotion *t, CagError *err) {
   CagVec3 spoke = {0, 0, 0}, tangent = {0, 0, 0}, home = {0, 0, 0}, home_tangent = {0, 0, 0};
   Frame f;
   for (size_t i = 0; i < t->count; i++) {
-    Segment *g = &t->segments[i];
+    CagMotionSegment *g = &t->segments[i];
     CagStatus status = reference(t, g, g->v0, 0, CAG_SIDE_RIGHT, &f, err);
     if (status) return status;
     if (i == 0) {
@@ -525,7 +499,7 @@ static CagStatus transport(CagMotion *t, CagError *err) {
   double missing = atan2(cag_dot(cag_cross(spoke, home), home_tangent), cag_dot(spoke, home));
   double length = t->path->end - t->path->start;
   for (size_t i = 0; i < t->count; i++) {
-    Segment *g = &t->segments[i];
+    CagMotionSegment *g = &t->segments[i];
     g->phi[0] += missing * ((g->v0 + g->v1) / 2 - t->path->start) / length;
     g->phi[1] += missing * (g->v1 - g->v0) / 2 / length;
   }
@@ -545,13 +519,13 @@ static void mitre(const Frame *f, CagVec3 m, double *out) {
 static CagStatus set_mitres(CagMotion *t, CagError *err) {
   size_t joints = t->piece_count - (t->path->closed ? 0 : 1);
   for (size_t i = 0; i < joints; i++) {
-    Piece *a = &t->pieces[i], *b = &t->pieces[(i + 1) % t->piece_count];
+    CagMotionPiece *a = &t->pieces[i], *b = &t->pieces[(i + 1) % t->piece_count];
     Frame in, out;
     CagStatus status =
-        frame_on(t, segment_at(t, a->v1, CAG_SIDE_LEFT), a->v1, 0, CAG_SIDE_LEFT, &in, err);
+        frame_on(t, cag_motion_segment(t, a->v1, CAG_SIDE_LEFT), a->v1, 0, CAG_SIDE_LEFT, &in, err);
     if (!status)
-      status =
-          frame_on(t, segment_at(t, b->v0, CAG_SIDE_RIGHT), b->v0, 0, CAG_SIDE_RIGHT, &out, err);
+      status = frame_on(t, cag_motion_segment(t, b->v0, CAG_SIDE_RIGHT), b->v0, 0, CAG_SIDE_RIGHT,
+                        &out, err);
     bool corner = false;
     CagVec3 m;
     if (!status) status = bisector(in.t[0], out.t[0], a->v1, &corner, &m, err);
@@ -615,7 +589,7 @@ static CagStatus probe(const CagMotion *m, CagError *err) {
   CagMotionSeries f;
   for (size_t i = 0; i < m->piece_count; i++)
     for (int k = 0; k <= PROBES; k++) {
-      const Piece *p = &m->pieces[i];
+      const CagMotionPiece *p = &m->pieces[i];
       double t = k == PROBES ? p->v1 : p->v0 + (p->v1 - p->v0) * k / PROBES, scale;
       CagSide side = k == PROBES ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
       CagStatus status = cag_motion_at(m, t, 0, side, &f, err);
@@ -718,7 +692,8 @@ const CagPathMotion *cag_motion_how(const CagMotion *m) { return &m->how; }
 bool cag_motion_has_corner(const CagMotion *m) { return m->corner; }
 
 bool cag_motion_is_plain(const CagMotion *m) {
-  return m->path && is_constant(&m->how.twist, 0) && is_constant(&m->how.scale, 1);
+  return m->path && cag_along_is_constant(&m->how.twist, 0) &&
+         cag_along_is_constant(&m->how.scale, 1);
 }
 
 size_t cag_motion_breaks(const CagMotion *m, double *out, size_t capacity) {

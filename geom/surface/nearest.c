@@ -228,8 +228,11 @@ static CagStatus offer(Search *f, const CagSurfaceNearest *found, CagError *err)
   CagStatus status = CAG_OK;
   if (f->region)
     status = cag_region_contains(f->region, cag_vec3(found->u, found->v, 0), &inside, err);
-  if (!status && inside) f->best = *found;
-  return status;
+  if (status || !inside) return status;
+  f->best = *found;
+  f->cells.hint[0] = found->u;
+  f->cells.hint[1] = found->v;
+  return CAG_OK;
 }
 
 // A parameter of a cell as one of the surface, exactly or nearly, and its piece.
@@ -377,7 +380,7 @@ static CagStatus is_outside(const Search *f, const CagDistanceCell *cell, bool *
 
 static CagStatus search_cells(Search *f, CagError *err) {
   CagStatus status = CAG_OK;
-  const bool sampled = !f->cells.exact;
+  const bool sampled = !f->cells.certain;
   const int most = sampled ? MOST_CELLS_SAMPLED : MOST_CELLS;
   for (int i = 0; !status && i < most; i++) {
     const double share = sampled ? EQUALLY_NEAR_SAMPLED : EQUALLY_NEAR;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "geom/basis/bspline.h"
+#include "geom/surface/nearest_swept.h"
 
 // Cells of a sampled patch in each direction: of a surface of few patches, and of one of many.
 #define CELLS_FEW 6
@@ -33,7 +34,7 @@ static void sink(CagDistanceCells *c, size_t i) {
   c->items[i] = moved;
 }
 
-static CagStatus push(CagDistanceCells *c, const CagDistanceCell *cell, CagError *err) {
+CagStatus cag_distance_cells_push(CagDistanceCells *c, const CagDistanceCell *cell, CagError *err) {
   if (c->count == c->capacity) {
     const size_t capacity = c->capacity ? 2 * c->capacity : 128;
     CagDistanceCell *grown = realloc(c->items, capacity * sizeof *grown);
@@ -223,7 +224,7 @@ static CagStatus push_patches(CagDistanceCells *c, CagError *err) {
                               .block = i * is.nv + j};
       if (!(cell.u[0] < cell.u[1] && cell.v[0] < cell.v[1])) continue;
       box_patch(c, &is, i, j, &cell.bound);
-      status = push(c, &cell, err);
+      status = cag_distance_cells_push(c, &cell, err);
     }
   return status;
 }
@@ -255,7 +256,6 @@ static CagStatus open_patch(CagDistanceCells *c, CagDistanceCell *cell, CagError
       h[2] -= h[3] * c->p.z;
     }
   }
-  cell->raw = false;
   bound_patch(c, cell);
   return CAG_OK;
 }
@@ -330,7 +330,7 @@ static CagStatus push_samples(CagDistanceCells *c, CagError *err) {
                               .v = {cag_cut_part(vc, j, parts), cag_cut_part(vc, j + 1, parts)},
                               .whole = true};
       status = bound_samples(c, &cell, err);
-      if (!status) status = push(c, &cell, err);
+      if (!status) status = cag_distance_cells_push(c, &cell, err);
     }
   free(uc);
   free(vc);
@@ -396,13 +396,16 @@ static CagStatus exact_form(CagDistanceCells *c, const CagSurface *s, bool own_p
 
 CagStatus cag_distance_cells_make(CagDistanceCells *c, const CagSurface *s, CagVec3 p,
                                   bool own_parameters, CagError *err) {
-  *c = (CagDistanceCells){.s = s, .p = p};
+  *c = (CagDistanceCells){.s = s, .p = p, .hint = {NAN, NAN}};
   CagStatus status = exact_form(c, s, own_parameters, err);
   if (status) return status;
   if (!c->exact) {
     c->same = true;
-    return push_samples(c, err);
+    status = cag_swept_cells_begin(c, own_parameters, &c->certain, err);
+    if (status) return status;
+    return c->certain ? cag_swept_cells_push(c, err) : push_samples(c, err);
   }
+  c->certain = true;
   CagSurfaceNurbsView is;
   cag_surface_nurbs_view(c->exact, &is);
   status = prepare_patches(c, &is, err);
@@ -427,12 +430,13 @@ CagStatus cag_distance_cells_next(CagDistanceCells *c, double below, CagDistance
     if (c->count > 0) sink(c, 0);
     *found = true;
     if (!out->raw) return CAG_OK;
-    CagStatus status = open_patch(c, out, err);
+    out->raw = false;
+    CagStatus status = c->exact ? open_patch(c, out, err) : cag_swept_cell_bound(c, out, err);
     if (status) return status;
     // The patch may be farther than its box.
     if (!(c->count > 0 && c->items[0].bound < out->bound)) return CAG_OK;
     *found = false;
-    status = push(c, out, err);
+    status = cag_distance_cells_push(c, out, err);
     if (status) return status;
   }
   return CAG_OK;
@@ -453,9 +457,10 @@ CagStatus cag_distance_cells_halve(CagDistanceCells *c, const CagDistanceCell *c
   CagStatus status = c->exact ? halve_patch(c, cell, half, err) : CAG_OK;
   for (int k = 0; !status && k < 2; k++) {
     if (c->exact) bound_patch(c, &half[k]);
+    else if (c->certain) status = cag_swept_cell_bound(c, &half[k], err);
     else status = bound_samples(c, &half[k], err);
     if (status) break;
-    if (half[k].bound < below) status = push(c, &half[k], err);
+    if (half[k].bound < below) status = cag_distance_cells_push(c, &half[k], err);
     else cag_distance_cells_drop(c, &half[k]);
   }
   return status;

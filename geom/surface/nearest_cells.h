@@ -3,12 +3,14 @@
 // Where the surface has an exact form, a cell is a part of one of its Bezier patches, and the bound
 // is certain: the squared distance is a quotient of two polynomials in Bernstein form, and is
 // nowhere less than the least quotient of their coefficients. Cells then have the parameters of
-// the exact form. Other surfaces are sampled: the squared distance of a cell is a biquadratic
-// polynomial but for what further samples miss it by, with some safety.
+// the exact form. Of tubes and sweeps the derivatives are bounded by ranges (nearest_swept.h).
+// Other surfaces are sampled: the squared distance of a cell is a biquadratic polynomial but for
+// what further samples miss it by, with some safety.
 
 #ifndef CAG_GEOM_SURFACE_NEAREST_CELLS_H
 #define CAG_GEOM_SURFACE_NEAREST_CELLS_H
 
+#include "geom/surface/motion.h"
 #include "geom/surface/surface.h"
 
 typedef struct CagDistanceCell {
@@ -24,12 +26,26 @@ typedef struct CagDistanceCell {
   size_t block; // its control points; of a raw one its place in the net
 } CagDistanceCell;
 
+// A tube or a sweep.
+typedef struct CagSwept {
+  const CagCurve *section; // NULL: another surface
+  const CagMotion *motion;
+  CagTransform map; // of the surface that section and motion make
+  bool flip;        // its v runs backwards
+  bool tube;        // cells are intervals of v: the section is a circle about the path
+  double radius, scale;
+  CagVec3 p; // of a tube: in its own space
+} CagSwept;
+
 typedef struct CagDistanceCells {
   const CagSurface *s;
   CagSurface *exact; // owned; NULL: sampled
   bool same;         // the parameters of cells are those of s, but for an affine map
   CagVec3 p;
   double size; // of the farthest known point from p: what rounding is a part of
+  CagSwept swept;
+  bool certain;   // the bounds are
+  double hint[2]; // parameters of the best point so far
   // Of Bezier patches: degrees, whether rational, binomial coefficients of p, q, 2 p, 2 q.
   int p_degree, q_degree;
   bool rational;
@@ -48,6 +64,7 @@ typedef struct CagDistanceCells {
 CagStatus cag_distance_cells_make(CagDistanceCells *c, const CagSurface *s, CagVec3 p,
                                   bool own_parameters, CagError *err);
 void cag_distance_cells_free(CagDistanceCells *c);
+CagStatus cag_distance_cells_push(CagDistanceCells *c, const CagDistanceCell *cell, CagError *err);
 // The cell with the lowest bound; false: there is none, or that bound is not below `below`.
 CagStatus cag_distance_cells_next(CagDistanceCells *c, double below, CagDistanceCell *out,
                                   bool *found, CagError *err);

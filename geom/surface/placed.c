@@ -172,3 +172,7 @@ bool cag_surface_placed_view(const CagSurface *s, const CagSurface **inner, CagT
   *map = ((const Placed *)s)->map;
   return true;
 }
+
+bool cag_surface_is_flipped(const CagSurface *s) {
+  return s->kind == &placed_kind && ((const Placed *)s)->flip;
+}

@@ -1,88 +1,11 @@
 // Nearest points of surfaces and curves: random shapes against a dense search, and closed forms.
 
-#include "surface_support.h"
+#include "nearest_support.h"
 
 #include "geom/surface/nearest.h"
 #include "geom/surface/quadric.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
-
-static uint64_t state_of_random;
-
-// In 0..1 (Knuth's linear congruential generator).
-static double random_number(void) {
-  state_of_random = state_of_random * 6364136223846793005u + 1442695040888963407u;
-  return (double)(state_of_random >> 11) / 9007199254740992.0;
-}
-
-static double between(double a, double b) { return a + random_number() * (b - a); }
-
-static int whole(int from, int to) { return from + (int)(random_number() * (to + 1 - from)); }
-
-static CagVec3 anywhere(double size) {
-  const double x = between(0, size), y = between(0, size);
-  return cag_vec3(x, y, between(0, size));
-}
-
-// --- A search that knows nothing of slopes ---
-
-typedef struct Dense {
-  const CagSurface *s;
-  CagVec3 p;
-} Dense;
-
-static double distance_at(const Dense *d, double u, double v) {
-  return cag_norm(cag_sub(surface_at(d->s, u, v), d->p));
-}
-
-// Steps to the nearest of the places around, shorter ones when there is none nearer.
-static double creep(const Dense *d, double u, double v, double du, double dv) {
-  const CagSurface *s = d->s;
-  double best = distance_at(d, u, v);
-  for (int round = 0; round < 90; round++) {
-    const double a = u, b = v;
-    for (int k = 0; k < 9; k++) {
-      const double x = fmin(fmax(a + (k / 3 - 1) * du, s->u0), s->u1);
-      const double y = fmin(fmax(b + (k % 3 - 1) * dv, s->v0), s->v1);
-      const double found = distance_at(d, x, y);
-      if (!(found < best)) continue;
-      best = found;
-      u = x;
-      v = y;
-    }
-    if (u != a || v != b) continue;
-    du /= 2;
-    dv /= 2;
-  }
-  return best;
-}
-
-#define GRID 16
-static double dense_distance(const CagSurface *s, CagVec3 p) {
-  const Dense d = {s, p};
-  const double du = (s->u1 - s->u0) / GRID, dv = (s->v1 - s->v0) / GRID;
-  double at[GRID + 1][GRID + 1], best = INFINITY;
-  for (int i = 0; i <= GRID; i++)
-    for (int j = 0; j <= GRID; j++) at[i][j] = distance_at(&d, s->u0 + i * du, s->v0 + j * dv);
-  for (int i = 0; i <= GRID; i++)
-    for (int j = 0; j <= GRID; j++) {
-      bool lowest = true;
-      for (int k = 0; lowest && k < 9; k++) {
-        const int x = i + k / 3 - 1, y = j + k % 3 - 1;
-        lowest = x < 0 || y < 0 || x > GRID || y > GRID || at[i][j] <= at[x][y];
-      }
-      if (lowest) best = fmin(best, creep(&d, s->u0 + i * du, s->v0 + j * dv, du / 2, dv / 2));
-    }
-  return best;
-}
-
-static CagVec3 beside(const CagSurface *s) {
-  CagBounds box;
-  MUST(cag_surface_bounds(s, &box, err));
-  const CagVec3 size = cag_sub(box.max, box.min);
-  const double x = between(-0.3, 1.3), y = between(-0.3, 1.3), z = between(-0.3, 1.3);
-  return cag_vec3(box.min.x + x * size.x, box.min.y + y * size.y, box.min.z + z * size.z);
-}
 
 // The point lies on the surface where it says, and nothing that the dense search finds is nearer.
 static void assert_nearest(const CagSurface *s, const char *what, int turn) {
@@ -91,7 +14,7 @@ static void assert_nearest(const CagSurface *s, const char *what, int turn) {
   MUST(cag_surface_closest(s, p, &found, err));
   assert_point(surface_at(s, found.u, found.v), found.point, 1e-12, what);
   assert_near(cag_norm(cag_sub(found.point, p)), found.distance, 1e-12, what);
-  const double dense = dense_distance(s, p);
+  const double dense = dense_distance(s, p, 16, 16);
   if (found.distance > dense + 1e-9)
     fail_msg("%s %d: found %.17g, but %.17g is nearer", what, turn, found.distance, dense);
 }
