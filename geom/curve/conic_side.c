@@ -94,7 +94,7 @@ static double quadratic_part(const CagConic *conic, CagVec3 d) {
   return c[0] * d.x * d.x + c[1] * d.x * d.y + c[2] * d.y * d.y;
 }
 
-static CagVec3 gradient(const CagConic *conic, CagVec3 p) {
+CagVec3 cag_conic_gradient(const CagConic *conic, CagVec3 p) {
   double line[3];
   cag_conic_polar(conic, p, line);
   return cag_vec3(2 * line[0], 2 * line[1], 0);
@@ -111,7 +111,7 @@ static double size_of_terms(const CagConic *conic, CagVec3 p) {
 static void add_roots(const Work *w, int k, double *s, size_t *n) {
   const CagVec3 p = w->r.corner[k], d = cag_sub(w->r.corner[(k + 1) % 4], p);
   const double slack = ONE_CROSSING;
-  const double a = quadratic_part(w->conic, d), b = cag_dot(gradient(w->conic, p), d) / 2;
+  const double a = quadratic_part(w->conic, d), b = cag_dot(cag_conic_gradient(w->conic, p), d) / 2;
   const double c = cag_conic_value(w->conic, p), rest = b * b - a * c;
   if (rest < 0) return;
   const double q = b < 0 ? sqrt(rest) - b : -sqrt(rest) - b; // without cancellation
@@ -286,10 +286,9 @@ static CagVec3 branch_point(const Branches *b, int branch, double t) {
   return cag_madd(cag_madd(k->center, x, b->x), y, b->y);
 }
 
-// Moves a point that is near the conic onto it.
-static CagVec3 onto(const CagConic *conic, CagVec3 p) {
+CagVec3 cag_conic_onto(const CagConic *conic, CagVec3 p) {
   for (int k = 0; k < 2; k++) {
-    const CagVec3 g = gradient(conic, p);
+    const CagVec3 g = cag_conic_gradient(conic, p);
     const double square = cag_dot(g, g);
     if (square > 0) p = cag_madd(p, -cag_conic_value(conic, p) / square, g);
   }
@@ -300,7 +299,7 @@ static CagVec3 onto(const CagConic *conic, CagVec3 p) {
 // adds to its rounding.
 static CagVec3 precise_point(const Work *w, int branch, double t) {
   const CagVec3 p = branch_point(&w->b, branch, t);
-  return w->b.kind == BRANCH_WEDGES || w->b.kind == BRANCH_LINES ? p : onto(w->conic, p);
+  return w->b.kind == BRANCH_WEDGES || w->b.kind == BRANCH_LINES ? p : cag_conic_onto(w->conic, p);
 }
 
 // Whether a branch lies within the rectangle between two neighboring crossings: by the place that
@@ -380,33 +379,36 @@ static CagStatus add_line(Chain *c, CagVec3 p, CagVec3 q, CagError *err) {
   return add_curve(c, status, line, err);
 }
 
-// The arc between two points of the conic that turns little. With d from end to end and e from an
-// end to the apex, and Q the quadratic part, the square of the weight is Q(d) / (4 Q(e)).
-static CagStatus add_bezier(const CagConic *conic, CagVec3 p, CagVec3 q, Chain *c, CagError *err) {
-  const CagVec3 g = gradient(conic, p), h = gradient(conic, q), d = cag_sub(q, p);
+// With d from end to end and e from an end to the apex, and Q the quadratic part, the square of the
+// weight is Q(d) / (4 Q(e)).
+CagStatus cag_conic_short_arc(const CagConic *conic, CagVec3 p, CagVec3 q, CagCurve **out,
+                              CagError *err) {
+  const CagVec3 g = cag_conic_gradient(conic, p), h = cag_conic_gradient(conic, q);
+  const CagVec3 d = cag_sub(q, p);
   const double det = g.x * h.y - g.y * h.x, reach = cag_dot(h, d);
-  if (!(fabs(det) > STRAIGHT * cag_norm(g) * cag_norm(h))) return add_line(c, p, q, err);
+  if (!(fabs(det) > STRAIGHT * cag_norm(g) * cag_norm(h))) return cag_curve_line(p, q, 2, out, err);
   // p + s (-g.y, g.x) lies on the tangent at q.
   const CagVec3 apex = cag_madd(p, reach / det, cag_vec3(-g.y, g.x, 0));
   const double around = quadratic_part(conic, d);
   const double first = around / (4 * quadratic_part(conic, cag_sub(apex, p)));
   const double second = around / (4 * quadratic_part(conic, cag_sub(apex, q)));
   if (!(first > 0) || !(second > 0) || !isfinite(first) || !isfinite(second))
-    return add_line(c, p, q, err);
-  const double weight = sqrt(sqrt(first) * sqrt(second));
+    return cag_curve_line(p, q, 2, out, err);
   const CagVec3 points[3] = {p, apex, q};
-  const double weights[3] = {1, weight, 1};
-  CagCurve *arc = NULL;
-  const CagStatus status = cag_curve_bezier(points, weights, 3, 2, &arc, err);
-  return add_curve(c, status, arc, err);
+  const double weights[3] = {1, sqrt(sqrt(first) * sqrt(second)), 1};
+  return cag_curve_bezier(points, weights, 3, 2, out, err);
 }
 
 static CagStatus add_arc(const Work *w, int branch, double from, double to, CagVec3 p, CagVec3 q,
                          int halvings, Chain *c, CagError *err) {
-  const CagVec3 g = gradient(w->conic, p), h = gradient(w->conic, q);
+  const CagVec3 g = cag_conic_gradient(w->conic, p), h = cag_conic_gradient(w->conic, q);
   const double turn = atan2(fabs(g.x * h.y - g.y * h.x), cag_dot(g, h));
   const bool long_way = w->b.kind == BRANCH_ELLIPSE && fabs(to - from) > M_PI / 2;
-  if (halvings == 0 || (turn <= MOST_TURN && !long_way)) return add_bezier(w->conic, p, q, c, err);
+  if (halvings == 0 || (turn <= MOST_TURN && !long_way)) {
+    CagCurve *arc = NULL;
+    const CagStatus made = cag_conic_short_arc(w->conic, p, q, &arc, err);
+    return add_curve(c, made, arc, err);
+  }
   const double half = from + (to - from) / 2;
   const CagVec3 middle = precise_point(w, branch, half);
   CagStatus status = add_arc(w, branch, from, half, p, middle, halvings - 1, c, err);

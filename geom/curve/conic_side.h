@@ -17,4 +17,13 @@ CagStatus cag_conic_negative_parts(const CagConic *conic, const CagBounds *recta
                                    CagRegion *out[CAG_CONIC_PARTS], size_t *n, bool *decided,
                                    CagError *err);
 
+// The arc between two points of a conic on which the tangent turns by less than a right angle: a
+// rational quadratic Bezier curve in the plane, or a line where the arc is straight to rounding.
+CagStatus cag_conic_short_arc(const CagConic *conic, CagVec3 p, CagVec3 q, CagCurve **out,
+                              CagError *err);
+// Moves a point that is near the conic onto it.
+CagVec3 cag_conic_onto(const CagConic *conic, CagVec3 p);
+// A normal of the conic at p: the gradient of its equation.
+CagVec3 cag_conic_gradient(const CagConic *conic, CagVec3 p);
+
 #endif

@@ -16,6 +16,7 @@
 #include "geom/curve/conic_side.h"
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
+#include "geom/surface/quadric_arc.h"
 #include "geom/surface/section.h"
 #include "geom/surface/trimmed.h"
 
@@ -134,7 +135,7 @@ static CagStatus placed_box(const CagBounds *box, const CagTransform *frame, Cag
 
 // --- The boundary ---
 
-#define SIDES 6
+#define SIDES CAG_BOX_SIDES
 #define FACES_MOST (SIDES * CAG_CONIC_PARTS)
 
 typedef struct Boundary {
@@ -143,26 +144,6 @@ typedef struct Boundary {
   bool decided; // the faces are known
 } Boundary;
 
-// The frame of a side of the box: its origin is the middle of the side, and its normal is outward,
-// or inward for a box that is mirrored later.
-static CagTransform frame_of_side(const CagBounds *box, int side, bool mirrored,
-                                  CagBounds *rectangle) {
-  const CagVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const CagVec3 size = cag_sub(box->max, box->min);
-  const double sizes[3] = {size.x, size.y, size.z};
-  const int axis = side / 2, sign = side % 2 ? 1 : -1;
-  const int turn = mirrored ? -sign : sign;
-  const int x = (axis + (turn > 0 ? 1 : 2)) % 3, y = (axis + (turn > 0 ? 2 : 1)) % 3;
-  const CagVec3 middle =
-      cag_madd(cag_lerp(box->min, box->max, 0.5), sign * sizes[axis] / 2, axes[axis]);
-  const CagVec3 normal = cag_scaled(axes[axis], turn);
-  *rectangle = (CagBounds){{-sizes[x] / 2, -sizes[y] / 2, 0}, {sizes[x] / 2, sizes[y] / 2, 0}};
-  return (CagTransform){.m = {{axes[x].x, axes[y].x, normal.x, middle.x},
-                              {axes[x].y, axes[y].y, normal.y, middle.y},
-                              {axes[x].z, axes[y].z, normal.z, middle.z},
-                              {0, 0, 0, 1}}};
-}
-
 // Adds the flat faces on one side. q: the form in coordinates of the box.
 static CagStatus add_caps(Boundary *b, const CagQuadric *q, const CagBounds *box,
                           const CagTransform *frame, int side, CagError *err) {
@@ -170,7 +151,8 @@ static CagStatus add_caps(Boundary *b, const CagQuadric *q, const CagBounds *box
   CagConic section;
   CagRegion *parts[CAG_CONIC_PARTS];
   size_t n = 0;
-  const CagTransform local = frame_of_side(box, side, cag_transform_mirrors(frame), &rectangle);
+  const CagTransform local =
+      cag_box_side_frame(box, side, cag_transform_mirrors(frame), &rectangle);
   const CagTransform place = cag_transform_multiply(frame, &local);
   cag_quadric_section(q, &local, &section);
   CagStatus status = cag_conic_negative_parts(&section, &rectangle, parts, &n, &b->decided, err);

@@ -7,6 +7,7 @@
 #include "geom/curve/approximate.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs_ops.h"
+#include "geom/surface/quadric_arc.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 #include "interp/export/brep_build.h"
@@ -127,10 +128,11 @@ static CagStatus add_piece_sides(CagBrepWork *w, const CagSurface *s, size_t fac
 // --- Trimmed pieces ---
 
 // The boundary of a trimmed surface is in general no NURBS: it is written to this part of its size,
-// a hundredth of what edges that meet may be apart.
+// a hundredth of what edges that meet may be apart. Only where a box cut a quadric is it exact.
 #define TRIM_NEAR 1e-8
 
-static CagStatus add_trim_sides(CagBrepWork *w, const CagCurve *loop, size_t face, CagError *err);
+static CagStatus add_trim_sides(CagBrepWork *w, const CagSurface *s, const CagCurve *loop,
+                                size_t face, CagError *err);
 
 // The whole surface with the loops in space; parameters need not agree with those of the NURBS.
 static CagStatus add_trimmed(CagBrepWork *w, const CagSurface *s, const CagSurface *inner,
@@ -148,7 +150,7 @@ static CagStatus add_trimmed(CagBrepWork *w, const CagSurface *s, const CagSurfa
       CagCurve *loop;
       status = cag_trimmed_loop(s, i, &loop, err);
       if (status) return status;
-      status = add_trim_sides(w, loop, index, err);
+      status = add_trim_sides(w, s, loop, index, err);
       cag_curve_release(loop);
     }
   return status;
@@ -220,7 +222,7 @@ static CagStatus add_between_corners(CagBrepWork *w, CagCurve *rest, size_t face
     rest = parts[1];
     status = add_side(w, parts[0], false, face, loop, (*order)++, err);
   }
-  if (!status) status = add_side(w, cag_curve_retain(rest), false, face, loop, n, err);
+  if (!status) status = add_side(w, cag_curve_retain(rest), false, face, loop, (*order)++, err);
   free(corners);
   cag_curve_release(rest);
   return status;
@@ -244,6 +246,8 @@ static CagStatus add_outline(CagBrepWork *w, const CagCurve *outline, const CagT
 // If all points of a stretch of a loop lie within this fraction of the size of each other, the
 // stretch runs along a pole of the surface.
 #define POLE 1e-12
+// Sine of an angle that is no corner of a loop.
+#define TRIM_CORNER 1e-6
 
 static CagStatus is_collapsed(const CagCurve *c, double a, double b, double slack, bool *out,
                               CagError *err) {
@@ -257,8 +261,30 @@ static CagStatus is_collapsed(const CagCurve *c, double a, double b, double slac
   return status;
 }
 
-static CagStatus add_trim_part(CagBrepWork *w, const CagCurve *c, double a, double b, double size,
-                               size_t face, size_t loop, size_t *order, CagError *err) {
+// Adds the exact arcs of a stretch that lies on a side of the box of a quadric. *added is false if
+// it does not.
+static CagStatus add_exact_arcs(CagBrepWork *w, const CagSurface *s, const CagCurve *c, double a,
+                                double b, size_t face, size_t loop, size_t *order, bool *added,
+                                CagError *err) {
+  CagCurve *arcs[CAG_QUADRIC_ARCS];
+  size_t n;
+  CagStatus status = cag_quadric_side_arcs(s, c, a, b, arcs, &n, err);
+  *added = !status && n > 0;
+  for (size_t i = 0; i < n; i++) {
+    CagCurve *clamped;
+    if (!status) status = cag_brep_curve(w, arcs[i], &clamped, err);
+    if (!status) status = add_side(w, clamped, false, face, loop, (*order)++, err);
+    cag_curve_release(arcs[i]);
+  }
+  return status;
+}
+
+static CagStatus add_trim_part(CagBrepWork *w, const CagSurface *s, const CagCurve *c, double a,
+                               double b, double size, size_t face, size_t loop, size_t *order,
+                               CagError *err) {
+  bool added;
+  CagStatus exact = add_exact_arcs(w, s, c, a, b, face, loop, order, &added, err);
+  if (exact || added) return exact;
   CagCurve *part = NULL, *near = NULL, *clamped = NULL;
   CagStatus status = CAG_OK;
   if (a == c->start && b == c->end) part = cag_curve_retain(c);
@@ -270,8 +296,35 @@ static CagStatus add_trim_part(CagBrepWork *w, const CagCurve *c, double a, doub
   return status ? status : add_between_corners(w, clamped, face, loop, order, err);
 }
 
+// Tests whether the loop turns at t.
+static CagStatus is_corner(const CagCurve *c, double t, bool *out, CagError *err) {
+  CagVec3 before, after;
+  CagStatus status = cag_curve_tangent(c, t, CAG_SIDE_LEFT, &before, err);
+  if (!status) status = cag_curve_tangent(c, t, CAG_SIDE_RIGHT, &after, err);
+  *out =
+      !status && (cag_norm(cag_cross(before, after)) > TRIM_CORNER || cag_dot(before, after) < 0);
+  return status;
+}
+
+// Finds which stretches between cuts are poles, and which ones end in a corner. Only stretches of
+// quadrics within boxes are cut at corners before they are made, since each lies on another side.
+static CagStatus look_at_cuts(const CagSurface *s, const CagCurve *c, const double *cuts, size_t n,
+                              double slack, bool *pole, bool *corner, CagError *err) {
+  CagQuadricWithin unused;
+  const bool exact = cag_surface_quadric_within(s, &unused);
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i + 1 < n; i++)
+    status = is_collapsed(c, cuts[i], cuts[i + 1], slack, &pole[i], err);
+  for (size_t i = 0; !status && i + 1 < n; i++) {
+    corner[i] = i + 2 == n || pole[i] || pole[i + 1];
+    if (!corner[i] && exact) status = is_corner(c, cuts[i + 1], &corner[i], err);
+  }
+  return status;
+}
+
 // Adds the stretches of a loop that are not poles.
-static CagStatus add_trim_sides(CagBrepWork *w, const CagCurve *c, size_t face, CagError *err) {
+static CagStatus add_trim_sides(CagBrepWork *w, const CagSurface *s, const CagCurve *c, size_t face,
+                                CagError *err) {
   CagBounds box;
   double *cuts = NULL;
   size_t n = 0, loop, order = 0;
@@ -279,14 +332,17 @@ static CagStatus add_trim_sides(CagBrepWork *w, const CagCurve *c, size_t face, 
   if (!status) status = cag_curve_bounds(c, &box, err);
   if (!status) status = cag_curve_cuts(c, &cuts, &n, err);
   const double size = status ? 0 : cag_norm(cag_sub(box.max, box.min));
+  bool *pole = calloc(n + 1, sizeof *pole), *corner = calloc(n + 1, sizeof *corner);
+  if (!status) status = pole && corner ? CAG_OK : cag_fail_memory(err);
+  if (!status) status = look_at_cuts(s, c, cuts, n, POLE * size, pole, corner, err);
   for (size_t i = 0, first = 0; !status && i + 1 < n; i++) {
-    bool pole;
-    status = is_collapsed(c, cuts[i], cuts[i + 1], POLE * size, &pole, err);
-    const size_t end = pole ? i : i + 1;
-    if (!status && first < end && (pole || i + 2 == n))
-      status = add_trim_part(w, c, cuts[first], cuts[end], size, face, loop, &order, err);
-    if (pole) first = i + 1;
+    if (!corner[i]) continue;
+    if (!pole[i])
+      status = add_trim_part(w, s, c, cuts[first], cuts[i + 1], size, face, loop, &order, err);
+    first = i + 1;
   }
+  free(pole);
+  free(corner);
   free(cuts);
   return status;
 }

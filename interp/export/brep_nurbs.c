@@ -18,6 +18,8 @@
 // Sine of an angle that is no corner: rounding of exact arcs is a thousand times below, and other
 // programs take what is less for smooth.
 #define CORNER 1e-7
+// Control points of a line stray from it by this part of its length: rounding of raised degrees.
+#define LINE_SAME 1e-13
 
 // --- What cannot be exact ---
 
@@ -174,9 +176,25 @@ CagStatus cag_brep_curve_corners(const CagCurve *c, double **out, size_t *n, Cag
   return CAG_OK;
 }
 
+// A line has its control points where the averages of its knots say.
 bool cag_brep_is_straight(const CagCurve *c) {
   CagNurbsView v;
-  return cag_curve_nurbs_view(c, &v) && v.degree == 1 && v.count == 2 && !v.rational;
+  double bad;
+  if (!cag_curve_nurbs_view(c, &v) || judge_weights(v.homogeneous, v.count, &bad) > WEIGHTS_ALIKE)
+    return false;
+  const double *first = v.homogeneous, *last = first + 4 * (v.count - 1);
+  const CagVec3 p = cag_vec3(first[0] / first[3], first[1] / first[3], first[2] / first[3]);
+  const CagVec3 q = cag_vec3(last[0] / last[3], last[1] / last[3], last[2] / last[3]);
+  const double slack = LINE_SAME * cag_norm(cag_sub(q, p));
+  for (size_t i = 0; i < v.count; i++) {
+    const double *h = v.homogeneous + 4 * i;
+    double at = 0;
+    for (size_t k = i + 1; k <= i + (size_t)v.degree; k++) at += v.knots[k] / v.degree;
+    const CagVec3 on = cag_lerp(p, q, (at - c->start) / (c->end - c->start));
+    const CagVec3 off = cag_sub(cag_vec3(h[0] / h[3], h[1] / h[3], h[2] / h[3]), on);
+    if (cag_norm(off) > slack) return false;
+  }
+  return slack > 0;
 }
 
 // --- Surfaces ---

@@ -238,8 +238,9 @@ static Id nurbs_surface(Writer *w, const CagSurface *s) {
 static Id line(Writer *w, const CagCurve *c) {
   CagNurbsView v = {0};
   cag_curve_nurbs_view(c, &v);
-  const double *a = v.homogeneous, *b = a + 4;
-  CagVec3 p = cag_vec3(a[0], a[1], a[2]), d = cag_sub(cag_vec3(b[0], b[1], b[2]), p);
+  const double *a = v.homogeneous, *b = a + 4 * (v.count - 1);
+  CagVec3 p = cag_vec3(a[0] / a[3], a[1] / a[3], a[2] / a[3]);
+  CagVec3 d = cag_sub(cag_vec3(b[0] / b[3], b[1] / b[3], b[2] / b[3]), p);
   double length = cag_norm(d);
   Id at = point(w, p), along = direction(w, cag_unit(d));
   Id vector = begin(w, "VECTOR('',");

@@ -202,6 +202,12 @@ for entry in $lines; do
   done
 done
 
+it 'a ball in a cube has six planes in the .step, and only its seam is no exact curve'
+cp ball_body.step out
+[ "$(grep -c "=PLANE('" ball_body.step)" -eq 6 ] || wrong 'planes are missing'
+grep -q '=MANIFOLD_SOLID_BREP(' ball_body.step || wrong 'it is no solid'
+[ "$(grep -c "=B_SPLINE_CURVE_WITH_KNOTS('',3," ball_body.step)" -le 2 ] || wrong 'circles are approximated'
+
 it 'names and colours are in the .step'
 script named.cag 'show sphere(1) |> named("It'"'"'s \u{e9}t\u{e9}") |> color([1, 0, 0])'
 try export named.cag -o named.step
