@@ -4,6 +4,7 @@
 #     N=100 SEED=1 sh tools/mutate.sh
 #
 # SKIP=20 skips the first 20 changes of the seed, to continue an earlier run. FOLDERS="geom/curve" changes only files in these folders.
+# LONGEST=60 leaves out suites that take more than 60 s: the score is then a lower bound.
 #
 # Works on a copy of the tree in build-mutate/. First, every suite runs once in a build that counts which lines it reaches; the counts are
 # kept in build-mutate/reach/. Each change then replaces one operator or constant on one line of geom, interp or lang, by the table
@@ -13,7 +14,7 @@
 # for the unchanged code. Undetected changes are printed and stored in build-mutate/survivors.txt.
 set -eu
 cd "$(dirname "$0")/.."
-N=${N:-100} SEED=${SEED:-1} SKIP=${SKIP:-0} FOLDERS=${FOLDERS:-geom interp lang}
+N=${N:-100} SEED=${SEED:-1} SKIP=${SKIP:-0} FOLDERS=${FOLDERS:-geom interp lang} LONGEST=${LONGEST:-1800}
 [ -n "$N" ] || N=100
 [ -n "$SEED" ] || SEED=1
 TREE=$PWD/build-mutate/tree
@@ -122,7 +123,7 @@ link_suite() {
 who_notices() {
   for suite in $(suites_for "$1"); do
     seconds=$(cat "$REACH/$suite.time")
-    if [ "$seconds" -eq 0 ] || ! reaches "$suite" "$1" "$2"; then continue; fi
+    if [ "$seconds" -eq 0 ] || [ "$seconds" -gt "$LONGEST" ] || ! reaches "$suite" "$1" "$2"; then continue; fi
     if ! link_suite "$suite" || ! B=build limited $((4 * seconds + 10)) "$suite"; then
       echo "$suite"
       return 0

@@ -135,29 +135,53 @@ static void closed_surfaces_meet_themselves(void **state) {
   cag_surface_release(s);
 }
 
+// A grid of points and derivatives over `side` by 1 against single points. Rational ones divide in
+// another order.
+static void assert_grid(const CagSurface *s, double side, bool rational) {
+  enum { NU = 37, NV = 131 };
+  double us[NU], vs[NV];
+  static CagVec3 p[NU * NV], du[NU * NV], dv[NU * NV], alone[NU * NV];
+  for (int i = 0; i < NU; i++) us[i] = side * i / (NU - 1);
+  for (int j = 0; j < NV; j++) vs[j] = 1.0 * j / (NV - 1);
+  MUST(cag_surface_eval_grid(s, us, NU, vs, NV, p, du, dv, err));
+  MUST(cag_surface_eval_grid(s, us, NU, vs, NV, alone, NULL, NULL, err));
+  for (int i = 0; i < NU; i++)
+    for (int j = 0; j < NV; j++) {
+      CagVec3 d[4];
+      MUST(cag_surface_eval(s, us[i], vs[j], 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err));
+      int at = i * NV + j;
+      assert_point(p[at], d[0], rational ? 1e-14 : 0, "point");
+      assert_point(alone[at], d[0], rational ? 1e-14 : 0, "point alone");
+      assert_point(du[at], d[cag_partial(1, 1, 0)], rational ? 1e-13 : 0, "du");
+      assert_point(dv[at], d[cag_partial(1, 0, 1)], rational ? 1e-13 : 0, "dv");
+    }
+}
+
 static void a_grid_has_the_values_of_single_points_to_the_last_bit(void **state) {
   (void)state;
   for (int r = 0; r < 2; r++) {
     CagSurface *s;
     MUST(cag_surface_nurbs(RATIONAL, r ? RATIONAL_WEIGHTS : NULL, 5, 4, 3, 3, RATIONAL_U, CUBIC, &s,
                            err));
-    enum { NU = 37, NV = 131 };
-    double us[NU], vs[NV];
-    static CagVec3 p[NU * NV], du[NU * NV], dv[NU * NV], alone[NU * NV];
-    for (int i = 0; i < NU; i++) us[i] = 2.0 * i / (NU - 1);
-    for (int j = 0; j < NV; j++) vs[j] = 1.0 * j / (NV - 1);
-    MUST(cag_surface_eval_grid(s, us, NU, vs, NV, p, du, dv, err));
-    MUST(cag_surface_eval_grid(s, us, NU, vs, NV, alone, NULL, NULL, err));
-    for (int i = 0; i < NU; i++)
-      for (int j = 0; j < NV; j++) {
-        CagVec3 d[4];
-        MUST(cag_surface_eval(s, us[i], vs[j], 1, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err));
-        int at = i * NV + j;
-        assert_point(p[at], d[0], r ? 1e-14 : 0, "point");
-        assert_point(alone[at], d[0], r ? 1e-14 : 0, "point alone");
-        assert_point(du[at], d[cag_partial(1, 1, 0)], r ? 1e-13 : 0, "du");
-        assert_point(dv[at], d[cag_partial(1, 0, 1)], r ? 1e-13 : 0, "dv");
-      }
+    assert_grid(s, 2, r);
+    cag_surface_release(s);
+  }
+}
+
+static void a_grid_of_degree_6_has_the_values_of_single_points(void **state) {
+  (void)state;
+  enum { ROWS = 5, COLUMNS = 7 };
+  CagVec3 net[ROWS * COLUMNS];
+  double weights[ROWS * COLUMNS];
+  for (int i = 0; i < ROWS; i++)
+    for (int j = 0; j < COLUMNS; j++) {
+      net[i * COLUMNS + j] = cag_vec3(0.25 * i, j / 6.0, 0.1 * (i * i % 3) - 0.2 * (j % 2));
+      weights[i * COLUMNS + j] = 1 + 0.5 * ((i + 2 * j) % 3);
+    }
+  for (int r = 0; r < 2; r++) {
+    CagSurface *s;
+    MUST(cag_surface_bezier(net, r ? weights : NULL, ROWS, COLUMNS, &s, err));
+    assert_grid(s, 1, r);
     cag_surface_release(s);
   }
 }
@@ -777,6 +801,7 @@ int main(void) {
       cmocka_unit_test(rational_surfaces_follow_the_quotient_rule),
       cmocka_unit_test(closed_surfaces_meet_themselves),
       cmocka_unit_test(a_grid_has_the_values_of_single_points_to_the_last_bit),
+      cmocka_unit_test(a_grid_of_degree_6_has_the_values_of_single_points),
       cmocka_unit_test(bad_nurbs_data_are_refused_by_name),
       cmocka_unit_test(isocurves_of_a_bezier_patch_are_bezier_curves),
       cmocka_unit_test(a_line_revolves_to_a_frustum),
