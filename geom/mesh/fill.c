@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/mesh/sides.h"
 #include "geom/mesh/tessellation.h"
 #include "geom/surface/frames.h"
 
@@ -520,8 +521,13 @@ CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
   finish_weld(t);
   Fill f = {.t = t};
   CagStatus status = begin_fill(&f, err);
-  for (size_t k = 0; status == CAG_OK && k < t->leaf_count; k++)
+  for (size_t k = 0; status == CAG_OK && k < t->leaf_count; k++) {
+    const size_t first = f.triangles;
     status = fill_leaf(&f, &t->leaves[k], err);
+    if (status == CAG_OK)
+      status = cag_mesh_split_sides(f.mesh, first, f.triangles, t->faces[t->leaves[k].face].surface,
+                                    t->how.angle, t->noise, err);
+  }
   for (size_t k = 0; status == CAG_OK && k < t->face_count; k++)
     for (size_t j = 0; j < t->faces[k].triangle_count; j++) {
       const uint32_t *corner = t->faces[k].triangles + 3 * j;

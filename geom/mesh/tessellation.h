@@ -5,9 +5,9 @@
 // leaves lie on lines, u = const or v = const; each line is divided once, for the leaves on both of
 // its sides, at the seam for both ends of the domain, and at edges of a solid for both faces
 // (lines.c, even.c). The nodes of lines become vertices (nodes.c). Then each leaf's grid is filled
-// in and stitched to the nodes around it (fill.c), edges of triangles that lean away from the
-// surface are flipped (turn_edges.c), and plane faces are triangulated from the nodes of their
-// loops (planar.c).
+// in and stitched to the nodes around it (fill.c), the sides of cusps get normals of their own
+// (sides.c), edges of triangles that lean away from the surface are flipped (turn_edges.c), and
+// plane faces are triangulated from the nodes of their loops (planar.c).
 //
 // If the surface bends least along lines that cross both families of parameter lines at an angle,
 // as on a thread, whole cells become strips instead of leaves with grids (strips.c). A strip is a

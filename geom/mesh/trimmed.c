@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "geom/mesh/edges.h"
+#include "geom/mesh/sides.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 
@@ -637,10 +638,14 @@ static CagStatus to_mesh(Plane *p, CagMesh **out, CagError *err) {
 CagStatus cag_trimmed_tessellate(const CagSurface *s, const CagTessellation *how, CagMesh **out,
                                  CagError *err) {
   Plane p = {0};
+  CagMesh *m = NULL;
   CagStatus status = begin(&p, s, how, err);
   if (!status) status = insert_mesh(&p, s, how, err);
   if (!status) status = refine(&p, how, err);
-  if (!status) status = to_mesh(&p, out, err);
+  if (!status) status = to_mesh(&p, &m, err);
+  if (!status) status = cag_mesh_split_sides(m, 0, m->triangle_count, p.inner, how->angle, 0, err);
   release(&p);
+  if (!status) *out = m;
+  else cag_mesh_release(m);
   return status;
 }

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/mesh/sides.h"
 #include "geom/solid/csg.h"
 #include "geom/solid/inside.h"
 
@@ -440,7 +441,10 @@ static CagStatus make_mesh(Work *w, CagMesh **out, CagError *err) {
     }
   }
   free(number);
+  if (!status && curved)
+    status = cag_mesh_split_sides(m, 0, m->triangle_count, w->surface, w->how->angle, 0, err);
   if (!status) *out = m;
+  else cag_mesh_release(m);
   return status;
 }
 

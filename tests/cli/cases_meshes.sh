@@ -254,6 +254,23 @@ for which in 0 1 2 3 4 5 6 7 8 9; do
   python3 "$here/glb_lean.py" lean.glb 15 > lean || wrong "shape $which: $(cat lean)"
 done
 
+# The normals on the two sides of a cusp, or of a tip within the domain, have opposite limits.
+it 'triangles at cusps have the normals of their sides' python3
+script cusps.cag 'param which = 0
+shapes = [
+  surface((u, v) => 10 * [cos(u)*sin(v), sin(u)*sin(v), cos(v) + ln(tan(v/2)) + 0.2*in_radians(u)], 0deg..720deg, 10deg..170deg),
+  surface((u, v) => [u*cos(v), u*sin(v), u], -1..1.5, 0deg..360deg),
+  surface((u, v) => [u, v^3, v^2 + 0.1*u*v^2], -1..1, -1..1),
+  surface((u, v) => [u^3 + u*v, 0.75*u^4 + 0.5*u^2*v, v], -1..1, -1..1),
+  surface((u, v) => [3*u^2 + v, -2*u^3, v], -1..1, -1..1)
+]
+show if which < 5 then shapes[which] else clip(shapes[0], plane([0, 0, 9], [1, 1, 1]))'
+for which in 0 1 2 3 4 5; do
+  try export cusps.cag -o cusps.glb -D which=$which
+  status 0
+  python3 "$here/glb_lean.py" cusps.glb 30 > lean || wrong "shape $which: $(cat lean)"
+done
+
 # Its corner of three equal control points has no partials to cross; the plane has the normal [-1, -2, 2] / 3 there as elsewhere.
 it 'normals in a .ply are those of the surface, also where control points coincide'
 script corner.cag 'f(x, y) = [x, y, (x + 2*y) / 2]
