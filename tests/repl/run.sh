@@ -171,6 +171,7 @@ width
 got=$(echo 'width + 1' | "$cag" repl part.cag 2>&1)
 [ "$got" = '41 : number' ]
 result 'cag repl FILE loads the file' $? "$got"
+echo 'x = 1' >once.cag
 echo 'param height = 3 in 1..9' >param.cag
 got=$(echo 'height' | "$cag" repl param.cag -D height=7 2>&1)
 [ "$got" = '7 : number' ]
@@ -263,6 +264,34 @@ printf '%s\n' ':load all.cag' ':hide sphere(f(2))' ':save again.cag' | "$cag" re
 sed 's/, sphere(f(2))//' all.cag | diff - again.cag >difference
 result ':save keeps imports, documentation and asserts' $? "$(cat difference)"
 
+prints 'a word that only begins like one that goes on begins an input' '1 : number
+5 : number' '1
+order = 5
+order'
+prints 'a word alone on a line goes on' '1 : number' 'if true then 1
+else
+2'
+prints 'exit; ends' '1 : number' '1
+exit;
+2'
+prints 'a name that is defined beside others is no command' '5 : number
+1 : number' 'x = 1
+exit = 5
+exit
+x'
+prints 'a text of letters and digits is no error code' '' ':doc Exxxx'
+prints ':doc of an error code takes small letters' "$("$cag" explain E0301)" ':doc e0301'
+prints 'a script that is loaded twice is reloaded once' 'x = 1' ':load once.cag
+:load once.cag
+:reload
+:list'
+got=$(printf ':load ~/part.cag\n' | env -u HOME "$cag" repl 2>&1)
+[ "${got#*~/part.cag}" != "$got" ]
+result 'without a home directory ~ is a name' $? "$got"
+got=$(printf ':type 1\n' | "$cag" repl -q 2>&1)
+[ "$got" = number ]
+result '-q keeps answers' $? "$got"
+
 # edits NAME EXPECTED EDITOR INPUT: compares what INPUT prints when EDITOR is the editor.
 edits() {
   got=$(printf '%s\n' "$4" | VISUAL="$3" EDITOR=false "$cag" repl 2>&1)
@@ -281,6 +310,28 @@ edits 'an editor that fails is named' 'error: the editor `false` failed; VISUAL 
 3 : number' '' 'x = 3
 :edit
 x'
+edits ':edit of a script that is loaded loads all again' '3 : number
+4 : number' 'sed -i s/1/4/' ':load part.cag
+:load once.cag
+x = 3
+x
+:edit once.cag
+x'
+got=$(printf 'x = 3\n:edit\nx\n' | VISUAL='' EDITOR='sed -i s/3/6/' "$cag" repl 2>&1)
+[ "$got" = '6 : number' ]
+result 'EDITOR is used where VISUAL is empty' $? "$got"
+mkdir bin
+printf '#!/bin/sh\nexec sed -i s/3/7/ "$1"\n' >bin/vi
+chmod +x bin/vi
+got=$(printf 'x = 3\n:edit\nx\n' | env -u VISUAL EDITOR= TMPDIR= PATH="$work/bin:$PATH" "$cag" repl 2>&1)
+[ "$got" = '7 : number' ]
+result 'vi is the editor where none is named' $? "$got"
+got=$(printf 'x = 3\n:edit\n' | env -u TMPDIR -u VISUAL -u EDITOR PATH="$work/bin:$PATH" "$cag" repl 2>&1)
+[ -z "$got" ]
+result 'the same without the variables' $? "$got"
+got=$(printf 'x = 3\n:edit\n' | VISUAL='kill -KILL $$ #' "$cag" repl 2>&1)
+[ "${got#*failed; VISUAL or EDITOR names another}" != "$got" ]
+result 'an editor that is killed has failed' $? "$got"
 got=$(printf 'x = 3\n:edit\n' | TMPDIR="$work/missing" VISUAL=true "$cag" repl 2>&1)
 [ "${got#*cannot write "$work"/missing/cag-}" != "$got" ]
 result ':edit reports where it cannot write' $? "$got"
@@ -524,6 +575,84 @@ else
     skip 'tmux does not start' "$unwritable"
   fi
 fi
+
+# Other environments: colors, other letters, a window of 40 columns, a history that has grown, and no place for one
+if ! command -v tmux >/dev/null; then
+  skip_part 'tmux is missing' 'Other environments: colors, other letters, a window of 40 columns, a history that has grown, and no place for one'
+else
+  # begins ENVIRONMENT ...: cag in a window of 40 columns, in this environment.
+  begins() {
+    sleep 0.2
+    tmux -u -L "$session" -f /dev/null new-session -d -s repl -x 40 -y 60 env "$@" TERM=screen "$cag" $options
+  }
+  ends() {
+    keys C-d
+    tries=0
+    while tmux -L "$session" has-session -t repl 2>/dev/null && [ $tries -lt 100 ]; do
+      sleep 0.05
+      tries=$((tries + 1))
+    done
+  }
+  options=-q
+  home=$work/home
+  mkdir -p "$home/.local/state/cag"
+  # 4,100 lines, of which two are equal, and one is empty.
+  {
+    seq 1 4097
+    printf '4097\n\n4098'
+  } >"$home/.local/state/cag/history"
+  begins -u XDG_STATE_HOME -u NO_COLOR HOME="$home" LC_ALL=C
+  shows '-q hides the greeting' 'cag>'
+  ! screen | grep -q ':help lists'
+  result 'nothing stands above the prompt' $? "$(screen)"
+  [ "$(wc -l <"$home/.local/state/cag/history")" -le 2001 ] && [ "$(tail -n 1 "$home/.local/state/cag/history")" = 4098 ]
+  result 'a history that has grown is cut at its beginning' $? "$(wc -l "$home/.local/state/cag/history")"
+  keys Up Up Up
+  wait_for 'cag> 4096'
+  keys Enter
+  shows 'lines of the history that are equal are one' '4096 : number'
+  tmux -L "$session" capture-pane -e -p -t repl | grep -q "$(printf '4096 .*\033\[2m: number')"
+  result 'types are dim where colors are' $? "$(tmux -L "$session" capture-pane -e -p -t repl)"
+  keys 'θ = 30deg' Enter 'sin(θ)' Enter
+  wait_for 'cag>'
+  shows 'letters of all alphabets can be typed in every locale' '0.5 : number'
+  keys 'sphere_surf' Tab
+  wait_for 'cag> sphere_surface'
+  keys Tab '(1)'
+  shows 'Tab leaves a complete name alone' 'cag> sphere_surface(1)'
+  keys C-c
+  wait_for 'cag>'
+  keys 'sphere' Tab
+  shows 'Tab lists several proposals in columns' 'sphere          sphere_surface'
+  shows 'with the line below them' 'cag> sphere'
+  keys C-c C-l ':help' Enter
+  shows 'the commands stand above their descriptions in a narrow window' ':time EXPR'
+  shows 'which are indented' '    a value, and how long it took'
+  keys C-l ':doc degree' Enter
+  wait_for 'cag>'
+  tmux -L "$session" capture-pane -e -p -t repl | grep -q "$(printf '\033')\["
+  result 'documentation has colors where there are some' $? "$(screen)"
+  ends
+  [ "$(stat -c %a "$home/.local/state/cag/history")" = 600 ]
+  result 'the history is for the user alone' $?
+  options=
+  begins -u XDG_STATE_HOME -u HOME LC_ALL=C.UTF-8
+  shows 'a session begins without a place for a history' 'cag>'
+  keys '3 * 3' Enter
+  shows 'and evaluates' '9 : number'
+  keys Up Enter
+  wait_for 'cag>'
+  ends
+  if command -v povray >/dev/null; then
+    mkdir -p parts.d
+    echo 'show sphere(10), camera([90, -60, 40], size: [32, 24])' >parts.d/ball.cag
+    printf '%s\n' ':load parts.d/ball.cag' ':render' | "$cag" repl 2>/dev/null | grep -qxF 'wrote ball.png' && [ -s ball.png ]
+    result 'a picture without a name has that of the script loaded last' $?
+  else
+    skip 'povray is missing' 'a picture without a name has that of the script loaded last'
+  fi
+fi
+# End: Other environments: colors, other letters, a window of 40 columns, a history that has grown, and no place for one
 
 echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed = 0 ]
