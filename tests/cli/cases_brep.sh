@@ -311,3 +311,12 @@ try_command timeout 20 "$CAG" export many.cag -o many.step
 status 0
 [ "$(grep -c ADVANCED_FACE many.step)" -eq 2002 ] || wrong 'faces are missing'
 [ "$(grep -c EDGE_CURVE many.step)" -eq 6000 ] || wrong 'edges are not shared'
+
+# Two sides of the face have the weights 2, 2, 2, and are polynomials; those of the others are 2, 1, 2.
+it 'an edge is rational only if its weights differ'
+script weights.cag 'show bspline_surface([[[0,0,0],[0,5,1],[0,9,0]],[[5,0,2],[5,5,1],[5,9,0]],[[9,0,0],[9,5,1],[9,9,1]]], degree: 2, weights: [[2,2,2],[1,3,1],[2,2,2]])'
+try export weights.cag -o weights.step
+status 0
+[ "$(grep -o 'RATIONAL_B_SPLINE_CURVE' weights.step | wc -l)" -eq 2 ] || wrong 'other edges are rational'
+[ "$(grep -o 'B_SPLINE_CURVE_WITH_KNOTS' weights.step | wc -l)" -eq 4 ] || wrong 'there are not 4 edges'
+[ "$(grep -o 'RATIONAL_B_SPLINE_SURFACE' weights.step | wc -l)" -eq 1 ] || wrong 'the face is not rational'

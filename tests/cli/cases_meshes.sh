@@ -461,3 +461,10 @@ for format in stl ply glb; do
   says "cut.$format"
   says 'write or fetch'
 done
+
+it 'facets of any size have normals in .stl'
+script sizes.cag 'show mesh([[0,0,0],[1e-15,0,0],[0,1e-15,0]], [[0,1,2]]), mesh([[0,0,0],[0,1e25,0],[0,0,1e25]], [[0,1,2]])'
+try export sizes.cag -o sizes.stl
+status 0
+[ "$(tail -c +85 sizes.stl | head -c 12 | od -An -tf4 | tr -s ' ')" = ' 0 0 1' ] || wrong 'the normal of the small facet is not Z'
+[ "$(tail -c +135 sizes.stl | head -c 12 | od -An -tf4 | tr -s ' ')" = ' 1 0 0' ] || wrong 'the normal of the large facet is not X'

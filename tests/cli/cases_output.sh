@@ -240,3 +240,30 @@ fails_whole pov 'show sphere(1), point_light([0, 0, 100], color: [10, 1, 1], str
 fails_whole svg 'show circle(1), label([1.7e308, -1.7e308], "a"), label([-1.7e308, 0], "b")' "$undefined"
 fails_whole urdf 'show robot([revolute(a: 1, shape: material(box([1, 1, 1]), {density: 1.7e308})),
   revolute(a: 1, shape: material(box([1e3, 1e3, 1e3]), {density: 1.7e308}))])' "$undefined"
+
+it 'a label of .svg has its mark at its point'
+script marks.cag 'show circle(10), label([10, 0], "P", mark: "cross"), label([0, 10], "Q", mark: "circle"), label([-10, 0], "R", mark: "dot")'
+try export marks.cag -o marks.svg
+status 0
+grep -q '<circle cx="0" cy="-10" r="[0-9.]*" stroke-width="[0-9.]*" fill="#ffffff" stroke="#30353f"/>' marks.svg || wrong 'no circle at Q'
+grep -q '<circle cx="-10" cy="0" r="[0-9.]*" fill="#30353f" stroke="none"/>' marks.svg || wrong 'no dot at R'
+if needs python3; then
+  # The strokes of the cross are diagonals of a square about P.
+  try_command python3 -c '
+import re
+ends = re.search("d=\"M (\\S+) (\\S+) L (\\S+) (\\S+) M (\\S+) (\\S+) L (\\S+) (\\S+)\"", open("marks.svg").read())
+v = [float(x) for x in ends.groups()]
+half = abs(v[0] - 10)
+assert half > 0 and all(abs(abs(x - 10) - half) < 1e-4 for x in v[0::2]) and all(abs(abs(y) - half) < 1e-4 for y in v[1::2]), v
+assert (v[0] - v[2]) * (v[4] - v[6]) + (v[1] - v[3]) * (v[5] - v[7]) < 1e-4, v'
+  status 0
+fi
+
+it 'a spot light and a panorama are in .json as they were said'
+script light.cag 'show box(3), spot_light([10, 10, 10], [0, 0, 0], angle: 90deg), sky("sky.exr")'
+try export light.cag -o light.json
+status 0
+grep -q '"kind":"spot","position":\[10,10,10\]' light.json || wrong 'no spot light'
+grep -q '"angle":1.57079632679489' light.json || wrong 'the angle is not pi / 2'
+grep -q '"direction":\[-0.57735026918962[0-9]*,' light.json || wrong 'the direction is not along [-1, -1, -1]'
+grep -q '"sky":{"image":"sky.exr"}' light.json || wrong 'no panorama'

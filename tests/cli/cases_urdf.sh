@@ -197,3 +197,26 @@ awk '/^```cag$/ { n++; inside = 1; next } /^```/ { inside = 0 } inside { print >
 exists chapter/7.cag
 try test chapter
 status 0
+
+script masses.cag 'said(s, c) = material(s, {color: c, density: 1000})
+can = revolve(reverse(polyline([[0, 0], [100, 0], [100, 50], [0, 50]])), Z)
+show robot([revolute(a: 100, shape: said(translate(torus_surface(200, 50), [10, 20, 30]), "red")),
+  revolute(a: 50, shape: said(translate(can, [0, 0, -25]), "blue")), revolute(a: 50, shape: said(circle(5), "blue"))])'
+
+# A torus has the volume 2 pi^2 R r^2 and, about its axis and a diameter, m (R^2 + 3/4 r^2) and m (R^2/2 + 5/8 r^2).
+# The cylinder has inward normals, and encloses the same volume; a curve has no mass.
+it 'closed surfaces have the mass and inertia of what they enclose'
+try export masses.cag -o masses.urdf
+status 0
+if needs python3; then
+  try_command python3 -c '
+import math, xml.etree.ElementTree as tree
+R, r, a, h = .2, .05, .1, .05
+torus, can = 2000 * math.pi**2 * R * r * r, 1000 * math.pi * a * a * h
+expected = [(torus, torus * (R*R/2 + 5/8*r*r), torus * (R*R + 3/4*r*r)), (can, can * (3*a*a + h*h) / 12, can * a*a/2)]
+found = [(float(i.find("mass").get("value")), *(float(i.find("inertia").get(k)) for k in ("ixx", "izz"))) for i in
+  tree.parse("masses.urdf").iter("inertial")]
+assert len(found) == 2, found
+assert all(abs(x - y) < 1e-9 * y for f, e in zip(found, expected) for x, y in zip(f, e)), (found, expected)'
+  status 0
+fi
