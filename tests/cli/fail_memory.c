@@ -15,6 +15,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/inotify.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -229,6 +231,41 @@ DIR *opendir(const char *path) {
 int pipe2(int fds[2], int flags) {
   FAIL(-1);
   return NEXT(pipe2)(fds, flags);
+}
+int dup2(int from, int to) {
+  FAIL(-1);
+  return NEXT(dup2)(from, to);
+}
+int chdir(const char *path) {
+  FAIL(-1);
+  return NEXT(chdir)(path);
+}
+int inotify_init1(int flags) {
+  FAIL(-1);
+  return NEXT(inotify_init1)(flags);
+}
+int inotify_add_watch(int fd, const char *path, uint32_t mask) {
+  FAIL(-1);
+  return NEXT(inotify_add_watch)(fd, path, mask);
+}
+// These take as many arguments as there may be, as the system does.
+int prctl(int option, ...) {
+  FAIL(-1);
+  unsigned long values[4];
+  va_list list;
+  va_start(list, option);
+  for (int i = 0; i < 4; i++) values[i] = va_arg(list, unsigned long);
+  va_end(list);
+  return NEXT(prctl)(option, values[0], values[1], values[2], values[3]);
+}
+long syscall(long number, ...) {
+  FAIL(-1);
+  long values[6];
+  va_list list;
+  va_start(list, number);
+  for (int i = 0; i < 6; i++) values[i] = va_arg(list, long);
+  va_end(list);
+  return NEXT(syscall)(number, values[0], values[1], values[2], values[3], values[4], values[5]);
 }
 pid_t fork(void) {
   FAIL(-1);
