@@ -11,6 +11,7 @@
 
 #include "geom/linalg/complex.h"
 #include "geom/surface/family.h"
+#include "geom/surface/swept.h"
 
 typedef struct Extrusion {
   CagSurface base;
@@ -203,5 +204,12 @@ bool cag_surface_extrusion_view(const CagSurface *s, const CagCurve **section, C
   if (s->kind != &extrusion_kind || !is_plain(e)) return false;
   *section = e->section;
   *along = e->along;
+  return true;
+}
+
+bool cag_surface_twisted_view(const CagSurface *s, CagTwisted *out) {
+  const Extrusion *e = (const Extrusion *)s;
+  if (s->kind != &extrusion_kind) return false;
+  *out = (CagTwisted){e->section, e->along, e->twist, e->scale};
   return true;
 }

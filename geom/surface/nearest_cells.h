@@ -3,15 +3,15 @@
 // Where the surface has an exact form, a cell is a part of one of its Bezier patches, and the bound
 // is certain: the squared distance is a quotient of two polynomials in Bernstein form, and is
 // nowhere less than the least quotient of their coefficients. Cells then have the parameters of
-// the exact form. Of tubes and sweeps the derivatives are bounded by ranges (nearest_swept.h).
-// Other surfaces are sampled: the squared distance of a cell is a biquadratic polynomial but for
-// what further samples miss it by, with some safety.
+// the exact form. Of tubes, sweeps and twisted extrusions the derivatives are bounded by ranges
+// (nearest_swept.h). Other surfaces are sampled: the squared distance of a cell is a biquadratic
+// polynomial but for what further samples miss it by, with some safety.
 
 #ifndef CAG_GEOM_SURFACE_NEAREST_CELLS_H
 #define CAG_GEOM_SURFACE_NEAREST_CELLS_H
 
-#include "geom/surface/motion.h"
 #include "geom/surface/surface.h"
+#include "geom/surface/swept.h"
 
 typedef struct CagDistanceCell {
   double u[2], v[2];
@@ -26,10 +26,11 @@ typedef struct CagDistanceCell {
   size_t block; // its control points; of a raw one its place in the net
 } CagDistanceCell;
 
-// A tube or a sweep.
+// A tube, a sweep or a twisted extrusion.
 typedef struct CagSwept {
   const CagCurve *section; // NULL: another surface
-  const CagMotion *motion;
+  const CagMotion *motion; // NULL: of the extrusion
+  CagTwisted extrusion;
   CagTransform map; // of the surface that section and motion make
   bool flip;        // its v runs backwards
   bool tube;        // cells are intervals of v: the section is a circle about the path

@@ -1,4 +1,5 @@
-// Lower bounds of the distances of cells of tubes and sweeps, by ranges of their derivatives.
+// Lower bounds of the distances of cells of tubes, sweeps and extrusions, by ranges of their
+// derivatives.
 //
 // A function over an interval of length h is nowhere lower than the chord of its values at both
 // ends by more than h^2 / 8 times the largest second derivative; a convex function is nowhere lower
@@ -26,6 +27,8 @@
 // First cells of a round section, and of another smooth piece.
 #define ROUND_PARTS 4
 #define OTHER_PARTS 2
+// First intervals of an extrusion by v.
+#define EXTRUSION_PARTS 4
 
 // --- The surface ---
 
@@ -42,6 +45,51 @@ static bool is_centered_circle(const CagCurve *section, double *radius) {
   return true;
 }
 
+// The spokes of an extrusion: x and y are multiplied by the complex factor
+// (1 + k v) exp(i a v), a being the twist and 1 + k the scale.
+static void extrusion_ranges(const CagTwisted *e, double a, double b, int n, CagMotionRanges *out) {
+  const CagInterval none = cag_interval(0), v = {a, b};
+  const double k = e->scale - 1;
+  const CagInterval grown = cag_interval_add(cag_interval(1), cag_interval_scaled(v, k));
+  const CagInterval turn = cag_interval_scaled(v, e->twist);
+  CagInterval before[2] = {none, none}; // the coefficient of exp(i a v) before
+  double factor = 1;                    // a^j / j!
+  for (int j = 0; j <= n; j++) {
+    CagInterval e_j[2], m[2];
+    for (int part = 0; part < 2; part++) {
+      const CagInterval angle = cag_interval_add(turn, cag_interval((j - part) * (M_PI / 2)));
+      e_j[part] = cag_interval_scaled(cag_interval_cos(angle), factor);
+      m[part] = cag_interval_add(cag_interval_product(grown, e_j[part]),
+                                 cag_interval_scaled(before[part], k));
+      before[part] = e_j[part];
+    }
+    const CagInterval up = j == 0 ? v : j == 1 ? cag_interval(1) : none;
+    out->x[j] = (CagInterval3){m[0], m[1], none};
+    out->y[j] = (CagInterval3){cag_interval_scaled(m[1], -1), m[0], none};
+    out->z[j] = (CagInterval3){none, none, cag_interval(j == 0)};
+    out->origin[j] =
+        (CagInterval3){cag_interval_scaled(up, e->along.x), cag_interval_scaled(up, e->along.y),
+                       cag_interval_scaled(up, e->along.z)};
+    factor *= e->twist / (j + 1);
+  }
+}
+
+static bool spoke_ranges(const CagSwept *w, double a, double b, int n, CagMotionRanges *out) {
+  if (w->motion) return cag_motion_ranges(w->motion, a, b, n, out);
+  extrusion_ranges(&w->extrusion, a, b, n, out);
+  return true;
+}
+
+// The ends of the stretches along which the surface is analytic.
+static CagStatus find_joints(const CagSwept *w, double **out, size_t *n, CagError *err) {
+  if (w->motion) return cag_motion_joints(w->motion, out, n, err);
+  *out = malloc((EXTRUSION_PARTS + 1) * sizeof **out);
+  if (!*out) return cag_fail_memory(err);
+  for (int i = 0; i <= EXTRUSION_PARTS; i++) (*out)[i] = (double)i / EXTRUSION_PARTS;
+  *n = EXTRUSION_PARTS;
+  return CAG_OK;
+}
+
 CagStatus cag_swept_cells_begin(CagDistanceCells *c, bool region, bool *known, CagError *err) {
   CagSwept *w = &c->swept;
   const CagSurface *s = c->s;
@@ -51,20 +99,25 @@ CagStatus cag_swept_cells_begin(CagDistanceCells *c, bool region, bool *known, C
   *w = (CagSwept){.map = cag_transform_identity(), .scale = 1, .p = c->p};
   if (cag_surface_placed_view(s, &s, &w->map)) w->flip = cag_surface_is_flipped(c->s);
   *known = cag_surface_swept_view(s, &w->section, &w->motion);
+  if (!*known && cag_surface_twisted_view(s, &w->extrusion)) {
+    *known = true;
+    w->section = w->extrusion.section;
+  }
   if (!*known) return CAG_OK;
   double *joints, *cuts = NULL;
   size_t n;
-  CagStatus status = cag_motion_joints(w->motion, &joints, &n, err);
+  CagStatus status = find_joints(w, &joints, &n, err);
   if (!status) status = cag_curve_cuts(w->section, &cuts, &n, err);
   if (!status) {
     // A tiny interval shows whether there are ranges at all.
     const double tiny = 1e-6, dv = tiny * (joints[1] - joints[0]), du = tiny * (cuts[1] - cuts[0]);
-    *known = cag_motion_ranges(w->motion, joints[0], joints[0] + dv, SECOND, &at) &&
+    *known = spoke_ranges(w, joints[0], joints[0] + dv, SECOND, &at) &&
              cag_curve_ranges(w->section, cuts[0], cuts[0] + du, SECOND, section);
   }
   free(joints);
   free(cuts);
   if (status || !*known) return status;
+  if (!w->motion) return CAG_OK;
   const CagPathMotion *how = cag_motion_path(w->motion) ? cag_motion_how(w->motion) : NULL;
   w->tube = !region && how && how->orient != CAG_ORIENT_FIXED && !w->motion->corner &&
             is_centered_circle(w->section, &w->radius) &&
@@ -172,7 +225,7 @@ static double box_bound(const CagDistanceCells *c, CagDistanceCell *cell) {
   double v[2];
   inner_range(c, cell->v, v);
   if (!cag_curve_ranges(c->swept.section, cell->u[0], cell->u[1], 0, &section) ||
-      !cag_motion_ranges(c->swept.motion, v[0], v[1], 0, &m))
+      !spoke_ranges(&c->swept, v[0], v[1], 0, &m))
     return 0;
   const CagInterval of[3] = {section.x, section.y, section.z};
   const CagInterval3 *spokes[3] = {m.x, m.y, m.z};
@@ -201,7 +254,7 @@ static bool bends(const CagDistanceCells *c, const CagDistanceCell *cell, const 
   double v[2];
   inner_range(c, cell->v, v);
   if (!cag_curve_ranges(w->section, cell->u[0], cell->u[1], SECOND, section) ||
-      !cag_motion_ranges(w->motion, v[0], v[1], SECOND, &m))
+      !spoke_ranges(w, v[0], v[1], SECOND, &m))
     return false;
   for (int i = 0; i <= SECOND; i++)
     for (int j = 0; i + j <= SECOND; j++) {
@@ -451,13 +504,13 @@ CagStatus cag_swept_cells_push(CagDistanceCells *c, CagError *err) {
   double *joints, *cuts = NULL, a, b;
   size_t rows, columns = 0;
   CagTransform frame;
-  CagStatus status = cag_motion_joints(w->motion, &joints, &rows, err);
+  CagStatus status = find_joints(w, &joints, &rows, err);
   if (!status) status = cag_surface_cuts(c->s, 0, &cuts, &columns, err);
   const bool round = cag_curve_arc_view(w->section, &a, &b, &frame);
   const size_t parts = w->tube ? 1 : round ? ROUND_PARTS : OTHER_PARTS;
   for (size_t j = 0; !status && j < rows; j++) {
     CagMotionRanges m;
-    const bool known = cag_motion_ranges(w->motion, joints[j], joints[j + 1], 0, &m);
+    const bool known = spoke_ranges(w, joints[j], joints[j + 1], 0, &m);
     double v[2];
     inner_range(c, joints + j, v); // its own inverse
     status = push_row(c, v, known ? &m : NULL, cuts, columns, parts, err);

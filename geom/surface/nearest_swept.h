@@ -1,4 +1,5 @@
-// Lower bounds of the distances of cells of tubes and sweeps, by ranges of their derivatives.
+// Lower bounds of the distances of cells of tubes, sweeps and extrusions, by ranges of their
+// derivatives.
 
 #ifndef CAG_GEOM_SURFACE_NEAREST_SWEPT_H
 #define CAG_GEOM_SURFACE_NEAREST_SWEPT_H

@@ -18,5 +18,12 @@ bool cag_surface_tube_view(const CagSurface *s, const CagCurve **center, double 
 // Section and motion of a sweep or tube; false: another kind.
 bool cag_surface_swept_view(const CagSurface *s, const CagCurve **section,
                             const CagMotion **motion);
+// An extrusion, with its section in space.
+typedef struct CagTwisted {
+  const CagCurve *section;
+  CagVec3 along;
+  double twist, scale; // at v = 1
+} CagTwisted;
+bool cag_surface_twisted_view(const CagSurface *s, CagTwisted *out); // false: another kind
 
 #endif

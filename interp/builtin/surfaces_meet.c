@@ -84,12 +84,11 @@ const CagBuiltin cag_builtins_meetings[] = {
     {"closest(S, P)", call_closest, "record",
      "The point of the surface nearest to P: u, v, point and distance (mm). If several are equally "
      "near, it is one of them. Bounds guarantee that no other point is nearer for surfaces with an "
-     "exact NURBS form, and for tubes and sweeps along lines, arcs, helices, splines and paths "
-     "joined from them. For points outside offsets and away from their ends, they do as well. "
-     "Other "
-     "surfaces are sampled as finely as they bend: nothing is known of a formula between its "
-     "points. The nearest point of `interpolate_surface(sample(S, nu, nv))`, a NURBS near such a "
-     "surface, is certain.",
+     "exact NURBS form, and for tubes, sweeps and twisted extrusions of lines, arcs, helices, "
+     "splines and curves joined from them. For points outside offsets and away from their ends, "
+     "they do as well. Other surfaces are sampled as finely as they bend: nothing is known of a "
+     "formula between its points. The nearest point of `interpolate_surface(sample(S, nu, nv))`, "
+     "a NURBS near such a surface, is certain.",
      "c = closest(sphere_surface(2), [0, 5, 0])\n"
      "print near(c.point, [0, 2, 0]), near(c.distance, 3), c.u, c.v // expect: true true 90deg "
      "90deg",

@@ -1,5 +1,5 @@
-// Nearest points of tubes and sweeps: closed forms, and random ones against a dense search; and the
-// ranges of derivatives that they rest on.
+// Nearest points of tubes, sweeps and extrusions: closed forms, and random ones against a dense
+// search; and the ranges of derivatives that they rest on.
 
 #include "nearest_support.h"
 
@@ -223,6 +223,20 @@ static CagSurface *random_sweep(int i) {
   return s;
 }
 
+// Turned and scaled about the z axis, beside which the section lies.
+static CagSurface *random_extrusion(void) {
+  CagTransform aside = cag_translate(cag_vec3(between(-2, 2), between(-2, 2), 0));
+  CagCurve *c = section(whole(0, 3)), *moved;
+  CagSurface *s;
+  aside.planar = true;
+  MUST(cag_curve_transform(c, &aside, &moved, err));
+  MUST(cag_surface_extrude(moved, cag_vec3(between(-1, 1), 0, 3), between(-7, 7), between(0.3, 1.5),
+                           &s, err));
+  cag_curve_release(moved);
+  cag_curve_release(c);
+  return s;
+}
+
 // Beside the surface, and well within its box.
 static CagVec3 near_or_far(const CagSurface *s, int i) {
   if (i % 3 == 0) return beside(s);
@@ -242,19 +256,20 @@ static void assert_nearest(const CagSurface *s, const char *what, int i) {
     fail_msg("%s %d: found %.17g, but %.17g is nearer", what, i, found.distance, dense);
 }
 
-static void nearest_points_of_random_tubes_and_sweeps_are_right(void **state) {
+static void nearest_points_of_random_swept_surfaces_are_right(void **state) {
   (void)state;
   state_of_random = 41;
   CagTransform oblique = *in_space();
   oblique.m[0][1] = 0.5;
   oblique.m[1][1] = -1.5; // mirrors
   for (int i = 0; i < 12 * SPINES; i++) {
-    CagSurface *kinds[] = {random_tube(i % SPINES), random_sweep(i)}, *moved;
-    for (int k = 0; k < 2; k++) {
+    static const char *const names[] = {"tube", "sweep", "extrusion"};
+    CagSurface *kinds[] = {random_tube(i % SPINES), random_sweep(i), random_extrusion()}, *moved;
+    for (int k = 0; k < 3; k++) {
       if (!kinds[k]) continue;
-      assert_nearest(kinds[k], k ? "sweep" : "tube", i);
+      assert_nearest(kinds[k], names[k], i);
       MUST(cag_surface_transform(kinds[k], &oblique, &moved, err));
-      if (i % 4 == 0) assert_nearest(moved, k ? "oblique sweep" : "oblique tube", i);
+      if (i % 4 == 0) assert_nearest(moved, names[k], i);
       cag_surface_release(moved);
       cag_surface_release(kinds[k]);
     }
@@ -266,7 +281,7 @@ int main(void) {
       cmocka_unit_test(ranges_hold_the_derivatives_of_curves),
       cmocka_unit_test(ranges_hold_the_derivatives_of_motions),
       cmocka_unit_test(points_inside_tubes_have_closed_forms),
-      cmocka_unit_test(nearest_points_of_random_tubes_and_sweeps_are_right),
+      cmocka_unit_test(nearest_points_of_random_swept_surfaces_are_right),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -83,7 +83,7 @@ static CagSurface *random_ellipsoid(void) {
   return s;
 }
 
-// Without an exact form: cells are sampled.
+// Without an exact form.
 static CagSurface *random_twist(void) {
   CagVec3 p[5];
   CagCurve *section;
