@@ -55,7 +55,7 @@ static Step step_of(const CagExpr *e) {
     return (Step){right->kind == CAG_EXPR_CALL ? right->as.call.callee : right, e->as.binary.left};
   }
   const CagArgument *a = e->as.call.arguments;
-  bool by_position = e->as.call.count > 0 && !a->name && a->value->kind != CAG_EXPR_SPREAD;
+  const bool by_position = e->as.call.count > 0 && !a->name;
   return (Step){e->as.call.callee, by_position ? a->value : NULL};
 }
 
@@ -112,7 +112,7 @@ static const char *lead(const CagExpr *e, const Around *around) {
   case CAG_EXPR_LIST: return lead_of_items(e->as.list.items, e->as.list.count, around);
   case CAG_EXPR_COMPREHENSION:
     return lead(e->as.comprehension.body, &(Around){.comprehension = e, .outer = around});
-  case CAG_EXPR_BLOCK: return e->as.block.value ? lead(e->as.block.value, around) : NULL;
+  case CAG_EXPR_BLOCK: return lead(e->as.block.value, around);
   case CAG_EXPR_IF:
     return same(lead(e->as.branch.then, around), lead(e->as.branch.otherwise, around));
   case CAG_EXPR_BINARY: // a transform times what it moves
@@ -144,9 +144,7 @@ static bool has_spread(const CagExpr *list) {
 
 static CagLeadParts parts_of_group(const CagExpr *e, size_t count) {
   CagArgument *a = e->as.call.arguments;
-  bool several = e->as.call.count > 1 && e->as.call.count == count;
-  for (size_t i = 0; several && i < count; i++) several = a[i].value->kind != CAG_EXPR_SPREAD;
-  if (several) return (CagLeadParts){.arguments = a};
+  if (e->as.call.count > 1 && e->as.call.count == count) return (CagLeadParts){.arguments = a};
   return e->as.call.count == 1 ? cag_lead_parts(cag_lead(a[0].value), count) : (CagLeadParts){0};
 }
 
