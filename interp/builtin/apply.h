@@ -13,10 +13,11 @@
 bool cag_transform_apply(CagVm *vm, const CagTransform *t, CagValue v, CagValue *result);
 
 // A member of a transform, plane, shape, camera, light or setting. False: there is none of this
-// name; no error is set. cag_value_members gives the names that there are, for messages and
-// completion.
+// name; no error is set. cag_value_members gives the names that there are and their number, for
+// messages and completion: none for values of other types.
+#define CAG_MEMBERS_MOST 32
 bool cag_value_member(CagVm *vm, CagValue object, const char *name, CagValue *out);
-const char *const *cag_value_members(CagValue object, size_t *n);
+size_t cag_value_members(CagValue object, const char *names[CAG_MEMBERS_MOST]);
 
 // The call of a shape: c(t), s(u, v). False: error set.
 bool cag_shape_call(CagVm *vm, CagValue shape, const CagValue *arguments, size_t n,

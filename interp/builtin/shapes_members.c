@@ -74,35 +74,33 @@ bool cag_value_member(CagVm *vm, CagValue object, const char *name, CagValue *ou
   return false;
 }
 
-const char *const *cag_value_members(CagValue object, size_t *n) {
+static size_t give_names(const char **names, const char *const *from, size_t n) {
+  for (size_t i = 0; i < n; i++) names[i] = from[i];
+  return n;
+}
+
+static size_t field_names(const CagRecord *fields, const char **names) {
+  const CagLayout *l = fields->layout;
+  const size_t n = l->count < CAG_MEMBERS_MOST ? l->count : CAG_MEMBERS_MOST;
+  for (size_t i = 0; i < n; i++) names[i] = l->names[i]->bytes;
+  return n;
+}
+
+size_t cag_value_members(CagValue object, const char *names[CAG_MEMBERS_MOST]) {
   static const char *const group_members[] = {"items"};
-  // All that any camera, light or setting has; the nearest of these is a good guess.
-  static const char *const stage_members[] = {
-      "eye",       "target",   "up",    "fov",      "kind",  "width",  "size",  "focus", "aperture",
-      "direction", "position", "angle", "strength", "color", "colors", "image", "z"};
-  *n = 0;
-  if (object.type == CAG_ROBOT || object.type == CAG_LINK) return cag_robot_members(object, n);
-  if (object.type == CAG_TRANSFORM) {
-    *n = COUNT(transform_members);
-    return transform_members;
+  if (object.type == CAG_ROBOT || object.type == CAG_LINK) {
+    size_t n;
+    const char *const *members = cag_robot_members(object, &n);
+    return give_names(names, members, n);
   }
-  if (object.type == CAG_PLANE) {
-    *n = COUNT(plane_members);
-    return plane_members;
+  if (is_staged(object)) return field_names(CAG_AS_SCENE(object)->fields, names);
+  switch (object.type) {
+  case CAG_TRANSFORM: return give_names(names, transform_members, COUNT(transform_members));
+  case CAG_PLANE: return give_names(names, plane_members, COUNT(plane_members));
+  case CAG_MESH: return give_names(names, mesh_members, COUNT(mesh_members));
+  case CAG_GROUP: return give_names(names, group_members, COUNT(group_members));
+  default: return 0;
   }
-  if (object.type == CAG_MESH) {
-    *n = COUNT(mesh_members);
-    return mesh_members;
-  }
-  if (object.type == CAG_GROUP) {
-    *n = COUNT(group_members);
-    return group_members;
-  }
-  if (is_staged(object)) {
-    *n = COUNT(stage_members);
-    return stage_members;
-  }
-  return NULL;
 }
 
 // --- Calls ---

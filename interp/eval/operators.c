@@ -680,8 +680,8 @@ static bool fail_field(CagVm *vm, CagValue object, const char *name) {
     return nearest ? cag_fail_help(vm, "did you mean `%s`?", nearest) : false;
   }
   cag_vm_fail(vm, CAG_ERR_field, "%s has no member `%s`", cag_type_article(object), name);
-  size_t n = 0;
-  const char *const *members = object.type >= CAG_TRANSFORM ? cag_value_members(object, &n) : NULL;
+  const char *members[CAG_MEMBERS_MOST];
+  const size_t n = cag_value_members(object, members);
   const char *nearest = n ? cag_nearest_name(name, members, n) : NULL;
   if (cag_foreign_member(name)) cag_fail_help(vm, "write %s", cag_foreign_member(name));
   else if (cag_builtin_find(name) != (size_t)-1)

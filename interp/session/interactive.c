@@ -50,9 +50,9 @@ static void adopt(CagVm *vm, CagModuleUnit *m) {
   for (size_t i = 0; i < m->ast->top_count; i++) {
     const char *name = m->ast->tops[i]->name;
     size_t k = find_name(vm, name), g = m->tops[i];
-    // A slot of an earlier definition is taken over; one that an import filled is not.
-    if (k != (size_t)-1 && vm->globals[vm->outer_globals[k]].expr) {
-      size_t old = vm->outer_globals[k];
+    const size_t old = k == (size_t)-1 ? k : vm->outer_globals[k];
+    // The slot of an earlier definition is reused. That of an imported name belongs to its module.
+    if (k != (size_t)-1 && vm->globals[old].unit && vm->globals[old].unit->adopted) {
       vm->globals[old] = vm->globals[g];
       m->tops[i] = old;
       again = true;
@@ -223,9 +223,9 @@ static void give_members(CagVm *vm, CagValue v, const MemberQuestion *q) {
     for (size_t i = 0; i < m->public_count; i++) q->give(q->context, m->publics[i].name);
   } else if (v.type == CAG_RANGE) {
     for (size_t i = 0; i < 3; i++) q->give(q->context, ends[i]);
-  } else if (v.type >= CAG_TRANSFORM) {
-    size_t n = 0;
-    const char *const *names = cag_value_members(v, &n);
+  } else {
+    const char *names[CAG_MEMBERS_MOST];
+    const size_t n = cag_value_members(v, names);
     for (size_t i = 0; i < n; i++) q->give(q->context, names[i]);
   }
 }
