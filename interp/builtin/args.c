@@ -356,9 +356,3 @@ bool cag_arg_surface(CagCall *call, int argument, CagSurface **out) {
   *out = CAG_AS_SHAPE(call->values[argument])->as.surface;
   return true;
 }
-
-bool cag_arg_shape(CagCall *call, int argument, CagShape **out) {
-  if (!cag_is_shape(call->values[argument])) return cag_fail_type(call, argument, "a shape");
-  *out = CAG_AS_SHAPE(call->values[argument]);
-  return true;
-}

@@ -99,7 +99,6 @@ bool cag_arg_interval(CagCall *call, int argument, double *start, double *end, b
 bool cag_arg_transform(CagCall *call, int argument, CagTransform *out);
 bool cag_arg_curve(CagCall *call, int argument, CagCurve **out);     // borrowed
 bool cag_arg_surface(CagCall *call, int argument, CagSurface **out); // borrowed
-bool cag_arg_shape(CagCall *call, int argument, CagShape **out);     // any shape
 
 // Calls a function of the script (or a built-in) from a built-in. A safe point: root what must
 // survive.

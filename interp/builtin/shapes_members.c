@@ -111,11 +111,6 @@ bool cag_shape_call(CagVm *vm, CagValue shape, const CagValue *arguments, size_t
   const CagBuiltin *rows = cag_builtin_rows(index, &count);
   size_t row = cag_builtin_select(index, shape.type, wanted + 1);
   CagValue values[4] = {shape, cag_unset(), cag_unset(), cag_unset()};
-  if (shape.type != CAG_CURVE && shape.type != CAG_SURFACE && shape.type != CAG_SOLID) {
-    CagCall call = {vm, rows, values, 1};
-    return cag_fail_call(&call, 0, CAG_ERR_not_function, "is not asked of %s",
-                         cag_type_article(shape));
-  }
   for (size_t i = 0; i < n && i < wanted; i++) values[i + 1] = arguments[i];
   CagCall call = {vm, &rows[row], values, 3};
   if (n != wanted)

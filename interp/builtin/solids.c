@@ -203,10 +203,10 @@ const CagBuiltin cag_builtins_solids[] = {
 
     // --- Figures ---
     {"control_net(S)", cag_solids_control_net, "group",
-     "The polygon or net of control points of a Bezier or B-spline curve or surface, as lines.",
-     "c = bezier([[0, 0], [1, 2], [2, 0]])\n"
-     "print bounds(control_net(c)).max // expect: [2, 2]",
-     CAG_TAKES(CURVE) | CAG_TAKES(SURFACE), figures},
+     "The net of control points of a Bezier or B-spline surface, as lines.",
+     "S = bezier_surface([[[0, 0, 0], [0, 9, 3]], [[9, 0, 0], [9, 9, 0]]])\n"
+     "print len(control_net(S).items) // expect: 4",
+     CAG_TAKES(SURFACE), figures},
     {"isolines(S, nu, nv)", cag_solids_isolines, "group",
      "nu lines where u is fixed and nv lines where v is, evenly over the surface or the side of a "
      "swept solid, both ends in.",

@@ -20,29 +20,15 @@ static bool give_group(CagCall *call, CagBuilder *list, CagValue *result) {
 
 static CagVec3 point_of(const double *h) { return cag_vec3(h[0] / h[3], h[1] / h[3], h[2] / h[3]); }
 
-static bool fail_no_net(CagCall *call, const char *kind) {
-  CagError err;
-  cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
-           "kind %s has no control points; `to_nurbs` gives its rational form where there is one",
-           kind);
-  return cag_fail_geometry(call, &err);
-}
-
-static bool curve_net(CagCall *call, const CagCurve *c, CagValue *result) {
-  CagNurbsView nurbs;
-  if (!cag_curve_nurbs_view(c, &nurbs)) return fail_no_net(call, c->kind->name);
-  CagBuilder *list = cag_builder_new(call->vm);
-  CagVec3 *points = malloc(nurbs.distinct * sizeof *points);
-  if (!points) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
-  for (size_t i = 0; i < nurbs.distinct; i++) points[i] = point_of(nurbs.homogeneous + 4 * i);
-  bool ok = add_line(call, list, points, nurbs.distinct, nurbs.periodic, c->dimension);
-  free(points);
-  return ok && give_group(call, list, result);
-}
-
 static bool surface_net(CagCall *call, const CagSurface *s, CagValue *result) {
   CagSurfaceNurbsView net;
-  if (!cag_surface_nurbs_view(s, &net)) return fail_no_net(call, s->kind->name);
+  if (!cag_surface_nurbs_view(s, &net)) {
+    CagError err;
+    cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
+             "kind %s has no control points; `to_nurbs` gives its rational form where there is one",
+             s->kind->name);
+    return cag_fail_geometry(call, &err);
+  }
   CagBuilder *list = cag_builder_new(call->vm);
   size_t nu = net.distinct_u, nv = net.distinct_v;
   CagVec3 *points = malloc((nu > nv ? nu : nv) * sizeof *points);
@@ -61,10 +47,7 @@ static bool surface_net(CagCall *call, const CagSurface *s, CagValue *result) {
 }
 
 bool cag_solids_control_net(CagCall *call, CagValue *result) {
-  CagValue v = call->values[0];
-  if (v.type == CAG_CURVE) return curve_net(call, CAG_AS_SHAPE(v)->as.curve, result);
-  if (v.type == CAG_SURFACE) return surface_net(call, CAG_AS_SHAPE(v)->as.surface, result);
-  return cag_fail_type(call, 0, "a curve or a surface");
+  return surface_net(call, CAG_AS_SHAPE(call->values[0])->as.surface, result);
 }
 
 // More lines than a picture can show.

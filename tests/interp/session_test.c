@@ -1,5 +1,5 @@
 // The C interface against calls that make no sense: reentry from callbacks, and elements that do
-// not exist.
+// not exist; and what they tell of built-ins.
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -194,6 +194,54 @@ static void tables_out_of_range_are_null(void **state) {
   assert_false(cag_write_builtin_doc("no_such_name", stderr));
 }
 
+// --- The documentation of built-ins ---
+
+// The words of a text without its layout.
+static void add_words(char *to, size_t size, const char *text) {
+  for (size_t n; *(text += strspn(text, " \n")); text += n) {
+    n = strcspn(text, " \n");
+    const size_t length = strlen(to);
+    if (length + n + 2 > size) return;
+    memcpy(to + length, text, n);
+    memcpy(to + length + n, " ", 2);
+  }
+}
+
+// What is told of a built-in are the words of its rows, in lines that fit on a screen.
+static void built_ins_are_told_by_their_rows(void **state) {
+  (void)state;
+  enum { SIZE = 20000 };
+  static char expected[SIZE], found[SIZE];
+  for (const char *const *name = cag_builtin_name_list(); *name; name++) {
+    char *text = NULL;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    assert_non_null(out);
+    assert_true(cag_write_builtin_doc(*name, out));
+    fclose(out);
+    for (const char *line = text; *line; line += strcspn(line, "\n") + 1)
+      if (strncmp(line, "  ", 2) == 0 && line[2] != ' ') assert_true(strcspn(line, "\n") <= 90);
+    expected[0] = found[0] = 0;
+    add_words(found, SIZE, text);
+    const char *signature, *summary, *example;
+    const size_t n = strlen(*name);
+    for (size_t i = 0; cag_builtin_row(i, &signature, &summary, &example, NULL); i++) {
+      if (strncmp(signature, *name, n) != 0 || (signature[n] != '(' && signature[n])) continue;
+      add_words(expected, SIZE, summary ? summary : "");
+      // Each summary and example stands in the text.
+      if (!strstr(found, expected)) fail_msg("%s: `%s` is missing", *name, expected);
+      expected[0] = 0;
+      add_words(expected, SIZE, example ? example : "");
+      if (!strstr(found, expected)) fail_msg("%s: `%s` is missing", *name, expected);
+      expected[0] = 0;
+      add_words(expected, SIZE, signature);
+      if (!strstr(found, expected)) fail_msg("%s: `%s` is missing", *name, expected);
+      expected[0] = 0;
+    }
+    free(text);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_value_callback_that_calls_the_session_is_refused),
@@ -202,6 +250,7 @@ int main(void) {
       cmocka_unit_test(errors_out_of_range_are_null),
       cmocka_unit_test(names_and_cameras_out_of_range_are_null),
       cmocka_unit_test(tables_out_of_range_are_null),
+      cmocka_unit_test(built_ins_are_told_by_their_rows),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
