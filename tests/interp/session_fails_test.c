@@ -1,0 +1,117 @@
+// The status and the reason of what a session refuses: pictures, formats, cameras, and limits.
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cag.h"
+
+static volatile int interrupt;
+
+static CagSession *run(const char *pov_csg, const char *text, int expected) {
+  CagSessionOptions options;
+  cag_session_options_init(&options);
+  options.out = options.messages = stderr;
+  options.pov_csg = pov_csg;
+  options.interrupt = &interrupt;
+  CagSession *s = cag_session_new(&options);
+  assert_non_null(s);
+  assert_int_equal(cag_session_run_text(s, "script.cag", text, strlen(text)), expected);
+  return s;
+}
+
+static void is_refused(CagSession *s, int status, int expected, const char *reason) {
+  CagErrorView e;
+  cag_session_error(s, 0, &e);
+  assert_non_null(e.reason);
+  assert_string_equal(e.reason, reason);
+  assert_int_equal(status, expected);
+  cag_session_free(s);
+}
+
+static void options_that_a_picture_cannot_have(void **state) {
+  (void)state;
+  CagRenderOptions usual;
+  cag_render_options_init(&usual);
+  static const struct {
+    const char *path, *quality, *camera, *pov_csg, *reason;
+    int width;
+    CagRenderRegion region;
+  } cases[] = {
+      {.path = "/dev/null/a", .reason = "format-unknown"},
+      {.path = "/dev/null/a.jpg", .reason = "format-unknown"},
+      {.path = "/dev/null/a.exr", .quality = "best", .reason = "format-unknown"},
+      {.path = "/dev/null/a.PNG", .pov_csg = "always", .reason = "format-unknown"},
+      {.path = "/dev/null/a.png", .camera = "none", .reason = "camera-unknown"},
+      {.path = "/dev/null/a.png", .width = 1 << 30, .reason = "picture-size"},
+      {.path = "/dev/null/a.png", .region = {-1, 0, 5, 5}, .reason = "region-outside"},
+      {.path = "/dev/null/a.png", .region = {0, -1, 5, 5}, .reason = "region-outside"},
+      {.path = "/dev/null/a.png", .region = {0, 0, -5, 5}, .reason = "region-outside"},
+      {.path = "/dev/null/a.png", .region = {0, 0, 5, 0}, .reason = "region-outside"},
+      {.path = "/dev/null/a.png", .region = {60, 0, 5, 5}, .reason = "region-outside"},
+      {.path = "/dev/null/a.png", .region = {0, 44, 5, 5}, .reason = "region-outside"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    CagSession *s =
+        run(cases[i].pov_csg, "show sphere(1), camera([9, 9, 9], size: [64, 48])\n", CAG_STATUS_OK);
+    CagRenderOptions o = usual;
+    if (cases[i].quality) o.quality = cases[i].quality;
+    o.camera = cases[i].camera;
+    if (cases[i].width) o.width = o.height = cases[i].width;
+    o.region = cases[i].region;
+    is_refused(s, cag_session_render(s, &o, cases[i].path), CAG_STATUS_USAGE, cases[i].reason);
+  }
+}
+
+static void formats_that_a_session_cannot_write(void **state) {
+  (void)state;
+  static const struct {
+    const char *path, *format, *pov_csg;
+  } cases[] = {{"/dev/null/a", NULL, NULL},
+               {"/dev/null/a.doc", NULL, NULL},
+               {"/dev/null/a.stl", "doc", NULL},
+               {"/dev/null/a.png", NULL, NULL},
+               {"/dev/null/a.pov", NULL, "always"}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    CagSession *s = run(cases[i].pov_csg, "show sphere(1)\n", CAG_STATUS_OK);
+    is_refused(s, cag_session_export(s, cases[i].path, cases[i].format), CAG_STATUS_USAGE,
+               "format-unknown");
+  }
+}
+
+static void statuses_tell_what_kind_of_failure_it_was(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *reason;
+    int status;
+  } cases[] = {{"x = ", "expected-expression", CAG_STATUS_SCRIPT},
+               {"f(n) = 1 + f(n + 1)\nprint f(0)", "depth-limit", CAG_STATUS_LIMIT},
+               {"import none_such", "module-not-found", CAG_STATUS_SCRIPT}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    CagSession *s = run(NULL, cases[i].text, cases[i].status);
+    is_refused(s, cases[i].status, cases[i].status, cases[i].reason);
+  }
+  CagSession *s = run(NULL, "show box(1)\n", CAG_STATUS_OK);
+  is_refused(s, cag_session_export(s, "/dev/null/a.stl", NULL), CAG_STATUS_FILE, "output");
+  s = run(NULL, "x = 1\n", CAG_STATUS_OK);
+  is_refused(s, cag_session_export(s, "/dev/null/a.stl", NULL), CAG_STATUS_SCRIPT,
+             "nothing-to-show");
+  interrupt = 1;
+  s = run(NULL, "print sum([for i in 0..100000: i])\n", CAG_STATUS_INTERRUPTED);
+  interrupt = 0;
+  is_refused(s, CAG_STATUS_INTERRUPTED, CAG_STATUS_INTERRUPTED, "interrupted");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(options_that_a_picture_cannot_have),
+      cmocka_unit_test(formats_that_a_session_cannot_write),
+      cmocka_unit_test(statuses_tell_what_kind_of_failure_it_was),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
