@@ -1,5 +1,6 @@
-// Binary PLY, little-endian: one welded list of vertices with normals, parameters and colours, and
-// one of triangles.
+// Binary PLY, little-endian: a list of vertices with normals, parameters and colors, and one of
+// triangles. The vertices of a point are one vertex unless their normals differ, as at a sharp
+// edge.
 
 #include <stdlib.h>
 
@@ -11,35 +12,28 @@ enum { VERTEX_BYTES = 8 * 4 + 3, FACE_BYTES = 1 + 3 * 4, BATCH = 1024 };
 typedef struct PlyPart {
   float *positions;
   uint32_t *number; // of a vertex in the file; NULL: its own, from `first` on
-  CagVec3 *sums;    // normals of points, those of their vertices together; NULL: the mesh's own do
+  CagVec3 *sums;    // normals of the points of a mesh without normals
   size_t first, vertices, triangles;
 } PlyPart;
 
 static uint32_t point_of(const CagMesh *m, size_t v) { return m->weld ? m->weld[v] : (uint32_t)v; }
 
-static bool same_vector(CagVec3 a, CagVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
-
-// Adds each vertex's normal to its point's, one of many alike once; a mesh without normals gets
-// those of its triangles.
-static void sum_normals(const CagMesh *m, CagVec3 *sums) {
-  for (size_t v = 0; v < m->vertex_count; v++) sums[v] = cag_vec3(0, 0, 0);
-  if (m->normals) {
-    for (size_t v = 0; v < m->vertex_count; v++) {
-      uint32_t p = point_of(m, v);
-      if (p == v || !same_vector(m->normals[v], m->normals[p]))
-        sums[p] = cag_add(sums[p], m->normals[v]);
-    }
-    return;
-  }
+// Normals of the points of a mesh without normals: those of their triangles together.
+static bool sum_normals(const CagMesh *m, PlyPart *p) {
+  if (m->normals) return true;
+  p->sums = malloc((m->vertex_count + 1) * sizeof *p->sums);
+  if (!p->sums) return false;
+  for (size_t v = 0; v < m->vertex_count; v++) p->sums[v] = cag_vec3(0, 0, 0);
   for (size_t t = 0; t < m->triangle_count; t++) {
     const uint32_t *k = m->triangles + 3 * t;
     CagVec3 a = m->positions[k[0]];
     CagVec3 n = cag_cross(cag_sub(m->positions[k[1]], a), cag_sub(m->positions[k[2]], a));
     for (int j = 0; j < 3; j++) {
-      uint32_t p = point_of(m, k[j]);
-      sums[p] = cag_add(sums[p], n);
+      uint32_t point = point_of(m, k[j]);
+      p->sums[point] = cag_add(p->sums[point], n);
     }
   }
+  return true;
 }
 
 // True when each vertex is a point of its own.
@@ -49,25 +43,41 @@ static bool is_plain(const CagMesh *m) {
   return !m->weld || v == m->vertex_count;
 }
 
+static bool same_normal(const CagMesh *m, size_t a, size_t b) {
+  const double same_direction = 1 - 1e-6; // cosine of 0.08 degrees, as in cag_mesh_weld
+  return !m->normals || cag_dot(m->normals[a], m->normals[b]) >= same_direction;
+}
+
+// Numbers the vertices, those alike with one number. Numbers ascend from `first` on. `next` leads
+// from a point's vertex to the other vertices of the point that have numbers of their own.
+static void number_vertices(const CagMesh *m, PlyPart *p, uint32_t *next) {
+  p->vertices = 0;
+  for (size_t v = 0; v < m->vertex_count; v++) {
+    uint32_t like = point_of(m, v), last = like;
+    next[v] = UINT32_MAX;
+    for (; like != v && like != UINT32_MAX && !same_normal(m, v, like); like = next[like])
+      last = like;
+    if (like != v && like != UINT32_MAX) {
+      p->number[v] = p->number[like];
+      continue;
+    }
+    p->number[v] = (uint32_t)(p->first + p->vertices++);
+    if (last != v) next[last] = (uint32_t)v;
+  }
+}
+
 static bool begin_part(PlyPart *p, const CagMesh *m, size_t first) {
-  bool plain = is_plain(m);
   p->first = first;
   p->vertices = m->vertex_count;
   p->triangles = cag_mesh_kept_triangles(m, p->positions);
-  if (!plain || !m->normals) {
-    p->sums = malloc((m->vertex_count + 1) * sizeof *p->sums);
-    if (!p->sums) return false;
-    sum_normals(m, p->sums);
-  }
-  if (plain) return true;
+  if (!sum_normals(m, p)) return false;
+  if (is_plain(m)) return true;
+  uint32_t *next = malloc((m->vertex_count + 1) * sizeof *next);
   p->number = malloc((m->vertex_count + 1) * sizeof *p->number);
-  if (!p->number) return false;
-  p->vertices = 0;
-  for (size_t v = 0; v < m->vertex_count; v++) {
-    uint32_t point = point_of(m, v);
-    p->number[v] = point == v ? (uint32_t)(first + p->vertices++) : p->number[point];
-  }
-  return true;
+  const bool made = next && p->number;
+  if (made) number_vertices(m, p, next);
+  free(next);
+  return made;
 }
 
 static void write_header(size_t vertices, size_t triangles, CagAtomicFile *file) {
@@ -108,12 +118,14 @@ static char *put_vertex(char *at, const float *p, CagVec3 n, const double *uv,
 static void write_vertices(const CagMeshPart *part, const PlyPart *p, CagAtomicFile *file) {
   const CagMesh *m = part->mesh;
   unsigned char rgb[3];
+  size_t number = p->first;
   color_bytes(part->material ? part->material->color : (CagColor){1, 1, 1}, rgb);
   for (size_t v = 0; v < m->vertex_count;) {
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * VERTEX_BYTES);
     size_t end = m->vertex_count - v < BATCH ? m->vertex_count : v + BATCH;
     for (; v < end; v++) {
-      if (p->number && m->weld[v] != v) continue;
+      if (p->number && p->number[v] != number) continue; // one like it is written
+      number++;
       if (m->scale.kind) color_bytes(cag_color_scale_at(&m->scale, m->uv[2 * v]), rgb);
       CagVec3 n = p->sums ? cag_unit(p->sums[v]) : m->normals[v];
       at = put_vertex(at, p->positions + 3 * v, n, m->uv ? m->uv + 2 * v : NULL, rgb);

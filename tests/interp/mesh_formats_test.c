@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "geom/mesh/tessellate.h"
 #include "interp/export/mesh_copies.h"
 #include "interp/export/mesh_formats.h"
 #include "interp/export/mesh_write.h"
@@ -153,7 +154,7 @@ static void obj_shares_points_and_keeps_normals_apart(void **state) {
   cag_mesh_release(m);
 }
 
-static void ply_is_welded(void **state) {
+static void ply_has_a_vertex_for_each_normal_of_a_point(void **state) {
   (void)state;
   CagMesh *m = tetrahedron();
   CagMaterial material = red();
@@ -161,21 +162,54 @@ static void ply_is_welded(void **state) {
   size_t size;
   char *b = written(PLY, &part, 1, &size);
   assert_non_null(strstr(b, "format binary_little_endian 1.0\n"));
-  assert_non_null(strstr(b, "element vertex 5\n"));
+  assert_non_null(strstr(b, "element vertex 6\n"));
   assert_non_null(strstr(b, "element face 4\n"));
   const char *data = strstr(b, "end_header\n") + strlen("end_header\n");
-  assert_int_equal(size, (size_t)(data - b) + 5 * 35 + 4 * 13);
-  // Vertex 0 has the mean of its two normals.
-  assert_true(fabs(float_at(data + 12) + sqrt(0.5)) < 1e-7);
-  assert_true(fabs(float_at(data + 20) + sqrt(0.5)) < 1e-7);
+  assert_int_equal(size, (size_t)(data - b) + 6 * 35 + 4 * 13);
+  assert_true(float_at(data + 20) == -1);          // vertex 0 looks down
+  assert_true(float_at(data + 4 * 35 + 12) == -1); // vertex 4, at the same point, to the left
   assert_int_equal((unsigned char)data[32], 255);
   assert_int_equal((unsigned char)data[33], 0);
-  const char *faces = data + 5 * 35;
+  const char *faces = data + 6 * 35;
   assert_int_equal(faces[0], 3);
   assert_int_equal(word_at(faces + 1), 0);
-  assert_int_equal(word_at(faces + 2 * 13 + 1), 0); // named vertex 4
+  assert_int_equal(word_at(faces + 2 * 13 + 1), 4);
+  free(b);
+  // With the same normal, they are one vertex.
+  m->normals[4] = m->normals[0];
+  b = written(PLY, &part, 1, &size);
+  data = strstr(b, "end_header\n") + strlen("end_header\n");
+  assert_non_null(strstr(b, "element vertex 5\n"));
+  assert_int_equal(word_at(data + 5 * 35 + 2 * 13 + 1), 0);
   free(b);
   cag_mesh_release(m);
+}
+
+static CagVec3 vector_at(const char *p) {
+  return cag_vec3(float_at(p), float_at(p + 4), float_at(p + 8));
+}
+
+static void normals_in_ply_are_those_of_the_faces_of_a_box(void **state) {
+  (void)state;
+  CagSolid *box;
+  CagMesh *m;
+  size_t size;
+  assert_int_equal(cag_solid_box(cag_vec3(2, 3, 5), false, &box, &err), CAG_OK);
+  assert_int_equal(cag_solid_tessellate(box, NULL, &m, &err), CAG_OK);
+  CagMeshPart part = {"box", m, NULL};
+  char *b = written(PLY, &part, 1, &size);
+  assert_non_null(strstr(b, "element vertex 24\n")); // three for each corner
+  const char *data = strstr(b, "end_header\n") + strlen("end_header\n"), *faces = data + 24 * 35;
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    const char *v[3];
+    for (int k = 0; k < 3; k++) v[k] = data + 35 * word_at(faces + 13 * t + 1 + 4 * k);
+    const CagVec3 a = vector_at(v[0]);
+    const CagVec3 n = cag_unit(cag_cross(cag_sub(vector_at(v[1]), a), cag_sub(vector_at(v[2]), a)));
+    for (int k = 0; k < 3; k++) assert_true(cag_dot(n, vector_at(v[k] + 12)) > 1 - 1e-6);
+  }
+  free(b);
+  cag_mesh_release(m);
+  cag_solid_release(box);
 }
 
 static double number_of(const cJSON *json, const char *a, int i, const char *key) {
@@ -368,7 +402,8 @@ int main(void) {
       cmocka_unit_test(numbers_read_back_as_the_same_float),
       cmocka_unit_test(stl_has_the_triangles_that_have_an_area),
       cmocka_unit_test(obj_shares_points_and_keeps_normals_apart),
-      cmocka_unit_test(ply_is_welded),
+      cmocka_unit_test(ply_has_a_vertex_for_each_normal_of_a_point),
+      cmocka_unit_test(normals_in_ply_are_those_of_the_faces_of_a_box),
       cmocka_unit_test(glb_describes_its_data),
       cmocka_unit_test(gltf_may_hold_its_data),
       cmocka_unit_test(threemf_has_objects_materials_and_copies),
