@@ -6,7 +6,8 @@ param height = 200
 show revolve(bspline([[30, 0], [50, 60], [20, 150], [30, height]]), Z)'
 script shapes.cag 'show box(10) |> material({color: "red", name: "clay"}), moved(cylinder(2, 5), translate([20, 0, 0]))
 show circle(4) |> line_style(radius: 0.5, dash: 3), bilinear([0, 0, 9], [0, 9, 9], [9, 0, 9], [9, 9, 12]), rectangle(3, 4)'
-script picture.cag 'show box(10), camera([30, -20, 15], size: [16, 12])'
+script picture.cag 'param x = 30
+show box(10), camera([x, -20, 15], size: [16, 12])'
 script arm.cag 'show robot([revolute(a: 100, limits: -90deg..90deg, shape: box([100, 10, 10])), revolute(a: 50)])'
 script wrong.cag 'print sin(30)'
 script long.cag '// A list that
@@ -113,6 +114,11 @@ if [ -e fail_memory.so ]; then
     made=made.png beyond=0
     for what in memory system; do
       fails_at $what 'a picture' render picture.cag -o $made --quality draft
+    done
+    for kind in exr png; do
+      for camera in 30 31; do "$CAG" render picture.cag -D x=$camera -o $camera.$kind --quality draft > out 2>&1; done
+      made=made.$kind
+      exhausts "a comparison of .$kind files" compare 30.$kind 31.$kind --threshold 100 --heatmap $made
     done
   fi
   made=made.urdf beyond=0
