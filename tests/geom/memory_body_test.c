@@ -706,6 +706,34 @@ QUESTION(quadric_in_a_box) {
   return CAG_OK;
 }
 
+// A part of a paraboloid, whose body has faces if nothing fails.
+typedef struct Cut {
+  CagSurface **pieces;
+  size_t n;
+} Cut;
+QUESTION(quadric_body) {
+  const Cut *cut = given;
+  CagSolid *made;
+  const CagStatus status = cag_solid_quadric_body(cut->pieces, cut->n, NULL, &made, e);
+  if (status) return status;
+  fault_found((double)made->face_count);
+  cag_solid_release(made);
+  return CAG_OK;
+}
+static void bodies_of_quadrics_report_faults(void **state) {
+  (void)state;
+  static const CagQuadric PARABOLOID = {{1, 2, 0, 0, 0, 0, 0, 0, -1, 0}};
+  const CagBounds within = {{-2, -2, -1.5}, {2, 1.8, 2}};
+  Cut cut;
+  fault_problems = 0;
+  fault_steps = FAULTS_OF_QUICK;
+  OK(cag_quadric_patches(&PARABOLOID, &within, false, &cut.pieces, &cut.n, &err));
+  try_faults("body", "quadric", quadric_body, &cut);
+  for (size_t i = 0; i < cut.n; i++) cag_surface_release(cut.pieces[i]);
+  free(cut.pieces);
+  assert_int_equal(fault_problems, 0);
+}
+
 static void surfaces_of_points_report_faults(void **state) {
   (void)state;
   fault_problems = 0;
@@ -806,6 +834,7 @@ int main(void) {
       cmocka_unit_test(solids_report_faults),
       cmocka_unit_test(questions_to_solids_report_faults),
       cmocka_unit_test(meshes_report_faults),
+      cmocka_unit_test(bodies_of_quadrics_report_faults),
       cmocka_unit_test(surfaces_of_points_report_faults),
       cmocka_unit_test(robots_report_faults),
   };
