@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cag.h"
+#include "session_support.h"
 
 // The answers of one call, each followed by a space.
 typedef struct Heard {
@@ -27,15 +27,6 @@ static void hear(void *context, const char *text) {
 static void hear_value(void *context, const char *text, const char *type) {
   hear(context, text);
   hear(context, type);
-}
-
-static CagSession *new_session(void) {
-  CagSessionOptions options;
-  cag_session_options_init(&options);
-  options.out = options.messages = stderr;
-  CagSession *s = cag_session_new(&options);
-  assert_non_null(s);
-  return s;
 }
 
 // Enters each line of the text by itself, and gives the values.

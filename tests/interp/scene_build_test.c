@@ -3,13 +3,10 @@
 
 #include "interp/session/session.h"
 #include "scene_fixture.h"
+#include "session_support.h"
 
 static CagSession *session_of(const char *text) {
-  CagSessionOptions options;
-  cag_session_options_init(&options);
-  options.out = options.messages = stderr;
-  CagSession *s = cag_session_new(&options);
-  assert_non_null(s);
+  CagSession *s = new_session();
   if (cag_session_run_text(s, "script", text, strlen(text)) != CAG_STATUS_OK) {
     cag_session_write_diagnostics(s, CAG_STYLE_TEXT, stderr);
     fail_msg("the script fails: %s", text);

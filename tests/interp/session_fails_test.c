@@ -9,14 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cag.h"
+#include "session_support.h"
 
 static volatile int interrupt;
 
 static CagSession *run(const char *pov_csg, const char *text, int expected) {
-  CagSessionOptions options;
-  cag_session_options_init(&options);
-  options.out = options.messages = stderr;
+  CagSessionOptions options = session_options();
   options.pov_csg = pov_csg;
   options.interrupt = &interrupt;
   CagSession *s = cag_session_new(&options);

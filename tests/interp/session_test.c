@@ -9,16 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cag.h"
-
-static CagSession *new_session(void) {
-  CagSessionOptions options;
-  cag_session_options_init(&options);
-  options.out = options.messages = stderr;
-  CagSession *s = cag_session_new(&options);
-  assert_non_null(s);
-  return s;
-}
+#include "session_support.h"
 
 static int input(CagSession *s, const char *text,
                  void (*value)(void *context, const char *text, const char *type), void *context) {
