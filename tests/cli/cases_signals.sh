@@ -34,6 +34,20 @@ print determinant(multiply(inverse(a), inverse(a)))'
 interrupted INT 2 run matrix.cag
 status 130
 
+it 'a second Ctrl-C ends such a step at once'
+ran='cag run matrix.cag (SIGTERM twice)'
+"$CAG" run matrix.cag > out 2> err &
+child=$!
+sleep 3
+kill -TERM $child
+sleep 0.5
+kill -TERM $child 2> /dev/null
+began=$(date +%s%N)
+wait $child
+code=$?
+status 130
+[ $(($(date +%s%N) - began)) -lt 1200000000 ] || wrong 'the second signal does not end the program'
+
 it 'Ctrl-C stops eval'
 interrupted INT 0.3 eval '{ f(n) = f(n + 1); f(0) }'
 status 130
@@ -95,9 +109,19 @@ holds out.png earlier
 rm -rf temporary/*
 PATH=${PATH#*:}
 
-it 'Ctrl-C during a film keeps the frames that are whole' povray
+it 'a signal during a film keeps the frames that are whole' povray
 script film.cag 'show sphere(10 + frame)'
-interrupted INT 2 render film.cag -o 'film.%04d.png' --frames 0..999 --size 64x48 --quality draft
+ran='cag render film.cag (SIGTERM)'
+TMPDIR=$PWD/temporary "$CAG" render film.cag -o 'film.%04d.png' --frames 0..999 --size 64x48 --quality draft > out 2> err < /dev/null &
+child=$!
+patience=200
+while [ ! -e film.0000.png ] && [ $patience -gt 0 ]; do
+  sleep 0.1
+  patience=$((patience - 1))
+done
+kill -TERM $child
+wait $child
+code=$?
 status 130
 exists film.0000.png
 no_temporaries .
