@@ -38,7 +38,7 @@ static CagStatus read_order(const char *order, int axes[3], CagError *err) {
   }
   if (good) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, "euler-order", "order", -1,
-                  "`order` names three axes of which neighbours differ, such as \"zyx\" or "
+                  "`order` names three axes of which neighbors differ, such as \"zyx\" or "
                   "\"zyz\"; this is \"%s\"",
                   order ? order : "");
 }

@@ -264,7 +264,7 @@ static CagStatus second_line(const CagNet *edge, const CagEdgeMatch *how, double
     }
     if (!(out[4 * j + 3] > 0))
       return cag_fail(err, CAG_E_DEGENERATE, "negative-weight", "ratio", (long)j,
-                      "the neighbour would need a weight that is not positive in line %zu: take a "
+                      "the neighbor would need a weight that is not positive in line %zu: take a "
                       "smaller `ratio`",
                       j);
   }

@@ -307,9 +307,9 @@ static CagStatus nurbs_transform(const CagSurface *s, const CagTransform *t, Cag
   for (size_t i = 0; !status && i < total; i++) {
     cag_transform_homogeneous(t, b->net + 4 * i, h + 4 * i);
     if (h[4 * i + 3] < 0 || (h[4 * i + 3] == 0 && b->net[4 * i + 3] > 0))
-      status = cag_fail(err, CAG_E_DEGENERATE, "behind-centre", "transform", (long)i,
+      status = cag_fail(err, CAG_E_DEGENERATE, "behind-center", "transform", (long)i,
                         "the projection sends control point [%zu, %zu] to infinity or behind its "
-                        "centre: move the surface or the centre",
+                        "center: move the surface or the center",
                         i / b->v.count, i % b->v.count);
   }
   if (!status) status = build(h, &b->u, &b->v, out, err);

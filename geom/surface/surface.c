@@ -274,7 +274,7 @@ CagStatus cag_surface_normal(const CagSurface *s, double u, double v, CagVec3 *o
   char text_u[32], text_v[32];
   return cag_fail(err, CAG_E_DEGENERATE, "degenerate-normal", "", -1,
                   "the surface has no normal at u = %s, v = %s: its partial derivatives are "
-                  "parallel there; ask at a neighbouring point",
+                  "parallel there; ask at a neighboring point",
                   cag_number_text(u, text_u), cag_number_text(v, text_v));
 }
 

@@ -108,7 +108,7 @@ const CagBuiltin cag_builtins_figures[] = {
      "A text at P in an .svg picture; other pictures and formats leave it out, but .json has it. "
      "It "
      "moves with transforms and keeps its size, `size` mm (none: by the size of the picture), in "
-     "the colour said about it. `place`, where the text stands: right, left, above, below, center, "
+     "the color said about it. `place`, where the text stands: right, left, above, below, center, "
      "above_right, above_left, below_right, below_left. `mark`, what is drawn at P: none, dot, "
      "circle (white inside), cross, arrow (the head of one, its tip at P, along V). With `along` "
      "the text runs along that direction. A name is set in italics with what follows a _ lowered: "

@@ -60,7 +60,7 @@ static bool call_read_mesh(CagCall *call, CagValue *result) {
 const CagBuiltin cag_builtins_mesh_files[] = {
     {"read_mesh(path)", call_read_mesh, "mesh",
      "The mesh of a file: STL (binary and text), OBJ, PLY (binary and text), glTF and GLB, all its "
-     "parts together. Lengths are taken as millimetres and Z as up; those of glTF are metres with "
+     "parts together. Lengths are taken as millimeters and Z as up; those of glTF are meters with "
      "Y up and are turned into ours. Points at one place are one point of the mesh; normals and "
      "parameters are kept. What is wrong with a file is told with its line or byte. Files lie "
      "below the script's folder or on the module path.",

@@ -190,7 +190,7 @@ static bool call_colored_by(CagCall *call, CagValue *result) {
 // --- What a coloured mesh says ---
 
 static bool read_colored(CagCall *call, const CagMesh **out) {
-  if (call->values[0].type != CAG_MESH) return cag_fail_type(call, 0, "a mesh with colours");
+  if (call->values[0].type != CAG_MESH) return cag_fail_type(call, 0, "a mesh with colors");
   *out = CAG_AS_SHAPE(call->values[0])->as.mesh;
   if ((*out)->scale.kind && (*out)->uv) return true;
   CagError err;
@@ -400,14 +400,14 @@ static const char figures[] = "Figures";
 const CagBuiltin cag_builtins_quality[] = {
     {"colored_by(S, value, range = none, colors = \"auto\", tolerance = none)", call_colored_by,
      "mesh",
-     "A surface, or the faces of a solid, as a mesh coloured by \"gaussian\", \"mean\", "
+     "A surface, or the faces of a solid, as a mesh colored by \"gaussian\", \"mean\", "
      "\"principal_max\" or \"principal_min\" curvature (1/mm, Gaussian 1/mm2, signed by the "
      "normal), or by \"slope\", the angle between tangent plane and horizontal (degrees). The "
-     "first and last colour are those of the range's ends; none: what is found, without rare "
+     "first and last color are those of the range's ends; none: what is found, without rare "
      "extremes, and symmetric about 0 where there are both signs. `colors`: \"sequence\" from "
      "dark to bright, \"diverging\" blue over white to red, \"auto\" that one for a symmetric "
      "range. Vertices stand doubled where curvature jumps. In .pov, .glb, .gltf, .ply and .3mf "
-     "with its colours, in .obj with the values as parameters.",
+     "with its colors, in .obj with the values as parameters.",
      "m = colored_by(torus_surface(3, 1), \"gaussian\")\n"
      "print near(max(values_of(m)), 1 / 4), near(min(values_of(m)), -1 / 2, 1e-3) // expect: true "
      "true\n"
@@ -431,18 +431,18 @@ const CagBuiltin cag_builtins_quality[] = {
      "print len(c), near(length(c[0]), 2 * pi * 5 * sin(60deg)) // expect: 1 true",
      CAG_TAKES_SHAPES | CAG_TAKES(LIST), figures},
     {"values_of(M)", call_values_of, "list",
-     "The values by which a mesh of `colored_by` or `zebra` is coloured, in the order of its "
+     "The values by which a mesh of `colored_by` or `zebra` is colored, in the order of its "
      "`vertices`. A mesh without values is an error (no-values).",
      "m = colored_by(sphere_surface(2), \"gaussian\")\n"
      "print near(values_of(m)[0], 1 / 4), len(values_of(m)) == len(vertices(m)) // expect: true "
      "true",
      CAG_TAKES(MESH), figures},
     {"color_range(M)", call_color_range, "range",
-     "The values that have the first and the last colour of a mesh of `colored_by` or `zebra`.",
+     "The values that have the first and the last color of a mesh of `colored_by` or `zebra`.",
      "print color_range(colored_by(sphere_surface(2), \"mean\", 0..1)) // expect: 0..1",
      CAG_TAKES(MESH), figures},
     {"color_of(M, value)", call_scale_color, "list",
-     "The colour that a mesh of `colored_by` or `zebra` gives to a value: red, green and blue in "
+     "The color that a mesh of `colored_by` or `zebra` gives to a value: red, green and blue in "
      "linear light, 0..1.",
      "m = colored_by(sphere_surface(2), \"mean\", 0..1)\n"
      "print color_of(m, 5) == color_of(m, 1) // expect: true",

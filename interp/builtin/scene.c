@@ -37,16 +37,16 @@ const CagBuiltin cag_builtins_scene[] = {
      "light", "A shining square of this side (mm) that faces the target; its shadows are soft.",
      "print area_light([0, 0, 100], origin, 50).size // expect: 50", LISTS, stage},
     {"sky(colors)", cag_scenes_sky, "setting",
-     "The light from all around: a colour, a list of colours from below to above, or an .exr "
+     "The light from all around: a color, a list of colors from below to above, or an .exr "
      "panorama. A scene with a sky gets no studio light.",
      "print type_of(sky([\"gray\", \"white\", \"skyblue\"])) // expect: setting",
      CAG_TAKES(TEXT) | LISTS, stage},
     {"background(color)", cag_scenes_background, "setting",
-     "The colour behind everything; it gives no light.",
+     "The color behind everything; it gives no light.",
      "print background([0, 0, 0]).color // expect: [0, 0, 0]", CAG_TAKES(TEXT) | LISTS, stage},
     {"ground(z = 0, size = inf)", cag_scenes_ground, "setting",
      "A level floor at the height z, endless or a square of this side (mm). It takes a material or "
-     "colour, and cameras that frame everything do not look at it.",
+     "color, and cameras that frame everything do not look at it.",
      "print ground(z: -5).z // expect: -5", CAG_TAKES(NUMBER), stage},
 
     {"material(G, m)", cag_scenes_material, "as G",
@@ -64,9 +64,9 @@ const CagBuiltin cag_builtins_scene[] = {
      "show sphere(10) |> material({color: \"teal\", roughness: 0.2})", SHAPES | CAG_TAKES(SETTING),
      said},
     {"color(G, color)", cag_scenes_color, "as G",
-     "G in a colour: a CSS name, \"#0a8\", \"#00aa88\", or [r, g, b] in linear light, 0..1. A "
-     "colour "
-     "said nearer to the shape holds; with a material said later it keeps this colour.",
+     "G in a color: a CSS name, \"#0a8\", \"#00aa88\", or [r, g, b] in linear light, 0..1. A "
+     "color "
+     "said nearer to the shape holds; with a material said later it keeps this color.",
      "show sphere(10) |> color(\"teal\")", SHAPES | CAG_TAKES(SETTING), said},
     {"named(G, name)", cag_scenes_named, "as G",
      "G with a name, for exports, messages and `--camera`. A name said nearer to the shape holds.",
@@ -79,7 +79,7 @@ const CagBuiltin cag_builtins_scene[] = {
     {"hidden(G)", cag_scenes_hidden, "as G", "G, not shown.", "show sphere(10) |> hidden", SHAPES,
      said},
     {"group(G, ...)", cag_scenes_group, "group",
-     "Shapes, groups and lists of these as one shape: it is moved, coloured and shown as a whole.",
+     "Shapes, groups and lists of these as one shape: it is moved, colored and shown as a whole.",
      "g = group(sphere(1), translate(box(1), [3, 0, 0]))\n"
      "print bounds(g).max.x // expect: 4",
      SHAPES, said},

@@ -223,7 +223,7 @@ bool cag_scenes_sky(CagCall *call, CagValue *result) {
   }
   bool one = v.type == CAG_TEXT || (v.type == CAG_LIST && cag_as_vector(v, &x, &n));
   if (!one && v.type != CAG_LIST)
-    return cag_fail_type(call, 0, "a colour, colours from below to above, or an .exr image");
+    return cag_fail_type(call, 0, "a color, colors from below to above, or an .exr image");
   CagBuilder *colors = cag_builder_new(call->vm);
   n = one ? 1 : CAG_AS_LIST(v)->length;
   for (size_t i = 0; i < n; i++) {
@@ -232,7 +232,7 @@ bool cag_scenes_sky(CagCall *call, CagValue *result) {
         !cag_builder_add(call->vm, colors, cag_color_value(call->vm, c)))
       return false;
   }
-  if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one colour");
+  if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one color");
   fields[0] = cag_builder_finish(call->vm, colors);
   return give(call, CAG_SETTING, "sky", names, fields, 2, result);
 }

@@ -67,7 +67,7 @@ const CagBuiltin cag_builtins_splines[] = {
      0, through},
     {"parabolic_blend(points, alpha = 0.5, ends = \"open\", closed = false)",
      cag_splines_parabolic_blend, "curve",
-     "Cubic segments that blend the parabolas through three neighbouring points each. A parabola "
+     "Cubic segments that blend the parabolas through three neighboring points each. A parabola "
      "is at its middle point at alpha, between 0 and 1: one number, a list of one for each middle "
      "point, or by the \"chord\" lengths, of which the segments then take their parameter. It "
      "runs from the second point to the last but one; `ends: \"parabola\"` adds arcs of the first "

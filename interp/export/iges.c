@@ -409,7 +409,7 @@ static CagStatus write_sections(Writer *w, Sections *s, const char *script, CagA
     abort_sections(s);
     return status;
   }
-  cag_atomic_file_printf(file, "%-72sS%7d\n", "Exact geometry, in millimetres.", 1);
+  cag_atomic_file_printf(file, "%-72sS%7d\n", "Exact geometry, in millimeters.", 1);
   CagIoError io = {0};
   bool whole = append(file, s->global, &io);
   whole = append(file, s->directory, &io) && whole;

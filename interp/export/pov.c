@@ -53,7 +53,7 @@ static void write_radiosity(CagPovWriter *w) {
 }
 
 static void write_settings(CagPovWriter *w) {
-  pov_text(w, "global_settings {\n  assumed_gamma 1.0 // colours are linear light\n");
+  pov_text(w, "global_settings {\n  assumed_gamma 1.0 // colors are linear light\n");
   pov_text(w, "  max_trace_level 12\n");
   if (w->indirect) {
     write_radiosity(w);
@@ -246,12 +246,12 @@ static void measure(CagPovWriter *w) {
 static CagStatus write_all(CagPovWriter *w, const bool *closed, CagError *err) {
   const CagScene *s = w->scene;
   pov_comment(w, "", s->script && s->script[0] ? s->script : "a scene");
-  pov_text(w, "// Written by cag " CAG_VERSION " for POV-Ray 3.7. Millimetres, Z up.\n\n");
+  pov_text(w, "// Written by cag " CAG_VERSION " for POV-Ray 3.7. Millimeters, Z up.\n\n");
   pov_text(w, "#version 3.7;\n\n");
   write_settings(w);
   if (w->unit != 1) {
     pov_text(w, "\n// The renderer's tolerances are meant for scenes some 100 units large.\n");
-    pov_printf(w, "#declare unit = %.9g; // a millimetre\n", w->unit);
+    pov_printf(w, "#declare unit = %.9g; // a millimeter\n", w->unit);
   }
   heading(w, "Camera");
   pov_camera(w);

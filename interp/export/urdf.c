@@ -201,7 +201,7 @@ CagStatus cag_export_urdf(const CagUrdf *u, const char *folder, CagAtomicFile *f
                           CagError *err) {
   Writer writer = {file, false}, *f = &writer;
   put(f, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-         "<!-- written by cag; lengths in metres, angles in radians, masses in kg -->\n");
+         "<!-- written by cag; lengths in meters, angles in radians, masses in kg -->\n");
   if (u->coupled)
     put(f, "<!-- the motors of this robot are coupled to its joints, which this format cannot "
            "say: what stands here are the joints -->\n");
@@ -223,7 +223,7 @@ CagStatus cag_export_urdf_mesh(const CagUrdfShape *s, CagAtomicFile *file, CagEr
   CagStatus status = cag_scale(cag_vec3(METRES, METRES, METRES), cag_vec3(0, 0, 0), &metres, err);
   if (status == CAG_OK) status = cag_mesh_transform(s->mesh, &metres, &m, err);
   if (status != CAG_OK) return status;
-  status = cag_export_stl(&(CagMeshPart){.name = s->file, .mesh = m}, 1, "binary STL, metres", file,
+  status = cag_export_stl(&(CagMeshPart){.name = s->file, .mesh = m}, 1, "binary STL, meters", file,
                           err);
   cag_mesh_release(m);
   return status;

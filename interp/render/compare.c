@@ -160,7 +160,7 @@ void cag_compare_print(const CagCompareReport *r, FILE *out) {
               n->not_finite[0], n->not_finite[1], n->unlike);
   }
   if (r->has_color)
-    fprintf(out, "colour difference (CIEDE2000): mean %.4g, largest %.4g\n", r->delta_e_mean,
+    fprintf(out, "color difference (CIEDE2000): mean %.4g, largest %.4g\n", r->delta_e_mean,
             r->delta_e_largest);
   const double pixels = (double)r->width * (double)r->height;
   fprintf(out, "pixels that differ by more than %g: %zu of %.0f (%.4g%%)\n", r->threshold,

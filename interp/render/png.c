@@ -152,7 +152,7 @@ static bool prepare_tone(const char *path, const CagImage *image, const CagPngOp
                             t->bits);
   if (!cag_image_find_color(image, t->rgb))
     return cag_io_error_set(err, CAG_EXIT_USAGE, "name channels R, G and B, or Y",
-                            "cannot write '%s': the image has no colour channels", path);
+                            "cannot write '%s': the image has no color channels", path);
   t->has_alpha = !options->drop_alpha && cag_image_find(image, "A", &t->alpha);
   return true;
 }

@@ -530,7 +530,7 @@ static bool compare_pictures(Run *r, const CagImage *reference, const char *refe
   if (!ok) {
     char *message = NULL;
     if (asprintf(&message,
-                 "the picture is not as %s: the mean colour difference is %.3g (%g may be), %.3g%% "
+                 "the picture is not as %s: the mean color difference is %.3g (%g may be), %.3g%% "
                  "of the pixels differ (%g%% may); it is kept in %s",
                  reference_path, report.delta_e_mean, CAG_TEST_DELTA_E, 100 * share,
                  100 * CAG_TEST_PIXELS, path) < 0)

@@ -196,7 +196,7 @@ static bool set_include(CagTool *t, const char *value) {
 
 static bool set_tolerance(CagTool *t, const char *value) {
   if (read_number(value, "mm", &t->session.tolerance) && t->session.tolerance > 0) return true;
-  return reject(t, "give millimetres above 0, such as 0.05", "--tolerance", value,
+  return reject(t, "give millimeters above 0, such as 0.05", "--tolerance", value,
                 "expected a distance");
 }
 

@@ -170,7 +170,7 @@ static void bad_requests_and_files_are_errors(void **state) {
   assert_true(cag_image_create(&image, 2, 2, 2, NULL));
   cag_image_set_name(&image, 0, "Z");
   assert_false(cag_png_write(path, &image, NULL, NULL, 0, &err));
-  assert_non_null(strstr(err.message, "no colour channels"));
+  assert_non_null(strstr(err.message, "no color channels"));
   cag_image_set_name(&image, 0, "Y");
   const CagPngOptions odd = {.bits = 12};
   assert_false(cag_png_write(path, &image, &odd, NULL, 0, &err));
