@@ -11,8 +11,7 @@ static const double same_direction = 1 - 1e-6;
 typedef struct Sides {
   CagMesh *m;
   const CagSurface *surface;
-  double least;    // cosine of the angle by which corners may lean
-  double opposite; // likewise, of opposite normals
+  double least; // cosine of the angle by which corners may lean
   double noise;
   uint32_t *copy; // of vertices: the last copy of a vertex, of a copy: the one before it
   size_t capacity;
