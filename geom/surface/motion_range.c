@@ -20,7 +20,8 @@ CagStatus cag_motion_joints(const CagMotion *m, double **out, size_t *n, CagErro
   if (!all) return cag_fail_memory(err);
   for (size_t i = 0; i < m->count; i++) all[1 + count++] = m->segments[i].v0;
   for (int i = 0; i < 3; i++)
-    if (functions[i]) count += cag_chebyshev_joints(functions[i], all + 1 + count, most - count);
+    if (functions[i])
+      count += cag_chebyshev_joints(functions[i], all + 1 + count, most - 1 - count);
   count = cag_surface_tidy_breaks(all + 1, count, m->start, m->end);
   all[0] = m->start;
   all[count + 1] = m->end;

@@ -104,7 +104,7 @@ CagStatus cag_swept_cells_begin(CagDistanceCells *c, bool region, bool *known, C
     w->section = w->extrusion.section;
   }
   if (!*known) return CAG_OK;
-  double *joints, *cuts = NULL;
+  double *joints = NULL, *cuts = NULL;
   size_t n;
   CagStatus status = find_joints(w, &joints, &n, err);
   if (!status) status = cag_curve_cuts(w->section, &cuts, &n, err);
@@ -501,7 +501,7 @@ static CagStatus push_row(CagDistanceCells *c, const double v[2], const CagMotio
 
 CagStatus cag_swept_cells_push(CagDistanceCells *c, CagError *err) {
   const CagSwept *w = &c->swept;
-  double *joints, *cuts = NULL, a, b;
+  double *joints = NULL, *cuts = NULL, a, b;
   size_t rows, columns = 0;
   CagTransform frame;
   CagStatus status = find_joints(w, &joints, &rows, err);
