@@ -109,6 +109,48 @@ static void nested_parts_alternate(void **state) {
   }
 }
 
+// Parts that begin at the same x as the one around them, in any order: each touches the box's side
+// from within with one corner, and the smallest may come first.
+static void parts_that_begin_with_the_one_around_them_alternate(void **state) {
+  (void)state;
+  // The corners of an octahedron along x, y and z, and its faces, outward.
+  static const uint32_t FACES[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                       {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  static Draft d;
+  enum { LAYERS = 4 };
+  for (int round = 0; round < 100; round++) {
+    memset(&d, 0, sizeof d);
+    size_t order[LAYERS] = {0, 1, 2, 3}; // 0: the box
+    for (size_t k = LAYERS - 1; k > 0; k--) {
+      const size_t other = (size_t)((double)(k + 1) * random_unit()), swap = order[k];
+      order[k] = order[other], order[other] = swap;
+    }
+    double sum = 0;
+    for (size_t k = 0; k < LAYERS; k++) {
+      const bool inside_out = random_unit() < 0.5;
+      if (order[k] == 0) {
+        add_box(&d, cag_vec3(0, -4, -4), cag_vec3(8, 4, 4), inside_out, false);
+        sum += 512;
+        continue;
+      }
+      const double r = 4 - (double)order[k]; // of the octahedron: 4/3 r^3
+      const uint32_t first = (uint32_t)d.vertex_count;
+      for (int axis = 0; axis < 3; axis++)
+        for (int sign = 1; sign >= -1; sign -= 2)
+          d.vertices[d.vertex_count++] =
+              cag_vec3(r + (axis == 0) * sign * r, (axis == 1) * sign * r, (axis == 2) * sign * r);
+      for (int f = 0; f < 8; f++) {
+        const uint32_t corners[3] = {first + FACES[f][0], first + FACES[f][1], first + FACES[f][2]};
+        add_face(&d, corners, 3, inside_out);
+      }
+      sum += (order[k] % 2 ? -4.0 : 4.0) / 3 * r * r * r;
+    }
+    CagMesh *m = outward(mesh_of(&d));
+    NEAR(volume_of(m), sum, 1e-9);
+    cag_mesh_release(m);
+  }
+}
+
 static void parts_beside_each_other_or_crossing_all_face_out(void **state) {
   (void)state;
   static Draft d;
@@ -200,6 +242,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_mesh_inside_out_is_turned_with_its_normals),
       cmocka_unit_test(nested_parts_alternate),
+      cmocka_unit_test(parts_that_begin_with_the_one_around_them_alternate),
       cmocka_unit_test(parts_beside_each_other_or_crossing_all_face_out),
       cmocka_unit_test(open_parts_stay_as_they_are),
       cmocka_unit_test(triangles_that_disagree_share_no_normal_afterwards),
