@@ -40,10 +40,16 @@ static const double SLEEPERS = 2;
 // like the largest might take of it together.
 static const double FREE_MEMORY = 0.25, USED_MEMORY = 0.75;
 
+static FILE *open_file(const char *proc, const char *name) {
+  char path[4096];
+  const int n = snprintf(path, sizeof path, "%s/%s", proc, name);
+  return n > 0 && (size_t)n < sizeof path ? fopen(path, "re") : NULL;
+}
+
 // Reads the ticks of all processors. False where there is no such file.
-static bool read_ticks(double *busy, double *total) {
+static bool read_ticks(const char *proc, double *busy, double *total) {
   unsigned long long t[8] = {0}; // user, nice, system, idle, iowait, irq, softirq, steal
-  FILE *f = fopen("/proc/stat", "re");
+  FILE *f = open_file(proc, "stat");
   const int n = f ? fscanf(f, "cpu %llu %llu %llu %llu %llu %llu %llu %llu", &t[0], &t[1], &t[2],
                            &t[3], &t[4], &t[5], &t[6], &t[7])
                   : 0;
@@ -60,7 +66,7 @@ static bool read_ticks(double *busy, double *total) {
 static bool has_memory(const CagLoad *l, size_t running) {
   char line[128];
   double total = 0, available = 0;
-  FILE *f = fopen("/proc/meminfo", "re");
+  FILE *f = open_file(l->proc, "meminfo");
   while (f && !available && fgets(line, sizeof line, f)) {
     if (!strncmp(line, "MemTotal:", 9)) total = 1024 * strtod(line + 9, NULL);
     if (!strncmp(line, "MemAvailable:", 13)) available = 1024 * strtod(line + 13, NULL);
@@ -71,25 +77,26 @@ static bool has_memory(const CagLoad *l, size_t running) {
 }
 
 // How many threads of the machine compute or could, without this one; SIZE_MAX where nothing says.
-static size_t count_runnable(void) {
+static size_t count_runnable(const char *proc) {
   size_t n = 0;
-  FILE *f = fopen("/proc/loadavg", "re");
+  FILE *f = open_file(proc, "loadavg");
   const bool ok = f && fscanf(f, "%*f %*f %*f %zu", &n) == 1;
   if (f) fclose(f);
   return !ok ? SIZE_MAX : n ? n - 1 : 0;
 }
 
-void cag_load_begin(CagLoad *l, size_t workers) {
+void cag_load_begin(CagLoad *l, size_t workers, const char *proc) {
   const double now = cag_clock_seconds();
-  *l = (CagLoad){.workers = workers, .limit = (double)workers, .looked = now, .seen = now};
-  read_ticks(&l->busy, &l->total);
+  *l = (CagLoad){
+      .proc = proc, .workers = workers, .limit = (double)workers, .looked = now, .seen = now};
+  read_ticks(proc, &l->busy, &l->total);
 }
 
 // Whether the shares of time, taken over a while, say that a processor is idle. They know what runs
 // at a lower priority, which a count of threads does not.
 static bool was_idle(CagLoad *l, double now) {
   double busy, total;
-  if (now - l->seen < SHARE_INTERVAL || !read_ticks(&busy, &total) || total <= l->total)
+  if (now - l->seen < SHARE_INTERVAL || !read_ticks(l->proc, &busy, &total) || total <= l->total)
     return false;
   const double processors = (double)sysconf(_SC_NPROCESSORS_ONLN);
   const double share = (busy - l->busy) / (total - l->total);
@@ -104,7 +111,7 @@ static void look(CagLoad *l, size_t running) {
   if (passed < LOOK_INTERVAL) return;
   l->looked = now;
   const bool idle = was_idle(l, now);
-  const bool has_room = idle || count_runnable() < l->workers;
+  const bool has_room = idle || count_runnable(l->proc) < l->workers;
   // A few more than run are enough: what was allowed and not used says nothing.
   const double more = (double)running + fmax(1, floor(GROWTH * (double)l->workers));
   l->limit = has_room ? fmax(l->limit, more) : l->limit - SINK * passed;
@@ -131,10 +138,10 @@ void cag_load_refused(CagLoad *l, size_t running) { l->limit = (double)running; 
 
 // Takes parent and pages in memory of a process from /proc/N/stat, whose second field is a name in
 // parentheses that may hold anything.
-static bool read_process(const char *number, long *parent, long *pages) {
-  char path[64], text[1024];
-  snprintf(path, sizeof path, "/proc/%.20s/stat", number);
-  FILE *f = fopen(path, "re");
+static bool read_process(const char *proc, const char *number, long *parent, long *pages) {
+  char name[32], text[1024];
+  snprintf(name, sizeof name, "%.20s/stat", number);
+  FILE *f = open_file(proc, name);
   const size_t n = f ? fread(text, 1, sizeof text - 1, f) : 0;
   if (f) fclose(f);
   text[n] = '\0';
@@ -147,13 +154,13 @@ static bool read_process(const char *number, long *parent, long *pages) {
                 parent, pages) == 2;
 }
 
-void cag_load_memory(const pid_t *processes, size_t count, size_t *bytes) {
+void cag_load_memory(const char *proc, const pid_t *processes, size_t count, size_t *bytes) {
   const size_t page = (size_t)sysconf(_SC_PAGESIZE);
   memset(bytes, 0, count * sizeof *bytes);
-  DIR *folder = opendir("/proc");
+  DIR *folder = opendir(proc);
   for (const struct dirent *e; folder && (e = readdir(folder));) {
     long parent, pages;
-    if (!isdigit((unsigned char)e->d_name[0]) || !read_process(e->d_name, &parent, &pages))
+    if (!isdigit((unsigned char)e->d_name[0]) || !read_process(proc, e->d_name, &parent, &pages))
       continue;
     const long number = strtol(e->d_name, NULL, 10);
     for (size_t i = 0; i < count; i++)

@@ -18,7 +18,11 @@
 // time.
 #define CAG_LOAD_MOST 32
 
+// Where Linux tells about processes.
+#define CAG_LOAD_PROC "/proc"
+
 typedef struct CagLoad {
+  const char *proc;   // the folder with the files stat, meminfo and loadavg
   size_t workers;     // processors to be kept busy
   double limit;       // processes at once, at least `workers`
   size_t largest;     // bytes that one process had at most; 0: none has ended
@@ -27,7 +31,8 @@ typedef struct CagLoad {
   double busy, total; // of all processors since the start, in ticks
 } CagLoad;
 
-void cag_load_begin(CagLoad *l, size_t workers);
+// Keeps `proc`: CAG_LOAD_PROC, or a folder with files of the same form.
+void cag_load_begin(CagLoad *l, size_t workers, const char *proc);
 
 // Looks at the machine when it is time; gives how many may run while `running` do and `waiting` are
 // to be begun. To be asked before each that is begun. At the end of a batch of sleepers all that
@@ -41,6 +46,6 @@ void cag_load_ended(CagLoad *l, size_t memory);
 void cag_load_refused(CagLoad *l, size_t running);
 
 // Bytes in memory of each process together with its children.
-void cag_load_memory(const pid_t *processes, size_t count, size_t *bytes);
+void cag_load_memory(const char *proc, const pid_t *processes, size_t count, size_t *bytes);
 
 #endif

@@ -198,7 +198,7 @@ static void see_to_memory(Run *r) {
   size_t *bytes = malloc(r->running * sizeof *bytes);
   for (size_t i = 0; processes && i < r->running; i++) processes[i] = r->slots[i].child.pid;
   if (processes && bytes) {
-    cag_load_memory(processes, r->running, bytes);
+    cag_load_memory(CAG_LOAD_PROC, processes, r->running, bytes);
     for (size_t i = 0; i < r->running; i++)
       if (bytes[i] > r->limit_memory + MEMORY_BESIDE)
         cag_child_stop(&r->slots[i].child, CAG_CHILD_STOP_MEMORY);
@@ -282,7 +282,7 @@ static int run(CagBatch *b, bool joins) {
   r.slots = calloc(r.capacity, sizeof *r.slots);
   struct pollfd *waiting = calloc(r.capacity, sizeof *waiting);
   if (r.slots && waiting) {
-    cag_load_begin(&r.load, b->workers);
+    cag_load_begin(&r.load, b->workers, CAG_LOAD_PROC);
     r.waiting = count_waiting(&r);
     cag_batch_progress_begin(&r.progress, b);
     run_all(&r, waiting);
