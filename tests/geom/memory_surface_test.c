@@ -786,10 +786,30 @@ static void questions_to_a_surface_report_faults(void **state) {
   assert_int_equal(fault_problems, 0);
 }
 
+// These have cells of their own, and are not among the quick kinds.
+static void nearest_points_of_swept_surfaces_report_faults(void **state) {
+  (void)state;
+  fault_problems = 0;
+  fault_steps = FAULTS_OF_QUICK;
+  int found = 0;
+  for (int k = 0; k < KIND_COUNT; k++) {
+    const char *name = KINDS[k].name;
+    if (strcmp(name, "tube") && strcmp(name, "twist") && strncmp(name, "swept", 5)) continue;
+    CagSurface *s;
+    OK(KINDS[k].make(&s, &err));
+    try_faults("closest", name, closest, s);
+    cag_surface_release(s);
+    found++;
+  }
+  assert_int_equal(found, 4);
+  assert_int_equal(fault_problems, 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(making_a_surface_reports_faults),
       cmocka_unit_test(questions_to_a_surface_report_faults),
+      cmocka_unit_test(nearest_points_of_swept_surfaces_report_faults),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
