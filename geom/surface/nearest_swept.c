@@ -361,7 +361,7 @@ static CagStatus bound_sweep(CagDistanceCells *c, CagDistanceCell *cell, CagErro
 
 // --- Cells of tubes ---
 
-// The circle at v: the squared distance of p, p from the middle, and the spokes.
+// The circle at v: the squared distance of p, p relative to the center, and the spokes.
 typedef struct Circle {
   double value;
   CagVec3 r, x, y;
@@ -372,6 +372,7 @@ static CagStatus circle_at(const CagDistanceCells *c, double v, CagSide side, Ci
   const CagSwept *s = &c->swept;
   CagMotionSeries m;
   const double at = s->flip ? c->s->v0 + c->s->v1 - v : v;
+  if (s->flip) side = side == CAG_SIDE_LEFT ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT;
   CagStatus status = cag_motion_at(s->motion, at, 0, side, &m, err);
   if (status) return status;
   const CagVec3 w = cag_sub(m.origin[0], s->p), z = m.z[0];
@@ -448,7 +449,7 @@ static CagStatus bound_tube(CagDistanceCells *c, CagDistanceCell *cell, CagError
   CagStatus status = CAG_OK;
   cell->least = INFINITY;
   for (int k = 0; !status && k < 2; k++) {
-    const CagSide side = (k == 1) != c->swept.flip ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+    const CagSide side = k == 1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
     CagVec3 point;
     status = circle_at(c, v[k], side, &ends[k], err);
     const double u = status ? 0 : around(c, &ends[k]);
