@@ -365,11 +365,11 @@ void cag_atomic_file_printf(CagAtomicFile *f, const char *format, ...) {
   va_list again;
   va_copy(again, args);
   int n = vsnprintf(f->at, room, format, args);
-  // No result is negative: only conversions of wide characters fail.
-  if ((size_t)n < room) {
+  // A negative result, of a text beyond INT_MAX or exhausted memory, counts as exhausted memory.
+  if (n >= 0 && (size_t)n < room) {
     f->at += n;
   } else {
-    char *text = malloc((size_t)n + 1);
+    char *text = n < 0 ? NULL : malloc((size_t)n + 1);
     if (text) {
       vsnprintf(text, (size_t)n + 1, format, again);
       cag_atomic_file_write(f, text, (size_t)n);
