@@ -63,6 +63,38 @@ static void nearest_points_of_tensor_surfaces_are_right(void **state) {
   }
 }
 
+// A long strip of one patch that winds along v, or across u when turned: bounds of its distance
+// hang on both degrees, and many places are nearest in their surroundings.
+static CagSurface *random_strip(bool turned, bool rational) {
+  enum { LONG = 10 };
+  const int p = whole(1, 2), q = whole(4, LONG - 1);
+  CagVec3 net[3 * LONG];
+  double weights[3 * LONG], ku[2 * LONG], kv[2 * LONG];
+  CagSurface *s;
+  for (int i = 0; i <= p; i++)
+    for (int j = 0; j <= q; j++) {
+      const int at = turned ? j * (p + 1) + i : i * (q + 1) + j;
+      net[at] = cag_vec3(j, 8 * i + between(0, 2), between(-9, 9));
+      weights[at] = between(0.3, 3.3);
+    }
+  for (int i = 0; i < 2 * (p + 1); i++) ku[i] = i > p;
+  for (int j = 0; j < 2 * (q + 1); j++) kv[j] = j > q;
+  MUST(cag_surface_nurbs(net, rational ? weights : NULL, (size_t)(turned ? q : p) + 1,
+                         (size_t)(turned ? p : q) + 1, turned ? q : p, turned ? p : q,
+                         turned ? kv : ku, turned ? ku : kv, &s, err));
+  return s;
+}
+
+static void nearest_points_of_winding_strips_are_right(void **state) {
+  (void)state;
+  state_of_random = 4711;
+  for (int i = 0; i < 300; i++) {
+    CagSurface *s = random_strip(i % 2, i % 4 < 2);
+    assert_nearest(s, "strip", i);
+    cag_surface_release(s);
+  }
+}
+
 static CagSurface *random_revolution(void) {
   CagVec3 p[5];
   CagCurve *profile;
@@ -309,6 +341,7 @@ int main(void) {
       cmocka_unit_test(nearest_points_of_curves_are_right_and_perpendicular),
       cmocka_unit_test(nearest_points_of_creased_surfaces_are_right),
       cmocka_unit_test(nearest_points_of_tensor_surfaces_are_right),
+      cmocka_unit_test(nearest_points_of_winding_strips_are_right),
       cmocka_unit_test(nearest_points_of_other_kinds_are_right),
       cmocka_unit_test(nearest_points_of_a_torus_have_closed_form),
       cmocka_unit_test(tubes_and_offsets_have_closed_forms),

@@ -146,7 +146,8 @@ static const Sample samples[] = {
 #define SAMPLES (sizeof samples / sizeof *samples)
 
 // `fixed`: each row's crank as a fixed link of its own, and a base and a tool.
-static CagRobot *make(const Sample *s, bool fixed) {
+// `unit`: of length, in those of the table.
+static CagRobot *make_in(const Sample *s, bool fixed, double unit) {
   CagRobotLink links[12];
   CagError err;
   CagRobot *r = NULL;
@@ -157,24 +158,25 @@ static CagRobot *make(const Sample *s, bool fixed) {
     CagRobotLink *l = &links[spec.link_count++];
     *l = cag_robot_link(row->kind);
     l->theta = row->theta * DEGREE;
-    l->d = row->d;
-    if (row->kind == P) l->low = l->home = 1, l->high = 500;
+    l->d = row->d / unit;
+    if (row->kind == P) l->low = l->home = 1 / unit, l->high = 500 / unit;
     if (!fixed) {
-      l->a = row->a;
+      l->a = row->a / unit;
       l->alpha = row->alpha * DEGREE;
       continue;
     }
     l = &links[spec.link_count++];
     *l = cag_robot_link(CAG_JOINT_FIXED);
-    l->fixed = cag_dh(0, 0, row->a, row->alpha * DEGREE);
+    l->fixed = cag_dh(0, 0, row->a / unit, row->alpha * DEGREE);
   }
   if (fixed) {
-    spec.base = cag_dh(1, 2, 3, 0.4);
-    spec.tool = cag_dh(0.3, 20, -3, 1.4);
+    spec.base = cag_dh(1, 2 / unit, 3 / unit, 0.4);
+    spec.tool = cag_dh(0.3, 20 / unit, -3 / unit, 1.4);
   }
   assert_int_equal(cag_robot_new(&spec, &r, &err), CAG_OK);
   return r;
 }
+static CagRobot *make(const Sample *s, bool fixed) { return make_in(s, fixed, 1); }
 
 static uint32_t seed = 7;
 static double random_share(void) {
@@ -215,22 +217,29 @@ static void check_pose(const Sample *s, const CagRobot *r, const CagRobot *plain
   if (!found) fail_msg("%s: the joint values are not among the solutions", s->name);
 }
 
+// Poses of random joint values, for the arm with its lengths in such units.
+static void find_all_solutions(const Sample *s, double unit, int poses) {
+  CagRobot *plain = make_in(s, false, unit), *built = make_in(s, true, unit);
+  assert_true(cag_robot_has_inverse(plain));
+  assert_true(cag_robot_has_inverse(built));
+  for (int i = 0; i < poses; i++) {
+    double q[6];
+    for (size_t j = 0; j < s->n; j++)
+      q[j] = s->rows[j].kind == P ? (50 + 400 * random_share()) / unit
+                                  : (2 * random_share() - 1) * 3.1;
+    check_pose(s, plain, plain, q);
+    check_pose(s, built, plain, q);
+  }
+  cag_robot_release(plain);
+  cag_robot_release(built);
+}
+
 static void all_solutions_are_found(void **state) {
   (void)state;
   for (size_t k = 0; k < SAMPLES; k++) {
-    const Sample *s = &samples[k];
-    CagRobot *plain = make(s, false), *built = make(s, true);
-    assert_true(cag_robot_has_inverse(plain));
-    assert_true(cag_robot_has_inverse(built));
-    for (int i = 0; i < 1000; i++) {
-      double q[6];
-      for (size_t j = 0; j < s->n; j++)
-        q[j] = s->rows[j].kind == P ? 50 + 400 * random_share() : (2 * random_share() - 1) * 3.1;
-      check_pose(s, plain, plain, q);
-      check_pose(s, built, plain, q);
-    }
-    cag_robot_release(plain);
-    cag_robot_release(built);
+    find_all_solutions(&samples[k], 1, 1000);
+    find_all_solutions(&samples[k], 1000, 200); // metres
+    find_all_solutions(&samples[k], 1e-3, 200); // micrometres
   }
 }
 
