@@ -87,6 +87,47 @@ static void poses_of_chains_are_found_within_the_limits(void **state) {
   }
 }
 
+// The same arm of turning and sliding joints with its lengths in other units: multiples by powers
+// of two are exact, so the search takes the same steps to the same place.
+static void the_unit_of_length_does_not_matter(void **state) {
+  (void)state;
+  static const double units[] = {1, 1024, 1.0 / 1024};
+  CagRobot *robots[3];
+  for (int k = 0; k < 3; k++) {
+    CagRobotLink links[7];
+    for (size_t i = 0; i < 7; i++) {
+      const bool slides = i == 1 || i == 4;
+      CagRobotLink *l = &links[i];
+      *l = cag_robot_link(slides ? CAG_JOINT_PRISMATIC : CAG_JOINT_REVOLUTE);
+      l->theta = slides ? 0.3 : 0;
+      l->d = iiwa[i][0] * units[k];
+      l->a = 0.0625 * (double)i * units[k];
+      l->alpha = iiwa[i][2] * DEGREE;
+      l->low = slides ? -0.75 * units[k] : -2.5;
+      l->high = slides ? 1.5 * units[k] : 2.75;
+    }
+    robots[k] = robot_of(links, 7);
+  }
+  uint64_t seed = 11;
+  for (int i = 0; i < 200; i++) {
+    double places[7], q[3][7];
+    CagRobotFound found[3];
+    random_place(robots[0], &seed, places);
+    for (int k = 0; k < 3; k++) {
+      CagTransform wanted;
+      const CagRobotSearch search = {0};
+      for (size_t j = 0; j < 7; j++) q[k][j] = places[j] * (j == 1 || j == 4 ? units[k] : 1);
+      cag_robot_forward(robots[k], q[k], &wanted);
+      found[k] = cag_robot_search(robots[k], &wanted, &search, q[k]);
+      assert_true(found[k].solved);
+      assert_int_equal(found[k].steps, found[0].steps);
+      for (size_t j = 0; j < 7; j++)
+        NEAR(q[k][j] / (j == 1 || j == 4 ? units[k] : 1), q[0][j], 1e-12);
+    }
+  }
+  for (int k = 0; k < 3; k++) cag_robot_release(robots[k]);
+}
+
 static void out_of_reach_the_nearest_point_is_found(void **state) {
   (void)state;
   CagRobot *arm = chain(planar, 2), *seven = chain(iiwa, 7);
@@ -304,6 +345,7 @@ static void the_puma_has_a_shell(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(poses_of_chains_are_found_within_the_limits),
+      cmocka_unit_test(the_unit_of_length_does_not_matter),
       cmocka_unit_test(out_of_reach_the_nearest_point_is_found),
       cmocka_unit_test(freedom_to_spare_goes_into_being_near),
       cmocka_unit_test(hostile_numbers_come_to_an_end),
