@@ -181,12 +181,13 @@ static CagStatus whole_core(const CagSolid *s, const CagTessellation *how, CagMe
 }
 
 // A window that holds all that was given, and the mesh that lies in it, stand apart: bounded.
-static void add_landmarks(const CagSolid *s, CagBounds *into) {
+static CagStatus add_landmarks(const CagSolid *s, CagBounds *into, CagError *err) {
   CagQuadric q;
-  CagQuadricForm f;
-  CagBounds reach;
-  CagError err;
-  if (cag_solid_form(s, &q) && cag_quadric_classify(&q, &f, &err) == CAG_OK) {
+  CagStatus status = CAG_OK;
+  if (cag_solid_form(s, &q)) {
+    CagQuadricForm f;
+    status = cag_quadric_classify(&q, &f, err);
+    if (status) return status;
     CagVec3 o = cag_vec3(f.frame.m[0][3], f.frame.m[1][3], f.frame.m[2][3]);
     double size = fmax(f.semi[0], fmax(f.semi[1], f.semi[2]));
     if (s->kind == CAG_SOLID_HALF_SPACE) { // its frame may stand anywhere in the plane
@@ -196,16 +197,21 @@ static void add_landmarks(const CagSolid *s, CagBounds *into) {
     cag_bounds_add(into, cag_sub(o, cag_vec3(size, size, size)));
     cag_bounds_add(into, cag_add(o, cag_vec3(size, size, size)));
   } else if (is_operation(s)) {
-    for (size_t i = 0; i < s->core->count; i++) {
+    for (size_t i = 0; !status && i < s->core->count; i++) {
       CagSolid *placed;
-      if (cag_solid_transform(s->core->operands[i], &s->placement, &placed, &err)) continue;
-      add_landmarks(placed, into);
+      status = cag_solid_transform(s->core->operands[i], &s->placement, &placed, err);
+      if (status) return status;
+      status = add_landmarks(placed, into, err);
       cag_solid_release(placed);
     }
-  } else if (cag_solid_reach(s, &reach, &err) == CAG_OK) {
+  } else {
+    CagBounds reach;
+    status = cag_solid_reach(s, &reach, err);
+    if (status) return status;
     cag_bounds_add(into, reach.min);
     cag_bounds_add(into, reach.max);
   }
+  return status;
 }
 
 static CagStatus unbounded(const CagSolid *s, CagError *err) {
@@ -220,22 +226,24 @@ static CagStatus unbounded(const CagSolid *s, CagError *err) {
                   cag_solid_kind_name(s->kind), s->core->count);
 }
 
-// Finds where an operation ends whose operands' bounds do not tell.
+// Finds where an operation ends whose operands' bounds do not tell: one of them is unbounded, so
+// there are landmarks.
 static CagStatus find_reach(const CagSolid *s, CagError *err) {
   CagSolid core = *s;
   CagBounds around = CAG_BOUNDS_EMPTY;
   CagTessellation coarse = CAG_TESSELLATION_DEFAULT;
   CagMesh *m = NULL;
   core.placement = cag_transform_identity();
-  add_landmarks(&core, &around);
-  double size = is_empty(&around) ? 0 : cag_norm(cag_sub(around.max, around.min));
+  CagStatus status = add_landmarks(&core, &around, err);
+  if (status) return status;
+  double size = cag_norm(cag_sub(around.max, around.min));
   if (!(size > 0) || !isfinite(size)) size = 1;
-  CagVec3 middle = is_empty(&around) ? cag_vec3(0, 0, 0) : cag_lerp(around.min, around.max, 0.5);
+  CagVec3 middle = cag_lerp(around.min, around.max, 0.5);
   CagVec3 far = cag_vec3(FAR * size, FAR * size, FAR * size);
   const CagBounds window = {cag_sub(middle, far), cag_add(middle, far)};
   coarse.tolerance = DEFAULT_SHARE * FAR * size;
   coarse.interrupt = s->core->interrupt;
-  CagStatus status = core_mesh(s, &coarse, &window, &m, err);
+  status = core_mesh(s, &coarse, &window, &m, err);
   if (status) return status;
   CagBounds found = cag_mesh_bounds(m);
   bool empty = m->triangle_count == 0;
