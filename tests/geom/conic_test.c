@@ -414,6 +414,29 @@ static void five_conditions_make_each_kind_of_conic(void **state) {
   }
 }
 
+// With u and v along the axes: u^2 / a^2 + v^2 / b^2 = 1, and with - for a hyperbola.
+static void turned_conics_away_from_the_origin_have_their_equations(void **state) {
+  (void)state;
+  for (int i = 0; i < 24; i++) {
+    const double sign = i % 2 ? -1 : 1, turn = 0.26 * i + 0.1, c = cos(turn), s = sin(turn);
+    const double a = 1 + 0.2 * (i % 5), b = 2.5 - 0.3 * (i % 4);
+    const double x = 0.9 * (i % 7) - 2, y = 3 - 0.8 * (i % 6), p = 1 / (a * a), q = sign / (b * b);
+    CagVec3 points[5];
+    for (int k = 0; k < 5; k++) {
+      const double t = (sign > 0 ? 1.2 : 0.5) * (k - 2), side = k % 2 ? -1 : 1;
+      const double u = a * (sign > 0 ? cos(t) : side * cosh(t)),
+                   v = b * (sign > 0 ? sin(t) : sinh(t));
+      points[k] = cag_vec3(x + u * c - v * s, y + u * s + v * c, 0);
+    }
+    const double A = p * c * c + q * s * s, B = 2 * (p - q) * c * s, C = p * s * s + q * c * c;
+    const double expected[6] = {
+        A, B, C, -2 * A * x - B * y, -2 * C * y - B * x, A * x * x + B * x * y + C * y * y - 1};
+    CagConic k;
+    OK(cag_conic_from_conditions(points, 5, NULL, 0, CAG_CONIC_GENERAL, &k, &err));
+    for (int j = 0; j < 6; j++) NEAR(k.c[j], expected[j] / C, 1e-10 * (1 + fabs(expected[j] / C)));
+  }
+}
+
 static void points_far_away_lose_no_conic(void **state) {
   (void)state;
   CagVec3 points[5];
@@ -673,6 +696,7 @@ int main(void) {
       cmocka_unit_test(a_line_meets_a_conic_in_every_way),
       cmocka_unit_test(a_segment_runs_between_its_abscissas),
       cmocka_unit_test(five_conditions_make_each_kind_of_conic),
+      cmocka_unit_test(turned_conics_away_from_the_origin_have_their_equations),
       cmocka_unit_test(points_far_away_lose_no_conic),
       cmocka_unit_test(conditions_that_do_not_fix_a_conic_are_named),
       cmocka_unit_test(an_arc_of_a_triangle_bulges_as_its_weight_says),

@@ -1,5 +1,6 @@
 // Convex hulls, side predicates, curves on surfaces and distances of meshes: closed forms.
 
+#include "geom/curve/function.h"
 #include "geom/mesh/hull.h"
 #include "geom/mesh/predicates.h"
 #include "geom/mesh/separation.h"
@@ -232,6 +233,9 @@ static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state
   NEAR(hypot(foot.x, foot.y), 5, 1e-7);
   // The distance is constant all around, which a few pairs cannot show.
   FAILS(cag_parts_distance(&a, &b, 20, &distance, NULL, NULL, &err), "convergence");
+  const volatile int stop = 1, go = 0;
+  FAILS(cag_parts_distance(&a, &b, 20, &distance, NULL, &stop, &err), "interrupted");
+  FAILS(cag_parts_distance(&a, &b, 20, &distance, NULL, &go, &err), "convergence");
   cag_parts_free(&b);
   b = (CagParts){0};
   OK(cag_parts_add_point(&b, cag_vec3(8, 0, 4), &err));
@@ -242,6 +246,75 @@ static void tori_are_as_far_apart_as_their_circles_less_their_tubes(void **state
   cag_mesh_release(m);
   cag_surface_release(s);
   cag_surface_release(moved);
+}
+
+// --- The end of the search ---
+
+// Along a curve that crosses the other shape all points of the crossing are as near.
+static void shapes_that_meet_need_few_pairs(void **state) {
+  (void)state;
+  for (int i = 0; i < 8; i++) {
+    const CagTransform move = cag_translate(cag_vec3(0.7 * i - 2, 0.3 * i, 0.2));
+    CagSurface *s, *moved;
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    CagMesh *m[2];
+    CagParts a = {0}, b = {0};
+    double distance = -1;
+    how.tolerance = 0.01;
+    OK(cag_surface_torus(5, 1, &s, &err));
+    OK(cag_surface_transform(s, &move, &moved, &err));
+    OK(cag_surface_tessellate(s, &how, &m[0], &err));
+    OK(cag_surface_tessellate(moved, &how, &m[1], &err));
+    OK(cag_parts_add_mesh(&a, m[0], s, how.tolerance, &err));
+    OK(cag_parts_add_mesh(&b, m[1], moved, how.tolerance, &err));
+    OK(cag_parts_distance(&a, &b, 20, &distance, NULL, NULL, &err));
+    assert_true(distance == 0);
+    cag_parts_free(&a);
+    cag_parts_free(&b);
+    for (int k = 0; k < 2; k++) cag_mesh_release(m[k]);
+    cag_surface_release(s);
+    cag_surface_release(moved);
+  }
+}
+
+typedef struct Calls {
+  int count, failing; // the call that fails, from 1; 0: none
+} Calls;
+
+static CagStatus fail_once(void *context, double t, int order, CagVec3 *out, CagError *e) {
+  Calls *calls = context;
+  if (++calls->count == calls->failing)
+    return cag_fail(e, CAG_E_CALLBACK, "function-failed", "", -1, "the function failed");
+  for (int k = 0; k <= order; k++)
+    out[k] = cag_vec3(k == 0 ? t : k == 1, cos(t + k * M_PI / 2), sin(t + k * M_PI / 2));
+  return CAG_OK;
+}
+
+// Whichever call it is: no later success covers it.
+static void a_function_that_fails_once_fails_the_search(void **state) {
+  (void)state;
+  Calls calls = {0};
+  const CagCurveFunction f = {fail_once, NULL, &calls};
+  CagCurve *coil;
+  CagParts a = {0}, b = {0};
+  double distance;
+  OK(cag_curve_function(&f, 3, -6, 6, false, &coil, &err));
+  OK(cag_parts_add_curve(&a, coil, 1e-3, &err));
+  OK(cag_parts_add_point(&b, cag_vec3(0, 4, 0), &err));
+  calls.count = 0;
+  OK(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, NULL, NULL, &err));
+  NEAR(distance, 3, 1e-12); // straight above the point of t = 0
+  const int most = calls.count;
+  assert_true(most > 0);
+  for (int i = 1; i <= most; i++) {
+    calls = (Calls){0, i};
+    FAILS(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, NULL, NULL, &err),
+          "function-failed");
+    assert_int_equal(calls.count, i); // and none is made after it
+  }
+  cag_parts_free(&a);
+  cag_parts_free(&b);
+  cag_curve_release(coil);
 }
 
 // --- Shapes at a constant distance ---
@@ -374,6 +447,8 @@ int main(void) {
       cmocka_unit_test(curves_on_a_torus_have_the_derivatives_of_its_formula),
       cmocka_unit_test(the_nearest_of_many_minima_is_found),
       cmocka_unit_test(tori_are_as_far_apart_as_their_circles_less_their_tubes),
+      cmocka_unit_test(shapes_that_meet_need_few_pairs),
+      cmocka_unit_test(a_function_that_fails_once_fails_the_search),
       cmocka_unit_test(shapes_at_a_constant_distance_need_few_pairs),
       cmocka_unit_test(curves_at_a_constant_distance_need_few_pairs),
   };

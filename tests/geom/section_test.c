@@ -3,6 +3,7 @@
 #include "geom/surface/curvature_line.h"
 #include "geom/surface/mapped.h"
 #include "geom/surface/section.h"
+#include "geom/surface/section_edges.h"
 #include "support.h"
 
 static CagPlane plane_of(double x, double y, double z, double nx, double ny, double nz) {
@@ -163,6 +164,53 @@ static void principal_directions_are_square_and_of_unit_length(void **state) {
   cag_surface_release(torus);
 }
 
+// --- Duplicates ---
+
+// How many of two segments stay.
+static size_t kept(CagVec3 a, CagVec3 b, CagVec3 c, CagVec3 d, double near) {
+  const CagVec3 ends[2][2] = {{a, b}, {c, d}};
+  CagCurveList list = {0};
+  for (int i = 0; i < 2; i++) {
+    CagCurve *line;
+    OK(cag_curve_polyline(ends[i], 2, false, 3, &line, &err));
+    OK(cag_curve_list_add(&list, line, &err));
+  }
+  OK(cag_curve_list_drop_covered(&list, 0, near, &err));
+  const size_t count = list.count;
+  cag_curve_list_free(&list);
+  return count;
+}
+
+static CagVec3 along(int axis, double x, double across) {
+  const CagVec3 p[3] = {{x, across, across}, {across, x, across}, {across, across, x}};
+  return p[axis];
+}
+
+static void curves_that_run_along_another_are_dropped(void **state) {
+  (void)state;
+  const double near = 0.01;
+  // Also where a distance of `near` is lost in rounding.
+  for (int axis = 0; axis < 3; axis++)
+    for (int far = -1; far <= 1; far++) {
+      const double w = far * 1e15;
+      const CagVec3 a = along(axis, 0, w), b = along(axis, 8, w);
+      assert_int_equal(kept(a, b, a, b, near), 1);
+      assert_int_equal(kept(a, b, b, a, near), 1);
+      assert_int_equal(kept(a, b, along(axis, 2, w), along(axis, 5, w), near), 1);
+      assert_int_equal(kept(a, b, along(axis, 2, w), along(axis, 9, w), near), 2);
+      assert_int_equal(kept(a, b, along(axis, -1, w), along(axis, 5, w), near), 2);
+      assert_int_equal(kept(a, b, a, along((axis + 1) % 3, 8, w), near), 2);
+    }
+  // Beside it on each side, and beyond either end.
+  const CagVec3 a = cag_vec3(0, 0, 0), b = cag_vec3(8, 4, 2);
+  for (int side = 0; side < 6; side++) {
+    const CagVec3 way = along(side % 3, side < 3 ? 1 : -1, 0);
+    const CagVec3 less = cag_madd(a, 0.9 * near, way), more = cag_madd(a, 2 * near, way);
+    assert_int_equal(kept(a, b, cag_add(a, less), cag_add(b, less), near), 1);
+    assert_int_equal(kept(a, b, cag_add(a, more), cag_add(b, more), near), 2);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_plane_through_vertices_and_edges_gives_one_closed_curve),
@@ -172,6 +220,7 @@ int main(void) {
       cmocka_unit_test(balls_give_exact_circles_at_every_height),
       cmocka_unit_test(a_closed_mesh_laid_on_a_surface_stays_closed),
       cmocka_unit_test(principal_directions_are_square_and_of_unit_length),
+      cmocka_unit_test(curves_that_run_along_another_are_dropped),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -241,6 +241,57 @@ static void every_kind_parses_and_native_objects_are_used(void **state) {
   fixture_end(&f);
 }
 
+// --- Dashes ---
+
+// How far along the corners a point of them lies.
+static double run_of(const CagVec3 *corners, size_t n, CagVec3 p) {
+  double run = 0;
+  for (size_t i = 0; i + 1 < n; i++) {
+    const CagVec3 side = cag_sub(corners[i + 1], corners[i]), at = cag_sub(p, corners[i]);
+    const double length = cag_norm(side), along = cag_dot(at, side) / length;
+    if (fabs(cag_norm(at) - along) < 1e-9 && along < length + 1e-9) return run + along;
+    run += length;
+  }
+  fail_msg("a dash lies beside its curve");
+  return 0;
+}
+
+static void check_dashes(const CagVec3 *corners, size_t n, double dash) {
+  Fixture f = {0};
+  CagCurve *c;
+  fixture_begin(&f);
+  OK(cag_curve_polyline(corners, n, false, 3, &c, &err));
+  fixture_curve(&f, "dashes", c)->dash = dash;
+  char *text = export_text(&f, false);
+  double whole = 0, expected = 0, drawn = 0;
+  for (size_t i = 0; i + 1 < n; i++) whole += cag_norm(cag_sub(corners[i + 1], corners[i]));
+  for (double from = 0; from < whole; from += 2 * dash) expected += fmin(dash, whole - from);
+  const char *at = strstr(text, "dashes = union {");
+  assert_non_null(at);
+  while ((at = strstr(at + 1, "cylinder { <"))) {
+    CagVec3 p, q;
+    if (sscanf(at, "cylinder { <%lf, %lf, %lf>, <%lf, %lf, %lf>, line_radius", &p.x, &p.y, &p.z,
+               &q.x, &q.y, &q.z) != 6)
+      continue;
+    const double from = run_of(corners, n, p), to = run_of(corners, n, q);
+    const double start = 2 * dash * floor((from + to) / 2 / (2 * dash));
+    assert_true(from >= start - 1e-9 && to <= start + dash + 1e-9);
+    drawn += to - from;
+  }
+  if (fabs(drawn - expected) > 1e-8) fail_msg("dash %g: %g drawn, not %g", dash, drawn, expected);
+  free(text);
+  fixture_end(&f);
+}
+
+// Also around corners.
+static void every_other_dash_is_drawn(void **state) {
+  (void)state;
+  const CagVec3 corners[] = {{0, 0, 0}, {2.5, 0, 0}, {2.5, 4, 0}, {2.5, 4, 1.3}, {-3, 4, 1.3}};
+  const double dashes[] = {0.4, 0.7, 1, 1.9, 2.5, 6, 100};
+  for (size_t i = 0; i < sizeof dashes / sizeof *dashes; i++)
+    for (size_t n = 2; n <= 5; n++) check_dashes(corners, n, dashes[i]);
+}
+
 // Root of the mean squared difference of all colours.
 static double difference(const CagImage *a, const CagImage *b) {
   double sum = 0;
@@ -489,6 +540,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_kind_parses_and_native_objects_are_used),
       cmocka_unit_test(native_objects_look_like_their_meshes),
+      cmocka_unit_test(every_other_dash_is_drawn),
       cmocka_unit_test(tiny_scenes_look_like_large_ones),
       cmocka_unit_test(pictures_are_not_mirrored_and_match_the_camera),
       cmocka_unit_test(a_white_face_square_to_a_sun_of_strength_1_is_white),

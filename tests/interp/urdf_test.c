@@ -413,6 +413,50 @@ static void masses_are_those_of_the_shapes(void **state) {
   free(text);
 }
 
+// The sums of the volumes of the cylinders and boxes that a link collides with, in cubic metres.
+static double volume_of_plain(const char *link, const char *end, int *count) {
+  double sum = 0;
+  *count = 0;
+  for (const char *at = link; (at = strstr(at, "<collision>")) && at < end; at++) {
+    const char *close = strstr(at, "</collision>");
+    char radius[200], length[200], size[200];
+    double side[3];
+    ++*count;
+    if (attribute(at, close, "box", "size", size)) {
+      take_numbers(size, side, 3);
+      sum += side[0] * side[1] * side[2];
+    } else {
+      assert_true(attribute(at, close, "cylinder", "radius", radius));
+      assert_true(attribute(at, close, "cylinder", "length", length));
+      sum += M_PI * pow(strtod(radius, NULL), 2) * strtod(length, NULL);
+    }
+  }
+  return sum;
+}
+
+// Plain bodies are of water, and a rod goes from joint to joint.
+static void plain_bodies_weigh_what_their_sizes_say(void **state) {
+  (void)state;
+  free(run("show robot([revolute(a: 300), prismatic(limits: 0..100), revolute(a: 100)])\n",
+           "plain.urdf"));
+  char *text = read_whole("plain.urdf");
+  int bodies = 0;
+  for (const char *link = strstr(text, "<link "); link; link = strstr(link + 1, "<link ")) {
+    const char *end = strstr(link + 1, "<link ");
+    char mass[200];
+    int count;
+    if (!end) end = text + strlen(text);
+    const double volume = volume_of_plain(link, end, &count);
+    bodies += count;
+    assert_int_equal(attribute(link, end, "mass", "value", mass), count > 0);
+    if (count) assert_true(fabs(strtod(mass, NULL) - 1000 * volume) < 1e-12);
+  }
+  assert_true(bodies >= 6); // a foot, three joints, two rods
+  assert_non_null(strstr(text, " length=\"0.3\""));
+  assert_non_null(strstr(text, " length=\"0.1\""));
+  free(text);
+}
+
 // A tube without lids, a sheet, a flat mesh, and a curve close no volume.
 static void open_shapes_have_no_mass(void **state) {
   (void)state;
@@ -586,6 +630,7 @@ int main(void) {
       cmocka_unit_test(what_was_written_is_read_back),
       cmocka_unit_test(axes_in_any_direction_are_read),
       cmocka_unit_test(masses_are_those_of_the_shapes),
+      cmocka_unit_test(plain_bodies_weigh_what_their_sizes_say),
       cmocka_unit_test(open_shapes_have_no_mass),
       cmocka_unit_test(rates_and_efforts_are_in_metres),
       cmocka_unit_test(what_is_no_robot_is_refused),

@@ -181,6 +181,7 @@ static void the_list_keeps_twenty_and_counts_the_rest(void **state) {
   assert_int_equal(b.count, 0);
   CagDiagnostic *thrown = cag_diagnostics_add(&a, CAG_ERR_unknown_name, NULL, (CagSpan){0, 0}, "x");
   assert_non_null(thrown);
+  assert_int_equal(a.dropped, 11);
   cag_diagnostic_set_help(thrown, "y");
   cag_diagnostic_add_note(thrown, CAG_NOTE_CALL, NULL, (CagSpan){0, 0}, "z");
   cag_diagnostics_clear(&a);
