@@ -31,12 +31,9 @@ static void write_wrapped(FILE *out, const char *text, size_t length, size_t ind
   const size_t width = width_of(out);
   size_t column = at;
   bool first = true;
-  for (size_t i = 0; i < length;) {
-    const size_t spaces = strspn(text + i, " \n");
-    i += spaces;
+  for (size_t i = strspn(text, " \n"); i < length; i += strspn(text + i, " \n")) {
     size_t n = strcspn(text + i, " \n");
-    if (i + n > length) n = length > i ? length - i : 0;
-    if (n == 0) break;
+    if (n > length - i) n = length - i;
     if (!first && column + 1 + n > width) {
       fprintf(out, "\n%*s", (int)indent, "");
       column = indent;
