@@ -623,6 +623,97 @@ static void seams_agree_to_the_bit(void **state) {
   }
 }
 
+// --- Shells whose faces have parameters of their own ---
+
+// A unit cube bent by a map of second degree, so that faces and edges are curved.
+typedef struct Bend {
+  double mixed[3], squared[3];
+} Bend;
+
+static CagVec3 bent(const Bend *b, CagVec3 p) {
+  return cag_vec3(p.x + b->mixed[0] * p.y * p.z + b->squared[0] * p.y * p.y,
+                  p.y + b->mixed[1] * p.z * p.x + b->squared[1] * p.z * p.z,
+                  p.z + b->mixed[2] * p.x * p.y + b->squared[2] * p.x * p.x);
+}
+
+// The determinant of the map's derivative; the two points a direction of Gauss integrate it
+// exactly.
+static double bent_volume(const Bend *b) {
+  const double at[2] = {0.5 - sqrt(3) / 6, 0.5 + sqrt(3) / 6};
+  double sum = 0;
+  for (int k = 0; k < 8; k++) {
+    const double x = at[k & 1], y = at[k >> 1 & 1], z = at[k >> 2];
+    const CagVec3 dx = cag_vec3(1, b->mixed[1] * z, b->mixed[2] * y + 2 * b->squared[2] * x),
+                  dy = cag_vec3(b->mixed[0] * z + 2 * b->squared[0] * y, 1, b->mixed[2] * x),
+                  dz = cag_vec3(b->mixed[0] * y, b->mixed[1] * x + 2 * b->squared[1] * z, 1);
+    sum += cag_dot(dx, cag_cross(dy, dz)) / 8;
+  }
+  return sum;
+}
+
+// How far the point's place in the cube is from the cube's surface. The map is near the identity,
+// so that its inverse is found by repeated correction.
+static double off_bent_cube(const Bend *b, CagVec3 p) {
+  CagVec3 at = p;
+  for (int k = 0; k < 200; k++) at = cag_add(at, cag_sub(p, bent(b, at)));
+  const double x = fabs(at.x - 0.5), y = fabs(at.y - 0.5), z = fabs(at.z - 0.5);
+  return fabs(fmax(x, fmax(y, z)) - 0.5);
+}
+
+// Face k as a patch of degree 2 both ways: its directions in any order and sense, over any domain.
+// Weights in a geometric series change the parameters alone, and not affinely.
+static CagSurface *bent_face(const Bend *b, int k, bool rational) {
+  const double at[3] = {0, 0.5, 1};
+  const bool swapped = chance() < 0.5, turned[2] = {chance() < 0.5, chance() < 0.5};
+  const double ratio[2] = {between(0.6, 1.6), between(0.6, 1.6)};
+  CagVec3 on[3][3], net[9];
+  double weights[9], knots[2][6];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      const int s = turned[0] ? 2 - i : i, t = turned[1] ? 2 - j : j;
+      double p[3];
+      p[k / 2] = k % 2;
+      p[(k / 2 + 1) % 3] = at[swapped ? t : s];
+      p[(k / 2 + 2) % 3] = at[swapped ? s : t];
+      on[i][j] = bent(b, cag_vec3(p[0], p[1], p[2]));
+      weights[3 * i + j] = pow(ratio[0], i) * pow(ratio[1], j);
+    }
+  // A parabola through a, m and c at 0, 1/2 and 1 has the middle control point 2 m - (a + c) / 2.
+  for (int i = 0; i < 3; i++)
+    on[i][1] = cag_sub(cag_scaled(on[i][1], 2), cag_lerp(on[i][0], on[i][2], 0.5));
+  for (int j = 0; j < 3; j++)
+    on[1][j] = cag_sub(cag_scaled(on[1][j], 2), cag_lerp(on[0][j], on[2][j], 0.5));
+  for (int i = 0; i < 9; i++) net[i] = on[i / 3][i % 3];
+  for (int d = 0; d < 2; d++) {
+    const double from = between(-9, 9), to = from + between(0.1, 9);
+    for (int i = 0; i < 6; i++) knots[d][i] = i < 3 ? from : to;
+  }
+  CagSurface *s;
+  OK(cag_surface_nurbs(net, rational ? weights : NULL, 3, 3, 2, 2, knots[0], knots[1], &s, &err));
+  return s;
+}
+
+static void faces_with_parameters_of_their_own_join(void **state) {
+  (void)state;
+  chance_state = 31;
+  for (int round = 0; round < 60; round++) {
+    Bend b;
+    CagSurface *faces[6];
+    CagSolid *s;
+    for (int k = 0; k < 3; k++) b.mixed[k] = between(0.05, 0.2), b.squared[k] = between(-0.2, 0.2);
+    for (int k = 0; k < 6; k++) faces[k] = bent_face(&b, k, round % 2);
+    OK(cag_solid_shell(faces, 6, &s, &err));
+    CagMesh *m = mesh_of(s, 1e-3);
+    check_closed("bent cube", m, 0, 1);
+    NEAR(volume_of(m), bent_volume(&b), 4e-3); // the area is about 6
+    for (size_t v = 0; v < m->vertex_count; v++)
+      assert_true(off_bent_cube(&b, m->positions[v]) < 1e-9);
+    cag_mesh_release(m);
+    cag_solid_release(s);
+    for (int k = 0; k < 6; k++) cag_surface_release(faces[k]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(points_of_operations_lie_on_their_operands),
@@ -635,6 +726,7 @@ int main(void) {
       cmocka_unit_test(tubes_with_tight_bends_keep_their_volume),
       cmocka_unit_test(points_of_other_solids_lie_on_their_surfaces),
       cmocka_unit_test(seams_agree_to_the_bit),
+      cmocka_unit_test(faces_with_parameters_of_their_own_join),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
