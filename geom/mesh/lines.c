@@ -369,12 +369,12 @@ static CagStatus common_cuts(const Match *m, Cut *cuts, size_t *count, CagError 
       Cut *cut = &cuts[n++];
       cut->t[of] = atom->from;
       cut->corner[of] = atom->corner;
-      cut->corner[1 - of] = false;
+      cut->corner[1 - of] = a == 0; // where one line begins the other begins or ends
       CagStatus status = image(m, of, atom->from, &cut->t[1 - of], err);
       if (status != CAG_OK) return status;
     }
-  cuts[n++] = (Cut){{m->to[0], m->reversed ? m->from[1] : m->to[1]}, {true, true}};
-  if (m->reversed) cuts[n++] = (Cut){{m->from[0], m->to[1]}, {true, true}};
+  // Of lines that run against each other, first atoms begin at both ends.
+  if (!m->reversed) cuts[n++] = (Cut){{m->to[0], m->to[1]}, {true, true}};
   qsort(cuts, n, sizeof *cuts, by_master);
   size_t kept = 0;
   for (size_t k = 1; k < n; k++) {
@@ -456,7 +456,7 @@ CagStatus tess_join_lines(Tessellator *t, uint32_t master, uint32_t slave, bool 
     m.to[w] = t->atoms[before[w].atom + before[w].atom_count - 1].to;
   }
   size_t count;
-  Cut *cuts = malloc((before[0].atom_count + before[1].atom_count + 2) * sizeof *cuts);
+  Cut *cuts = malloc((before[0].atom_count + before[1].atom_count + 1) * sizeof *cuts);
   CagStatus status = cuts ? begin_match(&m, err) : cag_fail_memory(err);
   if (status == CAG_OK) status = common_cuts(&m, cuts, &count, err);
   if (status == CAG_OK) status = write_atoms(t, &m, cuts, count, (uint32_t[2]){master, slave}, err);
