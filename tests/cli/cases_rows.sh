@@ -200,12 +200,13 @@ ran='cag batch killed.csv (its process is killed)'
 "$CAG" batch killed.csv > out 2> err &
 batch=$!
 process=
-for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+patience=200
+while [ -z "$process" ] && [ $patience -gt 0 ]; do
   sleep 0.1
   process=$(child_of "killed-$$.stl")
-  [ -z "$process" ] || break
+  patience=$((patience - 1))
 done
-kill -KILL $process
+kill -KILL ${process:-$batch}
 wait $batch
 code=$?
 status 1
