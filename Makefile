@@ -74,7 +74,7 @@ $(BUILD)/obj/%.o: %.c
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) -c $< -o $@
 
-# GCC takes some temporaries of CGAL's for uninitialised.
+# GCC takes some temporaries of CGAL's for uninitialized.
 $(BUILD)/obj/geom/mesh/boolean_cgal.o: geom/mesh/boolean_cgal.cpp
 	@mkdir -p $(@D)
 	@echo "c++ $<"

@@ -2,7 +2,7 @@
 // element at fault.
 //
 // A function that can fail returns CagStatus and takes `CagError *err` last (never NULL). Outputs
-// are initialised only on CAG_OK. Nothing in geom/ prints, exits, or keeps global state, except for
+// are initialized only on CAG_OK. Nothing in geom/ prints, exits, or keeps global state, except for
 // a per-thread flag that records exhausted memory.
 
 #ifndef CAG_GEOM_STATUS_H

@@ -156,7 +156,7 @@ void cag_diagnostics_sort_last(CagDiagnostics *d) {
 
 static char folded(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
 
-// Edit distance of two names, where two neighbours that change places count as one edit (optimal
+// Edit distance of two names, where two neighbors that change places count as one edit (optimal
 // string alignment), or `limit + 1` when it is larger than limit. Bytes are compared without regard
 // to case.
 static size_t edit_distance(const char *a, size_t n, const char *b, size_t m, size_t limit) {

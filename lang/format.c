@@ -805,7 +805,7 @@ static void set_param(Format *f, Docs *d, const CagStatement *s) {
   }
   if (!s->as.param.label) return;
   const CagSpan label = {label_start(f, s), s->span.end};
-  // Labels that end neighbouring lines are set one below the other, as comments are.
+  // Labels that end neighboring lines are set one below the other, as comments are.
   if (!comments_before(f, label.start) && stands_last(f, label)) {
     Doc *text = layout_text(&f->layout, f->text + label.start, label.end - label.start);
     layout_add(d, layout_trailing(&f->layout, text));

@@ -7,7 +7,7 @@
 
 #include "lang/arena.h"
 
-// Comments at the ends of neighbouring lines stand one below the other while the code of all of
+// Comments at the ends of neighboring lines stand one below the other while the code of all of
 // them ends before this column.
 #define ALIGN_UNTIL 72
 #define COMMENT_GAP 2
@@ -317,7 +317,7 @@ static void put_comment(Layout *l, const Doc *text, int indent) {
   l->closed = true;
 }
 
-// The column for the comments that wait, which end neighbouring lines; 0 where some code is long.
+// The column for the comments that wait, which end neighboring lines; 0 where some code is long.
 static uint32_t common_column(const Layout *l) {
   uint32_t most = 0;
   for (size_t i = 0; i < l->trailing_count; i++)

@@ -3,8 +3,8 @@
 // In the manner of Wadler ("A prettier printer", 2003): a document is text, a place for a line
 // break, or a combination; the printer sets each group on one line where it fits and breaks it
 // otherwise. Each document keeps its width on one line and the width up to its first possible
-// break, so no decision looks at more than the neighbours. Comments at the ends of
-// neighbouring lines are set one below the other. Line breaks are lazy: one is printed
+// break, so no decision looks at more than the neighbors. Comments at the ends of
+// neighboring lines are set one below the other. Line breaks are lazy: one is printed
 // when the next text comes, so breaks that meet are one, and a comment that stood at the end of a
 // line goes there again. Everything made since the last layout_print lives until the next.
 // If memory runs out, control returns to the guard (lang/memory.h).
@@ -88,7 +88,7 @@ typedef struct Layout {
   bool pending, blank; // a line break waits, and leaves a line empty
   bool closed;         // the line ends in a comment
   int pending_indent;
-  LayoutTrailing *trailing; // those of neighbouring lines that are not aligned yet
+  LayoutTrailing *trailing; // those of neighboring lines that are not aligned yet
   size_t trailing_count, trailing_capacity;
 } Layout;
 

@@ -19,7 +19,7 @@ void cag_bspline_piece(const double *homogeneous, const double *knots, int p, si
 // Value and derivatives 0..order (4 numbers each) at t of the piece over [knots[span],
 // knots[span + 1]]. The derivatives are those of the splines of the differences of the control
 // points: no more exact than those of a Bezier piece as a rule, but they keep their digits where
-// the piece is much shorter than its neighbours.
+// the piece is much shorter than its neighbors.
 void cag_bspline_piece_derivatives(const double *homogeneous, const double *knots, int p,
                                    size_t span, double t, int order, double *out);
 // Inserts knot t of the usable range once (Boehm 1980): n points become n + 1, n + p + 1 knots one

@@ -1,4 +1,4 @@
-// Parabolic blends: cubic segments between the parabolas through three neighbouring points.
+// Parabolic blends: cubic segments between the parabolas through three neighboring points.
 //
 // The parabola through points i - 1, i, i + 1 passes them at r = 0, a, 1. A segment's end tangents
 // are those of the parabolas there: it is a Hermite segment, and what is stored are Bezier points.

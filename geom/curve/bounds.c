@@ -91,7 +91,7 @@ static bool slope(const CagCurve *c, double t, CagSide side, int direction, CagV
   return true;
 }
 
-// Adds the summit about sample `top` to the box: the root of the slope between its neighbours, by
+// Adds the summit about sample `top` to the box: the root of the slope between its neighbors, by
 // false position (the Illinois variant). False: the slopes do not show one.
 static bool climb(const CagCurve *c, const Samples *s, int top, int direction, double slack,
                   CagBounds *box) {

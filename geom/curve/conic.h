@@ -78,7 +78,7 @@ void cag_conic_polar(const CagConic *c, CagVec3 p, double line[3]);
 CagStatus cag_conic_transform(const CagConic *c, const CagTransform *t, CagConic *out,
                               CagError *err);
 // The real curves: of a hyperbola, parabola and of lines the part with the parameter in [from, to]
-// (lines: millimetres from the point nearest to their common center). At most 2; each has one
+// (lines: millimeters from the point nearest to their common center). At most 2; each has one
 // reference.
 CagStatus cag_conic_branches(const CagConic *c, double from, double to, CagCurve *out[2], size_t *n,
                              CagError *err);

@@ -16,7 +16,7 @@
 #define DISAGREE 1e-9
 // Coefficients below this share of the largest, data of unit size, are rounding.
 #define NOISE 1e-13
-// A coefficient is a unit to normalise by above this share of the largest.
+// A coefficient is a unit to normalize by above this share of the largest.
 #define UNIT 1e-9
 #define MOST 6
 
@@ -103,7 +103,7 @@ static CagConic place(const Frame *f, const double c[6]) {
                      c[5] + (a * m + b * n - e) * m + (d * n - g) * n}};
 }
 
-static void normalise(CagConic *k) {
+static void normalize(CagConic *k) {
   double most = 0;
   int unit = 2;
   for (int i = 0; i < 6; i++) most = fmax(most, fabs(k->c[i]));
@@ -181,7 +181,7 @@ static CagStatus solve(const CagVec3 *points, size_t n, const CagConicTangent *t
   const double s = cag_norm(f.center) + f.size;
   const double unit[6] = {s * s, s * s, s * s, s, s, 1};
   clean(out->c, unit);
-  normalise(out);
+  normalize(out);
   return CAG_OK;
 }
 

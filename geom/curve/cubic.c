@@ -142,7 +142,7 @@ static CagStatus solve_open(const Spline *s, const CagCubicEnds *ends, CagVec3 *
   return status;
 }
 
-// Two unknowns of a closed spline: both corners fall on the neighbours.
+// Two unknowns of a closed spline: both corners fall on the neighbors.
 static void solve_two(const double m[2][2], const CagVec3 r[2], CagVec3 *out) {
   const double d = m[0][0] * m[1][1] - m[0][1] * m[1][0];
   out[0] = cag_scaled(cag_madd(cag_scaled(r[0], m[1][1]), -m[0][1], r[1]), 1 / d);

@@ -19,7 +19,7 @@ typedef enum CagSpacing {
 } CagSpacing;
 
 // Parameters of the n points, the first 0. Fails with "too-few-points" and, but for uniform
-// spacing, with "coincident-points" and the index of the second of two neighbours.
+// spacing, with "coincident-points" and the index of the second of two neighbors.
 CagStatus cag_spacing_parameters(const CagVec3 *points, size_t n, CagSpacing spacing, double *out,
                                  CagError *err);
 // Checks parameters that a caller gave: finite and strictly ascending, else "bad-parameter-length".

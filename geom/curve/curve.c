@@ -1,5 +1,5 @@
 // What every curve answers, written against CagCurveKind: checked parameters, reference counts, and
-// the fallbacks of kinds that do not specialise.
+// the fallbacks of kinds that do not specialize.
 
 #include "geom/curve/curve.h"
 

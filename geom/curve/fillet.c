@@ -336,7 +336,7 @@ static CagStatus add_trimmed(Pieces *pieces, const CagCurve *c, double a, double
   return status;
 }
 
-// Fillets between the neighbours of `parts`; of a closed curve with a corner at its seam also
+// Fillets between the neighbors of `parts`; of a closed curve with a corner at its seam also
 // between the last and the first.
 static CagStatus round_parts(CagCurve *const *parts, size_t n, bool around, double radius,
                              CagCurve **arcs, Pieces *pieces, CagError *err) {

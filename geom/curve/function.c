@@ -3,7 +3,7 @@
 // Images, parts and other parametrizations share the function and put maps around it: the parameter
 // of the function runs from `from` to `to` while the curve's runs over its domain, and points go
 // through `map`, which may be projective. Nothing but points is known of the curve, so its hull is
-// that of samples, widened by how far samples lie from the chords of their neighbours.
+// that of samples, widened by how far samples lie from the chords of their neighbors.
 
 #include "geom/curve/function.h"
 
@@ -142,7 +142,7 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
 // Samples of a hull: a wave between two of them would have to be shorter than what a fair picture
 // of the curve needs.
 #define HULL_SAMPLES 33
-// In each coordinate, the distance from the chord of the neighbours is four times that from the
+// In each coordinate, the distance from the chord of the neighbors is four times that from the
 // chord between samples; waves that samples meet badly stay within.
 static CagStatus sampled_box(const CagCurve *curve, double a, double b, int samples, CagBounds *out,
                              CagError *err) {

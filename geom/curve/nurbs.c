@@ -56,7 +56,7 @@ static void narrow_taylor(const CagNurbs *c, size_t span, double *out) {
     double *at = out + right * 4 * (p + 1), d[4 * (CAG_NURBS_TAYLOR + 1)], factor = 1;
     cag_bspline_piece_derivatives(c->homogeneous, c->knots, p, span, c->knots[span + (size_t)right],
                                   p, d);
-    // The ends stay those of the Bezier points, which neighbours share.
+    // The ends stay those of the Bezier points, which neighbors share.
     for (int k = 1; k <= p; k++) {
       factor /= k;
       for (int i = 0; i < 4; i++)
@@ -110,7 +110,7 @@ static CagStatus make_pieces(CagNurbs *c, CagError *err) {
     }
     piece++;
   }
-  // Equally spaced cuts are found without a search; rounding is mended by a step to a neighbour.
+  // Equally spaced cuts are found without a search; rounding is mended by a step to a neighbor.
   double step = (c->base.end - c->base.start) / (double)n;
   bool even = true;
   for (size_t i = 0; i < n; i++)

@@ -1,7 +1,7 @@
 // The data of the NURBS kinds (bezier, bspline, nurbs), for what works on control points.
 //
 // Beside the knots and control points as given, a curve keeps its Bezier pieces, one per non-empty
-// knot interval. Neighbouring pieces share their joint bit for bit, and a periodic curve's last
+// knot interval. Neighboring pieces share their joint bit for bit, and a periodic curve's last
 // piece ends in the first point of its first: the curve is evaluated from the pieces, so it is
 // continuous and closed exactly. Up to degree CAG_NURBS_TAYLOR the pieces' Taylor coefficients
 // about both ends are kept as well; evaluation from the nearer end is as accurate as de Casteljau

@@ -1,6 +1,6 @@
 // Knot removal and degree reduction of NURBS curves, with bounds of what they change.
 //
-// Both undo an averaging of neighbours: b_k = a_k g_k + (1 - a_k) g_{k-1} for k = 1..E, where g_0
+// Both undo an averaging of neighbors: b_k = a_k g_k + (1 - a_k) g_{k-1} for k = 1..E, where g_0
 // and g_E stay and E - 1 points between are looked for. With one equation more than unknowns, the
 // least change of the b_k that leaves a solution is a multiple of one vector.
 //

@@ -44,7 +44,7 @@ typedef struct Corners {
 static const size_t none = (size_t)-1;
 
 static size_t bucket(const Corners *c, double x, double y) {
-  // Cells beyond what an integer counts come from coordinates whose neighbours are farther apart
+  // Cells beyond what an integer counts come from coordinates whose neighbors are farther apart
   // than cells anyway.
   const uint64_t i = (uint64_t)(int64_t)fmax(-9e18, fmin(9e18, x)),
                  k = (uint64_t)(int64_t)fmax(-9e18, fmin(9e18, y));

@@ -311,7 +311,7 @@ static int by_place(const void *a, const void *b) {
 
 typedef enum Meet { NEVER, AT_ENDS, ANYWHERE } Meet;
 
-// Pieces of one group do not cross, but an end of one may touch another. Neighbours of one curve
+// Pieces of one group do not cross, but an end of one may touch another. Neighbors of one curve
 // that is bent do not meet at all: they were parted where one coordinate turns, the other keeps
 // them apart. Pieces that were cut where they meet are met again where their ends were moved to.
 static Meet may_meet(const CagRegionPieces *s, const CagRegionPiece *a, const CagRegionPiece *b,

@@ -9,7 +9,7 @@
 //
 // Strips count by their sense: where a part bends to its strip's side with a radius less than |d|,
 // the strip folds over and what lies beyond the fold would count against it. Such parts are left as
-// they are, and the whole neighbourhood of the part is added (taken away) instead: the curve around
+// they are, and the whole neighborhood of the part is added (taken away) instead: the curve around
 // it, both sides and half a circle at each end, runs around each point as often as the part has
 // stretches within |d| of the point (the sublevel sets of a function on an interval), so at least
 // once where it is within |d| and else not at all. Such a part reaches a little beyond the places
@@ -28,7 +28,7 @@
 #define FOLD 0.05
 // Samples of a smooth part between which the radius of curvature passes |d| once at most.
 #define SAMPLES 32
-// Halvings that take an interval to neighbouring doubles.
+// Halvings that take an interval to neighboring doubles.
 #define BISECTIONS 80
 // Axes of a circle differ by this part at most; a circle shrunk to this part of it is a point.
 #define ROUND 1e-12
@@ -205,7 +205,7 @@ static CagStatus add_bent(Parts *parts, const CagCurve *c, double left, double l
 }
 
 // A smooth part of the boundary, cut further where it has to be; whole circles that fold in two, as
-// a neighbourhood has ends.
+// a neighborhood has ends.
 static CagStatus add_smooth(Parts *parts, const CagCurve *c, double left, CagError *err) {
   CagVec3 center;
   double radius, sense;
@@ -373,7 +373,7 @@ static CagStatus put_side(Raw *raw, const Part *p, double left, bool backwards, 
 }
 
 // The curve around all points within the distance of the part, counter-clockwise.
-static CagStatus put_neighbourhood(Raw *raw, const Part *p, CagError *err) {
+static CagStatus put_neighborhood(Raw *raw, const Part *p, CagError *err) {
   const double d = fabs(raw->left);
   const int sign = raw->left < 0 ? 1 : -1;
   CagStatus status = put_side(raw, p, -d, false, sign, err);
@@ -400,7 +400,7 @@ static CagStatus put_loop(Raw *raw, const CagCurve *loop, CagError *err) {
     }
     if (!status && !p->folds) status = put_side(raw, p, raw->left, false, 1, err);
     if (!status && p->folds) status = put(raw, cag_curve_retain(p->curve), 1, err);
-    if (!status && p->folds) status = put_neighbourhood(raw, p, err);
+    if (!status && p->folds) status = put_neighborhood(raw, p, err);
   }
   parts_free(&parts);
   return status;

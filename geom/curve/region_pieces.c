@@ -17,7 +17,7 @@
 // Samples of a smooth part in which turns of its direction are looked for, and more by degree.
 #define SAMPLES 24
 #define SAMPLES_PER_DEGREE 4
-// Halvings that take an interval to neighbouring doubles.
+// Halvings that take an interval to neighboring doubles.
 #define BISECTIONS 100
 
 static CagStatus add(CagRegionPieces *s, CagRegionPiece piece, CagError *err) {
@@ -126,7 +126,7 @@ static bool opposite(double x, double y, double still) {
   return (x > still && y < -still) || (x < -still && y > still);
 }
 
-// Turns between two neighbouring samples: one where the velocity changes its sign; two where it
+// Turns between two neighboring samples: one where the velocity changes its sign; two where it
 // comes to its own smallest value in between, with the other sign.
 static CagStatus turns_between(const CagCurve *c, const Sample *a, const Sample *b, int axis,
                                double still, Turns *turns, CagError *err) {
@@ -169,7 +169,7 @@ static CagStatus turns_of(const CagCurve *c, double a, double b, Turns *turns, C
   for (size_t i = 0; !status && i < n; i++)
     for (int axis = 0; !status && axis < 2; axis++)
       status = turns_between(c, &samples[i], &samples[i + 1], axis, STILL * fastest, turns, err);
-  // A sample that falls on a turn hides it from its two neighbours.
+  // A sample that falls on a turn hides it from its two neighbors.
   for (size_t i = 1; !status && i < n; i++)
     for (int axis = 0; !status && axis < 2; axis++)
       if (fabs(samples[i].v[axis]) <= STILL * fastest &&

@@ -29,7 +29,7 @@ static void turn(int axis, double angle, CagTransform *t) {
   *t = cag_transform_multiply(t, &r);
 }
 
-// Axis numbers of an order such as "zyx"; all 12 where neighbours differ.
+// Axis numbers of an order such as "zyx"; all 12 where neighbors differ.
 static CagStatus read_order(const char *order, int axes[3], CagError *err) {
   bool good = order && strlen(order) == 3;
   for (int i = 0; good && i < 3; i++) {

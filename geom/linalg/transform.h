@@ -70,7 +70,7 @@ CagStatus cag_euler(double a, double b, double c, const char *order, CagTransfor
                     CagError *err);
 CagTransform cag_rpy(double roll, double pitch, double yaw);
 CagStatus cag_quaternion(const double wxyz[4], CagTransform *out,
-                         CagError *err); // normalised; zero fails
+                         CagError *err); // normalized; zero fails
 CagTransform cag_dh(double theta, double d, double a, double alpha);
 CagTransform cag_mdh(double theta, double d, double a, double alpha);
 

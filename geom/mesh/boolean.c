@@ -155,7 +155,7 @@ static bool find_axis(BoolWork *w, BoolFace *f) {
   return false;
 }
 
-// Triangles without area are left out: their neighbours are cut where they touch each other.
+// Triangles without area are left out: their neighbors are cut where they touch each other.
 static void add_faces(BoolWork *w, FaceTable *table, const CagMesh *m, const uint32_t *triangles,
                       int operand) {
   for (size_t t = 0; t < m->triangle_count; t++) {

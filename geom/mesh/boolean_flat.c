@@ -77,9 +77,9 @@ static CagVec3 area_of(CagVec3 a, CagVec3 b, CagVec3 c) {
   return cag_cross(cag_sub(b, a), cag_sub(c, a));
 }
 
-// --- Neighbours ---
+// --- Neighbors ---
 
-static bool find_neighbours(Flat *f) {
+static bool find_neighbors(Flat *f) {
   uint32_t *triangles = malloc((3 * f->n + 1) * sizeof *triangles);
   f->across = malloc((3 * f->n + 1) * sizeof *f->across);
   size_t n = 0;
@@ -410,7 +410,7 @@ static bool mark_inside(Flat *f, uint32_t outer, size_t *borders) {
   for (size_t depth = 1; depth > 0;) {
     const BoolCell *c = &cells[stack[--depth]];
     for (int k = 0; k < 3; k++) {
-      const uint32_t next = c->neighbour[k];
+      const uint32_t next = c->neighbor[k];
       if (next == BOOL_NONE || inside[next] >= 0) continue;
       inside[next] = (signed char)(inside[c - cells] ^ (c->fixed[k] != BOOL_NONE));
       stack[depth++] = next;
@@ -419,7 +419,7 @@ static bool mark_inside(Flat *f, uint32_t outer, size_t *borders) {
   *borders = 0;
   for (size_t i = 0; i < n; i++)
     for (int k = 0; k < 3; k++) {
-      const uint32_t next = cells[i].neighbour[k];
+      const uint32_t next = cells[i].neighbor[k];
       *borders += inside[i] == 1 && (next == BOOL_NONE || inside[next] == 0);
     }
   return true;
@@ -434,7 +434,7 @@ static bool keeps_outline(const Flat *f, int sign) {
     uint32_t cell;
     int e;
     if (bool_net_step(&f->net, s->a, s->b, &cell, &e) != s->b) return false;
-    const uint32_t other = bool_cells(&f->net)[cell].neighbour[e];
+    const uint32_t other = bool_cells(&f->net)[cell].neighbor[e];
     if (other == BOOL_NONE || inside[cell] != (sign > 0) || inside[other] != (sign < 0))
       return false;
   }
@@ -580,7 +580,7 @@ static bool flatten(Flat *f, bool *done) {
   f->number = malloc(points * sizeof *f->number);
   if (!f->corners || !f->gone || !f->after || !f->number) return false;
   memset(f->number, 0xff, points * sizeof *f->number);
-  if (!bool_points_start(&f->local, 64) || !find_neighbours(f) || !find_labels(f)) return false;
+  if (!bool_points_start(&f->local, 64) || !find_neighbors(f) || !find_labels(f)) return false;
   bool spoiled = true;
   for (int round = 0; round < ROUNDS && spoiled; round++) {
     if (!find_gone(f) || !make_faces(f, &spoiled)) return false;

@@ -13,14 +13,14 @@ static int turn(const BoolNet *n, uint32_t a, uint32_t b, uint32_t c) {
 static int place_in(const BoolCell *c, uint32_t v) {
   return c->v[0] == v ? 0 : c->v[1] == v ? 1 : 2;
 }
-static int place_of_neighbour(const BoolCell *c, uint32_t cell) {
-  return c->neighbour[0] == cell ? 0 : c->neighbour[1] == cell ? 1 : 2;
+static int place_of_neighbor(const BoolCell *c, uint32_t cell) {
+  return c->neighbor[0] == cell ? 0 : c->neighbor[1] == cell ? 1 : 2;
 }
 
 static void relink(BoolNet *n, uint32_t cell, uint32_t from, uint32_t to) {
   if (cell == BOOL_NONE) return;
   BoolCell *c = &bool_cells(n)[cell];
-  c->neighbour[place_of_neighbour(c, from)] = to;
+  c->neighbor[place_of_neighbor(c, from)] = to;
 }
 
 static void settle(BoolNet *n, uint32_t cell) {
@@ -76,18 +76,18 @@ void bool_net_free(BoolNet *n) {
 static void flip(BoolNet *n, uint32_t cell, int e) {
   BoolCell *c = &bool_cells(n)[cell];
   const BoolCell t = *c;
-  const uint32_t other = t.neighbour[e];
+  const uint32_t other = t.neighbor[e];
   BoolCell *o = &bool_cells(n)[other];
   const BoolCell u = *o;
-  const int f = place_of_neighbour(&u, cell), e1 = (e + 1) % 3, e2 = (e + 2) % 3;
+  const int f = place_of_neighbor(&u, cell), e1 = (e + 1) % 3, e2 = (e + 2) % 3;
   const int f1 = (f + 1) % 3, f2 = (f + 2) % 3;
   const uint32_t p = t.v[e], a = t.v[e1], b = t.v[e2], d = u.v[f];
   *c = (BoolCell){
-      {p, a, d}, {u.neighbour[f1], other, t.neighbour[e2]}, {u.fixed[f1], BOOL_NONE, t.fixed[e2]}};
+      {p, a, d}, {u.neighbor[f1], other, t.neighbor[e2]}, {u.fixed[f1], BOOL_NONE, t.fixed[e2]}};
   *o = (BoolCell){
-      {p, d, b}, {u.neighbour[f2], t.neighbour[e1], cell}, {u.fixed[f2], t.fixed[e1], BOOL_NONE}};
-  relink(n, u.neighbour[f1], other, cell);
-  relink(n, t.neighbour[e1], cell, other);
+      {p, d, b}, {u.neighbor[f2], t.neighbor[e1], cell}, {u.fixed[f2], t.fixed[e1], BOOL_NONE}};
+  relink(n, u.neighbor[f1], other, cell);
+  relink(n, t.neighbor[e1], cell, other);
   settle(n, other);
   settle(n, cell);
 }
@@ -117,9 +117,9 @@ static bool is_convex(const BoolNet *n, uint32_t p, uint32_t a, uint32_t d, uint
 
 static bool should_flip(const BoolNet *n, uint32_t cell, int e) {
   const BoolCell *c = &bool_cells(n)[cell];
-  if (c->neighbour[e] == BOOL_NONE || c->fixed[e] != BOOL_NONE) return false;
-  const BoolCell *o = &bool_cells(n)[c->neighbour[e]];
-  const uint32_t d = o->v[place_of_neighbour(o, cell)];
+  if (c->neighbor[e] == BOOL_NONE || c->fixed[e] != BOOL_NONE) return false;
+  const BoolCell *o = &bool_cells(n)[c->neighbor[e]];
+  const uint32_t d = o->v[place_of_neighbor(o, cell)];
   return in_circle(n, c->v, d) && is_convex(n, c->v[e], c->v[(e + 1) % 3], d, c->v[(e + 2) % 3]);
 }
 
@@ -150,7 +150,7 @@ static bool find_edge(const BoolNet *n, BoolEdge edge, uint32_t *cell, int *corn
       *cell = at;
       *corner = (k + 2) % 3;
       if (c->v[(k + 1) % 3] == b) return true;
-      at = c->neighbour[(k + step) % 3];
+      at = c->neighbor[(k + step) % 3];
     } while (at != BOOL_NONE && at != start);
     if (at == start) break;
   }
@@ -163,7 +163,7 @@ static bool settle_doubts(BoolNet *n) {
     uint32_t cell;
     int e;
     if (!find_edge(n, edge, &cell, &e) || !should_flip(n, cell, e)) continue;
-    const uint32_t other = bool_cells(n)[cell].neighbour[e];
+    const uint32_t other = bool_cells(n)[cell].neighbor[e];
     flip(n, cell, e);
     // After a flip the corners that gained the diagonal are first and last, and first and middle.
     if (!doubt(n, cell, 0) || !doubt(n, cell, 2) || !doubt(n, other, 0) || !doubt(n, other, 1))
@@ -175,7 +175,7 @@ static bool settle_doubts(BoolNet *n) {
 bool bool_net_improve(BoolNet *n) {
   for (uint32_t cell = 0; cell < n->cells.n; cell++)
     for (int e = 0; e < 3; e++) {
-      const uint32_t other = bool_cells(n)[cell].neighbour[e];
+      const uint32_t other = bool_cells(n)[cell].neighbor[e];
       if (other != BOOL_NONE && other < cell && !doubt(n, cell, e)) return false;
     }
   return settle_doubts(n);
@@ -199,9 +199,9 @@ static uint32_t locate(BoolNet *n, uint32_t point, int *edge) {
     *edge = -1;
     for (int i = 0; i < 3 && next == BOOL_NONE; i++) {
       const int e = (first + i) % 3;
-      if (from != BOOL_NONE && c->neighbour[e] == from) continue;
+      if (from != BOOL_NONE && c->neighbor[e] == from) continue;
       const int side = turn(n, c->v[(e + 1) % 3], c->v[(e + 2) % 3], point);
-      if (side < 0) next = c->neighbour[e];
+      if (side < 0) next = c->neighbor[e];
       if (side == 0) *edge = e;
     }
     if (next == BOOL_NONE) return at;
@@ -216,13 +216,13 @@ static void split_cell(BoolNet *n, uint32_t cell, uint32_t p) {
   const uint32_t a = t.v[0], b = t.v[1], c = t.v[2];
   n->cells.n += 2;
   bool_cells(n)[cell] =
-      (BoolCell){{a, b, p}, {second, third, t.neighbour[2]}, {BOOL_NONE, BOOL_NONE, t.fixed[2]}};
+      (BoolCell){{a, b, p}, {second, third, t.neighbor[2]}, {BOOL_NONE, BOOL_NONE, t.fixed[2]}};
   bool_cells(n)[second] =
-      (BoolCell){{b, c, p}, {third, cell, t.neighbour[0]}, {BOOL_NONE, BOOL_NONE, t.fixed[0]}};
+      (BoolCell){{b, c, p}, {third, cell, t.neighbor[0]}, {BOOL_NONE, BOOL_NONE, t.fixed[0]}};
   bool_cells(n)[third] =
-      (BoolCell){{c, a, p}, {cell, second, t.neighbour[1]}, {BOOL_NONE, BOOL_NONE, t.fixed[1]}};
-  relink(n, t.neighbour[0], cell, second);
-  relink(n, t.neighbour[1], cell, third);
+      (BoolCell){{c, a, p}, {cell, second, t.neighbor[1]}, {BOOL_NONE, BOOL_NONE, t.fixed[1]}};
+  relink(n, t.neighbor[0], cell, second);
+  relink(n, t.neighbor[1], cell, third);
   settle(n, third);
   settle(n, second);
   settle(n, cell);
@@ -232,29 +232,28 @@ static void split_cell(BoolNet *n, uint32_t cell, uint32_t p) {
 // cell's edges; the other half gets the edge's end.
 static void split_edge(BoolNet *n, uint32_t cell, int e, uint32_t p) {
   const BoolCell t = bool_cells(n)[cell];
-  const uint32_t other = t.neighbour[e], fixed = t.fixed[e];
+  const uint32_t other = t.neighbor[e], fixed = t.fixed[e];
   const int e1 = (e + 1) % 3, e2 = (e + 2) % 3;
   const uint32_t c = t.v[e], a = t.v[e1], b = t.v[e2];
   const uint32_t second = (uint32_t)n->cells.n, fourth = second + 1;
   const bool two = other != BOOL_NONE;
   n->cells.n += two ? 2 : 1;
   bool_cells(n)[cell] =
-      (BoolCell){{c, a, p}, {other, second, t.neighbour[e2]}, {fixed, BOOL_NONE, t.fixed[e2]}};
-  bool_cells(n)[second] = (BoolCell){{c, p, b},
-                                     {two ? fourth : BOOL_NONE, t.neighbour[e1], cell},
-                                     {fixed, t.fixed[e1], BOOL_NONE}};
-  relink(n, t.neighbour[e1], cell, second);
+      (BoolCell){{c, a, p}, {other, second, t.neighbor[e2]}, {fixed, BOOL_NONE, t.fixed[e2]}};
+  bool_cells(n)[second] = (BoolCell){
+      {c, p, b}, {two ? fourth : BOOL_NONE, t.neighbor[e1], cell}, {fixed, t.fixed[e1], BOOL_NONE}};
+  relink(n, t.neighbor[e1], cell, second);
   settle(n, second);
   settle(n, cell);
   if (!two) return;
   const BoolCell u = bool_cells(n)[other];
-  const int f = place_of_neighbour(&u, cell), f1 = (f + 1) % 3, f2 = (f + 2) % 3;
+  const int f = place_of_neighbor(&u, cell), f1 = (f + 1) % 3, f2 = (f + 2) % 3;
   const uint32_t d = u.v[f];
   bool_cells(n)[other] =
-      (BoolCell){{d, p, a}, {cell, u.neighbour[f1], fourth}, {fixed, u.fixed[f1], BOOL_NONE}};
+      (BoolCell){{d, p, a}, {cell, u.neighbor[f1], fourth}, {fixed, u.fixed[f1], BOOL_NONE}};
   bool_cells(n)[fourth] =
-      (BoolCell){{d, b, p}, {second, other, u.neighbour[f2]}, {fixed, BOOL_NONE, u.fixed[f2]}};
-  relink(n, u.neighbour[f2], other, fourth);
+      (BoolCell){{d, b, p}, {second, other, u.neighbor[f2]}, {fixed, BOOL_NONE, u.fixed[f2]}};
+  relink(n, u.neighbor[f2], other, fourth);
   settle(n, fourth);
   settle(n, other);
 }
@@ -268,7 +267,7 @@ static bool doubt_around(BoolNet *n, uint32_t p) {
       const BoolCell *c = &bool_cells(n)[at];
       const int k = place_in(c, p);
       if (!doubt(n, at, k)) return false;
-      at = bool_cells(n)[at].neighbour[(k + step) % 3];
+      at = bool_cells(n)[at].neighbor[(k + step) % 3];
     } while (at != BOOL_NONE && at != start);
     if (at == start) break;
   }
@@ -333,7 +332,7 @@ static Exit find_exit(const BoolNet *n, uint32_t from, uint32_t to) {
       const int left = y == to ? 0 : turn(n, from, to, y);
       if (is_ahead(n, from, to, y, left)) return (Exit){y, at, k};
       if (right < 0 && left > 0) return (Exit){BOOL_NONE, at, k};
-      at = c->neighbour[(k + step) % 3];
+      at = c->neighbor[(k + step) % 3];
     } while (at != BOOL_NONE && at != start);
     if (at == start) break;
   }
@@ -352,8 +351,8 @@ static void fix_edge(BoolNet *n, uint32_t a, uint32_t b, uint32_t hint, uint32_t
   const bool ahead = find_edge(n, (BoolEdge){a, b, hint}, &cell, &e);
   if (!ahead && !find_edge(n, (BoolEdge){b, a, hint}, &cell, &e)) return;
   fix_side(n, cell, e, cut);
-  const uint32_t other = bool_cells(n)[cell].neighbour[e];
-  if (other != BOOL_NONE) fix_side(n, other, place_of_neighbour(&bool_cells(n)[other], cell), cut);
+  const uint32_t other = bool_cells(n)[cell].neighbor[e];
+  if (other != BOOL_NONE) fix_side(n, other, place_of_neighbor(&bool_cells(n)[other], cell), cut);
 }
 
 static bool push_crossed(BoolNet *n, BoolEdge edge) {
@@ -390,9 +389,9 @@ static bool list_crossed(BoolNet *n, uint32_t from, uint32_t to, Exit exit, uint
     if (c->fixed[e] != BOOL_NONE) return split_fixed(n, at, e, cut);
     const BoolEdge edge = {c->v[(e + 1) % 3], c->v[(e + 2) % 3], at}; // from right to left
     if (!push_crossed(n, edge)) return false;
-    const uint32_t next = c->neighbour[e];
+    const uint32_t next = c->neighbor[e];
     const BoolCell *o = &bool_cells(n)[next];
-    const int f = place_of_neighbour(o, at); // o: apex, left, right
+    const int f = place_of_neighbor(o, at); // o: apex, left, right
     const uint32_t apex = o->v[f];
     const int side = apex == to ? 0 : turn(n, from, to, apex);
     *target = apex;
@@ -410,9 +409,9 @@ static bool flip_crossed(BoolNet *n, uint32_t from, uint32_t to) {
     int e;
     if (!find_edge(n, edge, &cell, &e)) continue;
     const BoolCell *c = &bool_cells(n)[cell];
-    const uint32_t other = c->neighbour[e];
+    const uint32_t other = c->neighbor[e];
     const BoolCell *o = &bool_cells(n)[other];
-    const uint32_t p = c->v[e], d = o->v[place_of_neighbour(o, cell)];
+    const uint32_t p = c->v[e], d = o->v[place_of_neighbor(o, cell)];
     if (!is_convex(n, p, edge.a, d, edge.b)) {
       if (!push_crossed(n, edge)) return false;
       continue;

@@ -10,10 +10,10 @@
 
 #include "geom/mesh/boolean_work.h"
 
-// neighbour[i], fixed[i]: across the edge opposite to v[i], the other cell (BOOL_NONE: outside) and
+// neighbor[i], fixed[i]: across the edge opposite to v[i], the other cell (BOOL_NONE: outside) and
 // the number of the cut that the edge is part of (BOOL_NONE: it may be flipped).
 typedef struct BoolCell {
-  uint32_t v[3], neighbour[3], fixed[3];
+  uint32_t v[3], neighbor[3], fixed[3];
 } BoolCell;
 
 typedef struct BoolNet {

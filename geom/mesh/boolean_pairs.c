@@ -260,8 +260,8 @@ static bool meet_in_space(BoolWork *w, uint32_t f, uint32_t g, const int side_f[
   return add_contact(w, f, first, last, two) && add_contact(w, g, first, last, one);
 }
 
-// Neighbours in a mesh: does an edge of f, seen along f's axis, have f on one side and all of g on
-// the other but for corners that both have? Most neighbours are told apart so, and without exact
+// Neighbors in a mesh: does an edge of f, seen along f's axis, have f on one side and all of g on
+// the other but for corners that both have? Most neighbors are told apart so, and without exact
 // numbers where they are nearly in one plane.
 static bool are_beside(BoolWork *w, const BoolFace *f, const BoolFace *g) {
   const bool shared[3] = {has_corner(f, g->v[0]), has_corner(f, g->v[1]), has_corner(f, g->v[2])};

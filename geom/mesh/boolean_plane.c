@@ -3,7 +3,7 @@
 // A face that overlaps no other in its plane is triangulated with its contacts. Faces of one plane
 // that overlap are triangulated together, inside a large triangle and with their edges as segments;
 // each cell then is a piece of all faces that cover it. So pieces of two faces are either the same
-// or apart. Neighbours of one flat face are a patch, whose outline alone is put in: how it was
+// or apart. Neighbors of one flat face are a patch, whose outline alone is put in: how it was
 // divided into triangles does not matter.
 
 #include <stdlib.h>
@@ -341,8 +341,8 @@ static bool cover_patch(Cutter *c, const Side *s, size_t n, const BoolFace *rep,
     *covered += cell_area(c, cell.v);
     for (int k = 0; k < 3; k++) {
       const bool ends = ((uint32_t *)c->walls.items)[3 * (size_t)at + (size_t)k] == face + 1;
-      if (ends || cell.neighbour[k] == BOOL_NONE) continue;
-      if (!cover(c, cell.neighbour[k], face, facing)) return false;
+      if (ends || cell.neighbor[k] == BOOL_NONE) continue;
+      if (!cover(c, cell.neighbor[k], face, facing)) return false;
     }
   }
   return true;

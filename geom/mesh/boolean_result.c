@@ -166,7 +166,7 @@ static int by_angle(const void *a, const void *b) {
 }
 
 // Counter-clockwise about the edge from low to high, from a triangle that runs it backward to one
-// that runs it forward there is solid: such neighbours are joined, like brackets.
+// that runs it forward there is solid: such neighbors are joined, like brackets.
 static bool join_many(Builder *b, const CagMeshEdge *e, size_t n) {
   const CagVec3 *at = b->w->points.at;
   Spoke *spokes = malloc(n * sizeof *spokes);

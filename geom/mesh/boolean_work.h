@@ -2,7 +2,7 @@
 //
 // The operands become one set of faces: triangles over shared points. Wherever faces meet they are
 // cut, until two pieces have nothing but whole edges and corners in common or are the same
-// triangle. Around each edge the pieces are then sorted by angle: neighbours enclose a piece of
+// triangle. Around each edge the pieces are then sorted by angle: neighbors enclose a piece of
 // space, whose winding numbers follow from piece to piece, and from one ray where they start. A
 // piece that has the solid on one side only is a part of the result.
 //

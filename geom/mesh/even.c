@@ -1,4 +1,4 @@
-// Tessellation, between lines and nodes: thin steps get the counts of their neighbours.
+// Tessellation, between lines and nodes: thin steps get the counts of their neighbors.
 //
 // Where a leaf's side has other nodes than its grid, the band between them is sewn. A triangle of
 // the band is as high as a step across it; its base bulges over its middle by what the surface

@@ -435,7 +435,7 @@ static uint32_t root_of(uint32_t *weld, uint32_t k) {
   return k;
 }
 
-// Are two corners of triangle k one point? Then they are welded, so that its neighbours meet.
+// Are two corners of triangle k one point? Then they are welded, so that its neighbors meet.
 static bool weld_shrunk(CagMesh *m, const uint32_t *k, double noise) {
   bool shrunk = false;
   for (int j = 0; j < 3; j++) {

@@ -116,7 +116,7 @@ CagStatus cag_hull_plane(const CagVec3 *points, size_t n, size_t **out, size_t *
   return CAG_OK;
 }
 
-// --- Space: triangles and their neighbours ---
+// --- Space: triangles and their neighbors ---
 
 typedef struct Face {
   uint32_t v[3], next[3]; // next[i]: beyond the edge from v[i] to v[i + 1]

@@ -234,7 +234,7 @@ static void smooth_normals(CagMesh *m, size_t first_vertex, size_t vertices, siz
     m->normals[first_vertex + i] = cag_unit(m->normals[first_vertex + i]);
 }
 
-// Values of one scale stay values; where another part has parameters they lose their colours.
+// Values of one scale stay values; where another part has parameters they lose their colors.
 static CagColorScale common_scale(CagMesh *const *meshes, size_t n) {
   CagColorScale first = n > 0 ? meshes[0]->scale : (CagColorScale){0};
   for (size_t i = 1; i < n; i++) {
@@ -260,7 +260,7 @@ CagStatus cag_mesh_append(CagMesh *const *meshes, size_t n, CagMesh **out, CagEr
   CagStatus status = cag_mesh_new(vertices, triangles, normals, uv, weld, &m, err);
   if (status != CAG_OK) return status;
   size_t v = 0, t = 0;
-  bool labelled = true;
+  bool labeled = true;
   if (uv) m->scale = common_scale(meshes, n);
   for (size_t i = 0; i < n; i++) {
     const CagMesh *part = meshes[i];
@@ -273,11 +273,11 @@ CagStatus cag_mesh_append(CagMesh *const *meshes, size_t n, CagMesh **out, CagEr
     if (part->normals)
       memcpy(m->normals + v, part->normals, part->vertex_count * sizeof *m->normals);
     else if (normals) smooth_normals(m, v, part->vertex_count, t, part->triangle_count);
-    labelled = copy_labels(part, m, t) && labelled;
+    labeled = copy_labels(part, m, t) && labeled;
     v += part->vertex_count;
     t += part->triangle_count;
   }
-  if (!labelled) {
+  if (!labeled) {
     cag_mesh_release(m);
     return cag_fail_memory(err);
   }

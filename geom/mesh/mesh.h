@@ -9,8 +9,8 @@
 #include "geom/linalg/vec.h"
 #include "geom/status.h"
 
-// How a mesh shows a value by colours: uv[0] of each vertex is the value, `from` and `to` have the
-// first and last colour, values beyond them the same. The colours: interp/scene/color_scale.h.
+// How a mesh shows a value by colors: uv[0] of each vertex is the value, `from` and `to` have the
+// first and last color, values beyond them the same. The colors: interp/scene/color_scale.h.
 typedef enum CagColorScaleKind {
   CAG_SCALE_NONE, // uv are parameters
   CAG_SCALE_SEQUENCE,

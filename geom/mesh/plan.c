@@ -304,9 +304,9 @@ static void counts_for(const CagTessellation *how, const Needs *needs, double co
            limit = closely * closely * how->angle * how->angle;
     // Where turns cancel along the diagonals, both sides of a quadrilateral may have the whole
     // angle.
-    const double cancelled = -0.5; // of what they would be about one axis
-    const double sewn = 0.9;       // where bands are sewn, edges lean slightly more
-    if (needs->diagonal < cancelled * a * b) {
+    const double canceled = -0.5; // of what they would be about one axis
+    const double sewn = 0.9;      // where bands are sewn, edges lean slightly more
+    if (needs->diagonal < canceled * a * b) {
       most[0] = tess_larger(1, ceil(a / (sewn * closely * how->angle)));
       most[1] = tess_larger(1, ceil(b / (sewn * closely * how->angle)));
     } else {

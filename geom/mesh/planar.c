@@ -295,7 +295,7 @@ static CagStatus outline_of_loop(Tessellator *t, Outline *o, uint32_t face, size
   return status;
 }
 
-// Vertices of the face's own for the outline's points (its normal is another than its neighbours'),
+// Vertices of the face's own for the outline's points (its normal is another than its neighbors'),
 // with x and y of the region as parameters.
 static CagStatus own_vertices(Tessellator *t, const Outline *o, const CagTransform *frame,
                               double *xy, uint32_t *vertices, CagError *err) {

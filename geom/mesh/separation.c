@@ -15,7 +15,7 @@
 #include "geom/curve/family.h"
 #include "geom/mesh/distance.h"
 
-// Pairs from which the exact search starts: neighbours share their nearest point, so that several
+// Pairs from which the exact search starts: neighbors share their nearest point, so that several
 // are needed for each place.
 #define CANDIDATES 24
 // The search for them ends after this many pairs: the second walk finds what it missed.

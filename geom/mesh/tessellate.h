@@ -21,7 +21,7 @@ typedef struct CagTessellation {
   ((CagTessellation){0, 15 * 3.14159265358979323846 / 180, 0, 100000000, 0})
 
 // The distance from surface to mesh is at most the tolerance; seams and poles share vertices; grids
-// are chosen per smooth cell (between breaks) so that triangles go where curvature is; neighbours
+// are chosen per smooth cell (between breaks) so that triangles go where curvature is; neighbors
 // along a cell edge have the same points. Normals from the surface; uv are the parameters.
 CagStatus cag_surface_tessellate(const CagSurface *s, const CagTessellation *how, CagMesh **out,
                                  CagError *err);

@@ -44,7 +44,7 @@ typedef struct Leaf {
   bool regular;         // the sides' nodes are those of the grid
 } Leaf;
 
-// A piece of a line between two neighbouring leaf corners (of either side), in n equal steps.
+// A piece of a line between two neighboring leaf corners (of either side), in n equal steps.
 typedef struct Atom {
   double from, to;
   double needed; // steps, before rounding up

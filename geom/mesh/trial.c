@@ -92,7 +92,7 @@ static double cut_distance(const CagVec3 *at, int stride, bool cut_ac, double wo
 }
 
 // How far p, over the middle of the edge a b of a triangle a b c, lies off the mesh. Beside the
-// edge the neighbour takes over, whose plane is turned by up to that angle; at the border of a face
+// edge the neighbor takes over, whose plane is turned by up to that angle; at the border of a face
 // chords.c cares.
 static double off_edge(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c, double sine) {
   CagVec3 ab = cag_sub(b, a), ac = cag_sub(c, a), ap = cag_sub(p, a), n = cag_cross(ab, ac);
@@ -105,8 +105,8 @@ static double off_edge(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c, double sine) 
   return tess_smaller(off + outside * sine, sqrt(off * off + outside * outside));
 }
 
-// At the border of a leaf triangles may be cut either way when they are sewn to their neighbours.
-// sine: of the angle between neighbours along u and v.
+// At the border of a leaf triangles may be cut either way when they are sewn to their neighbors.
+// sine: of the angle between neighbors along u and v.
 static double quad_distance(const CagVec3 *at, int stride, const double sine[2], bool border,
                             double worst) {
   CagVec3 a = AT(AT_0, AT_0), b = AT(AT_1, AT_0), c = AT(AT_1, AT_1), d = AT(AT_0, AT_1);

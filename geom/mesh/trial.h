@@ -21,7 +21,7 @@ typedef struct TessTrial {
 } TessTrial;
 
 // Largest distance found from the surface to the triangles, on the middles, thirds and edges of
-// some quadrilaterals. sine: of the angle between neighbours along u and v.
+// some quadrilaterals. sine: of the angle between neighbors along u and v.
 CagStatus tess_try_distance(const TessTrial *trial, const double sine[2], double *distance,
                             CagError *err);
 // The same on the middles of more quadrilaterals, for leaves too large for the former to see all;

@@ -117,7 +117,7 @@ static bool in_circle(const double *a, const double *b, const double *c, const d
   return p - q + r > rounding * size;
 }
 
-// Triangles with their neighbours: across[3 t + k] is the place 3 t' + k' at which the neighbour's
+// Triangles with their neighbors: across[3 t + k] is the place 3 t' + k' at which the neighbor's
 // copy of the edge from corner k of t starts; NO_PLACE on the boundary.
 #define NO_PLACE SIZE_MAX
 typedef struct Flips {

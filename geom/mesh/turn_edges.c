@@ -115,10 +115,10 @@ static bool turn(Turner *t, uint32_t low, uint32_t k) {
   return true;
 }
 
-// --- Neighbours ---
+// --- Neighbors ---
 
 // starts[v]..starts[v + 1]: the corners of triangles that are vertex v.
-static CagStatus find_neighbours(Turner *t, CagError *err) {
+static CagStatus find_neighbors(Turner *t, CagError *err) {
   const CagMesh *m = t->m;
   const uint32_t count = 3 * (uint32_t)m->triangle_count;
   uint32_t *starts = calloc(m->vertex_count + 2, sizeof *starts);
@@ -148,7 +148,7 @@ static bool leans(const Turner *t, uint32_t triangle) {
 }
 
 static CagStatus turn_all(Turner *t, CagError *err) {
-  CagStatus status = find_neighbours(t, err);
+  CagStatus status = find_neighbors(t, err);
   bool turned = status == CAG_OK;
   for (int pass = 0; turned && pass < MAX_PASSES; pass++) {
     turned = false;

@@ -1,6 +1,6 @@
 // Inverse kinematics in closed form: all joint values that bring the tool to a pose.
 //
-// Chains are recognised by their structure, however they are written down (either convention, fixed
+// Chains are recognized by their structure, however they are written down (either convention, fixed
 // links between the joints, base and tool):
 //
 //   three joints and a spherical wrist    turning joints in any arrangement, or two and a slide

@@ -2,7 +2,7 @@
 //
 // A surface is clipped as its mesh. Triangles near the solid's boundary are split until their edges
 // are short against the curvature that a boundary of the solid's size has; an edge that one
-// triangle splits is split for its neighbour too, so that no gap opens. Then each edge with one end
+// triangle splits is split for its neighbor too, so that no gap opens. Then each edge with one end
 // inside is cut where it crosses, found by bisection, and each triangle keeps its inner part.
 
 #include "geom/solid/clip.h"

@@ -43,12 +43,12 @@ bool cag_solid_is_compound(const CagSolid *s);
 CagStatus cag_solid_combine(CagSetOperation op, CagSolid *const *operands, size_t n,
                             const volatile int *interrupt, CagSolid **out, CagError *err);
 // A copy in which each operand without operands of its own, or the solid where it has none, has the
-// label that `relabel` gives for its old one. Operations in which nothing is labelled count
+// label that `relabel` gives for its old one. Operations in which nothing is labeled count
 // as without operands.
 typedef uint32_t CagRelabel(void *context, uint32_t label);
 CagStatus cag_solid_relabel(const CagSolid *s, CagRelabel *relabel, void *context, CagSolid **out,
                             CagError *err);
-// The label of the solid, or the first among its operands'; 0: nothing is labelled.
+// The label of the solid, or the first among its operands'; 0: nothing is labeled.
 uint32_t cag_solid_first_label(const CagSolid *s);
 // The solid without any points: a union of none.
 CagStatus cag_solid_empty(CagSolid **out, CagError *err);

@@ -190,7 +190,7 @@ static CagStatus pair_edges(CagSolid *s, CagShellBoundaries *all, CagShellLinks 
   return CAG_OK;
 }
 
-// Which faces must be turned so that neighbours agree; faces without links keep their side. part:
+// Which faces must be turned so that neighbors agree; faces without links keep their side. part:
 // the number of each face's connected part, `none` before. Gives the number of parts.
 static size_t orient(size_t faces, const CagShellLinks *links, bool *turn, size_t *part) {
   const size_t none = SIZE_MAX;

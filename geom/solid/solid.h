@@ -45,7 +45,7 @@ typedef struct CagSolid {
   CagSolidKind kind;
   double a, b, c; // BOX size; SPHERE a; CYLINDER a = height, b = radius, c = top; TORUS a, b
   bool centered;  // BOX
-  uint32_t label; // what its triangles are labelled with as an operand (mesh.h); 0: nothing
+  uint32_t label; // what its triangles are labeled with as an operand (mesh.h); 0: nothing
   CagTransform placement; // from the primitive's own coordinates to the world
   size_t face_count;
   CagSurface **faces; // in the world; normals outward

@@ -1,6 +1,6 @@
 // Surfaces that cross themselves: profiles by the crossings of their edges, sweeps by the curvature
 // of the path against the reach of the section (the surface folds where the section passes the
-// centre of curvature), and tubes by the distance between parts of their path.
+// center of curvature), and tubes by the distance between parts of their path.
 
 #include "geom/surface/crossing.h"
 
@@ -17,7 +17,7 @@
 // Disks of a tube, by its length and thickness.
 #define TUBE_FEW 400
 #define TUBE_MANY 4000
-// Beyond the centre of curvature by more than this part.
+// Beyond the center of curvature by more than this part.
 #define BEYOND 1e-6
 
 typedef struct Flat {
@@ -56,7 +56,7 @@ static bool profile_crosses(const CagCurve *profile, CagVec3 axis, CagVec3 throu
   return false;
 }
 
-// How far the section reaches towards the centre of curvature at parameter t, times the curvature.
+// How far the section reaches towards the center of curvature at parameter t, times the curvature.
 static bool folds_at(const CagCurve *section, const CagMotion *motion, const CagCurve *path,
                      double t, double *measure) {
   CagMotionSeries m;
@@ -69,14 +69,14 @@ static bool folds_at(const CagCurve *section, const CagMotion *motion, const Cag
   const CagVec3 bend = cag_cross(cag_cross(d[1], d[2]), d[1]);
   const double curvature = cag_norm(cag_cross(d[1], d[2])) / (speed * speed * speed);
   if (!(curvature > 0) || !isfinite(curvature)) return false;
-  const CagVec3 to_centre = cag_unit(bend);
+  const CagVec3 to_center = cag_unit(bend);
   *measure = 0;
   for (int i = 0; i < SECTION_SAMPLES; i++) {
     const double u = section->start + (section->end - section->start) * i / SECTION_SAMPLES;
     CagVec3 p;
     if (cag_curve_point(section, u, &p, &err)) return false;
     const CagVec3 out = cag_madd(cag_scaled(m.x[0], p.x), p.y, m.y[0]);
-    *measure = fmax(*measure, curvature * cag_dot(out, to_centre));
+    *measure = fmax(*measure, curvature * cag_dot(out, to_center));
   }
   return true;
 }
@@ -145,8 +145,8 @@ static int steps_for(const Disk *disks) {
   return (int)fmin(TUBE_MANY, fmax(TUBE_FEW, 4 * length / least));
 }
 
-// Whether no pair of neighbours of i and k is nearer: the line between them is then square to the
-// path at both ends, and their disks lie in one plane. Of neighbours on a path the nearer pair is
+// Whether no pair of neighbors of i and k is nearer: the line between them is then square to the
+// path at both ends, and their disks lie in one plane. Of neighbors on a path the nearer pair is
 // between them.
 static bool is_least_distance(const Disk *disks, int i, int k, double d) {
   const double alike = 1e-9; // of the distance: along a helix all are the same

@@ -247,7 +247,7 @@ static CagStatus check_match(const CagNet *edge, const CagEdgeMatch *how, CagErr
   return CAG_OK;
 }
 
-// The neighbour's line beside the edge: `rate` is its derivative inward by the difference of the
+// The neighbor's line beside the edge: `rate` is its derivative inward by the difference of the
 // first two lines.
 static CagStatus second_line(const CagNet *edge, const CagEdgeMatch *how, double rate, double *out,
                              CagError *err) {

@@ -28,7 +28,7 @@ typedef struct CagCornerEdit {
 CagStatus cag_surface_edit_corner(const CagSurface *s, const CagCornerEdit *edit, CagSurface **out,
                                   CagError *err);
 
-// How a neighbour continues a surface A across an edge: B_across = ratio A_across + shear(t)
+// How a neighbor continues a surface A across an edge: B_across = ratio A_across + shear(t)
 // A_along, with the shear linear from one end of the edge to the other. Ratio 1 without shear is
 // C1, else the tangent planes agree (G1).
 typedef struct CagEdgeMatch {

@@ -388,7 +388,7 @@ static CagStatus climb(const CagSurface *s, const Cell *c, double u, double v, i
   return CAG_OK;
 }
 
-// Extremes over one cell: from each sample that no neighbour exceeds and that could still raise the
+// Extremes over one cell: from each sample that no neighbor exceeds and that could still raise the
 // bounds.
 static CagStatus bound_cell(const CagSurface *s, const Cell *c, size_t n, CagVec3 *points,
                             double best[6], CagError *err) {
@@ -421,7 +421,7 @@ static CagStatus bound_cell(const CagSurface *s, const Cell *c, size_t n, CagVec
           size_t a = i + (size_t)(k / 3) - 1, b = j + (size_t)(k % 3) - 1;
           if (k == 4 || a > n || b > n) continue; // below 0 wraps above n
           double other = sign * coordinate(points[a * row + b], axis);
-          // Of equal neighbours the first climbs.
+          // Of equal neighbors the first climbs.
           summit = k < 4 ? value > other : value >= other;
         }
         if (summit) status = climb(s, c, us[i], vs[j], axis, sign, &best[e], err);

@@ -1,12 +1,12 @@
 // Frames along a path as power series, whose derivatives are exact ones of what is evaluated.
 //
-// The rotation minimising frame is kept as an angle phi(v) against an analytic frame: on each
+// The rotation minimizing frame is kept as an angle phi(v) against an analytic frame: on each
 // segment of the path a fixed vector a gives e2 = unit(C' x a), e1 = e2 x T, and n1 = cos phi e1 +
 // sin phi e2 with phi' = e1 . (C'' x a) / |C' x a|. phi' is integrated as a polynomial per segment,
 // and segments meet to rounding with all derivatives that the path has. A closed path brings the
 // frame home turned by some angle; it is given back evenly over v.
 //
-// At a corner of the path the bodies of both sides are mitred: each section is shifted along the
+// At a corner of the path the bodies of both sides are mitered: each section is shifted along the
 // tangent by a multiple that grows linearly over the smooth piece to what puts it into the
 // bisecting plane, so that straight pieces are exact prisms cut by that plane.
 
@@ -137,7 +137,7 @@ static CagStatus reference(const CagMotion *t, const CagMotionSegment *g, double
   return CAG_OK;
 }
 
-static CagStatus minimising(const CagMotion *t, const CagMotionSegment *g, double v, int n,
+static CagStatus minimizing(const CagMotion *t, const CagMotionSegment *g, double v, int n,
                             CagSide side, Frame *out, CagError *err) {
   Frame e;
   CagStatus status = reference(t, g, v, n, side, &e, err);
@@ -261,7 +261,7 @@ static CagStatus frame_on(const CagMotion *t, const CagMotionSegment *g, double 
   case CAG_ORIENT_FIXED: return standing(t, v, n, side, out, err);
   case CAG_ORIENT_RMF: break;
   }
-  return minimising(t, g, v, n, side, out, err);
+  return minimizing(t, g, v, n, side, out, err);
 }
 
 const CagMotionSegment *cag_motion_segment(const CagMotion *t, double v, CagSide side) {
@@ -275,7 +275,7 @@ const CagMotionSegment *cag_motion_segment(const CagMotion *t, double v, CagSide
   return &t->segments[low];
 }
 
-// Shears the spokes along the tangent, into the mitres of the piece.
+// Shears the spokes along the tangent, into the miters of the piece.
 static void shear(const CagMotionPiece *p, double v, int n, Frame *f) {
   for (int axis = 0; axis < 2; axis++) {
     double slope = (p->end[axis] - p->start[axis]) / (p->v1 - p->v0);
@@ -507,16 +507,16 @@ static CagStatus transport(CagMotion *t, CagError *err) {
 }
 
 // Shift along the tangent that takes each spoke into the plane square to m.
-static void mitre(const Frame *f, CagVec3 m, double *out) {
+static void miter(const Frame *f, CagVec3 m, double *out) {
   double along = cag_dot(f->t[0], m);
   out[0] = -cag_dot(f->n1[0], m) / along;
   out[1] = -cag_dot(f->n2[0], m) / along;
 }
 
-// Mitred sections of both sides are the same when their spokes differ by less.
+// Mitered sections of both sides are the same when their spokes differ by less.
 #define CORNER_FRAME 1e-9
 
-static CagStatus set_mitres(CagMotion *t, CagError *err) {
+static CagStatus set_miters(CagMotion *t, CagError *err) {
   size_t joints = t->piece_count - (t->path->closed ? 0 : 1);
   for (size_t i = 0; i < joints; i++) {
     CagMotionPiece *a = &t->pieces[i], *b = &t->pieces[(i + 1) % t->piece_count];
@@ -539,8 +539,8 @@ static CagStatus set_mitres(CagMotion *t, CagError *err) {
                       cag_number_text(a->v1, text));
     }
     t->corner = true;
-    mitre(&in, m, a->end);
-    mitre(&out, m, b->start);
+    miter(&in, m, a->end);
+    miter(&out, m, b->start);
   }
   return CAG_OK;
 }
@@ -579,7 +579,7 @@ static CagStatus set_frames(CagMotion *m, CagError *err) {
     m->fixed[2] = tangent;
     return CAG_OK;
   }
-  return status ? status : set_mitres(m, err);
+  return status ? status : set_miters(m, err);
 }
 
 // Places at which a frame and the scale are tried when the motion is made, on every smooth piece.

@@ -3,7 +3,7 @@
 // A motion gives an origin and three spokes for every t, and a swept surface is
 // S(u, v) = origin(v) + x(u) X(v) + y(u) Y(v) + z(u) Z(v). Along a path the spokes are the frame's
 // normal, binormal and tangent, turned by the twist and lengthened by the scale. The frame is
-// rotation minimising (that to which the double reflection of Wang et al. (2008) converges), the
+// rotation minimizing (that to which the double reflection of Wang et al. (2008) converges), the
 // one of Frenet, the one of the start kept as it is, or the one whose y axis is nearest to a given
 // direction.
 
@@ -58,7 +58,7 @@ size_t cag_motion_breaks(const CagMotion *m, double *out, size_t capacity);
 const CagCurve *cag_motion_path(const CagMotion *m); // NULL: of maps
 const CagPathMotion *cag_motion_how(const CagMotion *m);
 bool cag_motion_is_plain(const CagMotion *m); // along a path, without twist, not scaled
-// The path has a corner where the spokes are mitred, so that only plane sections fit together.
+// The path has a corner where the spokes are mitered, so that only plane sections fit together.
 bool cag_motion_has_corner(const CagMotion *m);
 // The frame at t as a matrix.
 CagStatus cag_motion_frame(const CagMotion *m, double t, CagTransform *out, CagError *err);

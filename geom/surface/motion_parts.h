@@ -16,7 +16,7 @@ typedef struct CagMotionSegment {
   size_t piece;
 } CagMotionSegment;
 
-// A smooth piece of the path with its mitres: the shift of the circle along the tangent at either
+// A smooth piece of the path with its miters: the shift of the circle along the tangent at either
 // end, as factors of cos u and sin u.
 typedef struct CagMotionPiece {
   double v0, v1;

@@ -49,7 +49,7 @@ CagStatus cag_net_to_surface(const CagNet *net, int direction, const CagNet *acr
 // data[i] is the wanted value at parameters[i], becomes the coefficients (count rows): banded
 // elimination; "fit-singular".
 CagStatus cag_net_interpolate(CagNet *net, const double *parameters, CagError *err);
-// Clamped knots for interpolation at ascending parameters: means of `degree` neighbours.
+// Clamped knots for interpolation at ascending parameters: means of `degree` neighbors.
 void cag_net_averaged_knots(const double *parameters, size_t n, int degree, double *knots);
 
 #endif

@@ -120,7 +120,7 @@ static void judge(Nurbs *b) {
   b->base.closed_v = b->base.closed_v || b->v.periodic;
 }
 
-// Partials are differences of neighbouring points by the length of a span.
+// Partials are differences of neighboring points by the length of a span.
 static void find_noise(Nurbs *b) {
   double most = 0, weight = 0;
   for (size_t i = 0; i < b->u.count * b->v.count; i++) {

@@ -1,6 +1,6 @@
 // Quadrics: values, maps, and the reduction to standard form.
 //
-// The symmetric 3x3 matrix of the second-degree terms is diagonalised by Jacobi rotations; in the
+// The symmetric 3x3 matrix of the second-degree terms is diagonalized by Jacobi rotations; in the
 // eigenbasis the square is completed for every eigenvalue that is not zero, and what remains (a
 // constant k1, a linear term of length g along the directions of zero eigenvalues) decides the
 // class (reference 06a, 6.4). Before that, lengths are measured in units of the quadric's own size,

@@ -72,7 +72,7 @@ static CagStatus add_piece(const CagTransform *frame, const FlatLine *l, double 
   return status ? status : cag_curve_list_add(out, piece, err);
 }
 
-// The pieces of the line that lie in the region, neighbours made one.
+// The pieces of the line that lie in the region, neighbors made one.
 static CagStatus add_pieces(const CagRegion *region, const CagTransform *frame, const FlatLine *l,
                             const double *cuts, size_t n, double same, CagCurveList *out,
                             CagError *err) {

@@ -207,7 +207,7 @@ bool cag_tracer_critical(CagTracer *t, CagTraceNode *node, double hu, double hv,
   return true;
 }
 
-// Follows the function from a node where it is nearest to 0 among its neighbours; true where it
+// Follows the function from a node where it is nearest to 0 among its neighbors; true where it
 // has the other sign at its extremum.
 static bool follow(CagTracer *t, size_t i, size_t j, double *u, double *v) {
   double sign = *value_of(t, i, j) < 0 ? -1 : 1, bend, determinant;

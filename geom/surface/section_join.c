@@ -1,5 +1,5 @@
 // Runs of traced points: those that go on across a seam or a break become one, and points without a
-// tangent of their own get one from their neighbours.
+// tangent of their own get one from their neighbors.
 
 #include "geom/surface/section_join.h"
 
@@ -85,7 +85,7 @@ static bool join_pair(CagTraces *t, size_t i, size_t j, const CagTraceJoint *how
 }
 
 // What is smaller than the tolerance and by itself only touches the level; open runs that are next
-// to nothing (by a pole, where values are rounding): their neighbours meet without them.
+// to nothing (by a pole, where values are rounding): their neighbors meet without them.
 static void drop_specks(CagTraces *t, const CagTraceJoint *how) {
   size_t kept = 0;
   for (size_t i = 0; i < t->count; i++) {
@@ -114,7 +114,7 @@ static bool join_traces(CagTraces *t, const CagTraceJoint *how) {
   return true;
 }
 
-// The tangent of an end of an open run that has none: that of its neighbour, mirrored.
+// The tangent of an end of an open run that has none: that of its neighbor, mirrored.
 static void complete_ends(CagTrace *t) {
   size_t n = t->count;
   const size_t ends[2][2] = {{0, 1}, {n - 1, n - 2}};
@@ -128,7 +128,7 @@ static void complete_ends(CagTrace *t) {
   }
 }
 
-// Tangents where the function gave none, by the parabola through the neighbours.
+// Tangents where the function gave none, by the parabola through the neighbors.
 static void complete_tangents(CagTrace *t, const CagTraceJoint *how) {
   size_t n = t->count;
   bool comes_back = n > 3 && cag_norm(cag_sub(t->points[0], t->points[n - 1])) <= how->same;

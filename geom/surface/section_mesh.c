@@ -13,7 +13,7 @@
 // Vertices within this part of the size of the plane lie in it.
 #define ON_PLANE 1e-13
 // Points of a polyline nearer than this part of the size are one, and those this near to the line
-// of their neighbours are left out.
+// of their neighbors are left out.
 #define SAME 1e-12
 
 // One end of a segment: the edge that it crosses, lower vertex first.

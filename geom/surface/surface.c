@@ -1,5 +1,5 @@
 // What every surface answers, written once against CagSurfaceKind: checked evaluation, normals with
-// their limits at poles, reference counts, and the fallbacks for kinds that do not specialise.
+// their limits at poles, reference counts, and the fallbacks for kinds that do not specialize.
 
 #include "geom/surface/surface.h"
 

@@ -38,7 +38,7 @@ typedef struct Nurbs {
 
 size_t tensor_span(const Direction *d, double t, CagSide side);
 
-// Is it the span of t, from the right? Neighbouring parameters mostly share theirs.
+// Is it the span of t, from the right? Neighboring parameters mostly share theirs.
 static inline bool tensor_in_span(const Direction *d, size_t span, double t) {
   return span < d->count && d->knots[span] <= t && t < d->knots[span + 1];
 }

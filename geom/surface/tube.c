@@ -271,7 +271,7 @@ static CagStatus make(const CagSurfaceKind *kind, const CagCurve *section, const
   return CAG_OK;
 }
 
-// A section of space whose z is not 0 leaves the plane in which mitred pieces meet.
+// A section of space whose z is not 0 leaves the plane in which mitered pieces meet.
 static CagStatus check_plane(const CagCurve *section, const CagMotion *motion, CagError *err) {
   if (section->dimension == 2 || !cag_motion_has_corner(motion)) return CAG_OK;
   CagBounds box;

@@ -120,7 +120,7 @@ static bool make_room(Draft *d) {
 // The vertex of the same place with this value: one that is there, or a new one.
 static bool take_vertex(Draft *d, uint32_t first, bool found, double value, uint32_t *out) {
   uint32_t k = first;
-  if (!found) { // whatever its neighbours say
+  if (!found) { // whatever its neighbors say
     *out = first;
     return true;
   }
@@ -160,7 +160,7 @@ static CagStatus take_corner(Draft *d, size_t triangle, int corner, CagError *er
   return ok ? CAG_OK : cag_fail_memory(err);
 }
 
-// Vertices that no side gave a value (the surface has no normal all around) take a neighbour's.
+// Vertices that no side gave a value (the surface has no normal all around) take a neighbor's.
 static void fill_unknown(Draft *d) {
   for (size_t t = 0; t < d->plain->triangle_count; t++) {
     const uint32_t *k = d->corners + 3 * t;

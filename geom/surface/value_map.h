@@ -1,4 +1,4 @@
-// Meshes that carry a value of the surface at each vertex, to be shown by colours.
+// Meshes that carry a value of the surface at each vertex, to be shown by colors.
 
 #ifndef CAG_GEOM_SURFACE_VALUE_MAP_H
 #define CAG_GEOM_SURFACE_VALUE_MAP_H

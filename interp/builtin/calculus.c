@@ -1,7 +1,7 @@
 // Integrals, extremes and roots of a function of the script over a range.
 //
 // Methods: adaptive Gauss-Kronrod quadrature with 7 and 15 points (QUADPACK's QAG), and Brent's
-// minimiser and root finder (Algorithms for Minimization without Derivatives, 1973). A range of
+// minimizer and root finder (Algorithms for Minimization without Derivatives, 1973). A range of
 // angles calls the function with angles; inside, and in integrals, angles are then radians.
 
 #include <float.h>
@@ -159,7 +159,7 @@ static bool measure(Integrand *g, Piece *p) {
   return true;
 }
 
-// A piece whose ends are neighbours, or whose error is that of rounding, is not divided.
+// A piece whose ends are neighbors, or whose error is that of rounding, is not divided.
 static bool can_be_divided(const Piece *p, double narrowest) {
   static const double ROUNDING = 50 * DBL_EPSILON;
   double middle = 0.5 * (p->low + p->high);
@@ -296,7 +296,7 @@ typedef struct Extreme {
   double x, y;
 } Extreme;
 
-// Brent's minimiser in [a, c] from the point m between them.
+// Brent's minimizer in [a, c] from the point m between them.
 static bool brent_minimum(const Subject *f, double sign, double a, double c, Extreme *m) {
   static const double GOLDEN = 0.3819660112501051; // (3 - sqrt 5) / 2
   static const double RELATIVE = 1.5e-8; // root of the rounding error: a minimum is no sharper

@@ -147,8 +147,8 @@ static CagStatus chord_excess(const CagCurve *c, const CagVec3 *p, size_t i, dou
   return status;
 }
 
-// Moves t[i] between its neighbours to where its two chords are equal. The chord before it is
-// shorter at the left neighbour, and longer at the right one.
+// Moves t[i] between its neighbors to where its two chords are equal. The chord before it is
+// shorter at the left neighbor, and longer at the right one.
 static CagStatus even_out(const CagCurve *c, CagVec3 *p, double *t, size_t i, CagError *err) {
   double low = t[i - 1], high = t[i + 1], excess;
   CagStatus status = CAG_OK;

@@ -354,7 +354,7 @@ static bool call_eigen(CagCall *call, CagValue *result) {
 // The eigenvalues of the companion matrix are roots of a polynomial whose coefficients differ from
 // the given ones by rounding only. A root of multiplicity m is spread by that into m roots about
 // it, as far as the m-th root of the rounding error, with their mean at the root. So clusters are
-// sought: the mean of m neighbours, improved by Newton's method as a root of the derivative of
+// sought: the mean of m neighbors, improved by Newton's method as a root of the derivative of
 // order m - 1, counts as a root of multiplicity m where the polynomial and its first m - 1
 // derivatives vanish there to rounding.
 
@@ -417,7 +417,7 @@ static bool vanishes(const Roots *r, LongComplex z, size_t m) {
 
 // Fills near with the roots not done, by distance from root i, which comes first; gives their
 // number.
-static size_t neighbours(Roots *r, size_t i) {
+static size_t neighbors(Roots *r, size_t i) {
   size_t n = 0;
   for (size_t j = 0; j < r->degree; j++) {
     if (r->done[j]) continue;
@@ -439,7 +439,7 @@ static size_t conjugate(const Roots *r, size_t i) {
   return i;
 }
 
-// Whether the first m neighbours are m of the same side, or closed under conjugation. *real: the
+// Whether the first m neighbors are m of the same side, or closed under conjugation. *real: the
 // latter.
 static bool one_sided(const Roots *r, size_t m, bool *real) {
   size_t above = 0, below = 0;
@@ -488,7 +488,7 @@ static bool take_cluster(Roots *r, size_t m) {
 static void collect_roots(Roots *r) {
   for (size_t i = 0; i < r->degree; i++) {
     if (r->done[i] || cimag(r->z[i]) < 0) continue;
-    size_t m = neighbours(r, i);
+    size_t m = neighbors(r, i);
     while (m > 1 && !take_cluster(r, m)) m--;
     if (m == 1) take_cluster(r, 1);
   }

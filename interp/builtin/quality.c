@@ -1,7 +1,7 @@
-// Pictures of a surface's quality: colours of curvature, zebra stripes, isophotes.
+// Pictures of a surface's quality: colors of curvature, zebra stripes, isophotes.
 //
-// Colours are those of a mesh with a value at each vertex and a scale (CagColorScale), which every
-// transform and exporter knows. The meshes are white, so that viewers which multiply the colours
+// Colors are those of a mesh with a value at each vertex and a scale (CagColorScale), which every
+// transform and exporter knows. The meshes are white, so that viewers which multiply the colors
 // of vertices and material show them as they are.
 
 #include <stdlib.h>
@@ -91,7 +91,7 @@ static bool give_mesh(CagCall *call, const Meshes *parts, CagColorScale scale, C
   return true;
 }
 
-// --- Colours of curvature ---
+// --- Colors of curvature ---
 
 static CagStatus value_mesh(const void *what, const CagShape *shape, CagValue v,
                             const CagTessellation *how, Meshes *out, CagError *err) {
@@ -133,7 +133,7 @@ static double size_of(const Meshes *m) {
 // Curvatures below this part of the inverse size are none.
 #define FLAT 1e-7
 
-// A span with values of both signs is made symmetric, so that 0 has the middle colour.
+// A span with values of both signs is made symmetric, so that 0 has the middle color.
 static void find_span(const Meshes *m, CagSurfaceValue kind, double *from, double *to) {
   double size = size_of(m), unit = size > 0 ? 1 / size : 1;
   double least = FLAT * (kind == CAG_VALUE_GAUSSIAN ? unit * unit : unit);
@@ -187,7 +187,7 @@ static bool call_colored_by(CagCall *call, CagValue *result) {
   return ok;
 }
 
-// --- What a coloured mesh says ---
+// --- What a colored mesh says ---
 
 static bool read_colored(CagCall *call, const CagMesh **out) {
   if (call->values[0].type != CAG_MESH) return cag_fail_type(call, 0, "a mesh with colors");

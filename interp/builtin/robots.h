@@ -1,8 +1,8 @@
 // Functions of the robots' table (robots.c), by the file that holds them, and what they share:
 // reading of robots, joint values and poses.
 //
-// A list q has one value for each joint: angles where it turns, numbers (millimetres) where it
-// slides. In the machine's memory q is radians and millimetres, at most CAG_ROBOT_JOINTS_MAX long.
+// A list q has one value for each joint: angles where it turns, numbers (millimeters) where it
+// slides. In the machine's memory q is radians and millimeters, at most CAG_ROBOT_JOINTS_MAX long.
 
 #ifndef CAG_INTERP_BUILTIN_ROBOTS_H
 #define CAG_INTERP_BUILTIN_ROBOTS_H

@@ -129,7 +129,7 @@ static bool flatten_links(CagCall *call, CagValue v, CagBuilder *into, int depth
   return true;
 }
 
-// Degrees (or millimetres) that one unit of a joint's memory form is.
+// Degrees (or millimeters) that one unit of a joint's memory form is.
 static double shown_unit(const CagRobotLink *links, size_t n, size_t joint) {
   for (size_t i = 0, k = 0; i < n; i++) {
     if (links[i].kind == CAG_JOINT_FIXED || k++ != joint) continue;
@@ -175,7 +175,7 @@ static bool read_coupling_offset(CagCall *call, int argument, CagValue list, siz
   return true;
 }
 
-// A matrix, or a record of `matrix` and `offset`; in degrees and millimetres as written.
+// A matrix, or a record of `matrix` and `offset`; in degrees and millimeters as written.
 static bool read_coupling(CagCall *call, int argument, const CagRobotLink *links, size_t count,
                           Coupling *out) {
   *out = (Coupling){0};

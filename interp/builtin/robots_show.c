@@ -15,7 +15,7 @@ typedef struct Drawing {
   double size;
 } Drawing;
 
-// Adds a body in one of the plain colours; takes over its reference.
+// Adds a body in one of the plain colors; takes over its reference.
 static bool add_body(Drawing *d, CagStatus status, CagSolid **body, const CagError *err,
                      const double color[3]) {
   static const char *const names[] = {"color"};

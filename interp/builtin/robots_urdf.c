@@ -159,7 +159,7 @@ static bool make_body(Import *m, const CagUrdfBody *b, CagTransform *place, CagV
   }
   case CAG_URDF_BODY_MESH: break;
   }
-  // glTF says its own unit, which the reader has made millimetres.
+  // glTF says its own unit, which the reader has made millimeters.
   double unit = is_gltf(b->file) ? 1 : 1000, factors[3];
   for (int i = 0; i < 3; i++) factors[i] = b->scale[i] * unit;
   CagTransform scale = scaled(factors);

@@ -18,7 +18,7 @@
 CAG_SCENE_FUNCTIONS(X)
 #undef X
 
-// A colour from a text or [r, g, b]; `what` names it in messages. The argument is where it was
+// A color from a text or [r, g, b]; `what` names it in messages. The argument is where it was
 // given.
 bool cag_color_read(CagCall *call, int argument, const char *what, CagValue v, CagColor *out);
 CagValue cag_color_value(CagVm *vm, CagColor c);

@@ -1,8 +1,8 @@
-// What is said about shapes: material, colour, name, tolerance, line style.
+// What is said about shapes: material, color, name, tolerance, line style.
 //
 // What is said nearer to the shape holds: a material said of a group does not change that of a
-// shape in it. A colour said alone is a record with that field only; a material said further out
-// then gives the rest, and a colour said further out fills in a material without one.
+// shape in it. A color said alone is a record with that field only; a material said further out
+// then gives the rest, and a color said further out fills in a material without one.
 
 #include <stdlib.h>
 #include <string.h>
@@ -48,7 +48,7 @@ static bool check_texture(CagCall *call, const char *text) {
   return false;
 }
 
-// Checks one field; colours become [r, g, b].
+// Checks one field; colors become [r, g, b].
 static bool check_field(CagCall *call, const Field *f, CagValue *v) {
   CagColor c;
   double x = v->type == CAG_NUMBER ? v->as.number : -1;
@@ -98,7 +98,7 @@ static bool has_field(const CagRecord *r, const char *name) {
   return cag_record_get(r, name).type != CAG_UNSET;
 }
 
-// All fields of `base`, and the colour.
+// All fields of `base`, and the color.
 static CagRecord *with_color(CagVm *vm, const CagRecord *base, CagValue color) {
   const char *names[FIELD_COUNT + 1];
   CagValue values[FIELD_COUNT + 1];

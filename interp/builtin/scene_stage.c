@@ -5,7 +5,7 @@
 #include "interp/builtin/scene.h"
 #include "interp/scene/color.h"
 
-// --- Colours ---
+// --- Colors ---
 
 static bool fail_color(CagCall *call, int argument, const char *what, const char *text) {
   size_t n;

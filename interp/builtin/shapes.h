@@ -28,7 +28,7 @@ static inline bool cag_geometry_ok(CagCall *call, CagStatus status, const CagErr
 }
 
 // The degrees that a person would write for these radians: the shortest decimal whose radians are
-// the same double (or its neighbour), so that a full circle is 360deg and not
+// the same double (or its neighbor), so that a full circle is 360deg and not
 // 360.00000000000006deg.
 double cag_degrees_shown(double radians);
 // A curve's or surface's parameter as the language has it.

@@ -301,7 +301,7 @@ const CagBuiltin cag_builtins_surfaces[] = {
      "as may be. On the way the section turns by `twist` and grows to `scale`, evenly, or as "
      "functions of the path's parameter say. Of a region, a list of points or a closed plane curve "
      "a solid with caps, whose u and v are those of the side; else, and with `caps: false`, the "
-     "surface, u as in the section and v as in the path. Corners of the path are mitred. A "
+     "surface, u as in the section and v as in the path. Corners of the path are mitered. A "
      "positive "
      "twist turns counterclockwise as seen from the end of the path, like a right-handed screw. On "
      "a helix about Z, x of the section points at the axis with \"frenet\" and with `orient: Z`, "

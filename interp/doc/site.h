@@ -67,7 +67,7 @@ void cag_site_run(CagSite *s);
 
 // --- HTML ---
 void cag_html_text(FILE *out, const char *text, size_t length);
-// A script, its words coloured; names of functions lead to their pages. `root` leads from the page
+// A script, its words colored; names of functions lead to their pages. `root` leads from the page
 // to the site's folder: "" or "../".
 void cag_html_script(FILE *out, const char *root, const char *text, size_t length);
 // An example with what it printed and its picture.
@@ -75,7 +75,7 @@ void cag_html_example(CagSite *s, const CagSiteSpot *spot, const char *text, siz
 // Text in which `words` between backquotes are code, and lead to functions' pages.
 void cag_html_prose(FILE *out, const char *root, const char *text, size_t length);
 // Markdown, with tables. Fenced blocks of `cag` in the guide are examples (`cag fragment`: only
-// coloured).
+// colored).
 void cag_html_markdown(CagSite *s, FILE *out, const char *root, const char *about, const char *text,
                        size_t length);
 // The anchor of a heading: "Curves and splines" is "curves-and-splines". malloc'd.

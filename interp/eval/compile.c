@@ -20,7 +20,7 @@ typedef struct Unit {
   CagModuleUnit *module;
   CagProto *proto;
   struct Unit *outer;
-  const CagFunctionAst *function; // NULL: a definition's initialiser or a statement
+  const CagFunctionAst *function; // NULL: a definition's initializer or a statement
   CagArena *scratch;              // temporary memory, shared by nested functions
   const CagDecl **captured;       // decl of each capture
   size_t captured_capacity;

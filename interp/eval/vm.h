@@ -1,7 +1,7 @@
 // The machine: what a running program consists of.
 //
 // A program is a set of modules. Each top-level definition has a slot in `globals`, evaluated when
-// first needed by running its initialiser. Functions are register code (see opcodes.def): a frame's
+// first needed by running its initializer. Functions are register code (see opcodes.def): a frame's
 // registers are a window of one value stack; instruction operands a, b, c number them. Since values
 // never change, closures copy what they capture.
 //
@@ -49,7 +49,7 @@ typedef struct CagCallSite {
 
 typedef struct CagProto {
   const char *name; // of the function or definition; NULL: a lambda or a statement
-  bool is_function; // false: initialiser of a definition, or a statement
+  bool is_function; // false: initializer of a definition, or a statement
   const CagSource *source;
   size_t parameter_count, required_count;
   const char **parameters; // NUL-terminated names, compared by strcmp

@@ -1,7 +1,7 @@
 // A bicubic B-spline near a surface of any kind.
 //
 // The surface is cut by lines of both parameters into cells; each cell is the bicubic patch with
-// the surface's points, first and mixed partials at its corners, so neighbours agree in value and
+// the surface's points, first and mixed partials at its corners, so neighbors agree in value and
 // slope and the whole is one net with double knots (triple at the surface's own breaks, where the
 // two sides may differ). Its distance falls with the fourth power of the cells' size. Where a cell
 // is too far off, the lines are halved in the direction in which it is worse.
@@ -172,7 +172,7 @@ static CagStatus judge_cells(const CagSurface *s, const Lines *u, const Lines *v
 }
 
 // Which of the Bezier lines stand in the net: where both sides of a line have one derivative, the
-// line itself follows from its neighbours and a double knot (out[k]: place in the net, SIZE_MAX:
+// line itself follows from its neighbors and a double knot (out[k]: place in the net, SIZE_MAX:
 // none). *n: their number.
 static size_t *net_lines(const Lines *l, size_t *n) {
   size_t lines = 3 * (l->n - 1) + 1, *out = malloc(lines * sizeof *out);

@@ -2,7 +2,7 @@
 //
 // Ends of sides that are near become one vertex. Two sides between the same vertices are one edge
 // when points of the one lie on the other, and when the loops run along them against each other, as
-// those of neighbours with agreeing normals do. A side that found no partner is cut at the vertices
+// those of neighbors with agreeing normals do. A side that found no partner is cut at the vertices
 // of others that lie on it, and tried again: so one long side meets two short ones.
 
 #include <math.h>
@@ -138,7 +138,7 @@ static CagStatus pair_sides(CagBrepWork *w, Pair *pairs, CagError *err) {
       if (pairs[ia].with != SIZE_MAX) break;
       if (pairs[ib].with != SIZE_MAX) continue;
       status = compare(a->curve, b->curve, w->same, &how, &w->brep->accuracy, err);
-      // Neighbours run along an edge against each other.
+      // Neighbors run along an edge against each other.
       if (status || how == 0 || (how > 0) != (a->reversed != b->reversed)) continue;
       pairs[ia] = (Pair){ib, how < 0};
       pairs[ib] = (Pair){ia, how < 0};

@@ -2,7 +2,7 @@
 // and indices of each mesh, one after the other.
 //
 // Parts that are copies of another share its data, and its mesh where the material is the same too;
-// a node places each part. The root node turns millimetres with Z up into metres with Y up.
+// a node places each part. The root node turns millimeters with Z up into meters with Y up.
 
 #include "interp/export/gltf.h"
 
@@ -150,7 +150,7 @@ static const char *name_of(const CagMeshPart *part) { return part->name ? part->
 
 static void add_nodes(Text *t, const Plan *p) {
   size_t shown = 0;
-  // A quarter turn about x brings z up to y up; metres are 1000 mm.
+  // A quarter turn about x brings z up to y up; meters are 1000 mm.
   add(t, ",\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"name\":\"scene\",\"rotation\":"
          "[-0.7071067811865476,0,0,0.7071067811865476],\"scale\":[0.001,0.001,0.001]");
   for (size_t i = 0; i < p->count; i++)
@@ -356,7 +356,7 @@ static void write_uv(const double *x, size_t n, CagAtomicFile *file) {
   }
 }
 
-// Linear light, as the format has it; it multiplies the material's colour.
+// Linear light, as the format has it; it multiplies the material's color.
 static void write_colors(const CagMesh *m, CagAtomicFile *file) {
   for (size_t v = 0; v < m->vertex_count;) {
     size_t end = m->vertex_count - v < BATCH ? m->vertex_count : v + BATCH;

@@ -2,7 +2,7 @@
 //
 // Curves are entities 126, surfaces 128; a face that is not all of its surface is a trimmed surface
 // 144 with boundaries 142, given in space and, of planes, in the parameters as well. Every entity
-// carries its colour (314) and its shape's name (406 form 15). Lengths are millimetres. IGES of
+// carries its color (314) and its shape's name (406 form 15). Lengths are millimeters. IGES of
 // this kind knows no bodies: the faces of a solid stand side by side, their normals outward.
 
 #ifndef CAG_INTERP_EXPORT_IGES_H

@@ -1,7 +1,7 @@
 // The scene as data, in JSON.
 //
-// One object. Numbers are in the shortest form that reads back the same; lengths are millimetres,
-// angles radians, colours linear [r, g, b], transforms four rows of four for column vectors.
+// One object. Numbers are in the shortest form that reads back the same; lengths are millimeters,
+// angles radians, colors linear [r, g, b], transforms four rows of four for column vectors.
 // What is infinite or absent is null.
 //
 //   format "cag-scene", version 1, generator, script, units "mm", up "z"
@@ -22,7 +22,7 @@
 //               focus, aperture, frame (camera to world: x right, y down, z view)}]
 //   lights      [{kind "sun" | "point" | "spot" | "area", position, direction, angle, size, color,
 //               strength}], each with what its kind has
-//   sky         {colors} or {image} or null;  background  colour or null
+//   sky         {colors} or {image} or null;  background  color or null
 //   studio, automatic_camera   true where the program added light or camera
 //
 //   CURVE   {type, dimension, domain [a, b], angular, closed, ...}: of lines and polylines

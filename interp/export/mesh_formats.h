@@ -3,9 +3,9 @@
 //
 // A file is written from parts, each a mesh with a name and a material, to an open output file;
 // errors of writing stay in the file until its commit. Triangles that the single precision of a
-// format shrinks to an edge or a point are left out of all but OBJ (their neighbours close the
-// place). Lengths are millimetres, Z up, in OBJ, STL, PLY and 3MF; glTF keeps them in its vertices,
-// and its root node turns them into metres and Y up. Parts that are copies of another are written
+// format shrinks to an edge or a point are left out of all but OBJ (their neighbors close the
+// place). Lengths are millimeters, Z up, in OBJ, STL, PLY and 3MF; glTF keeps them in its vertices,
+// and its root node turns them into meters and Y up. Parts that are copies of another are written
 // as such in glTF and 3MF.
 
 #ifndef CAG_INTERP_EXPORT_MESH_FORMATS_H
@@ -25,7 +25,7 @@ typedef struct CagMeshPart {
 // NULL: no materials.
 CagStatus cag_export_obj(const CagMeshPart *parts, size_t n, const char *material_file,
                          CagAtomicFile *file, CagError *err);
-// The materials of the parts, each once: colours in sRGB as viewers take them, and the physical
+// The materials of the parts, each once: colors in sRGB as viewers take them, and the physical
 // `Pr`, `Pm`, `Pc`.
 CagStatus cag_export_mtl(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
 // All parts in one list of triangles with their flat normals. `title` goes into the header (NULL:
@@ -33,7 +33,7 @@ CagStatus cag_export_mtl(const CagMeshPart *parts, size_t n, CagAtomicFile *file
 CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, CagAtomicFile *file,
                          CagError *err);
 // One welded mesh: a point is one vertex, so its normal at a crease is the mean of those there, and
-// its parameters at a seam are the first. Colours are 8-bit sRGB.
+// its parameters at a seam are the first. Colors are 8-bit sRGB.
 CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
 // glTF 2.0: a node each part, a mesh each part that is no copy, metallic-roughness materials with
 // the Khronos extensions for ior, transmission, clear coat and strong emission where a material has
@@ -51,7 +51,7 @@ typedef struct CagGltfData {
 CagStatus cag_export_gltf(const CagMeshPart *parts, size_t n, const char *stem, CagAtomicFile *file,
                           CagGltfData *data, CagError *err);
 // 3MF, core specification: an object each part, closed ones as models and open ones as surfaces,
-// colours as base materials.
+// colors as base materials.
 CagStatus cag_export_3mf(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err);
 
 #endif

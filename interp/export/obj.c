@@ -167,7 +167,7 @@ static void write_material(const CagMaterial *m, CagAtomicFile *file) {
   // Phong's exponent with highlights as wide as those of the roughness: 2 / roughness^4 - 2.
   const double most_shiny = 1000;
   double alpha = fmax(m->roughness * m->roughness, 0.04);
-  // A dielectric reflects ((n - 1)/(n + 1))^2 of light that meets it square, a metal its colour.
+  // A dielectric reflects ((n - 1)/(n + 1))^2 of light that meets it square, a metal its color.
   double f0 = (m->ior - 1) / (m->ior + 1);
   CagColor mirror = {f0 * f0 + (m->color.r - f0 * f0) * m->metallic,
                      f0 * f0 + (m->color.g - f0 * f0) * m->metallic,

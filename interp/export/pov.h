@@ -6,14 +6,14 @@
 // are the renderer's own only where operands have no faces in common, which it could not tell apart
 // (CagPovCsg). Each thing is a #declare under its own name, each material one under M_name.
 //
-// Space: numbers are those of the script (millimetres, Z up). POV-Ray's left-handedness is a matter
+// Space: numbers are those of the script (millimeters, Z up). POV-Ray's left-handedness is a matter
 // of its default camera only: the camera here gives its own right, up and direction, from
 // cag_camera_frame, so that pictures are never mirrored. Turned things carry a `matrix`.
 //
-// Light: `assumed_gamma 1`; all colours are linear. A white matte face square to a light of
+// Light: `assumed_gamma 1`; all colors are linear. A white matte face square to a light of
 // strength 1 is 1.0 (white). No light fades with distance, so a strength says the same thing
 // everywhere. A sun stands very far away and casts slightly soft shadows; an area light casts those
-// of its size. Without radiosity (draft and normal quality) the sky's mean colour, or where there
+// of its size. Without radiosity (draft and normal quality) the sky's mean color, or where there
 // is none a dim white, stands in for the light that comes from everywhere.
 
 #ifndef CAG_INTERP_EXPORT_POV_H

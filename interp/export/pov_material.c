@@ -7,7 +7,7 @@
 //   specular    the surface's own highlight; as wide as the roughness says
 //   phong       the highlight of the glaze
 //   reflection  fresnel's law of the index of refraction, as far as surface or glaze are smooth; of
-//               metals, their own colour. What a rough metal would mirror blurred is shared between
+//               metals, their own color. What a rough metal would mirror blurred is shared between
 //               highlight and diffuse
 //
 // A material is declared for closed bodies; where light passes through it and something open wears
@@ -90,7 +90,7 @@ static void write_mirror(CagPovWriter *w, const Finish *f, bool bends) {
   pov_text(w, "      conserve_energy\n");
 }
 
-// The pigment's colour multiplies emission, so it is divided out.
+// The pigment's color multiplies emission, so it is divided out.
 static void write_emission(CagPovWriter *w, CagColor pigment, CagColor light) {
   if (brightness(light) <= 0) return;
   pov_text(w, "      emission ");
@@ -114,7 +114,7 @@ static void write_finish(CagPovWriter *w, const CagMaterial *m, CagColor pigment
 // --- Patterns ---
 
 typedef struct Stop {
-  double at, mix, transmit; // place, share of the second colour, transparency
+  double at, mix, transmit; // place, share of the second color, transparency
 } Stop;
 
 static void write_color_map(CagPovWriter *w, const CagMaterial *m, const Stop *stops, size_t n) {
@@ -262,7 +262,7 @@ void pov_scale_material(CagPovWriter *w, size_t index, const CagColorScale *scal
   pov_text(w, "  }\n");
 }
 
-// Share of a sky's mean colour that stands in for its light: corners see less than all of it.
+// Share of a sky's mean color that stands in for its light: corners see less than all of it.
 #define SKY_SHARE 0.5
 #define DIM_WHITE 0.12
 

@@ -118,8 +118,8 @@ static int position_decimals(const CagMesh *m, CagVec3 origin) {
   return decimals < 0 ? 0 : decimals > DECIMALS_MAX ? DECIMALS_MAX : decimals;
 }
 
-// The places of the vertices on the scale of colours. They use the middle half of 0..1, where the
-// pattern does not begin anew, so that values beyond the scale stay beyond its colours.
+// The places of the vertices on the scale of colors. They use the middle half of 0..1, where the
+// pattern does not begin anew, so that values beyond the scale stay beyond its colors.
 static void write_scale_places(CagPovWriter *w, const CagMesh *m) {
   const int decimals = 7;
   const CagColorScale *s = &m->scale;

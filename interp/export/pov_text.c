@@ -94,7 +94,7 @@ static bool is_identity(const CagTransform *t, bool *moved) {
 }
 
 void pov_placement(CagPovWriter *w, const char *indent, const CagTransform *t) {
-  double scale = 1 / t->m[3][3]; // affine, but perhaps not normalised
+  double scale = 1 / t->m[3][3]; // affine, but perhaps not normalized
   CagTransform n = *t;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 4; j++) n.m[i][j] *= scale;

@@ -17,7 +17,7 @@ typedef struct CagPovWriter {
   CagVec3 center; // of the scene
   double radius;  // of a sphere about everything; positive
   bool indirect;  // radiosity is on
-  double unit;    // POV-Ray's units in a millimetre: 1 unless the scene is tiny or huge
+  double unit;    // POV-Ray's units in a millimeter: 1 unless the scene is tiny or huge
   CagPovName *item_names, *material_names;
   // Where the thing just written stands, to be said behind its material, so that a pattern moves
   // with it. Set by pov_try_solid, taken and reset by the caller.
@@ -56,7 +56,7 @@ bool pov_names(const char *prefix, const char *const *names, size_t n, CagPovNam
 void pov_material(CagPovWriter *w, size_t index, bool closed);
 // The name to use for an item of it.
 void pov_material_name(const CagPovWriter *w, size_t index, bool closed, char out[64]);
-// The material with the colours of a scale in place of its own, to stand in an object; the mesh
+// The material with the colors of a scale in place of its own, to stand in an object; the mesh
 // has the places (pov_mesh).
 void pov_scale_material(CagPovWriter *w, size_t index, const CagColorScale *scale);
 // Where in the pattern the place t of a scale is; at its end it begins anew.

@@ -351,7 +351,7 @@ static Id sheet(Writer *w, const CagBrepShape *shape) {
   return id;
 }
 
-// A curve set of its own, which can have a name and a colour.
+// A curve set of its own, which can have a name and a color.
 static Id curve_set(Writer *w, const CagBrepShape *shape) {
   Id curve = nurbs_curve(w, shape->curve);
   Id id = begin(w, "GEOMETRIC_CURVE_SET(");
@@ -362,7 +362,7 @@ static Id curve_set(Writer *w, const CagBrepShape *shape) {
   return id;
 }
 
-// --- Colours ---
+// --- Colors ---
 
 // Of sRGB, as viewers take it, to 5 places.
 static void put_share(Writer *w, double linear) {

@@ -2,7 +2,7 @@
 // systems.
 //
 // Solids are manifold solids bounded by advanced faces, surfaces and regions are shells, curves a
-// geometric curve set; all carry their names and colours. Lengths are millimetres.
+// geometric curve set; all carry their names and colors. Lengths are millimeters.
 
 #ifndef CAG_INTERP_EXPORT_STEP_H
 #define CAG_INTERP_EXPORT_STEP_H

@@ -1,13 +1,13 @@
 // The curves, regions and labels of a scene as a flat picture in SVG.
 //
 // Where all of them lie in one plane z = constant they are seen from above, at their true size in
-// millimetres, y up. Otherwise they are seen by the camera; of a perspective one, a millimetre is
+// millimeters, y up. Otherwise they are seen by the camera; of a perspective one, a millimeter is
 // one at the distance of its target. The picture is cut to what is drawn, with a margin of 5%.
 //
 // Curves that are polynomials of degree up to 3 become exact cubic paths, arcs of circles and
 // ellipses exact elliptic arcs; everything else is drawn by cubics that stay within a 20,000th of
 // the picture's size. Regions are filled, their holes left out. Stroke and fill are the material's
-// colour, the stroke twice the line's radius wide; the transmission of a region's material is how
+// color, the stroke twice the line's radius wide; the transmission of a region's material is how
 // much of what lies below shows through. Labels stand over everything. Other shapes have no outline
 // and are left out.
 

@@ -2,8 +2,8 @@
 //
 // Ids: 1 the base materials, 2 on the objects in the order of the parts. A part is an object with a
 // mesh; a copy of one of the same material is an object with that one as its component, moved, and
-// with a name of its own: components have no material. Behind the objects' ids come the colour
-// groups (materials extension) of meshes that show values by colours. A mesh must be closed to be a
+// with a name of its own: components have no material. Behind the objects' ids come the color
+// groups (materials extension) of meshes that show values by colors. A mesh must be closed to be a
 // model; an open one is a surface. Points are those of the welded mesh.
 
 #include <stdio.h>
@@ -21,7 +21,7 @@
 enum {
   BATCH = 128,
   VERTEX_BYTES = 3 * 25 + 40,
-  TRIANGLE_BYTES = 3 * 21 + 40 + 24 + 3 * 32, // with colours
+  TRIANGLE_BYTES = 3 * 21 + 40 + 24 + 3 * 32, // with colors
   MATERIALS_ID = 1,
   FIRST_OBJECT = 2
 };
@@ -83,7 +83,7 @@ static size_t material_number(const Model *m, const CagMaterial *material) {
   return k;
 }
 
-// Colours are sRGB; what lets light through is transparent.
+// Colors are sRGB; what lets light through is transparent.
 static void write_materials(Model *m) {
   if (m->material_count == 0) return;
   cag_atomic_file_printf(m->xml, "  <basematerials id=\"%d\">\n", MATERIALS_ID);
@@ -102,9 +102,9 @@ static void write_materials(Model *m) {
   cag_atomic_file_text(m->xml, "  </basematerials>\n");
 }
 
-// --- Colours of values ---
+// --- Colors of values ---
 
-// Steps of a scale: neighbours differ by less than 8-bit colours show.
+// Steps of a scale: neighbors differ by less than 8-bit colors show.
 #define SCALE_STEPS 256
 
 static size_t scale_id(const Model *m, size_t i) { return m->count + FIRST_OBJECT + i; }

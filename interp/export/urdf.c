@@ -7,7 +7,7 @@
 
 #include "interp/export/mesh_formats.h"
 
-#define METRES 1e-3 // of a millimetre
+#define METERS 1e-3 // of a millimeter
 
 // --- Text ---
 
@@ -74,7 +74,7 @@ static void roll_pitch_yaw(const CagTransform *t, double rpy[3]) {
 static void put_origin(Writer *f, const char *margin, const CagTransform *t) {
   double rpy[3], xyz[3];
   roll_pitch_yaw(t, rpy);
-  for (int i = 0; i < 3; i++) xyz[i] = t->m[i][3] * METRES;
+  for (int i = 0; i < 3; i++) xyz[i] = t->m[i][3] * METERS;
   cag_atomic_file_printf(f->file, "%s<origin xyz=\"", margin);
   put_numbers(f, xyz, 3);
   put(f, "\" rpy=\"");
@@ -86,7 +86,7 @@ static void put_origin(Writer *f, const char *margin, const CagTransform *t) {
 
 static void put_geometry(Writer *f, const CagUrdfShape *s, const char *folder) {
   double side[3];
-  for (int i = 0; i < 3; i++) side[i] = s->size[i] * METRES;
+  for (int i = 0; i < 3; i++) side[i] = s->size[i] * METERS;
   put(f, "      <geometry>\n        ");
   switch (s->kind) {
   case CAG_URDF_MESH:
@@ -133,7 +133,7 @@ static void put_mass(Writer *f, const CagUrdfMass *m) {
   put_value(f, "value", m->mass);
   put(f, "/>\n      <inertia");
   for (int i = 0; i < 6; i++)
-    put_value(f, names[i], m->inertia[row[i]][column[i]] * METRES * METRES);
+    put_value(f, names[i], m->inertia[row[i]][column[i]] * METERS * METERS);
   put(f, "/>\n    </inertial>\n");
 }
 
@@ -154,7 +154,7 @@ static void put_link(const CagUrdf *u, Writer *f, const CagUrdfLink *l, const ch
 
 static void put_joint(const CagUrdf *u, Writer *f, const CagUrdfJoint *j) {
   bool turns = strcmp(j->type, "revolute") == 0, moves = strcmp(j->type, "fixed") != 0;
-  double unit = turns ? 1 : METRES;
+  double unit = turns ? 1 : METERS;
   put(f, "  <joint");
   put_attribute(f, "name", j->name);
   put_attribute(f, "type", j->type);
@@ -176,7 +176,7 @@ static void put_joint(const CagUrdf *u, Writer *f, const CagUrdfJoint *j) {
   if (j->mimic) {
     put(f, "    <mimic");
     put_attribute(f, "joint", j->mimic);
-    put_value(f, "multiplier", j->multiplier * METRES);
+    put_value(f, "multiplier", j->multiplier * METERS);
     put(f, "/>\n");
   }
   put(f, "  </joint>\n");
@@ -218,10 +218,10 @@ CagStatus cag_export_urdf(const CagUrdf *u, const char *folder, CagAtomicFile *f
 }
 
 CagStatus cag_export_urdf_mesh(const CagUrdfShape *s, CagAtomicFile *file, CagError *err) {
-  CagTransform metres;
+  CagTransform meters;
   CagMesh *m = NULL;
-  CagStatus status = cag_scale(cag_vec3(METRES, METRES, METRES), cag_vec3(0, 0, 0), &metres, err);
-  if (status == CAG_OK) status = cag_mesh_transform(s->mesh, &metres, &m, err);
+  CagStatus status = cag_scale(cag_vec3(METERS, METERS, METERS), cag_vec3(0, 0, 0), &meters, err);
+  if (status == CAG_OK) status = cag_mesh_transform(s->mesh, &meters, &m, err);
   if (status != CAG_OK) return status;
   status = cag_export_stl(&(CagMeshPart){.name = s->file, .mesh = m}, 1, "binary STL, meters", file,
                           err);

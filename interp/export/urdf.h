@@ -8,7 +8,7 @@
 // `world` is there only where the robot's base is not the world itself. What a joint carries to the
 // next one (the constant part of its Denavit-Hartenberg row) is the origin of the next joint. A
 // screw is two joints, of which the sliding one mimics the turning one. Lengths here are
-// millimetres and angles radians, as everywhere; the writer makes them metres.
+// millimeters and angles radians, as everywhere; the writer makes them meters.
 
 #ifndef CAG_INTERP_EXPORT_URDF_H
 #define CAG_INTERP_EXPORT_URDF_H
@@ -18,7 +18,7 @@
 #include "interp/value/value.h"
 #include "lang/arena.h"
 
-// Of joints that say none; URDF wants both. Radians or millimetres each second, N m or N.
+// Of joints that say none; URDF wants both. Radians or millimeters each second, N m or N.
 #define CAG_URDF_TURN_RATE 3.141592653589793
 #define CAG_URDF_SLIDE_RATE 1000
 #define CAG_URDF_EFFORT 100
@@ -104,7 +104,7 @@ CagUrdfMass cag_urdf_plain_mass(const CagUrdfShape *shape, double density);
 // Writes the XML text, in which meshes are called `folder`/FILE. Fails with "not-finite" if a
 // number is not finite.
 CagStatus cag_export_urdf(const CagUrdf *u, const char *folder, CagAtomicFile *file, CagError *err);
-// One mesh as a binary STL in metres.
+// One mesh as a binary STL in meters.
 CagStatus cag_export_urdf_mesh(const CagUrdfShape *shape, CagAtomicFile *file, CagError *err);
 
 #endif

@@ -118,7 +118,7 @@ static bool same_material(const CagUrdfMaterial *a, const CagUrdfMaterial *b) {
          a->color.b == b->color.b && a->alpha == b->alpha;
 }
 
-// Its number; materials of one name and different colours get different names.
+// Its number; materials of one name and different colors get different names.
 static size_t keep_material(CagUrdf *u, const char *said, CagColor color, double alpha) {
   CagUrdfMaterial m = {plain_name(u, said), color, alpha};
   const char *wanted = m.name;

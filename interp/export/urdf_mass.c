@@ -6,13 +6,13 @@
 #include "geom/solid/csg.h"
 #include "interp/export/urdf.h"
 
-#define CUBIC_METRES 1e-9 // of a cubic millimetre
+#define CUBIC_METERS 1e-9 // of a cubic millimeter
 
 // From integrals of 1; x, y, z; xx, yy, zz, xy, yz, zx about a point near the body; a body that is
 // inside out is the same body.
 static CagUrdfMass mass_of_terms(const double given[10], CagVec3 about, double density) {
   double t[10], sign = given[0] < 0 ? -1 : 1;
-  for (int i = 0; i < 10; i++) t[i] = sign * density * CUBIC_METRES * given[i];
+  for (int i = 0; i < 10; i++) t[i] = sign * density * CUBIC_METERS * given[i];
   CagUrdfMass m = {.mass = t[0]};
   if (!(m.mass > 0)) return (CagUrdfMass){0};
   double c[3] = {t[1] / t[0], t[2] / t[0], t[3] / t[0]}, second[3];
@@ -31,10 +31,10 @@ static CagStatus solid_mass(const CagSolid *s, double tolerance, double density,
   CagMassProperties p;
   CagStatus status = cag_solid_mass_within(s, tolerance, &p, err);
   if (status != CAG_OK || !(p.volume > 0)) return status;
-  out->mass = p.volume * density * CUBIC_METRES;
+  out->mass = p.volume * density * CUBIC_METERS;
   out->center = p.volume_centroid;
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) out->inertia[i][j] = p.inertia[i][j] * density * CUBIC_METRES;
+    for (int j = 0; j < 3; j++) out->inertia[i][j] = p.inertia[i][j] * density * CUBIC_METERS;
   return CAG_OK;
 }
 
@@ -120,7 +120,7 @@ CagUrdfMass cag_urdf_plain_mass(const CagUrdfShape *s, double density) {
       principal[i] = (a * a + b * b) / 12;
     }
   }
-  m.mass *= density * CUBIC_METRES;
+  m.mass *= density * CUBIC_METERS;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++)

@@ -2,7 +2,7 @@
 //
 // A first walk over the scene counts what all meshes hold together, so that it is checked against
 // the limits before anything is made; a second fills the draft. A node has one parent at most, so
-// no walk is longer than the nodes are many. Metres with Y up become millimetres with Z up.
+// no walk is longer than the nodes are many. Meters with Y up become millimeters with Z up.
 
 #include <stdlib.h>
 #include <string.h>
@@ -76,7 +76,7 @@ static bool read_place(const cJSON *node, CagTransform *out) {
   return true;
 }
 
-static CagTransform to_millimetres(void) {
+static CagTransform to_millimeters(void) {
   const double scale = 1000;
   CagTransform t = cag_transform_identity();
   t.m[0][0] = scale;
@@ -128,7 +128,7 @@ static CagStatus push_node(Walk *w, const cJSON *number, const CagTransform *abo
 // meshes.
 static CagStatus push_roots(Walk *w, CagError *err) {
   CagGltf *g = w->g;
-  CagTransform place = to_millimetres();
+  CagTransform place = to_millimeters();
   CagStatus status = CAG_OK;
   size_t which;
   const cJSON *scenes = cJSON_GetObjectItemCaseSensitive(g->json, "scenes"), *item;

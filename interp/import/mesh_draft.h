@@ -32,7 +32,7 @@ static inline void cag_draft_triangle(CagMeshDraft *d, uint32_t a, uint32_t b, u
   t[2] = c;
 }
 // A polygon of any count of corners; fewer than three are no face. Concave ones are taken apart
-// well; those without area or that cross themselves as fans, so that their neighbours stay closed.
+// well; those without area or that cross themselves as fans, so that their neighbors stay closed.
 CagStatus cag_draft_polygon(CagMeshDraft *d, const uint32_t *corners, size_t n, CagError *err);
 // Whether the run was interrupted; to be asked every so many elements.
 CagStatus cag_draft_check(const CagMeshDraft *d, CagError *err);

@@ -1,7 +1,7 @@
-// Mesh files of other programs: STL, OBJ, PLY, glTF and GLB as one mesh in millimetres with Z up.
+// Mesh files of other programs: STL, OBJ, PLY, glTF and GLB as one mesh in millimeters with Z up.
 //
 // A file is the bytes of it, already in memory; what it says about itself is checked against them
-// before memory is taken for it. glTF's metres with Y up become ours; the other formats say no
+// before memory is taken for it. glTF's meters with Y up become ours; the other formats say no
 // lengths and are taken as they are. Points at one place (the same bits) are one point of the mesh
 // (CagMesh.weld), triangles that have such a point twice are left out. Normals and parameters are
 // kept where a file has them.

@@ -3,7 +3,7 @@
 // Binary files may begin with "solid" like those of text. A file is binary when its length is
 // exactly what its count of triangles asks for; else it is text when it begins with "solid" and its
 // beginning has "facet" or "endsolid" and no zero byte; else binary, and its length is wrong.
-// Normals and colours of triangles are left: a normal follows from the corners.
+// Normals and colors of triangles are left: a normal follows from the corners.
 
 #include <string.h>
 

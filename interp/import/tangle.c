@@ -14,7 +14,7 @@
 #define FEW_CORNERS 128
 // Pairs of edges that are compared: about a second.
 #define MOST_PAIRS ((size_t)200000000)
-// Pairs that touch, beside neighbours, for each corner.
+// Pairs that touch, beside neighbors, for each corner.
 #define MOST_TOUCHES 8
 
 typedef struct Edge {

@@ -21,8 +21,8 @@
 #define LINKS_MOST 4096
 #define BODIES_MOST 16384
 
-#define MILLIMETRES 1000.0
-// Metres: robots are larger than the one and smaller than the other.
+#define MILLIMETERS 1000.0
+// Meters: robots are larger than the one and smaller than the other.
 #define LENGTH_LEAST 1e-9
 #define LENGTH_MOST 1e9
 
@@ -116,7 +116,7 @@ static bool numbers(Reader *r, const xmlNode *node, const char *name, double *ou
   return true;
 }
 
-// The same for lengths in metres and factors of them: none is beyond all measure.
+// The same for lengths in meters and factors of them: none is beyond all measure.
 static bool lengths(Reader *r, const xmlNode *node, const char *name, double *out, int n) {
   if (!numbers(r, node, name, out, n)) return false;
   for (int i = 0; i < n; i++)
@@ -134,7 +134,7 @@ static CagTransform origin_of(Reader *r, const xmlNode *owner) {
   lengths(r, n, "xyz", xyz, 3);
   numbers(r, n, "rpy", rpy, 3);
   CagTransform t = cag_rpy(rpy[0], rpy[1], rpy[2]);
-  for (int i = 0; i < 3; i++) t.m[i][3] = xyz[i] * MILLIMETRES;
+  for (int i = 0; i < 3; i++) t.m[i][3] = xyz[i] * MILLIMETERS;
   t.planar = false;
   return t;
 }
@@ -154,7 +154,7 @@ static void *grown(Reader *r, void *items, size_t count, size_t *room, size_t si
   return bigger;
 }
 
-// A material with a colour is known by its name from then on, wherever it stands.
+// A material with a color is known by its name from then on, wherever it stands.
 static void read_material(Reader *r, const xmlNode *n, CagUrdfBody *body) {
   double rgba[4] = {0, 0, 0, 1};
   const char *name = attribute(r, n, "name");
@@ -204,7 +204,7 @@ static void read_geometry(Reader *r, const xmlNode *n, CagUrdfBody *b) {
   if (!sized)
     fail_at(r, syntax, xmlGetLineNo((xmlNode *)g), "<%s> lacks sizes greater than 0",
             (const char *)g->name);
-  for (int i = 0; i < 3; i++) size[i] *= MILLIMETRES;
+  for (int i = 0; i < 3; i++) size[i] *= MILLIMETERS;
 }
 
 static CagUrdfBody *read_body(Reader *r, const xmlNode *n) {
@@ -270,7 +270,7 @@ static void read_limits(Reader *r, const xmlNode *n, CagUrdfEdge *e) {
   const double turn = 2 * M_PI;
   const xmlNode *l = child(n, "limit");
   bool slides = e->kind == CAG_URDF_PRISMATIC;
-  double unit = slides ? MILLIMETRES : 1;
+  double unit = slides ? MILLIMETERS : 1;
   if (!l && e->kind != CAG_URDF_CONTINUOUS)
     fail_at(r, syntax, e->line, "the joint \"%.60s\" lacks its <limit>, which %s %s joint has",
             e->name, cag_article(slides ? "prismatic" : "revolute"),
@@ -344,7 +344,7 @@ static void read_joint(Reader *r, const xmlNode *n) {
 
 // --- The document ---
 
-// Colours of materials that are only named.
+// Colors of materials that are only named.
 static void find_colors(Reader *r) {
   for (size_t i = 0; i < r->tree->node_count; i++)
     for (CagUrdfBody *b = r->tree->nodes[i].visuals; b; b = b->next)

@@ -2,7 +2,7 @@
 // chain of it as the rows of a robot.
 //
 // A file is a tree of links (frames with bodies) that joints hang on each other. What the file says
-// in metres is millimetres here. Document types are refused, so there are no entities to expand,
+// in meters is millimeters here. Document types are refused, so there are no entities to expand,
 // and nothing is fetched from anywhere.
 
 #ifndef CAG_INTERP_IMPORT_URDF_READ_H

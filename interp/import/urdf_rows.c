@@ -18,10 +18,10 @@
 // Sines and radians below which a direction is taken for a round one: files have angles with 12
 // digits or more, and an arm of 10 m then ends within 1e-10 m of where they lead.
 #define SAME_DIRECTION 1e-11
-// Lengths are kept to so many parts of a millimetre: what they lose by is 1e-13 m.
+// Lengths are kept to so many parts of a millimeter: what they lose by is 1e-13 m.
 #define LENGTH_PARTS 1e10
 #define LENGTH_MOST 1e5
-// How far from where a row leads, in millimetres, the next axis may lie.
+// How far from where a row leads, in millimeters, the next axis may lie.
 #define OFF_AXIS 1e-10
 // Common normals of axes that cross at less than this are not computed: rounding moves them.
 #define LEAST_SINE 1e-5
@@ -236,10 +236,10 @@ static CagStatus add_edges(Walk *w, const size_t *chain, size_t n, CagError *err
     } else if (!e->mimic) {
       add_joint(w, e, 0);
     } else if (next && is_screw(e, next)) {
-      const double millimetres = 1000;
+      const double millimeters = 1000;
       CagUrdfEdge whole = *next;
       whole.origin = e->origin;
-      add_joint(w, &whole, e->multiplier * millimetres);
+      add_joint(w, &whole, e->multiplier * millimeters);
       e = next;
       i++;
     } else {

@@ -1,4 +1,4 @@
-// How far two pictures differ: sums per channel, colour differences, heatmap.
+// How far two pictures differ: sums per channel, color differences, heatmap.
 
 #include "interp/render/compare.h"
 
@@ -167,7 +167,7 @@ void cag_compare_print(const CagCompareReport *r, FILE *out) {
           r->differing_pixels, pixels, 100 * (double)r->differing_pixels / pixels);
 }
 
-// The colours of heat: black, red, yellow, white at 0, 1/3, 2/3, 1.
+// The colors of heat: black, red, yellow, white at 0, 1/3, 2/3, 1.
 static void heat(double t, float *r, float *g, float *b) {
   *r = (float)fmin(3 * t, 1);
   *g = (float)fmin(fmax(3 * t - 1, 0), 1);
@@ -229,14 +229,14 @@ void cag_compare_lab(const double linear_rgb[3], double lab[3]) {
 
 static double degrees(double d) { return d * PI / 180; }
 
-// The angle of (a, b) in 0..2 pi; 0 for no colour.
+// The angle of (a, b) in 0..2 pi; 0 for no color.
 static double hue(double a, double b) {
   if (a == 0 && b == 0) return 0;
   const double h = atan2(b, a);
   return h < 0 ? h + 2 * PI : h;
 }
 
-// sqrt(c^7 / (c^7 + 25^7)): 0 for grey, 1 for strong colour.
+// sqrt(c^7 / (c^7 + 25^7)): 0 for gray, 1 for strong color.
 static double chroma_weight(double c) {
   const double c7 = pow(c, 7), limit7 = 6103515625.0; // 25^7
   return sqrt(c7 / (c7 + limit7));
@@ -253,7 +253,7 @@ static void hue_pair(double h1, double h2, bool gray, double *mean, double *step
 }
 
 double cag_compare_delta_e(const double lab1[3], const double lab2[3]) {
-  // Equations 2 to 7: chroma and hue, with the a axis stretched near grey.
+  // Equations 2 to 7: chroma and hue, with the a axis stretched near gray.
   const double c_mean = (hypot(lab1[1], lab1[2]) + hypot(lab2[1], lab2[2])) / 2;
   const double stretch = 1 + 0.5 * (1 - chroma_weight(c_mean));
   const double a1 = stretch * lab1[1], a2 = stretch * lab2[1];

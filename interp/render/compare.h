@@ -5,9 +5,9 @@
 // with a NaN or infinity in it counts as differing by more than every threshold and is reported
 // apart.
 //
-// The perceptual figure is the colour difference CIEDE2000 (Sharma, Wu, Dalal, "The CIEDE2000
+// The perceptual figure is the color difference CIEDE2000 (Sharma, Wu, Dalal, "The CIEDE2000
 // Color-Difference Formula: Implementation Notes, Supplementary Test Data, and Mathematical
-// Observations", Color Research and Application 30, 2005) of the colours as a screen shows them:
+// Observations", Color Research and Application 30, 2005) of the colors as a screen shows them:
 // linear light clipped to 0..1, sRGB primaries, D65, CIELAB. Its unit: about 1 is just noticeable
 // side by side, 100 is black against white.
 
@@ -61,10 +61,10 @@ void cag_compare_print(const CagCompareReport *report, FILE *out);
 // itself (infinity for unlike ones). Release with cag_image_free.
 bool cag_compare_heatmap(const CagImage *a, const CagImage *b, CagImage *out, CagIoError *err);
 
-// CIEDE2000 of two CIELAB colours, all weights 1.
+// CIEDE2000 of two CIELAB colors, all weights 1.
 double cag_compare_delta_e(const double lab1[3], const double lab2[3]);
 
-// CIELAB (D65) of a colour of linear sRGB, clipped to 0..1; NaN counts as 0.
+// CIELAB (D65) of a color of linear sRGB, clipped to 0..1; NaN counts as 0.
 void cag_compare_lab(const double linear_rgb[3], double lab[3]);
 
 #endif

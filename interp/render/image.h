@@ -1,7 +1,7 @@
 // Pictures in memory: named channels of 32-bit floats.
 //
 // The samples are planar: channel c is one block of width * height floats, row after row from the
-// top, x fastest. Colour is linear light with the sRGB primaries unless a function says otherwise.
+// top, x fastest. Color is linear light with the sRGB primaries unless a function says otherwise.
 // Channel names are those of EXR: R G B A Z, or `layer.name`.
 
 #ifndef CAG_INTERP_RENDER_IMAGE_H

@@ -1,6 +1,6 @@
 // PNG pictures, through libpng: what a person looks at.
 //
-// Written from linear light: each colour is multiplied by 2^exposure, highlights are rolled off,
+// Written from linear light: each color is multiplied by 2^exposure, highlights are rolled off,
 // the result gets the sRGB transfer of IEC 61966-2-1 and is rounded to 8 or 16 bits. The roll-off
 // keeps everything up to CAG_PNG_SHOULDER as it is and bends what lies above towards 1 with a
 // continuous slope:
@@ -10,7 +10,7 @@
 //     CAG_PNG_SHOULDER
 //
 // so that a bright spot keeps its shape instead of turning flat. NaN and values below 0 become 0,
-// infinity becomes 1. Alpha (channel `A`, when there is one) is not exposed or bent; EXR's colours,
+// infinity becomes 1. Alpha (channel `A`, when there is one) is not exposed or bent; EXR's colors,
 // which are premultiplied, are divided by it first.
 
 #ifndef CAG_INTERP_RENDER_PNG_H
@@ -46,14 +46,14 @@ double cag_png_srgb_decode(double encoded);
 // The roll-off above, for x >= 0.
 double cag_png_shoulder(double x);
 
-// Writes the image's colour (R G B, or Y) and alpha. `-` is standard output. `options` may be NULL,
+// Writes the image's color (R G B, or Y) and alpha. `-` is standard output. `options` may be NULL,
 // `texts` too when the count is 0. Fails with CAG_EXIT_FILE (cannot be written), CAG_EXIT_USAGE (no
-// colour channels, bits that PNG does not have).
+// color channels, bits that PNG does not have).
 bool cag_png_write(const char *path, const CagImage *image, const CagPngOptions *options,
                    const CagPngText *texts, size_t text_count, CagIoError *err);
 
 // Reads a PNG of any kind into linear R, G, B, and A (premultiplied, as in EXR) if it has
-// transparency, taking its colours as sRGB.
+// transparency, taking its colors as sRGB.
 bool cag_png_read(const char *path, CagImage *out, CagIoError *err);
 
 #endif

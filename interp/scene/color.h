@@ -1,4 +1,4 @@
-// Names of colours, for messages that offer the nearest one.
+// Names of colors, for messages that offer the nearest one.
 
 #ifndef CAG_INTERP_SCENE_COLOR_H
 #define CAG_INTERP_SCENE_COLOR_H

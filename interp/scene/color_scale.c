@@ -1,4 +1,4 @@
-// Scales of colours that look evenly stepped to the eye: viridis (Smith and van der Walt, 2015) for
+// Scales of colors that look evenly stepped to the eye: viridis (Smith and van der Walt, 2015) for
 // values from low to high, and Moreland's cool to warm (2009) for values about a middle, both by
 // sRGB samples between which sRGB is interpolated. Stripes change sharply.
 

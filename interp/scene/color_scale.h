@@ -1,14 +1,14 @@
-// Colours of values: what exporters make of a mesh with a scale.
+// Colors of values: what exporters make of a mesh with a scale.
 
 #ifndef CAG_INTERP_SCENE_COLOR_SCALE_H
 #define CAG_INTERP_SCENE_COLOR_SCALE_H
 
 #include "interp/scene/scene.h"
 
-// The colour of a value; of a value that is no number, gray.
+// The color of a value; of a value that is no number, gray.
 CagColor cag_color_scale_at(const CagColorScale *scale, double value);
 
-// A scale as places 0..1 (`from` to `to`) with colours, linear light between them. Two stops at one
+// A scale as places 0..1 (`from` to `to`) with colors, linear light between them. Two stops at one
 // place are an edge.
 #define CAG_SCALE_STOPS_MAX 160
 #define CAG_SCALE_STRIPES_MAX ((CAG_SCALE_STOPS_MAX) / 4)

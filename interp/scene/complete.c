@@ -5,8 +5,8 @@
 // from above, without perspective, on white paper.
 //
 // Light (no light and no sky shown): a studio scaled to the scene. A large warm key light from the
-// camera's upper left, a dim cool fill from its right, a rim light from behind, a sky of soft greys
-// that lights all sides, and a grey floor at the lowest point, whose tone meets the sky's, unless
+// camera's upper left, a dim cool fill from its right, a rim light from behind, a sky of soft grays
+// that lights all sides, and a gray floor at the lowest point, whose tone meets the sky's, unless
 // the scene shows a ground of its own or the camera is below.
 
 #include <stdlib.h>

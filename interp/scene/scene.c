@@ -50,7 +50,7 @@ void cag_scene_free(CagScene *s) {
   *s = (CagScene){0};
 }
 
-// Light grey with a soft gloss: shows form under any light. The texts are not allocated: who keeps
+// Light gray with a soft gloss: shows form under any light. The texts are not allocated: who keeps
 // the material in a scene copies them.
 CagMaterial cag_material_default(void) {
   static char name[] = "default", texture[] = "";

@@ -2,7 +2,7 @@
 // renderers.
 //
 // A scene owns what it points to: texts are copies, geometry is retained. Positions are world
-// coordinates in millimetres, Z up; angles radians; colours linear RGB. Nothing here knows of
+// coordinates in millimeters, Z up; angles radians; colors linear RGB. Nothing here knows of
 // values of the language.
 
 #ifndef CAG_INTERP_SCENE_H
@@ -19,7 +19,7 @@ typedef struct CagColor {
   double r, g, b; // linear light
 } CagColor;
 
-// Colour from "teal" (CSS names), "#0a8", "#00aa88": sRGB, made linear. False: no such colour.
+// Color from "teal" (CSS names), "#0a8", "#00aa88": sRGB, made linear. False: no such color.
 bool cag_color_from_text(const char *text, CagColor *out);
 double cag_srgb_to_linear(double c);
 double cag_linear_to_srgb(double c);
@@ -35,7 +35,7 @@ typedef struct CagMaterial {
   double coat;     // 0..1: clear glaze over the base
   char *texture;   // "" | "wood" | "marble" | "concrete" | "clay" ...: procedural pattern of the
                    // engines; never NULL
-  CagColor color2; // second colour of the pattern
+  CagColor color2; // second color of the pattern
   double texture_scale; // mm
   char *pov;            // POV-Ray texture text for that engine only; NULL: none
 } CagMaterial;
@@ -137,7 +137,7 @@ typedef struct CagLight {
 } CagLight;
 
 typedef struct CagSky {
-  size_t color_count; // colours from below to above; 0: none
+  size_t color_count; // colors from below to above; 0: none
   CagColor *colors;
   char *image; // path of an EXR; NULL: none
 } CagSky;

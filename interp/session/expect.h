@@ -36,11 +36,11 @@
 #define CAG_TEST_SECONDS 60.0
 #define CAG_TEST_PICTURE_SECONDS 900.0
 
-// A picture is as its reference when the mean of the colour difference CIEDE2000 is at most
+// A picture is as its reference when the mean of the color difference CIEDE2000 is at most
 // CAG_TEST_DELTA_E (1 is just noticeable side by side), and no more than the share CAG_TEST_PIXELS
 // of the pixels differ by more than CAG_TEST_PIXEL in a channel of linear light. This lets pass
 // what the renderer's version and the rounding of a processor change at edges, and catches a shape
-// that is missing, moved by some pixels, or of another colour.
+// that is missing, moved by some pixels, or of another color.
 #define CAG_TEST_DELTA_E 1.0
 #define CAG_TEST_PIXEL 0.1
 #define CAG_TEST_PIXELS 0.01

@@ -29,7 +29,7 @@ extern const CagToolCommand cag_tool_commands[CAG_TOOL_COMMAND_COUNT];
 extern const CagToolOption cag_tool_options[];
 extern const size_t cag_tool_option_count;
 
-// Reads the command line into `t` (which it initialises), with the operands in order in
+// Reads the command line into `t` (which it initializes), with the operands in order in
 // argv[0..count-1]. False, after a message, when it makes no sense; nothing has been done then.
 // What it took is released by cag_tool_release.
 bool cag_tool_read(CagTool *t, int argc, char **argv, int *operand_count);

@@ -186,7 +186,7 @@ typedef struct CagShape {
 typedef struct CagSceneValue {
   CagObject head;
   const char *kind;  // "perspective", "sun", "point", "spot", "area", "sky", "background", "ground"
-  CagRecord *fields; // all arguments by name, defaults filled in; colours as [r, g, b] linear
+  CagRecord *fields; // all arguments by name, defaults filled in; colors as [r, g, b] linear
   CagTransform
       placement; // moved by transforms: applied to eye, target, direction ... by the scene builder
   bool mirrored; // a camera that an odd number of mirrors has moved: it gives the mirrored picture
@@ -313,7 +313,7 @@ bool cag_equal(CagVm *vm, CagValue a, CagValue b); // ==
 
 // A list or vector of exactly / at least n numbers as doubles.
 bool cag_as_vector(CagValue v, const double **x, size_t *n); // a list with dim 1 (not empty)
-// A range or list as a list value (materialises ranges; a text or record is not one). False: error
+// A range or list as a list value (materializes ranges; a text or record is not one). False: error
 // set.
 bool cag_as_list(CagVm *vm, CagValue v, CagValue *list);
 

@@ -1,5 +1,5 @@
 // The chains, and the sequence of joint values, of the figures of robots: for our side in C and the
-// peer's in C++. Rows are classic Denavit-Hartenberg, in metres and degrees, with limits.
+// peer's in C++. Rows are classic Denavit-Hartenberg, in meters and degrees, with limits.
 
 #ifndef CAG_BENCH_ROBOTS_H
 #define CAG_BENCH_ROBOTS_H

@@ -176,7 +176,7 @@ typedef struct Peer {
 
 // The largest distance found of points of the surface to the mesh. Boxes of the parameter plane
 // hold the triangles that touch them; a point's foot lies in one of those at its parameters, but
-// for shear, which the neighbouring boxes cover.
+// for shear, which the neighboring boxes cover.
 enum { BOXES = 512, AROUND = 1, TRIES = 2000000 };
 
 typedef struct Boxes {

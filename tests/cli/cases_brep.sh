@@ -208,7 +208,7 @@ cp ball_body.step out
 grep -q '=MANIFOLD_SOLID_BREP(' ball_body.step || wrong 'it is no solid'
 [ "$(grep -c "=B_SPLINE_CURVE_WITH_KNOTS('',3," ball_body.step)" -le 2 ] || wrong 'circles are approximated'
 
-it 'names and colours are in the .step'
+it 'names and colors are in the .step'
 script named.cag 'show sphere(1) |> named("It'"'"'s \u{e9}t\u{e9}") |> color([1, 0, 0])'
 try export named.cag -o named.step
 status 0

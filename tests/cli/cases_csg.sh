@@ -1,6 +1,6 @@
 # Set operations as the renderer's own and as meshes: the same pictures.
 
-# alike NAME SHAPE: renders the shape natively and as a mesh; the colours' root mean square difference is small. Edges
+# alike NAME SHAPE: renders the shape natively and as a mesh; the colors' root mean square difference is small. Edges
 # that are sampled differently are all that may differ.
 alike() {
   script "$1.cag" "param native = true

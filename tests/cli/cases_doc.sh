@@ -77,11 +77,11 @@ try doc nowhere.cag
 status 3
 says 'nowhere.cag'
 
-it 'no colours go to a pipe, unless asked for'
+it 'no colors go to a pipe, unless asked for'
 try doc sin
-! grep -q "$(printf '\033')" out || wrong 'codes of colours'
+! grep -q "$(printf '\033')" out || wrong 'codes of colors'
 try doc sin --color always
-grep -q "$(printf '\033')" out || wrong 'no codes of colours'
+grep -q "$(printf '\033')" out || wrong 'no codes of colors'
 
 it 'the site is made, and every example on it does what it says'
 try doc --html site --no-pictures

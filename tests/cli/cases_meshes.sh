@@ -277,7 +277,7 @@ script corner.cag 'f(x, y) = [x, y, (x + 2*y) / 2]
 show bezier_surface([[f(0,0), f(0,0), f(0,2), f(0,3)], [f(0,0), f(1,1), f(1,2), f(1,3)], [f(2,0), f(2,1), f(2,2), f(2,3)], [f(3,0), f(3,1), f(3,2), f(3,3)]])'
 try export corner.cag -o corner.ply
 status 0
-# Six floats first, of 4 bytes each; then two more and three colours.
+# Six floats first, of 4 bytes each; then two more and three colors.
 size=$((8 * 4 + 3)) head=$(grep -abo end_header corner.ply | cut -d: -f1)
 count=$(sed -n 's/^element vertex //p' corner.ply | head -1)
 tail -c +$((head + 12)) corner.ply | head -c $((count * size)) > corner_vertices
@@ -292,19 +292,19 @@ awk '{ d = ($1 + 1/3)^2 + ($2 + 2/3)^2 + ($3 - 2/3)^2; if (!(d < 1e-12)) exit 1 
 it 'copies are written once'
 [ "$(wc -c < bodies.glb)" -lt "$(($(wc -c < bodies.ply) * 3 / 4))" ] || wrong 'the .glb holds every copy'
 
-it 'values are shown by colours where the format has them'
+it 'values are shown by colors where the format has them'
 script colors.cag 'show colored_by(torus_surface(3, 1), "gaussian") |> named("map"), zebra(translate([9, 0, 0]) * sphere_surface(2))
 show translate([0, 9, 0]) * colored_by(torus_surface(3, 1), "gaussian"), translate([0, 18, 0]) * colored_by(torus_surface(3, 1), "mean")'
 for format in gltf glb ply 3mf obj stl pov; do
   try export colors.cag -o "colors.$format"
   status 0
 done
-[ "$(grep -o COLOR_0 colors.gltf | wc -l)" -eq 3 ] || wrong 'the moved copy of a map shares its mesh, the others have colours of their own'
-grep -q uv_mapping colors.pov || wrong 'the .pov has no colours'
+[ "$(grep -o COLOR_0 colors.gltf | wc -l)" -eq 3 ] || wrong 'the moved copy of a map shares its mesh, the others have colors of their own'
+grep -q uv_mapping colors.pov || wrong 'the .pov has no colors'
 if needs unzip xmllint; then
   unzip -p colors.3mf 3D/3dmodel.model > colors.xml
   xmllint --noout colors.xml || wrong 'the .3mf is no XML'
-  [ "$(grep -c '<m:colorgroup' colors.xml)" -eq 3 ] || wrong 'the .3mf has not a group of colours for each mesh'
+  [ "$(grep -c '<m:colorgroup' colors.xml)" -eq 3 ] || wrong 'the .3mf has not a group of colors for each mesh'
 fi
 
 it 'meshes without a triangle are no output'
@@ -353,7 +353,7 @@ for format in glb gltf 3mf; do
   [ -e "bodies.$format" ] || try export bodies.cag -o "bodies.$format"
   try_command assimp export "bodies.$format" "of_$format.stl"
   status 0
-  # assimp leaves glTF's metres and Y up as they are: a .glb of its own is what we read.
+  # assimp leaves glTF's meters and Y up as they are: a .glb of its own is what we read.
   case $format in
     3mf) try run bodies_of.cag -D "file=of_$format.stl" ;;
     *) script turned.cag "m = read_mesh(\"of_$format.stl\")
@@ -410,7 +410,7 @@ if needs unzip xmllint; then
   ran='xmllint model.xml'
   : > out
   : > err
-  [ "$(in_model 'string(/@@model/@unit)')" = millimeter ] || wrong 'the unit is no millimetre'
+  [ "$(in_model 'string(/@@model/@unit)')" = millimeter ] || wrong 'the unit is no millimeter'
   [ "$(in_model 'count(//@@object)')" = 17 ] || wrong 'there are not 17 objects'
   [ "$(in_model 'count(//@@build/@@item)')" = 17 ] || wrong 'not every object is built'
   [ "$(in_model 'count(//@@item[not(@objectid = //@@object/@id)])')" = 0 ] || wrong 'an item of no object'

@@ -570,7 +570,7 @@ static void many_operands(void **state) {
 
 static void triangles_without_area_are_no_gap(void **state) {
   (void)state;
-  // A tetrahedron with a point more on an edge: one neighbour has it, the other does not, and a
+  // A tetrahedron with a point more on an edge: one neighbor has it, the other does not, and a
   // triangle without area between them closes the mesh.
   const CagVec3 v[5] = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0}};
   const uint32_t faces[18] = {0, 2, 4, 4, 2, 1, 0, 4, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};

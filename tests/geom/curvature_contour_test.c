@@ -85,7 +85,7 @@ static void contours_come_up_to_the_tip_of_a_cone(void **state) {
   cag_curve_release(side);
 }
 
-// Sizes from a micrometre to kilometres, and far from the origin.
+// Sizes from a micrometer to kilometers, and far from the origin.
 static void contours_do_not_depend_on_size_or_place(void **state) {
   (void)state;
   CagSurface *torus, *scaled, *moved;

@@ -162,7 +162,7 @@ static bool is_straight(const CagCurve *c) {
   return is;
 }
 
-static void planes_and_lines_are_recognised(void **state) {
+static void planes_and_lines_are_recognized(void **state) {
   (void)state;
   CagCurve *c;
   CagPlane plane;
@@ -400,7 +400,7 @@ int main(void) {
       cmocka_unit_test(a_rational_circle_has_length_and_area_of_the_circle),
       cmocka_unit_test(areas_and_centroids_of_polygons),
       cmocka_unit_test(bounds_are_tight),
-      cmocka_unit_test(planes_and_lines_are_recognised),
+      cmocka_unit_test(planes_and_lines_are_recognized),
       cmocka_unit_test(polylines_keep_the_tolerance),
       cmocka_unit_test(a_circle_takes_the_fewest_points),
       cmocka_unit_test(lengths_of_uneven_speed_are_right),

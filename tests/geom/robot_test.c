@@ -32,7 +32,7 @@ static CagRobot *chain(const Row *rows, size_t n) {
 // Puma of the textbook, table 14.1.
 static const Row puma[] = {{0, 0, -90},   {149.5, 432, 0}, {0, 0, 90},
                            {432, 0, -90}, {0, 0, 90},      {56.5, 0, 0}};
-static const Row puma_metres[] = {{0, 0, -90},      {.14909, .4318, 0}, {0, -.02032, 90},
+static const Row puma_meters[] = {{0, 0, -90},      {.14909, .4318, 0}, {0, -.02032, 90},
                                   {.43307, 0, -90}, {0, 0, 90},         {.05625, 0, 0}};
 
 static void to_radians(const double *degrees, size_t n, double *q) {
@@ -167,7 +167,7 @@ static void jacobian_is_that_of_the_reference(void **state) {
       {0, 0.9063077870366499, 0.9063077870366499, -0.4210100716628344, 0.4850527341930118,
        -0.8577691943163454},
       {1, 0, 0, -0.08715574274765818, -0.8627299156628209, -0.43758733792010696}};
-  CagRobot *r = chain(puma_metres, 6);
+  CagRobot *r = chain(puma_meters, 6);
   const double degrees[] = {25, -130, 35, 60, -50, 170};
   double q[6], columns[6][6], values[6];
   size_t count, rank;

@@ -230,7 +230,7 @@ static void extrusions_have_the_metrics_of_the_reference(void **state) {
   assert_mass(s, 20.943951023931955, 33.8359883929281 + 12.566370614359172, cag_vec3(0, 0, 1.25));
   assert_edges(s, 1);
   cag_solid_release(s);
-  // A twist about the centre changes no volume; taper by k does as stated.
+  // A twist about the center changes no volume; taper by k does as stated.
   MUST(cag_solid_extrude(holed, cag_vec3(1, 0, 6), 2, 1, &s, err));
   assert_near(flux_volume(s), 12 * 6, 1e-8, "twisted");
   assert_edges(s, 4);

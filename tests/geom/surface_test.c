@@ -568,7 +568,7 @@ static void a_tube_keeps_its_radius_square_to_the_path(void **state) {
       CagVec3 spoke = cag_sub(d[0], c[0]);
       assert_near(cag_norm(spoke), r, 1e-12, "radius");
       assert_near(cag_dot(spoke, c[1]) / cag_norm(c[1]), 0, 1e-12, "square to the tangent");
-      // Rotation minimising: spokes move along the tangent only, so S_v is parallel to it.
+      // Rotation minimizing: spokes move along the tangent only, so S_v is parallel to it.
       CagVec3 along = cag_cross(d[cag_partial(2, 0, 1)], cag_unit(c[1]));
       assert_near(cag_norm(along) / cag_norm(c[1]), 0, 1e-10, "no turn about the tangent");
     }
@@ -628,7 +628,7 @@ static void closed_tubes_give_back_the_closing_twist(void **state) {
 }
 
 // Two straight pieces cut by the bisecting plane: each is a cylinder of the length of its axis.
-static void tubes_are_mitred_at_corners(void **state) {
+static void tubes_are_mitered_at_corners(void **state) {
   (void)state;
   const CagVec3 points[] = {{0, 0, 0}, {10, 0, 0}, {10, 6, 0}, {10, 6, 8}};
   CagCurve *c;
@@ -817,7 +817,7 @@ int main(void) {
       cmocka_unit_test(a_tube_keeps_its_radius_square_to_the_path),
       cmocka_unit_test(a_tube_along_a_circle_is_a_torus),
       cmocka_unit_test(closed_tubes_give_back_the_closing_twist),
-      cmocka_unit_test(tubes_are_mitred_at_corners),
+      cmocka_unit_test(tubes_are_mitered_at_corners),
       cmocka_unit_test(planar_pieces_measure_their_region),
       cmocka_unit_test(isocurves_run_on_the_surface),
       cmocka_unit_test(integrals_of_uneven_surfaces_are_right),

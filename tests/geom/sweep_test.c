@@ -223,7 +223,7 @@ static void radii_may_be_functions(void **state) {
 }
 
 // Prisms cut by the bisecting planes: area times the length of the axis through the centroid.
-static void corners_are_mitred(void **state) {
+static void corners_are_mitered(void **state) {
   (void)state;
   CagVec3 points[] = {{0, 0, 0}, {5, 0, 0}, {5, 5, 0}, {5, 5, 5}};
   CagCurve *path = NULL, *ring = NULL;
@@ -405,7 +405,7 @@ int main(void) {
       cmocka_unit_test(sweeps_obey_pappus),
       cmocka_unit_test(round_paths_have_exact_forms),
       cmocka_unit_test(radii_may_be_functions),
-      cmocka_unit_test(corners_are_mitred),
+      cmocka_unit_test(corners_are_mitered),
       cmocka_unit_test(transforms_sweep_too),
       cmocka_unit_test(frenet_has_limits_where_the_curvature_vanishes),
       cmocka_unit_test(lofts_reproduce_cubics),

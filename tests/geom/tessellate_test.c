@@ -372,7 +372,7 @@ static CagSurface *rough_net(size_t n, double height) {
   return s;
 }
 
-static void neighbours_of_unlike_curvature_share_their_edges(void **state) {
+static void neighbors_of_unlike_curvature_share_their_edges(void **state) {
   (void)state;
   CagSurface *s = rough_net(7, 3);
   CagMesh *m = mesh_of(s, 2e-3, 0.7), *again;
@@ -534,13 +534,13 @@ static void tubes_are_watertight(void **state) {
   CagCurve *path;
   OK(cag_curve_helix(10, 4, 3, 0, &path, &err));
   OK(cag_solid_tube(path, 1, &s, &err));
-  // Pappus again: the section is square to the path and its centre on it.
+  // Pappus again: the section is square to the path and its center on it.
   check_solid(s, 0.02, 2, M_PI * 3 * sqrt(400 * M_PI * M_PI + 16));
   cag_curve_release(path);
   const CagVec3 corners[] = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {10, 10, 10}};
   OK(cag_curve_polyline(corners, 4, false, 3, &path, &err));
   OK(cag_solid_tube(path, 1, &s, &err));
-  check_solid(s, 0.02, 2, M_PI * 30); // mitred corners keep the length of the axis
+  check_solid(s, 0.02, 2, M_PI * 30); // mitered corners keep the length of the axis
   cag_curve_release(path);
 }
 
@@ -613,7 +613,7 @@ int main(void) {
       cmocka_unit_test(triangles_go_where_the_curvature_is),
       cmocka_unit_test(extreme_weights_keep_the_tolerance),
       cmocka_unit_test(a_patch_with_an_edge_of_one_point_is_a_disc),
-      cmocka_unit_test(neighbours_of_unlike_curvature_share_their_edges),
+      cmocka_unit_test(neighbors_of_unlike_curvature_share_their_edges),
       cmocka_unit_test(limits_are_kept),
       cmocka_unit_test(primitives_are_watertight),
       cmocka_unit_test(extrusions_are_watertight),

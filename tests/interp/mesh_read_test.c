@@ -184,7 +184,7 @@ static void what_is_wrong_with_an_stl_is_told(void **state) {
 static void obj_has_polygons_and_numbers_from_the_end(void **state) {
   (void)state;
   // A cube of side 2: quads, one concave octagon would not add anything; negative numbers, groups,
-  // a line that goes on, vertices with colours.
+  // a line that goes on, vertices with colors.
   CagMesh *m = read_text("cube.obj", "# a cube\nmtllib none.mtl\no cube\n"
                                      "v 0 0 0\nv 2 0 0 0.5 0.5 0.5\nv 2 2 0\nv 0 2 0\n"
                                      "v 0 0 2\r\nv 2 0 2\r\nv 2 2 2\r\nv 0 2 2\r\n"
@@ -374,7 +374,7 @@ static void what_is_wrong_with_a_ply_is_told(void **state) {
 
 // --- glTF ---
 
-// Positions of the tetrahedron in glTF's axes and metres: x, z, -y of ours, by 1000.
+// Positions of the tetrahedron in glTF's axes and meters: x, z, -y of ours, by 1000.
 static void add_positions(Bytes *b) {
   for (int v = 0; v < 4; v++) {
     add_float(b, corners[v][0] / 1000);

@@ -125,7 +125,7 @@ static void sixteen_bits_come_back_as_light(void **state) {
   cag_image_free(&again);
 }
 
-static void alpha_is_kept_and_colours_are_unmultiplied(void **state) {
+static void alpha_is_kept_and_colors_are_unmultiplied(void **state) {
   (void)state;
   CagImage image, again;
   assert_true(cag_image_create(&image, 2, 1, 4, NULL));
@@ -142,7 +142,7 @@ static void alpha_is_kept_and_colours_are_unmultiplied(void **state) {
   free(pixels);
   assert_true(cag_png_read(path, &again, NULL));
   assert_int_equal(again.channel_count, 4);
-  // A step of 1/255 in the coverage and half of one in the colour.
+  // A step of 1/255 in the coverage and half of one in the color.
   assert_true(fabsf(again.data[0] - 0.25f) < 0.005f);
   cag_image_free(&image);
   cag_image_free(&again);
@@ -305,7 +305,7 @@ int main(void) {
       cmocka_unit_test(the_roll_off_is_smooth),
       cmocka_unit_test(a_stop_doubles_the_light),
       cmocka_unit_test(sixteen_bits_come_back_as_light),
-      cmocka_unit_test(alpha_is_kept_and_colours_are_unmultiplied),
+      cmocka_unit_test(alpha_is_kept_and_colors_are_unmultiplied),
       cmocka_unit_test(texts_are_stored),
       cmocka_unit_test(bad_requests_and_files_are_errors),
       cmocka_unit_test(a_png_cut_anywhere_is_an_error),

@@ -292,7 +292,7 @@ static void every_other_dash_is_drawn(void **state) {
     for (size_t n = 2; n <= 5; n++) check_dashes(corners, n, dashes[i]);
 }
 
-// Root of the mean squared difference of all colours.
+// Root of the mean squared difference of all colors.
 static double difference(const CagImage *a, const CagImage *b) {
   double sum = 0;
   size_t n = a->width * a->height;

@@ -99,7 +99,7 @@ static void a_region_is_filled_with_its_holes_left_out(void **state) {
   fixture_end(&f);
 }
 
-static void lines_have_their_width_dash_and_colour(void **state) {
+static void lines_have_their_width_dash_and_color(void **state) {
   (void)state;
   Fixture f;
   fixture_begin(&f);
@@ -253,7 +253,7 @@ int main(void) {
       cmocka_unit_test(a_bspline_is_split_into_its_exact_pieces),
       cmocka_unit_test(a_circle_is_two_exact_arcs),
       cmocka_unit_test(a_region_is_filled_with_its_holes_left_out),
-      cmocka_unit_test(lines_have_their_width_dash_and_colour),
+      cmocka_unit_test(lines_have_their_width_dash_and_color),
       cmocka_unit_test(a_space_curve_is_drawn_as_the_camera_sees_it),
       cmocka_unit_test(perspective_keeps_lengths_at_the_target),
       cmocka_unit_test(the_picture_ends_where_the_curve_does),

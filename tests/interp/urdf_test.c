@@ -17,7 +17,7 @@
 #include "cag.h"
 #include "interp/import/urdf_read.h"
 
-// Metres.
+// Meters.
 #define SAME 1e-9
 
 static char folder[] = "/tmp/cag-urdf-test-XXXXXX";
@@ -233,7 +233,7 @@ static Frame forward(const Joint *const *chain, size_t n, const double *q) {
 
 enum { POSES = 12 };
 
-// Joint values within the limits: `script` as a list of the language, q in radians and metres.
+// Joint values within the limits: `script` as a list of the language, q in radians and meters.
 static void draw_joints(const Joint *const *chain, size_t n, double q[64], char *script) {
   size_t k = 0;
   strcpy(script, "[");
@@ -483,7 +483,7 @@ static void open_shapes_have_no_mass(void **state) {
   }
 }
 
-static void rates_and_efforts_are_in_metres(void **state) {
+static void rates_and_efforts_are_in_meters(void **state) {
   (void)state;
   static Robot robot;
   free(run("show robot([prismatic(limits: -100..250, speed: 400, effort: 70), revolute(limits: "
@@ -632,7 +632,7 @@ int main(void) {
       cmocka_unit_test(masses_are_those_of_the_shapes),
       cmocka_unit_test(plain_bodies_weigh_what_their_sizes_say),
       cmocka_unit_test(open_shapes_have_no_mass),
-      cmocka_unit_test(rates_and_efforts_are_in_metres),
+      cmocka_unit_test(rates_and_efforts_are_in_meters),
       cmocka_unit_test(what_is_no_robot_is_refused),
       cmocka_unit_test(deep_and_large_files_are_refused),
       cmocka_unit_test(files_changed_by_chance_crash_nothing),

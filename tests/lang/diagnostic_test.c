@@ -1,4 +1,4 @@
-// How diagnostics look: text, colour, JSON, long and wide lines, notes; and the nearest name.
+// How diagnostics look: text, color, JSON, long and wide lines, notes; and the nearest name.
 
 #include "support.h"
 
