@@ -1,11 +1,12 @@
 // The negative side of a conic within a rectangle.
 //
-// The conic crosses the sides of the rectangle where a quadratic equation says. Between crossings
-// the equation has one sign along the sides; the class of the conic tells in which order its
-// branches pass the crossings, and so which two of them are ends of one arc within the rectangle.
-// A part is bounded by pieces of the sides and arcs in turn. The arcs are rational quadratic Bezier
-// curves: the apex is the meet of the tangents, and the weight has a closed form that does not
-// lose digits where the conic is far larger than the rectangle.
+// The crossings of the conic with the sides of the rectangle are roots of quadratic equations.
+// Between crossings, the equation of the conic has one sign along the sides. The class of the conic
+// determines in which order its branches pass the crossings, and so which two of them are the ends
+// of an arc within the rectangle. The boundary of a part alternates between pieces of the sides and
+// arcs. The arcs are rational quadratic Bezier curves: the apex is the intersection of the
+// tangents, and the weight has a closed form that does not lose digits if the conic is far larger
+// than the rectangle.
 
 #include "geom/curve/conic_side.h"
 
@@ -14,9 +15,9 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-// Crossings nearer than this part of the rectangle's perimeter are one.
+// Crossings are one if their distance is below this fraction of the rectangle's perimeter.
 #define ONE_CROSSING 1e-10
-// A value of the equation below this part of its terms is rounding.
+// A value of the equation below this fraction of its terms is rounding.
 #define ROUNDING (64 * DBL_EPSILON)
 // Tangents with a smaller sine than this between them are one: the arc is straight to rounding.
 #define STRAIGHT 1e-14
@@ -24,6 +25,7 @@
 #define MOST_TURN (M_PI / 3)
 #define MOST_HALVINGS 12
 
+// Each of the four sides has two roots.
 #define CANDIDATES_MOST 8
 #define GAPS_MOST (CANDIDATES_MOST + 1)
 
@@ -126,8 +128,8 @@ static int by_place(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-// The sign of the equation between two places of the perimeter, where it has no 0 between them; 0:
-// it is 0 all along.
+// The sign of the equation between two neighboring zeros on the perimeter, from the sample with the
+// largest value. 0: the equation is 0 at all samples.
 static int sign_between(const Work *w, double from, double to) {
   const double part[] = {0.5, 0.25, 0.75, 0.06, 0.94};
   double best = 0;
@@ -302,8 +304,8 @@ static CagVec3 precise_point(const Work *w, int branch, double t) {
   return w->b.kind == BRANCH_WEDGES || w->b.kind == BRANCH_LINES ? p : cag_conic_onto(w->conic, p);
 }
 
-// Whether a branch lies within the rectangle between two neighboring crossings: by the place that
-// tells most clearly.
+// Tests whether a branch lies within the rectangle between two neighboring crossings, by the sample
+// that is farthest from the sides.
 static bool is_inside(const Work *w, int branch, double from, double to) {
   const double part[] = {0.5, 0.25, 0.75};
   const CagVec3 low = w->r.corner[0], high = w->r.corner[2];

@@ -9,7 +9,7 @@
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
-// Control points that a curve may have per piece, and longest series.
+// Highest degree of a piece, and longest series.
 #define MOST_DEGREE 24
 #define MOST 16
 
@@ -18,10 +18,10 @@ static void widen(CagInterval *a, double x) {
   a->hi = cag_higher(a->hi, x);
 }
 
-// Of the polynomial with the control points b of degree p over a piece of this length, where the
-// part u..v of 0..1 counts. Coefficient k has the control points C(p, k) times the k-th
-// differences. These are differences of the whole piece, which rounding spoils less than those of a
-// short part.
+// Ranges of the polynomial of degree p with the control points b on a piece of this length, over
+// the part u..v of 0..1. Coefficient k has the control points C(p, k) times the k-th differences.
+// The differences are those of the whole piece because those of a short part have larger rounding
+// errors.
 static void polynomial_ranges(double *b, int p, double length, double u, double v, int n,
                               CagInterval (*out)[4]) {
   double part[4 * (MOST_DEGREE + 1)], factor = 1;

@@ -1,9 +1,15 @@
+// Vertices for corners of triangles whose normal is that of another side of a crease or cusp.
+//
+// A corner is looked at only if its normal leans away from the triangle. It gets the limit of the
+// surface's normal from within the triangle, or the opposite of its own normal beyond a cusp.
+
 #include "geom/mesh/sides.h"
 
 #include <stdlib.h>
 
-// How far from a corner towards the middle of its triangle the limit of the normal is taken: much
-// nearer than normals turn, and far enough for partial derivatives that vanish at the corner.
+// The limit of the normal at a corner is taken at this fraction of the way to the middle of the
+// triangle: normals turn little over it, and partial derivatives that vanish at the corner are
+// above rounding.
 static const double within = 1e-3;
 // Limits that differ by less are one.
 static const double same_direction = 1 - 1e-6;
@@ -17,7 +23,7 @@ typedef struct Sides {
   size_t capacity;
 } Sides;
 
-// Returns the normal of a triangle, zero if it is but rounding.
+// Returns the normal of a triangle, or zero if its height is at most the noise.
 static CagVec3 normal_of(const Sides *s, size_t t) {
   const uint32_t *k = s->m->triangles + 3 * t;
   const CagVec3 a = s->m->positions[k[0]];
@@ -49,7 +55,7 @@ static bool is_reversed_between(const Sides *s, size_t t, uint32_t j, uint32_t i
   double low = 0, high = 1;
   for (int step = 0; step < HALVINGS && cag_dot(before, after) < 0; step++) {
     const double half = (low + high) / 2;
-    if (!normal_towards(s, t, j, to, half, &n)) break; // there it is
+    if (!normal_towards(s, t, j, to, half, &n)) break; // the cusp: no normal
     if (cag_dot(n, before) > cag_dot(n, after)) low = half, before = n;
     else high = half, after = n;
   }

@@ -51,7 +51,7 @@ static CagInterval within_one(CagInterval a) {
 
 // Of unit length. Where the range of `a` holds 0, so that the direction is not known, each
 // coordinate is in -1..1, and there are no derivatives.
-static bool unit(const CagInterval3 *a, int n, CagInterval3 *out) {
+static bool unit_ranges(const CagInterval3 *a, int n, CagInterval3 *out) {
   const CagInterval any = {-1, 1};
   if (cag_intervals3_unit(a, n, out)) {
     out[0] = (CagInterval3){within_one(out[0].x), within_one(out[0].y), within_one(out[0].z)};
@@ -62,7 +62,8 @@ static bool unit(const CagInterval3 *a, int n, CagInterval3 *out) {
 }
 
 // Path and unit tangent; `bend`: the second derivative, or NULL.
-static bool tangent(const CagMotion *m, double a, double b, int n, Frame *out, CagInterval3 *bend) {
+static bool tangent_ranges(const CagMotion *m, double a, double b, int n, Frame *out,
+                           CagInterval3 *bend) {
   CagInterval3 c[ORDER + 2], velocity[ORDER];
   if (!cag_curve_ranges(m->path, a, b, n + 2, c)) return false;
   memcpy(out->c, c, (size_t)(n + 1) * sizeof *c);
@@ -70,11 +71,11 @@ static bool tangent(const CagMotion *m, double a, double b, int n, Frame *out, C
     velocity[k] = scaled(c[k + 1], k + 1);
     if (bend) bend[k] = scaled(c[k + 2], (k + 1) * (k + 2));
   }
-  return unit(velocity, n, out->t);
+  return unit_ranges(velocity, n, out->t);
 }
 
 // The polynomial of the angle on the segment.
-static void angle(const CagMotionSegment *g, double a, double b, int n, CagInterval *out) {
+static void angle_ranges(const CagMotionSegment *g, double a, double b, int n, CagInterval *out) {
   const double half = (g->v1 - g->v0) / 2, middle = (g->v0 + g->v1) / 2;
   const double s = ((a + b) / 2 - middle) / half, reach = (b - a) / 2 / half;
   double d[CAG_MOTION_NODES + 1], power = 1;
@@ -96,8 +97,8 @@ static void angle(const CagMotionSegment *g, double a, double b, int n, CagInter
 }
 
 // Turns x and y by the angle.
-static void turn(const CagInterval3 *x, const CagInterval3 *y, const CagInterval *by, int n,
-                 CagInterval3 *to_x, CagInterval3 *to_y) {
+static void turn_ranges(const CagInterval3 *x, const CagInterval3 *y, const CagInterval *by, int n,
+                        CagInterval3 *to_x, CagInterval3 *to_y) {
   CagInterval s[ORDER], c[ORDER];
   CagInterval3 p[ORDER], q[ORDER];
   cag_intervals_sincos(by, n, s, c);
@@ -110,41 +111,42 @@ static void turn(const CagInterval3 *x, const CagInterval3 *y, const CagInterval
 }
 
 // The cross product of unit vectors that are perpendicular.
-static void third(const CagInterval3 *a, const CagInterval3 *b, int n, CagInterval3 *out) {
+static void perpendicular_ranges(const CagInterval3 *a, const CagInterval3 *b, int n,
+                                 CagInterval3 *out) {
   cag_intervals3_cross(a, b, n, out);
   out[0] = (CagInterval3){within_one(out[0].x), within_one(out[0].y), within_one(out[0].z)};
 }
 
-static bool minimising(const CagMotion *m, const CagMotionSegment *g, double a, double b, int n,
+static bool minimizing(const CagMotion *m, const CagMotionSegment *g, double a, double b, int n,
                        Frame *out) {
   CagInterval3 fixed[ORDER] = {{{0, 0}, {0, 0}, {0, 0}}}, across[ORDER], e1[ORDER], e2[ORDER];
   CagInterval phi[ORDER];
   fixed[0] = constant(g->a);
-  if (!tangent(m, a, b, n, out, NULL)) return false;
+  if (!tangent_ranges(m, a, b, n, out, NULL)) return false;
   cag_intervals3_cross(out->t, fixed, n, across);
-  if (!unit(across, n, e2)) return false;
-  third(e2, out->t, n, e1);
-  angle(g, a, b, n, phi);
-  turn(e1, e2, phi, n, out->n1, out->n2);
+  if (!unit_ranges(across, n, e2)) return false;
+  perpendicular_ranges(e2, out->t, n, e1);
+  angle_ranges(g, a, b, n, phi);
+  turn_ranges(e1, e2, phi, n, out->n1, out->n2);
   return true;
 }
 
 static bool frenet(const CagMotion *m, double a, double b, int n, Frame *out) {
   CagInterval3 bend[ORDER], binormal[ORDER];
-  if (!tangent(m, a, b, n, out, bend)) return false;
+  if (!tangent_ranges(m, a, b, n, out, bend)) return false;
   cag_intervals3_cross(out->t, bend, n, binormal);
-  if (!unit(binormal, n, out->n2)) return false;
-  third(out->n2, out->t, n, out->n1);
+  if (!unit_ranges(binormal, n, out->n2)) return false;
+  perpendicular_ranges(out->n2, out->t, n, out->n1);
   return true;
 }
 
 static bool upright(const CagMotion *m, double a, double b, int n, Frame *out) {
   CagInterval3 up[ORDER] = {{{0, 0}, {0, 0}, {0, 0}}}, across[ORDER];
   up[0] = constant(m->how.up);
-  if (!tangent(m, a, b, n, out, NULL)) return false;
+  if (!tangent_ranges(m, a, b, n, out, NULL)) return false;
   cag_intervals3_cross(up, out->t, n, across);
-  if (!unit(across, n, out->n1)) return false;
-  third(out->t, out->n1, n, out->n2);
+  if (!unit_ranges(across, n, out->n1)) return false;
+  perpendicular_ranges(out->t, out->n1, n, out->n2);
   return true;
 }
 
@@ -157,48 +159,48 @@ static bool standing(const CagMotion *m, double a, double b, int n, Frame *out) 
   return true;
 }
 
-static bool frame(const CagMotion *m, const CagMotionSegment *g, double a, double b, int n,
-                  Frame *out) {
+static bool frame_ranges(const CagMotion *m, const CagMotionSegment *g, double a, double b, int n,
+                         Frame *out) {
   switch (m->how.orient) {
   case CAG_ORIENT_FRENET: return frenet(m, a, b, n, out);
   case CAG_ORIENT_UP: return upright(m, a, b, n, out);
   case CAG_ORIENT_FIXED: return standing(m, a, b, n, out);
   case CAG_ORIENT_RMF: break;
   }
-  return minimising(m, g, a, b, n, out);
+  return minimizing(m, g, a, b, n, out);
 }
 
 // A linear function over [a, b] by its values at both ends.
-static void linear(double at_a, double at_b, double length, int n, CagInterval *out) {
+static void linear_ranges(double at_a, double at_b, double length, int n, CagInterval *out) {
   for (int k = 0; k <= n; k++) out[k] = cag_interval(0);
   out[0] = (CagInterval){fmin(at_a, at_b), fmax(at_a, at_b)};
   if (n > 0) out[1] = cag_interval((at_b - at_a) / length);
 }
 
-static void shear(const CagMotionPiece *p, double a, double b, int n, Frame *f) {
+static void shear_ranges(const CagMotionPiece *p, double a, double b, int n, Frame *f) {
   for (int axis = 0; axis < 2; axis++) {
     const double slope = (p->end[axis] - p->start[axis]) / (p->v1 - p->v0);
     CagInterval shift[ORDER];
     CagInterval3 along[ORDER], *spoke = axis == 0 ? f->n1 : f->n2;
     if (p->start[axis] == 0 && slope == 0) continue;
-    linear(p->start[axis] + slope * (a - p->v0), p->start[axis] + slope * (b - p->v0), b - a, n,
-           shift);
+    linear_ranges(p->start[axis] + slope * (a - p->v0), p->start[axis] + slope * (b - p->v0), b - a,
+                  n, shift);
     cag_intervals3_scaled(f->t, shift, n, along);
     cag_intervals3_add(spoke, along, n, spoke);
   }
 }
 
-static void along(const CagMotion *m, const CagAlong *f, double a, double b, int n,
-                  CagInterval *out) {
+static void along_ranges(const CagMotion *m, const CagAlong *f, double a, double b, int n,
+                         CagInterval *out) {
   if (f->function) {
     cag_chebyshev_ranges(f->function, a, b, n, out);
     return;
   }
   const double rate = (f->end - f->start) / (m->end - m->start);
-  linear(f->start + rate * (a - m->start), f->start + rate * (b - m->start), b - a, n, out);
+  linear_ranges(f->start + rate * (a - m->start), f->start + rate * (b - m->start), b - a, n, out);
 }
 
-static void maps(const CagMotion *m, double a, double b, int n, CagMotionRanges *out) {
+static void map_ranges(const CagMotion *m, double a, double b, int n, CagMotionRanges *out) {
   CagInterval x[12 * ORDER];
   CagInterval3 *columns[] = {out->x, out->y, out->z, out->origin};
   cag_chebyshev_ranges(m->rows, a, b, n, x);
@@ -210,7 +212,7 @@ static void maps(const CagMotion *m, double a, double b, int n, CagMotionRanges 
 
 bool cag_motion_ranges(const CagMotion *m, double a, double b, int n, CagMotionRanges *out) {
   if (!m->path) {
-    maps(m, a, b, n, out);
+    map_ranges(m, a, b, n, out);
     return true;
   }
   const CagMotionSegment *g = cag_motion_segment(m, a + (b - a) / 2, CAG_SIDE_RIGHT);
@@ -218,20 +220,20 @@ bool cag_motion_ranges(const CagMotion *m, double a, double b, int n, CagMotionR
   CagInterval by[ORDER];
   CagInterval3 longer[ORDER];
   Frame f;
-  if (!frame(m, g, a, b, n, &f)) return false;
-  shear(&m->pieces[g->piece], a, b, n, &f);
+  if (!frame_ranges(m, g, a, b, n, &f)) return false;
+  shear_ranges(&m->pieces[g->piece], a, b, n, &f);
   memcpy(out->origin, f.c, size);
   memcpy(out->z, f.t, size);
   if (cag_along_is_constant(&m->how.twist, 0)) {
     memcpy(out->x, f.n1, size);
     memcpy(out->y, f.n2, size);
   } else {
-    along(m, &m->how.twist, a, b, n, by);
-    turn(f.n1, f.n2, by, n, out->x, out->y);
+    along_ranges(m, &m->how.twist, a, b, n, by);
+    turn_ranges(f.n1, f.n2, by, n, out->x, out->y);
   }
   if (cag_along_is_constant(&m->how.scale, 1)) return true;
   CagInterval3 *spokes[] = {out->x, out->y, out->z};
-  along(m, &m->how.scale, a, b, n, by);
+  along_ranges(m, &m->how.scale, a, b, n, by);
   for (int i = 0; i < 3; i++) {
     cag_intervals3_scaled(spokes[i], by, n, longer);
     memcpy(spokes[i], longer, size);

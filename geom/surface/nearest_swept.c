@@ -246,8 +246,8 @@ typedef struct Bends {
 } Bends;
 
 // `middle`: point and first derivatives in the middle. False: there are no ranges.
-static bool bends(const CagDistanceCells *c, const CagDistanceCell *cell, const CagVec3 *middle,
-                  Bends *out) {
+static bool bend_ranges(const CagDistanceCells *c, const CagDistanceCell *cell,
+                        const CagVec3 *middle, Bends *out) {
   const CagSwept *w = &c->swept;
   CagInterval3 section[SECOND + 1], d[SECOND + 1][SECOND + 1];
   CagMotionRanges m;
@@ -276,7 +276,9 @@ static bool bends(const CagDistanceCells *c, const CagDistanceCell *cell, const 
 
 // --- Cells of sweeps ---
 
-static void know(CagDistanceCells *c, CagDistanceCell *cell, double u, double v, CagVec3 point) {
+// Notes a point of the cell, if it is the nearest so far.
+static void note_point(CagDistanceCells *c, CagDistanceCell *cell, double u, double v,
+                       CagVec3 point) {
   const CagVec3 r = cag_sub(point, c->p);
   const double distance = cag_dot(r, r);
   c->size = fmax(c->size, sqrt(distance));
@@ -287,7 +289,8 @@ static void know(CagDistanceCells *c, CagDistanceCell *cell, double u, double v,
   cell->least_point = point;
 }
 
-// The end of a direction at which a function with these slopes is lowest: 0 or 1; -1: not known.
+// The end (0 or 1) at which a function with slopes in this range is lowest, or -1 if the slope may
+// have both signs.
 static int lowest_end(CagInterval slope) { return slope.lo >= 0 ? 0 : slope.hi <= 0 ? 1 : -1; }
 
 // By the tangents at the best place so far, or at the lowest one known, where the function is
@@ -336,15 +339,15 @@ static CagStatus bound_sweep(CagDistanceCells *c, CagDistanceCell *cell, CagErro
   if (status) return status;
   double low = INFINITY, most = 0, tangent;
   cell->least = INFINITY;
-  know(c, cell, mu, mv, middle[0]);
+  note_point(c, cell, mu, mv, middle[0]);
   for (int k = 0; k < 4; k++) {
     const CagVec3 r = cag_sub(points[k], c->p);
     low = fmin(low, cag_dot(r, r));
     most = fmax(most, cag_dot(r, r));
-    know(c, cell, cell->u[k / 2], cell->v[k % 2], points[k]);
+    note_point(c, cell, cell->u[k / 2], cell->v[k % 2], points[k]);
   }
   const double rounding = ROUNDING * (most + c->size * sqrt(most));
-  if (!bends(c, cell, middle, &bend)) {
+  if (!bend_ranges(c, cell, middle, &bend)) {
     cell->bound = fmax(cell->bound, box_bound(c, cell) - rounding);
     return CAG_OK;
   }
@@ -385,7 +388,7 @@ static CagStatus circle_at(const CagDistanceCells *c, double v, CagSide side, Ci
 }
 
 // u of the nearest point of the circle.
-static double around(const CagDistanceCells *c, const Circle *circle) {
+static double circle_nearest_u(const CagDistanceCells *c, const Circle *circle) {
   const double u = atan2(cag_dot(circle->r, circle->y), cag_dot(circle->r, circle->x));
   return fmin(u < 0 ? u + 2 * M_PI : u, c->s->u1);
 }
@@ -434,7 +437,8 @@ static CagStatus tube_tangent(const CagDistanceCells *c, const CagDistanceCell *
   }
   const CagSide side = at >= v[1] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
   if (!status)
-    status = cag_surface_eval(c->s, around(c, &circle), at, 1, CAG_SIDE_RIGHT, side, d, err);
+    status =
+        cag_surface_eval(c->s, circle_nearest_u(c, &circle), at, 1, CAG_SIDE_RIGHT, side, d, err);
   if (status) return status;
   const double slope = 2 * cag_dot(cag_sub(d[0], c->p), d[cag_partial(1, 0, 1)]);
   const double value = c->swept.scale * c->swept.scale * circle.value;
@@ -452,9 +456,9 @@ static CagStatus bound_tube(CagDistanceCells *c, CagDistanceCell *cell, CagError
     const CagSide side = k == 1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
     CagVec3 point;
     status = circle_at(c, v[k], side, &ends[k], err);
-    const double u = status ? 0 : around(c, &ends[k]);
+    const double u = status ? 0 : circle_nearest_u(c, &ends[k]);
     if (!status) status = cag_surface_point(c->s, u, v[k], &point, err);
-    if (!status) know(c, cell, u, v[k], point);
+    if (!status) note_point(c, cell, u, v[k], point);
   }
   if (status) return status;
   if (!tube_bends(c, cell, bend)) {
