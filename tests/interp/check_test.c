@@ -113,6 +113,45 @@ static void types_that_cannot_be_are_found(void **state) {
   assert_string_equal(found("param h = 10 in 20..30\nprint h"), "E0250:1");
 }
 
+// Also in parameters after the first.
+static void each_function_says_what_it_takes(void **state) {
+  (void)state;
+  static const struct {
+    const char *function, *good, *wrong; // arguments
+    int count;                           // of the parameters that take them
+  } rows[] = {
+      {"sqrt", "2", "true", 1},         {"cbrt", "2", "\"a\"", 1},
+      {"exp", "2", "[1]", 1},           {"ln", "2", "1..2", 1},
+      {"log10", "2", "none", 1},        {"log2", "2", "2deg", 1},
+      {"sinh", "2", "2deg", 1},         {"cosh", "2", "true", 1},
+      {"tanh", "2", "2deg", 1},         {"asinh", "2", "2deg", 1},
+      {"acosh", "2", "[2]", 1},         {"atanh", "0.5", "2deg", 1},
+      {"floor", "2", "\"a\"", 1},       {"ceil", "2", "2deg", 1},
+      {"hypot", "2", "2deg", 2},        {"asin", "0.5", "2deg", 1},
+      {"acos", "0.5", "2deg", 1},       {"atan", "2", "2deg", 1},
+      {"atan2", "2", "\"a\"", 2},       {"sin", "2deg", "\"a\"", 1},
+      {"cos", "2deg", "true", 1},       {"tan", "2deg", "[1]", 1},
+      {"in_degrees", "2deg", "2", 1},   {"in_radians", "2deg", "2", 1},
+      {"norm", "[1, 2]", "2", 1},       {"unit", "[1, 2]", "true", 1},
+      {"cross", "[1, 2, 3]", "2", 2},   {"dot", "[1, 2]", "\"a\"", 2},
+      {"sum", "[1, 2]", "2", 1},        {"upper", "\"a\"", "2", 1},
+      {"lower", "\"a\"", "[1]", 1},     {"starts_with", "\"a\"", "2", 2},
+      {"read_csv", "\"a\"", "2", 1},    {"read_json", "\"a\"", "2", 1},
+      {"read_text", "\"a\"", "[1]", 1}, {"read_mesh", "\"a\"", "true", 1},
+      {"roots", "[1, 2]", "2", 1},      {"complex_roots", "[1, 2]", "\"a\"", 1},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    for (int k = -1; k < rows[i].count; k++) {
+      char text[256];
+      int n = snprintf(text, sizeof text, "f = () => %s(", rows[i].function);
+      for (int j = 0; j < rows[i].count; j++)
+        n += snprintf(text + n, sizeof text - (size_t)n, "%s%s", j ? ", " : "",
+                      j == k ? rows[i].wrong : rows[i].good);
+      snprintf(text + n, sizeof text - (size_t)n, ")");
+      if (strcmp(found(text), k < 0 ? "" : "E0301:1") != 0) fail_msg("%s", text);
+    }
+}
+
 static void literal_mistakes_are_found(void **state) {
   (void)state;
   assert_string_equal(found("show sphere(-3)"), "E0314:1");
@@ -293,6 +332,7 @@ int main(void) {
       cmocka_unit_test(calls_of_shapes_and_members_are_held_against_their_types),
       cmocka_unit_test(defaults_of_params_are_in_their_range_or_list),
       cmocka_unit_test(functions_of_a_module_are_found_wherever_they_stand),
+      cmocka_unit_test(each_function_says_what_it_takes),
       cmocka_unit_test(literal_mistakes_are_found),
       cmocka_unit_test(circles_of_definitions_are_found),
       cmocka_unit_test(one_pass_reports_everything),
