@@ -51,7 +51,7 @@ git ls-files -z | xargs -0 cp -p --parents -t "$TREE"
 cd "$TREE"
 REACH=$TREE/../reach
 export OPT=-O1
-build() { make -s -j"$(nproc)" CC="${CC:-cc}" CFLAGS=-Wno-error "$@" > ../build.log 2>&1; }
+build() { make -s -j"$(nproc)" CC="${CC:-cc}" CFLAGS="-Wno-error -Werror=return-type" "$@" > ../build.log 2>&1; }
 
 # Runs a suite within limits: limited SECONDS SUITE. Chromium, which the tests of the documentation start, reserves more memory than that.
 limited() {
