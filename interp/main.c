@@ -57,9 +57,10 @@ static void catch_signals(void) {
 // Fills closed standard files, so that no file opened later gets their numbers and what is meant
 // for standard output ends in it. They are opened the wrong way round: their use is an error.
 static void fill_standard_files(void) {
-  for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
-    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
-      return;
+  bool filled = true;
+  for (int fd = STDIN_FILENO; filled && fd <= STDERR_FILENO; fd++)
+    filled = fcntl(fd, F_GETFD) >= 0 ||
+             open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) == fd;
 }
 
 int main(int argc, char **argv) {

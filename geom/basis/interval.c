@@ -14,14 +14,6 @@ CagInterval cag_interval_cos(CagInterval a) {
   return out;
 }
 
-void cag_intervals_product(const CagInterval *a, const CagInterval *b, int n, CagInterval *out) {
-  for (int k = 0; k <= n; k++) {
-    out[k] = cag_interval(0);
-    for (int j = 0; j <= k; j++)
-      out[k] = cag_interval_add(out[k], cag_interval_product(a[j], b[k - j]));
-  }
-}
-
 void cag_intervals_sincos(const CagInterval *a, int n, CagInterval *s, CagInterval *c) {
   const CagInterval quarter = cag_interval(M_PI / 2);
   c[0] = cag_interval_cos(a[0]);

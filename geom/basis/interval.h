@@ -68,7 +68,7 @@ CagInterval cag_interval_cos(CagInterval a);
 // --- Series ---
 
 // Coefficients 0..n. Results may not overlap with operands.
-void cag_intervals_product(const CagInterval *a, const CagInterval *b, int n, CagInterval *out);
+
 // Sine and cosine of the series.
 void cag_intervals_sincos(const CagInterval *a, int n, CagInterval *s, CagInterval *c);
 // a / b. False: b may be 0.

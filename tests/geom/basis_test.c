@@ -1,6 +1,8 @@
 // Bernstein polynomials, B-spline bases, knot vectors and quadrature.
 
+#include "geom/basis/basis_table.h"
 #include "geom/basis/bspline.h"
+#include "geom/basis/knots.h"
 #include "geom/basis/quadrature.h"
 #include "support.h"
 
@@ -160,6 +162,31 @@ static void integrals_are_accurate_through_kinks(void **state) {
   NEAR(sum[1], (1.3 * 1.3 + 1.7 * 1.7) / 2, 1e-8);
 }
 
+static void what_no_refinement_is_is_refused(void **state) {
+  (void)state;
+  static const double knots[8] = {0, 0, 0, 0, 1, 1, 1, 1};
+  static const double falling[10] = {0, 0, 0, 0, 0.5, 0.3, 1, 1, 1, 1};
+  static const double repeated[10] = {0, 0, 0, 0, 0, 0.3, 1, 1, 1, 1};
+  static const double early[9] = {-1, 0, 0, 0, 0, 1, 1, 1, 1};
+  static const double missing[9] = {0, 0, 0, 0, 0.5, 0.7, 1, 1, 1};
+  double out[4 * 7 * 8];
+  CagError err;
+  FAILS_AT(cag_basis_oslo(knots, 8, falling, 10, 3, out, &err), "knots-not-monotone", 5);
+  FAILS_AT(cag_basis_oslo(knots, 8, repeated, 10, 3, out, &err), "knot-multiplicity", 4);
+  FAILS_AT(cag_basis_oslo(knots, 8, early, 9, 3, out, &err), "parameter-range", 0);
+  FAILS_AT(cag_basis_oslo(knots, 8, missing, 9, 3, out, &err), "not-a-refinement", 7);
+}
+
+static void degrees_and_knots_are_checked(void **state) {
+  (void)state;
+  static const double knots[8] = {0, 0, 0, 0, 1, 1, 1, INFINITY};
+  CagError err;
+  FAILS(cag_degree_check(1, 1, &err), "too-few-points");
+  FAILS(cag_degree_check(4, 0, &err), "order-range");
+  FAILS(cag_degree_check(4, 4, &err), "order-range");
+  FAILS_AT(cag_knots_check(knots, 4, 3, &err), "not-finite", 7);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bernstein_polynomials_are_those_of_the_reference),
@@ -171,6 +198,8 @@ int main(void) {
       cmocka_unit_test(knot_vectors_are_classified),
       cmocka_unit_test(insertion_gives_the_points_of_the_reference),
       cmocka_unit_test(integrals_are_accurate_through_kinks),
+      cmocka_unit_test(what_no_refinement_is_is_refused),
+      cmocka_unit_test(degrees_and_knots_are_checked),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -114,35 +114,87 @@ static CagMotion *random_motion(int kind, int orient) {
   return m;
 }
 
+// Gives the number of places that were compared: 0 where the ranges are not known.
+static int assert_motion_held(const CagMotion *m) {
+  enum { ORDER = 3 };
+  double *joints, part[2];
+  size_t n;
+  CagMotionRanges ranges;
+  CagMotionSeries at;
+  int held = 0;
+  MUST(cag_motion_joints(m, &joints, &n, err));
+  short_part(joints + whole(0, (int)n - 1), part);
+  const bool known = cag_motion_ranges(m, part[0], part[1], ORDER, &ranges);
+  for (int probe = 0; known && probe < 8; probe++, held++) {
+    MUST(cag_motion_at(m, between(part[0], part[1]), ORDER, CAG_SIDE_RIGHT, &at, err));
+    for (int k = 0; k <= ORDER; k++) {
+      assert_held(&ranges.origin[k], at.origin[k], "origin");
+      assert_held(&ranges.x[k], at.x[k], "x");
+      assert_held(&ranges.y[k], at.y[k], "y");
+      assert_held(&ranges.z[k], at.z[k], "z");
+    }
+  }
+  free(joints);
+  return held;
+}
+
 static void ranges_hold_the_derivatives_of_motions(void **state) {
   (void)state;
-  enum { ORDER = 3 };
   state_of_random = 22;
   int held = 0;
   for (int i = 0; i < 40 * SPINES; i++) {
     CagMotion *m = random_motion(i % SPINES, i / SPINES % 4);
-    double *joints, part[2];
-    size_t n;
-    CagMotionRanges ranges;
-    CagMotionSeries at;
-    if (!m) continue;
-    MUST(cag_motion_joints(m, &joints, &n, err));
-    short_part(joints + whole(0, (int)n - 1), part);
-    const bool known = cag_motion_ranges(m, part[0], part[1], ORDER, &ranges);
-    for (int probe = 0; known && probe < 8; probe++) {
-      MUST(cag_motion_at(m, between(part[0], part[1]), ORDER, CAG_SIDE_RIGHT, &at, err));
-      held++;
-      for (int k = 0; k <= ORDER; k++) {
-        assert_held(&ranges.origin[k], at.origin[k], "origin");
-        assert_held(&ranges.x[k], at.x[k], "x");
-        assert_held(&ranges.y[k], at.y[k], "y");
-        assert_held(&ranges.z[k], at.z[k], "z");
-      }
-    }
-    free(joints);
+    if (m) held += assert_motion_held(m);
     cag_motion_release(m);
   }
   assert_true(held > 1500);
+}
+
+// A wave with a kink at 2.
+static CagStatus wave(void *context, double t, double *out, CagError *err) {
+  (void)context, (void)err;
+  out[0] = 1 + 0.3 * sin(2 * t) + 0.2 * fabs(t - 2);
+  return CAG_OK;
+}
+
+// A turn about the z axis that shrinks and moves.
+static CagStatus spiral(void *context, double t, double *out, CagError *err) {
+  (void)context, (void)err;
+  const double size = exp(-t / 5), c = size * cos(t), s = size * sin(t);
+  const double rows[12] = {c, -s, 0, t * t / 4, s, c, 0, cos(3 * t), 0, 0, size, t};
+  memcpy(out, rows, sizeof rows);
+  return CAG_OK;
+}
+
+static CagMotion *motion_by_function(int kind) {
+  CagChebyshev *f;
+  CagMotion *m;
+  if (kind == 0) {
+    MUST(cag_chebyshev_fit(spiral, NULL, 0, 5, 12, 1e-13, "motion", &f, err));
+    MUST(cag_motion_affine(f, 0, 5, false, &m, err));
+  } else {
+    CagCurve *path = spline(false);
+    MUST(cag_chebyshev_fit(wave, NULL, 0, 5, 1, 1e-13, "scale", &f, err));
+    const CagPathMotion how = {.orient = CAG_ORIENT_RMF,
+                               .twist = {0, 0, kind == 1 ? f : NULL},
+                               .scale = {1, 1, kind == 1 ? NULL : f}};
+    MUST(cag_motion_along(path, &how, &m, err));
+    cag_curve_release(path);
+  }
+  cag_chebyshev_release(f);
+  return m;
+}
+
+static void ranges_hold_the_derivatives_of_motions_by_functions(void **state) {
+  (void)state;
+  state_of_random = 23;
+  for (int kind = 0; kind < 3; kind++) {
+    int held = 0;
+    CagMotion *m = motion_by_function(kind);
+    for (int i = 0; i < 30; i++) held += assert_motion_held(m);
+    cag_motion_release(m);
+    assert_true(held > 100);
+  }
 }
 
 // --- Closed forms ---
@@ -276,12 +328,29 @@ static void nearest_points_of_random_swept_surfaces_are_right(void **state) {
   }
 }
 
+static void nearest_points_of_sweeps_by_functions_are_right(void **state) {
+  (void)state;
+  state_of_random = 42;
+  for (int i = 0; i < 9; i++) {
+    CagMotion *m = motion_by_function(i % 3);
+    CagCurve *c = section(i / 3);
+    CagSurface *s;
+    MUST(cag_surface_sweep(c, m, &s, err));
+    assert_nearest(s, "sweep by a function", i);
+    cag_surface_release(s);
+    cag_curve_release(c);
+    cag_motion_release(m);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(ranges_hold_the_derivatives_of_curves),
       cmocka_unit_test(ranges_hold_the_derivatives_of_motions),
+      cmocka_unit_test(ranges_hold_the_derivatives_of_motions_by_functions),
       cmocka_unit_test(points_inside_tubes_have_closed_forms),
       cmocka_unit_test(nearest_points_of_random_swept_surfaces_are_right),
+      cmocka_unit_test(nearest_points_of_sweeps_by_functions_are_right),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
