@@ -350,6 +350,7 @@ size_t cag_surface_quadric_extremes(const CagSurface *s, int axis, CagVec3 out[2
   for (size_t i = 0; i < all; i++) {
     if (p->shape == CAG_SHAPE_HYPERBOLOID_TWO && out[i].z < 0) continue; // on the other sheet
     CagVec3 at = unit_parameters(p->shape, out[i]);
+    while (s->angular_u && at.x > s->u1) at.x -= 2 * M_PI;
     while (s->angular_u && at.x < s->u0) at.x += 2 * M_PI;
     if (at.x >= s->u0 && at.x <= s->u1 && at.y >= s->v0 && at.y <= s->v1) out[n++] = at;
   }

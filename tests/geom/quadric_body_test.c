@@ -217,11 +217,32 @@ static void bodies_have_closed_forms(void **state) {
   cag_solid_release(s);
 }
 
+// An ellipsoid with semi-axes 3, 2 and 2, turned about the y axis, within a range that holds its
+// extremes in x and y.
+static void bounds_reach_the_extremes_between_the_caps(void **state) {
+  (void)state;
+  const double angle = 0.1, c = cos(angle), s = sin(angle);
+  const CagQuadric upright = {{1.0 / 9, 1.0 / 4, 1.0 / 4, 0, 0, 0, 0, 0, 0, -1}};
+  const CagBounds range = {{0, 0, -0.5}, {0, 0, 0.6}};
+  CagTransform turn;
+  CagQuadric q;
+  CagBounds box;
+  MUST(cag_rotate(cag_vec3(0, 1, 0), angle, cag_vec3(0, 0, 0), &turn, err));
+  MUST(cag_quadric_transform(&upright, &turn, &q, err));
+  CagSolid *body = body_of(&q, &range, true, NULL);
+  MUST(cag_solid_bounds(body, &box, err));
+  const double reach = sqrt(9 * c * c + 4 * s * s);
+  assert_point(box.min, cag_vec3(-reach, -2, -0.5), 1e-9, "low");
+  assert_point(box.max, cag_vec3(reach, 2, 0.6), 1e-9, "high");
+  cag_solid_release(body);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bodies_within_boxes_have_the_integrals_of_their_forms),
       cmocka_unit_test(bodies_within_ranges_have_the_integrals_of_their_forms),
       cmocka_unit_test(bodies_have_closed_forms),
+      cmocka_unit_test(bounds_reach_the_extremes_between_the_caps),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
