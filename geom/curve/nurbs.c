@@ -110,7 +110,8 @@ static CagStatus make_pieces(CagNurbs *c, CagError *err) {
     }
     piece++;
   }
-  // Equally spaced cuts are found without a search; rounding is mended by a step to a neighbor.
+  // Equally spaced cuts are found without a search. If rounding leads to the
+  // wrong cut, it is a neighbor of the right one.
   double step = (c->base.end - c->base.start) / (double)n;
   bool even = true;
   for (size_t i = 0; i < n; i++)

@@ -164,8 +164,8 @@ static CagStatus add_caps(Boundary *b, const CagQuadric *q, const CagBounds *box
   return status;
 }
 
-// Adds a piece with its normal along the gradient of the form. Its middle is no pole, nor apex of a
-// cone.
+// Adds a piece with its normal along the gradient of the form. The middle of the piece must be
+// neither a pole nor the apex of a cone.
 static CagStatus add_outward(Boundary *b, const CagSurface *piece, const CagQuadric *q,
                              CagError *err) {
   const CagSurface *whole = whole_of(piece);

@@ -49,8 +49,8 @@ static CagInterval within_one(CagInterval a) {
   return (CagInterval){cag_higher(a.lo, -1), cag_lower(a.hi, 1)};
 }
 
-// Of unit length. Where the range of `a` holds 0, so that the direction is not known, each
-// coordinate is in -1..1, and there are no derivatives.
+// Of unit length. If the range of `a` contains 0, the direction is unknown: each coordinate
+// gets the range -1..1. Derivatives have no bounds then.
 static bool unit_ranges(const CagInterval3 *a, int n, CagInterval3 *out) {
   const CagInterval any = {-1, 1};
   if (cag_intervals3_unit(a, n, out)) {

@@ -245,7 +245,8 @@ typedef struct Bends {
   double least;           // a lower bound of the squared distance
 } Bends;
 
-// `middle`: point and first derivatives in the middle. False: there are no ranges.
+// `middle`: point and first derivatives in the middle. Returns false if the ranges
+// are unknown.
 static bool bend_ranges(const CagDistanceCells *c, const CagDistanceCell *cell,
                         const CagVec3 *middle, Bends *out) {
   const CagSwept *w = &c->swept;
@@ -394,7 +395,7 @@ static double circle_nearest_u(const CagDistanceCells *c, const Circle *circle) 
 }
 
 // Second derivatives over the cell: the largest of w^2 + R^2 Z^2, the largest of R |w x Z|, and the
-// least of the squared distance. False: there are no ranges.
+// least of the squared distance. Returns false if the ranges are unknown.
 static bool tube_bends(const CagDistanceCells *c, const CagDistanceCell *cell, double out[3]) {
   const CagSwept *s = &c->swept;
   CagMotionRanges m;

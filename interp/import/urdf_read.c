@@ -116,7 +116,7 @@ static bool numbers(Reader *r, const xmlNode *node, const char *name, double *ou
   return true;
 }
 
-// The same for lengths in meters and factors of them: none is beyond all measure.
+// The same for lengths in meters and for scale factors. One above LENGTH_MOST is an error.
 static bool lengths(Reader *r, const xmlNode *node, const char *name, double *out, int n) {
   if (!numbers(r, node, name, out, n)) return false;
   for (int i = 0; i < n; i++)

@@ -1,9 +1,9 @@
 // URDF files: the XML in which ROS and most simulators describe robots, as plain data, and a serial
 // chain of it as the rows of a robot.
 //
-// A file is a tree of links (frames with bodies) that joints hang on each other. What the file says
-// in meters is millimeters here. Document types are refused, so there are no entities to expand,
-// and nothing is fetched from anywhere.
+// A file is a tree of links (frames with bodies) that joints hang on each other. Lengths are
+// converted from meters to millimeters. Files with a document type are refused, so that no entity
+// is expanded and no other file is read.
 
 #ifndef CAG_INTERP_IMPORT_URDF_READ_H
 #define CAG_INTERP_IMPORT_URDF_READ_H

@@ -5,7 +5,7 @@
 
 #include "interp/scene/scene.h"
 
-// The color of a value; of a value that is no number, gray.
+// The color of a value. NaN is gray.
 CagColor cag_color_scale_at(const CagColorScale *scale, double value);
 
 // A scale as places 0..1 (`from` to `to`) with colors, linear light between them. Two stops at one
