@@ -11,6 +11,7 @@
 
 #include "geom/curve/contact.h"
 #include "geom/curve/family.h"
+#include "geom/curve/intersect_circles.h"
 #include "geom/curve/intersect_clip.h"
 #include "geom/stop.h"
 
@@ -62,22 +63,27 @@ static CagStatus add(Found *found, double t, double t2, CagVec3 point, CagError 
   return many ? merge(found, err) : CAG_OK;
 }
 
-static CagStatus give(Found *found, CagStatus status, CagMeeting **out, size_t *n, CagError *err) {
-  if (!status) status = merge(found, err);
+static CagStatus give_contacts(const CagContact *contacts, size_t count, CagMeeting **out,
+                               size_t *n, CagError *err) {
   CagMeeting *items = NULL;
-  if (!status && found->n) {
-    items = malloc(found->n * sizeof *items);
-    if (!items) status = cag_fail_memory(err);
+  if (count) {
+    items = malloc(count * sizeof *items);
+    if (!items) return cag_fail_memory(err);
   }
-  for (size_t i = 0; !status && i < found->n; i++) {
-    const CagContact *m = &found->items[i];
+  for (size_t i = 0; i < count; i++) {
+    const CagContact *m = &contacts[i];
     items[i] = (CagMeeting){m->t, m->at[0], m->point, m->multiplicity};
   }
-  free(found->items);
-  if (status) return status;
   *out = items;
-  *n = found->n;
+  *n = count;
   return CAG_OK;
+}
+
+static CagStatus give(Found *found, CagStatus status, CagMeeting **out, size_t *n, CagError *err) {
+  if (!status) status = merge(found, err);
+  if (!status) status = give_contacts(found->items, found->n, out, n, err);
+  free(found->items);
+  return status;
 }
 
 static CagStatus first_parts(const CagCurve *c, Part **out, size_t *n, CagError *err) {
@@ -459,9 +465,15 @@ CagStatus cag_curve_intersect(const CagCurve *a, const CagCurve *b, CagMeeting *
                                   .same = MEET * s.size + s.noise,
                                   .size = s.size,
                                   .noise = s.noise};
+  CagContact places[2];
+  size_t count;
+  bool decided;
+  CagStatus status = cag_circles_intersect(a, b, s.found.task.same, places, &count, &decided, err);
+  if (status) return status;
+  if (decided) return give_contacts(places, count, out, n, err);
   Part *parts_a, *parts_b;
   size_t count_a, count_b;
-  CagStatus status = first_parts(a, &parts_a, &count_a, err);
+  status = first_parts(a, &parts_a, &count_a, err);
   if (status) return status;
   status = first_parts(b, &parts_b, &count_b, err);
   if (status) {

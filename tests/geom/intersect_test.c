@@ -255,11 +255,72 @@ static void rational_beziers_meet_alike_however_they_are_run_through(void **stat
   }
 }
 
+// Arcs of two circles in one plane of space. The wanted places are found from a place of the first
+// circle: they are those at the distance of the second radius from the second center.
+static void arcs_meet_where_both_circles_pass(void **state) {
+  (void)state;
+  uint64_t seed = 5;
+  for (int i = 0; i < 2000; i++) {
+    CagTransform plane = cag_rpy(uniform(&seed, -3, 3), 0.4, 1.1), frame;
+    // Every third pair nearly coincides.
+    const double near = i % 3 ? 1 : 1e-6, r = uniform(&seed, 1, 5),
+                 angle = uniform(&seed, 0, 2 * M_PI), other = i % 3 ? uniform(&seed, 1, 5) : r,
+                 d = near * uniform(&seed, 0.5, 9);
+    const double from[2] = {uniform(&seed, 0, 6), uniform(&seed, 0, 6)};
+    const double sweep[2] = {uniform(&seed, 0.5, 6.2), i % 3 ? 2 * M_PI : 6.1};
+    const double gap = fmin(fabs(d - (r + other)), fabs(d - fabs(r - other)));
+    if (gap < 1e-3 * near) continue;
+    CagCurve *c[2];
+    CagTransform shift = cag_translate(cag_vec3(d * cos(angle), d * sin(angle), 0));
+    OK(cag_curve_arc(r, r, from[0], from[0] + sweep[0], &plane, &c[0], &err));
+    frame = cag_transform_multiply(&plane, &shift);
+    OK(cag_curve_arc(other, other, from[1], from[1] + sweep[1], &frame, &c[1], &err));
+    // The law of cosines in the triangle of the two centers and a place of both.
+    const double cosine = (d * d + r * r - other * other) / (2 * d * r);
+    size_t wanted = 0;
+    bool unsure = false;
+    for (int side = -1; side <= 1 && fabs(cosine) < 1; side += 2) {
+      const double at = angle + side * acos(cosine), x = r * cos(at) - d * cos(angle),
+                   y = r * sin(at) - d * sin(angle), turn[2] = {at, atan2(y, x)};
+      bool on = true;
+      for (int k = 0; k < 2; k++) {
+        const double past = turn[k] - from[k] - 2 * M_PI * floor((turn[k] - from[k]) / (2 * M_PI));
+        on = on && past <= sweep[k];
+        unsure = unsure || (fabs(past - sweep[k]) < 1e-3 && sweep[k] < 6.28);
+        unsure = unsure || ((past < 1e-3 || past > 6.28) && sweep[k] < 6.28);
+      }
+      wanted += on;
+    }
+    // Parts that nearly coincide but do not meet run along each other.
+    if (unsure || (i % 3 == 0 && wanted < 2)) {
+      cag_curve_release(c[0]);
+      cag_curve_release(c[1]);
+      continue;
+    }
+    CagMeeting *m;
+    const size_t n = meet(cag_curve_retain(c[0]), cag_curve_retain(c[1]), &m);
+    assert_int_equal(n, wanted);
+    for (size_t f = 0; f < n; f++) {
+      CagVec3 p[2];
+      OK(cag_curve_point(c[0], m[f].t, &p[0], &err));
+      OK(cag_curve_point(c[1], m[f].t2, &p[1], &err));
+      near_vec(m[f].point, p[0], 1e-13 / near);
+      near_vec(m[f].point, p[1], 1e-13 / near);
+      assert_int_equal(m[f].multiplicity, 1);
+      if (f) assert_true(m[f - 1].t < m[f].t);
+    }
+    free(m);
+    cag_curve_release(c[0]);
+    cag_curve_release(c[1]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(chebyshev_graphs_meet_their_mirror_images_n_squared_times),
       cmocka_unit_test(a_line_meets_a_chebyshev_graph_n_times_or_touches_it),
       cmocka_unit_test(rational_circles_meet_like_circles),
+      cmocka_unit_test(arcs_meet_where_both_circles_pass),
       cmocka_unit_test(circles_that_touch_meet_once),
       cmocka_unit_test(tangents_of_a_circle_meet_it_once),
       cmocka_unit_test(the_order_of_contact_is_told),
