@@ -11,7 +11,8 @@
 # tools/mutations.txt. A change that does not compile, or does not change the object file, is replaced with another one. The suites that
 # reach the line run until one fails, starting with those that are quick and likely to detect the change: unit tests that include the
 # changed file's header, then all others by their time. Each suite has a memory limit and a time limit, which is 10 s plus 4 times the time
-# for the unchanged code. Undetected changes are printed and stored in build-mutate/survivors.txt.
+# for the unchanged code. Undetected changes are printed and stored in build-mutate/survivors.txt. Changes after which the program computes
+# the same, listed with their reasons in tools/equivalent_mutations.txt, are replaced with others as well.
 set -eu
 cd "$(dirname "$0")/.."
 N=${N:-100} SEED=${SEED:-1} SKIP=${SKIP:-0} FOLDERS=${FOLDERS:-geom interp lang} LONGEST=${LONGEST:-1800}
@@ -39,6 +40,7 @@ if [ "${1:-}" = --suite ]; then
   exit
 fi
 
+tab=$(printf '\t')
 all_suites() {
   ls tests/*/*_test.c | sed 's|\.c$||'
   ls tests/language | sed 's|^|scripts/|'
@@ -46,9 +48,13 @@ all_suites() {
   ls tests/cli/cases_*.sh | sed 's|.*/cases_\(.*\)\.sh|cli/\1|'
 }
 
-mkdir -p "$TREE"
-git ls-files -z | xargs -0 cp -p --parents -t "$TREE"
-cd "$TREE"
+if [ "${1:-}" = --measure ]; then
+  TREE=$PWD
+else
+  mkdir -p "$TREE"
+  git ls-files -z | xargs -0 cp -p --parents -t "$TREE"
+  cd "$TREE"
+fi
 REACH=$TREE/../reach
 export OPT=-O1
 build() { make -s -j"$(nproc)" CC="${CC:-cc}" CFLAGS="-Wno-error -Werror=return-type" "$@" > ../build.log 2>&1; }
@@ -73,6 +79,12 @@ measure_suite() {
   echo "$time" > "$REACH/$1.time"
 }
 
+# `sh tools/mutate.sh --measure NAME`, in the copy, measures one suite, so that several are measured at the same time.
+if [ "${1:-}" = --measure ]; then
+  measure_suite "$2"
+  exit
+fi
+
 # The coverage build, unless every suite has been measured. gcov finds the notes of the compiler beside the counts.
 measure_suites() {
   for suite in $(all_suites); do
@@ -83,7 +95,7 @@ measure_suites() {
   mkdir -p build-reach "$REACH"
   cc -std=c17 -fPIC -c tests/coverage/exit.c -o build-reach/exit.o
   build BUILD=build-reach OPT=-O0 SANITIZE="--coverage -DCAG_ONE_COPY" LDFLAGS="-Wl,--wrap=_exit build-reach/exit.o" test-programs
-  for suite in $(all_suites); do measure_suite "$suite"; done
+  all_suites | xargs -n 1 -P "$(nproc)" sh tools/mutate.sh --measure
   mkdir -p "$REACH/notes"
   (cd build-reach/obj && find geom interp lang -name '*.gcno' | xargs cp --parents -t "$REACH/notes")
 }
@@ -154,6 +166,11 @@ apply_change() {
     { print }' "$1" > ../changed.c && cp ../changed.c "$1"
 }
 
+# Whether the change on the line of the file is in the list of those without effect. The list has the changed line itself.
+is_equivalent() {
+  [ -e tools/equivalent_mutations.txt ] && grep -qxF "$1$tab$(sed -n "${2}s/^ *//p" "$1")" tools/equivalent_mutations.txt
+}
+
 # The changes in random order; the same SEED gives the same order for the same sources.
 list_changes | awk -v seed="$SEED" 'BEGIN { srand(seed) } { printf "%.9f\t%s\n", rand(), $0 }' | sort -n | cut -f 2- > ../changes.txt
 [ "$SKIP" -gt 0 ] || : > ../survivors.txt
@@ -161,13 +178,12 @@ measure_suites
 build test-programs || { tail ../build.log; exit 1; }
 
 tried=0 noticed=0
-tab=$(printf '\t')
 while [ "$tried" -lt $((SKIP + N)) ] && IFS=$tab read -r file line column old new <&3; do
   object=build/obj/${file%.c}.o
   cp -p "$file" ../original.c
   cp -p "$object" ../original.o
   apply_change "$file" "$line" "$column" "$old" "$new"
-  if build "$object" && ! cmp -s "$object" ../original.o; then
+  if ! is_equivalent "$file" "$line" && build "$object" && ! cmp -s "$object" ../original.o; then
     tried=$((tried + 1))
     change="$file:$line: \`$old\` -> \`$new\`: $(sed -n "${line}s/^ *//p" ../original.c)"
     if [ "$tried" -le "$SKIP" ]; then
