@@ -551,6 +551,9 @@ CagStatus cag_conic_line(const CagConic *conic, CagVec3 p, CagVec3 d, CagLineCon
                        2 * g[2] * m.y + g[1] * m.x + g[4],
                        cag_conic_value(conic, m)};
   const double rounding = 8 * DBL_EPSILON * terms_at(conic, m);
+  const double quadratic = fabs(g[0]) + fabs(g[1]) + fabs(g[2]), linear = hypot(g[3], g[4]);
+  const double reach = fmax(cag_norm(m), cag_norm(p));
+  const double slope_rounding = 16 * DBL_EPSILON * (quadratic * reach + linear) * sqrt(dd);
   const double shift = cag_dot(cag_sub(m, p), d) / dd;
   const CagVec3 o = cag_sub(cag_madd(p, shift, d), m);
   const double terms[6] = {c[0] * o.x * o.x, c[1] * o.x * o.y, c[2] * o.y * o.y,
@@ -569,7 +572,7 @@ CagStatus cag_conic_line(const CagConic *conic, CagVec3 p, CagVec3 d, CagLineCon
     size0 += fabs(terms[i]);
   }
   const bool flat = fabs(q2) <= NOTHING * size2;
-  if (flat && fabs(q1) <= NOTHING * size1) {
+  if (flat && fabs(q1) <= NOTHING * size1 + slope_rounding) {
     *kind = fabs(q0) <= NOTHING * size0 + rounding ? CAG_LINE_WITHIN : CAG_LINE_NONE;
     return CAG_OK;
   }
