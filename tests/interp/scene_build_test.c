@@ -89,7 +89,7 @@ static void shapes_are_named_after_their_definitions(void **state) {
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     char text[1000], found[1000] = "";
-    snprintf(text, sizeof text, DEFINED "show sphere(9) & box(9)\nshow %s", cases[i].show);
+    snprintf(text, sizeof text, DEFINED "show named(box(9), \"first\")\nshow %s", cases[i].show);
     CagSession *s = shown(text);
     for (size_t k = 1; k < s->scene.item_count; k++) {
       const CagItem *item = &s->scene.items[k];
