@@ -500,14 +500,15 @@ static void print_aligned(Layout *l, const Doc *d) {
 static void print_rows(Layout *l, const Doc *item, int indent) {
   for (; item; item = item->next) {
     const Doc *row = is_leaf(item) ? NULL : row_of(item);
-    if (!row || (uint32_t)indent + aligned_width(row) + item->comma > l->width) {
+    const bool comma = row != item && item->comma; // which the row does not count
+    if (!row || (uint32_t)indent + aligned_width(row) + comma > l->width) {
       print(l, item, indent, 0);
       continue;
     }
     if (row != item)
       for (const Doc *c = item->child; c != row; c = c->next) print(l, c, indent, 0);
     print_aligned(l, row);
-    if (row != item && item->comma) put_word(l, ",", 1, 1);
+    if (comma) put_word(l, ",", 1, 1);
   }
 }
 
@@ -551,9 +552,9 @@ static bool begins_behind(const Layout *l, const Doc *head, const Doc *rest, int
   const Doc *stage = rest->child->next->next; // behind a LINE and `|> `
   if (!stage || stage->next || stage->kind != DOC_CONCAT || !is_brackets(last_of(stage->child)))
     return false;
-  const uint32_t sign = sum(rest->child->width, rest->child->next->width);
-  return (uint32_t)(indent + rest->indent) + sign + stage->width > l->width &&
-         sum(column(l) + head->width, sign + stage->first) <= l->width;
+  const uint32_t sign = rest->child->next->width;
+  return sum((uint32_t)(indent + rest->indent) + sign, stage->width) > l->width &&
+         sum(column(l) + head->width, rest->child->width + sign + stage->first) <= l->width;
 }
 
 static void print_stages(Layout *l, const Doc *head, int indent, uint32_t tail) {

@@ -181,6 +181,283 @@ static void short_parameters_are_filled(void **state) {
       "seventh = 7, eighth = 8,\n  ninth = 9\n) = 1\n");
 }
 
+// ---- limits ----
+
+// The text with each @ replaced by a name of k letters.
+static char *with_name(const char *text, size_t k) {
+  char *out;
+  size_t size;
+  FILE *f = open_memstream(&out, &size);
+  for (; *text; text++) {
+    if (*text != '@') fputc(*text, f);
+    else
+      for (size_t i = 0; i < k; i++) fputc('a', f);
+  }
+  fclose(f);
+  return out;
+}
+
+static size_t longest_line(const char *text) {
+  size_t most = 0;
+  while (*text) {
+    const size_t n = strcspn(text, "\n");
+    if (n > most) most = n;
+    text += n + (text[n] != 0);
+  }
+  return most;
+}
+
+// A statement is set on one line exactly as long as that has at most 100 columns, whatever it
+// consists of, and else as shown.
+static void a_line_has_at_most_a_hundred_columns(void **state) {
+  (void)state;
+  static const struct {
+    const char *flat, *broken;
+  } rows[] = {
+      {"a = f(@, b)\n", "a = f(\n  @, b\n)\n"},
+      {"a = f(b, k: @)\n", "a = f(\n  b, k: @\n)\n"},
+      {"f(@) = 1\n", "f(\n  @\n) = 1\n"},
+      {"f(x) = @(x)\n", "f(x) = @(\n  x\n)\n"},
+      {"a = [@, bb, c]\n", "a = [\n  @,\n  bb,\n  c\n]\n"},
+      {"a = [@]\n", "a = [\n  @\n]\n"},
+      {"a = { b: @ + 1, c: 2 }\n", "a = {\n  b: @ + 1,\n  c: 2\n}\n"},
+      {"a = { b: @, c: 2 }\n", "a = {\n  b: @, c: 2\n}\n"},
+      {"a = f(@).b[c]\n", "a = f(\n  @\n).b[c]\n"},
+      {"a = f(@) + b\n", "a = f(@) +\n  b\n"},
+      {"a = -f(@, 2)\n", "a = -f(\n  @, 2\n)\n"},
+      {"a = not f(@)\n", "a = not f(\n  @\n)\n"},
+      {"a = f(@)..b\n", "a = f(\n  @\n)..b\n"},
+      {"param a = f(@, b)\n", "param a = f(\n  @, b\n)\n"},
+      {"f(b = @, c = 1) = 2\n", "f(\n  b = @, c = 1\n) = 2\n"},
+      {"a = b |> f(@, c)\n", "a = b\n  |> f(@, c)\n"},
+      {"a = @ + b\n", "a = @ +\n  b\n"},
+      {"a = @ and b\n", "a = @ and\n  b\n"},
+      {"a = @ |> f |> g\n", "a = @\n  |> f\n  |> g\n"},
+      {"a = if @ then 1 else 2\n", "a =\n  if @ then 1\n  else 2\n"},
+      {"a = if b then @ else if c then d else 2\n",
+       "a =\n  if b then @\n  else if c then d\n  else 2\n"},
+      {"a = [for x in @: x + 1]\n", "a = [for x in @:\n  x + 1]\n"},
+      {"a = (b + @)\n", "a = (\n  b + @\n)\n"},
+      {"a = f([@, b])\n", "a = f([\n  @,\n  b\n])\n"},
+      {"a = f({ b: @, c: 1 + 2 })\n", "a = f({\n  b: @,\n  c: 1 + 2\n})\n"},
+      {"a = f([@, b], c)\n", "a = f(\n  [@, b], c\n)\n"},
+      {"a = x => g(x, @)\n", "a = x => g(\n  x, @\n)\n"},
+      {"show @, b\n", "show @,\n  b\n"},
+      {"print @, b, c\n", "print @, b,\n  c\n"},
+      {"import std.robots: b, @\n", "import std.robots: b,\n  @\n"},
+      {"assert @ > 1, \"too small\"\n", "assert @ > 1,\n  \"too small\"\n"},
+      {"a = b[@]\n", "a = b[@]\n"},
+      {"a = f({ x = 1; @ })\n", "a = f({\n  x = 1\n  @\n})\n"},
+  };
+  size_t bad = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    for (size_t k = 60; k <= 94; k++) {
+      char *flat = with_name(rows[i].flat, k), *broken = with_name(rows[i].broken, k);
+      const bool fits = longest_line(flat) <= 100 && !strchr(rows[i].flat, ';');
+      if (fits || longest_line(broken) <= 100) {
+        char *out = laid_out(flat, strlen(flat), NULL, NULL);
+        const char *expected = fits ? flat : broken;
+        if (strcmp(out, expected) != 0) {
+          print_error("%zu letters give\n%sand not\n%s", k, out, expected);
+          bad++;
+        }
+        free(out);
+      }
+      free(flat);
+      free(broken);
+    }
+  assert_int_equal(bad, 0);
+}
+
+#define LONGER LONG "_and_a_tail"
+
+// Of two layouts the first is chosen exactly where it has at most 100 columns.
+static void a_last_list_opens_where_its_bracket_fits(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *first, *second;
+  } rows[] = {
+      {"a = f(@, x => [" LONGER ", " LONGER "])\n",
+       "a = f(@, x => [\n  " LONGER ",\n  " LONGER "\n])\n",
+       "a = f(\n  @,\n  x => [\n    " LONGER ",\n    " LONGER "\n  ]\n)\n"},
+      {"a = f([" LONGER ", " LONGER "], @)\n", "a = f([\n  " LONGER ",\n  " LONGER "\n], @)\n",
+       NULL},
+      {"a = b |> f(" LONGER ", " LONGER ", @)\n",
+       "a = b |> f(\n  " LONGER ",\n  " LONGER ",\n  @\n)\n", NULL},
+      {"a = (@ + [" LONGER ", " LONGER "])\n",
+       "a = (\n  @ +\n    [\n      " LONGER ",\n      " LONGER "\n    ]\n)\n", NULL},
+      {"a = @ |> f(" LONGER ", " LONGER ")\n", "a = @ |> f(\n  " LONGER ",\n  " LONGER "\n)\n",
+       "a = @\n  |> f(\n    " LONGER ",\n    " LONGER "\n  )\n"},
+  };
+  size_t bad = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    for (size_t k = rows[i].second ? 60 : 3; k <= (rows[i].second ? 94 : 37); k++) {
+      char *text = with_name(rows[i].text, k), *first = with_name(rows[i].first, k);
+      char *second = with_name(rows[i].second ? rows[i].second : "", k);
+      const char *expected = longest_line(first) <= 100 || !*second ? first : second;
+      if (longest_line(expected) <= 100) {
+        char *out = laid_out(text, strlen(text), NULL, NULL);
+        if (strcmp(out, expected) != 0) {
+          print_error("%zu letters give\n%sand not\n%s", k, out, expected);
+          bad++;
+        }
+        free(out);
+      }
+      free(text);
+      free(first);
+      free(second);
+    }
+  assert_int_equal(bad, 0);
+}
+
+static uint32_t seed;
+static uint32_t chance(uint32_t n) {
+  seed = seed * 1664525 + 1013904223;
+  return (seed >> 8) % n;
+}
+
+// Adds `word` to a line of `indent` columns, or to the next line where it would have more than 100.
+static void fill(char *out, size_t *column, size_t indent, const char *word, bool last) {
+  const size_t n = strlen(word) + !last;
+  if (*column + 1 + n > 100) {
+    sprintf(out + strlen(out), "\n%*s%s%s", (int)indent, "", word, last ? "" : ",");
+    *column = indent + n;
+  } else {
+    sprintf(out + strlen(out), " %s%s", word, last ? "" : ",");
+    *column += 1 + n;
+  }
+}
+
+// Lists of small elements, imports and what is shown are filled: as many to a line as fit.
+static void short_words_fill_their_lines(void **state) {
+  (void)state;
+  seed = 3;
+  for (int round = 0; round < 300; round++) {
+    char text[4000], expected[4000];
+    const int kind = (int)chance(3), n = 2 + (int)chance(40);
+    static const char *const heads[] = {"a = [", "show", "import \"m.cag\":"};
+    strcpy(text, heads[kind]);
+    strcpy(expected, heads[kind]);
+    size_t column = strlen(expected), flat = column;
+    if (kind == 0) {
+      strcat(expected, "\n ");
+      column = 1;
+    }
+    for (int i = 0; i < n; i++) {
+      char word[30];
+      const size_t length = 2 + chance(25);
+      memset(word, 'b' + i % 20, length);
+      word[length] = 0;
+      word[1] = (char)('a' + i / 20);
+      sprintf(text + strlen(text), " %s%s", word, i + 1 < n ? "," : "");
+      flat += length + (i + 1 < n ? 2 : 0);
+      fill(expected, &column, 2, word, i + 1 == n);
+    }
+    if (kind == 0) {
+      strcat(text, "]");
+      strcat(expected, "\n]");
+      if (flat + 1 <= 100) { // on one line
+        strcpy(expected, heads[0]);
+        strcat(expected, text + strlen(heads[0]) + 1);
+      }
+    }
+    strcat(text, "\n");
+    strcat(expected, "\n");
+    char *out = laid_out(text, strlen(text), NULL, NULL);
+    assert_non_null(out);
+    assert_string_equal(out, expected);
+    free(out);
+  }
+}
+
+// The columns of a table are as wide as their widest words, which end one below the other.
+static void tables_have_right_aligned_columns(void **state) {
+  (void)state;
+  seed = 4;
+  for (int round = 0; round < 200; round++) {
+    const int rows = 2 + (int)chance(6), columns = 8 + (int)chance(5), nested = (int)chance(2);
+    char words[8][12][16], text[4000] = "a = [", expected[4000] = "a = [\n";
+    size_t widths[12] = {0};
+    for (int i = 0; i < rows; i++)
+      for (int j = 0; j < columns; j++) {
+        static const char *const units[] = {"", ".5", "deg", "mm"};
+        const uint32_t number = chance(chance(2) ? 10 : 10000), unit = chance(4), sign = chance(2);
+        sprintf(words[i][j], "%s%u%s", sign ? "-" : "", number, units[unit]);
+        if (strlen(words[i][j]) > widths[j]) widths[j] = strlen(words[i][j]);
+      }
+    size_t width = 2;
+    for (int j = 0; j < columns; j++) width += widths[j] + 2;
+    for (int i = 0; i < rows; i++) {
+      strcat(text, i ? ", [" : "[");
+      strcat(expected, "  [");
+      for (int j = 0; j < columns; j++) {
+        const bool opens = nested && j % 4 == 0,
+                   closes = nested && (j % 4 == 3 || j + 1 == columns);
+        sprintf(text + strlen(text), "%s%s%s%s", j ? "," : "", opens ? "[" : "", words[i][j],
+                closes ? "]" : "");
+        sprintf(expected + strlen(expected), "%s%s%*s%s", j ? ", " : "", opens ? "[" : "",
+                (int)widths[j], words[i][j], closes ? "]" : "");
+      }
+      strcat(text, "]");
+      strcat(expected, i + 1 < rows ? "],\n" : "]\n");
+    }
+    strcat(text, "]\n");
+    strcat(expected, "]\n");
+    char *out = laid_out(text, strlen(text), NULL, NULL);
+    assert_non_null(out);
+    // Tables whose rows all fit, and which do not fit on one line themselves.
+    if (longest_line(expected) <= 100 && strchr(out, '\n') + 1 != out + strlen(out))
+      assert_string_equal(out, expected);
+    else assert_true(width > 90 || strlen(out) <= 101);
+    free(out);
+  }
+}
+
+// Comments at the ends of neighboring lines begin two columns behind the longest of their lines,
+// unless that has more than 72; a blank line, or one without a comment, ends the neighborhood.
+static void comments_of_neighboring_lines_are_aligned(void **state) {
+  (void)state;
+  seed = 5;
+  for (int round = 0; round < 300; round++) {
+    const int n = 2 + (int)chance(9);
+    char lines[11][120], text[2000] = "", expected[3000] = "";
+    bool comments[11], blank[11];
+    for (int i = 0; i < n; i++) {
+      char name[100];
+      const size_t length = chance(8) ? 1 + chance(30) : 60 + chance(12);
+      memset(name, 'a', length);
+      name[length] = 0;
+      sprintf(lines[i], "b%d = %s%s", i, name, chance(4) ? "" : "\xc3\xa9");
+      comments[i] = chance(4);
+      blank[i] = i && chance(5) == 0;
+      sprintf(text + strlen(text), "%s%s%s\n", blank[i] ? "\n" : "", lines[i],
+              comments[i] ? " // c" : "");
+    }
+    for (int i = 0; i < n; i++) {
+      size_t most = 0;
+      int from = i, to = i;
+      while (from > 0 && comments[from - 1] && !blank[from]) from--;
+      while (to + 1 < n && comments[to + 1] && !blank[to + 1]) to++;
+      for (int k = from; k <= to && comments[i]; k++) {
+        size_t columns = 0;
+        for (const char *c = lines[k]; *c; c++) columns += (*c & 0xc0) != 0x80;
+        if (columns > most) most = columns;
+      }
+      size_t columns = 0;
+      for (const char *c = lines[i]; *c; c++) columns += (*c & 0xc0) != 0x80;
+      if (most > 72) most = columns;
+      sprintf(expected + strlen(expected), "%s%s", blank[i] ? "\n" : "", lines[i]);
+      if (comments[i])
+        sprintf(expected + strlen(expected), "%*s// c", (int)(most - columns + 2), "");
+      strcat(expected, "\n");
+    }
+    char *out = laid_out(text, strlen(text), NULL, NULL);
+    assert_non_null(out);
+    assert_string_equal(out, expected);
+    free(out);
+  }
+}
+
 // ---- properties ----
 
 static size_t scripts_seen;
@@ -216,12 +493,6 @@ static void check_properties(const char *path, const char *text, size_t length) 
   free(again_tree);
   free(out);
   free(again);
-}
-
-static uint32_t seed;
-static uint32_t chance(uint32_t n) {
-  seed = seed * 1664525 + 1013904223;
-  return (seed >> 8) % n;
 }
 
 // The text with other spaces between its tokens, comments strewn in, and newlines where they do
@@ -315,6 +586,11 @@ int main(void) {
       cmocka_unit_test(the_first_operand_breaks_at_the_indentation_of_its_line),
       cmocka_unit_test(short_parameters_are_filled),
       cmocka_unit_test(stages_stand_behind_a_closing_bracket),
+      cmocka_unit_test(a_line_has_at_most_a_hundred_columns),
+      cmocka_unit_test(a_last_list_opens_where_its_bracket_fits),
+      cmocka_unit_test(short_words_fill_their_lines),
+      cmocka_unit_test(tables_have_right_aligned_columns),
+      cmocka_unit_test(comments_of_neighboring_lines_are_aligned),
       cmocka_unit_test(scripts_keep_their_trees),
   };
   return cmocka_run_group_tests_name("layout", tests, NULL, NULL);
