@@ -257,23 +257,22 @@ CagSpan parse_here(Parser *p) {
 }
 
 // Reports the innermost bracket when the text goes on, or ends, as if it were closed.
-static bool report_unclosed(Parser *p) {
-  if (p->panic || p->bracket_count == 0) return false;
-  if (parse_kind(p) != CAG_TOKEN_END && !parse_at_statement(p)) return false;
+static void report_unclosed(Parser *p) {
+  if (p->bracket_count == 0) return;
+  if (parse_kind(p) != CAG_TOKEN_END && !parse_at_statement(p)) return;
   const Bracket *b = &p->brackets[p->bracket_count - 1];
   const char *closer = cag_token_what(b->closer);
   if (parse_kind(p) == CAG_TOKEN_END) {
     CagDiagnostic *d = parse_error(p, CAG_ERR_bracket_not_closed, b->span,
                                    "this bracket is never closed: %s is missing", closer);
     parse_help(d, "opened here");
-    return true;
+    return;
   }
   CagSpan next = parse_current(p)->span;
   CagDiagnostic *d = parse_error(p, CAG_ERR_bracket_not_closed, b->span,
                                  "this bracket is not closed: %s is missing", closer);
   parse_help(d, "opened here");
   parse_related(p, d, next, "still open where the next statement begins");
-  return true;
 }
 
 static void unexpected_closer(Parser *p, const char *found) {
@@ -360,8 +359,9 @@ static bool habit_behind(Parser *p, const CagExpr *before) {
 }
 
 void parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const char *wanted) {
-  if (p->panic || report_unclosed(p) || parse_foreign_behind(p, before) || habit_behind(p, before))
-    return;
+  if (p->panic) return;
+  report_unclosed(p);
+  if (p->panic || parse_foreign_behind(p, before) || habit_behind(p, before)) return;
   char word[64];
   CagTokenKind kind = parse_kind(p);
   const char *found = parse_found(p, word, sizeof word);

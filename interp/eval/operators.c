@@ -765,7 +765,6 @@ bool cag_member(CagVm *vm, CagValue object, CagValue name_value, CagValue *resul
   case CAG_BUILTIN: break;
   default:
     if (cag_value_member(vm, object, name, result)) return true;
-    break;
   }
   return fail_field(vm, object, name);
 }

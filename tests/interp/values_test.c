@@ -345,8 +345,9 @@ static void infinite_results_need_infinite_operands(void **state) {
     const double a = samples[i % 6], b = samples[i / 6 % 6];
     const CagBinaryOp op = (CagBinaryOp)(CAG_OP_ADD + i / 36);
     const double expected = model(op, a, b);
-    const bool good = !isnan(expected) && (isfinite(expected) || ((isinf(a) || isinf(b)) &&
-                                                                  !(op == CAG_OP_DIVIDE && !b)));
+    const bool good =
+        !isnan(expected) &&
+        (isfinite(expected) || ((isinf(a) || isinf(b)) && !(op == CAG_OP_DIVIDE && !b)));
     CagValue got, x = cag_number(a), y = cag_number(b);
     assert_int_equal(cag_arithmetic(vm, op, x, y, &got), good);
     if (good) assert_true(got.as.number == expected);
@@ -370,14 +371,15 @@ static void infinite_results_need_infinite_operands(void **state) {
 
 static void texts_compare_as_their_code_points(void **state) {
   CagVm *vm = *state;
-  static const char *const sorted[] = {"", "A", "a", "aa", "ab", "b", "z", "\xc3\xa9", "\xe6\xbc\xa2"};
+  static const char *const sorted[] = {"",  "A", "a",        "aa",          "ab",
+                                       "b", "z", "\xc3\xa9", "\xe6\xbc\xa2"};
   for (int i = 0; i < 9; i++)
     for (int j = 0; j < 9; j++) {
       const CagValue a = cag_text_c(vm, sorted[i]), b = cag_text_c(vm, sorted[j]);
       const CagValue x = cag_angle(i), y = cag_angle(j);
       static const CagBinaryOp ops[] = {CAG_OP_LESS, CAG_OP_LESS_EQUAL, CAG_OP_GREATER,
                                         CAG_OP_GREATER_EQUAL};
-      const bool expected[] = {i < j, i <= j, i > j, i >= j};
+      const bool expected[] = {i<j, i <= j, i> j, i >= j};
       for (int k = 0; k < 4; k++) {
         bool got;
         assert_true(cag_compare(vm, ops[k], a, b, &got));
@@ -435,8 +437,11 @@ static void ranges_count_decimal_steps(void **state) {
     const int rest = chance(2) ? 0 : (int)chance((uint32_t)abs(step));
     const int end = start + many * step + (step > 0 ? rest : -rest);
     const bool open = chance(2);
-    const CagRange r = {.start = start / 100.0, .end = end / 100.0, .step = step / 100.0,
-                        .open = open, .stepped = true};
+    const CagRange r = {.start = start / 100.0,
+                        .end = end / 100.0,
+                        .step = step / 100.0,
+                        .open = open,
+                        .stepped = true};
     size_t count;
     assert_true(cag_range_count(vm, &r, &count));
     assert_int_equal(count, (size_t)(open && rest == 0 ? many : many + 1));
