@@ -1,0 +1,297 @@
+// Curves on graphs z = f(x, y), as sections, isophotes, contours, curvature contours and meetings
+// of two surfaces give them, against marching squares in the plane of x and y: as many, as long,
+// and on the places where the function is 0.
+
+#include "geom/surface/curvature_contour.h"
+#include "geom/surface/isophote.h"
+#include "geom/surface/meet_surface.h"
+#include "geom/surface/section.h"
+#include "tests/geom/random.h"
+#include "tests/geom/support.h"
+
+// The rectangle of x and y, and the grid over it.
+#define WIDE 3.0
+#define HIGH 2.0
+enum { NX = 210, NY = 140, NODES = (NX + 1) * (NY + 1) };
+
+// --- Graphs ---
+
+// Of degree p in both directions, with so many control points. At the means of knots as x and y of
+// control points, u is x and v is y.
+static CagSurface *graph(int p, int nu, int nv, double rough) {
+  double knots[2][24];
+  CagVec3 net[14 * 14];
+  const int count[2] = {nu, nv};
+  const double size[2] = {WIDE, HIGH};
+  for (int k = 0; k < 2; k++) {
+    const int inner = count[k] - p;
+    for (int i = 0; i < count[k] + p + 1; i++) {
+      const double at = i <= p ? 0 : i >= count[k] ? inner : i - p;
+      knots[k][i] = size[k] * at / inner;
+    }
+  }
+  for (int i = 0; i < nu; i++)
+    for (int j = 0; j < nv; j++) {
+      double x = 0, y = 0;
+      for (int k = 1; k <= p; k++) {
+        x += knots[0][i + k] / p;
+        y += knots[1][j + k] / p;
+      }
+      net[i * nv + j] = cag_vec3(x, y, uniform(-rough, rough));
+    }
+  CagSurface *s;
+  OK(cag_surface_nurbs(net, NULL, (size_t)nu, (size_t)nv, p, p, knots[0], knots[1], &s, &err));
+  return s;
+}
+
+// What the curves are asked of.
+typedef struct Question Question;
+struct Question {
+  const CagSurface *s, *other;
+  CagVec3 direction;
+  double level;
+  CagVec3 eye;
+  CagCurvature of;
+  double (*value)(const Question *q, const CagVec3 d[9]);
+};
+
+static CagVec3 normal_of(const CagVec3 d[9]) {
+  return cag_unit(cag_cross(d[cag_partial(2, 1, 0)], d[cag_partial(2, 0, 1)]));
+}
+
+static double above_plane(const Question *q, const CagVec3 d[9]) {
+  return cag_dot(d[0], q->direction) - q->level;
+}
+static double above_other(const Question *q, const CagVec3 d[9]) {
+  CagVec3 p;
+  OK(cag_surface_point(q->other, d[0].x, d[0].y, &p, &err));
+  return d[0].z - p.z;
+}
+static double lighter(const Question *q, const CagVec3 d[9]) {
+  return cag_dot(normal_of(d), q->direction) - q->level;
+}
+static double facing_eye(const Question *q, const CagVec3 d[9]) {
+  return cag_dot(normal_of(d), cag_unit(cag_sub(d[0], q->eye)));
+}
+static double bent(const Question *q, const CagVec3 d[9]) {
+  const double a = d[cag_partial(2, 1, 0)].z, b = d[cag_partial(2, 0, 1)].z;
+  const double r = d[cag_partial(2, 2, 0)].z, s = d[cag_partial(2, 1, 1)].z,
+               t = d[cag_partial(2, 0, 2)].z, g = 1 + a * a + b * b;
+  const double gauss = (r * t - s * s) / (g * g);
+  const double mean = ((1 + b * b) * r - 2 * a * b * s + (1 + a * a) * t) / (2 * pow(g, 1.5));
+  const double half = sqrt(fmax(0, mean * mean - gauss));
+  return (q->of == CAG_CURVATURE_GAUSSIAN ? gauss
+          : q->of == CAG_CURVATURE_MEAN   ? mean
+          : q->of == CAG_CURVATURE_MAX    ? mean + half
+                                          : mean - half) -
+         q->level;
+}
+
+static double value_at(const Question *q, double x, double y, CagVec3 *p) {
+  CagVec3 d[9];
+  x = fmin(fmax(x, 0), WIDE);
+  y = fmin(fmax(y, 0), HIGH);
+  OK(cag_surface_eval(q->s, x, y, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &err));
+  if (p) *p = d[0];
+  return q->value(q, d);
+}
+
+// --- Marching squares ---
+
+// Runs: their number, length, and the length of each. Edges are numbered by the lower of their
+// nodes, those along x first.
+typedef struct Runs {
+  int count;
+  double length, of[2 * NODES], largest;
+} Runs;
+
+static int parent[2 * NODES];
+static int root_of(int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+static double values[NODES];
+static CagVec3 points[NODES];
+
+static CagVec3 crossing_of(int edge) {
+  const int a = edge % NODES, b = edge < NODES ? a + NY + 1 : a + 1;
+  return cag_lerp(points[a], points[b], values[a] / (values[a] - values[b]));
+}
+
+static void connect(Runs *r, int e, int f) {
+  const double length = cag_norm(cag_sub(crossing_of(e), crossing_of(f)));
+  e = root_of(e);
+  f = root_of(f);
+  if (e != f) {
+    parent[f] = e;
+    r->of[e] += r->of[f];
+    r->of[f] = -1;
+  }
+  r->of[e] += length;
+  r->length += length;
+}
+
+static bool positive(int node) { return values[node] >= 0; }
+
+// False where two runs come so near to each other that it is open how they are connected.
+static bool march(const Question *q, Runs *r) {
+  r->length = r->largest = 0;
+  for (int i = 0; i <= NX; i++)
+    for (int j = 0; j <= NY; j++) {
+      const int k = i * (NY + 1) + j;
+      values[k] = value_at(q, WIDE * i / NX, HIGH * j / NY, &points[k]);
+      r->largest = fmax(r->largest, fabs(values[k]));
+    }
+  for (int i = 0; i < 2 * NODES; i++) {
+    parent[i] = i;
+    r->of[i] = 0;
+  }
+  for (int i = 0; i < NX; i++)
+    for (int j = 0; j < NY; j++) {
+      const int a = i * (NY + 1) + j, b = a + NY + 1; // corners a, b, b + 1, a + 1
+      const int edge[4] = {a, NODES + b, a + 1, NODES + a};
+      const bool cut[4] = {positive(a) != positive(b), positive(b) != positive(b + 1),
+                           positive(b + 1) != positive(a + 1), positive(a + 1) != positive(a)};
+      int found[4], n = 0;
+      for (int k = 0; k < 4; k++)
+        if (cut[k]) found[n++] = edge[k];
+      if (n == 4) return false;
+      if (n == 2) connect(r, found[0], found[1]);
+    }
+  r->count = 0;
+  for (int i = 0; i < 2 * NODES; i++)
+    if (r->of[i] > 0) {
+      if (r->of[i] < 0.1) return false; // a loop that may be missed, or touch an edge
+      r->count++;
+    }
+  return true;
+}
+
+// --- Comparison ---
+
+typedef CagStatus (*Ask)(const Question *q, CagCurveList *out, CagError *e);
+
+static CagStatus ask_section(const Question *q, CagCurveList *out, CagError *e) {
+  CagPlane plane;
+  plane.normal = q->direction;
+  plane.point = cag_scaled(q->direction, q->level);
+  return cag_surface_section(q->s, &plane, 0, out, e);
+}
+static CagStatus ask_isophote(const Question *q, CagCurveList *out, CagError *e) {
+  return cag_surface_isophote(q->s, q->direction, q->level, 0, out, e);
+}
+static CagStatus ask_outline(const Question *q, CagCurveList *out, CagError *e) {
+  return cag_surface_contour(q->s, q->direction, q->eye, false, 0, out, e);
+}
+static CagStatus ask_central(const Question *q, CagCurveList *out, CagError *e) {
+  return cag_surface_contour(q->s, q->direction, q->eye, true, 0, out, e);
+}
+static CagStatus ask_bend(const Question *q, CagCurveList *out, CagError *e) {
+  bool everywhere;
+  const CagStatus status =
+      cag_surface_curvature_contour(q->s, q->of, q->level, 1e-5, out, &everywhere, e);
+  assert_false(everywhere);
+  return status;
+}
+static CagStatus ask_meeting(const Question *q, CagCurveList *out, CagError *e) {
+  return cag_surface_intersect(q->s, q->other, 0, NULL, out, e);
+}
+
+// Gives false where marching squares cannot tell. They cut corners by some thousandths of the
+// length.
+static bool compare(const Question *q, Ask ask, const char *what, int round) {
+  static Runs runs;
+  CagCurveList list = {0};
+  if (!march(q, &runs)) return false;
+  OK(ask(q, &list, &err));
+  double length = 0;
+  for (size_t i = 0; i < list.count; i++) {
+    const CagCurve *c = list.items[i];
+    double one;
+    OK(cag_curve_length(c, c->start, c->end, &one, &err));
+    length += one;
+    for (int k = 0; k <= 40; k++) {
+      CagVec3 p, on;
+      OK(cag_curve_point(c, c->start + (c->end - c->start) * k / 40, &p, &err));
+      const double off = value_at(q, p.x, p.y, &on);
+      if (!(cag_norm(cag_sub(p, on)) < 2e-5) || !(fabs(off) < 3e-4 * runs.largest))
+        fail_msg("%s %d: [%g %g %g] is off by %g, %g", what, round, p.x, p.y, p.z,
+                 cag_norm(cag_sub(p, on)), off);
+    }
+  }
+  if ((int)list.count != runs.count)
+    fail_msg("%s %d: %zu curves, not %d", what, round, list.count, runs.count);
+  if (!(fabs(length - runs.length) < 5e-3 * runs.length + 1e-3))
+    fail_msg("%s %d: length %g, not %g", what, round, length, runs.length);
+  cag_curve_list_free(&list);
+  return true;
+}
+
+static CagVec3 some_direction(double steep) {
+  const double a = uniform(-steep, steep), b = uniform(-steep, steep);
+  return cag_unit(cag_vec3(a, b, 1));
+}
+
+static void run(const char *what, Ask ask, double (*value)(const Question *, const CagVec3 *),
+                int rounds) {
+  int told = 0;
+  for (int round = 0; round < rounds; round++) {
+    CagSurface *s = ask == ask_bend ? graph(4, 5, 5, 1.5) : graph(3, 6, 5, 0.8);
+    CagSurface *other = ask == ask_meeting ? graph(3, 6, 7, 0.8) : NULL;
+    Question q = {.s = s, .other = other, .value = value};
+    q.direction = some_direction(ask == ask_outline ? 3 : 0.5);
+    if (ask == ask_outline) q.direction.z = uniform(-0.3, 0.3);
+    if (ask == ask_central) q.eye = cag_vec3(uniform(-2, 5), -3, 1.5);
+    if (ask == ask_section) q.level = uniform(-0.2, 0.2);
+    if (ask == ask_isophote) q.level = uniform(0.75, 0.95);
+    if (ask == ask_bend) q.level = uniform(-0.7, 0.7);
+    q.of = (CagCurvature)(round % 4);
+    told += compare(&q, ask, what, round);
+    cag_surface_release(s);
+    cag_surface_release(other);
+  }
+  assert_true(3 * told > rounds);
+}
+
+static double facing(const Question *q, const CagVec3 d[9]) {
+  return cag_dot(normal_of(d), q->direction);
+}
+
+static void sections_are_level_sets(void **state) {
+  (void)state;
+  seed = 31;
+  run("section", ask_section, above_plane, 10);
+}
+static void isophotes_are_level_sets(void **state) {
+  (void)state;
+  seed = 32;
+  run("isophote", ask_isophote, lighter, 8);
+}
+static void contours_are_level_sets(void **state) {
+  (void)state;
+  seed = 33;
+  run("contour", ask_outline, facing, 6);
+  run("contour from an eye", ask_central, facing_eye, 6);
+}
+static void curvature_contours_are_level_sets(void **state) {
+  (void)state;
+  seed = 34;
+  run("curvature", ask_bend, bent, 12);
+}
+static void meetings_are_level_sets(void **state) {
+  (void)state;
+  seed = 35;
+  run("meeting", ask_meeting, above_other, 9);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(sections_are_level_sets),
+      cmocka_unit_test(isophotes_are_level_sets),
+      cmocka_unit_test(contours_are_level_sets),
+      cmocka_unit_test(curvature_contours_are_level_sets),
+      cmocka_unit_test(meetings_are_level_sets),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
