@@ -120,7 +120,14 @@ static bool radial(const Arm *a, size_t i, CagVec3 from, double *low, double *hi
   double r = cag_dot(way, a->z[i]);
   *low = r + link_of(a, i)->low - a->q[i];
   *high = r + link_of(a, i)->high - a->q[i];
+  if (fabs(*low) <= ALIGNED * a->r->reach) *low = 0;
   return true;
+}
+
+// Bounds of the distances of a slide that goes from low to high, through its center or not.
+static void bound_slide(CagWorkspace *w, double low, double high) {
+  w->r_min = fmax(0, fmax(low, -high));
+  w->r_max = fmax(-low, high);
 }
 
 static bool is_cylindrical(const Arm *a, CagWorkspace *w) {
@@ -132,13 +139,16 @@ static bool is_cylindrical(const Arm *a, CagWorkspace *w) {
   if (!radial(a, 2, foot, &low, &high)) return false;
   w->kind = CAG_WORKSPACE_CYLINDRICAL;
   w->center = a->o[0];
-  w->r_min = low * high <= 0 ? 0 : fmin(fabs(low), fabs(high));
-  w->r_max = fmax(fabs(low), fabs(high));
+  bound_slide(w, low, high);
   // Behind the axis the slide would cover a part twice.
   w->exact = low >= 0;
   double angle = fmin(span(a, 0), 2 * M_PI);
   w->volume = angle / 2 * (high * high - low * low) * span(a, 1);
   return true;
+}
+
+static double shell_volume(const CagWorkspace *w) {
+  return 4 * M_PI / 3 * (w->r_max * w->r_max * w->r_max - w->r_min * w->r_min * w->r_min);
 }
 
 static bool is_spherical(const Arm *a, CagWorkspace *w) {
@@ -166,8 +176,7 @@ static bool is_spherical(const Arm *a, CagWorkspace *w) {
     }
     w->kind = CAG_WORKSPACE_SPHERICAL;
     w->center = center;
-    w->r_min = low * high <= 0 ? 0 : fmin(fabs(low), fabs(high));
-    w->r_max = fmax(fabs(low), fabs(high));
+    bound_slide(w, low, high);
     w->exact = low >= 0 && f1 >= -M_PI / 2 - rounding && f2 <= M_PI / 2 + rounding;
     w->volume = fmin(span(a, 0), 2 * M_PI) / 3 * (high * high * high - low * low * low) *
                 (sin(f2) - sin(f1));
@@ -180,13 +189,10 @@ static bool is_spherical(const Arm *a, CagWorkspace *w) {
   if (!square(a->z[1], a->z[2]) || !radial(a, 2, foot, &low, &high)) return false;
   w->kind = CAG_WORKSPACE_OFFSET;
   w->center = center;
-  double nearest = low * high <= 0 ? 0 : fmin(fabs(low), fabs(high));
-  double farthest = fmax(fabs(low), fabs(high));
+  bound_slide(w, low, high);
   w->hole = fabs(offset);
-  w->r_min = nearest;
-  w->r_max = farthest;
   w->exact = low >= 0 && span(a, 0) >= FULL && span(a, 1) >= FULL;
-  w->volume = 4 * M_PI / 3 * (farthest * farthest * farthest - nearest * nearest * nearest);
+  w->volume = shell_volume(w);
   return true;
 }
 
@@ -213,9 +219,8 @@ static void two_links(const Arm *a, size_t i, CagVec3 p, double first, double se
   double low = bend_of(a, i, p) + link_of(a, i)->low - a->q[i];
   low = remainder(low, 2 * M_PI);
   double high = low + span(a, i);
-  const double slack = 1e-12; // rounding of angles
-  bool stretched = high >= 2 * M_PI - slack || (low <= slack && high >= -slack);
-  bool folded = high >= M_PI - slack || low <= -M_PI + slack;
+  bool stretched = high >= 2 * M_PI || (low <= 0 && high >= 0);
+  bool folded = high >= M_PI || low <= -M_PI;
   double cl = cos(low), ch = cos(high);
   double most = stretched ? 1 : fmax(cl, ch), least = folded ? -1 : fmin(cl, ch);
   double sum = first * first + second * second, twice = 2 * first * second;
@@ -242,7 +247,7 @@ static bool is_planar(const Arm *a, CagWorkspace *w) {
   w->kind = strokes ? CAG_WORKSPACE_SCARA : CAG_WORKSPACE_PLANAR;
   w->center = a->o[axes[0]];
   ring(lengths, count, &w->r_min, &w->r_max);
-  if (count == 2 && axes[1] == axes[0] + 1 && lengths[0] > 0)
+  if (count == 2 && axes[1] == axes[0] + 1)
     two_links(a, axes[1], a->point, lengths[0], lengths[1], &w->r_min, &w->r_max);
   else if (count == 2) free = free && span(a, axes[1]) >= FULL;
   double area = M_PI * (w->r_max * w->r_max - w->r_min * w->r_min);
@@ -263,7 +268,7 @@ static bool is_articulated(const Arm *a, CagWorkspace *w) {
   two_links(a, 2, a->point, upper, fore, &w->r_min, &w->r_max);
   w->hole = fabs(offset);
   w->exact = span(a, 0) >= FULL && span(a, 1) >= FULL;
-  w->volume = 4 * M_PI / 3 * (w->r_max * w->r_max * w->r_max - w->r_min * w->r_min * w->r_min);
+  w->volume = shell_volume(w);
   return true;
 }
 
