@@ -285,6 +285,15 @@ size_t inverse_plane_turns(const InverseChain *c) {
   return p.n;
 }
 
+// The constant angle by which a slide between the turns k and k + 1 turns x.
+static double turn_between(const InverseChain *c, const Plane *p, size_t k) {
+  double angle = 0;
+  if (k + 1 < p->n)
+    for (size_t j = p->joint[k] + 1; j < p->joint[k + 1]; j++)
+      angle += p->sense[k] * (c->row[p->joint[k]].cosine < 0 ? -1 : 1) * c->row[j].angle;
+  return angle;
+}
+
 // Joint values of the plane's turning joints, for the angles of x behind each turn.
 static CagConfiguration plane_joints(const InverseChain *c, const Plane *p, const double *x_angle,
                                      double *q) {
@@ -293,11 +302,7 @@ static CagConfiguration plane_joints(const InverseChain *c, const Plane *p, cons
   for (size_t k = 0; k < p->n; k++) {
     const double theta = p->sense[k] * (x_angle[k] - before);
     q[p->joint[k]] = inverse_value(&c->row[p->joint[k]], theta);
-    before = x_angle[k];
-    // A slide between two turns may turn x by a constant angle.
-    if (k + 1 < p->n)
-      for (size_t j = p->joint[k] + 1; j < p->joint[k + 1]; j++)
-        before += p->sense[k] * (c->row[p->joint[k]].cosine < 0 ? -1 : 1) * c->row[j].angle;
+    before = x_angle[k] + turn_between(c, p, k);
     if (k == 1) label.elbow = elbow_sign(theta);
   }
   return label;
@@ -324,7 +329,7 @@ void inverse_plane_point(InverseTask *t, CagVec3 point, CagVec3 w) {
   int n = 1;
   p1[0] = p2[0] = atan2(to[1], to[0]);
   if (p.n == 2 && p.length[1] < nothing) { // the second joint turns the tool about the point
-    p2[0] = p1[0] - p.lead[0] + p.lead[1] +
+    p2[0] = p1[0] - p.lead[0] + turn_between(c, &p, 0) + p.lead[1] +
             p.sense[1] * inverse_theta(&c->row[p.joint[1]], t->near[p.joint[1]]);
     free = 1u << p.joint[1];
   } else if (p.n == 2 && inverse_length(to[0], to[1]) < nothing &&
@@ -374,7 +379,11 @@ void inverse_plane(InverseTask *t) {
     unsigned free = 0;
     if (p.n >= 2) x_angle[0] = p1[i] - p.lead[0];
     if (p.n == 3) x_angle[1] = p2[i] - p.lead[1];
-    if (p.n == 2 && p.length[0] < nothing) x_angle[0] = t->near[p.joint[0]], free = 1;
+    if (p.n == 2 && p.length[0] < nothing) {
+      const size_t first = p.joint[0];
+      x_angle[0] = p.start + p.sense[0] * inverse_theta(&c->row[first], t->near[first]);
+      free = 1u << first;
+    }
     const CagConfiguration label = plane_joints(c, &p, x_angle, q);
     inverse_keep(t, q, label, free);
   }
