@@ -207,6 +207,16 @@ static const Sample samples[] = {
       {R, -15, 6, 22, 0},
       {R, 35, 5, 1, 90},
       {R, 15, 17, 2, 25}}},
+    {"axes 1 and 2 meet, wrist",
+     6,
+     2,
+     8,
+     {{R, 10, 100, 0, 60},
+      {R, 20, 70, 300, 40},
+      {R, -90, 30, 135, -70},
+      {R, 0, 320, 0, 80},
+      {R, 0, 0, 0, -60},
+      {R, 0, 80, 20, 30}}},
     {"slide behind two turns, wrist",
      6,
      2,
@@ -366,6 +376,12 @@ static void all_solutions_are_found(void **state) {
   }
 }
 
+static CagInverseStatus status_of(const CagRobot *r, const CagTransform *t) {
+  CagInverse all;
+  cag_robot_inverse(r, t, NULL, &all);
+  return all.status;
+}
+
 // Of planar chains of one or two turning joints, and of three turning joints, all ways to bring the
 // tool's origin to a point.
 static void all_ways_to_a_point_are_found(void **state) {
@@ -491,6 +507,89 @@ static void free_joints_stand_where_they_are_wished(void **state) {
       }
 }
 
+// Two links of one length that are folded: the first turns as it is wished.
+static void folded_links_turn_as_they_are_wished(void **state) {
+  (void)state;
+  for (int k = 0; k < 20; k++) {
+    Sample s = *sample_of(k % 2 ? "slide first, two turns" : "slide last, two turns");
+    const size_t first = k % 2;
+    if (!first) s.rows[2].a = 0;
+    s.rows[first].a = s.rows[first + 1].a = 25;
+    CagRobot *r = make(&s, false);
+    double q[3] = {100, 100, 100}, near[3];
+    CagTransform target, pose;
+    CagInverse all;
+    q[first] = 2 * random_share() - 1;
+    q[first + 1] = (180 + 40) * DEGREE;
+    for (size_t i = 0; i < 3; i++) near[i] = 2 * random_share() - 1;
+    cag_robot_forward(r, q, &target);
+    const CagVec3 p = cag_vec3(target.m[0][3], target.m[1][3], target.m[2][3]);
+    cag_robot_inverse_point(r, p, near, &all);
+    assert_int_equal(all.count, 1);
+    assert_int_equal(all.free, 1u << first);
+    assert_true(fabs(all.solutions[0].q[first] - near[first]) < 1e-9);
+    cag_robot_forward(r, all.solutions[0].q, &pose);
+    for (int i = 0; i < 3; i++) assert_true(fabs(pose.m[i][3] - target.m[i][3]) < 1e-9);
+    cag_robot_release(r);
+  }
+}
+
+// The tool of five joints above the first axis: the direction of the hand tells the first joint.
+static void hands_over_the_first_axis_are_found(void **state) {
+  (void)state;
+  const Sample *s = sample_of("minimover");
+  for (int k = 0; k < 20; k++) {
+    CagRobot *r = make(s, k % 2);
+    double q[6];
+    CagTransform target;
+    CagInverse all;
+    for (int i = 0; i < 5; i++) q[i] = 2 * random_share() - 1;
+    q[2] = M_PI - 2 * q[1]; // 7 cos(q2) + 7 cos(q2 + q3) = 0
+    cag_robot_forward(r, q, &target);
+    cag_robot_inverse(r, &target, NULL, &all);
+    bool found = false;
+    for (size_t i = 0; i < all.count; i++) {
+      double way, turn;
+      CagTransform pose;
+      cag_robot_forward(r, all.solutions[i].q, &pose);
+      cag_robot_pose_distance(&pose, &target, &way, &turn);
+      assert_true(way < 1e-6 && turn < 1e-6);
+      found = found || is_near(r, q, all.solutions[i].q);
+    }
+    assert_true(found);
+    assert_int_equal(all.free, 0);
+    cag_robot_release(r);
+  }
+}
+
+// A place within reach and a turn that the arm does not have there, against a place out of reach.
+static void turns_and_places_are_told_apart(void **state) {
+  (void)state;
+  static const char *const names[] = {"slide first, two turns", "turn", "planar", "slide and turn",
+                                      "slide last, two turns"};
+  for (int k = 0; k < 100; k++) {
+    const Sample *s = sample_of(names[k % 5]);
+    CagRobot *r = make(s, false);
+    double q[6];
+    CagTransform target;
+    const CagTransform turned = cag_dh(0.4, 0, 0, 0), leaning = cag_dh(0, 0, 0, 0.4);
+    for (size_t i = 0; i < s->n; i++) q[i] = s->rows[i].kind == P ? 100 : 2 * random_share() - 1;
+    cag_robot_forward(r, q, &target);
+    const double beyond = 2 * r->reach;
+    // Leaning out of the plane, no arm of the plane has the pose.
+    CagTransform other = cag_transform_multiply(&target, &leaning);
+    assert_int_equal(status_of(r, &other), CAG_INVERSE_ORIENTATION);
+    if (k % 5 != 2 && s->rows[s->n - 1].alpha == 0) {
+      other = cag_transform_multiply(&target, &turned);
+      assert_int_equal(status_of(r, &other), CAG_INVERSE_ORIENTATION);
+    }
+    other = target;
+    for (int i = 0; i < 3; i++) other.m[i][3] += beyond * r->before.m[i][0];
+    assert_int_equal(status_of(r, &other), CAG_INVERSE_UNREACHABLE);
+    cag_robot_release(r);
+  }
+}
+
 // A turn about an axis through the tool, before or behind a slide: the joint is free.
 static void turns_that_place_nothing_are_free(void **state) {
   (void)state;
@@ -594,12 +693,6 @@ static void branches_have_their_names(void **state) {
   cag_robot_release(r);
 }
 
-static CagInverseStatus status_of(const CagRobot *r, const CagTransform *t) {
-  CagInverse all;
-  cag_robot_inverse(r, t, NULL, &all);
-  return all.status;
-}
-
 static void what_is_not_reached_is_told(void **state) {
   (void)state;
   CagRobot *puma = make(&samples[0], false), *mini = make(&samples[8], false);
@@ -647,6 +740,48 @@ static void other_chains_have_none(void **state) {
   assert_false(cag_robot_has_inverse(r));
   assert_int_equal(status_of(r, &t), CAG_INVERSE_NO_CLOSED_FORM);
   cag_robot_release(r);
+  static const struct {
+    const char *name;
+    size_t row;
+    Row with;
+  } changes[] = {
+      {"puma", 4, {R, 0, 5, 0, 90}},                 // axes 4 and 6 apart
+      {"puma", 4, {R, 0, 0, 5, 90}},                 //
+      {"puma", 4, {R, 0, 0, 0, 0}},                  // axes 5 and 6 parallel
+      {"puma", 4, {P, 0, 0, 0, 90}},                 // no wrist
+      {"puma", 1, {R, 0, 149.5, 0, 0}},              // axes 2 and 3 are one
+      {"puma", 0, {R, 0, 0, 10, 0}},                 // axes 1, 2, 3 parallel
+      {"puma", 0, {P, 0, 0, 0, -90}},                // a slide before
+      {"puma", 1, {P, 0, 149.5, 432, 0}},            //
+      {"puma", 3, {R, 0, 0, 0, -90}},                // joint 3 turns about the wrist's center
+      {"axes 1 and 2 parallel", 0, {R, 0, 9, 0, 0}}, // axes 1 and 2 are one
+      {"stanford", 0, {R, 0, 412, 5, -90}},          // a slide, and axes 1 and 2 apart
+      {"stanford", 0, {R, 0, 412, 0, 0}},            // or parallel
+      {"axes 2, 3, 4 parallel", 0, {R, 0, 89, 0, 80}},
+      {"axes 2, 3, 4 parallel", 1, {R, 0, 0, 0, 0}},
+      {"axes 2, 3, 4 parallel", 2, {R, 0, 0, 0, 0}},
+      {"axes 2, 3, 4 parallel", 3, {R, 0, 109, 0, 80}},
+      {"axes 2, 3, 4 parallel", 4, {R, 0, 94, 0, -80}},
+      {"axes 2, 3, 4 parallel", 4, {R, 0, 94, 7, -90}},
+      {"axes 2, 3, 4 parallel", 5, {P, 0, 94, 7, -90}},
+      {"five axes, a pair at the end", 3, {R, 0, 0, 5, -90}},
+      {"five axes, a pair at the end", 3, {R, 0, 0, 0, 0}},
+      {"scara", 2, {R, 0, 50, 0, 40}},
+      {"scara", 3, {P, 0, 0, 0, 0}}, // two slides along one axis
+      {"cylindrical", 0, {P, 0, 0, 0, 0}},
+      {"spherical", 0, {R, 0, 0, 5, 0}},
+  };
+  for (size_t k = 0; k < sizeof changes / sizeof *changes; k++) {
+    Sample s = *sample_of(changes[k].name);
+    s.rows[changes[k].row] = changes[k].with;
+    r = make(&s, false);
+    const bool has = !strcmp(s.name, "cylindrical"); // three slides, whatever their ways
+    if (cag_robot_has_inverse(r) != has) fail_msg("%s, change %zu", s.name, k);
+    assert_int_equal(status_of(r, &t) == CAG_INVERSE_NO_CLOSED_FORM, !has);
+    const CagConfiguration none = cag_robot_branches(r);
+    assert_true(!none.shoulder && !none.elbow && !none.wrist);
+    cag_robot_release(r);
+  }
 }
 
 int main(void) {
@@ -655,6 +790,9 @@ int main(void) {
       cmocka_unit_test(all_ways_to_a_point_are_found),
       cmocka_unit_test(free_joints_stand_where_they_are_wished),
       cmocka_unit_test(turns_that_place_nothing_are_free),
+      cmocka_unit_test(folded_links_turn_as_they_are_wished),
+      cmocka_unit_test(hands_over_the_first_axis_are_found),
+      cmocka_unit_test(turns_and_places_are_told_apart),
       cmocka_unit_test(stretched_and_folded_arms_are_found),
       cmocka_unit_test(branches_have_their_names),
       cmocka_unit_test(what_is_not_reached_is_told),
