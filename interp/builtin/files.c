@@ -264,7 +264,7 @@ static bool call_read_csv(CagCall *call, CagValue *result) {
 // --- JSON in ---
 
 static void skip_blank(Reader *r) {
-  while (r->at < r->end && strchr(" \t\r\n", *r->at)) r->at++;
+  while (r->at < r->end && cag_is_space(*r->at)) r->at++;
 }
 
 static bool next_is(Reader *r, char c) {

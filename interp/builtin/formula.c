@@ -152,7 +152,7 @@ static bool fail_here(Parser *p, const char *place, const char *format, ...) {
 static void write_text(Parser *p, const char *s) { cag_string_add(&p->out, s, strlen(s)); }
 
 static void skip_blank(Parser *p) {
-  while (p->at < p->end && strchr(" \t\r\n", *p->at)) p->at++;
+  while (p->at < p->end && cag_is_space(*p->at)) p->at++;
 }
 
 static char peek(Parser *p) {

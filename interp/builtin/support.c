@@ -343,6 +343,8 @@ void cag_print_fixed(CagString *out, double x, int digits) {
   }
 }
 
+bool cag_is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 static const char *skip_digits(const char *s, const char *end) {
@@ -364,8 +366,8 @@ static bool convert_number(const char *s, size_t n, double *out) {
 
 bool cag_read_number(const char *s, size_t n, double *out) {
   const char *end = s + n;
-  while (s < end && strchr(" \t\r\n", *s)) s++;
-  while (end > s && strchr(" \t\r\n", end[-1])) end--;
+  while (s < end && cag_is_space(*s)) s++;
+  while (end > s && cag_is_space(end[-1])) end--;
   // sign digits [ "." digits ] [ "e" sign digits ]; of the digits around the point one side may be
   // missing.
   const char *from = s;

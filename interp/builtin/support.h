@@ -62,6 +62,8 @@ bool cag_mix_values(CagCall *call, CagValue a, CagValue b, double t, CagValue *o
 double cag_round_decimal(double x, int digits);
 // The same as text with exactly `digits` places after the point (digits >= 0).
 void cag_print_fixed(CagString *out, double x, int digits);
+// A space, a tab or the end of a line.
+bool cag_is_space(char c);
 // Reads all of [s, s + n), less spaces around, as a decimal number. False when it is none or
 // overflows.
 bool cag_read_number(const char *s, size_t n, double *out);
