@@ -46,6 +46,11 @@ typedef struct Callee {
   bool variadic, builtin;
 } Callee;
 
+static Callee callee_of(const CagSignature *s) {
+  return (Callee){s->name,     s->parameters, s->count, s->required, s->positional_only,
+                  s->variadic, true};
+}
+
 static size_t parameter_named(const Callee *f, const char *name) {
   for (size_t i = 0; i < f->count; i++)
     if (strcmp(f->parameters[i], name) == 0 && !(f->positional_only && f->positional_only[i]))
@@ -137,8 +142,7 @@ static bool types_fit(Check *c, const CagBuiltin *row, const CagSignature *s, co
                       Misfit *out) {
   size_t k = 0;
   if (v->piped && !fits(c, row, s, k++, v->piped_types, v->piped, out)) return false;
-  const Callee f = {s->name,     s->parameters, s->count, s->required, s->positional_only,
-                    s->variadic, true};
+  const Callee f = callee_of(s);
   for (size_t i = 0; v->e && i < v->e->as.call.count; i++) {
     const CagArgument *a = &v->e->as.call.arguments[i];
     const size_t parameter = a->name ? parameter_named(&f, a->name) : k++;
@@ -198,8 +202,7 @@ static CagTypes check_builtin(Check *c, size_t index, const CallView *v) {
     if (row[i].first && !(row[i].first & first)) continue;
     candidates++;
     only = i;
-    const Callee f = {s->name,     s->parameters, s->count, s->required, s->positional_only,
-                      s->variadic, true};
+    const Callee f = callee_of(s);
     if (!check_arguments(c, &f, v, false)) continue;
     fitting++;
     result |= result_of(&row[i], first);
@@ -216,8 +219,7 @@ static CagTypes check_builtin(Check *c, size_t index, const CallView *v) {
     return CAG_TYPES_ANY;
   }
   if (fitting == 0) {
-    const Callee f = {s->name,     s->parameters, s->count, s->required, s->positional_only,
-                      s->variadic, true};
+    const Callee f = callee_of(s);
     check_arguments(c, &f, v, true);
     return CAG_TYPES_ANY;
   }

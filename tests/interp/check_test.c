@@ -324,6 +324,150 @@ static void a_check_has_all_of_the_time(void **state) {
   cag_session_free(s);
 }
 
+// What is said of a script, the first thing only, with the span between « and » in the script.
+static void messages_mark_what_is_wrong(void **state) {
+  (void)state;
+  static const struct {
+    const char *script, *code, *message, *help; // help: NULL if there is none
+  } rows[] = {
+      {"print sqrt(1, «2»)", "E0302", "sqrt takes 1 argument, found 2", NULL},
+      {"print «sqrt()»", "E0302", "sqrt needs an argument for `x`", NULL},
+      {"f(x, y) = x + y\nprint «f(1)»", "E0302", "f needs an argument for `y`", NULL},
+      {"f(x, y) = x + y\nprint f(1, 2, «3», 4)", "E0302", "f takes 2 arguments, found 4", NULL},
+      {"f(x, y) = x + y\nprint 1 |> f(2, «3»)", "E0302", "f takes 2 arguments, found 3", NULL},
+      {"f(x, y) = x + y\nprint f(1, «x»: 3, y: 2)", "E0303", "f has x already, by position", NULL},
+      {"f(x, y) = x + y\nprint 1 |> f(y: 2, «x»: 3)", "E0303", "f has x already, by position",
+       NULL},
+      {"f(width) = width\nprint f(1, «widht»: 2)", "E0303", "f has no parameter widht",
+       "did you mean `width`?"},
+      {"f(a, b, c) = a + b + c\nprint «f(1, c: 2)»", "E0302", "f needs an argument for `b`", NULL},
+      {"f(a, b, c) = a + b + c\nprint 1 |> «f(b: 2)»", "E0302", "f needs an argument for `c`",
+       NULL},
+      {"print sin(«30»)", "E0301", "sin expects an angle, found a number", "write 30deg or 30rad"},
+      {"x = 30\nprint sin(«x»)", "E0301", "sin expects an angle, found a number", NULL},
+      {"print «30» |> sin", "E0301", "sin expects an angle, found a number",
+       "write 30deg or 30rad"},
+      {"print sqrt(«2deg»)", "E0301", "sqrt expects a number, found an angle", NULL},
+      {"print atan2(1, «\"a\"»)", "E0301", "atan2 expects a number as `x`, found a text", NULL},
+      {"print len(«3»)", "E0301", "found a number", "write len([1, 2])"},
+      {"print «1 + 2deg»", "E0321", "+ does not join a number and an angle",
+       "give the number a unit: 30deg"},
+      {"print «2 + \"a\"»", "E0321", "+ does not join a number and a text", NULL},
+      {"print «true ^ 2»", "E0321", "^ does not join a bool and a number", NULL},
+      {"print if «1» then 2 else 3", "E0309", "if wants true or false, found a number", NULL},
+      {"print if true == false then 2 else if «\"a\"» then 3 else 4", "E0309",
+       "if wants true or false, found a text", NULL},
+      {"print not «1»", "E0309", "not wants true or false, found a number", NULL},
+      {"print «1» and true", "E0309", "and wants true or false, found a number", NULL},
+      {"print true or «[1]»", "E0309", "or wants true or false, found a list", NULL},
+      {"assert «1», \"no\"", "E0309", "assert wants true or false, found a number", NULL},
+      {"print { assert «1»; 2 }", "E0309", "assert wants true or false, found a number", NULL},
+      {"assert 1 < 2, «\"a\" + 1»", "E0321", "+ does not join a text and a number", NULL},
+      {"print [for x in «5»: x]", "E0301",
+       "a comprehension runs over a list, a range, a text or a record, found a number", NULL},
+      {"print [for x in 1..5 if «x»: x]", "E0309",
+       "the condition wants true or false, found a number", NULL},
+      {"print [for x in 1deg..5deg: «x + 1»]", "E0321", "+ does not join an angle and a number",
+       "give the number a unit: 30deg"},
+      {"print [for c in \"abc\": «c + 1»]", "E0321", "+ does not join a text and a number", NULL},
+      {"print «true»[0]", "E0301", "[ ] expects a list, a range, a text or a record, found a bool",
+       NULL},
+      {"print «-\"a\"»", "E0321", "- does not take a text", NULL},
+      {"print «0..360deg»", "E0301",
+       "a range needs two numbers or two angles, found a number and an angle",
+       "give the number a unit: 0deg"},
+      {"print «90deg..180»", "E0301",
+       "a range needs two numbers or two angles, found an angle and a number",
+       "give the number a unit: 180deg"},
+      {"print 1..«\"a\"»", "E0301",
+       "the ends and the step of a range are numbers or angles, found a text", NULL},
+      {"print 1..2 by «true»", "E0301",
+       "the ends and the step of a range are numbers or angles, found a bool", NULL},
+      {"print [1, 2].«foo»", "E0306", "a list has no member `foo`", NULL},
+      {"x = 3\nprint x.«sqrt»", "E0306", "a number has no member `sqrt`", "write x |> sqrt(...)"},
+      {"print (1..2).«middle»", "E0306", "a range has no member `middle`", NULL},
+      {"print «3»(4)", "E0304", "a call needs a function, found a number", NULL},
+      {"norm = 50\nprint «norm»(1)", "E0304", "a call needs a function, found a number",
+       "`norm` is defined here and hides the built-in function; rename it"},
+      {"c = circle(2)\nprint «c(0deg, 1)»", "E0302", "a curve takes one parameter", NULL},
+      {"s = sphere_surface(1)\nprint «s(0deg)»", "E0302", "a surface takes two parameters", NULL},
+      {"s = sphere_surface(1)\nprint «s(0deg, 1deg, 2deg)»", "E0302",
+       "a surface takes two parameters", NULL},
+      {"show «3»", "E0327",
+       "show wants shapes, lights, cameras or settings of the scene, found a number", NULL},
+      {"param h = «5» in 1..4\nprint h", "E0250", "the default of h lies outside of its range",
+       NULL},
+      {"param h = «4» in 1..<4\nprint h", "E0250", "the default of h lies outside of its range",
+       NULL},
+      {"param h = «-1» in 0..4\nprint h", "E0250", "the default of h lies outside of its range",
+       NULL},
+      {"param h = «\"a\"» in 1..4\nprint h", "E0250", "the default of h is not in its range", NULL},
+      {"param h = «3» in [1, 2]\nprint h", "E0250",
+       "the default of h is not in the list of what it may be", NULL},
+      {"param h = «1» in [1deg, 2deg]\nprint h", "E0250",
+       "the default of h is not in the list of what it may be", NULL},
+      {"a = 1 + b\nb = «a»\nprint a", "E0311", "needs itself: a -> b -> a", NULL},
+      {"«aa» = 1\nprint 2", "E0900", "nothing uses aa", NULL},
+      {"«aa» = bb\nbb = 2\nprint 2", "E0900", "nothing uses aa", NULL},
+      {"bb = 2\n«_aa» = bb\n", "E0900", "nothing uses _aa", NULL},
+      {"import «std.materials»\nprint 1", "E0900", "nothing uses the module materials", NULL},
+      {"import std.materials: «matte»\nprint 1", "E0900", "nothing uses matte", NULL},
+      {"print { «a» = 1; 3 }", "E0900", "nothing uses a", NULL},
+      {"print if true then 1 else «2»", "E0901", "the condition is always true", NULL},
+      {"print if false then «1» else 2", "E0901", "the condition is always false", NULL},
+      {"/// deprecated:  use g\n/// please\nf(x) = x\nprint «f»(1)", "E0902", "f is deprecated",
+       "use g"},
+  };
+  size_t bad = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char text[256];
+    const char *left = strstr(rows[i].script, "«"), *right = strstr(left, "»");
+    const int before = (int)(left - rows[i].script), marked = (int)(right - left) - 2;
+    snprintf(text, sizeof text, "%.*s%.*s%s", before, rows[i].script, marked, left + 2, right + 2);
+    size_t line = 1, column = 1;
+    for (int k = 0; k < before; k++) {
+      column++;
+      if (text[k] == '\n') line++, column = 1;
+    }
+    CagSessionOptions options;
+    cag_session_options_init(&options);
+    CagSession *s = cag_session_new(&options);
+    cag_session_check_text(s, "test", text, strlen(text));
+    CagErrorView e = {0};
+    cag_session_error(s, 0, &e);
+    const char *help = e.help ? e.help : "";
+    if (!e.code || strcmp(e.code, rows[i].code) != 0 || e.line != line || e.column != column ||
+        e.end_column != column + (size_t)marked || !strstr(e.message, rows[i].message) ||
+        (rows[i].help ? !strstr(help, rows[i].help) : *help != 0)) {
+      print_error("%s\n  %s %zu:%zu-%zu: %s (%s)\n", text, e.code ? e.code : "no error", e.line,
+                  e.column, e.end_column, e.message ? e.message : "", help);
+      bad++;
+    }
+    cag_session_free(s);
+  }
+  assert_int_equal(bad, 0);
+}
+
+static void definitions_are_reached_through_others(void **state) {
+  (void)state;
+  // Chains in both orders, and a circle of functions that nothing else uses.
+  assert_string_equal(found("a = 1\nb = a\nc = b\nprint c"), "");
+  assert_string_equal(found("c = b\nb = a\na = 1\nprint c"), "");
+  assert_string_equal(found("f(n) = g(n)\ng(n) = f(n)\nprint 1"), "E0900:1 E0900:2");
+  assert_string_equal(found("param h = 1\nprint 1"), "E0900:1");
+  assert_string_equal(found("a = 1\n_b = a\nc = _b\n"), "");
+  char script[20000] = "print a0", one[64];
+  for (int i = 0; i < 300; i++) { // more uses than any first capacity, of one definition
+    snprintf(one, sizeof one, " + a%d", i);
+    strcat(script, one);
+  }
+  for (int i = 0; i <= 300; i++) {
+    snprintf(one, sizeof one, "\na%d = %d", i, i);
+    strcat(script, one);
+  }
+  assert_string_equal(found(script), "E0900:302");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(arguments_are_counted_and_named),
@@ -344,6 +488,8 @@ int main(void) {
       cmocka_unit_test(definitions_that_nothing_uses_are_told),
       cmocka_unit_test(a_long_chain_of_definitions_is_no_trouble),
       cmocka_unit_test(examples_are_found_right),
+      cmocka_unit_test(messages_mark_what_is_wrong),
+      cmocka_unit_test(definitions_are_reached_through_others),
       cmocka_unit_test(a_check_has_all_of_the_time),
   };
   return cmocka_run_group_tests_name("checker", tests, NULL, NULL);
