@@ -3,7 +3,7 @@
 // operation. The operation must report the fault or do without the allocation (such as that of a
 // cache) and return the same result. Instead of an error, it may only record exhausted memory
 // (cag_memory_was_out). A stopped operation may end in any way. Every operation must release all
-// memory that it allocated.
+// memory that it allocated, and write to no other.
 //
 // The Makefile links the tests that include this header (memory_*_test) with --wrap, so that
 // malloc, calloc, realloc, and free of the geometry core call the functions below.
@@ -15,7 +15,6 @@
 #include "support.h"
 
 void *__real_malloc(size_t size);
-void *__real_calloc(size_t n, size_t size);
 void *__real_realloc(void *p, size_t size);
 void __real_free(void *p);
 void *__wrap_malloc(size_t size);
@@ -48,28 +47,63 @@ static bool fault_in_allocation(void) {
   return fault_falls(FAULT_MEMORY);
 }
 
+// Blocks lie between two guards, which show writes outside of them.
+#define GUARD 32
+#define GUARD_BYTE 0x7f
+
+static int fault_problems;
+
+// Takes p, of GUARD bytes, the block, and GUARD bytes, and gives the block.
+static void *guarded(void *p, size_t size) {
+  if (!p) return NULL;
+  char *block = (char *)p + GUARD;
+  memset(p, GUARD_BYTE, GUARD);
+  memcpy(p, &size, sizeof size);
+  memset(block + size, GUARD_BYTE, GUARD);
+  return block;
+}
+
+// The start of the block's allocation, and its size. Counts blocks with damaged guards.
+static void *unguarded(void *block, size_t *size) {
+  char *p = (char *)block - GUARD;
+  bool whole = true;
+  memcpy(size, p, sizeof *size);
+  for (size_t i = sizeof *size; i < GUARD; i++) whole = whole && p[i] == GUARD_BYTE;
+  for (size_t i = 0; whole && i < GUARD; i++)
+    whole = ((const char *)block)[*size + i] == GUARD_BYTE;
+  if (!whole) {
+    print_error("a block of %zu bytes was written to outside\n", *size);
+    fault_problems++;
+  }
+  return p;
+}
+
 void *__wrap_malloc(size_t size) {
   if (fault_in_allocation()) return NULL;
-  void *p = __real_malloc(size);
+  void *p = guarded(__real_malloc(size + (size_t)2 * GUARD), size);
   if (p) memset(p, 0xa5, size); // makes reads of uninitialized memory visible
   fault.blocks += p != NULL;
   return p;
 }
 void *__wrap_calloc(size_t n, size_t size) {
   if (fault_in_allocation()) return NULL;
-  void *p = __real_calloc(n, size);
+  void *p = guarded(__real_malloc(n * size + (size_t)2 * GUARD), n * size);
+  if (p) memset(p, 0, n * size);
   fault.blocks += p != NULL;
   return p;
 }
 void *__wrap_realloc(void *p, size_t size) {
+  size_t old;
   if (fault_in_allocation()) return NULL;
-  void *larger = __real_realloc(p, size);
+  void *start = p ? unguarded(p, &old) : NULL;
+  void *larger = guarded(__real_realloc(start, size + (size_t)2 * GUARD), size);
   fault.blocks += !p && larger;
   return larger;
 }
 void __wrap_free(void *p) {
+  size_t size;
   fault.blocks -= p != NULL;
-  __real_free(p);
+  __real_free(p ? unguarded(p, &size) : NULL);
 }
 
 // Functions supplied by the caller call this; it fails if the fault is at this call.
@@ -112,8 +146,6 @@ typedef struct FaultSteps {
 #define FAULTS_OF_QUICK ((FaultSteps){16, 3})
 #define FAULTS_OF_SLOW ((FaultSteps){6, 2})
 static FaultSteps fault_steps;
-
-static int fault_problems;
 
 // Runs the operation with each fault in turn.
 static inline void try_faults_of(Fault kind, const char *name, const char *kind_name,
