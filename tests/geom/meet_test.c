@@ -149,11 +149,182 @@ static void lines_meet_a_ball_as_their_distance_tells(void **state) {
   }
 }
 
+// --- Curves and graphs ---
+
+// z = f(x, y) over [0, 3] x [0, 2], a cubic net whose x and y are u and v.
+static CagSurface *graph(void) {
+  enum { NU = 6, NV = 5 };
+  const double ku[] = {0, 0, 0, 0, 1, 2, 3, 3, 3, 3}, kv[] = {0, 0, 0, 0, 1, 2, 2, 2, 2};
+  CagVec3 p[NU * NV];
+  for (int i = 0; i < NU; i++)
+    for (int j = 0; j < NV; j++) {
+      const double x = (ku[i + 1] + ku[i + 2] + ku[i + 3]) / 3;
+      const double y = (kv[j + 1] + kv[j + 2] + kv[j + 3]) / 3;
+      p[i * NV + j] = cag_vec3(x, y, uniform(-1.2, 1.2));
+    }
+  CagSurface *s;
+  OK(cag_surface_nurbs(p, NULL, NU, NV, 3, 3, ku, kv, &s, &err));
+  return s;
+}
+
+// A cubic with an inner knot that runs over the rectangle, or also beside it.
+static CagCurve *over(bool beside) {
+  const double knots[] = {0, 0, 0, 0, 0.4, 1, 1, 1, 1};
+  CagVec3 p[5];
+  double weights[5];
+  for (int i = 0; i < 5; i++) {
+    const double x = beside ? uniform(-1, 4) : uniform(0.01, 2.99);
+    const double y = beside ? uniform(-1, 3) : uniform(0.01, 1.99);
+    p[i] = cag_vec3(x, y, uniform(-2, 2));
+    weights[i] = uniform(0.6, 1.6);
+  }
+  CagCurve *c;
+  OK(cag_curve_nurbs(p, weights, 5, 3, knots, 3, &c, &err));
+  return c;
+}
+
+// The height of the curve over the graph; NAN beside it. How far inside of the rectangle it is.
+static double height(const CagSurface *s, const CagCurve *c, double t, double *inside) {
+  CagVec3 p, q;
+  OK(cag_curve_point(c, t, &p, &err));
+  *inside = fmin(fmin(p.x, 3 - p.x), fmin(p.y, 2 - p.y));
+  if (*inside < 0) return NAN;
+  OK(cag_surface_point(s, p.x, p.y, &q, &err));
+  return p.z - q.z;
+}
+
+// All places where the height changes its sign; -1: two of them, or one and the edge of the
+// rectangle, are too near to each other to be told apart.
+static int sign_changes(const CagSurface *s, const CagCurve *c, double *out) {
+  enum { STEPS = 1500 };
+  double before = NAN, last = NAN, inside;
+  int n = 0;
+  for (int i = 0; i <= STEPS; i++) {
+    const double now = height(s, c, (double)i / STEPS, &inside);
+    if (fabs(inside) < 0.01 && (isnan(now) || fabs(now) < 0.1)) return -1;
+    // A low between samples without a crossing.
+    if (fabs(before) < 0.003 && fabs(before) <= fabs(now) && fabs(before) <= fabs(last) &&
+        (before < 0) == (now < 0) && (before < 0) == (last < 0))
+      return -1;
+    if ((before < 0) != (now < 0) && !isnan(before) && !isnan(now)) {
+      double a = (i - 1.0) / STEPS, b = (double)i / STEPS;
+      for (int k = 0; k < 60; k++) {
+        const double m = (a + b) / 2;
+        if ((height(s, c, m, &inside) < 0) == (before < 0)) a = m;
+        else b = m;
+      }
+      if (n > 0 && a - out[n - 1] < 0.01) return -1;
+      out[n++] = a;
+    }
+    last = before;
+    before = now;
+  }
+  return n;
+}
+
+static void curves_meet_graphs_where_their_height_is_zero(void **state) {
+  (void)state;
+  seed = 4;
+  int told = 0, found = 0;
+  CagTransform turn;
+  OK(cag_rotate(cag_vec3(3, -1, 2), 1.1, cag_vec3(-4, 2, 1), &turn, &err));
+  for (int round = 0; round < 150; round++) {
+    CagSurface *s = graph(), *moved = NULL;
+    CagCurve *c = over(round % 3 == 0), *with = NULL;
+    double at[64];
+    const int n = sign_changes(s, c, at);
+    if (n >= 0) {
+      // As they are, or both moved, the surface seen through a map.
+      if (round % 2) {
+        OK(cag_surface_transform(s, &turn, &moved, &err));
+        OK(cag_curve_transform(c, &turn, &with, &err));
+      }
+      CagSurfaceMeeting *m;
+      size_t count;
+      OK(cag_surface_intersect_curve(moved ? moved : s, with ? with : c, &m, &count, &err));
+      if (count != (size_t)n) fail_msg("round %d: %zu meetings, not %d", round, count, n);
+      for (int i = 0; i < n; i++) {
+        CagVec3 p;
+        OK(cag_curve_point(c, at[i], &p, &err));
+        NEAR(m[i].t, at[i], 1e-9);
+        NEAR(m[i].u, p.x, 1e-8);
+        NEAR(m[i].v, p.y, 1e-8);
+        assert_int_equal(m[i].multiplicity, 1);
+        near_vec(m[i].point, moved ? cag_transform_point(&turn, p) : p, 1e-8);
+      }
+      free(m);
+      told++;
+      found += n;
+    }
+    cag_surface_release(s);
+    cag_curve_release(c);
+    cag_surface_release(moved);
+    cag_curve_release(with);
+  }
+  assert_true(told > 75 && found > 75);
+}
+
+// A parabola over a saddle, z = x y: lifted by the lowest height they touch, once, with the order
+// 2; a cubic x^3 crosses the plane z = 0 with the order 3.
+static void the_order_of_contact_is_told(void **state) {
+  (void)state;
+  seed = 5;
+  const CagVec3 corner[4] = {{-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}, {1, 1, 1}};
+  CagSurface *saddle;
+  OK(cag_surface_bezier(corner, NULL, 2, 2, &saddle, &err));
+  for (int round = 0; round < 60; round++) {
+    // Along the direction (a, b) through (p, q): over the saddle the height is
+    // z0 + k s^2 - (p + a s) (q + b s), which vanishes twice at s = (p b + q a) / (2 (k - a b)).
+    const double p = uniform(-0.3, 0.3), q = uniform(-0.3, 0.3), a = uniform(-0.6, 0.6),
+                 b = uniform(-0.6, 0.6), bend = uniform(0.6, 1.5) * (round % 2 ? 1 : -1);
+    const double k = bend + a * b, half = (p * b + q * a) / 2, at = half / bend;
+    if (fabs(at) > 0.9) continue;
+    for (int lift = -1; lift <= 1; lift++) {
+      const double z = p * q + half * half / bend - lift * 0.01 * bend;
+      // As a Bezier curve over s = -1 .. 1.
+      const CagVec3 net[] = {{p - a, q - b, z + k}, {p, q, z - k}, {p + a, q + b, z + k}};
+      CagCurve *c;
+      CagSurfaceMeeting *m;
+      size_t n;
+      OK(cag_curve_bezier(net, NULL, 3, 3, &c, &err));
+      OK(cag_surface_intersect_curve(saddle, c, &m, &n, &err));
+      const double off = 0.1; // sqrt(0.01), by the height bend (s - at)^2 - lift 0.01 bend
+      const int wanted = lift < 0 ? 0 : lift == 0 ? 1 : (fabs(at - off) < 1) + (fabs(at + off) < 1);
+      assert_int_equal(n, wanted);
+      for (size_t i = 0; i < n; i++) {
+        const double s = 2 * m[i].t - 1;
+        assert_int_equal(m[i].multiplicity, lift == 0 ? 2 : 1);
+        NEAR(lift == 0 ? s : fabs(s - at), lift == 0 ? at : off, lift == 0 ? 1e-6 : 1e-9);
+      }
+      free(m);
+      cag_curve_release(c);
+    }
+  }
+  cag_surface_release(saddle);
+  const CagVec3 flat[4] = {{-2, -2, 0}, {-2, 2, 0}, {2, -2, 0}, {2, 2, 0}};
+  const CagVec3 cubic[4] = {{-1, 0.1, -1}, {-1.0 / 3, 0.1, 1}, {1.0 / 3, 0.1, -1}, {1, 0.1, 1}};
+  CagSurface *plane;
+  CagCurve *c;
+  CagSurfaceMeeting *m;
+  size_t n;
+  OK(cag_surface_bezier(flat, NULL, 2, 2, &plane, &err));
+  OK(cag_curve_bezier(cubic, NULL, 4, 3, &c, &err));
+  OK(cag_surface_intersect_curve(plane, c, &m, &n, &err));
+  assert_int_equal(n, 1);
+  assert_int_equal(m[0].multiplicity, 3);
+  NEAR(m[0].t, 0.5, 1e-4);
+  free(m);
+  cag_curve_release(c);
+  cag_surface_release(plane);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(polylines_pass_a_flat_patch_as_segments_do),
       cmocka_unit_test(polylines_pass_a_folded_net_as_segments_do),
       cmocka_unit_test(lines_meet_a_ball_as_their_distance_tells),
+      cmocka_unit_test(curves_meet_graphs_where_their_height_is_zero),
+      cmocka_unit_test(the_order_of_contact_is_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
