@@ -190,7 +190,7 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   bool started = false;
-  for (; !started && task.stack >= 1 << 20; task.stack /= 2) { // less where the system gives less
+  for (; task.stack >= 1 << 20; task.stack /= 2) { // less where the system gives less
     started = pthread_attr_setstacksize(&attributes, task.stack) == 0 &&
               pthread_create(&thread, &attributes, perform, &task) == 0;
     if (started) break;

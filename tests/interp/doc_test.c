@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "interp/doc/doc.h"
+#include "interp/doc/site.h"
 #include "interp/session/expect.h"
 
 static CagSession *open_session(void) {
@@ -237,8 +238,302 @@ static void examples_of_words_run(void **state) {
   assert_true(counts.passed > 50);
 }
 
+// Entries as "kind signature [default|range|label] (argument=default: meaning) {text} lines".
+static void describe_module(const CagDocModule *m, char *out, size_t size) {
+  static const char *const kinds[] = {"value", "function", "param"};
+  size_t n = (size_t)snprintf(out, size, "<%s>\n", m->purpose);
+#define SAY(...) n += (size_t)snprintf(out + n, size - n, __VA_ARGS__)
+  for (size_t i = 0; i < m->count; i++) {
+    const CagDocEntry *e = &m->entries[i];
+    SAY("%s %s", kinds[e->kind], e->signature);
+    if (e->kind == CAG_DOC_PARAM)
+      SAY(" [%s|%s|%s]", e->fallback, e->range ? e->range : "", e->label ? e->label : "");
+    for (size_t k = 0; k < e->argument_count; k++) {
+      const CagDocArgument *a = &e->arguments[k];
+      SAY(" (%s=%s: %s)", a->name, a->fallback ? a->fallback : "", a->meaning ? a->meaning : "");
+    }
+    if (e->text) {
+      SAY(" {%s}", e->text);
+      const char *at = e->text;
+      for (size_t k = 0; *at; k++) {
+        SAY(" %zu", e->lines[k]);
+        at += strcspn(at, "\n");
+        at += *at == '\n';
+      }
+    }
+    SAY("\n");
+  }
+#undef SAY
+}
+
+static void definitions_are_told_with_their_parameters_and_lines(void **state) {
+  (void)state;
+  static const struct {
+    const char *script, *told;
+  } rows[] = {
+      {"", "<>\n"},
+      {"a = 1", "<>\nvalue a\n"},
+      {"// One.\n//Two.\n//\n//  Three.\n\n// no\na = 1", "<One.\nTwo.\n\n Three.\n>\nvalue a\n"},
+      {"// One.\n/// of a\na = 1", "<One.\n>\nvalue a {of a} 2\n"},
+      {"/// of a\n/// more\na = 1\nb = 2\n/// of c\n\nc = 3",
+       "<>\nvalue a {of a\nmore} 1 2\nvalue b\nvalue c {of c} 5\n"},
+      {"f(x) = x\ng (x,\n   y =  [1,\n  2]) = {\n  x\n}",
+       "<>\nfunction f(x) (x=: )\nfunction g (x, y =  [1, 2]) (x=: ) (y=[1, 2]: )\n"},
+      {"f(a, width = 2, w = 3) = a\n",
+       "<>\nfunction f(a, width = 2, w = 3) (a=: ) (width=2: ) (w=3: )\n"},
+      {"/// Makes.\n/// - `a`: number: how many\n/// - `width`: number, mm:  wide\n///   as it is\n"
+       "///   said\n/// - `w`: x\n/// The end.\nf(a, width = 2, w = 3) = a\n",
+       "<>\nfunction f(a, width = 2, w = 3) (a=: number: how many) (width=2: number, mm:  wide as "
+       "it "
+       "is said) (w=3: x) {Makes.\nThe end.} 1 7\n"},
+      // An item twice, one of no parameter, one without words: these stay in the text.
+      {"/// - `a`: first\n/// - `a`: second\n/// - `b`: third\n/// - `a`\n/// - a: fourth\nf(a) = "
+       "a\n",
+       "<>\nfunction f(a) (a=: first) {- `a`: second\n- `b`: third\n- `a`\n- a: fourth} 2 3 4 5\n"},
+      // A blank line between items and text is kept once.
+      {"/// Text.\n///\n/// - `a`: first\n///\n/// More.\n///\n/// End.\nf(a) = a\n",
+       "<>\nfunction f(a) (a=: first) {Text.\n\nMore.\n\nEnd.} 1 2 5 6 7\n"},
+      {"/// - `a`: first\n///\n/// More.\nf(a) = a\n", "<>\nfunction f(a) (a=: first) {More.} 3\n"},
+      {"/// - `a`: first\n///\n///   no more\nf(a) = a\n",
+       "<>\nfunction f(a) (a=: first) {  no more} 3\n"},
+      {"/// A.\nparam h = 2 *\n  3 in 1..\n  9 \"how\\n high\" // c\nparam k = \"x\"",
+       "<>\nparam param h = 2 * 3 in 1.. 9 \"how\\n high\" [2 * 3|1.. 9|how\n high] {A.} 1\n"
+       "param param k = \"x\" [\"x\"||]\n"},
+      {"_a = 1\nb = x => x\nc(x) = {\n  d = x\n  d\n}", "<>\nvalue b\nfunction c(x) (x=: )\n"},
+  };
+  size_t bad = 0;
+  CagSession *s = open_session();
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    CagDocModule m;
+    char told[2000];
+    assert_int_equal(cag_session_read_doc(s, "a.cag", rows[i].script, strlen(rows[i].script), &m),
+                     CAG_STATUS_OK);
+    describe_module(&m, told, sizeof told);
+    if (strcmp(told, rows[i].told) != 0) {
+      print_error("%s\n  gives %s  not %s", rows[i].script, told, rows[i].told);
+      bad++;
+    }
+    cag_doc_module_free(&m);
+  }
+  cag_session_free(s);
+  assert_int_equal(bad, 0);
+}
+
+static void texts_are_cut_into_prose_and_scripts(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *parts; // prose in < >, scripts in [ ]
+  } rows[] = {
+      {"", ""},
+      {"a", "<a\n>"},
+      {"a\nb\n", "<a\nb\n>"},
+      {"    x\n", "[x\n]"},
+      {"    x\n      y\n", "[x\n  y\n]"},
+      {"a\n    x\nb", "<a\n>[x\n]<b\n>"},
+      {"a\n\n    x\n\n    y\n\nb\n", "<a\n\n>[x\n\ny\n]<\nb\n>"},
+      {"    x\n\n\n    y\n", "[x\n]<\n\n>[y\n]"},
+      {"   x\n    \n", "<   x\n>[\n]"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char parts[200] = "";
+    bool is_code;
+    size_t n;
+    for (const char *at = rows[i].text; (n = cag_doc_part(at, &is_code)) > 0; at += n) {
+      char *part = cag_doc_part_text(at, n, is_code);
+      sprintf(parts + strlen(parts), is_code ? "[%s]" : "<%s>", part);
+      free(part);
+    }
+    assert_string_equal(parts, rows[i].parts);
+  }
+}
+
+static void add_reason(void *context, CagErrorId id) {
+  strcat(context, cag_error_info(id)->reason);
+  strcat(context, " ");
+}
+
+static void summaries_have_a_first_sentence_and_reasons(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *first;
+  } sentences[] = {
+      {"", ""},
+      {"One", "One"},
+      {"One.", "One."},
+      {"One. Two.", "One."},
+      {"One.\nTwo.", "One."},
+      {"One e.g. two. Three.", "One e.g. two."},
+      {"From 1 .. n ... and so on. End.", "From 1 .. n ... and so on."},
+      {"All ... And so on. End.", "All ... And so on."},
+      {"1.5 mm. Z.", "1.5 mm."},
+      {"1.5 mm. A.", "1.5 mm."},
+      {"a. 9 b. [c. @d. End.", "a. 9 b. [c. @d."},
+      {". A", ". A"},
+  };
+  for (size_t i = 0; i < sizeof sentences / sizeof *sentences; i++) {
+    const size_t n = cag_doc_sentence(sentences[i].text);
+    assert_int_equal(n, strlen(sentences[i].first));
+    assert_memory_equal(sentences[i].text, sentences[i].first, n);
+  }
+  static const struct {
+    const char *text, *reasons;
+  } rows[] = {
+      {"a (unknown-name) b", "unknown-name "},
+      {"(unknown-name) (index)", "unknown-name index "},
+      {"(unknown-name, index) (Index) () (no-such-reason) (index", ""},
+      {"((index))", "index "},
+      {"index)", ""},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char reasons[200] = "";
+    cag_doc_reasons(rows[i].text, add_reason, reasons);
+    assert_string_equal(reasons, rows[i].reasons);
+  }
+  assert_int_equal(cag_doc_default("\"left\"|\"right\""), 6);
+  assert_int_equal(cag_doc_default("12"), 2);
+  assert_int_equal(cag_doc_default("\"left\""), 6);
+}
+
+// What an example begins with, so that it sees the names of its script.
+static void examples_import_what_they_name(void **state) {
+  (void)state;
+  static const struct {
+    const char *purpose, *file, *example, *import;
+  } rows[] = {
+      {"", "flange.cag", "print plate(1)\n", "import \"flange.cag\": plate"},
+      {"", "flange.cag", "print plate(1) + hole\n", "import \"flange.cag\": hole, plate"},
+      {"", "flange.cag", "print plates, x.plate, a_plate, plate2, \xc3\xa9plate\n", NULL},
+      {"", "flange.cag", "plate\n", "import \"flange.cag\": plate"},
+      {"", "flange.cag",
+       "aplate zplate Aplate Zplate 0plate 9plate _plate platea platez plateA plateZ plate0 plate9 "
+       "plate_\n",
+       NULL},
+      {"", "flange.cag", "[plate]\n", "import \"flange.cag\": plate"},
+      {"", "flange.cag", "{plate}/@plate`\n", "import \"flange.cag\": plate"},
+      {"", "flange.cag", "plate = 3\nprint plate, hole\n", "import \"flange.cag\": hole"},
+      {"", "flange.cag", "plate(x) = 3\nprint plate(1)\n", NULL},
+      {"", "flange.cag", "f = plate => 1\nprint plate == 2\n", "import \"flange.cag\": plate"},
+      {"", "flange.cag", "plate == 2\n", "import \"flange.cag\": plate"},
+      {"", "flange.cag", "import std.robots\nprint plate\n", NULL},
+      {"", "flange.cag", "print flange.plate\n", "import \"flange.cag\" as flange"},
+      {"", "flange.cag", "print flange.plate, hole\n", "import \"flange.cag\" as flange: hole"},
+      {"", "flange.cag", "print x.flange.plate, my_flange.plate, flange\n", NULL},
+      {"", "2flange.cag", "print 2flange.plate\n", NULL},
+      {"", "my-flange.cag", "print my-flange.plate\n", NULL},
+      {"import parts.flange as f\n", "flange.cag", "print f.plate\n", "import \"flange.cag\" as f"},
+      {"x import y\nimport parts.flange as fl_1\n", "flange.cag", "print fl_1.plate\n",
+       "import \"flange.cag\" as fl_1"},
+      {"import parts.other as f\n", "flange.cag", "print f.plate\n", NULL},
+      {"", "flange.cag", "print 1\n", NULL},
+  };
+  CagDocEntry entries[] = {{.name = (char[]){"hole"}}, {.name = (char[]){"plate"}}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char purpose[100];
+    snprintf(purpose, sizeof purpose, "%s", rows[i].purpose);
+    const CagDocModule m = {.purpose = purpose, .entries = entries, .count = 2};
+    char *import = cag_doc_script_import(&m, rows[i].file, rows[i].example);
+    if (!import != !rows[i].import || (import && strcmp(import, rows[i].import) != 0))
+      fail_msg("%s%s", rows[i].example, import ? import : "no import");
+    free(import);
+  }
+}
+
+// --- HTML ---
+
+typedef void HtmlWriter(FILE *out, const char *root, const char *text, size_t length);
+
+static void expect_html(HtmlWriter *write, const char *text, const char *expected) {
+  char *html = NULL;
+  size_t size;
+  FILE *out = open_memstream(&html, &size);
+  write(out, "../", text, strlen(text));
+  fclose(out);
+  assert_string_equal(html, expected);
+  free(html);
+}
+
+static void scripts_are_colored_and_linked(void **state) {
+  (void)state;
+#define LINK(name) "<a class=\"f\" href=\"../functions/" name ".html\">" name "</a>"
+#define SPAN(kind, text) "<span class=\"" kind "\">" text "</span>"
+  static const struct {
+    const char *text, *html;
+  } rows[] = {
+      {"", ""},
+      {"a < b & c > \"d\"", "a &lt; b &amp; c &gt; " SPAN("s", "&quot;d&quot;")},
+      {"x // y < z\nw", "x " SPAN("c", "// y &lt; z") "\nw"},
+      {"x / y", "x / y"},
+      {"//", SPAN("c", "//")},
+      {"/", "/"},
+      {"\"a\\\"b\" c", SPAN("s", "&quot;a\\&quot;b&quot;") " c"},
+      {"\"a\\\\\" c", SPAN("s", "&quot;a\\\\&quot;") " c"},
+      {"`a\\` c", SPAN("s", "`a\\`") " c"},
+      {"\"open", SPAN("s", "&quot;open")},
+      {"\"open\\", SPAN("s", "&quot;open\\")},
+      {"12 1_000 1.5 1.5mm 2e3 2e-3deg",
+       SPAN("n", "12") " " SPAN("n", "1_000") " " SPAN("n", "1.5") " " SPAN("n", "1.5mm") " " SPAN(
+           "n", "2e3") " " SPAN("n", "2e-3deg")},
+      {"12e+x 1e x", SPAN("n", "12e") "+x " SPAN("n", "1e") " x"},
+      {"0..5", SPAN("n", "0") ".." SPAN("n", "5")},
+      {"5.", SPAN("n", "5") "."},
+      {"if x", SPAN("k", "if") " x"},
+      {"sphere", LINK("sphere")},
+      {"sphere(2)", LINK("sphere") "(" SPAN("n", "2") ")"},
+      {" sphere", " sphere"},
+      {"sphere: (1)", "sphere: (" SPAN("n", "1") ")"},
+      {"x.sphere(1)", "x.sphere(" SPAN("n", "1") ")"},
+      {"...sphere(1)", "..." LINK("sphere") "(" SPAN("n", "1") ")"},
+      {"spheres(1) sphere2(1) _sphere(1) \xc3\xa9(1)",
+       "spheres(" SPAN("n", "1") ") sphere2(" SPAN("n", "1") ") _sphere(" SPAN(
+           "n", "1") ") \xc3\xa9(" SPAN("n", "1") ")"},
+      {"aA_zZ09(1)", "aA_zZ09(" SPAN("n", "1") ")"},
+      {"a2345678901234567890123456789012345678901234567890123456789012345678(1)",
+       "a2345678901234567890123456789012345678901234567890123456789012345678(" SPAN("n", "1") ")"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    expect_html(cag_html_script, rows[i].text, rows[i].html);
+  static const struct {
+    const char *text, *html;
+  } prose[] = {
+      {"a `sphere` < b", "a <code>" LINK("sphere") "</code> &lt; b"},
+      {"sphere(1)", "sphere(1)"},
+      {"`` ` ` `", "`` ` ` `"},
+      {"`x", "`x"},
+      {"`a``b`", "<code>a</code><code>b</code>"},
+      {"a `b`.", "a <code>b</code>."},
+  };
+  for (size_t i = 0; i < sizeof prose / sizeof *prose; i++)
+    expect_html(cag_html_prose, prose[i].text, prose[i].html);
+  static const struct {
+    const char *heading, *anchor;
+  } anchors[] = {{"Lists", "lists"},
+                 {"The REPL", "the-repl"},
+                 {"  A  b ", "a-b"},
+                 {"a - b", "a-b"},
+                 {"1.2 Az", "1-2-az"},
+                 {"what? no!", "what-no"},
+                 {"--x--", "x"},
+                 {"?", "x"},
+                 {"", "x"},
+                 {"Zz_9", "zz_9"},
+                 {"a/b", "ab"},
+                 {"[", "x"}};
+  for (size_t i = 0; i < sizeof anchors / sizeof *anchors; i++) {
+    char *anchor = cag_html_anchor(anchors[i].heading);
+    assert_string_equal(anchor, anchors[i].anchor);
+    free(anchor);
+  }
+#undef LINK
+#undef SPAN
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(definitions_are_told_with_their_parameters_and_lines),
+      cmocka_unit_test(texts_are_cut_into_prose_and_scripts),
+      cmocka_unit_test(summaries_have_a_first_sentence_and_reasons),
+      cmocka_unit_test(examples_import_what_they_name),
+      cmocka_unit_test(scripts_are_colored_and_linked),
       cmocka_unit_test(every_parameter_of_a_built_in_is_told),
       cmocka_unit_test(every_word_of_the_language_is_told),
       cmocka_unit_test(topics_refer_to_what_is_told),

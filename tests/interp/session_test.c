@@ -8,6 +8,8 @@
 #include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "session_support.h"
 
@@ -233,8 +235,323 @@ static void built_ins_are_told_by_their_rows(void **state) {
   }
 }
 
+// --- Runs and their statuses ---
+
+static int run_text(CagSession *s, const char *text) {
+  return cag_session_run_text(s, "test", text, strlen(text));
+}
+
+static CagErrorView first_error(const CagSession *s) {
+  CagErrorView e = {0};
+  assert_true(cag_session_error_count(s) > 0);
+  cag_session_error(s, 0, &e);
+  return e;
+}
+
+static void each_kind_of_error_has_its_status(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *reason;
+    int status;
+  } rows[] = {
+      {"print 1 +", "expected-expression", CAG_STATUS_SCRIPT},
+      {"x = y", "unknown-name", CAG_STATUS_SCRIPT},
+      {"assert false", "assertion", CAG_STATUS_SCRIPT},
+      {"import nowhere", "module-not-found", CAG_STATUS_SCRIPT},
+      {"f(n) = 1 + f(n + 1)\nx = f(0)\nassert x > 0", "depth-limit", CAG_STATUS_LIMIT},
+      {"assert len([for i in 0..1e7: [{a: i}]]) > 0", "memory-limit", CAG_STATUS_LIMIT},
+      {"f(n) = f(n + 1)\nassert f(0)", "time-limit", CAG_STATUS_LIMIT},
+      {"assert len(faces(tessellate(sphere(10), tolerance: 1e-5))) > 0", "triangle-limit",
+       CAG_STATUS_LIMIT},
+  };
+  CagSessionOptions options = session_options();
+  options.max_depth = 100;
+  options.max_memory = (size_t)8 << 20;
+  options.max_triangles = 1000;
+  size_t bad = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    options.max_time = strcmp(rows[i].reason, "time-limit") == 0 ? 0.05 : 0;
+    CagSession *s = cag_session_new(&options);
+    const int status = run_text(s, rows[i].text);
+    const CagErrorView e = first_error(s);
+    // Each has a place in the script, limits too.
+    if (status != rows[i].status || strcmp(e.reason, rows[i].reason) != 0 || e.line == 0) {
+      print_error("%s: %d %s in line %zu\n", rows[i].text, status, e.reason, e.line);
+      bad++;
+    }
+    cag_session_free(s);
+  }
+  assert_int_equal(bad, 0);
+  CagSession *s = new_session();
+  assert_int_equal(cag_session_run_file(s, "/tmp/no/such/script.cag"), CAG_STATUS_FILE);
+  assert_int_equal(run_text(s, "show sphere(1)"), CAG_STATUS_OK);
+  assert_int_equal(cag_session_export(s, "/tmp/no/such/folder/a.stl", NULL), CAG_STATUS_FILE);
+  assert_int_equal(cag_session_export(s, "/tmp/a.none", NULL), CAG_STATUS_USAGE);
+  assert_int_equal(cag_session_export(s, "/dev/null", "none"), CAG_STATUS_USAGE);
+  // An interrupt that is there already ends any work.
+  const volatile int interrupt = 1;
+  options = session_options();
+  options.interrupt = &interrupt;
+  CagSession *interrupted = cag_session_new(&options);
+  assert_int_equal(run_text(interrupted, "x = 1\nassert x == 1"), CAG_STATUS_INTERRUPTED);
+  assert_string_equal(first_error(interrupted).reason, "interrupted");
+  cag_session_free(interrupted);
+  cag_session_free(s);
+}
+
+static void errors_tell_where_they_begin_and_end(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  assert_int_equal(run_text(s, "x = 1\ny = \"\xc3\xa9\" + [2,\n 3]\nassert y"), CAG_STATUS_SCRIPT);
+  const CagErrorView e = first_error(s);
+  assert_string_equal(e.file, "test");
+  assert_int_equal(e.line, 2);
+  assert_int_equal(e.column, 5);
+  assert_int_equal(e.end_line, 3);
+  assert_int_equal(e.end_column, 4);
+  cag_session_free(s);
+}
+
+static void modules_are_looked_for_in_each_folder(void **state) {
+  (void)state;
+  char folder[] = "/tmp/cag-session-XXXXXX", one[64], two[64], a[80], b[80], missing[80];
+  assert_non_null(mkdtemp(folder));
+  snprintf(one, sizeof one, "%s/one", folder);
+  snprintf(two, sizeof two, "%s/two", folder);
+  snprintf(missing, sizeof missing, "%s/missing", folder);
+  snprintf(a, sizeof a, "%s/a.cag", one);
+  snprintf(b, sizeof b, "%s/b.cag", two);
+  assert_int_equal(mkdir(one, 0700), 0);
+  assert_int_equal(mkdir(two, 0700), 0);
+  FILE *f = fopen(a, "w");
+  fputs("value = 3\n", f);
+  fclose(f);
+  f = fopen(b, "w");
+  fputs("value = 4\n", f);
+  fclose(f);
+  const char *const folders[] = {missing, one, two};
+  for (size_t n = 0; n <= 3; n++) {
+    CagSessionOptions options = session_options();
+    options.module_path = folders;
+    options.module_path_count = n;
+    CagSession *s = cag_session_new(&options);
+    assert_int_equal(run_text(s, "import a\nassert a.value == 3") == CAG_STATUS_OK, n > 1);
+    assert_int_equal(run_text(s, "import b\nassert b.value == 4") == CAG_STATUS_OK, n > 2);
+    cag_session_free(s);
+  }
+  unlink(a);
+  unlink(b);
+  rmdir(one);
+  rmdir(two);
+  rmdir(folder);
+}
+
+static void frames_tell_the_time(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  static const struct {
+    double frame, frames;
+    bool loop;
+    const char *assertion;
+  } rows[] = {
+      {0, 1, false, "assert time == 0 and frame == 0 and frames == 1"},
+      {3, 5, false, "assert time == 0.75 and frame == 3 and frames == 5"},
+      {4, 5, false, "assert time == 1"},
+      {3, 4, true, "assert time == 0.75 and frame == 3 and frames == 4"},
+      {0, 4, true, "assert time == 0"},
+      {0, 1, true, "assert time == 0"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    cag_session_set_frame(s, rows[i].frame, rows[i].frames);
+    cag_session_set_loop(s, rows[i].loop);
+    if (run_text(s, rows[i].assertion) != CAG_STATUS_OK) fail_msg("%s", rows[i].assertion);
+  }
+  cag_session_free(s);
+}
+
+static void definitions_from_outside_stay_until_they_are_cleared(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  static const char script[] = "param a = 1\nparam b = \"x\"\nparam c = [1]\n";
+  char text[256];
+  cag_session_define(s, "a", "2 + 3");
+  cag_session_define(s, "b", "two words");
+  cag_session_define(s, "c", "[7, 8]");
+  snprintf(text, sizeof text, "%sassert a == 5 and b == \"two words\" and c == [7, 8]", script);
+  for (int i = 0; i < 2; i++) assert_int_equal(run_text(s, text), CAG_STATUS_OK);
+  cag_session_define(s, "a", "6"); // the last one counts
+  snprintf(text, sizeof text, "%sassert a == 6 and c == [7, 8]", script);
+  assert_int_equal(run_text(s, text), CAG_STATUS_OK);
+  cag_session_clear_defines(s);
+  snprintf(text, sizeof text, "%sassert a == 1 and b == \"x\" and c == [1]", script);
+  assert_int_equal(run_text(s, text), CAG_STATUS_OK);
+  cag_session_define(s, "d", "1");
+  assert_int_equal(run_text(s, text), CAG_STATUS_SCRIPT);
+  cag_session_free(s);
+}
+
+// --- What is shown ---
+
+static char *described_scene(CagSession *s) {
+  char *text = NULL;
+  size_t length;
+  FILE *out = open_memstream(&text, &length);
+  cag_session_describe_scene(s, out);
+  fclose(out);
+  return text;
+}
+
+static void what_is_shown_is_named_and_counted(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  const char *text = "ball = sphere(2)\nother = box(1) |> named(\"own\")\n"
+                     "side = camera([9, 9, 9])\n"
+                     "show ball, other, box(3), [ball, ball]\n"
+                     "show side, camera([9, 0, 9]), sun(-Z)\n";
+  assert_int_equal(run_text(s, text), CAG_STATUS_OK);
+  char *lines = described_scene(s);
+  const char *const begins[] = {"ball: sphere, radius 2\n", "own: box, 1 x 1 x 1\n",
+                                "box, 3 x 3 x 3\n"};
+  const char *at = lines;
+  for (size_t i = 0; i < 3; i++) {
+    assert_memory_equal(at, begins[i], strlen(begins[i]));
+    at += strlen(begins[i]);
+  }
+  assert_memory_equal(at, "ball: the list ", 15); // by what leads its expression
+  size_t count = 0;
+  for (const char *c = lines; *c; c++) count += *c == '\n';
+  assert_int_equal(count, 7);
+  free(lines);
+  CagShownCounts counts;
+  assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_OK);
+  assert_int_equal(counts.items, 5);
+  assert_int_equal(counts.cameras, 2);
+  assert_int_equal(counts.lights, 1);
+  assert_string_equal(cag_session_camera(s, 0), "side");
+  assert_null(cag_session_camera(s, 2));
+  cag_session_free(s);
+}
+
+static void scenes_without_shapes_are_errors(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *message, *help;
+  } rows[] = {
+      {"x = 1", "test shows no shape", "add `show` and a shape: show sphere(10)"},
+      {"show sun(-Z)", "test shows no shape", "add `show` and a shape: show sphere(10)"},
+      {"show box(1) - box(2)", "test shows nothing but empty shapes",
+       "`is_empty` tells what is empty"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    CagSession *s = new_session();
+    CagShownCounts counts;
+    assert_int_equal(run_text(s, rows[i].text), CAG_STATUS_OK);
+    assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_SCRIPT);
+    CagErrorView e;
+    cag_session_error(s, cag_session_error_count(s) - 1, &e);
+    assert_string_equal(e.reason, "nothing-to-show");
+    assert_string_equal(e.message, rows[i].message);
+    assert_string_equal(e.help, rows[i].help);
+    assert_int_equal(counts.items, 0);
+    cag_session_free(s);
+  }
+}
+
+// Warnings leave room for an error behind them.
+static void empty_shapes_are_warned_of(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  char text[4000] = "show sphere(1)\n";
+  for (int i = 0; i < 30; i++) {
+    char one[64];
+    snprintf(one, sizeof one, "e%d = box(1) - box(2)\nshow e%d\n", i, i);
+    strcat(text, one);
+  }
+  assert_int_equal(run_text(s, text), CAG_STATUS_OK);
+  CagShownCounts counts;
+  assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_OK);
+  assert_int_equal(counts.items, 2); // and the floor
+  assert_int_equal(cag_session_error_count(s), 19);
+  for (size_t i = 0; i < 19; i++) {
+    CagErrorView e;
+    char expected[100];
+    cag_session_error(s, i, &e);
+    snprintf(expected, sizeof expected, "e%zu: the shape is empty, so it adds nothing to the scene",
+             i);
+    assert_string_equal(e.message, expected);
+    assert_int_equal(e.line, 2 + 2 * i); // where it is made
+  }
+  cag_session_free(s);
+}
+
+static void an_endless_shape_is_shown_where_it_is_made(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  assert_int_equal(run_text(s, "a = sphere(3) & box(2)\n"
+                               "b = sphere(1) | half_space(plane(origin, Z))\nshow a, b"),
+                   CAG_STATUS_OK);
+  CagShownCounts counts;
+  assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_SCRIPT);
+  const CagErrorView e = first_error(s);
+  assert_string_equal(e.reason, "solid-unbounded");
+  assert_int_equal(e.line, 2);
+  assert_int_equal(e.column, 5);
+  cag_session_free(s);
+}
+
+// A second interactive input may define names again, whose users follow.
+static void scenes_of_inputs_follow_their_names(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  assert_int_equal(input(s, "r = 1\nb = box(r)\nshow b", NULL, NULL), CAG_STATUS_OK);
+  char *lines = described_scene(s);
+  assert_string_equal(lines, "b: box, 1 x 1 x 1\n");
+  free(lines);
+  assert_int_equal(input(s, "r = 2", NULL, NULL), CAG_STATUS_OK);
+  lines = described_scene(s);
+  assert_string_equal(lines, "b: box, 2 x 2 x 2\n");
+  free(lines);
+  CagShownCounts counts;
+  for (int i = 0; i < 2; i++) {
+    assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_OK);
+    assert_int_equal(counts.items, 2); // and the floor
+  }
+  // What depends on a name that fails fails, and works again.
+  assert_int_equal(input(s, "r = -1", NULL, NULL), CAG_STATUS_OK);
+  assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_SCRIPT);
+  assert_int_equal(input(s, "r = 3", NULL, NULL), CAG_STATUS_OK);
+  assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_OK);
+  cag_session_free(s);
+}
+
+static void a_limit_of_time_is_told_from_outside(void **state) {
+  (void)state;
+  CagSessionOptions options = session_options();
+  options.max_time = 2.5;
+  CagSession *s = cag_session_new(&options);
+  char *text = NULL;
+  size_t length;
+  FILE *out = open_memstream(&text, &length);
+  cag_session_write_overdue(s, CAG_STYLE_TEXT, out);
+  fclose(out);
+  assert_string_equal(text, "error: exceeded the time limit of 2.5 s (--max-time)\n");
+  free(text);
+  cag_session_free(s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(each_kind_of_error_has_its_status),
+      cmocka_unit_test(errors_tell_where_they_begin_and_end),
+      cmocka_unit_test(modules_are_looked_for_in_each_folder),
+      cmocka_unit_test(frames_tell_the_time),
+      cmocka_unit_test(definitions_from_outside_stay_until_they_are_cleared),
+      cmocka_unit_test(what_is_shown_is_named_and_counted),
+      cmocka_unit_test(scenes_without_shapes_are_errors),
+      cmocka_unit_test(empty_shapes_are_warned_of),
+      cmocka_unit_test(an_endless_shape_is_shown_where_it_is_made),
+      cmocka_unit_test(scenes_of_inputs_follow_their_names),
+      cmocka_unit_test(a_limit_of_time_is_told_from_outside),
       cmocka_unit_test(a_value_callback_that_calls_the_session_is_refused),
       cmocka_unit_test(a_callback_given_names_is_refused_too),
       cmocka_unit_test(a_callback_may_free_the_session),

@@ -351,6 +351,12 @@ static void what_is_wrong_is_said(void **state) {
                                "--help` lists the options\n"},
       {"cag eval -x", "cag eval: there is no option -x\n  `cag eval --help` lists the options; an "
                       "expression that begins with - stands behind --\n"},
+      {"cag run a -a", "cag run: there is no option -a\n  `cag run --help` lists the options\n"},
+      {"cag run a -z", "cag run: there is no option -z\n  `cag run --help` lists the options\n"},
+      {"cag run a -A", "cag run: there is no option -A\n  `cag run --help` lists the options\n"},
+      {"cag run a -Z", "cag run: there is no option -Z\n  `cag run --help` lists the options\n"},
+      {"cag run a -[", "cag run: '-[' is one too many\n  write `cag run FILE`; `cag run --help` "
+                       "shows examples\n"},
       {"cag run a -o", "cag run: -o is an option of other commands\n  `cag run --help` lists the "
                        "options\n"},
       {"cag export a -o", "cag export: -o needs a value\n  write -o OUT\n"},
