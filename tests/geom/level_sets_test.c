@@ -3,6 +3,7 @@
 // and on the places where the function is 0.
 
 #include "geom/surface/curvature_contour.h"
+#include "geom/surface/curvature_line.h"
 #include "geom/surface/isophote.h"
 #include "geom/surface/meet_surface.h"
 #include "geom/surface/section.h"
@@ -198,6 +199,21 @@ static CagStatus ask_meeting(const Question *q, CagCurveList *out, CagError *e) 
   return cag_surface_intersect(q->s, q->other, 0, NULL, out, e);
 }
 
+// An open curve ends on the edge of the rectangle, to rounding.
+static void check_ends(const Question *q, const CagCurve *c, const Runs *runs, const char *what,
+                       int round) {
+  for (int end = 0; end < 2 && !c->closed; end++) {
+    CagVec3 p, on;
+    OK(cag_curve_point(c, end ? c->end : c->start, &p, &err));
+    const double beside =
+        fmin(fmin(fabs(p.x), fabs(p.x - WIDE)), fmin(fabs(p.y), fabs(p.y - HIGH)));
+    const double value = value_at(q, p.x, p.y, &on);
+    if (beside > 1e-10 || cag_norm(cag_sub(p, on)) > 1e-9 || fabs(value) > 1e-8 * runs->largest)
+      fail_msg("%s %d: the end [%g %g %g] is off by %g, %g, %g", what, round, p.x, p.y, p.z, beside,
+               cag_norm(cag_sub(p, on)), value);
+  }
+}
+
 // Gives false where marching squares cannot tell. They cut corners by some thousandths of the
 // length.
 static bool compare(const Question *q, Ask ask, const char *what, int round) {
@@ -220,6 +236,7 @@ static bool compare(const Question *q, Ask ask, const char *what, int round) {
                  cag_norm(cag_sub(p, on)), off);
     }
   }
+  for (size_t i = 0; i < list.count; i++) check_ends(q, list.items[i], &runs, what, round);
   if ((int)list.count != runs.count)
     fail_msg("%s %d: %zu curves, not %d", what, round, list.count, runs.count);
   if (!(fabs(length - runs.length) < 5e-3 * runs.length + 1e-3))
@@ -285,6 +302,75 @@ static void meetings_are_level_sets(void **state) {
   run("meeting", ask_meeting, above_other, 9);
 }
 
+// --- Lines of curvature ---
+
+// Along (dx, dy) the normal curvature is the principal one of this kind, and the direction is its.
+static void check_bend(const CagSurface *s, CagVec3 p, CagVec3 along, bool larger, int round) {
+  CagVec3 d[9];
+  OK(cag_surface_eval(s, fmin(fmax(p.x, 0), WIDE), fmin(fmax(p.y, 0), HIGH), 2, CAG_SIDE_RIGHT,
+                      CAG_SIDE_RIGHT, d, &err));
+  const double a = d[cag_partial(2, 1, 0)].z, b = d[cag_partial(2, 0, 1)].z;
+  const double root = sqrt(1 + a * a + b * b), x = along.x, y = along.y;
+  const double l = d[cag_partial(2, 2, 0)].z / root, m = d[cag_partial(2, 1, 1)].z / root,
+               n = d[cag_partial(2, 0, 2)].z / root;
+  const double first = (1 + a * a) * x * x + 2 * a * b * x * y + (1 + b * b) * y * y;
+  const double second = l * x * x + 2 * m * x * y + n * y * y;
+  const Question of = {.s = s, .of = larger ? CAG_CURVATURE_MAX : CAG_CURVATURE_MIN};
+  const double k = bent(&of, d);
+  if (!(fabs(second / first - k) < 1e-5 * (1 + fabs(k))))
+    fail_msg("line %d: at [%g %g] curvature %g, not %g", round, p.x, p.y, second / first, k);
+  // Both forms are proportional: (L - k E) x + (M - k F) y = 0.
+  const double skew = ((1 + a * a) * x + a * b * y) * (m * x + n * y) -
+                      (a * b * x + (1 + b * b) * y) * (l * x + m * y);
+  if (!(fabs(skew) < 2e-4 * first))
+    fail_msg("line %d: at [%g %g] off by %g", round, p.x, p.y, skew);
+}
+
+static void lines_of_curvature_follow_principal_directions(void **state) {
+  (void)state;
+  seed = 36;
+  int told = 0;
+  for (int round = 0; round < 24; round++) {
+    CagSurface *s = graph(4, 5, 5, 0.7);
+    const bool larger = round % 2;
+    const double u = uniform(0.3, 2.7), v = uniform(0.3, 1.7);
+    CagCurve *c;
+    CagVec3 on;
+    OK(cag_surface_point(s, u, v, &on, &err));
+    OK(cag_surface_curvature_line(s, u, v, larger, &c, &err));
+    double nearest = INFINITY;
+    for (int i = 0; i <= 60; i++) {
+      CagVec3 d[2], q;
+      OK(cag_curve_eval(c, c->start + (c->end - c->start) * i / 60, 1,
+                        i == 60 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, &err));
+      OK(cag_surface_point(s, fmin(fmax(d[0].x, 0), WIDE), fmin(fmax(d[0].y, 0), HIGH), &q, &err));
+      near_vec(d[0], q, 1e-6);
+      // Not at the ends, where an umbilic may be.
+      if (i > 2 && i < 58) check_bend(s, d[0], cag_unit(d[1]), larger, round);
+    }
+    double t;
+    CagVec3 foot;
+    OK(cag_curve_closest(c, on, &t, &foot, &nearest, &err));
+    NEAR(nearest, 0, 1e-9);
+    for (int end = 0; end < 2 && !c->closed; end++) {
+      CagVec3 p;
+      OK(cag_curve_point(c, end ? c->end : c->start, &p, &err));
+      const double beside =
+          fmin(fmin(fabs(p.x), fabs(p.x - WIDE)), fmin(fabs(p.y), fabs(p.y - HIGH)));
+      CagPrincipal at;
+      bool found;
+      OK(cag_surface_principal(s, fmin(fmax(p.x, 0), WIDE), fmin(fmax(p.y, 0), HIGH), &found, &at,
+                               &err));
+      told += beside < 1e-9;
+      // At the edge, or at an umbilic.
+      assert_true(beside < 1e-9 || at.k[1] - at.k[0] < 0.05);
+    }
+    cag_curve_release(c);
+    cag_surface_release(s);
+  }
+  assert_true(told > 24);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sections_are_level_sets),
@@ -292,6 +378,7 @@ int main(void) {
       cmocka_unit_test(contours_are_level_sets),
       cmocka_unit_test(curvature_contours_are_level_sets),
       cmocka_unit_test(meetings_are_level_sets),
+      cmocka_unit_test(lines_of_curvature_follow_principal_directions),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
