@@ -185,7 +185,7 @@ static CagStatus add_joint(Buffer *b, CagVec3 p, CagVec3 t, CagVec3 u, double ra
   const double turn = atan2(cag_norm(cag_cross(t, u)), cag_dot(t, u)), depth = joint_depth(t, u);
   const double rounding = 1e-9; // a quarter turn has SIDES / 4 steps
   const size_t steps = (size_t)ceil(turn * SIDES / (2 * PI) - rounding);
-  CagStatus status = reserve(b, (steps + 2) * SIDES, steps * SIDES, err);
+  CagStatus status = reserve(b, (steps + 2) * SIDES, steps * (SIDES - 2), err);
   if (status != CAG_OK) return status;
   CagVec3 o = cag_unit(cag_madd(cag_scaled(u, -1), cag_dot(t, u), t)), a = cag_cross(t, o);
   *out = (Joint){.outward = {o, cag_madd(cag_scaled(o, cos(turn)), sin(turn), t)}, .axis = a};
@@ -242,7 +242,8 @@ static double turn_to_joint(const CagVec3 *p, size_t n, CagVec3 first, const Joi
 static CagStatus add_run(Buffer *b, const CagVec3 *p, size_t n, RunEnd from, RunEnd to,
                          double radius, CagError *err) {
   if (n < 2) return CAG_OK;
-  CagStatus status = reserve(b, (n + 2) * SIDES + 2, 2 * SIDES * (n + 1), err);
+  const size_t caps = (from.joint ? 0u : 1u) + (to.joint ? 0u : 1u);
+  CagStatus status = reserve(b, (n + 2) * SIDES + 2, (2 * (n - 1) + caps) * SIDES, err);
   if (status != CAG_OK) return status;
   CagVec3 t = tangent_at(p, n, false, 0);
   CagVec3 r = from.joint ? from.joint->outward[1] : perpendicular(t);
@@ -271,7 +272,7 @@ static CagStatus add_run(Buffer *b, const CagVec3 *p, size_t n, RunEnd from, Run
 // Adds a closed smooth tube through n points, the last of which is the first.
 static CagStatus add_loop(Buffer *b, const CagVec3 *p, size_t n, double radius, CagError *err) {
   if (n < 2) return CAG_OK;
-  CagStatus status = reserve(b, n * SIDES, 2 * SIDES * n, err);
+  CagStatus status = reserve(b, n * SIDES, 2 * SIDES * (n - 1), err);
   if (status != CAG_OK) return status;
   const CagVec3 begin = tangent_at(p, n, true, 0), first = perpendicular(begin);
   CagVec3 t = begin, r = first;
@@ -304,7 +305,7 @@ static CagVec3 askew(CagVec3 n) {
 }
 
 static CagStatus add_ball(Buffer *b, CagVec3 p, double radius, CagError *err) {
-  CagStatus status = reserve(b, BALL_RINGS * SIDES + 2, 2 * SIDES * (size_t)(BALL_RINGS + 1), err);
+  CagStatus status = reserve(b, BALL_RINGS * SIDES + 2, 2 * SIDES * (size_t)BALL_RINGS, err);
   if (status != CAG_OK) return status;
   size_t start = b->vertices;
   for (int i = 1; i <= BALL_RINGS; i++) {

@@ -34,7 +34,7 @@ static void is_point(CagVec3 p, double x, double y, double z) {
 
 #define DEFINED                                                                                    \
   "b = box(1)\nc = cylinder(2, 1)\nbs = [b, b]\npair = group(b, c)\nr = {lid: b}\n"                \
-  "make(k) = box(k)\nsame(g) = g\n"
+  "make(k) = box(k)\nsame(g) = g\nf = sphere_surface(3)\n"
 
 // A shape without a name of its own is named after the definition that it comes from, and after
 // its kind if there is none. A name that is taken gets a number.
@@ -56,6 +56,7 @@ static void shapes_are_named_after_their_definitions(void **state) {
       {"group(b, c).items", "box cylinder"},
       {"[...bs]", "bs bs.2"},
       {"[...bs, c]", "box box.2 cylinder"},
+      {"[...bs, ...[]]", "box box.2"},
       {"[]", ""},
       {"[b, sphere(1)]", "b sphere"},
       {"([b, c])", "b c"},
@@ -72,6 +73,8 @@ static void shapes_are_named_after_their_definitions(void **state) {
       {"group(b, c) |> translate([1, 2, 3])", "b c"},
       {"group(b, c) |> color(\"red\") |> translate([1, 2, 3])", "b c"},
       {"around(b, 2)", "b b.2"},
+      {"tessellate(b), clip(b, plane([0, 0, 0.5], Z)), thicken(f, 0.1), solid(f)", "b b.2 f f.2"},
+      {"convex_hull([b])", "polyhedron"},
       {"around(box(3), 2)", "box box.2"},
       {"[for g in bs: g]", "bs bs.2"},
       {"[for g in [b, c]: g]", "box cylinder"},
@@ -384,6 +387,19 @@ static void a_scene_beyond_the_range_of_numbers_is_refused(void **state) {
   }
 }
 
+// Each value of a list is looked at.
+static void values_that_cannot_be_shown_are_refused(void **state) {
+  (void)state;
+  static const char *const scripts[] = {"show 5", "show [box(1), 5]", "show [[5], box(1)]",
+                                        "show [box(1), [sphere(1), true]]", "show [1, 2]"};
+  for (size_t i = 0; i < sizeof scripts / sizeof *scripts; i++) {
+    CagSession *s = new_session();
+    if (cag_session_run_text(s, "script", scripts[i], strlen(scripts[i])) != CAG_STATUS_SCRIPT)
+      fail_msg("it runs: %s", scripts[i]);
+    cag_session_free(s);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(shapes_are_named_after_their_definitions),
@@ -398,6 +414,7 @@ int main(void) {
       cmocka_unit_test(studio_lights_stand_about_the_camera),
       cmocka_unit_test(standard_views_frame_all_kinds_of_items),
       cmocka_unit_test(a_view_from_below_keeps_the_grounds_of_the_script),
+      cmocka_unit_test(values_that_cannot_be_shown_are_refused),
       cmocka_unit_test(a_scene_beyond_the_range_of_numbers_is_refused),
   };
   return cmocka_run_group_tests_name("scene_build", tests, NULL, NULL);

@@ -104,7 +104,8 @@ static void everything_just_fits(void **state) {
         }
       } else {
         CagCurve *line;
-        const CagVec3 to = random_vec(size);
+        CagVec3 to = random_vec(size);
+        if (round % 2) to.x = at.x;
         OK(cag_curve_line(at, to, 3, &line, &err));
         fixture_curve(&f, "line", line);
         points[n] = at, radii[n++] = 0;
@@ -322,6 +323,10 @@ static void empty_shapes_are_set_aside(void **state) {
   assert_string_equal(s->items[1].name, "b");
   is_point(s->bounds.min, cag_vec3(-3, -3, -3), "least");
   is_point(s->bounds.max, cag_vec3(3, 3, 3), "most");
+  cag_session_free(session);
+  // A line that has no width in x is not empty.
+  session = shown("show box(1), line([5, 0, 0], [5, 7, 8])");
+  is_point(session->scene.bounds.max, cag_vec3(5, 7, 8), "most");
   cag_session_free(session);
 }
 
@@ -575,7 +580,7 @@ static void closed_tubes_turn_evenly(void **state) {
     least = fmin(least, sum / 12);
     most = fmax(most, sum / 12);
   }
-  if (most - least > 0.02 || most > M_PI / (double)rings * 1.2 ||
+  if (most - least > 0.005 || most > M_PI / (double)rings * 1.2 ||
       least < -M_PI / (double)rings * 1.2)
     fail_msg("rings turn by %g to %g", least, most);
   cag_mesh_release(m);
@@ -682,6 +687,70 @@ static void corners_of_any_angle_are_closed(void **state) {
   assert_true(tried[0] > 10 && tried[1] > 10);
 }
 
+// A limit of exactly the triangles of a tube is enough, and one less is not.
+static void the_limit_of_triangles_is_exact(void **state) {
+  (void)state;
+  static const CagVec3 line[] = {{0, 0, 0}, {5, 0, 0}},
+                       corner[] = {{0, 0, 0}, {9, 0, 0}, {9, 9, 0}};
+  static const CagVec3 back[] = {{0, 0, 0}, {9, 0, 0}, {3, 0, 0}};
+  static const CagVec3 square[] = {{0, 0, 0}, {9, 0, 0}, {9, 9, 0}, {0, 9, 3}};
+  const CagTransform frame = cag_transform_identity();
+  for (int k = 0; k < 6; k++) {
+    CagCurve *c;
+    if (k == 0) OK(cag_curve_polyline(line, 2, false, 3, &c, &err));
+    else if (k == 1) OK(cag_curve_polyline(corner, 3, false, 3, &c, &err));
+    else if (k == 2) OK(cag_curve_polyline(back, 3, false, 3, &c, &err));
+    else if (k == 3) OK(cag_curve_polyline(square, 4, true, 3, &c, &err));
+    else OK(cag_curve_arc(9, 9, 0, k == 4 ? 2 * M_PI : 3, &frame, &c, &err));
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    CagMesh *m, *again = NULL;
+    CagError err = {0};
+    OK(cag_curve_tube_mesh(c, 0.1, 0, &how, &m, &err));
+    how.max_triangles = m->triangle_count;
+    OK(cag_curve_tube_mesh(c, 0.1, 0, &how, &again, &err));
+    cag_mesh_release(again);
+    how.max_triangles--;
+    assert_int_equal(cag_curve_tube_mesh(c, 0.1, 0, &how, &again, &err), CAG_E_LIMIT);
+    assert_string_equal(err.reason, "triangle-limit");
+    cag_mesh_release(m);
+    cag_curve_release(c);
+  }
+}
+
+// Closed surfaces and meshes become meshes with their triangles outward, open ones as they are.
+static void surfaces_become_meshes(void **state) {
+  (void)state;
+  CagSession *session = shown("s = sphere_surface(2)\n"
+                              "show s, flip(s), bilinear([0,0,0], [0,1,0], [1,0,0], [1,1,0]), "
+                              "translate(rectangle(2, 3), [0, 0, 5]), sun(-Z)");
+  static const double volumes[] = {32 * M_PI / 3, 32 * M_PI / 3, 0, 0};
+  for (size_t i = 0; i < 4; i++) {
+    CagMesh *m;
+    OK(cag_item_mesh(&session->scene, &session->scene.items[i], &m, &err));
+    if (i < 2) is_near(volume_of(m), volumes[i], 0.02 * volumes[i], "volume");
+    double area = 0;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+      const uint32_t *k = m->triangles + 3 * t;
+      const CagVec3 a = m->positions[k[0]];
+      area +=
+          cag_norm(cag_cross(cag_sub(m->positions[k[1]], a), cag_sub(m->positions[k[2]], a))) / 2;
+      if (i == 3) assert_true(a.z == 5);
+    }
+    static const double areas[] = {16 * M_PI, 16 * M_PI, 1, 6};
+    is_near(area, areas[i], 0.02 * areas[i], "area");
+    cag_mesh_release(m);
+  }
+  cag_session_free(session);
+}
+
+// Only a perspective camera with an aperture has depth of field.
+static void lenses_have_an_aperture(void **state) {
+  (void)state;
+  assert_false(cag_camera_has_lens(&(CagCamera){.aperture = 0}));
+  assert_true(cag_camera_has_lens(&(CagCamera){.aperture = 1}));
+  assert_false(cag_camera_has_lens(&(CagCamera){.aperture = 1, .orthographic = true}));
+}
+
 // Lines that say no width are a part of the diagonal of the scene.
 static void lines_have_a_width_by_the_scene(void **state) {
   (void)state;
@@ -783,6 +852,9 @@ int main(void) {
       cmocka_unit_test(closed_tubes_turn_evenly),
       cmocka_unit_test(dashes_are_where_they_belong),
       cmocka_unit_test(corners_of_any_angle_are_closed),
+      cmocka_unit_test(the_limit_of_triangles_is_exact),
+      cmocka_unit_test(surfaces_become_meshes),
+      cmocka_unit_test(lenses_have_an_aperture),
       cmocka_unit_test(lines_have_a_width_by_the_scene),
       cmocka_unit_test(parts_of_a_mesh_have_its_triangles),
   };
