@@ -463,6 +463,134 @@ static void nodes_move_scale_and_mirror(void **state) {
   free(data.at);
 }
 
+// v turned by a quaternion of any length: t = 2 q x v, v + w t + q x t.
+static CagVec3 turned(const double q[4], CagVec3 v) {
+  const double n = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  const CagVec3 u = cag_vec3(q[0] / n, q[1] / n, q[2] / n);
+  const CagVec3 t = cag_scaled(cag_cross(u, v), 2);
+  return cag_add(cag_madd(v, q[3] / n, t), cag_cross(u, t));
+}
+
+// A node in a node, each scaled, turned, and moved by any numbers. Meters with Y up become
+// millimeters with Z up.
+static void nodes_stand_where_their_numbers_say(void **state) {
+  (void)state;
+  Bytes data = gltf_data();
+  uint64_t x = 5;
+  for (int round = 0; round < 40; round++) {
+    double n[20];
+    for (int i = 0; i < 20; i++) {
+      x = x * 6364136223846793005u + 1442695040888963407u;
+      n[i] = (double)(x >> 11) / 4503599627370496.0 - 1;
+    }
+    if (round % 4 == 1) n[7] = -n[7] - 2; // a mirror
+    char json[2000];
+    snprintf(json, sizeof json,
+             ASSET BUFFER VIEWS POSITIONS INDICES MESH
+             ", \"nodes\": [{\"mesh\": 0, \"scale\": [%.17g, %.17g, %.17g], "
+             "\"rotation\": [%.17g, %.17g, %.17g, %.17g], \"translation\": [%.17g, %.17g, %.17g]}, "
+             "{\"children\": [0], \"scale\": [%.17g, %.17g, %.17g], "
+             "\"rotation\": [%.17g, %.17g, %.17g, %.17g], "
+             "\"translation\": [%.17g, %.17g, %.17g]}], \"scenes\": [{\"nodes\": [1]}]}",
+             n[7], n[8], n[9], n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[17], n[18], n[19], n[10],
+             n[11], n[12], n[13], n[14], n[15], n[16]);
+    CagMesh *m = read_glb(json, data);
+    assert_int_equal(m->triangle_count, 4);
+    for (int k = 0; k < 4; k++) {
+      // Corners are told in thousandths, with Y up, in single precision.
+      const float given[3] = {corners[k][0] / 1000, corners[k][2] / 1000, -corners[k][1] / 1000};
+      CagVec3 p = cag_vec3(given[0], given[1], given[2]);
+      for (int i = 0; i < 2; i++) {
+        const double *of = n + 10 * i;
+        p = turned(of, cag_vec3(of[7] * p.x, of[8] * p.y, of[9] * p.z));
+        p = cag_add(p, cag_vec3(of[4], of[5], of[6]));
+      }
+      p = cag_vec3(1000 * p.x, -1000 * p.z, 1000 * p.y);
+      double least = INFINITY;
+      for (size_t v = 0; v < m->vertex_count; v++)
+        least = fmin(least, cag_norm(cag_sub(m->positions[v], p)));
+      if (!(least < 1e-9 * 1000)) fail_msg("round %d: corner %d is %g off", round, k, least);
+    }
+    cag_mesh_release(m);
+  }
+  free(data.at);
+}
+
+// Extensions that change nothing about triangles may be required, others not.
+static void required_extensions_are_known(void **state) {
+  (void)state;
+  static const struct {
+    const char *names;
+    bool read;
+  } cases[] = {{"", true},
+               {"\"KHR_materials_ior\"", true},
+               {"\"KHR_materials_ior\", \"KHR_texture_transform\"", true},
+               {"\"KHR_lights_punctual\", \"KHR_mesh_quantization\", \"EXT_texture_webp\"", true},
+               {"\"KHR_xmp\"", true},
+               {"\"KHR_draco_mesh_compression\"", false},
+               {"\"KHR_materials_ior\", \"EXT_meshopt_compression\"", false},
+               {"\"EXT_meshopt_compression\", \"KHR_materials_ior\"", false},
+               {"5", false}};
+  Bytes data = gltf_data();
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    char json[1500];
+    snprintf(json, sizeof json,
+             ASSET BUFFER VIEWS POSITIONS INDICES MESH ", \"extensionsRequired\": [%s]}",
+             cases[i].names);
+    Bytes b = glb(json, &data);
+    if (cases[i].read) cag_mesh_release(read_bytes("a.glb", b));
+    else assert_fails("a.glb", b, "mesh-file-unsupported", "write it without");
+    free(b.at);
+  }
+  free(data.at);
+}
+
+// A large grid of quads with its vertices in any order, once as one mesh and once with each corner
+// told again for each face: the same points.
+static void many_corners_are_numbered_once(void **state) {
+  (void)state;
+  enum { N = 60 };
+  Bytes b = bytes_of("", 0);
+  char line[100];
+  for (int i = 0; i < N; i++)
+    for (int j = 0; j < N; j++)
+      add(&b, line, (size_t)snprintf(line, sizeof line, "v %d %d %d\n", i, j, i * j % 7));
+  for (int i = 0; i < N; i++)
+    for (int j = 0; j < N; j++)
+      add(&b, line,
+          (size_t)snprintf(line, sizeof line, "vn %d %d 1\nvt %g %g\n", i % 3, j % 2, i / 64.0,
+                           j / 64.0));
+  for (int i = 0; i + 1 < N; i++)
+    for (int j = 0; j + 1 < N; j++) {
+      const int a = i * N + j + 1, c = a + N;
+      add(&b, line,
+          (size_t)snprintf(line, sizeof line, "f %d/%d/%d %d/%d/%d %d/%d/%d %d/%d/%d\n", a, a, a, c,
+                           c, c, c + 1, c + 1, c + 1, a + 1, a + 1, a + 1));
+    }
+  CagMesh *m = read_bytes("grid.obj", b);
+  assert_int_equal(m->vertex_count, N * N);
+  assert_int_equal(m->triangle_count, 2 * (N - 1) * (N - 1));
+  for (size_t v = 0; v < m->vertex_count; v++) {
+    const CagVec3 p = m->positions[v];
+    const int i = (int)p.x, j = (int)p.y;
+    assert_true(p.z == i * j % 7);
+    const CagVec3 n = cag_unit(cag_vec3(i % 3, j % 2, 1));
+    assert_true(cag_norm(cag_sub(m->normals[v], n)) < 1e-12);
+    assert_true(m->uv[2 * v] == i / 64.0 && m->uv[2 * v + 1] == j / 64.0);
+  }
+  double area = 0; // seen from above
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    const CagVec3 p = m->positions[k[0]], q = m->positions[k[1]], r = m->positions[k[2]];
+    const double part = cag_cross(cag_sub(q, p), cag_sub(r, p)).z / 2;
+    assert_true(part == 0.5);
+    area += part;
+  }
+  assert_true(area == (N - 1) * (N - 1));
+  cag_mesh_release(m);
+  free(b.at);
+}
+
 static void sparse_accessors_strips_and_fans_are_read(void **state) {
   (void)state;
   // Four corners of a square that are zeros, three of them replaced, in 16-bit and 8-bit numbers.
@@ -744,6 +872,9 @@ int main(void) {
       cmocka_unit_test(what_is_wrong_with_a_ply_is_told),
       cmocka_unit_test(glb_is_turned_and_scaled),
       cmocka_unit_test(nodes_move_scale_and_mirror),
+      cmocka_unit_test(nodes_stand_where_their_numbers_say),
+      cmocka_unit_test(required_extensions_are_known),
+      cmocka_unit_test(many_corners_are_numbered_once),
       cmocka_unit_test(sparse_accessors_strips_and_fans_are_read),
       cmocka_unit_test(buffers_may_be_text_or_beside),
       cmocka_unit_test(what_is_wrong_with_a_gltf_is_told),
