@@ -230,8 +230,8 @@ static void chains_lead_from_base_to_tip(void **state) {
 static void trees_without_one_root_are_refused(void **state) {
   (void)state;
 #define JOINT(name, a, b)                                                                          \
-  "<joint name=\"" name "\" type=\"fixed\"><parent link=\"" a "\"/><child link=\"" b "\"/></"      \
-                                                                                     "joint>"
+  "<joint name=\"" name "\" type=\"fixed\"><parent link=\"" a "\"/>"                               \
+  "<child link=\"" b "\"/></joint>"
 #define LINKS "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>"
   static const struct {
     const char *text, *tip, *reason, *part;
