@@ -516,6 +516,84 @@ static void nodes_stand_where_their_numbers_say(void **state) {
   free(data.at);
 }
 
+// Normals stay perpendicular to what they were perpendicular to, whatever the scale, and look to
+// the same side of their triangles, also in a mirror.
+static void normals_go_with_their_nodes(void **state) {
+  (void)state;
+  uint64_t x = 7;
+  Bytes data = gltf_data();
+  for (int t = 0; t < 4; t++) { // behind the 60 bytes: a normal for each corner
+    const float n[3] = {(float)(0.3 * t - 0.5), (float)(0.7 - 0.2 * t), 0.4f};
+    for (int k = 0; k < 3; k++) add_float(&data, n[k]);
+  }
+  for (int round = 0; round < 30; round++) {
+    double n[7];
+    for (int i = 0; i < 7; i++) {
+      x = x * 6364136223846793005u + 1442695040888963407u;
+      n[i] = (double)(x >> 11) / 4503599627370496.0 - 1;
+    }
+    for (int i = 4; i < 7; i++) n[i] += n[i] < 0 ? -0.2 : 0.2;
+    char json[2000];
+    snprintf(json, sizeof json,
+             ASSET "\"buffers\": [{\"byteLength\": 108}], "
+                   "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 48}, {\"buffer\": 0, "
+                   "\"byteOffset\": 48, \"byteLength\": 12}, {\"buffer\": 0, \"byteOffset\": 60, "
+                   "\"byteLength\": 48}], " POSITIONS
+                   "{\"bufferView\": 1, \"componentType\": 5121, \"count\": 12, \"type\": "
+                   "\"SCALAR\"}, {\"bufferView\": 2, \"componentType\": 5126, \"count\": 4, "
+                   "\"type\": \"VEC3\"}], \"meshes\": [{\"primitives\": [{\"attributes\": "
+                   "{\"POSITION\": 0, \"NORMAL\": 2}, \"indices\": 1}]}], "
+                   "\"nodes\": [{\"mesh\": 0, \"rotation\": [%.17g, %.17g, %.17g, %.17g], "
+                   "\"scale\": [%.17g, %.17g, %.17g]}]}",
+             n[0], n[1], n[2], n[3], n[4], n[5], n[6]);
+    CagMesh *m = read_glb(json, data);
+    const bool mirror = n[4] * n[5] * n[6] < 0;
+    assert_int_equal(m->triangle_count, 4);
+    for (size_t t = 0; t < 4; t++) {
+      size_t seen = 0;
+      for (int j = 0; j < 3; j++) {
+        const unsigned c = faces[t][mirror ? (j == 0 ? 0 : 3 - j) : j];
+        const float g[3] = {(float)(0.3 * c - 0.5), (float)(0.7 - 0.2 * c), 0.4f};
+        // The inverse of the scale, then the turn, then Z up.
+        CagVec3 v = turned(n, cag_vec3(g[0] / n[4], g[1] / n[5], g[2] / n[6]));
+        v = cag_unit(cag_vec3(v.x, -v.z, v.y));
+        const CagVec3 found = m->normals[m->triangles[3 * t + (size_t)j]];
+        seen += cag_norm(cag_sub(found, v)) < 1e-6;
+      }
+      if (seen != 3) fail_msg("round %d, triangle %zu: %zu normals", round, t, seen);
+    }
+    cag_mesh_release(m);
+  }
+  free(data.at);
+}
+
+// Normals of a PLY need three numbers and parameters two.
+static void a_ply_may_lack_a_part_of_its_normals(void **state) {
+  (void)state;
+  static const struct {
+    const char *names[3];
+    bool normals, uv;
+  } cases[] = {{{"nx", "ny", "nz"}, true, false}, {{"nx", "ny", "a"}, false, false},
+               {{"nx", "a", "nz"}, false, false}, {{"a", "ny", "nz"}, false, false},
+               {{"s", "t", "a"}, false, true},    {{"s", "a", "b"}, false, false},
+               {{"a", "b", "t"}, false, false},   {{"a", "b", "c"}, false, false}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    char text[600];
+    snprintf(text, sizeof text,
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+             "property float z\nproperty float %s\nproperty float %s\nproperty float %s\n"
+             "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+             "0 0 0 3 0 4\n1 0 0 3 0 4\n0 1 0 3 0 4\n3 0 1 2\n",
+             cases[i].names[0], cases[i].names[1], cases[i].names[2]);
+    CagMesh *m = read_text("a.ply", text);
+    assert_int_equal(m->triangle_count, 1);
+    assert_true((m->normals != NULL) == cases[i].normals && (m->uv != NULL) == cases[i].uv);
+    if (m->normals) assert_true(cag_norm(cag_sub(m->normals[0], cag_vec3(0.6, 0, 0.8))) < 1e-12);
+    if (m->uv) assert_true(m->uv[0] == 3 && m->uv[1] == 0);
+    cag_mesh_release(m);
+  }
+}
+
 // Extensions that change nothing about triangles may be required, others not.
 static void required_extensions_are_known(void **state) {
   (void)state;
@@ -873,6 +951,8 @@ int main(void) {
       cmocka_unit_test(glb_is_turned_and_scaled),
       cmocka_unit_test(nodes_move_scale_and_mirror),
       cmocka_unit_test(nodes_stand_where_their_numbers_say),
+      cmocka_unit_test(normals_go_with_their_nodes),
+      cmocka_unit_test(a_ply_may_lack_a_part_of_its_normals),
       cmocka_unit_test(required_extensions_are_known),
       cmocka_unit_test(many_corners_are_numbered_once),
       cmocka_unit_test(sparse_accessors_strips_and_fans_are_read),
