@@ -269,6 +269,7 @@ bool cag_program_run(CagVm *vm, CagModuleUnit *main,
     case CAG_STATEMENT_EXPRESSION:
       ok = evaluate(vm, main, s->as.expression, &v);
       if (ok && expression) expression(vm, v, context);
+      ok = ok && !vm->failed;
       break;
     default: break;
     }

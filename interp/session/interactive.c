@@ -79,8 +79,11 @@ static void give_value(CagVm *vm, CagValue v, void *context) {
   if (!in->value) return;
   CagString s = {0};
   cag_print_value(vm, &s, v, true);
-  cag_string_check(vm, &s);
-  in->value(in->context, s.bytes ? s.bytes : "", cag_type_name(v));
+  // The text of a value that took too long or too much memory breaks off somewhere.
+  if (!vm->failed && cag_keep_going(vm)) {
+    cag_string_check(vm, &s);
+    in->value(in->context, s.bytes ? s.bytes : "", cag_type_name(v));
+  }
   cag_string_free(&s);
 }
 

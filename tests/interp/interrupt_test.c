@@ -122,6 +122,33 @@ static void messages_show_the_beginning_of_a_value(void **state) {
     if (run(wrong[i]) != CAG_STATUS_SCRIPT) fail_msg("%s", wrong[i]);
 }
 
+static void count_value(void *context, const char *text, const char *type) {
+  (void)text, (void)type;
+  ++*(int *)context;
+}
+
+// What was printed of a value before the interrupt is millions of characters that nobody asked for.
+static void an_interrupted_value_is_not_given(void **state) {
+  (void)state;
+  FILE *out;
+  CagSession *s = new_session(&out);
+  assert_non_null(s);
+  assert_int_equal(cag_session_input(s, shared, strlen(shared), NULL, NULL), CAG_STATUS_OK);
+  pthread_t thread;
+  clock_t at;
+  int given = 0;
+  interrupt = 0;
+  assert_int_equal(pthread_create(&thread, NULL, interrupt_soon, &at), 0);
+  assert_int_equal(cag_session_input(s, "1; a; 2", 7, count_value, &given), CAG_STATUS_INTERRUPTED);
+  pthread_join(thread, NULL);
+  interrupt = 0;
+  assert_int_equal(given, 1);
+  assert_int_equal(cag_session_input(s, "1; 2", 4, count_value, &given), CAG_STATUS_OK);
+  assert_int_equal(given, 3);
+  cag_session_free(s);
+  fclose(out);
+}
+
 // A session goes on after an interrupt, with the right values.
 static void a_session_goes_on_after_an_interrupt(void **state) {
   (void)state;
@@ -146,6 +173,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(an_interrupt_ends_what_walks_shared_values),
       cmocka_unit_test(messages_show_the_beginning_of_a_value),
+      cmocka_unit_test(an_interrupted_value_is_not_given),
       cmocka_unit_test(a_session_goes_on_after_an_interrupt),
   };
   return cmocka_run_group_tests_name("interrupt", tests, NULL, NULL);
