@@ -2,6 +2,7 @@
 
 #include "geom/curve/intersect.h"
 #include "geom/curve/nurbs_ops.h"
+#include "random.h"
 #include "support.h"
 
 static const CagVec3 zigzag[6] = {{0, 1, 0},  {1, 2, 1}, {2.5, 0, 0.5},
@@ -154,6 +155,390 @@ static void bezier_pieces_are_the_curve(void **state) {
   }
 }
 
+// --- Random splines ---
+
+static CagCurve *random_spline(int p, size_t n, int kind) {
+  CagVec3 points[12];
+  double w[12], knots[20], t = 0;
+  CagCurve *c;
+  for (size_t i = 0; i < n; i++) {
+    points[i].x = uniform(-3, 3);
+    points[i].y = uniform(-3, 3);
+    points[i].z = uniform(-3, 3);
+    w[i] = uniform(0.5, 2);
+  }
+  const double *weight = kind % 2 ? w : NULL;
+  if (kind >= 6) {
+    OK(cag_curve_nurbs_closed(points, weight, n, p, 3, &c, &err));
+    return c;
+  }
+  // Clamped with uneven knots; uneven ones without clamping; uniform ones.
+  for (size_t i = 0; i < n + (size_t)p + 1; i++) {
+    const double step = kind < 4 ? uniform(0.3, 1.2) : 0.5;
+    const bool inside = i > (size_t)p && i <= n;
+    if (kind >= 2 || inside) t += i > 0 ? step : 0;
+    knots[i] = t;
+  }
+  if (kind < 2 && n > (size_t)p + 2 && p > 1) knots[p + 2] = knots[p + 1];
+  OK(cag_curve_nurbs(points, weight, n, p, knots, 3, &c, &err));
+  return c;
+}
+
+static size_t count_of(const CagCurve *c) {
+  CagNurbsView v;
+  assert_true(cag_curve_nurbs_view(c, &v));
+  return v.count;
+}
+
+static void random_splines_keep_their_points(void **state) {
+  (void)state;
+  seed = 301;
+  for (int round = 0; round < 96; round++) {
+    const int p = 1 + round % 4, kind = round % 8;
+    const size_t n = (size_t)p + 1 + (size_t)(round % 5);
+    CagCurve *c = random_spline(p, n, kind), *other, *half[2], *middle, **pieces;
+    CagNurbsView v, w;
+    assert_true(cag_curve_nurbs_view(c, &v));
+    // Elevation: each knot once more, of which the distinct ones stay.
+    OK(cag_curve_elevate(c, 1 + round % 2, &other, &err));
+    same_curve(other, c);
+    assert_true(cag_curve_nurbs_view(other, &w));
+    assert_int_equal(w.degree, p + 1 + round % 2);
+    assert_true(w.rational == v.rational);
+    cag_curve_release(other);
+    // The middles of all intervals; uniform knots stay so, and a closed curve closed.
+    OK(cag_curve_insert_midpoints(c, &other, &err));
+    same_curve(other, c);
+    assert_true(cag_curve_nurbs_view(other, &w));
+    assert_true(w.degree == p && w.periodic == v.periodic && w.rational == v.rational);
+    if (kind >= 4) {
+      const double step = (c->end - c->start) / (double)(v.count - (size_t)p);
+      assert_int_equal(w.count, 2 * (v.count - (size_t)p) + (size_t)p);
+      for (size_t i = 0; i + 1 < w.count + (size_t)p + 1; i++)
+        NEAR(w.knots[i + 1] - w.knots[i], step / 2, 1e-12);
+      if (v.periodic) {
+        assert_int_equal(w.distinct, 2 * v.distinct);
+        for (size_t i = 0; i < 4 * (size_t)p; i++)
+          assert_true(w.homogeneous[i] == w.homogeneous[4 * w.distinct + i]);
+      }
+    }
+    cag_curve_release(other);
+    // Some knots, in any order.
+    double t[3];
+    for (int k = 0; k < 3; k++) t[k] = uniform(c->start, c->end);
+    OK(cag_curve_insert_knots(c, t, 3, &other, &err));
+    same_curve(other, c);
+    assert_true(cag_curve_nurbs_view(other, &w));
+    for (int k = 0; k < 3; k++) {
+      int found = 0;
+      for (size_t i = 0; i < w.count + (size_t)p + 1; i++) found += w.knots[i] == t[k];
+      assert_int_equal(found, 1);
+    }
+    cag_curve_release(other);
+    FAILS(cag_curve_insert_knots(c, &c->start, 1, &other, &err), "parameter-range");
+    FAILS(cag_curve_insert_knots(c, &c->end, 1, &other, &err), "parameter-range");
+    // Clamped, it starts in its first and ends in its last control point.
+    OK(cag_curve_clamp(c, &other, &err));
+    same_curve(other, c);
+    assert_true(cag_curve_nurbs_view(other, &w));
+    for (int end = 0; end < 2; end++) {
+      const double *h = w.homogeneous + (end ? 4 * (w.count - 1) : 0);
+      near_vec(cag_vec3(h[0] / h[3], h[1] / h[3], h[2] / h[3]), at(c, end ? c->end : c->start),
+               1e-13);
+    }
+    assert_true(w.knots[0] == c->start && w.knots[p] == c->start);
+    assert_true(w.knots[w.count] == c->end && w.knots[w.count + (size_t)p] == c->end);
+    // A knot that was inserted can be removed again.
+    CagCurve *fine, *back;
+    double deviation;
+    OK(cag_curve_insert_knots(other, t, 1, &fine, &err));
+    assert_int_equal(count_of(fine), w.count + 1);
+    OK(cag_curve_remove_knot(fine, t[0], 1, 1e-9, &back, &deviation, &err));
+    same_curve(back, c);
+    assert_int_equal(count_of(back), w.count);
+    assert_true(deviation <= 1e-9);
+    cag_curve_release(back);
+    cag_curve_release(fine);
+    cag_curve_release(other);
+    // Halves and a part.
+    OK(cag_curve_split(c, t[1], half, &err));
+    OK(cag_curve_trim(c, fmin(t[0], t[1]), fmax(t[0], t[1]), &middle, &err));
+    for (int k = 0; k <= 8; k++)
+      for (int j = 0; j < 3; j++) {
+        const CagCurve *part = j < 2 ? half[j] : middle;
+        const double u = k == 8 ? part->end : part->start + (part->end - part->start) * k / 8;
+        near_vec(at(part, u), at(c, u), 1e-11);
+      }
+    assert_true(half[0]->start == c->start && half[0]->end == t[1]);
+    assert_true(half[1]->start == t[1] && half[1]->end == c->end);
+    cag_curve_release(middle);
+    cag_curve_release(half[0]);
+    cag_curve_release(half[1]);
+    FAILS(cag_curve_split(c, c->end, half, &err), "parameter-range");
+    FAILS(cag_curve_elevate(c, -1, &other, &err), "order-range");
+    // Bezier pieces, one after the other.
+    size_t m;
+    double cuts[32];
+    OK(cag_curve_to_bezier(c, &pieces, &m, &err));
+    const size_t breaks = c->kind->breaks(c, cuts + 1, 30);
+    assert_int_equal(m, breaks + 1);
+    cuts[0] = c->start;
+    cuts[m] = c->end;
+    for (size_t k = 0; k < m; k++) {
+      for (int s = 0; s <= 4; s++)
+        near_vec(at(pieces[k], s / 4.0),
+                 at(c, fmin(c->end, cuts[k] + (cuts[k + 1] - cuts[k]) * s / 4)), 1e-11);
+      cag_curve_release(pieces[k]);
+    }
+    free(pieces);
+    cag_curve_release(c);
+  }
+}
+
+// Elevated curves come down again.
+static void degrees_go_up_and_down(void **state) {
+  (void)state;
+  seed = 302;
+  for (int round = 0; round < 32; round++) {
+    const int p = 1 + round % 4;
+    CagCurve *c = random_spline(p, (size_t)p + 1 + (size_t)(round % 3), round % 8), *up, *down;
+    double deviation;
+    OK(cag_curve_elevate(c, 1, &up, &err));
+    OK(cag_curve_reduce_degree(up, 1e-9, &down, &deviation, &err));
+    same_curve(down, c);
+    CagNurbsView v;
+    assert_true(cag_curve_nurbs_view(down, &v));
+    assert_int_equal(v.degree, p);
+    assert_true(deviation <= 1e-9);
+    cag_curve_release(down);
+    cag_curve_release(up);
+    cag_curve_release(c);
+  }
+}
+
+// --- Random composites ---
+
+// A line, an arc, a spline and a Bezier curve that go on from one another.
+static size_t random_pieces(CagCurve *out[4], bool space) {
+  const double turn = uniform(0.5, 3), r = uniform(0.5, 2);
+  const CagTransform f = cag_transform_identity();
+  const CagVec3 p = {r, 0, 0}, q = {r * cos(turn), r * sin(turn), 0};
+  CagVec3 a = {0, -2, 0}, net[4] = {q, q, q, q};
+  a.x = uniform(1, 3);
+  if (space) a.z = 1;
+  for (int i = 1; i < 4; i++) {
+    net[i].x += uniform(-2, 2);
+    net[i].y += uniform(-2, 2);
+    net[i].z += space ? uniform(-1, 1) : 0;
+  }
+  const CagVec3 last[3] = {net[3], cag_add(net[3], cag_vec3(1, 2, 0)),
+                           cag_add(net[3], cag_vec3(3, 1, 0))};
+  const double w[3] = {1, uniform(0.5, 2), uniform(0.5, 2)}, knots[8] = {1, 1, 1, 1.5, 4, 4, 4};
+  OK(cag_curve_line(a, p, space ? 3 : 2, &out[0], &err));
+  OK(cag_curve_arc(r, r, 0, turn, &f, &out[1], &err));
+  OK(cag_curve_nurbs(net, NULL, 4, 2, knots, space ? 3 : 2, &out[2], &err));
+  OK(cag_curve_bezier(last, w, 3, space ? 3 : 2, &out[3], &err));
+  return 4;
+}
+
+static void random_composites_are_their_pieces(void **state) {
+  (void)state;
+  seed = 303;
+  for (int round = 0; round < 40; round++) {
+    CagCurve *pieces[4], *c, *nested, *pair, *exact, *back, *moved, *part, *faster;
+    const bool space = round % 2;
+    const size_t n = random_pieces(pieces, space);
+    double cuts[5] = {0};
+    for (size_t i = 0; i < n; i++) cuts[i + 1] = cuts[i] + pieces[i]->end - pieces[i]->start;
+    OK(cag_curve_join(pieces, n, &c, &err));
+    // Joined in two steps it is the same.
+    OK(cag_curve_join(pieces, 2, &pair, &err));
+    CagCurve *three[3] = {pair, pieces[2], pieces[3]};
+    OK(cag_curve_join(three, 3, &nested, &err));
+    same_curve(nested, c);
+    OK(cag_curve_to_nurbs(c, &exact, &err));
+    OK(cag_curve_reverse(c, &back, &err));
+    const CagTransform shift = cag_translate(cag_vec3(1, 2, 0));
+    CagTransform t = cag_transform_identity();
+    t.m[0][1] = 0.5;
+    t.m[1][1] = -2;
+    t = cag_transform_multiply(&shift, &t);
+    t.planar = true;
+    OK(cag_curve_transform(c, &t, &moved, &err));
+    const double from = uniform(0, cuts[2]), to = uniform(cuts[2], cuts[4]);
+    OK(cag_curve_trim(c, from, to, &part, &err));
+    OK(cag_curve_reparametrize(c, 3, 5, &faster, &err));
+    assert_true(c->start == 0 && c->end == cuts[4] && c->dimension == (space ? 3 : 2));
+    assert_true(part->start == from && part->end == to && !c->closed);
+    CagBounds seen = CAG_BOUNDS_EMPTY;
+    for (int k = 0; k <= 60; k++) {
+      // The ends of the pieces are met, from both sides.
+      const double u = k % 12 == 0 && k < 60 ? cuts[k / 12] : fmin(c->end, c->end * k / 60);
+      for (int side = 0; side < 2; side++) {
+        size_t i = 0;
+        while (i < 3 && (side ? cuts[i + 1] <= u : cuts[i + 1] < u)) i++;
+        if (!side && u == 0) i = 0;
+        const double rate = (pieces[i]->end - pieces[i]->start) / (cuts[i + 1] - cuts[i]);
+        const double v = fmin(pieces[i]->end, pieces[i]->start + (u - cuts[i]) * rate);
+        CagVec3 d[3], e[3];
+        OK(cag_curve_eval(c, u, 2, side ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, d, &err));
+        OK(cag_curve_eval(pieces[i], v, 2, side ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, e, &err));
+        for (int m = 0; m < 3; m++) near_vec(d[m], e[m], 1e-9);
+        OK(cag_curve_eval(exact, u, 2, side ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, e, &err));
+        near_vec(d[0], e[0], i == 1 ? 0.2 : 1e-9); // the arc's exact form has other parameters
+        if (i != 1)
+          for (int m = 1; m < 3; m++) near_vec(d[m], e[m], 1e-7 * (1 + cag_norm(e[m])));
+        OK(cag_curve_eval(back, c->end - u, 2, side ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, e, &err));
+        near_vec(e[0], d[0], 1e-9);
+        near_vec(e[1], cag_scaled(d[1], -1), 1e-7 * (1 + cag_norm(d[1])));
+        OK(cag_curve_eval(moved, u, 1, side ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, e, &err));
+        near_vec(e[0], cag_transform_point(&t, d[0]), 1e-9);
+        near_vec(e[1], cag_transform_vector(&t, d[1]), 1e-9 * (1 + cag_norm(d[1])));
+        const double w = 3 + 2 * u / c->end;
+        OK(cag_curve_eval(faster, fmin(w, 5), 2, side ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, e, &err));
+        near_vec(e[0], d[0], 1e-9);
+        if (u > from && u < to) {
+          OK(cag_curve_eval(part, u, 1, side ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, e, &err));
+          near_vec(e[0], d[0], 1e-9);
+          near_vec(e[1], d[1], 1e-7 * (1 + cag_norm(d[1])));
+        }
+        cag_bounds_add(&seen, d[0]);
+      }
+    }
+    const double mid = c->end * 0.45;
+    CagVec3 d[3], e[3];
+    OK(cag_curve_eval(c, mid, 2, CAG_SIDE_RIGHT, d, &err));
+    OK(cag_curve_eval(faster, 3 + 2 * mid / c->end, 2, CAG_SIDE_RIGHT, e, &err));
+    near_vec(e[1], cag_scaled(d[1], c->end / 2), 1e-8 * (1 + cag_norm(e[1])));
+    near_vec(e[2], cag_scaled(d[2], c->end * c->end / 4), 1e-8 * (1 + cag_norm(e[2])));
+    const CagBounds box = c->kind->hull(c, c->start, c->end);
+    assert_true(box.min.x <= seen.min.x + 1e-9 && box.min.y <= seen.min.y + 1e-9);
+    assert_true(box.max.x >= seen.max.x - 1e-9 && box.max.y >= seen.max.y - 1e-9);
+    // A part of the box, within a few pieces.
+    const CagBounds less = c->kind->hull(c, from, to);
+    assert_true(less.min.x >= box.min.x - 1e-9 && less.max.y <= box.max.y + 1e-9);
+    for (int k = 0; k <= 8; k++) {
+      const CagVec3 p = at(c, fmin(to, from + (to - from) * k / 8));
+      assert_true(p.x >= less.min.x - 1e-9 && p.x <= less.max.x + 1e-9);
+      assert_true(p.y >= less.min.y - 1e-9 && p.y <= less.max.y + 1e-9);
+    }
+    // Breaks: the joints and the inner knot of the spline, also where there is less room.
+    double breaks[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
+    const double expected[4] = {cuts[1], cuts[2], cuts[2] + 0.5, cuts[3]};
+    assert_int_equal(c->kind->breaks(c, NULL, 0), 4);
+    for (size_t room = 0; room <= 6; room++) {
+      for (int k = 0; k < 8; k++) breaks[k] = -1;
+      assert_int_equal(c->kind->breaks(c, breaks, room), 4);
+      for (size_t k = 0; k < 8; k++) NEAR(breaks[k], k < room && k < 4 ? expected[k] : -1, 1e-12);
+    }
+    cag_curve_release(faster);
+    cag_curve_release(part);
+    cag_curve_release(moved);
+    cag_curve_release(back);
+    cag_curve_release(exact);
+    cag_curve_release(nested);
+    cag_curve_release(pair);
+    cag_curve_release(c);
+    for (size_t i = 0; i < n; i++) cag_curve_release(pieces[i]);
+  }
+}
+
+// Curves whose domains go on from one another keep them, angles included; points add nothing.
+static void domains_that_go_on_are_kept(void **state) {
+  (void)state;
+  const CagTransform f = cag_transform_identity();
+  CagCurve *parts[3], *c, *rest, *line;
+  OK(cag_curve_arc(2, 2, 1, 2, &f, &parts[0], &err));
+  OK(cag_curve_arc(2, 2, 2, 4, &f, &parts[1], &err));
+  OK(cag_curve_arc(2, 2, 4, 1 + 2 * M_PI, &f, &parts[2], &err));
+  OK(cag_curve_join(parts, 2, &c, &err));
+  assert_true(c->start == 1 && c->end == 4 && c->angular && !c->closed);
+  near_vec(at(c, 3), cag_vec3(2 * cos(3), 2 * sin(3), 0), 1e-15);
+  cag_curve_release(c);
+  OK(cag_curve_join(parts, 3, &c, &err));
+  assert_true(c->start == 1 && c->end == 1 + 2 * M_PI && c->closed && c->angular);
+  cag_curve_release(c);
+  CagCurve *apart[2] = {parts[1], parts[0]};
+  FAILS_AT(cag_curve_join(apart, 2, &c, &err), "ends-do-not-meet", 1);
+  const CagVec3 end = at(parts[1], 4);
+  OK(cag_curve_resting(end, 2, 0, 1, false, &rest, &err));
+  OK(cag_curve_line(end, cag_vec3(5, 5, 0), 2, &line, &err));
+  CagCurve *with_point[4] = {parts[0], parts[1], rest, line};
+  OK(cag_curve_join(with_point, 4, &c, &err));
+  assert_true(c->start == 0 && c->end == 4 && !c->angular && !c->closed);
+  near_vec(at(c, 1), at(parts[0], 2), 0);
+  near_vec(at(c, 4), cag_vec3(5, 5, 0), 0);
+  cag_curve_release(c);
+  OK(cag_curve_join(&rest, 1, &c, &err));
+  assert_true(cag_curve_resting_view(c, NULL));
+  cag_curve_release(c);
+  FAILS(cag_curve_join(NULL, 0, &c, &err), "too-few-curves");
+  // A plane curve and one of space are one of space.
+  CagCurve *space, *mixed[2] = {parts[0], NULL};
+  OK(cag_curve_to_space(parts[1], &space, &err));
+  mixed[1] = space;
+  OK(cag_curve_join(mixed, 2, &c, &err));
+  assert_int_equal(c->dimension, 3);
+  near_vec(at(c, 3), at(parts[1], 3), 0);
+  cag_curve_release(c);
+  cag_curve_release(space);
+  cag_curve_release(line);
+  cag_curve_release(rest);
+  for (int i = 0; i < 3; i++) cag_curve_release(parts[i]);
+}
+
+// Lines and polylines make one polyline, closed when they come back.
+static void straight_pieces_make_a_polyline(void **state) {
+  (void)state;
+  const CagVec3 p[5] = {{0, 0, 0}, {2, 0, 0}, {3, 2, 0}, {1, 3, 0}, {-1, 1, 0}};
+  const CagVec3 *points;
+  for (int closed = 0; closed < 2; closed++) {
+    CagCurve *parts[3], *c;
+    size_t n;
+    bool ring;
+    const CagVec3 last[3] = {p[2], p[3], closed ? p[0] : p[4]};
+    OK(cag_curve_line(p[0], p[1], 2, &parts[0], &err));
+    OK(cag_curve_line(p[1], p[2], 2, &parts[1], &err));
+    OK(cag_curve_polyline(last, 3, false, 2, &parts[2], &err));
+    OK(cag_curve_join(parts, 3, &c, &err));
+    assert_true(cag_curve_vertices(c, &points, &n, &ring));
+    assert_true(ring == closed && c->closed == closed && c->start == 0 && c->end == 4);
+    assert_int_equal(n, closed ? 4 : 5);
+    for (size_t i = 0; i < n; i++) near_vec(points[i], i < 4 ? p[i] : p[4], 0);
+    cag_curve_release(c);
+    // With another speed they stay pieces.
+    CagCurve *slow[2] = {parts[0], NULL};
+    OK(cag_curve_reparametrize(parts[1], 0, 3, &slow[1], &err));
+    OK(cag_curve_join(slow, 2, &c, &err));
+    assert_false(cag_curve_vertices(c, &points, &n, &ring));
+    near_vec(at(c, 1), p[1], 0);
+    near_vec(at(c, 2.5), cag_lerp(p[1], p[2], 0.5), 1e-15);
+    assert_true(c->end == 4);
+    cag_curve_release(c);
+    cag_curve_release(slow[1]);
+    for (int i = 0; i < 3; i++) cag_curve_release(parts[i]);
+  }
+  // There and back is not closed as a polyline; a closed polyline can be one of the parts.
+  CagCurve *way[2], *c;
+  OK(cag_curve_line(p[0], p[1], 2, &way[0], &err));
+  OK(cag_curve_line(p[1], p[0], 2, &way[1], &err));
+  OK(cag_curve_join(way, 2, &c, &err));
+  assert_true(c->end == 2);
+  near_vec(at(c, 1), p[1], 0);
+  near_vec(at(c, 2), p[0], 0);
+  cag_curve_release(c);
+  cag_curve_release(way[1]);
+  OK(cag_curve_polyline(p, 4, true, 2, &way[1], &err));
+  CagCurve *around[2] = {way[1], way[0]};
+  OK(cag_curve_join(around, 2, &c, &err));
+  assert_true(c->end == 5);
+  near_vec(at(c, 4), p[0], 0);
+  near_vec(at(c, 5), p[1], 0);
+  cag_curve_release(c);
+  cag_curve_release(way[0]);
+  cag_curve_release(way[1]);
+}
+
 // --- Intersections ---
 
 static CagCurve *circle(double r, double x, double y) {
@@ -267,6 +652,11 @@ static void polylines_meet_at_vertices_once(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(random_splines_keep_their_points),
+      cmocka_unit_test(degrees_go_up_and_down),
+      cmocka_unit_test(random_composites_are_their_pieces),
+      cmocka_unit_test(domains_that_go_on_are_kept),
+      cmocka_unit_test(straight_pieces_make_a_polyline),
       cmocka_unit_test(splitting_keeps_the_points),
       cmocka_unit_test(elevating_keeps_the_points_and_the_smoothness),
       cmocka_unit_test(elevation_of_a_spline_is_that_of_the_reference),
