@@ -247,21 +247,29 @@ static CagStatus check_match(const CagNet *edge, const CagEdgeMatch *how, CagErr
   return CAG_OK;
 }
 
-// The neighbor's line beside the edge: `rate` is its derivative inward by the difference of the
-// first two lines.
-static CagStatus second_line(const CagNet *edge, const CagEdgeMatch *how, double rate, double *out,
-                             CagError *err) {
+// Puts the neighbor's derivative inward in place of that of the edge. Shear needs an edge of one
+// piece: the product of the linear shear and the derivative along is then of the edge's degree.
+static void continue_edge(CagNet *edge, const CagEdgeMatch *how) {
   double m = edge->degree, range = cag_net_end(edge) - cag_net_start(edge);
   for (size_t j = 0; j < edge->count; j++) {
-    const double *e = edge->data + EDGE_WIDTH * j;
+    double *e = edge->data + EDGE_WIDTH * j;
     for (size_t c = 0; c < 4; c++) {
       double after = j + 1 < edge->count ? e[EDGE_WIDTH + c] - e[c] : 0;
       double before = j > 0 ? e[c] - (e - EDGE_WIDTH)[c] : 0;
       double shear =
           ((m - (double)j) * how->shear[0] * after + (double)j * how->shear[1] * before) / range;
       if (how->shear[0] == 0 && how->shear[1] == 0) shear = 0;
-      out[4 * j + c] = e[c] + (how->ratio * e[4 + c] + shear) / rate;
+      e[4 + c] = how->ratio * e[4 + c] + shear;
     }
+  }
+}
+
+// The neighbor's line beside the edge, whose derivative is the neighbor's: `rate` is the derivative
+// inward by the difference of the first two lines.
+static CagStatus second_line(const CagNet *edge, double rate, double *out, CagError *err) {
+  for (size_t j = 0; j < edge->count; j++) {
+    const double *e = edge->data + EDGE_WIDTH * j;
+    for (size_t c = 0; c < 4; c++) out[4 * j + c] = e[c] + e[4 + c] / rate;
     if (!(out[4 * j + 3] > 0))
       return cag_fail(err, CAG_E_DEGENERATE, "negative-weight", "ratio", (long)j,
                       "the neighbor would need a weight that is not positive in line %zu: take a "
@@ -285,7 +293,8 @@ CagStatus cag_surface_join_lines(const CagSurface *s, int side, int degree, cons
   if (!status) {
     for (size_t j = 0; j < edge.count; j++)
       memcpy(out + 4 * j, edge.data + EDGE_WIDTH * j, 4 * sizeof *out);
-    status = second_line(&edge, how, degree, out + 4 * edge.count, err);
+    continue_edge(&edge, how);
+    status = second_line(&edge, degree, out + 4 * edge.count, err);
   }
   *count = edge.count;
   cag_net_free(&edge);
@@ -306,14 +315,14 @@ static CagStatus clamped(const CagSurface *b, CagSurface **out, CagError *err) {
 
 // Puts the edge's line and the one beside it into b, whose net runs along the edge.
 static CagStatus put_lines(CagNet *b, const CagNet *across, int side, const CagNet *edge,
-                           const CagEdgeMatch *how, CagError *err) {
+                           CagError *err) {
   size_t n = across->count, p = (size_t)across->degree;
   bool last = side % 2 == 1;
   double span =
       last ? across->knots[n] - across->knots[n - 1] : across->knots[p + 1] - across->knots[p];
   double *line = malloc(4 * edge->count * sizeof *line);
   if (!line) return cag_fail_memory(err);
-  CagStatus status = second_line(edge, how, (double)across->degree / span, line, err);
+  CagStatus status = second_line(edge, (double)across->degree / span, line, err);
   // All weights of a surface may have a factor: that of b holds.
   double theirs = b->data[4 * (last ? n - 1 : 0) + 3], ours = edge->data[3];
   double factor = theirs > 0 && ours > 0 ? theirs / ours : 1;
@@ -346,15 +355,15 @@ CagStatus cag_surface_match(const CagSurface *a, const CagSurface *b, const CagE
   if (!status) {
     double from = cag_net_start(&nets[1]), to = cag_net_end(&nets[1]);
     if (seam.reversed) cag_net_reverse(&nets[0]);
-    // Shear is by the true parameter of a, and by its sense.
-    double range = cag_net_end(&nets[0]) - cag_net_start(&nets[0]), sign = seam.reversed ? -1 : 1;
-    CagEdgeMatch over = {
-        how->ratio,
-        {sign * how->shear[seam.reversed] / range, sign * how->shear[!seam.reversed] / range}};
+    // Shear is by the parameter of a, and by its sense; b may have inner knots.
+    const double sign = seam.reversed ? -1 : 1;
+    const CagEdgeMatch over = {
+        how->ratio, {sign * how->shear[seam.reversed], sign * how->shear[!seam.reversed]}};
+    continue_edge(&nets[0], &over);
     cag_net_rescale(&nets[0], 0, 1);
     cag_net_rescale(&nets[1], 0, 1);
     status = cag_nets_unify(nets, 2, err);
-    if (!status) status = put_lines(&nets[1], &across, seam.side[1], &nets[0], &over, err);
+    if (!status) status = put_lines(&nets[1], &across, seam.side[1], &nets[0], err);
     cag_net_rescale(&nets[1], from, to);
   }
   if (!status) status = cag_net_to_surface(&nets[1], seam.side[1] < 2 ? 1 : 0, &across, out, err);
