@@ -40,6 +40,9 @@ static const double WEIGHT[NODES] = {
 // A path turns a corner where its unit tangents differ by more than this.
 #define CORNER 1e-9
 
+// The velocity of a path may vanish with so many of its derivatives.
+#define MOST_STOP 3
+
 // --- Truncated power series in v ---
 
 #define ORDER CAG_MOTION_ORDER
@@ -117,6 +120,33 @@ static CagStatus zero_tangent(double v, CagError *err) {
                   cag_number_text(v, text));
 }
 
+// The unit tangent as a series of order n, from that of the velocity. Where the path stops, as at
+// repeated control points, it is the limit from the side asked: the velocity is a power of the
+// parameter times a series that does not vanish. Within a segment only an even power goes on; at
+// its ends transport() finds paths that turn back.
+static CagStatus unit_tangent(const CagMotion *t, const CagMotionSegment *g, double v, int n,
+                              CagSide side, const CagVec3 *velocity, CagVec3 *out, CagError *err) {
+  if (cag_norm(velocity[0]) > 0) {
+    series_unit(velocity, n, out);
+    return CAG_OK;
+  }
+  const bool left = side == CAG_SIDE_LEFT, at_end = v == (left ? g->v1 : g->v0);
+  CagVec3 c[ORDER + MOST_STOP + 1], direction[ORDER];
+  CagStatus status = cag_curve_eval(t->path, v, n + 1 + MOST_STOP, side, c, err);
+  if (status) return status;
+  int power = 1;
+  while (power <= MOST_STOP && !(cag_norm(c[power + 1]) > 0)) power++;
+  if (power > MOST_STOP || (power % 2 && !at_end)) return zero_tangent(v, err);
+  double factorial = left && power % 2 ? -1 : 1;
+  for (int k = 1; k <= power; k++) factorial *= k;
+  for (int k = 0; k <= n; k++) {
+    direction[k] = cag_scaled(c[k + power + 1], 1 / factorial);
+    factorial *= k + power + 1;
+  }
+  series_unit(direction, n, out);
+  return CAG_OK;
+}
+
 // Unit tangent and reference frame at v on segment g, as series of order n; C alongside.
 static CagStatus reference(const CagMotion *t, const CagMotionSegment *g, double v, int n,
                            CagSide side, Frame *out, CagError *err) {
@@ -129,8 +159,8 @@ static CagStatus reference(const CagMotion *t, const CagMotionSegment *g, double
     out->c[k] = cag_scaled(c[k], 1 / factorial);
     velocity[k] = cag_scaled(c[k + 1], 1 / factorial);
   }
-  if (!(cag_norm(velocity[0]) > 0)) return zero_tangent(v, err);
-  series_unit(velocity, n, out->t);
+  status = unit_tangent(t, g, v, n, side, velocity, out->t, err);
+  if (status) return status;
   series_cross(out->t, a, n, across);
   series_unit(across, n, out->n2);
   series_cross(out->n2, out->t, n, out->n1);
@@ -157,8 +187,8 @@ static CagStatus minimizing(const CagMotion *t, const CagMotionSegment *g, doubl
 }
 
 // Path and unit tangent as series.
-static CagStatus tangent_series(const CagMotion *t, double v, int n, CagSide side, Frame *out,
-                                CagVec3 *bend, CagError *err) {
+static CagStatus tangent_series(const CagMotion *t, const CagMotionSegment *g, double v, int n,
+                                CagSide side, Frame *out, CagVec3 *bend, CagError *err) {
   CagVec3 c[ORDER + 2], velocity[ORDER];
   CagStatus status = cag_curve_eval(t->path, v, n + 2, side, c, err);
   if (status) return status;
@@ -169,9 +199,7 @@ static CagStatus tangent_series(const CagMotion *t, double v, int n, CagSide sid
     velocity[k] = cag_scaled(c[k + 1], 1 / factorial);
     bend[k] = cag_scaled(c[k + 2], 1 / factorial);
   }
-  if (!(cag_norm(velocity[0]) > 0)) return zero_tangent(v, err);
-  series_unit(velocity, n, out->t);
-  return CAG_OK;
+  return unit_tangent(t, g, v, n, side, velocity, out->t, err);
 }
 
 // y is the direction `toward` made square to the tangent, x = y x T.
@@ -188,12 +216,13 @@ static void square_to(const CagVec3 *toward, int n, Frame *f) {
 // Where the curvature vanishes but for rounding, at an inflection or at the end of a natural
 // spline, the binormal is the limit from the side asked: that of its derivative. Fills `binormal`
 // with a multiple of the series of the limit; false: there is none.
-static bool limit_binormal(const CagMotion *t, double v, int n, CagSide side, CagVec3 *binormal) {
+static bool limit_binormal(const CagMotion *t, const CagMotionSegment *g, double v, int n,
+                           CagSide side, CagVec3 *binormal) {
   const double vanishing = 1e-12; // of what it grows to over the domain
   CagVec3 bend[ORDER], next[ORDER];
   Frame f;
   CagError ignored;
-  if (n + 1 >= ORDER || tangent_series(t, v, n + 1, side, &f, bend, &ignored)) return false;
+  if (n + 1 >= ORDER || tangent_series(t, g, v, n + 1, side, &f, bend, &ignored)) return false;
   series_cross(f.t, bend, n + 1, next);
   double length = t->end - t->start, grown = cag_norm(next[1]) * length;
   double bends = cag_norm(bend[0]) + cag_norm(bend[1]) * length;
@@ -203,13 +232,13 @@ static bool limit_binormal(const CagMotion *t, double v, int n, CagSide side, Ca
   return true;
 }
 
-static CagStatus frenet(const CagMotion *t, double v, int n, CagSide side, Frame *out,
-                        CagError *err) {
+static CagStatus frenet(const CagMotion *t, const CagMotionSegment *g, double v, int n,
+                        CagSide side, Frame *out, CagError *err) {
   CagVec3 bend[ORDER], binormal[ORDER];
-  CagStatus status = tangent_series(t, v, n, side, out, bend, err);
+  CagStatus status = tangent_series(t, g, v, n, side, out, bend, err);
   if (status) return status;
   series_cross(out->t, bend, n, binormal);
-  if (limit_binormal(t, v, n, side, binormal)) bend[0] = cag_vec3(0, 0, 0);
+  if (limit_binormal(t, g, v, n, side, binormal)) bend[0] = cag_vec3(0, 0, 0);
   char text[32];
   if (!(cag_norm(binormal[0]) > ALONG_TANGENT * cag_norm(bend[0])))
     return cag_fail(err, CAG_E_DEGENERATE, "path-straight", "path", -1,
@@ -221,10 +250,10 @@ static CagStatus frenet(const CagMotion *t, double v, int n, CagSide side, Frame
   return CAG_OK;
 }
 
-static CagStatus upright(const CagMotion *t, double v, int n, CagSide side, Frame *out,
-                         CagError *err) {
+static CagStatus upright(const CagMotion *t, const CagMotionSegment *g, double v, int n,
+                         CagSide side, Frame *out, CagError *err) {
   CagVec3 bend[ORDER], up[ORDER] = {t->how.up};
-  CagStatus status = tangent_series(t, v, n, side, out, bend, err);
+  CagStatus status = tangent_series(t, g, v, n, side, out, bend, err);
   if (status) return status;
   char text[32];
   if (!(cag_norm(cag_cross(up[0], out->t[0])) > ALONG_TANGENT))
@@ -256,8 +285,8 @@ static CagStatus standing(const CagMotion *t, double v, int n, CagSide side, Fra
 static CagStatus frame_on(const CagMotion *t, const CagMotionSegment *g, double v, int n,
                           CagSide side, Frame *out, CagError *err) {
   switch (t->how.orient) {
-  case CAG_ORIENT_FRENET: return frenet(t, v, n, side, out, err);
-  case CAG_ORIENT_UP: return upright(t, v, n, side, out, err);
+  case CAG_ORIENT_FRENET: return frenet(t, g, v, n, side, out, err);
+  case CAG_ORIENT_UP: return upright(t, g, v, n, side, out, err);
   case CAG_ORIENT_FIXED: return standing(t, v, n, side, out, err);
   case CAG_ORIENT_RMF: break;
   }
