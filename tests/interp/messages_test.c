@@ -251,6 +251,92 @@ static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
   assert_int_equal(bad, 0);
 }
 
+// What the diagnostics of a failing script say, as text.
+static void all_said(const char *script, char *said, size_t size) {
+  CagSession *s;
+  first_error(&s, script);
+  FILE *f = fmemopen(said, size, "w");
+  assert_non_null(f);
+  cag_session_write_diagnostics(s, CAG_STYLE_TEXT, f);
+  fclose(f);
+  cag_session_free(s);
+}
+
+static size_t count_of(const char *text, const char *part) {
+  size_t n = 0;
+  for (const char *at = text; (at = strstr(at, part)); at++) n++;
+  return n;
+}
+
+// Of a long chain of calls the innermost six and the outermost four are told, and how many stand
+// between them.
+static void chains_of_calls_are_told(void **state) {
+  (void)state;
+  for (size_t n = 0; n < 40; n++) {
+    char script[200];
+    snprintf(script, sizeof script, "f(n) =\n  if n == 0 then 1 / n\n  else 1 + f(n - 1)\nprint f(%zu)",
+             n);
+    char said[8192];
+    all_said(script, said, sizeof said);
+    // Each but the call in `print` is one of f by f.
+    size_t skipped = 0;
+    const char *omitted = strstr(said, "= ... ");
+    if (omitted) assert_int_equal(sscanf(omitted, "= ... %zu more calls ...", &skipped), 1);
+    const size_t inner = count_of(said, "= called from test:3:12 in f\n");
+    assert_int_equal(count_of(said, "= called from test:4:7\n"), 1);
+    assert_int_equal(inner + 1 + skipped, n + 1);
+    assert_int_equal(skipped, n + 1 > 10 ? n + 1 - 10 : 0);
+    // Where they are left out: behind six of them.
+    if (omitted) {
+      said[omitted - said] = 0;
+      assert_int_equal(count_of(said, "= called from"), 6);
+    }
+  }
+}
+
+// Calls in tail position leave no frame; the last sixteen are remembered.
+static void calls_in_tail_position_are_told(void **state) {
+  (void)state;
+  for (size_t n = 0; n < 40; n++) {
+    char script[200];
+    snprintf(script, sizeof script,
+             "f(n) =\n  if n == 0 then 1 / n\n  else f(n - 1)\nx = f(%zu) + 1\nprint x", n);
+    char said[8192];
+    all_said(script, said, sizeof said);
+    size_t skipped = 0;
+    const char *omitted = strstr(said, "= ... ");
+    if (omitted)
+      assert_int_equal(sscanf(omitted, "= ... %zu more calls in tail position ...", &skipped), 1);
+    const size_t told = count_of(said, "= called from test:3:8 in f (tail call)\n");
+    assert_int_equal(told, n < 16 ? n : 16);
+    assert_int_equal(told + skipped, n);
+    assert_int_equal(count_of(said, "= called from test:4:5 in x\n"), 1);
+  }
+}
+
+static void limits_are_told_in_their_units(void **state) {
+  (void)state;
+  static const struct {
+    size_t bytes;
+    const char *message;
+  } rows[] = {{(size_t)512 << 10, "exceeded the memory limit of 512 KiB (--max-memory)"},
+              {(size_t)1 << 20, "exceeded the memory limit of 1 MiB (--max-memory)"},
+              {((size_t)1 << 20) - 1024, "exceeded the memory limit of 1.02e+03 KiB (--max-memory)"},
+              {(size_t)3 << 19, "exceeded the memory limit of 1.5 MiB (--max-memory)"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    CagSessionOptions options;
+    cag_session_options_init(&options);
+    options.max_memory = rows[i].bytes;
+    CagSession *s = cag_session_new(&options);
+    static const char script[] = "print len([for i in 0..1e6: [{a: i}]])";
+    assert_int_equal(cag_session_run_text(s, "test", script, sizeof script - 1), CAG_STATUS_LIMIT);
+    CagErrorView e;
+    cag_session_error(s, 0, &e);
+    assert_string_equal(e.message, rows[i].message);
+    cag_session_free(s);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(values_of_a_wrong_type_are_named_with_what_to_write),
@@ -264,6 +350,9 @@ int main(void) {
       cmocka_unit_test(lengths_beyond_a_curve_name_its_length),
       cmocka_unit_test(a_circle_names_its_definitions),
       cmocka_unit_test(carets_stand_below_the_argument),
+      cmocka_unit_test(chains_of_calls_are_told),
+      cmocka_unit_test(calls_in_tail_position_are_told),
+      cmocka_unit_test(limits_are_told_in_their_units),
   };
   return cmocka_run_group_tests_name("messages", tests, NULL, NULL);
 }
