@@ -225,3 +225,106 @@ fi
 try test good.cag --diagnostics json
 status 0
 says_nothing
+
+it 'what failed is told with its lines, and nothing of what passed'
+script wrong.cag 'param h = 1
+print h // expect: 1
+// run: -D h=2
+// expect: 3
+// run: -D h=4'
+script broken.cag 'x = 1
+print x + ""'
+try test good.cag wrong.cag broken.cag
+status 1
+says_nothing
+prints_exactly 'FAILED wrong.cag -D h=2
+  wrong.cag:4: another line is printed
+    expected: 3
+    got:      2
+FAILED broken.cag
+  broken.cag:2: an error that is not expected: E0321
+  error: `+` does not join the number 1 and the text ""
+   --> broken.cag:2:7
+    |
+  2 | print x + ""
+    |       ^^^^^^ put the value into the text: "... {x}"
+3 passed, 2 failed, 0 skipped'
+
+it 'with -v what passed is told too, with its time'
+try test good.cag wrong.cag -v
+status 1
+sed 's/ in [0-9]*\.[0-9][0-9] s$/ in T/' out > told
+[ "$(cat told)" = 'passed good.cag in T
+passed wrong.cag in T
+FAILED wrong.cag -D h=2
+  wrong.cag:4: another line is printed
+    expected: 3
+    got:      2
+passed wrong.cag -D h=4 in T
+3 passed, 1 failed, 0 skipped' ] || wrong "it is told otherwise: $(cat told)"
+
+it 'runs are chosen by their names, and have the definitions of the command line'
+try test good.cag wrong.cag --filter h=4
+status 0
+prints_exactly '1 passed, 0 failed, 0 skipped'
+try test wrong.cag -D h=5
+status 1
+prints 'wrong.cag:2: another line is printed'
+prints '    got:      5'
+prints '1 passed, 2 failed, 0 skipped'
+try test good.cag --filter nowhere
+status 0
+prints_exactly '0 passed, 0 failed, 0 skipped'
+
+it 'standard input is tested under a name of its own'
+printf 'print 1 // expect: 2\n' > input
+with_input input test -
+status 1
+prints_exactly 'FAILED <stdin>
+  <stdin>:1: another line is printed
+    expected: 2
+    got:      1
+0 passed, 1 failed, 0 skipped'
+
+it 'folders stand for the scripts below them, and what is missing is told'
+mkdir -p many/inner empty
+for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+  echo "print $i // expect: $i" > "many/inner/$i.cag"
+done
+try test many good.cag
+status 0
+prints_exactly '21 passed, 0 failed, 0 skipped'
+try test empty
+status 0
+says 'cag test: there is no script to test'
+prints_exactly '0 passed, 0 failed, 0 skipped'
+try test nowhere.cag good.cag
+[ "$code" -ne 0 ] || wrong 'the status is 0'
+says 'nowhere.cag'
+
+it 'the report in XML has each run with its failure'
+printf 'print "a\\u{1}b \\"&\\" <i>" // expect: '"'\n" > signs.cag
+try test good.cag wrong.cag signs.cag --report each.xml
+status 1
+sed 's/ time="[0-9]*\.[0-9][0-9][0-9]"/ time="T"/g' each.xml > told
+printf '%s\n' '<?xml version="1.0" encoding="UTF-8"?>
+<testsuites name="cag" tests="5" failures="2" errors="0" skipped="0" time="T">
+  <testsuite name="good.cag" tests="1" failures="0" errors="0" skipped="0" time="T">
+    <testcase classname="good.cag" name="good.cag" time="T"/>
+  </testsuite>
+  <testsuite name="wrong.cag" tests="3" failures="1" errors="0" skipped="0" time="T">
+    <testcase classname="wrong.cag" name="wrong.cag" time="T"/>
+    <testcase classname="wrong.cag" name="wrong.cag -D h=2" time="T"><failure message="not as expected">  wrong.cag:4: another line is printed
+    expected: 3
+    got:      2
+</failure></testcase>
+    <testcase classname="wrong.cag" name="wrong.cag -D h=4" time="T"/>
+  </testsuite>
+  <testsuite name="signs.cag" tests="1" failures="1" errors="0" skipped="0" time="T">
+    <testcase classname="signs.cag" name="signs.cag" time="T"><failure message="not as expected">  signs.cag:1: another line is printed
+    expected: &apos;
+    got:      a b &quot;&amp;&quot; &lt;i&gt;
+</failure></testcase>
+  </testsuite>
+</testsuites>' > expected
+same told expected
