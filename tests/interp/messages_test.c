@@ -274,8 +274,8 @@ static void chains_of_calls_are_told(void **state) {
   (void)state;
   for (size_t n = 0; n < 40; n++) {
     char script[200];
-    snprintf(script, sizeof script, "f(n) =\n  if n == 0 then 1 / n\n  else 1 + f(n - 1)\nprint f(%zu)",
-             n);
+    snprintf(script, sizeof script,
+             "f(n) =\n  if n == 0 then 1 / n\n  else 1 + f(n - 1)\nprint f(%zu)", n);
     char said[8192];
     all_said(script, said, sizeof said);
     // Each but the call in `print` is one of f by f.
@@ -319,10 +319,11 @@ static void limits_are_told_in_their_units(void **state) {
   static const struct {
     size_t bytes;
     const char *message;
-  } rows[] = {{(size_t)512 << 10, "exceeded the memory limit of 512 KiB (--max-memory)"},
-              {(size_t)1 << 20, "exceeded the memory limit of 1 MiB (--max-memory)"},
-              {((size_t)1 << 20) - 1024, "exceeded the memory limit of 1.02e+03 KiB (--max-memory)"},
-              {(size_t)3 << 19, "exceeded the memory limit of 1.5 MiB (--max-memory)"}};
+  } rows[] = {
+      {(size_t)512 << 10, "exceeded the memory limit of 512 KiB (--max-memory)"},
+      {(size_t)1 << 20, "exceeded the memory limit of 1 MiB (--max-memory)"},
+      {((size_t)1 << 20) - 1024, "exceeded the memory limit of 1.02e+03 KiB (--max-memory)"},
+      {(size_t)3 << 19, "exceeded the memory limit of 1.5 MiB (--max-memory)"}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     CagSessionOptions options;
     cag_session_options_init(&options);

@@ -99,6 +99,9 @@ static void describe(const CagBatch *b, char *out, size_t size) {
 #define HEAD "script,output,frames,size,tiles,tolerance,quality\n"
 #define PATTERN_HELP "(write the number as %04d, such as film.%04d.png, and a % as %%)"
 
+#define FORMATS                                                                                    \
+  "there are .exr .png .obj .stl .ply .glb .gltf .3mf .pov .igs .step .urdf .svg .json"
+
 static void rows_become_tasks(void **state) {
   (void)state;
   static const struct {
@@ -158,6 +161,20 @@ static void rows_become_tasks(void **state) {
       {"a.cag,f%d.png,0..1000000",
        "! 1 E0912 with this row there are more than 1000000 pictures to "
        "make (take several files of jobs)\n"},
+      {"a.cag,f%d.png,5..1000005", "! 1 E0912 with this row there are more than 1000000 pictures "
+                                   "to make (take several files of "
+                                   "jobs)\n"},
+      {"a.cag,f%d.png,2000000..2000001", "0:2000000 f2000000.png\n0:2000001 f2000001.png\n"},
+      // Formats.
+      {"a.cag,", "! 1 E0916 the output is missing (name a file, such as vase.png)\n"},
+      {"a.cag,noending",
+       "! 1 E0916 the output 'noending' has no ending that says its format (" FORMATS ")\n"},
+      {"a.cag,.png",
+       "! 1 E0916 the output '.png' has no ending that says its format (" FORMATS ")\n"},
+      {"a.cag,x.d/noending",
+       "! 1 E0916 the output 'x.d/noending' has no ending that says its format (" FORMATS ")\n"},
+      {"a.cag,x.", "! 1 E0916 the output 'x.' has no ending that says its format (" FORMATS ")\n"},
+      {"a.cag,x.gif", "! 1 E0916 there is no format '.gif' (" FORMATS ")\n"},
       // Tiles.
       {"a.cag,t.png,,,2x2",
        "! 1 E0912 a picture in tiles needs its size (fill in size, such as 7680x4320)\n"},
@@ -168,6 +185,9 @@ static void rows_become_tasks(void **state) {
       {"a.cag,f1.png\na.cag,f%d.png,0..2",
        "! 2 E0914 the output 'DIR/f1.png' is that of row 1 too (each "
        "output belongs to one row)\n"},
+      // Two films that meet are told once.
+      {"a.cag,f%d.png,0..2\na.cag,f%d.png,1..3",
+       "! 2 E0914 the output 'DIR/f1.png' is that of row 1 too (each output belongs to one row)\n"},
       {"a.cag,jobs.report.csv.stl\na.cag,parts/../x.stl\na.cag,x.stl",
        "! 3 E0914 the output 'DIR/x.stl' is that of row 2 too (each output belongs to one row)\n"},
   };
