@@ -326,6 +326,99 @@ static void seams_tell_angle_and_curvature(void **state) {
   }
 }
 
+// The largest gap and angle are those at the end of the edge, where two plates part.
+static void seams_are_measured_up_to_their_ends(void **state) {
+  (void)state;
+  seed = 58;
+  for (int round = 0; round < 20; round++) {
+    const double length = uniform(1, 3), lift = uniform(0.1, 0.5), rise = uniform(0.1, 2);
+    const bool first = round % 2; // at the start of the edge, or at its end
+    const double a = first ? lift : 0, b = first ? 0 : lift;
+    CagSurface *flat, *other;
+    CagSeam seam;
+    OK(cag_surface_bilinear(cag_vec3(-9, 0, 0), cag_vec3(-9, length, 0), cag_vec3(0, 0, 0),
+                            cag_vec3(0, length, 0), &flat, &err));
+    OK(cag_surface_bilinear(cag_vec3(0, 0, a), cag_vec3(0, length, b), cag_vec3(9, 0, a),
+                            cag_vec3(9, length, b), &other, &err));
+    OK(cag_surface_seam(flat, other, 1e-9, &seam, &err));
+    NEAR(seam.gap, lift, 1e-12);
+    NEAR(seam.angle, atan(lift / length), 1e-9);
+    assert_true(!seam.c0 && !seam.g1 && !seam.c1 && !seam.g2 && !seam.reversed);
+    cag_surface_release(other);
+    // One edge, and a twist about it.
+    OK(cag_surface_bilinear(cag_vec3(0, 0, 0), cag_vec3(0, length, 0),
+                            cag_vec3(9, 0, first ? rise : 0), cag_vec3(9, length, first ? 0 : rise),
+                            &other, &err));
+    OK(cag_surface_seam(flat, other, 1e-9, &seam, &err));
+    NEAR(seam.gap, 0, 1e-12);
+    NEAR(seam.angle, atan(rise / 9), 1e-9);
+    NEAR(seam.first, rise, 1e-9);
+    assert_true(seam.c0 && !seam.g1 && !seam.c1 && !seam.g2);
+    cag_surface_release(other);
+    cag_surface_release(flat);
+  }
+}
+
+static CagSurface *replaced(CagSurface *old, CagSurface *by) {
+  cag_surface_release(old);
+  return by;
+}
+
+// The parts of a surface, the second with another range of v, turned and of higher degree.
+static void joined_surfaces_run_over_both(void **state) {
+  (void)state;
+  seed = 59;
+  for (int round = 0; round < 16; round++) {
+    CagSurface *s = random_surface(round % 2, false), *a, *b, *other, *t;
+    CagSurfaceNurbsView v;
+    CagVec3 p[NU * NV];
+    double w[NU * NV], kv[NV + PV + 1];
+    assert_true(cag_surface_nurbs_view(s, &v));
+    for (size_t i = 0; i < NU * NV; i++) {
+      p[i] = point_of(&v, i / NV, i % NV);
+      w[i] = weight_of(&v, i / NV, i % NV);
+    }
+    for (int i = 0; i < NV + PV + 1; i++) kv[i] = 4 + 2 * (KV[i] + 1);
+    OK(cag_surface_nurbs(p, w, NU, NV, PU, PV, KU, kv, &other, &err));
+    const double cut = 1.7;
+    OK(cag_surface_part(s, 0.5, cut, -1, 1.5, &a, &err));
+    OK(cag_surface_part(other, cut, 3.1, 4, 9, &b, &err));
+    if (round & 2) {
+      OK(cag_surface_elevate(b, 1, 1, &t, &err));
+      b = replaced(b, t);
+    }
+    if (round & 4) {
+      OK(cag_surface_transpose(b, &t, &err));
+      b = replaced(b, t);
+    }
+    if (round & 8) {
+      OK(cag_surface_flip(b, &t, &err));
+      b = replaced(b, t);
+    }
+    OK(cag_surface_join(a, b, 1e-9, &t, &err));
+    NEAR(t->u0, 0.5, 1e-14);
+    NEAR(t->u1, 3.1, 1e-14);
+    NEAR(t->v0, -1, 1e-14);
+    NEAR(t->v1, 1.5, 1e-14);
+    assert_true(cag_surface_nurbs_view(t, &v));
+    assert_int_equal(v.degree_u, round & 2 ? PU + 1 : PU);
+    assert_int_equal(v.degree_v, round & 2 ? PV + 1 : PV);
+    for (int i = 0; i <= 12; i++)
+      for (int j = 0; j <= 12; j++) {
+        const double x = 0.5 + 2.6 * i / 12, y = -1 + 2.5 * j / 12;
+        CagVec3 is, was;
+        OK(cag_surface_point(t, fmin(x, t->u1), fmin(y, t->v1), &is, &err));
+        OK(cag_surface_point(s, fmin(x, 3.1), y, &was, &err));
+        near_vec(is, was, 1e-10);
+      }
+    cag_surface_release(t);
+    cag_surface_release(a);
+    cag_surface_release(b);
+    cag_surface_release(s);
+    cag_surface_release(other);
+  }
+}
+
 static void creases_have_the_angle_between_their_sides(void **state) {
   (void)state;
   seed = 57;
@@ -379,6 +472,8 @@ int main(void) {
       cmocka_unit_test(matched_surfaces_continue_each_other),
       cmocka_unit_test(joined_lines_start_a_neighbor),
       cmocka_unit_test(seams_tell_angle_and_curvature),
+      cmocka_unit_test(seams_are_measured_up_to_their_ends),
+      cmocka_unit_test(joined_surfaces_run_over_both),
       cmocka_unit_test(creases_have_the_angle_between_their_sides),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
