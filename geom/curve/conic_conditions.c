@@ -138,6 +138,7 @@ static Frame frame_of(const CagVec3 *points, size_t n) {
   Frame f = {{0, 0, 0}, 0};
   for (size_t i = 0; i < n; i++) f.center = cag_madd(f.center, 1 / (double)n, points[i]);
   for (size_t i = 0; i < n; i++) f.size = fmax(f.size, cag_norm(cag_sub(points[i], f.center)));
+  if (n == 1) f.size = 1; // the only point of a tangent
   return f;
 }
 
