@@ -1241,6 +1241,266 @@ static void an_arc_of_a_triangle_bulges_as_its_weight_says(void **state) {
   cag_curve_release(c);
 }
 
+// --- Random conditions ---
+
+// Points and tangents of a random conic lead back to it.
+static void random_conditions_have_their_conic(void **state) {
+  (void)state;
+  seed = 501;
+  for (int i = 0; i < 240; i++) {
+    const double a = uniform(0.5, 3), b = uniform(0.5, 3);
+    const CagConicShape shape = (CagConicShape)(i % 4);
+    Standard s = random_standard(1 / (a * a), (i % 8 < 4 ? 1 : -1) / (b * b), 0, 1);
+    if (shape == CAG_CONIC_AXIS) s.angle = 0;
+    if (shape == CAG_CONIC_CIRCLE) s.beta = s.alpha;
+    if (shape == CAG_CONIC_LINE) s = random_standard(0, 0, 1, 0);
+    if (i % 5 == 0) s.center = cag_scaled(s.center, 10);
+    const CagConic expected = equation(&s);
+    static const size_t needed[4] = {5, 4, 3, 2};
+    // As many tangents as i says, each of which is two conditions; their points are among the
+    // points or not. The rest are points, and sometimes one more than needed.
+    const size_t m = (size_t)(i / 4 % 3) % (needed[shape] / 2 + 1);
+    const bool listed = i % 3 == 0;
+    const size_t extra = (size_t)(i / 12 % 2);
+    CagConicTangent tangents[2];
+    CagVec3 points[8];
+    size_t n = 0;
+    for (size_t k = 0; k < needed[shape] - m + extra; k++) {
+      // The parameters are spread over both branches of a hyperbola.
+      const double t = 0.5 + 1.1 * (double)k + uniform(-0.2, 0.2);
+      double u = 0, v = 0, du = 0, dv = 0;
+      if (shape == CAG_CONIC_LINE) v = t - 1, dv = 1;
+      else if (s.beta > 0) u = cos(t) / sqrt(s.alpha), v = sin(t) / sqrt(s.beta);
+      else u = (k % 2 ? -1 : 1) * cosh(t - 2) / sqrt(s.alpha), v = sinh(t - 2) / sqrt(-s.beta);
+      if (shape != CAG_CONIC_LINE) du = -s.beta * v, dv = s.alpha * u; // along the tangent
+      const CagVec3 p = placed(&s, u, v);
+      if (k < m) {
+        tangents[k].point = p;
+        tangents[k].direction =
+            cag_scaled(cag_sub(placed(&s, u + du, v + dv), p), uniform(-3, -0.1));
+        if (listed) points[n++] = p;
+      } else {
+        points[n++] = p;
+      }
+    }
+    CagConic k;
+    OK(cag_conic_from_conditions(points, n, tangents, m, shape, &k, &err));
+    same_conic(&k, &expected, 1e-8);
+    // C is 1, or what is first without it.
+    int unit = shape == CAG_CONIC_LINE ? 3 : 2;
+    if (shape == CAG_CONIC_LINE && fabs(k.c[3]) < 1e-12) unit = 4;
+    NEAR(k.c[unit], 1, 0);
+    if (shape != CAG_CONIC_GENERAL) assert_true(k.c[1] == 0);
+    if (shape == CAG_CONIC_CIRCLE) NEAR(k.c[0], k.c[2], 1e-12);
+    if (shape == CAG_CONIC_LINE) assert_true(k.c[0] == 0 && k.c[2] == 0);
+    // One condition less is too few.
+    if (extra == 0 && n > 0 && !(listed && m > 0))
+      FAILS(cag_conic_from_conditions(points, n - 1, tangents, m, shape, &k, &err),
+            "too-few-conditions");
+    // A point off the conic contradicts.
+    if (extra == 1) {
+      points[n - 1] = cag_add(points[n - 1], cag_vec3(1e-4, 2e-4, 0));
+      FAILS(cag_conic_from_conditions(points, n, tangents, m, shape, &k, &err),
+            "conditions-contradict");
+    }
+  }
+  const CagVec3 same[5] = {{1, 2, 0}, {1, 2, 0}, {1, 2, 0}, {1, 2, 0}, {1, 2, 0}};
+  CagConic k;
+  FAILS(cag_conic_from_conditions(same, 5, NULL, 0, CAG_CONIC_GENERAL, &k, &err),
+        "coincident-points");
+  FAILS(cag_conic_from_conditions(same, 0, NULL, 0, CAG_CONIC_LINE, &k, &err),
+        "too-few-conditions");
+}
+
+// Coefficients that only rounding makes are 0, and the first that is none is 1.
+static void conditions_leave_no_rounding(void **state) {
+  (void)state;
+  const CagVec3 upright[2] = {{0.1, 0.3, 0}, {0.1, 7.7, 0}},
+                level[2] = {{0.2, 0.3, 0}, {9, 0.3, 0}};
+  CagConic k;
+  OK(cag_conic_from_conditions(upright, 2, NULL, 0, CAG_CONIC_LINE, &k, &err));
+  assert_true(k.c[3] == 1 && k.c[4] == 0);
+  NEAR(k.c[5], -0.1, 1e-14);
+  OK(cag_conic_from_conditions(level, 2, NULL, 0, CAG_CONIC_LINE, &k, &err));
+  assert_true(k.c[3] == 0 && k.c[4] == 1);
+  NEAR(k.c[5], -0.3, 1e-14);
+  // x^2 = y with a fifth point: no term in y^2, and A becomes 1. xy = 1: B becomes 1.
+  CagVec3 parabola[5], hyperbola[5];
+  for (int i = 0; i < 5; i++) {
+    const double x = 0.7 * i - 1.3;
+    parabola[i] = cag_vec3(x, x * x, 0);
+    hyperbola[i] = cag_vec3(x, 1 / x, 0);
+  }
+  OK(cag_conic_from_conditions(parabola, 5, NULL, 0, CAG_CONIC_GENERAL, &k, &err));
+  const double expected[6] = {1, 0, 0, 0, -1, 0};
+  for (int i = 0; i < 6; i++) NEAR(k.c[i], expected[i], 1e-12);
+  assert_true(k.c[0] == 1 && k.c[2] == 0);
+  OK(cag_conic_from_conditions(hyperbola, 5, NULL, 0, CAG_CONIC_GENERAL, &k, &err));
+  const double product[6] = {0, 1, 0, 0, 0, -1};
+  for (int i = 0; i < 6; i++) NEAR(k.c[i], product[i], 1e-11);
+  assert_true(k.c[1] == 1 && k.c[2] == 0 && k.c[0] == 0);
+}
+
+// --- Random arcs of triangles ---
+
+static void random_shoulders_have_their_weight(void **state) {
+  (void)state;
+  seed = 502;
+  for (int i = 0; i < 150; i++) {
+    CagVec3 t[3];
+    for (int k = 0; k < 3; k++) {
+      t[k].x = uniform(-3, 3);
+      t[k].y = uniform(-3, 3);
+      t[k].z = i % 2 ? uniform(-3, 3) : 0;
+    }
+    const double weight = i % 7 ? uniform(0.1, 4) : 1, s = uniform(0.1, 0.9);
+    CagCurve *c;
+    double found;
+    OK(cag_conic_arc(t[0], t[1], t[2], weight, i % 2 ? 3 : 2, &c, &err));
+    // b0 p + b1 w apex + b2 q over the sum.
+    const double b0 = (1 - s) * (1 - s), b1 = 2 * s * (1 - s) * weight, b2 = s * s;
+    const CagVec3 expected = cag_scaled(
+        cag_madd(cag_madd(cag_scaled(t[0], b0), b1, t[1]), b2, t[2]), 1 / (b0 + b1 + b2));
+    const CagVec3 p = at(c, s);
+    near_vec(p, expected, 1e-13);
+    CagNurbsView v;
+    assert_true(cag_curve_nurbs_view(c, &v) && v.rational == (weight != 1));
+    OK(cag_conic_shoulder_weight(t[0], t[1], t[2], p, &found, &err));
+    NEAR(found, weight, 1e-9 * weight);
+    cag_curve_release(c);
+    // Points beyond each side, and off the plane.
+    const CagVec3 inside = cag_scaled(cag_add(cag_add(t[0], t[1]), t[2]), 1.0 / 3);
+    for (int k = 0; k < 3; k++) {
+      const CagVec3 side = cag_lerp(t[k], t[(k + 1) % 3], 0.4);
+      FAILS(cag_conic_shoulder_weight(t[0], t[1], t[2], cag_lerp(inside, side, 1.01), &found, &err),
+            "shoulder-outside");
+      OK(cag_conic_shoulder_weight(t[0], t[1], t[2], cag_lerp(inside, side, 0.99), &found, &err));
+    }
+    const CagVec3 a = cag_sub(t[1], t[0]), b = cag_sub(t[2], t[0]);
+    const CagVec3 n = cag_unit(cag_cross(a, b));
+    const double size = cag_norm(a) + cag_norm(b);
+    for (int sign = -1; sign <= 1; sign += 2) {
+      FAILS(cag_conic_shoulder_weight(t[0], t[1], t[2], cag_madd(inside, sign * 3e-9 * size, n),
+                                      &found, &err),
+            "shoulder-outside");
+      OK(cag_conic_shoulder_weight(t[0], t[1], t[2], cag_madd(inside, sign * 3e-10 * size, n),
+                                   &found, &err));
+    }
+    FAILS(cag_conic_arc(t[0], t[0], t[2], 1, 3, &c, &err), "collinear-points");
+    FAILS(cag_conic_arc(t[0], t[1], t[1], 1, 3, &c, &err), "collinear-points");
+    FAILS(cag_conic_shoulder_weight(t[0], t[0], t[2], inside, &found, &err), "collinear-points");
+    FAILS(cag_conic_arc(t[0], t[1], t[2], INFINITY, 3, &c, &err), "negative-weight");
+  }
+}
+
+// --- Ranges and hulls of open conics ---
+
+static void ranges_of_open_conics_have_their_limits(void **state) {
+  (void)state;
+  const CagTransform f = plane_frame(0, 0, 0);
+  CagCurve *c;
+  OK(cag_curve_hyperbola(2, 1, CAG_FORM_HYPERBOLIC, -229, 229, &f, &c, &err));
+  cag_curve_release(c);
+  FAILS(cag_curve_hyperbola(2, 1, CAG_FORM_HYPERBOLIC, -231, 0, &f, &c, &err), "domain");
+  FAILS(cag_curve_hyperbola(2, 1, CAG_FORM_HYPERBOLIC, 0, 231, &f, &c, &err), "domain");
+  OK(cag_curve_parabola(2, CAG_FORM_QUADRATIC, -1000, 1000, &f, &c, &err));
+  cag_curve_release(c);
+  for (int turn = -2; turn <= 2; turn++) {
+    const double pole = (turn + 0.5) * M_PI;
+    OK(cag_curve_parabola(2, CAG_FORM_TANGENT, pole + 1e-8, pole + 3, &f, &c, &err));
+    cag_curve_release(c);
+    OK(cag_curve_hyperbola(2, 1, CAG_FORM_SECANT, pole - 3, pole - 1e-8, &f, &c, &err));
+    cag_curve_release(c);
+    FAILS(cag_curve_parabola(2, CAG_FORM_TANGENT, pole + 1e-10, pole + 3, &f, &c, &err), "domain");
+    FAILS(cag_curve_parabola(2, CAG_FORM_TANGENT, pole - 3, pole - 1e-10, &f, &c, &err), "domain");
+    FAILS(cag_curve_hyperbola(2, 1, CAG_FORM_SECANT, pole - 0.1, pole + 0.1, &f, &c, &err),
+          "domain");
+  }
+  FAILS(cag_curve_hyperbola(2, -1, CAG_FORM_SECANT, 0, 1, &f, &c, &err), "radius-not-positive");
+  FAILS(cag_curve_hyperbola(0, 1, CAG_FORM_SECANT, 0, 1, &f, &c, &err), "radius-not-positive");
+  FAILS(cag_curve_parabola(1, CAG_FORM_QUADRATIC, NAN, 1, &f, &c, &err), "not-finite");
+  FAILS(cag_curve_parabola(1, CAG_FORM_QUADRATIC, 0, INFINITY, &f, &c, &err), "not-finite");
+  FAILS(cag_curve_parabola(1, CAG_FORM_QUADRATIC, 1, 0, &f, &c, &err), "empty-range");
+  CagTransform bad = f;
+  bad.m[3][0] = 0.1;
+  FAILS(cag_curve_parabola(1, CAG_FORM_QUADRATIC, 0, 1, &bad, &c, &err), "not-affine");
+  bad = f;
+  bad.m[1][3] = NAN;
+  FAILS(cag_curve_parabola(1, CAG_FORM_QUADRATIC, 0, 1, &bad, &c, &err), "not-finite");
+}
+
+// Random affine images, reversed, cut and with other domains: points, derivatives, and boxes, which
+// are exact.
+static void random_open_conics_keep_their_points(void **state) {
+  (void)state;
+  seed = 503;
+  for (int i = 0; i < 120; i++) {
+    CagTransform f = cag_transform_identity();
+    for (int r = 0; r < 3; r++)
+      for (int k = 0; k < 4; k++) f.m[r][k] = uniform(-2, 2);
+    f.planar = i % 2;
+    if (f.planar)
+      for (int k = 0; k < 4; k++) f.m[2][k] = f.m[k][2] = k == 2;
+    const double w = i % 5 ? 1 : uniform(0.5, 2);
+    f.m[3][3] = w;
+    const int form = i / 2 % 4;
+    const double a = uniform(0.3, 2), b = uniform(0.3, 2);
+    const bool left = form == CAG_FORM_SECANT && i % 3 == 0;
+    const double start = (left ? M_PI : 0) + uniform(-1.3, 0.3), end = start + uniform(0.1, 0.9);
+    CagCurve *c, *back, *other;
+    if (form == CAG_FORM_QUADRATIC || form == CAG_FORM_TANGENT)
+      OK(cag_curve_parabola(a, (CagConicForm)form, start, end, &f, &c, &err));
+    else OK(cag_curve_hyperbola(a, b, (CagConicForm)form, start, end, &f, &c, &err));
+    assert_int_equal(c->dimension, f.planar ? 2 : 3);
+    assert_true(c->angular == (form == CAG_FORM_TANGENT || form == CAG_FORM_SECANT));
+    OK(cag_curve_reverse(c, &back, &err));
+    OK(cag_curve_reparametrize(back, 2, 7, &other, &err));
+    CagBounds seen = CAG_BOUNDS_EMPTY;
+    for (int k = 0; k <= 400; k++) {
+      const double t = fmin(end, start + (end - start) * k / 400);
+      double x = 0, y = 0;
+      if (form == CAG_FORM_QUADRATIC) x = a * t * t, y = 2 * a * t;
+      if (form == CAG_FORM_TANGENT) x = tan(t) * tan(t), y = 2 * sqrt(a) * tan(t);
+      if (form == CAG_FORM_HYPERBOLIC) x = a * cosh(t), y = b * sinh(t);
+      if (form == CAG_FORM_SECANT) x = a / cos(t), y = b * tan(t);
+      const CagVec3 p = cag_transform_point(&f, cag_vec3(x, y, 0));
+      cag_bounds_add(&seen, at(c, t));
+      near_vec(at(c, t), p, 1e-12 * (1 + cag_norm(p)));
+      near_vec(at(back, fmin(end, start + end - t)), p, 1e-11 * (1 + cag_norm(p)));
+      near_vec(at(other, fmin(7, 2 + 5 * (end - t) / (end - start))), p, 1e-11 * (1 + cag_norm(p)));
+    }
+    const CagBounds box = c->kind->hull(c, start, end);
+    const double size = cag_norm(cag_sub(seen.max, seen.min));
+    near_vec(box.min, seen.min, 1e-4 * size);
+    near_vec(box.max, seen.max, 1e-4 * size);
+    assert_true(box.min.x <= seen.min.x + 1e-12 * size && box.max.x >= seen.max.x - 1e-12 * size);
+    assert_true(box.min.y <= seen.min.y + 1e-12 * size && box.max.y >= seen.max.y - 1e-12 * size);
+    assert_true(box.min.z <= seen.min.z + 1e-12 * size && box.max.z >= seen.max.z - 1e-12 * size);
+    // The rational form has the same image, and derivatives those of the other domain.
+    CagCurve *exact;
+    OK(cag_curve_to_nurbs(c, &exact, &err));
+    for (int k = 0; k <= 6; k++) {
+      double t, distance;
+      CagVec3 nearest;
+      const CagVec3 p =
+          at(exact, fmin(exact->end, exact->start + (exact->end - exact->start) * k / 6));
+      OK(cag_curve_closest(c, p, &t, &nearest, &distance, &err));
+      NEAR(distance, 0, 1e-9 * (1 + size));
+    }
+    const double rate = -(end - start) / 5, t = start + 0.3 * (end - start);
+    CagVec3 d[4], e[4];
+    OK(cag_curve_eval(c, t, 3, CAG_SIDE_RIGHT, d, &err));
+    OK(cag_curve_eval(other, 2 + 5 * 0.7, 3, CAG_SIDE_RIGHT, e, &err));
+    double scale = 1;
+    for (int k = 0; k < 4; k++, scale *= rate)
+      near_vec(e[k], cag_scaled(d[k], scale), 1e-10 * (1 + cag_norm(d[k])));
+    cag_curve_release(exact);
+    cag_curve_release(other);
+    cag_curve_release(back);
+    cag_curve_release(c);
+  }
+}
+
 // --- Circles and lines that touch ---
 
 static void a_corner_has_four_circles(void **state) {
@@ -1944,6 +2204,11 @@ static void formulas_fit_in_the_least_squares_sense(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(random_conditions_have_their_conic),
+      cmocka_unit_test(conditions_leave_no_rounding),
+      cmocka_unit_test(random_shoulders_have_their_weight),
+      cmocka_unit_test(ranges_of_open_conics_have_their_limits),
+      cmocka_unit_test(random_open_conics_keep_their_points),
       cmocka_unit_test(random_circles_touch_as_chosen),
       cmocka_unit_test(circles_that_just_reach_are_found),
       cmocka_unit_test(tangents_from_random_points),

@@ -4,6 +4,8 @@
 #include "geom/curve/cubic.h"
 #include "geom/curve/hulls.h"
 #include "geom/curve/joint.h"
+#include "geom/curve/nurbs_ops.h"
+#include "random.h"
 #include "support.h"
 
 // The points of the reference's examples 2, 3, 5 and 6.
@@ -319,8 +321,269 @@ static void hulls_are_apart_by_their_gap(void **state) {
   NEAR(cag_norm(cag_hulls_gap(a, 8, beside, 1)), 0.0625, 1e-15);
 }
 
+// --- Random segments ---
+
+static CagVec3 random_flat(double size) {
+  CagVec3 v = {0, 0, 0};
+  v.x = uniform(-size, size);
+  v.y = uniform(-size, size);
+  return v;
+}
+
+static double across(CagVec3 a, CagVec3 b) { return a.x * b.y - a.y * b.x; }
+
+// Inflections are changes of sign of C' x C'', loops are points that the segment passes twice.
+static void random_segments_have_their_shape(void **state) {
+  (void)state;
+  seed = 401;
+  int seen[4] = {0};
+  for (int round = 0; round < 300; round++) {
+    const CagVec3 ends[2] = {random_flat(2), random_flat(2)};
+    const CagVec3 tangents[2] = {random_flat(12), random_flat(12)};
+    const CagVec3 d = cag_sub(ends[1], ends[0]);
+    const double unit[2] = {0, 1}, chord = cag_norm(d);
+    CagHermiteShape s;
+    CagCurve *c;
+    OK(cag_hermite_shape(ends[0], ends[1], tangents[0], tangents[1], &s, &err));
+    NEAR(s.chord, chord, 1e-14);
+    bool within = true;
+    for (int i = 0; i < 2; i++) {
+      const double speed = cag_norm(tangents[i]);
+      NEAR(s.speed[i], speed, 1e-13);
+      NEAR(s.ratio[i], speed / chord, 1e-12 * speed / chord);
+      NEAR(s.projection[i], cag_dot(tangents[i], d) / (chord * chord), 1e-11 * speed / chord);
+      within = within && speed <= 3 * chord;
+    }
+    assert_true(s.within_limit == within);
+    OK(cag_curve_hermite(ends, tangents, 2, unit, 2, &c, &err));
+    size_t turns = 0;
+    double last = 0;
+    for (int k = 0; k <= 2000; k++) {
+      const double t = (k + 0.5) / 2001;
+      const double bend = across(derived(c, t, 1, CAG_SIDE_LEFT), derived(c, t, 2, CAG_SIDE_LEFT));
+      turns += last * bend < 0;
+      last = bend;
+    }
+    assert_int_equal(s.inflections, turns);
+    assert_false(s.has_cusp);
+    for (size_t i = 0; i < s.inflections; i++) {
+      const double t = s.inflection[i];
+      assert_true(t > 0 && t < 1 && (i == 0 || s.inflection[i - 1] < t));
+      const CagVec3 v = derived(c, t, 1, CAG_SIDE_LEFT), a = derived(c, t, 2, CAG_SIDE_LEFT);
+      NEAR(across(v, a), 0, 1e-8 * cag_norm(v) * cag_norm(a));
+    }
+    // Two chords of a dense polyline cross where the segment meets itself.
+    enum { STEPS = 120 };
+    CagVec3 p[STEPS + 1];
+    bool crosses = false;
+    for (int k = 0; k <= STEPS; k++) p[k] = at(c, k / (double)STEPS);
+    for (int i = 0; i < STEPS; i++)
+      for (int j = i + 2; j < STEPS; j++) {
+        const CagVec3 u = cag_sub(p[i + 1], p[i]), v = cag_sub(p[j + 1], p[j]);
+        crosses =
+            crosses || (across(u, cag_sub(p[j], p[i])) * across(u, cag_sub(p[j + 1], p[i])) < 0 &&
+                        across(v, cag_sub(p[i], p[j])) * across(v, cag_sub(p[i + 1], p[j])) < 0);
+      }
+    assert_true(s.has_loop || !crosses);
+    if (s.has_loop) {
+      assert_true(0 <= s.loop[0] && s.loop[0] < s.loop[1] && s.loop[1] <= 1);
+      near_vec(at(c, s.loop[0]), at(c, s.loop[1]), 1e-9 * (1 + 10 * chord));
+    }
+    seen[s.has_loop ? 3 : s.inflections]++;
+    cag_curve_release(c);
+  }
+  for (int i = 0; i < 4; i++) assert_true(seen[i] > 10);
+  // Tangents of 3 chords are within the limit.
+  CagHermiteShape s;
+  OK(cag_hermite_shape(cag_vec3(0, 0, 0), cag_vec3(2, 0, 0), cag_vec3(6, 0, 0), cag_vec3(0, 6, 0),
+                       &s, &err));
+  assert_true(s.within_limit);
+  OK(cag_hermite_shape(cag_vec3(0, 0, 0), cag_vec3(2, 0, 0), cag_vec3(6, 0, 0), cag_vec3(0, 6.1, 0),
+                       &s, &err));
+  assert_false(s.within_limit);
+  OK(cag_hermite_shape(cag_vec3(0, 0, 0), cag_vec3(2, 0, 0), cag_vec3(6.1, 0, 0), cag_vec3(0, 6, 0),
+                       &s, &err));
+  assert_false(s.within_limit);
+  // Cusps before the start and after the end are none: C' = (t - m)^2-like parabola's, moved.
+  for (int k = -1; k <= 3; k++) {
+    const double m = 0.5 * k; // C = [(t - m)^2, (t - m)^3]
+    const CagVec3 p = {m * m, -m * m * m, 0}, q = {(1 - m) * (1 - m), pow(1 - m, 3), 0};
+    const CagVec3 dp = {-2 * m, 3 * m * m, 0}, dq = {2 * (1 - m), 3 * (1 - m) * (1 - m), 0};
+    OK(cag_hermite_shape(p, q, dp, dq, &s, &err));
+    assert_true(s.has_cusp == (m >= 0 && m <= 1) && s.inflections == 0 && !s.has_loop);
+    if (s.has_cusp) NEAR(s.cusp, m, 1e-7);
+  }
+}
+
+// All pairs of lengths that a search over one of them finds.
+static void random_end_curvatures_have_all_their_lengths(void **state) {
+  (void)state;
+  seed = 402;
+  int seen[5] = {0};
+  for (int round = 0; round < 300; round++) {
+    const CagVec3 p = random_flat(2), q = random_flat(2), d = cag_sub(q, p);
+    const double one = uniform(-3, 3), two = round % 10 ? uniform(-3, 3) : one;
+    const CagVec3 dp = {cos(one), sin(one), 0}, dq = {cos(two), sin(two), 0};
+    double k[2], lengths[4][2];
+    // k0 x^2 = 6 dp x d - 2 c y, k1 y^2 = 6 d x dq - 2 c x with c = dp x dq.
+    const double a = 6 * across(dp, d), b = 6 * across(d, dq), c = across(dp, dq);
+    k[0] = uniform(-2, 2);
+    k[1] = uniform(-2, 2);
+    if (round % 3) { // those of a segment
+      const double x = uniform(0.5, 9), y = uniform(0.5, 9);
+      k[0] = (a - 2 * c * y) / (x * x);
+      k[1] = (b - 2 * c * x) / (y * y);
+    }
+    const size_t n = cag_hermite_by_curvature(p, q, dp, dq, k, lengths);
+    for (size_t i = 0; i < n; i++) {
+      const double x = lengths[i][0], y = lengths[i][1];
+      const CagVec3 ends[2] = {p, q}, tangents[2] = {cag_scaled(dp, x), cag_scaled(dq, y)};
+      const double unit[2] = {0, 1};
+      CagCurve *curve;
+      assert_true(x > 0 && y > 0);
+      OK(cag_curve_hermite(ends, tangents, 2, unit, 2, &curve, &err));
+      for (int e = 0; e < 2; e++) NEAR(signed_curvature(curve, e), k[e], 1e-6);
+      cag_curve_release(curve);
+    }
+    size_t count = 0;
+    if (round % 10 == 0) {
+      count = a / k[0] > 0 && b / k[1] > 0;
+    } else {
+      double last = NAN, last_y = 0;
+      for (int i = 0; i < 60000; i++) {
+        // From 1e-6 to 1e6.
+        const double x = pow(10, -6 + 12.0 * i / 60000), y = (a - k[0] * x * x) / (2 * c);
+        const double f = k[1] * y * y + 2 * c * x - b;
+        if (i > 0 && last * f < 0 && y > 0 && last_y > 0) count++;
+        last = f;
+        last_y = y;
+      }
+    }
+    assert_int_equal(n, count);
+    seen[n]++;
+  }
+  assert_true(seen[0] > 20 && seen[1] > 20 && seen[2] > 0);
+}
+
+static void random_polynomials_are_their_sums(void **state) {
+  (void)state;
+  seed = 403;
+  for (int round = 0; round < 60; round++) {
+    const size_t n = 2 + (size_t)(round % 6);
+    CagVec3 a[8], *found;
+    CagCurve *c, *fine;
+    size_t pieces;
+    int degree;
+    const double length = uniform(0.3, 3);
+    for (size_t i = 0; i < n; i++) {
+      a[i] = random_flat(2);
+      a[i].z = uniform(-2, 2);
+    }
+    OK(cag_curve_polynomial(a, n, length, 3, &c, &err));
+    assert_true(c->start == 0 && c->end == length);
+    for (int k = 0; k <= 6; k++) {
+      const double t = fmin(length, length * k / 6);
+      CagVec3 sum = {0, 0, 0};
+      for (size_t i = n; i-- > 0;) sum = cag_madd(a[i], t, sum);
+      near_vec(at(c, t), sum, 1e-10);
+    }
+    // Cut in two, each piece has the coefficients of its own start.
+    const double cut = length * uniform(0.2, 0.8);
+    OK(cag_curve_insert_knots(c, &cut, 1, &fine, &err));
+    OK(cag_curve_coefficients(fine, &found, &pieces, &degree, &err));
+    assert_true(pieces == 2 && degree == (int)n - 1);
+    for (size_t i = 0; i < n; i++) near_vec(found[i], a[i], 1e-8 / pow(fmin(cut, 1), (double)i));
+    for (int k = 0; k <= 4; k++) {
+      const double s = (length - cut) * k / 4;
+      CagVec3 sum = {0, 0, 0};
+      for (size_t i = n; i-- > 0;) sum = cag_madd(found[n + i], s, sum);
+      near_vec(sum, at(c, fmin(length, cut + s)), 1e-9);
+    }
+    free(found);
+    cag_curve_release(fine);
+    cag_curve_release(c);
+  }
+  const CagVec3 points[3] = {{0, 0, 0}, {1, 2, 0}, {3, 1, 0}};
+  const double w[3] = {1, 2, 1};
+  CagCurve *c;
+  CagVec3 *found;
+  size_t pieces;
+  int degree;
+  OK(cag_curve_bezier(points, w, 3, 2, &c, &err));
+  FAILS(cag_curve_coefficients(c, &found, &pieces, &degree, &err), "not-polynomial");
+  cag_curve_release(c);
+  FAILS(cag_curve_polynomial(points, 1, 1, 2, &c, &err), "too-few-points");
+  FAILS(cag_curve_polynomial(points, 3, INFINITY, 2, &c, &err), "bad-parameter-length");
+  FAILS(cag_curve_polynomial(points, 3, -1, 2, &c, &err), "bad-parameter-length");
+  const CagVec3 broken[2] = {{0, 0, 0}, {0, NAN, 0}};
+  FAILS_AT(cag_curve_polynomial(broken, 2, 1, 2, &c, &err), "not-finite", 1);
+}
+
+// Each tangent becomes at most `limit` times the mean speed of the slower of its segments.
+static void long_tangents_are_shortened(void **state) {
+  (void)state;
+  seed = 404;
+  for (int round = 0; round < 40; round++) {
+    const size_t n = 2 + (size_t)(round % 4);
+    CagVec3 p[6], v[6], before[6];
+    double t[6] = {0};
+    for (size_t i = 0; i < n; i++) {
+      p[i] = random_flat(2);
+      before[i] = v[i] = random_flat(9);
+      if (i > 0) t[i] = t[i - 1] + uniform(0.3, 2);
+    }
+    const double limit = uniform(0.5, 3);
+    cag_hermite_limit(p, v, n, t, limit);
+    for (size_t i = 0; i < n; i++) {
+      double most = INFINITY;
+      if (i > 0) most = limit * cag_norm(cag_sub(p[i], p[i - 1])) / (t[i] - t[i - 1]);
+      if (i + 1 < n)
+        most = fmin(most, limit * cag_norm(cag_sub(p[i + 1], p[i])) / (t[i + 1] - t[i]));
+      const double speed = cag_norm(before[i]);
+      near_vec(v[i], cag_scaled(before[i], fmin(1, most / speed)), 1e-12);
+    }
+  }
+}
+
+// The derivatives at the joint are those asked for, for all orders and degrees.
+static void random_joints_go_on_as_asked(void **state) {
+  (void)state;
+  seed = 405;
+  for (int round = 0; round < 60; round++) {
+    CagVec3 net[5], q[6];
+    CagCurve *c, *next;
+    const int m = 2 + round % 4, order = round % 3;
+    const double ratio = uniform(0.4, 2.5), knots[8] = {1, 1, 1, 2, 3.5, 3.5, 3.5, 0};
+    for (int i = 0; i < 4; i++) net[i] = random_flat(2);
+    OK(cag_curve_nurbs(net, NULL, 4, 2, knots, 2, &c, &err));
+    for (int i = 0; i <= m; i++) q[i] = random_flat(2);
+    OK(cag_bezier_join(c, m, order, ratio, q, &err));
+    OK(cag_curve_bezier(q, NULL, (size_t)m + 1, 2, &next, &err));
+    double scale = 1;
+    for (int k = 0; k <= order; k++, scale *= ratio) {
+      const CagVec3 d = cag_scaled(derived(next, 0, k, CAG_SIDE_RIGHT), scale);
+      near_vec(d, derived(c, c->end, k, CAG_SIDE_LEFT), 1e-11);
+    }
+    cag_curve_release(next);
+    FAILS(cag_bezier_join(c, m, 3, 1, q, &err), "bad-order");
+    FAILS(cag_bezier_join(c, m, -1, 1, q, &err), "bad-order");
+    FAILS(cag_bezier_join(c, 0, 0, 1, q, &err), "bad-order");
+    FAILS(cag_bezier_join(c, 1, 2, 1, q, &err), "bad-order");
+    OK(cag_bezier_join(c, 1, 1, 1, q, &err));
+    OK(cag_bezier_join(c, 2, 2, 1, q, &err));
+    FAILS(cag_bezier_join(c, m, 1, 0, q, &err), "bad-parameter");
+    FAILS(cag_bezier_join(c, m, 1, INFINITY, q, &err), "bad-parameter");
+    cag_curve_release(c);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(random_segments_have_their_shape),
+      cmocka_unit_test(random_end_curvatures_have_all_their_lengths),
+      cmocka_unit_test(random_polynomials_are_their_sums),
+      cmocka_unit_test(long_tangents_are_shortened),
+      cmocka_unit_test(random_joints_go_on_as_asked),
       cmocka_unit_test(clamped_splines_have_the_tangents_of_the_reference),
       cmocka_unit_test(splines_pass_their_points_and_are_smooth),
       cmocka_unit_test(the_shortest_splines_are_the_reference_s),
