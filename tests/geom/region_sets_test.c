@@ -2,7 +2,9 @@
 
 #include "tests/geom/support.h"
 
+#include "geom/curve/circles.h"
 #include "geom/curve/region.h"
+#include "tests/geom/random.h"
 
 static CagRegion *disc(double x, double y, double radius) {
   CagTransform frame = cag_translate(cag_vec3(x, y, 0));
@@ -404,8 +406,52 @@ static void an_ellipse_folds_where_it_is_sharp(void **state) {
   cag_region_release(r);
 }
 
+// Random star-shaped polygons and shapes of lines and arcs grow and shrink by any distance.
+static void random_shapes_keep_the_distance(void **state) {
+  (void)state;
+  seed = 71;
+  for (int round = 0; round < 24; round++) {
+    enum { POINTS = 7 };
+    CagVec3 p[POINTS];
+    CagCurve *c, *rounded;
+    CagRegion *r;
+    for (int i = 0; i < POINTS; i++) {
+      const double radius = uniform(1, 3), angle = 2 * M_PI * i / POINTS;
+      p[i] = cag_vec3(radius * cos(angle), radius * sin(angle), 0);
+    }
+    if (round % 4 == 3) { // convex, with a vertex in an edge
+      for (int i = 0; i < POINTS; i++) p[i] = cag_scaled(cag_unit(p[i]), 2.5);
+      p[1] = cag_lerp(p[0], p[2], 0.3);
+    }
+    OK(cag_curve_polyline(p, POINTS, true, 2, &c, &err));
+    if (round % 3 == 0 && !cag_curve_rounded(c, 0.12, &rounded, &err)) {
+      cag_curve_release(c);
+      c = rounded;
+    }
+    OK(cag_region_new(c, NULL, 0, &r, &err));
+    cag_curve_release(c);
+    const double grow = uniform(0.05, 2), shrink = uniform(-1.2, -0.05);
+    check_distances(r, grow, 1e-6);
+    check_distances(r, shrink, 1e-6);
+    // Out and back in again a convex region is the same.
+    if (round % 4 == 3) {
+      CagRegion *out, *back;
+      double before, after;
+      OK(cag_region_offset(r, 0.7, 1e-7, &out, &err));
+      OK(cag_region_offset(out, -0.7, 1e-7, &back, &err));
+      OK(cag_region_area(r, &before, NULL, &err));
+      OK(cag_region_area(back, &after, NULL, &err));
+      NEAR(after, before, 1e-9);
+      cag_region_release(back);
+      cag_region_release(out);
+    }
+    cag_region_release(r);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(random_shapes_keep_the_distance),
       cmocka_unit_test(crossing_discs_share_a_lens_of_arcs),
       cmocka_unit_test(a_loop_that_nothing_crosses_is_the_given_one),
       cmocka_unit_test(coincident_edges_vanish_between_and_stay_around),

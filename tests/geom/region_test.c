@@ -1,6 +1,7 @@
 // Regions: orientation, holes, measures, and points inside.
 
 #include "geom/curve/region.h"
+#include "random.h"
 #include "support.h"
 
 static CagCurve *circle(double r, double x, double y) {
@@ -269,8 +270,247 @@ static void mirrors_keep_the_orientation(void **state) {
   cag_curve_release(hole);
 }
 
+// --- Random regions ---
+
+// A star-shaped loop: a polygon, a closed spline, or lines and arcs in turn; in either sense.
+static CagCurve *random_loop(int kind, CagVec3 center, double low, double high, bool clockwise) {
+  enum { POINTS = 8 };
+  CagVec3 p[POINTS];
+  CagCurve *c, *turned;
+  for (int i = 0; i < POINTS; i++) {
+    const double r = uniform(low, high), angle = 2 * M_PI * (i + uniform(-0.3, 0.3)) / POINTS;
+    p[i] = cag_add(center, cag_vec3(r * cos(angle), r * sin(angle), 0));
+  }
+  if (kind == 0) OK(cag_curve_polyline(p, POINTS, true, 2, &c, &err));
+  if (kind == 1) OK(cag_curve_nurbs_closed(p, NULL, POINTS, 3, 2, &c, &err));
+  if (kind == 2) {
+    CagCurve *parts[POINTS];
+    for (int i = 0; i < POINTS; i++) {
+      const CagVec3 q = p[(i + 1) % POINTS],
+                    apex = cag_madd(cag_lerp(p[i], q, 0.5), 0.2, cag_sub(p[i], center));
+      const CagVec3 bend[3] = {p[i], apex, q};
+      if (i % 2) OK(cag_curve_line(p[i], q, 2, &parts[i], &err));
+      else OK(cag_curve_bezier(bend, NULL, 3, 2, &parts[i], &err));
+    }
+    OK(cag_curve_join(parts, POINTS, &c, &err));
+    for (int i = 0; i < POINTS; i++) cag_curve_release(parts[i]);
+  }
+  if (kind == 3) {
+    CagTransform f = cag_translate(center);
+    const double a = uniform(low, high), b = uniform(low, high), turn = uniform(0, 3);
+    f.m[0][0] = f.m[1][1] = cos(turn);
+    f.m[1][0] = sin(turn);
+    f.m[0][1] = -sin(turn);
+    f.planar = true;
+    OK(cag_curve_arc(a, b, turn, turn + 2 * M_PI, &f, &c, &err));
+  }
+  if (!clockwise) return c;
+  OK(cag_curve_reverse(c, &turned, &err));
+  cag_curve_release(c);
+  return turned;
+}
+
+enum { DENSE = 4000 };
+typedef struct Dense {
+  CagVec3 p[DENSE];
+} Dense;
+
+static void sample(const CagCurve *c, Dense *out) {
+  for (int i = 0; i < DENSE; i++)
+    OK(cag_curve_point(c, c->start + (c->end - c->start) * i / DENSE, &out->p[i], &err));
+}
+
+// Integrals over a polygon: 1, x, y, x x, x y, y y.
+static void add_integrals(const Dense *d, double sign, double out[6]) {
+  double sum[6] = {0};
+  for (int i = 0; i < DENSE; i++) {
+    const CagVec3 a = d->p[i], b = d->p[(i + 1) % DENSE];
+    const double cross = a.x * b.y - a.y * b.x;
+    sum[0] += cross / 2;
+    sum[1] += cross * (a.x + b.x) / 6;
+    sum[2] += cross * (a.y + b.y) / 6;
+    sum[3] += cross * (a.x * a.x + a.x * b.x + b.x * b.x) / 12;
+    sum[4] += cross * (2 * a.x * a.y + a.x * b.y + b.x * a.y + 2 * b.x * b.y) / 24;
+    sum[5] += cross * (a.y * a.y + a.y * b.y + b.y * b.y) / 12;
+  }
+  for (int k = 0; k < 6; k++) out[k] += sum[0] < 0 ? -sign * sum[k] : sign * sum[k];
+}
+
+static bool within(const Dense *d, CagVec3 p) {
+  bool in = false;
+  for (int i = 0; i < DENSE; i++) {
+    const CagVec3 a = d->p[i], b = d->p[(i + 1) % DENSE];
+    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) in = !in;
+  }
+  return in;
+}
+
+static void random_regions_have_the_measures_of_polygons(void **state) {
+  (void)state;
+  static Dense dense[3];
+  seed = 601;
+  for (int round = 0; round < 32; round++) {
+    const CagVec3 hole_at = {-1.2, 0.3, 0}, other_at = {1.3, -0.2, 0}, origin = {0, 0, 0};
+    CagCurve *outer = random_loop(round % 4, origin, 3.5, 5, round % 3 == 0), *holes[2];
+    const size_t count = (size_t)(round / 4 % 3);
+    holes[0] = random_loop(round / 2 % 4, hole_at, 0.4, 1, round % 2);
+    holes[1] = random_loop((round + 1) % 4, other_at, 0.4, 1, round % 3);
+    CagRegion *r, *moved;
+    OK(cag_region_new(outer, holes, count, &r, &err));
+    sample(outer, &dense[0]);
+    sample(holes[0], &dense[1]);
+    sample(holes[1], &dense[2]);
+    double sum[6] = {0}, area, xx, xy, yy, length = 0, whole;
+    add_integrals(&dense[0], 1, sum);
+    for (size_t i = 0; i < count; i++) add_integrals(&dense[i + 1], -1, sum);
+    CagVec3 center, again;
+    OK(cag_region_area(r, &area, &center, &err));
+    NEAR(area, sum[0], 1e-4);
+    near_vec(center, cag_vec3(sum[1] / sum[0], sum[2] / sum[0], 0), 1e-4);
+    OK(cag_region_second_moments(r, &area, &again, &xx, &xy, &yy, &err));
+    NEAR(area, sum[0], 1e-4);
+    near_vec(again, center, 1e-9);
+    NEAR(xx, sum[3] - sum[0] * center.x * center.x, 2e-3);
+    NEAR(xy, sum[4] - sum[0] * center.x * center.y, 2e-3);
+    NEAR(yy, sum[5] - sum[0] * center.y * center.y, 2e-3);
+    CagBounds box, seen = CAG_BOUNDS_EMPTY;
+    for (size_t k = 0; k <= count; k++)
+      for (int i = 0; i < DENSE; i++) {
+        length += cag_norm(cag_sub(dense[k].p[(i + 1) % DENSE], dense[k].p[i]));
+        if (k == 0) cag_bounds_add(&seen, dense[k].p[i]);
+      }
+    OK(cag_region_perimeter(r, &whole, &err));
+    NEAR(whole, length, 1e-3);
+    OK(cag_region_bounds(r, &box, &err));
+    near_vec(box.min, seen.min, 1e-4);
+    near_vec(box.max, seen.max, 1e-4);
+    assert_int_equal(r->count, count + 1);
+    for (size_t k = 0; k < r->count; k++) {
+      double one;
+      OK(cag_curve_area(r->loops[k], &one, NULL, &err));
+      assert_true((one > 0) == (k == 0) && r->outer[k] == 0);
+    }
+    // A mirrored and stretched image.
+    CagTransform t = cag_transform_identity();
+    t.m[0][0] = -2;
+    t.m[0][1] = 0.5;
+    t.m[0][3] = 3;
+    OK(cag_region_transform(r, &t, &moved, &err));
+    OK(cag_region_area(moved, &whole, NULL, &err));
+    NEAR(whole, 2 * area, 1e-9 * area);
+    // Points, also at the heights of vertices.
+    for (int i = 0; i < 120; i++) {
+      CagVec3 p = {0, 0, 0};
+      p.x = uniform(-5.5, 5.5);
+      p.y = uniform(-5.5, 5.5);
+      if (i % 4 == 0) p.y = dense[i / 4 % 3].p[DENSE / 8 * (i % 7)].y;
+      double nearest = INFINITY;
+      for (size_t k = 0; k <= count; k++)
+        for (int j = 0; j < DENSE; j++)
+          nearest = fmin(nearest, cag_norm(cag_sub(p, dense[k].p[j])));
+      if (nearest < 0.02) continue;
+      bool in = within(&dense[0], p);
+      for (size_t k = 0; k < count; k++) in = in && !within(&dense[k + 1], p);
+      assert_true(contains(r, p.x, p.y) == in);
+      const CagVec3 q = cag_transform_point(&t, p);
+      assert_true(contains(moved, q.x, q.y) == in);
+    }
+    // Points of the boundary belong to it; those 1e-6 beside it are in or out.
+    for (int i = 0; i < 20; i++) {
+      CagVec3 d[2];
+      const double u = outer->start + (outer->end - outer->start) * (i + 0.37) / 20;
+      OK(cag_curve_eval(outer, u, 1, CAG_SIDE_RIGHT, d, &err));
+      const CagVec3 n = cag_unit(cag_vec3(d[1].y, -d[1].x, 0));
+      const double out = round % 3 == 0 ? -1e-6 : 1e-6;
+      assert_true(contains(r, d[0].x, d[0].y));
+      assert_false(contains(r, d[0].x + out * n.x, d[0].y + out * n.y));
+      assert_true(contains(r, d[0].x - out * n.x, d[0].y - out * n.y));
+    }
+    cag_region_release(moved);
+    cag_region_release(r);
+    cag_curve_release(outer);
+    for (int k = 0; k < 2; k++) cag_curve_release(holes[k]);
+  }
+}
+
+static void loops_that_cross_are_named(void **state) {
+  (void)state;
+  CagCurve *outer = square(3, 0, 0, false), *in = square(0.5, 1, 0, false);
+  CagCurve *out = square(0.5, 9, 0, false), *across = square(1, 3, 0, true);
+  CagCurve *around = square(4, 0, 0, false), *inner = square(0.2, 1, 0, false), *open;
+  const CagVec3 p[3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  CagRegion *r;
+  OK(cag_curve_polyline(p, 3, false, 2, &open, &err));
+  CagCurve *holes[2] = {in, out};
+  FAILS_AT(cag_region_new(outer, holes, 2, &r, &err), "hole-outside", 1);
+  holes[1] = across;
+  assert_int_not_equal(cag_region_new(outer, holes, 2, &r, &err), CAG_OK);
+  assert_string_equal(err.reason, "region-crossing");
+  holes[1] = around;
+  assert_int_not_equal(cag_region_new(outer, holes, 2, &r, &err), CAG_OK);
+  holes[1] = inner;
+  assert_int_not_equal(cag_region_new(outer, holes, 2, &r, &err), CAG_OK);
+  holes[1] = open;
+  FAILS_AT(cag_region_new(outer, holes, 2, &r, &err), "region-not-closed", 1);
+  FAILS(cag_region_new(open, NULL, 0, &r, &err), "region-not-closed");
+  // Even-odd: a square in a ring in a square.
+  CagCurve *loops[3] = {in, around, outer};
+  double area;
+  OK(cag_region_from_loops(loops, 3, &r, &err));
+  OK(cag_region_area(r, &area, NULL, &err));
+  NEAR(area, 64 - 36 + 1, 1e-12);
+  assert_true(contains(r, 1, 0) && !contains(r, 2, 0) && contains(r, 3.5, 0));
+  cag_region_release(r);
+  cag_curve_release(open);
+  cag_curve_release(inner);
+  cag_curve_release(around);
+  cag_curve_release(across);
+  cag_curve_release(out);
+  cag_curve_release(in);
+  cag_curve_release(outer);
+}
+
+static void figures_have_their_closed_forms(void **state) {
+  (void)state;
+  CagRegion *r;
+  double x;
+  CagBounds b;
+  for (int i = 0; i <= 4; i++) {
+    const double radius = 0.5 * i;
+    OK(cag_region_rectangle(6, 4, radius, &r, &err));
+    OK(cag_region_area(r, &x, NULL, &err));
+    NEAR(x, 24 - (4 - M_PI) * radius * radius, 1e-12);
+    OK(cag_region_perimeter(r, &x, &err));
+    NEAR(x, 20 - (8 - 2 * M_PI) * radius, 1e-12);
+    OK(cag_region_bounds(r, &b, &err));
+    near_vec(b.min, cag_vec3(-3, -2, 0), 1e-12);
+    near_vec(b.max, cag_vec3(3, 2, 0), 1e-12);
+    cag_region_release(r);
+  }
+  assert_int_not_equal(cag_region_rectangle(6, 4, 2.01, &r, &err), CAG_OK);
+  assert_int_not_equal(cag_region_rectangle(6, 4, -0.1, &r, &err), CAG_OK);
+  assert_int_not_equal(cag_region_rectangle(0, 4, 0, &r, &err), CAG_OK);
+  assert_int_not_equal(cag_region_rectangle(6, -4, 0, &r, &err), CAG_OK);
+  OK(cag_region_rectangle(4, 4, 2, &r, &err)); // a disc
+  OK(cag_region_area(r, &x, NULL, &err));
+  NEAR(x, 4 * M_PI, 1e-12);
+  cag_region_release(r);
+  for (size_t n = 3; n < 12; n++) {
+    OK(cag_region_regular_polygon(n, 2.5, &r, &err));
+    OK(cag_region_area(r, &x, NULL, &err));
+    NEAR(x, (double)n * 2.5 * 2.5 * sin(2 * M_PI / (double)n) / 2, 1e-12);
+    assert_true(contains(r, 2.5, 0) && !contains(r, 2.5 + 1e-6, 0));
+    cag_region_release(r);
+  }
+  assert_int_not_equal(cag_region_regular_polygon(2, 1, &r, &err), CAG_OK);
+  assert_int_not_equal(cag_region_regular_polygon(5, 0, &r, &err), CAG_OK);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(random_regions_have_the_measures_of_polygons),
+      cmocka_unit_test(loops_that_cross_are_named),
+      cmocka_unit_test(figures_have_their_closed_forms),
       cmocka_unit_test(holes_take_their_area_away),
       cmocka_unit_test(bad_holes_are_named),
       cmocka_unit_test(crossings_are_told_where_they_are),
