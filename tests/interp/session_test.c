@@ -499,6 +499,52 @@ static void an_endless_shape_is_shown_where_it_is_made(void **state) {
   cag_session_free(s);
 }
 
+// Files for printing warn of parts that enclose nothing, with the edges that are open.
+static void exports_warn_of_open_parts(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *format, *message, *help; // NULL: no warning
+    int status;
+  } rows[] = {
+      {"t = mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])\nshow t", "stl",
+       "t is an open mesh, not a solid: 3 open edges", "add the missing faces, or `weld` them",
+       CAG_STATUS_OK},
+      {"t = mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])\nshow t", "3mf",
+       "t is an open mesh, not a solid: 3 open edges", "add the missing faces, or `weld` them",
+       CAG_STATUS_OK},
+      {"t = mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])\nshow t", "obj", NULL, NULL,
+       CAG_STATUS_OK},
+      {"r = polygon([[0, 0], [3, 0], [0, 2]])\nshow r", "stl",
+       "r is a flat region, not a solid: 3 open edges", "`prism` makes it printable",
+       CAG_STATUS_OK},
+      {"s = bilinear([0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0])\nshow s", "stl",
+       "s is an open surface, not a solid: ", "`thicken` or `solid` makes it printable",
+       CAG_STATUS_OK},
+      {"show box(1)", "stl", NULL, NULL, CAG_STATUS_OK},
+      {"show sphere_surface(1)", "stl", NULL, NULL, CAG_STATUS_OK},
+      {"show label([0, 0, 0], \"a\")", "stl", "test shows nothing that a mesh file can hold",
+       "labels are drawn in .svg only; show a surface, solid or mesh", CAG_STATUS_SCRIPT},
+  };
+  size_t bad = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    CagSession *s = new_session();
+    assert_int_equal(run_text(s, rows[i].text), CAG_STATUS_OK);
+    const int status = cag_session_export(s, "/dev/null", rows[i].format);
+    CagErrorView e = {0};
+    cag_session_error(s, 0, &e);
+    const bool told = e.message && rows[i].message && e.help &&
+                      strncmp(e.message, rows[i].message, strlen(rows[i].message)) == 0 &&
+                      strcmp(e.help, rows[i].help) == 0;
+    if (status != rows[i].status || (rows[i].message ? !told : e.message != NULL)) {
+      print_error("%s to %s: %d %s (%s)\n", rows[i].text, rows[i].format, status,
+                  e.message ? e.message : "nothing", e.help ? e.help : "");
+      bad++;
+    }
+    cag_session_free(s);
+  }
+  assert_int_equal(bad, 0);
+}
+
 // A second interactive input may define names again, whose users follow.
 static void scenes_of_inputs_follow_their_names(void **state) {
   (void)state;
@@ -550,6 +596,7 @@ int main(void) {
       cmocka_unit_test(scenes_without_shapes_are_errors),
       cmocka_unit_test(empty_shapes_are_warned_of),
       cmocka_unit_test(an_endless_shape_is_shown_where_it_is_made),
+      cmocka_unit_test(exports_warn_of_open_parts),
       cmocka_unit_test(scenes_of_inputs_follow_their_names),
       cmocka_unit_test(a_limit_of_time_is_told_from_outside),
       cmocka_unit_test(a_value_callback_that_calls_the_session_is_refused),

@@ -340,6 +340,40 @@ static void keys_depend_on_files_that_scripts_name(void **state) {
   expect_change("b.cag", "import parts.gear", b, true);
 }
 
+// Scripts that import each other, and names as long as they may be.
+static void keys_of_circles_and_long_names(void **state) {
+  (void)state;
+  static const char rows[] = "script,output\nb.cag,b.stl\n";
+  CagTool t = {0};
+  write_file("b.cag", "import parts.gear\n");
+  write_file("parts/gear.cag", "import wheel\nimport gear\n");
+  write_file("parts/wheel.cag", "import gear\n");
+  const Keys circle = keys_of(&t, rows);
+  write_file("parts/wheel.cag", "import gear \n");
+  const Keys changed = keys_of(&t, rows);
+  assert_false(same_keys(&circle, &changed));
+  for (size_t length = 250; length <= 251; length++) { // with .cag: at most 255
+    char script[400], name[300];
+    memset(name, 'n', length);
+    strcpy(name + length, ".cag");
+    snprintf(script, sizeof script, "import %.*s\n", (int)length, name);
+    write_file("b.cag", script);
+    write_file(name, "x = 1\n");
+    const Keys before = keys_of(&t, rows);
+    write_file(name, "x = 2\n");
+    const Keys after = keys_of(&t, rows);
+    assert_false(same_keys(&before, &after));
+    // The same in quotes.
+    snprintf(script, sizeof script, "read_text(\"%s\")\n", name);
+    write_file("b.cag", script);
+    const Keys quoted = keys_of(&t, rows);
+    write_file(name, "x = 3\n");
+    const Keys then = keys_of(&t, rows);
+    assert_false(same_keys(&quoted, &then));
+    remove(name);
+  }
+}
+
 static void keys_depend_on_the_row_and_the_options(void **state) {
   (void)state;
   static const char *const rows[] = {
@@ -411,6 +445,14 @@ static void each_task_has_its_own_key(void **state) {
   const Keys shorter = keys_of(&t, HEAD "a.cag,f%d.png,0..2\n");
   for (size_t i = 0; i < 2; i++) assert_string_equal(whole.keys[2 + i], later.keys[i]);
   for (size_t i = 0; i < 3; i++) assert_string_not_equal(whole.keys[i], shorter.keys[i]);
+  // A row's key is the same whatever rows stand beside it.
+  const Keys rows = keys_of(&t, HEAD "b.cag,b.stl\na.cag,a.stl\nb.cag,c.stl\na.cag,d.stl\n");
+  static const char *const alone[] = {HEAD "b.cag,b.stl\n", HEAD "a.cag,a.stl\n",
+                                      HEAD "b.cag,c.stl\n", HEAD "a.cag,d.stl\n"};
+  for (size_t i = 0; i < 4; i++) {
+    const Keys one = keys_of(&t, alone[i]);
+    assert_string_equal(rows.keys[i], one.keys[0]);
+  }
   const Keys other = keys_of(&t, HEAD "a.cag,f%d.png,0..3,256x256,4x1\n");
   for (size_t i = 0; i < other.count; i++) assert_string_not_equal(k.keys[i], other.keys[i]);
 }
@@ -455,6 +497,7 @@ int main(void) {
       cmocka_unit_test(keys_depend_on_files_that_scripts_name),
       cmocka_unit_test(keys_depend_on_the_row_and_the_options),
       cmocka_unit_test(each_task_has_its_own_key),
+      cmocka_unit_test(keys_of_circles_and_long_names),
       cmocka_unit_test(frames_have_their_numbers_in_the_name),
   };
   return cmocka_run_group_tests_name("batch", tests, begin, end);
