@@ -22,6 +22,8 @@
 #define MOST_LOOKED 50000
 #define LEAF 4
 #define ROUNDS 100
+// Newton's method starts again so often from the corner of a flat triangle.
+#define CORNER_ROUNDS 8
 // After this many pairs at the same distance, the shapes count as running along each other: the
 // number of such pairs is unlimited.
 #define SAME_PAIRS 4000
@@ -213,6 +215,56 @@ static double chord_distance(const CagPart *a, const CagPart *b) {
       nearest = fmin(nearest, segments(a->p[i], a->p[next], b->p[k], b->p[(k + 1) % 3]));
   }
   return nearest;
+}
+
+static CagVec3 nearest_of_segment(CagVec3 p, CagVec3 a, CagVec3 b) {
+  const CagVec3 way = cag_sub(b, a);
+  const double length2 = cag_dot(way, way), along = cag_dot(cag_sub(p, a), way);
+  return length2 > 0 ? cag_madd(a, fmin(1, fmax(0, along / length2)), way) : a;
+}
+
+// Keeps the point q of the second shape if it is the nearest so far to the point p of the first.
+typedef struct Foot {
+  double distance;
+  CagVec3 p;
+} Foot;
+static void offer_foot(Foot *foot, CagVec3 p, CagVec3 q) {
+  const double d = cag_norm(cag_sub(p, q));
+  if (d < foot->distance) *foot = (Foot){d, q};
+}
+
+// The foot of p in the plane of the triangle, if it is inside. False: it is not.
+static bool foot_in_triangle(CagVec3 p, const CagVec3 t[3], CagVec3 *foot) {
+  const CagVec3 ab = cag_sub(t[1], t[0]), ac = cag_sub(t[2], t[0]), n = cag_cross(ab, ac);
+  if (cag_triangle_is_thin(t[0], ab, ac, n)) return false;
+  *foot = cag_madd(p, -cag_dot(cag_sub(p, t[0]), n) / cag_dot(n, n), n);
+  for (int i = 0; i < 3; i++)
+    if (cag_dot(cag_cross(cag_sub(t[(i + 1) % 3], t[i]), cag_sub(p, t[i])), n) < 0) return false;
+  return true;
+}
+
+// The point of b nearest to a, for triangles that do not meet.
+static CagVec3 chord_foot(const CagPart *a, const CagPart *b) {
+  Foot nearest = {INFINITY, b->p[0]};
+  CagVec3 foot;
+  for (int i = 0; i < 3; i++) {
+    const CagVec3 p = a->p[i], q = a->p[(i + 1) % 3];
+    if (foot_in_triangle(p, b->p, &foot)) offer_foot(&nearest, p, foot);
+    if (foot_in_triangle(b->p[i], a->p, &foot)) offer_foot(&nearest, foot, b->p[i]);
+    for (int k = 0; k < 3; k++) {
+      const CagVec3 r = b->p[k], s = b->p[(k + 1) % 3];
+      offer_foot(&nearest, p, nearest_of_segment(p, r, s));
+      offer_foot(&nearest, nearest_of_segment(r, p, q), r);
+      // Where the lines are nearest, if both points are within.
+      const CagVec3 u = cag_sub(q, p), v = cag_sub(s, r), w = cag_sub(p, r);
+      const double uu = cag_dot(u, u), vv = cag_dot(v, v), uv = cag_dot(u, v);
+      const double det = uu * vv - uv * uv, uw = cag_dot(u, w), vw = cag_dot(v, w);
+      const double x = (uv * vw - vv * uw) / det, y = (uu * vw - uv * uw) / det;
+      if (det > 0 && x > 0 && x < 1 && y > 0 && y < 1)
+        offer_foot(&nearest, cag_madd(p, x, u), cag_madd(r, y, v));
+    }
+  }
+  return nearest.p;
 }
 
 // --- Bounds by cores ---
@@ -585,6 +637,47 @@ static CagStatus refine(Pair *pair, double *out, CagVec3 *point, CagError *err) 
   return status;
 }
 
+// The point of the triangle nearest to p, as shares of its second and third corner.
+static double nearest_in_triangle(CagVec3 p, const CagVec3 t[3], double share[2]) {
+  CagVec3 foot;
+  if (foot_in_triangle(p, t, &foot)) {
+    const CagVec3 ab = cag_sub(t[1], t[0]), ac = cag_sub(t[2], t[0]), n = cag_cross(ab, ac);
+    const CagVec3 to = cag_sub(foot, t[0]);
+    share[0] = cag_dot(cag_cross(to, ac), n) / cag_dot(n, n);
+    share[1] = cag_dot(cag_cross(ab, to), n) / cag_dot(n, n);
+    return cag_norm(cag_sub(p, foot));
+  }
+  double nearest = INFINITY;
+  for (int i = 0; i < 3; i++) {
+    const CagVec3 a = t[i], b = t[(i + 1) % 3], on = nearest_of_segment(p, a, b);
+    const double d = cag_norm(cag_sub(p, on)), length = cag_norm(cag_sub(b, a));
+    if (d >= nearest) continue;
+    const double x = length > 0 ? cag_norm(cag_sub(on, a)) / length : 0;
+    const double shares[3][2] = {{x, 0}, {1 - x, x}, {0, 1 - x}};
+    nearest = d;
+    memcpy(share, shares[i], 2 * sizeof *share);
+  }
+  return nearest;
+}
+
+// Moves the point of a flat triangle to the nearest one to the other point. Newton's method can end
+// at the corner where the parameters of the triangle are not unique. False: it does not get nearer.
+static bool leave_corner(Pair *pair, double distance, CagStatus *status, CagError *err) {
+  const double nearer = 1 - 1e-9;
+  for (int side = 0; side < 2; side++) {
+    if (!pair->part[side]->flat) continue;
+    Place other;
+    double share[2], *x = pair->x + (side ? pair->free[0] : 0);
+    *status = look(pair->part[1 - side], pair->x + (side ? 0 : pair->free[0]), &other, err);
+    if (*status || !(nearest_in_triangle(other.p, pair->part[side]->p, share) < nearer * distance))
+      return false;
+    x[0] = fmin(1, share[0] + share[1]);
+    if (x[0] > 0) x[1] = fmin(1, fmax(0, share[1] / x[0]));
+    return true;
+  }
+  return false;
+}
+
 // --- The search ---
 
 // Two nodes with a lower bound of their distance.
@@ -612,21 +705,25 @@ static double touching(const Search *s) { return TOUCHING * s->size; }
 
 static double equally_near(const Search *s) { return EQUALLY_NEAR * s->size; }
 
-// A point or a flat triangle.
-static bool is_exact(const CagPart *part) { return !part->curve && !part->surface; }
+// A point, a straight piece of a curve, or a flat triangle: it is its own chord.
+static bool is_exact(const CagPart *part) { return part->sag == 0 && !part->core; }
 
 // Lowers the best distance by what the pair leads to; `chords` is that of their chords.
 static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chords) {
   Pair pair = {.part = {a, b}};
-  double d = INFINITY;
+  double d = chords;
   CagVec3 p;
   for (int side = 0; side < 2; side++) {
     pair.free[side] = freedom(pair.part[side]);
     for (int k = 0; k < pair.free[side]; k++) pair.x[pair.n++] = pair.part[side]->at[k];
   }
-  s->status = refine(&pair, &d, &p, s->err);
-  // Points and flat triangles are their own chords.
-  if (is_exact(a) && is_exact(b)) d = chords;
+  const bool exact = is_exact(a) && is_exact(b);
+  if (exact) p = chord_foot(a, b);
+  else s->status = refine(&pair, &d, &p, s->err);
+  for (int round = 0; !exact && round < CORNER_ROUNDS && d > touching(s); round++) {
+    if (s->status || !leave_corner(&pair, d, &s->status, s->err)) break;
+    s->status = refine(&pair, &d, &p, s->err);
+  }
   if (s->status) return;
   s->pairs++;
   s->farthest = fmax(s->farthest, d);

@@ -1,6 +1,7 @@
 // Convex hulls, side predicates, curves on surfaces and distances of meshes: closed forms.
 
 #include "geom/curve/function.h"
+#include "geom/mesh/exact.h"
 #include "geom/mesh/hull.h"
 #include "geom/mesh/predicates.h"
 #include "geom/mesh/separation.h"
@@ -437,9 +438,327 @@ static void curves_at_a_constant_distance_need_few_pairs(void **state) {
   }
 }
 
+// --- Flat triangles, segments and points ---
+
+static CagVec3 random_place(uint64_t *state, double size) {
+  double x[3];
+  for (int i = 0; i < 3; i++) x[i] = between(state, -size, size);
+  return cag_vec3(x[0], x[1], x[2]);
+}
+
+// The distance of p from the triangle, by its plane where the foot is inside, else by its edges.
+static double from_triangle(CagVec3 p, const CagVec3 t[3]) {
+  const CagVec3 n = cag_cross(cag_sub(t[1], t[0]), cag_sub(t[2], t[0]));
+  double least = INFINITY;
+  bool inside = cag_norm(n) > 0;
+  for (int i = 0; i < 3; i++) {
+    const CagVec3 a = t[i], way = cag_sub(t[(i + 1) % 3], a), to = cag_sub(p, a);
+    const double length2 = cag_dot(way, way),
+                 along = length2 > 0 ? fmin(1, fmax(0, cag_dot(to, way) / length2)) : 0;
+    least = fmin(least, cag_norm(cag_madd(to, -along, way)));
+    inside = inside && cag_dot(cag_cross(way, to), n) >= 0;
+  }
+  return inside ? fabs(cag_dot(cag_sub(p, t[0]), n)) / cag_norm(n) : least;
+}
+
+// Whether the segment from p to q passes through the triangle: p + x (q - p) = t0 + y u + z v by
+// Cramer's rule.
+static bool passes_through(CagVec3 p, CagVec3 q, const CagVec3 t[3]) {
+  const CagVec3 u = cag_sub(t[1], t[0]), v = cag_sub(t[2], t[0]), way = cag_sub(p, q),
+                to = cag_sub(p, t[0]);
+  const double det = cag_dot(way, cag_cross(u, v));
+  if (det == 0) return false;
+  const double x = cag_dot(to, cag_cross(u, v)) / det, y = cag_dot(way, cag_cross(to, v)) / det,
+               z = cag_dot(way, cag_cross(u, to)) / det;
+  return x >= 0 && x <= 1 && y >= 0 && z >= 0 && y + z <= 1;
+}
+
+// Sets of triangles, or of segments or points as triangles with repeated corners. The distance is
+// that of a pair of points that are found: no corner and no point of an edge is nearer, the point
+// on the second is on it, and as far from the first.
+static void flat_shapes_are_as_far_apart_as_their_nearest_points(void **state) {
+  (void)state;
+  enum { MOST = 12, STEPS = 16 };
+  uint64_t seed = 51;
+  int meetings = 0;
+  for (int k = 0; k < 400; k++) {
+    CagVec3 t[2][MOST][3];
+    size_t n[2], line_count = 0;
+    CagParts parts[2] = {{0}, {0}};
+    CagCurve *lines[MOST];
+    const CagVec3 away = random_place(&seed, k % 4 == 0 ? 0.5 : 3);
+    for (int side = 0; side < 2; side++) {
+      n[side] = 1 + (size_t)(k / (side ? 3 : 1)) % MOST;
+      CagMesh *m;
+      OK(cag_mesh_new(3 * n[side], n[side], false, false, false, &m, &err));
+      for (uint32_t i = 0; i < n[side]; i++) {
+        const CagVec3 middle = random_place(&seed, 2);
+        for (uint32_t j = 0; j < 3; j++) {
+          CagVec3 p = cag_add(middle, random_place(&seed, 1));
+          if (k % 5 == 0) p.z = side ? 1 : 0; // parallel planes
+          if (side) p = cag_add(p, away);
+          if (k % 7 == 1 && side && j > 0) p = t[side][i][0]; // points
+          if (k % 7 == 2 && j > 1) p = t[side][i][1];         // segments
+          t[side][i][j] = p;
+          m->positions[3 * i + j] = p;
+          m->triangles[3 * i + j] = 3 * i + j;
+        }
+      }
+      if (k % 7 == 1 && side)
+        for (size_t i = 0; i < n[side]; i++) OK(cag_parts_add_point(&parts[1], t[1][i][0], &err));
+      else if (k % 7 == 3 && side) // the second shape as the outlines of its triangles
+        for (size_t i = 0; i < n[side]; i++) {
+          OK(cag_curve_polyline(t[side][i], 3, true, 3, &lines[i], &err));
+          OK(cag_parts_add_curve(&parts[side], lines[i], 0.1, &err));
+          line_count = i + 1;
+        }
+      else OK(cag_parts_add_mesh(&parts[side], m, NULL, 0.1, &err));
+      cag_mesh_release(m);
+    }
+    double least = INFINITY, out;
+    bool meet = false;
+    CagVec3 foot = {0, 0, 0};
+    // Outlines become one triangle without area for each side.
+    CagVec3 sides[3 * MOST][3];
+    const CagVec3(*shape[2])[3] = {(const CagVec3(*)[3])t[0], (const CagVec3(*)[3])t[1]};
+    if (line_count > 0) {
+      for (size_t i = 0; i < 3 * line_count; i++) {
+        const CagVec3 *of = t[1][i / 3];
+        sides[i][0] = of[i % 3], sides[i][1] = sides[i][2] = of[(i + 1) % 3];
+      }
+      shape[1] = (const CagVec3(*)[3])sides;
+      n[1] *= 3;
+    }
+    for (int side = 0; side < 2; side++)
+      for (size_t i = 0; i < n[side]; i++)
+        for (int j = 0; j < 3; j++)
+          for (size_t l = 0; l < n[1 - side]; l++) {
+            const CagVec3 a = shape[side][i][j], b = shape[side][i][(j + 1) % 3];
+            const CagVec3 *other = shape[1 - side][l];
+            meet = meet || passes_through(a, b, other);
+            for (int step = 0; step <= STEPS; step++)
+              least = fmin(least, from_triangle(cag_lerp(a, b, (double)step / STEPS), other));
+          }
+    OK(cag_parts_distance(&parts[0], &parts[1], CAG_PARTS_PAIRS, &out, &foot, NULL, &err));
+    if (meet) {
+      assert_true(out == 0);
+      meetings++;
+    } else {
+      double on = INFINITY, back = INFINITY;
+      for (size_t i = 0; i < n[1]; i++) on = fmin(on, from_triangle(foot, shape[1][i]));
+      for (size_t i = 0; i < n[0]; i++) back = fmin(back, from_triangle(foot, shape[0][i]));
+      assert_true(out <= least + 1e-12);
+      assert_true(out >= least - 0.4); // an edge's points are 0.25 apart at most
+      NEAR(on, 0, 1e-7);
+      NEAR(back, out, 1e-7);
+    }
+    for (int side = 0; side < 2; side++) cag_parts_free(&parts[side]);
+    for (size_t i = 0; i < line_count; i++) cag_curve_release(lines[i]);
+  }
+  assert_true(meetings > 20);
+  CagParts none = {0}, one = {0};
+  double out;
+  OK(cag_parts_add_point(&one, cag_vec3(1, 2, 3), &err));
+  FAILS(cag_parts_distance(&none, &one, 9, &out, NULL, NULL, &err), "zero-area");
+  FAILS(cag_parts_distance(&one, &none, 9, &out, NULL, NULL, &err), "zero-area");
+  cag_parts_free(&one);
+}
+
+// Flat triangles and outlines against a sphere and a circle: the distance from the center less the
+// radius, and for the circle that of its points.
+static void flat_shapes_are_measured_from_round_ones(void **state) {
+  (void)state;
+  enum { MOST = 8, POINTS = 720 };
+  uint64_t seed = 55;
+  for (int k = 0; k < 120; k++) {
+    const size_t n = 1 + (size_t)k % MOST;
+    const double r = between(&seed, 0.3, 1.5);
+    CagVec3 t[MOST][3];
+    CagParts flat = {0}, round = {0};
+    CagMesh *m;
+    CagCurve *circle = NULL;
+    CagSurface *sphere = NULL;
+    CagTransform frame = cag_transform_identity();
+    double least = INFINITY, out;
+    CagVec3 foot;
+    OK(cag_mesh_new(3 * n, n, false, false, false, &m, &err));
+    for (uint32_t i = 0; i < n; i++) {
+      const CagVec3 middle = random_place(&seed, 3);
+      for (uint32_t j = 0; j < 3; j++) {
+        m->positions[3 * i + j] = t[i][j] = cag_add(middle, random_place(&seed, 2));
+        m->triangles[3 * i + j] = 3 * i + j;
+      }
+    }
+    OK(cag_parts_add_mesh(&flat, m, NULL, 0.1, &err));
+    cag_mesh_release(m);
+    if (k % 2) {
+      for (size_t i = 0; i < n; i++) least = fmin(least, from_triangle(cag_vec3(0, 0, 0), t[i]));
+      sphere = quadric(CAG_SHAPE_ELLIPSOID, r, 0, 0);
+      add_surface(&round, sphere);
+      // Triangles that cross the sphere meet it; those within are as far as their farthest corner.
+      double farthest = 0;
+      for (size_t i = 0; i < n; i++) {
+        double corner = 0;
+        for (int j = 0; j < 3; j++) corner = fmax(corner, cag_norm(t[i][j]));
+        farthest = fmax(farthest, corner);
+      }
+      least = fmax(0, fmax(least - r, r - farthest));
+    } else {
+      OK(cag_curve_arc(r, r, 0, 2 * M_PI, &frame, &circle, &err));
+      OK(cag_parts_add_curve(&round, circle, 1e-3, &err));
+      for (int i = 0; i < POINTS; i++) {
+        const CagVec3 p = {r * cos(2 * M_PI * i / POINTS), r * sin(2 * M_PI * i / POINTS), 0};
+        for (size_t j = 0; j < n; j++) least = fmin(least, from_triangle(p, t[j]));
+      }
+    }
+    OK(cag_parts_distance(&round, &flat, CAG_PARTS_PAIRS, &out, &foot, NULL, &err));
+    if (k % 2) NEAR(out, least, 1e-8);
+    else {
+      assert_true(out <= least + 1e-9);
+      assert_true(out >= least - r * M_PI / POINTS - 1e-9);
+    }
+    double on = INFINITY;
+    for (size_t i = 0; i < n && out > 0; i++) on = fmin(on, from_triangle(foot, t[i]));
+    if (out > 0) NEAR(on, 0, 1e-7);
+    OK(cag_parts_distance(&flat, &round, CAG_PARTS_PAIRS, &out, &foot, NULL, &err));
+    if (k % 2) NEAR(out, least, 1e-8);
+    else assert_true(out <= least + 1e-9);
+    cag_parts_free(&flat);
+    cag_parts_free(&round);
+    cag_curve_release(circle);
+    cag_surface_release(sphere);
+  }
+}
+
+// Circles and segments of the plane against each other, and spheres within and beside spheres:
+// closed forms.
+static void round_shapes_have_their_closed_forms(void **state) {
+  (void)state;
+  uint64_t seed = 52;
+  for (int k = 0; k < 60; k++) {
+    const double r = between(&seed, 0.5, 2), s = between(&seed, 0.5, 2),
+                 apart = between(&seed, 0, 5);
+    CagTransform frame = cag_transform_identity();
+    CagCurve *a, *b;
+    CagParts parts[2] = {{0}, {0}};
+    double out;
+    OK(cag_curve_arc(r, r, 0, 2 * M_PI, &frame, &a, &err));
+    frame.m[0][3] = apart;
+    OK(cag_curve_arc(s, s, 0, 2 * M_PI, &frame, &b, &err));
+    OK(cag_parts_add_curve(&parts[0], a, 1e-3, &err));
+    OK(cag_parts_add_curve(&parts[1], b, 1e-3, &err));
+    OK(cag_parts_distance(&parts[0], &parts[1], CAG_PARTS_PAIRS, &out, NULL, NULL, &err));
+    NEAR(out, fmax(0, fmax(apart - r - s, fabs(r - s) - apart)), 1e-9);
+    cag_parts_free(&parts[1]);
+    cag_curve_release(b);
+    // A segment beside the circle, its end nearest or a point within.
+    const CagVec3 ends[2] = {{r + 0.3, -apart, 0}, {r + 0.3, k % 2 ? apart + 1 : -apart / 2, 0}};
+    parts[1] = (CagParts){0};
+    OK(cag_curve_polyline(ends, 2, false, 2, &b, &err));
+    OK(cag_parts_add_curve(&parts[1], b, 1e-3, &err));
+    OK(cag_parts_distance(&parts[0], &parts[1], CAG_PARTS_PAIRS, &out, NULL, NULL, &err));
+    NEAR(out, k % 2 ? 0.3 : hypot(r + 0.3, apart / 2) - r, 1e-9);
+    for (int side = 0; side < 2; side++) cag_parts_free(&parts[side]);
+    cag_curve_release(a);
+    cag_curve_release(b);
+  }
+}
+
+// --- Numbers without rounding ---
+
+static CagExact number(CagExactSpace *s, uint64_t *state) {
+  const double x = between(state, -1, 1);
+  return cag_exact(s, ldexp(x, (int)between(state, -200, 200)));
+}
+
+static void exact_numbers_obey_the_laws_of_arithmetic(void **state) {
+  (void)state;
+  uint64_t seed = 53, limbs[8192];
+  for (int k = 0; k < 3000; k++) {
+    CagExactSpace s = {limbs, 0, 8192, false};
+    CagExact a = number(&s, &seed), b = number(&s, &seed), c = number(&s, &seed),
+             d = number(&s, &seed);
+    if (k % 5 == 0) b = cag_exact_negative(a);
+    if (k % 7 == 0) c = cag_exact(&s, 0);
+    // (a + b) (c + d) = a c + b d + a d + b c, whatever the order; a d - b c.
+    const CagExact left = cag_exact_product(&s, cag_exact_sum(&s, a, b), cag_exact_sum(&s, d, c));
+    const CagExact ac = cag_exact_product(&s, a, c), bd = cag_exact_product(&s, d, b),
+                   ad = cag_exact_product(&s, a, d), bc = cag_exact_product(&s, c, b);
+    const CagExact right = cag_exact_sum(&s, cag_exact_sum(&s, ac, bd), cag_exact_sum(&s, bc, ad));
+    assert_int_equal(cag_exact_difference(&s, left, right).sign, 0);
+    assert_int_equal(left.sign, right.sign);
+    const CagExact minor = cag_exact_minor(&s, a, b, c, d);
+    assert_int_equal(cag_exact_difference(&s, cag_exact_sum(&s, minor, bc), ad).sign, 0);
+    // A unit of 2^-700 decides.
+    const CagExact unit = cag_exact(&s, ldexp(k % 2 ? 1 : -1, -700));
+    const CagExact more = cag_exact_sum(&s, left, unit);
+    assert_int_equal(cag_exact_difference(&s, more, right).sign, k % 2 ? 1 : -1);
+    assert_false(s.full);
+  }
+  // Steps of doubles, and their signs.
+  for (int k = 0; k < 2000; k++) {
+    CagExactSpace s = {limbs, 0, 8192, false};
+    const double x = between(&seed, -2, 2), y = k % 3 ? between(&seed, -2, 2) : nextafter(x, 3);
+    assert_int_equal(cag_exact_step(&s, x, y).sign, (x > y) - (x < y));
+    assert_int_equal(cag_exact_step(&s, x, x).sign, 0);
+    assert_int_equal(cag_exact(&s, x).sign, x < 0 ? -1 : 1);
+  }
+}
+
+// The double nearest to a quotient: it lies within half a unit, compared without rounding.
+static void quotients_are_rounded_once(void **state) {
+  (void)state;
+  uint64_t seed = 54, limbs[8192];
+  for (int k = 0; k < 3000; k++) {
+    CagExactSpace s = {limbs, 0, 8192, false};
+    CagExact x = number(&s, &seed), w = number(&s, &seed);
+    if (w.sign < 0) w = cag_exact_negative(w);
+    if (w.sign == 0) continue;
+    const double q = between(&seed, -1, 1);
+    double half = 0;
+    if (k % 2) { // a quotient that is a double, or just between two
+      const double next = nextafter(q, 2);
+      const int kind = k / 2 % 4;
+      half = (next - q) / 2;
+      CagExact wanted = cag_exact(&s, q);
+      if (kind > 0) wanted = cag_exact_sum(&s, wanted, cag_exact(&s, half));
+      if (kind > 1)
+        wanted = cag_exact_sum(&s, wanted, cag_exact(&s, ldexp(kind == 2 ? 1 : -1, -120)));
+      x = cag_exact_product(&s, wanted, w);
+      const double got = cag_exact_quotient(&s, x, w);
+      // Of two as near the lower one.
+      assert_true(got == (kind == 2 ? next : q));
+      continue;
+    }
+    const double got = cag_exact_quotient(&s, x, w);
+    const CagExact rest = cag_exact_difference(&s, x, cag_exact_product(&s, cag_exact(&s, got), w));
+    for (int way = -1; way <= 1; way += 2) {
+      const double other = nextafter(got, way * INFINITY);
+      const CagExact theirs =
+          cag_exact_difference(&s, x, cag_exact_product(&s, cag_exact(&s, other), w));
+      const CagExact mine_size = rest.sign < 0 ? cag_exact_negative(rest) : rest,
+                     their_size = theirs.sign < 0 ? cag_exact_negative(theirs) : theirs;
+      assert_true(cag_exact_difference(&s, mine_size, their_size).sign <= 0);
+    }
+    assert_true(x.sign == (got > 0) - (got < 0));
+  }
+  CagExactSpace s = {limbs, 0, 8192, false};
+  const CagExact one = cag_exact(&s, 1), tiny = cag_exact(&s, 0x1p-961),
+                 least = cag_exact(&s, 0x1p-960);
+  assert_true(cag_exact_quotient(&s, cag_exact(&s, 0), one) == 0);
+  assert_true(cag_exact_quotient(&s, tiny, one) == 0);
+  assert_true(cag_exact_quotient(&s, least, one) == 0x1p-960);
+  assert_true(cag_exact_quotient(&s, cag_exact_negative(least), one) == -0x1p-960);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sides_are_exact),
+      cmocka_unit_test(flat_shapes_are_as_far_apart_as_their_nearest_points),
+      cmocka_unit_test(flat_shapes_are_measured_from_round_ones),
+      cmocka_unit_test(round_shapes_have_their_closed_forms),
+      cmocka_unit_test(exact_numbers_obey_the_laws_of_arithmetic),
+      cmocka_unit_test(quotients_are_rounded_once),
       cmocka_unit_test(plane_hulls_run_counter_clockwise_without_straight_corners),
       cmocka_unit_test(boxes_of_grids_have_eight_corners),
       cmocka_unit_test(hulls_hold_all_points),
