@@ -102,7 +102,12 @@ static void solids_are_native_objects(void **state) {
       {"torus(5, 1)", "torus { 5, 1 rotate 90*x } object { thing material { M_default } }"},
       {"solid(tessellate(box(1)))", MESH},
       {"sphere(3) & half_space(plane([0, 0, 1], Z))", "intersection { sphere { <0, 0, 0>, 3"},
+      {"sphere(3) & half_space(plane([0, 0, 2], [0, 3, 4]))",
+       "intersection { sphere { <0, 0, 0>, 3 } plane { <0, 0.6, 0.8>, 1.6 } }"},
       {"sphere(3) | box(2)", "#declare thing = union {"},
+      {"translate(sphere(2), [4, 0, 0])", "material { M_default } translate <4, 0, 0> }"},
+      {"translate(sphere(2), [0, 4, 0])", "material { M_default } translate <0, 4, 0> }"},
+      {"translate(sphere(2), [0, 0, 4])", "material { M_default } translate <0, 0, 4> }"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) becomes(cases[i][0], cases[i][1]);
 }
@@ -125,6 +130,10 @@ static void surfaces_are_native_objects(void **state) {
        "quadric { <0.25, 0.5, 0.75>, <0.125, 0.1875, 0.0625>, <0, 0, 0>, -1 } object"},
       {"translate(ellipsoid(1, 1, 2), [3, 0, 0])",
        "quadric { <1, 1, 0.25>, <0, 0, 0>, <-6, 0, 0>, 8 } object"},
+      // Faces that cut nothing stand off by 1e-4 of the diagonal, sqrt(4^2 + 8^2 + 5^2).
+      {"elliptic_cylinder(2, 4, within: -1..4)",
+       "clipped_by { box { <-2.0010246951, -4.0010246951, -1>, <2.0010246951, 4.0010246951, 4> } "
+       "}"},
       {"elliptic_cylinder(2, 4, within: -1..4)",
        "quadric { <0.25, 0.0625, 0>, <0, 0, 0>, <0, 0, 0>, -1 clipped_by { box {"},
       // Quadratic and linear pieces are raised by the thirds of their legs.
@@ -186,6 +195,16 @@ static void curves_are_native_objects(void **state) {
        "<5, 5, 5>, line_radius } }"},
       {"line_style(polyline([[0, 0, 0], [5, 0, 0], [5, 5, 5]], closed: true), 0.5)",
        "cylinder { <5, 5, 5>, <0, 0, 0>, line_radius }"},
+      // Dashes and gaps of 2 along 10, and around a corner.
+      {"line_style(line([0, 0, 0], [10, 0, 0]), 0.5, dash: 2)",
+       "union { cylinder { <0, 0, 0>, <2, 0, 0>, line_radius } cylinder { <4, 0, 0>, <6, 0, 0>, "
+       "line_radius } "
+       "cylinder { <8, 0, 0>, <10, 0, 0>, line_radius } }"},
+      {"line_style(polyline([[0, 0, 0], [5, 0, 0], [5, 5, 0]]), 0.5, dash: 2)",
+       "union { cylinder { <0, 0, 0>, <2, 0, 0>, line_radius } cylinder { <4, 0, 0>, <5, 0, 0>, "
+       "line_radius } "
+       "cylinder { <5, 0, 0>, <5, 1, 0>, line_radius } cylinder { <5, 3, 0>, <5, 5, 0>, "
+       "line_radius } }"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) becomes(cases[i][0], cases[i][1]);
 }
@@ -242,6 +261,102 @@ static void prisms_have_their_corners(void **state) {
   becomes("extrude(rectangle(4, 2), 3, scale: 0.5)", MESH);
   becomes("extrude(bezier([[0, 0], [4, 0], [4, 4], [0, 0]]), 2)",
           "prism { linear_sweep bezier_spline 0, 1, 4,");
+}
+
+// The rows of numbers of a block, such as `vertex_vectors { 2, <1,2,3>,<4,5,6> }`.
+static int read_rows(const char *text, const char *name, double out[][3]) {
+  const char *at = strstr(text, name);
+  if (!at) fail_msg("no %s", name);
+  char *end;
+  const int n = (int)strtol(strchr(at, '{') + 1, &end, 10);
+  for (int k = 0; k < n; k++)
+    for (int j = 0; j < 3; j++) {
+      end += strcspn(end, "-0123456789}");
+      assert_true(*end != '}');
+      out[k][j] = strtod(end, &end);
+    }
+  assert_int_equal(end[strcspn(end, "-0123456789}")], '}');
+  return n;
+}
+
+// A mesh far from the origin has its numbers about its own middle, and a translation.
+static void meshes_have_their_corners(void **state) {
+  (void)state;
+  static double vertices[5000][3], normals[5000][3], faces[9000][3];
+  char *text =
+      source_of("show named(mesh([[100000.25, 200000, 300000], [100001.25, 200000.125, 300000], "
+                "[100000.25, 200002, 300000.5], [100000.25, 200000, 300003]], "
+                "[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), \"thing\"), sun(-Z), "
+                "camera([99900, 199900, 300100], [100000, 200000, 300000])",
+                CAG_POV_OPTIONS_DEFAULT);
+  const double corners[4][3] = {{100000.25, 200000, 300000},
+                                {100001.25, 200000.125, 300000},
+                                {100000.25, 200002, 300000.5},
+                                {100000.25, 200000, 300003}};
+  const int order[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  assert_int_equal(read_rows(text, "vertex_vectors", vertices), 4);
+  assert_int_equal(read_rows(text, "face_indices", faces), 4);
+  const char *at = strstr(strstr(text, "face_indices"), "translate <");
+  double origin[3];
+  assert_int_equal(sscanf(at, "translate <%lf, %lf, %lf>", &origin[0], &origin[1], &origin[2]), 3);
+  for (int k = 0; k < 4; k++)
+    for (int j = 0; j < 3; j++) {
+      assert_true(fabs(vertices[k][j]) < 10);
+      assert_true(fabs(vertices[k][j] + origin[j] - corners[k][j]) < 1e-7);
+      assert_int_equal((int)faces[k][j], order[k][j]);
+    }
+  free(text);
+  // Of a ball, all points lie on it, and normals are radii, but for those near the outline, which
+  // are turned a little.
+  text = source_of("show named(tessellate(sphere(5)), \"thing\"), sun(-Z), camera([0, -60, 9])",
+                   CAG_POV_OPTIONS_DEFAULT);
+  const int n = read_rows(text, "vertex_vectors", vertices);
+  assert_int_equal(read_rows(text, "normal_vectors", normals), n);
+  const int m = read_rows(text, "face_indices", faces);
+  int exact = 0;
+  for (int k = 0; k < n; k++) {
+    const CagVec3 p = cag_vec3(vertices[k][0], vertices[k][1], vertices[k][2]);
+    const CagVec3 q = cag_vec3(normals[k][0], normals[k][1], normals[k][2]);
+    assert_true(fabs(cag_norm(p) - 5) < 1e-6 && fabs(cag_norm(q) - 1) < 2e-5);
+    const double cosine = cag_dot(p, q) / 5;
+    assert_true(cosine > 0.98);
+    exact += cosine > 1 - 3e-5; // five decimals
+  }
+  assert_true(exact > n / 2);
+  double volume = 0;
+  for (int k = 0; k < m; k++) {
+    CagVec3 p[3];
+    for (int j = 0; j < 3; j++) {
+      assert_true(faces[k][j] >= 0 && faces[k][j] < n);
+      const double *v = vertices[(int)faces[k][j]];
+      p[j] = cag_vec3(v[0], v[1], v[2]);
+    }
+    volume += cag_dot(p[0], cag_cross(p[1], p[2])) / 6;
+  }
+  assert_true(fabs(volume / (4.0 / 3 * M_PI * 125) - 1) < 0.02);
+  free(text);
+}
+
+// Bodies refract, sheets of the same material do not.
+static void materials_are_those_of_bodies_or_sheets(void **state) {
+  (void)state;
+  static const char *const things[] = {"m(box(20))", "m(rectangle(10, 20))",
+                                       "m(box(20)), m(rectangle(10, 20))"};
+  for (int k = 0; k < 3; k++) {
+    char script[300];
+    snprintf(script, sizeof script,
+             "m(g) = material(g, {transmission: 0.5, ior: 1.25, name: \"glass\"})\n"
+             "show %s, sun(-Z), camera([0, -60, 9])",
+             things[k]);
+    char *text = source_of(script, CAG_POV_OPTIONS_DEFAULT);
+    assert_true((strstr(text, "#declare M_glass = ") != NULL) == (k != 1));
+    assert_true((strstr(text, "#declare M_glass_thin = ") != NULL) == (k != 0));
+    assert_true((strstr(text, "material { M_glass }") != NULL) == (k != 1));
+    assert_true((strstr(text, "material { M_glass_thin }") != NULL) == (k != 0));
+    assert_true(contains(text, "filter 0.5"));
+    assert_true(contains(text, "interior { ior 1.25 }") == (k != 1));
+    free(text);
+  }
 }
 
 static void quality_is_that_of_the_options(void **state) {
@@ -307,6 +422,8 @@ int main(void) {
       cmocka_unit_test(surfaces_are_native_objects),
       cmocka_unit_test(curves_are_native_objects),
       cmocka_unit_test(prisms_have_their_corners),
+      cmocka_unit_test(meshes_have_their_corners),
+      cmocka_unit_test(materials_are_those_of_bodies_or_sheets),
       cmocka_unit_test(quality_is_that_of_the_options),
       cmocka_unit_test(lights_and_cameras_have_their_numbers),
   };
