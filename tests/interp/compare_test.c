@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "interp/render/compare.h"
+#include "tests/geom/random.h"
 
 static CagImage picture(size_t width, size_t height, const char *const *names, size_t channels) {
   CagImage image;
@@ -54,6 +55,135 @@ static void figures_are_those_of_hand_calculation(void **state) {
   cag_compare_report_free(&r);
   cag_image_free(&a);
   cag_image_free(&b);
+}
+
+static const char *const FOUR[] = {"R", "G", "B", "Z"};
+static const char *const MIXED[] = {"Z", "B", "R", "G"};
+static const size_t AT[] = {2, 3, 1, 0}; // of the channels of the first in the second
+
+// Random pictures whose channels stand in another order, against the definitions. Some rows are
+// equal, some samples are not finite.
+static void figures_are_those_of_their_definitions(void **state) {
+  (void)state;
+  enum { W = 37, H = 23, N = W * H };
+  seed = 61;
+  for (int round = 0; round < 10; round++) {
+    CagImage a = picture(W, H, FOUR, 4), b = picture(W, H, MIXED, 4), map;
+    const double size = round % 2 ? 1 : 7, threshold = 0.6 * size;
+    for (size_t i = 0; i < N; i++)
+      for (size_t c = 0; c < 4; c++) {
+        float *p = &cag_image_plane(&a, c)[i], *q = &cag_image_plane(&b, AT[c])[i];
+        *p = (float)uniform(-0.2, size);
+        *q = i / W % 3 == 0 ? *p : (float)uniform(-0.2, size);
+        if (round > 5 && c == 3 && i % 50 == 7) *p = i % 100 == 7 ? NAN : INFINITY;
+        if (round > 5 && c == 3 && i % 75 == 7) *q = *p;
+      }
+    CagCompareReport r;
+    assert_true(cag_compare_images(&a, "a", &b, "b", threshold, &r, NULL));
+    assert_true(cag_compare_heatmap(&a, &b, &map, NULL));
+    assert_true(r.width == W && r.height == H && r.channel_count == 4);
+    double most[N] = {0}, worst = 0, sum = 0, largest = 0;
+    size_t differing = 0;
+    for (size_t c = 0; c < 4; c++) {
+      const CagCompareChannel *found = &r.channels[c];
+      CagCompareChannel own = {.peak = 1};
+      double squares = 0;
+      for (size_t i = 0; i < N; i++) {
+        const double p = cag_image_plane(&a, c)[i], q = cag_image_plane(&b, AT[c])[i];
+        const bool same = p == q || (isnan(p) && isnan(q));
+        const double d = same ? 0 : isfinite(p) && isfinite(q) ? fabs(p - q) : INFINITY;
+        own.not_finite[0] += !isfinite(p);
+        own.not_finite[1] += !isfinite(q);
+        own.unlike += isinf(d);
+        if (isfinite(p)) own.peak = fmax(own.peak, fabs(p));
+        most[i] = fmax(most[i], d);
+        if (!isfinite(p) || !isfinite(q)) continue;
+        own.samples++;
+        squares += d * d;
+        if (d > own.largest) own.largest = d, own.largest_x = i % W, own.largest_y = i / W;
+      }
+      assert_string_equal(found->name, FOUR[c]);
+      const double rmse = sqrt(squares / (double)own.samples);
+      assert_true(fabs(found->rmse - rmse) < 1e-12 * size);
+      assert_true(fabs(found->psnr - 20 * log10(own.peak / rmse)) < 1e-9);
+      assert_true(found->largest == own.largest && found->largest_x == own.largest_x &&
+                  found->largest_y == own.largest_y && found->peak == own.peak);
+      assert_true(found->samples == own.samples && found->unlike == own.unlike &&
+                  found->not_finite[0] == own.not_finite[0] &&
+                  found->not_finite[1] == own.not_finite[1]);
+    }
+    for (size_t i = 0; i < N; i++) {
+      double x[3], y[3], lab_x[3], lab_y[3];
+      for (size_t c = 0; c < 3; c++) {
+        x[c] = cag_image_plane(&a, c)[i];
+        y[c] = cag_image_plane(&b, AT[c])[i];
+      }
+      cag_compare_lab(x, lab_x);
+      cag_compare_lab(y, lab_y);
+      const double e = cag_compare_delta_e(lab_x, lab_y);
+      sum += e;
+      largest = fmax(largest, e);
+      differing += most[i] > threshold;
+      if (isfinite(most[i])) worst = fmax(worst, most[i]);
+    }
+    assert_int_equal(r.differing_pixels, differing);
+    assert_true(r.has_color && fabs(r.delta_e_largest - largest) < 1e-12);
+    assert_true(fabs(r.delta_e_mean - sum / N) < 1e-9);
+    for (size_t i = 0; i < N; i++) {
+      const bool unlike = isinf(most[i]);
+      const double t = 3 * most[i] / worst;
+      const double rgb[3] = {unlike ? 1 : fmin(t, 1), unlike ? 0 : fmin(fmax(t - 1, 0), 1),
+                             unlike ? 1 : fmin(fmax(t - 2, 0), 1)};
+      for (size_t c = 0; c < 3; c++) assert_true(fabs(cag_image_plane(&map, c)[i] - rgb[c]) < 1e-6);
+      assert_true(unlike ? isinf(cag_image_plane(&map, 3)[i])
+                         : cag_image_plane(&map, 3)[i] == (float)most[i]);
+    }
+    cag_compare_report_free(&r);
+    cag_image_free(&a);
+    cag_image_free(&b);
+    cag_image_free(&map);
+  }
+}
+
+// CIEDE2000 is symmetric, zero for equal colors, and continuous where hues pass 0.
+static void color_differences_are_symmetric_and_continuous(void **state) {
+  (void)state;
+  seed = 62;
+  for (int i = 0; i < 3000; i++) {
+    double x[3], y[3], z[3];
+    for (int k = 0; k < 3; k++) {
+      x[k] = k ? uniform(-80, 80) : uniform(0, 100);
+      y[k] = k ? uniform(-80, 80) : uniform(0, 100);
+      if (i % 3 == 0 && k == 2) y[k] = i % 2 ? 1e-9 : -1e-9; // on both sides of hue 0
+      z[k] = y[k];
+    }
+    if (i % 3 == 0) y[1] = fabs(y[1]), z[1] = y[1], z[2] = -y[2];
+    const double e = cag_compare_delta_e(x, y);
+    assert_true(fabs(e - cag_compare_delta_e(y, x)) < 1e-9 && e > 0);
+    // The formula jumps only where hues are opposite.
+    const double turn =
+        fabs(remainder(atan2(x[2], x[1]) - atan2(y[2], y[1]), 2 * 3.14159265358979));
+    if (i % 3 == 0 && turn < 3) assert_true(fabs(e - cag_compare_delta_e(x, z)) < 1e-6);
+    assert_true(cag_compare_delta_e(x, x) == 0);
+  }
+}
+
+static void sides_and_channels_have_limits(void **state) {
+  (void)state;
+  CagImage image;
+  CagIoError err;
+  assert_true(cag_image_create(&image, CAG_IMAGE_SIDE_MAX, 1, 1, &err));
+  cag_image_free(&image);
+  assert_true(cag_image_create(&image, 1, CAG_IMAGE_SIDE_MAX, 1, &err));
+  cag_image_free(&image);
+  assert_true(cag_image_create(&image, 1, 1, CAG_IMAGE_CHANNELS_MAX, &err));
+  cag_image_free(&image);
+  assert_false(cag_image_create(&image, CAG_IMAGE_SIDE_MAX + 1, 1, 1, &err));
+  assert_false(cag_image_create(&image, 1, CAG_IMAGE_SIDE_MAX + 1, 1, &err));
+  assert_false(cag_image_create(&image, 1, 1, CAG_IMAGE_CHANNELS_MAX + 1, &err));
+  assert_false(cag_image_create(&image, 0, 1, 1, &err));
+  assert_false(cag_image_create(&image, 1, 0, 1, &err));
+  assert_false(cag_image_create(&image, 1, 1, 0, &err));
 }
 
 static void the_peak_of_bright_channels_is_their_largest_value(void **state) {
@@ -242,6 +372,9 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(equal_pictures_have_no_difference),
       cmocka_unit_test(figures_are_those_of_hand_calculation),
+      cmocka_unit_test(figures_are_those_of_their_definitions),
+      cmocka_unit_test(color_differences_are_symmetric_and_continuous),
+      cmocka_unit_test(sides_and_channels_have_limits),
       cmocka_unit_test(the_peak_of_bright_channels_is_their_largest_value),
       cmocka_unit_test(nan_and_infinity_are_counted_apart),
       cmocka_unit_test(pictures_of_other_shape_are_refused),
