@@ -124,7 +124,7 @@ static bool is_name(const char *text) {
   const unsigned char *c = (const unsigned char *)text;
   if (!isalpha(*c) && *c < 0x80) return false;
   size_t n = 1;
-  while (c[n] >= 0x80 && c[n] < 0xC0) n++;
+  while ((c[n] & 0xC0) == 0x80) n++;
   return !isalpha(c[n]);
 }
 

@@ -116,6 +116,7 @@ static void texts_stand_beside_their_points(void **state) {
         is_near(box.max.x, area.box.max.x, 1e-9 * size, "right");
         is_near(box.min.y, area.box.min.y, 1e-9 * size, "bottom");
         is_near(box.max.y, area.box.max.y, 1e-9 * size, "top");
+        assert_true(box.min.z == 0 && box.max.z == 0);
         free(text);
       }
   }
@@ -212,6 +213,8 @@ static void names_have_lowered_indices(void **state) {
        true, 4.7},
       {"\xce\xb1_\xce\xb2",
        "<tspan>\xce\xb1</tspan><tspan dy=\"2.2\" font-size=\"7\">\xce\xb2</tspan>", true, 1.7},
+      {"P_\xce\xb1\xce\xb2",
+       "<tspan>P</tspan><tspan dy=\"2.2\" font-size=\"7\">\xce\xb1\xce\xb2</tspan>", true, 2.4},
       {"P_", "<tspan>P_</tspan>", true, 2},
       {"P_ Q_i", "<tspan>P_</tspan><tspan> Q</tspan><tspan dy=\"2.2\" font-size=\"7\">i</tspan>",
        true, 4.7},
