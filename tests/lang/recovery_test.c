@@ -193,8 +193,82 @@ static void damaged_texts_neither_crash_nor_hang(void **state) {
   }
 }
 
+// The first error of a text: its code, the span between « and », and what its message and its help
+// hold. "" stands for no help.
+static void syntax_errors_mark_what_is_wrong(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *code, *message, *help;
+  } rows[] = {
+      {"x «=»\ny = 2", "E0120", "expected an expression after `=`", ""},
+      {"x = 1 +«»", "E0120", "expected an expression after `+`", ""},
+      {"x = «+»1", "E0120", "expected an expression, found `+`", "a number has no + before it"},
+      {"x = f(1, «,» 2)", "E0120", "expected an expression, found `,`", "one comma too many"},
+      {"x = «show» 2", "E0120", "expected an expression, found the reserved word `show`",
+       "a statement begins with it"},
+      {"x = «.5»", "E0111", "digits on both sides", "write 0.5"},
+      {"x = xs[«..»3]", NULL, "this range has no start", "0..3"},
+      {"x = «...»y", NULL, "stands in a list or a record", "[...xs, 4]"},
+      {"x = «for» i in y", NULL, "`for` stands in a list", "write [for x in xs: ...]"},
+      {"x = «(1, 2)»", NULL, "a list stands in [ ]", "write [1, 2]"},
+      {"x = «()»", NULL, "there is nothing in these parentheses", "an empty list is []"},
+      {"print«(1, 2)»", NULL, "print is a statement", "write print 1, 2"},
+      {"show «(a, b)»", NULL, "show is a statement", "write show a, b"},
+      {"x = «{»1, 2}", NULL, "this brace opens a block, which has one value",
+       "a list stands in [ ]"},
+      {"x = { «\"a{1}\"»: 2 }", NULL, "the name of a field has no { } in it",
+       "record([[name, value], ...])"},
+      {"x = { a = 1 «}»", NULL, "this block has no value", "it ends with an expression"},
+      {"x = { «a + 1»\nb }", NULL, "not the last thing of its block", "give it a name"},
+      {"x = { «a»\n-b }", NULL, "not the last thing of its block", "a line that begins with `-`"},
+      {"x = \"a«{}»\"", "E0113", "there is nothing in these { }", "hold an expression"},
+      {"x = «[»1, 2\ny = 3", "E0123", "this bracket is not closed: `]` is missing", "opened here"},
+      {"x = f«(»1", NULL, "this bracket is never closed: `)` is missing", "opened here"},
+      {"x = 1«)»", NULL, "`)` closes nothing", "no bracket is open here"},
+      {"x = [1«)»", NULL, "expected `]`, found `)`", "close the inner bracket first"},
+      {"x = [1 «2»]", NULL, "expected `,` or `]`, found", "a comma or an operator is missing"},
+      {"x = 1 «2»", NULL, "found", "an operator is missing before it, or a line break"},
+      {"x = f(1«;» 2)", NULL, "found `;`", "a comma separates what stands in brackets"},
+      {"x = 1 «not in» xs", NULL, "`not in` is no operator", "write not (1 in xs)"},
+      {"x = 1 «if» y", NULL, "the condition comes before the value", "write if c then 1 else b"},
+      {"x = y «for» z in xs", NULL, "in a comprehension the loop comes first",
+       "write [for x in xs: y]"},
+      {"x = 3 «by» 2", NULL, "here is no range", "write 0..10 by 2"},
+      {"f = 1 «=>» 2", NULL, "stand the names of the parameters", "write x => e"},
+      {"x = a «=» b", "E0153", "cannot stand here", "to compare write =="},
+      {"x = f(a «+=» 1)", NULL, "nothing changes in cag", "define a new name"},
+      {"x = \"{y«:»2}\"", "E0167", "no format", "text(y, digits: 2)"},
+      {"x = c «?» a : b", NULL, "", "write if c then a else b"},
+      {"x = 1 + «if» c then 2 else 3", NULL, "in parentheses", "write (if c then 2 else 3)"},
+      {"x = 2 * «y» => y", "E0136", "a function stands in parentheses", "write (y => y)"},
+  };
+  size_t bad = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char text[200];
+    const char *left = strstr(rows[i].text, "«"), *right = strstr(left, "»");
+    const size_t before = (size_t)(left - rows[i].text), marked = (size_t)(right - left) - 2;
+    snprintf(text, sizeof text, "%.*s%.*s%s", (int)before, rows[i].text, (int)marked, left + 2,
+             right + 2);
+    Parsed p = parse_text(text);
+    const CagDiagnostic none = {.message = (char[]){""}};
+    const CagDiagnostic *d = p.errors.count ? &p.errors.items[0] : &none;
+    const char *help = d->help ? d->help : "";
+    if (d->span.start != before || d->span.end != before + marked ||
+        !strstr(d->message, rows[i].message) ||
+        (*rows[i].help ? !strstr(help, rows[i].help) : *help != 0) ||
+        (rows[i].code && strcmp(cag_error_info(d->id)->code, rows[i].code) != 0)) {
+      print_error("%s: %s %u-%u: %s (%s)\n", text, cag_error_info(d->id)->code, d->span.start,
+                  d->span.end, d->message, help);
+      bad++;
+    }
+    release(&p);
+  }
+  assert_int_equal(bad, 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(syntax_errors_mark_what_is_wrong),
       cmocka_unit_test(the_parser_goes_on_at_the_next_statement),
       cmocka_unit_test(an_open_bracket_is_reported_where_it_was_opened),
       cmocka_unit_test(a_wrong_bracket_names_the_open_one),
