@@ -428,6 +428,10 @@ else
   completes 'Tab completes names behind :help' ':help sphere_s' ':help sphere_surface'
   completes 'a bracket within a text opens nothing' 'print "(", sphere_s' 'print "(", sphere_surface'
   keys 'import std.robots as robots' Enter 'plate(width, thickness = 2) = width' Enter 'ball = sphere(5)' Enter 'turned = rotate(Z, 30deg)' Enter
+  keys 'wqz_one = 1; wqz_two = 2; wqa = 3; радиол = 4; радиал = 5' Enter
+  completes 'Tab goes on as far as all names agree' 'wqz' 'wqz_'
+  completes 'Tab inserts nothing where names part already' 'wq' 'wq'
+  completes 'Tab inserts whole letters' 'ра' 'ради'
   completes 'Tab completes members of a module' 'robots.puma5' 'robots.puma560'
   completes 'Tab completes members of a transform' 'turned.ori' 'turned.origin'
   completes 'Tab completes members of members' 'robots.puma560.conv' 'robots.puma560.convention'
