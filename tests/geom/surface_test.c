@@ -1,5 +1,8 @@
 // Surfaces: worked examples of the reference, closed forms, and what must hold for every kind.
 
+#include "geom/surface/loft.h"
+#include "geom/surface/patches.h"
+#include "geom/surface/reshape.h"
 #include "surface_support.h"
 
 // The net of reference example 14 (06b, bezier-surface.ex14); `moved` replaces B11.
@@ -793,6 +796,109 @@ static void integrals_of_uneven_surfaces_are_right(void **state) {
   }
 }
 
+// --- Breaks ---
+
+static void assert_cuts(const CagSurface *s, int direction, const double *wanted, size_t n,
+                        const char *what) {
+  double *cuts;
+  size_t found;
+  MUST(cag_surface_cuts(s, direction, &cuts, &found, err));
+  if (found + 1 != n)
+    fail_msg("%s by %c: %zu stretches, not %zu", what, "uv"[direction], found, n - 1);
+  for (size_t i = 0; i < n; i++) assert_near(cuts[i], wanted[i], 1e-12, what);
+  free(cuts);
+}
+
+// The surface, its transpose, flip, image, offset and part have the breaks of the curves.
+static void assert_breaks(CagSurface *s, const double *u, size_t nu, const double *v, size_t nv,
+                          const char *what) {
+  CagSurface *t;
+  double back[16], part[16];
+  size_t n = 0;
+  assert_cuts(s, 0, u, nu, what);
+  assert_cuts(s, 1, v, nv, what);
+  MUST(cag_surface_transpose(s, &t, err));
+  assert_cuts(t, 0, v, nv, what);
+  assert_cuts(t, 1, u, nu, what);
+  cag_surface_release(t);
+  MUST(cag_surface_flip(s, &t, err));
+  for (size_t i = 0; i < nv; i++) back[i] = v[0] + v[nv - 1] - v[nv - 1 - i];
+  assert_cuts(t, 0, u, nu, what);
+  assert_cuts(t, 1, back, nv, what);
+  cag_surface_release(t);
+  CagTransform map = cag_shear(0.3, -0.2, 0.5, 0.1, 0, 0.4);
+  MUST(cag_surface_transform(s, &map, &t, err));
+  assert_cuts(t, 0, u, nu, what);
+  assert_cuts(t, 1, v, nv, what);
+  cag_surface_release(t);
+  MUST(cag_surface_offset(s, 0.1, &t, err));
+  assert_cuts(t, 0, u, nu, what);
+  assert_cuts(t, 1, v, nv, what);
+  cag_surface_release(t);
+  // From the middle of the first stretch by u to that of the last.
+  part[n++] = (u[0] + u[1]) / 2;
+  for (size_t i = 1; i + 1 < nu; i++) part[n++] = u[i];
+  const double end = (u[nu - 2] + 2 * u[nu - 1]) / 3;
+  part[n++] = end;
+  MUST(cag_surface_part(s, part[0], end, v[0], v[nv - 1], &t, err));
+  assert_cuts(t, 0, part, n, what);
+  assert_cuts(t, 1, v, nv, what);
+  cag_surface_release(t);
+  cag_surface_release(s);
+}
+
+static void breaks_are_those_of_the_curves(void **state) {
+  (void)state;
+  const CagVec3 p[] = {{1, 0, 0}, {3, 0, 1}, {2, 0, 2}, {4, 0, 3}},
+                q[] = {{1, 5, 0}, {3, 5, 1}, {4, 6, 4}};
+  const CagVec3 r[] = {{1, 0, 0}, {1, 2, 0}, {0, 5, 1}};
+  const double thirds[] = {0, 1, 2, 3}, whole[] = {0, 1}, halves[] = {0, 1, 2};
+  const double both[] = {0, 1.0 / 3, 0.5, 2.0 / 3, 1}, turn[] = {-1, 2};
+  CagCurve *a, *b, *c, *d, *e;
+  CagSurface *s;
+  MUST(cag_curve_polyline(p, 4, false, 3, &a, err));
+  MUST(cag_curve_polyline(q, 3, false, 3, &b, err));
+  MUST(cag_curve_polyline(r, 3, false, 3, &c, err));
+  MUST(cag_surface_extrude(a, cag_vec3(0, 2, 0), 0, 1, &s, err));
+  assert_breaks(s, thirds, 4, whole, 2, "extrusion");
+  MUST(cag_surface_extrude(a, cag_vec3(0, 2, 1), 0.4, 1.5, &s, err));
+  assert_breaks(s, thirds, 4, whole, 2, "twisted extrusion");
+  MUST(cag_surface_revolve(a, cag_vec3(0, 0, 1), cag_vec3(0, 0, 0), -1, 2, &s, err));
+  assert_breaks(s, thirds, 4, turn, 2, "revolution");
+  MUST(cag_surface_ruled(a, b, &s, err));
+  assert_breaks(s, whole, 2, both, 5, "ruled");
+  MUST(cag_surface_translational(a, c, &s, err));
+  assert_breaks(s, thirds, 4, halves, 3, "translational");
+  // Along v = 0 and v = 1 polylines, between them lines.
+  MUST(cag_curve_line(p[0], q[0], 3, &d, err));
+  MUST(cag_curve_line(p[3], q[2], 3, &e, err));
+  MUST(cag_surface_coons(d, e, a, b, &s, err));
+  assert_breaks(s, both, 5, whole, 2, "Coons");
+  cag_curve_release(d);
+  cag_curve_release(e);
+  // Lofts through curves without an exact form: means of three successive parameters are the knots,
+  // and a curve of two pieces breaks in the middle.
+  CagCurve *coil[7];
+  for (int i = 0; i < 7; i++) {
+    CagTransform up = cag_translate(cag_vec3(0.3 * i, 0, 4.0 * i));
+    MUST(cag_curve_helix(2 + 0.3 * i, 1, 0.75, 0, &d, err));
+    MUST(cag_curve_transform(d, &up, &coil[i], err));
+    cag_curve_release(d);
+  }
+  const double knots[] = {0, 2, 3, 4, 6}, middle[] = {0, 0.5, 1};
+  MUST(cag_surface_loft((const CagCurve *const *)coil, 7, 3, false, &s, err));
+  assert_breaks(s, whole, 2, knots, 5, "loft");
+  cag_curve_release(coil[6]);
+  const CagVec3 bent[] = {{4, 0, 25}, {2, 3, 26}, {-1, 3, 25}};
+  MUST(cag_curve_polyline(bent, 3, false, 3, &coil[6], err));
+  MUST(cag_surface_loft((const CagCurve *const *)coil, 7, 3, false, &s, err));
+  assert_breaks(s, middle, 3, knots, 5, "loft to a polyline");
+  for (int i = 0; i < 7; i++) cag_curve_release(coil[i]);
+  cag_curve_release(a);
+  cag_curve_release(b);
+  cag_curve_release(c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bezier_patches_have_the_partials_of_the_worked_example),
@@ -821,6 +927,7 @@ int main(void) {
       cmocka_unit_test(planar_pieces_measure_their_region),
       cmocka_unit_test(isocurves_run_on_the_surface),
       cmocka_unit_test(integrals_of_uneven_surfaces_are_right),
+      cmocka_unit_test(breaks_are_those_of_the_curves),
       cmocka_unit_test(bounds_are_tight_between_samples),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
