@@ -283,10 +283,50 @@ static void areas_within_boxes_have_closed_forms(void **state) {
   assert_near(area_of(leaning, &range, true), 2 * M_PI * 2 * sqrt(2), 1e-9, "leaning cylinder");
 }
 
+// A cone or hyperboloid with the semi-axes a, b, c turned by an angle about its second or first
+// axis meets planes of constant z in ellipses where the tangent of the angle is below c / a or c /
+// b.
+static void ranges_of_z_bound_what_is_less_tilted_than_its_cone(void **state) {
+  (void)state;
+  state_of_random = 77;
+  int bounded = 0;
+  for (int round = 0; round < 90; round++) {
+    const double *unit = UNITS[1 + round % 3];
+    double semi[3];
+    for (int k = 0; k < 3; k++) semi[k] = random_in(0.5, 2.5);
+    const bool about_y = round % 2;
+    const double limit = atan(semi[2] / semi[about_y ? 0 : 1]);
+    const double angle = random_in(0.3, 1.9) * limit;
+    if (fabs(angle / limit - 1) < 0.01 || angle > 1.5) continue;
+    CagQuadric q, scaled;
+    memcpy(q.c, unit, sizeof q.c);
+    CagTransform size = cag_transform_identity(), turn;
+    size.planar = false;
+    for (int k = 0; k < 3; k++) size.m[k][k] = semi[k];
+    MUST(cag_rotate(about_y ? cag_vec3(0, 1, 0) : cag_vec3(1, 0, 0), angle, cag_vec3(0, 0, 0),
+                    &turn, err));
+    MUST(cag_quadric_transform(&q, &size, &scaled, err));
+    MUST(cag_quadric_transform(&scaled, &turn, &q, err));
+    const CagBounds within = {cag_vec3(-INFINITY, -INFINITY, -7), cag_vec3(INFINITY, INFINITY, 9)};
+    CagSurface **list;
+    size_t n;
+    if (angle < limit) {
+      MUST(cag_quadric_patches(&q, &within, true, &list, &n, err));
+      for (size_t i = 0; i < n; i++) cag_surface_release(list[i]);
+      free(list);
+      bounded++;
+    } else {
+      MUST_FAIL(cag_quadric_patches(&q, &within, true, &list, &n, err), "quadric-unbounded");
+    }
+  }
+  assert_true(bounded > 20 && bounded < 70);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(boxes_cut_quadrics_of_all_classes),
       cmocka_unit_test(ranges_of_z_are_those_of_the_equation),
+      cmocka_unit_test(ranges_of_z_bound_what_is_less_tilted_than_its_cone),
       cmocka_unit_test(outlines_that_are_nearly_level_stay_small),
       cmocka_unit_test(areas_within_boxes_have_closed_forms),
   };

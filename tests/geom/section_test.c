@@ -149,6 +149,66 @@ static void a_closed_mesh_laid_on_a_surface_stays_closed(void **state) {
   cag_surface_release(torus);
 }
 
+// Places and normals of a torus in closed form: the angle about the axis, and that about the tube.
+static CagVec3 off_torus(CagVec3 p, double major, CagVec3 *normal) {
+  const CagVec3 ring = cag_scaled(cag_unit(cag_vec3(p.x, p.y, 0)), major);
+  *normal = cag_unit(cag_sub(p, ring));
+  return cag_sub(p, ring);
+}
+
+// A square over the torus as a sheet: on it with its normals, edges within the tolerance and short,
+// and as large as the torus is there.
+static void sheets_on_a_torus_keep_the_tolerance(void **state) {
+  (void)state;
+  CagSurface *torus;
+  OK(cag_surface_torus(5, 2, &torus, &err));
+  for (int round = 0; round < 4; round++) {
+    const double tolerance = round == 0 ? 0 : pow(10, -round), height = round == 3 ? 0.5 : 0;
+    const CagVec3 p[] = {{1, 2, height}, {4, 2, height}, {4, 5.5, height}, {1, 5.5, height}};
+    const uint32_t corners[] = {0, 1, 2, 3}, count[] = {4};
+    CagMesh *square, *image;
+    OK(cag_mesh_from_faces(p, 4, corners, count, 1, &square, &err));
+    OK(cag_mesh_onto_surface(square, torus, tolerance, height == 0, 1000000, &image, &err));
+    CagBounds box = cag_mesh_bounds(image);
+    const double most = tolerance > 0 ? tolerance : 1.0001e-3 * cag_norm(cag_sub(box.max, box.min));
+    double side = 0;
+    for (size_t v = 0; v < image->vertex_count; v++) {
+      CagVec3 normal;
+      const double off = cag_norm(off_torus(image->positions[v], 5, &normal)) - 2;
+      // The normal of the parameters, u about the axis or about the tube, is outward or inward.
+      if (v == 0) side = off < 0 ? -1 : 1;
+      NEAR(off, height == 0 ? 0 : side * height, 1e-12);
+      if (height == 0) NEAR(fabs(cag_dot(image->normals[v], normal)), 1, 1e-12);
+      if (height == 0) NEAR(cag_norm(image->normals[v]), 1, 1e-12);
+    }
+    assert_true((image->normals != NULL) == (height == 0));
+    for (size_t t = 0; t < image->triangle_count; t++)
+      for (int k = 0; k < 3; k++) {
+        const CagVec3 a = image->positions[image->triangles[3 * t + (size_t)k]];
+        const CagVec3 b = image->positions[image->triangles[3 * t + (size_t)(k + 1) % 3]];
+        CagVec3 normal;
+        const double off = cag_norm(off_torus(cag_lerp(a, b, 0.5), 5, &normal)) - 2 - side * height;
+        assert_true(fabs(off) <= most);
+        // 0.08 of both domains, 2 pi each, at most 7.5 and 2.5 from their axes.
+        assert_true(cag_norm(cag_sub(a, b)) <= 0.08 * 2 * M_PI * 7.5);
+      }
+    // Over 3 radians by u and 3.5 by v: r (R + r cos w) dw dt, w being one of them.
+    if (height == 0) {
+      const double about_v = 3 * 2 * (5 * 3.5 + 2 * (sin(5.5) - sin(2)));
+      const double about_u = 3.5 * 2 * (5 * 3 + 2 * (sin(4) - sin(1)));
+      CagVec3 q;
+      OK(cag_surface_point(torus, 0.7, 0, &q, &err));
+      const bool u_is_tube = fabs(q.z) > 0.1;
+      const double area = cag_mesh_area(image);
+      const double wanted = u_is_tube ? about_u : about_v;
+      assert_true(fabs(area - wanted) < 2 * most * wanted);
+    }
+    cag_mesh_release(square);
+    cag_mesh_release(image);
+  }
+  cag_surface_release(torus);
+}
+
 static void principal_directions_are_square_and_of_unit_length(void **state) {
   (void)state;
   CagSurface *torus;
@@ -219,6 +279,7 @@ int main(void) {
       cmocka_unit_test(solids_of_all_sizes_are_cut_alike),
       cmocka_unit_test(balls_give_exact_circles_at_every_height),
       cmocka_unit_test(a_closed_mesh_laid_on_a_surface_stays_closed),
+      cmocka_unit_test(sheets_on_a_torus_keep_the_tolerance),
       cmocka_unit_test(principal_directions_are_square_and_of_unit_length),
       cmocka_unit_test(curves_that_run_along_another_are_dropped),
   };
