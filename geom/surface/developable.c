@@ -133,19 +133,26 @@ static CagStatus no_ruling(CagError *err, const char *why) {
 
 // --- Following it ---
 
-// The t of the ruling at s, near a guess.
+// The t of the ruling at s, near a guess. Beyond the end of b it is as far beyond as the slope
+// there tells.
 static CagStatus newton(const Match *m, double s, double guess, bool *good, double *out,
                         CagError *err) {
   double t = guess, range = m->t_high - m->t_low;
   *good = false;
   for (int k = 0; k < NEWTON_STEPS; k++) {
     Condition c;
+    t = fmin(t, m->t_high);
     CagStatus status = condition(m, s, t, &c, err);
     if (status) return status;
     if (c.by_t == 0) return CAG_OK;
     double step = -c.f / c.by_t;
-    t += step;
+    if (t == m->t_high && step > 0) {
+      *good = true;
+      *out = t + fmin(step, range / 8);
+      return CAG_OK;
+    }
     if (fabs(step) > range) return CAG_OK;
+    t += step;
     if (fabs(step) > 4 * DBL_EPSILON * fmax(fabs(t), range)) continue;
     *good = true;
     *out = t;

@@ -2,6 +2,7 @@
 // them.
 
 #include "geom/surface/patches.h"
+#include "tests/geom/random.h"
 #include "tests/geom/surface_support.h"
 
 static CagCurve *spline(const CagVec3 *points, size_t n) {
@@ -296,6 +297,60 @@ static void bezier_triangles_of_the_reference(void **state) {
   }
 }
 
+// --- Developable surfaces ---
+
+static CagCurve *elliptic_arc(double a, double b, double from, double to, CagVec3 center) {
+  CagTransform frame = cag_transform_identity();
+  CagCurve *c;
+  frame.planar = false;
+  frame.m[0][3] = center.x;
+  frame.m[1][3] = center.y;
+  frame.m[2][3] = center.z;
+  MUST(cag_curve_arc(a, b, from, to, &frame, &c, err));
+  return c;
+}
+
+static CagVec3 on_ellipse(double a, double b, double t, CagVec3 center) {
+  return cag_add(center, cag_vec3(a * cos(t), b * sin(t), 0));
+}
+
+// Between arcs of ellipses in parallel planes rulings join places of parallel tangents: those of a
+// at s and of b at t are where tan t = k tan s. The surface runs over all s that have both.
+static void developables_join_parallel_tangents(void **state) {
+  (void)state;
+  seed = 71;
+  for (int round = 0; round < 30; round++) {
+    double size[4], ends[4];
+    for (int i = 0; i < 4; i++) size[i] = uniform(0.5, 3);
+    const double k = size[3] * size[0] / (size[2] * size[1]);
+    for (int i = 0; i < 4; i++) ends[i] = i % 2 ? uniform(0.2, 1.3) : uniform(-1.3, -0.2);
+    CagVec3 low = {1, 2, 3}, high = {1, 2, 5};
+    high.x += uniform(-2, 2);
+    high.y += uniform(-2, 2);
+    CagCurve *a = elliptic_arc(size[0], size[1], ends[0], ends[1], low);
+    CagCurve *b = elliptic_arc(size[2], size[3], ends[2], ends[3], high);
+    CagSurface *s;
+    MUST(cag_surface_developable(a, b, &s, err));
+    const double from = fmax(ends[0], atan(tan(ends[2]) / k));
+    const double to = fmin(ends[1], atan(tan(ends[3]) / k));
+    for (int i = 0; i <= 10; i++) {
+      const double v = s->v0 + (s->v1 - s->v0) * i / 10, at = from + (to - from) * i / 10;
+      const double other = atan(k * tan(at));
+      assert_point(surface_at(s, 1, v), on_ellipse(size[0], size[1], at, low), 1e-10, "first");
+      assert_point(surface_at(s, 0, v), on_ellipse(size[2], size[3], other, high), 1e-10, "second");
+      CagVec3 n[3];
+      for (int j = 0; j < 3; j++) MUST(cag_surface_normal(s, 0.1 + 0.4 * j, v, &n[j], err));
+      assert_point(n[1], n[0], 1e-9, "normal");
+      assert_point(n[2], n[0], 1e-9, "normal");
+    }
+    if (round % 5 == 0) assert_consistent(s);
+    if (round % 5 == 1) assert_transforms(s);
+    cag_surface_release(s);
+    cag_curve_release(a);
+    cag_curve_release(b);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(coons_of_example_12),
@@ -303,6 +358,7 @@ int main(void) {
       cmocka_unit_test(adini_twists_keep_bilinear_patches),
       cmocka_unit_test(composite_surface_uniform),
       cmocka_unit_test(composite_surface_nonuniform),
+      cmocka_unit_test(developables_join_parallel_tangents),
       cmocka_unit_test(bezier_triangles_of_the_reference),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
