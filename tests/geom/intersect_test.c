@@ -315,8 +315,218 @@ static void arcs_meet_where_both_circles_pass(void **state) {
   }
 }
 
+// --- Random curves ---
+
+static CagVec3 random_place(uint64_t *seed, double size, bool space) {
+  CagVec3 p = {0, 0, 0};
+  p.x = uniform(seed, -size, size);
+  p.y = uniform(seed, -size, size);
+  if (space) p.z = uniform(seed, -size, size);
+  return p;
+}
+
+enum { KINDS = 8 };
+static CagCurve *random_curve(uint64_t *seed, int kind, bool space) {
+  CagVec3 p[7];
+  double w[7], knots[11];
+  const int dimension = space ? 3 : 2;
+  CagCurve *c = NULL, *parts[2];
+  for (int i = 0; i < 7; i++) {
+    p[i] = random_place(seed, 3, space);
+    w[i] = uniform(seed, 0.5, 2);
+  }
+  const double turn = uniform(seed, -3, 3), a = uniform(seed, 0.5, 3), b = uniform(seed, 0.5, 3);
+  CagTransform f = cag_rpy(space ? a : 0, space ? b : 0, turn), shift = cag_translate(p[0]);
+  f = cag_transform_multiply(&shift, &f);
+  f.planar = !space;
+  switch (kind) {
+  case 0: OK(cag_curve_bezier(p, NULL, 4, dimension, &c, &err)); break;
+  case 1: OK(cag_curve_bezier(p, w, 4, dimension, &c, &err)); break;
+  case 2:
+    for (int i = 0; i < 11; i++) knots[i] = i < 4 ? 0 : i < 7 ? i - 3 + 0.3 * w[i - 4] : 5;
+    OK(cag_curve_nurbs(p, w, 7, 3, knots, dimension, &c, &err));
+    break;
+  case 3: OK(cag_curve_nurbs_closed(p, NULL, 6, 3, dimension, &c, &err)); break;
+  case 4: OK(cag_curve_polyline(p, 5, false, dimension, &c, &err)); break;
+  case 5: OK(cag_curve_arc(a, b, turn, turn + 4, &f, &c, &err)); break;
+  case 6: OK(cag_curve_arc(a, b, turn, turn + 2 * M_PI, &f, &c, &err)); break;
+  default:
+    OK(cag_curve_bezier(p, NULL, 3, dimension, &parts[0], &err));
+    OK(cag_curve_line(p[2], p[3], dimension, &parts[1], &err));
+    OK(cag_curve_join(parts, 2, &c, &err));
+    cag_curve_release(parts[0]);
+    cag_curve_release(parts[1]);
+  }
+  return c;
+}
+
+static CagVec3 place(const CagCurve *c, double t) {
+  CagVec3 p;
+  OK(cag_curve_point(c, fmin(c->end, fmax(c->start, t)), &p, &err));
+  return p;
+}
+
+// A plane meets a curve where the signed distance of dense samples changes its sign.
+static void random_planes_meet_where_signs_change(void **state) {
+  (void)state;
+  uint64_t seed = 91;
+  for (int i = 0; i < 160; i++) {
+    CagCurve *c = random_curve(&seed, i % KINDS, i % 3 != 0);
+    CagPlane plane;
+    const CagVec3 normal = random_place(&seed, 1, true);
+    OK(cag_plane(random_place(&seed, 1, true), normal, &plane, &err));
+    CagMeeting *m;
+    size_t n, wanted = 0;
+    OK(cag_curve_intersect_plane(c, &plane, &m, &n, &err));
+    enum { STEPS = 3000 };
+    double last = cag_dot(cag_sub(place(c, c->start), plane.point), plane.normal);
+    for (int k = 1; k <= STEPS; k++) {
+      const double t = c->start + (c->end - c->start) * k / STEPS;
+      const double here = cag_dot(cag_sub(place(c, t), plane.point), plane.normal);
+      if (last * here < 0) {
+        assert_true(wanted < n);
+        // The one found lies in the same step.
+        assert_true(fabs(m[wanted].t - t) <= 1.001 * (c->end - c->start) / STEPS);
+        wanted++;
+      }
+      last = here;
+    }
+    assert_int_equal(n, wanted);
+    for (size_t k = 0; k < n; k++) {
+      near_vec(place(c, m[k].t), m[k].point, 1e-12);
+      NEAR(cag_dot(cag_sub(m[k].point, plane.point), plane.normal), 0, 1e-10);
+      assert_true(m[k].multiplicity == 1 && m[k].t2 == 0);
+    }
+    free(m);
+    cag_curve_release(c);
+  }
+}
+
+// Plane curves meet where dense polylines do.
+static void random_curves_meet_where_polylines_cross(void **state) {
+  (void)state;
+  uint64_t seed = 92;
+  enum { STEPS = 300 };
+  static CagVec3 p[2][STEPS + 1];
+  size_t all = 0;
+  for (int i = 0; i < 128; i++) {
+    CagCurve *c[2] = {random_curve(&seed, i % KINDS, false), NULL};
+    c[1] = random_curve(&seed, i / KINDS % KINDS, false);
+    for (int k = 0; k < 2; k++)
+      for (int j = 0; j <= STEPS; j++)
+        p[k][j] = place(c[k], c[k]->start + (c[k]->end - c[k]->start) * j / STEPS);
+    CagMeeting *m;
+    size_t n, wanted = 0;
+    OK(cag_curve_intersect(c[0], c[1], &m, &n, &err));
+    for (int j = 0; j < STEPS; j++)
+      for (int k = 0; k < STEPS; k++) {
+        const CagVec3 u = cag_sub(p[0][j + 1], p[0][j]), v = cag_sub(p[1][k + 1], p[1][k]);
+        const CagVec3 d = cag_sub(p[1][k], p[0][j]);
+        if (fabs(d.x) + fabs(d.y) > 1.5) continue;
+        const double det = u.x * v.y - u.y * v.x, s = (d.x * v.y - d.y * v.x) / det;
+        const double t = (d.x * u.y - d.y * u.x) / det;
+        wanted += s >= 0 && s < 1 && t >= 0 && t < 1;
+      }
+    assert_int_equal(n, wanted);
+    all += n;
+    for (size_t k = 0; k < n; k++) {
+      near_vec(place(c[0], m[k].t), m[k].point, 1e-9);
+      near_vec(place(c[1], m[k].t2), m[k].point, 1e-9);
+      assert_true(m[k].multiplicity == 1 && (k == 0 || m[k - 1].t <= m[k].t));
+    }
+    // The other way round they are the same places.
+    CagMeeting *other;
+    size_t again;
+    OK(cag_curve_intersect(c[1], c[0], &other, &again, &err));
+    assert_int_equal(again, n);
+    for (size_t k = 0; k < n; k++) {
+      bool found = false;
+      for (size_t j = 0; j < n; j++)
+        found = found || (fabs(other[j].t2 - m[k].t) < 1e-7 && fabs(other[j].t - m[k].t2) < 1e-7);
+      assert_true(found);
+    }
+    free(other);
+    free(m);
+    cag_curve_release(c[0]);
+    cag_curve_release(c[1]);
+  }
+  assert_true(all > 150);
+}
+
+// Curves of space meet in the point into which one of them is moved.
+static void curves_of_space_meet_where_they_were_put(void **state) {
+  (void)state;
+  uint64_t seed = 93;
+  for (int i = 0; i < 2 * KINDS * KINDS; i++) {
+    CagCurve *c[2] = {random_curve(&seed, i % KINDS, true), NULL}, *moved;
+    c[1] = random_curve(&seed, i / KINDS % KINDS, true);
+    double t[2];
+    for (int k = 0; k < 2; k++)
+      t[k] = c[k]->start + (c[k]->end - c[k]->start) * uniform(&seed, 0.05, 0.95);
+    const CagVec3 p = place(c[0], t[0]);
+    const CagTransform shift = cag_translate(cag_sub(p, place(c[1], t[1])));
+    OK(cag_curve_transform(c[1], &shift, &moved, &err));
+    CagMeeting *m;
+    size_t n;
+    OK(cag_curve_intersect(c[0], moved, &m, &n, &err));
+    assert_int_equal(n, 1);
+    near_vec(m[0].point, p, 1e-9);
+    NEAR(m[0].t, t[0], 1e-7);
+    NEAR(m[0].t2, t[1], 1e-7);
+    assert_int_equal(m[0].multiplicity, 1);
+    free(m);
+    // 1e-6 apart they do not meet.
+    CagVec3 u, v;
+    OK(cag_curve_tangent(c[0], t[0], CAG_SIDE_RIGHT, &u, &err));
+    OK(cag_curve_tangent(c[1], t[1], CAG_SIDE_RIGHT, &v, &err));
+    const CagTransform off = cag_translate(cag_scaled(cag_unit(cag_cross(u, v)), 1e-6));
+    CagCurve *apart;
+    OK(cag_curve_transform(moved, &off, &apart, &err));
+    OK(cag_curve_intersect(c[0], apart, &m, &n, &err));
+    assert_int_equal(n, 0);
+    free(m);
+    cag_curve_release(apart);
+    cag_curve_release(moved);
+    cag_curve_release(c[0]);
+    cag_curve_release(c[1]);
+  }
+}
+
+// A part of a curve runs along it; parts that only share an end meet there.
+static void parts_of_a_curve_overlap_or_meet_at_their_ends(void **state) {
+  (void)state;
+  uint64_t seed = 94;
+  for (int i = 0; i < 2 * KINDS; i++) {
+    CagCurve *c = random_curve(&seed, i % KINDS, i >= KINDS), *part[3];
+    static const double shares[4] = {0.1, 0.4, 0.7, 0.9};
+    double t[4];
+    for (int k = 0; k < 4; k++) t[k] = c->start + (c->end - c->start) * shares[k];
+    OK(cag_curve_trim(c, t[0], t[2], &part[0], &err));
+    OK(cag_curve_trim(c, t[1], t[3], &part[1], &err));
+    OK(cag_curve_trim(c, t[2], t[3], &part[2], &err));
+    CagMeeting *m;
+    size_t n;
+    // It takes a while to be sure: three kinds will do.
+    if (i == 0 || i == 4 || i == 5)
+      FAILS(cag_curve_intersect(part[0], part[1], &m, &n, &err), "overlap");
+    if (i == 0) FAILS(cag_curve_intersect(c, part[2], &m, &n, &err), "overlap");
+    if (i >= KINDS) { // in space nothing else meets
+      OK(cag_curve_intersect(part[0], part[2], &m, &n, &err));
+      assert_int_equal(n, 1);
+      near_vec(m[0].point, place(c, t[2]), 1e-8);
+      free(m);
+    }
+    for (int k = 0; k < 3; k++) cag_curve_release(part[k]);
+    cag_curve_release(c);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(random_planes_meet_where_signs_change),
+      cmocka_unit_test(random_curves_meet_where_polylines_cross),
+      cmocka_unit_test(curves_of_space_meet_where_they_were_put),
+      cmocka_unit_test(parts_of_a_curve_overlap_or_meet_at_their_ends),
       cmocka_unit_test(chebyshev_graphs_meet_their_mirror_images_n_squared_times),
       cmocka_unit_test(a_line_meets_a_chebyshev_graph_n_times_or_touches_it),
       cmocka_unit_test(rational_circles_meet_like_circles),
