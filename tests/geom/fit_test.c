@@ -3,6 +3,7 @@
 
 #include "geom/basis/bspline.h"
 #include "geom/curve/fit.h"
+#include "random.h"
 #include "support.h"
 
 static const CagVec3 hump[5] = {{0, 0, 0}, {1.5, 2, 0}, {3, 2.5, 0}, {4.5, 2, 0}, {6, 0, 0}};
@@ -182,8 +183,227 @@ static void bad_data_are_told(void **state) {
   FAILS_AT(cag_curve_interpolate(&d, NULL, 0, &c, &err), "not-finite", 1);
 }
 
+// --- Random data ---
+
+static CagVec3 random_point(void) {
+  CagVec3 p;
+  p.x = uniform(-3, 3);
+  p.y = uniform(-3, 3);
+  p.z = uniform(-3, 3);
+  return p;
+}
+
+// The parameters of the points over [from, to] by their spacing.
+static void spaced_parameters(const CagVec3 *p, size_t n, CagSpacing spacing, double from,
+                              double to, double *out) {
+  double sum = 0;
+  out[0] = 0;
+  for (size_t i = 1; i < n; i++) {
+    const double chord = cag_norm(cag_sub(p[i], p[i - 1]));
+    sum += spacing == CAG_SPACING_UNIFORM       ? 1
+           : spacing == CAG_SPACING_CENTRIPETAL ? sqrt(chord)
+                                                : chord;
+    out[i] = sum;
+  }
+  for (size_t i = 0; i < n; i++) out[i] = from + (to - from) * out[i] / sum;
+}
+
+// The residuals of a least squares fit are orthogonal to each basis function whose control point is
+// free, whatever the knots.
+static void random_fits_are_least_squares(void **state) {
+  (void)state;
+  seed = 901;
+  static const CagSpacing spacings[3] = {CAG_SPACING_UNIFORM, CAG_SPACING_CHORD,
+                                         CAG_SPACING_CENTRIPETAL};
+  static const CagFitKnots kinds[3] = {CAG_FIT_AUTO, CAG_FIT_OPEN, CAG_FIT_AVERAGED};
+  for (int round = 0; round < 90; round++) {
+    enum { MOST = 40 };
+    CagVec3 p[MOST];
+    double given[MOST], expected[MOST];
+    const int degree = 1 + round % 4;
+    const size_t count = (size_t)degree + 1 + (size_t)(round % 5),
+                 n = count + (size_t)(round % 3) * 12;
+    const bool keep = round % 2, own = round % 5 == 0;
+    double walked = uniform(-2, 2);
+    for (size_t i = 0; i < n; i++) {
+      p[i] = random_point();
+      given[i] = walked += uniform(0.9, 1.1);
+    }
+    const CagFitData d = {.points = p,
+                          .n = n,
+                          .spacing = spacings[round % 3],
+                          .parameters = own ? given : NULL,
+                          .kind = own ? CAG_FIT_AVERAGED : kinds[round / 3 % 3],
+                          .degree = degree,
+                          .dimension = 3};
+    CagCurve *c;
+    CagFitReport r;
+    CagNurbsView v;
+    if (cag_curve_fit(&d, count, keep, -1, 0, &c, &r, &err)) {
+      // Even knots may have a span without data.
+      assert_string_equal(err.reason, "fit-singular");
+      assert_true(d.kind == CAG_FIT_OPEN);
+      continue;
+    }
+    assert_true(cag_curve_nurbs_view(c, &v) && !v.rational);
+    assert_true(v.degree == degree && v.count == count);
+    if (own) memcpy(expected, given, n * sizeof *given);
+    else spaced_parameters(p, n, d.spacing, 0, (double)(count - (size_t)degree), expected);
+    double sum = 0, largest = 0, dots[12][3] = {{0}};
+    for (size_t i = 0; i < n; i++) {
+      double basis[8];
+      NEAR(r.parameters[i], expected[i], 1e-12);
+      const double u = fmin(c->end, r.parameters[i]);
+      const CagVec3 e = cag_sub(at(c, u), p[i]);
+      near_vec(r.residuals[i], e, 1e-12);
+      sum += cag_dot(e, e);
+      largest = fmax(largest, cag_norm(e));
+      const size_t span = cag_knots_span(v.knots, count, degree, u, false, (size_t)degree);
+      cag_bspline_basis(v.knots, degree, span, u, basis);
+      for (int j = 0; j <= degree; j++) {
+        dots[span - (size_t)degree + (size_t)j][0] += basis[j] * e.x;
+        dots[span - (size_t)degree + (size_t)j][1] += basis[j] * e.y;
+        dots[span - (size_t)degree + (size_t)j][2] += basis[j] * e.z;
+      }
+    }
+    NEAR(r.rms, sqrt(sum / (double)n), 1e-12);
+    NEAR(r.largest, largest, 1e-12);
+    assert_int_equal(r.rounds, 0);
+    for (size_t j = keep; j < count - keep; j++)
+      for (int k = 0; k < 3; k++) NEAR(dots[j][k], 0, 1e-9);
+    if (keep) {
+      near_vec(control(c, 0), p[0], 0);
+      near_vec(control(c, count - 1), p[n - 1], 0);
+    }
+    // Clamped knots: even ones, or as many data to each span, or the means of parameters.
+    const double from = expected[0], to = expected[n - 1];
+    for (int k = 0; k <= degree; k++) {
+      NEAR(v.knots[k], from, 1e-12);
+      NEAR(v.knots[count + (size_t)k], to, 1e-12);
+    }
+    for (size_t j = 1; j + (size_t)degree < count; j++) {
+      const double even = from + (to - from) * (double)j / (double)(count - (size_t)degree);
+      double other = 0;
+      if (n == count) {
+        for (int k = 0; k < degree; k++) other += expected[j + (size_t)k] / degree;
+      } else {
+        const double place = (double)(j * n) / (double)(count - (size_t)degree);
+        const size_t i = (size_t)(place + 1e-12);
+        other = expected[i - 1] + (place - (double)i) * (expected[i] - expected[i - 1]);
+      }
+      const double knot = v.knots[(size_t)degree + j];
+      if (d.kind == CAG_FIT_OPEN) NEAR(knot, even, 1e-9);
+      else if (d.kind == CAG_FIT_AVERAGED) NEAR(knot, other, 1e-9);
+      else assert_true(fabs(knot - even) < 1e-9 || fabs(knot - other) < 1e-9);
+    }
+    cag_fit_report_free(&r);
+    cag_curve_release(c);
+  }
+}
+
+static void random_points_are_passed_at_their_parameters(void **state) {
+  (void)state;
+  seed = 902;
+  static const CagSpacing spacings[3] = {CAG_SPACING_UNIFORM, CAG_SPACING_CHORD,
+                                         CAG_SPACING_CENTRIPETAL};
+  for (int round = 0; round < 60; round++) {
+    CagVec3 p[12], v[12];
+    double u[12];
+    const int degree = 1 + round % 5;
+    const size_t n = (size_t)degree + 1 + (size_t)(round % 4);
+    for (size_t i = 0; i < n; i++) {
+      p[i] = random_point();
+      v[i] = random_point();
+    }
+    const CagFitData d = {.points = p,
+                          .n = n,
+                          .spacing = spacings[round % 3],
+                          .kind = round % 2 ? CAG_FIT_AVERAGED : CAG_FIT_AUTO,
+                          .degree = degree,
+                          .dimension = 3};
+    CagCurve *c;
+    CagVec3 e[2];
+    OK(cag_curve_interpolate(&d, NULL, 0, &c, &err));
+    spaced_parameters(p, n, d.spacing, c->start, c->end, u);
+    assert_true(c->start == 0 && c->end == (double)(n - (size_t)degree));
+    for (size_t i = 0; i < n; i++) near_vec(at(c, fmin(c->end, u[i])), p[i], 1e-9);
+    cag_curve_release(c);
+    if (degree < 3) continue;
+    // Tangents at the ends, or everywhere.
+    const bool all = round % 2;
+    OK(cag_curve_interpolate(&d, v, all ? n : 2, &c, &err));
+    spaced_parameters(p, n, d.spacing, c->start, c->end, u);
+    for (size_t i = 0; i < n; i++) {
+      OK(cag_curve_eval(c, fmin(c->end, u[i]), 1, CAG_SIDE_LEFT, e, &err));
+      near_vec(e[0], p[i], 1e-7);
+      if (all) near_vec(e[1], v[i], 1e-5);
+      else if (i == 0 || i + 1 == n) near_vec(e[1], v[i > 0], 1e-5);
+    }
+    cag_curve_release(c);
+    FAILS(cag_curve_interpolate(&d, v, 1, &c, &err), "point-count");
+    FAILS(cag_curve_interpolate(&d, v, n + 1, &c, &err), "point-count");
+  }
+}
+
+// x grows along the data: with it held, the curve is a graph that has each point's x at its
+// parameter.
+static void random_coordinates_are_held(void **state) {
+  (void)state;
+  seed = 903;
+  for (int round = 0; round < 30; round++) {
+    CagVec3 p[14];
+    const int axis = round % 3;
+    double grown = 0;
+    for (int i = 0; i < 14; i++) {
+      const double step = uniform(0.8, 1.2), other = uniform(-0.3, 0.3), third = uniform(-0.3, 0.3);
+      p[i] = axis == 0   ? cag_vec3(grown, other, third)
+             : axis == 1 ? cag_vec3(third, grown, other)
+                         : cag_vec3(other, third, grown);
+      grown += step;
+    }
+    const CagFitData d = {.points = p, .n = 14, .degree = 3, .dimension = 3};
+    CagCurve *c;
+    CagFitReport r;
+    OK(cag_curve_fit(&d, 6, false, axis, 1e-10, &c, &r, &err));
+    near_vec(control(c, 0), p[0], 0);
+    near_vec(control(c, 5), p[13], 0);
+    for (int i = 0; i < 14; i++) {
+      const CagVec3 q = at(c, r.parameters[i]);
+      NEAR(axis == 0   ? q.x
+           : axis == 1 ? q.y
+                       : q.z,
+           axis == 0   ? p[i].x
+           : axis == 1 ? p[i].y
+                       : p[i].z,
+           1e-10);
+      near_vec(r.residuals[i], cag_sub(q, p[i]), 1e-12);
+    }
+    cag_fit_report_free(&r);
+    cag_curve_release(c);
+    const CagFitData flat = {.points = p, .n = 14, .degree = 3, .dimension = 2};
+    FAILS(cag_curve_fit(&flat, 6, false, 2, 1e-10, &c, NULL, &err), "bad-order");
+  }
+  const CagVec3 p[3] = {{0, 0, 0}, {1, 1, 0}, {2, 0, 0}};
+  const double open[7] = {0, 0.1, 1, 2, 3, 4, 5}, outside[3] = {0, 1, 9};
+  CagFitData d = {
+      .points = p, .n = 3, .degree = 2, .dimension = 2, .kind = CAG_FIT_GIVEN, .knots = open};
+  CagCurve *c;
+  FAILS(cag_curve_fit(&d, 3, true, -1, 0, &c, NULL, &err), "fit-ends");
+  d.parameters = outside;
+  FAILS_AT(cag_curve_fit(&d, 3, false, -1, 0, &c, NULL, &err), "bad-parameter", 0);
+  d.kind = CAG_FIT_AUTO;
+  d.n = 1;
+  FAILS(cag_curve_interpolate(&d, NULL, 0, &c, &err), "too-few-points");
+  d.n = 3;
+  d.degree = 0;
+  FAILS(cag_curve_interpolate(&d, NULL, 0, &c, &err), "order-range");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(random_fits_are_least_squares),
+      cmocka_unit_test(random_points_are_passed_at_their_parameters),
+      cmocka_unit_test(random_coordinates_are_held),
       cmocka_unit_test(example_17_is_interpolated),
       cmocka_unit_test(example_17_is_fitted),
       cmocka_unit_test(a_held_coordinate_agrees_at_every_point),
