@@ -5,6 +5,8 @@
 
 #include "geom/solid/clip.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/inside.h"
+#include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
 static CagSolid *box(double size) {
@@ -244,6 +246,168 @@ static void clipped_curves_end_on_the_solid(void **state) {
   cag_solid_release(by);
 }
 
+// --- Random trees of operations, against their operands' equations ---
+
+// A solid beside what it should be: an equation in the coordinates of its placement, or two parts.
+typedef struct Model {
+  CagSolid *solid;
+  int kind;          // of the equation; 10 and more: an operation
+  double a, b, c;    // sizes
+  CagTransform back; // from the world
+  int parts[2];
+} Model;
+
+static struct {
+  Model at[32];
+  int n;
+} models;
+
+static double between(double low, double high) { return uniform(low, high); }
+
+static CagTransform random_placement(void) {
+  double angles[3], way[3];
+  for (int i = 0; i < 3; i++) angles[i] = between(-3, 3);
+  for (int i = 0; i < 3; i++) way[i] = between(-1, 1);
+  const CagTransform turn = cag_rpy(angles[0], angles[1], angles[2]),
+                     lift = cag_translate(cag_vec3(way[0], way[1], way[2]));
+  return cag_transform_multiply(&lift, &turn);
+}
+
+// Negative inside.
+static double model_value(const Model *m, CagVec3 world) {
+  const CagVec3 p = cag_transform_point(&m->back, world);
+  const double a = m->a, b = m->b, c = m->c;
+  double x = 0, y = 0;
+  if (m->kind >= 10) {
+    x = model_value(&models.at[m->parts[0]], p);
+    y = model_value(&models.at[m->parts[1]], p);
+  }
+  switch (m->kind) {
+  case 0: return fmax(fabs(p.x) - a / 2, fmax(fabs(p.y) - b / 2, fabs(p.z) - c / 2));
+  case 1: return fmax(fmax(-p.x, p.x - a), fmax(fmax(-p.y, p.y - b), fmax(-p.z, p.z - c)));
+  case 2: return cag_norm(p) - a;
+  case 3: return fmax(fmax(-p.z, p.z - a), hypot(p.x, p.y) - (b + (c - b) * p.z / a));
+  case 4: return hypot(hypot(p.x, p.y) - a, p.z) - b;
+  case 5: return -p.z;
+  case 6: return p.x * p.x / (a * a) + p.y * p.y / (b * b) - p.z * p.z / (c * c) - 1;
+  case 7: return fmax(fmax(-p.x, -p.y), fmax(-p.z, p.x + p.y + p.z - a)); // a tetrahedron
+  case 10: return fmin(x, y);
+  case 11: return fmax(x, -y);
+  default: return fmax(x, y);
+  }
+}
+
+static CagSolid *primitive(Model *m) {
+  static const uint32_t faces[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  static const CagPlane level = {{0, 0, 0}, {0, 0, -1}};
+  const double a = m->a, b = m->b, c = m->c;
+  const CagQuadric form = {{1 / (a * a), 1 / (b * b), -1 / (c * c), 0, 0, 0, 0, 0, 0, -1}};
+  CagSolid *s = NULL;
+  CagMesh *mesh;
+  switch (m->kind) {
+  case 0:
+  case 1: OK(cag_solid_box(cag_vec3(a, b, c), m->kind == 0, &s, &err)); break;
+  case 2: OK(cag_solid_sphere(a, &s, &err)); break;
+  case 3: OK(cag_solid_cylinder(a, b, c, &s, &err)); break;
+  case 4: OK(cag_solid_torus(a, b, &s, &err)); break;
+  case 5: OK(cag_solid_half_space(&level, &s, &err)); break;
+  case 6: OK(cag_solid_quadric(&form, &s, &err)); break;
+  default:
+    OK(cag_mesh_new(4, 4, false, false, false, &mesh, &err));
+    mesh->positions[0] = cag_vec3(0, 0, 0);
+    mesh->positions[1] = cag_vec3(a, 0, 0);
+    mesh->positions[2] = cag_vec3(0, a, 0);
+    mesh->positions[3] = cag_vec3(0, 0, a);
+    memcpy(mesh->triangles, faces, sizeof faces);
+    OK(cag_solid_from_mesh(mesh, &s, &err));
+    cag_mesh_release(mesh);
+  }
+  return s;
+}
+
+// Gives the index of a tree of this depth.
+static int random_model(int depth) {
+  Model m = {.kind = depth > 0 ? 10 + (int)between(0, 3) : (int)between(0, 8)};
+  m.a = between(0.8, 2), m.b = between(0.3, 0.8), m.c = between(0.3, 1.5);
+  CagSolid *made = NULL;
+  if (m.kind >= 10) {
+    static const CagSetOperation operations[] = {CAG_UNION, CAG_DIFFERENCE, CAG_INTERSECTION};
+    for (int i = 0; i < 2; i++) m.parts[i] = random_model(depth - 1);
+    CagSolid *two[2] = {models.at[m.parts[0]].solid, models.at[m.parts[1]].solid};
+    OK(cag_solid_combine(operations[m.kind - 10], two, 2, NULL, &made, &err));
+  } else {
+    made = primitive(&m);
+  }
+  CagTransform place = cag_transform_identity();
+  if (m.kind < 10 || between(0, 1) < 0.5) place = random_placement();
+  OK(cag_transform_inverse(&place, &m.back, &err));
+  OK(cag_solid_transform(made, &place, &m.solid, &err));
+  cag_solid_release(made);
+  models.at[models.n] = m;
+  return models.n++;
+}
+
+static void operations_hold_what_their_equations_say(void **state) {
+  (void)state;
+  seed = 61;
+  size_t held = 0;
+  for (int k = 0; k < 120; k++) {
+    const CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    models.n = 0;
+    const Model *top = &models.at[random_model(k % 4)];
+    CagInside *inside;
+    CagBounds reach;
+    OK(cag_solid_reach(top->solid, &reach, &err));
+    OK(cag_inside_new(top->solid, &how, &inside, &err));
+    for (int i = 0; i < 300; i++) {
+      double x[3];
+      for (int j = 0; j < 3; j++) x[j] = between(-3, 3);
+      const CagVec3 p = cag_vec3(x[0], x[1], x[2]);
+      const double value = model_value(top, p);
+      bool holds;
+      OK(cag_inside_holds(inside, p, &holds, &err));
+      if (fabs(value) < 1e-9) continue;
+      if (holds != (value < 0)) fail_msg("tree %d: the point %d has the value %g", k, i, value);
+      held += holds;
+      if (!holds) continue;
+      const double slack = 1e-9;
+      assert_true(p.x >= reach.min.x - slack && p.y >= reach.min.y - slack &&
+                  p.z >= reach.min.z - slack);
+      assert_true(p.x <= reach.max.x + slack && p.y <= reach.max.y + slack &&
+                  p.z <= reach.max.z + slack);
+    }
+    cag_inside_free(inside);
+    // Pieces of a line: each is within, ends on the boundary or at an end of the line, and together
+    // they are as long as the part of the line that is within.
+    const CagVec3 ends[2] = {{-4, between(-1, 1), 0.3}, {4, between(-1, 1), between(-1, 1)}};
+    CagCurve *line, **pieces;
+    size_t n;
+    double length = 0, within = 0;
+    const int samples = 2000;
+    OK(cag_curve_polyline(ends, 2, false, 3, &line, &err));
+    OK(cag_curve_clip(line, top->solid, NULL, &pieces, &n, &err));
+    for (int i = 0; i < samples; i++)
+      within += model_value(top, cag_lerp(ends[0], ends[1], (i + 0.5) / samples)) < 0;
+    for (size_t i = 0; i < n; i++) {
+      CagVec3 p[3];
+      for (int j = 0; j < 3; j++) {
+        const double t = pieces[i]->start + (pieces[i]->end - pieces[i]->start) * j / 2;
+        OK(cag_curve_point(pieces[i], t, &p[j], &err));
+        const bool end =
+            cag_norm(cag_sub(p[j], ends[0])) < 1e-9 || cag_norm(cag_sub(p[j], ends[1])) < 1e-9;
+        if (j != 1 && !end) NEAR(model_value(top, p[j]), 0, 1e-5);
+      }
+      length += cag_norm(cag_sub(p[2], p[0]));
+      cag_curve_release(pieces[i]);
+    }
+    NEAR(length / cag_norm(cag_sub(ends[1], ends[0])), within / samples, 0.006);
+    free(pieces);
+    cag_curve_release(line);
+    for (int i = 0; i < models.n; i++) cag_solid_release(models.at[i].solid);
+  }
+  assert_true(held > 1000);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(operations_of_one_kind_are_one),
@@ -256,6 +420,7 @@ int main(void) {
       cmocka_unit_test(an_interrupt_stops_operations),
       cmocka_unit_test(clipped_surfaces_end_on_the_solid),
       cmocka_unit_test(clipped_curves_end_on_the_solid),
+      cmocka_unit_test(operations_hold_what_their_equations_say),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
