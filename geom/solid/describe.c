@@ -244,6 +244,7 @@ static void describe(const CagSolid *s, bool placed, char *buffer, size_t size) 
   Text t = {buffer, size, 0};
   const Placed p = take_apart(s);
   bool sized = scales_sizes(s, &p);
+  if (size > 0) buffer[0] = '\0';
   add_form(&t, s, sized ? p.scale : as_made);
   if (placed && s->kind != CAG_SOLID_HALF_SPACE) add_placement(&t, s, &p, sized);
 }

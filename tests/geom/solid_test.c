@@ -1,5 +1,7 @@
 // Solids: closed forms for mass, outward normals, shared edges, and refusals.
 
+#include <stdio.h>
+
 #include "surface_support.h"
 
 static CagRegion *new_polygon(const CagVec3 *points, size_t n) {
@@ -388,9 +390,61 @@ static void shells_are_checked_and_turned_outward(void **state) {
   cag_solid_release(box);
 }
 
+// Placements by whole numbers: sheared solids tell the rows of their map, turned ones their axis,
+// scaled ones their sizes; the form alone leaves all of it out.
+static void placements_are_told_as_they_are(void **state) {
+  (void)state;
+  static const CagVec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int k = 0; k < 60; k++) {
+    CagSolid *s, *moved;
+    CagTransform t = cag_transform_identity();
+    char expected[260], found[260], form[120], place[40] = "";
+    const int x = k % 5 - 2, y = k % 3, z = k % 4 - 1;
+    const char *centered = k % 2 ? ", centered" : "";
+    if (x || y || z) snprintf(place, sizeof place, ", at [%d, %d, %d]", x, y, z);
+    MUST(cag_solid_box(cag_vec3(2, 3, 4), k % 2, &s, err));
+    if (k % 4 == 0) { // columns that are not square to each other
+      t.m[k / 4 % 3][(k / 4 + 1) % 3] = 1 + k / 4 % 2;
+      snprintf(expected, sizeof expected,
+               "box, 2 x 3 x 4%s, mapped by [[%g, %g, %g], [%g, %g, %g], [%g, %g, %g]]%s", centered,
+               t.m[0][0], t.m[0][1], t.m[0][2], t.m[1][0], t.m[1][1], t.m[1][2], t.m[2][0],
+               t.m[2][1], t.m[2][2], place);
+    } else if (k % 4 < 3) { // a turn about an axis
+      const CagVec3 axis = axes[k % 3];
+      const int degrees = 10 + 5 * (k % 13);
+      MUST(cag_rotate(axis, degrees * M_PI / 180, cag_vec3(0, 0, 0), &t, err));
+      snprintf(expected, sizeof expected, "box, 2 x 3 x 4%s, turned by %ddeg about [%g, %g, %g]%s",
+               centered, degrees, axis.x, axis.y, axis.z, place);
+    } else {
+      for (int i = 0; i < 3; i++) t.m[i][i] = 1 + (k / 4 + i) % 3;
+      snprintf(expected, sizeof expected, "box, %g x %g x %g%s%s", 2 * t.m[0][0], 3 * t.m[1][1],
+               4 * t.m[2][2], centered, place);
+    }
+    t.planar = false;
+    t.m[0][3] = x, t.m[1][3] = y, t.m[2][3] = z;
+    MUST(cag_solid_transform(s, &t, &moved, err));
+    cag_solid_describe(moved, found, sizeof found);
+    assert_string_equal(found, expected);
+    cag_solid_describe_form(moved, form, sizeof form);
+    assert_int_equal(strncmp(form, expected, strlen(form)), 0);
+    assert_true(!strstr(form, "turned") && !strstr(form, "mapped") && !strstr(form, ", at"));
+    // A short buffer holds the beginning.
+    for (size_t size = 1; size < strlen(expected); size += 7) {
+      memset(found, '#', sizeof found);
+      cag_solid_describe(moved, found, size);
+      assert_int_equal(strlen(found), size - 1);
+      assert_int_equal(strncmp(found, expected, size - 1), 0);
+      assert_int_equal(found[size], '#');
+    }
+    cag_solid_release(s);
+    cag_solid_release(moved);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_box_has_six_faces_and_twelve_edges),
+      cmocka_unit_test(placements_are_told_as_they_are),
       cmocka_unit_test(a_sphere_faces_outward_at_its_poles),
       cmocka_unit_test(cylinders_frusta_and_cones),
       cmocka_unit_test(a_torus_has_its_closed_forms),
