@@ -499,6 +499,27 @@ static void an_endless_shape_is_shown_where_it_is_made(void **state) {
   cag_session_free(s);
 }
 
+// Each flat loft is warned of, wherever it stands among what is shown.
+static void flat_lofts_are_warned_of(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  assert_int_equal(run_text(s,
+                            "b = loft([circle(2), circle(3)])\nc = loft([circle(4), circle(5)])\n"
+                            "show box(1), b, sphere(1), c"),
+                   CAG_STATUS_OK);
+  CagShownCounts counts;
+  assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_OK);
+  assert_int_equal(cag_session_error_count(s), 2);
+  for (size_t i = 0; i < 2; i++) {
+    CagErrorView e;
+    cag_session_error(s, i, &e);
+    assert_string_equal(e.message,
+                        i ? "c: its sections lie in one plane, so that the loft has no thickness"
+                          : "b: its sections lie in one plane, so that the loft has no thickness");
+  }
+  cag_session_free(s);
+}
+
 // Files for printing warn of parts that enclose nothing, with the edges that are open.
 static void exports_warn_of_open_parts(void **state) {
   (void)state;
@@ -597,6 +618,7 @@ int main(void) {
       cmocka_unit_test(empty_shapes_are_warned_of),
       cmocka_unit_test(an_endless_shape_is_shown_where_it_is_made),
       cmocka_unit_test(exports_warn_of_open_parts),
+      cmocka_unit_test(flat_lofts_are_warned_of),
       cmocka_unit_test(scenes_of_inputs_follow_their_names),
       cmocka_unit_test(a_limit_of_time_is_told_from_outside),
       cmocka_unit_test(a_value_callback_that_calls_the_session_is_refused),

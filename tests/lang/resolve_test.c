@@ -66,6 +66,13 @@ static void params_know_builtin_names_only(void **state) {
   expect_errors("b = 1\nparam a = b\n", "E0208 2:11");
   expect_errors("param b = 1\nparam a = 1 in 0..b\n", "E0208 2:19");
   expect_errors("param a = max(1, sum([for i in 0..3: i]))\n", "");
+  // What they bind themselves: names of a block, parameters, and names of a comprehension.
+  expect_errors("param a = { b = 1; b + 1 }\n", "");
+  expect_errors("param a = (x => x + 1)(2)\n", "");
+  expect_errors("param a = ((x, y = x) => y)(2)\n", "");
+  expect_errors("param a = [for i in 0..3, k in [i]: k]\n", "");
+  expect_errors("c = 1\nparam a = { b = c; b }\n", "E0208 2:17");
+  expect_errors("c = 1\nparam a = (x => c)(2)\n", "E0208 2:17");
 }
 
 static void nothing_is_given_twice(void **state) {
