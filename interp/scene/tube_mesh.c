@@ -468,13 +468,14 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
   CagVec3 *run = malloc((n + 2) * sizeof *run);
   if (!run) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
-  double at = 0, next = step; // length walked, and where the dash or gap ends
+  double at = 0, next = step;        // length walked, and where the dash or gap ends
+  const double sliver = 1e-9 * step; // a dash that ends this close to a point ends there
   bool drawn = true;
   size_t m = 0;
   run[m++] = p[0];
   for (size_t i = 1; status == CAG_OK && i < n; i++) {
     double part = cag_norm(cag_sub(p[i], p[i - 1]));
-    while (status == CAG_OK && part > 0 && next < at + part) {
+    while (status == CAG_OK && part > 0 && next < at + part - sliver) {
       CagVec3 q = cag_lerp(p[i - 1], p[i], (next - at) / part);
       run[m++] = q;
       if (drawn) status = add_path(b, run, m, false, radius, err);
@@ -485,6 +486,12 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
     }
     at += part;
     run[m++] = p[i];
+    if (status != CAG_OK || i + 1 == n || next > at + sliver) continue;
+    if (drawn) status = add_path(b, run, m, false, radius, err);
+    drawn = !drawn;
+    m = 0;
+    run[m++] = p[i];
+    next += step;
   }
   // Rounding may leave a sliver behind the last gap.
   if (status == CAG_OK && drawn && next - at < step / 2)

@@ -324,6 +324,16 @@ static void empty_shapes_are_set_aside(void **state) {
   is_point(s->bounds.min, cag_vec3(-3, -3, -3), "least");
   is_point(s->bounds.max, cag_vec3(3, 3, 3), "most");
   cag_session_free(session);
+  // Robots are shown at home.
+  session = shown("show robot([revolute(a: 300), revolute(a: 100)]), sun(-Z)");
+  assert_true(session->scene.item_count > 0);
+  is_near(session->scene.bounds.max.x, 400, 40, "the end of the arm");
+  cag_session_free(session);
+  // Nor is a region without a width in x empty.
+  session = shown("show rotate(rectangle(2, 3), Y, 90deg), translate(box(1), [4, 0, 0])");
+  is_point(session->scene.bounds.min, cag_vec3(0, -1.5, -1), "least");
+  is_point(session->scene.bounds.max, cag_vec3(5, 1.5, 1), "most");
+  cag_session_free(session);
   // A line that has no width in x is not empty.
   session = shown("show box(1), line([5, 0, 0], [5, 7, 8])");
   is_point(session->scene.bounds.max, cag_vec3(5, 7, 8), "most");
@@ -687,6 +697,34 @@ static void corners_of_any_angle_are_closed(void **state) {
   assert_true(tried[0] > 10 && tried[1] > 10);
 }
 
+// A closed square of 4 times 10 with dashes of 3: thirteen fit, so twelve steps are dashes and gaps
+// in turn, each with caps where the steps meet.
+static void dashes_of_a_square_go_around(void **state) {
+  (void)state;
+  const CagVec3 p[] = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}};
+  CagCurve *c;
+  OK(cag_curve_polyline(p, 4, true, 3, &c, &err));
+  CagMesh *m = tube_of(c, 0.1, 3);
+  check_tube(c, m, 0.2);
+  int caps = 0;
+  for (uint32_t v = 0; v < m->vertex_count; v++) {
+    int uses = 0;
+    for (size_t k = 0; k < 3 * m->triangle_count; k++) uses += m->triangles[k] == v;
+    if (uses != 12) continue; // the middle of a cap
+    const CagVec3 q = m->positions[v];
+    const double at = fabs(q.y) < 1e-9        ? q.x
+                      : fabs(q.x - 10) < 1e-9 ? 10 + q.y
+                      : fabs(q.y - 10) < 1e-9 ? 30 - q.x
+                                              : 40 - q.y;
+    const double steps = at / (40.0 / 12);
+    if (fabs(steps - (double)lround(steps)) > 1e-6) fail_msg("a cap at %g", at);
+    caps++;
+  }
+  assert_int_equal(caps, 12);
+  cag_mesh_release(m);
+  cag_curve_release(c);
+}
+
 // A limit of exactly the triangles of a tube is enough, and one less is not.
 static void the_limit_of_triangles_is_exact(void **state) {
   (void)state;
@@ -852,6 +890,7 @@ int main(void) {
       cmocka_unit_test(closed_tubes_turn_evenly),
       cmocka_unit_test(dashes_are_where_they_belong),
       cmocka_unit_test(corners_of_any_angle_are_closed),
+      cmocka_unit_test(dashes_of_a_square_go_around),
       cmocka_unit_test(the_limit_of_triangles_is_exact),
       cmocka_unit_test(surfaces_become_meshes),
       cmocka_unit_test(lenses_have_an_aperture),
