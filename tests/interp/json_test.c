@@ -261,6 +261,7 @@ static void every_member_has_the_value_of_the_script(void **state) {
       {"box(2), sky([[1, 0, 0], [0, 0, 1]]), background([0.5, 0, 1])",
        "{'bounds':{'min':[0,0,0],'max':[2,2,2]},'tolerance':0,'automatic_camera':true,"
        "'sky':{'colors':[[1,0,0],[0,0,1]]},'background':[0.5,0,1]}"},
+      {"line([5, 0, 0], [5, 7, 8]), sun(-Z)", "{'bounds':{'min':[5,0,0],'max':[5,7,8]}}"},
       {"box(2), sun(-Z)", "{'sky':null,'background':null}"},
       {"box(2), ground(-3, size: 20), sun(-Z)",
        "{'items':[{'kind':'solid'},{'kind':'ground','z':-3,'size':20}]}"},

@@ -241,6 +241,40 @@ static void arcs_are_exact(void **state) {
   }
 }
 
+// A line that has no width in x is a picture too, and one without a radius has the width of all.
+static void an_upright_line_is_drawn(void **state) {
+  (void)state;
+  Fixture f;
+  CagCurve *c;
+  OK(cag_curve_line(cag_vec3(5, 0, 0), cag_vec3(5, 9, 0), 3, &c, &err));
+  fixture_begin(&f);
+  fixture_curve(&f, "c", c);
+  char *text = export_text(&f);
+  assert_int_equal(read_path(text, "c"), 1);
+  is_framed(text, (CagBounds){{5, 0, 0}, {5, 9, 0}}, 0, 0);
+  const char *path = strstr(text, "<path");
+  assert_null(strstr(path, "stroke-width"));
+  free(text);
+  fixture_end(&f);
+}
+
+// A label without a size has 0.024 of the diagonal of what is drawn, 3 by 4.
+static void labels_have_a_size_by_what_is_drawn(void **state) {
+  (void)state;
+  Fixture f;
+  CagCurve *c;
+  CagLabel label = {.text = "A", .at = {1, 1, 0}};
+  OK(cag_curve_line(cag_vec3(0, 0, 0), cag_vec3(3, 4, 0), 3, &c, &err));
+  fixture_begin(&f);
+  fixture_curve(&f, "c", c);
+  f.scene.labels = &label;
+  f.scene.label_count = 1;
+  char *text = export_text(&f);
+  assert_non_null(strstr(text, " font-size=\"0.12\""));
+  free(text);
+  fixture_end(&f);
+}
+
 // --- What a camera sees ---
 
 // The picture of a point by the definition of a camera; y up. False: behind the camera.
@@ -420,6 +454,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(polynomials_are_exact),
       cmocka_unit_test(arcs_are_exact),
+      cmocka_unit_test(an_upright_line_is_drawn),
+      cmocka_unit_test(labels_have_a_size_by_what_is_drawn),
       cmocka_unit_test(cameras_see_curves_as_they_are),
       cmocka_unit_test(what_is_behind_the_camera_is_left_out),
       cmocka_unit_test(a_part_that_comes_into_view_is_drawn),
