@@ -415,8 +415,6 @@ void cag_sincos_degrees(double degrees, double *sine, double *cosine) {
 }
 
 double cag_atan2_degrees(double y, double x) {
-  y += 0.0;
-  x += 0.0;
   if (y == 0) return x < 0 ? 180 : 0;
   if (x == 0) return y < 0 ? -90 : 90;
   if (fabs(x) == fabs(y)) return copysign(x < 0 ? 135 : 45, y);
