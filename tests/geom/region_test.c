@@ -506,8 +506,35 @@ static void figures_have_their_closed_forms(void **state) {
   assert_int_not_equal(cag_region_regular_polygon(5, 0, &r, &err), CAG_OK);
 }
 
+// Bounds, areas and perimeters are those of all loops, in whatever order.
+static void separate_loops_all_count(void **state) {
+  (void)state;
+  CagCurve *loops[3] = {circle(1, 0, 0), circle(2, 7, 1), circle(0.5, -3, -2)};
+  for (int first = 0; first < 3; first++) {
+    CagCurve *turned[3] = {loops[first], loops[(first + 1) % 3], loops[(first + 2) % 3]};
+    CagRegion *r;
+    CagBounds b;
+    CagVec3 center;
+    double area, length;
+    OK(cag_region_from_loops(turned, 3, &r, &err));
+    OK(cag_region_bounds(r, &b, &err));
+    near_vec(b.min, cag_vec3(-3.5, -2.5, 0), 1e-9);
+    near_vec(b.max, cag_vec3(9, 3, 0), 1e-9);
+    OK(cag_region_area(r, &area, &center, &err));
+    NEAR(area, 5.25 * M_PI, 1e-9);
+    near_vec(center, cag_vec3((4 * 7 - 0.25 * 3) / 5.25, (4 - 0.25 * 2) / 5.25, 0), 1e-9);
+    OK(cag_region_perimeter(r, &length, &err));
+    NEAR(length, 7 * M_PI, 1e-9);
+    assert_true(contains(r, 0.9, 0) && contains(r, 8.9, 1) && contains(r, -3, -2.4));
+    assert_false(contains(r, 3, 0));
+    cag_region_release(r);
+  }
+  for (int i = 0; i < 3; i++) cag_curve_release(loops[i]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(separate_loops_all_count),
       cmocka_unit_test(random_regions_have_the_measures_of_polygons),
       cmocka_unit_test(loops_that_cross_are_named),
       cmocka_unit_test(figures_have_their_closed_forms),
