@@ -395,9 +395,8 @@ static LongComplex improve(const Roots *r, LongComplex z, size_t m) {
   enum { STEPS_MOST = 20 };
   for (int i = 0; i < STEPS_MOST; i++) {
     LongComplex slope = taylor_at(r, z, m, NULL) * (long double)m;
-    if (slope == 0) break;
     LongComplex step = taylor_at(r, z, m - 1, NULL) / slope;
-    if (!(cabsl(step) < HUGE_VALL)) break;
+    if (!(cabsl(step) < HUGE_VALL)) break; // also if the slope is 0
     z -= step;
     if (cabsl(step) <= LDBL_EPSILON * cabsl(z)) break;
   }
