@@ -758,6 +758,9 @@ static void other_chains_have_none(void **state) {
       {"stanford", 0, {R, 0, 412, 5, -90}},          // a slide, and axes 1 and 2 apart
       {"stanford", 0, {R, 0, 412, 0, 0}},            // or parallel
       {"axes 2, 3, 4 parallel", 0, {R, 0, 89, 0, 80}},
+      {"axes 2, 3, 4 parallel", 0, {R, 0, 89, 0, 100}},
+      {"axes 2, 3, 4 parallel", 3, {R, 0, 109, 0, 100}},
+      {"axes 2, 3, 4 parallel", 4, {R, 0, 94, 0, -100}},
       {"axes 2, 3, 4 parallel", 1, {R, 0, 0, 0, 0}},
       {"axes 2, 3, 4 parallel", 2, {R, 0, 0, 0, 0}},
       {"axes 2, 3, 4 parallel", 3, {R, 0, 109, 0, 80}},
