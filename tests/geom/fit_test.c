@@ -399,8 +399,30 @@ static void random_coordinates_are_held(void **state) {
   FAILS(cag_curve_interpolate(&d, NULL, 0, &c, &err), "order-range");
 }
 
+// Evenly spaced data of degree 2 get even knots; data of which the even knots leave one without a
+// basis function of its own get averaged ones.
+static void even_knots_are_for_even_data(void **state) {
+  (void)state;
+  const double even[7] = {0, 1, 2, 3, 4, 5, 6}, crowded[7] = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 6};
+  CagVec3 p[7];
+  for (int i = 0; i < 7; i++) p[i] = cag_vec3(i, i % 2, 0);
+  CagFitData d = {.points = p, .n = 7, .parameters = even, .degree = 2, .dimension = 2};
+  CagCurve *c;
+  CagNurbsView v;
+  OK(cag_curve_interpolate(&d, NULL, 0, &c, &err));
+  assert_true(cag_curve_nurbs_view(c, &v));
+  for (int j = 1; j < 5; j++) NEAR(v.knots[2 + j], 1.2 * j, 1e-12);
+  cag_curve_release(c);
+  d.parameters = crowded;
+  OK(cag_curve_interpolate(&d, NULL, 0, &c, &err));
+  assert_true(cag_curve_nurbs_view(c, &v));
+  for (int j = 1; j < 5; j++) NEAR(v.knots[2 + j], (crowded[j] + crowded[j + 1]) / 2, 1e-12);
+  cag_curve_release(c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(even_knots_are_for_even_data),
       cmocka_unit_test(random_fits_are_least_squares),
       cmocka_unit_test(random_points_are_passed_at_their_parameters),
       cmocka_unit_test(random_coordinates_are_held),
