@@ -85,19 +85,25 @@ if [ "${1:-}" = --measure ]; then
   exit
 fi
 
-# The coverage build, unless every suite has been measured. gcov finds the notes of the compiler beside the counts.
+# The coverage build, unless every suite has been measured. gcov finds the notes of the compiler beside the counts. Counts do not go with
+# the notes of another build, so all suites are measured again if the code has changed.
 measure_suites() {
   for suite in $(all_suites); do
     [ -s "$REACH/$suite.time" ] || break
     suite=
   done
   [ -n "$suite" ] || return 0
-  mkdir -p build-reach "$REACH"
+  mkdir -p build-reach
   cc -std=c17 -fPIC -c tests/coverage/exit.c -o build-reach/exit.o
   build BUILD=build-reach OPT=-O0 SANITIZE="--coverage -DCAG_ONE_COPY" LDFLAGS="-Wl,--wrap=_exit build-reach/exit.o" test-programs
+  rm -rf ../notes
+  mkdir -p ../notes
+  (cd build-reach/obj && find geom interp lang -name '*.gcno' | xargs cp --parents -t ../../../notes)
+  diff -rq ../notes "$REACH/notes" > /dev/null 2>&1 || rm -rf "$REACH"
+  mkdir -p "$REACH"
+  rm -rf "$REACH/notes"
+  mv ../notes "$REACH/notes"
   all_suites | xargs -n 1 -P "$(nproc)" sh tools/mutate.sh --measure
-  mkdir -p "$REACH/notes"
-  (cd build-reach/obj && find geom interp lang -name '*.gcno' | xargs cp --parents -t "$REACH/notes")
 }
 
 # reaches SUITE FILE LINE: whether the suite runs the line. A line without code of its own, in a table or in a statement of several lines,
