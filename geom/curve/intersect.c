@@ -308,9 +308,15 @@ static double step_within(const Part *part, double t) {
   return fmin(fmin(part->high, part->b + reach), fmax(fmax(part->low, part->a - reach), t));
 }
 
+static bool lies_in(const Part *part, double t) {
+  const double slack = 1e-9 * (part->b - part->a);
+  return t >= part->a - slack && t <= part->b + slack;
+}
+
 // Gauss-Newton on the distance of the two points, from (t, u); adds the meeting when it is one.
+// *inside: it is one of these parts, not of others near by.
 static CagStatus meet(CurveSearch *s, const Part *a, const Part *b, double t, double u, bool *met,
-                      CagError *err) {
+                      bool *inside, CagError *err) {
   CagVec3 p[2], q[2];
   double best = INFINITY, best_t = t, best_u = u;
   CagVec3 point = {0, 0, 0};
@@ -342,6 +348,7 @@ static CagStatus meet(CurveSearch *s, const Part *a, const Part *b, double t, do
     u = next_u;
   }
   *met = best <= MEET * s->size + s->noise;
+  *inside = *met && lies_in(a, best_t) && lies_in(b, best_u);
   return *met ? add(&s->found, best_t, best_u, point, err) : CAG_OK;
 }
 
@@ -418,19 +425,19 @@ static CagStatus pair(CurveSearch *s, const Part *a, const Part *b, int depth, C
   if (cag_stop_check(err)) return err->status;
   CagVec3 d = cag_sub(a->q, a->p), e = cag_sub(b->q, b->p);
   double da = cag_norm(d), db = cag_norm(e), sine = 0;
-  bool met = false;
+  bool met = false, inside;
   double t = a->a + u * (a->b - a->a), w = b->a + v * (b->b - b->a);
   if (da > 0 && db > 0) {
     sine = cag_norm(cag_cross(d, e)) / (da * db);
     if (sine > bend * (sag_a / da + sag_b / db) && sine > MEET) {
-      CagStatus status = meet(s, a, b, t, w, &met, err);
-      if (status || met) return status;
+      CagStatus status = meet(s, a, b, t, w, &met, &inside, err);
+      if (status || inside) return status;
     }
   }
   const double small = CHORD * s->size + s->noise;
   if ((sag_a <= small && sag_b <= small) || depth == 0) {
     if (run_along(s, a, b)) return fail_overlap(err);
-    CagStatus status = meet(s, a, b, t, w, &met, err);
+    CagStatus status = meet(s, a, b, t, w, &met, &inside, err);
     // Chords at an angle come nearer to each other than their bends let them: the parameter runs
     // too unevenly for Newton's method.
     const bool uneven = !met && sine > MEET && fmax(da, db) > MEET * s->size;

@@ -191,9 +191,15 @@ static CagStatus add(Search *s, CagContact m, CagError *err) {
   return s->n >= FOUND_MANY && (s->n & (s->n - 1)) == 0 ? merge(s, err) : CAG_OK;
 }
 
+static bool lies_in(double x, double low, double high) {
+  const double slack = 1e-9 * (high - low);
+  return x >= low - slack && x <= high + slack;
+}
+
 // Within `reach` widths of part and cell about them, and the smooth stretch and patch of these.
+// *inside: what was met is in the part and the cell, not in others near by.
 static CagStatus meet(Search *s, const Part *part, const Cell *cell, double reach, bool *met,
-                      CagError *err) {
+                      bool *inside, CagError *err) {
   const double width_t = part->b - part->a, width_u = cell->u[1] - cell->u[0],
                width_v = cell->v[1] - cell->v[0];
   const double reach_t = reach * width_t, reach_u = reach * width_u, reach_v = reach * width_v;
@@ -230,6 +236,9 @@ static CagStatus meet(Search *s, const Part *part, const Cell *cell, double reac
     v = next_v;
   }
   *met = best <= MEET * s->size + s->noise;
+  *inside = *met && lies_in(found.t, part->a, part->b) &&
+            lies_in(found.at[0], cell->u[0], cell->u[1]) &&
+            lies_in(found.at[1], cell->v[0], cell->v[1]);
   return *met ? add(s, found, err) : CAG_OK;
 }
 
@@ -260,16 +269,16 @@ static CagStatus along(Search *s, const Part *part, const Cell *cell, CagError *
   looks.n = looks.capacity = 0;
   Part middle = *part;
   CagStatus status = CAG_OK;
-  bool met = true;
+  bool met = true, inside;
   for (int i = 1; !status && met && i < 4; i++) {
     const double t = part->a + (part->b - part->a) * i / 4;
     middle.a = middle.b = t;
-    status = meet(&looks, &middle, cell, 1, &met, err);
+    status = meet(&looks, &middle, cell, 1, &met, &inside, err);
   }
   free(looks.items);
   if (status) return status;
   if (met) return fail_overlap(err);
-  return meet(s, part, cell, TOUCH_REACH, &met, err);
+  return meet(s, part, cell, TOUCH_REACH, &met, &inside, err);
 }
 
 // Whether a chord passes the plane of a flat cell beside it.
@@ -297,19 +306,19 @@ static CagStatus pair(Search *s, const Part *part, const Cell *cell, int depth, 
                width = fmin(cell->along_u, cell->along_v);
   const bool one = rise > MEET * chord && chord < steep * width &&
                    rise > steep * (part->sag + cell->bow * chord / width);
-  bool met = false;
-  CagStatus status = one ? meet(s, part, cell, 1, &met, err) : CAG_OK;
-  if (status || met) return status;
-  // Both as good as flat and along each other: a touch, whose crossings Newton's method finds from
-  // all pairs about it, or a stretch in common.
   const double flat = FLAT * s->size + s->noise;
   const bool flats = part->sag <= flat && cell->bow <= flat;
+  bool met = false, inside = false;
+  CagStatus status = one ? meet(s, part, cell, 1, &met, &inside, err) : CAG_OK;
+  if (status || inside || (met && flats)) return status;
+  // Both as good as flat and along each other: a touch, whose crossings Newton's method finds from
+  // all pairs about it, or a stretch in common.
   if (flats && rise <= MEET * s->size && chord > COMMON * s->size) return along(s, part, cell, err);
   // Parameters that run too unevenly for Newton's method: on to where chord and cell are points.
   const bool uneven = flats && rise > flat;
-  if (depth == 0 || (flats && !uneven)) return meet(s, part, cell, TOUCH_REACH, &met, err);
-  if (flats && !one) status = meet(s, part, cell, TOUCH_REACH, &met, err);
-  if (status || met || (flats && passes_beside(s, part, cell))) return status;
+  if (depth == 0 || (flats && !uneven)) return meet(s, part, cell, TOUCH_REACH, &met, &inside, err);
+  if (flats && !one) status = meet(s, part, cell, TOUCH_REACH, &met, &inside, err);
+  if (status || (flats && (met || passes_beside(s, part, cell)))) return status;
   const bool part_first = flats ? chord >= fmax(cell->along_u, cell->along_v)
                                 : part->sag > cell->bow || chord > steep * width / 2;
   if (part_first) {

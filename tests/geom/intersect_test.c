@@ -255,6 +255,30 @@ static void rational_beziers_meet_alike_however_they_are_run_through(void **stat
   }
 }
 
+// Weights far apart turn the first curve back beside its fourth control point, so that it crosses
+// the second twice there. The number of crossings was counted on polygons of 4000 sides.
+static void curves_that_turn_back_meet_on_both_ways(void **state) {
+  (void)state;
+  const CagVec3 p[5] = {{4.204739901153635, 1.8536574175198615, 0},
+                        {4.140281188460394, 2.616908406284293, 0},
+                        {0.701602378821188, 2.1918740908627976, 0},
+                        {3.6169920467331025, -3.310261711462136, 0},
+                        {1.5190287435722185, 3.618894421587701, 0}};
+  const double wp[5] = {0.05, 0.5, 0.5, 5, 0.05};
+  const CagVec3 q[3] = {{4.090266637352903, 0.9907178120087146, 0},
+                        {-4.372583054025826, -2.6139898002163466, 0},
+                        {4.868434286803538, -2.712808698050689, 0}};
+  const double wq[3] = {0.5, 5, 0.05};
+  for (int swapped = 0; swapped < 2; swapped++) {
+    CagMeeting *m;
+    CagCurve *a, *b;
+    OK(cag_curve_bezier(p, wp, 5, 2, &a, &err));
+    OK(cag_curve_bezier(q, wq, 3, 2, &b, &err));
+    assert_int_equal(swapped ? meet(b, a, &m) : meet(a, b, &m), 4);
+    free(m);
+  }
+}
+
 // Arcs of two circles in one plane of space. The wanted places are found from a place of the first
 // circle: they are those at the distance of the second radius from the second center.
 static void arcs_meet_where_both_circles_pass(void **state) {
@@ -536,6 +560,7 @@ int main(void) {
       cmocka_unit_test(the_order_of_contact_is_told),
       cmocka_unit_test(polylines_with_any_weights_cross_as_segments_do),
       cmocka_unit_test(rational_beziers_meet_alike_however_they_are_run_through),
+      cmocka_unit_test(curves_that_turn_back_meet_on_both_ways),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
