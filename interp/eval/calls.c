@@ -209,11 +209,11 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   CagCall call = {.vm = vm, .builtin = b, .values = values, .count = total};
   *result = cag_none();
   CagBuiltinFunction function = vm->differentiation ? cag_jet_function(&call, index) : b->function;
-  bool ok = function(&call, result);
+  // The geometry core may go on when a formula fails at a place that it only probes.
+  bool ok = function(&call, result) && !vm->failed;
   if (cag_memory_was_out()) ok = cag_vm_fail_memory(vm);
-  else if (ok == vm->failed)
-    ok = cag_vm_fail(vm, CAG_ERR_internal, "%s %s", s->name,
-                     ok ? "returned a value in spite of an error" : "failed without an error");
+  else if (!ok && !vm->failed)
+    ok = cag_vm_fail(vm, CAG_ERR_internal, "%s failed without an error", s->name);
   ok = ok && cag_check_defined(&call, *result);
   vm->native = native.outer;
   vm->top = top;
