@@ -192,12 +192,12 @@ static bool inverse(const CagSeries *x, double a, double b, double r, double sig
 static bool of_asin(const CagSeries *x, double degrees, double value, CagSeries *out) {
   (void)degrees;
   (void)value;
-  return fabs(x->c[0]) < 1 && inverse(x, 1, -1, -0.5, 1, out);
+  return inverse(x, 1, -1, -0.5, 1, out);
 }
 static bool of_acos(const CagSeries *x, double degrees, double value, CagSeries *out) {
   (void)degrees;
   (void)value;
-  return fabs(x->c[0]) < 1 && inverse(x, 1, -1, -0.5, -1, out);
+  return inverse(x, 1, -1, -0.5, -1, out);
 }
 static bool of_atan(const CagSeries *x, double degrees, double value, CagSeries *out) {
   (void)degrees;
