@@ -8,11 +8,11 @@
 #
 # Works on a copy of the tree in build-mutate/. First, every suite runs once in a build that counts which lines it reaches; the counts are
 # kept in build-mutate/reach/. Each change then replaces one operator or constant on one line of geom, interp or lang, by the table
-# tools/mutations.txt. A change that does not compile, or does not change the object file, is replaced with another one. The suites that
-# reach the line run until one fails, starting with those that are quick and likely to detect the change: unit tests that include the
-# changed file's header, then all others by their time. Each suite has a memory limit and a time limit, which is 10 s plus 4 times the time
-# for the unchanged code. Undetected changes are printed and stored in build-mutate/survivors.txt. Changes after which the program computes
-# the same, listed with their reasons in tools/equivalent_mutations.txt, are replaced with others as well.
+# tools/mutations.txt. A change that does not compile (warnings are errors), or does not change the object file, is replaced with another
+# one. The suites that reach the line run until one fails, starting with those that are quick and likely to detect the change: unit tests
+# that include the changed file's header, then all others by their time. Each suite has a memory limit and a time limit, which is 10 s plus
+# 4 times the time for the unchanged code. Undetected changes are printed and stored in build-mutate/survivors.txt. Changes after which the
+# program computes the same, listed with their reasons in tools/equivalent_mutations.txt, are replaced with others as well.
 set -eu
 cd "$(dirname "$0")/.."
 N=${N:-100} SEED=${SEED:-1} SKIP=${SKIP:-0} FOLDERS=${FOLDERS:-geom interp lang} LONGEST=${LONGEST:-1800}
@@ -57,7 +57,7 @@ else
 fi
 REACH=$TREE/../reach
 export OPT=-O1
-build() { make -s -j"$(nproc)" CC="${CC:-cc}" CFLAGS="-Wno-error -Werror=return-type" "$@" > ../build.log 2>&1; }
+build() { make -s -j"$(nproc)" CC="${CC:-cc}" "$@" > ../build.log 2>&1; }
 
 # Runs a suite within limits: limited SECONDS SUITE. Chromium, which the tests of the documentation start, reserves more memory than that.
 limited() {

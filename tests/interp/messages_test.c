@@ -59,6 +59,15 @@ static void braces_in_texts_are_explained(void **state) {
   expect("y = 1\nx = \"{y:.2f}\"", "E0167", "no format", "text(y, digits: 2)");
 }
 
+// Functions that the checker does not know before the run.
+static void missing_arguments_are_named(void **state) {
+  (void)state;
+  expect("f(a, b, c = 3) = a + b + c\nprint [f][0](b: 2)", "E0302", "f needs an argument for `a`",
+         NULL);
+  expect("f(a, b, c = 3) = a + b + c\nprint [f][0](1, c: 2)", "E0302",
+         "f needs an argument for `b`", NULL);
+}
+
 static void turns_about_three_axes_point_to_rpy(void **state) {
   (void)state;
   expect("print rotate(box(1), [0, 90, 0])", "E0302", "needs an argument for `angle`",
@@ -343,6 +352,7 @@ int main(void) {
       cmocka_unit_test(values_of_a_wrong_type_are_named_with_what_to_write),
       cmocka_unit_test(a_line_that_begins_with_minus_is_explained),
       cmocka_unit_test(braces_in_texts_are_explained),
+      cmocka_unit_test(missing_arguments_are_named),
       cmocka_unit_test(turns_about_three_axes_point_to_rpy),
       cmocka_unit_test(opacity_points_to_transmission),
       cmocka_unit_test(boxes_of_quadrics_are_boxes),
