@@ -278,7 +278,7 @@ static void reduce(const CagQuadric *q, Reduced *r) {
   r->k1 = c[9] / (largest * r->size * r->size);
   r->rank3 = 0;
   r->g = 0;
-  ExactRanks exact;
+  ExactRanks exact = {0};
   const bool is_exact = exact_ranks(q, &exact);
   double terms = 1; // of which k1 is the sum, with what the rounding of each counts
   const double zero =
