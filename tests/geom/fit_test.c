@@ -2,6 +2,7 @@
 // own points, and bad data.
 
 #include "geom/basis/bspline.h"
+#include "geom/basis/regression.h"
 #include "geom/curve/fit.h"
 #include "random.h"
 #include "support.h"
@@ -420,8 +421,26 @@ static void even_knots_are_for_even_data(void **state) {
   cag_curve_release(c);
 }
 
+static void formulas_fit_in_the_least_squares_sense(void **state) {
+  (void)state;
+  const double x[5] = {0, 1, 2, 3, 4}, y[5] = {1, 2, 2, 4, 3};
+  const double px[4] = {1, 2, 3, 4}, py[4] = {2, 5.656854249492381, 10.392304845413264, 16};
+  double c[6], rest;
+  OK(cag_fit_formula(x, y, 5, CAG_MODEL_POLYNOMIAL, 2, c, &rest, &err));
+  NEAR(c[0], 32.0 / 35, 1e-13);
+  NEAR(c[1], 41.0 / 35, 1e-13);
+  NEAR(c[2], -1.0 / 7, 1e-13);
+  NEAR(rest, 46.0 / 35, 1e-13);
+  OK(cag_fit_formula(px, py, 4, CAG_MODEL_POWER, 0, c, &rest, &err));
+  NEAR(c[0], 2, 1e-12);
+  NEAR(c[1], 1.5, 1e-12);
+  FAILS_AT(cag_fit_formula(x, y, 5, CAG_MODEL_POWER, 0, c, &rest, &err), "domain", 0);
+  FAILS(cag_fit_formula(x, y, 2, CAG_MODEL_POLYNOMIAL, 2, c, &rest, &err), "underdetermined");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(formulas_fit_in_the_least_squares_sense),
       cmocka_unit_test(even_knots_are_for_even_data),
       cmocka_unit_test(random_fits_are_least_squares),
       cmocka_unit_test(random_points_are_passed_at_their_parameters),
