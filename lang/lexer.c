@@ -251,7 +251,7 @@ static void unknown_unit(CagLexer *lx, uint32_t number, uint32_t start, uint32_t
     return;
   }
   CagDiagnostic *d =
-      report(lx, CAG_ERR_unknown_unit, start, end, "`%.*s` is no unit", length, text + start);
+      report(lx, CAG_ERR_unknown_unit, start, end, "unknown unit `%.*s`", length, text + start);
   static const struct {
     const char *said, *meant;
   } habits[] = {{"degrees", "deg"}, {"degree", "deg"}, {"radians", "rad"}, {"radian", "rad"},
@@ -363,7 +363,7 @@ static void lex_number(CagLexer *lx, CagToken *t) {
     }
   } else if (at(lx, p) == 0xc2 && at(lx, p + 1) == 0xb0) { // the degree sign
     end = p + 2;
-    help(report(lx, CAG_ERR_unknown_unit, p, end, "the degree sign is no unit"), "write %.*sdeg",
+    help(report(lx, CAG_ERR_unknown_unit, p, end, "the degree sign is not a unit"), "write %.*sdeg",
          (int)(p - start > 40 ? 40 : p - start), lx->source->text + start);
     unit = find_unit("deg", 3);
   }

@@ -59,7 +59,7 @@ static bool check_script(CagBatch *b, const CagJob *job) {
   const char *why = NULL;
   if (!strcmp(name, "-")) why = "rows cannot share standard input";
   else if (stat(path, &st) != 0) why = strerror(errno);
-  else if (!S_ISREG(st.st_mode)) why = "it is no file";
+  else if (!S_ISREG(st.st_mode)) why = "it is not a regular file";
   else if (access(path, R_OK) != 0) why = strerror(errno);
   free(path);
   if (!why) return true;

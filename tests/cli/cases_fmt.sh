@@ -139,7 +139,7 @@ mkfifo pipe.cag
 { cat loose.cag > pipe.cag; } &
 try fmt pipe.cag
 status 3
-says 'it is no file on a disk'
+says 'it is not a regular file'
 { cat loose.cag > pipe.cag; } &
 try fmt --check pipe.cag
 status 1

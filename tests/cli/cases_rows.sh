@@ -21,7 +21,7 @@ it 'a wrong row is told'
 mkdir folder.cag
 wrong_rows script,output,frames,size,tiles <<'END'
 -,a.stl,,, | E0913: row 1: the script '-' cannot be read: rows cannot share standard input
-folder.cag,a.stl,,, | E0913: row 1: the script 'folder.cag' cannot be read: it is no file
+folder.cag,a.stl,,, | E0913: row 1: the script 'folder.cag' cannot be read: it is not a regular file
 /no/where.cag,a.stl,,, | E0913: row 1: the script '/no/where.cag' cannot be read: No such file or directory
 ,a.stl,,, | E0913: row 1: the script is missing
 ball.cag,ball,,, | E0916: row 1: the output 'ball' has no ending that says its format

@@ -192,7 +192,7 @@ static void upright_axes_are_at_90_degrees(void **state) {
                  signbit(k.standard[2]) != (k.standard[2] < 0));
   }
   CagConicClass k;
-  // A part of 5e-7 is no rounding, however small the coefficients.
+  // A term of 5e-7 of the largest never counts as rounding, however small the coefficients are.
   OK(cag_conic_classify(&(CagConic){{0, 0, 0, 2e-9, 1e-15, 4e-9}}, &k, &err));
   NEAR(k.lines[0][1], 5e-7, 1e-12);
   OK(cag_conic_classify(&(CagConic){{0, 0, 0, 1e-15, 2e-9, 4e-9}}, &k, &err));

@@ -745,7 +745,7 @@ static void quadrilaterals_have_their_map(void **state) {
   OK(cag_transform_from(near, images, 4, true, &found, &err));
   NEAR(found.m[3][3], 0, 1e-12);
   near_vec(cag_transform_point(&found, cag_vec3(3, 2, 0)), cag_vec3(1.8, 0.4, 0), 1e-12);
-  // Heights of 1e-10 are no rounding, of 1e-13 are; in the plane and in space.
+  // A height of 1e-13 counts as rounding, a height of 1e-10 does not, in the plane and in space.
   for (int dimension = 2; dimension <= 3; dimension++)
     for (int high = 0; high < 2; high++) {
       const double height = high ? 1e-10 : 1e-13;

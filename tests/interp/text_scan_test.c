@@ -53,7 +53,7 @@ static void numbers_are_those_of_the_library(void **state) {
     CagTextScan s = {text, text + n};
     double x = -1;
     const double expected = strtod(text, &end);
-    if (!cag_scan_number(&s, &x)) fail_msg("`%s` is no number", text);
+    if (!cag_scan_number(&s, &x)) fail_msg("expected a number, found `%s`", text);
     if (memcmp(&x, &expected, sizeof x) != 0 && !(x == 0 && expected == 0))
       fail_msg("`%s` is %.17g, not %.17g", text, x, expected);
     assert_ptr_equal(s.at, end);

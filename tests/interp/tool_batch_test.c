@@ -128,7 +128,7 @@ static void rows_become_tasks(void **state) {
       {"/none.cag,a.stl",
        "! 1 E0913 the script '/none.cag' cannot be read: No such file or directory\n"},
       {"parts,a.stl",
-       "! 1 E0913 the script 'parts' cannot be read: it is no file (the name is seen "
+       "! 1 E0913 the script 'parts' cannot be read: it is not a regular file (the name is seen "
        "from the folder of the jobs)\n"},
       {"-,a.stl", "! 1 E0913 the script '-' cannot be read: rows cannot share standard input (the "
                   "name is seen from the folder of the jobs)\n"},
@@ -249,7 +249,7 @@ static void rows_fit_the_command_line(void **state) {
   }
 }
 
-// Files that the batch writes itself are no outputs, by whatever name.
+// A row must not name a file that the batch itself writes, whatever form the path has.
 static void outputs_are_no_files_of_the_batch(void **state) {
   (void)state;
   static const char *const others[] = {"parts/../x.stl", "./x.stl", "x.stl"};
