@@ -1153,5 +1153,5 @@ int main(void) {
       cmocka_unit_test(copies_differ_in_nothing_that_is_seen),
       cmocka_unit_test(each_part_is_a_copy_of_the_first_of_its_shape),
   };
-  return cmocka_run_group_tests_name("mesh_parts", tests, NULL, NULL);
+  return cmocka_run_group_tests_name("mesh_write", tests, NULL, NULL);
 }
