@@ -11,8 +11,10 @@
 # tools/mutations.txt. A change that does not compile (warnings are errors), or does not change the object file, is replaced with another
 # one. The suites that reach the line run until one fails, starting with those that are quick and likely to detect the change: unit tests
 # that include the changed file's header, then all others by their time. Each suite has a memory limit and a time limit, which is 10 s plus
-# 4 times the time for the unchanged code. Undetected changes are printed and stored in build-mutate/survivors.txt. Changes after which the
-# program computes the same, listed with their reasons in tools/equivalent_mutations.txt, are replaced with others as well.
+# 4 times the time for the unchanged code. If none fails, the suites that run under sanitizers in every test run (see tests/run_all.sh) run
+# again, with the changed file and the tests compiled for AddressSanitizer and UndefinedBehaviorSanitizer. Undetected changes are printed
+# and stored in build-mutate/survivors.txt. Changes after which the program computes the same, listed with their reasons in
+# tools/equivalent_mutations.txt, are replaced with others as well.
 set -eu
 cd "$(dirname "$0")/.."
 N=${N:-100} SEED=${SEED:-1} SKIP=${SKIP:-0} FOLDERS=${FOLDERS:-geom interp lang} LONGEST=${LONGEST:-1800}
@@ -29,6 +31,8 @@ run_suite() {
   stdlib | examples) "$B/cag" test --no-pictures "$1" ;;
   vectors) for file in tests/data/0*.json; do BUILD=$B tests/vectors/run "$file" || return 1; done ;;
   fuzz) "$B/tests/fuzz/fuzz" 1 ;;
+  memory) "$B/tests/fuzz/memory" -n 1 && "$B/tests/fuzz/memory" -n 1 -x tests/fuzz/scripts/*.cag ;;
+  editors) BUILD=$PWD/$B sh tests/editors/run.sh ;;
   repl) BUILD=$PWD/$B sh tests/repl/run.sh ;;
   scenes) "$B/cag" test tests/scenes ;;
   cli/*) BUILD=$PWD/$B sh tests/cli/run.sh "${1#cli/}" ;;
@@ -44,7 +48,7 @@ tab=$(printf '\t')
 all_suites() {
   ls tests/*/*_test.c | sed 's|\.c$||'
   ls tests/language | sed 's|^|scripts/|'
-  printf '%s\n' stdlib examples vectors fuzz repl scenes
+  printf '%s\n' stdlib examples vectors fuzz memory repl editors scenes
   ls tests/cli/cases_*.sh | sed 's|.*/cases_\(.*\)\.sh|cli/\1|'
 }
 
@@ -52,23 +56,27 @@ if [ "${1:-}" = --measure ]; then
   TREE=$PWD
 else
   mkdir -p "$TREE"
+  find "$TREE" -mindepth 1 -maxdepth 1 ! -name 'build*' -exec rm -rf {} +
   git ls-files -z | xargs -0 cp -p --parents -t "$TREE"
   cd "$TREE"
 fi
 REACH=$TREE/../reach
-export OPT=-O1
+export OPT=-O1 SANITIZE=
+export ASAN_OPTIONS=hard_rss_limit_mb=$((MEMORY / 1024))
 build() { make -s -j"$(nproc)" CC="${CC:-cc}" "$@" > ../build.log 2>&1; }
 
-# Runs a suite within limits: limited SECONDS SUITE. Chromium, which the tests of the documentation start, reserves more memory than that.
+# Runs a suite within limits: limited SECONDS SUITE. Chromium, which the tests of the documentation start, reserves more memory than that, and
+# so do sanitizers.
 limited() {
   (
-    [ "$2" = cli/doc ] || ulimit -v "$MEMORY"
+    [ "$2" = cli/doc ] || [ -n "$SANITIZE" ] || ulimit -v "$MEMORY"
     exec timeout -k 5 "$1" sh "$TREE/tools/mutate.sh" --suite "$2"
   ) > /dev/null 2>&1
 }
 
-# Counts the lines that a suite reaches, in $REACH/SUITE/, and writes its time in seconds to $REACH/SUITE.time. 0 means that the suite
-# fails for the unchanged code, so it cannot detect anything.
+# Counts the lines that a suite reaches, in $REACH/SUITE/, and writes its time in seconds to $REACH/SUITE.time. A suite that fails in the
+# slow build that counts (since it tests limits of time, for instance) is timed in the normal build. 0 means that the suite fails there as
+# well, so it cannot detect anything.
 measure_suite() {
   [ ! -s "$REACH/$1.time" ] || return 0
   mkdir -p "$REACH/$1"
@@ -76,6 +84,10 @@ measure_suite() {
   time=0
   GCOV_PREFIX=$REACH/$1 GCOV_PREFIX_STRIP=$(echo "$TREE/build-reach/obj" | tr -cd / | wc -c) B=build-reach limited 1800 "$1" &&
     time=$(($(date +%s) - began + 1))
+  if [ "$time" -eq 0 ]; then
+    began=$(date +%s)
+    ! B=build limited 1800 "$1" || time=$(($(date +%s) - began + 1))
+  fi
   echo "$time" > "$REACH/$1.time"
 }
 
@@ -95,7 +107,10 @@ measure_suites() {
   [ -n "$suite" ] || return 0
   mkdir -p build-reach
   cc -std=c17 -fPIC -c tests/coverage/exit.c -o build-reach/exit.o
-  build BUILD=build-reach OPT=-O0 SANITIZE="--coverage -DCAG_ONE_COPY" LDFLAGS="-Wl,--wrap=_exit build-reach/exit.o" test-programs
+  build BUILD=build-reach OPT=-O0 SANITIZE="--coverage -DCAG_ONE_COPY" LDFLAGS="-Wl,--wrap=_exit build-reach/exit.o" test-programs || {
+    tail ../build.log
+    exit 1
+  }
   rm -rf ../notes
   mkdir -p ../notes
   (cd build-reach/obj && find geom interp lang -name '*.gcno' | xargs cp --parents -t ../../../notes)
@@ -133,6 +148,7 @@ link_suite() {
   tests/*_test) build "build/$1" ;;
   vectors) build build/tests/vectors/run ;;
   fuzz) build build/tests/fuzz/fuzz ;;
+  memory) build build/tests/fuzz/memory ;;
   *) build all ;;
   esac
 }
@@ -140,6 +156,9 @@ link_suite() {
 # Prints the suite that fails, and succeeds if there is one: the change to the line is detected.
 who_notices() {
   for suite in $(suites_for "$1"); do
+    case $SANITIZE$suite in
+    -*cli/* | -*examples | -*stdlib | -*memory | -*repl | -*editors | -*scenes) continue ;;
+    esac
     seconds=$(cat "$REACH/$suite.time")
     if [ "$seconds" -eq 0 ] || [ "$seconds" -gt "$LONGEST" ] || ! reaches "$suite" "$1" "$2"; then continue; fi
     if ! link_suite "$suite" || ! B=build limited $((4 * seconds + 10)) "$suite"; then
@@ -148,6 +167,16 @@ who_notices() {
     fi
   done
   return 1
+}
+
+# The same with the changed file and the tests compiled for sanitizers.
+who_notices_sanitized() {
+  touch "$1"
+  SANITIZE="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
+  status=0
+  who_notices "$1" "$2" || status=1
+  SANITIZE=
+  return $status
 }
 
 # Prints every change that the table allows: file, line, column, old, new, separated by tabs.
@@ -180,8 +209,11 @@ is_equivalent() {
 # The changes in random order; the same SEED gives the same order for the same sources.
 list_changes | awk -v seed="$SEED" 'BEGIN { srand(seed) } { printf "%.9f\t%s\n", rand(), $0 }' | sort -n | cut -f 2- > ../changes.txt
 [ "$SKIP" -gt 0 ] || : > ../survivors.txt
+build test-programs || {
+  tail ../build.log
+  exit 1
+}
 measure_suites
-build test-programs || { tail ../build.log; exit 1; }
 
 tried=0 noticed=0
 while [ "$tried" -lt $((SKIP + N)) ] && IFS=$tab read -r file line column old new <&3; do
@@ -197,6 +229,9 @@ while [ "$tried" -lt $((SKIP + N)) ] && IFS=$tab read -r file line column old ne
     elif suite=$(who_notices "$file" "$line"); then
       noticed=$((noticed + 1))
       echo "$suite: $change"
+    elif suite=$(who_notices_sanitized "$file" "$line"); then
+      noticed=$((noticed + 1))
+      echo "$suite, sanitized: $change"
     else
       echo "not noticed: $change"
       echo "$change" >> ../survivors.txt

@@ -419,7 +419,8 @@ static void long_texts_are_read_whole(void **state) {
   char deep[2000] = "1", wanted[4000] = "1";
   for (int i = 0; i < 40; i++) {
     char next[4000];
-    snprintf(next, 2000, "\"{%s}\"", deep);
+    snprintf(next, sizeof next, "\"{%s}\"", deep);
+    assert_true(strlen(next) < sizeof deep);
     strcpy(deep, next);
     snprintf(next, sizeof next, "(text \"\" %s \"\")", wanted);
     strcpy(wanted, next);
