@@ -416,15 +416,11 @@ static void long_texts_are_read_whole(void **state) {
   assert_memory_equal(e->as.text.bytes, expected, 900);
   release(&p);
   // Texts within texts, deeper than any first capacity.
-  char deep[2000] = "1", wanted[4000] = "1";
-  for (int i = 0; i < 40; i++) {
-    char next[4000];
-    snprintf(next, sizeof next, "\"{%s}\"", deep);
-    assert_true(strlen(next) < sizeof deep);
-    strcpy(deep, next);
-    snprintf(next, sizeof next, "(text \"\" %s \"\")", wanted);
-    strcpy(wanted, next);
-  }
+  char deep[300] = "", wanted[600] = "";
+  for (int i = 0; i < 40; i++) strcat(deep, "\"{"), strcat(wanted, "(text \"\" ");
+  strcat(deep, "1");
+  strcat(wanted, "1");
+  for (int i = 0; i < 40; i++) strcat(deep, "}\""), strcat(wanted, " \"\")");
   value_is(deep, wanted);
 }
 
