@@ -112,7 +112,7 @@ static void frames_are_what_defines_them(void **state) {
     how.scale.end = plain ? 1 : uniform(0.5, 2);
     CagCurve *c = random_path(closed);
     CagMotion *m;
-    CagVec3 d[3], x[2], y[2], z, first[2], home;
+    CagVec3 d[3], x[2], y[2], z, first[2] = {{0}}, home;
     CagMotionSeries at;
     CagError refused;
     if (cag_motion_along(c, &how, &m, &refused)) {
