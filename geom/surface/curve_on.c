@@ -17,6 +17,7 @@
 #include "geom/surface/family.h"
 
 #define MOST_ORDER CAG_MAX_PARTIAL
+#define PARTIALS ((MOST_ORDER + 1) * (MOST_ORDER + 1))
 // A plane curve may leave the domain by so much of its width, which rounding of its own is.
 #define OUTSIDE 1e-9
 // Seams and breaks are crossed once a turn; a curve that goes round more often has no parameters
@@ -66,11 +67,11 @@ static void bring_home(Coordinate *x, double lo, double hi, bool closed) {
   else if (closed && x->at == hi && x->side == CAG_SIDE_RIGHT) x->at = lo;
 }
 
-// out = a b up to t^order
+// out = a b up to t^order; b has no constant.
 static void multiply(const double *a, const double *b, int order, double *out) {
   double c[MOST_ORDER + 1] = {0};
-  for (int i = 0; i <= order; i++)
-    for (int k = 0; i + k <= order; k++) c[i + k] += a[i] * b[k];
+  for (int i = 0; i < order; i++)
+    for (int k = 1; i + k <= order; k++) c[i + k] += a[i] * b[k];
   memcpy(out, c, sizeof c);
 }
 
@@ -107,9 +108,9 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
     return cag_fail(err, CAG_E_UNSUPPORTED, "derivative-order", "order", -1,
                     "a curve on %s %s surface has derivatives up to order %d, not %d",
                     cag_article(s->kind->name), s->kind->name, MOST_ORDER, order);
-  CagVec3 d[MOST_ORDER + 1], partials[(MOST_ORDER + 1) * (MOST_ORDER + 1)];
+  CagVec3 d[MOST_ORDER + 1], partials[PARTIALS];
   // The first derivatives tell the sides even where only a point is asked for.
-  const int known = order > 1 ? order : 1;
+  const int known = order == 0 ? 1 : order;
   CagStatus status = cag_curve_eval(c->plane, t, known, side, d, err);
   if (status) return status;
   Coordinate x = {.at = d[0].x}, y = {.at = d[0].y};
@@ -147,9 +148,8 @@ static CagStatus push(Numbers *list, double x, CagError *err) {
 // Where the plane curve crosses the line on which one parameter is `at`.
 static CagStatus cross(const CagCurve *plane, int direction, double at, Numbers *list,
                        CagError *err) {
-  CagPlane line = {0};
-  line.point = direction == 0 ? cag_vec3(at, 0, 0) : cag_vec3(0, at, 0);
-  line.normal = direction == 0 ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
+  const CagPlane line =
+      direction == 0 ? (CagPlane){{at, 0, 0}, {1, 0, 0}} : (CagPlane){{0, at, 0}, {0, 1, 0}};
   CagMeeting *meetings;
   size_t n;
   CagStatus status = cag_curve_intersect_plane(plane, &line, &meetings, &n, err);
