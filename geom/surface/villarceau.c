@@ -56,20 +56,13 @@ static bool point_at(const CagSurface *s, int direction, double along, double ac
                            &ignored) == CAG_OK;
 }
 
-// Finds the circle that is a parameter line, from three of its points. Two more points confirm it.
-static bool circle_of_line(const CagSurface *s, int direction, double across, double near,
-                           Circle *out) {
-  static const double along[5] = {0.05, 0.37, 0.71, 0.22, 0.93};
-  CagVec3 p[5];
-  for (int i = 0; i < 5; i++)
+// Finds the circle through three points of a parameter line.
+static bool circle_of_line(const CagSurface *s, int direction, double across, Circle *out) {
+  static const double along[3] = {0.05, 0.37, 0.71};
+  CagVec3 p[3];
+  for (int i = 0; i < 3; i++)
     if (!point_at(s, direction, along[i], across, &p[i])) return false;
-  if (!circle_through(p[0], p[1], p[2], out)) return false;
-  for (int i = 3; i < 5; i++) {
-    const CagVec3 d = cag_sub(p[i], out->center);
-    if (fabs(cag_norm(d) - out->radius) > near || fabs(cag_dot(d, out->normal)) > near)
-      return false;
-  }
-  return true;
+  return circle_through(p[0], p[1], p[2], out);
 }
 
 static bool lies_on_torus(const TorusForm *form, const Circle *axis, CagVec3 p, double near) {
@@ -85,20 +78,18 @@ static bool is_torus_along(const CagSurface *s, int direction, double near, Toru
   static const double across[3] = {0.11, 0.43, 0.83};
   Circle tube[3], axis;
   for (int i = 0; i < 3; i++)
-    if (!circle_of_line(s, direction, across[i], near, &tube[i]) ||
-        fabs(tube[i].radius - tube[0].radius) > near)
-      return false;
+    if (!circle_of_line(s, direction, across[i], &tube[i])) return false;
   if (!circle_through(tube[0].center, tube[1].center, tube[2].center, &axis)) return false;
   out->major = axis.radius;
   out->minor = (tube[0].radius + tube[1].radius + tube[2].radius) / 3;
+  const CagPlane plane = {axis.center, axis.normal};
+  out->map = cag_plane_frame(&plane);
   for (int i = 0; i < PLACES * PLACES; i++) {
     CagVec3 p;
     if (!point_at(s, direction, (i / PLACES + 0.5) / PLACES, (i % PLACES + 0.5) / PLACES, &p) ||
         !lies_on_torus(out, &axis, p, near))
       return false;
   }
-  const CagPlane plane = {axis.center, axis.normal};
-  out->map = cag_plane_frame(&plane);
   return true;
 }
 
@@ -113,7 +104,7 @@ static bool find_torus(const CagSurface *s, TorusForm *out) {
   out->map = map;
   out->map.planar = false;
   if (cag_surface_torus_view(inner, &out->major, &out->minor)) return true;
-  if (cag_surface_planar_view(s, NULL, NULL) || cag_surface_bounds(s, &box, &ignored)) return false;
+  if (cag_surface_bounds(s, &box, &ignored)) return false;
   const double near = ON_TORUS * cag_norm(cag_sub(box.max, box.min));
   return is_torus_along(s, 0, near, out) || is_torus_along(s, 1, near, out);
 }
