@@ -13,7 +13,7 @@
 // The rectangle of x and y, and the grid over it.
 #define WIDE 3.0
 #define HIGH 2.0
-enum { NX = 210, NY = 140, NODES = (NX + 1) * (NY + 1) };
+enum { NX = 168, NY = 112, NODES = (NX + 1) * (NY + 1) };
 
 // --- Graphs ---
 

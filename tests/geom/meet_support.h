@@ -4,6 +4,7 @@
 #define CAG_TESTS_GEOM_MEET_SUPPORT_H
 
 #include "geom/surface/meet_curve.h"
+#include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
 // Counts the points at which the curve meets the surface. Asserts that every point is on both
@@ -23,6 +24,22 @@ static inline size_t meetings(const CagSurface *s, const CagCurve *c, double nea
   }
   free(m);
   return n;
+}
+
+// z = f(x, y) over [0, 3] x [0, 2], a cubic net whose x and y are u and v.
+static inline CagSurface *graph(void) {
+  enum { NU = 6, NV = 5 };
+  const double ku[] = {0, 0, 0, 0, 1, 2, 3, 3, 3, 3}, kv[] = {0, 0, 0, 0, 1, 2, 2, 2, 2};
+  CagVec3 p[NU * NV];
+  for (int i = 0; i < NU; i++)
+    for (int j = 0; j < NV; j++) {
+      const double x = (ku[i + 1] + ku[i + 2] + ku[i + 3]) / 3;
+      const double y = (kv[j + 1] + kv[j + 2] + kv[j + 3]) / 3;
+      p[i * NV + j] = cag_vec3(x, y, uniform(-1.2, 1.2));
+    }
+  CagSurface *s;
+  OK(cag_surface_nurbs(p, NULL, NU, NV, 3, 3, ku, kv, &s, &err));
+  return s;
 }
 
 #endif

@@ -1,0 +1,118 @@
+// Where surfaces meet trimmed surfaces: random comparisons with samples.
+
+#include "tests/geom/meet_support.h"
+
+#include "geom/surface/meet_surface.h"
+#include "geom/surface/trimmed.h"
+
+static CagCurve *circle(double x, double y, double r) {
+  CagTransform frame = cag_transform_identity();
+  CagCurve *c;
+  frame.m[0][3] = x;
+  frame.m[1][3] = y;
+  OK(cag_curve_arc(r, r, 0, 2 * M_PI, &frame, &c, &err));
+  return c;
+}
+
+// A disk with a hole, of the plane z = 0 or of a graph over it whose u and v are x and y.
+static CagSurface *ring(const CagSurface *s, const double disk[3], const double hole[3]) {
+  CagCurve *outer = circle(disk[0], disk[1], disk[2]), *inner = circle(hole[0], hole[1], hole[2]);
+  CagRegion *region;
+  CagSurface *out;
+  const CagTransform frame = cag_transform_identity();
+  OK(cag_region_new(outer, &inner, 1, &region, &err));
+  if (s) OK(cag_surface_trimmed(s, region, &out, &err));
+  else OK(cag_surface_planar(region, &frame, &out, &err));
+  cag_region_release(region);
+  cag_curve_release(outer);
+  cag_curve_release(inner);
+  return out;
+}
+
+// How far a place is inside of the ring.
+static double inside_of(double x, double y, const double disk[3], const double hole[3]) {
+  return fmin(disk[2] - hypot(x - disk[0], y - disk[1]), hypot(x - hole[0], y - hole[1]) - hole[2]);
+}
+
+// Upright cylinders and planes meet rings of a plane or a curved graph in arcs and lines over x and
+// y: as many and as long as many samples of these tell, and they end on the outlines.
+static void rings_are_met_within_their_outlines(void **state) {
+  (void)state;
+  seed = 6;
+  int told = 0, cut = 0;
+  for (int round = 0; round < 16; round++) {
+    double disk[3], hole[3];
+    static const double LOW[] = {1.2, 0.9, 0.6, 1.25, 0.95, 0.2},
+                        HIGH[] = {1.4, 1.1, 0.85, 1.35, 1.05, 0.5};
+    for (int i = 0; i < 3; i++) disk[i] = uniform(LOW[i], HIGH[i]);
+    for (int i = 0; i < 3; i++) hole[i] = uniform(LOW[3 + i], HIGH[3 + i]);
+    CagSurface *base = round % 2 ? graph() : NULL, *s = ring(base, disk, hole), *wall;
+    // The foot of the wall: an arc or a line.
+    const double x = uniform(0.7, 1.9), y = uniform(0.4, 1.6), r = uniform(0.2, 1);
+    const bool round_wall = round % 4 < 2;
+    CagCurve *foot;
+    const CagVec3 a = {x - 2, y - 2 * uniform(-1, 1), 0}, b = {2 * x - a.x, 2 * y - a.y, 0};
+    if (round_wall) foot = circle(x, y, r);
+    else OK(cag_curve_line(a, b, 3, &foot, &err));
+    CagCurve *low;
+    const CagTransform down = cag_translate(cag_vec3(0, 0, -2));
+    OK(cag_curve_transform(foot, &down, &low, &err));
+    OK(cag_surface_extrude(low, cag_vec3(0, 0, 4), 0, 1, &wall, &err));
+    // Samples along the foot.
+    enum { SAMPLES = 1500 };
+    double length = 0, least = INFINITY, before = 0, first = 0;
+    int runs = 0;
+    CagVec3 last = {0, 0, 0};
+    for (int i = 0; i <= SAMPLES; i++) {
+      CagVec3 p, q;
+      OK(cag_curve_point(foot, foot->start + (foot->end - foot->start) * i / SAMPLES, &p, &err));
+      const double in = inside_of(p.x, p.y, disk, hole);
+      q = cag_vec3(p.x, p.y, 0);
+      if (base && in > -0.02) OK(cag_surface_point(base, p.x, p.y, &q, &err));
+      if (i > 0 && in > 0 && before > 0) length += cag_norm(cag_sub(q, last));
+      // Parts of a step, where it passes the outline.
+      if (i > 0 && (in > 0) != (before > 0))
+        length += cag_norm(cag_sub(q, last)) * fmax(in, before) / fabs(in - before);
+      if (i > 0 && in > 0 && before <= 0) runs++;
+      if (i == 0) first = in;
+      // Lows and highs that hardly pass the outline cannot be told.
+      if (i > 0 && fabs(in) < 0.02) least = fmin(least, fabs(in - before) * SAMPLES);
+      before = in;
+      last = q;
+    }
+    if (first > 0) runs = runs ? runs : 1;
+    if (least > 0.3) {
+      CagCurveList list = {0};
+      OK(cag_surface_intersect(round % 3 ? s : wall, round % 3 ? wall : s, 0, NULL, &list, &err));
+      double found = 0;
+      for (size_t i = 0; i < list.count; i++) {
+        double one;
+        const CagCurve *c = list.items[i];
+        OK(cag_curve_length(c, c->start, c->end, &one, &err));
+        found += one;
+        for (int end = 0; end < 2 && !c->closed; end++) {
+          CagVec3 p;
+          OK(cag_curve_point(c, end ? c->end : c->start, &p, &err));
+          NEAR(inside_of(p.x, p.y, disk, hole), 0, 1e-8);
+          cut++;
+        }
+      }
+      if (list.count != (size_t)runs || fabs(found - length) > 2e-3 * length)
+        fail_msg("round %d: %zu curves of length %g, not %d of %g", round, list.count, found, runs,
+                 length);
+      cag_curve_list_free(&list);
+      told++;
+    }
+    cag_surface_release(base);
+    cag_surface_release(s);
+    cag_surface_release(wall);
+    cag_curve_release(foot);
+    cag_curve_release(low);
+  }
+  assert_true(told > 8 && cut > 16);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(rings_are_met_within_their_outlines)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
