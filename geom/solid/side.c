@@ -314,11 +314,10 @@ static CagStatus body_of(const CagQuadricForm *f, const Range *r, Bodies *out, C
   case CAG_QUADRIC_PARABOLIC_CYLINDER: inside->x = f->semi[0]; return parabolic(out, f, r, err);
   case CAG_QUADRIC_INTERSECTING_PLANES: inside->y = f->semi[1]; return wedges(out, f, r, err);
   case CAG_QUADRIC_PARALLEL_PLANES: return slab(out, f, r, err);
-  case CAG_QUADRIC_COINCIDENT_PLANES:
-    // Nothing lies between: the sign beside the plane tells whether all of space does.
+  default:
+    // No body: the sign beside the plane, line, or point, if there is one, is that of all of space.
     inside->x = 1;
     return CAG_OK;
-  default: return CAG_OK;
   }
 }
 
