@@ -1,5 +1,5 @@
-// glTF documents taken apart: chunks, JSON, buffers, and accessors of every type against a reader
-// of the test's own; and what is wrong with documents.
+// glTF documents and their meshes: chunks, JSON, buffers, and accessors of every type against a
+// reader of the test's own; and what is wrong with documents.
 
 #include <math.h>
 #include <setjmp.h>
@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "interp/import/gltf_document.h"
+#include "interp/import/mesh_read.h"
 
 static CagError err;
 static uint64_t seed;
@@ -23,7 +24,7 @@ static uint32_t random_below(uint32_t n) {
 }
 
 typedef struct Text {
-  char at[6000];
+  char at[9000];
   size_t n;
 } Text;
 
@@ -520,6 +521,254 @@ static void chunks_are_found(void **state) {
   refused(t.at, t.n, "mesh-file-truncated", "buffers[1] says");
 }
 
+// --- Meshes ---
+
+static void add_float(Text *t, double x) {
+  const float f = (float)x;
+  uint32_t bits;
+  memcpy(&bits, &f, 4);
+  add_u32(t, bits);
+}
+
+// An accessor of all that follows in the data up to now, with a view of its own.
+static void add_accessor(Text *views, Text *accessors, size_t from, size_t to, int component,
+                         const char *type, size_t count) {
+  add(views, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}", views->n ? "," : "", from,
+      to - from);
+  size_t view = 0;
+  for (size_t i = 0; i < views->n; i++) view += views->at[i] == '{';
+  add(accessors, "%s{\"bufferView\":%zu,\"componentType\":%d,\"type\":\"%s\",\"count\":%zu}",
+      accessors->n ? "," : "", view - 1, component, type, count);
+}
+
+typedef struct Corner {
+  CagVec3 p;
+  double uv[2];
+} Corner;
+
+// Primitives of all modes in several meshes: the triangles are those of glTF 2.0, 3.7.2.1.
+static void primitives_are_read_in_their_modes(void **state) {
+  (void)state;
+  seed = 3;
+  for (int round = 0; round < 200; round++) {
+    Text views = {.n = 0}, accessors = {.n = 0}, meshes = {.n = 0}, data = {.n = 0};
+    Corner expected[200];
+    size_t corner_count = 0, accessor = 0;
+    bool any_uv = false;
+    const int primitives = 1 + round % 3;
+    for (int p = 0; p < primitives; p++) {
+      const size_t n = 1 + random_below(7), mode = random_below(7), from = data.n;
+      const bool indexed = random_below(2), uv = random_below(2);
+      Corner v[8];
+      size_t k[12], corners = n;
+      for (size_t i = 0; i < n; i++) {
+        const double x = 10 * p + (double)i, y = random_below(100), z = random_below(100);
+        v[i].p = cag_vec3(1000 * x, -1000 * z, 1000 * y);
+        add_float(&data, x), add_float(&data, y), add_float(&data, z);
+        k[i] = i;
+      }
+      add_accessor(&views, &accessors, from, data.n, FLOAT, "VEC3", n);
+      add(&meshes, "%s{\"primitives\":[{\"mode\":%zu,\"attributes\":{\"POSITION\":%zu",
+          p ? "," : "", mode, accessor++);
+      const size_t uv_from = data.n;
+      for (size_t i = 0; i < n; i++) {
+        for (int j = 0; j < 2; j++) {
+          v[i].uv[j] = uv ? random_below(65536) / 256.0 : 0;
+          if (uv) add_float(&data, v[i].uv[j]);
+        }
+      }
+      if (uv) {
+        add_accessor(&views, &accessors, uv_from, data.n, FLOAT, "VEC2", n);
+        add(&meshes, ",\"TEXCOORD_0\":%zu", accessor++);
+      }
+      add(&meshes, "}");
+      if (indexed) {
+        const size_t start = data.n;
+        corners = random_below(12);
+        for (size_t i = 0; i < corners; i++) {
+          k[i] = random_below((uint32_t)n);
+          data.at[data.n++] = (char)k[i];
+        }
+        add_accessor(&views, &accessors, start, data.n, UBYTE, "SCALAR", corners);
+        add(&meshes, ",\"indices\":%zu", accessor++);
+        while (data.n % 4) data.at[data.n++] = 0;
+      }
+      add(&meshes, "}]}");
+      // Sequences of three, a strip whose odd triangles are turned, a fan.
+      size_t triangles = 0;
+      if (mode == 4) triangles = corners / 3;
+      else if (mode > 4 && corners > 2) triangles = corners - 2;
+      any_uv |= uv && triangles > 0;
+      for (size_t t = 0; t < triangles; t++) {
+        const size_t strip[3] = {t, t + 1 + t % 2, t + 2 - t % 2}, fan[3] = {0, t + 1, t + 2},
+                     list[3] = {3 * t, 3 * t + 1, 3 * t + 2};
+        const size_t *at = mode == 4 ? list : mode == 5 ? strip : fan;
+        // Those that have a point twice are left out; all are at places of their own.
+        const size_t a = k[at[0]], b = k[at[1]], c = k[at[2]];
+        if (a == b || b == c || c == a) continue;
+        for (int j = 0; j < 3; j++) expected[corner_count++] = v[k[at[j]]];
+      }
+    }
+    Text json = {.n = 0}, file = glb_of(2, 0);
+    add(&json, ASSET "\"buffers\":[{\"byteLength\":%zu}],\"bufferViews\":[%.*s],", data.n,
+        (int)views.n, views.at);
+    add(&json, "\"accessors\":[%.*s],\"meshes\":[%.*s]}", (int)accessors.n, accessors.at,
+        (int)meshes.n, meshes.at);
+    add_chunk(&file, "JSON", json.at, json.n);
+    add_chunk(&file, "BIN\0", data.at, data.n);
+    set_size(&file, file.n);
+    const CagMeshFile f = {
+        .name = "a.glb", .bytes = file.at, .size = file.n, .max_memory = 1 << 24};
+    CagMesh *m = NULL;
+    const CagStatus status = cag_mesh_read(&f, &m, &err);
+    if (corner_count == 0) {
+      assert_int_not_equal(status, CAG_OK);
+      assert_string_equal(err.reason, "mesh-file-empty");
+      continue;
+    }
+    if (status) fail_msg("round %d: %s\n%s", round, err.message, json.at);
+    assert_int_equal(3 * m->triangle_count, corner_count);
+    assert_int_equal(m->uv != NULL, any_uv);
+    // Meshes are read from the last to the first.
+    for (size_t t = 0; t < m->triangle_count; t++) {
+      bool found = false;
+      for (size_t e = 0; e < corner_count && !found; e++) { // from any of its corners
+        found = true;
+        for (size_t j = 0; j < 3; j++) {
+          const uint32_t at = m->triangles[3 * t + j];
+          const Corner *c = &expected[e / 3 * 3 + (e + j) % 3];
+          found &= cag_norm(cag_sub(m->positions[at], c->p)) == 0 &&
+                   (!m->uv || (m->uv[2 * at] == c->uv[0] && m->uv[2 * at + 1] == c->uv[1]));
+        }
+      }
+      if (!found) fail_msg("round %d: triangle %zu\n%s", round, t, json.at);
+    }
+    cag_mesh_release(m);
+  }
+}
+
+// A triangle: 36 bytes of positions, and three indices.
+static const char triangle[] =
+    "\"buffers\":[{\"byteLength\":39,\"uri\":\"data:;base64,"
+    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAAAAAIC/AAEC\"}],"
+    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},"
+    "{\"buffer\":0,\"byteOffset\":36,\"byteLength\":3}],"
+    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+    "{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"},"
+    "{\"bufferView\":1,\"componentType\":5120,\"count\":3,\"type\":\"SCALAR\"},"
+    "{\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"},"
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"},"
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":2,\"type\":\"VEC2\"}],";
+
+static CagStatus read_triangles(const char *rest, CagMesh **m) {
+  Text t = {.n = 0};
+  add(&t, ASSET "%s%s}", triangle, rest);
+  const CagMeshFile f = {.name = "a.gltf", .bytes = t.at, .size = t.n, .max_memory = 1 << 24};
+  *m = NULL;
+  return cag_mesh_read(&f, m, &err);
+}
+
+static void scenes_and_primitives_are_checked(void **state) {
+  (void)state;
+#define PRIMITIVE(text) "\"meshes\":[{\"primitives\":[{" text "}]}]"
+#define MESH PRIMITIVE("\"attributes\":{\"POSITION\":0}")
+#define TWO "\"nodes\":[{\"mesh\":0},{\"mesh\":0,\"translation\":[0,0,5]}]," MESH
+  static const struct {
+    const char *rest;
+    size_t triangles;
+    const char *reason, *part;
+  } cases[] = {
+      {MESH, 1, NULL, NULL},
+      {MESH ",\"nodes\":[]", 1, NULL, NULL},
+      {TWO, 2, NULL, NULL},
+      {TWO ",\"scenes\":[{\"nodes\":[1]}]", 1, NULL, NULL},
+      {TWO ",\"scenes\":[{\"nodes\":[1,0]}]", 2, NULL, NULL},
+      {TWO ",\"scene\":1,\"scenes\":[{\"nodes\":[0,1]},{\"nodes\":[1]}]", 1, NULL, NULL},
+      {TWO ",\"scene\":2,\"scenes\":[{},{}]", 0, "mesh-file-index", "names a scene"},
+      {TWO ",\"scene\":0,\"scenes\":[]", 0, "mesh-file-index", "names a scene"},
+      {TWO ",\"scene\":-1,\"scenes\":[{}]", 0, "mesh-file-index", "names a scene"},
+      {TWO ",\"scenes\":[{}]", 0, "mesh-file-empty", "no triangle"},
+      {TWO ",\"scenes\":[{\"nodes\":[2]}]", 0, "mesh-file-index", "names node 2, of 2 nodes"},
+      {TWO ",\"scenes\":[{\"nodes\":[0.5]}]", 0, "mesh-file-index", "names node 0.5"},
+      {TWO ",\"scenes\":[{\"nodes\":[-1]}]", 0, "mesh-file-index", "names node -1"},
+      {TWO ",\"scenes\":[{\"nodes\":[\"a\"]}]", 0, "mesh-file-index", "names node -1"},
+      {TWO ",\"scenes\":[{\"nodes\":[0,0]}]", 0, "mesh-file-syntax", "nodes[0] stands twice"},
+      {"\"nodes\":[{\"children\":[2]},{\"children\":[0]},{\"mesh\":0}]," MESH, 1, NULL, NULL},
+      {"\"nodes\":[{\"children\":[5]},{\"mesh\":0}]," MESH, 0, "mesh-file-index", "names node 5"},
+      {"\"nodes\":[{\"mesh\":1}]," MESH, 0, "mesh-file-index", "nodes[0] names a mesh"},
+      {"\"nodes\":[{\"mesh\":0.5}]," MESH, 0, "mesh-file-index", "nodes[0] names a mesh"},
+      {"\"nodes\":[{\"rotation\":[0,0,0,0]}]," MESH, 0, "mesh-file-syntax",
+       "nodes[0] has a matrix"},
+      {"\"nodes\":[{\"scale\":[1,1]}]," MESH, 0, "mesh-file-syntax", "nodes[0] has a matrix"},
+      {"\"nodes\":[{\"scale\":[1,1,\"\"]}]," MESH, 0, "mesh-file-syntax", "nodes[0] has a matrix"},
+      {"\"nodes\":[{\"translation\":3}]," MESH, 0, "mesh-file-syntax", "nodes[0] has a matrix"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":1"), 1, NULL, NULL},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":6"), 1, NULL, NULL},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"mode\":7"), 0, "mesh-file-syntax", "a mode"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":-1"), 0, "mesh-file-syntax",
+       "a mode"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":2"), 0, "mesh-file-syntax",
+       "accessors[2] has no indices"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":3"), 0, "mesh-file-unsupported",
+       "accessors[3] has sparse"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0},\"indices\":0"), 0, "mesh-file-syntax",
+       "accessors[0] must be of the type SCALAR"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":4},\"indices\":1"), 0, "mesh-file-index",
+       "triangle 0 of a mesh names vertex 2, of 2 vertices"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":4}"), 0, "mesh-file-empty", ""},
+      {PRIMITIVE("\"attributes\":{}"), 0, "mesh-file-empty", ""},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":\"\"}"), 0, "mesh-file-syntax", "an attribute"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0,\"NORMAL\":0.5}"), 0, "mesh-file-syntax",
+       "an attribute"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":-1}"), 0, "mesh-file-syntax",
+       "an attribute"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0,\"NORMAL\":4}"), 0, "mesh-file-syntax",
+       "accessors[0] has 3 points"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":5}"), 0, "mesh-file-syntax",
+       "accessors[0] has 3 points"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":4}"), 0, "mesh-file-syntax",
+       "type VEC2"},
+      {PRIMITIVE("\"attributes\":{\"POSITION\":0,\"NORMAL\":5}"), 0, "mesh-file-syntax",
+       "type VEC3"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    CagMesh *m;
+    const CagStatus status = read_triangles(cases[i].rest, &m);
+    if (!cases[i].reason) {
+      if (status) fail_msg("%zu: %s", i, err.message);
+      assert_int_equal(m->triangle_count, cases[i].triangles);
+      cag_mesh_release(m);
+    } else if (!status || strcmp(err.reason, cases[i].reason) != 0 ||
+               !strstr(err.message, cases[i].part)) {
+      fail_msg("%zu: %s: %s", i, err.reason, err.message);
+    }
+  }
+}
+
+// More nodes below one another, and beside one another, than the walk has room for at first.
+static void many_nodes_are_walked(void **state) {
+  (void)state;
+  for (int deep = 0; deep < 2; deep++) {
+    const int n = 150;
+    Text t = {.n = 0};
+    CagMesh *m;
+    add(&t, "\"nodes\":[");
+    for (int i = 0; i < n; i++) {
+      add(&t, "%s{\"mesh\":0,\"translation\":[0,%d,0]", i ? "," : "", deep ? 1 : i + 1);
+      if (deep && i + 1 < n) add(&t, ",\"children\":[%d]", i + 1);
+      add(&t, "}");
+    }
+    add(&t, "]," MESH);
+    if (read_triangles(t.at, &m)) fail_msg("%s", err.message);
+    assert_int_equal(m->triangle_count, n);
+    double sum = 0;
+    for (size_t v = 0; v < m->vertex_count; v++) sum += m->positions[v].z;
+    assert_int_equal(m->vertex_count, 3 * n);
+    assert_true(sum == 1000.0 * 3 * n * (n + 1) / 2);
+    cag_mesh_release(m);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(accessors_are_read_as_they_are_written),
@@ -530,6 +779,9 @@ int main(void) {
       cmocka_unit_test(buffers_lie_beside),
       cmocka_unit_test(json_that_ends_early_is_told),
       cmocka_unit_test(chunks_are_found),
+      cmocka_unit_test(primitives_are_read_in_their_modes),
+      cmocka_unit_test(scenes_and_primitives_are_checked),
+      cmocka_unit_test(many_nodes_are_walked),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
