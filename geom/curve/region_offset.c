@@ -476,17 +476,20 @@ static bool move_edges(const CagVec3 *v, size_t n, double left, Half *out, size_
     const CagVec3 u = cag_unit(step);
     if (*count > 0) {
       const CagVec3 before = out[*count - 1].along;
-      const double sine = cag_cross(before, u).z;
+      const double sine = cag_cross(before, u).z, cosine = cag_dot(before, u);
+      if (fabs(sine) <= TURN && cosine > 0) continue; // straight on: the same line
       if (sine < 0) return false;
-      turned += atan2(sine, cag_dot(before, u));
-      if (sine <= TURN && cag_dot(before, u) > 0) continue; // straight on: the same line
+      turned += atan2(sine, cosine);
     }
     out[(*count)++] = (Half){cag_madd(p, left, cag_vec3(-u.y, u.x, 0)), u};
   }
   if (*count < 3) return false;
   const CagVec3 first = out[0].along, last = out[*count - 1].along;
-  const double sine = cag_cross(last, first).z;
-  return sine > 0 && turned + atan2(sine, cag_dot(last, first)) < 3 * M_PI;
+  const double sine = cag_cross(last, first).z, cosine = cag_dot(last, first);
+  turned += atan2(sine, cosine);
+  if (fabs(sine) <= TURN && cosine > 0) --*count; // the loop starts on a line
+  else if (sine < 0) return false;
+  return turned < 3 * M_PI;
 }
 
 static CagStatus polygon_of(const Chain *c, CagRegion **out, CagError *err) {

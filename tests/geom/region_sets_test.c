@@ -357,6 +357,36 @@ static void a_dumbbell_shrinks_to_two_pieces(void **state) {
   NEAR(free_area(r), 2 * (4 + bulge), 1e-12);
 }
 
+static double distance_to_boundary(const CagRegion *r, CagVec3 from) {
+  double nearest = INFINITY;
+  for (size_t k = 0; k < r->count; k++) {
+    double t, distance;
+    CagVec3 p;
+    OK(cag_curve_closest(r->loops[k], from, &t, &p, &distance, &err));
+    nearest = fmin(nearest, distance);
+  }
+  return nearest;
+}
+
+// All of the boundary of the offset region is at the distance, on the right side.
+static void check_boundary(const CagRegion *r, const CagRegion *offset, double d,
+                           double tolerance) {
+  enum { SAMPLES = 40 };
+  for (size_t k = 0; k < offset->count; k++) {
+    const CagCurve *c = offset->loops[k];
+    double area;
+    assert_true(c->closed);
+    OK(cag_curve_area(c, &area, NULL, &err));
+    assert_int_equal(area > 0, offset->outer[k] == k);
+    for (int i = 0; i < SAMPLES; i++) {
+      CagVec3 p;
+      OK(cag_curve_point(c, c->start + (c->end - c->start) * (i + 0.31) / SAMPLES, &p, &err));
+      NEAR(distance_to_boundary(r, p), fabs(d), tolerance);
+      assert_int_equal(holds(r, p.x, p.y), d < 0);
+    }
+  }
+}
+
 // Points of a grid are in the offset region just where they are within the distance.
 static void check_distances(CagRegion *r, double d, double tolerance) {
   CagRegion *g;
@@ -366,17 +396,12 @@ static void check_distances(CagRegion *r, double d, double tolerance) {
   for (int i = 0; i < 400; i++) {
     const double x = b.min.x - 1.5 + (b.max.x - b.min.x + 3) * (i % 20 + 0.43) / 20,
                  y = b.min.y - 1.5 + (b.max.y - b.min.y + 3) * (i / 20 + 0.57) / 20;
-    double nearest = INFINITY;
-    for (size_t k = 0; k < r->count; k++) {
-      double t, distance;
-      CagVec3 p;
-      OK(cag_curve_closest(r->loops[k], cag_vec3(x, y, 0), &t, &p, &distance, &err));
-      nearest = fmin(nearest, distance);
-    }
+    const double nearest = distance_to_boundary(r, cag_vec3(x, y, 0));
     if (fabs(nearest - fabs(d)) < 4 * tolerance) continue;
     const bool in = holds(r, x, y);
     assert_int_equal(holds(g, x, y), d > 0 ? in || nearest < d : in && nearest > -d);
   }
+  check_boundary(r, g, d, 2 * tolerance);
   cag_region_release(g);
 }
 
@@ -449,6 +474,127 @@ static void random_shapes_keep_the_distance(void **state) {
   }
 }
 
+// --- Convex polygons against half planes ---
+
+enum { MOST_CORNERS = 64 };
+
+// What of the polygon is to the left of the line from p in the direction d.
+static size_t clip_half_plane(CagVec3 *v, size_t n, CagVec3 p, CagVec3 d) {
+  CagVec3 out[MOST_CORNERS];
+  size_t m = 0;
+  for (size_t i = 0; i < n; i++) {
+    const CagVec3 a = v[i], b = v[(i + 1) % n];
+    const double f = cag_cross(d, cag_sub(a, p)).z, g = cag_cross(d, cag_sub(b, p)).z;
+    if (f >= 0) out[m++] = a;
+    if ((f > 0 && g < 0) || (f < 0 && g > 0)) out[m++] = cag_lerp(a, b, f / (f - g));
+  }
+  memcpy(v, out, m * sizeof *v);
+  return m;
+}
+
+static double area_of_corners(const CagVec3 *v, size_t n) {
+  double twice = 0;
+  for (size_t i = 0; i < n; i++) twice += cag_cross(v[i], v[(i + 1) % n]).z;
+  return twice / 2;
+}
+
+// Corners apart from each other at which the polygon turns.
+static size_t count_corners(const CagVec3 *v, size_t n) {
+  size_t found = 0;
+  for (size_t i = 0; i < n; i++) found += cag_norm(cag_sub(v[i], v[(i + 1) % n])) > 1e-9;
+  return found;
+}
+
+static void convex_polygons_shrink_to_what_half_planes_leave(void **state) {
+  (void)state;
+  seed = 72;
+  int left = 0, gone = 0, fewer = 0;
+  for (int round = 0; round < 400; round++) {
+    CagVec3 p[MOST_CORNERS], given[MOST_CORNERS], rest[MOST_CORNERS];
+    const size_t n = (size_t)uniform(3, 13);
+    const double long_side = uniform(1, 8), start = uniform(0, 7);
+    const double sizes[] = {1, 1e-5, 1e6};
+    const double size = sizes[round % 3];
+    double angle = start;
+    for (size_t i = 0; i < n; i++) { // no gap reaches half a turn
+      const double corner = cos(angle);
+      p[i] = cag_scaled(cag_vec3(long_side * corner + 3, sin(angle), 0), size);
+      angle += uniform(0.5, 1.5) * 4 / (double)n;
+    }
+    const double d = uniform(0.02, 0.9) * size;
+    // Corners on edges, and repeated in the other sense.
+    size_t m = 0;
+    for (size_t i = 0; i < n; i++) {
+      given[m++] = p[i];
+      if ((round + (int)i) % 4 == 0) given[m++] = cag_lerp(p[i], p[(i + 1) % n], 0.25);
+    }
+    if (round % 5 == 0)
+      for (size_t i = 0; i < m / 2; i++) {
+        const CagVec3 other = given[i];
+        given[i] = given[m - 1 - i];
+        given[m - 1 - i] = other;
+      }
+    size_t k = n;
+    memcpy(rest, p, n * sizeof *p);
+    for (size_t i = 0; i < n && k > 0; i++) {
+      const CagVec3 along = cag_unit(cag_sub(p[(i + 1) % n], p[i]));
+      k = clip_half_plane(rest, k, cag_madd(p[i], d, cag_vec3(-along.y, along.x, 0)), along);
+    }
+    const double expected = k > 2 ? area_of_corners(rest, k) : 0;
+    if (expected < 1e-6 * size * size && expected > 0) continue; // all but gone
+    CagRegion *r = polygon(given, m), *s;
+    OK(cag_region_offset(r, -d, 1e-7 * size, &s, &err));
+    if (expected == 0) {
+      assert_true(cag_region_is_empty(s));
+      gone++;
+    } else {
+      const CagVec3 *v;
+      size_t corners;
+      bool closed;
+      NEAR(area_of(s) / (size * size), expected / (size * size), 1e-11);
+      assert_int_equal(s->count, 1);
+      assert_true(cag_curve_vertices(s->loops[0], &v, &corners, &closed) && closed);
+      for (size_t i = 0; i < k; i++) rest[i] = cag_scaled(rest[i], 1 / size);
+      assert_int_equal(corners, count_corners(rest, k));
+      fewer += corners < n;
+      left++;
+    }
+    cag_region_release(r);
+    cag_region_release(s);
+  }
+  assert_true(left > 100 && gone > 30 && fewer > 30);
+}
+
+static void the_limits_of_distances_are_parts_of_the_size(void **state) {
+  (void)state;
+  CagRegion *r = box(1, 2, 3, 4), *s; // the diagonal is 5
+  const double kept[] = {0, 4.9e-12, -4.9e-12}, moved[] = {5.1e-12, -5.1e-12};
+  for (int i = 0; i < 3; i++) {
+    OK(cag_region_offset(r, kept[i], 1e-7, &s, &err));
+    assert_ptr_equal(s, r);
+    cag_region_release(s);
+  }
+  for (int i = 0; i < 2; i++) {
+    OK(cag_region_offset(r, moved[i], 1e-7, &s, &err));
+    assert_ptr_not_equal(s, r);
+    cag_region_release(s);
+  }
+  FAILS(cag_region_offset(r, 5.1e9, 1e-7, &s, &err), "too-far");
+  FAILS(cag_region_offset(r, NAN, 1e-7, &s, &err), "not-finite");
+  OK(cag_region_offset(r, 4.9e9, 1e-7, &s, &err));
+  NEAR(free_area(s) / (M_PI * 4.9e9 * 4.9e9), 1, 1e-8);
+  // All but the whole width, the whole, and a little more.
+  NEAR(free_area(grown_by(r, -1.4999)), 2e-4 * 1.0002, 1e-12);
+  assert_true(is_empty(grown_by(r, -1.5)));
+  assert_true(is_empty(grown_by(r, -1.500001)));
+  assert_true(is_empty(grown_by(r, -4e9)));
+  cag_region_release(r);
+  // A region without points stays one.
+  s = grown_by(r = set(CAG_REGION_DIFFERENCE, box(0, 0, 1, 1), box(-1, -1, 4, 4)), 1);
+  assert_true(is_empty(s));
+  cag_region_release(r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(random_shapes_keep_the_distance),
@@ -466,6 +612,8 @@ int main(void) {
       cmocka_unit_test(a_dumbbell_shrinks_to_two_pieces),
       cmocka_unit_test(offsets_of_splines_keep_the_distance),
       cmocka_unit_test(an_ellipse_folds_where_it_is_sharp),
+      cmocka_unit_test(convex_polygons_shrink_to_what_half_planes_leave),
+      cmocka_unit_test(the_limits_of_distances_are_parts_of_the_size),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
