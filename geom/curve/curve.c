@@ -85,16 +85,11 @@ static const char *parameter_text(const CagCurve *c, double t, char *buffer) {
 }
 
 static CagStatus snap(const CagCurve *c, double *t, const char *name, CagError *err) {
-  if (*t >= c->start && *t <= c->end) return CAG_OK;
   char a[48], b[48], x[48];
   if (isnan(*t)) return cag_curve_check_number(*t, name, err);
-  double slack = SNAP_ULPS * DBL_EPSILON * fmax(fabs(c->start), fabs(c->end));
-  if (*t < c->start && c->start - *t <= slack) {
-    *t = c->start;
-    return CAG_OK;
-  }
-  if (*t > c->end && *t - c->end <= slack) {
-    *t = c->end;
+  const double inside = fmin(c->end, fmax(c->start, *t));
+  if (fabs(*t - inside) <= SNAP_ULPS * DBL_EPSILON * fmax(fabs(c->start), fabs(c->end))) {
+    *t = inside;
     return CAG_OK;
   }
   return cag_fail(err, CAG_E_DOMAIN, "parameter-range", name, -1,

@@ -260,7 +260,7 @@ static bool even_knots_suit(Design *a, CagError *scratch) {
     span = cag_knots_span(a->knots, a->count, a->p, a->u[i], false, (size_t)a->p);
     cag_bspline_basis(a->knots, a->p, span, a->u[i], best);
     const size_t first = span - (size_t)a->p;
-    if (i < first || i > span || best[i - first] < WELL_PLACED * largest) return false;
+    if (best[i - first] < WELL_PLACED * largest) return false; // i is among them: check_support
   }
   return true;
 }

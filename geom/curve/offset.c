@@ -175,12 +175,8 @@ static CagStatus part_cuts(const CagCurve *c, double *cuts, size_t *n, CagError 
 static CagStatus take_part(const CagCurve *c, double a, double b, CagCurve **out, CagError *err) {
   double local_a, local_b, rate;
   const CagCurve *piece = cag_curve_composite_piece(c, a, b, &local_a, &local_b, &rate);
-  if (piece) return cag_curve_trim(piece, local_a, local_b, out, err);
-  if (a == c->start && b == c->end) {
-    *out = cag_curve_retain(c);
-    return CAG_OK;
-  }
-  return cag_curve_trim(c, a, b, out, err);
+  return piece ? cag_curve_trim(piece, local_a, local_b, out, err)
+               : cag_curve_trim(c, a, b, out, err);
 }
 
 // The arc from `from` to `to` about the corner.

@@ -436,6 +436,85 @@ static void parameters_outside_the_domain_fail_with_the_domain(void **state) {
   cag_curve_release(c);
 }
 
+static void rounding_at_the_ends_of_a_domain_counts_as_the_end(void **state) {
+  (void)state;
+  const CagVec3 p = {1, 2, 3}, q = {-4, 5, 7};
+  const double ulp = 0x1p-52; // of 1; 16 of them count
+  CagCurve *c, *part, *half[2];
+  OK(cag_curve_line(p, q, 3, &c, &err));
+  near_vec(at(c, 1 + 16 * ulp), q, 0);
+  near_vec(at(c, -16 * ulp), p, 0);
+  CagVec3 x;
+  FAILS(cag_curve_point(c, 1 + 17 * ulp, &x, &err), "parameter-range");
+  FAILS(cag_curve_point(c, -17 * ulp, &x, &err), "parameter-range");
+  FAILS(cag_curve_point(c, -INFINITY, &x, &err), "parameter-range");
+  FAILS(cag_curve_point(c, INFINITY, &x, &err), "parameter-range");
+  near_vec(at(c, 0.25), cag_lerp(p, q, 0.25), 1e-15);
+  // The whole is the curve itself; a part of it is not.
+  OK(cag_curve_trim(c, -8 * ulp, 1 + 8 * ulp, &part, &err));
+  assert_ptr_equal(part, c);
+  cag_curve_release(part);
+  const double ranges[3][2] = {{0, 0.5}, {0.5, 1}, {0.25, 0.75}};
+  for (int i = 0; i < 3; i++) {
+    OK(cag_curve_trim(c, ranges[i][0], ranges[i][1], &part, &err));
+    near_vec(at(part, part->start), cag_lerp(p, q, ranges[i][0]), 1e-14);
+    near_vec(at(part, part->end), cag_lerp(p, q, ranges[i][1]), 1e-14);
+    cag_curve_release(part);
+    OK(cag_curve_reparametrize(c, 2 * ranges[i][0], 2 * ranges[i][1], &part, &err));
+    assert_true(part->start == 2 * ranges[i][0] && part->end == 2 * ranges[i][1]);
+    near_vec(at(part, part->start), p, 0);
+    near_vec(at(part, part->end), q, 0);
+    cag_curve_release(part);
+  }
+  OK(cag_curve_reparametrize(c, 0, 1, &part, &err));
+  assert_ptr_equal(part, c);
+  cag_curve_release(part);
+  FAILS(cag_curve_trim(c, 1, 1 + 2 * ulp, &part, &err), "empty-range");
+  FAILS(cag_curve_trim(c, -2 * ulp, 0, &part, &err), "empty-range");
+  FAILS(cag_curve_trim(c, 0.5, 0.5, &part, &err), "empty-range");
+  FAILS(cag_curve_trim(c, 0.5, NAN, &part, &err), "not-finite");
+  FAILS(cag_curve_trim(c, -INFINITY, 0.5, &part, &err), "not-finite");
+  FAILS(cag_curve_trim(c, -0.5, 0.5, &part, &err), "parameter-range");
+  FAILS(cag_curve_trim(c, 0.5, 1.5, &part, &err), "parameter-range");
+  FAILS(cag_curve_reparametrize(c, 3, 3, &part, &err), "empty-range");
+  // Halves at the ends: the curve, and a point.
+  for (int i = 0; i < 2; i++) {
+    OK(cag_curve_halves(c, i, half, &err));
+    assert_ptr_equal(half[1 - i], c);
+    assert_true(half[i]->start == i && half[i]->end == i && !half[i]->closed);
+    near_vec(at(half[i], i), i ? q : p, 0);
+    assert_true(cag_curve_resting_view(half[i], &x));
+    for (int k = 0; k < 2; k++) cag_curve_release(half[k]);
+  }
+  cag_curve_release(c);
+}
+
+static void closed_curves_are_trimmed_over_the_seam_up_to_a_turn(void **state) {
+  (void)state;
+  CagCurve *c, *part;
+  CagTransform frame = cag_transform_identity();
+  OK(cag_curve_arc(3, 2, 0, 2 * M_PI, &frame, &c, &err));
+  const double turn = 2 * M_PI, ulp = 0x1p-50;
+  OK(cag_curve_trim(c, -4 * ulp, turn + 4 * ulp, &part, &err));
+  assert_ptr_equal(part, c);
+  cag_curve_release(part);
+  const double ranges[4][2] = {{-1, 2}, {5, 8}, {1, 1 + turn}, {-turn / 2, turn / 2}};
+  for (int i = 0; i < 4; i++) {
+    OK(cag_curve_trim(c, ranges[i][0], ranges[i][1], &part, &err));
+    assert_true(part->angular);
+    NEAR(part->end - part->start, ranges[i][1] - ranges[i][0], 1e-14);
+    for (int k = 0; k <= 20; k++) {
+      const double x = ranges[i][0] + (ranges[i][1] - ranges[i][0]) * k / 20;
+      const double t = part->start + (part->end - part->start) * k / 20;
+      near_vec(at(part, fmin(t, part->end)), cag_vec3(3 * cos(x), 2 * sin(x), 0), 1e-14);
+    }
+    cag_curve_release(part);
+  }
+  FAILS(cag_curve_trim(c, 1, 1 + turn + 1e-12, &part, &err), "parameter-range");
+  FAILS(cag_curve_trim(c, -1, turn, &part, &err), "parameter-range");
+  cag_curve_release(c);
+}
+
 static void bad_data_are_named(void **state) {
   (void)state;
   CagCurve *c;
@@ -620,6 +699,8 @@ int main(void) {
       cmocka_unit_test(frenet_frames_are_those_of_the_reference),
       cmocka_unit_test(tangents_have_their_limit_where_the_speed_is_zero),
       cmocka_unit_test(parameters_outside_the_domain_fail_with_the_domain),
+      cmocka_unit_test(rounding_at_the_ends_of_a_domain_counts_as_the_end),
+      cmocka_unit_test(closed_curves_are_trimmed_over_the_seam_up_to_a_turn),
       cmocka_unit_test(bad_data_are_named),
       cmocka_unit_test(joining_wants_ends_that_meet),
       cmocka_unit_test(a_composite_has_an_exact_nurbs_form),
