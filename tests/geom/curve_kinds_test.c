@@ -1,0 +1,583 @@
+// The questions that every kind of curve answers, on random curves of all kinds against dense
+// samples.
+
+#include "geom/curve/conic.h"
+#include "geom/curve/family.h"
+#include "geom/curve/function.h"
+#include "geom/curve/nurbs.h"
+#include "geom/curve/range.h"
+#include "tests/geom/random.h"
+#include "tests/geom/support.h"
+
+// --- Random curves ---
+
+typedef enum Kind {
+  LINE,
+  POLYLINE,
+  RING,
+  BEZIER,
+  RATIONAL,
+  SPLINE,
+  NURBS,
+  PERIODIC,
+  CIRCLE,
+  ELLIPSE,
+  HELIX,
+  CONE_HELIX,
+  PARABOLA,
+  HYPERBOLA,
+  TANGENT,
+  SECANT,
+  COMPOSITE,
+  FUNCTION,
+  KINDS
+} Kind;
+
+static CagVec3 random_point(double size) {
+  const double x = uniform(-size, size), y = uniform(-size, size), z = uniform(-size, size);
+  return cag_vec3(x, y, z);
+}
+
+// A turn by random angles and a shift.
+static CagTransform random_frame(void) {
+  const CagVec3 x = cag_unit(random_point(1)), other = random_point(1);
+  const CagVec3 z = cag_unit(cag_cross(x, other)), y = cag_cross(z, x), at = random_point(3);
+  CagTransform t = cag_translate(at);
+  const CagVec3 column[3] = {x, y, z};
+  for (int k = 0; k < 3; k++) {
+    t.m[0][k] = column[k].x;
+    t.m[1][k] = column[k].y;
+    t.m[2][k] = column[k].z;
+  }
+  t.planar = false;
+  return t;
+}
+
+// 3 cos t, 2 sin 2t, t / 2 + cos 3t / 4.
+static CagStatus wave(void *context, double t, int order, CagVec3 *out, CagError *e) {
+  (void)context;
+  (void)e;
+  double two = 1, three = 1;
+  for (int k = 0; k <= order; k++, two *= 2, three *= 3) {
+    const double turn = k * (M_PI / 2);
+    out[k] = cag_vec3(3 * cos(t + turn), 2 * two * sin(2 * t + turn),
+                      (k == 0   ? t / 2
+                       : k == 1 ? 0.5
+                                : 0) +
+                          three * cos(3 * t + turn) / 4);
+  }
+  return CAG_OK;
+}
+static void forget(void *context) { (void)context; }
+
+static CagCurve *moved(CagCurve *c) {
+  const CagTransform t = random_frame();
+  CagCurve *out;
+  OK(cag_curve_transform(c, &t, &out, &err));
+  cag_curve_release(c);
+  return out;
+}
+
+static CagCurve *random_curve(Kind kind) {
+  enum { POINTS = 7 };
+  CagVec3 p[POINTS];
+  double w[POINTS], knots[POINTS + 4] = {0, 0, 0, 0, 0.7, 1, 2, 3, 3, 3, 3};
+  for (int i = 0; i < POINTS; i++) {
+    p[i] = random_point(4);
+    w[i] = uniform(0.4, 2.5);
+  }
+  knots[4] = uniform(0.3, 0.9);
+  knots[6] = uniform(1.1, 2.5);
+  const CagTransform frame = random_frame();
+  const double a = uniform(0.5, 3), b = uniform(0.5, 3), from = uniform(-1, 0.5),
+               way = uniform(0.4, 5);
+  CagCurve *c = NULL, *parts[3];
+  switch (kind) {
+  case LINE: OK(cag_curve_line(p[0], p[1], 3, &c, &err)); break;
+  case POLYLINE: OK(cag_curve_polyline(p, 5, false, 3, &c, &err)); break;
+  case RING: OK(cag_curve_polyline(p, 5, true, 3, &c, &err)); break;
+  case BEZIER:
+    OK(cag_curve_bezier(p, NULL, 3 + (size_t)(4 * (w[0] - 0.4) / 2.1), 3, &c, &err));
+    break;
+  case RATIONAL: OK(cag_curve_bezier(p, w, 4, 3, &c, &err)); break;
+  case SPLINE: OK(cag_curve_nurbs(p, NULL, POINTS, 3, knots, 3, &c, &err)); break;
+  case NURBS: OK(cag_curve_nurbs(p, w, POINTS, 3, knots, 3, &c, &err)); break;
+  case PERIODIC: OK(cag_curve_nurbs_closed(p, NULL, POINTS, 3, 3, &c, &err)); break;
+  case CIRCLE: OK(cag_curve_arc(a, a, from, from + way, &frame, &c, &err)); break;
+  case ELLIPSE: OK(cag_curve_arc(a, b, 0, 2 * M_PI, &frame, &c, &err)); break;
+  case HELIX: OK(cag_curve_helix(a, b, way / 3, 0, &c, &err)); return moved(c);
+  case CONE_HELIX: OK(cag_curve_helix(a, b, -way / 3, 0.2, &c, &err)); return moved(c);
+  case PARABOLA:
+    OK(cag_curve_parabola(a / 2, CAG_FORM_QUADRATIC, from, from + way / 2, &frame, &c, &err));
+    break;
+  case HYPERBOLA:
+    OK(cag_curve_hyperbola(a, b, CAG_FORM_HYPERBOLIC, from, from + way / 3, &frame, &c, &err));
+    break;
+  case TANGENT:
+    OK(cag_curve_parabola(a / 2, CAG_FORM_TANGENT, from, from + way / 8, &frame, &c, &err));
+    break;
+  case SECANT:
+    OK(cag_curve_hyperbola(a, b, CAG_FORM_SECANT, from, from + way / 8, &frame, &c, &err));
+    break;
+  case COMPOSITE: {
+    CagVec3 end;
+    OK(cag_curve_arc(a, a, from, from + way, &frame, &parts[0], &err));
+    OK(cag_curve_point(parts[0], from + way, &end, &err));
+    OK(cag_curve_line(end, p[0], 3, &parts[1], &err));
+    OK(cag_curve_nurbs(p, w, POINTS, 3, knots, 3, &parts[2], &err));
+    OK(cag_curve_join(parts, 3, &c, &err));
+    for (int i = 0; i < 3; i++) cag_curve_release(parts[i]);
+    break;
+  }
+  default: {
+    const CagCurveFunction f = {wave, forget, NULL};
+    OK(cag_curve_function(&f, 3, from, from + way, false, &c, &err));
+    return moved(c);
+  }
+  }
+  return c;
+}
+
+// Runs the check on curves of all kinds.
+static void each_kind(int rounds, void (*check)(const CagCurve *c)) {
+  for (int round = 0; round < rounds; round++)
+    for (Kind kind = 0; kind < KINDS; kind++) {
+      CagCurve *c = random_curve(kind);
+      check(c);
+      cag_curve_release(c);
+    }
+}
+
+// The points and derivatives at t; from the left at the end.
+static void derivatives(const CagCurve *c, double t, int order, CagVec3 *d) {
+  OK(cag_curve_eval(c, t, order, t >= c->end ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, &err));
+}
+
+static CagVec3 at(const CagCurve *c, double t) {
+  CagVec3 p;
+  OK(cag_curve_point(c, t, &p, &err));
+  return p;
+}
+
+static double from_segment(CagVec3 p, CagVec3 a, CagVec3 b) {
+  const CagVec3 d = cag_sub(b, a), r = cag_sub(p, a);
+  const double u = cag_dot(d, d) > 0 ? cag_dot(r, d) / cag_dot(d, d) : 0;
+  return cag_norm(cag_madd(r, -fmin(1, fmax(0, u)), d));
+}
+
+// A random part of a random smooth piece.
+static void random_part(const CagCurve *c, double *a, double *b) {
+  double *cuts;
+  size_t n;
+  OK(cag_curve_cuts(c, &cuts, &n, &err));
+  assert_true(n >= 2 && cuts[0] == c->start && cuts[n - 1] == c->end);
+  const size_t i = (size_t)uniform(0, (double)(n - 1));
+  const double low = cuts[i], range = cuts[i + 1] - low;
+  const double share = pow(2, uniform(-9, 0)), from = uniform(0, 1 - share);
+  *a = low + range * from;
+  *b = fmin(cuts[i + 1], low + range * (from + share));
+  free(cuts);
+}
+
+// --- Bounds of parts ---
+
+// By how much the point is outside of the box, in the coordinate where that is most.
+static double excess(const CagBounds *b, CagVec3 p) {
+  const double x = fmax(b->min.x - p.x, p.x - b->max.x), y = fmax(b->min.y - p.y, p.y - b->max.y);
+  return fmax(fmax(x, y), fmax(b->min.z - p.z, p.z - b->max.z));
+}
+
+// Of parts that bend little: how many, and the sum of the bounds as multiples of the truth.
+static double looseness;
+static int bent_little;
+
+static void check_sag(const CagCurve *c) {
+  enum { SAMPLES = 60 };
+  for (int part = 0; part < 6; part++) {
+    double a, b, most = 0;
+    random_part(c, &a, &b);
+    const CagVec3 p = at(c, a), q = at(c, b);
+    const CagBounds hull = c->kind->hull(c, a, b);
+    const double sag = cag_curve_sag(c, a, b), chord = cag_norm(cag_sub(p, q));
+    for (int i = 0; i <= SAMPLES; i++) {
+      const CagVec3 x = at(c, fmin(b, a + (b - a) * i / SAMPLES));
+      most = fmax(most, from_segment(x, p, q));
+      assert_true(excess(&hull, x) <= 1e-13);
+    }
+    assert_true(sag >= most * (1 - 1e-9) - 1e-14);
+    if (!(most < 0.02 * chord)) continue;
+    assert_true(cag_norm(cag_sub(hull.max, hull.min)) <= 3 * chord + 1e-12);
+    if (most < 1e-9) continue;
+    looseness += sag / most;
+    bent_little++;
+  }
+}
+
+static void parts_stay_within_their_bounds(void **state) {
+  (void)state;
+  seed = 201;
+  for (Kind kind = 0; kind < KINDS; kind++) {
+    looseness = 0;
+    bent_little = 0;
+    for (int round = 0; round < 60; round++) {
+      CagCurve *c = random_curve(kind);
+      check_sag(c);
+      cag_curve_release(c);
+    }
+    // Straight kinds have none; the bound of an ellipse is that of its larger axis.
+    if (kind <= RING) assert_int_equal(bent_little, 0);
+    else assert_true(bent_little > 100);
+    assert_true(looseness <= (kind == ELLIPSE ? 2 : 1.45) * bent_little);
+  }
+}
+
+static void check_interval(CagInterval range, double value, double size) {
+  assert_true(range.lo <= value + 1e-11 * size && range.hi >= value - 1e-11 * size);
+}
+
+static void check_ranges(const CagCurve *c) {
+  enum { ORDER = 4, SAMPLES = 8 };
+  CagInterval3 r[ORDER + 1];
+  for (int part = 0; part < 6; part++) {
+    double a, b, size = 1;
+    random_part(c, &a, &b);
+    const bool narrow = part >= 3;
+    if (narrow) b = a + (b - a) * 1e-7;
+    if (!(a < b) || !cag_curve_ranges(c, a, b, ORDER, r)) continue;
+    for (int i = 0; i <= SAMPLES; i++) {
+      CagVec3 d[ORDER + 1];
+      OK(cag_curve_eval(c, i == SAMPLES ? b : a + (b - a) * i / SAMPLES, ORDER,
+                        i == SAMPLES ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, &err));
+      double factorial = 1;
+      for (int k = 0; k <= ORDER; k++) {
+        if (k > 0) factorial *= k;
+        const CagVec3 v = cag_scaled(d[k], 1 / factorial);
+        size = fmax(size, cag_norm(v));
+        check_interval(r[k].x, v.x, size);
+        check_interval(r[k].y, v.y, size);
+        check_interval(r[k].z, v.z, size);
+        if (!narrow) continue;
+        // Nothing but rounding is left of the width.
+        assert_true(r[k].x.hi - r[k].x.lo <= 1e-4 * size);
+        assert_true(r[k].y.hi - r[k].y.lo <= 1e-4 * size);
+        assert_true(r[k].z.hi - r[k].z.lo <= 1e-4 * size);
+      }
+    }
+  }
+}
+
+static void ranges_hold_the_derivatives_and_are_narrow(void **state) {
+  (void)state;
+  seed = 202;
+  each_kind(40, check_ranges);
+  // Functions have none.
+  CagInterval3 r[2];
+  CagCurve *c = random_curve(FUNCTION);
+  assert_false(cag_curve_ranges(c, c->start, c->end, 1, r));
+  cag_curve_release(c);
+}
+
+// --- Boxes, closest points, lengths ---
+
+enum { DENSE = 1200 };
+
+static void check_box(const CagCurve *c) {
+  CagBounds box, found = CAG_BOUNDS_EMPTY;
+  OK(cag_curve_bounds(c, &box, &err));
+  double *cuts, step = 0;
+  size_t n;
+  OK(cag_curve_cuts(c, &cuts, &n, &err));
+  for (size_t i = 0; i < n; i++) cag_bounds_add(&found, at(c, cuts[i]));
+  free(cuts);
+  CagVec3 last = at(c, c->start);
+  for (int i = 1; i <= DENSE; i++) {
+    const CagVec3 p = at(c, i == DENSE ? c->end : c->start + (c->end - c->start) * i / DENSE);
+    cag_bounds_add(&found, p);
+    step = fmax(step, cag_norm(cag_sub(p, last)));
+    last = p;
+  }
+  const double size = cag_norm(cag_sub(box.max, box.min));
+  assert_true(excess(&box, found.min) <= 1e-10 * size);
+  assert_true(excess(&box, found.max) <= 1e-10 * size);
+  // A summit between samples is above them by the square of their step, over the radius.
+  const double most = 8 * step * step / fmin(size, 1) + 1e-10 * size;
+  NEAR(box.min.x, found.min.x, most);
+  NEAR(box.min.y, found.min.y, most);
+  NEAR(box.min.z, found.min.z, most);
+  NEAR(box.max.x, found.max.x, most);
+  NEAR(box.max.y, found.max.y, most);
+  NEAR(box.max.z, found.max.z, most);
+}
+
+static void boxes_are_those_of_dense_samples(void **state) {
+  (void)state;
+  seed = 203;
+  each_kind(12, check_box);
+}
+
+static double distance_at(const CagCurve *c, CagVec3 p, double t) {
+  return cag_norm(cag_sub(at(c, fmin(c->end, fmax(c->start, t))), p));
+}
+
+static void check_closest(const CagCurve *c) {
+  const CagVec3 p = random_point(6);
+  double t, distance, least = INFINITY, best = 0;
+  CagVec3 foot;
+  OK(cag_curve_closest(c, p, &t, &foot, &distance, &err));
+  near_vec(at(c, t), foot, 1e-14);
+  NEAR(cag_norm(cag_sub(foot, p)), distance, 1e-14);
+  const double step = (c->end - c->start) / DENSE;
+  for (int i = 0; i <= DENSE; i++)
+    if (distance_at(c, p, c->start + step * i) < least) {
+      least = distance_at(c, p, c->start + step * i);
+      best = c->start + step * i;
+    }
+  // The golden section between the neighbors.
+  double low = best - step, high = best + step;
+  for (int i = 0; i < 60; i++) {
+    const double x = low + 0.382 * (high - low), y = low + 0.618 * (high - low);
+    if (distance_at(c, p, x) < distance_at(c, p, y)) high = y;
+    else low = x;
+  }
+  least = fmin(least, distance_at(c, p, low));
+  assert_true(distance <= least + 1e-12);
+  assert_true(distance >= least - 1e-6);
+  // Perpendicular, where neither an end nor a corner is nearest.
+  CagVec3 right[2], left[2];
+  if (t <= c->start || t >= c->end) return;
+  OK(cag_curve_eval(c, t, 1, CAG_SIDE_RIGHT, right, &err));
+  OK(cag_curve_eval(c, t, 1, CAG_SIDE_LEFT, left, &err));
+  if (cag_norm(cag_sub(right[1], left[1])) > 1e-9) return;
+  NEAR(cag_dot(cag_unit(right[1]), cag_unit(cag_sub(p, foot))), 0, 1e-9);
+}
+
+static void closest_points_are_nearer_than_dense_samples(void **state) {
+  (void)state;
+  seed = 204;
+  each_kind(12, check_closest);
+}
+
+// Gauss's rule with 3 points on each part of the smooth pieces.
+static double length_by_parts(const CagCurve *c, double a, double b) {
+  enum { PARTS = 60 };
+  static const double node[3] = {0.1127016653792583, 0.5, 0.8872983346207417},
+                      weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+  double *cuts, sum = 0;
+  size_t n;
+  OK(cag_curve_cuts(c, &cuts, &n, &err));
+  for (size_t i = 0; i + 1 < n; i++) {
+    const double from = fmax(a, cuts[i]), to = fmin(b, cuts[i + 1]), h = (to - from) / PARTS;
+    for (int k = 0; from < to && k < 3 * PARTS; k++) {
+      CagVec3 d[2];
+      derivatives(c, from + h * (k / 3 + node[k % 3]), 1, d);
+      sum += h * weight[k % 3] * cag_norm(d[1]);
+    }
+  }
+  free(cuts);
+  return sum;
+}
+
+static void check_length(const CagCurve *c) {
+  double all, part, before, t, u;
+  OK(cag_curve_length(c, c->start, c->end, &all, &err));
+  NEAR(all / length_by_parts(c, c->start, c->end), 1, 1e-7);
+  double a = uniform(c->start, c->end), b = uniform(c->start, c->end);
+  if (a > b) {
+    t = a;
+    a = b;
+    b = t;
+  }
+  OK(cag_curve_length(c, a, b, &part, &err));
+  NEAR(part / length_by_parts(c, a, b), 1, 1e-7);
+  OK(cag_curve_length(c, c->start, a, &before, &err));
+  OK(cag_curve_parameter_at_length(c, before, &t, &err));
+  OK(cag_curve_parameter_at_length(c, before + part, &u, &err));
+  near_vec(at(c, t), at(c, a), 1e-9 * all);
+  near_vec(at(c, u), at(c, b), 1e-9 * all);
+  OK(cag_curve_parameter_at_length(c, 0, &t, &err));
+  assert_true(t == c->start);
+  OK(cag_curve_parameter_at_length(c, all * (1 + 0.9e-12), &t, &err));
+  assert_true(t == c->end);
+  FAILS(cag_curve_parameter_at_length(c, all * (1 + 1e-11), &t, &err), "parameter-range");
+  FAILS(cag_curve_parameter_at_length(c, -1e-9, &t, &err), "parameter-range");
+  FAILS(cag_curve_length(c, b, a, &part, &err), "empty-range");
+  OK(cag_curve_length(c, a, a, &part, &err));
+  assert_true(part == 0);
+}
+
+static void lengths_are_those_of_gauss_rules(void **state) {
+  (void)state;
+  seed = 205;
+  each_kind(12, check_length);
+}
+
+// --- Polylines through curves ---
+
+static void check_steps(const CagCurve *c) {
+  const double tolerance = pow(10, uniform(-4, -1)), angle = uniform(0.1, 1);
+  double *t, *cuts;
+  size_t n, cut_count;
+  OK(cag_curve_discretize(c, tolerance, angle, &t, &n, &err));
+  OK(cag_curve_cuts(c, &cuts, &cut_count, &err));
+  assert_true(t[0] == c->start && t[n - 1] == c->end);
+  size_t cut = 0, needed = 0;
+  for (size_t i = 0; i + 1 < n; i++) {
+    CagVec3 right[2], left[2];
+    assert_true(t[i] < t[i + 1]);
+    while (cut + 1 < cut_count && cuts[cut + 1] <= t[i]) cut++;
+    assert_true(t[i + 1] <= cuts[cut + 1]); // breaks are in
+    const CagVec3 p = at(c, t[i]), q = at(c, t[i + 1]);
+    double most = 0;
+    for (int k = 1; k < 8; k++)
+      most = fmax(most, from_segment(at(c, t[i] + (t[i + 1] - t[i]) * k / 8), p, q));
+    assert_true(most <= tolerance);
+    OK(cag_curve_eval(c, t[i], 1, CAG_SIDE_RIGHT, right, &err));
+    OK(cag_curve_eval(c, t[i + 1], 1, CAG_SIDE_LEFT, left, &err));
+    const double turn = atan2(cag_norm(cag_cross(right[1], left[1])), cag_dot(right[1], left[1]));
+    assert_true(turn <= angle * (1 + 1e-9) ||
+                cag_norm(cag_sub(q, p)) <= 0.25 * tolerance * (1 + 1e-9));
+    needed +=
+        most > tolerance / 16 || turn > angle / 5 || t[i + 1] == cuts[cut + 1] || t[i] == cuts[cut];
+  }
+  // Halving leaves steps that are half as long as they might be, and few shorter ones.
+  assert_true(needed * 4 >= n);
+  free(t);
+  free(cuts);
+}
+
+static void steps_keep_tolerance_and_angle_and_are_not_too_many(void **state) {
+  (void)state;
+  seed = 206;
+  each_kind(25, check_steps);
+}
+
+// --- Images and parts ---
+
+static void check_parts(const CagCurve *c) {
+  CagCurve *made;
+  const double middle = c->start + (c->end - c->start) / 2;
+  const double a = uniform(c->start, middle), b = uniform(middle, c->end);
+  if (b - a < 0.1 * (c->end - c->start)) return;
+  // A part has the same parameters, or its own at the same rate.
+  OK(cag_curve_trim(c, a, b, &made, &err));
+  assert_int_equal(made->angular, c->angular);
+  for (int i = 0; i <= 12; i++) {
+    CagVec3 p[4], q[4];
+    const double t = i == 12 ? b : a + (b - a) * i / 12;
+    const CagSide side = i == 12 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
+    OK(cag_curve_eval(c, t, 3, side, p, &err));
+    OK(cag_curve_eval(made, fmin(made->end, fmax(made->start, t)), 3, side, q, &err));
+    for (int k = 0; k < 4; k++) near_vec(q[k], p[k], 1e-8 * (1 + cag_norm(p[k])));
+  }
+  cag_curve_release(made);
+  // Backwards.
+  OK(cag_curve_reverse(c, &made, &err));
+  assert_true(made->start == c->start && made->end == c->end);
+  assert_int_equal(made->angular, c->angular);
+  assert_int_equal(made->closed, c->closed);
+  for (int i = 0; i <= 12; i++) {
+    CagVec3 p[4], q[4];
+    const double s = (i + (i > 0 && i < 12 ? 0.013 : 0)) / 12;
+    OK(cag_curve_eval(c, c->start + (c->end - c->start) * s, 3, i ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT,
+                      p, &err));
+    OK(cag_curve_eval(made, c->end - (c->end - c->start) * s, 3, i ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT,
+                      q, &err));
+    for (int k = 0; k < 4; k++)
+      near_vec(cag_scaled(q[k], k % 2 ? -1 : 1), p[k], 1e-9 * (1 + cag_norm(p[k])));
+  }
+  cag_curve_release(made);
+  // Over another range: derivatives scale.
+  const double from = uniform(-3, 3), rate = uniform(0.3, 3);
+  OK(cag_curve_reparametrize(c, from, from + (c->end - c->start) / rate, &made, &err));
+  assert_int_equal(made->closed, c->closed);
+  for (int i = 0; i < 12; i++) {
+    CagVec3 p[4], q[4];
+    const double s = (i + 0.017) / 12;
+    derivatives(c, c->start + (c->end - c->start) * s, 3, p);
+    derivatives(made, from + (made->end - from) * s, 3, q);
+    for (int k = 0; k < 4; k++)
+      near_vec(q[k], cag_scaled(p[k], pow(rate, k)), 1e-9 * (1 + cag_norm(q[k])));
+  }
+  cag_curve_release(made);
+}
+
+static void parts_and_reversals_keep_points_and_derivatives(void **state) {
+  (void)state;
+  seed = 207;
+  each_kind(25, check_parts);
+}
+
+static void check_image(const CagCurve *c) {
+  CagTransform t = random_frame();
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) t.m[i][j] += uniform(-0.4, 0.4);
+  CagCurve *made;
+  OK(cag_curve_transform(c, &t, &made, &err));
+  assert_int_equal(made->dimension, 3);
+  assert_int_equal(made->closed, c->closed);
+  for (int i = 0; i <= 20; i++) {
+    CagVec3 p[4], q[4];
+    const double s = (i + (i < 20 ? 0.019 : 0)) / 20;
+    derivatives(c, c->start + (c->end - c->start) * s, 3, p);
+    if (made->start != c->start || made->end != c->end) break; // a NURBS of its own
+    derivatives(made, c->start + (c->end - c->start) * s, 3, q);
+    near_vec(q[0], cag_transform_point(&t, p[0]), 1e-12);
+    for (int k = 1; k < 4; k++)
+      near_vec(q[k], cag_transform_vector(&t, p[k]), 1e-9 * (1 + cag_norm(q[k])));
+  }
+  cag_curve_release(made);
+}
+
+static void images_have_the_points_and_derivatives_of_the_map(void **state) {
+  (void)state;
+  seed = 208;
+  each_kind(20, check_image);
+}
+
+static void check_derivatives(const CagCurve *c) {
+  enum { ORDER = 5 };
+  for (int i = 0; i < 5; i++) {
+    double a, b;
+    random_part(c, &a, &b);
+    const double t = a + (b - a) / 2, h = fmin(1e-4, (b - a) / 3);
+    if (h < 1e-6) continue;
+    CagVec3 d[ORDER + 4], left[ORDER + 1], right[ORDER + 1], many[2 * (ORDER + 1)];
+    derivatives(c, t, ORDER + 3, d);
+    derivatives(c, t - h, ORDER, left);
+    derivatives(c, t + h, ORDER, right);
+    for (int k = 0; k <= ORDER; k++) {
+      const CagVec3 slope = cag_scaled(cag_sub(right[k], left[k]), 1 / (2 * h));
+      // The difference is off by h^2 / 6 times the third derivative, and by rounding over h.
+      near_vec(slope, d[k + 1],
+               h * h * (cag_norm(d[k + 3]) + cag_norm(d[k + 1])) +
+                   1e-12 * (1 + cag_norm(d[k])) / h);
+    }
+    const double both[2] = {t, t + h};
+    OK(cag_curve_eval_many(c, both, 2, ORDER, many, &err));
+    for (int k = 0; k <= ORDER; k++) {
+      near_vec(many[k], d[k], 1e-9 * (1 + cag_norm(d[k])));
+      near_vec(many[ORDER + 1 + k], right[k], 1e-9 * (1 + cag_norm(d[k])));
+    }
+  }
+}
+
+static void derivatives_are_the_slopes_of_those_before(void **state) {
+  (void)state;
+  seed = 209;
+  each_kind(20, check_derivatives);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(parts_stay_within_their_bounds),
+      cmocka_unit_test(ranges_hold_the_derivatives_and_are_narrow),
+      cmocka_unit_test(boxes_are_those_of_dense_samples),
+      cmocka_unit_test(closest_points_are_nearer_than_dense_samples),
+      cmocka_unit_test(lengths_are_those_of_gauss_rules),
+      cmocka_unit_test(steps_keep_tolerance_and_angle_and_are_not_too_many),
+      cmocka_unit_test(parts_and_reversals_keep_points_and_derivatives),
+      cmocka_unit_test(images_have_the_points_and_derivatives_of_the_map),
+      cmocka_unit_test(derivatives_are_the_slopes_of_those_before),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
