@@ -272,14 +272,23 @@ static double nearest_on(const Part *a, CagVec3 x) {
   return dd > 0 ? fmin(1, fmax(0, cag_dot(cag_sub(x, a->p), d) / dd)) : 0;
 }
 
+// Steps u and v after which r + u d meets, or is nearest to, v e. By cross products, which lose far
+// fewer digits than a determinant of scalar products where d and e are all but parallel.
+static void nearest_steps(CagVec3 r, CagVec3 d, CagVec3 e, double *u, double *v) {
+  const CagVec3 n = cag_cross(d, e);
+  const double nn = cag_dot(n, n);
+  *u = -cag_dot(cag_cross(r, e), n) / nn;
+  *v = -cag_dot(cag_cross(r, d), n) / nn;
+}
+
 // Nearest points p + u (q - p) and r + v (s - r) of two segments; gives their distance. Beside each
 // end of one the nearest of the other is tried, since what the directions give is rounding where
 // they are all but parallel.
 static double segments(const Part *a, const Part *b, double *u, double *v) {
-  const CagVec3 d = cag_sub(a->q, a->p), e = cag_sub(b->q, b->p), r = cag_sub(a->p, b->p);
-  const double dd = cag_dot(d, d), ee = cag_dot(e, e), de = cag_dot(d, e), dr = cag_dot(d, r),
-               er = cag_dot(e, r), det = dd * ee - de * de;
-  const double x = det > DBL_EPSILON * dd * ee ? fmin(1, fmax(0, (de * er - dr * ee) / det)) : 0;
+  const CagVec3 d = cag_sub(a->q, a->p), e = cag_sub(b->q, b->p);
+  double x, across;
+  nearest_steps(cag_sub(a->p, b->p), d, e, &x, &across);
+  x = fmin(1, fmax(0, x)); // parallel: x was NaN
   const double y = nearest_on(b, cag_madd(a->p, x, d));
   const double tried[5][2] = {{nearest_on(a, cag_madd(b->p, y, e)), y},
                               {0, nearest_on(b, a->p)},
@@ -332,15 +341,12 @@ static CagStatus meet(CurveSearch *s, const Part *a, const Part *b, double t, do
       best_u = u;
       point = p[0];
     }
-    double pp = cag_dot(p[1], p[1]), qq = cag_dot(q[1], q[1]), pq = cag_dot(p[1], q[1]);
-    double f = cag_dot(r, p[1]), g = cag_dot(r, q[1]), det = pp * qq - pq * pq;
-    double dt, du;
-    if (det > ZERO * pp * qq) {
-      dt = (pq * g - qq * f) / det;
-      du = (pp * g - pq * f) / det;
+    double pp = cag_dot(p[1], p[1]), qq = cag_dot(q[1], q[1]), dt, du;
+    if (cag_norm(cag_cross(p[1], q[1])) > MEET * sqrt(pp * qq)) {
+      nearest_steps(r, p[1], q[1], &dt, &du);
     } else { // parallel: each its own way
-      dt = pp > 0 ? -f / (2 * pp) : 0;
-      du = qq > 0 ? g / (2 * qq) : 0;
+      dt = pp > 0 ? -cag_dot(r, p[1]) / (2 * pp) : 0;
+      du = qq > 0 ? cag_dot(r, q[1]) / (2 * qq) : 0;
     }
     double next_t = step_within(a, t + dt), next_u = step_within(b, u + du);
     if (next_t == t && next_u == u) break;

@@ -2,6 +2,7 @@
 
 #include "tests/geom/support.h"
 
+#include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
 
 static double binomial(int n, int k) {
@@ -545,6 +546,119 @@ static void parts_of_a_curve_overlap_or_meet_at_their_ends(void **state) {
   }
 }
 
+// The graph of x^2 + 3 x^3 over [from, to], run through either way, in plane or space.
+static CagCurve *graph_of_a_cubic(double from, double to, bool back) {
+  // Blossom: of x the mean, of x^2 the mean of the products of two, of x^3 the product.
+  CagVec3 p[4];
+  for (int i = 0; i < 4; i++) {
+    const double u[3] = {i > 2 ? to : from, i > 1 ? to : from, i > 0 ? to : from};
+    p[back ? 3 - i : i] =
+        cag_vec3((u[0] + u[1] + u[2]) / 3,
+                 (u[0] * u[1] + u[1] * u[2] + u[2] * u[0]) / 3 + 3 * u[0] * u[1] * u[2], 0);
+  }
+  CagCurve *c;
+  OK(cag_curve_bezier(p, NULL, 4, 2, &c, &err));
+  return c;
+}
+
+static void touches_just_outside_of_an_end_are_found_at_the_end(void **state) {
+  (void)state;
+  CagPlane floor;
+  CagCurve *line;
+  CagMeeting *m;
+  size_t n;
+  OK(cag_plane(cag_vec3(0, 0, 0), cag_vec3(0, 1, 0), &floor, &err));
+  // The vertex is 1e-6 before or within the domain, or at its end.
+  for (int i = 0; i < 12; i++) {
+    const double off = (i % 3 - 1) * 1e-6;
+    const bool back = i / 3 % 2, left = i / 6;
+    CagCurve *c = left ? graph_of_a_cubic(-0.3, off, back) : graph_of_a_cubic(off, 1, back);
+    const double end = back != left ? 1 : 0;
+    OK(cag_curve_intersect_plane(c, &floor, &m, &n, &err));
+    assert_int_equal(n, 1);
+    NEAR(m[0].t, end, 1e-4);
+    near_vec(m[0].point, place(c, m[0].t), 1e-14);
+    near_vec(m[0].point, cag_vec3(0, 0, 0), 1e-4);
+    free(m);
+    for (int turned = 0; turned < 2; turned++) {
+      OK(cag_curve_line(cag_vec3(turned ? 2 : -2, 0, 0), cag_vec3(turned ? -1 : 1, 0, 0), 2, &line,
+                        &err));
+      OK(cag_curve_intersect(turned ? c : line, turned ? line : c, &m, &n, &err));
+      assert_int_equal(n, 1);
+      NEAR(turned ? m[0].t : m[0].t2, end, 1e-4);
+      NEAR(turned ? m[0].t2 : m[0].t, 2.0 / 3, 1e-4);
+      free(m);
+      cag_curve_release(line);
+    }
+    cag_curve_release(c);
+  }
+}
+
+static void shallow_crossings_are_where_the_lines_cross(void **state) {
+  (void)state;
+  uint64_t seed = 93;
+  for (int i = 0; i < 60; i++) {
+    CagPlane floor;
+    CagCurve *line, *level;
+    CagMeeting *m;
+    size_t n;
+    const double slope = (i % 2 ? -1 : 1) * pow(10, uniform(&seed, -5.7, -2)),
+                 at = uniform(&seed, 0.1, 0.9), length = 10, y = uniform(&seed, -3, 3);
+    OK(cag_plane(cag_vec3(0, y, 0), cag_vec3(0, i % 4 < 2 ? 1 : -1, 0), &floor, &err));
+    OK(cag_curve_line(cag_vec3(0, y - at * length * slope, 0),
+                      cag_vec3(length, y + (1 - at) * length * slope, 0), 2, &line, &err));
+    OK(cag_curve_intersect_plane(line, &floor, &m, &n, &err));
+    assert_int_equal(n, 1);
+    assert_int_equal(m[0].multiplicity, 1);
+    NEAR(m[0].t, at, 1e-15 / fabs(slope));
+    free(m);
+    OK(cag_curve_line(cag_vec3(-1, y, 0), cag_vec3(length + 1, y, 0), 2, &level, &err));
+    OK(cag_curve_intersect(line, level, &m, &n, &err));
+    assert_int_equal(n, 1);
+    assert_int_equal(m[0].multiplicity, 1);
+    NEAR(m[0].t, at, 1e-15 / fabs(slope));
+    NEAR(m[0].t2, (1 + at * length) / (length + 2), 1e-15 / fabs(slope));
+    free(m);
+    cag_curve_release(level);
+    cag_curve_release(line);
+  }
+}
+
+static void curves_that_lie_in_a_plane_or_run_along_each_other_are_refused(void **state) {
+  (void)state;
+  CagPlane floor;
+  CagMeeting *m;
+  size_t n;
+  OK(cag_plane(cag_vec3(0, 0, 1), cag_vec3(0, 0, 1), &floor, &err));
+  // Within 2e-3 of a domain of 1 a piece of a polyline lies in the plane, or a tenth of that.
+  for (int i = 0; i < 2; i++) {
+    const double reach = i ? 2e-4 : 2e-3;
+    const CagVec3 p[4] = {{0, 0, 0}, {1, 0, 1}, {1 + 3 * reach, 0, 1}, {2, 0, 2}};
+    const double t[4] = {0, 0.5, 0.5 + reach, 1};
+    CagCurve *c;
+    OK(cag_curve_polyline_over(p, t, 4, 3, &c, &err));
+    if (i == 0) FAILS(cag_curve_intersect_plane(c, &floor, &m, &n, &err), "overlap");
+    cag_curve_release(c);
+  }
+  // An arc in the plane, and one that leaves it.
+  for (int i = 0; i < 2; i++) {
+    CagTransform frame = cag_translate(cag_vec3(3, 2, 1));
+    if (i) frame.m[2][0] = 1e-3;
+    CagCurve *c;
+    OK(cag_curve_arc(2, 2, 0.5, 5, &frame, &c, &err));
+    if (i == 0) {
+      FAILS(cag_curve_intersect_plane(c, &floor, &m, &n, &err), "overlap");
+    } else {
+      OK(cag_curve_intersect_plane(c, &floor, &m, &n, &err));
+      assert_int_equal(n, 2); // cos t = 0
+      NEAR(m[0].t, M_PI / 2, 1e-9);
+      NEAR(m[1].t, 3 * M_PI / 2, 1e-9);
+      free(m);
+    }
+    cag_curve_release(c);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(random_planes_meet_where_signs_change),
@@ -561,6 +675,9 @@ int main(void) {
       cmocka_unit_test(polylines_with_any_weights_cross_as_segments_do),
       cmocka_unit_test(rational_beziers_meet_alike_however_they_are_run_through),
       cmocka_unit_test(curves_that_turn_back_meet_on_both_ways),
+      cmocka_unit_test(touches_just_outside_of_an_end_are_found_at_the_end),
+      cmocka_unit_test(shallow_crossings_are_where_the_lines_cross),
+      cmocka_unit_test(curves_that_lie_in_a_plane_or_run_along_each_other_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
