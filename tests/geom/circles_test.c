@@ -572,6 +572,81 @@ static void fillets_of_arcs_touch_both(void **state) {
   }
 }
 
+// The parallel of a curve at a distance to its left.
+static void parallel(const CagCurve *c, double t, double distance, CagVec3 *p, CagVec3 *tangent) {
+  CagVec3 d[2];
+  OK(cag_curve_eval(c, t, 1, t >= c->end ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, &err));
+  *tangent = cag_unit(d[1]);
+  *p = cag_madd(d[0], distance, cag_vec3(-tangent->y, tangent->x, 0));
+}
+
+// Between bent curves: where the parallels at the radius cross, and only there.
+static void fillets_of_bent_curves_are_where_parallels_cross(void **state) {
+  (void)state;
+  enum { STEPS = 500 };
+  static CagVec3 p[STEPS + 1], q[STEPS + 1], along[STEPS + 1], beside[STEPS + 1];
+  seed = 54;
+  int rounded = 0, refused = 0;
+  for (int round = 0; round < 150; round++) {
+    CagVec3 v[4], w[4];
+    for (int i = 0; i < 4; i++) {
+      v[i] = random_place(3);
+      w[i] = random_place(3);
+    }
+    w[0] = v[3];
+    CagCurve *a, *b, *arc;
+    CagVec3 ta, tb;
+    OK(cag_curve_bezier(v, NULL, 4, 2, &a, &err));
+    OK(cag_curve_bezier(w, NULL, 4, 2, &b, &err));
+    OK(cag_curve_tangent(a, 1, CAG_SIDE_LEFT, &ta, &err));
+    OK(cag_curve_tangent(b, 0, CAG_SIDE_RIGHT, &tb, &err));
+    const double side = cag_cross(ta, tb).z > 0 ? 1 : -1;
+    const double radius = pow(10, uniform(-1.3, 0.3));
+    for (int i = 0; i <= STEPS; i++) {
+      parallel(a, (double)i / STEPS, side * radius, &p[i], &along[i]);
+      parallel(b, (double)i / STEPS, side * radius, &q[i], &beside[i]);
+    }
+    // Crossings at no small angle, away from the ends and from where the parallels turn back.
+    int crossings = 0;
+    for (int i = 2; i + 3 < STEPS; i++)
+      for (int j = 2; j + 3 < STEPS; j++) {
+        const CagVec3 d = cag_sub(p[i + 1], p[i]), e = cag_sub(q[j + 1], q[j]);
+        const CagVec3 r = cag_sub(q[j], p[i]);
+        if (fabs(r.x) + fabs(r.y) > cag_norm(d) + cag_norm(e)) continue;
+        const double det = cag_cross(d, e).z, x = cag_cross(r, e).z / det,
+                     y = cag_cross(r, d).z / det;
+        crossings +=
+            x >= 0 && x < 1 && y >= 0 && y < 1 && fabs(det) > 0.1 * cag_norm(d) * cag_norm(e);
+      }
+    double t, u;
+    if (cag_fillet(a, b, radius, &arc, &t, &u, &err) == CAG_OK) {
+      CagVec3 center, same, in, out, first, last;
+      parallel(a, t, side * radius, &center, &in);
+      parallel(b, u, side * radius, &same, &out);
+      near_vec(same, center, 1e-10);
+      near_vec(at(arc, arc->start), at(a, t), 1e-10);
+      near_vec(at(arc, arc->end), at(b, u), 1e-10);
+      OK(cag_curve_tangent(arc, arc->start, CAG_SIDE_RIGHT, &first, &err));
+      OK(cag_curve_tangent(arc, arc->end, CAG_SIDE_LEFT, &last, &err));
+      near_vec(first, in, 1e-9);
+      near_vec(last, out, 1e-9);
+      near_vec(cag_scaled(cag_sub(at(arc, arc->start + 0.3 * (arc->end - arc->start)), center),
+                          1 / radius),
+               cag_unit(cag_sub(at(arc, arc->start + 0.3 * (arc->end - arc->start)), center)),
+               1e-9);
+      cag_curve_release(arc);
+      rounded++;
+    } else {
+      assert_string_equal(err.reason, "radius-too-large");
+      assert_int_equal(crossings, 0);
+      refused++;
+    }
+    cag_curve_release(a);
+    cag_curve_release(b);
+  }
+  assert_true(rounded > 50 && refused > 20);
+}
+
 static void what_has_no_corner_is_refused(void **state) {
   (void)state;
   CagCurve *a, *b, *arc, *space;
@@ -704,6 +779,7 @@ int main(void) {
       cmocka_unit_test(touching_circles_have_the_tangent_of_their_point),
       cmocka_unit_test(fillets_of_lines_are_closed_forms),
       cmocka_unit_test(fillets_of_arcs_touch_both),
+      cmocka_unit_test(fillets_of_bent_curves_are_where_parallels_cross),
       cmocka_unit_test(what_has_no_corner_is_refused),
       cmocka_unit_test(random_polylines_are_rounded),
       cmocka_unit_test(corners_of_other_curves_are_rounded),

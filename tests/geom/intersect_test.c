@@ -181,6 +181,102 @@ static void the_order_of_contact_is_told(void **state) {
   free(m);
 }
 
+// y = x^n over [-1, 1] meets y = 0 with order n: at any size and place, with any domain.
+static void orders_of_contact_do_not_depend_on_scale_place_and_domain(void **state) {
+  (void)state;
+  uint64_t seed = 94;
+  for (int i = 0; i < 120; i++) {
+    const int n = 1 + i % 4;
+    CagVec3 p[5];
+    // The coefficients of (-1 (1 - t) + t)^n: signs that alternate.
+    for (int k = 0; k <= n; k++) p[k] = cag_vec3(-1 + 2.0 * k / n, (n - k) % 2 ? -1 : 1, 0);
+    const double size = pow(10, uniform(&seed, -3, 3)), angle = uniform(&seed, 0, 6),
+                 range = pow(10, uniform(&seed, -2, 3)), start = uniform(&seed, -range, range),
+                 away = i % 2 ? 0 : 300;
+    CagTransform t = cag_transform_identity();
+    t.m[0][0] = t.m[1][1] = size * cos(angle);
+    t.m[1][0] = size * sin(angle);
+    t.m[0][1] = -t.m[1][0];
+    t.m[0][3] = away * size * uniform(&seed, -1, 1);
+    t.m[1][3] = away * size * uniform(&seed, -1, 1);
+    t.planar = true;
+    CagCurve *graph, *line, *c, *d, *e;
+    OK(cag_curve_bezier(p, NULL, (size_t)n + 1, 2, &graph, &err));
+    OK(cag_curve_line(cag_vec3(-1.5, 0, 0), cag_vec3(2, 0, 0), 2, &line, &err));
+    OK(cag_curve_transform(graph, &t, &c, &err));
+    OK(cag_curve_transform(line, &t, &d, &err));
+    OK(cag_curve_reparametrize(c, start, start + range, &e, &err));
+    const CagVec3 zero = cag_vec3(t.m[0][3], t.m[1][3], 0);
+    CagMeeting *m;
+    size_t count;
+    OK(cag_curve_intersect(e, d, &m, &count, &err));
+    assert_int_equal(count, 1);
+    assert_int_equal(m[0].multiplicity, n);
+    near_vec(m[0].point, zero, 1e-5 * size);
+    NEAR((m[0].t - start) / range, 0.5, 1e-5);
+    NEAR(m[0].t2, 1.5 / 3.5, 1e-5);
+    free(m);
+    OK(cag_curve_intersect(d, e, &m, &count, &err));
+    assert_int_equal(count, 1);
+    assert_int_equal(m[0].multiplicity, n);
+    free(m);
+    CagPlane plane;
+    OK(cag_plane(zero, cag_vec3(-sin(angle), cos(angle), 0), &plane, &err));
+    OK(cag_curve_intersect_plane(e, &plane, &m, &count, &err));
+    assert_int_equal(count, 1);
+    assert_int_equal(m[0].multiplicity, n);
+    near_vec(m[0].point, zero, 1e-5 * size);
+    free(m);
+    cag_curve_release(graph);
+    cag_curve_release(line);
+    cag_curve_release(c);
+    cag_curve_release(d);
+    cag_curve_release(e);
+  }
+}
+
+// Closed curves that touch a line, and each other, where they start and end.
+static void touches_at_a_seam_are_one(void **state) {
+  (void)state;
+  uint64_t seed = 95;
+  for (int i = 0; i < 40; i++) {
+    const double a = uniform(&seed, 0.5, 3), b = uniform(&seed, 0.5, 3), x = uniform(&seed, -5, 5);
+    const bool spline = i % 2, second = i / 2 % 2;
+    CagTransform frame = cag_translate(cag_vec3(x, 0, 0));
+    frame.planar = true;
+    CagCurve *c, *line;
+    OK(cag_curve_arc(a, b, 0, 2 * M_PI, &frame, &c, &err)); // starts in [x + a, 0]
+    if (spline) c = as_spline(c);
+    OK(cag_curve_line(cag_vec3(x + a, -2, 0), cag_vec3(x + a, 3, 0), 2, &line, &err));
+    const double start = c->start, at_line = 0.4;
+    CagMeeting *m;
+    assert_int_equal(second ? meet(line, c, &m) : meet(c, line, &m), 1);
+    assert_int_equal(m[0].multiplicity, 2);
+    NEAR(second ? m[0].t : m[0].t2, at_line, 1e-7);
+    const double t = second ? m[0].t2 : m[0].t;
+    assert_true(fabs(t - start) < 1e-6 || fabs(t - start - 2 * M_PI) < 1e-6 || spline);
+    near_vec(m[0].point, cag_vec3(x + a, 0, 0), 1e-7);
+    free(m);
+    CagPlane plane;
+    size_t n;
+    OK(cag_curve_arc(a, b, 0, 2 * M_PI, &frame, &c, &err));
+    OK(cag_plane(cag_vec3(x + a, 0, 0), cag_vec3(1, 0, 0), &plane, &err));
+    OK(cag_curve_intersect_plane(c, &plane, &m, &n, &err));
+    assert_int_equal(n, 1);
+    assert_int_equal(m[0].multiplicity, 2);
+    near_vec(m[0].point, cag_vec3(x + a, 0, 0), 1e-7);
+    free(m);
+    // Across the seam it is two points.
+    OK(cag_plane(cag_vec3(x, 0, 0), cag_vec3(0, 1, 0), &plane, &err));
+    OK(cag_curve_intersect_plane(c, &plane, &m, &n, &err));
+    assert_int_equal(n, 2);
+    assert_true(m[0].t == 0 && m[0].multiplicity == 1 && m[1].multiplicity == 1);
+    NEAR(m[1].t, M_PI, 1e-12);
+    free(m);
+    cag_curve_release(c);
+  }
+}
+
 // Twice the area of a triangle with whole coordinates: exact.
 static double turn(CagVec3 a, CagVec3 b, CagVec3 c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -672,6 +768,8 @@ int main(void) {
       cmocka_unit_test(circles_that_touch_meet_once),
       cmocka_unit_test(tangents_of_a_circle_meet_it_once),
       cmocka_unit_test(the_order_of_contact_is_told),
+      cmocka_unit_test(orders_of_contact_do_not_depend_on_scale_place_and_domain),
+      cmocka_unit_test(touches_at_a_seam_are_one),
       cmocka_unit_test(polylines_with_any_weights_cross_as_segments_do),
       cmocka_unit_test(rational_beziers_meet_alike_however_they_are_run_through),
       cmocka_unit_test(curves_that_turn_back_meet_on_both_ways),
