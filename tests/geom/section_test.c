@@ -5,6 +5,7 @@
 #include "geom/surface/section.h"
 #include "geom/surface/section_edges.h"
 #include "support.h"
+#include "tests/geom/random.h"
 
 static CagPlane plane_of(double x, double y, double z, double nx, double ny, double nz) {
   CagPlane p;
@@ -224,6 +225,215 @@ static void principal_directions_are_square_and_of_unit_length(void **state) {
   cag_surface_release(torus);
 }
 
+// --- Random meshes ---
+
+// A grid of n by n squares over 0..n, each cut into two triangles, with heights. With `welded`
+// every triangle has corners of its own, joined by the table.
+static CagMesh *landscape(size_t n, const double *heights, bool welded) {
+  const size_t count = 2 * n * n;
+  CagMesh *m;
+  OK(cag_mesh_new(welded ? 3 * count : (n + 1) * (n + 1), count, false, false, welded, &m, &err));
+  for (size_t t = 0; t < count; t++) {
+    const size_t i = t / 2 / n, j = t / 2 % n;
+    const size_t corner[2][3][2] = {{{i, j}, {i + 1, j}, {i + 1, j + 1}},
+                                    {{i, j}, {i + 1, j + 1}, {i, j + 1}}};
+    for (size_t k = 0; k < 3; k++) {
+      const size_t x = corner[t % 2][k][0], y = corner[t % 2][k][1], at = x * (n + 1) + y;
+      const size_t v = welded ? 3 * t + k : at;
+      m->triangles[3 * t + k] = (uint32_t)v;
+      m->positions[v] = cag_vec3((double)x, (double)y, heights[at]);
+    }
+  }
+  for (size_t v = 0; welded && v < m->vertex_count; v++) {
+    m->weld[v] = (uint32_t)v;
+    for (size_t w = 0; w < v; w++)
+      if (cag_norm(cag_sub(m->positions[v], m->positions[w])) == 0) {
+        m->weld[v] = (uint32_t)w;
+        break;
+      }
+  }
+  return m;
+}
+
+// The pieces of the plane in the triangles, found one by one: a vertex on it counts as above.
+typedef struct Pieces {
+  size_t n;
+  CagVec3 end[512][2];
+  double length;
+} Pieces;
+
+static void find_pieces(const CagMesh *m, const CagPlane *plane, Pieces *out) {
+  *out = (Pieces){0};
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    size_t k = 0;
+    for (size_t c = 0; c < 3; c++) {
+      CagVec3 a = m->positions[m->triangles[3 * t + c]];
+      CagVec3 b = m->positions[m->triangles[3 * t + (c + 1) % 3]];
+      const double ha = cag_dot(plane->normal, cag_sub(a, plane->point));
+      const double hb = cag_dot(plane->normal, cag_sub(b, plane->point));
+      const bool below_a = ha < -1e-12, below_b = hb < -1e-12;
+      if (below_a != below_b) out->end[out->n][k++] = cag_lerp(a, b, ha / (ha - hb));
+    }
+    if (k == 0) continue;
+    assert_int_equal(k, 2);
+    out->length += cag_norm(cag_sub(out->end[out->n][1], out->end[out->n][0]));
+    out->n++;
+    assert_true(out->n < 512);
+  }
+}
+
+static bool is_at(CagVec3 a, CagVec3 b) { return cag_norm(cag_sub(a, b)) < 1e-9; }
+
+// The pieces that end at p, those without length left out.
+static int pieces_at(const Pieces *s, CagVec3 p, CagVec3 out[2]) {
+  int n = 0;
+  for (size_t i = 0; i < s->n; i++)
+    for (int e = 0; e < 2; e++)
+      if (is_at(s->end[i][e], p) && !is_at(s->end[i][0], s->end[i][1]))
+        if (n++ < 2) out[n - 1] = cag_unit(cag_sub(s->end[i][1 - e], p));
+  return n;
+}
+
+// The corners of the curves are the ends of pieces at which these turn or end; all together are as
+// long as the pieces, and an end of an open curve is that of one piece.
+static void check_polylines(const CagMesh *m, const CagPlane *plane, int round) {
+  static Pieces pieces;
+  find_pieces(m, plane, &pieces);
+  size_t corners = 0, ends = 0, open = 0;
+  CagVec3 ways[2];
+  for (size_t i = 0; i < pieces.n; i++)
+    for (int e = 0; e < 2; e++) {
+      if (is_at(pieces.end[i][0], pieces.end[i][1])) continue;
+      const int n = pieces_at(&pieces, pieces.end[i][e], ways);
+      assert_true(n == 1 || n == 2);
+      // Each is met from every piece that ends in it.
+      if (n == 1) ends++;
+      else corners += cag_norm(cag_add(ways[0], ways[1])) > 1e-9;
+    }
+  CagCurveList list = {0};
+  OK(cag_mesh_section(m, plane, &list, &err));
+  size_t found = 0;
+  for (size_t i = 0; i < list.count; i++) {
+    const CagVec3 *points;
+    size_t n;
+    bool closed;
+    assert_true(cag_curve_vertices(list.items[i], &points, &n, &closed));
+    assert_int_equal(closed, list.items[i]->closed);
+    open += !closed;
+    found += n;
+    for (size_t k = 0; k < n; k++) {
+      const int many = pieces_at(&pieces, points[k], ways);
+      assert_int_equal(many, !closed && (k == 0 || k + 1 == n) ? 1 : 2);
+      if (many == 2) assert_true(cag_norm(cag_add(ways[0], ways[1])) > 1e-9);
+    }
+  }
+  if (found != corners / 2 + ends || open != ends / 2)
+    fail_msg("round %d: %zu corners, %zu open, not %zu, %zu", round, found, open,
+             corners / 2 + ends, ends / 2);
+  NEAR(total_length(&list), pieces.length, 1e-9);
+  cag_curve_list_free(&list);
+}
+
+static void sections_of_landscapes_are_the_pieces_in_their_triangles(void **state) {
+  (void)state;
+  enum { MOST = 8 };
+  seed = 81;
+  for (int round = 0; round < 90; round++) {
+    double heights[(MOST + 1) * (MOST + 1)];
+    const size_t n = 1 + (size_t)round % MOST;
+    // Random ones; or steps of whole numbers, of which many are in the plane, and flat parts.
+    for (size_t i = 0; i < (n + 1) * (n + 1); i++) {
+      heights[i] = uniform(-2, 2);
+      if (round % 3 == 1) heights[i] = floor(heights[i]) + 0.5;
+      if (round % 3 == 2) heights[i] = fmax(0, heights[i]);
+    }
+    CagMesh *m = landscape(n, heights, round % 2);
+    const double slope = round % 3 ? 0 : uniform(-0.3, 0.3);
+    const CagPlane plane = plane_of(0, 0, round % 3 == 1 ? 0 : 0.25, slope, slope / 3, 1);
+    check_polylines(m, &plane, round);
+    cag_mesh_release(m);
+  }
+}
+
+// A cube whose faces are grids has the sections of the cube: their corners are on its edges.
+static void sections_of_divided_cubes_have_no_points_on_flat_faces(void **state) {
+  (void)state;
+  seed = 82;
+  for (int round = 0; round < 60; round++) {
+    enum { N = 3 };
+    CagMesh *m;
+    OK(cag_mesh_new(6 * (N + 1) * (N + 1), 12 * N * N, false, false, true, &m, &err));
+    size_t t = 0;
+    for (size_t face = 0; face < 6; face++)
+      for (size_t i = 0; i <= N; i++)
+        for (size_t j = 0; j <= N; j++) {
+          const size_t v = (face * (N + 1) + i) * (N + 1) + j;
+          const double x = (double)i, y = (double)j, z = face < 3 ? 0 : N;
+          m->positions[v] = face % 3 == 0   ? cag_vec3(x, y, z)
+                            : face % 3 == 1 ? cag_vec3(z, x, y)
+                                            : cag_vec3(y, z, x);
+          if (i == N || j == N) continue;
+          const uint32_t a = (uint32_t)v, b = a + N + 1;
+          const uint32_t corner[6] = {a, b, b + 1, a, b + 1, a + 1};
+          memcpy(m->triangles + 3 * t, corner, sizeof corner);
+          t += 2;
+        }
+    for (size_t v = 0; v < m->vertex_count; v++) {
+      m->weld[v] = (uint32_t)v;
+      for (size_t w = 0; w < v && m->weld[v] == v; w++)
+        if (is_at(m->positions[v], m->positions[w])) m->weld[v] = (uint32_t)w;
+    }
+    // Through places of the grid, or anywhere.
+    double n[3], p[3];
+    for (int k = 0; k < 3; k++) {
+      n[k] = uniform(-1, 1);
+      p[k] = uniform(0.2, N - 0.2);
+      if (round % 2) {
+        n[k] = floor(uniform(-2, 3));
+        p[k] = floor(uniform(0, N + 1));
+      }
+    }
+    if (n[0] == 0 && n[1] == 0 && n[2] == 0) n[2] = 1;
+    const CagPlane plane = plane_of(p[0], p[1], p[2], n[0], n[1], n[2]);
+    // Where corners of the cube lie in the plane, what is above it has no unique edge.
+    bool generic = true;
+    size_t corners = 0;
+    for (int a = 0; a < 8; a++) {
+      const CagVec3 pa = cag_vec3(a & 1 ? N : 0, a & 2 ? N : 0, a & 4 ? N : 0);
+      const double ha = cag_dot(plane.normal, cag_sub(pa, plane.point));
+      if (fabs(ha) < 1e-9) generic = false;
+      for (int axis = 1; axis < 8; axis *= 2) {
+        if (a & axis) continue;
+        const int b = a | axis;
+        const CagVec3 pb = cag_vec3(b & 1 ? N : 0, b & 2 ? N : 0, b & 4 ? N : 0);
+        corners += (ha < 0) != (cag_dot(plane.normal, cag_sub(pb, plane.point)) < 0);
+      }
+    }
+    if (generic) {
+      CagCurveList list = {0};
+      OK(cag_mesh_section(m, &plane, &list, &err));
+      assert_int_equal(list.count, corners > 0);
+      for (size_t i = 0; i < list.count; i++) {
+        const CagVec3 *points;
+        size_t count;
+        bool closed;
+        assert_true(cag_curve_vertices(list.items[i], &points, &count, &closed));
+        assert_true(closed);
+        assert_int_equal(count, corners);
+        for (size_t k = 0; k < count; k++) {
+          const double at[3] = {points[k].x, points[k].y, points[k].z};
+          int on = 0;
+          for (int c = 0; c < 3; c++) on += fabs(at[c]) < 1e-12 || fabs(at[c] - N) < 1e-12;
+          assert_true(on >= 2);
+          NEAR(cag_dot(plane.normal, cag_sub(points[k], plane.point)), 0, 1e-12);
+        }
+      }
+      cag_curve_list_free(&list);
+    }
+    cag_mesh_release(m);
+  }
+}
+
 // --- Duplicates ---
 
 // How many of two segments stay.
@@ -282,6 +492,8 @@ int main(void) {
       cmocka_unit_test(sheets_on_a_torus_keep_the_tolerance),
       cmocka_unit_test(principal_directions_are_square_and_of_unit_length),
       cmocka_unit_test(curves_that_run_along_another_are_dropped),
+      cmocka_unit_test(sections_of_landscapes_are_the_pieces_in_their_triangles),
+      cmocka_unit_test(sections_of_divided_cubes_have_no_points_on_flat_faces),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
