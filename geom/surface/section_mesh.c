@@ -119,16 +119,14 @@ static CagStatus give(const Cut *c, CagVec3 *points, size_t n, bool closed, CagC
 }
 
 // Walks from one end of a segment on; gives the number of points.
-static size_t walk(const Cut *c, size_t segment, int from, bool *seen, CagVec3 *points,
-                   bool *closed) {
-  size_t n = 0, start = segment;
+static size_t walk(const Cut *c, size_t segment, int from, bool *seen, CagVec3 *points) {
+  size_t n = 0;
   add_point(c, points, &n, c->points[2 * segment + (size_t)from]);
   for (;;) {
     seen[segment] = true;
     int to = 1 - from;
     add_point(c, points, &n, c->points[2 * segment + (size_t)to]);
     size_t next = c->next[segment][to];
-    *closed = next != NO_END && next / 2 == start;
     if (next == NO_END || seen[next / 2]) return n;
     segment = next / 2;
     from = (int)(next % 2);
@@ -140,14 +138,13 @@ static CagStatus walk_all(const Cut *c, CagCurveList *out, CagError *err) {
   bool *seen = calloc(segments + 1, sizeof *seen);
   CagVec3 *points = malloc((segments + 2) * sizeof *points);
   CagStatus status = seen && points ? CAG_OK : cag_fail_memory(err);
-  // Open runs first, from their ends.
+  // Open runs first, from their ends. The others are closed.
   for (int round = 0; round < 2; round++)
     for (size_t i = 0; i < segments && !status; i++) {
       int open = c->next[i][0] == NO_END ? 0 : c->next[i][1] == NO_END ? 1 : -1;
       if (seen[i] || (round == 0 && open < 0)) continue;
-      bool closed;
-      size_t n = walk(c, i, open < 0 ? 0 : open, seen, points, &closed);
-      status = give(c, points, n, closed && open < 0, out, err);
+      size_t n = walk(c, i, open < 0 ? 0 : open, seen, points);
+      status = give(c, points, n, open < 0, out, err);
     }
   free(seen);
   free(points);

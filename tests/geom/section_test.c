@@ -79,6 +79,36 @@ static void an_open_mesh_gives_open_curves_and_an_empty_one_none(void **state) {
   cag_mesh_release(empty);
 }
 
+// Of three triangles on one edge the first two are joined.
+static void triangles_on_one_edge_are_joined_in_order(void **state) {
+  (void)state;
+  static const CagVec3 p[] = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0.5}, {0, 1, 0.5}, {-1, -1, 0.5}};
+  static const uint32_t t[][9] = {{0, 1, 2, 0, 1, 3, 0, 1, 4}, {4, 1, 0, 0, 1, 2, 3, 0, 1}};
+  static const int ends[][2] = {{2, 3}, {4, 2}};
+  for (int k = 0; k < 2; k++) {
+    CagMesh *m = mesh_of(p, 5, t[k], 3);
+    CagPlane plane = plane_of(0, 0, 0, 0, 0, 1);
+    CagCurveList list = {0};
+    OK(cag_mesh_section(m, &plane, &list, &err));
+    assert_int_equal(list.count, 2);
+    for (size_t i = 0; i < 2; i++) {
+      const CagVec3 *points;
+      size_t n;
+      bool closed;
+      assert_true(cag_curve_vertices(list.items[i], &points, &n, &closed) && !closed);
+      if (n == 2) continue;
+      assert_int_equal(n, 3);
+      // Two thirds of the way from the lowest vertex.
+      for (int e = 0; e < 2; e++) {
+        const CagVec3 q = cag_lerp(p[0], p[ends[k][e]], 2.0 / 3);
+        NEAR(fmin(cag_norm(cag_sub(points[0], q)), cag_norm(cag_sub(points[2], q))), 0, 1e-15);
+      }
+    }
+    cag_curve_list_free(&list);
+    cag_mesh_release(m);
+  }
+}
+
 // Three triangles on one edge, and two that run alike.
 static void meshes_that_are_no_surfaces_do_no_harm(void **state) {
   (void)state;
@@ -485,6 +515,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_plane_through_vertices_and_edges_gives_one_closed_curve),
       cmocka_unit_test(an_open_mesh_gives_open_curves_and_an_empty_one_none),
+      cmocka_unit_test(triangles_on_one_edge_are_joined_in_order),
       cmocka_unit_test(meshes_that_are_no_surfaces_do_no_harm),
       cmocka_unit_test(solids_of_all_sizes_are_cut_alike),
       cmocka_unit_test(balls_give_exact_circles_at_every_height),
