@@ -185,31 +185,23 @@ static bool is_near_pole(const CagMarch *m, CagVec3 x, double reach) {
   return false;
 }
 
-// A surface ends before h: the last place is found by halving and takes the place of a last node
-// that is as near as none.
+// A surface ends before h, which is as near as none: the last place is found by halving and takes
+// the place of the last node.
 static bool add_end(CagMarch *m, Run *run, double h) {
   const int halvings = 60;
-  CagMarchNode a = run->nodes[run->n - 1], last = a;
+  CagMarchNode *end = &run->nodes[run->n - 1];
+  const CagMarchNode a = *end;
   double low = 0, high = h;
-  CagVec3 middle;
   for (int i = 0; i < halvings && high - low > CAG_MARCH_SAME * m->size; i++) {
     CagMarchNode b;
-    double half = (low + high) / 2;
-    Step step = try_step(m, &a, half, true, &b, &middle);
+    CagVec3 middle;
+    const double half = (low + high) / 2;
+    const Step step = try_step(m, &a, half, true, &b, &middle);
     if (step == BROKEN) return false;
-    if (step == STEPPED) low = half, last = b;
+    if (step == STEPPED) low = half, *end = b;
     else high = half;
   }
-  if (low == 0) return true;
-  if (low < JOINED * m->size && run->n > 1) {
-    run->nodes[run->n - 1] = last;
-    return true;
-  }
-  CagMarchNode between = a;
-  middle = hermite(&a, &last, 0.5);
-  if (m->locate(m, middle, cag_unit(cag_sub(last.x, a.x)), a.tangent, &between) == CAG_MARCH_FOUND)
-    middle = between.x;
-  return m->status == CAG_OK && add_node(m, run, &last, middle);
+  return true;
 }
 
 // Moves the end of a run onto the edge of the patch that it is next to, to rounding: to where the

@@ -112,7 +112,43 @@ static void rings_are_met_within_their_outlines(void **state) {
   assert_true(told > 8 && cut > 16);
 }
 
+// A round wall that does not pass the outlines meets the ring in its whole foot, or not at all.
+static void walls_within_rings_meet_them_in_whole_circles(void **state) {
+  (void)state;
+  seed = 7;
+  for (int round = 0; round < 12; round++) {
+    const double disk[3] = {uniform(-1, 1), 0.5, 5}, hole[3] = {1, uniform(-1, 1), 1.5};
+    // About the hole, beside it, within it, or around all.
+    static const double OF[4][2] = {{2, 3}, {0.5, 1}, {0.3, 1}, {7, 9}};
+    const double *of = OF[round % 4], r = uniform(of[0], of[1]);
+    const double off = round % 4 == 1 ? 3 : 0, x = hole[0], y = hole[1] + off;
+    CagSurface *s = ring(NULL, disk, hole), *wall;
+    CagCurve *foot = circle(x, y, r), *low;
+    const CagTransform down = cag_translate(cag_vec3(0, 0, -2));
+    OK(cag_curve_transform(foot, &down, &low, &err));
+    OK(cag_surface_extrude(low, cag_vec3(0, 0, 4), 0, 1, &wall, &err));
+    CagCurveList list = {0};
+    OK(cag_surface_intersect(round % 3 ? s : wall, round % 3 ? wall : s, 0, NULL, &list, &err));
+    assert_int_equal(list.count, round % 4 < 2);
+    if (list.count) {
+      double length;
+      const CagCurve *c = list.items[0];
+      assert_true(c->closed);
+      OK(cag_curve_length(c, c->start, c->end, &length, &err));
+      NEAR(length, 2 * M_PI * r, 1e-4);
+    }
+    cag_curve_list_free(&list);
+    cag_surface_release(s);
+    cag_surface_release(wall);
+    cag_curve_release(foot);
+    cag_curve_release(low);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(rings_are_met_within_their_outlines)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rings_are_met_within_their_outlines),
+      cmocka_unit_test(walls_within_rings_meet_them_in_whole_circles),
+  };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

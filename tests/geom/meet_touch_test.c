@@ -209,7 +209,40 @@ static void graphs_meet_where_their_difference_is_zero(void **state) {
   }
 }
 
+// Parallelograms of one plane share a piece or none, however their parameters run.
+static void flat_patches_of_one_plane_share_a_piece_or_none(void **state) {
+  (void)state;
+  seed = 62;
+  for (int round = 0; round < 24; round++) {
+    CagSurface *s[2];
+    CagVec3 x = direction(), n = cag_unit(cag_cross(x, direction())), y = cag_cross(n, x);
+    const CagVec3 o = direction();
+    const bool apart = round % 2;
+    for (int k = 0; k < 2; k++) {
+      // Of sizes from 1 to 2, about centers that are near to each other or far away.
+      const double a = uniform(0, 6), w = uniform(0.5, 1), h = uniform(0.5, 1);
+      const double off = k == 0 ? 0 : apart ? uniform(3, 4) : uniform(0.1, 0.4);
+      const CagVec3 e = cag_madd(cag_scaled(x, w * cos(a)), w * sin(a), y);
+      const CagVec3 f = cag_madd(cag_scaled(x, -h * sin(a)), h * cos(a), y);
+      const CagVec3 c = cag_madd(o, off, x);
+      OK(cag_surface_bilinear(cag_sub(cag_sub(c, e), f), cag_add(cag_sub(c, e), f),
+                              cag_sub(cag_add(c, e), f), cag_add(cag_add(c, e), f), &s[k], &err));
+    }
+    CagCurveList list = {0};
+    if (apart) {
+      OK(cag_surface_intersect(s[0], s[1], 0, NULL, &list, &err));
+      assert_int_equal(list.count, 0);
+    } else FAILS(cag_surface_intersect(s[0], s[1], 0, NULL, &list, &err), "overlap");
+    cag_curve_list_free(&list);
+    cag_surface_release(s[0]);
+    cag_surface_release(s[1]);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(graphs_meet_where_their_difference_is_zero)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(graphs_meet_where_their_difference_is_zero),
+      cmocka_unit_test(flat_patches_of_one_plane_share_a_piece_or_none),
+  };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
