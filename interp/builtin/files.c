@@ -278,7 +278,7 @@ static bool read_hex(Reader *r, unsigned *out) {
   *out = 0;
   for (int i = 0; i < 4; i++, r->at++) {
     static const char DIGITS[] = "0123456789abcdef";
-    char c = r->at < r->end ? *r->at : 0;
+    char c = *r->at;
     if (c >= 'A' && c <= 'F') c += 'a' - 'A';
     const char *digit = c ? strchr(DIGITS, c) : NULL;
     if (!digit) return fail_at(r, r->at, "expected four hexadecimal digits");
@@ -293,7 +293,7 @@ static bool read_unicode(Reader *r, CagString *s) {
   unsigned high, low;
   if (!read_hex(r, &high)) return false;
   if (high >= 0xD800 && high < 0xE000) {
-    bool pair = high < 0xDC00 && r->end - r->at > 2 && r->at[0] == '\\' && r->at[1] == 'u';
+    bool pair = high < 0xDC00 && r->at[0] == '\\' && r->at[1] == 'u';
     if (pair) r->at += 2;
     if (!pair || !read_hex(r, &low) || low < 0xDC00 || low > 0xDFFF)
       return fail_at(r, place, "half of a surrogate pair");
