@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -238,6 +239,95 @@ static void json_both_ways(void **state) {
   assert_int_equal(bad, 0);
 }
 
+// --- Meshes of URDF files ---
+
+// A tetrahedron of this edge along the axes, as an OBJ file.
+static void write_corner(const char *path, int edge) {
+  FILE *f = fopen(path, "w");
+  assert_non_null(f);
+  fprintf(f, "v 0 0 0\nv %d 0 0\nv 0 %d 0\nv 0 0 %d\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", edge,
+          edge, edge);
+  assert_int_equal(fclose(f), 0);
+}
+
+static bool reads_mesh(const char *name, const char *expected) {
+  FILE *f = fopen("w/x/r.urdf", "w");
+  assert_non_null(f);
+  fprintf(f,
+          "<robot name=\"r\"><link name=\"a\"><visual><geometry>\n"
+          "<mesh filename=\"%s\" scale=\"1 2 -3\"/></geometry></visual></link><link name=\"b\"/>\n"
+          "<joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child "
+          "link=\"b\"/></joint></robot>",
+          name);
+  assert_int_equal(fclose(f), 0);
+  return prints("b = attempt(() => bounds(posed(read_urdf(\"w/x/r.urdf\"))), e => e.message)\n"
+                "print if type_of(b) == \"text\" then rest(b, index_of(b, \"): \") + 3) else "
+                "round(concat(b.min, b.max), 6)",
+                expected);
+}
+
+// A name in a package is looked for in four places, in this order; a plain one in one. Lengths are
+// meters.
+static void meshes_of_urdf_files(void **state) {
+  (void)state;
+  static const char *const folders[] = {"w", "w/x", "w/m", "w/x/m", "w/x/p", "w/x/p/m", "p", "p/m"};
+  static const char *const places[] = {"w/x/m/t.obj", "w/x/p/m/t.obj", "w/m/t.obj", "p/m/t.obj"};
+  size_t bad = 0;
+  for (size_t i = 0; i < 8; i++) assert_int_equal(mkdir(folders[i], 0777), 0);
+  for (int i = 0; i < 4; i++) write_corner(places[i], i + 1);
+  for (int i = 0; i < 4; i++) {
+    char expected[100];
+    snprintf(expected, sizeof expected, "[0, 0, %d, %d, %d, 0]", -3000 * (i + 1), 1000 * (i + 1),
+             2000 * (i + 1));
+    bad += !reads_mesh("package://p/m/t.obj", expected);
+    bad += !reads_mesh("model://p/m/t.obj", expected);
+    if (i == 0) {
+      bad += !reads_mesh("m/t.obj", expected);
+      bad += !reads_mesh("file://m/t.obj", expected);
+      write_corner("w/x/t.obj", 1);
+      bad += !reads_mesh("/elsewhere/m/t.obj", expected);
+      bad += !reads_mesh("file:///elsewhere/t.obj", expected);
+      unlink("w/x/t.obj");
+    }
+    unlink(places[i]);
+  }
+  static const char missing[] = "there is no such file below the folders that the script may read";
+  bad += !reads_mesh("package://p/m/t.obj", missing);
+  bad += !reads_mesh("m/t.obj", missing);
+  bad += !reads_mesh("/t.obj", missing);
+  bad += !reads_mesh("package://p.obj", "behind the package's name its file is missing");
+  bad += !reads_mesh("model://t.obj", "behind the package's name its file is missing");
+  bad += !reads_mesh("http://example.org/t.obj", "nothing is fetched from elsewhere");
+  static const char ending[] = "meshes are read from .stl .obj .ply .gltf .glb";
+  bad += !reads_mesh("m/t.dae", ending);
+  bad += !reads_mesh("m/t", ending);
+  bad += !reads_mesh("package://p/m/t.objx", ending);
+  bad += !reads_mesh("m/T.OBJ", missing);
+  bad += !reads_mesh("m/t.stl", missing);
+  bad += !reads_mesh("m/t.ply", missing);
+  bad += !reads_mesh("m/t.gltf", missing);
+  bad += !reads_mesh("m/t.Glb", missing);
+  // glTF says its own unit, and has the y axis upward; the mesh is one triangle of a meter.
+  FILE *f = fopen("w/x/m/t.gltf", "w");
+  assert_non_null(f);
+  fputs(
+      "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{"
+      "\"mesh\":0}],"
+      "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{"
+      "\"bufferView\":0,"
+      "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]}],"
+      "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":"
+      "\"data:application/"
+      "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}",
+      f);
+  assert_int_equal(fclose(f), 0);
+  bad += !reads_mesh("m/t.gltf", "[0, 0, -3000, 1000, 0, 0]");
+  unlink("w/x/m/t.gltf");
+  unlink("w/x/r.urdf");
+  for (size_t i = 8; i-- > 0;) assert_int_equal(rmdir(folders[i]), 0);
+  assert_int_equal(bad, 0);
+}
+
 static int enter(void **state) {
   (void)state;
   return mkdtemp(folder) ? chdir(folder) : -1;
@@ -253,7 +343,7 @@ int main(void) {
       cmocka_unit_test(values_of_json),          cmocka_unit_test(places_of_errors_in_json),
       cmocka_unit_test(nesting_of_json),         cmocka_unit_test(rows_of_csv),
       cmocka_unit_test(places_of_errors_in_csv), cmocka_unit_test(texts_without_mark),
-      cmocka_unit_test(json_both_ways),
+      cmocka_unit_test(json_both_ways),          cmocka_unit_test(meshes_of_urdf_files),
   };
   return cmocka_run_group_tests_name("data files", tests, enter, leave);
 }
