@@ -45,6 +45,7 @@ bool cag_vm_call_back(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *c
   const uint32_t level = vm->differentiation;
   vm->heap.depth++;
   const bool ok = cag_vm_protect(vm, work, context) && !vm->failed;
+  if (!ok && vm->native) vm->native->probed = true;
   vm->heap.depth--;
   vm->differentiation = level;
   return ok;

@@ -170,6 +170,15 @@ static bool bind_names(CagVm *vm, const CagSignature *s, CagValue *values, size_
   return true;
 }
 
+// Of a built-in that has succeeded with an error set, or failed without one. The geometry core may
+// go on when a formula fails at a place that it only probes, and limits may be noticed late.
+static bool check_answer(CagVm *vm, const char *name, bool ok) {
+  if (!ok) return cag_vm_fail(vm, CAG_ERR_internal, "%s failed without an error", name);
+  if (vm->native->probed || cag_vm_at_limit(vm)) return false;
+  return cag_vm_fail(vm, CAG_ERR_internal, "%s went on after the error: %s", name,
+                     vm->errors.items[0].message);
+}
+
 static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count,
                          const char *const *names, size_t named, bool direct, CagValue *result) {
   size_t positional = count - named;
@@ -209,11 +218,9 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   CagCall call = {.vm = vm, .builtin = b, .values = values, .count = total};
   *result = cag_none();
   CagBuiltinFunction function = vm->differentiation ? cag_jet_function(&call, index) : b->function;
-  // The geometry core may go on when a formula fails at a place that it only probes.
-  bool ok = function(&call, result) && !vm->failed;
+  bool ok = function(&call, result);
   if (cag_memory_was_out()) ok = cag_vm_fail_memory(vm);
-  else if (!ok && !vm->failed)
-    ok = cag_vm_fail(vm, CAG_ERR_internal, "%s failed without an error", s->name);
+  else if (ok == vm->failed) ok = check_answer(vm, s->name, ok);
   ok = ok && cag_check_defined(&call, *result);
   vm->native = native.outer;
   vm->top = top;

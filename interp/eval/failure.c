@@ -274,8 +274,8 @@ _Noreturn void cag_vm_out_of_memory(CagVm *vm) {
 
 // --- What a script sees of its errors ---
 
-// Limits of the run pass through `attempt`.
-static bool is_limit(CagErrorId id) {
+bool cag_vm_at_limit(const CagVm *vm) {
+  const CagErrorId id = vm->errors.count ? vm->errors.items[0].id : CAG_ERR_limit_memory;
   return id == CAG_ERR_limit_depth || id == CAG_ERR_limit_memory || id == CAG_ERR_limit_time ||
          id == CAG_ERR_limit_triangles || id == CAG_ERR_interrupted;
 }
@@ -296,7 +296,7 @@ static CagValue error_record(CagVm *vm, const CagDiagnostic *d) {
 bool cag_vm_attempt(CagCall *call, CagValue f, CagValue handler, CagValue *result) {
   CagVm *vm = call->vm;
   if (cag_call(vm, f, NULL, 0, result)) return true;
-  if (vm->errors.count == 0 || is_limit(vm->errors.items[0].id)) return false;
+  if (cag_vm_at_limit(vm)) return false;
   CagValue err = error_record(vm, &vm->errors.items[0]);
   cag_vm_clear_error(vm);
   return cag_call(vm, handler, &err, 1, result);

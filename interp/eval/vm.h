@@ -167,6 +167,7 @@ typedef struct CagNative {
   struct CagNative *outer;
   size_t frame_count; // frames when it was called
   bool direct;        // called by the instruction of the top frame, not by another built-in
+  bool probed;        // a formula that geometry called has failed
   const uint16_t
       *order; // argument (as written) of each parameter, 0xffff: none; NULL: as they come
   size_t order_count;
@@ -290,6 +291,9 @@ bool cag_vm_fail_in(CagVm *vm, CagValue function, CagErrorId id, const char *for
 bool cag_vm_fail_at(CagVm *vm, int argument, CagErrorId id, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 void cag_vm_clear_error(CagVm *vm);
+// Whether the error is a limit of the run, which passes through `attempt`; so does one without a
+// message.
+bool cag_vm_at_limit(const CagVm *vm);
 // Sets the error of the memory limit and leaves the innermost cag_vm_protect.
 _Noreturn void cag_vm_out_of_memory(CagVm *vm);
 // Sets the error of the memory limit and returns false.
