@@ -306,6 +306,79 @@ static void dashes_of_a_square_go_around(void **state) {
   cag_curve_release(c);
 }
 
+// Tubes of all counts of points: a ring of 12 for each, and caps of 13 vertices at open ends.
+static void tubes_of_every_count_have_their_rings(void **state) {
+  (void)state;
+  enum { MOST = 180 };
+  for (size_t n = 2; n <= MOST; n++) {
+    CagVec3 p[MOST];
+    CagCurve *c;
+    for (int closed = n > 14; closed >= 0; closed--) { // a polygon of 15 turns by 24 degrees
+      const double part = 2 * M_PI / (double)(closed ? n : MOST);
+      for (size_t i = 0; i < n; i++)
+        p[i] = cag_vec3(90 * cos(part * (double)i), 90 * sin(part * (double)i), 0);
+      OK(cag_curve_polyline(p, n, closed, 3, &c, &err));
+      CagMesh *m = tube_of(c, 0.5, 0);
+      assert_int_equal(m->vertex_count, closed ? 12 * n : 12 * n + 26);
+      assert_int_equal(m->triangle_count, closed ? 24 * n : 24 * n);
+      // The section is a polygon of 12 corners, and the path that of the centers.
+      const double section = 3 * 0.5 * 0.5, length = 2 * 90 * sin(part / 2) * (double)(n - !closed);
+      is_near(volume_of(m), section * length, 0.03 * section * length, "volume");
+      cag_mesh_release(m);
+      cag_curve_release(c);
+    }
+    // A comb of right angles, with a joint at each corner.
+    for (size_t i = 0; i < n; i++)
+      p[i] = cag_vec3(9 * (double)(i / 2), 9 * (double)((i + 1) / 2 % 2), 0);
+    OK(cag_curve_polyline(p, n, false, 3, &c, &err));
+    CagMesh *m = tube_of(c, 0.5, 0);
+    // Two rings, two rows of five inside of the wedge; at its ends two triangles a step, else four.
+    const size_t corners = n - 2;
+    assert_int_equal(m->vertex_count, 50 + corners * (24 + 10));
+    assert_int_equal(m->triangle_count, 24 * (n - 1) + 24 + corners * 3 * 10);
+    cag_mesh_release(m);
+    cag_curve_release(c);
+  }
+}
+
+// From an end to the only corner the rings do not turn: their sides go along the tube.
+static void tubes_with_one_corner_do_not_twist(void **state) {
+  (void)state;
+  seed = 21;
+  for (int round = 0; round < 40; round++) {
+    enum { STEPS = 4, N = 2 * STEPS + 1 };
+    CagVec3 p[N], along[2];
+    do {
+      along[0] = cag_unit(random_vec(1));
+      along[1] = cag_unit(random_vec(1));
+    } while (fabs(cag_dot(along[0], along[1])) > 0.8);
+    for (int i = 0; i < N; i++) p[i] = cag_scaled(along[i > STEPS], 10 * (i - STEPS));
+    CagCurve *c;
+    OK(cag_curve_polyline(p, N, false, 3, &c, &err));
+    CagMesh *m = tube_of(c, 0.5, 0);
+    check_tube(c, m, 3);
+    size_t sides = 0;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+      double straight = 0, longest = 0;
+      for (int j = 0; j < 3; j++) {
+        const CagVec3 a = m->positions[m->triangles[3 * t + (size_t)j]],
+                      b = m->positions[m->triangles[3 * t + (size_t)(j + 1) % 3]];
+        const CagVec3 d = cag_sub(b, a);
+        const double length = cag_norm(d);
+        longest = fmax(longest, length);
+        for (int k = 0; k < 2; k++)
+          if (length > 3) straight = fmax(straight, fabs(cag_dot(d, along[k])) / length);
+      }
+      if (longest <= 3) continue;
+      sides++;
+      is_near(straight, 1, 1e-12, "direction of a side");
+    }
+    assert_int_equal(sides, 24 * 2 * STEPS);
+    cag_mesh_release(m);
+    cag_curve_release(c);
+  }
+}
+
 // A limit of exactly the triangles of a tube is enough, and one less is not.
 static void the_limit_of_triangles_is_exact(void **state) {
   (void)state;
@@ -453,6 +526,8 @@ int main(void) {
       cmocka_unit_test(dashes_are_where_they_belong),
       cmocka_unit_test(corners_of_any_angle_are_closed),
       cmocka_unit_test(dashes_of_a_square_go_around),
+      cmocka_unit_test(tubes_of_every_count_have_their_rings),
+      cmocka_unit_test(tubes_with_one_corner_do_not_twist),
       cmocka_unit_test(the_limit_of_triangles_is_exact),
       cmocka_unit_test(surfaces_become_meshes),
       cmocka_unit_test(lines_have_a_width_by_the_scene),
