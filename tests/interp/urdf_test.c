@@ -371,6 +371,69 @@ static void axes_in_any_direction_are_read(void **state) {
   free(text);
 }
 
+// Axes that are almost parallel to the one before, by angles from 1e-13 on, and through it or not:
+// some as rows, and those that rows would place far away as fixed transforms.
+static void axes_that_are_almost_parallel_are_read(void **state) {
+  (void)state;
+  char *text = calloc(1, 1 << 16);
+  for (int i = 0; i < 60; i++) {
+    state_of_chance = 2000 + (uint64_t)i;
+    sprintf(text, "<robot name=\"any\">\n<link name=\"l0\"/>\n");
+    for (int k = 1; k < 6; k++) {
+      double tilt[2], p[3];
+      for (int j = 0; j < 2; j++) {
+        const double size = pow(10, -chance(1, 13)), sign = chance(-1, 1);
+        tilt[j] = chance(0, 1) < 0.3 ? 0 : sign < 0 ? -size : size;
+      }
+      for (int j = 0; j < 3; j++) {
+        const double far = chance(-1, 1);
+        p[j] = chance(0, 1) < 0.5 ? 0 : far;
+      }
+      const double up = chance(0, 1) < 0.7 ? 1 : -1;
+      sprintf(text + strlen(text),
+              "<link name=\"l%d\"/>\n<joint name=\"j%d\" type=\"revolute\">\n<origin xyz=\"%.17g "
+              "%.17g %.17g\"/>\n<parent link=\"l%d\"/><child link=\"l%d\"/>\n<axis xyz=\"%.17g "
+              "%.17g %g\"/><limit lower=\"-0.5\" upper=\"1.5\" effort=\"7\" "
+              "velocity=\"2\"/>\n</joint>\n",
+              k, k, p[0], p[1], p[2], k - 1, k, tilt[0], tilt[1], up);
+    }
+    strcat(text, "</robot>\n");
+    write_file("any.urdf", text);
+    check_same("r = read_urdf(\"any.urdf\")\n", "any.urdf");
+  }
+  free(text);
+}
+
+// A chain of Denavit and Hartenberg's rows is read as rows again, with at most one transform behind
+// them.
+static void rows_are_read_as_rows(void **state) {
+  (void)state;
+  for (int i = 0; i < 40; i++) {
+    char script[4000] = "r = robot([";
+    state_of_chance = 3000 + (uint64_t)i;
+    const int n = 2 + i % 5;
+    for (int k = 0; k < n; k++) {
+      const double d = chance(-300, 300), a = chance(-300, 300), theta = chance(-170, 170);
+      const double any = chance(5, 175), kind = chance(0, 5), sign = chance(-1, 1);
+      const double alpha = kind < 1 ? 0 : kind < 3 ? 90 : any;
+      sprintf(script + strlen(script),
+              "%srevolute(d: %.3f, a: %.3f, alpha: %.2fdeg, offset: %.2fdeg)", k ? ", " : "", d,
+              chance(0, 1) < 0.4 ? 0 : a, sign < 0 ? -alpha : alpha,
+              chance(0, 1) < 0.5 ? 0 : theta);
+    }
+    strcat(script, "])\n");
+    char *shown = calloc(1, 1 << 14), *printed;
+    sprintf(shown, "%sshow r\n", script);
+    printed = run(shown, "rows.urdf");
+    free(printed);
+    sprintf(shown, "%ss = read_urdf(\"rows.urdf\")\nprint len(s.links)\n", script);
+    printed = run(shown, NULL);
+    if (atoi(printed) != n && atoi(printed) != n + 1) fail_msg("%s%s links", script, printed);
+    free(printed);
+    free(shown);
+  }
+}
+
 // --- Masses: closed forms of a box and a cylinder ---
 
 static double number_after(const char *text, const char *mark) {
@@ -629,6 +692,8 @@ int main(void) {
       cmocka_unit_test(the_files_joints_lead_where_fk_leads),
       cmocka_unit_test(what_was_written_is_read_back),
       cmocka_unit_test(axes_in_any_direction_are_read),
+      cmocka_unit_test(axes_that_are_almost_parallel_are_read),
+      cmocka_unit_test(rows_are_read_as_rows),
       cmocka_unit_test(masses_are_those_of_the_shapes),
       cmocka_unit_test(plain_bodies_weigh_what_their_sizes_say),
       cmocka_unit_test(open_shapes_have_no_mass),
