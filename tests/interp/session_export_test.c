@@ -1,6 +1,7 @@
 // Files that exports write beside one another, what they name, and what is told.
 
 #include <dirent.h>
+#include <math.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -56,7 +57,10 @@ static int leave(void **state) {
 static int export_as(CagSessionOptions options, const char *text, const char *path,
                      const char *format) {
   CagSession *s = cag_session_new(&options);
-  assert_int_equal(cag_session_run_text(s, "some/where/part.cag", text, strlen(text)), 0);
+  if (cag_session_run_text(s, "some/where/part.cag", text, strlen(text)) != CAG_STATUS_OK) {
+    cag_session_write_diagnostics(s, CAG_STYLE_TEXT, stderr);
+    fail();
+  }
   const int status = cag_session_export(s, path, format);
   cag_session_free(s);
   return status;
@@ -164,6 +168,80 @@ static void links_of_urdf_have_meshes_beside(void **state) {
   assert_int_equal(export_as(session_options(), text, "-", "urdf"), CAG_STATUS_USAGE);
 }
 
+// How often a text occurs.
+static int times(const char *text, const char *part) {
+  int n = 0;
+  for (const char *at = text; (at = strstr(at, part)); at++) n++;
+  return n;
+}
+
+// Names of links and materials have letters, digits, - . and _ alone, and each is of one thing.
+static void names_of_urdf_are_plain_and_different(void **state) {
+  (void)state;
+  static const struct {
+    const char *said, *written;
+  } names[] = {{"azAZ_09.-", "azAZ_09.-"},
+               {"b/:@[`^~,", "b________"},
+               {"-c", "_c"},
+               {".d", "_d"},
+               {"9e", "_e"},
+               {"\303\251", "\303\251"},
+               {"f g", "f_g"},
+               {"tool", "tool_2"},
+               {"f_g", "f_g_2"},
+               {"AZaz_09.-", "AZaz_09.-"},
+               {"world", "world_2"}};
+  char script[4000] = "show robot([", part[200];
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    snprintf(part, sizeof part, "%srevolute(a: 3, shape: named(cone(9, 3), \"%s\"))", i ? ", " : "",
+             names[i].said);
+    strcat(script, part);
+  }
+  strcat(script, "])");
+  exported(script, "names.urdf", NULL);
+  const char *urdf = text_of("names.urdf");
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    snprintf(part, sizeof part, "<link name=\"%s\">", names[i].written);
+    if (times(urdf, part) != 1) fail_msg("%s: %d times", part, times(urdf, part));
+    // Files whose names differ in the size of letters alone might be the same.
+    snprintf(part, sizeof part, "filename=\"names_meshes/%s%s.stl\"", names[i].written,
+             i == 9 ? "_2" : "");
+    if (times(urdf, part) != 2) fail_msg("%s: %d times", part, times(urdf, part));
+  }
+  // More materials than there is room for at first: of one name and other colors, and the same.
+  snprintf(
+      script, sizeof script,
+      "m(n, c) = material(cone(9, 3), {name: n, color: c})\n"
+      "show robot([...[for i in 0..<3: revolute(a: 3, shape: [m(\"red\", [1, 0, 0]), m(\"red\", "
+      "[0, 1, 0]), m(\"red\", [1, 0, 0]), m(\"red\", [0, 0, 1])])], "
+      "...[for i in 0..<40: revolute(a: 3, shape: m(\"k{i}\", [0, 0, i / 40]))]])");
+  exported(script, "materials.urdf", NULL);
+  urdf = text_of("materials.urdf");
+  static const struct {
+    const char *name;
+    double color[4];
+    int uses;
+  } materials[] = {{"red", {1, 0, 0, 1}, 6},
+                   {"red_2", {0, 1, 0, 1}, 3},
+                   {"red_3", {0, 0, 1, 1}, 3},
+                   {"k0", {0, 0, 0, 1}, 1}};
+  for (size_t i = 0; i < sizeof materials / sizeof *materials; i++) {
+    snprintf(part, sizeof part, "<material name=\"%s\"/>", materials[i].name);
+    assert_int_equal(times(urdf, part), materials[i].uses);
+    snprintf(part, sizeof part, "<material name=\"%s\">", materials[i].name);
+    assert_int_equal(times(urdf, part), 1);
+    const char *at = strstr(strstr(urdf, part), "rgba=\"");
+    double rgba[4];
+    assert_int_equal(sscanf(at, "rgba=\"%lf %lf %lf %lf", &rgba[0], &rgba[1], &rgba[2], &rgba[3]),
+                     4);
+    for (int k = 0; k < 4; k++) assert_true(fabs(rgba[k] - materials[i].color[k]) < 1e-6);
+  }
+  for (int i = 0; i < 40; i++) {
+    snprintf(part, sizeof part, "<material name=\"k%d\"/>", i);
+    assert_int_equal(times(urdf, part), 1);
+  }
+}
+
 static void exact_files_name_their_script(void **state) {
   (void)state;
   static const char *const paths[] = {"e.step", "e.igs"};
@@ -268,6 +346,7 @@ int main(void) {
       cmocka_unit_test(data_of_gltf_is_renewed),
       cmocka_unit_test(data_of_others_stays),
       cmocka_unit_test(links_of_urdf_have_meshes_beside),
+      cmocka_unit_test(names_of_urdf_are_plain_and_different),
       cmocka_unit_test(exact_files_name_their_script),
       cmocka_unit_test(approximations_are_told),
       cmocka_unit_test(triangles_of_all_parts_count),
