@@ -321,6 +321,227 @@ static void hulls_are_apart_by_their_gap(void **state) {
   NEAR(cag_norm(cag_hulls_gap(a, 8, beside, 1)), 0.0625, 1e-15);
 }
 
+static CagVec3 random_space(double size) {
+  const double x = uniform(-size, size), y = uniform(-size, size), z = uniform(-size, size);
+  return cag_vec3(x, y, z);
+}
+
+// The gap is a difference of points of both hulls, and no difference is less far along it.
+static void gaps_of_random_hulls_are_the_nearest_differences(void **state) {
+  (void)state;
+  seed = 403;
+  int apart = 0;
+  for (int round = 0; round < 600; round++) {
+    CagVec3 a[9], b[9];
+    const size_t n = 1 + (size_t)uniform(0, 8.9), m = 1 + (size_t)uniform(0, 8.9);
+    const bool flat = round % 3 == 0;
+    const CagVec3 away = cag_scaled(cag_unit(random_space(1)), uniform(0, 4));
+    for (size_t i = 0; i < n; i++) a[i] = random_space(1);
+    for (size_t i = 0; i < m; i++) b[i] = cag_add(random_space(1), away);
+    for (size_t i = 0; i < 9 && flat; i++) {
+      if (i < n) a[i].z = 0.5;
+      if (i < m) b[i].z = 0.5;
+    }
+    // Every fourth pair has a point in common: means of the corners.
+    CagVec3 mean = {0, 0, 0};
+    for (size_t i = 0; i < n; i++) mean = cag_madd(mean, 1.0 / (double)n, a[i]);
+    for (size_t i = 0; i < m; i++) mean = cag_madd(mean, -1.0 / (double)m, b[i]);
+    for (size_t i = 0; i < m && round % 4 == 0; i++) b[i] = cag_add(b[i], mean);
+    const CagVec3 v = cag_hulls_gap(a, n, b, m);
+    const double gap = cag_norm(v);
+    if (round % 4 == 0) {
+      assert_true(gap <= 1e-7);
+      continue;
+    }
+    for (int k = 0; k < 30; k++) {
+      const CagVec3 way = cag_unit(random_space(1));
+      double most = -INFINITY;
+      for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < m; j++) most = fmax(most, cag_dot(cag_sub(a[i], b[j]), way));
+      assert_true(cag_dot(v, way) <= most + 1e-12);
+    }
+    if (gap < 1e-6) continue;
+    double least = INFINITY;
+    for (size_t i = 0; i < n; i++)
+      for (size_t j = 0; j < m; j++) least = fmin(least, cag_dot(cag_sub(a[i], b[j]), v));
+    assert_true(least >= gap * gap * (1 - 1e-9));
+    assert_true(cag_hulls_disjoint(a, n, b, m));
+    apart++;
+  }
+  assert_true(apart > 150);
+}
+
+static CagCurve *quadratic(CagVec3 p, CagVec3 q, CagVec3 r) {
+  const CagVec3 v[3] = {p, q, r};
+  CagCurve *c;
+  OK(cag_curve_bezier(v, NULL, 3, 2, &c, &err));
+  return c;
+}
+
+static CagVec3 curvature_vector(const CagCurve *c, double t) {
+  CagFrenet f;
+  OK(cag_curve_frenet(c, t, &f, &err));
+  return cag_scaled(f.normal, f.curvature);
+}
+
+static void joints_are_told_by_the_derivatives_of_both_sides(void **state) {
+  (void)state;
+  seed = 404;
+  for (int round = 0; round < 60; round++) {
+    CagCurve *a, *b;
+    CagVec3 p[4], q[4], da[3], db[3];
+    for (int i = 0; i < 4; i++) {
+      p[i] = random_space(3);
+      q[i] = random_space(3);
+    }
+    OK(cag_curve_bezier(p, NULL, 4, 3, &a, &err));
+    OK(cag_curve_bezier(q, NULL, 4, 3, &b, &err));
+    CagJoint j;
+    OK(cag_curve_joint(a, b, 1e-6, &j, &err));
+    OK(cag_curve_eval(a, 1, 2, CAG_SIDE_LEFT, da, &err));
+    OK(cag_curve_eval(b, 0, 2, CAG_SIDE_RIGHT, db, &err));
+    NEAR(j.gap, cag_norm(cag_sub(q[0], p[3])), 1e-14);
+    NEAR(j.first_jump, cag_norm(cag_sub(da[1], db[1])), 1e-12);
+    NEAR(j.second_jump, cag_norm(cag_sub(da[2], db[2])), 1e-12);
+    NEAR(j.ratio, cag_norm(db[1]) / cag_norm(da[1]), 1e-12 * j.ratio);
+    NEAR(cos(j.angle), cag_dot(cag_unit(da[1]), cag_unit(db[1])), 1e-12);
+    const double jump = cag_norm(cag_sub(curvature_vector(a, 1), curvature_vector(b, 0)));
+    NEAR(j.curvature_jump, jump, 1e-10 * (1 + jump));
+    assert_string_equal(cag_joint_class(&j), "none");
+    cag_curve_release(a);
+    cag_curve_release(b);
+  }
+}
+
+// Each kind of continuity holds to the tolerance, and not beyond.
+static void joints_are_judged_to_the_tolerance(void **state) {
+  (void)state;
+  const double tolerance = 1e-3;
+  for (int i = 0; i < 2; i++) {
+    const double off = (i ? 1.05 : 0.95) * tolerance;
+    const CagVec3 o = {0, 0, 0}, m = {-1, 0, 0}, l = {-2, 1, 0};
+    CagCurve *a = quadratic(l, m, o), *b; // derivatives in o: [2, 0], [0, 2]
+    CagJoint j;
+    // Straight on by the same derivatives, moved: the box is 4 + off wide and 1 high.
+    b = quadratic(cag_vec3(off * hypot(4, 1), 0, 0), cag_vec3(1 + off * hypot(4, 1), 0, 0),
+                  cag_vec3(2, 1, 0));
+    OK(cag_curve_joint(a, b, tolerance, &j, &err));
+    assert_int_equal(j.c0, i == 0);
+    assert_int_equal(j.c1, i == 0);
+    assert_int_equal(j.g1, i == 0);
+    cag_curve_release(b);
+    // A first derivative longer by a part.
+    b = quadratic(o, cag_vec3(1 + off, 0, 0), cag_vec3(2 + 2 * off, 1, 0));
+    OK(cag_curve_joint(a, b, tolerance, &j, &err));
+    assert_true(j.c0 && j.g1);
+    assert_int_equal(j.c1, i == 0);
+    cag_curve_release(b);
+    // A tangent turned.
+    b = quadratic(o, cag_vec3(cos(off), sin(off), 0), cag_vec3(2 * cos(off), 1 + 2 * sin(off), 0));
+    OK(cag_curve_joint(a, b, tolerance, &j, &err));
+    assert_true(j.c0);
+    NEAR(j.angle, off, 1e-12);
+    assert_int_equal(j.g1, i == 0);
+    cag_curve_release(b);
+    // A second derivative longer by a part.
+    b = quadratic(o, cag_vec3(1, 0, 0), cag_vec3(2, 1 + off, 0));
+    OK(cag_curve_joint(a, b, tolerance, &j, &err));
+    assert_true(j.c1 && j.g1);
+    assert_int_equal(j.c2, i == 0);
+    assert_int_equal(j.g2, i == 0);
+    assert_string_equal(cag_joint_class(&j), i ? "C1" : "C2");
+    cag_curve_release(b);
+    cag_curve_release(a);
+  }
+  // A segment that stands still at the joint has no ratio and no curvature there.
+  const CagVec3 o = {0, 0, 0}, p = {-1, 0, 0}, q = {1, 1, 0};
+  CagCurve *a = quadratic(p, o, o), *b = quadratic(o, cag_vec3(1, 0, 0), q);
+  CagJoint j;
+  OK(cag_curve_joint(a, b, 1e-9, &j, &err));
+  assert_true(isnan(j.ratio) && isnan(j.curvature_jump));
+  assert_string_equal(cag_joint_class(&j), "G1");
+  NEAR(j.angle, 0, 1e-12);
+  cag_curve_release(a);
+  a = quadratic(p, p, p);
+  OK(cag_curve_joint(a, b, 1e-9, &j, &err));
+  assert_true(isnan(j.angle) && isnan(j.ratio) && !j.c0 && !j.g1);
+  cag_curve_release(a);
+  cag_curve_release(b);
+}
+
+// --- Random blends ---
+
+// The parabola through three points at 0, a and 1.
+static CagVec3 parabola_at(CagVec3 p, CagVec3 q, CagVec3 r, double a, double x) {
+  const double f = (x - a) * (x - 1) / a, g = x * (x - 1) / (a * (a - 1)),
+               h = x * (x - a) / (1 - a);
+  return cag_madd(cag_madd(cag_scaled(p, f), g, q), h, r);
+}
+
+// Between two points the curve goes over linearly from one parabola to the next.
+static void random_blends_mix_two_parabolas(void **state) {
+  (void)state;
+  enum { MOST = 8 };
+  seed = 405;
+  for (int round = 0; round < 120; round++) {
+    const CagBlendEnds ends = round % 3 == 0   ? CAG_BLEND_OPEN
+                              : round % 3 == 1 ? CAG_BLEND_PARABOLA
+                                               : CAG_BLEND_CLOSED;
+    const bool closed = ends == CAG_BLEND_CLOSED, open = ends == CAG_BLEND_OPEN;
+    const size_t n = (open ? 4 : 3) + (size_t)uniform(0, 4.9);
+    const bool given = round / 3 % 2;
+    const double power = round % 4 ? 1 : 0.5;
+    CagVec3 p[MOST];
+    double ratios[MOST], length[MOST], a[MOST];
+    for (size_t i = 0; i < n; i++) {
+      p[i] = random_space(3);
+      ratios[i] = round % 5 == 0 ? 0.5 : uniform(0.2, 0.8);
+    }
+    for (size_t i = 0; i < n; i++)
+      length[i] = given ? 1 : pow(cag_norm(cag_sub(p[(i + 1) % n], p[i])), power);
+    // Where the parabola about point i passes it.
+    for (size_t i = 0; i < n; i++)
+      a[i] = !given   ? length[(i + n - 1) % n] / (length[(i + n - 1) % n] + length[i])
+             : closed ? ratios[i]
+                      : ratios[i > 0 ? i - 1 : 0];
+    CagCurve *c;
+    OK(cag_curve_parabolic_blend(p, n, given ? ratios : NULL, power, ends, 3, &c, &err));
+    double u = 0;
+    for (size_t i = open; i < (closed ? n : n - 1 - (size_t)open); i++) {
+      const bool first = !closed && i == 0, last = !closed && i + 2 == n;
+      for (int k = 0; k <= 8; k++) {
+        const double s = k / 8.0;
+        const size_t j = (i + 1) % n;
+        const CagVec3 before =
+                          parabola_at(p[(i + n - 1) % n], p[i], p[j], a[i], a[i] + s * (1 - a[i])),
+                      after = parabola_at(p[i], p[j], p[(i + 2) % n], a[j], s * a[j]);
+        near_vec(at(c, fmin(c->end, u + s * length[i])),
+                 first  ? after
+                 : last ? before
+                        : cag_lerp(before, after, s),
+                 1e-11);
+      }
+      u += length[i];
+    }
+    NEAR(c->end - c->start, u, 1e-13 * u);
+    assert_int_equal(c->closed, closed);
+    cag_curve_release(c);
+  }
+  CagCurve *c;
+  const CagVec3 p[4] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 0}};
+  FAILS(cag_curve_parabolic_blend(p, 3, NULL, 1, CAG_BLEND_OPEN, 2, &c, &err), "too-few-points");
+  FAILS(cag_curve_parabolic_blend(p, 2, NULL, 1, CAG_BLEND_CLOSED, 2, &c, &err), "too-few-points");
+  FAILS(cag_curve_parabolic_blend(p, 2, NULL, 1, CAG_BLEND_PARABOLA, 2, &c, &err),
+        "too-few-points");
+  FAILS_AT(cag_curve_parabolic_blend(p, 4, NULL, 1, CAG_BLEND_OPEN, 2, &c, &err),
+           "coincident-points", 3);
+  const double zero[2] = {0, 0.5}, right[2] = {0.5, 0.5};
+  FAILS_AT(cag_curve_parabolic_blend(p, 4, zero, 1, CAG_BLEND_OPEN, 2, &c, &err),
+           "bad-blend-parameter", 0);
+  OK(cag_curve_parabolic_blend(p, 4, right, 1, CAG_BLEND_OPEN, 2, &c, &err));
+  cag_curve_release(c);
+}
+
 // --- Random segments ---
 
 static CagVec3 random_flat(double size) {
@@ -599,6 +820,10 @@ int main(void) {
       cmocka_unit_test(polynomials_and_their_coefficients_are_one_curve),
       cmocka_unit_test(joined_beziers_go_on_as_asked),
       cmocka_unit_test(hulls_are_apart_by_their_gap),
+      cmocka_unit_test(gaps_of_random_hulls_are_the_nearest_differences),
+      cmocka_unit_test(joints_are_told_by_the_derivatives_of_both_sides),
+      cmocka_unit_test(joints_are_judged_to_the_tolerance),
+      cmocka_unit_test(random_blends_mix_two_parabolas),
   };
   return cmocka_run_group_tests_name("cubic", tests, NULL, NULL);
 }

@@ -567,6 +567,128 @@ static void derivatives_are_the_slopes_of_those_before(void **state) {
   each_kind(20, check_derivatives);
 }
 
+// --- Over the seam ---
+
+static CagCurve *random_loop(int kind) {
+  CagCurve *c, *parts[2];
+  if (kind == 0) return random_curve(RING);
+  if (kind == 1) return random_curve(PERIODIC);
+  if (kind == 2) return random_curve(ELLIPSE);
+  if (kind == 3) { // half a circle and its chord
+    CagTransform frame = random_frame();
+    CagVec3 p, q;
+    OK(cag_curve_arc(2, 2, 0, M_PI, &frame, &parts[0], &err));
+    OK(cag_curve_point(parts[0], M_PI, &p, &err));
+    OK(cag_curve_point(parts[0], 0, &q, &err));
+    OK(cag_curve_line(p, q, 3, &parts[1], &err));
+    OK(cag_curve_join(parts, 2, &c, &err));
+    for (int i = 0; i < 2; i++) cag_curve_release(parts[i]);
+    return c;
+  }
+  CagVec3 points[6];
+  for (int i = 0; i < 5; i++) points[i] = random_point(3);
+  points[5] = points[0];
+  OK(cag_curve_bezier(points, NULL, 6, 3, &c, &err));
+  return c;
+}
+
+static void closed_curves_of_all_kinds_go_on_over_the_seam(void **state) {
+  (void)state;
+  seed = 210;
+  for (int round = 0; round < 200; round++) {
+    CagCurve *c = random_loop(round % 5), *other, *part;
+    const double from = uniform(-3, 3), rate = uniform(0.5, 2);
+    OK(cag_curve_reparametrize(c, from, from + (c->end - c->start) * rate, &other, &err));
+    if (round / 5 % 2) {
+      cag_curve_release(c);
+      c = cag_curve_retain(other);
+    }
+    cag_curve_release(other);
+    assert_true(c->closed);
+    const double period = c->end - c->start;
+    double a = c->start + period * uniform(-3, 3), b = a + period * uniform(0.05, 1);
+    if (round % 7 == 0) a = c->start + period * floor(uniform(-3, 3)); // from the seam
+    if (round % 7 == 0) b = a + period * uniform(0.05, 1);
+    if (round % 7 == 1) b = a + period; // a whole turn
+    if (round % 7 == 2) b = c->start + period * (1 + floor((a - c->start) / period)); // to the seam
+    if (!(b - a > 0.01 * period)) b = a + 0.5 * period;
+    OK(cag_curve_trim(c, a, b, &part, &err));
+    NEAR(part->start, a, 1e-13 * (1 + fabs(a)));
+    NEAR(part->end, b, 1e-13 * (1 + fabs(b)));
+    assert_int_equal(part->angular, c->angular);
+    for (int i = 0; i <= 40; i++) {
+      const double t = a + (b - a) * i / 40, turns = floor((t - c->start) / period);
+      near_vec(at(part, fmin(part->end, fmax(part->start, t))),
+               at(c, fmin(c->end, fmax(c->start, t - turns * period))), 1e-11);
+    }
+    const CagVec3 *v;
+    size_t n;
+    bool ring;
+    assert_int_equal(cag_curve_vertices(part, &v, &n, &ring), round % 5 == 0);
+    if (round % 5 == 1 || round % 5 == 4) assert_non_null(cag_nurbs_data(part));
+    cag_curve_release(part);
+    cag_curve_release(c);
+  }
+}
+
+// --- Stops ---
+
+static void stops_are_taken_in_by_what_moves_after_them(void **state) {
+  (void)state;
+  enum { MOST = 12 };
+  seed = 211;
+  int changed = 0;
+  for (int round = 0; round < 200; round++) {
+    CagVec3 p[MOST];
+    double t[MOST];
+    bool stop[MOST] = {false};
+    const size_t n = 2 + (size_t)uniform(0, MOST - 2);
+    size_t moving = 0;
+    t[0] = uniform(-2, 2);
+    p[0] = random_point(2);
+    for (size_t i = 1; i < n; i++) {
+      t[i] = t[i - 1] + uniform(0.2, 1.5);
+      stop[i - 1] = uniform(0, 1) < 0.4;
+      moving += !stop[i - 1];
+      p[i] = random_point(2);
+      if (stop[i - 1]) p[i] = p[i - 1];
+    }
+    CagCurve *c, *out;
+    OK(cag_curve_polyline_over(p, t, n, 3, &c, &err));
+    OK(cag_curve_without_stops(c, &out, &err));
+    if (moving == 0 || moving == n - 1) {
+      assert_ptr_equal(out, c);
+    } else {
+      assert_true(out->start == t[0]);
+      NEAR(out->end, t[n - 1], 1e-14);
+      // Runs of moving parts, stretched over the stops before them; the last also over those after.
+      double from = t[0];
+      for (size_t i = 0; i + 1 < n;) {
+        if (stop[i]) {
+          i++;
+          continue;
+        }
+        size_t j = i;
+        while (j + 1 < n && !stop[j]) j++;
+        size_t next = j;
+        while (next + 1 < n && stop[next]) next++;
+        const double to = next + 1 < n ? t[j] : t[n - 1];
+        for (int k = 0; k <= 10; k++) {
+          const double x = k / 10.0;
+          near_vec(at(out, fmin(out->end, from + (to - from) * x)),
+                   at(c, fmin(t[n - 1], t[i] + (t[j] - t[i]) * x)), 1e-12);
+        }
+        from = to;
+        i = j;
+      }
+      changed++;
+    }
+    cag_curve_release(out);
+    cag_curve_release(c);
+  }
+  assert_true(changed > 100);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parts_stay_within_their_bounds),
@@ -578,6 +700,8 @@ int main(void) {
       cmocka_unit_test(parts_and_reversals_keep_points_and_derivatives),
       cmocka_unit_test(images_have_the_points_and_derivatives_of_the_map),
       cmocka_unit_test(derivatives_are_the_slopes_of_those_before),
+      cmocka_unit_test(closed_curves_of_all_kinds_go_on_over_the_seam),
+      cmocka_unit_test(stops_are_taken_in_by_what_moves_after_them),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
