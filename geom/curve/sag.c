@@ -30,13 +30,9 @@ static double nurbs_sag(const CagNurbs *c, double a, double b) {
   const size_t i = cag_nurbs_piece(c, a + (b - a) / 2, CAG_SIDE_RIGHT, c->pieces);
   const double length = c->cuts[i + 1] - c->cuts[i];
   double u = fmax(0, (a - c->cuts[i]) / length), v = fmin(1, (b - c->cuts[i]) / length);
-  const double *bezier = cag_nurbs_bezier(c, i);
   double part[4 * (CAG_MAX_DEGREE + 1)];
-  if (u > 0 || v < 1) {
-    cag_bezier_segment(bezier, c->degree, u, v, part);
-    bezier = part;
-  }
-  return bezier_sag(bezier, c->degree, c->rational);
+  cag_bezier_segment(cag_nurbs_bezier(c, i), c->degree, u, v, part);
+  return bezier_sag(part, c->degree, c->rational);
 }
 
 // A kind of which nothing is known but its points: the largest distance found, and half as much
