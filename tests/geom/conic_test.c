@@ -311,6 +311,17 @@ static void a_conic_value_is_its_one_branch(void **state) {
   cag_curve_release(c);
   OK(cag_curve_conic(&hyperbola, &c, &err));
   FAILS(cag_curve_point(c, 0.5, &p, &err), "no-single-curve");
+  // Both branches over -2..2: x = cosh t or -cosh t, y = sinh t.
+  CagBounds box = c->kind->hull(c, 0, 1);
+  near_vec(box.min, cag_vec3(-cosh(2), -sinh(2), 0), 1e-12);
+  near_vec(box.max, cag_vec3(cosh(2), sinh(2), 0), 1e-12);
+  cag_curve_release(c);
+  // The lines y = x and y = -x.
+  const CagConic lines = {{1, 0, -1, 0, 0, 0}};
+  OK(cag_curve_conic(&lines, &c, &err));
+  box = c->kind->hull(c, 0, 1);
+  near_vec(box.min, cag_vec3(-sqrt(2), -sqrt(2), 0), 1e-12);
+  near_vec(box.max, cag_vec3(sqrt(2), sqrt(2), 0), 1e-12);
   cag_curve_release(c);
 }
 
