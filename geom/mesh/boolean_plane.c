@@ -242,27 +242,28 @@ static bool list_sides(Cutter *c, uint32_t root) {
   return true;
 }
 
-// Has a face one normal everywhere?
-static bool is_flat(const CagMesh *m, uint32_t triangle, CagVec3 *normal) {
+// Do two triangles have one normal everywhere?
+static bool share_normal(const CagMesh *m, uint32_t one, uint32_t two) {
   const double same_direction = 1 - 1e-12;
-  const uint32_t *k = m->triangles + 3 * (size_t)triangle;
-  *normal = m->normals ? m->normals[k[0]] : cag_vec3(0, 0, 0);
-  return !m->normals || (cag_dot(*normal, m->normals[k[1]]) >= same_direction &&
-                         cag_dot(*normal, m->normals[k[2]]) >= same_direction);
+  if (!m->normals) return true;
+  const CagVec3 normal = m->normals[m->triangles[3 * (size_t)one]];
+  for (size_t k = 0; k < 3; k++) {
+    const CagVec3 p = m->normals[m->triangles[3 * (size_t)one + k]];
+    const CagVec3 q = m->normals[m->triangles[3 * (size_t)two + k]];
+    if (cag_dot(normal, p) < same_direction || cag_dot(normal, q) < same_direction) return false;
+  }
+  return true;
 }
 
 // Faces to two sides of an edge that have all in common.
 static bool are_one(const BoolWork *w, const Side *one, const Side *two) {
-  const double same_direction = 1 - 1e-12;
   const BoolFace *f = &w->faces[one->face], *g = &w->faces[two->face];
-  CagVec3 n[2];
   if (one->from != two->to || f->owner != g->owner || f->times[0] != g->times[0] ||
       f->times[1] != g->times[1])
     return false;
   const CagMesh *m = w->meshes[f->owner];
   if (m->labels && m->labels[f->triangle] != m->labels[g->triangle]) return false;
-  return is_flat(m, f->triangle, &n[0]) && is_flat(m, g->triangle, &n[1]) &&
-         (!m->normals || cag_dot(n[0], n[1]) >= same_direction);
+  return share_normal(m, f->triangle, g->triangle);
 }
 
 static int by_patch(const void *a, const void *b) {

@@ -612,6 +612,132 @@ static void operands_that_bound_nothing(void **state) {
   cag_mesh_release(b);
 }
 
+// How often the mesh runs the edge from p to q.
+static int runs(const CagMesh *m, CagVec3 p, CagVec3 q, long *triangle) {
+  int count = 0;
+  for (size_t t = 0; t < m->triangle_count; t++)
+    for (size_t k = 0; k < 3; k++) {
+      const CagVec3 a = m->positions[m->triangles[3 * t + k]];
+      const CagVec3 b = m->positions[m->triangles[3 * t + (k + 1) % 3]];
+      if (cag_norm(cag_sub(a, p)) > 0 || cag_norm(cag_sub(b, q)) > 0) continue;
+      count++;
+      if (triangle) *triangle = (long)t;
+    }
+  return count;
+}
+
+// Messages tell an edge and how often it is run, and the triangle has it.
+static void messages_of_open_operands_are_true(void **state) {
+  (void)state;
+  CagMesh *a = cube(0, 0, 0, 9), *m;
+  for (int i = 0; i < 12; i++)
+    for (int twice = 0; twice < 2; twice++) {
+      CagMesh *b = cube(1, 2, 3, 4);
+      uint32_t *t = b->triangles + 3 * i;
+      if (twice) memcpy(t, b->triangles + 3 * ((i + 5) % 12), 3 * sizeof *t); // one more instead
+      else memcpy(t, b->triangles + 3 * --b->triangle_count, 3 * sizeof *t);
+      FAILS_AMONG(cag_mesh_boolean(CAG_UNION, a, b, NULL, &m, &err), "mesh-open", 0, 11);
+      CagVec3 p, q;
+      int ahead, back;
+      const char *at = strstr(err.message, "the edge from");
+      assert_non_null(at);
+      assert_int_equal(sscanf(at,
+                              "the edge from [%lg, %lg, %lg] to [%lg, %lg, %lg] is run %d times "
+                              "that way and %d times back",
+                              &p.x, &p.y, &p.z, &q.x, &q.y, &q.z, &ahead, &back),
+                       8);
+      long first = -1, second = -1;
+      assert_int_equal(ahead, runs(b, p, q, &first));
+      assert_int_equal(back, runs(b, q, p, &second));
+      assert_int_not_equal(ahead, back);
+      const uint32_t *k = b->triangles + 3 * err.index;
+      int ends = 0;
+      for (int j = 0; j < 3; j++)
+        ends += cag_norm(cag_sub(b->positions[k[j]], p)) == 0 ||
+                cag_norm(cag_sub(b->positions[k[j]], q)) == 0;
+      assert_int_equal(ends, 2);
+      cag_mesh_release(b);
+    }
+  cag_mesh_release(a);
+}
+
+static void coordinates_have_limits(void **state) {
+  (void)state;
+  CagMesh *m, *a = cube(0, 0, 0, 1), *b = cube(0, 0, 0, 1e100);
+  NEAR(operated_volume(CAG_UNION, b, b) / 1e300, 1, 1e-14);
+  cag_mesh_release(b);
+  for (int k = 0; k < 6; k++) {
+    b = cube(0, 0, 0, 1);
+    double *p = k % 3 == 0   ? &b->positions[5].x
+                : k % 3 == 1 ? &b->positions[5].y
+                             : &b->positions[5].z;
+    *p = k < 3 ? 1.000001e100 : -1.000001e100;
+    FAILS_AT(cag_mesh_boolean(CAG_UNION, a, b, NULL, &m, &err), "vertex-out-of-range", 5);
+    assert_non_null(strstr(err.message, "vertex 5 of `b`"));
+    const CagMesh *list[2] = {a, b};
+    FAILS_AT(cag_mesh_boolean_many(CAG_UNION, list, 2, NULL, &m, &err), "vertex-out-of-range", 1);
+    assert_non_null(strstr(err.message, "vertex 5 of `meshes[1]`"));
+    cag_mesh_release(b);
+  }
+  cag_mesh_release(a);
+}
+
+// What is thinner than rounding may be inside out, anything else not. The limit, 1e-11 of the
+// largest coordinate times the area, is at a thickness of 1e-10 here.
+static void thin_operands_may_be_turned(void **state) {
+  (void)state;
+  for (int k = 0; k < 4; k++) {
+    static const double thickness[] = {1e-12, 5e-11, 2e-10, 2};
+    CagMesh *m, *plate, *turned_plate, *other = cube(-20, -20, -20, 7);
+    plate = box(cag_vec3(5, 6, 7), cag_vec3(8, 10, 7 + thickness[k]));
+    OK(cag_mesh_flip(plate, &turned_plate, &err));
+    if (k < 2) {
+      OK(cag_mesh_boolean(CAG_UNION, other, turned_plate, NULL, &m, &err));
+      NEAR(volume(m), 343, 1e-8);
+      cag_mesh_release(m);
+    } else {
+      FAILS(cag_mesh_boolean(CAG_UNION, other, turned_plate, NULL, &m, &err), "mesh-inside-out");
+      double told;
+      assert_int_equal(sscanf(strstr(err.message, "its volume"), "its volume is %lg", &told), 1);
+      NEAR(told, -12 * (7 + thickness[k] - 7), 1e-4 * 12 * thickness[k]);
+    }
+    cag_mesh_release(plate);
+    cag_mesh_release(turned_plate);
+    cag_mesh_release(other);
+  }
+}
+
+// Whichever operand of a list is open: it is named, and nothing is lost.
+static void an_open_operand_among_many_is_named(void **state) {
+  (void)state;
+  CagMesh *list[6], *m;
+  for (int i = 0; i < 6; i++) list[i] = cube(0.7 * i, 0, 0, 1);
+  for (size_t n = 1; n <= 6; n++)
+    for (size_t bad = 0; bad < n; bad++)
+      for (int op = 0; op < 3; op++) {
+        list[bad]->triangle_count--;
+        FAILS_AT(cag_mesh_boolean_many((CagSetOperation)op, (const CagMesh *const *)list, n, NULL,
+                                       &m, &err),
+                 "mesh-open", (long)bad);
+        assert_string_equal(err.argument, "meshes");
+        list[bad]->triangle_count++;
+      }
+  // Boxes in a row: unions, what the first has alone, and what all have.
+  for (size_t n = 0; n <= 6; n++)
+    for (int op = 0; op < 3; op++) {
+      const double length = (double)n, all = n ? 1 + 0.7 * (length - 1) : 0;
+      const double expected[3] = {all, n > 1 ? 0.7 : length,
+                                  n == 0 ? 0 : fmax(0, 1 - 0.7 * (length - 1))};
+      OK(cag_mesh_boolean_many((CagSetOperation)op, (const CagMesh *const *)list, n, NULL, &m,
+                               &err));
+      assert_sound(m);
+      if (n == 0) assert_int_equal(m->triangle_count, 0);
+      else NEAR(m->triangle_count ? volume(m) : 0, expected[op], 1e-12);
+      cag_mesh_release(m);
+    }
+  for (int i = 0; i < 6; i++) cag_mesh_release(list[i]);
+}
+
 // --- Exact numbers ---
 
 static void exact_numbers(void **state) {
@@ -742,6 +868,10 @@ int main(void) {
       cmocka_unit_test(many_operands),
       cmocka_unit_test(triangles_without_area_are_no_gap),
       cmocka_unit_test(operands_that_bound_nothing),
+      cmocka_unit_test(messages_of_open_operands_are_true),
+      cmocka_unit_test(coordinates_have_limits),
+      cmocka_unit_test(thin_operands_may_be_turned),
+      cmocka_unit_test(an_open_operand_among_many_is_named),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
