@@ -236,32 +236,36 @@ static void prisms_with_walls_in_common(void **state) {
   }
 }
 
-// Corners in which more planes meet than fix a point.
+// Corners in which more planes meet than fix a point. In every other trial the largest triangles of
+// the walls do not reach the apex.
 static void pyramids_of_one_apex(void **state) {
   (void)state;
   seed = 23;
-  for (int trial = 0; trial < 40; trial++) {
+  for (int trial = 0; trial < 80; trial++) {
     const Motion m = random_motion();
     const uint32_t n = (uint32_t)whole(4, 9);
     const double r = between(1, 4), low = between(0.3, 0.9);
     CagMesh *whole_one = NULL, *part = NULL;
     for (int k = 0; k < 2; k++) { // the apex at height 0, the base at -1 and at -low
-      const double depth = k ? low : 1;
-      CagVec3 v[10];
-      uint32_t faces[40], counts[10];
+      const double depth = k ? low : 1, ring = trial % 2 ? between(0.05, 0.2) : 0;
+      CagVec3 v[19];
+      uint32_t faces[9 * 8], counts[19], face_count = 0, used = 0;
+      const uint32_t apex = ring > 0 ? 2 * n : n, below = ring > 0 ? n : 0;
       for (uint32_t i = 0; i < n; i++) {
         const double a = 2 * PI * i / n;
+        const uint32_t next = (i + 1) % n;
         v[i] = cag_vec3(depth * r * cos(a), depth * r * sin(a), -depth);
-        faces[3 * i] = i;
-        faces[3 * i + 1] = (i + 1) % n;
-        faces[3 * i + 2] = n;
-        counts[i] = 3;
-        faces[3 * n + i] = n - 1 - i;
+        if (ring > 0) v[n + i] = cag_scaled(v[i], ring);
+        const uint32_t wall[4] = {i, next, n + next, n + i};
+        const uint32_t top[3] = {below + i, below + next, apex};
+        if (ring > 0) memcpy(faces + used, wall, sizeof wall), used += 4, counts[face_count++] = 4;
+        memcpy(faces + used, top, sizeof top), used += 3, counts[face_count++] = 3;
       }
-      v[n] = cag_vec3(0, 0, 0);
-      counts[n] = n;
+      for (uint32_t i = 0; i < n; i++) faces[used++] = n - 1 - i;
+      counts[face_count++] = n;
+      v[apex] = cag_vec3(0, 0, 0);
       CagMesh **out = k ? &part : &whole_one;
-      OK(cag_mesh_from_faces(v, n + 1, faces, counts, n + 1, out, &err));
+      OK(cag_mesh_from_faces(v, apex + 1, faces, counts, face_count, out, &err));
       *out = placed(*out, cag_vec3(1, 2, 3), &m);
     }
     // The frustum: base and top, and the walls without their upper parts.
