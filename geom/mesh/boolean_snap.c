@@ -251,7 +251,7 @@ static void choose_point(const Snap *s, const uint32_t *faces, size_t n, const u
     for (int k = 0; k < 3; k++) {
       const uint32_t v = s->w->faces[faces[i]].v[k];
       const int free = count[v] <= 3;
-      const double far = *chosen ? spread(s->w, points, *chosen, v) : 2 * least;
+      const double far = *chosen ? spread(s->w, points, *chosen, v) : INFINITY;
       if (far > best[free]) best[free] = far, next[free] = v;
       if (!*chosen && next[0] != BOOL_NONE) break;
     }
