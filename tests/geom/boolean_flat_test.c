@@ -152,8 +152,69 @@ static void boxes_of_a_grid_take_as_few_triangles_as_they_need(void **state) {
   assert_true(checked > 150);
 }
 
+// A plate whose top is divided among two materials along a line of short steps. Each point is off
+// the line of its neighbors by less than rounding; but where the line is bent as a whole all of its
+// points stay, and where it is straight all go.
+static void lines_between_materials_stay_where_they_are_bent(void **state) {
+  (void)state;
+  enum { STEPS = 40 };
+  static const double BENDS[3] = {0, 2e-11, 1e-3}; // of the whole line
+  for (int k = 0; k < 3; k++)
+    for (int axis = 0; axis < 3; axis++) {
+      // The outline of the top: its corners and the ends of the line; the points of the line.
+      CagVec3 v[8 + STEPS - 1];
+      uint32_t faces[24 + 2 * (STEPS + 3)], counts[7], n = 0;
+      const double at[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                               {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+      // The line runs from corner 4 to corner 6, bent away from the diagonal.
+      for (int i = 0; i < 8 + STEPS - 1; i++) {
+        const double t = (double)(i - 7) / STEPS, off = BENDS[k] * 4 * t * (1 - t);
+        const double p[3] = {i < 8 ? at[i][0] : t + off, i < 8 ? at[i][1] : t - off,
+                             i < 8 ? at[i][2] : 1};
+        v[i] = cag_vec3(p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]);
+      }
+      static const uint32_t SIDES[5][4] = {
+          {0, 3, 2, 1}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+      memcpy(faces, SIDES, sizeof SIDES);
+      n = 20;
+      for (int half = 0; half < 2; half++) {
+        faces[n++] = half ? 6 : 4;
+        faces[n++] = half ? 7 : 5;
+        faces[n++] = half ? 4 : 6;
+        for (uint32_t i = 0; i < STEPS - 1; i++) faces[n++] = half ? 8 + i : 8 + STEPS - 2 - i;
+      }
+      for (int i = 0; i < 7; i++) counts[i] = i < 5 ? 4 : STEPS + 2;
+      CagMesh *plate, *other, *m;
+      OK(cag_mesh_from_faces(v, 8 + STEPS - 1, faces, counts, 7, &plate, &err));
+      plate->labels = malloc(plate->triangle_count * sizeof *plate->labels);
+      for (uint32_t t = 0; t < plate->triangle_count; t++) plate->labels[t] = 1 + (t >= 10 + STEPS);
+      other = box_with_normals(cag_vec3(0.4, -3, 0.4), cag_vec3(0.6, -2, 0.6));
+      OK(cag_mesh_boolean(CAG_UNION, plate, other, NULL, &m, &err));
+      assert_int_equal(m->triangle_count, k ? plate->triangle_count + 12 : 24);
+      assert_int_equal(plate->triangle_count, 10 + 2 * STEPS);
+      double area[3] = {0, 0, 0};
+      for (size_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *c = m->triangles + 3 * t;
+        const CagVec3 o = m->positions[c[0]];
+        area[m->labels[t]] +=
+            cag_norm(cag_cross(cag_sub(m->positions[c[1]], o), cag_sub(m->positions[c[2]], o))) / 2;
+      }
+      double half = 0.5; // as in the polygon of the points
+      for (int i = 0; i < STEPS; i++) {
+        const double s = (double)i / STEPS, t = (double)(i + 1) / STEPS;
+        half -= BENDS[k] * 4 * (s * (1 - s) + t * (1 - t)) / STEPS;
+      }
+      NEAR(area[2], 1 - half, 1e-11);
+      NEAR(area[1], 5 + half, 1e-11);
+      cag_mesh_release(m);
+      cag_mesh_release(plate);
+      cag_mesh_release(other);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(lines_between_materials_stay_where_they_are_bent),
       cmocka_unit_test(boxes_of_a_grid_take_as_few_triangles_as_they_need),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
