@@ -15,8 +15,11 @@ static CagVec3 cell_point(const CagDistanceCells *c, double u, double v) {
 static void check_cell(const CagDistanceCells *c, const CagDistanceCell *cell, const char *what) {
   const double rounding = 1e-12 * c->size * c->size;
   const bool tube = c->swept.tube;
-  for (int k = 0; k < 9; k++) {
-    const double x = k < 8 ? between(0, 1) : 0.5, y = k < 8 ? between(0, 1) : 0.5;
+  // Anywhere, in the middle, and at the corners, where tangents are lowest.
+  for (int k = 0; k < 17; k++) {
+    const int corner = k - 13;
+    const double x = k < 12 ? between(0, 1) : k == 12 ? 0.5 : corner & 1;
+    const double y = k < 12 ? between(0, 1) : k == 12 ? 0.5 : corner >> 1;
     const double u = cell->u[0] + x * (cell->u[1] - cell->u[0]);
     const double v = cell->v[0] + y * (cell->v[1] - cell->v[0]);
     const CagVec3 r = cag_sub(cell_point(c, u, v), c->p);
@@ -204,6 +207,15 @@ static CagSurface *swept(bool round, bool plain, bool tilted) {
                              .twist = {0, plain ? 0 : 1.2, NULL},
                              .scale = {1, plain ? 1 : 0.6, NULL}};
   MUST(cag_curve_arc(0.9, round ? 0.9 : 0.4, 0, 2 * M_PI, &frame, &section, err));
+  if (tilted) { // over large and small parameters, too
+    CagCurve *timed;
+    MUST(cag_curve_reparametrize(path, 30, 1030, &timed, err));
+    cag_curve_release(path);
+    path = timed;
+    MUST(cag_curve_reparametrize(section, 1, 1.01, &timed, err));
+    cag_curve_release(section);
+    section = timed;
+  }
   MUST(cag_motion_along(path, &how, &motion, err));
   MUST(cag_surface_sweep(section, motion, &s, err));
   cag_motion_release(motion);

@@ -61,7 +61,7 @@ static Zeros some_zeros(int kind) {
   case 1: return (Zeros){"small loop", tiny, 1, 1, 2 * M_PI * small, false};
   case 2: {
     // The tip of a circle about a place beyond an edge, by so much.
-    const double tip = pow(10, uniform(-4, -1.5)), wide = uniform(0.05, 0.3), far = tip - wide;
+    const double tip = pow(10, uniform(-6, -2)), wide = uniform(0.05, 0.3), far = tip - wide;
     const int edge = (int)uniform(0, 4);
     const double cx = edge == 0 ? far : edge == 1 ? 1 - far : x;
     const double cy = edge == 2 ? far : edge == 3 ? 1 - far : y;
