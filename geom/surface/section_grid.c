@@ -303,7 +303,7 @@ static bool negative(double f) { return f < 0; }
 // Illinois variant), which keeps it bracketed.
 void cag_tracer_crossing(CagTracer *t, double u0, double v0, double f0, double u1, double v1,
                          double f1, CagTraceNode *out) {
-  double a = 0, b = 1, fa = f0, fb = f1, x = f0 == 0 ? 0 : f1 == 0 ? 1 : f0 / (f0 - f1);
+  double a = 0, b = 1, fa = f0, fb = f1, x = f0 / (f0 - f1);
   for (int round = 0; f0 != 0 && f1 != 0 && round < ROOT_ROUNDS && b - a > DBL_EPSILON; round++) {
     x = a + (b - a) * fa / (fa - fb);
     if (!(x > a && x < b)) x = (a + b) / 2;

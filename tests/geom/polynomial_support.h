@@ -47,7 +47,8 @@ static inline double value(const Polynomial *p, double x, double y) {
   return out;
 }
 
-// Over the unit square, with u = x per[0] and v = y per[1], and moved.
+// Over the unit square, with u = x per[0] and v = y per[1], from 0 or, where these are not 1, from
+// below; and moved.
 static inline CagSurface *graph(const Polynomial *p, const double per[2],
                                 const CagTransform *move) {
   CagVec3 net[SIDE * SIDE];
@@ -62,7 +63,8 @@ static inline CagSurface *graph(const Polynomial *p, const double per[2],
       net[k * SIDE + l] = cag_vec3((double)k / DEGREE, (double)l / DEGREE, z);
     }
   for (int d = 0; d < 2; d++)
-    for (int i = 0; i < 2 * SIDE; i++) knots[d][i] = i < SIDE ? 0 : per[d];
+    for (int i = 0; i < 2 * SIDE; i++)
+      knots[d][i] = (i < SIDE ? 0 : per[d]) - (per[d] == 1 ? 0 : 0.3 * per[d]);
   OK(cag_surface_nurbs(net, NULL, SIDE, SIDE, DEGREE, DEGREE, knots[0], knots[1], &s, &err));
   OK(cag_surface_transform(s, move, &moved, &err));
   cag_surface_release(s);

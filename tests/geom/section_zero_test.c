@@ -46,7 +46,7 @@ static double hyperbola_length(double x0, double y0, double e) {
   return length;
 }
 
-enum { KINDS = 11 };
+enum { KINDS = 12 };
 
 static Zeros some_zeros(int kind) {
   const double x = uniform(0.25, 0.75), y = uniform(0.25, 0.75), slope = uniform(-0.9, 0.9);
@@ -80,6 +80,8 @@ static Zeros some_zeros(int kind) {
     const Polynomial saddle = product(&a, &b);
     return (Zeros){"hyperbola", sum(&saddle, &one, -e), 2, 0, hyperbola_length(x, y, e), false};
   }
+  case 11: // through nodes of the grid that is traced
+    return (Zeros){"middle line", line_x(0.25 * floor(uniform(1, 4))), 1, 0, 1, false};
   case 8: return (Zeros){"none", sum(&loop, &one, 0.2), 0, 0, 0, false};
   case 9: {
     const Polynomial beside = circle(x > 0.5 ? x - 0.21 : x + 0.21, y, small);
