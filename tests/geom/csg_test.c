@@ -115,6 +115,74 @@ static void bounds_of_differences_that_keep_their_sides(void **state) {
   cag_solid_release(s);
 }
 
+static double *side_of_box(CagBounds *b, int axis, bool upper) {
+  CagVec3 *corner = upper ? &b->max : &b->min;
+  return axis == 0 ? &corner->x : axis == 1 ? &corner->y : &corner->z;
+}
+
+// Each of the six sides of a ball: a slab takes a cap away, a rod leaves the extreme on two sides
+// and takes them on four, a distant box takes nothing, and a half space cuts.
+static void each_side_of_a_difference_is_cut_alone(void **state) {
+  (void)state;
+  const CagVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int axis = 0; axis < 3; axis++)
+    for (int upper = 0; upper < 2; upper++) {
+      const CagVec3 way = cag_scaled(axes[axis], upper ? 1 : -1);
+      const CagVec3 middle = cag_vec3(10, -20, 30);
+      const struct {
+        double shift, size, cut;
+      } cases[] = {{6.2, 10, 1.2}, {0, 0, 3}, {14, 10, 3}, {9, 10, 3}};
+      for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        CagSolid *tool, *s;
+        CagBounds b, expected = {cag_vec3(7, -23, 27), cag_vec3(13, -17, 33)};
+        if (cases[i].size > 0) {
+          const double z = cases[i].size;
+          OK(cag_solid_box(cag_vec3(z, z, z), true, &tool, &err));
+          const CagVec3 at = cag_madd(middle, cases[i].shift, way);
+          tool = moved(tool, at.x, at.y, at.z);
+        } else {
+          // Between the poles: a small ball on the surface.
+          const CagVec3 slant = cag_add(way, cag_scaled(axes[(axis + 1) % 3], 1));
+          const CagVec3 at = cag_madd(middle, 3, cag_unit(slant));
+          tool = moved(sphere(0.5), at.x, at.y, at.z);
+        }
+        *side_of_box(&expected, axis, upper) += (cases[i].cut - 3) * (upper ? 1 : -1);
+        s = combined(CAG_DIFFERENCE, moved(sphere(3), 10, -20, 30), tool);
+        OK(cag_solid_bounds(s, &b, &err));
+        // Sides that the cut leaves are exact.
+        near_vec(b.min, expected.min, 1e-9);
+        near_vec(b.max, expected.max, 1e-9);
+        cag_solid_release(s);
+      }
+      // The reach of a half space that is square to an axis.
+      CagBounds reach;
+      CagSolid *s = side_of(cag_madd(middle, 2, way), cag_scaled(way, 7));
+      OK(cag_solid_reach(s, &reach, &err));
+      const double at = cag_dot(cag_madd(middle, 2, way), axes[axis]);
+      for (int k = 0; k < 3; k++)
+        for (int end = 0; end < 2; end++) {
+          const double found = *side_of_box(&reach, k, end);
+          if (k == axis && end == upper) NEAR(found, at, 1e-12);
+          else assert_true(isinf(found) && (found > 0) == (end == 1));
+        }
+      if (upper) {
+        s = combined(CAG_INTERSECTION, moved(sphere(3), 10, -20, 30), s);
+        OK(cag_solid_bounds(s, &reach, &err));
+        NEAR(*side_of_box(&reach, axis, true), at, 1e-9);
+        NEAR(*side_of_box(&reach, axis, false), cag_dot(middle, axes[axis]) - 3, 1e-9);
+      }
+      cag_solid_release(s);
+    }
+  // Two operands of which nothing is left.
+  CagBounds b;
+  CagSolid *none[2];
+  for (int i = 0; i < 2; i++)
+    none[i] = combined(CAG_INTERSECTION, sphere(1), moved(sphere(1), 0, 5 + i, 0));
+  CagSolid *s = combined(CAG_UNION, moved(none[0], 1, 0, 0), moved(none[1], 2, 0, 0));
+  FAILS(cag_csg_bounds(s, &b, &err), "empty-shape");
+  cag_solid_release(s);
+}
+
 static CagStatus no_leaf(void *context, const CagSolid *leaf, CagVec3 p, int *side, CagError *e) {
   (void)context;
   (void)e;
@@ -408,12 +476,189 @@ static void operations_hold_what_their_equations_say(void **state) {
   assert_true(held > 1000);
 }
 
+// --- Meshes of random trees ---
+
+// A tree within a box that is turned, as the last model.
+static const Model *random_body(int depth) {
+  Model box = {.kind = 0}, top = {.kind = 12};
+  models.n = 0;
+  const int tree = random_model(depth), other = models.n;
+  box.a = between(1.5, 2.5), box.b = between(1.5, 2.5), box.c = between(1.5, 2.5);
+  CagSolid *made = primitive(&box);
+  const CagTransform place = random_placement();
+  OK(cag_transform_inverse(&place, &box.back, &err));
+  OK(cag_solid_transform(made, &place, &box.solid, &err));
+  cag_solid_release(made);
+  models.at[models.n++] = box;
+  top.parts[0] = tree, top.parts[1] = other;
+  top.back = cag_transform_identity();
+  CagSolid *two[2] = {models.at[tree].solid, box.solid};
+  OK(cag_solid_combine(CAG_INTERSECTION, two, 2, NULL, &top.solid, &err));
+  models.at[models.n++] = top;
+  return &models.at[models.n - 1];
+}
+
+static void meshes_of_operations_end_where_their_equations_say(void **state) {
+  (void)state;
+  seed = 67;
+  enum { N = 12 };
+  size_t held = 0;
+  for (int k = 0; k < 30; k++) {
+    const Model *top = random_body(k % 3);
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    CagMesh *m;
+    CagMassProperties mass;
+    double terms[10] = {0};
+    how.tolerance = 2e-2;
+    OK(cag_csg_mesh(top->solid, &how, &m, &err));
+    assert_true(m->triangle_count == 0 || cag_mesh_is_watertight(m, NULL));
+    // Forms of hyperboloids are values, not distances.
+    for (size_t i = 0; i < m->vertex_count; i++)
+      NEAR(model_value(top, m->positions[i]), 0, 1e-6 + 8 * how.tolerance);
+    cag_mesh_volume_terms(m, terms);
+    double sum = 0;
+    CagVec3 low = cag_vec3(INFINITY, INFINITY, INFINITY), high = cag_scaled(low, -1);
+    const double step = 6.0 / N;
+    for (int i = 0; i < N * N * N; i++) {
+      const double jitter[3] = {between(0, 1), between(0, 1), between(0, 1)};
+      const CagVec3 p =
+          cag_vec3(-3 + (i % N + jitter[0]) * step, -3 + (i / N % N + jitter[1]) * step,
+                   -3 + (i / N / N + jitter[2]) * step);
+      if (!(model_value(top, p) < 0)) continue;
+      sum += step * step * step;
+      low = cag_vec3(fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z));
+      high = cag_vec3(fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z));
+      held++;
+    }
+    // By strata of 0.375: the error's deviation is at most that of the cells at the boundary.
+    const double slack =
+        4 * sqrt(6 * pow(cbrt(sum) + step, 2) / (step * step) + 1) * pow(step, 3) / 2;
+    NEAR(terms[0], sum, slack);
+    OK(cag_csg_mass(top->solid, how.tolerance, &mass, &err));
+    NEAR(mass.volume, terms[0], 1e-9);
+    NEAR(mass.area, cag_mesh_area(m), 1e-9);
+    const CagBounds b = cag_mesh_bounds(m);
+    const double room = 1e-2;
+    if (sum > 0) {
+      assert_true(low.x > b.min.x - room && low.y > b.min.y - room && low.z > b.min.z - room);
+      assert_true(high.x < b.max.x + room && high.y < b.max.y + room && high.z < b.max.z + room);
+    }
+    cag_mesh_release(m);
+    for (int i = 0; i < models.n; i++) cag_solid_release(models.at[i].solid);
+  }
+  assert_true(held > 300);
+}
+
+// A mesh of a copy that is scaled is that of the original at the tolerance of its scale.
+static void tolerances_scale_with_copies(void **state) {
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    const double factor = k == 0 ? 8 : k == 1 ? 0.25 : 1;
+    CagTransform scale;
+    CagSolid *a = combined(CAG_DIFFERENCE, sphere(3), box(9)),
+             *b = combined(CAG_DIFFERENCE, sphere(3), box(9)), *copy;
+    CagMesh *m, *n;
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    OK(cag_scale(cag_vec3(factor, factor, factor), cag_vec3(0, 0, 0), &scale, &err));
+    OK(cag_solid_transform(b, &scale, &copy, &err));
+    how.tolerance = 2e-2;
+    if (k == 2) how.max_edge = 0.9;
+    OK(cag_csg_mesh(a, &how, &m, &err));
+    how.tolerance *= factor;
+    OK(cag_csg_mesh(copy, &how, &n, &err));
+    assert_int_equal(m->triangle_count, n->triangle_count);
+    NEAR(cag_mesh_area(n) / cag_mesh_area(m), factor * factor, 1e-9 * factor * factor);
+    cag_mesh_release(m);
+    cag_mesh_release(n);
+    cag_solid_release(copy);
+    // A stretched copy keeps the tolerance: points of its mesh lie on the ellipsoid or in the
+    // planes.
+    OK(cag_scale(cag_vec3(factor, 1, 2), cag_vec3(0, 0, 0), &scale, &err));
+    OK(cag_solid_transform(b, &scale, &copy, &err));
+    const double longest = 1.5 * fmax(1, factor);
+    how.max_edge = longest;
+    how.tolerance = 3e-2 * fmax(1, factor);
+    OK(cag_csg_mesh(copy, &how, &n, &err));
+    for (size_t i = 0; i < n->triangle_count; i++) {
+      const uint32_t *t = n->triangles + 3 * i;
+      CagVec3 middle = {0, 0, 0};
+      for (int j = 0; j < 3; j++) {
+        const CagVec3 p = n->positions[t[j]], q = n->positions[t[(j + 1) % 3]];
+        assert_true(cag_norm(cag_sub(p, q)) <= longest * (1 + 1e-9));
+        middle = cag_madd(middle, 1.0 / 3, p);
+      }
+      const CagVec3 back = cag_vec3(middle.x / factor, middle.y, middle.z / 2);
+      const double flat = fmin(fabs(middle.x), fmin(fabs(middle.y), fabs(middle.z)));
+      const double stretch = fmax(2, factor);
+      if (flat > 1e-9) NEAR(3 - cag_norm(back), 0, how.tolerance * stretch);
+    }
+    cag_mesh_release(n);
+    cag_solid_release(copy);
+    cag_solid_release(a);
+    cag_solid_release(b);
+  }
+}
+
+// Planes turned at random bound a body, although the bounds of none of them tell it; without one of
+// them it is endless.
+static void half_spaces_may_bound_a_body(void **state) {
+  (void)state;
+  seed = 68;
+  for (int k = 0; k < 12; k++) {
+    const CagVec3 n[4] = {{1, 0, -0.5}, {-0.6, 0.9, -0.4}, {-0.5, -0.8, -0.6}, {0.1, 0.1, 1}};
+    const CagTransform place = random_placement();
+    const double size = pow(10, between(-3, 3));
+    CagTransform grow;
+    CagSolid *parts[4], *s, *moved_too, *scaled;
+    CagMassProperties m;
+    CagBounds b;
+    const size_t count = k % 4 == 3 ? 3 : 4;
+    OK(cag_scale(cag_vec3(size, size, size), cag_vec3(0, 0, 0), &grow, &err));
+    for (int i = 0; i < 4; i++) parts[i] = side_of(cag_scaled(cag_unit(n[i]), 1), n[i]);
+    OK(cag_solid_combine(CAG_INTERSECTION, parts, count, NULL, &s, &err));
+    OK(cag_solid_transform(s, &place, &moved_too, &err));
+    OK(cag_solid_transform(moved_too, &grow, &scaled, &err));
+    if (count < 4) {
+      FAILS(cag_csg_bounds(scaled, &b, &err), "solid-unbounded");
+      bool empty;
+      OK(cag_solid_is_empty(scaled, &empty, &err));
+      assert_false(empty);
+    } else {
+      // The corners by Cramer's rule, and the volume of the tetrahedron.
+      CagVec3 corner[4];
+      CagBounds box = CAG_BOUNDS_EMPTY;
+      for (int i = 0; i < 4; i++) {
+        const CagVec3 p = cag_unit(n[(i + 1) % 4]), q = cag_unit(n[(i + 2) % 4]),
+                      r = cag_unit(n[(i + 3) % 4]);
+        const CagVec3 sum = cag_add(cag_cross(p, q), cag_add(cag_cross(q, r), cag_cross(r, p)));
+        corner[i] = cag_scaled(sum, 1 / cag_dot(p, cag_cross(q, r)));
+        const CagVec3 at = cag_transform_point(&grow, cag_transform_point(&place, corner[i]));
+        cag_bounds_add(&box, at);
+      }
+      const double volume_of =
+          fabs(cag_dot(cag_sub(corner[1], corner[0]),
+                       cag_cross(cag_sub(corner[2], corner[0]), cag_sub(corner[3], corner[0])))) /
+          6;
+      OK(cag_csg_mass(scaled, 0, &m, &err));
+      NEAR(m.volume / (volume_of * size * size * size), 1, 1e-9);
+      OK(cag_csg_bounds(scaled, &b, &err));
+      near_vec(cag_scaled(b.min, 1 / size), cag_scaled(box.min, 1 / size), 1e-8);
+      near_vec(cag_scaled(b.max, 1 / size), cag_scaled(box.max, 1 / size), 1e-8);
+    }
+    for (int i = 0; i < 4; i++) cag_solid_release(parts[i]);
+    cag_solid_release(s);
+    cag_solid_release(moved_too);
+    cag_solid_release(scaled);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(operations_of_one_kind_are_one),
       cmocka_unit_test(moved_operations_share_their_mesh),
       cmocka_unit_test(reach_of_sides),
       cmocka_unit_test(bounds_of_differences_that_keep_their_sides),
+      cmocka_unit_test(each_side_of_a_difference_is_cut_alone),
       cmocka_unit_test(boundaries_belong_to_both_sides),
       cmocka_unit_test(meshes_enclose_when_they_are_closed),
       cmocka_unit_test(what_is_empty_or_endless_says_so),
@@ -421,6 +666,9 @@ int main(void) {
       cmocka_unit_test(clipped_surfaces_end_on_the_solid),
       cmocka_unit_test(clipped_curves_end_on_the_solid),
       cmocka_unit_test(operations_hold_what_their_equations_say),
+      cmocka_unit_test(meshes_of_operations_end_where_their_equations_say),
+      cmocka_unit_test(tolerances_scale_with_copies),
+      cmocka_unit_test(half_spaces_may_bound_a_body),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
