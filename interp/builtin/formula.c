@@ -129,7 +129,7 @@ static const char *name_end(const char *s, const char *end) {
 typedef struct Parser {
   CagCall *call;
   const CagText *text;
-  const char *at, *end;
+  const char *at, *end; // the text has no zero before its end, and one there
   const CagList *names;
   CagString out; // the expression of the language
   int depth;
@@ -151,13 +151,15 @@ static bool fail_here(Parser *p, const char *place, const char *format, ...) {
 
 static void write_text(Parser *p, const char *s) { cag_string_add(&p->out, s, strlen(s)); }
 
+static bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 static void skip_blank(Parser *p) {
-  while (p->at < p->end && cag_is_space(*p->at)) p->at++;
+  while (cag_is_space(*p->at)) p->at++;
 }
 
 static char peek(Parser *p) {
   skip_blank(p);
-  return p->at < p->end ? *p->at : 0;
+  return *p->at;
 }
 
 static bool take(Parser *p, char c) {
@@ -174,13 +176,13 @@ static bool parse_signed(Parser *p);
 static bool parse_number(Parser *p) {
   const char *from = p->at;
   double x;
-  while (p->at < p->end && ((*p->at >= '0' && *p->at <= '9') || *p->at == '.')) p->at++;
+  while (is_digit(*p->at) || *p->at == '.') p->at++;
   const char *e = p->at;
-  if (e < p->end && (*e == 'e' || *e == 'E')) {
+  if (*e == 'e' || *e == 'E') {
     e++;
-    if (e < p->end && (*e == '+' || *e == '-')) e++;
-    if (e < p->end && *e >= '0' && *e <= '9') {
-      while (e < p->end && *e >= '0' && *e <= '9') e++;
+    if (*e == '+' || *e == '-') e++;
+    if (is_digit(*e)) {
+      while (is_digit(*e)) e++;
       p->at = e;
     }
   }
@@ -249,7 +251,7 @@ static bool parse_name(Parser *p) {
 
 static bool parse_primary(Parser *p) {
   char c = peek(p);
-  if ((c >= '0' && c <= '9') || c == '.') return parse_number(p);
+  if (is_digit(c) || c == '.') return parse_number(p);
   if (c == '(') {
     p->at++;
     write_text(p, "(");
@@ -267,8 +269,7 @@ static bool parse_primary(Parser *p) {
 static bool parse_power(Parser *p) {
   if (!parse_primary(p)) return false;
   skip_blank(p);
-  if (p->end - p->at >= 2 && p->at[0] == '*' && p->at[1] == '*')
-    return fail_here(p, p->at, "write ^ for a power");
+  if (p->at[0] == '*' && p->at[1] == '*') return fail_here(p, p->at, "write ^ for a power");
   if (!take(p, '^')) return true;
   write_text(p, "^");
   return parse_signed(p);
@@ -310,7 +311,7 @@ static bool parse_formula(Parser *p) {
   if (!parse_sum(p)) return false;
   char c = peek(p);
   if (c == 0) return true;
-  bool factor = c == '(' || (c >= '0' && c <= '9') || name_end(p->at, p->end) > p->at;
+  bool factor = c == '(' || is_digit(c) || name_end(p->at, p->end) > p->at;
   if (factor) return fail_here(p, p->at, "expected an operator: write * between factors");
   if (c == '=') return fail_here(p, p->at, "a formula is one expression, without `=`");
   return fail_here(p, p->at, "expected an operator, found `%.*s`", (int)cag_character_size(p->at),
