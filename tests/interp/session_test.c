@@ -369,6 +369,73 @@ static void frames_tell_the_time(void **state) {
   cag_session_free(s);
 }
 
+// Params set to what they cannot be: the message, and what is suggested.
+static void definitions_that_do_not_fit_are_refused(void **state) {
+  (void)state;
+  static const struct {
+    const char *script, *name, *value, *code, *message, *help; // code NULL: taken
+  } rows[] = {
+      {"param width = 1\nparam height = 2\nx = 3", "widht", "1", "E0247",
+       "test has no param `widht`", "did you mean `width`?"},
+      {"param width = 1\nparam height = 2\nx = 3", "hight", "1", "E0247",
+       "test has no param `hight`", "did you mean `height`?"},
+      {"param width = 1\nheight = 2", "height", "1", "E0247", "test has no param `height`", NULL},
+      {"x = 3", "tim", "1", "E0247", "test has no param `tim`", "did you mean `time`?"},
+      {"x = 3", "framme", "1", "E0247", "test has no param `framme`", "did you mean `frame`?"},
+      {"x = 3", "framess", "1", "E0247", "test has no param `framess`", "did you mean `frames`?"},
+      {"param a = 1", "a", "1 2", NULL, NULL, NULL},
+      {"param a = 1", "a", "\"x\"", "E0248",
+       "the param `a` is a number, but -D gives the text \"x\"", NULL},
+      {"param a = 1", "a", "3deg", "E0248",
+       "the param `a` is a number, but -D gives the angle 3deg", NULL},
+      {"param a = 1deg", "a", "30", "E0248",
+       "the param `a` is an angle, but -D gives the number 30", "-D a=30deg"},
+      {"param a = 1deg\nassert a == 0.25turn", "a", "90deg", "", NULL, NULL},
+      {"param a = [1]\nassert len(a) == 3", "a", "1..3", "", NULL, NULL},
+      {"param a = 1..3", "a", "[1]", "E0248", "the param `a` is a range, but -D gives the list [1]",
+       NULL},
+      {"param a = none\nassert a == 4", "a", "4", "", NULL, NULL},
+      {"param a = (x => x)\nassert a(4) == 2", "a", "sqrt", "", NULL, NULL},
+      {"param a = sqrt\nassert a(4) == 8", "a", "x => 2*x", "", NULL, NULL},
+      {"param a = \"\"\nassert a == \"b c\"", "a", "b c", "", NULL, NULL},
+      {"param a = \"\"\nassert a == \"b c\"", "a", "\"b c\"", "", NULL, NULL},
+      {"param a = \"\"\nassert len(a) == 1", "a", "\"", "", NULL, NULL},
+      {"param a = \"x\"\nassert a == \"\"", "a", "\"\"", "", NULL, NULL},
+      {"param a = \"\"\nassert a == \"b\\\"\"", "a", "b\"", "", NULL, NULL},
+      {"param a = 2 in 1..3", "a", "4", "E0249", "the param `a`: 4 is not in 1..3", NULL},
+      {"param a = 2 in 1..3\nassert a == 3", "a", "3", "", NULL, NULL},
+      {"param a = 2 in [2, 5]", "a", "3", "E0249", "the param `a`: 3 is not in [2, 5]", NULL},
+      {"param a = 4 in 1..3", "a", "2", "E0250", "the default of the param `a`: 4 is not in 1..3",
+       NULL},
+      {"param a = \"x\" in [\"x\", \"y\"]", "a", "z", "E0249",
+       "the param `a`: \"z\" is not in [\"x\", \"y\"]", NULL},
+      {"x = 1", "time", "\"a\"", "E0248", "-D time wants a number", NULL},
+      {"assert time == 0.5 and frame == 0 and frames == 1", "time", "1/2", "", NULL, NULL},
+      {"assert frame == 7 and time == 0", "frame", "7", "", NULL, NULL},
+      {"param time = 3\nassert time == 4 and frame == 0", "time", "4", "", NULL, NULL},
+      {"param a = 1\nb = 2", "a", "b", "E0201", NULL, NULL},
+  };
+  size_t bad = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    CagSession *s = new_session();
+    cag_session_define(s, rows[i].name, rows[i].value);
+    const int status = run_text(s, rows[i].script);
+    const bool good = status == CAG_STATUS_OK, expected = rows[i].code && !*rows[i].code;
+    CagErrorView e = {0};
+    if (!good) cag_session_error(s, 0, &e);
+    if (good != expected || (rows[i].code && *rows[i].code && strcmp(e.code, rows[i].code) != 0) ||
+        (rows[i].message && strcmp(e.message, rows[i].message) != 0) ||
+        (rows[i].message && (rows[i].help != NULL) != (e.help != NULL)) ||
+        (rows[i].help && strcmp(e.help, rows[i].help) != 0)) {
+      print_error("%s, -D %s=%s: %s %s (%s)\n", rows[i].script, rows[i].name, rows[i].value,
+                  good ? "taken" : e.code, good ? "" : e.message, e.help ? e.help : "");
+      bad++;
+    }
+    cag_session_free(s);
+  }
+  assert_int_equal(bad, 0);
+}
+
 static void definitions_from_outside_stay_until_they_are_cleared(void **state) {
   (void)state;
   CagSession *s = new_session();
@@ -612,6 +679,7 @@ int main(void) {
       cmocka_unit_test(errors_tell_where_they_begin_and_end),
       cmocka_unit_test(modules_are_looked_for_in_each_folder),
       cmocka_unit_test(frames_tell_the_time),
+      cmocka_unit_test(definitions_that_do_not_fit_are_refused),
       cmocka_unit_test(definitions_from_outside_stay_until_they_are_cleared),
       cmocka_unit_test(what_is_shown_is_named_and_counted),
       cmocka_unit_test(scenes_without_shapes_are_errors),
