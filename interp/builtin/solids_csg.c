@@ -205,13 +205,12 @@ static bool is_of_regions(CagCall *call) {
   return false;
 }
 
-static bool call_of_regions(CagCall *call, const char *name, CagValue *result, bool *done) {
-  size_t index = cag_builtin_find(name), count;
-  size_t row = cag_builtin_select(index, CAG_REGION, call->count);
-  *done = row != (size_t)-1;
-  if (!*done) return true;
+static bool call_of_regions(CagCall *call, const char *name, CagValue *result) {
+  const size_t index = cag_builtin_find(name);
+  size_t count;
   CagCall regions = *call;
-  regions.builtin = &cag_builtin_rows(index, &count)[row];
+  regions.builtin =
+      &cag_builtin_rows(index, &count)[cag_builtin_select(index, CAG_REGION, call->count)];
   return regions.builtin->function(&regions, result);
 }
 
@@ -221,10 +220,7 @@ static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValu
   Operands o;
   CagError err;
   CagSolid *made = NULL;
-  bool done = false;
-  if (is_of_regions(call)) {
-    if (!call_of_regions(call, name, result, &done) || done) return done;
-  }
+  if (is_of_regions(call)) return call_of_regions(call, name, result);
   if (!cag_arg_several(call, 0, &items, &n)) return false;
   if (n == 0)
     return cag_fail_call(call, -1, CAG_ERR_csg_operand, "expects solids, found an empty list");
