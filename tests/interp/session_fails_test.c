@@ -66,6 +66,62 @@ static void options_that_a_picture_cannot_have(void **state) {
   }
 }
 
+// Regions that touch the edges of the picture are let through: what fails is the missing renderer.
+static void regions_up_to_the_edges_are_good(void **state) {
+  (void)state;
+  static const CagRenderRegion regions[] = {
+      {0, 0, 64, 48}, {63, 47, 1, 1}, {0, 47, 64, 1}, {1, 0, 63, 48}, {0, 0, 0, 9}};
+  static const char *const paths[] = {"/dev/null/a.png", "/dev/null/a.PNG", "/dev/null/a.exr",
+                                      "/dev/null/a.b.EXR", NULL};
+  static const char *const qualities[] = {"draft", "normal", "final", NULL};
+  static const char *const csg[] = {"auto", "native", "mesh", NULL};
+  char *path = strdup(getenv("PATH"));
+  setenv("PATH", "/nowhere", 1);
+  for (size_t i = 0; i < sizeof regions / sizeof *regions; i++) {
+    CagSession *s =
+        run(csg[i % 4], "show sphere(1), camera([9, 9, 9], size: [64, 48])\n", CAG_STATUS_OK);
+    CagRenderOptions o;
+    cag_render_options_init(&o);
+    o.quality = qualities[i % 4];
+    o.region = regions[i];
+    const char *to = paths[i % 4];
+    is_refused(s, cag_session_render(s, &o, to), CAG_STATUS_RENDERER, "renderer");
+  }
+  setenv("PATH", path, 1);
+  free(path);
+}
+
+// A camera that is not there: the nearest name of many, or what there is.
+static void cameras_are_suggested(void **state) {
+  (void)state;
+  for (int n = 1; n < 150; n = 2 * n + 5) {
+    char text[200];
+    snprintf(text, sizeof text,
+             "show sphere(1), [for i in 0..<%d: named(camera([9, 9, 9]), \"place{i}\")]\n", n);
+    static const struct {
+      const char *name, *help;
+    } cases[] = {{"plac0", "did you mean `place0`?"},
+                 {"fron", "did you mean `front`?"},
+                 {"tpo", "did you mean `top`?"},
+                 {"zzzzzz", "the scene has `place0`, and always top, bottom, front, back, left, "
+                            "right and iso"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+      // Of more cameras than are compared the standard views are not looked at.
+      if (n > 57 && (i == 1 || i == 2)) continue;
+      CagSession *s = run(NULL, text, CAG_STATUS_OK);
+      CagRenderOptions o;
+      CagErrorView e = {0};
+      cag_render_options_init(&o);
+      o.camera = cases[i].name;
+      assert_int_equal(cag_session_render(s, &o, "/dev/null/a.png"), CAG_STATUS_USAGE);
+      cag_session_error(s, 0, &e);
+      if (!e.help || strcmp(e.help, cases[i].help) != 0)
+        fail_msg("%s of %d: %s", cases[i].name, n, e.help ? e.help : "no help");
+      cag_session_free(s);
+    }
+  }
+}
+
 static void formats_that_a_session_cannot_write(void **state) {
   (void)state;
   static const struct {
@@ -108,6 +164,8 @@ static void statuses_tell_what_kind_of_failure_it_was(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(options_that_a_picture_cannot_have),
+      cmocka_unit_test(regions_up_to_the_edges_are_good),
+      cmocka_unit_test(cameras_are_suggested),
       cmocka_unit_test(formats_that_a_session_cannot_write),
       cmocka_unit_test(statuses_tell_what_kind_of_failure_it_was),
   };
