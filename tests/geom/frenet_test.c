@@ -2,6 +2,7 @@
 
 #include "geom/curve/frenet.h"
 #include "geom/curve/function.h"
+#include "random.h"
 #include "support.h"
 
 // The curve (t, t^2, t^3) at t: derivatives 1..3.
@@ -219,6 +220,170 @@ static void pieces_and_ends(void **state) {
   cag_curve_release(c);
 }
 
+// --- Powers ---
+
+enum { DEGREE = 6 };
+
+static double binomial(int n, int k) {
+  double b = 1;
+  for (int i = 1; i <= k; i++) b = b * (n - k + i) / i;
+  return b;
+}
+
+// Bernstein coefficients of f s^power with s = low + (high - low) t.
+static void power_coefficients(double f, int power, double low, double high, double *out) {
+  for (int i = 0; i <= DEGREE; i++) {
+    double sum = 0;
+    for (int j = 0; j <= i && j <= power; j++) // of t^j
+      sum += binomial(i, j) / binomial(DEGREE, j) * binomial(power, j) * pow(low, power - j) *
+             pow(high - low, j);
+    out[i] = f * sum;
+  }
+}
+
+// (f[0] s^power[0], ...) in the axes of the frame, over s in [low, high].
+static CagCurve *powers(const double f[3], const int power[3], double low, double high,
+                        const CagTransform *frame) {
+  double x[3][DEGREE + 1];
+  CagVec3 p[DEGREE + 1];
+  CagCurve *c, *scaled;
+  for (int k = 0; k < 3; k++) power_coefficients(f[k], power[k], low, high, x[k]);
+  for (int i = 0; i <= DEGREE; i++)
+    p[i] = cag_transform_point(frame, cag_vec3(x[0][i], x[1][i], x[2][i]));
+  OK(cag_curve_bezier(p, NULL, DEGREE + 1, 3, &c, &err));
+  OK(cag_curve_reparametrize(c, low, high, &scaled, &err));
+  cag_curve_release(c);
+  return scaled;
+}
+
+// With u = s^m, (a u, b u^2, c u^3) has the curvature 2 b / a^2 and the torsion 3 c / (a b).
+static void frames_of_powers_have_their_limits(void **state) {
+  (void)state;
+  seed = 501;
+  int cusps = 0, twisted = 0, straight = 0;
+  for (int m = 1; m <= 3; m++)
+    for (int n = m + 1; n <= 5; n++)
+      for (int q = n + 1; q <= 6; q++)
+        for (int where = 0; where < (m < 3 ? 3 : 1); where++) { // at the start, inside, at the end
+          const CagTransform frame = cag_rpy(0.7 * n, 0.3 * m, 0.9 * q + where);
+          const double a = uniform(0.5, 2), b = uniform(0.5, 2), c = uniform(0.5, 2);
+          const double f[3] = {a, b, c};
+          const int power[3] = {m, n, q};
+          CagCurve *curve = powers(f, power, where == 0 ? 0 : -1, where == 2 ? 0 : 1, &frame);
+          const CagVec3 x = cag_transform_vector(&frame, cag_vec3(1, 0, 0)),
+                        y = cag_transform_vector(&frame, cag_vec3(0, 1, 0)),
+                        z = cag_transform_vector(&frame, cag_vec3(0, 0, 1));
+          // Backwards along an even power, coming from the left.
+          const double sense = where == 2 && m % 2 == 0 ? -1 : 1;
+          CagVec3 tangent;
+          OK(cag_curve_tangent(curve, 0, where == 2 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, &tangent,
+                               &err));
+          near_vec(tangent, cag_scaled(x, sense), 1e-9);
+          CagFrenet frenet;
+          if (n < 2 * m) {
+            FAILS(cag_curve_frenet(curve, 0, &frenet, &err), "curvature-undefined");
+            cusps++;
+          } else if (n == 2 * m && q < 3 * m) {
+            FAILS(cag_curve_frenet(curve, 0, &frenet, &err), "torsion-undefined");
+          } else {
+            OK(cag_curve_frenet(curve, 0, &frenet, &err));
+            near_vec(frenet.tangent, cag_scaled(x, sense), 1e-9);
+            const bool bent = n == 2 * m;
+            assert_int_equal(frenet.has_normal, bent);
+            NEAR(frenet.curvature, bent ? 2 * b / (a * a) : 0, 1e-8);
+            if (bent) {
+              near_vec(frenet.normal, y, 1e-8);
+              near_vec(frenet.binormal, cag_scaled(z, sense), 1e-8);
+              NEAR(frenet.torsion, q == 3 * m ? 3 * c / (a * b) : 0, 1e-7);
+              twisted += q == 3 * m;
+            } else {
+              straight++;
+            }
+          }
+          // Contact with the planes of two axes each.
+          const CagVec3 normals[3] = {x, y, z};
+          for (int k = 0; k < 3; k++) {
+            const int sign = (m + n + q + k) % 2 ? -1 : 1;
+            CagContact contact;
+            OK(cag_curve_contact(curve, 0, cag_scaled(normals[k], 3 * sign), &contact, &err));
+            assert_int_equal(contact.order, power[k] - 1);
+            assert_int_equal(contact.after, sign);
+            assert_int_equal(contact.before, power[k] % 2 ? -sign : sign);
+            for (int d = 1; d <= 3; d++) NEAR(contact.c[d], power[k] == d ? sign * f[k] : 0, 1e-9);
+          }
+          cag_curve_release(curve);
+        }
+  assert_true(cusps >= 10 && twisted >= 6 && straight >= 15);
+}
+
+// Where two powers are joined the looser contact counts, and each side has its own sign.
+static void contact_at_a_joint_is_the_looser_of_both(void **state) {
+  (void)state;
+  const CagTransform frame = cag_transform_identity();
+  for (int left = 2; left <= 4; left++)
+    for (int right = 2; right <= 4; right++)
+      for (int flip = 0; flip < 3; flip++) {
+        // flip 2: the left side is a line.
+        const double f[3] = {1, flip == 2 ? 0 : 2, 0}, g[3] = {1, flip ? -1 : 1, 0};
+        const int p[3] = {1, left, 1}, q[3] = {1, right, 1};
+        CagCurve *parts[2] = {powers(f, p, -1, 0, &frame), powers(g, q, 0, 1, &frame)}, *c, *r;
+        CagContact k;
+        OK(cag_curve_join(parts, 2, &c, &err));
+        const double joint = c->start + (c->end - c->start) / 2;
+        OK(cag_curve_contact(c, joint, cag_vec3(0, 1, 0), &k, &err));
+        const int order = flip == 2 || right < left ? right - 1 : left - 1;
+        assert_int_equal(k.order, order);
+        assert_int_equal(k.after, flip ? -1 : 1);
+        assert_int_equal(k.before, flip == 2 ? 0 : left % 2 ? -1 : 1);
+        OK(cag_curve_reverse(c, &r, &err)); // the sides trade places
+        OK(cag_curve_contact(r, joint, cag_vec3(0, 1, 0), &k, &err));
+        assert_int_equal(k.order, order);
+        assert_int_equal(k.before, flip ? -1 : 1);
+        assert_int_equal(k.after, flip == 2 ? 0 : left % 2 ? -1 : 1);
+        cag_curve_release(r);
+        cag_curve_release(c);
+        for (int i = 0; i < 2; i++) cag_curve_release(parts[i]);
+      }
+}
+
+// At regular points by projections, and the torsion by the determinant of three derivatives.
+static void random_frames_are_those_of_the_derivatives(void **state) {
+  (void)state;
+  seed = 502;
+  for (int round = 0; round < 200; round++) {
+    CagVec3 p[6], d[4];
+    double w[6];
+    for (int i = 0; i < 6; i++) {
+      p[i].x = uniform(-3, 3);
+      p[i].y = uniform(-3, 3);
+      p[i].z = round % 2 ? uniform(-3, 3) : 0;
+      w[i] = uniform(0.5, 2);
+    }
+    CagCurve *c;
+    OK(cag_curve_bezier(p, round % 3 ? w : NULL, 6, round % 2 ? 3 : 2, &c, &err));
+    const double t = round % 20 == 0 ? 0 : round % 20 == 1 ? 1 : uniform(0, 1);
+    CagFrenet f;
+    OK(cag_curve_eval(c, t, 3, t >= 1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, &err));
+    OK(cag_curve_frenet(c, t, &f, &err));
+    const CagVec3 tangent = cag_unit(d[1]), side = cag_madd(d[2], -cag_dot(d[2], tangent), tangent);
+    const double speed = cag_norm(d[1]), bend = cag_norm(side) / (speed * speed);
+    if (speed < 0.2 || bend < 1e-3) {
+      cag_curve_release(c);
+      continue;
+    }
+    assert_true(f.has_normal);
+    near_vec(f.point, d[0], 0);
+    near_vec(f.tangent, tangent, 1e-13);
+    near_vec(f.normal, cag_unit(side), 1e-10);
+    near_vec(f.binormal, cag_cross(tangent, cag_unit(side)), 1e-10);
+    NEAR(f.curvature, bend, 1e-11 * (1 + bend));
+    const double area = pow(speed, 6) * bend * bend;
+    const double twist = cag_dot(cag_cross(d[1], d[2]), d[3]) / area;
+    NEAR(f.torsion, round % 2 ? twist : 0, 1e-9 * (1 + fabs(twist)));
+    cag_curve_release(c);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_twisted_cubic_has_its_curvature_and_torsion),
@@ -229,6 +394,9 @@ int main(void) {
       cmocka_unit_test(a_cusp_is_singular_and_nothing_else),
       cmocka_unit_test(waves_are_straight_at_their_zeros_and_flat_where_they_twist_back),
       cmocka_unit_test(pieces_and_ends),
+      cmocka_unit_test(frames_of_powers_have_their_limits),
+      cmocka_unit_test(contact_at_a_joint_is_the_looser_of_both),
+      cmocka_unit_test(random_frames_are_those_of_the_derivatives),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
