@@ -39,7 +39,8 @@ typedef struct Case {
 
 static Case some_case(int kind) {
   const double x0 = uniform(0.25, 0.75), y0 = uniform(0.25, 0.75), r = uniform(0.12, 0.22),
-               slope = uniform(-0.6, 0.6);
+               slope = uniform(-0.6, 0.6), gap = pow(10, uniform(-5, -3));
+  const Polynomial one = {{{1}}};
   const Polynomial a = line_x(x0), b = line_y(y0), c = slanted(x0, y0, slope),
                    d = circle(x0, y0, r), cc = product(&c, &c), aa = product(&a, &a),
                    bb = product(&b, &b);
@@ -54,12 +55,13 @@ static Case some_case(int kind) {
   case 4: return (Case){"point", sum(&aa, &bb, 1), {{0}}, 0, true};
   case 5: return (Case){"two lines", product(&a, &b), {along_a, along_b}, 2, false};
   case 6: return (Case){"line", c, {along_c}, 1, false};
+  case 9: return (Case){"just apart", sum(&aa, &one, gap), {{0}}, 0, false};
   case 7: return (Case){"apart", {{{1}}}, {{0}}, 0, false};
   default: return (Case){"same", {{{0}}}, {{0}}, -1, false};
   }
 }
 
-enum { KINDS = 9 };
+enum { KINDS = 10 };
 
 static void check_curves(const CagCurveList *list, const Polynomial *f, const Case *is,
                          const CagTransform *back, double near, int round) {
