@@ -157,7 +157,8 @@ static void polynomials_are_exact(void **state) {
   seed = 11;
   for (int round = 0; round < 150; round++) {
     const size_t degree = (size_t)(1 + round % 3);
-    const double size = pow(10, uniform(-3, 4)), z = round % 2 ? size : 0;
+    const double power = uniform(-3, 4), size = pow(10, round % 10 == 9 ? power + 10 : power);
+    const double z = round % 2 ? size : 0;
     CagVec3 p[4];
     for (size_t i = 0; i <= degree; i++) p[i] = random_point(size, z);
     if (degree == 3 && round % 4 == 2) { // a straight line that is evenly run, and its like
