@@ -351,6 +351,91 @@ static void developables_join_parallel_tangents(void **state) {
   }
 }
 
+// The angle with tan t = k tan s, k > 0, in the quadrant and turn of s.
+static double parallel_angle(double k, double s) {
+  const double turn = M_PI * round(s / M_PI);
+  return turn + atan(k * tan(s - turn));
+}
+
+// The same for whole ellipses that start at any angle: the seam of the second is passed.
+static void developables_of_closed_curves_go_round(void **state) {
+  (void)state;
+  seed = 72;
+  for (int round = 0; round < 12; round++) {
+    double size[4], starts[2];
+    for (int i = 0; i < 4; i++) size[i] = uniform(0.8, 2.5);
+    for (int i = 0; i < 2; i++) starts[i] = uniform(-3, 3);
+    const double k = size[3] * size[0] / (size[2] * size[1]);
+    CagVec3 low = {0, 1, -1}, high = {0, 1, 2};
+    high.x += uniform(-2, 2);
+    high.y += uniform(-2, 2);
+    CagCurve *a = elliptic_arc(size[0], size[1], starts[0], starts[0] + 2 * M_PI, low);
+    CagCurve *b = elliptic_arc(size[2], size[3], starts[1], starts[1] + 2 * M_PI, high);
+    CagSurface *s;
+    MUST(cag_surface_developable(a, b, &s, err));
+    for (int i = 0; i <= 20; i++) {
+      const double v = s->v0 + (s->v1 - s->v0) * i / 20, at = starts[0] + 2 * M_PI * i / 20;
+      const CagVec3 first = on_ellipse(size[0], size[1], at, low);
+      const CagVec3 second = on_ellipse(size[2], size[3], parallel_angle(k, at), high);
+      assert_point(surface_at(s, 1, v), first, 1e-9, "first");
+      assert_point(surface_at(s, 0, v), second, 1e-9, "second");
+      assert_point(surface_at(s, 0.3, v), cag_lerp(second, first, 0.3), 1e-9, "between");
+    }
+    if (round == 0) assert_consistent(s);
+    cag_surface_release(s);
+    cag_curve_release(a);
+    cag_curve_release(b);
+  }
+}
+
+// Rulings of an elliptic cylinder between two sections by planes, over all angles that both have.
+static void developables_of_oblique_sections_are_cylinders(void **state) {
+  (void)state;
+  seed = 73;
+  for (int round = 0; round < 12; round++) {
+    double ends[4], tilt[4];
+    for (int i = 0; i < 4; i++) ends[i] = i % 2 ? uniform(0.5, 3) : uniform(-3, -0.5);
+    for (int i = 0; i < 4; i++) tilt[i] = uniform(-0.4, 0.4);
+    const double half[2] = {1.5, 0.8};
+    CagCurve *c[2];
+    for (int i = 0; i < 2; i++) {
+      CagTransform frame = cag_transform_identity();
+      frame.planar = false;
+      frame.m[2][0] = tilt[2 * i];
+      frame.m[2][1] = tilt[2 * i + 1];
+      frame.m[2][3] = i ? 4 : 0;
+      CagCurve *flat =
+          elliptic_arc(half[0], half[1], ends[2 * i], ends[2 * i + 1], cag_vec3(0, 0, 0));
+      MUST(cag_curve_transform(flat, &frame, &c[i], err));
+      cag_curve_release(flat);
+    }
+    CagSurface *s;
+    MUST(cag_surface_developable(c[0], c[1], &s, err));
+    const double from = fmax(ends[0], ends[2]), to = fmin(ends[1], ends[3]);
+    for (int i = 0; i <= 12; i++) {
+      const double v = s->v0 + (s->v1 - s->v0) * i / 12, at = from + (to - from) * i / 12;
+      for (int k = 0; k < 2; k++) {
+        CagVec3 p = on_ellipse(half[0], half[1], at, cag_vec3(0, 0, 0));
+        p.z = (k ? 4 : 0) + tilt[2 * k] * p.x + tilt[2 * k + 1] * p.y;
+        assert_point(surface_at(s, k ? 0 : 1, v), p, 1e-9, "section");
+      }
+      CagVec3 n;
+      const CagVec3 out = cag_unit(cag_vec3(cos(at) / half[0], sin(at) / half[1], 0));
+      MUST(cag_surface_normal(s, 0.4, v, &n, err));
+      assert_near(fabs(cag_dot(n, out)), 1, 1e-9, "normal");
+    }
+    cag_surface_release(s);
+    // A curve and itself, and skew lines, have none.
+    MUST_FAIL(cag_surface_developable(c[0], c[0], &s, err), "no-rulings");
+    for (int i = 0; i < 2; i++) cag_curve_release(c[i]);
+    const double way = uniform(0.3, 2.8);
+    MUST(cag_curve_line(cag_vec3(0, 0, 0), cag_vec3(1, 0, 0), 3, &c[0], err));
+    MUST(cag_curve_line(cag_vec3(0, 0, 1), cag_vec3(cos(way), sin(way), 1), 3, &c[1], err));
+    MUST_FAIL(cag_surface_developable(c[0], c[1], &s, err), "no-rulings");
+    for (int i = 0; i < 2; i++) cag_curve_release(c[i]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(coons_of_example_12),
@@ -359,6 +444,8 @@ int main(void) {
       cmocka_unit_test(composite_surface_uniform),
       cmocka_unit_test(composite_surface_nonuniform),
       cmocka_unit_test(developables_join_parallel_tangents),
+      cmocka_unit_test(developables_of_closed_curves_go_round),
+      cmocka_unit_test(developables_of_oblique_sections_are_cylinders),
       cmocka_unit_test(bezier_triangles_of_the_reference),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
