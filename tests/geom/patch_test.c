@@ -57,6 +57,56 @@ static void coons_of_example_12(void **state) {
   cag_curve_release(d);
 }
 
+// Sides whose parameters do not run from 0 to 1: two parts of cubics, and lines between their ends.
+static void coons_patches_blend_sides_of_any_range(void **state) {
+  (void)state;
+  seed = 70;
+  for (int round = 0; round < 6; round++) {
+    CagCurve *side[4];
+    CagVec3 corner[2][2], e[4];
+    for (int k = 0; k < 2; k++) {
+      CagVec3 p[4];
+      CagCurve *whole;
+      for (int i = 0; i < 4; i++) {
+        const double y = uniform(-0.3, 0.3), z = uniform(-1, 1);
+        p[i] = cag_vec3(3 * k + z / 3, i + y, z);
+      }
+      MUST(cag_curve_bezier(p, NULL, 4, 3, &whole, err));
+      const double from = uniform(0.1, 0.3), to = uniform(0.6, 0.9);
+      MUST(cag_curve_trim(whole, from, to, &side[k], err));
+      cag_curve_release(whole);
+      MUST(cag_curve_point(side[k], side[k]->start, &corner[k][0], err));
+      MUST(cag_curve_point(side[k], side[k]->end, &corner[k][1], err));
+    }
+    for (int m = 0; m < 2; m++) {
+      const CagVec3 way = cag_sub(corner[1][m], corner[0][m]);
+      const CagVec3 ends[2] = {cag_madd(corner[0][m], -1, way), cag_madd(corner[1][m], 2, way)};
+      CagCurve *line;
+      MUST(cag_curve_bezier(ends, NULL, 2, 3, &line, err));
+      MUST(cag_curve_trim(line, 0.25, 0.5, &side[2 + m], err));
+      cag_curve_release(line);
+    }
+    CagSurface *s;
+    MUST(cag_surface_coons(side[0], side[1], side[2], side[3], &s, err));
+    for (int i = 0; i <= 4; i++)
+      for (int j = 0; j <= 4; j++) {
+        const double u = i / 4.0, v = j / 4.0;
+        for (int k = 0; k < 4; k++) {
+          const CagCurve *c = side[k];
+          const double f = k < 2 ? v : u;
+          MUST(cag_curve_point(c, (1 - f) * c->start + f * c->end, &e[k], err));
+        }
+        const CagVec3 across = cag_lerp(e[0], e[1], u), along = cag_lerp(e[2], e[3], v);
+        const CagVec3 flat = cag_lerp(cag_lerp(corner[0][0], corner[1][0], u),
+                                      cag_lerp(corner[0][1], corner[1][1], u), v);
+        assert_point(surface_at(s, u, v), cag_sub(cag_add(across, along), flat), 1e-12, "blend");
+      }
+    assert_consistent(s);
+    cag_surface_release(s);
+    for (int k = 0; k < 4; k++) cag_curve_release(side[k]);
+  }
+}
+
 static CagSurface *bicubic(const CagVec3 p[4], const CagVec3 pu[4], const CagVec3 pv[4],
                            const CagVec3 puv[4]) {
   CagHermiteCorners c;
@@ -439,6 +489,7 @@ static void developables_of_oblique_sections_are_cylinders(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(coons_of_example_12),
+      cmocka_unit_test(coons_patches_blend_sides_of_any_range),
       cmocka_unit_test(bicubic_patches_of_the_reference),
       cmocka_unit_test(adini_twists_keep_bilinear_patches),
       cmocka_unit_test(composite_surface_uniform),
