@@ -192,7 +192,7 @@ static void flat_faces(void **state) {
 static void curved_faces(void **state) {
   (void)state;
   seed = 72;
-  for (int k = 0; k < 96; k++) {
+  for (int k = 0; k < 60; k++) {
     CagSolid *a, *b;
     const int place = k % 3;
     const double grown = place == 1 ? 1 + 4e-3 : 1, lift = place == 2 ? 1.3 : uniform(0.2, 0.6);
@@ -286,7 +286,7 @@ static void limits_of_coincidence(void **state) {
   (void)state;
   seed = 74;
   upright = true;
-  for (int k = 0; k < 60; k++) {
+  for (int k = 0; k < 28; k++) {
     const bool general = k % 2;
     const CagVec3 o = cag_vec3(0, 0, 0), up = cag_vec3(0, 0, 1);
     const double factor = general ? 1.25 : 0.8;
@@ -322,7 +322,7 @@ static void limits_of_coincidence(void **state) {
 static void sides_of_forms(void **state) {
   (void)state;
   seed = 75;
-  for (int k = 0; k < 64; k++) {
+  for (int k = 0; k < 40; k++) {
     const bool general = k % 2;
     double c[10], d[10];
     const double sense = k % 4 < 2 ? 1 : -1, scale = uniform(0.1, 5);
