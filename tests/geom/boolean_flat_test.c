@@ -1,5 +1,5 @@
-// Flat faces of set operations: they take as few triangles as their outlines need, and keep their
-// normals.
+// What set operations make of faces: flat ones take as few triangles as their outlines need,
+// normals are those of the operands, and parts that touch have vertices of their own.
 
 #include "geom/linalg/transform.h"
 #include "geom/mesh/boolean.h"
@@ -212,9 +212,178 @@ static void lines_between_materials_stay_where_they_are_bent(void **state) {
     }
 }
 
+// --- Bodies that touch themselves ---
+
+// The boundaries around a point of the cells of one part of a block, the part drawn in a little:
+// one more than the holes that the others leave it. The others hang together over sides and edges.
+static int boundaries(const bool part[8]) {
+  int group[8], count = 0;
+  for (int i = 0; i < 8; i++) group[i] = i;
+  for (int round = 0; round < 8; round++)
+    for (int i = 0; i < 8; i++)
+      for (int k = 0; k < 8; k++) {
+        const int bits = i ^ k, apart = (bits & 1) + (bits >> 1 & 1) + (bits >> 2);
+        if (!part[i] && !part[k] && apart <= 2 && group[k] < group[i]) group[i] = group[k];
+      }
+  for (int i = 0; i < 8; i++) count += !part[i] && group[i] == i;
+  return count;
+}
+
+// The Euler characteristic of the surface of the cells, where cells that have an edge or a corner
+// in common, but no side, are apart.
+static long euler_of_cells(Cells g) {
+  long euler = 0;
+  for (int x = 0; x + 1 < ROW; x++)
+    for (int y = 0; y + 1 < ROW; y++)
+      for (int z = 0; z + 1 < ROW; z++) {
+        bool block[8];
+        int group[8];
+        for (int i = 0; i < 8; i++) block[i] = g[x + (i & 1)][y + (i >> 1 & 1)][z + (i >> 2)];
+        for (int i = 0; i < 8; i++) group[i] = i;
+        for (int round = 0; round < 8; round++)
+          for (int i = 0; i < 8; i++)
+            for (int bit = 1; bit < 8; bit *= 2)
+              if (block[i] && block[i ^ bit] && group[i ^ bit] < group[i])
+                group[i] = group[i ^ bit];
+        for (int i = 0; i < 8; i++) {
+          bool part[8];
+          if (!block[i] || group[i] != i) continue;
+          for (int k = 0; k < 8; k++) part[k] = block[k] && group[k] == i;
+          euler += boundaries(part);
+        }
+        for (int bit = 1; bit < 8; bit *= 2) euler += block[7] != block[7 ^ bit];
+        for (int bit = 1; bit < 8; bit *= 2) { // of four cells around an edge
+          const int a = bit == 1 ? 2 : 1, b = bit == 4 ? 2 : 4;
+          const bool four[4] = {block[7], block[7 ^ a], block[7 ^ a ^ b], block[7 ^ b]};
+          int changes = 0;
+          for (int k = 0; k < 4; k++) changes += four[k] != four[(k + 1) % 4];
+          euler -= changes / 2;
+        }
+      }
+  return euler;
+}
+
+static void touching_cells_have_vertices_of_their_own(void **state) {
+  (void)state;
+  seed = 42;
+  for (int trial = 0; trial < 40; trial++) {
+    Cells g = {{{false}}};
+    const CagMesh *cubes[27];
+    size_t n = 0;
+    CagMesh *m, *whole = box_with_normals(cag_vec3(1, 1, 1), cag_vec3(4, 4, 4));
+    const int often = 2 + trial % 3;
+    for (int i = 0; i < 27; i++) {
+      const int x = i % 3 + 1, y = i / 3 % 3 + 1, z = i / 9 + 1;
+      if (random_int(often) > 0) continue;
+      g[x][y][z] = true;
+      cubes[n++] = box_with_normals(cag_vec3(x, y, z), cag_vec3(x + 1, y + 1, z + 1));
+    }
+    for (int rest = 0; rest < 2 && n > 0; rest++) {
+      const CagMesh *list[28] = {whole};
+      memcpy(list + 1, cubes, n * sizeof *cubes);
+      if (rest) OK(cag_mesh_boolean_many(CAG_DIFFERENCE, list, n + 1, NULL, &m, &err));
+      else OK(cag_mesh_boolean_many(CAG_UNION, cubes, n, NULL, &m, &err));
+      CagVec3 gap[2];
+      double terms[10];
+      assert_true(n == 27 || cag_mesh_is_watertight(m, gap));
+      cag_mesh_volume_terms(m, terms);
+      NEAR(terms[0], rest ? 27.0 - (double)n : (double)n, 1e-11);
+      for (int i = 0; rest && i < 27; i++) {
+        bool *cell = &g[i % 3 + 1][i / 3 % 3 + 1][i / 9 + 1];
+        *cell = !*cell;
+      }
+      assert_int_equal(cag_mesh_euler_characteristic(m), euler_of_cells(g));
+      check_flat_normals(m);
+      cag_mesh_release(m);
+    }
+    for (size_t i = 0; i < n; i++) cag_mesh_release((CagMesh *)cubes[i]);
+    cag_mesh_release(whole);
+  }
+}
+
+// --- Normals of curved faces ---
+
+static double random_number(void) { return random_int(1 << 30) / (double)(1 << 30) * 2 - 1; }
+static CagVec3 random_vector(void) {
+  const double x = random_number(), y = random_number();
+  return cag_vec3(x, y, random_number());
+}
+
+// A tetrahedron whose corners have normals of their own in each face, or none.
+static CagMesh *random_tetrahedron(bool normals) {
+  static const uint32_t out[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+  CagVec3 v[4];
+  double size;
+  do {
+    for (int k = 0; k < 4; k++) v[k] = random_vector();
+    size = cag_dot(cag_sub(v[1], v[0]), cag_cross(cag_sub(v[2], v[0]), cag_sub(v[3], v[0])));
+  } while (size < 0.5);
+  CagMesh *m;
+  OK(cag_mesh_new(12, 4, normals, false, false, &m, &err));
+  for (uint32_t i = 0; i < 12; i++) {
+    const uint32_t *k = out + i / 3 * 3;
+    const CagVec3 n = cag_unit(cag_cross(cag_sub(v[k[1]], v[k[0]]), cag_sub(v[k[2]], v[k[0]])));
+    m->positions[i] = v[out[i]];
+    m->triangles[i] = i;
+    if (normals) m->normals[i] = cag_unit(cag_madd(n, 0.5, random_vector()));
+  }
+  return m;
+}
+
+// Whether a triangle of m, turned or not, has the point with this normal, interpolated between its
+// corners, in the plane of a triangle with the normal `flat`.
+static bool has_normal(const CagMesh *m, bool turned, CagVec3 p, CagVec3 normal, CagVec3 flat) {
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    const CagVec3 *v = m->positions;
+    const CagVec3 n = cag_cross(cag_sub(v[k[1]], v[k[0]]), cag_sub(v[k[2]], v[k[0]]));
+    CagVec3 sum = {0, 0, 0};
+    bool inside = fabs(cag_dot(cag_unit(n), cag_sub(p, v[k[0]]))) < 1e-9 &&
+                  (turned ? -1 : 1) * cag_dot(cag_unit(n), flat) > 1 - 1e-9;
+    for (int i = 0; i < 3 && inside; i++) {
+      const CagVec3 a = cag_sub(v[k[(i + 1) % 3]], p), b = cag_sub(v[k[(i + 2) % 3]], p);
+      const double part = cag_dot(n, cag_cross(a, b)) / cag_dot(n, n);
+      inside = part > -1e-9;
+      sum = cag_madd(sum, part, m->normals ? m->normals[k[i]] : n);
+    }
+    if (!inside) continue;
+    if (cag_norm(cag_sub(cag_scaled(cag_unit(sum), turned ? -1 : 1), normal)) < 1e-7) return true;
+  }
+  return false;
+}
+
+static void normals_are_interpolated(void **state) {
+  (void)state;
+  seed = 43;
+  size_t checked = 0;
+  for (int trial = 0; trial < 60; trial++) {
+    CagMesh *a = random_tetrahedron(trial % 3 != 1), *b = random_tetrahedron(trial % 3 != 2);
+    for (int op = 0; op < 3; op++) {
+      CagMesh *m;
+      OK(cag_mesh_boolean((CagSetOperation)op, a, b, NULL, &m, &err));
+      for (size_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *k = m->triangles + 3 * t;
+        const CagVec3 *v = m->positions;
+        const CagVec3 flat = cag_cross(cag_sub(v[k[1]], v[k[0]]), cag_sub(v[k[2]], v[k[0]]));
+        if (cag_norm(flat) < 1e-6) continue; // its plane is not to be told
+        for (int i = 0; i < 3; i++, checked++)
+          assert_true(
+              has_normal(a, false, v[k[i]], m->normals[k[i]], cag_unit(flat)) ||
+              has_normal(b, op == CAG_DIFFERENCE, v[k[i]], m->normals[k[i]], cag_unit(flat)));
+      }
+      cag_mesh_release(m);
+    }
+    cag_mesh_release(a);
+    cag_mesh_release(b);
+  }
+  assert_true(checked > 3000);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lines_between_materials_stay_where_they_are_bent),
+      cmocka_unit_test(touching_cells_have_vertices_of_their_own),
+      cmocka_unit_test(normals_are_interpolated),
       cmocka_unit_test(boxes_of_a_grid_take_as_few_triangles_as_they_need),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
