@@ -238,8 +238,155 @@ static void closed_surfaces_are_turned_outward(void **state) {
   }
 }
 
+// Twelve triangles with three vertices each, all turned in, and a quadrilateral that is open; one
+// more triangle has two corners in one place, which is no part of any. Everything a mesh has goes
+// along.
+static void all_arrays_go_along(void **state) {
+  (void)state;
+  static Draft d;
+  for (int round = 0; round < 30; round++) {
+    memset(&d, 0, sizeof d);
+    add_box(&d, cag_vec3(0, 0, 0), cag_vec3(1, 2, 3), round % 2 == 0, round % 3 == 0);
+    add_box(&d, cag_vec3(5, 0, 0), cag_vec3(7, 2, 3), true, false);
+    d.face_count -= 5; // a side of the second box alone
+    d.index_count -= 20;
+    CagMesh *plain = mesh_of(&d), *m, *out;
+    const size_t n = plain->triangle_count;
+    OK(cag_mesh_new(3 * n + 3, n + 1, true, true, true, &m, &err));
+    m->labels = malloc((n + 1) * sizeof *m->labels);
+    m->scale = (CagColorScale){CAG_SCALE_STRIPES, -1, 2, 7};
+    for (uint32_t v = 0; v < 3 * n + 3; v++) {
+      const uint32_t of = v < 3 * n ? plain->triangles[v] : plain->triangles[v == 3 * n];
+      m->positions[v] = plain->positions[of];
+      m->normals[v] = cag_unit(cag_vec3(random_unit(), random_unit() - 0.5, 1));
+      m->uv[2 * v] = random_unit();
+      m->uv[2 * v + 1] = random_unit();
+      m->triangles[v] = m->weld[v] = v;
+      for (uint32_t k = v; k-- > 0;)
+        if (memcmp(&m->positions[k], &m->positions[v], sizeof(CagVec3)) == 0) m->weld[v] = k;
+    }
+    for (size_t t = 0; t <= n; t++) m->labels[t] = (uint32_t)(100 * random_unit());
+    size_t open = 0, turned_count = 0;
+    OK(cag_mesh_open_edges(m, &open, &err));
+    assert_int_equal(open, 4);
+    OK(cag_mesh_outward(m, &out, &err));
+    assert_int_equal(out->triangle_count, n + 1);
+    assert_memory_equal(out->labels, m->labels, (n + 1) * sizeof *m->labels);
+    if (out != m) assert_memory_equal(&out->scale, &m->scale, sizeof m->scale);
+    for (size_t t = 0; t <= n; t++) {
+      const uint32_t *a = m->triangles + 3 * t, *b = out->triangles + 3 * t;
+      const CagVec3 *p = m->positions;
+      // Triangles of the box look away from its middle; the others stay as they are.
+      const CagVec3 normal = cag_cross(cag_sub(p[a[1]], p[a[0]]), cag_sub(p[a[2]], p[a[0]]));
+      const bool turned = t < 12 && cag_dot(normal, cag_sub(p[a[0]], cag_vec3(0.5, 1, 1.5))) < 0;
+      turned_count += turned;
+      for (size_t k = 0; k < 3; k++) {
+        const uint32_t from = a[turned ? 2 - k : k], to = b[k];
+        near_vec(out->positions[to], m->positions[from], 0);
+        near_vec(out->normals[to], cag_scaled(m->normals[from], turned ? -1 : 1), 0);
+        assert_true(out->uv[2 * to] == m->uv[2 * from]);
+        assert_true(out->uv[2 * to + 1] == m->uv[2 * from + 1]);
+        assert_int_equal(out->weld[to], m->weld[from]);
+      }
+    }
+    assert_int_equal(out == m, turned_count == 0);
+    cag_mesh_release(out);
+    cag_mesh_release(m);
+    cag_mesh_release(plain);
+  }
+}
+
+// A closed band of N by N quadrilaterals, glued as a torus or, turned over, as a Klein bottle: this
+// has no outside, and stays.
+static void one_sided_meshes_stay_as_they_are(void **state) {
+  (void)state;
+  enum { N = 6 };
+  for (int klein = 0; klein < 2; klein++) {
+    CagMesh *m, *out;
+    OK(cag_mesh_new(N * N, 2 * N * N, false, false, false, &m, &err));
+    for (int i = 0; i < N * N; i++) {
+      const double a = 2 * M_PI * (i / N) / N, b = 2 * M_PI * (i % N) / N;
+      m->positions[i] =
+          cag_vec3((3 + cos(b)) * cos(a), (3 + cos(b)) * sin(a), sin(b) + (klein ? cos(3 * a) : 0));
+    }
+    uint32_t *t = m->triangles;
+    for (uint32_t i = 0; i < N; i++)
+      for (uint32_t k = 0; k < N; k++) {
+        const bool over = klein && i + 1 == N;
+        const uint32_t next = (i + 1) % N, j = (k + 1) % N;
+        const uint32_t a = i * N + k, b = i * N + j;
+        const uint32_t c = next * N + (over ? (N - k) % N : k);
+        const uint32_t e = next * N + (over ? (N - j) % N : j);
+        const uint32_t quad[6] = {a, b, c, b, e, c}; // the torus: inward
+        memcpy(t, quad, sizeof quad);
+        t += 6;
+      }
+    const double before = volume_of(m);
+    size_t open;
+    OK(cag_mesh_open_edges(m, &open, &err));
+    assert_int_equal(open, 0);
+    OK(cag_mesh_outward(m, &out, &err));
+    if (klein) assert_ptr_equal(out, m);
+    else {
+      assert_true(before < 0);
+      NEAR(volume_of(out), -before, 1e-12);
+    }
+    cag_mesh_release(out);
+    cag_mesh_release(m);
+  }
+}
+
+// Two boxes with a common edge, of four triangles: both are closed together; turned on their own,
+// they are not. A sheet that ends at a box's edge leaves all open.
+static void edges_of_many_triangles(void **state) {
+  (void)state;
+  static Draft d;
+  for (int k = 0; k < 4; k++) {
+    memset(&d, 0, sizeof d);
+    add_box(&d, cag_vec3(0, 0, 0), cag_vec3(1, 1, 1), k == 1 || k == 2, false);
+    add_box(&d, cag_vec3(1, 1, 0), cag_vec3(3, 4, 1), k == 1, false);
+    // Corners 0 and 4 of the second box are 3 and 7 of the first.
+    for (size_t i = 24; i < 48; i++)
+      if (d.indices[i] == 8 || d.indices[i] == 12) d.indices[i] = d.indices[i] == 8 ? 3 : 7;
+    if (k == 3) {
+      const uint32_t sheet[3] = {3, 7, 8};
+      d.vertices[8] = cag_vec3(0, 5, 0);
+      add_face(&d, sheet, 3, false);
+    }
+    CagMesh *m = mesh_of(&d), *out;
+    OK(cag_mesh_outward(m, &out, &err));
+    if (k < 2) NEAR(volume_of(out), 7, 1e-12);
+    else assert_ptr_equal(out, m);
+    size_t open;
+    OK(cag_mesh_open_edges(m, &open, &err));
+    assert_int_equal(open, k == 3 ? 2 : 0);
+    cag_mesh_release(out);
+    cag_mesh_release(m);
+  }
+}
+
+// What has no volume but for rounding stays, however it runs.
+static void flat_parts_stay_as_they_are(void **state) {
+  (void)state;
+  static Draft d;
+  for (int k = 0; k < 2; k++) {
+    memset(&d, 0, sizeof d);
+    add_box(&d, cag_vec3(0, 0, 0), cag_vec3(1, 1, k ? 1e-12 : 1e-15), true, false);
+    CagMesh *m = mesh_of(&d), *out;
+    OK(cag_mesh_outward(m, &out, &err));
+    assert_int_equal(out == m, k == 0);
+    if (k) NEAR(volume_of(out), 1e-12, 1e-16);
+    cag_mesh_release(out);
+    cag_mesh_release(m);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(all_arrays_go_along),
+      cmocka_unit_test(one_sided_meshes_stay_as_they_are),
+      cmocka_unit_test(edges_of_many_triangles),
+      cmocka_unit_test(flat_parts_stay_as_they_are),
       cmocka_unit_test(a_mesh_inside_out_is_turned_with_its_normals),
       cmocka_unit_test(nested_parts_alternate),
       cmocka_unit_test(parts_that_begin_with_the_one_around_them_alternate),
