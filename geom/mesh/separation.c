@@ -708,6 +708,22 @@ static double equally_near(const Search *s) { return EQUALLY_NEAR * s->size; }
 // A point, a straight piece of a curve, or a flat triangle: it is its own chord.
 static bool is_exact(const CagPart *part) { return part->sag == 0 && !part->core; }
 
+// From the ends of curves, where the search from the middle led to a farther minimum: keeps the
+// nearest.
+static void try_ends(Search *s, const Pair *start, double *d, CagVec3 *p) {
+  for (int side = 0, at = 0; side < 2; at += start->free[side++])
+    for (int last = 0; last < 2 && start->part[side]->curve && !s->status; last++) {
+      Pair pair = *start;
+      double there;
+      CagVec3 foot;
+      pair.x[at] = last ? pair.part[side]->high[0] : pair.part[side]->low[0];
+      s->status = refine(&pair, &there, &foot, s->err);
+      if (s->status || there >= *d) continue;
+      *d = there;
+      *p = foot;
+    }
+}
+
 // Lowers the best distance by what the pair leads to; `chords` is that of their chords.
 static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chords) {
   Pair pair = {.part = {a, b}};
@@ -717,6 +733,7 @@ static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chord
     pair.free[side] = freedom(pair.part[side]);
     for (int k = 0; k < pair.free[side]; k++) pair.x[pair.n++] = pair.part[side]->at[k];
   }
+  const Pair start = pair;
   const bool exact = is_exact(a) && is_exact(b);
   if (exact) p = chord_foot(a, b);
   else s->status = refine(&pair, &d, &p, s->err);
@@ -724,6 +741,8 @@ static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chord
     if (s->status || !leave_corner(&pair, d, &s->status, s->err)) break;
     s->status = refine(&pair, &d, &p, s->err);
   }
+  if (s->status) return;
+  if (!exact && d > chords + equally_near(s)) try_ends(s, &start, &d, &p);
   if (s->status) return;
   s->pairs++;
   s->farthest = fmax(s->farthest, d);

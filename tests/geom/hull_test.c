@@ -438,6 +438,71 @@ static void curves_at_a_constant_distance_need_few_pairs(void **state) {
   }
 }
 
+// Waves whose minima differ by less than chords of the tolerance leave them: the first pairs that
+// are tried are hardly ever the nearest.
+static void the_nearest_of_alike_minima_is_certain(void **state) {
+  (void)state;
+  enum { POINTS = 90, SAMPLES = 9000 };
+  uint64_t random = 61;
+  for (int trial = 0; trial < 24; trial++) {
+    CagVec3 p[POINTS];
+    double knots[POINTS + 4], least = INFINITY, distance;
+    const double most = ldexp(1e-3, -(trial % 4));
+    for (int i = 0; i < POINTS; i++)
+      p[i] = cag_vec3(i, 1 + most * ((i % 2 ? 1 : 0) + 0.1 * random_number(&random)), 0);
+    for (int i = 0; i < POINTS + 4; i++) knots[i] = fmin(fmax(i - 3, 0), POINTS - 3);
+    const CagVec3 ends[2] = {{0, 0, 0}, {POINTS, 0, 0}};
+    CagCurve *wave, *line;
+    CagParts a = {0}, b = {0};
+    OK(cag_curve_nurbs(p, NULL, POINTS, 3, knots, 2, &wave, &err));
+    OK(cag_curve_polyline(ends, 2, false, 2, &line, &err));
+    for (int i = 0; i <= SAMPLES; i++) {
+      CagVec3 at;
+      OK(cag_curve_point(wave, wave->end * i / SAMPLES, &at, &err));
+      least = fmin(least, at.y);
+    }
+    OK(cag_parts_add_curve(&a, wave, 1e-3, &err));
+    OK(cag_parts_add_curve(&b, line, 1e-3, &err));
+    if (trial % 2) OK(cag_parts_distance(&a, &b, CAG_PARTS_PAIRS, &distance, NULL, NULL, &err));
+    else OK(cag_parts_distance(&b, &a, CAG_PARTS_PAIRS, &distance, NULL, NULL, &err));
+    assert_true(distance <= least + 1e-9); // 1e-11 of the size
+    // Between samples a hundredth apart a wave of this height bends by less.
+    assert_true(distance >= least - 1e-3 * most);
+    cag_parts_free(&a);
+    cag_parts_free(&b);
+    cag_curve_release(wave);
+    cag_curve_release(line);
+  }
+}
+
+// A spiral of half circles about two centers, and one at a constant distance beside it.
+static void spirals_of_arcs_need_few_pairs(void **state) {
+  (void)state;
+  enum { ARCS = 6 };
+  for (int k = 0; k < 4; k++) {
+    const double gap = 0.05 + 0.1 * k;
+    CagCurve *arcs[ARCS], *spiral[2];
+    CagParts parts[2] = {{0}, {0}};
+    double distance = -1;
+    for (int side = 0; side < 2; side++) {
+      for (int i = 0; i < ARCS; i++) {
+        const double r = 1 + 0.5 * i + side * gap;
+        const CagTransform frame = cag_translate(cag_vec3(i % 2 ? 0.5 : 0, 0, 0));
+        OK(cag_curve_arc(r, r, i * M_PI, (i + 1) * M_PI, &frame, &arcs[i], &err));
+      }
+      OK(cag_curve_join(arcs, ARCS, &spiral[side], &err));
+      OK(cag_parts_add_curve(&parts[side], spiral[side], 1e-3, &err));
+      for (int i = 0; i < ARCS; i++) cag_curve_release(arcs[i]);
+    }
+    OK(cag_parts_distance(&parts[k % 2], &parts[1 - k % 2], 60, &distance, NULL, NULL, &err));
+    NEAR(distance, gap, 1e-13);
+    for (int side = 0; side < 2; side++) {
+      cag_parts_free(&parts[side]);
+      cag_curve_release(spiral[side]);
+    }
+  }
+}
+
 // --- Flat triangles, segments and points ---
 
 static CagVec3 random_place(uint64_t *state, double size) {
@@ -754,6 +819,8 @@ static void quotients_are_rounded_once(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sides_are_exact),
+      cmocka_unit_test(the_nearest_of_alike_minima_is_certain),
+      cmocka_unit_test(spirals_of_arcs_need_few_pairs),
       cmocka_unit_test(flat_shapes_are_as_far_apart_as_their_nearest_points),
       cmocka_unit_test(flat_shapes_are_measured_from_round_ones),
       cmocka_unit_test(round_shapes_have_their_closed_forms),
