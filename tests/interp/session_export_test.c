@@ -281,6 +281,32 @@ static void triangles_of_all_parts_count(void **state) {
   }
 }
 
+// However many parts are open, the error that follows is told.
+static void warnings_leave_room_for_an_error(void **state) {
+  (void)state;
+  enum { PARTS = 300 };
+  static const char text[] =
+      "show [for i in 0..<300: mesh([[0, 0, i], [1, 0, i], [0, 1, i]], [[0, 1, 2]])]";
+  for (size_t most = PARTS - 1; most <= PARTS; most++) {
+    CagSessionOptions options = session_options();
+    options.max_triangles = most;
+    CagSession *s = cag_session_new(&options);
+    assert_int_equal(cag_session_run_text(s, "part.cag", text, strlen(text)), CAG_STATUS_OK);
+    const int status = cag_session_export(s, "w.stl", NULL);
+    assert_int_equal(status, most < PARTS ? CAG_STATUS_LIMIT : CAG_STATUS_OK);
+    size_t warnings = 0, limits = 0;
+    for (size_t i = 0; i < cag_session_error_count(s); i++) {
+      CagErrorView e = {0};
+      cag_session_error(s, i, &e);
+      limits += e.reason && strcmp(e.reason, "triangle-limit") == 0;
+      warnings += e.message && strstr(e.message, "is an open mesh, not a solid: 3 open edges");
+    }
+    assert_int_equal(limits, most < PARTS);
+    assert_in_range(warnings, 10, PARTS - 1);
+    cag_session_free(s);
+  }
+}
+
 // Lines are for pictures, unless nothing else is shown; grounds always.
 static void lines_alone_are_tubes(void **state) {
   (void)state;
@@ -350,6 +376,7 @@ int main(void) {
       cmocka_unit_test(exact_files_name_their_script),
       cmocka_unit_test(approximations_are_told),
       cmocka_unit_test(triangles_of_all_parts_count),
+      cmocka_unit_test(warnings_leave_room_for_an_error),
       cmocka_unit_test(lines_alone_are_tubes),
       cmocka_unit_test(what_cannot_be_written_is_told),
   };
