@@ -188,11 +188,10 @@ static bool is_near_pole(const CagMarch *m, CagVec3 x, double reach) {
 // A surface ends before h, which is as near as none: the last place is found by halving and takes
 // the place of the last node.
 static bool add_end(CagMarch *m, Run *run, double h) {
-  const int halvings = 60;
   CagMarchNode *end = &run->nodes[run->n - 1];
   const CagMarchNode a = *end;
   double low = 0, high = h;
-  for (int i = 0; i < halvings && high - low > CAG_MARCH_SAME * m->size; i++) {
+  while (high - low > CAG_MARCH_SAME * m->size) {
     CagMarchNode b;
     CagVec3 middle;
     const double half = (low + high) / 2;
