@@ -75,6 +75,18 @@ static void labels_of_params_are_set_one_below_the_other(void **state) {
                 "param a = 1 \"one\"  // why\nb = 2\nparam b = 2  \"two\"\nc = 3\n");
 }
 
+// A text of several lines stays behind the bracket as the last argument, and breaks the others. As
+// a label it is set below no other, and no other below it.
+static void texts_of_several_lines_stay_as_they_are(void **state) {
+  (void)state;
+  expect_layout("u = f(3,`one\ntwo`)", "u = f(3, `one\ntwo`)\n");
+  expect_layout("u=f(`one\ntwo`,3)", "u = f(\n  `one\ntwo`,\n  3\n)\n");
+  expect_layout("param a=1 \"x\"\nparam bcd=2 \"y\"\nparam e=3 `one\ntwo`\n"
+                "param fghij=4 \"z\" // why\nparam k=5 \"w\"",
+                "param a = 1    \"x\"\nparam bcd = 2  \"y\"\nparam e = 3 `one\ntwo`\n"
+                "param fghij = 4 \"z\"  // why\nparam k = 5          \"w\"\n");
+}
+
 static void comments_keep_their_places(void **state) {
   (void)state;
   expect_layout("// head\n\n/// of a\na=1 // one\nbcd=2   // two\n// tail",
@@ -579,6 +591,7 @@ int main(void) {
       cmocka_unit_test(spaces_are_set_anew),
       cmocka_unit_test(products_are_set_close_within_something),
       cmocka_unit_test(labels_of_params_are_set_one_below_the_other),
+      cmocka_unit_test(texts_of_several_lines_stay_as_they_are),
       cmocka_unit_test(comments_keep_their_places),
       cmocka_unit_test(long_lines_are_broken),
       cmocka_unit_test(rows_of_numbers_stand_one_below_the_other),
