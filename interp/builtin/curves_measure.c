@@ -153,7 +153,7 @@ static CagStatus even_out(const CagCurve *c, CagVec3 *p, double *t, size_t i, Ca
   double low = t[i - 1], high = t[i + 1], excess;
   CagStatus status = CAG_OK;
   for (int k = 0; !status && k < HALVINGS; k++) {
-    const double middle = k == 0 ? t[i] : low + (high - low) / 2;
+    const double middle = low + (high - low) / 2;
     status = chord_excess(c, p, i, middle, &p[i], &excess, err);
     if (excess > 0) high = middle;
     else low = middle;
