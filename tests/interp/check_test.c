@@ -183,6 +183,77 @@ static void circles_of_definitions_are_found(void **state) {
   assert_string_equal(found("a = [for i in 1..0: a]\nprint a"), "");
 }
 
+// Places of an expression that are evaluated whatever its values are close a circle; others need
+// not.
+static void circles_are_found_in_every_part_of_expressions(void **state) {
+  (void)state;
+  static const char *const always[] = {"a",
+                                       "(a)",
+                                       "-a",
+                                       "not a",
+                                       "[a]",
+                                       "[1, a]",
+                                       "[...a]",
+                                       "{x: a}",
+                                       "{x: 1, y: a}",
+                                       "{ c = a; c }",
+                                       "{ c = 1; c + a }",
+                                       "{ assert a > 1; 2 }",
+                                       "1 + a",
+                                       "a * 2",
+                                       "x[a]",
+                                       "a[0]",
+                                       "a and x",
+                                       "a or x",
+                                       "a |> f",
+                                       "1 |> f(a)",
+                                       "a |> f(1)",
+                                       "f(a)",
+                                       "f(1, y: a)",
+                                       "a(1)",
+                                       "a..1",
+                                       "1..a",
+                                       "1..2 by a",
+                                       "if a then 1 else 2",
+                                       "a.z",
+                                       "[for i in a: i]",
+                                       "\"t {a}\"",
+                                       "g(1)",
+                                       "1 |> g",
+                                       "1 |> g()",
+                                       "sqrt(a)",
+                                       "a == 1",
+                                       "a in 1..2",
+                                       "[[[1, [a]]]]"};
+  static const char *const sometimes[] = {"x and a",
+                                          "x or a",
+                                          "if x then a else 2",
+                                          "if x then 1 else a",
+                                          "[for i in [1]: a]",
+                                          "[for i in [1], k in a: i]",
+                                          "[for i in [1] if a: i]",
+                                          "q => a",
+                                          "g",
+                                          "{x: g}"};
+  char script[400];
+  size_t bad = 0;
+  for (int way = 0; way < 2; way++) {
+    const size_t n = way ? sizeof sometimes / sizeof *sometimes : sizeof always / sizeof *always;
+    for (size_t i = 0; i < n; i++) {
+      snprintf(
+          script, sizeof script,
+          "print a\na = 1 + b\nb = %s\nx = []\nf(p, y = 1) = p + y\ng(p) = p + a\nprint x, f, g",
+          way ? sometimes[i] : always[i]);
+      const bool circle = strstr(found(script), "E0311") != NULL;
+      if (circle != !way) {
+        print_error("%s: %s\n", script, found(script));
+        bad++;
+      }
+    }
+  }
+  assert_int_equal(bad, 0);
+}
+
 static void one_pass_reports_everything(void **state) {
   (void)state;
   assert_string_equal(found("show sphere(-3)\nprint hieght\nshow box([1, 2])\na = b\nb = a\n"
@@ -480,6 +551,7 @@ int main(void) {
       cmocka_unit_test(each_function_says_what_it_takes),
       cmocka_unit_test(literal_mistakes_are_found),
       cmocka_unit_test(circles_of_definitions_are_found),
+      cmocka_unit_test(circles_are_found_in_every_part_of_expressions),
       cmocka_unit_test(one_pass_reports_everything),
       cmocka_unit_test(checking_continues_after_syntax_errors),
       cmocka_unit_test(names_of_a_damaged_statement_are_not_unknown),
