@@ -228,8 +228,7 @@ static const struct CagPublicName *find_public(const CagModuleUnit *m, const cha
 static bool module_has(void *context, const CagStatement *s, const char *name,
                        const char *const **names, size_t *count) {
   CagVm *vm = context;
-  if (s->as.import.module == CAG_NO_MODULE || s->as.import.module >= vm->module_count)
-    return true; // said already
+  if (s->as.import.module >= vm->module_count) return true; // CAG_NO_MODULE: said already
   const CagModuleUnit *m = vm->modules[s->as.import.module];
   if (names) {
     *names = m->public_names;

@@ -369,6 +369,54 @@ static void frames_tell_the_time(void **state) {
   cag_session_free(s);
 }
 
+// What is said of a field or member that there is not.
+static void fields_that_are_not_there_are_answered_with_those_that_are(void **state) {
+  (void)state;
+  static const struct {
+    const char *script, *message, *help;
+  } rows[] = {
+      {"print {width: 1, height: 2}.widht", "the record has no field `widht`",
+       "did you mean `width`?"},
+      {"print {width: 1, height: 2}.qqq", "the record has no field `qqq`",
+       "its fields are width, height"},
+      {"print {w: 1}.qqq", "the record has no field `qqq`", "its fields are w"},
+      {"print {}.qqq", "the record has no field `qqq`", NULL},
+      {"print {a1: 1, a2: 1, a3: 1, a4: 1, a5: 1, a6: 1, a7: 1, a8: 1, a9: 1, b1: 1, b2: 1, b3: "
+       "1}.qqqqqq",
+       "the record has no field `qqqqqq`",
+       "its fields are a1, a2, a3, a4, a5, a6, a7, a8, a9, b1, b2, b3"},
+      {"print {a1: 1, a2: 1, a3: 1, a4: 1, a5: 1, a6: 1, a7: 1, a8: 1, a9: 1, b1: 1, b2: 1, b3: 1, "
+       "b4: 1}.qqqqqq",
+       "the record has no field `qqqqqq`", NULL},
+      {"r = 1..3\nprint r.qqqq", "a range has no member `qqqq`", "a range has start, end and step"},
+      {"r = 1..3\nprint r.strat", "a range has no member `strat`",
+       "a range has start, end and step"},
+      {"t = identity\nprint t.qqqq", "a transform has no member `qqqq`", "it has x, y, z, origin"},
+      {"t = identity\nprint t.orgin", "a transform has no member `orgin`",
+       "did you mean `origin`?"},
+      {"p = plane(origin, Z)\nprint p.qqqq", "a plane has no member `qqqq`",
+       "it has point, normal, row"},
+      {"c = circle(1)\nprint c.volume", "a curve has no member `volume`",
+       "a function stands behind |>: write x |> volume(...)"},
+  };
+  size_t bad = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    CagSession *s = new_session();
+    const int status = run_text(s, rows[i].script);
+    CagErrorView e = {0};
+    if (status != CAG_STATUS_OK) cag_session_error(s, 0, &e);
+    if (!e.message || strcmp(e.message, rows[i].message) != 0 ||
+        (e.help != NULL) != (rows[i].help != NULL) ||
+        (rows[i].help && strcmp(e.help, rows[i].help) != 0)) {
+      print_error("%s: %s (%s)\n", rows[i].script, e.message ? e.message : "no error",
+                  e.help ? e.help : "");
+      bad++;
+    }
+    cag_session_free(s);
+  }
+  assert_int_equal(bad, 0);
+}
+
 // Params set to what they cannot be: the message, and what is suggested.
 static void definitions_that_do_not_fit_are_refused(void **state) {
   (void)state;
@@ -680,6 +728,7 @@ int main(void) {
       cmocka_unit_test(modules_are_looked_for_in_each_folder),
       cmocka_unit_test(frames_tell_the_time),
       cmocka_unit_test(definitions_that_do_not_fit_are_refused),
+      cmocka_unit_test(fields_that_are_not_there_are_answered_with_those_that_are),
       cmocka_unit_test(definitions_from_outside_stay_until_they_are_cleared),
       cmocka_unit_test(what_is_shown_is_named_and_counted),
       cmocka_unit_test(scenes_without_shapes_are_errors),
