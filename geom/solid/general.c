@@ -311,17 +311,15 @@ static size_t keep_near(Facet *f, size_t n, const CagBounds *box, double slack) 
   return kept;
 }
 
+static int in_order(double a, double b) { return (a > b) - (a < b); }
 static int by_x(const void *a, const void *b) {
-  const CagBounds *p = &((const Facet *)a)->box, *q = &((const Facet *)b)->box;
-  return (p->min.x + p->max.x > q->min.x + q->max.x) - (p->min.x + p->max.x < q->min.x + q->max.x);
+  return in_order(((const Facet *)a)->box.min.x, ((const Facet *)b)->box.min.x);
 }
 static int by_y(const void *a, const void *b) {
-  const CagBounds *p = &((const Facet *)a)->box, *q = &((const Facet *)b)->box;
-  return (p->min.y + p->max.y > q->min.y + q->max.y) - (p->min.y + p->max.y < q->min.y + q->max.y);
+  return in_order(((const Facet *)a)->box.min.y, ((const Facet *)b)->box.min.y);
 }
 static int by_z(const void *a, const void *b) {
-  const CagBounds *p = &((const Facet *)a)->box, *q = &((const Facet *)b)->box;
-  return (p->min.z + p->max.z > q->min.z + q->max.z) - (p->min.z + p->max.z < q->min.z + q->max.z);
+  return in_order(((const Facet *)a)->box.min.z, ((const Facet *)b)->box.min.z);
 }
 
 static void sort_along(Facet *f, size_t n, const CagBounds *box) {

@@ -211,6 +211,40 @@ static void clipped_surfaces_are_the_parts_within(void **state) {
   }
 }
 
+// A roof within a ball: its triangles have the normals of their own sides at the ridge, too.
+static void ridges_keep_both_normals(void **state) {
+  (void)state;
+  const CagVec3 profile[3] = {{-2, 0, -2}, {0, 0, 0}, {2, 0, -2}};
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  CagCurve *line;
+  CagSurface *roof;
+  CagSolid *ball;
+  CagMesh *m;
+  how.tolerance = 1e-3;
+  OK(cag_curve_polyline(profile, 3, false, 3, &line, &err));
+  OK(cag_surface_extrude(line, cag_vec3(0, 4, 0), 0, 1, &roof, &err));
+  const CagTransform back = cag_translate(cag_vec3(0, -2, 0));
+  CagSurface *centered;
+  OK(cag_surface_transform(roof, &back, &centered, &err));
+  OK(cag_solid_sphere(1, &ball, &err));
+  OK(cag_surface_clip(centered, ball, &how, &m, &err));
+  NEAR(cag_mesh_area(m), M_PI, 5e-3); // two half disks
+  size_t left = 0;
+  for (size_t i = 0; i < m->triangle_count; i++) {
+    const uint32_t *t = m->triangles + 3 * i;
+    const CagVec3 a = m->positions[t[0]];
+    const CagVec3 n = cag_cross(cag_sub(m->positions[t[1]], a), cag_sub(m->positions[t[2]], a));
+    left += n.x < 0;
+    for (int k = 0; k < 3 && cag_norm(n) > 1e-9; k++) near_vec(m->normals[t[k]], cag_unit(n), 1e-6);
+  }
+  assert_true(left > 0 && left < m->triangle_count);
+  cag_mesh_release(m);
+  cag_solid_release(ball);
+  cag_surface_release(roof);
+  cag_surface_release(centered);
+  cag_curve_release(line);
+}
+
 // A sheet of triangles with corners moved at random within z = 0, and its outline.
 static CagMesh *sheet(int n) {
   CagMesh *m;
@@ -281,6 +315,40 @@ static void sheets_cut_by_planes_are_exact(void **state) {
     cag_mesh_release(flat);
     cag_solid_release(by);
   }
+}
+
+// The boundary belongs to the solid: a sheet of two triangles in the plane of a face of a box, on
+// either side along each axis, keeps the face.
+static void sheets_in_the_plane_of_a_face_keep_it(void **state) {
+  (void)state;
+  const double half = 0.2, shift[2] = {0.11, -0.23};
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  how.tolerance = 1e-4;
+  for (int axis = 0; axis < 3; axis++)
+    for (int side = -1; side <= 1; side += 2) {
+      CagMesh *flat = sheet(1), *out;
+      CagSolid *at_origin, *by;
+      double way[3];
+      for (size_t i = 0; i < flat->vertex_count; i++) {
+        const CagVec3 p = flat->positions[i];
+        flat->positions[i] = axis == 0   ? cag_vec3(0, p.x, p.y)
+                             : axis == 1 ? cag_vec3(p.y, 0, p.x)
+                                         : cag_vec3(p.x, p.y, 0);
+      }
+      way[axis] = side * half;
+      way[(axis + 1) % 3] = shift[0];
+      way[(axis + 2) % 3] = shift[1];
+      const CagTransform place = cag_translate(cag_vec3(way[0], way[1], way[2]));
+      OK(cag_solid_box(cag_vec3(2 * half, 2 * half, 2 * half), true, &at_origin, &err));
+      OK(cag_solid_transform(at_origin, &place, &by, &err));
+      OK(cag_mesh_clip(flat, by, &how, &out, &err));
+      // Corners are cut off by an edge of less than the chord.
+      NEAR(cag_mesh_area(out), 4 * half * half, 2e-4);
+      cag_mesh_release(out);
+      cag_mesh_release(flat);
+      cag_solid_release(at_origin);
+      cag_solid_release(by);
+    }
 }
 
 static void nothing_within_is_an_empty_mesh(void **state) {
@@ -375,7 +443,9 @@ static void clipped_polylines_are_exact(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(clipped_surfaces_are_the_parts_within),
+      cmocka_unit_test(ridges_keep_both_normals),
       cmocka_unit_test(sheets_cut_by_planes_are_exact),
+      cmocka_unit_test(sheets_in_the_plane_of_a_face_keep_it),
       cmocka_unit_test(nothing_within_is_an_empty_mesh),
       cmocka_unit_test(clipped_polylines_are_exact),
   };
