@@ -1,0 +1,176 @@
+// Inputs of an interactive session: names that are defined again, their texts, documents, members.
+
+#include <stdlib.h>
+
+#include "interp/session/session.h"
+#include "session_support.h"
+
+static char last_value[200], last_type[40];
+
+static void keep_value(void *context, const char *text, const char *type) {
+  (void)context;
+  snprintf(last_value, sizeof last_value, "%s", text);
+  snprintf(last_type, sizeof last_type, "%s", type);
+}
+
+static void input(CagSession *s, const char *text) {
+  if (cag_session_input(s, text, strlen(text), keep_value, NULL) != CAG_STATUS_OK) {
+    cag_session_write_diagnostics(s, CAG_STYLE_TEXT, stderr);
+    fail_msg("%s", text);
+  }
+}
+
+// Each name is the one before and 1 more; those that follow a name that is defined again follow it.
+static void many_names_follow_one_another(void **state) {
+  (void)state;
+  enum { N = 150 };
+  CagSession *s = new_session();
+  char text[80], expected[80];
+  input(s, "x0 = 1");
+  for (int i = 1; i < N; i++) {
+    snprintf(text, sizeof text, "x%d = x%d + 1", i, i - 1);
+    input(s, text);
+  }
+  input(s, "x149");
+  assert_string_equal(last_value, "150");
+  assert_string_equal(last_type, "number");
+  for (int from = 0; from < N - 1; from += 37) {
+    snprintf(text, sizeof text, "x%d = 1000", from);
+    input(s, text);
+    input(s, "x149");
+    snprintf(expected, sizeof expected, "%d", 1000 + 149 - from);
+    assert_string_equal(last_value, expected);
+  }
+  input(s, "x0");
+  assert_string_equal(last_value, "1000");
+  for (size_t i = 0; i < N; i++) {
+    const char *source;
+    size_t length;
+    snprintf(text, sizeof text, "x%zu", i);
+    assert_string_equal(cag_session_name(s, i, &source, &length), text);
+    if (i % 37 == 0 && i < N - 1) snprintf(expected, sizeof expected, "x%zu = 1000", i);
+    else snprintf(expected, sizeof expected, "x%zu = x%zu + 1", i, i - 1);
+    assert_int_equal(length, strlen(expected));
+    assert_memory_equal(source, expected, length);
+    assert_string_equal(cag_session_name(s, i, NULL, NULL), text);
+  }
+  assert_null(cag_session_name(s, N, NULL, NULL));
+  cag_session_free(s);
+}
+
+static char *document_of(CagSession *s, const char *name) {
+  char *text = NULL;
+  size_t size;
+  FILE *out = open_memstream(&text, &size);
+  const bool known = cag_session_write_doc(s, name, out);
+  fclose(out);
+  if (known) return text;
+  assert_int_equal(size, 0);
+  free(text);
+  return NULL;
+}
+
+static void documents_of_names(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  assert_null(document_of(s, "a"));
+  input(s, "/// What it is,\n/// in two lines.\na(x) = x + 1");
+  input(s, "b = 2; c = 3");
+  input(s, "import std.materials as mat");
+  static const char *const documents[][2] = {
+      {"a", "a(x) = x + 1\n  What it is,\n  in two lines.\n"}, {"b", "b = 2\n"}, {"c", "c = 3\n"}};
+  for (size_t i = 0; i < 3; i++) {
+    char *text = document_of(s, documents[i][0]);
+    assert_non_null(text);
+    assert_string_equal(text, documents[i][1]);
+    free(text);
+  }
+  assert_null(document_of(s, "d"));
+  char *text = document_of(s, "mat");
+  assert_non_null(text);
+  assert_int_equal(strncmp(text, "mat is imported", 15), 0);
+  free(text);
+  char name[80];
+  assert_true(cag_session_library_name(s, "mat.glazed", name, sizeof name));
+  assert_string_equal(name, "std.materials.glazed");
+  assert_true(cag_session_library_name(s, "mat", name, sizeof name));
+  assert_string_equal(name, "std.materials");
+  input(s, "import std.materials: glazed");
+  assert_true(cag_session_library_name(s, "glazed", name, sizeof name));
+  assert_string_equal(name, "std.materials.glazed");
+  assert_false(cag_session_library_name(s, "glazed.x", name, sizeof name));
+  text = document_of(s, "glazed");
+  assert_non_null(text);
+  static const char imported[] = "glazed is imported from std.materials\n  ";
+  assert_int_equal(strncmp(text, imported, strlen(imported)), 0);
+  free(text);
+  assert_false(cag_session_library_name(s, "b", name, sizeof name));
+  assert_false(cag_session_library_name(s, "none.glazed", name, sizeof name));
+  cag_session_free(s);
+}
+
+static char given[400];
+
+static void give_name(void *context, const char *name) {
+  (void)context;
+  strcat(given, name);
+  strcat(given, " ");
+}
+
+static void members_are_those_of_the_value(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  static const char *const members[][2] = {
+      {"p", "width depth "}, {"p.depth", "a b "}, {"p.depth.a", ""}, {"r", "start end step "},
+      {"none", ""},          {"p.none", ""},      {"", ""},          {"p.depth.none.a", ""}};
+  input(s, "p = {width: 3, depth: {a: 1, b: 2}}; r = 0..3; import std.materials as mat");
+  for (size_t i = 0; i < sizeof members / sizeof *members; i++) {
+    given[0] = 0;
+    cag_session_members(s, members[i][0], give_name, NULL);
+    if (strcmp(given, members[i][1]) != 0) fail_msg("%s: %s", members[i][0], given);
+    assert_int_equal(cag_session_error_count(s), 0);
+  }
+  cag_session_free(s);
+}
+
+static void scene_is(CagSession *s, const char *expected) {
+  CagShownCounts counts;
+  char *text = NULL;
+  size_t size;
+  assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_OK);
+  FILE *out = open_memstream(&text, &size);
+  cag_session_describe_scene(s, out);
+  fclose(out);
+  assert_string_equal(text, expected);
+  free(text);
+}
+
+static void what_is_hidden_is_shown_no_more(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  input(s, "show box(1), sphere(2), box(1)");
+  input(s, "a = 3");
+  input(s, "show box(1)\nshow box(2)");
+  scene_is(s, "box, 1 x 1 x 1\nsphere, radius 2\nbox, 1 x 1 x 1\nbox, 1 x 1 x 1\n"
+              "box, 2 x 2 x 2\n");
+  assert_int_equal(cag_session_hide(s, "box(1"), 0);
+  assert_int_equal(cag_session_hide(s, "box(1) "), 0);
+  assert_int_equal(cag_session_hide(s, "box(1)"), 3);
+  assert_int_equal(cag_session_hide(s, "box(1)"), 0);
+  input(s, "a");
+  scene_is(s, "sphere, radius 2\nbox, 2 x 2 x 2\n");
+  assert_int_equal(cag_session_hide(s, "sphere(2)"), 1);
+  input(s, "a");
+  scene_is(s, "box, 2 x 2 x 2\n");
+  cag_session_free(s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(many_names_follow_one_another),
+      cmocka_unit_test(documents_of_names),
+      cmocka_unit_test(members_are_those_of_the_value),
+      cmocka_unit_test(what_is_hidden_is_shown_no_more),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
