@@ -312,6 +312,47 @@ static void errors_tell_where_they_begin_and_end(void **state) {
   cag_session_free(s);
 }
 
+// The asserts of all modules that a script imports hold, also of those that they import, and
+// wherever the import stands. The last line of one of four modules is false at a time.
+static void asserts_of_imported_modules_are_checked(void **state) {
+  (void)state;
+  static const struct {
+    const char *name, *text;
+  } modules[] = {{"first", "assert 2 > 1\nvalue = 3\n"},
+                 {"second", "value = 4\nimport inner\nimport first\nassert value == 4\nsum = "
+                            "inner.value + first.value\n"},
+                 {"inner", "value = 5\nassert value == 5\n"},
+                 {"last", "value = 6\n"}};
+  enum { COUNT = sizeof modules / sizeof *modules };
+  char folder[] = "/tmp/cag-session-XXXXXX", path[COUNT][80];
+  assert_non_null(mkdtemp(folder));
+  const char *const folders[] = {folder};
+  for (int wrong = -1; wrong < COUNT; wrong++) {
+    for (int i = 0; i < COUNT; i++) {
+      snprintf(path[i], sizeof path[i], "%s/%s.cag", folder, modules[i].name);
+      FILE *f = fopen(path[i], "w");
+      assert_non_null(f);
+      fprintf(f, "%s%s", modules[i].text, i == wrong ? "assert value == 7, \"wrong\"\n" : "");
+      fclose(f);
+    }
+    CagSessionOptions options = session_options();
+    options.module_path = folders;
+    options.module_path_count = 1;
+    CagSession *s = cag_session_new(&options);
+    const int status =
+        run_text(s, "x = 1\nimport first\nassert x == 1\nimport second\nimport last\n"
+                    "assert second.sum == 8 and last.value == 6");
+    assert_int_equal(status, wrong < 0 ? CAG_STATUS_OK : CAG_STATUS_SCRIPT);
+    if (wrong >= 0) {
+      assert_string_equal(first_error(s).reason, "assertion");
+      assert_non_null(strstr(first_error(s).message, "wrong"));
+    }
+    cag_session_free(s);
+  }
+  for (int i = 0; i < COUNT; i++) unlink(path[i]);
+  rmdir(folder);
+}
+
 static void modules_are_looked_for_in_each_folder(void **state) {
   (void)state;
   char folder[] = "/tmp/cag-session-XXXXXX", one[64], two[64], a[80], b[80], missing[80];
@@ -725,6 +766,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(each_kind_of_error_has_its_status),
       cmocka_unit_test(errors_tell_where_they_begin_and_end),
+      cmocka_unit_test(asserts_of_imported_modules_are_checked),
       cmocka_unit_test(modules_are_looked_for_in_each_folder),
       cmocka_unit_test(frames_tell_the_time),
       cmocka_unit_test(definitions_that_do_not_fit_are_refused),
