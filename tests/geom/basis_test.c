@@ -491,6 +491,70 @@ static void each_rule_for_knots_is_checked(void **state) {
   assert_string_equal(cag_knots_class(open, 6, 2), "open-nonuniform");
 }
 
+// --- Knots by the control polygon ---
+
+// Length of the polygon up to edge q, a broken number; edges count `least` at least.
+static double walked(const CagVec3 *p, size_t n, double q, double least) {
+  double sum = 0;
+  for (size_t i = 0; i + 1 < n; i++) {
+    const double part = fmin(1, fmax(0, q - (double)i));
+    sum += part * fmax(least, cag_norm(cag_sub(p[i + 1], p[i])));
+  }
+  return sum;
+}
+
+// The i-th inner knot has walked the share i / m of the edges; repeated points that would tear the
+// curve count a thousandth of the mean edge.
+static void chord_knots_walk_the_polygon(void **state) {
+  (void)state;
+  seed = 77;
+  int torn_ones = 0, whole_ones = 0;
+  for (int round = 0; round < 400; round++) {
+    enum { MOST = 12 };
+    CagVec3 v[MOST];
+    double knots[2 * MOST], plain[2 * MOST];
+    const size_t n = 3 + (size_t)uniform(0, MOST - 3);
+    const int p = 1 + (int)uniform(0, fmin(4, (double)n - 1));
+    const double repeated = round % 2 ? 0.6 : 0.1;
+    for (size_t i = 0; i < n; i++) {
+      const bool again = i > 0 && uniform(0, 1) < repeated;
+      v[i].x = uniform(-2, 2);
+      v[i].y = uniform(-2, 2);
+      v[i].z = uniform(-2, 2);
+      if (again) v[i] = v[i - 1];
+    }
+    const size_t m = n - (size_t)p;
+    const double total = walked(v, n, (double)n, 0);
+    cag_knots_chord(v, n, p, knots);
+    for (int i = 0; i <= p; i++) assert_true(knots[i] == 0 && knots[n + (size_t)i] == (double)m);
+    if (total == 0) {
+      for (size_t i = 1; i < m; i++) assert_true(knots[(size_t)p + i] == (double)i);
+      continue;
+    }
+    bool torn = false;
+    size_t run = 1;
+    for (size_t i = 1; i < m; i++) {
+      const double q = (double)(i * (n - 1)) / (double)m;
+      plain[i] = (double)m * walked(v, n, q, 0) / total;
+      run = i > 1 && plain[i] - plain[i - 1] < 1e-12 ? run + 1 : 1;
+      torn = torn || plain[i] < 1e-12 || plain[i] > (double)m - 1e-12 || run > (size_t)p;
+    }
+    const double least = torn ? 1e-3 * total / (double)(n - 1) : 0;
+    const double all = walked(v, n, (double)n, least);
+    for (size_t i = 1; i < m; i++) {
+      const double q = (double)(i * (n - 1)) / (double)m;
+      NEAR(knots[(size_t)p + i], (double)m * walked(v, n, q, least) / all, 1e-12);
+    }
+    CagError none;
+    assert_int_equal(cag_knots_check(knots, n, p, &none), CAG_OK);
+    if (m > 1) {
+      torn_ones += torn;
+      whole_ones += !torn;
+    }
+  }
+  assert_true(torn_ones > 40 && whole_ones > 100);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(random_bases_follow_their_definition),
@@ -499,6 +563,7 @@ int main(void) {
       cmocka_unit_test(spans_are_those_of_a_search),
       cmocka_unit_test(random_pieces_keep_their_points),
       cmocka_unit_test(each_rule_for_knots_is_checked),
+      cmocka_unit_test(chord_knots_walk_the_polygon),
       cmocka_unit_test(bernstein_polynomials_are_those_of_the_reference),
       cmocka_unit_test(elevation_gives_the_points_of_the_reference),
       cmocka_unit_test(segments_are_the_halves_of_a_split),
