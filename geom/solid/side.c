@@ -43,6 +43,12 @@ typedef struct Range {
   CagVec3 lo, hi;
 } Range;
 
+// The window stands off from the ends of the range by twice this at least: what ends within it lies
+// outside of the window.
+static double clearance(const Range *r) {
+  return 0.5 * ROOM / (1 + 2 * ROOM) * (r->hi.x - r->lo.x);
+}
+
 typedef struct Bodies {
   CagSolid *s[2];
   size_t n;
@@ -117,7 +123,7 @@ static CagStatus hyperboloid_two(Bodies *out, const CagQuadricForm *f, const Ran
   CagStatus status = CAG_OK;
   for (int sheet = 0; !status && sheet < 2; sheet++) {
     double far = sheet ? -r->lo.z : r->hi.z;
-    if (!(far > c * (1 + ROOM))) continue;
+    if (!(far > c + clearance(r))) continue;
     const double v[2] = {0, acosh(far / c)}, half[2] = {0, sinh(v[1])};
     const double z[2] = {0, sheet ? -far : far};
     CagTransform frame = canonical(f, f->semi[0], f->semi[1], sheet ? -c : c, 0);
@@ -201,7 +207,7 @@ static CagStatus hyperbolic(Bodies *out, const CagQuadricForm *f, const Range *r
   CagStatus status = CAG_OK;
   for (int branch = 0; !status && branch < 2; branch++) {
     double far = branch ? -r->lo.x : r->hi.x;
-    if (!(far > a * (1 + ROOM))) continue;
+    if (!(far > a + clearance(r))) continue;
     double t = acosh(far / a), x = far, y = b * sinh(t);
     const CagVec3 arc[3] = {{x, -y, 0}, {a / cosh(t), 0, 0}, {x, y, 0}};
     const CagVec3 chord[2] = {{x, y, 0}, {x, -y, 0}};

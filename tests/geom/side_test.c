@@ -95,6 +95,19 @@ static void sides_far_from_the_center(void **state) {
   }
 }
 
+// Sheets and branches whose tips lie in the window, which is small against their semi-axes.
+static void tips_of_large_forms_are_in_small_windows(void **state) {
+  (void)state;
+  const CagQuadric sheets = {{1, 1, -1, 0, 0, 0, 0, 0, 0, 1e4}};
+  const CagQuadric branches = {{-1, 1, 0, 0, 0, 0, 0, 0, 0, 1e4}};
+  for (int side = -1; side <= 1; side += 2) {
+    const CagBounds tip = {{-3, -4, side * 100 - 1}, {4, 3, side * 100 + 1}};
+    const CagBounds bend = {{side * 100 - 1, -4, -3}, {side * 100 + 1, 3, 4}};
+    check_sides(&sheets, &tip);
+    check_sides(&branches, &bend);
+  }
+}
+
 // Closing faces are outside of the window, but not much farther than its diagonal.
 static void planes_end_near_the_window(void **state) {
   (void)state;
@@ -129,6 +142,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sides_have_the_integrals_of_their_forms),
       cmocka_unit_test(sides_far_from_the_center),
+      cmocka_unit_test(tips_of_large_forms_are_in_small_windows),
       cmocka_unit_test(planes_end_near_the_window),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
