@@ -238,6 +238,37 @@ static void closed_surfaces_are_turned_outward(void **state) {
   }
 }
 
+// An octahedron with corners at y = 0 around a tetrahedron with triangles whose middles are at
+// y = 0: rays through them meet edges and corners.
+static void parts_level_with_corners_alternate(void **state) {
+  (void)state;
+  static const uint32_t FACES[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                       {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  static const uint32_t INNER[4][3] = {{6, 8, 7}, {6, 7, 9}, {7, 8, 9}, {6, 9, 8}};
+  static Draft d;
+  for (int round = 0; round < 40; round++) {
+    memset(&d, 0, sizeof d);
+    const bool turned = round % 2;
+    for (int axis = 0; axis < 3; axis++)
+      for (int sign = 1; sign >= -1; sign -= 2)
+        d.vertices[d.vertex_count++] =
+            cag_vec3((axis == 0) * sign, (axis == 1) * sign, (axis == 2) * sign);
+    for (int k = 0; k < 4; k++) {
+      const double x = 0.25 * random_unit() + 0.01, z = 0.5 * random_unit() - 0.25;
+      d.vertices[d.vertex_count++] = cag_vec3(x, k == 0 ? -0.25 : k == 1 ? 0.25 : 0, z);
+    }
+    for (int f = 0; f < 8; f++) add_face(&d, FACES[f], 3, turned);
+    for (int f = 0; f < 4; f++) add_face(&d, INNER[f], 3, round % 3 == 0);
+    const CagVec3 *v = d.vertices + 6;
+    const double inner =
+        fabs(cag_dot(cag_sub(v[1], v[0]), cag_cross(cag_sub(v[2], v[0]), cag_sub(v[3], v[0])))) / 6;
+    CagMesh *m = outward(mesh_of(&d));
+    NEAR(volume_of(m), 4.0 / 3 - inner, 1e-12);
+    assert_int_equal(m->vertex_count, 10);
+    cag_mesh_release(m);
+  }
+}
+
 // Twelve triangles with three vertices each, all turned in, and a quadrilateral that is open; one
 // more triangle has two corners in one place, which is no part of any. Everything a mesh has goes
 // along.
@@ -271,6 +302,7 @@ static void all_arrays_go_along(void **state) {
     assert_int_equal(open, 4);
     OK(cag_mesh_outward(m, &out, &err));
     assert_int_equal(out->triangle_count, n + 1);
+    assert_int_equal(out->vertex_count, m->vertex_count);
     assert_memory_equal(out->labels, m->labels, (n + 1) * sizeof *m->labels);
     if (out != m) assert_memory_equal(&out->scale, &m->scale, sizeof m->scale);
     for (size_t t = 0; t <= n; t++) {
@@ -384,6 +416,7 @@ static void flat_parts_stay_as_they_are(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(all_arrays_go_along),
+      cmocka_unit_test(parts_level_with_corners_alternate),
       cmocka_unit_test(one_sided_meshes_stay_as_they_are),
       cmocka_unit_test(edges_of_many_triangles),
       cmocka_unit_test(flat_parts_stay_as_they_are),
