@@ -223,6 +223,39 @@ static void meshes_enclose_when_they_are_closed(void **state) {
   cag_solid_release(b);
 }
 
+// The mesh of a box of a, b, c, turned and moved: I = V / 12 diag(b^2 + c^2, ...) along its edges.
+static void meshes_have_the_inertia_of_boxes(void **state) {
+  (void)state;
+  const double e[3] = {2, 3, 5}, volume_of = 30;
+  CagTransform place = cag_rpy(0.3, -0.8, 1.1);
+  CagSolid *s, *t;
+  CagMesh *m;
+  CagMassProperties mass;
+  place.m[0][3] = 40, place.m[1][3] = -20, place.m[2][3] = 10;
+  OK(cag_solid_box(cag_vec3(e[0], e[1], e[2]), true, &s, &err));
+  OK(cag_solid_tessellate(s, NULL, &m, &err));
+  cag_solid_release(s);
+  OK(cag_solid_from_mesh(m, &s, &err));
+  cag_mesh_release(m);
+  OK(cag_solid_transform(s, &place, &t, &err));
+  OK(cag_csg_mass(t, 0, &mass, &err));
+  NEAR(mass.volume, volume_of, 1e-10);
+  NEAR(mass.area, 2 * (6 + 10 + 15), 1e-10);
+  near_vec(mass.volume_centroid, cag_vec3(40, -20, 10), 1e-10);
+  near_vec(mass.area_centroid, cag_vec3(40, -20, 10), 1e-10);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      double sum = 0;
+      for (int k = 0; k < 3; k++) {
+        const double b = e[(k + 1) % 3], c = e[(k + 2) % 3];
+        sum += place.m[i][k] * place.m[j][k] * volume_of / 12 * (b * b + c * c);
+      }
+      NEAR(mass.inertia[i][j], sum, 1e-9);
+    }
+  cag_solid_release(s);
+  cag_solid_release(t);
+}
+
 static void what_is_empty_or_endless_says_so(void **state) {
   (void)state;
   CagMesh *m = NULL;
@@ -661,6 +694,7 @@ int main(void) {
       cmocka_unit_test(each_side_of_a_difference_is_cut_alone),
       cmocka_unit_test(boundaries_belong_to_both_sides),
       cmocka_unit_test(meshes_enclose_when_they_are_closed),
+      cmocka_unit_test(meshes_have_the_inertia_of_boxes),
       cmocka_unit_test(what_is_empty_or_endless_says_so),
       cmocka_unit_test(an_interrupt_stops_operations),
       cmocka_unit_test(clipped_surfaces_end_on_the_solid),
