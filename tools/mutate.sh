@@ -66,12 +66,12 @@ export OPT=-O1 SANITIZE=
 export ASAN_OPTIONS=hard_rss_limit_mb=$((MEMORY / 1024)):detect_leaks=0
 build() { make -s -j"$(nproc)" CC="${CC:-cc}" "$@" > ../build.log 2>&1; }
 
-# Runs a suite within limits: limited SECONDS SUITE. Sanitizers, Chromium and Node reserve more memory than that, and one suite tests a larger
-# limit.
+# Runs a suite within limits: limited SECONDS SUITE. Sanitizers, Chromium and Node reserve more memory than that, and two suites test larger
+# limits.
 limited() {
   (
     case $SANITIZE$2 in
-    -* | cli/doc | cli/limits | editors) ;;
+    -* | cli/doc | cli/limits | cli/signals | editors) ;;
     *) ulimit -v "$MEMORY" ;;
     esac
     exec timeout -k 5 "$1" sh "$TREE/tools/mutate.sh" --suite "$2"
