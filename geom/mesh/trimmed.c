@@ -119,24 +119,44 @@ static CagStatus push(Plane *p, uint32_t triangle, int side, CagError *err) {
 
 // --- The outline ---
 
+// How far the normals of the surface turn from t0 to t1 of an outline, in steps of the way.
+static CagStatus turn_along(const Plane *p, const CagCurve *loop, double t0, double t1,
+                            double *turn, CagError *err) {
+  enum { STEPS = 4 };
+  CagVec3 at, before = {0}, normal;
+  *turn = 0;
+  for (int k = 0; k <= STEPS; k++) {
+    CagStatus status = cag_curve_point(loop, t0 + (t1 - t0) * k / STEPS, &at, err);
+    if (!status) status = cag_surface_normal(p->inner, at.x, at.y, &normal, err);
+    if (status) return status;
+    if (k) *turn += atan2(cag_norm(cag_cross(before, normal)), cag_dot(before, normal));
+    before = normal;
+  }
+  return CAG_OK;
+}
+
 // Parts of a chord of the outline, so that the normals of the surface turn by no more than the
-// angle along each: between the chord's ends they turn evenly, nearly.
+// angle along each that is not short.
 static CagStatus parts_for_turn(const Plane *p, const CagCurve *loop, double from, double to,
                                 double length, const CagTessellation *how, size_t *parts,
                                 CagError *err) {
-  const double closely = 0.9;
-  CagVec3 at, normal[2];
+  const double closely = 0.9, most = ceil(length / (SHORT_EDGE * how->tolerance));
+  double n = 1;
   *parts = 1;
-  if (!(how->angle > 0) || length <= SHORT_EDGE * how->tolerance) return CAG_OK;
-  for (int k = 0; k < 2; k++) {
-    CagStatus status = cag_curve_point(loop, k ? to : from, &at, err);
-    if (!status) status = cag_surface_normal(p->inner, at.x, at.y, &normal[k], err);
-    if (status) return status;
+  if (!(how->angle > 0)) return CAG_OK;
+  while (n < most) {
+    double largest = 0;
+    for (double k = 0; k < n; k++) {
+      double turn;
+      CagStatus status = turn_along(p, loop, from + (to - from) * k / n,
+                                    from + (to - from) * (k + 1) / n, &turn, err);
+      if (status) return status;
+      largest = fmax(largest, turn);
+    }
+    if (largest <= how->angle) break;
+    n = fmin(most, ceil(n * largest / (closely * how->angle)));
   }
-  const double turn =
-      atan2(cag_norm(cag_cross(normal[0], normal[1])), cag_dot(normal[0], normal[1]));
-  const double most = length / (SHORT_EDGE * how->tolerance);
-  *parts = (size_t)fmax(1, ceil(fmin(turn / (closely * how->angle), most)));
+  *parts = (size_t)n;
   return CAG_OK;
 }
 

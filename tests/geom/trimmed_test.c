@@ -331,12 +331,55 @@ static void seams_and_poles_close(void **state) {
   }
 }
 
+// The sides of a rectangle on the saddle z = x y are straight, but the normals turn along them.
+static void normals_turn_by_the_angle_along_straight_outlines(void **state) {
+  (void)state;
+  const double knots[4] = {-3, -3, 3, 3};
+  CagVec3 net[4];
+  for (int i = 0; i < 4; i++) {
+    const double x = i / 2 ? 3 : -3, y = i % 2 ? 3 : -3;
+    net[i] = cag_vec3(x, y, x * y);
+  }
+  const CagVec3 corners[] = {{-2, -1.5, 0}, {2.5, -1.5, 0}, {2.5, 2.2, 0}, {-2, 2.2, 0}};
+  CagSurface *all, *s;
+  CagCurve *outline;
+  CagRegion *r;
+  MUST(cag_surface_nurbs(net, NULL, 2, 2, 1, 1, knots, knots, &all, err));
+  MUST(cag_curve_polyline(corners, 4, true, 2, &outline, err));
+  MUST(cag_region_new(outline, NULL, 0, &r, err));
+  MUST(cag_surface_trimmed(all, r, &s, err));
+  for (int step = 1; step <= 4; step++) {
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    CagMesh *m;
+    how.tolerance = 0.1;
+    how.angle = 0.1 * step;
+    MUST(cag_surface_tessellate(s, &how, &m, err));
+    for (size_t t = 0; t < m->triangle_count; t++)
+      for (int k = 0; k < 3; k++) {
+        CagVec3 n[2];
+        for (int e = 0; e < 2; e++) {
+          const CagVec3 p = m->positions[m->triangles[3 * t + (size_t)(k + e) % 3]];
+          n[e] = cag_unit(cag_vec3(-p.y, -p.x, 1));
+        }
+        const double turn = acos(fmin(1, cag_dot(n[0], n[1])));
+        if (turn > how.angle * (1 + 1e-6) && edge_length(m, t, k) > 0.2 * how.tolerance)
+          fail_msg("limit %g: an edge of %g turns by %g", how.angle, edge_length(m, t, k), turn);
+      }
+    cag_mesh_release(m);
+  }
+  cag_surface_release(s);
+  cag_surface_release(all);
+  cag_region_release(r);
+  cag_curve_release(outline);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(areas_are_exact),
       cmocka_unit_test(meshes_keep_the_tolerance),
       cmocka_unit_test(flat_polygons_are_cut_into_few_triangles),
       cmocka_unit_test(angles_and_limits_are_kept),
+      cmocka_unit_test(normals_turn_by_the_angle_along_straight_outlines),
       cmocka_unit_test(seams_and_poles_close),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
