@@ -229,6 +229,15 @@ static void points_inside_tubes_have_closed_forms(void **state) {
     assert_near(found.distance, size * (radius - off), 1e-12, "distance of the moved one");
     assert_point(surface_at(moved, found.u, found.v), found.point, 1e-12, "place");
     cag_surface_release(moved);
+    // Stretched, the surface is at no constant distance of its middle.
+    CagTransform stretch = *in_space();
+    stretch.m[i % 3][i % 3] = between(1.5, 2.5);
+    const CagVec3 q = cag_transform_point(&stretch, p);
+    MUST(cag_surface_transform(s, &stretch, &moved, err));
+    MUST(cag_surface_closest(moved, q, &found, err));
+    if (i < 12) assert_true(found.distance <= dense_distance(moved, q, 12, 40) + 1e-9);
+    assert_point(surface_at(moved, found.u, found.v), found.point, 1e-12, "place");
+    cag_surface_release(moved);
     cag_surface_release(s);
     cag_curve_release(coil);
   }
