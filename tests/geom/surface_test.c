@@ -899,6 +899,78 @@ static void breaks_are_those_of_the_curves(void **state) {
   cag_curve_release(c);
 }
 
+// --- The largest degree, and maps that are not affine ---
+
+// z = (x^2 + y^2)^16 on the unit square has degree 32; elevated to 63, the control values of x^k
+// are binomial(i, k) / binomial(63, k).
+static void grids_of_the_largest_degree_are_their_points(void **state) {
+  (void)state;
+  enum { DEGREE = 63, N = 7 };
+  static CagVec3 net[(DEGREE + 1) * (DEGREE + 1)];
+  static double power[DEGREE + 1][33];
+  for (int i = 0; i <= DEGREE; i++) {
+    power[i][0] = 1;
+    for (int k = 1; k <= 32; k++)
+      power[i][k] = power[i][k - 1] * fmax(0, i - k + 1) / (DEGREE - k + 1);
+  }
+  for (int i = 0; i <= DEGREE; i++)
+    for (int j = 0; j <= DEGREE; j++) {
+      double z = 0, binomial = 1;
+      for (int k = 0; k <= 16; k++) {
+        z += binomial * power[i][2 * k] * power[j][32 - 2 * k];
+        binomial = binomial * (16 - k) / (k + 1);
+      }
+      net[i * (DEGREE + 1) + j] = cag_vec3((double)i / DEGREE, (double)j / DEGREE, z);
+    }
+  CagSurface *s;
+  MUST(cag_surface_bezier(net, NULL, DEGREE + 1, DEGREE + 1, &s, err));
+  double at[N];
+  CagVec3 points[N * N], du[N * N], dv[N * N];
+  for (int i = 0; i < N; i++) at[i] = (double)i / (N - 1);
+  for (int round = 0; round < 2; round++) {
+    MUST(cag_surface_eval_grid(s, at, N, at, N, points, round ? du : NULL, round ? dv : NULL, err));
+    for (int i = 0; i < N; i++)
+      for (int j = 0; j < N; j++) {
+        const double x = at[i], y = at[j], sum = x * x + y * y;
+        assert_point(points[i * N + j], cag_vec3(x, y, pow(sum, 16)), 1e-10, "point");
+        if (!round) continue;
+        assert_point(du[i * N + j], cag_vec3(1, 0, 32 * x * pow(sum, 15)), 1e-9, "along u");
+        assert_point(dv[i * N + j], cag_vec3(0, 1, 32 * y * pow(sum, 15)), 1e-9, "along v");
+      }
+  }
+  cag_surface_release(s);
+}
+
+static void translational_surfaces_move_point_by_point(void **state) {
+  (void)state;
+  const CagVec3 p[] = {{0, 0, 0}, {1, 2, 0.5}, {3, 0, 1}}, q[] = {{0, 0, 0}, {-1, 1, 2}, {0, 3, 4}};
+  CagCurve *a, *b;
+  CagSurface *s;
+  MUST(cag_curve_bezier(p, NULL, 3, 3, &a, err));
+  MUST(cag_curve_bezier(q, NULL, 3, 3, &b, err));
+  MUST(cag_surface_translational(a, b, &s, err));
+  for (int projective = 0; projective < 2; projective++) {
+    CagTransform t = cag_transform_identity();
+    CagSurface *moved;
+    t.planar = false;
+    t.m[0][1] = 0.5;
+    t.m[1][2] = -0.25;
+    t.m[2][3] = 3;
+    t.m[3][0] = projective ? 0.05 : 0;
+    t.m[3][2] = projective ? 0.02 : 0;
+    MUST(cag_surface_transform(s, &t, &moved, err));
+    if (!projective) assert_string_equal(moved->kind->name, s->kind->name);
+    for (int i = 0; i <= 4; i++)
+      for (int j = 0; j <= 4; j++)
+        assert_point(surface_at(moved, i / 4.0, j / 4.0),
+                     cag_transform_point(&t, surface_at(s, i / 4.0, j / 4.0)), 1e-13, "moved");
+    cag_surface_release(moved);
+  }
+  cag_surface_release(s);
+  cag_curve_release(a);
+  cag_curve_release(b);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bezier_patches_have_the_partials_of_the_worked_example),
@@ -929,6 +1001,8 @@ int main(void) {
       cmocka_unit_test(integrals_of_uneven_surfaces_are_right),
       cmocka_unit_test(breaks_are_those_of_the_curves),
       cmocka_unit_test(bounds_are_tight_between_samples),
+      cmocka_unit_test(grids_of_the_largest_degree_are_their_points),
+      cmocka_unit_test(translational_surfaces_move_point_by_point),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
