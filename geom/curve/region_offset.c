@@ -189,7 +189,6 @@ static CagStatus add_bent(Parts *parts, const CagCurve *c, double left, double l
         double lo = before, hi = t, g = 0;
         for (int j = 0; !status && j < BISECTIONS && lo + (hi - lo) / 2 > lo; j++) {
           const double m = lo + (hi - lo) / 2;
-          if (!(m < hi)) break;
           status = room(c, left, least, m, &g, err);
           if ((g < 0) == folds) lo = m;
           else hi = m;
