@@ -240,7 +240,7 @@ static bool parse_name(Parser *p) {
   const Function *f = find_function(w);
   if (f) {
     if (take(p, '(')) return parse_arguments(p, f, w.s);
-    return fail_here(p, w.s, "%s wants its argument in parentheses: %s(...)", f->name, f->name);
+    return fail_here(p, w.s, "%s expects its argument in parentheses: %s(...)", f->name, f->name);
   }
   if (!is_parameter(p, w) && !is_constant(w)) return fail_unknown(p, w);
   cag_string_add(&p->out, w.s, w.n);
@@ -325,7 +325,7 @@ static bool check_parameter(CagCall *call, const CagList *names, size_t i) {
   if (v.type != CAG_TEXT) return cag_fail_element(call, 1, i, v, "names in texts");
   Word w = {CAG_AS_TEXT(v)->bytes, CAG_AS_TEXT(v)->length};
   const char *why = NULL;
-  if (w.n == 0 || name_end(w.s, w.s + w.n) != w.s + w.n) why = "is no name";
+  if (w.n == 0 || name_end(w.s, w.s + w.n) != w.s + w.n) why = "is not a name";
   else if (is_reserved(w) || word_is(w, "_")) why = "is a word of the language";
   else if (find_function(w)) why = "is a function of formulas";
   else if (is_constant(w)) why = "is a constant of formulas";

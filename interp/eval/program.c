@@ -129,7 +129,7 @@ static bool set_time(CagVm *vm, const CagModuleUnit *m, const CagDefine *defines
     CagValue v;
     if (!evaluate_define(vm, name, d->value, &v)) return false;
     if (v.type != CAG_NUMBER)
-      return cag_vm_fail(vm, CAG_ERR_param_type, "-D %s wants a number", name);
+      return cag_vm_fail(vm, CAG_ERR_param_type, "-D %s expects a number", name);
     values[k] = v.as.number;
     given[k] = true;
   }

@@ -80,7 +80,7 @@ static CagStatus read_array(CagGltf *g, const char *key, CagGltfArray *out, CagE
   const cJSON *array = cJSON_GetObjectItemCaseSensitive(g->json, key), *item;
   if (!array) return CAG_OK;
   if (!cJSON_IsArray(array))
-    return cag_gltf_fail(g, err, "mesh-file-syntax", "`%s` is no array", key);
+    return cag_gltf_fail(g, err, "mesh-file-syntax", "`%s` is not an array", key);
   size_t n = 0;
   cJSON_ArrayForEach(item, array) n++;
   CagStatus status = cag_draft_take(g->draft, n + 1, sizeof *out->items, err);
@@ -89,7 +89,7 @@ static CagStatus read_array(CagGltf *g, const char *key, CagGltfArray *out, CagE
   if (!out->items) return cag_fail_memory(err);
   cJSON_ArrayForEach(item, array) {
     if (!cJSON_IsObject(item))
-      return cag_gltf_fail(g, err, "mesh-file-syntax", "%s[%zu] is no object", key, out->count);
+      return cag_gltf_fail(g, err, "mesh-file-syntax", "%s[%zu] is not an object", key, out->count);
     out->items[out->count++] = item;
   }
   return CAG_OK;

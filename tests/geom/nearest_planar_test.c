@@ -61,7 +61,7 @@ static void nearest_points_of_a_plate_have_closed_forms(void **state) {
   cag_curve_release(outline);
 }
 
-// --- Under maps that are no motions ---
+// --- Maps that stretch and shear ---
 
 static CagVec3 nearest_of_side(CagVec3 a, CagVec3 b, CagVec3 p) {
   const CagVec3 d = cag_sub(b, a);

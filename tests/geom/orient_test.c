@@ -397,7 +397,7 @@ static void edges_of_many_triangles(void **state) {
   }
 }
 
-// What has no volume but for rounding stays, however it runs.
+// A part whose volume is only rounding error keeps its orientation, whichever it is.
 static void flat_parts_stay_as_they_are(void **state) {
   (void)state;
   static Draft d;

@@ -260,7 +260,7 @@ static void parts_have_the_arcs_that_lie_on_them(void **state) {
         MUST(cag_curve_point(c, c->start + (c->end - c->start) * k / 20, &p, err));
         assert_near(off_circles(&t, p), 0, 1e-11, "circle");
         const double in = inside_part(&t, &part, cag_transform_point(&back, p));
-        // The seams of the torus are no ends.
+        // A closed arc may start at the seam of the torus, inside the part.
         if ((k == 0 || k == 20) && !c->closed) assert_near(in, 0, 1e-8, "end");
         else assert_true(in > -1e-8 || (in < -6 && part.range[1] - part.range[0] > 6));
       }
@@ -321,9 +321,9 @@ static Torus torus_through(const CagVec3 p[3], double minor) {
               false}};
 }
 
-// Tubes of other paths and of varying radius, and surfaces of other kinds, are no tori, whatever
-// torus a few of their circles fit.
-static void surfaces_that_are_no_tori_are_traced(void **state) {
+// Tubes along other paths or of varying radius, and other kinds of surfaces, are not tori, even if
+// some of their circles lie on one.
+static void surfaces_other_than_tori_are_traced(void **state) {
   (void)state;
   static const double places[3] = {0.11, 0.43, 0.83};
   for (int kind = 0; kind < 4; kind++) {
@@ -368,7 +368,7 @@ int main(void) {
       cmocka_unit_test(whole_tori_have_two_circles_in_every_form),
       cmocka_unit_test(parts_have_the_arcs_that_lie_on_them),
       cmocka_unit_test(planes_that_are_almost_so_are_traced),
-      cmocka_unit_test(surfaces_that_are_no_tori_are_traced),
+      cmocka_unit_test(surfaces_other_than_tori_are_traced),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -158,7 +158,7 @@ static void links_of_urdf_have_meshes_beside(void **state) {
                    1);
   assert_non_null(strstr(text_of("robots/r.urdf"), "\"r_meshes/"));
   assert_null(strstr(text_of("robots/r.urdf"), "robots/"));
-  // Without shapes there is no folder.
+  // A robot without shapes gets no folder of meshes.
   exported("show robot([revolute(a: 300)])", "bare.urdf", NULL);
   assert_false(is_there("bare_meshes"));
   // A file in the folder's place.

@@ -91,7 +91,7 @@ static void regions_up_to_the_edges_are_good(void **state) {
   free(path);
 }
 
-// A camera that is not there: the nearest name of many, or what there is.
+// An unknown camera: the message suggests the nearest name, or lists the cameras.
 static void cameras_are_suggested(void **state) {
   (void)state;
   for (int n = 1; n < 150; n = 2 * n + 5) {

@@ -498,7 +498,7 @@ static void definitions_that_do_not_fit_are_refused(void **state) {
        NULL},
       {"param a = \"x\" in [\"x\", \"y\"]", "a", "z", "E0249",
        "the param `a`: \"z\" is not in [\"x\", \"y\"]", NULL},
-      {"x = 1", "time", "\"a\"", "E0248", "-D time wants a number", NULL},
+      {"x = 1", "time", "\"a\"", "E0248", "-D time expects a number", NULL},
       {"assert time == 0.5 and frame == 0 and frames == 1", "time", "1/2", "", NULL, NULL},
       {"assert frame == 7 and time == 0", "frame", "7", "", NULL, NULL},
       {"param time = 3\nassert time == 4 and frame == 0", "time", "4", "", NULL, NULL},
