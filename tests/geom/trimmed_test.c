@@ -5,20 +5,7 @@
 #include "geom/mesh/tessellate.h"
 #include "geom/surface/quadric.h"
 #include "geom/surface/trimmed.h"
-#include "tests/geom/surface_support.h"
-
-static CagRegion *disks(const double (*circles)[3], size_t n) {
-  CagCurve *loops[4] = {0};
-  CagRegion *r = NULL;
-  for (size_t i = 0; i < n; i++) {
-    CagTransform frame = cag_translate(cag_vec3(circles[i][0], circles[i][1], 0));
-    frame.planar = true;
-    MUST(cag_curve_arc(circles[i][2], circles[i][2], 0, 2 * M_PI, &frame, &loops[i], err));
-  }
-  MUST(cag_region_from_loops(loops, n, &r, err));
-  for (size_t i = 0; i < n; i++) cag_curve_release(loops[i]);
-  return r;
-}
+#include "tests/geom/trimmed_support.h"
 
 // A bicubic surface over 0..5 by 0..5 whose control points are heights of sin i cos j.
 static CagSurface *waves(void) {
