@@ -13,15 +13,6 @@ static CagMesh *tube_of(const CagCurve *c, double radius, double dash) {
   return m;
 }
 
-static double volume_of(const CagMesh *m) {
-  double v = 0;
-  for (size_t t = 0; t < m->triangle_count; t++) {
-    const uint32_t *k = m->triangles + 3 * t;
-    v += cag_dot(m->positions[k[0]], cag_cross(m->positions[k[1]], m->positions[k[2]])) / 6;
-  }
-  return v;
-}
-
 static const CagVec3 *sorted_positions;
 
 static int by_position(const void *a, const void *b) {

@@ -16,6 +16,7 @@
 #include "interp/export/mesh_copies.h"
 #include "interp/export/mesh_formats.h"
 #include "interp/export/mesh_write.h"
+#include "tests/interp/bytes.h"
 
 #include <cjson/cJSON.h>
 #include <zlib.h>
@@ -80,17 +81,6 @@ static char *written(Format format, const CagMeshPart *parts, size_t n, size_t *
   fclose(in);
   unlink(path);
   return bytes;
-}
-
-static float float_at(const char *p) {
-  float x;
-  memcpy(&x, p, 4);
-  return x;
-}
-static uint32_t word_at(const char *p) {
-  uint32_t x;
-  memcpy(&x, p, 4);
-  return x;
 }
 
 static void numbers_read_back_as_the_same_float(void **state) {

@@ -11,6 +11,7 @@
 #include "interp/export/mesh_formats.h"
 #include "interp/import/mesh_read.h"
 #include "interp/scene/color_scale.h"
+#include "tests/interp/bytes.h"
 
 #define PARTS 9
 
@@ -171,16 +172,6 @@ static char *bytes_of(const CagMeshPart *parts, size_t n, Export *export, size_t
   return text;
 }
 
-static float float_at(const char *p) {
-  float x;
-  memcpy(&x, p, 4);
-  return x;
-}
-static uint32_t word_at(const char *p) {
-  uint32_t x;
-  memcpy(&x, p, 4);
-  return x;
-}
 static CagVec3 vector_at(const char *p) {
   return cag_vec3(float_at(p), float_at(p + 4), float_at(p + 8));
 }

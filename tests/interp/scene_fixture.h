@@ -137,4 +137,14 @@ static inline void fixture_folder_remove(const char *path) {
   assert_int_equal(system(command), 0);
 }
 
+// The signed volume between the triangles of a mesh and the origin.
+static inline double volume_of(const CagMesh *m) {
+  double v = 0;
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    v += cag_dot(m->positions[k[0]], cag_cross(m->positions[k[1]], m->positions[k[2]])) / 6;
+  }
+  return v;
+}
+
 #endif

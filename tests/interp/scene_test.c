@@ -27,15 +27,6 @@ static CagMesh *tube_of(CagCurve *c, double radius, double dash, size_t most, Ca
   return m;
 }
 
-static double volume_of(const CagMesh *m) {
-  double v = 0;
-  for (size_t t = 0; t < m->triangle_count; t++) {
-    const uint32_t *k = m->triangles + 3 * t;
-    v += cag_dot(m->positions[k[0]], cag_cross(m->positions[k[1]], m->positions[k[2]])) / 6;
-  }
-  return v;
-}
-
 static void is_volume(CagCurve *c, double radius, double dash, double expected, double within) {
   CagError err;
   CagMesh *m = tube_of(c, radius, dash, 1000000, &err);
