@@ -179,7 +179,7 @@ coverage:
 	BUILD=$(BUILD)-coverage sh tools/coverage.sh
 # How many of N random changes to the code the tests notice; SEED= draws others.
 mutate:
-	N=$(N) SEED=$(SEED) sh tools/mutate.sh
+	N=$(N) SEED=$(SEED) python3 tools/mutate.py
 
 $(BUILD)/tests/bench/%: tests/bench/%.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
