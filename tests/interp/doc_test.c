@@ -203,6 +203,33 @@ static void every_word_of_the_language_is_told(void **state) {
   cag_session_free(s);
 }
 
+// The first line is the built-in's own; an empty line comes before each further signature, and two
+// in a row nowhere.
+static void rows_of_a_built_in_are_set_apart(void **state) {
+  (void)state;
+  CagSession *s = open_session();
+  for (const char *const *name = cag_builtin_name_list(); *name; name++) {
+    const size_t n = strlen(*name);
+    int rows = 0, told = 1;
+    const char *signature;
+    for (size_t i = 0; cag_builtin_row(i, &signature, NULL, NULL, NULL); i++)
+      rows += strncmp(signature, *name, n) == 0 && (signature[n] == '(' || !signature[n]);
+    char *text;
+    size_t length;
+    FILE *out = open_memstream(&text, &length);
+    assert_non_null(out);
+    assert_true(cag_session_document(s, *name, false, out));
+    fclose(out);
+    assert_int_equal(strncmp(text, *name, n), 0);
+    for (const char *gap = text; (gap = strstr(gap, "\n\n")); gap += 2)
+      told += strncmp(gap + 2, *name, n) == 0 && (gap[2 + n] == '(' || gap[2 + n] == ' ');
+    if (told != rows || strstr(text, "\n\n\n"))
+      fail_msg("%s: %d of %d rows in\n%s", *name, told, rows, text);
+    free(text);
+  }
+  cag_session_free(s);
+}
+
 static void topics_refer_to_what_is_told(void **state) {
   (void)state;
   CagSession *s = open_session();
@@ -536,6 +563,7 @@ int main(void) {
       cmocka_unit_test(scripts_are_colored_and_linked),
       cmocka_unit_test(every_parameter_of_a_built_in_is_told),
       cmocka_unit_test(every_word_of_the_language_is_told),
+      cmocka_unit_test(rows_of_a_built_in_are_set_apart),
       cmocka_unit_test(topics_refer_to_what_is_told),
       cmocka_unit_test(examples_of_words_run),
       cmocka_unit_test(every_built_in_has_result_summary_example_and_family),

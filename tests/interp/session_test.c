@@ -216,10 +216,15 @@ static void built_ins_are_told_by_their_rows(void **state) {
       if (strncmp(line, "  ", 2) == 0 && line[2] != ' ') assert_true(strcspn(line, "\n") <= 90);
     expected[0] = found[0] = 0;
     add_words(found, SIZE, text);
+    // An empty line comes between two rows, and none before the first.
+    assert_int_equal(strncmp(text, *name, strlen(*name)), 0);
+    size_t rows = 1;
+    for (const char *gap = text; (gap = strstr(gap, "\n\n")); gap += 2) rows += gap[2] != ' ';
     const char *signature, *summary, *example;
     const size_t n = strlen(*name);
     for (size_t i = 0; cag_builtin_row(i, &signature, &summary, &example, NULL); i++) {
       if (strncmp(signature, *name, n) != 0 || (signature[n] != '(' && signature[n])) continue;
+      rows--;
       add_words(expected, SIZE, summary ? summary : "");
       // Each summary and example stands in the text.
       if (!strstr(found, expected)) fail_msg("%s: `%s` is missing", *name, expected);
@@ -231,6 +236,7 @@ static void built_ins_are_told_by_their_rows(void **state) {
       if (!strstr(found, expected)) fail_msg("%s: `%s` is missing", *name, expected);
       expected[0] = 0;
     }
+    assert_int_equal(rows, 0);
     free(text);
   }
 }
