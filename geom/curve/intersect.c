@@ -208,10 +208,13 @@ static CagStatus plane_part(PlaneSearch *s, const Part *part, int depth, CagErro
   }
   const bool wide = part->b - part->a > OVERLAP * (s->c->end - s->c->start);
   if (wide && fa == 0 && fb == 0) {
+    // At no simple fraction, where a wave could come back.
+    static const double fractions[] = {0.236, 0.382, 0.618, 0.854};
     bool lies = true;
-    for (int i = 1; lies && i < 5; i++) {
+    for (size_t i = 0; lies && i < sizeof fractions / sizeof *fractions; i++) {
       CagVec3 p;
-      CagStatus status = cag_curve_point(s->c, part->a + (part->b - part->a) * i / 5, &p, err);
+      CagStatus status =
+          cag_curve_point(s->c, part->a + (part->b - part->a) * fractions[i], &p, err);
       if (status) return status;
       lies = fabs(height(s, p)) <= zero;
     }

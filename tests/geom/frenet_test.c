@@ -83,6 +83,48 @@ static void a_triad_that_turns_has_a_skew_derivative(void **state) {
   FAILS_AMONG(cag_triad_derivative(skew, dm, a, &err), "frame-not-orthonormal", 1, 2);
 }
 
+// Three vectors of length 1 at right angles, from a random turn about each axis.
+static void random_triad(CagVec3 m[3]) {
+  const CagVec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (int i = 0; i < 3; i++) m[i] = axes[i];
+  for (int i = 0; i < 3; i++) {
+    const double turn = uniform(-M_PI, M_PI), c = cos(turn), s = sin(turn);
+    const CagVec3 a = m[i], b = m[(i + 1) % 3];
+    m[i] = cag_madd(cag_scaled(a, c), s, b);
+    m[(i + 1) % 3] = cag_madd(cag_scaled(b, c), -s, a);
+  }
+}
+
+// Derivatives w x m of a triad that turns, and the same with one entry of the matrix changed: the
+// first pair that does not agree is told by its larger number. And each way of not being a triad.
+static void any_derivative_that_is_no_turn_is_refused(void **state) {
+  (void)state;
+  seed = 61;
+  for (int round = 0; round < 300; round++) {
+    CagVec3 m[3], dm[3];
+    double a[3][3];
+    random_triad(m);
+    CagVec3 turn;
+    turn.x = uniform(-3, 3);
+    turn.y = uniform(-3, 3);
+    turn.z = uniform(-3, 3);
+    for (int i = 0; i < 3; i++) dm[i] = cag_cross(turn, m[i]);
+    OK(cag_triad_derivative(m, dm, a, &err));
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) NEAR(a[i][j], cag_dot(turn, cag_cross(m[i], m[j])), 1e-14);
+    const int i = round % 3, j = round / 3 % 3, sign = round / 9 % 2 ? -1 : 1;
+    const CagVec3 kept = dm[i];
+    dm[i] = cag_madd(dm[i], sign * uniform(1e-3, 2), m[j]);
+    FAILS_AT(cag_triad_derivative(m, dm, a, &err), "triad-not-rigid", i > j ? i : j);
+    dm[i] = cag_madd(kept, sign * 1e-13, m[j]);
+    OK(cag_triad_derivative(m, dm, a, &err));
+    dm[i] = kept;
+    m[i] = cag_madd(m[i], sign * uniform(1e-3, 0.5), m[j]);
+    FAILS_AMONG(cag_triad_derivative(m, dm, a, &err), "frame-not-orthonormal", i < j ? i : j,
+                i > j ? i : j);
+  }
+}
+
 // --- Curves of polynomials by Bezier points ---
 
 static CagCurve *bezier(const CagVec3 *points, size_t n, int dimension) {
@@ -390,6 +432,7 @@ int main(void) {
       cmocka_unit_test(frames_of_lines_and_of_nothing),
       cmocka_unit_test(the_chain_rule_holds_to_any_order),
       cmocka_unit_test(a_triad_that_turns_has_a_skew_derivative),
+      cmocka_unit_test(any_derivative_that_is_no_turn_is_refused),
       cmocka_unit_test(contact_with_planes),
       cmocka_unit_test(a_cusp_is_singular_and_nothing_else),
       cmocka_unit_test(waves_are_straight_at_their_zeros_and_flat_where_they_twist_back),

@@ -3,6 +3,7 @@
 #include "tests/geom/support.h"
 
 #include "geom/curve/family.h"
+#include "geom/curve/function.h"
 #include "geom/curve/intersect.h"
 
 static double binomial(int n, int k) {
@@ -755,6 +756,90 @@ static void curves_that_lie_in_a_plane_or_run_along_each_other_are_refused(void 
   }
 }
 
+// --- Formulas ---
+
+// The graph of sin(rate t), or of 1 - 2 exp(-((t - middle) / width)^2) where there is a width.
+typedef struct Graph {
+  double rate, middle, width;
+} Graph;
+
+static CagStatus graph_eval(void *context, double t, int order, CagVec3 *out, CagError *e) {
+  (void)e;
+  const Graph *g = context;
+  double dip[CAG_MAX_DERIVATIVE + 1] = {0};
+  const double x = t - g->middle;
+  for (int k = 0; k <= order && g->width > 0; k++) {
+    // (exp(-x^2))' = -2 x exp(-x^2), and Leibniz' rule.
+    dip[k] =
+        k == 0 ? -2 * exp(-x * x / (g->width * g->width))
+               : -2 / (g->width * g->width) * (x * dip[k - 1] + (k > 1 ? (k - 1) * dip[k - 2] : 0));
+  }
+  for (int k = 0; k <= order; k++)
+    out[k] = cag_vec3(
+        k == 0 ? t : k == 1,
+        g->width > 0 ? (k == 0) + dip[k] : pow(g->rate, k) * sin(g->rate * t + k * M_PI / 2), 0);
+  return CAG_OK;
+}
+
+static CagCurve *graph_of(Graph *g) {
+  const CagCurveFunction f = {graph_eval, NULL, g};
+  CagCurve *c;
+  OK(cag_curve_function(&f, 2, 0, 1, false, &c, &err));
+  return c;
+}
+
+static void waves_meet_their_axis_at_their_zeros(void **state) {
+  (void)state;
+  CagPlane floor;
+  CagCurve *axis;
+  OK(cag_plane(cag_vec3(0, 0, 0), cag_vec3(0, 1, 0), &floor, &err));
+  OK(cag_curve_line(cag_vec3(0, 0, 0), cag_vec3(1, 0, 0), 2, &axis, &err));
+  for (int half_waves = 1; half_waves <= 40; half_waves++) {
+    Graph g = {.rate = half_waves * M_PI};
+    CagCurve *c = graph_of(&g);
+    for (int other = 0; other < 2; other++) {
+      CagMeeting *m;
+      size_t n;
+      if (other) OK(cag_curve_intersect(axis, c, &m, &n, &err));
+      else OK(cag_curve_intersect_plane(c, &floor, &m, &n, &err));
+      assert_int_equal(n, half_waves + 1);
+      for (size_t i = 0; i < n; i++) {
+        NEAR(m[i].t, (double)i / half_waves, 1e-11);
+        assert_int_equal(m[i].multiplicity, 1);
+      }
+      free(m);
+    }
+    cag_curve_release(c);
+  }
+  cag_curve_release(axis);
+}
+
+static void dips_of_a_formula_are_found_wherever_they_are(void **state) {
+  (void)state;
+  uint64_t seed = 117;
+  CagPlane floor;
+  CagCurve *axis;
+  OK(cag_plane(cag_vec3(0, 0, 0), cag_vec3(0, 1, 0), &floor, &err));
+  OK(cag_curve_line(cag_vec3(0, 0, 0), cag_vec3(1, 0, 0), 2, &axis, &err));
+  for (int i = 0; i < 200; i++) {
+    Graph g = {.middle = uniform(&seed, 0.1, 0.9)};
+    g.width = uniform(&seed, 0.03, 0.1);
+    CagCurve *c = graph_of(&g);
+    for (int other = 0; other < 2; other++) {
+      CagMeeting *m;
+      size_t n;
+      if (other) OK(cag_curve_intersect(axis, c, &m, &n, &err));
+      else OK(cag_curve_intersect_plane(c, &floor, &m, &n, &err));
+      assert_int_equal(n, 2);
+      for (int k = 0; k < 2; k++)
+        NEAR(m[k].t, g.middle + (k ? 1 : -1) * g.width * sqrt(log(2)), 1e-11);
+      free(m);
+    }
+    cag_curve_release(c);
+  }
+  cag_curve_release(axis);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(random_planes_meet_where_signs_change),
@@ -776,6 +861,8 @@ int main(void) {
       cmocka_unit_test(touches_just_outside_of_an_end_are_found_at_the_end),
       cmocka_unit_test(shallow_crossings_are_where_the_lines_cross),
       cmocka_unit_test(curves_that_lie_in_a_plane_or_run_along_each_other_are_refused),
+      cmocka_unit_test(waves_meet_their_axis_at_their_zeros),
+      cmocka_unit_test(dips_of_a_formula_are_found_wherever_they_are),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
