@@ -5,6 +5,7 @@
 #include "geom/curve/circles.h"
 #include "geom/curve/region.h"
 #include "tests/geom/random.h"
+#include "tests/geom/region_support.h"
 
 static CagRegion *disc(double x, double y, double radius) {
   CagTransform frame = cag_translate(cag_vec3(x, y, 0));
@@ -58,12 +59,6 @@ static double free_area(CagRegion *r) {
   const double area = area_of(r);
   cag_region_release(r);
   return area;
-}
-
-static bool holds(const CagRegion *r, double x, double y) {
-  bool in;
-  OK(cag_region_contains(r, cag_vec3(x, y, 0), &in, &err));
-  return in;
 }
 
 // Takes both operands over.
@@ -355,54 +350,6 @@ static void a_dumbbell_shrinks_to_two_pieces(void **state) {
   // most at x = 4 - sqrt(1 - 0.25): the integral of 1 - sqrt(1 - s^2) over s in 0..0.5, twice.
   const double h = 0.5, bulge = 2 * (h - (h * sqrt(1 - h * h) + asin(h)) / 2);
   NEAR(free_area(r), 2 * (4 + bulge), 1e-12);
-}
-
-static double distance_to_boundary(const CagRegion *r, CagVec3 from) {
-  double nearest = INFINITY;
-  for (size_t k = 0; k < r->count; k++) {
-    double t, distance;
-    CagVec3 p;
-    OK(cag_curve_closest(r->loops[k], from, &t, &p, &distance, &err));
-    nearest = fmin(nearest, distance);
-  }
-  return nearest;
-}
-
-// All of the boundary of the offset region is at the distance, on the right side.
-static void check_boundary(const CagRegion *r, const CagRegion *offset, double d,
-                           double tolerance) {
-  enum { SAMPLES = 40 };
-  for (size_t k = 0; k < offset->count; k++) {
-    const CagCurve *c = offset->loops[k];
-    double area;
-    assert_true(c->closed);
-    OK(cag_curve_area(c, &area, NULL, &err));
-    assert_int_equal(area > 0, offset->outer[k] == k);
-    for (int i = 0; i < SAMPLES; i++) {
-      CagVec3 p;
-      OK(cag_curve_point(c, c->start + (c->end - c->start) * (i + 0.31) / SAMPLES, &p, &err));
-      NEAR(distance_to_boundary(r, p), fabs(d), tolerance);
-      assert_int_equal(holds(r, p.x, p.y), d < 0);
-    }
-  }
-}
-
-// Points of a grid are in the offset region just where they are within the distance.
-static void check_distances(CagRegion *r, double d, double tolerance) {
-  CagRegion *g;
-  CagBounds b;
-  OK(cag_region_offset(r, d, tolerance, &g, &err));
-  OK(cag_region_bounds(r, &b, &err));
-  for (int i = 0; i < 400; i++) {
-    const double x = b.min.x - 1.5 + (b.max.x - b.min.x + 3) * (i % 20 + 0.43) / 20,
-                 y = b.min.y - 1.5 + (b.max.y - b.min.y + 3) * (i / 20 + 0.57) / 20;
-    const double nearest = distance_to_boundary(r, cag_vec3(x, y, 0));
-    if (fabs(nearest - fabs(d)) < 4 * tolerance) continue;
-    const bool in = holds(r, x, y);
-    assert_int_equal(holds(g, x, y), d > 0 ? in || nearest < d : in && nearest > -d);
-  }
-  check_boundary(r, g, d, 2 * tolerance);
-  cag_region_release(g);
 }
 
 static void offsets_of_splines_keep_the_distance(void **state) {
