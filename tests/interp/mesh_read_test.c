@@ -298,6 +298,35 @@ static void a_ply_may_lack_a_part_of_its_normals(void **state) {
   }
 }
 
+// A normal of no length is replaced with that of the triangles around, weighted by their areas.
+// Where these cancel out, or their points are on one line, any normal is as good.
+static void normals_of_no_length_are_those_of_the_triangles(void **state) {
+  (void)state;
+  static const char head[] = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\n"
+                             "property float y\nproperty float z\nproperty float nx\n"
+                             "property float ny\nproperty float nz\nelement face 2\n"
+                             "property list uchar int vertex_indices\nend_header\n";
+  // Triangles of areas 4 and 6 / 2, in the planes z = 0 and y = 0, share an edge.
+  char text[600];
+  snprintf(text, sizeof text, "%s%s", head,
+           "0 0 0 0 0 0\n2 0 0 0 0 0\n0 4 0 0 0 0\n0 0 3 0 0 0\n9 9 9 3 0 4\n"
+           "3 0 1 2\n3 0 1 3\n");
+  CagMesh *m = read_text("a.ply", text);
+  assert_int_equal(m->vertex_count, 4);
+  const CagVec3 both = cag_unit(cag_vec3(0, -3, 4));
+  const CagVec3 expected[] = {both, both, {0, 0, 1}, {0, -1, 0}};
+  for (size_t v = 0; v < 4; v++) assert_true(cag_norm(cag_sub(m->normals[v], expected[v])) < 1e-15);
+  cag_mesh_release(m);
+  // The same triangle from both sides.
+  snprintf(text, sizeof text, "%s%s", head,
+           "0 0 0 0 0 0\n2 0 0 0 0 0\n0 4 0 0 0 0\n0 0 3 0 0 0\n9 9 9 3 0 4\n"
+           "3 0 1 2\n3 0 2 1\n");
+  m = read_text("a.ply", text);
+  assert_int_equal(m->vertex_count, 3);
+  for (size_t v = 0; v < 3; v++) assert_true(fabs(cag_norm(m->normals[v]) - 1) < 1e-15);
+  cag_mesh_release(m);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(binary_stl_is_welded),
@@ -314,6 +343,7 @@ int main(void) {
       cmocka_unit_test(strips_of_a_ply_are_turned_in_turn),
       cmocka_unit_test(what_is_wrong_with_a_ply_is_told),
       cmocka_unit_test(a_ply_may_lack_a_part_of_its_normals),
+      cmocka_unit_test(normals_of_no_length_are_those_of_the_triangles),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
