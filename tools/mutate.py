@@ -10,7 +10,8 @@ per processor).
 Works on a copy of the tree in build-mutate/. First, every suite runs once in a build that counts which lines it reaches; the counts are
 kept in build-mutate/reach/. Each change then replaces one operator or constant on one line of geom, interp or lang, by the table
 tools/mutations.txt. A change that does not compile (warnings are errors) or does not change the object file is replaced with another one,
-and so are those in tools/equivalent_mutations.txt, after which the program computes the same, for the reasons given there.
+and so are those in tools/equivalent_mutations.txt, after which the program computes the same, for the reasons given there, and those that
+only allocate room for more elements than needed.
 
 The changed file is compiled for AddressSanitizer and UndefinedBehaviorSanitizer and linked with the suites that reach the line. They run
 until one fails, starting with those that are quick and likely to detect the change: unit tests that include the changed file's header, then
@@ -217,6 +218,13 @@ class Reach:
 # --- Changes ---
 
 
+def allocates_more(row, old, new):
+    """Whether a larger number after this part of a line is one more element, or byte, of an allocation."""
+    call = row.rfind("alloc(")
+    is_inside = call >= 0 and row.count("(", call) > row.count(")", call)
+    return is_inside and old in (" 1)", " 2)") and new > old and row[-1] in "+:,"
+
+
 class Change:
     def __init__(self, source, line, column, old, new):
         self.source, self.line, self.old, self.new = source, line, old, new
@@ -226,6 +234,8 @@ class Change:
         self.after = self.before[:column] + new + self.before[column + len(old):]
         lines[line - 1] = self.after
         self.text = "\n".join(lines)
+
+        self.allocates_more = allocates_more(self.before[:column], old, new)
 
     def __str__(self):
         return f"{self.source}:{self.line}: `{self.old}` -> `{self.new}`: {self.before.strip()}"
@@ -315,8 +325,8 @@ class Trials:
         self.headers = {}
 
     def valid(self, change):
-        """Whether the change compiles, changes the object, and is not listed as one without effect."""
-        if f"{change.source}\t{change.after.strip(' ')}" in self.equivalent:
+        """Whether the change compiles, changes the object, and is not known to be without effect."""
+        if change.allocates_more or f"{change.source}\t{change.after.strip(' ')}" in self.equivalent:
             return False
         # Both from the same name, which the object may contain.
         objects = []
