@@ -1,0 +1,127 @@
+// How many triangles tessellation takes: compared with the fewest that closed forms allow, and
+// alike however the parameters of a surface run.
+
+#include "geom/mesh/tessellate.h"
+#include "tests/geom/random.h"
+#include "tests/geom/support.h"
+
+enum { DEGREE = 3, NET = DEGREE + 1 };
+
+// A net of control points whose rows and columns may change places, or run the other way.
+typedef struct Net {
+  CagVec3 p[NET][NET];
+  size_t n[2];
+} Net;
+
+static CagSurface *surface_of(const Net *net, int turn) {
+  CagVec3 flat[NET * NET];
+  CagSurface *s;
+  const bool swap = turn & 1, back_u = turn & 2, back_v = turn & 4;
+  const size_t rows = net->n[swap], columns = net->n[!swap];
+  for (size_t i = 0; i < rows; i++)
+    for (size_t k = 0; k < columns; k++) {
+      const size_t a = swap ? k : i, b = swap ? i : k;
+      flat[i * columns + k] =
+          net->p[back_u ? net->n[0] - 1 - a : a][back_v ? net->n[1] - 1 - b : b];
+    }
+  OK(cag_surface_bezier(flat, NULL, rows, columns, &s, &err));
+  return s;
+}
+
+static double triangles_of(const CagSurface *s, const CagTessellation *how) {
+  CagMesh *m;
+  OK(cag_surface_tessellate(s, how, &m, &err));
+  const double n = (double)m->triangle_count;
+  cag_mesh_release(m);
+  return n;
+}
+
+// z = (a x^2 + 2 c x y + b y^2) / 2 over [0, width] x [0, height].
+static Net parabolic(double width, double height, double a, double b, double c) {
+  Net net = {.n = {3, 3}};
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) {
+      const double z = (i == 2) * a * width * width / 2 + (k == 2) * b * height * height / 2 +
+                       c * width * height * i * k / 4.0;
+      net.p[i][k] = cag_vec3(width * i / 2.0, height * k / 2.0, z);
+    }
+  return net;
+}
+
+// Triangles on lines of slopes u, v over a parabolic surface are off by a quadratic form of their
+// edges over 8. Right triangles with the legs h, k along x and y need a h^2 + b k^2 <= 8 tolerance
+// if a and b have one sign, and at least max(|a| h^2, |b| k^2) <= 8 tolerance otherwise.
+static void parabolic_surfaces_take_little_more_than_the_fewest(void **state) {
+  (void)state;
+  double sum[2] = {0, 0};
+  seed = 31;
+  for (int k = 0; k < 60; k++) {
+    const double width = uniform(3, 12);
+    const double height = uniform(3, 12);
+    const double a = uniform(0.004, 0.02);
+    const double b = uniform(0.004, 0.02) * (k % 3 == 1 ? -1 : 1);
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    const double area = width * height, fewest = sqrt(a * fabs(b)) * area / 2;
+    how.tolerance = fewest / uniform(300, 3000);
+    how.angle = 1;
+    const Net net = parabolic(width, height, a, b, 0);
+    CagSurface *s = surface_of(&net, k % 8);
+    const double ratio = triangles_of(s, &how) * how.tolerance / fewest;
+    const int saddle = k % 3 == 1;
+    assert_true(ratio >= (saddle ? 0.5 : 1) && ratio < 1.4);
+    sum[saddle] += ratio;
+    cag_surface_release(s);
+  }
+  assert_true(sum[0] / 40 < 1.235 && sum[1] / 20 < 0.765); // on average
+}
+
+static Net random_net(int k) {
+  Net net = {.n = {(size_t)(2 + k % 3), (size_t)(2 + k / 3 % 3)}};
+  for (size_t i = 0; i < net.n[0]; i++)
+    for (size_t j = 0; j < net.n[1]; j++) {
+      const double x = uniform(-1, 1);
+      const double y = uniform(-1, 1);
+      const double z = uniform(-1, 1);
+      const double share[2] = {(double)i / (double)(net.n[0] - 1),
+                               (double)j / (double)(net.n[1] - 1)};
+      net.p[i][j] = cag_vec3(10 * share[0] + x, 6 * share[1] + y, 2 * z);
+    }
+  return net;
+}
+
+// The same net of points with its rows and columns exchanged, or run through from the other end.
+// Without curvature that matters, what edges may be as long as decides: exactly alike. Bounds of
+// all triangles are what they were when each tolerance was kept with few to spare.
+static void triangles_do_not_depend_on_how_parameters_run(void **state) {
+  (void)state;
+  enum { NETS = 18, TURNS = 8 };
+  static const double most[3] = {0.55, 0.75, 0}, together[3] = {507000, 351000, 870000};
+  double sum[3] = {0};
+  seed = 32;
+  for (int k = 0; k < NETS; k++) {
+    const Net net = random_net(k);
+    for (int i = 0; i < 3; i++) {
+      CagTessellation how = CAG_TESSELLATION_DEFAULT;
+      double n[TURNS];
+      how.tolerance = i == 0 ? 0.002 : 0.3;
+      how.angle = i == 1 ? 0.08 : 1.5;
+      how.max_edge = i == 2 ? 0.4 : 0;
+      for (int turn = 0; turn < TURNS; turn++) {
+        CagSurface *s = surface_of(&net, turn);
+        n[turn] = triangles_of(s, &how);
+        sum[i] += n[turn];
+        assert_true(fabs(n[turn] / n[0] - 1) <= most[i]);
+        cag_surface_release(s);
+      }
+    }
+  }
+  for (int i = 0; i < 3; i++) assert_true(sum[i] <= together[i]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(parabolic_surfaces_take_little_more_than_the_fewest),
+      cmocka_unit_test(triangles_do_not_depend_on_how_parameters_run),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
