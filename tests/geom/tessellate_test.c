@@ -272,6 +272,55 @@ static void a_cone_comes_to_one_point_with_a_normal_for_each_side(void **state) 
   cag_mesh_release(m);
 }
 
+// A spindle: an arc of radius 5 about [-3, 0] in the half plane through the axis, turned. One
+// parameter is the arc's angle times `stretch`, from tip to tip, the other one the turn.
+static double stretch;
+static bool turn_first;
+
+static void spindle(double u, double v, CagVec3 *p, CagVec3 *du, CagVec3 *dv) {
+  const double a = (turn_first ? v : u) / stretch, t = turn_first ? u : v;
+  const double r = 5 * cos(a) - 3, dr = -5 * sin(a) / stretch, dz = 5 * cos(a) / stretch;
+  *p = cag_vec3(r * cos(t), r * sin(t), 5 * sin(a));
+  *(turn_first ? dv : du) = cag_vec3(dr * cos(t), dr * sin(t), dz);
+  *(turn_first ? du : dv) = cag_vec3(-r * sin(t), r * cos(t), 0);
+}
+
+// The normal at a tip is square to the arc, towards the middle of the triangle that has it.
+static void tips_of_curved_sides_have_the_normals_of_their_triangles(void **state) {
+  (void)state;
+  static const double stretches[] = {1e-3, 1, 500};
+  const double end = acos(0.6);
+  for (int k = 0; k < 6; k++) {
+    stretch = stretches[k / 2];
+    turn_first = k % 2;
+    const double low = -end * stretch, high = end * stretch;
+    Formula f = turn_first ? formula(spindle, 0, 2 * M_PI, low, high)
+                           : formula(spindle, low, high, 0, 2 * M_PI);
+    *(turn_first ? &f.base.closed_u : &f.base.closed_v) = true;
+    *(turn_first ? &f.base.pole_v0 : &f.base.pole_u0) = true;
+    *(turn_first ? &f.base.pole_v1 : &f.base.pole_u1) = true;
+    CagMesh *m = mesh_of(&f.base, 0.01, 0.7);
+    int tips[2] = {0, 0};
+    assert_int_equal(cag_mesh_euler_characteristic(m), 2);
+    for (size_t t = 0; t < m->triangle_count; t++)
+      for (int j = 0; j < 3; j++) {
+        const uint32_t *c = m->triangles + 3 * t;
+        const CagVec3 at = m->positions[c[j]], n = m->normals[c[j]];
+        if (fabs(fabs(at.z) - 4) > 1e-9) continue;
+        const CagVec3 way = cag_add(m->positions[c[(j + 1) % 3]], m->positions[c[(j + 2) % 3]]);
+        const double out = turn_first ? -1 : 1; // the sense of the partials
+        near_vec(cag_vec3(at.x, at.y, 0), cag_vec3(0, 0, 0), 1e-9);
+        const CagVec3 want = {0.6 * way.x / hypot(way.x, way.y), 0.6 * way.y / hypot(way.x, way.y),
+                              at.z > 0 ? 0.8 : -0.8};
+        near_vec(n, cag_scaled(want, -out), 2e-4);
+        tips[at.z > 0]++;
+      }
+    assert_int_equal(tips[0], tips[1]);
+    assert_true(tips[0] > 10);
+    cag_mesh_release(m);
+  }
+}
+
 static void a_torus_closes_and_keeps_its_tolerance(void **state) {
   (void)state;
   CagSurface *s;
@@ -608,6 +657,7 @@ int main(void) {
       cmocka_unit_test(a_flat_patch_takes_two_triangles),
       cmocka_unit_test(a_cylinder_has_one_row),
       cmocka_unit_test(a_cone_comes_to_one_point_with_a_normal_for_each_side),
+      cmocka_unit_test(tips_of_curved_sides_have_the_normals_of_their_triangles),
       cmocka_unit_test(a_torus_closes_and_keeps_its_tolerance),
       cmocka_unit_test(turns_without_breaks_are_seen),
       cmocka_unit_test(triangles_go_where_the_curvature_is),
