@@ -11,14 +11,18 @@
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 
-static CagCurve *wave(void) {
-  const double knots[] = {-1, -1, -1, 0.25, 0.25, 2.5, 3, 3, 3};
+// A curve over start .. start + 4.
+static CagCurve *wave_from(double start) {
+  double knots[] = {0, 0, 0, 1.25, 1.25, 3.5, 4, 4, 4};
   CagVec3 p[6];
   CagCurve *c;
+  for (int i = 0; i < 9; i++) knots[i] += start;
   for (int i = 0; i < 6; i++) p[i] = cag_vec3(1 + uniform(0, 1), i, 0);
   MUST(cag_curve_nurbs(p, NULL, 6, 2, knots, 2, &c, err));
   return c;
 }
+
+static CagCurve *wave(void) { return wave_from(-1); }
 
 enum { TORUS, LATHE, EXTRUDED, TWISTED, TUBE, MOVED, RULED, KINDS };
 static const bool has_exact_form[KINDS] = {true, true, true, false, false, true, true};
@@ -189,6 +193,37 @@ static void parts_of_extrusions_keep_their_parameters(void **state) {
       cag_surface_release(base);
     }
   cag_surface_release(s);
+}
+
+// Where a range lies about zero makes no difference: parts of parts, and their exact forms.
+static void parts_over_negative_ranges_have_exact_forms(void **state) {
+  (void)state;
+  seed = 76;
+  static const double START[] = {-2, -4, -5, -9, 6};
+  for (int round = 0; round < 15; round++) {
+    CagCurve *c = wave_from(START[round % 5]), *d = wave_from(START[round % 5]);
+    CagSurface *s, *turned, *part;
+    const double turn = uniform(0.5, 3);
+    if (round < 5) MUST(cag_surface_ruled(c, d, &s, err));
+    else if (round < 10)
+      MUST(cag_surface_revolve(c, cag_vec3(0, 1, 0), cag_vec3(0, 0, 0), -turn, turn, &s, err));
+    else MUST(cag_surface_extrude(c, cag_vec3(0.5, 0.2, 3), 0, 1, &s, err));
+    MUST(cag_surface_transpose(s, &turned, err));
+    for (int k = 0; k < 2; k++) {
+      const CagSurface *of = k ? turned : s;
+      double a[2], b[2];
+      for (int i = 0; i < 2; i++) a[i] = uniform(0.1, 0.4), b[i] = uniform(0.6, 0.9);
+      const double u = of->u1 - of->u0, v = of->v1 - of->v0;
+      MUST(cag_surface_part(of, of->u0 + a[0] * u, of->u0 + b[0] * u, of->v0 + a[1] * v,
+                            of->v0 + b[1] * v, &part, err));
+      check_exact_part(part);
+      cag_surface_release(part);
+    }
+    cag_surface_release(turned);
+    cag_surface_release(s);
+    cag_curve_release(c);
+    cag_curve_release(d);
+  }
 }
 
 static void ranges_of_parts_are_checked(void **state) {
@@ -426,6 +461,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parts_are_the_surface_over_smaller_ranges),
       cmocka_unit_test(parts_of_extrusions_keep_their_parameters),
+      cmocka_unit_test(parts_over_negative_ranges_have_exact_forms),
       cmocka_unit_test(ranges_of_parts_are_checked),
       cmocka_unit_test(exchanged_parameters_exchange_everything),
       cmocka_unit_test(sides_are_exchanged_as_well),
