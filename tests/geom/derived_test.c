@@ -457,6 +457,40 @@ static void offsets_have_derivatives_on_the_axis_of_a_torus(void **state) {
   cag_surface_release(s);
 }
 
+// Moved by whole numbers and back, or turned over twice: a surface of the same kind with the same
+// points. Other moves stay.
+static void maps_that_undo_each_other_leave_the_surface(void **state) {
+  (void)state;
+  seed = 77;
+  for (int kind = 0; kind < KINDS; kind++) {
+    CagSurface *s = surface_of(kind), *base, *moved, *back;
+    MUST(cag_surface_transpose(s, &base, err)); // moved only as a whole
+    const CagTransform away = cag_translate(cag_vec3(4, -8, 16));
+    for (int axis = 0; axis < 3; axis++) {
+      const double one = axis == 0 ? -4 : -3, two = axis == 1 ? 8 : 7, three = axis == 2 ? -16 : 5;
+      const CagTransform other = cag_translate(cag_vec3(one, two, three));
+      MUST(cag_surface_transform(base, &away, &moved, err));
+      assert_string_equal(moved->kind->name, "transformed");
+      MUST(cag_surface_transform(moved, &other, &back, err));
+      assert_string_equal(back->kind->name, "transformed");
+      cag_surface_release(back);
+      const CagTransform home = cag_translate(cag_vec3(-4, 8, -16));
+      MUST(cag_surface_transform(moved, &home, &back, err));
+      assert_true(back == base);
+      cag_surface_release(back);
+      cag_surface_release(moved);
+    }
+    MUST(cag_surface_flip(base, &moved, err));
+    assert_string_equal(moved->kind->name, "transformed");
+    MUST(cag_surface_flip(moved, &back, err));
+    assert_true(back == base);
+    cag_surface_release(back);
+    cag_surface_release(moved);
+    cag_surface_release(base);
+    cag_surface_release(s);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parts_are_the_surface_over_smaller_ranges),
@@ -465,6 +499,7 @@ int main(void) {
       cmocka_unit_test(ranges_of_parts_are_checked),
       cmocka_unit_test(exchanged_parameters_exchange_everything),
       cmocka_unit_test(sides_are_exchanged_as_well),
+      cmocka_unit_test(maps_that_undo_each_other_leave_the_surface),
       cmocka_unit_test(offsets_of_tori_and_balls_are_tori_and_balls),
       cmocka_unit_test(offsets_have_derivatives_on_the_axis_of_a_torus),
   };
