@@ -29,9 +29,6 @@
 CAG_CURVE_FUNCTIONS(X)
 #undef X
 
-// Set operations of a call whose arguments are regions, for rows that serve lists of any shapes.
-bool cag_regions_operator(CagCall *call, CagRegionOp op, CagValue *result);
-
 // Degree from `degree` or, one more, from `order`; the fallback where neither is given.
 bool cag_arg_degree(CagCall *call, int degree, int order, long fallback, int *out);
 

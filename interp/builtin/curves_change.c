@@ -69,7 +69,7 @@ bool cag_curves_join_curves(CagCall *call, CagValue *result) {
   size_t n;
   CagCurve *out = NULL;
   CagError err;
-  if (!cag_arg_several(call, 0, &items, &n)) return false;
+  if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0) return cag_fail_call(call, 0, CAG_ERR_too_few_curves, "expects at least one curve");
   CagCurve **curves = malloc(n * sizeof *curves);
   bool ok = curves != NULL;

@@ -245,7 +245,7 @@ static bool combine(CagCall *call, CagRegionOp op, CagValue *result) {
   size_t n;
   CagRegion *out = NULL;
   CagError err;
-  if (!cag_arg_several(call, 0, &items, &n)) return false;
+  if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one region");
   Operands o = {.call = call, .base = cag_transform_identity(), .first = cag_unset()};
   o.regions = malloc(n * sizeof *o.regions);
@@ -273,10 +273,6 @@ static bool subtract(CagCall *call, CagValue *result) {
 
 static bool intersect(CagCall *call, CagValue *result) {
   return combine(call, CAG_REGION_INTERSECTION, result);
-}
-
-bool cag_regions_operator(CagCall *call, CagRegionOp op, CagValue *result) {
-  return combine(call, op, result);
 }
 
 static bool offset(CagCall *call, CagValue *result) {

@@ -118,18 +118,13 @@ void cag_shape_say_alike(CagValue to, CagValue from) {
   a->hidden = b->hidden;
 }
 
-bool cag_arg_several(CagCall *call, int from, CagValue **items, size_t *n) {
-  size_t given = call->count - (size_t)from;
-  while (given > 0 && call->values[(size_t)from + given - 1].type == CAG_UNSET) given--;
-  CagValue first = given > 0 ? call->values[from] : cag_unset();
-  if (given != 1 || first.type != CAG_LIST) {
-    *items = call->values + from;
-    *n = given;
-    return true;
-  }
+bool cag_arg_several(CagCall *call, CagValue **items, size_t *n) {
+  *items = call->values;
+  *n = call->count;
+  if (*n > 1 || call->values[0].type != CAG_LIST) return true;
   // A list's items stand in place unless it is packed, which lists of shapes never are.
-  CagList *list = CAG_AS_LIST(first);
-  if (list->dim != 0) return cag_fail_type(call, from, "shapes, or one list of them");
+  CagList *list = CAG_AS_LIST(call->values[0]);
+  if (list->dim != 0) return cag_fail_type(call, 0, "shapes, or one list of them");
   *items = list->as.items;
   *n = list->length;
   return true;

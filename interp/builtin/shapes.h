@@ -51,9 +51,8 @@ void cag_charge_solid(CagVm *vm, const CagSolid *s, size_t before);
 void cag_shape_say_alike(CagValue to, CagValue from);
 // What holds of a material said near and one said further out; see scene_say.c. Either may be NULL.
 CagRecord *cag_material_combine(CagVm *vm, CagRecord *inner, CagRecord *outer);
-// A list, or the arguments from `from` on, as one list of values: `join_curves(a, b)` and
-// `join_curves([a, b])`.
-bool cag_arg_several(CagCall *call, int from, CagValue **items, size_t *n);
+// All arguments, or the elements of the only one: `join_curves(a, b)` and `join_curves([a, b])`.
+bool cag_arg_several(CagCall *call, CagValue **items, size_t *n);
 // A flat list of all shapes in a shape, a group or a list (groups taken apart, attributes
 // inherited). False: error set.
 bool cag_shapes_collect(CagCall *call, CagValue v, CagBuilder *into);

@@ -194,7 +194,7 @@ static bool is_of_regions(CagCall *call) {
   CagValue *items;
   size_t n;
   if (call->values[0].type == CAG_LIST && CAG_AS_LIST(call->values[0])->dim != 0) return false;
-  if (!cag_arg_several(call, 0, &items, &n)) return false;
+  if (!cag_arg_several(call, &items, &n)) return false;
   for (size_t i = 0; i < n; i++) {
     if (holds_region(call->vm, items[i])) return true;
     const bool nothing =
@@ -221,7 +221,7 @@ static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValu
   CagError err;
   CagSolid *made = NULL;
   if (is_of_regions(call)) return call_of_regions(call, name, result);
-  if (!cag_arg_several(call, 0, &items, &n)) return false;
+  if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0)
     return cag_fail_call(call, -1, CAG_ERR_csg_operand, "expects solids, found an empty list");
   if (!operands_new(call, n, &o)) return false;

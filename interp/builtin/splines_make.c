@@ -41,7 +41,7 @@ bool cag_splines_points(CagCall *call, int argument, CagVec3 **out, size_t *n, i
   const double *x;
   size_t first = 0, size = 0;
   for (size_t i = 0; i < list->length; i++) {
-    if (!cag_as_vector(cag_list_get(call->vm, list, i), &x, &size)) break;
+    cag_as_vector(cag_list_get(call->vm, list, i), &x, &size);
     if (i == 0) first = size;
     else if (size != first) {
       free(*out);
