@@ -209,9 +209,9 @@ bool cag_transforms_reflect(CagCall *call, CagValue *result) {
 }
 
 static bool make_shear(CagCall *call, int at, CagTransform *out) {
-  double k[6]; // xy xz yx yz zx zy
+  double k[6] = {0}; // xy xz yx yz zx zy
   for (int i = 0; i < 6; i++)
-    if (!cag_arg_number_or(call, at + i, 0, &k[i])) return false;
+    if (cag_given(call, at + i) && !cag_arg_finite(call, at + i, &k[i])) return false;
   *out = cag_shear(k[0], k[1], k[2], k[3], k[4], k[5]);
   out->planar = k[1] == 0 && k[3] == 0 && k[4] == 0 && k[5] == 0;
   return true;
