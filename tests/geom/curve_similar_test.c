@@ -130,7 +130,7 @@ static void frames_are_the_same_and_curvatures_divided(void **state) {
   each_image(24, check_frames);
 }
 
-// Flattened to 1e-11 of its size a curve is plane, and with two directions straight; to 1e-6 it is
+// Flattened to 1e-11 of its size a curve is plane, and with two directions straight; to 1e-4 it is
 // neither, unless it was so before.
 static void check_flatness(const CagCurve *c, const CagCurve *image) {
   bool planar, straight;
@@ -138,7 +138,7 @@ static void check_flatness(const CagCurve *c, const CagCurve *image) {
   OK(cag_curve_is_planar(c, &planar, NULL, &err));
   OK(cag_curve_is_straight(c, &straight, &err));
   for (int i = 0; i < 4; i++) {
-    const double flat = i % 2 ? 1e-11 : 1e-6, across = i / 2 ? flat : 1;
+    const double flat = i % 2 ? 1e-11 : 1e-4, across = i / 2 ? flat : 1;
     CagTransform squeeze, turn = random_frame();
     CagCurve *squeezed, *turned;
     for (int k = 0; k < 3; k++) turn.m[k][3] *= scale;
@@ -147,7 +147,7 @@ static void check_flatness(const CagCurve *c, const CagCurve *image) {
     OK(cag_curve_transform(squeezed, &turn, &turned, &err));
     bool now;
     OK(cag_curve_is_planar(turned, &now, &plane, &err));
-    // Two squeezed directions leave a band that is plane within 1e-9 or not by 1e-6 of 1e-6.
+    // With two directions squeezed to 1e-4, what leaves the plane may be less than 1e-9 or not.
     if (i != 2) assert_int_equal(now, planar || flat < 1e-9);
     if (now) {
       NEAR(cag_norm(plane.normal), 1, 1e-14);

@@ -179,6 +179,48 @@ static void similar_curves_meet_planes_alike(void **state) {
   assert_true(met > 3000);
 }
 
+// Segments in the plane: alone, first or last, or between others; as lines and as splines.
+static void segments_in_a_plane_are_refused(void **state) {
+  (void)state;
+  seed = 404;
+  for (int round = 0; round < 400; round++) {
+    const double scale = pow(10, uniform(-5, 5));
+    const CagTransform t = random_similarity(3, scale);
+    const int before = round % 3, after = round / 3 % 3;
+    CagVec3 p[6];
+    size_t n = 0;
+    for (int i = 0; i < before; i++) {
+      p[n] = random_point(3);
+      p[n].z = uniform(0.1, 2) * ((round + i) % 2 ? 1 : -1);
+      n++;
+    }
+    p[n++] = random_point(2);
+    p[n++] = random_point(2);
+    for (int i = 0; i < after; i++) {
+      p[n] = random_point(3);
+      p[n].z = uniform(0.1, 2) * ((round / 2 + i) % 2 ? 1 : -1);
+      n++;
+    }
+    for (size_t i = 0; i < n; i++) p[i] = image_point(&t, p[i]);
+    const CagVec3 zero = image_point(&t, cag_vec3(0, 0, 0)),
+                  up = cag_sub(image_point(&t, cag_vec3(0, 0, 1)), zero);
+    CagPlane plane;
+    CagCurve *c;
+    CagMeeting *m;
+    size_t count;
+    OK(cag_plane(zero, cag_scaled(up, 1 / scale), &plane, &err));
+    OK(cag_curve_polyline(p, n, false, 3, &c, &err));
+    if (round / 9 % 2) {
+      CagCurve *spline;
+      OK(cag_curve_to_nurbs(c, &spline, &err));
+      cag_curve_release(c);
+      c = spline;
+    }
+    FAILS(cag_curve_intersect_plane(c, &plane, &m, &count, &err), "overlap");
+    cag_curve_release(c);
+  }
+}
+
 // A closed curve that crosses a line, or a plane, where it starts, or a little before its end.
 static void crossings_at_a_seam_are_told_at_its_start(void **state) {
   (void)state;
@@ -240,6 +282,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(similar_curves_meet_alike),
       cmocka_unit_test(similar_curves_meet_planes_alike),
+      cmocka_unit_test(segments_in_a_plane_are_refused),
       cmocka_unit_test(crossings_at_a_seam_are_told_at_its_start),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
