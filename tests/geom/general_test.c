@@ -187,6 +187,57 @@ static void flat_faces(void **state) {
   }
 }
 
+// How far two triangles of the plane z = 0 are apart across one of their edges: negative if they
+// overlap, by which the nearest of them would have to move.
+static double apart_by(const CagVec3 p[3], const CagVec3 q[3]) {
+  double most = -INFINITY;
+  for (int side = 0; side < 2; side++)
+    for (int i = 0; i < 3; i++) {
+      const CagVec3 *t = side ? q : p, *other = side ? p : q;
+      const CagVec3 a = t[i], along = cag_unit(cag_sub(t[(i + 1) % 3], a));
+      CagVec3 out = cag_vec3(along.y, -along.x, 0);
+      if (cag_dot(out, cag_sub(t[(i + 2) % 3], a)) > 0) out = cag_scaled(out, -1);
+      double least = INFINITY;
+      for (int k = 0; k < 3; k++) least = fmin(least, cag_dot(out, cag_sub(other[k], a)));
+      most = fmax(most, least);
+    }
+  return most;
+}
+
+// Tetrahedra on both sides of a plane, whose bases lie in it.
+static void triangles_of_one_plane_coincide_where_they_overlap(void **state) {
+  (void)state;
+  seed = 76;
+  int tried[2] = {0, 0};
+  for (int k = 0; k < 400; k++) {
+    CagVec3 p[2][4];
+    double area = INFINITY;
+    for (int side = 0; side < 2; side++) {
+      for (int i = 0; i < 3; i++) {
+        const double x = uniform(-1, 1);
+        const double y = uniform(-1, 1);
+        p[side][i] = cag_vec3(x + (side && k % 2 ? 0.8 : 0), y, 0);
+      }
+      const double x = uniform(-0.3, 0.3);
+      const double y = uniform(-0.3, 0.3);
+      p[side][3] = cag_vec3(x, y, side ? -1.1 : 0.9);
+      const CagVec3 n = cag_cross(cag_sub(p[side][1], p[side][0]), cag_sub(p[side][2], p[side][0]));
+      area = fmin(area, fabs(n.z));
+      // Faces look outwards.
+      if ((n.z < 0) != (side == 1)) {
+        const CagVec3 swap = p[side][1];
+        p[side][1] = p[side][2];
+        p[side][2] = swap;
+      }
+    }
+    const double gap = apart_by(p[0], p[1]);
+    if (area < 0.1 || (gap > -0.02 && gap < 0.01)) continue;
+    expect(tetrahedron(p[0]), tetrahedron(p[1]), gap > 0, "triangles of one plane");
+    tried[gap > 0]++;
+  }
+  assert_true(tried[0] > 60 && tried[1] > 60);
+}
+
 // Curved faces of one surface, cut and turned in different ways. Then a bit larger, and beside each
 // other on the same surface.
 static void curved_faces(void **state) {
@@ -361,6 +412,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lone_solids_are_in_general_position),
       cmocka_unit_test(flat_faces),
+      cmocka_unit_test(triangles_of_one_plane_coincide_where_they_overlap),
       cmocka_unit_test(curved_faces),
       cmocka_unit_test(single_triangles_of_fine_meshes),
       cmocka_unit_test(limits_of_coincidence),
