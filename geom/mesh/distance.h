@@ -1,4 +1,4 @@
-// Distances from a point to a segment and to a triangle of space.
+// Distances and nearest points from a point to a segment and to a triangle of space.
 
 #ifndef CAG_GEOM_MESH_DISTANCE_H
 #define CAG_GEOM_MESH_DISTANCE_H
@@ -33,6 +33,23 @@ static inline double cag_distance_to_triangle(CagVec3 p, CagVec3 a, CagVec3 b, C
   if (inside) return fabs(cag_dot(ap, n)) / cag_norm(n);
   return fmin(cag_distance_to_segment(p, a, b),
               fmin(cag_distance_to_segment(p, b, c), cag_distance_to_segment(p, c, a)));
+}
+
+// The point of the segment nearest to p.
+static inline CagVec3 cag_nearest_of_segment(CagVec3 p, CagVec3 a, CagVec3 b) {
+  const CagVec3 way = cag_sub(b, a);
+  const double length2 = cag_dot(way, way), along = cag_dot(cag_sub(p, a), way);
+  return length2 > 0 ? cag_madd(a, fmin(1, fmax(0, along / length2)), way) : a;
+}
+
+// The foot of p in the plane of the triangle, if it is inside. False: it is not.
+static inline bool cag_foot_in_triangle(CagVec3 p, const CagVec3 t[3], CagVec3 *foot) {
+  const CagVec3 ab = cag_sub(t[1], t[0]), ac = cag_sub(t[2], t[0]), n = cag_cross(ab, ac);
+  if (cag_triangle_is_thin(t[0], ab, ac, n)) return false;
+  *foot = cag_madd(p, -cag_dot(cag_sub(p, t[0]), n) / cag_dot(n, n), n);
+  for (int i = 0; i < 3; i++)
+    if (cag_dot(cag_cross(cag_sub(t[(i + 1) % 3], t[i]), cag_sub(p, t[i])), n) < 0) return false;
+  return true;
 }
 
 #endif

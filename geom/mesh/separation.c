@@ -8,12 +8,12 @@
 
 #include "geom/mesh/separation.h"
 
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "geom/curve/family.h"
 #include "geom/mesh/distance.h"
+#include "geom/mesh/part_pair.h"
 
 // Pairs from which the exact search starts: neighbors share their nearest point, so that several
 // are needed for each place.
@@ -21,7 +21,6 @@
 // The search for them ends after this many pairs: the second walk finds what it missed.
 #define MOST_LOOKED 50000
 #define LEAF 4
-#define ROUNDS 100
 // Newton's method starts again so often from the corner of a flat triangle.
 #define CORNER_ROUNDS 8
 // After this many pairs at the same distance, the shapes count as running along each other: the
@@ -217,12 +216,6 @@ static double chord_distance(const CagPart *a, const CagPart *b) {
   return nearest;
 }
 
-static CagVec3 nearest_of_segment(CagVec3 p, CagVec3 a, CagVec3 b) {
-  const CagVec3 way = cag_sub(b, a);
-  const double length2 = cag_dot(way, way), along = cag_dot(cag_sub(p, a), way);
-  return length2 > 0 ? cag_madd(a, fmin(1, fmax(0, along / length2)), way) : a;
-}
-
 // Keeps the point q of the second shape if it is the nearest so far to the point p of the first.
 typedef struct Foot {
   double distance;
@@ -233,28 +226,18 @@ static void offer_foot(Foot *foot, CagVec3 p, CagVec3 q) {
   if (d < foot->distance) *foot = (Foot){d, q};
 }
 
-// The foot of p in the plane of the triangle, if it is inside. False: it is not.
-static bool foot_in_triangle(CagVec3 p, const CagVec3 t[3], CagVec3 *foot) {
-  const CagVec3 ab = cag_sub(t[1], t[0]), ac = cag_sub(t[2], t[0]), n = cag_cross(ab, ac);
-  if (cag_triangle_is_thin(t[0], ab, ac, n)) return false;
-  *foot = cag_madd(p, -cag_dot(cag_sub(p, t[0]), n) / cag_dot(n, n), n);
-  for (int i = 0; i < 3; i++)
-    if (cag_dot(cag_cross(cag_sub(t[(i + 1) % 3], t[i]), cag_sub(p, t[i])), n) < 0) return false;
-  return true;
-}
-
 // The point of b nearest to a, for triangles that do not meet.
 static CagVec3 chord_foot(const CagPart *a, const CagPart *b) {
   Foot nearest = {INFINITY, b->p[0]};
   CagVec3 foot;
   for (int i = 0; i < 3; i++) {
     const CagVec3 p = a->p[i], q = a->p[(i + 1) % 3];
-    if (foot_in_triangle(p, b->p, &foot)) offer_foot(&nearest, p, foot);
-    if (foot_in_triangle(b->p[i], a->p, &foot)) offer_foot(&nearest, foot, b->p[i]);
+    if (cag_foot_in_triangle(p, b->p, &foot)) offer_foot(&nearest, p, foot);
+    if (cag_foot_in_triangle(b->p[i], a->p, &foot)) offer_foot(&nearest, foot, b->p[i]);
     for (int k = 0; k < 3; k++) {
       const CagVec3 r = b->p[k], s = b->p[(k + 1) % 3];
-      offer_foot(&nearest, p, nearest_of_segment(p, r, s));
-      offer_foot(&nearest, nearest_of_segment(r, p, q), r);
+      offer_foot(&nearest, p, cag_nearest_of_segment(p, r, s));
+      offer_foot(&nearest, cag_nearest_of_segment(r, p, q), r);
       // Where the lines are nearest, if both points are within.
       const CagVec3 u = cag_sub(q, p), v = cag_sub(s, r), w = cag_sub(p, r);
       const double uu = cag_dot(u, u), vv = cag_dot(v, v), uv = cag_dot(u, v);
@@ -458,226 +441,6 @@ static void walk(const Tree *a, size_t i, const Tree *b, size_t k, Nearest *s) {
   }
 }
 
-// --- Nearest points of exact shapes ---
-
-typedef struct Place {
-  CagVec3 p, d[2], dd[3]; // point, first derivatives, second: 00, 01, 11
-} Place;
-
-static int freedom(const CagPart *part) {
-  return part->curve ? 1 : part->surface || part->flat ? 2 : 0;
-}
-
-static CagStatus look(const CagPart *part, const double *x, Place *out, CagError *err) {
-  *out = (Place){.p = part->p[0]};
-  if (part->curve) {
-    CagVec3 d[3];
-    const CagSide side = x[0] >= part->high[0] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
-    CagStatus status = cag_curve_eval(part->curve, x[0], 2, side, d, err);
-    if (status) return status;
-    *out = (Place){.p = d[0], .d = {d[1]}, .dd = {d[2]}};
-  } else if (part->surface) {
-    CagVec3 d[9];
-    const CagSide su = x[0] >= part->high[0] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
-    const CagSide sv = x[1] >= part->high[1] ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
-    CagStatus status = cag_surface_eval(part->surface, x[0], x[1], 2, su, sv, d, err);
-    if (status) return status;
-    *out = (Place){d[0],
-                   {d[cag_partial(2, 1, 0)], d[cag_partial(2, 0, 1)]},
-                   {d[cag_partial(2, 2, 0)], d[cag_partial(2, 1, 1)], d[cag_partial(2, 0, 2)]}};
-  } else if (part->flat) {
-    // (1 - s) p0 + s ((1 - t) p1 + t p2), which fills the triangle from the unit square
-    const CagVec3 far = cag_lerp(part->p[1], part->p[2], x[1]);
-    const CagVec3 across = cag_sub(part->p[2], part->p[1]);
-    out->p = cag_lerp(part->p[0], far, x[0]);
-    out->d[0] = cag_sub(far, part->p[0]);
-    out->d[1] = cag_scaled(across, x[0]);
-    out->dd[1] = across;
-  }
-  return CAG_OK;
-}
-
-typedef struct Pair {
-  const CagPart *part[2];
-  int free[2], n; // parameters of each, of both
-  double x[4];
-} Pair;
-
-typedef struct Slope {
-  double value; // half the square of the distance
-  double g[4], h[4][4], scale[4];
-} Slope;
-
-static CagStatus slope(const Pair *pair, const double *x, Slope *out, CagError *err) {
-  Place place[2];
-  CagVec3 d[4];
-  CagStatus status = look(pair->part[0], x, &place[0], err);
-  if (!status) status = look(pair->part[1], x + pair->free[0], &place[1], err);
-  if (status) return status;
-  const CagVec3 r = cag_sub(place[0].p, place[1].p);
-  *out = (Slope){.value = cag_dot(r, r) / 2};
-  for (int side = 0, at = 0; side < 2; at += pair->free[side++])
-    for (int i = 0; i < pair->free[side]; i++)
-      d[at + i] = cag_scaled(place[side].d[i], side ? -1 : 1);
-  for (int i = 0; i < pair->n; i++) {
-    out->g[i] = cag_dot(r, d[i]);
-    out->scale[i] = cag_dot(d[i], d[i]);
-    for (int k = 0; k < pair->n; k++) out->h[i][k] = cag_dot(d[i], d[k]);
-  }
-  for (int side = 0, at = 0; side < 2; at += pair->free[side++])
-    for (int i = 0; i < pair->free[side]; i++)
-      for (int k = 0; k < pair->free[side]; k++)
-        out->h[at + i][at + k] += (side ? -1 : 1) * cag_dot(r, place[side].dd[i + k]);
-  return CAG_OK;
-}
-
-// A flat triangle is one point where its first parameter is 0. From there the second one chooses
-// the way to go: along the side on which the distance falls more.
-static CagStatus leave_corners(Pair *pair, Slope *here, CagError *err) {
-  CagStatus status = CAG_OK;
-  for (int side = 0, at = 0; !status && side < 2; at += pair->free[side++]) {
-    if (!pair->part[side]->flat || pair->x[at] > 0) continue;
-    const CagVec3 *p = pair->part[side]->p;
-    // The slope by the first parameter changes linearly with the second.
-    Slope end[2];
-    for (int k = 0; !status && k < 2; k++) {
-      pair->x[at + 1] = k;
-      status = slope(pair, pair->x, &end[k], err);
-    }
-    if (status) break;
-    const double along[2] = {end[0].g[at] / (cag_norm(cag_sub(p[1], p[0])) + DBL_MIN),
-                             end[1].g[at] / (cag_norm(cag_sub(p[2], p[0])) + DBL_MIN)};
-    const int k = along[1] < along[0];
-    pair->x[at + 1] = k;
-    *here = end[k];
-  }
-  return status;
-}
-
-static void limits(const Pair *pair, int i, double *low, double *high, bool *ring) {
-  const int side = i >= pair->free[0], k = side ? i - pair->free[0] : i;
-  const CagPart *part = pair->part[side];
-  *low = part->low[k];
-  *high = part->high[k];
-  *ring = part->ring[k];
-}
-
-// Solves (h + damping scale) d = -g for the free parameters (Cholesky); false: not positive.
-static bool solve(const Slope *s, const bool *fixed, int n, double damping, double *d) {
-  double l[4][4] = {{0}}, y[4];
-  for (int i = 0; i < n; i++) {
-    for (int k = 0; k <= i; k++) {
-      double sum = fixed[i] || fixed[k] ? (double)(i == k) : s->h[i][k];
-      if (i == k && !fixed[i]) sum += damping * s->scale[i] + 1e-300;
-      for (int m = 0; m < k; m++) sum -= l[i][m] * l[k][m];
-      if (i != k) l[i][k] = sum / l[k][k];
-      else if (sum > 0) l[i][i] = sqrt(sum);
-      else return false;
-    }
-    y[i] = fixed[i] ? 0 : -s->g[i];
-    for (int m = 0; m < i; m++) y[i] -= l[i][m] * y[m];
-    y[i] /= l[i][i];
-  }
-  for (int i = n - 1; i >= 0; i--) {
-    d[i] = y[i];
-    for (int m = i + 1; m < n; m++) d[i] -= l[m][i] * d[m];
-    d[i] /= l[i][i];
-  }
-  return true;
-}
-
-static void advance(const Pair *pair, const double *d, double *x) {
-  for (int i = 0; i < pair->n; i++) {
-    double low, high;
-    bool ring;
-    limits(pair, i, &low, &high, &ring);
-    x[i] = pair->x[i] + d[i];
-    if (ring) x[i] -= (high - low) * floor((x[i] - low) / (high - low));
-    x[i] = fmin(fmax(x[i], low), high);
-  }
-}
-
-// The distance at the local minimum that the pair leads to, and its point of the second shape.
-static CagStatus refine(Pair *pair, double *out, CagVec3 *point, CagError *err) {
-  Slope here, there;
-  double damping = 1e-6;
-  CagStatus status = slope(pair, pair->x, &here, err);
-  for (int round = 0; !status && pair->n && round < ROUNDS && damping < 1e12; round++) {
-    bool fixed[4];
-    double d[4], x[4];
-    status = leave_corners(pair, &here, err);
-    if (status) break;
-    for (int i = 0; i < pair->n; i++) {
-      double low, high;
-      bool ring;
-      limits(pair, i, &low, &high, &ring);
-      fixed[i] =
-          !ring && ((pair->x[i] <= low && here.g[i] > 0) || (pair->x[i] >= high && here.g[i] < 0));
-    }
-    if (!solve(&here, fixed, pair->n, damping, d)) {
-      damping = fmax(damping * 10, 1e-3);
-      continue;
-    }
-    advance(pair, d, x);
-    status = slope(pair, x, &there, err);
-    if (status) break;
-    if (!(there.value < here.value)) {
-      damping = fmax(damping * 10, 1e-6);
-      continue;
-    }
-    memcpy(pair->x, x, sizeof x);
-    here = there;
-    damping /= 10;
-  }
-  if (status) return status;
-  Place place;
-  *out = sqrt(2 * here.value);
-  status = look(pair->part[1], pair->x + pair->free[0], &place, err);
-  *point = place.p;
-  return status;
-}
-
-// The point of the triangle nearest to p, as shares of its second and third corner.
-static double nearest_in_triangle(CagVec3 p, const CagVec3 t[3], double share[2]) {
-  CagVec3 foot;
-  if (foot_in_triangle(p, t, &foot)) {
-    const CagVec3 ab = cag_sub(t[1], t[0]), ac = cag_sub(t[2], t[0]), n = cag_cross(ab, ac);
-    const CagVec3 to = cag_sub(foot, t[0]);
-    share[0] = cag_dot(cag_cross(to, ac), n) / cag_dot(n, n);
-    share[1] = cag_dot(cag_cross(ab, to), n) / cag_dot(n, n);
-    return cag_norm(cag_sub(p, foot));
-  }
-  double nearest = INFINITY;
-  for (int i = 0; i < 3; i++) {
-    const CagVec3 a = t[i], b = t[(i + 1) % 3], on = nearest_of_segment(p, a, b);
-    const double d = cag_norm(cag_sub(p, on)), length = cag_norm(cag_sub(b, a));
-    if (d >= nearest) continue;
-    const double x = length > 0 ? cag_norm(cag_sub(on, a)) / length : 0;
-    const double shares[3][2] = {{x, 0}, {1 - x, x}, {0, 1 - x}};
-    nearest = d;
-    memcpy(share, shares[i], 2 * sizeof *share);
-  }
-  return nearest;
-}
-
-// Moves the point of a flat triangle to the nearest one to the other point. Newton's method can end
-// at the corner where the parameters of the triangle are not unique. False: it does not get nearer.
-static bool leave_corner(Pair *pair, double distance, CagStatus *status, CagError *err) {
-  const double nearer = 1 - 1e-9;
-  for (int side = 0; side < 2; side++) {
-    if (!pair->part[side]->flat) continue;
-    Place other;
-    double share[2], *x = pair->x + (side ? pair->free[0] : 0);
-    *status = look(pair->part[1 - side], pair->x + (side ? 0 : pair->free[0]), &other, err);
-    if (*status || !(nearest_in_triangle(other.p, pair->part[side]->p, share) < nearer * distance))
-      return false;
-    x[0] = fmin(1, share[0] + share[1]);
-    if (x[0] > 0) x[1] = fmin(1, fmax(0, share[1] / x[0]));
-    return true;
-  }
-  return false;
-}
-
 // --- The search ---
 
 // Two nodes with a lower bound of their distance.
@@ -710,14 +473,14 @@ static bool is_exact(const CagPart *part) { return part->sag == 0 && !part->core
 
 // From the ends of curves, where the search from the middle led to a farther minimum: keeps the
 // nearest.
-static void try_ends(Search *s, const Pair *start, double *d, CagVec3 *p) {
+static void try_ends(Search *s, const CagPartPair *start, double *d, CagVec3 *p) {
   for (int side = 0, at = 0; side < 2; at += start->free[side++])
     for (int last = 0; last < 2 && start->part[side]->curve && !s->status; last++) {
-      Pair pair = *start;
+      CagPartPair pair = *start;
       double there;
       CagVec3 foot;
       pair.x[at] = last ? pair.part[side]->high[0] : pair.part[side]->low[0];
-      s->status = refine(&pair, &there, &foot, s->err);
+      s->status = cag_part_pair_refine(&pair, &there, &foot, s->err);
       if (s->status || there >= *d) continue;
       *d = there;
       *p = foot;
@@ -726,20 +489,16 @@ static void try_ends(Search *s, const Pair *start, double *d, CagVec3 *p) {
 
 // Lowers the best distance by what the pair leads to; `chords` is that of their chords.
 static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chords) {
-  Pair pair = {.part = {a, b}};
+  const CagPartPair start = cag_part_pair(a, b);
+  CagPartPair pair = start;
   double d = chords;
   CagVec3 p;
-  for (int side = 0; side < 2; side++) {
-    pair.free[side] = freedom(pair.part[side]);
-    for (int k = 0; k < pair.free[side]; k++) pair.x[pair.n++] = pair.part[side]->at[k];
-  }
-  const Pair start = pair;
   const bool exact = is_exact(a) && is_exact(b);
   if (exact) p = chord_foot(a, b);
-  else s->status = refine(&pair, &d, &p, s->err);
+  else s->status = cag_part_pair_refine(&pair, &d, &p, s->err);
   for (int round = 0; !exact && round < CORNER_ROUNDS && d > touching(s); round++) {
-    if (s->status || !leave_corner(&pair, d, &s->status, s->err)) break;
-    s->status = refine(&pair, &d, &p, s->err);
+    if (s->status || !cag_part_pair_leave_corner(&pair, d, &s->status, s->err)) break;
+    s->status = cag_part_pair_refine(&pair, &d, &p, s->err);
   }
   if (s->status) return;
   if (!exact && d > chords + equally_near(s)) try_ends(s, &start, &d, &p);
