@@ -34,10 +34,6 @@ static bool read_mesh(CagCall *call, const CagMesh **m) {
     return cag_fail_call(call, 0, CAG_ERR_type,
                          "expects a mesh or a polyhedron, found a solid with faces of its own; "
                          "`tessellate` makes a mesh of it");
-  if (call->values[0].type != CAG_MESH) {
-    cag_fail_type(call, 0, "a mesh");
-    return false;
-  }
   *m = CAG_AS_SHAPE(call->values[0])->as.mesh;
   return true;
 }

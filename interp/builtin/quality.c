@@ -190,7 +190,6 @@ static bool call_colored_by(CagCall *call, CagValue *result) {
 // --- What a colored mesh says ---
 
 static bool read_colored(CagCall *call, const CagMesh **out) {
-  if (call->values[0].type != CAG_MESH) return cag_fail_type(call, 0, "a mesh with colors");
   *out = CAG_AS_SHAPE(call->values[0])->as.mesh;
   if ((*out)->scale.kind && (*out)->uv) return true;
   CagError err;

@@ -135,7 +135,6 @@ bool cag_curves_regular_polygon(CagCall *call, CagValue *result) {
 }
 
 bool cag_curves_boundary(CagCall *call, CagValue *result) {
-  if (call->values[0].type != CAG_REGION) return cag_fail_type(call, 0, "a region");
   const CagShape *shape = CAG_AS_SHAPE(call->values[0]);
   CagBuilder *loops = cag_builder_new(call->vm);
   CagError err;

@@ -89,9 +89,8 @@ bool cag_solids_prism(CagCall *call, CagValue *result) {
   double height;
   if (!cag_arg_finite(call, 1, &height)) return false;
   // The first two and the last argument of an extrusion; the others are not given.
-  CagValue values[6] = {call->values[0], call->values[1],
-                        cag_unset(),     cag_unset(),
-                        cag_unset(),     cag_given(call, 2) ? call->values[2] : cag_unset()};
+  CagValue values[6] = {call->values[0], call->values[1], cag_unset(),
+                        cag_unset(),     cag_unset(),     call->values[2]};
   bool centered;
   if (!cag_arg_bool_or(call, 2, false, &centered)) return false;
   CagCall extrude = *call;
