@@ -370,6 +370,31 @@ static void a_long_chain_of_definitions_is_no_trouble(void **state) {
   free(script);
 }
 
+// The types of all names in a block are known, however many there are. Here _l0, _l3 ... are
+// numbers, _l1 and so on angles, _l2 and so on texts; one of them is added to a text.
+static void types_of_many_local_names_are_known(void **state) {
+  (void)state;
+  enum { NAMES = 1000 };
+  char *script = malloc(100000);
+  for (int wrong = 0; wrong < NAMES; wrong += 37) {
+    char *p = script + sprintf(script, "print {\n");
+    for (int i = 0; i < NAMES; i++)
+      p += sprintf(p, "_l%d = %s\n", i, i % 3 == 0 ? "1" : i % 3 == 1 ? "2deg" : "\"a\"");
+    p += sprintf(p, "_l%d + \"b\"\n}, {", wrong);
+    for (int i = 0; i < NAMES; i++) p += sprintf(p, "_x%d = 1\n", i);
+    p += sprintf(p, "[_x0");
+    for (int i = 1; i < NAMES; i++) p += sprintf(p, ", _x%d", i);
+    sprintf(p, "]}\n");
+    const char *told = found(script);
+    char expected[16];
+    snprintf(expected, sizeof expected, "E0321:%d", NAMES + 2);
+    if ((strstr(told, "E0321") != NULL) != (wrong % 3 != 2) ||
+        (wrong % 3 != 2 && !strstr(told, expected)))
+      fail_msg("_l%d: %s", wrong, told);
+  }
+  free(script);
+}
+
 // Whatever the table of built-ins says as an example is right.
 static void examples_are_found_right(void **state) {
   (void)state;
@@ -560,6 +585,7 @@ int main(void) {
       cmocka_unit_test(what_may_be_right_is_left_alone),
       cmocka_unit_test(definitions_that_nothing_uses_are_told),
       cmocka_unit_test(a_long_chain_of_definitions_is_no_trouble),
+      cmocka_unit_test(types_of_many_local_names_are_known),
       cmocka_unit_test(examples_are_found_right),
       cmocka_unit_test(messages_mark_what_is_wrong),
       cmocka_unit_test(definitions_are_reached_through_others),
