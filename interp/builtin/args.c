@@ -309,11 +309,10 @@ bool cag_arg_numbers(CagCall *call, int argument, const double **out, size_t *n)
     *n = list->length;
     return true;
   }
-  for (size_t i = 0; i < list->length; i++) {
-    CagValue element = cag_list_get(call->vm, list, i);
-    if (element.type != CAG_NUMBER) return cag_fail_element(call, argument, i, element, "numbers");
-  }
-  return cag_fail_type(call, argument, "a list of numbers");
+  // Numbers alone are packed: here one element is none.
+  size_t i = 0;
+  while (cag_list_get(call->vm, list, i).type == CAG_NUMBER) i++;
+  return cag_fail_element(call, argument, i, cag_list_get(call->vm, list, i), "numbers");
 }
 
 bool cag_arg_interval(CagCall *call, int argument, double *start, double *end, bool *angle) {
