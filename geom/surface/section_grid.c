@@ -207,13 +207,20 @@ bool cag_tracer_critical(CagTracer *t, CagTraceNode *node, double hu, double hv,
   return true;
 }
 
+// The distance from a line to the nearer one beside it.
+static double width_at(const CagTracer *t, int direction, size_t i) {
+  const double *x = t->lines[direction] + i;
+  const double before = i > 0 ? x[0] - x[-1] : INFINITY;
+  return i + 1 < t->n[direction] ? fmin(before, x[1] - x[0]) : before;
+}
+
 // Follows the function from a node where it is nearest to 0 among its neighbors; true where it
 // has the other sign at its extremum.
 static bool follow(CagTracer *t, size_t i, size_t j, double *u, double *v) {
   double sign = *value_of(t, i, j) < 0 ? -1 : 1, bend, determinant;
   CagTraceNode here = {.u = t->lines[0][i], .v = t->lines[1][j]};
-  double hu = fmin(t->lines[0][i + 1] - here.u, here.u - t->lines[0][i - 1]);
-  double hv = fmin(t->lines[1][j + 1] - here.v, here.v - t->lines[1][j - 1]);
+  // The extremum of a narrow oblique dip may lie more than one cell away.
+  const double hu = 2 * width_at(t, 0, i), hv = 2 * width_at(t, 1, j);
   if (!cag_tracer_critical(t, &here, hu, hv, &bend, &determinant)) return false;
   *u = here.u;
   *v = here.v;
@@ -222,16 +229,16 @@ static bool follow(CagTracer *t, size_t i, size_t j, double *u, double *v) {
 
 static bool nearest_to_zero(const CagTracer *t, size_t i, size_t j) {
   double f = *value_of(t, i, j), sign = f < 0 ? -1 : 1;
-  for (int di = -1; di <= 1; di++)
-    for (int dj = -1; dj <= 1; dj++)
-      if (*value_of(t, i + (size_t)di, j + (size_t)dj) * sign < f * sign) return false;
+  for (size_t k = i > 0 ? i - 1 : 0; k <= i + 1 && k < t->n[0]; k++)
+    for (size_t l = j > 0 ? j - 1 : 0; l <= j + 1 && l < t->n[1]; l++)
+      if (*value_of(t, k, l) * sign < f * sign) return false;
   return f != 0;
 }
 
 static void find_small_loops(CagTracer *t, Extra *e) {
   double u, v;
-  for (size_t j = 1; j + 1 < t->n[1]; j++)
-    for (size_t i = 1; i + 1 < t->n[0] && e->n[0] < FOLLOWED_MOST && !t->status; i++)
+  for (size_t j = 0; j < t->n[1]; j++)
+    for (size_t i = 0; i < t->n[0] && e->n[0] < FOLLOWED_MOST && !t->status; i++)
       if (nearest_to_zero(t, i, j) && follow(t, i, j, &u, &v)) {
         add_extra(e, 0, u);
         add_extra(e, 1, v);
