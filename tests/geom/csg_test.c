@@ -685,6 +685,70 @@ static void half_spaces_may_bound_a_body(void **state) {
   }
 }
 
+static CagSolid *labeled(CagSolid *s, uint32_t label) {
+  s->label = label;
+  return s;
+}
+
+static uint32_t ten_times_more(void *context, uint32_t label) {
+  ++*(int *)context;
+  return 10 * (label + 1);
+}
+
+// Copies with other labels have the same faces, edges and meshes.
+static void copies_with_other_labels_are_alike(void **state) {
+  (void)state;
+  for (int k = 0; k < 7; k++) {
+    CagSolid *s = box(2), *copy, *rod;
+    int calls = 0;
+    OK(cag_solid_cylinder(3, 0.4, k == 1 ? 0 : 0.4, &rod, &err));
+    rod = moved(rod, 1, 1, -0.5);
+    if (k < 2) {
+      cag_solid_release(s);
+      s = rod;
+    } else if (k < 4) {
+      s = combined(CAG_DIFFERENCE, s, rod); // labels of operands: none, or both
+      if (k == 3) {
+        labeled(s->core->operands[0], 4);
+        labeled(s->core->operands[1], 6);
+      }
+    } else if (k == 4) {
+      CagSolid *both =
+          combined(CAG_UNION, labeled(rod, 2), labeled(moved(sphere(0.7), 2, 0, 0), 3));
+      s = moved(combined(CAG_DIFFERENCE, s, both), 5, 6, 7);
+    } else cag_solid_release(rod);
+    if (k == 6) s = labeled(s, 8);
+    OK(cag_solid_relabel(s, ten_times_more, &calls, &copy, &err));
+    assert_int_equal(calls, k == 3 ? 2 : k == 4 ? 3 : 1);
+    assert_int_equal(cag_solid_first_label(copy), k == 3 ? 50 : k == 6 ? 90 : 10);
+    assert_int_equal(cag_solid_first_label(s), k == 3 ? 4 : k == 4 ? 2 : k == 6 ? 8 : 0);
+    assert_int_equal(copy->kind, s->kind);
+    assert_int_equal(copy->face_count, s->face_count);
+    assert_int_equal(copy->edge_count, s->edge_count);
+    for (size_t i = 0; i < s->edge_count; i++)
+      for (int side = 0; side < 2; side++) {
+        assert_int_equal(copy->edges[i].face[side], s->edges[i].face[side]);
+        assert_int_equal(copy->edges[i].side[side], s->edges[i].side[side]);
+        assert_int_equal(copy->edges[i].reversed, s->edges[i].reversed);
+      }
+    CagMesh *m, *n;
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    how.tolerance = 0.01;
+    OK(cag_csg_mesh(s, &how, &m, &err));
+    OK(cag_csg_mesh(copy, &how, &n, &err));
+    assert_int_equal(m->triangle_count, n->triangle_count);
+    assert_memory_equal(m->positions, n->positions, m->vertex_count * sizeof *m->positions);
+    for (size_t t = 0; t < m->triangle_count; t++) {
+      assert_true(n->labels != NULL);
+      assert_int_equal(n->labels[t], 10 * ((m->labels ? m->labels[t] : 0) + 1));
+    }
+    cag_mesh_release(m);
+    cag_mesh_release(n);
+    cag_solid_release(s);
+    cag_solid_release(copy);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(operations_of_one_kind_are_one),
@@ -703,6 +767,7 @@ int main(void) {
       cmocka_unit_test(meshes_of_operations_end_where_their_equations_say),
       cmocka_unit_test(tolerances_scale_with_copies),
       cmocka_unit_test(half_spaces_may_bound_a_body),
+      cmocka_unit_test(copies_with_other_labels_are_alike),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
