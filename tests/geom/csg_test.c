@@ -685,6 +685,127 @@ static void half_spaces_may_bound_a_body(void **state) {
   }
 }
 
+// The form sum of (d_j (p - center))^2 / semi_j^2 - 1 over the first `ends` of three directions,
+// times sense.
+static CagQuadric form_within(const CagVec3 d[3], const double *semi, int ends, CagVec3 center,
+                              double sense) {
+  CagQuadric q = {{0}};
+  for (int j = 0; j < ends; j++) {
+    const CagVec3 a = cag_scaled(d[j], 1 / semi[j]);
+    const double k = -cag_dot(a, center);
+    const double c[10] = {a.x * a.x,     a.y * a.y,   a.z * a.z,   2 * a.x * a.y, 2 * a.y * a.z,
+                          2 * a.z * a.x, 2 * k * a.x, 2 * k * a.y, 2 * k * a.z,   k * k};
+    for (int i = 0; i < 10; i++) q.c[i] += sense * c[i];
+  }
+  q.c[9] -= sense;
+  return q;
+}
+
+static double part_of(CagVec3 v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+// Ellipsoids, elliptic cylinders and slabs: in any direction, about an axis, and along the axes.
+static void reach_of_turned_forms(void **state) {
+  (void)state;
+  seed = 21;
+  for (int k = 0; k < 270; k++) {
+    const int ends = 1 + k % 3, turns = k / 3 % 3, first = k / 9 % 3;
+    const double x = uniform(-3, 3);
+    const double y = uniform(-3, 3);
+    const double z = uniform(-3, 3);
+    CagTransform turn = cag_rpy(x, y, z);
+    if (turns) {
+      const double angle = turns == 1 ? x : 0;
+      const CagVec3 axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+      OK(cag_rotate(axis[k / 27 % 3], angle, cag_vec3(0, 0, 0), &turn, &err));
+    }
+    CagVec3 d[3];
+    double semi[3];
+    for (int j = 0; j < 3; j++) {
+      const int at = (j + first) % 3;
+      d[j] = cag_scaled(cag_vec3(turn.m[0][at], turn.m[1][at], turn.m[2][at]), k % 2 ? -1 : 1);
+      semi[j] = uniform(0.5, 3);
+    }
+    const CagVec3 center = {y, z, x};
+    for (int out = 0; out < 2; out++) {
+      const CagQuadric q = form_within(d, semi, ends, center, out ? -1 : 1);
+      CagSolid *s;
+      CagBounds b;
+      OK(cag_solid_quadric(&q, &s, &err));
+      OK(cag_solid_reach(s, &b, &err));
+      for (int i = 0; i < 3; i++) {
+        double square = 0;
+        bool endless = out;
+        for (int j = 0; j < 3; j++)
+          if (j < ends) square += pow(semi[j] * part_of(d[j], i), 2);
+          else endless = endless || fabs(part_of(d[j], i)) > 1e-9;
+        const double low = part_of(b.min, i), high = part_of(b.max, i);
+        if (endless) {
+          assert_true(low == -INFINITY && high == INFINITY);
+          continue;
+        }
+        NEAR(low, part_of(center, i) - sqrt(square), 1e-9);
+        NEAR(high, part_of(center, i) + sqrt(square), 1e-9);
+      }
+      cag_solid_release(s);
+    }
+  }
+  for (int k = 0; k < 6; k++) {
+    const double sense = k % 2 ? -1 : 1;
+    const CagVec3 n = {(k / 2 == 0) * sense, (k / 2 == 1) * sense, (k / 2 == 2) * sense};
+    CagSolid *s = side_of(cag_vec3(2, 3, 4), n);
+    CagBounds b;
+    OK(cag_solid_reach(s, &b, &err));
+    for (int i = 0; i < 3; i++) {
+      assert_true(part_of(b.min, i) == (k == 2 * i + 1 ? 2.0 + i : -INFINITY));
+      assert_true(part_of(b.max, i) == (k == 2 * i ? 2.0 + i : INFINITY));
+    }
+    cag_solid_release(s);
+  }
+}
+
+// The distance of a point from a form's surface is its value by its slope, which is taken by
+// differences here: less than the slack is on the surface.
+static void sides_of_forms_have_a_slack_in_space(void **state) {
+  (void)state;
+  const double slack = 1e-4, h = 1e-3;
+  int tried = 0;
+  seed = 22;
+  for (int k = 0; k < 400; k++) {
+    CagQuadric q;
+    CagSolid *s;
+    for (int i = 0; i < 10; i++) q.c[i] = uniform(-1, 1);
+    double x[6];
+    for (int i = 0; i < 6; i++) x[i] = uniform(-3, 3);
+    CagVec3 p = {x[0], x[1], x[2]}, far = {x[3], x[4], x[5]};
+    if (cag_quadric_value(&q, p) * cag_quadric_value(&q, far) > 0) continue;
+    for (int i = 0; i < 100; i++) {
+      const CagVec3 middle = cag_lerp(p, far, 0.5);
+      if (cag_quadric_value(&q, p) * cag_quadric_value(&q, middle) > 0) p = middle;
+      else far = middle;
+    }
+    double slope[3];
+    for (int i = 0; i < 3; i++) {
+      const CagVec3 step = {i == 0 ? h : 0, i == 1 ? h : 0, i == 2 ? h : 0};
+      slope[i] =
+          (cag_quadric_value(&q, cag_add(p, step)) - cag_quadric_value(&q, cag_sub(p, step))) /
+          (2 * h); // exact for a form of degree 2
+    }
+    const CagVec3 n = cag_vec3(slope[0], slope[1], slope[2]);
+    if (cag_norm(n) < 0.5) continue;
+    OK(cag_solid_quadric(&q, &s, &err));
+    static const double shares[] = {-1.02, -0.98, 0.98, 1.02};
+    for (int i = 0; i < 4; i++) {
+      int side;
+      OK(cag_csg_side(s, cag_madd(p, shares[i] * slack, cag_unit(n)), slack, no_leaf, NULL, &side,
+                      &err));
+      assert_int_equal(side, i == 0 ? -1 : i == 3 ? 1 : 0);
+    }
+    cag_solid_release(s);
+    tried++;
+  }
+  assert_true(tried > 100);
+}
+
 static CagSolid *labeled(CagSolid *s, uint32_t label) {
   s->label = label;
   return s;
@@ -767,6 +888,8 @@ int main(void) {
       cmocka_unit_test(meshes_of_operations_end_where_their_equations_say),
       cmocka_unit_test(tolerances_scale_with_copies),
       cmocka_unit_test(half_spaces_may_bound_a_body),
+      cmocka_unit_test(reach_of_turned_forms),
+      cmocka_unit_test(sides_of_forms_have_a_slack_in_space),
       cmocka_unit_test(copies_with_other_labels_are_alike),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
