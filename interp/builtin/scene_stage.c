@@ -117,7 +117,7 @@ bool cag_scenes_camera(CagCall *call, CagValue *result) {
       (is_set(call, 7) && !cag_arg_positive(call, 7, &focus)) ||
       !cag_arg_number_or(call, 8, 0, &aperture))
     return false;
-  if (aperture < 0)
+  if (!(aperture >= 0 && isfinite(aperture)))
     return cag_fail_call(call, 8, CAG_ERR_value, "wants an `aperture` of 0 or more");
   CagValue fields[] = {cag_point(call->vm, eye, 3),
                        cag_point(call->vm, target, 3),
