@@ -392,6 +392,31 @@ static void areas_of_uneven_speed_are_right(void **state) {
   cag_curve_release(parts[1]);
 }
 
+// All of the curve but its end lies between the last two numbers of its domain: no parameter is
+// nearer to the middle than the ends are, and the search comes to an end.
+static void curves_within_the_last_digit_have_a_closest_point(void **state) {
+  (void)state;
+  const CagVec3 p[4] = {{0, 0, 0}, {1, 2, 0}, {3, 3, 0}, {4, 0, 0}};
+  for (size_t n = 3; n <= 4; n++)
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
+      double w[4];
+      for (size_t i = 0; i < n; i++) w[i] = pow(1e-20, (double)(mirrored ? n - 1 - i : i));
+      CagCurve *c;
+      OK(cag_curve_bezier(p, w, n, 2, &c, &err));
+      const CagVec3 target = cag_vec3(1.8, 2.5, 0);
+      double t, distance;
+      CagVec3 foot, at;
+      OK(cag_curve_closest(c, target, &t, &foot, &distance, &err));
+      OK(cag_curve_point(c, t, &at, &err));
+      near_vec(at, foot, 0);
+      NEAR(cag_norm(cag_sub(foot, target)), distance, 1e-15);
+      const double first = cag_norm(cag_sub(p[0], target)),
+                   last = cag_norm(cag_sub(p[n - 1], target));
+      assert_true(distance <= fmin(first, last));
+      cag_curve_release(c);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(an_ellipse_has_the_perimeter_of_the_elliptic_integral),
@@ -407,6 +432,7 @@ int main(void) {
       cmocka_unit_test(lengths_do_not_depend_on_the_speed),
       cmocka_unit_test(areas_of_uneven_speed_are_right),
       cmocka_unit_test(the_closest_point_is_the_global_one),
+      cmocka_unit_test(curves_within_the_last_digit_have_a_closest_point),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
