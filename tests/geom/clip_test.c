@@ -366,6 +366,7 @@ static void nothing_within_is_an_empty_mesh(void **state) {
     OK(cag_solid_transform(ball, &t, &by, &err));
     OK(cag_mesh_clip(flat, by, &how, &out, &err));
     assert_int_equal(out->triangle_count, 0);
+    assert_true(!out->normals && !out->uv && !out->weld);
     cag_mesh_release(out);
     cag_solid_release(by);
   }

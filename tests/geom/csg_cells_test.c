@@ -187,9 +187,52 @@ static void operations_have_the_mass_and_bounds_of_their_cells(void **state) {
   assert_true(separate > 10);
 }
 
+// Two boxes that have a face in common, which is none of their union.
+static void boxes_that_touch_have_one_surface(void **state) {
+  (void)state;
+  for (int k = 0; k < 6; k++) {
+    const int axis = k / 2;
+    int low[3] = {1, 2, 3}, high[3] = {2, 4, 6};
+    Body b[2] = {{0}};
+    b[k % 2] = box_between(low, high);
+    low[axis] = high[axis];
+    high[axis] += 1;
+    b[1 - k % 2] = box_between(low, high);
+    Body both = combined(CAG_UNION, b, 2);
+    const Sums sums = sums_of(&both);
+    const CagTransform same = cag_transform_identity();
+    check_mass(both.solid, &sums, &same, 1);
+    cag_solid_release(both.solid);
+  }
+}
+
+// Copies that stand elsewhere share what an operation has; the last of them lets it go.
+static void the_last_copy_lets_operands_go(void **state) {
+  (void)state;
+  const int low[2][3] = {{0, 0, 0}, {1, 1, 1}}, high[2][3] = {{3, 4, 5}, {4, 5, 6}};
+  for (int op = 0; op < 3; op++) {
+    const Body a = box_between(low[0], high[0]), b = box_between(low[1], high[1]);
+    const CagTransform t = cag_translate(cag_vec3(1, 2, 3));
+    CagSolid *s, *moved;
+    OK(cag_solid_combine((CagSetOperation[]){CAG_UNION, CAG_DIFFERENCE, CAG_INTERSECTION}[op],
+                         (CagSolid *[]){a.solid, b.solid}, 2, NULL, &s, &err));
+    OK(cag_solid_transform(s, &t, &moved, &err));
+    assert_true(a.solid->references > 1 && b.solid->references > 1);
+    cag_solid_release(s);
+    assert_true(a.solid->references > 1 && b.solid->references > 1);
+    cag_solid_release(moved);
+    assert_int_equal(a.solid->references, 1);
+    assert_int_equal(b.solid->references, 1);
+    cag_solid_release(a.solid);
+    cag_solid_release(b.solid);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(operations_have_the_mass_and_bounds_of_their_cells),
+      cmocka_unit_test(boxes_that_touch_have_one_surface),
+      cmocka_unit_test(the_last_copy_lets_operands_go),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
