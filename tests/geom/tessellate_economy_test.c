@@ -118,10 +118,31 @@ static void triangles_do_not_depend_on_how_parameters_run(void **state) {
   for (int i = 0; i < 3; i++) assert_true(sum[i] <= together[i]);
 }
 
+// A limit of as many triangles as there are is kept, one less is not.
+static void limits_of_triangles_are_exact(void **state) {
+  (void)state;
+  seed = 33;
+  for (int k = 0; k < 18; k++) {
+    const Net net = random_net(k);
+    CagSurface *s = surface_of(&net, k % 8);
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    CagMesh *m;
+    how.tolerance = k % 2 ? 0.5 : 0.02;
+    how.angle = 1.5;
+    const double n = triangles_of(s, &how);
+    how.max_triangles = (size_t)n;
+    assert_true(triangles_of(s, &how) == n);
+    how.max_triangles--;
+    FAILS(cag_surface_tessellate(s, &how, &m, &err), "triangle-limit");
+    cag_surface_release(s);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parabolic_surfaces_take_little_more_than_the_fewest),
       cmocka_unit_test(triangles_do_not_depend_on_how_parameters_run),
+      cmocka_unit_test(limits_of_triangles_are_exact),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
