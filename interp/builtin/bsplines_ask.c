@@ -36,8 +36,7 @@ bool cag_bsplines_spans(CagCall *call, CagValue *result) {
   if (!read_nurbs(call, &c)) return false;
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < c->pieces; i++)
-    if (!cag_builder_add(call->vm, list, range_of(call, c, c->cuts[i], c->cuts[i + 1])))
-      return false;
+    cag_builder_add(call->vm, list, range_of(call, c, c->cuts[i], c->cuts[i + 1]));
   *result = cag_builder_finish(call->vm, list);
   return true;
 }
@@ -127,8 +126,7 @@ bool cag_bsplines_straight_spans(CagCall *call, CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = (size_t)c->degree; i < c->count; i++) {
     if (!(c->knots[i] < c->knots[i + 1]) || !collinear(c, i)) continue;
-    if (!cag_builder_add(call->vm, list, range_of(call, c, c->knots[i], c->knots[i + 1])))
-      return false;
+    cag_builder_add(call->vm, list, range_of(call, c, c->knots[i], c->knots[i + 1]));
   }
   *result = cag_builder_finish(call->vm, list);
   return true;

@@ -94,7 +94,7 @@ bool cag_bsplines_classify_knots(CagCall *call, CagValue *result) {
       return cag_fail_geometry(call, &err);
     }
     const double pair[2] = {x[i], (double)run};
-    if (!cag_builder_add(call->vm, list, cag_vector(call->vm, pair, 2))) return false;
+    cag_builder_add(call->vm, list, cag_vector(call->vm, pair, 2));
     segments += i + run < count && x[i] >= x[k] && x[i + run] <= x[n];
   }
   CagValue values[] = {cag_text_c(call->vm, cag_knots_class(x, n, p)),

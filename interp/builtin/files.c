@@ -202,7 +202,7 @@ static bool read_lists(Csv *c, CagBuilder *built) {
   bool found = true;
   for (size_t n = 0; found; n++) {
     CagVm *vm = c->r.call->vm;
-    if (!cag_builder_add(vm, built, cag_list_values(vm, c->row, c->count))) return false;
+    cag_builder_add(vm, built, cag_list_values(vm, c->row, c->count));
     if (n % ROWS_BETWEEN_CHECKS == ROWS_BETWEEN_CHECKS - 1 && !cag_keep_going(vm)) return false;
     if (!read_row(c, &found)) return false;
   }

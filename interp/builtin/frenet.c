@@ -179,7 +179,7 @@ static bool parameters_value(CagCall *call, const CagCurve *c, const CagParamete
   for (size_t i = 0; i + (ranges ? 1 : 0) < list->count; i += ranges ? 2 : 1) {
     CagValue v = ranges ? cag_domain_value(call->vm, c->angular, list->t[i], list->t[i + 1])
                         : cag_parameter_value(c->angular, list->t[i]);
-    if (!cag_builder_add(call->vm, b, v)) return false;
+    cag_builder_add(call->vm, b, v);
   }
   *out = cag_builder_finish(call->vm, b);
   return true;

@@ -264,9 +264,9 @@ static SortItem *sort_items(SortItem *items, SortItem *spare, size_t n) {
 static bool make_sort_items(CagCall *call, Loop *loop, CagBuilder *keys, bool by) {
   for (size_t i = 0; i < loop->source.length; i++) {
     CagValue x = cag_sequence_element(call->vm, &loop->source, i), key = x;
-    if (!cag_builder_add(call->vm, loop->built, x)) return false;
+    cag_builder_add(call->vm, loop->built, x);
     if (by && !cag_call(call->vm, loop->function, &x, 1, &key)) return false;
-    if (!cag_builder_add(call->vm, keys, key)) return false;
+    cag_builder_add(call->vm, keys, key);
     if (!by && !may_go_on(call, i)) return false;
   }
   return true;
@@ -334,7 +334,7 @@ static bool call_reverse(CagCall *call, CagValue *result) {
   }
   CagBuilder *built = cag_builder_new(call->vm);
   for (size_t i = s.length; i-- > 0;)
-    if (!cag_builder_add(call->vm, built, cag_sequence_element(call->vm, &s, i))) return false;
+    cag_builder_add(call->vm, built, cag_sequence_element(call->vm, &s, i));
   *result = cag_builder_finish(call->vm, built);
   return true;
 }
@@ -371,7 +371,7 @@ static bool call_enumerate(CagCall *call, CagValue *result) {
   CagBuilder *built = cag_builder_new(call->vm);
   for (size_t i = 0; i < s.length; i++) {
     CagValue pair[] = {cag_number((double)i), cag_sequence_element(call->vm, &s, i)};
-    if (!cag_builder_add(call->vm, built, cag_list_values(call->vm, pair, 2))) return false;
+    cag_builder_add(call->vm, built, cag_list_values(call->vm, pair, 2));
   }
   *result = cag_builder_finish(call->vm, built);
   return true;
@@ -382,7 +382,7 @@ static bool add_all(CagCall *call, CagBuilder *built, CagValue v) {
   if (!cag_as_list(call->vm, v, &v)) return false;
   const CagList *list = CAG_AS_LIST(v);
   for (size_t i = 0; i < list->length; i++)
-    if (!cag_builder_add(call->vm, built, cag_list_get(call->vm, list, i))) return false;
+    cag_builder_add(call->vm, built, cag_list_get(call->vm, list, i));
   return true;
 }
 
@@ -517,7 +517,7 @@ static bool call_pairs(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < s.length; i++) {
     pair[1] = cag_sequence_element(call->vm, &s, i);
     if (i == 0) first = pair[1];
-    else if (!cag_builder_add(call->vm, built, cag_list_values(call->vm, pair, 2))) return false;
+    else cag_builder_add(call->vm, built, cag_list_values(call->vm, pair, 2));
     pair[0] = pair[1];
   }
   pair[1] = first;
@@ -545,7 +545,7 @@ static bool part(CagCall *call, const CagSequence *s, size_t from, size_t count,
   CagSequence range = *s;
   CagBuilder *built = cag_builder_new(call->vm);
   for (size_t i = from; i < from + count; i++)
-    if (!cag_builder_add(call->vm, built, cag_sequence_element(call->vm, &range, i))) return false;
+    cag_builder_add(call->vm, built, cag_sequence_element(call->vm, &range, i));
   *result = cag_builder_finish(call->vm, built);
   return true;
 }

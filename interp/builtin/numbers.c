@@ -119,7 +119,7 @@ static bool round_list(CagCall *call, CagValue value, int digits, int depth, Cag
     else if (element.type != CAG_LIST)
       return cag_fail_element(call, 0, i, element, "numbers, angles or lists of these");
     else if (!round_list(call, element, digits, depth + 1, &rounded)) return false;
-    if (!cag_builder_add(call->vm, built, rounded)) return false;
+    cag_builder_add(call->vm, built, rounded);
   }
   *result = cag_builder_finish(call->vm, built);
   return true;

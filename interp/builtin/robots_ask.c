@@ -330,7 +330,7 @@ bool cag_robots_dh_table(CagCall *call, CagValue *result) {
   if (!cag_arg_robot(call, 0, &r)) return false;
   CagBuilder *rows = cag_builder_new(call->vm);
   for (size_t i = 0; i < r->link_count; i++)
-    if (!cag_builder_add(call->vm, rows, table_row(call->vm, &r->links[i]))) return false;
+    cag_builder_add(call->vm, rows, table_row(call->vm, &r->links[i]));
   *result = cag_builder_finish(call->vm, rows);
   return true;
 }

@@ -172,10 +172,9 @@ static bool acting_points(CagCall *call, CagValue *result) {
   for (size_t i = span[0] - (size_t)n.axis[0].degree; i <= span[0]; i++) {
     CagBuilder *row = cag_builder_new(call->vm);
     for (size_t j = span[1] - (size_t)n.axis[1].degree; j <= span[1]; j++)
-      if (!cag_builder_add(call->vm, row,
-                           point_value(call->vm, n.view.homogeneous + 4 * (i * n.view.nv + j))))
-        return false;
-    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row))) return false;
+      cag_builder_add(call->vm, row,
+                      point_value(call->vm, n.view.homogeneous + 4 * (i * n.view.nv + j)));
+    cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
   }
   values[4] = cag_builder_finish(call->vm, rows);
   *result = cag_record_new(call->vm, names, values, 5);
@@ -621,8 +620,7 @@ static bool flat_spans(CagCall *call, CagValue *result) {
       if (!acting_flat(&n, i, j)) continue;
       CagValue values[] = {range_of(call->vm, u->knots[i], u->knots[i + 1]),
                            range_of(call->vm, v->knots[j], v->knots[j + 1])};
-      if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, directions, values, 2)))
-        return false;
+      cag_builder_add(call->vm, list, cag_record_new(call->vm, directions, values, 2));
     }
   *result = cag_builder_finish(call->vm, list);
   return true;

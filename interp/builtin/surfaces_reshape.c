@@ -225,7 +225,7 @@ bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
   const char *class = !seam.c0 ? "none" : seam.g2 ? "G2" : seam.c1 ? "C1" : seam.g1 ? "G1" : "C0";
   CagBuilder *edges = cag_builder_new(call->vm);
   for (int k = 0; k < 2; k++)
-    if (!cag_builder_add(call->vm, edges, cag_text_c(call->vm, sides[seam.side[k]]))) return false;
+    cag_builder_add(call->vm, edges, cag_text_c(call->vm, sides[seam.side[k]]));
   CagValue values[] = {cag_text_c(call->vm, class),
                        cag_number(seam.gap),
                        cag_angle(seam.angle / CAG_RADIANS_PER_DEGREE),

@@ -93,14 +93,13 @@ static bool call_split(CagCall *call, CagValue *result) {
   const char *s = t->bytes, *end = t->bytes + t->length;
   while (separator->length == 0 && s < end) {
     size_t n = cag_character_size(s);
-    if (!cag_builder_add(call->vm, built, cag_text_new(call->vm, s, n))) return false;
+    cag_builder_add(call->vm, built, cag_text_new(call->vm, s, n));
     s += n;
   }
   while (separator->length > 0) {
     const char *found = find_part(s, end, separator);
     const char *stop = found ? found : end;
-    if (!cag_builder_add(call->vm, built, cag_text_new(call->vm, s, (size_t)(stop - s))))
-      return false;
+    cag_builder_add(call->vm, built, cag_text_new(call->vm, s, (size_t)(stop - s)));
     if (!found) break;
     s = found + separator->length;
   }

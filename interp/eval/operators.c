@@ -254,9 +254,9 @@ static bool solids(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *
   if (several) { // one list of them
     const CagList *list = CAG_AS_LIST(b);
     CagBuilder *builder = cag_builder_new(vm);
-    if (!cag_builder_add(vm, builder, a)) return false;
+    cag_builder_add(vm, builder, a);
     for (size_t i = 0; i < list->length; i++)
-      if (!cag_builder_add(vm, builder, cag_list_get(vm, list, i))) return false;
+      cag_builder_add(vm, builder, cag_list_get(vm, list, i));
     operands[0] = cag_builder_finish(vm, builder);
   }
   CagValue *top = raise_top(vm);

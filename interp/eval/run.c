@@ -173,13 +173,12 @@ static bool extend(CagVm *vm, CagValue builder, CagValue v) {
     if (!cag_range_count(vm, r, &n)) return false;
     for (size_t i = 0; i < n; i++) {
       double x = cag_range_element(r, i, n);
-      if (!cag_builder_add(vm, b, r->angle ? cag_angle(x) : cag_number(x))) return false;
+      cag_builder_add(vm, b, r->angle ? cag_angle(x) : cag_number(x));
     }
     return true;
   }
   const CagList *l = CAG_AS_LIST(v);
-  for (size_t i = 0; i < l->length; i++)
-    if (!cag_builder_add(vm, b, cag_list_get(vm, l, i))) return false;
+  for (size_t i = 0; i < l->length; i++) cag_builder_add(vm, b, cag_list_get(vm, l, i));
   return true;
 }
 
