@@ -410,6 +410,10 @@ static void summaries_have_a_first_sentence_and_reasons(void **state) {
       {"(unknown-name, index) (Index) () (no-such-reason) (index", ""},
       {"((index))", "index "},
       {"index)", ""},
+      // Words of 63 to 65 letters, longer than any reason.
+      {"(abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyzabcdefghijk) (index)", "index "},
+      {"(abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyzabcdefghijkl) (index)", "index "},
+      {"(abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyzabcdefghijklm) (index)", "index "},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     char reasons[200] = "";
