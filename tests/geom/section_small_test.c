@@ -137,7 +137,7 @@ static void small_loops_and_arcs_are_found(void **state) {
     for (size_t i = 0; i < list.count; i++) {
       double one;
       OK(cag_curve_length(list.items[i], list.items[i]->start, list.items[i]->end, &one, &err));
-      check_curve(&g, list.items[i], level, 1e-3 * size * size + 1e-10);
+      check_curve(&g, list.items[i], level, 1e-4 * size * size + 1e-10);
       length += one;
       if (list.items[i]->closed) loops++;
       else arcs++;
