@@ -335,8 +335,7 @@ static Doc *field_item(Format *f, const CagExpr *e, size_t i) {
   const CagField *field = &e->as.record.fields[i];
   Docs d = {0};
   if (!field->name) {
-    set_comments(f, &d, field->value->span.start, false);
-    set_word(f, &d, "...");
+    set_span(f, &d, field->name_span); // the dots
     layout_add(&d, expression(f, field->value));
     return layout_concat(&f->layout, &d);
   }
@@ -346,8 +345,7 @@ static Doc *field_item(Format *f, const CagExpr *e, size_t i) {
   return layout_concat(&f->layout, &d);
 }
 static uint32_t field_start(const CagExpr *e, size_t i) {
-  const CagField *field = &e->as.record.fields[i];
-  return field->name ? field->name_span.start : field->value->span.start;
+  return e->as.record.fields[i].name_span.start;
 }
 
 // ---- functions ----

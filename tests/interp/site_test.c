@@ -427,6 +427,23 @@ static void an_example_imports_what_it_names_of_its_script(void **state) {
   }
 }
 
+static void the_search_finds_every_error(void **state) {
+  (void)state;
+  Site t;
+  begin_site(&t);
+  cag_site_errors(&t.site);
+  fflush(t.site.index);
+  const char *code, *reason;
+  size_t count = 0;
+  for (; cag_error_kind(count, &code, &reason, NULL, NULL); count++) {
+    char link[64];
+    snprintf(link, sizeof link, "errors.html#%s", code);
+    if (!strstr(t.index, link) || !strstr(t.index, reason)) fail_msg("%s is missing", code);
+  }
+  assert_true(count > 100);
+  end_site(&t);
+}
+
 static void scripts_get_pages_of_different_names(void **state) {
   (void)state;
   static const struct {
@@ -622,6 +639,7 @@ int main(void) {
       cmocka_unit_test(a_picture_shows_what_the_example_is_about),
       cmocka_unit_test(an_example_without_place_for_its_picture_has_none),
       cmocka_unit_test(an_example_imports_what_it_names_of_its_script),
+      cmocka_unit_test(the_search_finds_every_error),
       cmocka_unit_test(scripts_get_pages_of_different_names),
       cmocka_unit_test(a_script_that_cannot_be_read_makes_no_site),
       cmocka_unit_test(after_a_file_that_fails_none_is_written),

@@ -89,6 +89,10 @@ static void texts_of_several_lines_stay_as_they_are(void **state) {
 
 static void comments_keep_their_places(void **state) {
   (void)state;
+  // Before the fields of a record, also before one that is spread.
+  expect_layout("r = {a: 1,\n // b\n\n b: 2,\n // c\n\n ...c,\n // d\n ...d}",
+                "r = {\n  a: 1,\n  // b\n\n  b: 2,\n  // c\n\n  ...c,\n  // d\n  ...d\n}\n");
+  expect_layout("r = {/* a */ ...a, ... /* b */ b}", "r = { /* a */ ...a, ... /* b */ b }\n");
   expect_layout("// head\n\n/// of a\na=1 // one\nbcd=2   // two\n// tail",
                 "// head\n\n/// of a\na = 1    // one\nbcd = 2  // two\n// tail\n");
   expect_layout("x=[1,// one\n2 /* two */,\n// three\n3]",
