@@ -54,9 +54,11 @@ static bool check_field(CagCall *call, const Field *f, CagValue *v) {
   double x = v->type == CAG_NUMBER ? v->as.number : -1;
   switch (f->kind) {
   case FIELD_GLOW:
-    if (v->type == CAG_NUMBER && x >= 0 && isfinite(x)) {
+    if (v->type == CAG_NUMBER) {
       *v = cag_color_value(call->vm, (CagColor){x, x, x});
-      return true;
+      return (x >= 0 && isfinite(x)) ||
+             cag_fail_call(call, 1, CAG_ERR_material_field,
+                           "expects a color, or a number of 0 or more, as `%s`", f->name);
     }
     // fall through
   case FIELD_COLOR:

@@ -68,7 +68,10 @@ static bool apply_scene(CagCall *call, const CagTransform *t, CagValue v, CagVal
   const CagSceneValue *old = CAG_AS_SCENE(v);
   size_t n = old->fields->layout->count;
   double scale = 1;
-  if (!cag_transform_is_affine(t))
+  CagTransform inverse;
+  CagError err;
+  // What flattens space leaves a camera without a direction to look, or without one that is up.
+  if (!cag_transform_is_affine(t) || cag_transform_inverse(t, &inverse, &err) != CAG_OK)
     return cag_fail_call(call, 0, CAG_ERR_operand, "takes no camera or light with a projection");
   cag_transform_is_similarity(t, &scale);
   CagValue fields[32];
