@@ -68,11 +68,8 @@ static bool apply_scene(CagCall *call, const CagTransform *t, CagValue v, CagVal
   const CagSceneValue *old = CAG_AS_SCENE(v);
   size_t n = old->fields->layout->count;
   double scale = 1;
-  CagTransform inverse;
-  CagError err;
-  // What flattens space leaves a camera without a direction to look, or without one that is up.
-  if (!cag_transform_is_affine(t) || cag_transform_inverse(t, &inverse, &err) != CAG_OK)
-    return cag_fail_call(call, 0, CAG_ERR_operand, "takes no camera or light with a projection");
+  CagVec3 images[3] = {{0, 0, 0}}; // of `points`
+  bool is_flat = !cag_transform_is_affine(t);
   cag_transform_is_similarity(t, &scale);
   CagValue fields[32];
   if (n > 32) return cag_fail_call(call, 0, CAG_ERR_internal, "met too many fields");
@@ -84,12 +81,20 @@ static bool apply_scene(CagCall *call, const CagTransform *t, CagValue v, CagVal
     bool vector = f.type == CAG_LIST && cag_as_vector(f, &x, &count) && count >= 2;
     CagVec3 p = vector ? cag_vec3(x[0], x[1], count > 2 ? x[2] : 0) : cag_vec3(0, 0, 0);
     for (size_t k = 0; vector && k < sizeof points / sizeof *points; k++)
-      if (!strcmp(name, points[k])) fields[i] = cag_point(call->vm, cag_transform_point(t, p), 3);
+      if (!strcmp(name, points[k]))
+        fields[i] = cag_point(call->vm, images[k] = cag_transform_point(t, p), 3);
     for (size_t k = 0; vector && k < sizeof vectors / sizeof *vectors; k++)
-      if (!strcmp(name, vectors[k])) fields[i] = cag_point(call->vm, cag_transform_vector(t, p), 3);
+      if (!strcmp(name, vectors[k])) {
+        const CagVec3 image = cag_transform_vector(t, p);
+        is_flat |= cag_norm(image) == 0;
+        fields[i] = cag_point(call->vm, image, 3);
+      }
     for (size_t k = 0; f.type == CAG_NUMBER && k < sizeof sizes / sizeof *sizes; k++)
       if (!strcmp(name, sizes[k])) fields[i] = cag_number(f.as.number * scale);
   }
+  // A camera needs a direction to look and one that is up.
+  if (is_flat || (v.type == CAG_CAMERA && cag_norm(cag_sub(images[0], images[1])) == 0))
+    return cag_fail_call(call, 0, CAG_ERR_operand, "takes no camera or light with a projection");
   CagValue record = cag_record_from_texts(call->vm, old->fields->layout->names, fields, n);
   *result = cag_scene_value(call->vm, v.type, old->kind, record);
   CAG_AS_SCENE(*result)->placement = cag_transform_identity();
