@@ -39,7 +39,7 @@ CagStatus cag_curve_without_stops(const CagCurve *c, CagCurve **out, CagError *e
     stop[i] = rests(c, cuts[i], cuts[i + 1], size);
     moving += !stop[i];
   }
-  if (!status && (moving + 1 == n || moving == 0)) { // no stop, or no path
+  if (!status && moving == 0) { // no path
     *out = cag_curve_retain(c);
   } else if (!status) {
     double from = c->start; // where the part begins with the stop before it
