@@ -479,6 +479,41 @@ static void closed_curves_of_all_kinds_go_on_over_the_seam(void **state) {
   }
 }
 
+// --- Many parameters at once ---
+
+// What is said of many parameters is said of each, and where it fails is that of the first that
+// does.
+static void many_parameters_are_like_one(void **state) {
+  (void)state;
+  enum { MANY = 6, ORDER = 2, EACH = ORDER + 1 };
+  seed = 219;
+  int refused = 0;
+  for (int round = 0; round < 12; round++)
+    for (Kind kind = 0; kind < KINDS; kind++) {
+      CagCurve *c = random_curve(kind);
+      double t[MANY];
+      CagVec3 many[MANY * EACH], one[EACH];
+      for (int i = 0; i < MANY; i++) t[i] = c->start + uniform(0, 1) * (c->end - c->start);
+      // In most rounds one is before the start or behind the end.
+      const int at = (int)uniform(0, MANY - 1e-9);
+      if (round % 3 == 1) t[at] = c->start - uniform(0.1, 2) * (c->end - c->start);
+      if (round % 3 == 2) t[at] = c->end + uniform(0.1, 2) * (c->end - c->start);
+      const CagStatus status = cag_curve_eval_many(c, t, MANY, ORDER, many, &err);
+      const long index = err.index;
+      CagStatus first = CAG_OK;
+      for (int i = 0; first == CAG_OK && i < MANY; i++) {
+        first = cag_curve_eval(c, t[i], ORDER, CAG_SIDE_RIGHT, one, &err);
+        if (first) assert_int_equal(index, i);
+        for (int k = 0; status == CAG_OK && k < EACH; k++)
+          near_vec(many[i * EACH + k], one[k], 1e-9 * (1 + cag_norm(one[k])));
+      }
+      assert_int_equal(status, first);
+      refused += first != CAG_OK;
+      cag_curve_release(c);
+    }
+  assert_true(refused > 60);
+}
+
 // --- Stops ---
 
 static void stops_are_taken_in_by_what_moves_after_them(void **state) {
@@ -549,6 +584,7 @@ int main(void) {
       cmocka_unit_test(images_have_the_points_and_derivatives_of_the_map),
       cmocka_unit_test(derivatives_are_the_slopes_of_those_before),
       cmocka_unit_test(closed_curves_of_all_kinds_go_on_over_the_seam),
+      cmocka_unit_test(many_parameters_are_like_one),
       cmocka_unit_test(stops_are_taken_in_by_what_moves_after_them),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
