@@ -1,6 +1,7 @@
 // Triangulation of polygons with holes.
 
 #include "geom/mesh/mesh.h"
+#include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
 // Area of the triangles; all must turn left, and name every point.
@@ -106,6 +107,70 @@ static void triangles_of_a_convex_polygon_are_delaunay(void **state) {
   free(t);
 }
 
+static int64_t turn_of(const int a[2], const int b[2], const int c[2]) {
+  return (int64_t)(b[0] - a[0]) * (c[1] - a[1]) - (int64_t)(b[1] - a[1]) * (c[0] - a[0]);
+}
+
+static int by_place(const void *a, const void *b) {
+  const int *p = a, *q = b;
+  return p[0] != q[0] ? p[0] - q[0] : p[1] - q[1];
+}
+
+// The corners of the convex hull of sorted points, counter-clockwise (Andrew's monotone chain).
+static size_t convex_hull(int (*p)[2], size_t n, int (*hull)[2]) {
+  size_t k = 0;
+  for (size_t half = 0; half < 2; half++) {
+    const size_t first = k;
+    for (size_t i = 0; i < n; i++) {
+      const int *at = p[half ? n - 1 - i : i];
+      while (k >= first + 2 && turn_of(hull[k - 2], hull[k - 1], at) <= 0) k--;
+      hull[k][0] = at[0];
+      hull[k++][1] = at[1];
+    }
+    k--; // the next half begins with it
+  }
+  return k;
+}
+
+// Whether d lies within the circle through a, b, c, in whole numbers.
+static bool is_within_circle(const int a[2], const int b[2], const int c[2], const int d[2]) {
+  const int *corners[3] = {a, b, c};
+  int64_t x[3], y[3], square[3];
+  for (int k = 0; k < 3; k++) {
+    x[k] = corners[k][0] - d[0];
+    y[k] = corners[k][1] - d[1];
+    square[k] = x[k] * x[k] + y[k] * y[k];
+  }
+  return square[0] * (x[1] * y[2] - x[2] * y[1]) - square[1] * (x[0] * y[2] - x[2] * y[0]) +
+             square[2] * (x[0] * y[1] - x[1] * y[0]) >
+         0;
+}
+
+static void no_corner_lies_within_the_circle_of_a_triangle(void **state) {
+  (void)state;
+  enum { POINTS = 60 };
+  seed = 71;
+  for (int round = 0; round < 400; round++) {
+    int p[POINTS][2], hull[2 * POINTS][2];
+    const int size = round % 2 ? 60 : 6; // small ones have many corners on one circle
+    for (int i = 0; i < POINTS; i++)
+      for (int k = 0; k < 2; k++) p[i][k] = (int)floor(uniform(-size, size));
+    qsort(p, POINTS, sizeof *p, by_place);
+    size_t n = convex_hull(p, POINTS, hull), triangles;
+    double xy[2 * POINTS * 2];
+    for (size_t i = 0; i < 2 * n; i++) xy[i] = hull[i / 2][i % 2];
+    uint32_t *t;
+    OK(cag_triangulate(xy, &n, 1, &t, &triangles, &err));
+    assert_int_equal(triangles, n - 2);
+    for (size_t k = 0; k < triangles; k++) {
+      const int *a = hull[t[3 * k]], *b = hull[t[3 * k + 1]], *c = hull[t[3 * k + 2]];
+      assert_true(turn_of(a, b, c) > 0);
+      for (size_t i = 0; i < n; i++) assert_false(is_within_circle(a, b, c, hull[i]));
+    }
+    free(t);
+  }
+}
+
 static void crossing_and_touching_boundaries_fail(void **state) {
   (void)state;
   uint32_t *t;
@@ -127,6 +192,7 @@ int main(void) {
       cmocka_unit_test(holes_are_left_out_whatever_their_sense),
       cmocka_unit_test(a_polygon_of_many_points_takes_no_more_than_a_moment),
       cmocka_unit_test(triangles_of_a_convex_polygon_are_delaunay),
+      cmocka_unit_test(no_corner_lies_within_the_circle_of_a_triangle),
       cmocka_unit_test(crossing_and_touching_boundaries_fail),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
