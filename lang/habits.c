@@ -95,7 +95,7 @@ static bool name_behind(Parser *p, const CagExpr *before) {
   }
   for (size_t i = 0; i < sizeof operators / sizeof *operators; i++) {
     if (strcmp(word, operators[i].word) != 0) continue;
-    snprintf(message, sizeof message, "`%s` is no operator", word);
+    snprintf(message, sizeof message, "`%s` is not an operator", word);
     return report_form(p, t->span, operators[i].id, message);
   }
   if (!before) return false;

@@ -471,7 +471,7 @@ static uint32_t lex_escape(CagLexer *lx, uint32_t backslash, size_t *length) {
     uint32_t n;
     code_point(lx, backslash + 1, &n);
     CagDiagnostic *d = report(lx, CAG_ERR_unknown_escape, backslash, backslash + 1 + n,
-                              "`%.*s` is no escape", (int)n + 1, lx->source->text + backslash);
+                              "`%.*s` is not an escape", (int)n + 1, lx->source->text + backslash);
     if (c == 'x') help(d, "write \\u{41} for the character with the number 41");
     else if (c == 'r') help(d, "write \\u{d} for a carriage return");
     else if (c == '\'') help(d, "a single quote needs no backslash");
@@ -734,7 +734,7 @@ static void lex_sign(CagLexer *lx, CagToken *t) {
     if (s->kind >= CAG_TOKEN_FIRST_WORD) // && is read as the word `and`
       t->as.name = cag_names_intern(lx->names, s->meant, strlen(s->meant))->bytes;
     if (s->meant)
-      help(report(lx, s->error, t->span.start, end, "`%s` is no operator here", s->spelling),
+      help(report(lx, s->error, t->span.start, end, "`%s` is not an operator here", s->spelling),
            "write %s", s->meant);
     return;
   }

@@ -326,7 +326,7 @@ static bool habit_behind(Parser *p, const CagExpr *before) {
   case CAG_TOKEN_NOT:
     if (parse_kind_at(p, 1) != CAG_TOKEN_IN) return false;
     here.end = parse_peek(p, 1)->span.end;
-    d = parse_error(p, CAG_ERR_not_in, here, "`not in` is no operator");
+    d = parse_error(p, CAG_ERR_not_in, here, "`not in` is not an operator");
     parse_help(d, "write not (%s in xs)", value);
     return true;
   case CAG_TOKEN_IF:
@@ -339,7 +339,7 @@ static bool habit_behind(Parser *p, const CagExpr *before) {
     return true;
   case CAG_TOKEN_BY:
     d = parse_error(p, CAG_ERR_by_without_range, here,
-                    "`by` gives the step of a range, and here is no range");
+                    "`by` gives the step of a range, and there is no range here");
     parse_help(d, "write 0..10 by 2");
     return true;
   case CAG_TOKEN_ARROW:

@@ -121,7 +121,8 @@ bool parse_foreign_body(Parser *p);
 bool parse_foreign_colon(Parser *p, CagForeignSyntax id);
 // A word at the head of a statement; the next word stands on its line.
 bool parse_foreign_word(Parser *p);
-// Whether an expression goes on with such a form behind it, so that it is no statement by itself.
+// Whether an expression goes on with such a form behind it, so that it is not a statement by
+// itself.
 bool parse_foreign_follows(Parser *p);
 
 // ---- brackets and lists ----

@@ -153,7 +153,7 @@ static CagStatement *param(Parser *p) {
 // ---- import ----
 
 // The last word of a path in a text: what stands between its last `/` and its `.cag`. False when
-// that is no name.
+// that is not a name.
 static bool word_of_path(Parser *p, const char *path, CagToken *word) {
   const char *slash = strrchr(path, '/'), *start = slash ? slash + 1 : path;
   size_t length = strlen(start);
@@ -326,7 +326,7 @@ bool parse_habit(Parser *p, bool in_block) {
     return true;
   }
   if (kind == CAG_TOKEN_FOR) {
-    parse_help(parse_error(p, CAG_ERR_loop, here, "`for` is no statement: it stands in a list"),
+    parse_help(parse_error(p, CAG_ERR_loop, here, "`for` is not a statement: it stands in a list"),
                "write %s", cag_foreign_syntax(CAG_FOREIGN_for_statement));
     return true;
   }
@@ -361,8 +361,8 @@ static CagStatement *expression_statement(Parser *p) {
     return s; // reported as what it is
   char text[QUOTE_SIZE];
   const char *said = parse_quote(p, e->span, text, sizeof text, "...");
-  CagDiagnostic *d =
-      parse_mend(p, CAG_ERR_expression_statement, e->span, "an expression alone is no statement");
+  CagDiagnostic *d = parse_mend(p, CAG_ERR_expression_statement, e->span,
+                                "an expression alone is not a statement");
   if (e->kind == CAG_EXPR_BINARY && e->as.binary.op == CAG_OP_EQUAL &&
       e->as.binary.left->kind == CAG_EXPR_NAME)
     parse_help(d, "to define %s write =", e->as.binary.left->as.name.id);
@@ -565,7 +565,7 @@ static bool check_encoding(const CagSource *source, CagDiagnostics *errors) {
   unsigned char byte = (unsigned char)source->text[bad];
   if (byte == 0)
     cag_diagnostic_set_help(cag_diagnostics_add(errors, CAG_ERR_invalid_utf8, source, span,
-                                                "a zero byte: this is no text"),
+                                                "a zero byte: this is not text"),
                             "a script is a text in UTF-8");
   else
     cag_diagnostic_set_help(cag_diagnostics_add(errors, CAG_ERR_invalid_utf8, source, span,

@@ -57,13 +57,13 @@ void cag_knots_chord(const CagVec3 *points, size_t n, int p, double *knots) {
 CagStatus cag_degree_check(size_t n, int p, CagError *err) {
   if (n < 2)
     return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
-                    "a curve wants at least 2 control points; these are %zu", n);
+                    "a curve needs at least 2 control points; these are %zu", n);
   if (p < 1)
     return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
                     "the degree is at least 1; this is %d", p);
   if ((size_t)p > n - 1)
     return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
-                    "degree %d wants at least %d control points; these are %zu", p, p + 1, n);
+                    "degree %d needs at least %d control points; these are %zu", p, p + 1, n);
   if (p > CAG_MAX_DEGREE)
     return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
                     "the degree is at most %d; this is %d", CAG_MAX_DEGREE, p);

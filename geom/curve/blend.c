@@ -119,7 +119,7 @@ CagStatus cag_curve_parabolic_blend(const CagVec3 *points, size_t n, const doubl
   const size_t least = ends == CAG_BLEND_OPEN ? 4 : 3;
   if (n < least)
     return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
-                    "a parabolic blend %s wants at least %zu points; these are %zu",
+                    "a parabolic blend %s needs at least %zu points; these are %zu",
                     ends == CAG_BLEND_OPEN       ? "with open ends"
                     : ends == CAG_BLEND_PARABOLA ? "with arcs at its ends"
                                                  : "that is closed",

@@ -212,7 +212,7 @@ static CagStatus check_triangle(CagVec3 p, CagVec3 apex, CagVec3 q, CagError *er
   if (cag_norm(cag_cross(a, b)) <= CAG_CURVE_SAME * cag_norm(a) * cag_norm(b))
     return cag_fail(err, CAG_E_ARGUMENT, "collinear-points", "", -1,
                     "the two ends and the apex lie on one line (or two of them are the same): they "
-                    "are no triangle");
+                    "are not a triangle");
   return CAG_OK;
 }
 

@@ -13,7 +13,7 @@
 static CagStatus check_count(size_t n, CagError *err) {
   if (n >= 2) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
-                  "a curve through points wants at least 2 of them; these are %zu", n);
+                  "a curve through points needs at least 2 of them; these are %zu", n);
 }
 
 CagStatus cag_spacing_parameters(const CagVec3 *points, size_t n, CagSpacing spacing, double *out,

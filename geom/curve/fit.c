@@ -164,7 +164,7 @@ static CagStatus make_curve(const Design *a, const CagVec3 *control, int dimensi
 static CagStatus check_data(const CagFitData *d, size_t count, CagError *err) {
   if (d->n < 2)
     return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
-                    "a curve through points wants at least 2 of them; these are %zu", d->n);
+                    "a curve through points needs at least 2 of them; these are %zu", d->n);
   CagStatus status = cag_curve_check_points(d->points, d->n, "points", err);
   if (status) return status;
   if (d->degree < 1 || d->degree > CAG_MAX_DEGREE)
@@ -172,7 +172,7 @@ static CagStatus check_data(const CagFitData *d, size_t count, CagError *err) {
                     "the degree is 1 to %d; this is %d", CAG_MAX_DEGREE, d->degree);
   if ((size_t)d->degree >= count)
     return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
-                    "degree %d wants at least %d control points; these are %zu", d->degree,
+                    "degree %d needs at least %d control points; these are %zu", d->degree,
                     d->degree + 1, count);
   if (d->kind == CAG_FIT_GIVEN) return cag_knots_check(d->knots, count, d->degree, err);
   return CAG_OK;

@@ -60,9 +60,9 @@ CagStatus cag_curve_coefficients(const CagCurve *curve, CagVec3 **out, size_t *p
   const CagNurbs *c = cag_nurbs_data(exact);
   CagVec3 *a = NULL;
   if (!c || c->rational) {
-    status =
-        cag_fail(err, CAG_E_UNSUPPORTED, "not-polynomial", "", -1,
-                 "a curve of kind %s is no polynomial: it is a quotient of two", curve->kind->name);
+    status = cag_fail(err, CAG_E_UNSUPPORTED, "not-polynomial", "", -1,
+                      "a curve of kind %s is not a polynomial: it is a quotient of two",
+                      curve->kind->name);
   } else {
     const size_t stride = (size_t)c->degree + 1;
     a = malloc(c->pieces * stride * sizeof *a);

@@ -242,7 +242,7 @@ CagStatus cag_curve_nurbs_closed(const CagVec3 *points, const double *weights, s
                                  int dimension, CagCurve **out, CagError *err) {
   if (n < 2)
     return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
-                    "a closed curve wants at least 2 control points; these are %zu", n);
+                    "a closed curve needs at least 2 control points; these are %zu", n);
   if (degree < 1 || degree > CAG_MAX_DEGREE)
     return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
                     "the degree of a closed curve is 1 to %d; this is %d", CAG_MAX_DEGREE, degree);

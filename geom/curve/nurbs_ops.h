@@ -2,7 +2,7 @@
 // elevation, knot insertion; and the ways back, knot removal and degree reduction, which may change
 // them within a tolerance.
 //
-// Curves that are no NURBS are converted first ("no-exact-form" where that cannot be). A periodic
+// Curves that are not NURBS are converted first ("no-exact-form" where that cannot be). A periodic
 // curve becomes an open one with the same points.
 
 #ifndef CAG_GEOM_NURBS_OPS_H

@@ -71,7 +71,7 @@ CagStatus cag_curve_polyline(const CagVec3 *points, size_t n, bool closed, int d
   const size_t least = closed ? 3 : 2;
   if (n < least)
     return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
-                    "%s polyline wants at least %zu different points; these are %zu",
+                    "%s polyline needs at least %zu different points; these are %zu",
                     closed ? "a closed" : "a", least, n);
   const size_t stored = n + closed;
   CagVec3 *all = malloc(sizeof *all * stored);

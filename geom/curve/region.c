@@ -226,7 +226,7 @@ CagStatus cag_region_new(const CagCurve *outer, CagCurve *const *holes, size_t h
 CagStatus cag_region_from_loops(CagCurve *const *loops, size_t n, CagRegion **out, CagError *err) {
   if (n == 0)
     return cag_fail(err, CAG_E_ARGUMENT, "too-few-curves", "C", -1,
-                    "a region wants at least one closed curve");
+                    "a region needs at least one closed curve");
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < n; i++) status = check_loop(loops[i], "curves", (long)i, err);
   if (!status) status = cag_region_check_loops(loops, n, err);

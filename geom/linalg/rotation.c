@@ -77,7 +77,7 @@ CagStatus cag_quaternion(const double wxyz[4], CagTransform *out, CagError *err)
   }
   if (size == 0)
     return cag_fail(err, CAG_E_ARGUMENT, "zero-quaternion", "quaternion", -1,
-                    "the quaternion [0, 0, 0, 0] is no rotation; the identity is [1, 0, 0, 0]");
+                    "the quaternion [0, 0, 0, 0] is not a rotation; the identity is [1, 0, 0, 0]");
   double w = wxyz[0] / size, x = wxyz[1] / size, y = wxyz[2] / size, z = wxyz[3] / size;
   double n = w * w + x * x + y * y + z * z;
   *out = (CagTransform){
@@ -104,9 +104,10 @@ static CagStatus rotation_part(const CagTransform *t, double r[3][3], CagError *
       near = fabs(cag_dot(c[j], c[j]) - aa) <= RIGID * aa &&
              fabs(cag_dot(c[j], c[(j + 1) % 3])) <= RIGID * aa;
     if (!near)
-      return cag_fail(err, CAG_E_ARGUMENT, "not-a-rotation", "T", -1,
-                      "the linear part of the transform is no rotation: its axes are not at right "
-                      "angles or not of one length");
+      return cag_fail(
+          err, CAG_E_ARGUMENT, "not-a-rotation", "T", -1,
+          "the linear part of the transform is not a rotation: its axes are not at right "
+          "angles or not of one length");
     scale = sqrt(aa) / fabs(w);
   }
   if (cag_transform_mirrors(t))

@@ -52,11 +52,11 @@ static CagStatus check(const CagGridData *g, size_t nu, size_t nv, CagError *err
   for (int k = 0; k < 2; k++) {
     if (points[k] < 2)
       return cag_fail(err, CAG_E_ARGUMENT, "order-range", "grid", k,
-                      "a surface wants at least 2 rows of at least 2 points, by %c there %s %zu",
+                      "a surface needs at least 2 rows of at least 2 points, by %c there %s %zu",
                       "uv"[k], points[k] == 1 ? "is" : "are", points[k]);
     if (net[k] < 2)
       return cag_fail(err, CAG_E_ARGUMENT, "order-range", "count", k,
-                      "a surface wants at least 2 control points in %c, `count` is %zu", "uv"[k],
+                      "a surface needs at least 2 control points in %c, `count` is %zu", "uv"[k],
                       net[k]);
     if (degree[k] < 1 || degree[k] > CAG_GRID_DEGREE_MOST || (size_t)degree[k] >= net[k])
       return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", k,

@@ -90,7 +90,7 @@ static CagStatus check_given(const CagGridFit *f, CagError *err) {
   char a[32], b[32];
   if (n != wanted)
     return cag_fail(err, CAG_E_ARGUMENT, "plane-count", "planes", -1,
-                    "%zu lines of control points by %c want as many `planes`, found %zu", wanted,
+                    "%zu lines of control points by %c need as many `planes`, found %zu", wanted,
                     "uv"[f->planes_along], n);
   for (size_t i = 0; i < n; i++)
     if (!isfinite(x[i]))

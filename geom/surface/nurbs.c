@@ -47,7 +47,7 @@ static CagStatus check_degree(size_t count, int degree, const char *direction, C
   if (degree >= 1 && degree <= MAX_DEGREE && (size_t)degree < count) return CAG_OK;
   if (count < 2)
     return cag_fail(err, CAG_E_ARGUMENT, "order-range", "net", -1,
-                    "a surface wants at least 2 rows of at least 2 points, by %s there %s %zu",
+                    "a surface needs at least 2 rows of at least 2 points, by %s there %s %zu",
                     direction, count == 1 ? "is" : "are", count);
   return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", *direction == 'u' ? 0 : 1,
                   "`degree` by %s must lie in 1..%zu for %zu net lines (and be at most %d), it is "

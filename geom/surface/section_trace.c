@@ -167,7 +167,7 @@ static bool middle_across(CagTracer *t, const CagTraceNode *a, const CagTraceNod
   return false;
 }
 
-// By a pole Newton's method may slide into it, to rounding: that is no point between the two.
+// By a pole Newton's method may slide into it, to rounding: that is not a point between the two.
 static bool is_between(const CagTraceNode *a, const CagTraceNode *m, const CagTraceNode *b,
                        double same) {
   double h = cag_norm(cag_sub(b->p, a->p));

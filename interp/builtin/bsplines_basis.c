@@ -77,7 +77,7 @@ bool cag_bsplines_classify_knots(CagCall *call, CagValue *result) {
   const size_t n = count - (size_t)p - 1, k = (size_t)p;
   if (n < k + 1) {
     cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", -1,
-             "a curve of degree %d wants at least %zu `knots`, found %zu", p, 2 * k + 2, count);
+             "a curve of degree %d needs at least %zu `knots`, found %zu", p, 2 * k + 2, count);
     return cag_fail_geometry(call, &err);
   }
   // The range may be empty, which only a curve minds; multiplicities may be too high.

@@ -390,7 +390,7 @@ static bool call_maximize(CagCall *call, CagValue *result) { return least(call, 
 static bool fail_same_sign(const Subject *f, double fa, double fb) {
   CagString s = {0};
   CagVm *vm = f->call->vm;
-  cag_string_printf(&s, "wants a change of sign over the range: f(");
+  cag_string_printf(&s, "needs a change of sign over the range: f(");
   cag_print_value(vm, &s, parameter(f, f->start), true);
   cag_string_printf(&s, ") = ");
   cag_print_number(&s, fa);

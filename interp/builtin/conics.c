@@ -126,7 +126,7 @@ const CagBuiltin cag_builtins_conics[] = {
      cag_conics_conic_by, "curve",
      "The conic through the points that has the given tangents: a list of {point, direction}, "
      "whose "
-     "points it goes through as well. Points and tangents are one condition each: `general` wants "
+     "points it goes through as well. Points and tangents are one condition each: `general` needs "
      "5, `axis` (axes along x and y) 4, `circle` 3, `line` 2. Too few, dependent and contradicting "
      "conditions are errors. The coefficient of y^2 is 1, where it vanishes the first other.",
      "c = conic_by([[0, 1], [2, 0]], tangents: [{point: [0, 1], direction: [1, 0]},\n"

@@ -154,7 +154,7 @@ bool cag_bsplines_elevate(CagCall *call, CagValue *result) {
 static bool read_tolerance(CagCall *call, int argument, double *out) {
   if (!cag_arg_number(call, argument, out)) return false;
   return *out >= 0 ||
-         cag_fail_call(call, argument, CAG_ERR_value, "wants a `tolerance` of 0 or more");
+         cag_fail_call(call, argument, CAG_ERR_value, "expects a `tolerance` of 0 or more");
 }
 
 bool cag_bsplines_reduce_degree(CagCall *call, CagValue *result) {
@@ -269,7 +269,7 @@ bool cag_bsplines_offset(CagCall *call, CagValue *result) {
       !tolerance_of_size(call, c, 2, OFFSET_TOLERANCE, &tolerance))
     return false;
   if (!(tolerance > 0))
-    return cag_fail_call(call, 2, CAG_ERR_value, "wants a positive `tolerance`");
+    return cag_fail_call(call, 2, CAG_ERR_value, "expects a positive `tolerance`");
   CagStatus status = cag_curve_offset(c, d, tolerance, &out, &err);
   return give(call, status, &err, &out, result);
 }

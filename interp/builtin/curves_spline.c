@@ -71,7 +71,7 @@ static bool read_knots(CagCall *call, int argument, size_t n, int degree, const 
     if (!cag_arg_numbers(call, argument, knots, &count)) return false;
     if (count == n + (size_t)degree + 1) return true;
     cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", -1,
-             "%zu points of degree %d want %zu `knots` (points + degree + 1), found %zu", n, degree,
+             "%zu points of degree %d need %zu `knots` (points + degree + 1), found %zu", n, degree,
              n + (size_t)degree + 1, count);
     return cag_fail_geometry(call, &err);
   }
@@ -124,7 +124,7 @@ bool cag_curves_bspline(CagCall *call, CagValue *result) {
 
 bool cag_curves_nurbs(CagCall *call, CagValue *result) {
   if (is_set(call, 4)) return cag_curves_bspline(call, result);
-  cag_fail_call(call, -1, CAG_ERR_arity, "wants `weights`, one for each point");
+  cag_fail_call(call, -1, CAG_ERR_arity, "expects `weights`, one for each point");
   cag_fail_help(call->vm, "without weights it is a `bspline`");
   return false;
 }

@@ -35,7 +35,7 @@ static bool check_finite(CagCall *call, int argument, const Matrix *m) {
   return true;
 }
 
-// Row i of a matrix that is no packed list: too long, or no row.
+// Row i of a matrix that is not a packed list: too long, or no row.
 static bool read_row(CagCall *call, int argument, const CagList *list, size_t i, const double **x,
                      size_t *n) {
   CagValue row = cag_list_get(call->vm, list, i);

@@ -85,7 +85,7 @@ bool cag_robots_prismatic(CagCall *call, CagValue *result) {
   CagRobotLink l = cag_robot_link(CAG_JOINT_PRISMATIC);
   if (!said(call, 4))
     return cag_fail_call(call, -1, CAG_ERR_joint_limits,
-                         "wants the travel of the joint as `limits`, such as limits: 0..300");
+                         "expects the travel of the joint as `limits`, such as limits: 0..300");
   if (!cag_arg_angle_or(call, 0, 0, &l.theta) || !finite_or_zero(call, 1, &l.a) ||
       !cag_arg_angle_or(call, 2, 0, &l.alpha) || !finite_or_zero(call, 3, &l.d) ||
       !read_limits(call, 4, &l) || !read_rate(call, 7, false, &l.speed) ||

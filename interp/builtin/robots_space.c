@@ -152,7 +152,7 @@ static bool read_field_point(CagCall *call, int argument, const CagRecord *recor
   if (!cag_as_vector(v, &x, &n) || n != 3 || !isfinite(x[0]) || !isfinite(x[1]) || !isfinite(x[2]))
     return cag_fail_call(call, argument, CAG_ERR_type,
                          "expects records with kind, point and direction as axes; `%s` of [%zu] is "
-                         "no point of space",
+                         "not a point of space",
                          name, index);
   *out = cag_vec3(x[0], x[1], x[2]);
   return true;

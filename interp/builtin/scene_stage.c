@@ -107,18 +107,18 @@ bool cag_scenes_camera(CagCall *call, CagValue *result) {
     return false;
   if (cag_norm(cag_sub(eye, target)) == 0)
     return cag_fail_call(call, cag_given(call, 1) ? 1 : 0, CAG_ERR_view,
-                         "wants two different points as `eye` and `target`");
+                         "expects two different points as `eye` and `target`");
   if (!cag_arg_angle_or(call, 3, 40 * CAG_RADIANS_PER_DEGREE, &fov)) return false;
   const double widest = 179; // degrees: the tangent of the half grows without end towards 180
   if (!(fov > 0 && fov <= widest * CAG_RADIANS_PER_DEGREE))
-    return cag_fail_call(call, 3, CAG_ERR_view, "wants a `fov` above 0deg, of 179deg at most");
+    return cag_fail_call(call, 3, CAG_ERR_view, "expects a `fov` above 0deg, of 179deg at most");
   if (!cag_arg_choice(call, 4, kinds, &kind) ||
       (is_set(call, 5) && !cag_arg_positive(call, 5, &width)) || !read_size(call, 6, &size) ||
       (is_set(call, 7) && !cag_arg_positive(call, 7, &focus)) ||
       !cag_arg_number_or(call, 8, 0, &aperture))
     return false;
   if (!(aperture >= 0 && isfinite(aperture)))
-    return cag_fail_call(call, 8, CAG_ERR_value, "wants an `aperture` of 0 or more");
+    return cag_fail_call(call, 8, CAG_ERR_value, "expects an `aperture` of 0 or more");
   CagValue fields[] = {cag_point(call->vm, eye, 3),
                        cag_point(call->vm, target, 3),
                        cag_point(call->vm, up, 3),
@@ -140,7 +140,7 @@ static bool read_light(CagCall *call, int at, CagValue *color, CagValue *strengt
   if (cag_given(call, at) && !cag_color_read(call, at, "color", call->values[at], &c)) return false;
   if (!cag_arg_number_or(call, at + 1, 1, &s)) return false;
   if (!(s >= 0 && isfinite(s)))
-    return cag_fail_call(call, at + 1, CAG_ERR_value, "wants a `strength` of 0 or more");
+    return cag_fail_call(call, at + 1, CAG_ERR_value, "expects a `strength` of 0 or more");
   *color = cag_color_value(call->vm, c);
   *strength = cag_number(s);
   return true;
@@ -173,7 +173,7 @@ static bool read_beam(CagCall *call, CagValue fields[2]) {
   if (!cag_arg_vec(call, 0, &position, NULL) || !cag_arg_vec(call, 1, &target, NULL)) return false;
   if (cag_norm(cag_sub(position, target)) == 0)
     return cag_fail_call(call, 1, CAG_ERR_view,
-                         "wants two different points as `position` and `target`");
+                         "expects two different points as `position` and `target`");
   fields[0] = cag_point(call->vm, position, 3);
   fields[1] = cag_point(call->vm, target, 3);
   return true;
@@ -187,7 +187,7 @@ bool cag_scenes_spot_light(CagCall *call, CagValue *result) {
       !read_light(call, 3, &fields[3], &fields[4]))
     return false;
   if (!(angle > 0 && angle < 180 * CAG_RADIANS_PER_DEGREE))
-    return cag_fail_call(call, 2, CAG_ERR_value, "wants an `angle` above 0deg and below 180deg");
+    return cag_fail_call(call, 2, CAG_ERR_value, "expects an `angle` above 0deg and below 180deg");
   fields[2] = cag_angle(cag_degrees_shown(angle));
   return give(call, CAG_LIGHT, "spot", names, fields, 5, result);
 }
@@ -250,8 +250,8 @@ bool cag_scenes_ground(CagCall *call, CagValue *result) {
   double z, size;
   if (!cag_arg_number_or(call, 0, 0, &z) || !cag_arg_number_or(call, 1, INFINITY, &size))
     return false;
-  if (!isfinite(z)) return cag_fail_call(call, 0, CAG_ERR_value, "wants a finite `z`");
-  if (!(size > 0)) return cag_fail_call(call, 1, CAG_ERR_value, "wants a `size` greater than 0");
+  if (!isfinite(z)) return cag_fail_call(call, 0, CAG_ERR_value, "expects a finite `z`");
+  if (!(size > 0)) return cag_fail_call(call, 1, CAG_ERR_value, "expects a `size` greater than 0");
   CagValue fields[] = {cag_number(z), cag_number(size), cag_none(), cag_none()};
   return give(call, CAG_SETTING, "ground", names, fields, 4, result);
 }

@@ -115,8 +115,8 @@ bool cag_shape_call(CagVm *vm, CagValue shape, const CagValue *arguments, size_t
   CagCall call = {vm, &rows[row], values, 3};
   if (n != wanted)
     return cag_fail_call(&call, -1, CAG_ERR_arity,
-                         shape.type == CAG_CURVE ? "of a curve wants one parameter, found %zu"
-                                                 : "of a surface wants u and v, found %zu",
+                         shape.type == CAG_CURVE ? "of a curve expects one parameter, found %zu"
+                                                 : "of a surface expects u and v, found %zu",
                          n);
   return rows[row].function(&call, result);
 }

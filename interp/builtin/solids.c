@@ -157,7 +157,7 @@ const CagBuiltin cag_builtins_solids[] = {
     // --- Meshes ---
     {"mesh(vertices, faces)", cag_solids_mesh, "mesh",
      "A mesh of points and faces: each face a list of 3 or more numbers of vertices, "
-     "counter-clockwise seen from outside. A number that is no vertex is an error.",
+     "counter-clockwise seen from outside. A number that is not a vertex is an error.",
      "m = mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])\n"
      "print area(m) // expect: 0.5",
      LISTS, meshes},

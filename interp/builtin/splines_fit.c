@@ -55,7 +55,7 @@ static bool read_knots(CagCall *call, int argument, CagFitData *d, size_t count)
   const size_t wanted = count + (size_t)d->degree + 1;
   if (given == wanted) return true;
   return cag_splines_fail(call, "knot-count", "knots", -1,
-                          "%zu control points of degree %d want %zu `knots` (count + degree + 1), "
+                          "%zu control points of degree %d need %zu `knots` (count + degree + 1), "
                           "found %zu",
                           count, d->degree, wanted, given);
 }
@@ -160,7 +160,7 @@ static bool report_surface(CagCall *call, CagValue *result) {
   CagCall other = {call->vm, row, values, sizeof values / sizeof *values};
   if (given[2].type == CAG_UNSET)
     return cag_fail_call(call, 2, CAG_ERR_arity,
-                         "of rows of points wants a `count`, two for u and v");
+                         "of rows of points expects a `count`, two for u and v");
   if (cag_given(call, 7))
     return cag_fail_call(call, 7, CAG_ERR_value,
                          "of rows of points takes a degree, not an `order`");

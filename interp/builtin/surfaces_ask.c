@@ -9,7 +9,7 @@ bool cag_arg_side(CagCall *call, int argument, CagSurface **out) {
   if (*out) return true;
   return cag_fail_call(
       call, argument, CAG_ERR_type,
-      "wants a surface: this solid has no single side; only swept ones have u and v");
+      "expects a surface: this solid has no single side; only swept ones have u and v");
 }
 
 bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v) {

@@ -118,7 +118,7 @@ bool cag_surfaces_isocurve(CagCall *call, CagValue *result) {
   bool v = cag_given(call, 2) && call->values[2].type != CAG_NONE;
   if (u == v)
     return cag_fail_call(call, u ? 2 : -1, CAG_ERR_value,
-                         "wants either `u:` or `v:`, which is fixed");
+                         "expects either `u:` or `v:`, which is fixed");
   bool read = u ? cag_arg_parameter(call, 1, s->angular_u, s->u0, s->u1, false, &at)
                 : cag_arg_parameter(call, 2, s->angular_v, s->v0, s->v1, false, &at);
   if (!read || !cag_geometry_ok(call, cag_surface_isocurve(s, u ? 0 : 1, at, &c, &err), &err))

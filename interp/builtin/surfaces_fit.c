@@ -107,7 +107,7 @@ static bool read_knots(CagCall *call, int argument, const size_t count[2], CagGr
       return cag_fail_type(call, argument, "none, or two lists of knots for u and v");
     if (n != wanted) {
       cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", k,
-               "%zu control points of degree %d want %zu `knots` in %c, found %zu", count[k],
+               "%zu control points of degree %d need %zu `knots` in %c, found %zu", count[k],
                k ? g->degree_v : g->degree_u, wanted, "uv"[k], n);
       return cag_fail_geometry(call, &err);
     }
@@ -199,7 +199,7 @@ static bool read_planes(CagCall *call, int argument, CagGridData *g) {
   if (g->hold == CAG_GRID_HOLD_NONE)
     return cag_fail_call(
         call, argument, CAG_ERR_value,
-        "wants `fixed` beside `planes`: \"x\", \"y\" or \"z\", along which they are positions");
+        "expects `fixed` beside `planes`: \"x\", \"y\" or \"z\", along which they are positions");
   if (v.type != CAG_RECORD) {
     g->lines = v.type == CAG_TEXT ? CAG_GRID_PLANES_EITHER : CAG_GRID_PLANES_U;
     return read_positions(call, argument, v, g);

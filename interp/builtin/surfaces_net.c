@@ -151,7 +151,7 @@ static bool read_knots(CagCall *call, int argument, int direction, size_t n, int
                          "expects \"open\", \"periodic\" or a list as `knots`, found \"%s\"", type);
   if (n < 2) {
     cag_fail(&err, CAG_E_ARGUMENT, "order-range", "net", direction,
-             "a surface wants at least 2 rows of at least 2 points, by %s there is %zu",
+             "a surface needs at least 2 rows of at least 2 points, by %s there is %zu",
              direction ? "v" : "u", n);
     return cag_fail_geometry(call, &err);
   }
@@ -163,7 +163,7 @@ static bool read_knots(CagCall *call, int argument, int direction, size_t n, int
   }
   if (list && (!cag_as_vector(v, &x, &count) || count != wanted)) {
     cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", -1,
-             "%zu points of degree %d want %zu `knots` in %s (points + degree + 1)", n, degree,
+             "%zu points of degree %d need %zu `knots` in %s (points + degree + 1)", n, degree,
              wanted, direction ? "v" : "u");
     return cag_fail_geometry(call, &err);
   }
@@ -205,7 +205,7 @@ bool cag_surfaces_bspline_surface(CagCall *call, CagValue *result) {
 bool cag_surfaces_nurbs_surface(CagCall *call, CagValue *result) {
   if (cag_given(call, 4) && call->values[4].type != CAG_NONE)
     return cag_surfaces_bspline_surface(call, result);
-  cag_fail_call(call, -1, CAG_ERR_arity, "wants `weights`, in rows as the points");
+  cag_fail_call(call, -1, CAG_ERR_arity, "expects `weights`, in rows as the points");
   cag_fail_help(call->vm, "without weights it is a `bspline_surface`");
   return false;
 }

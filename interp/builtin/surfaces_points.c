@@ -342,7 +342,7 @@ static bool polynomials(CagCall *call, CagValue *result) {
   if (!read_net(call, &n)) return false;
   if (n.view.rational) {
     cag_fail(&err, CAG_E_UNSUPPORTED, "rational-patch", "", -1,
-             "the surface has weights, so it is no polynomial: ask for `numerator` and "
+             "the surface has weights, so it is not a polynomial: ask for `numerator` and "
              "`denominator`");
     return cag_fail_geometry(call, &err);
   }

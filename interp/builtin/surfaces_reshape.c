@@ -23,7 +23,7 @@ static bool named(const CagCall *call, int argument) {
 static bool read_place(CagCall *call, const CagSurface *s, int at, int *direction, double *t) {
   bool u = named(call, at), v = named(call, at + 1);
   if (u == v)
-    return cag_fail_call(call, u ? at + 1 : -1, CAG_ERR_value, "wants either `u:` or `v:`");
+    return cag_fail_call(call, u ? at + 1 : -1, CAG_ERR_value, "expects either `u:` or `v:`");
   *direction = u ? 0 : 1;
   return u ? cag_arg_parameter(call, at, s->angular_u, s->u0, s->u1, false, t)
            : cag_arg_parameter(call, at + 1, s->angular_v, s->v0, s->v1, false, t);

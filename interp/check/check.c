@@ -59,7 +59,7 @@ static void check_shown(Check *c, const CagExpr *e) {
   const CagTypes types = check_infer(c, e);
   if (types & ~unseen) return;
   check_report_found(c, CAG_ERR_no_image, e->span,
-                     "show wants shapes, lights, cameras or settings of the scene", types);
+                     "show expects shapes, lights, cameras or settings of the scene", types);
 }
 
 static void walk_statement(Check *c, const CagStatement *s) {

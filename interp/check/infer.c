@@ -13,7 +13,7 @@ void check_expect_bool(Check *c, const CagExpr *e, const char *of) {
   char found[256], text[320];
   const CagTypes types = check_infer(c, e);
   if (types & CAG_TYPES(BOOL)) return;
-  snprintf(text, sizeof text, "%s wants true or false, found %s", of,
+  snprintf(text, sizeof text, "%s expects true or false, found %s", of,
            cag_types_text(types, found, sizeof found));
   check_report(c, CAG_ERR_condition, e->span, text);
 }

@@ -1,4 +1,4 @@
-// Binding of arguments, and calls of what is no closure.
+// Binding of arguments, and calls of what is not a closure.
 
 #include "interp/eval/calls.h"
 
@@ -189,7 +189,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   const CagBuiltin *b = cag_builtin_rows(index, &rows) + row;
   const CagSignature *s = cag_builtin_signature(index, row);
   if (!s)
-    return cag_vm_fail_at(vm, -1, CAG_ERR_not_function, "%s is no function",
+    return cag_vm_fail_at(vm, -1, CAG_ERR_not_function, "%s is not a function",
                           cag_builtin_name(index));
   if ((positional > s->count && !s->variadic) || (!named && count < s->required))
     return fail_builtin_arity(vm, b, s, count);
@@ -246,7 +246,7 @@ bool cag_call_native(CagVm *vm, CagValue callee, CagValue *arguments, size_t cou
   }
   CagString s = {0};
   cag_describe_value(vm, &s, callee);
-  cag_vm_fail_at(vm, -1, CAG_ERR_not_function, "a call of something that is no function: %s",
+  cag_vm_fail_at(vm, -1, CAG_ERR_not_function, "a call of something that is not a function: %s",
                  s.bytes);
   cag_string_free(&s);
   return cag_fail_hidden(vm);

@@ -10,7 +10,7 @@
 // Fails for wrong arity and unknown names.
 bool cag_bind_closure(CagVm *vm, const CagProto *p, CagValue *arguments, size_t count,
                       const char *const *names, size_t named);
-// Calls anything that is no closure: a built-in, a curve or a surface. `arguments` stand on the
+// Calls anything that is not a closure: a built-in, a curve or a surface. `arguments` stand on the
 // stack with vm->top right behind them or later.
 bool cag_call_native(CagVm *vm, CagValue callee, CagValue *arguments, size_t count,
                      const char *const *names, size_t named, bool direct, CagValue *result);

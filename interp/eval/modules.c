@@ -42,7 +42,7 @@ static CagModuleUnit *new_unit(CagVm *vm, const char *name, const char *path, co
 static bool check_text(CagVm *vm, CagModuleUnit *m) {
   size_t bad = cag_source_bad_utf8(m->source);
   if (bad == m->source->length || !memchr(m->source->text, 0, m->source->length)) return true;
-  const char *why = m->source->text[bad] == 0 ? "a zero byte" : "a byte that is no UTF-8";
+  const char *why = m->source->text[bad] == 0 ? "a zero byte" : "a byte that is not UTF-8";
   CagDiagnostic *d = cag_diagnostics_add(
       &vm->errors, CAG_ERR_module_not_text, m->source, (CagSpan){(uint32_t)bad, (uint32_t)bad + 1},
       "%s is not a text in UTF-8: it has %s (0x%02x) at byte %zu", m->name, why,

@@ -227,7 +227,7 @@ static bool run_show(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
       cag_describe_value(vm, &found, v);
       CagDiagnostic *d = cag_diagnostics_add(
           &vm->errors, CAG_ERR_no_image, m->source, e->span,
-          "show wants shapes, lights, cameras or settings of the scene, found %s", found.bytes);
+          "show expects shapes, lights, cameras or settings of the scene, found %s", found.bytes);
       if (v.type <= CAG_TEXT) cag_diagnostic_set_help(d, "to write a value, use `print`");
       cag_string_free(&found);
       vm->failed = true;

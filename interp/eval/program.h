@@ -11,7 +11,7 @@ typedef struct CagDefine {
 } CagDefine;
 
 // Sets time, frame and frames, and the params of the main module; checks types and ranges. A name
-// that is no param is an error, unless `lenient`.
+// that is not a param is an error, unless `lenient`.
 bool cag_program_set_params(CagVm *vm, CagModuleUnit *main, const CagDefine *defines, size_t n,
                             double frame, double frames, bool lenient);
 // Runs a module's statements: shows go to vm->shown, prints to vm->out. Values of EXPRESSION

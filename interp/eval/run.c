@@ -144,7 +144,7 @@ static bool unpack(CagVm *vm, CagValue *out, CagValue v, size_t n) {
   if (v.type != CAG_LIST && v.type != CAG_RANGE) {
     CagString s = {0};
     cag_describe_value(vm, &s, v);
-    cag_vm_fail(vm, CAG_ERR_pattern, "the pattern wants a list of %zu elements, found %s", n,
+    cag_vm_fail(vm, CAG_ERR_pattern, "the pattern expects a list of %zu elements, found %s", n,
                 s.bytes);
     cag_string_free(&s);
     return false;

@@ -175,10 +175,11 @@ static double shape_tolerance(const CagScene *s, const CagItem *item) {
 }
 
 static CagStatus fail_operation(const CagItem *item, CagError *err) {
-  return cag_fail(err, CAG_E_UNSUPPORTED, "export-operation", "", -1,
-                  "%s is a union, difference or intersection of solids, whose faces meet in curves "
-                  "that are no NURBS: show its parts one by one, or write .stl, .obj, .ply or .glb",
-                  item->name);
+  return cag_fail(
+      err, CAG_E_UNSUPPORTED, "export-operation", "", -1,
+      "%s is a union, difference or intersection of solids, whose faces meet in curves "
+      "that are not NURBS: show its parts one by one, or write .stl, .obj, .ply or .glb",
+      item->name);
 }
 
 static CagStatus fail_mesh(const CagItem *item, CagError *err) {

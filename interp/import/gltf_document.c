@@ -244,7 +244,7 @@ static CagStatus check_extensions(CagGltf *g, CagError *err) {
     if (known) continue;
     return cag_gltf_fail(g, err, "mesh-file-unsupported",
                          "it requires the extension %.80s; write it without",
-                         name ? name : "that is no text");
+                         name ? name : "that is not text");
   }
   return CAG_OK;
 }

@@ -234,8 +234,8 @@ static CagStatus read_count(Ply *p, const Property *q, size_t i, size_t *count, 
   size_t each = p->format == TEXT ? 2 : type_size[q->type];
   size_t rest = (size_t)(p->scan.end - p->scan.at) + 1;
   if (!(x >= 0) || x != floor(x))
-    return fail_data(p, "mesh-file-syntax", "the count of a list is no whole number in element", i,
-                     err);
+    return fail_data(p, "mesh-file-syntax", "the count of a list is not a whole number in element",
+                     i, err);
   if (x > (double)(rest / each))
     return fail_data(p, "mesh-file-truncated",
                      "write or fetch the file again: a list is longer than the rest in element", i,

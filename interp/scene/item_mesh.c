@@ -63,7 +63,7 @@ static CagStatus make_mesh(const CagScene *s, const CagItem *item, CagMesh **out
   case CAG_ITEM_MESH: return cag_mesh_outward(item->as.mesh, out, err);
   case CAG_ITEM_GROUND: break; // for pictures, which have a plane of their own
   }
-  return cag_fail(err, CAG_E_ARGUMENT, "item-kind", "", -1, "a ground is no mesh");
+  return cag_fail(err, CAG_E_ARGUMENT, "item-kind", "", -1, "a ground is not a mesh");
 }
 
 CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err) {

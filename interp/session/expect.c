@@ -155,7 +155,7 @@ static bool set_limit(Plan *p, const char *name, const char *value) {
 
 static void set_problem(Plan *p, const char *word) {
   static const char FORM[] =
-      "`%s` is no option of `// run:`; there are -D name=value, --picture, --max-depth, "
+      "`%s` is not an option of `// run:`; there are -D name=value, --picture, --max-depth, "
       "--max-memory, --max-time and --max-triangles";
   free(p->problem);
   if (asprintf(&p->problem, FORM, word) < 0) p->problem = NULL;

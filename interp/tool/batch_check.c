@@ -117,8 +117,9 @@ static bool check_pattern(CagBatch *b, const CagJob *job, const CagBatchRow *row
                             output);
   if (row->film && (places < 0 || places > 1))
     return cag_jobs_problem(&b->jobs, job, CODE_VALUE, HELP,
-                            places < 0 ? "a %% in the output '%s' is no place for a frame's number"
-                                       : "the output '%s' has several places for a frame's number",
+                            places < 0
+                                ? "a %% in the output '%s' is not a place for a frame's number"
+                                : "the output '%s' has several places for a frame's number",
                             output);
   if (row->film && places == 0 && row->last > row->first)
     return cag_jobs_problem(&b->jobs, job, CODE_TWICE, HELP,

@@ -122,7 +122,7 @@ static bool set_frames(CagTool *t, const char *value) {
   const char *at = value;
   if (!read_whole(at, &at, &t->first_frame) || strncmp(at, "..", 2) ||
       !read_whole(at + 2, &at, &t->last_frame) || *at)
-    return reject(t, HELP, "--frames", value, "these are no frames");
+    return reject(t, HELP, "--frames", value, "these are not frames");
   if (t->last_frame < t->first_frame)
     return reject(t, HELP, "--frames", value, "the last frame comes before the first");
   if (t->last_frame >= INT_MAX) return reject(t, HELP, "--frames", value, "that is too many");

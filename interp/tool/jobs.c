@@ -306,7 +306,7 @@ static bool take_record(CagJobs *jobs, const cJSON *record) {
   if (!cJSON_IsObject(record))
     return cag_jobs_problem(jobs, row, CODE_FILE,
                             "write {\"script\": \"vase.cag\", \"output\": \"vase.png\"}",
-                            "the row is no record");
+                            "the row is not a record");
   bool ok = true;
   for (const cJSON *m = record->child; ok && m; m = m->next) ok = take_member(jobs, row, m);
   return ok;
@@ -338,10 +338,10 @@ static bool read_json(CagJobs *jobs, const char *text, size_t length) {
   bool ok = true;
   if (!list)
     ok = cag_jobs_problem(jobs, NULL, CODE_FILE, "a list of records: [{\"script\": ...}, ...]",
-                          "line %zu: this is no JSON", line_of(text, stopped));
+                          "line %zu: this is not JSON", line_of(text, stopped));
   else if (!cJSON_IsArray(list))
     ok = cag_jobs_problem(jobs, NULL, CODE_FILE, "put the records between [ and ]",
-                          "the jobs are no list");
+                          "the jobs are not a list");
   for (const cJSON *m = cJSON_IsArray(list) ? list->child : NULL; ok && m; m = m->next)
     ok = take_record(jobs, m);
   cJSON_Delete(list);
@@ -366,7 +366,7 @@ bool cag_jobs_read(CagJobs *jobs, const char *text, size_t length, bool is_json)
   if (length >= 3 && memcmp(text, MARK, 3) == 0) text += 3, length -= 3;
   if (!is_text(text, length))
     return cag_jobs_problem(jobs, NULL, CODE_FILE, "save it as UTF-8",
-                            "the file is no text in UTF-8");
+                            "the file is not text in UTF-8");
   const bool ok = is_json ? read_json(jobs, text, length) : read_csv(jobs, text, length);
   for (size_t i = 0; i < jobs->count; i++)
     if (jobs->rows[i].param_count)

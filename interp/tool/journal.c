@@ -164,7 +164,7 @@ bool cag_journal_open(CagJournal *j, const char *path, bool fresh, CagIoError *e
                             "the journal '%s' cannot be opened: %s", path, strerror(errno));
   bool ok = true;
   if (fstat(j->fd, &st) != 0 || !S_ISREG(st.st_mode))
-    ok = fail(j, "move it away", "is no file", err);
+    ok = fail(j, "move it away", "is not a file", err);
   else if (flock(j->fd, LOCK_EX | LOCK_NB) != 0)
     ok = fail(j, "wait for its end", "is held by another batch of these jobs that runs now", err);
   else ok = read_journal(j, err);

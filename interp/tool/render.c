@@ -69,7 +69,7 @@ static int check_pattern(const CagTool *t) {
                                        t->output);
   if (places < 0 || places > 1)
     return cag_tool_fail(t, CAG_STATUS_USAGE, HELP,
-                         places < 0 ? "a %% in the output '%s' is no place for a frame's number"
+                         places < 0 ? "a %% in the output '%s' is not a place for a frame's number"
                                     : "the output '%s' has several places for a frame's number",
                          t->output);
   if (places == 0 && t->last_frame > t->first_frame)

@@ -104,7 +104,7 @@ void cag_repl_command(CagRepl *repl, char *line) {
   const struct Command *c = find_command(line, &several);
   if (!c) fail_unknown(repl, line, several);
   else if (c->wants == NEEDED && !*operand)
-    cag_repl_fail(repl, CAG_STATUS_USAGE, "%s wants something behind it: %s %s", c->name, c->name,
+    cag_repl_fail(repl, CAG_STATUS_USAGE, "%s expects something after it: %s %s", c->name, c->name,
                   c->operand);
   else if (c->wants == NOTHING && *operand)
     cag_repl_fail(repl, CAG_STATUS_USAGE, "%s takes no argument, found `%s`", c->name, operand);

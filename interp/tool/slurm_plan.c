@@ -94,7 +94,7 @@ bool cag_plan_read(const CagTool *t, CagPlan *plan, const char *path) {
   if (ok) return true;
   cag_plan_free(plan);
   cag_tool_fail(t, CAG_STATUS_FILE, "--element is for the plan that --engine-queue writes",
-                "'%s' is no plan of a batch", path);
+                "'%s' is not a plan of a batch", path);
   return false;
 }
 

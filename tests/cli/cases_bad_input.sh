@@ -217,8 +217,8 @@ script outside.cag 'import "../../../etc/passwd"'
 fails outside.cag 1 'outside.cag:1:'
 
 it 'a file that a script asks for and that is not there is the failure of the script'
-script wants.cag 'print read_csv("points.csv")'
-fails wants.cag 1 'wants.cag:1:'
+script expects.cag 'print read_csv("points.csv")'
+fails expects.cag 1 'expects.cag:1:'
 says 'points.csv'
 
 it 'up to twenty errors are shown in one run'

@@ -432,7 +432,7 @@ try batch jobs.csv --report no/where/report.csv
 status 3
 try batch --element 0 jobs.json
 status 3
-says 'is no plan of a batch'
+says 'is not a plan of a batch'
 try batch
 status 2
 try batch --help

@@ -31,7 +31,7 @@ case_of '"\\"\\\\\\/"' '"\/'
 case_of '["\\b\\f\\n\\r\\t"]' '["\u{8}\u{c}\n\u{d}\t"]'
 as_expected json
 
-it 'what is no JSON is refused with its place'
+it 'what is not JSON is refused with its place'
 case_of '' 'line 1, column 1: the file ends where a value was expected'
 case_of '[1, ' 'line 1, column 5: the file ends where a value was expected'
 case_of '[1 2]' 'line 1, column 4: expected `,` or `]`'

@@ -90,7 +90,7 @@ same ends.cag neat.expected
 try fmt --check empty.cag
 status 0
 
-it 'what is no text in UTF-8 stays as it is'
+it 'what is not text in UTF-8 stays as it is'
 printf 'a=1 // \377\n' > bytes.cag
 printf 'a=1\000\nb=2\n' > zero.cag
 cp bytes.cag bytes.before; cp zero.cag zero.before

@@ -82,7 +82,7 @@ it 'what is nearly flat is a mesh: the renderer would not meet it'
 script leaf.cag 'show sphere_surface(20) |> scale([1, 1, 1e-8])'
 try export leaf.cag -o leaf.pov
 status 0
-grep -q 'mesh2 {' leaf.pov || wrong 'it is no mesh'
+grep -q 'mesh2 {' leaf.pov || wrong 'it is not a mesh'
 
 it 'what has no object of its own is a mesh with normals'
 script knot.cag 'show tube(bezier([[0, 0, 0], [30, 0, 0], [30, 30, 10], [0, 30, 30]]), 4)'

@@ -142,7 +142,7 @@ mkdir -p two.csv.slurm/cag-1
 echo '{}' > two.csv.slurm/cag-1/plan.json
 queue two.csv
 status 3
-says 'is no plan of a batch'
+says 'is not a plan of a batch'
 rm -r two.csv.slurm
 
 it 'an element does its tasks, and none twice'

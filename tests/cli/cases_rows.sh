@@ -30,7 +30,7 @@ ball.cag,ball.,,, | E0916: row 1: the output 'ball.' has no ending that says its
 ball.cag,a.b/c,,, | E0916: row 1: the output 'a.b/c' has no ending that says its format
 ball.cag,-,,, | E0916: row 1: the output '-' has no ending that says its format
 ball.cag,a%d%d.png,0..1,, | E0912: row 1: the output 'a%d%d.png' has several places for a frame's number
-ball.cag,a%q.png,0..1,, | E0912: row 1: a % in the output 'a%q.png' is no place for a frame's number
+ball.cag,a%q.png,0..1,, | E0912: row 1: a % in the output 'a%q.png' is not a place for a frame's number
 ball.cag,a%d.png,0..2000000,, | E0912: row 1: with this row there are more than 1000000 pictures to make
 ball.cag,a.png,,640x32,1x2 | E0912: row 1: tiles 1x2 of a picture of 640 by 32 pixels are smaller than 32 pixels
 ball.cag,a.png,,32x640,2x1 | E0912: row 1: tiles 2x1 of a picture of 32 by 640 pixels are smaller than 32 pixels

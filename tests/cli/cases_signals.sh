@@ -196,7 +196,7 @@ says 'ulimit -f'
 is_missing limited/ball.stl
 no_temporaries limited
 
-it 'a text in JSON with a zero is no name of a file'
+it 'a text in JSON with a zero is not a name of a file'
 printf '[{"script": "ball.cag", "output": "ball.png\\u0000x"}]' > zero.json
 try batch zero.json
 status 2

@@ -83,7 +83,7 @@ try compare a.exr b.exr c.exr
 status 2
 says "'c.exr' is one too many"
 
-it 'export wants an output'
+it 'export expects an output'
 try export ball.cag
 status 2
 says '-o OUT'
@@ -95,7 +95,7 @@ says "'a.stl' and 'b.stl'"
 is_missing a.stl
 is_missing b.stl
 
-it 'an output without an ending wants --format'
+it 'an output without an ending expects --format'
 try export ball.cag -o thing
 status 2
 says '--format'

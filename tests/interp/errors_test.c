@@ -30,7 +30,7 @@ static bool has_script(const char *code, const char *example) {
   return example != NULL;
 }
 
-// Examples that want more than one text: a file that imports itself, a -D, a file
+// Examples that need more than one text: a file that imports itself, a -D, a file
 // beside it.
 static const char *const beyond_text[] = {"E0241", "E0247", "E0248", "E0249", "E0730", "E0731",
                                           "E0732", "E0733", "E0734", "E0735", "E0736", "E0843",

@@ -171,22 +171,22 @@ static void each_run_has_its_own_options_and_expectations(void **state) {
       {H "// run: -D g=2\n// expect error: E0247", "t -D g=2 passed\n"},
       // Options that there are not.
       {H "\n// run: -q\n// expect: 1",
-       "4: `-q` is no option of `// run:`; there are -D name=value, --picture, --max-depth, "
+       "4: `-q` is not an option of `// run:`; there are -D name=value, --picture, --max-depth, "
        "--max-memory, --max-time and --max-triangles\nt -q failed\n"},
       {H "// run: -D h\n",
-       "3: `-D` is no option of `// run:`; there are -D name=value, --picture, --max-depth, "
+       "3: `-D` is not an option of `// run:`; there are -D name=value, --picture, --max-depth, "
        "--max-memory, --max-time and --max-triangles\nt -D h failed\n"},
       {H "// run: -D =2\n",
-       "3: `-D` is no option of `// run:`; there are -D name=value, --picture, --max-depth, "
+       "3: `-D` is not an option of `// run:`; there are -D name=value, --picture, --max-depth, "
        "--max-memory, --max-time and --max-triangles\nt -D =2 failed\n"},
       {H "// run: --max-depth 0\n",
-       "3: `--max-depth` is no option of `// run:`; there are -D name=value, --picture, "
+       "3: `--max-depth` is not an option of `// run:`; there are -D name=value, --picture, "
        "--max-depth, --max-memory, --max-time and --max-triangles\nt --max-depth 0 failed\n"},
       {H "// run: --max-depth 9x\n",
-       "3: `--max-depth` is no option of `// run:`; there are -D name=value, --picture, "
+       "3: `--max-depth` is not an option of `// run:`; there are -D name=value, --picture, "
        "--max-depth, --max-memory, --max-time and --max-triangles\nt --max-depth 9x failed\n"},
       {H "// run: --max-depth\n",
-       "3: `--max-depth` is no option of `// run:`; there are -D name=value, --picture, "
+       "3: `--max-depth` is not an option of `// run:`; there are -D name=value, --picture, "
        "--max-depth, --max-memory, --max-time and --max-triangles\nt --max-depth failed\n"},
       {H "// run: --picture\n// expect: 1", "t --picture passed\n"},
       // Limits.

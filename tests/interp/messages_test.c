@@ -99,8 +99,8 @@ static void mixed_ranges_name_the_angles(void **state) {
 
 static void hidden_built_ins_are_mentioned(void **state) {
   (void)state;
-  expect("norm = 50\nprint norm([1])", "E0304", "no function", "hides the built-in function");
-  expect("f(norm) = norm([1, 2])\nprint f(3)", "E0304", "no function", "`norm` is defined here");
+  expect("norm = 50\nprint norm([1])", "E0304", "not a function", "hides the built-in function");
+  expect("f(norm) = norm([1, 2])\nprint f(3)", "E0304", "not a function", "`norm` is defined here");
   expect("len = 4\nprint map([[1]], len)", "E0301", "expects a function", "`len` is defined here");
 }
 
@@ -239,7 +239,7 @@ static void values_of_a_wrong_type_are_named_with_what_to_write(void **state) {
       {"print [for x in 3: x]", "found the number 3", "to count, write 0..<n"},
       {"print [...3]", "spreads a list, found the number 3", NULL},
       {"print {...3}", "spreads a record, found the number 3", NULL},
-      {"print 3(1)", "no function: the number 3", NULL},
+      {"print 3(1)", "not a function: the number 3", NULL},
       {"assert [for i in 0..200: i] == [1]", "assertion failed", "5 ..., [1] is [1]"},
       {"assert {a: 1} == {b: 1}", "assertion failed", "{a: 1} is {a: 1}, {b: 1} is {b: 1}"},
       {"show 3", "found the number 3", "to write a value, use `print`"},

@@ -154,7 +154,8 @@ static void rows_become_tasks(void **state) {
       {"a.cag,f%d%d.png,0..1", "! 1 E0912 the output 'f%d%d.png' has several places for a frame's "
                                "number " PATTERN_HELP "\n"},
       {"a.cag,f%s.png,0..1",
-       "! 1 E0912 a % in the output 'f%s.png' is no place for a frame's number " PATTERN_HELP "\n"},
+       "! 1 E0912 a % in the output 'f%s.png' is not a place for a frame's number " PATTERN_HELP
+       "\n"},
       {"a.cag,f%d.png,0..999999\na.cag,g.png", "! 2 E0912 with this row there are more than "
                                                "1000000 pictures to make (take several files of "
                                                "jobs)\n"},

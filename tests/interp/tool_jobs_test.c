@@ -80,8 +80,8 @@ static const File FILES[] = {
     CSV("", "! 0 E0910 the file is empty\n"),
     CSV(" \n\n", "! 0 E0910 the file is empty\n"),
     CSV("script,output\n", "! 0 E0910 the file has no row\n"),
-    BYTES("script,output\na\0b,c\n", false, "! 0 E0910 the file is no text in UTF-8\n"),
-    BYTES("script,output\n\xC3\n", false, "! 0 E0910 the file is no text in UTF-8\n"),
+    BYTES("script,output\na\0b,c\n", false, "! 0 E0910 the file is not text in UTF-8\n"),
+    BYTES("script,output\n\xC3\n", false, "! 0 E0910 the file is not text in UTF-8\n"),
     // --- JSON ---
     JSON("[{\"script\": \"a.cag\", \"output\": \"a.stl\", \"r\": 7, \"list\": [1, 2], \"on\": true,"
          " \"none\": null, \"empty\": \"\"}]",
@@ -90,15 +90,15 @@ static const File FILES[] = {
     JSON("[{\"script\": \"a.cag\", \"r\": 1, \"script\": \"b.cag\"}]",
          "0: script=a.cag r=1\n! 1 E0911 'script' is given twice\n"),
     JSON("[{\"r\": {\"a\": 1}}, 3, []]", "0:\n0:\n0:\n! 1 E0910 the value of 'r' is a record\n"
-                                         "! 2 E0910 the row is no record\n"
-                                         "! 3 E0910 the row is no record\n"),
+                                         "! 2 E0910 the row is not a record\n"
+                                         "! 3 E0910 the row is not a record\n"),
     JSON("[]", "! 0 E0910 the file has no row\n"),
-    JSON("{\"script\": \"a.cag\"}", "! 0 E0910 the jobs are no list\n"),
-    JSON("[\n{\"script\":\n", "! 0 E0910 line 3: this is no JSON\n"),
-    JSON("[] more", "! 0 E0910 line 1: this is no JSON\n"),
+    JSON("{\"script\": \"a.cag\"}", "! 0 E0910 the jobs are not a list\n"),
+    JSON("[\n{\"script\":\n", "! 0 E0910 line 3: this is not JSON\n"),
+    JSON("[] more", "! 0 E0910 line 1: this is not JSON\n"),
     JSON("[\n{\"script\": \"a\\u0000b\"}]", "! 0 E0910 line 2: expected texts without \\u0000\n"),
     JSON("[{\"t\": \"\\\\u0000\"}]", "0: t=\\u0000\n"),
-    JSON("", "! 0 E0910 line 1: this is no JSON\n"),
+    JSON("", "! 0 E0910 line 1: this is not JSON\n"),
 };
 #define FILE_COUNT (sizeof FILES / sizeof *FILES)
 

@@ -173,7 +173,7 @@ static void test_refused(void **state) {
   remove("journal");
   assert_int_equal(mkfifo("journal", 0666), 0);
   assert_false(cag_journal_open(&j, "journal", false, &err));
-  assert_non_null(strstr(err.message, "is no file"));
+  assert_non_null(strstr(err.message, "is not a file"));
   remove("journal");
   assert_int_equal(mkdir("journal", 0777), 0);
   assert_false(cag_journal_open(&j, "journal", false, &err));

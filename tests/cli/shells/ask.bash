@@ -2,6 +2,6 @@
 . "$1"
 shift
 COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) COMPREPLY=()
-compopt() { :; } # bash wants to be completing for it
+compopt() { :; } # bash expects to be completing for it
 _cag
 printf '%s\n' "${COMPREPLY[@]}" | sort
