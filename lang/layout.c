@@ -546,7 +546,7 @@ static bool has_just_closed(const Layout *l, int indent) {
          l->column <= (uint32_t)indent + 2;
 }
 
-// Whether a single stage that cannot stand on a line may begin behind its head, and break within
+// Whether a single stage that cannot stand on a line may begin after its head, and break within
 // its own brackets.
 static bool begins_behind(const Layout *l, const Doc *head, const Doc *rest, int indent) {
   const Doc *stage = rest->child->next->next; // behind a LINE and `|> `

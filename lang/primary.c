@@ -150,7 +150,7 @@ static CagField field(Parser *p) {
         "write %s: value", f.name);
     parse_advance(p);
   } else if (!parse_accept(p, CAG_TOKEN_COLON)) {
-    parse_unexpected(p, NULL, CAG_ERR_expected_word, "`:` behind the name of the field");
+    parse_unexpected(p, NULL, CAG_ERR_expected_word, "`:` after the name of the field");
   }
   f.value = parse_expression(p);
   return f;

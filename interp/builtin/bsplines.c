@@ -68,7 +68,7 @@ const CagBuiltin cag_builtins_bsplines[] = {
      LISTS, bases},
     {"phantom_points(points, degree = 3, start = \"position\", end = \"position\", order = none)",
      cag_bsplines_phantom_points, "list",
-     "The points with one more before and behind them, so that the B-spline with uniform knots "
+     "The points with one more before and after them, so that the B-spline with uniform knots "
      "(`knots: \"periodic\"`) starts in the first and ends in the last of the given points, or has "
      "there the derivative `{tangent: V}` or the second derivative `{second: V}`.",
      "p = phantom_points([[0, 0], [3, 9], [6, 3], [9, 6]], end: {tangent: [3, 0]})\n"

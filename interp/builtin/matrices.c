@@ -332,7 +332,7 @@ static bool call_eigen(CagCall *call, CagValue *result) {
   bool good = values
                   ? check_symmetric(call, &m)
                   : cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  // In column-major order the eigenvectors come out one behind the other: the rows of what we give.
+  // In column-major order the eigenvectors come out one after the other: the rows of what we give.
   if (good &&
       LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'U', (lapack_int)n, m.x, (lapack_int)n, values) != 0)
     good = cag_fail_call(call, 0, CAG_ERR_convergence,

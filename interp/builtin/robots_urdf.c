@@ -111,7 +111,7 @@ static bool read_file(Import *m, const CagUrdfBody *b, CagValue *out) {
     name = strstr(name, "://") + 3;
     const char *slash = strchr(name, '/');
     if (slash) return read_near(m, b, name, (int)(slash - name), slash + 1, out);
-    return fail_mesh(m, b, "behind the package's name its file is missing",
+    return fail_mesh(m, b, "the file's name is missing after the package's name",
                      "write package://NAME/meshes/arm.stl");
   }
   if (begins(name, file)) name += strlen(file);

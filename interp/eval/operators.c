@@ -141,7 +141,7 @@ static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue
     if (l->dim == 1 && m->dim == 1 && l->length + m->length == 5)
       cag_fail_help(vm, "write the 2-D point [x, y] as [x, y, 0]");
     else if (op == CAG_OP_ADD)
-      cag_fail_help(vm, "to put lists one behind the other, write [...a, ...b]");
+      cag_fail_help(vm, "to put lists one after the other, write [...a, ...b]");
     return false;
   }
   if (l->dim && l->dim == m->dim) return packed_sum(vm, op, l, m, result);
@@ -685,7 +685,7 @@ static bool fail_field(CagVm *vm, CagValue object, const char *name) {
   const char *nearest = n ? cag_nearest_name(name, members, n) : NULL;
   if (cag_foreign_member(name)) cag_fail_help(vm, "write %s", cag_foreign_member(name));
   else if (cag_builtin_find(name) != (size_t)-1)
-    cag_fail_help(vm, "a function stands behind |>: write x |> %s(...)", name);
+    cag_fail_help(vm, "a function stands after |>: write x |> %s(...)", name);
   else if (nearest) cag_fail_help(vm, "did you mean `%s`?", nearest);
   else if (object.type == CAG_RANGE) cag_fail_help(vm, "a range has start, end and step");
   else if (n && n <= 12) {

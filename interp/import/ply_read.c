@@ -85,7 +85,7 @@ static CagStatus read_element(Ply *p, CagError *err) {
   int64_t count;
   size_t n = cag_scan_word(&p->scan, &word);
   if (!cag_scan_integer(&p->scan, &count) || count < 0)
-    return fail_line(p, "mesh-file-syntax", "expected a count behind the element's name", word, n,
+    return fail_line(p, "mesh-file-syntax", "expected a count after the element's name", word, n,
                      err);
   if (p->element_count == ELEMENTS_MAX)
     return fail_line(p, "mesh-file-syntax", "expected at most 64 elements", word, n, err);

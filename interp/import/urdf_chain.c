@@ -85,7 +85,7 @@ static CagStatus fail_branches(const CagUrdfTree *t, size_t node, CagError *err)
     if (children(t, i, &ignored) == 0 && is_below(t, i, node)) add_name(&tips, t->nodes[i].name);
   end_names(&tips);
   return cag_fail(err, CAG_E_ARGUMENT, "urdf-branches", "tip", -1,
-                  "%s: behind the link \"%.40s\" the robot branches, to the ends %s; `tip` says "
+                  "%s: after the link \"%.40s\" the robot branches, to the ends %s; `tip` says "
                   "which link the chain ends at",
                   t->file, t->nodes[node].name, tips.text);
 }
@@ -100,7 +100,7 @@ static CagStatus find_tip(const CagUrdfTree *t, size_t from, size_t *out, CagErr
     *out = t->edges[edge].child;
   }
   return cag_fail(err, CAG_E_ARGUMENT, "urdf-chain", "path", -1,
-                  "%s: the joints behind the link \"%.60s\" lead in a ring", t->file,
+                  "%s: the joints after the link \"%.60s\" lead in a ring", t->file,
                   t->nodes[from].name);
 }
 

@@ -221,7 +221,7 @@ static CagStatus fail_joint(const CagUrdfTree *t, const CagUrdfEdge *e, CagError
                     t->file, e->line, e->name, e->mimic, t->nodes[e->parent].name);
   return cag_fail(err, CAG_E_ARGUMENT, "urdf-joint", "path", e->line,
                   "%s, line %ld: the joint \"%.60s\" is %s; the joints of a chain turn or slide "
-                  "about one axis: begin behind it (base: \"%.60s\")",
+                  "about one axis: begin after it (base: \"%.60s\")",
                   t->file, e->line, e->name, e->kind == CAG_URDF_PLANAR ? "planar" : "floating",
                   t->nodes[e->child].name);
 }

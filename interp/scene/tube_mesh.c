@@ -21,7 +21,7 @@
 #define BALL_RINGS 5
 // A curve follows its points to this part of the radius.
 #define CHORD_PART 0.1
-// How far runs end before a sharp corner and begin behind it, as parts of the radius: within the
+// How far runs end before a sharp corner and begin after it, as parts of the radius: within the
 // ball, and different, so that a run back along the same line has no ring in common.
 #define SHORT_AT_END 0.03
 #define SHORT_AT_START 0.05

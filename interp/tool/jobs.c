@@ -288,7 +288,7 @@ static char *value_text(const cJSON *value) {
 static bool take_member(CagJobs *jobs, CagJob *row, const cJSON *member) {
   if (cJSON_IsNull(member)) return true;
   if (cJSON_IsObject(member))
-    return cag_jobs_problem(jobs, row, CODE_FILE, "write the value as a text, as behind -D",
+    return cag_jobs_problem(jobs, row, CODE_FILE, "write the value as a text, as after -D",
                             "the value of '%s' is a record", member->string);
   for (const cJSON *other = member->prev; other && other->next; other = other->prev)
     if (strcmp(other->string, member->string) == 0)

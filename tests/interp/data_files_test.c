@@ -185,7 +185,8 @@ static void places_of_errors_in_csv(void **state) {
   (void)state;
   size_t bad = 0;
   READS("a,b\n1,\"2\n\n", "read_csv(F)", "line 2, column 3: a quote that is not closed");
-  READS("1,\"2\"3\n", "read_csv(F)", "line 1, column 6: a quoted cell goes on behind its quote");
+  READS("1,\"2\"3\n", "read_csv(F)",
+        "line 1, column 6: a quoted cell goes on after its closing quote");
   READS("a,b\n\n1,2\n3,4,5\n", "read_csv(F)", "line 4, column 1: 3 cells, but the header names 2");
   READS("a,b,a\n1,2,3\n", "read_csv(F)", "line 1, column 1: two columns are named \"a\"");
   READS("\na,column1,b\n", "read_csv(F, header: true)", "[]");
@@ -295,8 +296,8 @@ static void meshes_of_urdf_files(void **state) {
   bad += !reads_mesh("package://p/m/t.obj", missing);
   bad += !reads_mesh("m/t.obj", missing);
   bad += !reads_mesh("/t.obj", missing);
-  bad += !reads_mesh("package://p.obj", "behind the package's name its file is missing");
-  bad += !reads_mesh("model://t.obj", "behind the package's name its file is missing");
+  bad += !reads_mesh("package://p.obj", "the file's name is missing after the package's name");
+  bad += !reads_mesh("model://t.obj", "the file's name is missing after the package's name");
   bad += !reads_mesh("http://example.org/t.obj", "nothing is fetched from elsewhere");
   static const char ending[] = "meshes are read from .stl .obj .ply .gltf .glb";
   bad += !reads_mesh("m/t.dae", ending);

@@ -222,7 +222,7 @@ static void chains_lead_from_base_to_tip(void **state) {
   CagError err = {0};
   assert_int_equal(cag_urdf_chain(&t, NULL, NULL, &chain, &n, &err), CAG_E_ARGUMENT);
   assert_non_null(
-      strstr(err.message, "behind the link \"b\" the robot branches, to the ends \"d\", \"f\";"));
+      strstr(err.message, "after the link \"b\" the robot branches, to the ends \"d\", \"f\";"));
   cag_urdf_tree_free(&t);
 }
 
