@@ -50,6 +50,22 @@ static inline CagVec3 surface_at(const CagSurface *s, double u, double v) {
   return p;
 }
 
+// A point and the partial derivatives of a surface there.
+typedef struct Partials {
+  CagVec3 point, du, dv, duv, duu, dvv;
+} Partials;
+
+static inline void assert_partials(const CagSurface *s, double u, double v, const Partials *e) {
+  CagVec3 d[9];
+  MUST(cag_surface_eval(s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, err));
+  assert_point(d[0], e->point, 1e-9, "point");
+  assert_point(d[cag_partial(2, 1, 0)], e->du, 1e-9, "du");
+  assert_point(d[cag_partial(2, 0, 1)], e->dv, 1e-9, "dv");
+  assert_point(d[cag_partial(2, 1, 1)], e->duv, 1e-9, "duv");
+  assert_point(d[cag_partial(2, 2, 0)], e->duu, 1e-9, "duu");
+  assert_point(d[cag_partial(2, 0, 2)], e->dvv, 1e-9, "dvv");
+}
+
 // Places inside the domain, off symmetries.
 static inline double inside(double a, double b, int k) {
   static const double FRACTION[] = {0.137, 0.391, 0.583, 0.871};

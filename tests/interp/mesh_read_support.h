@@ -94,13 +94,18 @@ static inline void assert_text_fails(const char *name, const char *text, const c
 static const float corners[4][3] = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0, 0, 4}};
 static const unsigned faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
 
-static inline void assert_tetrahedron(CagMesh *m) {
+static inline void assert_solid(const CagMesh *m, size_t vertices, size_t triangles,
+                                double volume) {
   CagMeshCheck c;
   assert_int_equal(cag_mesh_check(m, &c, &err), CAG_OK);
-  assert_int_equal(c.vertices, 4);
-  assert_int_equal(c.faces, 4);
+  assert_int_equal(c.vertices, vertices);
+  assert_int_equal(c.faces, triangles);
   assert_true(c.solid);
-  assert_true(fabs(c.volume - 4) < 1e-12);
+  assert_true(fabs(c.volume - volume) < 1e-12);
+}
+
+static inline void assert_tetrahedron(CagMesh *m) {
+  assert_solid(m, 4, 4, 4);
   CagBounds b = cag_mesh_bounds(m);
   assert_true(b.max.x == 2 && b.max.y == 3 && b.max.z == 4 && cag_norm(b.min) == 0);
   cag_mesh_release(m);

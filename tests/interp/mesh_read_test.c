@@ -75,12 +75,7 @@ static void obj_has_polygons_and_numbers_from_the_end(void **state) {
                                      "g sides\nusemtl red\ns 1\n"
                                      "f 1 4 3 2\nf -4 -3 -2 -1\nf 1 2 \\\n 6 5\n"
                                      "f 2 3 7 6\nf 3 4 8 7\nf 4/ 1// 5 8\nl 1 2\np 1\n");
-  CagMeshCheck c;
-  assert_int_equal(cag_mesh_check(m, &c, &err), CAG_OK);
-  assert_int_equal(c.vertices, 8);
-  assert_int_equal(c.faces, 12);
-  assert_true(c.solid);
-  assert_true(fabs(c.volume - 8) < 1e-12);
+  assert_solid(m, 8, 12, 8);
   cag_mesh_release(m);
   // An L of area 3, as one polygon.
   m = read_text("l.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5 6\n");
