@@ -21,6 +21,7 @@ how busy the machine is. Changes that no suite detects are printed and stored in
 tests the files of a build, takes no part.
 """
 
+import filecmp
 import glob
 import os
 import random
@@ -380,19 +381,25 @@ class Trials:
 
 
 def copy_tree():
-    """A fresh copy of the files in the repository, with builds of an earlier copy."""
+    """A copy of the files in the repository, with builds of an earlier copy."""
     tree = os.path.join(WORK, "tree")
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=HERE, stdout=subprocess.PIPE, text=True, check=True).stdout
+    names = set(filter(None, listed.split("\0")))
     os.makedirs(tree, exist_ok=True)
-    for name in os.listdir(tree):
-        path = os.path.join(tree, name)
-        if not name.startswith("build"):
-            shutil.rmtree(path) if os.path.isdir(path) else os.remove(path)
-    names = subprocess.run(["git", "ls-files", "-z"], cwd=HERE, stdout=subprocess.PIPE, text=True, check=True).stdout
-    for name in filter(None, names.split("\0")):
-        target = os.path.join(tree, name)
-        os.makedirs(os.path.dirname(target), exist_ok=True)
-        shutil.copy(os.path.join(HERE, name), target, follow_symlinks=False)
     os.chdir(tree)
+    for folder, folders, files in os.walk("."):
+        folders[:] = [name for name in folders if not name.startswith("build")]
+        for name in (os.path.normpath(os.path.join(folder, file)) for file in files):
+            if name not in names:
+                os.remove(name)
+    for name in names:
+        source = os.path.join(HERE, name)
+        # Files that have not changed keep their times, so that they are not built again.
+        if os.path.islink(source) or not os.path.exists(name) or not filecmp.cmp(source, name, shallow=False):
+            os.makedirs(os.path.dirname(name) or ".", exist_ok=True)
+            if os.path.islink(name):
+                os.remove(name)
+            shutil.copy(source, name, follow_symlinks=False)
 
 
 def main():
