@@ -90,7 +90,7 @@ CagMarchFound cag_march_locate_crossing(CagMarch *m, CagVec3 q, CagVec3 n, CagVe
     double gap = cag_norm(cag_sub(t[0].p, t[1].p));
     bool planar = cag_norm(n) > 0;
     double off = planar ? fabs(cag_dot(n, cag_sub(middle, q))) : 0;
-    if (gap + off <= CAG_MARCH_SAME * m->size && (gap + off >= last || gap + off == 0)) {
+    if (gap + off <= CAG_MARCH_SAME * m->size && (gap + off > last / 2 || gap + off == 0)) {
       if (cag_norm(cross) < CAG_MARCH_TOUCH) return CAG_MARCH_TANGENT;
       node->x = middle;
       node->tangent = cag_unit(cross);

@@ -30,4 +30,8 @@ CagMarchFound cag_march_locate_crossing(CagMarch *m, CagVec3 q, CagVec3 n, CagVe
 CagMarchFound cag_march_locate_touch(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 along,
                                      CagMarchNode *node);
 
+// Where the surfaces cross at a small angle, they may cross again beside the node. Estimates that
+// place from the curvatures. False: there is none within the reach, or the status is set.
+bool cag_march_find_twin(CagMarch *m, const CagMarchNode *node, double reach, CagMarchNode *out);
+
 #endif

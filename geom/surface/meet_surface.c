@@ -40,6 +40,8 @@
 // within COMMON times the size of each other at all of these points.
 #define COMMON_REACH 0.25
 #define COMMON 1e-9
+// Branches farther apart than this multiple of the longest step have seeds of their own.
+#define TWIN_REACH 0.5
 // The meshes are near a touch within this multiple of their tolerance. A run of touches that is
 // shorter than this fraction of the size is a single point of contact.
 #define TOUCH_MARGIN 3
@@ -552,6 +554,20 @@ static bool keep_run(CagMarch *m, Runs *runs, Run *run) {
          (add_seeds_beside(m, &run->nodes[0]) && add_seeds_beside(m, &run->nodes[run->n - 1]));
 }
 
+// Where the surfaces cross at a small angle, two branches may run so close to each other that all
+// seeds lead to one of them. Adds seeds of the other one.
+static bool add_seeds_of_twins(CagMarch *m, const Run *run) {
+  enum { PLACES = 16 };
+  const size_t every = run->n / PLACES + 1;
+  for (size_t i = 0; i < run->n; i += every) {
+    CagMarchNode seed;
+    if (cag_march_find_twin(m, &run->nodes[i], TWIN_REACH * m->step_most, &seed)) {
+      if (!cag_march_add_seed(m, m->seeds, &seed)) return false;
+    } else if (m->status) return false;
+  }
+  return true;
+}
+
 static bool march_from(CagMarch *m, Runs *runs, CagMarchNode seed) {
   const CagVec3 none = {0, 0, 0};
   const CagMarchFound found = m->locate(m, seed.x, none, none, &seed);
@@ -560,7 +576,9 @@ static bool march_from(CagMarch *m, Runs *runs, CagMarchNode seed) {
   for (size_t k = 0; k < runs->n; k++)
     if (has_seed(m, &runs->items[k], &seed)) return true;
   Run run = {0};
-  if (trace(m, &seed, &run)) return keep_run(m, runs, &run);
+  if (trace(m, &seed, &run) &&
+      (m->locate != cag_march_locate_crossing || add_seeds_of_twins(m, &run)))
+    return keep_run(m, runs, &run);
   free_run(&run);
   return false;
 }

@@ -206,3 +206,23 @@ CagMarchFound cag_march_locate_touch(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 
   }
   return CAG_MARCH_NONE;
 }
+
+// Along the direction d across the curve, the gap changes at the rate -n d and the curvatures
+// differ by d (W1 - W2) d. The parabola with these derivatives has its second root at 2 n d / d (W1
+// - W2) d.
+bool cag_march_find_twin(CagMarch *m, const CagMarchNode *node, double reach, CagMarchNode *out) {
+  Pair p;
+  if (!look_at_both(m, node, &p)) return false;
+  const CagVec3 across = cag_unit(cag_cross(p.normal, node->tangent));
+  const Plane2 d = {cag_dot(across, p.e1), cag_dot(across, p.e2)};
+  const Shape w = {p.shape[0].xx - p.shape[1].xx, p.shape[0].xy - p.shape[1].xy,
+                   p.shape[0].yy - p.shape[1].yy};
+  const Plane2 bent = apply(&w, d);
+  const double rate = 2 * (p.turned.x * d.x + p.turned.y * d.y);
+  const double curvature = bent.x * d.x + bent.y * d.y;
+  if (!(fabs(rate) <= reach * fabs(curvature)) || curvature == 0) return false;
+  *out = *node;
+  for (int k = 0; k < 2; k++)
+    cag_march_move(m, k, &p.t[k], cag_madd(node->x, rate / curvature, across), out);
+  return true;
+}
