@@ -88,12 +88,15 @@ typedef struct Integrand {
   size_t components; // 0: not known before the first value
   bool vector;
   enum { BOTH_FINITE, END_INFINITE, START_INFINITE, BOTH_INFINITE } kind;
+  double at_end[2 * KRONROD - 1]; // the weights that extrapolate a piece to its high end
 } Integrand;
 
 typedef struct Piece {
   double low, high;
   double value[COMPONENTS_MOST];
-  double error, magnitude; // estimate; integral of the absolute value
+  double ends[2][COMPONENTS_MOST]; // of the polynomial through the points: low, high
+  double error, magnitude;         // estimate; integral of the absolute value
+  int doubted; // the end beside which a kink may be hidden: -1 low, 1 high; 0: neither
 } Piece;
 
 // The place x of the substitution's variable t, and dx/dt: t itself on a finite range; start + t/(1
@@ -136,6 +139,7 @@ static bool measure(Integrand *g, Piece *p) {
   double middle = 0.5 * (p->low + p->high), half = 0.5 * (p->high - p->low);
   double gauss[COMPONENTS_MOST] = {0}, y[COMPONENTS_MOST];
   memset(p->value, 0, sizeof p->value);
+  memset(p->ends, 0, sizeof p->ends);
   p->error = p->magnitude = 0;
   for (int i = 0; i < 2 * KRONROD - 1; i++) {
     int k = i < KRONROD ? i : 2 * KRONROD - 2 - i;
@@ -143,6 +147,8 @@ static bool measure(Integrand *g, Piece *p) {
     if (!integrand_at(g, t, y)) return false;
     for (size_t c = 0; c < g->components; c++) {
       p->value[c] += half * KRONROD_WEIGHTS[k] * y[c];
+      p->ends[0][c] += g->at_end[2 * KRONROD - 2 - i] * y[c];
+      p->ends[1][c] += g->at_end[i] * y[c];
       if (k % 2 == 1) gauss[c] += half * GAUSS_WEIGHTS[k / 2] * y[c];
       p->magnitude += fabs(half * KRONROD_WEIGHTS[k] * y[c]);
     }
@@ -218,6 +224,96 @@ static Survey survey(const Integrand *g, const Pieces *pieces) {
   return s;
 }
 
+// --- Kinks beside the ends of pieces ---
+//
+// Between the ends of a piece and the rule's outermost points, a kink or a step is not seen. It is
+// beside the place where a piece was divided if both parts have suddenly almost no error. Then the
+// parts are divided again close to that place, until what may be hidden there is small enough. At
+// the ends of the first pieces, the function is compared with what the points extrapolate to.
+
+// From a piece's end to the outermost point, as a part of half its width.
+#define BLIND (1 - POINTS[0])
+// Where the function is compared, from the end as a part of the width.
+static const double PROBE = 0x1p-36;
+
+// Lagrange's polynomials of the rule's points, from the lowest, at the high end.
+static void fill_end_weights(double *weights) {
+  enum { COUNT = 2 * KRONROD - 1 };
+  double x[COUNT];
+  for (int i = 0; i < COUNT; i++) x[i] = i < KRONROD ? -POINTS[i] : POINTS[COUNT - 1 - i];
+  for (int i = 0; i < COUNT; i++) {
+    weights[i] = 1;
+    for (int k = 0; k < COUNT; k++)
+      if (k != i) weights[i] *= (1 - 2 * PROBE - x[k]) / (x[i] - x[k]);
+  }
+}
+
+// Looks at one end of a piece; *found: something is hidden there, and the piece is doubted.
+static bool probe_end(Integrand *g, Piece *p, int end, double wanted, bool *found) {
+  static const double ROUNDING = 1e-7;
+  const double width = p->high - p->low;
+  const double t = end ? p->high - PROBE * width : p->low + PROBE * width;
+  double y[COMPONENTS_MOST], off = 0;
+  if (t == p->low || t == p->high) return true;
+  if (!integrand_at(g, t, y)) return false;
+  for (size_t c = 0; c < g->components; c++) off = fmax(off, fabs(y[c] - p->ends[end][c]));
+  const double hidden = off * BLIND * width / 2;
+  *found = off * width > ROUNDING * p->magnitude && hidden > fmax(wanted, p->error);
+  if (!*found) return true;
+  p->doubted = end ? 1 : -1;
+  p->error = hidden;
+  return true;
+}
+
+// Looks at the ends of the first pieces, `middle` being that of both, unless they are too narrow.
+static bool probe_ends(Integrand *g, Pieces *pieces, double middle, bool *found) {
+  const double wanted = survey(g, pieces).wanted;
+  double low = INFINITY, high = -INFINITY;
+  for (size_t i = 0; i < pieces->count; i++) {
+    low = fmin(low, pieces->at[i].low);
+    high = fmax(high, pieces->at[i].high);
+  }
+  *found = false;
+  for (size_t i = 0; i < pieces->count; i++)
+    for (int end = 0; end < 2; end++) {
+      Piece *p = &pieces->at[i];
+      const double at = end ? p->high : p->low;
+      bool one = false;
+      if ((at != low && at != high && at != middle) || p->doubted ||
+          p->high - p->low <= pieces->narrowest)
+        continue;
+      if (!probe_end(g, p, end, wanted, &one)) return false;
+      *found |= one;
+    }
+  return true;
+}
+
+static void keep_doubts(const Piece *parent, Piece *low, Piece *high) {
+  static const double SUDDEN = 1e-8, HIDDEN = 0.05;
+  const double most = SUDDEN * parent->error;
+  double share = HIDDEN;
+  low->doubted = high->doubted = 0;
+  if (parent->doubted == 0 && low->error <= most && high->error <= most) {
+    low->doubted = 1;
+    high->doubted = -1;
+  } else if (parent->doubted != 0) {
+    Piece *end = parent->doubted < 0 ? low : high;
+    share = (end->high - end->low) / (parent->high - parent->low);
+    if (end->error <= share * parent->error) end->doubted = parent->doubted;
+  }
+  if (low->doubted) low->error = fmax(low->error, share * parent->error);
+  if (high->doubted) high->error = fmax(high->error, share * parent->error);
+}
+
+// Where to divide a piece.
+static double cut_of(const Piece *p) {
+  static const double NEAR = 0.125;
+  const double width = p->high - p->low;
+  return p->doubted < 0   ? p->low + NEAR * width
+         : p->doubted > 0 ? p->high - NEAR * width
+                          : 0.5 * (p->low + p->high);
+}
+
 // Divides the piece with the largest error until the sum of errors is small enough.
 static bool refine(Integrand *g, Pieces *pieces) {
   for (;;) {
@@ -231,10 +327,11 @@ static bool refine(Integrand *g, Pieces *pieces) {
           s.error, s.size);
     if (pieces->count == pieces->capacity) grow(pieces, 2 * pieces->capacity);
     Piece *p = &pieces->at[s.worst], *q = &pieces->at[pieces->count++];
-    double middle = 0.5 * (p->low + p->high);
-    *q = (Piece){.low = middle, .high = p->high};
-    p->high = middle;
+    const Piece parent = *p;
+    p->high = cut_of(&parent);
+    *q = (Piece){.low = p->high, .high = parent.high};
     if (!measure(g, p) || !measure(g, q)) return false;
+    keep_doubts(&parent, p, q);
   }
 }
 
@@ -264,7 +361,10 @@ static bool integrate(Integrand *g, double sign, CagValue *result) {
   double middle = low + 0.5 * (high - low);
   pieces.at[0] = (Piece){.low = low, .high = middle};
   pieces.at[1] = (Piece){.low = middle, .high = high};
-  bool good = measure(g, &pieces.at[0]) && measure(g, &pieces.at[1]) && refine(g, &pieces);
+  fill_end_weights(g->at_end);
+  bool doubtful = false;
+  bool good = measure(g, &pieces.at[0]) && measure(g, &pieces.at[1]) && refine(g, &pieces) &&
+              probe_ends(g, &pieces, middle, &doubtful) && (!doubtful || refine(g, &pieces));
   double scale = g->subject.angle ? sign / DEGREES_PER_RADIAN : sign, total[COMPONENTS_MOST] = {0};
   for (size_t i = 0; good && i < pieces.count; i++)
     for (size_t c = 0; c < g->components; c++) total[c] += scale * pieces.at[i].value[c];
