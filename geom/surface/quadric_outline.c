@@ -116,16 +116,34 @@ static bool add_all(Outline *o, End *room) {
 
 // --- Loops ---
 
-// The edge that follows; where several leave a vertex, the one that turns back beside the edge that
+// Directions at a vertex, clockwise.
+enum { LEFT, UP, RIGHT, DOWN };
+
+static int direction_of(const Edge *e) {
+  if (e->kind == EDGE_ACROSS) return e->to > e->from ? UP : DOWN;
+  return e->kind == EDGE_HIGH ? LEFT : RIGHT;
+}
+
+// How far an edge is turned clockwise from the one that arrives: from none, to the other edge of a
+// cell that ends in the vertex, to a whole turn.
+static int turned(const Edge *arrives, const Edge *e) {
+  const bool along = arrives->kind != EDGE_ACROSS && e->kind != EDGE_ACROSS;
+  if (along && e->kind != arrives->kind && e->cell == arrives->cell) return 0;
+  return (direction_of(e) - direction_of(arrives) + 5) % 4 + 1;
+}
+
+// The edge that follows; where several leave a vertex, the first one clockwise from the edge that
 // arrives, so that pieces which touch in a point stay loops of their own.
 static Edge *next_edge(const Outline *o, const Edge *arrives) {
   Edge *found = NULL;
+  int least = 0;
   for (size_t i = 0; i < o->edge_count; i++) {
     Edge *e = &o->edges[i];
     if (e->used || e->from != arrives->to) continue;
-    const bool turns = (arrives->kind == EDGE_LOW && e->kind == EDGE_HIGH) ||
-                       (arrives->kind == EDGE_HIGH && e->kind == EDGE_LOW);
-    if (!found || turns) found = e;
+    const int turn = turned(arrives, e);
+    if (found && turn >= least) continue;
+    found = e;
+    least = turn;
   }
   return found;
 }
@@ -141,29 +159,22 @@ static void follow(Outline *o, size_t start) {
   }
 }
 
-// Whether the loop runs once around a rectangle, which it then gives.
+// Whether the loop runs around a rectangle, which it then gives. Where the same v bounds all cells,
+// every side is a limit of u or of v alone.
 static bool is_rectangle(const Outline *o, double u[2], double v[2]) {
   const CagQuadricCells *c = o->c;
-  bool have[2] = {false, false};
-  u[0] = INFINITY, u[1] = -INFINITY;
+  u[0] = v[0] = INFINITY;
+  u[1] = v[1] = -INFINITY;
   for (size_t i = 0; i < o->path_count; i++) {
     const Edge *e = &o->edges[o->path[i]];
     const Vertex *at = &o->vertices[e->from];
+    const CagQuadricCell *cell = &c->cells[e->cell];
     u[0] = fmin(u[0], at->u), u[1] = fmax(u[1], at->u);
-    if (e->kind == EDGE_ACROSS) continue;
-    const bool high = e->kind == EDGE_HIGH;
-    const CagQuadricBound *b = high ? &c->cells[e->cell].high : &c->cells[e->cell].low;
-    if (!cag_quadric_bound_is_straight(c, b)) return false;
-    if (have[high] && at->v != v[high]) return false;
-    have[high] = true;
-    v[high] = at->v;
+    v[0] = fmin(v[0], at->v), v[1] = fmax(v[1], at->v);
+    if (e->kind == EDGE_LOW && !cag_quadric_bound_is_straight(c, &cell->low)) return false;
+    if (e->kind == EDGE_HIGH && !cag_quadric_bound_is_straight(c, &cell->high)) return false;
   }
-  for (size_t i = 0; i < o->path_count; i++) {
-    const Edge *e = &o->edges[o->path[i]];
-    const double at = o->vertices[e->from].u;
-    if (e->kind == EDGE_ACROSS && at != u[0] && at != u[1]) return false;
-  }
-  return have[0] && have[1] && v[0] < v[1];
+  return true;
 }
 
 // --- Splines ---

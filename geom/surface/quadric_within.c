@@ -336,7 +336,7 @@ static void find_cells(CagQuadricCells *c, size_t place) {
   qsort(all, n, sizeof *all, by_value);
   bool open = false;
   for (size_t i = 0; i + 1 < n; i++) {
-    const double slack = TOUCHING * (1 + fabs(all[i].v));
+    const double slack = TOUCHING * (1 + (isinf(all[i].v) ? 0 : fabs(all[i].v)));
     if (all[i + 1].v - all[i].v <= slack) continue;
     if (!is_within(c, u, all[i].v, all[i + 1].v)) open = false;
     else if (open) c->cells[c->cell_count - 1].high = all[i + 1].bound;
@@ -378,13 +378,14 @@ static void set_cut(const CagQuadricSheet *s, const CagQuadricSide *side, CagQua
   const double n[3] = {side->n.x, side->n.y, side->n.z};
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 4; j++) k[j] += n[i] * s->frame.m[i][j];
-  // A coordinate that the frame's rounding alone brings in.
-  for (int j = 0; j < 3; j++) {
-    double terms = 0;
+  k[3] -= side->d;
+  // A coordinate, or a distance from the origin, that the frame's rounding alone brings in.
+  for (int j = 0; j < 4; j++) {
+    double terms = j < 3 ? 0 : side->d * side->d;
     for (int i = 0; i < 3; i++) terms += s->frame.m[i][j] * s->frame.m[i][j];
     if (fabs(k[j]) <= ALIGNED * sqrt(terms)) k[j] = 0;
   }
-  *out = (CagQuadricCut){k[0], k[1], k[2], side->d - k[3]};
+  *out = (CagQuadricCut){k[0], k[1], k[2], -k[3]};
   const double largest =
       fmax(fabs(coefficient(out, 0)), fmax(fabs(coefficient(out, 1)), fabs(coefficient(out, 2))));
   if (!(largest > 0)) return;
