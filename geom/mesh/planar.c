@@ -131,6 +131,13 @@ static bool do_chain(Tessellator *t, const Piece *pieces, size_t n, double slack
   return true;
 }
 
+// The second node of a piece, from its start or from its end.
+static CagVec3 second_point(const Tessellator *t, const Line *line, bool backwards) {
+  const Node *node = &t->nodes[line->node + (backwards ? line->node_count - 2 : 1)];
+  return t->positions[node->corner != NO_INDEX ? t->corners[node->corner].quadrant[3]
+                                               : node->vertex[1]];
+}
+
 // The piece that begins (*backwards: ends) at p, goes on in this direction, and is not used yet.
 static Piece *piece_from(Tessellator *t, Piece *pieces, size_t n, CagVec3 p, CagVec3 along,
                          double slack, bool *backwards) {
@@ -138,17 +145,48 @@ static Piece *piece_from(Tessellator *t, Piece *pieces, size_t n, CagVec3 p, Cag
     for (int last = 0; last < 2 && !pieces[k].used; last++) {
       const Line *line = pieces[k].line;
       const CagVec3 from = t->positions[node_root(t, line, last)];
-      const size_t next = line->node + (last ? line->node_count - 2 : 1);
-      const Node *node = &t->nodes[next];
-      const uint32_t v =
-          node->corner != NO_INDEX ? t->corners[node->corner].quadrant[3] : node->vertex[1];
       if (cag_norm(cag_sub(from, p)) > slack) continue;
-      const CagVec3 way = cag_unit(cag_sub(t->positions[v], from));
+      const CagVec3 way = cag_unit(cag_sub(second_point(t, line, last), from));
       if (cag_dot(way, along) < 0.5) continue; // the chord of a piece turns by less than this
       *backwards = last;
       return &pieces[k];
     }
   return NULL;
+}
+
+// A loop and its corners: where it begins, its breaks, and its end.
+typedef struct Loop {
+  const CagCurve *curve;
+  CagTransform frame, back;
+  double *at;
+  CagVec3 *corners;
+  size_t n;
+} Loop;
+
+// The piece that begins (*backwards: ends) at a corner of the loop, runs along the loop from there,
+// and is not used yet; NULL if there is none. At an acute corner the side before it has nearly the
+// same direction, so that the place on the loop decides.
+static CagStatus piece_at(Tessellator *t, Piece *pieces, size_t n, const Loop *loop, size_t corner,
+                          double slack, Piece **out, bool *backwards, CagError *err) {
+  *out = NULL;
+  for (size_t k = 0; k < n; k++)
+    for (int last = 0; last < 2 && !pieces[k].used; last++) {
+      const Line *line = pieces[k].line;
+      const CagVec3 from = t->positions[node_root(t, line, last)];
+      if (cag_norm(cag_sub(from, loop->corners[corner])) > slack) continue;
+      const CagVec3 next = second_point(t, line, last);
+      double at, distance;
+      CagVec3 nearest;
+      CagStatus status = cag_curve_closest(loop->curve, cag_transform_point(&loop->back, next), &at,
+                                           &nearest, &distance, err);
+      if (status) return status;
+      const bool ends = cag_norm(cag_sub(next, loop->corners[corner + 1])) <= slack;
+      if (!ends && !(at > loop->at[corner] && at < loop->at[corner + 1])) continue;
+      *backwards = last;
+      *out = &pieces[k];
+      return CAG_OK;
+    }
+  return CAG_OK;
 }
 
 // The point of the loop at a break, in space.
@@ -202,41 +240,72 @@ static void close_outline(Tessellator *t, Outline *o, size_t first, double slack
   o->count--;
 }
 
-// Along the loop: pieces where they begin, else its own corners.
+static CagStatus find_corners(Loop *loop, CagError *err) {
+  const CagCurve *curve = loop->curve;
+  const size_t breaks = curve->kind->breaks(curve, NULL, 0);
+  loop->n = breaks + 2;
+  loop->at = malloc(loop->n * sizeof *loop->at);
+  loop->corners = malloc(loop->n * sizeof *loop->corners);
+  if (!loop->at || !loop->corners) return cag_fail_memory(err);
+  loop->at[0] = curve->start;
+  curve->kind->breaks(curve, loop->at + 1, breaks);
+  loop->at[breaks + 1] = curve->end;
+  CagStatus status = cag_transform_inverse(&loop->frame, &loop->back, err);
+  for (size_t k = 0; !status && k < loop->n; k++)
+    status = loop_point(curve, &loop->frame, loop->at[k], &loop->corners[k], err);
+  return status;
+}
+
+// Steps from one point to another that keep edges short enough. Both faces beside a straight edge
+// find the same number.
+static size_t steps_between(const Tessellator *t, CagVec3 p, CagVec3 q) {
+  const double rounding = 1e-9;
+  if (!(t->how.max_edge > 0)) return 1;
+  const double n = ceil(cag_norm(cag_sub(q, p)) / t->how.max_edge * (1 - rounding));
+  return n > 1 ? (size_t)n : 1;
+}
+
+static CagStatus check_count(const Tessellator *t, const Outline *o, CagError *err) {
+  if ((double)o->count <= (double)t->how.max_triangles + 2) return CAG_OK;
+  return tess_limit(t, (double)o->count, err);
+}
+
+// The straight edge from p to q without its end.
+static CagStatus append_edge(const Tessellator *t, Outline *o, size_t first, CagVec3 p, CagVec3 q,
+                             double slack, CagError *err) {
+  const size_t n = steps_between(t, p, q);
+  const bool there = o->count > first && cag_norm(cag_sub(o->points[o->count - 1], p)) <= slack;
+  CagStatus status = CAG_OK;
+  for (size_t k = there; status == CAG_OK && k < n; k++) {
+    status = add_point(o, cag_lerp(p, q, (double)k / (double)n), NO_INDEX, err);
+    if (status == CAG_OK) status = check_count(t, o, err);
+  }
+  return status;
+}
+
+// Along the loop: pieces where they begin, else its own straight edges.
 static CagStatus outline_between(Tessellator *t, Outline *o, const CagCurve *curve,
                                  const CagTransform *frame, Piece *pieces, size_t n, double slack,
                                  CagError *err) {
-  const size_t first = o->count, breaks = curve->kind->breaks(curve, NULL, 0);
-  double *at = malloc((breaks + 2) * sizeof *at);
-  CagVec3 *corners = malloc((breaks + 2) * sizeof *corners);
-  CagStatus status = at && corners ? CAG_OK : cag_fail_memory(err);
-  if (!status) {
-    at[0] = curve->start;
-    curve->kind->breaks(curve, at + 1, breaks);
-    at[breaks + 1] = curve->end;
-  }
-  for (size_t k = 0; !status && k < breaks + 2; k++)
-    status = loop_point(curve, frame, at[k], &corners[k], err);
+  const size_t first = o->count;
+  Loop loop = {.curve = curve, .frame = *frame};
+  CagStatus status = find_corners(&loop, err);
   for (size_t i = 0; i < n; i++) pieces[i].used = false;
-  for (size_t k = 0; !status && k <= breaks;) {
-    CagVec3 along;
+  for (size_t k = 0; !status && k + 1 < loop.n;) {
     bool backwards = false;
-    status = cag_curve_tangent(curve, at[k], CAG_SIDE_RIGHT, &along, err);
+    Piece *piece;
+    status = piece_at(t, pieces, n, &loop, k, slack, &piece, &backwards, err);
     if (status) break;
-    along = cag_unit(cag_transform_vector(frame, along));
-    Piece *piece = piece_from(t, pieces, n, corners[k], along, slack, &backwards);
     if (piece) {
-      status =
-          append_run(t, o, first, corners, breaks + 2, pieces, n, piece, backwards, slack, &k, err);
+      status = append_run(t, o, first, loop.corners, loop.n, pieces, n, piece, backwards, slack, &k,
+                          err);
       continue;
     }
-    const bool there =
-        o->count > first && cag_norm(cag_sub(o->points[o->count - 1], corners[k])) <= slack;
-    if (!there) status = add_point(o, corners[k], NO_INDEX, err);
+    status = append_edge(t, o, first, loop.corners[k], loop.corners[k + 1], slack, err);
     k++;
   }
-  free(at);
-  free(corners);
+  free(loop.at);
+  free(loop.corners);
   if (!status) close_outline(t, o, first, slack);
   return status;
 }
@@ -263,15 +332,13 @@ static CagStatus outline_of_curve(const Tessellator *t, Outline *o, const CagCur
     status = cag_curve_point(curve, at[k], &p, err);
     if (status == CAG_OK) status = cag_curve_point(curve, at[k + 1], &q, err);
     if (status != CAG_OK) break;
-    double length = cag_norm(cag_sub(q, p)) * scale;
-    size_t parts = t->how.max_edge > 0 ? (size_t)ceil(length / t->how.max_edge) : 1;
-    if (parts < 1) parts = 1;
+    const size_t parts =
+        steps_between(t, cag_transform_point(frame, p), cag_transform_point(frame, q));
     for (size_t j = 0; status == CAG_OK && j < parts; j++) {
       if (j > 0) status = cag_curve_point(curve, tess_mix(at[k], at[k + 1], j, parts), &p, err);
       if (status == CAG_OK) status = add_point(o, cag_transform_point(frame, p), NO_INDEX, err);
     }
-    if ((double)o->count > (double)t->how.max_triangles + 2)
-      status = tess_limit(t, (double)o->count, err);
+    if (status == CAG_OK) status = check_count(t, o, err);
   }
   free(at);
   return status;
