@@ -46,7 +46,7 @@ typedef struct Plane {
   unsigned char *checked; // the triangle keeps the tolerance
   size_t triangle_count, triangle_capacity;
   uint32_t hint;
-  uint32_t *stack; // edges to be looked at: 3 * triangle + side
+  uint32_t *stack; // triangles whose side 0, between corners 0 and 1, is to be looked at
   size_t depth, stack_capacity;
 } Plane;
 
@@ -106,14 +106,14 @@ static CagStatus room_for_triangles(Plane *p, size_t wanted, CagError *err) {
   return status;
 }
 
-static CagStatus push(Plane *p, uint32_t triangle, int side, CagError *err) {
+static CagStatus push(Plane *p, uint32_t triangle, CagError *err) {
   if (p->depth == p->stack_capacity) {
     size_t n = p->stack_capacity ? 2 * p->stack_capacity : 256;
     CagStatus status = grow(&p->stack, n, sizeof *p->stack, err);
     if (status) return status;
     p->stack_capacity = n;
   }
-  p->stack[p->depth++] = 3 * triangle + (uint32_t)side;
+  p->stack[p->depth++] = triangle;
   return CAG_OK;
 }
 
@@ -300,36 +300,32 @@ static int side_towards(const Plane *p, uint32_t t, uint32_t other) {
   return -1;
 }
 
-// Exchanges the diagonal between t and the triangle beyond its side where that makes them Delaunay.
-// On success the two outer edges of what was the other triangle are to be looked at.
-static CagStatus legalize(Plane *p, uint32_t t, int side, CagError *err) {
-  uint32_t o = p->across[3 * t + (uint32_t)side];
+// Exchanges the diagonal between t, whose corner 2 is the new vertex, and the triangle beyond its
+// side 0 where that makes them Delaunay. On success the two outer edges of what was the other
+// triangle are to be looked at.
+static CagStatus legalize(Plane *p, uint32_t t, CagError *err) {
+  uint32_t o = p->across[3 * t];
   if (o == NO_TRIANGLE) return CAG_OK;
   int back = side_towards(p, o, t);
-  uint32_t a = p->corner[3 * t + (uint32_t)side], b = p->corner[3 * t + (uint32_t)(side + 1) % 3];
-  uint32_t c = p->corner[3 * t + (uint32_t)(side + 2) % 3];
+  uint32_t a = p->corner[3 * t], b = p->corner[3 * t + 1], c = p->corner[3 * t + 2];
   uint32_t d = p->corner[3 * o + (uint32_t)(back + 2) % 3];
   if (!in_circle(at(p, a), at(p, b), at(p, c), at(p, d))) return CAG_OK;
   if (!(side_of(at(p, a), at(p, d), at(p, c)) > 0 && side_of(at(p, d), at(p, b), at(p, c)) > 0))
     return CAG_OK;
-  uint32_t bc = p->across[3 * t + (uint32_t)(side + 1) % 3];
-  uint32_t ca = p->across[3 * t + (uint32_t)(side + 2) % 3];
+  uint32_t bc = p->across[3 * t + 1], ca = p->across[3 * t + 2];
   uint32_t ad = p->across[3 * o + (uint32_t)(back + 1) % 3];
   uint32_t db = p->across[3 * o + (uint32_t)(back + 2) % 3];
   set_triangle(p, t, a, d, c, ad, o, ca);
   set_triangle(p, o, d, b, c, db, bc, t);
   set_across(p, ad, o, t);
   set_across(p, bc, t, o);
-  CagStatus status = push(p, t, 0, err);
-  return status ? status : push(p, o, 0, err);
+  CagStatus status = push(p, t, err);
+  return status ? status : push(p, o, err);
 }
 
 static CagStatus legalize_all(Plane *p, CagError *err) {
   CagStatus status = CAG_OK;
-  while (!status && p->depth > 0) {
-    uint32_t edge = p->stack[--p->depth];
-    status = legalize(p, edge / 3, (int)(edge % 3), err);
-  }
+  while (!status && p->depth > 0) { status = legalize(p, p->stack[--p->depth], err); }
   return status;
 }
 
@@ -346,9 +342,9 @@ static CagStatus split_triangle(Plane *p, uint32_t t, uint32_t v, CagError *err)
   set_triangle(p, y, c, a, v, ca, t, x);
   set_across(p, bc, t, x);
   set_across(p, ca, t, y);
-  status = push(p, t, 0, err);
-  if (!status) status = push(p, x, 0, err);
-  if (!status) status = push(p, y, 0, err);
+  status = push(p, t, err);
+  if (!status) status = push(p, x, err);
+  if (!status) status = push(p, y, err);
   return status ? status : legalize_all(p, err);
 }
 
@@ -373,10 +369,10 @@ static CagStatus split_edge(Plane *p, uint32_t t, int side, uint32_t v, CagError
   set_triangle(p, y, d, b, v, db, x, o);
   set_across(p, bc, t, x);
   set_across(p, db, o, y);
-  status = push(p, t, 0, err);
-  if (!status) status = push(p, x, 0, err);
-  if (!status) status = push(p, o, 0, err);
-  if (!status) status = push(p, y, 0, err);
+  status = push(p, t, err);
+  if (!status) status = push(p, x, err);
+  if (!status) status = push(p, o, err);
+  if (!status) status = push(p, y, err);
   return status ? status : legalize_all(p, err);
 }
 
