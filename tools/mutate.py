@@ -7,11 +7,11 @@ SKIP=20 skips the first 20 changes of the seed, to continue an earlier run. FOLD
 LONGEST=60 leaves out suites that take more than 60 s: the score is then a lower bound. JOBS=1 tries one change at a time (default: one
 per processor).
 
-Works on a copy of the tree in build-mutate/. First, every suite runs once in a build that counts which lines it reaches; the counts are
-kept in build-mutate/reach/. Each change then replaces one operator or constant on one line of geom, interp or lang, by the table
-tools/mutations.txt. A change that does not compile (warnings are errors) or does not change the object file is replaced with another one,
-and so are those in tools/equivalent_mutations.txt, after which the program computes the same, for the reasons given there, and those that
-only allocate room for more elements than needed.
+Works on a copy of the tree in build-mutate/. First, every suite runs once in a build that counts which lines it reaches. The counts are
+kept in build-mutate/reach/ until the suite or a tenth of the sources change. Each change then replaces one operator or constant on one
+line of geom, interp or lang, by the table tools/mutations.txt. A change that does not compile (warnings are errors) or does not change the
+object file is replaced with another one, and so are those in tools/equivalent_mutations.txt, after which the program computes the same,
+for the reasons given there, and those that only allocate room for more elements than needed.
 
 The changed file is compiled for AddressSanitizer and UndefinedBehaviorSanitizer and linked with the suites that reach the line. They run
 until one fails, starting with those that are quick and likely to detect the change: unit tests that include the changed file's header, then
@@ -133,39 +133,55 @@ def run_suite(suite, folder, seconds):
 # --- Which lines a suite reaches ---
 
 
+def sources_of(suite):
+    """The files that are the suite, beside the program it tests."""
+    if suite.startswith("tests/"):
+        return [suite + ".c", *glob.glob("tests/*/*.h")]
+    if suite.startswith("cli/"):
+        return [f"tests/cli/cases_{suite[4:]}.sh"]
+    folder = "tests/language/" + suite[8:] if suite.startswith("scripts/") else suite if os.path.isdir(suite) else "tests/" + suite
+    return [name for name in glob.glob(folder + "/**", recursive=True) if os.path.isfile(name)]
+
+
 def measure_suite(suite):
-    """Runs a suite in the build that counts, and writes its processor time to REACH/SUITE.time."""
+    """Runs a suite in the build that counts, and writes its processor time to REACH/SUITE.time. Suites that have not changed are kept."""
     counts = os.path.join(REACH, suite)
-    if os.path.exists(counts + ".time"):
+    time = counts + ".time"
+    if os.path.exists(time) and all(os.path.getmtime(name) < os.path.getmtime(time) for name in sources_of(suite)):
         return
-    os.makedirs(counts, exist_ok=True)
+    shutil.rmtree(counts, ignore_errors=True)
+    os.makedirs(counts)
     objects = os.path.abspath("build-reach/obj")
     folder = os.path.abspath("build-reach")
     environment = {**os.environ, "BUILD": folder, "GCOV_PREFIX": counts, "GCOV_PREFIX_STRIP": str(objects.count("/"))}
     # A test of time limits may fail here; what it reached counts nevertheless.
     command = ["bash", "-c", "TIMEFORMAT='%0U %0S'; time timeout -k 5 1800 \"$@\" > /dev/null 2>&1 < /dev/null", "bash"]
     _, text = output_of(command + command_of(suite, folder), env=environment)
-    with open(counts + ".time", "w") as file:
+    with open(time, "w") as file:
         file.write(str(1 + sum(int(part) for part in text.split()[-2:])))
 
 
+def notes_of(source):
+    """The compiler's notes on a source: those that the counts belong to, and those of the build that counts."""
+    return f"{REACH}/notes/{source[:-2]}.gcno", f"build-reach/obj/{source[:-2]}.gcno"
+
+
 def measure_suites():
-    """Counts again if the code has changed since, because counts belong to the notes of one build."""
+    """Counts again where a suite has changed, and all suites if a source is new or a tenth of the sources have changed."""
     os.makedirs("build-reach", exist_ok=True)
     status, text = output_of(["cc", "-std=c17", "-fPIC", "-c", "tests/coverage/exit.c", "-o", "build-reach/exit.o"])
     if status != 0:
         sys.exit(text)
     build("build-reach", "OPT=-O0", "SANITIZE=--coverage -DCAG_ONE_COPY", "LDFLAGS=-Wl,--wrap=_exit build-reach/exit.o",
           "test-programs")
-    notes = os.path.join(REACH, "notes")
-    names = [name for top in ("geom", "interp", "lang") for name in glob.glob(f"{top}/**/*.gcno", root_dir="build-reach/obj",
-                                                                             recursive=True)]
-    fresh = {name: open(f"build-reach/obj/{name}", "rb").read() for name in names}
-    if any(not os.path.exists(f"{notes}/{name}") or open(f"{notes}/{name}", "rb").read() != fresh[name] for name in names):
+    notes = [notes_of(source) for top in ("geom", "interp", "lang") for source in glob.glob(f"{top}/**/*.c", recursive=True)]
+    notes = [(kept, made) for kept, made in notes if os.path.exists(made)]
+    is_new = any(not os.path.exists(kept) for kept, _ in notes)
+    if is_new or 10 * sum(not filecmp.cmp(kept, made, shallow=False) for kept, made in notes) > len(notes):
         shutil.rmtree(REACH, ignore_errors=True)
-        for name in names:
-            os.makedirs(os.path.dirname(f"{notes}/{name}"), exist_ok=True)
-            shutil.copy(f"build-reach/obj/{name}", f"{notes}/{name}")
+        for kept, made in notes:
+            os.makedirs(os.path.dirname(kept), exist_ok=True)
+            shutil.copy(made, kept)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(measure_suite, all_suites()))
 
@@ -193,9 +209,13 @@ class Reach:
         counts = f"{REACH}/{suite}/{source[:-2]}.gcda"
         if not os.path.exists(counts):
             return None
-        # gcov looks for the notes of the compiler beside the counts.
+        notes, made = notes_of(source)
+        # Counts belong to the notes of one build. Of a source that has changed since, every line counts as reached.
+        if not filecmp.cmp(notes, made, shallow=False):
+            return set(), set()
+        # gcov looks for the notes beside the counts.
         shutil.copy(counts, f"{WORK}/line.gcda")
-        shutil.copy(f"{REACH}/notes/{source[:-2]}.gcno", f"{WORK}/line.gcno")
+        shutil.copy(notes, f"{WORK}/line.gcno")
         code, run, here = set(), set(), False
         for row in output_of(["gcov", "--stdout", "line.gcda"], cwd=WORK)[1].splitlines():
             parts = row.split(":", 2)
