@@ -102,8 +102,7 @@ bool cag_curve_clip_parameters(const CagCurve *a, double a0, double a1, const Ca
   Segment s, t;
   if (!segment_of(a, a0, a1, &s) || !segment_of(b, *from, *to, &t)) return true;
   const CagVec3 chord = cag_sub(cag_project(s.points + 4 * s.degree), cag_project(s.points));
-  if (cag_norm(chord) == 0) return true;
-  const CagVec3 unit = cag_unit(chord);
+  const CagVec3 unit = cag_unit(chord); // 0 of a ring: all distances are 0
   double low = 0, high = 1;
   if (a->dimension == 2 && b->dimension == 2) {
     if (!clip_across(&s, &t, cag_vec3(-unit.y, unit.x, 0), slack, &low, &high)) return false;
@@ -115,9 +114,7 @@ bool cag_curve_clip_parameters(const CagCurve *a, double a0, double a1, const Ca
       return false;
   }
   const double range = *to - *from, start = *from;
-  low = fmax(0, low - rounding);
-  high = fmin(1, high + rounding);
-  if (low > 0) *from = start + range * low;
-  if (high < 1) *to = start + range * high;
+  if (low > rounding) *from = start + range * (low - rounding);
+  if (high < 1 - rounding) *to = start + range * (high + rounding);
   return true;
 }
