@@ -223,9 +223,9 @@ CagStatus cag_curve_bezier(const CagVec3 *points, const double *weights, size_t 
                            CagCurve **out, CagError *err) {
   if (n == 1) return single_point(points, weights, dimension, out, err);
   CagStatus status = cag_degree_check(n,
-                                      n < 2                ? 1
-                                      : n > CAG_MAX_DEGREE ? CAG_MAX_DEGREE + 1
-                                                           : (int)n - 1,
+                                      n < 2                    ? 1
+                                      : n > CAG_MAX_DEGREE + 1 ? CAG_MAX_DEGREE + 1
+                                                               : (int)n - 1,
                                       err);
   if (status) return status;
   double knots[2 * (CAG_MAX_DEGREE + 1)], *h;

@@ -1,5 +1,6 @@
 // Evaluation, forms and images of all kinds of curves.
 
+#include "geom/basis/bernstein.h"
 #include "geom/curve/curve.h"
 #include "support.h"
 
@@ -682,6 +683,25 @@ static void derivatives_keep_their_digits_between_close_knots(void **state) {
   }
 }
 
+// Of evenly spaced points on a line a curve of any degree is that line.
+static void curves_have_at_most_the_greatest_degree(void **state) {
+  (void)state;
+  enum { N = CAG_MAX_DEGREE + 2 };
+  static CagVec3 p[N];
+  CagCurve *c;
+  for (int i = 0; i < N; i++)
+    p[i] = cag_vec3(2.0 * i / CAG_MAX_DEGREE, -1.0 * i / CAG_MAX_DEGREE, 0);
+  OK(cag_curve_bezier(p, NULL, N - 1, 2, &c, &err));
+  for (int k = 0; k <= 8; k++) {
+    CagVec3 at;
+    OK(cag_curve_point(c, k / 8.0, &at, &err));
+    near_vec(at, cag_vec3(k / 4.0, -k / 8.0, 0), 1e-12);
+  }
+  cag_curve_release(c);
+  FAILS(cag_curve_bezier(p, NULL, N, 2, &c, &err), "order-range");
+  assert_string_equal(err.message, "the degree is at most 1000; this is 1001");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_reference_curves_have_their_points_and_derivatives),
@@ -706,6 +726,7 @@ int main(void) {
       cmocka_unit_test(a_composite_has_an_exact_nurbs_form),
       cmocka_unit_test(derivatives_keep_their_digits_between_close_knots),
       cmocka_unit_test(polylines_have_corners_on_both_sides),
+      cmocka_unit_test(curves_have_at_most_the_greatest_degree),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
