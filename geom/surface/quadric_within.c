@@ -202,10 +202,6 @@ static void add_turns(CagQuadricCells *c, size_t side) {
   add_solutions(c, p, -p->c, 0);
 }
 
-static double coefficient(const CagQuadricCut *p, int i) {
-  return i == 0 ? p->a : i == 1 ? p->b : p->c;
-}
-
 static CagVec3 direction(const CagQuadricCut *p) { return cag_vec3(p->a, p->b, p->c); }
 
 // The terms of second degree of the unit form for two vectors.
@@ -254,15 +250,14 @@ static void add_corners(CagQuadricCells *c, const CagQuadricCut *p, const CagQua
   const CagVec3 o = cag_scaled(
       cag_add(cag_scaled(cag_cross(n, along), p->d), cag_scaled(cag_cross(along, m), q->d)),
       1 / square);
-  const CagVec3 e = cag_scaled(along, 1 / sqrt(square));
-  const double a = second_degree(shape, e, e);
-  const double b = second_degree(shape, o, e) + first_degree(shape, e) / 2;
+  const double a = second_degree(shape, along, along);
+  const double b = second_degree(shape, o, along) + first_degree(shape, along) / 2;
   const double k = second_degree(shape, o, o) + first_degree(shape, o) + constant_of(shape);
   double rest = b * b - a * k, t[2];
   if (rest < 0 && rest > -TOUCHING * (b * b + fabs(a * k))) rest = 0;
   quadratic(a, b, k, rest, t);
   for (int i = 0; i < 2; i++)
-    if (isfinite(t[i])) add_place_of(c, cag_madd(o, t[i], e));
+    if (isfinite(t[i])) add_place_of(c, cag_madd(o, t[i], along));
 }
 
 static int by_place(const void *a, const void *b) {
@@ -386,10 +381,9 @@ static void set_cut(const CagQuadricSheet *s, const CagQuadricSide *side, CagQua
     if (fabs(k[j]) <= ALIGNED * sqrt(terms)) k[j] = 0;
   }
   *out = (CagQuadricCut){k[0], k[1], k[2], -k[3]};
-  const double largest =
-      fmax(fabs(coefficient(out, 0)), fmax(fabs(coefficient(out, 1)), fabs(coefficient(out, 2))));
-  if (!(largest > 0)) return;
-  *out = (CagQuadricCut){out->a / largest, out->b / largest, out->c / largest, out->d / largest};
+  const double size = cag_norm(direction(out));
+  if (!(size > 0)) return;
+  *out = (CagQuadricCut){out->a / size, out->b / size, out->c / size, out->d / size};
 }
 
 CagStatus cag_quadric_sheet_within(const CagQuadricSheet *sheet, const CagQuadricSide *sides,

@@ -248,8 +248,9 @@ static void pieces_between_lines_of_constant_parameters_are_patches(void **state
     set_sheet(&s, shape, round / SHAPES % 2, round / SHAPES % 3 > 0);
     const bool saddle = shape == CAG_SHAPE_HYPERBOLIC_PARABOLOID;
     const CagVec3 along = cag_vec3(0, saddle, !saddle);
-    add_side(&s, along, random_in(-0.5, 2));
-    add_side(&s, cag_scaled(along, -1), random_in(-0.5, 1));
+    const double high = random_in(-0.5, 2), low = random_in(-1, 0.5);
+    if (round % 5) add_side(&s, along, high);
+    if (round % 7) add_side(&s, cag_scaled(along, -1), -low);
     for (int i = (int)random_in(0, 2.99); i > 0; i--) {
       const CagVec3 across = cag_vec3(random_in(-1, 1), saddle ? 0 : random_in(-1, 1), 0);
       add_side(&s, across, is_cylinder(shape) || saddle ? random_in(-0.5, 1) : 0);
@@ -259,7 +260,7 @@ static void pieces_between_lines_of_constant_parameters_are_patches(void **state
     release_all(&s);
   }
   assert_int_equal(sum.trimmed, 0);
-  assert_true(patches > 5 * ROUNDS && sum.unbounded == 0);
+  assert_true(patches > 4 * ROUNDS && sum.unbounded > ROUNDS);
 }
 
 // A plane tangent to a saddle or a hyperboloid meets it in two lines that cross.
