@@ -138,6 +138,29 @@ static CagStatus join_meshes(const CagSolid *s, const CagTessellation *how, CagM
   return status;
 }
 
+// Meshes of unbounded solids end outside of the window, each elsewhere: what is taken away from one
+// would leave some of it there. It is cut off beside the window, within all of them (see ROOM in
+// side.c).
+static CagStatus cut_first(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
+                           CagMesh **first, CagError *err) {
+  const double room = 0.03; // of the size of the window
+  CagBounds reach;
+  CagMesh *box, *cut;
+  CagStatus status = cag_solid_reach(s->core->operands[0], &reach, err);
+  if (status || is_finite(&reach)) return status;
+  const double by = room * cag_norm(cag_sub(window->max, window->min));
+  const CagVec3 off = cag_vec3(by, by, by);
+  const CagBounds around = {cag_sub(window->min, off), cag_add(window->max, off)};
+  status = cag_box_mesh(&around, &box, err);
+  if (status) return status;
+  status = cag_mesh_boolean(CAG_INTERSECTION, *first, box, how->interrupt, &cut, err);
+  cag_mesh_release(box);
+  if (status) return status;
+  cag_mesh_release(*first);
+  *first = cut;
+  return CAG_OK;
+}
+
 // In coordinates of the core.
 static CagStatus core_mesh(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
                            CagMesh **out, CagError *err) {
@@ -147,6 +170,9 @@ static CagStatus core_mesh(const CagSolid *s, const CagTessellation *how, const 
   bool nothing;
   CagStatus status = meshes && operands ? CAG_OK : cag_fail_memory(err);
   if (!status) status = operand_meshes(s, how, window, meshes, operands, &n, &nothing, err);
+  if (!status && !nothing && n > 1 && s->kind == CAG_SOLID_DIFFERENCE)
+    status = cut_first(s, how, window, &meshes[0], err);
+  if (!status && n > 0 && meshes[0]->triangle_count == 0) nothing = true;
   if (!status)
     status = nothing ? empty_mesh(out, err) : join_meshes(s, how, meshes, operands, n, out, err);
   for (size_t i = 0; i < n; i++) cag_mesh_release(meshes[i]);
