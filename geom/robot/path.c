@@ -124,16 +124,13 @@ CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const C
 
 // --- Steps ---
 
-// The joint that moves most from a to b, in radians or parts of the reach.
-static double largest_move(const CagRobot *r, const double *a, const double *b, size_t *joint) {
+// How far the joint that moves most goes from a to b, in radians or parts of the reach.
+static double largest_move(const CagRobot *r, const double *a, const double *b) {
   double largest = 0;
-  *joint = 0;
   for (size_t i = 0; i < r->joint_count; i++) {
     double move = fabs(b[i] - a[i]);
     if (r->links[r->joint_link[i]].kind != CAG_JOINT_REVOLUTE) move /= r->reach;
-    if (move <= largest) continue;
-    largest = move;
-    *joint = i;
+    largest = fmax(largest, move);
   }
   return largest;
 }
@@ -157,12 +154,11 @@ typedef enum Tracked { ARRIVED, LEFT, JUMPED } Tracked;
 static Tracked track(const CagRobot *r, const CagTransform *a, const CagTransform *b,
                      bool position_only, double *q, double *done, CagError *err) {
   double t = 0, h = 1, next[CAG_ROBOT_JOINTS_MAX];
-  size_t joint;
   while (t < 1) {
     CagTransform pose;
     if (cag_transform_mix(a, b, t + h, &pose, err)) pose = *b;
     bool solved = solve_near(r, &pose, position_only, q, next);
-    if (solved && largest_move(r, q, next, &joint) <= CONTINUOUS) {
+    if (solved && largest_move(r, q, next) <= CONTINUOUS) {
       memcpy(q, next, r->joint_count * sizeof *q);
       t += h;
       h = fmin(2 * h, 1 - t);

@@ -189,7 +189,7 @@ static double *basis_line(const Axis *a, double t) {
   double *values = malloc(((size_t)a->degree + 1) * sizeof *values);
   if (out && values) {
     size_t p = (size_t)a->degree;
-    size_t span = cag_knots_span(a->knots, a->count, a->degree, t, t >= a->knots[a->count], p);
+    size_t span = cag_knots_span(a->knots, a->count, a->degree, t, false, p);
     cag_bspline_basis(a->knots, a->degree, span, t, values);
     for (size_t i = 0; i <= p; i++) out[(span - p + i) % a->distinct] += values[i];
     free(values);

@@ -231,6 +231,41 @@ static void lines_keep_the_branch(void **state) {
   cag_robot_release(arms[1]);
 }
 
+// However few steps are asked for, the joints follow the whole way: one step ends where fifty do.
+static void one_step_ends_where_many_do(void **state) {
+  (void)state;
+  static const Row slider[] = {{R, 0, 0, 0, -170, 170}, {P, 0, 0, -90, 0, 9000},
+                               {P, 0, 0, 0, 100, 9000}, {R, 0, 0, -90, -400, 400},
+                               {R, 0, 0, 90, 5, 175},   {R, 0, 0, 0, -400, 400}};
+  enum { N = 50, ARMS = 3 };
+  seed = 5;
+  CagRobot *arms[ARMS] = {arm_of(puma, 6), arm_of(stanford, 6), arm_of(slider, 6)};
+  int arrived[ARMS] = {0};
+  for (int trial = 0; trial < 150; trial++) {
+    CagRobot *r = arms[trial % ARMS];
+    double a[6], b[6], few[2][6], many[N][6];
+    CagTransform from, to;
+    random_place(r, a);
+    random_place(r, b);
+    const double part = uniform(0.2, 0.9);
+    for (int i = 0; i < 6; i++) b[i] = a[i] + part * (b[i] - a[i]);
+    cag_robot_forward(r, a, &from);
+    cag_robot_forward(r, b, &to);
+    const CagRobotWay way = {.near = a};
+    if (cag_robot_line_path(r, &from, &to, N, &way, many[0], &err)) continue;
+    arrived[trial % ARMS]++;
+    OK(cag_robot_line_path(r, &from, &to, 2, &way, few[0], &err));
+    for (size_t i = 0; i < 6; i++) {
+      const double unit = r->links[r->joint_link[i]].kind == P ? r->reach : 1;
+      NEAR(few[1][i] / unit, many[N - 1][i] / unit, 1e-6);
+    }
+  }
+  for (int i = 0; i < ARMS; i++) {
+    assert_true(arrived[i] > 15);
+    cag_robot_release(arms[i]);
+  }
+}
+
 // Joint 5 of a wrist, where the tool is, turns through 0, where it is singular: at a step, or
 // between two.
 static void singular_places_are_told_by_their_step(void **state) {
@@ -392,6 +427,7 @@ int main(void) {
       cmocka_unit_test(points_are_reached_by_the_nearest_way),
       cmocka_unit_test(branches_without_names_are_refused),
       cmocka_unit_test(lines_keep_the_branch),
+      cmocka_unit_test(one_step_ends_where_many_do),
       cmocka_unit_test(singular_places_are_told_by_their_step),
       cmocka_unit_test(paths_end_where_their_branch_does),
       cmocka_unit_test(slides_end_paths_as_well),
