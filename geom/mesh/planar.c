@@ -37,10 +37,14 @@ static CagStatus add_point(Outline *o, CagVec3 point, uint32_t vertex, CagError 
   return CAG_OK;
 }
 
+// A vertex of the node at an index.
+static uint32_t node_vertex(const Tessellator *t, size_t at) {
+  const Node *node = &t->nodes[at];
+  return node->corner != NO_INDEX ? t->corners[node->corner].quadrant[3] : node->vertex[1];
+}
+
 static uint32_t node_root(Tessellator *t, const Line *line, bool last) {
-  const Node *node = &t->nodes[line->node + (last ? line->node_count - 1 : 0)];
-  uint32_t v = node->corner != NO_INDEX ? t->corners[node->corner].quadrant[3] : node->vertex[1];
-  return tess_find(t, v);
+  return tess_find(t, node_vertex(t, line->node + (last ? line->node_count - 1 : 0)));
 }
 
 // --- Loops that are edges of other faces ---
@@ -72,9 +76,7 @@ static CagStatus append_piece(Tessellator *t, Outline *o, size_t first, const Li
                               bool backwards, CagError *err) {
   for (size_t k = 0; k < line->node_count; k++) {
     size_t at = line->node + (backwards ? line->node_count - 1 - k : k);
-    const Node *node = &t->nodes[at];
-    uint32_t v = node->corner != NO_INDEX ? t->corners[node->corner].quadrant[3] : node->vertex[1];
-    v = tess_find(t, v);
+    const uint32_t v = tess_find(t, node_vertex(t, at));
     if (o->count > first && is_same(t, o->vertices[o->count - 1], v)) continue;
     CagStatus status = add_point(o, t->positions[v], v, err);
     if (status != CAG_OK) return status;
@@ -133,21 +135,16 @@ static bool do_chain(Tessellator *t, const Piece *pieces, size_t n, double slack
 
 // The second node of a piece, from its start or from its end.
 static CagVec3 second_point(const Tessellator *t, const Line *line, bool backwards) {
-  const Node *node = &t->nodes[line->node + (backwards ? line->node_count - 2 : 1)];
-  return t->positions[node->corner != NO_INDEX ? t->corners[node->corner].quadrant[3]
-                                               : node->vertex[1]];
+  return t->positions[node_vertex(t, line->node + (backwards ? line->node_count - 2 : 1))];
 }
 
-// The piece that begins (*backwards: ends) at p, goes on in this direction, and is not used yet.
-static Piece *piece_from(Tessellator *t, Piece *pieces, size_t n, CagVec3 p, CagVec3 along,
-                         double slack, bool *backwards) {
+// The piece that begins (*backwards: ends) at p and is not used yet.
+static Piece *piece_from(Tessellator *t, Piece *pieces, size_t n, CagVec3 p, double slack,
+                         bool *backwards) {
   for (size_t k = 0; k < n; k++)
     for (int last = 0; last < 2 && !pieces[k].used; last++) {
-      const Line *line = pieces[k].line;
-      const CagVec3 from = t->positions[node_root(t, line, last)];
+      const CagVec3 from = t->positions[node_root(t, pieces[k].line, last)];
       if (cag_norm(cag_sub(from, p)) > slack) continue;
-      const CagVec3 way = cag_unit(cag_sub(second_point(t, line, last), from));
-      if (cag_dot(way, along) < 0.5) continue; // the chord of a piece turns by less than this
       *backwards = last;
       return &pieces[k];
     }
@@ -223,9 +220,7 @@ static CagStatus append_run(Tessellator *t, Outline *o, size_t first, const CagV
         *k = j;
         return status;
       }
-    if (status || o->count < first + 2) break;
-    const CagVec3 along = cag_unit(cag_sub(reached, o->points[o->count - 2]));
-    piece = piece_from(t, pieces, n, reached, along, slack, &backwards);
+    piece = piece_from(t, pieces, n, reached, slack, &backwards);
   }
   ++*k;
   return status;
@@ -312,10 +307,12 @@ static CagStatus outline_between(Tessellator *t, Outline *o, const CagCurve *cur
 
 // --- Loops of their own ---
 
+// How much the frame lengthens at most: the greater singular value of its x and y.
 static double largest_scale(const CagTransform *frame) {
-  double scale = 0;
-  for (int k = 0; k < 2; k++)
-    scale = fmax(scale, cag_norm(cag_vec3(frame->m[0][k], frame->m[1][k], frame->m[2][k])));
+  const CagVec3 x = cag_vec3(frame->m[0][0], frame->m[1][0], frame->m[2][0]),
+                y = cag_vec3(frame->m[0][1], frame->m[1][1], frame->m[2][1]);
+  const double xx = cag_dot(x, x), yy = cag_dot(y, y), xy = cag_dot(x, y);
+  const double scale = sqrt((xx + yy) / 2 + hypot((xx - yy) / 2, xy));
   return scale > 0 ? scale : 1;
 }
 

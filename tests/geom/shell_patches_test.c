@@ -84,23 +84,24 @@ static void add_side(Faces *f, const Side *side, int most, bool planar) {
     }
 }
 
-static void check_solid(const CagSolid *s, double volume, double area, double slack,
+// unit: the order of its size; slack and tolerance are parts of that.
+static void check_solid(const CagSolid *s, double volume, double area, double unit, double slack,
                         double tolerance, long euler) {
   CagMassProperties mass;
   CagMesh *m;
   CagVec3 edge[2];
   double terms[10] = {0};
   OK(cag_solid_mass(s, &mass, &err));
-  NEAR(mass.volume, volume, slack * area);
+  NEAR(mass.volume, volume, slack * unit * area);
   NEAR(mass.area, area, slack * area);
   CagTessellation how = CAG_TESSELLATION_DEFAULT;
-  how.max_edge = random_int(2) ? uniform(0.5, 2) : 0;
-  how.tolerance = tolerance;
+  how.max_edge = random_int(2) ? unit * uniform(0.5, 2) : 0;
+  how.tolerance = tolerance * unit;
   OK(cag_solid_tessellate(s, &how, &m, &err));
   assert_true(cag_mesh_is_watertight(m, edge));
   assert_int_equal(cag_mesh_euler_characteristic(m), euler);
   cag_mesh_volume_terms(m, terms);
-  NEAR(terms[0], volume, (slack + tolerance) * area);
+  NEAR(terms[0], volume, (slack + tolerance) * unit * area);
   NEAR(cag_mesh_area(m), area, (slack + 4 * tolerance) * area);
   cag_mesh_release(m);
 }
@@ -127,7 +128,8 @@ static void boxes_of_patches_are_boxes(void **state) {
       add_side(&f, &side, planar ? 0 : 1 + k % 2, planar);
     }
     CagSolid *s = shell_of(&f);
-    check_solid(s, e[0] * e[1] * e[2], 2 * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0]), 1e-9, 0, 2);
+    check_solid(s, e[0] * e[1] * e[2], 2 * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0]), 1, 1e-9, 0,
+                2);
     cag_solid_release(s);
   }
 }
@@ -146,14 +148,15 @@ static void sums_of_vectors_are_bodies(void **state) {
   seed = 92;
   for (int k = 0; k < 10; k++) {
     const int n = 3 + k % 3;
-    const double gap = k % 4 == 0 ? 0 : exp(uniform(log(1e-12), log(2e-8)));
+    const double unit = exp(uniform(-7, 7));
+    const double gap = k % 4 == 0 ? 0 : unit * exp(uniform(log(1e-12), log(2e-8)));
     CagVec3 v[5];
     double volume = 0, area = 0, stretched = 0;
     Faces f = {.n = 0};
     for (int i = 0; i < n; i++) {
       const double z = uniform(-1, 1);
       const double angle = uniform(-M_PI, M_PI);
-      const double length = uniform(1, 2);
+      const double length = unit * uniform(1, 2);
       const CagVec3 way = {sqrt(1 - z * z) * cos(angle), sqrt(1 - z * z) * sin(angle), z};
       v[i] = cag_scaled(way, length);
     }
@@ -177,9 +180,9 @@ static void sums_of_vectors_are_bodies(void **state) {
         }
       }
     CagSolid *s = shell_of(&f), *image;
-    check_solid(s, volume, area, 1e-9 + 10 * gap, 0, 2);
+    check_solid(s, volume, area, unit, 1e-9 + 10 * gap / unit, 0, 2);
     OK(cag_solid_transform(s, &stretch, &image, &err));
-    check_solid(image, 0.9 * volume, stretched, 1e-9 + 20 * gap, 0, 2);
+    check_solid(image, 0.9 * volume, stretched, unit, 1e-9 + 20 * gap / unit, 0, 2);
     cag_solid_release(image);
     cag_solid_release(s);
   }
@@ -317,7 +320,7 @@ static void prisms_of_flat_and_bent_walls_are_closed(void **state) {
     CagSolid *s = shell_of(&f);
     const double area = area_of(&outer) - (holed ? area_of(&inner) : 0);
     const double wall = wall_of(&outer, way) + (holed ? wall_of(&inner, way) : 0);
-    check_solid(s, area * z, 2 * area + wall, 1e-5, 0.01, holed ? 0 : 2);
+    check_solid(s, area * z, 2 * area + wall, 1, 1e-5, 0.01, holed ? 0 : 2);
     cag_solid_release(s);
     cag_region_release(r);
     cag_curve_release(loop);
