@@ -168,28 +168,13 @@ static CagStatus solve(PlaneSearch *s, double a, double b, double fa, CagError *
   return add(&s->found, t, 0, d[0], err);
 }
 
-// The smallest height near the part: Newton on its derivative, within the smooth stretch.
+// A part that is straight but for rounding: a touch where its middle is near enough.
 static CagStatus touch(PlaneSearch *s, const Part *part, CagError *err) {
-  const double a = part->a, b = part->b, reach = 4 * (b - a);
-  double t = a + (b - a) / 2, best_t = t, best = INFINITY;
-  CagVec3 d[3], point = {0, 0, 0};
-  for (int i = 0; i < 20; i++) {
-    CagStatus status =
-        cag_curve_eval(s->c, t, 2, t >= part->high ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, d, err);
-    if (status) return status;
-    double f = height(s, d[0]);
-    if (fabs(f) < best) {
-      best = fabs(f);
-      best_t = t;
-      point = d[0];
-    }
-    double slope = cag_dot(d[1], s->plane->normal), bend = cag_dot(d[2], s->plane->normal);
-    double next = bend != 0 ? t - slope / bend : slope != 0 ? t - f / slope : t;
-    next = fmin(fmin(b + reach, part->high), fmax(fmax(a - reach, part->low), next));
-    if (!(next != t)) break;
-    t = next;
-  }
-  return best <= (MEET * s->size + s->noise) ? add(&s->found, best_t, 0, point, err) : CAG_OK;
+  const double t = part->a + (part->b - part->a) / 2;
+  CagVec3 p;
+  CagStatus status = cag_curve_point(s->c, t, &p, err);
+  if (status) return status;
+  return fabs(height(s, p)) <= MEET * s->size + s->noise ? add(&s->found, t, 0, p, err) : CAG_OK;
 }
 
 static CagStatus plane_part(PlaneSearch *s, const Part *part, int depth, CagError *err) {
