@@ -178,10 +178,10 @@ static double bisect(const double *a, int degree, double lo, double hi) {
   }
 }
 
-// Roots in (0, most], ascending: one between each two of the derivative's at most. a[degree] is
-// not 0.
+// Roots in (0, most], ascending: one between each two of the derivative's at most.
 static size_t positive_roots(const double *a, int degree, double most, double *out) {
-  if (degree < 1) return 0;
+  while (degree > 0 && a[degree] == 0) degree--;
+  if (degree == 0) return 0;
   double slope[QUARTIC] = {0}, turns[QUARTIC];
   for (int k = 1; k <= degree; k++) slope[k - 1] = k * a[k];
   const size_t n = positive_roots(slope, degree - 1, most, turns);
