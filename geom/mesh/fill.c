@@ -99,9 +99,9 @@ static bool is_low_better(const Fill *f, const double x[2], const double y[2], u
                           uint32_t b, uint32_t c, uint32_t d) {
   const double rounding = 1e-9; // of a step
   double step = fmax(x[1] - x[0], y[1] - y[0]) * (1 + rounding);
-  bool low_leans = fabs(x[1] - y[0]) > step, high_leans = fabs(y[1] - x[0]) > step;
-  if (low_leans != high_leans) return high_leans;
-  if (low_leans) return x[0] + x[1] < y[0] + y[1];
+  // Only one of them can lean forward by more than a step, and where one leans back the other does.
+  if (y[1] - x[0] > step) return true;
+  if (x[1] - y[0] > step) return false;
   if (one_point(f, a, b)) return false;
   if (one_point(f, c, d)) return true;
   const CagVec3 *p = f->mesh->positions;
