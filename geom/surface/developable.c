@@ -158,7 +158,11 @@ static CagStatus newton(const Match *m, double s, double guess, bool *good, doub
     *out = t;
     return CAG_OK;
   }
-  *good = true; // as near as rounding lets it
+  // As near as rounding lets it, or about a break of the slope without a root.
+  Condition c;
+  CagStatus status = condition(m, s, t, &c, err);
+  if (status) return status;
+  *good = fabs(c.f) <= SAME_PLANE;
   *out = t;
   return CAG_OK;
 }

@@ -486,6 +486,101 @@ static void developables_of_oblique_sections_are_cylinders(void **state) {
   }
 }
 
+// A spline on a cone with its tip at the origin, or its image by x / (1 + n . x), which is on the
+// same rulings. Weights that grow by a factor only change where a parameter lies.
+static CagCurve *on_cone(const CagVec3 *points, const double *weights, size_t n, int degree,
+                         const double *knots, CagVec3 image, double growth) {
+  CagVec3 p[8];
+  double w[8];
+  CagCurve *c;
+  for (size_t i = 0; i < n; i++) {
+    const double near = 1 + cag_dot(image, points[i]);
+    p[i] = cag_scaled(points[i], 1 / near);
+    w[i] = weights[i] * near * pow(growth, (double)i);
+  }
+  MUST(cag_curve_nurbs(p, w, n, degree, knots, 3, &c, err));
+  return c;
+}
+
+static void developables_of_curves_on_a_cone_are_the_cone(void **state) {
+  (void)state;
+  seed = 74;
+  for (int round = 0; round < 40; round++) {
+    const bool one_piece = round % 2;
+    const size_t n = one_piece ? 4 : 7;
+    const int degree = one_piece ? 3 : 2 + round / 2 % 2;
+    CagVec3 points[8];
+    double weights[8], knots[12];
+    for (size_t i = 0; i < n; i++) {
+      const double turn = 2.2 / (double)(n - 1) * ((double)i + uniform(-0.2, 0.2));
+      points[i] = cag_scaled(cag_vec3(cos(turn), sin(turn), 1.5), uniform(0.8, 1.2));
+      weights[i] = uniform(0.8, 1.2);
+    }
+    for (size_t i = 0; i < n + (size_t)degree + 1; i++)
+      knots[i] = i <= (size_t)degree ? 0
+                 : i >= n            ? 1
+                                     : ((double)(i - (size_t)degree) + uniform(-0.3, 0.3)) /
+                                (double)(n - (size_t)degree);
+    const CagVec3 image = cag_vec3(uniform(-0.1, 0.1), uniform(-0.1, 0.1), uniform(0.2, 0.5));
+    const double growth = one_piece ? uniform(0.5, 2) : 1;
+    const CagVec3 none = {0, 0, 0};
+    CagCurve *whole[2] = {on_cone(points, weights, n, degree, knots, none, 1),
+                          on_cone(points, weights, n, degree, knots, image, growth)};
+    // Parts of both. The second is `growth` faster: where a ruling has s on the first, t / (1 - t)
+    // is s / (1 - s) / growth on it.
+    CagCurve *part[2];
+    double from = 0, to = 1;
+    for (int k = 0; k < 2; k++) {
+      const double low = uniform(0.02, 0.35), high = uniform(0.65, 0.98);
+      const double g = k ? growth : 1, rest[2] = {1 - low, 1 - high};
+      MUST(cag_curve_trim(whole[k], low, high, &part[k], err));
+      from = fmax(from, g * low / (rest[0] + g * low));
+      to = fmin(to, g * high / (rest[1] + g * high));
+    }
+    CagSurface *s;
+    // The start of the first curve is in one plane with another place of the second, too: from
+    // there the rulings come to cross at a knot, where the second one's curvature jumps.
+    if (round == 12) {
+      MUST_FAIL(cag_surface_developable(part[0], part[1], &s, err), "no-rulings");
+      for (int k = 0; k < 2; k++) {
+        cag_curve_release(part[k]);
+        cag_curve_release(whole[k]);
+      }
+      continue;
+    }
+    MUST(cag_surface_developable(part[0], part[1], &s, err));
+    for (int i = 0; i <= 20; i++) {
+      const double v = s->v0 + (s->v1 - s->v0) * i / 20, at = from + (to - from) * i / 20;
+      CagVec3 p, n0, n1;
+      MUST(cag_curve_point(whole[0], at, &p, err));
+      assert_point(surface_at(s, 1, v), p, 1e-10, "first");
+      assert_point(surface_at(s, 0, v), cag_scaled(p, 1 / (1 + cag_dot(image, p))), 1e-10,
+                   "second");
+      MUST(cag_surface_normal(s, 0.2, v, &n0, err));
+      MUST(cag_surface_normal(s, 0.9, v, &n1, err));
+      assert_point(n1, n0, 1e-9, "normal");
+      assert_near(cag_dot(n0, cag_unit(p)), 0, 1e-9, "ruling");
+    }
+    if (one_piece) assert_consistent(s);
+    // Knots of the first curve are breaks.
+    double *cuts;
+    size_t pieces;
+    MUST(cag_surface_cuts(s, 1, &cuts, &pieces, err));
+    for (size_t i = (size_t)degree + 1; i < n; i++) {
+      const double v = (knots[i] - from) / (to - from);
+      double nearest = INFINITY;
+      for (size_t k = 0; k <= pieces; k++) nearest = fmin(nearest, fabs(cuts[k] - v));
+      if (v > 0 && v < 1) assert_near(nearest, 0, 1e-12, "break");
+    }
+    free(cuts);
+    cag_surface_release(s);
+    for (int k = 0; k < 2; k++) {
+      cag_curve_release(part[k]);
+      cag_curve_release(whole[k]);
+    }
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(coons_of_example_12),
@@ -497,6 +592,7 @@ int main(void) {
       cmocka_unit_test(developables_join_parallel_tangents),
       cmocka_unit_test(developables_of_closed_curves_go_round),
       cmocka_unit_test(developables_of_oblique_sections_are_cylinders),
+      cmocka_unit_test(developables_of_curves_on_a_cone_are_the_cone),
       cmocka_unit_test(bezier_triangles_of_the_reference),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
