@@ -24,6 +24,9 @@
 // The surfaces do not touch if their gap exceeds this multiple of what the curvatures can close in
 // one step.
 #define OUT_OF_REACH 8
+// Surfaces touch if they are within this fraction of the size, and would cross at angles too small
+// to tell otherwise.
+#define NEAR 1e-9
 // If steps no longer shrink, the result is accepted once they are below this fraction of the size.
 #define SETTLED 1e-8
 
@@ -151,14 +154,22 @@ static CagVec3 in_space(const Pair *p, Plane2 a) {
   return cag_madd(cag_scaled(p->e1, a.x), a.y, p->e2);
 }
 
+// The gap that counts as none: parabolas with this difference of curvature cross at the sine
+// sqrt(2 gap curvature).
+static double gap_most(const CagMarch *m, double curvature) {
+  const double sine = CAG_MARCH_TOUCH, same = CAG_MARCH_SAME * m->size;
+  return fmax(same, fmin(NEAR * m->size, sine * sine / (2 * curvature + DBL_MIN)));
+}
+
 static CagMarchFound finish(const CagMarch *m, const Pair *p, double off, const Shape *difference,
                             CagVec3 along, CagMarchNode *node) {
   double small, large;
   Plane2 kernel;
-  const double apart = fabs(p->gap) + hypot(p->beside.x, p->beside.y) + fabs(off);
-  if (!(apart <= CAG_MARCH_SAME * m->size) || hypot(p->turned.x, p->turned.y) > CAG_MARCH_TOUCH)
-    return CAG_MARCH_NONE;
   eigen(difference, &small, &large, &kernel);
+  const double beside = hypot(p->beside.x, p->beside.y) + fabs(off);
+  if (!(beside <= CAG_MARCH_SAME * m->size && fabs(p->gap) <= gap_most(m, fabs(large))) ||
+      hypot(p->turned.x, p->turned.y) > CAG_MARCH_TOUCH)
+    return CAG_MARCH_NONE;
   // Otherwise it is a single point, however slowly the surfaces separate.
   if (fabs(small) > ALONG * (largest(&p->shape[0]) + largest(&p->shape[1]))) return CAG_MARCH_NONE;
   node->x = cag_lerp(p->t[0].p, p->t[1].p, 0.5);
@@ -193,7 +204,7 @@ CagMarchFound cag_march_locate_touch(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 
     if (i > 8 && step > last / 2)
       return step <= SETTLED * m->size ? finish(m, &p, off, &w, along, node) : CAG_MARCH_NONE;
     // So close to parallel normals, the gap no longer changes much.
-    if (i > 1 && fabs(p.gap) > CAG_MARCH_SAME * m->size + OUT_OF_REACH * largest(&w) * step * step)
+    if (i > 1 && fabs(p.gap) > gap_most(m, largest(&w)) + OUT_OF_REACH * largest(&w) * step * step)
       return CAG_MARCH_NONE;
     last = fmin(last, step);
     if (length > m->step_most) {
