@@ -491,6 +491,48 @@ static void maps_that_undo_each_other_leave_the_surface(void **state) {
   }
 }
 
+static void flipped_surfaces_have_their_breaks_in_reverse(void **state) {
+  (void)state;
+  seed = 47;
+  for (int round = 0; round < 12; round++) {
+    const int direction = round % 2;
+    // A spline that is moved, with up to six pieces.
+    double knots[12] = {0, 0, 0};
+    const size_t n = 3 + (size_t)(round / 2);
+    for (size_t i = 3; i < n; i++) knots[i] = knots[i - 1] + uniform(0.2, 1);
+    for (size_t i = n; i < n + 3; i++) knots[i] = knots[n - 1] + 1;
+    CagVec3 p[8];
+    for (size_t i = 0; i < n; i++) p[i] = cag_vec3((double)i, uniform(0, 1), uniform(0, 1));
+    CagCurve *c;
+    CagSurface *s, *flipped;
+    MUST(cag_curve_nurbs(p, NULL, n, 2, knots, 3, &c, err));
+    MUST(cag_surface_extrude(c, cag_vec3(0, 1, 5), 0, 1, &s, err));
+    if (direction) {
+      CagSurface *other;
+      MUST(cag_surface_transpose(s, &other, err));
+      cag_surface_release(s);
+      s = other;
+    }
+    const CagTransform stay = cag_transform_identity();
+    MUST(cag_surface_placed(s, &stay, true, &flipped, err));
+    for (int k = 0; k < 2; k++) {
+      double *cuts, *turned;
+      size_t pieces, count;
+      MUST(cag_surface_cuts(s, k, &cuts, &pieces, err));
+      MUST(cag_surface_cuts(flipped, k, &turned, &count, err));
+      assert_int_equal(pieces, k == direction ? n - 2 : 1);
+      assert_int_equal(count, pieces);
+      for (size_t i = 0; i <= count; i++)
+        assert_near(turned[i], k ? s->v0 + s->v1 - cuts[count - i] : cuts[i], 1e-14, "break");
+      free(cuts);
+      free(turned);
+    }
+    cag_surface_release(flipped);
+    cag_surface_release(s);
+    cag_curve_release(c);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parts_are_the_surface_over_smaller_ranges),
@@ -500,6 +542,7 @@ int main(void) {
       cmocka_unit_test(exchanged_parameters_exchange_everything),
       cmocka_unit_test(sides_are_exchanged_as_well),
       cmocka_unit_test(maps_that_undo_each_other_leave_the_surface),
+      cmocka_unit_test(flipped_surfaces_have_their_breaks_in_reverse),
       cmocka_unit_test(offsets_of_tori_and_balls_are_tori_and_balls),
       cmocka_unit_test(offsets_have_derivatives_on_the_axis_of_a_torus),
   };
