@@ -454,6 +454,54 @@ static void random_ellipses_have_their_common_tangents(void **state) {
   assert_true(seen[0] > 0 && seen[2] > 0 && seen[4] > 0);
 }
 
+// Lines that touch curves of any size are those that touch larger ones, scaled.
+static void tangent_lines_are_scaled(void **state) {
+  (void)state;
+  seed = 43;
+  size_t seen = 0;
+  for (int i = 0; i < 24; i++) {
+    const double scale = pow(10, i % 3 * 6 - 6.0), ratio = 1 / scale;
+    const CagTransform f = plane_frame(1, 0.5, 0.3);
+    CagTransform grow = cag_transform_identity();
+    grow.m[0][0] = grow.m[1][1] = scale;
+    CagVec3 net[2][4];
+    CagCurve *c[2], *image[2];
+    for (int k = 0; k < 2; k++) {
+      for (int j = 0; j < 4; j++) net[k][j] = random_place(3);
+      if (i % 2 && k) OK(cag_curve_arc(2, uniform(0.5, 2), 0, 2 * M_PI, &f, &c[k], &err));
+      else OK(cag_curve_bezier(net[k], NULL, 4, 2, &c[k], &err));
+      OK(cag_curve_transform(c[k], &grow, &image[k], &err));
+    }
+    const CagVec3 p = random_place(4);
+    for (int two = 0; two < 2; two++) {
+      CagTangentLine *lines, *images;
+      size_t n, m;
+      if (two) {
+        OK(cag_tangents_of_two(c[0], c[1], &lines, &n, &err));
+        OK(cag_tangents_of_two(image[0], image[1], &images, &m, &err));
+      } else {
+        OK(cag_tangents_from_point(c[0], p, &lines, &n, &err));
+        OK(cag_tangents_from_point(image[0], cag_scaled(p, scale), &images, &m, &err));
+      }
+      assert_int_equal(m, n);
+      for (size_t k = 0; k < n; k++) {
+        near_vec(cag_scaled(images[k].p, ratio), lines[k].p, 1e-7);
+        near_vec(cag_scaled(images[k].q, ratio), lines[k].q, 1e-7);
+        NEAR(images[k].t, lines[k].t, 1e-7);
+        if (two) NEAR(images[k].t2, lines[k].t2, 1e-7);
+      }
+      seen += n;
+      free(lines);
+      free(images);
+    }
+    for (int k = 0; k < 2; k++) {
+      cag_curve_release(c[k]);
+      cag_curve_release(image[k]);
+    }
+  }
+  assert_true(seen > 40);
+}
+
 // Circles that touch have three tangents from outside and one from within; those of one center
 // have none.
 static void touching_circles_have_the_tangent_of_their_point(void **state) {
@@ -776,6 +824,7 @@ int main(void) {
       cmocka_unit_test(circles_that_just_reach_are_found),
       cmocka_unit_test(tangents_from_random_points),
       cmocka_unit_test(random_ellipses_have_their_common_tangents),
+      cmocka_unit_test(tangent_lines_are_scaled),
       cmocka_unit_test(touching_circles_have_the_tangent_of_their_point),
       cmocka_unit_test(fillets_of_lines_are_closed_forms),
       cmocka_unit_test(fillets_of_arcs_touch_both),
