@@ -78,8 +78,11 @@ static double extreme(const CagSurface *s, int axis, double sign) {
   return best;
 }
 
+static int looks; // at second derivatives
+
 static CagStatus waves(void *context, double u, double v, int n, CagVec3 *out, CagError *e) {
   (void)context;
+  looks += n == 2;
   (void)e;
   const double a = sin(2 * u), b = cos(3 * v), a1 = 2 * cos(2 * u), b1 = -3 * sin(3 * v);
   out[0] = cag_vec3(u + 0.4 * b, v + 0.3 * a, a * b);
@@ -137,6 +140,25 @@ static void bounds_are_the_extremes(void **state) {
     cag_surface_release(moved);
     cag_surface_release(s);
   }
+}
+
+// Newton's method finds tops within a few steps.
+static void bounds_take_few_steps(void **state) {
+  (void)state;
+  seed = 64;
+  looks = 0;
+  for (int round = 0; round < 60; round++) {
+    const double u = uniform(-2, 0), v = uniform(-2, 0);
+    CagSurface *s = formula(u, u + uniform(0.5, 3), v, v + uniform(0.5, 2)), *moved;
+    CagTransform turn;
+    CagBounds box;
+    OK(cag_rotate(cag_vec3(1, -2, 0.5), uniform(0, 3), cag_vec3(1, 1, 1), &turn, &err));
+    OK(cag_surface_transform(s, &turn, &moved, &err));
+    OK(cag_surface_bounds(moved, &box, &err));
+    cag_surface_release(moved);
+    cag_surface_release(s);
+  }
+  assert_true(looks < 60 * 60);
 }
 
 // --- Integrals ---
@@ -235,10 +257,13 @@ static void flat_pieces_have_the_integrals_of_patches(void **state) {
   const double k[] = {0, 1};
   for (int round = 0; round < 30; round++) {
     const double w = uniform(0.5, 3), h = uniform(0.5, 3);
-    CagRegion *region;
-    CagTransform frame;
+    CagRegion *centered, *region;
+    CagTransform frame, away = cag_translate(cag_vec3(uniform(-2, 2), uniform(-2, 2), 0));
     CagSurface *flat, *patch;
-    OK(cag_region_rectangle(w, h, 0, &region, &err));
+    away.planar = true;
+    OK(cag_region_rectangle(w, h, 0, &centered, &err));
+    OK(cag_region_transform(centered, &away, &region, &err));
+    cag_region_release(centered);
     OK(cag_rotate(cag_vec3(1, -2, 0.5), uniform(0, 3), cag_vec3(1, 1, 1), &frame, &err));
     frame.m[0][1] += 0.3;
     frame.m[2][3] += uniform(-3, 3);
@@ -271,6 +296,7 @@ static void flat_pieces_have_the_integrals_of_patches(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bounds_are_the_extremes),
+      cmocka_unit_test(bounds_take_few_steps),
       cmocka_unit_test(integrals_are_those_of_the_definitions),
       cmocka_unit_test(flat_pieces_have_the_integrals_of_patches),
   };
