@@ -1,4 +1,5 @@
-// Operations on half spaces, which may bound a body or not, against its corners.
+// Operations on half spaces and quadrics, which may bound a body or not, against its corners and
+// closed forms.
 
 #include "geom/mesh/tessellate.h"
 #include "geom/solid/csg.h"
@@ -180,9 +181,63 @@ static void half_spaces_bound_what_their_corners_say(void **state) {
   assert_true(bounded > 15 && unbounded > 5);
 }
 
+// The side below z = c + x s + y t, or above.
+static CagSolid *slanted(double c, double s, double t, bool above, const CagTransform *place) {
+  const double sense = above ? -1 : 1;
+  CagPlane plane;
+  CagSolid *half, *out;
+  OK(cag_plane(cag_vec3(0, 0, c), cag_vec3(-s * sense, -t * sense, sense), &plane, &err));
+  OK(cag_solid_half_space(&plane, &half, &err));
+  OK(cag_solid_transform(half, place, &out, &err));
+  cag_solid_release(half);
+  return out;
+}
+
+// Between slanted planes, a cylinder over an ellipse has the volume of an upright one as high as
+// its axis is there. Over a paraboloid, a plane cuts off pi a b R^4 / 2. What is beyond the planes
+// is left out, or taken away.
+static void slanted_planes_cut_quadrics(void **state) {
+  (void)state;
+  const double tolerance = 4e-3;
+  seed = 412;
+  for (int k = 0; k < 16; k++) {
+    const double a = uniform(0.5, 1.5);
+    const double b = uniform(0.5, 1.5);
+    const double low[3] = {uniform(-2, -1), uniform(-0.4, 0.4), uniform(-0.4, 0.4)};
+    const double high[3] = {uniform(1, 2), uniform(-0.4, 0.4), uniform(-0.4, 0.4)};
+    const double scale = exp(uniform(-4, 4));
+    const double x = uniform(-3, 3);
+    const double y = uniform(-3, 3);
+    const double z = uniform(-3, 3);
+    const bool cylinder = k % 2, taken = k / 2 % 2;
+    CagTransform place = cag_rpy(x, y, z);
+    for (int i = 0; i < 9; i++) place.m[i / 3][i % 3] *= scale;
+    for (int i = 0; i < 3; i++) place.m[i][3] = scale * uniform(-3, 3);
+    CagQuadric q = {
+        {1 / (a * a), 1 / (b * b), 0, 0, 0, 0, 0, 0, cylinder ? 0 : -1, cylinder ? -1 : 0}};
+    CagSolid *part[3], *form, *s;
+    CagMassProperties mass;
+    size_t n = 2;
+    OK(cag_solid_quadric(&q, &form, &err));
+    OK(cag_solid_transform(form, &place, &part[0], &err));
+    part[1] = slanted(high[0], high[1], high[2], taken, &place);
+    if (cylinder) part[n++] = slanted(low[0], low[1], low[2], !taken, &place);
+    OK(cag_solid_combine(taken ? CAG_DIFFERENCE : CAG_INTERSECTION, part, n, NULL, &s, &err));
+    OK(cag_solid_mass_within(s, tolerance * scale, &mass, &err));
+    const double square = high[0] + (pow(a * high[1], 2) + pow(b * high[2], 2)) / 4;
+    const double volume =
+        M_PI * a * b * (cylinder ? high[0] - low[0] : square * square / 2) * pow(scale, 3);
+    NEAR(mass.volume, volume, tolerance * scale * mass.area);
+    cag_solid_release(s);
+    cag_solid_release(form);
+    for (size_t i = 0; i < n; i++) cag_solid_release(part[i]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(half_spaces_bound_what_their_corners_say),
+      cmocka_unit_test(slanted_planes_cut_quadrics),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
