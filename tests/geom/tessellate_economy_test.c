@@ -118,6 +118,59 @@ static void triangles_do_not_depend_on_how_parameters_run(void **state) {
   for (int i = 0; i < 3; i++) assert_true(sum[i] <= together[i]);
 }
 
+// A cap whose rows come together in a pole, at either end of either parameter. Some are nearly
+// cones, around which normals turn as much as is allowed, near the pole too.
+static void poles_are_alike_at_all_ends(void **state) {
+  (void)state;
+  enum { NETS = 30, TURNS = 8 };
+  seed = 34;
+  for (int k = 0; k < NETS; k++) {
+    Net net = {.n = {3, 4}};
+    const double wide = uniform(0.3, 1.5);
+    const double high = uniform(0.5, 3);
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    double n[TURNS];
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 4; j++) {
+        const double angle = (j - 1.5) * wide, radius = (i + uniform(0, 0.3)) * (i > 0) * 5;
+        const double drop = k % 3 ? i * i : i + (i == 1 ? 0.1 : 0);
+        net.p[i][j] = cag_vec3(radius * cos(angle), radius * sin(angle), -high * drop);
+      }
+    how.tolerance = exp(uniform(-7, -4));
+    how.angle = k % 3 ? 1.5 : 0.05;
+    for (int turn = 0; turn < TURNS; turn++) {
+      CagSurface *s = surface_of(&net, turn);
+      n[turn] = triangles_of(s, &how);
+      assert_true(fabs(n[turn] / n[turn & 1] - 1) <= (k % 3 ? 0.01 : 0.1));
+      assert_true(fabs(n[turn] / n[0] - 1) <= (k % 3 ? 0.06 : 0.2));
+      cag_surface_release(s);
+    }
+  }
+}
+
+// The normals of a cone turn as much at its tip as anywhere: its triangles all reach the tip.
+static void cones_have_one_row_of_triangles(void **state) {
+  (void)state;
+  seed = 35;
+  for (int k = 0; k < 32; k++) {
+    Net net = {.n = {2, 4}};
+    const double wide = uniform(0.3, 1);
+    const double high = uniform(1, 3);
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    for (int j = 0; j < 4; j++) {
+      const double angle = (j - 1.5) * wide;
+      net.p[0][j] = cag_vec3(0, 0, 0);
+      net.p[1][j] = cag_vec3(5 * cos(angle), 5 * sin(angle), -high);
+    }
+    how.tolerance = exp(uniform(-6, -4));
+    how.angle = 0.05;
+    CagSurface *s = surface_of(&net, k % 8);
+    // From the first side of the net to the last one tangents turn by twice the angle.
+    assert_true(triangles_of(s, &how) <= 1.15 * 2 * wide / how.angle + 2);
+    cag_surface_release(s);
+  }
+}
+
 // A limit of as many triangles as there are is kept, one less is not.
 static void limits_of_triangles_are_exact(void **state) {
   (void)state;
@@ -143,6 +196,8 @@ int main(void) {
       cmocka_unit_test(parabolic_surfaces_take_little_more_than_the_fewest),
       cmocka_unit_test(triangles_do_not_depend_on_how_parameters_run),
       cmocka_unit_test(limits_of_triangles_are_exact),
+      cmocka_unit_test(poles_are_alike_at_all_ends),
+      cmocka_unit_test(cones_have_one_row_of_triangles),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
