@@ -257,8 +257,10 @@ static CagCurve *loop_of(const Outline *o) {
   return c;
 }
 
-// The piece of an edge between two of its parameters.
-static CagCurve *piece_of(const Outline *o, int i, double from, double to, CagVec3 shift) {
+// The piece of an edge between two of its parameters; weights change its own parameters.
+static CagCurve *piece_of(const Outline *o, int i, double from, double to, CagVec3 shift,
+                          double weight) {
+  const double weights[3] = {1, weight, weight * weight};
   const double ends[3][2] = {{from, from}, {from, to}, {to, to}};
   CagVec3 p[3];
   CagCurve *c;
@@ -267,7 +269,7 @@ static CagCurve *piece_of(const Outline *o, int i, double from, double to, CagVe
     const CagVec3 b = cag_lerp(o->middle[i], o->corner[i + 1], ends[k][0]);
     p[k] = cag_add(cag_lerp(a, b, ends[k][1]), shift);
   }
-  OK(cag_curve_bezier(p, NULL, 3, 3, &c, &err));
+  OK(cag_curve_bezier(p, weights, 3, 3, &c, &err));
   return c;
 }
 
@@ -284,15 +286,47 @@ static void add_walls(Faces *f, const Outline *o, CagVec3 way, int most) {
     for (size_t k = 0; k < n; k++)
       for (size_t l = 0; l < m; l++) {
         const bool down = random_int(2);
+        const double weight = random_int(2) ? 1 : exp(uniform(-1, 1));
         CagCurve *edges[2];
         for (size_t end = 0; end < 2; end++)
-          edges[end] =
-              piece_of(o, i, lines[0][k], lines[0][k + 1], cag_scaled(way, lines[1][l + end]));
+          edges[end] = piece_of(o, i, lines[0][k], lines[0][k + 1],
+                                cag_scaled(way, lines[1][l + end]), weight);
         OK(cag_surface_ruled(edges[down], edges[!down], &f->at[f->n++], &err));
         cag_curve_release(edges[0]);
         cag_curve_release(edges[1]);
       }
   }
+}
+
+// Whether a point of the plane lies on an edge whose tangent there is square to the vector.
+static bool is_on_edge(const Outline *o, CagVec3 p, CagVec3 square) {
+  for (int i = 0; i < o->n; i++) {
+    // Middle points stand over the middle of the chord.
+    const CagVec3 a = o->corner[i], b = o->corner[i + 1], chord = cag_sub(b, a);
+    const double t = cag_dot(cag_sub(p, a), chord) / cag_dot(chord, chord);
+    const CagVec3 x = cag_lerp(a, o->middle[i], t), y = cag_lerp(o->middle[i], b, t);
+    if (cag_norm(cag_sub(cag_lerp(x, y, t), p)) < 1e-6 && t > -1e-6 && t < 1 + 1e-6 &&
+        fabs(cag_dot(cag_unit(cag_sub(y, x)), square)) < 1e-5)
+      return true;
+  }
+  return false;
+}
+
+// Vertices have the normals of the walls where they stand.
+static void check_normals(const CagSolid *s, const Outline *outer, const Outline *inner,
+                          CagVec3 way) {
+  CagTessellation how = CAG_TESSELLATION_DEFAULT;
+  CagMesh *m;
+  how.tolerance = 0.003;
+  OK(cag_solid_tessellate(s, &how, &m, &err));
+  for (size_t i = 0; i < m->vertex_count; i++) {
+    const CagVec3 p = m->positions[i], n = m->normals[i];
+    const CagVec3 foot = cag_madd(p, -p.z / way.z, way);
+    if (fabs(n.z) > 1 - 1e-12) continue; // of an end
+    NEAR(cag_dot(n, way), 0, 1e-6);
+    assert_true(is_on_edge(outer, foot, n) || is_on_edge(inner, foot, n));
+  }
+  cag_mesh_release(m);
 }
 
 // Prisms over regions of straight and bent edges, and some with a hole: their walls are flat faces
@@ -321,6 +355,7 @@ static void prisms_of_flat_and_bent_walls_are_closed(void **state) {
     const double area = area_of(&outer) - (holed ? area_of(&inner) : 0);
     const double wall = wall_of(&outer, way) + (holed ? wall_of(&inner, way) : 0);
     check_solid(s, area * z, 2 * area + wall, 1, 1e-5, 0.01, holed ? 0 : 2);
+    check_normals(s, &outer, &inner, way);
     cag_solid_release(s);
     cag_region_release(r);
     cag_curve_release(loop);
