@@ -30,6 +30,10 @@ CagMarchFound cag_march_locate_crossing(CagMarch *m, CagVec3 q, CagVec3 n, CagVe
 CagMarchFound cag_march_locate_touch(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 along,
                                      CagMarchNode *node);
 
+// Where the surfaces are nearly parallel they may cross around a summit of the gap between them.
+// Estimates up to 4 places of such crossings within the reach, and returns how many.
+size_t cag_march_find_round(CagMarch *m, const CagMarchNode *seed, double reach,
+                            CagMarchNode out[4]);
 // Where the surfaces cross at a small angle, they may cross again beside the node. Estimates that
 // place from the curvatures. False: there is none within the reach, or the status is set.
 bool cag_march_find_twin(CagMarch *m, const CagMarchNode *node, double reach, CagMarchNode *out);

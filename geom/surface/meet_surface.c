@@ -8,7 +8,8 @@
 // where a surface ends, or where the surfaces touch and have no direction. There the march looks a
 // little ahead, because two branches may cross. Curves along which the surfaces touch are marched
 // in the same way, starting where the meshes are close to each other and nearly parallel. Only the
-// method that locates a point differs.
+// method that locates a point differs. If surfaces cross around such a place instead, or twice side
+// by side, the other places where they cross are estimated from their curvatures.
 //
 // A run stays in one patch of each surface. At a crease it ends as at an edge, and its end becomes
 // a seed in the patches beyond. Corners therefore lie on the creases, and the joined result does
@@ -568,10 +569,21 @@ static bool add_seeds_of_twins(CagMarch *m, const Run *run) {
   return true;
 }
 
+// Seeds of loops so small that the meshes do not cross there.
+static bool add_seeds_around(CagMarch *m, const CagMarchNode *touch) {
+  CagMarchNode seeds[4];
+  const size_t n = cag_march_find_round(m, touch, TWIN_REACH * m->step_most, seeds);
+  for (size_t i = 0; i < n; i++)
+    if (!cag_march_add_seed(m, &m->crossings, &seeds[i])) return false;
+  return m->status == CAG_OK;
+}
+
 static bool march_from(CagMarch *m, Runs *runs, CagMarchNode seed) {
   const CagVec3 none = {0, 0, 0};
   const CagMarchFound found = m->locate(m, seed.x, none, none, &seed);
   m->touching += found == CAG_MARCH_TANGENT;
+  if (found == CAG_MARCH_NONE && m->locate == cag_march_locate_touch)
+    return add_seeds_around(m, &seed);
   if (found != CAG_MARCH_FOUND) return found != CAG_MARCH_FAILED;
   for (size_t k = 0; k < runs->n; k++)
     if (has_seed(m, &runs->items[k], &seed)) return true;

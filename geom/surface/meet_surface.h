@@ -7,8 +7,10 @@
 
 // The curves are added to the list, joined where they meet end to end: lines and conics where they
 // are such, else cubics within the tolerance (0: a millionth of the size). Where the surfaces only
-// touch there is none, and loops smaller than a 50th of the smaller surface may be missed. Fails
-// with "overlap" where they share a piece, "sizes-apart" where one is a thousand times larger.
+// touch at a point there is none. Loops smaller than a 50th of the smaller surface are found by a
+// place within them where the surfaces are parallel; of several that lie closer together than that,
+// some may be missed. Fails with "overlap" where they share a piece, "sizes-apart" where one is a
+// thousand times larger.
 //
 //   interrupt  NULL, or: not 0 stops with CAG_E_CALLBACK
 CagStatus cag_surface_intersect(const CagSurface *a, const CagSurface *b, double tolerance,

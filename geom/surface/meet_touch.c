@@ -27,6 +27,9 @@
 // Surfaces touch if they are within this fraction of the size, and would cross at angles too small
 // to tell otherwise.
 #define NEAR 1e-9
+// A summit is found within this fraction of the longest step.
+#define SUMMIT 1e-6
+#define SUMMIT_STEPS 12
 // If steps no longer shrink, the result is accepted once they are below this fraction of the size.
 #define SETTLED 1e-8
 
@@ -150,6 +153,16 @@ static bool solve(const Shape *m, Plane2 g, Plane2 n, double h, double least, Pl
   return true;
 }
 
+static Shape difference_of(const Pair *p) {
+  return (Shape){p->shape[0].xx - p->shape[1].xx, p->shape[0].xy - p->shape[1].xy,
+                 p->shape[0].yy - p->shape[1].yy};
+}
+
+// Smaller differences of curvatures count as none.
+static double least_curvature(const CagMarch *m, const Pair *p) {
+  return SAME_CURVATURE * (largest(&p->shape[0]) + largest(&p->shape[1])) + DBL_EPSILON / m->size;
+}
+
 static CagVec3 in_space(const Pair *p, Plane2 a) {
   return cag_madd(cag_scaled(p->e1, a.x), a.y, p->e2);
 }
@@ -185,10 +198,8 @@ CagMarchFound cag_march_locate_touch(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 
   for (int i = 0; i < NEWTON_STEPS; i++) {
     Pair p;
     if (!look_at_both(m, node, &p)) return m->status ? CAG_MARCH_FAILED : CAG_MARCH_NONE;
-    const Shape w = {p.shape[0].xx - p.shape[1].xx, p.shape[0].xy - p.shape[1].xy,
-                     p.shape[0].yy - p.shape[1].yy};
-    const double least =
-        SAME_CURVATURE * (largest(&p.shape[0]) + largest(&p.shape[1])) + DBL_EPSILON / m->size;
+    const Shape w = difference_of(&p);
+    const double least = least_curvature(m, &p);
     const CagVec3 middle = cag_lerp(p.t[0].p, p.t[1].p, 0.5);
     const Plane2 towards = planar ? (Plane2){cag_dot(n, p.e1), cag_dot(n, p.e2)} : (Plane2){0, 0};
     const double off = planar ? cag_dot(n, cag_sub(q, middle)) : 0;
@@ -218,6 +229,57 @@ CagMarchFound cag_march_locate_touch(CagMarch *m, CagVec3 q, CagVec3 n, CagVec3 
   return CAG_MARCH_NONE;
 }
 
+// Moves the node to a place near it where both points lie on one normal. Returns false if there is
+// none, or if the gap is larger than what the curvatures can close within the reach.
+static bool go_to_summit(CagMarch *m, double near, double reach, CagMarchNode *node, Pair *p) {
+  for (int i = 0; i < SUMMIT_STEPS; i++) {
+    if (!look_at_both(m, node, p)) return false;
+    const Shape w = difference_of(p);
+    const Plane2 moved = apply(&p->shape[1], p->beside), none = {0, 0};
+    Plane2 a;
+    if (!solve(&w, (Plane2){p->turned.x + moved.x, p->turned.y + moved.y}, none, 0,
+               least_curvature(m, p), &a))
+      return false;
+    const double length = hypot(a.x, a.y);
+    const double step = length + hypot(p->beside.x, p->beside.y);
+    if (step <= near) return true;
+    if (fabs(p->gap) > 2 * largest(&w) * (reach * reach + step * step) || step > m->step_most)
+      return false;
+    const Plane2 b = {a.x + p->beside.x, a.y + p->beside.y};
+    cag_march_move(m, 0, &p->t[0], cag_add(p->t[0].p, in_space(p, a)), node);
+    cag_march_move(m, 1, &p->t[1], cag_add(p->t[1].p, in_space(p, b)), node);
+  }
+  return false;
+}
+
+// At a summit the gap g is extreme. Along a principal direction with the curvature w it is
+// g + w s^2 / 2.
+size_t cag_march_find_round(CagMarch *m, const CagMarchNode *seed, double reach,
+                            CagMarchNode out[4]) {
+  CagMarchNode node = *seed;
+  Pair p;
+  if (!go_to_summit(m, SUMMIT * m->step_most, reach, &node, &p)) return 0;
+  const Shape w = difference_of(&p);
+  const CagVec3 x = cag_lerp(p.t[0].p, p.t[1].p, 0.5);
+  double curvature[2];
+  Plane2 direction[2];
+  size_t n = 0;
+  eigen(&w, &curvature[0], &curvature[1], &direction[0]);
+  direction[1] = (Plane2){-direction[0].y, direction[0].x};
+  for (int i = 0; i < 4; i++) {
+    const double square = -2 * p.gap / curvature[i / 2];
+    if (!(square > 0 && square <= reach * reach)) continue;
+    out[n] = node;
+    for (int k = 0; k < 2; k++)
+      cag_march_move(
+          m, k, &p.t[k],
+          cag_madd(x, i % 2 ? -sqrt(square) : sqrt(square), in_space(&p, direction[i / 2])),
+          &out[n]);
+    n++;
+  }
+  return n;
+}
+
 // Along the direction d across the curve, the gap changes at the rate -n d and the curvatures
 // differ by d (W1 - W2) d. The parabola with these derivatives has its second root at 2 n d / d (W1
 // - W2) d.
@@ -226,8 +288,7 @@ bool cag_march_find_twin(CagMarch *m, const CagMarchNode *node, double reach, Ca
   if (!look_at_both(m, node, &p)) return false;
   const CagVec3 across = cag_unit(cag_cross(p.normal, node->tangent));
   const Plane2 d = {cag_dot(across, p.e1), cag_dot(across, p.e2)};
-  const Shape w = {p.shape[0].xx - p.shape[1].xx, p.shape[0].xy - p.shape[1].xy,
-                   p.shape[0].yy - p.shape[1].yy};
+  const Shape w = difference_of(&p);
   const Plane2 bent = apply(&w, d);
   const double rate = 2 * (p.turned.x * d.x + p.turned.y * d.y);
   const double curvature = bent.x * d.x + bent.y * d.y;

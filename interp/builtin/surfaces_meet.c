@@ -100,8 +100,8 @@ const CagBuiltin cag_builtins_meetings[] = {
      "cubics within the tolerance (none: a millionth of the size). These are the curves where "
      "they cross and the curves along which they touch; along the latter the normals of both are "
      "parallel. With a plane, edges and creases of the surface that lie in it are among them. "
-     "Surfaces that touch at single points have no curve there, and loops much smaller "
-     "than the surfaces may be missed. Where they share a piece it is an error (overlap).",
+     "Surfaces that touch at single points have no curve there. Of many tiny loops side by side "
+     "some may be missed. Where they share a piece it is an error (overlap).",
      "c = intersect(sphere_surface(5), translate([0, 0, 3]) * bilinear([-9, -9], [-9, 9], [9, -9], "
      "[9, 9]))\n"
      "print len(c), near(length(c[0]), 8 * pi) // expect: 1 true\n"
