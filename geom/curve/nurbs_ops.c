@@ -7,6 +7,7 @@
 
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
+#include "geom/stop.h"
 
 static CagStatus fail_inside(const CagCurve *c, double t, CagError *err) {
   char x[32], a[32], b[32];
@@ -110,7 +111,10 @@ static CagStatus elevate_once(const CagCurve *curve, CagCurve **out, CagError *e
     if (i + 1 == old || c->knots[i + 1] != c->knots[i]) z[m++] = c->knots[i];
   }
   const size_t n = m - (size_t)p - 2; // points of degree p + 1
-  for (size_t j = 0; !status && j < n; j++) {
+  const bool is_one_piece = c->pieces == 1;
+  if (!status && is_one_piece) cag_bezier_elevate(cag_nurbs_bezier(c, 0), p, h);
+  for (size_t j = 0; !status && !is_one_piece && j < n; j++) {
+    status = cag_stop_check(err);
     // The piece about the middle of the inner knots.
     double middle = (z[j + 1] + z[j + (size_t)p + 1]) / 2;
     size_t piece = cag_nurbs_piece(c, middle, CAG_SIDE_RIGHT, c->pieces);
@@ -122,8 +126,8 @@ static CagStatus elevate_once(const CagCurve *curve, CagCurve **out, CagError *e
       for (int x = 0; x < 4; x++) sum[x] += value[x];
     }
     for (int x = 0; x < 4; x++) h[4 * j + (size_t)x] = sum[x] / (p + 1);
-    if (!c->rational) h[4 * j + 3] = 1;
   }
+  for (size_t j = 0; !status && !c->rational && j < n; j++) h[4 * j + 3] = 1;
   if (!status) {
     // The ends are the curve's own, bit for bit.
     memcpy(h, c->bezier, 4 * sizeof(double));
