@@ -1,8 +1,9 @@
 // B-spline basis functions by the triangular scheme (Cox, de Boor), derivatives by differences of
-// the lower degrees, Bezier pieces by blossoms.
+// the lower degrees, Bezier pieces by blossoms, higher degrees by discrete B-splines.
 
 #include "geom/basis/bspline.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "geom/stop.h"
@@ -116,4 +117,74 @@ void cag_bspline_insert(double *homogeneous, double *knots, size_t n, int p, dou
   }
   memmove(knots + r + 2, knots + r + 1, sizeof(double) * (n + (size_t)p - r));
   knots[r + 1] = t;
+}
+
+// --- Elevation ---
+
+size_t cag_bspline_elevated_knots(const double *knots, size_t n, int p, double *out) {
+  const size_t count = n + (size_t)p + 1;
+  size_t m = 0;
+  for (size_t i = 0; i < count; i++) {
+    out[m++] = knots[i];
+    if (i + 1 == count || knots[i + 1] != knots[i]) out[m++] = knots[i];
+  }
+  return m;
+}
+
+static double part_of(double x, double whole) { return whole > 0 ? x / whole : 0; }
+
+// The step of the Oslo algorithm to discrete B-splines of degree q at the knot u. w[i], i = p - q
+// .. p, belongs to B-spline span - p + i, whose knots begin at x[i].
+static void raise_discrete(const double *x, int p, int q, double u, double *w) {
+  for (int i = p - q; i <= p; i++)
+    w[i] = part_of(u - x[i], x[i + q] - x[i]) * w[i] +
+           (i < p ? part_of(x[i + q + 1] - u, x[i + q + 1] - x[i + 1]) * w[i + 1] : 0);
+}
+
+// The weights of points span - p .. span in the point whose elevated knots are z[0] .. z[p + 2].
+// That point is the mean over l of the blossoms at z[1] .. z[p + 1] without z[l] (reference 05b,
+// BS-46). Each of them is a point of the curve over refined knots, so that its weights are discrete
+// B-splines, which are not negative (Cohen, Lyche, Riesenfeld 1980). `all` leaves out no knot yet,
+// `sum` adds up what leaves out one.
+static void elevated_weights(const double *x, int p, const double *z, double *all, double *sum) {
+  memset(all, 0, sizeof(double) * (size_t)(p + 1));
+  memset(sum, 0, sizeof(double) * (size_t)(p + 1));
+  all[p] = 1;
+  for (int k = 1; k <= p + 1; k++) {
+    if (k > 1) raise_discrete(x, p, k - 1, z[k], sum);
+    for (int i = 0; i <= p; i++) sum[i] += all[i];
+    if (k <= p) raise_discrete(x, p, k, z[k], all);
+  }
+  for (int i = 0; i <= p; i++) sum[i] /= p + 1;
+}
+
+CagStatus cag_bspline_elevate(const double *points, size_t width, const double *knots, size_t n,
+                              int p, const double *elevated, double *out, CagError *err) {
+  double *all = malloc(sizeof(double) * (size_t)(2 * p + 2)), *sum = all + p + 1;
+  if (!all) return cag_fail_memory(err);
+  size_t j = 0;
+  for (; elevated[j] < knots[n]; j++) {
+    if (cag_stop_check(err)) break;
+    size_t span = (size_t)p;
+    if (n == (size_t)p + 1) { // one Bezier piece: two points each
+      memset(sum, 0, sizeof(double) * (size_t)(p + 1));
+      const double share = (double)j / (p + 1);
+      if (j > 0) sum[j - 1] = share;
+      if (j <= (size_t)p) sum[j] = 1 - share;
+    } else {
+      span = cag_knots_span(knots, n, p, elevated[j], false, (size_t)p);
+      elevated_weights(knots + (span - (size_t)p), p, elevated + j, all, sum);
+    }
+    const double *from = points + (span - (size_t)p) * width;
+    double *to = out + j * width;
+    memset(to, 0, sizeof(double) * width);
+    for (size_t i = 0; i <= (size_t)p; i++)
+      for (size_t c = 0; sum[i] != 0 && c < width; c++) to[c] += sum[i] * from[i * width + c];
+  }
+  free(all);
+  if (elevated[j] < knots[n]) return err->status;
+  // The ends are those of the curve, bit for bit.
+  memcpy(out, points, sizeof(double) * width);
+  memcpy(out + (j - 1) * width, points + (n - 1) * width, sizeof(double) * width);
+  return CAG_OK;
 }

@@ -25,5 +25,12 @@ void cag_bspline_piece_derivatives(const double *homogeneous, const double *knot
 // Inserts knot t of the usable range once (Boehm 1980): n points become n + 1, n + p + 1 knots one
 // more; both arrays have the room.
 void cag_bspline_insert(double *homogeneous, double *knots, size_t n, int p, double t);
+// The knots of the same splines in degree p + 1: each occurs once more. Returns how many there are;
+// `out` has room for twice as many as the n + p + 1 given ones.
+size_t cag_bspline_elevated_knots(const double *knots, size_t n, int p, double *out);
+// The points over the elevated knots of n points of `width` numbers over clamped ones (mean of
+// points of refined curves, by discrete B-splines). Fails with "interrupted", or without memory.
+CagStatus cag_bspline_elevate(const double *points, size_t width, const double *knots, size_t n,
+                              int p, const double *elevated, double *out, CagError *err);
 
 #endif

@@ -7,7 +7,6 @@
 
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
-#include "geom/stop.h"
 
 static CagStatus fail_inside(const CagCurve *c, double t, CagError *err) {
   char x[32], a[32], b[32];
@@ -81,76 +80,28 @@ static CagNurbsKind plain_kind(const CagNurbs *c) {
 
 // --- Elevation ---
 
-static double part_of(double x, double whole) { return whole > 0 ? x / whole : 0; }
-
-// The step of the Oslo algorithm to discrete B-splines of degree q at the knot u, of the curve's
-// B-splines span - q .. span. w[i] belongs to B-spline span - p + i.
-static void raise_discrete(const CagNurbs *c, size_t span, int q, double u, double *w) {
-  const size_t p = (size_t)c->degree;
-  const double *x = c->knots + (span - p);
-  for (size_t i = p - (size_t)q, s = (size_t)q; i <= p; i++)
-    w[i] = part_of(u - x[i], x[i + s] - x[i]) * w[i] +
-           (i < p ? part_of(x[i + s + 1] - u, x[i + s + 1] - x[i + 1]) * w[i + 1] : 0);
-}
-
-// Point j of the elevated curve with the knots z is the mean over l of the blossom at z_{j+1} ..
-// z_{j+p+1} without z_{j+l} (reference 05b, BS-46). Each is a point of the curve with refined
-// knots, that is, the sum of the points times discrete B-splines, which are not negative (Cohen,
-// Lyche, Riesenfeld 1980). `all` leaves out no knot yet; `sum` adds up what leaves out one. The
-// room is for 2 p + 2 numbers.
-static void elevated_point(const CagNurbs *c, const double *z, size_t j, double *room,
-                           double out[4]) {
-  const int p = c->degree;
-  const size_t span = cag_knots_span(c->knots, c->count, p, z[j], false, (size_t)p);
-  double *all = room, *sum = room + p + 1;
-  memset(room, 0, sizeof(double) * (size_t)(2 * p + 2));
-  all[p] = 1;
-  for (int k = 1; k <= p + 1; k++) {
-    const double u = z[j + (size_t)k];
-    if (k > 1) raise_discrete(c, span, k - 1, u, sum);
-    for (int i = 0; i <= p; i++) sum[i] += all[i];
-    if (k <= p) raise_discrete(c, span, k, u, all);
-  }
-  const double *points = c->homogeneous + 4 * (span - (size_t)p);
-  for (int x = 0; x < 4; x++) out[x] = 0;
-  for (int i = 0; i <= p; i++)
-    for (int x = 0; x < 4; x++) out[x] += sum[i] / (p + 1) * points[4 * i + x];
-}
-
 static CagStatus elevate_once(const CagCurve *curve, CagCurve **out, CagError *err) {
   const CagNurbs *c = cag_nurbs_data(curve);
   const int p = c->degree;
   if (p >= CAG_MAX_DEGREE)
     return cag_fail(err, CAG_E_ARGUMENT, "order-range", "times", -1, "the degree is at most %d",
                     CAG_MAX_DEGREE);
-  const size_t old = c->count + (size_t)p + 1, most = old + c->pieces + 1;
-  double *z = malloc(sizeof(double) * most), *h = malloc(sizeof(double) * 4 * most);
-  double *room = malloc(sizeof(double) * (size_t)(2 * p + 2));
-  CagStatus status = z && h && room ? CAG_OK : cag_fail_memory(err);
-  size_t m = 0;
-  for (size_t i = 0; !status && i < old; i++) {
-    z[m++] = c->knots[i];
-    if (i + 1 == old || c->knots[i + 1] != c->knots[i]) z[m++] = c->knots[i];
-  }
-  const size_t n = m - (size_t)p - 2; // points of degree p + 1
-  const bool is_one_piece = c->pieces == 1;
-  if (!status && is_one_piece) cag_bezier_elevate(cag_nurbs_bezier(c, 0), p, h);
-  for (size_t j = 0; !status && !is_one_piece && j < n; j++) {
-    status = cag_stop_check(err);
-    elevated_point(c, z, j, room, h + 4 * j);
+  const size_t room = 2 * (c->count + (size_t)p + 1);
+  double *z = malloc(sizeof(double) * room), *h = malloc(sizeof(double) * 4 * room);
+  size_t n = 0;
+  CagStatus status = z && h ? CAG_OK : cag_fail_memory(err);
+  if (!status) {
+    n = cag_bspline_elevated_knots(c->knots, c->count, p, z) - (size_t)p - 2;
+    status = cag_bspline_elevate(c->homogeneous, 4, c->knots, c->count, p, z, h, err);
   }
   for (size_t j = 0; !status && !c->rational && j < n; j++) h[4 * j + 3] = 1;
   if (!status) {
-    // The ends are the curve's own, bit for bit.
-    memcpy(h, c->bezier, 4 * sizeof(double));
-    memcpy(h + 4 * (n - 1), cag_nurbs_bezier(c, c->pieces) - 4, 4 * sizeof(double));
     bool bezier = c->pieces == 1 && strcmp(curve->kind->name, "bezier") == 0;
     status = cag_nurbs_new(h, n, p + 1, z, c->rational, 0,
                            bezier ? CAG_NURBS_BEZIER : plain_kind(c), curve->dimension, out, err);
   }
   free(z);
   free(h);
-  free(room);
   return status;
 }
 

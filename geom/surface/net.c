@@ -139,64 +139,41 @@ CagStatus cag_net_drop(CagNet *net, double t, CagError *err) {
   return drop_knot(net, r, err);
 }
 
-static void raise_pieces(const CagNet *net, CagNet *next) {
-  size_t p = (size_t)net->degree, width = net->width, pieces = (net->count - 1) / p, k = 0;
-  for (size_t m = 0; m < p + 2; m++) next->knots[k++] = net->knots[0];
-  for (size_t s = 0; s < pieces; s++) {
-    const double *from = net->data + s * p * width;
-    double *to = next->data + s * (p + 1) * width;
-    for (size_t i = 0; i <= p + 1; i++) {
-      double f = (double)i / (double)(p + 1);
-      for (size_t c = 0; c < width; c++) {
-        double before = i > 0 ? from[(i - 1) * width + c] : 0;
-        double here = i <= p ? from[i * width + c] : 0;
-        to[i * width + c] = f * before + (1 - f) * here;
-      }
-    }
-    double t = net->knots[(s + 1) * p + 1];
-    for (size_t m = 0; m < (s + 1 < pieces ? p + 1 : p + 2); m++) next->knots[k++] = t;
-  }
+// No inner knot of a trimmed net may occur more often than the degree.
+static CagStatus check_inner_knots(const CagNet *net, CagError *err) {
+  const size_t p = (size_t)net->degree;
+  for (size_t i = p + 1; i + p < net->count; i++)
+    if (net->knots[i] == net->knots[i + p])
+      return cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", "knots", -1,
+                      "`knots` must not repeat an inner knot more often than the degree %d: "
+                      "there the pieces come apart",
+                      net->degree);
+  return CAG_OK;
 }
 
 CagStatus cag_net_raise(CagNet *net, CagError *err) {
-  int p = net->degree;
+  const int p = net->degree;
   CagStatus status = cag_net_trim(net, cag_net_start(net), cag_net_end(net), err);
+  if (!status) status = check_inner_knots(net, err);
   if (status) return status;
-  size_t inner = net->count - (size_t)p - 1;
-  double *cuts = malloc((inner + 1) * sizeof *cuts);
-  int *times = malloc((inner + 1) * sizeof *times);
-  if (!cuts || !times) status = cag_fail_memory(err);
-  size_t n = 0;
-  for (size_t i = 0; !status && i < inner; i++) {
-    double t = net->knots[(size_t)p + 1 + i];
-    if (n > 0 && cuts[n - 1] == t) times[n - 1]++;
-    else cuts[n] = t, times[n++] = 1;
-  }
-  for (size_t i = 0; !status && i < n; i++)
-    if (times[i] > p)
-      status = cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", "knots", -1,
-                        "`knots` must not repeat an inner knot more often than the degree %d: "
-                        "there the pieces come apart",
-                        p);
-  for (size_t i = 0; !status && i < n; i++)
-    for (int m = times[i]; !status && m < p; m++) status = cag_net_insert(net, cuts[i], err);
+  double *knots = malloc(2 * (net->count + (size_t)p + 1) * sizeof *knots);
+  if (!knots) return cag_fail_memory(err);
+  const size_t n = cag_bspline_elevated_knots(net->knots, net->count, p, knots) - (size_t)p - 2;
   CagNet next = {0};
-  if (!status)
-    status = cag_net_new(p + 1, (net->count - 1) / (size_t)p * (size_t)(p + 1) + 1, net->width,
-                         &next, err);
-  if (!status) raise_pieces(net, &next);
-  for (size_t i = 0; !status && i < n; i++)
-    for (int m = p + 1; !status && m > times[i] + 1; m--)
-      status = cag_net_drop(&next, cuts[i], err);
+  status = cag_net_new(p + 1, n, net->width, &next, err);
+  if (!status) {
+    memcpy(next.knots, knots, (n + (size_t)p + 2) * sizeof *knots);
+    status = cag_bspline_elevate(net->data, net->width, net->knots, net->count, p, knots, next.data,
+                                 err);
+  }
+  free(knots);
   if (status) {
     cag_net_free(&next);
-  } else {
-    cag_net_free(net);
-    *net = next;
+    return status;
   }
-  free(cuts);
-  free(times);
-  return status;
+  cag_net_free(net);
+  *net = next;
+  return CAG_OK;
 }
 
 CagStatus cag_net_take_knots(CagNet *net, const CagNet *other, CagError *err) {
