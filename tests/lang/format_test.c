@@ -178,6 +178,9 @@ static void stages_stand_behind_a_closing_bracket(void **state) {
   // A single stage that has to be broken begins behind its head.
   expect_layout("a = b |> f(" LONG ", " LONG ", 1, 2)",
                 "a = b |> f(\n  " LONG ",\n  " LONG ",\n  1,\n  2\n)\n");
+  // Comments stand right above their stage, though blank lines between them stay.
+  expect_layout("a = b\n// one\n\n|> f\n// two\n\n// three\n\n|> g",
+                "a = b\n  // one\n  |> f\n  // two\n\n  // three\n  |> g\n");
 }
 
 static void the_first_operand_breaks_at_the_indentation_of_its_line(void **state) {
