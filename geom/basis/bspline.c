@@ -160,8 +160,9 @@ static void elevated_weights(const double *x, int p, const double *z, double *al
 
 CagStatus cag_bspline_elevate(const double *points, size_t width, const double *knots, size_t n,
                               int p, const double *elevated, double *out, CagError *err) {
-  double *all = malloc(sizeof(double) * (size_t)(2 * p + 2)), *sum = all + p + 1;
+  double *all = malloc(sizeof(double) * (size_t)(2 * p + 2));
   if (!all) return cag_fail_memory(err);
+  double *sum = all + p + 1;
   size_t j = 0;
   for (; elevated[j] < knots[n]; j++) {
     if (cag_stop_check(err)) break;
