@@ -69,7 +69,7 @@ static bool modifiers_behind(Parser *p, const CagExpr *before) {
   if (strstr(form, "..."))
     snprintf(form, sizeof form, "%s", cag_foreign_syntax(CAG_FOREIGN_modifier));
   parse_help(parse_error(p, CAG_ERR_foreign_form, here,
-                         "a function does not apply to what stands after its call"),
+                         "a function does not apply to what follows its call"),
              "write %s", form);
   return true;
 }
@@ -89,7 +89,7 @@ static bool name_behind(Parser *p, const CagExpr *before) {
   if (p->previous.kind == CAG_TOKEN_NUMBER && cag_lexer_is_unit(word) &&
       parse_quote(p, p->previous.span, number, sizeof number, NULL)) {
     parse_help(
-        parse_error(p, CAG_ERR_foreign_form, t->span, "a unit stands directly after its number"),
+        parse_error(p, CAG_ERR_foreign_form, t->span, "a unit comes directly after its number"),
         "write %s%s", number, word);
     return true;
   }

@@ -142,7 +142,7 @@ bool cag_word_is_reserved(const char *word);
 // What to write for a brace in a text.
 extern const char cag_lexer_brace_help[];
 
-// Whether a word is one of the units that stand directly after a number.
+// Whether a word is one of the units that come directly after a number.
 bool cag_lexer_is_unit(const char *name);
 
 #endif

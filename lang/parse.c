@@ -338,8 +338,7 @@ static bool habit_behind(Parser *p, const CagExpr *before) {
     parse_help(d, "write [for x in xs: %s]", value);
     return true;
   case CAG_TOKEN_BY:
-    d = parse_error(p, CAG_ERR_by_without_range, here,
-                    "`by` gives the step of a range, and there is no range here");
+    d = parse_error(p, CAG_ERR_by_without_range, here, "`by` needs a range before it");
     parse_help(d, "write 0..10 by 2");
     return true;
   case CAG_TOKEN_ARROW:

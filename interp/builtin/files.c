@@ -111,7 +111,7 @@ static bool read_cell(Csv *c) {
     if (!doubled) break;
   }
   if (r->at < r->end && *r->at != c->separator && *r->at != '\n' && *r->at != '\r')
-    return fail_at(r, r->at, "a quoted cell goes on after its closing quote");
+    return fail_at(r, r->at, "there is text after the closing quote of a cell");
   return true;
 }
 

@@ -627,7 +627,8 @@ const CagBuiltin cag_builtins_lists[] = {
      "All elements of several lists, one list after the other.",
      "print concat([1, 2], 3..4, []) // expect: [1, 2, 3, 4]", 0, FAMILY},
     {"any(xs, f = none)", call_any, "bool",
-     "Whether an element, or f of it, is true. Elements after the first such are not asked.",
+     "Whether an element, or f of it, is true. Elements after the first such one are not "
+     "evaluated.",
      "print any([1, 5], x => x > 3), any([]) // expect: true false", 0, FAMILY},
     {"all(xs, f = none)", call_all, "bool", "Whether every element, or f of it, is true.",
      "print all([1, 5], x => x > 3), all([]) // expect: false true", 0, FAMILY},

@@ -181,7 +181,7 @@ static void check_member(Check *c, const CagExpr *e, CagTypes types) {
   CagDiagnostic *d = check_report(c, CAG_ERR_field, e->as.member.name_span, text);
   if (cag_foreign_member(name)) cag_diagnostic_set_help(d, "write %s", cag_foreign_member(name));
   else if (cag_builtin_find(name) != (size_t)-1)
-    cag_diagnostic_set_help(d, "a function stands after |>: write x |> %s(...)", name);
+    cag_diagnostic_set_help(d, "a function comes after |>: write x |> %s(...)", name);
 }
 
 CagTypes check_infer(Check *c, const CagExpr *e) {

@@ -685,7 +685,7 @@ static bool fail_field(CagVm *vm, CagValue object, const char *name) {
   const char *nearest = n ? cag_nearest_name(name, members, n) : NULL;
   if (cag_foreign_member(name)) cag_fail_help(vm, "write %s", cag_foreign_member(name));
   else if (cag_builtin_find(name) != (size_t)-1)
-    cag_fail_help(vm, "a function stands after |>: write x |> %s(...)", name);
+    cag_fail_help(vm, "a function comes after |>: write x |> %s(...)", name);
   else if (nearest) cag_fail_help(vm, "did you mean `%s`?", nearest);
   else if (object.type == CAG_RANGE) cag_fail_help(vm, "a range has start, end and step");
   else if (n && n <= 12) {

@@ -72,7 +72,7 @@ static CagStatus find_root(const CagUrdfTree *t, size_t *out, CagError *err) {
   if (roots.count == 1) return CAG_OK;
   if (roots.count == 0)
     return cag_fail(err, CAG_E_ARGUMENT, "urdf-chain", "path", -1,
-                    "%s: the joints lead in a ring, no link is the first", t->file);
+                    "%s: the joints form a loop, no link is the first", t->file);
   return cag_fail(err, CAG_E_ARGUMENT, "urdf-branches", "path", -1,
                   "%s has several links that hang on no joint: %s; `base` says which is the first",
                   t->file, roots.text);
@@ -100,7 +100,7 @@ static CagStatus find_tip(const CagUrdfTree *t, size_t from, size_t *out, CagErr
     *out = t->edges[edge].child;
   }
   return cag_fail(err, CAG_E_ARGUMENT, "urdf-chain", "path", -1,
-                  "%s: the joints after the link \"%.60s\" lead in a ring", t->file,
+                  "%s: the joints after the link \"%.60s\" form a loop", t->file,
                   t->nodes[from].name);
 }
 
@@ -120,7 +120,7 @@ CagStatus cag_urdf_chain(const CagUrdfTree *t, const char *base, const char *tip
     at = parent(t, at);
     if (++count > t->node_count)
       return cag_fail(err, CAG_E_ARGUMENT, "urdf-chain", "path", -1,
-                      "%s: the joints above the link \"%.60s\" lead in a ring", t->file,
+                      "%s: the joints above the link \"%.60s\" form a loop", t->file,
                       t->nodes[last].name);
   }
   if (!anywhere && at != first)

@@ -442,7 +442,7 @@ static bool reject_option(const CagTool *t, const Given *g) {
   if (nearest) snprintf(help, sizeof help, "did you mean --%s?", nearest);
   else
     snprintf(help, sizeof help, "`cag %s --help` lists the options%s", t->command->name,
-             expression ? "; an expression that begins with - stands after --" : "");
+             expression ? "; an expression that begins with - comes after --" : "");
   cag_tool_fail(t, CAG_STATUS_USAGE, help,
                 g->option ? "%s is an option of other commands" : "there is no option %s",
                 g->shown);

@@ -74,7 +74,7 @@ case_of '1;2\n""\n' '[[1, 2], [none]]'
 as_expected csv
 
 it 'what is no CSV is refused with its place'
-case_of 'a;b\n"x"y;2' 'line 2, column 4: a quoted cell goes on after its closing quote'
+case_of 'a;b\n"x"y;2' 'line 2, column 4: there is text after the closing quote of a cell'
 case_of 'a;b\n"x' 'line 2, column 1: a quote that is not closed'
 case_of 'a;b\n1;\000' 'line 2, column 3: a NUL character'
 as_expected csv

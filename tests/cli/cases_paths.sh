@@ -14,7 +14,7 @@ try --
 status 0
 try eval -x
 status 2
-says 'an expression that begins with - stands after --'
+says 'an expression that begins with - comes after --'
 try eval -- -2
 prints_exactly -2
 try -h

@@ -186,7 +186,7 @@ static void places_of_errors_in_csv(void **state) {
   size_t bad = 0;
   READS("a,b\n1,\"2\n\n", "read_csv(F)", "line 2, column 3: a quote that is not closed");
   READS("1,\"2\"3\n", "read_csv(F)",
-        "line 1, column 6: a quoted cell goes on after its closing quote");
+        "line 1, column 6: there is text after the closing quote of a cell");
   READS("a,b\n\n1,2\n3,4,5\n", "read_csv(F)", "line 4, column 1: 3 cells, but the header names 2");
   READS("a,b,a\n1,2,3\n", "read_csv(F)", "line 1, column 1: two columns are named \"a\"");
   READS("\na,column1,b\n", "read_csv(F, header: true)", "[]");

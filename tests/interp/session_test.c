@@ -444,7 +444,7 @@ static void fields_that_are_not_there_are_answered_with_those_that_are(void **st
       {"p = plane(origin, Z)\nprint p.qqqq", "a plane has no member `qqqq`",
        "it has point, normal, row"},
       {"c = circle(1)\nprint c.volume", "a curve has no member `volume`",
-       "a function stands after |>: write x |> volume(...)"},
+       "a function comes after |>: write x |> volume(...)"},
   };
   size_t bad = 0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {

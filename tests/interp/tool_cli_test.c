@@ -350,7 +350,7 @@ static void what_is_wrong_is_said(void **state) {
       {"cag run a --size 3x4", "cag run: --size is an option of other commands\n  `cag run "
                                "--help` lists the options\n"},
       {"cag eval -x", "cag eval: there is no option -x\n  `cag eval --help` lists the options; an "
-                      "expression that begins with - stands after --\n"},
+                      "expression that begins with - comes after --\n"},
       {"cag run a -a", "cag run: there is no option -a\n  `cag run --help` lists the options\n"},
       {"cag run a -z", "cag run: there is no option -z\n  `cag run --help` lists the options\n"},
       {"cag run a -A", "cag run: there is no option -A\n  `cag run --help` lists the options\n"},

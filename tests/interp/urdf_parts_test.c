@@ -241,7 +241,7 @@ static void trees_without_one_root_are_refused(void **state) {
       {"<robot>" LINKS JOINT("j", "a", "b") JOINT("k", "b", "c") JOINT("l", "c", "a") "</robot>",
        NULL, "urdf-chain", "no link is the first"},
       {"<robot>" LINKS JOINT("j", "a", "b") JOINT("k", "b", "c") JOINT("l", "c", "a") "</robot>",
-       "c", "urdf-chain", "lead in a ring"}};
+       "c", "urdf-chain", "form a loop"}};
   for (size_t i = 0; i < 3; i++) {
     CagUrdfTree t;
     CagError err = {0};

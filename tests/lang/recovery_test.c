@@ -233,7 +233,7 @@ static void syntax_errors_mark_what_is_wrong(void **state) {
       {"x = 1 «if» y", NULL, "the condition comes before the value", "write if c then 1 else b"},
       {"x = y «for» z in xs", NULL, "in a comprehension the loop comes first",
        "write [for x in xs: y]"},
-      {"x = 3 «by» 2", NULL, "there is no range here", "write 0..10 by 2"},
+      {"x = 3 «by» 2", NULL, "`by` needs a range before it", "write 0..10 by 2"},
       {"f = 1 «=>» 2", NULL, "stand the names of the parameters", "write x => e"},
       {"x = a «=» b", "E0153", "cannot stand here", "to compare write =="},
       {"x = f(a «+=» 1)", NULL, "nothing changes in cag", "define a new name"},
