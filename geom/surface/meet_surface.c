@@ -534,6 +534,20 @@ static void free_runs(Runs *runs) {
   free(runs->items);
 }
 
+// Where the surfaces cross at a small angle, two branches may run so close to each other that all
+// seeds lead to one of them. Adds seeds of the other one.
+static bool add_seeds_of_twins(CagMarch *m, const Run *run) {
+  enum { PLACES = 16 };
+  const size_t every = run->n / PLACES + 1;
+  for (size_t i = 0; i < run->n; i += every) {
+    CagMarchNode seed;
+    if (cag_march_find_twin(m, &run->nodes[i], TWIN_REACH * m->step_most, &seed)) {
+      if (!cag_march_add_seed(m, m->seeds, &seed)) return false;
+    } else if (m->status) return false;
+  }
+  return true;
+}
+
 // Takes the run over, unless it is a point or found already, and looks for what goes on from it.
 static bool keep_run(CagMarch *m, Runs *runs, Run *run) {
   bool kept = run->n > 1 && reach_of(run, 0, run->n - 1) > m->least_run;
@@ -551,22 +565,9 @@ static bool keep_run(CagMarch *m, Runs *runs, Run *run) {
     return m->status == CAG_OK;
   }
   runs->items[runs->n++] = *run;
+  if (m->locate == cag_march_locate_crossing && !add_seeds_of_twins(m, run)) return false;
   return run->closed ||
          (add_seeds_beside(m, &run->nodes[0]) && add_seeds_beside(m, &run->nodes[run->n - 1]));
-}
-
-// Where the surfaces cross at a small angle, two branches may run so close to each other that all
-// seeds lead to one of them. Adds seeds of the other one.
-static bool add_seeds_of_twins(CagMarch *m, const Run *run) {
-  enum { PLACES = 16 };
-  const size_t every = run->n / PLACES + 1;
-  for (size_t i = 0; i < run->n; i += every) {
-    CagMarchNode seed;
-    if (cag_march_find_twin(m, &run->nodes[i], TWIN_REACH * m->step_most, &seed)) {
-      if (!cag_march_add_seed(m, m->seeds, &seed)) return false;
-    } else if (m->status) return false;
-  }
-  return true;
 }
 
 // Seeds of loops so small that the meshes do not cross there.
@@ -588,9 +589,7 @@ static bool march_from(CagMarch *m, Runs *runs, CagMarchNode seed) {
   for (size_t k = 0; k < runs->n; k++)
     if (has_seed(m, &runs->items[k], &seed)) return true;
   Run run = {0};
-  if (trace(m, &seed, &run) &&
-      (m->locate != cag_march_locate_crossing || add_seeds_of_twins(m, &run)))
-    return keep_run(m, runs, &run);
+  if (trace(m, &seed, &run)) return keep_run(m, runs, &run);
   free_run(&run);
   return false;
 }
