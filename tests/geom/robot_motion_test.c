@@ -4,19 +4,7 @@
 #include "geom/robot/numeric.h"
 #include "geom/robot/path.h"
 #include "geom/robot/workspace.h"
-#include "support.h"
-
-#define DEGREE (M_PI / 180)
-
-static CagRobot *robot_of(const CagRobotLink *links, size_t n) {
-  CagRobot *r = NULL;
-  CagRobotSpec spec = {.links = links,
-                       .link_count = n,
-                       .base = cag_transform_identity(),
-                       .tool = cag_transform_identity()};
-  OK(cag_robot_new(&spec, &r, &err));
-  return r;
-}
+#include "robot_support.h"
 
 // Rows of d, a, alpha and the limits to both sides.
 static CagRobot *chain(const double (*rows)[4], size_t n) {

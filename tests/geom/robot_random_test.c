@@ -227,7 +227,7 @@ static void ranks_are_those_of_the_axes(void **state) {
       rows[i] = (Row){kind == 2 ? 0 : between(-1, 1), kind == 1 ? between(0.5, 1) : 0,
                       kind == 2 ? between(30, 150) : 0};
     }
-    CagRobot *r = chain(rows, n);
+    CagRobot *r = revolute_chain(rows, n);
     double q[8], values[6];
     size_t count, rank;
     for (size_t i = 0; i < n; i++) q[i] = between(0.3, 1.2);

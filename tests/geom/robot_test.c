@@ -37,7 +37,7 @@ static void quarter_turns_are_exact(void **state) {
     assert_true(s == sines[((k % 4) + 4) % 4]);
     assert_true(c == sines[((k % 4) + 5) % 4]);
   }
-  CagRobot *r = chain(puma, 6);
+  CagRobot *r = revolute_chain(puma, 6);
   const double q[] = {M_PI / 2, 0, M_PI / 2, 0, 0, 0};
   CagTransform t;
   cag_robot_forward(r, q, &t);
@@ -48,7 +48,7 @@ static void quarter_turns_are_exact(void **state) {
 
 static void the_puma_of_the_textbook_is_where_it_should_be(void **state) {
   (void)state;
-  CagRobot *r = chain(puma, 6);
+  CagRobot *r = revolute_chain(puma, 6);
   const double degrees[] = {35, -60, 100, 25, -40, 110};
   double q[6];
   CagTransform t, frames[7], back;
@@ -72,7 +72,7 @@ static void the_puma_of_the_textbook_is_where_it_should_be(void **state) {
 
 static void subchains_match_the_textbook(void **state) {
   (void)state;
-  CagRobot *r = chain(puma, 6);
+  CagRobot *r = revolute_chain(puma, 6);
   const double degrees[] = {10, -20, 130, 40, -50, 60};
   double q[6];
   CagTransform t;
@@ -139,7 +139,7 @@ static void jacobian_is_that_of_the_reference(void **state) {
       {0, 0.9063077870366499, 0.9063077870366499, -0.4210100716628344, 0.4850527341930118,
        -0.8577691943163454},
       {1, 0, 0, -0.08715574274765818, -0.8627299156628209, -0.43758733792010696}};
-  CagRobot *r = chain(puma_meters, 6);
+  CagRobot *r = revolute_chain(puma_meters, 6);
   const double degrees[] = {25, -130, 35, 60, -50, 170};
   double q[6], columns[6][6], values[6];
   size_t count, rank;
@@ -218,7 +218,7 @@ static void seven_joints_straight_up_have_rank_three(void **state) {
   (void)state;
   static const Row rows[] = {{.34, 0, -90}, {0, 0, 90}, {.4, 0, 90}, {0, 0, -90},
                              {.4, 0, -90},  {0, 0, 90}, {.126, 0, 0}};
-  CagRobot *r = chain(rows, 7);
+  CagRobot *r = revolute_chain(rows, 7);
   const double up[7] = {0}, general[7] = {.3, .5, -.4, 1.2, .2, .8, -.6};
   double values[6];
   size_t count, rank;
@@ -231,7 +231,7 @@ static void seven_joints_straight_up_have_rank_three(void **state) {
 
 static void skeleton_runs_along_the_links(void **state) {
   (void)state;
-  CagRobot *r = chain(puma, 6);
+  CagRobot *r = revolute_chain(puma, 6);
   const double degrees[] = {30, -60, 120, 0, 45, 0};
   double q[6], length = 0;
   CagVec3 points[14];
