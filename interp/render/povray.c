@@ -323,10 +323,9 @@ static const struct {
 
 static bool prepare_folder(const CagPovrayJob *job, const char *folder, const char *library,
                            CagIoError *err) {
-  bool ok = put_configuration(folder, library, err) &&
-            put_file(folder, "scene.pov", job->scene, job->scene_size, err);
-  for (size_t i = 0; ok && i < job->file_count; i++) ok = copy_file(folder, &job->files[i], err);
-  return ok;
+  return put_configuration(folder, library, err) &&
+         put_file(folder, "scene.pov", job->scene, job->scene_size, err) &&
+         (!job->file || copy_file(folder, job->file, err));
 }
 
 static CagPovrayEnd render_in_folder(const CagPovrayJob *job, const char *program,

@@ -42,9 +42,8 @@ typedef void (*CagPovrayProgress)(void *user, double percent, const char *phase)
 typedef struct CagPovrayJob {
   const char *scene; // text of the .pov file
   size_t scene_size;
-  const CagPovrayFile *files; // may be NULL when file_count is 0
-  size_t file_count;
-  int width, height; // pixels, 1 to CAG_IMAGE_SIDE_MAX
+  const CagPovrayFile *file; // or NULL
+  int width, height;         // pixels, 1 to CAG_IMAGE_SIDE_MAX
   // Only this part is rendered, the rest of the picture stays black; a width of 0: all of it.
   int region_x, region_y, region_width, region_height;
   CagPovrayQuality quality;

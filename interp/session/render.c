@@ -163,8 +163,7 @@ static int render(Job *j) {
   CagPovrayFile sky = {SKY_FILE, scene->sky.image};
   CagPovrayJob job = {.scene = j->source,
                       .scene_size = j->source_size,
-                      .files = &sky,
-                      .file_count = scene->sky.image ? 1 : 0,
+                      .file = scene->sky.image ? &sky : NULL,
                       .width = j->camera.size[0],
                       .height = j->camera.size[1],
                       .region_x = j->options->region.x,

@@ -147,8 +147,7 @@ static void files_of_the_job_are_there(void **state) {
   const CagPovrayFile file = {"red.inc", source};
   CagPovrayJob job =
       job_for(HEAD "#include \"red.inc\"\n#include \"colors.inc\"\nbackground { Red }\n");
-  job.files = &file;
-  job.file_count = 1;
+  job.file = &file;
   CagPovrayResult result;
   CagIoError err = {0};
   bool ok = cag_povray_render(&job, &result, &err);
@@ -156,11 +155,11 @@ static void files_of_the_job_are_there(void **state) {
   if (!ok) fail_msg("%s", err.message);
   cag_povray_result_free(&result);
   const CagPovrayFile missing = {"a.inc", source}, elsewhere = {"../a.inc", source};
-  job.files = &missing;
+  job.file = &missing;
   assert_false(cag_povray_render(&job, &result, &err));
   assert_int_equal(err.exit_status, CAG_EXIT_FILE);
   assert_non_null(strstr(err.message, source));
-  job.files = &elsewhere;
+  job.file = &elsewhere;
   assert_false(cag_povray_render(&job, &result, &err));
   assert_int_equal(err.exit_status, CAG_EXIT_USAGE);
 }
@@ -537,8 +536,7 @@ static void only_ordinary_files_stand_beside_the_scene(void **state) {
   };
   for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
     CagPovrayJob job = job_for(SQUARE);
-    job.files = &ROWS[i].file;
-    job.file_count = 1;
+    job.file = &ROWS[i].file;
     const CagIoError err = run_fake("exit 1", job);
     if (!strstr(err.message, ROWS[i].says ? ROWS[i].says : "exit status 1"))
       fail_msg("%s from %s: %s", ROWS[i].file.name, ROWS[i].file.source, err.message);
