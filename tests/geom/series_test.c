@@ -308,7 +308,9 @@ static void smooth_functions_have_their_series_and_ranges(void **state) {
 
 typedef struct Edge {
   double at;
-  int what; // 0: |t - at|, 1: a jump, 2: a pole, 3: fails, 4: a jump of the third derivative
+  int what; // 0: |t - at|, 1: a jump, 2: a pole, 3: fails, 4: a jump of the third derivative, 5: a
+            // kink of a wave
+  double bend;
 } Edge;
 
 static CagStatus edged(void *context, double t, double *out, CagError *e) {
@@ -319,6 +321,7 @@ static CagStatus edged(void *context, double t, double *out, CagError *e) {
   out[0] = x->what == 0   ? fabs(d) + t
            : x->what == 1 ? (d > 0) + t
            : x->what == 2 ? (d > 0 ? INFINITY : t)
+           : x->what == 5 ? sin(200 * t) + x->bend * fabs(d)
                           : d * d * fabs(d);
   return CAG_OK;
 }
@@ -327,7 +330,7 @@ static void kinks_jumps_and_failures_are_told(void **state) {
   (void)state;
   seed = 305;
   for (int round = 0; round < 20; round++) {
-    Edge x = {uniform(0.2, 1.8), 0};
+    Edge x = {.at = uniform(0.2, 1.8)};
     CagChebyshev *f;
     double breaks[8], out[2];
     OK(cag_chebyshev_fit(edged, &x, 0, 2, 1, 1e-12, "f", &f, &err));
@@ -357,8 +360,18 @@ static void kinks_jumps_and_failures_are_told(void **state) {
     x.what = 3;
     FAILS(cag_chebyshev_fit(edged, &x, 0, 2, 1, 1e-12, "f", &f, &err), "stubborn");
   }
+  // A wave of slope 200 has kinks of more than 1e-5 of the slopes at both sides.
+  for (int i = 0; i < 4; i++) {
+    Edge wave = {(20 + i / 2) * M_PI / 200, 5, i % 2 ? 0.1 : 0.0005};
+    CagChebyshev *f;
+    double breaks[8];
+    OK(cag_chebyshev_fit(edged, &wave, 0, 2, 1, 1e-11, "f", &f, &err));
+    assert_int_equal(cag_chebyshev_breaks(f, breaks, 8), i % 2);
+    if (i % 2) NEAR(breaks[0], wave.at, 1e-6);
+    cag_chebyshev_release(f);
+  }
   // A kink at a joint has limits of both sides.
-  Edge x = {1, 0};
+  Edge x = {.at = 1};
   CagChebyshev *f;
   double out[2];
   OK(cag_chebyshev_fit(edged, &x, 0, 2, 1, 1e-12, "f", &f, &err));

@@ -165,9 +165,28 @@ static void what_is_hidden_is_shown_no_more(void **state) {
   cag_session_free(s);
 }
 
+// Shows are evaluated again with the definitions that hold now.
+static void shows_follow_names_that_are_defined_again(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  input(s, "n = 3");
+  input(s, "show box(n)");
+  assert_int_equal(cag_session_build_scene(s), CAG_STATUS_OK);
+  assert_int_equal(s->vm->shown_count, 1);
+  input(s, "n = -3");
+  assert_int_equal(cag_session_build_scene(s), CAG_STATUS_SCRIPT);
+  assert_int_equal(s->diagnostics.count, 1); // the box alone, not that nothing is shown
+  assert_non_null(strstr(s->diagnostics.items[0].message, "box"));
+  input(s, "n = 4");
+  assert_int_equal(cag_session_build_scene(s), CAG_STATUS_OK);
+  assert_int_equal(s->vm->shown_count, 1);
+  cag_session_free(s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(many_names_follow_one_another),
+      cmocka_unit_test(shows_follow_names_that_are_defined_again),
       cmocka_unit_test(documents_of_names),
       cmocka_unit_test(members_are_those_of_the_value),
       cmocka_unit_test(what_is_hidden_is_shown_no_more),
