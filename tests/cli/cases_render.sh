@@ -70,6 +70,14 @@ try render ball.cag -o - $quick
 status 2
 says '--format'
 
+it '--format and the ending of the output agree' povray
+try render ball.cag -o again.png --format PNG $quick
+status 0
+exists again.png
+try render ball.cag -o again.exr --format png $quick
+status 2
+says "--format png and the output 'again.exr' contradict each other"
+
 it '--frames renders a film' povray
 try render ball.cag -o 'film.%03d.png' --frames 1..2 $quick
 status 0

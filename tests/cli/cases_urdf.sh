@@ -72,6 +72,15 @@ accepted again.urdf
 try run back.cag -D file=again.urdf
 prints 'true true true'
 
+it 'names are of letters, digits, -, . and _, and each is there once'
+script letters.cag 'names = ["a", "z", "A", "Z", "_", "é9-.", "0", "z0", "-a", ".a", "a`b", "a\{b", "a@b", "a[b", "a/b", "a:b"]
+show robot([for n in names: revolute(a: 10, shape: named(box(3), n))])'
+try export letters.cag -o letters.urdf
+status 0
+grep -o 'link name="[^"]*"' letters.urdf | cut -d '"' -f 2 | tr '\n' ' ' > names
+printf 'base_link a z A Z _ é9-. __2 z0 _a _a_2 a_b a_b_2 a_b_3 a_b_4 a_b_5 a_b_6 tool ' > expected
+same names expected
+
 it 'a robot without shapes is written of plain bodies, also to standard output'
 script plain.cag 'show robot([revolute(a: 300), prismatic(limits: 0..100)], convention: "mdh", base: translate([0, 0, 100]))'
 try export plain.cag -o - --format urdf
