@@ -122,7 +122,9 @@ CagStatus cag_tangent_circle(const CagTouched *a, const CagTouched *b, double ra
 #define SAMPLES 64
 #define HALVINGS 100
 #define NEWTON_STEPS 30
-// Parts of the size of the data: a point on a curve; a tangent found twice.
+// Parts of the size of the data: rounding of a distance from a tangent; a point on a curve; a
+// tangent found twice.
+#define ROUNDING 1e-14
 #define ON_CURVE 1e-10
 #define TWICE 1e-7
 
@@ -190,11 +192,11 @@ static CagStatus tangents_in_cell(const CagCurve *c, CagVec3 p, double a, double
   double fa = 0, fb = 0, fm = 0;
   CagStatus status = aside(c, p, a, CAG_SIDE_RIGHT, &fa, err);
   if (!status) status = aside(c, p, b, CAG_SIDE_LEFT, &fb, err);
-  if (status || (fa == 0 && fb == 0)) return status; // straight, and p on its line
-  // A zero at a cell's start belongs to the cell before, or is the start of the curve.
-  if (fa == 0 && a > c->start) return CAG_OK;
-  if (fa == 0) b = a;
-  else if (fb == 0) a = b;
+  // A tangent at the end of a cell is found in both, and kept once.
+  const bool from_start = fabs(fa) <= ROUNDING * f->size, from_end = fabs(fb) <= ROUNDING * f->size;
+  if (status || (from_start && from_end)) return status; // straight, and p on its line
+  if (from_start) b = a;
+  else if (from_end) a = b;
   else if ((fa < 0) == (fb < 0)) return CAG_OK;
   for (int i = 0; !status && i < HALVINGS && a < b; i++) {
     const double m = a + (b - a) / 2;
@@ -271,7 +273,7 @@ static CagStatus tangents_of_circles(const CagCurve *a, const CagCurve *b, CagVe
   for (int sign = 1; sign >= -1; sign -= 2) {
     const double cosine = (ra - sign * rb) / distance;
     double square = (1 - cosine) * (1 + cosine);
-    if (fabs(square) <= SAME_LENGTH) square = 0;
+    if (fabs(distance - fabs(ra - sign * rb)) <= SAME_LENGTH * f->size) square = 0;
     if (square < 0) continue;
     for (int k = 1; !status && k >= (square > 0 ? -1 : 1); k -= 2) {
       const CagVec3 n = cag_madd(cag_scaled(e, cosine), k * sqrt(square), left_of(e));

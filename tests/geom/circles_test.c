@@ -268,7 +268,8 @@ static void circles_that_just_reach_are_found(void **state) {
   seed = 18;
   for (int i = 0; i < 100; i++) {
     const double angle = uniform(-3, 3), radius = uniform(0.5, 2), r = uniform(0.5, 2);
-    const CagVec3 p = random_place(100), e = {cos(angle), sin(angle), 0}, n = {-e.y, e.x, 0};
+    const CagVec3 p = random_place(i % 2 ? 1e4 : 100), e = {cos(angle), sin(angle), 0},
+                  n = {-e.y, e.x, 0};
     const double s = uniform(0.5, 2);
     const CagTouched a = {p, {0, 0, 0}, r};
     const CagTouched b = {cag_madd(p, r + 2 * radius + s, e), {0, 0, 0}, s};
@@ -454,21 +455,27 @@ static void random_ellipses_have_their_common_tangents(void **state) {
   assert_true(seen[0] > 0 && seen[2] > 0 && seen[4] > 0);
 }
 
-// Lines that touch curves of any size are those that touch larger ones, scaled.
-static void tangent_lines_are_scaled(void **state) {
+// Lines that touch the images of curves, of any size, are the images of those that touch.
+static void tangent_lines_have_images(void **state) {
   (void)state;
   seed = 43;
   size_t seen = 0;
   for (int i = 0; i < 24; i++) {
     const double scale = pow(10, i % 3 * 6 - 6.0), ratio = 1 / scale;
-    const CagTransform f = plane_frame(1, 0.5, 0.3);
+    // The axes keep one length, but not their right angle.
+    const double slant = i % 2 ? 0.3 : 0;
     CagTransform grow = cag_transform_identity();
-    grow.m[0][0] = grow.m[1][1] = scale;
+    grow.m[0][0] = scale;
+    grow.m[0][1] = scale * slant;
+    grow.m[1][1] = scale * sqrt(1 - slant * slant);
     CagVec3 net[2][4];
     CagCurve *c[2], *image[2];
     for (int k = 0; k < 2; k++) {
       for (int j = 0; j < 4; j++) net[k][j] = random_place(3);
-      if (i % 2 && k) OK(cag_curve_arc(2, uniform(0.5, 2), 0, 2 * M_PI, &f, &c[k], &err));
+      const CagTransform f = plane_frame(net[k][0].x, net[k][0].y, i % 8 == 7 ? 0 : 0.3);
+      const double radius = uniform(0.5, 2);
+      if (i % 4 == 3 || (i % 4 == 1 && k))
+        OK(cag_curve_arc(i % 8 == 7 ? radius : 2, radius, 0, 2 * M_PI, &f, &c[k], &err));
       else OK(cag_curve_bezier(net[k], NULL, 4, 2, &c[k], &err));
       OK(cag_curve_transform(c[k], &grow, &image[k], &err));
     }
@@ -481,12 +488,14 @@ static void tangent_lines_are_scaled(void **state) {
         OK(cag_tangents_of_two(image[0], image[1], &images, &m, &err));
       } else {
         OK(cag_tangents_from_point(c[0], p, &lines, &n, &err));
-        OK(cag_tangents_from_point(image[0], cag_scaled(p, scale), &images, &m, &err));
+        OK(cag_tangents_from_point(image[0], cag_transform_point(&grow, p), &images, &m, &err));
       }
       assert_int_equal(m, n);
       for (size_t k = 0; k < n; k++) {
-        near_vec(cag_scaled(images[k].p, ratio), lines[k].p, 1e-7);
-        near_vec(cag_scaled(images[k].q, ratio), lines[k].q, 1e-7);
+        near_vec(cag_scaled(cag_sub(images[k].p, cag_transform_point(&grow, lines[k].p)), ratio),
+                 cag_vec3(0, 0, 0), 1e-7);
+        near_vec(cag_scaled(cag_sub(images[k].q, cag_transform_point(&grow, lines[k].q)), ratio),
+                 cag_vec3(0, 0, 0), 1e-7);
         NEAR(images[k].t, lines[k].t, 1e-7);
         if (two) NEAR(images[k].t2, lines[k].t2, 1e-7);
       }
@@ -824,7 +833,7 @@ int main(void) {
       cmocka_unit_test(circles_that_just_reach_are_found),
       cmocka_unit_test(tangents_from_random_points),
       cmocka_unit_test(random_ellipses_have_their_common_tangents),
-      cmocka_unit_test(tangent_lines_are_scaled),
+      cmocka_unit_test(tangent_lines_have_images),
       cmocka_unit_test(touching_circles_have_the_tangent_of_their_point),
       cmocka_unit_test(fillets_of_lines_are_closed_forms),
       cmocka_unit_test(fillets_of_arcs_touch_both),
