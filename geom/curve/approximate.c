@@ -135,8 +135,6 @@ CagStatus cag_curve_fit_sampler(CagCurveSampler sample, void *context, const dou
       node.right = d[1];
     }
     if (status) break;
-    if (i == 0) node.left = node.right;
-    if (i + 1 == n) node.right = node.left;
     node.point = d[0];
     status = i == 0 ? add(&f, node, err) : fit_piece(&f, &from, &node, DEPTH, err);
     from = node;

@@ -304,6 +304,7 @@ static void circles_touch_at_any_size(void **state) {
       OK(cag_curve_arc(s, s, -1, 2 * M_PI - 1, &g, &c[1], &err));
       OK(cag_tangents_of_two(c[0], c[1], &lines, &n, &err));
       assert_int_equal(n, k);
+      size_t single = 0; // in the point where the circles touch
       for (size_t j = 0; j < n; j++) {
         const CagVec3 d = cag_sub(lines[j].q, lines[j].p), u = cag_unit(d);
         assert_true(cag_norm(d) > 1e-7 * size);
@@ -311,7 +312,9 @@ static void circles_touch_at_any_size(void **state) {
         NEAR(cag_dot(cag_sub(lines[j].p, a), u), 0, 1e-5 * size);
         NEAR(fabs(cross2(cag_sub(a, lines[j].p), u)), r, 1e-9 * size);
         NEAR(fabs(cross2(cag_sub(b, lines[j].p), u)), s, 1e-9 * size);
+        single += fabs(cag_norm(cag_sub(lines[j].q, b)) - s) > 1e-9 * size;
       }
+      assert_int_equal(single, size > 1 ? 0 : k % 2); // q is 1 from p
       free(lines);
       cag_curve_release(c[0]);
       cag_curve_release(c[1]);
