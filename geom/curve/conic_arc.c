@@ -64,7 +64,7 @@ static CagStatus check_semi(double r, const char *name, CagError *err) {
 
 // Which interval between two poles an angle lies in.
 static double strip(double angle) { return floor(angle / M_PI + 0.5); }
-static double off_pole(double angle) { return fabs(angle - (strip(angle) - 0.5) * M_PI); }
+static double off_pole(double angle) { return angle - (strip(angle) - 0.5) * M_PI; }
 
 static CagStatus check_range(CagConicForm form, double start, double end, CagError *err) {
   char a[32], b[32];

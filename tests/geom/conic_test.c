@@ -4,6 +4,7 @@
 #include "conic_support.h"
 #include "geom/curve/conic.h"
 #include "geom/curve/family.h"
+#include "geom/curve/nurbs.h"
 
 // --- Parabola and hyperbola as curves ---
 
@@ -73,6 +74,28 @@ static void an_arc_satisfies_its_equation_and_so_does_its_rational_form(void **s
     }
     cag_curve_release(exact);
     cag_curve_release(c[i]);
+  }
+}
+
+// A rational piece spans 2 of the hyperbolic parameter at most, and no piece is wasted.
+static void rational_hyperbolas_have_as_few_pieces_as_their_weights_allow(void **state) {
+  (void)state;
+  seed = 91;
+  const CagTransform f = plane_frame(2, -1, 0.4);
+  for (int i = 0; i < 60; i++) {
+    const int pieces = 1 + i % 10;
+    const double way = i % 2 ? 2.0 * pieces : 2 * (pieces - uniform(0.01, 0.99));
+    const double from = uniform(-12, -8);
+    CagCurve *c, *exact;
+    OK(cag_curve_hyperbola(2, 1, CAG_FORM_HYPERBOLIC, from, from + way, &f, &c, &err));
+    OK(cag_curve_to_nurbs(c, &exact, &err));
+    const CagNurbs *n = cag_nurbs_data(exact);
+    assert_non_null(n);
+    assert_int_equal((int)n->count, 2 * pieces + 1);
+    for (size_t k = 0; k < n->count; k++)
+      assert_true(n->homogeneous[4 * k + 3] >= 1 && n->homogeneous[4 * k + 3] <= cosh(1) + 1e-12);
+    cag_curve_release(exact);
+    cag_curve_release(c);
   }
 }
 
@@ -387,6 +410,7 @@ int main(void) {
       cmocka_unit_test(forms_have_the_points_of_the_text),
       cmocka_unit_test(derivatives_are_those_of_the_points),
       cmocka_unit_test(an_arc_satisfies_its_equation_and_so_does_its_rational_form),
+      cmocka_unit_test(rational_hyperbolas_have_as_few_pieces_as_their_weights_allow),
       cmocka_unit_test(reversed_cut_and_stretched_arcs_have_the_same_points),
       cmocka_unit_test(boxes_hold_the_arc_and_touch_it),
       cmocka_unit_test(a_parabola_has_its_known_length),
