@@ -158,7 +158,7 @@ void cag_grid_report_free(CagGridReport *report) {
 // --- Least squares ---
 
 // The first parameter of a closed direction by its spacing.
-static double phase(const CagGridAxis *a) { return a->closed && a->degree % 2 == 0 ? 0.5 : 0; }
+static double phase(const CagGridAxis *a) { return a->degree % 2 == 0 ? 0.5 : 0; }
 
 static CagStatus make_axis(const CagGridData *g, int k, size_t count, CagGridAxis *a,
                            CagError *err) {
@@ -282,7 +282,11 @@ static CagStatus take_parameters(CagGridFit *f, CagError *err) {
     for (size_t i = 0; i < f->rows; i++) {
       double *t = &f->parameters[k][i];
       char text[32], from[32], to[32];
-      *t = g->parameters[k] ? g->parameters[k][i] : cag_grid_moved(a, lo + *t, phase(a));
+      // The last is the end itself, which the sum may miss by its rounding.
+      *t = g->parameters[k] ? g->parameters[k][i]
+           : a->closed      ? cag_grid_moved(a, lo + *t, phase(a))
+           : *t == end[k]   ? hi
+                            : lo + *t;
       if (!(*t >= lo - same && *t <= hi + same))
         return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "parameters", (long)i,
                         "`parameters` by %c must lie in %s..%s, that of point [%zu, %zu] is %s",

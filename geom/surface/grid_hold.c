@@ -302,9 +302,8 @@ static CagStatus take_step(CagGridFit *f, const CagSurface *s, size_t i, double 
     CagVec3 d[4];
     for (int k = 0; k < 2; k++) {
       const CagGridAxis *a = &f->axis[k];
-      if (step[k] != 0)
-        f->parameters[k][i] =
-            cag_grid_moved(a, from[k], part * step[k] * (cag_grid_end(a) - cag_grid_start(a)));
+      f->parameters[k][i] =
+          cag_grid_moved(a, from[k], part * step[k] * (cag_grid_end(a) - cag_grid_start(a)));
     }
     CagStatus status = look(f, s, i, d, err);
     if (status) return status;
@@ -413,8 +412,7 @@ CagStatus cag_grid_correct_held(CagGridFit *f, const CagSurface *s, CagError *er
     if (!(square > 0)) continue;
     const double step = cag_dot(cag_sub(f->g->points[i], d[0]), along) / square;
     for (int k = 0; k < 2; k++)
-      if (way[k] != 0)
-        f->parameters[k][i] = cag_grid_moved(&f->axis[k], f->parameters[k][i], step * way[k]);
+      f->parameters[k][i] = cag_grid_moved(&f->axis[k], f->parameters[k][i], step * way[k]);
   }
   int rounds = 0;
   return f->planes ? CAG_OK : match_all(f, s, &rounds, err);
