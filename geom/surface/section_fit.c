@@ -71,11 +71,11 @@ static CagVec3 in_chart(const Chart *c, CagVec3 p) {
                   (d.x * f->m[0][1] + d.y * f->m[1][1] + d.z * f->m[2][1]) / c->unit, 0);
 }
 
+// Where the equation has no slope, infinite or not a number.
 static double distance_from(const CagConic *k, CagVec3 p) {
   const double *c = k->c;
   double gx = 2 * c[0] * p.x + c[1] * p.y + c[3], gy = c[1] * p.x + 2 * c[2] * p.y + c[4];
-  double slope = hypot(gx, gy);
-  return slope > 0 ? fabs(cag_conic_value(k, p)) / slope : INFINITY;
+  return fabs(cag_conic_value(k, p)) / hypot(gx, gy);
 }
 
 static bool fits(const CagTrace *t, const Chart *chart, const CagConic *k, double size) {
