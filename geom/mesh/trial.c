@@ -96,9 +96,8 @@ static double cut_distance(const CagVec3 *at, int stride, bool cut_ac, double wo
 // chords.c cares.
 static double off_edge(CagVec3 p, CagVec3 a, CagVec3 b, CagVec3 c, double sine) {
   CagVec3 ab = cag_sub(b, a), ac = cag_sub(c, a), ap = cag_sub(p, a), n = cag_cross(ab, ac);
+  if (cag_triangle_is_thin(a, ab, ac, n)) return cag_distance_to_triangle(p, a, b, c);
   double area = cag_norm(n), length = cag_norm(ab);
-  if (!(length > 0) || cag_triangle_is_thin(a, ab, ac, n))
-    return cag_distance_to_triangle(p, a, b, c);
   double off = fabs(cag_dot(ap, n)) / area,
          outside = cag_dot(ap, cag_cross(ab, n)) / (area * length);
   if (outside <= 0) return off;
@@ -187,7 +186,7 @@ typedef struct EdgeLimits {
 } EdgeLimits;
 
 // Where the normal turns more than this along one edge it turns at once, at a cusp; what more edges
-// do not mend is let be.
+// do not mend is let be. A normal that is not known is 0, and makes an angle of 0 or half a turn.
 static const double turned_at_once = 1;
 
 static bool is_free(const EdgeLimits *most, const CagVec3 *p, size_t a, size_t b) {
@@ -199,8 +198,7 @@ static double excess_of(const EdgeLimits *most, const CagVec3 *p, const CagVec3 
                         size_t b) {
   double length = cag_norm(cag_sub(p[b], p[a])), excess = 0;
   if (most->longest > 0) excess = length / most->longest;
-  bool known = cag_dot(q[a], q[a]) > 0 && cag_dot(q[b], q[b]) > 0;
-  if (!(most->angle > 0) || !known || length <= most->free) return excess;
+  if (!(most->angle > 0) || length <= most->free) return excess;
   double turn = atan2(cag_norm(cag_cross(q[a], q[b])), cag_dot(q[a], q[b]));
   return turn > turned_at_once ? excess : tess_larger(excess, turn / most->angle);
 }
