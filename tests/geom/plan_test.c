@@ -1,0 +1,239 @@
+// How finely the parts of a face are divided, before anything is made of it: compared with the
+// smallest grids that closed forms allow, and with those of the same face in other parameters.
+
+#include "geom/mesh/tessellation.h"
+#include "tests/geom/random.h"
+#include "tests/geom/support.h"
+
+typedef struct Planned {
+  Tessellator t;
+  Face face;
+} Planned;
+
+static void plan(Planned *p, const CagSurface *s, const CagTessellation *how) {
+  *p = (Planned){.face = {.surface = s}};
+  p->t = (Tessellator){.how = *how, .size = 1, .faces = &p->face, .face_count = 1};
+  OK(tess_plan_face(&p->t, 0, &err));
+}
+
+static void release(Planned *p) {
+  free(p->t.leaves);
+  free(p->face.breaks[0]);
+  free(p->face.breaks[1]);
+}
+
+static CagTessellation limits(double tolerance, double angle, double max_edge) {
+  return (CagTessellation){tolerance, angle, max_edge, 1000 * 1000, NULL};
+}
+
+// --- Nets whose rows and columns may change places, or run the other way ---
+
+enum { NET = 4 };
+
+typedef struct Net {
+  CagVec3 p[NET][NET];
+  size_t n[2];
+} Net;
+
+static CagSurface *surface_of(const Net *net, int turn) {
+  CagVec3 flat[NET * NET];
+  CagSurface *s;
+  const bool swap = turn & 1, back_u = turn & 2, back_v = turn & 4;
+  const size_t rows = net->n[swap], columns = net->n[!swap];
+  for (size_t i = 0; i < rows; i++)
+    for (size_t k = 0; k < columns; k++) {
+      const size_t a = swap ? k : i, b = swap ? i : k;
+      flat[i * columns + k] =
+          net->p[back_u ? net->n[0] - 1 - a : a][back_v ? net->n[1] - 1 - b : b];
+    }
+  OK(cag_surface_bezier(flat, NULL, rows, columns, &s, &err));
+  return s;
+}
+
+// A leaf in the parameters of the net itself.
+static Leaf turned(const Leaf *leaf, int turn) {
+  Leaf out = *leaf;
+  for (int d = 0; d < 2; d++) {
+    const int from = turn & 1 ? 1 - d : d;
+    const bool back = turn & (d == 0 ? 2 : 4);
+    out.from[d] = back ? 1 - leaf->to[from] : leaf->from[from];
+    out.to[d] = back ? 1 - leaf->from[from] : leaf->to[from];
+    out.n[d] = leaf->n[from];
+  }
+  return out;
+}
+
+// How many leaves of p are leaves of q as well, and how many of them with the same counts.
+static void count_alike(const Planned *p, int turn_p, const Planned *q, int turn_q,
+                        size_t alike[2]) {
+  alike[0] = alike[1] = 0;
+  for (size_t k = 0; k < p->t.leaf_count; k++)
+    for (size_t i = 0; i < q->t.leaf_count; i++) {
+      const Leaf a = turned(&p->t.leaves[k], turn_p), b = turned(&q->t.leaves[i], turn_q);
+      if (memcmp(a.from, b.from, sizeof a.from) || memcmp(a.to, b.to, sizeof a.to)) continue;
+      alike[0]++;
+      alike[1] += a.n[0] == b.n[0] && a.n[1] == b.n[1];
+    }
+}
+
+// A cap whose first row is one point, or a patch with one bump.
+static Net cap_or_bump(int k) {
+  Net net = {.n = {3, 4}};
+  const double wide = uniform(0.3, 1.5);
+  const double high = uniform(0.5, 3);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 4; j++) {
+      const double angle = (j - 1.5) * wide, radius = (i + uniform(0, 0.3)) * (i > 0) * 5;
+      const double bump = i == 1 && j == 1 ? 6 * high : 0;
+      net.p[i][j] = k % 3 ? cag_vec3(radius * cos(angle), radius * sin(angle), -high * i * i)
+                          : cag_vec3(5 * i + uniform(-1, 1), 3 * j + uniform(-1, 1), bump);
+    }
+  return net;
+}
+
+// With rows or columns run through from the other end, the same parts are divided as finely: what
+// is a whole number but for rounding may be rounded up in one case.
+static void plans_do_not_depend_on_where_parameters_begin(void **state) {
+  (void)state;
+  size_t all = 0, same = 0, parts = 0;
+  seed = 61;
+  for (int k = 0; k < 45; k++) {
+    const Net net = cap_or_bump(k);
+    const CagTessellation how = limits(exp(uniform(-7, -4)), 0, k % 5 ? 0 : 2);
+    for (int swap = 0; swap < 2; swap++) {
+      CagSurface *s = surface_of(&net, swap);
+      Planned p, q;
+      plan(&p, s, &how);
+      for (int turn = 2; turn < 8; turn += 2) {
+        CagSurface *r = surface_of(&net, turn + swap);
+        size_t alike[2];
+        plan(&q, r, &how);
+        count_alike(&p, swap, &q, turn + swap, alike);
+        assert_true(p.t.leaf_count == q.t.leaf_count && alike[0] == q.t.leaf_count);
+        all += alike[0];
+        same += alike[1];
+        parts += q.t.leaf_count > 1;
+        release(&q);
+        cag_surface_release(r);
+      }
+      release(&p);
+      cag_surface_release(s);
+    }
+  }
+  assert_true(parts > 180 && same > 0.95 * (double)all);
+}
+
+// --- Smallest grids ---
+
+// z = (a x^2 + b y^2) / 2 over [0, width] x [0, height].
+typedef struct Parabolic {
+  double size[2], bend[2];
+} Parabolic;
+
+static Leaf only_leaf(const Parabolic *f, int turn, const CagTessellation *how) {
+  Net net = {.n = {3, 3}};
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++)
+      net.p[i][k] = cag_vec3(f->size[0] * i / 2.0, f->size[1] * k / 2.0,
+                             (i == 2) * f->bend[0] * f->size[0] * f->size[0] / 2 +
+                                 (k == 2) * f->bend[1] * f->size[1] * f->size[1] / 2);
+  CagSurface *s = surface_of(&net, turn);
+  Planned p;
+  plan(&p, s, how);
+  assert_int_equal(p.t.leaf_count, 1);
+  const Leaf leaf = turned(p.t.leaves, turn);
+  release(&p);
+  cag_surface_release(s);
+  return leaf;
+}
+
+// Triangles of h x m are off by the second form of an edge over 8.
+static double parabolic_use(const Parabolic *f, const CagTessellation *how, double h, double m) {
+  const double a = f->bend[0] * h * h, b = f->bend[1] * m * m;
+  return fmax(fabs(a + b), fmax(fabs(a), fabs(b))) / 8 / (0.9 * how->tolerance);
+}
+
+// The slopes are small: normals turn by them.
+static double turn_use(const Parabolic *f, const CagTessellation *how, double h, double m) {
+  return hypot(f->bend[0] * h, f->bend[1] * m) / how->angle;
+}
+
+// Edges of triangles may be as long as both sides.
+static double edge_use(const Parabolic *f, const CagTessellation *how, double h, double m) {
+  (void)f;
+  return (h + m) / how->max_edge;
+}
+
+typedef double Use(const Parabolic *f, const CagTessellation *how, double h, double m);
+
+// By how much the planned grid is larger than the smallest one that is used fully, or less.
+static double share_of_smallest(const Parabolic *f, int turn, const CagTessellation *how,
+                                Use *use) {
+  enum { MOST = 400 };
+  const Leaf leaf = only_leaf(f, turn, how);
+  double fewest = INFINITY;
+  assert_true(use(f, how, f->size[0] / leaf.n[0], f->size[1] / leaf.n[1]) <= 1);
+  for (int x = 1; x < MOST; x++)
+    for (int y = 1; y < MOST && x * y < fewest; y++)
+      if (use(f, how, f->size[0] / x, f->size[1] / y) <= 1) fewest = x * y;
+  return (double)leaf.n[0] * leaf.n[1] / fewest;
+}
+
+static Parabolic random_parabolic(double bend, int sign) {
+  Parabolic f = {{uniform(3, 12), 0}, {0, 0}};
+  f.size[1] = uniform(3, 12);
+  f.bend[0] = bend * uniform(0.2, 1);
+  f.bend[1] = bend * sign * uniform(0.2, 1);
+  return f;
+}
+
+static void grids_are_little_larger_than_the_smallest(void **state) {
+  (void)state;
+  static const struct {
+    double bend, tolerance, angle, max_edge, most, average;
+    Use *use;
+    int sign;
+  } cases[] = {
+      {0.02, 1e-3, 0, 0, 1.25, 1.065, parabolic_use, 1},
+      {0.02, 1e-3, 0, 0, 2, 1.235, parabolic_use, -1},
+      {0.01, 0.02, 1e-3, 0, 1.4, 1.13, turn_use, 1},
+      {0.01, 0.02, 1e-3, 0, 1.4, 1.095, turn_use, -1},
+      {1e-9, 1, 0, 0.3, 1.2, 1.115, edge_use, 1},
+  };
+  seed = 62;
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    double sum = 0;
+    for (int k = 0; k < 64; k++) {
+      const Parabolic f = random_parabolic(cases[c].bend, cases[c].sign);
+      const double fine = exp(uniform(-2, 2));
+      const CagTessellation how =
+          limits(cases[c].tolerance * fine, cases[c].angle * fine, cases[c].max_edge * fine);
+      const double share = share_of_smallest(&f, k % 8, &how, cases[c].use);
+      if (!(share <= cases[c].most)) fail_msg("case %zu: %g times as many", c, share);
+      sum += share / 64;
+    }
+    if (!(sum <= cases[c].average)) fail_msg("case %zu: %g times as many on average", c, sum);
+  }
+}
+
+// Edges need not be shorter than a fifth of the tolerance for the angle.
+static void angles_do_not_make_edges_shorter_than_a_fifth_of_the_tolerance(void **state) {
+  (void)state;
+  seed = 63;
+  for (int k = 0; k < 32; k++) {
+    const Parabolic f = random_parabolic(0.002, 1);
+    const double tolerance = uniform(3, 8);
+    const CagTessellation how = limits(tolerance, 1e-5, 0);
+    const Leaf leaf = only_leaf(&f, k % 8, &how);
+    for (int d = 0; d < 2; d++) NEAR((double)leaf.n[d], ceil(f.size[d] / (0.2 * tolerance)), 0);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(plans_do_not_depend_on_where_parameters_begin),
+      cmocka_unit_test(grids_are_little_larger_than_the_smallest),
+      cmocka_unit_test(angles_do_not_make_edges_shorter_than_a_fifth_of_the_tolerance),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
