@@ -1,7 +1,7 @@
 // How finely the parts of a face are divided, before anything is made of it: compared with the
 // smallest grids that closed forms allow, and with those of the same face in other parameters.
 
-#include "geom/mesh/tessellation.h"
+#include "geom/mesh/trial.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
@@ -229,10 +229,128 @@ static void angles_do_not_make_edges_shorter_than_a_fifth_of_the_tolerance(void 
   }
 }
 
+// --- Limits ---
+
+// Several pieces with knots anywhere: a bumpy sheet, or a twisted band whose lines meet aslant.
+static CagSurface *pieces(bool twisted) {
+  enum { U = 6, V = 5 };
+  CagVec3 p[U * V];
+  CagSurface *s;
+  const double a = uniform(1.2, 2), b = uniform(2.2, 3), c = uniform(-4.9, -4),
+               lean = uniform(-2, 2);
+  const double knots_u[] = {1, 1, 1, 1, a, b, 4, 4, 4, 4},
+               knots_v[] = {-5, -5, -5, c, -3, -2, -2, -2};
+  for (int i = 0; i < U; i++)
+    for (int k = 0; k < V; k++) {
+      const double x = uniform(-0.6, 0.6);
+      const double y = uniform(-0.6, 0.6);
+      const double z = uniform(-0.6, 0.6);
+      p[i * V + k] =
+          twisted ? cag_vec3(3 * i + lean * k + x / 9, 2 * k, 0.4 * (i - 2) * (k - 1) + z / 9)
+                  : cag_vec3(3 * i + x, 2 * k + y, z);
+    }
+  OK(cag_surface_nurbs(p, NULL, U, V, 3, 2, knots_u, knots_v, &s, &err));
+  return s;
+}
+
+// The largest turn of the normal, and length, of the edges of a leaf's quadrilaterals and of their
+// shorter diagonals. Short edges are free to turn, and diagonals of quadrilaterals with such a
+// side.
+static void edges_of(const CagSurface *s, const Leaf *leaf, double free_of_turn, double *turn,
+                     double *length) {
+  enum { MOST = 300 };
+  static CagVec3 p[MOST + 1][MOST + 1], q[MOST + 1][MOST + 1];
+  assert_true(leaf->n[0] <= MOST && leaf->n[1] <= MOST);
+  for (size_t i = 0; i <= leaf->n[0]; i++)
+    for (size_t k = 0; k <= leaf->n[1]; k++) {
+      // A little inside of the leaf the normals are its own.
+      const double x = fmin(fmax((double)i / leaf->n[0], 1e-6), 1 - 1e-6),
+                   y = fmin(fmax((double)k / leaf->n[1], 1e-6), 1 - 1e-6),
+                   u = leaf->from[0] + (leaf->to[0] - leaf->from[0]) * x,
+                   v = leaf->from[1] + (leaf->to[1] - leaf->from[1]) * y;
+      OK(cag_surface_point(s, u, v, &p[i][k], &err));
+      OK(cag_surface_normal(s, u, v, &q[i][k], &err));
+    }
+  for (size_t i = 0; i < leaf->n[0]; i++)
+    for (size_t k = 0; k < leaf->n[1]; k++) {
+      const bool ac = cag_norm(cag_sub(p[i + 1][k + 1], p[i][k])) <=
+                      cag_norm(cag_sub(p[i + 1][k], p[i][k + 1]));
+      const size_t ends[5][4] = {{i, k, i + 1, k},
+                                 {i, k + 1, i + 1, k + 1},
+                                 {i, k, i, k + 1},
+                                 {i + 1, k, i + 1, k + 1},
+                                 {i, ac ? k : k + 1, i + 1, ac ? k + 1 : k}};
+      double shortest = INFINITY;
+      for (int e = 0; e < 5; e++) {
+        const size_t *x = ends[e];
+        const CagVec3 a = q[x[0]][x[1]], b = q[x[2]][x[3]];
+        const double l = cag_norm(cag_sub(p[x[0]][x[1]], p[x[2]][x[3]]));
+        *length = fmax(*length, l);
+        shortest = fmin(shortest, l);
+        if ((e < 4 ? l : shortest) > free_of_turn)
+          *turn = fmax(*turn, 2 * asin(fmin(1, cag_norm(cag_sub(a, b)) / 2)));
+      }
+    }
+}
+
+static void check_leaves(const Planned *p, const CagSurface *s, const CagTessellation *how) {
+  double area = 0;
+  for (size_t k = 0; k < p->t.leaf_count; k++) {
+    const Leaf *leaf = &p->t.leaves[k];
+    TessTrial t = {.surface = s};
+    const double sine[2] = {0, 0};
+    double off, turn = 0, length = 0;
+    for (int d = 0; d < 2; d++) {
+      t.from[d] = leaf->from[d];
+      t.to[d] = leaf->to[d];
+      t.n[d] = leaf->n[d];
+      for (size_t i = 0; i < p->face.break_count[d]; i++)
+        assert_true(p->face.breaks[d][i] <= leaf->from[d] || p->face.breaks[d][i] >= leaf->to[d]);
+    }
+    OK(tess_try_distance(&t, sine, &off, &err));
+    assert_true(off <= 0.9 * how->tolerance);
+    area += (leaf->to[0] - leaf->from[0]) * (leaf->to[1] - leaf->from[1]);
+    if (!(how->angle > 0 || how->max_edge > 0)) continue;
+    edges_of(s, leaf, 0.2 * how->tolerance, &turn, &length);
+    if (how->angle > 0) assert_true(turn <= how->angle);
+    if (how->max_edge > 0) assert_true(length <= how->max_edge);
+  }
+  NEAR(area, (s->u1 - s->u0) * (s->v1 - s->v0), 1e-9);
+}
+
+// All leaves keep the limits; the bounds of quadrilaterals are what was needed for it.
+static void leaves_keep_limits_with_few_quadrilaterals(void **state) {
+  (void)state;
+  static const struct {
+    double tolerance, angle, max_edge, most;
+  } cases[] = {
+      {0.004, 0, 0, 28100}, {0.3, 0.15, 0, 8180}, {0.3, 0, 0.6, 73200}, {0.03, 0.4, 1.5, 13030}};
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    const CagTessellation how = limits(cases[c].tolerance, cases[c].angle, cases[c].max_edge);
+    double sum = 0;
+    seed = 64;
+    for (int k = 0; k < 24; k++) {
+      CagSurface *s = k % 4 ? pieces(k % 2) : NULL;
+      if (!s) {
+        const Net net = cap_or_bump(k % 3 + 1);
+        s = surface_of(&net, k % 8);
+      }
+      Planned p;
+      plan(&p, s, &how);
+      check_leaves(&p, s, &how);
+      sum += p.t.quads;
+      release(&p);
+      cag_surface_release(s);
+    }
+    if (!(sum <= cases[c].most)) fail_msg("case %zu: %g quadrilaterals", c, sum);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(plans_do_not_depend_on_where_parameters_begin),
       cmocka_unit_test(grids_are_little_larger_than_the_smallest),
+      cmocka_unit_test(leaves_keep_limits_with_few_quadrilaterals),
       cmocka_unit_test(angles_do_not_make_edges_shorter_than_a_fifth_of_the_tolerance),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
