@@ -208,6 +208,9 @@ bool cag_grid_on_border(const CagGridFit *f, size_t i, int direction) {
          (line == 0 || line + 1 == (direction == 0 ? f->g->r : f->g->s));
 }
 
+// The square of a partial below this part of the other's is that of a row at one place.
+#define AT_ONE_PLACE (CAG_GRID_RANK * CAG_GRID_RANK)
+
 // One step of Gauss and Newton towards the nearest point for all data. Data on an open border stay
 // there, so that the surface keeps its edges.
 static CagStatus correct(CagGridFit *f, const CagSurface *s, CagError *err) {
@@ -223,8 +226,8 @@ static CagStatus correct(CagGridFit *f, const CagSurface *s, CagError *err) {
     double e = cag_dot(du, du), m = cag_dot(du, dv), g = cag_dot(dv, dv);
     double p = cag_dot(gap, du), q = cag_dot(gap, dv), det = e * g - m * m;
     if (fixed_u && fixed_v) continue;
-    if (fixed_u) *v = cag_grid_moved(av, *v, g > 0 ? q / g : 0);
-    else if (fixed_v) *u = cag_grid_moved(au, *u, e > 0 ? p / e : 0);
+    if (fixed_u) *v = cag_grid_moved(av, *v, g > AT_ONE_PLACE * e ? q / g : 0);
+    else if (fixed_v) *u = cag_grid_moved(au, *u, e > AT_ONE_PLACE * g ? p / e : 0);
     else if (det > CAG_GRID_RANK * e * g) {
       *u = cag_grid_moved(au, *u, (p * g - q * m) / det);
       *v = cag_grid_moved(av, *v, (q * e - p * m) / det);
