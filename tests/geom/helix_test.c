@@ -103,6 +103,15 @@ static void points_are_those_of_the_definition(void **state) {
       p = cag_madd(cag_madd(p, r * sin(angle), coil.y), coil.climb * angle, coil.z);
       near_vec(p, expected_at(&s, t), 1e-11);
     }
+    enum { MANY = 7, ORDER = 3 };
+    CagVec3 many[MANY * (ORDER + 1)], one[ORDER + 1];
+    double t[MANY];
+    for (int i = 0; i < MANY; i++) t[i] = uniform(s.c->start, s.c->end);
+    OK(cag_curve_eval_many(s.c, t, MANY, ORDER, many, &err));
+    for (int i = 0; i < MANY; i++) {
+      OK(cag_curve_eval(s.c, t[i], ORDER, CAG_SIDE_RIGHT, one, &err));
+      for (int k = 0; k <= ORDER; k++) near_vec(many[i * (ORDER + 1) + k], one[k], 0);
+    }
     // The numbers are told only of a helix whose parameter is the angle.
     Numbers told;
     CagTransform frame;
@@ -112,6 +121,7 @@ static void points_are_those_of_the_definition(void **state) {
     if (view) {
       assert_true(told.radius == s.numbers.radius && told.pitch == s.numbers.pitch);
       assert_true(told.turns == s.numbers.turns && told.taper == s.numbers.taper);
+      assert_false(frame.planar);
       for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++) NEAR(frame.m[i][j], s.map.m[i][j], 1e-15);
     }
