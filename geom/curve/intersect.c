@@ -460,9 +460,9 @@ CagStatus cag_curve_intersect(const CagCurve *a, const CagCurve *b, CagMeeting *
                                   .context = &s,
                                   .measure = measure_curve,
                                   .places = 1,
-                                  .low = {b->start, 0},
-                                  .high = {b->end, 0},
-                                  .closed = {b->closed, false},
+                                  .low = {b->start},
+                                  .high = {b->end},
+                                  .closed = {b->closed},
                                   .same = MEET * s.size + s.noise,
                                   .size = s.size,
                                   .noise = s.noise};

@@ -610,6 +610,15 @@ static void random_segments_have_their_shape(void **state) {
       assert_true(0 <= s.loop[0] && s.loop[0] < s.loop[1] && s.loop[1] <= 1);
       near_vec(at(c, s.loop[0]), at(c, s.loop[1]), 1e-9 * (1 + 10 * chord));
     }
+    // The same at any size.
+    const double scale = round % 2 ? 1e-4 : 1e4;
+    CagHermiteShape large;
+    OK(cag_hermite_shape(cag_scaled(ends[0], scale), cag_scaled(ends[1], scale),
+                         cag_scaled(tangents[0], scale), cag_scaled(tangents[1], scale), &large,
+                         &err));
+    assert_true(large.has_loop == s.has_loop && !large.has_cusp);
+    assert_int_equal(large.inflections, s.inflections);
+    for (size_t i = 0; i < s.inflections; i++) NEAR(large.inflection[i], s.inflection[i], 1e-9);
     seen[s.has_loop ? 3 : s.inflections]++;
     cag_curve_release(c);
   }

@@ -106,10 +106,59 @@ static void curves_touch_where_both_have_one_tangent(void **state) {
   assert_true(touches > 150);
 }
 
+// Closed curves touch a line at their seam, or near it, over any domain: once.
+static void closed_curves_touch_lines_at_their_seam(void **state) {
+  (void)state;
+  seed = 523;
+  int touches = 0;
+  for (int round = 0; round < 200; round++) {
+    CagCurve *ring, *b, *line;
+    const CagTransform f = cag_transform_identity();
+    const double semi = uniform(0.5, 3), from = uniform(-3, 3), low = uniform(-20, 20);
+    if (round % 2) ring = flat_curve(3);
+    else OK(cag_curve_arc(semi, uniform(0.5, 3), from, from + 2 * M_PI, &f, &ring, &err));
+    OK(cag_curve_reparametrize(ring, low, low + uniform(0.5, 9), &b, &err));
+    assert_true(b->closed);
+    const double range = b->end - b->start;
+    static const double places[] = {0, 1, 1e-9, 1 - 1e-9, 1e-5, 1 - 1e-5};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+      const double u = places[i] == 1 ? b->end : b->start + range * places[i];
+      CagVec3 d[3];
+      derivatives(b, u, 2, d);
+      const CagVec3 e = cag_unit(d[1]);
+      const double bend = cag_cross(d[1], d[2]).z / pow(cag_norm(d[1]), 3);
+      if (fabs(bend) < 0.1 || fabs(bend) > 5) continue;
+      OK(cag_curve_line(cag_madd(d[0], -uniform(1, 5), e), cag_madd(d[0], uniform(1, 5), e), 2,
+                        &line, &err));
+      for (int other = 0; other < 2; other++) {
+        CagMeeting *m;
+        size_t count, here = 0;
+        OK(other ? cag_curve_intersect(b, line, &m, &count, &err)
+                 : cag_curve_intersect(line, b, &m, &count, &err));
+        for (size_t k = 0; k < count; k++) {
+          if (cag_norm(cag_sub(m[k].point, d[0])) > 1e-3) continue;
+          const double off = ((other ? m[k].t : m[k].t2) - u) / range;
+          here++;
+          NEAR(off - rint(off), 0, 1e-7);
+          assert_int_equal(m[k].multiplicity, 2);
+        }
+        assert_int_equal(here, 1);
+        touches++;
+        free(m);
+      }
+      cag_curve_release(line);
+    }
+    cag_curve_release(b);
+    cag_curve_release(ring);
+  }
+  assert_true(touches > 1000);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(planes_touch_where_the_height_turns),
       cmocka_unit_test(curves_touch_where_both_have_one_tangent),
+      cmocka_unit_test(closed_curves_touch_lines_at_their_seam),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
