@@ -32,7 +32,7 @@ typedef struct Piece {
 } Piece;
 
 typedef struct Side {
-  CagQuadric form;
+  CagQuadric form, centered; // the latter about the middle of all pieces
   size_t leaf;
 } Side;
 
@@ -82,7 +82,7 @@ static bool add_side(Search *s, const CagQuadric *form) {
     s->sides = more;
     s->side_room = room;
   }
-  s->sides[s->side_count++] = (Side){*form, s->leaves};
+  s->sides[s->side_count++] = (Side){*form, *form, s->leaves};
   return true;
 }
 
@@ -402,8 +402,9 @@ static bool side_coincides(const Search *s, const Side *side, const Piece *piece
 
 // Whether the forms have the same zeros: one is a multiple of the other.
 static bool sides_coincide(const Search *s, const Side *a, const Side *b) {
-  const double *p = a->form.c, *q = b->form.c;
-  const double unit = fmax(s->size, 1e-300); // coefficients compare as values at this distance
+  const double *p = a->centered.c, *q = b->centered.c;
+  // Coefficients compare as values at this distance from the middle.
+  const double unit = fmax(s->size, 1e-300);
   double most[2] = {0, 0}, x[10], y[10];
   if (a->leaf == b->leaf) return false;
   for (int i = 0; i < 10; i++) {
@@ -445,7 +446,15 @@ bool cag_solid_in_general_position(const CagSolid *s, const volatile int *interr
     cag_bounds_add(&all, search.pieces[i].box.min);
     cag_bounds_add(&all, search.pieces[i].box.max);
   }
-  if (search.count) search.size = cag_norm(cag_sub(all.max, all.min));
+  if (search.count) {
+    const CagTransform center = cag_translate(cag_scaled(cag_lerp(all.min, all.max, 0.5), -1));
+    CagError ignored;
+    search.size = cag_norm(cag_sub(all.max, all.min));
+    for (size_t i = 0; i < search.side_count; i++) {
+      Side *side = &search.sides[i];
+      if (cag_quadric_transform(&side->form, &center, &side->centered, &ignored)) general = false;
+    }
+  }
   search.slack = COINCIDENT * search.size;
   general = general && !any_coincide(&search) && !(interrupt && *interrupt);
   search_free(&search);

@@ -124,10 +124,11 @@ static CagSolid *tetrahedron(const CagVec3 p[4]) {
   return s;
 }
 
-// Takes the operands over.
+// Takes the operands over. Where both of them are does not matter, nor how large they are.
 static void expect(CagSolid *a, CagSolid *b, bool general, const char *what) {
   static const CagSetOperation operations[] = {CAG_UNION, CAG_DIFFERENCE, CAG_INTERSECTION};
-  const CagTransform place = random_similarity(), inner = random_turn();
+  const CagTransform together = random_similarity(), place = random_similarity(),
+                     inner = random_turn();
   CagTransform back;
   const CagSetOperation op = operations[(int)uniform(0, 3)];
   if (uniform(0, 1) < 0.5) {
@@ -141,7 +142,8 @@ static void expect(CagSolid *a, CagSolid *b, bool general, const char *what) {
     b = combined(CAG_UNION, placed(b, &back), moved(sphere(0.013), 0.02, 0.01, 0));
     b = placed(b, &inner);
   }
-  CagSolid *s = placed(combined(op, a, b), &place);
+  CagSolid *s = combined(op, placed(a, &together), placed(b, &together));
+  s = placed(s, &place);
   if (cag_solid_in_general_position(s, NULL) != general)
     fail_msg("%s: expected to be %s", what, general ? "in general position" : "coincident");
   cag_solid_release(s);
