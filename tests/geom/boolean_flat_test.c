@@ -152,6 +152,39 @@ static void boxes_of_a_grid_take_as_few_triangles_as_they_need(void **state) {
   assert_true(checked > 150);
 }
 
+// Two boxes at the origin whose sides lie in common planes, turned: how far points may be off their
+// planes by rounding is told by all of them, the first of which may be the origin.
+static void turned_boxes_take_as_few_triangles_as_straight_ones(void **state) {
+  (void)state;
+  seed = 42;
+  for (int trial = 0; trial < 40; trial++) {
+    const double x = 1 + random_int(9), y = 1 + random_int(9), z = 1 + random_int(9);
+    const CagVec3 o = cag_vec3(0, 0, 0), axis = cag_vec3(1 + random_int(5), random_int(5), 1);
+    // The second box makes the first one longer, or is a step on it.
+    const CagVec3 far = cag_vec3(2 * x, trial % 2 ? y : y + 1, z);
+    CagMesh *boxes[2] = {box_with_normals(o, cag_vec3(x, y, z)),
+                         box_with_normals(cag_vec3(x, 0, 0), far)};
+    CagTransform turn;
+    size_t count[2];
+    OK(cag_rotate(axis, 0.1 + random_int(100), o, &turn, &err));
+    for (int turned = 0; turned < 2; turned++) {
+      CagMesh *a, *b, *m;
+      const CagTransform t = turned ? turn : cag_transform_identity();
+      OK(cag_mesh_transform(boxes[0], &t, &a, &err));
+      OK(cag_mesh_transform(boxes[1], &t, &b, &err));
+      OK(cag_mesh_boolean(CAG_UNION, a, b, NULL, &m, &err));
+      count[turned] = m->triangle_count;
+      cag_mesh_release(a);
+      cag_mesh_release(b);
+      cag_mesh_release(m);
+    }
+    assert_int_equal(count[0], trial % 2 ? 12 : 20);
+    assert_int_equal(count[1], count[0]);
+    cag_mesh_release(boxes[0]);
+    cag_mesh_release(boxes[1]);
+  }
+}
+
 // A plate whose top is divided among two materials along a line of short steps. Each point is off
 // the line of its neighbors by less than rounding; but where the line is bent as a whole all of its
 // points stay, and where it is straight all go.
@@ -381,6 +414,7 @@ static void normals_are_interpolated(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(turned_boxes_take_as_few_triangles_as_straight_ones),
       cmocka_unit_test(lines_between_materials_stay_where_they_are_bent),
       cmocka_unit_test(touching_cells_have_vertices_of_their_own),
       cmocka_unit_test(normals_are_interpolated),

@@ -352,6 +352,20 @@ static void tubes_have_caps_unless_closed(void **state) {
   assert_near(m.area, 2 * M_PI * r * length + 2 * M_PI * r * r, 1e-9, "area");
   assert_edges(s, 2);
   assert_text(s, "tube, radius 0.5");
+  // Mirrored and scaled alike in all directions it is a tube of another radius.
+  for (int axis = 0; axis < 3; axis++) {
+    double k[3] = {3, 3, 3};
+    char text[200];
+    CagTransform mirror;
+    CagSolid *other;
+    k[axis] = -3;
+    MUST(cag_scale(cag_vec3(k[0], k[1], k[2]), ORIGIN, &mirror, err));
+    MUST(cag_solid_transform(s, &mirror, &other, err));
+    cag_solid_describe(other, text, sizeof text);
+    text[strlen("tube, radius 1.5")] = '\0';
+    assert_string_equal(text, "tube, radius 1.5");
+    cag_solid_release(other);
+  }
   cag_solid_release(s);
   const CagVec3 points[] = {{0, 0, 0}, {10, 0, 0}, {10, 6, 0}, {10, 6, 8}};
   MUST(cag_curve_polyline(points, 4, false, 3, &corner, err));
