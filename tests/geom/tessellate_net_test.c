@@ -4,6 +4,7 @@
 #include "geom/mesh/check.h"
 #include "geom/mesh/distance.h"
 #include "geom/mesh/tessellate.h"
+#include "geom/surface/reshape.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
@@ -164,9 +165,59 @@ static void meshes_of_random_nets_are_sound(void **state) {
   }
 }
 
+// A section that is turned while it moves along z, closed or not, in either order of parameters.
+static Shape twisted_shape(int k) {
+  Shape shape = {.closed = {k % 2, false}};
+  CagVec3 p[9];
+  CagCurve *c;
+  const double turn = (k % 4 < 2 ? 1 : -1) * uniform(1, 3) * M_PI;
+  const double scale = k % 3 ? 1 : uniform(0.7, 1.3);
+  for (int i = 0; i < 9; i++) {
+    const double r = uniform(4, 6), a = 2 * M_PI * i / 9;
+    p[i] = cag_vec3(r * cos(a), r * sin(a), 0);
+  }
+  if (shape.closed[0]) OK(cag_curve_nurbs_closed(p, NULL, 9, 3, 2, &c, &err));
+  else OK(cag_curve_bezier(p, NULL, 4, 2, &c, &err));
+  OK(cag_surface_extrude(c, cag_vec3(0, 0, 15), turn, scale, &shape.s, &err));
+  cag_curve_release(c);
+  if (k / 2 % 2) {
+    CagSurface *t;
+    OK(cag_surface_transpose(shape.s, &t, &err));
+    cag_surface_release(shape.s);
+    shape.s = t;
+  }
+  return shape;
+}
+
+// Most of them take strips of long triangles: then they need far less than grids do. The bound is
+// what was needed.
+static void meshes_of_twisted_sections_are_sound(void **state) {
+  (void)state;
+  double sum = 0;
+  seed = 68;
+  for (int k = 0; k < 32; k++) {
+    const Shape shape = twisted_shape(k);
+    const CagTessellation how = {.tolerance = exp(uniform(-4, -2.5)),
+                                 .angle = k % 3 ? uniform(0.3, 0.8) : 0,
+                                 .max_edge = k % 5 ? 0 : uniform(2, 4),
+                                 .max_triangles = 100000};
+    CagMesh *m;
+    OK(cag_surface_tessellate(shape.s, &how, &m, &err));
+    check_tiling(m, shape.s);
+    check_topology(m, &shape);
+    check_vertices(m, shape.s);
+    check_limits(m, shape.s, &how);
+    sum += (double)m->triangle_count;
+    cag_mesh_release(m);
+    cag_surface_release(shape.s);
+  }
+  assert_true(sum <= 63700);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(meshes_of_random_nets_are_sound),
+      cmocka_unit_test(meshes_of_twisted_sections_are_sound),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
