@@ -229,3 +229,14 @@ assert len(found) == 2, found
 assert all(abs(x - y) < 1e-9 * y for f, e in zip(found, expected) for x, y in zip(f, e)), (found, expected)'
   status 0
 fi
+
+it 'the drawing of a robot has its name'
+script plain.cag 'show robot([revolute(a: 300)], name: "arm"), posed(robot([revolute(a: 300), revolute(a: 200)], name: "leg"))'
+try run plain.cag
+status 0
+says 'leg: group of'
+try export plain.cag -o plain.obj
+status 0
+for name in arm arm.2 leg leg.2; do
+  grep -qx "o $name" plain.obj || wrong "no object has the name $name"
+done
