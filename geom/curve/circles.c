@@ -293,10 +293,11 @@ static CagStatus read_pair(const CagCurve *a, const CagCurve *b, double t, doubl
   return status ? status : cag_curve_eval(b, u, 2, CAG_SIDE_RIGHT, out->b, err);
 }
 
-// Newton's method for a' x (b - a) = 0, b' x (b - a) = 0, from a cell's middle.
+// Newton's method for a' x (b - a) = 0, b' x (b - a) = 0, from (t, u); *end: where it ends.
 static CagStatus polish(const CagCurve *a, const CagCurve *b, double t, double u, Found *f,
-                        CagError *err) {
+                        double end[2], CagError *err) {
   Pair p;
+  end[0] = end[1] = INFINITY;
   CagStatus status = CAG_OK;
   double change = 1;
   for (int i = 0; i < NEWTON_STEPS && change > 1e-15; i++) {
@@ -315,6 +316,8 @@ static CagStatus polish(const CagCurve *a, const CagCurve *b, double t, double u
     t = t1;
     u = u1;
   }
+  end[0] = t;
+  end[1] = u;
   status = read_pair(a, b, t, u, &p, err);
   if (status) return status;
   const CagVec3 d = cag_sub(p.b[0], p.a[0]);
@@ -351,6 +354,19 @@ static bool changes(double a, double b, double c, double d) {
   return fmin(fmin(a, b), fmin(c, d)) <= 0 && fmax(fmax(a, b), fmax(c, d)) >= 0;
 }
 
+// From the cell's middle and, where the search leaves the cell from there, from its quarters.
+static CagStatus search_cell(const CagCurve *a, const CagCurve *b, const double t[2],
+                             const double u[2], Found *f, CagError *err) {
+  const double wide = t[1] - t[0], high = u[1] - u[0];
+  double end[2];
+  CagStatus status = polish(a, b, t[0] + wide / 2, u[0] + high / 2, f, end, err);
+  if (end[0] >= t[0] && end[0] <= t[1] && end[1] >= u[0] && end[1] <= u[1]) return status;
+  for (int k = 0; !status && k < 4; k++)
+    status = polish(a, b, t[0] + wide * (k & 1 ? 0.75 : 0.25), u[0] + high * (k & 2 ? 0.75 : 0.25),
+                    f, end, err);
+  return status;
+}
+
 static CagStatus tangents_by_grid(const CagCurve *a, const CagCurve *b, Found *f, CagError *err) {
   Grid g = {0}, h = {0};
   CagStatus status = make_grid(a, &g, err);
@@ -365,7 +381,7 @@ static CagStatus tangents_by_grid(const CagCurve *a, const CagCurve *b, Found *f
         f2[k] = cross2(q[1], d);
       }
       if (changes(f1[0], f1[1], f1[2], f1[3]) && changes(f2[0], f2[1], f2[2], f2[3]))
-        status = polish(a, b, (g.t[i] + g.t[i + 1]) / 2, (h.t[j] + h.t[j + 1]) / 2, f, err);
+        status = search_cell(a, b, g.t + i, h.t + j, f, err);
     }
   free(g.t);
   free(g.d);
