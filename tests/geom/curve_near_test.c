@@ -322,6 +322,42 @@ static void a_helix_meets_a_patch_as_often_as_its_plane(void **state) {
   cag_surface_release(s);
 }
 
+// Two polylines are farthest apart at a corner of either, at the same part of their domains.
+static void deviations_of_polylines_are_at_their_corners(void **state) {
+  (void)state;
+  enum { MOST = 12 };
+  seed = 861;
+  for (int round = 0; round < 200; round++) {
+    CagVec3 p[2][MOST];
+    CagCurve *c[2];
+    size_t n[2];
+    for (int k = 0; k < 2; k++) {
+      n[k] = 2 + (size_t)uniform(0, MOST - 2);
+      for (size_t i = 0; i < n[k]; i++) {
+        p[k][i].x = uniform(-3, 3);
+        p[k][i].y = uniform(-3, 3);
+        p[k][i].z = uniform(-3, 3);
+      }
+      OK(cag_curve_polyline(p[k], n[k], false, 3, &c[k], &err));
+    }
+    double expected = 0, gap;
+    for (int k = 0; k < 2; k++)
+      for (size_t i = 0; i < n[k]; i++) {
+        const double part = (double)i / (double)(n[k] - 1);
+        const double place = part * (double)(n[1 - k] - 1);
+        const size_t from = place < (double)(n[1 - k] - 2) ? (size_t)place : n[1 - k] - 2;
+        const CagVec3 there = cag_lerp(p[1 - k][from], p[1 - k][from + 1], place - (double)from);
+        expected = fmax(expected, cag_norm(cag_sub(p[k][i], there)));
+      }
+    for (int k = 0; k < 2; k++) {
+      OK(cag_curve_deviation(c[k], c[1 - k], &gap, &err));
+      NEAR(gap, expected, 1e-13);
+    }
+    cag_curve_release(c[0]);
+    cag_curve_release(c[1]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(removing_an_inserted_knot_gives_the_curve_back),
@@ -337,6 +373,7 @@ int main(void) {
       cmocka_unit_test(joining_keeps_the_knots_of_the_parts),
       cmocka_unit_test(lines_meet_a_torus_in_up_to_four_points),
       cmocka_unit_test(a_helix_meets_a_patch_as_often_as_its_plane),
+      cmocka_unit_test(deviations_of_polylines_are_at_their_corners),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
