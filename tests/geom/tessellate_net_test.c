@@ -211,7 +211,7 @@ static void meshes_of_twisted_sections_are_sound(void **state) {
     cag_mesh_release(m);
     cag_surface_release(shape.s);
   }
-  assert_true(sum <= 63700);
+  assert_true(sum <= 63450);
 }
 
 int main(void) {
