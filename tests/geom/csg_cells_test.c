@@ -150,6 +150,8 @@ static void operations_have_the_mass_and_bounds_of_their_cells(void **state) {
     CagBounds box;
     bool none;
     if (b.solid->face_count > 0) { // one box
+      OK(cag_solid_is_empty(b.solid, &none, &err));
+      assert_false(none);
       cag_solid_release(b.solid);
       continue;
     }
@@ -167,6 +169,14 @@ static void operations_have_the_mass_and_bounds_of_their_cells(void **state) {
     OK(cag_solid_bounds(b.solid, &box, &err));
     near_vec(box.min, sums.box.min, 1e-12);
     near_vec(box.max, sums.box.max, 1e-12);
+    const CagVec3 way = {random_int(20) - 15, random_int(20) - 15, random_int(20) - 15};
+    const CagTransform lift = cag_translate(way);
+    CagSolid *moved;
+    OK(cag_solid_transform(b.solid, &lift, &moved, &err));
+    OK(cag_solid_bounds(moved, &box, &err));
+    near_vec(box.min, cag_add(sums.box.min, way), 1e-12);
+    near_vec(box.max, cag_add(sums.box.max, way), 1e-12);
+    cag_solid_release(moved);
     const CagTransform same = cag_transform_identity();
     check_mass(b.solid, &sums, &same, 1);
     const double scale = exp(uniform(-3, 3));
@@ -177,7 +187,6 @@ static void operations_have_the_mass_and_bounds_of_their_cells(void **state) {
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) place.m[i][j] *= (k % 2 && j == 0 ? -1 : 1) * scale;
     for (int i = 0; i < 3; i++) place.m[i][3] = uniform(-30, 30) * scale;
-    CagSolid *moved;
     OK(cag_solid_transform(b.solid, &place, &moved, &err));
     check_mass(moved, &sums, &place, scale);
     cag_solid_release(moved);
@@ -228,9 +237,25 @@ static void the_last_copy_lets_operands_go(void **state) {
   }
 }
 
+static void empty_differences_name_their_operands(void **state) {
+  (void)state;
+  CagSolid *box, *ball, *none;
+  CagBounds bounds;
+  OK(cag_solid_box(cag_vec3(1, 2, 3), true, &box, &err));
+  OK(cag_solid_sphere(5, &ball, &err));
+  OK(cag_solid_combine(CAG_DIFFERENCE, (CagSolid *[]){box, ball}, 2, NULL, &none, &err));
+  FAILS(cag_solid_bounds(none, &bounds, &err), "empty-shape");
+  assert_non_null(strstr(err.message, "difference of (box, 1 x 2 x 3, centered) and (sphere, "));
+  assert_null(strstr(err.message, "others"));
+  cag_solid_release(box);
+  cag_solid_release(ball);
+  cag_solid_release(none);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(operations_have_the_mass_and_bounds_of_their_cells),
+      cmocka_unit_test(empty_differences_name_their_operands),
       cmocka_unit_test(boxes_that_touch_have_one_surface),
       cmocka_unit_test(the_last_copy_lets_operands_go),
   };
