@@ -237,6 +237,36 @@ static void the_last_copy_lets_operands_go(void **state) {
   }
 }
 
+// A box without one of its sides, or with a notch in it, anywhere.
+static void cuts_across_a_side_move_that_side_alone(void **state) {
+  (void)state;
+  seed = 64;
+  for (int k = 0; k < 48; k++) {
+    const int axis = k % 3;
+    const bool upper = k / 3 % 2, across = k / 6 % 2;
+    int low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+      low[i] = across || i == axis ? -1 : 1;
+      high[i] = across || i == axis ? SIDE + 1 : 3;
+    }
+    if (upper) low[axis] = 5;
+    else high[axis] = 2;
+    Body b[2] = {box_between((int[]){0, 0, 0}, (int[]){SIDE, SIDE, SIDE}), box_between(low, high)};
+    Body cut = combined(CAG_DIFFERENCE, b, 2);
+    const Sums sums = sums_of(&cut);
+    const CagVec3 way = {random_int(40) - 30, random_int(40) - 30, random_int(40) - 30};
+    const CagTransform lift = cag_translate(way);
+    CagSolid *moved;
+    CagBounds box;
+    OK(cag_solid_transform(cut.solid, &lift, &moved, &err));
+    OK(cag_solid_bounds(moved, &box, &err));
+    near_vec(box.min, cag_add(sums.box.min, way), 1e-12);
+    near_vec(box.max, cag_add(sums.box.max, way), 1e-12);
+    cag_solid_release(moved);
+    cag_solid_release(cut.solid);
+  }
+}
+
 static void empty_differences_name_their_operands(void **state) {
   (void)state;
   CagSolid *box, *ball, *none;
@@ -247,6 +277,9 @@ static void empty_differences_name_their_operands(void **state) {
   FAILS(cag_solid_bounds(none, &bounds, &err), "empty-shape");
   assert_non_null(strstr(err.message, "difference of (box, 1 x 2 x 3, centered) and (sphere, "));
   assert_null(strstr(err.message, "others"));
+  bool empty;
+  OK(cag_solid_is_empty(ball, &empty, &err));
+  assert_false(empty);
   cag_solid_release(box);
   cag_solid_release(ball);
   cag_solid_release(none);
@@ -255,6 +288,7 @@ static void empty_differences_name_their_operands(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(operations_have_the_mass_and_bounds_of_their_cells),
+      cmocka_unit_test(cuts_across_a_side_move_that_side_alone),
       cmocka_unit_test(empty_differences_name_their_operands),
       cmocka_unit_test(boxes_that_touch_have_one_surface),
       cmocka_unit_test(the_last_copy_lets_operands_go),
