@@ -339,8 +339,8 @@ static void span_of_samples(const Sample *s, size_t n, double *from, double *to)
     if (!begun && sum >= TAIL_AREA * total) low = s[i].value, begun = true;
     if (sum <= (1 - TAIL_AREA) * total) high = s[i].value;
   }
-  double rest = fmax(high - low, 0);
   if (high < low) return;
+  const double rest = high - low;
   if (*from < low - TAIL_REACH * rest) *from = low;
   if (*to > high + TAIL_REACH * rest) *to = high;
 }

@@ -8,17 +8,21 @@
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
-// z = sin(x) cos(y) / 2 + x y / 5, with derivatives.
+// z = height sin(often x) cos(often y) / 2 + slant x y, with derivatives.
+static double height = 1, often = 1, slant = 0.2;
+
 static CagStatus hills(void *context, double x, double y, int n, CagVec3 *out, CagError *e) {
   (void)context;
   (void)e;
-  out[0] = cag_vec3(x, y, sin(x) * cos(y) / 2 + x * y / 5);
+  const double sx = sin(often * x), cx = cos(often * x), sy = sin(often * y), cy = cos(often * y);
+  const double a = height / 2, b = a * often, c = b * often;
+  out[0] = cag_vec3(x, y, a * sx * cy + slant * x * y);
   if (n == 0) return CAG_OK;
-  out[cag_partial(n, 1, 0)] = cag_vec3(1, 0, cos(x) * cos(y) / 2 + y / 5);
-  out[cag_partial(n, 0, 1)] = cag_vec3(0, 1, -sin(x) * sin(y) / 2 + x / 5);
+  out[cag_partial(n, 1, 0)] = cag_vec3(1, 0, b * cx * cy + slant * y);
+  out[cag_partial(n, 0, 1)] = cag_vec3(0, 1, -b * sx * sy + slant * x);
   if (n == 1) return CAG_OK;
-  out[cag_partial(n, 2, 0)] = out[cag_partial(n, 0, 2)] = cag_vec3(0, 0, -sin(x) * cos(y) / 2);
-  out[cag_partial(n, 1, 1)] = cag_vec3(0, 0, -cos(x) * sin(y) / 2 + 0.2);
+  out[cag_partial(n, 2, 0)] = out[cag_partial(n, 0, 2)] = cag_vec3(0, 0, -c * sx * cy);
+  out[cag_partial(n, 1, 1)] = cag_vec3(0, 0, -c * cx * sy + slant);
   return CAG_OK;
 }
 static CagStatus hills_row(void *context, double u, const double *vs, size_t nv, int n,
@@ -103,16 +107,93 @@ static void values_of_a_graph_have_closed_forms(void **state) {
   cag_surface_release(s);
 }
 
+// Of the triangles, those over which the values differ by more than a twentieth of their span.
+static double coarse_part(CagMesh *m, CagSurfaceValue kind) {
+  size_t coarse = 0;
+  double from, to;
+  for (size_t v = 0; v < m->vertex_count; v++) {
+    m->uv[2 * v] = value_of_hills(kind, m->positions[v].x, m->positions[v].y);
+    m->uv[2 * v + 1] = 0;
+  }
+  cag_mesh_value_span(&m, 1, 0, &from, &to);
+  for (size_t t = 0; t < m->triangle_count; t++) {
+    double x[3];
+    for (int k = 0; k < 3; k++)
+      x[k] = fmin(fmax(m->uv[2 * m->triangles[3 * t + (size_t)k]], from), to);
+    const double low = fmin(x[0], fmin(x[1], x[2])), high = fmax(x[0], fmax(x[1], x[2]));
+    coarse += high - low > (to - from) / 20;
+  }
+  return (double)coarse / (double)m->triangle_count;
+}
+
+// Edges of a fiftieth of the size, or half, or a quarter, until few triangles are coarse, or too
+// many would be needed.
+static void meshes_are_made_finer_as_needed(void **state) {
+  (void)state;
+  const CagSurfaceFunction f = {hills, hills_row, NULL, NULL};
+  static const size_t LIMITS[] = {1000000, 34000, 60000, 100000};
+  int of[3] = {0, 0, 0};
+  for (int round = 0; round < 11; round++) {
+    // Larger hills, and then ripples that do not bend the surface much.
+    const double wide = round < 8 ? 0.5 + 6 * (round / 4) : 0.5;
+    often = round < 8 ? 1 : 10 * pow(3, round - 8);
+    height = round < 8 ? 1 : 0.01 / often;
+    slant = round < 8 ? 0.2 : 0;
+    const CagSurfaceValue kind = (CagSurfaceValue)(round % 5);
+    CagTessellation how = CAG_TESSELLATION_DEFAULT;
+    CagSurface *s;
+    CagBounds box;
+    CagMesh *m, *plain;
+    OK(cag_surface_function(&f, -wide, wide / 2, false, 0.1, 0.1 + wide, false, &s, &err));
+    OK(cag_surface_bounds(s, &box, &err));
+    how.max_triangles = LIMITS[round < 8 ? round % 4 : 0];
+    CagTessellation fine = how;
+    fine.angle = fmin(how.angle, 0.07);
+    fine.max_edge = 0.02 * cag_norm(cag_sub(box.max, box.min));
+    const CagStatus status = cag_surface_value_mesh(s, kind, &how, &m, &err);
+    if (status) {
+      assert_int_equal(cag_surface_tessellate(s, &fine, &plain, &err), status);
+      cag_surface_release(s);
+      continue;
+    }
+    int k = 0;
+    for (;; k++, fine.max_edge /= 2) {
+      OK(cag_surface_tessellate(s, &fine, &plain, &err));
+      const size_t next = 4 * plain->triangle_count;
+      const bool last = k == 2 || next > 250000 || next > how.max_triangles;
+      if (last || coarse_part(plain, kind) <= 0.02) break;
+      cag_mesh_release(plain);
+    }
+    of[k]++;
+    assert_int_equal(m->triangle_count, plain->triangle_count);
+    assert_int_equal(m->vertex_count, plain->vertex_count);
+    assert_int_equal(m->weld != NULL, plain->weld != NULL);
+    for (size_t v = 0; v < m->vertex_count; v++) {
+      near_vec(m->positions[v], plain->positions[v], 0);
+      near_vec(m->normals[v], plain->normals[v], 0);
+    }
+    cag_mesh_release(plain);
+    cag_mesh_release(m);
+    cag_surface_release(s);
+  }
+  assert_true(of[0] > 0 && of[1] > 0 && of[2] > 0);
+  often = height = 1;
+  slant = 0.2;
+}
+
 // z = 0 for x < 1 and a (x - 1)^2 beyond: its curvature jumps from 0 to 2 a. The blossoms at the
 // pairs of knots 00, 01, 12, 22 are the control points.
 static void both_sides_of_a_jump_have_their_values(void **state) {
   (void)state;
   const double a = 0.4, ku[] = {0, 0, 0, 1, 2, 2, 2}, kv[] = {0, 0, 3, 3};
   const double x[] = {0, 0.5, 1.5, 2};
-  for (int direction = 0; direction < 2; direction++) {
+  for (int round = 0; round < 6; round++) {
+    const int direction = round % 2;
+    const double size = round < 2 ? 1 : round < 4 ? 1000 : 0.001;
     CagVec3 net[8];
     for (int i = 0; i < 4; i++)
-      for (int j = 0; j < 2; j++) net[2 * i + j] = cag_vec3(x[i], 3 * j, i == 3 ? a : 0);
+      for (int j = 0; j < 2; j++)
+        net[2 * i + j] = cag_vec3(size * x[i], size * 3 * j, i == 3 ? size * a : 0);
     CagSurface *s, *t;
     OK(cag_surface_nurbs(net, NULL, 4, 2, 2, 1, ku, kv, &s, &err));
     if (direction == 1) {
@@ -124,6 +205,10 @@ static void both_sides_of_a_jump_have_their_values(void **state) {
     CagTessellation how = CAG_TESSELLATION_DEFAULT;
     CagMesh *m;
     OK(cag_surface_value_mesh(s, CAG_VALUE_PRINCIPAL_MAX, &how, &m, &err));
+    for (size_t v = 0; v < m->vertex_count; v++) {
+      m->positions[v] = cag_scaled(m->positions[v], 1 / size);
+      m->uv[2 * v] *= size;
+    }
     size_t twice = 0;
     assert_non_null(m->weld);
     for (size_t k = 0; k < 3 * m->triangle_count; k++) {
@@ -199,14 +284,17 @@ static void spans_leave_rare_extremes_out(void **state) {
     double x[3 * MESHES * MOST_TRIANGLES], w[MESHES * MOST_TRIANGLES];
     CagMesh *meshes[MESHES];
     size_t n = 0;
+    const double unit = round % 3 ? 1 : 0.001;
     for (int k = 0; k < MESHES; k++) {
-      const size_t first = n, count = (size_t)uniform(k ? 0 : 5, MOST_TRIANGLES);
+      // Of 50 equal triangles one has just 2 % of the area.
+      const size_t first = n, some = (size_t)uniform(k ? 0 : 5, MOST_TRIANGLES);
+      const size_t count = round % 4 > 0 ? some : k < 2 ? 20 : 10;
       for (size_t i = 0; i < count; i++, n++) {
         // Small triangles may have values far away.
         const bool small = uniform(0, 1) < 0.15;
-        w[n] = small ? uniform(0.001, 0.2) : uniform(1, 2);
+        w[n] = round % 4 == 0 ? 1 : small ? uniform(0.001, 0.2) : uniform(1, 2);
         const double off = small ? uniform(-4, 4) : 0;
-        for (int j = 0; j < 3; j++) x[3 * n + (size_t)j] = uniform(1, 3) + off;
+        for (int j = 0; j < 3; j++) x[3 * n + (size_t)j] = unit * (uniform(1, 3) + off);
       }
       meshes[k] = mesh_of(x + 3 * first, w + first, count);
     }
@@ -280,6 +368,7 @@ static void mirrored_directions_have_their_component(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(values_of_a_graph_have_closed_forms),
+      cmocka_unit_test(meshes_are_made_finer_as_needed),
       cmocka_unit_test(both_sides_of_a_jump_have_their_values),
       cmocka_unit_test(spans_leave_rare_extremes_out),
       cmocka_unit_test(single_values_get_a_span_around_them),
