@@ -207,7 +207,11 @@ static bool is_good(const CagTracer *t, const CagTraceNode *a, const CagTraceNod
   CagVec3 along = cag_unit(cag_madd(cag_scaled(chord, 1.5 / h), -0.25, cag_add(ta, tb)));
   CagVec3 off = cag_sub(m->p, middle);
   off = cag_madd(off, -cag_dot(off, along), along);
-  return cag_norm(off) <= t->tolerance / 2;
+  if (cag_norm(off) > t->tolerance / 2) return false;
+  // An error that changes its sign there, as x (1 - x^2)^2 over -1..1 does, shows in the slope.
+  const double largest = 0.1431; // where x is 1 / sqrt(5), of a slope of 1 and a length of 1
+  const double slope = m->regular ? cag_norm(cag_cross(m->t, along)) : 0;
+  return largest * slope * h <= t->tolerance / 2;
 }
 
 // Where two branches of the curve cross between a and b: the gradient vanishes there, and the value
