@@ -2,6 +2,7 @@
 
 #include "geom/surface/curvature_contour.h"
 #include "geom/surface/reshape.h"
+#include "random.h"
 #include "support.h"
 
 static const double PI = 3.14159265358979323846;
@@ -133,12 +134,73 @@ static void a_jump_over_the_level_has_no_curve(void **state) {
   cag_surface_release(s);
 }
 
+// Curvatures of a graph by Monge's formulas.
+static double curvature_of_graph(const CagSurface *s, CagCurvature of, double u, double v) {
+  CagVec3 d[9];
+  OK(cag_surface_eval(s, u, v, 2, CAG_SIDE_RIGHT, CAG_SIDE_RIGHT, d, &err));
+  const double p = d[cag_partial(2, 1, 0)].z, q = d[cag_partial(2, 0, 1)].z;
+  const double r = d[cag_partial(2, 2, 0)].z, m = d[cag_partial(2, 1, 1)].z;
+  const double t = d[cag_partial(2, 0, 2)].z, g = 1 + p * p + q * q;
+  const double gauss = (r * t - m * m) / (g * g);
+  const double mean = ((1 + q * q) * r - 2 * p * q * m + (1 + p * p) * t) / (2 * pow(g, 1.5));
+  const double half = sqrt(fmax(0, mean * mean - gauss));
+  return of == CAG_CURVATURE_GAUSSIAN ? gauss
+         : of == CAG_CURVATURE_MEAN   ? mean
+         : of == CAG_CURVATURE_MAX    ? mean + half
+                                      : mean - half;
+}
+
+// Of graphs over the unit square by random heights, in few pieces: as many as the tolerance needs.
+static void contours_of_graphs_keep_the_tolerance(void **state) {
+  (void)state;
+  enum { N = 5 };
+  const double tolerance = 1e-5, h = 1e-4;
+  seed = 17;
+  size_t curves = 0, pieces = 0;
+  for (int round = 0; round < 16; round++) {
+    const CagCurvature of = (CagCurvature)(round % 4);
+    CagVec3 net[N * N];
+    for (int i = 0; i < N * N; i++)
+      net[i] = cag_vec3(i / N / (N - 1.0), i % N / (N - 1.0), uniform(-0.3, 0.3));
+    CagSurface *s;
+    CagCurveList list = {0};
+    bool everywhere;
+    OK(cag_surface_bezier(net, NULL, N, N, &s, &err));
+    const double level = curvature_of_graph(s, of, uniform(0.3, 0.7), 0.5);
+    OK(cag_surface_curvature_contour(s, of, level, tolerance, &list, &everywhere, &err));
+    assert_true(list.count > 0);
+    for (size_t k = 0; k < list.count; k++) {
+      const CagCurve *c = list.items[k];
+      for (int i = 1; i < 200; i++) {
+        CagVec3 p, on;
+        OK(cag_curve_point(c, c->start + (c->end - c->start) * i / 200, &p, &err));
+        OK(cag_surface_point(s, fmin(fmax(p.x, 0), 1), fmin(fmax(p.y, 0), 1), &on, &err));
+        NEAR(p.z, on.z, 4 * tolerance);
+        const double x = fmin(fmax(p.x, h), 1 - h), y = fmin(fmax(p.y, h), 1 - h);
+        const double gx = curvature_of_graph(s, of, x + h, y) - curvature_of_graph(s, of, x - h, y);
+        const double gy = curvature_of_graph(s, of, x, y + h) - curvature_of_graph(s, of, x, y - h);
+        const double off = curvature_of_graph(s, of, x, y) - level;
+        // By the steepest way; near where the curvature stands still, by its second derivatives.
+        if (hypot(gx, gy) > 2e-3)
+          assert_true(fabs(off) <= 2 * tolerance * hypot(gx, gy) / (2 * h) + 1e-4);
+      }
+      CagNurbsView view;
+      if (cag_curve_nurbs_view(c, &view)) pieces += view.count;
+      curves++;
+    }
+    cag_curve_list_free(&list);
+    cag_surface_release(s);
+  }
+  assert_true(curves > 30 && pieces < 5500);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(contours_of_a_torus_are_its_parallels),
       cmocka_unit_test(constant_curvature_is_told),
       cmocka_unit_test(contours_come_up_to_the_tip_of_a_cone),
       cmocka_unit_test(contours_do_not_depend_on_size_or_place),
+      cmocka_unit_test(contours_of_graphs_keep_the_tolerance),
       cmocka_unit_test(a_jump_over_the_level_has_no_curve),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -95,7 +95,7 @@ static void grids_have_the_values_of_single_places(void **state) {
   seed = 51;
   for (int round = 0; round < 240; round++) {
     const bool pole = round % 7 == 0;
-    const double size = pow(10, uniform(-5, 5));
+    const double size = pow(10, uniform(-12, 12));
     const int p = whole(1, 5), q = round % 4 < 3 ? round % 4 + 1 : whole(4, 6);
     CagSurface *s = random_surface(p, q, round / 4 % 2, size, pole);
     double us[ROWS], vs[COLUMNS];
