@@ -91,11 +91,18 @@ PROGRAMS = {"vectors": "tests/vectors/run", "fuzz": "tests/fuzz/fuzz", "memory":
 
 def all_suites():
     suites = sorted(name[:-2] for name in glob.glob("tests/*/*_test.c"))
-    suites += ["scripts/" + name for name in sorted(os.listdir("tests/language"))]
+    # Each script of the language is a suite, but those of errors, which are many and quick, are one.
+    suites += ["scripts/errors"]
+    suites += ["scripts/" + name[15:-4] for name in sorted(glob.glob("tests/language/*/*.cag")) if "/errors/" not in name]
     suites += ["stdlib", "examples", "vectors", "fuzz", "memory", "repl", "editors", "scenes"]
     suites += [re.sub(r".*cases_(.*)\.sh", r"cli/\1", name) for name in sorted(glob.glob("tests/cli/cases_*.sh"))]
     suites.remove("cli/install")
     return suites
+
+
+def path_of_scripts(suite):
+    path = "tests/language/" + suite[8:]
+    return path if os.path.isdir(path) else path + ".cag"
 
 
 def program_of(suite):
@@ -117,7 +124,7 @@ def command_of(suite, folder):
     if suite.startswith("cli/"):
         return ["sh", "tests/cli/run.sh", suite[4:]]
     if suite.startswith("scripts/"):
-        return [program, "test", "--no-pictures", "tests/language/" + suite[8:]]
+        return [program, "test", "--no-pictures", path_of_scripts(suite)]
     if suite in ("stdlib", "examples"):
         return [program, "test", "--no-pictures", suite]
     if suite == "scenes":
@@ -139,7 +146,9 @@ def sources_of(suite):
         return [suite + ".c", *glob.glob("tests/*/*.h")]
     if suite.startswith("cli/"):
         return [f"tests/cli/cases_{suite[4:]}.sh"]
-    folder = "tests/language/" + suite[8:] if suite.startswith("scripts/") else suite if os.path.isdir(suite) else "tests/" + suite
+    if suite.startswith("scripts/") and path_of_scripts(suite).endswith(".cag"):
+        return [path_of_scripts(suite)]
+    folder = path_of_scripts(suite) if suite.startswith("scripts/") else suite if os.path.isdir(suite) else "tests/" + suite
     return [name for name in glob.glob(folder + "/**", recursive=True) if os.path.isfile(name)]
 
 
