@@ -1,5 +1,6 @@
 // Traced runs as curves: lines, arcs of conics, or cubics through the points.
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -85,24 +86,56 @@ static bool fits(const CagTrace *t, const Chart *chart, const CagConic *k, doubl
   return true;
 }
 
+enum { NEEDED = 5 };
+
+// As many of the run's points, spread over its length.
+static void spread_points(const CagTrace *t, size_t distinct, const Chart *chart, CagVec3 *out) {
+  double whole = 0, length = 0;
+  for (size_t i = 1; i < t->count; i++) whole += cag_norm(cag_sub(t->points[i], t->points[i - 1]));
+  size_t at = 0;
+  for (size_t k = 0; k < NEEDED; k++) {
+    const double share = (double)k / (t->closed ? NEEDED : NEEDED - 1);
+    // One more than the one before, and so many that the rest has points of its own.
+    const size_t least = k == 0 ? 0 : at + 1, most = distinct - (NEEDED - k);
+    for (; at < least || (at < most && length < share * whole); at++)
+      length += cag_norm(cag_sub(t->points[at + 1], t->points[at]));
+    out[k] = in_chart(chart, t->points[at]);
+  }
+}
+
 // The conic through five of the points. Fewer than two more to try it by would prove nothing.
 static CagStatus guess(const CagTrace *t, const Chart *chart, CagConic *out, bool *found,
                        CagError *err) {
-  enum { NEEDED = 5, TRIED = 2 };
+  enum { TRIED = 2 };
   CagVec3 p[NEEDED];
   *found = false;
   size_t distinct = t->closed ? t->count - 1 : t->count;
   if (distinct + t->check_count < NEEDED + TRIED) return CAG_OK;
-  for (size_t i = 0; i < NEEDED; i++) {
-    size_t at = t->closed ? i * distinct / NEEDED : i * (distinct - 1) / (NEEDED - 1);
-    p[i] = in_chart(chart, distinct >= NEEDED
-                               ? t->points[at]
-                               : point_of(t, i < distinct ? i : t->count + i - distinct));
-  }
+  if (distinct >= NEEDED) spread_points(t, distinct, chart, p);
+  else
+    for (size_t i = 0; i < NEEDED; i++)
+      p[i] = in_chart(chart, point_of(t, i < distinct ? i : t->count + i - distinct));
   const CagStatus status =
       cag_conic_from_conditions(p, NEEDED, NULL, 0, CAG_CONIC_GENERAL, out, err);
   *found = !status;
   return cag_is_final(status) ? status : CAG_OK;
+}
+
+// Whether the rounding of coordinates about the conic's center is less than the points are worth.
+static bool is_near(const Chart *chart, const CagConicClass *k, double size) {
+  return (cag_norm(k->center) + k->a) * chart->unit * 2 * DBL_EPSILON <= EXACT * size;
+}
+
+// Makes it a parabola: the smaller eigenvalue of the quadratic part becomes 0.
+static void flatten(CagConic *conic) {
+  double *c = conic->c;
+  const double spread = hypot(c[0] - c[2], c[1]), sum = c[0] + c[2];
+  const double larger = sum < 0 ? (sum - spread) / 2 : (sum + spread) / 2;
+  // The square of the form cos(w) x + sin(w) y along the axis of the larger one, at the angle w.
+  const double w = atan2(c[1], c[0] - c[2]) / 2 + (sum < 0 ? FULL_TURN / 4 : 0);
+  c[0] = larger * cos(w) * cos(w);
+  c[1] = larger * sin(2 * w);
+  c[2] = larger * sin(w) * sin(w);
 }
 
 // The frame of the conic's own axes in the world: x, y turned by the angle about its center.
@@ -170,6 +203,12 @@ static CagStatus conic_arc(const CagTrace *t, const CagQuadric *quadric, const S
   }
   if (!fits(t, &chart, &conic, size)) return CAG_OK;
   if (cag_conic_classify(&conic, &k, err) != CAG_OK || !(k.a > 0)) return CAG_OK;
+  if (!is_near(&chart, &k, size)) {
+    flatten(&conic);
+    if (!fits(t, &chart, &conic, size) || cag_conic_classify(&conic, &k, err) != CAG_OK ||
+        !(k.a > 0) || !is_near(&chart, &k, size))
+      return CAG_OK;
+  }
   if (k.eccentricity < 1) return ellipse_arc(t, &chart, &k, out, err);
   return t->closed ? CAG_OK : open_arc(t, &chart, &k, out, err);
 }

@@ -211,7 +211,7 @@ static bool is_good(const CagTracer *t, const CagTraceNode *a, const CagTraceNod
   // An error that changes its sign there, as x (1 - x^2)^2 over -1..1 does, shows in the slope.
   const double largest = 0.1431; // where x is 1 / sqrt(5), of a slope of 1 and a length of 1
   const double slope = m->regular ? cag_norm(cag_cross(m->t, along)) : 0;
-  return largest * slope * h <= t->tolerance;
+  return largest * slope * h <= t->tolerance / 2;
 }
 
 // Where two branches of the curve cross between a and b: the gradient vanishes there, and the value
