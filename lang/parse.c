@@ -305,62 +305,64 @@ static void report_ternary(Parser *p, const CagExpr *condition) {
              b ? parse_quote(p, b->span, third, sizeof third, "b") : "b");
 }
 
-// Words that people put behind a value out of habit.
-static bool habit_behind(Parser *p, const CagExpr *before) {
+// Reports words that people put behind a value out of habit.
+static void report_habit(Parser *p, const CagExpr *before) {
   char text[QUOTE_SIZE];
   CagSpan here = parse_here(p);
   const char *value = before ? parse_quote(p, before->span, text, sizeof text, "a") : "a";
   CagDiagnostic *d;
   switch (parse_kind(p)) {
-  case CAG_TOKEN_QUESTION: report_ternary(p, before); return true;
+  case CAG_TOKEN_QUESTION: report_ternary(p, before); return;
   case CAG_TOKEN_EQUALS:
     d = parse_error(p, CAG_ERR_equals_in_expression, here,
                     "`=` defines a name, and cannot stand here");
     parse_help(d, "to compare write ==");
-    return true;
+    return;
   case CAG_TOKEN_ASSIGN_OPERATOR:
     d = parse_error(p, CAG_ERR_assignment_operator, here,
                     "nothing changes in cag: no value can be assigned");
     parse_help(d, "define a new name for the new value");
-    return true;
+    return;
   case CAG_TOKEN_NOT:
-    if (parse_kind_at(p, 1) != CAG_TOKEN_IN) return false;
+    if (parse_kind_at(p, 1) != CAG_TOKEN_IN) return;
     here.end = parse_peek(p, 1)->span.end;
     d = parse_error(p, CAG_ERR_not_in, here, "`not in` is not an operator");
     parse_help(d, "write not (%s in xs)", value);
-    return true;
+    return;
   case CAG_TOKEN_IF:
     d = parse_error(p, CAG_ERR_trailing_if, here, "the condition comes before the value");
     parse_help(d, "write if c then %s else b", value);
-    return true;
+    return;
   case CAG_TOKEN_FOR:
     d = parse_error(p, CAG_ERR_trailing_for, here, "in a comprehension the loop comes first");
     parse_help(d, "write [for x in xs: %s]", value);
-    return true;
+    return;
   case CAG_TOKEN_BY:
     d = parse_error(p, CAG_ERR_by_without_range, here, "`by` needs a range before it");
     parse_help(d, "write 0..10 by 2");
-    return true;
+    return;
   case CAG_TOKEN_ARROW:
     d = parse_error(p, CAG_ERR_function_parameters, here,
                     "before `=>` stand the names of the parameters");
     parse_help(d, "write x => e or (x, y) => e");
-    return true;
+    return;
   case CAG_TOKEN_COLON:
     if (p->bracket_count == 0 || p->brackets[p->bracket_count - 1].closer != CAG_TOKEN_TEXT_TAIL)
-      return false;
+      return;
     d = parse_error(p, CAG_ERR_format_spec, here,
                     "the { } of a text hold an expression and no format");
     parse_help(d, "write {text(%s, digits: 2)}", value);
-    return true;
-  default: return false;
+    return;
+  default: return;
   }
 }
 
 void parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const char *wanted) {
   if (p->panic) return;
   report_unclosed(p);
-  if (p->panic || parse_foreign_behind(p, before) || habit_behind(p, before)) return;
+  if (p->panic || parse_foreign_behind(p, before)) return;
+  report_habit(p, before);
+  if (p->panic) return;
   char word[64];
   CagTokenKind kind = parse_kind(p);
   const char *found = parse_found(p, word, sizeof word);
