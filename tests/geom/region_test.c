@@ -76,6 +76,31 @@ static void bad_holes_are_named(void **state) {
   FAILS_AT(cag_region_new(outer, twice, 2, &r, &err), "region-crossing", 1); // the second
   assert_string_equal(err.message, "holes[0] and holes[1] are one curve; leave one of them out");
   FAILS_AT(cag_region_new(outer, &outer, 1, &r, &err), "hole-outside", 0);
+  // Behind a hole that is good.
+  CagCurve *const fine = circle(0.5, -4, -4);
+  const struct {
+    CagCurve *holes[3];
+    size_t n;
+    long index;
+    const char *says;
+  } ROWS[] = {
+      {{fine, out}, 2, 1, "holes[1] does not lie within the outer boundary"},
+      {{fine, across}, 2, 1, "holes[1] crosses the outer boundary near [5, "},
+      {{fine, outer}, 2, 1, "holes[1] and the outer boundary are one curve"},
+      {{fine, in, near}, 3, 2, "holes[1] and holes[2] cross near [0.75, "},
+      {{fine, in, within}, 3, 2, "holes[1] and holes[2] lie one in the other"},
+      {{fine, in, in}, 3, 2, "holes[1] and holes[2] are one curve"},
+  };
+  for (size_t i = 0; i < sizeof ROWS / sizeof *ROWS; i++) {
+    assert_int_not_equal(cag_region_new(outer, ROWS[i].holes, ROWS[i].n, &r, &err), CAG_OK);
+    if (strncmp(err.message, ROWS[i].says, strlen(ROWS[i].says)) != 0) fail_msg("%s", err.message);
+    assert_int_equal(err.index, ROWS[i].index);
+    assert_string_equal(err.argument, "holes");
+  }
+  CagCurve *const loops[3] = {fine, in, near};
+  FAILS_AT(cag_region_from_loops(loops, 3, &r, &err), "region-crossing", 2);
+  assert_non_null(strstr(err.message, "curves[1] and curves[2] cross near [0.75, "));
+  cag_curve_release(fine);
   OK(cag_curve_line(cag_vec3(0, 0, 0), cag_vec3(1, 0, 0), 2, &open, &err));
   FAILS(cag_region_new(open, NULL, 0, &r, &err), "region-not-closed");
   FAILS_AT(cag_region_new(outer, &open, 1, &r, &err), "region-not-closed", 0);
