@@ -97,8 +97,8 @@ static CagSolid *quadric(const double c[10]) {
   return s;
 }
 
-// An ellipse carried along a direction, its curve from a random angle on.
-static CagSolid *column(double a, double b, CagVec3 along) {
+// An ellipse carried along a direction and twisted, its curve from a random angle on.
+static CagSolid *twisted(double a, double b, CagVec3 along, double twist) {
   const CagTransform level = cag_transform_identity();
   CagCurve *c;
   CagRegion *r;
@@ -106,11 +106,13 @@ static CagSolid *column(double a, double b, CagVec3 along) {
   const double start = uniform(0, 6);
   OK(cag_curve_arc(a, b, start, start + 2 * M_PI, &level, &c, &err));
   OK(cag_region_new(c, NULL, 0, &r, &err));
-  OK(cag_solid_extrude(r, along, 0, 1, &s, &err));
+  OK(cag_solid_extrude(r, along, twist, 1, &s, &err));
   cag_curve_release(c);
   cag_region_release(r);
   return s;
 }
+
+static CagSolid *column(double a, double b, CagVec3 along) { return twisted(a, b, along, 0); }
 
 static CagSolid *tetrahedron(const CagVec3 p[4]) {
   static const uint32_t faces[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
@@ -245,13 +247,13 @@ static void triangles_of_one_plane_coincide_where_they_overlap(void **state) {
 static void curved_faces(void **state) {
   (void)state;
   seed = 72;
-  for (int k = 0; k < 60; k++) {
+  for (int k = 0; k < 90; k++) {
     CagSolid *a, *b;
     const int place = k % 3;
     const double grown = place == 1 ? 1 + 4e-3 : 1, lift = place == 2 ? 1.3 : uniform(0.2, 0.6);
     const double angle = uniform(0, 6);
     const CagVec3 up = cag_vec3(0, 0, 1), o = cag_vec3(0, 0, 0);
-    switch (k / 3 % 5) {
+    switch (k / 3 % 6) {
     case 0:
       a = cylinder(1, 0.8, 0.8), b = moved(cylinder(1.17, grown * 0.8, grown * 0.8), 0, 0, lift);
       break;
@@ -267,12 +269,17 @@ static void curved_faces(void **state) {
       if (place == 2) continue;
       a = torus(2, 0.5), b = torus(2, grown * 0.5);
       break;
-    default:
+    case 4:
       a = column(1, 0.6, cag_vec3(0.7, -0.4, 1));
       b = moved(column(grown, grown * 0.6, cag_vec3(0.7 * 1.1, -0.4 * 1.1, 1.1)), 0.7 * lift,
                 -0.4 * lift, lift);
+      break;
+    default: // parameters that cross at a slant
+      a = twisted(1, 0.4, up, 1.5);
+      b = twisted(grown, grown * 0.4, cag_vec3(0, 0, 1.17), 1.5 * 1.17);
+      b = turned(moved(b, 0, 0, lift), up, 1.5 * lift, o);
     }
-    if (k / 3 % 5 < 4) b = turned(b, up, angle, o);
+    if (k / 3 % 6 < 4) b = turned(b, up, angle, o);
     expect(a, b, place > 0, "curved faces");
   }
 }
