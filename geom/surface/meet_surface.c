@@ -133,10 +133,8 @@ static bool comes_home(const CagMarch *m, const Run *run, const CagMarchNode *a,
   if (!(along > 0 && along <= 1 + 1e-9) || cag_dot(start->tangent, a->tangent) < TURN_MOST)
     return false;
   double t = along;
-  for (int i = 0; i < 4; i++) {
-    double off = cag_dot(cag_sub(start->x, hermite(a, b, t)), chord) / (length * length);
-    t = fmin(fmax(t + off, 0), 1);
-  }
+  for (int i = 0; i < 4; i++)
+    t += cag_dot(cag_sub(start->x, hermite(a, b, t)), chord) / (length * length);
   return cag_norm(cag_sub(hermite(a, b, t), start->x)) <= 4 * m->tolerance + JOINED * m->size;
 }
 
