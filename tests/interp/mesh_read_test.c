@@ -267,6 +267,30 @@ static void what_is_wrong_with_a_ply_is_told(void **state) {
                     "line 3");
 }
 
+// Fractions as counts would make no sense, and most types have two names.
+static void counts_of_lists_in_a_ply_are_whole(void **state) {
+  (void)state;
+  static const char *const whole[] = {"char",   "int8",   "uchar", "uint8", "short", "int16",
+                                      "ushort", "uint16", "int",   "int32", "uint",  "uint32"};
+  static const char *const others[] = {"float", "float32", "double", "float64", "size_t"};
+  char text[500];
+  for (size_t i = 0; i < sizeof whole / sizeof *whole + sizeof others / sizeof *others; i++) {
+    const bool good = i < sizeof whole / sizeof *whole;
+    snprintf(text, sizeof text,
+             HEAD
+             "property float z\nelement face 1\nproperty list %s int vertex_indices\nend_header\n"
+             "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+             good ? whole[i] : others[i - sizeof whole / sizeof *whole]);
+    if (!good) {
+      assert_text_fails("a.ply", text, "mesh-file-syntax", "the type of a list's count");
+      continue;
+    }
+    CagMesh *m = read_text("a.ply", text);
+    assert_int_equal(m->triangle_count, 1);
+    cag_mesh_release(m);
+  }
+}
+
 static void a_ply_may_lack_a_part_of_its_normals(void **state) {
   (void)state;
   static const struct {
@@ -337,6 +361,7 @@ int main(void) {
       cmocka_unit_test(binary_ply_of_either_end_is_read),
       cmocka_unit_test(strips_of_a_ply_are_turned_in_turn),
       cmocka_unit_test(what_is_wrong_with_a_ply_is_told),
+      cmocka_unit_test(counts_of_lists_in_a_ply_are_whole),
       cmocka_unit_test(a_ply_may_lack_a_part_of_its_normals),
       cmocka_unit_test(normals_of_no_length_are_those_of_the_triangles),
   };
