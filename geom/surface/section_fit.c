@@ -89,17 +89,17 @@ static bool fits(const CagTrace *t, const Chart *chart, const CagConic *k, doubl
 enum { NEEDED = 5 };
 
 // As many of the run's points, spread over its length.
-static void spread_points(const CagTrace *t, size_t distinct, const Chart *chart, CagVec3 *out) {
+static void spread_points(const CagTrace *t, size_t distinct, CagVec3 *out) {
+  const size_t parts = t->closed ? NEEDED : NEEDED - 1;
   double whole = 0, length = 0;
   for (size_t i = 1; i < t->count; i++) whole += cag_norm(cag_sub(t->points[i], t->points[i - 1]));
   size_t at = 0;
   for (size_t k = 0; k < NEEDED; k++) {
-    const double share = (double)k / (t->closed ? NEEDED : NEEDED - 1);
     // One more than the one before, and so many that the rest has points of its own.
     const size_t least = k == 0 ? 0 : at + 1, most = distinct - (NEEDED - k);
-    for (; at < least || (at < most && length < share * whole); at++)
+    for (; at < least || (at < most && length * (double)parts < (double)k * whole); at++)
       length += cag_norm(cag_sub(t->points[at + 1], t->points[at]));
-    out[k] = in_chart(chart, t->points[at]);
+    out[k] = t->points[at];
   }
 }
 
@@ -111,10 +111,11 @@ static CagStatus guess(const CagTrace *t, const Chart *chart, CagConic *out, boo
   *found = false;
   size_t distinct = t->closed ? t->count - 1 : t->count;
   if (distinct + t->check_count < NEEDED + TRIED) return CAG_OK;
-  if (distinct >= NEEDED) spread_points(t, distinct, chart, p);
+  if (distinct >= NEEDED) spread_points(t, distinct, p);
   else
     for (size_t i = 0; i < NEEDED; i++)
-      p[i] = in_chart(chart, point_of(t, i < distinct ? i : t->count + i - distinct));
+      p[i] = point_of(t, i < distinct ? i : t->count + i - distinct);
+  for (size_t i = 0; i < NEEDED; i++) p[i] = in_chart(chart, p[i]);
   const CagStatus status =
       cag_conic_from_conditions(p, NEEDED, NULL, 0, CAG_CONIC_GENERAL, out, err);
   *found = !status;
@@ -126,16 +127,44 @@ static bool is_near(const Chart *chart, const CagConicClass *k, double size) {
   return (cag_norm(k->center) + k->a) * chart->unit * 2 * DBL_EPSILON <= EXACT * size;
 }
 
-// Makes it a parabola: the smaller eigenvalue of the quadratic part becomes 0.
-static void flatten(CagConic *conic) {
+// The parabola nearest to the points whose axis is that of the conic's smaller eigenvalue, by least
+// squares: h = k0 + k1 s + k2 s^2 along the axis.
+static void flatten(const CagTrace *t, const Chart *chart, CagConic *conic) {
   double *c = conic->c;
-  const double spread = hypot(c[0] - c[2], c[1]), sum = c[0] + c[2];
-  const double larger = sum < 0 ? (sum - spread) / 2 : (sum + spread) / 2;
-  // The square of the form cos(w) x + sin(w) y along the axis of the larger one, at the angle w.
-  const double w = atan2(c[1], c[0] - c[2]) / 2 + (sum < 0 ? FULL_TURN / 4 : 0);
-  c[0] = larger * cos(w) * cos(w);
-  c[1] = larger * sin(2 * w);
-  c[2] = larger * sin(w) * sin(w);
+  const double w = atan2(c[1], c[0] - c[2]) / 2 + (c[0] + c[2] < 0 ? FULL_TURN / 4 : 0);
+  const double x = cos(w), y = sin(w);
+  // Polynomials 1, s - p, (s - q) (s - p) - r that are orthogonal on the points.
+  const size_t n = t->count + t->check_count;
+  double p = 0, q = 0, r = 0, square = 0, fourth = 0, k[3] = {0};
+  for (size_t i = 0; i < n; i++) {
+    const CagVec3 at = in_chart(chart, point_of(t, i));
+    p += (x * at.x + y * at.y) / (double)n;
+  }
+  for (size_t i = 0; i < n; i++) {
+    const CagVec3 at = in_chart(chart, point_of(t, i));
+    const double s = x * at.x + y * at.y, d = s - p;
+    square += d * d;
+    q += d * d * s;
+  }
+  q /= square;
+  r = square / (double)n;
+  for (size_t i = 0; i < n; i++) {
+    const CagVec3 at = in_chart(chart, point_of(t, i));
+    const double s = x * at.x + y * at.y, h = x * at.y - y * at.x, d = s - p, e = (s - q) * d - r;
+    k[0] += h / (double)n;
+    k[1] += h * d / square;
+    k[2] += h * e;
+    fourth += e * e;
+  }
+  k[2] /= fourth;
+  // k0 + k1 (s - p) + k2 (s^2 - (p + q) s + p q - r) - h = 0
+  const double linear = k[1] - k[2] * (p + q);
+  c[0] = k[2] * x * x;
+  c[1] = 2 * k[2] * x * y;
+  c[2] = k[2] * y * y;
+  c[3] = linear * x + y;
+  c[4] = linear * y - x;
+  c[5] = k[0] - k[1] * p + k[2] * (p * q - r);
 }
 
 // The frame of the conic's own axes in the world: x, y turned by the angle about its center.
@@ -204,7 +233,7 @@ static CagStatus conic_arc(const CagTrace *t, const CagQuadric *quadric, const S
   if (!fits(t, &chart, &conic, size)) return CAG_OK;
   if (cag_conic_classify(&conic, &k, err) != CAG_OK || !(k.a > 0)) return CAG_OK;
   if (!is_near(&chart, &k, size)) {
-    flatten(&conic);
+    flatten(t, &chart, &conic);
     if (!fits(t, &chart, &conic, size) || cag_conic_classify(&conic, &k, err) != CAG_OK ||
         !(k.a > 0) || !is_near(&chart, &k, size))
       return CAG_OK;
