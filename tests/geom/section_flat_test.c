@@ -63,13 +63,15 @@ static void pieces_lie_between_crossings_of_the_edges(void **state) {
   for (int round = 0; round < 300; round++) {
     CagVec3 corners[CROSSINGS];
     const size_t loops = (size_t)(1 + round % LOOPS);
-    const double size = pow(10, uniform(-4, 4));
+    // The size of the face, and that of its coordinates, on which rounding depends: faces of any
+    // size lie about (1, 2, 3).
+    const double size = pow(10, uniform(-4, 4)), far = size + 4;
     CagTransform turn, grow, frame;
     set_star(corners, cag_vec3(0, 0, 0), 2.3, 4);
     set_star(corners + CORNERS, cag_vec3(-1.1, 0, 0), 0.2, 0.8);
     set_star(corners + 2 * CORNERS, cag_vec3(1.1, 0, 0), 0.2, 0.8);
-    const CagVec3 axis = random_vector(1);
-    OK(cag_rotate(axis, uniform(0, 6), random_vector(4), &turn, &err));
+    const CagVec3 axis = random_vector(1), center = random_vector(4);
+    OK(cag_rotate(axis, uniform(0, 6), center, &turn, &err));
     OK(cag_scale(cag_vec3(size, size, size), cag_vec3(1, 2, 3), &grow, &err));
     frame = cag_transform_multiply(&grow, &turn);
     CagSurface *face = face_of(corners, loops, CORNERS, &frame);
@@ -91,13 +93,13 @@ static void pieces_lie_between_crossings_of_the_edges(void **state) {
       OK(cag_curve_point(c, c->start, &ends[0], &err));
       OK(cag_curve_point(c, c->end, &ends[1], &err));
       for (int k = 0; k < 2; k++)
-        NEAR(cag_dot(plane.normal, cag_sub(ends[k], plane.point)), 0, 1e-12 * size);
+        NEAR(cag_dot(plane.normal, cag_sub(ends[k], plane.point)), 0, 1e-12 * far);
       const double a = cag_dot(along, ends[0]), b = cag_dot(along, ends[1]);
       // It is one of the pieces, each of which is found once.
       size_t k = 0;
-      while (k < n && fabs(places[k] - fmin(a, b)) > 1e-9 * size) k += 2;
+      while (k < n && fabs(places[k] - fmin(a, b)) > 1e-11 * far) k += 2;
       assert_true(k < n);
-      NEAR(places[k + 1], fmax(a, b), 1e-9 * size);
+      NEAR(places[k + 1], fmax(a, b), 1e-11 * far);
       places[k] = INFINITY;
     }
     cut += n > 0;
@@ -105,7 +107,7 @@ static void pieces_lie_between_crossings_of_the_edges(void **state) {
     cag_curve_list_free(&list);
     cag_surface_release(face);
   }
-  assert_true(cut > 250 && pieces > 350);
+  assert_true(cut > 200 && pieces > 250);
 }
 
 static void set_box(CagVec3 *p, double x0, double x1, double y0, double y1) {
