@@ -185,8 +185,9 @@ typedef struct EdgeLimits {
   double angle, free, longest;
 } EdgeLimits;
 
-// Where the normal turns more than this along one edge it turns at once, at a cusp; what more edges
-// do not mend is let be. A normal that is not known is 0, and makes an angle of 0 or half a turn.
+// An edge along which the normal turns by more than this crosses a cusp. More edges would not help
+// there, so its angle does not count. An unknown normal is a zero vector: its angle is 0 or pi,
+// which does not count either.
 static const double turned_at_once = 1;
 
 static bool is_free(const EdgeLimits *most, const CagVec3 *p, size_t a, size_t b) {

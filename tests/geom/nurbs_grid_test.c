@@ -109,7 +109,7 @@ static void grids_have_the_values_of_single_places(void **state) {
   }
 }
 
-// Where both partials have one direction, or one of them is none, there is no normal.
+// There is no normal where the partial derivatives are parallel, or one of them is zero.
 static void flat_nets_have_no_normals(void **state) {
   (void)state;
   seed = 52;
