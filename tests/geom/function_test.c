@@ -1,5 +1,6 @@
 // Curves and surfaces by functions of the caller: maps around them, errors, ownership.
 
+#include "function_support.h"
 #include "geom/curve/function.h"
 #include "geom/curve/natural.h"
 #include "geom/mesh/tessellate.h"
@@ -106,15 +107,7 @@ static CagStatus saddle_eval(void *context, double u, double v, int n, CagVec3 *
 }
 static CagStatus saddle_row(void *context, double u, const double *vs, size_t nv, int n,
                             CagVec3 *out, CagError *e) {
-  for (size_t k = 0; k < nv; k++) {
-    CagVec3 d[4];
-    saddle_eval(context, u, vs[k], n, d, e);
-    CagVec3 *to = out + k * (n ? 3 : 1);
-    to[0] = d[0];
-    if (n) to[1] = d[cag_partial(1, 1, 0)];
-    if (n) to[2] = d[cag_partial(1, 0, 1)];
-  }
-  return CAG_OK;
+  return row_by_places(saddle_eval, context, u, vs, nv, n, out, e);
 }
 
 static void points_that_are_not_finite_are_found(void **state) {

@@ -3,6 +3,7 @@
 
 #include "geom/surface/function.h"
 #include "geom/surface/surface.h"
+#include "tests/geom/function_support.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
@@ -97,15 +98,7 @@ static CagStatus waves(void *context, double u, double v, int n, CagVec3 *out, C
 }
 static CagStatus waves_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  for (size_t j = 0; j < nv; j++) {
-    CagVec3 d[4];
-    waves(context, u, vs[j], n, d, e);
-    out[(n ? 3 : 1) * j] = d[0];
-    if (n == 0) continue;
-    out[3 * j + 1] = d[cag_partial(1, 1, 0)];
-    out[3 * j + 2] = d[cag_partial(1, 0, 1)];
-  }
-  return CAG_OK;
+  return row_by_places(waves, context, u, vs, nv, n, out, e);
 }
 
 static CagSurface *formula(double u0, double u1, double v0, double v1) {

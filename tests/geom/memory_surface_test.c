@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "faults.h"
+#include "function_support.h"
 #include "geom/curve/function.h"
 #include "geom/mesh/orient.h"
 #include "geom/mesh/tessellate.h"
@@ -44,15 +45,7 @@ static CagStatus waves_eval(void *context, double u, double v, int n, CagVec3 *o
 }
 static CagStatus waves_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  CagStatus status = CAG_OK;
-  for (size_t k = 0; !status && k < nv; k++) {
-    CagVec3 d[4], *to = out + k * (n ? 3 : 1);
-    if ((status = waves_eval(context, u, vs[k], n, d, e))) break;
-    to[0] = d[0];
-    if (n) to[1] = d[cag_partial(1, 1, 0)];
-    if (n) to[2] = d[cag_partial(1, 0, 1)];
-  }
-  return status;
+  return row_by_places(waves_eval, context, u, vs, nv, n, out, e);
 }
 static CagStatus wave_eval(void *context, double t, int order, CagVec3 *out, CagError *e) {
   (void)context;

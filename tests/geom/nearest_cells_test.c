@@ -6,6 +6,7 @@
 #include "geom/surface/function.h"
 #include "geom/surface/nearest.h"
 #include "geom/surface/reshape.h"
+#include "tests/geom/function_support.h"
 #include "tests/geom/nearest_support.h"
 
 static CagVec3 cell_point(const CagDistanceCells *c, double u, double v) {
@@ -157,13 +158,7 @@ static CagStatus bump(void *context, double u, double v, int n, CagVec3 *out, Ca
 }
 static CagStatus bump_row(void *context, double u, const double *vs, size_t nv, int n, CagVec3 *out,
                           CagError *err) {
-  for (size_t j = 0; j < nv; j++) {
-    CagVec3 d[4];
-    bump(context, u, vs[j], n, d, err);
-    for (int k = 0; k < (n ? 3 : 1); k++)
-      out[(n ? 3 : 1) * j + (size_t)k] = d[k == 2 ? 1 : k == 1 ? 2 : 0];
-  }
-  return CAG_OK;
+  return row_by_places(bump, context, u, vs, nv, n, out, err);
 }
 
 static CagSurface *patch(int p, int q, bool rational) {

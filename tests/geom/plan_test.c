@@ -3,8 +3,9 @@
 
 #include "geom/mesh/trial.h"
 #include "geom/surface/function.h"
+#include "tests/geom/function_support.h"
+#include "tests/geom/net_support.h"
 #include "tests/geom/random.h"
-#include "tests/geom/support.h"
 
 typedef struct Planned {
   Tessellator t;
@@ -28,28 +29,6 @@ static CagTessellation limits(double tolerance, double angle, double max_edge) {
 }
 
 // --- Nets whose rows and columns may change places, or run the other way ---
-
-enum { NET = 4 };
-
-typedef struct Net {
-  CagVec3 p[NET][NET];
-  size_t n[2];
-} Net;
-
-static CagSurface *surface_of(const Net *net, int turn) {
-  CagVec3 flat[NET * NET];
-  CagSurface *s;
-  const bool swap = turn & 1, back_u = turn & 2, back_v = turn & 4;
-  const size_t rows = net->n[swap], columns = net->n[!swap];
-  for (size_t i = 0; i < rows; i++)
-    for (size_t k = 0; k < columns; k++) {
-      const size_t a = swap ? k : i, b = swap ? i : k;
-      flat[i * columns + k] =
-          net->p[back_u ? net->n[0] - 1 - a : a][back_v ? net->n[1] - 1 - b : b];
-    }
-  OK(cag_surface_bezier(flat, NULL, rows, columns, &s, &err));
-  return s;
-}
 
 // A leaf in the parameters of the net itself.
 static Leaf turned(const Leaf *leaf, int turn) {
@@ -336,6 +315,16 @@ static void check_leaves(const Planned *p, const CagSurface *s, const CagTessell
   NEAR(area, (s->u1 - s->u0) * (s->v1 - s->v0), 1e-9);
 }
 
+// Gives the number of quadrilaterals.
+static double check_plan(const CagSurface *s, const CagTessellation *how) {
+  Planned p;
+  plan(&p, s, how);
+  check_leaves(&p, s, how);
+  const double n = p.t.quads;
+  release(&p);
+  return n;
+}
+
 // All leaves keep the limits; the bounds of quadrilaterals are what was needed for it.
 static void leaves_keep_limits_with_few_quadrilaterals(void **state) {
   (void)state;
@@ -353,11 +342,7 @@ static void leaves_keep_limits_with_few_quadrilaterals(void **state) {
         const Net net = cap_or_bump(k % 3 + 1);
         s = surface_of(&net, k % 8);
       }
-      Planned p;
-      plan(&p, s, &how);
-      check_leaves(&p, s, &how);
-      sum += p.t.quads;
-      release(&p);
+      sum += check_plan(s, &how);
       cag_surface_release(s);
     }
     if (!(sum <= cases[c].most)) fail_msg("case %zu: %g quadrilaterals", c, sum);
@@ -387,17 +372,7 @@ static CagStatus ripple_eval(void *context, double u, double v, int n, CagVec3 *
 
 static CagStatus ripple_row(void *context, double u, const double *vs, size_t nv, int n,
                             CagVec3 *out, CagError *e) {
-  for (size_t j = 0; j < nv; j++) {
-    CagVec3 d[3];
-    ripple_eval(context, u, vs[j], n, d, e);
-    if (n == 0) out[j] = d[0];
-    else {
-      out[3 * j] = d[0];
-      out[3 * j + 1] = d[cag_partial(1, 1, 0)];
-      out[3 * j + 2] = d[cag_partial(1, 0, 1)];
-    }
-  }
-  return CAG_OK;
+  return row_by_places(ripple_eval, context, u, vs, nv, n, out, e);
 }
 
 static void keep(void *context) { (void)context; }
@@ -421,11 +396,7 @@ static void ripples_within_the_tolerance_keep_limits_of_edges(void **state) {
     r.fade[k / 2 % 2] = uniform(0, 0.9);
     const CagSurfaceFunction f = {ripple_eval, ripple_row, keep, &r};
     OK(cag_surface_function(&f, 0, 1, false, 0, 1, false, &s, &err));
-    Planned p;
-    plan(&p, s, &how);
-    check_leaves(&p, s, &how);
-    sum += p.t.quads;
-    release(&p);
+    sum += check_plan(s, &how);
     cag_surface_release(s);
   }
   assert_true(sum <= 28450);

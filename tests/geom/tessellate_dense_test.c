@@ -8,6 +8,7 @@
 #include "geom/surface/quadric.h"
 #include "geom/surface/reshape.h"
 #include "tests/geom/dense_support.h"
+#include "tests/geom/function_support.h"
 
 static double smallest_angle(const CagMesh *m) {
   double least = M_PI;
@@ -279,18 +280,7 @@ static CagStatus formula_eval(void *context, double u, double v, int n, CagVec3 
 
 static CagStatus formula_row(void *context, double u, const double *vs, size_t nv, int n,
                              CagVec3 *out, CagError *e) {
-  for (size_t j = 0; j < nv; j++) {
-    CagVec3 d[4];
-    CagStatus status = formula_eval(context, u, vs[j], n, d, e);
-    if (status) return status;
-    if (n == 0) out[j] = d[0];
-    else {
-      out[3 * j] = d[0];
-      out[3 * j + 1] = d[cag_partial(1, 1, 0)];
-      out[3 * j + 2] = d[cag_partial(1, 0, 1)];
-    }
-  }
-  return CAG_OK;
+  return row_by_places(formula_eval, context, u, vs, nv, n, out, e);
 }
 
 static void keep(void *context) { (void)context; }

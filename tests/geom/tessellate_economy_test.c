@@ -2,31 +2,8 @@
 // alike however the parameters of a surface run.
 
 #include "geom/mesh/tessellate.h"
+#include "tests/geom/net_support.h"
 #include "tests/geom/random.h"
-#include "tests/geom/support.h"
-
-enum { DEGREE = 3, NET = DEGREE + 1 };
-
-// A net of control points whose rows and columns may change places, or run the other way.
-typedef struct Net {
-  CagVec3 p[NET][NET];
-  size_t n[2];
-} Net;
-
-static CagSurface *surface_of(const Net *net, int turn) {
-  CagVec3 flat[NET * NET];
-  CagSurface *s;
-  const bool swap = turn & 1, back_u = turn & 2, back_v = turn & 4;
-  const size_t rows = net->n[swap], columns = net->n[!swap];
-  for (size_t i = 0; i < rows; i++)
-    for (size_t k = 0; k < columns; k++) {
-      const size_t a = swap ? k : i, b = swap ? i : k;
-      flat[i * columns + k] =
-          net->p[back_u ? net->n[0] - 1 - a : a][back_v ? net->n[1] - 1 - b : b];
-    }
-  OK(cag_surface_bezier(flat, NULL, rows, columns, &s, &err));
-  return s;
-}
 
 static double triangles_of(const CagSurface *s, const CagTessellation *how) {
   CagMesh *m;

@@ -145,6 +145,19 @@ static void check_limits(const CagMesh *m, const CagSurface *s, const CagTessell
   }
 }
 
+// Gives the number of triangles.
+static double check_mesh(const Shape *shape, const CagTessellation *how) {
+  CagMesh *m;
+  OK(cag_surface_tessellate(shape->s, how, &m, &err));
+  check_tiling(m, shape->s);
+  check_topology(m, shape);
+  check_vertices(m, shape->s);
+  check_limits(m, shape->s, how);
+  const double n = (double)m->triangle_count;
+  cag_mesh_release(m);
+  return n;
+}
+
 static void meshes_of_random_nets_are_sound(void **state) {
   (void)state;
   seed = 67;
@@ -154,13 +167,7 @@ static void meshes_of_random_nets_are_sound(void **state) {
                                  .angle = k % 3 ? uniform(0.3, 0.8) : 0,
                                  .max_edge = k % 5 ? 0 : uniform(1, 3),
                                  .max_triangles = 100000};
-    CagMesh *m;
-    OK(cag_surface_tessellate(shape.s, &how, &m, &err));
-    check_tiling(m, shape.s);
-    check_topology(m, &shape);
-    check_vertices(m, shape.s);
-    check_limits(m, shape.s, &how);
-    cag_mesh_release(m);
+    check_mesh(&shape, &how);
     cag_surface_release(shape.s);
   }
 }
@@ -201,14 +208,7 @@ static void meshes_of_twisted_sections_are_sound(void **state) {
                                  .angle = k % 3 ? uniform(0.3, 0.8) : 0,
                                  .max_edge = k % 5 ? 0 : uniform(2, 4),
                                  .max_triangles = 100000};
-    CagMesh *m;
-    OK(cag_surface_tessellate(shape.s, &how, &m, &err));
-    check_tiling(m, shape.s);
-    check_topology(m, &shape);
-    check_vertices(m, shape.s);
-    check_limits(m, shape.s, &how);
-    sum += (double)m->triangle_count;
-    cag_mesh_release(m);
+    sum += check_mesh(&shape, &how);
     cag_surface_release(shape.s);
   }
   assert_true(sum <= 63450);

@@ -5,6 +5,7 @@
 
 #include "geom/mesh/distance.h"
 #include "geom/surface/function.h"
+#include "tests/geom/function_support.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
@@ -321,15 +322,7 @@ static CagStatus sheet_eval(void *context, double u, double v, int n, CagVec3 *o
 
 static CagStatus sheet_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  (void)e;
-  for (size_t j = 0; j < nv; j++) {
-    CagVec3 *to = out + (n == 0 ? j : 3 * j);
-    to[0] = sheet_at(context, u, vs[j]);
-    if (n == 0) continue;
-    to[1] = cag_vec3(1, 0, 0);
-    to[2] = cag_vec3(0, 1, 0);
-  }
-  return CAG_OK;
+  return row_by_places(sheet_eval, context, u, vs, nv, n, out, e);
 }
 
 static void keep(void *context) { (void)context; }

@@ -5,6 +5,7 @@
 
 #include "geom/surface/function.h"
 #include "geom/surface/reshape.h"
+#include "tests/geom/function_support.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
@@ -27,16 +28,7 @@ static CagStatus hills(void *context, double x, double y, int n, CagVec3 *out, C
 }
 static CagStatus hills_row(void *context, double u, const double *vs, size_t nv, int n,
                            CagVec3 *out, CagError *e) {
-  const int each = n ? 3 : 1;
-  for (size_t j = 0; j < nv; j++) {
-    CagVec3 d[4];
-    hills(context, u, vs[j], n, d, e);
-    out[(size_t)each * j] = d[0];
-    if (n == 0) continue;
-    out[3 * j + 1] = d[cag_partial(1, 1, 0)];
-    out[3 * j + 2] = d[cag_partial(1, 0, 1)];
-  }
-  return CAG_OK;
+  return row_by_places(hills, context, u, vs, nv, n, out, e);
 }
 
 // By Monge's formulas, of the normal up.
