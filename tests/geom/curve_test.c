@@ -543,6 +543,10 @@ static void bad_data_are_named(void **state) {
   FAILS_AT(cag_curve_bezier(six, negative + 2, 1, 3, &c, &err), "negative-weight", 0);
   FAILS(cag_curve_polyline(six, 1, false, 3, &c, &err), "too-few-points");
   FAILS(cag_curve_polyline(six, 2, true, 3, &c, &err), "too-few-points");
+  const CagVec3 same[3] = {{1, 2, 0}, {1, 2, 0}, {1, 2, 0}};
+  FAILS(cag_curve_polyline(same, 3, true, 3, &c, &err), "too-few-points");
+  assert_string_equal(err.message,
+                      "a closed polyline needs at least 3 different points; these are 1");
   CagTransform frame = cag_transform_identity();
   FAILS(cag_curve_arc(-1, -1, 0, 1, &frame, &c, &err), "radius-not-positive");
   assert_string_equal(err.argument, "radius");
