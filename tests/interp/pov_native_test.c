@@ -382,6 +382,31 @@ static void quality_is_that_of_the_options(void **state) {
   }
 }
 
+// Indirect light is computed for final pictures, and for normal ones that have no other light than
+// the sky. The ambient part of materials stands in for it elsewhere.
+static void indirect_light_depends_on_quality_and_lights(void **state) {
+  (void)state;
+  static const struct {
+    const char *stage;
+    bool indirect[3]; // draft, normal, final
+  } cases[] = {
+      {"sky(\"white\")", {false, true, true}},
+      {"sky(\"white\"), sun(-Z)", {false, false, true}},
+      {"sun(-Z)", {false, false, true}},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+    for (int q = 0; q < 3; q++) {
+      CagPovOptions options = CAG_POV_OPTIONS_DEFAULT;
+      options.quality = (CagPovQuality)q;
+      char script[99];
+      snprintf(script, sizeof script, "show sphere(1), camera([0, -40, 9]), %s", cases[k].stage);
+      char *text = source_of(script, options);
+      assert_true(contains(text, "radiosity {") == cases[k].indirect[q]);
+      assert_true(contains(text, "ambient_light") != cases[k].indirect[q]);
+      free(text);
+    }
+}
+
 // A light of strength 2 is twice as bright; a spot's falloff is half of its cone, the square of an
 // area light has its size and lies across its direction. A camera of 40 degrees at 16:9 has the
 // direction 16/9 / 2 / tan(20 degrees).
@@ -425,6 +450,7 @@ int main(void) {
       cmocka_unit_test(meshes_have_their_corners),
       cmocka_unit_test(materials_are_those_of_bodies_or_sheets),
       cmocka_unit_test(quality_is_that_of_the_options),
+      cmocka_unit_test(indirect_light_depends_on_quality_and_lights),
       cmocka_unit_test(lights_and_cameras_have_their_numbers),
   };
   return cmocka_run_group_tests_name("pov_native", tests, NULL, NULL);
