@@ -350,6 +350,9 @@ class Trials:
         self.programs, self.reach = programs, reach
         self.lock = threading.Lock()
         self.passing = {}  # whether a suite passes without a change
+        self.unchanged = f"{WORK}/unchanged"  # their programs
+        shutil.rmtree(self.unchanged, ignore_errors=True)
+        os.makedirs(self.unchanged)
         with open("tools/equivalent_mutations.txt") as file:
             self.equivalent = {row.rstrip("\n") for row in file}
         self.headers = {}
@@ -382,10 +385,8 @@ class Trials:
     def passes_unchanged(self, suite):
         with self.lock:
             if suite not in self.passing:
-                folder = f"{WORK}/unchanged"
-                os.makedirs(folder, exist_ok=True)
-                self.programs.link(suite, folder)
-                self.passing[suite] = self.run(suite, folder)
+                self.programs.link(suite, self.unchanged)
+                self.passing[suite] = self.run(suite, self.unchanged)
                 if not self.passing[suite]:
                     print(f"{suite} fails without a change and takes no part", flush=True)
             return self.passing[suite]
