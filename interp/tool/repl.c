@@ -218,7 +218,7 @@ int cag_tool_repl(CagTool *t, int argc, char **argv) {
   read_texts(&repl);
   cag_repl_input_free(repl.input);
   cag_session_free(repl.session);
-  for (size_t i = 0; i < repl.loaded_count; i++) free(repl.loaded[i]);
+  while (repl.loaded_count) free(repl.loaded[--repl.loaded_count]);
   free(repl.loaded);
   return repl.interactive ? CAG_STATUS_OK : repl.status;
 }

@@ -334,8 +334,7 @@ static void reload(CagRepl *repl, char *operand) {
 static void clear(CagRepl *repl, char *operand) {
   (void)operand;
   cag_session_clear(repl->session);
-  for (size_t i = 0; i < repl->loaded_count; i++) free(repl->loaded[i]);
-  repl->loaded_count = 0;
+  while (repl->loaded_count) free(repl->loaded[--repl->loaded_count]);
 }
 
 static void quit(CagRepl *repl, char *operand) {
