@@ -32,7 +32,7 @@ static const char DEFINITIONS[] =
     "радиус = 5\n"
     "радиан = 6\n";
 
-static char *module_path[] = {"modules"};
+static char *module_path[] = {"modules", "more"};
 
 static void write_file(const char *path, const char *text) {
   FILE *f = fopen(path, "w");
@@ -51,16 +51,18 @@ static int begin(void **state) {
   assert_int_equal(chdir(folder), 0);
   assert_int_equal(mkdir("li", 0777), 0);
   assert_int_equal(mkdir("modules", 0777), 0);
+  assert_int_equal(mkdir("more", 0777), 0);
   write_file("gripper.cag", "span = 3\nspread(x) = x\n");
   write_file("li/jaws.cag", "jaw = 1\n");
   write_file("modules/shelf.cag", "board = 1\n");
   write_file("modules/notes.txt", "");
+  write_file("more/shell.cag", "wall = 1\n");
   write_file("wrong.cag", "a = (\n");
   write_file("g.t", "");
   cag_session_options_init(&tool.session);
   tool.session.messages = fopen("/dev/null", "w");
   tool.session.module_path = (const char *const *)module_path;
-  tool.session.module_path_count = 1;
+  tool.session.module_path_count = 2;
   repl = (CagRepl){.tool = &tool, .session = cag_session_new(&tool.session)};
   assert_non_null(repl.session);
   assert_int_equal(cag_session_input(repl.session, DEFINITIONS, strlen(DEFINITIONS), NULL, NULL),
@@ -76,10 +78,12 @@ static int end(void **state) {
                                       "li/jaws.cag",
                                       "modules/shelf.cag",
                                       "modules/notes.txt",
+                                      "more/shell.cag",
                                       "wrong.cag",
                                       "g.t",
                                       "li",
                                       "modules",
+                                      "more",
                                       folder};
   for (size_t i = 0; i < sizeof PATHS / sizeof *PATHS; i++) remove(PATHS[i]);
   return 0;
@@ -168,7 +172,8 @@ static const Line LINES[] = {
     {NULL, "import g", "gripper"}, // g.t is no script
     {NULL, "import li", "li."},
     {NULL, "import li.", "li.jaws"},
-    {NULL, "import she", "shelf"},
+    {NULL, "import she", "shelf|shell"},
+    {NULL, "import shell: w", "wall"},
     {NULL, "import notes", ""},
     {NULL, "import std.ro", "std.robots"},
     {NULL, "import gripper: sp", "span|spread"},
