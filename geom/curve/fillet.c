@@ -301,6 +301,10 @@ static CagStatus round_polyline(const CagCurve *c, const CagVec3 *p, size_t n, b
   return status;
 }
 
+static bool is_corner(CagVec3 before, CagVec3 after) {
+  return cag_norm(cag_sub(after, before)) > SMOOTH;
+}
+
 // The smooth parts of a curve: cuts where the tangent turns, and both ends.
 static CagStatus find_corners(const CagCurve *c, double *cuts, size_t *n, CagError *err) {
   size_t kept = 1;
@@ -309,8 +313,7 @@ static CagStatus find_corners(const CagCurve *c, double *cuts, size_t *n, CagErr
     CagStatus status = cag_curve_tangent(c, cuts[i], CAG_SIDE_LEFT, &before, err);
     if (!status) status = cag_curve_tangent(c, cuts[i], CAG_SIDE_RIGHT, &after, err);
     if (status) return status;
-    if (cag_norm(cag_cross(before, after)) > SMOOTH || cag_dot(before, after) < 0)
-      cuts[kept++] = cuts[i];
+    if (is_corner(before, after)) cuts[kept++] = cuts[i];
   }
   cuts[kept++] = cuts[*n - 1];
   *n = kept;
@@ -323,7 +326,7 @@ static bool seam_is_corner(const CagCurve *c) {
   if (!c->closed || cag_curve_tangent(c, c->end, CAG_SIDE_LEFT, &before, &ignored) ||
       cag_curve_tangent(c, c->start, CAG_SIDE_RIGHT, &after, &ignored))
     return false;
-  return cag_norm(cag_cross(before, after)) > SMOOTH || cag_dot(before, after) < 0;
+  return is_corner(before, after);
 }
 
 static CagStatus add_trimmed(Pieces *pieces, const CagCurve *c, double a, double b, double radius,
