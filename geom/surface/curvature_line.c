@@ -27,17 +27,13 @@
 #define STEPS_MOST 20000
 #define FIRST_STEP 1e-3
 #define SMALLEST_STEP 1e-12
-// By a pole or an umbilic the directions are known to rounding that grows: steps shorter than this
-// may err by this part of themselves.
-#define NOISY_STEP 1e-4
-#define NOISE 1e-7
 // Part of the size within which a line that comes back to its start has closed.
 #define CLOSED 1e-6
-// Parts of the size from which a line passes over a pole, and from which at most, where an umbilic
-// or rounding has shortened its steps to this.
+// Parts of the size from which a line passes over a pole, and from which at most, where the
+// principal curvatures differ by less than this part: then their directions suffer from rounding.
 #define AT_POLE 1e-4
 #define AT_POLE_MOST 0.1
-#define TIRED_STEP 1e-5
+#define NEARLY_ROUND 1e-3
 // Sine of the angle by which a line may miss a pole, and leave it off the parameter line beyond.
 #define AIM 1e-5
 // cos 0.8 degrees: a sharper bend at a pole is a tip.
@@ -104,10 +100,13 @@ static bool bring_in(const CagSurface *s, Place *p) {
   return p->u >= s->u0 && p->u <= s->u1 && p->v >= s->v0 && p->v <= s->v1;
 }
 
-static bool is_umbilic(const Walk *w, const CagPrincipal *p) {
+// Whether the principal curvatures are one to a part of the larger.
+static bool is_round(const Walk *w, const CagPrincipal *p, double part) {
   double large = fmax(fabs(p->k[0]), fabs(p->k[1]));
-  return p->k[1] - p->k[0] <= UMBILIC * fmax(large, 1 / w->size);
+  return p->k[1] - p->k[0] <= part * fmax(large, 1 / w->size);
 }
+
+static bool is_umbilic(const Walk *w, const CagPrincipal *p) { return is_round(w, p, UMBILIC); }
 
 // The way at a place, with the sense of `sense`; false where there is none.
 static bool way_at(Walk *w, Place at, CagVec3 sense, CagPrincipal *p, Place *way,
@@ -120,6 +119,12 @@ static bool way_at(Walk *w, Place at, CagVec3 sense, CagPrincipal *p, Place *way
   *tangent = cag_scaled(p->direction[w->which], sign);
   *way = (Place){sign * p->step[w->which][0], sign * p->step[w->which][1]};
   return true;
+}
+
+// The length of a small step from a point.
+static double length_of(const CagPrincipal *p, double u, double v) {
+  const double *a = p->step[0], *b = p->step[1], area = a[0] * b[1] - a[1] * b[0];
+  return hypot((u * b[1] - v * b[0]) / area, (v * a[0] - u * a[1]) / area);
 }
 
 static Place ahead(Place at, double h, Place way) {
@@ -236,8 +241,8 @@ static bool find_leaving(Walk *w, const Pole *pole, CagVec3 along, double *out) 
 
 // Passes over a pole that is ahead, nearer than `near`: the place behind it, from which the line
 // goes on, and the pole as a point of the line.
-static bool pass_pole(Walk *w, Place *at, CagPrincipal *p, Place *way, CagVec3 *tangent,
-                      double near, double *gone) {
+static bool pass_pole(Walk *w, Place *at, CagPrincipal *p, CagVec3 *tangent, double near,
+                      double *gone) {
   const double widest = 4, wider = 1.1;
   Pole pole;
   double x;
@@ -273,7 +278,6 @@ static bool pass_pole(Walk *w, Place *at, CagPrincipal *p, Place *way, CagVec3 *
     *gone += d + cag_norm(cag_sub(found.point, pole.point));
     *at = next;
     *p = found;
-    *way = next_way;
     *tangent = next_tangent;
     return add_point(w, pole.point, along) && add_point(w, p->point, *tangent);
   }
@@ -285,18 +289,18 @@ static bool pass_pole(Walk *w, Place *at, CagPrincipal *p, Place *way, CagVec3 *
 // Walks on from a place until the line ends. True where it has come back to the start.
 static bool walk(Walk *w, Place at, CagVec3 sense) {
   CagPrincipal p;
-  Place way;
+  Place next_way;
   CagVec3 tangent, start, first = sense;
   double h = FIRST_STEP * w->size, gone = 0;
-  if (!way_at(w, at, sense, &p, &way, &tangent)) return false;
+  if (!way_at(w, at, sense, &p, &next_way, &tangent)) return false;
   start = p.point;
   for (int steps = 0; steps < STEPS_MOST; steps++) {
-    Place whole, half, twice, next_way;
+    Place whole, half, twice;
     CagPrincipal next_p;
     CagVec3 next;
     bool stopped = h <= SMALLEST_STEP * w->size;
-    double near = (h <= TIRED_STEP * w->size ? AT_POLE_MOST : AT_POLE) * w->size;
-    if (pass_pole(w, &at, &p, &way, &tangent, near, &gone)) h = FIRST_STEP * w->size;
+    double near = (is_round(w, &p, NEARLY_ROUND) ? AT_POLE_MOST : AT_POLE) * w->size;
+    if (pass_pole(w, &at, &p, &tangent, near, &gone)) h = FIRST_STEP * w->size;
     else if (stopped || w->status) return false;
     // Once it is near its start, the step is to end there.
     CagVec3 home = cag_sub(start, p.point);
@@ -311,12 +315,9 @@ static bool walk(Walk *w, Place at, CagVec3 sense) {
       h /= 2; // up to the border, or the umbilic
       continue;
     }
-    // Differences of the parameters as lengths, by the speed of the way.
-    double speed = hypot(way.u, way.v);
-    double error = hypot(twice.u - whole.u, twice.v - whole.v) / (15 * speed);
+    double error = length_of(&p, twice.u - whole.u, twice.v - whole.v) / 15;
     double turn = cag_norm(cag_sub(next, tangent));
     double allowed = STEP_ERROR * w->size;
-    if (h <= NOISY_STEP * w->size) allowed = fmax(allowed, NOISE * h);
     if (error > allowed || turn > STEP_TURN) {
       h /= 2;
       continue;
@@ -329,7 +330,6 @@ static bool walk(Walk *w, Place at, CagVec3 sense) {
     }
     at = better;
     p = next_p;
-    way = next_way;
     tangent = next;
     if (!add_point(w, p.point, tangent)) return false;
     gone += h;

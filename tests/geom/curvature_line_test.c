@@ -164,10 +164,115 @@ static void lines_on_spheroids_are_circles_and_meridians(void **state) {
   }
 }
 
+static CagVec3 any_vector(void) {
+  const double x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1);
+  return cag_vec3(x, y, z);
+}
+
+// A bowl with the profile r = wide t, z = deep t^2 + flare t^4, t in 0..1, about a random axis: its
+// vertex is a pole of the parameters, at the start or the end of any of both.
+typedef struct Bowl {
+  double wide, deep, flare, turn;
+  CagTransform map, back;
+  CagSurface *s;
+} Bowl;
+
+static Bowl random_bowl(double turn, bool reversed, bool flipped) {
+  Bowl b = {.turn = turn};
+  b.wide = uniform(1, 2);
+  b.deep = b.wide * uniform(0.8, 1.5);
+  b.flare = b.wide * uniform(0.05, 0.4);
+  CagTransform away;
+  const CagVec3 axis = any_vector(), at = any_vector();
+  OK(cag_rotate(axis, uniform(1, 5), at, &away, &err));
+  const CagTransform shift = cag_translate(any_vector());
+  b.map = cag_transform_multiply(&shift, &away);
+  OK(cag_transform_inverse(&b.map, &b.back, &err));
+  CagVec3 p[5];
+  const double z[5] = {0, 0, b.deep / 6, b.deep / 2, b.deep + b.flare};
+  for (int i = 0; i < 5; i++)
+    p[reversed ? 4 - i : i] = cag_transform_point(&b.map, cag_vec3(b.wide * i / 4, 0, z[i]));
+  CagCurve *profile;
+  OK(cag_curve_bezier(p, NULL, 5, 3, &profile, &err));
+  OK(cag_surface_revolve(profile, cag_transform_vector(&b.map, cag_vec3(0, 0, 1)),
+                         cag_transform_point(&b.map, cag_vec3(0, 0, 0)), 0, turn, &b.s, &err));
+  cag_curve_release(profile);
+  if (flipped) {
+    CagSurface *other;
+    OK(cag_surface_flip(b.s, &other, &err));
+    cag_surface_release(b.s);
+    b.s = other;
+  }
+  return b;
+}
+
+// From the vertex to the rim, by Simpson's rule.
+static double profile_length(const Bowl *b) {
+  enum { STEPS = 400 };
+  double sum = 0;
+  for (int i = 0; i <= STEPS; i++) {
+    const double t = (double)i / STEPS;
+    const double weight = i == 0 || i == STEPS ? 1 : i % 2 ? 4 : 2;
+    sum += weight * hypot(b->wide, 2 * b->deep * t + 4 * b->flare * t * t * t);
+  }
+  return sum / (3 * STEPS);
+}
+
+// Through the vertex of a bowl they go on to the opposite rim. If the bowl is not turned so far,
+// they end at the vertex, or just before it, where the curvatures are the same but for rounding.
+static void meridians_go_on_through_the_vertex(void **state) {
+  (void)state;
+  seed = 100;
+  int whole = 0, half = 0;
+  for (int round = 0; round < 16; round++) {
+    const double turn = round % 4 == 3 ? 2 * M_PI : uniform(2, 5.5);
+    const Bowl b = random_bowl(turn, round / 2 % 2, round % 2);
+    const double angle = uniform(0.1, 0.9) * turn, t = uniform(0.2, 0.8);
+    const double u = round / 2 % 2 ? 1 - t : t, v = round % 2 ? turn - angle : angle;
+    CagPrincipal at;
+    bool found;
+    OK(cag_surface_principal(b.s, u, v, &found, &at, &err));
+    assert_true(found);
+    CagVec3 p = cag_transform_point(&b.back, at.point);
+    NEAR(atan2(p.y, p.x) < 0 ? atan2(p.y, p.x) + 2 * M_PI : atan2(p.y, p.x), angle, 1e-9);
+    const CagVec3 across = cag_transform_vector(&b.map, cag_vec3(-sin(angle), cos(angle), 0));
+    const bool larger = fabs(cag_dot(at.direction[1], across)) < 0.5;
+    CagCurve *c;
+    OK(cag_surface_curvature_line(b.s, u, v, larger, &c, &err));
+    assert_false(c->closed);
+    // It takes few steps, even where it ends at the vertex.
+    CagNurbsView steps;
+    assert_true(cag_curve_nurbs_view(c, &steps));
+    assert_true(steps.count < 1500);
+    // The opposite angle is on the surface.
+    const bool through = turn == 2 * M_PI || angle > M_PI || angle + M_PI < turn;
+    const int sides = through ? 2 : 1;
+    whole += through;
+    half += !through;
+    double length, outward = 0;
+    OK(cag_curve_length(c, c->start, c->end, &length, &err));
+    const double missed = through ? 1e-6 : 1e-3;
+    NEAR(length, sides * profile_length(&b), missed * length);
+    for (int i = 0; i <= 40; i++) {
+      OK(cag_curve_point(c, c->start + (c->end - c->start) * i / 40, &p, &err));
+      p = cag_transform_point(&b.back, p);
+      const double along = p.x * cos(angle) + p.y * sin(angle), part = along / b.wide;
+      NEAR(p.y * cos(angle), p.x * sin(angle), 1e-6);
+      NEAR(p.z, b.deep * part * part + b.flare * part * part * part * part, 1e-6);
+      outward = fmin(outward, part);
+    }
+    NEAR(outward, through ? -1 : 0, missed);
+    cag_curve_release(c);
+    cag_surface_release(b.s);
+  }
+  assert_true(whole > 5 && half > 2);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lines_on_ellipsoids_are_confocal),
       cmocka_unit_test(lines_on_spheroids_are_circles_and_meridians),
+      cmocka_unit_test(meridians_go_on_through_the_vertex),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
