@@ -374,14 +374,14 @@ static void count_rims(const Hull *h, const uint32_t *flat, uint32_t *rims) {
       if (flat[h->faces[i].next[e]] != flat[i]) rims[h->faces[i].v[e]]++;
 }
 
-// The rim of the flat face that the edge e of a triangle is on, as the vertices that lie in three
-// or more flat faces, into `ring`; gives their number. Marks the edges.
-static size_t walk_rim(const Hull *h, const uint32_t *flat, const uint32_t *rims, uint8_t *walked,
-                       uint32_t face, int e, uint32_t *ring) {
+// All vertices of the rim of the flat face that the edge e of a triangle is on, into `ring`; gives
+// their number. Marks the edges.
+static size_t walk_rim(const Hull *h, const uint32_t *flat, uint8_t *walked, uint32_t face, int e,
+                       uint32_t *ring) {
   size_t n = 0;
   while (!(walked[face] & 1 << e)) {
     walked[face] |= (uint8_t)(1 << e);
-    if (rims[h->faces[face].v[e]] >= 3) ring[n++] = h->faces[face].v[e];
+    ring[n++] = h->faces[face].v[e];
     // The next rim edge about the end of this one.
     const uint32_t end = h->faces[face].v[(e + 1) % 3];
     e = (e + 1) % 3;
@@ -391,6 +391,28 @@ static size_t walk_rim(const Hull *h, const uint32_t *flat, const uint32_t *rims
     }
   }
   return n;
+}
+
+static double from_segment(CagVec3 p, CagVec3 a, CagVec3 b) {
+  const CagVec3 d = cag_sub(b, a);
+  const double along = cag_dot(d, cag_sub(p, a)) / cag_dot(d, d);
+  return cag_norm(cag_sub(p, cag_lerp(a, b, fmax(0, fmin(1, along)))));
+}
+
+// Leaves of a rim the vertices that lie in three or more flat faces, and gives their number. Of a
+// body as thin as rounding two flat faces may have a rim in common that is not straight: 0 then.
+static size_t keep_corners(const Hull *h, const uint32_t *rims, uint32_t *ring, size_t n) {
+  size_t first = 0, kept = 0;
+  while (first < n && rims[ring[first]] < 3) first++;
+  for (size_t k = first, end; k < n; k = end) {
+    for (end = k + 1; rims[ring[end % n]] < 3; end++) {}
+    const CagVec3 from = h->points[ring[k]], to = h->points[ring[end % n]];
+    for (size_t i = k + 1; i < end; i++)
+      if (from_segment(h->points[ring[i % n]], from, to) > 2 * h->slack) return 0;
+  }
+  for (size_t i = 0; i < n; i++)
+    if (rims[ring[i]] >= 3) ring[kept++] = ring[i];
+  return kept;
 }
 
 typedef struct Rings {
@@ -407,7 +429,8 @@ static bool collect_rings(const Hull *h, const uint32_t *flat, size_t flats, con
     for (int e = 0; !h->faces[i].dead && e < 3; e++) {
       if (flat[h->faces[i].next[e]] == flat[i] || walked[i] & 1 << e) continue;
       if (out->rings == flats) return false;
-      const size_t n = walk_rim(h, flat, rims, walked, i, e, out->vertices + out->total);
+      uint32_t *ring = out->vertices + out->total;
+      const size_t n = keep_corners(h, rims, ring, walk_rim(h, flat, walked, i, e, ring));
       if (n < 3) return false;
       out->counts[out->rings++] = (uint32_t)n;
       out->total += n;
@@ -438,9 +461,34 @@ static CagStatus mesh_of_rings(const Hull *h, const Rings *r, uint32_t *number, 
   return CAG_OK;
 }
 
+// Triangle by triangle the hull is closed in any case.
+static void collect_triangles(const Hull *h, Rings *out) {
+  out->rings = out->total = 0;
+  for (size_t i = 0; i < h->count; i++) {
+    if (h->faces[i].dead) continue;
+    memcpy(out->vertices + out->total, h->faces[i].v, sizeof h->faces[i].v);
+    out->total += 3;
+    out->counts[out->rings++] = 3;
+  }
+}
+
+// NULL where flat faces of a body as thin as rounding have more in common than one edge.
+static CagStatus mesh_of_flats(const Hull *h, const Rings *r, uint32_t *number, CagMesh **out,
+                               CagError *err) {
+  bool closed;
+  CagStatus status = mesh_of_rings(h, r, number, out, err);
+  if (status) return status;
+  status = cag_mesh_watertight(*out, &closed, NULL, err);
+  if (!status && closed) return CAG_OK;
+  cag_mesh_release(*out);
+  *out = NULL;
+  return status;
+}
+
 static CagStatus to_mesh(Hull *h, CagMesh **out, CagError *err) {
   const size_t n = h->count;
   size_t flats = 0;
+  CagMesh *mesh = NULL;
   uint32_t *flat = malloc(n * sizeof *flat), *rims = malloc(h->n * sizeof *rims);
   Rings r = {malloc(3 * n * sizeof(uint32_t)), malloc(n * sizeof(uint32_t)), 0, 0};
   uint8_t *walked = calloc(n, 1);
@@ -449,18 +497,14 @@ static CagStatus to_mesh(Hull *h, CagMesh **out, CagError *err) {
   if (!status) status = find_flats(h, flat, &flats, err);
   if (!status) {
     count_rims(h, flat, rims);
-    if (!collect_rings(h, flat, flats, rims, walked, &r)) {
-      // Triangle by triangle it is one in any case.
-      r.rings = r.total = 0;
-      for (size_t i = 0; i < n; i++) {
-        if (h->faces[i].dead) continue;
-        memcpy(r.vertices + r.total, h->faces[i].v, sizeof h->faces[i].v);
-        r.total += 3;
-        r.counts[r.rings++] = 3;
-      }
-    }
-    status = mesh_of_rings(h, &r, rims, out, err);
+    if (collect_rings(h, flat, flats, rims, walked, &r))
+      status = mesh_of_flats(h, &r, rims, &mesh, err);
   }
+  if (!status && !mesh) {
+    collect_triangles(h, &r);
+    status = mesh_of_rings(h, &r, rims, &mesh, err);
+  }
+  if (!status) *out = mesh;
   free(flat);
   free(rims);
   free(r.vertices);
