@@ -164,6 +164,7 @@ static double volume_of(const CagMesh *m) {
 static void check_body(const CagMesh *m, const CagVec3 *p, int n, double slack) {
   CagVec3 edge[2];
   assert_true(cag_mesh_is_watertight(m, edge));
+  assert_true(!m->normals && !m->uv && !m->weld);
   assert_int_equal(cag_mesh_euler_characteristic(m), 2);
   for (int k = 0; k < 40; k++) {
     const CagVec3 d = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
