@@ -119,14 +119,14 @@ static void sets_of_round_shapes_have_the_distances_of_their_centers_and_axes(vo
   for (int round = 0; round < 21; round++) {
     Set a = {.n = 0}, b = {.n = 0};
     const CagVec3 way = cag_scaled(cag_unit(random_vec(1)), uniform(2, 6));
-    const int n = 1 + round % 5, m = 1 + round / 2 % 5;
+    const int n = 2 + round % 6, m = 1 + round / 2 % 6;
     for (int i = 0; i < n; i++) {
       const CagVec3 at = random_vec(2);
       add_shape(&a, i % 4 == 3 ? POINT : BALL, at, cag_add(at, random_vec(1)), uniform(0.1, 0.7));
     }
     for (int i = 0; i < m; i++) {
       const CagVec3 at = cag_add(way, random_vec(2));
-      const Kind kind = (Kind)((round + i) % KINDS);
+      const Kind kind = (Kind)(uniform(0, 1) < 0.6 ? BALL : (round + i) % KINDS);
       // The ends of pipes are far away: beyond these their axes tell less than the distance.
       const CagVec3 along = cag_scaled(cag_unit(random_vec(1)), kind == PIPE ? 9 : uniform(0.1, 2));
       add_shape(&b, kind, cag_sub(at, kind == PIPE ? along : cag_vec3(0, 0, 0)), cag_add(at, along),
