@@ -442,21 +442,6 @@ void cag_robot_sequence(const CagRobot *r, size_t k, double *q) {
 
 // --- The search ---
 
-// Turns joints by whole turns towards `near` as far as their limits let.
-static void unwind(const Problem *p, const double *near, double *q) {
-  for (size_t i = 0; i < p->n; i++) {
-    const CagRobotStage *s = &p->r->stages[i];
-    if (s->turn == 0 || s->slide != 0) continue;
-    double best = q[i];
-    for (int k = -2; k <= 2; k++) {
-      double x = near[i] + remainder(q[i] - near[i], 2 * M_PI) + k * 2 * M_PI;
-      if (x < p->low[i] || x > p->high[i]) continue;
-      if (fabs(x - near[i]) < fabs(best - near[i])) best = x;
-    }
-    q[i] = best;
-  }
-}
-
 CagRobotFound cag_robot_search(const CagRobot *r, const CagTransform *target,
                                const CagRobotSearch *search, double *q) {
   Problem p = {.r = r,
@@ -478,7 +463,7 @@ CagRobotFound cag_robot_search(const CagRobot *r, const CagTransform *target,
     if (k > 0) sequence(&p, ratio, k, s.q);
     evaluate(&p, &s);
     bool solved = attempt(&p, &s, most, &steps);
-    if (solved) unwind(&p, near, s.q);
+    if (solved) cag_robot_into_limits(r, near, s.q); // by whole turns towards `near`
     bool better = k == 0 || (solved && !found) ||
                   (solved == found && (solved ? apart(&p, s.q, near) < apart(&p, best.q, near)
                                               : s.square < best.square));

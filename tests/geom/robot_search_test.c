@@ -23,8 +23,9 @@ static CagTransform turned(CagVec3 axis, double angle) {
   return t;
 }
 
-// An arm of n joints, of which those in `slides` (bits) slide.
-static CagRobot *random_arm(size_t n, unsigned slides, double low, double high) {
+// An arm of n joints, of which those in `slides` (bits) slide and those in `screws` do both.
+static CagRobot *random_arm_with_screws(size_t n, unsigned slides, unsigned screws, double low,
+                                        double high) {
   CagRobotLink links[JOINTS];
   CagRobotSpec spec = {.links = links, .link_count = n, .tool = cag_transform_identity()};
   CagRobot *r = NULL;
@@ -37,11 +38,16 @@ static CagRobot *random_arm(size_t n, unsigned slides, double low, double high) 
     links[i].alpha = uniform(0.6, 1.6) * (i % 2 ? 1 : -1);
     links[i].low = low;
     links[i].high = high;
+    if (screws >> i & 1) links[i].screw = 0.1;
   }
   const CagVec3 axis = random_direction();
   spec.base = turned(axis, uniform(-3, 3));
   OK(cag_robot_new(&spec, &r, &err));
   return r;
+}
+
+static CagRobot *random_arm(size_t n, unsigned slides, double low, double high) {
+  return random_arm_with_screws(n, slides, 0, low, high);
 }
 
 static void random_place(const CagRobot *r, double *q) {
@@ -151,6 +157,45 @@ static void near_solutions_are_found_by_the_shortest_way(void **state) {
     cag_robot_release(r);
   }
   assert_true(regular > 80 && at_limits > 30);
+}
+
+// Joints that turn may be whole turns away, and screws may not: each of their turns is a lead
+// further. The place from which the search starts may lie outside of the limits.
+static void solutions_are_turned_as_near_as_limits_let(void **state) {
+  (void)state;
+  seed = 7;
+  int solved = 0, turns_left = 0;
+  for (int trial = 0; trial < 200; trial++) {
+    const double low = uniform(-12, -1), high = uniform(1, 12);
+    const unsigned screws = trial % 2 ? 1u << trial / 2 % 6 : 0;
+    CagRobot *r = random_arm_with_screws(6, 0, screws, low, high);
+    double there[6], near[6], found[6];
+    CagTransform wanted;
+    random_place(r, there);
+    for (int i = 0; i < 6; i++) near[i] = trial % 3 ? there[i] + uniform(-9, 9) : uniform(-40, 40);
+    cag_robot_forward(r, there, &wanted);
+    const CagRobotSearch search = {.near = near, .starts = 20};
+    if (cag_robot_search(r, &wanted, &search, found).solved) {
+      solved++;
+      CagTransform got;
+      double position, rotation;
+      cag_robot_forward(r, found, &got);
+      cag_robot_pose_distance(&got, &wanted, &position, &rotation);
+      NEAR(position, 0, 1e-8);
+      NEAR(rotation, 0, 1e-8);
+      for (size_t i = 0; i < 6; i++) {
+        assert_true(found[i] >= low && found[i] <= high);
+        for (int k = -4; k <= 4; k++) {
+          const double other = found[i] + k * 2 * M_PI;
+          if (other < low || other > high || screws >> i & 1) continue;
+          assert_true(fabs(other - near[i]) > fabs(found[i] - near[i]) - 1e-6);
+          turns_left += k != 0;
+        }
+      }
+    }
+    cag_robot_release(r);
+  }
+  assert_true(solved > 100 && turns_left > 200);
 }
 
 // The squared error of a place, lengths as parts of the reach.
@@ -343,6 +388,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(free_motion_is_what_the_rows_leave),
       cmocka_unit_test(near_solutions_are_found_by_the_shortest_way),
+      cmocka_unit_test(solutions_are_turned_as_near_as_limits_let),
       cmocka_unit_test(what_is_out_of_reach_is_come_near_to),
       cmocka_unit_test(wishes_are_met_as_far_as_the_tool_lets),
       cmocka_unit_test(turns_have_their_angle_and_sense),
