@@ -77,6 +77,34 @@ static void check_weld(const CagMesh *m, double size) {
       if (cag_norm(cag_sub(m->positions[k], m->positions[v])) < 1e-9 * size)
         assert_int_equal(m->weld[k], first);
   }
+  for (size_t t = 0; t < m->triangle_count; t++)
+    for (size_t k = 0; k < 3; k++)
+      assert_int_not_equal(m->weld[m->triangles[3 * t + k]],
+                           m->weld[m->triangles[3 * t + (k + 1) % 3]]);
+}
+
+// Vertices are where their parameters say, with the surface's normals, except at poles.
+static void check_vertices(const CagMesh *m, const CagSurface *s, double size, bool pole) {
+  size_t without = 0;
+  for (size_t v = 0; v < m->vertex_count; v++) {
+    CagVec3 p, normal;
+    CagError ignored;
+    MUST(cag_surface_point(s, m->uv[2 * v], m->uv[2 * v + 1], &p, err));
+    assert_near(cag_norm(cag_sub(m->positions[v], p)) / size, 0, 1e-11, "distance");
+    assert_near(cag_norm(m->normals[v]), 1, 1e-12, "length of the normal");
+    if (cag_surface_normal(s, m->uv[2 * v], m->uv[2 * v + 1], &normal, &ignored) == CAG_OK)
+      assert_near(cag_dot(normal, m->normals[v]), 1, 1e-9, "normal");
+    else without++;
+  }
+  assert_true(pole || without == 0);
+  // Those of triangles are near to them. (At a pole one may lie along a meridian.)
+  for (size_t t = 0; !pole && t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    const CagVec3 a = m->positions[k[0]];
+    const CagVec3 flat =
+        cag_unit(cag_cross(cag_sub(m->positions[k[1]], a), cag_sub(m->positions[k[2]], a)));
+    for (int i = 0; i < 3; i++) assert_true(cag_dot(flat, m->normals[k[i]]) > 0.6);
+  }
 }
 
 static void pieces_of_any_size_close(void **state) {
@@ -103,6 +131,7 @@ static void pieces_of_any_size_close(void **state) {
     how.tolerance = 0.01 * size;
     MUST(cag_surface_tessellate(s, &how, &m, err));
     check_weld(m, size);
+    check_vertices(m, s, size, p->pole);
     assert_int_equal(cag_mesh_euler_characteristic(m), p->pole ? 1 : 0);
     assert_near(cag_mesh_area(m) / (size * size), p->area, 0.02 * p->area, "area");
     // Every vertex of the rims is the end of one open edge, and the start of another.
