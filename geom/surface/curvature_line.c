@@ -27,6 +27,9 @@
 #define STEPS_MOST 20000
 #define FIRST_STEP 1e-3
 #define SMALLEST_STEP 1e-12
+// By a pole or an umbilic the directions are known to rounding that grows: a line ends where a step
+// as short as this is not exact.
+#define TIRED_STEP 1e-7
 // Part of the size within which a line that comes back to its start has closed.
 #define CLOSED 1e-6
 // Parts of the size from which a line passes over a pole, and from which at most, where the
@@ -317,8 +320,8 @@ static bool walk(Walk *w, Place at, CagVec3 sense) {
     }
     double error = length_of(&p, twice.u - whole.u, twice.v - whole.v) / 15;
     double turn = cag_norm(cag_sub(next, tangent));
-    double allowed = STEP_ERROR * w->size;
-    if (error > allowed || turn > STEP_TURN) {
+    if (error > STEP_ERROR * w->size || turn > STEP_TURN) {
+      if (h <= TIRED_STEP * w->size) return false;
       h /= 2;
       continue;
     }
@@ -333,7 +336,7 @@ static bool walk(Walk *w, Place at, CagVec3 sense) {
     tangent = next;
     if (!add_point(w, p.point, tangent)) return false;
     gone += h;
-    double grow = error > 0 ? 0.8 * pow(allowed / error, 0.2) : 2;
+    double grow = error > 0 ? 0.8 * pow(STEP_ERROR * w->size / error, 0.2) : 2;
     h *= fmin(2, fmax(0.5, grow));
     if (returning && cag_norm(cag_sub(start, p.point)) <= CLOSED * w->size)
       return cag_dot(tangent, first) > 0;

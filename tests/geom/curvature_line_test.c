@@ -35,9 +35,10 @@ static Ellipsoid ellipsoid(double a, double b, double c, int order) {
 }
 
 // Both roots other than 0 of x^2 / (a - r) + y^2 / (b - r) + z^2 / (c - r) = 1, ascending; the
-// roots are those of a cubic without constant.
+// roots are those of a cubic without constant, once p is on the ellipsoid.
 static void confocal(const Ellipsoid *e, CagVec3 p, double out[2]) {
-  const double *a = e->a, x = p.x * p.x, y = p.y * p.y, z = p.z * p.z;
+  const double *a = e->a, on = p.x * p.x / a[0] + p.y * p.y / a[1] + p.z * p.z / a[2];
+  const double x = p.x * p.x / on, y = p.y * p.y / on, z = p.z * p.z / on;
   const double sum = a[0] + a[1] + a[2] - x - y - z;
   const double product = a[0] * a[1] + a[1] * a[2] + a[2] * a[0] - x * (a[1] + a[2]) -
                          y * (a[0] + a[2]) - z * (a[0] + a[1]);
@@ -62,12 +63,12 @@ static double line_length(const Ellipsoid *e, double fixed, double lo, double hi
   return 4 * sum;
 }
 
-static void lines_on_ellipsoids_are_confocal(void **state) {
-  (void)state;
-  seed = 98;
+// Each semi-axis is `more` to twice as much longer than the one before.
+static void check_ellipsoids(int rounds, double more) {
   int told = 0;
-  for (int round = 0; round < 18; round++) {
-    const double c = uniform(1, 1.5), b = c * uniform(1.3, 1.6), a = b * uniform(1.3, 1.6);
+  for (int round = 0; round < rounds; round++) {
+    const double c = uniform(1, 1.5), b = c * (1 + uniform(more, 2 * more)),
+                 a = b * (1 + uniform(more, 2 * more)), spread = a * a - c * c;
     const Ellipsoid e = ellipsoid(a, b, c, round / 2);
     const bool larger = round % 2;
     const CagSurface *s = e.s;
@@ -81,14 +82,14 @@ static void lines_on_ellipsoids_are_confocal(void **state) {
     assert_true(found);
     confocal(&e, cag_transform_point(&e.back, at.point), first);
     // Not near the umbilics, where both are the middle square.
-    if (first[1] - first[0] < 0.3) {
+    if (first[1] - first[0] < 0.1 * spread) {
       cag_surface_release(e.s);
       continue;
     }
     told++;
     // Along the direction of the line the other coordinate changes.
     double step[2];
-    const CagVec3 beside = cag_madd(at.point, 1e-5, at.direction[larger]);
+    const CagVec3 beside = cag_madd(at.point, 1e-3, at.direction[larger]);
     confocal(&e, cag_transform_point(&e.back, beside), step);
     const int fixed = fabs(step[0] - first[0]) > fabs(step[1] - first[1]);
     OK(cag_surface_curvature_line(s, u, v, larger, &curve, &err));
@@ -101,7 +102,7 @@ static void lines_on_ellipsoids_are_confocal(void **state) {
       q = cag_transform_point(&e.back, p);
       NEAR(q.x * q.x / e.a[0] + q.y * q.y / e.a[1] + q.z * q.z / e.a[2], 1, 1e-5);
       confocal(&e, q, now);
-      NEAR(now[fixed], first[fixed], 2e-4);
+      NEAR(now[fixed], first[fixed], 1e-7 * spread);
     }
     double t;
     CagVec3 foot;
@@ -109,11 +110,25 @@ static void lines_on_ellipsoids_are_confocal(void **state) {
     NEAR(nearest, 0, 1e-8);
     OK(cag_curve_length(curve, curve->start, curve->end, &length, &err));
     const double lo = fixed ? e.a[2] : e.a[1], hi = fixed ? e.a[1] : e.a[0];
-    NEAR(length, line_length(&e, first[fixed], lo, hi), 2e-4 * length);
+    NEAR(length, line_length(&e, first[fixed], lo, hi), 1e-7 * length);
     cag_curve_release(curve);
     cag_surface_release(e.s);
   }
-  assert_true(told > 9);
+  assert_true(told > rounds / 2);
+}
+
+static void lines_on_ellipsoids_are_confocal(void **state) {
+  (void)state;
+  seed = 98;
+  check_ellipsoids(18, 0.3);
+}
+
+// Where both curvatures are nearly the same, lines pass the poles of the parameters on the same
+// way.
+static void lines_on_nearly_round_ellipsoids_are_confocal(void **state) {
+  (void)state;
+  seed = 101;
+  check_ellipsoids(30, 2e-4);
 }
 
 // Of a spheroid they are circles and whole meridians, which pass its poles.
@@ -177,7 +192,33 @@ typedef struct Bowl {
   CagSurface *s;
 } Bowl;
 
-static Bowl random_bowl(double turn, bool reversed, bool flipped) {
+// The same with u and v exchanged, as a NURBS surface.
+static CagSurface *exchanged(const CagSurface *s) {
+  enum { MOST = 200 };
+  CagSurface *exact, *out;
+  CagSurfaceNurbsView n;
+  CagVec3 net[MOST];
+  double weights[MOST];
+  OK(cag_surface_to_nurbs(s, &exact, &err));
+  assert_true(cag_surface_nurbs_view(exact, &n) && n.nu * n.nv <= MOST);
+  for (size_t i = 0; i < n.nu; i++)
+    for (size_t j = 0; j < n.nv; j++) {
+      const double *h = n.homogeneous + 4 * (i * n.nv + j);
+      weights[j * n.nu + i] = h[3];
+      net[j * n.nu + i] = cag_scaled(cag_vec3(h[0], h[1], h[2]), 1 / h[3]);
+    }
+  OK(cag_surface_nurbs(net, weights, n.nv, n.nu, n.degree_v, n.degree_u, n.knots_v, n.knots_u, &out,
+                       &err));
+  cag_surface_release(exact);
+  return out;
+}
+
+static void replace(CagSurface **s, CagSurface *by) {
+  cag_surface_release(*s);
+  *s = by;
+}
+
+static Bowl random_bowl(double turn, bool reversed, bool flipped, bool swapped) {
   Bowl b = {.turn = turn};
   b.wide = uniform(1, 2);
   b.deep = b.wide * uniform(0.8, 1.5);
@@ -197,11 +238,11 @@ static Bowl random_bowl(double turn, bool reversed, bool flipped) {
   OK(cag_surface_revolve(profile, cag_transform_vector(&b.map, cag_vec3(0, 0, 1)),
                          cag_transform_point(&b.map, cag_vec3(0, 0, 0)), 0, turn, &b.s, &err));
   cag_curve_release(profile);
+  if (swapped) replace(&b.s, exchanged(b.s));
   if (flipped) {
     CagSurface *other;
     OK(cag_surface_flip(b.s, &other, &err));
-    cag_surface_release(b.s);
-    b.s = other;
+    replace(&b.s, other);
   }
   return b;
 }
@@ -224,17 +265,18 @@ static void meridians_go_on_through_the_vertex(void **state) {
   (void)state;
   seed = 100;
   int whole = 0, half = 0;
-  for (int round = 0; round < 16; round++) {
-    const double turn = round % 4 == 3 ? 2 * M_PI : uniform(2, 5.5);
-    const Bowl b = random_bowl(turn, round / 2 % 2, round % 2);
-    const double angle = uniform(0.1, 0.9) * turn, t = uniform(0.2, 0.8);
-    const double u = round / 2 % 2 ? 1 - t : t, v = round % 2 ? turn - angle : angle;
+  for (int round = 0; round < 32; round++) {
+    const double turn = round / 8 % 4 == 3 ? 2 * M_PI : uniform(2, 5.5);
+    const Bowl b = random_bowl(turn, round % 2, round / 2 % 2, round / 4 % 2);
+    const CagSurface *s = b.s;
+    const double u = s->u0 + (s->u1 - s->u0) * uniform(0.2, 0.8);
+    const double v = s->v0 + (s->v1 - s->v0) * uniform(0.2, 0.8);
     CagPrincipal at;
     bool found;
     OK(cag_surface_principal(b.s, u, v, &found, &at, &err));
     assert_true(found);
     CagVec3 p = cag_transform_point(&b.back, at.point);
-    NEAR(atan2(p.y, p.x) < 0 ? atan2(p.y, p.x) + 2 * M_PI : atan2(p.y, p.x), angle, 1e-9);
+    const double angle = atan2(p.y, p.x) + (p.y < 0 ? 2 * M_PI : 0);
     const CagVec3 across = cag_transform_vector(&b.map, cag_vec3(-sin(angle), cos(angle), 0));
     const bool larger = fabs(cag_dot(at.direction[1], across)) < 0.5;
     CagCurve *c;
@@ -243,7 +285,7 @@ static void meridians_go_on_through_the_vertex(void **state) {
     // It takes few steps, even where it ends at the vertex.
     CagNurbsView steps;
     assert_true(cag_curve_nurbs_view(c, &steps));
-    assert_true(steps.count < 1500);
+    assert_true(steps.count < 4000);
     // The opposite angle is on the surface.
     const bool through = turn == 2 * M_PI || angle > M_PI || angle + M_PI < turn;
     const int sides = through ? 2 : 1;
@@ -251,13 +293,13 @@ static void meridians_go_on_through_the_vertex(void **state) {
     half += !through;
     double length, outward = 0;
     OK(cag_curve_length(c, c->start, c->end, &length, &err));
-    const double missed = through ? 1e-6 : 1e-3;
+    const double missed = through ? 1e-8 : 1e-3;
     NEAR(length, sides * profile_length(&b), missed * length);
     for (int i = 0; i <= 40; i++) {
       OK(cag_curve_point(c, c->start + (c->end - c->start) * i / 40, &p, &err));
       p = cag_transform_point(&b.back, p);
       const double along = p.x * cos(angle) + p.y * sin(angle), part = along / b.wide;
-      NEAR(p.y * cos(angle), p.x * sin(angle), 1e-6);
+      NEAR(p.y * cos(angle), p.x * sin(angle), through ? 1e-8 : 1e-6);
       NEAR(p.z, b.deep * part * part + b.flare * part * part * part * part, 1e-6);
       outward = fmin(outward, part);
     }
@@ -265,12 +307,13 @@ static void meridians_go_on_through_the_vertex(void **state) {
     cag_curve_release(c);
     cag_surface_release(b.s);
   }
-  assert_true(whole > 5 && half > 2);
+  assert_true(whole > 10 && half > 5);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lines_on_ellipsoids_are_confocal),
+      cmocka_unit_test(lines_on_nearly_round_ellipsoids_are_confocal),
       cmocka_unit_test(lines_on_spheroids_are_circles_and_meridians),
       cmocka_unit_test(meridians_go_on_through_the_vertex),
   };
