@@ -227,6 +227,16 @@ static const Sample samples[] = {
       {R, 5, 20, 0, -80},
       {R, 25, 0, 0, 70},
       {R, -30, 263, 12, 20}}},
+    {"slide towards both sides and a wrist",
+     6,
+     2,
+     8,
+     {{R, 10, 412, 0, -70},
+      {R, 20, 254, 30, 120},
+      {P, 15, 0, 10, 35},
+      {R, 5, 20, 0, -80},
+      {R, 25, 0, 0, 70},
+      {R, -30, 263, 12, 20}}},
 };
 #define SAMPLES (sizeof samples / sizeof *samples)
 
