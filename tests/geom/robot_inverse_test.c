@@ -665,17 +665,21 @@ static void stretched_and_folded_arms_are_found(void **state) {
               {"rhino", 2, 0},
               {"puma", 2, 90},
               {"scara", 1, 0},
-              {"scara on a column", 2, 0}};
-  for (size_t k = 0; k < sizeof arms / sizeof *arms; k++) {
-    const Sample *s = sample_of(arms[k].name);
-    CagRobot *r = make(s, false);
+              {"scara on a column", 2, 0},
+              {"stanford", 1, 0}};
+  const size_t count = sizeof arms / sizeof *arms;
+  for (size_t k = 0; k < 3 * count; k++) {
+    const double unit = k < count ? 1 : k < 2 * count ? 1000 : 1e-3; // as above
+    const Sample *s = sample_of(arms[k % count].name);
+    CagRobot *r = make_in(s, false, unit);
     for (int pose = 0; pose < 60; pose++) {
       double q[6], best = INFINITY, way, turn;
       CagTransform target, at;
       CagInverse all;
       for (size_t j = 0; j < s->n; j++)
-        q[j] = s->rows[j].kind == P ? 50 + 400 * random_share() : (2 * random_share() - 1) * 3.1;
-      q[arms[k].joint] = (arms[k].straight + (pose % 2 ? 180 : 0)) * DEGREE;
+        q[j] = s->rows[j].kind == P ? (50 + 400 * random_share()) / unit
+                                    : (2 * random_share() - 1) * 3.1;
+      q[arms[k % count].joint] = (arms[k % count].straight + (pose % 2 ? 180 : 0)) * DEGREE;
       cag_robot_forward(r, q, &target);
       cag_robot_inverse(r, &target, NULL, &all);
       // Minimover and puma fold to nothing: see the free joints.
