@@ -191,6 +191,22 @@ static void flat_faces(void **state) {
   }
 }
 
+// Boxes that are not turned, of which each has a face in a plane of the other, or a bit beside it.
+static void boxes_along_the_axes(void **state) {
+  (void)state;
+  seed = 78;
+  for (int k = 0; k < 72; k++) {
+    const int axis = k % 3, order = k / 12 % 2;
+    const double x = uniform(-1.5, 1.5), y = uniform(-1.5, 1.5), z = uniform(-1.5, 1.5);
+    double at[3] = {x, y, z};
+    at[axis] = (k / 3 % 2 ? 1 : -1) * (2 + (k / 6 % 2) * 2e-3);
+    CagSolid *a = box(2, 2, 2), *b = moved(box(2, 2, 2), at[0], at[1], at[2]);
+    CagSolid *s = order ? combined(CAG_UNION, b, a) : combined(CAG_UNION, a, b);
+    assert_int_equal(cag_solid_in_general_position(s, NULL), k / 6 % 2);
+    cag_solid_release(s);
+  }
+}
+
 // How far two triangles of the plane z = 0 are apart across one of their edges: negative if they
 // overlap, by which the nearest of them would have to move.
 static double apart_by(const CagVec3 p[3], const CagVec3 q[3]) {
@@ -421,6 +437,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lone_solids_are_in_general_position),
       cmocka_unit_test(flat_faces),
+      cmocka_unit_test(boxes_along_the_axes),
       cmocka_unit_test(triangles_of_one_plane_coincide_where_they_overlap),
       cmocka_unit_test(curved_faces),
       cmocka_unit_test(single_triangles_of_fine_meshes),
