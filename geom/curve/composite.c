@@ -2,7 +2,8 @@
 //
 // Piece i covers cuts[i]..cuts[i + 1] and its own domain at constant rate; its ends are hit
 // exactly. Pieces are never composites themselves. A joint belongs to the piece that starts there,
-// except for limits from the left.
+// except for limits from the left. The corners and other breaks within the pieces are hit exactly,
+// too: at a place next to one, both limits would be the same.
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,6 +21,9 @@ typedef struct Composite {
   size_t n;
   CagCurve **pieces;
   double *cuts; // n + 1
+  // Breaks within pieces, ascending: as parameters of the whole, and of their pieces.
+  size_t inner_count;
+  double *inner, *own;
 } Composite;
 
 static const CagCurveKind composite_kind;
@@ -29,6 +33,28 @@ static void destroy(CagCurve *curve) {
   for (size_t i = 0; c->pieces && i < c->n; i++) cag_curve_release(c->pieces[i]);
   free(c->pieces);
   free(c->cuts);
+  free(c->inner);
+  free(c->own);
+}
+
+static size_t breaks_of(const CagCurve *piece, double *out, size_t capacity) {
+  return piece->kind->breaks ? piece->kind->breaks(piece, out, capacity) : 0;
+}
+
+static CagStatus find_inner_breaks(Composite *c, CagError *err) {
+  size_t n = 0;
+  for (size_t i = 0; i < c->n; i++) n += breaks_of(c->pieces[i], NULL, 0);
+  if (n == 0) return CAG_OK;
+  c->inner = malloc(sizeof *c->inner * n);
+  c->own = malloc(sizeof *c->own * n);
+  if (!c->inner || !c->own) return cag_fail_memory(err);
+  for (size_t i = 0; i < c->n; i++) {
+    const size_t first = c->inner_count;
+    c->inner_count += breaks_of(c->pieces[i], c->own + first, n - first);
+    for (size_t k = first; k < c->inner_count; k++)
+      c->inner[k] = cag_curve_remap(c->pieces[i], c->own[k], c->cuts[i], c->cuts[i + 1]);
+  }
+  return CAG_OK;
 }
 
 // Retains the pieces; copies the cuts.
@@ -50,7 +76,8 @@ static CagStatus make(CagCurve *const *pieces, const double *cuts, size_t n, boo
   memcpy(c->cuts, cuts, sizeof(double) * (n + 1));
   base->angular = angular;
   CagVec3 ends[2];
-  status = cag_curve_point(pieces[0], pieces[0]->start, &ends[0], err);
+  status = find_inner_breaks(c, err);
+  if (!status) status = cag_curve_point(pieces[0], pieces[0]->start, &ends[0], err);
   if (!status) status = cag_curve_point(pieces[n - 1], pieces[n - 1]->end, &ends[1], err);
   if (status) {
     cag_curve_release(base);
@@ -67,6 +94,13 @@ static double local(const Composite *c, size_t i, double t) {
   const CagCurve *piece = c->pieces[i];
   if (t == c->cuts[i]) return piece->start;
   if (t == c->cuts[i + 1]) return piece->end;
+  size_t lo = 0, hi = c->inner_count;
+  while (lo < hi) {
+    const size_t mid = lo + (hi - lo) / 2;
+    if (c->inner[mid] < t) lo = mid + 1;
+    else hi = mid;
+  }
+  if (lo < c->inner_count && c->inner[lo] == t) return c->own[lo];
   double rate = (piece->end - piece->start) / (c->cuts[i + 1] - c->cuts[i]);
   double u = piece->start + (t - c->cuts[i]) * rate;
   return fmin(fmax(u, piece->start), piece->end);
@@ -409,19 +443,13 @@ static CagBounds hull(const CagCurve *curve, double a, double b) {
 
 static size_t breaks(const CagCurve *curve, double *out, size_t capacity) {
   const Composite *c = (const Composite *)curve;
-  size_t n = 0;
-  for (size_t i = 0; i < c->n; i++) {
-    const CagCurve *piece = c->pieces[i];
-    if (i > 0) {
-      if (n < capacity) out[n] = c->cuts[i];
-      n++;
-    }
-    if (!piece->kind->breaks) continue;
-    size_t room = n < capacity ? capacity - n : 0;
-    size_t inner = piece->kind->breaks(piece, out ? out + n : NULL, room);
-    for (size_t k = 0; k < inner && k < room; k++)
-      out[n + k] = cag_curve_remap(piece, out[n + k], c->cuts[i], c->cuts[i + 1]);
-    n += inner;
+  size_t n = 0, k = 0;
+  for (size_t i = 1; i <= c->n; i++) {
+    for (; k < c->inner_count && (i == c->n || c->inner[k] < c->cuts[i]); k++, n++)
+      if (n < capacity) out[n] = c->inner[k];
+    if (i == c->n) break;
+    if (n < capacity) out[n] = c->cuts[i];
+    n++;
   }
   return n;
 }

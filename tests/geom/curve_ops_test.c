@@ -650,8 +650,61 @@ static void polylines_meet_at_vertices_once(void **state) {
   cag_curve_release(b);
 }
 
+// An arc and polylines joined, each over a range of its own: at each corner the two limits are the
+// directions before and after it.
+static void corners_within_joined_curves_have_both_limits(void **state) {
+  (void)state;
+  enum { PIECES = 5, MOST = 4 * PIECES + 1 };
+  seed = 103;
+  for (int round = 0; round < 60; round++) {
+    CagVec3 p[MOST];
+    CagCurve *parts[PIECES], *c;
+    size_t n = 0;
+    const CagTransform frame = cag_translate(cag_vec3(-1, 0, 0));
+    OK(cag_curve_arc(1, 1, uniform(-3, -0.5), 0, &frame, &parts[0], &err));
+    p[0] = cag_vec3(0, 0, 0);
+    for (int i = 1; i < PIECES; i++) {
+      const size_t first = n, edges = 1 + (size_t)uniform(0, 3.99);
+      for (size_t k = 0; k < edges; k++, n++) {
+        const double x = uniform(-1, 1), y = uniform(-1, 1);
+        p[n + 1] = cag_add(p[n], cag_vec3(x, y, uniform(-1, 1)));
+      }
+      CagCurve *plain;
+      const double from = uniform(-2, 2), to = from + uniform(0.1, 3);
+      OK(cag_curve_polyline(p + first, edges + 1, false, 3, &plain, &err));
+      OK(cag_curve_reparametrize(plain, from, to, &parts[i], &err));
+      cag_curve_release(plain);
+    }
+    OK(cag_curve_join(parts, PIECES, &c, &err));
+    double at[MOST];
+    const size_t found = c->kind->breaks(c, at, MOST);
+    assert_int_equal(found, n);
+    assert_int_equal(c->kind->breaks(c, NULL, 0), found);
+    for (size_t i = 0; i < found; i++) {
+      CagVec3 here, before, after;
+      assert_true(at[i] > (i ? at[i - 1] : c->start) && at[i] < c->end);
+      OK(cag_curve_point(c, at[i], &here, &err));
+      OK(cag_curve_tangent(c, at[i], CAG_SIDE_LEFT, &before, &err));
+      OK(cag_curve_tangent(c, at[i], CAG_SIDE_RIGHT, &after, &err));
+      near_vec(here, p[i], 0);
+      near_vec(before, i ? cag_unit(cag_sub(p[i], p[i - 1])) : cag_vec3(0, 1, 0), 1e-15);
+      near_vec(after, cag_unit(cag_sub(p[i + 1], p[i])), 1e-15);
+    }
+    // Fewer are written where there is room for fewer.
+    double few[MOST];
+    for (size_t room = 0; room < found; room++) {
+      few[room] = -77;
+      assert_int_equal(c->kind->breaks(c, few, room), found);
+      assert_true(few[room] == -77 && memcmp(few, at, room * sizeof *few) == 0);
+    }
+    cag_curve_release(c);
+    for (int i = 0; i < PIECES; i++) cag_curve_release(parts[i]);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(corners_within_joined_curves_have_both_limits),
       cmocka_unit_test(random_splines_keep_their_points),
       cmocka_unit_test(degrees_go_up_and_down),
       cmocka_unit_test(random_composites_are_their_pieces),
