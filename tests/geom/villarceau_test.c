@@ -243,8 +243,12 @@ static void parts_have_the_arcs_that_lie_on_them(void **state) {
     if (!clear) continue;
     told++;
     CagSurface *s = part_of(&t, &part, round % 2);
-    CagCurveList list = {0};
+    CagCurveList list = {0}, exact = {0};
+    bool is;
     MUST(cag_surface_section(s, &t.plane, 0, &list, err));
+    MUST(cag_section_villarceau(s, &t.plane, t.major + t.minor, &exact, &is, err));
+    assert_true(is);
+    cag_curve_list_free(&exact);
     if (list.count != (size_t)runs) fail_msg("round %d: %zu arcs, not %d", round, list.count, runs);
     CagTransform back;
     MUST(cag_transform_inverse(&t.map, &back, err));
