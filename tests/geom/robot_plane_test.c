@@ -95,9 +95,73 @@ static void places_out_of_reach_are_told_from_turns(void **state) {
   }
 }
 
+// Two links of one length reach places straight ahead of the first frame, beside it and behind it
+// like all others: by both bends of the elbow, if the tool may turn.
+static void equal_links_reach_places_on_the_axes_of_the_frame(void **state) {
+  (void)state;
+  seed = 512;
+  for (int round = 0; round < 200; round++) {
+    CagRobotLink links[3];
+    CagRobot *r = NULL;
+    const size_t n = 2 + (size_t)round % 2;
+    const bool back = round / 2 % 2;
+    for (size_t i = 0; i < n; i++) {
+      links[i] = cag_robot_link(CAG_JOINT_REVOLUTE);
+      links[i].theta = uniform(-1, 1);
+      links[i].low = -4;
+      links[i].high = 4;
+      links[i].a = 1.3;
+    }
+    links[0].alpha = back ? M_PI : 0;
+    if (n == 3) links[2].a = 0;
+    const CagRobotSpec spec = {.links = links,
+                               .link_count = n,
+                               .base = cag_transform_identity(),
+                               .tool = cag_transform_identity()};
+    OK(cag_robot_new(&spec, &r, &err));
+    const double bend = (round / 4 % 2 ? 1 : -1) * uniform(0.3, 2.8);
+    const double ahead = M_PI / 2 * (round / 8 % 4 - 1);
+    double q[3] = {ahead - links[0].theta - (back ? -1 : 1) * bend / 2, bend - links[1].theta,
+                   uniform(-1, 1)};
+    CagTransform pose;
+    CagInverse all;
+    cag_robot_forward(r, q, &pose);
+    NEAR(sin(ahead) == 0 ? pose.m[1][3] : 0, 0, 1e-9);
+    NEAR(fabs(cos(ahead)) < 0.5 ? pose.m[0][3] : 0, 0, 1e-9);
+    cag_robot_inverse(r, &pose, NULL, &all);
+    assert_int_equal(all.status, CAG_INVERSE_OK);
+    assert_int_equal(all.count, n - 1);
+    assert_int_equal(all.free, 0);
+    double nearest = INFINITY;
+    for (size_t i = 0; i < all.count; i++) {
+      double off = 0;
+      CagTransform found;
+      cag_robot_forward(r, all.solutions[i].q, &found);
+      near_vec(origin_of(&found), origin_of(&pose), 1e-9);
+      for (size_t k = 0; k < n; k++)
+        off = fmax(off, fabs(remainder(all.solutions[i].q[k] - q[k], 2 * M_PI)));
+      nearest = fmin(nearest, off);
+    }
+    NEAR(nearest, 0, 1e-8);
+    if (n == 2) { // the place alone, by both bends
+      cag_robot_inverse_point(r, origin_of(&pose), NULL, &all);
+      assert_int_equal(all.status, CAG_INVERSE_OK);
+      assert_int_equal(all.count, 2);
+      assert_int_equal(all.free, 0);
+      for (size_t i = 0; i < 2; i++) {
+        CagTransform found;
+        cag_robot_forward(r, all.solutions[i].q, &found);
+        near_vec(origin_of(&found), origin_of(&pose), 1e-9);
+      }
+    }
+    cag_robot_release(r);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(places_out_of_reach_are_told_from_turns),
+      cmocka_unit_test(equal_links_reach_places_on_the_axes_of_the_frame),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
