@@ -143,6 +143,12 @@ printf '%s\n' ':help sphere' | "$cag" repl 2>&1 | grep -q '^sphere(radius)'
 result ':help shows documentation of a built-in' $?
 printf '%s\n' ':doc' | "$cag" repl 2>&1 | grep -qw 'bspline'
 result ':doc lists the built-ins' $?
+if command -v python3 >/dev/null; then
+  told=$(python3 "$(dirname "$script")/widths.py" "$cag")
+  result 'the lists of :help and :doc are as wide as the terminal at most' $? "$told"
+else
+  skip 'python3 is missing' 'the lists of :help and :doc are as wide as the terminal at most'
+fi
 
 complains 'an error shows its line' 1 '1 | sin(30)' 'sin(30)'
 complains 'an error of names gives the nearest' 1 'did you mean `radius`?' 'radius = 3
