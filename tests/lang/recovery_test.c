@@ -159,6 +159,29 @@ static uint32_t next_random(uint32_t *seed) {
   return *seed;
 }
 
+// A text ends with its line, and what is open in it; a bracket before it does not. `1 2` is an
+// error in each of them.
+static void a_text_that_is_open_is_no_open_bracket(void **state) {
+  (void)state;
+  uint32_t seed = 88172645u;
+  for (int round = 0; round < 300; round++) {
+    char line[128] = "x = ", expected[64] = "";
+    const uint32_t before = next_random(&seed) % 5, within = next_random(&seed) % 5;
+    for (uint32_t i = 0; i < before; i++) strcat(line, next_random(&seed) % 2 ? "(" : "[");
+    if (before) snprintf(expected, sizeof expected, "E0123 1:%zu, ", strlen(line));
+    strcat(line, "\"a {");
+    for (uint32_t i = 0; i < within; i++) {
+      static const char *const openers[] = {"(", "[", "\"b {"};
+      strcat(line, openers[next_random(&seed) % 3]);
+    }
+    strcat(line, "1 2");
+    const size_t n = strlen(expected);
+    snprintf(expected + n, sizeof expected - n, "E0126 1:%zu", strlen(line));
+    strcat(line, "\ny = 3\n");
+    expect_errors(line, expected);
+  }
+}
+
 static void damaged_texts_neither_crash_nor_hang(void **state) {
   (void)state;
   static const char good[] =
@@ -279,6 +302,7 @@ int main(void) {
       cmocka_unit_test(brackets_nest_a_thousand_deep),
       cmocka_unit_test(chains_without_brackets_are_bounded_too),
       cmocka_unit_test(a_long_line_is_no_burden),
+      cmocka_unit_test(a_text_that_is_open_is_no_open_bracket),
       cmocka_unit_test(damaged_texts_neither_crash_nor_hang),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
