@@ -297,7 +297,7 @@ static bool check_outputs(CagBatch *b) {
     told = outputs[i].row;
     ok = tell_twice(b, &outputs[i - 1], &outputs[i]);
   }
-  for (size_t i = 0; outputs && i < count; i++) free(outputs[i].path);
+  while (count) free(outputs[--count].path);
   free(outputs);
   return ok;
 }
