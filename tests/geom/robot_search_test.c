@@ -377,7 +377,8 @@ static void alternatives_come_nearer(void **state) {
       }
     }
     assert_true(apart[1] <= apart[0] + 1e-9);
-    assert_true(steps[1] > steps[0]);
+    // Twenty attempts more, each of some 15 steps.
+    assert_true(steps[1] > steps[0] + 40 && steps[1] < steps[0] + 700);
     nearer += apart[1] < apart[0] - 1e-3;
     cag_robot_release(r);
   }
