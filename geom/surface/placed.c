@@ -14,16 +14,28 @@ typedef struct Placed {
   CagSurface *inner;
   CagTransform map;
   bool flip;
+  CagKeptBreaks breaks; // where it is flipped: those of `inner` in v
 } Placed;
 
 static const CagSurfaceKind placed_kind;
 
+static double turned_v(const Placed *p, double v) { return p->base.v0 + p->base.v1 - v; }
+
 static double inner_v(const Placed *p, double v) {
   if (!p->flip) return v;
-  // The ends go to the ends exactly.
+  // The ends go to the ends exactly, and breaks to breaks: rounded, a break may be beside that of
+  // `inner`, where both sides have the derivatives of one.
   if (v == p->base.v0) return p->base.v1;
   if (v == p->base.v1) return p->base.v0;
-  return p->base.v0 + p->base.v1 - v;
+  size_t lo = 0, hi = p->breaks.n;
+  while (lo < hi) {
+    const size_t middle = lo + (hi - lo) / 2;
+    const double at = turned_v(p, p->breaks.at[middle]);
+    if (at == v) return p->breaks.at[middle];
+    if (at > v) lo = middle + 1;
+    else hi = middle;
+  }
+  return turned_v(p, v);
 }
 
 static CagStatus placed_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
@@ -89,16 +101,10 @@ static CagStatus placed_transform(const CagSurface *s, const CagTransform *t, Ca
 
 static size_t placed_breaks(const CagSurface *s, int direction, double *out, size_t capacity) {
   const Placed *p = (const Placed *)s;
-  if (!p->inner->kind->breaks) return 0;
-  size_t n = p->inner->kind->breaks(p->inner, direction, out, capacity);
-  if (direction == 0 || !p->flip) return n;
-  size_t have = n < capacity ? n : capacity;
-  for (size_t i = 0; i < have; i++) out[i] = inner_v(p, out[i]);
-  for (size_t i = 0; i < have / 2; i++) {
-    double swap = out[i];
-    out[i] = out[have - 1 - i];
-    out[have - 1 - i] = swap;
-  }
+  if (direction == 0 || !p->flip)
+    return p->inner->kind->breaks ? p->inner->kind->breaks(p->inner, direction, out, capacity) : 0;
+  const size_t n = p->breaks.n;
+  for (size_t i = 0; i < n && i < capacity; i++) out[i] = turned_v(p, p->breaks.at[n - 1 - i]);
   return n;
 }
 
@@ -110,7 +116,11 @@ static void placed_describe(const CagSurface *s, char *buffer, size_t size) {
            p->inner->kind->name, *inner ? ", " : "", inner, p->flip ? ", flipped" : "");
 }
 
-static void placed_destroy(CagSurface *s) { cag_surface_release(((Placed *)s)->inner); }
+static void placed_destroy(CagSurface *s) {
+  Placed *p = (Placed *)s;
+  cag_surface_release(p->inner);
+  free(p->breaks.at);
+}
 
 static const CagSurfaceKind placed_kind = {
     .name = "transformed",
@@ -146,14 +156,22 @@ CagStatus cag_surface_placed(const CagSurface *inner, const CagTransform *t, boo
     *out = cag_surface_retain(inner);
     return CAG_OK;
   }
-  CagSurface *s;
-  CagStatus status = cag_surface_block(sizeof(Placed), &placed_kind, inner->u0, inner->u1,
-                                       inner->v0, inner->v1, &s, err);
+  CagKeptBreaks breaks = {0};
+  CagStatus status =
+      flip ? cag_surface_keep_breaks(inner, 1, inner->v0, inner->v1, &breaks, err) : CAG_OK;
   if (status) return status;
+  CagSurface *s;
+  status = cag_surface_block(sizeof(Placed), &placed_kind, inner->u0, inner->u1, inner->v0,
+                             inner->v1, &s, err);
+  if (status) {
+    free(breaks.at);
+    return status;
+  }
   Placed *p = (Placed *)s;
   p->inner = cag_surface_retain(inner);
   p->map = map;
   p->flip = flip;
+  p->breaks = breaks;
   s->angular_u = inner->angular_u;
   s->angular_v = inner->angular_v;
   s->closed_u = inner->closed_u;

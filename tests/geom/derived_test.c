@@ -533,6 +533,49 @@ static void flipped_surfaces_have_their_breaks_in_reverse(void **state) {
   }
 }
 
+// The sides of a crease are told apart only exactly at it, also where the parameter of the crease
+// in the flipped surface is rounded.
+static void flipped_surfaces_are_creased_exactly(void **state) {
+  (void)state;
+  seed = 53;
+  for (int round = 0; round < 40; round++) {
+    CagVec3 p[12];
+    for (int i = 0; i < 12; i++) p[i] = cag_vec3(i, uniform(-1, 1), uniform(-1, 1));
+    const double from = uniform(-3, 3);
+    double knots[14] = {from, from};
+    for (int i = 2; i < 13; i++) knots[i] = knots[i - 1] + uniform(0.1, 1);
+    knots[13] = knots[12];
+    CagCurve *c;
+    CagSurface *s, *turned, *flipped;
+    MUST(cag_curve_nurbs(p, NULL, 12, 1, knots, 2, &c, err));
+    MUST(cag_surface_extrude(c, cag_vec3(0, 1, 5), 0, 1, &s, err));
+    MUST(cag_surface_transpose(s, &turned, err));
+    const CagTransform stay = cag_transform_identity();
+    MUST(cag_surface_placed(turned, &stay, true, &flipped, err));
+    double *cuts;
+    size_t pieces;
+    MUST(cag_surface_cuts(flipped, 1, &cuts, &pieces, err));
+    assert_int_equal(pieces, 11);
+    const double u = flipped->u0 + 0.3 * (flipped->u1 - flipped->u0);
+    for (size_t i = 1; i < pieces; i++)
+      for (int side = 0; side < 2; side++) {
+        // The flipped polyline runs from the last point to the first.
+        const CagVec3 a = p[pieces - i - side + 1], b = p[pieces - i - side];
+        const double span = knots[pieces - i - side + 2] - knots[pieces - i - side + 1];
+        CagVec3 d[3];
+        MUST(cag_surface_eval(flipped, u, cuts[i], 1, CAG_SIDE_RIGHT,
+                              side ? CAG_SIDE_RIGHT : CAG_SIDE_LEFT, d, err));
+        const CagVec3 dv = d[cag_partial(1, 0, 1)];
+        assert_near(cag_norm(cag_sub(dv, cag_scaled(cag_sub(b, a), 1 / span))), 0, 1e-10, "dv");
+      }
+    free(cuts);
+    cag_surface_release(flipped);
+    cag_surface_release(turned);
+    cag_surface_release(s);
+    cag_curve_release(c);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parts_are_the_surface_over_smaller_ranges),
@@ -543,6 +586,7 @@ int main(void) {
       cmocka_unit_test(sides_are_exchanged_as_well),
       cmocka_unit_test(maps_that_undo_each_other_leave_the_surface),
       cmocka_unit_test(flipped_surfaces_have_their_breaks_in_reverse),
+      cmocka_unit_test(flipped_surfaces_are_creased_exactly),
       cmocka_unit_test(offsets_of_tori_and_balls_are_tori_and_balls),
       cmocka_unit_test(offsets_have_derivatives_on_the_axis_of_a_torus),
   };
