@@ -294,18 +294,25 @@ def list_places():
 
 
 class Programs:
-    """Compiles changed files and links them with the suites. The unchanged objects are those of build/."""
+    """Compiles changed files and links them with the suites. The unchanged objects are those of build/.
+
+    Most programs take the code from a shared library in the folder they are in, so that one link serves all suites. Those that test
+    failing allocations or the sources of the command line contain it.
+    """
 
     def __init__(self):
         settings = output_of(["make", "-s", "-p", "-n", "-q"])[1]
         variable = lambda name: re.search(rf"^{name} :?= (.*)$", settings, re.M).group(1).split()
         self.compile_flags = ("-std=c17 -D_GNU_SOURCE -O1 -g0 -Wall -Wextra -Werror -Wno-psabi -fno-math-errno -fno-trapping-math "
-                              "-ffp-contract=off -fPIC -fvisibility=hidden -I. -Iinclude -Ibuild/gen").split()
+                              "-ffp-contract=off -fPIC -fno-semantic-interposition -I. -Iinclude -Ibuild/gen").split()
         self.compile_flags += ['-DCAG_VERSION="{}"'.format(*variable("VERSION")), *variable("PKG_CFLAGS")]
         self.libraries = [*variable("PKG_LIBS"), "-lm", "-lpthread", "-lcmocka"] + SANITIZERS
         if shutil.which("mold"):
             self.libraries.append("-fuse-ld=mold")
         self.tool = sorted(glob.glob("interp/tool/**/*.c", recursive=True))
+        objects = glob.glob("build/obj/**/*.o", recursive=True)
+        self.objects = sorted(name for name in objects if not re.match("build/obj/interp/(tool/|main[.])", name))
+        self.lock = threading.Lock()
 
     def compile(self, source, target, flags=()):
         return output_of(["cc", *self.compile_flags, *flags, "-c", source, "-o", target])
@@ -317,18 +324,38 @@ class Programs:
         if status != 0:
             sys.exit(text)
 
-    def link(self, suite, folder, source=None, changed=None):
-        """Links the program of a suite, with the object of a changed source if there is one."""
-        program = program_of(suite)
-        target = f"{folder}/{program}"
-        if os.path.exists(target):
-            return
-        os.makedirs(os.path.dirname(target), exist_ok=True)
-        library, extra, objects = "libcag.a", [], [changed] if changed else []
-        if program.startswith("tests/"):
-            objects.insert(0, f"build/checked/{program}.o")
-            kind = program.split("/")[1]
-            library = {"lang": "liblang.a", "geom": "libgeom.a"}.get(kind, library)
+    def run_linker(self, *arguments):
+        # The C++ compiler, because some libraries of OpenEXR are in that language.
+        status, text = output_of(["c++", *arguments, *self.libraries])
+        if status != 0:
+            sys.exit(text)
+
+    def link_library(self, folder, source=None, changed=None):
+        """Links the library of a folder, with the object of a changed source if there is one."""
+        target = f"{folder}/libcag.so"
+        if not os.path.exists(target):
+            objects = [changed if source and name == f"build/obj/{source[:-2]}.o" else name for name in self.objects]
+            self.run_linker("-shared", "-Wl,-Bsymbolic", *objects, "-o", target)
+
+    def link_shared(self, program):
+        """Links a program with the library of the folder that it will be in. Returns the path."""
+        target = f"{WORK}/programs/{program}"
+        with self.lock:
+            if not os.path.exists(target):
+                os.makedirs(os.path.dirname(target), exist_ok=True)
+                self.link_library(f"{WORK}/programs")
+                if program == "cag":
+                    objects = [f"build/obj/{name[:-2]}.o" for name in self.tool + ["interp/main.c"]]
+                else:
+                    objects = [f"build/checked/{program}.o"]
+                up = "/.." * program.count("/")
+                self.run_linker(*objects, "-o", target, f"-L{WORK}/programs", "-lcag", f"-Wl,-rpath,$ORIGIN{up}")
+        return target
+
+    def link_static(self, program, target, source, changed):
+        objects, extra = [changed] if changed else [], []
+        if program != "cag":
+            objects.append(f"build/checked/{program}.o")
         if program == "cag" or program.startswith("tests/interp/tool_"):
             tool = self.tool + ["interp/main.c"] * (program == "cag")
             objects += [f"build/obj/{name[:-2]}.o" for name in tool if name != source]
@@ -336,10 +363,20 @@ class Programs:
             extra = [f"-Wl,--wrap={name}" for name in WRAPPED]
         if program.startswith("tests/geom/memory_"):
             extra = [f"-Wl,--wrap={name}" for name in ("malloc", "calloc", "realloc", "free")]
-        # The C++ compiler, because some libraries of OpenEXR are in that language.
-        status, text = output_of(["c++", *objects, f"build/{library}", "-o", target, *extra, *self.libraries])
-        if status != 0:
-            sys.exit(text)
+        self.run_linker(*objects, "build/libcag.a", "-o", target, *extra)
+
+    def link(self, suite, folder, source=None, changed=None):
+        """Makes the program of a suite in a folder, with the object of a changed source if there is one."""
+        program = program_of(suite)
+        target = f"{folder}/{program}"
+        if os.path.exists(target):
+            return
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        if source in self.tool + ["interp/main.c"] or re.match("tests/(interp/tool_|geom/memory_|fuzz/memory)", program):
+            self.link_static(program, target, source, changed)
+        else:
+            self.link_library(folder, source, changed)
+            os.link(self.link_shared(program), target)
         for name in ("gen", "tools", "npm"):
             if os.path.exists(f"build/{name}") and not os.path.lexists(f"{folder}/{name}"):
                 os.symlink(os.path.abspath(f"build/{name}"), f"{folder}/{name}")
@@ -351,8 +388,6 @@ class Trials:
         self.lock = threading.Lock()
         self.passing = {}  # whether a suite passes without a change
         self.unchanged = f"{WORK}/unchanged"  # their programs
-        shutil.rmtree(self.unchanged, ignore_errors=True)
-        os.makedirs(self.unchanged)
         with open("tools/equivalent_mutations.txt") as file:
             self.equivalent = {row.rstrip("\n") for row in file}
         self.headers = {}
@@ -435,8 +470,11 @@ def copy_tree():
 def main():
     copy_tree()
     os.environ["ASAN_OPTIONS"] = f"hard_rss_limit_mb={MEMORY}:detect_leaks=0"
-    build("build", "OPT=-O1", "CFLAGS=-g0", "all", "build/libgeom.a", "build/liblang.a", "build/tools/tables")
+    build("build", "OPT=-O1", "CFLAGS=-g0 -fvisibility=default", "all", "build/tools/tables")
     measure_suites()
+    for name in ("programs", "unchanged"):
+        shutil.rmtree(f"{WORK}/{name}", ignore_errors=True)
+        os.makedirs(f"{WORK}/{name}")
     programs, reach = Programs(), Reach()
     with ThreadPoolExecutor(JOBS) as pool:
         list(pool.map(programs.compile_test, [program_of(s) for s in all_suites() if program_of(s) != "cag"]))
