@@ -53,8 +53,9 @@ typedef struct CagInverse {
 } CagInverse;
 
 bool cag_robot_has_inverse(const CagRobot *r);
-// All solutions for a rigid target; limits are not asked. `near` (NULL: zeros) has the values for
-// free joints.
+// All solutions for a rigid target, also those that miss it by up to 1e-6 (of the reach, and
+// radians), so that a rounded target has solutions if there are fewer than six joints. Limits are
+// not asked. `near` (NULL: zeros) has the values for free joints.
 void cag_robot_inverse(const CagRobot *r, const CagTransform *target, const double *near,
                        CagInverse *out);
 // The same for a point that the tool's origin is to reach, whatever its orientation: of chains that

@@ -343,8 +343,9 @@ static void check_pose(const Sample *s, const CagRobot *r, const CagRobot *plain
   CagTransform target, pose;
   CagInverse all;
   bool found = false;
-  // Where two solutions are almost one, they show the square root of the rounding.
-  const double tolerance = r == plain ? 1e-8 : 1e-6;
+  // Fewer than six joints do not reach every pose. Joint values that almost reach one count as
+  // solutions of it, too: beside those the target was made from, others may be off by this much.
+  const double most = s->n < 6 ? 1e-6 : 1e-8;
   cag_robot_forward(r, q, &target);
   cag_robot_inverse(r, &target, NULL, &all);
   if (all.count < s->least || all.count > s->most)
@@ -354,9 +355,11 @@ static void check_pose(const Sample *s, const CagRobot *r, const CagRobot *plain
     CagConfiguration c;
     cag_robot_forward(r, all.solutions[i].q, &pose);
     cag_robot_pose_distance(&pose, &target, &way, &turn);
+    const bool same = is_near(plain, q, all.solutions[i].q);
+    const double tolerance = same ? 1e-8 : most;
     if (way > tolerance * r->reach || turn > tolerance)
       fail_msg("%s: off by %g, %g", s->name, way, turn);
-    found = found || is_near(plain, q, all.solutions[i].q);
+    found = found || same;
     assert_true(cag_robot_configuration(r, all.solutions[i].q, &c));
     assert_memory_equal(&c, &all.solutions[i].configuration, sizeof c);
     if (r == plain) check_labels(s, r, all.solutions[i].q, &c);
