@@ -353,6 +353,20 @@ static void a_box_far_from_the_origin(void **state) {
   cag_mesh_release(b);
 }
 
+static void boxes_of_any_size(void **state) {
+  (void)state;
+  static const double sizes[] = {1e-40, 1e-15, 1e15, 1e40};
+  for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+    const double s = sizes[k], cubed = s * s * s;
+    CagMesh *a = cube(0, 0, 0, 2 * s), *b = cube(s, s, s, 2 * s);
+    NEAR(operated_volume(CAG_UNION, a, b) / cubed, 15, 1e-13);
+    NEAR(operated_volume(CAG_DIFFERENCE, a, b) / cubed, 7, 1e-13);
+    NEAR(operated_volume(CAG_INTERSECTION, a, b) / cubed, 1, 1e-13);
+    cag_mesh_release(a);
+    cag_mesh_release(b);
+  }
+}
+
 // --- Round bodies ---
 
 static void a_drilled_box(void **state) {
@@ -858,6 +872,7 @@ int main(void) {
       cmocka_unit_test(cubes_turned_by_next_to_nothing),
       cmocka_unit_test(balls_turned_by_next_to_nothing),
       cmocka_unit_test(a_box_far_from_the_origin),
+      cmocka_unit_test(boxes_of_any_size),
       cmocka_unit_test(a_drilled_box),
       cmocka_unit_test(the_lens_of_two_spheres),
       cmocka_unit_test(balls_in_general_and_special_positions),
