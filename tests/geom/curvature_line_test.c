@@ -1,6 +1,6 @@
 // Lines of curvature of ellipsoids: one of both confocal coordinates stays as it is (Dupin).
 
-#include "tests/geom/random.h"
+#include "tests/geom/random_point.h"
 #include "tests/geom/support.h"
 
 #include "geom/solid/solid.h"
@@ -179,11 +179,6 @@ static void lines_on_spheroids_are_circles_and_meridians(void **state) {
   }
 }
 
-static CagVec3 any_vector(void) {
-  const double x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1);
-  return cag_vec3(x, y, z);
-}
-
 // A bowl with the profile r = wide t, z = deep t^2 + flare t^4, t in 0..1, about a random axis: its
 // vertex is a pole of the parameters, at the start or the end of any of both.
 typedef struct Bowl {
@@ -224,9 +219,9 @@ static Bowl random_bowl(double turn, bool reversed, bool flipped, bool swapped) 
   b.deep = b.wide * uniform(0.8, 1.5);
   b.flare = b.wide * uniform(0.05, 0.4);
   CagTransform away;
-  const CagVec3 axis = any_vector(), at = any_vector();
+  const CagVec3 axis = random_point(1), at = random_point(1);
   OK(cag_rotate(axis, uniform(1, 5), at, &away, &err));
-  const CagTransform shift = cag_translate(any_vector());
+  const CagTransform shift = cag_translate(random_point(1));
   b.map = cag_transform_multiply(&shift, &away);
   OK(cag_transform_inverse(&b.map, &b.back, &err));
   CagVec3 p[5];

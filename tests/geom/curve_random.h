@@ -6,7 +6,7 @@
 #include "geom/curve/conic.h"
 #include "geom/curve/family.h"
 #include "geom/curve/function.h"
-#include "tests/geom/random.h"
+#include "tests/geom/random_point.h"
 #include "tests/geom/support.h"
 
 typedef enum Kind {
@@ -30,11 +30,6 @@ typedef enum Kind {
   FUNCTION,
   KINDS
 } Kind;
-
-static inline CagVec3 random_point(double size) {
-  const double x = uniform(-size, size), y = uniform(-size, size), z = uniform(-size, size);
-  return cag_vec3(x, y, z);
-}
 
 // A turn by random angles and a shift.
 static inline CagTransform random_frame(void) {

@@ -4,19 +4,12 @@
 #include "geom/curve/function.h"
 #include "geom/mesh/separation.h"
 #include "geom/mesh/tessellate.h"
-#include "tests/geom/random.h"
+#include "tests/geom/random_point.h"
 #include "tests/geom/support.h"
-
-static CagVec3 random_vec(double size) {
-  const double x = uniform(-size, size);
-  const double y = uniform(-size, size);
-  const double z = uniform(-size, size);
-  return cag_vec3(x, y, z);
-}
 
 static CagVec3 random_direction(void) {
   CagVec3 v;
-  do v = random_vec(1);
+  do v = random_point(1);
   while (cag_norm(v) > 1 || cag_norm(v) < 0.1);
   return cag_unit(v);
 }
@@ -68,7 +61,7 @@ static void the_nearest_of_many_parts_may_have_a_far_chord(void **state) {
         if (near < least) nearest = cag_scaled(way, near);
         least = fmin(least, near);
         for (int j = 0; j < 3; j++) {
-          const CagVec3 beside = cag_add(cag_scaled(way, near + 0.2), random_vec(0.1));
+          const CagVec3 beside = cag_add(cag_scaled(way, near + 0.2), random_point(0.1));
           OK(cag_parts_add_point(&parts, beside, &err));
           if (cag_norm(beside) < least) nearest = beside;
           least = fmin(least, cag_norm(beside));
@@ -192,7 +185,7 @@ static Shape random_curve(CagVec3 at, int k) {
   double weights[MOST];
   const size_t n = 3 + (size_t)(k % 4);
   for (size_t i = 0; i < n; i++) {
-    p[i] = cag_add(at, random_vec(1));
+    p[i] = cag_add(at, random_point(1));
     weights[i] = uniform(0.5, 2);
   }
   OK(cag_curve_bezier(p, k % 2 ? weights : NULL, n, 3, &s.curve, &err));
@@ -210,7 +203,7 @@ static Shape random_surface(CagVec3 at, int k) {
     for (size_t j = 0; j < m; j++) {
       const CagVec3 grid = {2.0 * (double)i / (double)(n - 1) - 1,
                             2.0 * (double)j / (double)(m - 1) - 1, 0};
-      net[i * m + j] = cag_add(cag_add(at, grid), random_vec(0.5));
+      net[i * m + j] = cag_add(cag_add(at, grid), random_point(0.5));
       weights[i * m + j] = uniform(0.5, 2);
     }
   OK(cag_surface_bezier(net, k % 2 ? weights : NULL, n, m, &s.surface, &err));
