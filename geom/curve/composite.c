@@ -2,8 +2,8 @@
 //
 // Piece i covers cuts[i]..cuts[i + 1] and its own domain at constant rate; its ends are hit
 // exactly. Pieces are never composites themselves. A joint belongs to the piece that starts there,
-// except for limits from the left. The corners and other breaks within the pieces are hit exactly,
-// too: at a place next to one, both limits would be the same.
+// except for limits from the left. Breaks within the pieces, such as corners, are hit exactly, too:
+// at a place next to one, both limits would be the same.
 
 #include <stdio.h>
 #include <stdlib.h>

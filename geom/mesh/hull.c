@@ -399,8 +399,8 @@ static double from_segment(CagVec3 p, CagVec3 a, CagVec3 b) {
   return cag_norm(cag_sub(p, cag_lerp(a, b, fmax(0, fmin(1, along)))));
 }
 
-// Leaves of a rim the vertices that lie in three or more flat faces, and gives their number. Of a
-// body as thin as rounding two flat faces may have a rim in common that is not straight: 0 then.
+// Keeps the vertices of a rim that lie in three or more flat faces, and gives their number. In a
+// body as thin as rounding, two flat faces may share an edge that is not straight; then it gives 0.
 static size_t keep_corners(const Hull *h, const uint32_t *rims, uint32_t *ring, size_t n) {
   size_t first = 0, kept = 0;
   while (first < n && rims[ring[first]] < 3) first++;
@@ -461,7 +461,7 @@ static CagStatus mesh_of_rings(const Hull *h, const Rings *r, uint32_t *number, 
   return CAG_OK;
 }
 
-// Triangle by triangle the hull is closed in any case.
+// Each triangle becomes a face of its own; this hull is always closed.
 static void collect_triangles(const Hull *h, Rings *out) {
   out->rings = out->total = 0;
   for (size_t i = 0; i < h->count; i++) {
@@ -472,7 +472,8 @@ static void collect_triangles(const Hull *h, Rings *out) {
   }
 }
 
-// NULL where flat faces of a body as thin as rounding have more in common than one edge.
+// The mesh is NULL if it is not closed: in a body as thin as rounding, two flat faces may share
+// more than one edge.
 static CagStatus mesh_of_flats(const Hull *h, const Rings *r, uint32_t *number, CagMesh **out,
                                CagError *err) {
   bool closed;

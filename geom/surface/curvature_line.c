@@ -27,13 +27,14 @@
 #define STEPS_MOST 20000
 #define FIRST_STEP 1e-3
 #define SMALLEST_STEP 1e-12
-// By a pole or an umbilic the directions are known to rounding that grows: a line ends where a step
-// as short as this is not exact.
+// The rounding of the directions grows towards a pole or an umbilic. A line ends where a step as
+// short as this is still not accurate enough.
 #define TIRED_STEP 1e-7
 // Part of the size within which a line that comes back to its start has closed.
 #define CLOSED 1e-6
-// Parts of the size from which a line passes over a pole, and from which at most, where the
-// principal curvatures differ by less than this part: then their directions suffer from rounding.
+// A line passes over a pole that is nearer than AT_POLE of the size. Where the principal curvatures
+// differ by less than NEARLY_ROUND of the larger, rounding blurs their directions: there it passes
+// from as far as AT_POLE_MOST.
 #define AT_POLE 1e-4
 #define AT_POLE_MOST 0.1
 #define NEARLY_ROUND 1e-3
@@ -103,7 +104,7 @@ static bool bring_in(const CagSurface *s, Place *p) {
   return p->u >= s->u0 && p->u <= s->u1 && p->v >= s->v0 && p->v <= s->v1;
 }
 
-// Whether the principal curvatures are one to a part of the larger.
+// Whether the principal curvatures differ by no more than a part of the larger.
 static bool is_round(const Walk *w, const CagPrincipal *p, double part) {
   double large = fmax(fabs(p->k[0]), fabs(p->k[1]));
   return p->k[1] - p->k[0] <= part * fmax(large, 1 / w->size);

@@ -23,8 +23,8 @@ static double turned_v(const Placed *p, double v) { return p->base.v0 + p->base.
 
 static double inner_v(const Placed *p, double v) {
   if (!p->flip) return v;
-  // The ends go to the ends exactly, and breaks to breaks: rounded, a break may be beside that of
-  // `inner`, where both sides have the derivatives of one.
+  // Ends map to ends and breaks to breaks exactly. Next to a break of `inner`, both limits would be
+  // the same.
   if (v == p->base.v0) return p->base.v1;
   if (v == p->base.v1) return p->base.v0;
   size_t lo = 0, hi = p->breaks.n;

@@ -1,5 +1,5 @@
 // Lines of faces that share an edge: both get the corners of both, and as many steps as the denser
-// of them needs, also where the edge is run through the other way, or at another speed.
+// one needs, also if the faces run along the edge in opposite directions or at different speeds.
 
 #include "tests/geom/leaf_support.h"
 
@@ -54,9 +54,9 @@ static void begin(Joint *j, int k) {
   OK(tess_make_nodes(&j->cut.t, &err));
 }
 
-// --- What the other face wants of an edge ---
+// --- Steps that the faces need along the edge ---
 
-// The share of the edge's length at a parameter of a face.
+// The fraction of the edge's length at a parameter of a face.
 static double length_at(const Joint *j, int face, double t) {
   const double x = face == 1 && j->reversed ? 1 - t : t;
   return x + 2 * j->bend[face] * x * (1 - x);
@@ -78,7 +78,7 @@ static bool is_beside(const Joint *j, int face, const Leaf *l) {
   return (int)l->face == face && (side % 2 ? l->to[side / 2] == 1 : l->from[side / 2] == 0);
 }
 
-// Steps that the leaves of a face need between two shares of the length.
+// Steps that the leaves of a face need between two fractions of the length.
 static double needed(const Joint *j, int face, double from, double to) {
   const double a = parameter_at(j, face, from), b = parameter_at(j, face, to);
   const int along = 1 - j->side[face] / 2;
@@ -100,7 +100,7 @@ static void lines_of_an_edge_have_the_same_nodes(void **state) {
     begin(&j, k);
     const Tessellator *t = &j.cut.t;
     const double near = k / 32 % 2 ? 1e-7 : 1e-14; // parameters that are searched for, or not
-    // The corners of both faces' leaves, as shares of the length.
+    // The corners of both faces' leaves, as fractions of the length.
     double cuts[2 * MOST_LEAVES + 2];
     size_t n = 0, expected = 1;
     for (size_t l = 0; l < t->leaf_count; l++)

@@ -9,7 +9,7 @@ enum { KINDS = 7, MOST_VALUES = 24 };
 
 static const double rounding = 1e-15; // of values
 
-static int values; // so many were asked for
+static int values; // number of evaluations
 
 // `constant` is the zero. Rounding aside, the value is 0 nowhere else.
 static double function_at(const CagLevel *level, double x, double *slope) {

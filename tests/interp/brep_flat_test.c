@@ -34,8 +34,8 @@ static CagVec3 column(const CagTransform *t, int k) {
   return cag_vec3(t->m[0][k], t->m[1][k], t->m[2][k]);
 }
 
-// The origin is the first corner, the normal that about which the corners run to the left, x along
-// the longest edge, of such as are alike the first.
+// The origin is the first corner. The corners run counter-clockwise about the normal. The x axis
+// lies along the longest edge; of equally long edges, along the first.
 static void check_plane(const CagTransform *plane, const CagVec3 *p, CagVec3 normal, double size) {
   CagVec3 longest = {0, 0, 0};
   for (int i = 0; i < 3; i++)

@@ -37,7 +37,7 @@ def wrapped(text, width, first, indent):
 
 
 def entries(lines, is_first):
-    """Each first line with those that go on with it, as one line."""
+    """Joins each first line and its continuation lines."""
     found = []
     for line in lines:
         if is_first(line):
