@@ -540,7 +540,10 @@ static void flipped_surfaces_are_creased_exactly(void **state) {
   seed = 53;
   for (int round = 0; round < 40; round++) {
     CagVec3 p[12];
-    for (int i = 0; i < 12; i++) p[i] = cag_vec3(i, uniform(-1, 1), uniform(-1, 1));
+    for (int i = 0; i < 12; i++) {
+      const double y = uniform(-1, 1);
+      p[i] = cag_vec3(i, y, uniform(-1, 1));
+    }
     const double from = uniform(-3, 3);
     double knots[14] = {from, from};
     for (int i = 2; i < 13; i++) knots[i] = knots[i - 1] + uniform(0.1, 1);

@@ -4,7 +4,7 @@
 
 #include "geom/linalg/transform.h"
 #include "geom/mesh/hull.h"
-#include "random.h"
+#include "random_point.h"
 #include "support.h"
 
 enum { MOST = 24 };
@@ -15,8 +15,8 @@ static int whole(int least, int most) {
 
 static CagTransform random_motion(void) {
   CagTransform turn;
-  const CagVec3 axis = {uniform(-1, 1), uniform(-1, 1), uniform(0.1, 1)};
-  const CagVec3 center = {uniform(-5, 5), uniform(-5, 5), uniform(-5, 5)};
+  const double x = uniform(-1, 1), y = uniform(-1, 1);
+  const CagVec3 axis = cag_vec3(x, y, uniform(0.1, 1)), center = random_point(5);
   OK(cag_rotate(axis, uniform(-3, 3), center, &turn, &err));
   return turn;
 }
@@ -71,7 +71,10 @@ static void corners_in_the_plane_are_those_of_all_lines_through_two_points(void 
     const int n = whole(3, MOST), size = whole(1, 9);
     const double angle = uniform(-3, 3), c = cos(angle), s = sin(angle);
     const CagVec3 shift = {uniform(-5, 5), uniform(-5, 5), 0};
-    for (int i = 0; i < n; i++) p[i] = cag_vec3(whole(-size, size), whole(-size, size), 0);
+    for (int i = 0; i < n; i++) {
+      const int x = whole(-size, size), y = whole(-size, size);
+      p[i] = cag_vec3(x, y, 0);
+    }
     if (round % 10 == 0)
       for (int i = 0; i < n; i++) p[i].y = 2 * p[i].x;
     const int count = corners_of(p, n, expected);
@@ -167,7 +170,7 @@ static void check_body(const CagMesh *m, const CagVec3 *p, int n, double slack) 
   assert_true(!m->normals && !m->uv && !m->weld);
   assert_int_equal(cag_mesh_euler_characteristic(m), 2);
   for (int k = 0; k < 40; k++) {
-    const CagVec3 d = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    const CagVec3 d = random_point(1);
     double most = -INFINITY, reached = -INFINITY;
     for (int i = 0; i < n; i++) most = fmax(most, cag_dot(d, p[i]));
     for (size_t i = 0; i < m->vertex_count; i++)
@@ -183,8 +186,10 @@ static void corners_in_space_are_those_of_all_planes_through_three_points(void *
   for (int round = 0; round < 400; round++) {
     CagVec3 p[MOST];
     const int n = whole(4, MOST), size = whole(1, 3);
-    for (int i = 0; i < n; i++)
-      p[i] = cag_vec3(whole(-size, size), whole(-size, size), whole(-size, size));
+    for (int i = 0; i < n; i++) {
+      const int x = whole(-size, size), y = whole(-size, size), z = whole(-size, size);
+      p[i] = cag_vec3(x, y, z);
+    }
     if (round % 10 == 0)
       for (int i = 0; i < n; i++) p[i].z = p[i].x - 2 * p[i].y;
     const Planes planes = planes_of(p, n);
@@ -243,8 +248,8 @@ static void bodies_as_thin_as_rounding_are_closed_and_hold_all_points(void **sta
     const CagTransform turn = random_motion();
     const double off = exp(uniform(log(1e-17), log(1e-13)));
     for (int i = 0; i < n; i++) {
-      p[i] = cag_vec3(whole(-size, size), round % 2 ? whole(-size, size) : uniform(-1, 1), 0);
-      p[i] = cag_transform_point(&turn, p[i]);
+      const double x = whole(-size, size), y = round % 2 ? whole(-size, size) : uniform(-1, 1);
+      p[i] = cag_transform_point(&turn, cag_vec3(x, y, 0));
       p[i].z += uniform(-off, off);
     }
     if (cag_hull_space(p, (size_t)n, &m, &err) != CAG_OK) {

@@ -1,7 +1,7 @@
 // Trimmed pieces that go all around: turned, moved and of any size, their meshes close at seams and
 // poles.
 
-#include "tests/geom/random.h"
+#include "tests/geom/random_point.h"
 #include "tests/geom/trimmed_support.h"
 
 #include "geom/linalg/transform.h"
@@ -22,8 +22,8 @@ typedef struct Piece {
 
 static CagTransform random_frame(double size) {
   CagTransform frame, turn;
-  const CagVec3 axis = {uniform(-1, 1), uniform(-1, 1), uniform(0.1, 1)};
-  const CagVec3 to = {uniform(-5, 5), uniform(-5, 5), uniform(-5, 5)};
+  const double x = uniform(-1, 1), y = uniform(-1, 1);
+  const CagVec3 axis = cag_vec3(x, y, uniform(0.1, 1)), to = random_point(5);
   MUST(cag_rotate(axis, uniform(-3, 3), cag_vec3(0, 0, 0), &turn, err));
   frame = cag_transform_multiply(&turn, &(CagTransform){.m = {{size, 0, 0, size * to.x},
                                                               {0, size, 0, size * to.y},
