@@ -111,24 +111,25 @@ static void sets_of_round_shapes_have_the_distances_of_their_centers_and_axes(vo
   int met = 0;
   for (int round = 0; round < 21; round++) {
     Set a = {.n = 0}, b = {.n = 0};
-    const CagVec3 way = cag_scaled(cag_unit(random_point(1)), uniform(2, 6));
+    const CagVec3 ahead = cag_unit(random_point(1)), way = cag_scaled(ahead, uniform(2, 6));
     const int n = 2 + round % 6, m = 1 + round / 2 % 6;
     for (int i = 0; i < n; i++) {
-      const CagVec3 at = random_point(2);
-      add_shape(&a, i % 4 == 3 ? POINT : BALL, at, cag_add(at, random_point(1)), uniform(0.1, 0.7));
+      const CagVec3 at = random_point(2), pole = cag_add(at, random_point(1));
+      add_shape(&a, i % 4 == 3 ? POINT : BALL, at, pole, uniform(0.1, 0.7));
     }
     for (int i = 0; i < m; i++) {
       const CagVec3 at = cag_add(way, random_point(2));
       const Kind kind = (Kind)(uniform(0, 1) < 0.6 ? BALL : (round + i) % KINDS);
       // The ends of pipes are far away: beyond these their axes tell less than the distance.
-      const CagVec3 along =
-          cag_scaled(cag_unit(random_point(1)), kind == PIPE ? 9 : uniform(0.1, 2));
+      const CagVec3 axis = cag_unit(random_point(1));
+      const CagVec3 along = cag_scaled(axis, kind == PIPE ? 9 : uniform(0.1, 2));
       add_shape(&b, kind, cag_sub(at, kind == PIPE ? along : cag_vec3(0, 0, 0)), cag_add(at, along),
                 uniform(0.1, 0.7));
     }
-    if (round % 3 == 0) // around a ball, and perhaps others
-      add_shape(&b, BALL, a.shapes[0].a, cag_add(a.shapes[0].a, random_point(1)),
-                round % 2 ? uniform(0.8, 1) : uniform(8, 9));
+    if (round % 3 == 0) { // around a ball, and perhaps others
+      const CagVec3 at = a.shapes[0].a, pole = cag_add(at, random_point(1));
+      add_shape(&b, BALL, at, pole, round % 2 ? uniform(0.8, 1) : uniform(8, 9));
+    }
     const double expected = distance_of(&a, &b);
     met += expected == 0;
     const Set *from = round % 2 ? &b : &a, *to = round % 2 ? &a : &b;

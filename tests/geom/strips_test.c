@@ -162,9 +162,10 @@ static void strips_do_not_depend_on_the_parameters(void **state) {
   size_t striped = 0, several = 0, all = 0, same = 0;
   for (int k = 0; k < 9; k++) {
     Twist t = random_twist();
+    const double tolerance = t.radius * pow(10, uniform(-3.4, -2.8));
+    const double angle = k % 3 == 1 ? uniform(0.05, 0.2) : 0;
     const CagTessellation how =
-        limits(t.radius * pow(10, uniform(-3.4, -2.8)), k % 3 == 1 ? uniform(0.05, 0.2) : 0,
-               k % 3 == 2 ? t.radius * uniform(0.3, 1) : 0);
+        limits(tolerance, angle, k % 3 == 2 ? t.radius * uniform(0.3, 1) : 0);
     Planned base;
     plan(&base, &t, &how);
     striped += base.strips;
