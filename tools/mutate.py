@@ -222,11 +222,11 @@ class Reach:
         # Counts belong to the notes of one build. Of a source that has changed since, every line counts as reached.
         if not filecmp.cmp(notes, made, shallow=False):
             return set(), set()
-        # gcov looks for the notes beside the counts.
+        # gcov looks for the notes beside the counts, and reads the source.
         shutil.copy(counts, f"{WORK}/line.gcda")
         shutil.copy(notes, f"{WORK}/line.gcno")
         code, run, here = set(), set(), False
-        for row in output_of(["gcov", "--stdout", "line.gcda"], cwd=WORK)[1].splitlines():
+        for row in output_of(["gcov", "--stdout", f"{WORK}/line.gcda"])[1].splitlines():
             parts = row.split(":", 2)
             if len(parts) < 3:
                 continue
