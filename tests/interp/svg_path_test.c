@@ -391,6 +391,50 @@ static void cameras_see_curves_as_they_are(void **state) {
   }
 }
 
+// The point and the direction of a label are those of the picture of a short line. A label behind
+// the camera is left out.
+static void cameras_see_labels_as_they_are(void **state) {
+  (void)state;
+  seed = 29;
+  for (int round = 0; round < 40; round++) {
+    Fixture f;
+    fixture_begin(&f);
+    f.camera.orthographic = round % 2;
+    f.camera.mirrored = round % 4 > 1;
+    f.camera.target = random_point(10, 4);
+    f.camera.eye = cag_add(f.camera.target, cag_vec3(uniform(-90, 90), -120, 60));
+    const CagVec3 view = cag_unit(cag_sub(f.camera.target, f.camera.eye));
+    f.camera.up = cag_unit(cag_madd(cag_vec3(0, 0, 1), -view.z, view));
+    const CagVec3 at = cag_add(f.camera.target, cag_vec3(uniform(-30, 30), uniform(-30, 30), 8));
+    const double a = uniform(-3, 3), b = uniform(-1, 1);
+    const CagVec3 along = cag_vec3(2 * cos(a), 2 * sin(a), b);
+    CagLabel labels[] = {
+        {.at = at, .along = along, .mark = CAG_LABEL_ARROW, .size = 10, .text = ""},
+        {.at = cag_madd(f.camera.eye, -5, view), .mark = CAG_LABEL_DOT, .size = 10, .text = ""}};
+    f.scene.labels = labels;
+    f.scene.label_count = 2;
+    char *text = export_text(&f);
+    f.scene.labels = NULL;
+    f.scene.label_count = 0;
+    assert_true((strstr(text, "<circle") != NULL) == f.camera.orthographic);
+    const char *d = strstr(text, " d=\"M ");
+    assert_non_null(d);
+    double p[4][2];
+    assert_int_equal(sscanf(d, " d=\"M %lf %lf L %lf %lf L %lf %lf L %lf %lf Z\"/>", &p[0][0],
+                            &p[0][1], &p[1][0], &p[1][1], &p[2][0], &p[2][1], &p[3][0], &p[3][1]),
+                     8);
+    CagVec3 tip, next;
+    assert_true(seen(&f.camera, at, &tip));
+    assert_true(seen(&f.camera, cag_madd(at, 1e-6, along), &next));
+    is_near(cag_vec3(p[0][0], -p[0][1], 0), tip, 0.0072, "tip");
+    // The notch of the arrow lies 6.75 behind the tip.
+    const CagVec3 notch = cag_madd(tip, -6.75, cag_unit(cag_sub(next, tip)));
+    is_near(cag_vec3(p[2][0], -p[2][1], 0), notch, 0.0072, "notch");
+    free(text);
+    fixture_end(&f);
+  }
+}
+
 // A line that runs past the camera ends where depths are a thousandth of the target's distance, or
 // within the last bisection behind that. All of it that lies behind is left out.
 static void what_is_behind_the_camera_is_left_out(void **state) {
@@ -458,6 +502,7 @@ int main(void) {
       cmocka_unit_test(an_upright_line_is_drawn),
       cmocka_unit_test(labels_have_a_size_by_what_is_drawn),
       cmocka_unit_test(cameras_see_curves_as_they_are),
+      cmocka_unit_test(cameras_see_labels_as_they_are),
       cmocka_unit_test(what_is_behind_the_camera_is_left_out),
       cmocka_unit_test(a_part_that_comes_into_view_is_drawn),
   };
