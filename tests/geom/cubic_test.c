@@ -96,6 +96,13 @@ static void the_shortest_splines_are_the_reference_s(void **state) {
     near_vec(derived(c, 1, k, CAG_SIDE_RIGHT), derived(c, 1, k, CAG_SIDE_LEFT), 1e-13);
   }
   cag_curve_release(c);
+  // Anticyclic: P'_1 = 81/70 P_2 and P'_2 = 39/70 P_2 make the second derivatives equal at P_2,
+  // -51/35 P_2, and opposite at the ends, 9/35 P_2.
+  ends.closing = CAG_CUBIC_ANTICYCLIC;
+  OK(cag_cubic_tangents(three, 3, v, &ends, NULL, d, &err));
+  near_vec(d[0], cag_scaled(three[1], 81.0 / 70), 1e-14);
+  near_vec(d[1], cag_scaled(three[1], 39.0 / 70), 1e-14);
+  near_vec(d[2], cag_scaled(three[1], -81.0 / 70), 1e-14);
 }
 
 static void a_cubic_is_its_own_clamped_spline(void **state) {
