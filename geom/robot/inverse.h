@@ -3,13 +3,14 @@
 // Chains are recognized by their structure, however they are written down (either convention, fixed
 // links between the joints, base and tool):
 //
-//   three joints and a spherical wrist    turning joints in any arrangement, or two and a slide
-//   (the
-//                                         axes of joints 4, 5 and 6 meet in a point)
-//   three joints and two axes that meet   five joints
-//   axes 2, 3 and 4 parallel              six joints, or five (axis 5, and 6, square to the one
-//   before) all axes parallel                     at most three turning joints, and a slide two
-//   turning joints and a slide, one turning joint and two slides, three slides
+//   a spherical wrist          the axes of joints 4, 5 and 6 meet in a point; joints 1 to 3 turn,
+//                              in any arrangement, or two of them turn and one slides
+//   two axes that meet         five joints; the axes of joints 4 and 5 meet
+//   axes 2, 3 and 4 parallel   six joints, or five; axes 5 and 6 each perpendicular to the one
+//                              before
+//   all axes parallel          at most three turning joints, and a slide
+//   slides                     two turning joints and a slide, one turning joint and two slides,
+//                              three slides
 //
 // Methods: D. L. Pieper, The Kinematics of Manipulators under Computer Control (1968), for arms
 // with a wrist; R. P. Paul, Robot Manipulators (1981), for the elimination joint by joint.
@@ -33,8 +34,9 @@ typedef enum CagInverseStatus {
 // Which of the branches: +1 or -1, 0 where a chain has no such choice or, at a singular pose, it
 // makes no difference.
 //   shoulder   the point that the first three joints place lies before or behind the first axis
-//   elbow      sign of the sine of joint 3 (of planar arms of the second turning joint, of arms
-//   with a forearm along axis 4: of d4 cos - a3 sin) wrist      sign of the sine of joint 5
+//   elbow      sign of the sine of joint 3; of planar arms, of the second turning joint; of arms
+//              with a forearm along axis 4, of d4 cos - a3 sin
+//   wrist      sign of the sine of joint 5
 typedef struct CagConfiguration {
   int shoulder, elbow, wrist;
 } CagConfiguration;
