@@ -202,7 +202,7 @@ static void ply_as_text_has_other_properties_too(void **state) {
                "property float quality\nproperty double z\nproperty double x\nproperty double y\n"
                "property list uint8 int32 neighbours\nelement face 4\nproperty uchar flags\n"
                "property list uint8 uint16 vertex_index\nproperty float area\nend_header\n"
-               "2 1.5 nan 7\n0.5 0 0 0 0\n0.5 0 2 0 1 3\n0.5 0 0 3 0\ninf 4 0 0 2 1 2\n"
+               "2 1.5 nan 7\n-nan 0 0 0 0\n+inf 0 2 0 1 3\n0.5 0 0 3 0\ninf 4 0 0 2 1 2\n"
                "1 3 0 2 1 0\n1 3 0 1 3 0\n1 3 0 3 2 0\n1 3 1 2 3 0\n");
   assert_tetrahedron(m);
 }

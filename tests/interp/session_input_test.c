@@ -101,7 +101,8 @@ static void documents_of_names(void **state) {
   assert_false(cag_session_library_name(s, "glazed.x", name, sizeof name));
   text = document_of(s, "glazed");
   assert_non_null(text);
-  static const char imported[] = "glazed is imported from std.materials\n  ";
+  static const char imported[] = "glazed is imported from std.materials\n"
+                                 "  Glazed pottery, lacquer";
   assert_int_equal(strncmp(text, imported, strlen(imported)), 0);
   free(text);
   assert_false(cag_session_library_name(s, "b", name, sizeof name));
