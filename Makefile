@@ -44,6 +44,7 @@ CFLAGS_ALL := -std=c17 -D_GNU_SOURCE $(OPT) -g $(WARN) -fno-math-errno -fno-trap
               -DCAG_VERSION='"$(VERSION)"' $(PKG_CFLAGS) $(SANITIZE) $(CFLAGS)
 LDLIBS_ALL := $(PKG_LIBS) -lm -lpthread $(SANITIZE) $(LDFLAGS)
 
+BASE_SRC   := $(shell find base -name '*.c' | sort)
 LANG_SRC   := $(shell find lang -name '*.c' | sort)
 GEOM_SRC   := $(shell find geom -name '*.c' | sort)
 ifeq ($(CGAL),1)
@@ -60,12 +61,13 @@ STDLIB     := $(shell find stdlib -name '*.cag' | sort)
 DOCUMENTS  := $(filter-out docs/architecture.md,$(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*))) tests/cli/embed.c
 
 obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
+BASE_OBJ := $(call obj,$(BASE_SRC))
 LANG_OBJ := $(call obj,$(LANG_SRC))
 GEOM_OBJ := $(call obj,$(GEOM_SRC)) $(CGAL_OBJ)
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o $(BUILD)/obj/gen/documents.o
 TOOL_OBJ := $(call obj,$(TOOL_SRC) $(MAIN_SRC))
 
-.PHONY: all clean unit unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize coverage mutate bench format check-format check-layers install deb editors
+.PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize coverage mutate bench format check-format check-layers install deb editors
 .SECONDARY:
 all: $(BUILD)/cag $(BUILD)/libcag.a $(BUILD)/libcag.so
 
@@ -80,13 +82,13 @@ $(BUILD)/obj/geom/mesh/boolean_cgal.o: geom/mesh/boolean_cgal.cpp
 	@echo "c++ $<"
 	$Q$(CXX) -std=c++17 -O2 -g $(WARN) -Wno-maybe-uninitialized -fPIC -fvisibility=hidden -MMD -MP -I. $(SANITIZE) $(CXXFLAGS) -c $< -o $@
 
-$(BUILD)/liblang.a: $(LANG_OBJ)
+$(BUILD)/liblang.a: $(BASE_OBJ) $(LANG_OBJ)
 	@rm -f $@; ar rcs $@ $^
-$(BUILD)/libgeom.a: $(GEOM_OBJ)
+$(BUILD)/libgeom.a: $(BASE_OBJ) $(GEOM_OBJ)
 	@rm -f $@; ar rcs $@ $^
-$(BUILD)/libcag.a: $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
+$(BUILD)/libcag.a: $(BASE_OBJ) $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
 	@rm -f $@; ar rcs $@ $^
-$(BUILD)/libcag.so: $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
+$(BUILD)/libcag.so: $(BASE_OBJ) $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
 	$Q$(CC) -shared -Wl,-soname,$(SONAME) $^ -o $@ $(LDLIBS_ALL)
 	@ln -sf libcag.so $(BUILD)/$(SONAME)
 
@@ -115,8 +117,12 @@ $(BUILD)/tools/tables: tools/tables.c $(filter-out %/interp/main.o,$(TOOL_OBJ)) 
 WRAPPED := malloc calloc realloc strdup strndup realpath asprintf vasprintf open_memstream
 WRAP := $(foreach f,$(WRAPPED),-Wl,--wrap=$(f))
 
-# C unit tests (cmocka): one program per file of tests/lang, tests/geom, tests/interp.
+# C unit tests (cmocka): one program per file of tests/base, tests/lang, tests/geom, tests/interp.
 UNIT = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/*_test.c))
+$(BUILD)/tests/base/%: tests/base/%.c $(BUILD)/liblang.a
+	@mkdir -p $(@D)
+	@echo "cc $<"
+	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/liblang.a -o $@ -lcmocka $(LDLIBS_ALL)
 $(BUILD)/tests/lang/%: tests/lang/%.c $(BUILD)/liblang.a
 	@mkdir -p $(@D)
 	@echo "cc $<"
@@ -136,6 +142,8 @@ $(BUILD)/tests/interp/%: tests/interp/%.c $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ -lcmocka $(LDLIBS_ALL)
+unit-base: $(call UNIT,base)
+	@for t in $^; do case $$t in /*) $$t;; *) ./$$t;; esac || exit 1; done
 unit-lang: $(call UNIT,lang)
 	@for t in $^; do case $$t in /*) $$t;; *) ./$$t;; esac || exit 1; done
 unit-geom: $(call UNIT,geom)
@@ -158,7 +166,7 @@ $(BUILD)/tests/fuzz/memory: tests/fuzz/memory.c $(BUILD)/libcag.a
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libcag.a -o $@ $(WRAP) $(LDLIBS_ALL)
 
-test-programs: all $(BUILD)/tools/tables $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz $(BUILD)/tests/fuzz/memory
+test-programs: all $(BUILD)/tools/tables $(call UNIT,base) $(call UNIT,lang) $(call UNIT,geom) $(call UNIT,interp) $(BUILD)/tests/vectors/run $(BUILD)/tests/fuzz/fuzz $(BUILD)/tests/fuzz/memory
 test: test-programs
 	BUILD=$(BUILD) sh tests/run_all.sh
 
@@ -211,7 +219,7 @@ $(BUILD)/tests/bench/complete: tests/bench/complete.c $(filter-out %/interp/main
 bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans
 	BUILD=$(BUILD) sh tests/bench/run.sh
 
-FORMATTED = $(shell find include lang geom interp tests tools -name '*.[ch]' | sort)
+FORMATTED = $(shell find include base lang geom interp tests tools -name '*.[ch]' | sort)
 format:
 	clang-format -i $(FORMATTED)
 check-format:

@@ -4,8 +4,9 @@
 #include "lang/arena.h"
 
 #include <stdalign.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 struct CagArenaBlock {
   CagArenaBlock *next;
@@ -19,7 +20,7 @@ struct CagArenaBlock {
 #define LARGEST_BLOCK ((size_t)256 << 10)
 
 static CagArenaBlock *block_new(size_t size) {
-  CagArenaBlock *b = cag_checked(calloc(1, sizeof *b + size));
+  CagArenaBlock *b = cag_checked(cag_calloc(1, sizeof *b + size));
   b->size = size;
   return b;
 }
@@ -68,6 +69,6 @@ void cag_arena_free(CagArena *a) {
   while (a->first) {
     CagArenaBlock *b = a->first;
     a->first = b->next;
-    free(b);
+    cag_free(b);
   }
 }

@@ -7,7 +7,7 @@
 
 #include "lang/damage.h"
 
-#include <stdlib.h>
+#include "base/memory.h"
 
 // Parameters in deeper brackets are ignored.
 #define NESTING_MAX 64
@@ -51,7 +51,7 @@ static Sequel sequel(const Search *s, uint32_t p) {
 static void add_word(Search *s, const CagToken *t) {
   if (s->count == s->capacity) {
     const size_t capacity = 2 * s->capacity + 64;
-    s->words = cag_checked(realloc(s->words, capacity * sizeof *s->words));
+    s->words = cag_checked(cag_realloc(s->words, capacity * sizeof *s->words));
     s->capacity = capacity;
   }
   const bool defined = s->head || s->loop || s->import || sequel(s, t->span.end) != OTHER;
@@ -119,7 +119,7 @@ static void read_sign(Search *s, uint32_t p) {
 static void release_search(void *search) {
   Search *s = search;
   cag_lexer_release(&s->probe);
-  free(s->words);
+  cag_free(s->words);
 }
 
 void cag_damaged_names(const CagLexer *lexer, CagSpan span, CagDamagedName *found, void *context) {

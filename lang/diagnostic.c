@@ -34,6 +34,9 @@ CagErrorId cag_error_by_reason(const char *reason) {
 }
 
 // ---- the list ----
+//
+// Texts come from malloc and are charged to no account (base/memory.h): they must be made when the
+// limit of a run is exceeded, and outlive the run.
 
 // Where errors go that the list has no room for. One for each thread, so that two interpreters do
 // not meet.

@@ -2,9 +2,9 @@
 
 #include "lang/layout.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "lang/arena.h"
 
 // Comments at the ends of neighboring lines stand one below the other while the code of all of
@@ -28,7 +28,7 @@ static LayoutBlock *next_block(Layout *l, size_t size) {
   LayoutBlock *b = l->block ? l->block->next : l->blocks;
   if (b && b->size >= size) return b;
   const size_t room = size > BLOCK_SIZE ? size : BLOCK_SIZE;
-  LayoutBlock *made = cag_checked(malloc(sizeof *made + room));
+  LayoutBlock *made = cag_checked(cag_malloc(sizeof *made + room));
   made->size = room;
   made->next = b;
   if (l->block) l->block->next = made;
@@ -244,7 +244,7 @@ Doc *layout_table(Layout *l, char open, const Docs *items, Doc *close, int inden
 static void reserve(Layout *l, size_t n) {
   if (l->capacity - l->length >= n) return;
   const size_t capacity = (l->length + n) * 2 + 4096;
-  l->out = cag_checked(realloc(l->out, capacity));
+  l->out = cag_checked(cag_realloc(l->out, capacity));
   l->capacity = capacity;
 }
 
@@ -368,7 +368,7 @@ static void put_trailing(Layout *l, const Doc *text, int indent) {
   if (l->trailing_count && !joins_trailing(l)) align_trailing(l);
   if (l->trailing_count == l->trailing_capacity) {
     const size_t capacity = l->trailing_capacity * 2 + 64;
-    l->trailing = cag_checked(realloc(l->trailing, capacity * sizeof *l->trailing));
+    l->trailing = cag_checked(cag_realloc(l->trailing, capacity * sizeof *l->trailing));
     l->trailing_capacity = capacity;
   }
   l->trailing[l->trailing_count++] = (LayoutTrailing){l->length, l->line, l->column, l->indent};
@@ -624,11 +624,11 @@ char *layout_finish(Layout *l, size_t *length) {
 }
 
 void layout_release(Layout *l) {
-  free(l->out);
-  free(l->trailing);
+  cag_free(l->out);
+  cag_free(l->trailing);
   while (l->blocks) {
     LayoutBlock *next = l->blocks->next;
-    free(l->blocks);
+    cag_free(l->blocks);
     l->blocks = next;
   }
 }

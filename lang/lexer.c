@@ -9,6 +9,7 @@
 #include <string.h>
 #include <utf8proc.h>
 
+#include "base/memory.h"
 #include "lang/foreign.h"
 
 typedef unsigned char byte;
@@ -52,7 +53,7 @@ static void finish(CagLexer *lx, CagToken *t, CagTokenKind kind, uint32_t end) {
 
 static void *grown(void *items, size_t *capacity, size_t size) {
   size_t wanted = *capacity ? 2 * *capacity : 16;
-  void *p = cag_checked(realloc(items, wanted * size));
+  void *p = cag_checked(cag_realloc(items, wanted * size));
   *capacity = wanted;
   return p;
 }
@@ -405,7 +406,7 @@ static void lex_name(CagLexer *lx, CagToken *t) {
   if (!ascii && utf8proc_map((const byte *)text + start, (utf8proc_ssize_t)(end - start), &composed,
                              UTF8PROC_COMPOSE | UTF8PROC_STABLE) >= 0) {
     head = cag_names_intern(lx->names, (char *)composed, strlen((char *)composed));
-    free(composed);
+    cag_free(composed);
   } else {
     head = cag_names_intern(lx->names, text + start, end - start);
   }
@@ -843,8 +844,8 @@ void cag_lexer_probe(CagLexer *probe, const CagLexer *lx, uint32_t position) {
 }
 
 void cag_lexer_release(CagLexer *lx) {
-  free(lx->texts);
-  free(lx->comments);
-  free(lx->buffer);
+  cag_free(lx->texts);
+  cag_free(lx->comments);
+  cag_free(lx->buffer);
   if (lx->locale) freelocale(lx->locale);
 }

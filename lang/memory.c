@@ -5,6 +5,8 @@
 #include <setjmp.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 typedef struct Guard {
   struct Guard *outer;
   CagCleanup *cleanups; // those pushed before this guard
@@ -48,7 +50,7 @@ void cag_cleanup_run(CagCleanup *c) {
 }
 
 void *cag_temporary(CagCleanup *c, size_t n, size_t size) {
-  void *memory = cag_checked(calloc(n ? n : 1, size));
-  cag_cleanup_push(c, free, memory);
+  void *memory = cag_checked(cag_calloc(n ? n : 1, size));
+  cag_cleanup_push(c, cag_free, memory);
   return memory;
 }

@@ -2,13 +2,14 @@
 
 #include "lang/names.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 #define FIRST_CAPACITY 256
 
 static CagNameHead **slots_new(size_t capacity) {
-  return cag_checked(calloc(capacity, sizeof(CagNameHead *)));
+  return cag_checked(cag_calloc(capacity, sizeof(CagNameHead *)));
 }
 
 void cag_names_init(CagNames *n, CagArena *arena) {
@@ -16,7 +17,7 @@ void cag_names_init(CagNames *n, CagArena *arena) {
 }
 
 void cag_names_release(CagNames *n) {
-  free(n->slots);
+  cag_free(n->slots);
   n->slots = NULL;
 }
 
@@ -36,7 +37,7 @@ static void grow(CagNames *n) {
     while (slots[k]) k = (k + 1) & (capacity - 1);
     slots[k] = head;
   }
-  free(n->slots);
+  cag_free(n->slots);
   n->slots = slots;
   n->capacity = capacity;
 }

@@ -3,8 +3,9 @@
 #include "lang/parse.h"
 
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 // ---- tokens ----
 
@@ -411,7 +412,7 @@ void parse_list_push(Parser *p, const void *item, size_t size) {
   if (p->stack_size + size > p->stack_capacity) {
     size_t capacity = p->stack_capacity ? 2 * p->stack_capacity : 4096;
     while (capacity < p->stack_size + size) capacity *= 2;
-    p->stack = cag_checked(realloc(p->stack, capacity));
+    p->stack = cag_checked(cag_realloc(p->stack, capacity));
     p->stack_capacity = capacity;
   }
   memcpy(p->stack + p->stack_size, item, size);

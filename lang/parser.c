@@ -1,10 +1,10 @@
 // Statements, and the parse as a whole.
 
 #include "lang/parser.h"
+#include "base/memory.h"
 #include "lang/damage.h"
 #include "lang/parse.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 // ---- statements ----
@@ -55,7 +55,7 @@ static CagDecl *declare_top(Parser *p, CagStatement *s, const CagToken *name) {
   d->doc = s->doc;
   if (p->top_count == p->top_capacity) {
     size_t capacity = p->top_capacity ? 2 * p->top_capacity : 64;
-    p->tops = cag_checked(realloc(p->tops, capacity * sizeof(CagDecl *)));
+    p->tops = cag_checked(cag_realloc(p->tops, capacity * sizeof(CagDecl *)));
     p->top_capacity = capacity;
   }
   p->tops[p->top_count++] = d;
@@ -502,7 +502,7 @@ static void add_damaged_name(void *context, const char *name) {
   Parser *p = context;
   if (p->damaged_name_count == p->damaged_name_capacity) {
     const size_t capacity = 2 * p->damaged_name_capacity + 64;
-    p->damaged_names = cag_checked(realloc(p->damaged_names, capacity * sizeof(char *)));
+    p->damaged_names = cag_checked(cag_realloc(p->damaged_names, capacity * sizeof(char *)));
     p->damaged_name_capacity = capacity;
   }
   p->damaged_names[p->damaged_name_count++] = name;
@@ -551,7 +551,7 @@ static void statements(Parser *p) {
     }
     if (p->statement_count == p->statement_capacity) {
       size_t capacity = p->statement_capacity ? 2 * p->statement_capacity : 64;
-      p->statements = cag_checked(realloc(p->statements, capacity * sizeof *p->statements));
+      p->statements = cag_checked(cag_realloc(p->statements, capacity * sizeof *p->statements));
       p->statement_capacity = capacity;
     }
     p->statements[p->statement_count++] = s;
@@ -624,11 +624,11 @@ static void release(Parser *p) {
   cag_lexer_release(&p->lexer);
   parse_probe_end(p);
   cag_names_release(&p->names);
-  free(p->stack);
-  free(p->tops);
-  free(p->damaged_names);
-  free(p->statements);
-  free(p);
+  cag_free(p->stack);
+  cag_free(p->tops);
+  cag_free(p->damaged_names);
+  cag_free(p->statements);
+  cag_free(p);
 }
 
 static void fail_memory(const CagSource *source, CagDiagnostics *errors) {
@@ -649,8 +649,8 @@ static void parse_module(void *context) {
 static CagModuleAst *parse(const CagSource *source, CagParseMode mode, CagDiagnostics *errors,
                            bool *cut_off) {
   *cut_off = false;
-  CagModuleAst *m = calloc(1, sizeof *m);
-  Parser *p = calloc(1, sizeof *p);
+  CagModuleAst *m = cag_calloc(1, sizeof *m);
+  Parser *p = cag_calloc(1, sizeof *p);
   bool done = m && p;
   if (done) m->source = source;
   if (done && check_encoding(source, errors)) {
@@ -690,7 +690,7 @@ bool cag_parse_each(const CagSource *source, CagParseEach *each, void *context,
                     CagDiagnostics *errors) {
   if (!check_encoding(source, errors)) return false;
   CagModuleAst m = {.source = source};
-  EachParse e = {.parser = calloc(1, sizeof(Parser))};
+  EachParse e = {.parser = cag_calloc(1, sizeof(Parser))};
   if (e.parser) {
     e.parser->module = &m;
     e.parser->errors = errors;
@@ -708,7 +708,7 @@ bool cag_parse_each(const CagSource *source, CagParseEach *each, void *context,
 void cag_module_ast_free(CagModuleAst *m) {
   if (!m) return;
   cag_arena_free(&m->arena);
-  free(m);
+  cag_free(m);
 }
 
 bool cag_parse_incomplete(const char *text, size_t length) {

@@ -5,6 +5,7 @@
 // stack of declarations; closing it puts back what each of them covered. So a look-up takes one
 // step, however many names a scope has.
 
+#include "base/memory.h"
 #include "lang/foreign.h"
 #include "lang/lexer.h"
 #include "lang/names.h"
@@ -188,7 +189,7 @@ static void declare(Resolver *r, CagDecl *d) {
   }
   if (r->count == r->capacity) {
     size_t capacity = r->capacity ? 2 * r->capacity : 64;
-    r->entries = cag_checked(realloc(r->entries, capacity * sizeof *r->entries));
+    r->entries = cag_checked(cag_realloc(r->entries, capacity * sizeof *r->entries));
     r->capacity = capacity;
   }
   r->entries[r->count++] = (Entry){d, c->decl, c->scope};
@@ -541,7 +542,7 @@ static void mark_damaged(Resolver *r) {
 static void resolve(void *context) {
   Resolver *r = context;
   const CagModuleAst *m = r->module;
-  r->current = cag_checked(calloc(m->name_count + 1, sizeof *r->current));
+  r->current = cag_checked(cag_calloc(m->name_count + 1, sizeof *r->current));
   mark_damaged(r);
   declare_tops(r);
   for (size_t i = 0; i < m->count; i++) walk_statement(r, m->statements[i]);
@@ -552,8 +553,8 @@ bool cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *erro
   const size_t before = errors->count;
   const bool done = cag_memory_guard(resolve, &r);
   cag_diagnostics_sort(errors, before);
-  free(r.current);
-  free(r.entries);
+  cag_free(r.current);
+  cag_free(r.entries);
   cag_arena_free(&r.scratch);
   if (!done)
     cag_diagnostics_add(errors, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},

@@ -2,14 +2,15 @@
 
 #include "lang/source.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 static bool make_lines(CagSource *s) {
   size_t lines = 1;
   for (const char *p = s->text, *end = p + s->length; (p = memchr(p, '\n', (size_t)(end - p))); p++)
     lines++;
-  s->lines = malloc(lines * sizeof *s->lines);
+  s->lines = cag_malloc(lines * sizeof *s->lines);
   if (!s->lines) return false;
   s->line_count = 0;
   s->lines[s->line_count++] = 0;
@@ -20,10 +21,10 @@ static bool make_lines(CagSource *s) {
 
 CagSource *cag_source_new(const char *name, const char *text, size_t length) {
   if (length > CAG_SOURCE_MAX) return NULL;
-  CagSource *s = calloc(1, sizeof *s);
+  CagSource *s = cag_calloc(1, sizeof *s);
   if (!s) return NULL;
-  s->name = strdup(name);
-  s->text = malloc(length + 1);
+  s->name = cag_strdup(name);
+  s->text = cag_malloc(length + 1);
   if (s->name && s->text) {
     if (length) memcpy(s->text, text, length);
     s->text[length] = 0;
@@ -36,10 +37,10 @@ CagSource *cag_source_new(const char *name, const char *text, size_t length) {
 
 void cag_source_free(CagSource *s) {
   if (!s) return;
-  free(s->name);
-  free(s->text);
-  free(s->lines);
-  free(s);
+  cag_free(s->name);
+  cag_free(s->text);
+  cag_free(s->lines);
+  cag_free(s);
 }
 
 // Bytes of the well-formed UTF-8 character at p (Unicode 15, table 3-7), 0 when there is none. p is

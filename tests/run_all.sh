@@ -51,7 +51,7 @@ check() {
 
 # unit_suites BUILD NAME: runs all programs of C tests of a build. NAME is a prefix of the names of its suites.
 unit_suites() {
-  for source in tests/lang/*_test.c tests/geom/*_test.c tests/interp/*_test.c; do
+  for source in tests/base/*_test.c tests/lang/*_test.c tests/geom/*_test.c tests/interp/*_test.c; do
     [ ! -e "$source" ] || unit "$1/${source%.c}" "$2${source%.c}"
   done
 }

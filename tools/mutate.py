@@ -9,7 +9,7 @@ per processor).
 
 Works on a copy of the tree in build-mutate/. First, every suite runs once in a build that counts which lines it reaches. The counts are
 kept in build-mutate/reach/ until the suite or a tenth of the sources change. Each change then replaces one operator or constant on one
-line of geom, interp or lang, by the table tools/mutations.txt. A change that does not compile (warnings are errors) or does not change the
+line of base, geom, interp or lang, by the table tools/mutations.txt. A change that does not compile (warnings are errors) or does not change the
 object file is replaced with another one, and so are those in tools/equivalent_mutations.txt, after which the program computes the same,
 for the reasons given there, and those that only allocate room for more elements than needed.
 
@@ -48,7 +48,7 @@ def option(name, default):
 N = option("N", 100)
 SEED = option("SEED", 1)
 SKIP = option("SKIP", 0)
-FOLDERS = option("FOLDERS", "geom interp lang").split()
+FOLDERS = option("FOLDERS", "base geom interp lang").split()
 LONGEST = option("LONGEST", 1800)
 JOBS = option("JOBS", os.cpu_count())
 
@@ -183,7 +183,7 @@ def measure_suites():
         sys.exit(text)
     build("build-reach", "OPT=-O0", "SANITIZE=--coverage -DCAG_ONE_COPY", "LDFLAGS=-Wl,--wrap=_exit build-reach/exit.o",
           "test-programs")
-    notes = [notes_of(source) for top in ("geom", "interp", "lang") for source in glob.glob(f"{top}/**/*.c", recursive=True)]
+    notes = [notes_of(source) for top in ("base", "geom", "interp", "lang") for source in glob.glob(f"{top}/**/*.c", recursive=True)]
     notes = [(kept, made) for kept, made in notes if os.path.exists(made)]
     is_new = any(not os.path.exists(kept) for kept, _ in notes)
     if is_new or 10 * sum(not filecmp.cmp(kept, made, shallow=False) for kept, made in notes) > len(notes):

@@ -3,9 +3,9 @@
 
 #include "geom/basis/bspline.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/stop.h"
 
 void cag_bspline_basis(const double *knots, int p, size_t span, double t, double *out) {
@@ -160,7 +160,7 @@ static void elevated_weights(const double *x, int p, const double *z, double *al
 
 CagStatus cag_bspline_elevate(const double *points, size_t width, const double *knots, size_t n,
                               int p, const double *elevated, double *out, CagError *err) {
-  double *all = malloc(sizeof(double) * (size_t)(2 * p + 2));
+  double *all = cag_malloc(sizeof(double) * (size_t)(2 * p + 2));
   if (!all) return cag_fail_memory(err);
   double *sum = all + p + 1;
   size_t j = 0;
@@ -182,7 +182,7 @@ CagStatus cag_bspline_elevate(const double *points, size_t width, const double *
     for (size_t i = 0; i <= (size_t)p; i++)
       for (size_t c = 0; sum[i] != 0 && c < width; c++) to[c] += sum[i] * from[i * width + c];
   }
-  free(all);
+  cag_free(all);
   if (elevated[j] < knots[n]) return err->status;
   // The ends are those of the curve, bit for bit.
   memcpy(out, points, sizeof(double) * width);

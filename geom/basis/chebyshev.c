@@ -3,8 +3,9 @@
 #include "geom/basis/chebyshev.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 #define DEGREE 16
 #define COUNT (DEGREE + 1)
@@ -46,10 +47,10 @@ CagChebyshev *cag_chebyshev_retain(const CagChebyshev *c) {
 
 void cag_chebyshev_release(CagChebyshev *c) {
   if (!c || --c->references > 0) return;
-  for (size_t i = 0; i < c->count; i++) free(c->pieces[i].series);
-  free(c->pieces);
-  free(c->size);
-  free(c);
+  for (size_t i = 0; i < c->count; i++) cag_free(c->pieces[i].series);
+  cag_free(c->pieces);
+  cag_free(c->size);
+  cag_free(c);
 }
 
 // Coefficients from values at cos(pi j / DEGREE).
@@ -92,12 +93,12 @@ static CagStatus add_piece(CagChebyshev *c, double a, double b, const double *va
                            CagError *err) {
   if (c->count == c->room) {
     size_t room = c->room ? 2 * c->room : 8;
-    Piece *grown = realloc(c->pieces, room * sizeof *grown);
+    Piece *grown = cag_realloc(c->pieces, room * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     c->pieces = grown;
     c->room = room;
   }
-  double *series = malloc((size_t)c->parts * ORDERS * COUNT * sizeof *series);
+  double *series = cag_malloc((size_t)c->parts * ORDERS * COUNT * sizeof *series);
   if (!series) return cag_fail_memory(err);
   for (int part = 0; part < c->parts; part++) {
     double *to = series + (size_t)part * ORDERS * COUNT;
@@ -155,13 +156,13 @@ static CagStatus sample(Fit *fit, double a, double b, double *values, CagError *
 }
 
 static CagStatus divide(Fit *fit, double a, double b, int depth, CagError *err) {
-  double *values = malloc(COUNT * (size_t)fit->c->parts * sizeof *values);
+  double *values = cag_malloc(COUNT * (size_t)fit->c->parts * sizeof *values);
   if (!values) return cag_fail_memory(err);
   CagStatus status = sample(fit, a, b, values, err);
   bool done = !status && (depth >= MAX_DEPTH || settled(fit, values));
   if (!status && depth >= MAX_DEPTH) status = check_jump(fit, a, values, err);
   if (!status && done) status = add_piece(fit->c, a, b, values, err);
-  free(values);
+  cag_free(values);
   if (status || done) return status;
   status = divide(fit, a, (a + b) / 2, depth + 1, err);
   return status ? status : divide(fit, (a + b) / 2, b, depth + 1, err);
@@ -169,10 +170,10 @@ static CagStatus divide(Fit *fit, double a, double b, int depth, CagError *err) 
 
 CagStatus cag_chebyshev_fit(CagSampled f, void *context, double a, double b, int parts,
                             double tolerance, const char *name, CagChebyshev **out, CagError *err) {
-  CagChebyshev *c = calloc(1, sizeof *c);
+  CagChebyshev *c = cag_calloc(1, sizeof *c);
   if (!c) return cag_fail_memory(err);
   *c = (CagChebyshev){.references = 1, .parts = parts, .a = a, .b = b};
-  c->size = calloc((size_t)parts, sizeof *c->size);
+  c->size = cag_calloc((size_t)parts, sizeof *c->size);
   Fit fit = {c, f, context, tolerance, name};
   CagStatus status = c->size ? divide(&fit, a, b, 0, err) : cag_fail_memory(err);
   if (status) cag_chebyshev_release(c);
@@ -241,7 +242,7 @@ size_t cag_chebyshev_joints(const CagChebyshev *c, double *out, size_t capacity)
 size_t cag_chebyshev_breaks(const CagChebyshev *c, double *out, size_t capacity) {
   size_t n = 0;
   double last = -INFINITY;
-  double *side = malloc(4 * (size_t)c->parts * sizeof *side);
+  double *side = cag_malloc(4 * (size_t)c->parts * sizeof *side);
   if (!side) return cag_note_memory(), 0;
   double *right = side + 2 * c->parts;
   for (size_t i = 1; i < c->count; i++) {
@@ -259,6 +260,6 @@ size_t cag_chebyshev_breaks(const CagChebyshev *c, double *out, size_t capacity)
     if (n < capacity) out[n] = t;
     n++;
   }
-  free(side);
+  cag_free(side);
   return n;
 }

@@ -9,9 +9,9 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/stop.h"
 
 // Intervals of one piece, beside which further ones would only follow noise. A cusp takes about 50.
@@ -99,7 +99,7 @@ typedef struct Pool {
 static CagStatus push(Pool *pool, const Interval *interval, CagError *err) {
   if (pool->count == pool->capacity) {
     const size_t capacity = pool->capacity ? 2 * pool->capacity : 32;
-    Interval *grown = realloc(pool->items, capacity * sizeof *grown);
+    Interval *grown = cag_realloc(pool->items, capacity * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     pool->items = grown;
     pool->capacity = capacity;
@@ -169,7 +169,7 @@ CagStatus cag_integrate_pieces(CagPieceIntegrand f, void *context, const double 
   if (!status) memcpy(out, pool.sum, sizeof(double) * (size_t)parts);
   for (size_t i = 0; !status && i < pool.count; i++)
     for (int p = 0; p < parts; p++) out[p] += pool.items[i].e.value[p];
-  free(pool.items);
+  cag_free(pool.items);
   return status;
 }
 
@@ -189,7 +189,7 @@ static CagStatus call_single(void *context, size_t piece, double t, double *out,
 CagStatus cag_integrate(CagIntegrand f, void *context, const double *cuts, size_t n, int parts,
                         double tolerance, double *out, CagError *err) {
   Single single = {f, context};
-  double few[FEW_CUTS][2], (*ranges)[2] = n <= FEW_CUTS ? few : malloc(n * sizeof *ranges);
+  double few[FEW_CUTS][2], (*ranges)[2] = n <= FEW_CUTS ? few : cag_malloc(n * sizeof *ranges);
   if (!ranges) return cag_fail_memory(err);
   for (size_t i = 0; i + 1 < n; i++) {
     ranges[i][0] = cuts[i];
@@ -197,6 +197,6 @@ CagStatus cag_integrate(CagIntegrand f, void *context, const double *cuts, size_
   }
   CagStatus status = cag_integrate_pieces(call_single, &single, (const double(*)[2])ranges,
                                           n > 0 ? n - 1 : 0, parts, tolerance, out, err);
-  if (ranges != few) free(ranges);
+  if (ranges != few) cag_free(ranges);
   return status;
 }

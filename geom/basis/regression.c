@@ -7,6 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 // x closer together than this share of their range are one.
 #define SAME_X 1e-12
 
@@ -16,14 +18,14 @@ static int ascending(const void *a, const void *b) {
 }
 
 static CagStatus check_distinct(const double *x, size_t n, size_t needed, CagError *err) {
-  double *sorted = malloc(sizeof *sorted * (n + 1));
+  double *sorted = cag_malloc(sizeof *sorted * (n + 1));
   if (!sorted) return cag_fail_memory(err);
   size_t distinct = n > 0;
   for (size_t i = 0; i < n; i++) sorted[i] = x[i];
   qsort(sorted, n, sizeof *sorted, ascending);
   for (size_t i = 1; i < n; i++)
     distinct += sorted[i] - sorted[i - 1] > SAME_X * (sorted[n - 1] - sorted[0]);
-  free(sorted);
+  cag_free(sorted);
   if (distinct >= needed) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, "underdetermined", "points", -1,
                   "%zu coefficients need as many points of different x; these have %zu", needed,
@@ -49,7 +51,7 @@ static CagStatus fit_polynomial(const double *x, const double *y, size_t n, int 
     high = fmax(high, x[i]);
   }
   const double m = low + (high - low) / 2, h = high > low ? (high - low) / 2 : 1;
-  double *matrix = malloc(sizeof *matrix * n * columns), *right = malloc(sizeof *right * n);
+  double *matrix = cag_malloc(sizeof *matrix * n * columns), *right = cag_malloc(sizeof *right * n);
   if (!matrix || !right) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
     right[i] = y[i];
@@ -62,8 +64,8 @@ static CagStatus fit_polynomial(const double *x, const double *y, size_t n, int 
                       "the points do not determine %zu coefficients", columns);
   for (size_t j = 0; !status && j < columns; j++) out[j] = right[j];
   if (!status) expand(out, degree, m, h);
-  free(matrix);
-  free(right);
+  cag_free(matrix);
+  cag_free(right);
   return status;
 }
 
@@ -75,7 +77,7 @@ static CagStatus fail_sign(const char *what, size_t i, CagError *err) {
 // The line through the logarithms.
 static CagStatus fit_logarithm(const double *x, const double *y, size_t n, bool power, double *out,
                                CagError *err) {
-  double *u = calloc(n + 1, sizeof *u), *v = calloc(n + 1, sizeof *v);
+  double *u = cag_calloc(n + 1, sizeof *u), *v = cag_calloc(n + 1, sizeof *v);
   CagStatus status = u && v ? CAG_OK : cag_fail_memory(err);
   const double sign = n > 0 && y[0] < 0 && !power ? -1 : 1;
   for (size_t i = 0; !status && i < n; i++) {
@@ -90,8 +92,8 @@ static CagStatus fit_logarithm(const double *x, const double *y, size_t n, bool 
   }
   if (!status) status = fit_polynomial(u, v, n, 1, out, err);
   if (!status) out[0] = sign * exp(out[0]);
-  free(u);
-  free(v);
+  cag_free(u);
+  cag_free(v);
   return status;
 }
 

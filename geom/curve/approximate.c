@@ -6,9 +6,9 @@
 
 #include "geom/curve/approximate.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
@@ -44,7 +44,7 @@ static CagVec3 hermite(const Node *a, const Node *b, double t) {
 static CagStatus add(Fit *f, Node node, CagError *err) {
   if (f->n == f->capacity) {
     size_t capacity = f->capacity ? 2 * f->capacity : 64;
-    Node *grown = realloc(f->nodes, capacity * sizeof *grown);
+    Node *grown = cag_realloc(f->nodes, capacity * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     f->nodes = grown;
     f->capacity = capacity;
@@ -97,7 +97,7 @@ static void put(double *h, CagVec3 p) {
 
 // The nodes as a cubic B-spline.
 static CagStatus assemble(const Fit *f, int dimension, CagCurve **out, CagError *err) {
-  double *h = malloc(sizeof(double) * (4 * 3 * f->n + 3 * f->n + 8));
+  double *h = cag_malloc(sizeof(double) * (4 * 3 * f->n + 3 * f->n + 8));
   if (!h) return cag_fail_memory(err);
   double *knots = h + 4 * 3 * f->n;
   size_t points = 0, m = 0;
@@ -114,7 +114,7 @@ static CagStatus assemble(const Fit *f, int dimension, CagCurve **out, CagError 
   }
   CagStatus status =
       cag_nurbs_new(h, points, 3, knots, false, 0, CAG_NURBS_BSPLINE, dimension, out, err);
-  free(h);
+  cag_free(h);
   return status;
 }
 
@@ -140,7 +140,7 @@ CagStatus cag_curve_fit_sampler(CagCurveSampler sample, void *context, const dou
     from = node;
   }
   if (!status) status = assemble(&f, dimension, out, err);
-  free(f.nodes);
+  cag_free(f.nodes);
   return status;
 }
 
@@ -165,7 +165,7 @@ CagStatus cag_curve_approximate(const CagCurve *c, double tolerance, CagCurve **
   if (status) return status;
   status =
       cag_curve_fit_sampler(sample_curve, (void *)c, cuts, n, tolerance, c->dimension, out, err);
-  free(cuts);
+  cag_free(cuts);
   return status;
 }
 
@@ -222,7 +222,7 @@ CagStatus cag_curve_deviation(const CagCurve *a, const CagCurve *b, double *out,
   if (status) return status;
   status = cag_curve_cuts(b, &cb, &nb, err);
   if (status) {
-    free(ca);
+    cag_free(ca);
     return status;
   }
   double from = a->start;
@@ -235,8 +235,8 @@ CagStatus cag_curve_deviation(const CagCurve *a, const CagCurve *b, double *out,
     if (next > from) status = largest_gap(&g, from, next, &most, err);
     from = fmax(from, next);
   }
-  free(ca);
-  free(cb);
+  cag_free(ca);
+  cag_free(cb);
   if (!status) *out = most;
   return status;
 }

@@ -6,8 +6,8 @@
 
 #include <float.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 
 // Axes count as equal and square to this part of their length: circles keep their name through
@@ -178,8 +178,8 @@ static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) 
   // A sweep that is a quarter turn but for rounding is one piece.
   const double slack = 1e-9;
   const size_t m = (size_t)fmax(1, ceil(fabs(sweep) / (M_PI / 2) - slack)), n = 2 * m + 1;
-  CagVec3 *points = malloc(sizeof *points * n);
-  double *weights = malloc(sizeof *weights * n), *knots = malloc(sizeof *knots * (n + 3));
+  CagVec3 *points = cag_malloc(sizeof *points * n);
+  double *weights = cag_malloc(sizeof *weights * n), *knots = cag_malloc(sizeof *knots * (n + 3));
   CagStatus status = CAG_OK;
   if (!points || !weights || !knots) status = cag_fail_memory(err);
   if (!status) {
@@ -196,9 +196,9 @@ static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) 
     knots[n + 2] = (double)m;
   }
   if (!status) status = cag_curve_nurbs(points, weights, n, 2, knots, curve->dimension, out, err);
-  free(points);
-  free(weights);
-  free(knots);
+  cag_free(points);
+  cag_free(weights);
+  cag_free(knots);
   return status;
 }
 

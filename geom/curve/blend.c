@@ -3,8 +3,7 @@
 // The parabola through points i - 1, i, i + 1 passes them at r = 0, a, 1. A segment's end tangents
 // are those of the parabolas there: it is a Hermite segment, and what is stored are Bezier points.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/curve/cubic.h"
 #include "geom/curve/family.h"
 
@@ -60,8 +59,8 @@ static CagStatus build(const Blend *b, int dimension, CagCurve **out, CagError *
   for (size_t i = 0; b->ratios && i < (closed ? b->n : b->n - 2); i++)
     smooth = smooth && b->ratios[i] == 0.5;
   const size_t times = smooth ? 2 : 3, count = 4 + times * (spans - 1);
-  CagVec3 *control = malloc(count * sizeof *control);
-  double *knots = malloc((count + 4) * sizeof *knots);
+  CagVec3 *control = cag_malloc(count * sizeof *control);
+  double *knots = cag_malloc((count + 4) * sizeof *knots);
   CagStatus status = CAG_OK;
   if (!control || !knots) status = cag_fail_memory(err);
   if (!status) {
@@ -82,8 +81,8 @@ static CagStatus build(const Blend *b, int dimension, CagCurve **out, CagError *
     for (int j = 0; j < 4; j++) knots[k++] = u;
     status = cag_curve_nurbs(control, NULL, count, 3, knots, dimension, out, err);
   }
-  free(control);
-  free(knots);
+  cag_free(control);
+  cag_free(knots);
   return status;
 }
 
@@ -131,12 +130,12 @@ CagStatus cag_curve_parabolic_blend(const CagVec3 *points, size_t n, const doubl
   Blend b = {points, n, ratios, NULL, ends};
   double *lengths = NULL;
   if (!ratios) {
-    lengths = malloc(n * sizeof *lengths);
+    lengths = cag_malloc(n * sizeof *lengths);
     if (!lengths) return cag_fail_memory(err);
     status = chord_lengths(points, n, power, closed, lengths, err);
     b.lengths = lengths;
   }
   if (!status) status = build(&b, dimension, out, err);
-  free(lengths);
+  cag_free(lengths);
   return status;
 }

@@ -6,8 +6,8 @@
 // summit there: this is climbed, which takes a few points where halves would take hundreds.
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
@@ -210,7 +210,7 @@ CagStatus cag_curve_bounds(const CagCurve *c, CagBounds *out, CagError *err) {
   }
   for (size_t i = 0; !status && i + 1 < n; i++)
     status = add_piece(c, cuts[i], cuts[i + 1], slack, &box, err);
-  free(cuts);
+  cag_free(cuts);
   if (!status) *out = box;
   return status;
 }

@@ -9,6 +9,7 @@
 
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 
 // Directions whose sine is less are parallel; lengths are one to this share.
@@ -141,7 +142,7 @@ static CagStatus keep(Found *f, CagTangentLine line, CagError *err) {
       return CAG_OK;
   if (f->n == f->capacity) {
     size_t capacity = f->capacity ? 2 * f->capacity : 8;
-    CagTangentLine *grown = realloc(f->items, sizeof *grown * capacity);
+    CagTangentLine *grown = cag_realloc(f->items, sizeof *grown * capacity);
     if (!grown) return cag_fail_memory(err);
     f->items = grown;
     f->capacity = capacity;
@@ -158,7 +159,7 @@ static int by_t(const void *a, const void *b) {
 
 static CagStatus finish(Found *f, CagStatus status, CagTangentLine **out, size_t *n) {
   if (status) {
-    free(f->items);
+    cag_free(f->items);
     return status;
   }
   if (f->n > 0) qsort(f->items, f->n, sizeof *f->items, by_t);
@@ -233,7 +234,7 @@ CagStatus cag_tangents_from_point(const CagCurve *c, CagVec3 p, CagTangentLine *
     on.q = cag_add(on.p, tangent);
     if (!status) status = keep(&f, on, err);
   }
-  free(cuts);
+  cag_free(cuts);
   return finish(&f, status, out, n);
 }
 
@@ -339,14 +340,14 @@ static CagStatus make_grid(const CagCurve *c, Grid *g, CagError *err) {
   CagStatus status = cag_curve_cuts(c, &cuts, &count, err);
   if (status) return status;
   g->n = (count - 1) * SAMPLES + 1;
-  g->t = malloc(sizeof *g->t * g->n);
-  g->d = malloc(sizeof *g->d * g->n * 2);
+  g->t = cag_malloc(sizeof *g->t * g->n);
+  g->d = cag_malloc(sizeof *g->d * g->n * 2);
   if (!g->t || !g->d) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < g->n; i++) {
     const size_t k = i / SAMPLES, j = i % SAMPLES;
     g->t[i] = j == 0 ? cuts[k] : cuts[k] + (cuts[k + 1] - cuts[k]) * ((double)j / SAMPLES);
   }
-  free(cuts);
+  cag_free(cuts);
   return status ? status : cag_curve_eval_many(c, g->t, g->n, 1, g->d, err);
 }
 
@@ -383,10 +384,10 @@ static CagStatus tangents_by_grid(const CagCurve *a, const CagCurve *b, Found *f
       if (changes(f1[0], f1[1], f1[2], f1[3]) && changes(f2[0], f2[1], f2[2], f2[3]))
         status = search_cell(a, b, g.t + i, h.t + j, f, err);
     }
-  free(g.t);
-  free(g.d);
-  free(h.t);
-  free(h.d);
+  cag_free(g.t);
+  cag_free(g.d);
+  cag_free(h.t);
+  cag_free(h.d);
   return status;
 }
 

@@ -8,8 +8,8 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/stop.h"
 
@@ -41,7 +41,7 @@ typedef struct Parts {
 static CagStatus push(Parts *list, Part part, CagError *err) {
   if (list->n == list->capacity) {
     size_t capacity = list->capacity ? 2 * list->capacity : 64;
-    Part *grown = realloc(list->items, sizeof *grown * capacity);
+    Part *grown = cag_realloc(list->items, sizeof *grown * capacity);
     if (!grown) return cag_fail_memory(err);
     list->items = grown;
     list->capacity = capacity;
@@ -197,9 +197,9 @@ CagStatus cag_curve_closest(const CagCurve *c, CagVec3 p, double *t, CagVec3 *po
   // Of the coordinates, which the distance inherits.
   const double rounding = 4 * DBL_EPSILON * (s.distance + cag_norm(s.point));
   if (!status) status = finish(&s, rounding, err);
-  free(now.items);
-  free(next.items);
-  free(s.cuts);
+  cag_free(now.items);
+  cag_free(next.items);
+  cag_free(s.cuts);
   if (status) return status;
   if (t) *t = s.t;
   if (point) *point = s.point;

@@ -6,9 +6,9 @@
 // at a place next to one, both limits would be the same.
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 #include "geom/curve/nurbs_ops.h"
@@ -31,10 +31,10 @@ static const CagCurveKind composite_kind;
 static void destroy(CagCurve *curve) {
   Composite *c = (Composite *)curve;
   for (size_t i = 0; c->pieces && i < c->n; i++) cag_curve_release(c->pieces[i]);
-  free(c->pieces);
-  free(c->cuts);
-  free(c->inner);
-  free(c->own);
+  cag_free(c->pieces);
+  cag_free(c->cuts);
+  cag_free(c->inner);
+  cag_free(c->own);
 }
 
 static size_t breaks_of(const CagCurve *piece, double *out, size_t capacity) {
@@ -45,8 +45,8 @@ static CagStatus find_inner_breaks(Composite *c, CagError *err) {
   size_t n = 0;
   for (size_t i = 0; i < c->n; i++) n += breaks_of(c->pieces[i], NULL, 0);
   if (n == 0) return CAG_OK;
-  c->inner = malloc(sizeof *c->inner * n);
-  c->own = malloc(sizeof *c->own * n);
+  c->inner = cag_malloc(sizeof *c->inner * n);
+  c->own = cag_malloc(sizeof *c->own * n);
   if (!c->inner || !c->own) return cag_fail_memory(err);
   for (size_t i = 0; i < c->n; i++) {
     const size_t first = c->inner_count;
@@ -65,8 +65,8 @@ static CagStatus make(CagCurve *const *pieces, const double *cuts, size_t n, boo
                                      cuts[0], cuts[n], &base, err);
   if (status) return status;
   Composite *c = (Composite *)base;
-  c->pieces = calloc(n, sizeof(CagCurve *));
-  c->cuts = malloc(sizeof(double) * (n + 1));
+  c->pieces = cag_calloc(n, sizeof(CagCurve *));
+  c->cuts = cag_malloc(sizeof(double) * (n + 1));
   if (!c->pieces || !c->cuts) {
     cag_curve_release(base);
     return cag_fail_memory(err);
@@ -183,7 +183,7 @@ static CagStatus join_straight(CagCurve *const *curves, size_t n, int dimension,
       return CAG_OK;
     total += count + ring - 1;
   }
-  CagVec3 *all = malloc(sizeof *all * total);
+  CagVec3 *all = cag_malloc(sizeof *all * total);
   if (!all) return cag_fail_memory(err);
   size_t used = 0;
   for (size_t i = 0; i < n; i++) {
@@ -195,7 +195,7 @@ static CagStatus join_straight(CagCurve *const *curves, size_t n, int dimension,
       total > 3 && cag_norm(cag_sub(ends[0], ends[1])) <= MEET * cag_curve_size(all, total);
   if (closed) all[total - 1] = all[0];
   CagStatus status = cag_curve_polyline(all, total, closed, dimension, out, err);
-  free(all);
+  cag_free(all);
   *done = true;
   return status;
 }
@@ -213,11 +213,11 @@ static CagStatus join_moving(CagCurve *const *curves, size_t n, int dimension, C
   if (status || done) return status;
 
   const size_t count = flatten(curves, n, NULL, NULL);
-  CagCurve **pieces = malloc(sizeof *pieces * count);
-  double *cuts = malloc(sizeof *cuts * (count + 1));
+  CagCurve **pieces = cag_malloc(sizeof *pieces * count);
+  double *cuts = cag_malloc(sizeof *cuts * (count + 1));
   if (!pieces || !cuts) {
-    free(pieces);
-    free(cuts);
+    cag_free(pieces);
+    cag_free(cuts);
     return cag_fail_memory(err);
   }
   flatten(curves, n, pieces, cuts + 1);
@@ -240,8 +240,8 @@ static CagStatus join_moving(CagCurve *const *curves, size_t n, int dimension, C
   }
   if (!status) status = make(pieces, cuts, count, angular, out, err);
   for (size_t i = 0; i < owned; i++) cag_curve_release(pieces[i]);
-  free(pieces);
-  free(cuts);
+  cag_free(pieces);
+  cag_free(cuts);
   return status;
 }
 
@@ -252,7 +252,7 @@ CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagE
   CagStatus status = check_joints(curves, n, err);
   if (status) return status;
   // A point adds nothing to what it meets.
-  CagCurve **moving = malloc(n * sizeof *moving);
+  CagCurve **moving = cag_malloc(n * sizeof *moving);
   if (!moving) return cag_fail_memory(err);
   int dimension = 2;
   size_t count = 0;
@@ -262,7 +262,7 @@ CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagE
   }
   status = count ? join_moving(moving, count, dimension, out, err)
                  : join_moving(curves, 1, dimension, out, err);
-  free(moving);
+  cag_free(moving);
   return status;
 }
 
@@ -313,13 +313,13 @@ static CagStatus alike_pieces(const Composite *c, CagCurve **exact, size_t *poin
 // and a knot as often as the degree. Inside the pieces their knots stay.
 static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) {
   const Composite *c = (const Composite *)curve;
-  CagCurve **exact = calloc(c->n, sizeof *exact);
+  CagCurve **exact = cag_calloc(c->n, sizeof *exact);
   double *data = NULL;
   int p = 0;
   size_t n = 0;
   bool rational = false;
   CagStatus status = exact ? alike_pieces(c, exact, &n, &rational, &p, err) : cag_fail_memory(err);
-  if (!status && !(data = malloc(sizeof(double) * (5 * n + (size_t)p + 1))))
+  if (!status && !(data = cag_malloc(sizeof(double) * (5 * n + (size_t)p + 1))))
     status = cag_fail_memory(err);
   if (!status) {
     double *h = data, *knots = data + 4 * n;
@@ -340,8 +340,8 @@ static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) 
                            err);
   }
   for (size_t i = 0; exact && i < c->n; i++) cag_curve_release(exact[i]);
-  free(exact);
-  free(data);
+  cag_free(exact);
+  cag_free(data);
   return status;
 }
 
@@ -352,14 +352,14 @@ typedef CagStatus (*PieceMap)(const CagCurve *piece, const void *context, CagCur
 // `backwards`.
 static CagStatus mapped(const Composite *c, PieceMap map, const void *context, bool backwards,
                         const double *cuts, CagCurve **out, CagError *err) {
-  CagCurve **pieces = calloc(c->n, sizeof *pieces);
+  CagCurve **pieces = cag_calloc(c->n, sizeof *pieces);
   if (!pieces) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < c->n; i++)
     status = map(c->pieces[backwards ? c->n - 1 - i : i], context, &pieces[i], err);
   if (!status) status = make(pieces, cuts, c->n, c->base.angular, out, err);
   for (size_t i = 0; i < c->n; i++) cag_curve_release(pieces[i]);
-  free(pieces);
+  cag_free(pieces);
   return status;
 }
 
@@ -382,12 +382,12 @@ static CagStatus reverse_piece(const CagCurve *piece, const void *context, CagCu
 
 static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
   const Composite *c = (const Composite *)curve;
-  double *cuts = malloc(sizeof *cuts * (c->n + 1));
+  double *cuts = cag_malloc(sizeof *cuts * (c->n + 1));
   if (!cuts) return cag_fail_memory(err);
   for (size_t i = 0; i <= c->n; i++)
     cuts[i] = cag_curve_remap(curve, c->cuts[c->n - i], curve->end, curve->start);
   CagStatus status = mapped(c, reverse_piece, NULL, true, cuts, out, err);
-  free(cuts);
+  cag_free(cuts);
   return status;
 }
 
@@ -395,8 +395,8 @@ static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out,
   const Composite *c = (const Composite *)curve;
   const size_t first = piece_of(c, a, CAG_SIDE_RIGHT), last = piece_of(c, b, CAG_SIDE_LEFT);
   const size_t n = last - first + 1;
-  CagCurve **pieces = calloc(n, sizeof *pieces);
-  double *cuts = malloc(sizeof *cuts * (n + 1));
+  CagCurve **pieces = cag_calloc(n, sizeof *pieces);
+  double *cuts = cag_malloc(sizeof *cuts * (n + 1));
   CagStatus status = CAG_OK;
   if (!pieces || !cuts) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
@@ -411,19 +411,19 @@ static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out,
     status = make(pieces, cuts, n, curve->angular, out, err);
   }
   for (size_t i = 0; pieces && i < n; i++) cag_curve_release(pieces[i]);
-  free(pieces);
-  free(cuts);
+  cag_free(pieces);
+  cag_free(cuts);
   return status;
 }
 
 static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
                                CagError *err) {
   const Composite *c = (const Composite *)curve;
-  double *cuts = malloc(sizeof *cuts * (c->n + 1));
+  double *cuts = cag_malloc(sizeof *cuts * (c->n + 1));
   if (!cuts) return cag_fail_memory(err);
   for (size_t i = 0; i <= c->n; i++) cuts[i] = cag_curve_remap(curve, c->cuts[i], a, b);
   CagStatus status = make(c->pieces, cuts, c->n, false, out, err);
-  free(cuts);
+  cag_free(cuts);
   return status;
 }
 

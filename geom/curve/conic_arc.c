@@ -6,8 +6,8 @@
 // parabola, asinh(tan s) of a hyperbola's branch. The exact rational form is quadratic.
 
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/conic.h"
 #include "geom/curve/family.h"
 
@@ -250,8 +250,8 @@ static CagStatus parabola_nurbs(const Open *c, double from, double to, CagCurve 
 static CagStatus hyperbola_nurbs(const Open *c, double from, double to, double branch,
                                  CagCurve **out, CagError *err) {
   const size_t m = (size_t)fmax(1, ceil(fabs(to - from) / PIECE - POLE)), n = 2 * m + 1;
-  CagVec3 *points = malloc(sizeof *points * n);
-  double *weights = malloc(sizeof *weights * n), *knots = malloc(sizeof *knots * (n + 3));
+  CagVec3 *points = cag_malloc(sizeof *points * n);
+  double *weights = cag_malloc(sizeof *weights * n), *knots = cag_malloc(sizeof *knots * (n + 3));
   CagStatus status = points && weights && knots ? CAG_OK : cag_fail_memory(err);
   const double half = cosh((to - from) / (double)(2 * m));
   for (size_t i = 0; !status && i < n; i++) {
@@ -265,9 +265,9 @@ static CagStatus hyperbola_nurbs(const Open *c, double from, double to, double b
     knots[n + 2] = (double)m;
     status = cag_curve_nurbs(points, weights, n, 2, knots, c->base.dimension, out, err);
   }
-  free(points);
-  free(weights);
-  free(knots);
+  cag_free(points);
+  cag_free(weights);
+  cag_free(knots);
   return status;
 }
 

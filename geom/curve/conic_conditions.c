@@ -5,8 +5,8 @@
 // singular values tell as well when the conditions depend on each other or contradict.
 
 #include <lapacke.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/conic.h"
 #include "geom/curve/family.h"
 
@@ -190,8 +190,8 @@ CagStatus cag_conic_from_conditions(const CagVec3 *points, size_t n,
                                     const CagConicTangent *tangents, size_t m, CagConicShape shape,
                                     CagConic *out, CagError *err) {
   const size_t needed = (size_t)columns_of(shape) - 1;
-  CagVec3 *all = malloc(sizeof *all * (n + m + 1));
-  double *matrix = malloc(sizeof *matrix * (n + 2 * m + 1) * MOST);
+  CagVec3 *all = cag_malloc(sizeof *all * (n + m + 1));
+  double *matrix = cag_malloc(sizeof *matrix * (n + 2 * m + 1) * MOST);
   CagStatus status = all && matrix ? CAG_OK : cag_fail_memory(err);
   const size_t count = status ? 0 : gather(points, n, tangents, m, all);
   if (!status && count + m < needed)
@@ -200,8 +200,8 @@ CagStatus cag_conic_from_conditions(const CagVec3 *points, size_t n,
                       "%zu",
                       needed, count + m);
   if (!status) status = solve(all, count, tangents, m, shape, matrix, out, err);
-  free(all);
-  free(matrix);
+  cag_free(all);
+  cag_free(matrix);
   return status;
 }
 

@@ -15,6 +15,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 // Crossings are one if their distance is below this fraction of the rectangle's perimeter.
 #define ONE_CROSSING 1e-10
 // A value of the equation below this fraction of its terms is rounding.
@@ -363,7 +365,7 @@ static CagStatus add_curve(Chain *c, CagStatus made, CagCurve *curve, CagError *
   if (made) return made;
   if (c->n == c->room) {
     const size_t room = c->room ? 2 * c->room : 16;
-    CagCurve **at = realloc(c->at, room * sizeof *at);
+    CagCurve **at = cag_realloc(c->at, room * sizeof *at);
     if (!at) {
       cag_curve_release(curve);
       return cag_fail_memory(err);
@@ -467,7 +469,7 @@ static CagStatus add_part(Work *w, size_t start, CagRegion **out, size_t *n, Cag
   CagCurve *outline = NULL;
   if (!status) status = cag_curve_join(chain.at, chain.n, &outline, err);
   for (size_t i = 0; i < chain.n; i++) cag_curve_release(chain.at[i]);
-  free(chain.at);
+  cag_free(chain.at);
   return status ? status : take_region(outline, out, n, err);
 }
 

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 
 // Parts of a domain: of a seam; contacts nearer than the second, and nearer in space than that part
@@ -186,7 +187,7 @@ static CagStatus stretch_about(const CagCurve *c, double t, double *low, double 
   *low = cuts[i];
   *high = cuts[i + 1];
   const double first = cuts[1] - cuts[0], last = cuts[n - 1] - cuts[n - 2];
-  free(cuts);
+  cag_free(cuts);
   if (!c->closed) return CAG_OK;
   status = cag_curve_eval(c, c->start, 1, CAG_SIDE_RIGHT, d, err);
   if (!status) status = cag_curve_eval(c, c->end, 1, CAG_SIDE_LEFT, e, err);
@@ -289,7 +290,7 @@ CagStatus cag_contacts_merge(const CagContactTask *k, CagContact *items, size_t 
   *overlap = false;
   if (*n == 0) return CAG_OK;
   size_t count = 0, kept = 0;
-  Group *groups = malloc(*n * sizeof *groups);
+  Group *groups = cag_malloc(*n * sizeof *groups);
   if (!groups) return cag_fail_memory(err);
   for (size_t i = 0; i < *n; i++) open_seams(k, &items[i]);
   qsort(items, *n, sizeof *items, by_t);
@@ -307,7 +308,7 @@ CagStatus cag_contacts_merge(const CagContactTask *k, CagContact *items, size_t 
     for (size_t j = 0; j < kept && !known; j++) known = is_same(k, &items[j], &found);
     if (!known) items[kept++] = found;
   }
-  free(groups);
+  cag_free(groups);
   if (status || *overlap) return status;
   qsort(items, kept, sizeof *items, by_t);
   *n = kept;

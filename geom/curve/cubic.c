@@ -3,9 +3,9 @@
 #include "geom/curve/cubic.h"
 
 #include <lapacke.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 
 // --- Parameters ---
@@ -69,7 +69,7 @@ typedef struct System {
 #define COLUMNS 4
 
 static CagStatus system_new(size_t m, System *out, CagError *err) {
-  double *all = calloc(m * (3 + COLUMNS), sizeof *all);
+  double *all = cag_calloc(m * (3 + COLUMNS), sizeof *all);
   if (!all) return cag_fail_memory(err);
   *out = (System){m, all, all + m, all + 2 * m, all + 3 * m, all};
   return CAG_OK;
@@ -138,7 +138,7 @@ static CagStatus solve_open(const Spline *s, const CagCubicEnds *ends, CagVec3 *
   }
   status = solve(&a, 3, err);
   for (size_t i = 0; !status && i < n; i++) out[i] = solution(&a, i);
-  free(a.all);
+  cag_free(a.all);
   return status;
 }
 
@@ -202,7 +202,7 @@ static CagStatus solve_closed(const Spline *s, double sign, CagVec3 *out, CagErr
     for (size_t i = 0; i < m; i++) out[i] = cag_madd(solution(&a, i), -q[i], part);
     out[m] = cag_scaled(out[0], sign);
   }
-  free(a.all);
+  cag_free(a.all);
   return status;
 }
 
@@ -235,11 +235,11 @@ typedef struct Draft {
 
 static CagStatus draft_new(size_t n, size_t times, const double *u, Draft *out, CagError *err) {
   const size_t count = 4 + times * (n - 2), knots = count + 4;
-  CagVec3 *points = malloc(count * sizeof *points);
-  double *k = malloc(knots * sizeof *k);
+  CagVec3 *points = cag_malloc(count * sizeof *points);
+  double *k = cag_malloc(knots * sizeof *k);
   if (!points || !k) {
-    free(points);
-    free(k);
+    cag_free(points);
+    cag_free(k);
     return cag_fail_memory(err);
   }
   for (size_t i = 0; i < 4; i++) {
@@ -254,8 +254,8 @@ static CagStatus draft_new(size_t n, size_t times, const double *u, Draft *out, 
 
 static CagStatus draft_finish(Draft *d, int dimension, CagCurve **out, CagError *err) {
   CagStatus status = cag_curve_nurbs(d->points, NULL, d->count, 3, d->knots, dimension, out, err);
-  free(d->points);
-  free(d->knots);
+  cag_free(d->points);
+  cag_free(d->knots);
   return status;
 }
 
@@ -302,7 +302,7 @@ static CagVec3 control_point(const CagVec3 *p, const CagVec3 *d, const double *u
 CagStatus cag_curve_cubic_spline(const CagVec3 *points, size_t n, const double *parameters,
                                  const CagCubicEnds *ends, const double *tension, int dimension,
                                  CagCurve **out, CagError *err) {
-  CagVec3 *tangents = malloc((n ? n : 1) * sizeof *tangents);
+  CagVec3 *tangents = cag_malloc((n ? n : 1) * sizeof *tangents);
   if (!tangents) return cag_fail_memory(err);
   CagStatus status = cag_cubic_tangents(points, n, parameters, ends, tension, tangents, err);
   if (!status && tension) {
@@ -320,6 +320,6 @@ CagStatus cag_curve_cubic_spline(const CagVec3 *points, size_t n, const double *
       status = draft_finish(&d, dimension, out, err);
     }
   }
-  free(tangents);
+  cag_free(tangents);
   return status;
 }

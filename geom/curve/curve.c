@@ -5,9 +5,9 @@
 
 #include <float.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
@@ -16,7 +16,7 @@
 
 CagStatus cag_curve_block(size_t size, const CagCurveKind *kind, int dimension, double start,
                           double end, CagCurve **out, CagError *err) {
-  CagCurve *c = calloc(1, size);
+  CagCurve *c = cag_calloc(1, size);
   if (!c) return cag_fail_memory(err);
   c->kind = kind;
   c->references = 1;
@@ -36,7 +36,7 @@ CagCurve *cag_curve_retain(const CagCurve *c) {
 void cag_curve_release(CagCurve *c) {
   if (!c || --c->references > 0) return;
   if (c->kind->destroy) c->kind->destroy(c);
-  free(c);
+  cag_free(c);
 }
 
 // --- Checks ---
@@ -300,7 +300,7 @@ CagStatus cag_curve_reparametrize_as(const CagCurve *c, double a, double b, bool
 
 CagStatus cag_curve_cuts(const CagCurve *c, double **out, size_t *n, CagError *err) {
   size_t inner = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
-  double *cuts = malloc(sizeof *cuts * (inner + 2));
+  double *cuts = cag_malloc(sizeof *cuts * (inner + 2));
   if (!cuts) return cag_fail_memory(err);
   cuts[0] = c->start;
   if (inner) c->kind->breaks(c, cuts + 1, inner);

@@ -4,9 +4,9 @@
 // within the limits; circles are cut into equal steps. Ends and breaks are always in.
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 #include "geom/stop.h"
@@ -40,7 +40,7 @@ static CagStatus append(Output *out, double t, CagError *err) {
   if (cag_stop_check(err)) return err->status;
   if (out->n == out->capacity) {
     size_t capacity = out->capacity ? 2 * out->capacity : 64;
-    double *grown = realloc(out->t, sizeof *grown * capacity);
+    double *grown = cag_realloc(out->t, sizeof *grown * capacity);
     if (!grown) return cag_fail_memory(err);
     out->t = grown;
     out->capacity = capacity;
@@ -190,9 +190,9 @@ CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle
     for (int i = 0; !status && i <= 4; i++)
       status = append(&o, i == 4 ? b : a + (b - a) * i / 4, err);
   }
-  free(cuts);
+  cag_free(cuts);
   if (status) {
-    free(o.t);
+    cag_free(o.t);
     return status;
   }
   *out = o.t;

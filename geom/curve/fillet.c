@@ -5,8 +5,7 @@
 // closed form; else Newton's method starts from the lines tangent in the corner, and where that
 // leaves the curves the parallels are searched as polylines.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/curve/circles.h"
 #include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
@@ -106,7 +105,7 @@ static bool chords_cross(CagVec3 p0, CagVec3 p1, CagVec3 q0, CagVec3 q1, double 
 // The crossing of the parallels nearest to the corner along both, refined.
 static CagStatus search(const Corner *k, double radius, double *s, double *u, bool *found,
                         CagError *err) {
-  CagVec3 *points = malloc(sizeof *points * 2 * (SAMPLES + 1));
+  CagVec3 *points = cag_malloc(sizeof *points * 2 * (SAMPLES + 1));
   if (!points) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   const double step_a = (k->ta - k->a->start) / SAMPLES, step_b = (k->b->end - k->tb) / SAMPLES;
@@ -133,7 +132,7 @@ static CagStatus search(const Corner *k, double radius, double *s, double *u, bo
       *u = k->tb + step_b * (j + share2);
       status = newton(k, radius, s, u, found, err);
     }
-  free(points);
+  cag_free(points);
   return status;
 }
 
@@ -156,7 +155,7 @@ static CagStatus find_corner(const CagCurve *a, const CagCurve *b, Corner *out, 
       out->ta = meetings[n - 1].t;
       out->tb = meetings[n - 1].t2;
     }
-    free(meetings);
+    cag_free(meetings);
   }
   if (!status) status = cag_curve_tangent(a, out->ta, CAG_SIDE_LEFT, &ta, err);
   if (!status) status = cag_curve_tangent(b, out->tb, CAG_SIDE_RIGHT, &tb, err);
@@ -222,7 +221,7 @@ typedef struct Pieces {
 
 static void release(Pieces *p) {
   while (p->n > 0) cag_curve_release(p->items[--p->n]);
-  free(p->items);
+  cag_free(p->items);
 }
 
 static CagStatus add_line(Pieces *pieces, CagVec3 p, CagVec3 q, double size, int dimension,
@@ -275,8 +274,8 @@ static CagStatus check_edges(const CagVec3 *p, const Cut *cuts, size_t n, bool c
 
 static CagStatus round_polyline(const CagCurve *c, const CagVec3 *p, size_t n, bool closed,
                                 double radius, CagCurve **out, CagError *err) {
-  Pieces pieces = {malloc(sizeof *pieces.items * (2 * n + 2)), 0};
-  Cut *cuts = calloc(n, sizeof *cuts);
+  Pieces pieces = {cag_malloc(sizeof *pieces.items * (2 * n + 2)), 0};
+  Cut *cuts = cag_calloc(n, sizeof *cuts);
   CagStatus status = pieces.items && cuts ? CAG_OK : cag_fail_memory(err);
   const double size = cag_curve_size(p, n);
   for (size_t i = 0; !status && i < n; i++) {
@@ -296,7 +295,7 @@ static CagStatus round_polyline(const CagCurve *c, const CagVec3 *p, size_t n, b
       status = add_line(&pieces, cuts[i].out, cuts[(i + 1) % n].in, size, c->dimension, err);
   }
   if (!status) status = cag_curve_join(pieces.items, pieces.n, out, err);
-  free(cuts);
+  cag_free(cuts);
   release(&pieces);
   return status;
 }
@@ -343,7 +342,7 @@ static CagStatus add_trimmed(Pieces *pieces, const CagCurve *c, double a, double
 // between the last and the first.
 static CagStatus round_parts(CagCurve *const *parts, size_t n, bool around, double radius,
                              CagCurve **arcs, Pieces *pieces, CagError *err) {
-  double *from = malloc(sizeof *from * n), *to = malloc(sizeof *to * n);
+  double *from = cag_malloc(sizeof *from * n), *to = cag_malloc(sizeof *to * n);
   CagStatus status = from && to ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
     from[i] = parts[i]->start;
@@ -358,8 +357,8 @@ static CagStatus round_parts(CagCurve *const *parts, size_t n, bool around, doub
     status = add_trimmed(pieces, parts[i], from[i], to[i], radius, i, err);
     if (!status && arcs[i]) pieces->items[pieces->n++] = cag_curve_retain(arcs[i]);
   }
-  free(from);
-  free(to);
+  cag_free(from);
+  cag_free(to);
   return status;
 }
 
@@ -370,8 +369,8 @@ static CagStatus round_curve(const CagCurve *c, double radius, CagCurve **out, C
   if (status) return status;
   status = find_corners(c, cuts, &n, err);
   const size_t parts = n - 1;
-  CagCurve **part = calloc(parts, sizeof *part), **arcs = calloc(parts, sizeof *arcs);
-  Pieces pieces = {malloc(sizeof *pieces.items * (2 * parts + 2)), 0};
+  CagCurve **part = cag_calloc(parts, sizeof *part), **arcs = cag_calloc(parts, sizeof *arcs);
+  Pieces pieces = {cag_malloc(sizeof *pieces.items * (2 * parts + 2)), 0};
   if (!status && (!part || !arcs || !pieces.items)) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < parts; i++)
     status = cag_curve_trim(c, cuts[i], cuts[i + 1], &part[i], err);
@@ -381,9 +380,9 @@ static CagStatus round_curve(const CagCurve *c, double radius, CagCurve **out, C
     if (part) cag_curve_release(part[i]);
     if (arcs) cag_curve_release(arcs[i]);
   }
-  free(part);
-  free(arcs);
-  free(cuts);
+  cag_free(part);
+  cag_free(arcs);
+  cag_free(cuts);
   release(&pieces);
   return status;
 }

@@ -3,9 +3,9 @@
 #include "geom/curve/fit.h"
 
 #include <lapacke.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/curve/family.h"
 
@@ -17,8 +17,8 @@
 #define RANK_LOST 1e-13
 
 void cag_fit_report_free(CagFitReport *r) {
-  free(r->parameters);
-  free(r->residuals);
+  cag_free(r->parameters);
+  cag_free(r->residuals);
   *r = (CagFitReport){0};
 }
 
@@ -114,23 +114,23 @@ typedef struct Design {
 } Design;
 
 static void design_free(Design *a) {
-  free(a->u);
-  free(a->order);
-  free(a->value);
-  free(a->knots);
-  free(a->basis);
-  free(a->first);
+  cag_free(a->u);
+  cag_free(a->order);
+  cag_free(a->value);
+  cag_free(a->knots);
+  cag_free(a->basis);
+  cag_free(a->first);
 }
 
 static CagStatus design_new(size_t rows, size_t count, int p, Design *out, CagError *err) {
   Design a = {.rows = rows, .count = count, .p = p};
   const size_t width = (size_t)p + 1;
-  a.u = malloc(rows * sizeof *a.u);
-  a.order = calloc(rows, sizeof *a.order);
-  a.value = malloc(rows * sizeof *a.value);
-  a.knots = malloc((count + width) * sizeof *a.knots);
-  a.basis = malloc(rows * width * sizeof *a.basis);
-  a.first = malloc(rows * sizeof *a.first);
+  a.u = cag_malloc(rows * sizeof *a.u);
+  a.order = cag_calloc(rows, sizeof *a.order);
+  a.value = cag_malloc(rows * sizeof *a.value);
+  a.knots = cag_malloc((count + width) * sizeof *a.knots);
+  a.basis = cag_malloc(rows * width * sizeof *a.basis);
+  a.first = cag_malloc(rows * sizeof *a.first);
   *out = a;
   if (a.u && a.order && a.value && a.knots && a.basis && a.first) return CAG_OK;
   design_free(&a);
@@ -289,8 +289,8 @@ static CagStatus solve_banded(const Design *a, CagVec3 *control, CagError *err) 
     if (last > r && last - r > ku) ku = last - r;
   }
   const size_t ld = 2 * kl + ku + 1;
-  double *band = calloc(ld * n, sizeof *band), *right = malloc(3 * n * sizeof *right);
-  lapack_int *pivots = malloc(n * sizeof *pivots);
+  double *band = cag_calloc(ld * n, sizeof *band), *right = cag_malloc(3 * n * sizeof *right);
+  lapack_int *pivots = cag_malloc(n * sizeof *pivots);
   CagStatus status = CAG_OK;
   if (!band || !right || !pivots) {
     status = cag_fail_memory(err);
@@ -313,9 +313,9 @@ static CagStatus solve_banded(const Design *a, CagVec3 *control, CagError *err) 
     for (size_t r = 0; !status && r < n; r++)
       control[r] = cag_vec3(right[r], right[n + r], right[2 * n + r]);
   }
-  free(band);
-  free(right);
-  free(pivots);
+  cag_free(band);
+  cag_free(right);
+  cag_free(pivots);
   return status;
 }
 
@@ -334,8 +334,8 @@ CagStatus cag_curve_interpolate(const CagFitData *d, const CagVec3 *tangents, si
   Design a;
   status = design_new(count, count, d->degree, &a, err);
   if (status) return status;
-  double *u = malloc(d->n * sizeof *u);
-  CagVec3 *control = malloc(count * sizeof *control);
+  double *u = cag_malloc(d->n * sizeof *u);
+  CagVec3 *control = cag_malloc(count * sizeof *control);
   if (!u || !control) status = cag_fail_memory(err);
   if (!status) status = find_parameters(d, count, u, err);
   for (size_t i = 1; !status && i < d->n; i++)
@@ -353,8 +353,8 @@ CagStatus cag_curve_interpolate(const CagFitData *d, const CagVec3 *tangents, si
     status = solve_banded(&a, control, err);
   }
   if (!status) status = make_curve(&a, control, d->dimension, out, err);
-  free(control);
-  free(u);
+  cag_free(control);
+  cag_free(u);
   design_free(&a);
   return status;
 }
@@ -416,7 +416,7 @@ static CagStatus solve_least(const Design *a, bool keep_ends, CagVec3 *control, 
     control[a->count - 1] = a->value[a->rows - 1];
     if (n == 0) return CAG_OK;
   }
-  Triangle t = {n, width, calloc(n * width, sizeof(double)), calloc(n, sizeof(CagVec3))};
+  Triangle t = {n, width, cag_calloc(n * width, sizeof(double)), cag_calloc(n, sizeof(CagVec3))};
   CagStatus status = CAG_OK;
   if (!t.r || !t.right) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < a->rows; i++) {
@@ -436,8 +436,8 @@ static CagStatus solve_least(const Design *a, bool keep_ends, CagVec3 *control, 
     rotate_in(&t, row, from - skip, value);
   }
   if (!status) status = back_substitute(&t, skip, control + skip, err);
-  free(t.r);
-  free(t.right);
+  cag_free(t.r);
+  cag_free(t.right);
   return status;
 }
 
@@ -526,7 +526,7 @@ static CagStatus hold_coordinate(Design *a, int axis, double slack, int dimensio
 
 static CagStatus make_report(Design *a, const CagCurve *c, int rounds, CagFitReport *out,
                              CagError *err) {
-  CagVec3 *residuals = malloc(a->rows * sizeof *residuals);
+  CagVec3 *residuals = cag_malloc(a->rows * sizeof *residuals);
   if (!residuals) return cag_fail_memory(err);
   CagStatus status = cag_curve_eval_many(c, a->u, a->rows, 0, residuals, err);
   double sum = 0, largest = 0;
@@ -537,7 +537,7 @@ static CagStatus make_report(Design *a, const CagCurve *c, int rounds, CagFitRep
     largest = fmax(largest, length);
   }
   if (status) {
-    free(residuals);
+    cag_free(residuals);
     return status;
   }
   *out = (CagFitReport){a->u, residuals, sqrt(sum / (double)a->rows), largest, rounds};
@@ -561,7 +561,7 @@ CagStatus cag_curve_fit(const CagFitData *d, size_t count, bool keep_ends, int a
   if (status) return status;
   CagCurve *curve = NULL;
   int rounds = 0;
-  CagVec3 *control = malloc(count * sizeof *control);
+  CagVec3 *control = cag_malloc(count * sizeof *control);
   if (!control) status = cag_fail_memory(err);
   memcpy(a.value, d->points, d->n * sizeof *a.value);
   if (!status) status = find_parameters(d, count, a.u, err);
@@ -574,7 +574,7 @@ CagStatus cag_curve_fit(const CagFitData *d, size_t count, bool keep_ends, int a
   if (!status && axis >= 0)
     status = hold_coordinate(&a, axis, slack, d->dimension, control, &curve, &rounds, err);
   if (!status && report) status = make_report(&a, curve, rounds, report, err);
-  free(control);
+  cag_free(control);
   design_free(&a);
   if (status) cag_curve_release(curve);
   else *out = curve;

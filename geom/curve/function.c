@@ -10,9 +10,9 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 
 // Highest derivative that is kept; higher ones are asked for rarely, and far apart.
@@ -81,7 +81,7 @@ static Known *known_slot(Known *known, size_t slots, double t) {
 // Room for about twice the values used so far. Without memory, values are computed anew.
 static void known_grow(Source *s) {
   const size_t slots = s->slots ? 2 * s->slots : FIRST_SLOTS;
-  Known *grown = malloc(slots * sizeof *grown);
+  Known *grown = cag_malloc(slots * sizeof *grown);
   if (!grown) return;
   for (size_t i = 0; i < slots; i++) grown[i].order = -1;
   s->used = 0;
@@ -91,7 +91,7 @@ static void known_grow(Source *s) {
     s->used += to->order < 0;
     *to = s->known[i];
   }
-  free(s->known);
+  cag_free(s->known);
   s->known = grown;
   s->slots = slots;
 }
@@ -239,7 +239,7 @@ CagStatus cag_curve_function(const CagCurveFunction *f, int dimension, double st
                     "the range %s..%s has no length; its start must be less than its end",
                     cag_number_text(angular ? start * (180 / M_PI) : start, a),
                     cag_number_text(angular ? end * (180 / M_PI) : end, b));
-  Source *source = malloc(sizeof *source);
+  Source *source = cag_malloc(sizeof *source);
   if (!source) return cag_fail_memory(err);
   // The context is the caller's until all is well.
   *source = (Source){.function = *f, .references = 0, .angular = angular};
@@ -253,8 +253,8 @@ CagStatus cag_curve_function(const CagCurveFunction *f, int dimension, double st
   if (!status) status = finish(curve, out, err);
   source->references--;
   if (status) {
-    free(source->known);
-    free(source);
+    cag_free(source->known);
+    cag_free(source);
     return status;
   }
   source->function.release = f->release;
@@ -305,8 +305,8 @@ static void destroy(CagCurve *curve) {
   Source *source = ((Function *)curve)->source;
   if (--source->references > 0) return;
   if (source->function.release) source->function.release(source->function.context);
-  free(source->known);
-  free(source);
+  cag_free(source->known);
+  cag_free(source);
 }
 
 static const CagCurveKind function_kind = {

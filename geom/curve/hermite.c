@@ -1,8 +1,8 @@
 // Single cubic segments: their polynomial, their shape, their end curvatures, how they go on.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/cubic.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
@@ -65,7 +65,7 @@ CagStatus cag_curve_coefficients(const CagCurve *curve, CagVec3 **out, size_t *p
                       curve->kind->name);
   } else {
     const size_t stride = (size_t)c->degree + 1;
-    a = malloc(c->pieces * stride * sizeof *a);
+    a = cag_malloc(c->pieces * stride * sizeof *a);
     if (!a) status = cag_fail_memory(err);
     for (size_t i = 0; a && i < c->pieces; i++)
       piece_coefficients(cag_nurbs_bezier(c, i), c->degree, c->cuts[i + 1] - c->cuts[i],

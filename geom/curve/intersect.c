@@ -7,8 +7,8 @@
 #include "geom/curve/intersect.h"
 
 #include <float.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/contact.h"
 #include "geom/curve/family.h"
 #include "geom/curve/intersect_circles.h"
@@ -53,7 +53,7 @@ static CagStatus merge(Found *found, CagError *err) {
 static CagStatus add(Found *found, double t, double t2, CagVec3 point, CagError *err) {
   if (found->n == found->capacity) {
     size_t capacity = found->capacity ? 2 * found->capacity : 16;
-    CagContact *grown = realloc(found->items, sizeof *grown * capacity);
+    CagContact *grown = cag_realloc(found->items, sizeof *grown * capacity);
     if (!grown) return cag_fail_memory(err);
     found->items = grown;
     found->capacity = capacity;
@@ -67,7 +67,7 @@ static CagStatus give_contacts(const CagContact *contacts, size_t count, CagMeet
                                size_t *n, CagError *err) {
   CagMeeting *items = NULL;
   if (count) {
-    items = malloc(count * sizeof *items);
+    items = cag_malloc(count * sizeof *items);
     if (!items) return cag_fail_memory(err);
   }
   for (size_t i = 0; i < count; i++) {
@@ -82,7 +82,7 @@ static CagStatus give_contacts(const CagContact *contacts, size_t count, CagMeet
 static CagStatus give(Found *found, CagStatus status, CagMeeting **out, size_t *n, CagError *err) {
   if (!status) status = merge(found, err);
   if (!status) status = give_contacts(found->items, found->n, out, n, err);
-  free(found->items);
+  cag_free(found->items);
   return status;
 }
 
@@ -94,7 +94,7 @@ static CagStatus first_parts(const CagCurve *c, Part **out, size_t *n, CagError 
   CagStatus status = cag_curve_cuts(c, &cuts, &count, err);
   if (status) return status;
   const size_t pieces = cag_curve_sag(c, cuts[0], cuts[1]) > 0 ? HALVES : 1;
-  Part *parts = malloc(sizeof *parts * (count - 1) * pieces);
+  Part *parts = cag_malloc(sizeof *parts * (count - 1) * pieces);
   if (!parts) status = cag_fail_memory(err);
   size_t used = 0;
   for (size_t i = 0; !status && i + 1 < count; i++)
@@ -108,9 +108,9 @@ static CagStatus first_parts(const CagCurve *c, Part **out, size_t *n, CagError 
       status = cag_curve_eval(c, p->a, 0, CAG_SIDE_RIGHT, &p->p, err);
       if (!status) status = cag_curve_eval(c, p->b, 0, CAG_SIDE_LEFT, &p->q, err);
     }
-  free(cuts);
+  cag_free(cuts);
   if (status) {
-    free(parts);
+    cag_free(parts);
     return status;
   }
   *out = parts;
@@ -240,7 +240,7 @@ CagStatus cag_curve_intersect_plane(const CagCurve *c, const CagPlane *plane, Ca
   CagStatus status = first_parts(c, &parts, &count, err);
   if (status) return status;
   for (size_t i = 0; !status && i < count; i++) status = plane_part(&s, &parts[i], DEPTH, err);
-  free(parts);
+  cag_free(parts);
   return give(&s.found, status, out, n, err);
 }
 
@@ -478,7 +478,7 @@ CagStatus cag_curve_intersect(const CagCurve *a, const CagCurve *b, CagMeeting *
   if (status) return status;
   status = first_parts(b, &parts_b, &count_b, err);
   if (status) {
-    free(parts_a);
+    cag_free(parts_a);
     return status;
   }
   for (size_t i = 0; !status && i < count_a; i++) {
@@ -486,7 +486,7 @@ CagStatus cag_curve_intersect(const CagCurve *a, const CagCurve *b, CagMeeting *
     for (size_t k = 0; !status && k < count_b; k++)
       status = pair(&s, &parts_a[i], &parts_b[k], 2 * DEPTH, err);
   }
-  free(parts_a);
-  free(parts_b);
+  cag_free(parts_a);
+  cag_free(parts_b);
   return give(&s.found, status, out, n, err);
 }

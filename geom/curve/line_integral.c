@@ -10,9 +10,9 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
@@ -42,9 +42,9 @@ static CagStatus add(Stretches *all, Stretch stretch, double from, double to, Ca
   if (!(from < to)) return CAG_OK;
   if (all->n == all->room) {
     const size_t room = all->room ? 2 * all->room : 16;
-    Stretch *items = realloc(all->items, room * sizeof *items);
+    Stretch *items = cag_realloc(all->items, room * sizeof *items);
     if (items) all->items = items;
-    double(*ranges)[2] = realloc(all->ranges, room * sizeof *ranges);
+    double(*ranges)[2] = cag_realloc(all->ranges, room * sizeof *ranges);
     if (ranges) all->ranges = ranges;
     if (!items || !ranges) return cag_fail_memory(err);
     all->room = room;
@@ -109,10 +109,10 @@ static CagStatus at_stretch(void *context, size_t piece, double t, double *out, 
     status = cag_curve_eval(s->curve, t, 1, CAG_SIDE_RIGHT, d, err);
   } else {
     const size_t n = 4 * ((size_t)s->degree + 1);
-    if (n > sizeof few / sizeof *few) room = malloc(n * sizeof *room);
+    if (n > sizeof few / sizeof *few) room = cag_malloc(n * sizeof *room);
     if (!room) return cag_fail_memory(err);
     bezier_at(s, t, &d[0], &d[1], room);
-    if (room != few) free(room);
+    if (room != few) cag_free(room);
   }
   if (!status) all->f(all->context, d[0], d[1], out);
   return status;
@@ -133,8 +133,8 @@ CagStatus cag_curve_integrate(const CagCurve *c, double a, double b, CagLineInte
   if (!status)
     status = cag_integrate_pieces(at_stretch, &all, (const double(*)[2])all.ranges, all.n, parts,
                                   tolerance, out, err);
-  free(cuts);
-  free(all.items);
-  free(all.ranges);
+  cag_free(cuts);
+  cag_free(all.items);
+  cag_free(all.ranges);
   return status;
 }

@@ -4,9 +4,9 @@
 // forms.
 
 #include <float.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/line_integral.h"
 #include "geom/curve/nurbs.h"
@@ -118,7 +118,7 @@ CagStatus cag_curve_length(const CagCurve *c, double a, double b, double *out, C
     status = piece_length(c, cuts[i], cuts[i + 1], &part, err);
     if (!status) total += part;
   }
-  free(cuts);
+  cag_free(cuts);
   if (!status) *out = total;
   return status;
 }
@@ -169,7 +169,7 @@ CagStatus cag_curve_parameter_at_length(const CagCurve *c, double s, double *out
     }
     walked += part;
   }
-  free(cuts);
+  cag_free(cuts);
   if (status || found) return status;
   if (s > 0 && s <= walked * (1 + slack)) {
     *out = c->end;
@@ -192,7 +192,7 @@ CagStatus cag_curve_gather(const CagCurve *c, CagVec3 **out, size_t *n, CagError
   size_t count;
   if (nurbs || cag_curve_vertices(c, &points, &count, &ring)) {
     if (nurbs) count = nurbs->count;
-    CagVec3 *copy = malloc(sizeof *copy * count);
+    CagVec3 *copy = cag_malloc(sizeof *copy * count);
     if (!copy) return cag_fail_memory(err);
     *n = 0;
     for (size_t i = 0; i < count; i++) {
@@ -206,7 +206,7 @@ CagStatus cag_curve_gather(const CagCurve *c, CagVec3 **out, size_t *n, CagError
   double *cuts;
   CagStatus status = cag_curve_cuts(c, &cuts, &count, err);
   if (status) return status;
-  CagVec3 *samples = malloc(sizeof *samples * ((count - 1) * SAMPLES + 1));
+  CagVec3 *samples = cag_malloc(sizeof *samples * ((count - 1) * SAMPLES + 1));
   if (!samples) status = cag_fail_memory(err);
   *n = 0;
   for (size_t i = 0; !status && i + 1 < count; i++)
@@ -214,8 +214,8 @@ CagStatus cag_curve_gather(const CagCurve *c, CagVec3 **out, size_t *n, CagError
       status = cag_curve_eval(c, cuts[i] + (cuts[i + 1] - cuts[i]) * k / SAMPLES, 0, CAG_SIDE_RIGHT,
                               &samples[(*n)++], err);
   if (!status) status = cag_curve_eval(c, c->end, 0, CAG_SIDE_LEFT, &samples[(*n)++], err);
-  free(cuts);
-  if (status) free(samples);
+  cag_free(cuts);
+  if (status) cag_free(samples);
   else *out = samples;
   return status;
 }
@@ -246,7 +246,7 @@ CagStatus cag_curve_is_straight(const CagCurve *c, bool *is, CagError *err) {
   CagVec3 unit = cag_unit(cag_sub(b, a));
   *is = true;
   for (size_t i = 0; i < n; i++) *is = *is && from_line(p[i], a, unit) <= FLAT * size;
-  free(p);
+  cag_free(p);
   return CAG_OK;
 }
 
@@ -277,7 +277,7 @@ CagStatus cag_curve_is_planar(const CagCurve *c, bool *is, CagPlane *plane, CagE
   *is = true;
   for (size_t i = 0; i < n; i++)
     *is = *is && fabs(cag_dot(cag_sub(p[i], a), normal)) <= FLAT * size;
-  free(p);
+  cag_free(p);
   if (*is && plane) *plane = (CagPlane){a, normal};
   return CAG_OK;
 }

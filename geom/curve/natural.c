@@ -9,8 +9,8 @@
 #include "geom/curve/natural.h"
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/function.h"
 
@@ -140,7 +140,7 @@ static CagStatus add_step(Natural *c, const Step *step, CagError *err) {
                     cag_number_text(step->start, text), STEPS_MOST);
   if (c->count == c->capacity) {
     size_t capacity = c->capacity ? 2 * c->capacity : 16;
-    Step *grown = realloc(c->steps, capacity * sizeof *grown);
+    Step *grown = cag_realloc(c->steps, capacity * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     c->steps = grown;
     c->capacity = capacity;
@@ -212,8 +212,8 @@ static CagStatus eval(void *context, double s, int order, CagVec3 *out, CagError
 static void release(void *context) {
   Natural *c = context;
   if (c->equations.release) c->equations.release(c->equations.context);
-  free(c->steps);
-  free(c);
+  cag_free(c->steps);
+  cag_free(c);
 }
 
 static CagStatus read_frame(const CagTransform *t, Frame *out, CagError *err) {
@@ -245,7 +245,7 @@ CagStatus cag_curve_natural(const CagNaturalEquations *equations, double length,
   Frame start;
   CagStatus status = read_frame(frame, &start, err);
   if (status) return status;
-  Natural *c = calloc(1, sizeof *c);
+  Natural *c = cag_calloc(1, sizeof *c);
   if (!c) return cag_fail_memory(err);
   c->equations = *equations;
   c->length = length;

@@ -4,9 +4,9 @@
 
 #include <float.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/stop.h"
 
@@ -20,11 +20,11 @@ const CagNurbs *cag_nurbs_data(const CagCurve *c) {
 
 static void destroy(CagCurve *c) {
   CagNurbs *n = (CagNurbs *)c;
-  free(n->knots);
-  free(n->homogeneous);
-  free(n->cuts);
-  free(n->bezier);
-  free(n->taylor);
+  cag_free(n->knots);
+  cag_free(n->homogeneous);
+  cag_free(n->cuts);
+  cag_free(n->bezier);
+  cag_free(n->taylor);
 }
 
 // --- Construction ---
@@ -69,9 +69,9 @@ static CagStatus make_pieces(CagNurbs *c, CagError *err) {
   const int p = c->degree;
   const size_t stride = 4 * (size_t)(p + 1);
   for (size_t i = (size_t)p; i < c->count; i++) c->pieces += c->knots[i] < c->knots[i + 1];
-  c->cuts = malloc(sizeof(double) * (c->pieces + 1));
-  c->bezier = malloc(sizeof(double) * c->pieces * stride);
-  if (p <= CAG_NURBS_TAYLOR) c->taylor = malloc(sizeof(double) * c->pieces * 2 * stride);
+  c->cuts = cag_malloc(sizeof(double) * (c->pieces + 1));
+  c->bezier = cag_malloc(sizeof(double) * c->pieces * stride);
+  if (p <= CAG_NURBS_TAYLOR) c->taylor = cag_malloc(sizeof(double) * c->pieces * 2 * stride);
   if (!c->cuts || !c->bezier || (p <= CAG_NURBS_TAYLOR && !c->taylor)) return cag_fail_memory(err);
   size_t n = 0;
   for (size_t i = (size_t)p; i < c->count; i++) {
@@ -139,8 +139,8 @@ CagStatus cag_nurbs_new(const double *homogeneous, size_t n, int degree, const d
   c->periodic = distinct > 0;
   c->distinct = distinct ? distinct : n;
   c->rational = rational;
-  c->knots = malloc(sizeof(double) * (n + (size_t)degree + 1));
-  c->homogeneous = malloc(sizeof(double) * 4 * n);
+  c->knots = cag_malloc(sizeof(double) * (n + (size_t)degree + 1));
+  c->homogeneous = cag_malloc(sizeof(double) * 4 * n);
   if (c->knots && c->homogeneous) {
     memcpy(c->knots, knots, sizeof(double) * (n + (size_t)degree + 1));
     memcpy(c->homogeneous, homogeneous, sizeof(double) * 4 * n);
@@ -180,7 +180,7 @@ static CagStatus lift(const CagVec3 *points, const double *weights, size_t n, si
   if (!positive)
     return cag_fail(err, CAG_E_ARGUMENT, "zero-denominator", "weights", -1,
                     "all weights are 0; at least one must be positive");
-  double *h = malloc(sizeof(double) * 4 * stored);
+  double *h = cag_malloc(sizeof(double) * 4 * stored);
   if (!h) return cag_fail_memory(err);
   for (size_t i = 0; i < stored; i++) {
     const CagVec3 p = points[i % n];
@@ -203,7 +203,7 @@ CagStatus cag_curve_nurbs(const CagVec3 *points, const double *weights, size_t n
   if (status) return status;
   status = cag_nurbs_new(h, n, degree, knots, weights != NULL, 0,
                          weights ? CAG_NURBS_RATIONAL : CAG_NURBS_BSPLINE, dimension, out, err);
-  free(h);
+  cag_free(h);
   return status;
 }
 
@@ -234,7 +234,7 @@ CagStatus cag_curve_bezier(const CagVec3 *points, const double *weights, size_t 
   if (status) return status;
   status = cag_nurbs_new(h, n, (int)n - 1, knots, weights != NULL, 0, CAG_NURBS_BEZIER, dimension,
                          out, err);
-  free(h);
+  cag_free(h);
   return status;
 }
 
@@ -247,16 +247,16 @@ CagStatus cag_curve_nurbs_closed(const CagVec3 *points, const double *weights, s
     return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
                     "the degree of a closed curve is 1 to %d; this is %d", CAG_MAX_DEGREE, degree);
   const size_t stored = n + (size_t)degree;
-  double *h, *knots = malloc(sizeof(double) * (stored + (size_t)degree + 1));
+  double *h, *knots = cag_malloc(sizeof(double) * (stored + (size_t)degree + 1));
   if (!knots) return cag_fail_memory(err);
   for (size_t i = 0; i < stored + (size_t)degree + 1; i++) knots[i] = (double)i - degree;
   CagStatus status = lift(points, weights, n, stored, &h, err);
   if (!status) {
     status = cag_nurbs_new(h, stored, degree, knots, weights != NULL, n,
                            weights ? CAG_NURBS_RATIONAL : CAG_NURBS_BSPLINE, dimension, out, err);
-    free(h);
+    cag_free(h);
   }
-  free(knots);
+  cag_free(knots);
   return status;
 }
 
@@ -427,7 +427,7 @@ static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) 
 static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurve **out,
                            CagError *err) {
   const CagNurbs *c = (const CagNurbs *)curve;
-  double *h = malloc(sizeof(double) * 4 * c->count);
+  double *h = cag_malloc(sizeof(double) * 4 * c->count);
   if (!h) return cag_fail_memory(err);
   const bool affine = cag_transform_is_affine(t);
   const bool rational = c->rational || !affine;
@@ -455,14 +455,14 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
   if (!status)
     status = cag_nurbs_new(h, c->count, c->degree, c->knots, rational, distinct_of(c), kind,
                            dimension, out, err);
-  free(h);
+  cag_free(h);
   return status;
 }
 
 static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
   const CagNurbs *c = (const CagNurbs *)curve;
   const size_t n = c->count, m = n + (size_t)c->degree + 1;
-  double *data = malloc(sizeof(double) * (4 * n + m));
+  double *data = cag_malloc(sizeof(double) * (4 * n + m));
   if (!data) return cag_fail_memory(err);
   double *h = data, *knots = data + 4 * n;
   for (size_t i = 0; i < n; i++)
@@ -474,7 +474,7 @@ static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
   }
   CagStatus status = cag_nurbs_new(h, n, c->degree, knots, c->rational, distinct_of(c), kind_of(c),
                                    curve->dimension, out, err);
-  free(data);
+  cag_free(data);
   return status;
 }
 
@@ -483,7 +483,7 @@ static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out,
   const CagNurbs *c = (const CagNurbs *)curve;
   const int p = c->degree;
   const size_t room = c->count + 2 * (size_t)p;
-  double *data = malloc(sizeof(double) * (5 * room + (size_t)p + 1));
+  double *data = cag_malloc(sizeof(double) * (5 * room + (size_t)p + 1));
   if (!data) return cag_fail_memory(err);
   double *h = data, *knots = data + 4 * room;
   size_t n = c->count;
@@ -506,7 +506,7 @@ static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out,
   }
   CagStatus status =
       cag_nurbs_new(kept, count, p, knots, c->rational, 0, kind_of(c), curve->dimension, out, err);
-  free(data);
+  cag_free(data);
   return status;
 }
 
@@ -514,12 +514,12 @@ static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCur
                                CagError *err) {
   const CagNurbs *c = (const CagNurbs *)curve;
   const size_t m = c->count + (size_t)c->degree + 1;
-  double *knots = malloc(sizeof(double) * m);
+  double *knots = cag_malloc(sizeof(double) * m);
   if (!knots) return cag_fail_memory(err);
   for (size_t i = 0; i < m; i++) knots[i] = cag_curve_remap(curve, c->knots[i], a, b);
   CagStatus status = cag_nurbs_new(c->homogeneous, c->count, c->degree, knots, c->rational,
                                    distinct_of(c), kind_of(c), curve->dimension, out, err);
-  free(knots);
+  cag_free(knots);
   return status;
 }
 

@@ -2,9 +2,9 @@
 
 #include "geom/curve/nurbs_ops.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
@@ -38,14 +38,14 @@ CagStatus cag_curve_to_bezier(const CagCurve *c, CagCurve ***out, size_t *n, Cag
   const int p = nurbs->degree;
   double knots[2 * (CAG_MAX_DEGREE + 1)];
   cag_knots_open((size_t)p + 1, p, knots);
-  CagCurve **pieces = calloc(nurbs->pieces, sizeof *pieces);
+  CagCurve **pieces = cag_calloc(nurbs->pieces, sizeof *pieces);
   if (!pieces) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < nurbs->pieces; i++)
     status = cag_nurbs_new(cag_nurbs_bezier(nurbs, i), (size_t)p + 1, p, knots, nurbs->rational, 0,
                            CAG_NURBS_BEZIER, c->dimension, &pieces[i], err);
   if (status) {
     for (size_t i = 0; pieces && i < nurbs->pieces; i++) cag_curve_release(pieces[i]);
-    free(pieces);
+    cag_free(pieces);
   } else {
     *out = pieces;
     *n = nurbs->pieces;
@@ -87,7 +87,7 @@ static CagStatus elevate_once(const CagCurve *curve, CagCurve **out, CagError *e
     return cag_fail(err, CAG_E_ARGUMENT, "order-range", "times", -1, "the degree is at most %d",
                     CAG_MAX_DEGREE);
   const size_t room = 2 * (c->count + (size_t)p + 1);
-  double *z = malloc(sizeof(double) * room), *h = malloc(sizeof(double) * 4 * room);
+  double *z = cag_malloc(sizeof(double) * room), *h = cag_malloc(sizeof(double) * 4 * room);
   size_t n = 0;
   CagStatus status = z && h ? CAG_OK : cag_fail_memory(err);
   if (!status) {
@@ -100,8 +100,8 @@ static CagStatus elevate_once(const CagCurve *curve, CagCurve **out, CagError *e
     status = cag_nurbs_new(h, n, p + 1, z, c->rational, 0,
                            bezier ? CAG_NURBS_BEZIER : plain_kind(c), curve->dimension, out, err);
   }
-  free(z);
-  free(h);
+  cag_free(z);
+  cag_free(h);
   return status;
 }
 
@@ -130,8 +130,8 @@ CagStatus cag_curve_insert_knots(const CagCurve *c, const double *t, size_t n, C
   const CagNurbs *from = cag_nurbs_data(open);
   const int p = from->degree;
   size_t count = from->count;
-  double *h = malloc(sizeof(double) * 4 * (count + n));
-  double *knots = malloc(sizeof(double) * (count + n + (size_t)p + 1));
+  double *h = cag_malloc(sizeof(double) * 4 * (count + n));
+  double *knots = cag_malloc(sizeof(double) * (count + n + (size_t)p + 1));
   if (!h || !knots) status = cag_fail_memory(err);
   if (!status) {
     memcpy(h, from->homogeneous, sizeof(double) * 4 * count);
@@ -152,8 +152,8 @@ CagStatus cag_curve_insert_knots(const CagCurve *c, const double *t, size_t n, C
   if (!status)
     status = cag_nurbs_new(h, count, p, knots, from->rational, 0, plain_kind(from), open->dimension,
                            out, err);
-  free(h);
-  free(knots);
+  cag_free(h);
+  cag_free(knots);
   cag_curve_release(open);
   return status;
 }
@@ -178,7 +178,7 @@ static void span_blossom(const CagNurbs *c, size_t span, const double *args, dou
 static CagStatus refined_points(const CagNurbs *c, const double *y, size_t n, double *h,
                                 CagError *err) {
   const size_t p = (size_t)c->degree;
-  double *work = malloc(sizeof(double) * 4 * (p + 1));
+  double *work = cag_malloc(sizeof(double) * 4 * (p + 1));
   if (!work) return cag_fail_memory(err);
   for (size_t j = 0; j < n; j++) {
     double from = fmax(y[j], c->base.start), to = fmin(y[j + p + 1], c->base.end);
@@ -187,14 +187,14 @@ static CagStatus refined_points(const CagNurbs *c, const double *y, size_t n, do
     span_blossom(c, span, y + j + 1, work, h + 4 * j);
     if (!c->rational) h[4 * j + 3] = 1;
   }
-  free(work);
+  cag_free(work);
   return CAG_OK;
 }
 
 // Uniform knots at half the spacing, with the usable range of the curve.
 static CagStatus halve_uniform(const CagNurbs *c, CagCurve **out, CagError *err) {
   const size_t p = (size_t)c->degree, spans = c->count - p, n = 2 * spans + p;
-  double *y = malloc(sizeof(double) * (n + p + 1 + 4 * n));
+  double *y = cag_malloc(sizeof(double) * (n + p + 1 + 4 * n));
   if (!y) return cag_fail_memory(err);
   double *h = y + n + p + 1;
   const double start = c->base.start, step = (c->base.end - start) / (double)(2 * spans);
@@ -208,7 +208,7 @@ static CagStatus halve_uniform(const CagNurbs *c, CagCurve **out, CagError *err)
   if (!status)
     status = cag_nurbs_new(h, n, c->degree, y, c->rational, distinct, plain_kind(c),
                            c->base.dimension, out, err);
-  free(y);
+  cag_free(y);
   return status;
 }
 
@@ -222,12 +222,12 @@ CagStatus cag_curve_insert_midpoints(const CagCurve *c, CagCurve **out, CagError
     cag_curve_release(exact);
     return status;
   }
-  double *middles = malloc(sizeof(double) * n->pieces);
+  double *middles = cag_malloc(sizeof(double) * n->pieces);
   if (!middles) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n->pieces; i++)
     middles[i] = n->cuts[i] + (n->cuts[i + 1] - n->cuts[i]) / 2;
   if (!status) status = cag_curve_insert_knots(exact, middles, n->pieces, out, err);
-  free(middles);
+  cag_free(middles);
   cag_curve_release(exact);
   return status;
 }

@@ -9,9 +9,9 @@
 // no longer than the largest |g_i.xyz - h_i.xyz| + M |g_i.w - h_i.w| over the least weight; M is
 // the greatest distance of S from the origin, which is put into the middle of the points.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 #include "geom/curve/nurbs_ops.h"
@@ -49,14 +49,14 @@ typedef struct Spline {
 } Spline;
 
 static void spline_free(Spline *s) {
-  free(s->h);
-  free(s->knots);
+  cag_free(s->h);
+  cag_free(s->knots);
 }
 
 static CagStatus spline_make(Spline *s, int p, size_t n, bool rational, CagError *err) {
   *s = (Spline){.p = p, .n = n, .rational = rational};
-  s->h = malloc(sizeof(double) * 4 * n);
-  s->knots = malloc(sizeof(double) * (n + (size_t)p + 1));
+  s->h = cag_malloc(sizeof(double) * 4 * n);
+  s->knots = cag_malloc(sizeof(double) * (n + (size_t)p + 1));
   return s->h && s->knots ? CAG_OK : cag_fail_memory(err);
 }
 
@@ -101,7 +101,7 @@ typedef struct Chain {
 
 static CagStatus chain_make(Chain *c, int p, CagError *err) {
   const size_t n = (size_t)p + 2;
-  c->b = malloc(sizeof(double) * 9 * n);
+  c->b = cag_malloc(sizeof(double) * 9 * n);
   if (!c->b) return cag_fail_memory(err);
   c->g = c->b + 4 * n;
   c->a = c->g + 4 * n;
@@ -188,7 +188,7 @@ CagStatus cag_curve_remove_knot(const CagCurve *c, double t, int times, double t
   }
   if (!status) status = spline_curve(&s, c, out, err);
   if (!status && deviation) *deviation = moved;
-  free(chain.b);
+  cag_free(chain.b);
   spline_free(&s);
   cag_curve_release(open);
   return status;
@@ -256,7 +256,7 @@ CagStatus cag_curve_reduce_degree(const CagCurve *c, double tolerance, CagCurve 
   }
   if (!status) status = spline_curve(&s, c, out, err);
   if (!status && deviation) *deviation = moved;
-  free(chain.b);
+  cag_free(chain.b);
   spline_free(&s);
   cag_curve_release(open);
   return status;

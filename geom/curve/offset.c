@@ -4,9 +4,9 @@
 // what they are. The offsets of the parts are joined again: at an outer corner by an arc about it,
 // at an inner one both are cut where they meet.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/approximate.h"
 #include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
@@ -90,7 +90,7 @@ static CagStatus shift_part(const CagCurve *c, double d, double tolerance, CagCu
   CagStatus status = cag_curve_cuts(c, &cuts, &n, err);
   if (status) return status;
   status = cag_curve_fit_sampler(sample_shifted, &s, cuts, n, tolerance, 2, out, err);
-  free(cuts);
+  cag_free(cuts);
   return status;
 }
 
@@ -98,7 +98,7 @@ static CagStatus shift_part(const CagCurve *c, double d, double tolerance, CagCu
 
 static CagStatus shift_polyline(const CagVec3 *v, size_t n, bool closed, double d, CagCurve **out,
                                 CagError *err) {
-  CagVec3 *p = malloc(sizeof *p * n);
+  CagVec3 *p = cag_malloc(sizeof *p * n);
   if (!p) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   size_t m = 0;
@@ -119,7 +119,7 @@ static CagStatus shift_polyline(const CagVec3 *v, size_t n, bool closed, double 
     p[m++] = cag_madd(v[i], d / (1 + cosine), cag_add(left_of(in), left_of(to)));
   }
   if (!status) status = cag_curve_polyline(p, m, closed, 2, out, err);
-  free(p);
+  cag_free(p);
   return status;
 }
 
@@ -133,7 +133,7 @@ typedef struct Parts {
 static CagStatus add(Parts *p, CagCurve *c, CagError *err) {
   if (p->n == p->capacity) {
     size_t capacity = p->capacity ? 2 * p->capacity : 16;
-    CagCurve **grown = realloc(p->items, capacity * sizeof *grown);
+    CagCurve **grown = cag_realloc(p->items, capacity * sizeof *grown);
     if (!grown) {
       cag_curve_release(c);
       return cag_fail_memory(err);
@@ -147,7 +147,7 @@ static CagStatus add(Parts *p, CagCurve *c, CagError *err) {
 
 static void release(Parts *p) {
   for (size_t i = 0; i < p->n; i++) cag_curve_release(p->items[i]);
-  free(p->items);
+  cag_free(p->items);
 }
 
 // Parameters at which the curve is to be cut: corners, and joints of a composite; ends in.
@@ -212,7 +212,7 @@ static CagStatus cut_corner(CagCurve **a, CagCurve **b, CagVec3 corner, CagError
     }
   }
   if (best == n) {
-    free(found);
+    cag_free(found);
     char x[32], y[32];
     return cag_fail(err, CAG_E_DEGENERATE, "offset-corner", "d", -1,
                     "the parts of the offset at the corner [%s, %s] do not meet: take a smaller "
@@ -220,7 +220,7 @@ static CagStatus cut_corner(CagCurve **a, CagCurve **b, CagVec3 corner, CagError
                     cag_number_text(corner.x, x), cag_number_text(corner.y, y));
   }
   const double t = found[best].t, u = found[best].t2;
-  free(found);
+  cag_free(found);
   CagCurve *cut;
   if (t < (*a)->end) {
     status = cag_curve_trim(*a, (*a)->start, t, &cut, err);
@@ -268,7 +268,7 @@ static CagStatus shift_parts(const CagCurve *c, const double *cuts, size_t n, do
     if (!status) status = add(&shifted, moved, err);
   }
   // Corner i lies before part i; that of a closed curve's seam before part 0.
-  CagCurve **arcs = status ? NULL : calloc(shifted.n + 1, sizeof *arcs);
+  CagCurve **arcs = status ? NULL : cag_calloc(shifted.n + 1, sizeof *arcs);
   if (!status && !arcs) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < shifted.n; i++) {
     CagVec3 corner;
@@ -285,7 +285,7 @@ static CagStatus shift_parts(const CagCurve *c, const double *cuts, size_t n, do
   if (!status && all.n == 1) *out = cag_curve_retain(all.items[0]);
   else if (!status) status = cag_curve_join(all.items, all.n, out, err);
   for (size_t i = 0; arcs && i < shifted.n; i++) cag_curve_release(arcs[i]);
-  free(arcs);
+  cag_free(arcs);
   release(&all);
   release(&shifted);
   return status;
@@ -312,6 +312,6 @@ CagStatus cag_curve_offset(const CagCurve *c, double d, double tolerance, CagCur
   if (status) return status;
   status = part_cuts(c, cuts, &n, err);
   if (!status) status = shift_parts(c, cuts, n, d, tolerance, out, err);
-  free(cuts);
+  cag_free(cuts);
   return status;
 }

@@ -5,9 +5,9 @@
 // exactly from both sides.
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bernstein.h"
 #include "geom/curve/family.h"
 
@@ -30,8 +30,8 @@ static CagStatus make(const CagVec3 *points, const double *params, size_t n, boo
   Polyline *c = (Polyline *)base;
   c->n = n;
   c->ring = ring;
-  c->points = malloc(sizeof *points * n);
-  c->params = malloc(sizeof *params * n);
+  c->points = cag_malloc(sizeof *points * n);
+  c->params = cag_malloc(sizeof *params * n);
   if (!c->points || !c->params) {
     cag_curve_release(base);
     return cag_fail_memory(err);
@@ -46,8 +46,8 @@ static CagStatus make(const CagVec3 *points, const double *params, size_t n, boo
 }
 
 static void destroy(CagCurve *c) {
-  free(((Polyline *)c)->points);
-  free(((Polyline *)c)->params);
+  cag_free(((Polyline *)c)->points);
+  cag_free(((Polyline *)c)->params);
 }
 
 CagStatus cag_curve_line(CagVec3 p, CagVec3 q, int dimension, CagCurve **out, CagError *err) {
@@ -74,8 +74,8 @@ CagStatus cag_curve_polyline(const CagVec3 *points, size_t n, bool closed, int d
                     "%s polyline needs at least %zu different points; these are %zu",
                     closed ? "a closed" : "a", least, n);
   const size_t stored = n + closed;
-  CagVec3 *all = malloc(sizeof *all * stored);
-  double *params = malloc(sizeof *params * stored);
+  CagVec3 *all = cag_malloc(sizeof *all * stored);
+  double *params = cag_malloc(sizeof *params * stored);
   if (all && params) {
     memcpy(all, points, sizeof *all * n);
     if (closed) all[n] = points[0];
@@ -84,8 +84,8 @@ CagStatus cag_curve_polyline(const CagVec3 *points, size_t n, bool closed, int d
   } else {
     status = cag_fail_memory(err);
   }
-  free(all);
-  free(params);
+  cag_free(all);
+  cag_free(params);
   return status;
 }
 
@@ -134,13 +134,13 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
 
 static CagStatus to_nurbs(const CagCurve *curve, CagCurve **out, CagError *err) {
   const Polyline *c = (const Polyline *)curve;
-  double *knots = malloc(sizeof *knots * (c->n + 2));
+  double *knots = cag_malloc(sizeof *knots * (c->n + 2));
   if (!knots) return cag_fail_memory(err);
   memcpy(knots + 1, c->params, sizeof *knots * c->n);
   knots[0] = curve->start;
   knots[c->n + 1] = curve->end;
   CagStatus status = cag_curve_nurbs(c->points, NULL, c->n, 1, knots, curve->dimension, out, err);
-  free(knots);
+  cag_free(knots);
   return status;
 }
 
@@ -148,7 +148,7 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
                            CagError *err) {
   const Polyline *c = (const Polyline *)curve;
   if (!cag_transform_is_affine(t)) return cag_curve_transform_nurbs(curve, t, out, err);
-  CagVec3 *images = malloc(sizeof *images * c->n);
+  CagVec3 *images = cag_malloc(sizeof *images * c->n);
   if (!images) return cag_fail_memory(err);
   const int dimension = cag_curve_image_dimension(curve, t);
   for (size_t i = 0; i < c->n; i++) {
@@ -156,14 +156,14 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
     if (dimension == 2) images[i].z = 0;
   }
   CagStatus status = make(images, c->params, c->n, c->ring, curve->kind, dimension, out, err);
-  free(images);
+  cag_free(images);
   return status;
 }
 
 static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
   const Polyline *c = (const Polyline *)curve;
-  CagVec3 *points = malloc(sizeof *points * c->n);
-  double *params = malloc(sizeof *params * c->n);
+  CagVec3 *points = cag_malloc(sizeof *points * c->n);
+  double *params = cag_malloc(sizeof *params * c->n);
   CagStatus status = CAG_OK;
   if (!points || !params) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < c->n; i++) {
@@ -172,8 +172,8 @@ static CagStatus reverse(const CagCurve *curve, CagCurve **out, CagError *err) {
   }
   if (!status)
     status = make(points, params, c->n, c->ring, curve->kind, curve->dimension, out, err);
-  free(points);
-  free(params);
+  cag_free(points);
+  cag_free(params);
   return status;
 }
 
@@ -181,8 +181,8 @@ static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out,
   const Polyline *c = (const Polyline *)curve;
   size_t first = edge_of(c, a, CAG_SIDE_RIGHT), last = edge_of(c, b, CAG_SIDE_LEFT);
   size_t n = last - first + 2;
-  CagVec3 *points = malloc(sizeof *points * n);
-  double *params = malloc(sizeof *params * n);
+  CagVec3 *points = cag_malloc(sizeof *points * n);
+  double *params = cag_malloc(sizeof *params * n);
   CagStatus status = CAG_OK;
   if (!points || !params) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
@@ -190,20 +190,20 @@ static CagStatus trim(const CagCurve *curve, double a, double b, CagCurve **out,
     status = eval(curve, params[i], 0, CAG_SIDE_LEFT, &points[i], err);
   }
   if (!status) status = make(points, params, n, false, curve->kind, curve->dimension, out, err);
-  free(points);
-  free(params);
+  cag_free(points);
+  cag_free(params);
   return status;
 }
 
 static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCurve **out,
                                CagError *err) {
   const Polyline *c = (const Polyline *)curve;
-  double *params = malloc(sizeof *params * c->n);
+  double *params = cag_malloc(sizeof *params * c->n);
   if (!params) return cag_fail_memory(err);
   for (size_t i = 0; i < c->n; i++) params[i] = cag_curve_remap(curve, c->params[i], a, b);
   CagStatus status =
       make(c->points, params, c->n, c->ring, curve->kind, curve->dimension, out, err);
-  free(params);
+  cag_free(params);
   return status;
 }
 

@@ -5,9 +5,9 @@
 #include "geom/curve/region.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/region_check.h"
 
@@ -23,18 +23,18 @@ CagRegion *cag_region_retain(const CagRegion *r) {
 void cag_region_release(CagRegion *r) {
   if (!r || --r->references > 0) return;
   for (size_t i = 0; r->loops && i < r->count; i++) cag_curve_release(r->loops[i]);
-  free(r->loops);
-  free(r->outer);
-  free(r);
+  cag_free(r->loops);
+  cag_free(r->outer);
+  cag_free(r);
 }
 
 // An empty frame for n loops.
 static CagRegion *allocate(size_t n) {
-  CagRegion *r = calloc(1, sizeof *r);
+  CagRegion *r = cag_calloc(1, sizeof *r);
   if (!r) return NULL;
   r->references = 1;
-  r->loops = calloc(n + 1, sizeof(CagCurve *));
-  r->outer = calloc(n + 1, sizeof(size_t));
+  r->loops = cag_calloc(n + 1, sizeof(CagCurve *));
+  r->outer = cag_calloc(n + 1, sizeof(size_t));
   r->count = n;
   if (r->loops && r->outer) return r;
   cag_region_release(r);
@@ -126,7 +126,7 @@ static CagStatus place_of(const CagCurve *c, CagVec3 p, Place *out, CagError *er
     if (!status) sum += crossings(c, cuts[i], cuts[i + 1], before, next, p);
     before = next;
   }
-  free(cuts);
+  cag_free(cuts);
   *out = sum % 2 ? INSIDE : OUTSIDE;
   return status;
 }
@@ -231,8 +231,8 @@ CagStatus cag_region_from_loops(CagCurve *const *loops, size_t n, CagRegion **ou
   for (size_t i = 0; !status && i < n; i++) status = check_loop(loops[i], "curves", (long)i, err);
   if (!status) status = cag_region_check_loops(loops, n, err);
   if (status) return status;
-  bool *within = calloc(n * n, sizeof *within); // within[i * n + k]: loop i lies in loop k
-  size_t *depth = calloc(n, sizeof *depth);
+  bool *within = cag_calloc(n * n, sizeof *within); // within[i * n + k]: loop i lies in loop k
+  size_t *depth = cag_calloc(n, sizeof *depth);
   CagRegion *r = allocate(n);
   if (!within || !depth || !r) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++)
@@ -253,8 +253,8 @@ CagStatus cag_region_from_loops(CagCurve *const *loops, size_t n, CagRegion **ou
       r->outer[used++] = outer;
     }
   }
-  free(within);
-  free(depth);
+  cag_free(within);
+  cag_free(depth);
   if (status) cag_region_release(r);
   else *out = r;
   return status;
@@ -341,7 +341,7 @@ CagStatus cag_region_regular_polygon(size_t n, double radius, CagRegion **out, C
   if (n < 3)
     return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "n", -1,
                     "a polygon has at least 3 corners; `n` is %zu", n);
-  CagVec3 *p = malloc(sizeof *p * n);
+  CagVec3 *p = cag_malloc(sizeof *p * n);
   if (!p) return cag_fail_memory(err);
   for (size_t i = 0; i < n; i++) {
     double s, c;
@@ -350,7 +350,7 @@ CagStatus cag_region_regular_polygon(size_t n, double radius, CagRegion **out, C
   }
   CagCurve *loop;
   status = cag_curve_polyline(p, n, true, 2, &loop, err);
-  free(p);
+  cag_free(p);
   return status ? status : from_one(loop, out, err);
 }
 

@@ -19,6 +19,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/region_chain.h"
 #include "geom/stop.h"
@@ -69,9 +70,9 @@ static CagStatus corner_at(Corners *c, CagVec3 p, double tolerance, size_t *out,
   if (*out != none) return CAG_OK;
   if (c->n == c->capacity) {
     const size_t capacity = 2 * c->capacity + 8;
-    CagVec3 *points = realloc(c->points, sizeof *points * capacity);
+    CagVec3 *points = cag_realloc(c->points, sizeof *points * capacity);
     if (points) c->points = points;
-    size_t *next = realloc(c->next, sizeof *next * capacity);
+    size_t *next = cag_realloc(c->next, sizeof *next * capacity);
     if (next) c->next = next;
     if (!points || !next) return cag_fail_memory(err);
     c->capacity = capacity;
@@ -86,18 +87,18 @@ static CagStatus corner_at(Corners *c, CagVec3 p, double tolerance, size_t *out,
 
 static CagStatus corners_new(Corners *c, size_t most, double tolerance, CagError *err) {
   *c = (Corners){.capacity = most, .buckets = 2 * most + 1, .cell = 2 * tolerance};
-  c->points = malloc(sizeof *c->points * (most + 1));
-  c->next = malloc(sizeof *c->next * (most + 1));
-  c->heads = malloc(sizeof *c->heads * c->buckets);
+  c->points = cag_malloc(sizeof *c->points * (most + 1));
+  c->next = cag_malloc(sizeof *c->next * (most + 1));
+  c->heads = cag_malloc(sizeof *c->heads * c->buckets);
   if (!c->points || !c->next || !c->heads) return cag_fail_memory(err);
   for (size_t i = 0; i < c->buckets; i++) c->heads[i] = none;
   return CAG_OK;
 }
 
 static void corners_free(Corners *c) {
-  free(c->points);
-  free(c->next);
-  free(c->heads);
+  cag_free(c->points);
+  cag_free(c->next);
+  cag_free(c->heads);
 }
 
 // --- Edges ---
@@ -122,7 +123,7 @@ static CagStatus make_corners(CagRegionPieces *s, Corners *corners, CagError *er
 // Cuts the pieces at their meetings; what shrank to a corner is dropped.
 static CagStatus make_edges(const CagRegionPieces *s, const CagRegionCut *cuts, size_t cut_count,
                             Corners *corners, Edges *out, CagError *err) {
-  out->items = malloc(sizeof *out->items * (s->n + cut_count + 1));
+  out->items = cag_malloc(sizeof *out->items * (s->n + cut_count + 1));
   if (!out->items) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   size_t k = 0;
@@ -225,7 +226,7 @@ static CagStatus join_alike(const CagRegionPieces *s, Edges *edges, CagError *er
 // The edges as the pieces, which run from corner to corner.
 static CagStatus pieces_of_edges(CagRegionPieces *s, Edges *edges, const Corners *corners,
                                  CagError *err) {
-  CagRegionPiece *items = malloc(sizeof *items * (edges->n + 1));
+  CagRegionPiece *items = cag_malloc(sizeof *items * (edges->n + 1));
   if (!items) return cag_fail_memory(err);
   for (size_t i = 0; i < edges->n; i++) {
     CagRegionEdge *e = &edges->items[i];
@@ -257,10 +258,10 @@ static CagStatus cut_pieces(CagRegionPieces *s, Corners *corners, Edges *edges, 
     size_t cut_count = 0;
     const size_t before = s->n;
     status = cag_region_pieces_meet(s, round > 0, &cuts, &cut_count, err);
-    free(edges->items);
+    cag_free(edges->items);
     *edges = (Edges){0};
     if (!status) status = make_edges(s, cuts, cut_count, corners, edges, err);
-    free(cuts);
+    cag_free(cuts);
     const bool cut = edges->n != before;
     if (!status) status = join_alike(s, edges, err);
     if (!status) status = pieces_of_edges(s, edges, corners, err);
@@ -301,7 +302,7 @@ static CagStatus strips_new(const Edges *edges, const Corners *corners, int axis
     s->low = fmin(s->low, across(axis, corners->points[i]));
     s->high = fmax(s->high, across(axis, corners->points[i]));
   }
-  s->starts = calloc(s->n + 2, sizeof *s->starts);
+  s->starts = cag_calloc(s->n + 2, sizeof *s->starts);
   if (!s->starts) return cag_fail_memory(err);
   // Twice over the edges: numbers, then places.
   for (int fill = 0; fill < 2; fill++) {
@@ -316,7 +317,7 @@ static CagStatus strips_new(const Edges *edges, const Corners *corners, int axis
     }
     if (fill) break;
     for (size_t k = 2; k < s->n + 2; k++) s->starts[k] += s->starts[k - 1];
-    s->edges = malloc(sizeof *s->edges * (s->starts[s->n + 1] + 1));
+    s->edges = cag_malloc(sizeof *s->edges * (s->starts[s->n + 1] + 1));
     if (!s->edges) return cag_fail_memory(err);
   }
   return CAG_OK;
@@ -398,8 +399,8 @@ static CagStatus classify(const CagRegionPieces *s, Edges *edges, const Corners 
     e->keep = (int)rule(left, parameter) - (int)rule(right, parameter);
   }
   for (int axis = 0; axis < 2; axis++) {
-    free(strips[axis].starts);
-    free(strips[axis].edges);
+    cag_free(strips[axis].starts);
+    cag_free(strips[axis].edges);
   }
   return status;
 }
@@ -417,7 +418,7 @@ static CagStatus attempt(const CagWalk *walks, size_t n, double tolerance, doubl
   if (!status) status = classify(&pieces, &edges, &corners, rule, parameter, err);
   if (!status)
     status = cag_region_chain(&pieces, edges.items, edges.n, corners.points, corners.n, out, err);
-  free(edges.items);
+  cag_free(edges.items);
   corners_free(&corners);
   cag_region_pieces_free(&pieces);
   return status;

@@ -3,8 +3,7 @@
 // A point lies in as many of the regions as the sum of its winding numbers about them says. The
 // first region is operand 0, all others are operand 1.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/curve/region_arrange.h"
 
 static bool in_union(const int winding[2], int n) {
@@ -27,7 +26,7 @@ CagStatus cag_region_combine(CagRegionOp op, const CagRegion *const *regions, si
                              CagRegion **out, CagError *err) {
   size_t count = 0;
   for (size_t i = 0; i < n; i++) count += regions[i]->count;
-  CagWalk *walks = malloc(sizeof *walks * (count + 1));
+  CagWalk *walks = cag_malloc(sizeof *walks * (count + 1));
   if (!walks) return cag_fail_memory(err);
   count = 0;
   for (size_t i = 0; i < n; i++)
@@ -36,7 +35,7 @@ CagStatus cag_region_combine(CagRegionOp op, const CagRegion *const *regions, si
   *out = NULL;
   CagStatus status = CAG_OK;
   if (count > 0) status = cag_region_arrange(walks, count, rules[op], (int)n, 0, out, err);
-  free(walks);
+  cag_free(walks);
   return status || *out ? status : cag_region_empty(out, err);
 }
 

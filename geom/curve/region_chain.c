@@ -8,9 +8,9 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 
 static const size_t none = (size_t)-1;
@@ -121,13 +121,13 @@ static CagStatus walk(Chain *c, size_t first, CagError *err) {
 static CagStatus chain_new(Chain *c, const CagRegionEdge *edges, size_t n, size_t corners,
                            CagError *err) {
   for (size_t i = 0; i < n; i++) c->n += edges[i].keep != 0;
-  c->kept = malloc(sizeof *c->kept * (c->n + 1));
-  c->starts = calloc(corners + 2, sizeof *c->starts);
-  c->used = calloc(c->n + 1, sizeof *c->used);
-  c->path = malloc(sizeof *c->path * (c->n + 1));
-  c->position = malloc(sizeof *c->position * (corners + 1));
-  c->loops = malloc(sizeof *c->loops * (c->n + 1));
-  c->loop_ends = malloc(sizeof *c->loop_ends * (c->n + 1));
+  c->kept = cag_malloc(sizeof *c->kept * (c->n + 1));
+  c->starts = cag_calloc(corners + 2, sizeof *c->starts);
+  c->used = cag_calloc(c->n + 1, sizeof *c->used);
+  c->path = cag_malloc(sizeof *c->path * (c->n + 1));
+  c->position = cag_malloc(sizeof *c->position * (corners + 1));
+  c->loops = cag_malloc(sizeof *c->loops * (c->n + 1));
+  c->loop_ends = cag_malloc(sizeof *c->loop_ends * (c->n + 1));
   if (!c->kept || !c->starts || !c->used || !c->path || !c->position || !c->loops || !c->loop_ends)
     return cag_fail_memory(err);
   for (size_t i = 0; i < n; i++)
@@ -141,7 +141,7 @@ static CagStatus chain_new(Chain *c, const CagRegionEdge *edges, size_t n, size_
 
 // As many kept edges end at each corner as start there: winding numbers judged alike.
 static CagStatus check_balance(const Chain *c, size_t corners, CagError *err) {
-  long *balance = calloc(corners + 1, sizeof *balance);
+  long *balance = cag_calloc(corners + 1, sizeof *balance);
   if (!balance) return cag_fail_memory(err);
   for (size_t i = 0; i < c->n; i++) {
     balance[edge_start(&c->edges[c->kept[i]])]++;
@@ -150,18 +150,18 @@ static CagStatus check_balance(const Chain *c, size_t corners, CagError *err) {
   CagStatus status = CAG_OK;
   for (size_t v = 0; !status && v < corners; v++)
     if (balance[v] != 0) status = undecided(c, v, err);
-  free(balance);
+  cag_free(balance);
   return status;
 }
 
 static void chain_free(Chain *c) {
-  free(c->kept);
-  free(c->starts);
-  free(c->used);
-  free(c->path);
-  free(c->position);
-  free(c->loops);
-  free(c->loop_ends);
+  cag_free(c->kept);
+  cag_free(c->starts);
+  cag_free(c->used);
+  cag_free(c->path);
+  cag_free(c->position);
+  cag_free(c->loops);
+  cag_free(c->loop_ends);
 }
 
 // --- Curves of a loop ---
@@ -240,7 +240,7 @@ static bool runs_on(const Chain *c, CagVec3 p, const CagRegionEdge *e, const Cag
 // A run of segments, without the corners at which others met them.
 static CagStatus straight_run(const Chain *c, const size_t *loop, size_t n, CagCurve **out,
                               CagError *err) {
-  CagVec3 *p = malloc(sizeof *p * (n + 1));
+  CagVec3 *p = cag_malloc(sizeof *p * (n + 1));
   if (!p) return cag_fail_memory(err);
   size_t m = 0;
   for (size_t i = 0; i < n; i++) {
@@ -251,7 +251,7 @@ static CagStatus straight_run(const Chain *c, const size_t *loop, size_t n, CagC
   }
   CagStatus status = m == 2 ? cag_curve_line(p[0], p[1], 2, out, err)
                             : cag_curve_polyline(p, m, false, 2, out, err);
-  free(p);
+  cag_free(p);
   return status;
 }
 
@@ -340,8 +340,8 @@ static CagStatus loop_curve(const Chain *c, size_t *loop, size_t n, CagCurve **o
   }
   if (whole) return whole_curve(c, loop_edge(c, loop, 0), out, err);
   if (first == n) first = 0;
-  size_t *turned = malloc(sizeof *turned * n);
-  CagCurve **runs = malloc(sizeof *runs * (2 * n + 1));
+  size_t *turned = cag_malloc(sizeof *turned * n);
+  CagCurve **runs = cag_malloc(sizeof *runs * (2 * n + 1));
   CagStatus status = turned && runs ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) turned[i] = loop[(first + i) % n];
   size_t count = 0;
@@ -354,8 +354,8 @@ static CagStatus loop_curve(const Chain *c, size_t *loop, size_t n, CagCurve **o
   if (!status) status = close_end(runs, &count, err);
   if (!status) status = cag_curve_join(runs, count, out, err);
   for (size_t i = 0; i < count; i++) cag_curve_release(runs[i]);
-  free(runs);
-  free(turned);
+  cag_free(runs);
+  cag_free(turned);
   return status;
 }
 
@@ -466,8 +466,8 @@ static CagStatus collect_loops(const Chain *c, Loop *loops, size_t *count, CagEr
 
 // The loops as curves, each outer one followed by its holes.
 static CagStatus emit(const Chain *c, Loop *loops, size_t n, CagRegion **out, CagError *err) {
-  CagCurve **curves = calloc(n, sizeof *curves);
-  size_t *outer = malloc(sizeof *outer * n);
+  CagCurve **curves = cag_calloc(n, sizeof *curves);
+  size_t *outer = cag_malloc(sizeof *outer * n);
   CagStatus status = curves && outer ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++)
     if (loops[i].area < 0) status = find_around(c, loops, n, i, err);
@@ -486,8 +486,8 @@ static CagStatus emit(const Chain *c, Loop *loops, size_t n, CagRegion **out, Ca
   if (!status) status = cag_region_take(curves, outer, used, out, err);
   else
     for (size_t i = 0; i < used; i++) cag_curve_release(curves[i]);
-  free(curves);
-  free(outer);
+  cag_free(curves);
+  cag_free(outer);
   return status;
 }
 
@@ -500,12 +500,12 @@ CagStatus cag_region_chain(const CagRegionPieces *s, const CagRegionEdge *edges,
   if (!status) status = check_balance(&c, corner_count, err);
   for (size_t i = 0; !status && i < c.n; i++)
     if (!c.used[i]) status = walk(&c, i, err);
-  Loop *loops = status ? NULL : malloc(sizeof *loops * (c.loop_count + 1));
+  Loop *loops = status ? NULL : cag_malloc(sizeof *loops * (c.loop_count + 1));
   if (!status && !loops) status = cag_fail_memory(err);
   size_t count = 0;
   if (!status) status = collect_loops(&c, loops, &count, err);
   if (!status && count > 0) status = emit(&c, loops, count, out, err);
-  free(loops);
+  cag_free(loops);
   chain_free(&c);
   return status;
 }

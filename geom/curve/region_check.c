@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/region.h"
 
 // Chord tolerance of the polygons, as a part of the size.
@@ -39,11 +40,11 @@ static CagStatus add_edges(const CagCurve *c, size_t loop, Edges *edges, CagErro
   CagStatus status =
       cag_curve_discretize(c, CROSSING_TOLERANCE * loop_size(c), CROSSING_ANGLE, &t, &n, err);
   if (status) return status;
-  CagVec3 *p = malloc(sizeof *p * n);
+  CagVec3 *p = cag_malloc(sizeof *p * n);
   status = p ? cag_curve_eval_many(c, t, n, 0, p, err) : cag_fail_memory(err);
   if (!status && edges->n + n > edges->capacity) {
     size_t capacity = 2 * (edges->n + n);
-    Edge *grown = realloc(edges->items, sizeof *grown * capacity);
+    Edge *grown = cag_realloc(edges->items, sizeof *grown * capacity);
     if (grown) {
       edges->items = grown;
       edges->capacity = capacity;
@@ -55,8 +56,8 @@ static CagStatus add_edges(const CagCurve *c, size_t loop, Edges *edges, CagErro
   for (size_t i = 0; !status && i + 1 < n; i++)
     edges->items[edges->n++] =
         (Edge){p[i], p[i + 1], fmin(p[i].x, p[i + 1].x), fmax(p[i].x, p[i + 1].x), loop, i, n - 1};
-  free(p);
-  free(t);
+  cag_free(p);
+  cag_free(t);
   return status;
 }
 
@@ -128,7 +129,7 @@ static CagStatus add_pair(Pairs *s, const Edge *e, const Edge *f, bool crosses, 
   if (crosses) pair.at = crossing_of(e, f);
   if (s->n == s->capacity) {
     const size_t capacity = s->capacity ? 2 * s->capacity : 16;
-    Pair *grown = realloc(s->items, sizeof *grown * capacity);
+    Pair *grown = cag_realloc(s->items, sizeof *grown * capacity);
     if (!grown) return cag_fail_memory(err);
     s->items = grown;
     s->capacity = capacity;
@@ -248,13 +249,13 @@ static CagStatus check(const Loops *l, CagError *err) {
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < l->n; i++) status = add_edges(l->items[i], i, &edges, err);
   if (!status) status = search_edges(l, &edges, &pairs, err);
-  free(edges.items);
+  cag_free(edges.items);
   if (pairs.n) qsort(pairs.items, pairs.n, sizeof *pairs.items, by_loops);
   for (size_t i = 0; !status && i < pairs.n; i++) {
     const Pair *p = &pairs.items[i];
     if (i == 0 || p[-1].a != p->a || p[-1].b != p->b) status = check_pair(l, p, err);
   }
-  free(pairs.items);
+  cag_free(pairs.items);
   return status;
 }
 

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
 #include "geom/curve/region_arrange.h"
@@ -27,7 +28,7 @@ static CagStatus cut(Meetings *m, size_t piece, double t, CagVec3 point, CagErro
   if (m->again && (same(point, p->p) || same(point, p->q))) return CAG_OK;
   if (m->n == m->capacity) {
     size_t capacity = m->capacity ? 2 * m->capacity : 64;
-    CagRegionCut *grown = realloc(m->items, sizeof *grown * capacity);
+    CagRegionCut *grown = cag_realloc(m->items, sizeof *grown * capacity);
     if (!grown) return cag_fail_memory(err);
     m->items = grown;
     m->capacity = capacity;
@@ -286,7 +287,7 @@ static CagStatus meet_curves(Meetings *m, size_t i, size_t k, bool ends_only, Ca
   if (status) return status;
   for (size_t f = 0; !status && f < count; f++)
     status = cut_both(m, i, found[f].t, k, found[f].t2, found[f].point, err);
-  free(found);
+  cag_free(found);
   return status;
 }
 
@@ -329,7 +330,7 @@ CagStatus cag_region_pieces_meet(CagRegionPieces *s, bool again, CagRegionCut **
   // segment between two others, the angle there is greater than 120 degrees, both parts are shorter
   // than the segment by a part of the tolerance, and cutting again and again comes to an end.
   Meetings m = {.pieces = s, .again = again, .tolerance = again ? s->tolerance / 2 : s->tolerance};
-  Box *boxes = malloc(sizeof *boxes * (s->n + 1));
+  Box *boxes = cag_malloc(sizeof *boxes * (s->n + 1));
   if (!boxes) return cag_fail_memory(err);
   const double slack = s->tolerance;
   for (size_t i = 0; i < s->n; i++) {
@@ -353,9 +354,9 @@ CagStatus cag_region_pieces_meet(CagRegionPieces *s, bool again, CagRegionCut **
                    : meet_curves(&m, a->piece, b->piece, where == AT_ENDS, err);
     }
   }
-  free(boxes);
+  cag_free(boxes);
   if (status) {
-    free(m.items);
+    cag_free(m.items);
     return status;
   }
   if (m.n) qsort(m.items, m.n, sizeof *m.items, by_place);

@@ -16,8 +16,8 @@
 // where the strip begins to fold, so that its ends are no cusps of the shifted curve.
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/approximate.h"
 #include "geom/curve/family.h"
 #include "geom/curve/region_arrange.h"
@@ -45,9 +45,9 @@ typedef struct Raw {
 static CagStatus put(Raw *raw, CagCurve *c, int sign, CagError *err) {
   if (raw->n == raw->capacity) {
     size_t capacity = raw->capacity ? 2 * raw->capacity : 32;
-    CagCurve **curves = realloc(raw->curves, sizeof *curves * capacity);
+    CagCurve **curves = cag_realloc(raw->curves, sizeof *curves * capacity);
     if (curves) raw->curves = curves;
-    CagWalk *walks = curves ? realloc(raw->walks, sizeof *walks * capacity) : NULL;
+    CagWalk *walks = curves ? cag_realloc(raw->walks, sizeof *walks * capacity) : NULL;
     if (walks) raw->walks = walks;
     if (!walks) {
       cag_curve_release(c);
@@ -103,7 +103,7 @@ typedef struct Parts {
 
 static void parts_free(Parts *p) {
   for (size_t i = 0; i < p->n; i++) cag_curve_release(p->items[i].curve);
-  free(p->items);
+  cag_free(p->items);
 }
 
 static bool is_line(const CagCurve *c) {
@@ -141,7 +141,7 @@ static CagStatus add_part(Parts *parts, CagCurve *c, bool folds, CagError *err) 
   CagStatus status = CAG_OK;
   if (parts->n == parts->capacity) {
     size_t capacity = parts->capacity ? 2 * parts->capacity : 16;
-    Part *grown = realloc(parts->items, sizeof *grown * capacity);
+    Part *grown = cag_realloc(parts->items, sizeof *grown * capacity);
     if (grown) {
       parts->items = grown;
       parts->capacity = capacity;
@@ -199,7 +199,7 @@ static CagStatus add_bent(Parts *parts, const CagCurve *c, double left, double l
       }
       before = t;
     }
-  free(cuts);
+  cag_free(cuts);
   return status ? status : add_over(parts, c, from, c->end, folds, err);
 }
 
@@ -287,7 +287,7 @@ static CagStatus add_loop(Parts *parts, const CagCurve *c, double left, CagError
     cag_curve_release(part);
     from = cuts[i];
   }
-  free(cuts);
+  cag_free(cuts);
   return status;
 }
 
@@ -493,7 +493,7 @@ static bool move_edges(const CagVec3 *v, size_t n, double left, Half *out, size_
 
 static CagStatus polygon_of(const Chain *c, CagRegion **out, CagError *err) {
   const size_t n = c->end - c->first;
-  CagVec3 *v = malloc((n + 1) * sizeof *v);
+  CagVec3 *v = cag_malloc((n + 1) * sizeof *v);
   if (!v) return cag_fail_memory(err);
   size_t kept = 0;
   for (size_t i = 0; i < n; i++) {
@@ -509,7 +509,7 @@ static CagStatus polygon_of(const Chain *c, CagRegion **out, CagError *err) {
     if (!status) status = cag_region_new(loop, NULL, 0, out, err);
     cag_curve_release(loop);
   }
-  free(v);
+  cag_free(v);
   return status;
 }
 
@@ -522,7 +522,7 @@ static CagStatus shrink_convex(const CagRegion *r, double d, double size, bool *
   *taken = false;
   *out = NULL;
   if (r->count != 1 || !cag_curve_vertices(r->loops[0], &v, &n, &closed)) return CAG_OK;
-  Half *moved = malloc((2 * n + 2) * sizeof *moved);
+  Half *moved = cag_malloc((2 * n + 2) * sizeof *moved);
   if (!moved) return cag_fail_memory(err);
   Chain c = {moved + n + 1, 0, 0, NO_DISTANCE * size};
   *taken = move_edges(v, n, d, moved, &count);
@@ -534,7 +534,7 @@ static CagStatus shrink_convex(const CagRegion *r, double d, double size, bool *
     c.end--;
   left = left && c.end - c.first > 2 && cag_cross(all[c.end - 1].along, all[c.first].along).z > 0;
   const CagStatus status = left ? polygon_of(&c, out, err) : CAG_OK;
-  free(moved);
+  cag_free(moved);
   return status;
 }
 
@@ -567,7 +567,7 @@ CagStatus cag_region_offset(const CagRegion *r, double d, double tolerance, CagR
   if (!status)
     status = cag_region_arrange(raw.walks, raw.n, is_inside, 0, raw.near ? tolerance : 0, out, err);
   for (size_t i = 0; i < raw.n; i++) cag_curve_release(raw.curves[i]);
-  free(raw.curves);
-  free(raw.walks);
+  cag_free(raw.curves);
+  cag_free(raw.walks);
   return status || *out ? status : cag_region_empty(out, err);
 }

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/region_arrange.h"
 
@@ -23,7 +24,7 @@
 static CagStatus add(CagRegionPieces *s, CagRegionPiece piece, CagError *err) {
   if (s->n == s->capacity) {
     size_t capacity = s->capacity ? 2 * s->capacity : 64;
-    CagRegionPiece *grown = realloc(s->items, sizeof *grown * capacity);
+    CagRegionPiece *grown = cag_realloc(s->items, sizeof *grown * capacity);
     if (!grown) return cag_fail_memory(err);
     s->items = grown;
     s->capacity = capacity;
@@ -35,7 +36,7 @@ static CagStatus add(CagRegionPieces *s, CagRegionPiece piece, CagError *err) {
 
 void cag_region_pieces_free(CagRegionPieces *s) {
   for (size_t i = 0; i < s->n; i++) cag_curve_release(s->items[i].part);
-  free(s->items);
+  cag_free(s->items);
 }
 
 // Sets what is known of a piece of a circle.
@@ -113,7 +114,7 @@ typedef struct Turns {
 static CagStatus add_turn(Turns *turns, double t, CagError *err) {
   if (turns->n == turns->capacity) {
     size_t capacity = turns->capacity ? 2 * turns->capacity : 16;
-    double *grown = realloc(turns->t, sizeof *grown * capacity);
+    double *grown = cag_realloc(turns->t, sizeof *grown * capacity);
     if (!grown) return cag_fail_memory(err);
     turns->t = grown;
     turns->capacity = capacity;
@@ -157,7 +158,7 @@ static CagStatus turns_of(const CagCurve *c, double a, double b, Turns *turns, C
   CagNurbsView view;
   size_t n = SAMPLES;
   if (cag_curve_nurbs_view(c, &view)) n += SAMPLES_PER_DEGREE * (size_t)view.degree;
-  Sample *samples = malloc(sizeof *samples * (n + 1));
+  Sample *samples = cag_malloc(sizeof *samples * (n + 1));
   if (!samples) return cag_fail_memory(err);
   double fastest = 0;
   CagStatus status = CAG_OK;
@@ -175,7 +176,7 @@ static CagStatus turns_of(const CagCurve *c, double a, double b, Turns *turns, C
       if (fabs(samples[i].v[axis]) <= STILL * fastest &&
           opposite(samples[i - 1].v[axis], samples[i + 1].v[axis], STILL * fastest))
         status = add_turn(turns, samples[i].t, err);
-  free(samples);
+  cag_free(samples);
   if (!status && turns->n) qsort(turns->t, turns->n, sizeof *turns->t, ascending);
   return status;
 }
@@ -190,7 +191,7 @@ static CagStatus add_smooth(CagRegionPieces *s, size_t walk, double a, double b,
     status = add_part(s, walk, from, to, false, err);
     from = to;
   }
-  free(turns.t);
+  cag_free(turns.t);
   return status;
 }
 
@@ -206,7 +207,7 @@ CagStatus cag_region_pieces_add(CagRegionPieces *s, size_t walk, CagError *err) 
                  ? add_part(s, walk, cuts[i], cuts[i + 1], true, err)
                  : add_smooth(s, walk, cuts[i], cuts[i + 1], err);
   }
-  free(cuts);
+  cag_free(cuts);
   return status;
 }
 

@@ -1,8 +1,8 @@
 // Parts of closed curves that run over the seam, where the end meets the start again.
 
 #include <float.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 
@@ -16,8 +16,8 @@ static CagStatus join_polylines(const CagCurve *first, const CagCurve *second, d
   double *tp = NULL, *tq = NULL;
   cag_curve_vertices(first, &p, &np, &ring);
   cag_curve_vertices(second, &q, &nq, &ring);
-  CagVec3 *points = malloc((np + nq) * sizeof *points);
-  double *t = malloc((np + nq) * sizeof *t);
+  CagVec3 *points = cag_malloc((np + nq) * sizeof *points);
+  double *t = cag_malloc((np + nq) * sizeof *t);
   CagStatus status = points && t ? CAG_OK : cag_fail_memory(err);
   if (!status) status = cag_curve_cuts(first, &tp, &cuts_p, err);
   if (!status) status = cag_curve_cuts(second, &tq, &cuts_q, err);
@@ -30,10 +30,10 @@ static CagStatus join_polylines(const CagCurve *first, const CagCurve *second, d
     t[np + i - 1] = tq[i] + shift;
   }
   if (!status) status = cag_curve_polyline_over(points, t, np + nq - 1, first->dimension, out, err);
-  free(points);
-  free(t);
-  free(tp);
-  free(tq);
+  cag_free(points);
+  cag_free(t);
+  cag_free(tp);
+  cag_free(tq);
   return status;
 }
 

@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/frenet.h"
 
@@ -42,7 +43,7 @@ typedef struct Sample {
 static CagStatus add(CagParameters *list, double t, CagError *err) {
   if (list->count == list->capacity) {
     const size_t capacity = list->capacity ? 2 * list->capacity : 8;
-    double *grown = realloc(list->t, capacity * sizeof *grown);
+    double *grown = cag_realloc(list->t, capacity * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     list->t = grown;
     list->capacity = capacity;
@@ -226,13 +227,13 @@ CagStatus cag_curve_special_points(const CagCurve *c, CagSpecialPoints *out, Cag
   if (status) return status;
   Search s = {.curve = c, .found = out, .err = err};
   status = search_all(&s, cuts, n);
-  free(cuts);
+  cag_free(cuts);
   return status;
 }
 
 void cag_special_points_free(CagSpecialPoints *s) {
   for (int k = 0; k < CAG_VANISHINGS; k++) {
-    free(s->points[k].t);
-    free(s->stretches[k].t);
+    cag_free(s->points[k].t);
+    cag_free(s->stretches[k].t);
   }
 }

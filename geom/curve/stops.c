@@ -4,8 +4,7 @@
 // there. What is carried along it needs none: it goes on from the moving part before to the one
 // after, whose parameters take in those of the stop.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/curve/family.h"
 
 // Whether the curve stays in one point over [a, b].
@@ -32,8 +31,8 @@ CagStatus cag_curve_without_stops(const CagCurve *c, CagCurve **out, CagError *e
   size_t n, moving = 0, runs = 0;
   CagStatus status = cag_curve_cuts(c, &cuts, &n, err);
   if (status) return status;
-  bool *stop = calloc(n, sizeof *stop);
-  CagCurve **parts = calloc(n, sizeof *parts);
+  bool *stop = cag_calloc(n, sizeof *stop);
+  CagCurve **parts = cag_calloc(n, sizeof *parts);
   if (!stop || !parts) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i + 1 < n; i++) {
     stop[i] = rests(c, cuts[i], cuts[i + 1], size);
@@ -58,8 +57,8 @@ CagStatus cag_curve_without_stops(const CagCurve *c, CagCurve **out, CagError *e
     if (!status) status = cag_curve_join(parts, runs, out, err);
   }
   for (size_t i = 0; parts && i < runs; i++) cag_curve_release(parts[i]);
-  free(parts);
-  free(stop);
-  free(cuts);
+  cag_free(parts);
+  cag_free(stop);
+  cag_free(cuts);
   return status;
 }

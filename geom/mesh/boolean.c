@@ -3,9 +3,9 @@
 #include "geom/mesh/boolean.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/boolean_work.h"
 #include "geom/mesh/edges.h"
 
@@ -78,7 +78,7 @@ static CagStatus check_closed(BoolWork *w, const Operand *o, const uint32_t *tri
       ahead += cag_mesh_edge_forward(&e[i + uses++]);
     if (2 * ahead != uses) status = open_at(w, o, &e[i], ahead, uses - ahead);
   }
-  free(e);
+  cag_free(e);
   return status;
 }
 
@@ -169,27 +169,27 @@ static void add_faces(BoolWork *w, FaceTable *table, const CagMesh *m, const uin
 
 static CagStatus read_operand(BoolWork *w, const Operand *o, int operand, FaceTable *table) {
   const CagMesh *m = o->mesh;
-  uint32_t *number = malloc((m->vertex_count + 1) * sizeof *number);
-  uint32_t *triangles = malloc((3 * m->triangle_count + 1) * sizeof *triangles);
+  uint32_t *number = cag_malloc((m->vertex_count + 1) * sizeof *number);
+  uint32_t *triangles = cag_malloc((3 * m->triangle_count + 1) * sizeof *triangles);
   CagStatus status = number && triangles ? read_points(w, o, number) : cag_fail_memory(w->err);
   for (size_t i = 0; !status && i < 3 * m->triangle_count; i++)
     triangles[i] = number[m->triangles[i]];
   if (!status) status = check_closed(w, o, triangles);
   if (!status) status = check_sense(w, o);
   if (!status) add_faces(w, table, m, triangles, operand);
-  free(number);
-  free(triangles);
+  cag_free(number);
+  cag_free(triangles);
   return status;
 }
 
 // --- Fans ---
 
 static bool has_fan(const BoolWork *w) {
-  uint32_t *count = calloc(w->points.n + 1, sizeof *count);
+  uint32_t *count = cag_calloc(w->points.n + 1, sizeof *count);
   bool found = !count; // the search for flat faces runs out of memory then
   for (size_t i = 0; !found && i < w->face_count; i++)
     for (int k = 0; k < 3; k++) found = found || ++count[w->faces[i].v[k]] >= BOOL_FAN;
-  free(count);
+  cag_free(count);
   return found;
 }
 
@@ -201,7 +201,7 @@ static bool is_of(const BoolFace *f, int operand) {
 static bool open_fans(BoolWork *w, int operand, const BoolSource *sources, BoolPart **parts,
                       size_t *n) {
   *n = 0;
-  *parts = malloc((w->face_count + 1) * sizeof **parts);
+  *parts = cag_malloc((w->face_count + 1) * sizeof **parts);
   if (!*parts) return false;
   for (uint32_t i = 0; i < w->face_count; i++) {
     if (!is_of(&w->faces[i], operand)) continue;
@@ -214,7 +214,7 @@ static bool open_fans(BoolWork *w, int operand, const BoolSource *sources, BoolP
 
 // No more faces than before: their outlines are the same.
 static bool replace_fans(BoolWork *w, FaceTable *table) {
-  BoolSource *sources = malloc((w->face_count + 1) * sizeof *sources);
+  BoolSource *sources = cag_malloc((w->face_count + 1) * sizeof *sources);
   BoolPart *parts[2] = {NULL, NULL};
   BoolFace *old = w->faces, *faces = NULL;
   const size_t count = w->face_count;
@@ -222,7 +222,7 @@ static bool replace_fans(BoolWork *w, FaceTable *table) {
   for (uint32_t i = 0; sources && i < count; i++) sources[i] = (BoolSource){i, false};
   bool done = sources != NULL;
   for (int k = 0; done && k < 2; k++) done = open_fans(w, k, sources, &parts[k], &n[k]);
-  if (done) faces = malloc((count + n[0] + n[1] + 1) * sizeof *faces);
+  if (done) faces = cag_malloc((count + n[0] + n[1] + 1) * sizeof *faces);
   done = faces != NULL;
   if (done) {
     memset(table->slots, 0xff, (table->mask + 1) * sizeof *table->slots);
@@ -237,10 +237,10 @@ static bool replace_fans(BoolWork *w, FaceTable *table) {
       memcpy(f.v, parts[k][i].v, sizeof f.v);
       if (find_axis(w, &f)) add_face(w, table, &f);
     }
-  if (done) free(old);
-  free(sources);
-  free(parts[0]);
-  free(parts[1]);
+  if (done) cag_free(old);
+  cag_free(sources);
+  cag_free(parts[0]);
+  cag_free(parts[1]);
   return done;
 }
 
@@ -290,8 +290,8 @@ static void drop_faces(BoolWork *w) {
 }
 
 static CagStatus snap(BoolWork *w, FaceTable *table) {
-  uint32_t *number = malloc((w->points.n + 1) * sizeof *number);
-  uint32_t *plane = malloc((3 * w->face_count + 3) * sizeof *plane);
+  uint32_t *number = cag_malloc((w->points.n + 1) * sizeof *number);
+  uint32_t *plane = cag_malloc((3 * w->face_count + 3) * sizeof *plane);
   bool found;
   CagStatus status = number && plane ? CAG_OK : cag_fail_memory(w->err);
   w->slack = slack_of(w);
@@ -301,8 +301,8 @@ static CagStatus snap(BoolWork *w, FaceTable *table) {
   if (!status) status = bool_find_planes(w, number, plane, &found);
   if (!status && found) renumber(w, table, number, plane);
   if (!status && found) drop_faces(w);
-  free(number);
-  free(plane);
+  cag_free(number);
+  cag_free(plane);
   return status;
 }
 
@@ -315,8 +315,8 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
                     (unsigned long)UINT32_MAX / 16, vertices, triangles);
   FaceTable table = {NULL, 1023};
   while (table.mask < 2 * triangles) table.mask = 2 * table.mask + 1;
-  table.slots = malloc((table.mask + 1) * sizeof *table.slots);
-  w->faces = malloc((triangles + 1) * sizeof *w->faces);
+  table.slots = cag_malloc((table.mask + 1) * sizeof *table.slots);
+  w->faces = cag_malloc((triangles + 1) * sizeof *w->faces);
   CagStatus status = CAG_OK;
   if (!table.slots || !w->faces || !bool_points_start(&w->points, vertices))
     status = cag_fail_memory(w->err);
@@ -331,7 +331,7 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
   if (!status) drop_faces(w);
   if (!status) status = snap(w, &table);
   w->corners = w->points.n;
-  free(table.slots);
+  cag_free(table.slots);
   return status;
 }
 
@@ -339,13 +339,13 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
 
 static void free_work(BoolWork *w) {
   bool_points_free(&w->points);
-  free(w->faces);
+  cag_free(w->faces);
   bool_forget_pairs(w);
-  free(w->plane_of);
-  free(w->touched);
-  free(w->contacts.items);
-  free(w->pieces.items);
-  free(w->winding);
+  cag_free(w->plane_of);
+  cag_free(w->touched);
+  cag_free(w->contacts.items);
+  cag_free(w->pieces.items);
+  cag_free(w->winding);
 }
 
 static CagStatus solve(BoolWork *w, CagSetOperation op, CagMesh **out) {
@@ -420,7 +420,7 @@ CagStatus cag_mesh_boolean_many(CagSetOperation op, const CagMesh *const *meshes
   const CagBooleanHow usual = {0};
   if (!how) how = &usual;
   if (n == 0) return cag_mesh_new(0, 0, false, false, false, out, err);
-  Operand *o = malloc(n * sizeof *o), pair[2];
+  Operand *o = cag_malloc(n * sizeof *o), pair[2];
   if (!o) return cag_fail_memory(err);
   for (size_t i = 0; i < n; i++) o[i] = (Operand){meshes[i], "meshes", (long)i};
   bool made[2] = {false, false};
@@ -438,6 +438,6 @@ CagStatus cag_mesh_boolean_many(CagSetOperation op, const CagMesh *const *meshes
   else status = finish(op, pair, n, how, out, err);
   for (int k = 0; k < 2; k++)
     if (made[k]) cag_mesh_release((CagMesh *)pair[k].mesh);
-  free(o);
+  cag_free(o);
   return status;
 }

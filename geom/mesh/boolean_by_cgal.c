@@ -1,25 +1,25 @@
 // Set operations in a build with CGAL: operands handed over, and the pieces that come back.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/boolean_cgal.h"
 #include "geom/mesh/boolean_work.h"
 
 static void free_mesh(BoolCgalMesh *m) {
-  free(m->points);
-  free(m->triangles);
-  free(m->operand);
-  free(m->source);
+  cag_free(m->points);
+  cag_free(m->triangles);
+  cag_free(m->operand);
+  cag_free(m->source);
 }
 
 // The faces of one operand, numbered on their own; face_of: from its triangles back to the faces.
 // *whole: it has no face twice.
 static bool hand_over(const BoolWork *w, int operand, BoolCgalMesh *m, uint32_t *face_of,
                       bool *whole) {
-  uint32_t *number = malloc((w->points.n + 1) * sizeof *number);
-  m->points = malloc((w->points.n + 1) * 3 * sizeof *m->points);
-  m->triangles = malloc((w->face_count + 1) * 3 * sizeof *m->triangles);
+  uint32_t *number = cag_malloc((w->points.n + 1) * sizeof *number);
+  m->points = cag_malloc((w->points.n + 1) * 3 * sizeof *m->points);
+  m->triangles = cag_malloc((w->face_count + 1) * 3 * sizeof *m->triangles);
   const bool room = number && m->points && m->triangles;
   if (room) memset(number, 0xff, w->points.n * sizeof *number);
   for (uint32_t f = 0; room && f < w->face_count; f++) {
@@ -38,7 +38,7 @@ static bool hand_over(const BoolWork *w, int operand, BoolCgalMesh *m, uint32_t 
     }
     m->triangle_count++;
   }
-  free(number);
+  cag_free(number);
   return room;
 }
 
@@ -54,8 +54,8 @@ static signed char facing(const BoolWork *w, const uint32_t v[3], const BoolFace
 }
 
 static bool take_pieces(BoolWork *w, const BoolCgalMesh *m, uint32_t *const face_of[2]) {
-  uint32_t *number = malloc((m->point_count + 1) * sizeof *number);
-  w->winding = calloc(m->triangle_count + 1, sizeof *w->winding);
+  uint32_t *number = cag_malloc((m->point_count + 1) * sizeof *number);
+  w->winding = cag_calloc(m->triangle_count + 1, sizeof *w->winding);
   bool done = number && w->winding &&
               bool_list_reserve(&w->pieces, m->triangle_count + 1, sizeof(BoolPiece));
   for (size_t i = 0; done && i < m->point_count; i++) {
@@ -70,7 +70,7 @@ static bool take_pieces(BoolWork *w, const BoolCgalMesh *m, uint32_t *const face
     piece.facing = facing(w, piece.v, &w->faces[face]);
     bool_pieces(w)[w->pieces.n++] = piece;
   }
-  free(number);
+  cag_free(number);
   return done;
 }
 
@@ -79,7 +79,7 @@ CagStatus bool_ask_cgal(BoolWork *w, CagSetOperation op, bool *taken) {
   uint32_t *face_of[2];
   bool done = true, whole = true;
   for (int k = 0; k < 2; k++) {
-    face_of[k] = malloc((w->face_count + 1) * sizeof *face_of[k]);
+    face_of[k] = cag_malloc((w->face_count + 1) * sizeof *face_of[k]);
     done = done && face_of[k] && hand_over(w, k, &operands[k], face_of[k], &whole);
   }
   const int number = op == CAG_UNION ? 0 : op == CAG_DIFFERENCE ? 1 : 2;
@@ -87,7 +87,7 @@ CagStatus bool_ask_cgal(BoolWork *w, CagSetOperation op, bool *taken) {
   if (*taken) done = take_pieces(w, &out, face_of);
   for (int k = 0; k < 2; k++) {
     free_mesh(&operands[k]);
-    free(face_of[k]);
+    cag_free(face_of[k]);
   }
   free_mesh(&out);
   return done ? bool_stopped(w) : cag_fail_memory(w->err);

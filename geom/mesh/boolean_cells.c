@@ -4,9 +4,9 @@
 // Pieces are kept in a forest in which each knows how the winding numbers in front of it differ
 // from those in front of its parent. A ray from each root to infinity gives the numbers themselves.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/boolean_work.h"
 #include "geom/mesh/edges.h"
 
@@ -151,22 +151,22 @@ static CagStatus tie_edges(Forest *f, const CagMeshEdge *edges, size_t n) {
     tie_leaves(f, leaf, uses);
     if (edge++ % STOP_INTERVAL == 0) status = bool_stopped(w);
   }
-  free(leaves.items);
+  cag_free(leaves.items);
   return status;
 }
 
 static CagStatus tie_pieces(Forest *f) {
   BoolWork *w = f->w;
   const size_t count = w->pieces.n;
-  uint32_t *triangles = malloc((3 * count + 1) * sizeof *triangles);
+  uint32_t *triangles = cag_malloc((3 * count + 1) * sizeof *triangles);
   if (!triangles) return cag_fail_memory(w->err);
   for (size_t i = 0; i < count; i++)
     memcpy(triangles + 3 * i, bool_pieces(w)[i].v, 3 * sizeof *triangles);
   size_t n = 0;
   CagMeshEdge *edges = cag_mesh_edges(triangles, count, NULL, w->points.n, &n);
-  free(triangles);
+  cag_free(triangles);
   const CagStatus status = edges ? tie_edges(f, edges, n) : cag_fail_memory(w->err);
-  free(edges);
+  cag_free(edges);
   return status;
 }
 
@@ -230,14 +230,14 @@ static CagStatus wind_pieces(Forest *f) {
 
 CagStatus bool_find_windings(BoolWork *w) {
   const size_t n = w->pieces.n + 1;
-  Forest f = {w, malloc(n * sizeof *f.parent), calloc(n, sizeof *f.more)};
-  w->winding = malloc(n * sizeof *w->winding);
+  Forest f = {w, cag_malloc(n * sizeof *f.parent), cag_calloc(n, sizeof *f.more)};
+  w->winding = cag_malloc(n * sizeof *w->winding);
   CagStatus status = CAG_OK;
   if (!f.parent || !f.more || !w->winding) status = cag_fail_memory(w->err);
   for (uint32_t i = 0; !status && i < w->pieces.n; i++) f.parent[i] = i;
   if (!status) status = tie_pieces(&f);
   if (!status) status = wind_pieces(&f);
-  free(f.parent);
-  free(f.more);
+  cag_free(f.parent);
+  cag_free(f.more);
   return status;
 }

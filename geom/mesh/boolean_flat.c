@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/boolean_net.h"
 #include "geom/mesh/edges.h"
 
@@ -80,11 +81,11 @@ static CagVec3 area_of(CagVec3 a, CagVec3 b, CagVec3 c) {
 // --- Neighbors ---
 
 static bool find_neighbors(Flat *f) {
-  uint32_t *triangles = malloc((3 * f->n + 1) * sizeof *triangles);
-  f->across = malloc((3 * f->n + 1) * sizeof *f->across);
+  uint32_t *triangles = cag_malloc((3 * f->n + 1) * sizeof *triangles);
+  f->across = cag_malloc((3 * f->n + 1) * sizeof *f->across);
   size_t n = 0;
   if (!triangles || !f->across) {
-    free(triangles);
+    cag_free(triangles);
     return false;
   }
   for (size_t i = 0; i < f->n; i++) memcpy(triangles + 3 * i, f->parts[i].v, sizeof f->parts[i].v);
@@ -100,8 +101,8 @@ static bool find_neighbors(Flat *f) {
           (uint32_t)cag_mesh_edge_triangle(two);
     }
   }
-  free(triangles);
-  free(e);
+  cag_free(triangles);
+  cag_free(e);
   return e != NULL;
 }
 
@@ -196,7 +197,7 @@ static int by_size(const void *a, const void *b) {
 
 // The largest triangle of a face tells its plane best.
 static bool rank_parts(const Flat *f, Ranked **out) {
-  Ranked *r = malloc((f->n + 1) * sizeof *r);
+  Ranked *r = cag_malloc((f->n + 1) * sizeof *r);
   if (!r) return false;
   for (uint32_t i = 0; i < f->n; i++) {
     const BoolFace *face = &f->w->faces[source_of(f, i)->face];
@@ -209,9 +210,9 @@ static bool rank_parts(const Flat *f, Ranked **out) {
 }
 
 static bool sort_by_label(Flat *f) {
-  f->start = calloc(f->labels + 3, sizeof *f->start);
-  f->members = malloc((f->n + 1) * sizeof *f->members);
-  f->frozen = calloc(f->labels + 1, sizeof *f->frozen);
+  f->start = cag_calloc(f->labels + 3, sizeof *f->start);
+  f->members = cag_malloc((f->n + 1) * sizeof *f->members);
+  f->frozen = cag_calloc(f->labels + 1, sizeof *f->frozen);
   if (!f->start || !f->members || !f->frozen) return false;
   for (size_t i = 0; i < f->n; i++) f->start[f->label[i] + 2]++;
   for (size_t l = 3; l < f->labels + 3; l++) f->start[l] += f->start[l - 1];
@@ -231,8 +232,8 @@ static bool stands_alone(const Flat *f, uint32_t label) {
 
 static bool find_labels(Flat *f) {
   Ranked *ranked = NULL;
-  f->label = malloc((f->n + 1) * sizeof *f->label);
-  f->seed = malloc((f->n + 1) * sizeof *f->seed);
+  f->label = cag_malloc((f->n + 1) * sizeof *f->label);
+  f->seed = cag_malloc((f->n + 1) * sizeof *f->seed);
   if (!f->label || !f->seed || !rank_parts(f, &ranked)) return false;
   memset(f->label, 0xff, f->n * sizeof *f->label);
   bool done = true;
@@ -241,7 +242,7 @@ static bool find_labels(Flat *f) {
     f->seed[f->labels] = ranked[i].part;
     done = grow(f, ranked[i].part, (uint32_t)f->labels++);
   }
-  free(ranked);
+  cag_free(ranked);
   if (!done || !sort_by_label(f)) return false;
   for (uint32_t l = 0; l < f->labels && !f->whole; l++) f->frozen[l] = stands_alone(f, l);
   return true;
@@ -574,10 +575,10 @@ static bool make_faces(Flat *f, bool *spoiled) {
 static bool flatten(Flat *f, bool *done) {
   const size_t points = f->w->points.n + 1;
   *done = false;
-  f->corners = malloc(points * sizeof *f->corners);
-  f->gone = malloc(points * sizeof *f->gone);
-  f->after = malloc(points * sizeof *f->after);
-  f->number = malloc(points * sizeof *f->number);
+  f->corners = cag_malloc(points * sizeof *f->corners);
+  f->gone = cag_malloc(points * sizeof *f->gone);
+  f->after = cag_malloc(points * sizeof *f->after);
+  f->number = cag_malloc(points * sizeof *f->number);
   if (!f->corners || !f->gone || !f->after || !f->number) return false;
   memset(f->number, 0xff, points * sizeof *f->number);
   if (!bool_points_start(&f->local, 64) || !find_neighbors(f) || !find_labels(f)) return false;
@@ -591,22 +592,22 @@ static bool flatten(Flat *f, bool *done) {
 }
 
 static void free_flat(Flat *f) {
-  free(f->across);
-  free(f->label);
-  free(f->start);
-  free(f->members);
-  free(f->seed);
-  free(f->frozen);
-  free(f->corners);
-  free(f->gone);
-  free(f->after);
-  free(f->number);
+  cag_free(f->across);
+  cag_free(f->label);
+  cag_free(f->start);
+  cag_free(f->members);
+  cag_free(f->seed);
+  cag_free(f->frozen);
+  cag_free(f->corners);
+  cag_free(f->gone);
+  cag_free(f->after);
+  cag_free(f->number);
   bool_points_free(&f->local);
   bool_net_free(&f->net);
-  free(f->places.items);
-  free(f->segments.items);
-  free(f->inside.items);
-  free(f->stack.items);
+  cag_free(f->places.items);
+  cag_free(f->segments.items);
+  cag_free(f->inside.items);
+  cag_free(f->stack.items);
 }
 
 static double slack_of(const BoolWork *w) {
@@ -626,11 +627,11 @@ bool bool_flatten(BoolWork *w, const BoolSource *sources, bool only_fans, BoolPa
   f.normals = w->meshes[0]->normals || w->meshes[1]->normals;
   const bool done = *n == 0 || flatten(&f, &made);
   if (done && made) {
-    free(*parts);
+    cag_free(*parts);
     *parts = f.out.items;
     *n = f.out.n;
   } else {
-    free(f.out.items);
+    cag_free(f.out.items);
   }
   free_flat(&f);
   return done;

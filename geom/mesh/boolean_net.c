@@ -2,9 +2,10 @@
 // flip the edges that they cross out of the way (Sloan 1993).
 
 #include <float.h>
-#include <stdlib.h>
 
 #include "geom/mesh/boolean_net.h"
+
+#include "base/memory.h"
 
 static int turn(const BoolNet *n, uint32_t a, uint32_t b, uint32_t c) {
   return bool_turn(n->points, a, b, c, n->axis);
@@ -34,7 +35,7 @@ static bool reserve(BoolNet *n) {
   if (!bool_list_reserve(&n->vertices, n->vertices.n + 3, sizeof(uint32_t))) return false;
   if (n->points->n <= n->cell_of_room) return true;
   const size_t room = n->points->n + n->points->n / 2;
-  uint32_t *cell_of = realloc(n->cell_of, room * sizeof *cell_of);
+  uint32_t *cell_of = cag_realloc(n->cell_of, room * sizeof *cell_of);
   if (!cell_of) return false;
   for (size_t i = n->cell_of_room; i < room; i++) cell_of[i] = BOOL_NONE;
   n->cell_of = cell_of;
@@ -62,12 +63,12 @@ bool bool_net_start(BoolNet *n, const uint32_t corners[3]) {
 }
 
 void bool_net_free(BoolNet *n) {
-  free(n->cells.items);
-  free(n->cuts.items);
-  free(n->vertices.items);
-  free(n->crossed.items);
-  free(n->doubtful.items);
-  free(n->cell_of);
+  cag_free(n->cells.items);
+  cag_free(n->cuts.items);
+  cag_free(n->vertices.items);
+  cag_free(n->crossed.items);
+  cag_free(n->doubtful.items);
+  cag_free(n->cell_of);
 }
 
 // --- Flips ---

@@ -6,9 +6,9 @@
 // of determinants of the operands' corners. Faces that overlap or touch in one plane become one
 // group, cut together.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/boolean_work.h"
 
 #define LEAF_FACES 4
@@ -80,7 +80,7 @@ static void sort_places(Place *p, size_t n) {
 }
 
 static bool sort_faces(BoolWork *w) {
-  Place *places = malloc((2 * w->face_count + 1) * sizeof *places);
+  Place *places = cag_malloc((2 * w->face_count + 1) * sizeof *places);
   if (!places) return false;
   CagBounds all = CAG_BOUNDS_EMPTY;
   for (size_t i = 0; i < w->corners; i++)
@@ -98,7 +98,7 @@ static bool sort_faces(BoolWork *w) {
     w->order[i] = places[i].face;
     w->boxes[i] = face_box(w, places[i].face);
   }
-  free(places);
+  cag_free(places);
   return true;
 }
 
@@ -118,9 +118,9 @@ static uint32_t build_node(BoolWork *w, uint32_t first, uint32_t count, uint32_t
 }
 
 static bool build_tree(BoolWork *w) {
-  w->order = malloc((w->face_count + 1) * sizeof *w->order);
-  w->nodes = malloc((2 * w->face_count + 1) * sizeof *w->nodes);
-  w->boxes = malloc((w->face_count + 1) * sizeof *w->boxes);
+  w->order = cag_malloc((w->face_count + 1) * sizeof *w->order);
+  w->nodes = cag_malloc((2 * w->face_count + 1) * sizeof *w->nodes);
+  w->boxes = cag_malloc((w->face_count + 1) * sizeof *w->boxes);
   if (!w->order || !w->nodes || !w->boxes || !sort_faces(w)) return false;
   uint32_t used = 0;
   build_node(w, 0, (uint32_t)w->face_count, &used);
@@ -368,9 +368,9 @@ static void meet_within(Search *s, uint32_t i) {
 }
 
 void bool_forget_pairs(BoolWork *w) {
-  free(w->nodes);
-  free(w->order);
-  free(w->boxes);
+  cag_free(w->nodes);
+  cag_free(w->order);
+  cag_free(w->boxes);
   w->nodes = NULL;
   w->order = NULL;
   w->boxes = NULL;
@@ -384,8 +384,8 @@ CagStatus bool_visit_pairs(BoolWork *w, BoolPairVisit *visit, void *context) {
 }
 
 CagStatus bool_find_contacts(BoolWork *w) {
-  w->plane_of = malloc((w->face_count + 1) * sizeof *w->plane_of);
-  w->touched = calloc(w->face_count + 1, 1);
+  w->plane_of = cag_malloc((w->face_count + 1) * sizeof *w->plane_of);
+  w->touched = cag_calloc(w->face_count + 1, 1);
   if (!w->plane_of || !w->touched) return cag_fail_memory(w->err);
   for (uint32_t f = 0; f < w->face_count; f++) w->plane_of[f] = f;
   return bool_visit_pairs(w, meet, w);

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/boolean_net.h"
 #include "geom/mesh/edges.h"
 
@@ -62,8 +63,8 @@ static uint32_t contact_face(const BoolWork *w, size_t i) {
 }
 
 static bool sort_groups(BoolWork *w, size_t n, bool contacts, Groups *g) {
-  g->start = calloc(w->face_count + 2, sizeof *g->start);
-  g->items = malloc((n + 1) * sizeof *g->items);
+  g->start = cag_calloc(w->face_count + 2, sizeof *g->start);
+  g->items = cag_malloc((n + 1) * sizeof *g->items);
   if (!g->start || !g->items) return false;
   for (int pass = 0; pass < 2; pass++) {
     for (size_t i = 0; i < n; i++) {
@@ -194,8 +195,8 @@ static bool note_points(Cutter *c, uint32_t root, bool edges) {
 static bool find_shared(Cutter *c) {
   const BoolWork *w = c->w;
   if (c->shared) return true;
-  uint32_t *triangles = malloc((3 * w->face_count + 1) * sizeof *triangles);
-  c->shared = malloc(w->face_count + 1);
+  uint32_t *triangles = cag_malloc((3 * w->face_count + 1) * sizeof *triangles);
+  c->shared = cag_malloc(w->face_count + 1);
   size_t n = 0;
   for (size_t i = 0; triangles && i < w->face_count; i++)
     memcpy(triangles + 3 * i, w->faces[i].v, sizeof w->faces[i].v);
@@ -210,8 +211,8 @@ static bool find_shared(Cutter *c) {
       c->shared[cag_mesh_edge_triangle(&e[i + k])] |=
           (uint8_t)(1u << cag_mesh_edge_corner(&e[i + k]));
   }
-  free(triangles);
-  free(e);
+  cag_free(triangles);
+  cag_free(e);
   return e != NULL;
 }
 
@@ -423,7 +424,7 @@ static bool cut_group(Cutter *c, uint32_t root) {
 
 CagStatus bool_cut_faces(BoolWork *w) {
   Cutter c = {.w = w, .net = {.points = &w->points}};
-  c.patch = malloc((w->face_count + 1) * sizeof *c.patch);
+  c.patch = cag_malloc((w->face_count + 1) * sizeof *c.patch);
   bool done = c.patch && sort_groups(w, w->face_count, false, &c.faces) &&
               sort_groups(w, w->contacts.n, true, &c.contacts) &&
               bool_list_reserve(&w->pieces, w->face_count + 1, sizeof(BoolPiece));
@@ -437,16 +438,16 @@ CagStatus bool_cut_faces(BoolWork *w) {
     if (!status) status = cag_fail_memory(w->err);
   }
   bool_net_free(&c.net);
-  free(c.faces.start);
-  free(c.faces.items);
-  free(c.contacts.start);
-  free(c.contacts.items);
-  free(c.points.items);
-  free(c.covers.items);
-  free(c.stack.items);
-  free(c.sides.items);
-  free(c.walls.items);
-  free(c.patch);
-  free(c.shared);
+  cag_free(c.faces.start);
+  cag_free(c.faces.items);
+  cag_free(c.contacts.start);
+  cag_free(c.contacts.items);
+  cag_free(c.points.items);
+  cag_free(c.covers.items);
+  cag_free(c.stack.items);
+  cag_free(c.sides.items);
+  cag_free(c.walls.items);
+  cag_free(c.patch);
+  cag_free(c.shared);
   return status;
 }

@@ -5,9 +5,9 @@
 // rounded points first, with a bound of what rounding may have done, and then of the exact ones.
 
 #include <float.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/boolean_work.h"
 #include "geom/mesh/predicates.h"
 
@@ -30,7 +30,7 @@ bool bool_list_reserve(BoolList *l, size_t n, size_t item_size) {
   if (n <= l->room) return true;
   size_t room = l->room ? l->room : 64;
   while (room < n) room += room / 2;
-  void *items = realloc(l->items, room * item_size);
+  void *items = cag_realloc(l->items, room * item_size);
   if (!items) return false;
   l->items = items;
   l->room = room;
@@ -45,12 +45,12 @@ bool bool_points_start(BoolPoints *p, size_t expected) {
   size_t slots = 1024;
   while (slots < 2 * p->room) slots *= 2;
   p->mask = slots - 1;
-  p->at = malloc(p->room * sizeof *p->at);
-  p->exact = malloc(p->room * sizeof *p->exact);
-  p->next = malloc(p->room * sizeof *p->next);
-  p->heads = malloc(slots * sizeof *p->heads);
+  p->at = cag_malloc(p->room * sizeof *p->at);
+  p->exact = cag_malloc(p->room * sizeof *p->exact);
+  p->next = cag_malloc(p->room * sizeof *p->next);
+  p->heads = cag_malloc(slots * sizeof *p->heads);
   p->space.size = SPACE_LIMBS;
-  p->space.limbs = malloc(SPACE_LIMBS * sizeof *p->space.limbs);
+  p->space.limbs = cag_malloc(SPACE_LIMBS * sizeof *p->space.limbs);
   if (!p->at || !p->exact || !p->next || !p->heads || !p->space.limbs) return false;
   memset(p->heads, 0xff, slots * sizeof *p->heads);
   return true;
@@ -59,15 +59,15 @@ bool bool_points_start(BoolPoints *p, size_t expected) {
 void bool_points_free(BoolPoints *p) {
   while (p->blocks) {
     BoolBlock *next = p->blocks->next;
-    free(p->blocks);
+    cag_free(p->blocks);
     p->blocks = next;
   }
-  free(p->at);
-  free(p->exact);
-  free(p->next);
-  free(p->heads);
-  free(p->coordinates.items);
-  free(p->space.limbs);
+  cag_free(p->at);
+  cag_free(p->exact);
+  cag_free(p->next);
+  cag_free(p->heads);
+  cag_free(p->coordinates.items);
+  cag_free(p->space.limbs);
 }
 
 static uint64_t mix(uint64_t h) {
@@ -88,11 +88,11 @@ static bool grow_points(BoolPoints *p) {
   if (p->n < p->room) return true;
   if (p->n >= UINT32_MAX / 4) return false;
   const size_t room = p->room + p->room / 2;
-  CagVec3 *at = realloc(p->at, room * sizeof *at);
+  CagVec3 *at = cag_realloc(p->at, room * sizeof *at);
   if (at) p->at = at;
-  uint32_t *exact = realloc(p->exact, room * sizeof *exact);
+  uint32_t *exact = cag_realloc(p->exact, room * sizeof *exact);
   if (exact) p->exact = exact;
-  uint32_t *next = realloc(p->next, room * sizeof *next);
+  uint32_t *next = cag_realloc(p->next, room * sizeof *next);
   if (next) p->next = next;
   if (!at || !exact || !next) return false;
   p->room = room;
@@ -156,7 +156,7 @@ static bool keep(BoolPoints *p, CagExact *x) {
   if (n == 0) return true;
   if (!p->blocks || p->blocks->used + n > p->blocks->size) {
     const size_t size = n > BLOCK_LIMBS ? n : BLOCK_LIMBS;
-    BoolBlock *block = malloc(sizeof *block + size * sizeof *block->limbs);
+    BoolBlock *block = cag_malloc(sizeof *block + size * sizeof *block->limbs);
     if (!block) return false;
     block->next = p->blocks;
     block->used = 0;

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/boolean_work.h"
 #include "geom/mesh/edges.h"
 
@@ -169,8 +170,8 @@ static int by_angle(const void *a, const void *b) {
 // that runs it forward there is solid: such neighbors are joined, like brackets.
 static bool join_many(Builder *b, const CagMeshEdge *e, size_t n) {
   const CagVec3 *at = b->w->points.at;
-  Spoke *spokes = malloc(n * sizeof *spokes);
-  const CagMeshEdge **open = malloc(n * sizeof *open);
+  Spoke *spokes = cag_malloc(n * sizeof *spokes);
+  const CagMeshEdge **open = cag_malloc(n * sizeof *open);
   const CagVec3 low = at[e->low], d = cag_unit(cag_sub(at[e->high], low));
   const CagVec3 least = fabs(d.x) < fabs(d.y)
                             ? cag_vec3(fabs(d.x) > fabs(d.z), 0, fabs(d.x) <= fabs(d.z))
@@ -196,8 +197,8 @@ static bool join_many(Builder *b, const CagMeshEdge *e, size_t n) {
       *use = NULL;
     }
   }
-  free(spokes);
-  free(open);
+  cag_free(spokes);
+  cag_free(open);
   return done;
 }
 
@@ -257,10 +258,10 @@ static bool find_pinched(Builder *b) {
 
 static bool join_corners(Builder *b) {
   size_t n = 0;
-  free(b->corner);
-  free(b->triangles);
-  b->corner = malloc((3 * b->n + 1) * sizeof *b->corner);
-  b->triangles = malloc((3 * b->n + 1) * sizeof *b->triangles);
+  cag_free(b->corner);
+  cag_free(b->triangles);
+  b->corner = cag_malloc((3 * b->n + 1) * sizeof *b->corner);
+  b->triangles = cag_malloc((3 * b->n + 1) * sizeof *b->triangles);
   if (!b->corner || !b->triangles) return false;
   for (uint32_t i = 0; i < 3 * b->n; i++) {
     b->corner[i] = i;
@@ -274,7 +275,7 @@ static bool join_corners(Builder *b) {
     if (uses == 2) (void)join_uses(b, &edges[i], &edges[i + 1]);
     else done = join_many(b, edges + i, uses);
   }
-  free(edges);
+  cag_free(edges);
   return done;
 }
 
@@ -380,7 +381,7 @@ static CagStatus write_mesh(Builder *b, CagMesh **out) {
   }
   memcpy(m->triangles, b->triangles, 3 * b->n * sizeof *m->triangles);
   if (b->w->meshes[0]->labels || b->w->meshes[1]->labels) {
-    m->labels = malloc((b->n + 1) * sizeof *m->labels);
+    m->labels = cag_malloc((b->n + 1) * sizeof *m->labels);
     for (size_t t = 0; m->labels && t < b->n; t++) m->labels[t] = label_of(b, t);
     if (!m->labels) {
       cag_mesh_release(m);
@@ -392,8 +393,8 @@ static CagStatus write_mesh(Builder *b, CagMesh **out) {
 }
 
 static bool make_vertices(Builder *b) {
-  b->head = malloc((3 * b->n + 1) * sizeof *b->head);
-  b->vertices = malloc((3 * b->n + 1) * sizeof *b->vertices);
+  b->head = cag_malloc((3 * b->n + 1) * sizeof *b->head);
+  b->vertices = cag_malloc((3 * b->n + 1) * sizeof *b->vertices);
   if (!b->head || !b->vertices) return false;
   for (size_t i = 0; i < 3 * b->n; i++) b->head[i] = BOOL_NONE;
   for (uint32_t i = 0; i < 3 * b->n; i++) b->triangles[i] = vertex_of(b, i);
@@ -403,8 +404,8 @@ static bool make_vertices(Builder *b) {
 CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out) {
   Builder b = {.w = w};
   b.normals = w->meshes[0]->normals || w->meshes[1]->normals;
-  b.parts = malloc((w->pieces.n + 1) * sizeof *b.parts);
-  b.sources = malloc((w->pieces.n + 1) * sizeof *b.sources);
+  b.parts = cag_malloc((w->pieces.n + 1) * sizeof *b.parts);
+  b.sources = cag_malloc((w->pieces.n + 1) * sizeof *b.sources);
   CagStatus status = b.parts && b.sources ? CAG_OK : cag_fail_memory(w->err);
   if (!status) {
     for (uint32_t i = 0; i < w->pieces.n; i++) take_piece(&b, op, i);
@@ -415,13 +416,13 @@ CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out) {
     if (!done && !status) status = cag_fail_memory(w->err);
   }
   if (!status) status = write_mesh(&b, out);
-  free(b.parts);
-  free(b.sources);
-  free(b.triangles);
-  free(b.corner);
-  free(b.head);
-  free(b.pairs.items);
-  free(b.pinched.items);
-  free(b.vertices);
+  cag_free(b.parts);
+  cag_free(b.sources);
+  cag_free(b.triangles);
+  cag_free(b.corner);
+  cag_free(b.head);
+  cag_free(b.pairs.items);
+  cag_free(b.pinched.items);
+  cag_free(b.vertices);
   return status;
 }

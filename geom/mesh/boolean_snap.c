@@ -9,9 +9,9 @@
 // exactly. Faces that share no plane with the other operand, and operands whose faces are exact,
 // stay as they are.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/boolean_work.h"
 
 // Sine of the largest angle between faces of one plane, squared.
@@ -65,11 +65,11 @@ CagStatus bool_find_twins(BoolWork *w, uint32_t *number, bool *found) {
   for (uint32_t i = 0; i < n; i++) number[i] = i;
   if (!(t.cell > 0)) return CAG_OK; // all corners lie in the origin
   while (t.mask < 2 * n) t.mask = 2 * t.mask + 1;
-  t.heads = malloc((t.mask + 1) * sizeof *t.heads);
-  t.next = malloc((n + 1) * sizeof *t.next);
+  t.heads = cag_malloc((t.mask + 1) * sizeof *t.heads);
+  t.next = cag_malloc((n + 1) * sizeof *t.next);
   if (!t.heads || !t.next) {
-    free(t.heads);
-    free(t.next);
+    cag_free(t.heads);
+    cag_free(t.next);
     return cag_fail_memory(w->err);
   }
   memset(t.heads, 0xff, (t.mask + 1) * sizeof *t.heads);
@@ -86,8 +86,8 @@ CagStatus bool_find_twins(BoolWork *w, uint32_t *number, bool *found) {
     t.next[i] = *head;
     *head = i;
   }
-  free(t.heads);
-  free(t.next);
+  cag_free(t.heads);
+  cag_free(t.next);
   return CAG_OK;
 }
 
@@ -117,11 +117,11 @@ typedef struct Snap {
 } Snap;
 
 static void snap_free(Snap *s) {
-  free(s->planes);
-  free(s->parent);
-  free(s->classes);
-  free(s->start);
-  free(s->members);
+  cag_free(s->planes);
+  cag_free(s->parent);
+  cag_free(s->classes);
+  cag_free(s->start);
+  cag_free(s->members);
 }
 
 static Plane plane_of(const BoolWork *w, const BoolFace *f) {
@@ -205,8 +205,8 @@ static bool list_members(Snap *s, uint32_t *count) {
   for (uint32_t f = 0; f < w->face_count; f++)
     for (int k = 0; k < 3 && class_of(s, f) != BOOL_NONE; k++) s->start[w->faces[f].v[k] + 1]++;
   for (size_t i = 0; i < w->points.n; i++) s->start[i + 1] += s->start[i];
-  free(s->members);
-  s->members = malloc((s->start[w->points.n] + 1) * sizeof *s->members);
+  cag_free(s->members);
+  s->members = cag_malloc((s->start[w->points.n] + 1) * sizeof *s->members);
   if (!s->members) return false;
   for (uint32_t f = 0; f < w->face_count; f++) {
     const uint32_t class = class_of(s, f);
@@ -282,8 +282,8 @@ static void tell_points(Snap *s, uint32_t class, const uint32_t *faces, size_t n
 
 static bool tell_all_points(Snap *s, const uint32_t *count) {
   const size_t n = s->w->face_count;
-  size_t *start = calloc(n + 2, sizeof *start);
-  uint32_t *faces = malloc((n + 1) * sizeof *faces);
+  size_t *start = cag_calloc(n + 2, sizeof *start);
+  uint32_t *faces = cag_malloc((n + 1) * sizeof *faces);
   if (start && faces) {
     for (uint32_t f = 0; f < n; f++) start[bool_root(s->parent, f) + 2]++;
     for (size_t i = 2; i < n + 2; i++) start[i] += start[i - 1];
@@ -292,8 +292,8 @@ static bool tell_all_points(Snap *s, const uint32_t *count) {
       if (class_of(s, f) == f) tell_points(s, f, faces + start[f], start[f + 1] - start[f], count);
   }
   const bool done = start && faces;
-  free(start);
-  free(faces);
+  cag_free(start);
+  cag_free(faces);
   return done;
 }
 
@@ -405,11 +405,11 @@ static CagStatus find_classes(Snap *s, uint32_t *count, bool *found) {
 CagStatus bool_find_planes(BoolWork *w, uint32_t *number, uint32_t *plane, bool *found) {
   const size_t faces = w->face_count + 1, points = w->points.n;
   Snap s = {.w = w};
-  uint32_t *count = malloc((points + 1) * sizeof *count);
-  s.planes = malloc(faces * sizeof *s.planes);
-  s.parent = malloc(faces * sizeof *s.parent);
-  s.classes = malloc(faces * sizeof *s.classes);
-  s.start = malloc((points + 2) * sizeof *s.start);
+  uint32_t *count = cag_malloc((points + 1) * sizeof *count);
+  s.planes = cag_malloc(faces * sizeof *s.planes);
+  s.parent = cag_malloc(faces * sizeof *s.parent);
+  s.classes = cag_malloc(faces * sizeof *s.classes);
+  s.start = cag_malloc((points + 2) * sizeof *s.start);
   *found = false;
   CagStatus status = CAG_OK;
   if (!count || !s.planes || !s.parent || !s.classes || !s.start) status = cag_fail_memory(w->err);
@@ -419,7 +419,7 @@ CagStatus bool_find_planes(BoolWork *w, uint32_t *number, uint32_t *plane, bool 
       tell_faces(&s, number, plane);
     else status = cag_fail_memory(w->err);
   }
-  free(count);
+  cag_free(count);
   snap_free(&s);
   return status;
 }

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 // An edge of a face. A corner is a place in the list of indices; low < high are vertices.
 typedef struct Use {
   uint32_t low, high, face;
@@ -153,23 +155,23 @@ CagStatus cag_faces_check(const CagVec3 *vertices, size_t n, const uint32_t *ind
                           const uint32_t *counts, size_t faces, CagMeshCheck *out, CagError *err) {
   Work w = {vertices, indices, counts, n, faces, 0, NULL, NULL, NULL, NULL};
   for (size_t f = 0; f < faces; f++) w.corners += counts[f];
-  w.uses = malloc((w.corners + 1) * sizeof *w.uses);
-  w.of_face = malloc((faces + 1) * sizeof *w.of_face);
-  w.of_corner = malloc((w.corners + 1) * sizeof *w.of_corner);
-  w.around = calloc(n + 1, sizeof *w.around);
+  w.uses = cag_malloc((w.corners + 1) * sizeof *w.uses);
+  w.of_face = cag_malloc((faces + 1) * sizeof *w.of_face);
+  w.of_corner = cag_malloc((w.corners + 1) * sizeof *w.of_corner);
+  w.around = cag_calloc(n + 1, sizeof *w.around);
   CagStatus status =
       w.uses && w.of_face && w.of_corner && w.around ? read_faces(&w, err) : cag_fail_memory(err);
   if (!status) count(&w, out);
-  free(w.uses);
-  free(w.of_face);
-  free(w.of_corner);
-  free(w.around);
+  cag_free(w.uses);
+  cag_free(w.of_face);
+  cag_free(w.of_corner);
+  cag_free(w.around);
   return status;
 }
 
 CagStatus cag_mesh_check(const CagMesh *m, CagMeshCheck *out, CagError *err) {
-  uint32_t *indices = malloc((3 * m->triangle_count + 1) * sizeof *indices);
-  uint32_t *counts = malloc((m->triangle_count + 1) * sizeof *counts);
+  uint32_t *indices = cag_malloc((3 * m->triangle_count + 1) * sizeof *indices);
+  uint32_t *counts = cag_malloc((m->triangle_count + 1) * sizeof *counts);
   CagStatus status = indices && counts ? CAG_OK : cag_fail_memory(err);
   size_t n = 0;
   for (size_t t = 0; !status && t < m->triangle_count; t++) {
@@ -183,7 +185,7 @@ CagStatus cag_mesh_check(const CagMesh *m, CagMeshCheck *out, CagError *err) {
   }
   if (!status)
     status = cag_faces_check(m->positions, m->vertex_count, indices, counts, n, out, err);
-  free(indices);
-  free(counts);
+  cag_free(indices);
+  cag_free(counts);
   return status;
 }

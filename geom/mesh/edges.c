@@ -5,6 +5,8 @@
 
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 static int by_high(const void *a, const void *b) {
   const CagMeshEdge *p = a, *q = b;
   if (p->high != q->high) return p->high < q->high ? -1 : 1;
@@ -28,11 +30,11 @@ static void sort_bucket(CagMeshEdge *e, size_t n) {
 
 CagMeshEdge *cag_mesh_edges(const uint32_t *triangles, size_t triangle_count, const uint32_t *weld,
                             size_t vertex_count, size_t *n) {
-  size_t *start = calloc(vertex_count + 2, sizeof *start);
-  CagMeshEdge *edges = malloc((triangle_count * 3 + 1) * sizeof *edges);
+  size_t *start = cag_calloc(vertex_count + 2, sizeof *start);
+  CagMeshEdge *edges = cag_malloc((triangle_count * 3 + 1) * sizeof *edges);
   if (!start || !edges) {
-    free(start);
-    free(edges);
+    cag_free(start);
+    cag_free(edges);
     return NULL;
   }
   // Two passes over the triangles: count the edges of each lower vertex, then put them there.
@@ -53,6 +55,6 @@ CagMeshEdge *cag_mesh_edges(const uint32_t *triangles, size_t triangle_count, co
   }
   for (size_t v = 0; v < vertex_count; v++) sort_bucket(edges + start[v], start[v + 1] - start[v]);
   *n = start[vertex_count];
-  free(start);
+  cag_free(start);
   return edges;
 }

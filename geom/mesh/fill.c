@@ -6,9 +6,9 @@
 // more than a step. So no triangle of a band is wider than a step of the grid, and the bound of
 // plan.c holds for it too.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/sides.h"
 #include "geom/mesh/tessellation.h"
 #include "geom/surface/frames.h"
@@ -334,8 +334,8 @@ static CagStatus fill_strip(Fill *f, const Leaf *leaf, CagError *err) {
   const Tessellator *t = f->t;
   size_t room = 4;
   for (int side = 0; side < 4; side++) room += leaf->segments[side];
-  uint32_t *vertices = malloc(2 * room * sizeof *vertices);
-  double *slants = malloc(2 * room * sizeof *slants);
+  uint32_t *vertices = cag_malloc(2 * room * sizeof *vertices);
+  double *slants = cag_malloc(2 * room * sizeof *slants);
   const CagStatus status = vertices && slants ? CAG_OK : cag_fail_memory(err);
   if (status == CAG_OK) {
     Rail low = {vertices, slants, 0}, high = {vertices + room, slants + room, 0};
@@ -354,8 +354,8 @@ static CagStatus fill_strip(Fill *f, const Leaf *leaf, CagError *err) {
     }
     sew_rails(f, leaf, &low, &high);
   }
-  free(vertices);
-  free(slants);
+  cag_free(vertices);
+  cag_free(slants);
   return status;
 }
 
@@ -469,7 +469,7 @@ static void drop_shrunk(CagMesh *m, double noise) {
 
 // Mean of the triangles around a vertex where the surface has no normal.
 static void complete_normals(CagMesh *m) {
-  unsigned char *missing = calloc(m->vertex_count + 1, 1);
+  unsigned char *missing = cag_calloc(m->vertex_count + 1, 1);
   if (!missing) return cag_note_memory();
   for (size_t v = 0; v < m->vertex_count; v++)
     missing[v] = cag_dot(m->normals[v], m->normals[v]) == 0;
@@ -486,7 +486,7 @@ static void complete_normals(CagMesh *m) {
     m->normals[v] = cag_unit(m->normals[v]);
     if (cag_dot(m->normals[v], m->normals[v]) == 0) m->normals[v] = cag_vec3(0, 0, 1);
   }
-  free(missing);
+  cag_free(missing);
 }
 
 static CagStatus begin_fill(Fill *f, CagError *err) {
@@ -506,8 +506,8 @@ static CagStatus begin_fill(Fill *f, CagError *err) {
   CagStatus status = cag_mesh_new(vertices, triangles, true, true, true, &f->mesh, err);
   if (status != CAG_OK) return status;
   f->grid_room = longest > CHUNK ? longest : CHUNK;
-  f->us = malloc(longest * sizeof *f->us);
-  f->vs = malloc(longest * sizeof *f->vs);
+  f->us = cag_malloc(longest * sizeof *f->us);
+  f->vs = cag_malloc(longest * sizeof *f->vs);
   if (!f->us || !f->vs) return cag_fail_memory(err);
   memcpy(f->mesh->positions, t->positions, t->vertex_count * sizeof *t->positions);
   memcpy(f->mesh->normals, t->normals, t->vertex_count * sizeof *t->normals);
@@ -533,8 +533,8 @@ CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
       const uint32_t *corner = t->faces[k].triangles + 3 * j;
       add_triangle(&f, corner[0], corner[1], corner[2]);
     }
-  free(f.us);
-  free(f.vs);
+  cag_free(f.us);
+  cag_free(f.vs);
   if (status != CAG_OK) {
     cag_mesh_release(f.mesh);
     return status;

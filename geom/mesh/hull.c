@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/mesh/predicates.h"
 
@@ -90,8 +91,8 @@ CagStatus cag_hull_plane(const CagVec3 *points, size_t n, size_t **out, size_t *
                          CagError *err) {
   CagStatus status = check(points, n, 3, err);
   if (status) return status;
-  Indexed *sorted = malloc(n * sizeof *sorted);
-  size_t *ring = malloc(2 * n * sizeof *ring), m = 0;
+  Indexed *sorted = cag_malloc(n * sizeof *sorted);
+  size_t *ring = cag_malloc(2 * n * sizeof *ring), m = 0;
   if (!sorted || !ring) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) sorted[i] = (Indexed){points[i], i};
   if (!status) {
@@ -106,9 +107,9 @@ CagStatus cag_hull_plane(const CagVec3 *points, size_t n, size_t **out, size_t *
     if (m < 3) status = fail_collinear(err);
   }
   for (size_t i = 0; i < m; i++) ring[i] = sorted[ring[i]].index;
-  free(sorted);
+  cag_free(sorted);
   if (status) {
-    free(ring);
+    cag_free(ring);
     return status;
   }
   *out = ring;
@@ -154,9 +155,9 @@ static CagStatus new_face(Hull *h, uint32_t a, uint32_t b, uint32_t c, uint32_t 
                           CagError *err) {
   if (h->count == h->capacity) {
     const size_t capacity = h->capacity ? 2 * h->capacity : 256;
-    Face *grown = realloc(h->faces, capacity * sizeof *grown);
+    Face *grown = cag_realloc(h->faces, capacity * sizeof *grown);
     if (grown) h->faces = grown;
-    uint32_t *seen = realloc(h->seen, 2 * capacity * sizeof *seen);
+    uint32_t *seen = cag_realloc(h->seen, 2 * capacity * sizeof *seen);
     if (seen) h->seen = seen;
     if (!grown || !seen) return cag_fail_memory(err);
     h->capacity = capacity;
@@ -333,7 +334,7 @@ static bool looks_away(const Hull *h, const Face *f, CagVec3 normal) {
 // Numbers the flat faces of which triangles are parts, into `flat` (per triangle); the largest
 // triangle of each gives its plane.
 static CagStatus find_flats(Hull *h, uint32_t *flat, size_t *flats, CagError *err) {
-  Flat *order = malloc(h->count * sizeof *order);
+  Flat *order = cag_malloc(h->count * sizeof *order);
   if (!order) return cag_fail_memory(err);
   for (uint32_t i = 0; i < h->count; i++) {
     order[i] = (Flat){cag_norm(face_cross(h, &h->faces[i])), i};
@@ -362,7 +363,7 @@ static CagStatus find_flats(Hull *h, uint32_t *flat, size_t *flats, CagError *er
         h->seen[n++] = g;
       }
   }
-  free(order);
+  cag_free(order);
   return CAG_OK;
 }
 
@@ -490,9 +491,9 @@ static CagStatus to_mesh(Hull *h, CagMesh **out, CagError *err) {
   const size_t n = h->count;
   size_t flats = 0;
   CagMesh *mesh = NULL;
-  uint32_t *flat = malloc(n * sizeof *flat), *rims = malloc(h->n * sizeof *rims);
-  Rings r = {malloc(3 * n * sizeof(uint32_t)), malloc(n * sizeof(uint32_t)), 0, 0};
-  uint8_t *walked = calloc(n, 1);
+  uint32_t *flat = cag_malloc(n * sizeof *flat), *rims = cag_malloc(h->n * sizeof *rims);
+  Rings r = {cag_malloc(3 * n * sizeof(uint32_t)), cag_malloc(n * sizeof(uint32_t)), 0, 0};
+  uint8_t *walked = cag_calloc(n, 1);
   CagStatus status =
       flat && rims && r.vertices && r.counts && walked ? CAG_OK : cag_fail_memory(err);
   if (!status) status = find_flats(h, flat, &flats, err);
@@ -506,11 +507,11 @@ static CagStatus to_mesh(Hull *h, CagMesh **out, CagError *err) {
     status = mesh_of_rings(h, &r, rims, &mesh, err);
   }
   if (!status) *out = mesh;
-  free(flat);
-  free(rims);
-  free(r.vertices);
-  free(r.counts);
-  free(walked);
+  cag_free(flat);
+  cag_free(rims);
+  cag_free(r.vertices);
+  cag_free(r.counts);
+  cag_free(walked);
   return status;
 }
 
@@ -518,16 +519,16 @@ CagStatus cag_hull_space(const CagVec3 *points, size_t n, CagMesh **out, CagErro
   CagStatus status = check(points, n, 4, err);
   if (status) return status;
   Hull h = {.points = points, .n = n, .slack = IN_PLANE * cag_curve_size(points, n)};
-  h.chain = malloc(n * sizeof *h.chain);
-  h.rim_of = malloc(n * sizeof *h.rim_of);
+  h.chain = cag_malloc(n * sizeof *h.chain);
+  h.rim_of = cag_malloc(n * sizeof *h.rim_of);
   if (!h.chain || !h.rim_of) status = cag_fail_memory(err);
   if (!status) status = first_faces(&h, err);
   for (uint32_t f = 0; !status && f < h.count; f++)
     if (!h.faces[f].dead && h.faces[f].outside != NONE) status = take_in(&h, f, err);
   if (!status) status = to_mesh(&h, out, err);
-  free(h.chain);
-  free(h.rim_of);
-  free(h.faces);
-  free(h.seen);
+  cag_free(h.chain);
+  cag_free(h.rim_of);
+  cag_free(h.faces);
+  cag_free(h.seen);
   return status;
 }

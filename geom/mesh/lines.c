@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/tessellation.h"
 
 // One side of a leaf, on its line.
@@ -60,7 +61,7 @@ static void find_slants(const Leaf *leaf, LeafSide *side, double at) {
 }
 
 static LeafSide *collect_sides(const Tessellator *t, const Face *f) {
-  LeafSide *sides = malloc((4 * f->leaf_count + 1) * sizeof *sides);
+  LeafSide *sides = cag_malloc((4 * f->leaf_count + 1) * sizeof *sides);
   for (size_t k = 0; sides && k < f->leaf_count; k++) {
     const Leaf *leaf = &t->leaves[f->leaf + k];
     for (int side = 0; side < 4; side++) {
@@ -245,8 +246,8 @@ CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err) {
       t->leaves[sides[j].leaf].line[sides[j].side] = (uint32_t)(t->line_count - 1);
   }
   f->line_count = t->line_count - f->line;
-  free(sides);
-  free(marks.all);
+  cag_free(sides);
+  cag_free(marks.all);
   return status;
 }
 
@@ -338,7 +339,7 @@ static CagStatus begin_match(Match *m, CagError *err) {
     m->affine = cag_norm(cag_sub(p, q)) <= same * m->t->size;
   }
   for (int w = 0; w < 2 && !m->affine; w++) {
-    m->samples[w] = malloc(MATCH_SAMPLES * sizeof *m->samples[w]);
+    m->samples[w] = cag_malloc(MATCH_SAMPLES * sizeof *m->samples[w]);
     if (!m->samples[w]) return cag_fail_memory(err);
     for (size_t k = 0; k < MATCH_SAMPLES; k++) {
       double t = tess_mix(m->from[w], m->to[w], k, MATCH_SAMPLES - 1);
@@ -431,7 +432,7 @@ static CagStatus write_own_parameters(Tessellator *t, const Match *m, uint32_t s
   const Line *master = m->lines[0];
   size_t nodes = 1;
   for (size_t a = 0; a < line->atom_count; a++) nodes += t->atoms[line->atom + a].n;
-  line->own_parameters = malloc(nodes * sizeof *line->own_parameters);
+  line->own_parameters = cag_malloc(nodes * sizeof *line->own_parameters);
   if (!line->own_parameters) return cag_fail_memory(err);
   for (size_t a = 0, at = 0; a < line->atom_count; a++) {
     const Atom *atom = &t->atoms[line->atom + a];
@@ -456,7 +457,7 @@ CagStatus tess_join_lines(Tessellator *t, uint32_t master, uint32_t slave, bool 
     m.to[w] = t->atoms[before[w].atom + before[w].atom_count - 1].to;
   }
   size_t count;
-  Cut *cuts = malloc((before[0].atom_count + before[1].atom_count + 1) * sizeof *cuts);
+  Cut *cuts = cag_malloc((before[0].atom_count + before[1].atom_count + 1) * sizeof *cuts);
   CagStatus status = cuts ? begin_match(&m, err) : cag_fail_memory(err);
   if (status == CAG_OK) status = common_cuts(&m, cuts, &count, err);
   if (status == CAG_OK) status = write_atoms(t, &m, cuts, count, (uint32_t[2]){master, slave}, err);
@@ -466,8 +467,8 @@ CagStatus tess_join_lines(Tessellator *t, uint32_t master, uint32_t slave, bool 
     m.lines[0] = &t->lines[master];
     if (!m.affine) status = write_own_parameters(t, &m, slave, err);
   }
-  free(cuts);
-  free(m.samples[0]);
-  free(m.samples[1]);
+  cag_free(cuts);
+  cag_free(m.samples[0]);
+  cag_free(m.samples[1]);
   return status;
 }

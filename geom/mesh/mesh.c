@@ -5,9 +5,9 @@
 
 #include "geom/mesh/mesh.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/polygon.h"
 
 static CagStatus too_large(size_t vertices, size_t triangles, CagError *err) {
@@ -21,17 +21,17 @@ CagStatus cag_mesh_new(size_t vertices, size_t triangles, bool normals, bool uv,
                        CagMesh **out, CagError *err) {
   if (vertices > UINT32_MAX || triangles > SIZE_MAX / (8 * sizeof(uint32_t)))
     return too_large(vertices, triangles, err);
-  CagMesh *m = calloc(1, sizeof *m);
+  CagMesh *m = cag_calloc(1, sizeof *m);
   if (!m) return cag_fail_memory(err);
   m->references = 1;
   m->vertex_count = vertices;
   m->triangle_count = triangles;
   // One more than needed, so that an empty array is not a NULL that means "none".
-  m->positions = malloc((vertices + 1) * sizeof *m->positions);
-  m->triangles = malloc((triangles + 1) * 3 * sizeof *m->triangles);
-  if (normals) m->normals = malloc((vertices + 1) * sizeof *m->normals);
-  if (uv) m->uv = malloc((vertices + 1) * 2 * sizeof *m->uv);
-  if (weld) m->weld = malloc((vertices + 1) * sizeof *m->weld);
+  m->positions = cag_malloc((vertices + 1) * sizeof *m->positions);
+  m->triangles = cag_malloc((triangles + 1) * 3 * sizeof *m->triangles);
+  if (normals) m->normals = cag_malloc((vertices + 1) * sizeof *m->normals);
+  if (uv) m->uv = cag_malloc((vertices + 1) * 2 * sizeof *m->uv);
+  if (weld) m->weld = cag_malloc((vertices + 1) * sizeof *m->weld);
   if (!m->positions || !m->triangles || (normals && !m->normals) || (uv && !m->uv) ||
       (weld && !m->weld)) {
     cag_mesh_release(m);
@@ -49,13 +49,13 @@ CagMesh *cag_mesh_retain(const CagMesh *m) {
 
 void cag_mesh_release(CagMesh *m) {
   if (!m || --m->references > 0) return;
-  free(m->positions);
-  free(m->normals);
-  free(m->uv);
-  free(m->triangles);
-  free(m->weld);
-  free(m->labels);
-  free(m);
+  cag_free(m->positions);
+  cag_free(m->normals);
+  cag_free(m->uv);
+  cag_free(m->triangles);
+  cag_free(m->weld);
+  cag_free(m->labels);
+  cag_free(m);
 }
 
 // --- Lists to a mesh ---
@@ -93,7 +93,7 @@ static CagStatus check_face(const uint32_t *face, size_t count, size_t f, size_t
 
 static CagStatus check_faces(const uint32_t *indices, const uint32_t *counts, size_t faces,
                              size_t n, size_t *triangles, CagError *err) {
-  size_t *seen = calloc(n + 1, sizeof *seen);
+  size_t *seen = cag_calloc(n + 1, sizeof *seen);
   if (!seen) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   *triangles = 0;
@@ -101,7 +101,7 @@ static CagStatus check_faces(const uint32_t *indices, const uint32_t *counts, si
     status = check_face(indices + at, counts[f], f, n, seen, err);
     *triangles += counts[f] - 2;
   }
-  free(seen);
+  cag_free(seen);
   return status;
 }
 
@@ -135,7 +135,7 @@ CagStatus cag_mesh_from_faces(const CagVec3 *vertices, size_t n, const uint32_t 
 // Those of m become those of `to` from triangle `first` on.
 static bool copy_labels(const CagMesh *m, CagMesh *to, size_t first) {
   if (!m->labels) return true;
-  if (!to->labels) to->labels = calloc(to->triangle_count + 1, sizeof *to->labels);
+  if (!to->labels) to->labels = cag_calloc(to->triangle_count + 1, sizeof *to->labels);
   if (to->labels) memcpy(to->labels + first, m->labels, m->triangle_count * sizeof *m->labels);
   return to->labels != NULL;
 }

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/mesh/edges.h"
 #include "geom/mesh/mesh.h"
 
@@ -75,8 +76,8 @@ typedef struct Uses {
 } Uses;
 
 static bool collect_uses(const CagMesh *m, Uses *out) {
-  size_t *start = calloc(m->vertex_count + 2, sizeof *start);
-  uint32_t *use = malloc((m->triangle_count * 3 + 1) * sizeof *use);
+  size_t *start = cag_calloc(m->vertex_count + 2, sizeof *start);
+  uint32_t *use = cag_malloc((m->triangle_count * 3 + 1) * sizeof *use);
   *out = (Uses){start, use};
   if (!start || !use) return false;
   // Two passes over the triangles: count the edges of each lower vertex, then put them there.
@@ -116,8 +117,8 @@ CagStatus cag_mesh_watertight(const CagMesh *m, bool *watertight, CagVec3 edge[2
       edge[0] = m->positions[v];
       edge[1] = m->positions[use[0] >> 1];
     }
-  free(uses.start);
-  free(uses.use);
+  cag_free(uses.start);
+  cag_free(uses.use);
   *watertight = closed;
   return status;
 }
@@ -140,7 +141,7 @@ long cag_mesh_euler_characteristic(const CagMesh *m) {
   size_t n;
   CagMeshEdge *edges =
       cag_mesh_edges(m->triangles, m->triangle_count, m->weld, m->vertex_count, &n);
-  unsigned char *used = calloc(m->vertex_count + 1, 1);
+  unsigned char *used = cag_calloc(m->vertex_count + 1, 1);
   long euler = 0;
   if (!edges || !used) cag_note_memory();
   if (edges && used) {
@@ -156,7 +157,7 @@ long cag_mesh_euler_characteristic(const CagMesh *m) {
       euler += k[0] != k[1] && k[1] != k[2] && k[2] != k[0];
     }
   }
-  free(edges);
-  free(used);
+  cag_free(edges);
+  cag_free(used);
   return euler;
 }

@@ -4,9 +4,9 @@
 // tolerance, or becomes a new point. Points are kept in a hash of cubes with the tolerance as side,
 // so that only the 27 cubes around a vertex are asked.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/mesh.h"
 
 #define NO_VERTEX UINT32_MAX
@@ -61,8 +61,8 @@ static uint32_t nearest_point(const Welder *w, CagVec3 p) {
 static bool find_points(const CagMesh *m, double tolerance, uint32_t *first) {
   size_t size = 1024;
   while (size < m->vertex_count) size *= 2;
-  Welder w = {m, tolerance, size - 1, malloc(size * sizeof *w.heads),
-              malloc((m->vertex_count + 1) * sizeof *w.next)};
+  Welder w = {m, tolerance, size - 1, cag_malloc(size * sizeof *w.heads),
+              cag_malloc((m->vertex_count + 1) * sizeof *w.next)};
   bool done = w.heads && w.next;
   for (size_t i = 0; done && i < size; i++) w.heads[i] = NO_VERTEX;
   for (size_t v = 0; done && v < m->vertex_count; v++) {
@@ -73,8 +73,8 @@ static bool find_points(const CagMesh *m, double tolerance, uint32_t *first) {
     w.next[v] = w.heads[at];
     w.heads[at] = (uint32_t)v;
   }
-  free(w.heads);
-  free(w.next);
+  cag_free(w.heads);
+  cag_free(w.next);
   return done;
 }
 
@@ -100,7 +100,7 @@ static CagStatus build_welded(const CagMesh *m, const uint32_t *first, uint32_t 
   CagMesh *w = NULL;
   CagStatus status = cag_mesh_new(vertices, m->triangle_count, normals, uv, false, &w, err);
   if (status != CAG_OK) return status;
-  if (m->labels) w->labels = malloc((m->triangle_count + 1) * sizeof *w->labels);
+  if (m->labels) w->labels = cag_malloc((m->triangle_count + 1) * sizeof *w->labels);
   if (m->labels && !w->labels) {
     cag_mesh_release(w);
     return cag_fail_memory(err);
@@ -133,12 +133,12 @@ CagStatus cag_mesh_weld(const CagMesh *m, double tolerance, CagMesh **out, CagEr
     return cag_fail(err, CAG_E_ARGUMENT, "tolerance-negative", "tolerance", -1,
                     "`tolerance` must be a length of 0 or more, not %g", tolerance);
   size_t n = m->vertex_count + 1;
-  uint32_t *first = malloc(n * sizeof *first), *number = malloc(n * sizeof *number);
+  uint32_t *first = cag_malloc(n * sizeof *first), *number = cag_malloc(n * sizeof *number);
   CagStatus status = CAG_E_MEMORY;
   if (first && number && find_points(m, tolerance, first))
     status = build_welded(m, first, number, out, err);
   else cag_fail_memory(err);
-  free(first);
-  free(number);
+  cag_free(first);
+  cag_free(number);
   return status;
 }

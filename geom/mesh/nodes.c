@@ -5,9 +5,9 @@
 // with its vertex. Vertices of one point are united in `weld`; in the end all take the position of
 // the first of them.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/tessellation.h"
 #include "geom/surface/frames.h"
 
@@ -20,13 +20,13 @@ static CagStatus reserve_vertices(Tessellator *t, CagError *err) {
   if (t->vertex_count < t->vertex_capacity) return CAG_OK;
   if (t->vertex_count >= UINT32_MAX / 2) return tess_limit(t, (double)t->vertex_count, err);
   size_t n = t->vertex_capacity ? 2 * t->vertex_capacity : 1024;
-  CagVec3 *positions = realloc(t->positions, n * sizeof *positions);
+  CagVec3 *positions = cag_realloc(t->positions, n * sizeof *positions);
   if (positions) t->positions = positions;
-  CagVec3 *normals = realloc(t->normals, n * sizeof *normals);
+  CagVec3 *normals = cag_realloc(t->normals, n * sizeof *normals);
   if (normals) t->normals = normals;
-  double *uv = realloc(t->uv, 2 * n * sizeof *uv);
+  double *uv = cag_realloc(t->uv, 2 * n * sizeof *uv);
   if (uv) t->uv = uv;
-  uint32_t *weld = realloc(t->weld, n * sizeof *weld);
+  uint32_t *weld = cag_realloc(t->weld, n * sizeof *weld);
   if (weld) t->weld = weld;
   if (!positions || !normals || !uv || !weld) return cag_fail_memory(err);
   t->vertex_capacity = n;
@@ -391,10 +391,10 @@ static CagStatus begin_nodes(Tessellator *t, Row *row, CagError *err) {
   size_t slots = 64;
   while (slots < 2 * corners) slots *= 2;
   t->corner_mask = slots - 1;
-  t->corner_hash = malloc(slots * sizeof *t->corner_hash);
-  t->nodes = malloc((t->node_count + 1) * sizeof *t->nodes);
-  row->t = malloc((longest + 1) * sizeof *row->t);
-  row->points = malloc((longest + 1) * 3 * sizeof *row->points);
+  t->corner_hash = cag_malloc(slots * sizeof *t->corner_hash);
+  t->nodes = cag_malloc((t->node_count + 1) * sizeof *t->nodes);
+  row->t = cag_malloc((longest + 1) * sizeof *row->t);
+  row->points = cag_malloc((longest + 1) * 3 * sizeof *row->points);
   if (!t->corner_hash || !t->nodes || !row->t || !row->points) return cag_fail_memory(err);
   row->du = row->points + longest;
   row->dv = row->du + longest;
@@ -414,7 +414,7 @@ CagStatus tess_make_nodes(Tessellator *t, CagError *err) {
     }
   for (size_t k = 0; status == CAG_OK && k < t->line_count; k++)
     if (t->lines[k].joined != NO_INDEX) unite_joined(t, &t->lines[k]);
-  free(row.t);
-  free(row.points);
+  cag_free(row.t);
+  cag_free(row.points);
   return status;
 }

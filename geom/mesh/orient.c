@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/edges.h"
 #include "geom/mesh/predicates.h"
 #include "geom/mesh/tessellate.h"
@@ -43,12 +44,12 @@ typedef struct Work {
 } Work;
 
 static void work_free(Work *w) {
-  free(w->parent);
-  free(w->against);
-  free(w->open);
-  free(w->part);
-  free(w->order);
-  free(w->parts);
+  cag_free(w->parent);
+  cag_free(w->against);
+  cag_free(w->open);
+  cag_free(w->part);
+  cag_free(w->order);
+  cag_free(w->parts);
 }
 
 static uint32_t welded(const CagMesh *m, size_t triangle, size_t corner) {
@@ -142,7 +143,7 @@ static bool make_forest(Work *w) {
   if (!edges) return false;
   for (uint32_t t = 0; t < w->mesh->triangle_count; t++) w->parent[t] = t;
   for (size_t i = 0, k; i < n; i += k) tie_uses(w, edges + i, k = uses_of(edges + i, n - i));
-  free(edges);
+  cag_free(edges);
   return true;
 }
 
@@ -156,7 +157,7 @@ static bool make_parts(Work *w) {
                  : root == t           ? (uint32_t)w->part_count++
                                        : w->part[root];
   }
-  w->parts = calloc(w->part_count + 1, sizeof *w->parts);
+  w->parts = cag_calloc(w->part_count + 1, sizeof *w->parts);
   if (!w->parts) return false;
   for (uint32_t t = 0; t < n; t++) {
     if (w->part[t] == UINT32_MAX) continue;
@@ -271,8 +272,8 @@ static int by_start(const void *a, const void *b) {
 // next one.
 static CagStatus choose_turns(Work *w, CagError *err) {
   size_t n = 0, near_count = 0;
-  Part **sorted = malloc((w->part_count + 1) * sizeof(Part *));
-  Part **near = malloc((w->part_count + 1) * sizeof(Part *));
+  Part **sorted = cag_malloc((w->part_count + 1) * sizeof(Part *));
+  Part **near = cag_malloc((w->part_count + 1) * sizeof(Part *));
   CagStatus status = sorted && near ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < w->part_count; i++)
     if (w->parts[i].closed) sorted[n++] = &w->parts[i];
@@ -292,8 +293,8 @@ static CagStatus choose_turns(Work *w, CagError *err) {
     p->turn = (p->volume < 0) != (around % 2 == 1);
     status = cag_stop_check(err);
   }
-  free(sorted);
-  free(near);
+  cag_free(sorted);
+  cag_free(near);
   return status;
 }
 
@@ -324,7 +325,7 @@ static CagStatus copy_turned(const Work *w, unsigned char *kinds, uint32_t *seco
   if (status) return status;
   c->scale = m->scale;
   if (m->labels) {
-    c->labels = malloc((m->triangle_count + 1) * sizeof *c->labels);
+    c->labels = cag_malloc((m->triangle_count + 1) * sizeof *c->labels);
     if (!c->labels) {
       cag_mesh_release(c);
       return cag_fail_memory(err);
@@ -362,23 +363,23 @@ static CagStatus result_of(const Work *w, CagMesh **out, CagError *err) {
     *out = cag_mesh_retain(w->mesh);
     return CAG_OK;
   }
-  unsigned char *kinds = calloc(w->mesh->vertex_count + 1, sizeof *kinds);
-  uint32_t *second = malloc((w->mesh->vertex_count + 1) * sizeof *second);
+  unsigned char *kinds = cag_calloc(w->mesh->vertex_count + 1, sizeof *kinds);
+  uint32_t *second = cag_malloc((w->mesh->vertex_count + 1) * sizeof *second);
   CagStatus status =
       kinds && second ? copy_turned(w, kinds, second, out, err) : cag_fail_memory(err);
-  free(kinds);
-  free(second);
+  cag_free(kinds);
+  cag_free(second);
   return status;
 }
 
 CagStatus cag_mesh_outward(const CagMesh *m, CagMesh **out, CagError *err) {
   const size_t n = m->triangle_count;
   Work w = {.mesh = m};
-  w.parent = malloc((n + 1) * sizeof *w.parent);
-  w.against = calloc(n + 1, sizeof *w.against);
-  w.open = calloc(n + 1, sizeof *w.open);
-  w.part = malloc((n + 1) * sizeof *w.part);
-  w.order = malloc((n + 1) * sizeof *w.order);
+  w.parent = cag_malloc((n + 1) * sizeof *w.parent);
+  w.against = cag_calloc(n + 1, sizeof *w.against);
+  w.open = cag_calloc(n + 1, sizeof *w.open);
+  w.part = cag_malloc((n + 1) * sizeof *w.part);
+  w.order = cag_malloc((n + 1) * sizeof *w.order);
   const bool room = w.parent && w.against && w.open && w.part && w.order;
   CagStatus status = room && make_forest(&w) && make_parts(&w) ? CAG_OK : cag_fail_memory(err);
   if (!status) {
@@ -424,6 +425,6 @@ CagStatus cag_mesh_open_edges(const CagMesh *m, size_t *out, CagError *err) {
   *out = 0;
   if (!edges) return cag_fail_memory(err);
   for (size_t i = 0, k; i < n; i += k) *out += (k = uses_of(edges + i, n - i)) == 1;
-  free(edges);
+  cag_free(edges);
   return CAG_OK;
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/tessellation.h"
 
 // Points of the loops in order: positions in space; for those from other faces their vertex.
@@ -25,9 +26,9 @@ typedef struct Piece {
 static CagStatus add_point(Outline *o, CagVec3 point, uint32_t vertex, CagError *err) {
   if (o->count == o->capacity) {
     size_t n = o->capacity ? 2 * o->capacity : 256;
-    CagVec3 *points = realloc(o->points, n * sizeof *points);
+    CagVec3 *points = cag_realloc(o->points, n * sizeof *points);
     if (points) o->points = points;
-    uint32_t *vertices = realloc(o->vertices, n * sizeof *vertices);
+    uint32_t *vertices = cag_realloc(o->vertices, n * sizeof *vertices);
     if (vertices) o->vertices = vertices;
     if (!points || !vertices) return cag_fail_memory(err);
     o->capacity = n;
@@ -53,7 +54,7 @@ static uint32_t node_root(Tessellator *t, const Line *line, bool last) {
 static CagStatus find_pieces(const Tessellator *t, const CagSolid *solid, uint32_t face, int side,
                              Piece **out, size_t *n, CagError *err) {
   *n = 0;
-  Piece *pieces = malloc((solid->edge_count + 1) * sizeof *pieces);
+  Piece *pieces = cag_malloc((solid->edge_count + 1) * sizeof *pieces);
   if (!pieces) return cag_fail_memory(err);
   for (size_t e = 0; e < solid->edge_count; e++)
     for (int k = 0; k < 2; k++) {
@@ -239,8 +240,8 @@ static CagStatus find_corners(Loop *loop, CagError *err) {
   const CagCurve *curve = loop->curve;
   const size_t breaks = curve->kind->breaks(curve, NULL, 0);
   loop->n = breaks + 2;
-  loop->at = malloc(loop->n * sizeof *loop->at);
-  loop->corners = malloc(loop->n * sizeof *loop->corners);
+  loop->at = cag_malloc(loop->n * sizeof *loop->at);
+  loop->corners = cag_malloc(loop->n * sizeof *loop->corners);
   if (!loop->at || !loop->corners) return cag_fail_memory(err);
   loop->at[0] = curve->start;
   curve->kind->breaks(curve, loop->at + 1, breaks);
@@ -299,8 +300,8 @@ static CagStatus outline_between(Tessellator *t, Outline *o, const CagCurve *cur
     status = append_edge(t, o, first, loop.corners[k], loop.corners[k + 1], slack, err);
     k++;
   }
-  free(loop.at);
-  free(loop.corners);
+  cag_free(loop.at);
+  cag_free(loop.corners);
   if (!status) close_outline(t, o, first, slack);
   return status;
 }
@@ -337,7 +338,7 @@ static CagStatus outline_of_curve(const Tessellator *t, Outline *o, const CagCur
     }
     if (status == CAG_OK) status = check_count(t, o, err);
   }
-  free(at);
+  cag_free(at);
   return status;
 }
 
@@ -355,7 +356,7 @@ static CagStatus outline_of_loop(Tessellator *t, Outline *o, uint32_t face, size
   else if (status == CAG_OK && !do_chain(t, pieces, n, rounding * t->size) && curve->kind->breaks)
     status = outline_between(t, o, curve, frame, pieces, n, rounding * t->size, err);
   else if (status == CAG_OK) status = outline_of_pieces(t, o, pieces, n, err);
-  free(pieces);
+  cag_free(pieces);
   return status;
 }
 
@@ -384,16 +385,16 @@ static CagStatus own_vertices(Tessellator *t, const Outline *o, const CagTransfo
 static CagStatus triangulate_outline(Tessellator *t, Face *f, const Outline *o,
                                      const size_t *counts, size_t loops, const CagTransform *frame,
                                      CagError *err) {
-  double *xy = malloc((2 * o->count + 1) * sizeof *xy);
-  uint32_t *vertices = malloc((o->count + 1) * sizeof *vertices);
+  double *xy = cag_malloc((2 * o->count + 1) * sizeof *xy);
+  uint32_t *vertices = cag_malloc((o->count + 1) * sizeof *vertices);
   CagStatus status =
       xy && vertices ? own_vertices(t, o, frame, xy, vertices, err) : cag_fail_memory(err);
   if (status == CAG_OK)
     status = cag_triangulate(xy, counts, loops, &f->triangles, &f->triangle_count, err);
   for (size_t k = 0; status == CAG_OK && k < 3 * f->triangle_count; k++)
     f->triangles[k] = vertices[f->triangles[k]];
-  free(xy);
-  free(vertices);
+  cag_free(xy);
+  cag_free(vertices);
   return status;
 }
 
@@ -403,7 +404,7 @@ CagStatus tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid,
   CagTransform frame;
   if (!cag_surface_planar_view(f->surface, &region, &frame)) return CAG_OK;
   Outline o = {0};
-  size_t *counts = malloc((region->count + 1) * sizeof *counts), loops = 0;
+  size_t *counts = cag_malloc((region->count + 1) * sizeof *counts), loops = 0;
   CagStatus status = counts ? CAG_OK : cag_fail_memory(err);
   for (size_t l = 0; status == CAG_OK && l < region->count; l++) {
     size_t before = o.count;
@@ -415,9 +416,9 @@ CagStatus tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid,
   }
   if (status == CAG_OK && loops > 0)
     status = triangulate_outline(t, f, &o, counts, loops, &frame, err);
-  free(counts);
-  free(o.points);
-  free(o.vertices);
+  cag_free(counts);
+  cag_free(o.points);
+  cag_free(o.vertices);
   return status;
 }
 
@@ -437,7 +438,7 @@ static int by_x(const void *a, const void *b) {
 CagStatus tess_unite_corners(Tessellator *t, CagError *err) {
   const double slack = 4e-6 * t->size; // edges of shells gape by 1e-6 at most
   if (t->own_count == 0) return CAG_OK;
-  Place *places = malloc((t->own_count + 2 * t->line_count) * sizeof *places);
+  Place *places = cag_malloc((t->own_count + 2 * t->line_count) * sizeof *places);
   if (!places) return cag_fail_memory(err);
   size_t n = 0;
   for (size_t i = 0; i < t->own_count; i++) places[n++].vertex = t->own[i];
@@ -450,6 +451,6 @@ CagStatus tess_unite_corners(Tessellator *t, CagError *err) {
     for (size_t k = i + 1; k < n && places[k].at.x - places[i].at.x <= slack; k++)
       if (cag_norm(cag_sub(places[k].at, places[i].at)) <= slack)
         tess_unite(t, places[i].vertex, places[k].vertex);
-  free(places);
+  cag_free(places);
   return CAG_OK;
 }

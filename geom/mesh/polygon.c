@@ -3,8 +3,9 @@
 
 #include "geom/mesh/polygon.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 // Twice the vector area (Newell); its direction is the normal.
 static CagVec3 vector_area(const CagVec3 *vertices, const uint32_t *face, size_t count) {
@@ -34,7 +35,7 @@ static bool is_convex(const CagVec3 *vertices, const uint32_t *face, size_t coun
 // a line on a line.
 static CagStatus triangulate_concave(const CagVec3 *vertices, const uint32_t *face, size_t count,
                                      CagVec3 normal, uint32_t *triangles, CagError *err) {
-  double *xy = malloc(2 * count * sizeof *xy);
+  double *xy = cag_malloc(2 * count * sizeof *xy);
   if (!xy) return cag_fail_memory(err);
   double ax = fabs(normal.x), ay = fabs(normal.y), az = fabs(normal.z);
   for (size_t k = 0; k < count; k++) {
@@ -49,10 +50,10 @@ static CagStatus triangulate_concave(const CagVec3 *vertices, const uint32_t *fa
   uint32_t *local;
   size_t n;
   CagStatus status = cag_triangulate(xy, &count, 1, &local, &n, err);
-  free(xy);
+  cag_free(xy);
   if (status != CAG_OK) return status;
   for (size_t k = 0; k < 3 * n && n == count - 2; k++) triangles[k] = face[local[k]];
-  free(local);
+  cag_free(local);
   return CAG_OK;
 }
 

@@ -8,9 +8,9 @@
 
 #include "geom/mesh/separation.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/mesh/distance.h"
 #include "geom/mesh/part_pair.h"
@@ -36,7 +36,7 @@
 static CagStatus push(CagParts *parts, CagPart part, CagError *err) {
   if (parts->n == parts->capacity) {
     const size_t capacity = parts->capacity ? 2 * parts->capacity : 64;
-    CagPart *grown = realloc(parts->items, capacity * sizeof *grown);
+    CagPart *grown = cag_realloc(parts->items, capacity * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     parts->items = grown;
     parts->capacity = capacity;
@@ -46,13 +46,13 @@ static CagStatus push(CagParts *parts, CagPart part, CagError *err) {
 }
 
 void cag_parts_free(CagParts *parts) {
-  free(parts->items);
-  free(parts->cores);
+  cag_free(parts->items);
+  cag_free(parts->cores);
 }
 
 // Stores the core; *out is one more than its index.
 static CagStatus add_core(CagParts *parts, const CagCore *core, size_t *out, CagError *err) {
-  CagCore *grown = realloc(parts->cores, (parts->core_count + 1) * sizeof *grown);
+  CagCore *grown = cag_realloc(parts->cores, (parts->core_count + 1) * sizeof *grown);
   if (!grown) return cag_fail_memory(err);
   parts->cores = grown;
   parts->cores[parts->core_count++] = *core;
@@ -96,7 +96,7 @@ CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double toleran
                     err);
     before = p;
   }
-  free(t);
+  cag_free(t);
   return status;
 }
 
@@ -110,10 +110,10 @@ typedef struct Pieces {
 } Pieces;
 
 static void pieces_free(Pieces *pieces) {
-  free(pieces->cuts[0]);
-  free(pieces->cuts[1]);
-  free(pieces->core);
-  free(pieces->straight);
+  cag_free(pieces->cuts[0]);
+  cag_free(pieces->cuts[1]);
+  cag_free(pieces->core);
+  cag_free(pieces->straight);
 }
 
 static CagStatus find_pieces(CagParts *parts, const CagSurface *s, Pieces *out, CagError *err) {
@@ -124,8 +124,8 @@ static CagStatus find_pieces(CagParts *parts, const CagSurface *s, Pieces *out, 
   }
   if (status) return status;
   const size_t n = out->n[0];
-  out->core = calloc(n, sizeof *out->core);
-  out->straight = calloc(n, sizeof *out->straight);
+  out->core = cag_calloc(n, sizeof *out->core);
+  out->straight = cag_calloc(n, sizeof *out->straight);
   if (!out->core || !out->straight) return cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
     const double *ends = out->cuts[0] + i;
@@ -349,8 +349,8 @@ static size_t divide(Tree *t, const Node *node) {
 
 static CagStatus grow_tree(const CagParts *parts, Tree *t, CagError *err) {
   *t = (Tree){.parts = parts, .n = 1};
-  t->order = malloc(parts->n * sizeof *t->order);
-  t->nodes = malloc(2 * parts->n * sizeof *t->nodes);
+  t->order = cag_malloc(parts->n * sizeof *t->order);
+  t->nodes = cag_malloc(2 * parts->n * sizeof *t->nodes);
   if (!t->order || !t->nodes) return cag_fail_memory(err);
   for (size_t i = 0; i < parts->n; i++) t->order[i] = i;
   t->nodes[0] = node_of(t, 0, parts->n);
@@ -521,7 +521,7 @@ static void push_task(Search *s, Task task) {
   if (s->status || task.bound >= s->best - equally_near(s)) return;
   if (s->count == s->room) {
     const size_t room = s->room ? 2 * s->room : 256;
-    Task *grown = realloc(s->tasks, room * sizeof *grown);
+    Task *grown = cag_realloc(s->tasks, room * sizeof *grown);
     if (!grown) {
       s->status = cag_fail_memory(s->err);
       return;
@@ -632,11 +632,11 @@ CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, 
   }
   if (!status && interrupt && *interrupt)
     status = cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the search was interrupted");
-  free(first.order);
-  free(first.nodes);
-  free(second.order);
-  free(second.nodes);
-  free(s.tasks);
+  cag_free(first.order);
+  cag_free(first.nodes);
+  cag_free(second.order);
+  cag_free(second.nodes);
+  cag_free(s.tasks);
   if (status) return status;
   *out = s.best <= touching(&s) ? 0 : s.best;
   if (point) *point = s.point;

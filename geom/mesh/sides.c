@@ -5,7 +5,7 @@
 
 #include "geom/mesh/sides.h"
 
-#include <stdlib.h>
+#include "base/memory.h"
 
 // The limit of the normal at a corner is taken at this fraction of the way to the middle of the
 // triangle: normals turn little over it, and partial derivatives that vanish at the corner are
@@ -97,15 +97,15 @@ static CagStatus grow(Sides *s, CagError *err) {
   if (m->vertex_count < s->capacity) return CAG_OK;
   const size_t n = s->capacity + s->capacity / 2 + 64;
   if (n > UINT32_MAX) return cag_fail_memory(err);
-  CagVec3 *positions = realloc(m->positions, n * sizeof *positions);
+  CagVec3 *positions = cag_realloc(m->positions, n * sizeof *positions);
   if (positions) m->positions = positions;
-  CagVec3 *normals = realloc(m->normals, n * sizeof *normals);
+  CagVec3 *normals = cag_realloc(m->normals, n * sizeof *normals);
   if (normals) m->normals = normals;
-  double *uv = realloc(m->uv, 2 * n * sizeof *uv);
+  double *uv = cag_realloc(m->uv, 2 * n * sizeof *uv);
   if (uv) m->uv = uv;
-  uint32_t *weld = realloc(m->weld, n * sizeof *weld);
+  uint32_t *weld = cag_realloc(m->weld, n * sizeof *weld);
   if (weld) m->weld = weld;
-  uint32_t *copy = realloc(s->copy, n * sizeof *copy);
+  uint32_t *copy = cag_realloc(s->copy, n * sizeof *copy);
   if (copy) s->copy = copy;
   if (!positions || !normals || !uv || !weld || !copy) return cag_fail_memory(err);
   s->capacity = n;
@@ -136,11 +136,11 @@ static CagStatus copy_of(Sides *s, uint32_t v, CagVec3 normal, uint32_t *out, Ca
 static CagStatus begin(Sides *s, CagError *err) {
   CagMesh *m = s->m;
   if (!m->weld) {
-    m->weld = malloc((m->vertex_count + 1) * sizeof *m->weld);
+    m->weld = cag_malloc((m->vertex_count + 1) * sizeof *m->weld);
     for (uint32_t v = 0; m->weld && v < m->vertex_count; v++) m->weld[v] = v;
   }
   s->capacity = m->vertex_count;
-  s->copy = malloc((s->capacity + 1) * sizeof *s->copy);
+  s->copy = cag_malloc((s->capacity + 1) * sizeof *s->copy);
   if (!m->weld || !s->copy) return cag_fail_memory(err);
   for (size_t v = 0; v < s->capacity; v++) s->copy[v] = UINT32_MAX;
   return CAG_OK;
@@ -165,6 +165,6 @@ CagStatus cag_mesh_split_sides(CagMesh *m, size_t from, size_t to, const CagSurf
   CagStatus status = CAG_OK;
   if (!(angle > 0)) return CAG_OK;
   for (size_t t = from; !status && t < to; t++) status = split_triangle(&s, t, err);
-  free(s.copy);
+  cag_free(s.copy);
   return status;
 }

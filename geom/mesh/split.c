@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/stop.h"
 
 // Edges of just the limit are not halved for rounding.
@@ -39,7 +40,7 @@ static int by_ends(const void *a, const void *b) {
 
 static CagStatus find_halves(Splitter *s, CagError *err) {
   const CagMesh *m = s->m;
-  s->halves = malloc((3 * m->triangle_count + 1) * sizeof *s->halves);
+  s->halves = cag_malloc((3 * m->triangle_count + 1) * sizeof *s->halves);
   if (!s->halves) return cag_fail_memory(err);
   s->n = 0;
   for (size_t i = 0; i < 3 * m->triangle_count; i++) {
@@ -71,7 +72,7 @@ static void middle_vertex(const CagMesh *m, const Half *h, CagMesh *out) {
 // Middles are one point of the closed surface where their edges are one.
 static CagStatus weld_middles(const Splitter *s, CagMesh *out, CagError *err) {
   const uint32_t *weld = s->m->weld;
-  Half *welded = malloc((s->n + 1) * sizeof *welded);
+  Half *welded = cag_malloc((s->n + 1) * sizeof *welded);
   if (!welded) return cag_fail_memory(err);
   for (size_t i = 0; i < s->n; i++) {
     const uint32_t a = weld[s->halves[i].low], b = weld[s->halves[i].high];
@@ -83,7 +84,7 @@ static CagStatus weld_middles(const Splitter *s, CagMesh *out, CagError *err) {
     if (welded[i].low != welded[first].low || welded[i].high != welded[first].high) first = i;
     out->weld[welded[i].middle] = welded[first].middle;
   }
-  free(welded);
+  cag_free(welded);
   return CAG_OK;
 }
 
@@ -124,7 +125,7 @@ static size_t divide_triangle(const CagMesh *out, const uint32_t v[3], const uin
 
 static CagStatus divide_triangles(const Splitter *s, CagMesh *out, CagError *err) {
   const CagMesh *m = s->m;
-  uint32_t *middle = malloc((3 * m->triangle_count + 1) * sizeof *middle);
+  uint32_t *middle = cag_malloc((3 * m->triangle_count + 1) * sizeof *middle);
   if (!middle) return cag_fail_memory(err);
   memset(middle, 0xff, 3 * m->triangle_count * sizeof *middle);
   for (size_t i = 0; i < s->n; i++) middle[s->halves[i].corner] = s->halves[i].middle;
@@ -137,7 +138,7 @@ static CagStatus divide_triangles(const Splitter *s, CagMesh *out, CagError *err
     for (size_t i = 0; out->labels && i < n; i++) out->labels[made + i] = m->labels[t];
     made += n;
   }
-  free(middle);
+  cag_free(middle);
   return CAG_OK;
 }
 
@@ -159,7 +160,7 @@ static CagStatus split_once(Splitter *s, size_t max_triangles, CagMesh **out, Ca
   if (m->weld) memcpy(fine->weld, m->weld, old * sizeof *m->weld);
   fine->scale = m->scale;
   if (m->labels) {
-    fine->labels = malloc((triangles + 1) * sizeof *fine->labels);
+    fine->labels = cag_malloc((triangles + 1) * sizeof *fine->labels);
     if (!fine->labels) status = cag_fail_memory(err);
   }
   for (size_t i = 0; i < s->n; i++) middle_vertex(m, &s->halves[i], fine);
@@ -181,7 +182,7 @@ CagStatus cag_mesh_split_edges(const CagMesh *m, double longest, size_t max_tria
     if (!status) status = find_halves(&s, err);
     more = s.n > 0;
     if (!status && more) status = split_once(&s, max_triangles, &fine, err);
-    free(s.halves);
+    cag_free(s.halves);
     if (status || !more) break;
     cag_mesh_release(now);
     now = fine;

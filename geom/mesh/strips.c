@@ -18,9 +18,9 @@
 // helices. For other shapes, strips take more triangles than leaves or exceed the tolerance, and
 // the leaves are kept.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/trial.h"
 
 enum {
@@ -358,7 +358,7 @@ static CagStatus settle_run(Run *r, double most_quads, bool *settled, CagError *
     CagStatus status = plan_run(r, most_quads, &possible, err);
     if (status == CAG_OK && possible) status = try_run(r, &use, &excess, err);
     if (status != CAG_OK) {
-      free(best.strips);
+      cag_free(best.strips);
       return status;
     }
     if (!possible || use == INFINITY) break;
@@ -367,7 +367,7 @@ static CagStatus settle_run(Run *r, double most_quads, bool *settled, CagError *
       r->tolerance *= fmin(4, fmax(1.0 / 4, aimed_use / use));
     if (use > highest_use || excess > 1 + rounding) continue;
     // These are fewer quadrilaterals than the last solution had; otherwise plan_run finds none.
-    free(best.strips);
+    cag_free(best.strips);
     best = *r;
     r->strips = NULL;
     r->strip_capacity = 0;
@@ -376,7 +376,7 @@ static CagStatus settle_run(Run *r, double most_quads, bool *settled, CagError *
     if (use >= lowest_use || r->tolerance > 16 * tolerance) break;
   }
   if (!*settled) return CAG_OK;
-  free(r->strips);
+  cag_free(r->strips);
   *r = best;
   return CAG_OK;
 }
@@ -442,7 +442,7 @@ static CagStatus try_cells(Run *r, Plan *plan, CagError *err) {
   const size_t samples = (size_t)(pieces + 1) * ALONG;
   for (size_t k = 0; k < r->cell_count; k++) quads += r->cells[k].quads;
   if (quads < WORTH_STRIPS) return CAG_OK;
-  Bend *bends = malloc(r->cell_count * samples * sizeof *bends);
+  Bend *bends = cag_malloc(r->cell_count * samples * sizeof *bends);
   if (!bends) return cag_fail_memory(err);
   for (size_t k = 0; k < r->cell_count && possible; k++) {
     r->cells[k].pieces = pieces;
@@ -453,14 +453,14 @@ static CagStatus try_cells(Run *r, Plan *plan, CagError *err) {
   r->high = r->cells[r->cell_count - 1].to;
   CagStatus status = tess_interrupted(r->t, err);
   if (status == CAG_OK && possible) status = settle_run(r, gain * quads, &settled, err);
-  free(bends);
+  cag_free(bends);
   if (status == CAG_OK && settled)
     status = tess_grow(&plan->runs, plan->count, &plan->capacity, sizeof *plan->runs, err);
   if (status == CAG_OK && settled) {
     plan->saved += quads - (double)r->strip_count * r->steps;
     plan->runs[plan->count++] = *r;
   } else {
-    free(r->strips);
+    cag_free(r->strips);
   }
   return status;
 }
@@ -503,8 +503,8 @@ static CagStatus plan_direction(const Tessellator *t, const Face *f, int along, 
                                 CagError *err) {
   const int across = 1 - along;
   const size_t rows = f->break_count[along] - 1, cells = f->break_count[across] - 1;
-  double *quads = calloc(rows * cells, sizeof *quads);
-  Cell *room = malloc(cells * sizeof *room);
+  double *quads = cag_calloc(rows * cells, sizeof *quads);
+  Cell *room = cag_malloc(cells * sizeof *room);
   CagStatus status = quads && room ? CAG_OK : cag_fail_memory(err);
   for (size_t k = f->leaf; status == CAG_OK && k < f->leaf + f->leaf_count; k++) {
     const Leaf *leaf = &t->leaves[k];
@@ -520,8 +520,8 @@ static CagStatus plan_direction(const Tessellator *t, const Face *f, int along, 
                      .to = f->breaks[along][k + 1]};
     status = plan_row(t, f, run, quads + k * cells, room, plan, err);
   }
-  free(quads);
-  free(room);
+  cag_free(quads);
+  cag_free(room);
   return status;
 }
 
@@ -538,8 +538,8 @@ CagStatus tess_plan_strips(Tessellator *t, uint32_t face, CagError *err) {
   for (size_t k = 0; status == CAG_OK && k < best->count; k++)
     status = replace_leaves(t, face, &best->runs[k], err);
   for (int along = 0; along < 2; along++) {
-    for (size_t k = 0; k < plans[along].count; k++) free(plans[along].runs[k].strips);
-    free(plans[along].runs);
+    for (size_t k = 0; k < plans[along].count; k++) cag_free(plans[along].runs[k].strips);
+    cag_free(plans[along].runs);
   }
   return status;
 }

@@ -6,8 +6,8 @@
 #include "geom/mesh/tessellate.h"
 
 #include <float.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/mesh/tessellation.h"
 #include "geom/mesh/trimmed.h"
 #include "geom/solid/csg.h"
@@ -17,7 +17,7 @@ CagStatus tess_grow(void *array, size_t count, size_t *capacity, size_t size, Ca
   if (count < *capacity) return CAG_OK;
   void **at = array;
   size_t n = *capacity ? 2 * *capacity : 64;
-  void *larger = realloc(*at, n * size);
+  void *larger = cag_realloc(*at, n * size);
   if (!larger) return cag_fail_memory(err);
   *at = larger;
   *capacity = n;
@@ -40,23 +40,23 @@ CagStatus tess_limit(const Tessellator *t, double triangles, CagError *err) {
 
 static void release(Tessellator *t) {
   for (size_t k = 0; k < t->face_count; k++) {
-    free(t->faces[k].breaks[0]);
-    free(t->faces[k].breaks[1]);
-    free(t->faces[k].triangles);
+    cag_free(t->faces[k].breaks[0]);
+    cag_free(t->faces[k].breaks[1]);
+    cag_free(t->faces[k].triangles);
   }
-  for (size_t k = 0; k < t->line_count; k++) free(t->lines[k].own_parameters);
-  free(t->faces);
-  free(t->leaves);
-  free(t->lines);
-  free(t->atoms);
-  free(t->nodes);
-  free(t->corners);
-  free(t->corner_hash);
-  free(t->positions);
-  free(t->normals);
-  free(t->uv);
-  free(t->weld);
-  free(t->own);
+  for (size_t k = 0; k < t->line_count; k++) cag_free(t->lines[k].own_parameters);
+  cag_free(t->faces);
+  cag_free(t->leaves);
+  cag_free(t->lines);
+  cag_free(t->atoms);
+  cag_free(t->nodes);
+  cag_free(t->corners);
+  cag_free(t->corner_hash);
+  cag_free(t->positions);
+  cag_free(t->normals);
+  cag_free(t->uv);
+  cag_free(t->weld);
+  cag_free(t->own);
 }
 
 static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBounds *bounds,
@@ -76,7 +76,7 @@ static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBoun
     t->how.tolerance = fmax(t->how.tolerance, t->noise);
     t->how.angle = t->how.max_edge = 0;
   }
-  t->faces = calloc(n + 1, sizeof *t->faces);
+  t->faces = cag_calloc(n + 1, sizeof *t->faces);
   if (!t->faces) return cag_fail_memory(err);
   t->face_count = n;
   for (size_t k = 0; k < n; k++) {

@@ -7,6 +7,7 @@
 
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/mesh/distance.h"
 #include "geom/surface/frames.h"
 #include "geom/surface/trimmed.h"
@@ -33,8 +34,8 @@ static CagStatus evaluate_sheared(const TessTrial *t, const double *us, size_t n
                                   size_t nv, CagVec3 *points, CagVec3 *normals, CagError *err) {
   const bool along_v = t->along == 1;
   const size_t n = along_v ? nv : nu, lines = along_v ? nu : nv;
-  double *shifted = malloc((n + 1) * sizeof *shifted);
-  CagVec3 *line = malloc((2 * n + 1) * sizeof *line), *line_normals = normals ? line + n : NULL;
+  double *shifted = cag_malloc((n + 1) * sizeof *shifted);
+  CagVec3 *line = cag_malloc((2 * n + 1) * sizeof *line), *line_normals = normals ? line + n : NULL;
   CagStatus status = shifted && line ? CAG_OK : cag_fail_memory(err);
   for (size_t k = 0; status == CAG_OK && k < lines; k++) {
     const double *across = along_v ? us + k : vs + k, *along = along_v ? vs : us;
@@ -48,8 +49,8 @@ static CagStatus evaluate_sheared(const TessTrial *t, const double *us, size_t n
       if (normals) normals[at] = line_normals[i];
     }
   }
-  free(shifted);
-  free(line);
+  cag_free(shifted);
+  cag_free(line);
   return status;
 }
 
@@ -340,7 +341,7 @@ CagStatus tess_try_scattered(const TessTrial *trial, double tolerance, bool *mis
   Scatter s = {.trial = trial, .n = {(size_t)trial->n[0], (size_t)trial->n[1]}};
   *missed = false;
   if (trial->n[0] * trial->n[1] > fraction * sets * SCATTERED * SCATTERED_ALONG) return CAG_OK;
-  s.corners = malloc((s.n[0] + 1) * (s.n[1] + 1) * sizeof *s.corners);
+  s.corners = cag_malloc((s.n[0] + 1) * (s.n[1] + 1) * sizeof *s.corners);
   if (!s.corners) return cag_fail_memory(err);
   CagStatus status = evaluate_corners(&s, err);
   for (int k = 0; k < sets; k++)
@@ -349,6 +350,6 @@ CagStatus tess_try_scattered(const TessTrial *trial, double tolerance, bool *mis
       double shift = (i + beside[k] - beside[0]) * golden;
       status = try_row(&s, u, shift - floor(shift), tolerance, missed, err);
     }
-  free(s.corners);
+  cag_free(s.corners);
   return status;
 }

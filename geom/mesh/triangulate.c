@@ -6,9 +6,9 @@
 // in the tessellator object of the call.
 
 #include <GL/glu.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/edges.h"
 #include "geom/mesh/mesh.h"
 
@@ -68,7 +68,7 @@ static bool run_sweep(const double *xy, const size_t *counts, size_t loops, Swee
   if (!glu) return false;
   size_t points = 0;
   for (size_t l = 0; l < loops; l++) points += counts[l];
-  GLdouble(*coordinates)[3] = malloc((points + 1) * sizeof *coordinates);
+  GLdouble(*coordinates)[3] = cag_malloc((points + 1) * sizeof *coordinates);
   if (!coordinates) {
     gluDeleteTess(glu);
     return false;
@@ -93,7 +93,7 @@ static bool run_sweep(const double *xy, const size_t *counts, size_t loops, Swee
   }
   gluTessEndPolygon(glu);
   gluDeleteTess(glu);
-  free(coordinates);
+  cag_free(coordinates);
   return true;
 }
 
@@ -132,7 +132,7 @@ typedef struct Flips {
 static void push(Flips *f, size_t place) {
   if (f->depth == f->capacity) {
     size_t capacity = f->capacity ? 2 * f->capacity : 256;
-    size_t *stack = realloc(f->stack, capacity * sizeof *stack);
+    size_t *stack = cag_realloc(f->stack, capacity * sizeof *stack);
     if (!stack) return cag_note_memory();
     f->stack = stack;
     f->capacity = capacity;
@@ -194,13 +194,14 @@ static bool link_triangles(const uint32_t *triangles, size_t n, const size_t *co
                            size_t points, size_t *across, size_t *bad, bool *no_memory) {
   size_t used;
   CagMeshEdge *e = cag_mesh_edges(triangles, n, NULL, points, &used);
-  uint32_t *follows = malloc((points + 1) * sizeof *follows); // the next point of the loop
+  uint32_t *follows = cag_malloc((points + 1) * sizeof *follows); // the next point of the loop
   *no_memory = !e || !follows;
   bool good = !*no_memory;
   for (size_t l = 0, k = 0; good && l < loops; l++)
     for (size_t first = k, end = k + counts[l]; k < end; k++)
       follows[k] = (uint32_t)(k + 1 < end ? k + 1 : first);
-  unsigned char *met = calloc(points + 1, 1); // the loop's edge that starts at the point was met
+  unsigned char *met =
+      cag_calloc(points + 1, 1); // the loop's edge that starts at the point was met
   *no_memory |= !met;
   good &= met != NULL;
   for (size_t i = 0; good && i < used;) {
@@ -225,9 +226,9 @@ static bool link_triangles(const uint32_t *triangles, size_t n, const size_t *co
   }
   for (size_t k = 0; good && k < points; k++)
     if (!met[k]) good = false, *bad = k;
-  free(met);
-  free(e);
-  free(follows);
+  cag_free(met);
+  cag_free(e);
+  cag_free(follows);
   return good;
 }
 
@@ -277,17 +278,17 @@ CagStatus cag_triangulate(const double *xy, const size_t *counts, size_t loops, 
   if (status != CAG_OK) return status;
   // A triangulation has points + 2 (holes - outers) triangles: at most points + 2 loops.
   Sweep s = {.xy = xy, .capacity = 3 * (points + 2 * loops)};
-  s.triangles = malloc(s.capacity * sizeof *s.triangles);
-  size_t *across = malloc(s.capacity * sizeof *across);
+  s.triangles = cag_malloc(s.capacity * sizeof *s.triangles);
+  size_t *across = cag_malloc(s.capacity * sizeof *across);
   if (s.triangles && across) status = sweep_and_check(xy, counts, loops, points, &s, across, err);
   else status = cag_fail_memory(err);
   if (status == CAG_OK) {
     Flips f = {.xy = xy, .triangles = s.triangles, .across = across};
     flip_to_delaunay(&f, s.corners);
-    free(f.stack);
+    cag_free(f.stack);
     *out = s.triangles;
     *n = s.corners / 3;
-  } else free(s.triangles);
-  free(across);
+  } else cag_free(s.triangles);
+  cag_free(across);
   return status;
 }

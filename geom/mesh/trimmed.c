@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/edges.h"
 #include "geom/mesh/sides.h"
 #include "geom/surface/reshape.h"
@@ -51,20 +52,20 @@ typedef struct Plane {
 } Plane;
 
 static void release(Plane *p) {
-  free(p->xy);
-  free(p->positions);
-  free(p->normals);
-  free(p->corner);
-  free(p->across);
-  free(p->checked);
-  free(p->stack);
+  cag_free(p->xy);
+  cag_free(p->positions);
+  cag_free(p->normals);
+  cag_free(p->corner);
+  cag_free(p->across);
+  cag_free(p->checked);
+  cag_free(p->stack);
 }
 
 // --- Room ---
 
 static CagStatus grow(void *array, size_t wanted, size_t size, CagError *err) {
   void **at = array;
-  void *larger = realloc(*at, wanted * size);
+  void *larger = cag_realloc(*at, wanted * size);
   if (!larger) return cag_fail_memory(err);
   *at = larger;
   return CAG_OK;
@@ -194,7 +195,7 @@ static CagStatus outline_loop(Plane *p, const CagSurface *s, size_t loop,
                         "larger tolerance",
                         how->max_triangles);
   }
-  free(at);
+  cag_free(at);
   cag_curve_release(on);
   *count = p->vertex_count - before;
   return status;
@@ -230,7 +231,7 @@ static CagStatus link_triangles(Plane *p, CagError *err) {
     p->across[3 * ta + cag_mesh_edge_corner(a)] = (uint32_t)tb;
     p->across[3 * tb + cag_mesh_edge_corner(b)] = (uint32_t)ta;
   }
-  free(edges);
+  cag_free(edges);
   return CAG_OK;
 }
 
@@ -238,7 +239,7 @@ static CagStatus begin(Plane *p, const CagSurface *s, const CagTessellation *how
   const CagRegion *region;
   cag_surface_trimmed_view(s, &p->inner, &region);
   CagStatus status = find_scale(p, s, err);
-  size_t *counts = malloc((region->count + 1) * sizeof *counts);
+  size_t *counts = cag_malloc((region->count + 1) * sizeof *counts);
   uint32_t *triangles = NULL;
   size_t n = 0;
   if (!counts) status = cag_fail_memory(err);
@@ -253,8 +254,8 @@ static CagStatus begin(Plane *p, const CagSurface *s, const CagTessellation *how
     p->triangle_count = n;
     status = link_triangles(p, err);
   }
-  free(triangles);
-  free(counts);
+  cag_free(triangles);
+  cag_free(counts);
   return status;
 }
 
@@ -584,7 +585,7 @@ static int by_place(const void *a, const void *b) {
 // then tells that they are one point.
 static CagStatus weld_outline(Plane *p, uint32_t *weld, CagError *err) {
   const double same = 1e-11; // of the size
-  Place *places = malloc((p->outline + 1) * sizeof *places);
+  Place *places = cag_malloc((p->outline + 1) * sizeof *places);
   if (!places) return cag_fail_memory(err);
   double size = 0;
   for (size_t k = 0; k < p->vertex_count; k++) weld[k] = (uint32_t)k;
@@ -606,7 +607,7 @@ static CagStatus weld_outline(Plane *p, uint32_t *weld, CagError *err) {
     while (weld[weld[k]] != weld[k]) weld[k] = weld[weld[k]];
     p->positions[k] = p->positions[weld[k]];
   }
-  free(places);
+  cag_free(places);
   return CAG_OK;
 }
 

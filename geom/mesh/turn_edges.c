@@ -9,9 +9,9 @@
 // angles to the surface. Points do not move, and edges at which normals change (seams and creases)
 // are not flipped.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/tessellation.h"
 
 // Of the angle that the normal may turn along an edge: what leans less is as it has to be.
@@ -121,8 +121,8 @@ static bool turn(Turner *t, uint32_t low, uint32_t k) {
 static CagStatus find_neighbors(Turner *t, CagError *err) {
   const CagMesh *m = t->m;
   const uint32_t count = 3 * (uint32_t)m->triangle_count;
-  uint32_t *starts = calloc(m->vertex_count + 2, sizeof *starts);
-  uint32_t *corners = malloc(((size_t)count + 1) * sizeof *corners);
+  uint32_t *starts = cag_calloc(m->vertex_count + 2, sizeof *starts);
+  uint32_t *corners = cag_malloc(((size_t)count + 1) * sizeof *corners);
   if (starts && corners) {
     for (uint32_t k = 0; k < count; k++) starts[m->triangles[k] + 2]++;
     for (size_t v = 2; v < m->vertex_count + 2; v++) starts[v] += starts[v - 1];
@@ -137,8 +137,8 @@ static CagStatus find_neighbors(Turner *t, CagError *err) {
     }
   }
   const CagStatus status = starts && corners ? CAG_OK : cag_fail_memory(err);
-  free(starts);
-  free(corners);
+  cag_free(starts);
+  cag_free(corners);
   return status;
 }
 
@@ -164,8 +164,8 @@ CagStatus tess_turn_edges(const Tessellator *tess, CagMesh *m, CagError *err) {
   if (!(t.how->angle > 0)) return CAG_OK;
   for (uint32_t k = 0; k < m->triangle_count && !any; k++) any = leans(&t, k);
   if (!any) return CAG_OK;
-  t.beside = malloc((3 * m->triangle_count + 1) * sizeof *t.beside);
+  t.beside = cag_malloc((3 * m->triangle_count + 1) * sizeof *t.beside);
   const CagStatus status = t.beside ? turn_all(&t, err) : cag_fail_memory(err);
-  free(t.beside);
+  cag_free(t.beside);
   return status;
 }

@@ -1,8 +1,8 @@
 // Serial chains: making and checking a robot, its uniform stages, and where its frames are.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/robot/kernel.h"
 #include "geom/robot/robot.h"
 
@@ -102,24 +102,24 @@ CagRobot *cag_robot_retain(const CagRobot *r) {
 
 void cag_robot_release(CagRobot *r) {
   if (!r || --r->references > 0) return;
-  free(r->links);
-  free(r->joint_link);
-  free(r->stages);
-  free(r->coupling);
-  free(r->coupling_inverse);
-  free(r->coupling_offset);
-  free(r);
+  cag_free(r->links);
+  cag_free(r->joint_link);
+  cag_free(r->stages);
+  cag_free(r->coupling);
+  cag_free(r->coupling_inverse);
+  cag_free(r->coupling_offset);
+  cag_free(r);
 }
 
 static CagRobot *allocate(const CagRobotSpec *spec, size_t joints) {
-  CagRobot *r = calloc(1, sizeof *r);
+  CagRobot *r = cag_calloc(1, sizeof *r);
   if (!r) return NULL;
   r->references = 1;
   r->link_count = spec->link_count;
   r->joint_count = joints;
-  r->links = malloc(spec->link_count * sizeof *r->links);
-  r->joint_link = calloc(joints ? joints : 1, sizeof *r->joint_link);
-  r->stages = calloc(joints ? joints : 1, sizeof *r->stages);
+  r->links = cag_malloc(spec->link_count * sizeof *r->links);
+  r->joint_link = cag_calloc(joints ? joints : 1, sizeof *r->joint_link);
+  r->stages = cag_calloc(joints ? joints : 1, sizeof *r->stages);
   if (r->links && r->joint_link && r->stages) return r;
   cag_robot_release(r);
   return NULL;
@@ -233,9 +233,9 @@ static bool invert(double *m, size_t n, double *out) {
 static CagStatus fill_coupling(CagRobot *r, const CagRobotSpec *spec, CagError *err) {
   size_t n = r->joint_count;
   if (!spec->coupling || n == 0) return CAG_OK;
-  r->coupling = malloc(n * n * sizeof(double));
-  r->coupling_inverse = malloc(n * n * sizeof(double));
-  r->coupling_offset = calloc(n, sizeof(double));
+  r->coupling = cag_malloc(n * n * sizeof(double));
+  r->coupling_inverse = cag_malloc(n * n * sizeof(double));
+  r->coupling_offset = cag_calloc(n, sizeof(double));
   if (!r->coupling || !r->coupling_inverse || !r->coupling_offset) return cag_fail_memory(err);
   memcpy(r->coupling, spec->coupling, n * n * sizeof(double));
   if (spec->coupling_offset) memcpy(r->coupling_offset, spec->coupling_offset, n * sizeof(double));
@@ -243,11 +243,11 @@ static CagStatus fill_coupling(CagRobot *r, const CagRobotSpec *spec, CagError *
     if (!isfinite(r->coupling[i]) || !isfinite(r->coupling_offset[i / n]))
       return cag_fail(err, CAG_E_ARGUMENT, "coupling-singular", "coupling", (long)(i / n),
                       "row %zu of the coupling has a number that is infinite or none", i / n + 1);
-  double *work = malloc(n * n * sizeof *work);
+  double *work = cag_malloc(n * n * sizeof *work);
   if (!work) return cag_fail_memory(err);
   memcpy(work, r->coupling, n * n * sizeof *work);
   const bool regular = invert(work, n, r->coupling_inverse);
-  free(work);
+  cag_free(work);
   if (regular) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, "coupling-singular", "coupling", -1,
                   "the coupling matrix is singular: the motors' angles do not determine the "

@@ -8,9 +8,9 @@
 #include "geom/solid/clip.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/sides.h"
 #include "geom/solid/csg.h"
 #include "geom/solid/inside.h"
@@ -48,7 +48,7 @@ static CagStatus crossing(CagInside *in, const CagCurve *c, double a, double b, 
 
 static CagStatus add_piece(Pieces *p, const CagCurve *c, double from, double to, CagError *err) {
   if (!(to > from)) return CAG_OK;
-  CagCurve **grown = realloc(p->at, (p->n + 1) * sizeof *grown);
+  CagCurve **grown = cag_realloc(p->at, (p->n + 1) * sizeof *grown);
   if (!grown) return cag_fail_memory(err);
   p->at = grown;
   CagStatus status = CAG_OK;
@@ -61,11 +61,11 @@ static CagStatus add_piece(Pieces *p, const CagCurve *c, double from, double to,
 // Parameters that are looked at: evenly between the curve's breaks.
 static CagStatus looked_at(const CagCurve *c, double **out, size_t *n, CagError *err) {
   size_t breaks = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
-  double *at = malloc((breaks + 2) * sizeof *at);
-  double *t = malloc(((breaks + 1) * SAMPLES + 1) * sizeof *t);
+  double *at = cag_malloc((breaks + 2) * sizeof *at);
+  double *t = cag_malloc(((breaks + 1) * SAMPLES + 1) * sizeof *t);
   if (!at || !t) {
-    free(at);
-    free(t);
+    cag_free(at);
+    cag_free(t);
     return cag_fail_memory(err);
   }
   at[0] = c->start;
@@ -76,7 +76,7 @@ static CagStatus looked_at(const CagCurve *c, double **out, size_t *n, CagError 
     for (int k = 0; k < SAMPLES; k++)
       t[(*n)++] = at[i] + (at[i + 1] - at[i]) * ((double)k / SAMPLES);
   t[(*n)++] = c->end;
-  free(at);
+  cag_free(at);
   *out = t;
   return CAG_OK;
 }
@@ -113,10 +113,10 @@ CagStatus cag_curve_clip(const CagCurve *c, const CagSolid *by, const volatile i
   if (!status) status = cag_inside_new(by, &how, &in, err);
   if (!status) status = clip_samples(in, c, t, count, interrupt, &pieces, err);
   cag_inside_free(in);
-  free(t);
+  cag_free(t);
   if (status) {
     for (size_t i = 0; i < pieces.n; i++) cag_curve_release(pieces.at[i]);
-    free(pieces.at);
+    cag_free(pieces.at);
     return status;
   }
   *out = pieces.at;
@@ -148,22 +148,22 @@ typedef struct Work {
 
 static void work_free(Work *w) {
   cag_inside_free(w->in);
-  free(w->p);
-  free(w->uv);
-  free(w->inner);
-  free(w->t);
-  free(w->keys);
-  free(w->cut);
+  cag_free(w->p);
+  cag_free(w->uv);
+  cag_free(w->inner);
+  cag_free(w->t);
+  cag_free(w->keys);
+  cag_free(w->cut);
 }
 
 static CagStatus room_for_points(Work *w, CagError *err) {
   if (w->n < w->capacity) return CAG_OK;
   size_t capacity = w->capacity ? 2 * w->capacity : 64;
-  CagVec3 *p = realloc(w->p, capacity * sizeof *p);
+  CagVec3 *p = cag_realloc(w->p, capacity * sizeof *p);
   if (p) w->p = p;
-  double *uv = p ? realloc(w->uv, capacity * 2 * sizeof *uv) : NULL;
+  double *uv = p ? cag_realloc(w->uv, capacity * 2 * sizeof *uv) : NULL;
   if (uv) w->uv = uv;
-  signed char *inner = uv ? realloc(w->inner, capacity) : NULL;
+  signed char *inner = uv ? cag_realloc(w->inner, capacity) : NULL;
   if (!inner) return cag_fail_memory(err);
   w->inner = inner;
   w->capacity = capacity;
@@ -173,7 +173,7 @@ static CagStatus room_for_points(Work *w, CagError *err) {
 static CagStatus add_triangle(Work *w, uint32_t a, uint32_t b, uint32_t c, CagError *err) {
   if (w->triangles == w->room) {
     size_t room = w->room ? 2 * w->room : 64;
-    uint32_t *t = realloc(w->t, room * 3 * sizeof *t);
+    uint32_t *t = cag_realloc(w->t, room * 3 * sizeof *t);
     if (!t) return cag_fail_memory(err);
     w->t = t;
     w->room = room;
@@ -204,10 +204,10 @@ static CagStatus clear_cuts(Work *w, size_t edges, CagError *err) {
   size_t slots = 64;
   while (slots < 2 * edges) slots *= 2;
   if (slots > w->slots) {
-    free(w->keys);
-    free(w->cut);
-    w->keys = malloc(slots * sizeof *w->keys);
-    w->cut = malloc(slots * sizeof *w->cut);
+    cag_free(w->keys);
+    cag_free(w->cut);
+    w->keys = cag_malloc(slots * sizeof *w->keys);
+    w->cut = cag_malloc(slots * sizeof *w->cut);
     w->slots = slots;
     if (!w->keys || !w->cut) return cag_fail_memory(err);
   }
@@ -339,7 +339,7 @@ static CagStatus split_pass(Work *w, bool *changed, CagError *err) {
   w->t = NULL;
   w->triangles = w->room = 0;
   for (size_t i = 0; !status && i < count; i++) status = divide(w, before + 3 * i, err);
-  free(before);
+  cag_free(before);
   return status;
 }
 
@@ -399,7 +399,7 @@ static CagStatus cut_all(Work *w, CagError *err) {
     const uint32_t t[3] = {before[3 * i], before[3 * i + 1], before[3 * i + 2]};
     status = cut_triangle(w, t, err);
   }
-  free(before);
+  cag_free(before);
   return status;
 }
 
@@ -415,7 +415,7 @@ static CagVec3 normal_at(const Work *w, uint32_t i, CagVec3 fallback) {
 
 // Points that triangles name, in their order.
 static CagStatus make_mesh(Work *w, CagMesh **out, CagError *err) {
-  uint32_t *number = malloc((w->n + 1) * sizeof *number);
+  uint32_t *number = cag_malloc((w->n + 1) * sizeof *number);
   if (!number) return cag_fail_memory(err);
   size_t used = 0;
   for (size_t i = 0; i < w->n; i++) number[i] = NOT_CUT;
@@ -440,7 +440,7 @@ static CagStatus make_mesh(Work *w, CagMesh **out, CagError *err) {
       if (curved) m->normals[number[t[k]]] = normal_at(w, t[k], face);
     }
   }
-  free(number);
+  cag_free(number);
   if (!status && curved)
     status = cag_mesh_split_sides(m, 0, m->triangle_count, w->surface, w->how->angle, 0, err);
   if (!status) *out = m;

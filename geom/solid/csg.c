@@ -4,9 +4,9 @@
 #include "geom/solid/csg.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/orient.h"
 #include "geom/solid/build.h"
 
@@ -16,10 +16,10 @@ static CagStatus block(CagSolidKind kind, size_t operands, CagSolid **out, CagEr
   CagSolid *s = NULL;
   CagStatus status = cag_solid_block(kind, 0, &s, err);
   if (status) return status;
-  s->core = calloc(1, sizeof *s->core);
+  s->core = cag_calloc(1, sizeof *s->core);
   if (s->core) {
     s->core->references = 1;
-    s->core->operands = calloc(operands + 1, sizeof(CagSolid *));
+    s->core->operands = cag_calloc(operands + 1, sizeof(CagSolid *));
   }
   if (!s->core || !s->core->operands) {
     cag_solid_release(s);
@@ -32,17 +32,9 @@ static CagStatus block(CagSolidKind kind, size_t operands, CagSolid **out, CagEr
 void cag_solid_core_release(CagSolidCore *core) {
   if (!core || --core->references > 0) return;
   for (size_t i = 0; i < core->count; i++) cag_solid_release(core->operands[i]);
-  free(core->operands);
+  cag_free(core->operands);
   cag_mesh_release(core->mesh);
-  free(core);
-}
-
-size_t cag_solid_kept_bytes(const CagSolid *s) {
-  const CagMesh *m = s->core ? s->core->mesh : NULL;
-  if (!m) return 0;
-  size_t vertex = (m->normals ? 2 : 1) * sizeof *m->positions + (m->weld ? sizeof *m->weld : 0);
-  return (m->vertex_count * vertex + m->triangle_count * 3 * sizeof *m->triangles) /
-         (size_t)s->core->references;
+  cag_free(core);
 }
 
 CagStatus cag_solid_empty(CagSolid **out, CagError *err) {

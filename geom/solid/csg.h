@@ -85,8 +85,6 @@ CagStatus cag_solid_mass_within(const CagSolid *s, double tolerance, CagMassProp
                                 CagError *err);
 // Whether nothing is left of the solid, by a mesh where that must tell; faces hold something.
 CagStatus cag_solid_is_empty(const CagSolid *s, bool *out, CagError *err);
-// Bytes of the mesh that the solid keeps, its part where several share it.
-size_t cag_solid_kept_bytes(const CagSolid *s);
 // Bounds that hold the solid, quickly told; infinite where it is unbounded or that is not known.
 CagStatus cag_solid_reach(const CagSolid *s, CagBounds *out, CagError *err);
 

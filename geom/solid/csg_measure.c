@@ -1,9 +1,9 @@
 // Bounds and mass of solids without faces.
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/solid/csg.h"
 
 // Meshes for bounds and the first try of a mass: part of the size.
@@ -135,7 +135,7 @@ static CagStatus keeps_sides(const CagMesh *first, const CagBounds *box, double 
 
 static CagStatus difference_keeps(const CagSolid *s, const CagSolid *first, const CagBounds *box,
                                   bool *keeps, CagError *err) {
-  CagBounds *others = malloc(s->core->count * sizeof *others);
+  CagBounds *others = cag_malloc(s->core->count * sizeof *others);
   if (!others) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   size_t n = 0;
@@ -159,7 +159,7 @@ static CagStatus difference_keeps(const CagSolid *s, const CagSolid *first, cons
       cag_mesh_release(m);
     }
   }
-  free(others);
+  cag_free(others);
   return status;
 }
 
@@ -273,7 +273,7 @@ static CagStatus mass_of_parts(const CagSolid *s, double tolerance, CagMassPrope
   size_t n = s->core->count;
   *done = false;
   if (s->kind != CAG_SOLID_UNION || n > PAIRS_MOST) return CAG_OK;
-  CagBounds *reach = malloc(n * sizeof *reach);
+  CagBounds *reach = cag_malloc(n * sizeof *reach);
   if (!reach) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < n; i++)
@@ -281,7 +281,7 @@ static CagStatus mass_of_parts(const CagSolid *s, double tolerance, CagMassPrope
   bool separate = !status;
   for (size_t i = 0; separate && i < n; i++)
     for (size_t k = i + 1; separate && k < n; k++) separate = apart(&reach[i], &reach[k]);
-  free(reach);
+  cag_free(reach);
   if (!separate) return status;
   *out = (CagMassProperties){0};
   for (size_t i = 0; !status && i < n; i++) {

@@ -8,9 +8,9 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/solid/csg.h"
 
 // Largest distance from mesh to body by default, as part of the size (as tessellate.h says).
@@ -165,8 +165,8 @@ static CagStatus cut_first(const CagSolid *s, const CagTessellation *how, const 
 static CagStatus core_mesh(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
                            CagMesh **out, CagError *err) {
   if (is_empty(window)) return empty_mesh(out, err);
-  CagMesh **meshes = malloc((s->core->count + 1) * sizeof *meshes);
-  size_t *operands = malloc((s->core->count + 1) * sizeof *operands), n = 0;
+  CagMesh **meshes = cag_malloc((s->core->count + 1) * sizeof *meshes);
+  size_t *operands = cag_malloc((s->core->count + 1) * sizeof *operands), n = 0;
   bool nothing;
   CagStatus status = meshes && operands ? CAG_OK : cag_fail_memory(err);
   if (!status) status = operand_meshes(s, how, window, meshes, operands, &n, &nothing, err);
@@ -176,8 +176,8 @@ static CagStatus core_mesh(const CagSolid *s, const CagTessellation *how, const 
   if (!status)
     status = nothing ? empty_mesh(out, err) : join_meshes(s, how, meshes, operands, n, out, err);
   for (size_t i = 0; i < n; i++) cag_mesh_release(meshes[i]);
-  free(meshes);
-  free(operands);
+  cag_free(meshes);
+  cag_free(operands);
   return status;
 }
 
@@ -320,7 +320,7 @@ static CagStatus operation_mesh(const CagSolid *s, const CagTessellation *how,
 // Triangles without a label get that of the solid. The mesh is the caller's own.
 static CagStatus paint(CagMesh *m, uint32_t label, CagError *err) {
   if (!label) return CAG_OK;
-  if (!m->labels) m->labels = calloc(m->triangle_count + 1, sizeof *m->labels);
+  if (!m->labels) m->labels = cag_calloc(m->triangle_count + 1, sizeof *m->labels);
   if (!m->labels) return cag_fail_memory(err);
   for (size_t t = 0; t < m->triangle_count; t++)
     if (!m->labels[t]) m->labels[t] = label;

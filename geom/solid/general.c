@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 // Faces closer than this part of the size of all operands coincide. Renderers compute distances
 // along rays to about 1e-6 of the size, and operands that are taken away are enlarged by 4e-5.
 #define COINCIDENT 1e-4
@@ -51,8 +53,8 @@ static void search_free(Search *s) {
     cag_surface_release(s->pieces[i].surface);
     cag_mesh_release(s->pieces[i].mesh);
   }
-  free(s->pieces);
-  free(s->sides);
+  cag_free(s->pieces);
+  cag_free(s->sides);
 }
 
 // --- Collecting ---
@@ -61,7 +63,7 @@ static void search_free(Search *s) {
 static bool add_piece(Search *s, CagSurface *surface, CagMesh *mesh, double tolerance) {
   if (s->count == s->room) {
     const size_t room = s->room ? 2 * s->room : 16;
-    Piece *more = realloc(s->pieces, room * sizeof *more);
+    Piece *more = cag_realloc(s->pieces, room * sizeof *more);
     if (!more) {
       cag_surface_release(surface);
       cag_mesh_release(mesh);
@@ -77,7 +79,7 @@ static bool add_piece(Search *s, CagSurface *surface, CagMesh *mesh, double tole
 static bool add_side(Search *s, const CagQuadric *form) {
   if (s->side_count == s->side_room) {
     const size_t room = s->side_room ? 2 * s->side_room : 8;
-    Side *more = realloc(s->sides, room * sizeof *more);
+    Side *more = cag_realloc(s->sides, room * sizeof *more);
     if (!more) return false;
     s->sides = more;
     s->side_room = room;
@@ -360,7 +362,7 @@ static Facet facet_of(const Piece *p, size_t t) {
 }
 
 static Facet *facets_of(const Piece *p) {
-  Facet *f = malloc((p->mesh->triangle_count + 1) * sizeof *f);
+  Facet *f = cag_malloc((p->mesh->triangle_count + 1) * sizeof *f);
   for (size_t t = 0; f && t < p->mesh->triangle_count; t++) f[t] = facet_of(p, t);
   return f;
 }
@@ -371,8 +373,8 @@ static bool pieces_coincide(const Search *s, const Piece *a, const Piece *b) {
   Facet *f = facets_of(a), *g = facets_of(b);
   const bool found =
       !f || !g || lists_coincide(s, f, a->mesh->triangle_count, g, b->mesh->triangle_count, slack);
-  free(f);
-  free(g);
+  cag_free(f);
+  cag_free(g);
   return found;
 }
 

@@ -6,8 +6,8 @@
 #include "geom/solid/inside.h"
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/mesh/separation.h"
 #include "geom/solid/csg.h"
 
@@ -33,7 +33,7 @@ CagStatus cag_inside_new(const CagSolid *s, const CagTessellation *how, CagInsid
   CagBounds reach;
   CagStatus status = cag_solid_reach(s, &reach, err);
   if (status) return status;
-  CagInside *inside = calloc(1, sizeof *inside);
+  CagInside *inside = cag_calloc(1, sizeof *inside);
   if (!inside) return cag_fail_memory(err);
   double size = cag_norm(cag_sub(reach.max, reach.min));
   *inside = (CagInside){.solid = s, .how = *how, .slack = isfinite(size) ? ON_BOUNDARY * size : 0};
@@ -44,8 +44,8 @@ CagStatus cag_inside_new(const CagSolid *s, const CagTessellation *how, CagInsid
 void cag_inside_free(CagInside *inside) {
   if (!inside) return;
   for (size_t i = 0; i < inside->count; i++) cag_mesh_release(inside->leaves[i].mesh);
-  free(inside->leaves);
-  free(inside);
+  cag_free(inside->leaves);
+  cag_free(inside);
 }
 
 // --- Equations: how far p is outside of a primitive in its own coordinates; negative inside ---
@@ -80,7 +80,7 @@ static CagStatus leaf_mesh(CagInside *inside, const CagSolid *s, LeafMesh **out,
       *out = &inside->leaves[i];
       return CAG_OK;
     }
-  LeafMesh *grown = realloc(inside->leaves, (inside->count + 1) * sizeof *grown);
+  LeafMesh *grown = cag_realloc(inside->leaves, (inside->count + 1) * sizeof *grown);
   if (!grown) return cag_fail_memory(err);
   inside->leaves = grown;
   LeafMesh *made = &grown[inside->count];

@@ -2,8 +2,8 @@
 // another.
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/mesh/separation.h"
 #include "geom/mesh/tessellate.h"
 #include "geom/solid/build.h"
@@ -46,7 +46,7 @@ static bool is_within(const Part *inner, const Part *outer) {
 
 CagStatus cag_solid_nest(CagSurface *const *faces, size_t n, const size_t *part, size_t parts,
                          bool *turn, CagError *err) {
-  Part *all = calloc(parts + 1, sizeof *all);
+  Part *all = cag_calloc(parts + 1, sizeof *all);
   if (!all) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t f = 0; !status && f < n; f++) {
@@ -64,6 +64,6 @@ CagStatus cag_solid_nest(CagSurface *const *faces, size_t n, const size_t *part,
       if (part[f] == i) turn[f] = wrong;
   }
   for (size_t i = 0; i < parts; i++) cag_mesh_release(all[i].mesh);
-  free(all);
+  cag_free(all);
   return status;
 }

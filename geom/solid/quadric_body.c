@@ -10,9 +10,9 @@
 // pieces end.
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/conic_side.h"
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
@@ -195,7 +195,7 @@ static bool do_close(const Boundary *b) {
 // Gives the body its faces. Without these it has its mesh alone.
 static CagStatus set_faces(CagSolid *body, CagSurface *const *pieces, size_t n, const CagQuadric *q,
                            const CagBounds *box, const CagTransform *frame, CagError *err) {
-  Boundary b = {calloc(n + FACES_MOST, sizeof *b.faces), 0, true};
+  Boundary b = {cag_calloc(n + FACES_MOST, sizeof *b.faces), 0, true};
   CagTransform back;
   CagQuadric local;
   CagQuadricWithin within;
@@ -208,13 +208,13 @@ static CagStatus set_faces(CagSolid *body, CagSurface *const *pieces, size_t n, 
     status = add_caps(&b, &local, box, frame, side, err);
   if (!status && b.decided && !are_all_within(pieces, n, &within)) b.decided = do_close(&b);
   if (!status && b.decided) {
-    free(body->faces);
+    cag_free(body->faces);
     body->faces = b.faces;
     body->face_count = b.n;
     return CAG_OK;
   }
   for (size_t i = 0; i < b.n; i++) cag_surface_release(b.faces[i]);
-  free(b.faces);
+  cag_free(b.faces);
   return cag_is_final(status) ? status : CAG_OK;
 }
 

@@ -7,8 +7,8 @@
 // faces (shell_loop.c), so that no edge is left.
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/solid/shell.h"
 #include "geom/surface/trimmed.h"
 
@@ -22,7 +22,7 @@
 
 static void boundaries_free(CagShellBoundaries *b) {
   for (size_t i = 0; i < b->n; i++) cag_curve_release(b->at[i].curve);
-  free(b->at);
+  cag_free(b->at);
 }
 
 static CagStatus side_curve(const CagSurface *face, int side, CagCurve **out, CagError *err) {
@@ -47,7 +47,7 @@ static CagStatus collect(CagSurface *const *faces, size_t n, CagShellBoundaries 
                          CagError *err) {
   size_t most = 0;
   for (size_t f = 0; f < n; f++) most += (size_t)cag_solid_side_end(faces[f]);
-  *out = (CagShellBoundaries){calloc(most ? most : 1, sizeof(CagShellBoundary)), 0, 0, 0};
+  *out = (CagShellBoundaries){cag_calloc(most ? most : 1, sizeof(CagShellBoundary)), 0, 0, 0};
   if (!out->at) return cag_fail_memory(err);
   CagBounds box = CAG_BOUNDS_EMPTY;
   CagStatus status = CAG_OK;
@@ -235,15 +235,15 @@ static CagStatus turn_faces(CagSolid *s, const bool *turn, CagError *err) {
 }
 
 static CagStatus face_outward(CagSolid *s, const CagShellLinks *links, CagError *err) {
-  bool *turn = calloc(s->face_count + 1, sizeof *turn);
-  size_t *part = malloc((s->face_count + 1) * sizeof *part);
+  bool *turn = cag_calloc(s->face_count + 1, sizeof *turn);
+  size_t *part = cag_malloc((s->face_count + 1) * sizeof *part);
   CagStatus status = turn && part ? CAG_OK : cag_fail_memory(err);
   size_t parts = status ? 0 : orient(s->face_count, links, turn, part);
   if (!status) status = turn_faces(s, turn, err);
   if (!status) status = cag_solid_nest(s->faces, s->face_count, part, parts, turn, err);
   if (!status) status = turn_faces(s, turn, err);
-  free(turn);
-  free(part);
+  cag_free(turn);
+  cag_free(part);
   return status;
 }
 
@@ -288,7 +288,7 @@ static CagStatus join_faces(CagShellFaces *faces, CagSolid **out, CagError *err)
     *faces = parts;
   }
   if (!status) status = face_outward(s, &links, err);
-  free(links.at);
+  cag_free(links.at);
   if (status) cag_solid_release(s);
   else *out = s;
   return status;

@@ -5,8 +5,8 @@
 // loop, run the other way.
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/solid/shell.h"
 
 typedef struct Piece {
@@ -23,7 +23,7 @@ typedef struct Pieces {
 CagStatus cag_shell_add_link(CagShellLinks *l, CagShellLink link, CagError *err) {
   if (l->n == l->room) {
     const size_t room = l->room ? 2 * l->room : 32;
-    CagShellLink *at = realloc(l->at, room * sizeof *at);
+    CagShellLink *at = cag_realloc(l->at, room * sizeof *at);
     if (!at) return cag_fail_memory(err);
     l->at = at;
     l->room = room;
@@ -83,7 +83,7 @@ static CagStatus pair_sides(CagSolid *s, CagShellBoundaries *all, size_t loop, C
 static CagStatus add_piece(Pieces *p, Piece piece, CagError *err) {
   if (p->n == p->room) {
     const size_t room = p->room ? 2 * p->room : 64;
-    Piece *at = realloc(p->at, room * sizeof *at);
+    Piece *at = cag_realloc(p->at, room * sizeof *at);
     if (!at) return cag_fail_memory(err);
     p->at = at;
     p->room = room;
@@ -96,7 +96,7 @@ static CagStatus add_piece(Pieces *p, Piece piece, CagError *err) {
 static CagStatus add_pieces(Pieces *p, const CagShellBoundaries *all, size_t loop, CagError *err) {
   const CagCurve *c = all->at[loop].curve;
   const size_t n = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
-  double *t = malloc((n + 2) * sizeof *t);
+  double *t = cag_malloc((n + 2) * sizeof *t);
   if (!t) return cag_fail_memory(err);
   t[0] = c->start;
   if (n) c->kind->breaks(c, t + 1, n);
@@ -110,7 +110,7 @@ static CagStatus add_pieces(Pieces *p, const CagShellBoundaries *all, size_t loo
     if (!status && cag_norm(cag_sub(piece.to, piece.from)) > all->slack)
       status = add_piece(p, piece, err);
   }
-  free(t);
+  cag_free(t);
   return status;
 }
 
@@ -179,6 +179,6 @@ CagStatus cag_shell_pair_loops(CagSolid *s, CagShellBoundaries *all, CagShellLin
   for (size_t i = 0; !status && i < pieces.n; i++) all->at[pieces.at[i].loop].paired = true;
   for (size_t i = 0; !status && i < pieces.n; i++)
     if (!pieces.at[i].matched) all->at[pieces.at[i].loop].paired = false;
-  free(pieces.at);
+  cag_free(pieces.at);
   return status;
 }

@@ -6,8 +6,8 @@
 // repeats until nothing is cut any more.
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/solid/shell.h"
 #include "geom/surface/reshape.h"
 
@@ -23,9 +23,9 @@ CagStatus cag_shell_add_face(CagShellFaces *f, const CagSurface *face, size_t or
                              CagError *err) {
   if (f->n == f->room) {
     const size_t room = f->room ? 2 * f->room : 16;
-    CagSurface **at = realloc(f->at, room * sizeof *at);
+    CagSurface **at = cag_realloc(f->at, room * sizeof *at);
     if (at) f->at = at;
-    size_t *numbers = at ? realloc(f->origin, room * sizeof *numbers) : NULL;
+    size_t *numbers = at ? cag_realloc(f->origin, room * sizeof *numbers) : NULL;
     if (!numbers) return cag_fail_memory(err);
     f->origin = numbers;
     f->room = room;
@@ -37,8 +37,8 @@ CagStatus cag_shell_add_face(CagShellFaces *f, const CagSurface *face, size_t or
 
 void cag_shell_free_faces(CagShellFaces *f) {
   for (size_t i = 0; i < f->n; i++) cag_surface_release(f->at[i]);
-  free(f->at);
-  free(f->origin);
+  cag_free(f->at);
+  cag_free(f->origin);
   *f = (CagShellFaces){0};
 }
 
@@ -50,7 +50,7 @@ static CagStatus add_cut(Cuts *c, double t, double low, double high, CagError *e
     if (fabs(c->at[i] - t) <= same) return CAG_OK;
   if (c->n == c->room) {
     const size_t room = c->room ? 2 * c->room : 8;
-    double *at = realloc(c->at, room * sizeof *at);
+    double *at = cag_realloc(c->at, room * sizeof *at);
     if (!at) return cag_fail_memory(err);
     c->at = at;
     c->room = room;
@@ -79,7 +79,7 @@ static CagStatus cut_at(const CagShellBoundaries *all, const CagShellBoundary *b
 static CagStatus cut_at_breaks(const CagShellBoundaries *all, const CagShellBoundary *b,
                                const CagCurve *loop, Cuts *cuts, CagError *err) {
   const size_t n = loop->kind->breaks ? loop->kind->breaks(loop, NULL, 0) : 0;
-  double *at = malloc((n + 1) * sizeof *at);
+  double *at = cag_malloc((n + 1) * sizeof *at);
   CagStatus status = at ? CAG_OK : cag_fail_memory(err);
   if (!status && n) loop->kind->breaks(loop, at, n);
   for (size_t i = 0; !status && i < n; i++) {
@@ -87,7 +87,7 @@ static CagStatus cut_at_breaks(const CagShellBoundaries *all, const CagShellBoun
     status = cag_curve_point(loop, at[i], &p, err);
     if (!status) status = cut_at(all, b, p, cuts, err);
   }
-  free(at);
+  cag_free(at);
   return status;
 }
 
@@ -144,8 +144,8 @@ CagStatus cag_shell_split(const CagShellBoundaries *all, const CagShellFaces *fa
     Cuts cuts[2] = {{0}};
     status = find_cuts(all, f, cuts, err);
     if (!status) status = add_parts(faces->at[f], faces->origin[f], cuts, out, err);
-    free(cuts[0].at);
-    free(cuts[1].at);
+    cag_free(cuts[0].at);
+    cag_free(cuts[1].at);
   }
   *split = !status && out->n > faces->n;
   if (!*split) cag_shell_free_faces(out);

@@ -5,18 +5,18 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
 
 CagStatus cag_solid_block(CagSolidKind kind, size_t faces, CagSolid **out, CagError *err) {
-  CagSolid *s = calloc(1, sizeof *s);
-  CagSurface **room = calloc(faces ? faces : 1, sizeof *room);
+  CagSolid *s = cag_calloc(1, sizeof *s);
+  CagSurface **room = cag_calloc(faces ? faces : 1, sizeof *room);
   if (!s || !room) {
-    free(s);
-    free(room);
+    cag_free(s);
+    cag_free(room);
     return cag_fail_memory(err);
   }
   s->references = 1;
@@ -57,10 +57,10 @@ CagSolid *cag_solid_retain(const CagSolid *s) {
 void cag_solid_release(CagSolid *s) {
   if (!s || --s->references > 0) return;
   for (size_t i = 0; i < s->face_count; i++) cag_surface_release(s->faces[i]);
-  free(s->faces);
-  free(s->edges);
+  cag_free(s->faces);
+  cag_free(s->edges);
   cag_solid_core_release(s->core);
-  free(s);
+  cag_free(s);
 }
 
 // Lengths whose fifth powers (moments) are numbers, with room for sums and transforms.
@@ -96,7 +96,7 @@ CagStatus cag_solid_disk(double radius, CagRegion **out, CagError *err) {
 
 CagStatus cag_solid_add_edge(CagSolid *s, size_t face_a, int side_a, size_t face_b, int side_b,
                              bool reversed, CagError *err) {
-  struct CagSolidEdge *grown = realloc(s->edges, (s->edge_count + 1) * sizeof *grown);
+  struct CagSolidEdge *grown = cag_realloc(s->edges, (s->edge_count + 1) * sizeof *grown);
   if (!grown) return cag_fail_memory(err);
   s->edges = grown;
   s->edges[s->edge_count++] = (struct CagSolidEdge){{face_a, face_b}, {side_a, side_b}, reversed};
@@ -170,7 +170,7 @@ static CagStatus collect_sides(const CagSolid *s, Side **out, size_t *n, double 
   size_t most = 0;
   for (size_t f = 0; f < s->face_count; f++)
     most += (size_t)(cag_solid_side_end(s->faces[f]) - cag_solid_first_side(s->faces[f]));
-  Side *sides = malloc((most ? most : 1) * sizeof *sides);
+  Side *sides = cag_malloc((most ? most : 1) * sizeof *sides);
   if (!sides) return cag_fail_memory(err);
   CagBounds box = CAG_BOUNDS_EMPTY;
   *n = 0;
@@ -183,7 +183,7 @@ static CagStatus collect_sides(const CagSolid *s, Side **out, size_t *n, double 
       for (int i = 0; i < EDGE_POINTS; i++) {
         CagStatus status = cag_solid_side_point(s->faces[f], k, EDGE_FRACTION[i], &side->p[i], err);
         if (status) {
-          free(sides);
+          cag_free(sides);
           return status;
         }
         cag_bounds_add(&box, side->p[i]);
@@ -209,7 +209,7 @@ CagStatus cag_solid_match_edges(CagSolid *s, CagError *err) {
       sides[j].face = SIZE_MAX; // has its partner
       break;
     }
-  free(sides);
+  cag_free(sides);
   return status;
 }
 

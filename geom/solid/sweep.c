@@ -5,8 +5,8 @@
 // run counter-clockwise around the material, holes clockwise, so all sides face outward alike.
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
 
@@ -172,7 +172,7 @@ typedef struct Sides {
 static CagStatus add_loop(CagSolid *s, const Setting *g, const CagCurve *loop, double from,
                           double to, Sides *out, CagError *err) {
   size_t inner = loop->kind->breaks ? loop->kind->breaks(loop, NULL, 0) : 0;
-  double *ends = malloc((inner + 2) * sizeof *ends);
+  double *ends = cag_malloc((inner + 2) * sizeof *ends);
   if (!ends) return cag_fail_memory(err);
   ends[0] = loop->start;
   if (inner > 0) loop->kind->breaks(loop, ends + 1, inner);
@@ -192,7 +192,7 @@ static CagStatus add_loop(CagSolid *s, const Setting *g, const CagCurve *loop, d
   if (!status && start <= inner)
     status = add_side(s, g, loop, ends[start], ends[inner + 1], from, to, err);
   out->count = s->face_count - out->first;
-  free(ends);
+  cag_free(ends);
   return status;
 }
 
@@ -242,7 +242,7 @@ CagStatus cag_solid_revolve(const CagRegion *r, CagVec3 axis, CagVec3 through, d
   CagSolid *s = NULL;
   Sides *sides = NULL;
   if (!status) {
-    sides = malloc(r->count * sizeof *sides);
+    sides = cag_malloc(r->count * sizeof *sides);
     if (!sides) status = cag_fail_memory(err);
   }
   if (!status) status = cag_solid_block(CAG_SOLID_REVOLUTION, most_faces(r), &s, err);
@@ -269,7 +269,7 @@ CagStatus cag_solid_revolve(const CagRegion *r, CagVec3 axis, CagVec3 through, d
     if (!status) status = cag_solid_add_cap(s, r, &frame, !ahead, err);
     if (!status) status = cap_edges(s, sides, r->count, caps, err);
   }
-  free(sides);
+  cag_free(sides);
   if (status) cag_solid_release(s);
   else *out = s;
   return status;

@@ -4,9 +4,9 @@
 // that is 1 on curve k and 0 on the others. u is the fraction of every curve's domain.
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/surface/family.h"
 #include "geom/surface/loft.h"
@@ -42,7 +42,7 @@ static void weights_at(const Across *s, double v, int order, CagSide side, doubl
 static CagStatus eval(const CagSurface *surface, double u, double v, int n, CagSide su, CagSide sv,
                       CagVec3 *out, CagError *err) {
   const Across *s = (const Across *)surface;
-  double *w = malloc((size_t)(n + 1) * s->n * sizeof *w);
+  double *w = cag_malloc((size_t)(n + 1) * s->n * sizeof *w);
   if (!w) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   weights_at(s, v, n, sv, w);
@@ -57,7 +57,7 @@ static CagStatus eval(const CagSurface *surface, double u, double v, int n, CagS
         *to = cag_madd(*to, w[(size_t)j * s->n + k], d[i]);
       }
   }
-  free(w);
+  cag_free(w);
   return status;
 }
 
@@ -65,8 +65,8 @@ static CagStatus eval_grid(const CagSurface *surface, const double *us, size_t n
                            size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err) {
   const Across *s = (const Across *)surface;
   const size_t n = s->n;
-  double *w = malloc(2 * n * nv * sizeof *w);
-  CagVec3 *d = malloc(2 * n * sizeof *d);
+  double *w = cag_malloc(2 * n * nv * sizeof *w);
+  CagVec3 *d = cag_malloc(2 * n * sizeof *d);
   CagStatus status = w && d ? CAG_OK : cag_fail_memory(err);
   for (size_t j = 0; !status && j < nv; j++)
     weights_at(s, vs[j], 1, vs[j] >= surface->v1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT, w + 2 * n * j);
@@ -87,8 +87,8 @@ static CagStatus eval_grid(const CagSurface *surface, const double *us, size_t n
       if (dv) dv[i * nv + j] = pv;
     }
   }
-  free(w);
-  free(d);
+  cag_free(w);
+  cag_free(d);
   return status;
 }
 
@@ -96,14 +96,14 @@ static CagStatus transform(const CagSurface *surface, const CagTransform *t, Cag
                            CagError *err) {
   if (!cag_transform_is_affine(t)) return cag_surface_transform_placed(surface, t, out, err);
   const Across *s = (const Across *)surface;
-  CagCurve **moved = calloc(s->n, sizeof *moved);
+  CagCurve **moved = cag_calloc(s->n, sizeof *moved);
   if (!moved) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t k = 0; !status && k < s->n; k++)
     status = cag_curve_transform(s->curve[k], t, &moved[k], err);
   if (!status) status = cag_surface_across((const CagCurve *const *)moved, &s->spline, out, err);
   for (size_t k = 0; k < s->n; k++) cag_curve_release(moved[k]);
-  free(moved);
+  cag_free(moved);
   return status;
 }
 
@@ -112,7 +112,7 @@ static size_t breaks(const CagSurface *surface, int direction, double *out, size
   size_t most = s->spline.count + (size_t)s->spline.degree + 1, n = 0;
   for (size_t k = 0; direction == 0 && k < s->n; k++)
     if (s->curve[k]->kind->breaks) most += s->curve[k]->kind->breaks(s->curve[k], NULL, 0);
-  double *all = malloc(most * sizeof *all);
+  double *all = cag_malloc(most * sizeof *all);
   if (!all) return cag_note_memory(), 0;
   if (direction == 1) {
     n = s->spline.count + (size_t)s->spline.degree + 1;
@@ -122,7 +122,7 @@ static size_t breaks(const CagSurface *surface, int direction, double *out, size
     if (s->curve[k]->kind->breaks) n += s->curve[k]->kind->breaks(s->curve[k], all + n, most - n);
   n = cag_surface_tidy_breaks(all, n, direction ? surface->v0 : 0, direction ? surface->v1 : 1);
   for (size_t i = 0; i < n && i < capacity; i++) out[i] = all[i];
-  free(all);
+  cag_free(all);
   return n;
 }
 
@@ -133,7 +133,7 @@ static void describe(const CagSurface *surface, char *buffer, size_t size) {
 static void destroy(CagSurface *surface) {
   Across *s = (Across *)surface;
   for (size_t k = 0; s->curve && k < s->n; k++) cag_curve_release(s->curve[k]);
-  free(s->curve);
+  cag_free(s->curve);
   cag_net_free(&s->spline);
 }
 
@@ -159,7 +159,7 @@ CagStatus cag_surface_across(const CagCurve *const *curves, const CagNet *cardin
   if (status) return status;
   Across *s = (Across *)surface;
   s->n = cardinal->width;
-  s->curve = calloc(s->n, sizeof *s->curve);
+  s->curve = cag_calloc(s->n, sizeof *s->curve);
   if (!s->curve) status = cag_fail_memory(err);
   if (!status) status = cag_net_new(cardinal->degree, cardinal->count, s->n, &s->spline, err);
   for (size_t k = 0; !status && k < s->n; k++) {

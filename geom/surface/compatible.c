@@ -3,8 +3,7 @@
 
 #include "geom/surface/compatible.h"
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/surface/net.h"
 
 CagStatus cag_curves_compatible(const CagCurve *a, const CagCurve *b, CagCompatible *out,
@@ -20,13 +19,13 @@ CagStatus cag_curves_compatible(const CagCurve *a, const CagCurve *b, CagCompati
   }
   *out =
       (CagCompatible){nets[0].degree, nets[0].count, nets[0].knots, {nets[0].data, nets[1].data}};
-  free(nets[1].knots);
+  cag_free(nets[1].knots);
   return CAG_OK;
 }
 
 void cag_compatible_free(CagCompatible *c) {
-  free(c->knots);
-  free(c->net[0]);
-  free(c->net[1]);
+  cag_free(c->knots);
+  cag_free(c->net[0]);
+  cag_free(c->net[1]);
   *c = (CagCompatible){0};
 }

@@ -4,7 +4,8 @@
 #include "geom/surface/crease.h"
 
 #include <math.h>
-#include <stdlib.h>
+
+#include "base/memory.h"
 
 // Unit normals on both sides of a break that are farther apart than this make it an edge.
 #define CREASE 1e-7
@@ -65,7 +66,7 @@ static CagStatus keep_creases(const CagSurface *s, int direction, double *ends, 
   }
   ends[kept] = ends[*n];
   *n = kept;
-  free(across);
+  cag_free(across);
   return status;
 }
 
@@ -87,7 +88,7 @@ static CagStatus find_wrap(CagPatches *p, int direction, CagError *err) {
   CagStatus status = cag_surface_cuts(s, 1 - direction, &across, &count, err);
   if (!status) status = is_crease(s, direction, ends[1], ends[0], across, count, &crease, err);
   p->wraps[direction] = !status && !crease;
-  free(across);
+  cag_free(across);
   return status;
 }
 
@@ -103,8 +104,8 @@ CagStatus cag_patches_open(const CagSurface *s, CagPatches *out, CagError *err) 
 }
 
 void cag_patches_free(CagPatches *p) {
-  free(p->ends[0]);
-  free(p->ends[1]);
+  cag_free(p->ends[0]);
+  cag_free(p->ends[1]);
   *p = (CagPatches){0};
 }
 

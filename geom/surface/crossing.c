@@ -6,8 +6,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/surface/swept.h"
 
@@ -180,7 +180,7 @@ static bool tube_meets_itself(const CagCurve *section, const CagMotion *motion, 
       !sample_disks(motion, radius, few, TUBE_FEW))
     return false;
   const int n = steps_for(few);
-  disks = malloc(((size_t)n + 1) * sizeof *disks);
+  disks = cag_malloc(((size_t)n + 1) * sizeof *disks);
   if (!disks) cag_note_memory();
   const bool meets =
       disks && sample_disks(motion, radius, disks, n) && find_meeting(disks, n, &i, &k);
@@ -193,7 +193,7 @@ static bool tube_meets_itself(const CagCurve *section, const CagMotion *motion, 
              shown * disks[i].t, angle ? "deg" : "", cag_norm(cag_sub(disks[k].p, disks[i].p)),
              shown * disks[k].t, angle ? "deg" : "", disks[i].radius + disks[k].radius);
   }
-  free(disks);
+  cag_free(disks);
   return meets;
 }
 

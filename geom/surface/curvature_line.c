@@ -12,9 +12,9 @@
 #include "geom/surface/curvature_line.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/section.h"
 
 // Principal curvatures are one when they differ by this part of the larger, or by this part of the
@@ -153,9 +153,9 @@ static bool add_point(Walk *w, CagVec3 p, CagVec3 t) {
   CagTrace *a = &w->trace;
   if (a->count == w->capacity) {
     size_t capacity = 2 * w->capacity + 64;
-    CagVec3 *points = realloc(a->points, capacity * sizeof *points);
+    CagVec3 *points = cag_realloc(a->points, capacity * sizeof *points);
     if (points) a->points = points;
-    CagVec3 *tangents = realloc(a->tangents, capacity * sizeof *tangents);
+    CagVec3 *tangents = cag_realloc(a->tangents, capacity * sizeof *tangents);
     if (tangents) a->tangents = tangents;
     if (!points || !tangents) {
       w->status = cag_fail_memory(w->err);
@@ -400,7 +400,7 @@ CagStatus cag_surface_curvature_line(const CagSurface *s, double u, double v, bo
                       "the line of curvature ends where it begins: next to it is an umbilic or the "
                       "border");
   if (!status) status = cag_trace_curve(&w.trace, NULL, w.size, out, err);
-  free(w.trace.points);
-  free(w.trace.tangents);
+  cag_free(w.trace.points);
+  cag_free(w.trace.tangents);
   return status;
 }

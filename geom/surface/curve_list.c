@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/section_edges.h"
 
 // Turns, and the directions that decide between equal turns, are compared in steps of this size,
@@ -16,14 +17,14 @@
 
 void cag_curve_list_free(CagCurveList *list) {
   for (size_t i = 0; i < list->count; i++) cag_curve_release(list->items[i]);
-  free(list->items);
+  cag_free(list->items);
   *list = (CagCurveList){0};
 }
 
 CagStatus cag_curve_list_add(CagCurveList *list, CagCurve *c, CagError *err) {
   if (list->count == list->capacity) {
     size_t capacity = list->capacity ? 2 * list->capacity : 8;
-    CagCurve **grown = realloc(list->items, capacity * sizeof *grown);
+    CagCurve **grown = cag_realloc(list->items, capacity * sizeof *grown);
     if (!grown) {
       cag_curve_release(c);
       return cag_fail_memory(err);
@@ -110,7 +111,7 @@ static End end_of(const CagCurve *c, size_t curve, bool last) {
 static bool add_pair(Joints *j, size_t a, size_t b) {
   if (j->pair_count == j->pair_capacity) {
     const size_t capacity = j->pair_capacity ? 2 * j->pair_capacity : 64;
-    Pair *grown = realloc(j->pairs, capacity * sizeof *grown);
+    Pair *grown = cag_realloc(j->pairs, capacity * sizeof *grown);
     if (!grown) return false;
     j->pairs = grown;
     j->pair_capacity = capacity;
@@ -135,15 +136,15 @@ static int by_turn(const void *a, const void *b) {
 }
 
 static void joints_free(Joints *j) {
-  free(j->ends);
-  free(j->pairs);
+  cag_free(j->ends);
+  cag_free(j->pairs);
 }
 
 // Curves that are closed, or whose own ends meet, are not joined.
 static bool find_ends(const CagCurveList *list, size_t first, double same, Joints *j) {
   const size_t n = list->count - first;
   j->end_count = 2 * n;
-  j->ends = malloc((2 * n + 1) * sizeof *j->ends);
+  j->ends = cag_malloc((2 * n + 1) * sizeof *j->ends);
   if (!j->ends) return false;
   for (size_t i = 0; i < n; i++) {
     const CagCurve *c = list->items[first + i];
@@ -192,13 +193,13 @@ static CagStatus join_lines(CagCurve *const *parts, size_t n, bool closed, CagCu
   bool ignored;
   for (size_t i = 0; i < n; i++)
     if (cag_curve_vertices(parts[i], &points, &m, &ignored)) capacity += m;
-  CagVec3 *all = malloc(capacity * sizeof *all);
+  CagVec3 *all = cag_malloc(capacity * sizeof *all);
   if (!all) return cag_fail_memory(err);
   for (size_t i = 0; i < n; i++)
     if (cag_curve_vertices(parts[i], &points, &m, &ignored))
       for (size_t k = i > 0; k < m; k++) all[count++] = points[k];
   CagStatus status = cag_curve_polyline(all, closed ? count - 1 : count, closed, 3, out, err);
-  free(all);
+  cag_free(all);
   return status;
 }
 
@@ -269,7 +270,7 @@ CagStatus cag_curve_list_join(CagCurveList *list, size_t first, double same, Cag
   Joints j = {0};
   CagCurveList out = {0};
   if (n < 2) return CAG_OK;
-  CagCurve **parts = malloc(n * sizeof *parts);
+  CagCurve **parts = cag_malloc(n * sizeof *parts);
   CagStatus status = parts && find_ends(list, first, same, &j) ? CAG_OK : cag_fail_memory(err);
   if (!status) match_ends(&j);
   for (size_t i = 0; !status && i < n; i++)
@@ -282,6 +283,6 @@ CagStatus cag_curve_list_join(CagCurveList *list, size_t first, double same, Cag
     list->items[list->count++] = cag_curve_retain(out.items[i]);
   cag_curve_list_free(&out);
   joints_free(&j);
-  free(parts);
+  cag_free(parts);
   return status;
 }

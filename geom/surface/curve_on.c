@@ -9,9 +9,9 @@
 #include "geom/surface/curve_on.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
 #include "geom/surface/family.h"
@@ -138,7 +138,7 @@ typedef struct Numbers {
 } Numbers;
 
 static CagStatus push(Numbers *list, double x, CagError *err) {
-  double *grown = realloc(list->at, (list->n + 1) * sizeof *grown);
+  double *grown = cag_realloc(list->at, (list->n + 1) * sizeof *grown);
   if (!grown) return cag_fail_memory(err);
   list->at = grown;
   list->at[list->n++] = x;
@@ -156,7 +156,7 @@ static CagStatus cross(const CagCurve *plane, int direction, double at, Numbers 
   // Along the line it runs on one side of the break, which does not show.
   if (status) return strcmp(err->reason, "overlap") == 0 ? CAG_OK : status;
   for (size_t i = 0; !status && i < n; i++) status = push(list, meetings[i].t, err);
-  free(meetings);
+  cag_free(meetings);
   return status;
 }
 
@@ -180,13 +180,13 @@ static CagStatus find_breaks(OnSurface *c, const CagBounds *box, CagError *err) 
   CagStatus status = CAG_OK;
   const size_t own = c->plane->kind->breaks ? c->plane->kind->breaks(c->plane, NULL, 0) : 0;
   if (own) {
-    list.at = malloc(own * sizeof *list.at);
+    list.at = cag_malloc(own * sizeof *list.at);
     if (!list.at) return cag_fail_memory(err);
     list.n = c->plane->kind->breaks(c->plane, list.at, own);
   }
   for (int direction = 0; !status && direction < 2; direction++) {
     const size_t n = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
-    double *at = malloc((n + 1) * sizeof *at);
+    double *at = cag_malloc((n + 1) * sizeof *at);
     if (!at) status = cag_fail_memory(err);
     if (!status && n) s->kind->breaks(s, direction, at, n);
     const double lo = direction == 0 ? box->min.x : box->min.y;
@@ -195,10 +195,10 @@ static CagStatus find_breaks(OnSurface *c, const CagBounds *box, CagError *err) 
       status = cross_turns(c, direction, at[i], lo, hi, &list, err);
     if (!status && (direction == 0 ? s->closed_u : s->closed_v))
       status = cross_turns(c, direction, direction == 0 ? s->u0 : s->v0, lo, hi, &list, err);
-    free(at);
+    cag_free(at);
   }
   if (status) {
-    free(list.at);
+    cag_free(list.at);
     return status;
   }
   c->breaks = list.at;
@@ -332,7 +332,7 @@ static void destroy(CagCurve *curve) {
   OnSurface *c = (OnSurface *)curve;
   cag_surface_release(c->surface);
   cag_curve_release(c->plane);
-  free(c->breaks);
+  cag_free(c->breaks);
 }
 
 static const CagCurveKind on_surface_kind = {

@@ -2,8 +2,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/surface/family.h"
 #include "geom/surface/nearest.h"
 #include "geom/surface/reshape.h"
@@ -43,8 +43,8 @@ static CagStatus make(const CagSurfaceKind *kind, const CagSurface *inner, doubl
 static void derived_destroy(CagSurface *s) {
   Derived *d = (Derived *)s;
   cag_surface_release(d->inner);
-  free(d->breaks[0].at);
-  free(d->breaks[1].at);
+  cag_free(d->breaks[0].at);
+  cag_free(d->breaks[1].at);
 }
 
 static void derived_describe(const CagSurface *s, char *buffer, size_t size) {

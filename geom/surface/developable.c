@@ -9,8 +9,8 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/basis/chebyshev.h"
 #include "geom/curve/frenet.h"
 #include "geom/surface/family.h"
@@ -261,14 +261,14 @@ static size_t developable_breaks(const CagSurface *s, int direction, double *out
   if (direction == 0) return 0;
   size_t of_t = cag_chebyshev_breaks(w->t, NULL, 0);
   size_t of_a = w->a->kind->breaks ? w->a->kind->breaks(w->a, NULL, 0) : 0, n = of_t;
-  double *all = malloc((of_t + of_a + 1) * sizeof *all);
+  double *all = cag_malloc((of_t + of_a + 1) * sizeof *all);
   if (!all) return cag_note_memory(), 0;
   cag_chebyshev_breaks(w->t, all, of_t);
   if (of_a > 0) w->a->kind->breaks(w->a, all + n, of_a);
   for (size_t i = 0; i < of_a; i++) all[of_t + i] = (all[of_t + i] - w->s0) / (w->s1 - w->s0);
   n = cag_surface_tidy_breaks(all, of_t + of_a, 0, 1);
   for (size_t i = 0; i < n && i < capacity; i++) out[i] = all[i];
-  free(all);
+  cag_free(all);
   return n;
 }
 
@@ -360,7 +360,7 @@ static CagStatus match(Match *m, CagSurface **out, CagError *err) {
 CagStatus cag_surface_developable(const CagCurve *first, const CagCurve *second, CagSurface **out,
                                   CagError *err) {
   CagCurve *a = NULL, *b = NULL;
-  Match *m = malloc(sizeof *m);
+  Match *m = cag_malloc(sizeof *m);
   CagStatus status = m ? cag_surface_space_curve(first, &a, err) : cag_fail_memory(err);
   if (!status) status = cag_surface_space_curve(second, &b, err);
   if (!status) {
@@ -372,6 +372,6 @@ CagStatus cag_surface_developable(const CagCurve *first, const CagCurve *second,
   }
   cag_curve_release(a);
   cag_curve_release(b);
-  free(m);
+  cag_free(m);
   return status;
 }

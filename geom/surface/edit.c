@@ -7,9 +7,9 @@
 #include "geom/surface/edit.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
 #include "geom/surface/reshape.h"
@@ -71,8 +71,8 @@ CagStatus cag_surface_set_point(const CagSurface *s, size_t i, size_t j, CagVec3
     cag_surface_release(exact);
     return status;
   }
-  CagVec3 *net = malloc(n * m * sizeof *net);
-  double *weights = malloc(n * m * sizeof *weights);
+  CagVec3 *net = cag_malloc(n * m * sizeof *net);
+  double *weights = cag_malloc(n * m * sizeof *weights);
   if (!net || !weights) status = cag_fail_memory(err);
   for (size_t k = 0; !status && k < n * m; k++) {
     const double *h = v.homogeneous + 4 * (k / m * v.nv + k % m);
@@ -85,8 +85,8 @@ CagStatus cag_surface_set_point(const CagSurface *s, size_t i, size_t j, CagVec3
     status = cag_surface_nurbs_closed(net, weights, n, m, v.degree_u, v.degree_v, v.knots_u,
                                       v.knots_v, v.periodic_u, v.periodic_v, out, err);
   }
-  free(net);
-  free(weights);
+  cag_free(net);
+  cag_free(weights);
   cag_surface_release(exact);
   return status;
 }
@@ -175,14 +175,14 @@ CagStatus cag_surface_edit_corner(const CagSurface *s, const CagCornerEdit *edit
                       "the surface does not end in its control points: only one with open knots "
                       "has corners to edit; `trim` over its domain gives it some");
   else {
-    h = malloc(4 * v.nu * v.nv * sizeof *h);
+    h = cag_malloc(4 * v.nu * v.nv * sizeof *h);
     if (!h) status = cag_fail_memory(err);
   }
   if (!status) {
     memcpy(h, v.homogeneous, 4 * v.nu * v.nv * sizeof *h);
     status = move_corner(h, &v, edit, &u, &w, out, err);
   }
-  free(h);
+  cag_free(h);
   cag_surface_release(exact);
   return status;
 }
@@ -287,7 +287,7 @@ CagStatus cag_surface_join_lines(const CagSurface *s, int side, int degree, cons
   status = check_match(&edge, how, err);
   double *out = NULL;
   if (!status) {
-    out = malloc(8 * edge.count * sizeof *out);
+    out = cag_malloc(8 * edge.count * sizeof *out);
     if (!out) status = cag_fail_memory(err);
   }
   if (!status) {
@@ -298,7 +298,7 @@ CagStatus cag_surface_join_lines(const CagSurface *s, int side, int degree, cons
   }
   *count = edge.count;
   cag_net_free(&edge);
-  if (status) free(out);
+  if (status) cag_free(out);
   else *lines = out;
   return status;
 }
@@ -320,7 +320,7 @@ static CagStatus put_lines(CagNet *b, const CagNet *across, int side, const CagN
   bool last = side % 2 == 1;
   double span =
       last ? across->knots[n] - across->knots[n - 1] : across->knots[p + 1] - across->knots[p];
-  double *line = malloc(4 * edge->count * sizeof *line);
+  double *line = cag_malloc(4 * edge->count * sizeof *line);
   if (!line) return cag_fail_memory(err);
   CagStatus status = second_line(edge, (double)across->degree / span, line, err);
   // All weights of a surface may have a factor: that of b holds.
@@ -334,7 +334,7 @@ static CagStatus put_lines(CagNet *b, const CagNet *across, int side, const CagN
       second[c] = factor * line[4 * j + c];
     }
   }
-  free(line);
+  cag_free(line);
   return status;
 }
 
@@ -410,8 +410,8 @@ static CagStatus side_tangent(const CagSurface *s, int direction, double at, dou
 CagStatus cag_surface_creases(const CagSurface *s, int direction, CagCrease **out, size_t *n,
                               CagError *err) {
   size_t count = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
-  double *at = malloc((count + 1) * sizeof *at);
-  CagCrease *found = malloc((count + 1) * sizeof *found);
+  double *at = cag_malloc((count + 1) * sizeof *at);
+  CagCrease *found = cag_malloc((count + 1) * sizeof *found);
   CagStatus status = at && found ? CAG_OK : cag_fail_memory(err);
   if (!status && count > 0) s->kind->breaks(s, direction, at, count);
   double lo = direction == 0 ? s->v0 : s->u0, hi = direction == 0 ? s->v1 : s->u1;
@@ -429,8 +429,8 @@ CagStatus cag_surface_creases(const CagSurface *s, int direction, CagCrease **ou
     }
     if (most > CREASE_LEAST) found[(*n)++] = (CagCrease){at[i], most};
   }
-  free(at);
-  if (status) free(found);
+  cag_free(at);
+  if (status) cag_free(found);
   else *out = found;
   return status;
 }

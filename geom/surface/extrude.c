@@ -6,9 +6,9 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/linalg/complex.h"
 #include "geom/surface/family.h"
 #include "geom/surface/swept.h"
@@ -64,8 +64,8 @@ static CagStatus extrusion_grid(const CagSurface *s, const double *us, size_t nu
                                 size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv,
                                 CagError *err) {
   const Extrusion *e = (const Extrusion *)s;
-  CagVec3 *c = malloc((2 * nu + 1) * sizeof *c);
-  double complex *m = malloc((2 * nv + 1) * sizeof *m);
+  CagVec3 *c = cag_malloc((2 * nu + 1) * sizeof *c);
+  double complex *m = cag_malloc((2 * nv + 1) * sizeof *m);
   CagStatus status =
       c && m ? cag_curve_eval_many(e->section, us, nu, 1, c, err) : cag_fail_memory(err);
   for (size_t j = 0; !status && j < nv; j++) factors(e, vs[j], 1, &m[2 * j]);
@@ -80,8 +80,8 @@ static CagStatus extrusion_grid(const CagSurface *s, const double *us, size_t nu
         dv[at] = cag_add(d, e->along);
       }
     }
-  free(c);
-  free(m);
+  cag_free(c);
+  cag_free(m);
   return status;
 }
 
@@ -99,7 +99,7 @@ static CagStatus extrusion_to_nurbs(const CagSurface *s, CagSurface **out, CagEr
   if (status) return status;
   CagNurbsView c;
   cag_curve_nurbs_view(exact, &c);
-  double *net = malloc(8 * c.count * sizeof *net);
+  double *net = cag_malloc(8 * c.count * sizeof *net);
   if (!net) status = cag_fail_memory(err);
   else {
     for (size_t i = 0; i < c.count; i++) {
@@ -114,7 +114,7 @@ static CagStatus extrusion_to_nurbs(const CagSurface *s, CagSurface **out, CagEr
     const double knots[4] = {0, 0, 1, 1};
     status = cag_surface_from_homogeneous(net, c.count, 2, c.degree, 1, c.knots, knots, out, err);
   }
-  free(net);
+  cag_free(net);
   cag_curve_release(exact);
   return status;
 }

@@ -4,7 +4,8 @@
 #include "geom/surface/frames.h"
 
 #include <float.h>
-#include <stdlib.h>
+
+#include "base/memory.h"
 
 // Rows are evaluated together up to this many points: their partials stay in the cache.
 #define TOGETHER 4096
@@ -30,7 +31,7 @@ CagStatus cag_surface_eval_frames(const CagSurface *s, const double *us, size_t 
     return status;
   size_t rows = nv < TOGETHER ? TOGETHER / nv : 1;
   if (rows > nu) rows = nu;
-  CagVec3 *own = du && dv ? NULL : malloc(2 * rows * nv * sizeof *own);
+  CagVec3 *own = du && dv ? NULL : cag_malloc(2 * rows * nv * sizeof *own);
   if (!own && !(du && dv)) return cag_fail_memory(err);
   for (size_t i = 0, n; !status && i < nu; i += n) {
     n = nu - i < rows ? nu - i : rows;
@@ -40,6 +41,6 @@ CagStatus cag_surface_eval_frames(const CagSurface *s, const double *us, size_t 
       if (!cag_normal_of_partials(s, points[i * nv + k], a[k], b[k], &normals[i * nv + k]))
         normals[i * nv + k] = cag_vec3(0, 0, 0);
   }
-  free(own);
+  cag_free(own);
   return status;
 }

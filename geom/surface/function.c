@@ -9,8 +9,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/surface/family.h"
 
@@ -50,7 +50,7 @@ static CagStatus eval_grid(const CagSurface *s, const double *us, size_t nu, con
   const CagSurfaceFunction *f = &((const Function *)s)->function;
   const bool partials = du || dv;
   const size_t each = partials ? 3 : 1;
-  CagVec3 *row = malloc((nv ? nv : 1) * each * sizeof *row);
+  CagVec3 *row = cag_malloc((nv ? nv : 1) * each * sizeof *row);
   if (!row) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < nu; i++) {
@@ -65,7 +65,7 @@ static CagStatus eval_grid(const CagSurface *s, const double *us, size_t nu, con
       if (dv) dv[at] = p[2];
     }
   }
-  free(row);
+  cag_free(row);
   return status;
 }
 

@@ -2,9 +2,9 @@
 // least squares in rounds of solving for the net and moving the parameters.
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/knots.h"
 #include "geom/surface/family.h"
 #include "geom/surface/grid_fit.h"
@@ -32,7 +32,7 @@ static void line_parameters(const CagVec3 *p, size_t n, size_t stride, bool even
 static CagStatus mean_parameters(const CagGridData *g, int direction, double end, double *out,
                                  CagError *err) {
   size_t n = direction == 0 ? g->r : g->s, lines = direction == 0 ? g->s : g->r;
-  double *one = malloc(n * sizeof *one);
+  double *one = cag_malloc(n * sizeof *one);
   if (!one) return cag_fail_memory(err);
   for (size_t i = 0; i < n; i++) out[i] = 0;
   for (size_t k = 0; k < lines; k++) {
@@ -42,7 +42,7 @@ static CagStatus mean_parameters(const CagGridData *g, int direction, double end
     for (size_t i = 0; i < n; i++) out[i] += one[i] / (double)lines;
   }
   out[n - 1] = end;
-  free(one);
+  cag_free(one);
   return CAG_OK;
 }
 
@@ -85,13 +85,13 @@ static CagStatus interpolate_banded(const CagGridData *g, CagSurface **out, CagE
   CagStatus status;
   CagNet net, across = {0};
   CagSurface *half = NULL;
-  double *at = malloc((g->r + g->s) * sizeof *at);
+  double *at = cag_malloc((g->r + g->s) * sizeof *at);
   if (!at) return cag_fail_memory(err);
   status = mean_parameters(g, 0, 1, at, err);
   if (!status) status = mean_parameters(g, 1, 1, at + g->r, err);
   if (!status) status = cag_net_new(g->degree_u, g->r, 4 * g->s, &net, err);
   if (status) {
-    free(at);
+    cag_free(at);
     return status;
   }
   status = cag_net_new(g->degree_v, g->s, 0, &across, err);
@@ -114,7 +114,7 @@ static CagStatus interpolate_banded(const CagGridData *g, CagSurface **out, CagE
     cag_net_free(&net);
     cag_net_free(&across);
   }
-  free(at);
+  cag_free(at);
   return status;
 }
 
@@ -149,9 +149,9 @@ void cag_grid_parameters(const CagGridData *g, const double end[2], double *u, d
 }
 
 void cag_grid_report_free(CagGridReport *report) {
-  free(report->u);
-  free(report->v);
-  free(report->planes);
+  cag_free(report->u);
+  cag_free(report->v);
+  cag_free(report->planes);
   *report = (CagGridReport){0};
 }
 
@@ -166,7 +166,7 @@ static CagStatus make_axis(const CagGridData *g, int k, size_t count, CagGridAxi
   *a = (CagGridAxis){degree, count, count, g->closed[k], NULL};
   if (a->closed) a->stored += (size_t)degree;
   size_t n = a->stored + (size_t)degree + 1;
-  a->knots = malloc(n * sizeof *a->knots);
+  a->knots = cag_malloc(n * sizeof *a->knots);
   if (!a->knots) return cag_fail_memory(err);
   if (a->closed)
     for (size_t i = 0; i < n; i++) a->knots[i] = (double)i - degree;
@@ -246,7 +246,7 @@ static CagStatus move_parameters(CagGridFit *f, const CagSurface *s, CagError *e
 static CagStatus improve(CagGridFit *f, CagSurface **s, CagGridReport *report, CagError *err) {
   double *kept[2];
   CagStatus status = CAG_OK;
-  for (int k = 0; k < 2; k++) kept[k] = malloc(f->rows * sizeof(double));
+  for (int k = 0; k < 2; k++) kept[k] = cag_malloc(f->rows * sizeof(double));
   if (!kept[0] || !kept[1]) status = cag_fail_memory(err);
   for (int round = 0; !status && round < f->g->corrections; round++) {
     CagGridReport next = {0};
@@ -267,8 +267,8 @@ static CagStatus improve(CagGridFit *f, CagSurface **s, CagGridReport *report, C
     report->largest = next.largest;
     report->rounds++;
   }
-  free(kept[0]);
-  free(kept[1]);
+  cag_free(kept[0]);
+  cag_free(kept[1]);
   return status;
 }
 
@@ -303,12 +303,12 @@ static CagStatus take_parameters(CagGridFit *f, CagError *err) {
 
 static void fit_free(CagGridFit *f) {
   for (int k = 0; k < 2; k++) {
-    free(f->axis[k].knots);
-    free(f->parameters[k]);
+    cag_free(f->axis[k].knots);
+    cag_free(f->parameters[k]);
   }
-  free(f->net);
-  free(f->held);
-  free(f->planes);
+  cag_free(f->net);
+  cag_free(f->held);
+  cag_free(f->planes);
 }
 
 CagStatus cag_surface_fit(const CagGridData *g, size_t nu, size_t nv, CagSurface **out,
@@ -319,8 +319,8 @@ CagStatus cag_surface_fit(const CagGridData *g, size_t nu, size_t nv, CagSurface
   CagGridReport own = {0};
   status = make_axis(g, 0, nu, &f.axis[0], err);
   if (!status) status = make_axis(g, 1, nv, &f.axis[1], err);
-  for (int k = 0; k < 2; k++) f.parameters[k] = malloc(f.rows * sizeof(double));
-  f.net = malloc(nu * nv * sizeof *f.net);
+  for (int k = 0; k < 2; k++) f.parameters[k] = cag_malloc(f.rows * sizeof(double));
+  f.net = cag_malloc(nu * nv * sizeof *f.net);
   if (!status && (!f.parameters[0] || !f.parameters[1] || !f.net)) status = cag_fail_memory(err);
   if (!status) status = take_parameters(&f, err);
   CagSurface *s = NULL;
@@ -347,8 +347,8 @@ CagStatus cag_surface_fit(const CagGridData *g, size_t nu, size_t nv, CagSurface
 static CagStatus interpolation_knots(const CagGridData *g, int k, double **out, CagError *err) {
   size_t n = k ? g->s : g->r;
   int degree = k ? g->degree_v : g->degree_u;
-  double *at = malloc(n * sizeof *at);
-  *out = malloc((n + (size_t)degree + 1) * sizeof **out);
+  double *at = cag_malloc(n * sizeof *at);
+  *out = cag_malloc((n + (size_t)degree + 1) * sizeof **out);
   CagStatus status = at && *out ? CAG_OK : cag_fail_memory(err);
   if (!status && !g->parameters[k]) status = mean_parameters(g, k, 1, at, err);
   for (size_t i = 0; !status && g->parameters[k] && i < n; i++) {
@@ -359,7 +359,7 @@ static CagStatus interpolation_knots(const CagGridData *g, int k, double **out, 
                         "uv"[k], i);
   }
   if (!status) cag_net_averaged_knots(at, n, degree, *out);
-  free(at);
+  cag_free(at);
   return status;
 }
 
@@ -378,8 +378,8 @@ CagStatus cag_surface_interpolate_report(const CagGridData *g, CagSurface **out,
       all.knots[k] = knots[k];
     }
   if (!status) status = cag_surface_fit(&all, g->r, g->s, out, report, err);
-  free(knots[0]);
-  free(knots[1]);
+  cag_free(knots[0]);
+  cag_free(knots[1]);
   return status;
 }
 

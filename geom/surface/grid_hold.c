@@ -8,9 +8,9 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/basis/knots.h"
 #include "geom/surface/grid_fit.h"
@@ -133,7 +133,7 @@ static double between(const double *at, const double *x, size_t n, double t) {
 static CagStatus find_planes(CagGridFit *f, CagError *err) {
   const CagGridAxis *a = &f->axis[f->planes_along];
   const size_t n = f->planes_along == 0 ? f->g->r : f->g->s, p = (size_t)a->degree;
-  double *at = malloc(2 * n * sizeof *at), least = INFINITY, most = -INFINITY;
+  double *at = cag_malloc(2 * n * sizeof *at), least = INFINITY, most = -INFINITY;
   if (!at) return cag_fail_memory(err);
   double *x = at + n;
   stations(f, at, x);
@@ -150,7 +150,7 @@ static CagStatus find_planes(CagGridFit *f, CagError *err) {
   double *first = &f->planes[0], *last = &f->planes[a->count - 1];
   *first = grows ? fmin(*first, least) : fmax(*first, most);
   *last = grows ? fmax(*last, most) : fmin(*last, least);
-  free(at);
+  cag_free(at);
   for (size_t i = 1; i < a->count; i++)
     if (grows ? !(f->planes[i] > f->planes[i - 1]) : !(f->planes[i] < f->planes[i - 1]))
       return cag_fail(err, CAG_E_ARGUMENT, "planes-not-monotone", "planes", (long)i,
@@ -241,7 +241,7 @@ static CagStatus hold_planes(CagGridFit *f, int *rounds, CagError *err) {
   if (!status && f->g->planes) status = check_given(f, err);
   if (status) return status;
   const size_t count = f->axis[f->planes_along].count, nv = f->axis[1].count;
-  f->planes = malloc(count * sizeof *f->planes);
+  f->planes = cag_malloc(count * sizeof *f->planes);
   if (!f->planes) return cag_fail_memory(err);
   if (f->g->planes) memcpy(f->planes, f->g->planes, count * sizeof *f->planes);
   else status = find_planes(f, err);
@@ -372,7 +372,7 @@ static CagStatus hold_first_fit(CagGridFit *f, int *rounds, CagError *err) {
 
 CagStatus cag_grid_hold(CagGridFit *f, int *rounds, CagError *err) {
   *rounds = 0;
-  f->held = malloc(f->axis[0].count * f->axis[1].count * sizeof *f->held);
+  f->held = cag_malloc(f->axis[0].count * f->axis[1].count * sizeof *f->held);
   if (!f->held) return cag_fail_memory(err);
   return f->g->lines == CAG_GRID_PLANES_NONE ? hold_first_fit(f, rounds, err)
                                              : hold_planes(f, rounds, err);

@@ -8,9 +8,9 @@
 
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/basis/knots.h"
 #include "geom/surface/family.h"
@@ -69,9 +69,9 @@ static bool keeps_ends(const CagGridFit *f, int k) { return f->edges && !f->axis
 static CagStatus solve_lines(const CagGridAxis *a, bool ends, const double *parameters,
                              size_t stride, size_t n, CagVec3 *data, size_t lines, CagError *err) {
   const size_t skip = ends ? 1 : 0, unknown = a->count - 2 * skip;
-  double *matrix = calloc(n * a->count, sizeof *matrix);
-  double *right = malloc(3 * n * lines * sizeof *right);
-  CagVec3 *last = malloc(lines * sizeof *last);
+  double *matrix = cag_calloc(n * a->count, sizeof *matrix);
+  double *right = cag_malloc(3 * n * lines * sizeof *right);
+  CagVec3 *last = cag_malloc(lines * sizeof *last);
   CagStatus status = matrix && right && last ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
     double *row = matrix + i, known[2] = {0, 0};
@@ -95,15 +95,15 @@ static CagStatus solve_lines(const CagGridAxis *a, bool ends, const double *para
       data[(i + skip) * lines + l] =
           cag_vec3(right[(3 * l) * n + i], right[(3 * l + 1) * n + i], right[(3 * l + 2) * n + i]);
   if (!status && ends) memcpy(data + (a->count - 1) * lines, last, lines * sizeof *last);
-  free(matrix);
-  free(right);
-  free(last);
+  cag_free(matrix);
+  cag_free(right);
+  cag_free(last);
   return status;
 }
 
 static CagStatus solve_product(CagGridFit *f, CagError *err) {
   size_t r = f->g->r, s = f->g->s, nu = f->axis[0].count, nv = f->axis[1].count;
-  CagVec3 *data = malloc(r * s * sizeof *data), *turned = malloc(nu * s * sizeof *turned);
+  CagVec3 *data = cag_malloc(r * s * sizeof *data), *turned = cag_malloc(nu * s * sizeof *turned);
   CagStatus status = data && turned ? CAG_OK : cag_fail_memory(err);
   if (!status) {
     memcpy(data, f->g->points, r * s * sizeof *data);
@@ -115,8 +115,8 @@ static CagStatus solve_product(CagGridFit *f, CagError *err) {
     status = solve_lines(&f->axis[1], keeps_ends(f, 1), f->parameters[1], 1, s, turned, nu, err);
   for (size_t i = 0; !status && i < nu; i++)
     for (size_t j = 0; j < nv; j++) f->net[i * nv + j] = turned[j * nu + i];
-  free(data);
-  free(turned);
+  cag_free(data);
+  cag_free(turned);
   return status;
 }
 
@@ -137,12 +137,12 @@ static CagStatus solve_edge(CagGridFit *f, int k, bool last, CagVec3 *line, CagE
 }
 
 static CagStatus solve_edges(CagGridFit *f, CagError *err) {
-  CagVec3 *line = malloc((f->g->r + f->g->s) * sizeof *line);
+  CagVec3 *line = cag_malloc((f->g->r + f->g->s) * sizeof *line);
   CagStatus status = line ? CAG_OK : cag_fail_memory(err);
   for (int k = 0; k < 2; k++)
     for (int last = 0; !status && keeps_ends(f, k) && last < 2; last++)
       status = solve_edge(f, k, last, line, err);
-  free(line);
+  cag_free(line);
   return status;
 }
 
@@ -180,8 +180,9 @@ static CagStatus solve_dense(CagGridFit *f, CagError *err) {
                     "%zu points; take fewer control points, fit parts, or use the \"mean\" "
                     "parameters",
                     columns, rows);
-  double *matrix = malloc(rows * columns * sizeof *matrix);
-  double *right = malloc(3 * rows * sizeof *right), *basis = malloc((nu + nv) * sizeof *basis);
+  double *matrix = cag_malloc(rows * columns * sizeof *matrix);
+  double *right = cag_malloc(3 * rows * sizeof *right),
+         *basis = cag_malloc((nu + nv) * sizeof *basis);
   CagStatus status = matrix && right && basis ? CAG_OK : cag_fail_memory(err);
   if (!status) status = solve_edges(f, err);
   for (size_t row = 0; !status && row < rows; row++) fill_dense(f, row, basis, matrix, right);
@@ -193,9 +194,9 @@ static CagStatus solve_dense(CagGridFit *f, CagError *err) {
     f->net[i] = cag_vec3(right[k], right[rows + k], right[2 * rows + k]);
     k++;
   }
-  free(matrix);
-  free(right);
-  free(basis);
+  cag_free(matrix);
+  cag_free(right);
+  cag_free(basis);
   return status;
 }
 

@@ -7,8 +7,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/curve/family.h"
 #include "geom/surface/family.h"
@@ -130,13 +130,13 @@ static size_t isocurve_breaks(const CagCurve *curve, double *out, size_t capacit
   int direction = c->direction == 0 ? 1 : 0;
   size_t n = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
   if (n == 0) return 0;
-  double *all = malloc(n * sizeof *all);
+  double *all = cag_malloc(n * sizeof *all);
   if (!all) return cag_note_memory(), 0;
   s->kind->breaks(s, direction, all, n);
   for (size_t i = 0; i < n; i++) all[i] = (all[i] - c->offset) / c->factor;
   n = cag_surface_tidy_breaks(all, n, curve->start, curve->end);
   for (size_t i = 0; i < n && i < capacity; i++) out[i] = all[i];
-  free(all);
+  cag_free(all);
   return n;
 }
 
@@ -223,9 +223,9 @@ static CagStatus of_nurbs(const CagSurfaceNurbsView *view, int direction, double
   size_t fixed = direction == 0 ? view->nu : view->nv, n = direction == 0 ? view->nv : view->nu;
   const double *knots = direction == 0 ? view->knots_u : view->knots_v;
   size_t span = cag_knots_span(knots, fixed, p, at, side == CAG_SIDE_LEFT, (size_t)p);
-  double *basis = malloc((size_t)(p + 1) * sizeof *basis);
-  CagVec3 *points = malloc(n * sizeof *points);
-  double *weights = malloc(n * sizeof *weights);
+  double *basis = cag_malloc((size_t)(p + 1) * sizeof *basis);
+  CagVec3 *points = cag_malloc(n * sizeof *points);
+  double *weights = cag_malloc(n * sizeof *weights);
   CagStatus status = basis && points && weights ? CAG_OK : cag_fail_memory(err);
   if (!status) cag_bspline_basis(knots, p, span, at, basis);
   for (size_t j = 0; !status && j < n; j++) {
@@ -243,9 +243,9 @@ static CagStatus of_nurbs(const CagSurfaceNurbsView *view, int direction, double
     status = cag_curve_nurbs(points, view->rational ? weights : NULL, n,
                              direction == 0 ? view->degree_v : view->degree_u,
                              direction == 0 ? view->knots_v : view->knots_u, 3, out, err);
-  free(basis);
-  free(points);
-  free(weights);
+  cag_free(basis);
+  cag_free(points);
+  cag_free(weights);
   return status;
 }
 

@@ -7,9 +7,9 @@
 
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
@@ -26,12 +26,12 @@ static CagStatus gather(const CagNet *sections, size_t n, int degree, CagNet *ou
 
 // Data rows, one for each section, become the coefficients of the spline that meets row j at v = j.
 static CagStatus open_spline(CagNet *net, CagError *err) {
-  double *at = malloc(net->count * sizeof *at);
+  double *at = cag_malloc(net->count * sizeof *at);
   if (!at) return cag_fail_memory(err);
   for (size_t j = 0; j < net->count; j++) at[j] = (double)j;
   cag_net_averaged_knots(at, net->count, net->degree, net->knots);
   CagStatus status = cag_net_interpolate(net, at, err);
-  free(at);
+  cag_free(at);
   return status;
 }
 
@@ -41,8 +41,8 @@ static CagStatus solve_circulant(CagNet *net, CagError *err) {
   double knots[64], basis[32];
   for (size_t i = 0; i < 2 * p + 2; i++) knots[i] = (double)i;
   cag_bspline_basis(knots, net->degree, p, (double)p, basis);
-  double *a = calloc(n * n, sizeof *a);
-  lapack_int *pivots = malloc(n * sizeof *pivots);
+  double *a = cag_calloc(n * n, sizeof *a);
+  lapack_int *pivots = cag_malloc(n * sizeof *pivots);
   CagStatus status = a && pivots ? CAG_OK : cag_fail_memory(err);
   if (!status) {
     for (size_t j = 0; j < n; j++)
@@ -54,8 +54,8 @@ static CagStatus solve_circulant(CagNet *net, CagError *err) {
           cag_fail(err, CAG_E_DEGENERATE, "fit-singular", "degree", -1,
                    "`degree` %zu has no closed loft through %zu curves: take another degree", p, n);
   }
-  free(a);
-  free(pivots);
+  cag_free(a);
+  cag_free(pivots);
   return status;
 }
 
@@ -120,7 +120,7 @@ static CagStatus loft_curves(const CagCurve *const *curves, size_t n, int degree
 
 CagStatus cag_surface_loft(const CagCurve *const *curves, size_t n, int degree, bool closed,
                            CagSurface **out, CagError *err) {
-  CagNet *sections = calloc(n, sizeof *sections);
+  CagNet *sections = cag_calloc(n, sizeof *sections);
   if (!sections) return cag_fail_memory(err);
   CagStatus status = closed ? check_closed(degree, n, err) : CAG_OK;
   for (size_t i = 0; !status && i < n; i++) {
@@ -135,6 +135,6 @@ CagStatus cag_surface_loft(const CagCurve *const *curves, size_t n, int degree, 
   if (!status) status = loft_nets(sections, n, degree, closed, out, err);
   if (formulas) status = loft_curves(curves, n, degree, closed, out, err);
   for (size_t i = 0; i < n; i++) cag_net_free(&sections[i]);
-  free(sections);
+  cag_free(sections);
   return status;
 }

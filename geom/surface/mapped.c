@@ -7,8 +7,9 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 // Part of the domain's diagonal that an edge may span: more could hide a wave between its ends.
 #define SPAN 0.08
@@ -51,7 +52,7 @@ static bool map_vertex(Mapping *m, CagVec3 p, Vertex *out) {
 static uint32_t add_vertex(Mapping *m, const Vertex *v) {
   if (m->count == m->capacity) {
     size_t capacity = 2 * m->capacity + 64;
-    Vertex *grown = realloc(m->vertices, capacity * sizeof *grown);
+    Vertex *grown = cag_realloc(m->vertices, capacity * sizeof *grown);
     if (!grown) {
       m->status = cag_fail_memory(m->err);
       return NONE;
@@ -65,9 +66,9 @@ static uint32_t add_vertex(Mapping *m, const Vertex *v) {
 
 static bool load(Mapping *m, const CagMesh *mesh) {
   // Copies of a vertex at sharp edges are one here.
-  uint32_t *place = malloc((mesh->vertex_count + 1) * sizeof *place);
+  uint32_t *place = cag_malloc((mesh->vertex_count + 1) * sizeof *place);
   m->triangle_count = mesh->triangle_count;
-  m->triangles = malloc((3 * mesh->triangle_count + 1) * sizeof *m->triangles);
+  m->triangles = cag_malloc((3 * mesh->triangle_count + 1) * sizeof *m->triangles);
   if (!place || !m->triangles) m->status = cag_fail_memory(m->err);
   for (size_t i = 0; i < mesh->vertex_count && !m->status; i++) {
     uint32_t first = mesh->weld ? mesh->weld[i] : (uint32_t)i;
@@ -77,7 +78,7 @@ static bool load(Mapping *m, const CagMesh *mesh) {
   }
   for (size_t i = 0; i < 3 * mesh->triangle_count && !m->status; i++)
     m->triangles[i] = place[mesh->triangles[i]];
-  free(place);
+  cag_free(place);
   return m->status == CAG_OK;
 }
 
@@ -86,11 +87,11 @@ static bool load(Mapping *m, const CagMesh *mesh) {
 static bool make_table(Mapping *m) {
   size_t slots = 16;
   while (slots < 6 * m->triangle_count) slots *= 2; // at most half full
-  free(m->keys);
-  free(m->middles);
+  cag_free(m->keys);
+  cag_free(m->middles);
   m->slots = slots;
-  m->keys = malloc(slots * sizeof *m->keys);
-  m->middles = malloc(slots * sizeof *m->middles);
+  m->keys = cag_malloc(slots * sizeof *m->keys);
+  m->middles = cag_malloc(slots * sizeof *m->middles);
   if (!m->keys || !m->middles) {
     m->status = cag_fail_memory(m->err);
     return false;
@@ -165,7 +166,7 @@ static void divide_triangle(const uint32_t v[3], const uint32_t e[3], uint32_t *
 static bool divide_all(Mapping *m, bool *changed) {
   if (!make_table(m)) return false;
   size_t before = m->count, n = 0;
-  uint32_t *parts = malloc((12 * m->triangle_count + 1) * sizeof *parts);
+  uint32_t *parts = cag_malloc((12 * m->triangle_count + 1) * sizeof *parts);
   if (!parts) m->status = cag_fail_memory(m->err);
   for (size_t t = 0; t < m->triangle_count && !m->status; t++) {
     const uint32_t *v = &m->triangles[3 * t];
@@ -175,10 +176,10 @@ static bool divide_all(Mapping *m, bool *changed) {
   }
   *changed = m->count > before;
   if (m->status) {
-    free(parts);
+    cag_free(parts);
     return false;
   }
-  free(m->triangles);
+  cag_free(m->triangles);
   m->triangles = parts;
   m->triangle_count = n / 3;
   if (m->triangle_count <= m->triangle_most) return true;
@@ -216,9 +217,9 @@ CagStatus cag_mesh_onto_surface(const CagMesh *mesh, const CagSurface *s, double
     if (!divide_all(&m, &changed)) break;
   }
   CagStatus status = m.status ? m.status : give(&m, sheet, out, err);
-  free(m.vertices);
-  free(m.triangles);
-  free(m.keys);
-  free(m.middles);
+  cag_free(m.vertices);
+  cag_free(m.triangles);
+  cag_free(m.keys);
+  cag_free(m.middles);
   return status;
 }

@@ -7,9 +7,9 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/line_integral.h"
 #include "geom/surface/family.h"
@@ -154,8 +154,8 @@ static CagStatus integrate(Integral *in, CagError *err) {
           in->size[k] += sums.magnitude[k];
       }
   }
-  free(us);
-  free(vs);
+  cag_free(us);
+  cag_free(vs);
   return status;
 }
 
@@ -457,7 +457,7 @@ CagStatus cag_surface_bounds(const CagSurface *s, CagBounds *out, CagError *err)
   if (cag_surface_trimmed_view(s, NULL, NULL)) return cag_trimmed_bounds(s, out, err);
   double *us = NULL, *vs = NULL;
   size_t nu = 0, nv = 0;
-  CagVec3 *points = malloc((SAMPLES_FEW + 1) * (SAMPLES_FEW + 1) * sizeof *points);
+  CagVec3 *points = cag_malloc((SAMPLES_FEW + 1) * (SAMPLES_FEW + 1) * sizeof *points);
   CagStatus status = points ? cag_surface_cuts(s, 0, &us, &nu, err) : cag_fail_memory(err);
   if (!status) status = cag_surface_cuts(s, 1, &vs, &nv, err);
   double best[6];
@@ -468,9 +468,9 @@ CagStatus cag_surface_bounds(const CagSurface *s, CagBounds *out, CagError *err)
       Cell c = {us[i], us[i + 1], vs[j], vs[j + 1]};
       status = bound_cell(s, &c, n, points, best, err);
     }
-  free(points);
-  free(us);
-  free(vs);
+  cag_free(points);
+  cag_free(us);
+  cag_free(vs);
   if (status) return status;
   *out = (CagBounds){{-best[0], -best[2], -best[4]}, {best[1], best[3], best[5]}};
   return CAG_OK;

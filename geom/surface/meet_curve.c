@@ -11,8 +11,8 @@
 #include "geom/surface/trimmed.h"
 
 #include <float.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/contact.h"
 #include "geom/curve/family.h"
 #include "geom/stop.h"
@@ -182,7 +182,7 @@ static CagStatus merge(Search *s, CagError *err) {
 static CagStatus add(Search *s, CagContact m, CagError *err) {
   if (s->n == s->capacity) {
     size_t capacity = s->capacity ? 2 * s->capacity : 16;
-    CagContact *grown = realloc(s->items, sizeof *grown * capacity);
+    CagContact *grown = cag_realloc(s->items, sizeof *grown * capacity);
     if (!grown) return cag_fail_memory(err);
     s->items = grown;
     s->capacity = capacity;
@@ -275,7 +275,7 @@ static CagStatus along(Search *s, const Part *part, const Cell *cell, CagError *
     middle.a = middle.b = t;
     status = meet(&looks, &middle, cell, 1, &met, &inside, err);
   }
-  free(looks.items);
+  cag_free(looks.items);
   if (status) return status;
   if (met) return fail_overlap(err);
   return meet(s, part, cell, TOUCH_REACH, &met, &inside, err);
@@ -419,7 +419,7 @@ static CagStatus foot(void *context, double t, double at[2], double *gap, double
 static CagStatus search_all(Search *s, const double *tc, size_t nt, const double *uc, size_t nu,
                             const double *vc, size_t nv, CagError *err) {
   const size_t parts = (nt - 1) * FIRST;
-  Part *list = malloc(sizeof *list * parts);
+  Part *list = cag_malloc(sizeof *list * parts);
   if (!list) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < parts; i++) {
@@ -437,7 +437,7 @@ static CagStatus search_all(Search *s, const double *tc, size_t nt, const double
       status = make_cell(s, &cell, err);
       for (size_t k = 0; !status && k < parts; k++) status = pair(s, &list[k], &cell, DEPTH, err);
     }
-  free(list);
+  cag_free(list);
   return status;
 }
 
@@ -466,21 +466,21 @@ CagStatus cag_surface_intersect_curve(const CagSurface *surface, const CagCurve 
   if (!status) status = cag_surface_cuts(surface, 0, &uc, &nu, err);
   if (!status) status = cag_surface_cuts(surface, 1, &vc, &nv, err);
   if (!status) status = search_all(&s, tc, nt, uc, nu, vc, nv, err);
-  free(tc);
-  free(uc);
-  free(vc);
+  cag_free(tc);
+  cag_free(uc);
+  cag_free(vc);
   if (!status) status = merge(&s, err);
   if (!status) status = tidy(&s, err);
   CagSurfaceMeeting *items = NULL;
   if (!status && s.n) {
-    items = malloc(s.n * sizeof *items);
+    items = cag_malloc(s.n * sizeof *items);
     if (!items) status = cag_fail_memory(err);
   }
   for (size_t i = 0; !status && i < s.n; i++) {
     const CagContact *m = &s.items[i];
     items[i] = (CagSurfaceMeeting){m->t, m->at[0], m->at[1], m->point, m->multiplicity};
   }
-  free(s.items);
+  cag_free(s.items);
   if (status) return status;
   *out = items;
   *n = s.n;

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 bool cag_march_fail(CagMarch *m, CagStatus status) {
   m->status = status;
   return false;
@@ -109,7 +111,7 @@ static double into(double x, double low, double high, bool closed) {
 bool cag_march_add_seed(CagMarch *m, CagMarchSeeds *list, const CagMarchNode *seed) {
   if (list->count == list->capacity) {
     const size_t capacity = list->capacity ? 2 * list->capacity : 256;
-    CagMarchNode *grown = realloc(list->items, capacity * sizeof *grown);
+    CagMarchNode *grown = cag_realloc(list->items, capacity * sizeof *grown);
     if (!grown) return cag_march_fail(m, cag_fail_memory(m->err));
     list->items = grown;
     list->capacity = capacity;
@@ -215,8 +217,8 @@ static int by_cell(const void *a, const void *b) {
 // Keeps only the first seed of each cell.
 static bool thin_seeds(CagMarch *m, CagMarchSeeds *seeds) {
   const double width = CELL * m->step_most;
-  CellSeed *list = malloc((seeds->count + 1) * sizeof *list);
-  CagMarchNode *kept = malloc((seeds->count + 1) * sizeof *kept);
+  CellSeed *list = cag_malloc((seeds->count + 1) * sizeof *list);
+  CagMarchNode *kept = cag_malloc((seeds->count + 1) * sizeof *kept);
   size_t n = 0;
   for (size_t i = 0; list && i < seeds->count; i++) {
     const CagMarchNode *s = &seeds->items[i];
@@ -229,12 +231,12 @@ static bool thin_seeds(CagMarch *m, CagMarchSeeds *seeds) {
   for (size_t i = 0; ok && i < seeds->count; i++)
     if (i == 0 || compare_cells(&list[i - 1], &list[i]) != 0)
       kept[n++] = seeds->items[list[i].number];
-  free(list);
+  cag_free(list);
   if (!ok) {
-    free(kept);
+    cag_free(kept);
     return cag_march_fail(m, cag_fail_memory(m->err));
   }
-  free(seeds->items);
+  cag_free(seeds->items);
   *seeds = (CagMarchSeeds){kept, n, seeds->count + 1};
   return true;
 }
@@ -274,7 +276,7 @@ bool cag_march_find_seeds(CagMarch *m, double margin) {
   const int axis = longest_axis(m->side[0].mesh);
   for (int k = 0; k < 2; k++) {
     n[k] = m->side[k].mesh->triangle_count;
-    list[k] = malloc((n[k] + 1) * sizeof *list[k]);
+    list[k] = cag_malloc((n[k] + 1) * sizeof *list[k]);
     ok = ok && list[k];
     for (size_t i = 0; ok && i < n[k]; i++) {
       list[k][i] = facet_of(&m->side[k], i);
@@ -295,7 +297,7 @@ bool cag_march_find_seeds(CagMarch *m, double margin) {
     for (size_t j = first; ok && j < n[1] && list[1][j].low <= f->high + margin; j++)
       ok = add_seeds(m, f, &list[1][j], margin);
   }
-  free(list[0]);
-  free(list[1]);
+  cag_free(list[0]);
+  cag_free(list[1]);
   return ok && thin_seeds(m, &m->touches);
 }

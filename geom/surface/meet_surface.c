@@ -19,8 +19,8 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/mesh/tessellate.h"
 #include "geom/surface/meet_place.h"
 #include "geom/surface/nearest.h"
@@ -69,9 +69,9 @@ static bool add_node(CagMarch *m, Run *run, const CagMarchNode *node, CagVec3 mi
   if (run->n >= NODES_MOST) return false;
   if (run->n == run->capacity) {
     size_t capacity = run->capacity ? 2 * run->capacity : 64;
-    CagMarchNode *nodes = realloc(run->nodes, capacity * sizeof *nodes);
+    CagMarchNode *nodes = cag_realloc(run->nodes, capacity * sizeof *nodes);
     if (nodes) run->nodes = nodes;
-    CagVec3 *middles = realloc(run->middles, capacity * sizeof *middles);
+    CagVec3 *middles = cag_realloc(run->middles, capacity * sizeof *middles);
     if (middles) run->middles = middles;
     if (!nodes || !middles) return cag_march_fail(m, cag_fail_memory(m->err));
     run->capacity = capacity;
@@ -385,9 +385,9 @@ static bool add_curve(CagMarch *m, const Run *run, size_t first, size_t last, bo
   // What a seed at a pole or at a corner of an outline leaves.
   if (n < 2 || reach_of(run, first, last) <= JOINED * m->size) return true;
   CagTrace t = {.count = n, .check_count = n - 1, .closed = closed};
-  t.points = malloc(n * sizeof *t.points);
-  t.tangents = malloc(n * sizeof *t.tangents);
-  t.checks = malloc(n * sizeof *t.checks);
+  t.points = cag_malloc(n * sizeof *t.points);
+  t.tangents = cag_malloc(n * sizeof *t.tangents);
+  t.checks = cag_malloc(n * sizeof *t.checks);
   bool ok = t.points && t.tangents && t.checks;
   if (!ok) cag_march_fail(m, cag_fail_memory(m->err));
   for (size_t i = 0; ok && i < n; i++) {
@@ -398,9 +398,9 @@ static bool add_curve(CagMarch *m, const Run *run, size_t first, size_t last, bo
   CagCurve *curve = NULL;
   CagStatus status = ok ? cag_trace_curve(&t, NULL, m->size, &curve, m->err) : CAG_OK;
   if (ok && !status) status = cag_curve_list_add(out, curve, m->err);
-  free(t.points);
-  free(t.tangents);
-  free(t.checks);
+  cag_free(t.points);
+  cag_free(t.tangents);
+  cag_free(t.checks);
   return ok && (status == CAG_OK || cag_march_fail(m, status));
 }
 
@@ -451,8 +451,8 @@ static bool add_parts(CagMarch *m, const Run *run, CagCurveList *out) {
     was = is;
   }
   if (ok && part.n) ok = add_curve(m, &part, 0, part.n - 1, whole, out);
-  free(part.nodes);
-  free(part.middles);
+  cag_free(part.nodes);
+  cag_free(part.middles);
   return ok;
 }
 
@@ -518,8 +518,8 @@ static bool find_common(CagMarch *m, bool *out) {
 }
 
 static void free_run(Run *run) {
-  free(run->nodes);
-  free(run->middles);
+  cag_free(run->nodes);
+  cag_free(run->middles);
 }
 
 typedef struct Runs {
@@ -529,7 +529,7 @@ typedef struct Runs {
 
 static void free_runs(Runs *runs) {
   for (size_t i = 0; i < runs->n; i++) free_run(&runs->items[i]);
-  free(runs->items);
+  cag_free(runs->items);
 }
 
 // Where the surfaces cross at a small angle, two branches may run so close to each other that all
@@ -552,7 +552,7 @@ static bool keep_run(CagMarch *m, Runs *runs, Run *run) {
   for (size_t k = 0; kept && k < runs->n; k++) kept = !is_twin(m, run, &runs->items[k]);
   if (kept && runs->n == runs->capacity) {
     size_t capacity = runs->capacity ? 2 * runs->capacity : 8;
-    Run *grown = realloc(runs->items, capacity * sizeof *grown);
+    Run *grown = cag_realloc(runs->items, capacity * sizeof *grown);
     if (grown) {
       runs->items = grown;
       runs->capacity = capacity;
@@ -671,8 +671,8 @@ static void close_march(CagMarch *m) {
     cag_mesh_release(m->side[k].mesh);
     cag_patches_free(&m->side[k].patches);
   }
-  free(m->crossings.items);
-  free(m->touches.items);
+  cag_free(m->crossings.items);
+  cag_free(m->touches.items);
 }
 
 // Converts the runs to curves and joins them.

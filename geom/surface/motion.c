@@ -13,9 +13,9 @@
 #include "geom/surface/motion.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/family.h"
 #include "geom/surface/motion_parts.h"
 
@@ -436,7 +436,7 @@ static CagStatus integrate_angle(const CagMotion *t, CagMotionSegment *g, bool *
 static CagStatus add_segment(CagMotion *t, const CagMotionSegment *g, CagError *err) {
   if (t->count == t->room) {
     size_t room = t->room ? 2 * t->room : 16;
-    CagMotionSegment *grown = realloc(t->segments, room * sizeof *grown);
+    CagMotionSegment *grown = cag_realloc(t->segments, room * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     t->segments = grown;
     t->room = room;
@@ -577,8 +577,8 @@ static CagStatus set_miters(CagMotion *t, CagError *err) {
 static CagStatus cut_path(CagMotion *t, CagError *err) {
   const CagCurve *c = t->path;
   size_t inner = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
-  double *ends = malloc((inner + 2) * sizeof *ends);
-  t->pieces = calloc(inner + 1, sizeof *t->pieces);
+  double *ends = cag_malloc((inner + 2) * sizeof *ends);
+  t->pieces = cag_calloc(inner + 1, sizeof *t->pieces);
   CagStatus status = ends && t->pieces ? CAG_OK : cag_fail_memory(err);
   if (!status) {
     ends[0] = c->start;
@@ -591,7 +591,7 @@ static CagStatus cut_path(CagMotion *t, CagError *err) {
     t->pieces[i].v1 = ends[i + 1];
     status = divide(t, i, ends[i], ends[i + 1], 0, err);
   }
-  free(ends);
+  cag_free(ends);
   return status;
 }
 
@@ -647,7 +647,7 @@ static CagStatus moving_path(const CagCurve *path, CagCurve **out, CagError *err
 
 CagStatus cag_motion_along(const CagCurve *path, const CagPathMotion *how, CagMotion **out,
                            CagError *err) {
-  CagMotion *m = calloc(1, sizeof *m);
+  CagMotion *m = cag_calloc(1, sizeof *m);
   if (!m) return cag_fail_memory(err);
   m->references = 1;
   m->how = *how;
@@ -680,7 +680,7 @@ CagStatus cag_motion_along(const CagCurve *path, const CagPathMotion *how, CagMo
 
 CagStatus cag_motion_affine(const CagChebyshev *rows, double a, double b, bool angular,
                             CagMotion **out, CagError *err) {
-  CagMotion *m = calloc(1, sizeof *m);
+  CagMotion *m = cag_calloc(1, sizeof *m);
   if (!m) return cag_fail_memory(err);
   m->references = 1;
   m->rows = cag_chebyshev_retain(rows);
@@ -703,9 +703,9 @@ void cag_motion_release(CagMotion *m) {
   cag_chebyshev_release((CagChebyshev *)m->how.twist.function);
   cag_chebyshev_release((CagChebyshev *)m->how.scale.function);
   cag_chebyshev_release(m->rows);
-  free(m->segments);
-  free(m->pieces);
-  free(m);
+  cag_free(m->segments);
+  cag_free(m->pieces);
+  cag_free(m);
 }
 
 // --- Questions ---
@@ -732,14 +732,14 @@ size_t cag_motion_breaks(const CagMotion *m, double *out, size_t capacity) {
   for (int i = 0; i < 3; i++)
     if (functions[i]) most += cag_chebyshev_breaks(functions[i], NULL, 0);
   if (most == 0) return 0;
-  double *all = malloc(most * sizeof *all);
+  double *all = cag_malloc(most * sizeof *all);
   if (!all) return cag_note_memory(), 0;
   if (n > 0) m->path->kind->breaks(m->path, all, n);
   for (int i = 0; i < 3; i++)
     if (functions[i]) n += cag_chebyshev_breaks(functions[i], all + n, most - n);
   n = cag_surface_tidy_breaks(all, n, m->start, m->end);
   for (size_t i = 0; i < n && i < capacity; i++) out[i] = all[i];
-  free(all);
+  cag_free(all);
   return n;
 }
 

@@ -1,8 +1,8 @@
 // Ranges of the derivatives of a motion over an interval: what motion.c evaluates, by ranges.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/range.h"
 #include "geom/surface/family.h"
 #include "geom/surface/motion_parts.h"
@@ -16,7 +16,7 @@ CagStatus cag_motion_joints(const CagMotion *m, double **out, size_t *n, CagErro
   size_t most = m->count + 2, count = 0;
   for (int i = 0; i < 3; i++)
     if (functions[i]) most += cag_chebyshev_joints(functions[i], NULL, 0);
-  double *all = malloc(most * sizeof *all);
+  double *all = cag_malloc(most * sizeof *all);
   if (!all) return cag_fail_memory(err);
   for (size_t i = 0; i < m->count; i++) all[1 + count++] = m->segments[i].v0;
   for (int i = 0; i < 3; i++)

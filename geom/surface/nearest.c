@@ -10,8 +10,8 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/stop.h"
 #include "geom/surface/curve_on.h"
 #include "geom/surface/nearest_cells.h"
@@ -451,8 +451,8 @@ CagStatus cag_surface_closest(const CagSurface *s, CagVec3 p, CagSurfaceNearest 
     if (!status) status = try_core(&f, &certain, err);
     if (!status && !certain) status = search_cells(&f, err);
     cag_distance_cells_free(&f.cells);
-    free(f.cuts[0]);
-    free(f.cuts[1]);
+    cag_free(f.cuts[0]);
+    cag_free(f.cuts[1]);
     // A seam is at the start.
     if (s->closed_u && f.best.u >= s->u1) f.best.u = s->u0;
     if (s->closed_v && f.best.v >= s->v1) f.best.v = s->v0;

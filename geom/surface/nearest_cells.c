@@ -3,9 +3,9 @@
 #include "geom/surface/nearest_cells.h"
 
 #include <float.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/surface/nearest_swept.h"
 
@@ -37,7 +37,7 @@ static void sink(CagDistanceCells *c, size_t i) {
 CagStatus cag_distance_cells_push(CagDistanceCells *c, const CagDistanceCell *cell, CagError *err) {
   if (c->count == c->capacity) {
     const size_t capacity = c->capacity ? 2 * c->capacity : 128;
-    CagDistanceCell *grown = realloc(c->items, capacity * sizeof *grown);
+    CagDistanceCell *grown = cag_realloc(c->items, capacity * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     c->items = grown;
     c->capacity = capacity;
@@ -57,10 +57,10 @@ static CagStatus take_block(CagDistanceCells *c, size_t *block, CagError *err) {
   }
   if (c->block_count == c->block_capacity) {
     const size_t capacity = c->block_capacity ? 2 * c->block_capacity : 32;
-    double *grown = realloc(c->blocks, capacity * c->block_size * sizeof *grown);
+    double *grown = cag_realloc(c->blocks, capacity * c->block_size * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     c->blocks = grown;
-    size_t *unused = realloc(c->unused, capacity * sizeof *unused);
+    size_t *unused = cag_realloc(c->unused, capacity * sizeof *unused);
     if (!unused) return cag_fail_memory(err);
     c->unused = unused;
     c->block_capacity = capacity;
@@ -332,8 +332,8 @@ static CagStatus push_samples(CagDistanceCells *c, CagError *err) {
       status = bound_samples(c, &cell, err);
       if (!status) status = cag_distance_cells_push(c, &cell, err);
     }
-  free(uc);
-  free(vc);
+  cag_free(uc);
+  cag_free(vc);
   return status;
 }
 
@@ -347,11 +347,12 @@ static CagStatus prepare_patches(CagDistanceCells *c, const CagSurfaceNurbsView 
   c->rational = is->rational;
   c->block_size = 4 * (size_t)(p + 1) * (size_t)(q + 1);
   // A patch, its two products, and lines of control points.
-  c->work = malloc(sizeof(double) * (c->block_size + 2 * (size_t)(2 * p + 1) * (size_t)(2 * q + 1) +
-                                     8 * (size_t)(p + 1)));
+  c->work =
+      cag_malloc(sizeof(double) * (c->block_size + 2 * (size_t)(2 * p + 1) * (size_t)(2 * q + 1) +
+                                   8 * (size_t)(p + 1)));
   if (!c->work) return cag_fail_memory(err);
   for (int k = 0; k < 4; k++) {
-    c->binomials[k] = malloc(sizeof(double) * (size_t)(degree[k] + 1));
+    c->binomials[k] = cag_malloc(sizeof(double) * (size_t)(degree[k] + 1));
     if (!c->binomials[k]) return cag_fail_memory(err);
     for (int i = 0; i <= degree[k]; i++) c->binomials[k][i] = cag_binomial(degree[k], i);
   }
@@ -414,11 +415,11 @@ CagStatus cag_distance_cells_make(CagDistanceCells *c, const CagSurface *s, CagV
 
 void cag_distance_cells_free(CagDistanceCells *c) {
   cag_surface_release(c->exact);
-  for (int k = 0; k < 4; k++) free(c->binomials[k]);
-  free(c->work);
-  free(c->items);
-  free(c->blocks);
-  free(c->unused);
+  for (int k = 0; k < 4; k++) cag_free(c->binomials[k]);
+  cag_free(c->work);
+  cag_free(c->items);
+  cag_free(c->blocks);
+  cag_free(c->unused);
 }
 
 CagStatus cag_distance_cells_next(CagDistanceCells *c, double below, CagDistanceCell *out,

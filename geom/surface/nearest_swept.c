@@ -12,8 +12,8 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/range.h"
 #include "geom/surface/family.h"
@@ -83,7 +83,7 @@ static bool spoke_ranges(const CagSwept *w, double a, double b, int n, CagMotion
 // The ends of the stretches along which the surface is analytic.
 static CagStatus find_joints(const CagSwept *w, double **out, size_t *n, CagError *err) {
   if (w->motion) return cag_motion_joints(w->motion, out, n, err);
-  *out = malloc((EXTRUSION_PARTS + 1) * sizeof **out);
+  *out = cag_malloc((EXTRUSION_PARTS + 1) * sizeof **out);
   if (!*out) return cag_fail_memory(err);
   for (int i = 0; i <= EXTRUSION_PARTS; i++) (*out)[i] = (double)i / EXTRUSION_PARTS;
   *n = EXTRUSION_PARTS;
@@ -114,8 +114,8 @@ CagStatus cag_swept_cells_begin(CagDistanceCells *c, bool region, bool *known, C
     *known = spoke_ranges(w, joints[0], joints[0] + dv, SECOND, &at) &&
              cag_curve_ranges(w->section, cuts[0], cuts[0] + du, SECOND, section);
   }
-  free(joints);
-  free(cuts);
+  cag_free(joints);
+  cag_free(cuts);
   if (status || !*known) return status;
   if (!w->motion) return CAG_OK;
   const CagPathMotion *how = cag_motion_path(w->motion) ? cag_motion_how(w->motion) : NULL;
@@ -521,7 +521,7 @@ CagStatus cag_swept_cells_push(CagDistanceCells *c, CagError *err) {
     inner_range(c, joints + j, v); // its own inverse
     status = push_row(c, v, known ? &m : NULL, cuts, columns, parts, err);
   }
-  free(joints);
-  free(cuts);
+  cag_free(joints);
+  cag_free(cuts);
   return status;
 }

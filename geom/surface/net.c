@@ -5,9 +5,9 @@
 
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/surface/family.h"
 
@@ -16,16 +16,16 @@
 
 CagStatus cag_net_new(int degree, size_t count, size_t width, CagNet *out, CagError *err) {
   *out = (CagNet){.degree = degree, .count = count, .width = width};
-  out->knots = malloc((count + (size_t)degree + 1) * sizeof(double));
-  out->data = malloc((count * width + 1) * sizeof(double));
+  out->knots = cag_malloc((count + (size_t)degree + 1) * sizeof(double));
+  out->data = cag_malloc((count * width + 1) * sizeof(double));
   if (out->knots && out->data) return CAG_OK;
   cag_net_free(out);
   return cag_fail_memory(err);
 }
 
 void cag_net_free(CagNet *net) {
-  free(net->knots);
-  free(net->data);
+  cag_free(net->knots);
+  cag_free(net->data);
   *net = (CagNet){0};
 }
 
@@ -103,7 +103,7 @@ static CagStatus drop_knot(CagNet *net, size_t r, CagError *err) {
   int times = 0;
   for (size_t i = 0; i < n + p + 1; i++) times += net->knots[i] == t;
   size_t s = (size_t)times, first = r - p, last = r - s;
-  double *work = malloc((last - first + 3) * width * sizeof *work);
+  double *work = cag_malloc((last - first + 3) * width * sizeof *work);
   if (!work) return cag_fail_memory(err);
   size_t off = first - 1;
   memcpy(work, net->data + off * width, width * sizeof *work);
@@ -124,7 +124,7 @@ static CagStatus drop_knot(CagNet *net, size_t r, CagError *err) {
     memcpy(net->data + i * width, work + (i - off) * width, width * sizeof *work);
     memcpy(net->data + j * width, work + (j - off) * width, width * sizeof *work);
   }
-  free(work);
+  cag_free(work);
   size_t gone = (2 * r - s - p) / 2; // the point that two others now stand for
   memmove(net->data + gone * width, net->data + (gone + 1) * width,
           (n - gone - 1) * width * sizeof *net->data);
@@ -156,7 +156,7 @@ CagStatus cag_net_raise(CagNet *net, CagError *err) {
   CagStatus status = cag_net_trim(net, cag_net_start(net), cag_net_end(net), err);
   if (!status) status = check_inner_knots(net, err);
   if (status) return status;
-  double *knots = malloc(2 * (net->count + (size_t)p + 1) * sizeof *knots);
+  double *knots = cag_malloc(2 * (net->count + (size_t)p + 1) * sizeof *knots);
   if (!knots) return cag_fail_memory(err);
   const size_t n = cag_bspline_elevated_knots(net->knots, net->count, p, knots) - (size_t)p - 2;
   CagNet next = {0};
@@ -166,7 +166,7 @@ CagStatus cag_net_raise(CagNet *net, CagError *err) {
     status = cag_bspline_elevate(net->data, net->width, net->knots, net->count, p, knots, next.data,
                                  err);
   }
-  free(knots);
+  cag_free(knots);
   if (status) {
     cag_net_free(&next);
     return status;
@@ -286,12 +286,12 @@ CagStatus cag_net_to_surface(const CagNet *net, int direction, const CagNet *acr
   if (direction == 0)
     return cag_surface_from_homogeneous(net->data, net->count, across->count, net->degree,
                                         across->degree, net->knots, across->knots, out, err);
-  double *turned = malloc((net->count * net->width + 1) * sizeof *turned);
+  double *turned = cag_malloc((net->count * net->width + 1) * sizeof *turned);
   if (!turned) return cag_fail_memory(err);
   swap_directions(net->data, net->count, across->count, turned);
   CagStatus status = cag_surface_from_homogeneous(turned, across->count, net->count, across->degree,
                                                   net->degree, across->knots, net->knots, out, err);
-  free(turned);
+  cag_free(turned);
   return status;
 }
 
@@ -313,8 +313,8 @@ void cag_net_averaged_knots(const double *parameters, size_t n, int degree, doub
 CagStatus cag_net_interpolate(CagNet *net, const double *parameters, CagError *err) {
   size_t p = (size_t)net->degree, n = net->count;
   size_t rows = 3 * p + 1; // LAPACK's band: 2 kl + ku + 1
-  double *band = calloc(n * rows, sizeof *band), *basis = malloc((p + 1) * sizeof *basis);
-  lapack_int *pivots = malloc(n * sizeof *pivots);
+  double *band = cag_calloc(n * rows, sizeof *band), *basis = cag_malloc((p + 1) * sizeof *basis);
+  lapack_int *pivots = cag_malloc(n * sizeof *pivots);
   CagStatus status = band && basis && pivots ? CAG_OK : cag_fail_memory(err);
   double least = 1;
   for (size_t i = 0; !status && i < n; i++) {
@@ -332,7 +332,7 @@ CagStatus cag_net_interpolate(CagNet *net, const double *parameters, CagError *e
   lapack_int info = 0;
   double *turned = NULL;
   if (!status && least > 0) {
-    turned = malloc(n * net->width * sizeof *turned);
+    turned = cag_malloc(n * net->width * sizeof *turned);
     if (!turned) status = cag_fail_memory(err);
   }
   if (!status && least > 0) {
@@ -349,9 +349,9 @@ CagStatus cag_net_interpolate(CagNet *net, const double *parameters, CagError *e
     status = cag_fail(err, CAG_E_DEGENERATE, "fit-singular", "degree", -1,
                       "`degree` and knots leave the interpolation without one answer: lower the "
                       "degree or change the data's spacing");
-  free(turned);
-  free(band);
-  free(basis);
-  free(pivots);
+  cag_free(turned);
+  cag_free(band);
+  cag_free(basis);
+  cag_free(pivots);
   return status;
 }

@@ -3,9 +3,9 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/family.h"
 #include "geom/surface/frames.h"
 #include "geom/surface/tensor.h"
@@ -145,10 +145,10 @@ static bool is_bezier(const Direction *d) {
 
 static void nurbs_destroy(CagSurface *s) {
   Nurbs *b = (Nurbs *)s;
-  free(b->u.knots);
-  free(b->v.knots);
-  free(b->net);
-  free(b->planes);
+  cag_free(b->u.knots);
+  cag_free(b->v.knots);
+  cag_free(b->net);
+  cag_free(b->planes);
 }
 
 // Takes copies of everything; the net is homogeneous and already holds the repeated lines of closed
@@ -166,10 +166,10 @@ static CagStatus build(const double *net, const Direction *u, const Direction *v
   size_t knots_u = u->count + (size_t)u->degree + 1, knots_v = v->count + (size_t)v->degree + 1;
   b->u = *u;
   b->v = *v;
-  b->u.knots = malloc(knots_u * sizeof(double));
-  b->v.knots = malloc(knots_v * sizeof(double));
-  b->net = malloc(4 * total * sizeof(double));
-  b->planes = malloc(4 * total * sizeof(double));
+  b->u.knots = cag_malloc(knots_u * sizeof(double));
+  b->v.knots = cag_malloc(knots_v * sizeof(double));
+  b->net = cag_malloc(4 * total * sizeof(double));
+  b->planes = cag_malloc(4 * total * sizeof(double));
   if (!b->u.knots || !b->v.knots || !b->net || !b->planes) {
     cag_surface_release(s);
     return cag_fail_memory(err);
@@ -233,7 +233,7 @@ static CagStatus make_direction(size_t count, int degree, const double *knots, b
   *out = (Direction){degree, stored, count, closed, (double *)knots};
   if (!closed || knots) return check_knots(knots, stored, degree, "knots", err);
   size_t n = stored + (size_t)degree + 1;
-  *own = malloc(n * sizeof **own);
+  *own = cag_malloc(n * sizeof **own);
   if (!*own) return cag_fail_memory(err);
   for (size_t i = 0; i < n; i++) (*own)[i] = (double)i - degree;
   out->knots = *own;
@@ -250,7 +250,7 @@ CagStatus cag_surface_nurbs_closed(const CagVec3 *net, const double *weights, si
   if (!status) status = make_direction(nv, degree_v, knots_v, closed_v, "v", &v, &own_v, err);
   if (!status) status = check_weights(weights, nu, nv, err);
   if (!status) {
-    h = malloc(4 * u.count * v.count * sizeof *h);
+    h = cag_malloc(4 * u.count * v.count * sizeof *h);
     if (!h) status = cag_fail_memory(err);
   }
   for (size_t i = 0; !status && i < u.count; i++)
@@ -263,9 +263,9 @@ CagStatus cag_surface_nurbs_closed(const CagVec3 *net, const double *weights, si
       to[3] = w;
     }
   if (!status) status = build(h, &u, &v, out, err);
-  free(h);
-  free(own_u);
-  free(own_v);
+  cag_free(h);
+  cag_free(own_u);
+  cag_free(own_v);
   return status;
 }
 
@@ -301,7 +301,7 @@ static CagStatus nurbs_transform(const CagSurface *s, const CagTransform *t, Cag
                                  CagError *err) {
   const Nurbs *b = (const Nurbs *)s;
   size_t total = b->u.count * b->v.count;
-  double *h = malloc(4 * total * sizeof *h);
+  double *h = cag_malloc(4 * total * sizeof *h);
   if (!h) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < total; i++) {
@@ -313,7 +313,7 @@ static CagStatus nurbs_transform(const CagSurface *s, const CagTransform *t, Cag
                         i / b->v.count, i % b->v.count);
   }
   if (!status) status = build(h, &b->u, &b->v, out, err);
-  free(h);
+  cag_free(h);
   return status;
 }
 
@@ -388,20 +388,20 @@ CagStatus cag_surface_nurbs_swapped(const CagSurface *s, CagSurface **out, CagEr
                     "the surface is %s %s: convert it to a NURBS first", cag_article(s->kind->name),
                     s->kind->name);
   size_t nu = b->u.count, nv = b->v.count;
-  double *h = malloc(4 * nu * nv * sizeof *h);
+  double *h = cag_malloc(4 * nu * nv * sizeof *h);
   if (!h) return cag_fail_memory(err);
   for (size_t i = 0; i < nu; i++)
     for (size_t j = 0; j < nv; j++)
       memcpy(h + 4 * (j * nu + i), b->net + 4 * (i * nv + j), 4 * sizeof *h);
   CagStatus status = build(h, &b->v, &b->u, out, err);
-  free(h);
+  cag_free(h);
   return status;
 }
 
 // v runs backwards over the same domain.
 static CagStatus reversed_v(const Nurbs *b, CagSurface **out, CagError *err) {
   size_t nu = b->u.count, nv = b->v.count, knots = nv + (size_t)b->v.degree + 1;
-  double *h = malloc(4 * nu * nv * sizeof *h), *turned = malloc(knots * sizeof *turned);
+  double *h = cag_malloc(4 * nu * nv * sizeof *h), *turned = cag_malloc(knots * sizeof *turned);
   CagStatus status = h && turned ? CAG_OK : cag_fail_memory(err);
   if (!status) {
     for (size_t i = 0; i < nu; i++)
@@ -417,8 +417,8 @@ static CagStatus reversed_v(const Nurbs *b, CagSurface **out, CagError *err) {
     v.knots = turned;
     status = build(h, &b->u, &v, out, err);
   }
-  free(h);
-  free(turned);
+  cag_free(h);
+  cag_free(turned);
   return status;
 }
 

@@ -6,9 +6,9 @@
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/tensor.h"
 
 // What is known of one row u and one run of columns in the same span of v.
@@ -355,11 +355,11 @@ typedef struct GridWork {
 static CagStatus grid_prepare(const Nurbs *b, const double *vs, size_t nv, bool first, GridWork *w,
                               CagError *err) {
   size_t lines = (size_t)b->v.degree + 1;
-  w->m = calloc(2 * lines * nv + WIDE, sizeof *w->m); // whole vectors are read at the end
-  w->span = malloc(2 * nv * sizeof *w->span);
-  w->row = malloc(8 * b->v.count * sizeof *w->row);
-  w->du = first ? malloc((3 * nv + 1) * sizeof *w->du) : NULL;
-  w->dv = first ? malloc((3 * nv + 1) * sizeof *w->dv) : NULL;
+  w->m = cag_calloc(2 * lines * nv + WIDE, sizeof *w->m); // whole vectors are read at the end
+  w->span = cag_malloc(2 * nv * sizeof *w->span);
+  w->row = cag_malloc(8 * b->v.count * sizeof *w->row);
+  w->du = first ? cag_malloc((3 * nv + 1) * sizeof *w->du) : NULL;
+  w->dv = first ? cag_malloc((3 * nv + 1) * sizeof *w->dv) : NULL;
   if (!w->m || !w->span || !w->row || (first && (!w->du || !w->dv))) return cag_fail_memory(err);
   w->d = w->m + lines * nv;
   w->end = w->span + nv;
@@ -451,11 +451,11 @@ CagStatus tensor_frames(const Nurbs *b, const double *us, size_t nu, const doubl
       positive = positive && good;
     }
   }
-  free(w.m);
-  free(w.span);
-  free(w.row);
-  free(w.du);
-  free(w.dv);
+  cag_free(w.m);
+  cag_free(w.span);
+  cag_free(w.row);
+  cag_free(w.du);
+  cag_free(w.dv);
   if (!status && !positive)
     status = cag_fail(err, CAG_E_DEGENERATE, "zero-denominator", "weights", -1,
                       "all `weights` that act at a point of the grid are 0: give one of them a "

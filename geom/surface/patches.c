@@ -4,9 +4,9 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bernstein.h"
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
@@ -89,7 +89,7 @@ static CagStatus coons_to_nurbs(const CagSurface *s, CagSurface **out, CagError 
   if (!status) status = cag_nets_unify(&net[0], 2, err);
   if (!status) status = cag_nets_unify(&net[2], 2, err);
   const CagNet *nu = &net[2], *nv = &net[0];
-  double *h = status ? NULL : malloc(nu->count * nv->count * 4 * sizeof *h);
+  double *h = status ? NULL : cag_malloc(nu->count * nv->count * 4 * sizeof *h);
   if (!status && !h) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < nu->count; i++)
     for (size_t j = 0; j < nv->count; j++) {
@@ -113,7 +113,7 @@ static CagStatus coons_to_nurbs(const CagSurface *s, CagSurface **out, CagError 
   if (!status)
     status = cag_surface_from_homogeneous(h, nu->count, nv->count, nu->degree, nv->degree,
                                           nu->knots, nv->knots, out, err);
-  free(h);
+  cag_free(h);
   for (int k = 0; k < 4; k++) cag_net_free(&net[k]);
   return status;
 }
@@ -137,7 +137,7 @@ static size_t coons_breaks(const CagSurface *s, int direction, double *out, size
   size_t counts[2], n = 0;
   for (int k = 0; k < 2; k++)
     counts[k] = pair[k]->kind->breaks ? pair[k]->kind->breaks(pair[k], NULL, 0) : 0;
-  double *all = malloc((counts[0] + counts[1] + 1) * sizeof *all);
+  double *all = cag_malloc((counts[0] + counts[1] + 1) * sizeof *all);
   if (!all) return cag_note_memory(), 0;
   for (int k = 0; k < 2; k++) {
     const CagCurve *e = pair[k];
@@ -147,7 +147,7 @@ static size_t coons_breaks(const CagSurface *s, int direction, double *out, size
   }
   n = cag_surface_tidy_breaks(all, n, 0, 1);
   for (size_t i = 0; i < n && i < capacity; i++) out[i] = all[i];
-  free(all);
+  cag_free(all);
   return n;
 }
 
@@ -420,8 +420,8 @@ CagStatus cag_surface_hermite_grid(const CagHermiteGrid *g, CagSurface **out, Ca
   if (status) return status;
   size_t count = g->nu * g->nv;
   Composite c = {g, NULL, NULL, NULL, NULL, NULL, NULL};
-  CagVec3 *vectors = calloc(3 * count, sizeof *vectors);
-  double *numbers = malloc(3 * (g->nu + g->nv) * sizeof *numbers);
+  CagVec3 *vectors = cag_calloc(3 * count, sizeof *vectors);
+  double *numbers = cag_malloc(3 * (g->nu + g->nv) * sizeof *numbers);
   status = vectors && numbers ? CAG_OK : cag_fail_memory(err);
   if (!status) {
     c.q = vectors;
@@ -435,8 +435,8 @@ CagStatus cag_surface_hermite_grid(const CagHermiteGrid *g, CagSurface **out, Ca
     solve_composite(&c);
     status = composite_surface(&c, out, err);
   }
-  free(vectors);
-  free(numbers);
+  cag_free(vectors);
+  cag_free(numbers);
   return status;
 }
 
@@ -450,7 +450,8 @@ CagStatus cag_surface_bezier_triangle(const CagVec3 *points, int n, CagSurface *
     return cag_fail(err, CAG_E_ARGUMENT, "order-range", "net", -1,
                     "`net` must have 2 to %d rows, it has %d", MAX_TRIANGLE + 1, n + 1);
   size_t side = (size_t)n + 1;
-  double *h = malloc((side + 2) * side * 4 * sizeof *h), *knots = malloc(2 * side * sizeof *knots);
+  double *h = cag_malloc((side + 2) * side * 4 * sizeof *h),
+         *knots = cag_malloc(2 * side * sizeof *knots);
   CagStatus status = h && knots ? CAG_OK : cag_fail_memory(err);
   size_t at = 0;
   double *spare = h ? h + side * side * 4 : NULL;
@@ -464,7 +465,7 @@ CagStatus cag_surface_bezier_triangle(const CagVec3 *points, int n, CagSurface *
   }
   for (size_t i = 0; !status && i < 2 * side; i++) knots[i] = i < side ? 0 : 1;
   if (!status) status = cag_surface_from_homogeneous(h, side, side, n, n, knots, knots, out, err);
-  free(h);
-  free(knots);
+  cag_free(h);
+  cag_free(knots);
   return status;
 }

@@ -5,8 +5,8 @@
 // placed surface composes the maps, so that there is never more than one wrapper.
 
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/surface/family.h"
 
 typedef struct Placed {
@@ -58,13 +58,13 @@ static CagStatus placed_grid(const CagSurface *s, const double *us, size_t nu, c
   const Placed *p = (const Placed *)s;
   double *turned = NULL;
   if (p->flip) {
-    turned = malloc((nv ? nv : 1) * sizeof *turned);
+    turned = cag_malloc((nv ? nv : 1) * sizeof *turned);
     if (!turned) return cag_fail_memory(err);
     for (size_t j = 0; j < nv; j++) turned[j] = inner_v(p, vs[j]);
   }
   CagStatus status =
       cag_surface_eval_grid(p->inner, us, nu, turned ? turned : vs, nv, points, du, dv, err);
-  free(turned);
+  cag_free(turned);
   if (status) return status;
   double sign = p->flip ? -1 : 1;
   for (size_t i = 0; i < nu * nv; i++) {
@@ -119,7 +119,7 @@ static void placed_describe(const CagSurface *s, char *buffer, size_t size) {
 static void placed_destroy(CagSurface *s) {
   Placed *p = (Placed *)s;
   cag_surface_release(p->inner);
-  free(p->breaks.at);
+  cag_free(p->breaks.at);
 }
 
 static const CagSurfaceKind placed_kind = {
@@ -164,7 +164,7 @@ CagStatus cag_surface_placed(const CagSurface *inner, const CagTransform *t, boo
   status = cag_surface_block(sizeof(Placed), &placed_kind, inner->u0, inner->u1, inner->v0,
                              inner->v1, &s, err);
   if (status) {
-    free(breaks.at);
+    cag_free(breaks.at);
     return status;
   }
   Placed *p = (Placed *)s;

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/surface/quadric_within.h"
 #include "geom/surface/trimmed.h"
 
@@ -193,7 +194,7 @@ static void push(Spline *s, CagVec3 p) {
   if (s->failed) return;
   if (s->count == s->room) {
     const size_t room = s->room ? 2 * s->room : 256;
-    CagVec3 *more = realloc(s->points, room * sizeof *more);
+    CagVec3 *more = cag_realloc(s->points, room * sizeof *more);
     if (!more) {
       s->failed = true;
       return;
@@ -377,7 +378,7 @@ static CagStatus loop_curve(const Outline *o, CagCurve **out, CagError *err) {
   const Vertex *home = &o->vertices[o->edges[o->path[0]].from];
   push(&s, cag_vec3(home->u, home->v, 0));
   for (size_t i = 0; i < o->path_count; i++) add_to_spline(o, &o->edges[o->path[i]], &s);
-  double *knots = malloc((s.count + DEGREE + 1) * sizeof *knots);
+  double *knots = cag_malloc((s.count + DEGREE + 1) * sizeof *knots);
   CagStatus status = s.failed || !knots ? cag_fail_memory(err) : CAG_OK;
   if (!status) {
     for (size_t i = 0; i < s.count + DEGREE + 1; i++)
@@ -385,8 +386,8 @@ static CagStatus loop_curve(const Outline *o, CagCurve **out, CagError *err) {
     knots[s.count + DEGREE] = knots[s.count + DEGREE - 1];
     status = cag_curve_nurbs(s.points, NULL, s.count, DEGREE, knots, 2, out, err);
   }
-  free(s.points);
-  free(knots);
+  cag_free(s.points);
+  cag_free(knots);
   return status;
 }
 
@@ -406,7 +407,7 @@ static CagStatus add_patch(const Outline *o, const double u[2], const double v[2
 static CagStatus add_trimmed(const Outline *o, const CagRegion *all, size_t outer,
                              CagSurface **list, size_t most, size_t *n, CagError *err) {
   if (*n == most) return CAG_OK;
-  CagCurve **holes = malloc(all->count * sizeof *holes);
+  CagCurve **holes = cag_malloc(all->count * sizeof *holes);
   if (!holes) return cag_fail_memory(err);
   size_t count = 0;
   for (size_t i = 0; i < all->count; i++)
@@ -424,7 +425,7 @@ static CagStatus add_trimmed(const Outline *o, const CagRegion *all, size_t oute
   if (!status) ++*n;
   if (whole) cag_surface_release(whole);
   cag_region_release(region);
-  free(holes);
+  cag_free(holes);
   return status;
 }
 
@@ -440,8 +441,8 @@ static CagStatus add_regions(const Outline *o, CagCurve *const *loops, size_t lo
 
 static CagStatus add_surfaces(Outline *o, CagSurface **list, size_t most, size_t *n,
                               CagError *err) {
-  CagCurve **loops = malloc((o->edge_count + 1) * sizeof *loops);
-  double(*patches)[2][2] = malloc((o->edge_count + 1) * sizeof *patches);
+  CagCurve **loops = cag_malloc((o->edge_count + 1) * sizeof *loops);
+  double(*patches)[2][2] = cag_malloc((o->edge_count + 1) * sizeof *patches);
   size_t count = 0;
   bool plain = true;
   CagStatus status = loops && patches ? CAG_OK : cag_fail_memory(err);
@@ -456,8 +457,8 @@ static CagStatus add_surfaces(Outline *o, CagSurface **list, size_t most, size_t
     status = add_patch(o, patches[i][0], patches[i][1], list, most, n, err);
   if (!status && !plain) status = add_regions(o, loops, count, list, most, n, err);
   for (size_t i = 0; i < count; i++) cag_curve_release(loops[i]);
-  free(loops);
-  free(patches);
+  cag_free(loops);
+  cag_free(patches);
   return status;
 }
 
@@ -466,21 +467,21 @@ CagStatus cag_quadric_outline(const CagQuadricCells *c, CagSurface **list, size_
   // Four ends of every cell are vertices; between neighboring ones there is one edge at most.
   const size_t cells = c->cell_count;
   Outline o = {.c = c};
-  o.vertices = malloc(4 * cells * sizeof *o.vertices);
-  o.ends = malloc(cells * sizeof *o.ends);
-  o.edges = malloc(6 * cells * sizeof *o.edges);
-  o.path = malloc(6 * cells * sizeof *o.path);
-  End *room = malloc(4 * cells * sizeof *room);
+  o.vertices = cag_malloc(4 * cells * sizeof *o.vertices);
+  o.ends = cag_malloc(cells * sizeof *o.ends);
+  o.edges = cag_malloc(6 * cells * sizeof *o.edges);
+  o.path = cag_malloc(6 * cells * sizeof *o.path);
+  End *room = cag_malloc(4 * cells * sizeof *room);
   CagStatus status = CAG_OK;
   if (!o.vertices || !o.ends || !o.edges || !o.path || !room) status = cag_fail_memory(err);
   else if (!add_all(&o, room))
     status = cag_fail(err, CAG_E_ARGUMENT, "quadric-unbounded", "within", -1,
                       "the quadric has no end within `within`: give a box");
   else status = add_surfaces(&o, list, most, n, err);
-  free(o.vertices);
-  free(o.ends);
-  free(o.edges);
-  free(o.path);
-  free(room);
+  cag_free(o.vertices);
+  cag_free(o.ends);
+  cag_free(o.edges);
+  cag_free(o.path);
+  cag_free(room);
   return status;
 }

@@ -6,8 +6,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/surface/family.h"
 #include "geom/surface/quadric.h"
 #include "geom/surface/quadric_within.h"
@@ -132,7 +132,7 @@ static CagStatus patch_grid(const CagSurface *s, const double *us, size_t nu, co
                             size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err) {
   const Patch *p = (const Patch *)s;
   const Shape *shape = &SHAPE[p->shape];
-  double(*fv)[4][2] = malloc((nv ? nv : 1) * sizeof *fv);
+  double(*fv)[4][2] = cag_malloc((nv ? nv : 1) * sizeof *fv);
   if (!fv) return cag_fail_memory(err);
   for (size_t j = 0; j < nv; j++)
     for (int c = 0; c < 4; c++) derivatives(shape->v[c], vs[j], 1, fv[j][c]);
@@ -148,7 +148,7 @@ static CagStatus patch_grid(const CagSurface *s, const double *us, size_t nu, co
       if (dv) dv[at] = cag_transform_vector(&p->frame, product(a, 0, b, 1));
     }
   }
-  free(fv);
+  cag_free(fv);
   return CAG_OK;
 }
 
@@ -667,7 +667,7 @@ CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool
   if (!status && within) set_within(&pieces, q, within, z_only);
   CagSurface **list = NULL;
   if (!status) {
-    list = malloc(pieces.n * sizeof *list);
+    list = cag_malloc(pieces.n * sizeof *list);
     if (!list) status = cag_fail_memory(err);
   }
   if (status) {

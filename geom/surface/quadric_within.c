@@ -13,6 +13,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 // Coefficients below this part of the largest are rounding of the frame.
 #define ALIGNED 1e-14
 // A plane that passes the top of a sheet by this part touches it.
@@ -394,11 +396,11 @@ CagStatus cag_quadric_sheet_within(const CagQuadricSheet *sheet, const CagQuadri
   for (size_t i = 0; i < side_count; i++) set_cut(sheet, &sides[i], &c.cuts[i]);
   find_places(&c);
   // An interval has a root at one end at least, or is the whole line.
-  c.cells = malloc(c.place_count * (CAG_QUADRIC_SIDES + 2) * sizeof *c.cells);
+  c.cells = cag_malloc(c.place_count * (CAG_QUADRIC_SIDES + 2) * sizeof *c.cells);
   if (!c.cells) return cag_fail_memory(err);
   for (size_t i = 0; i + 1 < c.place_count; i++) find_cells(&c, i);
   if (is_angular(sheet->shape)) begin_turn(&c);
   CagStatus status = c.cell_count > 0 ? cag_quadric_outline(&c, list, most, n, err) : CAG_OK;
-  free(c.cells);
+  cag_free(c.cells);
   return status;
 }

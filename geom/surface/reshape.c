@@ -3,9 +3,9 @@
 #include "geom/surface/reshape.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bernstein.h"
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
@@ -28,8 +28,8 @@ static bool periodic_in(const CagSurface *s, int direction) {
 static CagStatus closed_again(const double *h, size_t row, size_t n, size_t m,
                               const CagSurfaceNurbsView *v, bool closed_u, bool closed_v,
                               CagSurface **out, CagError *err) {
-  CagVec3 *net = malloc(n * m * sizeof *net);
-  double *weights = malloc(n * m * sizeof *weights);
+  CagVec3 *net = cag_malloc(n * m * sizeof *net);
+  double *weights = cag_malloc(n * m * sizeof *weights);
   CagStatus status = net && weights ? CAG_OK : cag_fail_memory(err);
   for (size_t k = 0; !status && k < n * m; k++) {
     const double *at = h + 4 * (k / m * row + k % m);
@@ -40,8 +40,8 @@ static CagStatus closed_again(const double *h, size_t row, size_t n, size_t m,
     status =
         cag_surface_nurbs_closed(net, v->rational ? weights : NULL, n, m, v->degree_u, v->degree_v,
                                  v->knots_u, v->knots_v, closed_u, closed_v, out, err);
-  free(net);
-  free(weights);
+  cag_free(net);
+  cag_free(weights);
   return status;
 }
 
@@ -101,7 +101,7 @@ CagStatus cag_surface_insert_knot(const CagSurface *s, int direction, double t, 
 static CagStatus halve(CagNet *net, const void *how, CagError *err) {
   (void)how;
   size_t p = (size_t)net->degree, n = net->count;
-  double *middles = malloc((n + 1) * sizeof *middles);
+  double *middles = cag_malloc((n + 1) * sizeof *middles);
   if (!middles) return cag_fail_memory(err);
   size_t count = 0;
   for (size_t i = p; i < n; i++)
@@ -109,7 +109,7 @@ static CagStatus halve(CagNet *net, const void *how, CagError *err) {
       middles[count++] = (net->knots[i] + net->knots[i + 1]) / 2;
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < count; i++) status = cag_net_insert(net, middles[i], err);
-  free(middles);
+  cag_free(middles);
   return status;
 }
 
@@ -156,7 +156,7 @@ static CagStatus to_knots(CagNet *net, const void *how, CagError *err) {
   const CagRefinement *r = how;
   size_t old = net->count + (size_t)net->degree + 1, i = 0, more = 0;
   double start = cag_net_start(net), end = cag_net_end(net),
-         *add = malloc((r->count + 1) * sizeof *add);
+         *add = cag_malloc((r->count + 1) * sizeof *add);
   if (!add) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   for (size_t k = 0; !status && k < r->count; k++) {
@@ -184,7 +184,7 @@ static CagStatus to_knots(CagNet *net, const void *how, CagError *err) {
                         net->degree, cag_number_text(add[k], text));
     } else status = cag_net_insert(net, add[k], err);
   }
-  free(add);
+  cag_free(add);
   return status;
 }
 
@@ -198,8 +198,8 @@ static CagStatus halved_closed(const CagSurface *s, int direction, CagSurface **
   size_t n = v.distinct_u, m = v.distinct_v, old = direction == 0 ? n : m;
   size_t p = (size_t)(direction == 0 ? v.degree_u : v.degree_v);
   size_t nu = direction == 0 ? 2 * n : n, nv = direction == 1 ? 2 * m : m, total = nu * nv;
-  double *h = calloc(4 * total, sizeof *h);
-  double *knots = malloc((2 * old + 2 * p + 1) * sizeof *knots);
+  double *h = cag_calloc(4 * total, sizeof *h);
+  double *knots = cag_malloc((2 * old + 2 * p + 1) * sizeof *knots);
   CagStatus status = h && knots ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++)
     for (size_t j = 0; j < m; j++) {
@@ -222,8 +222,8 @@ static CagStatus halved_closed(const CagSurface *s, int direction, CagSurface **
     else v.knots_v = knots;
     status = closed_again(h, nv, nu, nv, &v, v.periodic_u, v.periodic_v, out, err);
   }
-  free(h);
-  free(knots);
+  cag_free(h);
+  cag_free(knots);
   return status;
 }
 
@@ -293,14 +293,14 @@ CagStatus cag_surface_to_bezier(const CagSurface *s, CagSurface ***out, size_t *
   if (status) return status;
   CagSurfaceNurbsView view;
   cag_surface_nurbs_view(exact, &view);
-  double *cu = malloc((view.nu + 2) * sizeof *cu), *cv = malloc((view.nv + 2) * sizeof *cv);
+  double *cu = cag_malloc((view.nu + 2) * sizeof *cu), *cv = cag_malloc((view.nv + 2) * sizeof *cv);
   CagSurface **pieces = NULL;
   size_t made = 0;
   if (!cu || !cv) status = cag_fail_memory(err);
   if (!status) {
     *nu = spans(view.knots_u, view.nu, view.degree_u, cu);
     *nv = spans(view.knots_v, view.nv, view.degree_v, cv);
-    pieces = malloc(*nu * *nv * sizeof *pieces);
+    pieces = cag_malloc(*nu * *nv * sizeof *pieces);
     if (!pieces) status = cag_fail_memory(err);
   }
   for (size_t i = 0; !status && i < *nu; i++) {
@@ -315,15 +315,15 @@ CagStatus cag_surface_to_bezier(const CagSurface *s, CagSurface ***out, size_t *
     }
     cag_surface_release(strip);
   }
-  free(cu);
-  free(cv);
+  cag_free(cu);
+  cag_free(cv);
   cag_surface_release(exact);
   if (!status) {
     *out = pieces;
     return CAG_OK;
   }
   while (made > 0) cag_surface_release(pieces[--made]);
-  free(pieces);
+  cag_free(pieces);
   return status;
 }
 

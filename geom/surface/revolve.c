@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/family.h"
 
 typedef struct Revolution {
@@ -69,8 +70,8 @@ static CagStatus revolution_grid(const CagSurface *s, const double *us, size_t n
                                  size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv,
                                  CagError *err) {
   const Revolution *r = (const Revolution *)s;
-  CagVec3 *p = malloc((2 * nu + 1) * sizeof *p);
-  double *turn = malloc((2 * nv + 1) * sizeof *turn);
+  CagVec3 *p = cag_malloc((2 * nu + 1) * sizeof *p);
+  double *turn = cag_malloc((2 * nv + 1) * sizeof *turn);
   CagStatus status = CAG_OK;
   if (!p || !turn) status = cag_fail_memory(err);
   else status = cag_curve_eval_many(r->profile, us, nu, 1, p, err);
@@ -88,8 +89,8 @@ static CagStatus revolution_grid(const CagSurface *s, const double *us, size_t n
       if (dv) dv[at] = cag_madd(cag_scaled(across, cosine), -sine, radial);
     }
   }
-  free(p);
-  free(turn);
+  cag_free(p);
+  cag_free(turn);
   return status;
 }
 
@@ -103,7 +104,7 @@ static CagStatus revolution_to_nurbs(const CagSurface *s, CagSurface **out, CagE
   cag_curve_nurbs_view(exact, &view);
   CagConicNurbs arc;
   cag_conic_nurbs(CAG_ARC_CIRCLE, s->v0, s->v1, &arc);
-  double *net = malloc(view.count * arc.count * 4 * sizeof *net);
+  double *net = cag_malloc(view.count * arc.count * 4 * sizeof *net);
   if (!net) {
     cag_curve_release(exact);
     return cag_fail_memory(err);
@@ -129,7 +130,7 @@ static CagStatus revolution_to_nurbs(const CagSurface *s, CagSurface **out, CagE
   }
   status = cag_surface_from_homogeneous(net, view.count, arc.count, view.degree, arc.degree,
                                         view.knots, arc.knots, out, err);
-  free(net);
+  cag_free(net);
   cag_curve_release(exact);
   return status;
 }
@@ -217,7 +218,7 @@ static CagStatus find_meets(Revolution *r, double from, double to, CagError *err
         least_distance(r, from + (i - 1) * step, from + (i + 1) * step, &at, &distance, err);
     if (status) return status;
     if (distance > r->on_axis) continue;
-    double *more = realloc(r->meets, (r->meet_count + 1) * sizeof *more);
+    double *more = cag_realloc(r->meets, (r->meet_count + 1) * sizeof *more);
     if (!more) return cag_fail_memory(err);
     r->meets = more;
     r->meets[r->meet_count++] = at;
@@ -228,7 +229,7 @@ static CagStatus find_meets(Revolution *r, double from, double to, CagError *err
 static CagStatus find_all_meets(Revolution *r, CagError *err) {
   const CagCurve *c = r->profile;
   const size_t inner = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
-  double *cuts = malloc((inner + 2) * sizeof *cuts);
+  double *cuts = cag_malloc((inner + 2) * sizeof *cuts);
   if (!cuts) return cag_fail_memory(err);
   if (inner) c->kind->breaks(c, cuts + 1, inner);
   cuts[0] = c->start;
@@ -236,7 +237,7 @@ static CagStatus find_all_meets(Revolution *r, CagError *err) {
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i <= inner; i++)
     if (cuts[i + 1] > cuts[i]) status = find_meets(r, cuts[i], cuts[i + 1], err);
-  free(cuts);
+  cag_free(cuts);
   return status;
 }
 
@@ -251,7 +252,7 @@ static void revolution_describe(const CagSurface *s, char *buffer, size_t size) 
 static void revolution_destroy(CagSurface *s) {
   Revolution *r = (Revolution *)s;
   cag_curve_release(r->profile);
-  free(r->meets);
+  cag_free(r->meets);
 }
 
 static const CagSurfaceKind revolution_kind = {

@@ -5,9 +5,9 @@
 // lines. A translational surface is a(u) + b(v) - b(start).
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/compatible.h"
 #include "geom/surface/family.h"
 
@@ -131,7 +131,7 @@ static size_t ruled_breaks(const CagSurface *s, int direction, double *out, size
   if (direction == 0) return 0;
   size_t na = curve_breaks(p->a, NULL, 0), nb = curve_breaks(p->b, NULL, 0);
   if (na + nb == 0) return 0;
-  double *all = malloc((na + nb) * sizeof *all);
+  double *all = cag_malloc((na + nb) * sizeof *all);
   if (!all) return cag_note_memory(), 0;
   curve_breaks(p->a, all, na);
   curve_breaks(p->b, all + na, nb);
@@ -141,7 +141,7 @@ static size_t ruled_breaks(const CagSurface *s, int direction, double *out, size
   }
   size_t n = cag_surface_tidy_breaks(all, na + nb, 0, 1);
   for (size_t i = 0; i < n && i < capacity; i++) out[i] = all[i];
-  free(all);
+  cag_free(all);
   return n;
 }
 
@@ -162,7 +162,7 @@ static CagStatus ruled_to_nurbs(const CagSurface *s, CagSurface **out, CagError 
   CagCompatible both;
   CagStatus status = cag_curves_compatible(p->a, p->b, &both, err);
   if (status) return status;
-  double *net = malloc(8 * both.count * sizeof *net);
+  double *net = cag_malloc(8 * both.count * sizeof *net);
   if (!net) status = cag_fail_memory(err);
   else {
     const double knots[4] = {0, 0, 1, 1};
@@ -171,7 +171,7 @@ static CagStatus ruled_to_nurbs(const CagSurface *s, CagSurface **out, CagError 
     status = cag_surface_from_homogeneous(net, 2, both.count, 1, both.degree, knots, both.knots,
                                           out, err);
   }
-  free(net);
+  cag_free(net);
   cag_compatible_free(&both);
   return status;
 }
@@ -260,7 +260,7 @@ static CagStatus translational_grid(const CagSurface *s, const double *us, size_
                                     const double *vs, size_t nv, CagVec3 *points, CagVec3 *du,
                                     CagVec3 *dv, CagError *err) {
   const Pair *p = (const Pair *)s;
-  CagVec3 *a = malloc(2 * (nu + nv + 1) * sizeof *a);
+  CagVec3 *a = cag_malloc(2 * (nu + nv + 1) * sizeof *a);
   if (!a) return cag_fail_memory(err);
   CagVec3 *b = a + 2 * nu;
   CagStatus status = cag_curve_eval_many(p->a, us, nu, 1, a, err);
@@ -272,7 +272,7 @@ static CagStatus translational_grid(const CagSurface *s, const double *us, size_
       if (du) du[at] = a[2 * i + 1];
       if (dv) dv[at] = b[2 * j + 1];
     }
-  free(a);
+  cag_free(a);
   return status;
 }
 
@@ -287,7 +287,7 @@ static CagStatus translational_to_nurbs(const CagSurface *s, CagSurface **out, C
     CagNurbsView va, vb;
     cag_curve_nurbs_view(a, &va);
     cag_curve_nurbs_view(b, &vb);
-    net = malloc(va.count * vb.count * 4 * sizeof *net);
+    net = cag_malloc(va.count * vb.count * 4 * sizeof *net);
     if (!net) status = cag_fail_memory(err);
     for (size_t i = 0; net && i < va.count; i++)
       for (size_t j = 0; j < vb.count; j++) {
@@ -301,7 +301,7 @@ static CagStatus translational_to_nurbs(const CagSurface *s, CagSurface **out, C
       status = cag_surface_from_homogeneous(net, va.count, vb.count, va.degree, vb.degree, va.knots,
                                             vb.knots, out, err);
   }
-  free(net);
+  cag_free(net);
   cag_curve_release(a);
   cag_curve_release(b);
   return status;

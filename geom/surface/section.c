@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/intersect.h"
 #include "geom/mesh/tessellate.h"
 #include "geom/surface/family.h"
@@ -40,18 +41,18 @@ static CagStatus cut_loops(const CagRegion *region, CagVec3 p, CagVec3 d, double
     size_t count = 0;
     CagStatus status = cag_curve_intersect_plane(region->loops[i], &upright, &found, &count, err);
     if (status) {
-      free(*out);
+      cag_free(*out);
       return status;
     }
-    double *grown = realloc(*out, (*n + count + 1) * sizeof *grown);
+    double *grown = cag_realloc(*out, (*n + count + 1) * sizeof *grown);
     if (!grown) {
-      free(found);
-      free(*out);
+      cag_free(found);
+      cag_free(*out);
       return cag_fail_memory(err);
     }
     *out = grown;
     for (size_t k = 0; k < count; k++) grown[(*n)++] = cag_dot(cag_sub(found[k].point, p), d);
-    free(found);
+    cag_free(found);
   }
   if (*n > 1) qsort(*out, *n, sizeof **out, by_size);
   return CAG_OK;
@@ -117,7 +118,7 @@ static CagStatus section_flat(const CagRegion *region, const CagTransform *frame
   }
   if (status) return status;
   status = add_pieces(region, frame, &l, cuts, count, WITHIN * size, out, err);
-  free(cuts);
+  cag_free(cuts);
   return status;
 }
 

@@ -2,9 +2,9 @@
 // surface: the parts of a section where the surface does not cross the plane.
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/surface/crease.h"
 #include "geom/surface/family.h"
@@ -93,7 +93,7 @@ static CagStatus add_edge(const Cut *c, const CagCurve *edge) {
     open = within;
   }
   if (!status && open) status = add_piece(c, space, from, cuts[n - 1]);
-  free(cuts);
+  cag_free(cuts);
   cag_curve_release(space);
   return status;
 }

@@ -2,8 +2,8 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/cubic.h"
 #include "geom/surface/section.h"
 
@@ -245,13 +245,13 @@ static CagStatus conic_arc(const CagTrace *t, const CagQuadric *quadric, const S
 // --- Cubics ---
 
 static CagStatus cubics(const CagTrace *t, CagCurve **out, CagError *err) {
-  double *parameters = malloc(t->count * sizeof *parameters);
+  double *parameters = cag_malloc(t->count * sizeof *parameters);
   if (!parameters) return cag_fail_memory(err);
   parameters[0] = 0;
   for (size_t i = 1; i < t->count; i++)
     parameters[i] = parameters[i - 1] + cag_norm(cag_sub(t->points[i], t->points[i - 1]));
   CagStatus status = cag_curve_hermite(t->points, t->tangents, t->count, parameters, 3, out, err);
-  free(parameters);
+  cag_free(parameters);
   return status;
 }
 

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
+
 // Cells between two breaks at least, and along a direction at most.
 #define CELLS_BETWEEN_BREAKS 4
 #define CELLS_MOST 400
@@ -68,7 +70,7 @@ static double *stretch_ends(const CagTracer *t, int direction, size_t *n) {
   const CagSurface *s = t->s;
   double lo = t->patch.lo[direction], hi = t->patch.hi[direction];
   size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0, kept = 1;
-  double *ends = malloc((inner + 2) * sizeof *ends);
+  double *ends = cag_malloc((inner + 2) * sizeof *ends);
   if (!ends) return NULL;
   if (inner > 0) s->kind->breaks(s, direction, ends + 1, inner);
   ends[0] = lo;
@@ -88,7 +90,7 @@ static bool make_lines(CagTracer *t, int direction, size_t cells, const double *
   size_t between = cells / stretches;
   if (between < CELLS_BETWEEN_BREAKS) between = CELLS_BETWEEN_BREAKS;
   if (between * stretches > CELLS_MOST) between = CELLS_MOST / stretches + 1;
-  double *lines = malloc((stretches * between + 1 + extra_count) * sizeof *lines);
+  double *lines = cag_malloc((stretches * between + 1 + extra_count) * sizeof *lines);
   if (lines) {
     for (size_t i = 0; i < stretches; i++)
       for (size_t k = 0; k < between; k++)
@@ -103,8 +105,8 @@ static bool make_lines(CagTracer *t, int direction, size_t cells, const double *
     lines[kept - 1] = hi;
     t->n[direction] = kept;
   }
-  free(ends);
-  free(t->lines[direction]);
+  cag_free(ends);
+  cag_free(t->lines[direction]);
   t->lines[direction] = lines;
   return lines != NULL;
 }
@@ -114,8 +116,8 @@ static double *value_of(const CagTracer *t, size_t i, size_t j) {
 }
 
 bool cag_tracer_fill(CagTracer *t) {
-  free(t->values);
-  t->values = malloc(t->n[0] * t->n[1] * sizeof *t->values);
+  cag_free(t->values);
+  t->values = cag_malloc(t->n[0] * t->n[1] * sizeof *t->values);
   if (!t->values) t->status = cag_fail_memory(t->err);
   for (size_t j = 0; j < t->n[1] && !t->status; j++)
     for (size_t i = 0; i < t->n[0] && !t->status; i++)
@@ -401,8 +403,8 @@ static void link_cell(CagTracer *t, size_t i, size_t j) {
 static bool find_crossings(CagTracer *t) {
   size_t nu = t->n[0], nv = t->n[1];
   t->edge_count = (nu - 1) * nv + nu * (nv - 1);
-  t->crossings = calloc(t->edge_count, sizeof *t->crossings);
-  t->links = malloc(t->edge_count * sizeof *t->links);
+  t->crossings = cag_calloc(t->edge_count, sizeof *t->crossings);
+  t->links = cag_malloc(t->edge_count * sizeof *t->links);
   if (!t->crossings || !t->links) return false;
   for (size_t j = 0; j < nv; j++)
     for (size_t i = 0; i + 1 < nu; i++) cross_edge(t, edge_along_u(t, i, j), i, j, i + 1, j);

@@ -4,8 +4,9 @@
 #include "geom/surface/section_join.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 // Runs that meet are one where their tangents agree up to this (1 - cosine): cubics with one
 // tangent for both then stay within a millionth.
@@ -14,14 +15,14 @@
 #define SPECK 1e-8
 
 void cag_trace_free(CagTrace *t) {
-  free(t->points);
-  free(t->tangents);
-  free(t->checks);
+  cag_free(t->points);
+  cag_free(t->tangents);
+  cag_free(t->checks);
 }
 
 void cag_traces_free(CagTraces *t) {
   for (size_t i = 0; i < t->count; i++) cag_trace_free(&t->items[i]);
-  free(t->items);
+  cag_free(t->items);
   *t = (CagTraces){0};
 }
 
@@ -52,11 +53,11 @@ static bool goes_on(const CagTrace *a, const CagTrace *b, const CagTraceJoint *h
 }
 
 static bool append(CagTrace *a, const CagTrace *b) {
-  CagVec3 *points = realloc(a->points, (a->count + b->count) * sizeof *points);
+  CagVec3 *points = cag_realloc(a->points, (a->count + b->count) * sizeof *points);
   if (points) a->points = points;
-  CagVec3 *tangents = realloc(a->tangents, (a->count + b->count) * sizeof *tangents);
+  CagVec3 *tangents = cag_realloc(a->tangents, (a->count + b->count) * sizeof *tangents);
   if (tangents) a->tangents = tangents;
-  CagVec3 *checks = realloc(a->checks, (a->check_count + b->check_count + 1) * sizeof *checks);
+  CagVec3 *checks = cag_realloc(a->checks, (a->check_count + b->check_count + 1) * sizeof *checks);
   if (checks) a->checks = checks;
   if (!points || !tangents || !checks) return false;
   // The first point of b is there already.

@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/surface/section.h"
 
 // Vertices within this part of the size of the plane lie in it.
@@ -135,8 +136,8 @@ static size_t walk(const Cut *c, size_t segment, int from, bool *seen, CagVec3 *
 
 static CagStatus walk_all(const Cut *c, CagCurveList *out, CagError *err) {
   size_t segments = c->count / 2;
-  bool *seen = calloc(segments + 1, sizeof *seen);
-  CagVec3 *points = malloc((segments + 2) * sizeof *points);
+  bool *seen = cag_calloc(segments + 1, sizeof *seen);
+  CagVec3 *points = cag_malloc((segments + 2) * sizeof *points);
   CagStatus status = seen && points ? CAG_OK : cag_fail_memory(err);
   // Open runs first, from their ends. The others are closed.
   for (int round = 0; round < 2; round++)
@@ -146,8 +147,8 @@ static CagStatus walk_all(const Cut *c, CagCurveList *out, CagError *err) {
       size_t n = walk(c, i, open < 0 ? 0 : open, seen, points);
       status = give(c, points, n, open < 0, out, err);
     }
-  free(seen);
-  free(points);
+  cag_free(seen);
+  cag_free(points);
   return status;
 }
 
@@ -156,17 +157,17 @@ CagStatus cag_mesh_section(const CagMesh *m, const CagPlane *plane, CagCurveList
   CagBounds box = cag_mesh_bounds(m);
   double size = m->vertex_count > 0 ? cag_norm(cag_sub(box.max, box.min)) : 0;
   Cut c = {.m = m, .plane = plane, .size = size, .zero = ON_PLANE * size};
-  c.ends = malloc((2 * m->triangle_count + 1) * sizeof *c.ends);
-  c.points = malloc((2 * m->triangle_count + 1) * sizeof *c.points);
-  c.next = malloc((m->triangle_count + 1) * sizeof *c.next);
+  c.ends = cag_malloc((2 * m->triangle_count + 1) * sizeof *c.ends);
+  c.points = cag_malloc((2 * m->triangle_count + 1) * sizeof *c.points);
+  c.next = cag_malloc((m->triangle_count + 1) * sizeof *c.next);
   CagStatus status = c.ends && c.points && c.next ? CAG_OK : cag_fail_memory(err);
   if (!status) {
     find_segments(&c);
     link_ends(&c);
     status = walk_all(&c, out, err);
   }
-  free(c.ends);
-  free(c.points);
-  free(c.next);
+  cag_free(c.ends);
+  cag_free(c.points);
+  cag_free(c.next);
   return status;
 }

@@ -10,9 +10,9 @@
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/crease.h"
 #include "geom/surface/family.h"
 #include "geom/surface/section_grid.h"
@@ -93,7 +93,7 @@ CagLevel cag_level_contour(CagVec3 direction, CagVec3 point, bool central) {
 static bool add_node(CagTracer *t, const CagTraceNode *node) {
   if (t->run_count == t->run_capacity) {
     size_t capacity = t->run_capacity ? 2 * t->run_capacity : 64;
-    CagTraceNode *grown = realloc(t->run, capacity * sizeof *grown);
+    CagTraceNode *grown = cag_realloc(t->run, capacity * sizeof *grown);
     if (!grown) return false;
     t->run = grown;
     t->run_capacity = capacity;
@@ -105,7 +105,7 @@ static bool add_node(CagTracer *t, const CagTraceNode *node) {
 static bool add_check(CagTracer *t, CagVec3 p) {
   if (t->check_count == t->check_capacity) {
     size_t capacity = t->check_capacity ? 2 * t->check_capacity : 64;
-    CagVec3 *grown = realloc(t->checks, capacity * sizeof *grown);
+    CagVec3 *grown = cag_realloc(t->checks, capacity * sizeof *grown);
     if (!grown) return false;
     t->checks = grown;
     t->check_capacity = capacity;
@@ -265,7 +265,7 @@ static bool refine(CagTracer *t, const CagTraceNode *a, const CagTraceNode *b, i
 static bool add_trace(CagTraces *out, const CagTrace *trace) {
   if (out->count == out->capacity) {
     size_t capacity = out->capacity ? 2 * out->capacity : 8;
-    CagTrace *grown = realloc(out->items, capacity * sizeof *grown);
+    CagTrace *grown = cag_realloc(out->items, capacity * sizeof *grown);
     if (!grown) return false;
     out->items = grown;
     out->capacity = capacity;
@@ -281,9 +281,9 @@ static bool keep_nodes(const CagTraceNode *nodes, size_t n, const CagVec3 *check
   CagTrace trace = {n,
                     check_count,
                     false,
-                    malloc(n * sizeof *trace.points),
-                    malloc(n * sizeof *trace.tangents),
-                    malloc((check_count + 1) * sizeof *trace.checks)};
+                    cag_malloc(n * sizeof *trace.points),
+                    cag_malloc(n * sizeof *trace.tangents),
+                    cag_malloc((check_count + 1) * sizeof *trace.checks)};
   bool ok = trace.points && trace.tangents && trace.checks;
   for (size_t i = 0; ok && i < n; i++) {
     const CagTraceNode *node = &nodes[i];
@@ -319,7 +319,7 @@ static CagTraceNode border_between(CagTracer *t, CagTraceNode in, CagTraceNode o
 
 // The parts of a run of a trimmed surface that belong to it.
 static bool keep_trimmed(CagTracer *t, size_t from, size_t to, CagTraces *out) {
-  CagTraceNode *part = malloc((to - from + 3) * sizeof *part);
+  CagTraceNode *part = cag_malloc((to - from + 3) * sizeof *part);
   if (!part) return false;
   size_t n = 0;
   bool ok = true, before = false;
@@ -336,7 +336,7 @@ static bool keep_trimmed(CagTracer *t, size_t from, size_t to, CagTraces *out) {
     ok = ok && !t->status;
   }
   ok = ok && keep_nodes(part, n, NULL, 0, out);
-  free(part);
+  cag_free(part);
   return ok;
 }
 
@@ -405,27 +405,27 @@ static bool walk(CagTracer *t, size_t start, bool *seen, int32_t *path, CagTrace
 }
 
 static bool walk_all(CagTracer *t, CagTraces *out) {
-  bool *seen = calloc(t->edge_count, sizeof *seen);
-  int32_t *path = malloc((t->edge_count + 1) * sizeof *path);
+  bool *seen = cag_calloc(t->edge_count, sizeof *seen);
+  int32_t *path = cag_malloc((t->edge_count + 1) * sizeof *path);
   bool ok = seen && path;
   // Runs that begin at the border first, then those that come back.
   for (int inner = 0; inner < 2; inner++)
     for (size_t e = 0; ok && e < t->edge_count; e++)
       if (!seen[e] && t->links[e][0] >= 0 && (inner || t->links[e][1] < 0))
         ok = walk(t, e, seen, path, out);
-  free(seen);
-  free(path);
+  cag_free(seen);
+  cag_free(path);
   return ok && t->status == CAG_OK;
 }
 
 static void tracer_free(CagTracer *t) {
-  free(t->lines[0]);
-  free(t->lines[1]);
-  free(t->values);
-  free(t->crossings);
-  free(t->links);
-  free(t->run);
-  free(t->checks);
+  cag_free(t->lines[0]);
+  cag_free(t->lines[1]);
+  cag_free(t->values);
+  cag_free(t->crossings);
+  cag_free(t->links);
+  cag_free(t->run);
+  cag_free(t->checks);
   t->lines[0] = t->lines[1] = t->values = NULL;
   t->crossings = t->run = NULL;
   t->links = NULL;
@@ -517,8 +517,8 @@ static CagStatus trace_patches(CagTracer *t, CagLevel *own, CagTraces *out) {
       ok = !t->status && trace_patch(t, own, out, &constant);
       out->everywhere = out->everywhere && constant;
     }
-  free(ends[0]);
-  free(ends[1]);
+  cag_free(ends[0]);
+  cag_free(ends[1]);
   return ok ? CAG_OK : t->status ? t->status : cag_fail_memory(t->err);
 }
 

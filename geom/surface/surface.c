@@ -4,9 +4,9 @@
 #include "geom/surface/surface.h"
 
 #include <float.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/family.h"
 #include "geom/surface/frames.h"
 #include "geom/surface/trimmed.h"
@@ -17,7 +17,7 @@
 
 CagStatus cag_surface_block(size_t size, const CagSurfaceKind *kind, double u0, double u1,
                             double v0, double v1, CagSurface **out, CagError *err) {
-  CagSurface *s = calloc(1, size);
+  CagSurface *s = cag_calloc(1, size);
   if (!s) return cag_fail_memory(err);
   s->kind = kind;
   s->references = 1;
@@ -38,7 +38,7 @@ CagSurface *cag_surface_retain(const CagSurface *s) {
 void cag_surface_release(CagSurface *s) {
   if (!s || --s->references > 0) return;
   if (s->kind->destroy) s->kind->destroy(s);
-  free(s);
+  cag_free(s);
 }
 
 CagStatus cag_surface_space_curve(const CagCurve *c, CagCurve **out, CagError *err) {
@@ -104,7 +104,7 @@ CagStatus cag_surface_eval(const CagSurface *s, double u, double v, int n, CagSi
 CagStatus cag_surface_cuts(const CagSurface *s, int direction, double **out, size_t *n,
                            CagError *err) {
   const size_t inner = s->kind->breaks ? s->kind->breaks(s, direction, NULL, 0) : 0;
-  double *cuts = malloc((inner + 2) * sizeof *cuts);
+  double *cuts = cag_malloc((inner + 2) * sizeof *cuts);
   *out = cuts;
   if (!cuts) return cag_fail_memory(err);
   cuts[0] = direction ? s->v0 : s->u0;
@@ -151,14 +151,14 @@ static bool all_inside(const double *t, size_t n, double a, double b) {
 // Checked copy of parameters, with those a few ulps outside moved to the end.
 static CagStatus snapped(const double *t, size_t n, double a, double b, bool angular,
                          const char *name, double **out, CagError *err) {
-  double *copy = malloc((n ? n : 1) * sizeof *copy);
+  double *copy = cag_malloc((n ? n : 1) * sizeof *copy);
   if (!copy) return cag_fail_memory(err);
   for (size_t i = 0; i < n; i++) {
     copy[i] = t[i];
     CagStatus status = check_parameter(&copy[i], a, b, angular, name, err);
     if (status) {
       err->index = (long)i;
-      free(copy);
+      cag_free(copy);
       return status;
     }
   }
@@ -180,8 +180,8 @@ CagStatus cag_surface_eval_grid(const CagSurface *s, const double *us, size_t nu
     status = s->kind->eval_grid ? s->kind->eval_grid(s, u, nu, v, nv, points, du, dv, err)
                                 : grid_by_points(s, u, nu, v, nv, points, du, dv, err);
   }
-  free(copy_u);
-  free(copy_v);
+  cag_free(copy_u);
+  cag_free(copy_v);
   return status;
 }
 
@@ -372,7 +372,7 @@ CagStatus cag_surface_keep_breaks(const CagSurface *inner, int direction, double
   *out = (CagKeptBreaks){0};
   const size_t n = inner->kind->breaks ? inner->kind->breaks(inner, direction, NULL, 0) : 0;
   if (n == 0) return CAG_OK;
-  out->at = malloc(n * sizeof *out->at);
+  out->at = cag_malloc(n * sizeof *out->at);
   if (!out->at) return cag_fail_memory(err);
   inner->kind->breaks(inner, direction, out->at, n);
   out->n = cag_surface_tidy_breaks(out->at, n, lo, hi);

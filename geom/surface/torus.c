@@ -6,8 +6,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/surface/family.h"
 
 typedef struct Torus {
@@ -46,7 +46,7 @@ static CagStatus torus_eval(const CagSurface *s, double u, double v, int n, CagS
 static CagStatus torus_grid(const CagSurface *s, const double *us, size_t nu, const double *vs,
                             size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err) {
   const Torus *t = (const Torus *)s;
-  double *turn = malloc((2 * nv + 1) * sizeof *turn);
+  double *turn = cag_malloc((2 * nv + 1) * sizeof *turn);
   if (!turn) return cag_fail_memory(err);
   for (size_t j = 0; j < nv; j++) cag_sincos(vs[j], &turn[2 * j], &turn[2 * j + 1]);
   for (size_t i = 0; i < nu; i++) {
@@ -60,7 +60,7 @@ static CagStatus torus_grid(const CagSurface *s, const double *us, size_t nu, co
       if (dv) dv[at] = cag_vec3(-t->minor * d * a, -t->minor * d * b, t->minor * c);
     }
   }
-  free(turn);
+  cag_free(turn);
   return CAG_OK;
 }
 

@@ -3,8 +3,9 @@
 #include "geom/surface/triangle.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 // How far barycentric coordinates may be from a sum of 1, and below 0.
 #define BARYCENTRIC_SLACK 1e-9
@@ -43,7 +44,7 @@ static void step(CagVec3 *net, int degree, const double w[3]) {
 
 static CagVec3 *copy_net(const CagVec3 *net, int degree) {
   size_t n = cag_triangle_count(degree);
-  CagVec3 *copy = malloc(n * sizeof *copy);
+  CagVec3 *copy = cag_malloc(n * sizeof *copy);
   if (copy) memcpy(copy, net, n * sizeof *copy);
   return copy;
 }
@@ -61,7 +62,7 @@ CagStatus cag_triangle_at(const CagVec3 *net, int degree, const double uvw[3], C
     out->ds = cag_scaled(cag_sub(b[0], b[2]), degree);
     out->dt = cag_scaled(cag_sub(b[1], b[2]), degree);
   }
-  free(b);
+  cag_free(b);
   return CAG_OK;
 }
 
@@ -95,6 +96,6 @@ CagStatus cag_triangle_split(const CagVec3 *net, int degree, const double uvw[3]
     }
     if (left > 0) step(b, left, uvw);
   }
-  free(b);
+  cag_free(b);
   return CAG_OK;
 }

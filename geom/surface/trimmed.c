@@ -9,9 +9,9 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/quadrature.h"
 #include "geom/surface/curve_on.h"
 #include "geom/surface/family.h"
@@ -70,8 +70,8 @@ static void trimmed_destroy(CagSurface *s) {
   Trimmed *w = (Trimmed *)s;
   cag_surface_release(w->inner);
   cag_region_release(w->region);
-  free(w->breaks[0].at);
-  free(w->breaks[1].at);
+  cag_free(w->breaks[0].at);
+  cag_free(w->breaks[1].at);
 }
 
 static const CagSurfaceKind trimmed_kind = {
@@ -194,7 +194,7 @@ static CagStatus integrate_loop(Integral *in, const Trimmed *w, size_t loop, dou
   CagStatus status = cag_curve_on_surface(w->inner, w->region->loops[loop], &on, err);
   if (status) return status;
   size_t n = on->kind->breaks ? on->kind->breaks(on, NULL, 0) : 0;
-  double *cuts = malloc((n + 2) * sizeof *cuts);
+  double *cuts = cag_malloc((n + 2) * sizeof *cuts);
   if (!cuts) status = cag_fail_memory(err);
   if (!status) {
     if (n > 0) on->kind->breaks(on, cuts + 1, n);
@@ -204,7 +204,7 @@ static CagStatus integrate_loop(Integral *in, const Trimmed *w, size_t loop, dou
     status = cag_integrate(along_loop, in, cuts, n + 2, in->parts, OUTER, part, err);
   }
   for (int k = 0; !status && k < in->parts; k++) sum[k] += part[k];
-  free(cuts);
+  cag_free(cuts);
   cag_curve_release(on);
   return status;
 }
@@ -214,7 +214,7 @@ static CagStatus integrate(const CagSurface *s, Integrand *f, int parts, double 
   const Trimmed *w = (const Trimmed *)s;
   size_t n = trimmed_breaks(s, 0, NULL, 0);
   Integral in = {.inner = w->inner, .f = f, .parts = parts, .from = s->u0};
-  in.cuts = malloc((n + 1) * sizeof *in.cuts);
+  in.cuts = cag_malloc((n + 1) * sizeof *in.cuts);
   if (!in.cuts) return cag_fail_memory(err);
   in.cuts[0] = s->u0;
   trimmed_breaks(s, 0, in.cuts + 1, n);
@@ -223,7 +223,7 @@ static CagStatus integrate(const CagSurface *s, Integrand *f, int parts, double 
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < w->region->count; i++)
     status = integrate_loop(&in, w, i, sum, err);
-  free(in.cuts);
+  cag_free(in.cuts);
   return status;
 }
 

@@ -4,9 +4,9 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/family.h"
 #include "geom/surface/swept.h"
 
@@ -48,7 +48,7 @@ static CagStatus sweep_grid(const CagSurface *surface, const double *us, size_t 
                             const double *vs, size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv,
                             CagError *err) {
   const Sweep *s = (const Sweep *)surface;
-  CagVec3 *c = malloc((2 * nu + 1) * sizeof *c);
+  CagVec3 *c = cag_malloc((2 * nu + 1) * sizeof *c);
   if (!c) return cag_fail_memory(err);
   CagStatus status = cag_curve_eval_many(s->section, us, nu, 1, c, err);
   for (size_t j = 0; !status && j < nv; j++) {
@@ -62,7 +62,7 @@ static CagStatus sweep_grid(const CagSurface *surface, const double *us, size_t 
       if (dv) dv[at] = cag_add(f.origin[1], carried(c[2 * i], &f, 1));
     }
   }
-  free(c);
+  cag_free(c);
   return status;
 }
 
@@ -125,8 +125,8 @@ static bool is_straight(const CagCurve *path) {
 
 static CagStatus rows_to_nurbs(const Sweep *s, const CagNurbsView *c, size_t rows,
                                const double *cuts, CagSurface **out, CagError *err) {
-  double *net = malloc(c->count * rows * 4 * sizeof *net),
-         *knots = malloc((rows + 2) * sizeof *knots);
+  double *net = cag_malloc(c->count * rows * 4 * sizeof *net),
+         *knots = cag_malloc((rows + 2) * sizeof *knots);
   CagStatus status = net && knots ? CAG_OK : cag_fail_memory(err);
   for (size_t j = 0; !status && j < rows; j++) {
     CagTransform frame;
@@ -141,15 +141,15 @@ static CagStatus rows_to_nurbs(const Sweep *s, const CagNurbsView *c, size_t row
     status =
         cag_surface_from_homogeneous(net, c->count, rows, c->degree, 1, c->knots, knots, out, err);
   }
-  free(net);
-  free(knots);
+  cag_free(net);
+  cag_free(knots);
   return status;
 }
 
 // Along straight pieces the section goes linearly from frame to frame.
 static CagStatus straight_to_nurbs(const Sweep *s, CagSurface **out, CagError *err) {
   size_t inner = cag_motion_breaks(s->motion, NULL, 0);
-  double *cuts = malloc((inner + 2) * sizeof *cuts);
+  double *cuts = cag_malloc((inner + 2) * sizeof *cuts);
   if (!cuts) return cag_fail_memory(err);
   cuts[0] = s->base.v0;
   cag_motion_breaks(s->motion, cuts + 1, inner);
@@ -162,7 +162,7 @@ static CagStatus straight_to_nurbs(const Sweep *s, CagSurface **out, CagError *e
     status = rows_to_nurbs(s, &c, inner + 2, cuts, out, err);
     cag_curve_release(exact);
   }
-  free(cuts);
+  cag_free(cuts);
   return status;
 }
 

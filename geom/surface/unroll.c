@@ -6,8 +6,8 @@
 // along each ruling. The angle and the point are integrals over t, kept as series.
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/basis/chebyshev.h"
 #include "geom/basis/quadrature.h"
 #include "geom/surface/reshape.h"
@@ -115,8 +115,8 @@ static CagStatus sum_up(Unrolling *w, size_t first, CagError *err) {
 static CagStatus make_cuts(Unrolling *w, CagError *err) {
   const int across = 1 - w->direction;
   size_t inner = w->s->kind->breaks ? w->s->kind->breaks(w->s, across, NULL, 0) : 0;
-  w->cuts = malloc((inner + 2) * sizeof *w->cuts);
-  w->sums = calloc(3 * (inner + 2), sizeof *w->sums);
+  w->cuts = cag_malloc((inner + 2) * sizeof *w->cuts);
+  w->sums = cag_calloc(3 * (inner + 2), sizeof *w->sums);
   if (!w->cuts || !w->sums) return cag_fail_memory(err);
   if (inner > 0) w->s->kind->breaks(w->s, across, w->cuts + 1, inner);
   w->cuts[0] = w->t0;
@@ -213,8 +213,8 @@ static CagStatus build(Unrolling *w, CagSurface **out, CagError *err) {
   cag_motion_release(motion);
   cag_chebyshev_release(rows);
   cag_chebyshev_release(angle);
-  free(w->cuts);
-  free(w->sums);
+  cag_free(w->cuts);
+  cag_free(w->sums);
   return status;
 }
 

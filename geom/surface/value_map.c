@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/curvature_line.h"
 
 #define X(name, text) text,
@@ -58,15 +59,15 @@ typedef struct Breaks {
 } Breaks;
 
 static void free_breaks(Breaks *b) {
-  free(b->at[0]);
-  free(b->at[1]);
+  cag_free(b->at[0]);
+  cag_free(b->at[1]);
 }
 
 static bool read_breaks(const CagSurface *s, Breaks *b) {
   *b = (Breaks){.same = {ON_BREAK * (s->u1 - s->u0), ON_BREAK * (s->v1 - s->v0)}};
   for (int k = 0; k < 2; k++) {
     b->n[k] = s->kind->breaks ? s->kind->breaks(s, k, NULL, 0) : 0;
-    b->at[k] = malloc((b->n[k] + 1) * sizeof *b->at[k]);
+    b->at[k] = cag_malloc((b->n[k] + 1) * sizeof *b->at[k]);
     if (!b->at[k]) return false;
     if (b->n[k] > 0) s->kind->breaks(s, k, b->at[k], b->n[k]);
   }
@@ -104,13 +105,13 @@ typedef struct Draft {
 static bool make_room(Draft *d) {
   if (d->count < d->capacity) return true;
   size_t room = d->capacity + d->capacity / 4 + 64;
-  double *values = realloc(d->values, room * sizeof *values);
+  double *values = cag_realloc(d->values, room * sizeof *values);
   if (values) d->values = values;
-  uint32_t *origin = realloc(d->origin, room * sizeof *origin);
+  uint32_t *origin = cag_realloc(d->origin, room * sizeof *origin);
   if (origin) d->origin = origin;
-  uint32_t *next = realloc(d->next, room * sizeof *next);
+  uint32_t *next = cag_realloc(d->next, room * sizeof *next);
   if (next) d->next = next;
-  bool *known = realloc(d->known, room * sizeof *known);
+  bool *known = cag_realloc(d->known, room * sizeof *known);
   if (known) d->known = known;
   if (!values || !origin || !next || !known) return false;
   d->capacity = room;
@@ -225,24 +226,24 @@ static CagStatus values_of(const CagSurface *s, CagSurfaceValue kind, const CagM
   Draft d = {.s = s,
              .kind = kind,
              .plain = plain,
-             .sided = malloc((n + 1) * sizeof *d.sided),
-             .values = malloc((n + 1) * sizeof *d.values),
-             .origin = malloc((n + 1) * sizeof *d.origin),
-             .next = malloc((n + 1) * sizeof *d.next),
-             .known = malloc((n + 1) * sizeof *d.known),
-             .corners = malloc((3 * plain->triangle_count + 1) * sizeof *d.corners),
+             .sided = cag_malloc((n + 1) * sizeof *d.sided),
+             .values = cag_malloc((n + 1) * sizeof *d.values),
+             .origin = cag_malloc((n + 1) * sizeof *d.origin),
+             .next = cag_malloc((n + 1) * sizeof *d.next),
+             .known = cag_malloc((n + 1) * sizeof *d.known),
+             .corners = cag_malloc((3 * plain->triangle_count + 1) * sizeof *d.corners),
              .count = n,
              .capacity = n};
   CagStatus status = d.sided && d.values && d.origin && d.next && d.known && d.corners
                          ? find_values(&d, how, err)
                          : cag_fail_memory(err);
   if (!status) status = finish(&d, out, err);
-  free(d.sided);
-  free(d.values);
-  free(d.origin);
-  free(d.next);
-  free(d.known);
-  free(d.corners);
+  cag_free(d.sided);
+  cag_free(d.values);
+  cag_free(d.origin);
+  cag_free(d.next);
+  cag_free(d.known);
+  cag_free(d.corners);
   return status;
 }
 
@@ -350,7 +351,7 @@ void cag_mesh_value_span(CagMesh *const *meshes, size_t n, double least, double 
   *from = 0;
   *to = 1;
   for (size_t i = 0; i < n; i++) triangles += meshes[i]->triangle_count;
-  Sample *s = triangles > 0 ? malloc(3 * triangles * sizeof *s) : NULL;
+  Sample *s = triangles > 0 ? cag_malloc(3 * triangles * sizeof *s) : NULL;
   if (!s) return;
   for (size_t i = 0; i < n; i++) {
     add_samples(meshes[i], s + at);
@@ -358,7 +359,7 @@ void cag_mesh_value_span(CagMesh *const *meshes, size_t n, double least, double 
   }
   qsort(s, at, sizeof *s, by_value);
   span_of_samples(s, at, from, to);
-  free(s);
+  cag_free(s);
   const double same = 1e-6; // of the value: differences below are rounding of second derivatives
   double large = fmax(fabs(*from), fabs(*to));
   if (*to - *from > fmax(same * large, least)) return;
@@ -372,7 +373,7 @@ void cag_mesh_value_span(CagMesh *const *meshes, size_t n, double least, double 
 
 CagStatus cag_mesh_reflect(CagMesh *m, CagVec3 eye, CagVec3 across, CagError *err) {
   if (!m->uv) {
-    m->uv = malloc((m->vertex_count + 1) * 2 * sizeof *m->uv);
+    m->uv = cag_malloc((m->vertex_count + 1) * 2 * sizeof *m->uv);
     if (!m->uv) return cag_fail_memory(err);
   }
   for (size_t v = 0; v < m->vertex_count; v++) {

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/intersect.h"
 #include "geom/surface/family.h"
 #include "geom/surface/nearest.h"
@@ -155,11 +156,11 @@ static CagStatus add_cuts(Cuts *cuts, const CagCurve *circle, const CagCurve *ed
   CagMeeting *found = NULL;
   size_t n = 0;
   CagStatus status = cag_curve_intersect(circle, edge, &found, &n, err);
-  double *grown = status ? NULL : realloc(cuts->t, (cuts->n + n + 2) * sizeof *grown);
+  double *grown = status ? NULL : cag_realloc(cuts->t, (cuts->n + n + 2) * sizeof *grown);
   if (!status && !grown) status = cag_fail_memory(err);
   if (grown) cuts->t = grown;
   for (size_t i = 0; !status && i < n; i++) cuts->t[cuts->n++] = found[i].t;
-  free(found);
+  cag_free(found);
   return status;
 }
 
@@ -212,7 +213,7 @@ static CagStatus add_parts(const CagSurface *s, CagCurve *circle, const CagCurve
     qsort(cuts.t, cuts.n, sizeof *cuts.t, ascending);
     status = add_arcs(s, circle, &cuts, near, out, err);
   }
-  free(cuts.t);
+  cag_free(cuts.t);
   return status;
 }
 

@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/support.h"
 #include "interp/value/jet.h"
 
@@ -268,7 +268,7 @@ bool cag_arg_points(CagCall *call, int argument, CagVec3 **out, size_t *n, int *
   if (v.type != CAG_LIST) return cag_fail_type(call, argument, "a list of points");
   const CagList *list = CAG_AS_LIST(v);
   if (list->length == 0) return cag_fail_value(call, argument, "at least one point");
-  CagVec3 *points = malloc(list->length * sizeof *points);
+  CagVec3 *points = cag_malloc(list->length * sizeof *points);
   if (!points)
     return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
   int highest = 2;
@@ -284,7 +284,7 @@ bool cag_arg_points(CagCall *call, int argument, CagVec3 **out, size_t *n, int *
       good = read_point(cag_list_get(call->vm, list, i), &points[i], &d);
     }
     if (!good) {
-      free(points);
+      cag_free(points);
       return cag_fail_element(call, argument, i, cag_list_get(call->vm, list, i),
                               "points of 2 or 3 finite numbers");
     }

@@ -2,8 +2,8 @@
 // control polygons and curvature.
 
 #include <limits.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/basis/basis_table.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
@@ -169,8 +169,8 @@ static bool give_arcs(CagCall *call, double radius, double from, double sweep, s
   const bool whole = sweep == FULL_TURN;
   CagCurve *c = NULL;
   CagError err;
-  CagVec3 *points = malloc(n * sizeof *points);
-  double *weights = malloc(sizeof(double) * (2 * n + 3)), *knots = weights + n;
+  CagVec3 *points = cag_malloc(n * sizeof *points);
+  double *weights = cag_malloc(sizeof(double) * (2 * n + 3)), *knots = weights + n;
   bool ok = (points && weights) || fail_memory(call);
   const double half = cos(sweep / 2 / (double)q);
   for (size_t i = 0; ok && i < n; i++) {
@@ -189,8 +189,8 @@ static bool give_arcs(CagCall *call, double radius, double from, double sweep, s
         cag_curve_nurbs(points, weights, n, 2, knots, frame->planar ? 2 : 3, &c, &err);
     ok = cag_geometry_ok(call, status, &err);
   }
-  free(points);
-  free(weights);
+  cag_free(points);
+  cag_free(weights);
   if (ok) *result = cag_curve_value(call->vm, c);
   return ok;
 }
@@ -249,14 +249,14 @@ bool cag_bsplines_control_net(CagCall *call, CagValue *result) {
   }
   const CagNurbs *nurbs;
   if (!read_nurbs(call, &nurbs)) return false;
-  CagVec3 *points = malloc(nurbs->distinct * sizeof *points);
+  CagVec3 *points = cag_malloc(nurbs->distinct * sizeof *points);
   if (!points) return fail_memory(call);
   n = 0;
   for (size_t i = 0; i < nurbs->distinct; i++)
     if (nurbs->homogeneous[4 * i + 3] > 0) points[n++] = cag_project(nurbs->homogeneous + 4 * i);
   CagStatus status =
       cag_curve_polyline(points, n, nurbs->periodic && n > 2, c->dimension, &out, &err);
-  free(points);
+  cag_free(points);
   if (!cag_geometry_ok(call, status, &err)) return false;
   *result = cag_curve_value(call->vm, out);
   return true;
@@ -290,7 +290,7 @@ static CagStatus make_comb(const CagCurve *c, Comb *comb, double *most, CagError
 
 static bool give_comb(CagCall *call, const CagCurve *c, const Comb *comb, double scale,
                       CagValue *result) {
-  CagVec3 *tips = malloc(comb->n * sizeof *tips);
+  CagVec3 *tips = cag_malloc(comb->n * sizeof *tips);
   if (!tips) return fail_memory(call);
   CagBuilder *list = cag_builder_new(call->vm);
   CagCurve *line = NULL;
@@ -307,7 +307,7 @@ static bool give_comb(CagCall *call, const CagCurve *c, const Comb *comb, double
        cag_geometry_ok(call, cag_curve_polyline(tips, comb->n, false, c->dimension, &line, &err),
                        &err) &&
        cag_builder_add(call->vm, list, cag_curve_value(call->vm, line));
-  free(tips);
+  cag_free(tips);
   if (ok) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
   return ok;
 }
@@ -330,12 +330,12 @@ bool cag_bsplines_hedgehog(CagCall *call, CagValue *result) {
       !cag_geometry_ok(call, cag_curve_bounds(c, &box, &err), &err))
     return false;
   Comb comb = {.n = (size_t)n};
-  comb.feet = malloc(2 * comb.n * sizeof(CagVec3));
+  comb.feet = cag_malloc(2 * comb.n * sizeof(CagVec3));
   if (!comb.feet) return fail_memory(call);
   comb.teeth = comb.feet + comb.n;
   bool ok = cag_geometry_ok(call, make_comb(c, &comb, &most, &err), &err);
   if (!given && most > 0) scale = LONGEST_TOOTH * cag_norm(cag_sub(box.max, box.min)) / most;
   ok = ok && give_comb(call, c, &comb, scale, result);
-  free(comb.feet);
+  cag_free(comb.feet);
   return ok;
 }

@@ -1,9 +1,9 @@
 // Knot vectors and B-spline bases as data (reference 05b, sections 1 and 5).
 
 #include <limits.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/basis_table.h"
 #include "geom/basis/bernstein.h"
 #include "interp/builtin/bsplines.h"
@@ -209,11 +209,11 @@ bool cag_bsplines_basis(CagCall *call, CagValue *result) {
   b.derivative = (int)derivative;
   b.left = side == 1;
   if (!read_basis_weights(call, 5, &b)) return false;
-  b.rows = malloc(sizeof(double) * ((size_t)(derivative + 1) * b.n + (size_t)b.degree + 2));
+  b.rows = cag_malloc(sizeof(double) * ((size_t)(derivative + 1) * b.n + (size_t)b.degree + 2));
   if (!b.rows) return fail_memory(call);
   b.work = b.rows + (size_t)(derivative + 1) * b.n;
   bool ok = give_basis(call, &b, result);
-  free(b.rows);
+  cag_free(b.rows);
   return ok;
 }
 
@@ -226,7 +226,7 @@ bool cag_bsplines_basis_triangle(CagCall *call, CagValue *result) {
   if (!read_knots(call, 1, 3, &x, &count, &p) || !cag_arg_finite(call, 2, &t) ||
       !cag_geometry_ok(call, cag_basis_interval(x, count, p, t, false, &at, &err), &err))
     return false;
-  double *rows = malloc(sizeof(double) * (size_t)(p + 1) * (count - 1));
+  double *rows = cag_malloc(sizeof(double) * (size_t)(p + 1) * (count - 1));
   if (!rows) return fail_memory(call);
   cag_basis_triangle(x, count, p, at, t, rows);
   CagBuilder *list = cag_builder_new(call->vm);
@@ -234,7 +234,7 @@ bool cag_bsplines_basis_triangle(CagCall *call, CagValue *result) {
   for (size_t q = 0; ok && q <= (size_t)p; q++)
     ok = cag_builder_add(call->vm, list,
                          cag_vector(call->vm, rows + q * (count - 1), count - 1 - q));
-  free(rows);
+  cag_free(rows);
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;
 }
@@ -275,7 +275,7 @@ bool cag_bsplines_basis_pieces(CagCall *call, CagValue *result) {
   bool local;
   if (!read_knots(call, 1, 2, &x, &count, &p) || !cag_arg_bool_or(call, 3, false, &local))
     return false;
-  double *table = malloc(sizeof(double) * (size_t)(p + 1) * (size_t)(p + 1));
+  double *table = cag_malloc(sizeof(double) * (size_t)(p + 1) * (size_t)(p + 1));
   if (!table) return fail_memory(call);
   CagBuilder *list = cag_builder_new(call->vm);
   bool ok = true;
@@ -284,7 +284,7 @@ bool cag_bsplines_basis_pieces(CagCall *call, CagValue *result) {
     CagValue piece = piece_record(call, x, count, p, i, local, table);
     ok = piece.type == CAG_RECORD && cag_builder_add(call->vm, list, piece);
   }
-  free(table);
+  cag_free(table);
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;
 }
@@ -343,7 +343,7 @@ bool cag_bsplines_oslo(CagCall *call, CagValue *result) {
   }
   const size_t m = n - (size_t)p - 1, block = (count - 1) * m;
   if ((double)(count - 1) * (double)m * (double)(p + 1) > TABLE_MAX) return fail_memory(call);
-  double *table = malloc(sizeof(double) * block * (size_t)(p + 1));
+  double *table = cag_malloc(sizeof(double) * block * (size_t)(p + 1));
   if (!table) return fail_memory(call);
   CagBuilder *list = cag_builder_new(call->vm);
   bool ok = cag_geometry_ok(call, cag_basis_oslo(x, count, y, n, p, table, &err), &err);
@@ -353,7 +353,7 @@ bool cag_bsplines_oslo(CagCall *call, CagValue *result) {
       ok = cag_builder_add(call->vm, rows, cag_vector(call->vm, table + q * block + i * m, m));
     ok = ok && cag_builder_add(call->vm, list, cag_builder_finish(call->vm, rows));
   }
-  free(table);
+  cag_free(table);
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;
 }
@@ -419,8 +419,8 @@ bool cag_bsplines_phantom_points(CagCall *call, CagValue *result) {
   CagError err;
   if (!cag_arg_degree(call, 1, 4, 3, &p) || !cag_arg_points(call, 0, &points, &n, &dimension))
     return false;
-  CagVec3 *all = malloc(sizeof *all * (n + 2));
-  double *work = malloc(sizeof(double) * (4 * (size_t)p + 8));
+  CagVec3 *all = cag_malloc(sizeof *all * (n + 2));
+  double *work = cag_malloc(sizeof(double) * (4 * (size_t)p + 8));
   bool ok = (all && work) || fail_memory(call);
   ok = ok && cag_geometry_ok(call, cag_degree_check(n, p, &err), &err) &&
        read_end(call, 2, points[0], dimension, &start) &&
@@ -432,8 +432,8 @@ bool cag_bsplines_phantom_points(CagCall *call, CagValue *result) {
     ok = cag_geometry_ok(call, status, &err);
   }
   if (ok) *result = cag_points_value(call->vm, all, n + 2, dimension);
-  free(all);
-  free(work);
-  free(points);
+  cag_free(all);
+  cag_free(work);
+  cag_free(points);
   return ok;
 }

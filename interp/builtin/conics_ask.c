@@ -1,8 +1,8 @@
 // Questions to conics, to lines by their equations, and to plane curves by their coordinates.
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/basis/regression.h"
 #include "geom/curve/intersect.h"
 #include "interp/builtin/conics.h"
@@ -296,7 +296,7 @@ bool cag_conics_points_at(CagCall *call, CagValue *result) {
                          cag_point(call->vm, meetings[i].point, 2)};
     ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2));
   }
-  free(meetings);
+  cag_free(meetings);
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;
 }
@@ -350,7 +350,7 @@ bool cag_conics_fit_formula(CagCall *call, CagValue *result) {
       !cag_arg_integer_or(call, 2, 1, 0, DEGREE_MAX, &degree) ||
       !cag_arg_points(call, 0, &points, &n, &dimension))
     return false;
-  double *x = malloc(sizeof *x * n), *y = malloc(sizeof *y * n);
+  double *x = cag_malloc(sizeof *x * n), *y = cag_malloc(sizeof *y * n);
   CagStatus status = x && y ? CAG_OK : cag_fail_memory(&err);
   for (size_t i = 0; !status && i < n; i++) {
     x[i] = points[i].x;
@@ -358,9 +358,9 @@ bool cag_conics_fit_formula(CagCall *call, CagValue *result) {
   }
   if (!status)
     status = cag_fit_formula(x, y, n, (CagModel)model, (int)degree, out, &residual, &err);
-  free(x);
-  free(y);
-  free(points);
+  cag_free(x);
+  cag_free(y);
+  cag_free(points);
   if (!cag_geometry_ok(call, status, &err)) return false;
   const bool two = model != CAG_MODEL_POLYNOMIAL;
   CagValue values[] = {row_value(call, out, two ? 2 : (size_t)degree + 1),

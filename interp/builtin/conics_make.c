@@ -2,8 +2,8 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/family.h"
 #include "interp/builtin/conics.h"
 #include "interp/builtin/support.h"
@@ -248,7 +248,7 @@ bool cag_conics_conic_through(CagCall *call, CagValue *result) {
   if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
   bool ok = check_plane(call, 0, dimension) &&
             make_by(call, points, n, NULL, 0, CAG_CONIC_GENERAL, result);
-  free(points);
+  cag_free(points);
   return ok;
 }
 
@@ -286,14 +286,14 @@ bool cag_conics_conic_by(CagCall *call, CagValue *result) {
   bool none = call->values[0].type == CAG_LIST && CAG_AS_LIST(call->values[0])->length == 0;
   if (!none && !cag_arg_points(call, 0, &points, &n, &dimension)) return false;
   m = list ? list->length : 0;
-  CagConicTangent *tangents = calloc(m + 1, sizeof *tangents);
+  CagConicTangent *tangents = cag_calloc(m + 1, sizeof *tangents);
   bool ok = tangents != NULL && check_plane(call, 0, dimension);
   if (!tangents) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; ok && i < m; i++)
     ok = read_tangent(call, cag_list_get(call->vm, list, i), i, &tangents[i]);
   ok = ok && make_by(call, points, n, tangents, m, (CagConicShape)kind, result);
-  free(tangents);
-  free(points);
+  cag_free(tangents);
+  cag_free(points);
   return ok;
 }
 
@@ -482,11 +482,11 @@ bool cag_conics_conic_points(CagCall *call, CagValue *result) {
       !cag_arg_choice(call, 2, ways, &way))
     return false;
   const CagCurve *c = cag_curve_conic_branch(given) ? cag_curve_conic_branch(given) : given;
-  CagVec3 *points = malloc(sizeof *points * (size_t)n);
+  CagVec3 *points = cag_malloc(sizeof *points * (size_t)n);
   if (!points)
     return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   bool ok = make[way](call, c, (size_t)n, points);
   if (ok) *result = cag_points_value(call->vm, points, (size_t)n, c->dimension);
-  free(points);
+  cag_free(points);
   return ok;
 }

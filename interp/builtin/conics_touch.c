@@ -1,8 +1,8 @@
 // Circles and lines that touch, fillets and rounded corners.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/circles.h"
 #include "geom/curve/family.h"
 #include "interp/builtin/conics.h"
@@ -105,7 +105,7 @@ static bool give_lines(CagCall *call, CagTangentLine *lines, size_t n, CagValue 
     ok = cag_geometry_ok(call, status, &err) &&
          cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
   }
-  free(lines);
+  cag_free(lines);
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;
 }
@@ -151,14 +151,14 @@ bool cag_conics_rounded_region(CagCall *call, CagValue *result) {
   CagError err;
   double radius;
   if (!cag_arg_positive(call, 1, &radius)) return false;
-  CagCurve **loops = calloc(region->count + 1, sizeof *loops);
+  CagCurve **loops = cag_calloc(region->count + 1, sizeof *loops);
   CagStatus status = loops ? CAG_OK : cag_fail_memory(&err);
   for (size_t i = 0; !status && i < region->count; i++)
     status = cag_curve_rounded(region->loops[i], radius, &loops[i], &err);
   if (!status && cag_region_is_empty(region)) out = cag_region_retain(region);
   else if (!status) status = cag_region_from_loops(loops, region->count, &out, &err);
   for (size_t i = 0; loops && i < region->count; i++) cag_curve_release(loops[i]);
-  free(loops);
+  cag_free(loops);
   if (!cag_geometry_ok(call, status, &err)) return false;
   *result = cag_region_value(call->vm, out, &shape->placement);
   cag_shape_say_alike(*result, call->values[0]);

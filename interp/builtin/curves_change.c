@@ -1,7 +1,6 @@
 // Curves made of other curves: backwards, in parts, joined, in another form.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/curve/approximate.h"
 #include "geom/curve/nurbs_ops.h"
 #include "interp/builtin/bsplines.h"
@@ -71,7 +70,7 @@ bool cag_curves_join_curves(CagCall *call, CagValue *result) {
   CagError err;
   if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0) return cag_fail_call(call, 0, CAG_ERR_too_few_curves, "expects at least one curve");
-  CagCurve **curves = malloc(n * sizeof *curves);
+  CagCurve **curves = cag_malloc(n * sizeof *curves);
   bool ok = curves != NULL;
   if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; ok && i < n; i++) {
@@ -82,7 +81,7 @@ bool cag_curves_join_curves(CagCall *call, CagValue *result) {
                     "expects curves, found %s as number %zu", cag_type_article(items[i]), i);
   }
   ok = ok && cag_geometry_ok(call, cag_curve_join(curves, n, &out, &err), &err);
-  free(curves);
+  cag_free(curves);
   if (!ok) return false;
   *result = cag_curve_value(call->vm, out);
   cag_shape_say_alike(*result, items[0]);
@@ -107,12 +106,12 @@ bool cag_curves_polygonize(CagCall *call, CagValue *result) {
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_positive(call, 1, &tolerance) ||
       !cag_geometry_ok(call, cag_curve_discretize(c, tolerance, ANY_TURN, &t, &n, &err), &err))
     return false;
-  CagVec3 *points = malloc(n * sizeof *points);
+  CagVec3 *points = cag_malloc(n * sizeof *points);
   CagStatus status = points ? cag_curve_eval_many(c, t, n, 0, points, &err) : cag_fail_memory(&err);
   if (status == CAG_OK)
     status = cag_curve_polyline(points, c->closed ? n - 1 : n, c->closed, c->dimension, &out, &err);
-  free(points);
-  free(t);
+  cag_free(points);
+  cag_free(t);
   return give(call, status, &err, &out, result);
 }
 
@@ -132,7 +131,7 @@ bool cag_bsplines_to_bezier(CagCall *call, CagValue *result) {
     cag_shape_say_alike(piece, call->values[0]);
     ok = ok && cag_builder_add(call->vm, list, piece);
   }
-  free(pieces);
+  cag_free(pieces);
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;
 }

@@ -1,7 +1,6 @@
 // Lines, circles, ellipses and helices.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "interp/builtin/curves.h"
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
@@ -35,7 +34,7 @@ bool cag_curves_polyline(CagCall *call, CagValue *result) {
       !cag_arg_points(call, 0, &points, &n, &dimension))
     return false;
   CagStatus status = cag_curve_polyline(points, n, closed, dimension, &c, &err);
-  free(points);
+  cag_free(points);
   return give(call, status, &err, &c, result);
 }
 

@@ -1,8 +1,8 @@
 // Measures of whole curves and regions, and their division.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/curves.h"
 
 // Most points or parts that one call makes.
@@ -214,8 +214,8 @@ static CagStatus newton_chords(const CagCurve *c, size_t n, const double *t, con
 static CagStatus equalize_chords(const CagCurve *c, size_t n, double *t, double length,
                                  CagError *err) {
   const double enough = EQUAL_CHORDS * length;
-  double *room = malloc(sizeof *room * 5 * (n + 1)), worst, tried;
-  CagVec3 *p = malloc(sizeof *p * 2 * (n + 1));
+  double *room = cag_malloc(sizeof *room * 5 * (n + 1)), worst, tried;
+  CagVec3 *p = cag_malloc(sizeof *p * 2 * (n + 1));
   CagStatus status = room && p ? CAG_OK : cag_fail_memory(err);
   double *e = room, *next = room + (n + 1), *next_e = room + 2 * (n + 1);
   if (!status) status = all_excesses(c, n, t, p, e, &worst, err);
@@ -231,8 +231,8 @@ static CagStatus equalize_chords(const CagCurve *c, size_t n, double *t, double 
     }
     if (!status) status = all_excesses(c, n, t, p, e, &worst, err);
   }
-  free(room);
-  free(p);
+  cag_free(room);
+  cag_free(p);
   if (!status && worst > 1e3 * enough)
     return cag_fail(err, CAG_E_CONVERGENCE, "convergence", "by", -1,
                     "found no %zu equal chords; their lengths still differ by %.3g mm", n, worst);
@@ -269,7 +269,7 @@ bool cag_curves_divide(CagCall *call, CagValue *result) {
       !cag_arg_choice(call, 2, ways, &by))
     return false;
   size_t n = (size_t)parts;
-  double *t = malloc((n + 1) * sizeof *t);
+  double *t = cag_malloc((n + 1) * sizeof *t);
   if (!t) return fail_memory(call);
   for (size_t i = 0; i <= n; i++) t[i] = step(c, i, n);
   CagStatus status = CAG_OK;
@@ -283,7 +283,7 @@ bool cag_curves_divide(CagCall *call, CagValue *result) {
       ok = cag_builder_add(call->vm, b, cag_parameter_value(true, t[i]));
     if (ok) *result = cag_builder_finish(call->vm, b);
   }
-  free(t);
+  cag_free(t);
   return ok;
 }
 

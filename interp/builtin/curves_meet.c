@@ -1,7 +1,6 @@
 // Where curves meet curves, surfaces and planes.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/curve/intersect.h"
 #include "geom/surface/meet_curve.h"
 #include "interp/builtin/bsplines.h"
@@ -20,7 +19,7 @@ static bool with_curve(CagCall *call, const CagCurve *a, const CagCurve *b, CagB
         cag_parameter_value(b->angular, found[i].t2), cag_number(found[i].multiplicity)};
     ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 4));
   }
-  free(found);
+  cag_free(found);
   return ok;
 }
 
@@ -38,7 +37,7 @@ static bool with_plane(CagCall *call, const CagCurve *c, const CagPlane *plane, 
                          cag_number(found[i].multiplicity)};
     ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 3));
   }
-  free(found);
+  cag_free(found);
   return ok;
 }
 
@@ -57,7 +56,7 @@ static bool with_surface(CagCall *call, const CagCurve *c, const CagSurface *s, 
         cag_parameter_value(s->angular_v, found[i].v), cag_number(found[i].multiplicity)};
     ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5));
   }
-  free(found);
+  cag_free(found);
   return ok;
 }
 

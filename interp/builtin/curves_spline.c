@@ -1,9 +1,9 @@
 // Bezier and B-spline curves, and their bases as data.
 
 #include <limits.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "interp/builtin/curves.h"
 
@@ -56,7 +56,7 @@ bool cag_curves_bezier(CagCall *call, CagValue *result) {
   if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
   bool ok = cag_arg_weights(call, 1, n, &weights);
   CagStatus status = ok ? cag_curve_bezier(points, weights, n, dimension, &c, &err) : CAG_OK;
-  free(points);
+  cag_free(points);
   return ok && give(call, status, &err, &c, result);
 }
 
@@ -77,7 +77,7 @@ static bool read_knots(CagCall *call, int argument, size_t n, int degree, const 
   }
   if (cag_given(call, argument) && !cag_arg_text(call, argument, &type)) return false;
   if (!cag_geometry_ok(call, cag_degree_check(n, degree, &err), &err)) return false;
-  *own = malloc((n + (size_t)degree + 1) * sizeof **own);
+  *own = cag_malloc((n + (size_t)degree + 1) * sizeof **own);
   if (!*own) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
   *knots = *own;
   return cag_geometry_ok(call, cag_knots_make(type, n, degree, points, *own, &err), &err);
@@ -108,7 +108,7 @@ static bool make_bspline(CagCall *call, const CagVec3 *points, size_t n, int dim
   }
   bool ok = read_knots(call, 2, n, degree, points, &own, &knots);
   status = ok ? cag_curve_nurbs(points, weights, n, degree, knots, dimension, &c, &err) : CAG_OK;
-  free(own);
+  cag_free(own);
   return ok && give(call, status, &err, &c, result);
 }
 
@@ -118,7 +118,7 @@ bool cag_curves_bspline(CagCall *call, CagValue *result) {
   int dimension;
   if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
   bool ok = make_bspline(call, points, n, dimension, result);
-  free(points);
+  cag_free(points);
   return ok;
 }
 
@@ -159,14 +159,14 @@ bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
   if (cag_given(call, 2) && call->values[2].type == CAG_LIST) {
     if (!cag_arg_points(call, 2, &points, &n, NULL)) return false;
     if (n != (size_t)count) {
-      free(points);
+      cag_free(points);
       return cag_fail_call(call, 2, CAG_ERR_length, "expects %ld points, found %zu", count, n);
     }
   } else if (!cag_given(call, 2)) type = "open";
   else if (!cag_arg_text(call, 2, &type)) return false;
   *result = cag_list_numbers(call->vm, (size_t)count + (size_t)degree + 1, &knots);
   CagStatus status = cag_knots_make(type, (size_t)count, degree, points, knots, &err);
-  free(points);
+  cag_free(points);
   if (!cag_geometry_ok(call, status, &err)) return false;
   if (is_set(call, 4)) remap_knots(knots, (size_t)count, degree, from, to);
   return true;

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <utf8proc.h>
 
+#include "base/memory.h"
 #include "interp/builtin/support.h"
 
 static const char FAMILY[] = "Files";
@@ -65,7 +66,7 @@ static bool reader_open(CagCall *call, Reader *r) {
   static const char MARK[] = "\xEF\xBB\xBF";
   if (n >= strlen(MARK) && memcmp(r->at, MARK, strlen(MARK)) == 0) r->at += strlen(MARK);
   if (check_utf8(r)) return true;
-  free(r->bytes);
+  cag_free(r->bytes);
   return false;
 }
 
@@ -73,7 +74,7 @@ static bool call_read_text(CagCall *call, CagValue *result) {
   Reader r;
   if (!reader_open(call, &r)) return false;
   CagCleanup cleanup;
-  cag_cleanup_push(&cleanup, free, r.bytes);
+  cag_cleanup_push(&cleanup, cag_free, r.bytes);
   *result = cag_text_new(call->vm, r.at, (size_t)(r.end - r.at));
   cag_cleanup_run(&cleanup);
   return true;
@@ -128,7 +129,7 @@ static CagValue cell_value(Csv *c) {
 static bool row_add(Csv *c, CagValue v) {
   if (c->count == c->capacity) {
     size_t capacity = c->capacity ? 2 * c->capacity : 16;
-    CagValue *row = realloc(c->row, capacity * sizeof *row);
+    CagValue *row = cag_realloc(c->row, capacity * sizeof *row);
     if (!row)
       return cag_fail_call(c->r.call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
     c->row = row;
@@ -230,8 +231,8 @@ static bool read_records(Csv *c, CagBuilder *built) {
 static void free_csv(void *context) {
   Csv *c = context;
   cag_string_free(&c->cell);
-  free(c->row);
-  free(c->r.bytes);
+  cag_free(c->row);
+  cag_free(c->r.bytes);
 }
 
 static bool read_separator(CagCall *call, char *out) {
@@ -359,7 +360,7 @@ typedef struct Fields {
 static bool add_field(Reader *r, Fields *f, CagText *name, CagValue value) {
   if (f->count == f->capacity) {
     size_t capacity = f->capacity ? 2 * f->capacity : 8;
-    Field *fields = realloc(f->fields, capacity * sizeof *fields);
+    Field *fields = cag_realloc(f->fields, capacity * sizeof *fields);
     if (!fields)
       return cag_fail_call(r->call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
     f->fields = fields;
@@ -410,7 +411,7 @@ static CagValue give_fields(Reader *r, Fields *f) {
   return record;
 }
 
-static void free_fields(void *fields) { free(((Fields *)fields)->fields); }
+static void free_fields(void *fields) { cag_free(((Fields *)fields)->fields); }
 
 // text ":" value
 static bool read_field(Reader *r, int depth, Fields *f) {
@@ -483,7 +484,7 @@ static bool call_read_json(CagCall *call, CagValue *result) {
   Reader r;
   if (!reader_open(call, &r)) return false;
   CagCleanup cleanup;
-  cag_cleanup_push(&cleanup, free, r.bytes);
+  cag_cleanup_push(&cleanup, cag_free, r.bytes);
   bool good = read_json_value(&r, 0, result);
   skip_blank(&r);
   if (good && r.at < r.end) good = fail_at(&r, r.at, "something follows the value");

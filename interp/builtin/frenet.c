@@ -1,9 +1,9 @@
 // Curve theory in the language: frames from derivatives, special points, contact with planes,
 // changes of the parameter, and helices by their constants.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/frenet.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
@@ -34,7 +34,7 @@ static bool call_frenet_of(CagCall *call, CagValue *result) {
   CagError err;
   if (!cag_arg_points(call, 0, &given, &n, &dimension)) return false;
   for (size_t i = 0; i < 3 && i < n; i++) d[i] = given[i];
-  free(given);
+  cag_free(given);
   if (n > 3 || n < 2)
     return cag_fail_value(call, 0, "a list of the derivatives of order 1 and 2, or 1 to 3");
   if (!cag_geometry_ok(call, cag_frenet_of(d, &speed, &f, &err), &err)) return false;
@@ -89,7 +89,7 @@ static bool read_triad(CagCall *call, int argument, CagVec3 out[3]) {
   if (!cag_arg_points(call, argument, &given, &n, &dimension)) return false;
   const bool good = n == 3 && dimension == 3;
   if (good) memcpy(out, given, 3 * sizeof *out);
-  free(given);
+  cag_free(given);
   return good || cag_fail_value(call, argument, "a list of 3 vectors of space");
 }
 
@@ -216,7 +216,7 @@ static bool call_chain_derivatives(CagCall *call, CagValue *result) {
   if (!ok) cag_fail_value(call, 1, "as many derivatives as the curve has, at most 16");
   ok = ok && cag_geometry_ok(call, cag_chain_derivatives(d, f, (int)n, out, &err), &err);
   if (ok) *result = cag_points_value(call->vm, out, n, dimension);
-  free(d);
+  cag_free(d);
   return ok;
 }
 

@@ -4,8 +4,8 @@
 // jets (interp/value/jet.h), and the coordinates that the function gives hold their derivatives.
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/function.h"
 #include "geom/curve/natural.h"
 #include "geom/surface/function.h"
@@ -39,7 +39,7 @@ static Formula *formula_new(CagVm *vm, CagValue function, int variables) {
 static void formula_free(void *context) {
   Formula *f = context;
   cag_vm_let_go(f->vm, f->slot);
-  free(f);
+  cag_free(f);
 }
 
 // Degrees of radians; whole degrees stay whole.
@@ -216,7 +216,7 @@ static void equations_free(void *context) {
   Equations *e = context;
   if (e->curvature) formula_free(e->curvature);
   if (e->torsion) formula_free(e->torsion);
-  free(e);
+  cag_free(e);
 }
 
 static bool read_number(Formula *f, const double *at, CagValue given, const CagSeries *like,
@@ -275,7 +275,7 @@ static bool call_natural_curve(CagCall *call, CagValue *result) {
       (cag_given(call, 3) && !cag_arg_transform(call, 3, &frame)))
     return false;
   CagCleanup cleanup;
-  Equations *e = cag_checked(calloc(1, sizeof *e));
+  Equations *e = cag_checked(cag_calloc(1, sizeof *e));
   cag_cleanup_push(&cleanup, equations_free, e);
   e->curvature = formula_new(call->vm, curvature, 1);
   if (twisted) e->torsion = formula_new(call->vm, torsion, 1);

@@ -1,7 +1,6 @@
 // Convex hulls, curves on surfaces, and what is inside of and how far from shapes.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/mesh/hull.h"
 #include "geom/mesh/separation.h"
 #include "geom/mesh/tessellate.h"
@@ -19,14 +18,14 @@ static bool plane_hull(CagCall *call, const CagVec3 *points, size_t n, CagValue 
   CagRegion *region = NULL;
   CagError err;
   if (!cag_geometry_ok(call, cag_hull_plane(points, n, &ring, &count, &err), &err)) return false;
-  CagVec3 *corners = malloc(count * sizeof *corners);
+  CagVec3 *corners = cag_malloc(count * sizeof *corners);
   CagStatus status = corners ? CAG_OK : cag_fail_memory(&err);
   for (size_t i = 0; !status && i < count; i++) corners[i] = points[ring[i]];
   if (!status) status = cag_curve_polyline(corners, count, true, 2, &loop, &err);
   if (!status) status = cag_region_new(loop, NULL, 0, &region, &err);
   cag_curve_release(loop);
-  free(corners);
-  free(ring);
+  cag_free(corners);
+  cag_free(ring);
   if (!cag_geometry_ok(call, status, &err)) return false;
   *result = cag_region_value(call->vm, region, NULL);
   return true;
@@ -53,7 +52,7 @@ typedef struct Cloud {
 static CagStatus cloud_add(Cloud *cloud, const CagVec3 *points, size_t n, CagError *err) {
   if (cloud->n + n > cloud->capacity) {
     const size_t capacity = 2 * (cloud->n + n);
-    CagVec3 *grown = realloc(cloud->points, capacity * sizeof *grown);
+    CagVec3 *grown = cag_realloc(cloud->points, capacity * sizeof *grown);
     if (!grown) return cag_fail_memory(err);
     cloud->points = grown;
     cloud->capacity = capacity;
@@ -80,7 +79,7 @@ static CagStatus add_curve(Cloud *cloud, const CagCurve *c, double tolerance, Ca
     status = cag_curve_point(c, t[i], &p, err);
     if (!status) status = cloud_add(cloud, &p, 1, err);
   }
-  free(t);
+  cag_free(t);
   if (c->dimension != 2) cloud->plane = false;
   return status;
 }
@@ -147,7 +146,7 @@ static bool hull_of_shapes(CagCall *call, CagValue *result) {
          cag_geometry_ok(call, add_shape(call->vm, &cloud, cag_list_get(call->vm, shapes, i), &err),
                          &err);
   ok = ok && hull_of_cloud(call, &cloud, result);
-  free(cloud.points);
+  cag_free(cloud.points);
   return ok;
 }
 
@@ -166,7 +165,7 @@ static bool call_convex_hull(CagCall *call, CagValue *result) {
   if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
   const bool ok =
       dimension == 2 ? plane_hull(call, points, n, result) : space_hull(call, points, n, result);
-  free(points);
+  cag_free(points);
   return ok;
 }
 
@@ -195,12 +194,12 @@ typedef struct Body {
 
 static void body_free(Body *b) {
   for (size_t i = 0; i < b->curve_count; i++) cag_curve_release(b->curves[i]);
-  free(b->curves);
+  cag_free(b->curves);
   cag_parts_free(&b->parts);
 }
 
 static CagStatus body_add_curve(Body *b, const CagCurve *c, double tolerance, CagError *err) {
-  CagCurve **grown = realloc(b->curves, (b->curve_count + 1) * sizeof *grown);
+  CagCurve **grown = cag_realloc(b->curves, (b->curve_count + 1) * sizeof *grown);
   if (!grown) return cag_fail_memory(err);
   b->curves = grown;
   b->curves[b->curve_count++] = cag_curve_retain(c);

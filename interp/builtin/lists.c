@@ -5,9 +5,9 @@
 // garbage, so sources, builders and intermediate values stand on the root stack then.
 
 #include <limits.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/support.h"
 #include "interp/eval/vm.h"
 
@@ -284,7 +284,7 @@ static bool check_keys(CagCall *call, const SortItem *items, size_t n) {
 static bool sort_values(CagCall *call, const CagList *values, const CagList *keys,
                         CagValue *result) {
   size_t n = values->length;
-  SortItem *buffer = malloc((2 * n + 1) * sizeof *buffer);
+  SortItem *buffer = cag_malloc((2 * n + 1) * sizeof *buffer);
   if (!buffer)
     return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; i < n; i++)
@@ -296,7 +296,7 @@ static bool sort_values(CagCall *call, const CagList *values, const CagList *key
     for (size_t i = 0; i < n && good; i++) good = cag_builder_add(call->vm, built, sorted[i].value);
     if (good) *result = cag_builder_finish(call->vm, built);
   }
-  free(buffer);
+  cag_free(buffer);
   return good;
 }
 
@@ -343,8 +343,8 @@ static bool call_reverse(CagCall *call, CagValue *result) {
 
 static bool call_zip(CagCall *call, CagValue *result) {
   size_t n = call->count;
-  CagSequence *s = malloc((n ? n : 1) * sizeof *s);
-  CagValue *parts = malloc((n ? n : 1) * sizeof *parts);
+  CagSequence *s = cag_malloc((n ? n : 1) * sizeof *s);
+  CagValue *parts = cag_malloc((n ? n : 1) * sizeof *parts);
   CagBuilder *built = cag_builder_new(call->vm);
   bool good = s && parts;
   if (!good) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
@@ -360,8 +360,8 @@ static bool call_zip(CagCall *call, CagValue *result) {
     good = cag_builder_add(call->vm, built, cag_list_values(call->vm, parts, n));
   }
   if (good) *result = cag_builder_finish(call->vm, built);
-  free(s);
-  free(parts);
+  cag_free(s);
+  cag_free(parts);
   return good;
 }
 

@@ -10,6 +10,7 @@
 // LAPACKE's complex type is C's.
 #include <lapacke.h>
 
+#include "base/memory.h"
 #include "geom/linalg/complex.h"
 #include "interp/builtin/support.h"
 
@@ -25,7 +26,7 @@ typedef struct Matrix {
 
 static bool take(CagCall *call, size_t rows, size_t columns, Matrix *out) {
   size_t n = rows * columns;
-  *out = (Matrix){rows, columns, malloc((n ? n : 1) * sizeof(double))};
+  *out = (Matrix){rows, columns, cag_malloc((n ? n : 1) * sizeof(double))};
   return out->x || cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
 }
 
@@ -59,7 +60,7 @@ static bool read_rows(CagCall *call, int argument, Matrix *out) {
           "expects rows of one length as `%s`, found %zu numbers in row 0 and %zu in row %zu",
           cag_parameter_name(call, argument), columns, n, i);
     if (!good) {
-      free(out->x);
+      cag_free(out->x);
       return false;
     }
     memcpy(out->x + i * columns, x, columns * sizeof *x);
@@ -70,7 +71,7 @@ static bool read_rows(CagCall *call, int argument, Matrix *out) {
 static bool read_matrix(CagCall *call, int argument, Matrix *out) {
   if (!read_rows(call, argument, out)) return false;
   if (check_finite(call, argument, out)) return true;
-  free(out->x);
+  cag_free(out->x);
   return false;
 }
 
@@ -80,7 +81,7 @@ static bool read_square(CagCall *call, int argument, const char *mend, Matrix *o
   cag_fail_call(call, argument, CAG_ERR_length,
                 "expects a square matrix, found %zu rows and %zu columns", out->rows, out->columns);
   if (mend) cag_fail_help(call->vm, "%s", mend);
-  free(out->x);
+  cag_free(out->x);
   return false;
 }
 
@@ -102,7 +103,7 @@ static bool read_right_side(CagCall *call, int argument, size_t rows, const char
                 "expects %zu rows in `%s`, as many as `%s` has %s, found %zu", rows,
                 cag_parameter_name(call, argument), cag_parameter_name(call, 0), as, out->rows);
 failed:
-  free(out->x);
+  cag_free(out->x);
   return false;
 }
 
@@ -123,7 +124,7 @@ static bool give_matrix(CagCall *call, Matrix *m, size_t rows, bool vector, CagV
     if (!isfinite(m->x[i])) good = cag_fail_call(call, 0, CAG_ERR_not_finite, "overflows");
   }
   if (good) *result = give_rows(call->vm, m, rows, vector);
-  free(m->x);
+  cag_free(m->x);
   return good;
 }
 
@@ -148,7 +149,7 @@ static bool decompose(CagCall *call, Matrix *m, lapack_int *pivots, bool *singul
 }
 
 static bool solve_system(CagCall *call, Matrix *a, Matrix *b) {
-  lapack_int n = (lapack_int)a->rows, *pivots = malloc(a->rows * sizeof *pivots);
+  lapack_int n = (lapack_int)a->rows, *pivots = cag_malloc(a->rows * sizeof *pivots);
   bool singular = false;
   bool good = pivots
                   ? decompose(call, a, pivots, &singular)
@@ -157,7 +158,7 @@ static bool solve_system(CagCall *call, Matrix *a, Matrix *b) {
   if (good)
     LAPACKE_dgetrs(LAPACK_ROW_MAJOR, 'N', n, (lapack_int)b->columns, a->x, n, pivots, b->x,
                    (lapack_int)b->columns);
-  free(pivots);
+  cag_free(pivots);
   return good;
 }
 
@@ -167,10 +168,10 @@ static bool call_solve(CagCall *call, CagValue *result) {
   if (!read_square(call, 0, "least_squares takes any number of rows", &a)) return false;
   bool good = read_right_side(call, 1, a.rows, "rows", &b, &vector);
   if (good && !solve_system(call, &a, &b)) {
-    free(b.x);
+    cag_free(b.x);
     good = false;
   }
-  free(a.x);
+  cag_free(a.x);
   return good && give_matrix(call, &b, b.rows, vector, result);
 }
 
@@ -179,16 +180,16 @@ static bool call_least_squares(CagCall *call, CagValue *result) {
   bool vector;
   if (!read_matrix(call, 0, &a)) return false;
   if (!read_right_side(call, 1, a.rows, "rows", &b, &vector)) {
-    free(a.x);
+    cag_free(a.x);
     return false;
   }
   // dgelsd wants room for the larger of rows and columns in the right side, and gives the solution
   // there.
   size_t room = a.rows > a.columns ? a.rows : a.columns, least = a.rows + a.columns - room;
-  double *singular_values = malloc(least * sizeof *singular_values);
+  double *singular_values = cag_malloc(least * sizeof *singular_values);
   bool good = take(call, room, b.columns, &x);
   if (good && !singular_values) {
-    free(x.x);
+    cag_free(x.x);
     good = cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   }
   if (good) {
@@ -201,15 +202,15 @@ static bool call_least_squares(CagCall *call, CagValue *result) {
         LAPACKE_dgelsd(LAPACK_ROW_MAJOR, (lapack_int)a.rows, (lapack_int)a.columns, columns, a.x,
                        (lapack_int)a.columns, x.x, columns, singular_values, cut, &rank);
     if (info != 0) {
-      free(x.x);
+      cag_free(x.x);
       good = cag_fail_call(call, 0, CAG_ERR_convergence,
                            "does not settle: the singular values could not be found");
     }
   }
   size_t unknowns = a.columns;
-  free(singular_values);
-  free(a.x);
-  free(b.x);
+  cag_free(singular_values);
+  cag_free(a.x);
+  cag_free(b.x);
   return good && give_matrix(call, &x, unknowns, vector, result);
 }
 
@@ -218,7 +219,7 @@ static bool call_multiply(CagCall *call, CagValue *result) {
   bool vector;
   if (!read_matrix(call, 0, &a)) return false;
   if (!read_right_side(call, 1, a.columns, "columns", &b, &vector)) {
-    free(a.x);
+    cag_free(a.x);
     return false;
   }
   bool good = take(call, a.rows, b.columns, &c);
@@ -229,10 +230,10 @@ static bool call_multiply(CagCall *call, CagValue *result) {
       for (size_t j = 0; j < c.columns; j++)
         row[j] += a.x[i * a.columns + k] * b.x[k * b.columns + j];
     if (i % 64 == 63) good = cag_keep_going(call->vm);
-    if (!good) free(c.x);
+    if (!good) cag_free(c.x);
   }
-  free(a.x);
-  free(b.x);
+  cag_free(a.x);
+  cag_free(b.x);
   return good && give_matrix(call, &c, c.rows, vector, result);
 }
 
@@ -246,15 +247,15 @@ static double small_determinant(const Matrix *m) {
 }
 
 static bool large_determinant(CagCall *call, Matrix *m, double *out) {
-  lapack_int n = (lapack_int)m->rows, *pivots = malloc(m->rows * sizeof *pivots);
+  lapack_int n = (lapack_int)m->rows, *pivots = cag_malloc(m->rows * sizeof *pivots);
   lapack_int info = pivots ? LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, m->x, n, pivots) : -1;
   if (info < 0) {
-    free(pivots);
+    cag_free(pivots);
     return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   }
   *out = 1;
   for (lapack_int i = 0; i < n; i++) *out *= m->x[i * n + i] * (pivots[i] == i + 1 ? 1 : -1);
-  free(pivots);
+  cag_free(pivots);
   return true;
 }
 
@@ -265,7 +266,7 @@ static bool call_determinant(CagCall *call, CagValue *result) {
   bool good = true;
   if (m.rows <= 3) determinant = small_determinant(&m);
   else good = large_determinant(call, &m, &determinant);
-  free(m.x);
+  cag_free(m.x);
   return good && cag_give_number(call, determinant + 0.0, result);
 }
 
@@ -277,9 +278,9 @@ static bool call_inverse(CagCall *call, CagValue *result) {
     memset(b.x, 0, a.rows * a.rows * sizeof(double));
     for (size_t i = 0; i < a.rows; i++) b.x[i * a.rows + i] = 1;
     good = solve_system(call, &a, &b);
-    if (!good) free(b.x);
+    if (!good) cag_free(b.x);
   }
-  free(a.x);
+  cag_free(a.x);
   return good && give_matrix(call, &b, b.rows, false, result);
 }
 
@@ -290,8 +291,8 @@ static bool call_transpose(CagCall *call, CagValue *result) {
   for (size_t i = 0; good && i < a.rows; i++)
     for (size_t j = 0; j < a.columns; j++) b.x[j * a.rows + i] = a.x[i * a.columns + j];
   if (good) *result = give_rows(call->vm, &b, b.rows, false);
-  if (good) free(b.x);
-  free(a.x);
+  if (good) cag_free(b.x);
+  cag_free(a.x);
   return good;
 }
 
@@ -328,7 +329,7 @@ static bool call_eigen(CagCall *call, CagValue *result) {
   Matrix m;
   if (!read_square(call, 0, NULL, &m)) return false;
   size_t n = m.rows;
-  double *values = malloc(n * sizeof *values);
+  double *values = cag_malloc(n * sizeof *values);
   bool good = values
                   ? check_symmetric(call, &m)
                   : cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
@@ -344,8 +345,8 @@ static bool call_eigen(CagCall *call, CagValue *result) {
     CagValue fields[] = {cag_vector(call->vm, values, n), give_rows(call->vm, &m, n, false)};
     *result = cag_record_new(call->vm, names, fields, 2);
   }
-  free(values);
-  free(m.x);
+  cag_free(values);
+  cag_free(m.x);
   return good;
 }
 
@@ -502,7 +503,7 @@ static bool companion_roots(CagCall *call, Roots *r) {
   if (ratio > 0 && isfinite(ratio)) exponent = (int)rint(log2(ratio) / (double)n);
   Matrix m;
   if (!take(call, n, n, &m)) return false;
-  double *re = malloc(2 * n * sizeof *re), *im = re ? re + n : NULL;
+  double *re = cag_malloc(2 * n * sizeof *re), *im = re ? re + n : NULL;
   bool good = re != NULL;
   if (!good) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   if (good) {
@@ -521,8 +522,8 @@ static bool companion_roots(CagCall *call, Roots *r) {
                          "does not settle: the roots could not be found");
   for (size_t i = 0; good && i < n; i++)
     r->z[i] = CMPLX(ldexp(re[i], exponent), ldexp(im[i], exponent));
-  free(re);
-  free(m.x);
+  cag_free(re);
+  cag_free(m.x);
   return good;
 }
 
@@ -549,10 +550,10 @@ static bool all_roots(CagCall *call, Complex **out, size_t *count) {
     return cag_fail_value(call, 0, "a polynomial of a degree of at most 200");
   size_t room = n + 1;
   Roots r = {.c = c + zeros, .degree = degree};
-  r.z = calloc(room, sizeof *r.z);
-  r.found = calloc(2 * room, sizeof *r.found);
-  r.done = calloc(room, sizeof *r.done);
-  r.near = calloc(room, sizeof *r.near);
+  r.z = cag_calloc(room, sizeof *r.z);
+  r.found = cag_calloc(2 * room, sizeof *r.found);
+  r.done = cag_calloc(room, sizeof *r.done);
+  r.near = cag_calloc(room, sizeof *r.near);
   bool good = r.z && r.found && r.done && r.near;
   if (!good) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   if (good && degree > 0) good = companion_roots(call, &r);
@@ -561,11 +562,11 @@ static bool all_roots(CagCall *call, Complex **out, size_t *count) {
     for (size_t i = 0; i < zeros; i++) r.found[r.found_count++] = 0;
     qsort(r.found, r.found_count, sizeof *r.found, compare_roots);
   }
-  free(r.z);
-  free(r.done);
-  free(r.near);
+  cag_free(r.z);
+  cag_free(r.done);
+  cag_free(r.near);
   if (good) *out = r.found, *count = r.found_count;
-  else free(r.found);
+  else cag_free(r.found);
   return good;
 }
 
@@ -579,7 +580,7 @@ static bool call_roots(CagCall *call, CagValue *result) {
   if (reals > 0) *result = cag_list_numbers(call->vm, reals, &numbers);
   for (size_t i = 0, k = 0; i < n; i++)
     if (cimag(z[i]) == 0) numbers[k++] = creal(z[i]) + 0.0;
-  free(z);
+  cag_free(z);
   return true;
 }
 
@@ -594,7 +595,7 @@ static bool call_complex_roots(CagCall *call, CagValue *result) {
     numbers[2 * i] = creal(z[i]) + 0.0;
     numbers[2 * i + 1] = cimag(z[i]) + 0.0;
   }
-  free(z);
+  cag_free(z);
   return true;
 }
 

@@ -1,8 +1,8 @@
 // Meshes: made of lists, asked for their data, checked, and made of other shapes.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/split.h"
 #include "geom/mesh/tessellate.h"
 #include "geom/solid/csg.h"
@@ -55,8 +55,8 @@ bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **coun
                            i);
     total += n;
   }
-  *counts = malloc((faces->length + 1) * sizeof **counts);
-  *indices = malloc((total + 1) * sizeof **indices);
+  *counts = cag_malloc((faces->length + 1) * sizeof **counts);
+  *indices = cag_malloc((total + 1) * sizeof **indices);
   if (!*counts || !*indices)
     return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; i < faces->length; i++) {
@@ -88,9 +88,9 @@ bool cag_solids_mesh(CagCall *call, CagValue *result) {
     CagStatus status = cag_mesh_from_faces(vertices, n, indices, counts, faces, &m, &err);
     ok = give(call, status, &err, &m, result);
   }
-  free(vertices);
-  free(counts);
-  free(indices);
+  cag_free(vertices);
+  cag_free(counts);
+  cag_free(indices);
   return ok;
 }
 
@@ -118,7 +118,7 @@ bool cag_solids_faces(CagCall *call, CagValue *result) {
 
 // Where a mesh has no normals of its own: those of its triangles, weighted by their areas.
 static CagStatus face_normals(const CagMesh *m, CagVec3 **out, CagError *err) {
-  CagVec3 *sum = calloc(m->vertex_count + 1, sizeof *sum);
+  CagVec3 *sum = cag_calloc(m->vertex_count + 1, sizeof *sum);
   if (!sum) return cag_fail_memory(err);
   for (size_t t = 0; t < m->triangle_count; t++) {
     const uint32_t *k = m->triangles + 3 * t;
@@ -138,7 +138,7 @@ bool cag_solids_normals_of(CagCall *call, CagValue *result) {
   if (!read_mesh(call, &m)) return false;
   if (!m->normals && !cag_geometry_ok(call, face_normals(m, &own, &err), &err)) return false;
   *result = cag_points_value(call->vm, own ? own : m->normals, m->vertex_count, 3);
-  free(own);
+  cag_free(own);
   return true;
 }
 
@@ -180,22 +180,14 @@ bool cag_solids_flip(CagCall *call, CagValue *result) {
 
 // --- Tessellation ---
 
-static CagStatus tessellate_solid(CagVm *vm, const CagSolid *s, const CagTessellation *how,
-                                  CagMesh **out, CagError *err) {
-  const size_t before = cag_solid_kept_bytes(s);
-  const CagStatus status = cag_solid_tessellate(s, how, out, err);
-  cag_charge_solid(vm, s, before);
-  return status;
-}
-
-static CagStatus tessellate_shape(CagVm *vm, CagValue v, const CagTessellation *how, CagMesh **out,
+static CagStatus tessellate_shape(CagValue v, const CagTessellation *how, CagMesh **out,
                                   CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagTessellation own = *how;
   if (own.tolerance <= 0) own.tolerance = shape->tolerance;
   switch (v.type) {
   case CAG_SURFACE: return cag_surface_tessellate(shape->as.surface, &own, out, err);
-  case CAG_SOLID: return tessellate_solid(vm, shape->as.solid, &own, out, err);
+  case CAG_SOLID: return cag_solid_tessellate(shape->as.solid, &own, out, err);
   case CAG_MESH: *out = cag_mesh_retain(shape->as.mesh); return CAG_OK;
   case CAG_REGION: {
     CagSurface *flat = NULL;
@@ -244,16 +236,16 @@ bool cag_solids_tessellate(CagCall *call, CagValue *result) {
   if (!read_how(call, &how) || !cag_shapes_collect(call, call->values[0], builder)) return false;
   const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
   if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects a shape");
-  CagMesh **meshes = malloc(shapes->length * sizeof *meshes), *whole = NULL;
+  CagMesh **meshes = cag_malloc(shapes->length * sizeof *meshes), *whole = NULL;
   if (!meshes) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
   CagStatus status = CAG_OK;
   size_t n = 0;
   for (; status == CAG_OK && n < shapes->length; n += status == CAG_OK)
-    status = tessellate_shape(call->vm, cag_list_get(call->vm, shapes, n), &how, &meshes[n], &err);
+    status = tessellate_shape(cag_list_get(call->vm, shapes, n), &how, &meshes[n], &err);
   if (status == CAG_OK && n == 1) whole = cag_mesh_retain(meshes[0]);
   else if (status == CAG_OK) status = cag_mesh_append(meshes, n, &whole, &err);
   for (size_t i = 0; i < n; i++) cag_mesh_release(meshes[i]);
-  free(meshes);
+  cag_free(meshes);
   if (status == CAG_OK) {
     status = keep_edges(&whole, &how, &err);
     if (status) cag_mesh_release(whole);

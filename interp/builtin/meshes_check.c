@@ -1,7 +1,6 @@
 // What is wrong with faces as the boundary of a solid, in numbers.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/mesh/check.h"
 #include "interp/builtin/solids.h"
 
@@ -59,9 +58,9 @@ static bool check_faces(CagCall *call, CagValue *result) {
     CagStatus status = cag_faces_check(vertices, n, indices, counts, faces, &check, &err);
     ok = cag_geometry_ok(call, status, &err);
   }
-  free(vertices);
-  free(counts);
-  free(indices);
+  cag_free(vertices);
+  cag_free(counts);
+  cag_free(indices);
   if (ok) *result = check_value(call->vm, &check);
   return ok;
 }

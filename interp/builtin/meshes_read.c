@@ -1,8 +1,8 @@
 // Meshes from files.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/shapes.h"
 #include "interp/eval/vm.h"
 #include "interp/import/mesh_read.h"
@@ -21,14 +21,10 @@ static CagStatus open_beside(void *context, const char *name, char **bytes, size
   const char *slash = strrchr(o->path, '/');
   int folder = slash && name[0] != '/' ? (int)(slash + 1 - o->path) : 0;
   char *path;
-  if (asprintf(&path, "%.*s%s", folder, o->path, name) < 0) return cag_fail_memory(err);
+  if (cag_asprintf(&path, "%.*s%s", folder, o->path, name) < 0) return cag_fail_memory(err);
   bool good = cag_vm_open_file(o->call, 0, path, bytes, size);
-  free(path);
+  cag_free(path);
   return good ? CAG_OK : cag_fail(err, CAG_E_CALLBACK, "file", "path", -1, "cannot read %s", name);
-}
-
-static size_t memory_left(const CagVm *vm) {
-  return vm->heap.limit > vm->heap.bytes ? vm->heap.limit - vm->heap.bytes : 0;
 }
 
 static bool call_read_mesh(CagCall *call, CagValue *result) {
@@ -39,19 +35,19 @@ static bool call_read_mesh(CagCall *call, CagValue *result) {
     return false;
   Opener opener = {call, path};
   const char *slash = strrchr(path, '/');
-  size_t left = memory_left(call->vm);
+  const size_t left = cag_account_room();
   CagMeshFile file = {.name = slash ? slash + 1 : path,
                       .bytes = bytes,
                       .size = size,
                       .max_triangles = call->vm->max_triangles,
-                      .max_memory = left > size ? left - size : 0,
+                      .max_memory = left,
                       .interrupt = cag_vm_stop(call->vm),
                       .open = open_beside,
                       .context = &opener};
   CagMesh *m = NULL;
   CagError err = {0};
   CagStatus status = cag_mesh_read(&file, &m, &err);
-  free(bytes); // before the error: running out of memory does not come back
+  cag_free(bytes); // before the error: running out of memory does not come back
   if (!cag_geometry_ok(call, status, &err)) return false;
   *result = cag_mesh_value(call->vm, m);
   return true;

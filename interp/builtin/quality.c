@@ -4,8 +4,7 @@
 // transform and exporter knows. The meshes are white, so that viewers which multiply the colors
 // of vertices and material show them as they are.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/surface/isophote.h"
 #include "geom/surface/value_map.h"
 #include "interp/builtin/shapes.h"
@@ -22,14 +21,14 @@ typedef struct Meshes {
 
 static void free_meshes(Meshes *m) {
   for (size_t i = 0; i < m->count; i++) cag_mesh_release(m->items[i]);
-  free(m->items);
+  cag_free(m->items);
 }
 
 // Takes the mesh over.
 static CagStatus add_mesh(Meshes *m, CagMesh *mesh, CagError *err) {
   if (m->count == m->capacity) {
     size_t room = m->capacity ? 2 * m->capacity : 8;
-    CagMesh **grown = realloc(m->items, room * sizeof *grown);
+    CagMesh **grown = cag_realloc(m->items, room * sizeof *grown);
     if (!grown) {
       cag_mesh_release(mesh);
       return cag_fail_memory(err);
@@ -201,11 +200,11 @@ static bool read_colored(CagCall *call, const CagMesh **out) {
 static bool call_values_of(CagCall *call, CagValue *result) {
   const CagMesh *m;
   if (!read_colored(call, &m)) return false;
-  double *x = malloc((m->vertex_count + 1) * sizeof *x);
+  double *x = cag_malloc((m->vertex_count + 1) * sizeof *x);
   if (!x) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
   for (size_t v = 0; v < m->vertex_count; v++) x[v] = m->uv[2 * v] + 0.0;
   *result = cag_numbers_value(call->vm, x, m->vertex_count);
-  free(x);
+  cag_free(x);
   return true;
 }
 
@@ -314,14 +313,14 @@ static bool read_levels(CagCall *call, int argument, double **out, size_t *n) {
   *n = listed ? list->length : (size_t)count;
   if (*n > LEVELS_MOST)
     return cag_fail_call(call, argument, CAG_ERR_value, "expects at most %d angles", LEVELS_MOST);
-  *out = malloc((*n + 1) * sizeof **out);
+  *out = cag_malloc((*n + 1) * sizeof **out);
   if (!*out) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
   for (size_t i = 0; i < *n; i++) {
     double angle = straight * (double)(i + 1) / (double)(*n + 1);
     if (listed) {
       CagValue v = cag_list_get(call->vm, list, i);
       if (v.type != CAG_ANGLE || !(v.as.number >= 0 && v.as.number <= 180)) {
-        free(*out);
+        cag_free(*out);
         return cag_fail_call(call, argument, CAG_ERR_value,
                              "expects a count or a list of angles from 0deg to 180deg; element %zu "
                              "is none",
@@ -386,7 +385,7 @@ static bool call_isophotes(CagCall *call, CagValue *result) {
   ok = ok && give_curves(call, &list, result);
   cag_root_pop(call->vm, 1);
   cag_curve_list_free(&list);
-  free(cosines);
+  cag_free(cosines);
   return ok;
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/support.h"
 
 static const char FAMILY[] = "Records";
@@ -62,14 +63,14 @@ static int compare_names(const void *a, const void *b) {
 // A name that stands twice, or NULL; equal names are one interned text.
 static const CagText *name_given_twice(CagText *const *names, size_t n) {
   if (n < 2) return NULL;
-  CagText **sorted = malloc(n * sizeof *sorted);
+  CagText **sorted = cag_malloc(n * sizeof *sorted);
   if (!sorted) return NULL;
   memcpy(sorted, names, n * sizeof *sorted);
   qsort(sorted, n, sizeof *sorted, compare_names);
   const CagText *twice = NULL;
   for (size_t i = 1; i < n && !twice; i++)
     if (sorted[i] == sorted[i - 1]) twice = sorted[i];
-  free(sorted);
+  cag_free(sorted);
   return twice;
 }
 
@@ -81,8 +82,8 @@ static bool call_record(CagCall *call, CagValue *result) {
   CagText *name;
   CagValue value;
   if (n > 0 && !read_pair(call, &pairs, 0, &name, &value)) return false;
-  CagText **names = malloc((n ? n : 1) * sizeof(CagText *));
-  CagValue *values = malloc((n ? n : 1) * sizeof *values);
+  CagText **names = cag_malloc((n ? n : 1) * sizeof(CagText *));
+  CagValue *values = cag_malloc((n ? n : 1) * sizeof *values);
   bool good = names && values;
   if (!good) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; i < n && good; i++) good = read_pair(call, &pairs, i, &names[i], &values[i]);
@@ -91,8 +92,8 @@ static bool call_record(CagCall *call, CagValue *result) {
     good =
         cag_fail_call(call, 0, CAG_ERR_duplicate_field, "has the field \"%s\" twice", twice->bytes);
   if (good) *result = cag_record_from_texts(call->vm, names, values, n);
-  free(names);
-  free(values);
+  cag_free(names);
+  cag_free(values);
   return good;
 }
 

@@ -1,8 +1,8 @@
 // Regions: pieces of the plane.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/curves.h"
 
 // `made` is read after the call that fills it: pass its address.
@@ -35,7 +35,7 @@ static bool read_loop(CagCall *call, int argument, CagValue v, CagCurve **out) {
   call->values[argument] = kept;
   if (!ok) return false;
   ok = cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, out, &err), &err);
-  free(points);
+  cag_free(points);
   return ok;
 }
 
@@ -83,7 +83,7 @@ static bool bounded_by_some(CagCall *call, CagValue *result) {
   if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
   const CagList *several = list_of_curves(call, call->values[0]);
   const size_t outer = several ? several->length : 1, n = outer + (holes ? holes->length : 0);
-  CagCurve **loops = malloc(n * sizeof *loops);
+  CagCurve **loops = cag_malloc(n * sizeof *loops);
   bool ok = loops != NULL;
   size_t read = 0;
   if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
@@ -95,7 +95,7 @@ static bool bounded_by_some(CagCall *call, CagValue *result) {
   }
   ok = ok && bounded_by(call, loops, outer, n - outer, result);
   for (size_t i = 0; i < read; i++) cag_curve_release(loops[i]);
-  free(loops);
+  cag_free(loops);
   return ok;
 }
 
@@ -207,7 +207,7 @@ static bool read_shape(Operands *o, CagValue v, size_t operand, CagRegion **out)
 // The union of the shapes of an operand; of none the empty region.
 static bool unite_shapes(Operands *o, const CagList *shapes, size_t operand, CagRegion **out) {
   CagError err;
-  CagRegion **parts = malloc((shapes->length + 1) * sizeof *parts);
+  CagRegion **parts = cag_malloc((shapes->length + 1) * sizeof *parts);
   if (!parts)
     return cag_fail_call(o->call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   size_t n = 0;
@@ -220,7 +220,7 @@ static bool unite_shapes(Operands *o, const CagList *shapes, size_t operand, Cag
         o->call,
         cag_region_combine(CAG_REGION_UNION, (const CagRegion *const *)parts, n, out, &err), &err);
   for (size_t i = 0; i < n; i++) cag_region_release(parts[i]);
-  free(parts);
+  cag_free(parts);
   return ok;
 }
 
@@ -247,7 +247,7 @@ static bool combine(CagCall *call, CagRegionOp op, CagValue *result) {
   if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one region");
   Operands o = {.call = call, .base = cag_transform_identity(), .first = cag_unset()};
-  o.regions = malloc(n * sizeof *o.regions);
+  o.regions = cag_malloc(n * sizeof *o.regions);
   bool ok = o.regions != NULL;
   if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   while (ok && o.n < n) ok = read_operand(&o, items[o.n]);
@@ -255,7 +255,7 @@ static bool combine(CagCall *call, CagRegionOp op, CagValue *result) {
     ok = cag_geometry_ok(
         call, cag_region_combine(op, (const CagRegion *const *)o.regions, n, &out, &err), &err);
   for (size_t i = 0; i < o.n; i++) cag_region_release(o.regions[i]);
-  free(o.regions);
+  cag_free(o.regions);
   if (!ok) return false;
   *result = cag_region_value(call->vm, out, &o.base);
   if (o.first.type != CAG_UNSET) cag_shape_say_alike(*result, o.first);

@@ -1,8 +1,8 @@
 // Questions to robots: where their frames are, how they move, what their motors do.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/robot/numeric.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/support.h"
@@ -143,7 +143,7 @@ bool cag_robots_link_frames(CagCall *call, CagValue *result) {
   if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 2, true, &limits) ||
       !cag_arg_joints(call, 1, r, limits, q))
     return false;
-  CagTransform *frames = malloc((r->link_count + 1) * sizeof *frames);
+  CagTransform *frames = cag_malloc((r->link_count + 1) * sizeof *frames);
   if (!frames)
     return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   cag_robot_frames(r, q, frames);
@@ -151,7 +151,7 @@ bool cag_robots_link_frames(CagCall *call, CagValue *result) {
   bool ok = true;
   for (size_t i = 0; ok && i <= r->link_count; i++)
     ok = cag_builder_add(call->vm, list, cag_transform_value(call->vm, &frames[i]));
-  free(frames);
+  cag_free(frames);
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;
 }
@@ -276,12 +276,12 @@ bool cag_robots_skeleton(CagCall *call, CagValue *result) {
   if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 2, true, &limits) ||
       !cag_arg_joints_or_home(call, 1, r, limits, q))
     return false;
-  CagVec3 *points = malloc((2 * r->link_count + 2) * sizeof *points);
+  CagVec3 *points = cag_malloc((2 * r->link_count + 2) * sizeof *points);
   if (!points)
     return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   size_t n = cag_robot_skeleton(r, q, points);
   *result = cag_points_value(call->vm, points, n, 3);
-  free(points);
+  cag_free(points);
   return true;
 }
 

@@ -1,8 +1,8 @@
 // Links and robots made, their members, and their printed form.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/support.h"
 
@@ -104,13 +104,13 @@ bool cag_robots_fixed_link(CagCall *call, CagValue *result) {
 
 // The links of a list as plain data.
 static bool read_links(CagCall *call, const CagList *list, CagRobotLink **out) {
-  CagRobotLink *links = malloc((list->length ? list->length : 1) * sizeof *links);
+  CagRobotLink *links = cag_malloc((list->length ? list->length : 1) * sizeof *links);
   if (!links)
     return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; i < list->length; i++) {
     CagValue v = cag_list_get(call->vm, list, i);
     if (v.type != CAG_LINK) {
-      free(links);
+      cag_free(links);
       return cag_fail_element(call, 0, i, v, "links (revolute, prismatic, fixed_link)");
     }
     links[i] = CAG_AS_LINK(v)->link;
@@ -189,7 +189,7 @@ static bool read_coupling(CagCall *call, int argument, const CagRobotLink *links
   }
   size_t n = 0;
   for (size_t i = 0; i < count; i++) n += links[i].kind != CAG_JOINT_FIXED;
-  double *block = calloc(n * n + n + 1, sizeof *block);
+  double *block = cag_calloc(n * n + n + 1, sizeof *block);
   if (!block)
     return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
   *out = (Coupling){block, block + n * n};
@@ -237,8 +237,8 @@ bool cag_robots_robot(CagCall *call, CagValue *result) {
   spec.coupling = coupling.matrix;
   spec.coupling_offset = coupling.offset;
   CagStatus status = ok ? cag_robot_new(&spec, &robot, &err) : CAG_OK;
-  free(plain);
-  free(coupling.matrix);
+  cag_free(plain);
+  cag_free(coupling.matrix);
   if (!ok || !cag_geometry_ok(call, status, &err)) return false;
   CagText *text = CAG_AS_TEXT(cag_text_c(call->vm, name));
   *result = cag_robot_value(call->vm, robot, text, links);

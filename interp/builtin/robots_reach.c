@@ -1,8 +1,8 @@
 // From poses to joint values: inverse kinematics, reach, and paths.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/robot/path.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/support.h"
@@ -114,7 +114,7 @@ static bool give_places(CagCall *call, const CagRobot *r, const double *q, size_
 }
 
 static bool take_places(CagCall *call, const CagRobot *r, size_t n, double **out) {
-  *out = malloc((n * r->joint_count + 1) * sizeof **out);
+  *out = cag_malloc((n * r->joint_count + 1) * sizeof **out);
   return *out || cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
 }
 
@@ -134,7 +134,7 @@ bool cag_robots_joint_path(CagCall *call, CagValue *result) {
       q[k * joints + i] = (1 - t) * from[i] + t * to[i];
     }
   bool ok = give_places(call, r, q, (size_t)n, result);
-  free(q);
+  cag_free(q);
   return ok;
 }
 
@@ -161,7 +161,7 @@ bool cag_robots_line_path(CagCall *call, CagValue *result) {
     return false;
   CagStatus status = cag_robot_line_path(r, &from, &to, (size_t)n, &way, q, &err);
   bool ok = cag_geometry_ok(call, status, &err) && give_places(call, r, q, (size_t)n, result);
-  free(q);
+  cag_free(q);
   return ok;
 }
 
@@ -171,7 +171,7 @@ static bool read_poses(CagCall *call, int argument, CagTransform **out, size_t *
   if (!cag_arg_list(call, argument, &list)) return false;
   *n = list->length;
   *points = list->dim == 3;
-  *out = malloc((*n + 1) * sizeof **out);
+  *out = cag_malloc((*n + 1) * sizeof **out);
   if (!*out)
     return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; i < *n; i++) {
@@ -199,7 +199,7 @@ bool cag_robots_follow(CagCall *call, CagValue *result) {
             read_poses(call, 1, &poses, &n, &way.position_only) && take_places(call, r, n, &q) &&
             cag_geometry_ok(call, cag_robot_follow(r, poses, n, &way, q, &err), &err) &&
             give_places(call, r, q, n, result);
-  free(poses);
-  free(q);
+  cag_free(poses);
+  cag_free(q);
   return ok;
 }

@@ -1,8 +1,7 @@
 // Robots to look at: the shapes of the links in the frames where the joints put them, or plain
 // rods and drums.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/solids.h"
 
@@ -97,8 +96,8 @@ static bool add_moved(Drawing *d, const CagTransform *t, CagValue shape) {
 
 static bool draw(Drawing *d, const CagRobotValue *v, const double *q, CagValue holding) {
   const CagRobot *r = v->robot;
-  CagTransform tool, *frames = malloc((r->link_count + 1) * sizeof *frames);
-  CagVec3 *points = malloc((2 * r->link_count + 2) * sizeof *points);
+  CagTransform tool, *frames = cag_malloc((r->link_count + 1) * sizeof *frames);
+  CagVec3 *points = cag_malloc((2 * r->link_count + 2) * sizeof *points);
   bool ok = (frames && points) ||
             cag_fail_call(d->call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   bool shaped = false;
@@ -111,8 +110,8 @@ static bool draw(Drawing *d, const CagRobotValue *v, const double *q, CagValue h
   if (ok && !shaped) ok = draw_plain(d, r, q, frames, points);
   cag_robot_forward(r, q, &tool);
   ok = ok && add_moved(d, &tool, holding);
-  free(frames);
-  free(points);
+  cag_free(frames);
+  cag_free(points);
   return ok;
 }
 

@@ -1,8 +1,8 @@
 // Workspaces as values, and chains from the axes of joints.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/hull.h"
 #include "geom/robot/dh.h"
 #include "geom/robot/workspace.h"
@@ -26,8 +26,9 @@ static CagStatus cloud_mesh(const CagVec3 *points, size_t n, double radius, CagM
   static const uint32_t faces[8][3] = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4},
                                        {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}};
   CagMesh *m = NULL;
-  CagVec3 *vertices = malloc(6 * n * sizeof *vertices);
-  uint32_t *counts = malloc(8 * n * sizeof *counts), *indices = malloc(24 * n * sizeof *indices);
+  CagVec3 *vertices = cag_malloc(6 * n * sizeof *vertices);
+  uint32_t *counts = cag_malloc(8 * n * sizeof *counts),
+           *indices = cag_malloc(24 * n * sizeof *indices);
   CagStatus status = vertices && counts && indices ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
     for (size_t k = 0; k < 6; k++)
@@ -39,9 +40,9 @@ static CagStatus cloud_mesh(const CagVec3 *points, size_t n, double radius, CagM
     }
   }
   if (!status) status = cag_mesh_from_faces(vertices, 6 * n, indices, counts, 8 * n, &m, err);
-  free(vertices);
-  free(counts);
-  free(indices);
+  cag_free(vertices);
+  cag_free(counts);
+  cag_free(indices);
   if (!status) *out = m;
   return status;
 }
@@ -67,7 +68,7 @@ static bool hull_value(CagCall *call, const CagVec3 *points, size_t n, const Cag
   }
   CagStatus status = cag_hull_plane(points, n, &ring, &count, &err);
   if (status) return status != CAG_E_MEMORY || cag_fail_geometry(call, &err);
-  CagVec3 *corners = malloc(count * sizeof *corners);
+  CagVec3 *corners = cag_malloc(count * sizeof *corners);
   CagCurve *loop = NULL;
   CagRegion *region = NULL;
   status = corners ? CAG_OK : cag_fail_memory(&err);
@@ -76,8 +77,8 @@ static bool hull_value(CagCall *call, const CagVec3 *points, size_t n, const Cag
   if (!status) status = cag_curve_polyline(corners, count, true, 2, &loop, &err);
   if (!status) status = cag_region_new(loop, NULL, 0, &region, &err);
   cag_curve_release(loop);
-  free(corners);
-  free(ring);
+  cag_free(corners);
+  cag_free(ring);
   if (!cag_geometry_ok(call, status, &err)) return false;
   CagTransform place = cag_translate(cag_vec3(0, 0, b->min.z));
   *out = cag_region_value(call->vm, region, &place);
@@ -127,7 +128,7 @@ bool cag_robots_workspace(CagCall *call, CagValue *result) {
   if (!cag_arg_robot(call, 0, &r) ||
       !cag_arg_integer_or(call, 1, SAMPLES_DEFAULT, 1, SAMPLES_MAX, &n))
     return false;
-  CagVec3 *points = malloc((size_t)n * sizeof *points);
+  CagVec3 *points = cag_malloc((size_t)n * sizeof *points);
   if (!points)
     return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t k = 0; k < (size_t)n; k++) {
@@ -138,7 +139,7 @@ bool cag_robots_workspace(CagCall *call, CagValue *result) {
     points[k] = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
   }
   bool ok = give_workspace(call, r, points, (size_t)n, result);
-  free(points);
+  cag_free(points);
   return ok;
 }
 
@@ -217,9 +218,9 @@ bool cag_robots_dh_assign(CagCall *call, CagValue *result) {
   if (list->length == 0)
     return cag_fail_call(call, 0, CAG_ERR_empty_chain, "expects the axis of at least one joint");
   size_t n = list->length;
-  CagJointAxis *axes = calloc(n, sizeof *axes);
-  CagRobotLink *links = calloc(n, sizeof *links);
-  CagTransform *frames = calloc(n + 1, sizeof *frames);
+  CagJointAxis *axes = cag_calloc(n, sizeof *axes);
+  CagRobotLink *links = cag_calloc(n, sizeof *links);
+  CagTransform *frames = cag_calloc(n + 1, sizeof *frames);
   bool ok = (axes && links && frames) ||
             cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; ok && i < n; i++)
@@ -231,8 +232,8 @@ bool cag_robots_dh_assign(CagCall *call, CagValue *result) {
   ok = ok &&
        cag_geometry_ok(call, cag_robot_dh_assign(&base, axes, n, &end, links, frames, &err), &err);
   ok = ok && give_assignment(call, links, frames, n, result);
-  free(axes);
-  free(links);
-  free(frames);
+  cag_free(axes);
+  cag_free(links);
+  cag_free(frames);
   return ok;
 }

@@ -4,10 +4,10 @@
 // are taken from the folder of the .urdf file, and those of ROS packages are looked for near it.
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "base/memory.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
@@ -247,7 +247,7 @@ static bool make_robot(Import *m) {
   CagError err = {0};
   CagRobot *robot = NULL;
   CagValue list;
-  m->plain = malloc((m->rows.row_count + 1) * sizeof *m->plain);
+  m->plain = cag_malloc((m->rows.row_count + 1) * sizeof *m->plain);
   if (!m->plain)
     return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   if (!make_links(m, &list)) return false;
@@ -280,7 +280,7 @@ static bool read_chain(Import *m, size_t size) {
   if (status == CAG_OK)
     status =
         cag_urdf_rows(&m->tree, m->base ? m->base : m->tip, chain, n, m->shapes, &m->rows, &err);
-  free(chain);
+  cag_free(chain);
   return cag_geometry_ok(m->call, status, &err);
 }
 
@@ -290,7 +290,7 @@ static bool read_robot(CagVm *vm, void *context) {
   size_t size;
   if (!cag_vm_open_file(m->call, 0, m->path, &m->bytes, &size) || !read_chain(m, size))
     return false;
-  free(m->bytes);
+  cag_free(m->bytes);
   m->bytes = NULL;
   return make_robot(m);
 }
@@ -302,8 +302,8 @@ static bool call_read_urdf(CagCall *call, CagValue *result) {
       !name_or_none(call, 2, &m.base) || !cag_arg_bool_or(call, 3, true, &m.shapes))
     return false;
   const bool ok = cag_vm_call_back(call->vm, read_robot, &m);
-  free(m.bytes);
-  free(m.plain);
+  cag_free(m.bytes);
+  cag_free(m.plain);
   cag_urdf_rows_free(&m.rows);
   cag_urdf_tree_free(&m.tree);
   return ok;

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/solid/csg.h"
 
 // Radians of degrees lose at most half an ulp, so the wanted decimal is within one ulp of the
@@ -215,7 +216,7 @@ bool cag_arg_region(CagCall *call, int argument, CagRegion **out, CagTransform *
   CagCurve *outline = NULL;
   bool ok =
       cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, &outline, &err), &err);
-  free(points);
+  cag_free(points);
   if (!ok) return false;
   ok = cag_geometry_ok(call, cag_region_new(outline, NULL, 0, out, &err), &err);
   cag_curve_release(outline);
@@ -247,17 +248,12 @@ static CagStatus region_bounds(const CagShape *shape, CagBounds *out, int *dimen
   return CAG_OK;
 }
 
-void cag_charge_solid(CagVm *vm, const CagSolid *s, size_t before) {
-  const size_t now = cag_solid_kept_bytes(s);
-  if (now > before) cag_heap_charge(vm, now - before);
-}
-
 static bool is_label(const CagShape *mesh) {
   return mesh->style && cag_record_get(mesh->style, "label").type == CAG_TEXT;
 }
 
 // *empty: nothing is left of the shape, and `err` says why.
-static CagStatus shape_bounds(CagVm *vm, CagValue v, CagBounds *out, int *dimension, bool *empty,
+static CagStatus shape_bounds(CagValue v, CagBounds *out, int *dimension, bool *empty,
                               CagError *err) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   CagStatus status = CAG_OK;
@@ -269,12 +265,7 @@ static CagStatus shape_bounds(CagVm *vm, CagValue v, CagBounds *out, int *dimens
     break;
   case CAG_REGION: status = region_bounds(shape, out, dimension, err); break;
   case CAG_SURFACE: status = cag_surface_bounds(shape->as.surface, out, err); break;
-  case CAG_SOLID: {
-    const size_t before = cag_solid_kept_bytes(shape->as.solid);
-    status = cag_solid_bounds(shape->as.solid, out, err);
-    cag_charge_solid(vm, shape->as.solid, before);
-    break;
-  }
+  case CAG_SOLID: status = cag_solid_bounds(shape->as.solid, out, err); break;
   default:
     *out = cag_mesh_bounds(shape->as.mesh);
     if (is_label(shape)) { // its place; a second vertex says its direction (figures.c)
@@ -296,11 +287,7 @@ bool cag_value_is_empty(CagCall *call, CagValue v, bool *out) {
   *out = false;
   if (v.type == CAG_REGION) *out = cag_region_is_empty(shape->as.region);
   if (v.type == CAG_MESH) *out = shape->as.mesh->triangle_count == 0 && !is_label(shape);
-  if (v.type == CAG_SOLID) {
-    const size_t before = cag_solid_kept_bytes(shape->as.solid);
-    status = cag_solid_is_empty(shape->as.solid, out, &err);
-    cag_charge_solid(call->vm, shape->as.solid, before);
-  }
+  if (v.type == CAG_SOLID) status = cag_solid_is_empty(shape->as.solid, out, &err);
   return cag_geometry_ok(call, status, &err);
 }
 
@@ -320,7 +307,7 @@ bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension)
     int d;
     if (i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) return false;
     const CagValue shape = cag_list_get(call->vm, CAG_AS_LIST(list), i);
-    CagStatus status = shape_bounds(call->vm, shape, &one, &d, &empty, &err);
+    CagStatus status = shape_bounds(shape, &one, &d, &empty, &err);
     if (status) return cag_geometry_ok(call, status, &err);
     if (empty) continue;
     all_empty = false;

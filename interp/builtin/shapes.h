@@ -45,8 +45,6 @@ CagValue cag_numbers_value(CagVm *vm, const double *x, size_t n);
 // Points as a list of vectors of 2 or 3 numbers.
 CagValue cag_points_value(CagVm *vm, const CagVec3 *points, size_t n, int dimension);
 
-// Counts the mesh that a set operation has kept since it held `before` bytes.
-void cag_charge_solid(CagVm *vm, const CagSolid *s, size_t before);
 // Sets in `to` what was said about `from`: material, name, style, tolerance, hidden.
 void cag_shape_say_alike(CagValue to, CagValue from);
 // What holds of a material said near and one said further out; see scene_say.c. Either may be NULL.

@@ -1,8 +1,8 @@
 // Set operations of solids, half spaces, quadrics as bodies, and what a solid leaves of shapes.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/solid/clip.h"
 #include "geom/solid/csg.h"
 #include "interp/builtin/scene.h"
@@ -96,13 +96,13 @@ typedef struct Operands {
 } Operands;
 
 static bool operands_new(CagCall *call, size_t n, Operands *out) {
-  *out = (Operands){malloc((n + 1) * sizeof(CagSolid *)), 0};
+  *out = (Operands){cag_malloc((n + 1) * sizeof(CagSolid *)), 0};
   return out->s || cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
 }
 
 static void operands_free(Operands *o) {
   for (size_t i = 0; i < o->n; i++) cag_solid_release(o->s[i]);
-  free(o->s);
+  cag_free(o->s);
 }
 
 // The place of an operand in an error: "the second operand" would need words for all numbers.
@@ -374,7 +374,7 @@ static bool clip_curve(const Clip *c, CagValue v, CagBuilder *into) {
     cag_shape_say_alike(piece, v);
     ok = cag_builder_add(c->call->vm, into, piece) && ok;
   }
-  free(pieces);
+  cag_free(pieces);
   return ok;
 }
 

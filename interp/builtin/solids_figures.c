@@ -1,7 +1,6 @@
 // Shapes that explain other shapes: control nets, isolines, arrows, frames.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/surfaces.h"
 
@@ -31,7 +30,7 @@ static bool surface_net(CagCall *call, const CagSurface *s, CagValue *result) {
   }
   CagBuilder *list = cag_builder_new(call->vm);
   size_t nu = net.distinct_u, nv = net.distinct_v;
-  CagVec3 *points = malloc((nu > nv ? nu : nv) * sizeof *points);
+  CagVec3 *points = cag_malloc((nu > nv ? nu : nv) * sizeof *points);
   bool ok = points != NULL;
   if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
   for (size_t i = 0; ok && i < nu; i++) {
@@ -42,7 +41,7 @@ static bool surface_net(CagCall *call, const CagSurface *s, CagValue *result) {
     for (size_t i = 0; i < nu; i++) points[i] = point_of(net.homogeneous + 4 * (i * net.nv + j));
     ok = add_line(call, list, points, nu, net.periodic_u, 3);
   }
-  free(points);
+  cag_free(points);
   return ok && give_group(call, list, result);
 }
 

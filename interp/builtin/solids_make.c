@@ -1,7 +1,6 @@
 // Solids: primitives, prisms, rods and closed shells.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/solid/csg.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
@@ -178,13 +177,13 @@ static bool solid_of_mesh(CagCall *call, CagValue v, CagValue *result) {
 static bool solid_of_faces(CagCall *call, const CagList *shapes, CagValue *result) {
   CagError err;
   CagSolid *s = NULL;
-  CagSurface **faces = calloc(shapes->length, sizeof *faces);
+  CagSurface **faces = cag_calloc(shapes->length, sizeof *faces);
   if (!faces) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
   size_t n = 0;
   bool ok = collect_faces(call, shapes, faces, &n) &&
             give(call, close_faces(call, faces, n, &s, &err), &err, &s, result);
   for (size_t i = 0; i < n; i++) cag_surface_release(faces[i]);
-  free(faces);
+  cag_free(faces);
   if (ok) cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
   return ok;
 }

@@ -118,12 +118,8 @@ static bool shape_body(CagCall *call, CagValue v, bool volume, Body *out) {
   CagError err;
   *out = (Body){0};
   switch (v.type) {
-  case CAG_SOLID: {
-    const size_t before = cag_solid_kept_bytes(shape->as.solid);
-    const CagStatus status = solid_body(shape->as.solid, shape->tolerance, out, &err);
-    cag_charge_solid(call->vm, shape->as.solid, before);
-    return cag_geometry_ok(call, status, &err);
-  }
+  case CAG_SOLID:
+    return cag_geometry_ok(call, solid_body(shape->as.solid, shape->tolerance, out, &err), &err);
   case CAG_MESH: return cag_geometry_ok(call, mesh_body(shape->as.mesh, volume, out, &err), &err);
   case CAG_SURFACE:
     return cag_geometry_ok(call, surface_body(shape->as.surface, volume, out, &err), &err);

@@ -1,8 +1,8 @@
 // Bases as matrices, the forms and the shape of cubic segments, joints, crossings with lines.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bernstein.h"
 #include "geom/curve/hulls.h"
 #include "geom/curve/intersect.h"
@@ -175,7 +175,7 @@ bool cag_splines_polynomials(CagCall *call, CagValue *result) {
   for (size_t i = 0; ok && i < pieces; i++)
     ok = cag_builder_add(call->vm, rows,
                          cag_points_value(call->vm, a + i * stride, stride, c->dimension));
-  free(a);
+  cag_free(a);
   if (ok) *result = cag_builder_finish(call->vm, rows);
   return ok;
 }
@@ -283,7 +283,7 @@ bool cag_splines_convert_cubic(CagCall *call, CagValue *result) {
   if (!cag_arg_choice(call, 1, names, &from) || !cag_splines_points(call, 0, &g, &n, &dimension))
     return false;
   if (n == 4) to_bezier_points(g, from, b);
-  free(g);
+  cag_free(g);
   if (n != 4)
     return cag_splines_fail(call, "point-count", "points", -1,
                             "a cubic has four points and vectors; these are %zu", n);
@@ -399,7 +399,7 @@ bool cag_splines_line_crossings(CagCall *call, CagValue *result) {
   for (size_t i = 0; ok && i < n; i++)
     ok = cag_builder_add(call->vm, t, cag_parameter_value(c->angular, meetings[i].t)) &&
          cag_builder_add(call->vm, points, cag_point(call->vm, meetings[i].point, c->dimension));
-  free(meetings);
+  cag_free(meetings);
   if (!ok) return false;
   CagValue values[] = {cag_builder_finish(call->vm, t), cag_builder_finish(call->vm, points),
                        cag_number((double)n),
@@ -414,11 +414,11 @@ bool cag_splines_hulls_disjoint(CagCall *call, CagValue *result) {
   int d;
   if (!cag_arg_points(call, 0, &a, &n, &d)) return false;
   if (!cag_arg_points(call, 1, &b, &m, &d)) {
-    free(a);
+    cag_free(a);
     return false;
   }
   *result = cag_bool(cag_hulls_disjoint(a, n, b, m));
-  free(a);
-  free(b);
+  cag_free(a);
+  cag_free(b);
   return true;
 }

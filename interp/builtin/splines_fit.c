@@ -1,7 +1,6 @@
 // B-splines from data: interpolation, least squares and its report.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/curve/fit.h"
 #include "interp/builtin/splines.h"
 #include "interp/builtin/support.h"
@@ -23,7 +22,7 @@ bool cag_splines_data_parameters(CagCall *call, CagValue *result) {
     if (i > 0 && choice != CAG_SPACING_UNIFORM) step = cag_norm(cag_sub(points[i], points[i - 1]));
     out[i] = sum += choice == CAG_SPACING_CENTRIPETAL ? sqrt(step) : step;
   }
-  free(points);
+  cag_free(points);
   if (isfinite(sum)) return true;
   return cag_splines_fail(call, "not-finite", "points", -1, "the distances of the points overflow");
 }
@@ -36,8 +35,8 @@ typedef struct Request {
 } Request;
 
 static void free_request(Request *r) {
-  free(r->points);
-  free(r->parameters);
+  cag_free(r->points);
+  cag_free(r->parameters);
 }
 
 static bool read_knots(CagCall *call, int argument, CagFitData *d, size_t count) {
@@ -97,7 +96,7 @@ bool cag_splines_interpolate(CagCall *call, CagValue *result) {
     CagStatus status = cag_curve_interpolate(&r.data, tangents, count, &c, &err);
     ok = cag_splines_give(call, status, &err, &c, result);
   }
-  free(tangents);
+  cag_free(tangents);
   free_request(&r);
   return ok;
 }

@@ -2,9 +2,9 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/splines.h"
 #include "interp/builtin/support.h"
 
@@ -44,7 +44,7 @@ bool cag_splines_points(CagCall *call, int argument, CagVec3 **out, size_t *n, i
     cag_as_vector(cag_list_get(call->vm, list, i), &x, &size);
     if (i == 0) first = size;
     else if (size != first) {
-      free(*out);
+      cag_free(*out);
       return cag_splines_fail(
           call, "dimension-mismatch", cag_parameter_name(call, argument), (long)i,
           "the points are of the plane or of space, not both: %s[0] has %zu "
@@ -85,7 +85,7 @@ bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, s
                             "`parameters` are one number for each of the %zu points, or the %zu "
                             "lengths between them; these are %zu",
                             n, n - 1, count);
-  double *u = malloc(n * sizeof *u);
+  double *u = cag_malloc(n * sizeof *u);
   if (!u)
     return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
   if (count == n) memcpy(u, x, n * sizeof *u);
@@ -93,7 +93,7 @@ bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, s
   for (size_t i = 0; i < count && count + 1 == n; i++) {
     u[i + 1] = u[i] + x[i];
     if (x[i] > 0 && isfinite(x[i])) continue;
-    free(u);
+    cag_free(u);
     return cag_splines_fail(call, "bad-parameter-length", "parameters", (long)i,
                             "the lengths of the segments are positive: parameters[%zu] = %s", i,
                             cag_number_text(x[i], text));
@@ -112,8 +112,8 @@ typedef struct Data {
 } Data;
 
 static void free_data(Data *d) {
-  free(d->points);
-  free(d->u);
+  cag_free(d->points);
+  cag_free(d->u);
 }
 
 static bool read_data(CagCall *call, int parameters, CagSpacing otherwise, Data *out) {
@@ -122,12 +122,12 @@ static bool read_data(CagCall *call, int parameters, CagSpacing otherwise, Data 
   Data d = {0};
   if (!cag_splines_points(call, 0, &d.points, &d.n, &d.dimension)) return false;
   if (!cag_splines_parameters(call, parameters, otherwise, d.n, &spacing, &d.u)) {
-    free(d.points);
+    cag_free(d.points);
     return false;
   }
   CagStatus status = CAG_OK;
   if (!d.u) {
-    d.u = malloc(d.n * sizeof *d.u);
+    d.u = cag_malloc(d.n * sizeof *d.u);
     status =
         d.u ? cag_spacing_parameters(d.points, d.n, spacing, d.u, &err) : cag_fail_memory(&err);
   }
@@ -165,7 +165,7 @@ bool cag_splines_hermite(CagCall *call, CagValue *result) {
       CagStatus status = cag_curve_hermite(d.points, tangents, d.n, d.u, d.dimension, &c, &err);
       ok = cag_splines_give(call, status, &err, &c, result);
     }
-    free(tangents);
+    cag_free(tangents);
   }
   free_data(&d);
   return ok;
@@ -294,7 +294,7 @@ static bool read_tension(CagCall *call, int argument, size_t n, double **out) {
                             "a tension is one number, or one for each of the %zu inner points; "
                             "these are %zu",
                             inner, count);
-  *out = malloc(inner * sizeof **out);
+  *out = cag_malloc(inner * sizeof **out);
   if (!*out)
     return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; i < inner; i++) (*out)[i] = x ? x[i] : same;
@@ -316,7 +316,7 @@ bool cag_splines_cubic_spline(CagCall *call, CagValue *result) {
         cag_curve_cubic_spline(d.points, d.n, d.u, &ends, tension, d.dimension, &c, &err);
     ok = cag_splines_give(call, status, &err, &c, result);
   }
-  free(tension);
+  cag_free(tension);
   free_data(&d);
   return ok;
 }
@@ -356,7 +356,7 @@ static bool read_ratios(CagCall *call, size_t n, CagBlendEnds ends, double **out
                             "`alpha` is one number, \"chord\", or one number for each of the %zu "
                             "points that a parabola is about; these are %zu",
                             count, given);
-  *out = malloc((count ? count : 1) * sizeof **out);
+  *out = cag_malloc((count ? count : 1) * sizeof **out);
   if (!*out) return cag_fail_call(call, 1, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; i < count; i++) (*out)[i] = x ? x[i] : same;
   return true;
@@ -377,8 +377,8 @@ bool cag_splines_parabolic_blend(CagCall *call, CagValue *result) {
     CagStatus status = cag_curve_parabolic_blend(points, n, ratios, 1, ends, dimension, &c, &err);
     ok = cag_splines_give(call, status, &err, &c, result);
   }
-  free(ratios);
-  free(points);
+  cag_free(ratios);
+  cag_free(points);
   return ok;
 }
 
@@ -398,7 +398,7 @@ bool cag_splines_catmull_rom(CagCall *call, CagValue *result) {
                             cag_number_text(alpha, text));
   if (!cag_splines_points(call, 0, &points, &n, &dimension)) return false;
   CagStatus status = cag_curve_parabolic_blend(points, n, NULL, alpha, ends, dimension, &c, &err);
-  free(points);
+  cag_free(points);
   return cag_splines_give(call, status, &err, &c, result);
 }
 
@@ -414,6 +414,6 @@ bool cag_splines_polynomial_curve(CagCall *call, CagValue *result) {
       !cag_splines_points(call, 0, &coefficients, &n, &dimension))
     return false;
   CagStatus status = cag_curve_polynomial(coefficients, n, length, dimension, &c, &err);
-  free(coefficients);
+  cag_free(coefficients);
   return cag_splines_give(call, status, &err, &c, result);
 }

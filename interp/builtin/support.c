@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/value/jet.h"
 
 // --- Results ---
@@ -354,12 +355,12 @@ static const char *skip_digits(const char *s, const char *end) {
 
 // The double of a text that is known to be a decimal number. strtod wants a NUL behind it.
 static bool convert_number(const char *s, size_t n, double *out) {
-  char buffer[128], *copy = n < sizeof buffer ? buffer : malloc(n + 1);
+  char buffer[128], *copy = n < sizeof buffer ? buffer : cag_malloc(n + 1);
   if (!copy) return false;
   memcpy(copy, s, n);
   copy[n] = 0;
   double x = strtod(copy, NULL);
-  if (copy != buffer) free(copy);
+  if (copy != buffer) cag_free(copy);
   *out = x + 0.0;
   return isfinite(x);
 }

@@ -1,7 +1,6 @@
 // Measures of whole surfaces, and what is made of one: samples, curves, other forms.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/surface/trimmed.h"
 #include "interp/builtin/surfaces.h"
 
@@ -76,8 +75,8 @@ bool cag_surfaces_sample(CagCall *call, CagValue *result) {
       !cag_arg_integer(call, 2, 2, POINTS_MAX / n, &m))
     return false;
   size_t nu = (size_t)n, nv = (size_t)m;
-  double *us = malloc(nu * sizeof *us), *vs = malloc(nv * sizeof *vs);
-  CagVec3 *points = malloc(nu * nv * sizeof *points);
+  double *us = cag_malloc(nu * sizeof *us), *vs = cag_malloc(nv * sizeof *vs);
+  CagVec3 *points = cag_malloc(nu * nv * sizeof *points);
   bool ok = us && vs && points;
   if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   for (size_t i = 0; ok && i < nu; i++) us[i] = step(s->u0, s->u1, i, nu - 1);
@@ -88,9 +87,9 @@ bool cag_surfaces_sample(CagCall *call, CagValue *result) {
   for (size_t i = 0; ok && i < nu; i++)
     ok = cag_builder_add(call->vm, rows, cag_points_value(call->vm, points + i * nv, nv, 3));
   if (ok) *result = cag_builder_finish(call->vm, rows);
-  free(us);
-  free(vs);
-  free(points);
+  cag_free(us);
+  cag_free(vs);
+  cag_free(points);
   return ok;
 }
 

@@ -1,8 +1,8 @@
 // Surfaces from grids of points, and what can be unrolled.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/loft.h"
 #include "geom/surface/reshape.h"
 #include "interp/builtin/support.h"
@@ -59,7 +59,7 @@ static bool read_grid(CagCall *call, CagVec3 **points, size_t *r, size_t *s) {
     const CagList *line = CAG_AS_LIST(row);
     if (i == 0) {
       *s = line->length;
-      *points = malloc((*r * *s + 1) * sizeof **points);
+      *points = cag_malloc((*r * *s + 1) * sizeof **points);
       if (!*points) return fail_memory(call);
     }
     if (line->length != *s) return cag_fail_rows(call, *s, i, line->length);
@@ -143,9 +143,9 @@ typedef struct Data {
 } Data;
 
 static void data_free(Data *d) {
-  free(d->points);
-  free(d->tables[0]);
-  free(d->tables[1]);
+  cag_free(d->points);
+  cag_free(d->tables[0]);
+  cag_free(d->tables[1]);
 }
 
 // A spacing, or a record of parameters u and v, of which one may be left to the chords.
@@ -162,7 +162,7 @@ static bool read_parameters(CagCall *call, int argument, Data *d) {
   for (int k = 0; k < 2; k++) {
     CagValue v = cag_record_get(CAG_AS_RECORD(call->values[argument]), names[k]);
     if (v.type == CAG_UNSET || v.type == CAG_NONE) continue;
-    d->tables[k] = malloc((g->r * g->s + 1) * sizeof(double));
+    d->tables[k] = cag_malloc((g->r * g->s + 1) * sizeof(double));
     if (!d->tables[k]) return fail_memory(call);
     if (!read_table(call, argument, v, k, g, d->tables[k])) return false;
     g->parameters[k] = d->tables[k];
@@ -231,7 +231,7 @@ static CagValue pair_value(CagVm *vm, const double *u, const double *v, size_t r
 static bool residuals(CagCall *call, const CagSurface *s, const CagGridData *g,
                       const CagGridReport *report, CagValue *out) {
   CagBuilder *rows = cag_builder_new(call->vm);
-  CagVec3 *line = malloc((g->s + 1) * sizeof *line);
+  CagVec3 *line = cag_malloc((g->s + 1) * sizeof *line);
   CagError err;
   bool ok = line != NULL;
   if (!ok) fail_memory(call);
@@ -244,7 +244,7 @@ static bool residuals(CagCall *call, const CagSurface *s, const CagGridData *g,
     }
     ok = ok && cag_builder_add(call->vm, rows, cag_points_value(call->vm, line, g->s, 3));
   }
-  free(line);
+  cag_free(line);
   if (ok) *out = cag_builder_finish(call->vm, rows);
   return ok;
 }
@@ -339,7 +339,7 @@ bool cag_surfaces_grid_parameters(CagCall *call, CagValue *result) {
     else cag_fail_value(call, 2, "two positive numbers, the last parameters by u and by v");
   }
   if (ok) {
-    table = malloc(2 * g.r * g.s * sizeof *table);
+    table = cag_malloc(2 * g.r * g.s * sizeof *table);
     if (!table) ok = fail_memory(call);
   }
   if (ok) {
@@ -348,8 +348,8 @@ bool cag_surfaces_grid_parameters(CagCall *call, CagValue *result) {
     cag_grid_parameters(&g, end, table, table + g.r * g.s);
     *result = pair_value(call->vm, table, table + g.r * g.s, g.r, g.s);
   }
-  free(table);
-  free(points);
+  cag_free(table);
+  cag_free(points);
   return ok;
 }
 

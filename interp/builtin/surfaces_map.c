@@ -4,9 +4,9 @@
 // Those of curves and surfaces are made as functions of the language, so that they are
 // differentiated exactly; those of regions, solids and meshes are meshes.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/tessellate.h"
 #include "geom/surface/mapped.h"
 #include "geom/surface/reshape.h"
@@ -46,13 +46,13 @@ static bool tell_of_mapping(CagCall *call, int argument, const char *what) {
       strcmp(errors->items[0].source->name, "<formula>") != 0)
     return false;
   const CagErrorId id = errors->items[0].id;
-  char *message = errors->items[0].message ? strdup(errors->items[0].message) : NULL;
-  char *reason = errors->items[0].reason ? strdup(errors->items[0].reason) : NULL;
+  char *message = errors->items[0].message ? cag_strdup(errors->items[0].message) : NULL;
+  char *reason = errors->items[0].reason ? cag_strdup(errors->items[0].reason) : NULL;
   const char *said = message ? message : "";
   if (strncmp(said, "at: ", 4) == 0) said += 4; // how points of a surface are asked for
   cag_fail_call(call, argument, id, "%s: %s", what, said);
-  free(message);
-  free(errors->items[0].reason);
+  cag_free(message);
+  cag_free(errors->items[0].reason);
   errors->items[0].reason = reason;
   return false;
 }
@@ -64,8 +64,8 @@ static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue o
   const CagCurve *c = CAG_AS_SHAPE(g)->as.curve;
   CagError err;
   size_t inner = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0, made = 0;
-  double *cuts = malloc((inner + 2) * sizeof *cuts);
-  CagCurve **pieces = malloc((inner + 1) * sizeof *pieces), *joined = NULL;
+  double *cuts = cag_malloc((inner + 2) * sizeof *cuts);
+  CagCurve **pieces = cag_malloc((inner + 1) * sizeof *pieces), *joined = NULL;
   CagValue lambda;
   bool ok = cuts && pieces;
   if (!ok) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
@@ -87,8 +87,8 @@ static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue o
   if (ok && made == 1) joined = cag_curve_retain(pieces[0]);
   else if (ok) ok = cag_geometry_ok(call, cag_curve_join(pieces, made, &joined, &err), &err);
   while (made > 0) cag_curve_release(pieces[--made]);
-  free(pieces);
-  free(cuts);
+  cag_free(pieces);
+  cag_free(cuts);
   if (ok) *result = cag_curve_value(vm, joined);
   return ok;
 }
@@ -197,7 +197,7 @@ static bool map_several(CagCall *call, const CagSurface *s, double tolerance, Ca
   if (!cag_shapes_collect(call, call->values[0], shapes)) return false;
   CagValue all = cag_builder_finish(call->vm, shapes);
   const CagList *list = CAG_AS_LIST(all);
-  CagValue *images = malloc((list->length + 1) * sizeof *images);
+  CagValue *images = cag_malloc((list->length + 1) * sizeof *images);
   if (!images) return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory");
   cag_root_push(call->vm, all);
   // Mapping the next one may call the script.
@@ -211,7 +211,7 @@ static bool map_several(CagCall *call, const CagSurface *s, double tolerance, Ca
   CagBuilder *group = cag_builder_new(call->vm);
   for (size_t i = 0; ok && i < n; i++) ok = cag_builder_add(call->vm, group, images[i]);
   cag_root_pop(call->vm, n + 1);
-  free(images);
+  cag_free(images);
   if (ok) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, group));
   return ok;
 }

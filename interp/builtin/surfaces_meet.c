@@ -1,7 +1,6 @@
 // Where surfaces meet curves, planes and each other, and where they are nearest to a point.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/surface/meet_curve.h"
 #include "geom/surface/meet_surface.h"
 #include "geom/surface/nearest.h"
@@ -42,7 +41,7 @@ static bool with_curve(CagCall *call, const CagSurface *s, const CagCurve *c, Ca
         cag_number(found[i].multiplicity)};
     ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5));
   }
-  free(found);
+  cag_free(found);
   if (ok) *result = cag_builder_finish(call->vm, list);
   return ok;
 }

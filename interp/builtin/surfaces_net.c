@@ -1,9 +1,9 @@
 // Bezier and B-spline surfaces of nets of control points, given by rows of u.
 
 #include <limits.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
 
@@ -14,8 +14,8 @@ typedef struct Net {
 } Net;
 
 static void net_free(Net *net) {
-  free(net->points);
-  free(net->weights);
+  cag_free(net->points);
+  cag_free(net->weights);
 }
 
 static bool fail_memory(CagCall *call) {
@@ -59,7 +59,7 @@ static bool read_net(CagCall *call, Net *net) {
     size_t n = CAG_AS_LIST(row)->length;
     if (i == 0) {
       net->nv = n;
-      net->points = malloc((net->nu * n + 1) * sizeof *net->points);
+      net->points = cag_malloc((net->nu * n + 1) * sizeof *net->points);
       if (!net->points) return fail_memory(call);
     }
     if (n != net->nv) return cag_fail_rows(call, net->nv, i, n);
@@ -74,7 +74,7 @@ static bool read_weights(CagCall *call, int argument, Net *net) {
   CagList *rows;
   if (!cag_given(call, argument) || call->values[argument].type == CAG_NONE) return true;
   if (!cag_arg_list(call, argument, &rows)) return false;
-  net->weights = malloc(net->nu * net->nv * sizeof *net->weights);
+  net->weights = cag_malloc(net->nu * net->nv * sizeof *net->weights);
   if (!net->weights) return fail_memory(call);
   bool fits = rows->length == net->nu;
   for (size_t i = 0; fits && i < net->nu; i++) {
@@ -167,7 +167,7 @@ static bool read_knots(CagCall *call, int argument, int direction, size_t n, int
              wanted, direction ? "v" : "u");
     return cag_fail_geometry(call, &err);
   }
-  *out = malloc(wanted * sizeof **out);
+  *out = cag_malloc(wanted * sizeof **out);
   if (!*out) return fail_memory(call);
   if (!list) return cag_geometry_ok(call, cag_knots_make(type, n, degree, NULL, *out, &err), &err);
   memcpy(*out, x, wanted * sizeof *x);
@@ -195,8 +195,8 @@ bool cag_surfaces_bspline_surface(CagCall *call, CagValue *result) {
                                                degree[1], knots[0], knots[1], &s, &err);
     ok = cag_geometry_ok(call, status, &err);
   }
-  free(knots[0]);
-  free(knots[1]);
+  cag_free(knots[0]);
+  cag_free(knots[1]);
   net_free(&net);
   if (ok) *result = cag_surface_value(call->vm, s);
   return ok;

@@ -1,8 +1,8 @@
 // Patches between given edges, corners and points: Coons and Hermite.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/patches.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
@@ -135,7 +135,7 @@ static bool read_steps(CagCall *call, size_t m, size_t n, GridData *d) {
     if (line.type != CAG_LIST || CAG_AS_LIST(line)->length != wanted || CAG_AS_LIST(line)->dim != 1)
       return cag_fail_call(call, 3, CAG_ERR_length, "expects %zu numbers for %c in `lengths`",
                            wanted, k == 0 ? 'u' : 'v');
-    d->steps[k] = malloc(wanted * sizeof(double));
+    d->steps[k] = cag_malloc(wanted * sizeof(double));
     if (!d->steps[k])
       return cag_fail_call(call, 3, CAG_ERR_limit_memory, "needs more memory than there is");
     memcpy(d->steps[k], CAG_AS_LIST(line)->as.numbers, wanted * sizeof(double));
@@ -175,8 +175,8 @@ static bool make_grid(CagCall *call, GridData *d, CagValue *result) {
   CagValue first = g.nu ? cag_list_get(call->vm, rows, 0) : cag_none();
   if (first.type != CAG_LIST) return cag_fail_type(call, 0, "rows of points");
   g.nv = CAG_AS_LIST(first)->length;
-  d->points = malloc((g.nu * g.nv + 1) * sizeof *d->points);
-  d->tangents = malloc(2 * (g.nu + g.nv) * sizeof *d->tangents);
+  d->points = cag_malloc((g.nu * g.nv + 1) * sizeof *d->points);
+  d->tangents = cag_malloc(2 * (g.nu + g.nv) * sizeof *d->tangents);
   if (!d->points || !d->tangents)
     return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   if (!read_table(call, 0, g.nu, g.nv, d->points) || !read_edges(call, &g, d) ||
@@ -191,10 +191,10 @@ static bool make_grid(CagCall *call, GridData *d, CagValue *result) {
 bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
   GridData d = {0};
   bool ok = make_grid(call, &d, result);
-  free(d.points);
-  free(d.tangents);
-  free(d.steps[0]);
-  free(d.steps[1]);
+  cag_free(d.points);
+  cag_free(d.tangents);
+  cag_free(d.steps[0]);
+  cag_free(d.steps[1]);
   return ok;
 }
 
@@ -220,11 +220,11 @@ bool cag_arg_triangle(CagCall *call, int argument, CagVec3 **net, int *degree) {
     return cag_fail_value(call, argument, wanted);
   }
   *degree = (int)n - 1;
-  *net = malloc(n * (n + 1) / 2 * sizeof **net);
+  *net = cag_malloc(n * (n + 1) / 2 * sizeof **net);
   if (!*net)
     return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
   if (read_triangle(call, argument, rows, *net)) return true;
-  free(*net);
+  cag_free(*net);
   return false;
 }
 
@@ -235,6 +235,6 @@ bool cag_surfaces_bezier_triangle(CagCall *call, CagValue *result) {
   CagError err;
   if (!cag_arg_triangle(call, 0, &net, &degree)) return false;
   bool ok = give(call, cag_surface_bezier_triangle(net, degree, &s, &err), &err, &s, result);
-  free(net);
+  cag_free(net);
   return ok;
 }

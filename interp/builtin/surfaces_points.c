@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/basis/bernstein.h"
 #include "geom/basis/bspline.h"
 #include "geom/basis/knots.h"
@@ -185,18 +186,18 @@ static bool acting_points(CagCall *call, CagValue *result) {
 
 // Values at t of the functions of all distinct points, malloc'd.
 static double *basis_line(const Axis *a, double t) {
-  double *out = calloc(a->distinct, sizeof *out);
-  double *values = malloc(((size_t)a->degree + 1) * sizeof *values);
+  double *out = cag_calloc(a->distinct, sizeof *out);
+  double *values = cag_malloc(((size_t)a->degree + 1) * sizeof *values);
   if (out && values) {
     size_t p = (size_t)a->degree;
     size_t span = cag_knots_span(a->knots, a->count, a->degree, t, false, p);
     cag_bspline_basis(a->knots, a->degree, span, t, values);
     for (size_t i = 0; i <= p; i++) out[(span - p + i) % a->distinct] += values[i];
-    free(values);
+    cag_free(values);
     return out;
   }
-  free(out);
-  free(values);
+  cag_free(out);
+  cag_free(values);
   return NULL;
 }
 
@@ -224,8 +225,8 @@ static bool basis(CagCall *call, CagValue *result) {
       out[j] = bu[i] * bv[j] * n.view.homogeneous[4 * (i * n.view.nv + j) + 3] / sum;
     ok = cag_builder_add(call->vm, rows, row);
   }
-  free(bu);
-  free(bv);
+  cag_free(bu);
+  cag_free(bv);
   if (ok) *result = cag_builder_finish(call->vm, rows);
   return ok;
 }
@@ -236,7 +237,7 @@ static bool basis(CagCall *call, CagValue *result) {
 static bool homogeneous_part(CagCall *call, const Net *n, bool weights, CagSurface **out) {
   const CagSurfaceNurbsView *v = &n->view;
   CagError err;
-  CagVec3 *net = malloc(v->nu * v->nv * sizeof *net);
+  CagVec3 *net = cag_malloc(v->nu * v->nv * sizeof *net);
   bool ok = net != NULL || fail_memory(call);
   for (size_t i = 0; ok && i < v->nu * v->nv; i++) {
     const double *h = v->homogeneous + 4 * i;
@@ -246,7 +247,7 @@ static bool homogeneous_part(CagCall *call, const Net *n, bool weights, CagSurfa
                              cag_surface_nurbs(net, NULL, v->nu, v->nv, v->degree_u, v->degree_v,
                                                v->knots_u, v->knots_v, out, &err),
                              &err);
-  free(net);
+  cag_free(net);
   return ok;
 }
 
@@ -312,7 +313,7 @@ static bool piece_powers(CagCall *call, const CagSurface *piece, double lu, doub
   CagSurfaceNurbsView v;
   cag_surface_nurbs_view(piece, &v);
   size_t n = v.nu, m = v.nv;
-  CagVec3 *b = malloc(2 * n * m * sizeof *b);
+  CagVec3 *b = cag_malloc(2 * n * m * sizeof *b);
   if (!b) return fail_memory(call);
   CagVec3 *turned = b + n * m;
   for (size_t i = 0; i < n * m; i++) b[i] = cag_project(v.homogeneous + 4 * i);
@@ -323,7 +324,7 @@ static bool piece_powers(CagCall *call, const CagSurface *piece, double lu, doub
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < m; j++) b[i * m + j] = turned[j * n + i];
   *out = table_of(call->vm, b, n, m);
-  free(b);
+  cag_free(b);
   return true;
 }
 
@@ -346,7 +347,7 @@ static bool polynomials(CagCall *call, CagValue *result) {
              "`denominator`");
     return cag_fail_geometry(call, &err);
   }
-  double *lu = malloc((n.axis[0].count + n.axis[1].count) * sizeof *lu);
+  double *lu = cag_malloc((n.axis[0].count + n.axis[1].count) * sizeof *lu);
   if (!lu) return fail_memory(call);
   double *lv = lu + n.axis[0].count;
   span_lengths(&n.axis[0], lu);
@@ -363,8 +364,8 @@ static bool polynomials(CagCall *call, CagValue *result) {
     ok = ok && cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
   }
   for (size_t i = 0; pieces && i < nu * nv; i++) cag_surface_release(pieces[i]);
-  free(pieces);
-  free(lu);
+  cag_free(pieces);
+  cag_free(lu);
   if (ok) *result = cag_builder_finish(call->vm, rows);
   return ok;
 }
@@ -509,7 +510,7 @@ static bool bezier_join(CagCall *call, CagValue *result) {
     cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
     cag_builder_add(call->vm, weights, list);
   }
-  free(lines);
+  cag_free(lines);
   CagValue values[] = {cag_builder_finish(call->vm, rows), cag_builder_finish(call->vm, weights)};
   *result = cag_record_new(call->vm, names, values, 2);
   return true;
@@ -570,7 +571,7 @@ static bool creases(CagCall *call, CagValue *result) {
                            cag_angle(found[i].angle / CAG_RADIANS_PER_DEGREE)};
       cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2));
     }
-    free(found);
+    cag_free(found);
     both[k] = cag_builder_finish(call->vm, list);
   }
   *result = cag_record_new(call->vm, directions, both, 2);

@@ -1,9 +1,9 @@
 // Quadrics: by their ten numbers, by rows, and by name.
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/trimmed.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
@@ -49,7 +49,7 @@ static bool give_patches(CagCall *call, const CagQuadric *q, int within, CagValu
     if (n == 1) *result = patch;
     else ok = cag_builder_add(call->vm, list, patch) && ok;
   }
-  free(patches);
+  cag_free(patches);
   if (ok && n != 1) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
   return ok;
 }

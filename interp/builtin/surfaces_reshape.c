@@ -1,7 +1,6 @@
 // Parts, finer nets and joins of surfaces; offsets and plates.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 #include "interp/builtin/support.h"
@@ -45,7 +44,7 @@ static bool read_loops(CagCall *call, int argument, CagRegion **out) {
     return ok;
   }
   const CagList *list = CAG_AS_LIST(v);
-  CagCurve **loops = malloc(list->length * sizeof(CagCurve *));
+  CagCurve **loops = cag_malloc(list->length * sizeof(CagCurve *));
   if (!loops)
     return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   bool ok = true;
@@ -55,7 +54,7 @@ static bool read_loops(CagCall *call, int argument, CagRegion **out) {
     if (ok) loops[i] = CAG_AS_SHAPE(c)->as.curve;
   }
   ok = ok && cag_geometry_ok(call, cag_region_from_loops(loops, list->length, out, &err), &err);
-  free(loops);
+  cag_free(loops);
   return ok;
 }
 
@@ -179,7 +178,7 @@ bool cag_surfaces_to_bezier(CagCall *call, CagValue *result) {
     }
     ok = ok && cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
   }
-  free(pieces);
+  cag_free(pieces);
   if (ok) *result = cag_builder_finish(call->vm, rows);
   return ok;
 }

@@ -2,9 +2,9 @@
 
 #include "geom/surface/section.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/surface/curvature_contour.h"
 #include "geom/surface/curvature_line.h"
 #include "geom/surface/motion.h"
@@ -278,7 +278,7 @@ static bool read_contour_levels(CagCall *call, int argument, double **out, size_
   if (*n > CONTOUR_LEVELS_MOST)
     return cag_fail_call(call, argument, CAG_ERR_value, "expects at most %d levels, found %zu",
                          CONTOUR_LEVELS_MOST, *n);
-  *out = malloc(*n * sizeof **out);
+  *out = cag_malloc(*n * sizeof **out);
   if (!*out) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
   for (size_t i = 0; i < *n; i++) {
     CagValue v = single ? call->values[argument] : cag_sequence_element(call->vm, &levels, i);
@@ -286,7 +286,7 @@ static bool read_contour_levels(CagCall *call, int argument, double **out, size_
       (*out)[i] = v.as.number;
       continue;
     }
-    free(*out);
+    cag_free(*out);
     *out = NULL;
     return single ? cag_fail_value(call, argument, what)
                   : cag_fail_element(call, argument, i, v, "finite numbers");
@@ -372,7 +372,7 @@ static bool call_curvature_contours(CagCall *call, CagValue *result) {
   }
   if (ok) *result = cag_builder_finish(call->vm, out);
   cag_root_pop(call->vm, 2);
-  free(levels);
+  cag_free(levels);
   return ok;
 }
 

@@ -1,7 +1,6 @@
 // Surfaces and solids that a section sweeps along a path or under transforms, and lofts.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/surface/loft.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
@@ -282,7 +281,7 @@ bool cag_surfaces_loft(CagCall *call, CagValue *result) {
       !cag_arg_bool_or(call, 2, false, &closed) || !cag_arg_bool_or(call, 3, true, &caps))
     return false;
   if (list->length < 2) return cag_fail_value(call, 0, "at least 2 curves");
-  const CagCurve **curves = malloc(list->length * sizeof *curves);
+  const CagCurve **curves = cag_malloc(list->length * sizeof *curves);
   if (!curves)
     return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   bool all_closed = true, ok = true;
@@ -306,7 +305,7 @@ bool cag_surfaces_loft(CagCall *call, CagValue *result) {
     }
   }
   for (size_t i = 0; i < read; i++) cag_curve_release((CagCurve *)curves[i]);
-  free(curves);
+  cag_free(curves);
   if (ok) cag_shape_say_alike(*result, cag_list_get(call->vm, list, 0));
   return ok;
 }

@@ -1,8 +1,8 @@
 // Transforms made of their own data: frames, turns, links, rows of numbers, pairs of points.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/transforms.h"
 
 static bool give(CagCall *call, CagStatus status, const CagError *err, CagTransform *t, bool planar,
@@ -192,7 +192,7 @@ bool cag_transforms_from_pairs(CagCall *call, CagValue *result) {
   CagError err;
   if (!cag_arg_points(call, 0, &points, &n, &d)) return false;
   if (!cag_arg_points(call, 1, &images, &m, &e)) {
-    free(points);
+    cag_free(points);
     return false;
   }
   bool planar = d == 2 && e == 2, ok;
@@ -202,8 +202,8 @@ bool cag_transforms_from_pairs(CagCall *call, CagValue *result) {
   else
     ok = give(call, cag_transform_from(points, images, n, planar, &t, &err), &err, &t, planar,
               result);
-  free(points);
-  free(images);
+  cag_free(points);
+  cag_free(images);
   return ok;
 }
 

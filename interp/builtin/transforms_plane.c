@@ -1,7 +1,6 @@
 // Planes, and points and lines in the plane.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "interp/builtin/transforms.h"
 
 // Lines whose directions differ by less than this sine are parallel; lines of space that pass each
@@ -110,12 +109,12 @@ static bool read_polygon(CagCall *call, CagVec3 *area, CagVec3 *centroid, int *d
   size_t n;
   if (!cag_arg_points(call, 0, &points, &n, dimension)) return false;
   if (n < 3) {
-    free(points);
+    cag_free(points);
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "expects at least 3 points of a polygon, found %zu", n);
   }
   *area = polygon_area(points, n, centroid);
-  free(points);
+  cag_free(points);
   return true;
 }
 

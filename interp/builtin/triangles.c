@@ -1,8 +1,7 @@
 // Triangular Bezier surfaces in barycentric coordinates; the surface itself is made by
 // bezier_triangle.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "geom/surface/triangle.h"
 #include "interp/builtin/surfaces.h"
 
@@ -41,7 +40,7 @@ static bool triangle_point(CagCall *call, CagValue *result) {
   CagError err;
   if (!read_coordinates(call, 1, w) || !cag_arg_triangle(call, 0, &net, &degree)) return false;
   CagStatus status = cag_triangle_at(net, degree, w, &jet, &err);
-  free(net);
+  cag_free(net);
   if (!cag_geometry_ok(call, status, &err)) return false;
   CagVec3 normal = cag_unit(cag_cross(jet.ds, jet.dt));
   CagValue values[] = {vector_value(call->vm, jet.point), vector_value(call->vm, jet.ds),
@@ -63,15 +62,15 @@ static bool triangle_elevate(CagCall *call, CagValue *result) {
     ok = cag_fail_call(call, 1, CAG_ERR_value, "raises a degree to %d at most, found %d and %ld",
                        CAG_TRIANGLE_ROWS - 1, degree, times);
   for (; ok && times > 0; times--) {
-    CagVec3 *raised = malloc(cag_triangle_count(degree + 1) * sizeof *raised);
+    CagVec3 *raised = cag_malloc(cag_triangle_count(degree + 1) * sizeof *raised);
     if (raised) cag_triangle_elevate(net, degree++, raised);
     else ok = cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-    free(net);
+    cag_free(net);
     net = raised;
     ok = ok && cag_keep_going(call->vm);
   }
   if (ok) *result = net_value(call->vm, net, degree);
-  free(net);
+  cag_free(net);
   return ok;
 }
 
@@ -82,7 +81,7 @@ static bool triangle_split(CagCall *call, CagValue *result) {
   CagError err;
   if (!read_coordinates(call, 1, w) || !cag_arg_triangle(call, 0, &net, &degree)) return false;
   size_t n = cag_triangle_count(degree);
-  CagVec3 *parts = malloc(3 * n * sizeof *parts);
+  CagVec3 *parts = cag_malloc(3 * n * sizeof *parts);
   CagStatus status = CAG_OK;
   if (!parts) status = cag_fail_memory(&err);
   else
@@ -94,8 +93,8 @@ static bool triangle_split(CagCall *call, CagValue *result) {
     for (size_t c = 0; c < 3; c++) nets[c] = net_value(call->vm, parts + c * n, degree);
     *result = cag_list_values(call->vm, nets, 3);
   }
-  free(net);
-  free(parts);
+  cag_free(net);
+  cag_free(parts);
   return ok;
 }
 

@@ -1,8 +1,8 @@
 // Texts and scripts as HTML.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/doc/site.h"
 #include "lang/lexer.h"
 
@@ -115,7 +115,7 @@ void cag_html_prose(FILE *out, const char *root, const char *text, size_t length
 
 // The script without its `// expect` comments: what it prints is shown below it. malloc'd.
 static char *without_expectations(const char *text, size_t length) {
-  char *out = strndup(text, length), *to = out;
+  char *out = cag_strndup(text, length), *to = out;
   if (!out) cag_memory_leave();
   for (char *at = out; *at;) {
     const bool expects = strncmp(at, "// expect", 9) == 0 && (at[9] == ':' || at[9] == ' ');
@@ -140,7 +140,7 @@ void cag_html_example(CagSite *s, const CagSiteSpot *spot, const char *text, siz
   char *shown = without_expectations(text, length);
   fputs("<div class=\"example\"><div class=\"code\"><pre><code>", out);
   cag_html_script(out, root, shown, strlen(shown));
-  free(shown);
+  cag_free(shown);
   fputs("</code></pre>\n", out);
   if (e && e->output && *e->output) {
     fputs("<pre class=\"output\"><samp>", out);
@@ -157,7 +157,7 @@ void cag_html_example(CagSite *s, const CagSiteSpot *spot, const char *text, siz
 }
 
 char *cag_html_anchor(const char *heading) {
-  char *out = malloc(strlen(heading) + 2), *to = out;
+  char *out = cag_malloc(strlen(heading) + 2), *to = out;
   if (!out) cag_memory_leave();
   for (const char *at = heading; *at; at++) {
     if (is_digit(*at) || is_letter(*at)) *to++ = *at >= 'A' && *at <= 'Z' ? *at + 32 : *at;

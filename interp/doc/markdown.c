@@ -6,9 +6,9 @@
 
 #include <cmark-gfm-core-extensions.h>
 #include <cmark-gfm.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/doc/site.h"
 
 typedef struct Document {
@@ -47,7 +47,7 @@ static void change_block(const Document *d, cmark_node *node) {
   }
   fclose(out);
   replace(node, CMARK_NODE_HTML_BLOCK, html);
-  free(html);
+  cag_free(html);
 }
 
 static void change_code(const Document *d, cmark_node *node) {
@@ -63,7 +63,7 @@ static void change_code(const Document *d, cmark_node *node) {
   fputs("</code>", out);
   fclose(out);
   replace(node, CMARK_NODE_HTML_INLINE, html);
-  free(html);
+  cag_free(html);
 }
 
 // The text of a heading, of all the nodes in it.
@@ -93,9 +93,9 @@ static void anchor_heading(const Document *d, cmark_node *node) {
   cmark_node *mark = cmark_node_new(CMARK_NODE_HTML_INLINE);
   cmark_node_set_literal(mark, html);
   cmark_node_prepend_child(node, mark);
-  free(html);
-  free(anchor);
-  free(text);
+  cag_free(html);
+  cag_free(anchor);
+  cag_free(text);
 }
 
 // "language.md#values" is the page language.html, where the site has it; what lies elsewhere in the
@@ -108,14 +108,14 @@ static void change_link(const Document *d, cmark_node *node) {
     if (strlen(name) != (size_t)(dot - url) || strncmp(url, name, strlen(name)) != 0) continue;
     char *page = cag_doc_text("%sguide/%s.html%s", d->root, name, dot + 3);
     cmark_node_set_url(node, page);
-    free(page);
+    cag_free(page);
     return;
   }
   if (strncmp(url, "cookbook/", 9) == 0 && strstr(url, ".cag")) {
     char *page =
         cag_doc_text("%scookbook/index.html#%.*s", d->root, (int)strcspn(url + 9, "."), url + 9);
     cmark_node_set_url(node, page);
-    free(page);
+    cag_free(page);
     return;
   }
   cmark_node *child;
@@ -156,15 +156,15 @@ static void change_all(const Document *d, cmark_node *root) {
     if (event != CMARK_EVENT_ENTER) continue;
     if (count == capacity) {
       capacity = capacity ? 2 * capacity : 256;
-      cmark_node **more = realloc(nodes, capacity * sizeof *nodes);
-      if (!more) free(nodes);
+      cmark_node **more = cag_realloc(nodes, capacity * sizeof *nodes);
+      if (!more) cag_free(nodes);
       nodes = cag_checked(more);
     }
     nodes[count++] = cmark_iter_get_node(it);
   }
   cmark_iter_free(it);
   for (size_t i = 0; i < count; i++) change(d, nodes[i]);
-  free(nodes);
+  cag_free(nodes);
 }
 
 static bool is_guide(const char *about) {
@@ -187,7 +187,7 @@ void cag_html_markdown(CagSite *s, FILE *out, const char *root, const char *abou
   char *html =
       cmark_render_html(tree, CMARK_OPT_UNSAFE, cmark_parser_get_syntax_extensions(parser));
   fputs(html, out);
-  free(html);
+  cag_free(html);
   cmark_node_free(tree);
   cmark_parser_free(parser);
 }

@@ -1,8 +1,8 @@
 // The public definitions of a script or module, with what their /// lines say.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/doc/doc.h"
 #include "interp/eval/stdlib.h"
 #include "interp/session/session.h"
@@ -10,7 +10,7 @@
 // --- Texts of the source ---
 
 static char *copy(const char *text, size_t n) {
-  char *out = strndup(text, n);
+  char *out = cag_strndup(text, n);
   if (!out) cag_memory_leave();
   return out;
 }
@@ -40,7 +40,7 @@ static char *copy_span(const CagSource *s, CagSpan span) {
 // --- Entries ---
 
 static void read_arguments(const CagSource *s, const CagFunctionAst *f, CagDocEntry *e) {
-  e->arguments = calloc(f->parameter_count + 1, sizeof *e->arguments);
+  e->arguments = cag_calloc(f->parameter_count + 1, sizeof *e->arguments);
   if (!e->arguments) cag_memory_leave();
   for (size_t i = 0; i < f->parameter_count; i++) {
     const CagParameter *p = &f->parameters[i];
@@ -54,7 +54,7 @@ static void read_arguments(const CagSource *s, const CagFunctionAst *f, CagDocEn
 static void find_lines(const CagModuleAst *ast, const CagStatement *st, size_t count,
                        CagDocEntry *e) {
   size_t i = 0;
-  e->lines = calloc(count + 1, sizeof *e->lines);
+  e->lines = cag_calloc(count + 1, sizeof *e->lines);
   if (!e->lines) cag_memory_leave();
   while (i < ast->comment_count && ast->comments[i].span.start < st->span.start) i++;
   while (count > 0 && i-- > 0)
@@ -78,10 +78,10 @@ static CagDocArgument *find_item(CagDocEntry *e, const char *line, size_t n, siz
 static void add_meaning(CagDocArgument *a, const char *text, size_t n) {
   char *old = a->meaning;
   const size_t spaces = strspn(text, " ");
-  if (asprintf(&a->meaning, "%s%s%.*s", old ? old : "", old ? " " : "", (int)(n - spaces),
-               text + spaces) < 0)
+  if (cag_asprintf(&a->meaning, "%s%s%.*s", old ? old : "", old ? " " : "", (int)(n - spaces),
+                   text + spaces) < 0)
     cag_memory_leave();
-  free(old);
+  cag_free(old);
 }
 
 // Moves the items that tell of parameters from the text to the arguments. An item goes on in lines
@@ -174,7 +174,7 @@ static char *read_purpose(const CagModuleAst *ast) {
 
 void cag_doc_module_read(const CagModuleAst *ast, const char *name, CagDocModule *out) {
   *out = (CagDocModule){.name = copy(name, strlen(name)), .purpose = read_purpose(ast)};
-  out->entries = calloc(ast->top_count + 1, sizeof *out->entries);
+  out->entries = cag_calloc(ast->top_count + 1, sizeof *out->entries);
   if (!out->entries) cag_memory_leave();
   for (size_t i = 0; i < ast->top_count; i++)
     if (ast->tops[i]->name[0] != '_') read_entry(ast, ast->tops[i], &out->entries[out->count++]);
@@ -184,18 +184,18 @@ void cag_doc_module_free(CagDocModule *m) {
   for (size_t i = 0; i < m->count; i++) {
     CagDocEntry *e = &m->entries[i];
     for (size_t k = 0; k < e->argument_count; k++) {
-      free(e->arguments[k].name);
-      free(e->arguments[k].fallback);
-      free(e->arguments[k].meaning);
+      cag_free(e->arguments[k].name);
+      cag_free(e->arguments[k].fallback);
+      cag_free(e->arguments[k].meaning);
     }
     char *const texts[] = {e->name, e->signature, e->text, e->fallback, e->range, e->label};
-    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) free(texts[k]);
-    free(e->arguments);
-    free(e->lines);
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) cag_free(texts[k]);
+    cag_free(e->arguments);
+    cag_free(e->lines);
   }
-  free(m->entries);
-  free(m->name);
-  free(m->purpose);
+  cag_free(m->entries);
+  cag_free(m->name);
+  cag_free(m->purpose);
   *m = (CagDocModule){0};
 }
 
@@ -291,7 +291,7 @@ char *cag_doc_script_import(const CagDocModule *m, const char *file, const char 
   }
   fclose(out);
   if (names || whole) return line;
-  free(line);
+  cag_free(line);
   return NULL;
 }
 

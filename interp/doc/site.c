@@ -3,11 +3,11 @@
 #include <dirent.h>
 #include <errno.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "interp/doc/site.h"
 #include "interp/render/atomic_file.h"
 #include "interp/render/povray.h"
@@ -29,7 +29,7 @@ void cag_site_write(CagSite *s, const char *path, const char *text, size_t lengt
   CagAtomicFile *f = cag_atomic_file_open(full, &s->error);
   if (f) cag_atomic_file_write(f, text, length);
   s->failed = !f || !cag_atomic_file_commit(f, &s->error);
-  free(full);
+  cag_free(full);
 }
 
 static bool make_folder(CagSite *s, const char *name) {
@@ -38,7 +38,7 @@ static bool make_folder(CagSite *s, const char *name) {
   if (!made)
     cag_io_error_set(&s->error, CAG_EXIT_FILE, "the folder above it must be there, and writable",
                      "cannot make the folder %s: %s", path, strerror(errno));
-  free(path);
+  cag_free(path);
   return made;
 }
 
@@ -53,11 +53,11 @@ static void remove_old_pictures(const CagSite *s) {
     for (size_t i = 0; i < s->count && !used; i++)
       used = s->examples[i].picture && strcmp(s->examples[i].picture, name) == 0;
     if (!used) unlink(full);
-    free(name);
-    free(full);
+    cag_free(name);
+    cag_free(full);
   }
   if (folder) closedir(folder);
-  free(path);
+  cag_free(path);
 }
 
 // --- The frame of a page ---
@@ -71,7 +71,7 @@ static const struct {
 static void drop_page(void *page) {
   CagSitePage *p = page;
   if (p->out) fclose(p->out);
-  free(p->text);
+  cag_free(p->text);
 }
 
 void cag_site_begin(CagSite *s, CagSitePage *p, const char *path, const char *title,
@@ -155,14 +155,14 @@ static void write_pages(CagSite *s) {
   fclose(s->index);
   s->index = NULL;
   cag_site_write(s, "index.js", index, length);
-  free(index);
+  cag_free(index);
 }
 
 // --- All of it ---
 
 static bool read_modules(CagSite *s) {
   while (cag_doc_module_name(s->module_count)) s->module_count++;
-  s->modules = calloc(s->module_count + 1, sizeof *s->modules);
+  s->modules = cag_calloc(s->module_count + 1, sizeof *s->modules);
   if (!s->modules) cag_memory_leave();
   for (size_t i = 0; i < s->module_count; i++) {
     const char *text;
@@ -188,11 +188,11 @@ static void say(const CagSite *s, const char *format, ...) {
   char *message;
   va_list args;
   va_start(args, format);
-  const int n = s->options->say ? vasprintf(&message, format, args) : -1;
+  const int n = s->options->say ? cag_vasprintf(&message, format, args) : -1;
   va_end(args);
   if (n < 0) return;
   s->options->say(s->options->context, message);
-  free(message);
+  cag_free(message);
 }
 
 static void find_renderer(CagSite *s) {
@@ -259,11 +259,11 @@ int cag_session_write_site(CagSession *session, const char *folder, const CagSit
   for (size_t i = 0; i < s.count; i++) {
     CagSiteExample *e = &s.examples[i];
     char *const texts[] = {e->text, e->folder, e->function, e->output, e->picture, e->failure};
-    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) free(texts[k]);
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) cag_free(texts[k]);
   }
   for (size_t i = 0; i < s.module_count; i++) cag_doc_module_free(&s.modules[i]);
-  free(s.modules);
+  cag_free(s.modules);
   cag_site_free_scripts(&s);
-  free(s.examples);
+  cag_free(s.examples);
   return cag_session_end(session, status);
 }

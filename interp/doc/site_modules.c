@@ -3,9 +3,9 @@
 // Both are shelves of modules and differ only in where they stand, what their search results are
 // called, and how an example gets to see the module.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/doc/site.h"
 
 static void write_text(FILE *out, const char *text) { cag_html_text(out, text, strlen(text)); }
@@ -38,11 +38,11 @@ void cag_site_begin_parameters(const CagSitePage *p) {
 // What the /// lines say of a parameter: a type may stand before a colon.
 static void write_said_parameter(const CagSitePage *p, const CagDocArgument *a) {
   const char *colon = strstr(a->meaning, ": ");
-  char *type = strndup(a->meaning, colon ? (size_t)(colon - a->meaning) : 0);
+  char *type = cag_strndup(a->meaning, colon ? (size_t)(colon - a->meaning) : 0);
   if (!type) cag_memory_leave();
   const CagDocParameter said = {"", a->name, type, colon ? colon + 2 : a->meaning};
   cag_site_parameter(p, &said, a->name, a->fallback);
-  free(type);
+  cag_free(type);
 }
 
 // --- A module ---
@@ -66,7 +66,7 @@ typedef struct Book {
 static char *import_line(const CagDocModule *m) {
   const char *shown = strstr(m->purpose, m->name);
   const char *begin = shown && shown - m->purpose >= 7 ? shown - 7 : NULL;
-  if (begin && strncmp(begin, "import ", 7) == 0) return strndup(begin, strcspn(begin, "\n"));
+  if (begin && strncmp(begin, "import ", 7) == 0) return cag_strndup(begin, strcspn(begin, "\n"));
   return cag_doc_text("import %s", m->name);
 }
 
@@ -85,8 +85,8 @@ static void write_module_example(const CagSitePage *p, const Book *b, const char
                                   .about = b->module->name,
                                   .folder = b->script ? b->script->folder : NULL},
                    whole, strlen(whole));
-  free(whole);
-  free(import);
+  cag_free(whole);
+  cag_free(import);
 }
 
 // Documentation is prose in which lines indented by four are a script. Gives the text from its
@@ -100,7 +100,7 @@ static const char *write_doc_text(const CagSitePage *p, const Book *b, const cha
     char *part = cag_doc_part_text(text, n, is_code);
     if (is_code) write_module_example(p, b, part);
     else cag_html_markdown(p->site, p->out, p->root, b->module->name, part, strlen(part));
-    free(part);
+    cag_free(part);
   }
   return text;
 }

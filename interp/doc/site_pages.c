@@ -1,8 +1,8 @@
 // The pages of functions, of errors, of the guide and of the cookbook.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/doc/site.h"
 
 static void write_text(FILE *out, const char *text) { cag_html_text(out, text, strlen(text)); }
@@ -125,12 +125,12 @@ static void write_family(const CagSitePage *p, const char *family) {
     fputs("</dd>\n", p->out);
   }
   fputs("</dl></section>\n", p->out);
-  free(anchor);
+  cag_free(anchor);
 }
 
 // The families in the order of the table; the caller frees the list.
 static const char **list_families(size_t *count) {
-  const char **families = calloc(cag_builtin_count() + 1, sizeof *families);
+  const char **families = cag_calloc(cag_builtin_count() + 1, sizeof *families);
   if (!families) cag_memory_leave();
   *count = 0;
   for (size_t i = 0; i < cag_builtin_count(); i++) {
@@ -158,14 +158,14 @@ static void index_page(CagSite *s) {
     fprintf(p.out, "<li><a href=\"#%s\">", anchor);
     write_text(p.out, families[i]);
     fputs("</a></li>\n", p.out);
-    free(anchor);
+    cag_free(anchor);
   }
   cag_site_scripts_item(&p);
   fputs("</ul>\n", p.out);
   for (size_t i = 0; i < count; i++) write_family(&p, families[i]);
   cag_site_scripts_section(&p);
   cag_site_end(&p);
-  free(families);
+  cag_free(families);
 }
 
 void cag_site_functions(CagSite *s) {

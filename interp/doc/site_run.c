@@ -6,10 +6,10 @@
 // of what it shows, so that pictures that are there already need not be made again.
 
 #include <pthread.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "interp/doc/site.h"
 #include "interp/render/povray.h"
 #include "interp/scene/scene.h"
@@ -34,14 +34,14 @@ const CagSiteExample *cag_site_example(CagSite *s, const CagSiteSpot *spot, cons
   if (s->final) return NULL;
   if (s->count == s->capacity) {
     const size_t capacity = s->capacity ? 2 * s->capacity : 512;
-    s->examples = cag_checked(realloc(s->examples, capacity * sizeof *s->examples));
+    s->examples = cag_checked(cag_realloc(s->examples, capacity * sizeof *s->examples));
     s->capacity = capacity;
   }
   CagSiteExample *e = &s->examples[s->count++];
   *e = (CagSiteExample){.about = spot->about};
-  e->text = cag_checked(strndup(text, length));
-  if (spot->function) e->function = cag_checked(strdup(spot->function));
-  if (spot->folder) e->folder = cag_checked(strdup(spot->folder));
+  e->text = cag_checked(cag_strndup(text, length));
+  if (spot->function) e->function = cag_checked(cag_strdup(spot->function));
+  if (spot->folder) e->folder = cag_checked(cag_strdup(spot->folder));
   return NULL;
 }
 
@@ -83,7 +83,7 @@ static bool is_shape(CagSession *s, const char *expression, Type t) {
   char *first = cag_doc_text("(%s)[0]", expression);
   t = type_of(s, first);
   const bool shape = strcmp(t.name, "list") != 0 && is_shape(s, first, t);
-  free(first);
+  cag_free(first);
   return shape;
 }
 
@@ -99,7 +99,7 @@ static char *find_call(const char *text, const char *function) {
     int depth = 0;
     for (const char *end = at + n; *end; end++) {
       depth += (*end == '(') - (*end == ')');
-      if (depth == 0) return strndup(at, (size_t)(end + 1 - at));
+      if (depth == 0) return cag_strndup(at, (size_t)(end + 1 - at));
     }
   }
   return NULL;
@@ -111,13 +111,13 @@ static char *last_shape(CagSession *s) {
   while (cag_session_name(s, count, NULL, NULL)) count++;
   while (count-- > 0) {
     const char *name = cag_session_name(s, count, NULL, NULL);
-    char *copy = strdup(name);
+    char *copy = cag_strdup(name);
     if (!copy) return NULL;
     const Type t = type_of(s, copy);
     char *posed = NULL;
     if (is_shape(s, copy, t)) return copy;
     if (strcmp(t.name, "robot") == 0) posed = cag_doc_text("posed(%s)", copy);
-    free(copy);
+    cag_free(copy);
     if (posed) return posed;
   }
   return NULL;
@@ -135,7 +135,7 @@ static char *choose_shape(const CagSite *site, const CagSiteExample *e, FILE *ou
       shape = last_shape(s);
     }
   }
-  free(call);
+  cag_free(call);
   if (s) cag_session_free(s);
   return shape;
 }
@@ -183,8 +183,8 @@ static void make_picture(const CagSite *site, CagSession *s, CagSiteExample *e, 
     status = cag_session_render(s, &options, path);
   }
   if (status == CAG_STATUS_OK) e->picture = name;
-  else free(name);
-  free(path);
+  else cag_free(name);
+  cag_free(path);
 }
 
 static void picture(const CagSite *site, CagSession *ran, CagSiteExample *e, FILE *out) {
@@ -200,8 +200,8 @@ static void picture(const CagSite *site, CagSession *ran, CagSiteExample *e, FIL
   if (s && cag_session_run_text(s, NAME, text, strlen(text)) == CAG_STATUS_OK)
     make_picture(site, s, e, shape);
   if (s) cag_session_free(s);
-  free(text);
-  free(shape);
+  cag_free(text);
+  cag_free(shape);
 }
 
 // --- A run ---
@@ -243,7 +243,7 @@ static void run_example(const CagSite *site, CagSiteExample *e) {
   if (status != CAG_STATUS_OK) cag_session_write_diagnostics(s, CAG_STYLE_TEXT, out);
   fflush(out);
   if (fails != (status != CAG_STATUS_OK) || (!fails && !is_expected(e->text, e->output)))
-    e->failure = strdup(e->output);
+    e->failure = cag_strdup(e->output);
   fflush(messages);
   fwrite(told, 1, told_length, out); // what trace says
   if (status == CAG_STATUS_OK && !site->options->no_pictures) {
@@ -254,7 +254,7 @@ static void run_example(const CagSite *site, CagSiteExample *e) {
   fclose(out);
   fclose(messages);
   fclose(quiet);
-  free(told);
+  cag_free(told);
 }
 
 // --- All of them ---
@@ -296,7 +296,7 @@ void cag_site_run(CagSite *s) {
   size_t jobs = s->options->jobs ? s->options->jobs : processors > 0 ? (size_t)processors : 1;
   if (jobs > s->count) jobs = s->count;
   Running r = {.site = s};
-  pthread_t *threads = calloc(jobs + 1, sizeof *threads);
+  pthread_t *threads = cag_calloc(jobs + 1, sizeof *threads);
   if (!threads) cag_memory_leave();
   pthread_mutex_init(&r.mutex, NULL);
   size_t started = 0;
@@ -304,6 +304,6 @@ void cag_site_run(CagSite *s) {
   if (started == 0) work(&r);
   for (size_t i = 0; i < started; i++) pthread_join(threads[i], NULL);
   pthread_mutex_destroy(&r.mutex);
-  free(threads);
+  cag_free(threads);
   if (r.starved) cag_memory_leave();
 }

@@ -3,9 +3,9 @@
 // A script is called by its path without the folder that all of them have in common, so a site does
 // not tell where on a machine it was made.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/doc/site.h"
 #include "interp/eval/program.h"
 #include "interp/session/session.h"
@@ -44,16 +44,16 @@ static bool is_taken(const CagSite *s, const char *page) {
 // "parts/gripper.cag" is the page "parts.gripper": words that need no care in a path or an address.
 static char *page_name(const CagSite *s, const char *name) {
   const size_t n = strlen(name);
-  char *stem = strndup(name, n > 4 && strcmp(name + n - 4, ".cag") == 0 ? n - 4 : n), *page;
+  char *stem = cag_strndup(name, n > 4 && strcmp(name + n - 4, ".cag") == 0 ? n - 4 : n), *page;
   if (!stem) cag_memory_leave();
   for (char *at = stem; *at; at++)
     if (!is_plain(*at)) *at = *at == '/' ? '.' : '_';
-  page = strdup(stem);
+  page = cag_strdup(stem);
   for (int i = 2; page && is_taken(s, page); i++) {
-    free(page);
+    cag_free(page);
     page = cag_doc_text("%s-%d", stem, i);
   }
-  free(stem);
+  cag_free(stem);
   return page;
 }
 
@@ -72,15 +72,15 @@ static bool read_script(CagSite *s, const char *path, size_t common) {
   CagSiteScript *script = &s->scripts[s->script_count];
   const size_t folder = folder_length(path);
   const int status = cag_session_read_doc(s->session, path, text, length, &script->module);
-  free(text);
+  cag_free(text);
   if (status != CAG_STATUS_OK) {
     cag_doc_module_free(&script->module);
     return false;
   }
-  free(script->module.name);
-  script->module.name = strdup(path + common);
-  script->file = strdup(path + folder);
-  script->folder = folder ? strndup(path, folder) : strdup(".");
+  cag_free(script->module.name);
+  script->module.name = cag_strdup(path + common);
+  script->file = cag_strdup(path + folder);
+  script->folder = folder ? cag_strndup(path, folder) : cag_strdup(".");
   script->page = NULL;
   s->script_count++;
   if (!script->module.name || !script->file || !script->folder) cag_memory_leave();
@@ -98,7 +98,7 @@ bool cag_site_read_scripts(CagSite *s) {
   const char *const *paths = s->options->scripts;
   const size_t count = s->options->script_count;
   if (count == 0) return true;
-  s->scripts = calloc(count, sizeof *s->scripts);
+  s->scripts = cag_calloc(count, sizeof *s->scripts);
   if (!s->scripts) cag_memory_leave();
   const size_t common = common_folder(paths, count);
   for (size_t i = 0; i < count; i++)
@@ -110,9 +110,9 @@ void cag_site_free_scripts(CagSite *s) {
   for (size_t i = 0; i < s->script_count; i++) {
     CagSiteScript *script = &s->scripts[i];
     cag_doc_module_free(&script->module);
-    free(script->file);
-    free(script->folder);
-    free(script->page);
+    cag_free(script->file);
+    cag_free(script->folder);
+    cag_free(script->page);
   }
-  free(s->scripts);
+  cag_free(s->scripts);
 }

@@ -1,11 +1,11 @@
 // Documentation as text for a terminal.
 
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "interp/doc/site.h"
 
 // Columns that a line has at most, and those that a narrow terminal is taken to have at least.
@@ -84,7 +84,7 @@ char *cag_doc_text(const char *format, ...) {
   char *text;
   va_list args;
   va_start(args, format);
-  const int n = vasprintf(&text, format, args);
+  const int n = cag_vasprintf(&text, format, args);
   va_end(args);
   if (n >= 0) return text;
   cag_memory_leave();
@@ -102,7 +102,7 @@ static void write_parameter(FILE *out, const CagDocParameter *p, const char *nam
   if (used + 2 > NAME_COLUMN) fprintf(out, "\n%*s", NAME_COLUMN, "");
   else fprintf(out, "%*s", NAME_COLUMN - used, "");
   write_wrapped(out, text, strlen(text), NAME_COLUMN, NAME_COLUMN);
-  free(text);
+  cag_free(text);
 }
 
 typedef struct Errors {
@@ -217,7 +217,7 @@ static void write_family(const CagDocWriter *w, const char *family) {
 }
 
 void cag_doc_write_overview(const CagDocWriter *w) {
-  const char **families = calloc(cag_builtin_count() + 1, sizeof *families);
+  const char **families = cag_calloc(cag_builtin_count() + 1, sizeof *families);
   if (!families) return;
   size_t count = 0;
   for (size_t i = 0; i < cag_builtin_count(); i++) {
@@ -227,7 +227,7 @@ void cag_doc_write_overview(const CagDocWriter *w) {
     if (k == count) families[count++] = family;
   }
   for (size_t k = 0; k < count; k++) write_family(w, families[k]);
-  free(families);
+  cag_free(families);
   heading(w, "Library");
   for (size_t i = 0; cag_doc_module_name(i); i++) fprintf(w->out, "  %s\n", cag_doc_module_name(i));
   const char *name, *title;

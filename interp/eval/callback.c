@@ -5,8 +5,7 @@
 // of memory ends in the status of the evaluation, and the collector leaves alone what is older than
 // the call (heap.c).
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "interp/eval/vm.h"
 
 // Functions that evaluate curves that call functions ... so deep; the depth has six bits.
@@ -21,7 +20,7 @@ size_t cag_vm_keep(CagVm *vm, CagValue v) {
   }
   if (vm->kept_count == vm->kept_capacity) {
     size_t capacity = vm->kept_capacity ? vm->kept_capacity * 2 : 16;
-    CagValue *kept = realloc(vm->kept, capacity * sizeof *kept);
+    CagValue *kept = cag_realloc(vm->kept, capacity * sizeof *kept);
     if (!kept) cag_vm_out_of_memory(vm);
     vm->kept = kept;
     vm->kept_capacity = capacity;

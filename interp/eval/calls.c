@@ -2,9 +2,9 @@
 
 #include "interp/eval/calls.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/apply.h"
 #include "interp/builtin/jets.h"
 #include "interp/builtin/support.h"
@@ -79,7 +79,7 @@ bool cag_bind_closure(CagVm *vm, const CagProto *p, CagValue *arguments, size_t 
     for (size_t i = count; i < p->parameter_count; i++) arguments[i] = cag_unset();
     return true;
   }
-  CagValue given[16], *moved = named <= 16 ? given : malloc(named * sizeof *moved);
+  CagValue given[16], *moved = named <= 16 ? given : cag_malloc(named * sizeof *moved);
   if (!moved) cag_vm_out_of_memory(vm);
   memcpy(moved, arguments + positional, named * sizeof *moved);
   for (size_t i = positional; i < p->parameter_count; i++) arguments[i] = cag_unset();
@@ -97,7 +97,7 @@ bool cag_bind_closure(CagVm *vm, const CagProto *p, CagValue *arguments, size_t 
       arguments[k] = moved[i];
     }
   }
-  if (moved != given) free(moved);
+  if (moved != given) cag_free(moved);
   for (size_t i = 0; ok && i < p->required_count; i++) {
     if (arguments[i].type != CAG_UNSET) continue;
     ok = cag_vm_fail(vm, CAG_ERR_arity, "%s needs an argument for `%s`", function_name(p->name),
@@ -214,6 +214,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   CagValue *top = vm->top;
   if (values + total > vm->top) vm->top = values + total;
   if (vm->top > vm->high_water) vm->high_water = vm->top;
+  if (vm->top > vm->paid_end) cag_pay_for_values(vm, vm->top);
   vm->native = &native;
   CagCall call = {.vm = vm, .builtin = b, .values = values, .count = total};
   *result = cag_none();

@@ -6,9 +6,9 @@
 // copied), compile_to puts it where the caller wants it. Conditions become jumps (jump_when).
 // Errors in the tree were found before: no ERROR expression comes here.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/eval/vm.h"
 #include "lang/arena.h"
 
@@ -44,7 +44,7 @@ static CagProto *compile_function(Unit *outer, CagModuleUnit *m, CagVm *vm,
 static void *grown(CagVm *vm, void *p, size_t count, size_t *capacity, size_t size) {
   if (count < *capacity) return p;
   size_t n = *capacity ? *capacity * 2 : 16;
-  p = realloc(p, n * size);
+  p = cag_realloc(p, n * size);
   if (!p) cag_vm_out_of_memory(vm);
   *capacity = n;
   return p;
@@ -318,7 +318,7 @@ static const char *const *add_names(Unit *u, const CagArgument *arguments, size_
   p->names = grown(u->vm, p->names, p->names_count, &capacity, sizeof *p->names);
   p->name_counts =
       grown(u->vm, p->name_counts, p->names_count, &p->names_capacity, sizeof *p->name_counts);
-  const char **names = malloc(named * sizeof *names);
+  const char **names = cag_malloc(named * sizeof *names);
   if (!names) cag_vm_out_of_memory(u->vm);
   for (size_t i = 0; i < named; i++) names[i] = arguments[n - named + i].name;
   p->names[p->names_count] = names;
@@ -756,7 +756,7 @@ static void compile_assert(Unit *u, const CagStatement *s) {
 // --- Units ---
 
 static CagProto *new_proto(CagVm *vm, CagModuleUnit *m, const char *name) {
-  CagProto *p = calloc(1, sizeof *p);
+  CagProto *p = cag_calloc(1, sizeof *p);
   if (!p) cag_vm_out_of_memory(vm);
   p->name = name;
   p->source = m->source;
@@ -777,7 +777,7 @@ static CagProto *compile_function(Unit *outer, CagModuleUnit *m, CagVm *vm,
   p->is_function = true;
   p->parameter_count = f->parameter_count;
   p->required_count = f->required_count;
-  p->parameters = malloc((f->parameter_count ? f->parameter_count : 1) * sizeof *p->parameters);
+  p->parameters = cag_malloc((f->parameter_count ? f->parameter_count : 1) * sizeof *p->parameters);
   if (!p->parameters) cag_vm_out_of_memory(vm);
   take(&u, (uint32_t)f->parameter_count);
   for (size_t i = 0; i < f->parameter_count; i++) {
@@ -823,16 +823,16 @@ CagProto *cag_compile_assert(CagVm *vm, CagModuleUnit *m, const CagStatement *s)
 }
 
 void cag_proto_free(CagProto *p) {
-  for (size_t i = 0; i < p->names_count; i++) free(p->names[i]);
-  free(p->names);
-  free(p->name_counts);
-  free(p->parameters);
-  free(p->code);
-  free(p->spans);
-  free(p->constants);
-  free(p->children);
-  free(p->captures);
-  free(p->sites);
-  free(p->site_spans);
-  free(p);
+  for (size_t i = 0; i < p->names_count; i++) cag_free(p->names[i]);
+  cag_free(p->names);
+  cag_free(p->name_counts);
+  cag_free(p->parameters);
+  cag_free(p->code);
+  cag_free(p->spans);
+  cag_free(p->constants);
+  cag_free(p->children);
+  cag_free(p->captures);
+  cag_free(p->sites);
+  cag_free(p->site_spans);
+  cag_free(p);
 }

@@ -5,9 +5,9 @@
 // gives it.
 
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/eval/vm.h"
 #include "interp/value/jet.h"
 
@@ -82,7 +82,7 @@ bool cag_vm_place(const CagVm *vm, const CagSource **source, CagSpan *span) {
 
 static const char *memory_message(const CagVm *vm, char *buffer, size_t size) {
   static const char *const units[] = {"B", "KiB", "MiB", "GiB"};
-  double limit = (double)vm->heap.limit;
+  double limit = (double)vm->account.limit;
   size_t unit = 0;
   for (; unit < 3 && limit >= 1024; unit++) limit /= 1024;
   snprintf(buffer, size, "exceeded the memory limit of %.3g %s (--max-memory)", limit, units[unit]);
@@ -112,12 +112,12 @@ static CagDiagnostic *set_error(CagVm *vm, CagErrorId id, int argument, const ch
 static void vfail(CagVm *vm, CagErrorId id, int argument, const char *prefix, const char *format,
                   va_list args) {
   char *message = NULL;
-  if (vasprintf(&message, format, args) < 0) message = NULL;
+  if (cag_vasprintf(&message, format, args) < 0) message = NULL;
   CagString s = {0};
   if (prefix) cag_string_printf(&s, "%s ", prefix);
   if (message) cag_string_add(&s, message, strlen(message));
   vm->starved |= !message || s.failed;
-  free(message);
+  cag_free(message);
   set_error(vm, id, argument, s.bytes);
   cag_string_free(&s);
 }
@@ -161,10 +161,10 @@ bool cag_fail_help(CagVm *vm, const char *format, ...) {
   char *text = NULL;
   va_list args;
   va_start(args, format);
-  if (vasprintf(&text, format, args) < 0) text = NULL;
+  if (cag_vasprintf(&text, format, args) < 0) text = NULL;
   va_end(args);
   if (text) cag_diagnostic_set_help(&vm->errors.items[vm->errors.count - 1], "%s", text);
-  free(text);
+  cag_free(text);
   return false;
 }
 

@@ -1,10 +1,10 @@
 // Which files a script may have, and reading them (language, section 8).
 
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/memory.h"
 #include "geom/stop.h"
 #include "interp/eval/vm.h"
 
@@ -32,7 +32,7 @@ static bool is_allowed(const CagVm *vm, const char *real) {
 }
 
 char *cag_vm_real_path(CagVm *vm, const char *path) {
-  char *real = realpath(path, NULL);
+  char *real = cag_realpath(path);
   vm->starved |= !real && errno == ENOMEM;
   return real;
 }
@@ -42,7 +42,7 @@ char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *me
   char *joined = NULL;
   const char *asked = path;
   if (path[0] != '/' && beside) {
-    if (asprintf(&joined, "%s/%s", beside, path) < 0) {
+    if (cag_asprintf(&joined, "%s/%s", beside, path) < 0) {
       vm->starved = true;
       snprintf(message, size, "%s: %s", path, cag_file_out_of_memory);
       return NULL;
@@ -54,7 +54,7 @@ char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *me
   // Whether a file outside exists is not told: only a missing one below the folders is called
   // missing.
   bool outside = real ? !is_allowed(vm, real) : path[0] == '/' || strstr(path, "..") != NULL;
-  free(joined);
+  cag_free(joined);
   if (real && !outside) return real;
   if (outside)
     snprintf(message, size,
@@ -62,7 +62,7 @@ char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *me
              "and those of -I",
              path);
   else snprintf(message, size, "%s: %s", path, strerror(why));
-  free(real);
+  cag_free(real);
   return NULL;
 }
 
@@ -70,7 +70,7 @@ char *cag_allowed_path(CagVm *vm, const char *path, const char *beside, char *me
 // cannot be read, or is larger.
 static char *read_rest(FILE *f, size_t first, size_t most, size_t *length, const char **why) {
   size_t capacity = first + 1, n = 0;
-  char *bytes = malloc(capacity);
+  char *bytes = cag_malloc(capacity);
   *why = bytes ? NULL : cag_file_out_of_memory;
   while (!*why) {
     const size_t room = capacity - 1 - n;
@@ -84,12 +84,12 @@ static char *read_rest(FILE *f, size_t first, size_t most, size_t *length, const
     ungetc(c, f);
     if (n >= most) *why = TOO_LARGE;
     else capacity = (capacity < most / 2 ? 2 * capacity : most) + 1;
-    char *more = *why ? NULL : realloc(bytes, capacity);
+    char *more = *why ? NULL : cag_realloc(bytes, capacity);
     if (more) bytes = more;
     else if (!*why) *why = cag_file_out_of_memory;
   }
   if (*why) {
-    free(bytes);
+    cag_free(bytes);
     return NULL;
   }
   bytes[n] = 0;
@@ -129,14 +129,14 @@ bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **byte
     const CagSource *s = vm->frames[vm->frame_count - 1].proto->source;
     for (size_t i = 0; i < vm->module_count; i++)
       if (vm->modules[i]->source == s && vm->modules[i]->path)
-        folder = cag_checked(strdup(vm->modules[i]->path));
+        folder = cag_checked(cag_strdup(vm->modules[i]->path));
     char *slash = folder ? strrchr(folder, '/') : NULL;
     if (slash) *slash = 0;
   }
   char message[512];
   char *real =
       cag_allowed_path(vm, path, folder && *folder ? folder : vm->root, message, sizeof message);
-  free(folder);
+  cag_free(folder);
   // Then the folders of -I, in their order, as for modules.
   for (size_t i = 0; !real && path[0] != '/' && i < vm->include_count; i++) {
     char ignored[512];
@@ -144,9 +144,9 @@ bool cag_vm_open_file(CagCall *call, int argument, const char *path, char **byte
   }
   if (!real) return cag_fail_call(call, argument, CAG_ERR_file, "cannot read it: %s", message);
   const char *why;
-  const size_t left = vm->heap.limit > vm->heap.bytes ? vm->heap.limit - vm->heap.bytes : 0;
+  const size_t left = cag_account_room();
   *bytes = read_at_most(real, left < FILE_MAX ? left : FILE_MAX, n, &why);
-  free(real);
+  cag_free(real);
   if (!*bytes && !cag_keep_going(vm)) return false;
   if (!*bytes && why == TOO_LARGE) {
     if (left < FILE_MAX)

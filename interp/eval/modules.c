@@ -5,10 +5,10 @@
 // files are reported together, along with unknown names in the readable parts of a file. Names from
 // a module that failed to load count as defined.
 
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "interp/eval/stdlib.h"
 #include "interp/eval/vm.h"
 
@@ -18,15 +18,15 @@ static CagModuleUnit *new_unit(CagVm *vm, const char *name, const char *path, co
                                size_t length) {
   if (vm->module_count == vm->module_capacity) {
     size_t capacity = vm->module_capacity ? vm->module_capacity * 2 : 16;
-    CagModuleUnit **modules = realloc(vm->modules, capacity * sizeof(CagModuleUnit *));
+    CagModuleUnit **modules = cag_realloc(vm->modules, capacity * sizeof(CagModuleUnit *));
     if (!modules) cag_vm_out_of_memory(vm);
     vm->modules = modules;
     vm->module_capacity = capacity;
   }
-  CagModuleUnit *m = calloc(1, sizeof *m);
+  CagModuleUnit *m = cag_calloc(1, sizeof *m);
   if (!m) cag_vm_out_of_memory(vm);
-  m->name = strdup(name);
-  m->path = path ? strdup(path) : NULL;
+  m->name = cag_strdup(name);
+  m->path = path ? cag_strdup(path) : NULL;
   m->source = cag_source_new(name, text, length);
   if (!m->name || !m->source || (path && !m->path)) {
     cag_module_free(m);
@@ -54,10 +54,10 @@ static bool check_text(CagVm *vm, CagModuleUnit *m) {
 // --- Finding modules ---
 
 static char *folder_of(const CagVm *vm, const CagModuleUnit *m) {
-  if (!m->path) return vm->root ? strdup(vm->root) : NULL;
+  if (!m->path) return vm->root ? cag_strdup(vm->root) : NULL;
   const char *slash = strrchr(m->path, '/');
   if (!slash) return NULL;
-  return strndup(m->path, slash == m->path ? 1 : (size_t)(slash - m->path));
+  return cag_strndup(m->path, slash == m->path ? 1 : (size_t)(slash - m->path));
 }
 
 static size_t find_standard(CagVm *vm, const char *name) {
@@ -88,7 +88,8 @@ static void fail_circle(CagVm *vm, const CagModuleUnit *from, const CagStatement
 static char *shown_path(const CagModuleUnit *from, const char *relative) {
   const char *slash = from->path ? strrchr(from->name, '/') : NULL;
   char *out = NULL;
-  if (asprintf(&out, "%.*s%s", slash ? (int)(slash - from->name + 1) : 0, from->name, relative) < 0)
+  if (cag_asprintf(&out, "%.*s%s", slash ? (int)(slash - from->name + 1) : 0, from->name,
+                   relative) < 0)
     return NULL;
   return out;
 }
@@ -112,7 +113,7 @@ static size_t load_path(CagVm *vm, CagModuleUnit *from, const CagStatement *s, c
     return CAG_NO_MODULE;
   }
   CagCleanup cleanup;
-  cag_cleanup_push(&cleanup, free, text);
+  cag_cleanup_push(&cleanup, cag_free, text);
   CagModuleUnit *m = new_unit(vm, shown, real, text, length);
   cag_cleanup_run(&cleanup);
   return load_unit(vm, m, CAG_PARSE_FILE);
@@ -121,8 +122,8 @@ static size_t load_path(CagVm *vm, CagModuleUnit *from, const CagStatement *s, c
 // parts.gripper -> parts/gripper.cag; a text stays as it is.
 static char *relative_path(const CagStatement *s) {
   char *p = NULL;
-  if (s->as.import.is_text) return strdup(s->as.import.path);
-  if (asprintf(&p, "%s.cag", s->as.import.path) < 0) return NULL;
+  if (s->as.import.is_text) return cag_strdup(s->as.import.path);
+  if (cag_asprintf(&p, "%s.cag", s->as.import.path) < 0) return NULL;
   for (char *c = p; c < p + strlen(p) - 4; c++)
     if (*c == '.') *c = '/';
   return p;
@@ -143,10 +144,10 @@ typedef struct ImportPaths {
 
 static void free_paths(void *paths) {
   ImportPaths *p = paths;
-  free(p->relative);
-  free(p->folder);
-  free(p->real);
-  free(p->shown);
+  cag_free(p->relative);
+  cag_free(p->folder);
+  cag_free(p->real);
+  cag_free(p->shown);
 }
 
 static size_t load_import(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
@@ -171,7 +172,7 @@ static size_t load_import(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
   for (size_t i = 0; relative && !p.real && !s->as.import.is_text && i < vm->include_count; i++) {
     char ignored[512];
     p.real = cag_allowed_path(vm, relative, vm->include[i], ignored, sizeof ignored);
-    if (p.real) p.shown = strdup(p.real);
+    if (p.real) p.shown = cag_strdup(p.real);
   }
   size_t k = CAG_NO_MODULE;
   vm->starved |= p.real && !p.shown;
@@ -240,9 +241,9 @@ static bool module_has(void *context, const CagStatement *s, const char *name,
 // Gives the module's definitions their slots, and lists its public names.
 static void make_globals(CagVm *vm, CagModuleUnit *m) {
   size_t n = m->ast->top_count;
-  m->tops = calloc(n ? n : 1, sizeof *m->tops);
-  m->publics = calloc(n ? n : 1, sizeof *m->publics);
-  m->public_names = calloc(n ? n : 1, sizeof *m->public_names);
+  m->tops = cag_calloc(n ? n : 1, sizeof *m->tops);
+  m->publics = cag_calloc(n ? n : 1, sizeof *m->publics);
+  m->public_names = cag_calloc(n ? n : 1, sizeof *m->public_names);
   if (!m->tops || !m->publics || !m->public_names) cag_vm_out_of_memory(vm);
   for (size_t i = 0; i < n; i++) {
     CagDecl *d = m->ast->tops[i];
@@ -327,7 +328,7 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
 
 static void set_root(CagVm *vm, const char *real) {
   if (vm->root) return;
-  vm->root = strdup(real);
+  vm->root = cag_strdup(real);
   vm->starved |= !vm->root;
   char *slash = vm->root ? strrchr(vm->root, '/') : NULL;
   if (slash) slash[slash == vm->root ? 1 : 0] = 0;
@@ -348,9 +349,9 @@ size_t cag_load_file(CagVm *vm, const char *path, int *exit_status) {
     return CAG_NO_MODULE;
   }
   CagCleanup text_cleanup, real_cleanup;
-  cag_cleanup_push(&text_cleanup, free, text);
+  cag_cleanup_push(&text_cleanup, cag_free, text);
   char *real = input ? NULL : cag_vm_real_path(vm, path);
-  cag_cleanup_push(&real_cleanup, free, real);
+  cag_cleanup_push(&real_cleanup, cag_free, real);
   if (real) set_root(vm, real);
   else if (!vm->root) vm->root = getcwd(NULL, 0);
   CagModuleUnit *m = new_unit(vm, input ? "<stdin>" : path, real, text, length);

@@ -2,8 +2,9 @@
 
 #include "interp/eval/program.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 // --- Params ---
 
@@ -206,7 +207,7 @@ static bool run_print(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
 static bool add_shown(CagVm *vm, CagModuleUnit *m, const CagExpr *e, CagValue v) {
   if (vm->shown_count == vm->shown_capacity) {
     size_t capacity = vm->shown_capacity ? vm->shown_capacity * 2 : 16;
-    CagShown *shown = realloc(vm->shown, capacity * sizeof *shown);
+    CagShown *shown = cag_realloc(vm->shown, capacity * sizeof *shown);
     if (!shown) cag_vm_out_of_memory(vm);
     vm->shown = shown;
     vm->shown_capacity = capacity;

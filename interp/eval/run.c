@@ -11,9 +11,15 @@
 // The C stack must keep so much free below a nested run: the deepest built-in needs far less.
 #define C_STACK_RESERVE ((ptrdiff_t)256 * 1024)
 
-bool cag_room_on_c_stack(const CagVm *vm) {
+bool cag_room_on_c_stack(CagVm *vm) {
   char here;
-  return vm->stack_low == NULL || &here - vm->stack_low > C_STACK_RESERVE;
+  if (vm->stack_low == NULL) return true;
+  if (&here - vm->stack_low <= C_STACK_RESERVE) return false;
+  if (&here >= vm->stack_paid) return true;
+  const size_t bytes = (size_t)(vm->stack_paid - &here) + CAG_STACK_STEP;
+  if (!cag_account_hold(bytes)) return false;
+  vm->stack_paid -= bytes;
+  return true;
 }
 
 bool cag_may_go_deeper(CagVm *vm, const char *done) {
@@ -260,11 +266,18 @@ static bool keep_tail_place(CagVm *vm, CagFrame *f) {
   return true;
 }
 
+void cag_pay_for_values(CagVm *vm, const CagValue *end) {
+  const size_t bytes = (size_t)((const char *)end - (const char *)vm->paid_end) + CAG_STACK_STEP;
+  if (!cag_account_hold(bytes)) cag_vm_out_of_memory(vm);
+  vm->paid_end += bytes / sizeof *end;
+}
+
 // Makes room for a frame of so many registers at base.
 static inline bool reserve(CagVm *vm, CagValue *base, size_t registers) {
   CagValue *end = base + registers;
   if (end > vm->high_water) {
     if (end + CAG_MAX_REGISTERS / 64 > vm->stack_end) return fail_depth(vm);
+    if (end > vm->paid_end) cag_pay_for_values(vm, end);
     vm->high_water = end;
   }
   return true;
@@ -850,7 +863,8 @@ bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *con
   Work w = {vm, work, context, false};
   const bool done = cag_memory_guard(do_work, &w);
   vm->starved |= cag_memory_was_out();
-  if (vm->starved || (!done && !vm->failed)) cag_vm_fail_memory(vm);
+  const bool told = vm->failed && vm->errors.items[0].id == CAG_ERR_limit_memory;
+  if (!told && (vm->starved || (!done && !vm->failed))) cag_vm_fail_memory(vm);
   if (!done) {
     vm->frame_count = frames;
     vm->root_count = roots;

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <sys/mman.h>
 
+#include "base/memory.h"
+
 // Values that the stack can hold: reserved address space, of which only what is used costs memory.
 // Frames of ordinary size fit in frame_limit times.
 #define STACK_VALUES_MIN ((size_t)16 << 20)
@@ -31,7 +33,7 @@ static size_t tail_bytes(const CagVm *vm) {
 // One function value, or the constant, of each built-in name.
 static void make_builtins(CagVm *vm) {
   size_t n = cag_builtin_count();
-  CagValue *values = calloc(n ? n : 1, sizeof *values);
+  CagValue *values = cag_calloc(n ? n : 1, sizeof *values);
   if (!values) cag_vm_out_of_memory(vm);
   vm->builtin_values = values;
   for (size_t i = 0; i < n; i++) {
@@ -49,7 +51,7 @@ static void make_builtins(CagVm *vm) {
 size_t cag_vm_add_global(CagVm *vm, const char *name) {
   if (vm->global_count == vm->global_capacity) {
     size_t capacity = vm->global_capacity ? vm->global_capacity * 2 : 64;
-    CagGlobal *globals = realloc(vm->globals, capacity * sizeof *globals);
+    CagGlobal *globals = cag_realloc(vm->globals, capacity * sizeof *globals);
     if (!globals) cag_vm_out_of_memory(vm);
     vm->globals = globals;
     vm->global_capacity = capacity;
@@ -65,7 +67,8 @@ static void set_reserved(CagVm *vm, const char *name, double value) {
 }
 
 static void set_up(CagVm *vm, const CagVmOptions *options) {
-  cag_heap_init(vm, options->max_memory);
+  vm->account.limit = options->max_memory;
+  cag_heap_init(vm);
   vm->frame_limit = options->max_depth;
   vm->max_time = options->max_time;
   vm->max_triangles = options->max_triangles;
@@ -76,10 +79,10 @@ static void set_up(CagVm *vm, const CagVmOptions *options) {
 
 static bool reserve_stacks(CagVm *vm) {
   vm->stack = reserve_memory(stack_values(vm) * sizeof *vm->stack);
-  vm->frames = calloc(vm->frame_limit, sizeof *vm->frames);
+  vm->frames = reserve_memory(vm->frame_limit * sizeof *vm->frames);
   vm->tails = reserve_memory(tail_bytes(vm));
   if (!vm->stack || !vm->frames || !vm->tails) return false;
-  vm->top = vm->high_water = vm->stack;
+  vm->top = vm->high_water = vm->paid_end = vm->stack;
   vm->stack_end = vm->stack + stack_values(vm);
   return true;
 }
@@ -98,7 +101,9 @@ CagVm *cag_vm_new(const CagVmOptions *options, CagDiagnostics *errors) {
   bool ready = vm != NULL;
   if (ready) {
     set_up(vm, options);
+    CagAccount *before = cag_account_lend(&vm->account);
     ready = reserve_stacks(vm) && cag_vm_protect(vm, start, NULL);
+    cag_account_lend(before);
     cag_diagnostics_move(errors, &vm->errors);
   }
   if (ready) return vm;
@@ -109,40 +114,42 @@ CagVm *cag_vm_new(const CagVmOptions *options, CagDiagnostics *errors) {
   return NULL;
 }
 void cag_module_free(CagModuleUnit *m) {
-  free(m->name);
-  free(m->path);
+  cag_free(m->name);
+  cag_free(m->path);
   if (m->ast) cag_module_ast_free(m->ast);
   cag_source_free(m->source);
-  free(m->tops);
-  free(m->imports);
-  free(m->publics);
-  free(m->public_names);
-  free(m);
+  cag_free(m->tops);
+  cag_free(m->imports);
+  cag_free(m->publics);
+  cag_free(m->public_names);
+  cag_free(m);
 }
 
 void cag_vm_free(CagVm *vm) {
   if (!vm) return;
+  CagAccount *before = cag_account_lend(&vm->account);
   cag_heap_free(vm);
   if (vm->stack) munmap(vm->stack, stack_values(vm) * sizeof *vm->stack);
   if (vm->tails) munmap(vm->tails, tail_bytes(vm));
-  free(vm->frames);
+  if (vm->frames) munmap(vm->frames, vm->frame_limit * sizeof *vm->frames);
   for (CagProto *p = vm->protos, *next; p; p = next) {
     next = p->next;
     cag_proto_free(p);
   }
   cag_diagnostics_clear(&vm->errors);
   for (size_t i = 0; i < vm->module_count; i++) cag_module_free(vm->modules[i]);
-  free(vm->modules);
-  free(vm->globals);
-  free(vm->roots);
-  free(vm->kept);
-  free(vm->interned);
-  free(vm->builtin_values);
-  free(vm->shown);
-  free(vm->outer_names);
-  free(vm->outer_globals);
-  free(vm->root);
-  for (size_t i = 0; i < vm->include_count; i++) free(vm->include[i]);
-  free(vm->include);
+  cag_free(vm->modules);
+  cag_free(vm->globals);
+  cag_free(vm->roots);
+  cag_free(vm->kept);
+  cag_free(vm->interned);
+  cag_free(vm->builtin_values);
+  cag_free(vm->shown);
+  cag_free(vm->outer_names);
+  cag_free(vm->outer_globals);
+  cag_free(vm->root);
+  for (size_t i = 0; i < vm->include_count; i++) cag_free(vm->include[i]);
+  cag_free(vm->include);
+  cag_account_lend(before);
   free(vm);
 }

@@ -17,6 +17,7 @@
 #include <stdio.h>
 #include <time.h>
 
+#include "base/memory.h"
 #include "interp/builtin/builtin.h"
 #include "interp/scene/build.h"
 #include "interp/value/heap.h"
@@ -147,11 +148,11 @@ typedef struct CagPage CagPage;
 typedef struct CagHeap {
   CagObject *free_lists[CAG_SMALL_CLASSES];
   CagPage *pages;
-  CagObject *large; // list of objects from malloc
-  size_t bytes;     // held by objects and what they were charged with
-  size_t debt;      // allocated since the last collection
+  CagObject *large; // list of objects from cag_malloc
+  size_t objects;   // that there are: live ones after a collection
+  size_t debt;      // bytes allocated since the last collection
   size_t threshold; // debt at which the next collection is due
-  size_t limit;     // --max-memory
+  size_t seen;      // used bytes of the account when the debt was last brought up to date
   uint8_t mark;     // mark of live objects in the last collection: 1 or 2
   uint8_t depth;    // of calls of the script by geometry: what is older is not collected (heap.c)
   CagObject **gray; // marked objects with unmarked references; NULL: gray_first
@@ -174,6 +175,7 @@ typedef struct CagNative {
 } CagNative;
 
 struct CagVm {
+  CagAccount account; // what the run has allocated; its limit is --max-memory
   CagHeap heap;
   CagNative *native;
   CagValue *stack, *stack_end, *top;
@@ -197,6 +199,10 @@ struct CagVm {
   CagProto *protos;
   CagValue *builtin_values; // one function value per built-in name
   char *stack_low;          // lowest address that the C stack may reach
+  // Both stacks are charged to the account as far as they have been used: the C stack down to
+  // stack_paid, the values up to paid_end.
+  char *stack_paid;
+  CagValue *paid_end;
 
   // The error of the run: `failed` says that errors.items[0] is set.
   CagDiagnostics errors;
@@ -231,6 +237,9 @@ struct CagVm {
 // What long geometry without calls of the script looks at, to end when it is not 0.
 static inline const volatile int *cag_vm_stop(const CagVm *vm) { return &vm->stop; }
 
+// Stacks are charged in steps of so many bytes.
+#define CAG_STACK_STEP ((size_t)64 << 10)
+
 // Reserved globals.
 enum { CAG_GLOBAL_TIME, CAG_GLOBAL_FRAME, CAG_GLOBAL_FRAMES, CAG_GLOBAL_RESERVED };
 
@@ -253,7 +262,10 @@ bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *con
 // when due.
 bool cag_safe_point(CagVm *vm);
 // Whether the C stack has room for more recursion: deep values are walked only so far.
-bool cag_room_on_c_stack(const CagVm *vm);
+bool cag_room_on_c_stack(CagVm *vm);
+// Charges the stack of values up to `end`, which is beyond paid_end. Leaves the run if memory is
+// out.
+void cag_pay_for_values(CagVm *vm, const CagValue *end);
 // The same, with an error where there is none, or where the run must stop: values that share their
 // parts take endlessly long to walk. `done` tells what is done to the values.
 bool cag_may_go_deeper(CagVm *vm, const char *done);

@@ -5,9 +5,9 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/orient.h"
 #include "interp/export/brep_build.h"
 
@@ -21,13 +21,13 @@ void cag_brep_free(CagBrep *b) {
   for (size_t i = 0; i < b->edge_count; i++) cag_curve_release(b->edges[i].curve);
   for (size_t i = 0; i < b->face_count; i++) cag_surface_release(b->faces[i].surface);
   for (size_t i = 0; i < b->shape_count; i++) cag_curve_release(b->shapes[i].curve);
-  free(b->vertices);
-  free(b->edges);
-  free(b->uses);
-  free(b->loops);
-  free(b->faces);
-  free(b->shells);
-  free(b->shapes);
+  cag_free(b->vertices);
+  cag_free(b->edges);
+  cag_free(b->uses);
+  cag_free(b->loops);
+  cag_free(b->faces);
+  cag_free(b->shells);
+  cag_free(b->shapes);
   *b = (CagBrep){0};
 }
 
@@ -42,7 +42,7 @@ static size_t root(size_t *parent, size_t i) {
 static CagStatus connect(const CagBrepWork *w, size_t *parent, bool *open, CagError *err) {
   const CagBrep *b = w->brep;
   size_t n = b->face_count - w->first_face;
-  size_t *user = malloc((b->edge_count + 1) * sizeof *user);
+  size_t *user = cag_malloc((b->edge_count + 1) * sizeof *user);
   if (!user) return cag_fail_memory(err);
   for (size_t i = 0; i < b->edge_count; i++) user[i] = SIZE_MAX;
   size_t single = 0;
@@ -56,7 +56,7 @@ static CagStatus connect(const CagBrepWork *w, size_t *parent, bool *open, CagEr
       }
   }
   *open = single > 0;
-  free(user);
+  cag_free(user);
   return CAG_OK;
 }
 
@@ -76,16 +76,16 @@ static size_t number_sets(size_t *parent, size_t n, size_t *set) {
 static CagStatus sort_faces(CagBrep *b, size_t first, const size_t *set, size_t sets, bool closed,
                             CagError *err) {
   size_t n = b->face_count - first;
-  CagBrepFace *sorted = malloc((n ? n : 1) * sizeof *sorted);
-  CagBrepShell *shells = realloc(b->shells, (b->shell_count + sets + 1) * sizeof *shells);
+  CagBrepFace *sorted = cag_malloc((n ? n : 1) * sizeof *sorted);
+  CagBrepShell *shells = cag_realloc(b->shells, (b->shell_count + sets + 1) * sizeof *shells);
   if (shells) b->shells = shells;
   if (!sorted || !shells) {
-    free(sorted);
+    cag_free(sorted);
     return cag_fail_memory(err);
   }
-  size_t *at = calloc(sets + 1, sizeof *at);
+  size_t *at = cag_calloc(sets + 1, sizeof *at);
   if (!at) {
-    free(sorted);
+    cag_free(sorted);
     return cag_fail_memory(err);
   }
   for (size_t f = 0; f < n; f++) at[set[f] + 1]++;
@@ -96,14 +96,14 @@ static CagStatus sort_faces(CagBrep *b, size_t first, const size_t *set, size_t 
   }
   for (size_t f = 0; f < n; f++) sorted[at[set[f]]++] = b->faces[first + f];
   memcpy(b->faces + first, sorted, n * sizeof *sorted);
-  free(at);
-  free(sorted);
+  cag_free(at);
+  cag_free(sorted);
   return CAG_OK;
 }
 
 static CagStatus make_shells(CagBrepWork *w, bool *closed, CagError *err) {
   size_t n = w->brep->face_count - w->first_face;
-  size_t *parent = malloc((n + 1) * sizeof *parent), *set = malloc((n + 1) * sizeof *set);
+  size_t *parent = cag_malloc((n + 1) * sizeof *parent), *set = cag_malloc((n + 1) * sizeof *set);
   CagStatus status = parent && set ? CAG_OK : cag_fail_memory(err);
   bool open = false;
   for (size_t f = 0; !status && f < n; f++) parent[f] = f;
@@ -111,8 +111,8 @@ static CagStatus make_shells(CagBrepWork *w, bool *closed, CagError *err) {
   if (!status)
     status = sort_faces(w->brep, w->first_face, set, number_sets(parent, n, set), !open, err);
   *closed = !open;
-  free(parent);
-  free(set);
+  cag_free(parent);
+  cag_free(set);
   return status;
 }
 
@@ -149,8 +149,8 @@ static bool holds(const CagBounds *a, const CagBounds *b) {
 static CagStatus find_hollows(CagBrep *b, size_t first, const CagSolid *solid, CagError *err) {
   size_t n = b->shell_count - first;
   if (n < 2) return CAG_OK;
-  double *volume = malloc(n * sizeof *volume);
-  CagBounds *box = malloc(n * sizeof *box);
+  double *volume = cag_malloc(n * sizeof *volume);
+  CagBounds *box = cag_malloc(n * sizeof *box);
   CagStatus status = volume && box ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++)
     status = shell_volume(b, &b->shells[first + i], solid, &volume[i], &box[i], err);
@@ -163,8 +163,8 @@ static CagStatus find_hollows(CagBrep *b, size_t first, const CagSolid *solid, C
         b->shells[first + i].void_of = first + k;
       }
   }
-  free(volume);
-  free(box);
+  cag_free(volume);
+  cag_free(box);
   return status;
 }
 
@@ -260,7 +260,7 @@ static CagStatus add_bounded(CagBrepWork *w, CagBrepShape *shape, CagError *err)
     status = find_hollows(b, shape->first, w->item->as.solid, err);
   shape->count = b->shell_count - shape->first;
   for (size_t i = 0; i < w->side_count; i++) cag_curve_release(w->sides[i].curve);
-  free(w->sides);
+  cag_free(w->sides);
   return status;
 }
 
@@ -292,7 +292,7 @@ static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item
 
 CagStatus cag_brep_of_scene(const CagScene *scene, CagBrep *out, CagError *err) {
   *out = (CagBrep){.accuracy = ACCURACY_MIN};
-  out->shapes = calloc(scene->item_count + 1, sizeof *out->shapes);
+  out->shapes = cag_calloc(scene->item_count + 1, sizeof *out->shapes);
   if (!out->shapes) return cag_fail_memory(err);
   for (size_t i = 0; i < scene->item_count; i++) {
     if (scene->interrupt && *scene->interrupt)

@@ -8,8 +8,8 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/surface/family.h"
 #include "interp/export/brep_build.h"
 
@@ -30,8 +30,8 @@ typedef struct Lines {
 } Lines;
 
 static void lines_free(Lines *l) {
-  free(l->t);
-  free(l->broken);
+  cag_free(l->t);
+  cag_free(l->broken);
 }
 
 static CagStatus lines_first(const CagSurface *s, int direction, Lines *out, CagError *err) {
@@ -39,8 +39,8 @@ static CagStatus lines_first(const CagSurface *s, int direction, Lines *out, Cag
   double lo = direction == 0 ? s->u0 : s->v0, hi = direction == 0 ? s->u1 : s->v1;
   // A turn all round needs some pieces before its ends can be told from its middle.
   const size_t least = 4;
-  *out = (Lines){malloc((breaks + least + 2) * sizeof *out->t),
-                 calloc(breaks + least + 2, sizeof *out->broken), 0};
+  *out = (Lines){cag_malloc((breaks + least + 2) * sizeof *out->t),
+                 cag_calloc(breaks + least + 2, sizeof *out->broken), 0};
   if (!out->t || !out->broken) return cag_fail_memory(err);
   out->t[out->n++] = lo;
   if (breaks > 0) {
@@ -68,11 +68,11 @@ static CagStatus lines_halve(Lines *l, const bool *marked, CagError *err) {
                     "the surface is not smooth enough to be approximated: no cut of a sensible "
                     "size brings it within the tolerance; give a larger one, or cut the surface "
                     "where it is sharp");
-  double *t = malloc((l->n + more) * sizeof *t);
-  bool *broken = calloc(l->n + more, sizeof *broken);
+  double *t = cag_malloc((l->n + more) * sizeof *t);
+  bool *broken = cag_calloc(l->n + more, sizeof *broken);
   if (!t || !broken) {
-    free(t);
-    free(broken);
+    cag_free(t);
+    cag_free(broken);
     return cag_fail_memory(err);
   }
   size_t n = 0;
@@ -175,7 +175,7 @@ static CagStatus judge_cells(const CagSurface *s, const Lines *u, const Lines *v
 // line itself follows from its neighbors and a double knot (out[k]: place in the net, SIZE_MAX:
 // none). *n: their number.
 static size_t *net_lines(const Lines *l, size_t *n) {
-  size_t lines = 3 * (l->n - 1) + 1, *out = malloc(lines * sizeof *out);
+  size_t lines = 3 * (l->n - 1) + 1, *out = cag_malloc(lines * sizeof *out);
   *n = 0;
   for (size_t k = 0; out && k < lines; k++) {
     bool between = k % 3 == 0 && k > 0 && k + 1 < lines && !l->broken[k / 3];
@@ -185,7 +185,7 @@ static size_t *net_lines(const Lines *l, size_t *n) {
 }
 
 static double *net_knots(const Lines *l, size_t n) {
-  double *out = malloc((n + 4) * sizeof *out);
+  double *out = cag_malloc((n + 4) * sizeof *out);
   size_t at = 0;
   for (size_t i = 0; out && i < l->n; i++) {
     bool end = i == 0 || i + 1 == l->n;
@@ -241,16 +241,16 @@ static CagStatus make_net(const CagSurface *s, const Lines *u, const Lines *v, C
   n.line_v = net_lines(v, &n.nv);
   n.knots_u = net_knots(u, n.nu);
   n.knots_v = net_knots(v, n.nv);
-  n.points = malloc(n.nu * n.nv * sizeof *n.points);
+  n.points = cag_malloc(n.nu * n.nv * sizeof *n.points);
   bool room = n.line_u && n.line_v && n.knots_u && n.knots_v && n.points;
   CagStatus status = room ? fill_net(s, u, v, &n, err) : cag_fail_memory(err);
   if (!status)
     status = cag_surface_nurbs(n.points, NULL, n.nu, n.nv, 3, 3, n.knots_u, n.knots_v, out, err);
-  free(n.line_u);
-  free(n.line_v);
-  free(n.knots_u);
-  free(n.knots_v);
-  free(n.points);
+  cag_free(n.line_u);
+  cag_free(n.line_v);
+  cag_free(n.knots_u);
+  cag_free(n.knots_v);
+  cag_free(n.points);
   return status;
 }
 
@@ -260,13 +260,13 @@ CagStatus cag_brep_approximate(const CagSurface *s, double tolerance, CagSurface
   CagStatus status = lines_first(s, 0, &u, err);
   if (!status) status = lines_first(s, 1, &v, err);
   for (bool good = false; !status && !good;) {
-    bool *mark_u = calloc(u.n, sizeof *mark_u), *mark_v = calloc(v.n, sizeof *mark_v);
+    bool *mark_u = cag_calloc(u.n, sizeof *mark_u), *mark_v = cag_calloc(v.n, sizeof *mark_v);
     status = mark_u && mark_v ? judge_cells(s, &u, &v, tolerance, mark_u, mark_v, &good, err)
                               : cag_fail_memory(err);
     if (!status && !good) status = lines_halve(&u, mark_u, err);
     if (!status && !good) status = lines_halve(&v, mark_v, err);
-    free(mark_u);
-    free(mark_v);
+    cag_free(mark_u);
+    cag_free(mark_v);
   }
   if (!status) status = make_net(s, &u, &v, out, err);
   lines_free(&u);

@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/nurbs_ops.h"
 #include "interp/export/brep_build.h"
 
@@ -49,13 +50,13 @@ static CagStatus make_vertices(CagBrepWork *w, size_t first_vertex, CagError *er
   CagBrep *b = w->brep;
   size_t n = 2 * w->side_count, room = 16;
   while (room < b->vertex_count) room *= 2;
-  void *roomy = realloc(b->vertices, room * sizeof *b->vertices);
-  End *ends = malloc((n ? n : 1) * sizeof *ends);
+  void *roomy = cag_realloc(b->vertices, room * sizeof *b->vertices);
+  End *ends = cag_malloc((n ? n : 1) * sizeof *ends);
   if (roomy) b->vertices = roomy;
   CagStatus status = roomy && ends ? gather_ends(w, ends, err) : cag_fail_memory(err);
   b->vertex_count = first_vertex;
   if (!status) qsort(ends, n, sizeof *ends, by_x);
-  size_t *vertex = malloc((n ? n : 1) * sizeof *vertex);
+  size_t *vertex = cag_malloc((n ? n : 1) * sizeof *vertex);
   if (!vertex && !status) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
     vertex[i] = SIZE_MAX;
@@ -69,8 +70,8 @@ static CagStatus make_vertices(CagBrepWork *w, size_t first_vertex, CagError *er
     if (ends[i].index == 0) side->from = vertex[i];
     else side->to = vertex[i];
   }
-  free(vertex);
-  free(ends);
+  cag_free(vertex);
+  cag_free(ends);
   return status;
 }
 
@@ -121,7 +122,7 @@ typedef struct Pair {
 
 // Finds partners among the sides that have none.
 static CagStatus pair_sides(CagBrepWork *w, Pair *pairs, CagError *err) {
-  CagBrepSide **order = malloc((w->side_count + 1) * sizeof *order);
+  CagBrepSide **order = cag_malloc((w->side_count + 1) * sizeof *order);
   if (!order) return cag_fail_memory(err);
   size_t n = 0;
   for (size_t i = 0; i < w->side_count; i++)
@@ -144,7 +145,7 @@ static CagStatus pair_sides(CagBrepWork *w, Pair *pairs, CagError *err) {
       pairs[ib] = (Pair){ia, how < 0};
     }
   }
-  free(order);
+  cag_free(order);
   return status;
 }
 
@@ -229,7 +230,7 @@ static CagStatus cut_sides(CagBrepWork *w, const Pair *pairs, bool *any, CagErro
 
 // Makes vertices and finds partners; *pairs has an element for each side afterwards.
 static CagStatus match_sides(CagBrepWork *w, size_t first_vertex, Pair **pairs, CagError *err) {
-  Pair *fresh = realloc(*pairs, (w->side_count + 1) * sizeof *fresh);
+  Pair *fresh = cag_realloc(*pairs, (w->side_count + 1) * sizeof *fresh);
   if (!fresh) return cag_fail_memory(err);
   *pairs = fresh;
   for (size_t i = 0; i < w->side_count; i++) fresh[i] = (Pair){SIZE_MAX, false};
@@ -253,8 +254,8 @@ static CagStatus find_pairs(CagBrepWork *w, Pair **pairs, CagError *err) {
 
 static CagStatus make_edges(CagBrepWork *w, const Pair *pairs, CagError *err) {
   CagBrep *b = w->brep;
-  CagBrepEdge *edges = realloc(b->edges, (b->edge_count + w->side_count + 1) * sizeof *edges);
-  CagBrepUse *uses = realloc(b->uses, (b->use_count + w->side_count + 1) * sizeof *uses);
+  CagBrepEdge *edges = cag_realloc(b->edges, (b->edge_count + w->side_count + 1) * sizeof *edges);
+  CagBrepUse *uses = cag_realloc(b->uses, (b->use_count + w->side_count + 1) * sizeof *uses);
   if (edges) b->edges = edges;
   if (uses) b->uses = uses;
   if (!edges || !uses) return cag_fail_memory(err);
@@ -297,6 +298,6 @@ CagStatus cag_brep_join(CagBrepWork *w, CagError *err) {
   CagStatus status = find_pairs(w, &pairs, err);
   if (!status) status = make_edges(w, pairs, err);
   if (!status) make_loops(w);
-  free(pairs);
+  cag_free(pairs);
   return status;
 }

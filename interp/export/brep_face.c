@@ -2,8 +2,8 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/approximate.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs_ops.h"
@@ -20,7 +20,7 @@
 void *cag_brep_grow(void *array, size_t count, size_t *room, size_t size) {
   if (count < *room) return array;
   size_t more = *room ? 2 * *room : 16;
-  void *grown = realloc(array, more * size);
+  void *grown = cag_realloc(array, more * size);
   if (grown) *room = more;
   return grown;
 }
@@ -29,7 +29,7 @@ void *cag_brep_grow(void *array, size_t count, size_t *room, size_t size) {
 // of two.
 static bool one_more(void **array, size_t count, size_t size) {
   if (count > 0 && (count & (count - 1)) != 0) return true;
-  void *grown = realloc(*array, (count ? 2 * count : 1) * size);
+  void *grown = cag_realloc(*array, (count ? 2 * count : 1) * size);
   if (grown) *array = grown;
   return grown != NULL;
 }
@@ -199,8 +199,8 @@ CagStatus cag_brep_add_surface(CagBrepWork *w, const CagSurface *s, size_t sourc
                                         err);
       if (!status) status = add_piece(w, piece, source, err);
     }
-  free(u);
-  free(v);
+  cag_free(u);
+  cag_free(v);
   cag_surface_release(nurbs);
   return status;
 }
@@ -223,7 +223,7 @@ static CagStatus add_between_corners(CagBrepWork *w, CagCurve *rest, size_t face
     status = add_side(w, parts[0], false, face, loop, (*order)++, err);
   }
   if (!status) status = add_side(w, cag_curve_retain(rest), false, face, loop, (*order)++, err);
-  free(corners);
+  cag_free(corners);
   cag_curve_release(rest);
   return status;
 }
@@ -332,7 +332,7 @@ static CagStatus add_trim_sides(CagBrepWork *w, const CagSurface *s, const CagCu
   if (!status) status = cag_curve_bounds(c, &box, err);
   if (!status) status = cag_curve_cuts(c, &cuts, &n, err);
   const double size = status ? 0 : cag_norm(cag_sub(box.max, box.min));
-  bool *pole = calloc(n + 1, sizeof *pole), *corner = calloc(n + 1, sizeof *corner);
+  bool *pole = cag_calloc(n + 1, sizeof *pole), *corner = cag_calloc(n + 1, sizeof *corner);
   if (!status) status = pole && corner ? CAG_OK : cag_fail_memory(err);
   if (!status) status = look_at_cuts(s, c, cuts, n, POLE * size, pole, corner, err);
   for (size_t i = 0, first = 0; !status && i + 1 < n; i++) {
@@ -341,9 +341,9 @@ static CagStatus add_trim_sides(CagBrepWork *w, const CagSurface *s, const CagCu
       status = add_trim_part(w, s, c, cuts[first], cuts[i + 1], size, face, loop, &order, err);
     first = i + 1;
   }
-  free(pole);
-  free(corner);
-  free(cuts);
+  cag_free(pole);
+  cag_free(corner);
+  cag_free(cuts);
   return status;
 }
 

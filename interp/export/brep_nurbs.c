@@ -3,9 +3,9 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/curve/approximate.h"
 #include "geom/curve/nurbs.h"
 #include "geom/curve/nurbs_ops.h"
@@ -72,7 +72,7 @@ static Weights judge_weights(const double *h, size_t n, double *bad) {
 
 // Divides by the weight of each point, so that the weight is 1.
 static double *without_weights(const double *h, size_t n) {
-  double *out = malloc(4 * n * sizeof *out);
+  double *out = cag_malloc(4 * n * sizeof *out);
   for (size_t i = 0; out && i < n; i++) {
     for (int c = 0; c < 3; c++) out[4 * i + c] = h[4 * i + c] / h[4 * i + 3];
     out[4 * i + 3] = 1;
@@ -92,7 +92,7 @@ static CagStatus curve_weights(const CagBrepWork *w, CagCurve **c, CagError *err
   CagCurve *out;
   CagStatus status = cag_nurbs_new(plain, v.count, v.degree, v.knots, false, 0, CAG_NURBS_BSPLINE,
                                    (*c)->dimension, &out, err);
-  free(plain);
+  cag_free(plain);
   if (status) return status;
   cag_curve_release(*c);
   *c = out;
@@ -111,7 +111,7 @@ static CagStatus surface_weights(const CagBrepWork *w, CagSurface **s, CagError 
   CagSurface *out;
   CagStatus status = cag_surface_from_homogeneous(plain, v.nu, v.nv, v.degree_u, v.degree_v,
                                                   v.knots_u, v.knots_v, &out, err);
-  free(plain);
+  cag_free(plain);
   if (status) return status;
   cag_surface_release(*s);
   *s = out;
@@ -158,7 +158,7 @@ static size_t full_knots(const double *knots, size_t count, int degree, double *
 CagStatus cag_brep_curve_corners(const CagCurve *c, double **out, size_t *n, CagError *err) {
   CagNurbsView v = {0};
   cag_curve_nurbs_view(c, &v);
-  double *t = malloc((v.count + 1) * sizeof *t);
+  double *t = cag_malloc((v.count + 1) * sizeof *t);
   if (!t) return cag_fail_memory(err);
   size_t found = full_knots(v.knots, v.count, v.degree, t);
   *n = 0;
@@ -167,7 +167,7 @@ CagStatus cag_brep_curve_corners(const CagCurve *c, double **out, size_t *n, Cag
     CagStatus status = cag_curve_eval(c, t[i], 1, CAG_SIDE_LEFT, before, err);
     if (!status) status = cag_curve_eval(c, t[i], 1, CAG_SIDE_RIGHT, after, err);
     if (status) {
-      free(t);
+      cag_free(t);
       return status;
     }
     if (turns(before[1], after[1])) t[(*n)++] = t[i];
@@ -228,7 +228,7 @@ CagStatus cag_brep_side_curve(const CagSurface *s, int side, CagCurve **out, Cag
   cag_surface_nurbs_view(s, &v);
   bool along_v = side < 2;
   size_t n = along_v ? v.nv : v.nu, line = side % 2 == 0 ? 0 : (along_v ? v.nu : v.nv) - 1;
-  double *h = malloc(4 * n * sizeof *h), bad;
+  double *h = cag_malloc(4 * n * sizeof *h), bad;
   if (!h) return cag_fail_memory(err);
   for (size_t i = 0; i < n; i++) {
     size_t at = along_v ? line * v.nv + i : i * v.nv + line;
@@ -244,7 +244,7 @@ CagStatus cag_brep_side_curve(const CagSurface *s, int side, CagCurve **out, Cag
   CagStatus status =
       cag_nurbs_new(h, n, along_v ? v.degree_v : v.degree_u, along_v ? v.knots_v : v.knots_u,
                     rational, 0, rational ? CAG_NURBS_RATIONAL : CAG_NURBS_BSPLINE, 3, out, err);
-  free(h);
+  cag_free(h);
   return status;
 }
 
@@ -274,7 +274,7 @@ CagStatus cag_brep_surface_creases(const CagSurface *s, int direction, double **
   CagSurfaceNurbsView v = {0};
   cag_surface_nurbs_view(s, &v);
   size_t count = direction == 0 ? v.nu : v.nv;
-  double *t = malloc((count + 1) * sizeof *t);
+  double *t = cag_malloc((count + 1) * sizeof *t);
   if (!t) return cag_fail_memory(err);
   size_t found = full_knots(direction == 0 ? v.knots_u : v.knots_v, count,
                             direction == 0 ? v.degree_u : v.degree_v, t);
@@ -283,7 +283,7 @@ CagStatus cag_brep_surface_creases(const CagSurface *s, int direction, double **
     bool crease;
     CagStatus status = is_crease(s, direction, t[i], &crease, err);
     if (status) {
-      free(t);
+      cag_free(t);
       return status;
     }
     if (crease) t[(*n)++] = t[i];

@@ -9,8 +9,8 @@
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "interp/scene/color_scale.h"
 
 #ifndef CAG_VERSION
@@ -31,7 +31,7 @@ static bool make_room(Text *t, size_t n) {
   if (t->failed) return false;
   if (t->length + n < t->capacity) return true;
   size_t capacity = 2 * (t->length + n) + 4096;
-  char *larger = realloc(t->at, capacity);
+  char *larger = cag_realloc(t->at, capacity);
   t->failed = !larger;
   if (!larger) return false;
   t->at = larger;
@@ -97,7 +97,7 @@ static void add_material(Text *t, const CagMaterial *m) {
     add(&e, ",\"KHR_materials_clearcoat\":{\"clearcoatFactor\":%.9g}", unit_range(m->coat));
   if (e.length > 0) add(t, ",\"extensions\":{%s}", e.at + 1);
   t->failed |= e.failed;
-  free(e.at);
+  cag_free(e.at);
   add(t, "}");
 }
 
@@ -273,7 +273,7 @@ CagStatus cag_gltf_text(const CagGltfPlan *p, const char *uri, CagGltfText *t, C
 }
 
 void cag_gltf_text_free(CagGltfText *t) {
-  free(t->at);
+  cag_free(t->at);
   *t = (CagGltfText){0};
 }
 
@@ -327,8 +327,8 @@ static CagStatus plan_part(Plan *p, size_t i, size_t *views, size_t *meshes, Cag
 CagStatus cag_gltf_plan(const CagMeshPart *parts, size_t n, CagGltfPlan *p, CagError *err) {
   *p = (CagGltfPlan){.meshes = parts, .count = n};
   size_t views = 0, meshes = 0;
-  p->parts = calloc(n + 1, sizeof *p->parts);
-  p->materials = malloc((n + 1) * sizeof *p->materials);
+  p->parts = cag_calloc(n + 1, sizeof *p->parts);
+  p->materials = cag_malloc((n + 1) * sizeof *p->materials);
   CagStatus status = p->parts && p->materials
                          ? cag_mesh_find_copies(parts, n, false, &p->copies, err)
                          : cag_fail_memory(err);
@@ -338,10 +338,10 @@ CagStatus cag_gltf_plan(const CagMeshPart *parts, size_t n, CagGltfPlan *p, CagE
 }
 
 void cag_gltf_plan_free(CagGltfPlan *p) {
-  for (size_t i = 0; p->parts && i < p->count; i++) free(p->parts[i].positions);
-  free(p->parts);
-  free(p->copies);
-  free(p->materials);
+  for (size_t i = 0; p->parts && i < p->count; i++) cag_free(p->parts[i].positions);
+  cag_free(p->parts);
+  cag_free(p->copies);
+  cag_free(p->materials);
   *p = (CagGltfPlan){0};
 }
 
@@ -455,7 +455,7 @@ static CagStatus make_data(const Plan *p, const char *stem, CagGltfData *out, Ca
     return cag_fail_memory(err);
   if (!stem) return CAG_OK;
   const size_t room = strlen(stem) + sizeof "-0123456789abcdef.bin";
-  out->name = malloc(room);
+  out->name = cag_malloc(room);
   if (!out->name) return cag_fail_memory(err);
   snprintf(out->name, room, "%s-%016" PRIx64 ".bin", stem, hash_of(out->bytes, out->size));
   return CAG_OK;
@@ -473,8 +473,8 @@ CagStatus cag_export_gltf(const CagMeshPart *parts, size_t n, const char *stem, 
   if (status == CAG_OK && !stem && data->bytes) write_embedded(&t, data, file);
   else if (status == CAG_OK) cag_atomic_file_write(file, t.at, t.length);
   if (status != CAG_OK || !stem) {
-    free(data->name);
-    free(data->bytes);
+    cag_free(data->name);
+    cag_free(data->bytes);
     *data = (CagGltfData){0};
   }
   cag_gltf_text_free(&t);

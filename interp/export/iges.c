@@ -8,8 +8,9 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 // Columns of parameters in a line; the number of the directory line follows.
 #define PARAMETER_COLUMNS 64
@@ -270,8 +271,8 @@ static Pointer composite(Writer *w, const Pointer *parts, size_t n, int status) 
 
 static CagStatus boundary(Writer *w, const CagBrepLoop *loop, const CagTransform *map,
                           Pointer surface, Pointer *out, CagError *err) {
-  Chain chain = {calloc(loop->count + 1, sizeof *chain.flat),
-                 calloc(loop->count + 1, sizeof *chain.space), 0};
+  Chain chain = {cag_calloc(loop->count + 1, sizeof *chain.flat),
+                 cag_calloc(loop->count + 1, sizeof *chain.space), 0};
   CagStatus status = chain.flat && chain.space ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < loop->count; i++)
     status = add_use(w, &w->brep->uses[loop->first + i], map, &chain, err);
@@ -286,15 +287,15 @@ static CagStatus boundary(Writer *w, const CagBrepLoop *loop, const CagTransform
     put_integer(w, map ? 3 : 2); // both are as good; that of space is
     end(w, false);
   }
-  free(chain.flat);
-  free(chain.space);
+  cag_free(chain.flat);
+  cag_free(chain.space);
   return status;
 }
 
 static CagStatus trimmed(Writer *w, const CagBrepFace *f, CagError *err) {
   CagTransform map = cag_transform_identity();
   CagStatus status = f->flat ? to_parameters(f->surface, &map, err) : CAG_OK;
-  Pointer *loops = calloc(f->count + 1, sizeof *loops);
+  Pointer *loops = cag_calloc(f->count + 1, sizeof *loops);
   if (!status && !loops) status = cag_fail_memory(err);
   Pointer surface = status ? 0 : nurbs_surface(w, f->surface, PART);
   for (size_t i = 0; !status && i < f->count; i++)
@@ -308,7 +309,7 @@ static CagStatus trimmed(Writer *w, const CagBrepFace *f, CagError *err) {
     for (size_t i = 0; i < f->count; i++) put_pointer(w, loops[i]);
     end(w, true);
   }
-  free(loops);
+  cag_free(loops);
   return status;
 }
 
@@ -379,7 +380,7 @@ static bool append(CagAtomicFile *to, CagAtomicFile *section, CagIoError *io) {
   size_t size;
   if (!cag_atomic_file_commit_memory(section, &bytes, &size, io)) return false;
   cag_atomic_file_write(to, bytes, size);
-  free(bytes);
+  cag_free(bytes);
   return true;
 }
 

@@ -5,9 +5,9 @@
 
 #include "interp/export/json.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/orient.h"
 #include "geom/solid/csg.h"
 
@@ -200,7 +200,7 @@ static CagStatus put_samples(Writer *w, const CagCurve *c, CagError *err) {
   double tolerance =
       w->scene->tolerance > 0 ? w->scene->tolerance : cag_norm(cag_sub(b.max, b.min)) / 1000;
   if ((status = cag_curve_discretize(c, tolerance, turn, &t, &n, err))) return status;
-  CagVec3 *p = malloc(n * sizeof *p);
+  CagVec3 *p = cag_malloc(n * sizeof *p);
   status = p ? cag_curve_eval_many(c, t, n, 0, p, err) : cag_fail_memory(err);
   if (!status) {
     key(w, "samples");
@@ -213,8 +213,8 @@ static CagStatus put_samples(Writer *w, const CagCurve *c, CagError *err) {
     close(w, "]");
     close(w, "}");
   }
-  free(p);
-  free(t);
+  cag_free(p);
+  cag_free(t);
   return status;
 }
 

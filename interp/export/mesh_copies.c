@@ -6,8 +6,9 @@
 
 #include "interp/export/mesh_copies.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 // Largest difference between a vertex and the moved one, in sizes of the mesh: far above rounding,
 // far below single precision.
@@ -192,20 +193,20 @@ CagStatus cag_mesh_find_copies(const CagMeshPart *parts, size_t n, bool same_mat
   while (size < 2 * n) size *= 2;
   Finder f = {.parts = parts,
               .same_material = same_material,
-              .copies = malloc((n + 1) * sizeof *f.copies),
-              .frames = malloc((n + 1) * sizeof *f.frames),
-              .slots = malloc(size * sizeof *f.slots),
-              .next = malloc((n + 1) * sizeof *f.next),
+              .copies = cag_malloc((n + 1) * sizeof *f.copies),
+              .frames = cag_malloc((n + 1) * sizeof *f.frames),
+              .slots = cag_malloc(size * sizeof *f.slots),
+              .next = cag_malloc((n + 1) * sizeof *f.next),
               .mask = size - 1};
   bool good = f.copies && f.frames && f.slots && f.next;
   for (size_t i = 0; good && i < size; i++) f.slots[i] = NONE;
   if (good && n == 1) f.copies[0] = (CagMeshCopy){0, cag_transform_identity()};
   else
     for (size_t i = 0; good && i < n; i++) find_one(&f, i);
-  free(f.frames);
-  free(f.slots);
-  free(f.next);
-  if (!good) free(f.copies);
+  cag_free(f.frames);
+  cag_free(f.slots);
+  cag_free(f.next);
+  if (!good) cag_free(f.copies);
   *out = good ? f.copies : NULL;
   return good ? CAG_OK : cag_fail_memory(err);
 }

@@ -4,7 +4,8 @@
 
 #include <float.h>
 #include <stdio.h>
-#include <stdlib.h>
+
+#include "base/memory.h"
 
 static const char two_digits[] = "00010203040506070809101112131415161718192021222324252627282930313"
                                  "23334353637383940414243444546474849505152535455565758596061626364"
@@ -119,7 +120,7 @@ CagStatus cag_mesh_floats(const CagMeshPart *part, float **out, float least[3], 
   const CagMesh *m = part->mesh;
   size_t n = 3 * m->vertex_count, k = 0;
   const double *x = n > 0 ? &m->positions[0].x : NULL;
-  float low[LANES], high[LANES], *p = malloc((n + 3) * sizeof *p);
+  float low[LANES], high[LANES], *p = cag_malloc((n + 3) * sizeof *p);
   *out = NULL;
   if (!p) return cag_fail_memory(err);
   for (int j = 0; j < LANES; j++) low[j] = INFINITY, high[j] = -INFINITY;
@@ -136,7 +137,7 @@ CagStatus cag_mesh_floats(const CagMeshPart *part, float **out, float least[3], 
   }
   if (n > k) widen(x + k, low, high, (int)(n - k));
   if (!good) {
-    free(p);
+    cag_free(p);
     return fail_range(part, err);
   }
   for (int j = 0; least && j < LANES; j++) {

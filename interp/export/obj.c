@@ -1,8 +1,8 @@
 // Wavefront OBJ and its material library MTL.
 
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "interp/export/mesh_write.h"
 
 enum { NUMBER_BYTES = 25, INDEX_BYTES = 21, WORD_BYTES = 240, BATCH = 64 };
@@ -111,7 +111,7 @@ static void write_faces(const CagMesh *m, const uint32_t *number, const ObjCount
 static CagStatus write_part(const CagMeshPart *parts, size_t i, bool materials, ObjCounts *counts,
                             CagAtomicFile *file, CagError *err) {
   const CagMesh *m = parts[i].mesh;
-  uint32_t *number = malloc((m->vertex_count + 1) * sizeof *number);
+  uint32_t *number = cag_malloc((m->vertex_count + 1) * sizeof *number);
   if (!number) return cag_fail_memory(err);
   char *at = cag_atomic_file_reserve(file, WORD_BYTES + 8);
   at = put_text(at, "o ");
@@ -134,7 +134,7 @@ static CagStatus write_part(const CagMeshPart *parts, size_t i, bool materials, 
   }
   cag_atomic_file_text(file, m->normals ? "s 1\n" : "s off\n");
   write_faces(m, number, &before, file);
-  free(number);
+  cag_free(number);
   return CAG_OK;
 }
 

@@ -2,8 +2,9 @@
 
 #include "interp/export/pieces.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 #define DEGREE_MAX 3
 // Points are the same, or a line is straight, to this part of the curve's size: rounding of the
@@ -13,7 +14,7 @@
 bool cag_pieces_add(CagPieces *p, const CagVec3 cubic[4]) {
   if (p->count == p->capacity) {
     size_t capacity = p->capacity ? 2 * p->capacity : 8;
-    CagVec3 *points = realloc(p->points, capacity * 4 * sizeof *points);
+    CagVec3 *points = cag_realloc(p->points, capacity * 4 * sizeof *points);
     if (!points) return false;
     p->points = points;
     p->capacity = capacity;
@@ -128,7 +129,7 @@ bool cag_pieces_of_curve(const CagCurve *c, CagPieces *out) {
     }
   }
   if (!ok || !pieces_are_curve(&p, c)) {
-    free(p.points);
+    cag_free(p.points);
     return false;
   }
   for (size_t i = 0; i < p.count && p.linear; i++) p.linear = is_even_line(p.points + 4 * i);

@@ -2,8 +2,7 @@
 // triangles. The vertices of a point are one vertex unless their normals differ, as at a sharp
 // edge.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "interp/export/mesh_write.h"
 #include "interp/scene/color_scale.h"
 
@@ -21,7 +20,7 @@ static uint32_t point_of(const CagMesh *m, size_t v) { return m->weld ? m->weld[
 // Normals of the points of a mesh without normals: those of their triangles together.
 static bool sum_normals(const CagMesh *m, PlyPart *p) {
   if (m->normals) return true;
-  p->sums = malloc((m->vertex_count + 1) * sizeof *p->sums);
+  p->sums = cag_malloc((m->vertex_count + 1) * sizeof *p->sums);
   if (!p->sums) return false;
   for (size_t v = 0; v < m->vertex_count; v++) p->sums[v] = cag_vec3(0, 0, 0);
   for (size_t t = 0; t < m->triangle_count; t++) {
@@ -72,11 +71,11 @@ static bool begin_part(PlyPart *p, const CagMesh *m, size_t first) {
   p->triangles = cag_mesh_kept_triangles(m, p->positions);
   if (!sum_normals(m, p)) return false;
   if (is_plain(m)) return true;
-  uint32_t *next = malloc((m->vertex_count + 1) * sizeof *next);
-  p->number = malloc((m->vertex_count + 1) * sizeof *p->number);
+  uint32_t *next = cag_malloc((m->vertex_count + 1) * sizeof *next);
+  p->number = cag_malloc((m->vertex_count + 1) * sizeof *p->number);
   const bool made = next && p->number;
   if (made) number_vertices(m, p, next);
-  free(next);
+  cag_free(next);
   return made;
 }
 
@@ -152,7 +151,7 @@ static void write_faces(const CagMesh *m, const PlyPart *p, CagAtomicFile *file)
 }
 
 CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err) {
-  PlyPart *p = calloc(n + 1, sizeof *p);
+  PlyPart *p = cag_calloc(n + 1, sizeof *p);
   size_t vertices = 0, triangles = 0;
   CagStatus status = p ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; status == CAG_OK && i < n; i++) {
@@ -175,10 +174,10 @@ CagStatus cag_export_ply(const CagMeshPart *parts, size_t n, CagAtomicFile *file
     for (size_t i = 0; i < n; i++) write_faces(parts[i].mesh, &p[i], file);
   }
   for (size_t i = 0; p && i < n; i++) {
-    free(p[i].positions);
-    free(p[i].number);
-    free(p[i].sums);
+    cag_free(p[i].positions);
+    cag_free(p[i].number);
+    cag_free(p[i].sums);
   }
-  free(p);
+  cag_free(p);
   return status;
 }

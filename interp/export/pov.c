@@ -3,9 +3,9 @@
 #include "interp/export/pov.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/solid/general.h"
 #include "interp/export/pov_write.h"
 
@@ -25,7 +25,7 @@ static CagStatus find_closed(const CagItem *item, bool *closed, CagError *err) {
 static CagStatus write_materials(CagPovWriter *w, const bool *closed, CagError *err) {
   const CagScene *s = w->scene;
   enum { THIN = 1, CLOSED = 2 };
-  unsigned char *used = calloc(s->material_count + 1, 1);
+  unsigned char *used = cag_calloc(s->material_count + 1, 1);
   if (!used) return cag_fail_memory(err);
   for (size_t i = 0; i < s->item_count; i++)
     used[s->items[i].material] |=
@@ -37,7 +37,7 @@ static CagStatus write_materials(CagPovWriter *w, const bool *closed, CagError *
     if (used[i] & CLOSED) pov_material(w, i, true);
     if (used[i] & THIN) pov_material(w, i, false);
   }
-  free(used);
+  cag_free(used);
   return CAG_OK;
 }
 
@@ -214,13 +214,13 @@ static CagStatus write_items(CagPovWriter *w, const bool *closed, CagError *err)
 static bool make_names(CagPovWriter *w) {
   const CagScene *s = w->scene;
   size_t n = s->item_count > s->material_count ? s->item_count : s->material_count;
-  const char **names = malloc((n ? n : 1) * sizeof *names);
+  const char **names = cag_malloc((n ? n : 1) * sizeof *names);
   if (!names) return false;
   for (size_t i = 0; i < s->item_count; i++) names[i] = s->items[i].name;
   bool ok = pov_names("", names, s->item_count, &w->item_names);
   for (size_t i = 0; i < s->material_count; i++) names[i] = s->materials[i].name;
   ok = ok && pov_names("M_", names, s->material_count, &w->material_names);
-  free(names);
+  cag_free(names);
   return ok;
 }
 
@@ -282,7 +282,7 @@ CagStatus cag_export_pov(const CagScene *scene, const CagPovOptions *options, Ca
   w.indirect = options->quality == CAG_POV_FINAL ||
                (options->quality == CAG_POV_NORMAL && lit_by_sky_alone(scene));
   measure(&w);
-  bool *closed = malloc(scene->item_count * sizeof *closed);
+  bool *closed = cag_malloc(scene->item_count * sizeof *closed);
   CagStatus status = CAG_OK;
   if (!closed || !make_names(&w)) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < scene->item_count; i++)
@@ -292,8 +292,8 @@ CagStatus cag_export_pov(const CagScene *scene, const CagPovOptions *options, Ca
     *err = w.failure;
     status = w.failure.status;
   }
-  free(closed);
-  free(w.item_names);
-  free(w.material_names);
+  cag_free(closed);
+  cag_free(w.item_names);
+  cag_free(w.material_names);
   return status;
 }

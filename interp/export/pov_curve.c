@@ -1,7 +1,6 @@
 // Curves, drawn as round lines: a cylinder, a torus, or cylinders with spheres at their joints.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "interp/export/pov_write.h"
 #include "interp/scene/item_mesh.h"
 
@@ -80,11 +79,11 @@ static CagStatus write_polyline(CagPovWriter *w, const CagItem *item, double rad
   size_t n;
   CagStatus status = cag_curve_discretize(c, SAG * radius, TURN_MAX, &t, &n, err);
   if (status) return status;
-  CagVec3 *p = malloc(n * sizeof *p);
+  CagVec3 *p = cag_malloc(n * sizeof *p);
   status = p ? cag_curve_eval_many(c, t, n, 0, p, err) : cag_fail_memory(err);
   if (!status) write_chain(w, p, n, item->dash, c->closed);
-  free(p);
-  free(t);
+  cag_free(p);
+  cag_free(t);
   return status;
 }
 

@@ -3,8 +3,8 @@
 #include "interp/export/pov_outline.h"
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "geom/curve/approximate.h"
 #include "geom/curve/family.h"
 
@@ -12,7 +12,7 @@
 // largest picture (16,384 pixels).
 #define NEAR 2e-6
 
-void pov_outline_free(CagPovOutline *o) { free(o->all.points); }
+void pov_outline_free(CagPovOutline *o) { cag_free(o->all.points); }
 
 static double largest(const CagPieces *p) {
   double size = 0;
@@ -34,7 +34,7 @@ static bool near_pieces(const CagCurve *c, CagPieces *out) {
   double size = cag_norm(cag_sub(box.max, box.min));
   bool ok = size > 0 && cag_curve_fit_sampler(sample, (void *)c, cuts, n, NEAR * size, c->dimension,
                                               &cubic, &err) == CAG_OK;
-  free(cuts);
+  cag_free(cuts);
   ok = ok && cag_pieces_of_curve(cubic, out);
   cag_curve_release(cubic);
   return ok;
@@ -50,7 +50,7 @@ bool pov_outline_add(CagPovOutline *o, const CagCurve *c) {
   // Separate outlines are told apart by Bezier pieces only.
   if (o->all.count > 0 || !p.linear) o->linear = false;
   bool ok = cag_pieces_append(&o->all, &p);
-  free(p.points);
+  cag_free(p.points);
   return ok;
 }
 

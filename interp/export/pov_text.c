@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/export/pov_write.h"
 
 void pov_text(CagPovWriter *w, const char *text) {
@@ -197,11 +198,11 @@ static bool table_insert(NameTable *t, uint32_t index) {
 bool pov_names(const char *prefix, const char *const *names, size_t n, CagPovName **out) {
   NameTable t = {.size = 16};
   while (t.size < 2 * n) t.size *= 2;
-  t.slots = calloc(t.size, sizeof *t.slots);
-  t.names = malloc((n ? n : 1) * sizeof *t.names);
+  t.slots = cag_calloc(t.size, sizeof *t.slots);
+  t.names = cag_malloc((n ? n : 1) * sizeof *t.names);
   if (!t.slots || !t.names) {
-    free(t.slots);
-    free(t.names);
+    cag_free(t.slots);
+    cag_free(t.names);
     return false;
   }
   for (uint32_t i = 0; i < n; i++) {
@@ -210,7 +211,7 @@ bool pov_names(const char *prefix, const char *const *names, size_t n, CagPovNam
     for (unsigned k = 2; !table_insert(&t, i); k++)
       snprintf(t.names[i] + base, sizeof t.names[i] - base, "_%u", i > 1000 ? i + k : k);
   }
-  free(t.slots);
+  cag_free(t.slots);
   *out = t.names;
   return true;
 }

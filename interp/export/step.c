@@ -6,8 +6,9 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 typedef size_t Id; // of an entity; 0: none
 
@@ -98,7 +99,7 @@ static void put_ids(Writer *w, const Id *ids, size_t n) {
 }
 
 static Id *take_ids(Writer *w, size_t n) {
-  Id *ids = calloc(n + 1, sizeof *ids);
+  Id *ids = cag_calloc(n + 1, sizeof *ids);
   if (!ids) w->failed = true;
   return ids;
 }
@@ -190,7 +191,7 @@ static Id nurbs_curve(Writer *w, const CagCurve *c) {
     put(w, ")REPRESENTATION_ITEM(''))");
   }
   put(w, ";\n");
-  free(ids);
+  cag_free(ids);
   return id;
 }
 
@@ -231,7 +232,7 @@ static Id nurbs_surface(Writer *w, const CagSurface *s) {
     put(w, ")REPRESENTATION_ITEM('')SURFACE())");
   }
   put(w, ";\n");
-  free(ids);
+  cag_free(ids);
   return id;
 }
 
@@ -278,7 +279,7 @@ static Id edge_loop(Writer *w, const CagBrepLoop *l) {
   Id id = begin(w, "EDGE_LOOP('',");
   put_ids(w, ids, l->count);
   end(w);
-  free(ids);
+  cag_free(ids);
   return id;
 }
 
@@ -296,7 +297,7 @@ static Id face(Writer *w, const CagBrepFace *f) {
   put(w, ",");
   put_id(w, surface);
   put(w, ",.T.);\n");
-  free(bounds);
+  cag_free(bounds);
   return id;
 }
 
@@ -308,7 +309,7 @@ static Id shell(Writer *w, const CagBrepShell *s, bool closed) {
   Id id = begin(w, closed ? "CLOSED_SHELL(''," : "OPEN_SHELL('',");
   put_ids(w, faces, s->count);
   end(w);
-  free(faces);
+  cag_free(faces);
   return id;
 }
 
@@ -333,7 +334,7 @@ static Id solid(Writer *w, const CagBrepShape *shape, size_t outer) {
     put_ids(w, hollow, n);
   }
   end(w);
-  free(hollow);
+  cag_free(hollow);
   return id;
 }
 
@@ -347,7 +348,7 @@ static Id sheet(Writer *w, const CagBrepShape *shape) {
   put(w, ",");
   put_ids(w, shells, shape->count);
   end(w);
-  free(shells);
+  cag_free(shells);
   return id;
 }
 
@@ -444,7 +445,7 @@ static void write_representation(Writer *w, CagBrepKind kind, const char *type, 
     Id r = representation(w, type, &items);
     entity(w, "SHAPE_REPRESENTATION_RELATIONSHIP('','',#%zu,#%zu)", main, r);
   }
-  free(items.ids);
+  cag_free(items.ids);
 }
 
 static void write_product(Writer *w, const char *name) {
@@ -509,10 +510,10 @@ static void write_header(Writer *w, const char *name) {
 CagStatus cag_export_step(const CagBrep *brep, const char *script, CagAtomicFile *file,
                           CagError *err) {
   Writer w = {.brep = brep, .file = file};
-  w.vertex = calloc(brep->vertex_count + 1, sizeof *w.vertex);
-  w.edge = calloc(brep->edge_count + 1, sizeof *w.edge);
+  w.vertex = cag_calloc(brep->vertex_count + 1, sizeof *w.vertex);
+  w.edge = cag_calloc(brep->edge_count + 1, sizeof *w.edge);
   w.styled_room = brep->shape_count + brep->shell_count;
-  w.styled = calloc(w.styled_room + 1, sizeof *w.styled);
+  w.styled = cag_calloc(w.styled_room + 1, sizeof *w.styled);
   if (!w.vertex || !w.edge || !w.styled) {
     w.failed = true;
   } else {
@@ -521,9 +522,9 @@ CagStatus cag_export_step(const CagBrep *brep, const char *script, CagAtomicFile
     write_data(&w, name);
     put(&w, "ENDSEC;\nEND-ISO-10303-21;\n");
   }
-  free(w.vertex);
-  free(w.edge);
-  free(w.styled);
+  cag_free(w.vertex);
+  cag_free(w.edge);
+  cag_free(w.styled);
   if (w.undefined && !w.failed)
     return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
                     "a number in the file overflows or is undefined");

@@ -1,7 +1,6 @@
 // Binary STL: an 80-byte header, the number of triangles, 50 bytes each.
 
-#include <stdlib.h>
-
+#include "base/memory.h"
 #include "interp/export/mesh_write.h"
 
 enum { HEADER = 80, RECORD = 50, LANES = 8, BATCH = 1024 };
@@ -95,7 +94,7 @@ static void write_kept(const CagMesh *m, const float *p, CagAtomicFile *file) {
 
 CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, CagAtomicFile *file,
                          CagError *err) {
-  float **positions = calloc(n + 1, sizeof *positions);
+  float **positions = cag_calloc(n + 1, sizeof *positions);
   CagStatus status = positions ? CAG_OK : cag_fail_memory(err);
   size_t triangles = 0, shown = 0;
   for (size_t i = 0; status == CAG_OK && i < n; i++) {
@@ -121,8 +120,8 @@ CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, 
   for (size_t i = 0; positions && i < n; i++) {
     if (status == CAG_OK && triangles == shown) write_all(parts[i].mesh, positions[i], file);
     else if (status == CAG_OK) write_kept(parts[i].mesh, positions[i], file);
-    free(positions[i]);
+    cag_free(positions[i]);
   }
-  free(positions);
+  cag_free(positions);
   return status;
 }

@@ -7,9 +7,9 @@
 #include "interp/export/svg.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/stop.h"
 #include "interp/export/pieces.h"
 #include "interp/export/svg_label.h"
@@ -155,7 +155,7 @@ static bool draw_pieces(Picture *p, const CagCurve *c) {
     if (is_straight(q, p->size)) line_to(p, q[3]);
     else cubic_to(p, q[1], q[2], q[3]);
   }
-  free(pieces.points);
+  cag_free(pieces.points);
   return true;
 }
 
@@ -266,7 +266,7 @@ static void draw_between(Picture *p, const CagCurve *c, const Sample *a, const S
 #define BREAKS_MAX 4096
 
 static CagStatus draw_approximate(Picture *p, const CagCurve *c, CagError *err) {
-  double *at = malloc((BREAKS_MAX + 2) * sizeof *at);
+  double *at = cag_malloc((BREAKS_MAX + 2) * sizeof *at);
   if (!at) return cag_fail_memory(err);
   size_t n = c->kind->breaks ? c->kind->breaks(c, at + 1, BREAKS_MAX) : 0;
   if (n > BREAKS_MAX) n = BREAKS_MAX;
@@ -277,7 +277,7 @@ static CagStatus draw_approximate(Picture *p, const CagCurve *c, CagError *err) 
     if (look(p, c, at[i], CAG_SIDE_RIGHT, &a) && look(p, c, at[i + 1], CAG_SIDE_LEFT, &b))
       draw_between(p, c, &a, &b, DEPTH_MAX);
   }
-  free(at);
+  cag_free(at);
   return CAG_OK;
 }
 
@@ -492,6 +492,6 @@ CagStatus cag_export_svg(const CagScene *scene, size_t camera, CagAtomicFile *fi
   if (!status && p.undefined)
     status = cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
                       "a number in the drawing overflows or is undefined");
-  free(paths);
+  cag_free(paths);
   return status;
 }

@@ -7,8 +7,8 @@
 // model; an open one is a surface. Points are those of the welded mesh.
 
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "base/memory.h"
 #include "interp/export/mesh_copies.h"
 #include "interp/export/mesh_write.h"
 #include "interp/export/zip.h"
@@ -50,7 +50,7 @@ static CagStatus pack_xml(Model *m, bool all, CagError *err) {
   if (!cag_atomic_file_commit_memory(full, &xml, &size, &io) || !m->xml)
     return cag_fail_memory(err);
   CagStatus status = cag_zip_feed(&m->zip, xml, size, err);
-  free(xml);
+  cag_free(xml);
   return status;
 }
 
@@ -195,14 +195,14 @@ static CagStatus write_triangles(Model *m, size_t part, const float *p, const ui
 
 static CagStatus write_mesh(Model *m, size_t i, const float *p, CagError *err) {
   const CagMesh *mesh = m->parts[i].mesh;
-  uint32_t *number = malloc((mesh->vertex_count + 1) * sizeof *number);
+  uint32_t *number = cag_malloc((mesh->vertex_count + 1) * sizeof *number);
   if (!number) return cag_fail_memory(err);
   cag_atomic_file_text(m->xml, "   <mesh>\n    <vertices>\n");
   CagStatus status = write_vertices(m, mesh, p, number, err);
   cag_atomic_file_text(m->xml, "    </vertices>\n    <triangles>\n");
   if (status == CAG_OK) status = write_triangles(m, i, p, number, err);
   cag_atomic_file_text(m->xml, "    </triangles>\n   </mesh>\n");
-  free(number);
+  cag_free(number);
   return status;
 }
 
@@ -261,7 +261,7 @@ static CagStatus write_objects(Model *m, bool *shown, CagError *err) {
       shown[i] = cag_mesh_kept_triangles(m->parts[i].mesh, p) > 0;
     }
     if (shown[i]) status = write_object(m, i, closed, p, err);
-    free(p);
+    cag_free(p);
     if (status != CAG_OK) return status;
   }
   return CAG_OK;
@@ -301,7 +301,7 @@ static CagStatus begin(Model *m, CagError *err) {
       "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>\n"
       "</Relationships>\n";
   CagIoError io;
-  m->materials = malloc((m->count + 1) * sizeof *m->materials);
+  m->materials = cag_malloc((m->count + 1) * sizeof *m->materials);
   if (!m->materials) return cag_fail_memory(err);
   for (size_t i = 0; i < m->count; i++)
     if (m->parts[i].material && material_number(m, m->parts[i].material) == m->material_count)
@@ -318,7 +318,7 @@ static CagStatus begin(Model *m, CagError *err) {
 
 CagStatus cag_export_3mf(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err) {
   Model m = {.parts = parts, .count = n, .zip.file = file};
-  bool *shown = calloc(n + 1, sizeof *shown);
+  bool *shown = cag_calloc(n + 1, sizeof *shown);
   CagStatus status = shown ? begin(&m, err) : cag_fail_memory(err);
   if (status == CAG_OK) status = cag_zip_open(&m.zip, "3D/3dmodel.model", err);
   if (status == CAG_OK) status = write_model(&m, shown, err);
@@ -327,8 +327,8 @@ CagStatus cag_export_3mf(const CagMeshPart *parts, size_t n, CagAtomicFile *file
   if (status == CAG_OK) cag_zip_end(&m.zip);
   cag_zip_free(&m.zip);
   cag_atomic_file_abort(m.xml);
-  free(shown);
-  free(m.copies);
-  free(m.materials);
+  cag_free(shown);
+  cag_free(m.copies);
+  cag_free(m.materials);
   return status;
 }

@@ -5,10 +5,10 @@
 // fixed link takes that up into its origin.
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "base/memory.h"
 #include "interp/builtin/robots.h"
 #include "interp/eval/vm.h"
 #include "interp/export/urdf.h"
@@ -419,13 +419,13 @@ static bool measure_plain(Walk *w) {
   double q[CAG_ROBOT_JOINTS_MAX], length = 0;
   for (size_t i = 0; i < r->link_count; i++)
     if (CAG_AS_LINK(v->links->as.items[i])->shape.type != CAG_NONE) return true;
-  CagVec3 *points = malloc((2 * r->link_count + 2) * sizeof *points);
+  CagVec3 *points = cag_malloc((2 * r->link_count + 2) * sizeof *points);
   if (!points)
     return cag_fail_call(&w->call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
   cag_robot_home(r, q);
   size_t n = cag_robot_skeleton(r, q, points);
   for (size_t i = 1; i < n; i++) length += cag_norm(cag_sub(points[i], points[i - 1]));
-  free(points);
+  cag_free(points);
   w->plain = true;
   w->size = length > 0 ? length : 1;
   return true;

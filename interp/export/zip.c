@@ -6,9 +6,10 @@
 
 #include "interp/export/zip.h"
 
-#include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
+
+#include "base/memory.h"
 
 // Words of the format (APPNOTE 4.3).
 #define LOCAL_HEADER 0x04034b50u
@@ -52,11 +53,11 @@ static CagStatus fail_size(uint64_t size, CagError *err) {
 }
 
 CagStatus cag_zip_open(CagZip *z, const char *name, CagError *err) {
-  struct CagZipPacker *p = calloc(1, sizeof *p);
+  struct CagZipPacker *p = cag_calloc(1, sizeof *p);
   if (!p) return cag_fail_memory(err);
   if (deflateInit2(&p->stream, LEVEL, Z_DEFLATED, RAW_WINDOW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) !=
       Z_OK) {
-    free(p);
+    cag_free(p);
     return cag_fail_memory(err);
   }
   z->packer = p;
@@ -72,7 +73,7 @@ static CagStatus pack(struct CagZipPacker *p, int flush, CagError *err) {
   do {
     if (s->total_out == p->room) {
       size_t room = p->room ? p->room + p->room / 2 : (size_t)1 << 16;
-      char *larger = realloc(p->packed, room);
+      char *larger = cag_realloc(p->packed, room);
       if (!larger) return cag_fail_memory(err);
       p->packed = larger;
       p->room = room;
@@ -118,8 +119,8 @@ CagStatus cag_zip_close(CagZip *z, CagError *err) {
 void cag_zip_free(CagZip *z) {
   if (!z->packer) return;
   deflateEnd(&z->packer->stream);
-  free(z->packer->packed);
-  free(z->packer);
+  cag_free(z->packer->packed);
+  cag_free(z->packer);
   z->packer = NULL;
 }
 

@@ -9,9 +9,10 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+#include "base/memory.h"
 
 enum { GLB_HEADER = 12, CHUNK_HEADER = 8 };
 #define JSON_CHUNK 0x4e4f534au
@@ -85,7 +86,7 @@ static CagStatus read_array(CagGltf *g, const char *key, CagGltfArray *out, CagE
   cJSON_ArrayForEach(item, array) n++;
   CagStatus status = cag_draft_take(g->draft, n + 1, sizeof *out->items, err);
   if (status != CAG_OK) return status;
-  out->items = malloc((n + 1) * sizeof *out->items);
+  out->items = cag_malloc((n + 1) * sizeof *out->items);
   if (!out->items) return cag_fail_memory(err);
   cJSON_ArrayForEach(item, array) {
     if (!cJSON_IsObject(item))
@@ -144,7 +145,7 @@ static CagStatus decode_base64(CagGltf *g, const char *text, CagGltfBuffer *b, C
   size_t n = strlen(text);
   CagStatus status = cag_draft_take(g->draft, n / 4 + 1, 3, err);
   if (status != CAG_OK) return status;
-  b->bytes = malloc(n / 4 * 3 + 4);
+  b->bytes = cag_malloc(n / 4 * 3 + 4);
   b->owned = true;
   if (!b->bytes) return cag_fail_memory(err);
   uint32_t bits = 0;
@@ -171,7 +172,7 @@ static int hex_digit(char c) {
 
 // A relative path with its %XX read; malloc'd.
 static char *decode_path(const char *uri) {
-  char *path = strdup(uri), *to = path;
+  char *path = cag_strdup(uri), *to = path;
   for (const char *at = path; at && *at; at++) {
     int high = *at == '%' ? hex_digit(at[1]) : -1, low = high >= 0 ? hex_digit(at[2]) : -1;
     if (low >= 0 && 16 * high + low > 0) {
@@ -197,7 +198,7 @@ static CagStatus open_buffer(CagGltf *g, const char *uri, CagGltfBuffer *b, CagE
   char *path = decode_path(uri);
   if (!path) return cag_fail_memory(err);
   CagStatus status = f->open(f->context, path, &b->bytes, &b->size, err);
-  free(path);
+  cag_free(path);
   b->owned = status == CAG_OK;
   if (status == CAG_OK) status = cag_draft_take(g->draft, b->size, 1, err);
   return status;
@@ -207,7 +208,7 @@ static CagStatus read_buffers(CagGltf *g, const CagGltfBuffer *binary, CagError 
   CagGltfArray list = {0};
   CagStatus status = read_array(g, "buffers", &list, err);
   if (status == CAG_OK) {
-    g->buffers = calloc(list.count + 1, sizeof *g->buffers);
+    g->buffers = cag_calloc(list.count + 1, sizeof *g->buffers);
     if (!g->buffers) status = cag_fail_memory(err);
   }
   for (size_t i = 0; status == CAG_OK && i < list.count; i++) {
@@ -226,7 +227,7 @@ static CagStatus read_buffers(CagGltf *g, const CagGltfBuffer *binary, CagError 
                              i, size, b->size);
     else b->size = size;
   }
-  free(list.items);
+  cag_free(list.items);
   return status;
 }
 
@@ -274,12 +275,12 @@ CagStatus cag_gltf_open(CagGltf *g, CagMeshDraft *d, CagError *err) {
 
 void cag_gltf_close(CagGltf *g) {
   for (size_t i = 0; i < g->buffer_count; i++)
-    if (g->buffers[i].owned) free(g->buffers[i].bytes);
-  free(g->buffers);
-  free(g->nodes.items);
-  free(g->meshes.items);
-  free(g->accessors.items);
-  free(g->views.items);
+    if (g->buffers[i].owned) cag_free(g->buffers[i].bytes);
+  cag_free(g->buffers);
+  cag_free(g->nodes.items);
+  cag_free(g->meshes.items);
+  cag_free(g->accessors.items);
+  cag_free(g->views.items);
   cJSON_Delete(g->json);
 }
 

@@ -4,9 +4,9 @@
 // the limits before anything is made; a second fills the draft. A node has one parent at most, so
 // no walk is longer than the nodes are many. Meters with Y up become millimeters with Z up.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/import/gltf_document.h"
 
 enum { TRIANGLES = 4, STRIP = 5, FAN = 6, USHORT_TYPE = 5123, UBYTE_TYPE = 5121, UINT_TYPE = 5125 };
@@ -93,7 +93,7 @@ static CagStatus push(Walk *w, const cJSON *node, size_t mesh, const CagTransfor
   if (w->depth == w->room) {
     size_t room = w->room ? 2 * w->room : 64;
     CagStatus status = cag_draft_take(w->g->draft, room - w->room, sizeof *w->stack, err);
-    Visit *larger = status == CAG_OK ? realloc(w->stack, room * sizeof *larger) : NULL;
+    Visit *larger = status == CAG_OK ? cag_realloc(w->stack, room * sizeof *larger) : NULL;
     if (!larger) return status == CAG_OK ? cag_fail_memory(err) : status;
     w->stack = larger;
     w->room = room;
@@ -146,7 +146,7 @@ static CagStatus push_roots(Walk *w, CagError *err) {
   for (size_t i = 0; g->nodes.count == 0 && status == CAG_OK && i < g->meshes.count; i++)
     status = push(w, NULL, i, &place, err);
   if (g->nodes.count == 0) return status;
-  bool *child = calloc(g->nodes.count, sizeof *child);
+  bool *child = cag_calloc(g->nodes.count, sizeof *child);
   if (!child) return cag_fail_memory(err);
   for (size_t i = 0; i < g->nodes.count; i++)
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(g->nodes.items[i], "children")) {
@@ -157,7 +157,7 @@ static CagStatus push_roots(Walk *w, CagError *err) {
     const cJSON number = {.type = cJSON_Number, .valuedouble = (double)i};
     if (!child[i]) status = push_node(w, &number, &place, err);
   }
-  free(child);
+  cag_free(child);
   return status;
 }
 
@@ -180,10 +180,10 @@ static CagStatus walk_nodes(Walk *w, VisitMesh *visit, void *context, CagError *
 }
 
 static CagStatus walk(CagGltf *g, VisitMesh *visit, void *context, CagError *err) {
-  Walk w = {.g = g, .seen = calloc(g->nodes.count + 1, sizeof(bool))};
+  Walk w = {.g = g, .seen = cag_calloc(g->nodes.count + 1, sizeof(bool))};
   CagStatus status = w.seen ? walk_nodes(&w, visit, context, err) : cag_fail_memory(err);
-  free(w.stack);
-  free(w.seen);
+  cag_free(w.stack);
+  cag_free(w.seen);
   return status;
 }
 

@@ -8,9 +8,9 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/polygon.h"
 #include "interp/import/tangle.h"
 
@@ -57,10 +57,10 @@ CagStatus cag_draft_check(const CagMeshDraft *d, CagError *err) {
 // --- Growing ---
 
 void cag_draft_free(CagMeshDraft *d) {
-  free(d->positions);
-  free(d->normals);
-  free(d->uv);
-  free(d->triangles);
+  cag_free(d->positions);
+  cag_free(d->normals);
+  cag_free(d->uv);
+  cag_free(d->triangles);
 }
 
 CagStatus cag_draft_take(CagMeshDraft *d, size_t count, size_t bytes_each, CagError *err) {
@@ -73,7 +73,7 @@ CagStatus cag_draft_take(CagMeshDraft *d, size_t count, size_t bytes_each, CagEr
 // Makes *items, NULL or of `before` elements, one of n with zeros behind.
 static bool grow(void **items, size_t before, size_t n, size_t size) {
   if (!*items) before = 0;
-  char *larger = realloc(*items, (n + 1) * size);
+  char *larger = cag_realloc(*items, (n + 1) * size);
   if (!larger) return false;
   memset(larger + before * size, 0, (n - before) * size);
   *items = larger;
@@ -112,7 +112,7 @@ CagStatus cag_draft_triangles(CagMeshDraft *d, size_t n, CagError *err) {
   if (room < wanted) room = wanted;
   CagStatus status = cag_draft_take(d, room - d->triangle_room, 3 * sizeof *d->triangles, err);
   if (status != CAG_OK) return status;
-  uint32_t *larger = realloc(d->triangles, (room + 1) * 3 * sizeof *larger);
+  uint32_t *larger = cag_realloc(d->triangles, (room + 1) * 3 * sizeof *larger);
   if (!larger) return cag_fail_memory(err);
   d->triangles = larger;
   d->triangle_room = room;
@@ -174,7 +174,7 @@ static CagStatus find_points(CagMeshDraft *d, uint32_t *first, CagError *err) {
   while (size < d->vertex_count + d->vertex_count / 2) size *= 2;
   CagStatus status = cag_draft_take(d, size, sizeof(uint32_t), err);
   if (status != CAG_OK) return status;
-  uint32_t *slots = malloc(size * sizeof *slots);
+  uint32_t *slots = cag_malloc(size * sizeof *slots);
   if (!slots) return cag_fail_memory(err);
   memset(slots, 0xff, size * sizeof *slots);
   memset(first, 0xff, d->vertex_count * sizeof *first);
@@ -189,7 +189,7 @@ static CagStatus find_points(CagMeshDraft *d, uint32_t *first, CagError *err) {
     if (slots[at] == NO_VERTEX) slots[at] = (uint32_t)v;
     first[v] = slots[at];
   }
-  free(slots);
+  cag_free(slots);
   return CAG_OK;
 }
 
@@ -210,7 +210,7 @@ static CagStatus complete_normals(CagMeshDraft *d, CagError *err) {
   const double least = 1e-6; // length below which a normal is none; files have unit ones
   CagStatus status = cag_draft_take(d, d->vertex_count + 1, sizeof(bool), err);
   if (status != CAG_OK) return status;
-  bool *said = malloc(d->vertex_count + 1), all = true;
+  bool *said = cag_malloc(d->vertex_count + 1), all = true;
   if (!said) return cag_fail_memory(err);
   for (size_t v = 0; v < d->vertex_count; v++) {
     double length = cag_norm(d->normals[v]);
@@ -230,7 +230,7 @@ static CagStatus complete_normals(CagMeshDraft *d, CagError *err) {
     bool good = isfinite(length) && length > 0;
     if (!said[v]) d->normals[v] = good ? cag_scaled(d->normals[v], 1 / length) : cag_vec3(0, 0, 1);
   }
-  free(said);
+  cag_free(said);
   return CAG_OK;
 }
 
@@ -278,7 +278,8 @@ static CagStatus tidy(CagMeshDraft *d, uint32_t *first, uint32_t *number, uint32
   bool points = !d->normals && !d->uv;
   if (points)
     for (size_t k = 0; k < 3 * d->triangle_count; k++) d->triangles[k] = first[d->triangles[k]];
-  else if (!(*weld = malloc((d->vertex_count + 1) * sizeof **weld))) return cag_fail_memory(err);
+  else if (!(*weld = cag_malloc((d->vertex_count + 1) * sizeof **weld)))
+    return cag_fail_memory(err);
   drop_unnamed(d, first, number, *weld);
   return d->normals ? complete_normals(d, err) : CAG_OK;
 }
@@ -288,20 +289,20 @@ CagStatus cag_draft_finish(CagMeshDraft *d, CagMesh **out, CagError *err) {
   const size_t arrays = 3;
   CagStatus status = cag_draft_take(d, d->vertex_count + 1, arrays * sizeof(uint32_t), err);
   if (status != CAG_OK) return status;
-  uint32_t *first = malloc((d->vertex_count + 1) * sizeof *first), *weld = NULL;
-  uint32_t *number = malloc((d->vertex_count + 1) * sizeof *number);
+  uint32_t *first = cag_malloc((d->vertex_count + 1) * sizeof *first), *weld = NULL;
+  uint32_t *number = cag_malloc((d->vertex_count + 1) * sizeof *number);
   status = first && number ? tidy(d, first, number, &weld, err) : cag_fail_memory(err);
-  free(first);
-  free(number);
+  cag_free(first);
+  cag_free(number);
   CagMesh *m = NULL;
   if (status == CAG_OK) status = cag_mesh_new(0, 0, false, false, false, &m, err);
   if (status != CAG_OK) {
-    free(weld);
+    cag_free(weld);
     return status;
   }
   // The mesh takes over what the draft has.
-  free(m->positions);
-  free(m->triangles);
+  cag_free(m->positions);
+  cag_free(m->triangles);
   m->vertex_count = d->vertex_count;
   m->triangle_count = d->triangle_count;
   m->positions = d->positions;

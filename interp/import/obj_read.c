@@ -5,9 +5,9 @@
 // that was read. A first pass counts, so that the arrays are made once; words of curves, surfaces,
 // groups and materials are stepped over.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/import/mesh_draft.h"
 #include "interp/import/text_scan.h"
 
@@ -59,9 +59,9 @@ static CagStatus make_room(Obj *o, CagError *err) {
   if (status == CAG_OK) status = cag_draft_take(o->draft, n->parameters, 2 * sizeof(double), err);
   if (status == CAG_OK) status = cag_draft_triangles(o->draft, n->faces, err);
   if (status != CAG_OK) return status;
-  o->points = calloc(n->points + 1, sizeof *o->points);
-  o->normals = calloc(n->normals + 1, sizeof *o->normals);
-  o->parameters = calloc(n->parameters + 1, 2 * sizeof *o->parameters);
+  o->points = cag_calloc(n->points + 1, sizeof *o->points);
+  o->normals = cag_calloc(n->normals + 1, sizeof *o->normals);
+  o->parameters = cag_calloc(n->parameters + 1, 2 * sizeof *o->parameters);
   return o->points && o->normals && o->parameters ? CAG_OK : cag_fail_memory(err);
 }
 
@@ -169,14 +169,14 @@ static CagStatus grow(Obj *o, CagError *err) {
   if (status == CAG_OK)
     status = cag_draft_vertices(d, room, o->all.normals > 0, o->all.parameters > 0, err);
   if (status != CAG_OK) return status;
-  Corner *corners = realloc(o->corners, room * sizeof *corners);
+  Corner *corners = cag_realloc(o->corners, room * sizeof *corners);
   if (corners) o->corners = corners;
-  uint32_t *larger = calloc(slots, sizeof *larger);
+  uint32_t *larger = cag_calloc(slots, sizeof *larger);
   if (!corners || !larger) {
-    free(larger);
+    cag_free(larger);
     return cag_fail_memory(err);
   }
-  free(o->slots);
+  cag_free(o->slots);
   o->slots = larger;
   o->slot_count = slots;
   for (size_t v = 0; v < d->vertex_count; v++) *find_slot(o, o->corners[v]) = (uint32_t)v + 1;
@@ -210,7 +210,7 @@ static CagStatus read_face(Obj *o, CagError *err) {
     if (status == CAG_OK && n == o->face_room) {
       size_t room = n ? 2 * n : 64;
       status = cag_draft_take(o->draft, room - n, sizeof *o->face, err);
-      uint32_t *larger = status == CAG_OK ? realloc(o->face, room * sizeof *larger) : NULL;
+      uint32_t *larger = status == CAG_OK ? cag_realloc(o->face, room * sizeof *larger) : NULL;
       if (!larger) return status == CAG_OK ? cag_fail_memory(err) : status;
       o->face = larger;
       o->face_room = room;
@@ -267,11 +267,11 @@ CagStatus cag_read_obj(CagMeshDraft *d, CagError *err) {
   CagStatus status = make_room(&o, err);
   if (status == CAG_OK) status = read_lines(&o, err);
   if (status == CAG_OK) fill_vertices(&o);
-  free(o.points);
-  free(o.normals);
-  free(o.parameters);
-  free(o.corners);
-  free(o.slots);
-  free(o.face);
+  cag_free(o.points);
+  cag_free(o.normals);
+  cag_free(o.parameters);
+  cag_free(o.corners);
+  cag_free(o.slots);
+  cag_free(o.face);
   return status;
 }

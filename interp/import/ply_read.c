@@ -6,9 +6,9 @@
 // file is known from its properties, so counts are checked against the rest of the file before
 // anything is read.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/import/mesh_draft.h"
 #include "interp/import/text_scan.h"
 
@@ -299,7 +299,7 @@ static CagStatus read_corners(Ply *p, const Element *e, const Property *q, size_
   if (status != CAG_OK) return status;
   if (count > p->corner_room) {
     status = cag_draft_take(d, count - p->corner_room, sizeof *p->corners, err);
-    uint32_t *larger = status == CAG_OK ? realloc(p->corners, count * sizeof *larger) : NULL;
+    uint32_t *larger = status == CAG_OK ? cag_realloc(p->corners, count * sizeof *larger) : NULL;
     if (!larger) return status == CAG_OK ? cag_fail_memory(err) : status;
     p->corners = larger;
     p->corner_room = count;
@@ -379,14 +379,14 @@ static CagStatus read_elements(Ply *p, const Element *e, CagError *err) {
 }
 
 CagStatus cag_read_ply(CagMeshDraft *d, CagError *err) {
-  Ply *p = calloc(1, sizeof *p);
+  Ply *p = cag_calloc(1, sizeof *p);
   if (!p) return cag_fail_memory(err);
   p->draft = d;
   p->scan = (CagTextScan){d->file->bytes, d->file->bytes + d->file->size};
   CagStatus status = read_header(p, err);
   for (size_t i = 0; status == CAG_OK && i < p->element_count; i++)
     status = read_elements(p, &p->elements[i], err);
-  free(p->corners);
-  free(p);
+  cag_free(p->corners);
+  cag_free(p);
   return status;
 }

@@ -9,6 +9,8 @@
 
 #include <stdlib.h>
 
+#include "base/memory.h"
+
 // Corners up to which a polygon is triangulated as it is: with every edge crossing every other that
 // is still a matter of milliseconds.
 #define FEW_CORNERS 128
@@ -87,14 +89,14 @@ static CagTangle sweep(const Edge *edges, size_t n, const Edge **active) {
 
 CagTangle cag_tangle_of(const CagVec3 *positions, const uint32_t *corners, size_t n) {
   if (n <= FEW_CORNERS) return CAG_TANGLE_NONE;
-  Edge *edges = malloc(n * sizeof *edges);
-  const Edge **active = malloc(n * sizeof *active);
+  Edge *edges = cag_malloc(n * sizeof *edges);
+  const Edge **active = cag_malloc(n * sizeof *active);
   CagTangle tangle = CAG_TANGLE_MEMORY;
   if (edges && active) {
     make_edges(positions, corners, n, edges);
     tangle = sweep(edges, n, active);
   }
-  free(edges);
-  free(active);
+  cag_free(edges);
+  cag_free(active);
   return tangle;
 }

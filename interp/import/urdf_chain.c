@@ -1,9 +1,9 @@
 // A serial chain out of a tree of links.
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/import/urdf_read.h"
 
 // Names that a message has room for.
@@ -127,7 +127,7 @@ CagStatus cag_urdf_chain(const CagUrdfTree *t, const char *base, const char *tip
     return cag_fail(err, CAG_E_ARGUMENT, "urdf-chain", "base", -1,
                     "%s: the link \"%.60s\" is not above the link \"%.60s\"", t->file,
                     t->nodes[first].name, t->nodes[last].name);
-  size_t *chain = malloc((count + 1) * sizeof *chain);
+  size_t *chain = cag_malloc((count + 1) * sizeof *chain);
   if (!chain) return cag_fail_memory(err);
   at = last;
   for (size_t i = count; i-- > 0; at = parent(t, at)) chain[i] = t->nodes[at].above;

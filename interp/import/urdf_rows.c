@@ -9,9 +9,9 @@
 // completed. Before the first joint the way is the robot's base, or a fixed link where there are
 // bodies on it; behind the last one it completes the row, or is the tool.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/robot/kernel.h"
 #include "interp/import/urdf_read.h"
 
@@ -255,8 +255,8 @@ CagStatus cag_urdf_rows(const CagUrdfTree *t, const char *base, const size_t *ch
   size_t first = n > 0 ? t->edges[chain[0]].parent : CAG_URDF_NONE;
   for (size_t i = 0; n == 0 && i < t->node_count; i++)
     if (base ? !strcmp(t->nodes[i].name, base) : t->nodes[i].above == CAG_URDF_NONE) first = i;
-  *out = (CagUrdfRows){.rows = calloc(2 * n + 2, sizeof *out->rows),
-                       .placed = calloc(n + 1, sizeof *out->placed),
+  *out = (CagUrdfRows){.rows = cag_calloc(2 * n + 2, sizeof *out->rows),
+                       .placed = cag_calloc(n + 1, sizeof *out->placed),
                        .base = cag_transform_identity(),
                        .tool = cag_transform_identity()};
   if (!out->rows || !out->placed) return cag_fail_memory(err);
@@ -275,6 +275,6 @@ CagStatus cag_urdf_rows(const CagUrdfTree *t, const char *base, const size_t *ch
 }
 
 void cag_urdf_rows_free(CagUrdfRows *r) {
-  free(r->rows);
-  free(r->placed);
+  cag_free(r->rows);
+  cag_free(r->placed);
 }

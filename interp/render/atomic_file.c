@@ -13,12 +13,12 @@
 #include <limits.h>
 #include <stdatomic.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "geom/stop.h"
 
 // Large enough that the cost of a system call disappears beside formatting and copying.
@@ -167,7 +167,7 @@ static bool create_temporary(struct CagAtomicFileState *s, mode_t keep_mode, Cag
 // Splits the place into an open folder and a name, links resolved, so that later steps cannot be
 // led elsewhere.
 static bool open_folder(struct CagAtomicFileState *s, bool exists, CagIoError *err) {
-  char *resolved = exists ? realpath(s->shown, NULL) : strdup(s->shown);
+  char *resolved = exists ? cag_realpath(s->shown) : cag_strdup(s->shown);
   if (!resolved) return fail_open(err, s->shown, errno);
   char *slash = strrchr(resolved, '/');
   const char *name = slash ? slash + 1 : resolved;
@@ -177,7 +177,7 @@ static bool open_folder(struct CagAtomicFileState *s, bool exists, CagIoError *e
                      s->shown);
     goto done;
   }
-  s->name = strdup(name);
+  s->name = cag_strdup(name);
   if (!s->name) {
     fail_open(err, s->shown, ENOMEM);
     goto done;
@@ -186,7 +186,7 @@ static bool open_folder(struct CagAtomicFileState *s, bool exists, CagIoError *e
   s->folder = open(slash ? resolved : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   ok = s->folder >= 0 || fail_open(err, s->shown, errno);
 done:
-  free(resolved);
+  cag_free(resolved);
   return ok;
 }
 
@@ -196,10 +196,10 @@ static void dispose(struct CagAtomicFileState *s) {
   slot_release(s->slot);
   if (s->fd >= 0 && s->fd != STDOUT_FILENO) close(s->fd);
   if (s->folder >= 0) close(s->folder);
-  free(s->memory);
-  free(s->name);
-  free(s->shown);
-  free(s);
+  cag_free(s->memory);
+  cag_free(s->name);
+  cag_free(s->shown);
+  cag_free(s);
 }
 
 static bool open_place(struct CagAtomicFileState *s, const char *path, CagIoError *err) {
@@ -221,11 +221,11 @@ static bool open_place(struct CagAtomicFileState *s, const char *path, CagIoErro
 
 // An unopened file with an empty buffer, shown as `shown` in messages.
 static struct CagAtomicFileState *new_state(const char *shown, CagIoError *err) {
-  struct CagAtomicFileState *s = malloc(sizeof *s);
-  char *copy = strdup(shown);
+  struct CagAtomicFileState *s = cag_malloc(sizeof *s);
+  char *copy = cag_strdup(shown);
   if (!s || !copy) {
-    free(s);
-    free(copy);
+    cag_free(s);
+    cag_free(copy);
     fail_open(err, shown, ENOMEM);
     return NULL;
   }
@@ -298,7 +298,7 @@ static void append(struct CagAtomicFileState *s, const char *data, size_t n) {
   const size_t size = (size_t)s->taken;
   if (n >= s->memory_capacity - size) {
     const size_t capacity = 2 * (size + n) + 1;
-    char *larger = realloc(s->memory, capacity);
+    char *larger = cag_realloc(s->memory, capacity);
     if (!larger) {
       s->error = ENOMEM;
       return;
@@ -369,11 +369,11 @@ void cag_atomic_file_printf(CagAtomicFile *f, const char *format, ...) {
   if (n >= 0 && (size_t)n < room) {
     f->at += n;
   } else {
-    char *text = n < 0 ? NULL : malloc((size_t)n + 1);
+    char *text = n < 0 ? NULL : cag_malloc((size_t)n + 1);
     if (text) {
       vsnprintf(text, (size_t)n + 1, format, again);
       cag_atomic_file_write(f, text, (size_t)n);
-      free(text);
+      cag_free(text);
     } else if (!f->state->error) {
       f->state->error = ENOMEM;
     }

@@ -4,8 +4,9 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -18,7 +19,7 @@ static size_t *match_channels(const CagImage *a, const char *a_name, const CagIm
                      a->height, b_name, b->width, b->height);
     return NULL;
   }
-  size_t *match = malloc(a->channel_count * sizeof *match);
+  size_t *match = cag_malloc(a->channel_count * sizeof *match);
   if (!match) {
     cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for comparing '%s'", a_name);
     return NULL;
@@ -37,7 +38,7 @@ static size_t *match_channels(const CagImage *a, const char *a_name, const CagIm
   cag_io_error_set(err, CAG_EXIT_SCRIPT, "compare pictures with the same channels",
                    "'%s' has a channel '%.80s', but '%s' has none of that name", holder, missing,
                    other);
-  free(match);
+  cag_free(match);
   return NULL;
 }
 
@@ -119,9 +120,9 @@ bool cag_compare_images(const CagImage *a, const char *a_name, const CagImage *b
                         CagIoError *err) {
   size_t *match = match_channels(a, a_name, b, b_name, err);
   if (!match) return false;
-  CagCompareChannel *channels = calloc(a->channel_count, sizeof *channels);
+  CagCompareChannel *channels = cag_calloc(a->channel_count, sizeof *channels);
   if (!channels) {
-    free(match);
+    cag_free(match);
     return cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for comparing '%s'", a_name);
   }
   *out = (CagCompareReport){.width = a->width,
@@ -137,12 +138,12 @@ bool cag_compare_images(const CagImage *a, const char *a_name, const CagImage *b
   for (size_t i = 0; i < a->width * a->height; i++)
     out->differing_pixels += pixel_difference(a, b, match, i) > threshold;
   compare_colors(a, b, out);
-  free(match);
+  cag_free(match);
   return true;
 }
 
 void cag_compare_report_free(CagCompareReport *report) {
-  free(report->channels);
+  cag_free(report->channels);
   *report = (CagCompareReport){0};
 }
 
@@ -179,7 +180,7 @@ bool cag_compare_heatmap(const CagImage *a, const CagImage *b, CagImage *out, Ca
   size_t *match = match_channels(a, "the first picture", b, "the second picture", err);
   if (!match) return false;
   if (!cag_image_create(out, a->width, a->height, 4, err)) {
-    free(match);
+    cag_free(match);
     return false;
   }
   float *plane[4];
@@ -197,7 +198,7 @@ bool cag_compare_heatmap(const CagImage *a, const CagImage *b, CagImage *out, Ca
     if (isinf(plane[3][i])) plane[0][i] = plane[2][i] = 1;
     else if (worst > 0) heat(plane[3][i] / worst, &plane[0][i], &plane[1][i], &plane[2][i]);
   }
-  free(match);
+  cag_free(match);
   return true;
 }
 

@@ -1,8 +1,8 @@
 // Facts in the header of an EXR file: the list of them.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/render/exr.h"
 
 // Attributes that describe how the file is stored: the library writes them.
@@ -28,13 +28,13 @@ static CagExrAttribute *entry(CagExrMetadata *m, const char *name, CagIoError *e
   }
   for (size_t i = 0; i < m->count; i++) {
     if (strcmp(m->items[i].name, name) != 0) continue;
-    free(m->items[i].text);
+    cag_free(m->items[i].text);
     m->items[i].text = NULL;
     return &m->items[i];
   }
   if (m->count == m->capacity) {
     size_t capacity = m->capacity ? 2 * m->capacity : 16;
-    CagExrAttribute *items = realloc(m->items, capacity * sizeof *items);
+    CagExrAttribute *items = cag_realloc(m->items, capacity * sizeof *items);
     if (!items) {
       cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
       return NULL;
@@ -49,12 +49,12 @@ static CagExrAttribute *entry(CagExrMetadata *m, const char *name, CagIoError *e
 }
 
 bool cag_exr_metadata_text(CagExrMetadata *m, const char *name, const char *text, CagIoError *err) {
-  char *copy = strdup(text);
+  char *copy = cag_strdup(text);
   CagExrAttribute *a = copy ? entry(m, name, err) : NULL;
   if (!a) {
     if (!copy)
       cag_io_error_set(err, CAG_EXIT_LIMIT, NULL, "no memory for the EXR attribute '%s'", name);
-    free(copy);
+    cag_free(copy);
     return false;
   }
   a->kind = CAG_EXR_TEXT;
@@ -86,7 +86,7 @@ const CagExrAttribute *cag_exr_metadata_find(const CagExrMetadata *m, const char
 }
 
 void cag_exr_metadata_free(CagExrMetadata *m) {
-  for (size_t i = 0; i < m->count; i++) free(m->items[i].text);
-  free(m->items);
+  for (size_t i = 0; i < m->count; i++) cag_free(m->items[i].text);
+  cag_free(m->items);
   *m = (CagExrMetadata){0};
 }

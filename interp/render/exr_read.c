@@ -9,11 +9,11 @@
 #include <openexr.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "interp/render/exr.h"
 #include "interp/render/exr_complaint.h"
 
@@ -424,7 +424,7 @@ static bool slurp(int fd, const char *shown, unsigned char **bytes, size_t *size
   for (;;) {
     if (*size > FILE_SIZE_MAX || capacity > 2 * FILE_SIZE_MAX)
       return fail_file(err, shown, "the file is too large");
-    unsigned char *larger = realloc(*bytes, capacity);
+    unsigned char *larger = cag_realloc(*bytes, capacity);
     if (!larger) return fail_file(err, shown, "no memory for the file");
     *bytes = larger;
     while (*size < capacity) {
@@ -447,7 +447,7 @@ bool cag_exr_read(const char *path, CagImage *out, CagExrMetadata *metadata, Cag
   size_t size = 0;
   bool ok = slurp(fd, shown, &bytes, &size, err) &&
             cag_exr_read_memory(bytes, size, shown, out, metadata, err);
-  free(bytes);
+  cag_free(bytes);
   if (!standard_input) close(fd);
   return ok;
 }

@@ -6,9 +6,9 @@
 
 #include <openexr.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/render/atomic_file.h"
 #include "interp/render/exr.h"
 #include "interp/render/exr_complaint.h"
@@ -32,7 +32,7 @@ static int64_t sink_write(exr_const_context_t ctxt, void *user, const void *data
   const size_t end = (size_t)(offset + n);
   if (end > sink->capacity) {
     size_t capacity = end + end / 2 + 65536;
-    unsigned char *bytes = realloc(sink->bytes, capacity);
+    unsigned char *bytes = cag_realloc(sink->bytes, capacity);
     if (!bytes) {
       cag_exr_complaint_keep(ctxt, EXR_ERR_OUT_OF_MEMORY, "no memory for the compressed picture");
       return -1;
@@ -167,7 +167,7 @@ bool cag_exr_write(const char *path, const CagImage *image, CagExrPixels pixels,
   } else {
     cag_atomic_file_abort(out);
   }
-  free(sink.bytes);
+  cag_free(sink.bytes);
   return ok;
 }
 

@@ -3,8 +3,9 @@
 #include "interp/render/image.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
 
 bool cag_image_create(CagImage *out, size_t width, size_t height, size_t channel_count,
                       CagIoError *err) {
@@ -21,11 +22,11 @@ bool cag_image_create(CagImage *out, size_t width, size_t height, size_t channel
                             "%zu samples, %zu pixels on a side, %zu channels)",
                             width, height, channel_count, CAG_IMAGE_SAMPLES_MAX, CAG_IMAGE_SIDE_MAX,
                             CAG_IMAGE_CHANNELS_MAX);
-  CagImageChannel *channels = calloc(channel_count, sizeof *channels);
-  float *data = calloc(width * height * channel_count, sizeof *data);
+  CagImageChannel *channels = cag_calloc(channel_count, sizeof *channels);
+  float *data = cag_calloc(width * height * channel_count, sizeof *data);
   if (!channels || !data) {
-    free(channels);
-    free(data);
+    cag_free(channels);
+    cag_free(data);
     return cag_io_error_set(err, CAG_EXIT_LIMIT, "make it smaller",
                             "no memory for an image of %zu by %zu pixels with %zu channels", width,
                             height, channel_count);
@@ -35,8 +36,8 @@ bool cag_image_create(CagImage *out, size_t width, size_t height, size_t channel
 }
 
 void cag_image_free(CagImage *image) {
-  free(image->channels);
-  free(image->data);
+  cag_free(image->channels);
+  cag_free(image->data);
   *image = (CagImage){0};
 }
 

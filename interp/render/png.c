@@ -11,11 +11,11 @@
 #include <png.h>
 #include <setjmp.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "interp/render/atomic_file.h"
 
 // The constants of IEC 61966-2-1.
@@ -167,11 +167,11 @@ bool cag_png_write(const char *path, const CagImage *image, const CagPngOptions 
   if (!s.file) return false;
   s.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &s, on_error, on_warning);
   s.info = s.png ? png_create_info_struct(s.png) : NULL;
-  s.row = malloc(image->width * 4 * sizeof(png_uint_16));
+  s.row = cag_malloc(image->width * 4 * sizeof(png_uint_16));
   bool ok = s.info && s.row && encode(&s, &tone, texts, text_count);
   const bool refused = cag_atomic_file_failed(s.file);
   if (s.png) png_destroy_write_struct(&s.png, &s.info);
-  free(s.row);
+  cag_free(s.row);
   if (ok || refused) return cag_atomic_file_commit(s.file, err);
   cag_atomic_file_abort(s.file);
   return cag_io_error_set(err, CAG_EXIT_FILE, NULL, "cannot write '%s' as PNG: %s", path,
@@ -201,8 +201,8 @@ static bool decode(Session *s, size_t *width, size_t *height, size_t *channels, 
   *channels = png_get_channels(s->png, s->info);
   // The image's own limits are the limits of the decoded samples too.
   if (!cag_image_create(&s->image, *width, *height, *channels, err)) return true;
-  s->pixels = malloc(*width * *height * *channels * sizeof *s->pixels);
-  s->rows = malloc(*height * sizeof *s->rows);
+  s->pixels = cag_malloc(*width * *height * *channels * sizeof *s->pixels);
+  s->rows = cag_malloc(*height * sizeof *s->rows);
   if (!s->pixels || !s->rows) png_error(s->png, "no memory");
   for (size_t y = 0; y < *height; y++) s->rows[y] = (png_bytep)(s->pixels + y * *width * *channels);
   png_read_image(s->png, s->rows);
@@ -253,8 +253,8 @@ bool cag_png_read(const char *path, CagImage *out, CagIoError *err) {
   }
   if (!ok) cag_image_free(&s.image);
   if (s.png) png_destroy_read_struct(&s.png, &s.info, NULL);
-  free(s.pixels);
-  free(s.rows);
+  cag_free(s.pixels);
+  cag_free(s.rows);
   fclose(s.input);
   return ok;
 }

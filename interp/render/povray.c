@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "interp/clock.h"
 #include "interp/render/exr.h"
 #include "interp/render/image.h"
@@ -111,7 +112,7 @@ static bool copy_file(const char *folder, const CagPovrayFile *file, CagIoError 
   struct stat st;
   bool ok = in && fstat(fileno(in), &st) == 0 && S_ISREG(st.st_mode);
   if (ok) {
-    bytes = malloc((size_t)st.st_size + 1);
+    bytes = cag_malloc((size_t)st.st_size + 1);
     ok = bytes != NULL;
   }
   if (ok) size = fread(bytes, 1, (size_t)st.st_size, in);
@@ -125,7 +126,7 @@ static bool copy_file(const char *folder, const CagPovrayFile *file, CagIoError 
   if (ok && ending && !strcmp(ending, ".inc")) ok = cag_povray_check_files(bytes, size, err);
   ok = ok && put_file(folder, file->name, bytes, size, err);
   if (in) fclose(in);
-  free(bytes);
+  cag_free(bytes);
   return ok;
 }
 
@@ -281,18 +282,18 @@ static bool take_picture(const char *folder, CagPovrayResult *out) {
   snprintf(path, sizeof path, "%s/" PICTURE, folder);
   FILE *f = fopen(path, "rbe");
   struct stat st;
-  free(out->exr);
+  cag_free(out->exr);
   out->exr = NULL;
   if (!f) return false;
   bool ok = fstat(fileno(f), &st) == 0 && S_ISREG(st.st_mode) && st.st_size > 0 &&
             (size_t)st.st_size < PICTURE_SIZE_MAX;
-  out->exr = ok ? malloc((size_t)st.st_size) : NULL;
+  out->exr = ok ? cag_malloc((size_t)st.st_size) : NULL;
   ok = out->exr && fread(out->exr, 1, (size_t)st.st_size, f) == (size_t)st.st_size;
   fclose(f);
   if (ok) {
     out->exr_size = (size_t)st.st_size;
   } else {
-    free(out->exr);
+    cag_free(out->exr);
     out->exr = NULL;
   }
   return ok;
@@ -409,7 +410,7 @@ bool cag_povray_render(const CagPovrayJob *job, CagPovrayResult *out, CagIoError
 }
 
 void cag_povray_result_free(CagPovrayResult *result) {
-  free(result->exr);
+  cag_free(result->exr);
   *result = (CagPovrayResult){0};
 }
 

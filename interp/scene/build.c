@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/solid/csg.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/solids.h"
@@ -34,7 +35,7 @@ typedef struct Said {
 static void *grown(Build *b, void *items, size_t count, size_t *capacity, size_t size) {
   if (count < *capacity) return items;
   size_t more = *capacity ? 2 * *capacity : 16;
-  void *bigger = realloc(items, more * size);
+  void *bigger = cag_realloc(items, more * size);
   if (!bigger) {
     b->failed = true;
     return items;
@@ -44,7 +45,7 @@ static void *grown(Build *b, void *items, size_t count, size_t *capacity, size_t
 }
 
 static char *copy_text(Build *b, const char *text) {
-  char *copy = strdup(text);
+  char *copy = cag_strdup(text);
   if (!copy) b->failed = true;
   return copy;
 }
@@ -148,7 +149,7 @@ static char *unique_name(Build *b, const char *wanted) {
       number = strtoul(name + n + 1, NULL, 10);
   }
   size_t size = n + 24;
-  char *name = malloc(size);
+  char *name = cag_malloc(size);
   if (!name) {
     b->failed = true;
     return NULL;
@@ -206,7 +207,7 @@ static void note_label(const Labels *l, uint32_t label) {
   if (label == 0 || (label <= item->label_count && item->label_materials[label - 1] != SIZE_MAX))
     return;
   if (label > item->label_count) {
-    size_t *more = realloc(item->label_materials, label * sizeof *more);
+    size_t *more = cag_realloc(item->label_materials, label * sizeof *more);
     if (!more) {
       l->b->failed = true;
       return;
@@ -367,14 +368,14 @@ static void add_light(Build *b, const CagSceneValue *v) {
 
 static void set_sky(Build *b, const CagRecord *r) {
   CagSky *sky = &b->scene->sky;
-  free(sky->colors);
-  free(sky->image);
+  cag_free(sky->colors);
+  cag_free(sky->image);
   *sky = (CagSky){0};
   CagValue image = cag_record_get(r, "image"), colors = cag_record_get(r, "colors");
   if (image.type == CAG_TEXT) sky->image = copy_text(b, CAG_AS_TEXT(image)->bytes);
   if (colors.type != CAG_LIST) return;
   const CagList *list = CAG_AS_LIST(colors);
-  sky->colors = malloc((list->length + 1) * sizeof *sky->colors);
+  sky->colors = cag_malloc((list->length + 1) * sizeof *sky->colors);
   if (!sky->colors) {
     b->failed = true;
     return;

@@ -9,9 +9,9 @@
 // that lights all sides, and a gray floor at the lowest point, whose tone meets the sky's, unless
 // the scene shows a ground of its own or the camera is below.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/scene/scene.h"
 
 static const double AUTOMATIC_FOV = 0.52; // radians, about 30 degrees: a calm perspective
@@ -43,11 +43,11 @@ static CagStatus add_camera(CagScene *s, CagError *err) {
   CagBounds whole = cag_scene_framed(s);
   CagVec3 center = cag_lerp(whole.min, whole.max, 0.5);
   bool flat = is_flat(&whole);
-  CagCamera *c = malloc(sizeof *c);
-  char *name = strdup("automatic");
+  CagCamera *c = cag_malloc(sizeof *c);
+  char *name = cag_strdup("automatic");
   if (!c || !name) {
-    free(c);
-    free(name);
+    cag_free(c);
+    cag_free(name);
     return cag_fail_memory(err);
   }
   CagVec3 back = flat ? cag_vec3(0, 0, 1) : cag_unit(THREE_QUARTERS);
@@ -97,7 +97,7 @@ static const CagColor FLOOR = {0.52, 0.52, 0.52};
 static const CagColor PAPER = {1, 1, 1};
 
 static CagStatus set_sky(CagScene *s, const CagColor *colors, size_t n, CagError *err) {
-  s->sky.colors = malloc(n * sizeof *colors);
+  s->sky.colors = cag_malloc(n * sizeof *colors);
   if (!s->sky.colors) return cag_fail_memory(err);
   memcpy(s->sky.colors, colors, n * sizeof *colors);
   s->sky.color_count = n;
@@ -109,13 +109,13 @@ static double floor_gap(double radius) {
 }
 
 static CagStatus add_floor(CagScene *s, double z, CagError *err) {
-  CagItem *items = realloc(s->items, (s->item_count + 1) * sizeof *items);
+  CagItem *items = cag_realloc(s->items, (s->item_count + 1) * sizeof *items);
   if (items) s->items = items;
-  CagMaterial *materials = realloc(s->materials, (s->material_count + 1) * sizeof *materials);
+  CagMaterial *materials = cag_realloc(s->materials, (s->material_count + 1) * sizeof *materials);
   if (materials) s->materials = materials;
-  char *texts[] = {strdup("studio_floor"), strdup("studio_floor"), strdup("")};
+  char *texts[] = {cag_strdup("studio_floor"), cag_strdup("studio_floor"), cag_strdup("")};
   if (!items || !materials || !texts[0] || !texts[1] || !texts[2]) {
-    for (int i = 0; i < 3; i++) free(texts[i]);
+    for (int i = 0; i < 3; i++) cag_free(texts[i]);
     return cag_fail_memory(err);
   }
   CagMaterial m = cag_material_default();
@@ -142,7 +142,7 @@ static bool has_ground(const CagScene *s) {
 
 // A drawing: even light from above on paper.
 static CagStatus add_paper_light(CagScene *s, CagError *err) {
-  s->lights = malloc(sizeof *s->lights);
+  s->lights = cag_malloc(sizeof *s->lights);
   if (!s->lights) return cag_fail_memory(err);
   s->lights[0] = (CagLight){.kind = CAG_LIGHT_SUN,
                             .direction = cag_unit(cag_vec3(0.25, -0.35, -1)),
@@ -165,7 +165,7 @@ static CagStatus add_studio(CagScene *s, CagError *err) {
   CagVec3 right = column(&frame, 0), back = cag_cross(right, up);
   if (s->cameras[0].mirrored) back = cag_scaled(back, -1);
   if (cag_norm(back) == 0) back = cag_vec3(0, -1, 0);
-  s->lights = malloc(STUDIO_COUNT * sizeof *s->lights);
+  s->lights = cag_malloc(STUDIO_COUNT * sizeof *s->lights);
   if (!s->lights) return cag_fail_memory(err);
   for (size_t i = 0; i < STUDIO_COUNT; i++) {
     const StudioLight *l = &STUDIO[i];
@@ -188,7 +188,7 @@ static CagStatus add_studio(CagScene *s, CagError *err) {
 // Bounds of all items; those that are empty are taken out.
 static CagStatus find_bounds(CagScene *s, CagError *err) {
   s->bounds = CAG_BOUNDS_EMPTY;
-  s->empties = malloc((s->item_count + 1) * sizeof *s->empties);
+  s->empties = cag_malloc((s->item_count + 1) * sizeof *s->empties);
   if (!s->empties) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   size_t kept = 0;

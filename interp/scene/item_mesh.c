@@ -2,9 +2,9 @@
 
 #include "interp/scene/item_mesh.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/mesh/orient.h"
 
 // Radius of curves that say none, as a part of the diagonal of the scene's bounds.
@@ -85,13 +85,13 @@ CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, C
 CagStatus cag_item_mesh_of(const CagItem *item, const CagMesh *m, size_t material, CagMesh **out,
                            CagError *err) {
   CagMesh *part = NULL;
-  uint32_t *number = malloc((m->vertex_count + 1) * sizeof *number);
+  uint32_t *number = cag_malloc((m->vertex_count + 1) * sizeof *number);
   if (!number) return cag_fail_memory(err);
   memset(number, 0xff, m->vertex_count * sizeof *number);
   CagStatus status = cag_mesh_new(m->vertex_count, m->triangle_count, m->normals != NULL,
                                   m->uv != NULL, m->weld != NULL, &part, err);
   if (status) {
-    free(number);
+    cag_free(number);
     return status;
   }
   part->scale = m->scale;
@@ -117,7 +117,7 @@ CagStatus cag_item_mesh_of(const CagItem *item, const CagMesh *m, size_t materia
     if (*first == UINT32_MAX) *first = v;
     part->weld[v] = *first;
   }
-  free(number);
+  cag_free(number);
   *out = part;
   return CAG_OK;
 }

@@ -2,7 +2,7 @@
 
 #include "interp/scene/scene.h"
 
-#include <stdlib.h>
+#include "base/memory.h"
 
 const char *const cag_label_marks[] = {
 #define X(name, text) text,
@@ -24,29 +24,29 @@ static void free_item(CagItem *item) {
   case CAG_ITEM_MESH: cag_mesh_release(item->as.mesh); break;
   case CAG_ITEM_GROUND: break;
   }
-  free(item->name);
-  free(item->label_materials);
+  cag_free(item->name);
+  cag_free(item->label_materials);
 }
 
 void cag_scene_free(CagScene *s) {
   for (size_t i = 0; i < s->item_count; i++) free_item(&s->items[i]);
   for (size_t i = 0; i < s->empty_count; i++) free_item(&s->empties[i]);
-  for (size_t i = 0; i < s->label_count; i++) free(s->labels[i].text);
+  for (size_t i = 0; i < s->label_count; i++) cag_free(s->labels[i].text);
   for (size_t i = 0; i < s->material_count; i++) {
-    free(s->materials[i].name);
-    free(s->materials[i].texture);
-    free(s->materials[i].pov);
+    cag_free(s->materials[i].name);
+    cag_free(s->materials[i].texture);
+    cag_free(s->materials[i].pov);
   }
-  for (size_t i = 0; i < s->camera_count; i++) free(s->cameras[i].name);
-  free(s->items);
-  free(s->empties);
-  free(s->labels);
-  free(s->materials);
-  free(s->cameras);
-  free(s->lights);
-  free(s->sky.colors);
-  free(s->sky.image);
-  free(s->script);
+  for (size_t i = 0; i < s->camera_count; i++) cag_free(s->cameras[i].name);
+  cag_free(s->items);
+  cag_free(s->empties);
+  cag_free(s->labels);
+  cag_free(s->materials);
+  cag_free(s->cameras);
+  cag_free(s->lights);
+  cag_free(s->sky.colors);
+  cag_free(s->sky.image);
+  cag_free(s->script);
   *s = (CagScene){0};
 }
 

@@ -12,9 +12,9 @@
 // with four triangles. Therefore the parts stop at different distances from such a corner, and the
 // rings of the ball are rotated.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/scene/item_mesh.h"
 
 #define SIDES 12
@@ -49,16 +49,16 @@ static CagStatus reserve(Buffer *b, size_t vertices, size_t triangles, CagError 
                     "the lines need more than the %zu triangles allowed", b->max_triangles);
   while (b->vertices + vertices > b->vertex_room) {
     size_t room = b->vertex_room ? 2 * b->vertex_room : 1024;
-    CagVec3 *p = realloc(b->positions, room * sizeof *p);
+    CagVec3 *p = cag_realloc(b->positions, room * sizeof *p);
     if (p) b->positions = p;
-    CagVec3 *n = realloc(b->normals, room * sizeof *n);
+    CagVec3 *n = cag_realloc(b->normals, room * sizeof *n);
     if (n) b->normals = n;
     if (!p || !n) return cag_fail_memory(err);
     b->vertex_room = room;
   }
   while (b->count + triangles > b->room) {
     size_t room = b->room ? 2 * b->room : 2048;
-    uint32_t *t = realloc(b->triangles, 3 * room * sizeof *t);
+    uint32_t *t = cag_realloc(b->triangles, 3 * room * sizeof *t);
     if (!t) return cag_fail_memory(err);
     b->triangles = t;
     b->room = room;
@@ -387,7 +387,7 @@ static CagStatus add_part(Buffer *b, const Path *h, size_t i, size_t k, const Jo
                           const Joint *to, CagError *err) {
   const size_t n = k - i + 1;
   const CagVec3 *p = h->points + i;
-  CagVec3 *q = malloc(n * sizeof *q);
+  CagVec3 *q = cag_malloc(n * sizeof *q);
   if (!q) return cag_fail_memory(err);
   memcpy(q, p, n * sizeof *q);
   RunEnd begin = {from, 0}, end = {to, 0};
@@ -397,7 +397,7 @@ static CagStatus add_part(Buffer *b, const Path *h, size_t i, size_t k, const Jo
     q[n - 1] = short_of(p[n - 1], p[n - 2], SHORT_AT_END * h->radius);
   else if (!to && comes_back(h, k)) end.turn = TURN_AT_END;
   CagStatus status = add_run(b, q, n, begin, end, h->radius, err);
-  free(q);
+  cag_free(q);
   return status;
 }
 
@@ -431,11 +431,11 @@ static CagStatus add_corners(Buffer *b, const Path *h, CagError *err) {
 // Adds the closed path p, starting at its point `start`.
 static CagStatus add_closed_corners(Buffer *b, const CagVec3 *p, size_t n, size_t start,
                                     double radius, CagError *err) {
-  CagVec3 *q = malloc(n * sizeof *q);
+  CagVec3 *q = cag_malloc(n * sizeof *q);
   if (!q) return cag_fail_memory(err);
   for (size_t i = 0; i < n; i++) q[i] = p[(start + i) % (n - 1)];
   CagStatus status = add_corners(b, &(Path){q, n, true, radius}, err);
-  free(q);
+  cag_free(q);
   return status;
 }
 
@@ -465,7 +465,7 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
                     "%.0f dashes need more than the %zu triangles allowed: make them longer",
                     ceil(count / 2), b->max_triangles);
   double step = length / count;
-  CagVec3 *run = malloc((n + 2) * sizeof *run);
+  CagVec3 *run = cag_malloc((n + 2) * sizeof *run);
   if (!run) return cag_fail_memory(err);
   CagStatus status = CAG_OK;
   double at = 0, next = step;        // length walked, and where the dash or gap ends
@@ -496,7 +496,7 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
   // Rounding may leave a sliver behind the last gap.
   if (status == CAG_OK && drawn && next - at < step / 2)
     status = add_path(b, run, m, false, radius, err);
-  free(run);
+  cag_free(run);
   return status;
 }
 
@@ -514,11 +514,11 @@ static CagStatus curve_points(const CagCurve *c, double radius, const CagTessell
   if (how->tolerance > 0) tolerance = fmin(tolerance, how->tolerance);
   CagStatus status = cag_curve_discretize(c, tolerance, how->angle, &t, n, err);
   if (status != CAG_OK) return status;
-  *out = malloc(*n * sizeof **out);
+  *out = cag_malloc(*n * sizeof **out);
   status = *out ? cag_curve_eval_many(c, t, *n, 0, *out, err) : cag_fail_memory(err);
-  free(t);
+  cag_free(t);
   if (status != CAG_OK) {
-    free(*out);
+    cag_free(*out);
     return status;
   }
   *n = distinct(*out, *n);
@@ -549,9 +549,9 @@ CagStatus cag_curve_tube_mesh(const CagCurve *c, double radius, double dash,
   status = dash > 0 ? add_dashes(&b, points, n, c->closed, dash, radius, err)
                     : add_path(&b, points, n, c->closed, radius, err);
   if (status == CAG_OK) status = take_mesh(&b, out, err);
-  free(points);
-  free(b.positions);
-  free(b.normals);
-  free(b.triangles);
+  cag_free(points);
+  cag_free(b.positions);
+  cag_free(b.normals);
+  cag_free(b.triangles);
   return status;
 }

@@ -4,9 +4,9 @@
 // directions, not along the axes of space: the box of a slender thing that stands askew is many
 // times its size.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/scene/scene.h"
 #include "lang/memory.h"
 
@@ -235,7 +235,7 @@ static void drop_floor(CagScene *s) {
   if (!s->studio || !last || last->kind != CAG_ITEM_GROUND || !last->name ||
       strcmp(last->name, "studio_floor") != 0)
     return;
-  free(last->name);
+  cag_free(last->name);
   s->item_count--;
 }
 
@@ -245,11 +245,11 @@ CagStatus cag_scene_add_view(CagScene *s, const char *name, CagError *err) {
   if (i == VIEW_COUNT)
     return cag_fail(err, CAG_E_ARGUMENT, "camera-unknown", "camera", -1, "no standard view `%s`",
                     name);
-  CagCamera *cameras = realloc(s->cameras, (s->camera_count + 1) * sizeof *cameras);
-  char *copy = strdup(name);
+  CagCamera *cameras = cag_realloc(s->cameras, (s->camera_count + 1) * sizeof *cameras);
+  char *copy = cag_strdup(name);
   if (cameras) s->cameras = cameras;
   if (!cameras || !copy) {
-    free(copy);
+    cag_free(copy);
     return cag_fail_memory(err);
   }
   const CagBounds whole = cag_scene_framed(s);

@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "interp/clock.h"
 #include "interp/doc/doc.h"
 #include "interp/render/compare.h"
@@ -75,7 +76,7 @@ typedef struct Plans {
 
 // Room for one more; NULL when memory is out.
 static void *grow(void **array, size_t *count, size_t size) {
-  char *larger = realloc(*array, (*count + 1) * size);
+  char *larger = cag_realloc(*array, (*count + 1) * size);
   if (!larger) return NULL;
   *array = larger;
   void *item = larger + size * (*count)++;
@@ -86,14 +87,14 @@ static void *grow(void **array, size_t *count, size_t size) {
 static void free_plans(Plans *plans) {
   for (size_t i = 0; i < plans->count; i++) {
     Plan *p = &plans->items[i];
-    for (size_t k = 0; k < p->define_count; k++) free(p->defines[k].name);
-    free(p->defines);
-    free(p->expected);
-    free(p->options);
-    free(p->problem);
+    for (size_t k = 0; k < p->define_count; k++) cag_free(p->defines[k].name);
+    cag_free(p->defines);
+    cag_free(p->expected);
+    cag_free(p->options);
+    cag_free(p->problem);
   }
-  free(plans->items);
-  free(plans->misses);
+  cag_free(plans->items);
+  cag_free(plans->misses);
 }
 
 static Plan *add_plan(Plans *plans, const CagSessionOptions *limits, size_t line) {
@@ -132,7 +133,7 @@ static bool add_define(Plan *p, const char *word) {
   const char *equals = strchr(word, '=');
   if (!equals || equals == word) return false;
   Define *d = grow((void **)&p->defines, &p->define_count, sizeof *d);
-  if (!d || !(d->name = strdup(word))) {
+  if (!d || !(d->name = cag_strdup(word))) {
     if (d) p->define_count--;
     return false;
   }
@@ -157,18 +158,18 @@ static void set_problem(Plan *p, const char *word) {
   static const char FORM[] =
       "`%s` is not an option of `// run:`; there are -D name=value, --picture, --max-depth, "
       "--max-memory, --max-time and --max-triangles";
-  free(p->problem);
-  if (asprintf(&p->problem, FORM, word) < 0) p->problem = NULL;
+  cag_free(p->problem);
+  if (cag_asprintf(&p->problem, FORM, word) < 0) p->problem = NULL;
 }
 
 // Reads the options of `// run:` into the plan.
 static void read_options(Plans *plans, Plan *p, Piece text) {
-  p->options = strndup(text.start, (size_t)(text.end - text.start));
-  char *word = malloc((size_t)(text.end - text.start) + 1);
+  p->options = cag_strndup(text.start, (size_t)(text.end - text.start));
+  char *word = cag_malloc((size_t)(text.end - text.start) + 1);
   const char *at = p->options;
   if (!at || !word) plans->memory = true;
   while (at && word && (at = next_word(at, word))) {
-    char *name = strdup(word);
+    char *name = cag_strdup(word);
     bool ok = name != NULL;
     if (ok && !strncmp(name, "-D", 2) && name[2]) ok = add_define(p, name + 2);
     else if (ok && !strcmp(name, "--picture")) p->picture = true;
@@ -178,10 +179,10 @@ static void read_options(Plans *plans, Plan *p, Piece text) {
       if (ok) at = value;
     }
     if (!ok) set_problem(p, name ? name : word);
-    free(name);
+    cag_free(name);
     if (!ok) break;
   }
-  free(word);
+  cag_free(word);
 }
 
 // --- Reading the script ---
@@ -435,7 +436,7 @@ static void check_errors(Run *r, const CagSession *s) {
   if (!all) {
     char *errors = rendered_errors(s);
     fail(r, line, message, NULL, NULL, errors);
-    free(errors);
+    cag_free(errors);
   }
   for (size_t i = 0; i < r->plan->count; i++) {
     const Expected *e = &r->plan->expected[i];
@@ -453,11 +454,11 @@ static void check_output(Run *r, const char *text, size_t size) {
   for (size_t i = 0; i < r->plan->count; i++) {
     const Expected *e = &r->plan->expected[i];
     if (e->is_error) continue;
-    char *expected = strndup(e->text.start, (size_t)(e->text.end - e->text.start));
+    char *expected = cag_strndup(e->text.start, (size_t)(e->text.end - e->text.start));
     last_line = e->line;
     if (at == end) {
       fail(r, e->line, "the output ends before this line", expected, NULL, NULL);
-      free(expected);
+      cag_free(expected);
       return;
     }
     const char *stop = memchr(at, '\n', (size_t)(end - at));
@@ -466,20 +467,20 @@ static void check_output(Run *r, const char *text, size_t size) {
     bool same = expected && (size_t)(got.end - got.start) == strlen(expected) &&
                 memcmp(got.start, expected, strlen(expected)) == 0;
     if (!same) {
-      char *found = strndup(got.start, (size_t)(got.end - got.start));
+      char *found = cag_strndup(got.start, (size_t)(got.end - got.start));
       fail(r, e->line, "another line is printed", expected, found, NULL);
-      free(found);
-      free(expected);
+      cag_free(found);
+      cag_free(expected);
       return;
     }
-    free(expected);
+    cag_free(expected);
     at = stop < end ? stop + 1 : end;
   }
   if (at == end || last_line == r->plan->line) return; // a script that expects no line may print
   const char *stop = memchr(at, '\n', (size_t)(end - at));
-  char *found = strndup(at, (size_t)((stop ? stop : end) - at));
+  char *found = cag_strndup(at, (size_t)((stop ? stop : end) - at));
   fail(r, last_line, "more is printed than expected", NULL, found, NULL);
-  free(found);
+  cag_free(found);
 }
 
 // --- Pictures ---
@@ -496,9 +497,9 @@ static char *find_reference(const char *path) {
   for (size_t i = 0; i < 2; i++) {
     char *reference;
     struct stat status;
-    if (asprintf(&reference, "%.*s%s", (int)stem, path, endings[i]) < 0) return NULL;
+    if (cag_asprintf(&reference, "%.*s%s", (int)stem, path, endings[i]) < 0) return NULL;
     if (stat(reference, &status) == 0 && S_ISREG(status.st_mode)) return reference;
-    free(reference);
+    cag_free(reference);
   }
   return NULL;
 }
@@ -529,14 +530,15 @@ static bool compare_pictures(Run *r, const CagImage *reference, const char *refe
   ok = share <= CAG_TEST_PIXELS && (!report.has_color || report.delta_e_mean <= CAG_TEST_DELTA_E);
   if (!ok) {
     char *message = NULL;
-    if (asprintf(&message,
-                 "the picture is not as %s: the mean color difference is %.3g (%g may be), %.3g%% "
-                 "of the pixels differ (%g%% may); it is kept in %s",
-                 reference_path, report.delta_e_mean, CAG_TEST_DELTA_E, 100 * share,
-                 100 * CAG_TEST_PIXELS, path) < 0)
+    if (cag_asprintf(
+            &message,
+            "the picture is not as %s: the mean color difference is %.3g (%g may be), %.3g%% "
+            "of the pixels differ (%g%% may); it is kept in %s",
+            reference_path, report.delta_e_mean, CAG_TEST_DELTA_E, 100 * share,
+            100 * CAG_TEST_PIXELS, path) < 0)
       message = NULL;
     fail(r, 0, message ? message : "the picture is not as its reference", NULL, NULL, NULL);
-    free(message);
+    cag_free(message);
   }
   cag_compare_report_free(&report);
   return ok;
@@ -555,7 +557,7 @@ static bool render(Run *r, CagSession *s, const CagImage *reference, const char 
   if (cag_session_render(s, &options, path) == CAG_STATUS_OK) return true;
   char *errors = rendered_errors(s);
   fail(r, 0, "the scene cannot be rendered", NULL, NULL, errors);
-  free(errors);
+  cag_free(errors);
   return false;
 }
 
@@ -564,10 +566,10 @@ static bool render_and_compare(Run *r, CagSession *s, const CagImage *reference,
                                const char *reference_path) {
   const char *root = getenv("TMPDIR"), *slash = strrchr(reference_path, '/');
   char *folder = NULL, *path = NULL;
-  if (asprintf(&folder, "%s/cag-test-XXXXXX", root && *root ? root : "/tmp") < 0) return false;
+  if (cag_asprintf(&folder, "%s/cag-test-XXXXXX", root && *root ? root : "/tmp") < 0) return false;
   bool ok = mkdtemp(folder) != NULL;
   if (!ok) fail(r, 0, "no folder for the picture can be made", NULL, NULL, NULL);
-  ok = ok && asprintf(&path, "%s/%s", folder, slash ? slash + 1 : reference_path) >= 0;
+  ok = ok && cag_asprintf(&path, "%s/%s", folder, slash ? slash + 1 : reference_path) >= 0;
   bool keep = false;
   if (ok) ok = render(r, s, reference, path);
   if (ok) {
@@ -576,8 +578,8 @@ static bool render_and_compare(Run *r, CagSession *s, const CagImage *reference,
   }
   if (path && !keep) unlink(path);
   if (!keep) rmdir(folder);
-  free(path);
-  free(folder);
+  cag_free(path);
+  cag_free(folder);
   return ok;
 }
 
@@ -639,12 +641,12 @@ static int test_reference(Run *r, CagSession *s) {
   if (!reference) return CAG_STATUS_OK;
   char *name = r->name;
   int status = CAG_STATUS_OK;
-  if (asprintf(&r->name, "%s (picture)", name) < 0) r->name = NULL;
+  if (cag_asprintf(&r->name, "%s (picture)", name) < 0) r->name = NULL;
   if (!r->name) status = CAG_STATUS_LIMIT;
   else status = test_picture(r, s, reference);
-  free(r->name);
+  cag_free(r->name);
   r->name = name;
-  free(reference);
+  cag_free(reference);
   return status;
 }
 
@@ -686,7 +688,7 @@ static int perform(Run *r) {
   }
   cag_session_free(s);
   if (out) fclose(out);
-  free(output);
+  cag_free(output);
   return status;
 }
 
@@ -695,7 +697,8 @@ static char *run_name(const Run *r) {
   const char *options = r->plan->options;
   if (r->about && r->example == 1) snprintf(about, sizeof about, ": example of %s", r->about);
   else if (r->about) snprintf(about, sizeof about, ": example %zu of %s", r->example, r->about);
-  if (asprintf(&name, "%s%s%s%s", r->path, about, options ? " " : "", options ? options : "") < 0)
+  if (cag_asprintf(&name, "%s%s%s%s", r->path, about, options ? " " : "", options ? options : "") <
+      0)
     return NULL;
   return name;
 }
@@ -720,7 +723,7 @@ static int run_plans(const Run *script, const char *text, size_t length) {
     r.name = run_name(&r);
     if (!r.name) status = CAG_STATUS_LIMIT;
     else if (is_chosen(&r)) status = perform(&r);
-    free(r.name);
+    cag_free(r.name);
   }
   free_plans(&plans);
   return status;
@@ -780,16 +783,16 @@ static int run_example(const Run *script, const CagDocModule *m, const CagDocEnt
   const bool read = cag_memory_guard(read_head, &head);
   char *const example = head.example, *const import = head.import;
   char *folder =
-      slash ? strndup(script->path, slash == script->path ? 1 : (size_t)(slash - script->path))
-            : strdup(".");
+      slash ? cag_strndup(script->path, slash == script->path ? 1 : (size_t)(slash - script->path))
+            : cag_strdup(".");
   r.about = e->name;
   r.folder = folder;
   r.text = place_example(e, line, part, length, import, &r.length);
   const int status = read && r.text && folder ? run_plans(&r, r.text, r.length) : CAG_STATUS_LIMIT;
-  free((void *)(size_t)r.text);
-  free(folder);
-  free(import);
-  free(example);
+  cag_free((void *)(size_t)r.text);
+  cag_free(folder);
+  cag_free(import);
+  cag_free(example);
   return status;
 }
 
@@ -830,7 +833,7 @@ static char *read_whole(const char *path, size_t *length) {
   size_t capacity = 0, n = 0;
   for (;;) {
     if (n == capacity) {
-      char *larger = realloc(text, capacity = capacity ? 2 * capacity : 4096);
+      char *larger = cag_realloc(text, capacity = capacity ? 2 * capacity : 4096);
       if (!larger) break;
       text = larger;
     }
@@ -842,7 +845,7 @@ static char *read_whole(const char *path, size_t *length) {
   fclose(f);
   *length = n;
   if (ok) return text;
-  free(text);
+  cag_free(text);
   return NULL;
 }
 
@@ -863,6 +866,6 @@ int cag_test_file(const char *path, const CagTestOptions *options, CagTestCounts
   const Run r = {.options = options, .counts = counts, .path = path};
   int status = run_plans(&r, text, length);
   if (status == CAG_STATUS_OK) status = run_examples(&r, text, length);
-  free(text);
+  cag_free(text);
   return status;
 }

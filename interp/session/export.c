@@ -1,12 +1,12 @@
 // Writing the scene in a format.
 
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "geom/mesh/orient.h"
 #include "interp/export/iges.h"
 #include "interp/export/json.h"
@@ -29,11 +29,11 @@ typedef struct Parts {
 
 static void free_parts(Parts *p) {
   for (size_t i = 0; i < p->count; i++) cag_mesh_release((CagMesh *)p->items[i].mesh);
-  free(p->items);
+  cag_free(p->items);
 }
 
 static CagStatus add_part(Parts *p, CagMeshPart part, CagError *err) {
-  CagMeshPart *more = realloc(p->items, (p->count + 1) * sizeof *more);
+  CagMeshPart *more = cag_realloc(p->items, (p->count + 1) * sizeof *more);
   if (!more) {
     cag_mesh_release((CagMesh *)part.mesh);
     return cag_fail_memory(err);
@@ -149,7 +149,7 @@ static bool path_beside(const char *path, const char *ending, char **out) {
   if (strcmp(path, "-") == 0) return true;
   const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
   size_t stem = dot && (!slash || dot > slash) ? (size_t)(dot - path) : strlen(path);
-  return asprintf(out, "%.*s%s", (int)stem, path, ending) >= 0;
+  return cag_asprintf(out, "%.*s%s", (int)stem, path, ending) >= 0;
 }
 
 static int fail_memory(CagSession *s) {
@@ -240,7 +240,7 @@ static char *former_data(const char *path, const char *stem) {
   if (!at || at - tail <= HASH_DIGITS) return NULL;
   const char *hash = at - HASH_DIGITS;
   const bool ours = strspn(hash, "0123456789abcdef") == HASH_DIGITS && hash[-1] == '-';
-  if (!ours || asprintf(&name, "%s-%.*s.bin", stem, HASH_DIGITS, hash) < 0) return NULL;
+  if (!ours || cag_asprintf(&name, "%s-%.*s.bin", stem, HASH_DIGITS, hash) < 0) return NULL;
   return name;
 }
 
@@ -250,9 +250,9 @@ static int write_gltf_data(CagSession *s, const CagGltfData *data, const char *f
   CagIoError io = {0};
   char *path = NULL;
   if (!data->name) return CAG_STATUS_OK;
-  if (asprintf(&path, "%s%s", folder, data->name) < 0) return CAG_STATUS_LIMIT;
+  if (cag_asprintf(&path, "%s%s", folder, data->name) < 0) return CAG_STATUS_LIMIT;
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
-  free(path);
+  cag_free(path);
   if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
   cag_atomic_file_expect(f, data->size);
   cag_atomic_file_write(f, data->bytes, data->size);
@@ -270,7 +270,7 @@ static int commit_gltf(CagSession *s, CagAtomicFile *f, const CagGltfData *data,
   else cag_atomic_file_abort(f);
   if (status == CAG_STATUS_OK && former && (!data->name || strcmp(former_name, data->name) != 0))
     unlink(former);
-  free(former);
+  cag_free(former);
   return status;
 }
 
@@ -295,8 +295,8 @@ static int write_gltf_files(CagSession *s, const Parts *parts, const char *path,
     status = !stem || cag_atomic_file_failed(f) ? commit(s, f)
                                                 : commit_gltf(s, f, &data, path, stem, folder);
   }
-  free(data.name);
-  free(data.bytes);
+  cag_free(data.name);
+  cag_free(data.bytes);
   return status;
 }
 
@@ -304,8 +304,8 @@ static int write_gltf(CagSession *s, const Parts *parts, const char *path) {
   struct stat at;
   const bool special = stat(path, &at) == 0 && !S_ISREG(at.st_mode); // a device or a pipe
   char *stem = NULL, *folder = NULL;
-  if (!special && (!path_beside(path, "", &stem) || (stem && !(folder = strdup(stem))))) {
-    free(stem);
+  if (!special && (!path_beside(path, "", &stem) || (stem && !(folder = cag_strdup(stem))))) {
+    cag_free(stem);
     return fail_memory(s);
   }
   if (folder) {
@@ -314,8 +314,8 @@ static int write_gltf(CagSession *s, const Parts *parts, const char *path) {
     else folder[0] = 0;
   }
   int status = write_gltf_files(s, parts, path, stem, folder ? folder : "");
-  free(stem);
-  free(folder);
+  cag_free(stem);
+  cag_free(folder);
   return status;
 }
 
@@ -332,7 +332,7 @@ static int export_meshes(CagSession *s, const char *path, MeshWriter write, cons
     status = ending && !path_beside(path, ending, &beside)
                  ? fail_memory(s)
                  : write_meshes(s, &m, path, beside, write);
-    free(beside);
+    cag_free(beside);
   }
   free_parts(&parts);
   return status;
@@ -451,11 +451,11 @@ static int find_robot(CagSession *s, const CagRobotValue **robot) {
   enum { NAMED = 8 };
   const CagRobotValue *found[NAMED];
   CagVm *vm = s->vm;
-  CagValue *shown = malloc((vm->shown_count + 1) * sizeof *shown);
+  CagValue *shown = cag_malloc((vm->shown_count + 1) * sizeof *shown);
   if (!shown) return CAG_STATUS_LIMIT;
   for (size_t i = 0; i < vm->shown_count; i++) shown[i] = vm->shown[i].value;
   size_t n = cag_urdf_robots(vm, shown, vm->shown_count, found, NAMED);
-  free(shown);
+  cag_free(shown);
   *robot = found[0];
   if (n == 1) return CAG_STATUS_OK;
   const char *script = s->script ? s->script : "the session";
@@ -490,9 +490,9 @@ static int write_urdf_meshes(CagSession *s, const CagUrdf *u, const char *folder
     for (const CagUrdfShape *m = u->links[i].shapes; m && status == CAG_STATUS_OK; m = m->next) {
       char *path = NULL;
       if (m->kind != CAG_URDF_MESH) continue;
-      if (asprintf(&path, "%s/%s", folder, m->file) < 0) return fail_memory(s);
+      if (cag_asprintf(&path, "%s/%s", folder, m->file) < 0) return fail_memory(s);
       CagAtomicFile *f = cag_atomic_file_open(path, &io);
-      free(path);
+      cag_free(path);
       if (!f) return cag_session_fail_io(s, CAG_ERR_output_file, &io);
       if (cag_export_urdf_mesh(m, f, &err) == CAG_OK) {
         status = commit(s, f);
@@ -519,7 +519,7 @@ static int write_urdf(CagSession *s, const CagUrdf *u, const char *path) {
   if (!path_beside(path, "_meshes", &folder)) return fail_memory(s);
   CagAtomicFile *f = cag_atomic_file_open(path, &io);
   if (!f) {
-    free(folder);
+    cag_free(folder);
     return cag_session_fail_io(s, CAG_ERR_output_file, &io);
   }
   const char *slash = folder ? strrchr(folder, '/') : NULL;
@@ -532,7 +532,7 @@ static int write_urdf(CagSession *s, const CagUrdf *u, const char *path) {
                    ? cag_session_fail_geometry(s, &err)
                    : CAG_STATUS_OK;
   if (status == CAG_STATUS_OK && u->meshes && folder) status = write_urdf_meshes(s, u, folder);
-  free(folder);
+  cag_free(folder);
   if (status == CAG_STATUS_OK) return commit(s, f);
   cag_atomic_file_abort(f);
   return status;

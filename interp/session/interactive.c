@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/apply.h"
 #include "interp/session/session.h"
 
@@ -33,9 +34,9 @@ static void add_name(CagVm *vm, const char *name, size_t global) {
   }
   if (vm->outer_count == vm->outer_capacity) {
     size_t capacity = vm->outer_capacity ? vm->outer_capacity * 2 : 32;
-    const char **names = realloc(vm->outer_names, capacity * sizeof *names);
+    const char **names = cag_realloc(vm->outer_names, capacity * sizeof *names);
     if (names) vm->outer_names = names;
-    size_t *globals = realloc(vm->outer_globals, capacity * sizeof *globals);
+    size_t *globals = cag_realloc(vm->outer_globals, capacity * sizeof *globals);
     if (globals) vm->outer_globals = globals;
     if (!names || !globals) cag_vm_out_of_memory(vm);
     vm->outer_capacity = capacity;
@@ -89,11 +90,11 @@ static void give_value(CagVm *vm, CagValue v, void *context) {
 
 // Params get the values of -D, those that a text has; their defaults are checked.
 static bool set_params(CagVm *vm, CagModuleUnit *m, const CagSession *s) {
-  CagDefine *defines = calloc(s->define_count ? s->define_count : 1, sizeof *defines);
+  CagDefine *defines = cag_calloc(s->define_count ? s->define_count : 1, sizeof *defines);
   if (!defines) cag_vm_out_of_memory(vm);
   for (size_t i = 0; i < s->define_count; i++) defines[i] = (CagDefine){s->names[i], s->values[i]};
   bool ok = cag_program_set_params(vm, m, defines, s->define_count, s->frame, s->frames, true);
-  free(defines);
+  cag_free(defines);
   return ok;
 }
 
@@ -106,7 +107,7 @@ static bool evaluate_input(CagVm *vm, void *context) {
   CagModuleUnit *m = vm->modules[k];
   adopt(vm, m);
   m->adopted = true;
-  size_t *inputs = realloc(s->inputs, (s->input_count + 1) * sizeof *inputs);
+  size_t *inputs = cag_realloc(s->inputs, (s->input_count + 1) * sizeof *inputs);
   if (!inputs) cag_vm_out_of_memory(vm);
   s->inputs = inputs;
   if (!set_params(vm, m, s) || !cag_program_run(vm, m, give_value, in)) return false;
@@ -191,9 +192,9 @@ bool cag_session_write_doc(CagSession *s, const char *name, FILE *out) {
 
 bool cag_session_library_name(CagSession *s, const char *name, char *out, size_t size) {
   const size_t n = strcspn(name, ".");
-  char *head = strndup(name, n);
+  char *head = cag_strndup(name, n);
   const size_t i = head && s->vm && s->interactive ? find_name(s->vm, head) : (size_t)-1;
-  free(head);
+  cag_free(head);
   if (i == (size_t)-1) return false;
   const CagGlobal *g = &s->vm->globals[s->vm->outer_globals[i]];
   const bool whole = g->value.type == CAG_MODULE; // of the name is the module, not a member of it
@@ -235,7 +236,7 @@ static void give_members(CagVm *vm, CagValue v, const MemberQuestion *q) {
 
 static bool ask_members(CagVm *vm, void *context) {
   const MemberQuestion *q = context;
-  char *path = strdup(q->path), *rest = NULL;
+  char *path = cag_strdup(q->path), *rest = NULL;
   if (!path) return false;
   const char *word = strtok_r(path, ".", &rest);
   size_t i = word ? find_name(vm, word) : (size_t)-1;
@@ -243,7 +244,7 @@ static bool ask_members(CagVm *vm, void *context) {
   bool ok = i != (size_t)-1 && cag_vm_force(vm, vm->outer_globals[i], &v);
   while (ok && (word = strtok_r(NULL, ".", &rest)))
     ok = cag_member(vm, v, cag_text_c(vm, word), &v);
-  free(path);
+  cag_free(path);
   if (ok) give_members(vm, v, q);
   return ok;
 }

@@ -1,10 +1,10 @@
 // From a scene to a picture: POV-Ray source, the renderer, EXR or PNG.
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "base/memory.h"
 #include "interp/export/pov.h"
 #include "interp/render/exr.h"
 #include "interp/render/png.h"
@@ -312,7 +312,7 @@ static int render_scene(CagSession *s, const CagRenderOptions *options, const ch
   if (options->time_limit > 0) s->time_left = INFINITY; // the renderer has a time of its own
   if (status == CAG_STATUS_OK) status = cag_session_geometry(s, make_picture, &j);
   if (options->time_limit > 0) s->time_left = left;
-  free(j.source);
+  cag_free(j.source);
   cag_povray_result_free(&j.result);
   return status;
 }

@@ -5,9 +5,9 @@
 
 #include <errno.h>
 #include <pthread.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/stop.h"
 #include "geom/surface/crossing.h"
 #include "interp/scene/lead.h"
@@ -28,7 +28,7 @@ void cag_session_options_init(CagSessionOptions *o) {
 }
 
 CagSession *cag_session_new(const CagSessionOptions *options) {
-  CagSession *s = calloc(1, sizeof *s);
+  CagSession *s = cag_calloc(1, sizeof *s);
   if (!s) return NULL;
   s->options = *options;
   s->frames = 1;
@@ -41,12 +41,14 @@ static void drop_scene(CagSession *s) {
 }
 
 void cag_session_drop_vm(CagSession *s) {
+  CagAccount *before = cag_account_lend(s->vm ? &s->vm->account : NULL);
   drop_scene(s);
   cag_diagnostics_clear(&s->diagnostics);
+  cag_free(s->inputs);
+  cag_account_lend(before);
   cag_vm_free(s->vm);
   s->vm = NULL;
   s->interactive = false;
-  free(s->inputs);
   s->inputs = NULL;
   s->input_count = 0;
   cag_session_renew_time(s);
@@ -66,21 +68,21 @@ void cag_session_free(CagSession *s) {
   if (s->busy) return;
   cag_session_drop_vm(s);
   cag_session_clear_defines(s);
-  free(s->script);
-  free(s);
+  cag_free(s->script);
+  cag_free(s);
 }
 
 // --- Params ---
 
 void cag_session_define(CagSession *s, const char *name, const char *value) {
-  char **names = realloc(s->names, (s->define_count + 1) * sizeof *names);
+  char **names = cag_realloc(s->names, (s->define_count + 1) * sizeof *names);
   if (names) s->names = names;
-  char **values = realloc(s->values, (s->define_count + 1) * sizeof *values);
+  char **values = cag_realloc(s->values, (s->define_count + 1) * sizeof *values);
   if (values) s->values = values;
-  char *n = strdup(name), *v = strdup(value);
+  char *n = cag_strdup(name), *v = cag_strdup(value);
   if (!names || !values || !n || !v) {
-    free(n);
-    free(v);
+    cag_free(n);
+    cag_free(v);
     s->define_lost = true;
     return;
   }
@@ -90,11 +92,11 @@ void cag_session_define(CagSession *s, const char *name, const char *value) {
 
 void cag_session_clear_defines(CagSession *s) {
   for (size_t i = 0; i < s->define_count; i++) {
-    free(s->names[i]);
-    free(s->values[i]);
+    cag_free(s->names[i]);
+    cag_free(s->values[i]);
   }
-  free(s->names);
-  free(s->values);
+  cag_free(s->names);
+  cag_free(s->values);
   s->names = s->values = NULL;
   s->define_count = 0;
   s->define_lost = false;
@@ -110,11 +112,11 @@ void cag_session_set_loop(CagSession *s, bool loop) { s->loop = loop; }
 // --- The machine and its thread ---
 
 static bool add_folder(CagVm *vm, const char *path) {
-  char *real = realpath(path, NULL);
+  char *real = cag_realpath(path);
   if (!real) return errno != ENOMEM; // a missing folder contains no modules
-  char **include = realloc(vm->include, (vm->include_count + 1) * sizeof *include);
+  char **include = cag_realloc(vm->include, (vm->include_count + 1) * sizeof *include);
   if (!include) {
-    free(real);
+    cag_free(real);
     return false;
   }
   vm->include = include;
@@ -135,14 +137,16 @@ CagVm *cag_session_vm(CagSession *s) {
                      &s->diagnostics);
   if (!s->vm) return NULL;
   s->vm->tolerance = o->tolerance;
-  for (size_t i = 0; i < o->module_path_count; i++)
-    if (!add_folder(s->vm, o->module_path[i])) {
-      cag_vm_free(s->vm);
-      s->vm = NULL;
-      cag_session_fail_memory(s);
-      break;
-    }
-  return s->vm;
+  CagAccount *before = cag_account_lend(&s->vm->account);
+  bool found = true;
+  for (size_t i = 0; found && i < o->module_path_count; i++)
+    found = add_folder(s->vm, o->module_path[i]);
+  cag_account_lend(before);
+  if (found) return s->vm;
+  cag_vm_free(s->vm);
+  s->vm = NULL;
+  cag_session_fail_memory(s);
+  return NULL;
 }
 
 void cag_session_renew_time(CagSession *s) { s->time_left = s->options.max_time; }
@@ -159,10 +163,13 @@ static void *perform(void *context) {
   Task *t = context;
   char here;
   t->vm->stack_low = &here - t->stack + 65536; // the guard and what the system keeps there
+  t->vm->stack_paid = &here;
   cag_stop_lend(&t->vm->stop);
+  cag_account_lend(&t->vm->account);
   t->ok = cag_vm_protect(t->vm, t->work, t->context);
   // What was cut short because the work must stop may not have told so.
   if (t->ok && t->vm->stop) t->ok = cag_keep_going(t->vm);
+  cag_account_drop((size_t)(&here - t->vm->stack_paid));
   return NULL;
 }
 
@@ -320,7 +327,7 @@ int cag_session_fail_geometry(CagSession *s, const CagError *err) {
   CagDiagnostic *d = cag_diagnostics_add(&s->diagnostics, id, place.source,
                                          (CagSpan){place.start, place.end}, "%s", err->message);
   if (err->reason && strcmp(err->reason, cag_error_info(id)->reason) != 0)
-    d->reason = strdup(err->reason);
+    d->reason = cag_strdup(err->reason);
   return cag_session_status(s);
 }
 
@@ -352,21 +359,21 @@ static bool run(CagVm *vm, void *context) {
   size_t k = r->path ? cag_load_file(vm, r->path, &r->status)
                      : cag_load_text(vm, r->name, r->text, r->length, CAG_PARSE_FILE);
   if (k == CAG_NO_MODULE) return false;
-  CagDefine *defines = calloc(s->define_count ? s->define_count : 1, sizeof *defines);
+  CagDefine *defines = cag_calloc(s->define_count ? s->define_count : 1, sizeof *defines);
   if (!defines) cag_vm_out_of_memory(vm);
   vm->loop = s->loop;
   for (size_t i = 0; i < s->define_count; i++) defines[i] = (CagDefine){s->names[i], s->values[i]};
   bool ok = cag_program_set_params(vm, vm->modules[k], defines, s->define_count, s->frame,
                                    s->frames, false);
-  free(defines);
+  cag_free(defines);
   return ok && cag_program_run(vm, vm->modules[k], NULL, NULL);
 }
 
 static int start_run(CagSession *s, Run *r) {
   if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   cag_session_drop_vm(s);
-  free(s->script);
-  s->script = strdup(r->path ? r->path : r->name);
+  cag_free(s->script);
+  s->script = cag_strdup(r->path ? r->path : r->name);
   const bool ready = s->script && !s->define_lost;
   return cag_session_end(s, ready ? cag_session_work(s, run, r) : cag_session_fail_memory(s));
 }
@@ -495,7 +502,7 @@ int cag_session_build_scene(CagSession *s) {
   if (s->options.tolerance > 0) scene->tolerance = s->options.tolerance;
   scene->max_triangles = s->options.max_triangles;
   scene->interrupt = &s->vm->stop;
-  if (!scene->script && s->script && !(scene->script = strdup(s->script))) {
+  if (!scene->script && s->script && !(scene->script = cag_strdup(s->script))) {
     drop_scene(s);
     return cag_session_fail_memory(s);
   }

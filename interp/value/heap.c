@@ -12,9 +12,9 @@
 
 #include "interp/value/heap.h"
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "geom/solid/csg.h"
 #include "interp/eval/vm.h"
 
@@ -45,16 +45,17 @@ struct CagPage {
 #define MARK_BITS 2
 #define MARK_MASK ((1 << MARK_BITS) - 1)
 
-static void take_bytes(CagVm *vm, size_t size) {
+// Adds to the debt what geometry and lists have allocated since the last object, and the object
+// itself.
+static void add_debt(CagVm *vm, size_t size) {
   CagHeap *h = &vm->heap;
-  if (!cag_heap_has_room(vm, size)) cag_vm_out_of_memory(vm);
-  h->bytes += size;
+  if (vm->account.used > h->seen) h->debt += vm->account.used - h->seen;
   h->debt += size;
 }
 
 // Makes a new page of cells for a size class and threads them into its free list.
 static bool add_page(CagHeap *h, size_t size_class) {
-  CagPage *page = malloc(PAGE_BYTES);
+  CagPage *page = cag_malloc(PAGE_BYTES);
   if (!page) return false;
   page->cell = size_class * CAG_SMALL_STEP;
   page->count = (PAGE_BYTES - sizeof *page) / page->cell;
@@ -73,7 +74,7 @@ static bool add_page(CagHeap *h, size_t size_class) {
 
 void *cag_alloc(CagVm *vm, CagType type, size_t size) {
   CagHeap *h = &vm->heap;
-  take_bytes(vm, size);
+  add_debt(vm, size);
   CagObject *o;
   if (size <= SMALL_LIMIT) {
     size_t size_class = (size + CAG_SMALL_STEP - 1) / CAG_SMALL_STEP;
@@ -83,27 +84,22 @@ void *cag_alloc(CagVm *vm, CagType type, size_t size) {
     memset(o, 0, size);
     o->small = (uint8_t)size_class;
   } else {
-    o = calloc(1, size);
+    o = cag_calloc(1, size);
     if (!o) cag_vm_out_of_memory(vm);
     o->next = h->large;
     h->large = o;
   }
+  h->seen = vm->account.used;
+  h->objects++;
   o->type = (uint8_t)type;
   o->mark = (uint8_t)(h->mark | h->depth << MARK_BITS);
   return o;
 }
 
-bool cag_heap_has_room(const CagVm *vm, size_t size) {
-  const CagHeap *h = &vm->heap;
-  return size <= h->limit && h->bytes <= h->limit - size;
-}
-
-void cag_heap_charge(CagVm *vm, size_t bytes) { take_bytes(vm, bytes); }
-
 void cag_root_push(CagVm *vm, CagValue v) {
   if (vm->root_count == vm->root_capacity) {
     size_t capacity = vm->root_capacity ? vm->root_capacity * 2 : 64;
-    CagValue *roots = realloc(vm->roots, capacity * sizeof *roots);
+    CagValue *roots = cag_realloc(vm->roots, capacity * sizeof *roots);
     if (!roots) cag_vm_out_of_memory(vm);
     vm->roots = roots;
     vm->root_capacity = capacity;
@@ -120,7 +116,7 @@ void cag_root_pop(CagVm *vm, size_t n) { vm->root_count -= n; }
 static bool grow_gray(CagHeap *h) {
   const size_t capacity = h->gray_capacity * 2;
   const bool first = h->gray == h->gray_first;
-  CagObject **gray = realloc(first ? NULL : h->gray, capacity * sizeof *gray);
+  CagObject **gray = cag_realloc(first ? NULL : h->gray, capacity * sizeof *gray);
   if (!gray) return false;
   if (first) memcpy(gray, h->gray_first, sizeof h->gray_first);
   h->gray = gray;
@@ -141,45 +137,6 @@ static void mark_value(CagHeap *h, CagValue v) {
 
 static void mark_values(CagHeap *h, const CagValue *v, size_t n) {
   for (size_t i = 0; i < n; i++) mark_value(h, v[i]);
-}
-
-// Bytes that an object holds beside its cell.
-static size_t charged(const CagObject *o) {
-  switch (o->type) {
-  case CAG_LIST: {
-    const CagList *l = (const CagList *)o;
-    if (!l->allocated) return 0;
-    return l->length * (l->dim ? l->dim * sizeof(double) : sizeof(CagValue));
-  }
-  case CAG_MESH: {
-    const CagMesh *m = ((const CagShape *)o)->as.mesh;
-    return m ? m->vertex_count * 64 + m->triangle_count * 12 : 0;
-  }
-  // Rough figures: geometry is counted so that a million small curves bring a collection about.
-  case CAG_CURVE: return 512;
-  case CAG_REGION:
-  case CAG_SURFACE: return 2048;
-  case CAG_SOLID: {
-    const CagSolid *s = ((const CagShape *)o)->as.solid;
-    return 4096 + (s ? cag_solid_kept_bytes(s) : 0);
-  }
-  case CAG_ROBOT: return 4096;
-  default: return 0;
-  }
-}
-
-static size_t own_size(const CagObject *o) {
-  switch (o->type) {
-  case CAG_TEXT: return sizeof(CagText) + ((const CagText *)o)->length + 1;
-  case CAG_LIST: {
-    const CagList *l = (const CagList *)o;
-    if (l->allocated || l->owner) return sizeof *l;
-    return sizeof *l + l->length * (l->dim ? l->dim * sizeof(double) : sizeof(CagValue));
-  }
-  case CAG_RECORD:
-    return sizeof(CagRecord) + ((const CagRecord *)o)->layout->count * sizeof(CagValue);
-  default: return 128;
-  }
 }
 
 // Marks what an object refers to.
@@ -241,7 +198,7 @@ static void scan(CagHeap *h, CagObject *o) {
 static void destroy(CagObject *o) {
   switch (o->type) {
   case CAG_LIST:
-    if (((CagList *)o)->allocated) free(((CagList *)o)->as.data);
+    if (((CagList *)o)->allocated) cag_free(((CagList *)o)->as.data);
     break;
   case CAG_CURVE: cag_curve_release(((CagShape *)o)->as.curve); break;
   case CAG_REGION: cag_region_release(((CagShape *)o)->as.region); break;
@@ -250,8 +207,8 @@ static void destroy(CagObject *o) {
   case CAG_MESH: cag_mesh_release(((CagShape *)o)->as.mesh); break;
   case CAG_ROBOT: cag_robot_release(((CagRobotValue *)o)->robot); break;
   case CAG_INTERNAL:
-    if (o->flags == CAG_INTERNAL_BUILDER) free(((CagBuilder *)o)->data);
-    if (o->flags == CAG_INTERNAL_LAYOUT) free(((CagLayout *)o)->index);
+    if (o->flags == CAG_INTERNAL_BUILDER) cag_free(((CagBuilder *)o)->data);
+    if (o->flags == CAG_INTERNAL_LAYOUT) cag_free(((CagLayout *)o)->index);
     break;
   default: break;
   }
@@ -288,34 +245,57 @@ static bool lives(const CagHeap *h, CagObject *o) {
   return true;
 }
 
+// Frees the dead objects of a page and threads its free cells into their list. Returns whether all
+// cells are free.
+static bool sweep_page(CagHeap *h, CagPage *page) {
+  const size_t size_class = page->cell / CAG_SMALL_STEP;
+  bool empty = true;
+  char *cell = (char *)page->cells;
+  for (size_t i = 0; i < page->count; i++, cell += page->cell) {
+    CagObject *o = (CagObject *)cell;
+    if (o->type != CELL_FREE && lives(h, o)) {
+      h->objects++;
+      empty = false;
+      continue;
+    }
+    if (o->type != CELL_FREE) destroy(o);
+    o->type = CELL_FREE;
+    o->next = h->free_lists[size_class];
+    h->free_lists[size_class] = o;
+  }
+  return empty;
+}
+
+// Empty pages go back to the system, but for one of each size class.
 static void sweep(CagHeap *h) {
-  h->bytes = 0;
+  bool kept[CAG_SMALL_CLASSES] = {false};
+  h->objects = 0;
   memset(h->free_lists, 0, sizeof h->free_lists);
-  for (CagPage *page = h->pages; page; page = page->next) {
-    size_t size_class = page->cell / CAG_SMALL_STEP;
-    char *cell = (char *)page->cells;
-    for (size_t i = 0; i < page->count; i++, cell += page->cell) {
-      CagObject *o = (CagObject *)cell;
-      if (o->type != CELL_FREE && lives(h, o)) {
-        h->bytes += page->cell + charged(o);
-        continue;
-      }
-      if (o->type != CELL_FREE) destroy(o);
-      o->type = CELL_FREE;
-      o->next = h->free_lists[size_class];
-      h->free_lists[size_class] = o;
+  CagPage **at = &h->pages;
+  while (*at) {
+    CagPage *page = *at;
+    const size_t size_class = page->cell / CAG_SMALL_STEP;
+    CagObject *const before = h->free_lists[size_class];
+    const bool empty = sweep_page(h, page);
+    if (empty && kept[size_class]) {
+      h->free_lists[size_class] = before;
+      *at = page->next;
+      cag_free(page);
+    } else {
+      kept[size_class] |= empty;
+      at = &page->next;
     }
   }
   CagObject **link = &h->large;
   while (*link) {
     CagObject *o = *link;
     if (lives(h, o)) {
-      h->bytes += own_size(o) + charged(o);
+      h->objects++;
       link = &o->next;
     } else {
       *link = o->next;
       destroy(o);
-      free(o);
+      cag_free(o);
     }
   }
 }
@@ -352,8 +332,9 @@ void cag_collect(CagVm *vm) {
   }
   sweep(h);
   h->debt = 0;
-  size_t room = h->limit > h->bytes ? (h->limit - h->bytes) / 2 : 0;
-  h->threshold = h->bytes > DEBT_MIN ? h->bytes : DEBT_MIN;
+  h->seen = vm->account.used;
+  const size_t room = cag_account_room() / 2;
+  h->threshold = h->seen > DEBT_MIN ? h->seen : DEBT_MIN;
   if (h->threshold > room) h->threshold = room;
   h->collections++;
 }
@@ -366,20 +347,20 @@ void cag_heap_free(CagVm *vm) {
     char *cell = (char *)page->cells;
     for (size_t i = 0; i < page->count; i++, cell += page->cell)
       if (((CagObject *)cell)->type != CELL_FREE) destroy((CagObject *)cell);
-    free(page);
+    cag_free(page);
   }
   for (CagObject *o = h->large, *next; o; o = next) {
     next = o->next;
     destroy(o);
-    free(o);
+    cag_free(o);
   }
-  if (h->gray != h->gray_first) free(h->gray);
+  if (h->gray != h->gray_first) cag_free(h->gray);
   memset(h, 0, sizeof *h);
 }
 
-void cag_heap_init(CagVm *vm, size_t limit) {
-  vm->heap = (CagHeap){.limit = limit, .mark = 1, .threshold = DEBT_MIN};
-  if (vm->heap.threshold > limit / 4) vm->heap.threshold = limit / 4;
+void cag_heap_init(CagVm *vm) {
+  const size_t quarter = vm->account.limit / 4;
+  vm->heap = (CagHeap){.mark = 1, .threshold = DEBT_MIN < quarter ? DEBT_MIN : quarter};
   vm->heap.gray = vm->heap.gray_first;
   vm->heap.gray_capacity = CAG_GRAY_FIRST;
 }

@@ -7,26 +7,24 @@
 // error E0602 (memory-limit).
 //
 // Small objects (up to CAG_SMALL_MAX bytes) come from size-classed pages with free lists; larger
-// ones from malloc. Memory outside of the heap (a curve's data, a list's buffer) is told with
-// cag_heap_charge.
+// ones from cag_malloc. Everything that the run allocates, geometry included, is charged to the
+// machine's account (base/memory.h), whose limit is --max-memory.
 
 #ifndef CAG_INTERP_HEAP_H
 #define CAG_INTERP_HEAP_H
 
 #include "interp/value/value.h"
 
-// Zeroed except for the header, which is set. Never NULL: when the limit or the system's memory is
-// crossed, the run ends there with the memory limit's error (a long jump to where the run began;
-// what C code holds from malloc at that moment is lost).
+// Zeroed except for the header, which is set. Never NULL: if the limit or the system's memory is
+// exceeded, the run ends there with the error of the memory limit (a long jump to where the run
+// began; cleanups release what C code holds, lang/memory.h).
 void *cag_alloc(CagVm *vm, CagType type, size_t size);
-bool cag_heap_has_room(const CagVm *vm, size_t size); // for a cag_alloc
-void cag_heap_charge(CagVm *vm, size_t bytes);
 void cag_collect(CagVm *vm);
 
 // What objects with the type CAG_INTERNAL are: their head.flags.
 enum { CAG_INTERNAL_BUILDER = 1, CAG_INTERNAL_LAYOUT = 2 };
 
-void cag_heap_init(CagVm *vm, size_t limit);
+void cag_heap_init(CagVm *vm);
 void cag_heap_free(CagVm *vm);
 
 // Root stack.

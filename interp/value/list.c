@@ -3,10 +3,10 @@
 // The representation of a list follows from its elements (value.h): packed numbers, packed vectors,
 // or values. It is chosen here and nowhere else, so that equal lists are represented alike.
 
-#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 
+#include "base/memory.h"
 #include "interp/eval/vm.h"
 
 // Larger data get a buffer of their own from malloc.
@@ -20,7 +20,7 @@ static size_t element_size(uint32_t dim) { return dim ? dim * sizeof(double) : s
 #define SMALL_PAGE ((uintptr_t)4096)
 
 static void *take(size_t bytes) {
-  void *p = malloc(bytes);
+  void *p = cag_malloc(bytes);
 #ifdef MADV_HUGEPAGE
   if (p && bytes >= LARGE_PAGES_FROM) {
     const uintptr_t from = ((uintptr_t)p + SMALL_PAGE - 1) & ~(SMALL_PAGE - 1);
@@ -41,7 +41,6 @@ static CagList *new_list(CagVm *vm, size_t n, uint32_t dim) {
     l->as.data = l + 1;
   } else {
     l = cag_alloc(vm, CAG_LIST, sizeof *l);
-    cag_heap_charge(vm, bytes);
     l->as.data = take(bytes);
     if (!l->as.data) cag_vm_out_of_memory(vm);
     l->allocated = true;
@@ -148,8 +147,7 @@ CagBuilder *cag_builder_new(CagVm *vm) {
 static void grow(CagVm *vm, CagBuilder *b) {
   size_t capacity = b->capacity ? b->capacity * 2 : 16;
   size_t element = element_size(b->dim);
-  cag_heap_charge(vm, (capacity - b->capacity) * element);
-  void *data = realloc(b->data, capacity * element);
+  void *data = cag_realloc(b->data, capacity * element);
   if (!data) cag_vm_out_of_memory(vm);
   b->data = data;
   b->capacity = capacity;
@@ -157,7 +155,6 @@ static void grow(CagVm *vm, CagBuilder *b) {
 
 // Turns packed data into values: an element of another kind came.
 static void unpack(CagVm *vm, CagBuilder *b) {
-  cag_heap_charge(vm, b->capacity * sizeof(CagValue));
   CagCleanup cleanup;
   CagValue *items = cag_temporary(&cleanup, b->capacity, sizeof *items);
   const double *x = b->data;
@@ -165,7 +162,7 @@ static void unpack(CagVm *vm, CagBuilder *b) {
   for (size_t i = 0; i < b->length; i++)
     items[i] = dim == 1 ? cag_number(x[i]) : cag_vector(vm, x + i * dim, dim);
   cag_cleanup_pop(&cleanup);
-  free(b->data);
+  cag_free(b->data);
   b->data = items;
   b->dim = 0;
   b->mixed = true;
@@ -189,10 +186,10 @@ CagValue cag_builder_finish(CagVm *vm, CagBuilder *b) {
   if (bytes <= INLINE_MAX) {
     l = new_list(vm, b->length, b->dim);
     if (bytes) memcpy(l->as.data, b->data, bytes);
-    free(b->data);
+    cag_free(b->data);
   } else {
     l = cag_alloc(vm, CAG_LIST, sizeof *l);
-    void *fitted = realloc(b->data, bytes);
+    void *fitted = cag_realloc(b->data, bytes);
     l->as.data = fitted ? fitted : b->data;
     l->allocated = true;
     l->length = b->length;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/builtin/apply.h"
 #include "interp/eval/vm.h"
 #include "interp/value/jet.h"
@@ -17,7 +18,7 @@
 static char no_bytes[1];
 
 static void fail_string(CagString *s) {
-  if (!s->failed) free(s->bytes);
+  if (!s->failed) cag_free(s->bytes);
   *s = (CagString){.bytes = no_bytes, .most = s->most, .failed = true};
 }
 
@@ -26,7 +27,7 @@ void cag_string_add(CagString *s, const char *bytes, size_t n) {
   if (s->length + n + 1 > s->capacity) {
     size_t capacity = s->capacity ? s->capacity * 2 : 64;
     while (capacity < s->length + n + 1) capacity *= 2;
-    char *p = realloc(s->bytes, capacity);
+    char *p = cag_realloc(s->bytes, capacity);
     if (!p) {
       fail_string(s);
       return;
@@ -51,7 +52,7 @@ void cag_string_printf(CagString *s, const char *format, ...) {
     cag_string_add(s, buffer, (size_t)n);
     return;
   }
-  char *big = malloc((size_t)n + 1);
+  char *big = cag_malloc((size_t)n + 1);
   if (!big) {
     fail_string(s);
     return;
@@ -60,11 +61,11 @@ void cag_string_printf(CagString *s, const char *format, ...) {
   vsnprintf(big, (size_t)n + 1, format, args);
   va_end(args);
   cag_string_add(s, big, (size_t)n);
-  free(big);
+  cag_free(big);
 }
 
 void cag_string_free(CagString *s) {
-  if (!s->failed) free(s->bytes);
+  if (!s->failed) cag_free(s->bytes);
   *s = (CagString){0};
 }
 
@@ -192,7 +193,7 @@ static bool is_word(const CagText *t) {
 }
 
 bool cag_string_fits(CagVm *vm, const CagString *s) {
-  if (!s->failed && s->length <= vm->heap.limit) return true;
+  if (!s->failed) return true;
   if (!vm->failed)
     cag_vm_fail(vm, CAG_ERR_limit_memory,
                 "the printed value does not fit the memory (--max-memory)");

@@ -3,9 +3,9 @@
 #include "interp/value/value.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/eval/vm.h"
 
 static const char *const type_names[] = {
@@ -54,7 +54,7 @@ static uint32_t hash_bytes(const char *bytes, size_t length) {
 
 static void grow_interned(CagVm *vm) {
   size_t size = vm->interned_size ? vm->interned_size * 2 : 1024;
-  CagText **table = calloc(size, sizeof *table);
+  CagText **table = cag_calloc(size, sizeof *table);
   if (!table) cag_vm_out_of_memory(vm);
   for (size_t i = 0; i < vm->interned_size; i++) {
     CagText *t = vm->interned[i];
@@ -63,7 +63,7 @@ static void grow_interned(CagVm *vm) {
     while (table[k]) k = (k + 1) & (size - 1);
     table[k] = t;
   }
-  free(vm->interned);
+  cag_free(vm->interned);
   vm->interned = table;
   vm->interned_size = size;
 }
@@ -144,7 +144,7 @@ double cag_range_element(const CagRange *r, size_t k, size_t count) {
 static void index_layout(CagVm *vm, CagLayout *l) {
   size_t size = 16;
   while (size < l->count * 2) size *= 2;
-  l->index = calloc(size, sizeof *l->index);
+  l->index = cag_calloc(size, sizeof *l->index);
   if (!l->index) cag_vm_out_of_memory(vm);
   l->index_size = size;
   for (size_t i = 0; i < l->count; i++) {
@@ -277,7 +277,6 @@ CagValue cag_solid_value(CagVm *vm, CagSolid *solid) {
 CagValue cag_mesh_value(CagVm *vm, CagMesh *m) {
   CagShape *s = shape_of(vm, CAG_MESH, release_mesh, m);
   s->as.mesh = m;
-  cag_heap_charge(vm, m->vertex_count * 64 + m->triangle_count * 12);
   return cag_object(CAG_MESH, s);
 }
 
