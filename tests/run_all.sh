@@ -2,94 +2,149 @@
 # Runs all suites of a build (BUILD, default build) and sums up the results. SANITIZED names a second build, with which the suites that need
 # only a build run again. The last line is `N passed, N failed, N skipped`; the exit status is 0 if nothing failed. A test is skipped, that
 # is, neither passed nor failed, if it needs a tool that is missing. A suite that crashes or prints no counts adds one failure.
+#
+# Suites run side by side, one for each processor, except those that measure how soon something ends: these run alone, afterwards.
+#
+# `run_all.sh --suite FOLDER NUMBER` runs one suite of the list FOLDER/suites, shows its output when something is wrong with it, and writes its
+# counts to FOLDER/NUMBER.
 set -u
 cd "$(dirname "$0")/.."
-BUILD=${BUILD:-build}
-passed=0 failed=0 skipped=0
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
+tab=$(printf '\t')
 
-# add NAME PASSED FAILED SKIPPED STATUS: adds a suite, and shows its output when something is wrong with it.
+# add NAME PASSED FAILED SKIPPED STATUS: tells the result of a suite, and shows its output when something is wrong with it.
 add() {
   suite_failed=$3
   [ "$5" -eq 0 ] || [ "$3" -gt 0 ] || suite_failed=1
   [ $(($2 + $4)) -gt 0 ] || [ "$suite_failed" -gt 0 ] || suite_failed=1
-  [ "$suite_failed" -eq 0 ] || tail -n 200 "$log"
-  [ "$4" -eq 0 ] || [ "$suite_failed" -gt 0 ] || grep -e '^skipped: ' -e ' is skipped: ' -e '^\[  SKIPPED \] [a-z_0-9]*$' "$log" | sort -u
-  echo "$1: $2 passed, $suite_failed failed, $4 skipped"
-  passed=$((passed + $2)) failed=$((failed + suite_failed)) skipped=$((skipped + $4))
+  {
+    [ "$suite_failed" -eq 0 ] || tail -n 200 "$log"
+    [ "$4" -eq 0 ] || [ "$suite_failed" -gt 0 ] || grep -e '^skipped: ' -e ' is skipped: ' -e '^\[  SKIPPED \] [a-z_0-9]*$' "$log" | sort -u
+    echo "$1: $2 passed, $suite_failed failed, $4 skipped"
+  } > "$log.shown"
+  cat "$log.shown" # in one piece: other suites write as well
+  echo "$2 $suite_failed $4" > "$counts"
 }
 
-# unit PROGRAM NAME: runs a program of C tests. cmocka writes its counts to standard error, with several lines per group: `[  PASSED  ] 3
-# test(s).`, `[  SKIPPED ] 1 test(s), listed below:`. in_all PATTERN: sums up the numbers at \(\).
+# cmocka writes its counts to standard error, with several lines per group: `[  PASSED  ] 3 test(s).`, `[  SKIPPED ] 1 test(s), listed
+# below:`. in_all PATTERN: sums up the numbers at \(\).
 in_all() { sed -n "s/$1/\1/p" "$log" | awk '{ n += $1 } END { print n + 0 }'; }
-unit() {
-  "$1" > "$log" 2>&1
+
+# run_suite KIND NAME COMMAND. The kinds: unit, a program of C tests; counted, a command whose last line is `N passed, N failed, N skipped`;
+# check, a command that passes or fails as a whole.
+run_suite() {
+  sh -c "$3" > "$log" 2>&1 < /dev/null
   status=$?
-  add "$2" "$(in_all '^\[  PASSED  \] \([0-9]*\) test(s).*')" "$(in_all '^\[  FAILED  \].*[ :]\([0-9]*\) test(s).*')" \
-    "$(in_all '^\[  SKIPPED \].*[ :]\([0-9]*\) test(s).*')" $status
+  case $1 in
+    unit)
+      add "$2" "$(in_all '^\[  PASSED  \] \([0-9]*\) test(s).*')" "$(in_all '^\[  FAILED  \].*[ :]\([0-9]*\) test(s).*')" \
+        "$(in_all '^\[  SKIPPED \].*[ :]\([0-9]*\) test(s).*')" $status
+      ;;
+    counted)
+      found=$(tail -n 1 "$log" | sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed, \([0-9]*\) skipped$/\1 \2 \3/p')
+      add "$2" ${found:-0 1 0} $status
+      ;;
+    check)
+      if [ $status -eq 0 ]; then add "$2" 1 0 0 0; else add "$2" 0 1 0 $status; fi
+      ;;
+  esac
 }
 
-# A command whose last line is `N passed, N failed, N skipped`.
-counted() {
-  name=$1
-  shift
-  "$@" > "$log" 2>&1
-  status=$?
-  counts=$(tail -n 1 "$log" | sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed, \([0-9]*\) skipped$/\1 \2 \3/p')
-  add "$name" ${counts:-0 1 0} $status
-}
+if [ "${1:-}" = --suite ]; then
+  log=$2/log.$3 counts=$2/$3
+  IFS=$tab read -r kind name command << END
+$(sed -n "$3p" "$2/suites")
+END
+  run_suite "$kind" "$name" "$command"
+  exit 0
+fi
 
-# A check that passes or fails as a whole.
-check() {
-  name=$1
-  shift
-  "$@" > "$log" 2>&1
-  status=$?
-  if [ $status -eq 0 ]; then add "$name" 1 0 0 0; else add "$name" 0 1 0 $status; fi
-}
+BUILD=${BUILD:-build}
+case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
+export BUILD
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 
-# unit_suites BUILD NAME: runs all programs of C tests of a build. NAME is a prefix of the names of its suites.
+suite() { printf '%s\t%s\t%s\n' "$1" "$2" "$3" >> "$work/suites"; }
+
+# unit_suites BUILD NAME: all programs of C tests of a build. NAME is a prefix of the names of its suites.
 unit_suites() {
   for source in tests/base/*_test.c tests/lang/*_test.c tests/geom/*_test.c tests/interp/*_test.c; do
-    [ ! -e "$source" ] || unit "$1/${source%.c}" "$2${source%.c}"
+    case $source in
+      *'*'* | tests/interp/interrupt_test.c) ;; # the latter runs alone
+      *) suite unit "$2${source%.c}" "'$1/${source%.c}'" ;;
+    esac
   done
 }
 
-# vector_suites BUILD NAME: runs the worked examples.
+# vector_suites BUILD NAME: the worked examples.
 vector_suites() {
   for vectors in tests/data/0*.json; do
-    counted "$2$vectors" env BUILD="$1" tests/vectors/run "$vectors"
+    suite counted "$2$vectors" "BUILD='$1' tests/vectors/run '$vectors'"
   done
 }
 
-case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
-unit_suites "$BUILD" ""
-counted "cag test" "$BUILD/cag" test tests/language tests/scenes
-counted "cag test examples" "$BUILD/cag" test --no-pictures examples stdlib
-counted "tests/cli" env BUILD="$BUILD" sh tests/cli/run.sh
-counted "tests/repl" env BUILD="$BUILD" sh tests/repl/run.sh
-counted "tests/editors" env BUILD="$BUILD" sh tests/editors/run.sh
-vector_suites "$BUILD" ""
-counted "tests/fuzz" "$BUILD/tests/fuzz/fuzz" 8
-counted "tests/fuzz/memory" "$BUILD/tests/fuzz/memory" -n "${MEMORY_POINTS:-3}"
-counted "tests/fuzz/memory scripts" "$BUILD/tests/fuzz/memory" -n "${MEMORY_POINTS:-3}" -x tests/fuzz/scripts/*.cag
-counted "tests/fuzz/memory language" "$BUILD/tests/fuzz/memory" -n "${MEMORY_POINTS:-3}" \
-  tests/language/modules/*.cag tests/language/values/*.cag tests/language/words/*.cag
+# language_suites BUILD NAME OPTIONS: the scripts of the language, folder by folder.
+language_suites() {
+  for folder in tests/language/*/; do
+    folder=${folder%/}
+    case $folder in
+      */geometry) for part in '[a-l]' '[m-r]' '[s-z]'; do suite counted "$2$folder/$part" "'$1/cag' test $3 $folder/$part*.cag"; done ;;
+      *) suite counted "$2$folder" "'$1/cag' test $3 $folder" ;;
+    esac
+  done
+}
+
+# Those that take longest begin first.
+points=${MEMORY_POINTS:-3}
+alone='limits output signals'
 if [ -n "${SANITIZED:-}" ]; then
   case $SANITIZED in /*) ;; *) SANITIZED=$PWD/$SANITIZED ;; esac
-  unit_suites "$SANITIZED" "sanitized "
   # Three scripts take 12 s each without sanitizers, and four times that with them.
-  counted "sanitized cag test" "$SANITIZED/cag" test --no-pictures --max-time 600 tests/language
+  language_suites "$SANITIZED" "sanitized " "--no-pictures --max-time 600"
+  suite counted "sanitized tests/fuzz" "'$SANITIZED/tests/fuzz/fuzz' 2"
+  unit_suites "$SANITIZED" "sanitized "
   vector_suites "$SANITIZED" "sanitized "
-  counted "sanitized tests/fuzz" "$SANITIZED/tests/fuzz/fuzz" 2
 fi
-check "layers" make -s check-layers
+language_suites "$BUILD" "" ""
+suite counted "tests/scenes" "'$BUILD/cag' test tests/scenes"
+suite counted "cag test examples" "'$BUILD/cag' test --no-pictures examples stdlib"
+suite counted "tests/fuzz" "'$BUILD/tests/fuzz/fuzz' 8"
+suite counted "tests/fuzz/memory" "'$BUILD/tests/fuzz/memory' -n $points"
+suite counted "tests/fuzz/memory scripts" "'$BUILD/tests/fuzz/memory' -n $points -x tests/fuzz/scripts/*.cag"
+suite counted "tests/fuzz/memory language" \
+  "'$BUILD/tests/fuzz/memory' -n $points tests/language/modules/*.cag tests/language/values/*.cag tests/language/words/*.cag"
+for cases in tests/cli/cases_*.sh; do
+  name=${cases#tests/cli/cases_}
+  name=${name%.sh}
+  case " $alone " in
+    *" $name "*) ;;
+    *) suite counted "tests/cli $name" "sh tests/cli/run.sh $name" ;;
+  esac
+done
+suite counted "tests/repl" "sh tests/repl/run.sh"
+suite counted "tests/editors" "sh tests/editors/run.sh"
+unit_suites "$BUILD" ""
+vector_suites "$BUILD" ""
+suite check "layers" "make -s check-layers"
 if command -v clang-format > /dev/null; then
-  check "format" make -s check-format
+  suite check "format" "make -s check-format"
 else
-  echo "skipped: clang-format is missing" > "$log"
-  add "format" 0 0 1 0
+  suite counted "format" "echo 'skipped: clang-format is missing'; echo '0 passed, 0 failed, 1 skipped'"
 fi
+together=$(wc -l < "$work/suites")
+for name in $alone; do suite counted "tests/cli $name" "sh tests/cli/run.sh $name"; done
+for build in "$BUILD" ${SANITIZED:+"$SANITIZED"}; do
+  suite unit "${build##*/} tests/interp/interrupt_test" "'$build/tests/interp/interrupt_test'"
+done
+all=$(wc -l < "$work/suites")
+
+seq "$together" | xargs -P "$(nproc)" -n 1 sh tests/run_all.sh --suite "$work"
+seq $((together + 1)) "$all" | xargs -n 1 sh tests/run_all.sh --suite "$work"
+passed=0 failed=0 skipped=0
+for number in $(seq "$all"); do
+  # A suite whose runner was killed has no counts.
+  read -r p f s < "$work/$number" 2> /dev/null || { p=0 f=1 s=0; }
+  passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
+done
 echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

@@ -63,11 +63,14 @@ static bool is_faster_turned(const double *xy, const size_t *counts, size_t loop
   return run[0] * (most[1] - least[1]) > run[1] * (most[0] - least[0]);
 }
 
-static bool run_sweep(const double *xy, const size_t *counts, size_t loops, Sweep *s) {
+// Bytes that GLU takes for each point of a polygon: a vertex, a pair of half edges, its part of
+// faces, of the queue of events, and of the regions under the sweep line.
+#define GLU_BYTES ((size_t)512)
+
+static bool sweep_points(const double *xy, const size_t *counts, size_t loops, size_t points,
+                         Sweep *s) {
   GLUtesselator *glu = gluNewTess();
   if (!glu) return false;
-  size_t points = 0;
-  for (size_t l = 0; l < loops; l++) points += counts[l];
   GLdouble(*coordinates)[3] = cag_malloc((points + 1) * sizeof *coordinates);
   if (!coordinates) {
     gluDeleteTess(glu);
@@ -95,6 +98,15 @@ static bool run_sweep(const double *xy, const size_t *counts, size_t loops, Swee
   gluDeleteTess(glu);
   cag_free(coordinates);
   return true;
+}
+
+static bool run_sweep(const double *xy, const size_t *counts, size_t loops, Sweep *s) {
+  size_t points = 0;
+  for (size_t l = 0; l < loops; l++) points += counts[l];
+  if (!cag_account_hold(points * GLU_BYTES)) return false;
+  const bool done = sweep_points(xy, counts, loops, points, s);
+  cag_account_drop(points * GLU_BYTES);
+  return done;
 }
 
 // --- Delaunay flips ---

@@ -2,6 +2,7 @@
 //
 // libxml2 reads the XML; its own bounds on depth and on the length of names and texts stay on.
 
+#include "base/memory.h"
 #include "interp/import/urdf_read.h"
 
 #include <libxml/parser.h>
@@ -397,7 +398,17 @@ static void read_tree(void *context) {
   read_document(r, r->document);
 }
 
-static void parse(Reader *r, const char *bytes, size_t size) {
+// Bytes that libxml2 takes for a file at most: nodes and attributes with their texts begin at these
+// characters.
+static size_t tree_bytes(const char *bytes, size_t size) {
+  enum { NODE = 256, ATTRIBUTE = 384 };
+  size_t total = 3 * size;
+  for (size_t i = 0; i < size; i++)
+    total += bytes[i] == '<' ? 2 * NODE : bytes[i] == '=' ? ATTRIBUTE : 0;
+  return total;
+}
+
+static void parse_document(Reader *r, const char *bytes, size_t size) {
   r->context->_private = r;
   r->context->sax->internalSubset = refuse_document_type;
   xmlDoc *doc = xmlCtxtReadMemory(r->context, bytes, (int)size, NULL, NULL,
@@ -412,6 +423,16 @@ static void parse(Reader *r, const char *bytes, size_t size) {
     fail_at(r, syntax, fault ? fault->line : 1, "%.*s", (int)strcspn(told, "\n"), told);
   }
   xmlFreeDoc(doc);
+}
+
+static void parse(Reader *r, const char *bytes, size_t size) {
+  const size_t held = tree_bytes(bytes, size);
+  if (!cag_account_hold(held)) {
+    r->status = cag_fail_memory(r->err);
+    return;
+  }
+  parse_document(r, bytes, size);
+  cag_account_drop(held);
 }
 
 static pthread_once_t begun = PTHREAD_ONCE_INIT;

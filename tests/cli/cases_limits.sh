@@ -211,3 +211,9 @@ done
 try export ball.cag -o ball.stl --max-memory 10K
 status 5
 says '--max-memory'
+
+it 'no script takes much more memory than it may' python3
+# A tenth of the scripts; CAG_HOSTILE=1 runs all.
+if ! python3 "$here/hostile.py" "$CAG" "$here/hostile.txt" "${CAG_HOSTILE:-10}" > out 2> err; then
+  wrong "$(cat out err)"
+fi
