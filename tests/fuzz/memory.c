@@ -1,6 +1,6 @@
 // Runs scripts with failing allocations.
 //
-//     memory [-n POINTS] [-s SEED] [-b NAME] [-a ALLOCATION] [-x] [FILE...]
+//     memory [-n POINTS] [-s SEED] [-b NAME] [-a ALLOCATION] [-l] [-x] [FILE...]
 //
 // Each script runs once without failures, and POINTS times (default 4) with failing allocations,
 // which are drawn from SEED (default 1). At every second point, one allocation fails; at the
@@ -9,6 +9,10 @@
 // single point in the process itself: allocation number ALLOCATION fails, or with a minus sign all
 // allocations from this one on.
 //
+// With -l, no allocation fails, but the limit of memory is small: at the points, it rises from what
+// an empty script needs to that and 4 MiB, in steps that grow by the same factor. -a is then the
+// limit in bytes.
+//
 // A run passes if it ends with an error or with the output of the run without failures. The program
 // is linked with wrapped allocation functions, so only allocations of cag itself fail. Runs are
 // made in child processes: a crash ends one run and is reported. If the program is built with
@@ -16,6 +20,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <math.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -54,6 +59,8 @@ typedef struct Shared {
 static Job *jobs;
 static size_t job_count;
 static Shared *shared;
+static bool by_limit;                            // -l
+static size_t start_bytes;                       // limit of memory that an empty script needs
 static char folder[] = "/tmp/cag-memory-XXXXXX"; // receives exports
 
 static size_t draw(uint64_t *state, size_t n) {
@@ -77,8 +84,9 @@ static int run_job(const Job *j, long point, char **output, size_t *allocations)
   options.messages = fopen("/dev/null", "w");
   alarm(HANG);
   made = 0;
-  failing = (size_t)labs(point);
+  failing = by_limit ? 0 : (size_t)labs(point);
   failing_on = point < 0;
+  if (by_limit && point) options.max_memory = (size_t)point;
   CagSession *s = cag_session_new(&options);
   int status = CAG_STATUS_LIMIT;
   if (s && j->text)
@@ -126,6 +134,26 @@ static void try_point(const Job *j, long point, int expected_status, const char 
   }
 }
 
+// The least limit of memory, to 1 KiB, with which an empty script runs.
+static size_t find_start_bytes(void) {
+  const Job empty = {.name = "", .text = ""};
+  size_t low = 0, high = (size_t)64 << 20, ignored;
+  while (high - low > 1024) {
+    char *output;
+    const size_t middle = low + (high - low) / 2;
+    const int status = run_job(&empty, (long)middle, &output, &ignored);
+    free(output);
+    if (status == CAG_STATUS_OK) high = middle;
+    else low = middle;
+  }
+  return high;
+}
+
+// The limit of memory at a point: 1 KiB to 4 MiB above the start.
+static size_t limit_at(size_t point, size_t points) {
+  return start_bytes + (size_t)(1024 * pow(4096, (double)point / (double)points));
+}
+
 // Runs the remaining points of one job, or a single one.
 static void try_job(size_t points, uint64_t seed, long single) {
   const Job *j = &jobs[shared->job], empty = {.name = "", .text = ""};
@@ -142,7 +170,8 @@ static void try_job(size_t points, uint64_t seed, long single) {
     // scripts.
     const size_t first = draw(&state, 16) == 0 || start >= allocations ? 0 : start;
     const long point = (long)(1 + first + draw(&state, allocations - first));
-    try_point(j, shared->point % 2 ? point : -point, status, expected);
+    if (by_limit) try_point(j, (long)limit_at(shared->point, points), status, expected);
+    else try_point(j, shared->point % 2 ? point : -point, status, expected);
     if (shared->lost) break;
   }
   free(expected);
@@ -256,12 +285,13 @@ int main(int argc, char **argv) {
   long single = 0;
   const char *only = NULL;
   bool exports = false;
-  for (int option; (option = getopt(argc, argv, "n:s:b:a:x")) != -1;) {
+  for (int option; (option = getopt(argc, argv, "n:s:b:a:lx")) != -1;) {
     switch (option) {
     case 'n': points = strtoul(optarg, NULL, 10); break;
     case 's': seed = strtoull(optarg, NULL, 10); break;
     case 'b': only = optarg; break;
     case 'a': single = strtol(optarg, NULL, 10); break;
+    case 'l': by_limit = true; break;
     case 'x': exports = true; break;
     default: return 2;
     }
@@ -269,7 +299,8 @@ int main(int argc, char **argv) {
   shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared == MAP_FAILED || !mkdtemp(folder)) return 2;
   setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
-  if (!only && !single) try_start();
+  if (by_limit) start_bytes = find_start_bytes();
+  else if (!only && !single) try_start();
   jobs = NULL;
   if (optind == argc) add_examples(only);
   for (int i = optind; i < argc; i++) add_file(argv[i], exports);
