@@ -47,12 +47,12 @@ static bool tell_of_mapping(CagCall *call, int argument, const char *what) {
     return false;
   const CagErrorId id = errors->items[0].id;
   char *message = errors->items[0].message ? cag_strdup(errors->items[0].message) : NULL;
-  char *reason = errors->items[0].reason ? cag_strdup(errors->items[0].reason) : NULL;
+  char *reason = errors->items[0].reason ? strdup(errors->items[0].reason) : NULL;
   const char *said = message ? message : "";
   if (strncmp(said, "at: ", 4) == 0) said += 4; // how points of a surface are asked for
   cag_fail_call(call, argument, id, "%s: %s", what, said);
   cag_free(message);
-  cag_free(errors->items[0].reason);
+  free(errors->items[0].reason);
   errors->items[0].reason = reason;
   return false;
 }

@@ -327,7 +327,7 @@ int cag_session_fail_geometry(CagSession *s, const CagError *err) {
   CagDiagnostic *d = cag_diagnostics_add(&s->diagnostics, id, place.source,
                                          (CagSpan){place.start, place.end}, "%s", err->message);
   if (err->reason && strcmp(err->reason, cag_error_info(id)->reason) != 0)
-    d->reason = cag_strdup(err->reason);
+    d->reason = strdup(err->reason);
   return cag_session_status(s);
 }
 
