@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-CagStatus cag_fail(CagError *err, CagStatus status, const char *reason, const char *argument,
-                   long index, const char *format, ...) {
+CagStatus cag_fail(CagError *err, CagStatus status, CagErrorId id, const char *argument, long index,
+                   const char *format, ...) {
   err->status = status;
-  err->reason = reason;
+  err->id = id;
   snprintf(err->argument, sizeof err->argument, "%s", argument ? argument : "");
   err->index = index;
   va_list values;
@@ -21,9 +21,7 @@ CagStatus cag_fail(CagError *err, CagStatus status, const char *reason, const ch
   return status;
 }
 
-bool cag_is_empty_shape(const CagError *err) {
-  return err->reason && strcmp(err->reason, "empty-shape") == 0;
-}
+bool cag_is_empty_shape(const CagError *err) { return err->id == CAG_ERR_empty_shape; }
 
 static _Thread_local bool memory_was_out;
 
@@ -37,7 +35,7 @@ bool cag_memory_was_out(void) {
 
 CagStatus cag_fail_memory(CagError *err) {
   cag_note_memory();
-  return cag_fail(err, CAG_E_MEMORY, "out-of-memory", "", -1, "there is no memory left");
+  return cag_fail(err, CAG_E_MEMORY, CAG_ERR_limit_memory, "", -1, "there is no memory left");
 }
 
 // 17 digits always read back the same, 15 often do and are what a person would write.

@@ -11,6 +11,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/error.h"
+
 typedef enum CagStatus {
   CAG_OK,
   CAG_E_ARGUMENT,   // a value that no geometry has: negative radius, too few points, knots that
@@ -27,17 +29,17 @@ typedef enum CagStatus {
 
 typedef struct CagError {
   CagStatus status;
-  const char *reason; // short name, a literal: "parameter-range", "knots-not-monotone"
-  char argument[32];  // the argument's name as the language has it: "knots"; empty: none
-  long index;         // offending element; -1: none
-  char message[400];  // what was expected and what was found, without the function's name: "`knots`
-                      // must not decrease: knots[5] = ..."
+  CagErrorId id;     // CAG_ERR_parameter_range: its row gives the reason that scripts see
+  char argument[32]; // the argument's name as the language has it: "knots"; empty: none
+  long index;        // offending element; -1: none
+  char message[400]; // what was expected and what was found, without the function's name: "`knots`
+                     // must not decrease: knots[5] = ..."
 } CagError;
 
-// Fills err and gives status back: `return cag_fail(err, CAG_E_ARGUMENT, "knots-not-monotone",
-// "knots", i, "...", ...)`.
-CagStatus cag_fail(CagError *err, CagStatus status, const char *reason, const char *argument,
-                   long index, const char *format, ...) __attribute__((format(printf, 6, 7)));
+// Fills err and gives status back: `return cag_fail(err, CAG_E_ARGUMENT,
+// CAG_ERR_knots_not_monotone, "knots", i, "...", ...)`.
+CagStatus cag_fail(CagError *err, CagStatus status, CagErrorId id, const char *argument, long index,
+                   const char *format, ...) __attribute__((format(printf, 6, 7)));
 CagStatus cag_fail_memory(CagError *err);
 // Records that memory ran out, as cag_fail_memory does, where a function cannot return a status.
 void cag_note_memory(void);

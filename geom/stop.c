@@ -11,5 +11,5 @@ const volatile int *cag_stop_lend(const volatile int *flag) {
 }
 
 CagStatus cag_stop_fail(CagError *err) {
-  return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "it was stopped");
+  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "it was stopped");
 }

@@ -1,4 +1,4 @@
-// Diagnostics as data: the table of errors, the list, and the nearest name.
+// Diagnostics as data: the list, and the nearest name.
 
 #include "lang/diagnostic.h"
 
@@ -6,32 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-
-// ---- the table ----
-
-static const CagErrorInfo infos[] = {
-#define CAG_ERROR(name, code, reason, title, explanation, example)                                 \
-  {code, reason, title, explanation, example},
-#include "lang/errors.def"
-#undef CAG_ERROR
-};
-
-const CagErrorInfo *cag_error_info(CagErrorId id) {
-  static const CagErrorInfo unknown = {"E0000", "unknown", "an error without a kind", "", NULL};
-  return (size_t)id < CAG_ERR_COUNT ? &infos[id] : &unknown;
-}
-
-CagErrorId cag_error_by_code(const char *code) {
-  for (size_t i = 0; i < CAG_ERR_COUNT; i++)
-    if (strcasecmp(infos[i].code, code) == 0) return (CagErrorId)i;
-  return CAG_ERR_COUNT;
-}
-
-CagErrorId cag_error_by_reason(const char *reason) {
-  for (size_t i = 0; i < CAG_ERR_COUNT; i++)
-    if (strcmp(infos[i].reason, reason) == 0) return (CagErrorId)i;
-  return CAG_ERR_COUNT;
-}
 
 // ---- the list ----
 //
@@ -48,7 +22,6 @@ static char no_memory[] = "out of memory";
 static void release(CagDiagnostic *d) {
   if (d->message != no_memory) free(d->message);
   free(d->help);
-  free(d->reason);
   for (size_t i = 0; i < d->note_count; i++) free(d->notes[i].text);
   free(d->notes);
   *d = (CagDiagnostic){0};

@@ -9,28 +9,8 @@
 
 #include <stdio.h>
 
+#include "base/error.h"
 #include "lang/source.h"
-
-// CAG_ERR_name for each row of errors.def, in the order of the table.
-typedef enum CagErrorId {
-#define CAG_ERROR(name, code, reason, title, explanation, example) CAG_ERR_##name,
-#include "lang/errors.def"
-#undef CAG_ERROR
-  CAG_ERR_COUNT
-} CagErrorId;
-
-typedef struct CagErrorInfo {
-  const char *code;        // "E0101"
-  const char *reason;      // short name, "parameter-range": what `attempt` sees as err.reason
-  const char *title;       // one phrase
-  const char *explanation; // some sentences
-  const char *example;     // a script that provokes it
-} CagErrorInfo;
-
-const CagErrorInfo *cag_error_info(CagErrorId id);
-// The row with this code ("E0101", any case) or with this reason; CAG_ERR_COUNT when there is none.
-CagErrorId cag_error_by_code(const char *code);
-CagErrorId cag_error_by_reason(const char *reason);
 
 typedef enum CagSeverity {
   CAG_SEVERITY_ERROR,
@@ -50,10 +30,8 @@ typedef struct CagNote {
 typedef struct CagDiagnostic {
   CagSeverity severity;
   CagErrorId id;
-  char *message; // "sin expects an angle, found the number 30"
-  char *help;    // the mend, shown behind the carets: "write 30deg or 30rad"; NULL: none
-  char *reason;  // short name of a geometry error where it differs from the table's row; NULL: the
-                 // row's
+  char *message;           // "sin expects an angle, found the number 30"
+  char *help;              // the mend, shown behind the carets: "write 30deg or 30rad"; NULL: none
   const CagSource *source; // NULL: the error has no place in a script
   CagSpan span;
   CagNote *notes;

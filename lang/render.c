@@ -248,7 +248,7 @@ static void json_note(FILE *out, const CagNote *n) {
 static void render_json(const CagDiagnostic *d, FILE *out) {
   const CagErrorInfo *info = cag_error_info(d->id);
   fprintf(out, "{\"severity\":\"%s\",\"code\":\"%s\"", severity_name(d->severity), info->code);
-  json_key_text(out, "reason", d->reason ? d->reason : info->reason);
+  json_key_text(out, "reason", info->reason);
   json_key_text(out, "message", d->message ? d->message : "");
   json_place(out, d->source, d->span, true);
   json_key_text(out, "help", d->help);

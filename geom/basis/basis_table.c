@@ -12,7 +12,7 @@ CagStatus cag_basis_interval(const double *knots, size_t count, int p, double t,
   const size_t last = count - 1, end = count - 1 - (size_t)p;
   char a[32], b[32], x[32];
   if (!(t >= knots[0] && t <= knots[last]))
-    return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "t", -1,
+    return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, "t", -1,
                     "`t` = %s is outside of the knots, %s..%s", cag_number_text(t, x),
                     cag_number_text(knots[0], a), cag_number_text(knots[last], b));
   size_t lo = 0, hi = last;
@@ -126,21 +126,21 @@ static CagStatus check_refinement(const double *x, size_t count, const double *y
   size_t i = 0, run = 1;
   for (size_t j = 0; j < n; j++, run++) {
     if (j > 0 && y[j] < y[j - 1])
-      return cag_fail(err, CAG_E_ARGUMENT, "knots-not-monotone", "refined", (long)j,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "refined", (long)j,
                       "`refined` must not decrease: it does at refined[%zu]", j);
     if (j > 0 && y[j] != y[j - 1]) run = 1;
     if (run > (size_t)p + 1)
-      return cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", "refined", (long)j,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "refined", (long)j,
                       "the knot %s occurs more than %d times", cag_number_text(y[j], text), p + 1);
     if (i < count && y[j] == x[i]) i++;
     else if (i < count && y[j] > x[i]) break;
     else if (y[j] < start || y[j] > end)
-      return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "refined", (long)j,
+      return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, "refined", (long)j,
                       "the new knot %s lies outside of the usable range",
                       cag_number_text(y[j], text));
   }
   if (i == count) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "not-a-refinement", "refined", (long)i,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_a_refinement, "refined", (long)i,
                   "`refined` must contain every knot as often as `knots` does: %s is missing",
                   cag_number_text(x[i], text));
 }

@@ -128,7 +128,7 @@ static CagStatus check_jump(const Fit *fit, double a, const double *values, CagE
   for (size_t part = 0; part < parts; part++) {
     double gap = fabs(values[part] - values[DEGREE * parts + part]);
     if (gap > JUMP_SHARE * fit->c->size[part])
-      return cag_fail(err, CAG_E_ARGUMENT, "function-jumps", fit->name, -1,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_function_jumps, fit->name, -1,
                       "`%s` must be continuous: it jumps near %s", fit->name,
                       cag_number_text(a, text));
   }
@@ -146,7 +146,7 @@ static CagStatus sample(Fit *fit, double a, double b, double *values, CagError *
       double y = values[j * parts + part];
       char text[32];
       if (!isfinite(y))
-        return cag_fail(err, CAG_E_ARGUMENT, "not-finite", fit->name, -1,
+        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, fit->name, -1,
                         "`%s` must be finite: it is not at %s", fit->name,
                         cag_number_text(t, text));
       fit->c->size[part] = fmax(fit->c->size[part], fabs(y));

@@ -56,16 +56,16 @@ void cag_knots_chord(const CagVec3 *points, size_t n, int p, double *knots) {
 
 CagStatus cag_degree_check(size_t n, int p, CagError *err) {
   if (n < 2)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
                     "a curve needs at least 2 control points; these are %zu", n);
   if (p < 1)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                     "the degree is at least 1; this is %d", p);
   if ((size_t)p > n - 1)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                     "degree %d needs at least %d control points; these are %zu", p, p + 1, n);
   if (p > CAG_MAX_DEGREE)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                     "the degree is at most %d; this is %d", CAG_MAX_DEGREE, p);
   return CAG_OK;
 }
@@ -77,15 +77,15 @@ CagStatus cag_knots_check(const double *knots, size_t n, int p, CagError *err) {
   char a[32], b[32];
   for (size_t i = 0; i < count; i++) {
     if (!isfinite(knots[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "knots", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "knots", (long)i,
                       "knots[%zu] is not a finite number", i);
     if (i > 0 && knots[i] < knots[i - 1])
-      return cag_fail(err, CAG_E_ARGUMENT, "knots-not-monotone", "knots", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "knots", (long)i,
                       "`knots` must not decrease: knots[%zu] = %s is less than knots[%zu] = %s", i,
                       cag_number_text(knots[i], a), i - 1, cag_number_text(knots[i - 1], b));
   }
   if (!(knots[p] < knots[n]))
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "knots", p,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "knots", p,
                     "the usable range of the knots, knots[%d]..knots[%zu], is %s..%s and so has no "
                     "length",
                     p, n, cag_number_text(knots[p], a), cag_number_text(knots[n], b));
@@ -94,7 +94,7 @@ CagStatus cag_knots_check(const double *knots, size_t n, int p, CagError *err) {
     bool end = knots[i] <= knots[p] || knots[i] >= knots[n];
     size_t most = end ? (size_t)p + 1 : (size_t)p;
     if (run > most)
-      return cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", "knots", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", (long)i,
                       "the knot %s occurs more than %zu times: %s %s knot of degree %d may be "
                       "repeated %zu times, more would tear the curve",
                       cag_number_text(knots[i], a), most, cag_article(end ? "end" : "inner"),

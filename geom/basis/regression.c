@@ -27,7 +27,7 @@ static CagStatus check_distinct(const double *x, size_t n, size_t needed, CagErr
     distinct += sorted[i] - sorted[i - 1] > SAME_X * (sorted[n - 1] - sorted[0]);
   cag_free(sorted);
   if (distinct >= needed) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "underdetermined", "points", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_underdetermined, "points", -1,
                   "%zu coefficients need as many points of different x; these have %zu", needed,
                   distinct);
 }
@@ -60,7 +60,7 @@ static CagStatus fit_polynomial(const double *x, const double *y, size_t n, int 
   }
   if (!status && LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', (lapack_int)n, (lapack_int)columns, 1, matrix,
                                (lapack_int)columns, right, 1) != 0)
-    status = cag_fail(err, CAG_E_DEGENERATE, "underdetermined", "points", -1,
+    status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_underdetermined, "points", -1,
                       "the points do not determine %zu coefficients", columns);
   for (size_t j = 0; !status && j < columns; j++) out[j] = right[j];
   if (!status) expand(out, degree, m, h);
@@ -70,7 +70,7 @@ static CagStatus fit_polynomial(const double *x, const double *y, size_t n, int 
 }
 
 static CagStatus fail_sign(const char *what, size_t i, CagError *err) {
-  return cag_fail(err, CAG_E_DOMAIN, "domain", "points", (long)i,
+  return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_conic_domain, "points", (long)i,
                   "%s: `points`[%zu] is not so, and has no logarithm", what, i);
 }
 

@@ -55,7 +55,7 @@ static CagStatus add(Fit *f, Node node, CagError *err) {
 
 static CagStatus fail_convergence(double t, CagError *err) {
   char text[32];
-  return cag_fail(err, CAG_E_CONVERGENCE, "convergence", "tolerance", -1,
+  return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "tolerance", -1,
                   "the curve cannot be fitted within the tolerance near t = %s",
                   cag_number_text(t, text));
 }
@@ -152,7 +152,8 @@ static CagStatus sample_curve(void *context, double t, CagSide side, CagVec3 out
 CagStatus cag_curve_approximate(const CagCurve *c, double tolerance, CagCurve **out,
                                 CagError *err) {
   if (!(tolerance > 0))
-    return cag_fail(err, CAG_E_ARGUMENT, "value", "tolerance", -1, "`tolerance` must be positive");
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_value, "tolerance", -1,
+                    "`tolerance` must be positive");
   if (cag_curve_resting_view(c, NULL)) {
     *out = cag_curve_retain(c);
     return CAG_OK;

@@ -72,7 +72,7 @@ static CagStatus check_semi(double r, const char *name, CagError *err) {
   char text[32];
   CagStatus status = cag_curve_check_number(r, name, err);
   if (status || r > 0) return status;
-  return cag_fail(err, CAG_E_ARGUMENT, "radius-not-positive", name, -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_not_positive, name, -1,
                   "`%s` must be positive; this is %s", name, cag_number_text(r, text));
 }
 
@@ -85,17 +85,17 @@ CagStatus cag_curve_arc(double a, double b, double start, double end, const CagT
   if (!status) status = cag_curve_check_number(end, "range", err);
   if (status) return status;
   if (!(start < end))
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "range", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1,
                     "the range %.12gdeg..%.12gdeg has no length; its start must be less than its "
                     "end",
                     start * (180 / M_PI), end * (180 / M_PI));
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++)
       if (!isfinite(frame->m[i][j]))
-        return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "frame", -1,
+        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "frame", -1,
                         "the arc's frame has an entry that is not a finite number");
   if (!cag_transform_is_affine(frame))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-affine", "frame", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_affine, "frame", -1,
                     "the arc's frame must be affine; this one projects");
   return make(a, b, frame, start, end, 0, 1, frame->planar ? 2 : 3, out, err);
 }

@@ -90,7 +90,7 @@ static CagStatus check_ratios(const double *ratios, size_t n, CagError *err) {
   char text[32];
   for (size_t i = 0; i < n; i++)
     if (!(ratios[i] > 0 && ratios[i] < 1))
-      return cag_fail(err, CAG_E_ARGUMENT, "bad-blend-parameter", "alpha", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_blend_parameter, "alpha", (long)i,
                       "a parabola passes its middle point between 0 and 1: alpha = %s",
                       cag_number_text(ratios[i], text));
   return CAG_OK;
@@ -104,7 +104,7 @@ static CagStatus chord_lengths(const CagVec3 *points, size_t n, double power, bo
     out[i] = pow(cag_norm(cag_sub(points[next], points[i])), power);
     if (next == 0 && !closed) break;
     if (!(out[i] > 0) || !isfinite(out[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "coincident-points", "points", (long)next,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "points", (long)next,
                       "points[%zu] and points[%zu] coincide, so there is no ratio of chords; drop "
                       "one of them or give the ratio as a number",
                       i, next);
@@ -117,7 +117,7 @@ CagStatus cag_curve_parabolic_blend(const CagVec3 *points, size_t n, const doubl
                                     CagError *err) {
   const size_t least = ends == CAG_BLEND_OPEN ? 4 : 3;
   if (n < least)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
                     "a parabolic blend %s needs at least %zu points; these are %zu",
                     ends == CAG_BLEND_OPEN       ? "with open ends"
                     : ends == CAG_BLEND_PARABOLA ? "with arcs at its ends"

@@ -192,7 +192,7 @@ CagStatus cag_curve_bounds(const CagCurve *c, CagBounds *out, CagError *err) {
   size_t n;
   bool ring;
   if (!isfinite(cag_norm(cag_sub(box.max, box.min))))
-    return cag_fail(err, CAG_E_ARGUMENT, "size-out-of-range", "", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_out_of_range, "", -1,
                     "the curve is too large to compute with");
   // Hulls of these kinds are tight.
   if (cag_curve_arc_axes(c, &center, &x, &y, &rate) || cag_curve_vertices(c, &points, &n, &ring)) {

@@ -22,7 +22,7 @@ static double cross2(CagVec3 a, CagVec3 b) { return a.x * b.y - a.y * b.x; }
 // --- Circles of a given radius ---
 
 static CagStatus no_circle(CagError *err, const char *why) {
-  return cag_fail(err, CAG_E_DEGENERATE, "no-tangent-circle", "", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_tangent_circle, "", -1,
                   "no circle of this radius touches both as asked: %s", why);
 }
 
@@ -36,7 +36,7 @@ static CagStatus touch_lines(const CagTouched *a, const CagTouched *b, double ra
   const CagVec3 da = cag_unit(a->d), db = cag_unit(b->d), nb = left_of(db);
   const double sine = cross2(da, db);
   if (fabs(sine) <= PARALLEL)
-    return cag_fail(err, CAG_E_DEGENERATE, "parallel-lines", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_parallel_lines, "", -1,
                     "the two lines are parallel: they have no corner");
   // The far side of b is the one that the direction of a points to.
   const double far_side = cag_dot(da, nb) > 0 ? 1 : -1;
@@ -97,12 +97,12 @@ CagStatus cag_tangent_circle(const CagTouched *a, const CagTouched *b, double ra
   char text[32];
   CagStatus status;
   if (!(radius > 0) || !isfinite(radius))
-    return cag_fail(err, CAG_E_ARGUMENT, "radius-not-positive", "radius", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_not_positive, "radius", -1,
                     "`radius` must be positive; this is %s", cag_number_text(radius, text));
   for (int i = 0; i < 2; i++) {
     const CagTouched *t = i == 0 ? a : b;
     if (t->radius == 0 && cag_norm(t->d) == 0)
-      return cag_fail(err, CAG_E_ARGUMENT, "zero-vector", "", i, "a line has no length");
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_vector, "", i, "a line has no length");
   }
   if (a->radius == 0 && b->radius == 0) status = touch_lines(a, b, radius, choice, center, err);
   else if (a->radius == 0)
@@ -175,7 +175,7 @@ static double size_of(const CagCurve *c) {
 
 static CagStatus check_plane_curve(const CagCurve *c, CagError *err) {
   if (c->dimension == 2) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "not-planar", "", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_planar, "", -1,
                   "expects a curve of the plane, with points [x, y]");
 }
 

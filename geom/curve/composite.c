@@ -162,7 +162,7 @@ static CagStatus check_joints(CagCurve *const *curves, size_t n, CagError *err) 
     const CagVec3 extent[3] = {box.min, box.max, q};
     double gap = cag_norm(cag_sub(p, q));
     if (gap > MEET * cag_curve_size(extent, 3))
-      return cag_fail(err, CAG_E_ARGUMENT, "ends-do-not-meet", "curves", (long)i + 1,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_ends_do_not_meet, "curves", (long)i + 1,
                       "curves[%zu] starts at [%.9g, %.9g, %.9g], %.3g away from the end of "
                       "curves[%zu] at [%.9g, %.9g, %.9g]; move it, or reverse one of them",
                       i + 1, q.x, q.y, q.z, gap, i, p.x, p.y, p.z);
@@ -247,7 +247,7 @@ static CagStatus join_moving(CagCurve *const *curves, size_t n, int dimension, C
 
 CagStatus cag_curve_join(CagCurve *const *curves, size_t n, CagCurve **out, CagError *err) {
   if (n == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-few-curves", "curves", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_curves, "curves", -1,
                     "expected at least 1 curve, found none");
   CagStatus status = check_joints(curves, n, err);
   if (status) return status;

@@ -58,7 +58,7 @@ static CagStatus check_semi(double r, const char *name, CagError *err) {
   char text[32];
   CagStatus status = cag_curve_check_number(r, name, err);
   if (status || r > 0) return status;
-  return cag_fail(err, CAG_E_ARGUMENT, "radius-not-positive", name, -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_not_positive, name, -1,
                   "`%s` must be positive; this is %s", name, cag_number_text(r, text));
 }
 
@@ -74,18 +74,18 @@ static CagStatus check_range(CagConicForm form, double start, double end, CagErr
   const char *unit = is_angular(form) ? "deg" : "";
   const double shown = is_angular(form) ? 180 / M_PI : 1;
   if (!(start < end))
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "range", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1,
                     "the range %.12g%s..%.12g%s has no length; its start must be less than its end "
                     "(reverse(C) runs the other way round)",
                     start * shown, unit, end * shown, unit);
   if (is_angular(form) &&
       (strip(start) != strip(end) || off_pole(start) < POLE || M_PI - off_pole(end) < POLE))
-    return cag_fail(err, CAG_E_ARGUMENT, "domain", "range", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_conic_domain, "range", -1,
                     "the curve goes to infinity at 90deg and every half turn from there: the range "
                     "%.12gdeg..%.12gdeg must lie between two such angles",
                     start * shown, end * shown);
   if (form == CAG_FORM_HYPERBOLIC && fmax(fabs(start), fabs(end)) > FARTHEST)
-    return cag_fail(err, CAG_E_ARGUMENT, "domain", "range", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_conic_domain, "range", -1,
                     "a hyperbolic parameter lies in -%g..%g; this range is %s..%s", FARTHEST,
                     FARTHEST, cag_number_text(start, a), cag_number_text(end, b));
   return CAG_OK;
@@ -93,14 +93,14 @@ static CagStatus check_range(CagConicForm form, double start, double end, CagErr
 
 static CagStatus read_frame(const CagTransform *frame, CagOpenConic *d, CagError *err) {
   if (!cag_transform_is_affine(frame))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-affine", "frame", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_affine, "frame", -1,
                     "the conic's frame must be affine; this one projects");
   CagVec3 columns[4];
   for (int j = 0; j < 4; j++) {
     columns[j] =
         cag_scaled(cag_vec3(frame->m[0][j], frame->m[1][j], frame->m[2][j]), 1 / frame->m[3][3]);
     if (!isfinite(cag_norm(columns[j])))
-      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "frame", -1,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "frame", -1,
                       "the conic's frame has an entry that is not a finite number");
   }
   d->x = columns[0];

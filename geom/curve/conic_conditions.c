@@ -120,14 +120,14 @@ static CagStatus null_vector(double *matrix, size_t m, int k, double *v, CagErro
   lapack_int info = LAPACKE_dgesvd(LAPACK_ROW_MAJOR, 'N', 'A', rows, k, matrix, k, values, unused,
                                    1, vt, k, work);
   if (info != 0)
-    return cag_fail(err, CAG_E_CONVERGENCE, "conditions-dependent", "", -1,
+    return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_conditions_dependent, "", -1,
                     "the singular values of the conditions could not be found");
   if (values[k - 2] <= DEPENDENT * values[0])
-    return cag_fail(err, CAG_E_DEGENERATE, "conditions-dependent", "points", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_conditions_dependent, "points", -1,
                     "the conditions depend on each other: more than one conic fulfils them (points "
                     "are repeated, or too many lie on one line)");
   if (rows >= k && values[k - 1] > DISAGREE * values[0])
-    return cag_fail(err, CAG_E_DEGENERATE, "conditions-contradict", "points", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_conditions_contradict, "points", -1,
                     "the conditions contradict each other: no conic of this kind fulfils all of "
                     "them");
   for (int i = 0; i < k; i++) v[i] = vt[(size_t)(k - 1) * (size_t)k + (size_t)i];
@@ -163,14 +163,14 @@ static CagStatus solve(const CagVec3 *points, size_t n, const CagConicTangent *t
   const Frame f = frame_of(points, n);
   double v[MOST], c[6];
   if (!(f.size > 0))
-    return cag_fail(err, CAG_E_ARGUMENT, "coincident-points", "points", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "points", -1,
                     "all points are the same");
   double *row = matrix;
   for (size_t i = 0; i < n; i++, row += k) point_row(shape, into(&f, points[i]), row);
   for (size_t j = 0; j < m; j++, row += k) {
     const CagVec3 d = cag_unit(tangents[j].direction);
     if (cag_norm(d) == 0)
-      return cag_fail(err, CAG_E_ARGUMENT, "zero-vector", "tangents", (long)j,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_vector, "tangents", (long)j,
                       "the direction of `tangents`[%zu] is zero", j);
     tangent_row(shape, into(&f, tangents[j].point), d, row);
   }
@@ -195,7 +195,7 @@ CagStatus cag_conic_from_conditions(const CagVec3 *points, size_t n,
   CagStatus status = all && matrix ? CAG_OK : cag_fail_memory(err);
   const size_t count = status ? 0 : gather(points, n, tangents, m, all);
   if (!status && count + m < needed)
-    status = cag_fail(err, CAG_E_ARGUMENT, "too-few-conditions", "points", -1,
+    status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_conditions, "points", -1,
                       "%zu conditions are needed, each point and each tangent being one; these are "
                       "%zu",
                       needed, count + m);
@@ -210,7 +210,7 @@ CagStatus cag_conic_from_conditions(const CagVec3 *points, size_t n,
 static CagStatus check_triangle(CagVec3 p, CagVec3 apex, CagVec3 q, CagError *err) {
   const CagVec3 a = cag_sub(apex, p), b = cag_sub(q, apex);
   if (cag_norm(cag_cross(a, b)) <= CAG_CURVE_SAME * cag_norm(a) * cag_norm(b))
-    return cag_fail(err, CAG_E_ARGUMENT, "collinear-points", "", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_collinear_points, "", -1,
                     "the two ends and the apex lie on one line (or two of them are the same): they "
                     "are not a triangle");
   return CAG_OK;
@@ -220,7 +220,7 @@ CagStatus cag_conic_arc(CagVec3 p, CagVec3 apex, CagVec3 q, double weight, int d
                         CagCurve **out, CagError *err) {
   char text[32];
   if (!(weight >= 0) || !isfinite(weight))
-    return cag_fail(err, CAG_E_ARGUMENT, "negative-weight", "weight", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weight", -1,
                     "the weight of the apex must be finite and 0 or more; this is %s",
                     cag_number_text(weight, text));
   CagStatus status = check_triangle(p, apex, q, err);
@@ -245,7 +245,7 @@ CagStatus cag_conic_shoulder_weight(CagVec3 p, CagVec3 apex, CagVec3 q, CagVec3 
   const double off = fabs(cag_dot(s, normal)) / sqrt(area);
   const double off_plane = 1e-9; // of the triangle's size
   if (!(u > 0 && v > 0 && w > 0) || off > off_plane * (cag_norm(a) + cag_norm(b)))
-    return cag_fail(err, CAG_E_ARGUMENT, "shoulder-outside", "shoulder", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_shoulder_outside, "shoulder", -1,
                     "`shoulder` must lie inside the triangle of the two ends and the apex");
   *weight = v / (2 * sqrt(u * w));
   return CAG_OK;

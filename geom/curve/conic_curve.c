@@ -66,7 +66,7 @@ static CagStatus single(const CagCurve *curve, const CagCurve **branch, CagError
   const Conic *c = (const Conic *)curve;
   *branch = c->branch;
   if (c->branch) return CAG_OK;
-  return cag_fail(err, CAG_E_UNSUPPORTED, "no-single-curve", "", -1,
+  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_single_curve, "", -1,
                   "this conic (%s) is not one curve; branches(C) gives the curves that it has",
                   c->name);
 }

@@ -30,7 +30,7 @@ static void matrix_of(const CagConic *k, double s[3][3]) {
 CagStatus cag_conic_check(const CagConic *c, CagError *err) {
   for (int i = 0; i < 6; i++)
     if (!isfinite(c->c[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "coefficients", i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "coefficients", i,
                       "`coefficients`[%d] is not a finite number", i);
   return CAG_OK;
 }
@@ -79,7 +79,7 @@ CagStatus cag_conic_transform(const CagConic *c, const CagTransform *t, CagConic
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) m[i][j] = t->m[place[i]][place[j]];
   if (carry(s, m, out)) return CAG_OK;
-  return cag_fail(err, CAG_E_DEGENERATE, "singular-transform", "", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_singular_transform, "", -1,
                   "the transform is singular: a conic has no image under it");
 }
 
@@ -296,7 +296,7 @@ CagStatus cag_conic_branches(const CagConic *c, double from, double to, CagCurve
   CagStatus status = cag_conic_classify(c, &k, err);
   if (status) return status;
   if (!(from < to) || !isfinite(from) || !isfinite(to))
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "range", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1,
                     "`range` must be finite and its start less than its end");
   *n = 0;
   const CagTransform place = place_of(&k), other = mirrored(&place);
@@ -324,7 +324,7 @@ CagStatus cag_conic_branches(const CagConic *c, double from, double to, CagCurve
 
 static CagStatus not_a_conic(CagError *err) {
   return cag_fail(
-      err, CAG_E_ARGUMENT, "not-a-conic", "", -1,
+      err, CAG_E_ARGUMENT, CAG_ERR_not_a_conic, "", -1,
       "expects a conic of the plane: a circle, ellipse, parabola or hyperbola or an arc "
       "of one, a line, a Bezier curve of degree 2, or conic(coefficients)");
 }
@@ -438,8 +438,8 @@ CagStatus cag_conic_of_space_curve(const CagCurve *c, CagTransform *frame, CagCo
 
 static CagStatus fail_segment(double x, CagError *err) {
   char text[32];
-  return cag_fail(err, CAG_E_DOMAIN, "domain", "x", -1, "the conic has no real point at x = %s",
-                  cag_number_text(x, text));
+  return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_conic_domain, "x", -1,
+                  "the conic has no real point at x = %s", cag_number_text(x, text));
 }
 
 CagStatus cag_conic_point_at(const CagConic *conic, double x, bool upper, CagVec3 *out,
@@ -485,7 +485,7 @@ static CagStatus segment_of_lines(const CagConic *c, CagVec3 p, CagVec3 q, CagCu
                                   CagError *err) {
   const CagVec3 middle = cag_lerp(p, q, 0.5);
   if (fabs(cag_conic_value(c, middle)) > ROUND * terms_at(c, middle))
-    return cag_fail(err, CAG_E_DOMAIN, "domain", "x", -1,
+    return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_conic_domain, "x", -1,
                     "the two ends lie on different lines of the conic");
   return cag_curve_line(p, q, 2, out, err);
 }
@@ -497,7 +497,8 @@ CagStatus cag_conic_segment(const CagConic *c, double from, double to, bool uppe
   CagCurve *forward = NULL;
   CagStatus status = cag_conic_classify(c, &k, err);
   if (!status && from == to)
-    status = cag_fail(err, CAG_E_ARGUMENT, "empty-range", "x", -1, "the range of x has no length");
+    status =
+        cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "x", -1, "the range of x has no length");
   if (!status) status = cag_conic_point_at(c, from, upper, &p, err);
   if (!status) status = cag_conic_point_at(c, to, upper, &q, err);
   if (status) return status;
@@ -521,7 +522,7 @@ CagStatus cag_conic_segment(const CagConic *c, double from, double to, bool uppe
     return directed(status, t1 < t0, forward, out, err);
   }
   if ((a.x < 0) != (b.x < 0))
-    return cag_fail(err, CAG_E_DOMAIN, "domain", "x", -1,
+    return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_conic_domain, "x", -1,
                     "the two ends lie on different branches of the hyperbola: the segment would "
                     "cross the gap between them");
   const double t0 = asinh(a.y / k.b), t1 = asinh(b.y / k.b);
@@ -539,7 +540,7 @@ CagStatus cag_conic_line(const CagConic *conic, CagVec3 p, CagVec3 d, CagLineCon
   if (status) return status;
   const double dd = cag_dot(d, d);
   if (!(dd > 0))
-    return cag_fail(err, CAG_E_ARGUMENT, "zero-vector", "", -1, "the line has no direction");
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_vector, "", -1, "the line has no direction");
   // About the center, and from the line's point next to it, the numbers stay small; what the way
   // there costs is the rounding of its terms.
   const CagVec3 m = k.center;

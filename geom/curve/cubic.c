@@ -12,7 +12,7 @@
 
 static CagStatus check_count(size_t n, CagError *err) {
   if (n >= 2) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
                   "a curve through points needs at least 2 of them; these are %zu", n);
 }
 
@@ -28,11 +28,11 @@ CagStatus cag_spacing_parameters(const CagVec3 *points, size_t n, CagSpacing spa
     if (spacing == CAG_SPACING_CENTRIPETAL) length = sqrt(length);
     out[i] = out[i - 1] + length;
     if (!isfinite(out[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "points", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "points", (long)i,
                       "the points are so far apart that their distances overflow");
     // A step lost in the rounding of the sum is none.
     if (!(out[i] > out[i - 1]))
-      return cag_fail(err, CAG_E_ARGUMENT, "coincident-points", "points", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "points", (long)i,
                       "points[%zu] and points[%zu] coincide, so the parameter cannot grow by their "
                       "distance; drop one of them or space the parameter uniformly",
                       i - 1, i);
@@ -44,10 +44,10 @@ CagStatus cag_parameters_check(const double *parameters, size_t n, CagError *err
   char a[32], b[32];
   for (size_t i = 0; i < n; i++) {
     if (!isfinite(parameters[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "parameters", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "parameters", (long)i,
                       "parameters[%zu] is not a finite number", i);
     if (i > 0 && !(parameters[i] > parameters[i - 1]))
-      return cag_fail(err, CAG_E_ARGUMENT, "bad-parameter-length", "parameters", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_parameter_length, "parameters", (long)i,
                       "the parameter must grow from point to point: it is %s at point %zu and %s "
                       "at point %zu",
                       cag_number_text(parameters[i - 1], a), i - 1,
@@ -89,7 +89,7 @@ static CagStatus solve(System *s, int columns, CagError *err) {
   if (LAPACKE_dgtsv(LAPACK_COL_MAJOR, (lapack_int)s->m, columns, s->below, s->diagonal, s->above,
                     s->right, (lapack_int)s->m) == 0)
     return CAG_OK;
-  return cag_fail(err, CAG_E_DEGENERATE, "fit-singular", "parameters", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "parameters", -1,
                   "the lengths of the segments differ so much that the spline's equations cannot "
                   "be solved");
 }
@@ -216,7 +216,7 @@ CagStatus cag_cubic_tangents(const CagVec3 *points, size_t n, const double *para
   char text[32];
   for (size_t i = 0; tension && i + 2 < n; i++)
     if (!(tension[i] >= 0) || !isfinite(tension[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "bad-tension", "tension", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_tension, "tension", (long)i,
                       "a tension is 0 or more: tension[%zu] = %s", i,
                       cag_number_text(tension[i], text));
   const Spline s = {points, n, parameters, tension};

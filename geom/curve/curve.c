@@ -47,10 +47,10 @@ void cag_curve_release(CagCurve *c) {
 CagStatus cag_curve_check_points(const CagVec3 *points, size_t n, const char *name, CagError *err) {
   for (size_t i = 0; i < n; i++)
     if (!isfinite(points[i].x) || !isfinite(points[i].y) || !isfinite(points[i].z))
-      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", name, (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, name, (long)i,
                       "%s[%zu] has a coordinate that is not a finite number", name, i);
     else if (cag_curve_size(points + i, 1) > LARGEST)
-      return cag_fail(err, CAG_E_ARGUMENT, "size-out-of-range", name, (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_out_of_range, name, (long)i,
                       "%s[%zu] has a coordinate beyond %g, too large to compute with", name, i,
                       LARGEST);
   return CAG_OK;
@@ -59,9 +59,10 @@ CagStatus cag_curve_check_points(const CagVec3 *points, size_t n, const char *na
 CagStatus cag_curve_check_number(double x, const char *name, CagError *err) {
   if (fabs(x) <= LARGEST) return CAG_OK;
   if (isfinite(x))
-    return cag_fail(err, CAG_E_ARGUMENT, "size-out-of-range", name, -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_out_of_range, name, -1,
                     "`%s` is beyond %g, too large to compute with", name, LARGEST);
-  return cag_fail(err, CAG_E_ARGUMENT, "not-finite", name, -1, "`%s` is not a finite number", name);
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, name, -1, "`%s` is not a finite number",
+                  name);
 }
 
 double cag_curve_size(const CagVec3 *points, size_t n) {
@@ -92,14 +93,14 @@ static CagStatus snap(const CagCurve *c, double *t, const char *name, CagError *
     *t = inside;
     return CAG_OK;
   }
-  return cag_fail(err, CAG_E_DOMAIN, "parameter-range", name, -1,
+  return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, name, -1,
                   "`%s` = %s lies outside the domain %s..%s", name, parameter_text(c, *t, x),
                   parameter_text(c, c->start, a), parameter_text(c, c->end, b));
 }
 
 static CagStatus check_order(int order, CagError *err) {
   if (order >= 0 && order <= CAG_MAX_DERIVATIVE) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "derivative-order", "order", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_derivative_order, "order", -1,
                   "the order of a derivative is 0 to %d; this is %d", CAG_MAX_DERIVATIVE, order);
 }
 
@@ -140,7 +141,7 @@ CagStatus cag_curve_eval_many(const CagCurve *c, const double *t, size_t n, int 
 
 CagStatus cag_curve_to_nurbs(const CagCurve *c, CagCurve **out, CagError *err) {
   if (c->kind->to_nurbs) return c->kind->to_nurbs(c, out, err);
-  return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "", -1,
+  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "", -1,
                   "a curve of kind \"%s\" has no exact NURBS form; approximate(C, tolerance) makes "
                   "one within a tolerance",
                   c->kind->name);
@@ -178,7 +179,7 @@ CagStatus cag_curve_transform(const CagCurve *c, const CagTransform *t, CagCurve
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++)
       if (!isfinite(t->m[i][j]))
-        return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "T", -1,
+        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "T", -1,
                         "the transform has an entry that is not a finite number");
   return keep_unit(c, c->kind->transform(c, t, out, err), out);
 }
@@ -218,7 +219,7 @@ static CagStatus check_range(const CagCurve *c, double a, double b, CagError *er
   CagStatus status = cag_curve_check_number(a, "range", err);
   if (!status) status = cag_curve_check_number(b, "range", err);
   if (status || a < b) return status;
-  return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "range", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1,
                   "the range %s..%s has no length; its start must be less than its end",
                   parameter_text(c, a, x), parameter_text(c, b, y));
 }
@@ -234,7 +235,7 @@ static CagStatus trim_closed(const CagCurve *c, double a, double b, CagCurve **o
   const double slack = SNAP_ULPS * DBL_EPSILON * fmax(fabs(a), fabs(b));
   char x[48], y[48], z[48];
   if (b - a > period + slack)
-    return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "range", -1,
+    return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, "range", -1,
                     "the range %s..%s is longer than one turn of the closed curve, %s",
                     parameter_text(c, a, x), parameter_text(c, b, y), parameter_text(c, period, z));
   return keep_unit(c, cag_curve_trim_over_seam(c, a, b, out, err), out);

@@ -39,7 +39,7 @@ static bool vanishes(const CagCurve *c, CagVec3 d, int k, double size) {
 
 static CagStatus fail_tangent(CagError *err, double t) {
   char text[32];
-  return cag_fail(err, CAG_E_DEGENERATE, "tangent-undefined", "t", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_tangent_undefined, "t", -1,
                   "the curve stands still at t = %s: all its derivatives are 0 there, so that it "
                   "has no tangent",
                   cag_number_text(t, text));
@@ -128,7 +128,7 @@ static CagStatus singular_frame(const CagCurve *c, double t, CagFrenet *out, Cag
   }
   if (n > 2 * m || n > CAG_MAX_DERIVATIVE) return CAG_OK; // straight, or straight in the limit
   if (n < 2 * m)
-    return cag_fail(err, CAG_E_DEGENERATE, "curvature-undefined", "t", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_curvature_undefined, "t", -1,
                     "the curve has a cusp at t = %s: its speed is 0 and its curvature infinite "
                     "there",
                     cag_number_text(t, text));
@@ -143,7 +143,7 @@ static CagStatus singular_frame(const CagCurve *c, double t, CagFrenet *out, Cag
     double z = cag_dot(d[q], up);
     if (vanishes(c, cag_scaled(up, z), q, size)) continue;
     if (q < 3 * m)
-      return cag_fail(err, CAG_E_DEGENERATE, "torsion-undefined", "t", -1,
+      return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_torsion_undefined, "t", -1,
                       "the speed is 0 at t = %s and the torsion infinite there",
                       cag_number_text(t, text));
     out->torsion = 6 * z / factorial(q) / (out->curvature * x * x * x);

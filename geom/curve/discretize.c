@@ -30,7 +30,7 @@ typedef struct Output {
 } Output;
 
 static CagStatus fail_count(CagError *err) {
-  return cag_fail(err, CAG_E_ARGUMENT, "too-many-points", "tolerance", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_many_points, "tolerance", -1,
                   "the tolerance asks for more than %d points on one curve; make it larger",
                   MOST_POINTS);
 }
@@ -164,10 +164,10 @@ CagStatus cag_curve_discretize(const CagCurve *c, double tolerance, double angle
   char text[32];
   if (cag_curve_resting_view(c, NULL)) return cag_curve_cuts(c, out, n, err);
   if (!(tolerance > 0))
-    return cag_fail(err, CAG_E_ARGUMENT, "tolerance-not-positive", "tolerance", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_tolerance_not_positive, "tolerance", -1,
                     "`tolerance` must be positive; this is %s", cag_number_text(tolerance, text));
   if (!(angle > 0))
-    return cag_fail(err, CAG_E_ARGUMENT, "angle-not-positive", "angle", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_angle_not_positive, "angle", -1,
                     "`angle` must be positive; this is %.12gdeg", angle * (180 / M_PI));
   double *cuts;
   size_t count;

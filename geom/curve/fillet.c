@@ -23,7 +23,7 @@ static double cross2(CagVec3 a, CagVec3 b) { return a.x * b.y - a.y * b.x; }
 
 static CagStatus too_large(double radius, long index, CagError *err) {
   char text[32];
-  return cag_fail(err, CAG_E_ARGUMENT, "radius-too-large", "radius", index,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_too_large, "radius", index,
                   "an arc of radius %s does not fit into the corner: the curves end before it "
                   "touches them",
                   cag_number_text(radius, text));
@@ -32,7 +32,7 @@ static CagStatus too_large(double radius, long index, CagError *err) {
 static CagStatus check_radius(double radius, CagError *err) {
   char text[32];
   if (radius > 0 && isfinite(radius)) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "radius-not-positive", "radius", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_not_positive, "radius", -1,
                   "`radius` must be positive; this is %s", cag_number_text(radius, text));
 }
 
@@ -149,7 +149,7 @@ static CagStatus find_corner(const CagCurve *a, const CagCurve *b, Corner *out, 
     size_t n = 0;
     status = cag_curve_intersect(a, b, &meetings, &n, err);
     if (!status && n == 0)
-      status = cag_fail(err, CAG_E_ARGUMENT, "curves-do-not-meet", "", -1,
+      status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_curves_do_not_meet, "", -1,
                         "the two curves do not meet: there is no corner to round");
     if (!status) {
       out->ta = meetings[n - 1].t;
@@ -163,7 +163,7 @@ static CagStatus find_corner(const CagCurve *a, const CagCurve *b, Corner *out, 
   out->turn = atan2(fabs(cross2(ta, tb)), cag_dot(ta, tb));
   out->side = cross2(ta, tb) >= 0 ? 1 : -1;
   if (out->turn <= SMOOTH || out->turn >= M_PI - SMOOTH)
-    return cag_fail(err, CAG_E_DEGENERATE, "no-corner", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_corner, "", -1,
                     "the two curves have one tangent where they meet: there is no corner to round");
   return CAG_OK;
 }
@@ -186,7 +186,7 @@ CagStatus cag_fillet(const CagCurve *a, const CagCurve *b, double radius, CagCur
   bool found;
   CagStatus status = check_radius(radius, err);
   if (!status && (a->dimension != 2 || b->dimension != 2))
-    status = cag_fail(err, CAG_E_ARGUMENT, "not-planar", "", -1,
+    status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_planar, "", -1,
                       "expects curves of the plane, with points [x, y]");
   if (!status) status = find_corner(a, b, &k, err);
   if (!status) status = parallel_at(a, k.ta, CAG_SIDE_LEFT, 0, &at_a, err);
@@ -263,7 +263,7 @@ static CagStatus check_edges(const CagVec3 *p, const Cut *cuts, size_t n, bool c
     const double length = cag_norm(cag_sub(p[j], p[i]));
     if (cuts[i].back + cuts[j].back > length * (1 + MEETS)) {
       char text[32], edge[32];
-      return cag_fail(err, CAG_E_ARGUMENT, "radius-too-large", "radius", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_too_large, "radius", (long)i,
                       "corners of radius %s do not fit on the edge from point %zu to point %zu, "
                       "whose length is %s",
                       cag_number_text(radius, text), i, j, cag_number_text(length, edge));
@@ -396,7 +396,7 @@ CagStatus cag_curve_rounded(const CagCurve *c, double radius, CagCurve **out, Ca
   if (cag_curve_vertices(c, &p, &n, &closed))
     return round_polyline(c, p, n, closed, radius, out, err);
   if (c->dimension != 2)
-    return cag_fail(err, CAG_E_ARGUMENT, "not-planar", "", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_planar, "", -1,
                     "of space curves only polylines can be rounded");
   return round_curve(c, radius, out, err);
 }

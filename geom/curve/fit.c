@@ -34,7 +34,7 @@ static CagStatus spaced(const CagFitData *d, double from, double to, double *out
     out[i] = sum += d->spacing == CAG_SPACING_CENTRIPETAL ? sqrt(step) : step;
   }
   if (!(sum > 0) || !isfinite(sum))
-    return cag_fail(err, CAG_E_ARGUMENT, "zero-chord-total", "points", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_chord_total, "points", -1,
                     sum > 0 ? "the distances of the points overflow"
                             : "all points coincide, so they give the parameter no length");
   for (size_t i = 0; i < d->n; i++) out[i] = from + (to - from) * (out[i] / sum);
@@ -47,15 +47,15 @@ static CagStatus check_given(const CagFitData *d, double from, double to, CagErr
   for (size_t i = 0; i < d->n; i++) {
     const double t = d->parameters[i];
     if (!isfinite(t))
-      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "parameters", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "parameters", (long)i,
                       "parameters[%zu] is not a finite number", i);
     if (i > 0 && t < d->parameters[i - 1])
-      return cag_fail(err, CAG_E_ARGUMENT, "bad-parameter", "parameters", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_parameter, "parameters", (long)i,
                       "`parameters` must not decrease: parameters[%zu] = %s is less than "
                       "parameters[%zu] = %s",
                       i, cag_number_text(t, a), i - 1, cag_number_text(d->parameters[i - 1], b));
     if (t < from || t > to)
-      return cag_fail(err, CAG_E_ARGUMENT, "bad-parameter", "parameters", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_parameter, "parameters", (long)i,
                       "parameters[%zu] = %s is outside of the usable range of the knots, %s..%s", i,
                       cag_number_text(t, a), cag_number_text(from, b), cag_number_text(to, c));
   }
@@ -163,15 +163,15 @@ static CagStatus make_curve(const Design *a, const CagVec3 *control, int dimensi
 
 static CagStatus check_data(const CagFitData *d, size_t count, CagError *err) {
   if (d->n < 2)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
                     "a curve through points needs at least 2 of them; these are %zu", d->n);
   CagStatus status = cag_curve_check_points(d->points, d->n, "points", err);
   if (status) return status;
   if (d->degree < 1 || d->degree > CAG_MAX_DEGREE)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                     "the degree is 1 to %d; this is %d", CAG_MAX_DEGREE, d->degree);
   if ((size_t)d->degree >= count)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                     "degree %d needs at least %d control points; these are %zu", d->degree,
                     d->degree + 1, count);
   if (d->kind == CAG_FIT_GIVEN) return cag_knots_check(d->knots, count, d->degree, err);
@@ -199,7 +199,7 @@ static CagStatus find_parameters(const CagFitData *d, size_t count, double *out,
   if (!d->parameters) return spaced(d, from, to, out, err);
   CagStatus status = check_given(d, from, to, err);
   if (!status && !(from < to))
-    status = cag_fail(err, CAG_E_ARGUMENT, "bad-parameter", "parameters", -1,
+    status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_parameter, "parameters", -1,
                       "all parameters are the same");
   if (!status) memcpy(out, d->parameters, d->n * sizeof *out);
   return status;
@@ -236,7 +236,7 @@ static CagStatus check_support(const Design *a, CagError *err) {
     if ((u == start && i > 0 && a->u[i - 1] == u && a->order[i] > 0 && lo == start && u < hi) ||
         (u == end && i + 1 < a->count && a->u[i + 1] == u && hi == end && u > lo))
       continue;
-    return cag_fail(err, CAG_E_ARGUMENT, "fit-singular", "parameters", (long)i,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "parameters", (long)i,
                     "no curve with these knots passes all points: parameter %s of condition %zu is "
                     "not inside of the knots %s..%s where its control point acts; take other knots "
                     "(\"averaged\" ones always suit) or parameters that grow",
@@ -307,7 +307,7 @@ static CagStatus solve_banded(const Design *a, CagVec3 *control, CagError *err) 
     lapack_int info = LAPACKE_dgbsv(LAPACK_COL_MAJOR, (lapack_int)n, (lapack_int)kl, (lapack_int)ku,
                                     3, band, (lapack_int)ld, pivots, right, (lapack_int)n);
     if (info != 0)
-      status = cag_fail(err, CAG_E_ARGUMENT, "fit-singular", "parameters", -1,
+      status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "parameters", -1,
                         "no curve with these knots passes all points: the equations are singular; "
                         "take \"averaged\" knots");
     for (size_t r = 0; !status && r < n; r++)
@@ -322,7 +322,7 @@ static CagStatus solve_banded(const Design *a, CagVec3 *control, CagError *err) 
 CagStatus cag_curve_interpolate(const CagFitData *d, const CagVec3 *tangents, size_t tangent_count,
                                 CagCurve **out, CagError *err) {
   if (tangents && tangent_count != 2 && tangent_count != d->n)
-    return cag_fail(err, CAG_E_ARGUMENT, "point-count", "tangents", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_point_count, "tangents", -1,
                     "there are 2 tangents, for the ends, or one for each of the %zu points; these "
                     "are %zu",
                     d->n, tangent_count);
@@ -340,7 +340,7 @@ CagStatus cag_curve_interpolate(const CagFitData *d, const CagVec3 *tangents, si
   if (!status) status = find_parameters(d, count, u, err);
   for (size_t i = 1; !status && i < d->n; i++)
     if (!(u[i] > u[i - 1]))
-      status = cag_fail(err, CAG_E_ARGUMENT, "fit-singular", "points", (long)i,
+      status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "points", (long)i,
                         "points %zu and %zu have the same parameter, so no curve passes both in "
                         "turn; drop one of them",
                         i - 1, i);
@@ -396,7 +396,7 @@ static CagStatus back_substitute(const Triangle *t, size_t offset, CagVec3 *out,
   for (size_t i = t->n; i-- > 0;) {
     const double *r = t->r + i * t->width;
     if (!(r[0] > RANK_LOST * largest))
-      return cag_fail(err, CAG_E_ARGUMENT, "fit-singular", "parameters", (long)(i + offset),
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "parameters", (long)(i + offset),
                       "the data say nothing about control point %zu: no parameter lies where it "
                       "acts; ask for fewer control points or take \"averaged\" knots",
                       i + offset);
@@ -457,7 +457,7 @@ static CagStatus choose_least_knots(const CagFitData *d, Design *a, bool keep_en
     memcpy(a->knots, d->knots, (a->count + (size_t)a->p + 1) * sizeof *a->knots);
     if (keep_ends &&
         (a->knots[0] != a->knots[a->p] || a->knots[a->count] != a->knots[a->count + (size_t)a->p]))
-      return cag_fail(err, CAG_E_ARGUMENT, "fit-ends", "knots", -1,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_ends, "knots", -1,
                       "the ends stay fixed only where the end knots occur %d times; repeat them or "
                       "set `fixed` to \"none\"",
                       a->p + 1);
@@ -488,7 +488,7 @@ static CagStatus move_parameters(Design *a, const CagCurve *c, int axis, double 
     *worst = fmax(*worst, fabs(gap));
     if (fabs(gap) <= slack) continue;
     if (speed == 0)
-      return cag_fail(err, CAG_E_CONVERGENCE, "fit-no-convergence", "fixed", (long)i,
+      return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_fit_no_convergence, "fixed", (long)i,
                       "the coordinate stands still at point %zu, so its parameter cannot be found; "
                       "the coordinate must grow or fall all along the data",
                       i);
@@ -496,7 +496,7 @@ static CagStatus move_parameters(Design *a, const CagCurve *c, int axis, double 
   }
   for (size_t i = 1; i < a->rows; i++)
     if (a->u[i] < a->u[i - 1])
-      return cag_fail(err, CAG_E_CONVERGENCE, "fit-no-convergence", "fixed", (long)i,
+      return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_fit_no_convergence, "fixed", (long)i,
                       "the parameters of points %zu and %zu lose their order; the coordinate must "
                       "grow or fall all along the data",
                       i - 1, i);
@@ -519,7 +519,7 @@ static CagStatus hold_coordinate(Design *a, int axis, double slack, int dimensio
     *curve = next;
   }
   char x[32], y[32];
-  return cag_fail(err, CAG_E_CONVERGENCE, "fit-no-convergence", "fixed", -1,
+  return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_fit_no_convergence, "fixed", -1,
                   "after %d rounds the coordinate is still %s off, more than the error %s allowed",
                   CAG_FIT_ROUNDS, cag_number_text(worst, x), cag_number_text(slack, y));
 }
@@ -548,13 +548,13 @@ static CagStatus make_report(Design *a, const CagCurve *c, int rounds, CagFitRep
 CagStatus cag_curve_fit(const CagFitData *d, size_t count, bool keep_ends, int axis, double slack,
                         CagCurve **out, CagFitReport *report, CagError *err) {
   if (count > d->n)
-    return cag_fail(err, CAG_E_ARGUMENT, "fit-underdetermined", "count", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_underdetermined, "count", -1,
                     "%zu points cannot say where %zu control points lie; ask for %zu at most", d->n,
                     count, d->n);
   keep_ends = keep_ends || axis >= 0;
   CagStatus status = check_data(d, count, err);
   if (!status && axis >= d->dimension)
-    status = cag_fail(err, CAG_E_ARGUMENT, "bad-order", "fixed", -1,
+    status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_order, "fixed", -1,
                       "points of the plane have no z that could be held");
   Design a;
   if (!status) status = design_new(d->n, count, d->degree, &a, err);

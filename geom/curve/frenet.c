@@ -18,7 +18,7 @@ CagStatus cag_frenet_of(const CagVec3 d[3], double *speed, CagFrenet *out, CagEr
   memset(out, 0, sizeof *out);
   *speed = cag_norm(d[0]);
   if (!(*speed > 0))
-    return cag_fail(err, CAG_E_DEGENERATE, "singular-point", "derivatives", 0,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_singular_point, "derivatives", 0,
                     "the first derivative is 0: the curve stands still, so that it has no frame");
   const CagVec3 cross = cag_cross(d[0], d[1]);
   const double area = cag_norm(cross);
@@ -38,7 +38,7 @@ CagStatus cag_chain_derivatives(const CagVec3 *d, const double *f, int order, Ca
                                 CagError *err) {
   double bell[CAG_MAX_DERIVATIVE + 1][CAG_MAX_DERIVATIVE + 1] = {{1}};
   if (f[0] == 0)
-    return cag_fail(err, CAG_E_DEGENERATE, "parameter-stands-still", "by", 0,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_parameter_stands_still, "by", 0,
                     "the first derivative of the old parameter by the new one is 0; it must not "
                     "vanish where one is to stand for the other");
   for (int n = 1; n <= order; n++) {
@@ -58,7 +58,7 @@ CagStatus cag_triad_derivative(const CagVec3 m[3], const CagVec3 dm[3], double o
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       if (!(fabs(cag_dot(m[i], m[j]) - (i == j)) <= ORTHONORMAL))
-        return cag_fail(err, CAG_E_ARGUMENT, "frame-not-orthonormal", "triad", i,
+        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_frame_not_orthonormal, "triad", i,
                         "the three vectors must be of length 1 and at right angles; vector %d %s",
                         i, i == j ? "has another length" : "is not at right angles to another one");
       out[i][j] = cag_dot(dm[i], m[j]);
@@ -67,7 +67,7 @@ CagStatus cag_triad_derivative(const CagVec3 m[3], const CagVec3 dm[3], double o
   for (int i = 0; i < 3; i++)
     for (int j = 0; j <= i; j++)
       if (!(fabs(out[i][j] + out[j][i]) <= ORTHONORMAL * largest))
-        return cag_fail(err, CAG_E_ARGUMENT, "triad-not-rigid", "derivatives", i,
+        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_triad_not_rigid, "derivatives", i,
                         "with these derivatives the vectors do not stay of length 1 and at right "
                         "angles: those of %d and %d do not agree",
                         j, i);

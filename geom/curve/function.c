@@ -63,9 +63,9 @@ static CagStatus fail_not_finite(const Function *c, double t, int k, CagError *e
   if (c->source->angular) snprintf(text, sizeof text, "%.12gdeg", inside * (180 / M_PI));
   else cag_number_text(inside, text);
   if (k == 0)
-    return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
                     "the point of the function at t = %s is not finite", text);
-  return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
                   "derivative %d of the function at t = %s is not finite", k, text);
 }
 
@@ -235,7 +235,7 @@ CagStatus cag_curve_function(const CagCurveFunction *f, int dimension, double st
   if (!status) status = cag_curve_check_number(end, "range", err);
   if (status) return status;
   if (!(start < end))
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "range", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1,
                     "the range %s..%s has no length; its start must be less than its end",
                     cag_number_text(angular ? start * (180 / M_PI) : start, a),
                     cag_number_text(angular ? end * (180 / M_PI) : end, b));

@@ -59,15 +59,16 @@ CagStatus cag_curve_helix(double radius, double pitch, double turns, double tape
   if (status) return status;
   const double last = radius + taper * fabs(turns);
   if (radius < 0 || last < 0 || (radius == 0 && taper == 0))
-    return cag_fail(err, CAG_E_ARGUMENT, "radius-not-positive", radius > 0 ? "taper" : "radius", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_not_positive,
+                    radius > 0 ? "taper" : "radius", -1,
                     radius > 0 ? "the taper takes the radius below 0: after all turns it is %s"
                                : "`radius` must be positive; this is %s",
                     cag_number_text(radius > 0 ? last : radius, text));
   if (turns == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "turns", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "turns", -1,
                     "`turns` must not be 0: the helix would be a point");
   if (taper == 0 && pitch == 0 && fabs(turns) > 1)
-    return cag_fail(err, CAG_E_ARGUMENT, "zero-pitch", "pitch", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_pitch, "pitch", -1,
                     "with pitch 0 and no taper the turns lie on one circle; use circle(radius)");
   const Helix like = {.radius = radius, .pitch = pitch, .turns = turns, .taper = taper};
   CagTransform frame = cag_transform_identity();
@@ -150,7 +151,7 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
                            CagError *err) {
   const Helix *c = (const Helix *)curve;
   if (!cag_transform_is_affine(t))
-    return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "T", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "T", -1,
                     "the image of a helix under a projection has no exact form; "
                     "approximate(C, tolerance) first");
   CagTransform frame = cag_transform_multiply(t, &c->frame);

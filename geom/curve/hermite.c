@@ -16,10 +16,10 @@ CagStatus cag_curve_polynomial(const CagVec3 *coefficients, size_t n, double len
   if (status) return status;
   char text[32];
   if (n > CAG_MAX_DEGREE + 1)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "coefficients", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "coefficients", -1,
                     "the degree is at most %d; these are %zu coefficients", CAG_MAX_DEGREE, n);
   if (!(length > 0) || !isfinite(length))
-    return cag_fail(err, CAG_E_ARGUMENT, "bad-parameter-length", "length", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_parameter_length, "length", -1,
                     "the length of a segment is positive and finite; this is %s",
                     cag_number_text(length, text));
   // b_i = sum over k <= i of binomial(i, k) / binomial(degree, k) c_k h^k
@@ -60,7 +60,7 @@ CagStatus cag_curve_coefficients(const CagCurve *curve, CagVec3 **out, size_t *p
   const CagNurbs *c = cag_nurbs_data(exact);
   CagVec3 *a = NULL;
   if (!c || c->rational) {
-    status = cag_fail(err, CAG_E_UNSUPPORTED, "not-polynomial", "", -1,
+    status = cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_not_polynomial, "", -1,
                       "a curve of kind %s is not a polynomial: it is a quotient of two",
                       curve->kind->name);
   } else {
@@ -125,7 +125,7 @@ CagStatus cag_hermite_shape(CagVec3 p, CagVec3 q, CagVec3 dp, CagVec3 dq, CagHer
   const CagVec3 d = cag_sub(q, p), ends[2] = {p, q}, tangents[2] = {dp, dq};
   CagHermiteShape s = {.chord = cag_norm(d)};
   if (!(s.chord > CAG_CURVE_SAME * cag_curve_size(ends, 2)))
-    return cag_fail(err, CAG_E_ARGUMENT, "coincident-points", "Q", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "Q", -1,
                     "both ends of the segment coincide, so nothing can be measured in chords");
   for (int i = 0; i < 2; i++) {
     s.speed[i] = cag_norm(tangents[i]);
@@ -234,14 +234,14 @@ CagStatus cag_bezier_join(const CagCurve *c, int m, int order, double ratio, Cag
                           CagError *err) {
   char text[32];
   if (order < 0 || order > 2)
-    return cag_fail(err, CAG_E_ARGUMENT, "bad-order", "order", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_order, "order", -1,
                     "curves are joined with order 0, 1 or 2; this is %d", order);
   if (m < 1 || m < order)
-    return cag_fail(err, CAG_E_ARGUMENT, "bad-order", "degree", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_order, "degree", -1,
                     "a curve of degree %d cannot carry on a derivative of order %d", m,
                     order < 1 ? 1 : order);
   if (!(ratio > 0) || !isfinite(ratio))
-    return cag_fail(err, CAG_E_ARGUMENT, "bad-parameter", "ratio", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_bad_parameter, "ratio", -1,
                     "the ratio of the speeds is positive and finite; this is %s",
                     cag_number_text(ratio, text));
   CagVec3 d[3];

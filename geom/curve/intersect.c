@@ -40,7 +40,7 @@ typedef struct Part {
 } Part;
 
 static CagStatus fail_overlap(CagError *err) {
-  return cag_fail(err, CAG_E_DEGENERATE, "overlap", "", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_overlap, "", -1,
                   "the two run along each other: they share more than single points");
 }
 

@@ -105,7 +105,7 @@ CagStatus cag_curve_length(const CagCurve *c, double a, double b, double *out, C
   b = fmin(fmax(b, c->start), c->end);
   if (a > b) {
     char x[32], y[32];
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "over", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "over", -1,
                     "the range %s..%s runs backwards; its start must be less than its end",
                     cag_number_text(a, x), cag_number_text(b, y));
   }
@@ -176,7 +176,7 @@ CagStatus cag_curve_parameter_at_length(const CagCurve *c, double s, double *out
     return CAG_OK;
   }
   char a[32], b[32];
-  return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "s", -1,
+  return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, "s", -1,
                   "`s` = %s lies outside 0..%s, the length of the curve", cag_number_text(s, a),
                   cag_number_text(walked, b));
 }
@@ -328,12 +328,12 @@ CagStatus cag_curve_area(const CagCurve *c, double *area, CagVec3 *centroid, Cag
   CagPlane plane;
   bool planar;
   if (!c->closed)
-    return cag_fail(err, CAG_E_ARGUMENT, "not-closed", "C", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_closed, "C", -1,
                     "only a closed curve bounds an area; the ends of this one do not meet");
   CagStatus status = cag_curve_is_planar(c, &planar, &plane, err);
   if (status) return status;
   if (!planar)
-    return cag_fail(err, CAG_E_ARGUMENT, "not-planar", "C", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_planar, "C", -1,
                     "only a plane curve bounds an area; this one does not lie in a plane");
   AreaContext a = {c, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   status = cag_curve_point(c, c->start, &a.origin, err);

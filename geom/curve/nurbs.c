@@ -92,7 +92,7 @@ static CagStatus make_pieces(CagNurbs *c, CagError *err) {
     double w = i < n ? c->bezier[i * stride + 3] : last[3];
     char text[32];
     if (!(w > 0))
-      return cag_fail(err, CAG_E_ARGUMENT, "zero-denominator", "weights", -1,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_denominator, "weights", -1,
                       "all control points that act at t = %s have the weight 0, so the curve is "
                       "0/0 there; make one of these weights positive",
                       cag_number_text(c->cuts[i], text));
@@ -126,7 +126,7 @@ CagStatus cag_nurbs_new(const double *homogeneous, size_t n, int degree, const d
   char text[32];
   for (size_t i = 0; rational && i < n; i++)
     if (!(homogeneous[4 * i + 3] >= 0))
-      return cag_fail(err, CAG_E_ARGUMENT, "negative-weight", "weights", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weights", (long)i,
                       "weights must not be negative: weights[%zu] = %s", i,
                       cag_number_text(homogeneous[4 * i + 3], text));
   CagCurve *base;
@@ -169,16 +169,16 @@ static CagStatus lift(const CagVec3 *points, const double *weights, size_t n, si
   bool positive = !weights;
   for (size_t i = 0; weights && i < n; i++) {
     if (!isfinite(weights[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "weights", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "weights", (long)i,
                       "weights[%zu] is not a finite number", i);
     if (weights[i] < 0)
-      return cag_fail(err, CAG_E_ARGUMENT, "negative-weight", "weights", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weights", (long)i,
                       "weights must not be negative: weights[%zu] = %s", i,
                       cag_number_text(weights[i], text));
     positive = positive || weights[i] > 0;
   }
   if (!positive)
-    return cag_fail(err, CAG_E_ARGUMENT, "zero-denominator", "weights", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_denominator, "weights", -1,
                     "all weights are 0; at least one must be positive");
   double *h = cag_malloc(sizeof(double) * 4 * stored);
   if (!h) return cag_fail_memory(err);
@@ -211,10 +211,10 @@ CagStatus cag_curve_nurbs(const CagVec3 *points, const double *weights, size_t n
 static CagStatus single_point(const CagVec3 *point, const double *weight, int dimension,
                               CagCurve **out, CagError *err) {
   if (weight && *weight == 0)
-    return cag_fail(err, CAG_E_DEGENERATE, "zero-denominator", "weights", 0,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "weights", 0,
                     "the weight of a single control point must not be 0");
   if (weight && !(*weight > 0 && isfinite(*weight)))
-    return cag_fail(err, CAG_E_ARGUMENT, "negative-weight", "weights", 0,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weights", 0,
                     "the weight of a single control point must be positive and finite");
   return cag_curve_resting(*point, dimension, 0, 1, false, out, err);
 }
@@ -241,10 +241,10 @@ CagStatus cag_curve_bezier(const CagVec3 *points, const double *weights, size_t 
 CagStatus cag_curve_nurbs_closed(const CagVec3 *points, const double *weights, size_t n, int degree,
                                  int dimension, CagCurve **out, CagError *err) {
   if (n < 2)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
                     "a closed curve needs at least 2 control points; these are %zu", n);
   if (degree < 1 || degree > CAG_MAX_DEGREE)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                     "the degree of a closed curve is 1 to %d; this is %d", CAG_MAX_DEGREE, degree);
   const size_t stored = n + (size_t)degree;
   double *h, *knots = cag_malloc(sizeof(double) * (stored + (size_t)degree + 1));
@@ -270,7 +270,7 @@ CagStatus cag_knots_make(const char *type, size_t n, int degree, const CagVec3 *
     status = cag_curve_check_points(points, n, "points", err);
     if (!status) cag_knots_chord(points, n, degree, knots);
   } else
-    status = cag_fail(err, CAG_E_ARGUMENT, "knot-type", "knots", -1,
+    status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_type, "knots", -1,
                       "`knots` is \"open\", \"periodic\", \"chord\" or a list of numbers; this is "
                       "\"%s\"",
                       type);
@@ -443,7 +443,7 @@ static CagStatus transform(const CagCurve *curve, const CagTransform *t, CagCurv
     cag_transform_homogeneous(&m, c->homogeneous + 4 * i, h + 4 * i);
     if (dimension == 2) h[4 * i + 2] = 0;
     if (!affine && h[4 * i + 3] <= 0 && c->homogeneous[4 * i + 3] > 0) {
-      status = cag_fail(err, CAG_E_DEGENERATE, "negative-weight", "T", (long)i,
+      status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_negative_weight, "T", (long)i,
                         "the projection sends control point %zu to infinity or behind the center; "
                         "trim the curve to the part in front of it first",
                         i);

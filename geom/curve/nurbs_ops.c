@@ -10,7 +10,7 @@
 
 static CagStatus fail_inside(const CagCurve *c, double t, CagError *err) {
   char x[32], a[32], b[32];
-  return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "t", -1,
+  return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, "t", -1,
                   "`t` = %s does not lie inside the domain %s..%s", cag_number_text(t, x),
                   cag_number_text(c->start, a), cag_number_text(c->end, b));
 }
@@ -84,8 +84,8 @@ static CagStatus elevate_once(const CagCurve *curve, CagCurve **out, CagError *e
   const CagNurbs *c = cag_nurbs_data(curve);
   const int p = c->degree;
   if (p >= CAG_MAX_DEGREE)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "times", -1, "the degree is at most %d",
-                    CAG_MAX_DEGREE);
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "times", -1,
+                    "the degree is at most %d", CAG_MAX_DEGREE);
   const size_t room = 2 * (c->count + (size_t)p + 1);
   double *z = cag_malloc(sizeof(double) * room), *h = cag_malloc(sizeof(double) * 4 * room);
   size_t n = 0;
@@ -107,7 +107,7 @@ static CagStatus elevate_once(const CagCurve *curve, CagCurve **out, CagError *e
 
 CagStatus cag_curve_elevate(const CagCurve *c, int times, CagCurve **out, CagError *err) {
   if (times < 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "times", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "times", -1,
                     "`times` must not be negative; this is %d", times);
   CagCurve *now, *next;
   CagStatus status = clamped(c, &now, err);
@@ -142,7 +142,7 @@ CagStatus cag_curve_insert_knots(const CagCurve *c, const double *t, size_t n, C
     if (!(t[i] > open->start && t[i] < open->end)) {
       status = fail_inside(open, t[i], err);
     } else if (cag_knots_multiplicity(knots, count, p, t[i]) >= p) {
-      status = cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", "t", (long)i,
+      status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "t", (long)i,
                         "the knot %s occurs %d times already, as often as degree %d allows",
                         cag_number_text(t[i], text), p, p);
     } else {

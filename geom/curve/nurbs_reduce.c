@@ -139,7 +139,7 @@ static double remove_once(Spline *s, size_t r, int m, double most, Chain *chain)
 static CagStatus fail_tolerance(double deviation, double tolerance, const char *what,
                                 CagError *err) {
   char a[32], b[32];
-  return cag_fail(err, CAG_E_DEGENERATE, "tolerance-exceeded", "tolerance", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_tolerance_exceeded, "tolerance", -1,
                   "%s moves points by up to %s mm, more than the tolerance of %s mm", what,
                   cag_number_text(deviation, a), cag_number_text(tolerance, b));
 }
@@ -168,7 +168,7 @@ CagStatus cag_curve_remove_knot(const CagCurve *c, double t, int times, double t
   n = cag_nurbs_data(open);
   int m = t > c->start && t < c->end ? cag_knots_multiplicity(n->knots, n->count, n->degree, t) : 0;
   if (times < 1 || m < times)
-    status = cag_fail(err, CAG_E_ARGUMENT, "no-such-knot", "t", -1,
+    status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_no_such_knot, "t", -1,
                       "%s occurs %d times among the inner knots, so it cannot be taken away %d "
                       "times",
                       cag_number_text(t, text), m, times);
@@ -237,7 +237,7 @@ CagStatus cag_curve_reduce_degree(const CagCurve *c, double tolerance, CagCurve 
   Chain chain = {0};
   double moved = 0;
   if (n->degree < 2)
-    status = cag_fail(err, CAG_E_ARGUMENT, "order-range", "C", -1,
+    status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "C", -1,
                       "a curve of degree 1 has no lower degree");
   if (!status) status = chain_make(&chain, n->degree, err);
   if (!status) status = reduce_pieces(n, &chain, &s, &moved, err);

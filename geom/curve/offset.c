@@ -59,7 +59,7 @@ static CagStatus shift_circle(const CagCurve *c, double d, CagVec3 center, doubl
   char a[32], b[32];
   const double image = r - turns * d;
   if (!(image > CAG_CURVE_SAME * r))
-    return cag_fail(err, CAG_E_DEGENERATE, "offset-collapses", "d", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_offset_collapses, "d", -1,
                     "nothing is left of an arc of radius %s at the distance %s to its inside",
                     cag_number_text(r, a), cag_number_text(fabs(d), b));
   CagTransform t = cag_translate(cag_scaled(center, 1 - image / r));
@@ -112,7 +112,7 @@ static CagStatus shift_polyline(const CagVec3 *v, size_t n, bool closed, double 
     // The corner of the two shifted lines: d (n1 + n2) / (1 + n1 . n2).
     const double cosine = cag_dot(in, to);
     if (1 + cosine <= STRAIGHT_BACK) {
-      status = cag_fail(err, CAG_E_DEGENERATE, "offset-corner", "C", (long)i,
+      status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_offset_corner, "C", (long)i,
                         "the polyline turns straight back at corner %zu: its offset has none", i);
       break;
     }
@@ -214,7 +214,7 @@ static CagStatus cut_corner(CagCurve **a, CagCurve **b, CagVec3 corner, CagError
   if (best == n) {
     cag_free(found);
     char x[32], y[32];
-    return cag_fail(err, CAG_E_DEGENERATE, "offset-corner", "d", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_offset_corner, "d", -1,
                     "the parts of the offset at the corner [%s, %s] do not meet: take a smaller "
                     "distance",
                     cag_number_text(corner.x, x), cag_number_text(corner.y, y));
@@ -297,9 +297,9 @@ CagStatus cag_curve_offset(const CagCurve *c, double d, double tolerance, CagCur
   size_t n;
   bool closed;
   if (!isfinite(d))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "d", -1, "`d` is not a finite number");
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "d", -1, "`d` is not a finite number");
   if (c->dimension != 2)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "not-planar", "C", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_not_planar, "C", -1,
                     "only plane curves, of points [x, y], have an offset");
   if (d == 0) {
     *out = cag_curve_retain(c);

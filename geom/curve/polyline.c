@@ -70,7 +70,7 @@ CagStatus cag_curve_polyline(const CagVec3 *points, size_t n, bool closed, int d
   while (closed && n > 1 && memcmp(&points[n - 1], &points[0], sizeof *points) == 0) n--;
   const size_t least = closed ? 3 : 2;
   if (n < least)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
                     "%s polyline needs at least %zu different points; these are %zu",
                     closed ? "a closed" : "a", least, n);
   const size_t stored = n + closed;

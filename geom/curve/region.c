@@ -157,7 +157,7 @@ static CagStatus check_loop(const CagCurve *c, const char *argument, long index,
   char which[64] = "the outer boundary";
   if (index >= 0) snprintf(which, sizeof which, "%.30s[%ld]", argument, index);
   if (c->dimension != 2)
-    return cag_fail(err, CAG_E_ARGUMENT, "not-planar", argument, index,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_planar, argument, index,
                     "%s is a curve of space; a region is bounded by plane curves, whose points are "
                     "[x, y]",
                     which);
@@ -166,7 +166,7 @@ static CagStatus check_loop(const CagCurve *c, const char *argument, long index,
   CagStatus status = cag_curve_point(c, c->start, &p, err);
   if (!status) status = cag_curve_point(c, c->end, &q, err);
   if (status) return status;
-  return cag_fail(err, CAG_E_ARGUMENT, "region-not-closed", argument, index,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_not_closed, argument, index,
                   "%s is not closed: it runs from [%.9g, %.9g] to [%.9g, %.9g], %.3g apart", which,
                   p.x, p.y, q.x, q.y, cag_norm(cag_sub(p, q)));
 }
@@ -180,7 +180,7 @@ static CagStatus oriented(const CagCurve *c, bool clockwise, CagCurve **out, Cag
   if (status) return status;
   double size = loop_size(c);
   if (fabs(area) <= nothing * size * size)
-    return cag_fail(err, CAG_E_DEGENERATE, "zero-area", "C", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_area, "C", -1,
                     "the closed curve bounds no area: it runs back on itself or its two sides "
                     "cancel");
   if ((area < 0) == clockwise) {
@@ -205,14 +205,14 @@ CagStatus cag_region_new(const CagCurve *outer, CagCurve *const *holes, size_t h
     bool within;
     status = loop_within(r->loops[i], r->loops[0], &within, err);
     if (!status && !within)
-      status = cag_fail(err, CAG_E_ARGUMENT, "hole-outside", "holes", (long)i - 1,
+      status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_hole_outside, "holes", (long)i - 1,
                         "holes[%zu] does not lie within the outer boundary", i - 1);
     for (size_t k = 1; !status && k < i; k++) {
       bool a, b;
       status = loop_within(r->loops[i], r->loops[k], &a, err);
       if (!status) status = loop_within(r->loops[k], r->loops[i], &b, err);
       if (!status && (a || b))
-        status = cag_fail(err, CAG_E_ARGUMENT, "region-crossing", "holes", (long)i - 1,
+        status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_crossing, "holes", (long)i - 1,
                           "holes[%zu] and holes[%zu] lie one in the other; holes must be apart",
                           k - 1, i - 1);
     }
@@ -225,7 +225,7 @@ CagStatus cag_region_new(const CagCurve *outer, CagCurve *const *holes, size_t h
 // Nesting depth of every loop, and the loops in the order: an outer one, then its holes.
 CagStatus cag_region_from_loops(CagCurve *const *loops, size_t n, CagRegion **out, CagError *err) {
   if (n == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-few-curves", "C", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_curves, "C", -1,
                     "a region needs at least one closed curve");
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < n; i++) status = check_loop(loops[i], "curves", (long)i, err);
@@ -275,7 +275,7 @@ static CagStatus check_positive(double x, const char *name, CagError *err) {
   char text[32];
   CagStatus status = cag_curve_check_number(x, name, err);
   if (status || x > 0) return status;
-  return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", name, -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, name, -1,
                   "`%s` must be positive; this is %s", name, cag_number_text(x, text));
 }
 
@@ -315,10 +315,10 @@ CagStatus cag_region_rectangle(double w, double h, double radius, CagRegion **ou
   if (!status) status = cag_curve_check_number(radius, "radius", err);
   if (status) return status;
   if (radius < 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", "radius", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, "radius", -1,
                     "`radius` must not be negative; this is %s", cag_number_text(radius, text));
   if (radius > fmin(w, h) / 2)
-    return cag_fail(err, CAG_E_ARGUMENT, "radius-too-large", "radius", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_radius_too_large, "radius", -1,
                     "`radius` is at most half the shorter side, %s; this is %s",
                     cag_number_text(fmin(w, h) / 2, most), cag_number_text(radius, text));
   CagCurve *loop;
@@ -339,7 +339,7 @@ CagStatus cag_region_regular_polygon(size_t n, double radius, CagRegion **out, C
   CagStatus status = check_positive(radius, "radius", err);
   if (status) return status;
   if (n < 3)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "n", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "n", -1,
                     "a polygon has at least 3 corners; `n` is %zu", n);
   CagVec3 *p = cag_malloc(sizeof *p * n);
   if (!p) return cag_fail_memory(err);
@@ -360,7 +360,7 @@ CagStatus cag_region_area(const CagRegion *r, double *area, CagVec3 *centroid, C
   double total = 0;
   CagVec3 moment = {0, 0, 0};
   if (centroid && cag_region_is_empty(r))
-    return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
                     "the region is empty: it has no centroid");
   for (size_t i = 0; i < r->count; i++) {
     double a;
@@ -391,7 +391,7 @@ CagStatus cag_region_perimeter(const CagRegion *r, double *out, CagError *err) {
 CagStatus cag_region_bounds(const CagRegion *r, CagBounds *out, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   if (cag_region_is_empty(r))
-    return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
                     "the region is empty: it has no bounds");
   for (size_t i = 0; i < r->count; i++) {
     CagBounds part;
@@ -428,7 +428,7 @@ CagStatus cag_region_contains(const CagRegion *r, CagVec3 p, bool *out, CagError
 CagStatus cag_region_transform(const CagRegion *r, const CagTransform *t, CagRegion **out,
                                CagError *err) {
   if (!t->planar)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "not-planar", "T", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_not_planar, "T", -1,
                     "a region stays one under transforms made of plane data alone; this one is of "
                     "space");
   CagRegion *image = allocate(r->count);

@@ -35,7 +35,7 @@ static size_t edge_end(const CagRegionEdge *e) { return e->keep > 0 ? e->to : e-
 
 static CagStatus undecided(const Chain *c, size_t corner, CagError *err) {
   char x[32], y[32];
-  return cag_fail(err, CAG_E_CONVERGENCE, "region-undecided", "", -1,
+  return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_region_undecided, "", -1,
                   "the boundaries run so close to each other near [%s, %s] that rounding hides "
                   "which is in front; move one of the regions by a little more than that, or make "
                   "them share the edge exactly",

@@ -150,20 +150,20 @@ static int by_loops(const void *a, const void *b) {
 static CagStatus fail_itself(const Loops *l, size_t loop, CagVec3 at, CagError *err) {
   const char *name = l->holes ? "holes" : "curves";
   if (l->holes && loop == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "region-crossing", "C", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_crossing, "C", -1,
                     "the boundary crosses itself near [%.6g, %.6g]", at.x, at.y);
-  return cag_fail(err, CAG_E_ARGUMENT, "region-crossing", name, (long)(loop - l->holes),
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_crossing, name, (long)(loop - l->holes),
                   "%s[%zu] crosses itself near [%.6g, %.6g]", name, loop - l->holes, at.x, at.y);
 }
 
 static CagStatus fail_crossing(const Loops *l, const Pair *p, CagError *err) {
   const char *name = l->holes ? "holes" : "curves";
   if (l->holes && p->a == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "region-crossing", name, (long)p->b - 1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_crossing, name, (long)p->b - 1,
                     "holes[%zu] crosses the outer boundary near [%.6g, %.6g]; boundaries of a "
                     "region must not cross",
                     p->b - 1, p->at.x, p->at.y);
-  return cag_fail(err, CAG_E_ARGUMENT, "region-crossing", name, (long)(p->b - l->holes),
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_crossing, name, (long)(p->b - l->holes),
                   "%s[%zu] and %s[%zu] cross near [%.6g, %.6g]; boundaries of a region must not "
                   "cross",
                   name, p->a - l->holes, name, p->b - l->holes, p->at.x, p->at.y);
@@ -212,18 +212,18 @@ static CagStatus check_hole(const Loops *l, const Pair *p, CagError *err) {
   if (status) return status;
   if (outside && p->cross) return fail_crossing(l, p, err);
   if (outside)
-    return cag_fail(err, CAG_E_ARGUMENT, "hole-outside", "holes", (long)hole - 1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_hole_outside, "holes", (long)hole - 1,
                     "holes[%zu] does not lie within the outer boundary", hole - 1);
   status = leaves(CAG_REGION_DIFFERENCE, l->items[0], l->items[hole], &rest, err);
   if (status || rest) return status;
-  return cag_fail(err, CAG_E_ARGUMENT, "hole-outside", "holes", (long)hole - 1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_hole_outside, "holes", (long)hole - 1,
                   "holes[%zu] and the outer boundary are one curve: nothing lies between them",
                   hole - 1);
 }
 
 static CagStatus fail_overlap(const Loops *l, const Pair *p, const char *how, CagError *err) {
   const char *name = l->holes ? "holes" : "curves";
-  return cag_fail(err, CAG_E_ARGUMENT, "region-crossing", name, (long)(p->b - l->holes),
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_crossing, name, (long)(p->b - l->holes),
                   "%s[%zu] and %s[%zu] %s", name, p->a - l->holes, name, p->b - l->holes, how);
 }
 

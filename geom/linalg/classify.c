@@ -135,7 +135,7 @@ CagStatus cag_transform_classify(const CagTransform *t, CagTransformClass *out, 
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 4; j++)
       if (!isfinite(t->m[i][j]))
-        return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "T", -1,
+        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "T", -1,
                         "the transform has an entry that is not a finite number");
   CagTransformClass r = {.scale = 1};
   if (!cag_transform_is_affine(t)) {
@@ -154,16 +154,17 @@ CagStatus cag_transform_classify(const CagTransform *t, CagTransformClass *out, 
 
 // --- Transforms by points ---
 
-static CagStatus fail_position(const char *argument, const char *reason, const char *problem,
+static CagStatus fail_position(const char *argument, CagErrorId id, const char *problem,
                                CagError *err) {
-  return cag_fail(err, CAG_E_ARGUMENT, reason, argument, -1, "the %s %s", argument, problem);
+  return cag_fail(err, CAG_E_ARGUMENT, id, argument, -1, "the %s %s", argument, problem);
 }
 
 // z -> a z + b in complex numbers.
 static CagStatus from_two(const CagVec3 *p, const CagVec3 *q, CagTransform *t, CagError *err) {
   double dx = p[1].x - p[0].x, dy = p[1].y - p[0].y, n = dx * dx + dy * dy;
   if (n == 0)
-    return fail_position("points", "coincident-points", "coincide; give two different ones", err);
+    return fail_position("points", CAG_ERR_coincident_points, "coincide; give two different ones",
+                         err);
   double ex = q[1].x - q[0].x, ey = q[1].y - q[0].y;
   double c = (ex * dx + ey * dy) / n, s = (ey * dx - ex * dy) / n;
   t->m[0][0] = t->m[1][1] = c;
@@ -199,9 +200,9 @@ static CagStatus from_simplex(const CagVec3 *p, const CagVec3 *q, int n, CagTran
                               CagError *err) {
   CagTransform from = edges(p, n), to = edges(q, n), inverse;
   if (flat(&from, n))
-    return n == 2 ? fail_position("points", "collinear-points",
+    return n == 2 ? fail_position("points", CAG_ERR_collinear_points,
                                   "lie on one line; give three that span the plane", err)
-                  : fail_position("points", "coplanar-points",
+                  : fail_position("points", CAG_ERR_coplanar_points,
                                   "lie in one plane; give four that span space", err);
   CagStatus status = cag_transform_inverse(&from, &inverse, err);
   if (status) return status;
@@ -219,7 +220,7 @@ static CagStatus from_frame(const CagVec3 *p, const char *argument, CagTransform
       if (i != skip) three[n++] = p[i];
     CagTransform e = edges(three, 2);
     if (flat(&e, 2))
-      return fail_position(argument, "collinear-points",
+      return fail_position(argument, CAG_ERR_collinear_points,
                            "have three on one line; no three of the four may be", err);
   }
   CagTransform m = {{{p[0].x, p[1].x, 0, p[2].x},
@@ -268,7 +269,7 @@ CagStatus cag_transform_from(const CagVec3 *points, const CagVec3 *images, size_
     const CagVec3 v[2] = {points[i], images[i]};
     for (int k = 0; k < 2; k++)
       if (!isfinite(v[k].x) || !isfinite(v[k].y) || !isfinite(v[k].z))
-        return cag_fail(err, CAG_E_ARGUMENT, "not-finite", k ? "images" : "points", (long)i,
+        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, k ? "images" : "points", (long)i,
                         "%s[%zu] has a coordinate that is not a finite number",
                         k ? "images" : "points", i);
   }
@@ -279,7 +280,7 @@ CagStatus cag_transform_from(const CagVec3 *points, const CagVec3 *images, size_
   else if (planar && n == 4) status = from_four(points, images, &t, err);
   else if (!planar && n == 4) status = from_simplex(points, images, 3, &t, err);
   else
-    return cag_fail(err, CAG_E_ARGUMENT, "point-count", "points", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_point_count, "points", -1,
                     planar ? "a transform of the plane is given by 2 (similarity), 3 (affine) or 4 "
                              "(projective) pairs of points; these are %zu"
                            : "a transform of space is given by 4 pairs of points; these are %zu",

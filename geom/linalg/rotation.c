@@ -14,7 +14,8 @@
 #define RIGID 1e-9
 
 static CagStatus fail_not_finite(const char *name, CagError *err) {
-  return cag_fail(err, CAG_E_ARGUMENT, "not-finite", name, -1, "`%s` is not a finite number", name);
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, name, -1, "`%s` is not a finite number",
+                  name);
 }
 
 static void turn(int axis, double angle, CagTransform *t) {
@@ -37,7 +38,7 @@ static CagStatus read_order(const char *order, int axes[3], CagError *err) {
     good = axes[i] >= 0 && axes[i] <= 2 && (i == 0 || axes[i] != axes[i - 1]);
   }
   if (good) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "euler-order", "order", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_euler_order, "order", -1,
                   "`order` names three axes of which neighbors differ, such as \"zyx\" or "
                   "\"zyz\"; this is \"%s\"",
                   order ? order : "");
@@ -71,12 +72,12 @@ CagStatus cag_quaternion(const double wxyz[4], CagTransform *out, CagError *err)
   double size = 0;
   for (int i = 0; i < 4; i++) {
     if (!isfinite(wxyz[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "quaternion", i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "quaternion", i,
                       "the quaternion has a part that is not a finite number");
     size = fmax(size, fabs(wxyz[i]));
   }
   if (size == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "zero-quaternion", "quaternion", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_quaternion, "quaternion", -1,
                     "the quaternion [0, 0, 0, 0] is not a rotation; the identity is [1, 0, 0, 0]");
   double w = wxyz[0] / size, x = wxyz[1] / size, y = wxyz[2] / size, z = wxyz[3] / size;
   double n = w * w + x * x + y * y + z * z;
@@ -105,13 +106,13 @@ static CagStatus rotation_part(const CagTransform *t, double r[3][3], CagError *
              fabs(cag_dot(c[j], c[(j + 1) % 3])) <= RIGID * aa;
     if (!near)
       return cag_fail(
-          err, CAG_E_ARGUMENT, "not-a-rotation", "T", -1,
+          err, CAG_E_ARGUMENT, CAG_ERR_not_a_rotation, "T", -1,
           "the linear part of the transform is not a rotation: its axes are not at right "
           "angles or not of one length");
     scale = sqrt(aa) / fabs(w);
   }
   if (cag_transform_mirrors(t))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-a-rotation", "T", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_a_rotation, "T", -1,
                     "the transform mirrors, so that it holds no rotation");
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) r[i][j] = scale * w == 1 ? t->m[i][j] : t->m[i][j] / (scale * w);
@@ -211,7 +212,7 @@ static CagStatus require_rigid(const CagTransform *t, const char *name, CagError
   if (cag_transform_is_similarity(t, &scale) && fabs(scale - 1) <= RIGID &&
       !cag_transform_mirrors(t))
     return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "not-rigid", name, -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_rigid, name, -1,
                   "only rigid motions can be mixed; this transform scales, shears, mirrors or "
                   "projects");
 }

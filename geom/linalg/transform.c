@@ -138,7 +138,7 @@ static bool finite_transform(const CagTransform *t) {
 
 static CagStatus fail_singular(CagError *err) {
   return cag_fail(
-      err, CAG_E_DEGENERATE, "singular-transform", "T", -1,
+      err, CAG_E_DEGENERATE, CAG_ERR_singular_transform, "T", -1,
       "the transform is singular (its determinant is 0 to rounding): it flattens space, "
       "so that no transform undoes it");
 }
@@ -198,7 +198,7 @@ static CagStatus invert_general(const CagTransform *t, CagTransform *out, CagErr
 
 CagStatus cag_transform_inverse(const CagTransform *t, CagTransform *out, CagError *err) {
   if (!finite_transform(t))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "T", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "T", -1,
                     "the transform has an entry that is not a finite number");
   CagTransform r = {.planar = t->planar};
   CagStatus status =
@@ -232,7 +232,7 @@ bool cag_transform_mirrors(const CagTransform *t) {
 
 static CagStatus finite_vec(CagVec3 v, const char *name, CagError *err) {
   if (isfinite(v.x) && isfinite(v.y) && isfinite(v.z)) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "not-finite", name, -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, name, -1,
                   "`%s` has a coordinate that is not a finite number", name);
 }
 
@@ -240,7 +240,7 @@ static CagStatus nonzero_vec(CagVec3 v, const char *name, CagError *err) {
   CagStatus status = finite_vec(v, name, err);
   if (status) return status;
   if (cag_norm(v) > 0) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "zero-vector", name, -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_vector, name, -1,
                   "`%s` is the zero vector, which has no direction", name);
 }
 
@@ -272,7 +272,7 @@ CagStatus cag_rotate(CagVec3 axis, double angle, CagVec3 about, CagTransform *ou
   if (!status) status = finite_vec(about, "about", err);
   if (status) return status;
   if (!isfinite(angle))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "angle", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "angle", -1,
                     "`angle` is not a finite number");
   double s, c;
   cag_sincos(angle, &s, &c);
@@ -297,7 +297,7 @@ CagStatus cag_scale(CagVec3 factors, CagVec3 about, CagTransform *out, CagError 
   CagTransform t = space_identity();
   for (int i = 0; i < 3; i++) {
     if (f[i] == 0)
-      return cag_fail(err, CAG_E_ARGUMENT, "zero-factor", "factor", i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_factor, "factor", i,
                       "the factor along %c is 0, which would flatten the shape; "
                       "project(onto: plane) is the way to flatten one",
                       'x' + i);
@@ -330,7 +330,7 @@ CagStatus cag_reflect_line(CagVec3 p, CagVec3 q, CagTransform *out, CagError *er
   if (status) return status;
   CagVec3 d = {q.x - p.x, q.y - p.y, 0};
   if (cag_norm(d) == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "coincident-points", "Q", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "Q", -1,
                     "P and Q are the same point of the XY plane, so that no line is given; take "
                     "two different points");
   double size = fmax(fabs(d.x), fabs(d.y)), x = d.x / size, y = d.y / size, n = x * x + y * y;
@@ -372,7 +372,7 @@ CagStatus cag_plane_through(CagVec3 p, CagVec3 q, CagVec3 r, CagPlane *out, CagE
   if (status) return status;
   CagVec3 a = cag_sub(q, p), b = cag_sub(r, p), n = cag_cross(a, b);
   if (!(cag_norm(n) > flat * cag_norm(a) * cag_norm(b)))
-    return cag_fail(err, CAG_E_ARGUMENT, "collinear-points", "R", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_collinear_points, "R", -1,
                     "the points P, Q, R lie on one line, so that many planes pass through them");
   *out = (CagPlane){p, direction(n)};
   return CAG_OK;
@@ -383,7 +383,7 @@ CagStatus cag_plane_from_row(const double row[4], CagPlane *out, CagError *err) 
   CagStatus status = nonzero_vec(n, "row", err);
   if (status) return status;
   if (!isfinite(row[3]))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "row", 3,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "row", 3,
                     "the last number of the plane's row is not finite");
   *out = (CagPlane){cag_scaled(n, -row[3] / cag_dot(n, n)), direction(n)};
   return CAG_OK;
@@ -407,7 +407,7 @@ CagStatus cag_plane_transform(const CagPlane *p, const CagTransform *t, CagPlane
   for (int j = 0; j < 4; j++)
     for (int i = 0; i < 4; i++) image[j] += row[i] * inverse.m[i][j];
   if (image[0] == 0 && image[1] == 0 && image[2] == 0)
-    return cag_fail(err, CAG_E_DEGENERATE, "plane-at-infinity", "plane", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_plane_at_infinity, "plane", -1,
                     "the transform sends this plane to infinity");
   CagPlane r;
   status = cag_plane_from_row(image, &r, err);
@@ -430,7 +430,7 @@ CagStatus cag_project_parallel(const CagPlane *onto, CagVec3 along, CagTransform
   cag_plane_row(onto, row);
   double slope = cag_dot(onto->normal, v);
   if (fabs(slope) < SINGULAR)
-    return cag_fail(err, CAG_E_ARGUMENT, "parallel-to-plane", "along", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_parallel_to_plane, "along", -1,
                     "`along` is parallel to the plane `onto`, so that no point reaches it");
   const double k[3] = {v.x / slope, v.y / slope, v.z / slope};
   CagTransform t = space_identity();
@@ -451,7 +451,7 @@ CagStatus cag_project_central(const CagPlane *onto, CagVec3 from, CagTransform *
   double height = cag_dot(onto->normal, cag_sub(from, onto->point));
   double size = fmax(cag_norm(cag_sub(from, onto->point)), DBL_MIN);
   if (fabs(height) <= SINGULAR * size)
-    return cag_fail(err, CAG_E_ARGUMENT, "center-in-plane", "from", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_center_in_plane, "from", -1,
                     "the point `from` lies in the plane `onto`; move it off the plane");
   CagTransform t = {.planar = false};
   for (int i = 0; i < 4; i++)
@@ -480,7 +480,7 @@ CagStatus cag_axes(CagVec3 origin, CagVec3 x, CagVec3 y, CagTransform *out, CagE
   CagVec3 u = direction(x), v = direction(y);
   CagVec3 across = cag_cross(u, v);
   if (cag_norm(across) <= flat)
-    return cag_fail(err, CAG_E_ARGUMENT, "parallel-axes", "y", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_parallel_axes, "y", -1,
                     "`y` is parallel to `x`, so that the two give no plane");
   CagVec3 w = direction(across);
   *out = frame_of(u, cag_cross(w, u), w, origin);
@@ -496,11 +496,11 @@ CagStatus cag_look_at(CagVec3 from, CagVec3 to, CagVec3 up, CagTransform *out, C
   if (status) return status;
   CagVec3 view = cag_sub(to, from);
   if (cag_norm(view) == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "coincident-points", "to", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coincident_points, "to", -1,
                     "`from` and `to` are the same point, so that there is no direction to look in");
   CagVec3 z = direction(view), across = cag_cross(z, direction(up));
   if (cag_norm(across) <= flat)
-    return cag_fail(err, CAG_E_ARGUMENT, "parallel-axes", "up", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_parallel_axes, "up", -1,
                     "`up` is parallel to the view direction; give another direction");
   CagVec3 x = direction(across);
   *out = frame_of(x, cag_cross(z, x), z, from);

@@ -32,7 +32,7 @@ static const char *name_of(const Operand *o, char text[64]) {
 
 CagStatus bool_stopped(const BoolWork *w) {
   if (!w->interrupt || !*w->interrupt) return CAG_OK;
-  return cag_fail(w->err, CAG_E_CALLBACK, "interrupted", "", -1,
+  return cag_fail(w->err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
                   "the set operation was interrupted");
 }
 
@@ -45,7 +45,7 @@ static CagStatus read_points(BoolWork *w, const Operand *o, uint32_t *number) {
     const bool fits = fabs(p.x) <= MOST_COORDINATE && fabs(p.y) <= MOST_COORDINATE &&
                       fabs(p.z) <= MOST_COORDINATE;
     if (!fits)
-      return cag_fail(w->err, CAG_E_ARGUMENT, "vertex-out-of-range", o->argument,
+      return cag_fail(w->err, CAG_E_ARGUMENT, CAG_ERR_vertex_out_of_range, o->argument,
                       o->index < 0 ? (long)i : o->index,
                       "vertices of operands are at most 1e100 from 0 along each axis: vertex %zu "
                       "of %s is [%g, %g, %g]",
@@ -60,7 +60,7 @@ static CagStatus open_at(BoolWork *w, const Operand *o, const CagMeshEdge *e, si
                          size_t back) {
   const CagVec3 p = w->points.at[e->low], q = w->points.at[e->high];
   char name[64];
-  return cag_fail(w->err, CAG_E_ARGUMENT, "mesh-open", o->argument,
+  return cag_fail(w->err, CAG_E_ARGUMENT, CAG_ERR_mesh_open, o->argument,
                   o->index < 0 ? (long)cag_mesh_edge_triangle(e) : o->index,
                   "the mesh of %s must be closed, each edge run once in each sense: the edge from "
                   "[%g, %g, %g] to [%g, %g, %g] is run %zu times that way and %zu times back",
@@ -99,7 +99,7 @@ static CagStatus check_sense(BoolWork *w, const Operand *o) {
   char name[64];
   // What other operations left within rounding may be turned either way.
   if (sum >= -rounding * size - SNAP * most * area) return CAG_OK;
-  return cag_fail(w->err, CAG_E_ARGUMENT, "mesh-inside-out", o->argument, o->index,
+  return cag_fail(w->err, CAG_E_ARGUMENT, CAG_ERR_mesh_inside_out, o->argument, o->index,
                   "the triangles of %s must run counter-clockwise as seen from outside, its volume "
                   "is %g: turn it with `flip`",
                   name_of(o, name), sum / 6);
@@ -310,7 +310,7 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
   const size_t triangles = o[0].mesh->triangle_count + o[1].mesh->triangle_count;
   const size_t vertices = o[0].mesh->vertex_count + o[1].mesh->vertex_count;
   if (triangles > UINT32_MAX / 16 || vertices > UINT32_MAX / 16)
-    return cag_fail(w->err, CAG_E_LIMIT, "mesh-too-large", o[0].argument, -1,
+    return cag_fail(w->err, CAG_E_LIMIT, CAG_ERR_mesh_too_large, o[0].argument, -1,
                     "operands have at most %lu vertices and triangles together, not %zu and %zu",
                     (unsigned long)UINT32_MAX / 16, vertices, triangles);
   FaceTable table = {NULL, 1023};

@@ -46,16 +46,16 @@ static int by_edge(const void *a, const void *b) {
 
 static CagStatus check_face(const Work *w, size_t f, const uint32_t *face, CagError *err) {
   if (w->counts[f] < 3)
-    return cag_fail(err, CAG_E_ARGUMENT, "face-degenerate", "faces", (long)f,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_degenerate, "faces", (long)f,
                     "a face needs 3 or more vertices: faces[%zu] has %lu", f,
                     (unsigned long)w->counts[f]);
   for (size_t k = 0; k < w->counts[f]; k++) {
     if (face[k] >= w->n)
-      return cag_fail(err, CAG_E_ARGUMENT, "face-index", "faces", (long)f,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_index, "faces", (long)f,
                       "`faces` must name vertices below %zu, their count: faces[%zu][%zu] = %lu",
                       w->n, f, k, (unsigned long)face[k]);
     if (w->around[face[k]] == f + 1)
-      return cag_fail(err, CAG_E_ARGUMENT, "face-degenerate", "faces", (long)f,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_degenerate, "faces", (long)f,
                       "a face must not name a vertex twice: faces[%zu] names %lu again at [%zu]", f,
                       (unsigned long)face[k], k);
     w->around[face[k]] = f + 1;
@@ -67,7 +67,7 @@ static CagStatus read_faces(Work *w, CagError *err) {
   for (size_t i = 0; i < w->n; i++) {
     CagVec3 p = w->vertices[i];
     if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))
-      return cag_fail(err, CAG_E_ARGUMENT, "vertex-not-finite", "vertices", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_vertex_not_finite, "vertices", (long)i,
                       "`vertices` must be finite: vertices[%zu] = [%g, %g, %g]", i, p.x, p.y, p.z);
   }
   size_t first = 0;

@@ -27,19 +27,19 @@
 static CagStatus check(const CagVec3 *points, size_t n, size_t least, CagError *err) {
   if (n >= least && n < NONE) return cag_curve_check_points(points, n, "points", err);
   if (n >= NONE)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-many-points", "points", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_many_points, "points", -1,
                     "`points` may hold less than %u points, found %zu", NONE, n);
-  return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "points", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "points", -1,
                   "`points` must hold at least %zu points for a hull, found %zu", least, n);
 }
 
 static CagStatus fail_coincident(CagError *err) {
-  return cag_fail(err, CAG_E_DEGENERATE, "coincident-points", "points", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_coincident_points, "points", -1,
                   "all of `points` are the same point; a hull needs some that differ");
 }
 
 static CagStatus fail_collinear(CagError *err) {
-  return cag_fail(err, CAG_E_DEGENERATE, "collinear-points", "points", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_collinear_points, "points", -1,
                   "all of `points` are on one line; their hull is a line from end to end");
 }
 
@@ -225,7 +225,7 @@ static CagStatus first_points(const Hull *h, uint32_t b[4], CagError *err) {
   const int side =
       cag_side_of_plane(h->points[b[0]], h->points[b[1]], h->points[b[2]], h->points[b[3]]);
   if (most <= h->slack || side == 0)
-    return cag_fail(err, CAG_E_DEGENERATE, "coplanar-points", "points", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_coplanar_points, "points", -1,
                     "all of `points` are in one plane, so their hull holds no volume; give them "
                     "as points of the plane, or one beside it");
   if (side > 0) {

@@ -11,7 +11,7 @@
 #include "geom/mesh/polygon.h"
 
 static CagStatus too_large(size_t vertices, size_t triangles, CagError *err) {
-  return cag_fail(err, CAG_E_LIMIT, "mesh-too-large", "", -1,
+  return cag_fail(err, CAG_E_LIMIT, CAG_ERR_mesh_too_large, "", -1,
                   "a mesh holds at most %lu vertices; %zu vertices and %zu triangles were asked "
                   "for: use a larger tolerance",
                   (unsigned long)UINT32_MAX, vertices, triangles);
@@ -64,7 +64,7 @@ static CagStatus check_vertices(const CagVec3 *vertices, size_t n, CagError *err
   for (size_t i = 0; i < n; i++) {
     CagVec3 p = vertices[i];
     if (isfinite(p.x) && isfinite(p.y) && isfinite(p.z)) continue;
-    return cag_fail(err, CAG_E_ARGUMENT, "vertex-not-finite", "vertices", (long)i,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_vertex_not_finite, "vertices", (long)i,
                     "`vertices` must be finite: vertices[%zu] = [%g, %g, %g]", i, p.x, p.y, p.z);
   }
   return CAG_OK;
@@ -75,15 +75,15 @@ static CagStatus check_vertices(const CagVec3 *vertices, size_t n, CagError *err
 static CagStatus check_face(const uint32_t *face, size_t count, size_t f, size_t n, size_t *seen,
                             CagError *err) {
   if (count < 3)
-    return cag_fail(err, CAG_E_ARGUMENT, "face-degenerate", "faces", (long)f,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_degenerate, "faces", (long)f,
                     "a face needs 3 or more vertices: faces[%zu] has %zu", f, count);
   for (size_t k = 0; k < count; k++) {
     if (face[k] >= n)
-      return cag_fail(err, CAG_E_ARGUMENT, "face-index", "faces", (long)f,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_index, "faces", (long)f,
                       "`faces` must name vertices 0 to %zu: faces[%zu][%zu] = %lu",
                       n > 0 ? n - 1 : 0, f, k, (unsigned long)face[k]);
     if (seen[face[k]] == f + 1)
-      return cag_fail(err, CAG_E_ARGUMENT, "face-degenerate", "faces", (long)f,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_degenerate, "faces", (long)f,
                       "a face must not name a vertex twice: faces[%zu] names %lu again at [%zu]", f,
                       (unsigned long)face[k], k);
     seen[face[k]] = f + 1;
@@ -204,7 +204,7 @@ CagStatus cag_mesh_transform(const CagMesh *m, const CagTransform *t, CagMesh **
     CagVec3 p = m->positions[i], image = cag_transform_point(t, p);
     if (!isfinite(image.x) || !isfinite(image.y) || !isfinite(image.z)) {
       cag_mesh_release(c);
-      return cag_fail(err, CAG_E_DEGENERATE, "point-at-infinity", "transform", (long)i,
+      return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_point_at_infinity, "transform", (long)i,
                       "the transform moves vertex %zu, [%g, %g, %g], to infinity", i, p.x, p.y,
                       p.z);
     }

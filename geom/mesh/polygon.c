@@ -65,7 +65,7 @@ CagStatus cag_polygon_triangulate(const CagVec3 *vertices, const uint32_t *face,
   }
   CagVec3 normal = vector_area(vertices, face, count);
   if (cag_norm(normal) == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "face-degenerate", "faces", (long)number,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_degenerate, "faces", (long)number,
                     "a face must have an area: the corners of faces[%zu] lie on one line", number);
   if (is_convex(vertices, face, count, normal)) {
     for (size_t k = 0; k + 2 < count; k++) {
@@ -77,7 +77,7 @@ CagStatus cag_polygon_triangulate(const CagVec3 *vertices, const uint32_t *face,
   }
   CagStatus status = triangulate_concave(vertices, face, count, normal, triangles, err);
   if (status == CAG_E_ARGUMENT)
-    return cag_fail(err, CAG_E_ARGUMENT, "face-self-intersection", "faces", (long)number,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_face_self_intersection, "faces", (long)number,
                     "the boundary of a face must not cross or touch itself: faces[%zu] does; "
                     "give it as triangles",
                     number);

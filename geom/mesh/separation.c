@@ -561,7 +561,7 @@ static void push_nodes(Search *s, size_t i, size_t k) {
 
 static void fail_uncertain(Search *s, double bound) {
   s->status =
-      cag_fail(s->err, CAG_E_LIMIT, "convergence", "", -1,
+      cag_fail(s->err, CAG_E_LIMIT, CAG_ERR_convergence, "", -1,
                "more than %zu pairs of points on the shapes are nearly equally close, at %g "
                "to %g mm; cannot determine which pair is the closest",
                s->most, fmax(0, bound), s->best);
@@ -620,7 +620,7 @@ static void find_nearest(Search *s) {
 CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, double *out,
                              CagVec3 *point, const volatile int *interrupt, CagError *err) {
   if (a->n == 0 || b->n == 0)
-    return cag_fail(err, CAG_E_DEGENERATE, "zero-area", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_area, "", -1,
                     "a surface without area has no triangles to measure from");
   Tree first = {0}, second = {0};
   Search s = {&first, &second, .best = INFINITY, .most = most, .interrupt = interrupt, .err = err};
@@ -631,7 +631,8 @@ CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, 
     status = s.status;
   }
   if (!status && interrupt && *interrupt)
-    status = cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the search was interrupted");
+    status =
+        cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the search was interrupted");
   cag_free(first.order);
   cag_free(first.nodes);
   cag_free(second.order);

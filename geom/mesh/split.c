@@ -146,7 +146,7 @@ static CagStatus split_once(Splitter *s, size_t max_triangles, CagMesh **out, Ca
   const CagMesh *m = s->m;
   const size_t triangles = m->triangle_count + s->n;
   if (triangles > max_triangles || s->vertices >= UINT32_MAX)
-    return cag_fail(err, CAG_E_LIMIT, "triangle-limit", "max_edge", -1,
+    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "max_edge", -1,
                     "the mesh would have %zu triangles, more than the limit of %zu; allow longer "
                     "edges",
                     triangles, max_triangles);

@@ -26,12 +26,13 @@ CagStatus tess_grow(void *array, size_t count, size_t *capacity, size_t size, Ca
 
 CagStatus tess_interrupted(const Tessellator *t, CagError *err) {
   if (!t->how.interrupt || !*t->how.interrupt) return CAG_OK;
-  return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the tessellation was interrupted");
+  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
+                  "the tessellation was interrupted");
 }
 
 CagStatus tess_limit(const Tessellator *t, double triangles, CagError *err) {
   char tolerance[32];
-  return cag_fail(err, CAG_E_LIMIT, "triangle-limit", "tolerance", -1,
+  return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
                   "a tolerance of %s mm takes more than %.0f triangles, the limit is %zu: use a "
                   "larger tolerance",
                   cag_number_text(t->how.tolerance, tolerance), floor(triangles),
@@ -67,7 +68,7 @@ static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBoun
   *t = (Tessellator){.how = how ? *how : CAG_TESSELLATION_DEFAULT};
   t->size = cag_norm(cag_sub(bounds->max, bounds->min));
   if (!isfinite(t->size))
-    return cag_fail(err, CAG_E_ARGUMENT, "surface-unbounded", "", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_surface_unbounded, "", -1,
                     "only a bounded surface can be tessellated; this one reaches infinity");
   t->noise = rounding * fmax(cag_norm(bounds->min), cag_norm(bounds->max));
   if (!(t->how.tolerance > 0)) t->how.tolerance = t->size > 0 ? t->size * default_share : 1;

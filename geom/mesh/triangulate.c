@@ -249,22 +249,22 @@ static CagStatus check_loops(const double *xy, const size_t *counts, size_t loop
   *points = 0;
   for (size_t l = 0; l < loops; *points += counts[l++])
     if (counts[l] < 3)
-      return cag_fail(err, CAG_E_ARGUMENT, "polygon-too-small", "points", (long)l,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_polygon_too_small, "points", (long)l,
                       "a polygon needs 3 or more points: loop %zu has %zu", l, counts[l]);
   for (size_t k = 0; k < *points; k++)
     if (!isfinite(xy[2 * k]) || !isfinite(xy[2 * k + 1]))
-      return cag_fail(err, CAG_E_ARGUMENT, "vertex-not-finite", "points", (long)k,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_vertex_not_finite, "points", (long)k,
                       "`points` must be finite: points[%zu] = [%g, %g]", k, xy[2 * k],
                       xy[2 * k + 1]);
   if (loops == 0 || *points > UINT32_MAX / 4)
-    return cag_fail(err, CAG_E_ARGUMENT, "polygon-too-small", "points", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_polygon_too_small, "points", -1,
                     "a polygon needs at least one loop and at most %lu points",
                     (unsigned long)UINT32_MAX / 4);
   return CAG_OK;
 }
 
 static CagStatus crosses(const double *xy, size_t point, CagError *err) {
-  return cag_fail(err, CAG_E_ARGUMENT, "polygon-self-intersection", "points", (long)point,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_polygon_self_intersection, "points", (long)point,
                   "the boundary of a polygon must not cross or touch itself: it does at or beside "
                   "points[%zu] = [%g, %g]",
                   point, xy[2 * point], xy[2 * point + 1]);

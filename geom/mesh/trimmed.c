@@ -190,7 +190,7 @@ static CagStatus outline_loop(Plane *p, const CagSurface *s, size_t loop,
       if (!status) status = add_vertex(p, x.x, x.y, &vertex, err);
     }
     if (!status && p->vertex_count > how->max_triangles + 2)
-      status = cag_fail(err, CAG_E_LIMIT, "triangle-limit", "tolerance", -1,
+      status = cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
                         "the outline alone takes more than the limit of %zu triangles: use a "
                         "larger tolerance",
                         how->max_triangles);
@@ -465,8 +465,8 @@ static CagStatus insert_mesh(Plane *p, const CagSurface *s, const CagTessellatio
     if (t == NO_TRIANGLE || !is_clear(p, t, q)) continue;
     status = insert(p, u, v, t, err);
     if (!status && how->interrupt && *how->interrupt)
-      status =
-          cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the tessellation was interrupted");
+      status = cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
+                        "the tessellation was interrupted");
   }
   cag_mesh_release(mesh);
   return status;
@@ -553,13 +553,13 @@ static CagStatus refine(Plane *p, const CagTessellation *how, CagError *err) {
       if (!bad) p->checked[t] = 1;
       any = any || bad;
       if (p->triangle_count > how->max_triangles)
-        return cag_fail(err, CAG_E_LIMIT, "triangle-limit", "tolerance", -1,
+        return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
                         "the trimmed surface takes more than the limit of %zu triangles: use a "
                         "larger tolerance",
                         how->max_triangles);
     }
     if (how->interrupt && *how->interrupt)
-      return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1,
+      return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
                       "the tessellation was interrupted");
     if (!any) return CAG_OK;
   }

@@ -33,7 +33,7 @@ static CagStatus check_rigid(const CagTransform *t, const char *argument, long l
   if (cag_robot_is_rigid(t)) return CAG_OK;
   char place[48] = "";
   if (link >= 0) snprintf(place, sizeof place, " of links[%ld]", link);
-  return cag_fail(err, CAG_E_ARGUMENT, "not-rigid", argument, link,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_rigid, argument, link,
                   "the transform%s must be a motion: turns and translations only, no scale, shear "
                   "or mirror",
                   place);
@@ -53,16 +53,16 @@ static CagStatus check_limits(const CagRobotLink *l, long joint, CagError *err) 
   cag_number_text(l->high * unit, high);
   cag_number_text(l->home * unit, home);
   if (!isfinite(l->high - l->low))
-    return cag_fail(err, CAG_E_ARGUMENT, "joint-limits", "limits", joint,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_joint_limits, "limits", joint,
                     "the limits of %s are %s%s..%s%s; they must be finite (a joint that "
                     "turns freely has -360deg..360deg, say)",
                     of, low, word, high, word);
   if (l->low > l->high)
-    return cag_fail(err, CAG_E_ARGUMENT, "joint-limits", "limits", joint,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_joint_limits, "limits", joint,
                     "the limits of %s run from %s%s down to %s%s; the lower comes first", of, low,
                     word, high, word);
   if (!(l->home >= l->low && l->home <= l->high))
-    return cag_fail(err, CAG_E_ARGUMENT, "home-outside", "home", joint,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_home_outside, "home", joint,
                     "the home value %s%s of %s lies outside of its limits %s%s..%s%s", home, word,
                     of, low, word, high, word);
   return CAG_OK;
@@ -74,7 +74,7 @@ static CagStatus check_link(const CagRobotLink *l, long index, long joint, CagEr
   const double numbers[] = {l->theta, l->d, l->a, l->alpha, l->screw, l->speed, l->effort};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     if (!isfinite(numbers[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "link-number", "links", index,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_link_number, "links", index,
                       "links[%ld] has a number that is infinite or none", index);
   return check_limits(l, joint, err);
 }
@@ -241,7 +241,7 @@ static CagStatus fill_coupling(CagRobot *r, const CagRobotSpec *spec, CagError *
   if (spec->coupling_offset) memcpy(r->coupling_offset, spec->coupling_offset, n * sizeof(double));
   for (size_t i = 0; i < n * n; i++)
     if (!isfinite(r->coupling[i]) || !isfinite(r->coupling_offset[i / n]))
-      return cag_fail(err, CAG_E_ARGUMENT, "coupling-singular", "coupling", (long)(i / n),
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coupling_singular, "coupling", (long)(i / n),
                       "row %zu of the coupling has a number that is infinite or none", i / n + 1);
   double *work = cag_malloc(n * n * sizeof *work);
   if (!work) return cag_fail_memory(err);
@@ -249,7 +249,7 @@ static CagStatus fill_coupling(CagRobot *r, const CagRobotSpec *spec, CagError *
   const bool regular = invert(work, n, r->coupling_inverse);
   cag_free(work);
   if (regular) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "coupling-singular", "coupling", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_coupling_singular, "coupling", -1,
                   "the coupling matrix is singular: the motors' angles do not determine the "
                   "joints'; each joint needs a motor of its own");
 }
@@ -276,7 +276,7 @@ void cag_robot_joints(const CagRobot *r, const double *motors, double *q) {
 static CagStatus check_spec(const CagRobotSpec *spec, size_t *joints, CagError *err) {
   *joints = 0;
   if (spec->link_count == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-chain", "links", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_chain, "links", -1,
                     "a robot needs at least one link");
   for (size_t i = 0; i < spec->link_count; i++) {
     CagStatus status = check_link(&spec->links[i], (long)i, (long)*joints, err);
@@ -284,7 +284,7 @@ static CagStatus check_spec(const CagRobotSpec *spec, size_t *joints, CagError *
     *joints += spec->links[i].kind != CAG_JOINT_FIXED;
   }
   if (*joints > CAG_ROBOT_JOINTS_MAX)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-many-joints", "links", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_many_joints, "links", -1,
                     "a robot may have %d joints, found %zu", CAG_ROBOT_JOINTS_MAX, *joints);
   CagStatus status = check_rigid(&spec->base, "base", -1, err);
   return status ? status : check_rigid(&spec->tool, "tool", -1, err);
@@ -304,7 +304,7 @@ CagStatus cag_robot_new(const CagRobotSpec *spec, CagRobot **out, CagError *err)
   r->reach = reach_of(r);
   status = r->reach < REACH_MAX
                ? fill_coupling(r, spec, err)
-               : cag_fail(err, CAG_E_ARGUMENT, "link-number", "links", -1,
+               : cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_link_number, "links", -1,
                           "the lengths of the links add up to more than %g", REACH_MAX);
   if (status) cag_robot_release(r);
   else *out = r;

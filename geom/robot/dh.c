@@ -70,7 +70,7 @@ static CagRobotLink row_between(const Frame *f, const Frame *next, CagVec3 foot,
 static CagStatus unit_direction(const CagJointAxis *axis, long index, CagVec3 *out, CagError *err) {
   *out = cag_unit(axis->direction);
   if (isfinite(cag_norm(axis->direction)) && cag_norm(*out) > 0) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "zero-vector", index < 0 ? "end" : "axes", index,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_vector, index < 0 ? "end" : "axes", index,
                   index < 0 ? "the direction of the end must not be zero"
                             : "the direction of axes[%ld] must not be zero",
                   index);
@@ -88,7 +88,7 @@ CagStatus cag_robot_dh_assign(const CagTransform *base, const CagJointAxis *axes
                               CagError *err) {
   CagVec3 z;
   if (n == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-chain", "axes", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_chain, "axes", -1,
                     "a chain needs the axis of at least one joint");
   CagStatus status = cag_robot_pose_check(base, "base", err);
   if (!status) status = unit_direction(&axes[0], 0, &z, err);
@@ -99,7 +99,7 @@ CagStatus cag_robot_dh_assign(const CagTransform *base, const CagJointAxis *axes
   double size = size_of(f.o, axes, n, end);
   CagVec3 way = cag_sub(axes[0].point, f.o);
   if (cag_norm(cag_sub(z, f.z)) > PARALLEL || cag_norm(cag_cross(way, f.z)) > MEETING * size)
-    return cag_fail(err, CAG_E_ARGUMENT, "axis-off-base", "base", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_axis_off_base, "base", -1,
                     "the z axis of the base must lie on the first joint's axis, in its direction");
   frames[0] = matrix_of(&f);
   for (size_t i = 0; i < n; i++) {

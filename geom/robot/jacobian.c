@@ -95,7 +95,7 @@ CagStatus cag_robot_singular_values(const CagRobot *r, const double *q, double v
   bool done = false;
   for (int sweep = 0; !done; sweep++) {
     if (sweep == SWEEPS_MAX)
-      return cag_fail(err, CAG_E_CONVERGENCE, "convergence", "", -1,
+      return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "", -1,
                       "the singular values did not converge");
     done = true;
     for (int i = 0; i < 5; i++)

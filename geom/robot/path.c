@@ -22,7 +22,7 @@
 static CagStatus fail_unreachable(const CagRobotFound *found, bool position_only, CagError *err) {
   char angle[64] = "";
   if (!position_only) snprintf(angle, sizeof angle, " and %.6g deg", found->rotation * 180 / M_PI);
-  return cag_fail(err, CAG_E_DEGENERATE, "unreachable", "T", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_unreachable, "T", -1,
                   "no joint values within the limits reach the pose; the closest found is %.6g "
                   "mm%s away",
                   found->position, angle);
@@ -76,14 +76,14 @@ static CagStatus check_branches(const CagRobot *r, const CagRobotGoal *goal, boo
     if (!wanted[i]) continue;
     if (!closed)
       return cag_fail(
-          err, CAG_E_UNSUPPORTED, "no-closed-form", "config", -1,
+          err, CAG_E_UNSUPPORTED, CAG_ERR_no_closed_form, "config", -1,
           goal->position_only && cag_robot_has_inverse(r)
               ? "a point leaves the tool's orientation open, so that the branches have "
                 "no names; give a pose, or choose by `near`"
               : "the arm has no closed form, so that its branches have no names; choose "
                 "by `near`");
     if (!there[i])
-      return cag_fail(err, CAG_E_UNSUPPORTED, "no-closed-form", "config", -1,
+      return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_closed_form, "config", -1,
                       "the arm has no choice of `%s`; `ik_all` tells its branches", names[i]);
   }
   return CAG_OK;
@@ -116,7 +116,7 @@ CagStatus cag_robot_solve(const CagRobot *r, const CagTransform *target, const C
                            .stay_near = true};
   *found = cag_robot_search(r, target, &search, q);
   if (branch && found->solved)
-    return cag_fail(err, CAG_E_DEGENERATE, "unreachable", "config", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_unreachable, "config", -1,
                     "the pose is reached, but not in this branch within the limits; `ik_all` tells "
                     "the branches");
   return found->solved ? CAG_OK : fail_unreachable(found, goal->position_only, err);
@@ -225,20 +225,20 @@ static CagStatus fail_step(const CagRobot *r, const double *q, Tracked how, size
   char cause[80] = "a singular place stands";
   double at = (double)step - 1 + part;
   if (how == LEFT)
-    return cag_fail(err, CAG_E_DEGENERATE, "path-leaves", "", (long)step,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_leaves, "", (long)step,
                     "the way leaves the workspace before %s %zu (at %.6g): no joint values within "
                     "the limits reach what follows",
                     what, step, at);
   size_t joint = joint_at_limit(r, q);
   if (joint > 0) snprintf(cause, sizeof cause, "the limit of joint %zu stands", joint);
-  return cag_fail(err, CAG_E_DEGENERATE, "path-jumps", "", (long)step,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_jumps, "", (long)step,
                   "the joints would have to jump before %s %zu (at %.6g): %s in the way of this "
                   "branch; start from another `near`",
                   what, step, at, cause);
 }
 
 static CagStatus fail_singular(size_t step, bool between, CagError *err) {
-  return cag_fail(err, CAG_E_DEGENERATE, "path-singular", "", (long)step,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_singular, "", (long)step,
                   between ? "the way crosses a singular place between the steps %zu and %zu; "
                             "`cross: true` lets it"
                           : "the way meets a singular place at step %zu (before %zu); `cross: "
@@ -247,7 +247,8 @@ static CagStatus fail_singular(size_t step, bool between, CagError *err) {
 }
 
 static CagStatus fail_stopped(CagError *err) {
-  return cag_fail(err, CAG_E_CALLBACK, "callback", "", -1, "the path was not finished");
+  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1,
+                  "the path was not finished");
 }
 
 CagStatus cag_robot_line_path(const CagRobot *r, const CagTransform *from, const CagTransform *to,
@@ -301,7 +302,7 @@ CagStatus cag_robot_follow(const CagRobot *r, const CagTransform *poses, size_t 
     CagRobotGoal goal = {.near = k > 0 ? before : way->near, .position_only = way->position_only};
     CagStatus status = cag_robot_solve(r, &poses[k], &goal, here, &found, err);
     if (status && k > 0)
-      return cag_fail(err, CAG_E_DEGENERATE, "path-leaves", "", (long)k,
+      return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_leaves, "", (long)k,
                       "pose %zu is out of reach; the closest found is %.6g mm and %.6g deg away", k,
                       found.position, found.rotation * 180 / M_PI);
     if (status) return status;

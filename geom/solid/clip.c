@@ -88,7 +88,8 @@ static CagStatus clip_samples(CagInside *in, const CagCurve *c, const double *t,
   CagStatus status = holds_at(in, c, c->start, &last, err);
   for (size_t i = 1; !status && i < n; i++) {
     if (interrupt && *interrupt)
-      return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the clipping was interrupted");
+      return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
+                      "the clipping was interrupted");
     status = holds_at(in, c, t[i], &inner, err);
     if (status || inner == last) continue;
     double at = t[i];
@@ -180,7 +181,7 @@ static CagStatus add_triangle(Work *w, uint32_t a, uint32_t b, uint32_t c, CagEr
   }
   if (a == b || b == c || c == a) return CAG_OK;
   if (w->triangles >= w->how->max_triangles)
-    return cag_fail(err, CAG_E_LIMIT, "triangle-limit", "tolerance", -1,
+    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
                     "the part within the solid takes more than %zu triangles: use a larger "
                     "tolerance",
                     w->how->max_triangles);
@@ -330,7 +331,8 @@ static CagStatus split_pass(Work *w, bool *changed, CagError *err) {
     for (int k = 0; !status && split && k < 3; k++)
       status = split_edge(w, t[k], t[(k + 1) % 3], err);
     if (!status && w->how->interrupt && *w->how->interrupt)
-      status = cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the clipping was interrupted");
+      status = cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
+                        "the clipping was interrupted");
   }
   *changed = !status && w->n > points;
   if (!*changed) return status;

@@ -65,7 +65,7 @@ CagStatus cag_solid_quadric(const CagQuadric *form, CagSolid **out, CagError *er
   CagStatus status = cag_quadric_classify(form, &f, err);
   if (status) return status;
   if (f.class_id == CAG_QUADRIC_EMPTY)
-    return cag_fail(err, CAG_E_DEGENERATE, "quadric-imaginary", "coefficients", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_quadric_imaginary, "coefficients", -1,
                     "the form does not depend on x, y or z: it has no side");
   bool flat = f.class_id == CAG_QUADRIC_PLANE;
   status = block(flat ? CAG_SOLID_HALF_SPACE : CAG_SOLID_QUADRIC, 0, &s, err);
@@ -91,7 +91,7 @@ CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err) {
   char x[32], y[32], z[32];
   if (m->triangle_count == 0) return cag_solid_empty(out, err);
   if (!cag_mesh_is_watertight(m, edge))
-    return cag_fail(err, CAG_E_ARGUMENT, "mesh-open", "", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_mesh_open, "", -1,
                     "the mesh must be closed: its edge from [%s, %s, %s] to [%.9g, %.9g, %.9g] has "
                     "not two faces that run it in opposite senses; `weld` joins vertices that "
                     "nearly meet",
@@ -106,7 +106,7 @@ CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err) {
   cag_mesh_volume_terms(near, terms);
   cag_mesh_release(near);
   if (terms[0] == 0)
-    return cag_fail(err, CAG_E_DEGENERATE, "mesh-flat", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_mesh_flat, "", -1,
                     "the mesh encloses no volume: its faces lie on each other");
   status = cag_mesh_outward(m, &outward, err);
   if (!status) status = block(CAG_SOLID_MESH, 0, &s, err);

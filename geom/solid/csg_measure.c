@@ -49,15 +49,15 @@ static CagStatus placed(const CagSolid *s, size_t index, CagSolid **out, CagErro
 static CagStatus fail_empty(const CagSolid *s, CagError *err) {
   char first[80], second[80];
   if (!s->core->count)
-    return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
                     s->kind == CAG_SOLID_UNION ? "the solid is empty: it has no bounds"
                                                : "the form is nowhere negative");
   cag_solid_describe_form(s->core->operands[0], first, sizeof first);
   if (s->core->count < 2)
-    return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1, "the %s of (%s) is empty",
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1, "the %s of (%s) is empty",
                     cag_solid_kind_name(s->kind), first);
   cag_solid_describe_form(s->core->operands[1], second, sizeof second);
-  return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
                   s->kind == CAG_SOLID_UNION ? "the %s of (%s) and (%s)%s is empty: all of them are"
                   : s->kind == CAG_SOLID_DIFFERENCE
                       ? "the %s of (%s) and (%s)%s leaves nothing: the first lies within what is "
@@ -204,7 +204,7 @@ CagStatus cag_solid_is_empty(const CagSolid *s, bool *out, CagError *err) {
   const CagStatus status = cag_csg_bounds(s, &unused, err);
   *out = status && cag_is_empty_shape(err);
   // What reaches to infinity is not empty.
-  return *out || (status && !strcmp(err->reason, "solid-unbounded")) ? CAG_OK : status;
+  return *out || (status && err->id == CAG_ERR_solid_unbounded) ? CAG_OK : status;
 }
 
 // --- Mass ---

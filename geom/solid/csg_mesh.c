@@ -54,7 +54,8 @@ static double stretch(const CagTransform *t) {
 
 static CagStatus check_interrupt(const volatile int *interrupt, CagError *err) {
   if (!interrupt || !*interrupt) return CAG_OK;
-  return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the set operation was interrupted");
+  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
+                  "the set operation was interrupted");
 }
 
 static CagStatus solid_mesh(const CagSolid *s, const CagTessellation *how, const CagBounds *window,
@@ -131,7 +132,7 @@ static CagStatus join_meshes(const CagSolid *s, const CagTessellation *how, CagM
       cag_mesh_boolean_many(operation_of(s), (const CagMesh *const *)meshes, n, &set, out, err);
   if (status) return name_operand(s, operands, n, status, err);
   if ((*out)->triangle_count <= how->max_triangles) return CAG_OK;
-  status = cag_fail(err, CAG_E_LIMIT, "triangle-limit", "tolerance", -1,
+  status = cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
                     "the %s takes %zu triangles, the limit is %zu: use a larger tolerance",
                     cag_solid_kind_name(s->kind), (*out)->triangle_count, how->max_triangles);
   cag_mesh_release(*out);
@@ -242,11 +243,11 @@ static CagStatus add_landmarks(const CagSolid *s, CagBounds *into, CagError *err
 
 static CagStatus unbounded(const CagSolid *s, CagError *err) {
   if (!is_operation(s))
-    return cag_fail(err, CAG_E_ARGUMENT, "solid-unbounded", "", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_solid_unbounded, "", -1,
                     "the %s reaches to infinity: intersect it with a solid that bounds it, as in "
                     "`sphere(10) & half_space(plane(origin, Z))`, or take it away from one",
                     s->kind == CAG_SOLID_HALF_SPACE ? "half space" : "side of the quadric");
-  return cag_fail(err, CAG_E_ARGUMENT, "solid-unbounded", "", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_solid_unbounded, "", -1,
                   "the %s reaches to infinity: one of its %zu operands is a half space or quadric "
                   "that the others do not bound; intersect it with a solid that does",
                   cag_solid_kind_name(s->kind), s->core->count);

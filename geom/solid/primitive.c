@@ -156,7 +156,7 @@ CagStatus cag_solid_torus(double major, double minor, CagSolid **out, CagError *
   CagSolid *s;
   if (major < minor)
     status =
-        cag_fail(err, CAG_E_ARGUMENT, "self-intersection", "major", -1,
+        cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_self_intersection, "major", -1,
                  "`major` (%s) must not be less than `minor` (%s), or the body crosses itself; "
                  "torus_surface draws such a torus",
                  cag_number_text(major, a), cag_number_text(minor, b));

@@ -124,7 +124,7 @@ static CagStatus check_closed(const CagShellBoundaries *all, const size_t *origi
     if (gap <= all->slack) continue;
     const size_t face = origin[b->face];
     bool alone = !isfinite(gap);
-    return cag_fail(err, CAG_E_ARGUMENT, "solid-open", "surfaces", (long)face,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_solid_open, "surfaces", (long)face,
                     "the surfaces must close: surface %zu has an open edge (%s) at [%s, %s, %s], "
                     "%s%s; add the missing face or move the edges together",
                     face, side_name(b->side), cag_number_text(where.x, x),
@@ -135,7 +135,7 @@ static CagStatus check_closed(const CagShellBoundaries *all, const size_t *origi
   if (!divided) return CAG_OK;
   const size_t face = origin[divided->face];
   const CagVec3 at = divided->p[0];
-  return cag_fail(err, CAG_E_ARGUMENT, "solid-open", "surfaces", (long)face,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_solid_open, "surfaces", (long)face,
                   "the surfaces must share whole edges: the edge of surface %zu (%s) from "
                   "[%s, %s, %s] on is divided otherwise by its neighbors; divide it at their "
                   "corners",
@@ -297,12 +297,12 @@ static CagStatus join_faces(CagShellFaces *faces, CagSolid **out, CagError *err)
 CagStatus cag_solid_shell(CagSurface *const *faces, size_t n, CagSolid **out, CagError *err) {
   for (size_t i = 0; i < n; i++)
     if (cag_surface_trimmed_view(faces[i], NULL, NULL))
-      return cag_fail(err, CAG_E_UNSUPPORTED, "trimmed-face", "", (long)i,
+      return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_trimmed_face, "", (long)i,
                       "face %zu is a trimmed surface, whose outline cannot be matched to the sides "
                       "of others: use whole surfaces, or a mesh of the parts",
                       i);
   if (n == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "solid-open", "surfaces", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_solid_open, "surfaces", -1,
                     "`surfaces` must hold at least one surface");
   CagShellFaces own = {0};
   CagStatus status = CAG_OK;

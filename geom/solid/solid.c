@@ -71,14 +71,14 @@ CagStatus cag_solid_check_size(double size, const char *name, long index, CagErr
   char text[32];
   if (size >= LENGTH_LEAST && size <= LENGTH_MOST) return CAG_OK;
   if (size > 0 && isfinite(size))
-    return cag_fail(err, CAG_E_ARGUMENT, "size-out-of-range", name, index,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_out_of_range, name, index,
                     "`%s` must lie between %g and %g, it is %s", name, LENGTH_LEAST, LENGTH_MOST,
                     cag_number_text(size, text));
   if (index >= 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", name, index,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, name, index,
                     "`%s` must be positive lengths: %s[%ld] is %s", name, name, index,
                     cag_number_text(size, text));
-  return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", name, -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, name, -1,
                   "`%s` must be a positive length, it is %s", name, cag_number_text(size, text));
 }
 
@@ -228,7 +228,7 @@ CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid
   CagStatus status = cag_transform_inverse(t, &unused, err);
   if (status) return status;
   if (!cag_transform_is_affine(t))
-    return cag_fail(err, CAG_E_UNSUPPORTED, "not-affine", "transform", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_not_affine, "transform", -1,
                     "a solid can be moved by affine transforms only: project its faces, or its "
                     "mesh");
   CagSolid *moved = NULL;

@@ -19,7 +19,7 @@ CagStatus cag_solid_extrude(const CagRegion *r, CagVec3 v, double twist, double 
                             CagSolid **out, CagError *err) {
   if (v.z == 0)
     return cag_fail(
-        err, CAG_E_ARGUMENT, "degenerate-direction", "height", -1,
+        err, CAG_E_ARGUMENT, CAG_ERR_degenerate_direction, "height", -1,
         "`height` must lead out of the plane of the region: it, or its z, must not be 0");
   if (cag_region_is_empty(r)) return cag_solid_empty(out, err);
   CagSolid *s;
@@ -61,7 +61,7 @@ typedef struct Setting {
 static CagStatus set_plane(CagVec3 axis, CagVec3 through, Setting *out, CagError *err) {
   CagVec3 w = cag_unit(axis);
   if (!(cag_norm(w) > 0))
-    return cag_fail(err, CAG_E_ARGUMENT, "zero-axis", "axis", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_axis, "axis", -1,
                     "`axis` must not be the zero vector: give a direction such as Z");
   out->axis = w;
   out->through = through;
@@ -70,7 +70,7 @@ static CagStatus set_plane(CagVec3 axis, CagVec3 through, Setting *out, CagError
   bool upright = fabs(w.x) + fabs(w.y) <= ON_AXIS;
   double off = upright ? through.y : fabs(w.z) + fabs(through.z);
   if (fabs(off) > ON_AXIS * (1 + cag_norm(through)))
-    return cag_fail(err, CAG_E_ARGUMENT, "axis-not-in-plane", "axis", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_axis_not_in_plane, "axis", -1,
                     "`axis` must lie in the plane of the region: along Z it is the plane y = 0, "
                     "else z = 0; turn the curve as a surface for a skew axis");
   double a, b; // the axis in region coordinates
@@ -117,7 +117,7 @@ static CagStatus check_side(const CagRegion *r, Setting *g, CagError *err) {
   double beyond = g->sense > 0 ? -box.min.x : box.max.x;
   char text[32];
   if (beyond > slack)
-    return cag_fail(err, CAG_E_ARGUMENT, "region-crosses-axis", "region", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_crosses_axis, "region", -1,
                     "the region must lie on one side of the axis: it reaches %s beyond; move it or "
                     "cut it along the axis",
                     cag_number_text(beyond, text));
@@ -250,7 +250,7 @@ CagStatus cag_solid_revolve(const CagRegion *r, CagVec3 axis, CagVec3 through, d
   bool full = to - from >= 2 * M_PI * (1 - 1e-12);
   if (!status && to - from > 2 * M_PI * (1 + 1e-12)) {
     char text[32];
-    status = cag_fail(err, CAG_E_ARGUMENT, "self-intersection", "angle", -1,
+    status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_self_intersection, "angle", -1,
                       "`angle` of a solid must span at most 360deg, it spans %sdeg",
                       cag_number_text((to - from) * (180 / M_PI), text));
   }

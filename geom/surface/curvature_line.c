@@ -387,16 +387,16 @@ CagStatus cag_surface_curvature_line(const CagSurface *s, double u, double v, bo
   Walk w = {.s = s, .which = larger ? 1 : 0, .err = err};
   w.size = cag_norm(cag_sub(box.max, box.min));
   if (!found)
-    return cag_fail(err, CAG_E_DEGENERATE, "degenerate-normal", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
                     "the surface has no normal there, so no line of curvature begins there");
   if (is_umbilic(&w, &p))
-    return cag_fail(err, CAG_E_DEGENERATE, "umbilic", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_umbilic, "", -1,
                     "both principal curvatures are the same there (an umbilic): every direction is "
                     "a principal one");
   trace_line(&w, u, v, &p);
   status = w.status;
   if (!status && w.trace.count < 2)
-    status = cag_fail(err, CAG_E_DEGENERATE, "umbilic", "", -1,
+    status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_umbilic, "", -1,
                       "the line of curvature ends where it begins: next to it is an umbilic or the "
                       "border");
   if (!status) status = cag_trace_curve(&w.trace, NULL, w.size, out, err);

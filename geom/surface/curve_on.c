@@ -96,7 +96,7 @@ static void compose(const CagVec3 *partials, const Coordinate *x, const Coordina
 }
 
 static CagStatus fail_infinite(CagError *err) {
-  return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
                   "a point of the curve goes to infinity under the projection");
 }
 
@@ -105,7 +105,7 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
   const OnSurface *c = (const OnSurface *)curve;
   const CagSurface *s = c->surface;
   if (order > MOST_ORDER)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "derivative-order", "order", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_derivative_order, "order", -1,
                     "a curve on %s %s surface has derivatives up to order %d, not %d",
                     cag_article(s->kind->name), s->kind->name, MOST_ORDER, order);
   CagVec3 d[MOST_ORDER + 1], partials[PARTIALS];
@@ -154,7 +154,7 @@ static CagStatus cross(const CagCurve *plane, int direction, double at, Numbers 
   size_t n;
   CagStatus status = cag_curve_intersect_plane(plane, &line, &meetings, &n, err);
   // Along the line it runs on one side of the break, which does not show.
-  if (status) return strcmp(err->reason, "overlap") == 0 ? CAG_OK : status;
+  if (status) return err->id == CAG_ERR_overlap ? CAG_OK : status;
   for (size_t i = 0; !status && i < n; i++) status = push(list, meetings[i].t, err);
   cag_free(meetings);
   return status;
@@ -222,7 +222,7 @@ static CagStatus check_direction(char name, double lo, double hi, double from, d
   const double worst = from < lo - slack ? from : to;
   if (closed && (to - from) / (hi - lo) <= MOST_TURNS) return CAG_OK;
   if (!closed && from >= lo - slack && to <= hi + slack) return CAG_OK;
-  return cag_fail(err, CAG_E_DOMAIN, "curve-outside", "C", -1,
+  return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_curve_outside, "C", -1,
                   "the plane curve goes to %s = %s, outside of %s..%s where the surface is%s",
                   name == 'u' ? "x" : "y", cag_number_text(worst, x), cag_number_text(lo, a),
                   cag_number_text(hi, b), angular ? " (radians)" : "");
@@ -274,7 +274,7 @@ static CagStatus make(const CagSurface *s, const CagCurve *plane, const CagTrans
 CagStatus cag_curve_on_surface(const CagSurface *s, const CagCurve *c, CagCurve **out,
                                CagError *err) {
   if (c->dimension != 2)
-    return cag_fail(err, CAG_E_ARGUMENT, "not-planar", "C", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_planar, "C", -1,
                     "`C` must be a plane curve: its x and y are u and v of the surface");
   return make(s, c, NULL, out, err);
 }

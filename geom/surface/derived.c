@@ -105,7 +105,7 @@ static CagStatus part_cut(const CagSurface *s, const CagSurface *exact, int dire
   const double rounding = CAG_SURFACE_SAME * (exact_ends[1] - exact_ends[0]);
   *out = fabs(found[0] - at) <= rounding ? at : found[0];
   if (fabs(found[0] - found[1]) <= rounding) return CAG_OK;
-  return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,
+  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "surface", -1,
                   "a part of %s %s surface has no exact NURBS form; approximate it to a tolerance",
                   cag_article(inner->kind->name), inner->kind->name);
 }
@@ -138,8 +138,8 @@ static CagStatus check_range(double a, double b, double lo, double hi, bool angu
   if (a < b && a >= lo && b <= hi) return CAG_OK;
   const double shown = angular ? 180 / M_PI : 1;
   const char *deg = angular ? "deg" : "";
-  return cag_fail(err, CAG_E_DOMAIN, a < b ? "parameter-range" : "empty-range", name, -1,
-                  "`%s` must be a range within %s%s..%s%s, it is %s%s..%s%s", name,
+  return cag_fail(err, CAG_E_DOMAIN, a < b ? CAG_ERR_parameter_range : CAG_ERR_empty_range, name,
+                  -1, "`%s` must be a range within %s%s..%s%s, it is %s%s..%s%s", name,
                   cag_number_text(shown * lo, from), deg, cag_number_text(shown * hi, to), deg,
                   cag_number_text(shown * a, x), deg, cag_number_text(shown * b, y), deg);
 }
@@ -151,10 +151,10 @@ CagStatus cag_surface_part(const CagSurface *s, double u0, double u1, double v0,
   if (!status) status = check_range(v0, v1, s->v0, s->v1, s->angular_v, "v", err);
   if (status) return status;
   if (cag_surface_planar_view(s, NULL, NULL))
-    return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "surface", -1,
                     "a region has no rectangle of parameters: cut the region itself");
   if (cag_surface_trimmed_view(s, NULL, NULL))
-    return cag_fail(err, CAG_E_UNSUPPORTED, "already-trimmed", "", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_already_trimmed, "", -1,
                     "the surface already has an outline: cut the whole one first, then trim it");
   if (cag_surface_nurbs_view(s, &view)) return cag_surface_nurbs_part(s, u0, u1, v0, v1, out, err);
   const CagSurface *inner = s->kind == &part_kind ? ((const Derived *)s)->inner : s;
@@ -304,7 +304,7 @@ static CagStatus offset_eval(const CagSurface *s, double u, double v, int n, Cag
   const CagSurface *in = d->inner;
   if (n == 0) return offset_point(d, u, v, out, err);
   if (n + 1 > CAG_MAX_PARTIAL)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "derivative-order", "order", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_derivative_order, "order", -1,
                     "an offset has partial derivatives up to order %d, not %d", CAG_MAX_PARTIAL - 1,
                     n);
   CagVec3 point;
@@ -324,7 +324,7 @@ static CagStatus offset_eval(const CagSurface *s, double u, double v, int n, Cag
     status = offset_partials(d, u, v, n, su, sv, out, &has_normal, err);
   }
   if (!status && !has_normal)
-    status = cag_fail(err, CAG_E_DEGENERATE, "degenerate-normal", "", -1,
+    status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
                       "the surface has no normal here, so that its offset has no derivatives");
   out[0] = point;
   return status;
@@ -340,7 +340,7 @@ static const CagSurfaceKind offset_kind = {
 
 CagStatus cag_surface_offset(const CagSurface *s, double d, CagSurface **out, CagError *err) {
   if (!isfinite(d))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "d", -1, "`d` must be finite");
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "d", -1, "`d` must be finite");
   if (cag_surface_planar_view(s, NULL, NULL)) {
     CagVec3 n;
     CagStatus status = cag_surface_normal(s, s->u0, s->v0, &n, err);

@@ -127,7 +127,7 @@ static CagStatus first_root(const Match *m, bool of_s, bool *found, double *out,
 }
 
 static CagStatus no_ruling(CagError *err, const char *why) {
-  return cag_fail(err, CAG_E_DEGENERATE, "no-rulings", "", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_no_rulings, "", -1,
                   "there is no developable surface between the curves: %s", why);
 }
 

@@ -90,7 +90,7 @@ static CagStatus extrusion_to_nurbs(const CagSurface *s, CagSurface **out, CagEr
   const Extrusion *e = (const Extrusion *)s;
   char text[32];
   if (e->twist != 0)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "twist", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "twist", -1,
                     "an extrusion with a twist (%s radians) has no exact NURBS form; approximate "
                     "it to a tolerance",
                     cag_number_text(e->twist, text));
@@ -170,12 +170,12 @@ CagStatus cag_surface_extrude(const CagCurve *c, CagVec3 v, double twist, double
                               CagSurface **out, CagError *err) {
   char text[32];
   if (!(cag_norm(v) > 0) || !isfinite(cag_norm(v)))
-    return cag_fail(err, CAG_E_ARGUMENT, "degenerate-direction", "height", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_degenerate_direction, "height", -1,
                     "`height` must be finite and not zero: say how far up, or where to");
   if (!isfinite(twist))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "twist", -1, "`twist` must be finite");
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "twist", -1, "`twist` must be finite");
   if (!(scale >= 0) || !isfinite(scale))
-    return cag_fail(err, CAG_E_ARGUMENT, "scale-negative", "scale", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_scale_negative, "scale", -1,
                     "`scale` must be finite and not negative (0 ends in a point), it is %s",
                     cag_number_text(scale, text));
   CagCurve *section;

@@ -25,7 +25,7 @@ static CagStatus fail_not_finite(const CagSurface *s, double u, double v, bool p
                                  CagError *err) {
   char a[32], b[32];
   return cag_fail(
-      err, CAG_E_DEGENERATE, "not-finite", "", -1,
+      err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
       "%s of the function at u = %s%s, v = %s%s is not finite",
       point ? "the point" : "a derivative", cag_number_text(s->angular_u ? u * (180 / M_PI) : u, a),
       s->angular_u ? "deg" : "", cag_number_text(s->angular_v ? v * (180 / M_PI) : v, b),
@@ -92,7 +92,7 @@ static CagStatus check_range(double a, double b, bool angular, const char *name,
   CagStatus status = cag_curve_check_number(a, name, err);
   if (!status) status = cag_curve_check_number(b, name, err);
   if (status || a < b) return status;
-  return cag_fail(err, CAG_E_ARGUMENT, "empty-range", name, -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, name, -1,
                   "the range %s..%s has no length; its start must be less than its end",
                   cag_number_text(angular ? a * (180 / M_PI) : a, x),
                   cag_number_text(angular ? b * (180 / M_PI) : b, y));

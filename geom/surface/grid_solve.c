@@ -29,7 +29,7 @@ static void fill_row(const CagGridAxis *a, double t, double *row, size_t stride)
 }
 
 static CagStatus fail_singular(CagError *err) {
-  return cag_fail(err, CAG_E_DEGENERATE, "fit-singular", "count", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "count", -1,
                   "the data do not determine all control points: take fewer, a lower degree, other "
                   "knots, or data that are spread more evenly");
 }
@@ -175,7 +175,7 @@ static void fill_dense(const CagGridFit *f, size_t row, double *basis, double *m
 static CagStatus solve_dense(CagGridFit *f, CagError *err) {
   size_t nu = f->axis[0].count, nv = f->axis[1].count, columns = nu * nv, rows = f->rows;
   if (rows > DENSE_MOST / columns)
-    return cag_fail(err, CAG_E_LIMIT, "fit-too-large", "count", -1,
+    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_fit_too_large, "count", -1,
                     "`count` times the data are more than can be solved at once: %zu unknowns for "
                     "%zu points; take fewer control points, fit parts, or use the \"mean\" "
                     "parameters",
@@ -207,7 +207,7 @@ static CagStatus check_edges(const CagGridFit *f, CagError *err) {
     const size_t p = (size_t)a->degree;
     if (!keeps_ends(f, k)) continue;
     if (a->knots[0] != a->knots[p] || a->knots[a->count] != a->knots[a->count + p])
-      return cag_fail(err, CAG_E_ARGUMENT, "fit-ends", "knots", k,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_ends, "knots", k,
                       "the edges stay fixed only where the end knots in %c occur %zu times; repeat "
                       "them, give the control points `planes`, or set `fixed` to \"none\"",
                       "uv"[k], p + 1);
@@ -216,7 +216,7 @@ static CagStatus check_edges(const CagGridFit *f, CagError *err) {
       const bool first = line == 0, last = line + 1 == (k == 0 ? f->g->r : f->g->s);
       if ((first && f->parameters[k][i] != cag_grid_start(a)) ||
           (last && f->parameters[k][i] != cag_grid_end(a)))
-        return cag_fail(err, CAG_E_ARGUMENT, "fit-ends", "parameters", (long)i,
+        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_ends, "parameters", (long)i,
                         "the edges stay fixed only where the data's border has the first and last "
                         "parameter in %c, point [%zu, %zu] has not; give the control points "
                         "`planes`, or set `fixed` to \"none\"",

@@ -34,7 +34,7 @@ static CagStatus isocurve_eval(const CagCurve *curve, double t, int order, CagSi
                                CagVec3 *out, CagError *err) {
   const Isocurve *c = (const Isocurve *)curve;
   if (order > CAG_MAX_PARTIAL)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "derivative-order", "order", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_derivative_order, "order", -1,
                     "an isocurve of %s %s surface has derivatives up to order %d, not %d",
                     cag_article(c->surface->kind->name), c->surface->kind->name, CAG_MAX_PARTIAL,
                     order);
@@ -195,7 +195,7 @@ static CagStatus isocurve_to_nurbs(const CagCurve *curve, CagCurve **out, CagErr
     return CAG_OK;
   }
   if (!status) cag_curve_release(made);
-  return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "curve", -1,
+  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "curve", -1,
                   "an isocurve of %s %s surface has no exact NURBS form; approximate it to a "
                   "tolerance",
                   cag_article(c->surface->kind->name), c->surface->kind->name);

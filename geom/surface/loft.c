@@ -51,7 +51,7 @@ static CagStatus solve_circulant(CagNet *net, CagError *err) {
                                     (lapack_int)n, pivots, net->data, (lapack_int)width);
     if (info != 0)
       status =
-          cag_fail(err, CAG_E_DEGENERATE, "fit-singular", "degree", -1,
+          cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "degree", -1,
                    "`degree` %zu has no closed loft through %zu curves: take another degree", p, n);
   }
   cag_free(a);
@@ -61,10 +61,10 @@ static CagStatus solve_circulant(CagNet *net, CagError *err) {
 
 static CagStatus check_closed(int degree, size_t n, CagError *err) {
   if (degree % 2 == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                     "`degree` of a closed loft must be odd, it is %d: take %d", degree, degree + 1);
   if ((size_t)degree >= n)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                     "`degree` must be less than the number of curves of a closed loft (%zu), it is "
                     "%d",
                     n, degree);

@@ -61,7 +61,7 @@ typedef struct Search {
 } Search;
 
 static CagStatus fail_overlap(CagError *err) {
-  return cag_fail(err, CAG_E_DEGENERATE, "overlap", "", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_overlap, "", -1,
                   "the curve runs within the surface: they share more than single points");
 }
 

@@ -256,7 +256,8 @@ static bool go_on(CagMarch *m, Run *run) {
   double h = m->step_first, least = STEP_LEAST * m->size;
   while (run->n < NODES_MOST) {
     if (m->interrupt && *m->interrupt)
-      return cag_march_fail(m, cag_fail(m->err, CAG_E_CALLBACK, "interrupted", "", -1, "stopped"));
+      return cag_march_fail(
+          m, cag_fail(m->err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "stopped"));
     CagMarchNode a = run->nodes[run->n - 1], b;
     CagVec3 middle;
     Step step = try_step(m, &a, h, false, &b, &middle);
@@ -648,7 +649,7 @@ static CagStatus prepare(CagMarch *m, const CagSurface *a, const CagSurface *b, 
   if (!status && !(m->size <= APART_MOST * smaller))
     return smaller > 0
                ? cag_fail(
-                     err, CAG_E_UNSUPPORTED, "sizes-apart", "A", -1,
+                     err, CAG_E_UNSUPPORTED, CAG_ERR_sizes_apart, "A", -1,
                      "one of the surfaces is %.3g mm large, the other %.3g mm: trim the larger "
                      "one to what lies about the other",
                      m->size, smaller)
@@ -692,7 +693,7 @@ CagStatus cag_surface_intersect(const CagSurface *a, const CagSurface *b, double
   const bool are_two = !status && m.side[0].mesh; // neither is a point
   if (are_two && !find_runs(&m, &runs, &common)) status = m.status;
   if (!status && common)
-    status = cag_fail(err, CAG_E_DEGENERATE, "overlap", "", -1,
+    status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_overlap, "", -1,
                       "the surfaces share a piece: they meet in more than curves");
   if (!status && are_two) status = add_runs(&m, &runs, out);
   free_runs(&runs);

@@ -115,7 +115,7 @@ static void angle_series(const CagMotionSegment *g, double v, int n, double *out
 
 static CagStatus zero_tangent(double v, CagError *err) {
   char text[32];
-  return cag_fail(err, CAG_E_DEGENERATE, "zero-tangent", "path", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_tangent, "path", -1,
                   "`path` must have a tangent everywhere: it vanishes at %s",
                   cag_number_text(v, text));
 }
@@ -241,7 +241,7 @@ static CagStatus frenet(const CagMotion *t, const CagMotionSegment *g, double v,
   if (limit_binormal(t, g, v, n, side, binormal)) bend[0] = cag_vec3(0, 0, 0);
   char text[32];
   if (!(cag_norm(binormal[0]) > ALONG_TANGENT * cag_norm(bend[0])))
-    return cag_fail(err, CAG_E_DEGENERATE, "path-straight", "path", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_straight, "path", -1,
                     "`path` must be curved everywhere for Frenet's frame: it is straight at %s; "
                     "orient: \"rmf\" needs no curvature",
                     cag_number_text(v, text));
@@ -257,7 +257,7 @@ static CagStatus upright(const CagMotion *t, const CagMotionSegment *g, double v
   if (status) return status;
   char text[32];
   if (!(cag_norm(cag_cross(up[0], out->t[0])) > ALONG_TANGENT))
-    return cag_fail(err, CAG_E_DEGENERATE, "path-along-up", "path", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_along_up, "path", -1,
                     "`path` must not run along the direction of `orient`: it does at %s; choose "
                     "another direction",
                     cag_number_text(v, text));
@@ -487,7 +487,7 @@ static CagStatus bisector(CagVec3 in, CagVec3 out, double v, bool *corner, CagVe
   *m = cag_unit(cag_add(in, out));
   char text[32];
   if (*corner && cag_norm(cag_add(in, out)) <= CORNER)
-    return cag_fail(err, CAG_E_DEGENERATE, "path-turns-back", "path", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_turns_back, "path", -1,
                     "`path` must not turn back on itself: it does at %s; round that corner",
                     cag_number_text(v, text));
   return CAG_OK;
@@ -562,7 +562,7 @@ static CagStatus set_miters(CagMotion *t, CagError *err) {
     if (!corner) continue;
     if (cag_norm(cag_sub(reflected(in.n1[0], m), out.n1[0])) > CORNER_FRAME) {
       char text[32];
-      return cag_fail(err, CAG_E_DEGENERATE, "path-corner", "path", -1,
+      return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_path_corner, "path", -1,
                       "`path` turns a corner at %s where the frames of both sides do not meet in "
                       "one section; round the corner or take orient: \"rmf\"",
                       cag_number_text(a->v1, text));
@@ -627,7 +627,7 @@ static CagStatus probe(const CagMotion *m, CagError *err) {
       bool end = t == m->start || t == m->end;
       char at[32], text[32];
       if (scale < 0 || !isfinite(scale) || (scale == 0 && !end))
-        return cag_fail(err, CAG_E_ARGUMENT, "scale-negative", "scale", -1,
+        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_scale_negative, "scale", -1,
                         "`scale` must be positive along the path (0 only at an end, where the body "
                         "comes to a point): at %s it is %s",
                         cag_number_text(t, at), cag_number_text(scale, text));
@@ -656,15 +656,16 @@ CagStatus cag_motion_along(const CagCurve *path, const CagPathMotion *how, CagMo
   cag_chebyshev_retain(how->scale.function);
   CagStatus status = CAG_OK;
   if (how->orient == CAG_ORIENT_UP && !(cag_norm(m->how.up) > 0))
-    status = cag_fail(err, CAG_E_ARGUMENT, "zero-axis", "orient", -1,
+    status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_axis, "orient", -1,
                       "`orient` must not be the zero vector: give a direction such as Z");
   if (!status && !(isfinite(how->twist.start) && isfinite(how->twist.end)))
-    status = cag_fail(err, CAG_E_ARGUMENT, "not-finite", "twist", -1, "`twist` must be finite");
+    status =
+        cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "twist", -1, "`twist` must be finite");
   if (!status) status = moving_path(path, &m->path, err);
   CagBounds box = CAG_BOUNDS_EMPTY;
   if (!status) status = cag_curve_bounds(m->path, &box, err);
   if (!status && cag_norm(cag_sub(box.max, box.min)) == 0)
-    status = cag_fail(err, CAG_E_DEGENERATE, "zero-tangent", "path", -1,
+    status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_tangent, "path", -1,
                       "`path` is one point: it leads nowhere");
   if (!status) {
     m->start = m->path->start;

@@ -438,7 +438,7 @@ CagStatus cag_surface_closest(const CagSurface *s, CagVec3 p, CagSurfaceNearest 
   Search f = {.s = s, .p = p, .best = {.distance = INFINITY}};
   CagTransform frame;
   if (!isfinite(p.x) || !isfinite(p.y) || !isfinite(p.z))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "P", -1, "`P` must be finite");
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "P", -1, "`P` must be finite");
   CagStatus status;
   if (cag_surface_planar_view(s, &f.region, &frame)) {
     status = closest_planar(&f, &frame, err);

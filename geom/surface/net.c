@@ -144,7 +144,7 @@ static CagStatus check_inner_knots(const CagNet *net, CagError *err) {
   const size_t p = (size_t)net->degree;
   for (size_t i = p + 1; i + p < net->count; i++)
     if (net->knots[i] == net->knots[i + p])
-      return cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", "knots", -1,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", -1,
                       "`knots` must not repeat an inner knot more often than the degree %d: "
                       "there the pieces come apart",
                       net->degree);
@@ -346,7 +346,7 @@ CagStatus cag_net_interpolate(CagNet *net, const double *parameters, CagError *e
       for (size_t c = 0; c < net->width; c++) net->data[i * net->width + c] = turned[c * n + i];
   }
   if (!status && (info != 0 || least < 1e-13))
-    status = cag_fail(err, CAG_E_DEGENERATE, "fit-singular", "degree", -1,
+    status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "degree", -1,
                       "`degree` and knots leave the interpolation without one answer: lower the "
                       "degree or change the data's spacing");
   cag_free(turned);

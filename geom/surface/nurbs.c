@@ -21,22 +21,22 @@ static CagStatus check_knots(const double *knots, size_t count, int degree, cons
   size_t n = count + (size_t)degree + 1;
   for (size_t i = 0; i < n; i++) {
     if (!isfinite(knots[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", name, (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, name, (long)i,
                       "`%s` must be finite: entry %zu is %s", name, i,
                       cag_number_text(knots[i], a));
     if (i > 0 && knots[i] < knots[i - 1])
-      return cag_fail(err, CAG_E_ARGUMENT, "knots-not-monotone", name, (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, name, (long)i,
                       "`%s` must not decrease: entry %zu is %s after %s", name, i,
                       cag_number_text(knots[i], a), cag_number_text(knots[i - 1], b));
   }
   double from = knots[degree], to = knots[count];
   if (!(to > from))
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", name, degree,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, name, degree,
                     "`%s` must leave a range of parameters: entries %d and %zu are both %s", name,
                     degree, count, cag_number_text(from, a));
   for (size_t i = 1; i + (size_t)degree + 1 < n; i++)
     if (knots[i] > from && knots[i] < to && knots[i + (size_t)degree] == knots[i])
-      return cag_fail(err, CAG_E_ARGUMENT, "knot-multiplicity", name, (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, name, (long)i,
                       "`%s` may hold an inner knot at most %d times (the degree), %s stands more "
                       "often from entry %zu on",
                       name, degree, cag_number_text(knots[i], a), i);
@@ -46,10 +46,10 @@ static CagStatus check_knots(const double *knots, size_t count, int degree, cons
 static CagStatus check_degree(size_t count, int degree, const char *direction, CagError *err) {
   if (degree >= 1 && degree <= MAX_DEGREE && (size_t)degree < count) return CAG_OK;
   if (count < 2)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "net", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "net", -1,
                     "a surface needs at least 2 rows of at least 2 points, by %s there %s %zu",
                     direction, count == 1 ? "is" : "are", count);
-  return cag_fail(err, CAG_E_ARGUMENT, "order-range", "degree", *direction == 'u' ? 0 : 1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", *direction == 'u' ? 0 : 1,
                   "`degree` by %s must lie in 1..%zu for %zu net lines (and be at most %d), it is "
                   "%d; add lines or lower the degree",
                   direction, count ? count - 1 : 0, count, MAX_DEGREE, degree);
@@ -59,7 +59,7 @@ static CagStatus check_net(const double *h, size_t nu, size_t nv, CagError *err)
   for (size_t i = 0; i < nu * nv; i++)
     for (int c = 0; c < 4; c++)
       if (!isfinite(h[4 * i + (size_t)c]))
-        return cag_fail(err, CAG_E_ARGUMENT, "not-finite", c < 3 ? "net" : "weights", (long)i,
+        return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, c < 3 ? "net" : "weights", (long)i,
                         "`%s` must be finite: row %zu, column %zu is not",
                         c < 3 ? "net" : "weights", i / nv, i % nv);
   return CAG_OK;
@@ -212,13 +212,13 @@ static CagStatus check_weights(const double *weights, size_t nu, size_t nv, CagE
   for (size_t i = 0; weights && i < nu * nv; i++) {
     char text[32];
     if (!(weights[i] >= 0) || !isfinite(weights[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "negative-weight", "weights", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weights", (long)i,
                       "`weights` must be finite and not negative: row %zu, column %zu is %s",
                       i / nv, i % nv, cag_number_text(weights[i], text));
     any = any || weights[i] > 0;
   }
   if (weights && !any)
-    return cag_fail(err, CAG_E_ARGUMENT, "zero-denominator", "weights", 0,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_denominator, "weights", 0,
                     "`weights` must not all be 0");
   return CAG_OK;
 }
@@ -307,7 +307,7 @@ static CagStatus nurbs_transform(const CagSurface *s, const CagTransform *t, Cag
   for (size_t i = 0; !status && i < total; i++) {
     cag_transform_homogeneous(t, b->net + 4 * i, h + 4 * i);
     if (h[4 * i + 3] < 0 || (h[4 * i + 3] == 0 && b->net[4 * i + 3] > 0))
-      status = cag_fail(err, CAG_E_DEGENERATE, "behind-center", "transform", (long)i,
+      status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_behind_center, "transform", (long)i,
                         "the projection sends control point [%zu, %zu] to infinity or behind its "
                         "center: move the surface or the center",
                         i / b->v.count, i % b->v.count);
@@ -384,7 +384,7 @@ bool cag_surface_nurbs_view(const CagSurface *s, CagSurfaceNurbsView *out) {
 CagStatus cag_surface_nurbs_swapped(const CagSurface *s, CagSurface **out, CagError *err) {
   const Nurbs *b = as_nurbs(s);
   if (!b)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "not-nurbs", "surface", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_not_nurbs, "surface", -1,
                     "the surface is %s %s: convert it to a NURBS first", cag_article(s->kind->name),
                     s->kind->name);
   size_t nu = b->u.count, nv = b->v.count;

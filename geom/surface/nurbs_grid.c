@@ -457,7 +457,7 @@ CagStatus tensor_frames(const Nurbs *b, const double *us, size_t nu, const doubl
   cag_free(w.du);
   cag_free(w.dv);
   if (!status && !positive)
-    status = cag_fail(err, CAG_E_DEGENERATE, "zero-denominator", "weights", -1,
+    status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "weights", -1,
                       "all `weights` that act at a point of the grid are 0: give one of them a "
                       "positive value");
   return status;

@@ -111,7 +111,7 @@ static CagStatus divide(int n, const double (*h)[4], CagVec3 *out, CagError *err
   double w = h[0][3];
   if (!(w > 0))
     return cag_fail(
-        err, CAG_E_DEGENERATE, "zero-denominator", "weights", -1,
+        err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "weights", -1,
         "all `weights` that act at this point are 0: give one of them a positive value");
   double binomial[CAG_MAX_PARTIAL + 1][CAG_MAX_PARTIAL + 1];
   for (int i = 0; i <= n; i++)

@@ -82,7 +82,7 @@ static CagStatus coons_to_nurbs(const CagSurface *s, CagSurface **out, CagError 
   for (int k = 0; !status && k < 4; k++) status = cag_net_of_curve(c->side[k], &net[k], err);
   for (int k = 0; !status && k < 4; k++)
     if (!is_polynomial(&net[k]))
-      status = cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,
+      status = cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "surface", -1,
                         "a Coons surface with rational edges (%s) has no exact form of low degree; "
                         "approximate it to a tolerance",
                         c->side[k]->kind->name);
@@ -209,7 +209,7 @@ static CagStatus check_corners(const CagVec3 end[4][2], double size, CagError *e
       break;
     }
   return cag_fail(
-      err, CAG_E_ARGUMENT, "coons-corner-mismatch", SIDES[2 + j], -1,
+      err, CAG_E_ARGUMENT, CAG_ERR_coons_corner_mismatch, SIDES[2 + j], -1,
       "`%s` and `%s` must meet in the corner u = %d, v = %d: there they are %s apart; %s", SIDES[i],
       SIDES[2 + j], i, j, cag_number_text(gap, text), mend);
 }
@@ -281,7 +281,7 @@ static void put_patch(double *net, size_t row, size_t i0, size_t j0, const CagHe
 CagStatus cag_surface_hermite(const CagHermiteCorners *c, double u0, double u1, double v0,
                               double v1, CagSurface **out, CagError *err) {
   if (!(u0 < u1) || !(v0 < v1))
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", u0 < u1 ? "v" : "u", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, u0 < u1 ? "v" : "u", -1,
                     "the range of a patch must end after its start");
   double net[64], ku[8], kv[8];
   put_patch(net, 4, 0, 0, c, u1 - u0, v1 - v0);
@@ -314,7 +314,7 @@ static CagStatus check_steps(const double *steps, size_t n, const char *which, C
   for (size_t i = 0; steps && i < n; i++) {
     char text[32];
     if (!(steps[i] > 0) || !isfinite(steps[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", "lengths", (long)i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, "lengths", (long)i,
                       "`lengths` must be positive: in %s, [%zu] is %s", which, i,
                       cag_number_text(steps[i], text));
   }
@@ -413,7 +413,7 @@ static CagStatus composite_surface(const Composite *c, CagSurface **out, CagErro
 
 CagStatus cag_surface_hermite_grid(const CagHermiteGrid *g, CagSurface **out, CagError *err) {
   if (g->nu < 2 || g->nv < 2)
-    return cag_fail(err, CAG_E_ARGUMENT, "too-few-points", "grid", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_too_few_points, "grid", -1,
                     "`grid` must have 2 or more rows and columns, it has %zu by %zu", g->nu, g->nv);
   CagStatus status = check_steps(g->steps_u, g->nu - 1, "u", err);
   if (!status) status = check_steps(g->steps_v, g->nv - 1, "v", err);
@@ -447,7 +447,7 @@ CagStatus cag_surface_hermite_grid(const CagHermiteGrid *g, CagSurface **out, Ca
 CagStatus cag_surface_bezier_triangle(const CagVec3 *points, int n, CagSurface **out,
                                       CagError *err) {
   if (n < 1 || n > MAX_TRIANGLE)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", "net", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, "net", -1,
                     "`net` must have 2 to %d rows, it has %d", MAX_TRIANGLE + 1, n + 1);
   size_t side = (size_t)n + 1;
   double *h = cag_malloc((side + 2) * side * 4 * sizeof *h),

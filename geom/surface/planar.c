@@ -44,7 +44,7 @@ static CagStatus planar_to_nurbs(const CagSurface *s, CagSurface **out, CagError
   CagStatus status = cag_region_area(p->region, &area, NULL, err);
   if (status) return status;
   if (fabs(area - rectangle) > CAG_SURFACE_SAME * rectangle)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "surface", -1,
                     "a trimmed plane is not one NURBS surface unless its region is a rectangle "
                     "along the axes; use its boundary, or tessellate it");
   CagVec3 net[4];
@@ -83,7 +83,7 @@ static const CagSurfaceKind planar_kind = {
 CagStatus cag_surface_planar(const CagRegion *region, const CagTransform *frame, CagSurface **out,
                              CagError *err) {
   if (!cag_transform_is_affine(frame))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-affine", "frame", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_affine, "frame", -1,
                     "`frame` must be affine: a projection does not place a plane");
   CagTransform map = *frame;
   for (int i = 0; i < 4; i++)
@@ -91,7 +91,7 @@ CagStatus cag_surface_planar(const CagRegion *region, const CagTransform *frame,
   map.planar = false;
   CagVec3 normal = cag_cross(column(&map, 0), column(&map, 1));
   if (!(cag_norm(normal) > 0))
-    return cag_fail(err, CAG_E_DEGENERATE, "degenerate-direction", "frame", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_degenerate_direction, "frame", -1,
                     "`frame` flattens the plane to a line: its x and y axes must not be parallel");
   CagBounds box;
   CagStatus status = cag_region_bounds(region, &box, err);

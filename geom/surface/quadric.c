@@ -48,12 +48,12 @@ static CagStatus check(const CagQuadric *q, CagError *err) {
   double largest = 0;
   for (int i = 0; i < 10; i++) {
     if (!isfinite(q->c[i]))
-      return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "coefficients", i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "coefficients", i,
                       "`coefficients` must be finite: number %d is not", i);
     largest = fmax(largest, fabs(q->c[i]));
   }
   if (largest > 0) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "zero-quadric", "coefficients", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_quadric, "coefficients", -1,
                   "`coefficients` must not all be 0: every point would satisfy the equation");
 }
 

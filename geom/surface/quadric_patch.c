@@ -582,7 +582,7 @@ static CagStatus check_within(const CagBounds *w, bool z_only, CagError *err) {
   for (int i = z_only ? 2 : 0; i < 3; i++)
     if (!isfinite(lo[i]) || !isfinite(hi[i]) || !(hi[i] > lo[i])) {
       char a[32], b[32];
-      return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "within", i,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "within", i,
                       "`within` must be finite and ascend by %c, it is %s..%s", "xyz"[i],
                       cag_number_text(lo[i], a), cag_number_text(hi[i], b));
     }
@@ -619,12 +619,12 @@ static CagStatus find_pieces(const CagQuadricForm *f, const CagBounds *within, b
     needs_box = true;
     break;
   default:
-    return cag_fail(err, CAG_E_DEGENERATE, "quadric-imaginary", "coefficients", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_quadric_imaginary, "coefficients", -1,
                     "the equation has no real surface: its class is %s; a sphere of radius r has "
                     "the constant -r^2",
                     f->name);
   }
-  return cag_fail(err, CAG_E_ARGUMENT, "quadric-unbounded", "within", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_quadric_unbounded, "within", -1,
                   needs_box ? "a quadric of class %s has no end in any direction of its surface: "
                               "give `within` a box, as box([4, 4, 4], centered: true)"
                             : "a quadric of class %s has no end: give `within` a range of z or a "
@@ -662,7 +662,7 @@ CagStatus cag_quadric_patches(const CagQuadric *q, const CagBounds *within, bool
   if (!status) status = find_pieces(&form, within, z_only, &pieces, err);
   if (!status && pieces.n == 0)
     status =
-        cag_fail(err, CAG_E_DEGENERATE, "quadric-outside", "within", -1,
+        cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_quadric_outside, "within", -1,
                  "the quadric (%s) does not pass through `within`: move or enlarge it", form.name);
   if (!status && within) set_within(&pieces, q, within, z_only);
   CagSurface **list = NULL;

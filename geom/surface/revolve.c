@@ -273,11 +273,11 @@ CagStatus cag_surface_revolve(const CagCurve *profile, CagVec3 axis, CagVec3 thr
                               double to, CagSurface **out, CagError *err) {
   CagVec3 unit = cag_unit(axis);
   if (!(cag_norm(unit) > 0))
-    return cag_fail(err, CAG_E_ARGUMENT, "zero-axis", "axis", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_zero_axis, "axis", -1,
                     "`axis` must not be the zero vector: give a direction such as Z");
   if (!(to > from) || to - from > MOST_TURN) {
     char a[32], b[32];
-    return cag_fail(err, CAG_E_ARGUMENT, "empty-range", "angle", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "angle", -1,
                     "`angle` must ascend and span at most 720deg, it is %sdeg..%sdeg",
                     cag_number_text(from * (180 / M_PI), a), cag_number_text(to * (180 / M_PI), b));
   }

@@ -71,7 +71,7 @@ static CagStatus check_parameter(double *t, double a, double b, bool angular, co
   }
   char found[32], from[32], to[32];
   const char *unit = angular ? "deg" : "";
-  return cag_fail(err, CAG_E_DOMAIN, "parameter-range", name, -1,
+  return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, name, -1,
                   "`%s` must lie in the domain %s%s..%s%s, it is %s%s", name,
                   cag_number_text(shown(a, angular), from), unit,
                   cag_number_text(shown(b, angular), to), unit,
@@ -93,7 +93,7 @@ static CagSide side_at(double t, double a, double b, CagSide wanted) {
 CagStatus cag_surface_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
                            CagVec3 *out, CagError *err) {
   if (n < 0 || n > CAG_MAX_PARTIAL)
-    return cag_fail(err, CAG_E_ARGUMENT, "derivative-order", "order", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_derivative_order, "order", -1,
                     "`order` must lie in 0..%d, it is %d", CAG_MAX_PARTIAL, n);
   CagStatus status = check_parameters(s, &u, &v, err);
   if (status) return status;
@@ -272,7 +272,7 @@ CagStatus cag_surface_normal(const CagSurface *s, double u, double v, CagVec3 *o
       return CAG_OK;
   }
   char text_u[32], text_v[32];
-  return cag_fail(err, CAG_E_DEGENERATE, "degenerate-normal", "", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
                   "the surface has no normal at u = %s, v = %s: its partial derivatives are "
                   "parallel there; ask at a neighboring point",
                   cag_number_text(u, text_u), cag_number_text(v, text_v));
@@ -330,7 +330,7 @@ bool cag_surface_is_closed(const CagSurface *s) {
 
 CagStatus cag_surface_to_nurbs(const CagSurface *s, CagSurface **out, CagError *err) {
   if (s->kind->to_nurbs) return s->kind->to_nurbs(s, out, err);
-  return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,
+  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "surface", -1,
                   "%s %s surface has no exact NURBS form; approximate it to a tolerance",
                   cag_article(s->kind->name), s->kind->name);
 }

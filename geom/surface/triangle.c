@@ -17,12 +17,12 @@ static CagStatus check_coordinates(const double w[3], CagError *err) {
   double sum = w[0] + w[1] + w[2];
   for (int c = 0; c < 3; c++)
     if (!(w[c] >= -BARYCENTRIC_SLACK))
-      return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "W", c,
+      return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, "W", c,
                       "barycentric coordinates must not be negative within the triangle: W[%d] = "
                       "%g",
                       c, w[c]);
   if (!(fabs(sum - 1) <= BARYCENTRIC_SLACK))
-    return cag_fail(err, CAG_E_DOMAIN, "parameter-range", "W", -1,
+    return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_parameter_range, "W", -1,
                     "barycentric coordinates must sum to 1: [%g, %g, %g] sum to %.12g", w[0], w[1],
                     w[2], sum);
   return CAG_OK;

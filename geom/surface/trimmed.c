@@ -45,7 +45,7 @@ static CagStatus trimmed_transform(const CagSurface *s, const CagTransform *t, C
   const Trimmed *w = (const Trimmed *)s;
   // A projection changes the parameters of all but control points.
   if (!cag_transform_is_affine(t) && !cag_surface_nurbs_view(w->inner, NULL))
-    return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "surface", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "surface", -1,
                     "only a trimmed NURBS surface can be projected: trim `to_nurbs` of the %s",
                     w->inner->kind->name);
   CagSurface *moved;
@@ -87,7 +87,7 @@ static const CagSurfaceKind trimmed_kind = {
 CagStatus cag_surface_trimmed(const CagSurface *inner, const CagRegion *region, CagSurface **out,
                               CagError *err) {
   if (cag_surface_trimmed_view(inner, NULL, NULL) || cag_surface_planar_view(inner, NULL, NULL))
-    return cag_fail(err, CAG_E_UNSUPPORTED, "already-trimmed", "", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_already_trimmed, "", -1,
                     "the surface already has an outline: trim the whole one, once, by all curves");
   CagBounds box;
   CagStatus status = cag_region_bounds(region, &box, err);
@@ -97,7 +97,7 @@ CagStatus cag_surface_trimmed(const CagSurface *inner, const CagRegion *region, 
   bool out_v = box.min.y < inner->v0 - slack_v || box.max.y > inner->v1 + slack_v;
   char a[32], b[32], c[32], d[32];
   if (out_u || out_v)
-    return cag_fail(err, CAG_E_DOMAIN, "curve-outside", "curves", -1,
+    return cag_fail(err, CAG_E_DOMAIN, CAG_ERR_curve_outside, "curves", -1,
                     "`curves` must stay in the domain %s..%s of %s, they reach %s..%s (radians "
                     "where it is an angle)",
                     cag_number_text(out_u ? inner->u0 : inner->v0, a),

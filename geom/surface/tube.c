@@ -224,7 +224,7 @@ static CagStatus sweep_to_nurbs(const CagSurface *surface, CagSurface **out, Cag
         cag_curve_arc_view(path, &a, &b, &circle) && a == b)
       return round_to_nurbs(s, path, &circle, out, err);
   }
-  return cag_fail(err, CAG_E_UNSUPPORTED, "no-exact-form", "path", -1,
+  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_exact_form, "path", -1,
                   "%s %s has an exact NURBS form only without twist along straight pieces, "
                   "unscaled along an arc, or fixed; approximate it to a tolerance",
                   cag_article(surface->kind->name), surface->kind->name);
@@ -280,7 +280,7 @@ static CagStatus check_plane(const CagCurve *section, const CagMotion *motion, C
   double size = cag_norm(cag_sub(box.max, box.min));
   char low[32], high[32];
   if (fmax(fabs(box.min.z), fabs(box.max.z)) <= CAG_SURFACE_SAME * size) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "section-not-plane", "section", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_section_not_plane, "section", -1,
                   "the section must lie in z = 0 to be carried around a corner of `path`: its z "
                   "runs from %s to %s",
                   cag_number_text(box.min.z, low), cag_number_text(box.max.z, high));
@@ -316,7 +316,7 @@ static CagStatus tube_of(const CagCurve *path, double radius, const CagAlong *sc
 CagStatus cag_surface_tube(const CagCurve *path, double radius, CagSurface **out, CagError *err) {
   char text[32];
   if (!(radius > 0) || !isfinite(radius))
-    return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", "radius", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, "radius", -1,
                     "`radius` must be positive, it is %s", cag_number_text(radius, text));
   CagAlong one = {1, 1, NULL};
   CagStatus status = tube_of(path, radius, &one, out, err);
@@ -342,7 +342,7 @@ CagStatus cag_surface_tube_along(const CagCurve *path, const CagAlong *radius, C
     char at[sizeof err->message];
     const char *where = strstr(err->message, ": at ");
     snprintf(at, sizeof at, "%s", where ? where : "");
-    return cag_fail(err, CAG_E_ARGUMENT, "size-not-positive", "radius", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_not_positive, "radius", -1,
                     "`radius` must be positive along the path (0 only at an end)%s", at);
   }
   return status;

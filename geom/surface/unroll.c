@@ -175,7 +175,7 @@ static CagStatus check_planes(const Unrolling *w, CagError *err) {
     CagVec3 n = cag_unit(cag_cross(a[1], a[2])), m = cag_unit(cag_cross(b[1], b[2]));
     char text[32];
     if (cag_norm(cag_cross(n, m)) > SAME_PLANE)
-      return cag_fail(err, CAG_E_ARGUMENT, "not-developable", "", -1,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_developable, "", -1,
                       "the surface cannot be unrolled without stretching: its tangent plane turns "
                       "along the ruling at %c = %s",
                       w->direction == 0 ? 'v' : 'u', cag_number_text(t, text));
@@ -226,7 +226,7 @@ CagStatus cag_surface_unroll(const CagSurface *s, CagSurface **out, CagError *er
   if (!status) status = is_straight(&v, &by_v, err);
   if (status) return status;
   if (!by_u && !by_v)
-    return cag_fail(err, CAG_E_ARGUMENT, "not-developable", "", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_developable, "", -1,
                     "the surface is straight along neither u nor v, so it cannot be unrolled: only "
                     "cylinders, cones, planes and ruled surfaces can");
   status = check_planes(by_v ? &v : &u, err);

@@ -20,7 +20,7 @@ static bool read_nurbs(CagCall *call, const CagNurbs **out) {
   if (!cag_arg_curve(call, 0, &c)) return false;
   *out = cag_nurbs_data(c);
   if (*out) return true;
-  cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
+  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
            "a curve of kind %s has no control points; `to_nurbs` gives its rational form where "
            "there is one",
            c->kind->name);
@@ -223,9 +223,10 @@ bool cag_bsplines_nurbs_arc(CagCall *call, CagValue *result) {
   const double sweep = to - from;
   CagStatus status = CAG_OK;
   if (sweep == 0)
-    status = cag_fail(&err, CAG_E_ARGUMENT, "empty-range", "range", -1, "the range has no length");
+    status =
+        cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "range", -1, "the range has no length");
   else if (!(fabs(sweep) / (double)segments < HALF_TURN))
-    status = cag_fail(&err, CAG_E_ARGUMENT, "arc-too-wide", "range", -1,
+    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_arc_too_wide, "range", -1,
                       "one piece of degree 2 turns by less than 180 degrees; these are %s in %ld: "
                       "take more `segments`",
                       cag_number_text(fabs(sweep), text), segments);

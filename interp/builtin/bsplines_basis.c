@@ -41,24 +41,24 @@ static bool read_knots(CagCall *call, int degree_at, int order_at, const double 
   CagStatus status = CAG_OK;
   char a[32], b[32];
   if (*degree < 1 || *degree > CAG_MAX_DEGREE)
-    status = cag_fail(&err, CAG_E_ARGUMENT, "order-range", "degree", -1,
+    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", -1,
                       "the degree is 1 to %d; this is %d", CAG_MAX_DEGREE, *degree);
   else if (*count < (size_t)*degree + 2)
-    status = cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", -1,
+    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
                       "a function of degree %d lives on %d knots, found %zu", *degree, *degree + 2,
                       *count);
   for (size_t i = 0; status == CAG_OK && i < *count; i++) {
     if (!isfinite((*knots)[i]))
-      status = cag_fail(&err, CAG_E_ARGUMENT, "not-finite", "knots", (long)i,
+      status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "knots", (long)i,
                         "knots[%zu] is not a finite number", i);
     else if (i > 0 && (*knots)[i] < (*knots)[i - 1])
       status =
-          cag_fail(&err, CAG_E_ARGUMENT, "knots-not-monotone", "knots", (long)i,
+          cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knots_not_monotone, "knots", (long)i,
                    "`knots` must not decrease: knots[%zu] = %s is less than knots[%zu] = %s", i,
                    cag_number_text((*knots)[i], a), i - 1, cag_number_text((*knots)[i - 1], b));
   }
   if (status == CAG_OK && !((*knots)[0] < (*knots)[*count - 1]))
-    status = cag_fail(&err, CAG_E_ARGUMENT, "empty-range", "knots", 0, "all knots are equal");
+    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_empty_range, "knots", 0, "all knots are equal");
   return cag_geometry_ok(call, status, &err);
 }
 
@@ -76,7 +76,7 @@ bool cag_bsplines_classify_knots(CagCall *call, CagValue *result) {
   CagError err;
   const size_t n = count - (size_t)p - 1, k = (size_t)p;
   if (n < k + 1) {
-    cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", -1,
+    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
              "a curve of degree %d needs at least %zu `knots`, found %zu", p, 2 * k + 2, count);
     return cag_fail_geometry(call, &err);
   }
@@ -88,7 +88,7 @@ bool cag_bsplines_classify_knots(CagCall *call, CagValue *result) {
     for (run = 1; i + run < count && x[i + run] == x[i]; run++) {}
     const bool inner = x[i] > x[0] && x[i] < x[count - 1];
     if (run > k + 1 || (inner && run > k && x[k] < x[i] && x[i] < x[n])) {
-      cag_fail(&err, CAG_E_ARGUMENT, "knot-multiplicity", "knots", (long)i,
+      cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_multiplicity, "knots", (long)i,
                "the knot %s occurs %zu times: degree %d allows %d inside and %d at the ends",
                cag_number_text(x[i], text), run, p, p, p + 1);
       return cag_fail_geometry(call, &err);
@@ -128,7 +128,7 @@ static CagStatus make_rational(const Basis *b, double t, CagError *err) {
     sums[d] = 0;
     for (size_t i = 0; i < n; i++) sums[d] += row[i] *= b->weights[i];
     if (!(sums[0] > 0))
-      return cag_fail(err, CAG_E_DEGENERATE, "zero-denominator", "weights", -1,
+      return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "weights", -1,
                       "all functions that act at t = %s have the weight 0",
                       cag_number_text(t, text));
     double binomial = 1; // C(d, j)
@@ -161,11 +161,11 @@ static bool read_basis_weights(CagCall *call, int argument, Basis *b) {
   if (!cag_arg_numbers(call, argument, &b->weights, &count)) return false;
   CagStatus status = CAG_OK;
   if (count != b->n)
-    status = cag_fail(&err, CAG_E_ARGUMENT, "weight-count", "weights", -1,
+    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
                       "expects one of `weights` for each of %zu functions, found %zu", b->n, count);
   for (size_t i = 0; status == CAG_OK && i < count; i++)
     if (!(b->weights[i] >= 0))
-      status = cag_fail(&err, CAG_E_ARGUMENT, "negative-weight", "weights", (long)i,
+      status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weights", (long)i,
                         "weights must not be negative: weights[%zu] = %s", i,
                         cag_number_text(b->weights[i], text));
   return cag_geometry_ok(call, status, &err);
@@ -337,7 +337,7 @@ bool cag_bsplines_oslo(CagCall *call, CagValue *result) {
   CagError err;
   if (!read_knots(call, 2, 3, &x, &count, &p) || !cag_arg_numbers(call, 1, &y, &n)) return false;
   if (n < count) {
-    cag_fail(&err, CAG_E_ARGUMENT, "not-a-refinement", "refined", -1,
+    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_not_a_refinement, "refined", -1,
              "`refined` has %zu knots, less than the %zu of `knots`", n, count);
     return cag_fail_geometry(call, &err);
   }
@@ -393,7 +393,7 @@ static CagStatus phantom(const EndCondition *c, const CagVec3 *points, size_t n,
                          double *work, CagVec3 *out, CagError *err) {
   const size_t k = (size_t)p, count = 2 * k + 2;
   if (c->derivative > p)
-    return cag_fail(err, CAG_E_ARGUMENT, "order-range", last ? "end" : "start", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_order_range, last ? "end" : "start", -1,
                     "a curve of degree %d has no derivative of order %d to choose", p,
                     c->derivative);
   double *knots = work, *weights = knots + count, *rest = weights + k + 1;

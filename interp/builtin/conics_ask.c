@@ -236,7 +236,7 @@ bool cag_conics_implicit_at(CagCall *call, CagValue *result) {
   const double fx = 2 * line[0], fy = 2 * line[1], n = hypot(fx, fy);
   if (n == 0) {
     CagError err;
-    cag_fail(&err, CAG_E_DEGENERATE, "singular-point", "", -1,
+    cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_singular_point, "", -1,
              "the gradient is zero here: a singular point without slope and curvature");
     return cag_fail_geometry(call, &err);
   }
@@ -325,7 +325,7 @@ bool cag_conics_signed_curvature(CagCall *call, CagValue *result) {
   if (!read_derivatives(call, d)) return false;
   const double n = cag_norm(d[1]);
   if (n == 0) {
-    cag_fail(&err, CAG_E_DEGENERATE, "curvature-undefined", "t", -1,
+    cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_curvature_undefined, "t", -1,
              "the derivative vanishes here: there is no curvature");
     return cag_fail_geometry(call, &err);
   }

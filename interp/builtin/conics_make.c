@@ -52,7 +52,7 @@ __attribute__((format(printf, 3, 4))) static bool fail_domain(CagCall *call, con
   va_start(list, format);
   vsnprintf(message, sizeof message, format, list);
   va_end(list);
-  cag_fail(&err, CAG_E_DOMAIN, "domain", argument, -1, "%s", message);
+  cag_fail(&err, CAG_E_DOMAIN, CAG_ERR_conic_domain, argument, -1, "%s", message);
   return cag_fail_geometry(call, &err);
 }
 

@@ -67,7 +67,7 @@ static bool read_frenet(CagCall *call, CagCurve **c, CagFrenet *frame) {
 
 static bool fail_straight(CagCall *call) {
   CagError err;
-  cag_fail(&err, CAG_E_DEGENERATE, "no-normal", "", -1,
+  cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
            "the curvature is 0 here, so there is neither normal nor binormal");
   return cag_fail_geometry(call, &err);
 }
@@ -175,7 +175,7 @@ bool cag_curves_end_point(CagCall *call, CagValue *result) {
 
 static bool fail_no_data(CagCall *call, const CagCurve *c, const char *what) {
   CagError err;
-  cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
+  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
            "a curve of kind %s has no %s; `to_nurbs` gives its rational form where there is one",
            c->kind->name, what);
   return cag_fail_geometry(call, &err);

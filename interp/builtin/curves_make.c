@@ -114,7 +114,7 @@ static CagStatus circumcircle(const CagVec3 p[3], CagVec3 *center, CagVec3 *norm
   double nn = cag_dot(n, n);
   if (sqrt(nn) <= FLAT_TRIANGLE * cag_norm(a) * cag_norm(b))
     return cag_fail(
-        err, CAG_E_ARGUMENT, "collinear", "", -1,
+        err, CAG_E_ARGUMENT, CAG_ERR_collinear, "", -1,
         "the three points lie on one line (or two are the same): no circle goes through "
         "them");
   // (|a|^2 b - |b|^2 a) x n / 2 |n|^2 leads from the first point to the center.

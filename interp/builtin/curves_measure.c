@@ -234,7 +234,7 @@ static CagStatus equalize_chords(const CagCurve *c, size_t n, double *t, double 
   cag_free(room);
   cag_free(p);
   if (!status && worst > 1e3 * enough)
-    return cag_fail(err, CAG_E_CONVERGENCE, "convergence", "by", -1,
+    return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "by", -1,
                     "found no %zu equal chords; their lengths still differ by %.3g mm", n, worst);
   return status;
 }

@@ -41,7 +41,7 @@ bool cag_arg_weights(CagCall *call, int argument, size_t n, const double **out) 
   if (!is_set(call, argument)) return true;
   if (!cag_arg_numbers(call, argument, out, &count)) return false;
   if (count == n) return true;
-  cag_fail(&err, CAG_E_ARGUMENT, "weight-count", "weights", -1,
+  cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
            "expects one of `weights` for each of %zu points, found %zu", n, count);
   return cag_fail_geometry(call, &err);
 }
@@ -70,7 +70,7 @@ static bool read_knots(CagCall *call, int argument, size_t n, int degree, const 
     size_t count;
     if (!cag_arg_numbers(call, argument, knots, &count)) return false;
     if (count == n + (size_t)degree + 1) return true;
-    cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", -1,
+    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
              "%zu points of degree %d need %zu `knots` (points + degree + 1), found %zu", n, degree,
              n + (size_t)degree + 1, count);
     return cag_fail_geometry(call, &err);

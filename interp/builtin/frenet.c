@@ -52,7 +52,7 @@ static bool call_frenet_of(CagCall *call, CagValue *result) {
 
 static bool fail_no_normal(CagCall *call) {
   CagError err;
-  cag_fail(&err, CAG_E_DEGENERATE, "no-normal", "", -1,
+  cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_no_normal, "", -1,
            "the curvature is 0 here, so there is neither normal nor circle of curvature");
   return cag_fail_geometry(call, &err);
 }
@@ -242,7 +242,7 @@ static bool call_helix_motion(CagCall *call, CagValue *result) {
       !cag_arg_finite(call, 2, &v) || !cag_arg_finite(call, 3, &time))
     return false;
   if (turning == 0) {
-    cag_fail(&err, CAG_E_ARGUMENT, "no-turning", "turning", -1,
+    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_no_turning, "turning", -1,
              "`turning` must not be 0: the point moves along a line, not a helix");
     return cag_fail_geometry(call, &err);
   }

@@ -141,7 +141,7 @@ static bool call_formula(Formula *f, const double *at, CagSeries *like,
 
 // The status of a call that failed; the machine has the error.
 static CagStatus fail_callback(const CagVm *vm, CagError *err) {
-  return cag_fail(err, CAG_E_CALLBACK, "function-failed", "", -1, "%s",
+  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "%s",
                   vm->errors.count ? vm->errors.items[0].message : "the function failed");
 }
 

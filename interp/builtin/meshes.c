@@ -199,7 +199,7 @@ static CagStatus tessellate_shape(CagValue v, const CagTessellation *how, CagMes
     return status;
   }
   default:
-    return cag_fail(err, CAG_E_UNSUPPORTED, "no-faces", "", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_faces, "", -1,
                     "a curve has no faces; `tube` gives it a thickness");
   }
 }

@@ -24,7 +24,8 @@ static CagStatus open_beside(void *context, const char *name, char **bytes, size
   if (cag_asprintf(&path, "%.*s%s", folder, o->path, name) < 0) return cag_fail_memory(err);
   bool good = cag_vm_open_file(o->call, 0, path, bytes, size);
   cag_free(path);
-  return good ? CAG_OK : cag_fail(err, CAG_E_CALLBACK, "file", "path", -1, "cannot read %s", name);
+  return good ? CAG_OK
+              : cag_fail(err, CAG_E_CALLBACK, CAG_ERR_file, "path", -1, "cannot read %s", name);
 }
 
 static bool call_read_mesh(CagCall *call, CagValue *result) {

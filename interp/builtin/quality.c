@@ -103,7 +103,7 @@ static CagStatus value_mesh(const void *what, const CagShape *shape, CagValue v,
     n = shape->as.solid->face_count;
   }
   if ((v.type != CAG_SURFACE && v.type != CAG_SOLID) || n == 0)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "no-curvature", "", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
                     "%s has no surfaces whose curvature could be shown",
                     v.type == CAG_SOLID ? "a body of set operations or meshes"
                                         : cag_type_article(v));
@@ -192,7 +192,7 @@ static bool read_colored(CagCall *call, const CagMesh **out) {
   *out = CAG_AS_SHAPE(call->values[0])->as.mesh;
   if ((*out)->scale.kind && (*out)->uv) return true;
   CagError err;
-  cag_fail(&err, CAG_E_UNSUPPORTED, "no-values", "", -1,
+  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_values, "", -1,
            "the mesh has no values: `colored_by` and `zebra` make meshes that have");
   return cag_fail_geometry(call, &err);
 }
@@ -248,11 +248,11 @@ static CagStatus zebra_mesh(const void *what, const CagShape *shape, CagValue v,
     CagTransform still = cag_transform_identity(); // a copy of its own
     status = cag_mesh_transform(shape->as.mesh, &still, &mesh, err);
   } else
-    return cag_fail(err, CAG_E_UNSUPPORTED, "no-curvature", "", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
                     "%s has no smooth normals that could mirror stripes", cag_type_article(v));
   if (!status && !mesh->normals) {
     cag_mesh_release(mesh);
-    return cag_fail(err, CAG_E_UNSUPPORTED, "no-curvature", "", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
                     "a body of set operations or flat meshes has no smooth normals that could "
                     "mirror stripes");
   }
@@ -340,9 +340,10 @@ static CagStatus isophotes_of(CagValue v, CagVec3 direction, double cosine, doub
   if (v.type == CAG_SURFACE)
     return cag_surface_isophote(shape->as.surface, direction, cosine, tolerance, out, err);
   if (v.type != CAG_SOLID || shape->as.solid->face_count == 0)
-    return cag_fail(
-        err, CAG_E_UNSUPPORTED, "no-curvature", "", -1, "%s has no surfaces to draw isophotes on",
-        v.type == CAG_SOLID ? "a body of set operations or meshes" : cag_type_article(v));
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
+                    "%s has no surfaces to draw isophotes on",
+                    v.type == CAG_SOLID ? "a body of set operations or meshes"
+                                        : cag_type_article(v));
   CagStatus status = CAG_OK;
   for (size_t i = 0; !status && i < shape->as.solid->face_count; i++)
     status =

@@ -70,7 +70,7 @@ static bool bounded_by_none(CagCall *call, CagValue *result) {
   CagError err;
   if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
   const CagStatus status =
-      holes && holes->length ? cag_fail(&err, CAG_E_ARGUMENT, "hole-outside", "holes", 0,
+      holes && holes->length ? cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_hole_outside, "holes", 0,
                                         "the outline is empty, so holes[0] does not lie within it")
                              : cag_region_empty(&region, &err);
   return give(call, status, &err, &region, result);
@@ -163,7 +163,7 @@ static CagStatus between_planes(const CagTransform *base, const CagTransform *pl
   const double reach = 1 + fabs(out->m[0][3]) + fabs(out->m[1][3]);
   if (!(fabs(out->m[2][0]) <= same && fabs(out->m[2][1]) <= same &&
         fabs(out->m[2][3]) <= same * reach))
-    return cag_fail(err, CAG_E_ARGUMENT, "region-planes", "", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_region_planes, "", -1,
                     "operand %zu lies in another plane of space than the first region; set "
                     "operations join regions of one plane: make them first and move the result",
                     operand);

@@ -51,7 +51,7 @@ bool cag_region_loops_plane(CagCall *call, CagCurve **loops, size_t n, CagTransf
   }
   if (!cag_geometry_ok(call, status, &err)) return false;
   if (!common) {
-    status = cag_fail(&err, CAG_E_ARGUMENT, "not-planar", "", -1,
+    status = cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_not_planar, "", -1,
                       "expected boundaries that lie in one plane, found %s of space",
                       n > 1 ? "curves" : "a curve");
     return cag_geometry_ok(call, status, &err);

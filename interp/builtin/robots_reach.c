@@ -90,7 +90,7 @@ bool cag_robots_closest_pose(CagCall *call, CagValue *result) {
       !cag_arg_joints_or_home(call, 2, r, false, near))
     return false;
   goal.near = near;
-  if (cag_robot_solve(r, &target, &goal, q, &found, &err) && strcmp(err.reason, "unreachable") != 0)
+  if (cag_robot_solve(r, &target, &goal, q, &found, &err) && err.id != CAG_ERR_unreachable)
     return cag_fail_geometry(call, &err);
   cag_robot_forward(r, q, &pose);
   CagValue values[] = {cag_joints_value(call->vm, r, q), cag_transform_value(call->vm, &pose),

@@ -272,7 +272,7 @@ static CagStatus shape_bounds(CagValue v, CagBounds *out, int *dimension, bool *
       *out = CAG_BOUNDS_EMPTY;
       cag_bounds_add(out, shape->as.mesh->positions[0]);
     } else if (shape->as.mesh->triangle_count == 0) {
-      status = cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1,
+      status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
                         "the mesh is empty: it has no triangles");
     }
   }
@@ -299,7 +299,7 @@ bool cag_value_bounds(CagCall *call, CagValue v, CagBounds *out, int *dimension)
   *dimension = 2;
   size_t n = CAG_AS_LIST(list)->length;
   CagError err;
-  cag_fail(&err, CAG_E_DEGENERATE, "empty-shape", "", -1, "there is no shape in it");
+  cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1, "there is no shape in it");
   bool all_empty = true;
   for (size_t i = 0; i < n; i++) {
     CagBounds one;

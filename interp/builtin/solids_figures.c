@@ -23,7 +23,7 @@ static bool surface_net(CagCall *call, const CagSurface *s, CagValue *result) {
   CagSurfaceNurbsView net;
   if (!cag_surface_nurbs_view(s, &net)) {
     CagError err;
-    cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
+    cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
              "kind %s has no control points; `to_nurbs` gives its rational form where there is one",
              s->kind->name);
     return cag_fail_geometry(call, &err);

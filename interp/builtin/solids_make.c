@@ -103,7 +103,7 @@ CagStatus cag_solid_rod(CagVec3 p, CagVec3 q, double radius, double top, CagSoli
   CagVec3 along = cag_sub(q, p);
   double height = cag_norm(along);
   if (height == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "same-points", "", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_same_points, "", -1,
                     "the two ends of the rod are the same point");
   CagVec3 side = cag_cross(cag_vec3(0, 0, 1), along);
   // Nearly upright: any level direction does.

@@ -52,7 +52,7 @@ static CagStatus mesh_body(const CagMesh *m, bool volume, Body *out, CagError *e
   if (!volume || m->vertex_count == 0) return CAG_OK;
   if (!cag_mesh_is_watertight(m, edge))
     return cag_fail(
-        err, CAG_E_ARGUMENT, "mesh-open", "", -1,
+        err, CAG_E_ARGUMENT, CAG_ERR_mesh_open, "", -1,
         "the mesh is not closed: the edge from [%g, %g, %g] to [%g, %g, %g] has not two "
         "faces; it holds no volume",
         edge[0].x, edge[0].y, edge[0].z, edge[1].x, edge[1].y, edge[1].z);
@@ -74,7 +74,7 @@ static CagStatus surface_body(const CagSurface *s, bool volume, Body *out, CagEr
   CagStatus status = cag_surface_area(s, &out->area, &centroid, err);
   if (status != CAG_OK || !volume) return status;
   if (!cag_surface_is_closed(s))
-    return cag_fail(err, CAG_E_ARGUMENT, "surface-open", "", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_surface_open, "", -1,
                     "the surface has a boundary, so it holds no volume");
   status = cag_surface_bounds(s, &box, err);
   if (status != CAG_OK) return status;

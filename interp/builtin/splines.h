@@ -28,7 +28,7 @@ bool cag_splines_set(const CagCall *call, int argument);
 bool cag_splines_give(CagCall *call, CagStatus status, const CagError *err, CagCurve **made,
                       CagValue *result);
 // A geometry error of the built-ins themselves.
-bool cag_splines_fail(CagCall *call, const char *reason, const char *argument, long index,
+bool cag_splines_fail(CagCall *call, CagErrorId id, const char *argument, long index,
                       const char *format, ...) __attribute__((format(printf, 5, 6)));
 // Points all of one dimension ("dimension-mismatch"); malloc'd.
 bool cag_splines_points(CagCall *call, int argument, CagVec3 **out, size_t *n, int *dimension);

@@ -97,7 +97,7 @@ bool cag_splines_basis_matrix(CagCall *call, CagValue *result) {
   const double *ratios[2] = {&alpha, &beta};
   for (int i = 0; i < 2; i++)
     if (kind == 4 && !(*ratios[i] > 0 && *ratios[i] < 1))
-      return cag_splines_fail(call, "bad-blend-parameter", i ? "beta" : "alpha", -1,
+      return cag_splines_fail(call, CAG_ERR_bad_blend_parameter, i ? "beta" : "alpha", -1,
                               "a parabola passes its middle point between 0 and 1: %s = %s",
                               i ? "beta" : "alpha", cag_number_text(*ratios[i], text));
   if (kind == 0) bezier_matrix((int)degree, m, NULL, NULL);
@@ -147,7 +147,7 @@ bool cag_splines_hermite_basis(CagCall *call, CagValue *result) {
     return false;
   char text[32];
   if (!(h > 0))
-    return cag_splines_fail(call, "bad-parameter-length", "length", -1,
+    return cag_splines_fail(call, CAG_ERR_bad_parameter_length, "length", -1,
                             "the length of a segment is positive; this is %s",
                             cag_number_text(h, text));
   *result = cag_list_numbers(call->vm, 4, &f);
@@ -187,7 +187,7 @@ static bool read_segment(CagCall *call, bool plane, CagVec3 v[4], int *dimension
   for (int i = 1; i < 4; i++)
     if (!cag_splines_vec(call, i, *dimension, &v[i])) return false;
   if (!plane || *dimension == 2) return true;
-  return cag_splines_fail(call, "dimension-mismatch", "", -1,
+  return cag_splines_fail(call, CAG_ERR_dimension_mismatch, "", -1,
                           "inflections, cusps and loops are those of plane segments: give points "
                           "and tangents of 2 numbers");
 }
@@ -229,7 +229,7 @@ bool cag_splines_hermite_by_curvature(CagCall *call, CagValue *result) {
     return false;
   for (int i = 2; i < 4; i++) {
     if (cag_norm(v[i]) == 0)
-      return cag_splines_fail(call, "zero-vector", cag_parameter_name(call, i), -1,
+      return cag_splines_fail(call, CAG_ERR_zero_vector, cag_parameter_name(call, i), -1,
                               "the direction at the %s is the zero vector",
                               i == 2 ? "start" : "end");
     v[i] = cag_unit(v[i]);
@@ -285,7 +285,7 @@ bool cag_splines_convert_cubic(CagCall *call, CagValue *result) {
   if (n == 4) to_bezier_points(g, from, b);
   cag_free(g);
   if (n != 4)
-    return cag_splines_fail(call, "point-count", "points", -1,
+    return cag_splines_fail(call, CAG_ERR_point_count, "points", -1,
                             "a cubic has four points and vectors; these are %zu", n);
   const CagVec3 d0 = cag_scaled(cag_sub(b[1], b[0]), 3), d1 = cag_scaled(cag_sub(b[3], b[2]), 3);
   const CagVec3 bend = cag_scaled(cag_add(cag_sub(b[0], cag_scaled(b[1], 2)), b[2]), 3);
@@ -333,7 +333,7 @@ bool cag_splines_continuity(CagCall *call, CagValue *result) {
       !cag_arg_number_or(call, 2, 1e-9, &tolerance))
     return false;
   if (!(tolerance >= 0))
-    return cag_splines_fail(call, "tolerance-not-positive", "tolerance", -1,
+    return cag_splines_fail(call, CAG_ERR_tolerance_not_positive, "tolerance", -1,
                             "the tolerance is 0 or more");
   if (!cag_geometry_ok(call, cag_curve_joint(a, b, tolerance, &j, &err), &err)) return false;
   CagValue values[] = {cag_text_c(call->vm, cag_joint_class(&j)),
@@ -389,7 +389,7 @@ bool cag_splines_line_crossings(CagCall *call, CagValue *result) {
     return false;
   const double square = cag_dot(normal, normal);
   if (!(square > 0))
-    return cag_splines_fail(call, "zero-vector", "normal", -1,
+    return cag_splines_fail(call, CAG_ERR_zero_vector, "normal", -1,
                             "the normal of a line or plane is not the zero vector");
   const CagPlane plane = {cag_scaled(normal, offset / square), cag_unit(normal)};
   if (!cag_geometry_ok(call, cag_curve_intersect_plane(c, &plane, &meetings, &n, &err), &err))

@@ -24,7 +24,8 @@ bool cag_splines_data_parameters(CagCall *call, CagValue *result) {
   }
   cag_free(points);
   if (isfinite(sum)) return true;
-  return cag_splines_fail(call, "not-finite", "points", -1, "the distances of the points overflow");
+  return cag_splines_fail(call, CAG_ERR_not_finite, "points", -1,
+                          "the distances of the points overflow");
 }
 
 // What both read: points, degree, parameters, knots.
@@ -53,7 +54,7 @@ static bool read_knots(CagCall *call, int argument, CagFitData *d, size_t count)
   if (!cag_arg_numbers(call, argument, &d->knots, &given)) return false;
   const size_t wanted = count + (size_t)d->degree + 1;
   if (given == wanted) return true;
-  return cag_splines_fail(call, "knot-count", "knots", -1,
+  return cag_splines_fail(call, CAG_ERR_knot_count, "knots", -1,
                           "%zu control points of degree %d need %zu `knots` (count + degree + 1), "
                           "found %zu",
                           count, d->degree, wanted, given);
@@ -88,7 +89,7 @@ bool cag_splines_interpolate(CagCall *call, CagValue *result) {
   if (!read_request(call, 1, 5, 2, &r)) return false;
   bool ok = !cag_splines_set(call, 3) || cag_splines_points(call, 3, &tangents, &count, &dimension);
   if (ok && tangents && dimension != r.data.dimension)
-    ok = cag_splines_fail(call, "dimension-mismatch", "tangents", -1,
+    ok = cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
                           "the points have %d numbers, the tangents %d", r.data.dimension,
                           dimension);
   ok = ok && read_knots(call, 4, &r.data, r.data.n + count);
@@ -115,7 +116,7 @@ static bool fit(CagCall *call, CagFitReport *report, size_t *n, int *dimension, 
     return false;
   bool ok = cag_arg_integer_or(call, 2, r.data.degree + 1L, 1, 100000000, &count);
   if (ok && !(slack >= 0))
-    ok = cag_splines_fail(call, "bad-parameter", "error", -1,
+    ok = cag_splines_fail(call, CAG_ERR_bad_parameter, "error", -1,
                           "the error that is allowed is 0 or more");
   // Too many control points are told as that, not as the wrong number of knots.
   ok = ok && ((size_t)count > r.data.n || read_knots(call, 5, &r.data, (size_t)count));

@@ -21,7 +21,7 @@ bool cag_splines_give(CagCall *call, CagStatus status, const CagError *err, CagC
   return true;
 }
 
-bool cag_splines_fail(CagCall *call, const char *reason, const char *argument, long index,
+bool cag_splines_fail(CagCall *call, CagErrorId id, const char *argument, long index,
                       const char *format, ...) {
   CagError err;
   char message[sizeof err.message];
@@ -29,7 +29,7 @@ bool cag_splines_fail(CagCall *call, const char *reason, const char *argument, l
   va_start(list, format);
   vsnprintf(message, sizeof message, format, list);
   va_end(list);
-  cag_fail(&err, CAG_E_ARGUMENT, reason, argument, index, "%s", message);
+  cag_fail(&err, CAG_E_ARGUMENT, id, argument, index, "%s", message);
   return cag_fail_geometry(call, &err);
 }
 
@@ -46,7 +46,7 @@ bool cag_splines_points(CagCall *call, int argument, CagVec3 **out, size_t *n, i
     else if (size != first) {
       cag_free(*out);
       return cag_splines_fail(
-          call, "dimension-mismatch", cag_parameter_name(call, argument), (long)i,
+          call, CAG_ERR_dimension_mismatch, cag_parameter_name(call, argument), (long)i,
           "the points are of the plane or of space, not both: %s[0] has %zu "
           "numbers and %s[%zu] has %zu",
           cag_parameter_name(call, argument), first, cag_parameter_name(call, argument), i, size);
@@ -59,7 +59,7 @@ bool cag_splines_vec(CagCall *call, int argument, int dimension, CagVec3 *out) {
   int d;
   if (!cag_arg_vec(call, argument, out, &d)) return false;
   if (d == dimension) return true;
-  return cag_splines_fail(call, "dimension-mismatch", cag_parameter_name(call, argument), -1,
+  return cag_splines_fail(call, CAG_ERR_dimension_mismatch, cag_parameter_name(call, argument), -1,
                           "the points have %d numbers, this vector has %d", dimension, d);
 }
 
@@ -81,7 +81,7 @@ bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, s
   char text[32];
   if (!cag_arg_numbers(call, argument, &x, &count)) return false;
   if (count != n && count + 1 != n)
-    return cag_splines_fail(call, "bad-parameter-length", "parameters", -1,
+    return cag_splines_fail(call, CAG_ERR_bad_parameter_length, "parameters", -1,
                             "`parameters` are one number for each of the %zu points, or the %zu "
                             "lengths between them; these are %zu",
                             n, n - 1, count);
@@ -94,7 +94,7 @@ bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, s
     u[i + 1] = u[i] + x[i];
     if (x[i] > 0 && isfinite(x[i])) continue;
     cag_free(u);
-    return cag_splines_fail(call, "bad-parameter-length", "parameters", (long)i,
+    return cag_splines_fail(call, CAG_ERR_bad_parameter_length, "parameters", (long)i,
                             "the lengths of the segments are positive: parameters[%zu] = %s", i,
                             cag_number_text(x[i], text));
   }
@@ -153,11 +153,11 @@ bool cag_splines_hermite(CagCall *call, CagValue *result) {
   bool ok = cag_splines_points(call, 1, &tangents, &count, &dimension);
   if (ok) {
     if (count != d.n)
-      ok = cag_splines_fail(call, "point-count", "tangents", -1,
+      ok = cag_splines_fail(call, CAG_ERR_point_count, "tangents", -1,
                             "there is one tangent to each point: %zu points, %zu tangents", d.n,
                             count);
     else if (dimension != d.dimension)
-      ok = cag_splines_fail(call, "dimension-mismatch", "tangents", -1,
+      ok = cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
                             "the points have %d numbers, the tangents %d", d.dimension, dimension);
     if (ok) ok = cag_geometry_ok(call, cag_parameters_check(d.u, d.n, &err), &err);
     if (ok) {
@@ -232,18 +232,18 @@ static bool read_end(CagCall *call, const CagRecord *r, int end, const Data *d, 
     return cag_fail_call(call, 1, CAG_ERR_value, "expects a vector as `%s` of the end conditions",
                          where);
   if ((int)n != d->dimension)
-    return cag_splines_fail(call, "dimension-mismatch", "ends", -1,
+    return cag_splines_fail(call, CAG_ERR_dimension_mismatch, "ends", -1,
                             "the points have %d numbers, the tangent at the %s has %zu",
                             d->dimension, where, n);
   for (size_t i = 0; i < n; i++)
     if (!isfinite(x[i]))
-      return cag_splines_fail(call, "not-finite", "ends", -1,
+      return cag_splines_fail(call, CAG_ERR_not_finite, "ends", -1,
                               "the tangent at the %s has a number that is not finite", where);
   CagVec3 t = cag_vec3(x[0], x[1], n > 2 ? x[2] : 0);
   if (direction.type == CAG_BOOL && direction.as.boolean) {
     const size_t i = end ? d->n - 2 : 0;
     if (cag_norm(t) == 0)
-      return cag_splines_fail(call, "zero-vector", "ends", -1,
+      return cag_splines_fail(call, CAG_ERR_zero_vector, "ends", -1,
                               "the direction at the %s is the zero vector", where);
     t = cag_scaled(cag_unit(t),
                    cag_norm(cag_sub(d->points[i + 1], d->points[i])) / (d->u[i + 1] - d->u[i]));
@@ -290,7 +290,7 @@ static bool read_tension(CagCall *call, int argument, size_t n, double **out) {
     return false;
   }
   if (count != inner)
-    return cag_splines_fail(call, "point-count", "tension", -1,
+    return cag_splines_fail(call, CAG_ERR_point_count, "tension", -1,
                             "a tension is one number, or one for each of the %zu inner points; "
                             "these are %zu",
                             inner, count);
@@ -352,7 +352,7 @@ static bool read_ratios(CagCall *call, size_t n, CagBlendEnds ends, double **out
     return false;
   }
   if (given != count)
-    return cag_splines_fail(call, "point-count", "alpha", -1,
+    return cag_splines_fail(call, CAG_ERR_point_count, "alpha", -1,
                             "`alpha` is one number, \"chord\", or one number for each of the %zu "
                             "points that a parabola is about; these are %zu",
                             count, given);
@@ -393,7 +393,7 @@ bool cag_splines_catmull_rom(CagCall *call, CagValue *result) {
   char text[32];
   if (!read_blend_ends(call, &ends) || !cag_arg_number_or(call, 1, 0.5, &alpha)) return false;
   if (!(alpha >= 0 && alpha <= 1))
-    return cag_splines_fail(call, "bad-blend-parameter", "alpha", -1,
+    return cag_splines_fail(call, CAG_ERR_bad_blend_parameter, "alpha", -1,
                             "the power of the distances is between 0 and 1: alpha = %s",
                             cag_number_text(alpha, text));
   if (!cag_splines_points(call, 0, &points, &n, &dimension)) return false;

@@ -95,7 +95,7 @@ static bool read_net(CagCall *call, const char *what, CagSurfaceNurbsView *net) 
   CagError err;
   if (!cag_arg_side(call, 0, &s)) return false;
   if (cag_surface_nurbs_view(s, net)) return true;
-  cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
+  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
            "a surface of kind %s has no %s; `to_nurbs` gives its rational form where there is one",
            s->kind->name, what);
   return cag_fail_geometry(call, &err);

@@ -32,7 +32,7 @@ bool cag_surfaces_volume(CagCall *call, CagValue *result) {
   if (!cag_arg_surface(call, 0, &s)) return false;
   if (!cag_surface_is_closed(s)) {
     cag_fail(
-        &err, CAG_E_ARGUMENT, "surface-open", "", -1,
+        &err, CAG_E_ARGUMENT, CAG_ERR_surface_open, "", -1,
         "the surface has a boundary, so it holds no volume; `solid` of all sides tells the gap");
     return cag_fail_geometry(call, &err);
   }

@@ -42,7 +42,7 @@ static bool read_regular(CagCall *call, Forms *f) {
   CagError err;
   if (!read_forms(call, f)) return false;
   if (f->area > FLAT_SINE * FLAT_SINE * f->E * f->G) return true;
-  cag_fail(&err, CAG_E_DEGENERATE, "degenerate-normal", "", -1,
+  cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_degenerate_normal, "", -1,
            "the surface has no two independent tangents here (a pole or a fold), so its curvature "
            "cannot be told");
   return cag_fail_geometry(call, &err);

@@ -106,7 +106,7 @@ static bool read_knots(CagCall *call, int argument, const size_t count[2], CagGr
     if (!cag_as_vector(v, &x, &n))
       return cag_fail_type(call, argument, "none, or two lists of knots for u and v");
     if (n != wanted) {
-      cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", k,
+      cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", k,
                "%zu control points of degree %d need %zu `knots` in %c, found %zu", count[k],
                k ? g->degree_v : g->degree_u, wanted, "uv"[k], n);
       return cag_fail_geometry(call, &err);

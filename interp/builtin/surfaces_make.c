@@ -68,7 +68,7 @@ bool cag_region_revolved(CagCall *call, const CagRegion *region, const CagTransf
   CagVec3 center = cag_sub(cag_transform_point(place, centroid), through);
   if (fabs(cag_dot(a, n)) > AXIS_IN_PLANE ||
       fabs(cag_dot(center, n)) > AXIS_IN_PLANE * (1 + cag_norm(center))) {
-    cag_fail(&err, CAG_E_ARGUMENT, "axis-not-in-plane", "axis", -1,
+    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_axis_not_in_plane, "axis", -1,
              "`axis` does not lie in the plane of the region");
     return cag_fail_geometry(call, &err);
   }
@@ -116,7 +116,7 @@ static bool read_axis(CagCall *call, int argument, CagVec3 *axis) {
   CagError err;
   if (!cag_arg_vec_or(call, argument, cag_vec3(0, 0, 1), axis, NULL)) return false;
   if (cag_norm(*axis) > 0) return true;
-  cag_fail(&err, CAG_E_ARGUMENT, "zero-axis", "axis", -1,
+  cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_zero_axis, "axis", -1,
            "`axis` must have a direction; it is the zero vector");
   return cag_fail_geometry(call, &err);
 }

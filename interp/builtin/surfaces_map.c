@@ -47,13 +47,10 @@ static bool tell_of_mapping(CagCall *call, int argument, const char *what) {
     return false;
   const CagErrorId id = errors->items[0].id;
   char *message = errors->items[0].message ? cag_strdup(errors->items[0].message) : NULL;
-  char *reason = errors->items[0].reason ? strdup(errors->items[0].reason) : NULL;
   const char *said = message ? message : "";
   if (strncmp(said, "at: ", 4) == 0) said += 4; // how points of a surface are asked for
   cag_fail_call(call, argument, id, "%s: %s", what, said);
   cag_free(message);
-  free(errors->items[0].reason);
-  errors->items[0].reason = reason;
   return false;
 }
 
@@ -176,7 +173,7 @@ static bool refuse_trimmed(CagCall *call, CagValue g) {
   CagError err;
   if (g.type != CAG_SURFACE || !cag_surface_trimmed_view(CAG_AS_SHAPE(g)->as.surface, NULL, NULL))
     return true;
-  cag_fail(&err, CAG_E_UNSUPPORTED, "surface-trimmed", "", -1,
+  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_surface_trimmed, "", -1,
            "a trimmed surface cannot be mapped: map the whole one and trim that, or map its mesh");
   return cag_fail_geometry(call, &err);
 }

@@ -24,8 +24,8 @@ static bool fail_memory(CagCall *call) {
 
 bool cag_fail_rows(CagCall *call, size_t wanted, size_t row, size_t found) {
   CagError err;
-  cag_fail(&err, CAG_E_ARGUMENT, "net-not-rectangular", cag_parameter_name(call, 0), (long)row,
-           "`%s` must have rows of one length: row 0 has %zu points, row %zu has %zu",
+  cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_net_not_rectangular, cag_parameter_name(call, 0),
+           (long)row, "`%s` must have rows of one length: row 0 has %zu points, row %zu has %zu",
            cag_parameter_name(call, 0), wanted, row, found);
   return cag_fail_geometry(call, &err);
 }
@@ -85,7 +85,7 @@ static bool read_weights(CagCall *call, int argument, Net *net) {
   }
   if (fits) return true;
   CagError err;
-  cag_fail(&err, CAG_E_ARGUMENT, "weight-count", "weights", -1,
+  cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_weight_count, "weights", -1,
            "`weights` must be %zu rows of %zu numbers, as the points", net->nu, net->nv);
   return cag_fail_geometry(call, &err);
 }
@@ -150,19 +150,19 @@ static bool read_knots(CagCall *call, int argument, int direction, size_t n, int
     return cag_fail_call(call, argument, CAG_ERR_value,
                          "expects \"open\", \"periodic\" or a list as `knots`, found \"%s\"", type);
   if (n < 2) {
-    cag_fail(&err, CAG_E_ARGUMENT, "order-range", "net", direction,
+    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_order_range, "net", direction,
              "a surface needs at least 2 rows of at least 2 points, by %s there is %zu",
              direction ? "v" : "u", n);
     return cag_fail_geometry(call, &err);
   }
   if (degree < 1 || n <= (size_t)degree) {
-    cag_fail(&err, CAG_E_ARGUMENT, "order-range", "degree", direction,
+    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_order_range, "degree", direction,
              "`degree` in %s must lie in 1..%zu for %zu points, it is %d; add points or lower it",
              direction ? "v" : "u", n - 1, n, degree);
     return cag_fail_geometry(call, &err);
   }
   if (list && (!cag_as_vector(v, &x, &count) || count != wanted)) {
-    cag_fail(&err, CAG_E_ARGUMENT, "knot-count", "knots", -1,
+    cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_knot_count, "knots", -1,
              "%zu points of degree %d need %zu `knots` in %s (points + degree + 1)", n, degree,
              wanted, direction ? "v" : "u");
     return cag_fail_geometry(call, &err);

@@ -55,7 +55,7 @@ static bool read_net(CagCall *call, Net *n) {
   CagError err;
   if (!cag_arg_surface(call, 0, &n->s)) return false;
   if (!cag_surface_nurbs_view(n->s, &n->view)) {
-    cag_fail(&err, CAG_E_UNSUPPORTED, "no-control-points", "", -1,
+    cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_no_control_points, "", -1,
              "a surface of kind %s has no control points; `to_nurbs` gives its rational form where "
              "there is one",
              n->s->kind->name);
@@ -213,7 +213,7 @@ static bool basis(CagCall *call, CagValue *result) {
       sum += bu[i] * bv[j] * n.view.homogeneous[4 * (i * n.view.nv + j) + 3];
   if (ok && !(sum > 0)) {
     CagError err;
-    cag_fail(&err, CAG_E_DEGENERATE, "zero-denominator", "", -1,
+    cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", -1,
              "all weights that act at this point are 0: give one of them a positive value");
     ok = cag_fail_geometry(call, &err);
   }
@@ -342,7 +342,7 @@ static bool polynomials(CagCall *call, CagValue *result) {
   size_t nu = 0, nv = 0;
   if (!read_net(call, &n)) return false;
   if (n.view.rational) {
-    cag_fail(&err, CAG_E_UNSUPPORTED, "rational-patch", "", -1,
+    cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_rational_patch, "", -1,
              "the surface has weights, so it is not a polynomial: ask for `numerator` and "
              "`denominator`");
     return cag_fail_geometry(call, &err);
@@ -444,7 +444,7 @@ static bool set_point(CagCall *call, CagValue *result) {
     if (!cag_arg_finite(call, 4, &weight)) return false;
     if (weight < 0) {
       char text[32];
-      cag_fail(&err, CAG_E_ARGUMENT, "negative-weight", "weight", -1,
+      cag_fail(&err, CAG_E_ARGUMENT, CAG_ERR_negative_weight, "weight", -1,
                "`weight` must not be negative, it is %s", cag_number_text(weight, text));
       return cag_fail_geometry(call, &err);
     }
@@ -640,7 +640,7 @@ static bool net_mesh(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < nu * nv; i++)
     if (!(v->homogeneous[4 * (i / nv * v->nv + i % nv) + 3] > 0)) {
       cag_fail(
-          &err, CAG_E_DEGENERATE, "zero-denominator", "", (long)i,
+          &err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", (long)i,
           "control point [%zu, %zu] has the weight 0 and so no place: the net has a hole there",
           i / nv, i % nv);
       return cag_fail_geometry(call, &err);

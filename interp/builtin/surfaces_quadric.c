@@ -213,7 +213,7 @@ bool cag_arg_quadric(CagCall *call, CagQuadric *q) {
   }
   if (v.type == CAG_SOLID && CAG_AS_SHAPE(v)->as.solid->kind == CAG_SOLID_SPHERE)
     return sphere_equation(call, CAG_AS_SHAPE(v)->as.solid, q);
-  cag_fail(&err, CAG_E_UNSUPPORTED, "not-a-quadric", "", -1,
+  cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_not_a_quadric, "", -1,
            "expects a quadric, a sphere, or the 10 numbers or 4 rows of one, found %s %s",
            cag_article(v.type == CAG_SURFACE ? CAG_AS_SHAPE(v)->as.surface->kind->name
                                              : cag_type_name(v)),

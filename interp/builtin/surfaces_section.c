@@ -313,7 +313,7 @@ static CagStatus curvature_contours_of(CagValue v, const ContourQuestion *q, Cag
     n = shape->as.solid->face_count;
   }
   if (n == 0)
-    return cag_fail(err, CAG_E_UNSUPPORTED, "no-curvature", "", -1,
+    return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_no_curvature, "", -1,
                     "%s has no surfaces to draw lines of equal curvature on",
                     v.type == CAG_SOLID ? "a body of set operations or meshes"
                                         : cag_type_article(v));

@@ -18,7 +18,7 @@ typedef struct Sampled {
 } Sampled;
 
 static CagStatus stopped(CagError *err) {
-  return cag_fail(err, CAG_E_CALLBACK, "function-failed", "", -1, "the function failed");
+  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "the function failed");
 }
 
 static CagStatus call_at(const Sampled *s, double t, CagValue *out, CagError *err) {
@@ -56,7 +56,7 @@ static CagStatus sample_rows(void *context, double t, double *out, CagError *err
   }
   const CagTransform *m = &CAG_AS_TRANSFORM(v)->t;
   if (!cag_transform_is_affine(m))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-affine", "map", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_affine, "map", -1,
                     "`map` must give affine transforms: a projection has no sweep");
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 4; j++) out[4 * i + j] = m->m[i][j] / m->m[3][3];

@@ -242,17 +242,11 @@ bool cag_fail_geometry(CagCall *call, const CagError *err) {
   int parameter = -1;
   for (size_t i = 0; err->argument[0] && i < s->count; i++)
     if (strcmp(s->parameters[i], err->argument) == 0) parameter = (int)i;
-  CagErrorId id = err->status == CAG_E_LIMIT
-                      ? CAG_ERR_limit_triangles
-                      : cag_error_by_reason(err->reason ? err->reason : "value");
-  if (id == CAG_ERR_COUNT) id = CAG_ERR_value;
   CagString message = {0};
   cag_string_printf(&message, "%s: %s", s->name, err->message);
   call->vm->starved |= message.failed;
-  CagDiagnostic *d = set_error(call->vm, id, argument_of(call, parameter), message.bytes);
+  set_error(call->vm, err->id, argument_of(call, parameter), message.bytes);
   cag_string_free(&message);
-  if (err->reason && strcmp(err->reason, cag_error_info(id)->reason) != 0)
-    d->reason = strdup(err->reason);
   return false;
 }
 
@@ -276,20 +270,17 @@ _Noreturn void cag_vm_out_of_memory(CagVm *vm) {
 
 bool cag_vm_at_limit(const CagVm *vm) {
   const CagErrorId id = vm->errors.count ? vm->errors.items[0].id : CAG_ERR_limit_memory;
-  return id == CAG_ERR_limit_depth || id == CAG_ERR_limit_memory || id == CAG_ERR_limit_time ||
-         id == CAG_ERR_limit_triangles || id == CAG_ERR_interrupted;
+  return cag_error_is_limit(id) || id == CAG_ERR_interrupted;
 }
 
 static CagValue error_record(CagVm *vm, const CagDiagnostic *d) {
   static const char *const names[] = {"message", "code", "reason", "file", "line", "column"};
   const CagErrorInfo *info = cag_error_info(d->id);
   CagPosition at = d->source ? cag_source_position(d->source, d->span.start) : (CagPosition){0, 0};
-  CagValue values[] = {cag_text_c(vm, d->message),
-                       cag_text_c(vm, info->code),
-                       cag_text_c(vm, d->reason ? d->reason : info->reason),
-                       cag_text_c(vm, d->source ? d->source->name : ""),
-                       cag_number((double)at.line),
-                       cag_number((double)at.column)};
+  CagValue values[] = {
+      cag_text_c(vm, d->message),   cag_text_c(vm, info->code),
+      cag_text_c(vm, info->reason), cag_text_c(vm, d->source ? d->source->name : ""),
+      cag_number((double)at.line),  cag_number((double)at.column)};
   return cag_record_new(vm, names, values, 6);
 }
 

@@ -176,14 +176,14 @@ static double shape_tolerance(const CagScene *s, const CagItem *item) {
 
 static CagStatus fail_operation(const CagItem *item, CagError *err) {
   return cag_fail(
-      err, CAG_E_UNSUPPORTED, "export-operation", "", -1,
+      err, CAG_E_UNSUPPORTED, CAG_ERR_export_operation, "", -1,
       "%s is a union, difference or intersection of solids, whose faces meet in curves "
       "that are not NURBS: show its parts one by one, or write .stl, .obj, .ply or .glb",
       item->name);
 }
 
 static CagStatus fail_mesh(const CagItem *item, CagError *err) {
-  return cag_fail(err, CAG_E_UNSUPPORTED, "export-mesh", "", -1,
+  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_export_mesh, "", -1,
                   "%s is a mesh, and files of exact geometry hold curves and surfaces: show the "
                   "surfaces that it was made of, or write .stl, .obj, .ply or .glb",
                   item->name);
@@ -228,7 +228,8 @@ static CagStatus measure(CagBrepWork *w, CagError *err) {
   }
   double size = box.min.x <= box.max.x ? cag_norm(cag_sub(box.max, box.min)) : 0;
   if (!isfinite(size))
-    return cag_fail(err, CAG_E_ARGUMENT, "not-finite", "", -1, "%s is too large", w->item->name);
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "", -1, "%s is too large",
+                    w->item->name);
   // Where two sides of an edge were approximated each on its own, they differ by twice the
   // tolerance.
   w->same = fmax(SAME * size, w->approximate ? 2 * w->asked : 0);
@@ -248,7 +249,7 @@ static CagStatus add_bounded(CagBrepWork *w, CagBrepShape *shape, CagError *err)
   if (!status) status = make_shells(w, &closed, err);
   if (!status && shape->kind == CAG_BREP_SOLID && !closed)
     status =
-        cag_fail(err, CAG_E_ARGUMENT, "export-open", "", -1,
+        cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_export_open, "", -1,
                  "%s does not close within %g mm: some of its faces have an edge that no other "
                  "shares; show its surfaces instead, or write a mesh",
                  w->item->name, w->same);
@@ -296,12 +297,13 @@ CagStatus cag_brep_of_scene(const CagScene *scene, CagBrep *out, CagError *err) 
   if (!out->shapes) return cag_fail_memory(err);
   for (size_t i = 0; i < scene->item_count; i++) {
     if (scene->interrupt && *scene->interrupt)
-      return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the export was stopped");
+      return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the export was stopped");
     if (scene->items[i].kind == CAG_ITEM_GROUND) continue;
     CagStatus status = add_item(out, scene, &scene->items[i], err);
     if (status) return status;
   }
   if (out->shape_count == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "nothing-to-show", "", -1, "the script shows no shape");
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_nothing_to_show, "", -1,
+                    "the script shows no shape");
   return CAG_OK;
 }

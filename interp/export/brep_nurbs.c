@@ -24,7 +24,7 @@
 // --- What cannot be exact ---
 
 static CagStatus fail_inexact(const CagBrepWork *w, const char *what, CagError *err) {
-  return cag_fail(err, CAG_E_UNSUPPORTED, "export-not-exact", "", -1,
+  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_export_not_exact, "", -1,
                   "%s has no exact form as a NURBS (%s): give --tolerance 0.01 to have it "
                   "approximated within 0.01 mm, or say tolerance(.., 0.01) of the shape alone",
                   w->item->name, what);
@@ -34,7 +34,7 @@ static CagStatus fail_inexact(const CagBrepWork *w, const char *what, CagError *
 static CagStatus name_rough(const CagBrepWork *w, CagStatus status, const char *what,
                             CagError *err) {
   if (status != CAG_E_CONVERGENCE) return status;
-  return cag_fail(err, CAG_E_CONVERGENCE, "convergence", "", -1,
+  return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "", -1,
                   "%s (%s) has a place that is not smooth, so that no B-spline of a sensible size "
                   "comes within %g mm of it: give a larger --tolerance, cut the shape there, or "
                   "write .stl, .obj, .ply or .glb",
@@ -43,7 +43,7 @@ static CagStatus name_rough(const CagBrepWork *w, CagStatus status, const char *
 
 static CagStatus fail_weight(const CagBrepWork *w, double weight, CagError *err) {
   char text[32];
-  return cag_fail(err, CAG_E_UNSUPPORTED, "export-weight", "weights", -1,
+  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_export_weight, "weights", -1,
                   "%s has a control point of weight %s, and files of exact geometry take positive "
                   "weights only: raise the degree with elevate(..), or insert a knot, until all "
                   "are positive",

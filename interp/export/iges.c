@@ -420,7 +420,7 @@ static CagStatus write_sections(Writer *w, Sections *s, const char *script, CagA
            w->parameter_lines);
   cag_atomic_file_printf(file, "%-72sT%7d\n", counts, 1);
   if (w->undefined && whole)
-    return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
                     "a number in the file overflows or is undefined");
   return whole ? CAG_OK : cag_fail_memory(err);
 }

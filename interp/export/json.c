@@ -392,7 +392,7 @@ static CagStatus put_operands(Writer *w, const CagSolid *s, CagError *err) {
   CagStatus status = CAG_OK;
   const int room = 16; // what a solid without operands nests to
   if (w->depth + room > DEPTH_MAX)
-    return cag_fail(err, CAG_E_LIMIT, "depth-limit", "", -1,
+    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_depth, "", -1,
                     "set operations nest too deep for the file (more than %d); `tessellate` makes "
                     "one mesh of them",
                     DEPTH_MAX / 2);

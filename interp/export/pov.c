@@ -201,7 +201,7 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
 static CagStatus write_items(CagPovWriter *w, const bool *closed, CagError *err) {
   for (size_t i = 0; i < w->scene->item_count; i++) {
     if (w->scene->interrupt && *w->scene->interrupt)
-      return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "the export was stopped");
+      return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the export was stopped");
     if (cag_atomic_file_failed(w->file)) return CAG_OK; // its commit tells
     CagStatus status = write_item(w, i, closed[i], err);
     if (status) return status;
@@ -273,9 +273,10 @@ CagStatus cag_export_pov(const CagScene *scene, const CagPovOptions *options, Ca
                          CagError *err) {
   CagPovWriter w = {.scene = scene, .options = options, .file = file};
   if (scene->item_count == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "nothing-to-show", "", -1, "the script shows no shape");
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_nothing_to_show, "", -1,
+                    "the script shows no shape");
   if (options->camera >= scene->camera_count)
-    return cag_fail(err, CAG_E_ARGUMENT, "camera-unknown", "camera", (long)options->camera,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_camera_unknown, "camera", (long)options->camera,
                     "the scene has %zu cameras, there is none with the number %zu",
                     scene->camera_count, options->camera);
   w.camera = &scene->cameras[options->camera];

@@ -191,7 +191,7 @@ CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
   const CagBounds b = cag_mesh_bounds(m);
   const double reach = fmax(cag_norm(cag_sub(b.min, origin)), cag_norm(cag_sub(b.max, origin)));
   if (!(reach * powers_of_ten[decimals] < INTEGER_MAX))
-    return cag_fail(err, CAG_E_DEGENERATE, "mesh-empty", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_mesh_empty, "", -1,
                     "the mesh is too large for the renderer's numbers");
   CagMesh *facing = NULL;
   CagStatus status = pov_facing_mesh(w, m, &facing, err);

@@ -29,7 +29,7 @@ void pov_printf(CagPovWriter *w, const char *format, ...) {
 void pov_number(CagPovWriter *w, double x) {
   char text[32];
   if (!isfinite(x) && !w->failure.status)
-    cag_fail(&w->failure, CAG_E_DEGENERATE, "not-finite", "", -1,
+    cag_fail(&w->failure, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
              "%s has a number in the file that overflows or is undefined",
              w->item ? w->item->name : "the scene");
   pov_text(w, cag_number_text(x == 0 ? 0 : x, text)); // no -0

@@ -526,7 +526,7 @@ CagStatus cag_export_step(const CagBrep *brep, const char *script, CagAtomicFile
   cag_free(w.edge);
   cag_free(w.styled);
   if (w.undefined && !w.failed)
-    return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
                     "a number in the file overflows or is undefined");
   return w.failed ? cag_fail_memory(err) : CAG_OK;
 }

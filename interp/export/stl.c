@@ -104,7 +104,7 @@ CagStatus cag_export_stl(const CagMeshPart *parts, size_t n, const char *title, 
     shown += parts[i].mesh->triangle_count;
   }
   if (status == CAG_OK && triangles > UINT32_MAX)
-    status = cag_fail(err, CAG_E_LIMIT, "file-too-large", "", -1,
+    status = cag_fail(err, CAG_E_LIMIT, CAG_ERR_file_too_large, "", -1,
                       "an STL file holds at most %lu triangles, the scene has %zu: use a larger "
                       "tolerance",
                       (unsigned long)UINT32_MAX, triangles);

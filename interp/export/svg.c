@@ -410,7 +410,7 @@ static CagStatus measure(const CagScene *s, CagBounds *all, CagError *err) {
   }
   for (size_t i = 0; i < s->label_count; i++) cag_bounds_add(all, s->labels[i].at);
   if (found + s->label_count > 0) return CAG_OK;
-  return cag_fail(err, CAG_E_ARGUMENT, "svg-without-curves", "", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_svg_without_curves, "", -1,
                   "the scene has no curves, regions or labels, and an .svg shows nothing else");
 }
 
@@ -421,7 +421,7 @@ static CagStatus set_view(Picture *p, size_t camera, const CagBounds *all, CagEr
   p->affine = p->flat = all->max.z - all->min.z <= FLAT * p->size;
   if (p->flat) return CAG_OK;
   if (camera >= p->scene->camera_count)
-    return cag_fail(err, CAG_E_ARGUMENT, "camera-unknown", "camera", (long)camera,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_camera_unknown, "camera", (long)camera,
                     "the scene has %zu cameras, there is none with the number %zu",
                     p->scene->camera_count, camera);
   const CagCamera *c = p->camera = &p->scene->cameras[camera];
@@ -486,11 +486,11 @@ CagStatus cag_export_svg(const CagScene *scene, size_t camera, CagAtomicFile *fi
   bool whole = fclose(p.out) == 0;
   if (!status && !whole) status = cag_fail_memory(err);
   if (!status && !(p.box.min.x <= p.box.max.x))
-    status = cag_fail(err, CAG_E_DEGENERATE, "svg-nothing-visible", "camera", (long)camera,
+    status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_svg_nothing_visible, "camera", (long)camera,
                       "all curves lie behind the camera");
   if (!status) write_file(&p, file, paths, n);
   if (!status && p.undefined)
-    status = cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+    status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
                       "a number in the drawing overflows or is undefined");
   cag_free(paths);
   return status;

@@ -213,7 +213,7 @@ CagStatus cag_export_urdf(const CagUrdf *u, const char *folder, CagAtomicFile *f
   for (size_t i = 0; i < u->joint_count; i++) put_joint(u, f, &u->joints[i]);
   put(f, "</robot>\n");
   if (!writer.undefined) return CAG_OK;
-  return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
                   "a number in the description of the robot %s overflows or is undefined", u->name);
 }
 

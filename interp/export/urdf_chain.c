@@ -183,7 +183,7 @@ static bool mesh_of(Walk *w, CagScene *scene, const CagItem *item, CagMesh **out
   if (w->triangles <= w->how->max_triangles) return !w->call.vm->failed;
   cag_mesh_release(*out);
   *out = NULL;
-  cag_fail(&err, CAG_E_LIMIT, "triangle-limit", "", -1,
+  cag_fail(&err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "", -1,
            "the meshes have more than the %zu triangles allowed (--max-triangles)",
            w->how->max_triangles);
   return cag_geometry_ok(&w->call, CAG_E_LIMIT, &err);

@@ -25,14 +25,13 @@ enum { GLB_HEADER = 12, CHUNK_HEADER = 8 };
 // Component types of the specification.
 enum { BYTE = 5120, UBYTE, SHORT, USHORT, UINT = 5125, FLOAT };
 
-CagStatus cag_gltf_fail(const CagGltf *g, CagError *err, const char *reason, const char *format,
-                        ...) {
+CagStatus cag_gltf_fail(const CagGltf *g, CagError *err, CagErrorId id, const char *format, ...) {
   char message[250];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(message, sizeof message, format, arguments);
   va_end(arguments);
-  return cag_mesh_file_fail_byte(g->draft->file, err, reason, NULL, "%s", message);
+  return cag_mesh_file_fail_byte(g->draft->file, err, id, NULL, "%s", message);
 }
 
 bool cag_gltf_whole(const cJSON *object, const char *key, size_t fallback, size_t *out) {
@@ -72,8 +71,8 @@ static CagStatus parse_json(CagGltf *g, const char *text, size_t n, CagError *er
   size_t at = end && end > text ? (size_t)(end - text) : 0;
   bool ended = quoted || depth > 0;
   return cag_mesh_file_fail_line(g->draft->file, err,
-                                 ended ? "mesh-file-truncated" : "mesh-file-syntax", text + at,
-                                 "the JSON of the file cannot be read%s",
+                                 ended ? CAG_ERR_mesh_file_truncated : CAG_ERR_mesh_file_syntax,
+                                 text + at, "the JSON of the file cannot be read%s",
                                  ended ? ": it ends within; write or fetch the file again" : "");
 }
 
@@ -81,7 +80,7 @@ static CagStatus read_array(CagGltf *g, const char *key, CagGltfArray *out, CagE
   const cJSON *array = cJSON_GetObjectItemCaseSensitive(g->json, key), *item;
   if (!array) return CAG_OK;
   if (!cJSON_IsArray(array))
-    return cag_gltf_fail(g, err, "mesh-file-syntax", "`%s` is not an array", key);
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "`%s` is not an array", key);
   size_t n = 0;
   cJSON_ArrayForEach(item, array) n++;
   CagStatus status = cag_draft_take(g->draft, n + 1, sizeof *out->items, err);
@@ -90,7 +89,8 @@ static CagStatus read_array(CagGltf *g, const char *key, CagGltfArray *out, CagE
   if (!out->items) return cag_fail_memory(err);
   cJSON_ArrayForEach(item, array) {
     if (!cJSON_IsObject(item))
-      return cag_gltf_fail(g, err, "mesh-file-syntax", "%s[%zu] is not an object", key, out->count);
+      return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "%s[%zu] is not an object", key,
+                           out->count);
     out->items[out->count++] = item;
   }
   return CAG_OK;
@@ -105,13 +105,13 @@ static CagStatus find_chunks(CagGltf *g, const char **json, size_t *json_size,
   if (f->size < 4 || memcmp(f->bytes, "glTF", 4) != 0) return CAG_OK;
   *json = NULL;
   if (f->size < GLB_HEADER || cag_read_u32(f->bytes + 8) > f->size)
-    return cag_gltf_fail(g, err, "mesh-file-truncated",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
                          "it has %zu bytes of the %lu that it says; write or fetch it again",
                          f->size,
                          f->size < GLB_HEADER ? (unsigned long)GLB_HEADER
                                               : (unsigned long)cag_read_u32(f->bytes + 8));
   if (cag_read_u32(f->bytes + 4) != 2)
-    return cag_gltf_fail(g, err, "mesh-file-unsupported",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                          "it is GLB of version %lu; write it as glTF 2.0",
                          (unsigned long)cag_read_u32(f->bytes + 4));
   for (size_t at = GLB_HEADER; f->size - at >= CHUNK_HEADER;) {
@@ -119,7 +119,7 @@ static CagStatus find_chunks(CagGltf *g, const char **json, size_t *json_size,
     uint32_t kind = cag_read_u32(f->bytes + at + 4);
     at += CHUNK_HEADER;
     if (size > f->size - at)
-      return cag_mesh_file_fail_byte(f, err, "mesh-file-truncated", f->bytes + at,
+      return cag_mesh_file_fail_byte(f, err, CAG_ERR_mesh_file_truncated, f->bytes + at,
                                      "a chunk of %zu bytes, where %zu are left; write or fetch the "
                                      "file again",
                                      size, f->size - at);
@@ -128,7 +128,8 @@ static CagStatus find_chunks(CagGltf *g, const char **json, size_t *json_size,
       *binary = (CagGltfBuffer){(char *)f->bytes + at, size, false};
     at += size;
   }
-  return *json ? CAG_OK : cag_gltf_fail(g, err, "mesh-file-syntax", "it has no chunk of JSON");
+  return *json ? CAG_OK
+               : cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "it has no chunk of JSON");
 }
 
 // --- Buffers ---
@@ -153,7 +154,8 @@ static CagStatus decode_base64(CagGltf *g, const char *text, CagGltfBuffer *b, C
   for (size_t i = 0; i < n && text[i] != '='; i++) {
     int digit = base64_digit(text[i]);
     if (digit < 0)
-      return cag_gltf_fail(g, err, "mesh-file-syntax", "a buffer's base64 has the character 0x%02x",
+      return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
+                           "a buffer's base64 has the character 0x%02x",
                            (unsigned)(unsigned char)text[i]);
     bits = bits << 6 | (uint32_t)digit;
     have += 6;
@@ -188,12 +190,13 @@ static CagStatus open_buffer(CagGltf *g, const char *uri, CagGltfBuffer *b, CagE
   if (strncasecmp(uri, "data:", 5) == 0) {
     const char *comma = strchr(uri, ',');
     if (!comma || comma - uri < 7 || strncasecmp(comma - 7, ";base64", 7) != 0)
-      return cag_gltf_fail(g, err, "mesh-file-unsupported", "a buffer in the file is not base64");
+      return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
+                           "a buffer in the file is not base64");
     return decode_base64(g, comma + 1, b, err);
   }
   const CagMeshFile *f = g->draft->file;
   if (strstr(uri, "://") || !f->open)
-    return cag_gltf_fail(g, err, "mesh-file-unsupported",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                          "a buffer lies at %.100s; put it into a file beside this one", uri);
   char *path = decode_path(uri);
   if (!path) return cag_fail_memory(err);
@@ -219,9 +222,9 @@ static CagStatus read_buffers(CagGltf *g, const CagGltfBuffer *binary, CagError 
     else if (i == 0) *b = *binary;
     if (status != CAG_OK) break;
     if (!cag_gltf_whole(list.items[i], "byteLength", 0, &size))
-      status = cag_gltf_fail(g, err, "mesh-file-syntax", "buffers[%zu] has no byteLength", i);
+      status = cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "buffers[%zu] has no byteLength", i);
     else if (size > b->size)
-      status = cag_gltf_fail(g, err, "mesh-file-truncated",
+      status = cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
                              "buffers[%zu] says that it has %zu bytes, and has %zu; write or fetch "
                              "it again",
                              i, size, b->size);
@@ -243,7 +246,7 @@ static CagStatus check_extensions(CagGltf *g, CagError *err) {
     for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++)
       known |= name && strncmp(name, harmless[i], strlen(harmless[i])) == 0;
     if (known) continue;
-    return cag_gltf_fail(g, err, "mesh-file-unsupported",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                          "it requires the extension %.80s; write it without",
                          name ? name : "that is not text");
   }
@@ -261,9 +264,10 @@ CagStatus cag_gltf_open(CagGltf *g, CagMeshDraft *d, CagError *err) {
   const cJSON *asset = cJSON_GetObjectItemCaseSensitive(g->json, "asset");
   const cJSON *version = cJSON_GetObjectItemCaseSensitive(asset, "version");
   if (!cJSON_IsString(version))
-    return cag_gltf_fail(g, err, "mesh-file-syntax", "it is JSON, but no glTF: it has no asset");
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
+                         "it is JSON, but no glTF: it has no asset");
   if (version->valuestring[0] != '2')
-    return cag_gltf_fail(g, err, "mesh-file-unsupported",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                          "it is glTF of version %.20s; write it as glTF 2.0", version->valuestring);
   status = check_extensions(g, err);
   if (status == CAG_OK) status = read_array(g, "nodes", &g->nodes, err);
@@ -305,35 +309,36 @@ static CagStatus look_into_view(const CagGltf *g, const cJSON *said, size_t acce
   size_t view, offset, at, length, buffer;
   if (!cag_gltf_whole(said, "bufferView", SIZE_MAX, &view) ||
       !cag_gltf_whole(said, "byteOffset", 0, &offset))
-    return cag_gltf_fail(g, err, "mesh-file-syntax", "accessors[%zu] has no whole numbers",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "accessors[%zu] has no whole numbers",
                          accessor);
   if (view >= g->views.count)
-    return cag_gltf_fail(g, err, "mesh-file-index", "accessors[%zu] names a view that is not there",
-                         accessor);
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
+                         "accessors[%zu] names a view that is not there", accessor);
   const cJSON *v = g->views.items[view];
   if (!cag_gltf_whole(v, "buffer", SIZE_MAX, &buffer) || !cag_gltf_whole(v, "byteOffset", 0, &at) ||
       !cag_gltf_whole(v, "byteLength", 0, &length) || !cag_gltf_whole(v, "byteStride", 0, stride))
-    return cag_gltf_fail(g, err, "mesh-file-syntax", "bufferViews[%zu] has no whole numbers", view);
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "bufferViews[%zu] has no whole numbers",
+                         view);
   if (buffer >= g->buffer_count)
-    return cag_gltf_fail(g, err, "mesh-file-index",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
                          "bufferViews[%zu] names a buffer that is not there", view);
   const CagGltfBuffer *b = &g->buffers[buffer];
   if (at > b->size || length > b->size - at)
-    return cag_gltf_fail(g, err, "mesh-file-truncated",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
                          "bufferViews[%zu] reaches to byte %zu of a buffer of %zu; write the file "
                          "again",
                          view, at + length, b->size);
   if (*stride == 0) *stride = size;
   if (*stride < size) // elements that overlap
     return cag_gltf_fail(
-        g, err, "mesh-file-syntax",
+        g, err, CAG_ERR_mesh_file_syntax,
         "bufferViews[%zu] has a stride of %zu bytes, less than its elements of %zu", view, *stride,
         size);
   bool fits =
       offset <= length &&
       (count == 0 || (length - offset >= size && (length - offset - size) / *stride >= count - 1));
   if (!fits)
-    return cag_gltf_fail(g, err, "mesh-file-truncated",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
                          "accessors[%zu] has %zu elements, more than its view of %zu bytes holds; "
                          "write the file again",
                          accessor, count, length);
@@ -348,10 +353,10 @@ static CagStatus read_sparse(const CagGltf *g, const cJSON *sparse, size_t numbe
   size_t component, size, stride;
   if (!cag_gltf_whole(sparse, "count", 0, &a->sparse_count) ||
       !cag_gltf_whole(indices, "componentType", 0, &component))
-    return cag_gltf_fail(g, err, "mesh-file-syntax", "accessors[%zu].sparse has no whole numbers",
-                         number);
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
+                         "accessors[%zu].sparse has no whole numbers", number);
   if (component != UBYTE && component != USHORT && component != UINT)
-    return cag_gltf_fail(g, err, "mesh-file-syntax",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
                          "accessors[%zu].sparse has indices of the type %zu", number, component);
   a->sparse_component = (int)component;
   size = component_size(a->sparse_component);
@@ -363,7 +368,7 @@ static CagStatus read_sparse(const CagGltf *g, const cJSON *sparse, size_t numbe
                             &stride, err);
   for (size_t i = 0; status == CAG_OK && i < a->sparse_count; i++)
     if (cag_gltf_index(a->sparse_index, a->sparse_component, i) >= a->count)
-      status = cag_gltf_fail(g, err, "mesh-file-index",
+      status = cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
                              "accessors[%zu].sparse names an element that is not there", number);
   return status;
 }
@@ -373,7 +378,7 @@ CagStatus cag_gltf_accessor(const CagGltf *g, size_t number, int width, CagGltfA
   static const char *const types[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
   *out = (CagGltfAccessor){.width = width};
   if (number >= g->accessors.count)
-    return cag_gltf_fail(g, err, "mesh-file-index",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
                          "a primitive names an accessor that is not there");
   const cJSON *a = g->accessors.items[number];
   const cJSON *type = cJSON_GetObjectItemCaseSensitive(a, "type");
@@ -381,10 +386,10 @@ CagStatus cag_gltf_accessor(const CagGltf *g, size_t number, int width, CagGltfA
   if (!cag_gltf_whole(a, "count", 0, &out->count) ||
       !cag_gltf_whole(a, "componentType", 0, &component) || component > FLOAT ||
       component_size((int)component) == 0)
-    return cag_gltf_fail(g, err, "mesh-file-syntax",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
                          "accessors[%zu] has no count, or a component type that is none", number);
   if (!cJSON_IsString(type) || strcmp(type->valuestring, types[width]) != 0)
-    return cag_gltf_fail(g, err, "mesh-file-syntax", "accessors[%zu] must be of the type %s",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "accessors[%zu] must be of the type %s",
                          number, types[width]);
   out->component = (int)component;
   out->normalized = cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(a, "normalized"));

@@ -53,7 +53,7 @@ double cag_gltf_sparse_number(const CagGltfAccessor *a, size_t i, int k);
 // A whole number of 0 or more under a key: `fallback` where it is missing. False: it is another
 // value.
 bool cag_gltf_whole(const cJSON *object, const char *key, size_t fallback, size_t *out);
-CagStatus cag_gltf_fail(const CagGltf *g, CagError *err, const char *reason, const char *format,
-                        ...) __attribute__((format(printf, 4, 5)));
+CagStatus cag_gltf_fail(const CagGltf *g, CagError *err, CagErrorId id, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 #endif

@@ -105,21 +105,22 @@ static CagStatus push(Walk *w, const cJSON *node, size_t mesh, const CagTransfor
 static CagStatus push_node(Walk *w, const cJSON *number, const CagTransform *above, CagError *err) {
   double k = cJSON_IsNumber(number) ? number->valuedouble : -1;
   if (!(k >= 0 && k < (double)w->g->nodes.count) || k != floor(k))
-    return cag_gltf_fail(w->g, err, "mesh-file-index", "the scene names node %g, of %zu nodes", k,
-                         w->g->nodes.count);
+    return cag_gltf_fail(w->g, err, CAG_ERR_mesh_file_index,
+                         "the scene names node %g, of %zu nodes", k, w->g->nodes.count);
   size_t i = (size_t)k, mesh;
   if (w->seen[i])
-    return cag_gltf_fail(w->g, err, "mesh-file-syntax", "nodes[%zu] stands twice in the scene", i);
+    return cag_gltf_fail(w->g, err, CAG_ERR_mesh_file_syntax,
+                         "nodes[%zu] stands twice in the scene", i);
   w->seen[i] = true;
   const cJSON *node = w->g->nodes.items[i];
   CagTransform own;
   if (!read_place(node, &own))
-    return cag_gltf_fail(w->g, err, "mesh-file-syntax",
+    return cag_gltf_fail(w->g, err, CAG_ERR_mesh_file_syntax,
                          "nodes[%zu] has a matrix, translation, rotation or scale that is none", i);
   if (!cag_gltf_whole(node, "mesh", SIZE_MAX, &mesh) ||
       (mesh != SIZE_MAX && mesh >= w->g->meshes.count))
-    return cag_gltf_fail(w->g, err, "mesh-file-index", "nodes[%zu] names a mesh that is not there",
-                         i);
+    return cag_gltf_fail(w->g, err, CAG_ERR_mesh_file_index,
+                         "nodes[%zu] names a mesh that is not there", i);
   CagTransform place = cag_transform_multiply(above, &own);
   return push(w, node, mesh, &place, err);
 }
@@ -134,7 +135,7 @@ static CagStatus push_roots(Walk *w, CagError *err) {
   const cJSON *scenes = cJSON_GetObjectItemCaseSensitive(g->json, "scenes"), *item;
   if (!cag_gltf_whole(g->json, "scene", 0, &which)) which = SIZE_MAX;
   if (scenes && which >= (size_t)cJSON_GetArraySize(scenes))
-    return cag_gltf_fail(g, err, "mesh-file-index", "it names a scene that is not there");
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_index, "it names a scene that is not there");
   if (scenes) {
     const cJSON *scene = cJSON_GetArrayItem(scenes, (int)which);
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(scene, "nodes")) {
@@ -201,7 +202,7 @@ static CagStatus read_attributes(const CagGltf *g, const cJSON *p, Primitive *ou
   if (!cag_gltf_whole(attributes, "POSITION", SIZE_MAX, &position) ||
       !cag_gltf_whole(attributes, "NORMAL", SIZE_MAX, &normal) ||
       !cag_gltf_whole(attributes, "TEXCOORD_0", SIZE_MAX, &uv))
-    return cag_gltf_fail(g, err, "mesh-file-syntax",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
                          "an attribute is not the number of an accessor");
   if (position == SIZE_MAX) return CAG_OK; // nothing to see
   CagStatus status = cag_gltf_accessor(g, position, 3, &out->positions, err);
@@ -212,7 +213,7 @@ static CagStatus read_attributes(const CagGltf *g, const cJSON *p, Primitive *ou
   if (status != CAG_OK) return status;
   size_t n = out->positions.count;
   if ((out->has_normals && out->normals.count != n) || (out->has_uv && out->uv.count != n))
-    return cag_gltf_fail(g, err, "mesh-file-syntax",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
                          "accessors[%zu] has %zu points, and those that go with it have another "
                          "count",
                          position, n);
@@ -225,11 +226,11 @@ static CagStatus read_primitive(const CagGltf *g, const cJSON *p, Primitive *out
   *out = (Primitive){0};
   const cJSON *extensions = cJSON_GetObjectItemCaseSensitive(p, "extensions");
   if (cJSON_GetObjectItemCaseSensitive(extensions, "KHR_draco_mesh_compression"))
-    return cag_gltf_fail(g, err, "mesh-file-unsupported",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                          "it is compressed (KHR_draco_mesh_compression); write it without");
   if (!cag_gltf_whole(p, "mode", TRIANGLES, &out->mode) || out->mode > FAN ||
       !cag_gltf_whole(p, "indices", SIZE_MAX, &indices))
-    return cag_gltf_fail(g, err, "mesh-file-syntax",
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax,
                          "a primitive has a mode or indices that are none");
   if (out->mode < TRIANGLES) return CAG_OK;
   CagStatus status = read_attributes(g, p, out, err);
@@ -239,9 +240,10 @@ static CagStatus read_primitive(const CagGltf *g, const cJSON *p, Primitive *out
     status = cag_gltf_accessor(g, indices, 1, &out->indices, err);
     int type = out->indices.component;
     if (status == CAG_OK && (type != UBYTE_TYPE && type != USHORT_TYPE && type != UINT_TYPE))
-      status = cag_gltf_fail(g, err, "mesh-file-syntax", "accessors[%zu] has no indices", indices);
+      status =
+          cag_gltf_fail(g, err, CAG_ERR_mesh_file_syntax, "accessors[%zu] has no indices", indices);
     if (status == CAG_OK && (!out->indices.data || out->indices.sparse_count > 0))
-      status = cag_gltf_fail(g, err, "mesh-file-unsupported",
+      status = cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                              "accessors[%zu] has sparse indices; write them in full", indices);
     out->has_indices = true;
     out->corners = out->indices.count;
@@ -262,7 +264,7 @@ static CagStatus count_mesh(CagGltf *g, size_t mesh, const CagTransform *place, 
     if (p.triangles == 0) continue;
     // Data without a view are zeros that the file's size does not bound.
     if (p.positions.count > UINT32_MAX || t->vertices > UINT32_MAX)
-      return cag_gltf_fail(g, err, "mesh-file-unsupported",
+      return cag_gltf_fail(g, err, CAG_ERR_mesh_file_unsupported,
                            "it has more than %lu vertices; divide it", (unsigned long)UINT32_MAX);
     t->vertices += p.positions.count;
     t->triangles += p.triangles;
@@ -315,7 +317,7 @@ static CagStatus fill_vertices(CagGltf *g, const Primitive *p, const CagTransfor
   for (size_t i = first; i < first + p->positions.count; i++) {
     CagVec3 at = cag_transform_point(place, d->positions[i]);
     if (!isfinite(at.x) || !isfinite(at.y) || !isfinite(at.z))
-      return cag_gltf_fail(g, err, "mesh-file-number",
+      return cag_gltf_fail(g, err, CAG_ERR_mesh_file_number,
                            "element %zu of an accessor of positions is not finite", i - first);
     d->positions[i] = at;
     if (p->has_normals) d->normals[i] = place_normal(place, d->normals[i]);
@@ -339,7 +341,7 @@ static CagStatus fill_triangles(CagGltf *g, const Primitive *p, bool mirrored, s
     for (int j = 0; j < 3; j++) {
       k[j] = corner(p, k[j]);
       if (k[j] >= p->positions.count)
-        return cag_gltf_fail(g, err, "mesh-file-index",
+        return cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
                              "triangle %zu of a mesh names vertex %zu, of %zu vertices", t, k[j],
                              p->positions.count);
     }

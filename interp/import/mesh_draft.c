@@ -18,14 +18,14 @@
 
 // --- Errors ---
 
-static CagStatus fail_with(const CagMeshFile *f, CagError *err, const char *reason,
-                           const char *place, const char *format, va_list arguments) {
+static CagStatus fail_with(const CagMeshFile *f, CagError *err, CagErrorId id, const char *place,
+                           const char *format, va_list arguments) {
   char message[280];
   vsnprintf(message, sizeof message, format, arguments);
-  return cag_fail(err, CAG_E_ARGUMENT, reason, "path", -1, "%.80s%s: %s", f->name, place, message);
+  return cag_fail(err, CAG_E_ARGUMENT, id, "path", -1, "%.80s%s: %s", f->name, place, message);
 }
 
-CagStatus cag_mesh_file_fail_line(const CagMeshFile *f, CagError *err, const char *reason,
+CagStatus cag_mesh_file_fail_line(const CagMeshFile *f, CagError *err, CagErrorId id,
                                   const char *at, const char *format, ...) {
   char place[40] = "";
   size_t line = 1;
@@ -33,25 +33,25 @@ CagStatus cag_mesh_file_fail_line(const CagMeshFile *f, CagError *err, const cha
   if (at) snprintf(place, sizeof place, ", line %zu", line);
   va_list arguments;
   va_start(arguments, format);
-  CagStatus status = fail_with(f, err, reason, place, format, arguments);
+  CagStatus status = fail_with(f, err, id, place, format, arguments);
   va_end(arguments);
   return status;
 }
 
-CagStatus cag_mesh_file_fail_byte(const CagMeshFile *f, CagError *err, const char *reason,
+CagStatus cag_mesh_file_fail_byte(const CagMeshFile *f, CagError *err, CagErrorId id,
                                   const char *at, const char *format, ...) {
   char place[40] = "";
   if (at) snprintf(place, sizeof place, ", byte %zu", (size_t)(at - f->bytes));
   va_list arguments;
   va_start(arguments, format);
-  CagStatus status = fail_with(f, err, reason, place, format, arguments);
+  CagStatus status = fail_with(f, err, id, place, format, arguments);
   va_end(arguments);
   return status;
 }
 
 CagStatus cag_draft_check(const CagMeshDraft *d, CagError *err) {
   if (!d->file->interrupt || !*d->file->interrupt) return CAG_OK;
-  return cag_fail(err, CAG_E_CALLBACK, "interrupted", "", -1, "reading was interrupted");
+  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "reading was interrupted");
 }
 
 // --- Growing ---
@@ -82,7 +82,7 @@ static bool grow(void **items, size_t before, size_t n, size_t size) {
 
 CagStatus cag_draft_vertices(CagMeshDraft *d, size_t n, bool normals, bool uv, CagError *err) {
   if (n >= NO_VERTEX)
-    return cag_fail(err, CAG_E_ARGUMENT, "mesh-too-large", "path", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_mesh_too_large, "path", -1,
                     "%.80s: a mesh holds at most %lu vertices, the file has %zu", d->file->name,
                     (unsigned long)NO_VERTEX - 1, n);
   size_t room = n > d->vertex_room ? n : d->vertex_room;
@@ -103,7 +103,7 @@ CagStatus cag_draft_vertices(CagMeshDraft *d, size_t n, bool normals, bool uv, C
 CagStatus cag_draft_triangles(CagMeshDraft *d, size_t n, CagError *err) {
   size_t most = d->file->max_triangles ? d->file->max_triangles : SIZE_MAX / 64;
   if (n > most || d->triangle_count > most - n)
-    return cag_fail(err, CAG_E_LIMIT, "triangle-limit", "path", -1,
+    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "path", -1,
                     "%.80s has more than the %zu triangles allowed (--max-triangles)",
                     d->file->name, most);
   size_t wanted = d->triangle_count + n;
@@ -132,7 +132,7 @@ CagStatus cag_draft_polygon(CagMeshDraft *d, const uint32_t *corners, size_t n, 
   CagTangle tangle = cag_tangle_of(d->positions, corners, n);
   if (tangle == CAG_TANGLE_MEMORY) return cag_fail_memory(err);
   if (tangle == CAG_TANGLE_UNKNOWN)
-    return cag_mesh_file_fail_byte(d->file, err, "mesh-file-unsupported", NULL,
+    return cag_mesh_file_fail_byte(d->file, err, CAG_ERR_mesh_file_unsupported, NULL,
                                    "a face of %zu corners is too intricate; write it as triangles",
                                    n);
   CagError poor;
@@ -260,7 +260,7 @@ static void drop_unnamed(CagMeshDraft *d, const uint32_t *first, uint32_t *numbe
 }
 
 static CagStatus fail_empty(const CagMeshDraft *d, CagError *err) {
-  return cag_mesh_file_fail_byte(d->file, err, "mesh-file-empty", NULL,
+  return cag_mesh_file_fail_byte(d->file, err, CAG_ERR_mesh_file_empty, NULL,
                                  d->vertex_count > 0
                                      ? "it has %zu vertices and no triangle with an area; write it "
                                        "with faces"

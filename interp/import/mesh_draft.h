@@ -43,10 +43,10 @@ CagStatus cag_draft_finish(CagMeshDraft *d, CagMesh **out, CagError *err);
 
 // "part.stl, line 12: ..." for a place in the text of the file; "part.stl, byte 84: ..." for one in
 // a binary file; NULL: "part.stl: ...".
-CagStatus cag_mesh_file_fail_line(const CagMeshFile *f, CagError *err, const char *reason,
+CagStatus cag_mesh_file_fail_line(const CagMeshFile *f, CagError *err, CagErrorId id,
                                   const char *at, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
-CagStatus cag_mesh_file_fail_byte(const CagMeshFile *f, CagError *err, const char *reason,
+CagStatus cag_mesh_file_fail_byte(const CagMeshFile *f, CagError *err, CagErrorId id,
                                   const char *at, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 

@@ -53,7 +53,7 @@ static void count(Obj *o) {
 static CagStatus make_room(Obj *o, CagError *err) {
   const Counts *n = &o->all;
   if (n->points >= UINT32_MAX || n->parameters >= UINT32_MAX || n->normals >= UINT32_MAX)
-    return cag_mesh_file_fail_line(o->draft->file, err, "mesh-file-unsupported", NULL,
+    return cag_mesh_file_fail_line(o->draft->file, err, CAG_ERR_mesh_file_unsupported, NULL,
                                    "it has more than 4294967294 vertices; divide it");
   CagStatus status = cag_draft_take(o->draft, n->points + n->normals, sizeof(CagVec3), err);
   if (status == CAG_OK) status = cag_draft_take(o->draft, n->parameters, 2 * sizeof(double), err);
@@ -72,10 +72,10 @@ static CagStatus read_numbers(Obj *o, double *x, int least, int most, CagError *
   for (int k = 0; k < most; k++) {
     if (k >= least && cag_scan_at_line_end(&o->scan)) return CAG_OK;
     if (!cag_scan_number(&o->scan, &x[k]))
-      return cag_mesh_file_fail_line(o->draft->file, err, "mesh-file-syntax", o->scan.at,
+      return cag_mesh_file_fail_line(o->draft->file, err, CAG_ERR_mesh_file_syntax, o->scan.at,
                                      "expected at least %d numbers in the line", least);
     if (!isfinite(x[k]))
-      return cag_mesh_file_fail_line(o->draft->file, err, "mesh-file-number", o->scan.at,
+      return cag_mesh_file_fail_line(o->draft->file, err, CAG_ERR_mesh_file_number, o->scan.at,
                                      "a coordinate is too large");
   }
   return CAG_OK;
@@ -108,11 +108,11 @@ static CagStatus read_index(Obj *o, size_t count, size_t read, const char *noun,
                             CagError *err) {
   int64_t k = 0;
   if (!cag_scan_integer(&o->scan, &k))
-    return cag_mesh_file_fail_line(o->draft->file, err, "mesh-file-syntax", o->scan.at,
+    return cag_mesh_file_fail_line(o->draft->file, err, CAG_ERR_mesh_file_syntax, o->scan.at,
                                    "expected the number of a %s in the face", noun);
   int64_t number = k < 0 ? (int64_t)read + 1 + k : k;
   if (number < 1 || (uint64_t)number > count)
-    return cag_mesh_file_fail_line(o->draft->file, err, "mesh-file-index", o->scan.at,
+    return cag_mesh_file_fail_line(o->draft->file, err, CAG_ERR_mesh_file_index, o->scan.at,
                                    "a face names %s %lld; the file has %zu, and %zu before this "
                                    "line",
                                    noun, (long long)k, count, read);

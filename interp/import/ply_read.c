@@ -74,9 +74,9 @@ static Role find_role(ElementKind kind, const char *word, size_t n) {
   return (kind == FACES || kind == STRIPS) && corners ? CORNERS : OTHER;
 }
 
-static CagStatus fail_line(const Ply *p, const char *reason, const char *what, const char *word,
+static CagStatus fail_line(const Ply *p, CagErrorId id, const char *what, const char *word,
                            size_t n, CagError *err) {
-  return cag_mesh_file_fail_line(p->draft->file, err, reason, p->scan.at, "%s, found `%.*s`", what,
+  return cag_mesh_file_fail_line(p->draft->file, err, id, p->scan.at, "%s, found `%.*s`", what,
                                  n < 40 ? (int)n : 40, word);
 }
 
@@ -85,10 +85,10 @@ static CagStatus read_element(Ply *p, CagError *err) {
   int64_t count;
   size_t n = cag_scan_word(&p->scan, &word);
   if (!cag_scan_integer(&p->scan, &count) || count < 0)
-    return fail_line(p, "mesh-file-syntax", "expected a count after the element's name", word, n,
-                     err);
+    return fail_line(p, CAG_ERR_mesh_file_syntax, "expected a count after the element's name", word,
+                     n, err);
   if (p->element_count == ELEMENTS_MAX)
-    return fail_line(p, "mesh-file-syntax", "expected at most 64 elements", word, n, err);
+    return fail_line(p, CAG_ERR_mesh_file_syntax, "expected at most 64 elements", word, n, err);
   ElementKind kind = cag_scan_is(word, n, "vertex")      ? VERTICES
                      : cag_scan_is(word, n, "face")      ? FACES
                      : cag_scan_is(word, n, "tristrips") ? STRIPS
@@ -106,15 +106,17 @@ static CagStatus read_property(Ply *p, CagError *err) {
     n = cag_scan_word(&p->scan, &word);
     property.count_type = find_type(word, n);
     if (property.count_type == NO_TYPE || property.count_type >= F32)
-      return fail_line(p, "mesh-file-syntax", "expected the type of a list's count", word, n, err);
+      return fail_line(p, CAG_ERR_mesh_file_syntax, "expected the type of a list's count", word, n,
+                       err);
     n = cag_scan_word(&p->scan, &word);
   }
   property.type = find_type(word, n);
   if (property.type == NO_TYPE)
-    return fail_line(p, "mesh-file-syntax", "expected a type such as float or uchar", word, n, err);
+    return fail_line(p, CAG_ERR_mesh_file_syntax, "expected a type such as float or uchar", word, n,
+                     err);
   n = cag_scan_word(&p->scan, &word);
   if (p->element_count == 0 || n == 0 || p->property_count == PROPERTIES_MAX)
-    return fail_line(p, "mesh-file-syntax",
+    return fail_line(p, CAG_ERR_mesh_file_syntax,
                      "expected a property with a name, of an element, and at most 256", word, n,
                      err);
   Element *e = &p->elements[p->element_count - 1];
@@ -135,7 +137,7 @@ static CagStatus read_format(Ply *p, CagError *err) {
     p->format = (Format)k;
     return CAG_OK;
   }
-  return fail_line(p, "mesh-file-syntax",
+  return fail_line(p, CAG_ERR_mesh_file_syntax,
                    "expected ascii, binary_little_endian or binary_big_endian", word, n, err);
 }
 
@@ -148,7 +150,7 @@ static CagStatus read_header(Ply *p, CagError *err) {
     CagStatus status = CAG_OK;
     if (cag_scan_is(word, n, "end_header")) {
       if (!formatted)
-        return fail_line(p, "mesh-file-syntax", "expected a format before", word, n, err);
+        return fail_line(p, CAG_ERR_mesh_file_syntax, "expected a format before", word, n, err);
       cag_scan_next_line(&p->scan);
       return CAG_OK;
     }
@@ -156,12 +158,12 @@ static CagStatus read_header(Ply *p, CagError *err) {
     else if (cag_scan_is(word, n, "element")) status = read_element(p, err);
     else if (cag_scan_is(word, n, "property")) status = read_property(p, err);
     else if (!cag_scan_is(word, n, "comment") && !cag_scan_is(word, n, "obj_info"))
-      return fail_line(p, "mesh-file-syntax", "expected element, property or end_header", word, n,
-                       err);
+      return fail_line(p, CAG_ERR_mesh_file_syntax, "expected element, property or end_header",
+                       word, n, err);
     if (status != CAG_OK) return status;
     cag_scan_next_line(&p->scan);
   }
-  return cag_mesh_file_fail_line(p->draft->file, err, "mesh-file-truncated", p->scan.at,
+  return cag_mesh_file_fail_line(p->draft->file, err, CAG_ERR_mesh_file_truncated, p->scan.at,
                                  "the header has no end_header; write or fetch the file again");
 }
 
@@ -211,18 +213,17 @@ static bool next_number(Ply *p, NumberType type, double *x) {
   return true;
 }
 
-static CagStatus fail_data(const Ply *p, const char *reason, const char *what, size_t i,
-                           CagError *err) {
+static CagStatus fail_data(const Ply *p, CagErrorId id, const char *what, size_t i, CagError *err) {
   const CagMeshFile *f = p->draft->file;
-  return p->format == TEXT ? cag_mesh_file_fail_line(f, err, reason, p->scan.at, "%s %zu", what, i)
-                           : cag_mesh_file_fail_byte(f, err, reason, p->scan.at, "%s %zu", what, i);
+  return p->format == TEXT ? cag_mesh_file_fail_line(f, err, id, p->scan.at, "%s %zu", what, i)
+                           : cag_mesh_file_fail_byte(f, err, id, p->scan.at, "%s %zu", what, i);
 }
 
 static CagStatus fail_number(Ply *p, size_t i, CagError *err) {
   bool ended = p->format != TEXT || !cag_scan_to_word(&p->scan);
-  return ended ? fail_data(p, "mesh-file-truncated",
+  return ended ? fail_data(p, CAG_ERR_mesh_file_truncated,
                            "write or fetch the file again: it ends within its element", i, err)
-               : fail_data(p, "mesh-file-syntax", "expected a number in the element", i, err);
+               : fail_data(p, CAG_ERR_mesh_file_syntax, "expected a number in the element", i, err);
 }
 
 // --- Elements ---
@@ -234,10 +235,10 @@ static CagStatus read_count(Ply *p, const Property *q, size_t i, size_t *count, 
   size_t each = p->format == TEXT ? 2 : type_size[q->type];
   size_t rest = (size_t)(p->scan.end - p->scan.at) + 1;
   if (!(x >= 0) || x != floor(x))
-    return fail_data(p, "mesh-file-syntax", "the count of a list is not a whole number in element",
-                     i, err);
+    return fail_data(p, CAG_ERR_mesh_file_syntax,
+                     "the count of a list is not a whole number in element", i, err);
   if (x > (double)(rest / each))
-    return fail_data(p, "mesh-file-truncated",
+    return fail_data(p, CAG_ERR_mesh_file_truncated,
                      "write or fetch the file again: a list is longer than the rest in element", i,
                      err);
   *count = (size_t)x;
@@ -267,7 +268,7 @@ static CagStatus read_vertex(Ply *p, const Element *e, size_t i, CagError *err) 
     if (q->role < VERTEX_ROLES) value[q->role] = x;
   }
   if (!isfinite(value[X]) || !isfinite(value[Y]) || !isfinite(value[Z]))
-    return fail_data(p, "mesh-file-number", "a coordinate is not finite in vertex", i, err);
+    return fail_data(p, CAG_ERR_mesh_file_number, "a coordinate is not finite in vertex", i, err);
   d->positions[i] = cag_vec3(value[X], value[Y], value[Z]);
   if (d->normals) d->normals[i] = cag_vec3(value[NX], value[NY], value[NZ]);
   for (int k = 0; d->uv && k < 2; k++)
@@ -310,7 +311,7 @@ static CagStatus read_corners(Ply *p, const Element *e, const Property *q, size_
     bool restart = e->kind == STRIPS && x == -1;
     if (!restart && (!(x >= 0 && x < (double)d->vertex_count) || x != floor(x)))
       return cag_mesh_file_fail_line(
-          d->file, err, "mesh-file-index", p->format == TEXT ? p->scan.at : NULL,
+          d->file, err, CAG_ERR_mesh_file_index, p->format == TEXT ? p->scan.at : NULL,
           "face %zu names vertex %.9g; there are %zu vertices, numbered from 0", i, x,
           d->vertex_count);
     p->corners[k] = restart ? UINT32_MAX : (uint32_t)x;
@@ -348,10 +349,10 @@ static CagStatus begin_vertices(Ply *p, const Element *e, CagError *err) {
   for (size_t k = 0; k < e->property_count; k++)
     has[p->properties[e->first_property + k].role] = true;
   if (!has[X] || !has[Y] || !has[Z])
-    return cag_mesh_file_fail_line(p->draft->file, err, "mesh-file-syntax", NULL,
+    return cag_mesh_file_fail_line(p->draft->file, err, CAG_ERR_mesh_file_syntax, NULL,
                                    "its vertices lack x, y or z");
   if (p->draft->vertex_count > 0)
-    return cag_mesh_file_fail_line(p->draft->file, err, "mesh-file-syntax", NULL,
+    return cag_mesh_file_fail_line(p->draft->file, err, CAG_ERR_mesh_file_syntax, NULL,
                                    "it has two lists of vertices");
   CagStatus status =
       cag_draft_vertices(p->draft, e->count, has[NX] && has[NY] && has[NZ], has[U] && has[V], err);
@@ -363,7 +364,7 @@ static CagStatus read_elements(Ply *p, const Element *e, CagError *err) {
   size_t least = least_size(p, e), rest = (size_t)(p->scan.end - p->scan.at) + 1;
   if (least == 0 || e->count == 0) return CAG_OK;
   if (e->count > rest / least)
-    return cag_mesh_file_fail_line(p->draft->file, err, "mesh-file-truncated", NULL,
+    return cag_mesh_file_fail_line(p->draft->file, err, CAG_ERR_mesh_file_truncated, NULL,
                                    "its header says that it has %zu elements of at least %zu "
                                    "bytes, and %zu bytes are left for them; write or fetch the "
                                    "file again",

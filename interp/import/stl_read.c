@@ -43,7 +43,7 @@ static CagStatus read_corner(CagMeshDraft *d, const char *at, size_t triangle, C
     memcpy(&x[k], &bits, sizeof bits);
   }
   if (!isfinite(x[0]) || !isfinite(x[1]) || !isfinite(x[2]))
-    return cag_mesh_file_fail_byte(d->file, err, "mesh-file-number", at,
+    return cag_mesh_file_fail_byte(d->file, err, CAG_ERR_mesh_file_number, at,
                                    "triangle %zu has a corner at [%g, %g, %g]", triangle,
                                    (double)x[0], (double)x[1], (double)x[2]);
   d->positions[d->vertex_count++] = cag_vec3(x[0], x[1], x[2]);
@@ -53,13 +53,13 @@ static CagStatus read_corner(CagMeshDraft *d, const char *at, size_t triangle, C
 static CagStatus read_binary(CagMeshDraft *d, CagError *err) {
   const CagMeshFile *f = d->file;
   if (f->size < HEADER + 4)
-    return cag_mesh_file_fail_byte(f, err, "mesh-file-truncated", NULL,
+    return cag_mesh_file_fail_byte(f, err, CAG_ERR_mesh_file_truncated, NULL,
                                    "its %zu bytes are too few for an STL file, which has 84 before "
                                    "its triangles; write or fetch it again",
                                    f->size);
   uint64_t count = count_of(f), there = (f->size - HEADER - 4) / RECORD;
   if (count > there)
-    return cag_mesh_file_fail_byte(f, err, "mesh-file-truncated", f->bytes + HEADER,
+    return cag_mesh_file_fail_byte(f, err, CAG_ERR_mesh_file_truncated, f->bytes + HEADER,
                                    "it says it has %llu triangles, and its %zu bytes hold %llu; "
                                    "write or fetch it again",
                                    (unsigned long long)count, f->size, (unsigned long long)there);
@@ -93,13 +93,13 @@ static CagStatus fail_word(const CagMeshDraft *d, CagTextScan *s, const char *ex
                            CagError *err) {
   const char *word;
   if (!cag_scan_to_word(s))
-    return cag_mesh_file_fail_line(d->file, err, "mesh-file-truncated", s->at,
+    return cag_mesh_file_fail_line(d->file, err, CAG_ERR_mesh_file_truncated, s->at,
                                    "the file ends where %s must stand; write or fetch it again",
                                    expected);
   const char *at = s->at;
   size_t n = cag_scan_word(s, &word);
-  return cag_mesh_file_fail_line(d->file, err, "mesh-file-syntax", at, "expected %s, found `%.*s`",
-                                 expected, n < 40 ? (int)n : 40, word);
+  return cag_mesh_file_fail_line(d->file, err, CAG_ERR_mesh_file_syntax, at,
+                                 "expected %s, found `%.*s`", expected, n < 40 ? (int)n : 40, word);
 }
 
 static CagStatus read_vertex(CagMeshDraft *d, CagTextScan *s, CagError *err) {
@@ -108,7 +108,7 @@ static CagStatus read_vertex(CagMeshDraft *d, CagTextScan *s, CagError *err) {
   for (int k = 0; k < 3; k++) {
     if (!cag_scan_to_word(s) || !cag_scan_number(s, &x[k])) return fail_word(d, s, "a number", err);
     if (!isfinite(x[k]))
-      return cag_mesh_file_fail_line(d->file, err, "mesh-file-number", s->at,
+      return cag_mesh_file_fail_line(d->file, err, CAG_ERR_mesh_file_number, s->at,
                                      "a coordinate is too large");
   }
   d->positions[d->vertex_count++] = cag_vec3(x[0], x[1], x[2]);

@@ -16,7 +16,7 @@ static CagStatus find(const CagUrdfTree *t, const char *name, const char *argume
       *out = i;
       return CAG_OK;
     }
-  return cag_fail(err, CAG_E_ARGUMENT, "urdf-chain", argument, -1, "%s has no link \"%.80s\"",
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_chain, argument, -1, "%s has no link \"%.80s\"",
                   t->file, name);
 }
 
@@ -71,9 +71,9 @@ static CagStatus find_root(const CagUrdfTree *t, size_t *out, CagError *err) {
   end_names(&roots);
   if (roots.count == 1) return CAG_OK;
   if (roots.count == 0)
-    return cag_fail(err, CAG_E_ARGUMENT, "urdf-chain", "path", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_chain, "path", -1,
                     "%s: the joints form a loop, no link is the first", t->file);
-  return cag_fail(err, CAG_E_ARGUMENT, "urdf-branches", "path", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_branches, "path", -1,
                   "%s has several links that hang on no joint: %s; `base` says which is the first",
                   t->file, roots.text);
 }
@@ -84,7 +84,7 @@ static CagStatus fail_branches(const CagUrdfTree *t, size_t node, CagError *err)
   for (size_t i = 0; i < t->node_count; i++)
     if (children(t, i, &ignored) == 0 && is_below(t, i, node)) add_name(&tips, t->nodes[i].name);
   end_names(&tips);
-  return cag_fail(err, CAG_E_ARGUMENT, "urdf-branches", "tip", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_branches, "tip", -1,
                   "%s: after the link \"%.40s\" the robot branches, to the ends %s; `tip` says "
                   "which link the chain ends at",
                   t->file, t->nodes[node].name, tips.text);
@@ -99,7 +99,7 @@ static CagStatus find_tip(const CagUrdfTree *t, size_t from, size_t *out, CagErr
     if (n > 1) return fail_branches(t, *out, err);
     *out = t->edges[edge].child;
   }
-  return cag_fail(err, CAG_E_ARGUMENT, "urdf-chain", "path", -1,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_chain, "path", -1,
                   "%s: the joints after the link \"%.60s\" form a loop", t->file,
                   t->nodes[from].name);
 }
@@ -119,12 +119,12 @@ CagStatus cag_urdf_chain(const CagUrdfTree *t, const char *base, const char *tip
   while ((anywhere || at != first) && t->nodes[at].above != CAG_URDF_NONE) {
     at = parent(t, at);
     if (++count > t->node_count)
-      return cag_fail(err, CAG_E_ARGUMENT, "urdf-chain", "path", -1,
+      return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_chain, "path", -1,
                       "%s: the joints above the link \"%.60s\" form a loop", t->file,
                       t->nodes[last].name);
   }
   if (!anywhere && at != first)
-    return cag_fail(err, CAG_E_ARGUMENT, "urdf-chain", "base", -1,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_chain, "base", -1,
                     "%s: the link \"%.60s\" is not above the link \"%.60s\"", t->file,
                     t->nodes[first].name, t->nodes[last].name);
   size_t *chain = cag_malloc((count + 1) * sizeof *chain);

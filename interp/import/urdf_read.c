@@ -2,8 +2,8 @@
 //
 // libxml2 reads the XML; its own bounds on depth and on the length of names and texts stay on.
 
-#include "base/memory.h"
 #include "interp/import/urdf_read.h"
+#include "base/memory.h"
 
 #include <libxml/parser.h>
 #include <libxml/tree.h>
@@ -45,20 +45,20 @@ typedef struct Reader {
 
 // --- Errors ---
 
-static CagStatus fail_at(Reader *r, const char *reason, long line, const char *format, ...)
+static CagStatus fail_at(Reader *r, CagErrorId id, long line, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-static CagStatus fail_at(Reader *r, const char *reason, long line, const char *format, ...) {
+static CagStatus fail_at(Reader *r, CagErrorId id, long line, const char *format, ...) {
   char message[300];
   va_list args;
   if (r->status != CAG_OK) return r->status; // the first is told
   va_start(args, format);
   vsnprintf(message, sizeof message, format, args);
   va_end(args);
-  return r->status = cag_fail(r->err, CAG_E_ARGUMENT, reason, "path", line, "%s, line %ld: %s",
+  return r->status = cag_fail(r->err, CAG_E_ARGUMENT, id, "path", line, "%s, line %ld: %s",
                               r->tree->file, line, message);
 }
 
-static const char syntax[] = "urdf-syntax";
+#define SYNTAX CAG_ERR_urdf_syntax
 
 // --- Attributes ---
 
@@ -88,7 +88,7 @@ static const char *attribute(Reader *r, const xmlNode *n, const char *name) {
 static const char *wanted(Reader *r, const xmlNode *n, const char *name) {
   const char *text = attribute(r, n, name);
   if (text && *text) return text;
-  fail_at(r, syntax, xmlGetLineNo((xmlNode *)n), "<%.40s> lacks its %s", (const char *)n->name,
+  fail_at(r, SYNTAX, xmlGetLineNo((xmlNode *)n), "<%.40s> lacks its %s", (const char *)n->name,
           name);
   return "";
 }
@@ -102,7 +102,7 @@ static bool numbers(Reader *r, const xmlNode *node, const char *name, double *ou
   for (int i = 0; i < n; i++) {
     if (cag_scan_to_word(&s) && cag_scan_number(&s, &x[i]) && isfinite(x[i])) continue;
     bool macro = strstr(text, "${") != NULL;
-    fail_at(r, syntax, xmlGetLineNo((xmlNode *)node), "%s=\"%.60s\" of <%.40s> is not %s%s", name,
+    fail_at(r, SYNTAX, xmlGetLineNo((xmlNode *)node), "%s=\"%.60s\" of <%.40s> is not %s%s", name,
             text, (const char *)node->name,
             n == 1   ? "a finite number"
             : n == 3 ? "three finite numbers"
@@ -111,7 +111,7 @@ static bool numbers(Reader *r, const xmlNode *node, const char *name, double *ou
     return false;
   }
   if (cag_scan_to_word(&s))
-    fail_at(r, syntax, xmlGetLineNo((xmlNode *)node), "%s=\"%.60s\" has more than %d numbers", name,
+    fail_at(r, SYNTAX, xmlGetLineNo((xmlNode *)node), "%s=\"%.60s\" has more than %d numbers", name,
             text, n);
   memcpy(out, x, (size_t)n * sizeof *x);
   return true;
@@ -122,7 +122,7 @@ static bool lengths(Reader *r, const xmlNode *node, const char *name, double *ou
   if (!numbers(r, node, name, out, n)) return false;
   for (int i = 0; i < n; i++)
     if (fabs(out[i]) > LENGTH_MOST)
-      fail_at(r, syntax, xmlGetLineNo((xmlNode *)node), "%s of <%.40s> is beyond all measure: %g",
+      fail_at(r, SYNTAX, xmlGetLineNo((xmlNode *)node), "%s of <%.40s> is beyond all measure: %g",
               name, (const char *)node->name, out[i]);
   return r->status == CAG_OK;
 }
@@ -185,7 +185,7 @@ static void read_geometry(Reader *r, const xmlNode *n, CagUrdfBody *b) {
     lengths(r, g, "scale", b->scale, 3);
     for (int i = 0; i < 3; i++)
       if (fabs(b->scale[i]) < LENGTH_LEAST)
-        fail_at(r, syntax, b->line, "the scale of a mesh must not be 0");
+        fail_at(r, SYNTAX, b->line, "the scale of a mesh must not be 0");
     return;
   }
   if ((g = child(n, "box"))) {
@@ -200,10 +200,10 @@ static void read_geometry(Reader *r, const xmlNode *n, CagUrdfBody *b) {
     b->kind = CAG_URDF_BODY_SPHERE;
     sized = lengths(r, g, "radius", &size[0], 1) && size[0] > LENGTH_LEAST;
   } else {
-    fail_at(r, syntax, b->line, "<geometry> holds no mesh, box, cylinder or sphere");
+    fail_at(r, SYNTAX, b->line, "<geometry> holds no mesh, box, cylinder or sphere");
   }
   if (!sized)
-    fail_at(r, syntax, xmlGetLineNo((xmlNode *)g), "<%s> lacks sizes greater than 0",
+    fail_at(r, SYNTAX, xmlGetLineNo((xmlNode *)g), "<%s> lacks sizes greater than 0",
             (const char *)g->name);
   for (int i = 0; i < 3; i++) size[i] *= MILLIMETERS;
 }
@@ -212,11 +212,11 @@ static CagUrdfBody *read_body(Reader *r, const xmlNode *n) {
   CagUrdfBody *b = cag_arena_alloc(&r->tree->arena, sizeof *b);
   b->line = xmlGetLineNo((xmlNode *)n);
   if (++r->body_count > BODIES_MOST)
-    fail_at(r, syntax, b->line, "more than %d bodies, which no robot has", BODIES_MOST);
+    fail_at(r, SYNTAX, b->line, "more than %d bodies, which no robot has", BODIES_MOST);
   b->place = origin_of(r, n);
   const xmlNode *geometry = child(n, "geometry"), *material = child(n, "material");
   if (geometry) read_geometry(r, geometry, b);
-  else fail_at(r, syntax, b->line, "<%s> lacks its <geometry>", (const char *)n->name);
+  else fail_at(r, SYNTAX, b->line, "<%s> lacks its <geometry>", (const char *)n->name);
   if (material) read_material(r, material, b);
   return b;
 }
@@ -227,10 +227,10 @@ static void read_link(Reader *r, const xmlNode *n) {
   link.name = wanted(r, n, "name");
   CagUrdfBody **visual = &link.visuals, **collision = &link.collisions;
   if (t->node_count >= LINKS_MOST)
-    fail_at(r, syntax, link.line, "more than %d links, which no robot has", LINKS_MOST);
+    fail_at(r, SYNTAX, link.line, "more than %d links, which no robot has", LINKS_MOST);
   for (size_t i = 0; i < t->node_count; i++)
     if (!strcmp(t->nodes[i].name, link.name))
-      fail_at(r, "urdf-chain", link.line,
+      fail_at(r, CAG_ERR_urdf_chain, link.line,
               "a second link is named \"%.60s\"; the first is of line %ld", link.name,
               t->nodes[i].line);
   for (const xmlNode *c = n->children; c && r->status == CAG_OK; c = c->next) {
@@ -256,13 +256,13 @@ static size_t joint_end(Reader *r, const xmlNode *joint, const char *which, cons
   long line = xmlGetLineNo((xmlNode *)joint);
   const xmlNode *n = child(joint, which);
   if (!n) {
-    fail_at(r, syntax, line, "the joint \"%.60s\" lacks its <%s>", name, which);
+    fail_at(r, SYNTAX, line, "the joint \"%.60s\" lacks its <%s>", name, which);
     return 0;
   }
   const char *link = wanted(r, n, "link");
   size_t i = find_node(r->tree, link);
   if (i == CAG_URDF_NONE)
-    fail_at(r, "urdf-chain", xmlGetLineNo((xmlNode *)n),
+    fail_at(r, CAG_ERR_urdf_chain, xmlGetLineNo((xmlNode *)n),
             "the joint \"%.60s\" names the link \"%.60s\", which is not there", name, link);
   return i;
 }
@@ -273,7 +273,7 @@ static void read_limits(Reader *r, const xmlNode *n, CagUrdfEdge *e) {
   bool slides = e->kind == CAG_URDF_PRISMATIC;
   double unit = slides ? MILLIMETERS : 1;
   if (!l && e->kind != CAG_URDF_CONTINUOUS)
-    fail_at(r, syntax, e->line, "the joint \"%.60s\" lacks its <limit>, which %s %s joint has",
+    fail_at(r, SYNTAX, e->line, "the joint \"%.60s\" lacks its <limit>, which %s %s joint has",
             e->name, cag_article(slides ? "prismatic" : "revolute"),
             slides ? "prismatic" : "revolute");
   numbers(r, l, "lower", &e->low, 1);
@@ -286,7 +286,7 @@ static void read_limits(Reader *r, const xmlNode *n, CagUrdfEdge *e) {
   e->effort = fmax(0, e->effort);
   if (e->kind == CAG_URDF_CONTINUOUS) e->low = -turn, e->high = turn;
   if (e->low > e->high)
-    fail_at(r, "joint-limits", e->line,
+    fail_at(r, CAG_ERR_joint_limits, e->line,
             "the joint \"%.60s\" has its lower limit above the upper one", e->name);
 }
 
@@ -295,7 +295,7 @@ static void read_axis(Reader *r, const xmlNode *n, CagUrdfEdge *e) {
   numbers(r, child(n, "axis"), "xyz", x, 3);
   e->axis = cag_unit(cag_vec3(x[0], x[1], x[2]));
   if (!(cag_norm(e->axis) > 0))
-    fail_at(r, syntax, e->line, "the joint \"%.60s\" has an axis without direction", e->name);
+    fail_at(r, SYNTAX, e->line, "the joint \"%.60s\" has an axis without direction", e->name);
 }
 
 static void read_mimic(Reader *r, const xmlNode *n, CagUrdfEdge *e) {
@@ -317,7 +317,7 @@ static void read_joint(Reader *r, const xmlNode *n) {
   size_t kind = 0, most = sizeof kinds / sizeof *kinds;
   while (kind < most && strcmp(kinds[kind], type) != 0) kind++;
   if (kind == most)
-    fail_at(r, "urdf-joint", e.line,
+    fail_at(r, CAG_ERR_urdf_joint, e.line,
             "the joint \"%.60s\" is \"%.60s\"; there are revolute, continuous, prismatic, fixed, "
             "floating and planar ones",
             e.name, type);
@@ -333,7 +333,7 @@ static void read_joint(Reader *r, const xmlNode *n) {
   if (r->status != CAG_OK) return;
   CagUrdfNode *below = &t->nodes[e.child];
   if (below->above != CAG_URDF_NONE) {
-    fail_at(r, "urdf-chain", e.line,
+    fail_at(r, CAG_ERR_urdf_chain, e.line,
             "the link \"%.60s\" hangs on two joints, \"%.60s\" and \"%.60s\"", below->name,
             t->edges[below->above].name, e.name);
     return;
@@ -368,7 +368,7 @@ static void read_named_material(Reader *r, const xmlNode *n) { read_material(r, 
 static void read_document(Reader *r, const xmlDoc *doc) {
   const xmlNode *root = xmlDocGetRootElement((xmlDoc *)doc);
   if (!root || !is_element(root, "robot")) {
-    fail_at(r, syntax, root ? xmlGetLineNo((xmlNode *)root) : 1,
+    fail_at(r, SYNTAX, root ? xmlGetLineNo((xmlNode *)root) : 1,
             "<robot> must be the outermost, found <%.40s>", root ? (const char *)root->name : "");
     return;
   }
@@ -379,7 +379,7 @@ static void read_document(Reader *r, const xmlDoc *doc) {
   each(r, root, "joint", read_joint);
   find_colors(r);
   if (r->tree->node_count == 0)
-    fail_at(r, syntax, xmlGetLineNo((xmlNode *)root), "the robot has no links");
+    fail_at(r, SYNTAX, xmlGetLineNo((xmlNode *)root), "the robot has no links");
 }
 
 // A document type is where entities come from: reading ends at its beginning.
@@ -388,7 +388,7 @@ static void refuse_document_type(void *context, const xmlChar *name, const xmlCh
   xmlParserCtxtPtr parser = context;
   Reader *r = parser->_private;
   (void)name, (void)external, (void)system;
-  fail_at(r, syntax, parser->input ? parser->input->line : 1,
+  fail_at(r, SYNTAX, parser->input ? parser->input->line : 1,
           "a document type (<!DOCTYPE ...>), which no robot needs: take it out");
   xmlStopParser(parser);
 }
@@ -420,7 +420,7 @@ static void parse_document(Reader *r, const char *bytes, size_t size) {
     r->status = cag_fail_memory(r->err);
   if (!doc && r->status == CAG_OK) {
     const char *told = fault && fault->message ? fault->message : "no XML";
-    fail_at(r, syntax, fault ? fault->line : 1, "%.*s", (int)strcspn(told, "\n"), told);
+    fail_at(r, SYNTAX, fault ? fault->line : 1, "%.*s", (int)strcspn(told, "\n"), told);
   }
   xmlFreeDoc(doc);
 }
@@ -442,7 +442,7 @@ CagStatus cag_urdf_read(const char *file, const char *bytes, size_t size, CagUrd
   *out = (CagUrdfTree){.file = file, .name = ""};
   Reader r = {.tree = out, .err = err, .status = CAG_OK};
   if (size > FILE_MOST)
-    return fail_at(&r, syntax, 1, "%zu MiB are more than a description of a robot has (16 MiB)",
+    return fail_at(&r, SYNTAX, 1, "%zu MiB are more than a description of a robot has (16 MiB)",
                    size >> 20);
   pthread_once(&begun, xmlInitParser);
   r.context = xmlNewParserCtxt();

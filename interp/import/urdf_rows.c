@@ -214,12 +214,12 @@ static bool is_screw(const CagUrdfEdge *slide, const CagUrdfEdge *turn) {
 
 static CagStatus fail_joint(const CagUrdfTree *t, const CagUrdfEdge *e, CagError *err) {
   if (e->mimic)
-    return cag_fail(err, CAG_E_ARGUMENT, "urdf-joint", "path", e->line,
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_joint, "path", e->line,
                     "%s, line %ld: the joint \"%.60s\" follows the joint \"%.60s\"; joints of a "
                     "chain move by themselves: take its <mimic> out, or end the chain before it "
                     "(tip: \"%.60s\")",
                     t->file, e->line, e->name, e->mimic, t->nodes[e->parent].name);
-  return cag_fail(err, CAG_E_ARGUMENT, "urdf-joint", "path", e->line,
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_urdf_joint, "path", e->line,
                   "%s, line %ld: the joint \"%.60s\" is %s; the joints of a chain turn or slide "
                   "about one axis: begin after it (base: \"%.60s\")",
                   t->file, e->line, e->name, e->kind == CAG_URDF_PLANAR ? "planar" : "floating",

@@ -221,7 +221,7 @@ static CagStatus check_finite(const CagScene *s, CagError *err) {
   for (size_t i = 0; i < s->light_count; i++)
     good = good && is_finite(s->lights[i].position) && is_finite(s->lights[i].direction);
   if (good) return CAG_OK;
-  return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+  return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
                   "the scene is too large for the range of numbers: from [%g, %g, %g] to "
                   "[%g, %g, %g]",
                   b->min.x, b->min.y, b->min.z, b->max.x, b->max.y, b->max.z);

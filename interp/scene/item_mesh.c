@@ -63,7 +63,7 @@ static CagStatus make_mesh(const CagScene *s, const CagItem *item, CagMesh **out
   case CAG_ITEM_MESH: return cag_mesh_outward(item->as.mesh, out, err);
   case CAG_ITEM_GROUND: break; // for pictures, which have a plane of their own
   }
-  return cag_fail(err, CAG_E_ARGUMENT, "item-kind", "", -1, "a ground is not a mesh");
+  return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_value, "", -1, "a ground is not a mesh");
 }
 
 CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, CagError *err) {
@@ -74,7 +74,7 @@ CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, C
     const CagVec3 p = m->positions[i];
     if (isfinite(p.x) && isfinite(p.y) && isfinite(p.z)) continue;
     cag_mesh_release(m);
-    return cag_fail(err, CAG_E_DEGENERATE, "not-finite", "", -1,
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
                     "%s has points whose coordinates overflow or are undefined",
                     item->name ? item->name : "a shape");
   }

@@ -45,7 +45,7 @@ typedef struct Buffer {
 // Room for so many more; the limit of triangles is checked before memory is taken.
 static CagStatus reserve(Buffer *b, size_t vertices, size_t triangles, CagError *err) {
   if (b->count + triangles > b->max_triangles)
-    return cag_fail(err, CAG_E_LIMIT, "triangle-limit", "", -1,
+    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "", -1,
                     "the lines need more than the %zu triangles allowed", b->max_triangles);
   while (b->vertices + vertices > b->vertex_room) {
     size_t room = b->vertex_room ? 2 * b->vertex_room : 1024;
@@ -461,7 +461,7 @@ static CagStatus add_dashes(Buffer *b, const CagVec3 *p, size_t n, bool closed, 
   if (count < 2) return add_path(b, p, n, closed, radius, err);
   // A dash has two triangles on each side at least, and every second step is one.
   if (count * SIDES > (double)b->max_triangles)
-    return cag_fail(err, CAG_E_LIMIT, "triangle-limit", "dash", -1,
+    return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "dash", -1,
                     "%.0f dashes need more than the %zu triangles allowed: make them longer",
                     ceil(count / 2), b->max_triangles);
   double step = length / count;

@@ -100,7 +100,8 @@ CagStatus cag_item_bounds(const CagItem *item, const CagTransform *t, CagBounds 
              : cag_solid_bounds(item->as.solid, out, err);
   case CAG_ITEM_MESH:
     if (item->as.mesh->triangle_count == 0)
-      return cag_fail(err, CAG_E_DEGENERATE, "empty-shape", "", -1, "the mesh has no triangles");
+      return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_empty_shape, "", -1,
+                      "the mesh has no triangles");
     if (t) return mesh_bounds(item->as.mesh, t, out, err);
     *out = cag_mesh_bounds(item->as.mesh);
     return CAG_OK;
@@ -243,8 +244,8 @@ CagStatus cag_scene_add_view(CagScene *s, const char *name, CagError *err) {
   size_t i = 0;
   while (i < VIEW_COUNT && strcmp(VIEWS[i].name, name) != 0) i++;
   if (i == VIEW_COUNT)
-    return cag_fail(err, CAG_E_ARGUMENT, "camera-unknown", "camera", -1, "no standard view `%s`",
-                    name);
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_camera_unknown, "camera", -1,
+                    "no standard view `%s`", name);
   CagCamera *cameras = cag_realloc(s->cameras, (s->camera_count + 1) * sizeof *cameras);
   char *copy = cag_strdup(name);
   if (cameras) s->cameras = cameras;

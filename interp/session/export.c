@@ -118,7 +118,7 @@ static int make_parts(CagSession *s, unsigned use, Parts *out) {
       if (status != CAG_OK) cag_mesh_release(mesh);
       else status = add_parts(out, scene, item, mesh, use & ONE_MATERIAL, &err);
       if (status == CAG_OK && triangles > scene->max_triangles)
-        status = cag_fail(&err, CAG_E_LIMIT, "triangle-limit", "", -1,
+        status = cag_fail(&err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "", -1,
                           "the meshes have more than the %zu triangles allowed (--max-triangles)",
                           scene->max_triangles);
     }

@@ -235,7 +235,7 @@ int cag_session_geometry(CagSession *s, int (*work)(CagSession *s, void *context
 
 CagStatus cag_session_checked(const CagSession *s, CagStatus status, CagError *err) {
   if (status != CAG_OK || !s->vm || !s->vm->failed) return status;
-  return cag_fail(err, CAG_E_CALLBACK, "function-failed", "", -1, "a function failed");
+  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "a function failed");
 }
 
 // --- Status ---
@@ -256,12 +256,9 @@ static const CagDiagnostic *first_error(const CagDiagnostics *d) {
 int cag_session_status(const CagSession *s) {
   if (s->diagnostics.count == 0) return CAG_STATUS_OK;
   const CagDiagnostic *d = first_error(&s->diagnostics);
+  if (cag_error_is_limit(d->id)) return CAG_STATUS_LIMIT;
   switch (d->id) {
   case CAG_ERR_interrupted: return CAG_STATUS_INTERRUPTED;
-  case CAG_ERR_limit_depth:
-  case CAG_ERR_limit_memory:
-  case CAG_ERR_limit_time:
-  case CAG_ERR_limit_triangles: return CAG_STATUS_LIMIT;
   case CAG_ERR_output_file: return CAG_STATUS_FILE;
   case CAG_ERR_renderer: return CAG_STATUS_RENDERER;
   case CAG_ERR_format_unknown:
@@ -300,7 +297,7 @@ void cag_session_write_overdue(const CagSession *s, CagStyle style, FILE *out) {
 // error.
 static CagSolidPlace place_of_operation(const CagSession *s, const CagError *err) {
   const CagSolidPlace none = {NULL, 0, 0};
-  if (!err->reason || strcmp(err->reason, "solid-unbounded")) return none;
+  if (err->id != CAG_ERR_solid_unbounded) return none;
   for (size_t i = 0; s->has_scene && i < s->scene.item_count; i++) {
     const CagItem *item = &s->scene.items[i];
     CagBounds unused;
@@ -317,17 +314,12 @@ int cag_session_fail_geometry(CagSession *s, const CagError *err) {
     cag_diagnostics_move(&s->diagnostics, &s->vm->errors);
     return cag_session_status(s);
   }
-  CagErrorId id = err->reason ? cag_error_by_reason(err->reason) : CAG_ERR_COUNT;
-  if (err->status == CAG_E_LIMIT) id = CAG_ERR_limit_triangles;
-  else if (err->status == CAG_E_MEMORY) id = CAG_ERR_limit_memory;
-  else if (err->status == CAG_E_CALLBACK && s->vm && s->vm->stop) id = why_stopped(s);
-  else if (id == CAG_ERR_COUNT) id = CAG_ERR_value;
+  CagErrorId id = err->id;
+  if (err->status == CAG_E_CALLBACK && s->vm && s->vm->stop) id = why_stopped(s);
   if (id == CAG_ERR_interrupted || id == CAG_ERR_limit_time) return fail_stopped(s, id);
   const CagSolidPlace place = place_of_operation(s, err);
-  CagDiagnostic *d = cag_diagnostics_add(&s->diagnostics, id, place.source,
-                                         (CagSpan){place.start, place.end}, "%s", err->message);
-  if (err->reason && strcmp(err->reason, cag_error_info(id)->reason) != 0)
-    d->reason = strdup(err->reason);
+  cag_diagnostics_add(&s->diagnostics, id, place.source, (CagSpan){place.start, place.end}, "%s",
+                      err->message);
   return cag_session_status(s);
 }
 
@@ -395,10 +387,8 @@ void cag_session_error(const CagSession *s, size_t i, CagErrorView *out) {
   if (i >= s->diagnostics.count) return;
   const CagDiagnostic *d = &s->diagnostics.items[i];
   const CagErrorInfo *info = cag_error_info(d->id);
-  *out = (CagErrorView){.code = info->code,
-                        .reason = d->reason ? d->reason : info->reason,
-                        .message = d->message,
-                        .help = d->help};
+  *out = (CagErrorView){
+      .code = info->code, .reason = info->reason, .message = d->message, .help = d->help};
   if (!d->source) return;
   CagPosition from = cag_source_position(d->source, d->span.start),
               to = cag_source_position(d->source, d->span.end);

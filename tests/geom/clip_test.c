@@ -375,11 +375,11 @@ static void nothing_within_is_an_empty_mesh(void **state) {
   how.max_triangles = 100;
   how.tolerance = 1e-5;
   assert_int_equal(cag_mesh_clip(flat, ball, &how, &out, &err), CAG_E_LIMIT);
-  assert_string_equal(err.reason, "triangle-limit");
+  assert_string_equal(cag_error_info(err.id)->reason, "triangle-limit");
   how = CAG_TESSELLATION_DEFAULT;
   how.interrupt = &stop;
   assert_int_equal(cag_mesh_clip(flat, ball, &how, &out, &err), CAG_E_CALLBACK);
-  assert_string_equal(err.reason, "interrupted");
+  assert_string_equal(cag_error_info(err.id)->reason, "interrupted");
   cag_mesh_release(flat);
   cag_solid_release(ball);
 }

@@ -217,7 +217,7 @@ static void meshes_enclose_when_they_are_closed(void **state) {
   cag_solid_release(s);
   flipped->triangle_count--;
   assert_int_equal(cag_solid_from_mesh(flipped, &s, &err), CAG_E_ARGUMENT);
-  assert_string_equal(err.reason, "mesh-open");
+  assert_string_equal(cag_error_info(err.id)->reason, "mesh-open");
   cag_mesh_release(m);
   cag_mesh_release(flipped);
   cag_solid_release(b);
@@ -288,7 +288,7 @@ static void what_is_empty_or_endless_says_so(void **state) {
   cag_solid_release(s);
   s = combined(CAG_UNION, sphere(1), side_of(cag_vec3(0, 0, 0), cag_vec3(1, 1, 0)));
   assert_int_equal(cag_solid_bounds(s, &b, &err), CAG_E_ARGUMENT);
-  assert_string_equal(err.reason, "solid-unbounded");
+  assert_string_equal(cag_error_info(err.id)->reason, "solid-unbounded");
   // Cut by a ball it is the half ball and what the union adds of the other half.
   s = combined(CAG_INTERSECTION, s, sphere(3));
   NEAR(volume(s), 18 * M_PI + 2 * M_PI / 3, 20 * M_PI * 2e-3);

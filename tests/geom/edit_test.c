@@ -177,7 +177,7 @@ static void matched_surfaces_continue_each_other(void **state) {
         const CagStatus status = cag_surface_match(a, b, &how, sides, &t, &err);
         if (status) {
           // The weights of the neighbor would fall below 0.
-          assert_string_equal(err.reason, "negative-weight");
+          assert_string_equal(cag_error_info(err.id)->reason, "negative-weight");
         } else {
           for (int i = 0; i <= 10; i++) {
             CagVec3 own[3], next[3];
@@ -218,7 +218,7 @@ static void joined_lines_start_a_neighbor(void **state) {
     double *lines, net[4 * 5 * NV];
     size_t n;
     if (cag_surface_join_lines(a, side, degree, &how, &lines, &n, &err)) {
-      assert_string_equal(err.reason, "negative-weight");
+      assert_string_equal(cag_error_info(err.id)->reason, "negative-weight");
       cag_surface_release(a);
       continue;
     }

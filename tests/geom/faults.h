@@ -109,7 +109,7 @@ void __wrap_free(void *p) {
 // Functions supplied by the caller call this; it fails if the fault is at this call.
 static inline CagStatus fault_in_call(CagError *e) {
   if (!fault_falls(FAULT_CALLBACK)) return CAG_OK;
-  return cag_fail(e, CAG_E_CALLBACK, "function-failed", "", -1, "the function failed");
+  return cag_fail(e, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "the function failed");
 }
 
 // Runs the operation on `given` and releases its result.

@@ -16,7 +16,7 @@ typedef struct Circle {
 
 static CagStatus circle_eval(void *context, double t, int order, CagVec3 *out, CagError *e) {
   const Circle *c = context;
-  if (t > c->limit) return cag_fail(e, CAG_E_CALLBACK, "function-failed", "", -1, "too far");
+  if (t > c->limit) return cag_fail(e, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "too far");
   for (int k = 0; k <= order; k++)
     out[k] = cag_vec3(2 * cos(t + k * M_PI / 2), 2 * sin(t + k * M_PI / 2), k == 0);
   return CAG_OK;

@@ -240,7 +240,7 @@ static void parameters_move_as_the_coordinate_says(void **state) {
     size_t at, before = 0;
     const double slack = (round % 2 ? 1e-10 : 0.03) * size;
     if (fit(&s, INFINITY, 0, &first)) {
-      assert_string_equal(err.reason, "fit-singular");
+      assert_string_equal(cag_error_info(err.id)->reason, "fit-singular");
       continue;
     }
     assert_int_equal(first.report.rounds, 0);
@@ -407,7 +407,7 @@ static void planes_pass_the_stations(void **state) {
     const CagStatus status = fit(&s, 1e-12, 0, &f);
     if (bad > 0) {
       assert_true(status);
-      assert_string_equal(err.reason, "planes-not-monotone");
+      assert_string_equal(cag_error_info(err.id)->reason, "planes-not-monotone");
       assert_int_equal(err.index, bad);
       refused++;
     }
@@ -484,7 +484,7 @@ static void coordinates_off_by_the_slack_are_kept(void **state) {
         const double x = s.points[i].x * (sign ? -1 : 1);
         if (over && (x < 0 || x > 4)) {
           assert_int_not_equal(status, CAG_OK);
-          assert_string_equal(err.reason, "beyond-planes");
+          assert_string_equal(cag_error_info(err.id)->reason, "beyond-planes");
           assert_int_equal(err.index, (long)i);
           char text[100];
           snprintf(text, sizeof text,
@@ -533,7 +533,7 @@ static void parameters_may_fall_by_rounding(void **state) {
       const CagStatus status = fit(&s, INFINITY, 0, &f);
       assert_int_equal(status != CAG_OK, much);
       if (much) {
-        assert_string_equal(err.reason, "coordinate-turns");
+        assert_string_equal(cag_error_info(err.id)->reason, "coordinate-turns");
         assert_int_equal(err.index, (long)i);
       } else end(&f);
     }

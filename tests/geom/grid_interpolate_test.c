@@ -246,7 +246,8 @@ static void grids_that_cannot_be_met_are_refused(void **state) {
         continue;
       }
       assert_int_not_equal(status, CAG_OK);
-      assert_string_equal(err.reason, n < 2 ? "order-range" : "fit-underdetermined");
+      assert_string_equal(cag_error_info(err.id)->reason,
+                          n < 2 ? "order-range" : "fit-underdetermined");
       assert_int_equal(err.index, k);
     }
     s.g = good;
@@ -263,7 +264,7 @@ static void grids_that_cannot_be_met_are_refused(void **state) {
         if (over >= 2) {
           char text[40];
           assert_int_not_equal(status, CAG_OK);
-          assert_string_equal(err.reason, "parameter-range");
+          assert_string_equal(cag_error_info(err.id)->reason, "parameter-range");
           assert_int_equal(err.index, (long)i);
           snprintf(text, sizeof text, "that of point [%d, %d] is", (int)i / 5, (int)i % 5);
           assert_says(text);
@@ -272,7 +273,7 @@ static void grids_that_cannot_be_met_are_refused(void **state) {
           cag_surface_release(f);
           cag_grid_report_free(&report);
         } else {
-          assert_string_equal(err.reason, "fit-singular");
+          assert_string_equal(cag_error_info(err.id)->reason, "fit-singular");
         }
       }
   }

@@ -156,7 +156,7 @@ static void half_spaces_bound_what_their_corners_say(void **state) {
     if (!is_bounded(&b)) {
       unbounded++;
       assert_int_not_equal(cag_solid_bounds(s, &box, &err), CAG_OK);
-      assert_string_equal(err.reason, "solid-unbounded");
+      assert_string_equal(cag_error_info(err.id)->reason, "solid-unbounded");
       cag_solid_release(s);
       continue;
     }

@@ -285,7 +285,7 @@ typedef struct Calls {
 static CagStatus fail_once(void *context, double t, int order, CagVec3 *out, CagError *e) {
   Calls *calls = context;
   if (++calls->count == calls->failing)
-    return cag_fail(e, CAG_E_CALLBACK, "function-failed", "", -1, "the function failed");
+    return cag_fail(e, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "the function failed");
   for (int k = 0; k <= order; k++)
     out[k] = cag_vec3(k == 0 ? t : k == 1, cos(t + k * M_PI / 2), sin(t + k * M_PI / 2));
   return CAG_OK;

@@ -126,8 +126,9 @@ static void holes_must_be_within_and_apart(void **state) {
       good++;
     } else {
       assert_int_not_equal(cag_region_new(shapes[0].loop, holes, n, &r, &err), CAG_OK);
-      const bool crossing = strcmp(err.reason, "region-crossing") == 0;
-      assert_true(crossing || (leaves && strcmp(err.reason, "hole-outside") == 0));
+      const bool crossing = strcmp(cag_error_info(err.id)->reason, "region-crossing") == 0;
+      assert_true(crossing ||
+                  (leaves && strcmp(cag_error_info(err.id)->reason, "hole-outside") == 0));
       assert_true(err.index >= 0 && err.index < (long)n);
       outside += !crossing;
       bad += crossing;

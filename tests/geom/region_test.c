@@ -470,7 +470,7 @@ static void loops_that_cross_are_named(void **state) {
   FAILS_AT(cag_region_new(outer, holes, 2, &r, &err), "hole-outside", 1);
   holes[1] = across;
   assert_int_not_equal(cag_region_new(outer, holes, 2, &r, &err), CAG_OK);
-  assert_string_equal(err.reason, "region-crossing");
+  assert_string_equal(cag_error_info(err.id)->reason, "region-crossing");
   holes[1] = around;
   assert_int_not_equal(cag_region_new(outer, holes, 2, &r, &err), CAG_OK);
   holes[1] = inner;

@@ -230,7 +230,7 @@ static void lines_are_straight_and_name_where_they_end(void **state) {
   }
   // The reach of 500 ends at x = sqrt(500^2 - 100^2) = 489.9, after step 9 of steps of 20 mm.
   assert_int_equal(cag_robot_line_path(r, &a, &far, 16, &always, &q[0][0], &err), CAG_E_DEGENERATE);
-  assert_string_equal(err.reason, "path-leaves");
+  assert_string_equal(cag_error_info(err.id)->reason, "path-leaves");
   assert_int_equal(err.index, 10);
   const CagTransform poses[] = {a, b, far};
   OK(cag_robot_follow(r, poses, 2, &always, &q[0][0], &err));

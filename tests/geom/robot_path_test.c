@@ -341,7 +341,7 @@ static void paths_end_where_their_branch_does(void **state) {
   for (size_t n = 2; n < 42; n += 13) {
     const double end = (100 - high) / 200 * (double)(n - 1);
     assert_int_equal(cag_robot_line_path(r, &from, &to, n, &way, q[0], &err), CAG_E_DEGENERATE);
-    assert_string_equal(err.reason, "path-jumps");
+    assert_string_equal(cag_error_info(err.id)->reason, "path-jumps");
     assert_int_equal(err.index, (long)ceil(end));
     assert_true(told_place() <= end && told_place() >= end - left);
     assert_non_null(strstr(err.message, "the limit of joint 1 stands"));
@@ -349,7 +349,7 @@ static void paths_end_where_their_branch_does(void **state) {
     // The reach of 500 ends at x = sqrt(500^2 - 100^2).
     const double leaves = (sqrt(240000) - 300) / 300 * (double)(n - 1);
     assert_int_equal(cag_robot_line_path(r, &from, &far, n, &way, q[0], &err), CAG_E_DEGENERATE);
-    assert_string_equal(err.reason, "path-leaves");
+    assert_string_equal(cag_error_info(err.id)->reason, "path-leaves");
     assert_int_equal(err.index, (long)ceil(leaves));
     assert_true(told_place() <= leaves + 1e-3 && told_place() >= leaves - left);
   }

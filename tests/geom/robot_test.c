@@ -305,11 +305,11 @@ static void bad_links_are_named(void **state) {
                        .base = cag_transform_identity(),
                        .tool = cag_transform_identity()};
   assert_int_equal(cag_robot_new(&spec, &r, &err), CAG_E_ARGUMENT);
-  assert_string_equal(err.reason, "empty-chain");
+  assert_string_equal(cag_error_info(err.id)->reason, "empty-chain");
   spec.link_count = 1;
   link.high = INFINITY;
   assert_int_equal(cag_robot_new(&spec, &r, &err), CAG_E_ARGUMENT);
-  assert_string_equal(err.reason, "joint-limits");
+  assert_string_equal(cag_error_info(err.id)->reason, "joint-limits");
   link.high = NAN;
   assert_int_equal(cag_robot_new(&spec, &r, &err), CAG_E_ARGUMENT);
   link.high = -4;
@@ -317,14 +317,14 @@ static void bad_links_are_named(void **state) {
   link.high = 1;
   link.home = 2;
   assert_int_equal(cag_robot_new(&spec, &r, &err), CAG_E_ARGUMENT);
-  assert_string_equal(err.reason, "home-outside");
+  assert_string_equal(cag_error_info(err.id)->reason, "home-outside");
   link.home = 0;
   link.a = INFINITY;
   assert_int_equal(cag_robot_new(&spec, &r, &err), CAG_E_ARGUMENT);
   link.a = 0;
   spec.tool.m[0][0] = -1;
   assert_int_equal(cag_robot_new(&spec, &r, &err), CAG_E_ARGUMENT);
-  assert_string_equal(err.reason, "not-rigid");
+  assert_string_equal(cag_error_info(err.id)->reason, "not-rigid");
   spec.tool.m[0][0] = NAN;
   assert_int_equal(cag_robot_new(&spec, &r, &err), CAG_E_ARGUMENT);
 }

@@ -28,7 +28,7 @@ static CagError err;
 #define FAILS_AMONG(call, why, low, high)                                                          \
   do {                                                                                             \
     assert_int_not_equal((call), CAG_OK);                                                          \
-    assert_string_equal(err.reason, why);                                                          \
+    assert_string_equal(cag_error_info(err.id)->reason, why);                                      \
     if (err.index < (low) || err.index > (high))                                                   \
       fail_msg("%s: element %ld, not in %d..%d", #call, err.index, (int)(low), (int)(high));       \
   } while (0)

@@ -60,7 +60,7 @@ static void a_formula_that_fails_at_any_call_is_an_error_with_the_name(void **st
       break;
     }
     if (!status) fail_msg("call %zu failed and the export went on", at);
-    assert_string_equal(err.reason, "not-finite");
+    assert_string_equal(cag_error_info(err.id)->reason, "not-finite");
     assert_non_null(strstr(err.message, "wave"));
     failed++;
   }

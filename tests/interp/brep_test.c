@@ -227,7 +227,7 @@ static void what_is_not_exact_needs_a_tolerance(void **state) {
   OK(cag_curve_helix(10, 5, 3, 0, &c, &err));
   CagItem *item = fixture_curve(&f, "coil", c);
   assert_int_equal(cag_brep_of_scene(&f.scene, &b, &err), CAG_E_UNSUPPORTED);
-  assert_string_equal(err.reason, "export-not-exact");
+  assert_string_equal(cag_error_info(err.id)->reason, "export-not-exact");
   assert_non_null(strstr(err.message, "coil"));
   cag_brep_free(&b);
   item->tolerance = 0.01;
@@ -257,7 +257,7 @@ static void a_weight_of_zero_is_an_error(void **state) {
   OK(cag_curve_bezier(p, weights, 3, 3, &c, &err));
   fixture_curve(&f, "flat", c);
   assert_int_equal(cag_brep_of_scene(&f.scene, &b, &err), CAG_E_UNSUPPORTED);
-  assert_string_equal(err.reason, "export-weight");
+  assert_string_equal(cag_error_info(err.id)->reason, "export-weight");
   cag_brep_free(&b);
   fixture_end(&f);
 }

@@ -73,8 +73,8 @@ static void close_document(Document *d) {
 static void refused(const char *bytes, size_t n, const char *reason, const char *part) {
   Document d = {0};
   assert_int_not_equal(open_bytes(&d, bytes, n), CAG_OK);
-  if (strcmp(err.reason, reason) != 0 || !strstr(err.message, part))
-    fail_msg("%.200s: %s: %s", bytes, err.reason, err.message);
+  if (strcmp(cag_error_info(err.id)->reason, reason) != 0 || !strstr(err.message, part))
+    fail_msg("%.200s: %s: %s", bytes, cag_error_info(err.id)->reason, err.message);
   assert_int_equal(strncmp(err.message, "a.gltf", 6), 0);
   close_document(&d);
 }
@@ -188,10 +188,10 @@ static void accessors_are_read_as_they_are_written(void **state) {
       if (open_bytes(&d, file.at, file.n)) fail_msg("%s\n%s", err.message, json.at);
       const CagStatus status = cag_gltf_accessor(&d.g, 1, width, &a, &err);
       if (wrong == 5) {
-        assert_string_equal(err.reason, "mesh-file-index");
+        assert_string_equal(cag_error_info(err.id)->reason, "mesh-file-index");
       } else if (wrong) {
         assert_int_not_equal(status, CAG_OK);
-        assert_string_equal(err.reason, "mesh-file-truncated");
+        assert_string_equal(cag_error_info(err.id)->reason, "mesh-file-truncated");
         assert_non_null(strstr(err.message, "accessors[1] has"));
       } else {
         if (status) fail_msg("round %d: %s\n%s", round, err.message, json.at);
@@ -310,12 +310,12 @@ static void accessors_are_checked(void **state) {
     add(&t, "%s\"accessors\":[{%s}]}", cases[i].json, cases[i].accessor);
     if (open_bytes(&d, t.at, t.n)) fail_msg("%zu: %s", i, err.message);
     const CagStatus status = cag_gltf_accessor(&d.g, 0, 1, &a, &err);
-    if (cases[i].reason ? !status || strcmp(err.reason, cases[i].reason) != 0 ||
+    if (cases[i].reason ? !status || strcmp(cag_error_info(err.id)->reason, cases[i].reason) != 0 ||
                               !strstr(err.message, cases[i].part)
                         : status)
-      fail_msg("%zu: %s: %s", i, err.reason, err.message);
+      fail_msg("%zu: %s: %s", i, cag_error_info(err.id)->reason, err.message);
     assert_int_not_equal(cag_gltf_accessor(&d.g, 1, 1, &a, &err), CAG_OK);
-    assert_string_equal(err.reason, "mesh-file-index");
+    assert_string_equal(cag_error_info(err.id)->reason, "mesh-file-index");
     close_document(&d);
   }
 }
@@ -623,7 +623,7 @@ static void primitives_are_read_in_their_modes(void **state) {
     const CagStatus status = cag_mesh_read(&f, &m, &err);
     if (corner_count == 0) {
       assert_int_not_equal(status, CAG_OK);
-      assert_string_equal(err.reason, "mesh-file-empty");
+      assert_string_equal(cag_error_info(err.id)->reason, "mesh-file-empty");
       continue;
     }
     if (status) fail_msg("round %d: %s\n%s", round, err.message, json.at);
@@ -738,9 +738,9 @@ static void scenes_and_primitives_are_checked(void **state) {
       if (status) fail_msg("%zu: %s", i, err.message);
       assert_int_equal(m->triangle_count, cases[i].triangles);
       cag_mesh_release(m);
-    } else if (!status || strcmp(err.reason, cases[i].reason) != 0 ||
+    } else if (!status || strcmp(cag_error_info(err.id)->reason, cases[i].reason) != 0 ||
                !strstr(err.message, cases[i].part)) {
-      fail_msg("%zu: %s: %s", i, err.reason, err.message);
+      fail_msg("%zu: %s: %s", i, cag_error_info(err.id)->reason, err.message);
     }
   }
 }

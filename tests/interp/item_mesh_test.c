@@ -394,7 +394,7 @@ static void the_limit_of_triangles_is_exact(void **state) {
     cag_mesh_release(again);
     how.max_triangles--;
     assert_int_equal(cag_curve_tube_mesh(c, 0.1, 0, &how, &again, &err), CAG_E_LIMIT);
-    assert_string_equal(err.reason, "triangle-limit");
+    assert_string_equal(cag_error_info(err.id)->reason, "triangle-limit");
     cag_mesh_release(m);
     cag_curve_release(c);
   }

@@ -364,7 +364,7 @@ static void what_single_precision_cannot_hold_is_an_error(void **state) {
   CagAtomicFile *f = cag_atomic_file_open("/dev/null", &io);
   assert_non_null(f);
   assert_int_equal(cag_export_stl(&part, 1, NULL, f, &err), CAG_E_DEGENERATE);
-  assert_string_equal(err.reason, "mesh-empty");
+  assert_string_equal(cag_error_info(err.id)->reason, "mesh-empty");
   assert_int_equal(cag_export_ply(&part, 1, f, &err), CAG_E_DEGENERATE);
   assert_int_equal(cag_export_glb(&part, 1, f, &err), CAG_E_DEGENERATE);
   assert_int_equal(cag_export_obj(&part, 1, NULL, f, &err), CAG_OK);

@@ -12,7 +12,7 @@ static void limits_hold_before_memory_is_taken(void **state) {
   CagMesh *m = NULL;
   f.max_triangles = 3;
   assert_int_equal(cag_mesh_read(&f, &m, &err), CAG_E_LIMIT);
-  assert_string_equal(err.reason, "triangle-limit");
+  assert_string_equal(cag_error_info(err.id)->reason, "triangle-limit");
   f.max_triangles = 4;
   f.max_memory = 300; // 12 corners alone take 288
   assert_int_equal(cag_mesh_read(&f, &m, &err), CAG_E_MEMORY);

@@ -214,7 +214,7 @@ static CagStatus open_buffer(void *context, const char *path, char **bytes, size
                              CagError *e) {
   const Bytes *b = context;
   if (strcmp(path, "my part.bin") != 0)
-    return cag_fail(e, CAG_E_CALLBACK, "file", "", -1, "no such file");
+    return cag_fail(e, CAG_E_CALLBACK, CAG_ERR_file, "", -1, "no such file");
   *bytes = bytes_of(b->at, b->n).at;
   *n = b->n;
   return CAG_OK;
@@ -246,7 +246,7 @@ static void buffers_may_be_text_or_beside(void **state) {
   cag_mesh_release(m);
   data.n = 59;
   assert_int_equal(cag_mesh_read(&f, &m, &err), CAG_E_ARGUMENT);
-  assert_string_equal(err.reason, "mesh-file-truncated");
+  assert_string_equal(cag_error_info(err.id)->reason, "mesh-file-truncated");
   free(b.at);
   free(data.at);
 }

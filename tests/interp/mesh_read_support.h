@@ -78,7 +78,8 @@ static inline void assert_fails(const char *name, Bytes b, const char *reason, c
   CagMesh *m = NULL;
   CagStatus status = cag_mesh_read(&f, &m, &err);
   if (status == CAG_OK) fail_msg("%s was read, expected %s", name, reason);
-  if (strcmp(err.reason, reason) != 0) fail_msg("%s: %s: %s", name, err.reason, err.message);
+  if (strcmp(cag_error_info(err.id)->reason, reason) != 0)
+    fail_msg("%s: %s: %s", name, cag_error_info(err.id)->reason, err.message);
   if (!strstr(err.message, part)) fail_msg("`%s` lacks `%s`", err.message, part);
 }
 

@@ -527,11 +527,11 @@ static void an_empty_scene_and_a_missing_camera_are_errors(void **state) {
   fixture_begin(&f);
   CagAtomicFile *file = cag_atomic_file_open("/dev/null", &io);
   assert_int_equal(cag_export_pov(&f.scene, &options, file, &err), CAG_E_ARGUMENT);
-  assert_string_equal(err.reason, "nothing-to-show");
+  assert_string_equal(cag_error_info(err.id)->reason, "nothing-to-show");
   fixture_solid(&f, "ball", sphere(5));
   options.camera = 3;
   assert_int_equal(cag_export_pov(&f.scene, &options, file, &err), CAG_E_ARGUMENT);
-  assert_string_equal(err.reason, "camera-unknown");
+  assert_string_equal(cag_error_info(err.id)->reason, "camera-unknown");
   cag_atomic_file_abort(file);
   fixture_end(&f);
 }

@@ -242,7 +242,7 @@ static void a_scene_without_curves_is_an_error(void **state) {
   fixture_item(&f, CAG_ITEM_GROUND, "ground");
   CagAtomicFile *file = cag_atomic_file_open("/dev/null", &io);
   assert_int_equal(cag_export_svg(&f.scene, 0, file, &err), CAG_E_ARGUMENT);
-  assert_string_equal(err.reason, "svg-without-curves");
+  assert_string_equal(cag_error_info(err.id)->reason, "svg-without-curves");
   cag_atomic_file_abort(file);
   fixture_end(&f);
 }

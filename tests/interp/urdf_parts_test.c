@@ -173,7 +173,7 @@ static void sizes_must_be_greater_than_zero(void **state) {
     CagError err = {0};
     const CagStatus status = cag_urdf_read("a", text, strlen(text), &t, &err);
     if ((status == CAG_OK) != cases[i].read) fail_msg("%s", cases[i].geometry);
-    if (status != CAG_OK) assert_string_equal(err.reason, "urdf-syntax");
+    if (status != CAG_OK) assert_string_equal(cag_error_info(err.id)->reason, "urdf-syntax");
     cag_urdf_tree_free(&t);
   }
 }
@@ -207,7 +207,7 @@ static void chains_lead_from_base_to_tip(void **state) {
     const CagStatus status = cag_urdf_chain(&t, cases[i].base, cases[i].tip, &chain, &n, &err);
     if ((status == CAG_OK) != (cases[i].chain != NULL)) fail_msg("case %zu: %s", i, err.message);
     if (status != CAG_OK) {
-      assert_string_equal(err.reason, cases[i].reason);
+      assert_string_equal(cag_error_info(err.id)->reason, cases[i].reason);
       continue;
     }
     char found[100] = "";
@@ -248,7 +248,7 @@ static void trees_without_one_root_are_refused(void **state) {
     size_t *chain, n;
     read_text(cases[i].text, &t);
     assert_int_equal(cag_urdf_chain(&t, NULL, cases[i].tip, &chain, &n, &err), CAG_E_ARGUMENT);
-    assert_string_equal(err.reason, cases[i].reason);
+    assert_string_equal(cag_error_info(err.id)->reason, cases[i].reason);
     if (!strstr(err.message, cases[i].part)) fail_msg("%s", err.message);
     cag_urdf_tree_free(&t);
   }

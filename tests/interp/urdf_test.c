@@ -576,7 +576,7 @@ static const char *reason_of(const char *text, size_t size) {
   free(chain);
   cag_urdf_rows_free(&rows);
   cag_urdf_tree_free(&tree);
-  return status == CAG_OK ? "ok" : err.reason;
+  return status == CAG_OK ? "ok" : cag_error_info(err.id)->reason;
 }
 
 #define LINKS "<link name=\"a\"/><link name=\"b\"/>"
