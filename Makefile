@@ -44,6 +44,7 @@ CFLAGS_ALL := -std=c17 -D_GNU_SOURCE $(OPT) -g $(WARN) -fno-math-errno -fno-trap
               -DCAG_VERSION='"$(VERSION)"' $(PKG_CFLAGS) $(SANITIZE) $(CFLAGS)
 LDLIBS_ALL := $(PKG_LIBS) -lm -lpthread $(SANITIZE) $(LDFLAGS)
 
+BASE_SRC   := $(shell find base -name '*.c' | sort)
 LANG_SRC   := $(shell find lang -name '*.c' | sort)
 GEOM_SRC   := $(shell find geom -name '*.c' | sort)
 ifeq ($(CGAL),1)
@@ -60,6 +61,7 @@ STDLIB     := $(shell find stdlib -name '*.cag' | sort)
 DOCUMENTS  := $(filter-out docs/architecture.md,$(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*))) tests/cli/embed.c
 
 obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
+BASE_OBJ := $(call obj,$(BASE_SRC))
 LANG_OBJ := $(call obj,$(LANG_SRC))
 GEOM_OBJ := $(call obj,$(GEOM_SRC)) $(CGAL_OBJ)
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o $(BUILD)/obj/gen/documents.o
@@ -80,13 +82,13 @@ $(BUILD)/obj/geom/mesh/boolean_cgal.o: geom/mesh/boolean_cgal.cpp
 	@echo "c++ $<"
 	$Q$(CXX) -std=c++17 -O2 -g $(WARN) -Wno-maybe-uninitialized -fPIC -fvisibility=hidden -MMD -MP -I. $(SANITIZE) $(CXXFLAGS) -c $< -o $@
 
-$(BUILD)/liblang.a: $(LANG_OBJ)
+$(BUILD)/liblang.a: $(BASE_OBJ) $(LANG_OBJ)
 	@rm -f $@; ar rcs $@ $^
-$(BUILD)/libgeom.a: $(GEOM_OBJ)
+$(BUILD)/libgeom.a: $(BASE_OBJ) $(GEOM_OBJ)
 	@rm -f $@; ar rcs $@ $^
-$(BUILD)/libcag.a: $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
+$(BUILD)/libcag.a: $(BASE_OBJ) $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
 	@rm -f $@; ar rcs $@ $^
-$(BUILD)/libcag.so: $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
+$(BUILD)/libcag.so: $(BASE_OBJ) $(LANG_OBJ) $(GEOM_OBJ) $(INTERP_OBJ)
 	$Q$(CC) -shared -Wl,-soname,$(SONAME) $^ -o $@ $(LDLIBS_ALL)
 	@ln -sf libcag.so $(BUILD)/$(SONAME)
 
@@ -211,7 +213,7 @@ $(BUILD)/tests/bench/complete: tests/bench/complete.c $(filter-out %/interp/main
 bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans
 	BUILD=$(BUILD) sh tests/bench/run.sh
 
-FORMATTED = $(shell find include lang geom interp tests tools -name '*.[ch]' | sort)
+FORMATTED = $(shell find include base lang geom interp tests tools -name '*.[ch]' | sort)
 format:
 	clang-format -i $(FORMATTED)
 check-format:

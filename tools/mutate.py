@@ -183,7 +183,7 @@ def measure_suites():
         sys.exit(text)
     build("build-reach", "OPT=-O0", "SANITIZE=--coverage -DCAG_ONE_COPY", "LDFLAGS=-Wl,--wrap=_exit build-reach/exit.o",
           "test-programs")
-    notes = [notes_of(source) for top in ("geom", "interp", "lang") for source in glob.glob(f"{top}/**/*.c", recursive=True)]
+    notes = [notes_of(source) for top in ("base", "geom", "interp", "lang") for source in glob.glob(f"{top}/**/*.c", recursive=True)]
     notes = [(kept, made) for kept, made in notes if os.path.exists(made)]
     is_new = any(not os.path.exists(kept) for kept, _ in notes)
     if is_new or 10 * sum(not filecmp.cmp(kept, made, shallow=False) for kept, made in notes) > len(notes):
