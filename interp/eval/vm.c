@@ -136,6 +136,7 @@ void cag_vm_free(CagVm *vm) {
   free(vm->globals);
   free(vm->roots);
   free(vm->kept);
+  cag_hash_free(&vm->kept_materials);
   free(vm->interned);
   free(vm->builtin_values);
   free(vm->shown);

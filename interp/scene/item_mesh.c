@@ -82,6 +82,23 @@ CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, C
   return CAG_OK;
 }
 
+static int by_number(const void *a, const void *b) {
+  const size_t x = *(const size_t *)a, y = *(const size_t *)b;
+  return x < y ? -1 : x > y;
+}
+
+CagStatus cag_item_materials(const CagItem *item, size_t **out, size_t *count, CagError *err) {
+  size_t *all = *out = malloc((item->label_count + 1) * sizeof *all), n = 0;
+  *count = 0;
+  if (!all) return cag_fail_memory(err);
+  all[n++] = item->material;
+  for (size_t i = 0; i < item->label_count; i++) all[n++] = item->labels[i].material;
+  qsort(all, n, sizeof *all, by_number);
+  for (size_t i = 0; i < n; i++)
+    if (*count == 0 || all[*count - 1] != all[i]) all[(*count)++] = all[i];
+  return CAG_OK;
+}
+
 CagStatus cag_item_mesh_of(const CagItem *item, const CagMesh *m, size_t material, CagMesh **out,
                            CagError *err) {
   CagMesh *part = NULL;

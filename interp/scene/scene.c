@@ -25,7 +25,7 @@ static void free_item(CagItem *item) {
   case CAG_ITEM_GROUND: break;
   }
   free(item->name);
-  free(item->label_materials);
+  free(item->labels);
 }
 
 void cag_scene_free(CagScene *s) {

@@ -24,7 +24,7 @@ typedef int (*ExportFunction)(CagSession *s, const char *path);
 
 typedef struct Parts {
   CagMeshPart *items;
-  size_t count;
+  size_t count, capacity;
 } Parts;
 
 static void free_parts(Parts *p) {
@@ -33,12 +33,16 @@ static void free_parts(Parts *p) {
 }
 
 static CagStatus add_part(Parts *p, CagMeshPart part, CagError *err) {
-  CagMeshPart *more = realloc(p->items, (p->count + 1) * sizeof *more);
-  if (!more) {
-    cag_mesh_release((CagMesh *)part.mesh);
-    return cag_fail_memory(err);
+  if (p->count == p->capacity) {
+    const size_t capacity = p->capacity ? 2 * p->capacity : 16;
+    CagMeshPart *more = realloc(p->items, capacity * sizeof *more);
+    if (!more) {
+      cag_mesh_release((CagMesh *)part.mesh);
+      return cag_fail_memory(err);
+    }
+    p->items = more;
+    p->capacity = capacity;
   }
-  p->items = more;
   p->items[p->count++] = part;
   return CAG_OK;
 }
@@ -46,21 +50,23 @@ static CagStatus add_part(Parts *p, CagMeshPart part, CagError *err) {
 // One part, or (apart) one for each material that faces of a set operation have. Takes the mesh.
 static CagStatus add_parts(Parts *p, const CagScene *scene, const CagItem *item, CagMesh *mesh,
                            bool apart, CagError *err) {
-  CagStatus status = CAG_OK;
   if (!apart || !mesh->labels || !item->label_count) {
     const CagMaterial *material = &scene->materials[item->material];
     return add_part(p, (CagMeshPart){.name = item->name, .mesh = mesh, .material = material}, err);
   }
-  for (size_t i = 0; !status && i < scene->material_count; i++) {
+  size_t *materials, count;
+  CagStatus status = cag_item_materials(item, &materials, &count, err);
+  for (size_t i = 0; !status && i < count; i++) {
+    const CagMaterial *material = &scene->materials[materials[i]];
     CagMesh *m = NULL;
-    status = cag_item_mesh_of(item, mesh, i, &m, err);
+    status = cag_item_mesh_of(item, mesh, materials[i], &m, err);
     if (status || m->triangle_count == 0) {
       cag_mesh_release(m);
       continue;
     }
-    status = add_part(
-        p, (CagMeshPart){.name = item->name, .mesh = m, .material = &scene->materials[i]}, err);
+    status = add_part(p, (CagMeshPart){.name = item->name, .mesh = m, .material = material}, err);
   }
+  free(materials);
   cag_mesh_release(mesh);
   return status;
 }
@@ -101,7 +107,7 @@ typedef enum MeshUse {
 // shown. use: of MeshUse.
 static int make_parts(CagSession *s, unsigned use, Parts *out) {
   const CagScene *scene = &s->scene;
-  *out = (Parts){NULL, 0};
+  *out = (Parts){0};
   bool bodies = false;
   for (size_t i = 0; i < scene->item_count; i++)
     bodies |= scene->items[i].kind != CAG_ITEM_CURVE && scene->items[i].kind != CAG_ITEM_GROUND;
