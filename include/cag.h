@@ -22,9 +22,9 @@
 // are answered. cag_session_free takes effect when the call that is under way returns.
 //
 // Memory: texts that a call returns, or that it passes to a callback, belong to the library. Those
-// about a session stay valid until the next call that evaluates, checks, formats, exports, renders,
-// documents, or clears; those passed to a callback until it returns. The only memory that the host
-// must free is the text made by cag_session_format, with free().
+// about a session stay valid until the next call that evaluates, checks, formats, builds the scene,
+// exports, renders, documents, or clears; those passed to a callback until it returns. The only
+// memory that the host must free is the text made by cag_session_format, with free().
 //
 // An index beyond the end is not an error: the answer is NULL, false, or a view full of NULLs.
 // Unless stated otherwise, pointers must not be NULL.
