@@ -58,7 +58,7 @@ MAIN_SRC   := interp/main.c
 TOOL_SRC   := $(shell find interp/tool -name '*.c' | sort)
 INTERP_SRC := $(filter-out $(MAIN_SRC) $(TOOL_SRC),$(shell find interp -name '*.c' | sort))
 STDLIB     := $(shell find stdlib -name '*.cag' | sort)
-DOCUMENTS  := $(filter-out docs/architecture.md,$(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*))) tests/cli/embed.c
+DOCUMENTS  := $(filter-out docs/architecture.md,$(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*)))
 
 obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 BASE_OBJ := $(call obj,$(BASE_SRC))

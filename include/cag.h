@@ -1,21 +1,33 @@
-// libcag: scripts of the cag language as meshes, scenes and pictures.
+// libcag: runs scripts of the cag language and turns them into meshes, scenes, and pictures.
 //
-//     CagSessionOptions options;
-//     cag_session_options_init(&options);
-//     CagSession *s = cag_session_new(&options);
-//     if (cag_session_run_file(s, "vase.cag") == CAG_STATUS_OK) cag_session_export(s, "vase.stl",
-//     NULL); cag_session_write_diagnostics(s, CAG_STYLE_TEXT, stderr); cag_session_free(s);
+//     CagSession *s = cag_session_new(NULL);
+//     if (!s) return CAG_STATUS_LIMIT;
+//     int status = cag_session_run_file(s, "vase.cag");
+//     if (status == CAG_STATUS_OK) status = cag_session_export(s, "vase.stl", NULL);
+//     cag_session_write_diagnostics(s, CAG_STYLE_TEXT, stderr);
+//     cag_session_free(s);
+//     return status;
 //
-// A session runs one script at a time and keeps what it showed. The program `cag` is a client of
-// these calls. A session may be used by one thread at a time; different sessions are independent of
-// each other. Evaluation happens on a thread of the session's own, whose stack is large enough for
-// deep recursion.
+// A session runs one script at a time and keeps what the script showed until the next run. The
+// program `cag` is itself a client of these calls.
 //
-// A callback (a value, progress, a name) is called while a call is under way. From there, calls
-// that evaluate, build a scene, document or clear are refused: with CAG_STATUS_USAGE, false or NULL
-// by their result, and without a trace in the diagnostics. Questions about diagnostics and names
-// are answered; cag_session_free takes effect when the call under way returns. A question about an
-// element that does not exist answers NULL, false, or a view of NULL texts.
+// Threads: a session may be used by one thread at a time. Different sessions are independent of
+// each other, so each thread can have its own. A session evaluates scripts on a thread of its own,
+// which has a large stack for deep recursion; the call returns when that thread is done. Callbacks
+// can be called on that thread while the caller waits.
+//
+// Callbacks: a callback must not start work on its session. Calls that evaluate, check, format,
+// export, render, document, or clear are refused: they return CAG_STATUS_USAGE, false, or NULL and
+// add no diagnostic, or do nothing if they return nothing. Questions about diagnostics and names
+// are answered. cag_session_free takes effect when the call that is under way returns.
+//
+// Memory: texts that a call returns, or that it passes to a callback, belong to the library. Those
+// about a session stay valid until the next call that evaluates, checks, formats, builds the scene,
+// exports, renders, documents, or clears; those passed to a callback until it returns. The only
+// memory that the host must free is the text made by cag_session_format, with free().
+//
+// An index beyond the end is not an error: the answer is NULL, false, or a view full of NULLs.
+// Unless stated otherwise, pointers must not be NULL.
 
 #ifndef CAG_H
 #define CAG_H
@@ -31,200 +43,237 @@ extern "C" {
 
 #define CAG_API __attribute__((visibility("default")))
 
-// What calls give back: the exit statuses of the program.
+// What calls return. The program `cag` exits with the same numbers.
 enum {
   CAG_STATUS_OK = 0,
-  CAG_STATUS_SCRIPT = 1,   // the script failed
-  CAG_STATUS_USAGE = 2,    // a call that makes no sense: an unknown format, no such camera
+  CAG_STATUS_SCRIPT = 1,   // the script has an error, or shows nothing that the output can hold
+  CAG_STATUS_USAGE = 2,    // wrong arguments (unknown format or camera), or a refused call
   CAG_STATUS_FILE = 3,     // a file could not be read or written
-  CAG_STATUS_RENDERER = 4, // the renderer is missing or failed
-  CAG_STATUS_LIMIT = 5,    // a limit was crossed
+  CAG_STATUS_RENDERER = 4, // POV-Ray is missing or failed
+  CAG_STATUS_LIMIT = 5,    // a limit was exceeded, or memory ran out
   CAG_STATUS_INTERRUPTED = 130
 };
 
+// Diagnostics as text, as text with terminal colors, or as one JSON object per line.
 typedef enum CagStyle { CAG_STYLE_TEXT, CAG_STYLE_COLOR, CAG_STYLE_JSON } CagStyle;
 
 typedef struct CagSession CagSession;
 
+// Defaults are in parentheses.
 typedef struct CagSessionOptions {
   double tolerance;  // mm, largest distance between mesh and surface; 0: by the size of each shape
-  size_t max_memory; // bytes (4 GiB)
-  size_t max_depth;  // calls (10,000)
-  size_t max_triangles;           // (100 million)
-  double max_time;                // seconds of a run and of all that is made of its scene; 0: none
-  const char *const *module_path; // folders of modules (-I)
+  size_t max_memory; // bytes that the values of a script may take (4 GiB)
+  size_t max_depth;  // nested calls in a script (10,000)
+  size_t max_triangles;           // of all meshes together (100 million)
+  double max_time;                // seconds for a run and all output of its scene; 0: no limit
+  const char *const *module_path; // folders that are searched for modules (-I)
   size_t module_path_count;
-  // Set operations of solids in POV-Ray source: "native", "mesh", or "auto" (NULL): pictures mesh
-  // them, and a .pov file has them native where no two operands have faces that coincide.
+  // How POV-Ray source has set operations of solids: "native", "mesh", or "auto" (NULL). Auto uses
+  // meshes in pictures; in .pov files it uses native objects where no faces of operands coincide.
   const char *pov_csg;
-  const char *folder; // below which texts read files and modules (NULL: the working folder)
-  FILE *out;          // what print writes to (stdout)
-  FILE *messages;     // what trace writes to (stderr)
-  const volatile int *interrupt; // becomes nonzero to stop; may be NULL
-  // Called once, on a thread of the session's own, when work goes on well after max_time because it
-  // is in a step that cannot be ended; a program may wish to end then, after a word of
-  // cag_session_write_overdue. Not called for inputs (cag_session_input). May be NULL.
+  // A script can read files and modules below its own folder, and below those of module_path. For a
+  // script run from text, this is its folder (NULL: the working folder).
+  const char *folder;
+  FILE *out;      // where `print` writes (stdout)
+  FILE *messages; // where `trace` writes (stderr)
+  // Work stops soon after this integer becomes nonzero, for example in a signal handler. The
+  // library never changes it. NULL: nothing interrupts.
+  const volatile int *interrupt;
+  // Called at most once per call, on another thread, if work continues well after max_time because
+  // it is in a step that cannot be stopped. The program may then want to end: it can call
+  // cag_session_write_overdue and _exit. Not called during interactive use. May be NULL.
   void (*overdue)(CagSession *s, void *context);
   void *overdue_context;
 } CagSessionOptions;
 
 CAG_API const char *cag_version(void);
 CAG_API void cag_session_options_init(CagSessionOptions *options);
-// NULL when memory is out. The options are copied, module_path, folder, pov_csg and what they point
-// to must outlive the session.
+// Makes a session (options NULL: the defaults). Returns NULL if memory ran out. The options are
+// copied, but what they point to must outlive the session.
 CAG_API CagSession *cag_session_new(const CagSessionOptions *options);
+// Frees a session; NULL is allowed.
 CAG_API void cag_session_free(CagSession *s);
 
-// Sets a param of the scripts run later, as -D does: the value is an expression, or the text itself
-// where the param is a text.
+// Sets a param in later runs, like -D. The value is the text of an expression; for a param that is
+// a text, the quotes may be left out. The last value of a name counts. Errors appear when a script
+// runs: if it has no such param, if the value is wrong, or if memory ran out here.
 CAG_API void cag_session_define(CagSession *s, const char *name, const char *value);
 CAG_API void cag_session_clear_defines(CagSession *s);
-// time, frame and frames of the scripts run later; frames >= 1.
+// Sets `frame` and `frames` in later runs (0 and 1); frames must be at least 1. `time` is then
+// frame/(frames - 1), or 0 if there is one frame.
 CAG_API void cag_session_set_frame(CagSession *s, double frame, double frames);
-// Whether time is frame/frames, for films that repeat, in place of frame/(frames - 1).
+// Makes `time` frame/frames instead, for films that repeat (false).
 CAG_API void cag_session_set_loop(CagSession *s, bool loop);
 
-// Runs a script anew: prints, asserts; what it shows is kept until the next run. "-" is standard
-// input. The status says how it ended, and the diagnostics why.
+// Runs a script, after dropping the previous run or the interactive definitions. The path "-" is
+// standard input; `name` stands for the text in diagnostics. What the script showed before an error
+// remains shown.
 CAG_API int cag_session_run_file(CagSession *s, const char *path);
 CAG_API int cag_session_run_text(CagSession *s, const char *name, const char *text, size_t length);
 
-// The one layout of a script, malloc'd; NULL where it has errors. Nothing is run, no other file is
-// read.
+// The following three drop the previous run or the interactive definitions as well.
+
+// Formats a script without running it or reading other files. *out receives a zero-terminated text
+// of *out_length bytes; release it with free(). It is NULL if the status is not CAG_STATUS_OK.
 CAG_API int cag_session_format(CagSession *s, const char *name, const char *text, size_t length,
                                char **out, size_t *out_length);
 
-// Finds errors without running anything: of syntax, names and arity, and types that cannot be
-// right; also definitions that nothing uses, as warnings. Imported modules are read. "-" is
-// standard input.
+// Checks a script without running it. Reports errors of syntax, names, arity, and types, and, as
+// warnings, definitions that nothing uses. Reads imported modules. The path "-" is standard input.
 CAG_API int cag_session_check_file(CagSession *s, const char *path);
 CAG_API int cag_session_check_text(CagSession *s, const char *name, const char *text,
                                    size_t length);
 
-// --- Diagnostics of the last call ---
-CAG_API size_t cag_session_error_count(const CagSession *s);
+// --- Diagnostics ---
+// A run, check, format, document, or interactive call starts a new list of errors and warnings.
+// Calls that use the scene of a run keep the diagnostics of the run and of building the scene, and
+// replace those of the previous such call. A list has at most 20 diagnostics.
+CAG_API size_t cag_session_error_count(const CagSession *s); // errors and warnings
 typedef struct CagErrorView {
-  const char *code, *reason, *message, *help; // help may be NULL
-  const char *file;                           // NULL: no place
-  size_t line, column, end_line, end_column;
+  const char *code;                          // "E0201"; see cag_explain
+  const char *reason;                        // short name of the kind of error
+  const char *message, *help;                // help: how to fix it; may be NULL
+  const char *file;                          // NULL: the error has no location
+  size_t line, column, end_line, end_column; // from 1
+  bool warning;
 } CagErrorView;
 CAG_API void cag_session_error(const CagSession *s, size_t i, CagErrorView *out);
-// Writes the error of a run that took longer than max_time. Any thread may call it, at any time.
-CAG_API void cag_session_write_overdue(const CagSession *s, CagStyle style, FILE *out);
 CAG_API void cag_session_write_diagnostics(const CagSession *s, CagStyle style, FILE *out);
+// Writes the error of a run that exceeded max_time, for the callback `overdue`. Can be called on
+// any thread at any time.
+CAG_API void cag_session_write_overdue(const CagSession *s, CagStyle style, FILE *out);
 
 // --- What was shown ---
 typedef struct CagShownCounts {
   size_t items, cameras, lights;
 } CagShownCounts;
-// Builds the scene of what was shown (also done by export and render).
+// Builds the scene of what was shown, unless it was built since the run. Export and render do so as
+// well. A camera, lights, and a floor are added if the script shows none, and counted.
 CAG_API int cag_session_scene(CagSession *s, CagShownCounts *out);
-// A line for each thing shown: "vase: revolution surface, ..." to `out`.
+// Writes a line for each thing shown, such as "vase: revolution surface, ...", to `out`.
 CAG_API void cag_session_describe_scene(CagSession *s, FILE *out);
-// Name of camera i of the scene; NULL: none.
+// Returns the name of camera i of the scene, or NULL.
 CAG_API const char *cag_session_camera(CagSession *s, size_t i);
 
-// Writes the scene in the format of the path's ending, or in `format` ("obj", "stl", "ply", "glb",
-// "pov", "svg", "json"). "-" is standard output.
+// Writes the scene to a file, under a temporary name that is renamed at the end. `format` is one of
+// "obj", "stl", "ply", "glb", "gltf", "3mf", "pov", "igs", "step", "urdf", "svg", and "json"; NULL:
+// that of the path's ending. The path "-" is standard output and needs a format. Three formats
+// write files beside the path: obj its materials, gltf its data, and urdf its meshes.
 CAG_API int cag_session_export(CagSession *s, const char *path, const char *format);
-// The formats that there are, NULL at the end, and what each is.
+// Returns the formats, ending with NULL.
 CAG_API const char *const *cag_export_formats(void);
+// Returns what a format is, in a phrase, or NULL if there is no such format.
 CAG_API const char *cag_export_format_story(const char *format);
 
-// A part of a picture: pixels from its left and top edge. A width of 0: all of it.
+// A part of a picture: pixels from its left and top edge. A width of 0 means the whole picture.
 typedef struct CagRenderRegion {
   int x, y, width, height;
 } CagRenderRegion;
 
+// Zeros are the defaults.
 typedef struct CagRenderOptions {
-  int width, height;   // pixels; 0: the camera's
-  const char *quality; // "draft", "normal", "final"
-  int samples;         // of a lens for each pixel (cameras with an aperture); 0: by the quality
-  const char *camera;  // its name, or top, bottom, front, back, left, right, iso; NULL: the first
-  double exposure;     // stops, for .png
-  int threads;         // 0: one for each processor
-  double time_limit;   // seconds of the renderer; 0: what is left of max_time
-  CagRenderRegion region; // only this part is rendered and written
+  int width, height;   // pixels, both or none; 0: the camera's
+  const char *quality; // "draft", "normal", or "final"; NULL: normal
+  int samples;         // per pixel, for cameras with an aperture; 0: by the quality
+  const char *camera;  // a name, or top, bottom, front, back, left, right, or iso; NULL: the first
+  double exposure;     // stops; only for .png
+  int threads;         // of the renderer; 0: one per processor
+  double time_limit; // seconds for the renderer, in place of max_time; 0: what is left of max_time
+  CagRenderRegion region; // renders and writes only this part
+  // Called during rendering, with the percentage of a phase ("parsing", "photons", "radiosity", or
+  // "rendering"). May be NULL.
   void (*progress)(void *context, double percent, const char *phase);
   void *progress_context;
 } CagRenderOptions;
 CAG_API void cag_render_options_init(CagRenderOptions *o);
-// Renders what was shown through POV-Ray to .exr or .png.
+// Renders what was shown with POV-Ray and writes an .exr or .png file (options NULL: the defaults).
 CAG_API int cag_session_render(CagSession *s, const CagRenderOptions *options, const char *path);
-// Version text of POV-Ray, or NULL with the reason in `why` (static buffer of the session).
+// Looks for POV-Ray. If it is found, writes its version to `buffer`, of `size` bytes, and returns
+// the buffer. Otherwise writes the reason to the buffer and returns NULL.
 CAG_API const char *cag_find_povray(char *buffer, size_t size);
 
-// --- Interactive use: definitions stay, and may be said again; what depends on a name follows ---
-// Evaluates definitions, statements and expressions. Each expression's value is given to `value` as
-// printed text and type name.
+// --- Interactive use ---
+// Definitions remain until the next run, check, format, document, or clear call. A name can be
+// defined again, and everything that depends on it then follows.
+
+// Evaluates definitions, statements, and expressions. Calls `value` (may be NULL) with the printed
+// value and the type of each expression.
 CAG_API int cag_session_input(CagSession *s, const char *text, size_t length,
                               void (*value)(void *context, const char *text, const char *type),
                               void *context);
-// Runs a script file into the interactive session: its definitions stay.
+// Runs a script file so that its definitions remain.
 CAG_API int cag_session_input_file(CagSession *s, const char *path);
-// Takes what is shown by this text, the name of a definition as a rule, out of the scene; gives how
-// many times it was shown.
+// Removes from the scene what was shown by exactly this text, usually the name of a definition.
+// Returns how many times it was shown.
 CAG_API size_t cag_session_hide(CagSession *s, const char *text);
-// Whether a text asks for another line.
+// Returns whether the text needs another line to be complete.
 CAG_API bool cag_input_is_incomplete(const char *text, size_t length);
-// Names defined interactively, newest of each, in the order of definition: NULL at the end of the
-// list.
+// Returns name i of the interactive session, each name once, in the order of first definition, or
+// NULL. *source_text receives its latest definition, which is not zero-terminated, or NULL if it
+// was imported. Both outputs may be NULL.
 CAG_API const char *cag_session_name(CagSession *s, size_t i, const char **source_text,
                                      size_t *source_length);
-// Writes what is known of a name defined interactively, its text and documentation; false: no such
-// name.
+// Writes the definition and documentation of a name of the interactive session. Returns false if
+// there is no such name.
 CAG_API bool cag_session_write_doc(CagSession *s, const char *name, FILE *out);
-// What the library calls something that the interactive session imported from it: after
-// `import std.materials as mat`, "mat.glazed" is "std.materials.glazed". False: it did not.
+// Writes the full name of something imported from the library to `out`, of `size` bytes: after
+// `import std.materials as mat`, "mat.glazed" is "std.materials.glazed". Returns false if the name
+// was not imported from the library.
 CAG_API bool cag_session_library_name(CagSession *s, const char *name, char *out, size_t size);
-// Gives the names that may stand behind `path.`, a name or several with points between them, of the
-// interactive session.
+// Calls `give` with each member of what `path` names in the interactive session, such as "mat" or
+// "arm.links".
 CAG_API void cag_session_members(CagSession *s, const char *path,
                                  void (*give)(void *context, const char *name), void *context);
-// Writes the interactive session as a script: imports, definitions as they are now, asserts, shows.
+// Writes the interactive session as a script: imports, current definitions, asserts, and shows.
 CAG_API void cag_session_write_script(CagSession *s, FILE *out);
+// Drops the previous run or the interactive definitions. Values set by cag_session_define remain.
 CAG_API void cag_session_clear(CagSession *s);
-// Module i of the standard library, as import writes it ("std.robots"); NULL behind the last.
+// Returns module i of the standard library as import names it ("std.robots"), or NULL.
 CAG_API const char *cag_library_module(size_t i);
-// Names of all built-ins, NULL at the end.
+// Returns the names of all built-ins, ending with NULL.
 CAG_API const char *const *cag_builtin_name_list(void);
-// Documentation of a built-in name as text to `out`; false: no such name.
+// Writes the documentation of a built-in as text. Returns false if there is no such built-in.
 CAG_API bool cag_write_builtin_doc(const char *name, FILE *out);
-// Row i of the built-ins' table (rows of one name one after the other), for tests of the examples;
-// false behind the last.
+// Returns row i of the table of built-ins; rows with the same name are adjacent. The outputs may be
+// NULL, and summary and example may receive NULL. Returns false if there is no such row.
 CAG_API bool cag_builtin_row(size_t i, const char **signature, const char **summary,
                              const char **example, const char **family);
 
 // --- Documentation ---
-// Documentation of a built-in ("bspline"), a library module ("std.robots", "robots"), its member
-// ("robots.puma560"), a chapter of the manual ("geometry") or an error code as text; NULL: an
-// overview. `styled` makes headings bold for a terminal. False: there is no such name.
+// These calls may drop the previous run or the interactive definitions: use a session of its own.
+
+// Writes documentation as text: of a built-in ("bspline"), a module of the library ("std.robots" or
+// "robots"), a member of one ("robots.puma560"), a chapter of the manual ("geometry"), a word of
+// the language, or an error code; NULL: an overview. `styled` makes headings bold on a terminal.
+// Returns false if the name is unknown or memory ran out.
 CAG_API bool cag_session_document(CagSession *s, const char *name, bool styled, FILE *out);
-// The names that the call above knows.
+// Calls `give` with each name that cag_session_document knows.
 CAG_API void cag_session_document_names(CagSession *s,
                                         void (*give)(void *context, const char *name),
                                         void *context);
-// What the `///` lines of a script say of its definitions and params.
+// Writes what the `///` comments of a script say about its definitions and params.
 CAG_API int cag_session_document_text(CagSession *s, const char *name, const char *text,
                                       size_t length, bool styled, FILE *out);
 typedef struct CagSiteOptions {
-  CagSessionOptions session; // limits of the examples, the interrupt flag
+  CagSessionOptions session; // for the examples; use cag_session_options_init
   bool no_pictures;
-  size_t jobs;                // examples run at once; 0: one for each processor
-  const char *const *scripts; // files that the site tells of as well, beside the library
+  size_t jobs;                // examples that run at once; 0: one per processor
+  const char *const *scripts; // files to document in addition to the library
   size_t script_count;
-  void (*say)(void *context, const char *message); // remarks; may be NULL
+  void (*say)(void *context, const char *message); // remarks about progress; may be NULL
   void *context;
 } CagSiteOptions;
-// Writes all documentation as a site of static pages into a folder, which is made. Pictures that
-// are there already are kept. Fails where an example does not do what it says.
+// Writes all documentation as a site of static pages into a folder, which is created. Pictures that
+// exist are kept. Fails if an example does not do what it says.
 CAG_API int cag_session_write_site(CagSession *s, const char *folder,
                                    const CagSiteOptions *options);
 
 // --- Error codes ---
-// Explanation of a code at length to `out`; false: no such code.
+// Writes the long explanation of an error, given its code ("E0201") or its short name. Returns
+// false if there is no such error.
 CAG_API bool cag_explain(const char *code, FILE *out);
-// Code and title of kind of error i; false behind the last.
+// Returns kind i of error: its code, short name, title, and an example, which may be NULL. The
+// outputs may be NULL. Returns false if there is no such kind.
 CAG_API bool cag_error_kind(size_t i, const char **code, const char **reason, const char **title,
                             const char **example);
 

@@ -27,11 +27,12 @@ static void release(CagDiagnostic *d) {
   *d = (CagDiagnostic){0};
 }
 
-void cag_diagnostics_clear(CagDiagnostics *d) {
-  for (size_t i = 0; i < d->count; i++) release(&d->items[i]);
-  d->count = 0;
+void cag_diagnostics_truncate(CagDiagnostics *d, size_t n) {
+  while (d->count > n) release(&d->items[--d->count]);
   d->dropped = 0;
 }
+
+void cag_diagnostics_clear(CagDiagnostics *d) { cag_diagnostics_truncate(d, 0); }
 
 static CagDiagnostic *thrown_away(CagDiagnostics *d) {
   d->dropped++;

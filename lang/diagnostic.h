@@ -49,6 +49,8 @@ typedef struct CagDiagnostics {
 } CagDiagnostics;
 
 void cag_diagnostics_clear(CagDiagnostics *d);
+// Releases all but the first n diagnostics.
+void cag_diagnostics_truncate(CagDiagnostics *d, size_t n);
 
 // Adds an error with a message formatted as by printf. If there is no memory for the message, the
 // error added is that of exhausted memory. The pointer is valid until the next call. If the list is

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "interp/builtin/jets.h"
 #include "interp/builtin/support.h"
 #include "lang/arena.h"
@@ -88,12 +89,12 @@ typedef struct Name {
 } Name;
 
 typedef struct Table {
-  size_t row_count, name_count, slot_count;
+  size_t row_count, name_count;
   CagBuiltin *rows;         // grouped by name
   CagSignature *signatures; // of the rows
   Name *names;
   const char **name_texts;
-  uint32_t *slots; // open addressing by hash of the name: index + 1, 0 where empty
+  CagHashIndex index; // of names
 } Table;
 
 // Made once per process at the first use, and never freed. If memory runs out, the table stays
@@ -109,12 +110,6 @@ static char *copy_text(const char *s, size_t n) {
   char *copy = take(n + 1, 1);
   memcpy(copy, s, n);
   return copy;
-}
-
-static size_t hash_name(const char *s) {
-  uint64_t h = 14695981039346656037u; // FNV-1a
-  for (; *s; s++) h = (h ^ (unsigned char)*s) * 1099511628211u;
-  return (size_t)(h ^ (h >> 32));
 }
 
 // --- Signatures: name "(" parameter { "," parameter } [ "," "..." ] ")" ---
@@ -182,12 +177,12 @@ static void parse_signature(CagSignature *out, const char *text) {
 
 // --- Building ---
 
-// The slot where a name of n bytes stands, or the empty one where it would.
-static size_t find_slot(const char *name) {
-  size_t slot = hash_name(name) & (table.slot_count - 1);
-  while (table.slots[slot] && strcmp(table.names[table.slots[slot] - 1].name, name) != 0)
-    slot = (slot + 1) & (table.slot_count - 1);
-  return slot;
+static size_t find_name(const char *name) {
+  size_t i;
+  CagHashWalk w = cag_hash_walk(&table.index, cag_hash_text(CAG_HASH_START, name));
+  while (cag_hash_next(&w, &i))
+    if (strcmp(table.names[i].name, name) == 0) return i;
+  return (size_t)-1;
 }
 
 static const CagBuiltin *const families[] = {
@@ -201,12 +196,14 @@ static const CagBuiltin *const families[] = {
 static size_t *number_names(CagSignature *signatures) {
   size_t *name_of = take(table.row_count, sizeof *name_of);
   for (size_t r = 0; r < table.row_count; r++) {
-    size_t slot = find_slot(signatures[r].name);
-    if (!table.slots[slot]) {
-      table.names[table.name_count].name = signatures[r].name;
-      table.slots[slot] = (uint32_t)++table.name_count;
+    const char *name = signatures[r].name;
+    name_of[r] = find_name(name);
+    if (name_of[r] == (size_t)-1) {
+      name_of[r] = table.name_count++;
+      table.names[name_of[r]].name = name;
+      if (!cag_hash_add(&table.index, cag_hash_text(CAG_HASH_START, name), name_of[r]))
+        cag_memory_leave();
     }
-    name_of[r] = table.slots[slot] - 1;
     table.names[name_of[r]].count++;
   }
   return name_of;
@@ -225,9 +222,6 @@ static void build_table(void *context) {
       parse_signature(&parsed[n], b->signature);
       all[n++] = b;
     }
-  // At most half of the slots are taken.
-  for (table.slot_count = 64; table.slot_count < 2 * table.row_count;) table.slot_count *= 2;
-  table.slots = take(table.slot_count, sizeof *table.slots);
   table.names = take(table.row_count, sizeof *table.names);
   size_t *name_of = number_names(parsed);
   // Group by name.
@@ -255,6 +249,7 @@ bool cag_builtins_ready(void) {
   if (!table_ready && cag_memory_guard(build_table, NULL)) table_ready = true;
   if (!table_ready) {
     cag_arena_free(&table_arena);
+    cag_hash_free(&table.index);
     table = (Table){0};
   }
   pthread_mutex_unlock(&table_mutex);
@@ -266,9 +261,7 @@ bool cag_builtins_ready(void) {
 size_t cag_builtin_count(void) { return cag_builtins_ready() ? table.name_count : 0; }
 
 size_t cag_builtin_find(const char *name) {
-  if (!cag_builtins_ready()) return (size_t)-1;
-  uint32_t found = table.slots[find_slot(name)];
-  return found ? found - 1 : (size_t)-1;
+  return cag_builtins_ready() ? find_name(name) : (size_t)-1;
 }
 
 size_t cag_builtin_jet(size_t index) { return table.names[index].jet; }

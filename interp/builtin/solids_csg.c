@@ -51,12 +51,36 @@ CagRecord *cag_solids_material(const CagVm *vm, uint32_t label) {
   return v.type == CAG_RECORD ? CAG_AS_RECORD(v) : NULL;
 }
 
+static uint64_t hash_field(const CagText *name, CagValue v) {
+  const uint64_t h = cag_hash_bytes(CAG_HASH_START, name->bytes, name->length);
+  const double *x;
+  size_t n;
+  if (v.type == CAG_NUMBER) return cag_hash_number(h, v.as.number);
+  if (v.type == CAG_TEXT) return cag_hash_text(h, CAG_AS_TEXT(v)->bytes);
+  if (v.type != CAG_LIST || !cag_as_vector(v, &x, &n)) return h;
+  uint64_t numbers = h;
+  for (size_t i = 0; i < n; i++) numbers = cag_hash_number(numbers, x[i]);
+  return numbers;
+}
+
+// Equal records have their fields in any order.
+static uint64_t hash_record(const CagRecord *r) {
+  uint64_t sum = 0;
+  for (size_t i = 0; i < r->layout->count; i++)
+    sum += hash_field(r->layout->names[i], r->fields[i]);
+  return sum;
+}
+
 static uint32_t label_of(CagVm *vm, CagRecord *material) {
-  const CagValue v = cag_object(CAG_RECORD, material);
   if (!material) return 0;
-  for (size_t i = 0; i < vm->kept_count; i++)
-    if (vm->kept[i].type == CAG_RECORD && cag_equal(vm, vm->kept[i], v)) return (uint32_t)i + 1;
-  return (uint32_t)cag_vm_keep(vm, v) + 1;
+  const CagValue v = cag_object(CAG_RECORD, material);
+  const uint64_t hash = hash_record(material);
+  size_t slot;
+  for (CagHashWalk w = cag_hash_walk(&vm->kept_materials, hash); cag_hash_next(&w, &slot);)
+    if (cag_equal(vm, vm->kept[slot], v)) return (uint32_t)slot + 1;
+  slot = cag_vm_keep(vm, v);
+  if (!cag_hash_add(&vm->kept_materials, hash, slot)) cag_vm_out_of_memory(vm);
+  return (uint32_t)slot + 1;
 }
 
 static uint32_t relabel(void *context, uint32_t label) {

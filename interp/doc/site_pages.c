@@ -244,12 +244,6 @@ static void guide_page(CagSite *s, size_t at) {
   cag_site_begin(s, &p, path, guides[at].title, "Guide");
   fputs("<div class=\"with-aside\">\n<article class=\"guide\">\n", p.out);
   cag_html_markdown(s, p.out, p.root, guides[at].name, d->text, d->length);
-  if (strcmp(guides[at].name, "embedding") == 0) {
-    const CagDocument *program = cag_document("tests/cli/embed.c");
-    fputs("<h2>The whole program</h2>\n<pre><code>", p.out);
-    cag_html_text(p.out, program->text, program->length);
-    fputs("</code></pre>\n", p.out);
-  }
   fputs("</article>\n<aside><h2>Guide</h2><ul>\n", p.out);
   for (size_t i = 0; cag_site_guide(i, &name, &title); i++)
     fprintf(p.out, "<li%s><a href=\"%s.html\">%s</a></li>\n",

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 #include "interp/doc/site.h"
 #include "interp/render/povray.h"
@@ -150,14 +151,9 @@ static bool is_drawing(const CagScene *scene) {
   return drawn && b->max.z - b->min.z <= FLAT * (1 + b->max.x - b->min.x);
 }
 
-static uint64_t hash_text(uint64_t h, const char *text) {
-  for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u; // FNV-1a
-  return h;
-}
-
 static char *picture_name(const char *text, const char *shape, const char *ending) {
-  uint64_t h = hash_text(14695981039346656037u, CAG_VERSION);
-  h = hash_text(hash_text(h, text), shape ? shape : "");
+  uint64_t h = cag_hash_text(CAG_HASH_START, CAG_VERSION);
+  h = cag_hash_text(cag_hash_text(h, text), shape ? shape : "");
   return cag_doc_text("pictures/%016llx.%s", (unsigned long long)h, ending);
 }
 

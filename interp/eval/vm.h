@@ -17,6 +17,7 @@
 #include <stdio.h>
 #include <time.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 #include "interp/builtin/builtin.h"
 #include "interp/scene/build.h"
@@ -189,7 +190,8 @@ struct CagVm {
   // hold the next free one + 1.
   CagValue *kept;
   size_t kept_count, kept_capacity, kept_free;
-  uint32_t differentiation; // level of the jets that are being computed with, 0: none
+  CagHashIndex kept_materials; // slots of the records that are materials of operands
+  uint32_t differentiation;    // level of the jets that are being computed with, 0: none
   CagText **interned;
   size_t interned_count, interned_size;
   CagGlobal *globals;

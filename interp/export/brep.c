@@ -41,16 +41,16 @@ static size_t root(size_t *parent, size_t i) {
 // Joins faces that share an edge; *open: an edge has one use.
 static CagStatus connect(const CagBrepWork *w, size_t *parent, bool *open, CagError *err) {
   const CagBrep *b = w->brep;
-  size_t n = b->face_count - w->first_face;
-  size_t *user = cag_malloc((b->edge_count + 1) * sizeof *user);
+  const size_t n = b->face_count - w->first_face, edges = b->edge_count - w->first_edge;
+  size_t *user = cag_malloc((edges + 1) * sizeof *user); // of the shape's own edges
   if (!user) return cag_fail_memory(err);
-  for (size_t i = 0; i < b->edge_count; i++) user[i] = SIZE_MAX;
+  for (size_t i = 0; i < edges; i++) user[i] = SIZE_MAX;
   size_t single = 0;
   for (size_t f = 0; f < n; f++) {
     const CagBrepFace *face = &b->faces[w->first_face + f];
     for (size_t l = face->first; l < face->first + face->count; l++)
       for (size_t u = b->loops[l].first; u < b->loops[l].first + b->loops[l].count; u++) {
-        size_t *first = &user[b->uses[u].edge];
+        size_t *first = &user[b->uses[u].edge - w->first_edge];
         if (*first == SIZE_MAX) *first = f, single++;
         else parent[root(parent, f)] = root(parent, *first), single--;
       }
@@ -77,9 +77,7 @@ static CagStatus sort_faces(CagBrep *b, size_t first, const size_t *set, size_t 
                             CagError *err) {
   size_t n = b->face_count - first;
   CagBrepFace *sorted = cag_malloc((n ? n : 1) * sizeof *sorted);
-  CagBrepShell *shells = cag_realloc(b->shells, (b->shell_count + sets + 1) * sizeof *shells);
-  if (shells) b->shells = shells;
-  if (!sorted || !shells) {
+  if (!sorted || !cag_brep_reserve((void **)&b->shells, b->shell_count, sets, sizeof *b->shells)) {
     cag_free(sorted);
     return cag_fail_memory(err);
   }
@@ -240,6 +238,7 @@ static CagStatus add_bounded(CagBrepWork *w, CagBrepShape *shape, CagError *err)
   CagBrep *b = w->brep;
   w->first_face = b->face_count;
   w->first_loop = b->loop_count;
+  w->first_edge = b->edge_count;
   shape->first = b->shell_count;
   shape->kind = w->item->kind == CAG_ITEM_SOLID ? CAG_BREP_SOLID : CAG_BREP_SHEET;
   bool closed = false;

@@ -254,11 +254,9 @@ static CagStatus find_pairs(CagBrepWork *w, Pair **pairs, CagError *err) {
 
 static CagStatus make_edges(CagBrepWork *w, const Pair *pairs, CagError *err) {
   CagBrep *b = w->brep;
-  CagBrepEdge *edges = cag_realloc(b->edges, (b->edge_count + w->side_count + 1) * sizeof *edges);
-  CagBrepUse *uses = cag_realloc(b->uses, (b->use_count + w->side_count + 1) * sizeof *uses);
-  if (edges) b->edges = edges;
-  if (uses) b->uses = uses;
-  if (!edges || !uses) return cag_fail_memory(err);
+  if (!cag_brep_reserve((void **)&b->edges, b->edge_count, w->side_count, sizeof *b->edges) ||
+      !cag_brep_reserve((void **)&b->uses, b->use_count, w->side_count, sizeof *b->uses))
+    return cag_fail_memory(err);
   for (size_t i = 0; i < w->side_count; i++) {
     CagBrepSide *s = &w->sides[i];
     if (s->edge != SIZE_MAX) continue; // of its partner

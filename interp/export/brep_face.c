@@ -25,18 +25,23 @@ void *cag_brep_grow(void *array, size_t count, size_t *room, size_t size) {
   return grown;
 }
 
-// Makes room for one more of an array whose length is all that is known of it: it grows at powers
-// of two.
-static bool one_more(void **array, size_t count, size_t size) {
-  if (count > 0 && (count & (count - 1)) != 0) return true;
-  void *grown = cag_realloc(*array, (count ? 2 * count : 1) * size);
+static size_t power_of_two(size_t least) {
+  size_t n = 16;
+  while (n < least) n *= 2;
+  return n;
+}
+
+bool cag_brep_reserve(void **array, size_t count, size_t more, size_t size) {
+  if (*array && count + more <= power_of_two(count)) return true;
+  void *grown = cag_realloc(*array, power_of_two(count + more) * size);
   if (grown) *array = grown;
   return grown != NULL;
 }
 
 static CagStatus add_face(CagBrepWork *w, const CagBrepFace *face, size_t *index, CagError *err) {
   CagBrep *b = w->brep;
-  if (!one_more((void **)&b->faces, b->face_count, sizeof *b->faces)) return cag_fail_memory(err);
+  if (!cag_brep_reserve((void **)&b->faces, b->face_count, 1, sizeof *b->faces))
+    return cag_fail_memory(err);
   *index = b->face_count;
   b->faces[b->face_count++] = *face;
   return CAG_OK;
@@ -44,7 +49,8 @@ static CagStatus add_face(CagBrepWork *w, const CagBrepFace *face, size_t *index
 
 static CagStatus add_loop(CagBrepWork *w, size_t face, size_t *index, CagError *err) {
   CagBrep *b = w->brep;
-  if (!one_more((void **)&b->loops, b->loop_count, sizeof *b->loops)) return cag_fail_memory(err);
+  if (!cag_brep_reserve((void **)&b->loops, b->loop_count, 1, sizeof *b->loops))
+    return cag_fail_memory(err);
   *index = b->loop_count;
   b->loops[b->loop_count++] = (CagBrepLoop){0, 0};
   b->faces[face].count++;

@@ -107,8 +107,8 @@ static void add_extensions(Text *t, const Plan *p) {
                                       "KHR_materials_transmission", "KHR_materials_ior",
                                       "KHR_materials_clearcoat"};
   bool used[4] = {false};
-  for (size_t i = 0; i < p->material_count; i++) {
-    const CagMaterial *m = p->materials[i];
+  for (size_t i = 0; i < p->materials.count; i++) {
+    const CagMaterial *m = p->materials.items[i];
     used[0] |= fmax(m->emission.r, fmax(m->emission.g, m->emission.b)) > 1;
     used[1] |= m->transmission > 0;
     used[2] |= m->ior != 1.5 && m->ior >= 1;
@@ -124,11 +124,11 @@ static void add_extensions(Text *t, const Plan *p) {
 }
 
 static void add_materials(Text *t, const Plan *p) {
-  for (size_t i = 0; i < p->material_count; i++) {
+  for (size_t i = 0; i < p->materials.count; i++) {
     add(t, "%s", i ? "," : ",\"materials\":[");
-    add_material(t, p->materials[i]);
+    add_material(t, p->materials.items[i]);
   }
-  if (p->material_count > 0) add(t, "]");
+  if (p->materials.count > 0) add(t, "]");
 }
 
 // A motion as translation and rotation; what does nothing is left out.
@@ -279,33 +279,29 @@ void cag_gltf_text_free(CagGltfText *t) {
 
 // --- The plan ---
 
-static size_t number_material(Plan *p, const CagMaterial *m) {
-  for (size_t k = 0; m && k < p->material_count; k++)
-    if (p->materials[k] == m) return k;
-  if (m) p->materials[p->material_count++] = m;
-  return p->material_count - 1;
-}
-
-// Gives part i's node its mesh: one of the same data and material, or a new one.
-static void number_mesh(Plan *p, size_t i, size_t *meshes) {
-  Part *g = &p->parts[i], *first = &p->parts[p->copies[i].original];
-  g->material = number_material(p, p->meshes[i].material);
-  for (size_t k = first->last_mesh; k != SIZE_MAX; k = p->parts[k].last_mesh_before) {
-    if (p->meshes[k].material != p->meshes[i].material) continue;
+// Gives part i's node its mesh: one of the same data and material, or a new one. Returns false if
+// memory ran out.
+static bool number_mesh(Plan *p, size_t i, size_t *meshes) {
+  Part *g = &p->parts[i];
+  const size_t original = p->copies[i].original;
+  const CagMaterial *material = p->meshes[i].material;
+  if (material && !cag_material_list_add(&p->materials, material, &g->material)) return false;
+  const uint64_t hash = cag_hash_word(cag_hash_word(CAG_HASH_START, original), (uintptr_t)material);
+  size_t k;
+  for (CagHashWalk w = cag_hash_walk(&p->told, hash); cag_hash_next(&w, &k);) {
+    if (p->copies[k].original != original || p->meshes[k].material != material) continue;
     g->mesh = p->parts[k].mesh;
     g->mesh_of = k;
-    return;
+    return true;
   }
   g->mesh = (*meshes)++;
   g->mesh_of = i;
-  g->last_mesh_before = first->last_mesh;
-  first->last_mesh = i;
+  return cag_hash_add(&p->told, hash, i);
 }
 
 static CagStatus plan_part(Plan *p, size_t i, size_t *views, size_t *meshes, CagError *err) {
   Part *g = &p->parts[i];
   const CagMesh *m = p->meshes[i].mesh;
-  g->last_mesh = SIZE_MAX;
   if (p->copies[i].original == i) {
     CagStatus status = cag_mesh_floats(&p->meshes[i], &g->positions, g->least, g->most, err);
     if (status != CAG_OK) return status;
@@ -320,18 +316,15 @@ static CagStatus plan_part(Plan *p, size_t i, size_t *views, size_t *meshes, Cag
     }
   }
   g->shown = p->parts[p->copies[i].original].triangles > 0;
-  if (g->shown) number_mesh(p, i, meshes);
-  return CAG_OK;
+  return !g->shown || number_mesh(p, i, meshes) ? CAG_OK : cag_fail_memory(err);
 }
 
 CagStatus cag_gltf_plan(const CagMeshPart *parts, size_t n, CagGltfPlan *p, CagError *err) {
   *p = (CagGltfPlan){.meshes = parts, .count = n};
   size_t views = 0, meshes = 0;
   p->parts = cag_calloc(n + 1, sizeof *p->parts);
-  p->materials = cag_malloc((n + 1) * sizeof *p->materials);
-  CagStatus status = p->parts && p->materials
-                         ? cag_mesh_find_copies(parts, n, false, &p->copies, err)
-                         : cag_fail_memory(err);
+  CagStatus status =
+      p->parts ? cag_mesh_find_copies(parts, n, false, &p->copies, err) : cag_fail_memory(err);
   for (size_t i = 0; status == CAG_OK && i < n; i++) status = plan_part(p, i, &views, &meshes, err);
   if (status != CAG_OK) cag_gltf_plan_free(p);
   return status;
@@ -341,7 +334,8 @@ void cag_gltf_plan_free(CagGltfPlan *p) {
   for (size_t i = 0; p->parts && i < p->count; i++) cag_free(p->parts[i].positions);
   cag_free(p->parts);
   cag_free(p->copies);
-  cag_free(p->materials);
+  cag_material_list_free(&p->materials);
+  cag_hash_free(&p->told);
   *p = (CagGltfPlan){0};
 }
 
@@ -438,13 +432,6 @@ static void write_embedded(const Text *t, const CagGltfData *d, CagAtomicFile *f
   cag_atomic_file_write(file, t->at + t->data_at, t->length - t->data_at);
 }
 
-// FNV-1a (Fowler, Noll, Vo), 64 bits.
-static uint64_t hash_of(const char *bytes, size_t n) {
-  uint64_t hash = 14695981039346656037u;
-  for (size_t i = 0; i < n; i++) hash = (hash ^ (unsigned char)bytes[i]) * 1099511628211u;
-  return hash;
-}
-
 static CagStatus make_data(const Plan *p, const char *stem, CagGltfData *out, CagError *err) {
   CagIoError io;
   if (p->data_bytes == 0) return CAG_OK;
@@ -457,7 +444,8 @@ static CagStatus make_data(const Plan *p, const char *stem, CagGltfData *out, Ca
   const size_t room = strlen(stem) + sizeof "-0123456789abcdef.bin";
   out->name = cag_malloc(room);
   if (!out->name) return cag_fail_memory(err);
-  snprintf(out->name, room, "%s-%016" PRIx64 ".bin", stem, hash_of(out->bytes, out->size));
+  snprintf(out->name, room, "%s-%016" PRIx64 ".bin", stem,
+           cag_hash_bytes(CAG_HASH_START, out->bytes, out->size));
   return CAG_OK;
 }
 

@@ -18,8 +18,6 @@ typedef struct CagGltfPart {
   bool shown; // false: single precision leaves nothing of it
   size_t mesh, mesh_of,
       material; // numbers in the file; mesh_of: the part that its mesh is told for
-  size_t last_mesh,
-      last_mesh_before; // chain of the meshes of one original's data; SIZE_MAX ends it
   // Of originals:
   float *positions;
   float least[3], most[3];
@@ -31,8 +29,8 @@ typedef struct CagGltfPlan {
   size_t count;
   CagMeshCopy *copies;
   CagGltfPart *parts;
-  const CagMaterial **materials; // in use, each once
-  size_t material_count;
+  CagMaterialList materials;
+  CagHashIndex told; // parts that a mesh is told for, by original and material
   uint64_t data_bytes;
 } CagGltfPlan;
 

@@ -156,8 +156,25 @@ size_t cag_mesh_kept_triangles(const CagMesh *m, const float *positions) {
   return kept;
 }
 
-size_t cag_mesh_first_with_material(const CagMeshPart *parts, size_t i) {
-  for (size_t k = 0; k < i; k++)
-    if (parts[k].material == parts[i].material) return k;
-  return i;
+bool cag_material_list_add(CagMaterialList *l, const CagMaterial *material, size_t *number) {
+  const uint64_t hash = cag_hash_word(CAG_HASH_START, (uintptr_t)material);
+  for (CagHashWalk w = cag_hash_walk(&l->index, hash); cag_hash_next(&w, number);)
+    if (l->items[*number] == material) return true;
+  if (l->count == l->capacity) {
+    const size_t capacity = l->capacity ? 2 * l->capacity : 16;
+    const CagMaterial **more = cag_realloc(l->items, capacity * sizeof *more);
+    if (!more) return false;
+    l->items = more;
+    l->capacity = capacity;
+  }
+  if (!cag_hash_add(&l->index, hash, l->count)) return false;
+  l->items[l->count] = material;
+  *number = l->count++;
+  return true;
+}
+
+void cag_material_list_free(CagMaterialList *l) {
+  cag_free(l->items);
+  cag_hash_free(&l->index);
+  *l = (CagMaterialList){0};
 }

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "base/hash.h"
 #include "interp/export/mesh_formats.h"
 
 // Writes x with 9 significant digits (a float reads back the same), without trailing zeros, at most
@@ -47,7 +48,16 @@ static inline bool cag_mesh_shrinks(const float *p, const uint32_t *k) {
 }
 size_t cag_mesh_kept_triangles(const CagMesh *m, const float *positions);
 
-// Index of the first part with the same material as part i.
-size_t cag_mesh_first_with_material(const CagMeshPart *parts, size_t i);
+// The materials in use, each once, numbered in the order in which they were added. A list of zeros
+// is empty.
+typedef struct CagMaterialList {
+  const CagMaterial **items;
+  size_t count, capacity;
+  CagHashIndex index; // by address
+} CagMaterialList;
+
+// Finds a material or adds it. Returns false if memory ran out.
+bool cag_material_list_add(CagMaterialList *l, const CagMaterial *material, size_t *number);
+void cag_material_list_free(CagMaterialList *l);
 
 #endif

@@ -28,20 +28,65 @@ static char *put_line(char *at, const char *word, const double *x, int n) {
   return at;
 }
 
-// Material names are made unique by the number of the part that has it first.
-static void write_material_name(const CagMeshPart *parts, size_t i, CagAtomicFile *file) {
-  size_t first = cag_mesh_first_with_material(parts, i);
-  const char *name = parts[first].material->name ? parts[first].material->name : "material";
-  bool taken = false;
-  for (size_t k = 0; k < first && !taken; k++) {
-    const char *other = parts[k].material ? parts[k].material->name : NULL;
-    taken = other && !strcmp(other, name);
+// The materials of the parts. Names in the file are unique: that of a material whose name an
+// earlier one has gets the number of the first part that wears it.
+typedef struct ObjMaterials {
+  CagMaterialList list;
+  size_t *of;    // number of each part's material
+  size_t *first; // part that wears each material first
+  bool *taken;   // an earlier material has the name
+} ObjMaterials;
+
+static void free_materials(ObjMaterials *m) {
+  cag_material_list_free(&m->list);
+  cag_free(m->of);
+  cag_free(m->first);
+  cag_free(m->taken);
+  *m = (ObjMaterials){0};
+}
+
+static const char *material_name(const CagMaterial *m) { return m->name ? m->name : "material"; }
+
+// Marks the materials whose names are taken. Those without a name take none.
+static bool mark_taken(ObjMaterials *m) {
+  CagHashIndex names = {0};
+  bool good = true;
+  for (size_t i = 0; good && i < m->list.count; i++) {
+    const char *name = material_name(m->list.items[i]);
+    const uint64_t hash = cag_hash_text(CAG_HASH_START, name);
+    size_t k;
+    CagHashWalk w = cag_hash_walk(&names, hash);
+    while (!m->taken[i] && cag_hash_next(&w, &k))
+      m->taken[i] = strcmp(m->list.items[k]->name, name) == 0;
+    if (!m->taken[i] && m->list.items[i]->name) good = cag_hash_add(&names, hash, i);
   }
+  cag_hash_free(&names);
+  return good;
+}
+
+static CagStatus find_materials(const CagMeshPart *parts, size_t n, ObjMaterials *m,
+                                CagError *err) {
+  *m = (ObjMaterials){.of = cag_calloc(n + 1, sizeof *m->of),
+                      .first = cag_calloc(n + 1, sizeof *m->first),
+                      .taken = cag_calloc(n + 1, sizeof *m->taken)};
+  bool good = m->of && m->first && m->taken;
+  for (size_t i = 0; good && i < n; i++) {
+    const size_t known = m->list.count;
+    if (!parts[i].material) continue;
+    good = cag_material_list_add(&m->list, parts[i].material, &m->of[i]);
+    if (m->list.count > known) m->first[known] = i;
+  }
+  if (good && mark_taken(m)) return CAG_OK;
+  free_materials(m);
+  return cag_fail_memory(err);
+}
+
+static void write_material_name(const ObjMaterials *m, size_t number, CagAtomicFile *file) {
   char *start = cag_atomic_file_reserve(file, WORD_BYTES + INDEX_BYTES + 1);
-  char *at = cag_mesh_write_word(start, name, WORD_BYTES);
-  if (taken) {
+  char *at = cag_mesh_write_word(start, material_name(m->list.items[number]), WORD_BYTES);
+  if (m->taken[number]) {
     *at++ = '.';
-    at = cag_mesh_write_index(at, first + 1);
+    at = cag_mesh_write_index(at, m->first[number] + 1);
   }
   *at++ = '\n';
   cag_atomic_file_advance(file, at);
@@ -108,8 +153,9 @@ static void write_faces(const CagMesh *m, const uint32_t *number, const ObjCount
   }
 }
 
-static CagStatus write_part(const CagMeshPart *parts, size_t i, bool materials, ObjCounts *counts,
-                            CagAtomicFile *file, CagError *err) {
+// materials: NULL: none are written.
+static CagStatus write_part(const CagMeshPart *parts, size_t i, const ObjMaterials *materials,
+                            ObjCounts *counts, CagAtomicFile *file, CagError *err) {
   const CagMesh *m = parts[i].mesh;
   uint32_t *number = cag_malloc((m->vertex_count + 1) * sizeof *number);
   if (!number) return cag_fail_memory(err);
@@ -130,7 +176,7 @@ static CagStatus write_part(const CagMeshPart *parts, size_t i, bool materials, 
   }
   if (materials && parts[i].material) {
     cag_atomic_file_text(file, "usemtl ");
-    write_material_name(parts, i, file);
+    write_material_name(materials, materials->of[i], file);
   }
   cag_atomic_file_text(file, m->normals ? "s 1\n" : "s off\n");
   write_faces(m, number, &before, file);
@@ -143,9 +189,11 @@ CagStatus cag_export_obj(const CagMeshPart *parts, size_t n, const char *materia
   cag_atomic_file_text(file, "# written by cag, lengths in mm, z up\n");
   if (material_file) cag_atomic_file_printf(file, "mtllib %s\n", material_file);
   ObjCounts counts = {0};
-  CagStatus status = CAG_OK;
+  ObjMaterials materials = {0};
+  CagStatus status = material_file ? find_materials(parts, n, &materials, err) : CAG_OK;
   for (size_t i = 0; status == CAG_OK && i < n; i++)
-    status = write_part(parts, i, material_file != NULL, &counts, file, err);
+    status = write_part(parts, i, material_file ? &materials : NULL, &counts, file, err);
+  free_materials(&materials);
   return status;
 }
 
@@ -185,13 +233,15 @@ static void write_material(const CagMaterial *m, CagAtomicFile *file) {
 }
 
 CagStatus cag_export_mtl(const CagMeshPart *parts, size_t n, CagAtomicFile *file, CagError *err) {
-  (void)err;
+  ObjMaterials materials;
+  CagStatus status = find_materials(parts, n, &materials, err);
+  if (status != CAG_OK) return status;
   cag_atomic_file_text(file, "# written by cag\n");
-  for (size_t i = 0; i < n; i++) {
-    if (!parts[i].material || cag_mesh_first_with_material(parts, i) != i) continue;
+  for (size_t i = 0; i < materials.list.count; i++) {
     cag_atomic_file_text(file, "\nnewmtl ");
-    write_material_name(parts, i, file);
-    write_material(parts[i].material, file);
+    write_material_name(&materials, i, file);
+    write_material(materials.list.items[i], file);
   }
+  free_materials(&materials);
   return CAG_OK;
 }

@@ -31,8 +31,8 @@ static CagStatus write_materials(CagPovWriter *w, const bool *closed, CagError *
     used[s->items[i].material] |=
         closed[i] || !(s->materials[s->items[i].material].transmission > 0) ? CLOSED : THIN;
   for (size_t i = 0; i < s->item_count; i++)
-    for (uint32_t k = 1; k <= s->items[i].label_count; k++)
-      used[cag_item_label_material(&s->items[i], k)] |= CLOSED;
+    for (size_t k = 0; k < s->items[i].label_count; k++)
+      used[s->items[i].labels[k].material] |= CLOSED;
   for (size_t i = 0; i < s->material_count; i++) {
     if (used[i] & CLOSED) pov_material(w, i, true);
     if (used[i] & THIN) pov_material(w, i, false);
@@ -155,8 +155,8 @@ static void write_item_comment(CagPovWriter *w, const CagItem *item) {
 // Opaque in all of its parts?
 static bool is_opaque(const CagPovWriter *w, const CagItem *item) {
   bool opaque = !w->see_through;
-  for (size_t k = 0; k <= item->label_count; k++)
-    opaque &= !(w->scene->materials[cag_item_label_material(item, (uint32_t)k)].transmission > 0);
+  for (size_t k = 0; k < item->label_count; k++)
+    opaque &= !(w->scene->materials[item->labels[k].material].transmission > 0);
   return opaque;
 }
 

@@ -8,9 +8,9 @@
 // not quite meet, and rays would pass between them. A mesh there is written about a point near its
 // middle, and translated to its place.
 
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/export/pov_write.h"
 #include "interp/scene/item_mesh.h"
 
@@ -140,12 +140,13 @@ static void write_scale_places(CagPovWriter *w, const CagMesh *m) {
 
 // The parts of a mesh of several materials, each with its own.
 static CagStatus write_parts(CagPovWriter *w, const CagMesh *m, CagError *err) {
-  CagStatus status = CAG_OK;
+  size_t *materials, count;
+  CagStatus status = cag_item_materials(w->item, &materials, &count, err);
   pov_text(w, "union {\n");
-  for (size_t i = 0; !status && i < w->scene->material_count; i++) {
+  for (size_t i = 0; !status && i < count; i++) {
     CagMesh *part = NULL;
     char material[64];
-    status = cag_item_mesh_of(w->item, m, i, &part, err);
+    status = cag_item_mesh_of(w->item, m, materials[i], &part, err);
     if (status || part->triangle_count == 0) {
       cag_mesh_release(part);
       continue;
@@ -153,9 +154,10 @@ static CagStatus write_parts(CagPovWriter *w, const CagMesh *m, CagError *err) {
     pov_text(w, "object {\n");
     status = pov_mesh(w, part, err);
     cag_mesh_release(part);
-    pov_material_name(w, i, true, material);
+    pov_material_name(w, materials[i], true, material);
     pov_printf(w, "\n  material { %s }\n}\n", material);
   }
+  cag_free(materials);
   pov_text(w, "}");
   return status;
 }

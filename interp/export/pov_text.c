@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 #include "interp/export/pov_write.h"
 
@@ -172,46 +173,33 @@ static void make_identifier(const char *prefix, const char *name, CagPovName out
   if (is_reserved(out)) strcpy(out + n, "_");
 }
 
-// Open-addressing table of the names so far, so that a million names are no trouble.
-typedef struct NameTable {
-  uint32_t *slots; // index + 1; 0: free
-  size_t size;     // a power of two, at least twice the names
-  CagPovName *names;
-} NameTable;
-
-static uint64_t hash_of(const char *s) {
-  uint64_t h = 14695981039346656037u; // FNV-1a
-  for (; *s; s++) h = (h ^ (unsigned char)*s) * 1099511628211u;
-  return h;
-}
-
-static bool table_insert(NameTable *t, uint32_t index) {
-  for (uint64_t at = hash_of(t->names[index]);; at++) {
-    uint32_t *slot = &t->slots[at & (t->size - 1)];
-    if (*slot && strcmp(t->names[*slot - 1], t->names[index]) == 0) return false;
-    if (*slot) continue;
-    *slot = index + 1;
-    return true;
-  }
+static bool is_taken(const CagHashIndex *taken, const CagPovName *names, uint64_t hash,
+                     const char *name) {
+  size_t k;
+  for (CagHashWalk w = cag_hash_walk(taken, hash); cag_hash_next(&w, &k);)
+    if (strcmp(names[k], name) == 0) return true;
+  return false;
 }
 
 bool pov_names(const char *prefix, const char *const *names, size_t n, CagPovName **out) {
-  NameTable t = {.size = 16};
-  while (t.size < 2 * n) t.size *= 2;
-  t.slots = cag_calloc(t.size, sizeof *t.slots);
-  t.names = cag_malloc((n ? n : 1) * sizeof *t.names);
-  if (!t.slots || !t.names) {
-    cag_free(t.slots);
-    cag_free(t.names);
+  CagHashIndex taken = {0};
+  CagPovName *made = cag_malloc((n ? n : 1) * sizeof *made);
+  if (!made || !cag_hash_reserve(&taken, n)) {
+    cag_free(made);
     return false;
   }
-  for (uint32_t i = 0; i < n; i++) {
-    make_identifier(prefix, names[i], t.names[i]);
-    size_t base = strlen(t.names[i]);
-    for (unsigned k = 2; !table_insert(&t, i); k++)
-      snprintf(t.names[i] + base, sizeof t.names[i] - base, "_%u", i > 1000 ? i + k : k);
+  for (size_t i = 0; i < n; i++) {
+    make_identifier(prefix, names[i], made[i]);
+    const size_t base = strlen(made[i]);
+    uint64_t hash = cag_hash_text(CAG_HASH_START, made[i]);
+    // Numbers behind the first thousand names are higher, so that they are hardly ever taken.
+    for (size_t k = 2; is_taken(&taken, made, hash, made[i]); k++) {
+      snprintf(made[i] + base, sizeof made[i] - base, "_%zu", i > 1000 ? i + k : k);
+      hash = cag_hash_text(CAG_HASH_START, made[i]);
+    }
+    cag_hash_add(&taken, hash, i);
   }
-  cag_free(t.slots);
-  *out = t.names;
+  cag_hash_free(&taken);
+  *out = made;
   return true;
 }

@@ -30,9 +30,9 @@ typedef struct Model {
   const CagMeshPart *parts;
   size_t count;
   CagMeshCopy *copies;
-  const CagMaterial **materials; // in use, each once
-  size_t material_count;
-  CagAtomicFile *xml; // in memory: what was not packed yet
+  CagMaterialList materials;
+  size_t *material_of; // number of each part's material
+  CagAtomicFile *xml;  // in memory: what was not packed yet
   CagZip zip;
 } Model;
 
@@ -77,18 +77,12 @@ static void write_escaped(CagAtomicFile *xml, const char *text) {
 
 // --- Materials ---
 
-static size_t material_number(const Model *m, const CagMaterial *material) {
-  size_t k = 0;
-  while (k < m->material_count && m->materials[k] != material) k++;
-  return k;
-}
-
 // Colors are sRGB; what lets light through is transparent.
 static void write_materials(Model *m) {
-  if (m->material_count == 0) return;
+  if (m->materials.count == 0) return;
   cag_atomic_file_printf(m->xml, "  <basematerials id=\"%d\">\n", MATERIALS_ID);
-  for (size_t i = 0; i < m->material_count; i++) {
-    const CagMaterial *a = m->materials[i];
+  for (size_t i = 0; i < m->materials.count; i++) {
+    const CagMaterial *a = m->materials.items[i];
     const double x[4] = {cag_linear_to_srgb(fmin(fmax(a->color.r, 0), 1)),
                          cag_linear_to_srgb(fmin(fmax(a->color.g, 0), 1)),
                          cag_linear_to_srgb(fmin(fmax(a->color.b, 0), 1)),
@@ -236,8 +230,7 @@ static CagStatus write_object(Model *m, size_t i, bool closed, const float *p, C
     cag_atomic_file_text(m->xml, "/>\n   </components>\n");
   } else {
     if (part->material)
-      cag_atomic_file_printf(m->xml, " pid=\"%d\" pindex=\"%zu\"", MATERIALS_ID,
-                             material_number(m, part->material));
+      cag_atomic_file_printf(m->xml, " pid=\"%d\" pindex=\"%zu\"", MATERIALS_ID, m->material_of[i]);
     cag_atomic_file_text(m->xml, ">\n");
     status = write_mesh(m, i, p, err);
   }
@@ -301,11 +294,13 @@ static CagStatus begin(Model *m, CagError *err) {
       "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>\n"
       "</Relationships>\n";
   CagIoError io;
-  m->materials = cag_malloc((m->count + 1) * sizeof *m->materials);
-  if (!m->materials) return cag_fail_memory(err);
-  for (size_t i = 0; i < m->count; i++)
-    if (m->parts[i].material && material_number(m, m->parts[i].material) == m->material_count)
-      m->materials[m->material_count++] = m->parts[i].material;
+  m->material_of = cag_calloc(m->count + 1, sizeof *m->material_of);
+  if (!m->material_of) return cag_fail_memory(err);
+  for (size_t i = 0; i < m->count; i++) {
+    const CagMaterial *material = m->parts[i].material;
+    if (material && !cag_material_list_add(&m->materials, material, &m->material_of[i]))
+      return cag_fail_memory(err);
+  }
   m->xml = cag_atomic_file_open_memory(&io);
   if (!m->xml) return cag_fail_memory(err);
   CagStatus status = cag_mesh_find_copies(m->parts, m->count, true, &m->copies, err);
@@ -329,6 +324,7 @@ CagStatus cag_export_3mf(const CagMeshPart *parts, size_t n, CagAtomicFile *file
   cag_atomic_file_abort(m.xml);
   cag_free(shown);
   cag_free(m.copies);
-  cag_free(m.materials);
+  cag_free(m.material_of);
+  cag_material_list_free(&m.materials);
   return status;
 }

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/memory.h"
 #include "geom/solid/csg.h"
 #include "interp/builtin/shapes.h"
@@ -21,7 +22,12 @@ typedef struct Build {
   CagVm *vm;
   CagScene *scene;
   size_t item_capacity, label_capacity, material_capacity, camera_capacity, light_capacity;
-  bool failed; // memory is out
+  CagHashIndex names;     // items by name
+  size_t *name_numbers;   // of an item: the last number added to its name for other items
+  size_t number_capacity; // of name_numbers
+  CagHashIndex materials; // by what they look like, and by that and their name
+  CagHashIndex labels;    // of the item at hand
+  bool failed;            // memory is out
 } Build;
 
 // What groups around a shape say about it.
@@ -93,12 +99,36 @@ static bool same_material(const CagMaterial *a, const CagMaterial *b) {
          same_text(a->texture, b->texture) && same_text(a->pov, b->pov);
 }
 
-// Keeps the material unless there is the same one already; texts are copied.
+static uint64_t hash_color(uint64_t h, CagColor c) {
+  return cag_hash_number(cag_hash_number(cag_hash_number(h, c.r), c.g), c.b);
+}
+
+// The hash of what same_material compares.
+static uint64_t hash_material(const CagMaterial *m) {
+  const double numbers[] = {m->metallic,     m->roughness, m->ior,
+                            m->transmission, m->coat,      m->texture_scale};
+  uint64_t h = hash_color(hash_color(hash_color(CAG_HASH_START, m->color), m->emission), m->color2);
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) h = cag_hash_number(h, numbers[i]);
+  h = cag_hash_text(h, m->texture);
+  return m->pov ? cag_hash_text(h, m->pov) : h;
+}
+
+// Finds the first material that looks the same and has the name (NULL: any).
+static bool find_material(const Build *b, uint64_t hash, const CagMaterial *m, const char *name,
+                          size_t *out) {
+  const CagMaterial *known = b->scene->materials;
+  for (CagHashWalk w = cag_hash_walk(&b->materials, hash); cag_hash_next(&w, out);)
+    if (same_material(&known[*out], m) && (!name || same_text(known[*out].name, name))) return true;
+  return false;
+}
+
+// Keeps the material unless the scene has the same one already; copies texts.
 static size_t keep_material(Build *b, CagMaterial m, const char *name) {
   CagScene *s = b->scene;
-  for (size_t i = 0; i < s->material_count; i++)
-    if (same_material(&s->materials[i], &m) && (!name || same_text(s->materials[i].name, name)))
-      return i;
+  const uint64_t look = hash_material(&m);
+  size_t known;
+  if (find_material(b, name ? cag_hash_text(look, name) : look, &m, name, &known)) return known;
+  const bool first = !name || !find_material(b, look, &m, NULL, &known);
   s->materials =
       grown(b, s->materials, s->material_count, &b->material_capacity, sizeof *s->materials);
   if (b->failed) return DEFAULT_MATERIAL;
@@ -107,6 +137,9 @@ static size_t keep_material(Build *b, CagMaterial m, const char *name) {
   m.name = copy_text(b, name ? name : numbered);
   m.texture = copy_text(b, m.texture);
   m.pov = m.pov ? copy_text(b, m.pov) : NULL;
+  const uint64_t named = m.name ? cag_hash_text(look, m.name) : look;
+  if (first && !cag_hash_add(&b->materials, look, s->material_count)) b->failed = true;
+  if (!cag_hash_add(&b->materials, named, s->material_count)) b->failed = true;
   s->materials[s->material_count] = m;
   return s->material_count++;
 }
@@ -131,39 +164,41 @@ static size_t material_of(Build *b, const CagRecord *r, size_t fallback) {
 
 // --- Items ---
 
-static bool name_is_taken(const CagScene *s, const char *name) {
-  for (size_t i = 0; i < s->item_count; i++)
-    if (same_text(s->items[i].name, name)) return true;
+static bool find_item(const Build *b, const char *name, size_t *out) {
+  const uint64_t hash = cag_hash_text(CAG_HASH_START, name);
+  for (CagHashWalk w = cag_hash_walk(&b->names, hash); cag_hash_next(&w, out);)
+    if (same_text(b->scene->items[*out].name, name)) return true;
   return false;
 }
 
-// "vase", "vase.2", "vase.3" ... The search begins behind the last number given out, which makes
-// scenes of many items of one name quick.
+// "vase", "vase.2", "vase.3" ... The search continues from the last number that was added to the
+// name, so that naming many items alike takes linear time.
 static char *unique_name(Build *b, const char *wanted) {
-  if (!name_is_taken(b->scene, wanted)) return copy_text(b, wanted);
-  size_t n = strlen(wanted), number = 1;
-  const CagScene *s = b->scene;
-  for (size_t i = s->item_count; i-- > 0 && number == 1;) {
-    const char *name = s->items[i].name;
-    if (name && !strncmp(name, wanted, n) && name[n] == '.')
-      number = strtoul(name + n + 1, NULL, 10);
-  }
-  size_t size = n + 24;
+  size_t first, taken;
+  if (!find_item(b, wanted, &first)) return copy_text(b, wanted);
+  size_t size = strlen(wanted) + 24, *number = &b->name_numbers[first];
   char *name = cag_malloc(size);
   if (!name) {
     b->failed = true;
     return NULL;
   }
-  do snprintf(name, size, "%s.%zu", wanted, ++number);
-  while (name_is_taken(s, name));
+  do snprintf(name, size, "%s.%zu", wanted, ++*number);
+  while (find_item(b, name, &taken));
   return name;
 }
 
 static CagItem *add_item(Build *b, CagItemKind kind, const char *name) {
   CagScene *s = b->scene;
   s->items = grown(b, s->items, s->item_count, &b->item_capacity, sizeof *s->items);
+  b->name_numbers =
+      grown(b, b->name_numbers, s->item_count, &b->number_capacity, sizeof *b->name_numbers);
   char *own = b->failed ? NULL : unique_name(b, name);
+  if (!b->failed && !cag_hash_add(&b->names, cag_hash_text(CAG_HASH_START, own), s->item_count)) {
+    cag_free(own);
+    b->failed = true;
+  }
   if (b->failed) return NULL;
+  b->name_numbers[s->item_count] = 1;
   CagItem *item = &s->items[s->item_count++];
   *item = (CagItem){.kind = kind, .name = own, .placement = cag_transform_identity()};
   return item;
@@ -195,34 +230,38 @@ static const char *surface_name(const CagSurface *s) {
   return cag_surface_placed_view(s, &inner, &map) ? inner->kind->name : s->kind->name;
 }
 
-// The materials of the labels that a body or mesh has, as far as the largest of them.
+// The labels that a body or mesh has, with their materials.
 typedef struct Labels {
   Build *b;
   CagItem *item;
   CagRecord *outer;
+  size_t capacity;
+  uint32_t last; // label noted last: triangles with one label follow each other
 } Labels;
 
-static void note_label(const Labels *l, uint32_t label) {
+static bool is_noted(const Labels *l, uint32_t label) {
+  size_t i;
+  CagHashWalk w = cag_hash_walk(&l->b->labels, cag_hash_word(CAG_HASH_START, label));
+  while (cag_hash_next(&w, &i))
+    if (l->item->labels[i].label == label) return true;
+  return false;
+}
+
+static void note_label(Labels *l, uint32_t label) {
   CagItem *item = l->item;
-  if (label == 0 || (label <= item->label_count && item->label_materials[label - 1] != SIZE_MAX))
-    return;
-  if (label > item->label_count) {
-    size_t *more = cag_realloc(item->label_materials, label * sizeof *more);
-    if (!more) {
-      l->b->failed = true;
-      return;
-    }
-    for (size_t i = item->label_count; i < label; i++) more[i] = SIZE_MAX;
-    item->label_materials = more;
-    item->label_count = label;
-  }
+  if (label == 0 || label == l->last || is_noted(l, label) || l->b->failed) return;
+  l->last = label;
+  item->labels = grown(l->b, item->labels, item->label_count, &l->capacity, sizeof *item->labels);
+  if (l->b->failed) return;
   CagRecord *own = cag_solids_material(l->b->vm, label);
   const size_t at =
       material_of(l->b, cag_material_combine(l->b->vm, own, l->outer), DEFAULT_MATERIAL);
-  item->label_materials[label - 1] = own ? at : item->material;
+  if (!cag_hash_add(&l->b->labels, cag_hash_word(CAG_HASH_START, label), item->label_count))
+    l->b->failed = true;
+  item->labels[item->label_count++] = (CagItemLabel){label, own ? at : item->material};
 }
 
-static void note_solid_labels(const Labels *l, const CagSolid *s) {
+static void note_solid_labels(Labels *l, const CagSolid *s) {
   note_label(l, s->label);
   if (s->core && s->core->mesh && s->kind == CAG_SOLID_MESH && s->core->mesh->labels)
     for (size_t t = 0; t < s->core->mesh->triangle_count; t++)
@@ -230,12 +269,19 @@ static void note_solid_labels(const Labels *l, const CagSolid *s) {
   for (size_t i = 0; s->core && i < s->core->count; i++) note_solid_labels(l, s->core->operands[i]);
 }
 
+static int by_label(const void *a, const void *b) {
+  const CagItemLabel *x = a, *y = b;
+  return x->label < y->label ? -1 : x->label > y->label;
+}
+
 static void note_labels(Build *b, CagItem *item, CagRecord *outer) {
-  const Labels l = {b, item, outer};
+  Labels l = {.b = b, .item = item, .outer = outer};
   if (item->kind == CAG_ITEM_SOLID) note_solid_labels(&l, item->as.solid);
-  if (item->kind != CAG_ITEM_MESH || !item->as.mesh->labels) return;
-  for (size_t t = 0; t < item->as.mesh->triangle_count; t++)
-    note_label(&l, item->as.mesh->labels[t]);
+  if (item->kind == CAG_ITEM_MESH && item->as.mesh->labels)
+    for (size_t t = 0; t < item->as.mesh->triangle_count; t++)
+      note_label(&l, item->as.mesh->labels[t]);
+  cag_hash_free(&b->labels);
+  if (item->label_count) qsort(item->labels, item->label_count, sizeof *item->labels, by_label);
 }
 
 static void add_shape(Build *b, CagValue v, const Said *said) {
@@ -447,14 +493,22 @@ static void add_value(Build *b, CagValue v, CagLead lead) {
   else if (cag_is_shape(v)) add_shapes(b, v, &(Said){0}, lead);
 }
 
-bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene *out) {
-  *out = (CagScene){.bounds = CAG_BOUNDS_EMPTY};
-  Build b = {.vm = vm, .scene = out};
+static void free_build(void *build) {
+  Build *b = build;
+  cag_hash_free(&b->names);
+  cag_hash_free(&b->materials);
+  cag_hash_free(&b->labels);
+  cag_free(b->name_numbers);
+}
+
+static bool build_scene(Build *build, const CagShown *shown, size_t n) {
+  CagVm *vm = build->vm;
+  CagScene *out = build->scene;
   CagMaterial plain = cag_material_default(), line = plain;
   line.color = ink;
-  keep_material(&b, plain, plain.name);
-  keep_material(&b, line, "ink");
-  for (size_t i = 0; i < n && !b.failed; i++) {
+  keep_material(build, plain, plain.name);
+  keep_material(build, line, "ink");
+  for (size_t i = 0; i < n && !build->failed; i++) {
     if (!cag_value_is_shown(vm, shown[i].value)) {
       cag_scene_free(out);
       return !vm->failed &&
@@ -462,10 +516,20 @@ bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene 
                          "show expects shapes, lights, cameras and lists of these, found %s",
                          cag_type_article(shown[i].value));
     }
-    add_value(&b, shown[i].value, cag_lead(shown[i].expr));
+    add_value(build, shown[i].value, cag_lead(shown[i].expr));
   }
-  if (!b.failed) return true;
+  if (!build->failed) return true;
   cag_scene_free(out);
   return !vm->failed &&
          cag_vm_fail(vm, CAG_ERR_limit_memory, "the scene needs more memory than there is");
+}
+
+bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene *out) {
+  Build b = {.vm = vm, .scene = out};
+  CagCleanup cleanup;
+  *out = (CagScene){.bounds = CAG_BOUNDS_EMPTY};
+  cag_cleanup_push(&cleanup, free_build, &b);
+  const bool ok = build_scene(&b, shown, n);
+  cag_cleanup_run(&cleanup);
+  return ok;
 }

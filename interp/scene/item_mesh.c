@@ -2,6 +2,7 @@
 
 #include "interp/scene/item_mesh.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -79,6 +80,23 @@ CagStatus cag_item_mesh(const CagScene *s, const CagItem *item, CagMesh **out, C
                     item->name ? item->name : "a shape");
   }
   *out = m;
+  return CAG_OK;
+}
+
+static int by_number(const void *a, const void *b) {
+  const size_t x = *(const size_t *)a, y = *(const size_t *)b;
+  return x < y ? -1 : x > y;
+}
+
+CagStatus cag_item_materials(const CagItem *item, size_t **out, size_t *count, CagError *err) {
+  size_t *all = *out = cag_malloc((item->label_count + 1) * sizeof *all), n = 0;
+  *count = 0;
+  if (!all) return cag_fail_memory(err);
+  all[n++] = item->material;
+  for (size_t i = 0; i < item->label_count; i++) all[n++] = item->labels[i].material;
+  qsort(all, n, sizeof *all, by_number);
+  for (size_t i = 0; i < n; i++)
+    if (*count == 0 || all[*count - 1] != all[i]) all[(*count)++] = all[i];
   return CAG_OK;
 }
 

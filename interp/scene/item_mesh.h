@@ -14,6 +14,10 @@ double cag_item_line_radius(const CagScene *s, const CagItem *item);
 CagStatus cag_curve_tube_mesh(const CagCurve *c, double radius, double dash,
                               const CagTessellation *how, CagMesh **out, CagError *err);
 
+// The materials of an item and its labels as numbers in the scene: each once, ascending. *out is
+// malloc'd; it is NULL after a failure.
+CagStatus cag_item_materials(const CagItem *item, size_t **out, size_t *count, CagError *err);
+
 // The triangles of an item's mesh that have a material of the scene, with the vertices that they
 // need; without triangles where there are none.
 CagStatus cag_item_mesh_of(const CagItem *item, const CagMesh *m, size_t material, CagMesh **out,

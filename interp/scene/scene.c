@@ -25,7 +25,7 @@ static void free_item(CagItem *item) {
   case CAG_ITEM_GROUND: break;
   }
   cag_free(item->name);
-  cag_free(item->label_materials);
+  cag_free(item->labels);
 }
 
 void cag_scene_free(CagScene *s) {

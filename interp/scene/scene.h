@@ -49,6 +49,12 @@ typedef enum CagItemKind {
   CAG_ITEM_GROUND
 } CagItemKind;
 
+// The material of a solid's operands or a mesh's triangles with a label.
+typedef struct CagItemLabel {
+  uint32_t label;
+  size_t material; // index into materials
+} CagItemLabel;
+
 // One thing to draw; groups are taken apart. Names are unique within the scene ("vase", "vase.2").
 typedef struct CagItem {
   CagItemKind kind;
@@ -60,10 +66,10 @@ typedef struct CagItem {
     CagSolid *solid;
     CagMesh *mesh;
   } as;
-  CagTransform placement;       // REGION only: where its plane lies
-  size_t material;              // index into materials
-  size_t *label_materials;      // SOLID, MESH: likewise, by label less 1; NULL: no labels
-  size_t label_count;           // labels from there on have the item's
+  CagTransform placement; // REGION only: where its plane lies
+  size_t material;        // index into materials
+  CagItemLabel *labels;   // SOLID, MESH: its labels, ascending; others have the item's material
+  size_t label_count;
   double tolerance;             // mm; 0: the scene's
   double line_radius;           // CURVE: 0: by the size of the scene
   double dash;                  // CURVE: length of dashes in mm; 0: none
@@ -170,9 +176,14 @@ typedef struct CagScene {
 void cag_scene_free(CagScene *s);
 // Index of the material of an item's triangles or operands with this label.
 static inline size_t cag_item_label_material(const CagItem *item, uint32_t label) {
-  const size_t at =
-      label > 0 && label <= item->label_count ? item->label_materials[label - 1] : SIZE_MAX;
-  return at == SIZE_MAX ? item->material : at;
+  size_t from = 0, to = item->label_count;
+  while (from < to) {
+    const size_t middle = from + (to - from) / 2;
+    if (item->labels[middle].label < label) from = middle + 1;
+    else to = middle;
+  }
+  const bool found = from < item->label_count && item->labels[from].label == label;
+  return found ? item->labels[from].material : item->material;
 }
 // Adds what is missing: a camera that frames everything (unless there is one), the studio light
 // (unless there is a light or a sky that lights). Computes bounds, and takes out items that are

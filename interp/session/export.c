@@ -24,7 +24,7 @@ typedef int (*ExportFunction)(CagSession *s, const char *path);
 
 typedef struct Parts {
   CagMeshPart *items;
-  size_t count;
+  size_t count, capacity;
 } Parts;
 
 static void free_parts(Parts *p) {
@@ -33,12 +33,16 @@ static void free_parts(Parts *p) {
 }
 
 static CagStatus add_part(Parts *p, CagMeshPart part, CagError *err) {
-  CagMeshPart *more = cag_realloc(p->items, (p->count + 1) * sizeof *more);
-  if (!more) {
-    cag_mesh_release((CagMesh *)part.mesh);
-    return cag_fail_memory(err);
+  if (p->count == p->capacity) {
+    const size_t capacity = p->capacity ? 2 * p->capacity : 16;
+    CagMeshPart *more = cag_realloc(p->items, capacity * sizeof *more);
+    if (!more) {
+      cag_mesh_release((CagMesh *)part.mesh);
+      return cag_fail_memory(err);
+    }
+    p->items = more;
+    p->capacity = capacity;
   }
-  p->items = more;
   p->items[p->count++] = part;
   return CAG_OK;
 }
@@ -46,21 +50,23 @@ static CagStatus add_part(Parts *p, CagMeshPart part, CagError *err) {
 // One part, or (apart) one for each material that faces of a set operation have. Takes the mesh.
 static CagStatus add_parts(Parts *p, const CagScene *scene, const CagItem *item, CagMesh *mesh,
                            bool apart, CagError *err) {
-  CagStatus status = CAG_OK;
   if (!apart || !mesh->labels || !item->label_count) {
     const CagMaterial *material = &scene->materials[item->material];
     return add_part(p, (CagMeshPart){.name = item->name, .mesh = mesh, .material = material}, err);
   }
-  for (size_t i = 0; !status && i < scene->material_count; i++) {
+  size_t *materials, count;
+  CagStatus status = cag_item_materials(item, &materials, &count, err);
+  for (size_t i = 0; !status && i < count; i++) {
+    const CagMaterial *material = &scene->materials[materials[i]];
     CagMesh *m = NULL;
-    status = cag_item_mesh_of(item, mesh, i, &m, err);
+    status = cag_item_mesh_of(item, mesh, materials[i], &m, err);
     if (status || m->triangle_count == 0) {
       cag_mesh_release(m);
       continue;
     }
-    status = add_part(
-        p, (CagMeshPart){.name = item->name, .mesh = m, .material = &scene->materials[i]}, err);
+    status = add_part(p, (CagMeshPart){.name = item->name, .mesh = m, .material = material}, err);
   }
+  cag_free(materials);
   cag_mesh_release(mesh);
   return status;
 }
@@ -101,7 +107,7 @@ typedef enum MeshUse {
 // shown. use: of MeshUse.
 static int make_parts(CagSession *s, unsigned use, Parts *out) {
   const CagScene *scene = &s->scene;
-  *out = (Parts){NULL, 0};
+  *out = (Parts){0};
   bool bodies = false;
   for (size_t i = 0; i < scene->item_count; i++)
     bodies |= scene->items[i].kind != CAG_ITEM_CURVE && scene->items[i].kind != CAG_ITEM_GROUND;
@@ -558,28 +564,42 @@ static int export_urdf(CagSession *s, const char *path) {
 
 // --- The table ---
 
+// X(name, story, function)
+#define FORMATS(X)                                                                                 \
+  X("obj", "mesh, Wavefront OBJ with its materials in an .mtl file beside it", export_obj)         \
+  X("stl", "mesh, binary STL", export_stl)                                                         \
+  X("ply", "mesh, binary PLY with normals, colors and parameters", export_ply)                     \
+  X("glb", "mesh, binary glTF 2.0 in meters with Y up", export_glb)                                \
+  X("gltf", "mesh, glTF 2.0 with its data in a .bin file beside it", export_gltf)                  \
+  X("3mf", "mesh, 3MF with objects, copies and colors", export_3mf)                                \
+  X("pov", "scene, POV-Ray 3.7 source with its own objects where it has them", export_pov)         \
+  X("igs", "exact geometry, IGES 5.3 with curves, surfaces and trimmed planes", export_iges)       \
+  X("step", "exact geometry, STEP AP214 with solids, colors and names", export_step)               \
+  X("urdf", "robot, URDF with its meshes in meters in a folder beside it", export_urdf)            \
+  X("svg", "curves and regions as a flat picture", export_svg)                                     \
+  X("json", "scene, all of it as data", export_json)
+
 static const struct Format {
   const char *name, *story;
   ExportFunction write;
 } formats[] = {
-    {"obj", "mesh, Wavefront OBJ with its materials in an .mtl file beside it", export_obj},
-    {"stl", "mesh, binary STL", export_stl},
-    {"ply", "mesh, binary PLY with normals, colors and parameters", export_ply},
-    {"glb", "mesh, binary glTF 2.0 in meters with Y up", export_glb},
-    {"gltf", "mesh, glTF 2.0 with its data in a .bin file beside it", export_gltf},
-    {"3mf", "mesh, 3MF with objects, copies and colors", export_3mf},
-    {"pov", "scene, POV-Ray 3.7 source with its own objects where it has them", export_pov},
-    {"igs", "exact geometry, IGES 5.3 with curves, surfaces and trimmed planes", export_iges},
-    {"step", "exact geometry, STEP AP214 with solids, colors and names", export_step},
-    {"urdf", "robot, URDF with its meshes in meters in a folder beside it", export_urdf},
-    {"svg", "curves and regions as a flat picture", export_svg},
-    {"json", "scene, all of it as data", export_json},
+#define X(name, story, function) {name, story, function},
+    FORMATS(X)
+#undef X
 };
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 
+static const char FORMAT_HELP[] =
+#define X(name, story, function) " " name
+    "use --format to choose a format:" FORMATS(X);
+#undef X
+
 const char *const *cag_export_formats(void) {
-  static const char *const names[] = {"obj", "stl",  "ply",  "glb", "gltf", "3mf", "pov",
-                                      "igs", "step", "urdf", "svg", "json", NULL};
+  static const char *const names[] = {
+#define X(name, story, function) name,
+      FORMATS(X)
+#undef X
+          NULL};
   return names;
 }
 
@@ -617,9 +637,7 @@ static int export_scene(CagSession *s, const char *path, const char *format) {
                                     "%s has no ending that tells the format", path);
     cag_diagnostic_set_help(d, strcasecmp(name, "exr") == 0 || strcasecmp(name, "png") == 0
                                    ? "`cag render` makes pictures"
-                                   : "the formats are obj, stl, ply, glb, gltf, 3mf, pov, igs, "
-                                     "step, urdf, svg, json; --format "
-                                     "says it where the ending does not");
+                                   : FORMAT_HELP);
     return CAG_STATUS_USAGE;
   }
   int status = cag_session_build_scene(s);

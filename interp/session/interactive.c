@@ -119,7 +119,7 @@ static int start_input(CagSession *s, Input *in) {
   if (!cag_session_begin(s)) return CAG_STATUS_USAGE;
   if (!s->interactive) cag_session_drop_vm(s);
   s->interactive = true;
-  cag_diagnostics_clear(&s->diagnostics);
+  cag_session_clear_diagnostics(s);
   cag_session_renew_time(s);
   return cag_session_end(s, s->define_lost ? cag_session_fail_memory(s)
                                            : cag_session_work(s, evaluate_input, in));
@@ -256,7 +256,7 @@ void cag_session_members(CagSession *s, const char *path,
   s->vm->max_time = s->time_left = MEMBERS_SECONDS;
   cag_session_work(s, ask_members, &(MemberQuestion){s, path, give, context});
   s->vm->max_time = limit;
-  cag_diagnostics_clear(&s->diagnostics);
+  cag_session_clear_diagnostics(s);
   cag_session_end(s, CAG_STATUS_OK);
 }
 

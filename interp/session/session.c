@@ -30,7 +30,8 @@ void cag_session_options_init(CagSessionOptions *o) {
 CagSession *cag_session_new(const CagSessionOptions *options) {
   CagSession *s = cag_calloc(1, sizeof *s);
   if (!s) return NULL;
-  s->options = *options;
+  cag_session_options_init(&s->options);
+  if (options) s->options = *options;
   s->frames = 1;
   return s;
 }
@@ -43,9 +44,9 @@ static void drop_scene(CagSession *s) {
 void cag_session_drop_vm(CagSession *s) {
   CagAccount *before = cag_account_lend(s->vm ? &s->vm->account : NULL);
   drop_scene(s);
-  cag_diagnostics_clear(&s->diagnostics);
   cag_free(s->inputs);
   cag_account_lend(before);
+  cag_session_clear_diagnostics(s);
   cag_vm_free(s->vm);
   s->vm = NULL;
   s->interactive = false;
@@ -54,7 +55,16 @@ void cag_session_drop_vm(CagSession *s) {
   cag_session_renew_time(s);
 }
 
-bool cag_session_begin(CagSession *s) { return !atomic_exchange(&s->busy, true); }
+void cag_session_clear_diagnostics(CagSession *s) {
+  cag_diagnostics_clear(&s->diagnostics);
+  s->lasting = 0;
+}
+
+bool cag_session_begin(CagSession *s) {
+  if (atomic_exchange(&s->busy, true)) return false;
+  cag_diagnostics_truncate(&s->diagnostics, s->lasting);
+  return true;
+}
 
 int cag_session_end(CagSession *s, int status) {
   s->busy = false;
@@ -247,15 +257,15 @@ int cag_session_fail_memory(CagSession *s) {
 }
 
 // Warnings may stand before the error that ended the work.
-static const CagDiagnostic *first_error(const CagDiagnostics *d) {
-  for (size_t i = 0; i < d->count; i++)
+static const CagDiagnostic *first_error(const CagDiagnostics *d, size_t from) {
+  for (size_t i = from; i < d->count; i++)
     if (d->items[i].severity == CAG_SEVERITY_ERROR) return &d->items[i];
-  return d->items;
+  return &d->items[from];
 }
 
 int cag_session_status(const CagSession *s) {
-  if (s->diagnostics.count == 0) return CAG_STATUS_OK;
-  const CagDiagnostic *d = first_error(&s->diagnostics);
+  if (s->diagnostics.count == s->lasting) return CAG_STATUS_OK;
+  const CagDiagnostic *d = first_error(&s->diagnostics, s->lasting);
   if (cag_error_is_limit(d->id)) return CAG_STATUS_LIMIT;
   switch (d->id) {
   case CAG_ERR_interrupted: return CAG_STATUS_INTERRUPTED;
@@ -367,7 +377,9 @@ static int start_run(CagSession *s, Run *r) {
   cag_free(s->script);
   s->script = cag_strdup(r->path ? r->path : r->name);
   const bool ready = s->script && !s->define_lost;
-  return cag_session_end(s, ready ? cag_session_work(s, run, r) : cag_session_fail_memory(s));
+  const int status = ready ? cag_session_work(s, run, r) : cag_session_fail_memory(s);
+  s->lasting = s->diagnostics.count;
+  return cag_session_end(s, status);
 }
 
 int cag_session_run_file(CagSession *s, const char *path) {
@@ -387,8 +399,11 @@ void cag_session_error(const CagSession *s, size_t i, CagErrorView *out) {
   if (i >= s->diagnostics.count) return;
   const CagDiagnostic *d = &s->diagnostics.items[i];
   const CagErrorInfo *info = cag_error_info(d->id);
-  *out = (CagErrorView){
-      .code = info->code, .reason = info->reason, .message = d->message, .help = d->help};
+  *out = (CagErrorView){.code = info->code,
+                        .reason = info->reason,
+                        .message = d->message,
+                        .help = d->help,
+                        .warning = d->severity == CAG_SEVERITY_WARNING};
   if (!d->source) return;
   CagPosition from = cag_source_position(d->source, d->span.start),
               to = cag_source_position(d->source, d->span.end);
@@ -485,7 +500,7 @@ int cag_session_build_scene(CagSession *s) {
     cag_session_renew_time(s);
   }
   if (s->has_scene) return CAG_STATUS_OK;
-  if (s->interactive) { cag_diagnostics_clear(&s->diagnostics); }
+  if (s->interactive) cag_session_clear_diagnostics(s);
   int status = cag_session_work(s, build, s);
   if (status != CAG_STATUS_OK) return status;
   CagScene *scene = &s->scene;
@@ -503,6 +518,7 @@ int cag_session_build_scene(CagSession *s) {
     return fail_nothing_shown(s);
   if (status == CAG_STATUS_OK) status = cag_session_geometry(s, look_for_crossings, NULL);
   if (status != CAG_STATUS_OK) drop_scene(s);
+  else s->lasting = s->diagnostics.count;
   return status;
 }
 

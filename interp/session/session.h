@@ -26,6 +26,7 @@ struct CagSession {
   double time_left; // seconds of max_time, of a run and what is made of its scene
   char *script;     // name of the script, for metadata
   CagDiagnostics diagnostics;
+  size_t lasting; // diagnostics of the run and of building its scene: later calls keep them
   CagScene scene;
   bool has_scene;
   // Modules of the interactive session in order: their shows make its scene.
@@ -36,9 +37,11 @@ struct CagSession {
   bool free_pending; // a callback freed the session: the call under way does it at its end
 };
 
-// Calls that use the machine begin and end here. False: another is under way, so this one comes
-// from a callback and is refused. The diagnostics stay those of the call under way.
+// Calls that use the machine begin and end here. The beginning drops the diagnostics that an
+// earlier call on the same scene added. Returns false if another call is under way: this one comes
+// from a callback and is refused, and the diagnostics stay those of the call under way.
 bool cag_session_begin(CagSession *s);
+void cag_session_clear_diagnostics(CagSession *s);
 // Gives the status back, so that it can end a return statement. May free the session.
 int cag_session_end(CagSession *s, int status);
 
@@ -57,7 +60,7 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
 int cag_session_geometry(CagSession *s, int (*work)(CagSession *s, void *context), void *context);
 // Sees to it that an error of such a function that was overlooked is none that stays unknown.
 CagStatus cag_session_checked(const CagSession *s, CagStatus status, CagError *err);
-int cag_session_status(const CagSession *s); // by the diagnostics there are
+int cag_session_status(const CagSession *s); // by the diagnostics that the call has added
 int cag_session_fail_memory(CagSession *s);  // adds the error of exhausted memory
 // Adds an error of the core, or of files and renderers, and gives the status.
 int cag_session_fail_geometry(CagSession *s, const CagError *err);

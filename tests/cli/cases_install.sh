@@ -37,30 +37,118 @@ it 'the pkg-config file knows the version'
 [ "cag $(pkg-config --modversion libcag)" = "$("$CAG" --version)" ] || wrong 'the versions differ'
 [ "$(pkg-config --variable=prefix libcag)" = /opt/cag ] || wrong 'the prefix is not that of make install'
 
-it 'a client builds against the shared library and works'
-try_command cc -std=c17 -Wall -Wextra -Werror $sanitize "$root/tests/cli/embed.c" $(pkg-config $flags --cflags --libs libcag) -o embed
+# builds OUTPUT LINK LANGUAGE COMPILER SOURCE: a client against the shared or the static library, without warnings.
+builds() {
+  case $3 in c) standard=c17 ;; c++) standard=c++17 ;; esac
+  libraries=$(pkg-config $flags --libs libcag)
+  [ "$2" = shared ] || libraries=$(pkg-config $flags --static --libs libcag | sed 's/-lcag/-l:libcag.a/')
+  try_command "$4" -x "$3" -std=$standard -Wall -Wextra -Werror $sanitize $(pkg-config $flags --cflags libcag) "$5" -x none $libraries -o "$1"
+  status 0
+}
+
+# The program of tests/cli/embed.c with its output, and the files that it writes.
+embeds() {
+  rm -f vase.obj vase.mtl vase.png
+  ran="$1 200" code=0
+  LD_LIBRARY_PATH=$prefix/lib "./$1" 200 > out 2> err || code=$?
+  status 0
+  [ "$(sed -n 1,2p out)" = "$(printf 'height 200\n2 items, 3 lights, camera `automatic`')" ] || wrong 'it prints something else'
+  exists vase.obj
+  exists vase.mtl
+  if command -v povray > /dev/null; then exists vase.png; fi
+}
+
+for language in c c++; do
+  it "a client in $language builds against the shared library and works"
+  case $language in c) compiler=cc ;; c++) compiler=c++ ;; esac
+  if needs $compiler; then
+    builds "embed_$language" shared $language $compiler "$root/tests/cli/embed.c"
+    embeds "embed_$language"
+  fi
+
+  it "a client in $language builds against the static library and works"
+  if needs $compiler; then
+    builds "embed_static_$language" static $language $compiler "$root/tests/cli/embed.c"
+    embeds "embed_static_$language"
+  fi
+done
+
+it 'a client builds with Clang'
+if needs clang && needs clang++; then
+  try_command clang -std=c17 -Wall -Wextra -Werror $(pkg-config $flags --cflags libcag) -c "$root/tests/cli/embed.c" -o clang.o
+  status 0
+  try_command clang++ -x c++ -std=c++17 -Wall -Wextra -Werror $(pkg-config $flags --cflags libcag) -c "$root/tests/cli/embed.c" -o clang.o
+  status 0
+fi
+
+it 'cag.h compiles as C99 and as C++11'
+echo '#include <cag.h>' > include.c
+try_command cc -std=c99 -pedantic -Wall -Wextra -Werror $(pkg-config $flags --cflags libcag) -fsyntax-only include.c
 status 0
-LD_LIBRARY_PATH=$prefix/lib ./embed > out 2> err
-code=$?
+if needs c++; then
+  try_command c++ -x c++ -std=c++11 -pedantic -Wall -Wextra -Werror $(pkg-config $flags --cflags libcag) -fsyntax-only include.c
+  status 0
+fi
+
+it 'a client is told what is wrong'
+# client_fails ARGUMENT STATUS LINE: the client fails, and prints this line.
+client_fails() {
+  ran="embed_static_c $1" code=0
+  ./embed_static_c "$1" > out 2> err || code=$?
+  status "$2"
+  grep -qFx -e "$3" err || wrong "it does not print: $3"
+}
+client_fails tall 1 'error E0201: unknown name `tall`'
+client_fails 20 1 '  in vase.cag, line 1, column 7'
+client_fails 'len([for i in 0..<1e9: i])' 5 'error E0602: exceeded the memory limit of 64 MiB (--max-memory)'
+
+it 'a client interrupts a run'
+ran='embed_static_c, interrupted' code=0
+./embed_static_c 'reduce(0..<1e12, 0, (a, b) => a + b)' > out 2> err &
+client=$!
+# The run is on a second thread.
+while kill -0 $client && [ "$(ls /proc/$client/task | wc -l)" -lt 2 ]; do sleep 0.1; done
+kill -INT $client
+wait $client || code=$?
+status 130
+grep -q '^error E[0-9]*: interrupted$' err || wrong 'it does not say that it was interrupted'
+
+# The examples of the documentation are whole programs, or the body of `main`.
+it 'the example in cag.h compiles and works'
+{
+  printf '#include <cag.h>\nint main(void) {\n'
+  sed -n '1,/^#ifndef/s|^//     ||p' "$root/include/cag.h"
+  echo '}'
+} > header.c
+echo 'show revolve(line([9, 0], [5, 20]))' > vase.cag
+rm -f vase.stl
+builds header shared c cc header.c
+ran=header code=0
+LD_LIBRARY_PATH=$prefix/lib ./header > out 2> err || code=$?
+status 0
+exists vase.stl
+if needs c++; then builds header_cxx shared c++ c++ header.c; fi
+
+it 'the example in the README compiles and works'
+awk '/^```c$/ { on = 1; next } /^```$/ { on = 0 } on' "$root/README.md" > readme.c
+rm -f vase.stl
+builds readme shared c cc readme.c
+ran=readme code=0
+LD_LIBRARY_PATH=$prefix/lib ./readme > out 2> err || code=$?
 status 0
 prints_exactly 'height 200'
 exists vase.stl
+if needs c++; then builds readme_cxx shared c++ c++ readme.c; fi
 
-it 'a client builds against the static library and works'
-try_command cc -std=c17 -Wall -Wextra -Werror $sanitize "$root/tests/cli/embed.c" $(pkg-config $flags --cflags libcag) "$prefix/lib/libcag.a" \
-  $(pkg-config $flags --static --libs-only-l libcag | sed 's/-lcag//') -o embed_static
-status 0
-rm -f vase.stl
-try_command ./embed_static
-status 0
-exists vase.stl
+it 'cag.h lists the formats that there are'
+formats=$("$CAG" export --help | sed -n '/^Formats:/,$s/^  \([a-z0-9]*\) .*/"\1"/p')
+[ -n "$formats" ] || wrong 'no formats are listed'
+sed -n '/^\/\/ Writes the scene to a file/,/^CAG_API/p' "$root/include/cag.h" > comment
+[ "$(grep -o '"[a-z0-9]*"' comment | sort)" = "$(echo "$formats" | sort)" ] || wrong 'the comment on cag_session_export lists others'
 
-it 'a client in C++ builds'
-if needs c++; then
-  printf '#include <cag.h>\nint main() { return cag_version() == nullptr; }\n' > client.cpp
-  try_command c++ -Wall -Wextra -Werror $sanitize client.cpp $(pkg-config $flags --cflags --libs libcag) -o client
-  status 0
-fi
+it 'docs/embedding.md shows the client as it is'
+awk '/^```c$/ { on = 1; next } /^```$/ { on = 0 } on' "$root/docs/embedding.md" > shown.c
+cmp -s shown.c "$root/tests/cli/embed.c" || wrong 'docs/embedding.md and tests/cli/embed.c differ'
 
 # --- Completion ---
 
@@ -182,8 +270,3 @@ elif needs dpkg-shlibdeps; then
     ! grep '^E:' out || wrong 'lintian finds errors'
   fi
 fi
-
-it 'the README shows the example of the library as it is'
-awk '/^```c$/ { on = 1; next } /^```$/ { on = 0 } on' "$root/README.md" > shown.c
-sed '1,/^$/d' "$root/tests/cli/embed.c" > example.c
-cmp -s shown.c example.c || wrong 'README.md and tests/cli/embed.c differ'

@@ -123,7 +123,7 @@ static inline CagStatus run_with_fault(FaultyOperation operation, const void *gi
   fault.stop = 0;
   fault.result = 0;
   cag_memory_was_out(); // resets the record
-  e->reason = "";
+  e->id = CAG_ERR_internal;
   CagStatus status = operation(given, e);
   fault.kind = FAULT_NONE;
   fault.stop = 0;
@@ -133,8 +133,8 @@ static inline CagStatus run_with_fault(FaultyOperation operation, const void *gi
 static inline bool fault_is_reported(Fault kind, CagStatus status, const CagError *e) {
   switch (kind) {
   case FAULT_MEMORY: return cag_memory_was_out();
-  case FAULT_CALLBACK: return status == CAG_E_CALLBACK && !strcmp(e->reason, "function-failed");
-  default: return !status || (status == CAG_E_CALLBACK && !strcmp(e->reason, "interrupted"));
+  case FAULT_CALLBACK: return status == CAG_E_CALLBACK && e->id == CAG_ERR_function_failed;
+  default: return !status || (status == CAG_E_CALLBACK && e->id == CAG_ERR_interrupted);
   }
 }
 
@@ -172,7 +172,8 @@ static inline void try_faults_of(Fault kind, const char *name, const char *kind_
       continue;
     fault_problems++;
     print_error("%s of %s, %s %zu of %zu: status %d \"%s\", %ld blocks are not freed\n", name,
-                kind_name, WORD[kind], at, most, (int)status, e.reason, fault.blocks - blocks);
+                kind_name, WORD[kind], at, most, (int)status, cag_error_info(e.id)->reason,
+                fault.blocks - blocks);
   }
 }
 

@@ -48,7 +48,7 @@ static void coons_of_example_12(void **state) {
   MUST(cag_curve_reverse(c, &turned, err));
   CagError e;
   assert_int_equal(cag_surface_coons(a, b, turned, d, &s, &e), CAG_E_ARGUMENT);
-  assert_string_equal(e.reason, "coons-corner-mismatch");
+  assert_string_equal(cag_error_info(e.id)->reason, "coons-corner-mismatch");
   assert_non_null(strstr(e.message, "3 apart; reversing `v0` closes the patch"));
   cag_curve_release(turned);
   cag_curve_release(a);

@@ -181,7 +181,7 @@ static void check(Subject *s, int samples, Count *sum) {
   s->n = 0;
   if (cag_quadric_sheet_within(&s->sheet, s->sides, s->count, s->list, MOST_SURFACES, &s->n,
                                &why)) {
-    assert_string_equal(why.reason, "quadric-unbounded");
+    assert_string_equal(cag_error_info(why.id)->reason, "quadric-unbounded");
     assert_true(reaches_far(s));
     sum->unbounded++;
     return;

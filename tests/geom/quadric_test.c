@@ -454,7 +454,7 @@ static void cylinders_end_at_all_sides_of_a_box(void **state) {
     size_t n = 0;
     double sum = 0, area;
     if (cag_quadric_patches(&q, &box, false, &list, &n, &why)) {
-      assert_string_equal(why.reason, "quadric-outside");
+      assert_string_equal(cag_error_info(why.id)->reason, "quadric-outside");
       assert_true(within <= 1);
       continue;
     }

@@ -153,7 +153,8 @@ static void boxes_cut_quadrics_of_all_classes(void **state) {
     size_t n = 0;
     CagError why;
     if (cag_quadric_patches(&q, &box, false, &list, &n, &why)) {
-      assert_string_equal(why.reason, class_id < REAL ? "quadric-outside" : "quadric-imaginary");
+      assert_string_equal(cag_error_info(why.id)->reason,
+                          class_id < REAL ? "quadric-outside" : "quadric-imaginary");
       if (class_id < REAL) assert_int_equal(check_rays(NULL, 0, &q, &box, &box), 0);
       outside += class_id < REAL;
       continue;
@@ -183,9 +184,9 @@ static void ranges_of_z_are_those_of_the_equation(void **state) {
     size_t n = 0;
     CagError why;
     if (cag_quadric_patches(&q, &range, true, &list, &n, &why)) {
-      const bool ends = strcmp(why.reason, "quadric-outside") == 0;
+      const bool ends = strcmp(cag_error_info(why.id)->reason, "quadric-outside") == 0;
       if (ends) assert_int_equal(check_rays(NULL, 0, &q, &slab, &cast), 0);
-      else assert_string_equal(why.reason, "quadric-unbounded");
+      else assert_string_equal(cag_error_info(why.id)->reason, "quadric-unbounded");
       unbounded += !ends;
       continue;
     }

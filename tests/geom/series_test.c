@@ -317,7 +317,7 @@ static CagStatus edged(void *context, double t, double *out, CagError *e) {
   const Edge *x = context;
   const double d = t - x->at;
   if (x->what == 3 && d > 0)
-    return cag_fail(e, CAG_E_CALLBACK, "stubborn", "", -1, "no value beyond");
+    return cag_fail(e, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "no value beyond");
   out[0] = x->what == 0   ? fabs(d) + t
            : x->what == 1 ? (d > 0) + t
            : x->what == 2 ? (d > 0 ? INFINITY : t)

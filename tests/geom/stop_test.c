@@ -30,7 +30,7 @@ static int take_back(void **state) {
 
 static void assert_stopped(CagStatus status, const CagError *err) {
   assert_int_equal(status, CAG_E_CALLBACK);
-  assert_string_equal(err->reason, "interrupted");
+  assert_string_equal(cag_error_info(err->id)->reason, "interrupted");
 }
 
 static CagCurve *wave(double phase) {

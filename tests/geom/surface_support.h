@@ -41,7 +41,7 @@ static inline void assert_point(CagVec3 found, CagVec3 expected, double toleranc
     memset(&must_error, 0, sizeof must_error);                                                     \
     CagError *err = &must_error;                                                                   \
     assert_true(call);                                                                             \
-    assert_string_equal(must_error.reason, with);                                                  \
+    assert_string_equal(cag_error_info(must_error.id)->reason, with);                              \
   } while (0)
 
 static inline CagVec3 surface_at(const CagSurface *s, double u, double v) {

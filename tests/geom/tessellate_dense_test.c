@@ -256,7 +256,8 @@ static CagStatus formula_eval(void *context, double u, double v, int n, CagVec3 
   Formula *f = *(Formula **)context;
   CagVec3 p[2];
   (void)e;
-  if (n > 2) return cag_fail(e, CAG_E_CALLBACK, "order", "", -1, "only second partials");
+  if (n > 2)
+    return cag_fail(e, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "only second partials");
   f(u, v, &out[0]);
   if (n == 0) return CAG_OK;
   f(u + h, v, &p[0]);

@@ -329,7 +329,7 @@ static void a_number_that_is_not_finite_is_an_error(void **state) {
     CagAtomicFile *file = cag_atomic_file_open_memory(&io);
     b.accuracy = numbers[i / 2];
     assert_int_not_equal(exports[i % 2](&b, "can", file, &why), CAG_OK);
-    assert_string_equal(why.reason, "not-finite");
+    assert_string_equal(cag_error_info(why.id)->reason, "not-finite");
     cag_atomic_file_abort(file);
   }
   cag_brep_free(&b);

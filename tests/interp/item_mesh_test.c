@@ -467,8 +467,8 @@ static void parts_of_a_mesh_have_its_triangles(void **state) {
       m->labels[t] = (uint32_t)uniform(0, 4.999);
       for (size_t j = 0; j < 3; j++) m->triangles[3 * t + j] = (uint32_t)((7 * t + 13 * j) % V);
     }
-    size_t of_label[] = {4, SIZE_MAX, 5};
-    const CagItem item = {.material = 3, .label_materials = of_label, .label_count = 3};
+    CagItemLabel labels[] = {{1, 4}, {3, 5}};
+    const CagItem item = {.material = 3, .labels = labels, .label_count = 2};
     static const size_t material_of[] = {3, 4, 3, 5, 3}; // by label
     size_t seen = 0;
     for (size_t material = 2; material < 7; material++) {

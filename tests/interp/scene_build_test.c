@@ -147,13 +147,96 @@ static void operands_keep_their_materials(void **state) {
   for (size_t i = 0; i < 5; i++) {
     const CagItem *item = &s->scene.items[i];
     bool red = false, green = false, blue = false;
-    for (uint32_t k = 0; k <= item->label_count; k++) {
-      const CagColor c = s->scene.materials[cag_item_label_material(item, k)].color;
+    for (size_t k = 0; k <= item->label_count; k++) {
+      const size_t at = k > 0 ? item->labels[k - 1].material : item->material;
+      const CagColor c = s->scene.materials[at].color;
       red = red || (c.r == 1 && c.g == 0 && c.b == 0);
       green = green || (c.r == 0 && c.g == 1 && c.b == 0);
       blue = blue || (c.r == 0 && c.g == 0 && c.b == 1);
     }
     assert_true(blue && red == (i != 2) && green == (i == 1 || i == 2));
+  }
+  cag_session_free(s);
+}
+
+// --- Large scenes ---
+
+static int compare_names(const void *a, const void *b) {
+  return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+// Names that the script gives are kept, also where they look like numbered ones.
+static void many_items_have_unique_names(void **state) {
+  (void)state;
+  CagSession *s = shown("point = circle(1)\n"
+                        "show named(circle(1), \"point.7\")\n"
+                        "show [for i in 0..<100000: point]\n"
+                        "show [for i in 0..<1000: named(point, \"c{i}\")]\n"
+                        "show [for i in 0..<1000: named(point, \"c{i}\")]");
+  const size_t n = s->scene.item_count;
+  assert_true(n >= 102001);
+  const CagItem *items = s->scene.items;
+  assert_string_equal(items[0].name, "point.7");
+  assert_string_equal(items[1].name, "point");
+  assert_string_equal(items[6].name, "point.6");
+  assert_string_equal(items[7].name, "point.8"); // the seventh is taken
+  assert_string_equal(items[100000].name, "point.100001");
+  assert_string_equal(items[101000].name, "c999");
+  assert_string_equal(items[102000].name, "c999.2");
+  const char **names = malloc(n * sizeof *names);
+  assert_non_null(names);
+  for (size_t i = 0; i < n; i++) names[i] = items[i].name;
+  qsort(names, n, sizeof *names, compare_names);
+  for (size_t i = 1; i < n; i++) assert_string_not_equal(names[i - 1], names[i]);
+  free(names);
+  cag_session_free(s);
+}
+
+// Materials that look the same are one, unless they have names of their own.
+static void many_materials_are_each_kept_once(void **state) {
+  (void)state;
+  CagSession *s = shown("c = circle(1)\n"
+                        "show [for i in 0..<20000: material(c, {roughness: (i % 10000)/10000})]\n"
+                        "show [for i in 0..<20000: material(c, {name: \"m{i % 10000}\"})]\n"
+                        "show material(c, {roughness: 0.25}), material(c, {ior: 3}), c");
+  const CagScene *scene = &s->scene;
+  const CagItem *items = scene->items;
+  // Of the first list, the one with the usual roughness is ink. That of the last row is new.
+  const size_t expected = 2 + 9999 + 10000 + 1;
+  assert_true(scene->material_count >= expected && scene->material_count <= expected + 1); // floor
+  for (size_t i = 0; i < 10000; i++) {
+    char name[16];
+    assert_int_equal(items[i].material, items[i + 10000].material);
+    assert_true(scene->materials[items[i].material].roughness == (double)i / 10000);
+    snprintf(name, sizeof name, "m%zu", i);
+    assert_int_equal(items[20000 + i].material, items[30000 + i].material);
+    assert_string_equal(scene->materials[items[20000 + i].material].name, name);
+  }
+  assert_int_equal(items[5000].material, 1);
+  assert_int_equal(items[40000].material, items[2500].material);
+  assert_true(scene->materials[items[40001].material].ior == 3);
+  assert_int_equal(items[40002].material, 1);
+  cag_session_free(s);
+}
+
+// Labels of operands are numbers of the whole run; an item keeps only its own.
+static void items_keep_the_labels_of_their_own_operands(void **state) {
+  (void)state;
+  CagSession *s = shown("show [for i in 0..<30: color(box(2), [i/30, 0, 0]) -\n"
+                        "  color(translate(box(2), [1, 1, 1]), [0, i/30, 1])]");
+  for (size_t i = 0; i < 30; i++) {
+    const CagItem *item = &s->scene.items[i];
+    assert_int_equal(item->label_count, 2);
+    assert_true(item->labels[0].label < item->labels[1].label);
+    bool found = false;
+    for (size_t k = 0; k < 2; k++) {
+      const CagColor c = s->scene.materials[item->labels[k].material].color;
+      found = found || (c.r == 0 && c.g == (double)i / 30 && c.b == 1);
+      assert_int_equal(cag_item_label_material(item, item->labels[k].label),
+                       item->labels[k].material);
+    }
+    assert_true(found);
+    assert_int_equal(cag_item_label_material(item, item->labels[1].label + 1), item->material);
   }
   cag_session_free(s);
 }
@@ -405,6 +488,9 @@ int main(void) {
       cmocka_unit_test(shapes_are_named_after_their_definitions),
       cmocka_unit_test(equal_materials_are_one),
       cmocka_unit_test(operands_keep_their_materials),
+      cmocka_unit_test(many_items_have_unique_names),
+      cmocka_unit_test(many_materials_are_each_kept_once),
+      cmocka_unit_test(items_keep_the_labels_of_their_own_operands),
       cmocka_unit_test(cameras_have_an_up_that_is_perpendicular_to_the_view),
       cmocka_unit_test(an_orthographic_camera_has_the_width_of_its_angle),
       cmocka_unit_test(a_camera_without_a_view_has_a_frame),

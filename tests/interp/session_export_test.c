@@ -357,13 +357,14 @@ static void what_cannot_be_written_is_told(void **state) {
           "part.cag shows 8 robots (0, 1, 2, 3, 4, 5, 6, 7); a .urdf file is of one",
           "show one alone");
   refuses("show box(1)", "x.y/noending", NULL, CAG_STATUS_USAGE,
-          "x.y/noending has no ending that tells the format", "the formats are obj");
+          "x.y/noending has no ending that tells the format",
+          "use --format to choose a format: obj stl ply glb");
   refuses("show box(1)", "a.png", NULL, CAG_STATUS_USAGE, "there is no format `png`",
           "`cag render` makes pictures");
   refuses("show box(1)", "a.EXR", NULL, CAG_STATUS_USAGE, "there is no format `EXR`",
           "`cag render` makes pictures");
   refuses("show box(1)", "a.abc", NULL, CAG_STATUS_USAGE, "there is no format `abc`",
-          "the formats are obj");
+          "use --format to choose a format: obj stl ply glb");
 }
 
 int main(void) {

@@ -753,6 +753,45 @@ static void scenes_of_inputs_follow_their_names(void **state) {
   cag_session_free(s);
 }
 
+// The run's own warnings stay, and those of building its scene; the errors of a call that used the
+// scene are replaced by those of the next.
+static void diagnostics_are_those_of_the_run_and_of_the_last_call(void **state) {
+  (void)state;
+  CagSession *s = new_session();
+  assert_int_equal(run_text(s, "e = box(1) - box(2)\nshow sphere(1), e"), CAG_STATUS_OK);
+  for (int i = 0; i < 30; i++) {
+    CagErrorView e;
+    assert_int_equal(cag_session_export(s, "a.abc", NULL), CAG_STATUS_USAGE);
+    cag_session_error(s, cag_session_error_count(s) - 1, &e);
+    assert_string_equal(e.reason, "format-unknown");
+    assert_false(e.warning);
+    assert_int_equal(cag_session_export(s, "/dev/null", "svg"), CAG_STATUS_SCRIPT);
+    assert_int_equal(cag_session_error_count(s), 2);
+    cag_session_error(s, 0, &e);
+    assert_string_equal(e.reason, "empty-shape");
+    assert_true(e.warning);
+    cag_session_error(s, 1, &e);
+    assert_string_equal(e.reason, "svg-without-curves");
+    assert_int_equal(cag_session_export(s, "/dev/null", "stl"), CAG_STATUS_OK);
+    assert_int_equal(cag_session_error_count(s), 1);
+  }
+  assert_int_equal(run_text(s, "x = nothing"), CAG_STATUS_SCRIPT);
+  CagShownCounts counts;
+  assert_int_equal(cag_session_scene(s, &counts), CAG_STATUS_SCRIPT);
+  assert_int_equal(cag_session_error_count(s), 2);
+  assert_string_equal(first_error(s).reason, "unknown-name");
+  cag_session_free(s);
+}
+
+static void a_session_without_options_has_the_defaults(void **state) {
+  (void)state;
+  CagSession *s = cag_session_new(NULL);
+  assert_non_null(s);
+  assert_int_equal(run_text(s, "assert 1 + 1 == 2"), CAG_STATUS_OK);
+  cag_session_free(s);
+  cag_session_free(NULL);
+}
+
 static void a_limit_of_time_is_told_from_outside(void **state) {
   (void)state;
   CagSessionOptions options = session_options();
@@ -786,6 +825,8 @@ int main(void) {
       cmocka_unit_test(flat_lofts_are_warned_of),
       cmocka_unit_test(scenes_of_inputs_follow_their_names),
       cmocka_unit_test(a_limit_of_time_is_told_from_outside),
+      cmocka_unit_test(diagnostics_are_those_of_the_run_and_of_the_last_call),
+      cmocka_unit_test(a_session_without_options_has_the_defaults),
       cmocka_unit_test(a_value_callback_that_calls_the_session_is_refused),
       cmocka_unit_test(a_callback_given_names_is_refused_too),
       cmocka_unit_test(a_callback_may_free_the_session),
