@@ -170,3 +170,14 @@ show sun(direction: [-1, 1, -2])"
 done
 try compare 'at_0, 0, 0.exr' 'at_20000, 30000, 10000.exr' --threshold 0.002
 status 0
+
+# Eight digits of the largest coordinate: 11 decimals for thousandths of a millimeter, 3 for kilometers.
+it 'vertices of meshes have eight digits'
+script tiny.cag 'show mesh([[0, 0, 0], [0.0012345678901, 0, 0], [0, 0.0023456789012, 0]], [[0, 1, 2]])'
+try export tiny.cag -o tiny.pov
+status 0
+grep -q '<0.00123456789,0,0>' tiny.pov || wrong "$(grep '<0' tiny.pov)"
+script vast.cag 'show mesh([[0, 0, 0], [123456.7890123, 0, 0], [0, 234567.8901234, 0]], [[0, 1, 2]])'
+try export vast.cag -o vast.pov
+status 0
+grep -q '<123456.789,0,0>' vast.pov || wrong "$(grep '<0' vast.pov)"

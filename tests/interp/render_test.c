@@ -58,6 +58,27 @@ static void progress_is_read_from_what_povray_says(void **state) {
   }
 }
 
+// What is shown when POV-Ray fails are its last words, without its progress.
+static void progress_is_not_kept_as_last_words(void **state) {
+  (void)state;
+  static const char *const LINES[] = {"Parsing 11K tokens\r", "Rendered 1 of 4 pixels (25%)\r",
+                                      "Photons 20\r", "Shooting photons now\r",
+                                      "==== [Rendering...] ====\n"};
+  CagPovrayLog bare = {0};
+  char expected[1024], found[1024];
+  cag_povray_log_feed(&bare, "Cannot open file.\n", 18);
+  cag_povray_log_last(&bare, expected, sizeof expected);
+  assert_non_null(strstr(expected, "Cannot open file."));
+  for (size_t i = 0; i < sizeof LINES / sizeof *LINES; i++) {
+    CagPovrayLog log = {0};
+    cag_povray_log_feed(&log, LINES[i], strlen(LINES[i]));
+    cag_povray_log_feed(&log, "Cannot open file.\n", 18);
+    cag_povray_log_feed(&log, LINES[i], strlen(LINES[i]));
+    cag_povray_log_last(&log, found, sizeof found);
+    assert_string_equal(found, expected);
+  }
+}
+
 static void the_first_error_with_a_place_counts(void **state) {
   (void)state;
   static const struct {
@@ -213,6 +234,7 @@ static void messages_are_cut_between_characters(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(progress_is_read_from_what_povray_says),
+      cmocka_unit_test(progress_is_not_kept_as_last_words),
       cmocka_unit_test(the_first_error_with_a_place_counts),
       cmocka_unit_test(the_version_is_a_number),
       cmocka_unit_test(long_lines_and_many_lines_are_cut),
