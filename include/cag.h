@@ -62,7 +62,7 @@ typedef struct CagSession CagSession;
 // Defaults are in parentheses.
 typedef struct CagSessionOptions {
   double tolerance;  // mm, largest distance between mesh and surface; 0: by the size of each shape
-  size_t max_memory; // bytes that the values of a script may take (4 GiB)
+  size_t max_memory; // bytes that a run may take, with the values that it leaves (4 GiB)
   size_t max_depth;  // nested calls in a script (10,000)
   size_t max_triangles;           // of all meshes together (100 million)
   double max_time;                // seconds for a run and all output of its scene; 0: no limit
