@@ -100,6 +100,21 @@ bool cag_arg_transform(CagCall *call, int argument, CagTransform *out);
 bool cag_arg_curve(CagCall *call, int argument, CagCurve **out);     // borrowed
 bool cag_arg_surface(CagCall *call, int argument, CagSurface **out); // borrowed
 
+// --- What a built-in holds besides values ---
+// A built-in may end at any allocation of a value, by a jump. What it holds is therefore released
+// by the machine when the built-in ends, in whatever way, the last thing first.
+
+// Holds a block of cag_malloc. Returns the block. If it is NULL, memory is out, and the run ends.
+void *cag_hold(CagCall *call, void *block);
+// Allocates `count` items, zeroed, and holds them; also for a count of 0.
+void *cag_hold_array(CagCall *call, size_t count, size_t size);
+// Holds something that release(what) releases. NULL is allowed, and not held.
+void cag_hold_for(CagCall *call, void (*release)(void *what), void *what);
+// Releases a held thing before the built-in ends; NULL is allowed.
+void cag_release_held(CagCall *call, const void *what);
+// The built-in gives a held thing away: it is no longer held. Returns it.
+void *cag_give_held(CagCall *call, void *what);
+
 // Calls a function of the script (or a built-in) from a built-in. A safe point: root what must
 // survive.
 bool cag_call(CagVm *vm, CagValue function, const CagValue *arguments, size_t n, CagValue *result);

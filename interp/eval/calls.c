@@ -216,6 +216,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   if (vm->top > vm->high_water) vm->high_water = vm->top;
   if (vm->top > vm->paid_end) cag_pay_for_values(vm, vm->top);
   vm->native = &native;
+  const size_t held = vm->held_count;
   CagCall call = {.vm = vm, .builtin = b, .values = values, .count = total};
   *result = cag_none();
   CagBuiltinFunction function = vm->differentiation ? cag_jet_function(&call, index) : b->function;
@@ -223,6 +224,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   if (cag_memory_was_out()) ok = cag_vm_fail_memory(vm);
   else if (ok == vm->failed) ok = check_answer(vm, s->name, ok);
   ok = ok && cag_check_defined(&call, *result);
+  cag_vm_release_held(vm, held);
   vm->native = native.outer;
   vm->top = top;
   return ok;

@@ -857,7 +857,7 @@ static void do_work(void *context) {
 }
 
 bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *context) {
-  const size_t frames = vm->frame_count, roots = vm->root_count;
+  const size_t frames = vm->frame_count, roots = vm->root_count, held = vm->held_count;
   CagValue *const top = vm->top;
   CagNative *const native = vm->native;
   Work w = {vm, work, context, false};
@@ -870,6 +870,7 @@ bool cag_vm_protect(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *con
     vm->root_count = roots;
     vm->top = top;
     vm->native = native;
+    cag_vm_release_held(vm, held);
     for (size_t i = 0; i < vm->global_count; i++)
       if (vm->globals[i].state == CAG_GLOBAL_RUNNING) vm->globals[i].state = CAG_GLOBAL_NEW;
     for (size_t i = 0; i < vm->module_count; i++)

@@ -142,6 +142,7 @@ void cag_vm_free(CagVm *vm) {
   cag_free(vm->globals);
   cag_free(vm->roots);
   cag_free(vm->kept);
+  cag_free(vm->held);
   cag_hash_free(&vm->kept_materials);
   cag_free(vm->interned);
   cag_free(vm->builtin_values);

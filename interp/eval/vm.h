@@ -191,7 +191,13 @@ struct CagVm {
   CagValue *kept;
   size_t kept_count, kept_capacity, kept_free;
   CagHashIndex kept_materials; // slots of the records that are materials of operands
-  uint32_t differentiation;    // level of the jets that are being computed with, 0: none
+  // What the built-ins that are running hold, the innermost last (builtin.h).
+  struct CagHeld {
+    void (*release)(void *what);
+    void *what;
+  } * held;
+  size_t held_count, held_capacity;
+  uint32_t differentiation; // level of the jets that are being computed with, 0: none
   CagText **interned;
   size_t interned_count, interned_size;
   CagGlobal *globals;
@@ -271,6 +277,9 @@ void cag_pay_for_values(CagVm *vm, const CagValue *end);
 // The same, with an error where there is none, or where the run must stop: values that share their
 // parts take endlessly long to walk. `done` tells what is done to the values.
 bool cag_may_go_deeper(CagVm *vm, const char *done);
+
+// Releases what built-ins hold, down to a count.
+void cag_vm_release_held(CagVm *vm, size_t count);
 
 // --- callback.c: calls of the script from geometry ---
 // Keeps a value alive until it is let go.
