@@ -200,6 +200,10 @@ static void sheets_on_a_torus_keep_the_tolerance(void **state) {
     CagMesh *square, *image;
     OK(cag_mesh_from_faces(p, 4, corners, count, 1, &square, &err));
     OK(cag_mesh_onto_surface(square, torus, tolerance, height == 0, 1000000, &image, &err));
+    // Points laid on a surface have no parameters of their own, and those of sheets have normals.
+    assert_null(image->uv);
+    assert_null(image->weld);
+    assert_true((image->normals != NULL) == (height == 0));
     CagBounds box = cag_mesh_bounds(image);
     const double most = tolerance > 0 ? tolerance : 1.0001e-3 * cag_norm(cag_sub(box.max, box.min));
     double side = 0;
