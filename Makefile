@@ -18,8 +18,6 @@ OPT     ?= -O3
 # Wide vectors never cross a file boundary, so their ABI does not matter.
 WARN    := -Wall -Wextra -Werror -Wno-psabi
 SANITIZE ?=
-# CGAL=1 has CGAL do set operations of meshes: a program under the GPL. Give it a BUILD of its own.
-CGAL ?=
 # V=1 shows the commands.
 V ?=
 Q := $(if $(V),,@)
@@ -47,13 +45,6 @@ LDLIBS_ALL := $(PKG_LIBS) -lm -lpthread $(SANITIZE) $(LDFLAGS)
 BASE_SRC   := $(shell find base -name '*.c' | sort)
 LANG_SRC   := $(shell find lang -name '*.c' | sort)
 GEOM_SRC   := $(shell find geom -name '*.c' | sort)
-ifeq ($(CGAL),1)
-CFLAGS_ALL += -DCAG_CGAL
-LDLIBS_ALL += -lgmp -lmpfr -lstdc++
-CGAL_OBJ   := $(BUILD)/obj/geom/mesh/boolean_cgal.o
-else
-GEOM_SRC   := $(filter-out geom/mesh/boolean_by_cgal.c,$(GEOM_SRC))
-endif
 MAIN_SRC   := interp/main.c
 TOOL_SRC   := $(shell find interp/tool -name '*.c' | sort)
 INTERP_SRC := $(filter-out $(MAIN_SRC) $(TOOL_SRC),$(shell find interp -name '*.c' | sort))
@@ -63,7 +54,7 @@ DOCUMENTS  := $(filter-out docs/architecture.md,$(sort $(wildcard docs/*.md docs
 obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 BASE_OBJ := $(call obj,$(BASE_SRC))
 LANG_OBJ := $(call obj,$(LANG_SRC))
-GEOM_OBJ := $(call obj,$(GEOM_SRC)) $(CGAL_OBJ)
+GEOM_OBJ := $(call obj,$(GEOM_SRC))
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o $(BUILD)/obj/gen/documents.o
 TOOL_OBJ := $(call obj,$(TOOL_SRC) $(MAIN_SRC))
 
@@ -75,12 +66,6 @@ $(BUILD)/obj/%.o: %.c
 	@mkdir -p $(@D)
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) -c $< -o $@
-
-# GCC takes some temporaries of CGAL's for uninitialized.
-$(BUILD)/obj/geom/mesh/boolean_cgal.o: geom/mesh/boolean_cgal.cpp
-	@mkdir -p $(@D)
-	@echo "c++ $<"
-	$Q$(CXX) -std=c++17 -O2 -g $(WARN) -Wno-maybe-uninitialized -fPIC -fvisibility=hidden -MMD -MP -I. $(SANITIZE) $(CXXFLAGS) -c $< -o $@
 
 $(BUILD)/liblang.a: $(BASE_OBJ) $(LANG_OBJ)
 	@rm -f $@; ar rcs $@ $^

@@ -349,11 +349,6 @@ static void free_work(BoolWork *w) {
 }
 
 static CagStatus solve(BoolWork *w, CagSetOperation op, CagMesh **out) {
-#ifdef CAG_CGAL
-  bool taken = false;
-  const CagStatus asked = bool_ask_cgal(w, op, &taken);
-  if (asked || taken) return asked ? asked : bool_build(w, CAG_UNION, out);
-#endif
   CagStatus status = bool_find_contacts(w);
   if (!status) status = bool_cut_faces(w);
   if (!status) status = bool_find_windings(w);

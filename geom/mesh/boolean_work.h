@@ -14,8 +14,6 @@
 //   boolean_cells.c   winding numbers
 //   boolean_flat.c    flat faces in few triangles
 //   boolean_result.c  the closed mesh
-//
-// A build with CGAL asks CGAL for the pieces first (boolean_by_cgal.c, boolean_cgal.cpp).
 
 #ifndef CAG_GEOM_MESH_BOOLEAN_WORK_H
 #define CAG_GEOM_MESH_BOOLEAN_WORK_H
@@ -183,12 +181,6 @@ CagStatus bool_find_windings(BoolWork *w);
 bool bool_flatten(BoolWork *w, const BoolSource *sources, bool only_fans, BoolPart **parts,
                   size_t *n);
 CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out);
-
-// The pieces of the result itself, all with the solid behind them. *taken: whether CGAL took the
-// operands.
-#ifdef CAG_CGAL
-CagStatus bool_ask_cgal(BoolWork *w, CagSetOperation op, bool *taken);
-#endif
 
 // Calls with the faces whose boxes the ray from `from` along +x may meet.
 typedef void BoolRayVisit(void *context, uint32_t face);
