@@ -10,6 +10,7 @@
 
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
+#include "geom/stop.h"
 
 // A parameter this many ulps outside the domain is the end: it was computed.
 #define SNAP_ULPS 16
@@ -107,6 +108,7 @@ static CagStatus check_order(int order, CagError *err) {
 
 CagStatus cag_curve_eval(const CagCurve *c, double t, int order, CagSide side, CagVec3 *out,
                          CagError *err) {
+  if (cag_stop_check(err)) return err->status;
   CagStatus status = check_order(order, err);
   if (!status) status = snap(c, &t, "t", err);
   if (status) return status;

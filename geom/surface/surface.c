@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/stop.h"
 #include "geom/surface/family.h"
 #include "geom/surface/frames.h"
 #include "geom/surface/trimmed.h"
@@ -92,6 +93,7 @@ static CagSide side_at(double t, double a, double b, CagSide wanted) {
 
 CagStatus cag_surface_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
                            CagVec3 *out, CagError *err) {
+  if (cag_stop_check(err)) return err->status;
   if (n < 0 || n > CAG_MAX_PARTIAL)
     return cag_fail(err, CAG_E_ARGUMENT, "derivative-order", "order", -1,
                     "`order` must lie in 0..%d, it is %d", CAG_MAX_PARTIAL, n);
@@ -129,6 +131,7 @@ static CagStatus grid_by_points(const CagSurface *s, const double *us, size_t nu
   int n = du || dv ? 1 : 0;
   for (size_t i = 0; i < nu; i++)
     for (size_t j = 0; j < nv; j++) {
+      if (cag_stop_check(err)) return err->status;
       CagVec3 d[4];
       CagStatus status =
           s->kind->eval(s, us[i], vs[j], n, side_at(us[i], s->u0, s->u1, CAG_SIDE_RIGHT),
@@ -170,7 +173,8 @@ CagStatus cag_surface_eval_grid(const CagSurface *s, const double *us, size_t nu
                                 size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv,
                                 CagError *err) {
   double *copy_u = NULL, *copy_v = NULL;
-  CagStatus status = CAG_OK;
+  CagStatus status = cag_stop_check(err);
+  if (status) return status;
   if (!all_inside(us, nu, s->u0, s->u1))
     status = snapped(us, nu, s->u0, s->u1, s->angular_u, "u", &copy_u, err);
   if (!status && !all_inside(vs, nv, s->v0, s->v1))
@@ -352,15 +356,15 @@ CagStatus cag_surface_transform(const CagSurface *s, const CagTransform *t, CagS
                             : cag_surface_transform_placed(s, t, out, err);
 }
 
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
 size_t cag_surface_tidy_breaks(double *a, size_t n, double lo, double hi) {
   size_t kept = 0;
   double same_parameter = 1e-12 * (hi - lo);
-  for (size_t i = 1; i < n; i++)
-    for (size_t j = i; j > 0 && a[j] < a[j - 1]; j--) {
-      double swap = a[j];
-      a[j] = a[j - 1];
-      a[j - 1] = swap;
-    }
+  if (n > 1) qsort(a, n, sizeof *a, ascending);
   for (size_t i = 0; i < n; i++)
     if (a[i] > lo && a[i] < hi && (kept == 0 || a[i] - a[kept - 1] > same_parameter))
       a[kept++] = a[i];

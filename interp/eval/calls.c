@@ -222,6 +222,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   if (cag_memory_was_out()) ok = cag_vm_fail_memory(vm);
   else if (ok == vm->failed) ok = check_answer(vm, s->name, ok);
   ok = ok && cag_check_defined(&call, *result);
+  if (vm->stop) ok = cag_stop_answer(vm); // work that was cut short may have found anything
   vm->native = native.outer;
   vm->top = top;
   return ok;

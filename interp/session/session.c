@@ -162,7 +162,8 @@ static void *perform(void *context) {
   cag_stop_lend(&t->vm->stop);
   t->ok = cag_vm_protect(t->vm, t->work, t->context);
   // What was cut short because the work must stop may not have told so.
-  if (t->ok && t->vm->stop) t->ok = cag_keep_going(t->vm);
+  // Otherwise the work has added a diagnostic of its own.
+  if (t->vm->stop && (t->ok || t->vm->failed)) t->ok = cag_stop_answer(t->vm);
   return NULL;
 }
 
@@ -219,10 +220,19 @@ static bool perform_geometry(CagVm *vm, void *context) {
   return t->status == CAG_STATUS_OK && !vm->failed;
 }
 
+static CagErrorId why_stopped(const CagSession *s);
+static int fail_stopped(CagSession *s, CagErrorId id);
+
 int cag_session_geometry(CagSession *s, int (*work)(CagSession *s, void *context), void *context) {
   GeometryTask t = {s, work, context, CAG_STATUS_OK};
   int status = cag_session_work(s, perform_geometry, &t);
   if (t.status == CAG_STATUS_LIMIT && s->diagnostics.count == 0) cag_session_fail_memory(s);
+  // An error of work that was cut short says nothing.
+  if (s->vm && s->vm->stop && t.status != CAG_STATUS_OK && t.status != CAG_STATUS_LIMIT &&
+      t.status != CAG_STATUS_INTERRUPTED) {
+    cag_diagnostics_clear(&s->diagnostics);
+    return fail_stopped(s, why_stopped(s));
+  }
   return t.status != CAG_STATUS_OK ? t.status : status;
 }
 
@@ -311,9 +321,9 @@ int cag_session_fail_geometry(CagSession *s, const CagError *err) {
     return cag_session_status(s);
   }
   CagErrorId id = err->reason ? cag_error_by_reason(err->reason) : CAG_ERR_COUNT;
-  if (err->status == CAG_E_LIMIT) id = CAG_ERR_limit_triangles;
+  if (s->vm && s->vm->stop) id = why_stopped(s); // whatever the work that was cut short says
+  else if (err->status == CAG_E_LIMIT) id = CAG_ERR_limit_triangles;
   else if (err->status == CAG_E_MEMORY) id = CAG_ERR_limit_memory;
-  else if (err->status == CAG_E_CALLBACK && s->vm && s->vm->stop) id = why_stopped(s);
   else if (id == CAG_ERR_COUNT) id = CAG_ERR_value;
   if (id == CAG_ERR_interrupted || id == CAG_ERR_limit_time) return fail_stopped(s, id);
   const CagSolidPlace place = place_of_operation(s, err);
