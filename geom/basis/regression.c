@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "geom/linalg/dense.h"
+#include "geom/sort.h"
 #include "geom/stop.h"
 
 // x closer together than this share of their range are one.
@@ -23,10 +24,11 @@ static CagStatus check_distinct(const double *x, size_t n, size_t needed, CagErr
   if (!sorted) return cag_fail_memory(err);
   size_t distinct = n > 0;
   for (size_t i = 0; i < n; i++) sorted[i] = x[i];
-  qsort(sorted, n, sizeof *sorted, ascending);
-  for (size_t i = 1; i < n; i++)
+  const CagStatus status = cag_sort(sorted, n, sizeof *sorted, ascending, err);
+  for (size_t i = 1; !status && i < n; i++)
     distinct += sorted[i] - sorted[i - 1] > SAME_X * (sorted[n - 1] - sorted[0]);
   free(sorted);
+  if (status) return status;
   if (distinct >= needed) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, "underdetermined", "points", -1,
                   "%zu coefficients need as many points of different x; these have %zu", needed,

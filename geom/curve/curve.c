@@ -121,13 +121,22 @@ CagStatus cag_curve_point(const CagCurve *c, double t, CagVec3 *out, CagError *e
   return cag_curve_eval(c, t, 0, CAG_SIDE_RIGHT, out, err);
 }
 
+// Points that are evaluated between two looks at the stop flag.
+#define BLOCK ((size_t)4096)
+
 CagStatus cag_curve_eval_many(const CagCurve *c, const double *t, size_t n, int order, CagVec3 *out,
                               CagError *err) {
   CagStatus status = check_order(order, err);
   if (status) return status;
   bool inside = true;
   for (size_t i = 0; i < n; i++) inside = inside && t[i] >= c->start && t[i] <= c->end;
-  if (inside && c->kind->eval_many) return c->kind->eval_many(c, t, n, order, out, err);
+  for (size_t i = 0; !status && inside && c->kind->eval_many && i < n; i += BLOCK) {
+    const size_t block = n - i < BLOCK ? n - i : BLOCK;
+    status = cag_stop_check(err);
+    if (!status)
+      status = c->kind->eval_many(c, t + i, block, order, out + i * (size_t)(order + 1), err);
+  }
+  if (inside && c->kind->eval_many) return status;
   for (size_t i = 0; i < n; i++) {
     status = cag_curve_eval(c, t[i], order, CAG_SIDE_RIGHT, out + i * (size_t)(order + 1), err);
     if (status) {

@@ -401,11 +401,11 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
 
 static CagStatus eval_many(const CagCurve *curve, const double *t, size_t n, int order,
                            CagVec3 *out, CagError *err) {
-  (void)err;
   const CagNurbs *c = (const CagNurbs *)curve;
   if (cag_nurbs_eval_many(c, t, n, order, out)) return CAG_OK;
   size_t piece = 0;
   for (size_t i = 0; i < n; i++) {
+    if (cag_stop_check(err)) return err->status;
     piece = cag_nurbs_piece(c, t[i], CAG_SIDE_RIGHT, piece);
     evaluate(c, piece, t[i], order, out + i * (size_t)(order + 1));
   }

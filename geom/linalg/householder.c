@@ -73,7 +73,7 @@ static void compute_norm(Factors *f, size_t j, size_t from) {
 // Takes row k from the norms. Where digits cancel, a norm is computed anew.
 static void reduce_norms(Factors *f, size_t k) {
   const double CANCELED = sqrt(DBL_EPSILON);
-  for (size_t j = k + 1; j < f->columns; j++) {
+  for (size_t j = k + 1; j < f->columns && !cag_stopped(); j++) {
     double *norm = &f->norms[j];
     if (*norm == 0) continue;
     const double part = fabs(f->a[j * f->rows + k]) / *norm, left = fmax(0, 1 - part * part);
@@ -198,6 +198,7 @@ CagStatus cag_least_squares(double *a, size_t rows, size_t columns, double *righ
   for (size_t j = 0; !status && j < columns; j++) {
     f.order[j] = j;
     compute_norm(&f, j, 0);
+    status = cag_stop_check(err);
   }
   if (!status) status = factor(&f, cut, err);
   if (!status) status = find_shortest(&f, err);

@@ -2,6 +2,7 @@
 // union-find forests over the faces and over their corners tell shells and fans.
 
 #include "geom/mesh/check.h"
+#include "geom/sort.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -81,8 +82,7 @@ static CagStatus read_faces(Work *w, CagError *err) {
                             : (Use){b, a, (uint32_t)f, false, next, here};
     }
   }
-  qsort(w->uses, w->corners, sizeof *w->uses, by_edge);
-  return CAG_OK;
+  return cag_sort(w->uses, w->corners, sizeof *w->uses, by_edge, err);
 }
 
 // --- Counting ---

@@ -4,6 +4,7 @@
 // surface's normal from within the triangle, or the opposite of its own normal beyond a cusp.
 
 #include "geom/mesh/sides.h"
+#include "geom/stop.h"
 
 #include <stdlib.h>
 
@@ -164,7 +165,10 @@ CagStatus cag_mesh_split_sides(CagMesh *m, size_t from, size_t to, const CagSurf
   Sides s = {.m = m, .surface = surface, .least = cos(angle), .noise = noise};
   CagStatus status = CAG_OK;
   if (!(angle > 0)) return CAG_OK;
-  for (size_t t = from; !status && t < to; t++) status = split_triangle(&s, t, err);
+  for (size_t t = from; !status && t < to; t++) {
+    status = cag_stop_check(err);
+    if (!status) status = split_triangle(&s, t, err);
+  }
   free(s.copy);
   return status;
 }

@@ -145,6 +145,24 @@ static CagStatus grid_by_points(const CagSurface *s, const double *us, size_t nu
   return CAG_OK;
 }
 
+// Points that are evaluated between two looks at the stop flag.
+#define BLOCK ((size_t)1 << 16)
+
+static CagStatus grid_by_blocks(const CagSurface *s, const double *us, size_t nu, const double *vs,
+                                size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv,
+                                CagError *err) {
+  const size_t rows = nv < BLOCK ? BLOCK / (nv + 1) + 1 : 1;
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < nu; i += rows) {
+    const size_t at = i * nv, n = nu - i < rows ? nu - i : rows;
+    status = cag_stop_check(err);
+    if (!status)
+      status = s->kind->eval_grid(s, us + i, n, vs, nv, points + at, du ? du + at : NULL,
+                                  dv ? dv + at : NULL, err);
+  }
+  return status;
+}
+
 static bool all_inside(const double *t, size_t n, double a, double b) {
   bool inside = true;
   for (size_t i = 0; i < n; i++) inside = inside && t[i] >= a && t[i] <= b;
@@ -181,7 +199,7 @@ CagStatus cag_surface_eval_grid(const CagSurface *s, const double *us, size_t nu
     status = snapped(vs, nv, s->v0, s->v1, s->angular_v, "v", &copy_v, err);
   if (!status) {
     const double *u = copy_u ? copy_u : us, *v = copy_v ? copy_v : vs;
-    status = s->kind->eval_grid ? s->kind->eval_grid(s, u, nu, v, nv, points, du, dv, err)
+    status = s->kind->eval_grid ? grid_by_blocks(s, u, nu, v, nv, points, du, dv, err)
                                 : grid_by_points(s, u, nu, v, nv, points, du, dv, err);
   }
   free(copy_u);

@@ -106,8 +106,8 @@ bool cag_call(CagVm *vm, CagValue function, const CagValue *arguments, size_t n,
 // Call to be made in long loops of C code: false when interrupted or the time limit is crossed
 // (error set).
 bool cag_keep_going(CagVm *vm);
-// After work that the stop flag may have cut short: whatever it answered, the run has failed
-// because it must stop. An error of a limit that was set before stays. Returns false.
+// Fails the run because it must stop, whatever the work that was cut short has answered. Returns
+// false.
 bool cag_stop_answer(CagVm *vm);
 
 // --- The table ---

@@ -25,6 +25,9 @@ typedef struct Matrix {
   double *x; // by rows; malloc'd
 } Matrix;
 
+// Rows of a matrix, and numbers, after which the run is asked whether it must stop.
+enum { ROWS_BETWEEN_CHECKS = 16, NUMBERS_BETWEEN_CHECKS = 1 << 18 };
+
 static bool take(CagCall *call, size_t rows, size_t columns, Matrix *out) {
   size_t n = rows * columns;
   *out = (Matrix){rows, columns, malloc((n ? n : 1) * sizeof(double))};
@@ -32,8 +35,10 @@ static bool take(CagCall *call, size_t rows, size_t columns, Matrix *out) {
 }
 
 static bool check_finite(CagCall *call, int argument, const Matrix *m) {
-  for (size_t i = 0; i < m->rows * m->columns; i++)
+  for (size_t i = 0; i < m->rows * m->columns; i++) {
     if (!isfinite(m->x[i])) return cag_fail_value(call, argument, "finite numbers");
+    if (i % NUMBERS_BETWEEN_CHECKS == 0 && !cag_keep_going(call->vm)) return false;
+  }
   return true;
 }
 
@@ -65,6 +70,9 @@ static bool read_rows(CagCall *call, int argument, Matrix *out) {
       return false;
     }
     memcpy(out->x + i * columns, x, columns * sizeof *x);
+    if (i % ROWS_BETWEEN_CHECKS != 0 || cag_keep_going(call->vm)) continue;
+    free(out->x);
+    return false;
   }
   return true;
 }
@@ -123,6 +131,7 @@ static bool give_matrix(CagCall *call, Matrix *m, size_t rows, bool vector, CagV
   for (size_t i = 0; i < rows * m->columns && good; i++) {
     m->x[i] += 0.0; // never -0
     if (!isfinite(m->x[i])) good = cag_fail_call(call, 0, CAG_ERR_not_finite, "overflows");
+    else if (i % NUMBERS_BETWEEN_CHECKS == 0) good = cag_keep_going(call->vm);
   }
   if (good) *result = give_rows(call->vm, m, rows, vector);
   free(m->x);
@@ -215,6 +224,19 @@ static bool call_solve(CagCall *call, CagValue *result) {
   return good && give_matrix(call, &b, b.rows, vector, result);
 }
 
+// Copies a matrix to one by columns, or back.
+static bool turn(CagCall *call, const Matrix *m, bool back, double *columns) {
+  for (size_t i = 0; i < m->rows; i++) {
+    for (size_t j = 0; j < m->columns; j++) {
+      double *row = &m->x[i * m->columns + j], *column = &columns[j * m->rows + i];
+      if (back) *row = *column;
+      else *column = *row;
+    }
+    if (!cag_keep_going(call->vm)) return false;
+  }
+  return true;
+}
+
 // Least squares by Householder reflections; x has as many rows as the larger of a's rows and
 // columns.
 static bool solve_large_least_squares(CagCall *call, const Matrix *a, Matrix *x, double cut) {
@@ -224,18 +246,15 @@ static bool solve_large_least_squares(CagCall *call, const Matrix *a, Matrix *x,
     free(turned.x);
     return false;
   }
-  for (size_t i = 0; i < a->rows; i++)
-    for (size_t j = 0; j < a->columns; j++) turned.x[j * a->rows + i] = a->x[i * a->columns + j];
-  for (size_t i = 0; i < x->rows; i++)
-    for (size_t j = 0; j < x->columns; j++) sides.x[j * x->rows + i] = x->x[i * x->columns + j];
   CagError err = {0};
-  const CagStatus status =
-      cag_least_squares(turned.x, a->rows, a->columns, sides.x, x->rows, x->columns, &cut, &err);
-  for (size_t i = 0; !status && i < x->rows; i++)
-    for (size_t j = 0; j < x->columns; j++) x->x[i * x->columns + j] = sides.x[j * x->rows + i];
+  bool good = turn(call, a, false, turned.x) && turn(call, x, false, sides.x);
+  if (good &&
+      cag_least_squares(turned.x, a->rows, a->columns, sides.x, x->rows, x->columns, &cut, &err))
+    good = cag_fail_geometry(call, &err);
+  good = good && turn(call, x, true, sides.x);
   free(turned.x);
   free(sides.x);
-  return status == CAG_OK || cag_fail_geometry(call, &err);
+  return good;
 }
 
 static bool solve_least_squares(CagCall *call, Matrix *a, Matrix *x) {
@@ -277,9 +296,6 @@ static bool call_least_squares(CagCall *call, CagValue *result) {
   return good && give_matrix(call, &x, unknowns, vector, result);
 }
 
-// Multiplications after which the run is asked whether it must stop.
-#define WORK_BETWEEN_CHECKS ((size_t)1 << 18)
-
 static bool call_multiply(CagCall *call, CagValue *result) {
   Matrix a, b, c;
   bool vector;
@@ -296,7 +312,7 @@ static bool call_multiply(CagCall *call, CagValue *result) {
     for (size_t k = 0; k < a.columns && good; k++) {
       for (size_t j = 0; j < c.columns; j++)
         row[j] += a.x[i * a.columns + k] * b.x[k * b.columns + j];
-      if ((work += c.columns) < WORK_BETWEEN_CHECKS) continue;
+      if ((work += c.columns) < NUMBERS_BETWEEN_CHECKS) continue;
       work = 0;
       good = cag_keep_going(call->vm);
     }

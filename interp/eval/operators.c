@@ -236,13 +236,6 @@ static bool jets(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *re
 
 // --- Others ---
 
-static CagValue join_texts(CagVm *vm, const CagText *a, const CagText *b) {
-  CagString s = {0};
-  cag_string_add(&s, a->bytes, a->length);
-  cag_string_add(&s, b->bytes, b->length);
-  return cag_text_from_string(vm, &s);
-}
-
 // Puts the top of the stack above the registers of the running frame, which the loop does not see
 // to for operators, and gives the old one: so a built-in may be called, and it the script.
 static CagValue *raise_top(CagVm *vm) {
@@ -332,7 +325,7 @@ bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue 
   switch (op) {
   case CAG_OP_ADD:
     if (a.type == CAG_TEXT && b.type == CAG_TEXT) {
-      *result = join_texts(vm, CAG_AS_TEXT(a), CAG_AS_TEXT(b));
+      *result = cag_text_joined(vm, CAG_AS_TEXT(a), CAG_AS_TEXT(b));
       return true;
     }
     if (is_list(a) && is_list(b)) return list_sum(vm, op, a, b, result);

@@ -41,7 +41,8 @@ bool cag_keep_going(CagVm *vm) {
 }
 
 bool cag_stop_answer(CagVm *vm) {
-  const bool known = vm->failed && vm->errors.count > 0 && cag_vm_at_limit(vm);
+  const CagErrorId id = vm->errors.count ? vm->errors.items[0].id : CAG_ERR_COUNT;
+  const bool known = vm->failed && (id == CAG_ERR_limit_time || id == CAG_ERR_interrupted);
   return !known && cag_keep_going(vm);
 }
 
