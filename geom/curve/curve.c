@@ -42,6 +42,9 @@ void cag_curve_release(CagCurve *c) {
 
 // --- Checks ---
 
+// Points between two looks at the stop flag.
+#define BLOCK ((size_t)4096)
+
 // Lengths up to this size can be squared and multiplied by each other without overflow.
 #define LARGEST 1e100
 
@@ -54,6 +57,7 @@ CagStatus cag_curve_check_points(const CagVec3 *points, size_t n, const char *na
       return cag_fail(err, CAG_E_ARGUMENT, "size-out-of-range", name, (long)i,
                       "%s[%zu] has a coordinate beyond %g, too large to compute with", name, i,
                       LARGEST);
+    else if (i % BLOCK == BLOCK - 1 && cag_stop_check(err)) return err->status;
   return CAG_OK;
 }
 
@@ -120,9 +124,6 @@ CagStatus cag_curve_eval(const CagCurve *c, double t, int order, CagSide side, C
 CagStatus cag_curve_point(const CagCurve *c, double t, CagVec3 *out, CagError *err) {
   return cag_curve_eval(c, t, 0, CAG_SIDE_RIGHT, out, err);
 }
-
-// Points that are evaluated between two looks at the stop flag.
-#define BLOCK ((size_t)4096)
 
 CagStatus cag_curve_eval_many(const CagCurve *c, const double *t, size_t n, int order, CagVec3 *out,
                               CagError *err) {

@@ -2,10 +2,11 @@
 // union-find forests over the faces and over their corners tell shells and fans.
 
 #include "geom/mesh/check.h"
-#include "geom/sort.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+#include "geom/sort.h"
 
 // An edge of a face. A corner is a place in the list of indices; low < high are vertices.
 typedef struct Use {

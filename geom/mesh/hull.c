@@ -219,8 +219,10 @@ static CagStatus first_points(const Hull *h, uint32_t b[4], CagError *err) {
   b[0] = 0;
   b[0] = farthest_from(h, measure_point, b, &most);
   b[1] = farthest_from(h, measure_point, b, &most);
+  if (cag_stop_check(err)) return err->status;
   if (most <= h->slack) return fail_coincident(err);
   b[2] = farthest_from(h, measure_line, b, &most);
+  if (cag_stop_check(err)) return err->status;
   if (most <= h->slack) return fail_collinear(err);
   b[3] = farthest_from(h, measure_plane, b, &most);
   if (cag_stop_check(err)) return err->status;

@@ -4,9 +4,10 @@
 // surface's normal from within the triangle, or the opposite of its own normal beyond a cusp.
 
 #include "geom/mesh/sides.h"
-#include "geom/stop.h"
 
 #include <stdlib.h>
+
+#include "geom/stop.h"
 
 // The limit of the normal at a corner is taken at this fraction of the way to the middle of the
 // triangle: normals turn little over it, and partial derivatives that vanish at the corner are

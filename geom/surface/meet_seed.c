@@ -2,11 +2,12 @@
 // of the two meshes whose boxes meet, by a sweep along an axis.
 
 #include "geom/surface/meet_seed.h"
-#include "geom/sort.h"
-#include "geom/stop.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+#include "geom/sort.h"
+#include "geom/stop.h"
 
 bool cag_march_fail(CagMarch *m, CagStatus status) {
   m->status = status;

@@ -2,11 +2,12 @@
 // tangent of their own get one from their neighbors.
 
 #include "geom/surface/section_join.h"
-#include "geom/stop.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "geom/stop.h"
 
 // Runs that meet are one where their tangents agree up to this (1 - cosine): cubics with one
 // tangent for both then stay within a millionth.

@@ -1,13 +1,13 @@
 // Sessions: one machine a run, on a thread with a large stack, and what became of it.
 
 #include "interp/session/session.h"
-#include "geom/solid/csg.h"
 
 #include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/solid/csg.h"
 #include "geom/stop.h"
 #include "geom/surface/crossing.h"
 #include "interp/scene/lead.h"
