@@ -338,12 +338,16 @@ CagStatus cag_net_interpolate(CagNet *net, const double *parameters, CagError *e
     if (!turned) status = cag_fail_memory(err);
   }
   if (!status && least > 0) {
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n && !cag_stopped(); i++)
       for (size_t c = 0; c < net->width; c++) turned[c * n + i] = net->data[i * net->width + c];
-    status = cag_band_solve(band, n, p, p, turned, net->width, &singular, err);
-    for (size_t j = 0; !singular && j < n; j++) least = fmin(least, fabs(band[j * rows + 2 * p]));
-    for (size_t i = 0; i < n; i++)
+    status = cag_stop_check(err);
+    if (!status) status = cag_band_solve(band, n, p, p, turned, net->width, &singular, err);
+    for (size_t j = 0; !status && !singular && j < n; j++)
+      least = fmin(least, fabs(band[j * rows + 2 * p]));
+    for (size_t i = 0; !status && i < n; i++) {
       for (size_t c = 0; c < net->width; c++) net->data[i * net->width + c] = turned[c * n + i];
+      status = cag_stop_check(err);
+    }
   }
   if (!status && (singular || least < 1e-13))
     status = cag_fail(err, CAG_E_DEGENERATE, "fit-singular", "degree", -1,
