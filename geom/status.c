@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geom/stop.h"
+
 CagStatus cag_fail(CagError *err, CagStatus status, CagErrorId id, const char *argument, long index,
                    const char *format, ...) {
   err->status = status;
@@ -33,7 +35,9 @@ bool cag_memory_was_out(void) {
   return out;
 }
 
+// Functions that only tell that they could not finish do so as well if the work is to end.
 CagStatus cag_fail_memory(CagError *err) {
+  if (cag_stopped()) return cag_stop_fail(err);
   cag_note_memory();
   return cag_fail(err, CAG_E_MEMORY, CAG_ERR_limit_memory, "", -1, "there is no memory left");
 }

@@ -2,6 +2,8 @@
 
 #include "geom/stop.h"
 
+#include <string.h>
+
 _Thread_local const volatile int *cag_stop_flag;
 
 const volatile int *cag_stop_lend(const volatile int *flag) {
@@ -11,5 +13,11 @@ const volatile int *cag_stop_lend(const volatile int *flag) {
 }
 
 CagStatus cag_stop_fail(CagError *err) {
-  return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "it was stopped");
+  // Not by cag_fail: loops that pass over failures reach their end soonest.
+  err->status = CAG_E_CALLBACK;
+  err->id = CAG_ERR_interrupted;
+  err->argument[0] = 0;
+  err->index = -1;
+  strcpy(err->message, "it was stopped");
+  return err->status;
 }

@@ -4,6 +4,9 @@
 // long look at it now and then, and fail with CAG_E_CALLBACK, "interrupted", when it is not 0. Why
 // it was set (a Ctrl-C, a limit of time) is known to who set it. The flag belongs to the thread, as
 // its stack does: threads know nothing of each other's, and work without a flag never ends early.
+//
+// A loop whose length depends on input asks at least once in some milliseconds. Functions without a
+// status return early instead, and their callers ask. Their results are then valid but meaningless.
 
 #ifndef CAG_GEOM_STOP_H
 #define CAG_GEOM_STOP_H

@@ -886,7 +886,7 @@ static void print_statement(void *context, const CagModuleAst *m, const CagState
 
 char *cag_format(const CagSource *source, CagDiagnostics *errors, size_t *length) {
   Format f = {.text = source->text};
-  layout_init(&f.layout, CAG_FORMAT_WIDTH);
+  layout_init(&f.layout, source, CAG_FORMAT_WIDTH);
   cag_parse_each(source, print_statement, &f, errors);
   layout_release(&f.layout);
   *length = f.length;

@@ -22,9 +22,12 @@ struct LayoutBlock {
   _Alignas(max_align_t) char bytes[];
 };
 
-void layout_init(Layout *l, uint32_t width) { *l = (Layout){.width = width}; }
+void layout_init(Layout *l, const CagSource *source, uint32_t width) {
+  *l = (Layout){.source = source, .width = width};
+}
 
 static LayoutBlock *next_block(Layout *l, size_t size) {
+  cag_source_check(l->source);
   LayoutBlock *b = l->block ? l->block->next : l->blocks;
   if (b && b->size >= size) return b;
   const size_t room = size > BLOCK_SIZE ? size : BLOCK_SIZE;
@@ -596,6 +599,7 @@ static void print_broken(Layout *l, const Doc *d, int indent, uint32_t tail) {
 
 // Prints d, with `tail` columns to follow it before the line may be broken.
 static void print(Layout *l, const Doc *d, int indent, uint32_t tail) {
+  cag_source_check(l->source);
   if (d->kind >= DOC_GROUP && fits(l, d, tail)) {
     print_flat(l, d);
     return;

@@ -16,6 +16,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "lang/source.h"
+
 typedef enum DocKind {
   DOC_TEXT,
   DOC_LINE,     // text (a space, or nothing) on one line, else a line break
@@ -79,6 +81,7 @@ typedef struct LayoutTrailing {
 } LayoutTrailing;
 
 typedef struct Layout {
+  const CagSource *source; // what is laid out
   uint32_t width;
   LayoutBlock *blocks, *block; // of documents; the one in use
   char *out;
@@ -92,7 +95,7 @@ typedef struct Layout {
   size_t trailing_count, trailing_capacity;
 } Layout;
 
-void layout_init(Layout *l, uint32_t width);
+void layout_init(Layout *l, const CagSource *source, uint32_t width);
 // Memory that lives as long as the documents.
 void *layout_memory(Layout *l, size_t size);
 

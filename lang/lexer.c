@@ -755,6 +755,7 @@ static bool ends_interpolation(CagLexer *lx, CagTokenKind kind) {
 }
 
 void cag_lexer_next(CagLexer *lx, CagToken *t) {
+  cag_source_check(lx->source);
   t->newline_before = false;
   bool whole = skip_blanks(lx, &t->newline_before);
   uint32_t start = lx->position;

@@ -1,4 +1,4 @@
-// Work that may run out of memory at any point.
+// Work that may run out of memory at any point, or be asked to end (cag_source_check).
 //
 // A parser or a printer allocates at a hundred locations. Such work runs in a guard: a failed
 // allocation jumps out of the work, and the guard reports the failure. The caller of the guard

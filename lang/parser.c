@@ -631,7 +631,9 @@ static void release(Parser *p) {
   cag_free(p);
 }
 
+// Who asked the work to end says why.
 static void fail_memory(const CagSource *source, CagDiagnostics *errors) {
+  if (cag_source_stopped(source)) return;
   cag_diagnostics_add(errors, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
                       "not enough memory to read %s", source->name);
 }

@@ -419,6 +419,7 @@ static void walk_all(Resolver *r, CagExpr **items, size_t count) {
 }
 
 static void walk(Resolver *r, CagExpr *e) {
+  cag_source_check(r->module->source);
   switch (e->kind) {
   case CAG_EXPR_NUMBER:
   case CAG_EXPR_ANGLE:
@@ -556,7 +557,7 @@ bool cag_resolve(CagModuleAst *m, const CagResolveEnv *env, CagDiagnostics *erro
   cag_free(r.current);
   cag_free(r.entries);
   cag_arena_free(&r.scratch);
-  if (!done)
+  if (!done && !cag_source_stopped(m->source))
     cag_diagnostics_add(errors, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
                         "not enough memory for the names of %s", m->source->name);
   return done;

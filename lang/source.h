@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "lang/memory.h"
+
 // Half-open range of bytes [start, end) of a source.
 typedef struct CagSpan {
   uint32_t start, end;
@@ -21,6 +23,7 @@ typedef struct CagSource {
   size_t length;   // at most CAG_SOURCE_MAX
   uint32_t *lines; // offset of each line's first byte
   size_t line_count;
+  const volatile int *stop; // becomes nonzero if work on the text is to end; NULL: never
 } CagSource;
 
 // 1 GiB: offsets fit in 32 bits with room to spare.
@@ -37,6 +40,12 @@ void cag_source_free(CagSource *s);
 
 // Offset of the first byte that is not part of valid UTF-8 (or is NUL); `length` when all is well.
 size_t cag_source_bad_utf8(const CagSource *s);
+
+static inline bool cag_source_stopped(const CagSource *s) { return s->stop && *s->stop; }
+// Abandons the work of the innermost guard (lang/memory.h) if work on the text is to end.
+static inline void cag_source_check(const CagSource *s) {
+  if (cag_source_stopped(s)) cag_memory_leave();
+}
 
 CagPosition cag_source_position(const CagSource *s, uint32_t offset);
 

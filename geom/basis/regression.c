@@ -5,9 +5,11 @@
 
 #include <lapacke.h>
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
+#include "geom/linalg/dense.h"
+#include "geom/sort.h"
+#include "geom/stop.h"
 
 // x closer together than this share of their range are one.
 #define SAME_X 1e-12
@@ -22,10 +24,11 @@ static CagStatus check_distinct(const double *x, size_t n, size_t needed, CagErr
   if (!sorted) return cag_fail_memory(err);
   size_t distinct = n > 0;
   for (size_t i = 0; i < n; i++) sorted[i] = x[i];
-  qsort(sorted, n, sizeof *sorted, ascending);
-  for (size_t i = 1; i < n; i++)
+  const CagStatus status = cag_sort(sorted, n, sizeof *sorted, ascending, err);
+  for (size_t i = 1; !status && i < n; i++)
     distinct += sorted[i] - sorted[i - 1] > SAME_X * (sorted[n - 1] - sorted[0]);
   cag_free(sorted);
+  if (status) return status;
   if (distinct >= needed) return CAG_OK;
   return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_underdetermined, "points", -1,
                   "%zu coefficients need as many points of different x; these have %zu", needed,
@@ -38,6 +41,15 @@ static void expand(double *c, int degree, double m, double h) {
   for (int i = 0; i <= degree; i++) c[i] /= pow(h, i);
   for (int i = 0; i < degree; i++)
     for (int k = degree - 1; k >= i; k--) c[k] -= m * c[k + 1];
+}
+
+// Least squares of a column-major matrix; the first numbers of `right` become the solution.
+static CagStatus solve(double *matrix, size_t n, size_t columns, double *right, CagError *err) {
+  if ((double)n * (double)columns * (double)columns > CAG_LAPACK_MOST)
+    return cag_least_squares(matrix, n, columns, right, n, 1, NULL, err);
+  const lapack_int info = LAPACKE_dgels(LAPACK_COL_MAJOR, 'N', (lapack_int)n, (lapack_int)columns,
+                                        1, matrix, (lapack_int)n, right, (lapack_int)n);
+  return info == 0 ? CAG_OK : CAG_E_DEGENERATE;
 }
 
 static CagStatus fit_polynomial(const double *x, const double *y, size_t n, int degree, double *out,
@@ -56,10 +68,10 @@ static CagStatus fit_polynomial(const double *x, const double *y, size_t n, int 
   for (size_t i = 0; !status && i < n; i++) {
     right[i] = y[i];
     double power = 1;
-    for (size_t j = 0; j < columns; j++, power *= (x[i] - m) / h) matrix[i * columns + j] = power;
+    for (size_t j = 0; j < columns; j++, power *= (x[i] - m) / h) matrix[j * n + i] = power;
   }
-  if (!status && LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', (lapack_int)n, (lapack_int)columns, 1, matrix,
-                               (lapack_int)columns, right, 1) != 0)
+  if (!status) status = solve(matrix, n, columns, right, err);
+  if (status == CAG_E_DEGENERATE)
     status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_underdetermined, "points", -1,
                       "the points do not determine %zu coefficients", columns);
   for (size_t j = 0; !status && j < columns; j++) out[j] = right[j];

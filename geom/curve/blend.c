@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "geom/curve/cubic.h"
 #include "geom/curve/family.h"
+#include "geom/stop.h"
 
 typedef struct Blend {
   const CagVec3 *points;
@@ -70,6 +71,7 @@ static CagStatus build(const Blend *b, int dimension, CagCurve **out, CagError *
     control[c++] = *point(b, from);
     for (size_t s = 0; s < spans; s++) {
       const size_t i = from + s;
+      if ((status = cag_stop_check(err)) != CAG_OK) break;
       inner_points(b, i, arcs && s == 0, arcs && s + 1 == spans, control + c);
       c += 2;
       u += length(b, i);
@@ -79,7 +81,7 @@ static CagStatus build(const Blend *b, int dimension, CagCurve **out, CagError *
     }
     control[c++] = *point(b, from + spans);
     for (int j = 0; j < 4; j++) knots[k++] = u;
-    status = cag_curve_nurbs(control, NULL, count, 3, knots, dimension, out, err);
+    if (!status) status = cag_curve_nurbs(control, NULL, count, 3, knots, dimension, out, err);
   }
   cag_free(control);
   cag_free(knots);

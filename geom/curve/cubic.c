@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "geom/curve/family.h"
+#include "geom/stop.h"
 
 // --- Parameters ---
 
@@ -86,6 +87,7 @@ static CagVec3 solution(const System *s, size_t row) {
 }
 
 static CagStatus solve(System *s, int columns, CagError *err) {
+  if (cag_stop_check(err)) return err->status;
   if (LAPACKE_dgtsv(LAPACK_COL_MAJOR, (lapack_int)s->m, columns, s->below, s->diagonal, s->above,
                     s->right, (lapack_int)s->m) == 0)
     return CAG_OK;

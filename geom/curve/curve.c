@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
+#include "geom/stop.h"
 
 // A parameter this many ulps outside the domain is the end: it was computed.
 #define SNAP_ULPS 16
@@ -41,6 +42,9 @@ void cag_curve_release(CagCurve *c) {
 
 // --- Checks ---
 
+// Points between two looks at the stop flag.
+#define BLOCK ((size_t)4096)
+
 // Lengths up to this size can be squared and multiplied by each other without overflow.
 #define LARGEST 1e100
 
@@ -53,6 +57,7 @@ CagStatus cag_curve_check_points(const CagVec3 *points, size_t n, const char *na
       return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_size_out_of_range, name, (long)i,
                       "%s[%zu] has a coordinate beyond %g, too large to compute with", name, i,
                       LARGEST);
+    else if (i % BLOCK == BLOCK - 1 && cag_stop_check(err)) return err->status;
   return CAG_OK;
 }
 
@@ -108,6 +113,7 @@ static CagStatus check_order(int order, CagError *err) {
 
 CagStatus cag_curve_eval(const CagCurve *c, double t, int order, CagSide side, CagVec3 *out,
                          CagError *err) {
+  if (cag_stop_check(err)) return err->status;
   CagStatus status = check_order(order, err);
   if (!status) status = snap(c, &t, "t", err);
   if (status) return status;
@@ -126,7 +132,13 @@ CagStatus cag_curve_eval_many(const CagCurve *c, const double *t, size_t n, int 
   if (status) return status;
   bool inside = true;
   for (size_t i = 0; i < n; i++) inside = inside && t[i] >= c->start && t[i] <= c->end;
-  if (inside && c->kind->eval_many) return c->kind->eval_many(c, t, n, order, out, err);
+  for (size_t i = 0; !status && inside && c->kind->eval_many && i < n; i += BLOCK) {
+    const size_t block = n - i < BLOCK ? n - i : BLOCK;
+    status = cag_stop_check(err);
+    if (!status)
+      status = c->kind->eval_many(c, t + i, block, order, out + i * (size_t)(order + 1), err);
+  }
+  if (inside && c->kind->eval_many) return status;
   for (size_t i = 0; i < n; i++) {
     status = cag_curve_eval(c, t[i], order, CAG_SIDE_RIGHT, out + i * (size_t)(order + 1), err);
     if (status) {

@@ -8,6 +8,8 @@
 #include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/curve/family.h"
+#include "geom/linalg/dense.h"
+#include "geom/stop.h"
 
 // Evenly spaced knots suit interpolation where each basis function has at least this part of its
 // largest value at its own data point; further off, the curve swings between the points.
@@ -74,12 +76,14 @@ static void even_knots(size_t count, int p, double from, double to, double *out)
 
 // Each inner knot is the mean of p parameters following one another: every parameter then lies
 // inside of the support of its basis function. u: as many as control points.
+// Ends early if the work is to end, with knots that are 0.
 static void averaged_knots(const double *u, size_t count, int p, double *out) {
+  memset(out, 0, (count + (size_t)p + 1) * sizeof *out);
   for (int i = 0; i <= p; i++) {
     out[i] = u[0];
     out[count + (size_t)i] = u[count - 1];
   }
-  for (size_t j = 1; j + (size_t)p < count; j++) {
+  for (size_t j = 1; j + (size_t)p < count && !cag_stopped(); j++) {
     double sum = 0;
     for (int i = 0; i < p; i++) sum += u[j + (size_t)i] - u[0];
     out[j + (size_t)p] = u[0] + sum / p;
@@ -137,11 +141,12 @@ static CagStatus design_new(size_t rows, size_t count, int p, Design *out, CagEr
   return cag_fail_memory(err);
 }
 
-static void fill_basis(Design *a) {
+static CagStatus fill_basis(Design *a, CagError *err) {
   double both[2 * (CAG_MAX_DEGREE + 1)];
   const size_t width = (size_t)a->p + 1;
   size_t span = width - 1;
   for (size_t r = 0; r < a->rows; r++) {
+    if (cag_stop_check(err)) return err->status;
     span = cag_knots_span(a->knots, a->count, a->p, a->u[r], false, span);
     a->first[r] = span - (size_t)a->p;
     double *row = a->basis + r * width;
@@ -152,6 +157,7 @@ static void fill_basis(Design *a) {
       memcpy(row, both + width, width * sizeof *row);
     }
   }
+  return CAG_OK;
 }
 
 static CagStatus make_curve(const Design *a, const CagVec3 *control, int dimension, CagCurve **out,
@@ -225,6 +231,7 @@ static void fill_conditions(const CagFitData *d, const double *u, const CagVec3 
 
 // Schoenberg and Whitney: the i-th parameter lies inside of the support of the i-th basis function.
 static CagStatus check_support(const Design *a, CagError *err) {
+  if (cag_stop_check(err)) return err->status; // the knots may be unfinished
   const double start = a->knots[a->p], end = a->knots[a->count];
   char t[32], x[32], y[32];
   for (size_t i = 0; i < a->count; i++) {
@@ -261,6 +268,7 @@ static bool even_knots_suit(Design *a, CagError *scratch) {
     cag_bspline_basis(a->knots, a->p, span, a->u[i], best);
     const size_t first = span - (size_t)a->p;
     if (best[i - first] < WELL_PLACED * largest) return false; // i is among them: check_support
+    if (cag_stopped()) return false;                           // fill_basis tells
   }
   return true;
 }
@@ -290,9 +298,8 @@ static CagStatus solve_banded(const Design *a, CagVec3 *control, CagError *err) 
   }
   const size_t ld = 2 * kl + ku + 1;
   double *band = cag_calloc(ld * n, sizeof *band), *right = cag_malloc(3 * n * sizeof *right);
-  lapack_int *pivots = cag_malloc(n * sizeof *pivots);
   CagStatus status = CAG_OK;
-  if (!band || !right || !pivots) {
+  if (!band || !right) {
     status = cag_fail_memory(err);
   } else {
     for (size_t r = 0; r < n; r++) {
@@ -304,9 +311,9 @@ static CagStatus solve_banded(const Design *a, CagVec3 *control, CagError *err) 
       right[n + r] = a->value[r].y;
       right[2 * n + r] = a->value[r].z;
     }
-    lapack_int info = LAPACKE_dgbsv(LAPACK_COL_MAJOR, (lapack_int)n, (lapack_int)kl, (lapack_int)ku,
-                                    3, band, (lapack_int)ld, pivots, right, (lapack_int)n);
-    if (info != 0)
+    bool singular;
+    status = cag_band_solve(band, n, kl, ku, right, 3, &singular, err);
+    if (!status && singular)
       status = cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_fit_singular, "parameters", -1,
                         "no curve with these knots passes all points: the equations are singular; "
                         "take \"averaged\" knots");
@@ -315,7 +322,6 @@ static CagStatus solve_banded(const Design *a, CagVec3 *control, CagError *err) 
   }
   cag_free(band);
   cag_free(right);
-  cag_free(pivots);
   return status;
 }
 
@@ -348,10 +354,8 @@ CagStatus cag_curve_interpolate(const CagFitData *d, const CagVec3 *tangents, si
     fill_conditions(d, u, tangents, tangent_count, &a);
     status = choose_knots(d, &a, err);
   }
-  if (!status) {
-    fill_basis(&a);
-    status = solve_banded(&a, control, err);
-  }
+  if (!status) status = fill_basis(&a, err);
+  if (!status) status = solve_banded(&a, control, err);
   if (!status) status = make_curve(&a, control, d->dimension, out, err);
   cag_free(control);
   cag_free(u);
@@ -420,6 +424,7 @@ static CagStatus solve_least(const Design *a, bool keep_ends, CagVec3 *control, 
   CagStatus status = CAG_OK;
   if (!t.r || !t.right) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < a->rows; i++) {
+    if ((status = cag_stop_check(err)) != CAG_OK) break;
     double row[CAG_MAX_DEGREE + 1] = {0};
     CagVec3 value = a->value[i];
     size_t filled = 0, from = a->first[i];
@@ -510,8 +515,8 @@ static CagStatus hold_coordinate(Design *a, int axis, double slack, int dimensio
   for (*rounds = 0; *rounds < CAG_FIT_ROUNDS; ++*rounds) {
     CagStatus status = move_parameters(a, *curve, axis, slack, &worst, err);
     if (status || worst <= slack) return status;
-    fill_basis(a);
-    status = solve_least(a, true, control, err);
+    status = fill_basis(a, err);
+    if (!status) status = solve_least(a, true, control, err);
     CagCurve *next;
     if (!status) status = make_curve(a, control, dimension, &next, err);
     if (status) return status;
@@ -566,10 +571,8 @@ CagStatus cag_curve_fit(const CagFitData *d, size_t count, bool keep_ends, int a
   memcpy(a.value, d->points, d->n * sizeof *a.value);
   if (!status) status = find_parameters(d, count, a.u, err);
   if (!status) status = choose_least_knots(d, &a, keep_ends, err);
-  if (!status) {
-    fill_basis(&a);
-    status = solve_least(&a, keep_ends, control, err);
-  }
+  if (!status) status = fill_basis(&a, err);
+  if (!status) status = solve_least(&a, keep_ends, control, err);
   if (!status) status = make_curve(&a, control, d->dimension, &curve, err);
   if (!status && axis >= 0)
     status = hold_coordinate(&a, axis, slack, d->dimension, control, &curve, &rounds, err);

@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "geom/curve/family.h"
+#include "geom/stop.h"
 
 typedef struct Helix {
   CagCurve base;
@@ -176,14 +177,15 @@ static CagStatus reparametrize(const CagCurve *curve, double a, double b, CagCur
   return make(c, &c->frame, a, b, c->phase + c->rate * curve->start - rate * a, rate, out, err);
 }
 
-// The chord's box, wider by the bound of the distance from the chord.
+// The chord's box, wider by the bound of the distance from the chord. Ends early if the work is to
+// end.
 static CagBounds hull(const CagCurve *curve, double a, double b) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   const Helix *c = (const Helix *)curve;
   const double quarter = M_PI / 2;
   double from = c->phase + c->rate * a, to = c->phase + c->rate * b;
   size_t n = (size_t)fmax(1, ceil(fabs(to - from) / quarter));
-  for (size_t i = 0; i < n; i++) {
+  for (size_t i = 0; i == 0 || (i < n && !cag_stopped()); i++) {
     double s = a + (b - a) * (double)i / (double)n, e = a + (b - a) * (double)(i + 1) / (double)n;
     double sag = cag_curve_sag(curve, s, e);
     CagVec3 p[2];

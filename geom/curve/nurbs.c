@@ -160,6 +160,8 @@ CagStatus cag_nurbs_new(const double *homogeneous, size_t n, int degree, const d
   return CAG_OK;
 }
 
+#define LIFTS_BETWEEN_LOOKS ((size_t)4096)
+
 // Control points as homogeneous ones, from `stored` >= n of them with wrapping indices; malloc'd.
 static CagStatus lift(const CagVec3 *points, const double *weights, size_t n, size_t stored,
                       double **out, CagError *err) {
@@ -183,6 +185,10 @@ static CagStatus lift(const CagVec3 *points, const double *weights, size_t n, si
   double *h = cag_malloc(sizeof(double) * 4 * stored);
   if (!h) return cag_fail_memory(err);
   for (size_t i = 0; i < stored; i++) {
+    if (i % LIFTS_BETWEEN_LOOKS == 0 && cag_stop_check(err)) {
+      cag_free(h);
+      return err->status;
+    }
     const CagVec3 p = points[i % n];
     const double w = weights ? weights[i % n] : 1;
     h[4 * i] = w * p.x;
@@ -401,11 +407,11 @@ static CagStatus eval(const CagCurve *curve, double t, int order, CagSide side, 
 
 static CagStatus eval_many(const CagCurve *curve, const double *t, size_t n, int order,
                            CagVec3 *out, CagError *err) {
-  (void)err;
   const CagNurbs *c = (const CagNurbs *)curve;
   if (cag_nurbs_eval_many(c, t, n, order, out)) return CAG_OK;
   size_t piece = 0;
   for (size_t i = 0; i < n; i++) {
+    if (cag_stop_check(err)) return err->status;
     piece = cag_nurbs_piece(c, t[i], CAG_SIDE_RIGHT, piece);
     evaluate(c, piece, t[i], order, out + i * (size_t)(order + 1));
   }

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
+#include "geom/stop.h"
 
 static CagStatus fail_inside(const CagCurve *c, double t, CagError *err) {
   char x[32], a[32], b[32];
@@ -139,6 +140,7 @@ CagStatus cag_curve_insert_knots(const CagCurve *c, const double *t, size_t n, C
   }
   char text[32];
   for (size_t i = 0; !status && i < n; i++) {
+    if ((status = cag_stop_check(err)) != CAG_OK) break;
     if (!(t[i] > open->start && t[i] < open->end)) {
       status = fail_inside(open, t[i], err);
     } else if (cag_knots_multiplicity(knots, count, p, t[i]) >= p) {

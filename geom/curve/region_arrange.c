@@ -17,11 +17,11 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/curve/region_chain.h"
+#include "geom/sort.h"
 #include "geom/stop.h"
 
 // Points nearer than this part of the size of all are one: what touches count as in intersections.
@@ -128,6 +128,7 @@ static CagStatus make_edges(const CagRegionPieces *s, const CagRegionCut *cuts, 
   CagStatus status = CAG_OK;
   size_t k = 0;
   for (size_t i = 0; !status && i < s->n; i++) {
+    if ((status = cag_stop_check(err)) != CAG_OK) break;
     const CagRegionPiece *piece = &s->items[i];
     size_t from = piece->from, to = piece->to;
     double a = piece->a;
@@ -186,8 +187,7 @@ static CagStatus coincide(const CagRegionPieces *s, const CagRegionEdge *e, cons
 
 // Edges that run along each other become the first of them; those whose counts cancel go.
 static CagStatus join_alike(const CagRegionPieces *s, Edges *edges, CagError *err) {
-  CagStatus status = CAG_OK;
-  if (edges->n) qsort(edges->items, edges->n, sizeof *edges->items, by_corners);
+  CagStatus status = cag_sort(edges->items, edges->n, sizeof *edges->items, by_corners, err);
   size_t kept = 0;
   for (size_t i = 0; !status && i < edges->n;) {
     size_t group = i;

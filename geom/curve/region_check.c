@@ -11,6 +11,8 @@
 
 #include "base/memory.h"
 #include "geom/curve/region.h"
+#include "geom/sort.h"
+#include "geom/stop.h"
 
 // Chord tolerance of the polygons, as a part of the size.
 #define CROSSING_TOLERANCE 1e-5
@@ -169,18 +171,22 @@ static CagStatus fail_crossing(const Loops *l, const Pair *p, CagError *err) {
                   name, p->a - l->holes, name, p->b - l->holes, p->at.x, p->at.y);
 }
 
+// Edges compared with one between two looks at the stop flag.
+#define EDGES_BETWEEN_LOOKS ((size_t)1 << 12)
+
 // Fails where a loop crosses itself; pairs of loops that cross or touch are collected.
 static CagStatus search_edges(const Loops *l, Edges *edges, Pairs *pairs, CagError *err) {
   CagBounds box = CAG_BOUNDS_EMPTY;
   for (size_t i = 0; i < edges->n; i++) cag_bounds_add(&box, edges->items[i].p);
   const double slack = TOUCH * cag_norm(cag_sub(box.max, box.min));
-  qsort(edges->items, edges->n, sizeof(Edge), by_min_x);
-  CagStatus status = CAG_OK;
+  CagStatus status = cag_sort(edges->items, edges->n, sizeof(Edge), by_min_x, err);
   for (size_t i = 0; !status && i < edges->n; i++) {
     const Edge *e = &edges->items[i];
+    status = cag_stop_check(err);
     for (size_t k = i + 1; !status && k < edges->n; k++) {
       const Edge *f = &edges->items[k];
       if (f->min_x > e->max_x + slack) break;
+      if ((k - i) % EDGES_BETWEEN_LOOKS == 0 && cag_stop_check(err)) return err->status;
       const bool crosses = cross(e, f);
       if (crosses && e->loop == f->loop) status = fail_itself(l, e->loop, crossing_of(e, f), err);
       else if (e->loop != f->loop && (crosses || touch(e, f, slack)))

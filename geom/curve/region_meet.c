@@ -11,6 +11,7 @@
 #include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
 #include "geom/curve/region_arrange.h"
+#include "geom/sort.h"
 #include "geom/stop.h"
 
 typedef struct Meetings {
@@ -338,8 +339,7 @@ CagStatus cag_region_pieces_meet(CagRegionPieces *s, bool again, CagRegionCut **
     boxes[i] = (Box){fmin(p->p.x, p->q.x) - slack, fmax(p->p.x, p->q.x) + slack,
                      fmin(p->p.y, p->q.y) - slack, fmax(p->p.y, p->q.y) + slack, i};
   }
-  qsort(boxes, s->n, sizeof *boxes, by_x0);
-  CagStatus status = CAG_OK;
+  CagStatus status = cag_sort(boxes, s->n, sizeof *boxes, by_x0, err);
   for (size_t i = 0; !status && i < s->n; i++) {
     const Box *a = &boxes[i];
     status = cag_stop_check(err);

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "geom/mesh/boolean_work.h"
 #include "geom/mesh/edges.h"
+#include "geom/stop.h"
 
 // Products of three coordinates stay far from the ends of the range of doubles.
 #define MOST_COORDINATE 1e100
@@ -31,7 +32,7 @@ static const char *name_of(const Operand *o, char text[64]) {
 }
 
 CagStatus bool_stopped(const BoolWork *w) {
-  if (!w->interrupt || !*w->interrupt) return CAG_OK;
+  if ((!w->interrupt || !*w->interrupt) && !cag_stopped()) return CAG_OK;
   return cag_fail(w->err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
                   "the set operation was interrupted");
 }
@@ -52,6 +53,7 @@ static CagStatus read_points(BoolWork *w, const Operand *o, uint32_t *number) {
                       i, name_of(o, name), p.x, p.y, p.z);
     number[i] = bool_points_add(&w->points, p);
     if (number[i] == BOOL_NONE) return cag_fail_memory(w->err);
+    if (cag_stop_check(w->err)) return w->err->status;
   }
   return CAG_OK;
 }
@@ -155,10 +157,11 @@ static bool find_axis(BoolWork *w, BoolFace *f) {
   return false;
 }
 
-// Triangles without area are left out: their neighbors are cut where they touch each other.
+// Triangles without area are left out: their neighbors are cut where they touch each other. Ends
+// early if the work is to end.
 static void add_faces(BoolWork *w, FaceTable *table, const CagMesh *m, const uint32_t *triangles,
                       int operand) {
-  for (size_t t = 0; t < m->triangle_count; t++) {
+  for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {
     BoolFace f = {.owner = (uint32_t)operand, .triangle = (uint32_t)t};
     memcpy(f.v, triangles + 3 * t, sizeof f.v);
     f.times[operand] = 1;
@@ -177,6 +180,7 @@ static CagStatus read_operand(BoolWork *w, const Operand *o, int operand, FaceTa
   if (!status) status = check_closed(w, o, triangles);
   if (!status) status = check_sense(w, o);
   if (!status) add_faces(w, table, m, triangles, operand);
+  if (!status) status = cag_stop_check(w->err);
   cag_free(number);
   cag_free(triangles);
   return status;

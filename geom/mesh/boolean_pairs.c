@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 #include "geom/mesh/boolean_work.h"
+#include "geom/stop.h"
 
 #define LEAF_FACES 4
 #define STOP_INTERVAL 1024 // pairs of leaves between looks at the caller's wish to stop
@@ -69,7 +70,8 @@ static uint64_t grid_step(double x, double low, double high) {
 // By code, those of one code as they are; n places more behind them to work with.
 static void sort_places(Place *p, size_t n) {
   enum { BITS = 11, DIGITS = 6 }; // 66 bits: an even number of passes ends where it began
-  for (int digit = 0; digit < DIGITS; digit++) {
+  // A pass begins with a permutation in p, in which work that is to end leaves it.
+  for (int digit = 0; digit < DIGITS && !cag_stopped(); digit++) {
     size_t start[(1 << BITS) + 1] = {0};
     Place *from = digit % 2 ? p + n : p, *to = digit % 2 ? p : p + n;
     const uint64_t mask = (1 << BITS) - 1;
@@ -378,6 +380,7 @@ void bool_forget_pairs(BoolWork *w) {
 
 CagStatus bool_visit_pairs(BoolWork *w, BoolPairVisit *visit, void *context) {
   if (!w->nodes && !build_tree(w)) return cag_fail_memory(w->err);
+  if (cag_stop_check(w->err)) return w->err->status;
   Search s = {w, visit, context, 0, CAG_OK};
   meet_within(&s, 0);
   return s.status;

@@ -13,6 +13,7 @@
 
 #include "base/memory.h"
 #include "geom/mesh/boolean_work.h"
+#include "geom/stop.h"
 
 // Sine of the largest angle between faces of one plane, squared.
 #define PARALLEL 1e-6
@@ -73,7 +74,9 @@ CagStatus bool_find_twins(BoolWork *w, uint32_t *number, bool *found) {
     return cag_fail_memory(w->err);
   }
   memset(t.heads, 0xff, (t.mask + 1) * sizeof *t.heads);
-  for (uint32_t i = 0; i < n; i++) {
+  CagStatus status = CAG_OK;
+  for (uint32_t i = 0; !status && i < n; i++) {
+    status = cag_stop_check(w->err);
     const uint32_t twin = find_twin(&t, w->points.at[i], w->slack);
     if (twin != BOOL_NONE) {
       number[i] = twin;
@@ -88,7 +91,7 @@ CagStatus bool_find_twins(BoolWork *w, uint32_t *number, bool *found) {
   }
   cag_free(t.heads);
   cag_free(t.next);
-  return CAG_OK;
+  return status;
 }
 
 // --- Classes of faces ---
@@ -390,11 +393,13 @@ static CagStatus find_classes(Snap *s, uint32_t *count, bool *found) {
   for (uint32_t f = 0; f < w->face_count; f++) {
     s->parent[f] = f;
     s->planes[f] = plane_of(w, &w->faces[f]);
+    if (cag_stop_check(w->err)) return w->err->status;
   }
   CagStatus status = bool_visit_pairs(w, join_pair, s);
   if (status) return status;
   tell_classes(s, found);
   while (*found && joined) { // ends: each round leaves fewer classes
+    if (cag_stop_check(w->err)) return w->err->status;
     if (!list_members(s, count)) return cag_fail_memory(w->err);
     join_at_corners(s, count, &joined);
     tell_classes(s, found);

@@ -4,9 +4,9 @@
 #include "geom/mesh/check.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
+#include "geom/sort.h"
 
 // An edge of a face. A corner is a place in the list of indices; low < high are vertices.
 typedef struct Use {
@@ -83,8 +83,7 @@ static CagStatus read_faces(Work *w, CagError *err) {
                             : (Use){b, a, (uint32_t)f, false, next, here};
     }
   }
-  qsort(w->uses, w->corners, sizeof *w->uses, by_edge);
-  return CAG_OK;
+  return cag_sort(w->uses, w->corners, sizeof *w->uses, by_edge, err);
 }
 
 // --- Counting ---

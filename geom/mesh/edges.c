@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "geom/stop.h"
 
 static int by_high(const void *a, const void *b) {
   const CagMeshEdge *p = a, *q = b;
@@ -38,8 +39,10 @@ CagMeshEdge *cag_mesh_edges(const uint32_t *triangles, size_t triangle_count, co
     return NULL;
   }
   // Two passes over the triangles: count the edges of each lower vertex, then put them there.
-  for (int pass = 0; pass < 2; pass++) {
-    for (size_t t = 0; t < triangle_count; t++) {
+  bool stopped = false;
+  for (int pass = 0; pass < 2 && !stopped; pass++) {
+    for (size_t t = 0; t < triangle_count && !stopped; t++) {
+      stopped = cag_stopped();
       for (unsigned k = 0; k < 3; k++) {
         uint32_t a = triangles[3 * t + k], b = triangles[3 * t + (k + 1) % 3];
         if (weld) a = weld[a], b = weld[b];
@@ -53,8 +56,15 @@ CagMeshEdge *cag_mesh_edges(const uint32_t *triangles, size_t triangle_count, co
     if (pass == 0)
       for (size_t v = 2; v < vertex_count + 2; v++) start[v] += start[v - 1];
   }
-  for (size_t v = 0; v < vertex_count; v++) sort_bucket(edges + start[v], start[v + 1] - start[v]);
+  for (size_t v = 0; v < vertex_count && !stopped; v++) {
+    stopped = cag_stopped();
+    sort_bucket(edges + start[v], start[v + 1] - start[v]);
+  }
   *n = start[vertex_count];
   cag_free(start);
+  if (stopped) {
+    cag_free(edges);
+    return NULL;
+  }
   return edges;
 }

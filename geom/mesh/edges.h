@@ -19,7 +19,7 @@ static inline bool cag_mesh_edge_forward(const CagMeshEdge *e) { return e->place
 
 // All uses of edges, those of one edge side by side, in the order of (low, high, place): linear
 // time. weld NULL: each vertex is its own. Uses with low == high are left out (*n counts the rest).
-// NULL: no memory.
+// NULL: no memory, or the work is to end.
 CagMeshEdge *cag_mesh_edges(const uint32_t *triangles, size_t triangle_count, const uint32_t *weld,
                             size_t vertex_count, size_t *n);
 

@@ -10,12 +10,13 @@
 #include "geom/mesh/hull.h"
 
 #include <float.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "geom/curve/family.h"
 #include "geom/mesh/predicates.h"
+#include "geom/sort.h"
+#include "geom/stop.h"
 
 // What rounding of turned points may be, in parts of their largest coordinate: points that near a
 // line or plane are in it.
@@ -95,8 +96,8 @@ CagStatus cag_hull_plane(const CagVec3 *points, size_t n, size_t **out, size_t *
   size_t *ring = cag_malloc(2 * n * sizeof *ring), m = 0;
   if (!sorted || !ring) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) sorted[i] = (Indexed){points[i], i};
+  if (!status) { status = cag_sort(sorted, n, sizeof *sorted, by_place, err); }
   if (!status) {
-    qsort(sorted, n, sizeof *sorted, by_place);
     const CagVec3 first = sorted[0].p, last = sorted[n - 1].p;
     if (first.x == last.x && first.y == last.y) status = fail_coincident(err);
   }
@@ -187,7 +188,7 @@ static uint32_t farthest_from(const Hull *h,
                               const uint32_t *base, double *most) {
   uint32_t best = 0;
   *most = -1;
-  for (size_t i = 0; i < h->n; i++) {
+  for (size_t i = 0; i < h->n && !cag_stopped(); i++) {
     const double d = measure(h, base, h->points[i]);
     if (d > *most) {
       *most = d;
@@ -218,10 +219,13 @@ static CagStatus first_points(const Hull *h, uint32_t b[4], CagError *err) {
   b[0] = 0;
   b[0] = farthest_from(h, measure_point, b, &most);
   b[1] = farthest_from(h, measure_point, b, &most);
+  if (cag_stop_check(err)) return err->status;
   if (most <= h->slack) return fail_coincident(err);
   b[2] = farthest_from(h, measure_line, b, &most);
+  if (cag_stop_check(err)) return err->status;
   if (most <= h->slack) return fail_collinear(err);
   b[3] = farthest_from(h, measure_plane, b, &most);
+  if (cag_stop_check(err)) return err->status;
   const int side =
       cag_side_of_plane(h->points[b[0]], h->points[b[1]], h->points[b[2]], h->points[b[3]]);
   if (most <= h->slack || side == 0)
@@ -245,8 +249,10 @@ static CagStatus first_faces(Hull *h, CagError *err) {
     status = new_face(h, b[corner[i][0]], b[corner[i][1]], b[corner[i][2]], &id, err);
     if (!status) memcpy(h->faces[id].next, next[i], sizeof next[i]);
   }
-  for (uint32_t p = 0; !status && p < h->n; p++)
+  for (uint32_t p = 0; !status && p < h->n; p++) {
     for (uint32_t f = 0; f < 4 && !offer(h, f, p); f++) {}
+    status = cag_stop_check(err);
+  }
   return status;
 }
 
@@ -296,10 +302,12 @@ static CagStatus take_in(Hull *h, uint32_t face, CagError *err) {
   flood(h, face, p);
   const size_t first = h->count;
   CagStatus status = cone(h, p, err);
+  if (!status) status = cag_stop_check(err);
   for (size_t i = 0; !status && i < h->seen_n; i++) {
     Face *f = &h->faces[h->seen[i]];
     f->dead = true;
     for (uint32_t q = f->outside, after; q != NONE; q = after) {
+      if (cag_stop_check(err)) return err->status;
       after = h->chain[q];
       for (size_t id = first; q != p && id < h->count && !offer(h, (uint32_t)id, q); id++) {}
     }
@@ -340,9 +348,10 @@ static CagStatus find_flats(Hull *h, uint32_t *flat, size_t *flats, CagError *er
     order[i] = (Flat){cag_norm(face_cross(h, &h->faces[i])), i};
     flat[i] = NONE;
   }
-  qsort(order, h->count, sizeof *order, larger_first);
+  CagStatus status = cag_sort(order, h->count, sizeof *order, larger_first, err);
   *flats = 0;
-  for (size_t k = 0; k < h->count; k++) {
+  for (size_t k = 0; !status && k < h->count; k++) {
+    status = cag_stop_check(err);
     const uint32_t seed = order[k].face;
     if (h->faces[seed].dead || flat[seed] != NONE) continue;
     const CagVec3 normal = cag_unit(face_cross(h, &h->faces[seed]));
@@ -364,7 +373,7 @@ static CagStatus find_flats(Hull *h, uint32_t *flat, size_t *flats, CagError *er
       }
   }
   cag_free(order);
-  return CAG_OK;
+  return status;
 }
 
 // Counts for each point the flat faces that have it on their rim, by the rim edges that leave it.

@@ -10,6 +10,7 @@
 
 #include "base/memory.h"
 #include "geom/mesh/tessellation.h"
+#include "geom/sort.h"
 
 // One side of a leaf, on its line.
 typedef struct LeafSide {
@@ -135,7 +136,8 @@ static CagStatus find_marks(Marks *m, const LeafSide *sides, size_t count, CagEr
     last = &sides[k];
   }
   if (status != CAG_OK) return status;
-  qsort(m->all, m->count, sizeof *m->all, by_place);
+  status = cag_sort(m->all, m->count, sizeof *m->all, by_place, err);
+  if (status != CAG_OK) return status;
   size_t kept = 0;
   for (size_t k = 0; k < m->count; k++) {
     const Mark mark = m->all[k];

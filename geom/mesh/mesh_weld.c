@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "geom/mesh/mesh.h"
+#include "geom/stop.h"
 
 #define NO_VERTEX UINT32_MAX
 
@@ -58,14 +59,15 @@ static uint32_t nearest_point(const Welder *w, CagVec3 p) {
 }
 
 // first[v]: the vertex that is v's point.
-static bool find_points(const CagMesh *m, double tolerance, uint32_t *first) {
+static CagStatus find_points(const CagMesh *m, double tolerance, uint32_t *first, CagError *err) {
   size_t size = 1024;
   while (size < m->vertex_count) size *= 2;
   Welder w = {m, tolerance, size - 1, cag_malloc(size * sizeof *w.heads),
               cag_malloc((m->vertex_count + 1) * sizeof *w.next)};
-  bool done = w.heads && w.next;
-  for (size_t i = 0; done && i < size; i++) w.heads[i] = NO_VERTEX;
-  for (size_t v = 0; done && v < m->vertex_count; v++) {
+  CagStatus status = w.heads && w.next ? CAG_OK : cag_fail_memory(err);
+  for (size_t i = 0; !status && i < size; i++) w.heads[i] = NO_VERTEX;
+  for (size_t v = 0; !status && v < m->vertex_count; v++) {
+    status = cag_stop_check(err);
     first[v] = nearest_point(&w, m->positions[v]);
     if (first[v] != NO_VERTEX) continue;
     size_t at = slot(&w, m->positions[v], 0, 0, 0);
@@ -75,7 +77,7 @@ static bool find_points(const CagMesh *m, double tolerance, uint32_t *first) {
   }
   cag_free(w.heads);
   cag_free(w.next);
-  return done;
+  return status;
 }
 
 // Do joined vertices agree on the normal (within what no shading shows)? On the parameters?
@@ -134,10 +136,9 @@ CagStatus cag_mesh_weld(const CagMesh *m, double tolerance, CagMesh **out, CagEr
                     "`tolerance` must be a length of 0 or more, not %g", tolerance);
   size_t n = m->vertex_count + 1;
   uint32_t *first = cag_malloc(n * sizeof *first), *number = cag_malloc(n * sizeof *number);
-  CagStatus status = CAG_E_MEMORY;
-  if (first && number && find_points(m, tolerance, first))
-    status = build_welded(m, first, number, out, err);
-  else cag_fail_memory(err);
+  CagStatus status = first && number ? CAG_OK : cag_fail_memory(err);
+  if (!status) status = find_points(m, tolerance, first, err);
+  if (!status) status = build_welded(m, first, number, out, err);
   cag_free(first);
   cag_free(number);
   return status;

@@ -9,13 +9,13 @@
 #include "geom/mesh/orient.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "geom/mesh/edges.h"
 #include "geom/mesh/predicates.h"
 #include "geom/mesh/tessellate.h"
+#include "geom/sort.h"
 #include "geom/stop.h"
 
 // A part whose volume is below this fraction of the cube of its size is flat but for rounding.
@@ -124,7 +124,7 @@ static size_t drop_degenerate(const CagMesh *m, CagMeshEdge *edges, size_t n) {
   return kept;
 }
 
-// Edges of the welded mesh, and their number; NULL: memory is out.
+// Edges of the welded mesh, and their number; NULL: memory is out, or the work is to end.
 static CagMeshEdge *edges_of(const CagMesh *m, size_t *n) {
   CagMeshEdge *edges = cag_mesh_edges(m->triangles, m->triangle_count, m->weld, m->vertex_count, n);
   if (edges && m->weld) *n = drop_degenerate(m, edges, *n);
@@ -142,7 +142,8 @@ static bool make_forest(Work *w) {
   CagMeshEdge *edges = edges_of(w->mesh, &n);
   if (!edges) return false;
   for (uint32_t t = 0; t < w->mesh->triangle_count; t++) w->parent[t] = t;
-  for (size_t i = 0, k; i < n; i += k) tie_uses(w, edges + i, k = uses_of(edges + i, n - i));
+  for (size_t i = 0, k; i < n && !cag_stopped(); i += k)
+    tie_uses(w, edges + i, k = uses_of(edges + i, n - i));
   cag_free(edges);
   return true;
 }
@@ -186,7 +187,7 @@ static void measure(Work *w, Part *p) {
   const CagMesh *m = w->mesh;
   const CagVec3 tip = m->positions[m->triangles[3 * (size_t)w->order[p->first]]];
   p->box = CAG_BOUNDS_EMPTY;
-  for (size_t i = p->first; i < p->first + p->count; i++) {
+  for (size_t i = p->first; i < p->first + p->count && !cag_stopped(); i++) {
     const uint32_t *k = m->triangles + 3 * (size_t)w->order[i];
     CagVec3 c[3];
     for (int j = 0; j < 3; j++) {
@@ -226,7 +227,7 @@ static int part_winding(const Work *w, const Part *p, CagVec3 at, bool *on) {
   const CagMesh *m = w->mesh;
   int winding = 0;
   *on = false;
-  for (size_t i = p->first; i < p->first + p->count; i++) {
+  for (size_t i = p->first; i < p->first + p->count && !cag_stopped(); i++) {
     const uint32_t *k = m->triangles + 3 * (size_t)w->order[i];
     const CagVec3 c[3] = {m->positions[k[0]], m->positions[k[1]], m->positions[k[2]]};
     if (fmin(c[0].y, fmin(c[1].y, c[2].y)) > at.y || fmax(c[0].y, fmax(c[1].y, c[2].y)) < at.y ||
@@ -277,7 +278,8 @@ static CagStatus choose_turns(Work *w, CagError *err) {
   CagStatus status = sorted && near ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < w->part_count; i++)
     if (w->parts[i].closed) sorted[n++] = &w->parts[i];
-  if (!status && n > 1) qsort(sorted, n, sizeof *sorted, by_start);
+  if (!status) status = cag_stop_check(err);
+  if (!status) status = cag_sort(sorted, n, sizeof *sorted, by_start, err);
   for (size_t i = 0; !status && i < n; i++) {
     Part *p = sorted[i];
     size_t around = 0, kept = 0;
@@ -383,7 +385,7 @@ CagStatus cag_mesh_outward(const CagMesh *m, CagMesh **out, CagError *err) {
   const bool room = w.parent && w.against && w.open && w.part && w.order;
   CagStatus status = room && make_forest(&w) && make_parts(&w) ? CAG_OK : cag_fail_memory(err);
   if (!status) {
-    for (size_t i = 0; i < w.part_count; i++)
+    for (size_t i = 0; i < w.part_count && !cag_stopped(); i++)
       if (w.parts[i].closed) measure(&w, &w.parts[i]);
     status = choose_turns(&w, err);
   }

@@ -14,6 +14,7 @@
 #include "geom/curve/family.h"
 #include "geom/mesh/distance.h"
 #include "geom/mesh/part_pair.h"
+#include "geom/stop.h"
 
 // Pairs from which the exact search starts: neighbors share their nearest point, so that several
 // are needed for each place.
@@ -173,6 +174,7 @@ CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface
       limit_part(&pieces, &part);
     }
     status = push(parts, part, err);
+    if (!status) status = cag_stop_check(err);
   }
   pieces_free(&pieces);
   return status;
@@ -309,9 +311,10 @@ typedef struct Tree {
 
 static double coordinate(CagVec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
+// The loops over the parts of a node end early if the work is to end, which grow_tree tells.
 static CagBounds box_of(const Tree *t, size_t first, size_t count) {
   CagBounds box = CAG_BOUNDS_EMPTY;
-  for (size_t i = 0; i < count; i++)
+  for (size_t i = 0; i < count && !cag_stopped(); i++)
     for (int k = 0; k < 3; k++) cag_bounds_add(&box, t->parts->items[t->order[first + i]].p[k]);
   return box;
 }
@@ -319,7 +322,7 @@ static CagBounds box_of(const Tree *t, size_t first, size_t count) {
 static Node node_of(const Tree *t, size_t first, size_t count) {
   Node node = {.box = box_of(t, first, count), .first = first, .count = count};
   node.core = t->parts->items[t->order[first]].core;
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count && !cag_stopped(); i++) {
     const CagPart *part = &t->parts->items[t->order[first + i]];
     node.sag = fmax(node.sag, part->sag);
     if (part->core != node.core) node.core = 0;
@@ -333,7 +336,7 @@ static size_t divide(Tree *t, const Node *node) {
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const double middle = (coordinate(node->box.min, axis) + coordinate(node->box.max, axis)) / 2;
   size_t low = 0;
-  for (size_t i = 0; i < node->count; i++) {
+  for (size_t i = 0; i < node->count && !cag_stopped(); i++) {
     size_t *at = t->order + node->first;
     const CagPart *part = &t->parts->items[at[i]];
     const double x = (coordinate(part->p[0], axis) + coordinate(part->p[1], axis) +
@@ -355,6 +358,7 @@ static CagStatus grow_tree(const CagParts *parts, Tree *t, CagError *err) {
   for (size_t i = 0; i < parts->n; i++) t->order[i] = i;
   t->nodes[0] = node_of(t, 0, parts->n);
   for (size_t i = 0; i < t->n; i++) {
+    if (cag_stop_check(err)) return err->status;
     Node *node = &t->nodes[i];
     if (node->count <= LEAF) continue;
     const size_t low = divide(t, node), rest = node->count - low;
@@ -646,10 +650,10 @@ CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, 
 
 // --- Inside ---
 
-// Solid angles (van Oosterom, Strackee 1983), over 4 pi.
+// Solid angles (van Oosterom, Strackee 1983), over 4 pi. Ends early if the work is to end.
 double cag_mesh_winding(const CagMesh *m, CagVec3 p) {
   double sum = 0;
-  for (size_t t = 0; t < m->triangle_count; t++) {
+  for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {
     const uint32_t *k = m->triangles + 3 * t;
     const CagVec3 a = cag_sub(m->positions[k[0]], p), b = cag_sub(m->positions[k[1]], p);
     const CagVec3 c = cag_sub(m->positions[k[2]], p);

@@ -7,6 +7,8 @@
 
 #include "base/memory.h"
 
+#include "geom/stop.h"
+
 // The limit of the normal at a corner is taken at this fraction of the way to the middle of the
 // triangle: normals turn little over it, and partial derivatives that vanish at the corner are
 // above rounding.
@@ -164,7 +166,10 @@ CagStatus cag_mesh_split_sides(CagMesh *m, size_t from, size_t to, const CagSurf
   Sides s = {.m = m, .surface = surface, .least = cos(angle), .noise = noise};
   CagStatus status = CAG_OK;
   if (!(angle > 0)) return CAG_OK;
-  for (size_t t = from; !status && t < to; t++) status = split_triangle(&s, t, err);
+  for (size_t t = from; !status && t < to; t++) {
+    status = cag_stop_check(err);
+    if (!status) status = split_triangle(&s, t, err);
+  }
   cag_free(s.copy);
   return status;
 }

@@ -7,10 +7,10 @@
 
 #include "geom/mesh/split.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/sort.h"
 #include "geom/stop.h"
 
 // Edges of just the limit are not halved for rounding.
@@ -48,7 +48,8 @@ static CagStatus find_halves(Splitter *s, CagError *err) {
     if (cag_norm(cag_sub(m->positions[a], m->positions[b])) > s->longest * (1 + ROUNDING))
       s->halves[s->n++] = (Half){.low = a < b ? a : b, .high = a < b ? b : a, .corner = i};
   }
-  qsort(s->halves, s->n, sizeof *s->halves, by_ends);
+  const CagStatus status = cag_sort(s->halves, s->n, sizeof *s->halves, by_ends, err);
+  if (status) return status;
   s->vertices = m->vertex_count;
   for (size_t i = 0; i < s->n; i++) {
     const bool same = i > 0 && s->halves[i].low == s->halves[i - 1].low &&
@@ -79,13 +80,13 @@ static CagStatus weld_middles(const Splitter *s, CagMesh *out, CagError *err) {
     // The corner orders equal ends by their middles, so that the first of them is the lowest.
     welded[i] = (Half){a < b ? a : b, a < b ? b : a, s->halves[i].middle, s->halves[i].middle};
   }
-  qsort(welded, s->n, sizeof *welded, by_ends);
-  for (size_t i = 0, first = 0; i < s->n; i++) {
+  const CagStatus status = cag_sort(welded, s->n, sizeof *welded, by_ends, err);
+  for (size_t i = 0, first = 0; !status && i < s->n; i++) {
     if (welded[i].low != welded[first].low || welded[i].high != welded[first].high) first = i;
     out->weld[welded[i].middle] = welded[first].middle;
   }
   cag_free(welded);
-  return CAG_OK;
+  return status;
 }
 
 // The triangles that corners v and middles w (opposite them: w[k] between v[k] and v[k + 1], or

@@ -13,6 +13,7 @@
 
 #include "base/memory.h"
 #include "geom/mesh/tessellation.h"
+#include "geom/stop.h"
 
 // Of the angle that the normal may turn along an edge: what leans less is as it has to be.
 static const double leaning = 0.5;
@@ -152,8 +153,10 @@ static CagStatus turn_all(Turner *t, CagError *err) {
   bool turned = status == CAG_OK;
   for (int pass = 0; turned && pass < MAX_PASSES; pass++) {
     turned = false;
-    for (uint32_t k = 0; k < t->m->triangle_count; k++)
+    for (uint32_t k = 0; k < t->m->triangle_count; k++) {
+      if (cag_stop_check(err)) return err->status;
       for (uint32_t corner = 0; corner < 3 && leans(t, k); corner++) turned |= turn(t, k, corner);
+    }
   }
   return status;
 }
@@ -162,7 +165,10 @@ CagStatus tess_turn_edges(const Tessellator *tess, CagMesh *m, CagError *err) {
   Turner t = {.how = &tess->how, .m = m};
   bool any = false;
   if (!(t.how->angle > 0)) return CAG_OK;
-  for (uint32_t k = 0; k < m->triangle_count && !any; k++) any = leans(&t, k);
+  for (uint32_t k = 0; k < m->triangle_count && !any; k++) {
+    if (cag_stop_check(err)) return err->status;
+    any = leans(&t, k);
+  }
   if (!any) return CAG_OK;
   t.beside = cag_malloc((3 * m->triangle_count + 1) * sizeof *t.beside);
   const CagStatus status = t.beside ? turn_all(&t, err) : cag_fail_memory(err);

@@ -13,6 +13,8 @@
 #include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "geom/basis/knots.h"
+#include "geom/linalg/dense.h"
+#include "geom/stop.h"
 #include "geom/surface/family.h"
 #include "geom/surface/grid_fit.h"
 
@@ -38,9 +40,14 @@ static CagStatus fail_singular(CagError *err) {
 static CagStatus solve(double *matrix, size_t rows, size_t columns, double *right, size_t sides,
                        CagError *err) {
   if (columns == 0) return CAG_OK;
-  lapack_int info =
-      LAPACKE_dgels(LAPACK_COL_MAJOR, 'N', (lapack_int)rows, (lapack_int)columns, (lapack_int)sides,
-                    matrix, (lapack_int)rows, right, (lapack_int)rows);
+  lapack_int info = 0;
+  if ((double)rows * (double)columns * (double)(columns + sides) > CAG_LAPACK_MOST) {
+    CagStatus status = cag_least_squares(matrix, rows, columns, right, rows, sides, NULL, err);
+    if (status) return status;
+  } else {
+    info = LAPACKE_dgels(LAPACK_COL_MAJOR, 'N', (lapack_int)rows, (lapack_int)columns,
+                         (lapack_int)sides, matrix, (lapack_int)rows, right, (lapack_int)rows);
+  }
   double most = 0, least = INFINITY;
   for (size_t i = 0; i < columns; i++) {
     double r = fabs(matrix[i * rows + i]);
@@ -74,6 +81,7 @@ static CagStatus solve_lines(const CagGridAxis *a, bool ends, const double *para
   CagVec3 *last = cag_malloc(lines * sizeof *last);
   CagStatus status = matrix && right && last ? CAG_OK : cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
+    if ((status = cag_stop_check(err)) != CAG_OK) break;
     double *row = matrix + i, known[2] = {0, 0};
     fill_row(a, parameters[i * stride], row, n);
     if (ends) {
@@ -185,7 +193,10 @@ static CagStatus solve_dense(CagGridFit *f, CagError *err) {
          *basis = cag_malloc((nu + nv) * sizeof *basis);
   CagStatus status = matrix && right && basis ? CAG_OK : cag_fail_memory(err);
   if (!status) status = solve_edges(f, err);
-  for (size_t row = 0; !status && row < rows; row++) fill_dense(f, row, basis, matrix, right);
+  for (size_t row = 0; !status && row < rows; row++) {
+    fill_dense(f, row, basis, matrix, right);
+    status = cag_stop_check(err);
+  }
   size_t unknown = 0;
   for (size_t i = 0; i < columns; i++) unknown += !on_edge(f, i / nv, i % nv);
   if (!status) status = solve(matrix, rows, unknown, right, 3, err);

@@ -5,12 +5,12 @@
 
 #include "geom/surface/loft.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "geom/basis/bspline.h"
+#include "geom/linalg/dense.h"
 #include "geom/surface/family.h"
 #include "geom/surface/net.h"
 
@@ -42,14 +42,15 @@ static CagStatus solve_circulant(CagNet *net, CagError *err) {
   for (size_t i = 0; i < 2 * p + 2; i++) knots[i] = (double)i;
   cag_bspline_basis(knots, net->degree, p, (double)p, basis);
   double *a = cag_calloc(n * n, sizeof *a);
-  lapack_int *pivots = cag_malloc(n * sizeof *pivots);
+  size_t *pivots = cag_malloc(n * sizeof *pivots);
   CagStatus status = a && pivots ? CAG_OK : cag_fail_memory(err);
   if (!status) {
     for (size_t j = 0; j < n; j++)
       for (size_t k = 0; k <= p; k++) a[j * n + (j + k) % n] += basis[k];
-    lapack_int info = LAPACKE_dgesv(LAPACK_ROW_MAJOR, (lapack_int)n, (lapack_int)width, a,
-                                    (lapack_int)n, pivots, net->data, (lapack_int)width);
-    if (info != 0)
+    bool singular;
+    status = cag_lu_factor(a, n, pivots, &singular, err);
+    if (!status && !singular) status = cag_lu_solve(a, n, pivots, net->data, width, err);
+    if (!status && singular)
       status =
           cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "degree", -1,
                    "`degree` %zu has no closed loft through %zu curves: take another degree", p, n);

@@ -4,9 +4,10 @@
 #include "geom/surface/meet_seed.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 #include "base/memory.h"
+#include "geom/sort.h"
+#include "geom/stop.h"
 
 bool cag_march_fail(CagMarch *m, CagStatus status) {
   m->status = status;
@@ -227,14 +228,15 @@ static bool thin_seeds(CagMarch *m, CagMarchSeeds *seeds) {
                          i};
   }
   const bool ok = list && kept;
-  if (ok && seeds->count) qsort(list, seeds->count, sizeof *list, by_cell);
-  for (size_t i = 0; ok && i < seeds->count; i++)
+  const CagStatus status =
+      ok ? cag_sort(list, seeds->count, sizeof *list, by_cell, m->err) : cag_fail_memory(m->err);
+  for (size_t i = 0; !status && i < seeds->count; i++)
     if (i == 0 || compare_cells(&list[i - 1], &list[i]) != 0)
       kept[n++] = seeds->items[list[i].number];
   cag_free(list);
-  if (!ok) {
+  if (status) {
     cag_free(kept);
-    return cag_march_fail(m, cag_fail_memory(m->err));
+    return cag_march_fail(m, status);
   }
   cag_free(seeds->items);
   *seeds = (CagMarchSeeds){kept, n, seeds->count + 1};
@@ -283,9 +285,10 @@ bool cag_march_find_seeds(CagMarch *m, double margin) {
       list[k][i].low = component(list[k][i].box.min, axis);
       list[k][i].high = component(list[k][i].box.max, axis);
     }
-    if (ok && n[k]) qsort(list[k], n[k], sizeof *list[k], by_low);
+    if (!list[k]) cag_march_fail(m, cag_fail_memory(m->err));
+    else if (ok && cag_sort(list[k], n[k], sizeof *list[k], by_low, m->err))
+      ok = cag_march_fail(m, m->err->status);
   }
-  if (!ok) cag_march_fail(m, cag_fail_memory(m->err));
   // The greatest extent of a facet of the second mesh along the axis determines how far back the
   // sweep must look.
   double reach = margin;
@@ -294,8 +297,10 @@ bool cag_march_find_seeds(CagMarch *m, double margin) {
   for (size_t i = 0; ok && i < n[0]; i++) {
     const Facet *f = &list[0][i];
     while (first < n[1] && list[1][first].low < f->low - reach) first++;
-    for (size_t j = first; ok && j < n[1] && list[1][j].low <= f->high + margin; j++)
+    for (size_t j = first; ok && j < n[1] && list[1][j].low <= f->high + margin; j++) {
       ok = add_seeds(m, f, &list[1][j], margin);
+      if (cag_stopped()) ok = cag_march_fail(m, cag_stop_fail(m->err));
+    }
   }
   cag_free(list[0]);
   cag_free(list[1]);

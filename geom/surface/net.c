@@ -3,12 +3,13 @@
 
 #include "geom/surface/net.h"
 
-#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "geom/basis/bspline.h"
+#include "geom/linalg/dense.h"
+#include "geom/stop.h"
 #include "geom/surface/family.h"
 
 // Knots nearer than this part of the range are one knot.
@@ -50,7 +51,8 @@ CagStatus cag_net_insert(CagNet *net, double t, CagError *err) {
     if (same_knot(net, net->knots[i], t)) t = net->knots[i];
   while (span + 1 < n && net->knots[span + 1] <= t) span++;
   CagNet next;
-  CagStatus status = cag_net_new(net->degree, n + 1, net->width, &next, err);
+  CagStatus status = cag_stop_check(err);
+  if (!status) status = cag_net_new(net->degree, n + 1, net->width, &next, err);
   if (status) return status;
   for (size_t i = 0; i <= n; i++) {
     double *to = next.data + i * net->width;
@@ -314,8 +316,7 @@ CagStatus cag_net_interpolate(CagNet *net, const double *parameters, CagError *e
   size_t p = (size_t)net->degree, n = net->count;
   size_t rows = 3 * p + 1; // LAPACK's band: 2 kl + ku + 1
   double *band = cag_calloc(n * rows, sizeof *band), *basis = cag_malloc((p + 1) * sizeof *basis);
-  lapack_int *pivots = cag_malloc(n * sizeof *pivots);
-  CagStatus status = band && basis && pivots ? CAG_OK : cag_fail_memory(err);
+  CagStatus status = band && basis ? CAG_OK : cag_fail_memory(err);
   double least = 1;
   for (size_t i = 0; !status && i < n; i++) {
     double t = parameters[i];
@@ -328,30 +329,32 @@ CagStatus cag_net_interpolate(CagNet *net, const double *parameters, CagError *e
       if (j > i + p || i > j + p) least = 0;
       else band[j * rows + 2 * p + i - j] = basis[k];
     }
+    status = cag_stop_check(err);
   }
-  lapack_int info = 0;
+  bool singular = false;
   double *turned = NULL;
   if (!status && least > 0) {
     turned = cag_malloc(n * net->width * sizeof *turned);
     if (!turned) status = cag_fail_memory(err);
   }
   if (!status && least > 0) {
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n && !cag_stopped(); i++)
       for (size_t c = 0; c < net->width; c++) turned[c * n + i] = net->data[i * net->width + c];
-    info = LAPACKE_dgbsv(LAPACK_COL_MAJOR, (lapack_int)n, (lapack_int)p, (lapack_int)p,
-                         (lapack_int)net->width, band, (lapack_int)rows, pivots, turned,
-                         (lapack_int)n);
-    for (size_t j = 0; info == 0 && j < n; j++) least = fmin(least, fabs(band[j * rows + 2 * p]));
-    for (size_t i = 0; i < n; i++)
+    status = cag_stop_check(err);
+    if (!status) status = cag_band_solve(band, n, p, p, turned, net->width, &singular, err);
+    for (size_t j = 0; !status && !singular && j < n; j++)
+      least = fmin(least, fabs(band[j * rows + 2 * p]));
+    for (size_t i = 0; !status && i < n; i++) {
       for (size_t c = 0; c < net->width; c++) net->data[i * net->width + c] = turned[c * n + i];
+      status = cag_stop_check(err);
+    }
   }
-  if (!status && (info != 0 || least < 1e-13))
+  if (!status && (singular || least < 1e-13))
     status = cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_fit_singular, "degree", -1,
                       "`degree` and knots leave the interpolation without one answer: lower the "
                       "degree or change the data's spacing");
   cag_free(turned);
   cag_free(band);
   cag_free(basis);
-  cag_free(pivots);
   return status;
 }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/stop.h"
 #include "geom/surface/tensor.h"
 
 // What is known of one row u and one run of columns in the same span of v.
@@ -423,6 +424,7 @@ CagStatus tensor_frames(const Nurbs *b, const double *us, size_t nu, const doubl
     high = w.span[j] > high ? w.span[j] : high;
   }
   for (size_t i = 0; !status && i < nu; i++) {
+    if ((status = cag_stop_check(err)) != CAG_OK) break;
     double value[MAX_DEGREE + 1], slope[MAX_DEGREE + 1];
     CagSide side = us[i] >= s->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
     size_t span = tensor_span(&b->u, us[i], side);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/stop.h"
 
 // Runs that meet are one where their tangents agree up to this (1 - cosine): cubics with one
 // tangent for both then stay within a millionth.
@@ -103,12 +104,13 @@ static void drop_specks(CagTraces *t, const CagTraceJoint *how) {
   t->count = kept;
 }
 
+// Ends early if the work is to end.
 static bool join_traces(CagTraces *t, const CagTraceJoint *how) {
   for (size_t i = 0; i < t->count; i++) {
     bool joined = true;
     while (joined) {
       joined = false;
-      for (size_t j = i + 1; j < t->count && !joined; j++)
+      for (size_t j = i + 1; j < t->count && !joined && !cag_stopped(); j++)
         if (!join_pair(t, i, j, how, &joined)) return false;
     }
   }
@@ -156,7 +158,7 @@ static void complete_tangents(CagTrace *t, const CagTraceJoint *how) {
 bool cag_traces_join(CagTraces *t, const CagTraceJoint *how) {
   for (size_t i = 0; how->sided && i < t->count; i++) complete_ends(&t->items[i]);
   if (!join_traces(t, how)) return false;
-  for (size_t i = 0; i < t->count; i++) complete_tangents(&t->items[i], how);
+  for (size_t i = 0; i < t->count && !cag_stopped(); i++) complete_tangents(&t->items[i], how);
   if (how->sided) drop_specks(t, how);
   return true;
 }

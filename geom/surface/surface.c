@@ -4,9 +4,11 @@
 #include "geom/surface/surface.h"
 
 #include <float.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/stop.h"
 #include "geom/surface/family.h"
 #include "geom/surface/frames.h"
 #include "geom/surface/trimmed.h"
@@ -92,6 +94,7 @@ static CagSide side_at(double t, double a, double b, CagSide wanted) {
 
 CagStatus cag_surface_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
                            CagVec3 *out, CagError *err) {
+  if (cag_stop_check(err)) return err->status;
   if (n < 0 || n > CAG_MAX_PARTIAL)
     return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_derivative_order, "order", -1,
                     "`order` must lie in 0..%d, it is %d", CAG_MAX_PARTIAL, n);
@@ -129,6 +132,7 @@ static CagStatus grid_by_points(const CagSurface *s, const double *us, size_t nu
   int n = du || dv ? 1 : 0;
   for (size_t i = 0; i < nu; i++)
     for (size_t j = 0; j < nv; j++) {
+      if (cag_stop_check(err)) return err->status;
       CagVec3 d[4];
       CagStatus status =
           s->kind->eval(s, us[i], vs[j], n, side_at(us[i], s->u0, s->u1, CAG_SIDE_RIGHT),
@@ -140,6 +144,24 @@ static CagStatus grid_by_points(const CagSurface *s, const double *us, size_t nu
       if (dv) dv[at] = d[cag_partial(1, 0, 1)];
     }
   return CAG_OK;
+}
+
+// Points that are evaluated between two looks at the stop flag.
+#define BLOCK ((size_t)1 << 16)
+
+static CagStatus grid_by_blocks(const CagSurface *s, const double *us, size_t nu, const double *vs,
+                                size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv,
+                                CagError *err) {
+  const size_t rows = nv < BLOCK ? BLOCK / (nv + 1) + 1 : 1;
+  CagStatus status = CAG_OK;
+  for (size_t i = 0; !status && i < nu; i += rows) {
+    const size_t at = i * nv, n = nu - i < rows ? nu - i : rows;
+    status = cag_stop_check(err);
+    if (!status)
+      status = s->kind->eval_grid(s, us + i, n, vs, nv, points + at, du ? du + at : NULL,
+                                  dv ? dv + at : NULL, err);
+  }
+  return status;
 }
 
 static bool all_inside(const double *t, size_t n, double a, double b) {
@@ -170,14 +192,15 @@ CagStatus cag_surface_eval_grid(const CagSurface *s, const double *us, size_t nu
                                 size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv,
                                 CagError *err) {
   double *copy_u = NULL, *copy_v = NULL;
-  CagStatus status = CAG_OK;
+  CagStatus status = cag_stop_check(err);
+  if (status) return status;
   if (!all_inside(us, nu, s->u0, s->u1))
     status = snapped(us, nu, s->u0, s->u1, s->angular_u, "u", &copy_u, err);
   if (!status && !all_inside(vs, nv, s->v0, s->v1))
     status = snapped(vs, nv, s->v0, s->v1, s->angular_v, "v", &copy_v, err);
   if (!status) {
     const double *u = copy_u ? copy_u : us, *v = copy_v ? copy_v : vs;
-    status = s->kind->eval_grid ? s->kind->eval_grid(s, u, nu, v, nv, points, du, dv, err)
+    status = s->kind->eval_grid ? grid_by_blocks(s, u, nu, v, nv, points, du, dv, err)
                                 : grid_by_points(s, u, nu, v, nv, points, du, dv, err);
   }
   cag_free(copy_u);
@@ -352,15 +375,15 @@ CagStatus cag_surface_transform(const CagSurface *s, const CagTransform *t, CagS
                             : cag_surface_transform_placed(s, t, out, err);
 }
 
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
 size_t cag_surface_tidy_breaks(double *a, size_t n, double lo, double hi) {
   size_t kept = 0;
   double same_parameter = 1e-12 * (hi - lo);
-  for (size_t i = 1; i < n; i++)
-    for (size_t j = i; j > 0 && a[j] < a[j - 1]; j--) {
-      double swap = a[j];
-      a[j] = a[j - 1];
-      a[j - 1] = swap;
-    }
+  if (n > 1) qsort(a, n, sizeof *a, ascending);
   for (size_t i = 0; i < n; i++)
     if (a[i] > lo && a[i] < hi && (kept == 0 || a[i] - a[kept - 1] > same_parameter))
       a[kept++] = a[i];

@@ -7,6 +7,7 @@
 #include "geom/basis/basis_table.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
+#include "geom/stop.h"
 #include "interp/builtin/bsplines.h"
 #include "interp/builtin/support.h"
 
@@ -280,7 +281,8 @@ static CagStatus make_comb(const CagCurve *c, Comb *comb, double *most, CagError
                          ? c->end
                          : c->start + (c->end - c->start) * (double)i / (double)(comb->n - 1);
     CagFrenet f;
-    CagStatus status = cag_curve_frenet(c, t, &f, err);
+    CagStatus status = cag_stop_check(err);
+    if (!status) status = cag_curve_frenet(c, t, &f, err);
     if (status != CAG_OK) return status;
     comb->feet[i] = f.point;
     comb->teeth[i] = cag_scaled(f.normal, -f.curvature);

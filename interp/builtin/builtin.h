@@ -17,6 +17,7 @@
 #ifndef CAG_INTERP_BUILTIN_H
 #define CAG_INTERP_BUILTIN_H
 
+#include "base/memory.h"
 #include "interp/value/heap.h"
 #include "interp/value/value.h"
 #include "lang/diagnostic.h"
@@ -121,6 +122,9 @@ bool cag_call(CagVm *vm, CagValue function, const CagValue *arguments, size_t n,
 // Call to be made in long loops of C code: false when interrupted or the time limit is crossed
 // (error set).
 bool cag_keep_going(CagVm *vm);
+// Fails the run because it must stop, whatever the work that was cut short has answered. Returns
+// false.
+bool cag_stop_answer(CagVm *vm);
 
 // --- The table ---
 size_t cag_builtin_count(void);            // of names

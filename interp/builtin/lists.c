@@ -51,7 +51,10 @@ static bool sum_vectors(CagCall *call, const CagList *list, CagValue *result) {
   CagValue sum = cag_list_numbers(call->vm, list->dim, &numbers);
   for (size_t j = 0; j < list->dim; j++) {
     Sum s = {0};
-    for (size_t i = 0; i < list->length; i++) sum_add(&s, list->as.numbers[i * list->dim + j]);
+    for (size_t i = 0; i < list->length; i++) {
+      sum_add(&s, list->as.numbers[i * list->dim + j]);
+      if (!may_go_on(call, i)) return false;
+    }
     numbers[j] = sum_value(&s);
     if (!isfinite(numbers[j])) return cag_give_number(call, numbers[j], result);
   }
@@ -78,6 +81,7 @@ static bool sum_long_vectors(CagCall *call, CagSequence *s, CagValue *result) {
           call, 0, CAG_ERR_length,
           "expects vectors of one length, found %zu numbers at [0] and %zu at [%zu]", count, n, i);
     for (size_t j = 0; j < n; j++) numbers[j] += x[j];
+    if (!cag_keep_going(call->vm)) return false;
   }
   return true;
 }
@@ -219,6 +223,7 @@ static bool search(CagCall *call, bool wanted, CagValue *result) {
     if (with_function) good = ask(&loop, x, &answer);
     else if (x.type != CAG_BOOL)
       good = cag_fail_element(call, 0, i, x, "bools, or a function `f` to ask,");
+    else good = may_go_on(call, i);
     found = good && answer == wanted;
   }
   *result = cag_bool(found == wanted);
@@ -234,24 +239,28 @@ typedef struct SortItem {
 } SortItem;
 
 // Merges the sorted runs [0, middle) and [middle, n) of `items`; on equal keys the left one comes
-// first.
-static void merge(const SortItem *items, size_t middle, size_t n, SortItem *out) {
+// first. Returns false if the run must stop.
+static bool merge(CagCall *call, const SortItem *items, size_t middle, size_t n, SortItem *out) {
   size_t i = 0, j = middle;
   for (size_t k = 0; k < n; k++) {
+    if (!may_go_on(call, k)) return false;
     int order = -1;
     if (i < middle && j < n) cag_order(items[i].key, items[j].key, &order);
     else if (i == middle) order = 1;
     out[k] = order <= 0 ? items[i++] : items[j++];
   }
+  return true;
 }
 
-// Bottom-up merge sort: stable. Gives the one of the two buffers that holds the result.
-static SortItem *sort_items(SortItem *items, SortItem *spare, size_t n) {
+// Bottom-up merge sort: stable. Returns the one of the two buffers that holds the result, or NULL
+// if the run must stop.
+static SortItem *sort_items(CagCall *call, SortItem *items, SortItem *spare, size_t n) {
   for (size_t run = 1; run < n; run *= 2) {
     for (size_t from = 0; from < n; from += 2 * run) {
       size_t rest = n - from, size = rest < 2 * run ? rest : 2 * run;
-      merge(items + from, run < size ? run : size, size, spare + from);
+      if (!merge(call, items + from, run < size ? run : size, size, spare + from)) return NULL;
     }
+    if (!cag_keep_going(call->vm)) return NULL;
     SortItem *sorted = spare;
     spare = items;
     items = sorted;
@@ -264,10 +273,10 @@ static SortItem *sort_items(SortItem *items, SortItem *spare, size_t n) {
 static bool make_sort_items(CagCall *call, Loop *loop, CagBuilder *keys, bool by) {
   for (size_t i = 0; i < loop->source.length; i++) {
     CagValue x = cag_sequence_element(call->vm, &loop->source, i), key = x;
-    cag_builder_add(call->vm, loop->built, x);
-    if (by && !cag_call(call->vm, loop->function, &x, 1, &key)) return false;
-    cag_builder_add(call->vm, keys, key);
-    if (!by && !may_go_on(call, i)) return false;
+    if (!cag_builder_add(call->vm, loop->built, x) ||
+        (by && !cag_call(call->vm, loop->function, &x, 1, &key)) ||
+        !cag_builder_add(call->vm, keys, key))
+      return false;
   }
   return true;
 }
@@ -275,9 +284,11 @@ static bool make_sort_items(CagCall *call, Loop *loop, CagBuilder *keys, bool by
 // All keys must have one order: each is compared with the first.
 static bool check_keys(CagCall *call, const SortItem *items, size_t n) {
   int order;
-  for (size_t i = 0; i < n; i++)
+  for (size_t i = 0; i < n; i++) {
     if (!cag_order(items[0].key, items[i].key, &order))
       return cag_fail_order(call, cag_given(call, 1) ? 1 : 0, items[0].key, items[i].key);
+    if (!may_go_on(call, i)) return false;
+  }
   return true;
 }
 
@@ -287,11 +298,15 @@ static bool sort_values(CagCall *call, const CagList *values, const CagList *key
   SortItem *buffer = cag_malloc((2 * n + 1) * sizeof *buffer);
   if (!buffer)
     return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (size_t i = 0; i < n; i++)
+  bool good = true;
+  for (size_t i = 0; i < n && good; i++) {
     buffer[i] = (SortItem){cag_list_get(call->vm, values, i), cag_list_get(call->vm, keys, i)};
-  bool good = check_keys(call, buffer, n);
+    good = may_go_on(call, i);
+  }
+  good = good && check_keys(call, buffer, n);
+  const SortItem *sorted = good ? sort_items(call, buffer, buffer + n, n) : NULL;
+  good = sorted != NULL;
   if (good) {
-    const SortItem *sorted = sort_items(buffer, buffer + n, n);
     CagBuilder *built = cag_builder_new(call->vm);
     for (size_t i = 0; i < n && good; i++) good = cag_builder_add(call->vm, built, sorted[i].value);
     if (good) *result = cag_builder_finish(call->vm, built);
@@ -334,7 +349,7 @@ static bool call_reverse(CagCall *call, CagValue *result) {
   }
   CagBuilder *built = cag_builder_new(call->vm);
   for (size_t i = s.length; i-- > 0;)
-    cag_builder_add(call->vm, built, cag_sequence_element(call->vm, &s, i));
+    if (!cag_builder_add(call->vm, built, cag_sequence_element(call->vm, &s, i))) return false;
   *result = cag_builder_finish(call->vm, built);
   return true;
 }
@@ -371,7 +386,7 @@ static bool call_enumerate(CagCall *call, CagValue *result) {
   CagBuilder *built = cag_builder_new(call->vm);
   for (size_t i = 0; i < s.length; i++) {
     CagValue pair[] = {cag_number((double)i), cag_sequence_element(call->vm, &s, i)};
-    cag_builder_add(call->vm, built, cag_list_values(call->vm, pair, 2));
+    if (!cag_builder_add(call->vm, built, cag_list_values(call->vm, pair, 2))) return false;
   }
   *result = cag_builder_finish(call->vm, built);
   return true;
@@ -382,7 +397,7 @@ static bool add_all(CagCall *call, CagBuilder *built, CagValue v) {
   if (!cag_as_list(call->vm, v, &v)) return false;
   const CagList *list = CAG_AS_LIST(v);
   for (size_t i = 0; i < list->length; i++)
-    cag_builder_add(call->vm, built, cag_list_get(call->vm, list, i));
+    if (!cag_builder_add(call->vm, built, cag_list_get(call->vm, list, i))) return false;
   return true;
 }
 
@@ -517,7 +532,7 @@ static bool call_pairs(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < s.length; i++) {
     pair[1] = cag_sequence_element(call->vm, &s, i);
     if (i == 0) first = pair[1];
-    else cag_builder_add(call->vm, built, cag_list_values(call->vm, pair, 2));
+    else if (!cag_builder_add(call->vm, built, cag_list_values(call->vm, pair, 2))) return false;
     pair[0] = pair[1];
   }
   pair[1] = first;
@@ -545,7 +560,7 @@ static bool part(CagCall *call, const CagSequence *s, size_t from, size_t count,
   CagSequence range = *s;
   CagBuilder *built = cag_builder_new(call->vm);
   for (size_t i = from; i < from + count; i++)
-    cag_builder_add(call->vm, built, cag_sequence_element(call->vm, &range, i));
+    if (!cag_builder_add(call->vm, built, cag_sequence_element(call->vm, &range, i))) return false;
   *result = cag_builder_finish(call->vm, built);
   return true;
 }

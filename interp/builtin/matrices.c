@@ -1,7 +1,8 @@
 // Matrices as lists of rows, and polynomials: linear systems, eigenvalues, roots.
 //
-// Decompositions are LAPACK's. A matrix counts as singular where its reciprocal condition number is
-// below the rounding error: its solution would be noise.
+// Decompositions are LAPACK's, of large matrices those of geom/linalg/dense. A matrix counts as
+// singular where its reciprocal condition number is below the rounding error: its solution would be
+// noise.
 
 #include <float.h>
 #include <stdlib.h>
@@ -12,6 +13,7 @@
 
 #include "base/memory.h"
 #include "geom/linalg/complex.h"
+#include "geom/linalg/dense.h"
 #include "interp/builtin/support.h"
 
 static const char FAMILY[] = "Matrices";
@@ -24,6 +26,9 @@ typedef struct Matrix {
   double *x; // by rows; malloc'd
 } Matrix;
 
+// Rows of a matrix, and numbers, after which the run is asked whether it must stop.
+enum { ROWS_BETWEEN_CHECKS = 16, NUMBERS_BETWEEN_CHECKS = 1 << 18 };
+
 static bool take(CagCall *call, size_t rows, size_t columns, Matrix *out) {
   size_t n = rows * columns;
   *out = (Matrix){rows, columns, cag_malloc((n ? n : 1) * sizeof(double))};
@@ -31,8 +36,10 @@ static bool take(CagCall *call, size_t rows, size_t columns, Matrix *out) {
 }
 
 static bool check_finite(CagCall *call, int argument, const Matrix *m) {
-  for (size_t i = 0; i < m->rows * m->columns; i++)
+  for (size_t i = 0; i < m->rows * m->columns; i++) {
     if (!isfinite(m->x[i])) return cag_fail_value(call, argument, "finite numbers");
+    if (i % NUMBERS_BETWEEN_CHECKS == 0 && !cag_keep_going(call->vm)) return false;
+  }
   return true;
 }
 
@@ -64,6 +71,9 @@ static bool read_rows(CagCall *call, int argument, Matrix *out) {
       return false;
     }
     memcpy(out->x + i * columns, x, columns * sizeof *x);
+    if (i % ROWS_BETWEEN_CHECKS != 0 || cag_keep_going(call->vm)) continue;
+    cag_free(out->x);
+    return false;
   }
   return true;
 }
@@ -122,6 +132,7 @@ static bool give_matrix(CagCall *call, Matrix *m, size_t rows, bool vector, CagV
   for (size_t i = 0; i < rows * m->columns && good; i++) {
     m->x[i] += 0.0; // never -0
     if (!isfinite(m->x[i])) good = cag_fail_call(call, 0, CAG_ERR_not_finite, "overflows");
+    else if (i % NUMBERS_BETWEEN_CHECKS == 0) good = cag_keep_going(call->vm);
   }
   if (good) *result = give_rows(call->vm, m, rows, vector);
   cag_free(m->x);
@@ -133,6 +144,40 @@ static bool give_matrix(CagCall *call, Matrix *m, size_t rows, bool vector, CagV
 static bool fail_singular(CagCall *call) {
   return cag_fail_call(call, 0, CAG_ERR_singular,
                        "expects a matrix that is not singular: its rows depend on each other");
+}
+
+static bool fail_memory(CagCall *call) {
+  return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+}
+
+static bool is_large(double multiplications) { return multiplications > CAG_LAPACK_MOST; }
+
+static double norm_of_columns(const Matrix *m, double *sums) {
+  double largest = 0;
+  memset(sums, 0, m->columns * sizeof *sums);
+  for (size_t i = 0; i < m->rows; i++)
+    for (size_t j = 0; j < m->columns; j++) sums[j] += fabs(m->x[i * m->columns + j]);
+  for (size_t j = 0; j < m->columns; j++) largest = fmax(largest, sums[j]);
+  return largest;
+}
+
+// The same as solve_system for a matrix that is large or has many right sides.
+static bool solve_large(CagCall *call, Matrix *a, Matrix *b, bool *singular) {
+  const size_t n = a->rows;
+  size_t *pivots = cag_malloc(n * sizeof *pivots);
+  double *sums = cag_malloc(n * sizeof *sums), reciprocal;
+  CagError err = {0};
+  const double norm = sums ? norm_of_columns(a, sums) : 0;
+  CagStatus status =
+      pivots && sums ? cag_lu_factor(a->x, n, pivots, singular, &err) : cag_fail_memory(&err);
+  if (!status && !*singular) {
+    status = cag_lu_condition(a->x, n, pivots, norm, &reciprocal, &err);
+    *singular = !status && !(reciprocal > DBL_EPSILON);
+  }
+  if (!status && !*singular) status = cag_lu_solve(a->x, n, pivots, b->x, b->columns, &err);
+  cag_free(pivots);
+  cag_free(sums);
+  return status == CAG_OK || cag_fail_geometry(call, &err);
 }
 
 // Replaces m by its LU decomposition. *singular: whether it is, to rounding.
@@ -149,6 +194,11 @@ static bool decompose(CagCall *call, Matrix *m, lapack_int *pivots, bool *singul
 }
 
 static bool solve_system(CagCall *call, Matrix *a, Matrix *b) {
+  const double size = (double)a->rows;
+  if (is_large(size * size * (size / 3 + (double)b->columns))) {
+    bool singular;
+    return solve_large(call, a, b, &singular) && (!singular || fail_singular(call));
+  }
   lapack_int n = (lapack_int)a->rows, *pivots = cag_malloc(a->rows * sizeof *pivots);
   bool singular = false;
   bool good = pivots
@@ -175,6 +225,56 @@ static bool call_solve(CagCall *call, CagValue *result) {
   return good && give_matrix(call, &b, b.rows, vector, result);
 }
 
+// Copies a matrix to one by columns, or back.
+static bool turn(CagCall *call, const Matrix *m, bool back, double *columns) {
+  for (size_t i = 0; i < m->rows; i++) {
+    for (size_t j = 0; j < m->columns; j++) {
+      double *row = &m->x[i * m->columns + j], *column = &columns[j * m->rows + i];
+      if (back) *row = *column;
+      else *column = *row;
+    }
+    if (!cag_keep_going(call->vm)) return false;
+  }
+  return true;
+}
+
+// Least squares by Householder reflections; x has as many rows as the larger of a's rows and
+// columns.
+static bool solve_large_least_squares(CagCall *call, const Matrix *a, Matrix *x, double cut) {
+  Matrix turned, sides;
+  if (!take(call, a->columns, a->rows, &turned)) return false;
+  if (!take(call, x->columns, x->rows, &sides)) {
+    cag_free(turned.x);
+    return false;
+  }
+  CagError err = {0};
+  bool good = turn(call, a, false, turned.x) && turn(call, x, false, sides.x);
+  if (good &&
+      cag_least_squares(turned.x, a->rows, a->columns, sides.x, x->rows, x->columns, &cut, &err))
+    good = cag_fail_geometry(call, &err);
+  good = good && turn(call, x, true, sides.x);
+  cag_free(turned.x);
+  cag_free(sides.x);
+  return good;
+}
+
+static bool solve_least_squares(CagCall *call, Matrix *a, Matrix *x) {
+  const size_t least = a->rows < a->columns ? a->rows : a->columns;
+  // Singular values, or diagonal entries, below this part of the largest count as 0.
+  const double cut = DBL_EPSILON * (double)x->rows;
+  if (is_large((double)a->rows * (double)a->columns * (double)(least + x->columns)))
+    return solve_large_least_squares(call, a, x, cut);
+  double *singular_values = cag_malloc(least * sizeof *singular_values);
+  if (!singular_values) return fail_memory(call);
+  lapack_int rank, columns = (lapack_int)x->columns;
+  const lapack_int info =
+      LAPACKE_dgelsd(LAPACK_ROW_MAJOR, (lapack_int)a->rows, (lapack_int)a->columns, columns, a->x,
+                     (lapack_int)a->columns, x->x, columns, singular_values, cut, &rank);
+  cag_free(singular_values);
+  return info == 0 || cag_fail_call(call, 0, CAG_ERR_convergence,
+                                    "does not settle: the singular values could not be found");
+}
+
 static bool call_least_squares(CagCall *call, CagValue *result) {
   Matrix a, b, x;
   bool vector;
@@ -183,32 +283,15 @@ static bool call_least_squares(CagCall *call, CagValue *result) {
     cag_free(a.x);
     return false;
   }
-  // dgelsd wants room for the larger of rows and columns in the right side, and gives the solution
-  // there.
-  size_t room = a.rows > a.columns ? a.rows : a.columns, least = a.rows + a.columns - room;
-  double *singular_values = cag_malloc(least * sizeof *singular_values);
+  // The solution has `columns` rows and takes the place of the right side.
+  const size_t room = a.rows > a.columns ? a.rows : a.columns, unknowns = a.columns;
   bool good = take(call, room, b.columns, &x);
-  if (good && !singular_values) {
-    cag_free(x.x);
-    good = cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  }
   if (good) {
     memset(x.x, 0, room * b.columns * sizeof(double));
     memcpy(x.x, b.x, b.rows * b.columns * sizeof(double));
-    lapack_int rank, columns = (lapack_int)b.columns;
-    // Singular values below this part of the largest count as 0.
-    double cut = DBL_EPSILON * (double)room;
-    lapack_int info =
-        LAPACKE_dgelsd(LAPACK_ROW_MAJOR, (lapack_int)a.rows, (lapack_int)a.columns, columns, a.x,
-                       (lapack_int)a.columns, x.x, columns, singular_values, cut, &rank);
-    if (info != 0) {
-      cag_free(x.x);
-      good = cag_fail_call(call, 0, CAG_ERR_convergence,
-                           "does not settle: the singular values could not be found");
-    }
+    good = solve_least_squares(call, &a, &x);
+    if (!good) cag_free(x.x);
   }
-  size_t unknowns = a.columns;
-  cag_free(singular_values);
   cag_free(a.x);
   cag_free(b.x);
   return good && give_matrix(call, &x, unknowns, vector, result);
@@ -226,10 +309,15 @@ static bool call_multiply(CagCall *call, CagValue *result) {
   for (size_t i = 0; good && i < a.rows; i++) {
     double *row = c.x + i * c.columns;
     memset(row, 0, c.columns * sizeof *row);
-    for (size_t k = 0; k < a.columns; k++)
+    size_t work = 0;
+    for (size_t k = 0; k < a.columns && good; k++) {
       for (size_t j = 0; j < c.columns; j++)
         row[j] += a.x[i * a.columns + k] * b.x[k * b.columns + j];
-    if (i % 64 == 63) good = cag_keep_going(call->vm);
+      if ((work += c.columns) < NUMBERS_BETWEEN_CHECKS) continue;
+      work = 0;
+      good = cag_keep_going(call->vm);
+    }
+    good = good && cag_keep_going(call->vm);
     if (!good) cag_free(c.x);
   }
   cag_free(a.x);
@@ -247,16 +335,16 @@ static double small_determinant(const Matrix *m) {
 }
 
 static bool large_determinant(CagCall *call, Matrix *m, double *out) {
-  lapack_int n = (lapack_int)m->rows, *pivots = cag_malloc(m->rows * sizeof *pivots);
-  lapack_int info = pivots ? LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, m->x, n, pivots) : -1;
-  if (info < 0) {
-    cag_free(pivots);
-    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  }
+  size_t *pivots = cag_malloc(m->rows * sizeof *pivots);
+  bool singular;
+  CagError err = {0};
+  const CagStatus status =
+      pivots ? cag_lu_factor(m->x, m->rows, pivots, &singular, &err) : cag_fail_memory(&err);
   *out = 1;
-  for (lapack_int i = 0; i < n; i++) *out *= m->x[i * n + i] * (pivots[i] == i + 1 ? 1 : -1);
+  for (size_t i = 0; !status && i < m->rows; i++)
+    *out *= m->x[i * m->rows + i] * (pivots[i] == i ? 1 : -1);
   cag_free(pivots);
-  return true;
+  return status == CAG_OK || cag_fail_geometry(call, &err);
 }
 
 static bool call_determinant(CagCall *call, CagValue *result) {
@@ -288,10 +376,13 @@ static bool call_transpose(CagCall *call, CagValue *result) {
   Matrix a, b;
   if (!read_rows(call, 0, &a)) return false;
   bool good = take(call, a.columns, a.rows, &b);
-  for (size_t i = 0; good && i < a.rows; i++)
+  const bool taken = good;
+  for (size_t i = 0; good && i < a.rows; i++) {
     for (size_t j = 0; j < a.columns; j++) b.x[j * a.rows + i] = a.x[i * a.columns + j];
+    good = cag_keep_going(call->vm);
+  }
   if (good) *result = give_rows(call->vm, &b, b.rows, false);
-  if (good) cag_free(b.x);
+  if (taken) cag_free(b.x);
   cag_free(a.x);
   return good;
 }
@@ -333,8 +424,12 @@ static bool call_eigen(CagCall *call, CagValue *result) {
   bool good = values
                   ? check_symmetric(call, &m)
                   : cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  const bool large = is_large((double)n * (double)n * (double)n);
+  CagError err = {0};
+  if (good && large && cag_symmetric_eigen(m.x, n, values, &err))
+    good = cag_fail_geometry(call, &err);
   // In column-major order the eigenvectors come out one after the other: the rows of what we give.
-  if (good &&
+  if (good && !large &&
       LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'U', (lapack_int)n, m.x, (lapack_int)n, values) != 0)
     good = cag_fail_call(call, 0, CAG_ERR_convergence,
                          "does not settle: the eigenvalues could not be found");

@@ -101,6 +101,9 @@ static CagValue round_value(CagValue v, int digits) {
   return v;
 }
 
+// Loops over long lists ask after so many elements whether they may go on.
+enum { STEPS_BETWEEN_CHECKS = 1 << 12 };
+
 static bool round_list(CagCall *call, CagValue value, int digits, int depth, CagValue *result) {
   if (!cag_may_nest(call, depth)) return false;
   const CagList *list = CAG_AS_LIST(value);
@@ -109,7 +112,11 @@ static bool round_list(CagCall *call, CagValue value, int digits, int depth, Cag
     size_t n = list->length * list->dim;
     *result = list->dim == 1 ? cag_list_numbers(call->vm, n, &numbers)
                              : cag_list_vectors(call->vm, list->length, list->dim, &numbers);
-    for (size_t i = 0; i < n; i++) numbers[i] = cag_round_decimal(list->as.numbers[i], digits);
+    for (size_t i = 0; i < n; i++) {
+      numbers[i] = cag_round_decimal(list->as.numbers[i], digits);
+      if (i % STEPS_BETWEEN_CHECKS == STEPS_BETWEEN_CHECKS - 1 && !cag_keep_going(call->vm))
+        return false;
+    }
     return true;
   }
   CagBuilder *built = cag_builder_new(call->vm);
@@ -119,7 +126,7 @@ static bool round_list(CagCall *call, CagValue value, int digits, int depth, Cag
     else if (element.type != CAG_LIST)
       return cag_fail_element(call, 0, i, element, "numbers, angles or lists of these");
     else if (!round_list(call, element, digits, depth + 1, &rounded)) return false;
-    cag_builder_add(call->vm, built, rounded);
+    if (!cag_builder_add(call->vm, built, rounded)) return false;
   }
   *result = cag_builder_finish(call->vm, built);
   return true;
@@ -136,9 +143,6 @@ static bool call_round(CagCall *call, CagValue *result) {
   *result = round_value(v, (int)digits);
   return true;
 }
-
-// After so many elements of a long range it is asked whether the search may go on.
-enum { STEPS_BETWEEN_CHECKS = 1 << 14 };
 
 // The least (sign = -1) or greatest (sign = 1) of the arguments, or of the one list.
 static bool extreme(CagCall *call, int sign, CagValue *result) {

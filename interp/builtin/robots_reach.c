@@ -108,7 +108,9 @@ static bool give_places(CagCall *call, const CagRobot *r, const double *q, size_
                         CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t k = 0; k < n; k++)
-    cag_builder_add(call->vm, list, cag_joints_value(call->vm, r, q + k * r->joint_count));
+    if (!cag_builder_add(call->vm, list, cag_joints_value(call->vm, r, q + k * r->joint_count)) ||
+        !cag_keep_going(call->vm))
+      return false;
   *result = cag_builder_finish(call->vm, list);
   return true;
 }

@@ -131,14 +131,16 @@ bool cag_robots_workspace(CagCall *call, CagValue *result) {
   CagVec3 *points = cag_malloc((size_t)n * sizeof *points);
   if (!points)
     return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (size_t k = 0; k < (size_t)n; k++) {
+  bool ok = true;
+  for (size_t k = 0; ok && k < (size_t)n; k++) {
     double q[CAG_ROBOT_JOINTS_MAX];
     CagTransform t;
     cag_robot_workspace_sample(r, k, (size_t)n, q);
     cag_robot_forward(r, q, &t);
     points[k] = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
+    ok = cag_keep_going(call->vm);
   }
-  bool ok = give_workspace(call, r, points, (size_t)n, result);
+  ok = ok && give_workspace(call, r, points, (size_t)n, result);
   cag_free(points);
   return ok;
 }

@@ -134,6 +134,7 @@ bool cag_splines_bernstein_maxima(CagCall *call, CagValue *result) {
     t[i] = n == 0 ? 0 : (double)i / (double)n;
     cag_bernstein((int)n, t[i], b);
     value[i] = b[i];
+    if (!cag_keep_going(call->vm)) return false;
   }
   *result = cag_record_new(call->vm, names, values, 2);
   return true;

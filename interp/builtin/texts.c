@@ -93,13 +93,14 @@ static bool call_split(CagCall *call, CagValue *result) {
   const char *s = t->bytes, *end = t->bytes + t->length;
   while (separator->length == 0 && s < end) {
     size_t n = cag_character_size(s);
-    cag_builder_add(call->vm, built, cag_text_new(call->vm, s, n));
+    if (!cag_builder_add(call->vm, built, cag_text_new(call->vm, s, n))) return false;
     s += n;
   }
   while (separator->length > 0) {
     const char *found = find_part(s, end, separator);
     const char *stop = found ? found : end;
-    cag_builder_add(call->vm, built, cag_text_new(call->vm, s, (size_t)(stop - s)));
+    if (!cag_builder_add(call->vm, built, cag_text_new(call->vm, s, (size_t)(stop - s))))
+      return false;
     if (!found) break;
     s = found + separator->length;
   }
@@ -165,7 +166,12 @@ static bool map_characters(CagCall *call, utf8proc_int32_t (*f)(utf8proc_int32_t
   if (!read_text(call, 0, &t)) return false;
   CagString s = {0};
   const char *end = t->bytes + t->length;
+  size_t done = 0;
   for (const char *at = t->bytes; at < end; at += cag_character_size(at)) {
+    if (++done % KEEP_GOING_EVERY == 0 && !cag_keep_going(call->vm)) {
+      cag_string_free(&s);
+      return false;
+    }
     utf8proc_int32_t c;
     utf8proc_uint8_t mapped[4];
     utf8proc_iterate((const utf8proc_uint8_t *)at, end - at, &c);

@@ -225,6 +225,7 @@ static bool call_builtin(CagVm *vm, size_t index, CagValue *values, size_t count
   else if (ok == vm->failed) ok = check_answer(vm, s->name, ok);
   ok = ok && cag_check_defined(&call, *result);
   cag_vm_release_held(vm, held);
+  if (vm->stop) ok = cag_stop_answer(vm); // work that was cut short may have found anything
   vm->native = native.outer;
   vm->top = top;
   return ok;

@@ -235,8 +235,8 @@ bool cag_fail_type(CagCall *call, int argument, const char *expected) {
 
 bool cag_fail_geometry(CagCall *call, const CagError *err) {
   if (err->status == CAG_E_CALLBACK && call->vm->failed)
-    return false; // the function of the script has said it
-  if (err->status == CAG_E_CALLBACK && !cag_keep_going(call->vm)) return false; // stopped: why
+    return false;                                      // the function of the script has said it
+  if (call->vm->stop) return cag_keep_going(call->vm); // whatever the work that was cut short says
   if (err->status == CAG_E_MEMORY) cag_vm_out_of_memory(call->vm);
   const CagSignature *s = cag_builtin_signature_of(call->builtin);
   int parameter = -1;

@@ -32,6 +32,7 @@ static CagModuleUnit *new_unit(CagVm *vm, const char *name, const char *path, co
     cag_module_free(m);
     cag_vm_out_of_memory(vm);
   }
+  m->source->stop = cag_vm_stop(vm);
   m->number = vm->module_count;
   vm->modules[vm->module_count++] = m;
   return m;
@@ -282,7 +283,7 @@ static void bind_imports(CagVm *vm, CagModuleUnit *m) {
   }
 }
 
-static void resolve_unit(CagVm *vm, CagModuleUnit *m) {
+static bool resolve_unit(CagVm *vm, CagModuleUnit *m) {
   CagResolveEnv env = {.context = vm,
                        .find_builtin = find_builtin,
                        .builtin_names = cag_builtin_names(),
@@ -291,7 +292,7 @@ static void resolve_unit(CagVm *vm, CagModuleUnit *m) {
                        .outer_names = vm->outer_names,
                        .outer_count = vm->outer_count,
                        .module_has = module_has};
-  cag_resolve(m->ast, &env, &vm->errors);
+  return cag_resolve(m->ast, &env, &vm->errors) || !vm->stop || cag_keep_going(vm);
 }
 
 static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
@@ -301,6 +302,7 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
   m->ast = cag_parse(m->source, mode, &vm->errors);
   if (!m->ast) {
     m->state = CAG_MODULE_LOST;
+    if (vm->stop) cag_keep_going(vm);
     return CAG_NO_MODULE;
   }
   m->sound = vm->errors.count == before;
@@ -316,7 +318,7 @@ static size_t load_unit(CagVm *vm, CagModuleUnit *m, CagParseMode mode) {
   if (m->resolved) {
     make_globals(vm, m);
     bind_imports(vm, m);
-    resolve_unit(vm, m);
+    if (!resolve_unit(vm, m)) return CAG_NO_MODULE;
     cag_diagnostics_sort_last(&vm->errors);
   }
   const bool sound = vm->errors.count == before && !vm->starved;

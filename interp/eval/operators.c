@@ -108,6 +108,10 @@ static bool scalars(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue 
 
 static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result);
 
+// Loops over packed numbers ask after blocks of so many whether the run must stop.
+#define BLOCK ((size_t)1 << 16)
+static size_t block_end(size_t from, size_t n) { return n - from < BLOCK ? n : from + BLOCK; }
+
 // Element by element of two packed lists of one shape.
 static bool packed_sum(CagVm *vm, CagBinaryOp op, const CagList *a, const CagList *b,
                        CagValue *result) {
@@ -115,12 +119,16 @@ static bool packed_sum(CagVm *vm, CagBinaryOp op, const CagList *a, const CagLis
   *result = a->dim == 1 ? cag_list_numbers(vm, a->length, &out)
                         : cag_list_vectors(vm, a->length, a->dim, &out);
   const double *x = a->as.numbers, *y = b->as.numbers;
-  size_t n = a->length * a->dim;
+  const size_t n = a->length * a->dim;
   double worst = 0;
-  if (op == CAG_OP_ADD) {
-    for (size_t i = 0; i < n; i++) worst += 0 * (out[i] = x[i] + y[i]);
-  } else {
-    for (size_t i = 0; i < n; i++) worst += 0 * (out[i] = x[i] - y[i]);
+  for (size_t from = 0; from < n; from += BLOCK) {
+    const size_t to = block_end(from, n);
+    if (op == CAG_OP_ADD) {
+      for (size_t i = from; i < to; i++) worst += 0 * (out[i] = x[i] + y[i]);
+    } else {
+      for (size_t i = from; i < to; i++) worst += 0 * (out[i] = x[i] - y[i]);
+    }
+    if (!cag_keep_going(vm)) return false;
   }
   if (worst == 0) return true; // no element is infinite or undefined
   for (size_t i = 0; i < n; i++) {
@@ -156,8 +164,9 @@ static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue
   CagBuilder *out = cag_builder_new(vm);
   for (size_t i = 0; i < l->length; i++) {
     CagValue v;
-    if (!cag_arithmetic(vm, op, cag_list_get(vm, l, i), cag_list_get(vm, m, i), &v)) return false;
-    cag_builder_add(vm, out, v);
+    if (!cag_arithmetic(vm, op, cag_list_get(vm, l, i), cag_list_get(vm, m, i), &v) ||
+        !cag_builder_add(vm, out, v))
+      return false;
   }
   *result = cag_builder_finish(vm, out);
   return true;
@@ -172,13 +181,17 @@ static bool list_scaled(CagVm *vm, CagBinaryOp op, CagValue list, CagValue facto
   const CagList *l = CAG_AS_LIST(x);
   if (l->dim && factor.type == CAG_NUMBER) {
     double *out, k = factor.as.number, worst = 0;
-    size_t n = l->length * l->dim;
+    const size_t n = l->length * l->dim;
     *result = l->dim == 1 ? cag_list_numbers(vm, l->length, &out)
                           : cag_list_vectors(vm, l->length, l->dim, &out);
-    if (op == CAG_OP_MULTIPLY) {
-      for (size_t i = 0; i < n; i++) worst += 0 * (out[i] = l->as.numbers[i] * k);
-    } else {
-      for (size_t i = 0; i < n; i++) worst += 0 * (out[i] = l->as.numbers[i] / k);
+    for (size_t from = 0; from < n; from += BLOCK) {
+      const size_t to = block_end(from, n);
+      if (op == CAG_OP_MULTIPLY) {
+        for (size_t i = from; i < to; i++) worst += 0 * (out[i] = l->as.numbers[i] * k);
+      } else {
+        for (size_t i = from; i < to; i++) worst += 0 * (out[i] = l->as.numbers[i] / k);
+      }
+      if (!cag_keep_going(vm)) return false;
     }
     if (worst == 0) return true;
     for (size_t i = 0; i < n; i++) {
@@ -200,8 +213,9 @@ static bool list_scaled(CagVm *vm, CagBinaryOp op, CagValue list, CagValue facto
   CagBuilder *out = cag_builder_new(vm);
   for (size_t i = 0; i < l->length; i++) {
     CagValue v, e = cag_list_get(vm, l, i);
-    if (!cag_arithmetic(vm, op, swapped ? factor : e, swapped ? e : factor, &v)) return false;
-    cag_builder_add(vm, out, v);
+    if (!cag_arithmetic(vm, op, swapped ? factor : e, swapped ? e : factor, &v) ||
+        !cag_builder_add(vm, out, v))
+      return false;
   }
   *result = cag_builder_finish(vm, out);
   return true;
@@ -221,13 +235,6 @@ static bool jets(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *re
 }
 
 // --- Others ---
-
-static CagValue join_texts(CagVm *vm, const CagText *a, const CagText *b) {
-  CagString s = {0};
-  cag_string_add(&s, a->bytes, a->length);
-  cag_string_add(&s, b->bytes, b->length);
-  return cag_text_from_string(vm, &s);
-}
 
 // Puts the top of the stack above the registers of the running frame, which the loop does not see
 // to for operators, and gives the old one: so a built-in may be called, and it the script.
@@ -318,7 +325,7 @@ bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue 
   switch (op) {
   case CAG_OP_ADD:
     if (a.type == CAG_TEXT && b.type == CAG_TEXT) {
-      *result = join_texts(vm, CAG_AS_TEXT(a), CAG_AS_TEXT(b));
+      *result = cag_text_joined(vm, CAG_AS_TEXT(a), CAG_AS_TEXT(b));
       return true;
     }
     if (is_list(a) && is_list(b)) return list_sum(vm, op, a, b, result);
@@ -589,8 +596,9 @@ static bool index_steps(CagVm *vm, CagValue list, const CagRange *r, CagValue *r
   CagBuilder *b = cag_builder_new(vm);
   for (size_t i = 0; i < n; i++) {
     size_t k;
-    if (!resolve(vm, cag_range_element(r, i, n), l->length, "list", &k)) return false;
-    cag_builder_add(vm, b, cag_list_get(vm, l, k));
+    if (!resolve(vm, cag_range_element(r, i, n), l->length, "list", &k) ||
+        !cag_builder_add(vm, b, cag_list_get(vm, l, k)))
+      return false;
   }
   *result = cag_builder_finish(vm, b);
   return true;

@@ -2,9 +2,9 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "interp/eval/calls.h"
 #include "interp/eval/vm.h"
 
@@ -35,7 +35,7 @@ bool cag_safe_point(CagVm *vm) {
     return cag_vm_fail(vm, CAG_ERR_limit_time, "exceeded the time limit of %g s (--max-time)",
                        vm->max_time);
   if (vm->heap.debt >= vm->heap.threshold) cag_collect(vm);
-  return true;
+  return !vm->stop || cag_keep_going(vm);
 }
 
 bool cag_keep_going(CagVm *vm) {
@@ -44,6 +44,12 @@ bool cag_keep_going(CagVm *vm) {
     return cag_vm_fail(vm, CAG_ERR_limit_time, "exceeded the time limit of %g s (--max-time)",
                        vm->max_time);
   return true;
+}
+
+bool cag_stop_answer(CagVm *vm) {
+  const CagErrorId id = vm->errors.count ? vm->errors.items[0].id : CAG_ERR_COUNT;
+  const bool known = vm->failed && (id == CAG_ERR_limit_time || id == CAG_ERR_interrupted);
+  return !known && cag_keep_going(vm);
 }
 
 // Whether two values are equal (or not). False: they nest too deep to be told.
@@ -179,12 +185,13 @@ static bool extend(CagVm *vm, CagValue builder, CagValue v) {
     if (!cag_range_count(vm, r, &n)) return false;
     for (size_t i = 0; i < n; i++) {
       double x = cag_range_element(r, i, n);
-      cag_builder_add(vm, b, r->angle ? cag_angle(x) : cag_number(x));
+      if (!cag_builder_add(vm, b, r->angle ? cag_angle(x) : cag_number(x))) return false;
     }
     return true;
   }
   const CagList *l = CAG_AS_LIST(v);
-  for (size_t i = 0; i < l->length; i++) cag_builder_add(vm, b, cag_list_get(vm, l, i));
+  for (size_t i = 0; i < l->length; i++)
+    if (!cag_builder_add(vm, b, cag_list_get(vm, l, i))) return false;
   return true;
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "geom/curve/nurbs_ops.h"
+#include "geom/sort.h"
 #include "interp/export/brep_build.h"
 
 // --- Vertices ---
@@ -55,7 +56,7 @@ static CagStatus make_vertices(CagBrepWork *w, size_t first_vertex, CagError *er
   if (roomy) b->vertices = roomy;
   CagStatus status = roomy && ends ? gather_ends(w, ends, err) : cag_fail_memory(err);
   b->vertex_count = first_vertex;
-  if (!status) qsort(ends, n, sizeof *ends, by_x);
+  if (!status) status = cag_sort(ends, n, sizeof *ends, by_x, err);
   size_t *vertex = cag_malloc((n ? n : 1) * sizeof *vertex);
   if (!vertex && !status) status = cag_fail_memory(err);
   for (size_t i = 0; !status && i < n; i++) {
@@ -127,8 +128,7 @@ static CagStatus pair_sides(CagBrepWork *w, Pair *pairs, CagError *err) {
   size_t n = 0;
   for (size_t i = 0; i < w->side_count; i++)
     if (pairs[i].with == SIZE_MAX) order[n++] = &w->sides[i];
-  qsort(order, n, sizeof *order, by_vertices);
-  CagStatus status = CAG_OK;
+  CagStatus status = cag_sort(order, n, sizeof *order, by_vertices, err);
   for (size_t i = 0; !status && i < n; i++) {
     const CagBrepSide *a = order[i];
     size_t ia = (size_t)(a - w->sides);

@@ -11,6 +11,7 @@
 #include <stdio.h>
 
 #include "base/memory.h"
+#include "geom/stop.h"
 #include "interp/scene/color_scale.h"
 
 #ifndef CAG_VERSION
@@ -342,7 +343,7 @@ void cag_gltf_plan_free(CagGltfPlan *p) {
 // --- Data ---
 
 static void write_uv(const double *x, size_t n, CagAtomicFile *file) {
-  for (size_t k = 0; k < n;) {
+  for (size_t k = 0; k < n && !cag_stopped();) {
     size_t end = n - k < BATCH ? n : k + BATCH;
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * 4);
     for (; k < end; k++) at = cag_mesh_put_float(at, (float)x[k]);
@@ -352,7 +353,7 @@ static void write_uv(const double *x, size_t n, CagAtomicFile *file) {
 
 // Linear light, as the format has it; it multiplies the material's color.
 static void write_colors(const CagMesh *m, CagAtomicFile *file) {
-  for (size_t v = 0; v < m->vertex_count;) {
+  for (size_t v = 0; v < m->vertex_count && !cag_stopped();) {
     size_t end = m->vertex_count - v < BATCH ? m->vertex_count : v + BATCH;
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * 12);
     for (; v < end; v++) {
@@ -368,7 +369,7 @@ static void write_colors(const CagMesh *m, CagAtomicFile *file) {
 // Validators want normals of length 1, also where a surface has none.
 static void write_normals(const CagVec3 *x, size_t n, CagAtomicFile *file) {
   const double most_off = 1e-3;
-  for (size_t k = 0; k < n;) {
+  for (size_t k = 0; k < n && !cag_stopped();) {
     size_t end = n - k < BATCH ? n : k + BATCH;
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * 12);
     for (; k < end; k++) {
@@ -388,7 +389,7 @@ static void write_indices(const CagMesh *m, const Part *g, CagAtomicFile *file) 
     cag_mesh_write_words(file, m->triangles, 3 * m->triangle_count);
     return;
   }
-  for (size_t t = 0; t < m->triangle_count; t++) {
+  for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {
     const uint32_t *k = m->triangles + 3 * t;
     if (!cag_mesh_shrinks(g->positions, k)) cag_mesh_write_words(file, k, 3);
   }

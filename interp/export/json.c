@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "geom/mesh/orient.h"
 #include "geom/solid/csg.h"
+#include "geom/stop.h"
 
 #define DEPTH_MAX 512 // the form nests to about 12, and set operations of operations by 2 each
 
@@ -138,7 +139,7 @@ static void key_transform(Writer *w, const char *name, const CagTransform *t) {
 
 static void put_vectors(Writer *w, const CagVec3 *v, size_t n) {
   open(w, "[");
-  for (size_t i = 0; i < n; i++) put_vec(w, v[i], 3);
+  for (size_t i = 0; i < n && !cag_stopped(); i++) put_vec(w, v[i], 3);
   close(w, "]");
 }
 
@@ -151,7 +152,7 @@ static void put_mesh(Writer *w, const CagMesh *m) {
   else put_raw(w, "null");
   key(w, "triangles");
   open(w, "[");
-  for (size_t i = 0; i < m->triangle_count; i++) {
+  for (size_t i = 0; i < m->triangle_count && !cag_stopped(); i++) {
     const uint32_t *t = m->triangles + 3 * i;
     before_value(w);
     cag_atomic_file_printf(w->file, "[%u,%u,%u]", t[0], t[1], t[2]);

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "base/memory.h"
+#include "geom/stop.h"
 #include "interp/export/mesh_write.h"
 
 enum { NUMBER_BYTES = 25, INDEX_BYTES = 21, WORD_BYTES = 240, BATCH = 64 };
@@ -94,7 +95,7 @@ static void write_material_name(const ObjMaterials *m, size_t number, CagAtomicF
 
 static void write_points(const CagMesh *m, uint32_t *number, ObjCounts *counts,
                          CagAtomicFile *file) {
-  for (size_t v = 0; v < m->vertex_count;) {
+  for (size_t v = 0; v < m->vertex_count && !cag_stopped();) {
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * (3 * NUMBER_BYTES + 4));
     for (size_t end = v + BATCH; v < m->vertex_count && v < end; v++) {
       if (m->weld && m->weld[v] != v) {
@@ -110,7 +111,7 @@ static void write_points(const CagMesh *m, uint32_t *number, ObjCounts *counts,
 }
 
 static void write_parameters(const CagMesh *m, CagAtomicFile *file) {
-  for (size_t v = 0; v < m->vertex_count;) {
+  for (size_t v = 0; v < m->vertex_count && !cag_stopped();) {
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * (2 * NUMBER_BYTES + 4));
     for (size_t end = v + BATCH; v < m->vertex_count && v < end; v++)
       at = put_line(at, "vt", m->uv + 2 * v, 2);
@@ -119,7 +120,7 @@ static void write_parameters(const CagMesh *m, CagAtomicFile *file) {
 }
 
 static void write_normals(const CagMesh *m, CagAtomicFile *file) {
-  for (size_t v = 0; v < m->vertex_count;) {
+  for (size_t v = 0; v < m->vertex_count && !cag_stopped();) {
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * (3 * NUMBER_BYTES + 4));
     for (size_t end = v + BATCH; v < m->vertex_count && v < end; v++) {
       const double x[3] = {m->normals[v].x, m->normals[v].y, m->normals[v].z};
@@ -132,7 +133,7 @@ static void write_normals(const CagMesh *m, CagAtomicFile *file) {
 // Corners are point/parameters/normal, with what the mesh has.
 static void write_faces(const CagMesh *m, const uint32_t *number, const ObjCounts *before,
                         CagAtomicFile *file) {
-  for (size_t t = 0; t < m->triangle_count;) {
+  for (size_t t = 0; t < m->triangle_count && !cag_stopped();) {
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * (9 * INDEX_BYTES + 4));
     for (size_t end = t + BATCH; t < m->triangle_count && t < end; t++) {
       *at++ = 'f';

@@ -3,6 +3,8 @@
 // edge.
 
 #include "base/memory.h"
+
+#include "geom/stop.h"
 #include "interp/export/mesh_write.h"
 #include "interp/scene/color_scale.h"
 
@@ -119,7 +121,7 @@ static void write_vertices(const CagMeshPart *part, const PlyPart *p, CagAtomicF
   unsigned char rgb[3];
   size_t number = p->first;
   color_bytes(part->material ? part->material->color : (CagColor){1, 1, 1}, rgb);
-  for (size_t v = 0; v < m->vertex_count;) {
+  for (size_t v = 0; v < m->vertex_count && !cag_stopped();) {
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * VERTEX_BYTES);
     size_t end = m->vertex_count - v < BATCH ? m->vertex_count : v + BATCH;
     for (; v < end; v++) {
@@ -136,7 +138,7 @@ static void write_vertices(const CagMeshPart *part, const PlyPart *p, CagAtomicF
 static void write_faces(const CagMesh *m, const PlyPart *p, CagAtomicFile *file) {
   bool all = p->triangles == m->triangle_count;
   uint32_t first = (uint32_t)p->first;
-  for (size_t t = 0; t < m->triangle_count;) {
+  for (size_t t = 0; t < m->triangle_count && !cag_stopped();) {
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * FACE_BYTES);
     size_t end = m->triangle_count - t < BATCH ? m->triangle_count : t + BATCH;
     for (; t < end; t++) {

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/stop.h"
 #include "interp/export/pov_write.h"
 #include "interp/scene/item_mesh.h"
 
@@ -56,7 +57,7 @@ static char *put_fixed(char *at, double x, int decimals) {
 static void write_vectors(CagPovWriter *w, const char *word, const CagVec3 *v, size_t n,
                           CagVec3 origin, int decimals) {
   pov_printf(w, "  %s {\n    %zu", word, n);
-  for (size_t i = 0; i < n; i++) {
+  for (size_t i = 0; i < n && !cag_stopped(); i++) {
     char *at = cag_atomic_file_reserve(w->file, VECTOR_ROOM);
     *at++ = ',';
     if (i % VECTORS_PER_LINE == 0) memcpy(at, "\n    ", 5), at += 5;
@@ -74,7 +75,7 @@ static void write_vectors(CagPovWriter *w, const char *word, const CagVec3 *v, s
 
 static void write_faces(CagPovWriter *w, const CagMesh *m) {
   pov_printf(w, "  face_indices {\n    %zu", m->triangle_count);
-  for (size_t i = 0; i < m->triangle_count; i++) {
+  for (size_t i = 0; i < m->triangle_count && !cag_stopped(); i++) {
     const uint32_t *t = m->triangles + 3 * i;
     char *at = cag_atomic_file_reserve(w->file, VECTOR_ROOM);
     *at++ = ',';
@@ -124,7 +125,7 @@ static void write_scale_places(CagPovWriter *w, const CagMesh *m) {
   const int decimals = 7;
   const CagColorScale *s = &m->scale;
   pov_printf(w, "  uv_vectors {\n    %zu", m->vertex_count);
-  for (size_t i = 0; i < m->vertex_count; i++) {
+  for (size_t i = 0; i < m->vertex_count && !cag_stopped(); i++) {
     char *at = cag_atomic_file_reserve(w->file, VECTOR_ROOM);
     double t = (m->uv[2 * i] - s->from) / (s->to - s->from);
     double place = isnan(t) ? 0.5 : fmin(fmax(pov_scale_place(t), 0), 1 - POV_SCALE_EDGE);

@@ -1,6 +1,8 @@
 // Binary STL: an 80-byte header, the number of triangles, 50 bytes each.
 
 #include "base/memory.h"
+
+#include "geom/stop.h"
 #include "interp/export/mesh_write.h"
 
 enum { HEADER = 80, RECORD = 50, LANES = 8, BATCH = 1024 };
@@ -72,7 +74,7 @@ static char *put_triangles(char *at, const float *p, const uint32_t *corners, in
 }
 
 static void write_all(const CagMesh *m, const float *p, CagAtomicFile *file) {
-  for (size_t t = 0; t < m->triangle_count;) {
+  for (size_t t = 0; t < m->triangle_count && !cag_stopped();) {
     char *at = cag_atomic_file_reserve(file, (size_t)BATCH * RECORD);
     size_t end = m->triangle_count - t < BATCH ? m->triangle_count : t + BATCH;
     for (; t < end; t += LANES)
@@ -84,7 +86,7 @@ static void write_all(const CagMesh *m, const float *p, CagAtomicFile *file) {
 
 // Without those that shrink.
 static void write_kept(const CagMesh *m, const float *p, CagAtomicFile *file) {
-  for (size_t t = 0; t < m->triangle_count; t++) {
+  for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {
     const uint32_t *k = m->triangles + 3 * t;
     if (cag_mesh_shrinks(p, k)) continue;
     char *at = cag_atomic_file_reserve(file, RECORD);

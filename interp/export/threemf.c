@@ -9,6 +9,7 @@
 #include <stdio.h>
 
 #include "base/memory.h"
+#include "geom/stop.h"
 #include "interp/export/mesh_copies.h"
 #include "interp/export/mesh_write.h"
 #include "interp/export/zip.h"
@@ -141,7 +142,7 @@ static CagStatus write_vertices(Model *m, const CagMesh *mesh, const float *p, u
                                 CagError *err) {
   uint32_t n = 0;
   CagStatus status = CAG_OK;
-  for (size_t v = 0; status == CAG_OK && v < mesh->vertex_count;) {
+  for (size_t v = 0; status == CAG_OK && v < mesh->vertex_count && !cag_stopped();) {
     char *at = cag_atomic_file_reserve(m->xml, (size_t)BATCH * VERTEX_BYTES);
     for (size_t end = v + BATCH; v < mesh->vertex_count && v < end; v++) {
       if (mesh->weld && mesh->weld[v] != v) {
@@ -167,7 +168,7 @@ static CagStatus write_triangles(Model *m, size_t part, const float *p, const ui
                                  CagError *err) {
   const CagMesh *mesh = m->parts[part].mesh;
   CagStatus status = CAG_OK;
-  for (size_t t = 0; status == CAG_OK && t < mesh->triangle_count;) {
+  for (size_t t = 0; status == CAG_OK && t < mesh->triangle_count && !cag_stopped();) {
     char *at = cag_atomic_file_reserve(m->xml, (size_t)BATCH * TRIANGLE_BYTES);
     for (size_t end = t + BATCH; t < mesh->triangle_count && t < end; t++) {
       const uint32_t *k = mesh->triangles + 3 * t;

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/stop.h"
 #include "interp/scene/scene.h"
 
 static const double AUTOMATIC_FOV = 0.52; // radians, about 30 degrees: a calm perspective
@@ -194,6 +195,7 @@ static CagStatus find_bounds(CagScene *s, CagError *err) {
   size_t kept = 0;
   for (size_t i = 0; i < s->item_count; i++) {
     CagBounds one = CAG_BOUNDS_EMPTY;
+    if (status == CAG_OK) status = cag_stop_check(err);
     if (status == CAG_OK) status = cag_item_bounds(&s->items[i], NULL, &one, err);
     const bool empty = status != CAG_OK && cag_is_empty_shape(err);
     if (empty) {

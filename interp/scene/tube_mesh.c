@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/stop.h"
 #include "interp/scene/item_mesh.h"
 
 #define SIDES 12
@@ -255,6 +256,7 @@ static CagStatus add_run(Buffer *b, const CagVec3 *p, size_t n, RunEnd from, Run
     add_cap(b, ring, p[0], cag_scaled(t, -1), false);
   }
   for (size_t i = 1; i < n; i++) {
+    if (cag_stop_check(err)) return err->status;
     CagVec3 u = tangent_at(p, n, false, i);
     r = carry(p[i - 1], t, r, p[i], u);
     t = u;
@@ -287,6 +289,7 @@ static CagStatus add_loop(Buffer *b, const CagVec3 *p, size_t n, double radius, 
   t = begin;
   r = first;
   for (size_t i = 0; i < rings; i++) {
+    if (cag_stop_check(err)) return err->status;
     CagVec3 u = tangent_at(p, n, true, i);
     if (i > 0) r = carry(p[i - 1], t, r, p[i], u);
     t = u;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/stop.h"
 #include "interp/scene/scene.h"
 #include "lang/memory.h"
 
@@ -195,7 +196,7 @@ void cag_camera_frame_all(const CagScene *s, CagCamera *c) {
                .center = cag_lerp(whole.min, whole.max, 0.5),
                .k = {k, k / aspect}};
   Reach r[2] = {{-INFINITY, INFINITY}, {-INFINITY, INFINITY}};
-  for (size_t i = 0; i < s->item_count; i++) add_item(&f, &s->items[i], r);
+  for (size_t i = 0; i < s->item_count && !cag_stopped(); i++) add_item(&f, &s->items[i], r);
   for (int a = 0; a < 2; a++)
     if (!(r[a].high > -INFINITY)) r[a] = reach_of_box(&f, a, &whole);
   double middle[2], distance = 2 * radius;

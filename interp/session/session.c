@@ -1,13 +1,13 @@
 // Sessions: one machine a run, on a thread with a large stack, and what became of it.
 
 #include "interp/session/session.h"
-#include "geom/solid/csg.h"
 
 #include <errno.h>
 #include <pthread.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "geom/solid/csg.h"
 #include "geom/stop.h"
 #include "geom/surface/crossing.h"
 #include "interp/scene/lead.h"
@@ -178,7 +178,8 @@ static void *perform(void *context) {
   cag_account_lend(&t->vm->account);
   t->ok = cag_vm_protect(t->vm, t->work, t->context);
   // What was cut short because the work must stop may not have told so.
-  if (t->ok && t->vm->stop) t->ok = cag_keep_going(t->vm);
+  // Otherwise the work has added a diagnostic of its own.
+  if (t->vm->stop && (t->ok || t->vm->failed)) t->ok = cag_stop_answer(t->vm);
   cag_account_drop((size_t)(&here - t->vm->stack_paid));
   return NULL;
 }
@@ -236,10 +237,19 @@ static bool perform_geometry(CagVm *vm, void *context) {
   return t->status == CAG_STATUS_OK && !vm->failed;
 }
 
+static CagErrorId why_stopped(const CagSession *s);
+static int fail_stopped(CagSession *s, CagErrorId id);
+
 int cag_session_geometry(CagSession *s, int (*work)(CagSession *s, void *context), void *context) {
   GeometryTask t = {s, work, context, CAG_STATUS_OK};
   int status = cag_session_work(s, perform_geometry, &t);
   if (t.status == CAG_STATUS_LIMIT && s->diagnostics.count == 0) cag_session_fail_memory(s);
+  // An error of work that was cut short says nothing.
+  if (s->vm && s->vm->stop && t.status != CAG_STATUS_OK && t.status != CAG_STATUS_LIMIT &&
+      t.status != CAG_STATUS_INTERRUPTED) {
+    cag_diagnostics_clear(&s->diagnostics);
+    return fail_stopped(s, why_stopped(s));
+  }
   return t.status != CAG_STATUS_OK ? t.status : status;
 }
 
@@ -325,7 +335,7 @@ int cag_session_fail_geometry(CagSession *s, const CagError *err) {
     return cag_session_status(s);
   }
   CagErrorId id = err->id;
-  if (err->status == CAG_E_CALLBACK && s->vm && s->vm->stop) id = why_stopped(s);
+  if (s->vm && s->vm->stop) id = why_stopped(s); // whatever the work that was cut short says
   if (id == CAG_ERR_interrupted || id == CAG_ERR_limit_time) return fail_stopped(s, id);
   const CagSolidPlace place = place_of_operation(s, err);
   cag_diagnostics_add(&s->diagnostics, id, place.source, (CagSpan){place.start, place.end}, "%s",

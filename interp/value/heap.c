@@ -16,6 +16,7 @@
 
 #include "base/memory.h"
 #include "geom/solid/csg.h"
+#include "geom/stop.h"
 #include "interp/eval/vm.h"
 
 #define CELL_FREE 0xff
@@ -135,8 +136,15 @@ static void mark_value(CagHeap *h, CagValue v) {
   if (v.type >= CAG_FIRST_OBJECT && v.type != CAG_UNSET) mark_object(h, v.as.object);
 }
 
+// Values marked, objects scanned, and pages swept, between two looks at the stop flag.
+enum { SCANS_BETWEEN_LOOKS = 1 << 14, PAGES_BETWEEN_LOOKS = 16 };
+
+// Ends early if the run must stop.
 static void mark_values(CagHeap *h, const CagValue *v, size_t n) {
-  for (size_t i = 0; i < n; i++) mark_value(h, v[i]);
+  for (size_t i = 0; i < n; i++) {
+    mark_value(h, v[i]);
+    if (i % SCANS_BETWEEN_LOOKS == SCANS_BETWEEN_LOOKS - 1 && cag_stopped()) return;
+  }
 }
 
 // Marks what an object refers to.
@@ -266,13 +274,17 @@ static bool sweep_page(CagHeap *h, CagPage *page) {
   return empty;
 }
 
-// Empty pages go back to the system, but for one of each size class.
-static void sweep(CagHeap *h) {
+// Empty pages go back to the system, but for one of each size class. Returns false if the run must
+// stop. Then the pages that were not swept keep their garbage, and their free cells are lost, until
+// the next collection.
+static bool sweep(CagHeap *h) {
   bool kept[CAG_SMALL_CLASSES] = {false};
+  size_t swept = 0;
   h->objects = 0;
   memset(h->free_lists, 0, sizeof h->free_lists);
   CagPage **at = &h->pages;
   while (*at) {
+    if (++swept % PAGES_BETWEEN_LOOKS == 0 && cag_stopped()) return false;
     CagPage *page = *at;
     const size_t size_class = page->cell / CAG_SMALL_STEP;
     CagObject *const before = h->free_lists[size_class];
@@ -298,39 +310,68 @@ static void sweep(CagHeap *h) {
       cag_free(o);
     }
   }
+  return true;
 }
 
-static void drain(CagHeap *h) {
-  while (h->gray_count) scan(h, h->gray[--h->gray_count]);
+// Returns false if the run must stop.
+static bool drain(CagHeap *h) {
+  while (h->gray_count) {
+    scan(h, h->gray[--h->gray_count]);
+    if (++h->scans % SCANS_BETWEEN_LOOKS == 0 && cag_stopped()) return false;
+  }
+  return !cag_stopped();
 }
 
 // Marks the objects that a marked object refers to, even if that was done before.
-static void scan_again(CagHeap *h, CagObject *o) {
-  if ((o->mark & MARK_MASK) != h->mark) return;
+static bool scan_again(CagHeap *h, CagObject *o) {
+  if ((o->mark & MARK_MASK) != h->mark) return true;
   scan(h, o);
-  drain(h);
+  return drain(h);
 }
 
-static void scan_heap_again(CagHeap *h) {
+static bool scan_heap_again(CagHeap *h) {
   for (CagPage *page = h->pages; page; page = page->next) {
     char *cell = (char *)page->cells;
     for (size_t i = 0; i < page->count; i++, cell += page->cell)
-      if (((CagObject *)cell)->type != CELL_FREE) scan_again(h, (CagObject *)cell);
+      if (((CagObject *)cell)->type != CELL_FREE && !scan_again(h, (CagObject *)cell)) return false;
   }
-  for (CagObject *o = h->large; o; o = o->next) scan_again(h, o);
+  for (CagObject *o = h->large; o; o = o->next)
+    if (!scan_again(h, o)) return false;
+  return true;
+}
+
+static bool mark_all(CagVm *vm) {
+  CagHeap *h = &vm->heap;
+  h->gray_count = 0;
+  h->gray_lost = false;
+  mark_roots(vm);
+  bool done = drain(h);
+  while (done && h->gray_lost) { // each pass marks more objects
+    h->gray_lost = false;
+    done = scan_heap_again(h);
+  }
+  return done;
+}
+
+// Gives every object the mark of the last collection, which a stopped one did not.
+static void mark_evenly(CagHeap *h) {
+  for (CagPage *page = h->pages; page; page = page->next) {
+    char *cell = (char *)page->cells;
+    for (size_t i = 0; i < page->count; i++, cell += page->cell) {
+      CagObject *o = (CagObject *)cell;
+      o->mark = (uint8_t)((o->mark & ~MARK_MASK) | h->mark);
+    }
+  }
+  for (CagObject *o = h->large; o; o = o->next)
+    o->mark = (uint8_t)((o->mark & ~MARK_MASK) | h->mark);
 }
 
 void cag_collect(CagVm *vm) {
   CagHeap *h = &vm->heap;
+  if (h->unfinished) mark_evenly(h);
   h->mark = h->mark == 1 ? 2 : 1;
-  h->gray_count = 0;
-  mark_roots(vm);
-  drain(h);
-  while (h->gray_lost) { // each pass marks more objects
-    h->gray_lost = false;
-    scan_heap_again(h);
-  }
-  sweep(h);
+  h->unfinished = !mark_all(vm) || !sweep(h);
+  if (h->unfinished) return; // the run ends
   h->debt = 0;
   h->seen = vm->account.used;
   const size_t room = cag_account_room() / 2;

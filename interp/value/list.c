@@ -168,6 +168,9 @@ static void unpack(CagVm *vm, CagBuilder *b) {
   b->mixed = true;
 }
 
+// A power of 2.
+enum { ADDS_BETWEEN_CHECKS = 1 << 12 };
+
 bool cag_builder_add(CagVm *vm, CagBuilder *b, CagValue v) {
   if (b->length == 0 && !b->mixed) {
     b->dim = dim_for(v);
@@ -177,7 +180,7 @@ bool cag_builder_add(CagVm *vm, CagBuilder *b, CagValue v) {
   }
   if (b->length == b->capacity) grow(vm, b);
   store(b->data, b->length++, b->dim, v);
-  return true;
+  return (b->length & (ADDS_BETWEEN_CHECKS - 1)) != 0 || !vm->stop || cag_keep_going(vm);
 }
 
 CagValue cag_builder_finish(CagVm *vm, CagBuilder *b) {

@@ -34,12 +34,31 @@ static size_t count_characters(const char *bytes, size_t length) {
   return n;
 }
 
+// Bytes of a text that are copied between two looks at the stop flag.
+#define BLOCK ((size_t)1 << 20)
+
+// Appends bytes to a text, whose length is how far it has come. The end of a text that is not
+// completed because the run must stop is zeros.
+static void append_bytes(CagVm *vm, CagText *t, const char *bytes, size_t length) {
+  char *to = t->bytes + t->length;
+  t->length += length;
+  for (size_t from = 0; from < length && !vm->stop; from += BLOCK) {
+    const size_t size = length - from < BLOCK ? length - from : BLOCK;
+    t->characters += count_characters(bytes + from, size);
+    memcpy(to + from, bytes + from, size);
+  }
+}
+
 CagValue cag_text_new(CagVm *vm, const char *bytes, size_t length) {
   CagText *t = cag_alloc(vm, CAG_TEXT, sizeof *t + length + 1);
-  t->length = length;
-  t->characters = count_characters(bytes, length);
-  if (length) memcpy(t->bytes, bytes, length);
-  t->bytes[length] = 0;
+  append_bytes(vm, t, bytes, length);
+  return cag_object(CAG_TEXT, t);
+}
+
+CagValue cag_text_joined(CagVm *vm, const CagText *a, const CagText *b) {
+  CagText *t = cag_alloc(vm, CAG_TEXT, sizeof *t + a->length + b->length + 1);
+  append_bytes(vm, t, a->bytes, a->length);
+  append_bytes(vm, t, b->bytes, b->length);
   return cag_object(CAG_TEXT, t);
 }
 

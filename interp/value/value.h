@@ -240,6 +240,7 @@ static inline bool cag_is_function(CagValue v) {
 #define CAG_AS_MODULE(v) ((CagModuleValue *)(v).as.object)
 
 CagValue cag_text_new(CagVm *vm, const char *bytes, size_t length); // valid UTF-8; copies
+CagValue cag_text_joined(CagVm *vm, const CagText *a, const CagText *b);
 CagValue cag_text_c(CagVm *vm, const char *s);
 CagText *cag_intern(CagVm *vm, const char *bytes,
                     size_t length); // the one text of these bytes; lives as long as the machine

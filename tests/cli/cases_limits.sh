@@ -163,7 +163,7 @@ soon run fit.cag
 it '--max-time ends intersections of curves'
 soon run meet.cag
 
-it '--max-time ends what does not look up'
+it '--max-time ends linear algebra of large matrices'
 soon run unseen.cag
 
 it '--max-time ends the reading of a large file'

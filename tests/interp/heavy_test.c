@@ -1,0 +1,294 @@
+// Any work ends soon after its limit of time, or after an interrupt, in a program that has no other
+// way to end it. Each script of heavy.def would run for many seconds.
+//
+// The work itself is measured elsewhere: a loaded machine or a sanitizer must not fail this test.
+// What fails it is work that does not ask whether it must end.
+
+#include <pthread.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "cag.h"
+#include "interp/clock.h"
+
+// Seconds that work has before it must end, that it may go on for, and after which waiting for it
+// has no point.
+#define LIMIT 0.15
+#define LATE 3.0
+#define HOPELESS 60
+
+// Definitions that the scripts use.
+static const char prelude[] =
+    "wave(n) = [for i in 0..<n: [i, 100 * sin(i * 37deg), i % 7]]\n"
+    "flat(n) = [for i in 0..<n: [i, 100 * sin(i * 37deg)]]\n"
+    "net(n, m) = [for i in 0..<n: [for j in 0..<m: [i, j, 3 * sin(i * 31deg) * cos(j * 43deg)]]]\n"
+    "square(n) = [for i in 0..<n: random(i, n, over: -0.01..0.01)]\n"
+    "gon(n, r = 100) = [for i in 0..<n: (r + 10 * (i % 2)) * [cos(i * 360deg / n), sin(i * 360deg "
+    "/ n)]]\n"
+    "cloud(n) = [for [x, y, z] in zip(random(1, n, over: 0..100), random(2, n, over: 0..100), "
+    "random(3, n, over: 0..100)): [x, y, z]]\n"
+    "bumpy = surface((u, v) => [100 * u, 100 * v, sin(4000deg * u) * cos(5000deg * v)])\n"
+    "arm(n) = robot([for i in 0..<n: revolute(a: 60, alpha: 30deg)])\n"
+    "puma = robot([revolute(d: 432, alpha: -90deg), revolute(a: 432), revolute(a: 20, alpha: "
+    "90deg), revolute(d: 432, alpha: -90deg), revolute(alpha: 90deg), revolute(d: 56.5)])\n";
+
+typedef struct Heavy {
+  const char *script;
+  const char *output; // NULL: the script itself is heavy, else what it shows when exported so
+} Heavy;
+
+#define HEAVY(script, output) {script, output},
+static const Heavy scripts[] = {
+#include "tests/interp/heavy.def"
+};
+#undef HEAVY
+#define COUNT (sizeof scripts / sizeof *scripts)
+
+static char folder[] = "/tmp/cag-heavy-XXXXXX";
+static volatile int interrupt;
+static const char *now_running;
+
+static void give_up(int signal) {
+  (void)signal;
+  static const char words[] = " does not end\n";
+  if (write(STDERR_FILENO, now_running, strlen(now_running)) < 0 ||
+      write(STDERR_FILENO, words, sizeof words - 1) < 0)
+    _exit(2);
+  _exit(1);
+}
+
+static void *interrupt_later(void *context) {
+  (void)context;
+  const struct timespec wait = {0, (long)(LIMIT * 1e9)};
+  nanosleep(&wait, NULL);
+  interrupt = 1;
+  return NULL;
+}
+
+typedef struct Run {
+  CagSession *session;
+  FILE *out;
+  double begun;
+} Run;
+
+static Run begin(const char *what, double limit) {
+  CagSessionOptions options;
+  Run r;
+  now_running = what;
+  interrupt = 0;
+  cag_session_options_init(&options);
+  options.out = options.messages = r.out = fopen("/dev/null", "w");
+  options.max_time = limit;
+  options.interrupt = &interrupt;
+  options.folder = folder;
+  r.session = cag_session_new(&options);
+  assert_non_null(r.session);
+  alarm(HOPELESS);
+  r.begun = cag_clock_seconds();
+  return r;
+}
+
+// Tells what is wrong with the end of the work, if anything.
+static size_t end(Run *r, int status, int wanted) {
+  const double late = cag_clock_seconds() - r->begun - LIMIT;
+  alarm(0);
+  const bool wrong = status != wanted || late > LATE;
+  if (wrong) {
+    print_error("%s\n  status %d in place of %d, %g s after the limit\n", now_running, status,
+                wanted, late);
+    cag_session_write_diagnostics(r->session, CAG_STYLE_TEXT, stderr);
+  }
+  cag_session_free(r->session);
+  fclose(r->out);
+  return wrong;
+}
+
+static int run_script(CagSession *s, const char *script) {
+  char text[4096];
+  assert_true(snprintf(text, sizeof text, "%s%s\n", prelude, script) < (int)sizeof text);
+  return cag_session_run_text(s, "test", text, strlen(text));
+}
+
+static void a_limit_or_an_interrupt_ends_any_script(void **state) {
+  (void)state;
+  size_t bad = 0;
+  for (size_t i = 0; i < COUNT; i++) {
+    if (scripts[i].output) continue;
+    const bool limited = i % 2 == 0;
+    pthread_t thread;
+    Run r = begin(scripts[i].script, limited ? LIMIT : 0);
+    if (!limited) assert_int_equal(pthread_create(&thread, NULL, interrupt_later, NULL), 0);
+    const int status = run_script(r.session, scripts[i].script);
+    if (!limited) pthread_join(thread, NULL);
+    bad += end(&r, status, limited ? CAG_STATUS_LIMIT : CAG_STATUS_INTERRUPTED);
+  }
+  assert_int_equal(bad, 0);
+}
+
+// Nothing of a file is left.
+static void an_interrupt_ends_any_export(void **state) {
+  (void)state;
+  size_t bad = 0;
+  for (size_t i = 0; i < COUNT; i++) {
+    if (!scripts[i].output) continue;
+    char path[256];
+    snprintf(path, sizeof path, "%s/%s", folder, scripts[i].output);
+    pthread_t thread;
+    Run r = begin(scripts[i].script, 0);
+    alarm(0); // what is to be exported may take its time
+    const int shown = run_script(r.session, scripts[i].script);
+    if (shown != CAG_STATUS_OK) {
+      r.begun = cag_clock_seconds();
+      bad += end(&r, shown, CAG_STATUS_OK);
+      continue;
+    }
+    alarm(HOPELESS);
+    r.begun = cag_clock_seconds();
+    assert_int_equal(pthread_create(&thread, NULL, interrupt_later, NULL), 0);
+    const int status = cag_session_export(r.session, path, NULL);
+    pthread_join(thread, NULL);
+    bad += end(&r, status, CAG_STATUS_INTERRUPTED);
+    if (access(path, F_OK) == 0) {
+      print_error("%s: an interrupted export left %s\n", scripts[i].script, path);
+      bad++;
+    }
+  }
+  assert_int_equal(bad, 0);
+}
+
+// --- Long texts ---
+
+typedef struct Text {
+  char *bytes;
+  size_t length;
+} Text;
+
+// `n` times the form, of which each %d is the number.
+static Text repeated(const char *before, const char *form, const char *behind, int n) {
+  Text t;
+  FILE *f = open_memstream(&t.bytes, &t.length);
+  fputs(before, f);
+  for (int i = 0; i < n; i++)
+    for (const char *c = form; *c; c++) {
+      if (*c == '#') fprintf(f, "%d", i);
+      else fputc(*c, f);
+    }
+  fputs(behind, f);
+  fclose(f);
+  return t;
+}
+
+static void a_limit_ends_the_reading_of_long_scripts(void **state) {
+  (void)state;
+  const Text texts[] = {
+      repeated("", "v# = [#, sin(# * 1deg), { a: # }]\n", "print v1\n", 600000),
+      repeated("f(x, y = 2) = x + y\n", "w# = f(#, y: #) + norm([1, 2, #])\n", "", 600000),
+      repeated("x = [", "[#, sin(# * 1deg), 7], ", "1]\nprint len(x)\n", 1000000),
+      repeated("x = [", "[[[[f(f(f(f(f(f(#)))))), 7]]]], ", "1]\n", 300000),
+  };
+  size_t bad = 0;
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    for (int way = 0; way < 3; way++) {
+      char *out = NULL;
+      size_t length;
+      int status;
+      Run r = begin(texts[i].bytes, LIMIT);
+      now_running = way == 0 ? "a long script run" : way == 1 ? "checked" : "formatted";
+      if (way == 0)
+        status = cag_session_run_text(r.session, "long", texts[i].bytes, texts[i].length);
+      else if (way == 1)
+        status = cag_session_check_text(r.session, "long", texts[i].bytes, texts[i].length);
+      else
+        status =
+            cag_session_format(r.session, "long", texts[i].bytes, texts[i].length, &out, &length);
+      assert_null(out);
+      bad += end(&r, status, CAG_STATUS_LIMIT);
+    }
+  }
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) free(texts[i].bytes);
+  assert_int_equal(bad, 0);
+}
+
+// --- Files ---
+
+static void write_text(const char *name, Text t) {
+  char path[256];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *f = fopen(path, "w");
+  assert_non_null(f);
+  fwrite(t.bytes, 1, t.length, f);
+  fclose(f);
+  free(t.bytes);
+}
+
+static void a_limit_ends_the_reading_of_large_files(void **state) {
+  (void)state;
+  static const char *const reading[] = {
+      "print [for k in 0..<1000: read_mesh(\"large.stl\")]",
+      "print [for k in 0..<1000: read_mesh(\"large.ply\")]",
+      "print [for k in 0..<1000: read_mesh(\"large.obj\")]",
+      "print [for k in 0..<1000: read_mesh(\"large.glb\")]",
+      "print [for k in 0..<1000: len(read_json(\"large.json\"))]",
+      "print [for k in 0..<1000: len(read_csv(\"large.csv\"))]",
+      "print [for k in 0..<10000: len(read_text(\"large.csv\"))]",
+      "print [for k in 0..<1000: read_urdf(\"large.urdf\", tip: \"l1\")]",
+  };
+  static const char *const meshes[] = {"stl", "ply", "obj", "glb"};
+  Run r = begin("files", 0);
+  assert_int_equal(run_script(r.session, "show tessellate(sphere(100), tolerance: 0.002)"),
+                   CAG_STATUS_OK);
+  for (size_t i = 0; i < sizeof meshes / sizeof *meshes; i++) {
+    char path[256];
+    snprintf(path, sizeof path, "%s/large.%s", folder, meshes[i]);
+    assert_int_equal(cag_session_export(r.session, path, NULL), CAG_STATUS_OK);
+  }
+  r.begun = cag_clock_seconds();
+  end(&r, CAG_STATUS_OK, CAG_STATUS_OK);
+  write_text("large.json", repeated("[", "{\"a\": #, \"b\": [1.5, #]}, ", "1]", 300000));
+  write_text("large.csv", repeated("a,b\n", "#,text #\n", "", 500000));
+  write_text("large.urdf", repeated("<robot name=\"r\"><link name=\"base\"/>",
+                                    "<link name=\"l#\"/><joint name=\"j#\" type=\"fixed\"><parent "
+                                    "link=\"base\"/><child link=\"l#\"/></joint>",
+                                    "</robot>", 4000));
+  size_t bad = 0;
+  for (size_t i = 0; i < sizeof reading / sizeof *reading; i++) {
+    r = begin(reading[i], LIMIT);
+    const int status = run_script(r.session, reading[i]);
+    bad += end(&r, status, CAG_STATUS_LIMIT);
+  }
+  assert_int_equal(bad, 0);
+}
+
+static int make_folder(void **state) {
+  (void)state;
+  signal(SIGALRM, give_up);
+  return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state) {
+  (void)state;
+  char command[256];
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  return system(command);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_limit_or_an_interrupt_ends_any_script),
+      cmocka_unit_test(an_interrupt_ends_any_export),
+      cmocka_unit_test(a_limit_ends_the_reading_of_long_scripts),
+      cmocka_unit_test(a_limit_ends_the_reading_of_large_files),
+  };
+  return cmocka_run_group_tests_name("heavy", tests, make_folder, remove_folder);
+}
