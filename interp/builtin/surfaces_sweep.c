@@ -4,6 +4,7 @@
 #include "geom/surface/loft.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
+#include "interp/eval/vm.h"
 
 // Functions of the path's parameter are kept as series to this part of their size.
 #define FIT_TOLERANCE 1e-12
@@ -21,11 +22,24 @@ static CagStatus stopped(CagError *err) {
   return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "the function failed");
 }
 
+typedef struct Question {
+  const Sampled *sampled;
+  double t;
+  CagValue answer;
+} Question;
+
+static bool ask(CagVm *vm, void *question) {
+  Question *q = question;
+  const Sampled *s = q->sampled;
+  CagValue at = cag_parameter_value(s->angular, q->t);
+  return cag_call(vm, s->call->values[s->argument], &at, 1, &q->answer) && cag_keep_going(vm);
+}
+
+// Running out of memory in the script must not leave the fit by a jump.
 static CagStatus call_at(const Sampled *s, double t, CagValue *out, CagError *err) {
-  CagValue at = cag_parameter_value(s->angular, t);
-  if (!cag_call(s->call->vm, s->call->values[s->argument], &at, 1, out) ||
-      !cag_keep_going(s->call->vm))
-    return stopped(err);
+  Question q = {s, t, cag_none()};
+  if (!cag_vm_call_back(s->call->vm, ask, &q)) return stopped(err);
+  *out = q.answer;
   return CAG_OK;
 }
 
