@@ -325,7 +325,17 @@ static void add_length(CagString *s, const char *name, double x) {
   cag_print_number(s, x);
 }
 
-static void describe_link(CagVm *vm, CagString *s, const CagRobotLink *l) {
+static void add_limits(CagString *s, const CagRobotLink *l) {
+  const bool turns = l->kind == CAG_JOINT_REVOLUTE;
+  const char *unit = turns ? "deg" : "";
+  cag_string_printf(s, ", limits ");
+  cag_print_number(s, turns ? cag_degrees_shown(l->low) : l->low);
+  cag_string_printf(s, "%s..", unit);
+  cag_print_number(s, turns ? cag_degrees_shown(l->high) : l->high);
+  cag_string_printf(s, "%s", unit);
+}
+
+static void describe_link(CagString *s, const CagRobotLink *l) {
   static const char *const kinds[] = {"revolute link", "prismatic link", "fixed link"};
   cag_string_printf(s, "%s", kinds[l->kind]);
   if (l->kind == CAG_JOINT_FIXED) return;
@@ -333,13 +343,13 @@ static void describe_link(CagVm *vm, CagString *s, const CagRobotLink *l) {
   add_length(s, l->kind == CAG_JOINT_REVOLUTE ? "d" : "offset", l->d);
   add_length(s, "a", l->a);
   add_angle(s, "alpha", l->alpha);
-  cag_string_printf(s, ", limits ");
-  cag_print_value(vm, s, range_of_link(vm, l), true);
+  add_limits(s, l);
 }
 
 void cag_describe_robot(CagVm *vm, CagString *s, CagValue v) {
+  (void)vm;
   if (v.type == CAG_LINK) {
-    describe_link(vm, s, &CAG_AS_LINK(v)->link);
+    describe_link(s, &CAG_AS_LINK(v)->link);
     return;
   }
   const CagRobotValue *robot = CAG_AS_ROBOT(v);
