@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "base/memory.h"
 #include "geom/robot/numeric.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/support.h"

@@ -1,7 +1,6 @@
 // Robots to look at: the shapes of the links in the frames where the joints put them, or plain
 // rods and drums.
 
-#include "base/memory.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/solids.h"
 #include "interp/eval/vm.h"

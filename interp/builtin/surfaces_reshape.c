@@ -1,6 +1,5 @@
 // Parts, finer nets and joins of surfaces; offsets and plates.
 
-#include "base/memory.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 #include "interp/builtin/support.h"

@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#include "base/memory.h"
 #include "geom/surface/curvature_contour.h"
 #include "geom/surface/curvature_line.h"
 #include "geom/surface/motion.h"

@@ -1,6 +1,5 @@
 // Surfaces and solids that a section sweeps along a path or under transforms, and lofts.
 
-#include "base/memory.h"
 #include "geom/surface/loft.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
