@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "base/memory.h"
 #include "geom/robot/numeric.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/support.h"
@@ -143,17 +142,13 @@ bool cag_robots_link_frames(CagCall *call, CagValue *result) {
   if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 2, true, &limits) ||
       !cag_arg_joints(call, 1, r, limits, q))
     return false;
-  CagTransform *frames = cag_malloc((r->link_count + 1) * sizeof *frames);
-  if (!frames)
-    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  CagTransform *frames = cag_hold_array(call, r->link_count + 1, sizeof *frames);
   cag_robot_frames(r, q, frames);
   CagBuilder *list = cag_builder_new(call->vm);
-  bool ok = true;
-  for (size_t i = 0; ok && i <= r->link_count; i++)
-    ok = cag_builder_add(call->vm, list, cag_transform_value(call->vm, &frames[i]));
-  cag_free(frames);
-  if (ok) *result = cag_builder_finish(call->vm, list);
-  return ok;
+  for (size_t i = 0; i <= r->link_count; i++)
+    cag_builder_add(call->vm, list, cag_transform_value(call->vm, &frames[i]));
+  *result = cag_builder_finish(call->vm, list);
+  return true;
 }
 
 // --- Motion ---
@@ -276,12 +271,9 @@ bool cag_robots_skeleton(CagCall *call, CagValue *result) {
   if (!cag_arg_robot(call, 0, &r) || !cag_arg_bool_or(call, 2, true, &limits) ||
       !cag_arg_joints_or_home(call, 1, r, limits, q))
     return false;
-  CagVec3 *points = cag_malloc((2 * r->link_count + 2) * sizeof *points);
-  if (!points)
-    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  CagVec3 *points = cag_hold_array(call, 2 * r->link_count + 2, sizeof *points);
   size_t n = cag_robot_skeleton(r, q, points);
   *result = cag_points_value(call->vm, points, n, 3);
-  cag_free(points);
   return true;
 }
 

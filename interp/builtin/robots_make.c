@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "base/memory.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/support.h"
 
@@ -102,20 +101,15 @@ bool cag_robots_fixed_link(CagCall *call, CagValue *result) {
 
 // --- Robots ---
 
-// The links of a list as plain data.
+// The links of a list as plain data, held.
 static bool read_links(CagCall *call, const CagList *list, CagRobotLink **out) {
-  CagRobotLink *links = cag_malloc((list->length ? list->length : 1) * sizeof *links);
-  if (!links)
-    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  *out = cag_hold_array(call, list->length, sizeof **out);
   for (size_t i = 0; i < list->length; i++) {
     CagValue v = cag_list_get(call->vm, list, i);
-    if (v.type != CAG_LINK) {
-      cag_free(links);
+    if (v.type != CAG_LINK)
       return cag_fail_element(call, 0, i, v, "links (revolute, prismatic, fixed_link)");
-    }
-    links[i] = CAG_AS_LINK(v)->link;
+    (*out)[i] = CAG_AS_LINK(v)->link;
   }
-  *out = links;
   return true;
 }
 
@@ -139,7 +133,7 @@ static double shown_unit(const CagRobotLink *links, size_t n, size_t joint) {
 }
 
 typedef struct Coupling {
-  double *matrix, *offset; // one block of memory
+  double *matrix, *offset; // held
 } Coupling;
 
 static bool read_coupling_rows(CagCall *call, int argument, CagValue rows, size_t joints,
@@ -189,10 +183,8 @@ static bool read_coupling(CagCall *call, int argument, const CagRobotLink *links
   }
   size_t n = 0;
   for (size_t i = 0; i < count; i++) n += links[i].kind != CAG_JOINT_FIXED;
-  double *block = cag_calloc(n * n + n + 1, sizeof *block);
-  if (!block)
-    return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
-  *out = (Coupling){block, block + n * n};
+  *out = (Coupling){cag_hold_array(call, n * n, sizeof(double)),
+                    cag_hold_array(call, n, sizeof(double))};
   if (!read_coupling_rows(call, argument, rows, n, out->matrix) ||
       (offset.type != CAG_UNSET && !read_coupling_offset(call, argument, offset, n, out->offset)))
     return false;
@@ -229,18 +221,16 @@ bool cag_robots_robot(CagCall *call, CagValue *result) {
   CagRobotLink *plain = NULL;
   Coupling coupling = {0};
   CagRobot *robot = NULL;
-  if (!read_links(call, CAG_AS_LIST(links), &plain)) return false;
-  spec.links = plain;
   spec.link_count = CAG_AS_LIST(links)->length;
+  if (!read_links(call, CAG_AS_LIST(links), &plain) ||
+      !read_coupling(call, 5, plain, spec.link_count, &coupling))
+    return false;
+  spec.links = plain;
   spec.convention = convention ? CAG_ROBOT_MODIFIED : CAG_ROBOT_CLASSIC;
-  bool ok = read_coupling(call, 5, plain, spec.link_count, &coupling);
   spec.coupling = coupling.matrix;
   spec.coupling_offset = coupling.offset;
-  CagStatus status = ok ? cag_robot_new(&spec, &robot, &err) : CAG_OK;
-  cag_free(plain);
-  cag_free(coupling.matrix);
-  if (!ok || !cag_geometry_ok(call, status, &err)) return false;
   CagText *text = CAG_AS_TEXT(cag_text_c(call->vm, name));
+  if (!cag_geometry_ok(call, cag_robot_new(&spec, &robot, &err), &err)) return false;
   *result = cag_robot_value(call->vm, robot, text, links);
   return true;
 }
@@ -334,7 +324,17 @@ static void add_length(CagString *s, const char *name, double x) {
   cag_print_number(s, x);
 }
 
-static void describe_link(CagVm *vm, CagString *s, const CagRobotLink *l) {
+static void add_limits(CagString *s, const CagRobotLink *l) {
+  const bool turns = l->kind == CAG_JOINT_REVOLUTE;
+  const char *unit = turns ? "deg" : "";
+  cag_string_printf(s, ", limits ");
+  cag_print_number(s, turns ? cag_degrees_shown(l->low) : l->low);
+  cag_string_printf(s, "%s..", unit);
+  cag_print_number(s, turns ? cag_degrees_shown(l->high) : l->high);
+  cag_string_printf(s, "%s", unit);
+}
+
+static void describe_link(CagString *s, const CagRobotLink *l) {
   static const char *const kinds[] = {"revolute link", "prismatic link", "fixed link"};
   cag_string_printf(s, "%s", kinds[l->kind]);
   if (l->kind == CAG_JOINT_FIXED) return;
@@ -342,13 +342,13 @@ static void describe_link(CagVm *vm, CagString *s, const CagRobotLink *l) {
   add_length(s, l->kind == CAG_JOINT_REVOLUTE ? "d" : "offset", l->d);
   add_length(s, "a", l->a);
   add_angle(s, "alpha", l->alpha);
-  cag_string_printf(s, ", limits ");
-  cag_print_value(vm, s, range_of_link(vm, l), true);
+  add_limits(s, l);
 }
 
 void cag_describe_robot(CagVm *vm, CagString *s, CagValue v) {
+  (void)vm;
   if (v.type == CAG_LINK) {
-    describe_link(vm, s, &CAG_AS_LINK(v)->link);
+    describe_link(s, &CAG_AS_LINK(v)->link);
     return;
   }
   const CagRobotValue *robot = CAG_AS_ROBOT(v);

@@ -115,29 +115,27 @@ static bool give_places(CagCall *call, const CagRobot *r, const double *q, size_
   return true;
 }
 
-static bool take_places(CagCall *call, const CagRobot *r, size_t n, double **out) {
-  *out = cag_malloc((n * r->joint_count + 1) * sizeof **out);
-  return *out || cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+// Room for n places of the joints, held.
+static double *take_places(CagCall *call, const CagRobot *r, size_t n) {
+  return cag_hold(call, cag_malloc((n * r->joint_count + 1) * sizeof(double)));
 }
 
 // robot, from, to, n
 bool cag_robots_joint_path(CagCall *call, CagValue *result) {
   CagRobot *r = NULL;
-  double from[CAG_ROBOT_JOINTS_MAX], to[CAG_ROBOT_JOINTS_MAX], *q;
+  double from[CAG_ROBOT_JOINTS_MAX], to[CAG_ROBOT_JOINTS_MAX];
   long n;
   if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints(call, 1, r, true, from) ||
-      !cag_arg_joints(call, 2, r, true, to) || !cag_arg_integer(call, 3, 2, POSES_MAX, &n) ||
-      !take_places(call, r, (size_t)n, &q))
+      !cag_arg_joints(call, 2, r, true, to) || !cag_arg_integer(call, 3, 2, POSES_MAX, &n))
     return false;
   size_t joints = r->joint_count;
+  double *q = take_places(call, r, (size_t)n);
   for (size_t k = 0; k < (size_t)n; k++)
     for (size_t i = 0; i < joints; i++) {
       double t = (double)k / (double)(n - 1);
       q[k * joints + i] = (1 - t) * from[i] + t * to[i];
     }
-  bool ok = give_places(call, r, q, (size_t)n, result);
-  cag_free(q);
-  return ok;
+  return give_places(call, r, q, (size_t)n, result);
 }
 
 static bool going(void *vm) { return cag_keep_going(vm); }
@@ -146,7 +144,7 @@ static bool going(void *vm) { return cag_keep_going(vm); }
 bool cag_robots_line_path(CagCall *call, CagValue *result) {
   CagRobot *r = NULL;
   CagTransform from, to;
-  double near[CAG_ROBOT_JOINTS_MAX], *q;
+  double near[CAG_ROBOT_JOINTS_MAX];
   long n;
   bool point = false;
   CagError err;
@@ -159,23 +157,20 @@ bool cag_robots_line_path(CagCall *call, CagValue *result) {
         call, 2, way.position_only ? "a point, as the start is" : "a pose, as the start is");
   if (!cag_arg_integer(call, 3, 2, POSES_MAX, &n) ||
       !cag_arg_joints_or_home(call, 4, r, false, near) ||
-      !cag_arg_bool_or(call, 5, false, &way.cross) || !take_places(call, r, (size_t)n, &q))
+      !cag_arg_bool_or(call, 5, false, &way.cross))
     return false;
+  double *q = take_places(call, r, (size_t)n);
   CagStatus status = cag_robot_line_path(r, &from, &to, (size_t)n, &way, q, &err);
-  bool ok = cag_geometry_ok(call, status, &err) && give_places(call, r, q, (size_t)n, result);
-  cag_free(q);
-  return ok;
+  return cag_geometry_ok(call, status, &err) && give_places(call, r, q, (size_t)n, result);
 }
 
-// Poses, or points where the tool may be turned as it likes.
+// Poses, or points where the tool may be turned as it likes; *out is held.
 static bool read_poses(CagCall *call, int argument, CagTransform **out, size_t *n, bool *points) {
   CagList *list = NULL;
   if (!cag_arg_list(call, argument, &list)) return false;
   *n = list->length;
   *points = list->dim == 3;
-  *out = cag_malloc((*n + 1) * sizeof **out);
-  if (!*out)
-    return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
+  *out = cag_hold(call, cag_malloc((*n + 1) * sizeof **out));
   for (size_t i = 0; i < *n; i++) {
     CagValue v = cag_list_get(call->vm, list, i);
     const double *x = *points ? list->as.numbers + 3 * i : NULL;
@@ -192,16 +187,15 @@ static bool read_poses(CagCall *call, int argument, CagTransform **out, size_t *
 bool cag_robots_follow(CagCall *call, CagValue *result) {
   CagRobot *r = NULL;
   CagTransform *poses = NULL;
-  double near[CAG_ROBOT_JOINTS_MAX], *q = NULL;
+  double near[CAG_ROBOT_JOINTS_MAX];
   size_t n = 0;
   CagError err;
   CagRobotWay way = {.near = near, .going = going, .data = call->vm};
-  bool ok = cag_arg_robot(call, 0, &r) && cag_arg_joints_or_home(call, 2, r, false, near) &&
-            cag_arg_bool_or(call, 3, false, &way.jumps) &&
-            read_poses(call, 1, &poses, &n, &way.position_only) && take_places(call, r, n, &q) &&
-            cag_geometry_ok(call, cag_robot_follow(r, poses, n, &way, q, &err), &err) &&
-            give_places(call, r, q, n, result);
-  cag_free(poses);
-  cag_free(q);
-  return ok;
+  if (!cag_arg_robot(call, 0, &r) || !cag_arg_joints_or_home(call, 2, r, false, near) ||
+      !cag_arg_bool_or(call, 3, false, &way.jumps) ||
+      !read_poses(call, 1, &poses, &n, &way.position_only))
+    return false;
+  double *q = take_places(call, r, n);
+  return cag_geometry_ok(call, cag_robot_follow(r, poses, n, &way, q, &err), &err) &&
+         give_places(call, r, q, n, result);
 }

@@ -1,9 +1,9 @@
 // Robots to look at: the shapes of the links in the frames where the joints put them, or plain
 // rods and drums.
 
-#include "base/memory.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/solids.h"
+#include "interp/eval/vm.h"
 
 static const double rod_color[3] = CAG_PLAIN_ROD_COLOR, drum_color[3] = CAG_PLAIN_DRUM_COLOR,
                     foot_color[3] = CAG_PLAIN_FOOT_COLOR;
@@ -96,23 +96,18 @@ static bool add_moved(Drawing *d, const CagTransform *t, CagValue shape) {
 
 static bool draw(Drawing *d, const CagRobotValue *v, const double *q, CagValue holding) {
   const CagRobot *r = v->robot;
-  CagTransform tool, *frames = cag_malloc((r->link_count + 1) * sizeof *frames);
-  CagVec3 *points = cag_malloc((2 * r->link_count + 2) * sizeof *points);
-  bool ok = (frames && points) ||
-            cag_fail_call(d->call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  CagTransform tool, *frames = cag_hold_array(d->call, r->link_count + 1, sizeof *frames);
+  CagVec3 *points = cag_hold_array(d->call, 2 * r->link_count + 2, sizeof *points);
   bool shaped = false;
-  if (ok) cag_robot_frames(r, q, frames);
-  for (size_t i = 0; ok && i < r->link_count; i++) {
+  cag_robot_frames(r, q, frames);
+  for (size_t i = 0; i < r->link_count; i++) {
     CagValue shape = CAG_AS_LINK(v->links->as.items[i])->shape;
     shaped = shaped || shape.type != CAG_NONE;
-    ok = add_moved(d, &frames[i + 1], shape);
+    if (!add_moved(d, &frames[i + 1], shape)) return false;
   }
-  if (ok && !shaped) ok = draw_plain(d, r, q, frames, points);
+  if (!shaped && !draw_plain(d, r, q, frames, points)) return false;
   cag_robot_forward(r, q, &tool);
-  ok = ok && add_moved(d, &tool, holding);
-  cag_free(frames);
-  cag_free(points);
-  return ok;
+  return add_moved(d, &tool, holding);
 }
 
 static bool give_drawing(CagCall *call, const CagRobotValue *v, const double *q, CagValue holding,
@@ -149,5 +144,8 @@ bool cag_robot_at_home(CagVm *vm, CagValue robot, CagValue *group) {
   CagValue values[] = {robot, cag_unset(), cag_unset(), cag_unset()};
   CagCall call = {vm, cag_builtin_rows(cag_builtin_find("posed"), &rows), values, 4};
   cag_robot_home(CAG_AS_ROBOT(robot)->robot, q);
-  return give_drawing(&call, CAG_AS_ROBOT(robot), q, cag_none(), group);
+  const size_t held = vm->held_count;
+  const bool ok = give_drawing(&call, CAG_AS_ROBOT(robot), q, cag_none(), group);
+  cag_vm_release_held(vm, held);
+  return ok;
 }

@@ -19,18 +19,18 @@
 #define FLAT 1e-9
 
 // A small octahedron at each point: the cloud as one mesh to show.
-static CagStatus cloud_mesh(const CagVec3 *points, size_t n, double radius, CagMesh **out,
-                            CagError *err) {
+static bool cloud_value(CagCall *call, const CagVec3 *points, size_t n, double radius,
+                        CagValue *out) {
   static const double corners[6][3] = {{1, 0, 0},  {0, 1, 0}, {-1, 0, 0},
                                        {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   static const uint32_t faces[8][3] = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4},
                                        {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}};
   CagMesh *m = NULL;
-  CagVec3 *vertices = cag_malloc(6 * n * sizeof *vertices);
-  uint32_t *counts = cag_malloc(8 * n * sizeof *counts),
-           *indices = cag_malloc(24 * n * sizeof *indices);
-  CagStatus status = vertices && counts && indices ? CAG_OK : cag_fail_memory(err);
-  for (size_t i = 0; !status && i < n; i++) {
+  CagError err;
+  CagVec3 *vertices = cag_hold(call, cag_malloc(6 * n * sizeof *vertices));
+  uint32_t *counts = cag_hold(call, cag_malloc(8 * n * sizeof *counts));
+  uint32_t *indices = cag_hold(call, cag_malloc(24 * n * sizeof *indices));
+  for (size_t i = 0; i < n; i++) {
     for (size_t k = 0; k < 6; k++)
       vertices[6 * i + k] =
           cag_madd(points[i], radius, cag_vec3(corners[k][0], corners[k][1], corners[k][2]));
@@ -39,12 +39,13 @@ static CagStatus cloud_mesh(const CagVec3 *points, size_t n, double radius, CagM
       for (size_t j = 0; j < 3; j++) indices[24 * i + 3 * k + j] = (uint32_t)(6 * i) + faces[k][j];
     }
   }
-  if (!status) status = cag_mesh_from_faces(vertices, 6 * n, indices, counts, 8 * n, &m, err);
-  cag_free(vertices);
-  cag_free(counts);
-  cag_free(indices);
-  if (!status) *out = m;
-  return status;
+  const CagStatus status = cag_mesh_from_faces(vertices, 6 * n, indices, counts, 8 * n, &m, &err);
+  cag_release_held(call, indices);
+  cag_release_held(call, counts);
+  cag_release_held(call, vertices);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *out = cag_mesh_value(call->vm, m);
+  return true;
 }
 
 static CagBounds bounds_of(const CagVec3 *points, size_t n) {
@@ -68,17 +69,14 @@ static bool hull_value(CagCall *call, const CagVec3 *points, size_t n, const Cag
   }
   CagStatus status = cag_hull_plane(points, n, &ring, &count, &err);
   if (status) return status != CAG_E_MEMORY || cag_fail_geometry(call, &err);
-  CagVec3 *corners = cag_malloc(count * sizeof *corners);
+  cag_hold_for(call, cag_free, ring);
+  CagVec3 *corners = cag_hold_array(call, count, sizeof *corners);
   CagCurve *loop = NULL;
   CagRegion *region = NULL;
-  status = corners ? CAG_OK : cag_fail_memory(&err);
-  for (size_t i = 0; !status && i < count; i++)
-    corners[i] = cag_vec3(points[ring[i]].x, points[ring[i]].y, 0);
-  if (!status) status = cag_curve_polyline(corners, count, true, 2, &loop, &err);
+  for (size_t i = 0; i < count; i++) corners[i] = cag_vec3(points[ring[i]].x, points[ring[i]].y, 0);
+  status = cag_curve_polyline(corners, count, true, 2, &loop, &err);
   if (!status) status = cag_region_new(loop, NULL, 0, &region, &err);
   cag_curve_release(loop);
-  cag_free(corners);
-  cag_free(ring);
   if (!cag_geometry_ok(call, status, &err)) return false;
   CagTransform place = cag_translate(cag_vec3(0, 0, b->min.z));
   *out = cag_region_value(call->vm, region, &place);
@@ -94,15 +92,12 @@ static bool give_workspace(CagCall *call, const CagRobot *r, const CagVec3 *poin
   static const char *const kinds[] = {"cartesian", "cylindrical", "spherical",   "spherical-offset",
                                       "planar",    "scara",       "articulated", "other"};
   CagWorkspace w;
-  CagError err;
-  CagMesh *cloud = NULL;
-  CagValue hull;
+  CagValue hull, cloud;
   cag_robot_workspace(r, &w);
   CagBounds seen = bounds_of(points, n), b = w.bounds.min.x <= w.bounds.max.x ? w.bounds : seen;
   double size = cag_norm(cag_sub(seen.max, seen.min));
   if (!hull_value(call, points, n, &seen, &hull) ||
-      !cag_geometry_ok(call, cloud_mesh(points, n, DOT * (size > 0 ? size : 1), &cloud, &err),
-                       &err))
+      !cloud_value(call, points, n, DOT * (size > 0 ? size : 1), &cloud))
     return false;
   bool known = w.kind != CAG_WORKSPACE_OTHER;
   CagVm *vm = call->vm;
@@ -110,7 +105,7 @@ static bool give_workspace(CagCall *call, const CagRobot *r, const CagVec3 *poin
                        cag_text_c(vm, w.of_wrist ? "wrist" : "tool"),
                        cag_points_value(vm, points, n, 3),
                        hull,
-                       cag_mesh_value(vm, cloud),
+                       cloud,
                        cag_bounds_value(vm, &b, 3),
                        known ? cag_point(vm, w.center, 3) : cag_none(),
                        number_or_none(known, w.r_min),
@@ -128,21 +123,16 @@ bool cag_robots_workspace(CagCall *call, CagValue *result) {
   if (!cag_arg_robot(call, 0, &r) ||
       !cag_arg_integer_or(call, 1, SAMPLES_DEFAULT, 1, SAMPLES_MAX, &n))
     return false;
-  CagVec3 *points = cag_malloc((size_t)n * sizeof *points);
-  if (!points)
-    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  bool ok = true;
-  for (size_t k = 0; ok && k < (size_t)n; k++) {
+  CagVec3 *points = cag_hold(call, cag_malloc((size_t)n * sizeof *points));
+  for (size_t k = 0; k < (size_t)n; k++) {
     double q[CAG_ROBOT_JOINTS_MAX];
     CagTransform t;
     cag_robot_workspace_sample(r, k, (size_t)n, q);
     cag_robot_forward(r, q, &t);
     points[k] = cag_vec3(t.m[0][3], t.m[1][3], t.m[2][3]);
-    ok = cag_keep_going(call->vm);
+    if (!cag_keep_going(call->vm)) return false;
   }
-  ok = ok && give_workspace(call, r, points, (size_t)n, result);
-  cag_free(points);
-  return ok;
+  return give_workspace(call, r, points, (size_t)n, result);
 }
 
 // --- Frames for joint axes ---
@@ -220,22 +210,14 @@ bool cag_robots_dh_assign(CagCall *call, CagValue *result) {
   if (list->length == 0)
     return cag_fail_call(call, 0, CAG_ERR_empty_chain, "expects the axis of at least one joint");
   size_t n = list->length;
-  CagJointAxis *axes = cag_calloc(n, sizeof *axes);
-  CagRobotLink *links = cag_calloc(n, sizeof *links);
-  CagTransform *frames = cag_calloc(n + 1, sizeof *frames);
-  bool ok = (axes && links && frames) ||
-            cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (size_t i = 0; ok && i < n; i++)
-    ok = read_axis(call, 0, cag_list_get(call->vm, list, i), i, &axes[i]);
-  ok = ok && read_axis(call, 1, call->values[1], 0, &end);
-  if (ok && cag_given(call, 2) && call->values[2].type != CAG_NONE)
-    ok = cag_arg_pose(call, 2, &base);
-  else ok = ok && default_base(call, &axes[0], &base);
-  ok = ok &&
-       cag_geometry_ok(call, cag_robot_dh_assign(&base, axes, n, &end, links, frames, &err), &err);
-  ok = ok && give_assignment(call, links, frames, n, result);
-  cag_free(axes);
-  cag_free(links);
-  cag_free(frames);
-  return ok;
+  CagJointAxis *axes = cag_hold_array(call, n, sizeof *axes);
+  CagRobotLink *links = cag_hold_array(call, n, sizeof *links);
+  CagTransform *frames = cag_hold_array(call, n + 1, sizeof *frames);
+  for (size_t i = 0; i < n; i++)
+    if (!read_axis(call, 0, cag_list_get(call->vm, list, i), i, &axes[i])) return false;
+  if (!read_axis(call, 1, call->values[1], 0, &end)) return false;
+  const bool based = cag_given(call, 2) && call->values[2].type != CAG_NONE;
+  if (!(based ? cag_arg_pose(call, 2, &base) : default_base(call, &axes[0], &base))) return false;
+  const CagStatus status = cag_robot_dh_assign(&base, axes, n, &end, links, frames, &err);
+  return cag_geometry_ok(call, status, &err) && give_assignment(call, links, frames, n, result);
 }

@@ -16,18 +16,15 @@
 
 static const char family[] = "Robots: links";
 
-// What is taken from the system stands here: running out of values' memory leaves the reading from
-// anywhere, and all of it is released by call_read_urdf.
+// Held, with what it owns, until the call ends.
 typedef struct Import {
   CagCall *call;
   const char *path; // of the .urdf file
   const char *tip, *base;
   bool shapes;
-  char *bytes;      // of the file, until they are read
   CagUrdfTree tree; // its arena holds names of meshes as well
   CagUrdfRows rows;
   CagRobotLink *plain;
-  CagValue *result;
 } Import;
 
 // --- Meshes ---
@@ -62,7 +59,10 @@ static bool read_at(const Import *m, const char *path, CagValue *out, bool *foun
   size_t rows;
   CagValue text = cag_text_c(vm, path);
   CagCall call = {vm, cag_builtin_rows(cag_builtin_find("read_mesh"), &rows), &text, 1};
-  if (call.builtin->function(&call, out)) return *found = true;
+  const size_t held = vm->held_count;
+  const bool ok = call.builtin->function(&call, out);
+  cag_vm_release_held(vm, held);
+  if (ok) return *found = true;
   *found = vm->errors.count == 0 || vm->errors.items[0].id != CAG_ERR_file;
   return false;
 }
@@ -242,14 +242,12 @@ static bool make_links(Import *m, CagValue *list) {
   return true;
 }
 
-static bool make_robot(Import *m) {
+static bool make_robot(Import *m, CagValue *result) {
   CagCall *call = m->call;
   CagError err = {0};
   CagRobot *robot = NULL;
   CagValue list;
-  m->plain = cag_malloc((m->rows.row_count + 1) * sizeof *m->plain);
-  if (!m->plain)
-    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  m->plain = cag_hold_array(call, m->rows.row_count, sizeof *m->plain);
   if (!make_links(m, &list)) return false;
   CagText *name = CAG_AS_TEXT(cag_text_c(call->vm, m->tree.name));
   CagRobotSpec spec = {.links = m->plain,
@@ -259,7 +257,7 @@ static bool make_robot(Import *m) {
                        .tool = m->rows.tool};
   const CagStatus status = cag_robot_new(&spec, &robot, &err);
   if (!cag_geometry_ok(call, status, &err)) return false;
-  *m->result = cag_robot_value(call->vm, robot, name, list);
+  *result = cag_robot_value(call->vm, robot, name, list);
   return true;
 }
 
@@ -271,42 +269,38 @@ static bool name_or_none(CagCall *call, int argument, const char **out) {
          cag_arg_text(call, argument, out);
 }
 
-static bool read_chain(Import *m, size_t size) {
+static bool read_chain(Import *m) {
+  CagCall *call = m->call;
   CagError err = {0};
-  size_t *chain = NULL, n = 0;
+  char *bytes;
+  size_t size, *chain = NULL, n = 0;
   const char *slash = strrchr(m->path, '/');
-  CagStatus status = cag_urdf_read(slash ? slash + 1 : m->path, m->bytes, size, &m->tree, &err);
+  if (!cag_vm_open_file(call, 0, m->path, &bytes, &size)) return false;
+  cag_hold(call, bytes);
+  CagStatus status = cag_urdf_read(slash ? slash + 1 : m->path, bytes, size, &m->tree, &err);
+  cag_release_held(call, bytes);
   if (status == CAG_OK) status = cag_urdf_chain(&m->tree, m->base, m->tip, &chain, &n, &err);
+  cag_hold_for(call, cag_free, chain);
   if (status == CAG_OK)
     status =
         cag_urdf_rows(&m->tree, m->base ? m->base : m->tip, chain, n, m->shapes, &m->rows, &err);
-  cag_free(chain);
-  return cag_geometry_ok(m->call, status, &err);
+  return cag_geometry_ok(call, status, &err);
 }
 
-static bool read_robot(CagVm *vm, void *context) {
-  (void)vm;
-  Import *m = context;
-  size_t size;
-  if (!cag_vm_open_file(m->call, 0, m->path, &m->bytes, &size) || !read_chain(m, size))
-    return false;
-  cag_free(m->bytes);
-  m->bytes = NULL;
-  return make_robot(m);
+static void release_import(void *import) {
+  Import *m = import;
+  cag_urdf_rows_free(&m->rows);
+  cag_urdf_tree_free(&m->tree);
 }
 
 // path, tip, base, shapes
 static bool call_read_urdf(CagCall *call, CagValue *result) {
-  Import m = {.call = call, .result = result};
-  if (!cag_arg_text(call, 0, &m.path) || !name_or_none(call, 1, &m.tip) ||
-      !name_or_none(call, 2, &m.base) || !cag_arg_bool_or(call, 3, true, &m.shapes))
-    return false;
-  const bool ok = cag_vm_call_back(call->vm, read_robot, &m);
-  cag_free(m.bytes);
-  cag_free(m.plain);
-  cag_urdf_rows_free(&m.rows);
-  cag_urdf_tree_free(&m.tree);
-  return ok;
+  Import *m = cag_hold_array(call, 1, sizeof *m);
+  cag_hold_for(call, release_import, m);
+  m->call = call;
+  return cag_arg_text(call, 0, &m->path) && name_or_none(call, 1, &m->tip) &&
+         name_or_none(call, 2, &m->base) && cag_arg_bool_or(call, 3, true, &m->shapes) &&
+         read_chain(m) && make_robot(m, result);
 }
 
 const CagBuiltin cag_builtins_robot_files[] = {

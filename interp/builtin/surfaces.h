@@ -4,6 +4,7 @@
 #define CAG_INTERP_BUILTIN_SURFACES_H
 
 #include "geom/surface/quadric.h"
+#include "geom/surface/section.h"
 #include "interp/builtin/shapes.h"
 
 // clang-format off
@@ -59,6 +60,17 @@ bool cag_arg_quadric(CagCall *call, CagQuadric *q);
 bool cag_fail_rows(CagCall *call, size_t wanted, size_t row, size_t found);
 // Reads u and v of a surface from the parameters `at` and the next.
 bool cag_arg_uv(CagCall *call, const CagSurface *s, int at, double *u, double *v);
+
+// --- What is held until the built-in ends (surfaces_held.c) ---
+// Surfaces that the core makes; cag_hold_surfaces gives an empty array to be filled.
+typedef struct CagSurfaceArray {
+  CagSurface **items;
+  size_t count;
+} CagSurfaceArray;
+CagSurfaceArray *cag_hold_surfaces(CagCall *call);
+// Gives an empty list to be filled.
+CagCurveList *cag_hold_curve_list(CagCall *call);
+CagValue cag_curve_list_value(CagVm *vm, const CagCurveList *list);
 
 // A region turned about an axis that lies in its plane, to a solid.
 bool cag_region_revolved(CagCall *call, const CagRegion *region, const CagTransform *place,

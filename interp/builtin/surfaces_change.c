@@ -75,22 +75,17 @@ bool cag_surfaces_sample(CagCall *call, CagValue *result) {
       !cag_arg_integer(call, 2, 2, POINTS_MAX / n, &m))
     return false;
   size_t nu = (size_t)n, nv = (size_t)m;
-  double *us = cag_malloc(nu * sizeof *us), *vs = cag_malloc(nv * sizeof *vs);
-  CagVec3 *points = cag_malloc(nu * nv * sizeof *points);
-  bool ok = us && vs && points;
-  if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (size_t i = 0; ok && i < nu; i++) us[i] = step(s->u0, s->u1, i, nu - 1);
-  for (size_t j = 0; ok && j < nv; j++) vs[j] = step(s->v0, s->v1, j, nv - 1);
-  ok = ok && cag_geometry_ok(
-                 call, cag_surface_eval_grid(s, us, nu, vs, nv, points, NULL, NULL, &err), &err);
+  double *us = cag_hold_array(call, nu, sizeof *us), *vs = cag_hold_array(call, nv, sizeof *vs);
+  CagVec3 *points = cag_hold(call, cag_malloc(nu * nv * sizeof *points));
+  for (size_t i = 0; i < nu; i++) us[i] = step(s->u0, s->u1, i, nu - 1);
+  for (size_t j = 0; j < nv; j++) vs[j] = step(s->v0, s->v1, j, nv - 1);
+  CagStatus status = cag_surface_eval_grid(s, us, nu, vs, nv, points, NULL, NULL, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
   CagBuilder *rows = cag_builder_new(call->vm);
-  for (size_t i = 0; ok && i < nu; i++)
-    ok = cag_builder_add(call->vm, rows, cag_points_value(call->vm, points + i * nv, nv, 3));
-  if (ok) *result = cag_builder_finish(call->vm, rows);
-  cag_free(us);
-  cag_free(vs);
-  cag_free(points);
-  return ok;
+  for (size_t i = 0; i < nu; i++)
+    cag_builder_add(call->vm, rows, cag_points_value(call->vm, points + i * nv, nv, 3));
+  *result = cag_builder_finish(call->vm, rows);
+  return true;
 }
 
 bool cag_surfaces_to_nurbs(CagCall *call, CagValue *result) {

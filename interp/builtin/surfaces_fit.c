@@ -43,11 +43,7 @@ static bool read_pair(CagCall *call, int argument, long fallback, long low, long
   return true;
 }
 
-static bool fail_memory(CagCall *call) {
-  return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-}
-
-// *points is to be freed even when the call fails.
+// Reads rows of points of one length into an array that is held.
 static bool read_grid(CagCall *call, CagVec3 **points, size_t *r, size_t *s) {
   CagList *rows;
   *points = NULL;
@@ -59,8 +55,7 @@ static bool read_grid(CagCall *call, CagVec3 **points, size_t *r, size_t *s) {
     const CagList *line = CAG_AS_LIST(row);
     if (i == 0) {
       *s = line->length;
-      *points = cag_malloc((*r * *s + 1) * sizeof **points);
-      if (!*points) return fail_memory(call);
+      *points = cag_hold(call, cag_malloc((*r * *s + 1) * sizeof **points));
     }
     if (line->length != *s) return cag_fail_rows(call, *s, i, line->length);
     for (size_t j = 0; j < *s; j++) {
@@ -138,15 +133,8 @@ static bool read_table(CagCall *call, int argument, CagValue v, int k, const Cag
 
 typedef struct Data {
   CagGridData g;
-  CagVec3 *points;
-  double *tables[2];
+  CagVec3 *points; // held
 } Data;
-
-static void data_free(Data *d) {
-  cag_free(d->points);
-  cag_free(d->tables[0]);
-  cag_free(d->tables[1]);
-}
 
 // A spacing, or a record of parameters u and v, of which one may be left to the chords.
 static bool read_parameters(CagCall *call, int argument, Data *d) {
@@ -162,10 +150,9 @@ static bool read_parameters(CagCall *call, int argument, Data *d) {
   for (int k = 0; k < 2; k++) {
     CagValue v = cag_record_get(CAG_AS_RECORD(call->values[argument]), names[k]);
     if (v.type == CAG_UNSET || v.type == CAG_NONE) continue;
-    d->tables[k] = cag_malloc((g->r * g->s + 1) * sizeof(double));
-    if (!d->tables[k]) return fail_memory(call);
-    if (!read_table(call, argument, v, k, g, d->tables[k])) return false;
-    g->parameters[k] = d->tables[k];
+    double *table = cag_hold_array(call, g->r * g->s, sizeof *table);
+    if (!read_table(call, argument, v, k, g, table)) return false;
+    g->parameters[k] = table;
   }
   return true;
 }
@@ -231,22 +218,19 @@ static CagValue pair_value(CagVm *vm, const double *u, const double *v, size_t r
 static bool residuals(CagCall *call, const CagSurface *s, const CagGridData *g,
                       const CagGridReport *report, CagValue *out) {
   CagBuilder *rows = cag_builder_new(call->vm);
-  CagVec3 *line = cag_malloc((g->s + 1) * sizeof *line);
+  CagVec3 *line = cag_hold_array(call, g->s, sizeof *line);
   CagError err;
-  bool ok = line != NULL;
-  if (!ok) fail_memory(call);
-  for (size_t i = 0; ok && i < g->r; i++) {
-    for (size_t j = 0; ok && j < g->s; j++) {
+  for (size_t i = 0; i < g->r; i++) {
+    for (size_t j = 0; j < g->s; j++) {
       size_t k = i * g->s + j;
       CagStatus status = cag_surface_point(s, report->u[k], report->v[k], &line[j], &err);
-      ok = cag_geometry_ok(call, status, &err);
-      if (ok) line[j] = cag_sub(line[j], g->points[k]);
+      if (!cag_geometry_ok(call, status, &err)) return false;
+      line[j] = cag_sub(line[j], g->points[k]);
     }
-    ok = ok && cag_builder_add(call->vm, rows, cag_points_value(call->vm, line, g->s, 3));
+    cag_builder_add(call->vm, rows, cag_points_value(call->vm, line, g->s, 3));
   }
-  cag_free(line);
-  if (ok) *out = cag_builder_finish(call->vm, rows);
-  return ok;
+  *out = cag_builder_finish(call->vm, rows);
+  return true;
 }
 
 // As they can be given again.
@@ -280,12 +264,11 @@ bool cag_surfaces_interpolate_surface(CagCall *call, CagValue *result) {
   Data d = {0};
   CagSurface *s = NULL;
   CagError err;
-  bool ok = read_data(call, 2, 4, &d) &&
-            read_knots(call, 3, (const size_t[]){d.g.r, d.g.s}, &d.g) &&
-            give(call, cag_surface_interpolate(&d.g, &s, &err), &err, &s, result);
-  data_free(&d);
-  return ok;
+  return read_data(call, 2, 4, &d) && read_knots(call, 3, (const size_t[]){d.g.r, d.g.s}, &d.g) &&
+         give(call, cag_surface_interpolate(&d.g, &s, &err), &err, &s, result);
 }
+
+static void release_report(void *report) { cag_grid_report_free(report); }
 
 // grid, degree, count, parameters, knots, closed, corrections, fixed, planes, error
 static bool fit(CagCall *call, bool report, CagValue *result) {
@@ -295,24 +278,21 @@ static bool fit(CagCall *call, bool report, CagValue *result) {
   CagError err;
   long count[2], rounds;
   int fixed;
-  CagGridReport found = {0};
-  bool ok = read_data(call, 3, 5, &d) && read_pair(call, 2, 0, 0, 10000, count) &&
-            cag_arg_integer_or(call, 6, 0, 0, 1000, &rounds) &&
-            cag_arg_choice(call, 7, coordinates, &fixed) &&
-            cag_arg_number_or(call, 9, HELD_WITHIN, &d.g.slack);
-  if (ok && !(d.g.slack >= 0)) ok = cag_fail_value(call, 9, "a distance of 0 or more");
-  if (ok) d.g.hold = (CagGridHold)fixed;
-  ok = ok && read_planes(call, 8, &d.g);
-  const size_t net[2] = {ok ? (size_t)count[0] : 0, ok ? (size_t)count[1] : 0};
-  ok = ok && read_knots(call, 4, net, &d.g);
-  if (ok) {
-    d.g.corrections = (int)rounds;
-    ok = give(call, cag_surface_fit(&d.g, net[0], net[1], &s, &found, &err), &err, &s, result);
-  }
-  if (ok && report) ok = give_report(call, s, &d.g, net, &found, result);
-  cag_grid_report_free(&found);
-  data_free(&d);
-  return ok;
+  if (!read_data(call, 3, 5, &d) || !read_pair(call, 2, 0, 0, 10000, count) ||
+      !cag_arg_integer_or(call, 6, 0, 0, 1000, &rounds) ||
+      !cag_arg_choice(call, 7, coordinates, &fixed) ||
+      !cag_arg_number_or(call, 9, HELD_WITHIN, &d.g.slack))
+    return false;
+  if (!(d.g.slack >= 0)) return cag_fail_value(call, 9, "a distance of 0 or more");
+  d.g.hold = (CagGridHold)fixed;
+  d.g.corrections = (int)rounds;
+  const size_t net[2] = {(size_t)count[0], (size_t)count[1]};
+  if (!read_planes(call, 8, &d.g) || !read_knots(call, 4, net, &d.g)) return false;
+  CagGridReport *found = cag_hold_array(call, 1, sizeof *found);
+  cag_hold_for(call, release_report, found);
+  CagStatus status = cag_surface_fit(&d.g, net[0], net[1], &s, found, &err);
+  return give(call, status, &err, &s, result) &&
+         (!report || give_report(call, s, &d.g, net, found, result));
 }
 
 bool cag_surfaces_fit_surface(CagCall *call, CagValue *result) { return fit(call, false, result); }
@@ -327,30 +307,24 @@ bool cag_surfaces_grid_parameters(CagCall *call, CagValue *result) {
   CagVec3 *points = NULL;
   CagGridData g = {0};
   int spacing;
-  double end[2] = {1, 1}, *table = NULL;
+  double end[2] = {1, 1};
   const double *x;
   size_t n;
-  bool ok = read_grid(call, &points, &g.r, &g.s) && cag_arg_choice(call, 1, spacings, &spacing) &&
-            read_closed(call, 3, g.closed);
-  if (ok && cag_given(call, 2)) {
-    ok = cag_as_vector(call->values[2], &x, &n) && n == 2 && x[0] > 0 && x[1] > 0 &&
-         isfinite(x[0] + x[1]);
-    if (ok) memcpy(end, x, sizeof end);
-    else cag_fail_value(call, 2, "two positive numbers, the last parameters by u and by v");
+  if (!read_grid(call, &points, &g.r, &g.s) || !cag_arg_choice(call, 1, spacings, &spacing) ||
+      !read_closed(call, 3, g.closed))
+    return false;
+  if (cag_given(call, 2)) {
+    if (!cag_as_vector(call->values[2], &x, &n) || n != 2 || !(x[0] > 0 && x[1] > 0) ||
+        !isfinite(x[0] + x[1]))
+      return cag_fail_value(call, 2, "two positive numbers, the last parameters by u and by v");
+    memcpy(end, x, sizeof end);
   }
-  if (ok) {
-    table = cag_malloc(2 * g.r * g.s * sizeof *table);
-    if (!table) ok = fail_memory(call);
-  }
-  if (ok) {
-    g.points = points;
-    g.spacing = (CagGridSpacing)spacing;
-    cag_grid_parameters(&g, end, table, table + g.r * g.s);
-    *result = pair_value(call->vm, table, table + g.r * g.s, g.r, g.s);
-  }
-  cag_free(table);
-  cag_free(points);
-  return ok;
+  double *u = cag_hold_array(call, 2 * g.r * g.s, sizeof *u), *v = u + g.r * g.s;
+  g.points = points;
+  g.spacing = (CagGridSpacing)spacing;
+  cag_grid_parameters(&g, end, u, v);
+  *result = pair_value(call->vm, u, v, g.r, g.s);
+  return true;
 }
 
 // --- Developable surfaces ---

@@ -22,6 +22,8 @@ static bool give_solid(CagCall *call, CagStatus status, const CagError *err, Cag
   return true;
 }
 
+static void release_region(void *region) { cag_region_release(region); }
+
 // --- Revolution ---
 
 // [x, y] -> [x, 0, y]
@@ -142,14 +144,14 @@ bool cag_surfaces_revolve(CagCall *call, CagValue *result) {
   CagRegion *region;
   CagTransform place;
   if (!cag_arg_region(call, 0, &region, &place)) return false;
+  cag_hold_for(call, release_region, region);
   if (along_z && place.planar) {
     CagTransform up = upright();
     place = cag_transform_multiply(&up, &place);
   }
-  bool ok = cag_region_revolved(call, region, &place, axis, through, from, to, result);
-  cag_region_release(region);
-  if (ok && cag_is_shape(v)) cag_shape_say_alike(*result, v);
-  return ok;
+  if (!cag_region_revolved(call, region, &place, axis, through, from, to, result)) return false;
+  if (cag_is_shape(v)) cag_shape_say_alike(*result, v);
+  return true;
 }
 
 // --- Extrusion ---
@@ -218,23 +220,22 @@ bool cag_surfaces_extrude(CagCall *call, CagValue *result) {
   if (!read_extrusion(call, &e)) return false;
   const CagCurve *c = v.type == CAG_CURVE ? CAG_AS_SHAPE(v)->as.curve : NULL;
   CagVec3 way = e.v;
-  bool ok;
   if (c && (!c->closed || c->dimension == 3 || !e.caps)) {
     CagSurface *s = NULL;
     CagStatus status = cag_surface_extrude(c, e.v, e.twist, e.scale, &s, &err);
-    ok = give(call, status, &err, &s, result);
+    if (!give(call, status, &err, &s, result)) return false;
   } else {
     if (!cag_arg_region(call, 0, &region, &place)) return false;
+    cag_hold_for(call, release_region, region);
     if (e.height) way = cag_transform_vector(&place, e.v);
-    ok = extrude_region(call, region, e, &place, result);
-    cag_region_release(region);
+    if (!extrude_region(call, region, e, &place, result)) return false;
   }
-  if (ok && e.centered) {
+  if (e.centered) {
     const CagTransform back = cag_translate(cag_scaled(way, -0.5));
-    ok = cag_transform_apply(call->vm, &back, *result, result);
+    if (!cag_transform_apply(call->vm, &back, *result, result)) return false;
   }
-  if (ok && cag_is_shape(v)) cag_shape_say_alike(*result, v);
-  return ok;
+  if (cag_is_shape(v)) cag_shape_say_alike(*result, v);
+  return true;
 }
 
 // --- Others ---

@@ -46,13 +46,13 @@ static bool tell_of_mapping(CagCall *call, int argument, const char *what) {
       strcmp(errors->items[0].source->name, "<formula>") != 0)
     return false;
   const CagErrorId id = errors->items[0].id;
-  char *message = errors->items[0].message ? cag_strdup(errors->items[0].message) : NULL;
-  const char *said = message ? message : "";
+  const char *said = errors->items[0].message ? errors->items[0].message : "";
+  said = cag_hold(call, cag_strdup(said));
   if (strncmp(said, "at: ", 4) == 0) said += 4; // how points of a surface are asked for
-  cag_fail_call(call, argument, id, "%s: %s", what, said);
-  cag_free(message);
-  return false;
+  return cag_fail_call(call, argument, id, "%s: %s", what, said);
 }
+
+static void release_curve(void *curve) { cag_curve_release(curve); }
 
 // The curve's smooth pieces one by one: a function has no corners of its own.
 static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue offset,
@@ -60,34 +60,32 @@ static bool map_curve(CagCall *call, CagValue g, const CagSurface *s, CagValue o
   CagVm *vm = call->vm;
   const CagCurve *c = CAG_AS_SHAPE(g)->as.curve;
   CagError err;
-  size_t inner = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0, made = 0;
-  double *cuts = cag_malloc((inner + 2) * sizeof *cuts);
-  CagCurve **pieces = cag_malloc((inner + 1) * sizeof *pieces), *joined = NULL;
+  const size_t inner = c->kind->breaks ? c->kind->breaks(c, NULL, 0) : 0;
+  double *cuts = cag_hold_array(call, inner + 2, sizeof *cuts);
+  CagCurve **pieces = cag_hold_array(call, inner + 1, sizeof(CagCurve *)), *joined = NULL;
   CagValue lambda;
-  bool ok = cuts && pieces;
-  if (!ok) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
   const char *source = (c->dimension == 2 ? CURVES : CURVES_LIFTED)[s->angular_u][s->angular_v];
-  ok = ok && cag_vm_compile_lambda(vm, source, &lambda);
-  if (ok) {
-    cag_root_push(vm, lambda);
-    cuts[0] = c->start;
-    if (inner > 0) c->kind->breaks(c, cuts + 1, inner);
-    cuts[inner + 1] = c->end;
-    for (size_t i = 0; ok && i <= inner; i++) {
-      CagValue piece, arguments[4] = {g, call->values[1], offset,
-                                      cag_domain_value(vm, c->angular, cuts[i], cuts[i + 1])};
-      ok = cag_call(vm, lambda, arguments, 4, &piece) || tell_of_mapping(call, 0, LEAVES);
-      if (ok) pieces[made++] = cag_curve_retain(CAG_AS_SHAPE(piece)->as.curve);
-    }
-    cag_root_pop(vm, 1);
+  if (!cag_vm_compile_lambda(vm, source, &lambda)) return false;
+  cag_root_push(vm, lambda);
+  cuts[0] = c->start;
+  if (inner > 0) c->kind->breaks(c, cuts + 1, inner);
+  cuts[inner + 1] = c->end;
+  bool ok = true;
+  for (size_t i = 0; ok && i <= inner; i++) {
+    CagValue piece, arguments[4] = {g, call->values[1], offset,
+                                    cag_domain_value(vm, c->angular, cuts[i], cuts[i + 1])};
+    ok = cag_call(vm, lambda, arguments, 4, &piece) || tell_of_mapping(call, 0, LEAVES);
+    if (!ok) break;
+    pieces[i] = cag_curve_retain(CAG_AS_SHAPE(piece)->as.curve);
+    cag_hold_for(call, release_curve, pieces[i]);
   }
-  if (ok && made == 1) joined = cag_curve_retain(pieces[0]);
-  else if (ok) ok = cag_geometry_ok(call, cag_curve_join(pieces, made, &joined, &err), &err);
-  while (made > 0) cag_curve_release(pieces[--made]);
-  cag_free(pieces);
-  cag_free(cuts);
-  if (ok) *result = cag_curve_value(vm, joined);
-  return ok;
+  cag_root_pop(vm, 1);
+  if (!ok) return false;
+  if (inner == 0) joined = cag_curve_retain(pieces[0]);
+  else if (!cag_geometry_ok(call, cag_curve_join(pieces, inner + 1, &joined, &err), &err))
+    return false;
+  *result = cag_curve_value(vm, joined);
+  return true;
 }
 
 static bool map_surface(CagCall *call, CagValue value, const CagSurface *s, CagValue offset,
@@ -194,22 +192,18 @@ static bool map_several(CagCall *call, const CagSurface *s, double tolerance, Ca
   if (!cag_shapes_collect(call, call->values[0], shapes)) return false;
   CagValue all = cag_builder_finish(call->vm, shapes);
   const CagList *list = CAG_AS_LIST(all);
-  CagValue *images = cag_malloc((list->length + 1) * sizeof *images);
-  if (!images) return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory");
-  cag_root_push(call->vm, all);
+  CagBuilder *images = cag_builder_new(call->vm);
   // Mapping the next one may call the script.
-  size_t n = 0;
+  cag_root_push(call->vm, all);
+  cag_root_push(call->vm, cag_builder_value(images));
   bool ok = true;
-  for (; n < list->length; n++) {
-    ok = map_one(call, cag_list_get(call->vm, list, n), s, tolerance, &images[n]);
-    if (!ok) break;
-    cag_root_push(call->vm, images[n]);
+  for (size_t i = 0; ok && i < list->length; i++) {
+    CagValue image;
+    ok = map_one(call, cag_list_get(call->vm, list, i), s, tolerance, &image) &&
+         cag_builder_add(call->vm, images, image);
   }
-  CagBuilder *group = cag_builder_new(call->vm);
-  for (size_t i = 0; ok && i < n; i++) ok = cag_builder_add(call->vm, group, images[i]);
-  cag_root_pop(call->vm, n + 1);
-  cag_free(images);
-  if (ok) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, group));
+  cag_root_pop(call->vm, 2);
+  if (ok) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, images));
   return ok;
 }
 

@@ -32,34 +32,22 @@ static bool with_curve(CagCall *call, const CagSurface *s, const CagCurve *c, Ca
   size_t n;
   if (!cag_geometry_ok(call, cag_surface_intersect_curve(s, c, &found, &n, &err), &err))
     return false;
+  cag_hold_for(call, cag_free, found);
   CagBuilder *list = cag_builder_new(call->vm);
-  bool ok = true;
-  for (size_t i = 0; ok && i < n; i++) {
+  for (size_t i = 0; i < n; i++) {
     CagValue values[] = {
         cag_point(call->vm, found[i].point, 3), cag_parameter_value(s->angular_u, found[i].u),
         cag_parameter_value(s->angular_v, found[i].v), cag_parameter_value(c->angular, found[i].t),
         cag_number(found[i].multiplicity)};
-    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5));
+    cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5));
   }
-  cag_free(found);
-  if (ok) *result = cag_builder_finish(call->vm, list);
-  return ok;
-}
-
-static bool give_curves(CagCall *call, const CagCurveList *list, CagValue *result) {
-  CagBuilder *out = cag_builder_new(call->vm);
-  bool ok = true;
-  for (size_t i = 0; ok && i < list->count; i++)
-    ok =
-        cag_builder_add(call->vm, out, cag_curve_value(call->vm, cag_curve_retain(list->items[i])));
-  if (ok) *result = cag_builder_finish(call->vm, out);
-  return ok;
+  *result = cag_builder_finish(call->vm, list);
+  return true;
 }
 
 static bool call_intersect(CagCall *call, CagValue *result) {
   CagSurface *s;
   CagError err;
-  CagCurveList list = {0};
   CagStatus status;
   double tolerance = 0;
   const CagValue other = call->values[1];
@@ -68,15 +56,16 @@ static bool call_intersect(CagCall *call, CagValue *result) {
       !cag_arg_positive(call, 2, &tolerance))
     return false;
   if (other.type == CAG_CURVE) return with_curve(call, s, CAG_AS_SHAPE(other)->as.curve, result);
+  CagCurveList *list = cag_hold_curve_list(call);
   if (other.type == CAG_PLANE)
-    status = cag_surface_section(s, &CAG_AS_PLANE(other)->plane, tolerance, &list, &err);
+    status = cag_surface_section(s, &CAG_AS_PLANE(other)->plane, tolerance, list, &err);
   else if (other.type == CAG_SURFACE)
     status = cag_surface_intersect(s, CAG_AS_SHAPE(other)->as.surface, tolerance,
-                                   cag_vm_stop(call->vm), &list, &err);
+                                   cag_vm_stop(call->vm), list, &err);
   else return cag_fail_type(call, 1, "a curve, a surface or a plane");
-  bool ok = cag_geometry_ok(call, status, &err) && give_curves(call, &list, result);
-  cag_curve_list_free(&list);
-  return ok;
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_curve_list_value(call->vm, list);
+  return true;
 }
 
 const CagBuiltin cag_builtins_meetings[] = {

@@ -8,19 +8,10 @@
 #include "interp/builtin/surfaces.h"
 
 typedef struct Net {
-  CagVec3 *points;
+  CagVec3 *points; // held, as the weights
   double *weights; // NULL: none
   size_t nu, nv;
 } Net;
-
-static void net_free(Net *net) {
-  cag_free(net->points);
-  cag_free(net->weights);
-}
-
-static bool fail_memory(CagCall *call) {
-  return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-}
 
 bool cag_fail_rows(CagCall *call, size_t wanted, size_t row, size_t found) {
   CagError err;
@@ -45,7 +36,7 @@ static bool read_row(CagCall *call, const CagList *row, size_t i, Net *net) {
   return true;
 }
 
-// Rows of one length. The net is to be freed even when the call fails.
+// Rows of one length.
 static bool read_net(CagCall *call, Net *net) {
   CagList *rows;
   *net = (Net){0};
@@ -59,8 +50,7 @@ static bool read_net(CagCall *call, Net *net) {
     size_t n = CAG_AS_LIST(row)->length;
     if (i == 0) {
       net->nv = n;
-      net->points = cag_malloc((net->nu * n + 1) * sizeof *net->points);
-      if (!net->points) return fail_memory(call);
+      net->points = cag_hold(call, cag_malloc((net->nu * n + 1) * sizeof *net->points));
     }
     if (n != net->nv) return cag_fail_rows(call, net->nv, i, n);
     if (!read_row(call, CAG_AS_LIST(row), i, net)) return false;
@@ -74,8 +64,7 @@ static bool read_weights(CagCall *call, int argument, Net *net) {
   CagList *rows;
   if (!cag_given(call, argument) || call->values[argument].type == CAG_NONE) return true;
   if (!cag_arg_list(call, argument, &rows)) return false;
-  net->weights = cag_malloc(net->nu * net->nv * sizeof *net->weights);
-  if (!net->weights) return fail_memory(call);
+  net->weights = cag_hold(call, cag_malloc(net->nu * net->nv * sizeof *net->weights));
   bool fits = rows->length == net->nu;
   for (size_t i = 0; fits && i < net->nu; i++) {
     const double *x;
@@ -90,16 +79,20 @@ static bool read_weights(CagCall *call, int argument, Net *net) {
   return cag_fail_geometry(call, &err);
 }
 
+static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
+                 CagValue *result) {
+  if (!cag_geometry_ok(call, status, err)) return false;
+  *result = cag_surface_value(call->vm, *made);
+  return true;
+}
+
 bool cag_surfaces_bezier_surface(CagCall *call, CagValue *result) {
   Net net;
   CagSurface *s = NULL;
   CagError err;
-  bool ok = read_net(call, &net) && read_weights(call, 1, &net) &&
-            cag_geometry_ok(
-                call, cag_surface_bezier(net.points, net.weights, net.nu, net.nv, &s, &err), &err);
-  net_free(&net);
-  if (ok) *result = cag_surface_value(call->vm, s);
-  return ok;
+  if (!read_net(call, &net) || !read_weights(call, 1, &net)) return false;
+  CagStatus status = cag_surface_bezier(net.points, net.weights, net.nu, net.nv, &s, &err);
+  return give(call, status, &err, &s, result);
 }
 
 // --- B-splines: degree, knots and closed are one value for both directions, or a list of two ---
@@ -134,7 +127,7 @@ static bool read_closed(CagCall *call, int argument, int direction, bool *out) {
   return true;
 }
 
-// Knots of n points; *out is to be freed.
+// Knots of n points; *out is held.
 static bool read_knots(CagCall *call, int argument, int direction, size_t n, int degree,
                        double **out) {
   CagError err;
@@ -167,8 +160,7 @@ static bool read_knots(CagCall *call, int argument, int direction, size_t n, int
              wanted, direction ? "v" : "u");
     return cag_fail_geometry(call, &err);
   }
-  *out = cag_malloc(wanted * sizeof **out);
-  if (!*out) return fail_memory(call);
+  *out = cag_hold_array(call, wanted, sizeof **out);
   if (!list) return cag_geometry_ok(call, cag_knots_make(type, n, degree, NULL, *out, &err), &err);
   memcpy(*out, x, wanted * sizeof *x);
   return true;
@@ -182,24 +174,18 @@ bool cag_surfaces_bspline_surface(CagCall *call, CagValue *result) {
   double *knots[2] = {NULL, NULL};
   CagSurface *s = NULL;
   CagError err;
-  bool ok = read_net(call, &net) && read_weights(call, 4, &net);
-  for (int k = 0; ok && k < 2; k++)
-    ok = read_degree(call, 1, 5, k, &degree[k]) && read_closed(call, 3, k, &closed[k]) &&
-         (closed[k] || read_knots(call, 2, k, k ? net.nv : net.nu, degree[k], &knots[k]));
-  if (ok) {
-    CagStatus status = closed[0] || closed[1]
-                           ? cag_surface_nurbs_closed(net.points, net.weights, net.nu, net.nv,
-                                                      degree[0], degree[1], knots[0], knots[1],
-                                                      closed[0], closed[1], &s, &err)
-                           : cag_surface_nurbs(net.points, net.weights, net.nu, net.nv, degree[0],
-                                               degree[1], knots[0], knots[1], &s, &err);
-    ok = cag_geometry_ok(call, status, &err);
-  }
-  cag_free(knots[0]);
-  cag_free(knots[1]);
-  net_free(&net);
-  if (ok) *result = cag_surface_value(call->vm, s);
-  return ok;
+  if (!read_net(call, &net) || !read_weights(call, 4, &net)) return false;
+  for (int k = 0; k < 2; k++)
+    if (!read_degree(call, 1, 5, k, &degree[k]) || !read_closed(call, 3, k, &closed[k]) ||
+        (!closed[k] && !read_knots(call, 2, k, k ? net.nv : net.nu, degree[k], &knots[k])))
+      return false;
+  CagStatus status =
+      closed[0] || closed[1]
+          ? cag_surface_nurbs_closed(net.points, net.weights, net.nu, net.nv, degree[0], degree[1],
+                                     knots[0], knots[1], closed[0], closed[1], &s, &err)
+          : cag_surface_nurbs(net.points, net.weights, net.nu, net.nv, degree[0], degree[1],
+                              knots[0], knots[1], &s, &err);
+  return give(call, status, &err, &s, result);
 }
 
 bool cag_surfaces_nurbs_surface(CagCall *call, CagValue *result) {

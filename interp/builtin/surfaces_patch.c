@@ -119,6 +119,7 @@ bool cag_surfaces_hermite_patch(CagCall *call, CagValue *result) {
 
 // --- Composite ---
 
+// Arrays of a grid, held.
 typedef struct GridData {
   CagVec3 *points, *tangents;
   double *steps[2];
@@ -135,9 +136,7 @@ static bool read_steps(CagCall *call, size_t m, size_t n, GridData *d) {
     if (line.type != CAG_LIST || CAG_AS_LIST(line)->length != wanted || CAG_AS_LIST(line)->dim != 1)
       return cag_fail_call(call, 3, CAG_ERR_length, "expects %zu numbers for %c in `lengths`",
                            wanted, k == 0 ? 'u' : 'v');
-    d->steps[k] = cag_malloc(wanted * sizeof(double));
-    if (!d->steps[k])
-      return cag_fail_call(call, 3, CAG_ERR_limit_memory, "needs more memory than there is");
+    d->steps[k] = cag_hold_array(call, wanted, sizeof(double));
     memcpy(d->steps[k], CAG_AS_LIST(line)->as.numbers, wanted * sizeof(double));
   }
   return true;
@@ -165,7 +164,8 @@ static bool read_edges(CagCall *call, CagHermiteGrid *g, GridData *d) {
   return true;
 }
 
-static bool make_grid(CagCall *call, GridData *d, CagValue *result) {
+bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
+  GridData d = {0};
   CagHermiteGrid g = {0};
   CagList *rows;
   CagError err;
@@ -175,27 +175,15 @@ static bool make_grid(CagCall *call, GridData *d, CagValue *result) {
   CagValue first = g.nu ? cag_list_get(call->vm, rows, 0) : cag_none();
   if (first.type != CAG_LIST) return cag_fail_type(call, 0, "rows of points");
   g.nv = CAG_AS_LIST(first)->length;
-  d->points = cag_malloc((g.nu * g.nv + 1) * sizeof *d->points);
-  d->tangents = cag_malloc(2 * (g.nu + g.nv) * sizeof *d->tangents);
-  if (!d->points || !d->tangents)
-    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  if (!read_table(call, 0, g.nu, g.nv, d->points) || !read_edges(call, &g, d) ||
-      !read_table(call, 2, 2, 2, g.twist[0]) || !read_steps(call, g.nu - 1, g.nv - 1, d))
+  d.points = cag_hold(call, cag_malloc((g.nu * g.nv + 1) * sizeof *d.points));
+  d.tangents = cag_hold(call, cag_malloc(2 * (g.nu + g.nv) * sizeof *d.tangents));
+  if (!read_table(call, 0, g.nu, g.nv, d.points) || !read_edges(call, &g, &d) ||
+      !read_table(call, 2, 2, 2, g.twist[0]) || !read_steps(call, g.nu - 1, g.nv - 1, &d))
     return false;
-  g.points = d->points;
-  g.steps_u = d->steps[0];
-  g.steps_v = d->steps[1];
+  g.points = d.points;
+  g.steps_u = d.steps[0];
+  g.steps_v = d.steps[1];
   return give(call, cag_surface_hermite_grid(&g, &s, &err), &err, &s, result);
-}
-
-bool cag_surfaces_hermite_surface(CagCall *call, CagValue *result) {
-  GridData d = {0};
-  bool ok = make_grid(call, &d, result);
-  cag_free(d.points);
-  cag_free(d.tangents);
-  cag_free(d.steps[0]);
-  cag_free(d.steps[1]);
-  return ok;
 }
 
 // --- Triangles ---
@@ -220,12 +208,10 @@ bool cag_arg_triangle(CagCall *call, int argument, CagVec3 **net, int *degree) {
     return cag_fail_value(call, argument, wanted);
   }
   *degree = (int)n - 1;
-  *net = cag_malloc(n * (n + 1) / 2 * sizeof **net);
-  if (!*net)
-    return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
-  if (read_triangle(call, argument, rows, *net)) return true;
-  cag_free(*net);
-  return false;
+  CagVec3 *points = cag_hold_array(call, n * (n + 1) / 2, sizeof *points);
+  if (!read_triangle(call, argument, rows, points)) return false;
+  *net = cag_give_held(call, points);
+  return true;
 }
 
 bool cag_surfaces_bezier_triangle(CagCall *call, CagValue *result) {
@@ -234,7 +220,6 @@ bool cag_surfaces_bezier_triangle(CagCall *call, CagValue *result) {
   CagSurface *s = NULL;
   CagError err;
   if (!cag_arg_triangle(call, 0, &net, &degree)) return false;
-  bool ok = give(call, cag_surface_bezier_triangle(net, degree, &s, &err), &err, &s, result);
-  cag_free(net);
-  return ok;
+  cag_hold(call, net);
+  return give(call, cag_surface_bezier_triangle(net, degree, &s, &err), &err, &s, result);
 }

@@ -20,10 +20,6 @@ static const char family[] = "Surfaces: control points";
 
 static const char *const directions[] = {"u", "v"};
 
-static bool fail_memory(CagCall *call) {
-  return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-}
-
 static bool give(CagCall *call, CagStatus status, const CagError *err, CagSurface **made,
                  CagValue *result) {
   if (!cag_geometry_ok(call, status, err)) return false;
@@ -184,51 +180,42 @@ static bool acting_points(CagCall *call, CagValue *result) {
 
 // --- Basis ---
 
-// Values at t of the functions of all distinct points, malloc'd.
-static double *basis_line(const Axis *a, double t) {
-  double *out = cag_calloc(a->distinct, sizeof *out);
-  double *values = cag_malloc(((size_t)a->degree + 1) * sizeof *values);
-  if (out && values) {
-    size_t p = (size_t)a->degree;
-    size_t span = cag_knots_span(a->knots, a->count, a->degree, t, false, p);
-    cag_bspline_basis(a->knots, a->degree, span, t, values);
-    for (size_t i = 0; i <= p; i++) out[(span - p + i) % a->distinct] += values[i];
-    cag_free(values);
-    return out;
-  }
-  cag_free(out);
-  cag_free(values);
-  return NULL;
+// Values at t of the functions of all distinct points; held.
+static double *basis_line(CagCall *call, const Axis *a, double t) {
+  double *out = cag_hold_array(call, a->distinct, sizeof *out);
+  size_t p = (size_t)a->degree;
+  double *values = cag_hold_array(call, p + 1, sizeof *values);
+  size_t span = cag_knots_span(a->knots, a->count, a->degree, t, false, p);
+  cag_bspline_basis(a->knots, a->degree, span, t, values);
+  for (size_t i = 0; i <= p; i++) out[(span - p + i) % a->distinct] += values[i];
+  return out;
 }
 
 static bool basis(CagCall *call, CagValue *result) {
   Net n;
   double t[2], sum = 0;
   if (!read_net(call, &n) || !read_place(call, &n, 1, t)) return false;
-  double *bu = basis_line(&n.axis[0], t[0]), *bv = basis_line(&n.axis[1], t[1]);
+  double *bu = basis_line(call, &n.axis[0], t[0]), *bv = basis_line(call, &n.axis[1], t[1]);
   size_t nu = n.axis[0].distinct, nv = n.axis[1].distinct;
-  bool ok = (bu && bv) || fail_memory(call);
-  for (size_t i = 0; ok && i < nu; i++)
+  for (size_t i = 0; i < nu; i++)
     for (size_t j = 0; j < nv; j++)
       sum += bu[i] * bv[j] * n.view.homogeneous[4 * (i * n.view.nv + j) + 3];
-  if (ok && !(sum > 0)) {
+  if (!(sum > 0)) {
     CagError err;
     cag_fail(&err, CAG_E_DEGENERATE, CAG_ERR_zero_denominator, "", -1,
              "all weights that act at this point are 0: give one of them a positive value");
-    ok = cag_fail_geometry(call, &err);
+    return cag_fail_geometry(call, &err);
   }
   CagBuilder *rows = cag_builder_new(call->vm);
-  for (size_t i = 0; ok && i < nu; i++) {
+  for (size_t i = 0; i < nu; i++) {
     double *out;
     CagValue row = cag_list_numbers(call->vm, nv, &out);
     for (size_t j = 0; j < nv; j++)
       out[j] = bu[i] * bv[j] * n.view.homogeneous[4 * (i * n.view.nv + j) + 3] / sum;
-    ok = cag_builder_add(call->vm, rows, row);
+    cag_builder_add(call->vm, rows, row);
   }
-  cag_free(bu);
-  cag_free(bv);
-  if (ok) *result = cag_builder_finish(call->vm, rows);
-  return ok;
+  *result = cag_builder_finish(call->vm, rows);
+  return true;
 }
 
 // --- Numerator and denominator ---
@@ -237,18 +224,14 @@ static bool basis(CagCall *call, CagValue *result) {
 static bool homogeneous_part(CagCall *call, const Net *n, bool weights, CagSurface **out) {
   const CagSurfaceNurbsView *v = &n->view;
   CagError err;
-  CagVec3 *net = cag_malloc(v->nu * v->nv * sizeof *net);
-  bool ok = net != NULL || fail_memory(call);
-  for (size_t i = 0; ok && i < v->nu * v->nv; i++) {
+  CagVec3 *net = cag_hold(call, cag_malloc(v->nu * v->nv * sizeof *net));
+  for (size_t i = 0; i < v->nu * v->nv; i++) {
     const double *h = v->homogeneous + 4 * i;
     net[i] = weights ? cag_vec3(0, 0, h[3]) : cag_vec3(h[0], h[1], h[2]);
   }
-  ok = ok && cag_geometry_ok(call,
-                             cag_surface_nurbs(net, NULL, v->nu, v->nv, v->degree_u, v->degree_v,
-                                               v->knots_u, v->knots_v, out, &err),
-                             &err);
-  cag_free(net);
-  return ok;
+  CagStatus status = cag_surface_nurbs(net, NULL, v->nu, v->nv, v->degree_u, v->degree_v,
+                                       v->knots_u, v->knots_v, out, &err);
+  return cag_geometry_ok(call, status, &err);
 }
 
 static bool part_at(CagCall *call, bool weights, CagVec3 *out) {
@@ -308,13 +291,11 @@ static CagValue table_of(CagVm *vm, const CagVec3 *p, size_t n, size_t m) {
   return cag_builder_finish(vm, rows);
 }
 
-static bool piece_powers(CagCall *call, const CagSurface *piece, double lu, double lv,
-                         CagValue *out) {
+static CagValue piece_powers(CagCall *call, const CagSurface *piece, double lu, double lv) {
   CagSurfaceNurbsView v;
   cag_surface_nurbs_view(piece, &v);
   size_t n = v.nu, m = v.nv;
-  CagVec3 *b = cag_malloc(2 * n * m * sizeof *b);
-  if (!b) return fail_memory(call);
+  CagVec3 *b = cag_hold(call, cag_malloc(2 * n * m * sizeof *b));
   CagVec3 *turned = b + n * m;
   for (size_t i = 0; i < n * m; i++) b[i] = cag_project(v.homogeneous + 4 * i);
   to_powers(b, (int)n - 1, m, lu);
@@ -323,9 +304,9 @@ static bool piece_powers(CagCall *call, const CagSurface *piece, double lu, doub
   to_powers(turned, (int)m - 1, n, lv);
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < m; j++) b[i * m + j] = turned[j * n + i];
-  *out = table_of(call->vm, b, n, m);
-  cag_free(b);
-  return true;
+  CagValue table = table_of(call->vm, b, n, m);
+  cag_release_held(call, b);
+  return table;
 }
 
 static size_t span_lengths(const Axis *a, double *out) {
@@ -338,8 +319,7 @@ static size_t span_lengths(const Axis *a, double *out) {
 static bool polynomials(CagCall *call, CagValue *result) {
   Net n;
   CagError err;
-  CagSurface **pieces = NULL;
-  size_t nu = 0, nv = 0;
+  size_t nu, nv;
   if (!read_net(call, &n)) return false;
   if (n.view.rational) {
     cag_fail(&err, CAG_E_UNSUPPORTED, CAG_ERR_rational_patch, "", -1,
@@ -347,27 +327,23 @@ static bool polynomials(CagCall *call, CagValue *result) {
              "`denominator`");
     return cag_fail_geometry(call, &err);
   }
-  double *lu = cag_malloc((n.axis[0].count + n.axis[1].count) * sizeof *lu);
-  if (!lu) return fail_memory(call);
-  double *lv = lu + n.axis[0].count;
+  double *lu = cag_hold_array(call, n.axis[0].count, sizeof *lu);
+  double *lv = cag_hold_array(call, n.axis[1].count, sizeof *lv);
   span_lengths(&n.axis[0], lu);
   span_lengths(&n.axis[1], lv);
-  bool ok = cag_geometry_ok(call, cag_surface_to_bezier(n.s, &pieces, &nu, &nv, &err), &err);
+  CagSurfaceArray *pieces = cag_hold_surfaces(call);
+  CagStatus status = cag_surface_to_bezier(n.s, &pieces->items, &nu, &nv, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  pieces->count = nu * nv;
   CagBuilder *rows = cag_builder_new(call->vm);
-  for (size_t i = 0; ok && i < nu; i++) {
+  for (size_t i = 0; i < nu; i++) {
     CagBuilder *row = cag_builder_new(call->vm);
-    for (size_t j = 0; ok && j < nv; j++) {
-      CagValue table;
-      ok = piece_powers(call, pieces[i * nv + j], lu[i], lv[j], &table) &&
-           cag_builder_add(call->vm, row, table);
-    }
-    ok = ok && cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
+    for (size_t j = 0; j < nv; j++)
+      cag_builder_add(call->vm, row, piece_powers(call, pieces->items[i * nv + j], lu[i], lv[j]));
+    cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
   }
-  for (size_t i = 0; pieces && i < nu * nv; i++) cag_surface_release(pieces[i]);
-  cag_free(pieces);
-  cag_free(lu);
-  if (ok) *result = cag_builder_finish(call->vm, rows);
-  return ok;
+  *result = cag_builder_finish(call->vm, rows);
+  return true;
 }
 
 // --- Corners ---
@@ -497,6 +473,7 @@ static bool bezier_join(CagCall *call, CagValue *result) {
   if (!cag_arg_integer_or(call, 4, usual, 1, 1000, &degree)) return false;
   CagStatus status = cag_surface_join_lines(s, side, (int)degree, &how, &lines, &n, &err);
   if (!cag_geometry_ok(call, status, &err)) return false;
+  cag_hold_for(call, cag_free, lines);
   CagBuilder *rows = cag_builder_new(call->vm), *weights = cag_builder_new(call->vm);
   for (size_t i = 0; i < 2; i++) {
     CagBuilder *row = cag_builder_new(call->vm);
@@ -510,7 +487,6 @@ static bool bezier_join(CagCall *call, CagValue *result) {
     cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
     cag_builder_add(call->vm, weights, list);
   }
-  cag_free(lines);
   CagValue values[] = {cag_builder_finish(call->vm, rows), cag_builder_finish(call->vm, weights)};
   *result = cag_record_new(call->vm, names, values, 2);
   return true;
@@ -565,13 +541,13 @@ static bool creases(CagCall *call, CagValue *result) {
     CagCrease *found = NULL;
     size_t n = 0;
     if (!cag_geometry_ok(call, cag_surface_creases(s, k, &found, &n, &err), &err)) return false;
+    cag_hold_for(call, cag_free, found);
     CagBuilder *list = cag_builder_new(call->vm);
     for (size_t i = 0; i < n; i++) {
       CagValue values[] = {cag_parameter_value(k == 0 ? s->angular_u : s->angular_v, found[i].at),
                            cag_angle(found[i].angle / CAG_RADIANS_PER_DEGREE)};
       cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2));
     }
-    cag_free(found);
     both[k] = cag_builder_finish(call->vm, list);
   }
   *result = cag_record_new(call->vm, directions, both, 2);

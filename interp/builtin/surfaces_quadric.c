@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "geom/surface/trimmed.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
@@ -35,23 +34,19 @@ static bool read_within(CagCall *call, int argument, CagBounds *box, bool *z_onl
 static bool give_patches(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
   CagBounds box;
   bool z_only, given;
-  CagSurface **patches = NULL;
-  size_t n = 0;
   CagError err;
-  if (!read_within(call, within, &box, &z_only, &given) ||
-      !cag_geometry_ok(
-          call, cag_quadric_patches(q, given ? &box : NULL, z_only, &patches, &n, &err), &err))
-    return false;
+  if (!read_within(call, within, &box, &z_only, &given)) return false;
+  CagSurfaceArray *patches = cag_hold_surfaces(call);
+  CagStatus status =
+      cag_quadric_patches(q, given ? &box : NULL, z_only, &patches->items, &patches->count, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
   CagBuilder *list = cag_builder_new(call->vm);
-  bool ok = true;
-  for (size_t i = 0; i < n; i++) {
-    CagValue patch = cag_surface_value(call->vm, patches[i]);
-    if (n == 1) *result = patch;
-    else ok = cag_builder_add(call->vm, list, patch) && ok;
+  for (size_t i = 0; i < patches->count; i++) {
+    *result = cag_surface_value(call->vm, cag_surface_retain(patches->items[i]));
+    cag_builder_add(call->vm, list, *result);
   }
-  cag_free(patches);
-  if (ok && n != 1) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
-  return ok;
+  if (patches->count != 1) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
+  return true;
 }
 
 // --- By numbers ---

@@ -1,6 +1,5 @@
 // Parts, finer nets and joins of surfaces; offsets and plates.
 
-#include "base/memory.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 #include "interp/builtin/support.h"
@@ -39,23 +38,18 @@ static bool read_loops(CagCall *call, int argument, CagRegion **out) {
   if (!curves) {
     CagRegion *region;
     if (!cag_arg_region(call, argument, &region, &place)) return false;
-    bool ok = cag_geometry_ok(call, cag_region_transform(region, &place, out, &err), &err);
+    CagStatus status = cag_region_transform(region, &place, out, &err);
     cag_region_release(region);
-    return ok;
+    return cag_geometry_ok(call, status, &err);
   }
   const CagList *list = CAG_AS_LIST(v);
-  CagCurve **loops = cag_malloc(list->length * sizeof(CagCurve *));
-  if (!loops)
-    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  bool ok = true;
-  for (size_t i = 0; ok && i < list->length; i++) {
+  CagCurve **loops = cag_hold_array(call, list->length, sizeof(CagCurve *));
+  for (size_t i = 0; i < list->length; i++) {
     CagValue c = cag_list_get(call->vm, list, i);
-    ok = c.type == CAG_CURVE || cag_fail_element(call, argument, i, c, "closed plane curves");
-    if (ok) loops[i] = CAG_AS_SHAPE(c)->as.curve;
+    if (c.type != CAG_CURVE) return cag_fail_element(call, argument, i, c, "closed plane curves");
+    loops[i] = CAG_AS_SHAPE(c)->as.curve;
   }
-  ok = ok && cag_geometry_ok(call, cag_region_from_loops(loops, list->length, out, &err), &err);
-  cag_free(loops);
-  return ok;
+  return cag_geometry_ok(call, cag_region_from_loops(loops, list->length, out, &err), &err);
 }
 
 // S, curves, u, v
@@ -161,26 +155,26 @@ bool cag_surfaces_elevate(CagCall *call, CagValue *result) {
 }
 
 bool cag_surfaces_to_bezier(CagCall *call, CagValue *result) {
-  CagSurface *s, **pieces = NULL;
+  CagSurface *s;
   CagError err;
   size_t nu, nv;
-  if (!cag_arg_surface(call, 0, &s) ||
-      !cag_geometry_ok(call, cag_surface_to_bezier(s, &pieces, &nu, &nv, &err), &err))
-    return false;
+  if (!cag_arg_surface(call, 0, &s)) return false;
+  CagSurfaceArray *pieces = cag_hold_surfaces(call);
+  CagStatus status = cag_surface_to_bezier(s, &pieces->items, &nu, &nv, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  pieces->count = nu * nv;
   CagBuilder *rows = cag_builder_new(call->vm);
-  bool ok = true;
   for (size_t i = 0; i < nu; i++) {
     CagBuilder *row = cag_builder_new(call->vm);
     for (size_t j = 0; j < nv; j++) {
-      CagValue v = cag_surface_value(call->vm, pieces[i * nv + j]);
+      CagValue v = cag_surface_value(call->vm, cag_surface_retain(pieces->items[i * nv + j]));
       cag_shape_say_alike(v, call->values[0]);
-      ok = ok && cag_builder_add(call->vm, row, v);
+      cag_builder_add(call->vm, row, v);
     }
-    ok = ok && cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
+    cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
   }
-  cag_free(pieces);
-  if (ok) *result = cag_builder_finish(call->vm, rows);
-  return ok;
+  *result = cag_builder_finish(call->vm, rows);
+  return true;
 }
 
 bool cag_surfaces_transpose_uv(CagCall *call, CagValue *result) {

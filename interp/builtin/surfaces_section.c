@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#include "base/memory.h"
 #include "geom/surface/curvature_contour.h"
 #include "geom/surface/curvature_line.h"
 #include "geom/surface/motion.h"
@@ -149,16 +148,6 @@ static bool read_shapes(CagCall *call, CagValue v, CagList **out) {
   return true;
 }
 
-static bool give_curves(CagCall *call, CagCurveList *list, CagValue *result) {
-  CagBuilder *out = cag_builder_new(call->vm);
-  bool ok = true;
-  for (size_t i = 0; ok && i < list->count; i++)
-    ok =
-        cag_builder_add(call->vm, out, cag_curve_value(call->vm, cag_curve_retain(list->items[i])));
-  if (ok) *result = cag_builder_finish(call->vm, out);
-  return ok;
-}
-
 static CagStatus region_surface(const CagShape *shape, CagSurface **out, CagError *err) {
   return cag_surface_planar(shape->as.region, &shape->placement, out, err);
 }
@@ -187,19 +176,18 @@ static bool call_section(CagCall *call, CagValue *result) {
   CagPlane plane;
   double tolerance;
   CagList *shapes;
-  CagCurveList list = {0};
   if (!cag_arg_plane(call, 1, &plane) || !read_tolerance(call, 2, &tolerance) ||
       !read_shapes(call, call->values[0], &shapes))
     return false;
+  CagCurveList *list = cag_hold_curve_list(call);
   // Formulas are called back: the shapes stay.
   CagValue kept = cag_object(CAG_LIST, shapes);
   cag_root_push(call->vm, kept);
   bool ok = true;
   for (size_t i = 0; ok && i < shapes->length; i++)
-    ok = section_of(call, cag_list_get(call->vm, shapes, i), &plane, tolerance, &list);
-  ok = ok && give_curves(call, &list, result);
+    ok = section_of(call, cag_list_get(call->vm, shapes, i), &plane, tolerance, list);
   cag_root_pop(call->vm, 1);
-  cag_curve_list_free(&list);
+  if (ok) *result = cag_curve_list_value(call->vm, list);
   return ok;
 }
 
@@ -222,7 +210,6 @@ static bool call_contour(CagCall *call, CagValue *result) {
   CagVec3 direction = {0, 0, 0}, eye = {0, 0, 0};
   double tolerance;
   CagList *shapes;
-  CagCurveList list = {0};
   bool central = cag_given(call, 2) && call->values[2].type != CAG_NONE;
   bool parallel = cag_given(call, 1) && call->values[1].type != CAG_NONE;
   if (central == parallel)
@@ -232,15 +219,15 @@ static bool call_contour(CagCall *call, CagValue *result) {
   if (central && !cag_arg_vec(call, 2, &eye, NULL)) return false;
   if (!read_tolerance(call, 3, &tolerance) || !read_shapes(call, call->values[0], &shapes))
     return false;
+  CagCurveList *list = cag_hold_curve_list(call);
   CagValue kept = cag_object(CAG_LIST, shapes);
   cag_root_push(call->vm, kept);
   bool ok = true;
   for (size_t i = 0; ok && i < shapes->length; i++)
     ok = contour_of(call, cag_list_get(call->vm, shapes, i), cag_unit(direction), eye, central,
-                    tolerance, &list);
-  ok = ok && give_curves(call, &list, result);
+                    tolerance, list);
   cag_root_pop(call->vm, 1);
-  cag_curve_list_free(&list);
+  if (ok) *result = cag_curve_list_value(call->vm, list);
   return ok;
 }
 
@@ -263,7 +250,7 @@ static bool call_curvature_line(CagCall *call, CagValue *result) {
 
 #define CONTOUR_LEVELS_MOST 1000
 
-// One number, or a list or range of them. *out from malloc.
+// One number, or a list or range of them; *out is held.
 static bool read_contour_levels(CagCall *call, int argument, double **out, size_t *n) {
   static const char what[] = "a finite number (1/mm, Gaussian 1/mm2), or a list of them";
   CagSequence levels = {.length = 1};
@@ -278,18 +265,13 @@ static bool read_contour_levels(CagCall *call, int argument, double **out, size_
   if (*n > CONTOUR_LEVELS_MOST)
     return cag_fail_call(call, argument, CAG_ERR_value, "expects at most %d levels, found %zu",
                          CONTOUR_LEVELS_MOST, *n);
-  *out = cag_malloc(*n * sizeof **out);
-  if (!*out) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  *out = cag_hold_array(call, *n, sizeof **out);
   for (size_t i = 0; i < *n; i++) {
     CagValue v = single ? call->values[argument] : cag_sequence_element(call->vm, &levels, i);
-    if (v.type == CAG_NUMBER && isfinite(v.as.number)) {
-      (*out)[i] = v.as.number;
-      continue;
-    }
-    cag_free(*out);
-    *out = NULL;
-    return single ? cag_fail_value(call, argument, what)
-                  : cag_fail_element(call, argument, i, v, "finite numbers");
+    if (v.type != CAG_NUMBER || !isfinite(v.as.number))
+      return single ? cag_fail_value(call, argument, what)
+                    : cag_fail_element(call, argument, i, v, "finite numbers");
+    (*out)[i] = v.as.number;
   }
   return true;
 }
@@ -326,24 +308,20 @@ static CagStatus curvature_contours_of(CagValue v, const ContourQuestion *q, Cag
   return status;
 }
 
-// The record of one level.
+// The record of one level. `list` is empty before and after.
 static bool contour_record(CagCall *call, const CagList *shapes, const ContourQuestion *q,
-                           CagValue *result) {
+                           CagCurveList *list, CagValue *result) {
   static const char *const names[] = {"level", "curves", "everywhere"};
-  CagCurveList list = {0};
   CagError err;
-  CagValue curves = cag_none();
-  bool ok = true, everywhere = true;
-  for (size_t i = 0; ok && i < shapes->length; i++)
-    ok = cag_geometry_ok(
-             call,
-             curvature_contours_of(cag_list_get(call->vm, shapes, i), q, &list, &everywhere, &err),
-             &err) &&
-         cag_keep_going(call->vm);
-  ok = ok && give_curves(call, &list, &curves);
-  cag_curve_list_free(&list);
-  if (!ok) return false;
-  CagValue values[] = {cag_number(q->level), curves, cag_bool(everywhere)};
+  bool everywhere = true;
+  for (size_t i = 0; i < shapes->length; i++) {
+    const CagValue shape = cag_list_get(call->vm, shapes, i);
+    const CagStatus status = curvature_contours_of(shape, q, list, &everywhere, &err);
+    if (!cag_geometry_ok(call, status, &err) || !cag_keep_going(call->vm)) return false;
+  }
+  CagValue values[] = {cag_number(q->level), cag_curve_list_value(call->vm, list),
+                       cag_bool(everywhere)};
+  cag_curve_list_free(list);
   *result = cag_record_new(call->vm, names, values, 3);
   return true;
 }
@@ -360,6 +338,7 @@ static bool call_curvature_contours(CagCall *call, CagValue *result) {
   if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects a surface");
   if (!read_contour_levels(call, 1, &levels, &n)) return false;
   q.of = (CagCurvature)of;
+  CagCurveList *list = cag_hold_curve_list(call);
   // Formulas are called back: the shapes and the records stay.
   cag_root_push(call->vm, cag_object(CAG_LIST, shapes));
   CagBuilder *out = cag_builder_new(call->vm);
@@ -368,11 +347,10 @@ static bool call_curvature_contours(CagCall *call, CagValue *result) {
   for (size_t i = 0; ok && i < n; i++) {
     CagValue record = cag_none();
     q.level = levels[i] + 0.0; // no -0
-    ok = contour_record(call, shapes, &q, &record) && cag_builder_add(call->vm, out, record);
+    ok = contour_record(call, shapes, &q, list, &record) && cag_builder_add(call->vm, out, record);
   }
   if (ok) *result = cag_builder_finish(call->vm, out);
   cag_root_pop(call->vm, 2);
-  cag_free(levels);
   return ok;
 }
 

@@ -1,9 +1,9 @@
 // Surfaces and solids that a section sweeps along a path or under transforms, and lofts.
 
-#include "base/memory.h"
 #include "geom/surface/loft.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
+#include "interp/eval/vm.h"
 
 // Functions of the path's parameter are kept as series to this part of their size.
 #define FIT_TOLERANCE 1e-12
@@ -21,11 +21,24 @@ static CagStatus stopped(CagError *err) {
   return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_function_failed, "", -1, "the function failed");
 }
 
+typedef struct Question {
+  const Sampled *sampled;
+  double t;
+  CagValue answer;
+} Question;
+
+static bool ask(CagVm *vm, void *question) {
+  Question *q = question;
+  const Sampled *s = q->sampled;
+  CagValue at = cag_parameter_value(s->angular, q->t);
+  return cag_call(vm, s->call->values[s->argument], &at, 1, &q->answer) && cag_keep_going(vm);
+}
+
+// Running out of memory in the script must not leave the fit by a jump.
 static CagStatus call_at(const Sampled *s, double t, CagValue *out, CagError *err) {
-  CagValue at = cag_parameter_value(s->angular, t);
-  if (!cag_call(s->call->vm, s->call->values[s->argument], &at, 1, out) ||
-      !cag_keep_going(s->call->vm))
-    return stopped(err);
+  Question q = {s, t, cag_none()};
+  if (!cag_vm_call_back(s->call->vm, ask, &q)) return stopped(err);
+  *out = q.answer;
   return CAG_OK;
 }
 
@@ -63,12 +76,14 @@ static CagStatus sample_rows(void *context, double t, double *out, CagError *err
   return CAG_OK;
 }
 
-// A number or angle reached at the end of the path, or a function of its parameter.
+static void release_series(void *series) { cag_chebyshev_release(series); }
+
+// Reads a number or angle that is reached at the end of the path, or a function of its parameter.
 static bool read_along(CagCall *call, int argument, const CagCurve *path, bool angles, double from,
-                       CagAlong *out, CagChebyshev **fit) {
+                       CagAlong *out) {
   CagValue v = call->values[argument];
+  CagChebyshev *fit = NULL;
   CagError err;
-  *fit = NULL;
   *out = (CagAlong){from, from, NULL};
   if (v.type == CAG_UNSET) return true;
   if (!cag_is_function(v)) {
@@ -81,9 +96,10 @@ static bool read_along(CagCall *call, int argument, const CagCurve *path, bool a
   Sampled s = {call, argument, path->angular, angles};
   const char *name = cag_builtin_signature_of(call->builtin)->parameters[argument];
   CagStatus status = cag_chebyshev_fit(sample_number, &s, path->start, path->end, 1, FIT_TOLERANCE,
-                                       name, fit, &err);
+                                       name, &fit, &err);
   if (!cag_geometry_ok(call, status, &err)) return false;
-  out->function = *fit;
+  cag_hold_for(call, release_series, fit);
+  out->function = fit;
   return true;
 }
 
@@ -109,8 +125,10 @@ static bool give_solid(CagCall *call, CagStatus status, const CagError *err, Cag
 // keeps its own coordinates.
 typedef struct Section {
   const CagCurve *curve; // borrowed
-  CagRegion *region;     // owned
+  CagRegion *region;     // held
 } Section;
+
+static void release_region(void *region) { cag_region_release(region); }
 
 static bool read_section(CagCall *call, bool caps, Section *out) {
   CagValue v = call->values[0];
@@ -123,7 +141,9 @@ static bool read_section(CagCall *call, bool caps, Section *out) {
     }
   }
   CagTransform place;
-  return cag_arg_region(call, 0, &out->region, &place);
+  if (!cag_arg_region(call, 0, &out->region, &place)) return false;
+  cag_hold_for(call, release_region, out->region);
+  return true;
 }
 
 static bool sweep_sides(CagCall *call, const Section *section, const CagMotion *motion,
@@ -169,26 +189,25 @@ static bool read_orient(CagCall *call, int argument, CagPathMotion *how) {
   return true;
 }
 
+static void release_motion(void *motion) { cag_motion_release(motion); }
+
 bool cag_surfaces_sweep(CagCall *call, CagValue *result) {
   CagCurve *path;
   CagPathMotion how = {0};
-  CagChebyshev *twist = NULL, *scale = NULL;
   CagMotion *motion = NULL;
   Section section = {0};
   CagError err;
   bool caps;
-  bool ok = cag_arg_curve(call, 1, &path) && read_orient(call, 2, &how) &&
-            cag_arg_bool_or(call, 5, true, &caps) && read_section(call, caps, &section) &&
-            read_along(call, 3, path, true, 0, &how.twist, &twist) &&
-            read_along(call, 4, path, false, 1, &how.scale, &scale) &&
-            cag_geometry_ok(call, cag_motion_along(path, &how, &motion, &err), &err) &&
-            sweep_section(call, &section, motion, caps, result);
-  cag_motion_release(motion);
-  cag_chebyshev_release(twist);
-  cag_chebyshev_release(scale);
-  cag_region_release(section.region);
-  if (ok && cag_is_shape(call->values[0])) cag_shape_say_alike(*result, call->values[0]);
-  return ok;
+  if (!cag_arg_curve(call, 1, &path) || !read_orient(call, 2, &how) ||
+      !cag_arg_bool_or(call, 5, true, &caps) || !read_section(call, caps, &section) ||
+      !read_along(call, 3, path, true, 0, &how.twist) ||
+      !read_along(call, 4, path, false, 1, &how.scale) ||
+      !cag_geometry_ok(call, cag_motion_along(path, &how, &motion, &err), &err))
+    return false;
+  cag_hold_for(call, release_motion, motion);
+  if (!sweep_section(call, &section, motion, caps, result)) return false;
+  if (cag_is_shape(call->values[0])) cag_shape_say_alike(*result, call->values[0]);
+  return true;
 }
 
 bool cag_surfaces_sweep_by(CagCall *call, CagValue *result) {
@@ -206,56 +225,53 @@ bool cag_surfaces_sweep_by(CagCall *call, CagValue *result) {
     return cag_fail_call(call, 2, CAG_ERR_value, "expects a range that ends after its start");
   double unit = angle ? CAG_RADIANS_PER_DEGREE : 1;
   Sampled s = {call, 1, angle, false};
-  bool ok = read_section(call, caps, &section);
-  if (ok) {
-    CagStatus status = cag_chebyshev_fit(sample_rows, &s, from * unit, to * unit, 12, FIT_TOLERANCE,
-                                         "map", &rows, &err);
-    if (status == CAG_OK)
-      status = cag_motion_affine(rows, from * unit, to * unit, angle, &motion, &err);
-    ok = cag_geometry_ok(call, status, &err) && sweep_section(call, &section, motion, caps, result);
-  }
-  cag_motion_release(motion);
-  cag_chebyshev_release(rows);
-  cag_region_release(section.region);
-  if (ok && cag_is_shape(call->values[0])) cag_shape_say_alike(*result, call->values[0]);
-  return ok;
+  if (!read_section(call, caps, &section)) return false;
+  CagStatus status = cag_chebyshev_fit(sample_rows, &s, from * unit, to * unit, 12, FIT_TOLERANCE,
+                                       "map", &rows, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  cag_hold_for(call, release_series, rows);
+  status = cag_motion_affine(rows, from * unit, to * unit, angle, &motion, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  cag_hold_for(call, release_motion, motion);
+  if (!sweep_section(call, &section, motion, caps, result)) return false;
+  if (cag_is_shape(call->values[0])) cag_shape_say_alike(*result, call->values[0]);
+  return true;
 }
 
 bool cag_surfaces_tube(CagCall *call, CagValue *result) {
   CagCurve *path;
   CagSurface *s = NULL;
   CagSolid *solid = NULL;
-  CagChebyshev *fit = NULL;
   CagAlong radius = {0};
   CagError err;
-  bool caps, ok;
+  bool caps;
   bool changing = cag_is_function(call->values[1]);
   if (!cag_arg_curve(call, 0, &path) || !cag_arg_bool_or(call, 2, true, &caps) ||
       (!changing && !cag_arg_positive(call, 1, &radius.end)))
     return false;
-  if (changing && !read_along(call, 1, path, false, 0, &radius, &fit)) return false;
+  if (changing && !read_along(call, 1, path, false, 0, &radius)) return false;
   if (caps) {
     CagStatus status = changing ? cag_solid_tube_along(path, &radius, &solid, &err)
                                 : cag_solid_tube(path, radius.end, &solid, &err);
-    ok = give_solid(call, status, &err, &solid, result);
+    if (!give_solid(call, status, &err, &solid, result)) return false;
   } else {
     CagStatus status = changing ? cag_surface_tube_along(path, &radius, &s, &err)
                                 : cag_surface_tube(path, radius.end, &s, &err);
-    ok = give_surface(call, status, &err, &s, result);
+    if (!give_surface(call, status, &err, &s, result)) return false;
   }
-  cag_chebyshev_release(fit);
-  if (ok) cag_shape_say_alike(*result, call->values[0]);
-  return ok;
+  cag_shape_say_alike(*result, call->values[0]);
+  return true;
 }
 
 // --- Lofts ---
 
-// A curve as it is, or the outline of a region without holes, placed. The curve is held for the
-// caller.
+static void release_curve(void *curve) { cag_curve_release(curve); }
+
+// A curve as it is, or the outline of a region without holes, placed and held.
 static bool read_loft_curve(CagCall *call, size_t i, CagValue v, const CagCurve **out) {
   CagError err;
   if (v.type == CAG_CURVE) {
-    *out = cag_curve_retain(CAG_AS_SHAPE(v)->as.curve);
+    *out = CAG_AS_SHAPE(v)->as.curve;
     return true;
   }
   if (v.type != CAG_REGION) return cag_fail_element(call, 0, i, v, "curves or regions");
@@ -268,8 +284,10 @@ static bool read_loft_curve(CagCall *call, size_t i, CagValue v, const CagCurve 
   CagCurve *placed = NULL;
   CagStatus status =
       cag_curve_transform(shape->as.region->loops[0], &shape->placement, &placed, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  cag_hold_for(call, release_curve, placed);
   *out = placed;
-  return cag_geometry_ok(call, status, &err);
+  return true;
 }
 
 bool cag_surfaces_loft(CagCall *call, CagValue *result) {
@@ -281,31 +299,22 @@ bool cag_surfaces_loft(CagCall *call, CagValue *result) {
       !cag_arg_bool_or(call, 2, false, &closed) || !cag_arg_bool_or(call, 3, true, &caps))
     return false;
   if (list->length < 2) return cag_fail_value(call, 0, "at least 2 curves");
-  const CagCurve **curves = cag_malloc(list->length * sizeof *curves);
-  if (!curves)
-    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  bool all_closed = true, ok = true;
-  size_t read = 0;
-  for (size_t i = 0; ok && i < list->length; i++) {
-    ok = read_loft_curve(call, i, cag_list_get(call->vm, list, i), &curves[i]);
-    if (!ok) break;
+  const CagCurve **curves = cag_hold_array(call, list->length, sizeof *curves);
+  bool all_closed = true;
+  for (size_t i = 0; i < list->length; i++) {
+    if (!read_loft_curve(call, i, cag_list_get(call->vm, list, i), &curves[i])) return false;
     all_closed = all_closed && (curves[i]->closed || cag_curve_resting_view(curves[i], NULL));
-    read++;
   }
   CagSurface *side = NULL;
   CagSolid *solid = NULL;
-  if (ok) {
-    CagStatus status = cag_surface_loft(curves, list->length, (int)degree, closed, &side, &err);
-    if (caps && all_closed && status == CAG_OK) {
-      status = cag_solid_loft(side, &solid, &err);
-      cag_surface_release(side);
-      ok = give_solid(call, status, &err, &solid, result);
-    } else {
-      ok = give_surface(call, status, &err, &side, result);
-    }
+  CagStatus status = cag_surface_loft(curves, list->length, (int)degree, closed, &side, &err);
+  if (caps && all_closed && status == CAG_OK) {
+    status = cag_solid_loft(side, &solid, &err);
+    cag_surface_release(side);
+    if (!give_solid(call, status, &err, &solid, result)) return false;
+  } else if (!give_surface(call, status, &err, &side, result)) {
+    return false;
   }
-  for (size_t i = 0; i < read; i++) cag_curve_release((CagCurve *)curves[i]);
-  cag_free(curves);
-  if (ok) cag_shape_say_alike(*result, cag_list_get(call->vm, list, 0));
-  return ok;
+  cag_shape_say_alike(*result, cag_list_get(call->vm, list, 0));
+  return true;
 }

@@ -387,11 +387,23 @@ const CagModuleAst *cag_read_script(CagVm *vm, const char *name, const char *tex
   return vm->failed ? NULL : m->ast;
 }
 
+typedef struct OuterNames {
+  CagVm *vm;
+  size_t count;
+} OuterNames;
+
+static void restore_outer(void *names) {
+  const OuterNames *outer = names;
+  outer->vm->outer_count = outer->count;
+}
+
 bool cag_vm_compile_lambda(CagVm *vm, const char *source, CagValue *out) {
-  size_t outer = vm->outer_count; // a formula sees built-in names only
-  vm->outer_count = 0;
+  OuterNames outer = {vm, vm->outer_count};
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, restore_outer, &outer);
+  vm->outer_count = 0; // a formula sees built-in names only
   size_t k = cag_load_text(vm, "<formula>", source, strlen(source), CAG_PARSE_REPL);
-  vm->outer_count = outer;
+  cag_cleanup_run(&cleanup);
   if (k == CAG_NO_MODULE) return false;
   CagModuleUnit *m = vm->modules[k];
   if (m->ast->count != 1 || m->ast->statements[0]->kind != CAG_STATEMENT_EXPRESSION)

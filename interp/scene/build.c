@@ -493,6 +493,8 @@ static void add_value(Build *b, CagValue v, CagLead lead) {
   else if (cag_is_shape(v)) add_shapes(b, v, &(Said){0}, lead);
 }
 
+static void free_scene(void *scene) { cag_scene_free(scene); }
+
 static void free_build(void *build) {
   Build *b = build;
   cag_hash_free(&b->names);
@@ -503,33 +505,32 @@ static void free_build(void *build) {
 
 static bool build_scene(Build *build, const CagShown *shown, size_t n) {
   CagVm *vm = build->vm;
-  CagScene *out = build->scene;
   CagMaterial plain = cag_material_default(), line = plain;
   line.color = ink;
   keep_material(build, plain, plain.name);
   keep_material(build, line, "ink");
   for (size_t i = 0; i < n && !build->failed; i++) {
-    if (!cag_value_is_shown(vm, shown[i].value)) {
-      cag_scene_free(out);
+    if (!cag_value_is_shown(vm, shown[i].value))
       return !vm->failed &&
              cag_vm_fail(vm, CAG_ERR_no_image,
                          "show expects shapes, lights, cameras and lists of these, found %s",
                          cag_type_article(shown[i].value));
-    }
     add_value(build, shown[i].value, cag_lead(shown[i].expr));
   }
   if (!build->failed) return true;
-  cag_scene_free(out);
   return !vm->failed &&
          cag_vm_fail(vm, CAG_ERR_limit_memory, "the scene needs more memory than there is");
 }
 
 bool cag_scene_from_values(CagVm *vm, const CagShown *shown, size_t n, CagScene *out) {
   Build b = {.vm = vm, .scene = out};
-  CagCleanup cleanup;
+  CagCleanup scene, building;
   *out = (CagScene){.bounds = CAG_BOUNDS_EMPTY};
-  cag_cleanup_push(&cleanup, free_build, &b);
+  cag_cleanup_push(&scene, free_scene, out);
+  cag_cleanup_push(&building, free_build, &b);
   const bool ok = build_scene(&b, shown, n);
-  cag_cleanup_run(&cleanup);
+  cag_cleanup_run(&building);
+  if (ok) cag_cleanup_pop(&scene);
+  else cag_cleanup_run(&scene);
   return ok;
 }

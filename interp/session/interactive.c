@@ -90,11 +90,11 @@ static void give_value(CagVm *vm, CagValue v, void *context) {
 
 // Params get the values of -D, those that a text has; their defaults are checked.
 static bool set_params(CagVm *vm, CagModuleUnit *m, const CagSession *s) {
-  CagDefine *defines = cag_calloc(s->define_count ? s->define_count : 1, sizeof *defines);
-  if (!defines) cag_vm_out_of_memory(vm);
+  CagCleanup cleanup;
+  CagDefine *defines = cag_temporary(&cleanup, s->define_count, sizeof *defines);
   for (size_t i = 0; i < s->define_count; i++) defines[i] = (CagDefine){s->names[i], s->values[i]};
   bool ok = cag_program_set_params(vm, m, defines, s->define_count, s->frame, s->frames, true);
-  cag_free(defines);
+  cag_cleanup_run(&cleanup);
   return ok;
 }
 
@@ -236,15 +236,16 @@ static void give_members(CagVm *vm, CagValue v, const MemberQuestion *q) {
 
 static bool ask_members(CagVm *vm, void *context) {
   const MemberQuestion *q = context;
-  char *path = cag_strdup(q->path), *rest = NULL;
-  if (!path) return false;
+  char *path = cag_checked(cag_strdup(q->path)), *rest = NULL;
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, cag_free, path);
   const char *word = strtok_r(path, ".", &rest);
   size_t i = word ? find_name(vm, word) : (size_t)-1;
   CagValue v;
   bool ok = i != (size_t)-1 && cag_vm_force(vm, vm->outer_globals[i], &v);
   while (ok && (word = strtok_r(NULL, ".", &rest)))
     ok = cag_member(vm, v, cag_text_c(vm, word), &v);
-  cag_free(path);
+  cag_cleanup_run(&cleanup);
   if (ok) give_members(vm, v, q);
   return ok;
 }

@@ -371,13 +371,13 @@ static bool run(CagVm *vm, void *context) {
   size_t k = r->path ? cag_load_file(vm, r->path, &r->status)
                      : cag_load_text(vm, r->name, r->text, r->length, CAG_PARSE_FILE);
   if (k == CAG_NO_MODULE) return false;
-  CagDefine *defines = cag_calloc(s->define_count ? s->define_count : 1, sizeof *defines);
-  if (!defines) cag_vm_out_of_memory(vm);
+  CagCleanup cleanup;
+  CagDefine *defines = cag_temporary(&cleanup, s->define_count, sizeof *defines);
   vm->loop = s->loop;
   for (size_t i = 0; i < s->define_count; i++) defines[i] = (CagDefine){s->names[i], s->values[i]};
   bool ok = cag_program_set_params(vm, vm->modules[k], defines, s->define_count, s->frame,
                                    s->frames, false);
-  cag_free(defines);
+  cag_cleanup_run(&cleanup);
   return ok && cag_program_run(vm, vm->modules[k], NULL, NULL);
 }
 

@@ -1,0 +1,31 @@
+// Surfaces and curves that the core makes several of, held until the built-in ends.
+
+#include "base/memory.h"
+#include "interp/builtin/surfaces.h"
+
+static void release_surfaces(void *array) {
+  CagSurfaceArray *a = array;
+  for (size_t i = 0; i < a->count; i++) cag_surface_release(a->items[i]);
+  cag_free(a->items);
+}
+
+CagSurfaceArray *cag_hold_surfaces(CagCall *call) {
+  CagSurfaceArray *a = cag_hold_array(call, 1, sizeof *a);
+  cag_hold_for(call, release_surfaces, a);
+  return a;
+}
+
+static void release_curves(void *list) { cag_curve_list_free(list); }
+
+CagCurveList *cag_hold_curve_list(CagCall *call) {
+  CagCurveList *list = cag_hold_array(call, 1, sizeof *list);
+  cag_hold_for(call, release_curves, list);
+  return list;
+}
+
+CagValue cag_curve_list_value(CagVm *vm, const CagCurveList *list) {
+  CagBuilder *out = cag_builder_new(vm);
+  for (size_t i = 0; i < list->count; i++)
+    cag_builder_add(vm, out, cag_curve_value(vm, cag_curve_retain(list->items[i])));
+  return cag_builder_finish(vm, out);
+}
