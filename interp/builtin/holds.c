@@ -19,17 +19,17 @@
     Type *items[];                                                                                 \
   } Type##Array;                                                                                   \
                                                                                                    \
-  static void release_##name##s(void *items) {                                                     \
+  static void release_##name##_array(void *items) {                                                \
     Type##Array *array = (void *)((char *)items - offsetof(Type##Array, items));                   \
     for (size_t i = 0; i < array->n; i++) cag_##name##_release(array->items[i]);                   \
     cag_free(array);                                                                               \
   }                                                                                                \
                                                                                                    \
-  Type **cag_hold_##name##s(CagCall *call, size_t n) {                                             \
+  Type **cag_hold_##name##_array(CagCall *call, size_t n) {                                        \
     Type##Array *array = cag_calloc(1, sizeof *array + n * sizeof *array->items);                  \
     if (!array) cag_vm_out_of_memory(call->vm);                                                    \
     array->n = n;                                                                                  \
-    cag_hold_for(call, release_##name##s, array->items);                                           \
+    cag_hold_for(call, release_##name##_array, array->items);                                      \
     return array->items;                                                                           \
   }
 CAG_HELD_GEOMETRY(X)

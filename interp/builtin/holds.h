@@ -1,8 +1,8 @@
 // Geometry that built-ins hold (see builtin.h): single objects, and arrays of them.
 //
-//   cag_hold_curve(call, c)    releases c when the built-in ends; NULL is allowed
-//   cag_hold_curves(call, n)   n places for curves, all NULL; the curves in them are released with
-//                              the array
+//   cag_hold_curve(call, c)         releases c when the built-in ends; NULL is allowed
+//   cag_hold_curve_array(call, n)   n places for curves, all NULL; the curves in them are released
+//                                   with the array
 //
 // and the same for regions, surfaces, meshes, and solids. cag_release_held releases either early.
 
@@ -18,7 +18,7 @@
 
 #define X(Type, name)                                                                              \
   void cag_hold_##name(CagCall *call, Type *what);                                                 \
-  Type **cag_hold_##name##s(CagCall *call, size_t n);
+  Type **cag_hold_##name##_array(CagCall *call, size_t n);
 CAG_HELD_GEOMETRY(X)
 #undef X
 

@@ -85,7 +85,7 @@ static bool bounded_by_some(CagCall *call, CagValue *result) {
   if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
   const CagList *several = list_of_curves(call, call->values[0]);
   const size_t outer = several ? several->length : 1, n = outer + (holes ? holes->length : 0);
-  CagCurve **loops = cag_hold_curves(call, n);
+  CagCurve **loops = cag_hold_curve_array(call, n);
   for (size_t i = 0; i < n; i++) {
     const CagValue v = i >= outer ? cag_list_get(call->vm, holes, i - outer)
                        : several  ? cag_list_get(call->vm, several, i)
@@ -201,7 +201,7 @@ static bool read_shape(Operands *o, CagValue v, size_t operand, CagRegion **out)
 // The union of the shapes of an operand; of none the empty region.
 static bool unite_shapes(Operands *o, const CagList *shapes, size_t operand, CagRegion **out) {
   CagError err;
-  CagRegion **parts = cag_hold_regions(o->call, shapes->length);
+  CagRegion **parts = cag_hold_region_array(o->call, shapes->length);
   for (size_t i = 0; i < shapes->length; i++)
     if ((i % CAG_LOOK_UP == 0 && !cag_keep_going(o->call->vm)) ||
         !read_shape(o, cag_list_get(o->call->vm, shapes, i), operand, &parts[i]))
@@ -229,7 +229,7 @@ static bool combine(CagCall *call, CagRegionOp op, CagValue *result) {
   if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one region");
   Operands o = {.call = call, .base = cag_transform_identity(), .first = cag_unset()};
-  CagRegion **regions = cag_hold_regions(call, n);
+  CagRegion **regions = cag_hold_region_array(call, n);
   for (size_t i = 0; i < n; i++)
     if (!read_operand(&o, items[i], i + 1, &regions[i])) return false;
   CagStatus status = cag_region_combine(op, (const CagRegion *const *)regions, n, &out, &err);
