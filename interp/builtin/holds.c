@@ -34,3 +34,15 @@
   }
 CAG_HELD_GEOMETRY(X)
 #undef X
+
+static void release_curve_list(void *list) {
+  cag_curve_list_free(list);
+  cag_free(list);
+}
+
+CagCurveList *cag_hold_curve_list(CagCall *call) {
+  CagCurveList *list = cag_calloc(1, sizeof *list);
+  if (!list) cag_vm_out_of_memory(call->vm);
+  cag_hold_for(call, release_curve_list, list);
+  return list;
+}

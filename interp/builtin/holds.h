@@ -9,6 +9,7 @@
 #ifndef CAG_INTERP_BUILTIN_HOLDS_H
 #define CAG_INTERP_BUILTIN_HOLDS_H
 
+#include "geom/surface/section.h"
 #include "interp/builtin/builtin.h"
 
 // clang-format off
@@ -21,5 +22,8 @@
   Type **cag_hold_##name##_array(CagCall *call, size_t n);
 CAG_HELD_GEOMETRY(X)
 #undef X
+
+// An empty list; the curves that it gets are released with it.
+CagCurveList *cag_hold_curve_list(CagCall *call);
 
 #endif
