@@ -13,19 +13,17 @@
 // --- Hulls ---
 
 static bool plane_hull(CagCall *call, const CagVec3 *points, size_t n, CagValue *result) {
-  size_t *ring = NULL, count = 0;
+  size_t *ring, count;
   CagCurve *loop = NULL;
   CagRegion *region = NULL;
   CagError err;
   if (!cag_geometry_ok(call, cag_hull_plane(points, n, &ring, &count, &err), &err)) return false;
-  CagVec3 *corners = cag_malloc(count * sizeof *corners);
-  CagStatus status = corners ? CAG_OK : cag_fail_memory(&err);
-  for (size_t i = 0; !status && i < count; i++) corners[i] = points[ring[i]];
-  if (!status) status = cag_curve_polyline(corners, count, true, 2, &loop, &err);
+  cag_hold(call, ring);
+  CagVec3 *corners = cag_hold_array(call, count, sizeof *corners);
+  for (size_t i = 0; i < count; i++) corners[i] = points[ring[i]];
+  CagStatus status = cag_curve_polyline(corners, count, true, 2, &loop, &err);
   if (!status) status = cag_region_new(loop, NULL, 0, &region, &err);
   cag_curve_release(loop);
-  cag_free(corners);
-  cag_free(ring);
   if (!cag_geometry_ok(call, status, &err)) return false;
   *result = cag_region_value(call->vm, region, NULL);
   return true;
@@ -48,6 +46,8 @@ typedef struct Cloud {
   size_t n, capacity;
   bool plane; // all of the plane
 } Cloud;
+
+static void release_cloud(void *cloud) { cag_free(((Cloud *)cloud)->points); }
 
 static CagStatus cloud_add(Cloud *cloud, const CagVec3 *points, size_t n, CagError *err) {
   if (cloud->n + n > cloud->capacity) {
@@ -129,25 +129,22 @@ static CagStatus add_shape(const CagVm *vm, Cloud *cloud, CagValue v, CagError *
   return status;
 }
 
-static bool hull_of_cloud(CagCall *call, const Cloud *cloud, CagValue *result) {
-  return cloud->plane ? plane_hull(call, cloud->points, cloud->n, result)
-                      : space_hull(call, cloud->points, cloud->n, result);
-}
-
 static bool hull_of_shapes(CagCall *call, CagValue *result) {
   CagError err;
-  Cloud cloud = {.plane = true};
+  Cloud *cloud = cag_hold_array(call, 1, sizeof *cloud);
+  cag_hold_for(call, release_cloud, cloud);
+  cloud->plane = true;
   CagBuilder *builder = cag_builder_new(call->vm);
   if (!cag_shapes_collect(call, call->values[0], builder)) return false;
   const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
-  bool ok = true;
-  for (size_t i = 0; ok && i < shapes->length; i++)
-    ok = (i % CAG_LOOK_UP != 0 || cag_keep_going(call->vm)) &&
-         cag_geometry_ok(call, add_shape(call->vm, &cloud, cag_list_get(call->vm, shapes, i), &err),
-                         &err);
-  ok = ok && hull_of_cloud(call, &cloud, result);
-  cag_free(cloud.points);
-  return ok;
+  for (size_t i = 0; i < shapes->length; i++) {
+    const CagValue v = cag_list_get(call->vm, shapes, i);
+    if ((i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) ||
+        !cag_geometry_ok(call, add_shape(call->vm, cloud, v, &err), &err))
+      return false;
+  }
+  return cloud->plane ? plane_hull(call, cloud->points, cloud->n, result)
+                      : space_hull(call, cloud->points, cloud->n, result);
 }
 
 static bool is_list_of_shapes(CagVm *vm, CagValue v) {
@@ -163,10 +160,8 @@ static bool call_convex_hull(CagCall *call, CagValue *result) {
   size_t n;
   int dimension;
   if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
-  const bool ok =
-      dimension == 2 ? plane_hull(call, points, n, result) : space_hull(call, points, n, result);
-  cag_free(points);
-  return ok;
+  cag_hold(call, points);
+  return dimension == 2 ? plane_hull(call, points, n, result) : space_hull(call, points, n, result);
 }
 
 // --- Curves on surfaces ---
@@ -328,8 +323,9 @@ static CagStatus side_of(CagVm *vm, CagValue v, CagVec3 p, int *side, CagError *
 
 static CagStatus side_of_leaf(void *context, const CagSolid *leaf, CagVec3 p, int *side,
                               CagError *err) {
-  CagVm *vm = context;
-  return side_of(vm, cag_solid_value(vm, cag_solid_retain(leaf)), p, side, err);
+  // Not a value of the heap, whose allocation could jump over what the callers hold.
+  CagShape shape = {.as.solid = (CagSolid *)leaf};
+  return side_of(context, cag_object(CAG_SOLID, &shape), p, side, err);
 }
 
 // Set operations are asked by their operands: exactly where these are.
@@ -377,6 +373,10 @@ typedef struct Side {
   const CagList *shapes;
   Body body;
 } Side;
+
+static void release_sides(void *side) {
+  for (int i = 0; i < 2; i++) body_free(&((Side *)side)[i].body);
+}
 
 static bool read_side(CagCall *call, int argument, Side *out) {
   const CagValue v = call->values[argument];
@@ -438,14 +438,15 @@ static CagStatus measure(CagVm *vm, Side side[2], double *out, CagError *err) {
 }
 
 static bool call_distance(CagCall *call, CagValue *result) {
-  Side side[2] = {0};
+  Side *side = cag_hold_array(call, 2, sizeof *side);
+  cag_hold_for(call, release_sides, side);
   CagError err;
   double distance = 0;
-  bool ok = read_side(call, 0, &side[0]) && read_side(call, 1, &side[1]) &&
-            cag_geometry_ok(call, measure(call->vm, side, &distance, &err), &err);
-  for (int i = 0; i < 2; i++) body_free(&side[i].body);
-  if (ok) *result = cag_number(distance);
-  return ok;
+  if (!read_side(call, 0, &side[0]) || !read_side(call, 1, &side[1]) ||
+      !cag_geometry_ok(call, measure(call->vm, side, &distance, &err), &err))
+    return false;
+  *result = cag_number(distance);
+  return true;
 }
 
 const CagBuiltin cag_builtins_hulls[] = {

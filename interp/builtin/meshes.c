@@ -6,6 +6,7 @@
 #include "geom/mesh/split.h"
 #include "geom/mesh/tessellate.h"
 #include "geom/solid/csg.h"
+#include "interp/builtin/holds.h"
 #include "interp/builtin/solids.h"
 #include "interp/eval/vm.h"
 
@@ -55,10 +56,8 @@ bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **coun
                            i);
     total += n;
   }
-  *counts = cag_malloc((faces->length + 1) * sizeof **counts);
-  *indices = cag_malloc((total + 1) * sizeof **indices);
-  if (!*counts || !*indices)
-    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  *counts = cag_hold(call, cag_malloc((faces->length + 1) * sizeof **counts));
+  *indices = cag_hold(call, cag_malloc((total + 1) * sizeof **indices));
   for (size_t i = 0; i < faces->length; i++) {
     const double *x;
     size_t n;
@@ -77,21 +76,18 @@ bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **coun
 }
 
 bool cag_solids_mesh(CagCall *call, CagValue *result) {
-  CagVec3 *vertices = NULL;
-  size_t n, faces = 0;
-  uint32_t *counts = NULL, *indices = NULL;
+  CagVec3 *vertices;
+  size_t n, faces;
+  uint32_t *counts, *indices;
   CagMesh *m = NULL;
   CagError err;
   if (!cag_arg_points(call, 0, &vertices, &n, NULL)) return false;
-  bool ok = cag_arg_faces(call, 1, n, &counts, &indices, &faces);
-  if (ok) {
-    CagStatus status = cag_mesh_from_faces(vertices, n, indices, counts, faces, &m, &err);
-    ok = give(call, status, &err, &m, result);
-  }
-  cag_free(vertices);
-  cag_free(counts);
-  cag_free(indices);
-  return ok;
+  cag_hold(call, vertices);
+  if (!cag_arg_faces(call, 1, n, &counts, &indices, &faces)) return false;
+  CagStatus status = cag_mesh_from_faces(vertices, n, indices, counts, faces, &m, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_mesh_value(call->vm, m);
+  return true;
 }
 
 // --- Data and checks ---
@@ -117,9 +113,8 @@ bool cag_solids_faces(CagCall *call, CagValue *result) {
 }
 
 // Where a mesh has no normals of its own: those of its triangles, weighted by their areas.
-static CagStatus face_normals(const CagMesh *m, CagVec3 **out, CagError *err) {
-  CagVec3 *sum = cag_calloc(m->vertex_count + 1, sizeof *sum);
-  if (!sum) return cag_fail_memory(err);
+static const CagVec3 *hold_face_normals(CagCall *call, const CagMesh *m) {
+  CagVec3 *sum = cag_hold_array(call, m->vertex_count, sizeof *sum);
   for (size_t t = 0; t < m->triangle_count; t++) {
     const uint32_t *k = m->triangles + 3 * t;
     CagVec3 a = m->positions[k[0]];
@@ -127,18 +122,14 @@ static CagStatus face_normals(const CagMesh *m, CagVec3 **out, CagError *err) {
     for (int i = 0; i < 3; i++) sum[k[i]] = cag_add(sum[k[i]], n);
   }
   for (size_t i = 0; i < m->vertex_count; i++) sum[i] = cag_unit(sum[i]);
-  *out = sum;
-  return CAG_OK;
+  return sum;
 }
 
 bool cag_solids_normals_of(CagCall *call, CagValue *result) {
   const CagMesh *m;
-  CagError err;
-  CagVec3 *own = NULL;
   if (!read_mesh(call, &m)) return false;
-  if (!m->normals && !cag_geometry_ok(call, face_normals(m, &own, &err), &err)) return false;
-  *result = cag_points_value(call->vm, own ? own : m->normals, m->vertex_count, 3);
-  cag_free(own);
+  const CagVec3 *normals = m->normals ? m->normals : hold_face_normals(call, m);
+  *result = cag_points_value(call->vm, normals, m->vertex_count, 3);
   return true;
 }
 
@@ -236,20 +227,16 @@ bool cag_solids_tessellate(CagCall *call, CagValue *result) {
   if (!read_how(call, &how) || !cag_shapes_collect(call, call->values[0], builder)) return false;
   const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
   if (shapes->length == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects a shape");
-  CagMesh **meshes = cag_malloc(shapes->length * sizeof *meshes), *whole = NULL;
-  if (!meshes) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  const size_t n = shapes->length;
+  CagMesh **meshes = cag_hold_mesh_array(call, n), *whole = NULL;
   CagStatus status = CAG_OK;
-  size_t n = 0;
-  for (; status == CAG_OK && n < shapes->length; n += status == CAG_OK)
-    status = tessellate_shape(cag_list_get(call->vm, shapes, n), &how, &meshes[n], &err);
-  if (status == CAG_OK && n == 1) whole = cag_mesh_retain(meshes[0]);
-  else if (status == CAG_OK) status = cag_mesh_append(meshes, n, &whole, &err);
-  for (size_t i = 0; i < n; i++) cag_mesh_release(meshes[i]);
-  cag_free(meshes);
-  if (status == CAG_OK) {
-    status = keep_edges(&whole, &how, &err);
-    if (status) cag_mesh_release(whole);
-  }
+  for (size_t i = 0; !status && i < n; i++)
+    status = tessellate_shape(cag_list_get(call->vm, shapes, i), &how, &meshes[i], &err);
+  if (!status && n == 1) whole = cag_mesh_retain(meshes[0]);
+  else if (!status) status = cag_mesh_append(meshes, n, &whole, &err);
+  cag_release_held(call, meshes);
+  if (!status) status = keep_edges(&whole, &how, &err);
+  if (status) cag_mesh_release(whole);
   if (!give(call, status, &err, &whole, result)) return false;
   cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
   return true;

@@ -1,6 +1,5 @@
 // What is wrong with faces as the boundary of a solid, in numbers.
 
-#include "base/memory.h"
 #include "geom/mesh/check.h"
 #include "interp/builtin/solids.h"
 
@@ -49,20 +48,16 @@ static bool check_mesh(CagCall *call, CagValue *result) {
 static bool check_faces(CagCall *call, CagValue *result) {
   CagMeshCheck check = {0};
   CagError err;
-  CagVec3 *vertices = NULL;
-  size_t n = 0, faces = 0;
-  uint32_t *counts = NULL, *indices = NULL;
+  CagVec3 *vertices;
+  size_t n, faces;
+  uint32_t *counts, *indices;
   if (!cag_arg_points(call, 0, &vertices, &n, NULL)) return false;
-  bool ok = cag_arg_faces(call, 1, n, &counts, &indices, &faces);
-  if (ok) {
-    CagStatus status = cag_faces_check(vertices, n, indices, counts, faces, &check, &err);
-    ok = cag_geometry_ok(call, status, &err);
-  }
-  cag_free(vertices);
-  cag_free(counts);
-  cag_free(indices);
-  if (ok) *result = check_value(call->vm, &check);
-  return ok;
+  cag_hold(call, vertices);
+  if (!cag_arg_faces(call, 1, n, &counts, &indices, &faces)) return false;
+  CagStatus status = cag_faces_check(vertices, n, indices, counts, faces, &check, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = check_value(call->vm, &check);
+  return true;
 }
 
 #define REPORT                                                                                     \

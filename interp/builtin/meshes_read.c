@@ -14,7 +14,21 @@ typedef struct Opener {
   const char *path; // of the mesh, whose folder other files lie in
 } Opener;
 
-// Files that a mesh names are files of the script: the same places, the same limits.
+typedef struct Opening {
+  CagCall *call;
+  const char *path;
+  char **bytes;
+  size_t *size;
+} Opening;
+
+static bool open_file(CagVm *vm, void *context) {
+  (void)vm;
+  const Opening *o = context;
+  return cag_vm_open_file(o->call, 0, o->path, o->bytes, o->size);
+}
+
+// Files that a mesh names are files of the script: the same places, the same limits. The reader of
+// the mesh holds memory of its own, so exhausted memory must not jump over it.
 static CagStatus open_beside(void *context, const char *name, char **bytes, size_t *size,
                              CagError *err) {
   const Opener *o = context;
@@ -22,7 +36,8 @@ static CagStatus open_beside(void *context, const char *name, char **bytes, size
   int folder = slash && name[0] != '/' ? (int)(slash + 1 - o->path) : 0;
   char *path;
   if (cag_asprintf(&path, "%.*s%s", folder, o->path, name) < 0) return cag_fail_memory(err);
-  bool good = cag_vm_open_file(o->call, 0, path, bytes, size);
+  Opening opening = {o->call, path, bytes, size};
+  const bool good = cag_vm_call_back(o->call->vm, open_file, &opening);
   cag_free(path);
   return good ? CAG_OK
               : cag_fail(err, CAG_E_CALLBACK, CAG_ERR_file, "path", -1, "cannot read %s", name);
@@ -34,6 +49,7 @@ static bool call_read_mesh(CagCall *call, CagValue *result) {
   size_t size;
   if (!cag_arg_text(call, 0, &path) || !cag_vm_open_file(call, 0, path, &bytes, &size))
     return false;
+  cag_hold(call, bytes);
   Opener opener = {call, path};
   const char *slash = strrchr(path, '/');
   const size_t left = cag_account_room();
@@ -48,7 +64,7 @@ static bool call_read_mesh(CagCall *call, CagValue *result) {
   CagMesh *m = NULL;
   CagError err = {0};
   CagStatus status = cag_mesh_read(&file, &m, &err);
-  cag_free(bytes); // before the error: running out of memory does not come back
+  cag_release_held(call, bytes); // before the mesh has its value
   if (!cag_geometry_ok(call, status, &err)) return false;
   *result = cag_mesh_value(call->vm, m);
   return true;

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "geom/surface/isophote.h"
 #include "geom/surface/value_map.h"
+#include "interp/builtin/holds.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
 #include "interp/eval/vm.h"
@@ -19,9 +20,17 @@ typedef struct Meshes {
   size_t count, capacity;
 } Meshes;
 
-static void free_meshes(Meshes *m) {
+static void release_meshes(void *what) {
+  const Meshes *m = what;
   for (size_t i = 0; i < m->count; i++) cag_mesh_release(m->items[i]);
   cag_free(m->items);
+}
+
+// No meshes yet; those that are added are released with the built-in.
+static Meshes *hold_meshes(CagCall *call) {
+  Meshes *m = cag_hold_array(call, 1, sizeof *m);
+  cag_hold_for(call, release_meshes, m);
+  return m;
 }
 
 // Takes the mesh over.
@@ -168,22 +177,18 @@ static bool call_colored_by(CagCall *call, CagValue *result) {
   static const char *const scales[] = {"auto", "sequence", "diverging", NULL};
   int kind, colors;
   double from = 0, to = 0;
-  Meshes parts = {0};
   if (!cag_arg_choice(call, 1, cag_surface_values, &kind) ||
       !cag_arg_choice(call, 3, scales, &colors))
     return false;
   CagSurfaceValue value = (CagSurfaceValue)kind;
   bool said = cag_given(call, 2) && call->values[2].type != CAG_NONE;
   if (said && !read_span(call, 2, value == CAG_VALUE_SLOPE, &from, &to)) return false;
-  bool ok = make_meshes(call, 4, value_mesh, &value, &parts);
-  if (ok) {
-    if (!said) find_span(&parts, value, &from, &to);
-    bool diverging = colors == 2 || (colors == 0 && is_symmetric(from, to));
-    CagColorScale scale = {diverging ? CAG_SCALE_DIVERGING : CAG_SCALE_SEQUENCE, from, to, 0};
-    ok = give_mesh(call, &parts, scale, result);
-  }
-  free_meshes(&parts);
-  return ok;
+  Meshes *parts = hold_meshes(call);
+  if (!make_meshes(call, 4, value_mesh, &value, parts)) return false;
+  if (!said) find_span(parts, value, &from, &to);
+  bool diverging = colors == 2 || (colors == 0 && is_symmetric(from, to));
+  CagColorScale scale = {diverging ? CAG_SCALE_DIVERGING : CAG_SCALE_SEQUENCE, from, to, 0};
+  return give_mesh(call, parts, scale, result);
 }
 
 // --- What a colored mesh says ---
@@ -199,12 +204,10 @@ static bool read_colored(CagCall *call, const CagMesh **out) {
 
 static bool call_values_of(CagCall *call, CagValue *result) {
   const CagMesh *m;
+  double *x;
   if (!read_colored(call, &m)) return false;
-  double *x = cag_malloc((m->vertex_count + 1) * sizeof *x);
-  if (!x) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  *result = cag_list_numbers(call->vm, m->vertex_count, &x);
   for (size_t v = 0; v < m->vertex_count; v++) x[v] = m->uv[2 * v] + 0.0;
-  *result = cag_numbers_value(call->vm, x, m->vertex_count);
-  cag_free(x);
   return true;
 }
 
@@ -282,7 +285,6 @@ static bool call_zebra(CagCall *call, CagValue *result) {
   const CagVec3 usual = {0.4, -0.8, 0.5}; // from the front, a little above
   Zebra z;
   long stripes;
-  Meshes parts = {0};
   bool said = cag_given(call, 2) && call->values[2].type != CAG_NONE;
   z.eye = usual;
   if (!cag_arg_integer_or(call, 1, 8, 1, CAG_SCALE_STRIPES_MAX, &stripes) ||
@@ -291,10 +293,9 @@ static bool call_zebra(CagCall *call, CagValue *result) {
   z.stripes = (int)stripes;
   z.eye = cag_unit(z.eye);
   if (!read_across(call, 3, z.eye, &z.across)) return false;
-  bool ok = make_meshes(call, 4, zebra_mesh, &z, &parts) &&
-            give_mesh(call, &parts, (CagColorScale){CAG_SCALE_STRIPES, -1, 1, z.stripes}, result);
-  free_meshes(&parts);
-  return ok;
+  Meshes *parts = hold_meshes(call);
+  return make_meshes(call, 4, zebra_mesh, &z, parts) &&
+         give_mesh(call, parts, (CagColorScale){CAG_SCALE_STRIPES, -1, 1, z.stripes}, result);
 }
 
 // --- Isophotes ---
@@ -302,7 +303,7 @@ static bool call_zebra(CagCall *call, CagValue *result) {
 #define LEVELS_MOST 1000
 
 // The cosines of the levels: of a count, angles evenly between 0 and 180 degrees, ends left out; of
-// a list, its angles. *out from malloc.
+// a list, its angles. *out is held.
 static bool read_levels(CagCall *call, int argument, double **out, size_t *n) {
   bool listed = cag_given(call, argument) && call->values[argument].type == CAG_LIST;
   long count = 11;
@@ -313,19 +314,16 @@ static bool read_levels(CagCall *call, int argument, double **out, size_t *n) {
   *n = listed ? list->length : (size_t)count;
   if (*n > LEVELS_MOST)
     return cag_fail_call(call, argument, CAG_ERR_value, "expects at most %d angles", LEVELS_MOST);
-  *out = cag_malloc((*n + 1) * sizeof **out);
-  if (!*out) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
+  *out = cag_hold_array(call, *n, sizeof **out);
   for (size_t i = 0; i < *n; i++) {
     double angle = straight * (double)(i + 1) / (double)(*n + 1);
     if (listed) {
       CagValue v = cag_list_get(call->vm, list, i);
-      if (v.type != CAG_ANGLE || !(v.as.number >= 0 && v.as.number <= 180)) {
-        cag_free(*out);
+      if (v.type != CAG_ANGLE || !(v.as.number >= 0 && v.as.number <= 180))
         return cag_fail_call(call, argument, CAG_ERR_value,
                              "expects a count or a list of angles from 0deg to 180deg; element %zu "
                              "is none",
                              i);
-      }
       angle = v.as.number * CAG_RADIANS_PER_DEGREE;
     }
     // A right angle is where the outline is: its cosine is 0, not rounding.
@@ -364,7 +362,7 @@ static bool call_isophotes(CagCall *call, CagValue *result) {
   double *cosines = NULL, tolerance = 0;
   size_t n;
   CagList *shapes;
-  CagCurveList list = {0};
+  CagCurveList *list = cag_hold_curve_list(call);
   CagError err;
   if (cag_given(call, 1) && call->values[1].type != CAG_NONE &&
       !cag_arg_direction(call, 1, direction, &direction, NULL))
@@ -380,13 +378,11 @@ static bool call_isophotes(CagCall *call, CagValue *result) {
     for (size_t k = 0; ok && k < n; k++)
       ok = cag_geometry_ok(call,
                            isophotes_of(cag_list_get(call->vm, shapes, i), direction, cosines[k],
-                                        tolerance, &list, &err),
+                                        tolerance, list, &err),
                            &err) &&
            cag_keep_going(call->vm);
-  ok = ok && give_curves(call, &list, result);
+  ok = ok && give_curves(call, list, result);
   cag_root_pop(call->vm, 1);
-  cag_curve_list_free(&list);
-  cag_free(cosines);
   return ok;
 }
 

@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "base/memory.h"
 #include "interp/builtin/curves.h"
+#include "interp/builtin/holds.h"
 
 // `made` is read after the call that fills it: pass its address.
 static bool give(CagCall *call, CagStatus status, const CagError *err, CagRegion **made,
@@ -31,12 +31,14 @@ static bool read_loop(CagCall *call, int argument, CagValue v, CagCurve **out) {
   size_t n;
   int dimension;
   call->values[argument] = v;
-  bool ok = cag_arg_points(call, argument, &points, &n, &dimension);
+  const bool ok = cag_arg_points(call, argument, &points, &n, &dimension);
   call->values[argument] = kept;
   if (!ok) return false;
-  ok = cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, out, &err), &err);
-  cag_free(points);
-  return ok;
+  cag_hold(call, points);
+  if (!cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, out, &err), &err))
+    return false;
+  cag_release_held(call, points);
+  return true;
 }
 
 // The loops of a list of curves.
@@ -83,20 +85,14 @@ static bool bounded_by_some(CagCall *call, CagValue *result) {
   if (cag_given(call, 1) && !cag_arg_list(call, 1, &holes)) return false;
   const CagList *several = list_of_curves(call, call->values[0]);
   const size_t outer = several ? several->length : 1, n = outer + (holes ? holes->length : 0);
-  CagCurve **loops = cag_malloc(n * sizeof *loops);
-  bool ok = loops != NULL;
-  size_t read = 0;
-  if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (; ok && read < n; read += ok) {
-    const CagValue v = read >= outer ? cag_list_get(call->vm, holes, read - outer)
-                       : several     ? cag_list_get(call->vm, several, read)
-                                     : call->values[0];
-    ok = read_loop(call, read >= outer, v, &loops[read]);
+  CagCurve **loops = cag_hold_curve_array(call, n);
+  for (size_t i = 0; i < n; i++) {
+    const CagValue v = i >= outer ? cag_list_get(call->vm, holes, i - outer)
+                       : several  ? cag_list_get(call->vm, several, i)
+                                  : call->values[0];
+    if (!read_loop(call, i >= outer, v, &loops[i])) return false;
   }
-  ok = ok && bounded_by(call, loops, outer, n - outer, result);
-  for (size_t i = 0; i < read; i++) cag_curve_release(loops[i]);
-  cag_free(loops);
-  return ok;
+  return bounded_by(call, loops, outer, n - outer, result);
 }
 
 bool cag_curves_region(CagCall *call, CagValue *result) {
@@ -178,8 +174,6 @@ typedef struct Operands {
   CagTransform base; // the plane of the first region
   bool based;
   CagValue first; // the first shape; unset: none yet
-  CagRegion **regions;
-  size_t n;
 } Operands;
 
 // A region or closed plane curve in the plane of all; *out has one reference.
@@ -207,36 +201,24 @@ static bool read_shape(Operands *o, CagValue v, size_t operand, CagRegion **out)
 // The union of the shapes of an operand; of none the empty region.
 static bool unite_shapes(Operands *o, const CagList *shapes, size_t operand, CagRegion **out) {
   CagError err;
-  CagRegion **parts = cag_malloc((shapes->length + 1) * sizeof *parts);
-  if (!parts)
-    return cag_fail_call(o->call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  size_t n = 0;
-  bool ok = true;
-  for (; ok && n < shapes->length; n += ok)
-    ok = (n % CAG_LOOK_UP != 0 || cag_keep_going(o->call->vm)) &&
-         read_shape(o, cag_list_get(o->call->vm, shapes, n), operand, &parts[n]);
-  if (ok)
-    ok = cag_geometry_ok(
-        o->call,
-        cag_region_combine(CAG_REGION_UNION, (const CagRegion *const *)parts, n, out, &err), &err);
-  for (size_t i = 0; i < n; i++) cag_region_release(parts[i]);
-  cag_free(parts);
-  return ok;
+  CagRegion **parts = cag_hold_region_array(o->call, shapes->length);
+  for (size_t i = 0; i < shapes->length; i++)
+    if ((i % CAG_LOOK_UP == 0 && !cag_keep_going(o->call->vm)) ||
+        !read_shape(o, cag_list_get(o->call->vm, shapes, i), operand, &parts[i]))
+      return false;
+  CagStatus status = cag_region_combine(CAG_REGION_UNION, (const CagRegion *const *)parts,
+                                        shapes->length, out, &err);
+  cag_release_held(o->call, parts);
+  return cag_geometry_ok(o->call, status, &err);
 }
 
 // A region, a closed plane curve, or the union of those of a group or list.
-static bool read_operand(Operands *o, CagValue v) {
-  if (v.type != CAG_LIST && v.type != CAG_GROUP) {
-    if (!read_shape(o, v, o->n + 1, &o->regions[o->n])) return false;
-    o->n++;
-    return true;
-  }
+static bool read_operand(Operands *o, CagValue v, size_t operand, CagRegion **out) {
+  if (v.type != CAG_LIST && v.type != CAG_GROUP) return read_shape(o, v, operand, out);
   CagBuilder *builder = cag_builder_new(o->call->vm);
   if (!cag_shapes_collect(o->call, v, builder)) return false;
   const CagList *shapes = CAG_AS_LIST(cag_builder_finish(o->call->vm, builder));
-  if (!unite_shapes(o, shapes, o->n + 1, &o->regions[o->n])) return false;
-  o->n++;
-  return true;
+  return unite_shapes(o, shapes, operand, out);
 }
 
 static bool combine(CagCall *call, CagRegionOp op, CagValue *result) {
@@ -247,16 +229,11 @@ static bool combine(CagCall *call, CagRegionOp op, CagValue *result) {
   if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0) return cag_fail_call(call, 0, CAG_ERR_value, "expects at least one region");
   Operands o = {.call = call, .base = cag_transform_identity(), .first = cag_unset()};
-  o.regions = cag_malloc(n * sizeof *o.regions);
-  bool ok = o.regions != NULL;
-  if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  while (ok && o.n < n) ok = read_operand(&o, items[o.n]);
-  if (ok)
-    ok = cag_geometry_ok(
-        call, cag_region_combine(op, (const CagRegion *const *)o.regions, n, &out, &err), &err);
-  for (size_t i = 0; i < o.n; i++) cag_region_release(o.regions[i]);
-  cag_free(o.regions);
-  if (!ok) return false;
+  CagRegion **regions = cag_hold_region_array(call, n);
+  for (size_t i = 0; i < n; i++)
+    if (!read_operand(&o, items[i], i + 1, &regions[i])) return false;
+  CagStatus status = cag_region_combine(op, (const CagRegion *const *)regions, n, &out, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
   *result = cag_region_value(call->vm, out, &o.base);
   if (o.first.type != CAG_UNSET) cag_shape_say_alike(*result, o.first);
   return true;

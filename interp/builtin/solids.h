@@ -27,8 +27,8 @@
 CAG_SOLID_FUNCTIONS(X)
 #undef X
 
-// Reads faces, lists of 3 or more numbers below `vertices`, as counts and indices. Both arrays,
-// NULL before, are to be freed even when the call fails.
+// Reads faces, lists of 3 or more numbers below `vertices`, as counts and indices. Both arrays are
+// held, since a caller could not hold one without risking the other.
 bool cag_arg_faces(CagCall *call, int argument, size_t vertices, uint32_t **counts,
                    uint32_t **indices, size_t *count);
 

@@ -2,9 +2,9 @@
 
 #include <string.h>
 
-#include "base/memory.h"
 #include "geom/solid/clip.h"
 #include "geom/solid/csg.h"
+#include "interp/builtin/holds.h"
 #include "interp/builtin/scene.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/surfaces.h"
@@ -83,11 +83,25 @@ static uint32_t label_of(CagVm *vm, CagRecord *material) {
   return (uint32_t)slot + 1;
 }
 
+typedef struct Relabeling {
+  const Paint *paint;
+  uint32_t label;
+} Relabeling;
+
+static bool find_label(CagVm *vm, void *context) {
+  Relabeling *r = context;
+  CagRecord *own = cag_solids_material(vm, r->label), *said = r->paint->said;
+  if (!own) r->label = label_of(vm, said ? said : r->paint->first);
+  else if (said) r->label = label_of(vm, cag_material_combine(vm, own, said));
+  return true;
+}
+
+// The core holds memory while it asks for a label, so exhausted memory must not jump over it.
 static uint32_t relabel(void *context, uint32_t label) {
-  const Paint *p = context;
-  CagRecord *own = cag_solids_material(p->vm, label);
-  if (!own) return label_of(p->vm, p->said ? p->said : p->first);
-  return p->said ? label_of(p->vm, cag_material_combine(p->vm, own, p->said)) : label;
+  const Paint *paint = context;
+  Relabeling r = {paint, label};
+  cag_vm_call_back(paint->vm, find_label, &r); // leaves the error for relabel_operand
+  return r.label;
 }
 
 static bool same_record(CagVm *vm, CagRecord *a, CagRecord *b) {
@@ -113,21 +127,6 @@ static bool find_paint(CagCall *call, const CagValue *items, size_t n, Paint *ou
 }
 
 // --- Operands ---
-
-typedef struct Operands {
-  CagSolid **s;
-  size_t n;
-} Operands;
-
-static bool operands_new(CagCall *call, size_t n, Operands *out) {
-  *out = (Operands){cag_malloc((n + 1) * sizeof(CagSolid *)), 0};
-  return out->s || cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
-}
-
-static void operands_free(Operands *o) {
-  for (size_t i = 0; i < o->n; i++) cag_solid_release(o->s[i]);
-  cag_free(o->s);
-}
 
 // The place of an operand in an error: "the second operand" would need words for all numbers.
 static bool operand_ok(CagCall *call, CagStatus status, CagError *err, size_t index) {
@@ -160,13 +159,23 @@ static bool read_one(CagCall *call, CagValue v, size_t index, CagSolid **out) {
   }
 }
 
-static CagStatus combine(CagCall *call, CagSetOperation op, const Operands *o, CagSolid **out,
-                         CagError *err) {
-  if (o->n == 1) {
-    *out = cag_solid_retain(o->s[0]);
+static bool relabel_operand(CagCall *call, Paint *paint, CagSolid **operand) {
+  CagSolid *labeled;
+  CagError err;
+  if (!cag_geometry_ok(call, cag_solid_relabel(*operand, relabel, paint, &labeled, &err), &err))
+    return false;
+  cag_solid_release(*operand);
+  *operand = labeled;
+  return !call->vm->failed;
+}
+
+static CagStatus combine(CagCall *call, CagSetOperation op, CagSolid **operands, size_t n,
+                         CagSolid **out, CagError *err) {
+  if (n == 1) {
+    *out = cag_solid_retain(operands[0]);
     return CAG_OK;
   }
-  const CagStatus status = cag_solid_combine(op, o->s, o->n, cag_vm_stop(call->vm), out, err);
+  const CagStatus status = cag_solid_combine(op, operands, n, cag_vm_stop(call->vm), out, err);
   if (!status) say_place(call, *out);
   return status;
 }
@@ -175,29 +184,23 @@ static CagStatus combine(CagCall *call, CagSetOperation op, const Operands *o, C
 // them, if there is one.
 static bool read_operand(CagCall *call, CagValue v, size_t index, Paint *paint, CagSolid **out,
                          CagValue *said) {
-  Operands parts;
   CagError err;
   CagBuilder *builder = cag_builder_new(call->vm);
   if (!cag_shapes_collect(call, v, builder)) return false;
   const CagList *shapes = CAG_AS_LIST(cag_builder_finish(call->vm, builder));
   if (shapes->length == 0) return cag_geometry_ok(call, cag_solid_empty(out, &err), &err);
-  if (!operands_new(call, shapes->length, &parts)) return false;
-  bool ok = true;
+  CagSolid **parts = cag_hold_solid_array(call, shapes->length);
   *said = cag_list_get(call->vm, shapes, 0);
-  for (size_t i = 0; ok && i < shapes->length; i++) {
+  for (size_t i = 0; i < shapes->length; i++) {
     const CagValue shape = cag_list_get(call->vm, shapes, i);
-    ok = read_one(call, shape, index, &parts.s[parts.n]);
-    if (!ok) break;
-    CagSolid *plain = parts.s[parts.n++];
+    if (!read_one(call, shape, index, &parts[i])) return false;
     if (!paint || !paint->mixed) continue;
     paint->said = CAG_AS_SHAPE(shape)->material;
-    ok = cag_geometry_ok(
-        call, cag_solid_relabel(plain, relabel, paint, &parts.s[parts.n - 1], &err), &err);
-    if (ok) cag_solid_release(plain);
+    if (!relabel_operand(call, paint, &parts[i])) return false;
   }
-  ok = ok && cag_geometry_ok(call, combine(call, CAG_UNION, &parts, out, &err), &err);
-  operands_free(&parts);
-  return ok;
+  const CagStatus status = combine(call, CAG_UNION, parts, shapes->length, out, &err);
+  cag_release_held(call, parts);
+  return cag_geometry_ok(call, status, &err);
 }
 
 // --- union, difference, intersection ---
@@ -241,26 +244,23 @@ static bool call_of_regions(CagCall *call, const char *name, CagValue *result) {
 static bool operate(CagCall *call, const char *name, CagSetOperation op, CagValue *result) {
   CagValue *items, said = cag_unset(), unused;
   size_t n;
-  Operands o;
   CagError err;
   CagSolid *made = NULL;
   if (is_of_regions(call)) return call_of_regions(call, name, result);
   if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0)
     return cag_fail_call(call, -1, CAG_ERR_csg_operand, "expects solids, found an empty list");
-  if (!operands_new(call, n, &o)) return false;
+  CagSolid **operands = cag_hold_solid_array(call, n);
   Paint paint;
-  bool ok = find_paint(call, items, n, &paint);
-  for (size_t i = 0; ok && i < n; i++) {
-    ok = (i % CAG_LOOK_UP != 0 || cag_keep_going(call->vm)) &&
-         read_operand(call, items[i], i, &paint, &o.s[o.n], i == 0 ? &said : &unused);
-    if (ok) o.n++;
-  }
-  ok = ok && give(call, combine(call, op, &o, &made, &err), &err, &made, result);
-  if (ok && said.type != CAG_UNSET) say_body(*result, CAG_AS_SHAPE(said));
-  if (ok && paint.mixed) CAG_AS_SHAPE(*result)->material = NULL; // its faces have theirs
-  operands_free(&o);
-  return ok;
+  if (!find_paint(call, items, n, &paint)) return false;
+  for (size_t i = 0; i < n; i++)
+    if ((i % CAG_LOOK_UP == 0 && !cag_keep_going(call->vm)) ||
+        !read_operand(call, items[i], i, &paint, &operands[i], i == 0 ? &said : &unused))
+      return false;
+  if (!give(call, combine(call, op, operands, n, &made, &err), &err, &made, result)) return false;
+  if (said.type != CAG_UNSET) say_body(*result, CAG_AS_SHAPE(said));
+  if (paint.mixed) CAG_AS_SHAPE(*result)->material = NULL; // its faces have theirs
+  return true;
 }
 
 bool cag_solids_union(CagCall *call, CagValue *result) {
@@ -306,10 +306,9 @@ static CagStatus heights(double low, double high, CagSolid *out[2], CagError *er
 }
 
 bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue *result) {
-  CagSolid *ends[2] = {NULL}, *made = NULL;
+  CagSolid **ends = cag_hold_solid_array(call, 2), *made = NULL;
   CagError err;
   size_t n = 0;
-  bool ok = true;
   if (cag_given(call, within) && call->values[within].type != CAG_NONE) {
     CagValue v = call->values[within];
     double low, high;
@@ -321,15 +320,13 @@ bool cag_solids_of_form(CagCall *call, const CagQuadric *q, int within, CagValue
         return cag_fail_type(call, within, "a solid or a range of z");
       if (!(low < high))
         return cag_fail_call(call, within, CAG_ERR_value, "expects a range of z that is not empty");
-      ok = cag_geometry_ok(call, heights(low, high, ends, &err), &err);
+      if (!cag_geometry_ok(call, heights(low, high, ends, &err), &err)) return false;
       n = 2;
     }
   }
-  CagStatus status = ok ? bounded_form(call, q, ends, n, &made, &err) : CAG_OK;
-  if (ok && !status) say_place(call, made);
-  ok = ok && give(call, status, &err, &made, result);
-  for (int i = 0; i < 2; i++) cag_solid_release(ends[i]);
-  return ok;
+  CagStatus status = bounded_form(call, q, ends, n, &made, &err);
+  if (!status) say_place(call, made);
+  return give(call, status, &err, &made, result);
 }
 
 // --- clip ---
@@ -364,6 +361,13 @@ static CagTessellation fineness(const Clip *c, const CagShape *shape) {
   return how;
 }
 
+// Takes the mesh over.
+static bool add_clipped(const Clip *c, CagMesh *m, CagValue v, CagBuilder *into) {
+  CagValue value = cag_mesh_value(c->call->vm, m);
+  cag_shape_say_alike(value, v);
+  return m->triangle_count == 0 || cag_builder_add(c->call->vm, into, value);
+}
+
 static bool clip_surface(const Clip *c, CagValue v, CagBuilder *into) {
   const CagShape *shape = CAG_AS_SHAPE(v);
   const CagTessellation how = fineness(c, shape);
@@ -376,30 +380,22 @@ static bool clip_surface(const Clip *c, CagValue v, CagBuilder *into) {
   if (!status) status = cag_surface_clip(s, c->by, &how, &m, &err);
   cag_surface_release(s);
   if (!cag_geometry_ok(c->call, status, &err)) return false;
-  if (m->triangle_count == 0) {
-    cag_mesh_release(m);
-    return true;
-  }
-  CagValue value = cag_mesh_value(c->call->vm, m);
-  cag_shape_say_alike(value, v);
-  return cag_builder_add(c->call->vm, into, value);
+  return add_clipped(c, m, v, into);
 }
 
 static bool clip_curve(const Clip *c, CagValue v, CagBuilder *into) {
-  CagCurve **pieces = NULL;
-  size_t n = 0;
+  CagCurveList *pieces = cag_hold_curve_list(c->call);
   CagError err;
-  CagStatus status =
-      cag_curve_clip(CAG_AS_SHAPE(v)->as.curve, c->by, cag_vm_stop(c->call->vm), &pieces, &n, &err);
+  CagStatus status = cag_curve_clip(CAG_AS_SHAPE(v)->as.curve, c->by, cag_vm_stop(c->call->vm),
+                                    &pieces->items, &pieces->count, &err);
   if (!cag_geometry_ok(c->call, status, &err)) return false;
-  bool ok = true;
-  for (size_t i = 0; i < n; i++) {
-    CagValue piece = cag_curve_value(c->call->vm, pieces[i]);
+  for (size_t i = 0; i < pieces->count; i++) {
+    CagValue piece = cag_curve_value(c->call->vm, cag_curve_retain(pieces->items[i]));
     cag_shape_say_alike(piece, v);
-    ok = cag_builder_add(c->call->vm, into, piece) && ok;
+    if (!cag_builder_add(c->call->vm, into, piece)) return false;
   }
-  cag_free(pieces);
-  return ok;
+  cag_release_held(c->call, pieces);
+  return true;
 }
 
 static bool clip_shape(const Clip *c, CagValue v, CagBuilder *into) {
@@ -416,10 +412,8 @@ static bool clip_shape(const Clip *c, CagValue v, CagBuilder *into) {
   const CagTessellation how = fineness(c, CAG_AS_SHAPE(v));
   CagMesh *m = NULL;
   CagError err;
-  if (!cag_geometry_ok(c->call, cag_mesh_clip(mesh, c->by, &how, &m, &err), &err)) return false;
-  CagValue value = cag_mesh_value(c->call->vm, m);
-  cag_shape_say_alike(value, v);
-  return m->triangle_count == 0 || cag_builder_add(c->call->vm, into, value);
+  return cag_geometry_ok(c->call, cag_mesh_clip(mesh, c->by, &how, &m, &err), &err) &&
+         add_clipped(c, m, v, into);
 }
 
 // Nothing of a shape: an empty solid of what has an inside, else an empty mesh.
@@ -466,13 +460,13 @@ bool cag_solids_clip(CagCall *call, CagValue *result) {
   } else if (!read_operand(call, call->values[1], 1, NULL, &c.by, &said)) {
     return false;
   }
+  cag_hold_solid(call, c.by);
   CagBuilder *shapes = cag_builder_new(call->vm), *kept = cag_builder_new(call->vm);
-  bool ok = cag_shapes_collect(call, call->values[0], shapes);
-  const CagList *list = ok ? CAG_AS_LIST(cag_builder_finish(call->vm, shapes)) : NULL;
-  for (size_t i = 0; ok && i < list->length; i++)
-    ok = cag_keep_going(call->vm) && clip_shape(&c, cag_list_get(call->vm, list, i), kept);
-  cag_solid_release(c.by);
-  if (!ok) return false;
+  if (!cag_shapes_collect(call, call->values[0], shapes)) return false;
+  const CagList *list = CAG_AS_LIST(cag_builder_finish(call->vm, shapes));
+  for (size_t i = 0; i < list->length; i++)
+    if (!cag_keep_going(call->vm) || !clip_shape(&c, cag_list_get(call->vm, list, i), kept))
+      return false;
   CagValue parts = cag_builder_finish(call->vm, kept);
   size_t n = CAG_AS_LIST(parts)->length;
   CagType first = call->values[0].type;

@@ -1,6 +1,5 @@
 // Shapes that explain other shapes: control nets, isolines, arrows, frames.
 
-#include "base/memory.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/surfaces.h"
 
@@ -30,19 +29,16 @@ static bool surface_net(CagCall *call, const CagSurface *s, CagValue *result) {
   }
   CagBuilder *list = cag_builder_new(call->vm);
   size_t nu = net.distinct_u, nv = net.distinct_v;
-  CagVec3 *points = cag_malloc((nu > nv ? nu : nv) * sizeof *points);
-  bool ok = points != NULL;
-  if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
-  for (size_t i = 0; ok && i < nu; i++) {
+  CagVec3 *points = cag_hold_array(call, nu > nv ? nu : nv, sizeof *points);
+  for (size_t i = 0; i < nu; i++) {
     for (size_t j = 0; j < nv; j++) points[j] = point_of(net.homogeneous + 4 * (i * net.nv + j));
-    ok = add_line(call, list, points, nv, net.periodic_v, 3);
+    if (!add_line(call, list, points, nv, net.periodic_v, 3)) return false;
   }
-  for (size_t j = 0; ok && j < nv; j++) {
+  for (size_t j = 0; j < nv; j++) {
     for (size_t i = 0; i < nu; i++) points[i] = point_of(net.homogeneous + 4 * (i * net.nv + j));
-    ok = add_line(call, list, points, nu, net.periodic_u, 3);
+    if (!add_line(call, list, points, nu, net.periodic_u, 3)) return false;
   }
-  cag_free(points);
-  return ok && give_group(call, list, result);
+  return give_group(call, list, result);
 }
 
 bool cag_solids_control_net(CagCall *call, CagValue *result) {

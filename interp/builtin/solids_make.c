@@ -1,7 +1,7 @@
 // Solids: primitives, prisms, rods and closed shells.
 
-#include "base/memory.h"
 #include "geom/solid/csg.h"
+#include "interp/builtin/holds.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
@@ -137,17 +137,16 @@ bool cag_solids_torus(CagCall *call, CagValue *result) {
 }
 
 // The faces of a closed body: surfaces, and regions as flat ones. Solids give theirs.
-static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **faces, size_t *n) {
+static bool collect_faces(CagCall *call, const CagList *shapes, CagSurface **faces) {
   CagError err;
   for (size_t i = 0; i < shapes->length; i++) {
     CagValue v = cag_list_get(call->vm, shapes, i);
     const CagShape *shape = CAG_AS_SHAPE(v);
     if (v.type == CAG_SURFACE) {
-      faces[(*n)++] = cag_surface_retain(shape->as.surface);
+      faces[i] = cag_surface_retain(shape->as.surface);
     } else if (v.type == CAG_REGION) {
-      CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &faces[*n], &err);
+      CagStatus status = cag_surface_planar(shape->as.region, &shape->placement, &faces[i], &err);
       if (!cag_geometry_ok(call, status, &err)) return false;
-      (*n)++;
     } else {
       return cag_fail_call(call, 0, CAG_ERR_type, "expects surfaces and regions, found %s",
                            cag_type_article(v));
@@ -177,15 +176,12 @@ static bool solid_of_mesh(CagCall *call, CagValue v, CagValue *result) {
 static bool solid_of_faces(CagCall *call, const CagList *shapes, CagValue *result) {
   CagError err;
   CagSolid *s = NULL;
-  CagSurface **faces = cag_calloc(shapes->length, sizeof *faces);
-  if (!faces) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
-  size_t n = 0;
-  bool ok = collect_faces(call, shapes, faces, &n) &&
-            give(call, close_faces(call, faces, n, &s, &err), &err, &s, result);
-  for (size_t i = 0; i < n; i++) cag_surface_release(faces[i]);
-  cag_free(faces);
-  if (ok) cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
-  return ok;
+  CagSurface **faces = cag_hold_surface_array(call, shapes->length);
+  if (!collect_faces(call, shapes, faces) ||
+      !give(call, close_faces(call, faces, shapes->length, &s, &err), &err, &s, result))
+    return false;
+  cag_shape_say_alike(*result, cag_list_get(call->vm, shapes, 0));
+  return true;
 }
 
 // The ten numbers of a form, or its rows.

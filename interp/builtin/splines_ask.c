@@ -170,15 +170,15 @@ bool cag_splines_polynomials(CagCall *call, CagValue *result) {
   if (!cag_arg_curve(call, 0, &c) ||
       !cag_geometry_ok(call, cag_curve_coefficients(c, &a, &pieces, &degree, &err), &err))
     return false;
+  cag_hold(call, a);
   CagBuilder *rows = cag_builder_new(call->vm);
-  bool ok = true;
   const size_t stride = (size_t)degree + 1;
-  for (size_t i = 0; ok && i < pieces; i++)
-    ok = cag_builder_add(call->vm, rows,
-                         cag_points_value(call->vm, a + i * stride, stride, c->dimension));
-  cag_free(a);
-  if (ok) *result = cag_builder_finish(call->vm, rows);
-  return ok;
+  for (size_t i = 0; i < pieces; i++)
+    if (!cag_builder_add(call->vm, rows,
+                         cag_points_value(call->vm, a + i * stride, stride, c->dimension)))
+      return false;
+  *result = cag_builder_finish(call->vm, rows);
+  return true;
 }
 
 // --- Cubic segments ---
@@ -283,11 +283,11 @@ bool cag_splines_convert_cubic(CagCall *call, CagValue *result) {
   int dimension, from;
   if (!cag_arg_choice(call, 1, names, &from) || !cag_splines_points(call, 0, &g, &n, &dimension))
     return false;
-  if (n == 4) to_bezier_points(g, from, b);
-  cag_free(g);
+  cag_hold(call, g);
   if (n != 4)
     return cag_splines_fail(call, CAG_ERR_point_count, "points", -1,
                             "a cubic has four points and vectors; these are %zu", n);
+  to_bezier_points(g, from, b);
   const CagVec3 d0 = cag_scaled(cag_sub(b[1], b[0]), 3), d1 = cag_scaled(cag_sub(b[3], b[2]), 3);
   const CagVec3 bend = cag_scaled(cag_add(cag_sub(b[0], cag_scaled(b[1], 2)), b[2]), 3);
   const CagVec3 cube = cag_add(cag_sub(b[3], b[0]), cag_scaled(cag_sub(b[1], b[2]), 3));
@@ -395,13 +395,12 @@ bool cag_splines_line_crossings(CagCall *call, CagValue *result) {
   const CagPlane plane = {cag_scaled(normal, offset / square), cag_unit(normal)};
   if (!cag_geometry_ok(call, cag_curve_intersect_plane(c, &plane, &meetings, &n, &err), &err))
     return false;
+  cag_hold_for(call, cag_free, meetings);
   CagBuilder *t = cag_builder_new(call->vm), *points = cag_builder_new(call->vm);
-  bool ok = true;
-  for (size_t i = 0; ok && i < n; i++)
-    ok = cag_builder_add(call->vm, t, cag_parameter_value(c->angular, meetings[i].t)) &&
-         cag_builder_add(call->vm, points, cag_point(call->vm, meetings[i].point, c->dimension));
-  cag_free(meetings);
-  if (!ok) return false;
+  for (size_t i = 0; i < n; i++)
+    if (!cag_builder_add(call->vm, t, cag_parameter_value(c->angular, meetings[i].t)) ||
+        !cag_builder_add(call->vm, points, cag_point(call->vm, meetings[i].point, c->dimension)))
+      return false;
   CagValue values[] = {cag_builder_finish(call->vm, t), cag_builder_finish(call->vm, points),
                        cag_number((double)n),
                        cag_number((double)polygon_crossings(c, normal, offset))};
@@ -414,12 +413,9 @@ bool cag_splines_hulls_disjoint(CagCall *call, CagValue *result) {
   size_t n, m;
   int d;
   if (!cag_arg_points(call, 0, &a, &n, &d)) return false;
-  if (!cag_arg_points(call, 1, &b, &m, &d)) {
-    cag_free(a);
-    return false;
-  }
+  cag_hold(call, a);
+  if (!cag_arg_points(call, 1, &b, &m, &d)) return false;
+  cag_hold(call, b);
   *result = cag_bool(cag_hulls_disjoint(a, n, b, m));
-  cag_free(a);
-  cag_free(b);
   return true;
 }

@@ -15,6 +15,7 @@ bool cag_splines_data_parameters(CagCall *call, CagValue *result) {
   if (!cag_arg_choice(call, 1, names, &choice) ||
       !cag_splines_points(call, 0, &points, &n, &dimension))
     return false;
+  cag_hold(call, points);
   *result = cag_list_numbers(call->vm, n, &out);
   double sum = 0;
   for (size_t i = 0; i < n; i++) {
@@ -22,22 +23,9 @@ bool cag_splines_data_parameters(CagCall *call, CagValue *result) {
     if (i > 0 && choice != CAG_SPACING_UNIFORM) step = cag_norm(cag_sub(points[i], points[i - 1]));
     out[i] = sum += choice == CAG_SPACING_CENTRIPETAL ? sqrt(step) : step;
   }
-  cag_free(points);
   if (isfinite(sum)) return true;
   return cag_splines_fail(call, CAG_ERR_not_finite, "points", -1,
                           "the distances of the points overflow");
-}
-
-// What both read: points, degree, parameters, knots.
-typedef struct Request {
-  CagFitData data;
-  CagVec3 *points;
-  double *parameters;
-} Request;
-
-static void free_request(Request *r) {
-  cag_free(r->points);
-  cag_free(r->parameters);
 }
 
 static bool read_knots(CagCall *call, int argument, CagFitData *d, size_t count) {
@@ -60,75 +48,66 @@ static bool read_knots(CagCall *call, int argument, CagFitData *d, size_t count)
                           count, d->degree, wanted, given);
 }
 
-static bool read_request(CagCall *call, int degree, int order, int parameters, Request *out) {
-  Request r = {0};
-  CagFitData *d = &r.data;
+// What both read, except the knots. The arrays are held.
+static bool read_data(CagCall *call, int degree, int order, int parameters, CagFitData *d) {
+  CagVec3 *points;
+  double *own;
+  *d = (CagFitData){0};
   if (!cag_arg_degree(call, degree, order, 3, &d->degree) ||
-      !cag_splines_points(call, 0, &r.points, &d->n, &d->dimension))
+      !cag_splines_points(call, 0, &points, &d->n, &d->dimension))
     return false;
-  d->points = r.points;
-  if (!cag_splines_parameters(call, parameters, CAG_SPACING_CHORD, d->n, &d->spacing,
-                              &r.parameters)) {
-    free_request(&r);
+  d->points = cag_hold(call, points);
+  if (!cag_splines_parameters(call, parameters, CAG_SPACING_CHORD, d->n, &d->spacing, &own))
     return false;
-  }
-  d->parameters = r.parameters;
-  *out = r;
+  cag_hold_for(call, cag_free, own);
+  d->parameters = own;
   return true;
 }
 
 // interpolate(points, degree = 3, parameters = "chord", tangents = none, knots = "auto",
 //             order = none)
 bool cag_splines_interpolate(CagCall *call, CagValue *result) {
-  Request r;
+  CagFitData d;
   CagVec3 *tangents = NULL;
   size_t count = 0;
   int dimension;
   CagCurve *c = NULL;
   CagError err;
-  if (!read_request(call, 1, 5, 2, &r)) return false;
-  bool ok = !cag_splines_set(call, 3) || cag_splines_points(call, 3, &tangents, &count, &dimension);
-  if (ok && tangents && dimension != r.data.dimension)
-    ok = cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
-                          "the points have %d numbers, the tangents %d", r.data.dimension,
-                          dimension);
-  ok = ok && read_knots(call, 4, &r.data, r.data.n + count);
-  if (ok) {
-    CagStatus status = cag_curve_interpolate(&r.data, tangents, count, &c, &err);
-    ok = cag_splines_give(call, status, &err, &c, result);
-  }
-  cag_free(tangents);
-  free_request(&r);
-  return ok;
+  if (!read_data(call, 1, 5, 2, &d) ||
+      (cag_splines_set(call, 3) && !cag_splines_points(call, 3, &tangents, &count, &dimension)))
+    return false;
+  cag_hold_for(call, cag_free, tangents);
+  if (tangents && dimension != d.dimension)
+    return cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
+                            "the points have %d numbers, the tangents %d", d.dimension, dimension);
+  if (!read_knots(call, 4, &d, d.n + count)) return false;
+  CagStatus status = cag_curve_interpolate(&d, tangents, count, &c, &err);
+  return cag_splines_give(call, status, &err, &c, result);
 }
 
 // fit(points, degree = 3, count = degree + 1, parameters = "chord", fixed = "ends", knots = "auto",
 //     error = 1e-9, order = none)
 static bool fit(CagCall *call, CagFitReport *report, size_t *n, int *dimension, CagCurve **out) {
   static const char *const names[] = {"ends", "none", "x", "y", "z", NULL};
-  Request r;
+  CagFitData d;
   int fixed;
   long count;
   double slack;
   CagError err;
   if (!cag_arg_choice(call, 4, names, &fixed) || !cag_arg_number_or(call, 6, 1e-9, &slack) ||
-      !read_request(call, 1, 7, 3, &r))
+      !read_data(call, 1, 7, 3, &d) ||
+      !cag_arg_integer_or(call, 2, d.degree + 1L, 1, 100000000, &count))
     return false;
-  bool ok = cag_arg_integer_or(call, 2, r.data.degree + 1L, 1, 100000000, &count);
-  if (ok && !(slack >= 0))
-    ok = cag_splines_fail(call, CAG_ERR_bad_parameter, "error", -1,
-                          "the error that is allowed is 0 or more");
+  if (!(slack >= 0))
+    return cag_splines_fail(call, CAG_ERR_bad_parameter, "error", -1,
+                            "the error that is allowed is 0 or more");
   // Too many control points are told as that, not as the wrong number of knots.
-  ok = ok && ((size_t)count > r.data.n || read_knots(call, 5, &r.data, (size_t)count));
-  if (ok) {
-    CagStatus status = cag_curve_fit(&r.data, (size_t)count, fixed == 0,
-                                     fixed >= 2 ? fixed - 2 : -1, slack, out, report, &err);
-    ok = cag_geometry_ok(call, status, &err);
-  }
-  *n = r.data.n;
-  *dimension = r.data.dimension;
-  free_request(&r);
-  return ok;
+  if ((size_t)count <= d.n && !read_knots(call, 5, &d, (size_t)count)) return false;
+  *n = d.n;
+  *dimension = d.dimension;
+  CagStatus status = cag_curve_fit(&d, (size_t)count, fixed == 0, fixed >= 2 ? fixed - 2 : -1,
+                                   slack, out, report, &err);
+  return cag_geometry_ok(call, status, &err);
 }
 
 bool cag_splines_fit(CagCall *call, CagValue *result) {
@@ -167,22 +146,25 @@ static bool report_surface(CagCall *call, CagValue *result) {
   return row->function(&other, result);
 }
 
+static void free_report(void *report) { cag_fit_report_free(report); }
+
 bool cag_splines_fit_report(CagCall *call, CagValue *result) {
   if (is_grid(call)) return report_surface(call, result);
   static const char *const names[] = {"curve", "parameters", "residuals",
                                       "rms",   "largest",    "rounds"};
   CagCurve *c;
-  CagFitReport report;
+  CagFitReport *report = cag_hold_array(call, 1, sizeof *report);
+  cag_hold_for(call, free_report, report);
   size_t n;
   int dimension;
-  if (!fit(call, &report, &n, &dimension, &c)) return false;
-  CagValue values[] = {cag_curve_value(call->vm, c),
-                       cag_numbers_value(call->vm, report.parameters, n),
-                       cag_points_value(call->vm, report.residuals, n, dimension),
-                       cag_number(report.rms),
-                       cag_number(report.largest),
-                       cag_number(report.rounds)};
-  cag_fit_report_free(&report);
+  if (!fit(call, report, &n, &dimension, &c)) return false;
+  const CagValue curve = cag_curve_value(call->vm, c);
+  CagValue values[] = {curve,
+                       cag_numbers_value(call->vm, report->parameters, n),
+                       cag_points_value(call->vm, report->residuals, n, dimension),
+                       cag_number(report->rms),
+                       cag_number(report->largest),
+                       cag_number(report->rounds)};
   *result = cag_record_new(call->vm, names, values, 6);
   return true;
 }

@@ -85,20 +85,17 @@ bool cag_splines_parameters(CagCall *call, int argument, CagSpacing otherwise, s
                             "`parameters` are one number for each of the %zu points, or the %zu "
                             "lengths between them; these are %zu",
                             n, n - 1, count);
-  double *u = cag_malloc(n * sizeof *u);
-  if (!u)
-    return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
+  double *u = cag_hold_array(call, n, sizeof *u);
   if (count == n) memcpy(u, x, n * sizeof *u);
   else u[0] = 0;
   for (size_t i = 0; i < count && count + 1 == n; i++) {
     u[i + 1] = u[i] + x[i];
-    if (x[i] > 0 && isfinite(x[i])) continue;
-    cag_free(u);
-    return cag_splines_fail(call, CAG_ERR_bad_parameter_length, "parameters", (long)i,
-                            "the lengths of the segments are positive: parameters[%zu] = %s", i,
-                            cag_number_text(x[i], text));
+    if (!(x[i] > 0 && isfinite(x[i])))
+      return cag_splines_fail(call, CAG_ERR_bad_parameter_length, "parameters", (long)i,
+                              "the lengths of the segments are positive: parameters[%zu] = %s", i,
+                              cag_number_text(x[i], text));
   }
-  *own = u;
+  *own = cag_give_held(call, u);
   return true;
 }
 
@@ -111,32 +108,20 @@ typedef struct Data {
   double *u;
 } Data;
 
-static void free_data(Data *d) {
-  cag_free(d->points);
-  cag_free(d->u);
-}
-
+// Both arrays are held.
 static bool read_data(CagCall *call, int parameters, CagSpacing otherwise, Data *out) {
   CagSpacing spacing;
   CagError err;
   Data d = {0};
   if (!cag_splines_points(call, 0, &d.points, &d.n, &d.dimension)) return false;
-  if (!cag_splines_parameters(call, parameters, otherwise, d.n, &spacing, &d.u)) {
-    cag_free(d.points);
-    return false;
-  }
-  CagStatus status = CAG_OK;
-  if (!d.u) {
-    d.u = cag_malloc(d.n * sizeof *d.u);
-    status =
-        d.u ? cag_spacing_parameters(d.points, d.n, spacing, d.u, &err) : cag_fail_memory(&err);
-  }
-  if (!cag_geometry_ok(call, status, &err)) {
-    free_data(&d);
-    return false;
-  }
+  cag_hold(call, d.points);
+  if (!cag_splines_parameters(call, parameters, otherwise, d.n, &spacing, &d.u)) return false;
+  const bool given = d.u;
+  if (given) cag_hold(call, d.u);
+  else d.u = cag_hold_array(call, d.n, sizeof *d.u);
   *out = d;
-  return true;
+  return given ||
+         cag_geometry_ok(call, cag_spacing_parameters(d.points, d.n, spacing, d.u, &err), &err);
 }
 
 // hermite(points, tangents, parameters = "uniform", limit = none)
@@ -149,26 +134,21 @@ bool cag_splines_hermite(CagCall *call, CagValue *result) {
   CagCurve *c = NULL;
   CagError err;
   if (cag_splines_set(call, 3) && !cag_arg_positive(call, 3, &limit)) return false;
-  if (!read_data(call, 2, CAG_SPACING_UNIFORM, &d)) return false;
-  bool ok = cag_splines_points(call, 1, &tangents, &count, &dimension);
-  if (ok) {
-    if (count != d.n)
-      ok = cag_splines_fail(call, CAG_ERR_point_count, "tangents", -1,
+  if (!read_data(call, 2, CAG_SPACING_UNIFORM, &d) ||
+      !cag_splines_points(call, 1, &tangents, &count, &dimension))
+    return false;
+  cag_hold(call, tangents);
+  if (count != d.n)
+    return cag_splines_fail(call, CAG_ERR_point_count, "tangents", -1,
                             "there is one tangent to each point: %zu points, %zu tangents", d.n,
                             count);
-    else if (dimension != d.dimension)
-      ok = cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
+  if (dimension != d.dimension)
+    return cag_splines_fail(call, CAG_ERR_dimension_mismatch, "tangents", -1,
                             "the points have %d numbers, the tangents %d", d.dimension, dimension);
-    if (ok) ok = cag_geometry_ok(call, cag_parameters_check(d.u, d.n, &err), &err);
-    if (ok) {
-      if (isfinite(limit)) cag_hermite_limit(d.points, tangents, d.n, d.u, limit);
-      CagStatus status = cag_curve_hermite(d.points, tangents, d.n, d.u, d.dimension, &c, &err);
-      ok = cag_splines_give(call, status, &err, &c, result);
-    }
-    cag_free(tangents);
-  }
-  free_data(&d);
-  return ok;
+  if (!cag_geometry_ok(call, cag_parameters_check(d.u, d.n, &err), &err)) return false;
+  if (isfinite(limit)) cag_hermite_limit(d.points, tangents, d.n, d.u, limit);
+  CagStatus status = cag_curve_hermite(d.points, tangents, d.n, d.u, d.dimension, &c, &err);
+  return cag_splines_give(call, status, &err, &c, result);
 }
 
 // --- End conditions: records { type, start, finish, direction } ---
@@ -275,7 +255,7 @@ static bool read_ends(CagCall *call, int argument, const Data *d, CagCubicEnds *
   return true;
 }
 
-// One tension for all inner points, or one for each; NULL where there is none.
+// One tension for all inner points, or one for each, held; NULL where there is none.
 static bool read_tension(CagCall *call, int argument, size_t n, double **out) {
   *out = NULL;
   if (!cag_splines_set(call, argument) || n < 3) return true;
@@ -294,9 +274,7 @@ static bool read_tension(CagCall *call, int argument, size_t n, double **out) {
                             "a tension is one number, or one for each of the %zu inner points; "
                             "these are %zu",
                             inner, count);
-  *out = cag_malloc(inner * sizeof **out);
-  if (!*out)
-    return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
+  *out = cag_hold_array(call, inner, sizeof **out);
   for (size_t i = 0; i < inner; i++) (*out)[i] = x ? x[i] : same;
   return true;
 }
@@ -308,17 +286,13 @@ bool cag_splines_cubic_spline(CagCall *call, CagValue *result) {
   double *tension = NULL;
   CagCurve *c = NULL;
   CagError err;
-  if (!read_data(call, 2, CAG_SPACING_CHORD, &d)) return false;
-  bool ok = cag_geometry_ok(call, cag_parameters_check(d.u, d.n, &err), &err) &&
-            read_ends(call, 1, &d, &ends) && read_tension(call, 3, d.n, &tension);
-  if (ok) {
-    CagStatus status =
-        cag_curve_cubic_spline(d.points, d.n, d.u, &ends, tension, d.dimension, &c, &err);
-    ok = cag_splines_give(call, status, &err, &c, result);
-  }
-  cag_free(tension);
-  free_data(&d);
-  return ok;
+  if (!read_data(call, 2, CAG_SPACING_CHORD, &d) ||
+      !cag_geometry_ok(call, cag_parameters_check(d.u, d.n, &err), &err) ||
+      !read_ends(call, 1, &d, &ends) || !read_tension(call, 3, d.n, &tension))
+    return false;
+  CagStatus status =
+      cag_curve_cubic_spline(d.points, d.n, d.u, &ends, tension, d.dimension, &c, &err);
+  return cag_splines_give(call, status, &err, &c, result);
 }
 
 // --- Blends: (points, alpha, ends = "open", closed = false) ---
@@ -333,7 +307,7 @@ static bool read_blend_ends(CagCall *call, CagBlendEnds *out) {
   return true;
 }
 
-// Ratios of the parabolas from one number or a list; NULL for "chord".
+// Ratios of the parabolas from one number or a list, held; NULL for "chord".
 static bool read_ratios(CagCall *call, size_t n, CagBlendEnds ends, double **out) {
   static const char *const names[] = {"chord", NULL};
   const size_t count = ends == CAG_BLEND_CLOSED ? n : n > 2 ? n - 2 : 0;
@@ -356,8 +330,7 @@ static bool read_ratios(CagCall *call, size_t n, CagBlendEnds ends, double **out
                             "`alpha` is one number, \"chord\", or one number for each of the %zu "
                             "points that a parabola is about; these are %zu",
                             count, given);
-  *out = cag_malloc((count ? count : 1) * sizeof **out);
-  if (!*out) return cag_fail_call(call, 1, CAG_ERR_limit_memory, "needs more memory than there is");
+  *out = cag_hold_array(call, count, sizeof **out);
   for (size_t i = 0; i < count; i++) (*out)[i] = x ? x[i] : same;
   return true;
 }
@@ -372,14 +345,10 @@ bool cag_splines_parabolic_blend(CagCall *call, CagValue *result) {
   CagError err;
   if (!read_blend_ends(call, &ends) || !cag_splines_points(call, 0, &points, &n, &dimension))
     return false;
-  bool ok = read_ratios(call, n, ends, &ratios);
-  if (ok) {
-    CagStatus status = cag_curve_parabolic_blend(points, n, ratios, 1, ends, dimension, &c, &err);
-    ok = cag_splines_give(call, status, &err, &c, result);
-  }
-  cag_free(ratios);
-  cag_free(points);
-  return ok;
+  cag_hold(call, points);
+  if (!read_ratios(call, n, ends, &ratios)) return false;
+  CagStatus status = cag_curve_parabolic_blend(points, n, ratios, 1, ends, dimension, &c, &err);
+  return cag_splines_give(call, status, &err, &c, result);
 }
 
 bool cag_splines_catmull_rom(CagCall *call, CagValue *result) {
@@ -397,8 +366,8 @@ bool cag_splines_catmull_rom(CagCall *call, CagValue *result) {
                             "the power of the distances is between 0 and 1: alpha = %s",
                             cag_number_text(alpha, text));
   if (!cag_splines_points(call, 0, &points, &n, &dimension)) return false;
+  cag_hold(call, points);
   CagStatus status = cag_curve_parabolic_blend(points, n, NULL, alpha, ends, dimension, &c, &err);
-  cag_free(points);
   return cag_splines_give(call, status, &err, &c, result);
 }
 
@@ -413,7 +382,7 @@ bool cag_splines_polynomial_curve(CagCall *call, CagValue *result) {
   if (!cag_arg_number_or(call, 1, 1, &length) ||
       !cag_splines_points(call, 0, &coefficients, &n, &dimension))
     return false;
+  cag_hold(call, coefficients);
   CagStatus status = cag_curve_polynomial(coefficients, n, length, dimension, &c, &err);
-  cag_free(coefficients);
   return cag_splines_give(call, status, &err, &c, result);
 }

@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "base/memory.h"
 #include "interp/builtin/transforms.h"
 
 static bool give(CagCall *call, CagStatus status, const CagError *err, CagTransform *t, bool planar,
@@ -191,20 +190,15 @@ bool cag_transforms_from_pairs(CagCall *call, CagValue *result) {
   CagTransform t;
   CagError err;
   if (!cag_arg_points(call, 0, &points, &n, &d)) return false;
-  if (!cag_arg_points(call, 1, &images, &m, &e)) {
-    cag_free(points);
-    return false;
-  }
-  bool planar = d == 2 && e == 2, ok;
+  cag_hold(call, points);
+  if (!cag_arg_points(call, 1, &images, &m, &e)) return false;
+  cag_hold(call, images);
   if (n != m)
-    ok = cag_fail_call(call, 1, CAG_ERR_length,
-                       "expects one image for each of %zu points, found %zu", n, m);
-  else
-    ok = give(call, cag_transform_from(points, images, n, planar, &t, &err), &err, &t, planar,
+    return cag_fail_call(call, 1, CAG_ERR_length,
+                         "expects one image for each of %zu points, found %zu", n, m);
+  const bool planar = d == 2 && e == 2;
+  return give(call, cag_transform_from(points, images, n, planar, &t, &err), &err, &t, planar,
               result);
-  cag_free(points);
-  cag_free(images);
-  return ok;
 }
 
 // --- solve_frame ---

@@ -1,6 +1,6 @@
 // Planes, and points and lines in the plane.
 
-#include "base/memory.h"
+#include "interp/builtin/holds.h"
 #include "interp/builtin/transforms.h"
 
 // Lines whose directions differ by less than this sine are parallel; lines of space that pass each
@@ -108,13 +108,11 @@ static bool read_polygon(CagCall *call, CagVec3 *area, CagVec3 *centroid, int *d
   CagVec3 *points;
   size_t n;
   if (!cag_arg_points(call, 0, &points, &n, dimension)) return false;
-  if (n < 3) {
-    cag_free(points);
+  cag_hold(call, points);
+  if (n < 3)
     return cag_fail_call(call, 0, CAG_ERR_value,
                          "expects at least 3 points of a polygon, found %zu", n);
-  }
   *area = polygon_area(points, n, centroid);
-  cag_free(points);
   return true;
 }
 
@@ -143,15 +141,14 @@ bool cag_transforms_contains(CagCall *call, CagValue *result) {
   CagError err;
   bool inside = false;
   if (!cag_arg_vec(call, 1, &p, NULL) || !cag_arg_region(call, 0, &region, &place)) return false;
-  bool ok = cag_geometry_ok(call, cag_transform_inverse(&place, &back, &err), &err);
-  if (ok) {
-    p = cag_transform_point(&back, p);
-    // A point beside the region's plane is not in it; the rounding of placing it there is.
-    bool beside = fabs(p.z) > 1000 * LINE_TOLERANCE * (1 + cag_norm(p));
-    p.z = 0;
-    ok = beside || cag_geometry_ok(call, cag_region_contains(region, p, &inside, &err), &err);
-  }
-  cag_region_release(region);
+  cag_hold_region(call, region);
+  if (!cag_geometry_ok(call, cag_transform_inverse(&place, &back, &err), &err)) return false;
+  p = cag_transform_point(&back, p);
+  // A point beside the region's plane is not in it; the rounding of placing it there is.
+  bool beside = fabs(p.z) > 1000 * LINE_TOLERANCE * (1 + cag_norm(p));
+  p.z = 0;
+  if (!beside && !cag_geometry_ok(call, cag_region_contains(region, p, &inside, &err), &err))
+    return false;
   *result = cag_bool(inside);
-  return ok;
+  return true;
 }

@@ -1,7 +1,6 @@
 // Triangular Bezier surfaces in barycentric coordinates; the surface itself is made by
 // bezier_triangle.
 
-#include "base/memory.h"
 #include "geom/surface/triangle.h"
 #include "interp/builtin/surfaces.h"
 
@@ -39,9 +38,8 @@ static bool triangle_point(CagCall *call, CagValue *result) {
   CagTriangleJet jet = {0};
   CagError err;
   if (!read_coordinates(call, 1, w) || !cag_arg_triangle(call, 0, &net, &degree)) return false;
-  CagStatus status = cag_triangle_at(net, degree, w, &jet, &err);
-  cag_free(net);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  cag_hold(call, net);
+  if (!cag_geometry_ok(call, cag_triangle_at(net, degree, w, &jet, &err), &err)) return false;
   CagVec3 normal = cag_unit(cag_cross(jet.ds, jet.dt));
   CagValue values[] = {vector_value(call->vm, jet.point), vector_value(call->vm, jet.ds),
                        vector_value(call->vm, jet.dt),
@@ -57,21 +55,19 @@ static bool triangle_elevate(CagCall *call, CagValue *result) {
   if (!cag_arg_integer_or(call, 1, 1, 0, CAG_TRIANGLE_ROWS, &times) ||
       !cag_arg_triangle(call, 0, &net, &degree))
     return false;
-  bool ok = true;
+  cag_hold(call, net);
   if (degree + times >= CAG_TRIANGLE_ROWS)
-    ok = cag_fail_call(call, 1, CAG_ERR_value, "raises a degree to %d at most, found %d and %ld",
-                       CAG_TRIANGLE_ROWS - 1, degree, times);
-  for (; ok && times > 0; times--) {
-    CagVec3 *raised = cag_malloc(cag_triangle_count(degree + 1) * sizeof *raised);
-    if (raised) cag_triangle_elevate(net, degree++, raised);
-    else ok = cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-    cag_free(net);
+    return cag_fail_call(call, 1, CAG_ERR_value, "raises a degree to %d at most, found %d and %ld",
+                         CAG_TRIANGLE_ROWS - 1, degree, times);
+  for (; times > 0; times--) {
+    CagVec3 *raised = cag_hold_array(call, cag_triangle_count(degree + 1), sizeof *raised);
+    cag_triangle_elevate(net, degree++, raised);
+    cag_release_held(call, net);
     net = raised;
-    ok = ok && cag_keep_going(call->vm);
+    if (!cag_keep_going(call->vm)) return false;
   }
-  if (ok) *result = net_value(call->vm, net, degree);
-  cag_free(net);
-  return ok;
+  *result = net_value(call->vm, net, degree);
+  return true;
 }
 
 static bool triangle_split(CagCall *call, CagValue *result) {
@@ -80,22 +76,16 @@ static bool triangle_split(CagCall *call, CagValue *result) {
   double w[3];
   CagError err;
   if (!read_coordinates(call, 1, w) || !cag_arg_triangle(call, 0, &net, &degree)) return false;
+  cag_hold(call, net);
   size_t n = cag_triangle_count(degree);
-  CagVec3 *parts = cag_malloc(3 * n * sizeof *parts);
-  CagStatus status = CAG_OK;
-  if (!parts) status = cag_fail_memory(&err);
-  else
-    status = cag_triangle_split(net, degree, w, (CagVec3 *const[]){parts, parts + n, parts + 2 * n},
-                                &err);
-  bool ok = cag_geometry_ok(call, status, &err);
-  if (ok) {
-    CagValue nets[3];
-    for (size_t c = 0; c < 3; c++) nets[c] = net_value(call->vm, parts + c * n, degree);
-    *result = cag_list_values(call->vm, nets, 3);
-  }
-  cag_free(net);
-  cag_free(parts);
-  return ok;
+  CagVec3 *parts = cag_hold_array(call, 3 * n, sizeof *parts);
+  CagStatus status =
+      cag_triangle_split(net, degree, w, (CagVec3 *const[]){parts, parts + n, parts + 2 * n}, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagValue nets[3];
+  for (size_t c = 0; c < 3; c++) nets[c] = net_value(call->vm, parts + c * n, degree);
+  *result = cag_list_values(call->vm, nets, 3);
+  return true;
 }
 
 const CagBuiltin cag_builtins_triangles[] = {
