@@ -201,16 +201,12 @@ bool cag_arg_choice(CagCall *call, int argument, const char *const *choices, int
     *out = (int)n;
     return true;
   }
-  CagString expected = {0};
-  list_choices(&expected, choices);
-  if (v.type != CAG_TEXT) cag_fail_type(call, argument, expected.bytes);
-  else {
-    cag_fail_value(call, argument, expected.bytes);
-    const char *nearest = cag_nearest_name(CAG_AS_TEXT(v)->bytes, choices, n);
-    if (nearest) cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
-  }
-  cag_string_free(&expected);
-  return false;
+  CagString *expected = cag_held_string(call);
+  list_choices(expected, choices);
+  if (v.type != CAG_TEXT) return cag_fail_type(call, argument, expected->bytes);
+  cag_fail_value(call, argument, expected->bytes);
+  const char *nearest = cag_nearest_name(CAG_AS_TEXT(v)->bytes, choices, n);
+  return nearest && cag_fail_help(call->vm, "did you mean \"%s\"?", nearest);
 }
 
 bool cag_arg_function(CagCall *call, int argument, CagValue *out) {
@@ -268,9 +264,7 @@ bool cag_arg_points(CagCall *call, int argument, CagVec3 **out, size_t *n, int *
   if (v.type != CAG_LIST) return cag_fail_type(call, argument, "a list of points");
   const CagList *list = CAG_AS_LIST(v);
   if (list->length == 0) return cag_fail_value(call, argument, "at least one point");
-  CagVec3 *points = cag_malloc(list->length * sizeof *points);
-  if (!points)
-    return cag_fail_call(call, argument, CAG_ERR_limit_memory, "needs more memory than there is");
+  CagVec3 *points = cag_hold(call, cag_malloc(list->length * sizeof *points));
   int highest = 2;
   for (size_t i = 0; i < list->length; i++) {
     // Packed vectors are read where they lie, without a value for each.
@@ -283,14 +277,12 @@ bool cag_arg_points(CagCall *call, int argument, CagVec3 **out, size_t *n, int *
     } else {
       good = read_point(cag_list_get(call->vm, list, i), &points[i], &d);
     }
-    if (!good) {
-      cag_free(points);
+    if (!good)
       return cag_fail_element(call, argument, i, cag_list_get(call->vm, list, i),
                               "points of 2 or 3 finite numbers");
-    }
     if (d > highest) highest = d;
   }
-  *out = points;
+  *out = cag_give_held(call, points);
   *n = list->length;
   if (dimension) *dimension = highest;
   return true;

@@ -3,17 +3,12 @@
 
 #include <limits.h>
 
-#include "base/memory.h"
 #include "geom/basis/basis_table.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
 #include "geom/stop.h"
 #include "interp/builtin/bsplines.h"
 #include "interp/builtin/support.h"
-
-static bool fail_memory(CagCall *call) {
-  return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-}
 
 static bool read_nurbs(CagCall *call, const CagNurbs **out) {
   CagCurve *c;
@@ -170,11 +165,10 @@ static bool give_arcs(CagCall *call, double radius, double from, double sweep, s
   const bool whole = sweep == FULL_TURN;
   CagCurve *c = NULL;
   CagError err;
-  CagVec3 *points = cag_malloc(n * sizeof *points);
-  double *weights = cag_malloc(sizeof(double) * (2 * n + 3)), *knots = weights + n;
-  bool ok = (points && weights) || fail_memory(call);
+  CagVec3 *points = cag_hold_array(call, n, sizeof *points);
+  double *weights = cag_hold_array(call, 2 * n + 3, sizeof *weights), *knots = weights + n;
   const double half = cos(sweep / 2 / (double)q);
-  for (size_t i = 0; ok && i < n; i++) {
+  for (size_t i = 0; i < n; i++) {
     double sine, cosine;
     const size_t k = whole ? i % (n - 1) : i;
     cag_sincos(k == n - 1 ? from + sweep : from + sweep * (double)k / (double)(n - 1), &sine,
@@ -183,17 +177,12 @@ static bool give_arcs(CagCall *call, double radius, double from, double sweep, s
     points[i] = cag_transform_point(
         frame, cag_vec3(radius * cosine / weights[i], radius * sine / weights[i], 0));
   }
-  for (size_t i = 0; ok && i < n + 3; i++) knots[i] = i == 0 ? 0 : (double)((i - 1) / 2);
-  if (ok) {
-    knots[n + 2] = (double)q;
-    CagStatus status =
-        cag_curve_nurbs(points, weights, n, 2, knots, frame->planar ? 2 : 3, &c, &err);
-    ok = cag_geometry_ok(call, status, &err);
-  }
-  cag_free(points);
-  cag_free(weights);
-  if (ok) *result = cag_curve_value(call->vm, c);
-  return ok;
+  for (size_t i = 0; i < n + 3; i++) knots[i] = i == 0 ? 0 : (double)((i - 1) / 2);
+  knots[n + 2] = (double)q;
+  CagStatus status = cag_curve_nurbs(points, weights, n, 2, knots, frame->planar ? 2 : 3, &c, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_curve_value(call->vm, c);
+  return true;
 }
 
 // radius, segments, center, normal, start
@@ -251,14 +240,12 @@ bool cag_bsplines_control_net(CagCall *call, CagValue *result) {
   }
   const CagNurbs *nurbs;
   if (!read_nurbs(call, &nurbs)) return false;
-  CagVec3 *points = cag_malloc(nurbs->distinct * sizeof *points);
-  if (!points) return fail_memory(call);
+  CagVec3 *points = cag_hold_array(call, nurbs->distinct, sizeof *points);
   n = 0;
   for (size_t i = 0; i < nurbs->distinct; i++)
     if (nurbs->homogeneous[4 * i + 3] > 0) points[n++] = cag_project(nurbs->homogeneous + 4 * i);
   CagStatus status =
       cag_curve_polyline(points, n, nurbs->periodic && n > 2, c->dimension, &out, &err);
-  cag_free(points);
   if (!cag_geometry_ok(call, status, &err)) return false;
   *result = cag_curve_value(call->vm, out);
   return true;
@@ -293,26 +280,23 @@ static CagStatus make_comb(const CagCurve *c, Comb *comb, double *most, CagError
 
 static bool give_comb(CagCall *call, const CagCurve *c, const Comb *comb, double scale,
                       CagValue *result) {
-  CagVec3 *tips = cag_malloc(comb->n * sizeof *tips);
-  if (!tips) return fail_memory(call);
+  CagVec3 *tips = cag_hold_array(call, comb->n, sizeof *tips);
   CagBuilder *list = cag_builder_new(call->vm);
   CagCurve *line = NULL;
   CagError err;
-  bool ok = true;
-  for (size_t i = 0; ok && i < comb->n; i++) {
+  CagStatus status;
+  for (size_t i = 0; i < comb->n; i++) {
     tips[i] = cag_madd(comb->feet[i], scale, comb->teeth[i]);
     if (cag_norm(cag_sub(tips[i], comb->feet[i])) == 0) continue;
-    ok = cag_geometry_ok(call, cag_curve_line(comb->feet[i], tips[i], c->dimension, &line, &err),
-                         &err) &&
-         cag_builder_add(call->vm, list, cag_curve_value(call->vm, line));
+    status = cag_curve_line(comb->feet[i], tips[i], c->dimension, &line, &err);
+    if (!cag_geometry_ok(call, status, &err)) return false;
+    cag_builder_add(call->vm, list, cag_curve_value(call->vm, line));
   }
-  ok = ok &&
-       cag_geometry_ok(call, cag_curve_polyline(tips, comb->n, false, c->dimension, &line, &err),
-                       &err) &&
-       cag_builder_add(call->vm, list, cag_curve_value(call->vm, line));
-  cag_free(tips);
-  if (ok) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
-  return ok;
+  status = cag_curve_polyline(tips, comb->n, false, c->dimension, &line, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  cag_builder_add(call->vm, list, cag_curve_value(call->vm, line));
+  *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
+  return true;
 }
 
 // C, n, scale
@@ -333,12 +317,9 @@ bool cag_bsplines_hedgehog(CagCall *call, CagValue *result) {
       !cag_geometry_ok(call, cag_curve_bounds(c, &box, &err), &err))
     return false;
   Comb comb = {.n = (size_t)n};
-  comb.feet = cag_malloc(2 * comb.n * sizeof(CagVec3));
-  if (!comb.feet) return fail_memory(call);
+  comb.feet = cag_hold_array(call, 2 * comb.n, sizeof(CagVec3));
   comb.teeth = comb.feet + comb.n;
-  bool ok = cag_geometry_ok(call, make_comb(c, &comb, &most, &err), &err);
+  if (!cag_geometry_ok(call, make_comb(c, &comb, &most, &err), &err)) return false;
   if (!given && most > 0) scale = LONGEST_TOOTH * cag_norm(cag_sub(box.max, box.min)) / most;
-  ok = ok && give_comb(call, c, &comb, scale, result);
-  cag_free(comb.feet);
-  return ok;
+  return give_comb(call, c, &comb, scale, result);
 }

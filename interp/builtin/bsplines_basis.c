@@ -3,17 +3,12 @@
 #include <limits.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "geom/basis/basis_table.h"
 #include "geom/basis/bernstein.h"
 #include "interp/builtin/bsplines.h"
 
 static bool is_set(CagCall *call, int argument) {
   return cag_given(call, argument) && call->values[argument].type != CAG_NONE;
-}
-
-static bool fail_memory(CagCall *call) {
-  return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
 }
 
 // Most knots that one call makes.
@@ -209,12 +204,10 @@ bool cag_bsplines_basis(CagCall *call, CagValue *result) {
   b.derivative = (int)derivative;
   b.left = side == 1;
   if (!read_basis_weights(call, 5, &b)) return false;
-  b.rows = cag_malloc(sizeof(double) * ((size_t)(derivative + 1) * b.n + (size_t)b.degree + 2));
-  if (!b.rows) return fail_memory(call);
+  b.rows =
+      cag_hold_array(call, (size_t)(derivative + 1) * b.n + (size_t)b.degree + 2, sizeof *b.rows);
   b.work = b.rows + (size_t)(derivative + 1) * b.n;
-  bool ok = give_basis(call, &b, result);
-  cag_free(b.rows);
-  return ok;
+  return give_basis(call, &b, result);
 }
 
 bool cag_bsplines_basis_triangle(CagCall *call, CagValue *result) {
@@ -226,17 +219,13 @@ bool cag_bsplines_basis_triangle(CagCall *call, CagValue *result) {
   if (!read_knots(call, 1, 3, &x, &count, &p) || !cag_arg_finite(call, 2, &t) ||
       !cag_geometry_ok(call, cag_basis_interval(x, count, p, t, false, &at, &err), &err))
     return false;
-  double *rows = cag_malloc(sizeof(double) * (size_t)(p + 1) * (count - 1));
-  if (!rows) return fail_memory(call);
+  double *rows = cag_hold_array(call, (size_t)(p + 1) * (count - 1), sizeof *rows);
   cag_basis_triangle(x, count, p, at, t, rows);
   CagBuilder *list = cag_builder_new(call->vm);
-  bool ok = true;
-  for (size_t q = 0; ok && q <= (size_t)p; q++)
-    ok = cag_builder_add(call->vm, list,
-                         cag_vector(call->vm, rows + q * (count - 1), count - 1 - q));
-  cag_free(rows);
-  if (ok) *result = cag_builder_finish(call->vm, list);
-  return ok;
+  for (size_t q = 0; q <= (size_t)p; q++)
+    cag_builder_add(call->vm, list, cag_vector(call->vm, rows + q * (count - 1), count - 1 - q));
+  *result = cag_builder_finish(call->vm, list);
+  return true;
 }
 
 // --- Pieces ---
@@ -251,18 +240,17 @@ static CagValue piece_record(CagCall *call, const double *x, size_t count, int p
   const size_t first = at > k ? at - k : 0, last = at < n ? at : n - 1;
   CagBuilder *functions = cag_builder_new(vm), *rows = cag_builder_new(vm),
              *matrix = cag_builder_new(vm);
-  bool ok = true;
-  for (size_t i = first; ok && i <= last; i++)
-    ok = cag_builder_add(vm, functions, cag_number((double)i)) &&
-         cag_builder_add(vm, rows, cag_vector(vm, table + (i + k - at) * width, width));
+  for (size_t i = first; i <= last; i++) {
+    cag_builder_add(vm, functions, cag_number((double)i));
+    cag_builder_add(vm, rows, cag_vector(vm, table + (i + k - at) * width, width));
+  }
   // Rows of the matrix: powers from the highest down; columns: the functions.
-  for (size_t power = width; ok && power-- > 0;) {
+  for (size_t power = width; power-- > 0;) {
     double *out;
     CagValue row = cag_list_numbers(vm, last - first + 1, &out);
     for (size_t i = first; i <= last; i++) out[i - first] = table[(i + k - at) * width + power];
-    ok = cag_builder_add(vm, matrix, row);
+    cag_builder_add(vm, matrix, row);
   }
-  if (!ok) return cag_unset();
   CagValue values[] = {interval(call, x[at], x[at + 1]), cag_builder_finish(vm, functions),
                        cag_builder_finish(vm, rows), cag_builder_finish(vm, matrix)};
   return cag_record_new(vm, names, values, 4);
@@ -275,18 +263,13 @@ bool cag_bsplines_basis_pieces(CagCall *call, CagValue *result) {
   bool local;
   if (!read_knots(call, 1, 2, &x, &count, &p) || !cag_arg_bool_or(call, 3, false, &local))
     return false;
-  double *table = cag_malloc(sizeof(double) * (size_t)(p + 1) * (size_t)(p + 1));
-  if (!table) return fail_memory(call);
+  double *table = cag_hold_array(call, (size_t)(p + 1) * (size_t)(p + 1), sizeof *table);
   CagBuilder *list = cag_builder_new(call->vm);
-  bool ok = true;
-  for (size_t i = 0; ok && i + 1 < count; i++) {
-    if (!(x[i] < x[i + 1])) continue;
-    CagValue piece = piece_record(call, x, count, p, i, local, table);
-    ok = piece.type == CAG_RECORD && cag_builder_add(call->vm, list, piece);
-  }
-  cag_free(table);
-  if (ok) *result = cag_builder_finish(call->vm, list);
-  return ok;
+  for (size_t i = 0; i + 1 < count; i++)
+    if (x[i] < x[i + 1])
+      cag_builder_add(call->vm, list, piece_record(call, x, count, p, i, local, table));
+  *result = cag_builder_finish(call->vm, list);
+  return true;
 }
 
 // --- Dependency ---
@@ -342,20 +325,19 @@ bool cag_bsplines_oslo(CagCall *call, CagValue *result) {
     return cag_fail_geometry(call, &err);
   }
   const size_t m = n - (size_t)p - 1, block = (count - 1) * m;
-  if ((double)(count - 1) * (double)m * (double)(p + 1) > TABLE_MAX) return fail_memory(call);
-  double *table = cag_malloc(sizeof(double) * block * (size_t)(p + 1));
-  if (!table) return fail_memory(call);
+  if ((double)(count - 1) * (double)m * (double)(p + 1) > TABLE_MAX)
+    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
+  double *table = cag_hold_array(call, block * (size_t)(p + 1), sizeof *table);
+  if (!cag_geometry_ok(call, cag_basis_oslo(x, count, y, n, p, table, &err), &err)) return false;
   CagBuilder *list = cag_builder_new(call->vm);
-  bool ok = cag_geometry_ok(call, cag_basis_oslo(x, count, y, n, p, table, &err), &err);
-  for (size_t q = 0; ok && q <= (size_t)p; q++) {
+  for (size_t q = 0; q <= (size_t)p; q++) {
     CagBuilder *rows = cag_builder_new(call->vm);
-    for (size_t i = 0; ok && i + q + 1 < count; i++)
-      ok = cag_builder_add(call->vm, rows, cag_vector(call->vm, table + q * block + i * m, m));
-    ok = ok && cag_builder_add(call->vm, list, cag_builder_finish(call->vm, rows));
+    for (size_t i = 0; i + q + 1 < count; i++)
+      cag_builder_add(call->vm, rows, cag_vector(call->vm, table + q * block + i * m, m));
+    cag_builder_add(call->vm, list, cag_builder_finish(call->vm, rows));
   }
-  cag_free(table);
-  if (ok) *result = cag_builder_finish(call->vm, list);
-  return ok;
+  *result = cag_builder_finish(call->vm, list);
+  return true;
 }
 
 // --- Phantom vertices ---
@@ -419,21 +401,17 @@ bool cag_bsplines_phantom_points(CagCall *call, CagValue *result) {
   CagError err;
   if (!cag_arg_degree(call, 1, 4, 3, &p) || !cag_arg_points(call, 0, &points, &n, &dimension))
     return false;
-  CagVec3 *all = cag_malloc(sizeof *all * (n + 2));
-  double *work = cag_malloc(sizeof(double) * (4 * (size_t)p + 8));
-  bool ok = (all && work) || fail_memory(call);
-  ok = ok && cag_geometry_ok(call, cag_degree_check(n, p, &err), &err) &&
-       read_end(call, 2, points[0], dimension, &start) &&
-       read_end(call, 3, points[n - 1], dimension, &end);
-  if (ok) {
-    memcpy(all + 1, points, sizeof *all * n);
-    CagStatus status = phantom(&start, points, n, p, false, work, &all[0], &err);
-    if (status == CAG_OK) status = phantom(&end, points, n, p, true, work, &all[n + 1], &err);
-    ok = cag_geometry_ok(call, status, &err);
-  }
-  if (ok) *result = cag_points_value(call->vm, all, n + 2, dimension);
-  cag_free(all);
-  cag_free(work);
-  cag_free(points);
-  return ok;
+  cag_hold(call, points);
+  if (!cag_geometry_ok(call, cag_degree_check(n, p, &err), &err) ||
+      !read_end(call, 2, points[0], dimension, &start) ||
+      !read_end(call, 3, points[n - 1], dimension, &end))
+    return false;
+  CagVec3 *all = cag_hold_array(call, n + 2, sizeof *all);
+  double *work = cag_hold_array(call, 4 * (size_t)p + 8, sizeof *work);
+  memcpy(all + 1, points, sizeof *all * n);
+  CagStatus status = phantom(&start, points, n, p, false, work, &all[0], &err);
+  if (status == CAG_OK) status = phantom(&end, points, n, p, true, work, &all[n + 1], &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  *result = cag_points_value(call->vm, all, n + 2, dimension);
+  return true;
 }

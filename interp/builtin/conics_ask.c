@@ -289,16 +289,15 @@ bool cag_conics_points_at(CagCall *call, CagValue *result) {
   plane.normal = x ? cag_vec3(1, 0, 0) : cag_vec3(0, 1, 0);
   if (!cag_geometry_ok(call, cag_curve_intersect_plane(c, &plane, &meetings, &n, &err), &err))
     return false;
+  cag_hold_for(call, cag_free, meetings);
   CagBuilder *list = cag_builder_new(call->vm);
-  bool ok = true;
-  for (size_t i = 0; ok && i < n; i++) {
+  for (size_t i = 0; i < n; i++) {
     CagValue values[] = {cag_parameter_value(c->angular, meetings[i].t),
                          cag_point(call->vm, meetings[i].point, 2)};
-    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2));
+    cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2));
   }
-  cag_free(meetings);
-  if (ok) *result = cag_builder_finish(call->vm, list);
-  return ok;
+  *result = cag_builder_finish(call->vm, list);
+  return true;
 }
 
 static bool read_derivatives(CagCall *call, CagVec3 out[3]) {
@@ -350,17 +349,13 @@ bool cag_conics_fit_formula(CagCall *call, CagValue *result) {
       !cag_arg_integer_or(call, 2, 1, 0, DEGREE_MAX, &degree) ||
       !cag_arg_points(call, 0, &points, &n, &dimension))
     return false;
-  double *x = cag_malloc(sizeof *x * n), *y = cag_malloc(sizeof *y * n);
-  CagStatus status = x && y ? CAG_OK : cag_fail_memory(&err);
-  for (size_t i = 0; !status && i < n; i++) {
+  cag_hold(call, points);
+  double *x = cag_hold_array(call, n, sizeof *x), *y = cag_hold_array(call, n, sizeof *y);
+  for (size_t i = 0; i < n; i++) {
     x[i] = points[i].x;
     y[i] = points[i].y;
   }
-  if (!status)
-    status = cag_fit_formula(x, y, n, (CagModel)model, (int)degree, out, &residual, &err);
-  cag_free(x);
-  cag_free(y);
-  cag_free(points);
+  CagStatus status = cag_fit_formula(x, y, n, (CagModel)model, (int)degree, out, &residual, &err);
   if (!cag_geometry_ok(call, status, &err)) return false;
   const bool two = model != CAG_MODEL_POLYNOMIAL;
   CagValue values[] = {row_value(call, out, two ? 2 : (size_t)degree + 1),

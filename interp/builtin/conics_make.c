@@ -199,19 +199,31 @@ bool cag_conics_conic_of_curve(CagCall *call, CagValue *result) {
   return give(call, cag_curve_conic(&k, &c, &err), &err, &c, result);
 }
 
+typedef struct Branches { // held
+  CagCurve *c[2];
+  size_t n;
+} Branches;
+
+static void free_branches(void *what) {
+  Branches *b = what;
+  for (size_t i = 0; i < b->n; i++) cag_curve_release(b->c[i]);
+  cag_free(b);
+}
+
 bool cag_conics_branches(CagCall *call, CagValue *result) {
   CagConic k;
-  CagCurve *c[2];
   CagValue items[2];
   CagError err;
-  size_t n;
   double from = -2, to = 2;
   if (!cag_arg_conic(call, 0, &k) ||
-      (cag_given(call, 1) && !cag_arg_interval(call, 1, &from, &to, NULL)) ||
-      !cag_geometry_ok(call, cag_conic_branches(&k, from, to, c, &n, &err), &err))
+      (cag_given(call, 1) && !cag_arg_interval(call, 1, &from, &to, NULL)))
     return false;
-  for (size_t i = 0; i < n; i++) items[i] = cag_curve_value(call->vm, c[i]);
-  *result = cag_list_values(call->vm, items, n);
+  Branches *b = cag_hold_array(call, 1, sizeof *b);
+  cag_hold_for(call, free_branches, cag_give_held(call, b));
+  if (!cag_geometry_ok(call, cag_conic_branches(&k, from, to, b->c, &b->n, &err), &err))
+    return false;
+  for (size_t i = 0; i < b->n; i++) items[i] = cag_curve_value(call->vm, cag_curve_retain(b->c[i]));
+  *result = cag_list_values(call->vm, items, b->n);
   return true;
 }
 
@@ -246,10 +258,9 @@ bool cag_conics_conic_through(CagCall *call, CagValue *result) {
     return make_by(call, five, 5, NULL, 0, CAG_CONIC_GENERAL, result);
   }
   if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
-  bool ok = check_plane(call, 0, dimension) &&
-            make_by(call, points, n, NULL, 0, CAG_CONIC_GENERAL, result);
-  cag_free(points);
-  return ok;
+  cag_hold(call, points);
+  return check_plane(call, 0, dimension) &&
+         make_by(call, points, n, NULL, 0, CAG_CONIC_GENERAL, result);
 }
 
 // A tangent is {point, direction} or [point, direction].
@@ -285,16 +296,13 @@ bool cag_conics_conic_by(CagCall *call, CagValue *result) {
   if (cag_given(call, 1) && !cag_arg_list(call, 1, &list)) return false;
   bool none = call->values[0].type == CAG_LIST && CAG_AS_LIST(call->values[0])->length == 0;
   if (!none && !cag_arg_points(call, 0, &points, &n, &dimension)) return false;
+  cag_hold_for(call, cag_free, points);
   m = list ? list->length : 0;
-  CagConicTangent *tangents = cag_calloc(m + 1, sizeof *tangents);
-  bool ok = tangents != NULL && check_plane(call, 0, dimension);
-  if (!tangents) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (size_t i = 0; ok && i < m; i++)
-    ok = read_tangent(call, cag_list_get(call->vm, list, i), i, &tangents[i]);
-  ok = ok && make_by(call, points, n, tangents, m, (CagConicShape)kind, result);
-  cag_free(tangents);
-  cag_free(points);
-  return ok;
+  CagConicTangent *tangents = cag_hold_array(call, m, sizeof *tangents);
+  if (!check_plane(call, 0, dimension)) return false;
+  for (size_t i = 0; i < m; i++)
+    if (!read_tangent(call, cag_list_get(call->vm, list, i), i, &tangents[i])) return false;
+  return make_by(call, points, n, tangents, m, (CagConicShape)kind, result);
 }
 
 // --- Arcs ---
@@ -482,11 +490,8 @@ bool cag_conics_conic_points(CagCall *call, CagValue *result) {
       !cag_arg_choice(call, 2, ways, &way))
     return false;
   const CagCurve *c = cag_curve_conic_branch(given) ? cag_curve_conic_branch(given) : given;
-  CagVec3 *points = cag_malloc(sizeof *points * (size_t)n);
-  if (!points)
-    return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  bool ok = make[way](call, c, (size_t)n, points);
-  if (ok) *result = cag_points_value(call->vm, points, (size_t)n, c->dimension);
-  cag_free(points);
-  return ok;
+  CagVec3 *points = cag_hold(call, cag_malloc(sizeof *points * (size_t)n));
+  if (!make[way](call, c, (size_t)n, points)) return false;
+  *result = cag_points_value(call->vm, points, (size_t)n, c->dimension);
+  return true;
 }

@@ -6,6 +6,7 @@
 #include "geom/curve/circles.h"
 #include "geom/curve/family.h"
 #include "interp/builtin/conics.h"
+#include "interp/builtin/holds.h"
 #include "interp/builtin/support.h"
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
@@ -95,19 +96,17 @@ bool cag_conics_fillet(CagCall *call, CagValue *result) {
   return true;
 }
 
-static bool give_lines(CagCall *call, CagTangentLine *lines, size_t n, CagValue *result) {
+static bool give_lines(CagCall *call, const CagTangentLine *lines, size_t n, CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
   CagError err;
-  bool ok = true;
-  for (size_t i = 0; ok && i < n; i++) {
+  for (size_t i = 0; i < n; i++) {
     CagCurve *c = NULL;
     CagStatus status = cag_curve_line(lines[i].p, lines[i].q, 2, &c, &err);
-    ok = cag_geometry_ok(call, status, &err) &&
-         cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
+    if (!cag_geometry_ok(call, status, &err)) return false;
+    cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
   }
-  cag_free(lines);
-  if (ok) *result = cag_builder_finish(call->vm, list);
-  return ok;
+  *result = cag_builder_finish(call->vm, list);
+  return true;
 }
 
 bool cag_conics_tangent_lines(CagCall *call, CagValue *result) {
@@ -129,7 +128,9 @@ bool cag_conics_tangent_lines(CagCall *call, CagValue *result) {
     if (dimension != 2) return cag_fail_value(call, 1, "a point [x, y] of the plane, or a curve");
     status = cag_tangents_from_point(a, p, &lines, &n, &err);
   }
-  return cag_geometry_ok(call, status, &err) && give_lines(call, lines, n, result);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  cag_hold_for(call, cag_free, lines);
+  return give_lines(call, lines, n, result);
 }
 
 bool cag_conics_rounded(CagCall *call, CagValue *result) {
@@ -151,15 +152,15 @@ bool cag_conics_rounded_region(CagCall *call, CagValue *result) {
   CagError err;
   double radius;
   if (!cag_arg_positive(call, 1, &radius)) return false;
-  CagCurve **loops = cag_calloc(region->count + 1, sizeof *loops);
-  CagStatus status = loops ? CAG_OK : cag_fail_memory(&err);
-  for (size_t i = 0; !status && i < region->count; i++)
-    status = cag_curve_rounded(region->loops[i], radius, &loops[i], &err);
-  if (!status && cag_region_is_empty(region)) out = cag_region_retain(region);
-  else if (!status) status = cag_region_from_loops(loops, region->count, &out, &err);
-  for (size_t i = 0; loops && i < region->count; i++) cag_curve_release(loops[i]);
-  cag_free(loops);
-  if (!cag_geometry_ok(call, status, &err)) return false;
+  CagCurve **loops = cag_hold_array(call, region->count, sizeof *loops);
+  for (size_t i = 0; i < region->count; i++) {
+    CagStatus status = cag_curve_rounded(region->loops[i], radius, &loops[i], &err);
+    if (!cag_geometry_ok(call, status, &err)) return false;
+    cag_hold_curve(call, loops[i]);
+  }
+  if (cag_region_is_empty(region)) out = cag_region_retain(region);
+  else if (!cag_geometry_ok(call, cag_region_from_loops(loops, region->count, &out, &err), &err))
+    return false;
   *result = cag_region_value(call->vm, out, &shape->placement);
   cag_shape_say_alike(*result, call->values[0]);
   return true;

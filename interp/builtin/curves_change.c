@@ -46,20 +46,50 @@ bool cag_curves_reparametrize(CagCall *call, CagValue *result) {
   return give(call, status, &err, &out, result);
 }
 
+// Parts of a curve, held.
+typedef struct Pieces {
+  CagCurve **curves;
+  size_t n;
+} Pieces;
+
+static void free_pieces(void *what) {
+  Pieces *p = what;
+  for (size_t i = 0; i < p->n; i++) cag_curve_release(p->curves[i]);
+  cag_free(p->curves);
+  cag_free(p);
+}
+
+static Pieces *pieces_new(CagCall *call) {
+  Pieces *p = cag_hold_array(call, 1, sizeof *p);
+  cag_hold_for(call, free_pieces, cag_give_held(call, p));
+  return p;
+}
+
+// The parts, with what was said about the whole.
+static CagValue pieces_value(CagCall *call, const Pieces *p) {
+  CagBuilder *list = cag_builder_new(call->vm);
+  for (size_t i = 0; i < p->n; i++) {
+    CagValue piece = cag_curve_value(call->vm, cag_curve_retain(p->curves[i]));
+    cag_shape_say_alike(piece, call->values[0]);
+    cag_builder_add(call->vm, list, piece);
+  }
+  return cag_builder_finish(call->vm, list);
+}
+
 bool cag_curves_split(CagCall *call, CagValue *result) {
-  CagCurve *c, *halves[2] = {NULL, NULL};
+  CagCurve *c;
   CagError err;
-  CagValue parts[2];
   double t;
   if (!cag_arg_curve(call, 0, &c) ||
       !cag_arg_parameter(call, 1, c->angular, c->start, c->end, false, &t))
     return false;
-  if (!cag_geometry_ok(call, cag_curve_halves(c, t, halves, &err), &err)) return false;
-  for (int i = 0; i < 2; i++) {
-    parts[i] = cag_curve_value(call->vm, halves[i]);
-    cag_shape_say_alike(parts[i], call->values[0]);
-  }
-  *result = cag_list_values(call->vm, parts, 2);
+  Pieces *halves = pieces_new(call);
+  halves->curves = cag_malloc(2 * sizeof *halves->curves);
+  CagStatus status =
+      halves->curves ? cag_curve_halves(c, t, halves->curves, &err) : cag_fail_memory(&err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  halves->n = 2;
+  *result = pieces_value(call, halves);
   return true;
 }
 
@@ -70,19 +100,14 @@ bool cag_curves_join_curves(CagCall *call, CagValue *result) {
   CagError err;
   if (!cag_arg_several(call, &items, &n)) return false;
   if (n == 0) return cag_fail_call(call, 0, CAG_ERR_too_few_curves, "expects at least one curve");
-  CagCurve **curves = cag_malloc(n * sizeof *curves);
-  bool ok = curves != NULL;
-  if (!ok) cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (size_t i = 0; ok && i < n; i++) {
-    ok = items[i].type == CAG_CURVE;
-    if (ok) curves[i] = CAG_AS_SHAPE(items[i])->as.curve;
-    else
-      cag_fail_call(call, items == call->values ? (int)i : 0, CAG_ERR_type,
-                    "expects curves, found %s as number %zu", cag_type_article(items[i]), i);
+  CagCurve **curves = cag_hold_array(call, n, sizeof *curves);
+  for (size_t i = 0; i < n; i++) {
+    if (items[i].type != CAG_CURVE)
+      return cag_fail_call(call, items == call->values ? (int)i : 0, CAG_ERR_type,
+                           "expects curves, found %s as number %zu", cag_type_article(items[i]), i);
+    curves[i] = CAG_AS_SHAPE(items[i])->as.curve;
   }
-  ok = ok && cag_geometry_ok(call, cag_curve_join(curves, n, &out, &err), &err);
-  cag_free(curves);
-  if (!ok) return false;
+  if (!cag_geometry_ok(call, cag_curve_join(curves, n, &out, &err), &err)) return false;
   *result = cag_curve_value(call->vm, out);
   cag_shape_say_alike(*result, items[0]);
   return true;
@@ -106,34 +131,24 @@ bool cag_curves_polygonize(CagCall *call, CagValue *result) {
   if (!cag_arg_curve(call, 0, &c) || !cag_arg_positive(call, 1, &tolerance) ||
       !cag_geometry_ok(call, cag_curve_discretize(c, tolerance, ANY_TURN, &t, &n, &err), &err))
     return false;
-  CagVec3 *points = cag_malloc(n * sizeof *points);
-  CagStatus status = points ? cag_curve_eval_many(c, t, n, 0, points, &err) : cag_fail_memory(&err);
+  cag_hold(call, t);
+  CagVec3 *points = cag_hold(call, cag_malloc(n * sizeof *points));
+  CagStatus status = cag_curve_eval_many(c, t, n, 0, points, &err);
   if (status == CAG_OK)
     status = cag_curve_polyline(points, c->closed ? n - 1 : n, c->closed, c->dimension, &out, &err);
-  cag_free(points);
-  cag_free(t);
   return give(call, status, &err, &out, result);
 }
 
 // --- Another form of the same points ---
 
 bool cag_bsplines_to_bezier(CagCall *call, CagValue *result) {
-  CagCurve *c, **pieces;
+  CagCurve *c;
   CagError err;
-  size_t n;
-  if (!cag_arg_curve(call, 0, &c) ||
-      !cag_geometry_ok(call, cag_curve_to_bezier(c, &pieces, &n, &err), &err))
-    return false;
-  CagBuilder *list = cag_builder_new(call->vm);
-  bool ok = true;
-  for (size_t i = 0; i < n; i++) {
-    CagValue piece = cag_curve_value(call->vm, pieces[i]);
-    cag_shape_say_alike(piece, call->values[0]);
-    ok = ok && cag_builder_add(call->vm, list, piece);
-  }
-  cag_free(pieces);
-  if (ok) *result = cag_builder_finish(call->vm, list);
-  return ok;
+  if (!cag_arg_curve(call, 0, &c)) return false;
+  Pieces *p = pieces_new(call);
+  if (!cag_geometry_ok(call, cag_curve_to_bezier(c, &p->curves, &p->n, &err), &err)) return false;
+  *result = pieces_value(call, p);
+  return true;
 }
 
 // Most times that a degree is raised or a knot inserted or taken away at once.

@@ -1,6 +1,5 @@
 // Lines, circles, ellipses and helices.
 
-#include "base/memory.h"
 #include "interp/builtin/curves.h"
 
 static const double FULL_TURN = 6.283185307179586; // 2 pi
@@ -33,8 +32,8 @@ bool cag_curves_polyline(CagCall *call, CagValue *result) {
   if (!cag_arg_bool_or(call, 1, false, &closed) ||
       !cag_arg_points(call, 0, &points, &n, &dimension))
     return false;
+  cag_hold(call, points);
   CagStatus status = cag_curve_polyline(points, n, closed, dimension, &c, &err);
-  cag_free(points);
   return give(call, status, &err, &c, result);
 }
 

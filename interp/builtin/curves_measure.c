@@ -8,10 +8,6 @@
 // Most points or parts that one call makes.
 #define PARTS_MAX 100000000
 
-static bool fail_memory(CagCall *call) {
-  return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory than there is");
-}
-
 bool cag_curves_length(CagCall *call, CagValue *result) {
   CagError err;
   double length, from, to;
@@ -211,14 +207,13 @@ static CagStatus newton_chords(const CagCurve *c, size_t n, const double *t, con
 }
 
 // Any start: points are evened out one after the other until Newton's method takes over.
-static CagStatus equalize_chords(const CagCurve *c, size_t n, double *t, double length,
-                                 CagError *err) {
+static CagStatus equalize_chords(CagCall *call, const CagCurve *c, size_t n, double *t,
+                                 double length, CagError *err) {
   const double enough = EQUAL_CHORDS * length;
-  double *room = cag_malloc(sizeof *room * 5 * (n + 1)), worst, tried;
-  CagVec3 *p = cag_malloc(sizeof *p * 2 * (n + 1));
-  CagStatus status = room && p ? CAG_OK : cag_fail_memory(err);
+  double *room = cag_hold_array(call, 5 * (n + 1), sizeof *room), worst, tried;
+  CagVec3 *p = cag_hold_array(call, 2 * (n + 1), sizeof *p);
   double *e = room, *next = room + (n + 1), *next_e = room + 2 * (n + 1);
-  if (!status) status = all_excesses(c, n, t, p, e, &worst, err);
+  CagStatus status = all_excesses(c, n, t, p, e, &worst, err);
   for (int round = 0; !status && worst > enough && round < CHORD_ROUNDS; round++) {
     bool ok;
     status = newton_chords(c, n, t, p, e, room + 3 * (n + 1), next, &ok, err);
@@ -231,8 +226,6 @@ static CagStatus equalize_chords(const CagCurve *c, size_t n, double *t, double 
     }
     if (!status) status = all_excesses(c, n, t, p, e, &worst, err);
   }
-  cag_free(room);
-  cag_free(p);
   if (!status && worst > 1e3 * enough)
     return cag_fail(err, CAG_E_CONVERGENCE, CAG_ERR_convergence, "by", -1,
                     "found no %zu equal chords; their lengths still differ by %.3g mm", n, worst);
@@ -241,7 +234,8 @@ static CagStatus equalize_chords(const CagCurve *c, size_t n, double *t, double 
 
 // Points at equal distances, each the first one at its distance from the one before, where they
 // end at the curve's end. A curve that turns back may have none of these; then others.
-static CagStatus divide_by_chord(const CagCurve *c, size_t n, double *t, CagError *err) {
+static CagStatus divide_by_chord(CagCall *call, const CagCurve *c, size_t n, double *t,
+                                 CagError *err) {
   double length, low = 0, rest;
   CagStatus status = cag_curve_length(c, c->start, c->end, &length, err);
   double high = length / (double)n; // no chord is longer than its arc
@@ -256,7 +250,7 @@ static CagStatus divide_by_chord(const CagCurve *c, size_t n, double *t, CagErro
   status = divide_by_length(c, n, t, err);
   t[0] = c->start;
   t[n] = c->end;
-  return status ? status : equalize_chords(c, n, t, length, err);
+  return status ? status : equalize_chords(call, c, n, t, length, err);
 }
 
 bool cag_curves_divide(CagCall *call, CagValue *result) {
@@ -269,22 +263,20 @@ bool cag_curves_divide(CagCall *call, CagValue *result) {
       !cag_arg_choice(call, 2, ways, &by))
     return false;
   size_t n = (size_t)parts;
-  double *t = cag_malloc((n + 1) * sizeof *t);
-  if (!t) return fail_memory(call);
+  double *t = cag_hold(call, cag_malloc((n + 1) * sizeof *t));
   for (size_t i = 0; i <= n; i++) t[i] = step(c, i, n);
   CagStatus status = CAG_OK;
   if (by == 0) status = divide_by_length(c, n, t, &err);
-  if (by == 1) status = divide_by_chord(c, n, t, &err);
-  bool ok = cag_geometry_ok(call, status, &err);
-  if (ok && !c->angular) *result = cag_numbers_value(call->vm, t, n + 1);
-  if (ok && c->angular) {
-    CagBuilder *b = cag_builder_new(call->vm);
-    for (size_t i = 0; ok && i <= n; i++)
-      ok = cag_builder_add(call->vm, b, cag_parameter_value(true, t[i]));
-    if (ok) *result = cag_builder_finish(call->vm, b);
+  if (by == 1) status = divide_by_chord(call, c, n, t, &err);
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  if (!c->angular) {
+    *result = cag_numbers_value(call->vm, t, n + 1);
+    return true;
   }
-  cag_free(t);
-  return ok;
+  CagBuilder *b = cag_builder_new(call->vm);
+  for (size_t i = 0; i <= n; i++) cag_builder_add(call->vm, b, cag_parameter_value(true, t[i]));
+  *result = cag_builder_finish(call->vm, b);
+  return true;
 }
 
 bool cag_curves_closest(CagCall *call, CagValue *result) {

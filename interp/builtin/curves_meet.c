@@ -12,15 +12,14 @@ static bool with_curve(CagCall *call, const CagCurve *a, const CagCurve *b, CagB
   size_t n;
   if (!cag_geometry_ok(call, cag_curve_intersect(a, b, &found, &n, &err), &err)) return false;
   const int dimension = a->dimension == 2 && b->dimension == 2 ? 2 : 3;
-  bool ok = true;
-  for (size_t i = 0; ok && i < n; i++) {
+  cag_hold_for(call, cag_free, found);
+  for (size_t i = 0; i < n; i++) {
     CagValue values[] = {
         cag_point(call->vm, found[i].point, dimension), cag_parameter_value(a->angular, found[i].t),
         cag_parameter_value(b->angular, found[i].t2), cag_number(found[i].multiplicity)};
-    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 4));
+    cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 4));
   }
-  cag_free(found);
-  return ok;
+  return true;
 }
 
 static bool with_plane(CagCall *call, const CagCurve *c, const CagPlane *plane, CagBuilder *list) {
@@ -30,15 +29,14 @@ static bool with_plane(CagCall *call, const CagCurve *c, const CagPlane *plane, 
   size_t n;
   if (!cag_geometry_ok(call, cag_curve_intersect_plane(c, plane, &found, &n, &err), &err))
     return false;
-  bool ok = true;
-  for (size_t i = 0; ok && i < n; i++) {
+  cag_hold_for(call, cag_free, found);
+  for (size_t i = 0; i < n; i++) {
     CagValue values[] = {cag_point(call->vm, found[i].point, c->dimension),
                          cag_parameter_value(c->angular, found[i].t),
                          cag_number(found[i].multiplicity)};
-    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 3));
+    cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 3));
   }
-  cag_free(found);
-  return ok;
+  return true;
 }
 
 static bool with_surface(CagCall *call, const CagCurve *c, const CagSurface *s, CagBuilder *list) {
@@ -48,16 +46,15 @@ static bool with_surface(CagCall *call, const CagCurve *c, const CagSurface *s, 
   size_t n;
   if (!cag_geometry_ok(call, cag_surface_intersect_curve(s, c, &found, &n, &err), &err))
     return false;
-  bool ok = true;
-  for (size_t i = 0; ok && i < n; i++) {
+  cag_hold_for(call, cag_free, found);
+  for (size_t i = 0; i < n; i++) {
     CagValue values[] = {
         cag_point(call->vm, found[i].point, 3), cag_parameter_value(c->angular, found[i].t),
         cag_parameter_value(s->angular_u, found[i].u),
         cag_parameter_value(s->angular_v, found[i].v), cag_number(found[i].multiplicity)};
-    ok = cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5));
+    cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5));
   }
-  cag_free(found);
-  return ok;
+  return true;
 }
 
 bool cag_bsplines_intersect(CagCall *call, CagValue *result) {

@@ -3,7 +3,6 @@
 #include <limits.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "geom/basis/bspline.h"
 #include "interp/builtin/curves.h"
 
@@ -54,17 +53,15 @@ bool cag_curves_bezier(CagCall *call, CagValue *result) {
   CagCurve *c = NULL;
   CagError err;
   if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
-  bool ok = cag_arg_weights(call, 1, n, &weights);
-  CagStatus status = ok ? cag_curve_bezier(points, weights, n, dimension, &c, &err) : CAG_OK;
-  cag_free(points);
-  return ok && give(call, status, &err, &c, result);
+  cag_hold(call, points);
+  if (!cag_arg_weights(call, 1, n, &weights)) return false;
+  return give(call, cag_curve_bezier(points, weights, n, dimension, &c, &err), &err, &c, result);
 }
 
-// Knots from a name or a list; *own is to be freed.
+// Knots from a name or a list.
 static bool read_knots(CagCall *call, int argument, size_t n, int degree, const CagVec3 *points,
-                       double **own, const double **knots) {
+                       const double **knots) {
   CagError err;
-  *own = NULL;
   const char *type = "open";
   if (cag_given(call, argument) && call->values[argument].type != CAG_TEXT) {
     size_t count;
@@ -77,10 +74,9 @@ static bool read_knots(CagCall *call, int argument, size_t n, int degree, const 
   }
   if (cag_given(call, argument) && !cag_arg_text(call, argument, &type)) return false;
   if (!cag_geometry_ok(call, cag_degree_check(n, degree, &err), &err)) return false;
-  *own = cag_malloc((n + (size_t)degree + 1) * sizeof **own);
-  if (!*own) return cag_fail_call(call, -1, CAG_ERR_limit_memory, "needs more memory");
-  *knots = *own;
-  return cag_geometry_ok(call, cag_knots_make(type, n, degree, points, *own, &err), &err);
+  double *made = cag_hold_array(call, n + (size_t)degree + 1, sizeof *made);
+  *knots = made;
+  return cag_geometry_ok(call, cag_knots_make(type, n, degree, points, made, &err), &err);
 }
 
 // points, degree, knots, closed, weights, order
@@ -89,7 +85,6 @@ static bool make_bspline(CagCall *call, const CagVec3 *points, size_t n, int dim
   int degree = 0;
   bool closed;
   const double *weights, *knots = NULL;
-  double *own = NULL;
   CagCurve *c = NULL;
   CagError err;
   CagStatus status;
@@ -106,10 +101,9 @@ static bool make_bspline(CagCall *call, const CagVec3 *points, size_t n, int dim
     status = cag_curve_nurbs_closed(points, weights, n - again, degree, dimension, &c, &err);
     return give(call, status, &err, &c, result);
   }
-  bool ok = read_knots(call, 2, n, degree, points, &own, &knots);
-  status = ok ? cag_curve_nurbs(points, weights, n, degree, knots, dimension, &c, &err) : CAG_OK;
-  cag_free(own);
-  return ok && give(call, status, &err, &c, result);
+  if (!read_knots(call, 2, n, degree, points, &knots)) return false;
+  status = cag_curve_nurbs(points, weights, n, degree, knots, dimension, &c, &err);
+  return give(call, status, &err, &c, result);
 }
 
 bool cag_curves_bspline(CagCall *call, CagValue *result) {
@@ -117,9 +111,8 @@ bool cag_curves_bspline(CagCall *call, CagValue *result) {
   size_t n;
   int dimension;
   if (!cag_arg_points(call, 0, &points, &n, &dimension)) return false;
-  bool ok = make_bspline(call, points, n, dimension, result);
-  cag_free(points);
-  return ok;
+  cag_hold(call, points);
+  return make_bspline(call, points, n, dimension, result);
 }
 
 bool cag_curves_nurbs(CagCall *call, CagValue *result) {
@@ -158,15 +151,13 @@ bool cag_curves_knot_vector(CagCall *call, CagValue *result) {
   if (!cag_geometry_ok(call, cag_degree_check((size_t)count, degree, &err), &err)) return false;
   if (cag_given(call, 2) && call->values[2].type == CAG_LIST) {
     if (!cag_arg_points(call, 2, &points, &n, NULL)) return false;
-    if (n != (size_t)count) {
-      cag_free(points);
+    cag_hold(call, points);
+    if (n != (size_t)count)
       return cag_fail_call(call, 2, CAG_ERR_length, "expects %ld points, found %zu", count, n);
-    }
   } else if (!cag_given(call, 2)) type = "open";
   else if (!cag_arg_text(call, 2, &type)) return false;
   *result = cag_list_numbers(call->vm, (size_t)count + (size_t)degree + 1, &knots);
   CagStatus status = cag_knots_make(type, (size_t)count, degree, points, knots, &err);
-  cag_free(points);
   if (!cag_geometry_ok(call, status, &err)) return false;
   if (is_set(call, 4)) remap_knots(knots, (size_t)count, degree, from, to);
   return true;

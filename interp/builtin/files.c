@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "interp/builtin/support.h"
+#include "interp/eval/vm.h"
 
 static const char FAMILY[] = "Files";
 
@@ -20,7 +21,7 @@ static const char FAMILY[] = "Files";
 typedef struct Reader {
   CagCall *call;
   const char *path;
-  char *bytes; // malloc'd, NUL behind the end
+  char *bytes; // held, NUL behind the end
   const char *at, *end;
 } Reader;
 
@@ -60,29 +61,25 @@ static bool reader_open(CagCall *call, Reader *r) {
   size_t n;
   if (!cag_arg_text(call, 0, &r->path) || !cag_vm_open_file(call, 0, r->path, &r->bytes, &n))
     return false;
+  cag_hold(call, r->bytes);
   r->at = r->bytes;
   r->end = r->bytes + n;
   // Some programs write a byte order mark.
   static const char MARK[] = "\xEF\xBB\xBF";
   if (n >= strlen(MARK) && memcmp(r->at, MARK, strlen(MARK)) == 0) r->at += strlen(MARK);
-  if (check_utf8(r)) return true;
-  cag_free(r->bytes);
-  return false;
+  return check_utf8(r);
 }
 
 static bool call_read_text(CagCall *call, CagValue *result) {
   Reader r;
   if (!reader_open(call, &r)) return false;
-  CagCleanup cleanup;
-  cag_cleanup_push(&cleanup, cag_free, r.bytes);
   *result = cag_text_new(call->vm, r.at, (size_t)(r.end - r.at));
-  cag_cleanup_run(&cleanup);
   return true;
 }
 
 // --- CSV (RFC 4180, any separator, any line ending) ---
 
-typedef struct Csv {
+typedef struct Csv { // held
   Reader r;
   char separator;
   CagString cell;
@@ -126,17 +123,15 @@ static CagValue cell_value(Csv *c) {
   return cag_number(x);
 }
 
-static bool row_add(Csv *c, CagValue v) {
+static void row_add(Csv *c, CagValue v) {
   if (c->count == c->capacity) {
     size_t capacity = c->capacity ? 2 * c->capacity : 16;
     CagValue *row = cag_realloc(c->row, capacity * sizeof *row);
-    if (!row)
-      return cag_fail_call(c->r.call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+    if (!row) cag_vm_out_of_memory(c->r.call->vm);
     c->row = row;
     c->capacity = capacity;
   }
   c->row[c->count++] = v;
-  return true;
 }
 
 static void skip_line_end(Reader *r) {
@@ -154,7 +149,8 @@ static bool read_row(Csv *c, bool *found) {
   *found = r->at < r->end;
   if (!*found) return true;
   for (;;) {
-    if (!read_cell(c) || !row_add(c, cell_value(c))) return false;
+    if (!read_cell(c)) return false;
+    row_add(c, cell_value(c));
     if (r->at == r->end || *r->at != c->separator) break;
     r->at++;
   }
@@ -182,8 +178,7 @@ static bool row_record(Csv *c, CagText **names, size_t columns, CagRecord **firs
   CagVm *vm = c->r.call->vm;
   if (c->count > columns)
     return fail_at(&c->r, c->row_start, "%zu cells, but the header names %zu", c->count, columns);
-  while (c->count < columns)
-    if (!row_add(c, cag_none())) return false;
+  while (c->count < columns) row_add(c, cag_none());
   if (!*first) {
     *out = cag_record_from_texts(vm, names, c->row, columns);
     *first = CAG_AS_RECORD(*out);
@@ -215,24 +210,30 @@ static bool read_records(Csv *c, CagBuilder *built) {
   CagVm *vm = c->r.call->vm;
   size_t columns = c->count;
   CagRecord *first = NULL;
-  CagCleanup cleanup;
-  CagText **names = cag_temporary(&cleanup, columns, sizeof(CagText *));
-  bool found = true, good = read_names(c, names) && read_row(c, &found);
-  for (size_t n = 0; good && found; n++) {
+  CagText **names = cag_hold_array(c->r.call, columns, sizeof(CagText *));
+  bool found = true;
+  if (!read_names(c, names) || !read_row(c, &found)) return false;
+  for (size_t n = 0; found; n++) {
     CagValue record;
-    good = row_record(c, names, columns, &first, &record) && cag_builder_add(vm, built, record);
-    if (n % ROWS_BETWEEN_CHECKS == ROWS_BETWEEN_CHECKS - 1) good = good && cag_keep_going(vm);
-    good = good && read_row(c, &found);
+    if (!row_record(c, names, columns, &first, &record)) return false;
+    cag_builder_add(vm, built, record);
+    if (n % ROWS_BETWEEN_CHECKS == ROWS_BETWEEN_CHECKS - 1 && !cag_keep_going(vm)) return false;
+    if (!read_row(c, &found)) return false;
   }
-  cag_cleanup_run(&cleanup);
-  return good;
+  return true;
 }
 
 static void free_csv(void *context) {
   Csv *c = context;
   cag_string_free(&c->cell);
   cag_free(c->row);
-  cag_free(c->r.bytes);
+  cag_free(c);
+}
+
+static Csv *csv_new(CagCall *call) {
+  Csv *c = cag_hold_array(call, 1, sizeof *c);
+  cag_hold_for(call, free_csv, cag_give_held(call, c));
+  return c;
 }
 
 static bool read_separator(CagCall *call, char *out) {
@@ -245,21 +246,16 @@ static bool read_separator(CagCall *call, char *out) {
 }
 
 static bool call_read_csv(CagCall *call, CagValue *result) {
-  Csv c = {0};
   bool found, header = false, asked = cag_given(call, 2) && call->values[2].type != CAG_NONE;
   if (asked && !cag_arg_bool_or(call, 2, false, &header)) return false;
-  if (!read_separator(call, &c.separator) || !reader_open(call, &c.r)) return false;
-  CagCleanup cleanup;
-  cag_cleanup_push(&cleanup, free_csv, &c);
+  Csv *c = csv_new(call);
+  if (!read_separator(call, &c->separator) || !reader_open(call, &c->r) || !read_row(c, &found))
+    return false;
   CagBuilder *built = cag_builder_new(call->vm);
-  bool good = read_row(&c, &found);
-  if (good && found) {
-    if (!asked) header = !c.numbers;
-    good = header ? read_records(&c, built) : read_lists(&c, built);
-  }
-  if (good) *result = cag_builder_finish(call->vm, built);
-  cag_cleanup_run(&cleanup);
-  return good;
+  if (!asked) header = !c->numbers;
+  if (found && !(header ? read_records(c, built) : read_lists(c, built))) return false;
+  *result = cag_builder_finish(call->vm, built);
+  return true;
 }
 
 // --- JSON in ---
@@ -352,23 +348,21 @@ typedef struct Field {
   size_t place;
 } Field;
 
-typedef struct Fields {
+typedef struct Fields { // held
   Field *fields;
   size_t count, capacity;
 } Fields;
 
-static bool add_field(Reader *r, Fields *f, CagText *name, CagValue value) {
+static void add_field(Reader *r, Fields *f, CagText *name, CagValue value) {
   if (f->count == f->capacity) {
     size_t capacity = f->capacity ? 2 * f->capacity : 8;
     Field *fields = cag_realloc(f->fields, capacity * sizeof *fields);
-    if (!fields)
-      return cag_fail_call(r->call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+    if (!fields) cag_vm_out_of_memory(r->call->vm);
     f->fields = fields;
     f->capacity = capacity;
   }
   f->fields[f->count] = (Field){name, value, f->count};
   f->count++;
-  return true;
 }
 
 static int by_name(const void *a, const void *b) {
@@ -398,48 +392,58 @@ static void join_fields(Fields *f) {
 
 static CagValue give_fields(Reader *r, Fields *f) {
   join_fields(f);
-  CagCleanup first, second;
-  CagText **names = cag_temporary(&first, f->count, sizeof(CagText *));
-  CagValue *values = cag_temporary(&second, f->count, sizeof *values);
+  CagText **names = cag_hold_array(r->call, f->count, sizeof(CagText *));
+  CagValue *values = cag_hold_array(r->call, f->count, sizeof *values);
   for (size_t i = 0; i < f->count; i++) {
     names[i] = f->fields[i].name;
     values[i] = f->fields[i].value;
   }
   CagValue record = cag_record_from_texts(r->call->vm, names, values, f->count);
-  cag_cleanup_run(&second);
-  cag_cleanup_run(&first);
+  cag_release_held(r->call, values);
+  cag_release_held(r->call, names);
   return record;
 }
 
-static void free_fields(void *fields) { cag_free(((Fields *)fields)->fields); }
+static void free_fields(void *what) {
+  Fields *f = what;
+  cag_free(f->fields);
+  cag_free(f);
+}
+
+static Fields *fields_new(CagCall *call) {
+  Fields *f = cag_hold_array(call, 1, sizeof *f);
+  cag_hold_for(call, free_fields, cag_give_held(call, f));
+  return f;
+}
 
 // text ":" value
 static bool read_field(Reader *r, int depth, Fields *f) {
   CagValue value;
   CagString s = {0};
   if (!next_is(r, '"')) return fail_at(r, r->at, "expected a name in quotes");
-  bool good = read_json_text(r, &s);
-  CagText *name = good ? cag_intern_string(r->call->vm, &s) : NULL;
-  cag_string_free(&s);
-  if (!good) return false;
+  if (!read_json_text(r, &s)) {
+    cag_string_free(&s);
+    return false;
+  }
+  CagText *name = cag_intern_string(r->call->vm, &s);
   if (!next_is(r, ':')) return fail_at(r, r->at, "expected `:`");
-  return read_json_value(r, depth, &value) && add_field(r, f, name, value);
+  if (!read_json_value(r, depth, &value)) return false;
+  add_field(r, f, name, value);
+  return true;
 }
 
 // "{" [ field { "," field } ] "}"
 static bool read_json_record(Reader *r, int depth, CagValue *out) {
-  Fields f = {0};
-  CagCleanup cleanup;
-  cag_cleanup_push(&cleanup, free_fields, &f);
-  bool good = true;
+  Fields *f = fields_new(r->call);
   if (!next_is(r, '}')) {
-    do good = read_field(r, depth, &f);
-    while (good && next_is(r, ','));
-    if (good && !next_is(r, '}')) good = fail_at(r, r->at, "expected `,` or `}`");
+    do
+      if (!read_field(r, depth, f)) return false;
+    while (next_is(r, ','));
+    if (!next_is(r, '}')) return fail_at(r, r->at, "expected `,` or `}`");
   }
-  if (good) *out = give_fields(r, &f);
-  cag_cleanup_run(&cleanup);
-  return good;
+  *out = give_fields(r, f);
+  cag_release_held(r->call, f);
+  return true;
 }
 
 static bool read_json_number(Reader *r, CagValue *out) {
@@ -483,13 +487,9 @@ static bool read_json_value(Reader *r, int depth, CagValue *out) {
 static bool call_read_json(CagCall *call, CagValue *result) {
   Reader r;
   if (!reader_open(call, &r)) return false;
-  CagCleanup cleanup;
-  cag_cleanup_push(&cleanup, cag_free, r.bytes);
-  bool good = read_json_value(&r, 0, result);
+  if (!read_json_value(&r, 0, result)) return false;
   skip_blank(&r);
-  if (good && r.at < r.end) good = fail_at(&r, r.at, "something follows the value");
-  cag_cleanup_run(&cleanup);
-  return good;
+  return r.at == r.end || fail_at(&r, r.at, "something follows the value");
 }
 
 // --- JSON out ---
@@ -576,12 +576,9 @@ static bool write_json(CagCall *call, CagString *s, CagValue v, int depth) {
 }
 
 static bool call_json(CagCall *call, CagValue *result) {
-  CagString s = {0};
-  if (!write_json(call, &s, call->values[0], 0)) {
-    cag_string_free(&s);
-    return false;
-  }
-  *result = cag_text_from_string(call->vm, &s);
+  CagString *s = cag_held_string(call);
+  if (!write_json(call, s, call->values[0], 0)) return false;
+  *result = cag_text_from_string(call->vm, s);
   return true;
 }
 

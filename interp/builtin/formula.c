@@ -131,7 +131,7 @@ typedef struct Parser {
   const CagText *text;
   const char *at, *end; // the text has no zero before its end, and one there
   const CagList *names;
-  CagString out; // the expression of the language
+  CagString *out; // the expression of the language; held
   int depth;
 } Parser;
 
@@ -149,7 +149,7 @@ static bool fail_here(Parser *p, const char *place, const char *format, ...) {
                        p->text->bytes, column, message);
 }
 
-static void write_text(Parser *p, const char *s) { cag_string_add(&p->out, s, strlen(s)); }
+static void write_text(Parser *p, const char *s) { cag_string_add(p->out, s, strlen(s)); }
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -187,7 +187,7 @@ static bool parse_number(Parser *p) {
     }
   }
   if (!cag_read_number(from, (size_t)(p->at - from), &x)) return fail_here(p, from, "not a number");
-  cag_print_number(&p->out, x);
+  cag_print_number(p->out, x);
   return true;
 }
 
@@ -243,7 +243,7 @@ static bool parse_name(Parser *p) {
     return fail_here(p, w.s, "%s expects its argument in parentheses: %s(...)", f->name, f->name);
   }
   if (!is_parameter(p, w) && !is_constant(w)) return fail_unknown(p, w);
-  cag_string_add(&p->out, w.s, w.n);
+  cag_string_add(p->out, w.s, w.n);
   if (peek(p) == '(')
     return fail_here(p, p->at, "`%.*s` is not a function: write * between factors", (int)w.n, w.s);
   return true;
@@ -299,7 +299,7 @@ static bool parse_joined(Parser *p, const char *operators, bool (*next)(Parser *
     char c = peek(p);
     if (c == 0 || !strchr(operators, c)) return true;
     p->at++;
-    cag_string_printf(&p->out, " %c ", c);
+    cag_string_printf(p->out, " %c ", c);
     if (!next(p)) return false;
   }
 }
@@ -345,19 +345,16 @@ static bool call_formula(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < names->length; i++)
     if (!check_parameter(call, names, i)) return false;
   const CagText *t = CAG_AS_TEXT(call->values[0]);
-  Parser p = {.call = call, .text = t, .at = t->bytes, .end = t->bytes + t->length, .names = names};
+  Parser p = {call, t, t->bytes, t->bytes + t->length, names, cag_held_string(call), 0};
   write_text(&p, "(");
   for (size_t i = 0; i < names->length; i++) {
     if (i > 0) write_text(&p, ", ");
     write_text(&p, CAG_AS_TEXT(cag_list_get(call->vm, names, i))->bytes);
   }
   write_text(&p, ") => ");
-  bool good = parse_formula(&p);
-  cag_string_add(&p.out, "", 1);
-  cag_string_check(call->vm, &p.out);
-  good = good && cag_vm_compile_lambda(call->vm, p.out.bytes, result);
-  cag_string_free(&p.out);
-  return good;
+  if (!parse_formula(&p)) return false;
+  cag_string_check(call->vm, p.out);
+  return cag_vm_compile_lambda(call->vm, p.out->bytes, result);
 }
 
 const CagBuiltin cag_builtins_formula[] = {

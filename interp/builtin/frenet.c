@@ -33,8 +33,8 @@ static bool call_frenet_of(CagCall *call, CagValue *result) {
   CagFrenet f;
   CagError err;
   if (!cag_arg_points(call, 0, &given, &n, &dimension)) return false;
+  cag_hold(call, given);
   for (size_t i = 0; i < 3 && i < n; i++) d[i] = given[i];
-  cag_free(given);
   if (n > 3 || n < 2)
     return cag_fail_value(call, 0, "a list of the derivatives of order 1 and 2, or 1 to 3");
   if (!cag_geometry_ok(call, cag_frenet_of(d, &speed, &f, &err), &err)) return false;
@@ -87,10 +87,11 @@ static bool read_triad(CagCall *call, int argument, CagVec3 out[3]) {
   size_t n;
   int dimension;
   if (!cag_arg_points(call, argument, &given, &n, &dimension)) return false;
-  const bool good = n == 3 && dimension == 3;
-  if (good) memcpy(out, given, 3 * sizeof *out);
-  cag_free(given);
-  return good || cag_fail_value(call, argument, "a list of 3 vectors of space");
+  cag_hold(call, given);
+  if (n != 3 || dimension != 3)
+    return cag_fail_value(call, argument, "a list of 3 vectors of space");
+  memcpy(out, given, 3 * sizeof *out);
+  return true;
 }
 
 static bool call_triad_derivative(CagCall *call, CagValue *result) {
@@ -173,33 +174,38 @@ static bool call_plane_contact(CagCall *call, CagValue *result) {
 
 // --- Of the whole ---
 
-static bool parameters_value(CagCall *call, const CagCurve *c, const CagParameters *list,
-                             bool ranges, CagValue *out) {
+static CagValue parameters_value(CagCall *call, const CagCurve *c, const CagParameters *list,
+                                 bool ranges) {
   CagBuilder *b = cag_builder_new(call->vm);
   for (size_t i = 0; i + (ranges ? 1 : 0) < list->count; i += ranges ? 2 : 1) {
     CagValue v = ranges ? cag_domain_value(call->vm, c->angular, list->t[i], list->t[i + 1])
                         : cag_parameter_value(c->angular, list->t[i]);
     cag_builder_add(call->vm, b, v);
   }
-  *out = cag_builder_finish(call->vm, b);
-  return true;
+  return cag_builder_finish(call->vm, b);
+}
+
+static void free_special_points(void *s) {
+  cag_special_points_free(s);
+  cag_free(s);
 }
 
 static bool call_special_points(CagCall *call, CagValue *result) {
   static const char *const names[] = {"singular", "straightening", "flattening",
                                       "still",    "straight",      "planar"};
   CagCurve *c;
-  CagSpecialPoints found;
   CagError err;
   if (!cag_arg_curve(call, 0, &c)) return false;
-  bool ok = cag_geometry_ok(call, cag_curve_special_points(c, &found, &err), &err);
+  CagSpecialPoints *found = cag_hold_array(call, 1, sizeof *found);
+  cag_hold_for(call, free_special_points, cag_give_held(call, found));
+  if (!cag_geometry_ok(call, cag_curve_special_points(c, found, &err), &err)) return false;
   CagValue values[6];
-  for (int k = 0; ok && k < CAG_VANISHINGS; k++)
-    ok = parameters_value(call, c, &found.points[k], false, &values[k]) &&
-         parameters_value(call, c, &found.stretches[k], true, &values[3 + k]);
-  if (ok) *result = cag_record_new(call->vm, names, values, 6);
-  cag_special_points_free(&found);
-  return ok;
+  for (int k = 0; k < CAG_VANISHINGS; k++) {
+    values[k] = parameters_value(call, c, &found->points[k], false);
+    values[3 + k] = parameters_value(call, c, &found->stretches[k], true);
+  }
+  *result = cag_record_new(call->vm, names, values, 6);
+  return true;
 }
 
 // --- Change of the parameter ---
@@ -212,12 +218,12 @@ static bool call_chain_derivatives(CagCall *call, CagValue *result) {
   CagError err;
   if (!cag_arg_numbers(call, 1, &f, &m)) return false;
   if (!cag_arg_points(call, 0, &d, &n, &dimension)) return false;
-  bool ok = n <= CAG_MAX_DERIVATIVE && m == n;
-  if (!ok) cag_fail_value(call, 1, "as many derivatives as the curve has, at most 16");
-  ok = ok && cag_geometry_ok(call, cag_chain_derivatives(d, f, (int)n, out, &err), &err);
-  if (ok) *result = cag_points_value(call->vm, out, n, dimension);
-  cag_free(d);
-  return ok;
+  cag_hold(call, d);
+  if (n > CAG_MAX_DERIVATIVE || m != n)
+    return cag_fail_value(call, 1, "as many derivatives as the curve has, at most 16");
+  if (!cag_geometry_ok(call, cag_chain_derivatives(d, f, (int)n, out, &err), &err)) return false;
+  *result = cag_points_value(call->vm, out, n, dimension);
+  return true;
 }
 
 // --- Helices ---

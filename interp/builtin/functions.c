@@ -26,20 +26,20 @@ typedef struct Formula {
   size_t coordinates; // of its points, 0: not yet known
 } Formula;
 
-static Formula *formula_new(CagVm *vm, CagValue function, int variables) {
-  CagCleanup cleanup;
-  Formula *f = cag_temporary(&cleanup, 1, sizeof *f);
-  f->vm = vm;
-  f->variables = variables;
-  f->slot = cag_vm_keep(vm, function);
-  cag_cleanup_pop(&cleanup);
-  return f;
-}
-
 static void formula_free(void *context) {
   Formula *f = context;
   cag_vm_let_go(f->vm, f->slot);
   cag_free(f);
+}
+
+// Returns a formula that is held until geometry takes it over.
+static Formula *formula_new(CagCall *call, CagValue function, int variables) {
+  Formula *f = cag_hold_array(call, 1, sizeof *f);
+  f->vm = call->vm;
+  f->variables = variables;
+  f->slot = cag_vm_keep(call->vm, function);
+  cag_hold_for(call, formula_free, cag_give_held(call, f));
+  return f;
 }
 
 // Degrees of radians; whole degrees stay whole.
@@ -189,7 +189,7 @@ static bool call_curve(CagCall *call, CagValue *result) {
     a *= CAG_RADIANS_PER_DEGREE;
     b *= CAG_RADIANS_PER_DEGREE;
   }
-  Formula *f = formula_new(call->vm, function, 1);
+  Formula *f = formula_new(call, function, 1);
   f->angular[0] = angle;
   // The first point tells whether the curve is of the plane or of space.
   CagVec3 p;
@@ -198,10 +198,8 @@ static bool call_curve(CagCall *call, CagValue *result) {
   CagStatus status = a < b ? curve_eval(f, a, 0, &p, &err) : CAG_OK;
   if (!status)
     status = cag_curve_function(&geometry, f->coordinates == 2 ? 2 : 3, a, b, angle, &c, &err);
-  if (status) {
-    formula_free(f);
-    return cag_fail_geometry(call, &err);
-  }
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  cag_give_held(call, f);
   *result = cag_curve_value(call->vm, c);
   return true;
 }
@@ -214,7 +212,7 @@ typedef struct Equations {
 
 static void equations_free(void *context) {
   Equations *e = context;
-  if (e->curvature) formula_free(e->curvature);
+  formula_free(e->curvature);
   if (e->torsion) formula_free(e->torsion);
   cag_free(e);
 }
@@ -274,19 +272,16 @@ static bool call_natural_curve(CagCall *call, CagValue *result) {
       (twisted && !cag_arg_function(call, 2, &torsion)) ||
       (cag_given(call, 3) && !cag_arg_transform(call, 3, &frame)))
     return false;
-  CagCleanup cleanup;
-  Equations *e = cag_checked(cag_calloc(1, sizeof *e));
-  cag_cleanup_push(&cleanup, equations_free, e);
-  e->curvature = formula_new(call->vm, curvature, 1);
-  if (twisted) e->torsion = formula_new(call->vm, torsion, 1);
-  cag_cleanup_pop(&cleanup);
+  Equations *e = cag_hold_array(call, 1, sizeof *e);
+  e->curvature = formula_new(call, curvature, 1);
+  if (twisted) e->torsion = formula_new(call, torsion, 1);
   const CagNaturalEquations equations = {equations_eval, equations_free, e};
   CagStatus status =
       cag_curve_natural(&equations, length, &frame, twisted || !frame.planar ? 3 : 2, &c, &err);
-  if (status) {
-    equations_free(e);
-    return cag_fail_geometry(call, &err);
-  }
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  cag_give_held(call, e->torsion);
+  cag_give_held(call, e->curvature);
+  cag_give_held(call, e);
   *result = cag_curve_value(call->vm, c);
   return true;
 }
@@ -357,17 +352,15 @@ static bool call_surface(CagCall *call, CagValue *result) {
       return false;
     for (int k = 0; like.angular[i] && k < 2; k++) range[i][k] *= CAG_RADIANS_PER_DEGREE;
   }
-  Formula *f = formula_new(call->vm, function, 2);
+  Formula *f = formula_new(call, function, 2);
   f->angular[0] = like.angular[0];
   f->angular[1] = like.angular[1];
   const CagSurfaceFunction geometry = {surface_eval, surface_row, formula_free, f};
   CagSurface *s;
   CagStatus status = cag_surface_function(&geometry, range[0][0], range[0][1], f->angular[0],
                                           range[1][0], range[1][1], f->angular[1], &s, &err);
-  if (status) {
-    formula_free(f);
-    return cag_fail_geometry(call, &err);
-  }
+  if (!cag_geometry_ok(call, status, &err)) return false;
+  cag_give_held(call, f);
   *result = cag_surface_value(call->vm, s);
   return true;
 }

@@ -58,13 +58,10 @@ static bool read_series(CagCall *call, CagValue v, const CagSeries *like, CagSer
 // What the built-in gives for plain numbers.
 static bool plain_result(CagCall *call, CagValue *value) {
   CagValue plain[ARGUMENTS_MOST], *values = plain;
-  CagCleanup cleanup;
-  if (call->count > ARGUMENTS_MOST) values = cag_temporary(&cleanup, call->count, sizeof *values);
+  if (call->count > ARGUMENTS_MOST) values = cag_hold_array(call, call->count, sizeof *values);
   for (size_t i = 0; i < call->count; i++) values[i] = cag_without_jets(call->vm, call->values[i]);
   CagCall with = {call->vm, call->builtin, values, call->count};
-  bool ok = call->builtin->function(&with, value);
-  if (values != plain) cag_cleanup_run(&cleanup);
-  return ok;
+  return call->builtin->function(&with, value);
 }
 
 static CagValue give(CagVm *vm, CagSeries *s, CagValue value) {
@@ -715,7 +712,10 @@ bool cag_jet_shape_call(CagVm *vm, CagValue shape, const CagValue *arguments, si
       cag_builtin_rows(index, &rows) + cag_builtin_select(index, shape.type, n + 1);
   CagValue values[3] = {shape, arguments[0], n > 1 ? arguments[1] : cag_unset()};
   CagCall call = {vm, row, values, n + 1};
-  return jet_at(&call, result);
+  const size_t held = vm->held_count;
+  const bool ok = jet_at(&call, result);
+  cag_vm_release_held(vm, held);
+  return ok;
 }
 
 // --- Transforms ---

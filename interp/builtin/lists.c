@@ -295,24 +295,19 @@ static bool check_keys(CagCall *call, const SortItem *items, size_t n) {
 static bool sort_values(CagCall *call, const CagList *values, const CagList *keys,
                         CagValue *result) {
   size_t n = values->length;
-  SortItem *buffer = cag_malloc((2 * n + 1) * sizeof *buffer);
-  if (!buffer)
-    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  bool good = true;
-  for (size_t i = 0; i < n && good; i++) {
+  SortItem *buffer = cag_hold(call, cag_malloc((2 * n + 1) * sizeof *buffer));
+  for (size_t i = 0; i < n; i++) {
     buffer[i] = (SortItem){cag_list_get(call->vm, values, i), cag_list_get(call->vm, keys, i)};
-    good = may_go_on(call, i);
+    if (!may_go_on(call, i)) return false;
   }
-  good = good && check_keys(call, buffer, n);
-  const SortItem *sorted = good ? sort_items(call, buffer, buffer + n, n) : NULL;
-  good = sorted != NULL;
-  if (good) {
-    CagBuilder *built = cag_builder_new(call->vm);
-    for (size_t i = 0; i < n && good; i++) good = cag_builder_add(call->vm, built, sorted[i].value);
-    if (good) *result = cag_builder_finish(call->vm, built);
-  }
-  cag_free(buffer);
-  return good;
+  if (!check_keys(call, buffer, n)) return false;
+  const SortItem *sorted = sort_items(call, buffer, buffer + n, n);
+  if (!sorted) return false;
+  CagBuilder *built = cag_builder_new(call->vm);
+  for (size_t i = 0; i < n; i++)
+    if (!cag_builder_add(call->vm, built, sorted[i].value)) return false;
+  *result = cag_builder_finish(call->vm, built);
+  return true;
 }
 
 static bool call_sort(CagCall *call, CagValue *result) {
@@ -358,26 +353,22 @@ static bool call_reverse(CagCall *call, CagValue *result) {
 
 static bool call_zip(CagCall *call, CagValue *result) {
   size_t n = call->count;
-  CagSequence *s = cag_malloc((n ? n : 1) * sizeof *s);
-  CagValue *parts = cag_malloc((n ? n : 1) * sizeof *parts);
+  CagSequence *s = cag_hold_array(call, n, sizeof *s);
+  CagValue *parts = cag_hold_array(call, n, sizeof *parts);
   CagBuilder *built = cag_builder_new(call->vm);
-  bool good = s && parts;
-  if (!good) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (size_t k = 0; k < n && good; k++) {
-    good = cag_sequence_open(call, (int)k, true, &s[k]);
-    if (good && s[k].length != s[0].length)
-      good = cag_fail_call(call, (int)k, CAG_ERR_length,
+  for (size_t k = 0; k < n; k++) {
+    if (!cag_sequence_open(call, (int)k, true, &s[k])) return false;
+    if (s[k].length != s[0].length)
+      return cag_fail_call(call, (int)k, CAG_ERR_length,
                            "expects lists of one length, found %zu and %zu elements", s[0].length,
                            s[k].length);
   }
-  for (size_t i = 0; good && i < s[0].length; i++) {
+  for (size_t i = 0; i < s[0].length; i++) {
     for (size_t k = 0; k < n; k++) parts[k] = cag_sequence_element(call->vm, &s[k], i);
-    good = cag_builder_add(call->vm, built, cag_list_values(call->vm, parts, n));
+    cag_builder_add(call->vm, built, cag_list_values(call->vm, parts, n));
   }
-  if (good) *result = cag_builder_finish(call->vm, built);
-  cag_free(s);
-  cag_free(parts);
-  return good;
+  *result = cag_builder_finish(call->vm, built);
+  return true;
 }
 
 static bool call_enumerate(CagCall *call, CagValue *result) {

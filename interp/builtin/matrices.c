@@ -11,10 +11,10 @@
 // LAPACKE's complex type is C's.
 #include <lapacke.h>
 
-#include "base/memory.h"
 #include "geom/linalg/complex.h"
 #include "geom/linalg/dense.h"
 #include "interp/builtin/support.h"
+#include "interp/eval/vm.h"
 
 static const char FAMILY[] = "Matrices";
 #define LISTS (CAG_TYPE_BIT(LIST) | CAG_TYPE_BIT(RANGE))
@@ -23,16 +23,15 @@ static const char FAMILY[] = "Matrices";
 
 typedef struct Matrix {
   size_t rows, columns;
-  double *x; // by rows; malloc'd
+  double *x; // by rows; held
 } Matrix;
 
 // Rows of a matrix, and numbers, after which the run is asked whether it must stop.
 enum { ROWS_BETWEEN_CHECKS = 16, NUMBERS_BETWEEN_CHECKS = 1 << 18 };
 
-static bool take(CagCall *call, size_t rows, size_t columns, Matrix *out) {
-  size_t n = rows * columns;
-  *out = (Matrix){rows, columns, cag_malloc((n ? n : 1) * sizeof(double))};
-  return out->x || cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+// A matrix of zeros.
+static Matrix matrix_new(CagCall *call, size_t rows, size_t columns) {
+  return (Matrix){rows, columns, cag_hold_array(call, rows * columns, sizeof(double))};
 }
 
 static bool check_finite(CagCall *call, int argument, const Matrix *m) {
@@ -57,32 +56,23 @@ static bool read_rows(CagCall *call, int argument, Matrix *out) {
   const double *x;
   size_t n, columns;
   if (list->length == 0) return cag_fail_value(call, argument, "a matrix of at least one row");
-  if (!read_row(call, argument, list, 0, &x, &columns) || !take(call, list->length, columns, out))
-    return false;
+  if (!read_row(call, argument, list, 0, &x, &columns)) return false;
+  *out = matrix_new(call, list->length, columns);
   for (size_t i = 0; i < list->length; i++) {
-    bool good = read_row(call, argument, list, i, &x, &n);
-    if (good && n != columns)
-      good = cag_fail_call(
+    if (!read_row(call, argument, list, i, &x, &n)) return false;
+    if (n != columns)
+      return cag_fail_call(
           call, argument, CAG_ERR_length,
           "expects rows of one length as `%s`, found %zu numbers in row 0 and %zu in row %zu",
           cag_parameter_name(call, argument), columns, n, i);
-    if (!good) {
-      cag_free(out->x);
-      return false;
-    }
     memcpy(out->x + i * columns, x, columns * sizeof *x);
-    if (i % ROWS_BETWEEN_CHECKS != 0 || cag_keep_going(call->vm)) continue;
-    cag_free(out->x);
-    return false;
+    if (i % ROWS_BETWEEN_CHECKS == 0 && !cag_keep_going(call->vm)) return false;
   }
   return true;
 }
 
 static bool read_matrix(CagCall *call, int argument, Matrix *out) {
-  if (!read_rows(call, argument, out)) return false;
-  if (check_finite(call, argument, out)) return true;
-  cag_free(out->x);
-  return false;
+  return read_rows(call, argument, out) && check_finite(call, argument, out);
 }
 
 static bool read_square(CagCall *call, int argument, const char *mend, Matrix *out) {
@@ -90,9 +80,7 @@ static bool read_square(CagCall *call, int argument, const char *mend, Matrix *o
   if (out->rows == out->columns) return true;
   cag_fail_call(call, argument, CAG_ERR_length,
                 "expects a square matrix, found %zu rows and %zu columns", out->rows, out->columns);
-  if (mend) cag_fail_help(call->vm, "%s", mend);
-  cag_free(out->x);
-  return false;
+  return mend && cag_fail_help(call->vm, "%s", mend);
 }
 
 // A vector (as one column; *vector is set) or a matrix with so many rows.
@@ -102,19 +90,17 @@ static bool read_right_side(CagCall *call, int argument, size_t rows, const char
   size_t n;
   *vector = cag_as_vector(call->values[argument], &x, &n);
   if (*vector) {
-    if (!take(call, n, 1, out)) return false;
+    *out = matrix_new(call, n, 1);
     memcpy(out->x, x, n * sizeof *x);
-    if (!check_finite(call, argument, out)) goto failed;
+    if (!check_finite(call, argument, out)) return false;
   } else if (!read_matrix(call, argument, out)) {
     return false;
   }
-  if (out->rows == rows) return true;
-  cag_fail_call(call, argument, CAG_ERR_length,
-                "expects %zu rows in `%s`, as many as `%s` has %s, found %zu", rows,
-                cag_parameter_name(call, argument), cag_parameter_name(call, 0), as, out->rows);
-failed:
-  cag_free(out->x);
-  return false;
+  return out->rows == rows ||
+         cag_fail_call(call, argument, CAG_ERR_length,
+                       "expects %zu rows in `%s`, as many as `%s` has %s, found %zu", rows,
+                       cag_parameter_name(call, argument), cag_parameter_name(call, 0), as,
+                       out->rows);
 }
 
 // The first rows of m as a list of rows, or its only column as a vector.
@@ -126,17 +112,14 @@ static CagValue give_rows(CagVm *vm, const Matrix *m, size_t rows, bool vector) 
   return cag_builder_finish(vm, built);
 }
 
-// Frees m on the way.
 static bool give_matrix(CagCall *call, Matrix *m, size_t rows, bool vector, CagValue *result) {
-  bool good = true;
-  for (size_t i = 0; i < rows * m->columns && good; i++) {
+  for (size_t i = 0; i < rows * m->columns; i++) {
     m->x[i] += 0.0; // never -0
-    if (!isfinite(m->x[i])) good = cag_fail_call(call, 0, CAG_ERR_not_finite, "overflows");
-    else if (i % NUMBERS_BETWEEN_CHECKS == 0) good = cag_keep_going(call->vm);
+    if (!isfinite(m->x[i])) return cag_fail_call(call, 0, CAG_ERR_not_finite, "overflows");
+    if (i % NUMBERS_BETWEEN_CHECKS == 0 && !cag_keep_going(call->vm)) return false;
   }
-  if (good) *result = give_rows(call->vm, m, rows, vector);
-  cag_free(m->x);
-  return good;
+  *result = give_rows(call->vm, m, rows, vector);
+  return true;
 }
 
 // --- Linear systems ---
@@ -144,10 +127,6 @@ static bool give_matrix(CagCall *call, Matrix *m, size_t rows, bool vector, CagV
 static bool fail_singular(CagCall *call) {
   return cag_fail_call(call, 0, CAG_ERR_singular,
                        "expects a matrix that is not singular: its rows depend on each other");
-}
-
-static bool fail_memory(CagCall *call) {
-  return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
 }
 
 static bool is_large(double multiplications) { return multiplications > CAG_LAPACK_MOST; }
@@ -162,67 +141,48 @@ static double norm_of_columns(const Matrix *m, double *sums) {
 }
 
 // The same as solve_system for a matrix that is large or has many right sides.
-static bool solve_large(CagCall *call, Matrix *a, Matrix *b, bool *singular) {
+static bool solve_large(CagCall *call, Matrix *a, Matrix *b) {
   const size_t n = a->rows;
-  size_t *pivots = cag_malloc(n * sizeof *pivots);
-  double *sums = cag_malloc(n * sizeof *sums), reciprocal;
+  size_t *pivots = cag_hold_array(call, n, sizeof *pivots);
+  const double norm = norm_of_columns(a, cag_hold_array(call, n, sizeof(double)));
+  double reciprocal = 0;
+  bool singular;
   CagError err = {0};
-  const double norm = sums ? norm_of_columns(a, sums) : 0;
-  CagStatus status =
-      pivots && sums ? cag_lu_factor(a->x, n, pivots, singular, &err) : cag_fail_memory(&err);
-  if (!status && !*singular) {
-    status = cag_lu_condition(a->x, n, pivots, norm, &reciprocal, &err);
-    *singular = !status && !(reciprocal > DBL_EPSILON);
-  }
-  if (!status && !*singular) status = cag_lu_solve(a->x, n, pivots, b->x, b->columns, &err);
-  cag_free(pivots);
-  cag_free(sums);
+  CagStatus status = cag_lu_factor(a->x, n, pivots, &singular, &err);
+  if (!status && !singular) status = cag_lu_condition(a->x, n, pivots, norm, &reciprocal, &err);
+  if (!status && !(reciprocal > DBL_EPSILON)) return fail_singular(call);
+  if (!status) status = cag_lu_solve(a->x, n, pivots, b->x, b->columns, &err);
   return status == CAG_OK || cag_fail_geometry(call, &err);
 }
 
-// Replaces m by its LU decomposition. *singular: whether it is, to rounding.
-static bool decompose(CagCall *call, Matrix *m, lapack_int *pivots, bool *singular) {
-  lapack_int n = (lapack_int)m->rows;
-  double norm = LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', n, n, m->x, n), reciprocal = 0;
-  lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, m->x, n, pivots);
-  if (info < 0)
-    return cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  *singular = info > 0;
-  if (info == 0) LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', n, m->x, n, norm, &reciprocal);
-  *singular = *singular || !(reciprocal > DBL_EPSILON);
-  return true;
+// Replaces m by its LU decomposition. Returns whether a pivot is 0.
+static bool decompose(CagCall *call, Matrix *m, lapack_int *pivots) {
+  const lapack_int n = (lapack_int)m->rows;
+  const lapack_int info = LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, m->x, n, pivots);
+  if (info < 0) cag_vm_out_of_memory(call->vm);
+  return info > 0;
 }
 
+// Replaces a by its LU decomposition, and b by the solution.
 static bool solve_system(CagCall *call, Matrix *a, Matrix *b) {
   const double size = (double)a->rows;
-  if (is_large(size * size * (size / 3 + (double)b->columns))) {
-    bool singular;
-    return solve_large(call, a, b, &singular) && (!singular || fail_singular(call));
-  }
-  lapack_int n = (lapack_int)a->rows, *pivots = cag_malloc(a->rows * sizeof *pivots);
-  bool singular = false;
-  bool good = pivots
-                  ? decompose(call, a, pivots, &singular)
-                  : cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  if (good && singular) good = fail_singular(call);
-  if (good)
-    LAPACKE_dgetrs(LAPACK_ROW_MAJOR, 'N', n, (lapack_int)b->columns, a->x, n, pivots, b->x,
-                   (lapack_int)b->columns);
-  cag_free(pivots);
-  return good;
+  if (is_large(size * size * (size / 3 + (double)b->columns))) return solve_large(call, a, b);
+  const lapack_int n = (lapack_int)a->rows, columns = (lapack_int)b->columns;
+  lapack_int *pivots = cag_hold_array(call, a->rows, sizeof *pivots);
+  double norm = LAPACKE_dlange(LAPACK_ROW_MAJOR, '1', n, n, a->x, n), reciprocal = 0;
+  if (!decompose(call, a, pivots))
+    LAPACKE_dgecon(LAPACK_ROW_MAJOR, '1', n, a->x, n, norm, &reciprocal);
+  if (!(reciprocal > DBL_EPSILON)) return fail_singular(call);
+  LAPACKE_dgetrs(LAPACK_ROW_MAJOR, 'N', n, columns, a->x, n, pivots, b->x, columns);
+  return true;
 }
 
 static bool call_solve(CagCall *call, CagValue *result) {
   Matrix a, b;
   bool vector;
-  if (!read_square(call, 0, "least_squares takes any number of rows", &a)) return false;
-  bool good = read_right_side(call, 1, a.rows, "rows", &b, &vector);
-  if (good && !solve_system(call, &a, &b)) {
-    cag_free(b.x);
-    good = false;
-  }
-  cag_free(a.x);
-  return good && give_matrix(call, &b, b.rows, vector, result);
+  return read_square(call, 0, "least_squares takes any number of rows", &a) &&
+         read_right_side(call, 1, a.rows, "rows", &b, &vector) && solve_system(call, &a, &b) &&
+         give_matrix(call, &b, b.rows, vector, result);
 }
 
 // Copies a matrix to one by columns, or back.
@@ -241,21 +201,13 @@ static bool turn(CagCall *call, const Matrix *m, bool back, double *columns) {
 // Least squares by Householder reflections; x has as many rows as the larger of a's rows and
 // columns.
 static bool solve_large_least_squares(CagCall *call, const Matrix *a, Matrix *x, double cut) {
-  Matrix turned, sides;
-  if (!take(call, a->columns, a->rows, &turned)) return false;
-  if (!take(call, x->columns, x->rows, &sides)) {
-    cag_free(turned.x);
-    return false;
-  }
+  Matrix turned = matrix_new(call, a->columns, a->rows);
+  Matrix sides = matrix_new(call, x->columns, x->rows);
   CagError err = {0};
-  bool good = turn(call, a, false, turned.x) && turn(call, x, false, sides.x);
-  if (good &&
-      cag_least_squares(turned.x, a->rows, a->columns, sides.x, x->rows, x->columns, &cut, &err))
-    good = cag_fail_geometry(call, &err);
-  good = good && turn(call, x, true, sides.x);
-  cag_free(turned.x);
-  cag_free(sides.x);
-  return good;
+  if (!turn(call, a, false, turned.x) || !turn(call, x, false, sides.x)) return false;
+  if (cag_least_squares(turned.x, a->rows, a->columns, sides.x, x->rows, x->columns, &cut, &err))
+    return cag_fail_geometry(call, &err);
+  return turn(call, x, true, sides.x);
 }
 
 static bool solve_least_squares(CagCall *call, Matrix *a, Matrix *x) {
@@ -264,65 +216,46 @@ static bool solve_least_squares(CagCall *call, Matrix *a, Matrix *x) {
   const double cut = DBL_EPSILON * (double)x->rows;
   if (is_large((double)a->rows * (double)a->columns * (double)(least + x->columns)))
     return solve_large_least_squares(call, a, x, cut);
-  double *singular_values = cag_malloc(least * sizeof *singular_values);
-  if (!singular_values) return fail_memory(call);
+  double *singular_values = cag_hold_array(call, least, sizeof *singular_values);
   lapack_int rank, columns = (lapack_int)x->columns;
   const lapack_int info =
       LAPACKE_dgelsd(LAPACK_ROW_MAJOR, (lapack_int)a->rows, (lapack_int)a->columns, columns, a->x,
                      (lapack_int)a->columns, x->x, columns, singular_values, cut, &rank);
-  cag_free(singular_values);
   return info == 0 || cag_fail_call(call, 0, CAG_ERR_convergence,
                                     "does not settle: the singular values could not be found");
 }
 
 static bool call_least_squares(CagCall *call, CagValue *result) {
-  Matrix a, b, x;
+  Matrix a, b;
   bool vector;
-  if (!read_matrix(call, 0, &a)) return false;
-  if (!read_right_side(call, 1, a.rows, "rows", &b, &vector)) {
-    cag_free(a.x);
+  if (!read_matrix(call, 0, &a) || !read_right_side(call, 1, a.rows, "rows", &b, &vector))
     return false;
-  }
   // The solution has `columns` rows and takes the place of the right side.
-  const size_t room = a.rows > a.columns ? a.rows : a.columns, unknowns = a.columns;
-  bool good = take(call, room, b.columns, &x);
-  if (good) {
-    memset(x.x, 0, room * b.columns * sizeof(double));
-    memcpy(x.x, b.x, b.rows * b.columns * sizeof(double));
-    good = solve_least_squares(call, &a, &x);
-    if (!good) cag_free(x.x);
-  }
-  cag_free(a.x);
-  cag_free(b.x);
-  return good && give_matrix(call, &x, unknowns, vector, result);
+  const size_t room = a.rows > a.columns ? a.rows : a.columns;
+  Matrix x = matrix_new(call, room, b.columns);
+  memcpy(x.x, b.x, b.rows * b.columns * sizeof(double));
+  return solve_least_squares(call, &a, &x) && give_matrix(call, &x, a.columns, vector, result);
 }
 
 static bool call_multiply(CagCall *call, CagValue *result) {
-  Matrix a, b, c;
+  Matrix a, b;
   bool vector;
-  if (!read_matrix(call, 0, &a)) return false;
-  if (!read_right_side(call, 1, a.columns, "columns", &b, &vector)) {
-    cag_free(a.x);
+  if (!read_matrix(call, 0, &a) || !read_right_side(call, 1, a.columns, "columns", &b, &vector))
     return false;
-  }
-  bool good = take(call, a.rows, b.columns, &c);
-  for (size_t i = 0; good && i < a.rows; i++) {
+  Matrix c = matrix_new(call, a.rows, b.columns);
+  for (size_t i = 0; i < a.rows; i++) {
     double *row = c.x + i * c.columns;
-    memset(row, 0, c.columns * sizeof *row);
     size_t work = 0;
-    for (size_t k = 0; k < a.columns && good; k++) {
+    for (size_t k = 0; k < a.columns; k++) {
       for (size_t j = 0; j < c.columns; j++)
         row[j] += a.x[i * a.columns + k] * b.x[k * b.columns + j];
       if ((work += c.columns) < NUMBERS_BETWEEN_CHECKS) continue;
       work = 0;
-      good = cag_keep_going(call->vm);
+      if (!cag_keep_going(call->vm)) return false;
     }
-    good = good && cag_keep_going(call->vm);
-    if (!good) cag_free(c.x);
+    if (!cag_keep_going(call->vm)) return false;
   }
-  cag_free(a.x);
-  cag_free(b.x);
-  return good && give_matrix(call, &c, c.rows, vector, result);
+  return give_matrix(call, &c, c.rows, vector, result);
 }
 
 // Up to 3x3 by the rule of Sarrus: exact for small whole numbers.
@@ -335,56 +268,43 @@ static double small_determinant(const Matrix *m) {
 }
 
 static bool large_determinant(CagCall *call, Matrix *m, double *out) {
-  size_t *pivots = cag_malloc(m->rows * sizeof *pivots);
+  size_t *pivots = cag_hold_array(call, m->rows, sizeof *pivots);
   bool singular;
   CagError err = {0};
-  const CagStatus status =
-      pivots ? cag_lu_factor(m->x, m->rows, pivots, &singular, &err) : cag_fail_memory(&err);
+  if (cag_lu_factor(m->x, m->rows, pivots, &singular, &err)) return cag_fail_geometry(call, &err);
   *out = 1;
-  for (size_t i = 0; !status && i < m->rows; i++)
-    *out *= m->x[i * m->rows + i] * (pivots[i] == i ? 1 : -1);
-  cag_free(pivots);
-  return status == CAG_OK || cag_fail_geometry(call, &err);
+  for (size_t i = 0; i < m->rows; i++) *out *= m->x[i * m->rows + i] * (pivots[i] == i ? 1 : -1);
+  return true;
 }
 
 static bool call_determinant(CagCall *call, CagValue *result) {
   Matrix m;
-  double determinant = 0;
   if (!read_square(call, 0, NULL, &m)) return false;
-  bool good = true;
+  double determinant = 0;
   if (m.rows <= 3) determinant = small_determinant(&m);
-  else good = large_determinant(call, &m, &determinant);
-  cag_free(m.x);
-  return good && cag_give_number(call, determinant + 0.0, result);
+  else if (!large_determinant(call, &m, &determinant)) return false;
+  return cag_give_number(call, determinant + 0.0, result);
 }
 
 static bool call_inverse(CagCall *call, CagValue *result) {
-  Matrix a, b;
+  Matrix a;
   if (!read_square(call, 0, NULL, &a)) return false;
-  bool good = take(call, a.rows, a.rows, &b);
-  if (good) {
-    memset(b.x, 0, a.rows * a.rows * sizeof(double));
-    for (size_t i = 0; i < a.rows; i++) b.x[i * a.rows + i] = 1;
-    good = solve_system(call, &a, &b);
-    if (!good) cag_free(b.x);
-  }
-  cag_free(a.x);
-  return good && give_matrix(call, &b, b.rows, false, result);
+  Matrix b = matrix_new(call, a.rows, a.rows);
+  for (size_t i = 0; i < a.rows; i++) b.x[i * a.rows + i] = 1;
+  return solve_system(call, &a, &b) && give_matrix(call, &b, b.rows, false, result);
 }
 
 static bool call_transpose(CagCall *call, CagValue *result) {
-  Matrix a, b;
+  Matrix a;
   if (!read_rows(call, 0, &a)) return false;
-  bool good = take(call, a.columns, a.rows, &b);
-  const bool taken = good;
-  for (size_t i = 0; good && i < a.rows; i++) {
+  Matrix b = matrix_new(call, a.columns, a.rows);
+  for (size_t i = 0; i < a.rows; i++) {
     for (size_t j = 0; j < a.columns; j++) b.x[j * a.rows + i] = a.x[i * a.columns + j];
-    good = cag_keep_going(call->vm);
+    if (!cag_keep_going(call->vm)) return false;
   }
-  if (good) *result = give_rows(call->vm, &b, b.rows, false);
-  if (taken) cag_free(b.x);
-  cag_free(a.x);
-  return good;
+  cag_release_held(call, a.x);
+  *result = give_rows(call->vm, &b, b.rows, false);
+  return true;
 }
 
 // --- Eigenvalues ---
@@ -418,31 +338,23 @@ static void orient(double *v, size_t n) {
 
 static bool call_eigen(CagCall *call, CagValue *result) {
   Matrix m;
-  if (!read_square(call, 0, NULL, &m)) return false;
+  if (!read_square(call, 0, NULL, &m) || !check_symmetric(call, &m)) return false;
   size_t n = m.rows;
-  double *values = cag_malloc(n * sizeof *values);
-  bool good = values
-                  ? check_symmetric(call, &m)
-                  : cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
+  double *values = cag_hold_array(call, n, sizeof *values);
   const bool large = is_large((double)n * (double)n * (double)n);
   CagError err = {0};
-  if (good && large && cag_symmetric_eigen(m.x, n, values, &err))
-    good = cag_fail_geometry(call, &err);
+  if (large && cag_symmetric_eigen(m.x, n, values, &err)) return cag_fail_geometry(call, &err);
   // In column-major order the eigenvectors come out one after the other: the rows of what we give.
-  if (good && !large &&
+  if (!large &&
       LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'U', (lapack_int)n, m.x, (lapack_int)n, values) != 0)
-    good = cag_fail_call(call, 0, CAG_ERR_convergence,
+    return cag_fail_call(call, 0, CAG_ERR_convergence,
                          "does not settle: the eigenvalues could not be found");
-  if (good) {
-    for (size_t i = 0; i < n; i++) orient(m.x + i * n, n);
-    for (size_t i = 0; i < n * n; i++) m.x[i] += 0.0;
-    static const char *const names[] = {"values", "vectors"};
-    CagValue fields[] = {cag_vector(call->vm, values, n), give_rows(call->vm, &m, n, false)};
-    *result = cag_record_new(call->vm, names, fields, 2);
-  }
-  cag_free(values);
-  cag_free(m.x);
-  return good;
+  for (size_t i = 0; i < n; i++) orient(m.x + i * n, n);
+  for (size_t i = 0; i < n * n; i++) m.x[i] += 0.0;
+  static const char *const names[] = {"values", "vectors"};
+  CagValue fields[] = {cag_vector(call->vm, values, n), give_rows(call->vm, &m, n, false)};
+  *result = cag_record_new(call->vm, names, fields, 2);
+  return true;
 }
 
 // --- Roots of polynomials ---
@@ -596,30 +508,21 @@ static bool companion_roots(CagCall *call, Roots *r) {
   int exponent = 0;
   double ratio = fabs(r->c[0] / r->c[n]);
   if (ratio > 0 && isfinite(ratio)) exponent = (int)rint(log2(ratio) / (double)n);
-  Matrix m;
-  if (!take(call, n, n, &m)) return false;
-  double *re = cag_malloc(2 * n * sizeof *re), *im = re ? re + n : NULL;
-  bool good = re != NULL;
-  if (!good) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  if (good) {
-    memset(m.x, 0, n * n * sizeof *m.x);
-    for (size_t j = 0; j < n; j++) {
-      m.x[j] = -ldexp(r->c[n - 1 - j] / r->c[n], -exponent * (int)(j + 1));
-      if (j + 1 < n) m.x[(j + 1) * n + j] = 1;
-      if (!isfinite(m.x[j]))
-        good = cag_fail_call(call, 0, CAG_ERR_not_finite,
-                             "overflows: the coefficients differ too much in size");
-    }
+  Matrix m = matrix_new(call, n, n);
+  double *re = cag_hold_array(call, 2 * n, sizeof *re), *im = re + n;
+  for (size_t j = 0; j < n; j++) {
+    m.x[j] = -ldexp(r->c[n - 1 - j] / r->c[n], -exponent * (int)(j + 1));
+    if (j + 1 < n) m.x[(j + 1) * n + j] = 1;
+    if (!isfinite(m.x[j]))
+      return cag_fail_call(call, 0, CAG_ERR_not_finite,
+                           "overflows: the coefficients differ too much in size");
   }
-  if (good && LAPACKE_dgeev(LAPACK_ROW_MAJOR, 'N', 'N', (lapack_int)n, m.x, (lapack_int)n, re, im,
-                            NULL, (lapack_int)n, NULL, (lapack_int)n) != 0)
-    good = cag_fail_call(call, 0, CAG_ERR_convergence,
+  if (LAPACKE_dgeev(LAPACK_ROW_MAJOR, 'N', 'N', (lapack_int)n, m.x, (lapack_int)n, re, im, NULL,
+                    (lapack_int)n, NULL, (lapack_int)n) != 0)
+    return cag_fail_call(call, 0, CAG_ERR_convergence,
                          "does not settle: the roots could not be found");
-  for (size_t i = 0; good && i < n; i++)
-    r->z[i] = CMPLX(ldexp(re[i], exponent), ldexp(im[i], exponent));
-  cag_free(re);
-  cag_free(m.x);
-  return good;
+  for (size_t i = 0; i < n; i++) r->z[i] = CMPLX(ldexp(re[i], exponent), ldexp(im[i], exponent));
+  return true;
 }
 
 static int compare_roots(const void *a, const void *b) {
@@ -628,7 +531,7 @@ static int compare_roots(const void *a, const void *b) {
   return (cimag(s) > cimag(t)) - (cimag(s) < cimag(t));
 }
 
-// All roots of the polynomial, sorted by real part, then imaginary part; *out is malloc'd.
+// All roots of the polynomial, sorted by real part, then imaginary part; *out is held.
 static bool all_roots(CagCall *call, Complex **out, size_t *count) {
   enum { DEGREE_MOST = 200 }; // beyond, coefficients say too little about the roots
   const double *c;
@@ -645,24 +548,17 @@ static bool all_roots(CagCall *call, Complex **out, size_t *count) {
     return cag_fail_value(call, 0, "a polynomial of a degree of at most 200");
   size_t room = n + 1;
   Roots r = {.c = c + zeros, .degree = degree};
-  r.z = cag_calloc(room, sizeof *r.z);
-  r.found = cag_calloc(2 * room, sizeof *r.found);
-  r.done = cag_calloc(room, sizeof *r.done);
-  r.near = cag_calloc(room, sizeof *r.near);
-  bool good = r.z && r.found && r.done && r.near;
-  if (!good) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  if (good && degree > 0) good = companion_roots(call, &r);
-  if (good) {
-    collect_roots(&r);
-    for (size_t i = 0; i < zeros; i++) r.found[r.found_count++] = 0;
-    qsort(r.found, r.found_count, sizeof *r.found, compare_roots);
-  }
-  cag_free(r.z);
-  cag_free(r.done);
-  cag_free(r.near);
-  if (good) *out = r.found, *count = r.found_count;
-  else cag_free(r.found);
-  return good;
+  r.z = cag_hold_array(call, room, sizeof *r.z);
+  r.found = cag_hold_array(call, 2 * room, sizeof *r.found);
+  r.done = cag_hold_array(call, room, sizeof *r.done);
+  r.near = cag_hold_array(call, room, sizeof *r.near);
+  if (degree > 0 && !companion_roots(call, &r)) return false;
+  collect_roots(&r);
+  for (size_t i = 0; i < zeros; i++) r.found[r.found_count++] = 0;
+  qsort(r.found, r.found_count, sizeof *r.found, compare_roots);
+  *out = r.found;
+  *count = r.found_count;
+  return true;
 }
 
 static bool call_roots(CagCall *call, CagValue *result) {
@@ -675,7 +571,6 @@ static bool call_roots(CagCall *call, CagValue *result) {
   if (reals > 0) *result = cag_list_numbers(call->vm, reals, &numbers);
   for (size_t i = 0, k = 0; i < n; i++)
     if (cimag(z[i]) == 0) numbers[k++] = creal(z[i]) + 0.0;
-  cag_free(z);
   return true;
 }
 
@@ -690,7 +585,6 @@ static bool call_complex_roots(CagCall *call, CagValue *result) {
     numbers[2 * i] = creal(z[i]) + 0.0;
     numbers[2 * i + 1] = cimag(z[i]) + 0.0;
   }
-  cag_free(z);
   return true;
 }
 

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "interp/builtin/support.h"
 
 static const char FAMILY[] = "Records";
@@ -61,17 +60,13 @@ static int compare_names(const void *a, const void *b) {
 }
 
 // A name that stands twice, or NULL; equal names are one interned text.
-static const CagText *name_given_twice(CagText *const *names, size_t n) {
-  if (n < 2) return NULL;
-  CagText **sorted = cag_malloc(n * sizeof *sorted);
-  if (!sorted) return NULL;
+static const CagText *name_given_twice(CagCall *call, CagText *const *names, size_t n) {
+  CagText **sorted = cag_hold_array(call, n, sizeof *sorted);
   memcpy(sorted, names, n * sizeof *sorted);
   qsort(sorted, n, sizeof *sorted, compare_names);
-  const CagText *twice = NULL;
-  for (size_t i = 1; i < n && !twice; i++)
-    if (sorted[i] == sorted[i - 1]) twice = sorted[i];
-  cag_free(sorted);
-  return twice;
+  for (size_t i = 1; i < n; i++)
+    if (sorted[i] == sorted[i - 1]) return sorted[i];
+  return NULL;
 }
 
 static bool call_record(CagCall *call, CagValue *result) {
@@ -82,19 +77,16 @@ static bool call_record(CagCall *call, CagValue *result) {
   CagText *name;
   CagValue value;
   if (n > 0 && !read_pair(call, &pairs, 0, &name, &value)) return false;
-  CagText **names = cag_malloc((n ? n : 1) * sizeof(CagText *));
-  CagValue *values = cag_malloc((n ? n : 1) * sizeof *values);
-  bool good = names && values;
-  if (!good) cag_fail_call(call, 0, CAG_ERR_limit_memory, "needs more memory than there is");
-  for (size_t i = 0; i < n && good; i++) good = read_pair(call, &pairs, i, &names[i], &values[i]);
-  const CagText *twice = good ? name_given_twice(names, n) : NULL;
+  CagText **names = cag_hold_array(call, n, sizeof(CagText *));
+  CagValue *values = cag_hold_array(call, n, sizeof *values);
+  for (size_t i = 0; i < n; i++)
+    if (!read_pair(call, &pairs, i, &names[i], &values[i])) return false;
+  const CagText *twice = name_given_twice(call, names, n);
   if (twice)
-    good =
-        cag_fail_call(call, 0, CAG_ERR_duplicate_field, "has the field \"%s\" twice", twice->bytes);
-  if (good) *result = cag_record_from_texts(call->vm, names, values, n);
-  cag_free(names);
-  cag_free(values);
-  return good;
+    return cag_fail_call(call, 0, CAG_ERR_duplicate_field, "has the field \"%s\" twice",
+                         twice->bytes);
+  *result = cag_record_from_texts(call->vm, names, values, n);
+  return true;
 }
 
 static bool call_type_of(CagCall *call, CagValue *result) {

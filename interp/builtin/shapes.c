@@ -2,7 +2,9 @@
 // results as records, and reading of shapes.
 
 #include "interp/builtin/shapes.h"
+#include "interp/builtin/holds.h"
 #include "interp/builtin/robots.h"
+#include "interp/builtin/support.h"
 #include "interp/eval/vm.h"
 
 #include <float.h>
@@ -10,7 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "geom/solid/csg.h"
 
 // Radians of degrees lose at most half an ulp, so the wanted decimal is within one ulp of the
@@ -170,12 +171,10 @@ bool cag_shapes_collect(CagCall *call, CagValue v, CagBuilder *into) {
     return cag_robot_at_home(call->vm, v, &group) && cag_shapes_collect(call, group, into);
   }
   if (!cag_is_shape(v)) {
-    CagString found = {0};
-    cag_describe_value(call->vm, &found, v);
-    cag_fail_call(call, -1, CAG_ERR_type, "expects shapes, or lists of shapes, found %s",
-                  found.bytes);
-    cag_string_free(&found);
-    return false;
+    CagString *found = cag_held_string(call);
+    cag_describe_value(call->vm, found, v);
+    return cag_fail_call(call, -1, CAG_ERR_type, "expects shapes, or lists of shapes, found %s",
+                         found->bytes);
   }
   return cag_builder_add(call->vm, into, v);
 }
@@ -213,14 +212,13 @@ bool cag_arg_region(CagCall *call, int argument, CagRegion **out, CagTransform *
   size_t n;
   int dimension;
   if (!cag_arg_points(call, argument, &points, &n, &dimension)) return false;
+  cag_hold(call, points);
   CagCurve *outline = NULL;
-  bool ok =
-      cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, &outline, &err), &err);
-  cag_free(points);
-  if (!ok) return false;
-  ok = cag_geometry_ok(call, cag_region_new(outline, NULL, 0, out, &err), &err);
-  cag_curve_release(outline);
-  return ok;
+  if (!cag_geometry_ok(call, cag_curve_polyline(points, n, true, dimension, &outline, &err), &err))
+    return false;
+  cag_release_held(call, points);
+  cag_hold_curve(call, outline);
+  return cag_geometry_ok(call, cag_region_new(outline, NULL, 0, out, &err), &err);
 }
 
 static void bounds_join(CagBounds *into, const CagBounds *b) {

@@ -4,12 +4,21 @@
 
 #include "interp/builtin/robots.h"
 #include "interp/builtin/shapes.h"
+#include "interp/eval/vm.h"
 
 // --- Members ---
 
 static const char *const transform_members[] = {"x", "y", "z", "origin"};
 static const char *const plane_members[] = {"point", "normal", "row"};
 static const char *const mesh_members[] = {"vertices", "faces"};
+
+// Calls a row from outside of built-ins, and releases what it holds.
+static bool call_row(CagCall *call, CagValue *out) {
+  const size_t held = call->vm->held_count;
+  const bool ok = call->builtin->function(call, out);
+  cag_vm_release_held(call->vm, held);
+  return ok;
+}
 
 // A call of a built-in of one argument, for members that are functions as well.
 static bool ask(CagVm *vm, const char *function, CagValue v, CagValue *out) {
@@ -19,7 +28,7 @@ static bool ask(CagVm *vm, const char *function, CagValue v, CagValue *out) {
   size_t row = cag_builtin_select(index, v.type, 1);
   if (row == (size_t)-1) return false;
   CagCall call = {vm, &rows[row], &v, 1};
-  return rows[row].function(&call, out);
+  return call_row(&call, out);
 }
 
 static bool is_one_of(const char *name, const char *const *names, size_t n) {
@@ -118,7 +127,7 @@ bool cag_shape_call(CagVm *vm, CagValue shape, const CagValue *arguments, size_t
                          shape.type == CAG_CURVE ? "of a curve expects one parameter, found %zu"
                                                  : "of a surface expects u and v, found %zu",
                          n);
-  return rows[row].function(&call, result);
+  return call_row(&call, result);
 }
 
 // --- Printed form ---
@@ -172,6 +181,15 @@ static void describe_staged(CagVm *vm, CagString *s, CagValue v) {
   }
 }
 
+static void print_point(CagString *s, CagVec3 p) {
+  const double x[3] = {p.x, p.y, p.z};
+  for (int i = 0; i < 3; i++) {
+    cag_string_printf(s, i ? ", " : "[");
+    cag_print_number(s, x[i]);
+  }
+  cag_string_printf(s, "]");
+}
+
 void cag_describe_shape(CagVm *vm, CagString *s, CagValue v) {
   char text[400] = "";
   switch (v.type) {
@@ -195,9 +213,9 @@ void cag_describe_shape(CagVm *vm, CagString *s, CagValue v) {
   case CAG_PLANE: {
     const CagPlane *p = &CAG_AS_PLANE(v)->plane;
     cag_string_printf(s, "plane through ");
-    cag_print_value(vm, s, cag_point(vm, p->point, 3), true);
+    print_point(s, p->point);
     cag_string_printf(s, ", normal ");
-    cag_print_value(vm, s, cag_point(vm, p->normal, 3), true);
+    print_point(s, p->normal);
     return;
   }
   case CAG_ROBOT:

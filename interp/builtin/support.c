@@ -9,6 +9,19 @@
 #include "base/memory.h"
 #include "interp/value/jet.h"
 
+// --- Texts ---
+
+static void free_held_string(void *s) {
+  cag_string_free(s);
+  cag_free(s);
+}
+
+CagString *cag_held_string(CagCall *call) {
+  CagString *s = cag_hold_array(call, 1, sizeof *s);
+  cag_hold_for(call, free_held_string, cag_give_held(call, s));
+  return s;
+}
+
 // --- Results ---
 
 static bool all_finite(const CagCall *call) {
@@ -21,25 +34,24 @@ static bool all_finite(const CagCall *call) {
 
 // The arguments as they stand in a call, for messages, which show so many bytes of them.
 #define ARGUMENTS_MOST 120
-static void print_arguments(const CagCall *call, CagString *out) {
+static const char *print_arguments(CagCall *call) {
+  CagString *out = cag_held_string(call);
   out->most = ARGUMENTS_MOST;
   for (size_t i = 0; i < call->count && call->values[i].type != CAG_UNSET; i++) {
     if (i > 0) cag_string_add(out, ", ", 2);
     cag_print_value(call->vm, out, call->values[i], true);
   }
   cag_string_add(out, "", 1);
+  return out->bytes;
 }
 
 static bool check_result(CagCall *call, double x) {
   // A result that is infinite because an argument was infinite is not an overflow. (The test for
   // NaN comes first for the reason given in operators.c.)
   if (!isnan(x) && (isfinite(x) || !all_finite(call))) return true;
-  CagString arguments = {0};
-  print_arguments(call, &arguments);
-  cag_fail_call(call, 0, CAG_ERR_not_finite, "%s for %.*s", isnan(x) ? "is undefined" : "overflows",
-                ARGUMENTS_MOST, arguments.bytes);
-  cag_string_free(&arguments);
-  return false;
+  return cag_fail_call(call, 0, CAG_ERR_not_finite, "%s for %.*s",
+                       isnan(x) ? "is undefined" : "overflows", ARGUMENTS_MOST,
+                       print_arguments(call));
 }
 
 bool cag_give_number(CagCall *call, double x, CagValue *result) {
@@ -96,12 +108,8 @@ bool cag_check_defined(CagCall *call, CagValue result) {
              is_defined(result, RESULT_DEPTH)) {
     return true;
   }
-  CagString arguments = {0};
-  print_arguments(call, &arguments);
-  cag_fail_call(call, -1, CAG_ERR_not_finite, "gives numbers that are undefined for %.120s",
-                arguments.bytes);
-  cag_string_free(&arguments);
-  return false;
+  return cag_fail_call(call, -1, CAG_ERR_not_finite, "gives numbers that are undefined for %.120s",
+                       print_arguments(call));
 }
 
 bool cag_fail_depth(CagCall *call) {

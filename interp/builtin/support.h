@@ -27,6 +27,10 @@ bool cag_give_number(CagCall *call, double x, CagValue *result);
 bool cag_check_defined(CagCall *call, CagValue result);
 bool cag_give_angle(CagCall *call, double degrees, CagValue *result);
 
+// --- Texts ---
+// An empty text to be added to. The machine frees it when the built-in ends.
+CagString *cag_held_string(CagCall *call);
+
 // --- Sequences: what is read as a list, element by element, without making a list of a range ---
 typedef struct CagSequence {
   CagValue source;

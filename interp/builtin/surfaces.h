@@ -5,6 +5,7 @@
 
 #include "geom/surface/quadric.h"
 #include "geom/surface/section.h"
+#include "interp/builtin/holds.h"
 #include "interp/builtin/shapes.h"
 
 // clang-format off
@@ -68,8 +69,7 @@ typedef struct CagSurfaceArray {
   size_t count;
 } CagSurfaceArray;
 CagSurfaceArray *cag_hold_surfaces(CagCall *call);
-// Gives an empty list to be filled.
-CagCurveList *cag_hold_curve_list(CagCall *call);
+// The curves as a list.
 CagValue cag_curve_list_value(CagVm *vm, const CagCurveList *list);
 
 // A region turned about an axis that lies in its plane, to a solid.

@@ -15,14 +15,6 @@ CagSurfaceArray *cag_hold_surfaces(CagCall *call) {
   return a;
 }
 
-static void release_curves(void *list) { cag_curve_list_free(list); }
-
-CagCurveList *cag_hold_curve_list(CagCall *call) {
-  CagCurveList *list = cag_hold_array(call, 1, sizeof *list);
-  cag_hold_for(call, release_curves, list);
-  return list;
-}
-
 CagValue cag_curve_list_value(CagVm *vm, const CagCurveList *list) {
   CagBuilder *out = cag_builder_new(vm);
   for (size_t i = 0; i < list->count; i++)

@@ -50,20 +50,14 @@ static bool print_places(CagCall *call, CagString *s, CagValue v, int digits, in
 
 static bool call_text(CagCall *call, CagValue *result) {
   enum { PLACES_MOST = 400 }; // no double has digits beyond these
-  CagString s = {0};
-  if (!cag_given(call, 1)) {
-    cag_print_value(call->vm, &s, call->values[0], false);
-    *result = cag_text_from_string(call->vm, &s);
-    return !call->vm->failed;
-  }
+  CagString *s = cag_held_string(call);
   long digits;
-  if (!cag_arg_integer(call, 1, 0, PLACES_MOST, &digits)) return false;
-  if (!print_places(call, &s, call->values[0], (int)digits, 0)) {
-    cag_string_free(&s);
+  if (!cag_given(call, 1)) cag_print_value(call->vm, s, call->values[0], false);
+  else if (!cag_arg_integer(call, 1, 0, PLACES_MOST, &digits) ||
+           !print_places(call, s, call->values[0], (int)digits, 0))
     return false;
-  }
-  *result = cag_text_from_string(call->vm, &s);
-  return true;
+  *result = cag_text_from_string(call->vm, s);
+  return !call->vm->failed;
 }
 
 static bool call_number_of(CagCall *call, CagValue *result) {
@@ -116,17 +110,14 @@ static bool call_join(CagCall *call, CagValue *result) {
   CagSequence xs;
   if (cag_given(call, 1) && !read_text(call, 1, &separator)) return false;
   if (!cag_sequence_open(call, 0, true, &xs)) return false;
-  CagString s = {0};
+  CagString *s = cag_held_string(call);
   for (size_t i = 0; i < xs.length; i++) {
-    if ((i % KEEP_GOING_EVERY == 0 && !cag_keep_going(call->vm)) ||
-        !cag_string_fits(call->vm, &s)) {
-      cag_string_free(&s);
-      return false;
-    }
-    if (i > 0 && separator) cag_string_add(&s, separator->bytes, separator->length);
-    cag_print_value(call->vm, &s, cag_sequence_element(call->vm, &xs, i), false);
+    if (i % KEEP_GOING_EVERY == 0 && !cag_keep_going(call->vm)) return false;
+    if (!cag_string_fits(call->vm, s)) return false;
+    if (i > 0 && separator) cag_string_add(s, separator->bytes, separator->length);
+    cag_print_value(call->vm, s, cag_sequence_element(call->vm, &xs, i), false);
   }
-  *result = cag_text_from_string(call->vm, &s);
+  *result = cag_text_from_string(call->vm, s);
   return !call->vm->failed;
 }
 
@@ -142,19 +133,16 @@ static bool call_replace(CagCall *call, CagValue *result) {
   if (!read_text(call, 0, &t) || !read_text(call, 1, &old) || !read_text(call, 2, &new))
     return false;
   if (old->length == 0) return cag_fail_value(call, 1, "a text that is not empty");
-  CagString s = {0};
+  CagString *s = cag_held_string(call);
   const char *from = t->bytes, *end = t->bytes + t->length, *found;
   while ((found = find_part(from, end, old)) != NULL) {
-    if (!cag_keep_going(call->vm) || !cag_string_fits(call->vm, &s)) {
-      cag_string_free(&s);
-      return false;
-    }
-    cag_string_add(&s, from, (size_t)(found - from));
-    cag_string_add(&s, new->bytes, new->length);
+    if (!cag_keep_going(call->vm) || !cag_string_fits(call->vm, s)) return false;
+    cag_string_add(s, from, (size_t)(found - from));
+    cag_string_add(s, new->bytes, new->length);
     from = found + old->length;
   }
-  cag_string_add(&s, from, (size_t)(end - from));
-  *result = cag_text_from_string(call->vm, &s);
+  cag_string_add(s, from, (size_t)(end - from));
+  *result = cag_text_from_string(call->vm, s);
   return true;
 }
 
