@@ -2,10 +2,6 @@
 // results as records, and reading of shapes.
 
 #include "interp/builtin/shapes.h"
-#include "interp/builtin/holds.h"
-#include "interp/builtin/robots.h"
-#include "interp/builtin/support.h"
-#include "interp/eval/vm.h"
 
 #include <float.h>
 #include <stdio.h>
@@ -13,6 +9,10 @@
 #include <string.h>
 
 #include "geom/solid/csg.h"
+#include "interp/builtin/holds.h"
+#include "interp/builtin/robots.h"
+#include "interp/builtin/support.h"
+#include "interp/eval/vm.h"
 
 // Radians of degrees lose at most half an ulp, so the wanted decimal is within one ulp of the
 // stored double.
