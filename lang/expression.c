@@ -7,7 +7,7 @@
 
 // ---- nodes ----
 
-CagExpr *parse_new(Parser *p, CagExprKind kind, uint32_t start) {
+CagExpr *cag_parse_new(Parser *p, CagExprKind kind, uint32_t start) {
   CagExpr *e = cag_arena_alloc(&p->module->arena, sizeof *e);
   e->kind = kind;
   e->height = 1;
@@ -16,51 +16,53 @@ CagExpr *parse_new(Parser *p, CagExprKind kind, uint32_t start) {
 }
 
 // Ends a node behind the last token.
-CagExpr *parse_finish(Parser *p, CagExpr *e) {
+CagExpr *cag_parse_finish(Parser *p, CagExpr *e) {
   uint32_t end = p->previous.span.end;
   e->span.end = end > e->span.start ? end : e->span.start;
   return e;
 }
 
 // Puts `below` under e in the count of heights.
-void parse_stack_on(Parser *p, CagExpr *e, const CagExpr *below) {
+void cag_parse_stack_on(Parser *p, CagExpr *e, const CagExpr *below) {
   if (!below || below->height < e->height) return;
   e->height = below->height + 1;
   if (e->height <= CAG_MAX_HEIGHT || p->panic) return;
-  parse_help(parse_error(p, CAG_ERR_too_long, parse_here(p),
-                         "more than %d operators and brackets build one expression",
-                         CAG_MAX_HEIGHT),
-             "name a part of it, or use a list");
+  cag_parse_help(cag_parse_error(p, CAG_ERR_too_long, cag_parse_here(p),
+                                 "more than %d operators and brackets build one expression",
+                                 CAG_MAX_HEIGHT),
+                 "name a part of it, or use a list");
 }
 
-CagExpr *parse_error_node(Parser *p) { return parse_new(p, CAG_EXPR_ERROR, p->previous.span.end); }
+CagExpr *cag_parse_error_node(Parser *p) {
+  return cag_parse_new(p, CAG_EXPR_ERROR, p->previous.span.end);
+}
 
 // Counts recursion that no bracket bounds. Gives false, in panic, when it is too deep.
-bool parse_deeper(Parser *p) {
+bool cag_parse_deeper(Parser *p) {
   if (p->depth < CAG_MAX_NESTING) {
     p->depth++;
     return true;
   }
-  parse_error(p, CAG_ERR_too_deep, parse_here(p), "operators nest more than %d deep here",
-              CAG_MAX_NESTING);
+  cag_parse_error(p, CAG_ERR_too_deep, cag_parse_here(p), "operators nest more than %d deep here",
+                  CAG_MAX_NESTING);
   return false;
 }
 
-CagExpr *parse_binary(Parser *p, CagExprKind kind, CagBinaryOp op, CagSpan op_span, CagExpr *left,
-                      CagExpr *right) {
-  CagExpr *e = parse_new(p, kind, left->span.start);
+CagExpr *cag_parse_binary(Parser *p, CagExprKind kind, CagBinaryOp op, CagSpan op_span,
+                          CagExpr *left, CagExpr *right) {
+  CagExpr *e = cag_parse_new(p, kind, left->span.start);
   e->as.binary.op = op;
   e->as.binary.op_span = op_span;
   e->as.binary.left = left;
   e->as.binary.right = right;
-  parse_stack_on(p, e, left);
-  parse_stack_on(p, e, right);
-  return parse_finish(p, e);
+  cag_parse_stack_on(p, e, left);
+  cag_parse_stack_on(p, e, right);
+  return cag_parse_finish(p, e);
 }
 
 // ---- functions ----
 
-CagDecl *parse_declare(Parser *p, CagDeclKind kind, const CagToken *name) {
+CagDecl *cag_parse_declare(Parser *p, CagDeclKind kind, const CagToken *name) {
   CagDecl *d = cag_arena_alloc(&p->module->arena, sizeof *d);
   d->kind = kind;
   d->name = name->as.name;
@@ -69,19 +71,21 @@ CagDecl *parse_declare(Parser *p, CagDeclKind kind, const CagToken *name) {
 }
 
 // Consumes a name that is defined here; NULL, in panic, when something else stands here.
-const CagToken *parse_name_to_define(Parser *p, CagToken *name, const char *what) {
+const CagToken *cag_parse_name_to_define(Parser *p, CagToken *name, const char *what) {
   if (parse_kind(p) == CAG_TOKEN_NAME) {
     *name = *parse_current(p);
-    parse_advance(p);
+    cag_parse_advance(p);
     return name;
   }
   char word[64];
-  const char *found = parse_found(p, word, sizeof word);
-  if (parse_is_word(parse_kind(p)))
-    parse_help(
-        parse_error(p, CAG_ERR_reserved_name, parse_here(p), "expected %s, found %s", what, found),
-        "choose another name");
-  else parse_error(p, CAG_ERR_expected_name, parse_here(p), "expected %s, found %s", what, found);
+  const char *found = cag_parse_found(p, word, sizeof word);
+  if (cag_parse_is_word(parse_kind(p)))
+    cag_parse_help(cag_parse_error(p, CAG_ERR_reserved_name, cag_parse_here(p),
+                                   "expected %s, found %s", what, found),
+                   "choose another name");
+  else
+    cag_parse_error(p, CAG_ERR_expected_name, cag_parse_here(p), "expected %s, found %s", what,
+                    found);
   return NULL;
 }
 
@@ -89,44 +93,45 @@ const CagToken *parse_name_to_define(Parser *p, CagToken *name, const char *what
 //
 // From the opening bracket to the closing one.
 static void parameters(Parser *p, CagFunctionAst *f) {
-  Opened o = parse_open(p, false);
-  size_t list = parse_list_begin(p);
+  Opened o = cag_parse_open(p, false);
+  size_t list = cag_parse_list_begin(p);
   CagExpr *last = NULL;
   while (!p->panic && parse_kind(p) != CAG_TOKEN_RIGHT_PAREN) {
     CagToken name;
     if (parse_kind(p) == CAG_TOKEN_END) break;
-    if (!parse_name_to_define(p, &name, "the name of a parameter")) break;
-    CagParameter parameter = {parse_declare(p, CAG_DECL_PARAMETER, &name), NULL};
+    if (!cag_parse_name_to_define(p, &name, "the name of a parameter")) break;
+    CagParameter parameter = {cag_parse_declare(p, CAG_DECL_PARAMETER, &name), NULL};
     last = NULL;
-    if (parse_accept(p, CAG_TOKEN_EQUALS)) {
-      parameter.fallback = last = parse_expression(p);
+    if (cag_parse_accept(p, CAG_TOKEN_EQUALS)) {
+      parameter.fallback = last = cag_parse_expression(p);
     } else if (parse_kind(p) == CAG_TOKEN_COLON && parse_kind_at(p, 1) == CAG_TOKEN_NAME) {
-      parse_help(parse_error(p, CAG_ERR_expected_separator, parse_here(p),
-                             "expected `,` or `)`, found `:`"),
-                 "parameters have no types; a default is written %s = 1", name.as.name);
+      cag_parse_help(cag_parse_error(p, CAG_ERR_expected_separator, cag_parse_here(p),
+                                     "expected `,` or `)`, found `:`"),
+                     "parameters have no types; a default is written %s = 1", name.as.name);
     }
-    parse_list_push(p, &parameter, sizeof parameter);
-    if (!parse_accept(p, CAG_TOKEN_COMMA)) break;
+    cag_parse_list_push(p, &parameter, sizeof parameter);
+    if (!cag_parse_accept(p, CAG_TOKEN_COMMA)) break;
   }
-  parse_close(p, o, CAG_TOKEN_RIGHT_PAREN, last, "`,` or `)`");
-  f->parameters = parse_list_end(p, list, sizeof *f->parameters, &f->parameter_count);
+  cag_parse_close(p, o, CAG_TOKEN_RIGHT_PAREN, last, "`,` or `)`");
+  f->parameters = cag_parse_list_end(p, list, sizeof *f->parameters, &f->parameter_count);
   while (f->required_count < f->parameter_count && !f->parameters[f->required_count].fallback)
     f->required_count++;
 }
 
 // Puts defaults and body under the expression that holds the function.
 static CagExpr *function_expression(Parser *p, CagFunctionAst *f, uint32_t start) {
-  CagExpr *e = parse_new(p, CAG_EXPR_LAMBDA, start);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_LAMBDA, start);
   e->as.function = f;
-  for (size_t i = 0; i < f->parameter_count; i++) parse_stack_on(p, e, f->parameters[i].fallback);
-  parse_stack_on(p, e, f->body);
-  parse_finish(p, e);
+  for (size_t i = 0; i < f->parameter_count; i++)
+    cag_parse_stack_on(p, e, f->parameters[i].fallback);
+  cag_parse_stack_on(p, e, f->body);
+  cag_parse_finish(p, e);
   f->span = e->span;
   return e;
 }
 
 // The parameters of a definition: "(" [ parameters ] ")"
-CagFunctionAst *parse_function(Parser *p, const char *name) {
+CagFunctionAst *cag_parse_function(Parser *p, const char *name) {
   CagFunctionAst *f = cag_arena_alloc(&p->module->arena, sizeof *f);
   f->name = name;
   parameters(p, f);
@@ -135,7 +140,7 @@ CagFunctionAst *parse_function(Parser *p, const char *name) {
 
 // Whether `(` opens the parameters of a lambda: when `)`, `name ,`, `name =` or `name ) =>`
 // follows.
-bool parse_opens_lambda(Parser *p) {
+bool cag_parse_opens_lambda(Parser *p) {
   if (parse_kind(p) != CAG_TOKEN_LEFT_PAREN) return false;
   CagTokenKind next = parse_kind_at(p, 1);
   if (next == CAG_TOKEN_RIGHT_PAREN) return true;
@@ -148,26 +153,27 @@ bool parse_opens_lambda(Parser *p) {
 static bool at_lambda(Parser *p) {
   CagTokenKind kind = parse_kind(p);
   if (kind == CAG_TOKEN_NAME) return parse_kind_at(p, 1) == CAG_TOKEN_ARROW;
-  return kind == CAG_TOKEN_LEFT_PAREN && parse_opens_lambda(p);
+  return kind == CAG_TOKEN_LEFT_PAREN && cag_parse_opens_lambda(p);
 }
 
 // lambda = ( name | "(" [ parameters ] ")" ) "=>" expr
-CagExpr *parse_lambda(Parser *p) {
-  uint32_t start = parse_here(p).start;
+CagExpr *cag_parse_lambda(Parser *p) {
+  uint32_t start = cag_parse_here(p).start;
   CagFunctionAst *f = cag_arena_alloc(&p->module->arena, sizeof *f);
   if (parse_kind(p) == CAG_TOKEN_NAME) {
-    CagParameter parameter = {parse_declare(p, CAG_DECL_PARAMETER, parse_current(p)), NULL};
-    parse_advance(p);
+    CagParameter parameter = {cag_parse_declare(p, CAG_DECL_PARAMETER, parse_current(p)), NULL};
+    cag_parse_advance(p);
     f->parameters = cag_arena_alloc(&p->module->arena, sizeof parameter);
     f->parameters[0] = parameter;
     f->parameter_count = f->required_count = 1;
   } else {
-    if (parse_at_tuple(p)) return parse_group(p);
+    if (cag_parse_at_tuple(p)) return cag_parse_group(p);
     parameters(p, f);
   }
-  if (!parse_accept(p, CAG_TOKEN_ARROW)) parse_unexpected(p, NULL, CAG_ERR_expected_word, "`=>`");
-  if (p->panic || !parse_deeper(p)) return parse_error_node(p);
-  f->body = parse_expression(p);
+  if (!cag_parse_accept(p, CAG_TOKEN_ARROW))
+    cag_parse_unexpected(p, NULL, CAG_ERR_expected_word, "`=>`");
+  if (p->panic || !cag_parse_deeper(p)) return cag_parse_error_node(p);
+  f->body = cag_parse_expression(p);
   p->depth--;
   return function_expression(p, f, start);
 }
@@ -175,28 +181,28 @@ CagExpr *parse_lambda(Parser *p) {
 // ---- if ----
 
 static void expect_then(Parser *p, const CagExpr *condition) {
-  if (p->panic || parse_accept(p, CAG_TOKEN_THEN)) return;
+  if (p->panic || cag_parse_accept(p, CAG_TOKEN_THEN)) return;
   CagTokenKind kind = parse_kind(p);
   if (kind == CAG_TOKEN_COLON || kind == CAG_TOKEN_LEFT_BRACE) {
     char word[64];
-    const char *found = parse_found(p, word, sizeof word);
-    parse_help(
-        parse_error(p, CAG_ERR_expected_word, parse_here(p), "expected `then`, found %s", found),
-        "write %s", cag_foreign_syntax(CAG_FOREIGN_if_braces));
+    const char *found = cag_parse_found(p, word, sizeof word);
+    cag_parse_help(cag_parse_error(p, CAG_ERR_expected_word, cag_parse_here(p),
+                                   "expected `then`, found %s", found),
+                   "write %s", cag_foreign_syntax(CAG_FOREIGN_if_braces));
     return;
   }
-  parse_unexpected(p, condition, CAG_ERR_expected_word, "`then`");
+  cag_parse_unexpected(p, condition, CAG_ERR_expected_word, "`then`");
 }
 
 static bool expect_else(Parser *p, CagSpan opening, const CagExpr *value) {
-  if (p->panic || parse_accept(p, CAG_TOKEN_ELSE)) return !p->panic;
+  if (p->panic || cag_parse_accept(p, CAG_TOKEN_ELSE)) return !p->panic;
   const CagToken *t = parse_current(p);
-  if (parse_token_is(p, t, "elif") || parse_token_is(p, t, "elseif") ||
-      parse_token_is(p, t, "elsif")) {
-    parse_help(parse_mend(p, CAG_ERR_elif, t->span, "`%s` is two words here", t->as.name),
-               "write else if");
+  if (cag_parse_token_is(p, t, "elif") || cag_parse_token_is(p, t, "elseif") ||
+      cag_parse_token_is(p, t, "elsif")) {
+    cag_parse_help(cag_parse_mend(p, CAG_ERR_elif, t->span, "`%s` is two words here", t->as.name),
+                   "write else if");
     t = parse_current(p);
-    parse_advance(p);
+    cag_parse_advance(p);
     return true;
   }
   bool over = t->kind == CAG_TOKEN_END || t->newline_before || t->kind == CAG_TOKEN_COMMA ||
@@ -204,10 +210,11 @@ static bool expect_else(Parser *p, CagSpan opening, const CagExpr *value) {
               t->kind == CAG_TOKEN_RIGHT_SQUARE || t->kind == CAG_TOKEN_RIGHT_BRACE ||
               t->kind == CAG_TOKEN_TEXT_TAIL;
   if (over) {
-    CagDiagnostic *d = parse_error(p, CAG_ERR_if_without_else, opening, "this `if` has no `else`");
-    parse_help(d, "its value in the other case is missing: else none");
+    CagDiagnostic *d =
+        cag_parse_error(p, CAG_ERR_if_without_else, opening, "this `if` has no `else`");
+    cag_parse_help(d, "its value in the other case is missing: else none");
   } else {
-    parse_unexpected(p, value, CAG_ERR_expected_word, "`else`");
+    cag_parse_unexpected(p, value, CAG_ERR_expected_word, "`else`");
   }
   return false;
 }
@@ -215,34 +222,34 @@ static bool expect_else(Parser *p, CagSpan opening, const CagExpr *value) {
 // "if" expr "then" expr "else" expr
 //
 // A chain of `else if` is read in a loop: generated code has long ones.
-CagExpr *parse_branch(Parser *p) {
-  size_t list = parse_list_begin(p);
+CagExpr *cag_parse_branch(Parser *p) {
+  size_t list = cag_parse_list_begin(p);
   CagExpr *first = NULL, *last = NULL;
-  if (!parse_deeper(p)) return parse_error_node(p);
+  if (!cag_parse_deeper(p)) return cag_parse_error_node(p);
   bool was_elif;
   do {
-    CagSpan opening = parse_here(p);
-    CagExpr *e = parse_new(p, CAG_EXPR_IF, opening.start);
-    if (parse_kind(p) == CAG_TOKEN_IF) parse_advance(p);
-    e->as.branch.condition = parse_expression(p);
+    CagSpan opening = cag_parse_here(p);
+    CagExpr *e = cag_parse_new(p, CAG_EXPR_IF, opening.start);
+    if (parse_kind(p) == CAG_TOKEN_IF) cag_parse_advance(p);
+    e->as.branch.condition = cag_parse_expression(p);
     expect_then(p, e->as.branch.condition);
-    e->as.branch.then = parse_expression(p);
+    e->as.branch.then = cag_parse_expression(p);
     was_elif = false;
     if (expect_else(p, opening, e->as.branch.then)) was_elif = p->previous.kind == CAG_TOKEN_NAME;
     if (last) last->as.branch.otherwise = e;
     else first = e;
     last = e;
-    parse_list_push(p, &e, sizeof e);
+    cag_parse_list_push(p, &e, sizeof e);
   } while (!p->panic && (was_elif || parse_kind(p) == CAG_TOKEN_IF));
-  last->as.branch.otherwise = parse_expression(p);
+  last->as.branch.otherwise = cag_parse_expression(p);
 
   size_t count;
-  CagExpr **chain = parse_list_end(p, list, sizeof *chain, &count);
+  CagExpr **chain = cag_parse_list_end(p, list, sizeof *chain, &count);
   for (size_t i = count; i-- > 0;) {
-    parse_stack_on(p, chain[i], chain[i]->as.branch.condition);
-    parse_stack_on(p, chain[i], chain[i]->as.branch.then);
-    parse_stack_on(p, chain[i], chain[i]->as.branch.otherwise);
-    parse_finish(p, chain[i]);
+    cag_parse_stack_on(p, chain[i], chain[i]->as.branch.condition);
+    cag_parse_stack_on(p, chain[i], chain[i]->as.branch.then);
+    cag_parse_stack_on(p, chain[i], chain[i]->as.branch.otherwise);
+    cag_parse_finish(p, chain[i]);
   }
   p->depth--;
   return first;
@@ -257,26 +264,26 @@ static CagExpr *unary(Parser *p);
 
 // power = postfix [ "^" ( power | "-" ... ) ]
 static CagExpr *power(Parser *p) {
-  CagExpr *e = parse_postfix(p);
+  CagExpr *e = cag_parse_postfix(p);
   if (parse_kind(p) != CAG_TOKEN_CARET) return e;
-  CagSpan op = parse_here(p);
-  parse_advance(p);
-  if (!parse_deeper(p)) return e;
+  CagSpan op = cag_parse_here(p);
+  cag_parse_advance(p);
+  if (!cag_parse_deeper(p)) return e;
   CagExpr *right = unary(p);
   p->depth--;
-  return parse_binary(p, CAG_EXPR_BINARY, CAG_OP_POWER, op, e, right);
+  return cag_parse_binary(p, CAG_EXPR_BINARY, CAG_OP_POWER, op, e, right);
 }
 
 // unary = "-" unary | power
 static CagExpr *unary(Parser *p) {
   if (parse_kind(p) != CAG_TOKEN_MINUS) return power(p);
-  CagExpr *e = parse_new(p, CAG_EXPR_NEGATE, parse_here(p).start);
-  parse_advance(p);
-  if (!parse_deeper(p)) return parse_error_node(p);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_NEGATE, cag_parse_here(p).start);
+  cag_parse_advance(p);
+  if (!cag_parse_deeper(p)) return cag_parse_error_node(p);
   e->as.unary.operand = unary(p);
   p->depth--;
-  parse_stack_on(p, e, e->as.unary.operand);
-  return parse_finish(p, e);
+  cag_parse_stack_on(p, e, e->as.unary.operand);
+  return cag_parse_finish(p, e);
 }
 
 // product = unary { ( "*" | "/" | "%" | "&" ) unary }
@@ -291,10 +298,10 @@ static CagExpr *product(Parser *p, CagExpr *first) {
     case CAG_TOKEN_AMPERSAND: op = CAG_OP_INTERSECTION; break;
     default: return e;
     }
-    CagSpan at = parse_here(p);
-    parse_advance(p);
+    CagSpan at = cag_parse_here(p);
+    cag_parse_advance(p);
     CagExpr *right = unary(p);
-    e = parse_binary(p, CAG_EXPR_BINARY, op, at, e, right);
+    e = cag_parse_binary(p, CAG_EXPR_BINARY, op, at, e, right);
   }
 }
 
@@ -308,16 +315,16 @@ static CagExpr *sum(Parser *p, CagExpr *first) {
     switch (parse_kind(p)) {
     case CAG_TOKEN_PLUS: op = CAG_OP_ADD; break;
     case CAG_TOKEN_MINUS:
-      if (parse_at_newline(p)) return e;
+      if (cag_parse_at_newline(p)) return e;
       op = CAG_OP_SUBTRACT;
       break;
     case CAG_TOKEN_BAR: op = CAG_OP_UNION; break;
     default: return e;
     }
-    CagSpan at = parse_here(p);
-    parse_advance(p);
+    CagSpan at = cag_parse_here(p);
+    cag_parse_advance(p);
     CagExpr *right = product(p, NULL);
-    e = parse_binary(p, CAG_EXPR_BINARY, op, at, e, right);
+    e = cag_parse_binary(p, CAG_EXPR_BINARY, op, at, e, right);
   }
 }
 
@@ -329,45 +336,46 @@ static bool at_range(Parser *p) {
 static CagExpr *range_end(Parser *p) {
   CagTokenKind kind = parse_kind(p);
   if (!p->panic && (kind == CAG_TOKEN_RIGHT_SQUARE || kind == CAG_TOKEN_RIGHT_PAREN)) {
-    parse_help(parse_error(p, CAG_ERR_open_range, p->previous.span, "this range has no end"),
-               kind == CAG_TOKEN_RIGHT_SQUARE ? "the last element is number -1: 1..-1"
-                                              : "an unbounded range ends at inf");
-    return parse_error_node(p);
+    cag_parse_help(
+        cag_parse_error(p, CAG_ERR_open_range, p->previous.span, "this range has no end"),
+        kind == CAG_TOKEN_RIGHT_SQUARE ? "the last element is number -1: 1..-1"
+                                       : "an unbounded range ends at inf");
+    return cag_parse_error_node(p);
   }
   return sum(p, NULL);
 }
 
 static void report_chained_range(Parser *p, const CagExpr *e) {
-  CagSpan again = parse_here(p);
-  parse_advance(p);
+  CagSpan again = cag_parse_here(p);
+  cag_parse_advance(p);
   CagExpr *third = range_end(p);
   char a[QUOTE_SIZE], b[QUOTE_SIZE], c[QUOTE_SIZE];
   CagDiagnostic *d =
-      parse_mend(p, CAG_ERR_chained_range, again, "a range has one start and one end");
-  parse_help(d, "a step is written %s..%s by %s",
-             parse_quote(p, e->as.range.low->span, a, sizeof a, "a"),
-             parse_quote(p, third->span, c, sizeof c, "b"),
-             parse_quote(p, e->as.range.high->span, b, sizeof b, "step"));
+      cag_parse_mend(p, CAG_ERR_chained_range, again, "a range has one start and one end");
+  cag_parse_help(d, "a step is written %s..%s by %s",
+                 cag_parse_quote(p, e->as.range.low->span, a, sizeof a, "a"),
+                 cag_parse_quote(p, third->span, c, sizeof c, "b"),
+                 cag_parse_quote(p, e->as.range.high->span, b, sizeof b, "step"));
 }
 
 // operand = sum [ ( ".." | "..<" ) sum [ "by" sum ] ]
 static CagExpr *operand(Parser *p, CagExpr *first) {
   CagExpr *low = sum(p, first);
   if (!at_range(p)) return low;
-  CagExpr *e = parse_new(p, CAG_EXPR_RANGE, low->span.start);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_RANGE, low->span.start);
   e->as.range.low = low;
   e->as.range.open = parse_kind(p) == CAG_TOKEN_RANGE_OPEN;
-  parse_advance(p);
+  cag_parse_advance(p);
   e->as.range.high = range_end(p);
   if (at_range(p)) report_chained_range(p, e);
-  if (parse_accept(p, CAG_TOKEN_BY)) e->as.range.step = sum(p, NULL);
-  parse_stack_on(p, e, low);
-  parse_stack_on(p, e, e->as.range.high);
-  parse_stack_on(p, e, e->as.range.step);
-  return parse_finish(p, e);
+  if (cag_parse_accept(p, CAG_TOKEN_BY)) e->as.range.step = sum(p, NULL);
+  cag_parse_stack_on(p, e, low);
+  cag_parse_stack_on(p, e, e->as.range.high);
+  cag_parse_stack_on(p, e, e->as.range.step);
+  return cag_parse_finish(p, e);
 }
 
-CagExpr *parse_operand(Parser *p) { return operand(p, NULL); }
+CagExpr *cag_parse_operand(Parser *p) { return operand(p, NULL); }
 
 static bool comparison_op(CagTokenKind kind, CagBinaryOp *op) {
   switch (kind) {
@@ -383,16 +391,18 @@ static bool comparison_op(CagTokenKind kind, CagBinaryOp *op) {
 }
 
 static void report_chained_comparison(Parser *p, const CagExpr *e) {
-  CagSpan again = parse_here(p), first = e->as.binary.op_span;
-  parse_advance(p);
-  CagExpr *third = parse_operand(p);
+  CagSpan again = cag_parse_here(p), first = e->as.binary.op_span;
+  cag_parse_advance(p);
+  CagExpr *third = cag_parse_operand(p);
   char a[QUOTE_SIZE], b[QUOTE_SIZE], c[QUOTE_SIZE], op1[8], op2[8];
-  const char *middle = parse_quote(p, e->as.binary.right->span, b, sizeof b, "b");
-  CagDiagnostic *d = parse_mend(p, CAG_ERR_chained_comparison, again, "comparisons do not chain");
-  parse_help(
-      d, "write %s %s %s and %s %s %s", parse_quote(p, e->as.binary.left->span, a, sizeof a, "a"),
-      parse_quote(p, first, op1, sizeof op1, "<"), middle, middle,
-      parse_quote(p, again, op2, sizeof op2, "<"), parse_quote(p, third->span, c, sizeof c, "c"));
+  const char *middle = cag_parse_quote(p, e->as.binary.right->span, b, sizeof b, "b");
+  CagDiagnostic *d =
+      cag_parse_mend(p, CAG_ERR_chained_comparison, again, "comparisons do not chain");
+  cag_parse_help(d, "write %s %s %s and %s %s %s",
+                 cag_parse_quote(p, e->as.binary.left->span, a, sizeof a, "a"),
+                 cag_parse_quote(p, first, op1, sizeof op1, "<"), middle, middle,
+                 cag_parse_quote(p, again, op2, sizeof op2, "<"),
+                 cag_parse_quote(p, third->span, c, sizeof c, "c"));
 }
 
 // comparison = operand [ ( "==" | "!=" | "<" | "<=" | ">" | ">=" | "in" ) operand ]
@@ -400,14 +410,14 @@ static CagExpr *comparison(Parser *p, CagExpr *first) {
   CagExpr *e = operand(p, first);
   CagBinaryOp op;
   if (!comparison_op(parse_kind(p), &op)) return e;
-  CagSpan at = parse_here(p);
-  parse_advance(p);
-  CagExpr *right = parse_operand(p);
-  e = parse_binary(p, CAG_EXPR_BINARY, op, at, e, right);
+  CagSpan at = cag_parse_here(p);
+  cag_parse_advance(p);
+  CagExpr *right = cag_parse_operand(p);
+  e = cag_parse_binary(p, CAG_EXPR_BINARY, op, at, e, right);
   if (comparison_op(parse_kind(p), &op)) report_chained_comparison(p, e);
   while (comparison_op(parse_kind(p), &op)) { // told once
-    parse_advance(p);
-    parse_operand(p);
+    cag_parse_advance(p);
+    cag_parse_operand(p);
   }
   return e;
 }
@@ -415,25 +425,25 @@ static CagExpr *comparison(Parser *p, CagExpr *first) {
 // negation = "not" negation | comparison
 static CagExpr *negation(Parser *p, CagExpr *first) {
   if (first || parse_kind(p) != CAG_TOKEN_NOT) return comparison(p, first);
-  CagExpr *e = parse_new(p, CAG_EXPR_NOT, parse_here(p).start);
-  parse_advance(p);
-  if (!parse_deeper(p)) return parse_error_node(p);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_NOT, cag_parse_here(p).start);
+  cag_parse_advance(p);
+  if (!cag_parse_deeper(p)) return cag_parse_error_node(p);
   e->as.unary.operand = negation(p, NULL);
   p->depth--;
-  parse_stack_on(p, e, e->as.unary.operand);
-  return parse_finish(p, e);
+  cag_parse_stack_on(p, e, e->as.unary.operand);
+  return cag_parse_finish(p, e);
 }
 
-CagExpr *parse_negation(Parser *p) { return negation(p, NULL); }
+CagExpr *cag_parse_negation(Parser *p) { return negation(p, NULL); }
 
 // conjunction = negation { "and" negation }
 static CagExpr *conjunction(Parser *p, CagExpr *first) {
   CagExpr *e = negation(p, first);
   while (parse_kind(p) == CAG_TOKEN_AND) {
-    CagSpan at = parse_here(p);
-    parse_advance(p);
+    CagSpan at = cag_parse_here(p);
+    cag_parse_advance(p);
     CagExpr *right = negation(p, NULL);
-    e = parse_binary(p, CAG_EXPR_AND, CAG_OP_ADD, at, e, right);
+    e = cag_parse_binary(p, CAG_EXPR_AND, CAG_OP_ADD, at, e, right);
   }
   return e;
 }
@@ -442,10 +452,10 @@ static CagExpr *conjunction(Parser *p, CagExpr *first) {
 static CagExpr *disjunction(Parser *p, CagExpr *first) {
   CagExpr *e = conjunction(p, first);
   while (parse_kind(p) == CAG_TOKEN_OR) {
-    CagSpan at = parse_here(p);
-    parse_advance(p);
+    CagSpan at = cag_parse_here(p);
+    cag_parse_advance(p);
     CagExpr *right = conjunction(p, NULL);
-    e = parse_binary(p, CAG_EXPR_OR, CAG_OP_ADD, at, e, right);
+    e = cag_parse_binary(p, CAG_EXPR_OR, CAG_OP_ADD, at, e, right);
   }
   return e;
 }
@@ -454,10 +464,10 @@ static CagExpr *disjunction(Parser *p, CagExpr *first) {
 static CagExpr *pipe_expression(Parser *p, CagExpr *first) {
   CagExpr *e = disjunction(p, first);
   while (parse_kind(p) == CAG_TOKEN_PIPE) {
-    CagSpan at = parse_here(p);
-    parse_advance(p);
+    CagSpan at = cag_parse_here(p);
+    cag_parse_advance(p);
     CagExpr *right = disjunction(p, NULL);
-    e = parse_binary(p, CAG_EXPR_PIPE, CAG_OP_ADD, at, e, right);
+    e = cag_parse_binary(p, CAG_EXPR_PIPE, CAG_OP_ADD, at, e, right);
   }
   return e;
 }
@@ -506,11 +516,12 @@ static bool at_single_word(Parser *p) {
 }
 
 // expr = lambda | "if" expr "then" expr "else" expr | pipe
-CagExpr *parse_expression(Parser *p) {
-  if (parse_current(p)->newline_before && parse_at_next_definition(p)) return parse_missing(p);
-  if (at_single_word(p)) return parse_postfix(p);
-  if (parse_kind(p) == CAG_TOKEN_IF) return parse_branch(p);
-  if (at_lambda(p)) return parse_lambda(p);
+CagExpr *cag_parse_expression(Parser *p) {
+  if (parse_current(p)->newline_before && cag_parse_at_next_definition(p))
+    return cag_parse_missing(p);
+  if (at_single_word(p)) return cag_parse_postfix(p);
+  if (parse_kind(p) == CAG_TOKEN_IF) return cag_parse_branch(p);
+  if (at_lambda(p)) return cag_parse_lambda(p);
   if (parse_kind(p) == CAG_TOKEN_NOT) return pipe_expression(p, NULL);
   CagExpr *first = unary(p);
   return is_operator(parse_kind(p)) ? pipe_expression(p, first) : first;

@@ -73,11 +73,11 @@ static bool ends_line(const Format *f, uint32_t at) {
 
 // A comment of several lines whose line ends are those of Windows, with ours.
 static Doc *mended_comment(Format *f, const char *text, size_t length) {
-  char *out = layout_memory(&f->layout, length);
+  char *out = cag_layout_memory(&f->layout, length);
   size_t n = 0;
   for (size_t i = 0; i < length; i++)
     if (text[i] != '\r' || i + 1 == length || text[i + 1] != '\n') out[n++] = text[i];
-  return layout_text(&f->layout, out, n);
+  return cag_layout_text(&f->layout, out, n);
 }
 
 static Doc *comment_text(Format *f, const CagComment *c) {
@@ -85,7 +85,7 @@ static Doc *comment_text(Format *f, const CagComment *c) {
   size_t length = c->span.end - c->span.start;
   while (length && strchr(" \t\r", text[length - 1])) length--;
   if (c->block && memchr(text, '\r', length)) return mended_comment(f, text, length);
-  return layout_text(&f->layout, text, length);
+  return cag_layout_text(&f->layout, text, length);
 }
 
 static inline bool comments_before(const Format *f, uint32_t offset) {
@@ -113,8 +113,8 @@ static bool breaks_next(const Format *f, uint32_t offset, bool inner) {
 
 // Sets a comment that a line break follows.
 static void set_last(Format *f, Docs *out, Doc *text, bool begins_line) {
-  layout_add(out,
-             begins_line ? layout_comment(&f->layout, text) : layout_trailing(&f->layout, text));
+  layout_add(out, begins_line ? cag_layout_comment(&f->layout, text)
+                              : cag_layout_trailing(&f->layout, text));
 }
 
 // Sets one comment; `inner`: before a closing bracket, so that no space stands behind it.
@@ -123,12 +123,12 @@ static void set_comment(Format *f, Docs *out, const CagComment *c, uint32_t offs
   const bool alone = !c->block || (ends_line(f, c->span.end) && !(inner && before == 0)) ||
                      breaks_next(f, offset, inner);
   Doc *text = comment_text(f, c);
-  if (before > 1) layout_add(out, layout_blank(&f->layout));
+  if (before > 1) layout_add(out, cag_layout_blank(&f->layout));
   if (alone) {
     set_last(f, out, text, before > 0);
   } else {
-    layout_add(out, layout_inline(&f->layout, text));
-    if (!inner) layout_add(out, layout_plain(&f->layout, " ", 1));
+    layout_add(out, cag_layout_inline(&f->layout, text));
+    if (!inner) layout_add(out, cag_layout_plain(&f->layout, " ", 1));
   }
 }
 
@@ -141,7 +141,7 @@ static bool set_each_comment(Format *f, Docs *out, uint32_t offset, bool inner) 
 static inline void set_comments(Format *f, Docs *out, uint32_t offset, bool inner) {
   if (!comments_before(f, offset)) return;
   if (set_each_comment(f, out, offset, inner) && !inner && lines_before(f, offset) > 1)
-    layout_add(out, layout_blank(&f->layout));
+    layout_add(out, cag_layout_blank(&f->layout));
 }
 
 // Those before a bracket that stands on a line of its own.
@@ -149,7 +149,7 @@ static void set_last_comments(Format *f, Docs *out, uint32_t offset) {
   while (comments_before(f, offset)) {
     const CagComment *c = next_comment(f);
     const size_t before = lines_before(f, c->span.start);
-    if (before > 1) layout_add(out, layout_blank(&f->layout));
+    if (before > 1) layout_add(out, cag_layout_blank(&f->layout));
     set_last(f, out, comment_text(f, c), before > 0);
   }
 }
@@ -157,12 +157,12 @@ static void set_last_comments(Format *f, Docs *out, uint32_t offset) {
 // The words of the source in the span, after the comments before them.
 static void set_span(Format *f, Docs *out, CagSpan span) {
   set_comments(f, out, span.start, false);
-  layout_add(out, layout_text(&f->layout, f->text + span.start, span.end - span.start));
+  layout_add(out, cag_layout_text(&f->layout, f->text + span.start, span.end - span.start));
   while (comments_before(f, span.end)) next_comment(f); // within a text's { }
 }
 
 static inline void set_word(Format *f, Docs *out, const char *word) {
-  layout_add(out, layout_plain(&f->layout, word, strlen(word)));
+  layout_add(out, cag_layout_plain(&f->layout, word, strlen(word)));
 }
 
 // A closing bracket, whose place in the source is the last byte of what it closes.
@@ -173,10 +173,10 @@ static void set_closer(Format *f, Docs *out, uint32_t end, const char *word) {
 
 static Doc *span_doc(Format *f, CagSpan span) {
   if (!comments_before(f, span.end))
-    return layout_text(&f->layout, f->text + span.start, span.end - span.start);
+    return cag_layout_text(&f->layout, f->text + span.start, span.end - span.start);
   Docs d = {0};
   set_span(f, &d, span);
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 // ---- lists between brackets ----
@@ -212,7 +212,7 @@ static Doc *argument(Format *f, const CagArgument *a) {
     set_word(f, &d, ": ");
   }
   layout_add(&d, part(f, a->value));
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 static Doc *call(Format *f, const CagExpr *e) {
@@ -226,25 +226,25 @@ static Doc *call(Format *f, const CagExpr *e) {
     const CagArgument *a = &e->as.call.arguments[i];
     clear = !comments_before(f, a->value->span.start);
     gathers = gathers && a->value->kind != CAG_EXPR_PIPE;
-    if (i) layout_add(&items, layout_space(&f->layout));
+    if (i) layout_add(&items, cag_layout_space(&f->layout));
     last = a->value;
     Doc *item = argument(f, a);
     data = data && f->data;
-    if (i + 1 < e->as.call.count) layout_comma(item);
+    if (i + 1 < e->as.call.count) cag_layout_comma(item);
     layout_add(&items, item);
   }
   clear = clear && !comments_before(f, e->span.end - 1);
   const bool hugs = last && clear && (opens_by_itself(last) || is_long_text(f, last));
   Docs end = {0};
   set_closer(f, &end, e->span.end, ")");
-  Doc *arguments = layout_brackets(&f->layout, '(', &items, layout_concat(&f->layout, &end), INDENT,
-                                   false, hugs);
+  Doc *arguments = cag_layout_brackets(&f->layout, '(', &items, cag_layout_concat(&f->layout, &end),
+                                       INDENT, false, hugs);
   arguments->gathers = gathers;
   arguments->opens =
       opens && e->as.call.count > 1 && opens_by_itself(e->as.call.arguments[0].value);
   layout_add(&d, arguments);
   f->data = data;
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 // ---- tables ----
@@ -306,24 +306,24 @@ static Doc *items_doc(Format *f, const CagExpr *e, Doc *(*item)(Format *, const 
   bool small = !record, data = true;
   for (size_t i = 0; i < count; i++) {
     const bool blank = i && blank_before(f, start(e, i));
-    if (blank) layout_add(&items, layout_blank(&f->layout));
-    if (i) layout_add(&items, blank ? layout_hard(&f->layout) : layout_space(&f->layout));
+    if (blank) layout_add(&items, cag_layout_blank(&f->layout));
+    if (i) layout_add(&items, blank ? cag_layout_hard(&f->layout) : cag_layout_space(&f->layout));
     Doc *d = item(f, e, i);
     small = small && is_small(d);
     data = data && f->data;
-    if (i + 1 < count) layout_comma(d);
+    if (i + 1 < count) cag_layout_comma(d);
     layout_add(&items, d);
   }
   set_closer(f, &end, e->span.end, close);
-  Doc *closing = layout_concat(&f->layout, &end);
+  Doc *closing = cag_layout_concat(&f->layout, &end);
   f->data = data;
   if (count > 1 && (small || (record && data)))
-    return layout_filled(&f->layout, open, &items, closing, INDENT, record);
+    return cag_layout_filled(&f->layout, open, &items, closing, INDENT, record);
   const size_t words = table_words(e);
   if (words && rows_are_whole(&items))
-    return layout_table(&f->layout, open, &items, closing, INDENT, words);
-  return layout_brackets(&f->layout, open, &items, closing, INDENT, record && count,
-                         count == 1 && !record && opens_by_itself(e->as.list.items[0]));
+    return cag_layout_table(&f->layout, open, &items, closing, INDENT, words);
+  return cag_layout_brackets(&f->layout, open, &items, closing, INDENT, record && count,
+                             count == 1 && !record && opens_by_itself(e->as.list.items[0]));
 }
 
 static Doc *list_item(Format *f, const CagExpr *e, size_t i) {
@@ -337,12 +337,12 @@ static Doc *field_item(Format *f, const CagExpr *e, size_t i) {
   if (!field->name) {
     set_span(f, &d, field->name_span); // the dots
     layout_add(&d, expression(f, field->value));
-    return layout_concat(&f->layout, &d);
+    return cag_layout_concat(&f->layout, &d);
   }
   set_span(f, &d, field->name_span);
   set_word(f, &d, ": ");
   layout_add(&d, part(f, field->value));
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 static uint32_t field_start(const CagExpr *e, size_t i) {
   return e->as.record.fields[i].name_span.start;
@@ -357,22 +357,22 @@ static Doc *parameter(Format *f, const CagParameter *p) {
     set_word(f, &d, " = ");
     layout_add(&d, expression(f, p->fallback));
   }
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 static Doc *parameters(Format *f, const CagFunctionAst *fn) {
   Docs items = {0};
   bool small = fn->parameter_count > 1;
   for (size_t i = 0; i < fn->parameter_count; i++) {
-    if (i) layout_add(&items, layout_space(&f->layout));
+    if (i) layout_add(&items, cag_layout_space(&f->layout));
     Doc *d = parameter(f, &fn->parameters[i]);
     small = small && is_small(d);
-    if (i + 1 < fn->parameter_count) layout_comma(d);
+    if (i + 1 < fn->parameter_count) cag_layout_comma(d);
     layout_add(&items, d);
   }
-  Doc *close = layout_plain(&f->layout, ")", 1);
-  if (small) return layout_filled(&f->layout, '(', &items, close, INDENT, false);
-  Doc *d = layout_brackets(&f->layout, '(', &items, close, INDENT, false, false);
+  Doc *close = cag_layout_plain(&f->layout, ")", 1);
+  if (small) return cag_layout_filled(&f->layout, '(', &items, close, INDENT, false);
+  Doc *d = cag_layout_brackets(&f->layout, '(', &items, close, INDENT, false, false);
   d->gathers = true;
   return d;
 }
@@ -381,18 +381,18 @@ static Doc *parameters(Format *f, const CagFunctionAst *fn) {
 static void set_value(Format *f, Docs *out, const CagExpr *value) {
   if (comments_before(f, value->span.start)) {
     Docs d = {0};
-    layout_add(&d, layout_space(&f->layout));
+    layout_add(&d, cag_layout_space(&f->layout));
     set_comments(f, &d, value->span.start, false);
     layout_add(&d, whole(f, value));
-    layout_add(out, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &d)));
+    layout_add(out, cag_layout_group(&f->layout, cag_layout_nest(&f->layout, INDENT, &d)));
   } else if (value->kind == CAG_EXPR_IF) {
     Docs d = {0};
-    layout_add(&d, layout_space(&f->layout));
+    layout_add(&d, cag_layout_space(&f->layout));
     Doc *choice = whole(f, value);
     if (choice->kind == DOC_GROUP)
       choice->kind = DOC_CONCAT; // breaks where the line before it does
     layout_add(&d, choice);
-    layout_add(out, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &d)));
+    layout_add(out, cag_layout_group(&f->layout, cag_layout_nest(&f->layout, INDENT, &d)));
   } else {
     set_word(f, out, " ");
     layout_add(out, whole(f, value));
@@ -408,7 +408,7 @@ static Doc *lambda(Format *f, const CagExpr *e) {
   else layout_add(&d, parameters(f, fn));
   set_word(f, &d, " =>");
   set_value(f, &d, fn->body);
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 // ---- operators ----
@@ -439,14 +439,14 @@ static Doc *power(Format *f, const CagExpr *e) {
   layout_add(&d, expression(f, e->as.binary.left));
   set_word(f, &d, "^");
   layout_add(&d, expression(f, e->as.binary.right));
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 // The operator of a binary expression as it is written, between spaces.
 static void set_operator(Format *f, Docs *out, const CagExpr *e) {
   const CagSpan s = e->as.binary.op_span;
   set_word(f, out, " ");
-  layout_add(out, layout_text(&f->layout, f->text + s.start, s.end - s.start));
+  layout_add(out, cag_layout_text(&f->layout, f->text + s.start, s.end - s.start));
 }
 
 // What may stand beside a * or / without spaces.
@@ -486,7 +486,7 @@ static Doc *product(Format *f, const CagExpr *e) {
   layout_add(&d, product(f, e->as.binary.left));
   set_word(f, &d, e->as.binary.op == CAG_OP_MULTIPLY ? "*" : "/");
   layout_add(&d, expression(f, e->as.binary.right));
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 // a + b - c: the operands of one level, a line break behind each operator where they do not fit.
@@ -496,38 +496,38 @@ static Doc *chain(Format *f, const CagExpr *e) {
   const bool parts = mine == 4 || mine == 5; // of a sum or a comparison
   size_t n = 0;
   for (const CagExpr *x = e; level(x) == mine; x = x->as.binary.left) n++;
-  const CagExpr **links = layout_memory(&f->layout, n * sizeof *links);
+  const CagExpr **links = cag_layout_memory(&f->layout, n * sizeof *links);
   size_t at = n;
   for (const CagExpr *x = e; level(x) == mine; x = x->as.binary.left) links[--at] = x;
   Docs d = {0}, item = {0};
   layout_add(&item, within(f, links[0]->as.binary.left, parts || f->inner));
   for (size_t i = 0; i < n; i++) {
     set_operator(f, &item, links[i]);
-    layout_add(&d, layout_concat(&f->layout, &item));
-    layout_add(&d, layout_space(&f->layout));
+    layout_add(&d, cag_layout_concat(&f->layout, &item));
+    layout_add(&d, cag_layout_space(&f->layout));
     item = (Docs){0};
     layout_add(&item, within(f, links[i]->as.binary.right, parts || f->inner));
   }
-  layout_add(&d, layout_concat(&f->layout, &item));
-  return layout_fill(&f->layout, INDENT, &d);
+  layout_add(&d, cag_layout_concat(&f->layout, &item));
+  return cag_layout_fill(&f->layout, INDENT, &d);
 }
 
 // a |> f |> g: all on a line, or each stage on its own.
 static Doc *pipe(Format *f, const CagExpr *e) {
   size_t n = 0;
   for (const CagExpr *x = e; x->kind == CAG_EXPR_PIPE; x = x->as.binary.left) n++;
-  const CagExpr **links = layout_memory(&f->layout, n * sizeof *links);
+  const CagExpr **links = cag_layout_memory(&f->layout, n * sizeof *links);
   size_t at = n;
   for (const CagExpr *x = e; x->kind == CAG_EXPR_PIPE; x = x->as.binary.left) links[--at] = x;
   Docs stages = {0};
   Doc *head = expression(f, links[0]->as.binary.left);
   for (size_t i = 0; i < n; i++) {
     set_comments(f, &stages, links[i]->as.binary.op_span.start, true);
-    layout_add(&stages, layout_space(&f->layout));
+    layout_add(&stages, cag_layout_space(&f->layout));
     set_word(f, &stages, "|> ");
     layout_add(&stages, expression(f, links[i]->as.binary.right));
   }
-  return layout_stages(&f->layout, head, layout_nest(&f->layout, INDENT, &stages));
+  return cag_layout_stages(&f->layout, head, cag_layout_nest(&f->layout, INDENT, &stages));
 }
 
 static bool is_plain(const CagExpr *e) {
@@ -551,9 +551,9 @@ static Doc *range_end(Format *f, const CagExpr *e) {
   Docs d = {0};
   const CagSpan s = e->as.binary.op_span;
   layout_add(&d, range_end(f, e->as.binary.left));
-  layout_add(&d, layout_text(&f->layout, f->text + s.start, s.end - s.start));
+  layout_add(&d, cag_layout_text(&f->layout, f->text + s.start, s.end - s.start));
   layout_add(&d, range_end(f, e->as.binary.right));
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 static Doc *range(Format *f, const CagExpr *e) {
@@ -567,7 +567,7 @@ static Doc *range(Format *f, const CagExpr *e) {
     layout_add(&d, range_end(f, e->as.range.step));
   }
   f->data = f->data && data;
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 static Doc *prefixed(Format *f, const CagExpr *e, const char *word) {
@@ -575,7 +575,7 @@ static Doc *prefixed(Format *f, const CagExpr *e, const char *word) {
   set_comments(f, &d, e->span.start, false);
   set_word(f, &d, word);
   layout_add(&d, expression(f, e->as.unary.operand));
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 static Doc *group(Format *f, const CagExpr *e) {
@@ -584,9 +584,9 @@ static Doc *group(Format *f, const CagExpr *e) {
   const bool clear = !comments_before(f, e->as.unary.operand->span.start);
   layout_add(&items, part(f, e->as.unary.operand));
   set_closer(f, &end, e->span.end, ")");
-  layout_add(&d, layout_brackets(&f->layout, '(', &items, layout_concat(&f->layout, &end), INDENT,
-                                 false, clear && opens_by_itself(e->as.unary.operand)));
-  return layout_concat(&f->layout, &d);
+  layout_add(&d, cag_layout_brackets(&f->layout, '(', &items, cag_layout_concat(&f->layout, &end),
+                                     INDENT, false, clear && opens_by_itself(e->as.unary.operand)));
+  return cag_layout_concat(&f->layout, &d);
 }
 
 // if a then b else if c then d else e: on a line, or each branch on its own.
@@ -601,14 +601,14 @@ static Doc *branches(Format *f, const CagExpr *e) {
     set_word(f, &d, " then ");
     layout_add(&d, expression(f, e->as.branch.then));
     if (e->as.branch.then->kind == CAG_EXPR_BLOCK) set_word(f, &d, " ");
-    else layout_add(&d, layout_space(&f->layout));
+    else layout_add(&d, cag_layout_space(&f->layout));
     if (e->as.branch.otherwise->kind != CAG_EXPR_IF) break;
     e = e->as.branch.otherwise;
     word = "else if ";
   }
   set_word(f, &d, "else ");
   layout_add(&d, expression(f, e->as.branch.otherwise));
-  return layout_group(&f->layout, layout_concat(&f->layout, &d));
+  return cag_layout_group(&f->layout, cag_layout_concat(&f->layout, &d));
 }
 
 static void set_clause(Format *f, Docs *d, const CagClause *c) {
@@ -632,25 +632,25 @@ static Doc *comprehension(Format *f, const CagExpr *e) {
   set_comments(f, &d, e->span.start, false);
   set_word(f, &d, "[for ");
   for (size_t i = 0; i < e->as.comprehension.count; i++) {
-    if (i) layout_add(&clauses, layout_space(&f->layout));
+    if (i) layout_add(&clauses, cag_layout_space(&f->layout));
     Docs item = {0};
     set_clause(f, &item, &e->as.comprehension.clauses[i]);
     set_word(f, &item, i + 1 < e->as.comprehension.count ? "," : ":");
-    layout_add(&clauses, layout_concat(&f->layout, &item));
+    layout_add(&clauses, cag_layout_concat(&f->layout, &item));
   }
-  layout_add(&d, layout_group(&f->layout, layout_nest(&f->layout, INDENT, &clauses)));
+  layout_add(&d, cag_layout_group(&f->layout, cag_layout_nest(&f->layout, INDENT, &clauses)));
   const bool opens = e->as.comprehension.body->kind == CAG_EXPR_BLOCK &&
                      !comments_before(f, e->as.comprehension.body->span.start);
   if (opens) {
     set_word(f, &d, " ");
     layout_add(&d, whole(f, e->as.comprehension.body));
   } else {
-    layout_add(&body, layout_space(&f->layout));
+    layout_add(&body, cag_layout_space(&f->layout));
     layout_add(&body, whole(f, e->as.comprehension.body));
-    layout_add(&d, layout_nest(&f->layout, INDENT, &body));
+    layout_add(&d, cag_layout_nest(&f->layout, INDENT, &body));
   }
   set_closer(f, &d, e->span.end, "]");
-  return layout_group(&f->layout, layout_concat(&f->layout, &d));
+  return cag_layout_group(&f->layout, cag_layout_concat(&f->layout, &d));
 }
 
 static void set_statement(Format *f, Docs *d, const CagStatement *s);
@@ -662,17 +662,17 @@ static Doc *block(Format *f, const CagExpr *e) {
   const size_t n = e->as.block.count;
   for (size_t i = 0; i <= n; i++) {
     const CagSpan span = i < n ? e->as.block.statements[i]->span : e->as.block.value->span;
-    if (i && blank_before(f, span.start)) layout_add(&inner, layout_blank(&f->layout));
-    layout_add(&inner, n ? layout_hard(&f->layout) : layout_space(&f->layout));
+    if (i && blank_before(f, span.start)) layout_add(&inner, cag_layout_blank(&f->layout));
+    layout_add(&inner, n ? cag_layout_hard(&f->layout) : cag_layout_space(&f->layout));
     if (i < n) set_statement(f, &inner, e->as.block.statements[i]);
     else layout_add(&inner, whole(f, e->as.block.value));
   }
   if (n) set_last_comments(f, &inner, e->span.end - 1);
   else set_comments(f, &inner, e->span.end - 1, true);
-  layout_add(&d, layout_nest(&f->layout, INDENT, &inner));
-  layout_add(&d, n ? layout_hard(&f->layout) : layout_space(&f->layout));
+  layout_add(&d, cag_layout_nest(&f->layout, INDENT, &inner));
+  layout_add(&d, n ? cag_layout_hard(&f->layout) : cag_layout_space(&f->layout));
   set_word(f, &d, "}");
-  return layout_group(&f->layout, layout_concat(&f->layout, &d));
+  return cag_layout_group(&f->layout, cag_layout_concat(&f->layout, &d));
 }
 
 static Doc *bracketed(Format *f, const CagExpr *e) {
@@ -681,7 +681,7 @@ static Doc *bracketed(Format *f, const CagExpr *e) {
   if (e->kind == CAG_EXPR_LIST)
     layout_add(&d, items_doc(f, e, list_item, list_start, e->as.list.count, '[', "]"));
   else layout_add(&d, items_doc(f, e, field_item, field_start, e->as.record.count, '{', "}"));
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 static Doc *index_of(Format *f, const CagExpr *e) {
@@ -690,7 +690,7 @@ static Doc *index_of(Format *f, const CagExpr *e) {
   set_word(f, &d, "[");
   layout_add(&d, part(f, e->as.binary.right));
   set_closer(f, &d, e->span.end, "]");
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 static Doc *member(Format *f, const CagExpr *e) {
@@ -699,7 +699,7 @@ static Doc *member(Format *f, const CagExpr *e) {
   set_comments(f, &d, e->as.member.name_span.start, true);
   set_word(f, &d, ".");
   set_span(f, &d, e->as.member.name_span);
-  return layout_concat(&f->layout, &d);
+  return cag_layout_concat(&f->layout, &d);
 }
 
 // What is computed from parts, and is no data.
@@ -754,18 +754,18 @@ static void set_import(Format *f, Docs *d, const CagStatement *s) {
   set_span(f, d, s->as.import.path_span);
   if (s->as.import.alias) {
     set_word(f, d, " as ");
-    layout_add(d, layout_text(&f->layout, s->as.import.alias, strlen(s->as.import.alias)));
+    layout_add(d, cag_layout_text(&f->layout, s->as.import.alias, strlen(s->as.import.alias)));
   }
   if (!s->as.import.name_count) return;
   Docs names = {0};
   for (size_t i = 0; i < s->as.import.name_count; i++) {
-    if (i) layout_add(&names, layout_space(&f->layout));
+    if (i) layout_add(&names, cag_layout_space(&f->layout));
     Doc *name = span_doc(f, s->as.import.names[i].decl->span);
-    if (i + 1 < s->as.import.name_count) layout_comma(name);
+    if (i + 1 < s->as.import.name_count) cag_layout_comma(name);
     layout_add(&names, name);
   }
   set_word(f, d, ": ");
-  layout_add(d, layout_fill(&f->layout, INDENT, &names));
+  layout_add(d, cag_layout_fill(&f->layout, INDENT, &names));
 }
 
 // Where the label of a param begins: it is the last word of the statement.
@@ -805,8 +805,8 @@ static void set_param(Format *f, Docs *d, const CagStatement *s) {
   const CagSpan label = {label_start(f, s), s->span.end};
   // Labels that end neighboring lines are set one below the other, as comments are.
   if (!comments_before(f, label.start) && stands_last(f, label)) {
-    Doc *text = layout_text(&f->layout, f->text + label.start, label.end - label.start);
-    layout_add(d, layout_trailing(&f->layout, text));
+    Doc *text = cag_layout_text(&f->layout, f->text + label.start, label.end - label.start);
+    layout_add(d, cag_layout_trailing(&f->layout, text));
     return;
   }
   set_word(f, d, " ");
@@ -832,12 +832,12 @@ static void set_list(Format *f, Docs *d, const CagStatement *s, const char *word
   }
   Docs items = {0};
   for (size_t i = 0; i < s->as.list.count; i++) {
-    if (i) layout_add(&items, layout_space(&f->layout));
+    if (i) layout_add(&items, cag_layout_space(&f->layout));
     Doc *item = expression(f, s->as.list.items[i]);
-    if (i + 1 < s->as.list.count) layout_comma(item);
+    if (i + 1 < s->as.list.count) cag_layout_comma(item);
     layout_add(&items, item);
   }
-  layout_add(d, layout_fill(&f->layout, INDENT, &items));
+  layout_add(d, cag_layout_fill(&f->layout, INDENT, &items));
 }
 
 static void set_assert(Format *f, Docs *d, const CagStatement *s) {
@@ -848,12 +848,12 @@ static void set_assert(Format *f, Docs *d, const CagStatement *s) {
   }
   Docs parts = {0}, message = {0};
   Doc *condition = expression(f, s->as.assertion.condition);
-  layout_comma(condition);
+  cag_layout_comma(condition);
   layout_add(&parts, condition);
-  layout_add(&message, layout_space(&f->layout));
+  layout_add(&message, cag_layout_space(&f->layout));
   layout_add(&message, expression(f, s->as.assertion.message));
-  layout_add(&parts, layout_nest(&f->layout, INDENT, &message));
-  layout_add(d, layout_group(&f->layout, layout_concat(&f->layout, &parts)));
+  layout_add(&parts, cag_layout_nest(&f->layout, INDENT, &message));
+  layout_add(d, cag_layout_group(&f->layout, cag_layout_concat(&f->layout, &parts)));
 }
 
 static void set_statement(Format *f, Docs *d, const CagStatement *s) {
@@ -876,19 +876,19 @@ static void print_statement(void *context, const CagModuleAst *m, const CagState
   const uint32_t start = s ? s->span.start : (uint32_t)m->source->length;
   f->module = m;
   look_for_comment(f);
-  if (f->begun && blank_before(f, start)) layout_add(&d, layout_blank(&f->layout));
+  if (f->begun && blank_before(f, start)) layout_add(&d, cag_layout_blank(&f->layout));
   if (s) set_statement(f, &d, s);
   else set_comments(f, &d, start, false);
-  layout_print(&f->layout, layout_concat(&f->layout, &d));
+  cag_layout_print(&f->layout, cag_layout_concat(&f->layout, &d));
   f->begun = true;
-  if (!s) f->out = layout_finish(&f->layout, &f->length);
+  if (!s) f->out = cag_layout_finish(&f->layout, &f->length);
 }
 
 char *cag_format(const CagSource *source, CagDiagnostics *errors, size_t *length) {
   Format f = {.text = source->text};
-  layout_init(&f.layout, source, CAG_FORMAT_WIDTH);
+  cag_layout_init(&f.layout, source, CAG_FORMAT_WIDTH);
   cag_parse_each(source, print_statement, &f, errors);
-  layout_release(&f.layout);
+  cag_layout_release(&f.layout);
   *length = f.length;
   return f.out;
 }

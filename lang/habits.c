@@ -5,13 +5,14 @@
 
 #include "lang/parse.h"
 
-const char parse_minus_help[] = "a line that begins with `-` starts a new statement; to go on with "
-                                "the line above, end that line with `-`";
+const char cag_parse_minus_help[] =
+    "a line that begins with `-` starts a new statement; to go on with "
+    "the line above, end that line with `-`";
 
 // Reports a form, in panic. Gives true.
 static bool report_form(Parser *p, CagSpan span, CagForeignSyntax id, const char *message) {
-  parse_help(parse_error(p, CAG_ERR_foreign_form, span, "%s", message), "write %s",
-             cag_foreign_syntax(id));
+  cag_parse_help(cag_parse_error(p, CAG_ERR_foreign_form, span, "%s", message), "write %s",
+                 cag_foreign_syntax(id));
   return true;
 }
 
@@ -41,13 +42,13 @@ static bool braces_behind(Parser *p, const CagExpr *before) {
     return report_form(p, before->span, CAG_FOREIGN_switch_word, "a choice is an `if`");
   for (size_t i = 0; i < sizeof operations / sizeof *operations; i++)
     if (is_called(before, operations[i].name) || is_name(before, operations[i].name))
-      return report_form(p, parse_here(p), operations[i].id,
+      return report_form(p, cag_parse_here(p), operations[i].id,
                          "a set operation takes its operands in parentheses, not in { }");
   if (before->kind == CAG_EXPR_CALL)
-    return report_form(p, parse_here(p), CAG_FOREIGN_call_braces,
+    return report_form(p, cag_parse_here(p), CAG_FOREIGN_call_braces,
                        "a function takes its arguments in parentheses, not in { }");
   if (before->kind == CAG_EXPR_NAME)
-    return report_form(p, parse_here(p), CAG_FOREIGN_object_braces,
+    return report_form(p, cag_parse_here(p), CAG_FOREIGN_object_braces,
                        "a function takes its arguments in parentheses, not in { }");
   return false;
 }
@@ -57,20 +58,20 @@ static bool braces_behind(Parser *p, const CagExpr *before) {
 static bool modifiers_behind(Parser *p, const CagExpr *before) {
   CagSpan parts[MODIFIERS_MAX] = {before->span};
   size_t count = 1;
-  const CagSpan here = parse_here(p);
-  while (count < MODIFIERS_MAX && parse_kind(p) == CAG_TOKEN_NAME && !parse_at_newline(p))
-    parts[count++] = parse_postfix(p)->span;
+  const CagSpan here = cag_parse_here(p);
+  while (count < MODIFIERS_MAX && parse_kind(p) == CAG_TOKEN_NAME && !cag_parse_at_newline(p))
+    parts[count++] = cag_parse_postfix(p)->span;
   if (p->panic) return true;
   char form[MODIFIERS_MAX * (QUOTE_SIZE + 4)] = "", part[QUOTE_SIZE];
   for (size_t i = count; i-- > 0;) {
     strcat(form, i + 1 < count ? " |> " : "");
-    strcat(form, parse_quote(p, parts[i], part, sizeof part, "..."));
+    strcat(form, cag_parse_quote(p, parts[i], part, sizeof part, "..."));
   }
   if (strstr(form, "..."))
     snprintf(form, sizeof form, "%s", cag_foreign_syntax(CAG_FOREIGN_modifier));
-  parse_help(parse_error(p, CAG_ERR_foreign_form, here,
-                         "a function does not apply to what follows its call"),
-             "write %s", form);
+  cag_parse_help(cag_parse_error(p, CAG_ERR_foreign_form, here,
+                                 "a function does not apply to what follows its call"),
+                 "write %s", form);
   return true;
 }
 
@@ -87,9 +88,9 @@ static bool name_behind(Parser *p, const CagExpr *before) {
   const char *word = t->as.name;
   char number[QUOTE_SIZE], message[QUOTE_SIZE];
   if (p->previous.kind == CAG_TOKEN_NUMBER && cag_lexer_is_unit(word) &&
-      parse_quote(p, p->previous.span, number, sizeof number, NULL)) {
-    parse_help(
-        parse_error(p, CAG_ERR_foreign_form, t->span, "a unit comes directly after its number"),
+      cag_parse_quote(p, p->previous.span, number, sizeof number, NULL)) {
+    cag_parse_help(
+        cag_parse_error(p, CAG_ERR_foreign_form, t->span, "a unit comes directly after its number"),
         "write %s%s", number, word);
     return true;
   }
@@ -126,17 +127,17 @@ static bool brace_in_text(Parser *p) {
     return false;
   char word[64];
   const CagToken t = *parse_current(p);
-  if (t.kind == CAG_TOKEN_COLON && parse_peek(p, 1)->span.start == t.span.end) return false;
+  if (t.kind == CAG_TOKEN_COLON && cag_parse_peek(p, 1)->span.start == t.span.end) return false;
   if (t.kind != CAG_TOKEN_COLON && t.kind != CAG_TOKEN_LEFT_BRACE && t.kind != CAG_TOKEN_NAME &&
       t.kind != CAG_TOKEN_SEMICOLON && t.kind != CAG_TOKEN_EQUALS)
     return false;
-  parse_help(parse_error(p, CAG_ERR_expected_separator, t.span, "expected `}`, found %s",
-                         parse_found(p, word, sizeof word)),
-             "%s", cag_lexer_brace_help);
+  cag_parse_help(cag_parse_error(p, CAG_ERR_expected_separator, t.span, "expected `}`, found %s",
+                                 cag_parse_found(p, word, sizeof word)),
+                 "%s", cag_lexer_brace_help);
   return true;
 }
 
-bool parse_foreign_behind(Parser *p, const CagExpr *before) {
+bool cag_parse_foreign_behind(Parser *p, const CagExpr *before) {
   if (brace_in_text(p)) return true;
   if (p->panic || parse_current(p)->newline_before) return false;
   switch (parse_kind(p)) {
@@ -146,13 +147,13 @@ bool parse_foreign_behind(Parser *p, const CagExpr *before) {
   case CAG_TOKEN_TEXT_HEAD: return before && text_behind(p, before);
   case CAG_TOKEN_COLON:
     if (p->bracket_count || !before || before->kind != CAG_EXPR_NAME) return false;
-    return report_form(p, parse_here(p), CAG_FOREIGN_typed_definition,
+    return report_form(p, cag_parse_here(p), CAG_FOREIGN_typed_definition,
                        "a definition states no type");
   default: return false;
   }
 }
 
-bool parse_foreign_follows(Parser *p) {
+bool cag_parse_foreign_follows(Parser *p) {
   if (p->panic || parse_current(p)->newline_before) return false;
   switch (parse_kind(p)) {
   case CAG_TOKEN_LEFT_BRACE:
@@ -166,9 +167,9 @@ bool parse_foreign_follows(Parser *p) {
 
 // ---- elsewhere ----
 
-bool parse_foreign_value(Parser *p) {
+bool cag_parse_foreign_value(Parser *p) {
   if (p->panic) return false;
-  const CagSpan here = parse_here(p);
+  const CagSpan here = cag_parse_here(p);
   switch (parse_kind(p)) {
   case CAG_TOKEN_LESS:
     return report_form(p, here, CAG_FOREIGN_angle_vector, "a point or vector stands in [ ]");
@@ -181,9 +182,9 @@ bool parse_foreign_value(Parser *p) {
   }
 }
 
-bool parse_foreign_body(Parser *p) {
+bool cag_parse_foreign_body(Parser *p) {
   if (p->panic) return false;
-  const CagSpan here = parse_here(p);
+  const CagSpan here = cag_parse_here(p);
   if (parse_kind(p) == CAG_TOKEN_LEFT_BRACE)
     return report_form(p, here, CAG_FOREIGN_function_braces,
                        "expected `=` between the parameters and the value, found `{`");
@@ -193,16 +194,17 @@ bool parse_foreign_body(Parser *p) {
   return false;
 }
 
-bool parse_foreign_colon(Parser *p, CagForeignSyntax id) {
+bool cag_parse_foreign_colon(Parser *p, CagForeignSyntax id) {
   if (parse_kind(p) != CAG_TOKEN_COLON) return false;
-  return report_form(p, parse_here(p), id, "a range is written with two points, not with a colon");
+  return report_form(p, cag_parse_here(p), id,
+                     "a range is written with two points, not with a colon");
 }
 
 static bool is_word(const CagToken *t, const char *a, const char *b, const char *c) {
   return strcmp(t->as.name, a) == 0 || strcmp(t->as.name, b) == 0 || strcmp(t->as.name, c) == 0;
 }
 
-bool parse_foreign_word(Parser *p) {
+bool cag_parse_foreign_word(Parser *p) {
   const CagToken word = *parse_current(p);
   const CagTokenKind next = parse_kind_at(p, 1);
   if (next == CAG_TOKEN_LESS && is_word(&word, "include", "use", "import"))

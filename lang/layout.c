@@ -22,7 +22,7 @@ struct LayoutBlock {
   _Alignas(max_align_t) char bytes[];
 };
 
-void layout_init(Layout *l, const CagSource *source, uint32_t width) {
+void cag_layout_init(Layout *l, const CagSource *source, uint32_t width) {
   *l = (Layout){.source = source, .width = width};
 }
 
@@ -44,7 +44,7 @@ static size_t rounded(size_t size) {
 }
 #define DOC_SIZE rounded(sizeof(Doc))
 
-void *layout_memory(Layout *l, size_t size) {
+void *cag_layout_memory(Layout *l, size_t size) {
   size = rounded(size);
   if (!l->block || l->block->size - l->block->used < size) {
     l->block = next_block(l, size);
@@ -66,7 +66,7 @@ static inline Doc *new_doc(Layout *l, DocKind kind) {
     d = (Doc *)(void *)(b->bytes + b->used);
     b->used += DOC_SIZE;
   } else {
-    d = layout_memory(l, sizeof *d);
+    d = cag_layout_memory(l, sizeof *d);
   }
   *d = (Doc){.kind = (uint8_t)kind};
   return d;
@@ -78,15 +78,15 @@ static uint32_t code_points(const char *text, size_t length) {
   return n;
 }
 
-Doc *layout_plain(Layout *l, const char *word, size_t length) {
+Doc *cag_layout_plain(Layout *l, const char *word, size_t length) {
   Doc *d = new_doc(l, DOC_TEXT);
   d->text = word;
   d->length = d->first = d->width = (uint32_t)length;
   return d;
 }
 
-Doc *layout_text(Layout *l, const char *text, size_t length) {
-  Doc *d = layout_plain(l, text, length);
+Doc *cag_layout_text(Layout *l, const char *text, size_t length) {
+  Doc *d = cag_layout_plain(l, text, length);
   size_t plain = 0;
   while (plain < length && (signed char)text[plain] > '\n') plain++; // below: UTF-8, or a break
   if (plain == length) return d;
@@ -97,7 +97,7 @@ Doc *layout_text(Layout *l, const char *text, size_t length) {
   return d;
 }
 
-Doc *layout_space(Layout *l) {
+Doc *cag_layout_space(Layout *l) {
   Doc *d = new_doc(l, DOC_LINE);
   d->text = " ";
   d->length = d->width = 1;
@@ -113,12 +113,12 @@ static Doc *breaking(Layout *l, DocKind kind, Doc *child) {
   return d;
 }
 
-Doc *layout_hard(Layout *l) { return breaking(l, DOC_HARD, NULL); }
-Doc *layout_blank(Layout *l) { return breaking(l, DOC_BLANK, NULL); }
-Doc *layout_trailing(Layout *l, Doc *text) { return breaking(l, DOC_TRAILING, text); }
-Doc *layout_comment(Layout *l, Doc *text) { return breaking(l, DOC_COMMENT, text); }
+Doc *cag_layout_hard(Layout *l) { return breaking(l, DOC_HARD, NULL); }
+Doc *cag_layout_blank(Layout *l) { return breaking(l, DOC_BLANK, NULL); }
+Doc *cag_layout_trailing(Layout *l, Doc *text) { return breaking(l, DOC_TRAILING, text); }
+Doc *cag_layout_comment(Layout *l, Doc *text) { return breaking(l, DOC_COMMENT, text); }
 
-Doc *layout_inline(Layout *l, Doc *text) {
+Doc *cag_layout_inline(Layout *l, Doc *text) {
   Doc *d = breaking(l, DOC_INLINE, text);
   d->width = text->width < DOC_ENDLESS ? text->width + 1 : DOC_ENDLESS;
   d->first = text->first + 1;
@@ -142,38 +142,38 @@ static Doc *parent(Layout *l, DocKind kind, Doc *child) {
   return d;
 }
 
-Doc *layout_concat(Layout *l, const Docs *parts) {
+Doc *cag_layout_concat(Layout *l, const Docs *parts) {
   if (parts->head && !parts->head->next) return parts->head;
   return parent(l, DOC_CONCAT, parts->head);
 }
 
-void layout_comma(Doc *d) {
+void cag_layout_comma(Doc *d) {
   d->comma = true;
   d->width = sum(d->width, 1);
   if (!d->breaks) d->first++;
 }
 
-Doc *layout_group(Layout *l, Doc *d) { return parent(l, DOC_GROUP, d); }
+Doc *cag_layout_group(Layout *l, Doc *d) { return parent(l, DOC_GROUP, d); }
 
-Doc *layout_stages(Layout *l, Doc *head, Doc *rest) {
+Doc *cag_layout_stages(Layout *l, Doc *head, Doc *rest) {
   head->next = rest;
   return parent(l, DOC_STAGES, head);
 }
 
-Doc *layout_nest(Layout *l, int indent, const Docs *parts) {
+Doc *cag_layout_nest(Layout *l, int indent, const Docs *parts) {
   Doc *d = parent(l, DOC_NEST, parts->head);
   d->indent = indent;
   return d;
 }
 
-Doc *layout_fill(Layout *l, int indent, const Docs *items) {
+Doc *cag_layout_fill(Layout *l, int indent, const Docs *items) {
   Doc *d = parent(l, DOC_FILL, items->head);
   d->indent = indent;
   return d;
 }
 
-Doc *layout_brackets(Layout *l, char open, const Docs *items, Doc *close, int indent, bool padded,
-                     bool hugs) {
+Doc *cag_layout_brackets(Layout *l, char open, const Docs *items, Doc *close, int indent,
+                         bool padded, bool hugs) {
   Doc *d = parent(l, DOC_BRACKETS, items->head);
   d->bracket = open;
   d->padded = padded;
@@ -186,8 +186,9 @@ Doc *layout_brackets(Layout *l, char open, const Docs *items, Doc *close, int in
   return d;
 }
 
-Doc *layout_filled(Layout *l, char open, const Docs *items, Doc *close, int indent, bool padded) {
-  Doc *d = layout_brackets(l, open, items, close, indent, padded, false);
+Doc *cag_layout_filled(Layout *l, char open, const Docs *items, Doc *close, int indent,
+                       bool padded) {
+  Doc *d = cag_layout_brackets(l, open, items, close, indent, padded, false);
   d->kind = DOC_FILLED;
   return d;
 }
@@ -230,14 +231,15 @@ static const uint32_t *pad_words(Doc *d, const uint32_t *widths) {
   return widths;
 }
 
-Doc *layout_table(Layout *l, char open, const Docs *items, Doc *close, int indent, size_t words) {
-  uint32_t *widths = layout_memory(l, words * sizeof *widths);
+Doc *cag_layout_table(Layout *l, char open, const Docs *items, Doc *close, int indent,
+                      size_t words) {
+  uint32_t *widths = cag_layout_memory(l, words * sizeof *widths);
   memset(widths, 0, words * sizeof *widths);
   for (const Doc *item = items->head; item; item = item->next)
     if (!is_leaf(item)) widen_columns(row_of(item), widths);
   for (const Doc *item = items->head; item; item = item->next)
     if (!is_leaf(item)) pad_words((Doc *)row_of(item), widths);
-  Doc *d = layout_brackets(l, open, items, close, indent, false, false);
+  Doc *d = cag_layout_brackets(l, open, items, close, indent, false, false);
   d->kind = DOC_TABLE;
   return d;
 }
@@ -608,7 +610,7 @@ static void print(Layout *l, const Doc *d, int indent, uint32_t tail) {
   if (d->comma) put_word(l, ",", 1, 1);
 }
 
-void layout_print(Layout *l, Doc *d) {
+void cag_layout_print(Layout *l, Doc *d) {
   if (l->trailing_count && l->line > l->trailing[l->trailing_count - 1].line + 1) align_trailing(l);
   print(l, d, 0, 0);
   if (l->length) put_line(l, 0);
@@ -616,7 +618,7 @@ void layout_print(Layout *l, Doc *d) {
   if (l->block) l->block->used = 0;
 }
 
-char *layout_finish(Layout *l, size_t *length) {
+char *cag_layout_finish(Layout *l, size_t *length) {
   if (l->trailing_count) align_trailing(l);
   if (l->length) put(l, "\n", 1);
   reserve(l, 1);
@@ -627,7 +629,7 @@ char *layout_finish(Layout *l, size_t *length) {
   return out;
 }
 
-void layout_release(Layout *l) {
+void cag_layout_release(Layout *l) {
   cag_free(l->out);
   cag_free(l->trailing);
   while (l->blocks) {

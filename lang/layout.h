@@ -6,7 +6,7 @@
 // break, so no decision looks at more than the neighbors. Comments at the ends of
 // neighboring lines are set one below the other. Line breaks are lazy: one is printed
 // when the next text comes, so breaks that meet are one, and a comment that stood at the end of a
-// line goes there again. Everything made since the last layout_print lives until the next.
+// line goes there again. Everything made since the last cag_layout_print lives until the next.
 // If memory runs out, control returns to the guard (lang/memory.h).
 
 #ifndef CAG_LANG_LAYOUT_H
@@ -95,44 +95,46 @@ typedef struct Layout {
   size_t trailing_count, trailing_capacity;
 } Layout;
 
-void layout_init(Layout *l, const CagSource *source, uint32_t width);
+void cag_layout_init(Layout *l, const CagSource *source, uint32_t width);
 // Memory that lives as long as the documents.
-void *layout_memory(Layout *l, size_t size);
+void *cag_layout_memory(Layout *l, size_t size);
 
 static inline void layout_add(Docs *list, Doc *d) {
   if (list->tail) list->tail->next = d;
   else list->head = d;
   list->tail = d;
 }
-Doc *layout_text(Layout *l, const char *text, size_t length); // borrowed; may hold line breaks
+Doc *cag_layout_text(Layout *l, const char *text, size_t length); // borrowed; may hold line breaks
 // A word of ASCII without line breaks, borrowed.
-Doc *layout_plain(Layout *l, const char *word, size_t length);
-Doc *layout_space(Layout *l); // a LINE that is a space on one line
-Doc *layout_hard(Layout *l);
-Doc *layout_blank(Layout *l);
-Doc *layout_trailing(Layout *l, Doc *text);
-Doc *layout_comment(Layout *l, Doc *text);
-Doc *layout_inline(Layout *l, Doc *text);
-Doc *layout_concat(Layout *l, const Docs *parts);
-void layout_comma(Doc *d); // puts a comma behind it
-Doc *layout_group(Layout *l, Doc *d);
-Doc *layout_stages(Layout *l, Doc *head, Doc *rest);
-Doc *layout_nest(Layout *l, int indent, const Docs *parts);
-Doc *layout_fill(Layout *l, int indent, const Docs *items); // items and LINEs in turn
+Doc *cag_layout_plain(Layout *l, const char *word, size_t length);
+Doc *cag_layout_space(Layout *l); // a LINE that is a space on one line
+Doc *cag_layout_hard(Layout *l);
+Doc *cag_layout_blank(Layout *l);
+Doc *cag_layout_trailing(Layout *l, Doc *text);
+Doc *cag_layout_comment(Layout *l, Doc *text);
+Doc *cag_layout_inline(Layout *l, Doc *text);
+Doc *cag_layout_concat(Layout *l, const Docs *parts);
+void cag_layout_comma(Doc *d); // puts a comma behind it
+Doc *cag_layout_group(Layout *l, Doc *d);
+Doc *cag_layout_stages(Layout *l, Doc *head, Doc *rest);
+Doc *cag_layout_nest(Layout *l, int indent, const Docs *parts);
+Doc *cag_layout_fill(Layout *l, int indent, const Docs *items); // items and LINEs in turn
 // `items`: items and LINEs in turn. `hugs`: where all but the last fit, the last may begin behind
 // them, so that its own brackets close with these.
-Doc *layout_brackets(Layout *l, char open, const Docs *items, Doc *close, int indent, bool padded,
-                     bool hugs);
-Doc *layout_filled(Layout *l, char open, const Docs *items, Doc *close, int indent, bool padded);
+Doc *cag_layout_brackets(Layout *l, char open, const Docs *items, Doc *close, int indent,
+                         bool padded, bool hugs);
+Doc *cag_layout_filled(Layout *l, char open, const Docs *items, Doc *close, int indent,
+                       bool padded);
 // `items`: brackets of one shape, perhaps with comments before them, with `words` words each in
 // which no line can be broken.
-Doc *layout_table(Layout *l, char open, const Docs *items, Doc *close, int indent, size_t words);
+Doc *cag_layout_table(Layout *l, char open, const Docs *items, Doc *close, int indent,
+                      size_t words);
 
 // Prints a document and ends its line; forgets all documents.
-void layout_print(Layout *l, Doc *d);
+void cag_layout_print(Layout *l, Doc *d);
 // Returns the whole output, malloc'd and NUL-terminated.
-char *layout_finish(Layout *l, size_t *length);
-// Releases the layout. Allowed at any time; the output of layout_finish remains valid.
-void layout_release(Layout *l);
+char *cag_layout_finish(Layout *l, size_t *length);
+// Releases the layout. Allowed at any time; the output of cag_layout_finish remains valid.
+void cag_layout_release(Layout *l);
 
 #endif

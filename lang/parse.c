@@ -9,7 +9,7 @@
 
 // ---- tokens ----
 
-CagToken *parse_peek(Parser *p, unsigned n) {
+CagToken *cag_parse_peek(Parser *p, unsigned n) {
   while (p->count <= n) {
     cag_lexer_next(&p->lexer, &p->ahead[(p->first + p->count) % LOOK_AHEAD]);
     p->count++;
@@ -39,8 +39,8 @@ static void count_opener(Parser *p, const CagToken *t, CagTokenKind closer) {
     return;
   }
   p->excess++;
-  parse_error(p, CAG_ERR_too_deep, t->span, "brackets nest more than %d deep here",
-              CAG_MAX_NESTING);
+  cag_parse_error(p, CAG_ERR_too_deep, t->span, "brackets nest more than %d deep here",
+                  CAG_MAX_NESTING);
 }
 
 // Takes away the bracket that a closer belongs to, with what was left open inside it. One that
@@ -58,7 +58,7 @@ static void count_closer(Parser *p, CagTokenKind closer) {
   } while (taken != closer);
 }
 
-void parse_skip(Parser *p) {
+void cag_parse_skip(Parser *p) {
   CagToken *t = parse_current(p);
   CagTokenKind closer = closer_of(t->kind);
   p->previous = *t;
@@ -66,28 +66,28 @@ void parse_skip(Parser *p) {
   else if (is_closer(t->kind)) count_closer(p, t->kind);
   p->first = (p->first + 1) % LOOK_AHEAD;
   p->count--;
-  parse_peek(p, 0);
+  cag_parse_peek(p, 0);
 }
 
-void parse_advance(Parser *p) {
-  if (!p->panic) parse_skip(p);
+void cag_parse_advance(Parser *p) {
+  if (!p->panic) cag_parse_skip(p);
 }
 
-bool parse_accept(Parser *p, CagTokenKind kind) {
+bool cag_parse_accept(Parser *p, CagTokenKind kind) {
   if (parse_kind(p) != kind || p->panic) return false;
-  parse_skip(p);
+  cag_parse_skip(p);
   return true;
 }
 
-bool parse_at_newline(Parser *p) {
+bool cag_parse_at_newline(Parser *p) {
   return p->newlines && !p->panic && parse_current(p)->newline_before;
 }
 
-bool parse_is_word(CagTokenKind kind) {
+bool cag_parse_is_word(CagTokenKind kind) {
   return kind == CAG_TOKEN_NAME || kind >= CAG_TOKEN_FIRST_WORD;
 }
 
-bool parse_begins_expression(CagTokenKind kind) {
+bool cag_parse_begins_expression(CagTokenKind kind) {
   switch (kind) {
   case CAG_TOKEN_NUMBER:
   case CAG_TOKEN_ANGLE:
@@ -107,7 +107,7 @@ bool parse_begins_expression(CagTokenKind kind) {
   }
 }
 
-bool parse_token_is(Parser *p, const CagToken *t, const char *name) {
+bool cag_parse_token_is(Parser *p, const CagToken *t, const char *name) {
   (void)p;
   return t->kind == CAG_TOKEN_NAME && strcmp(t->as.name, name) == 0;
 }
@@ -121,7 +121,7 @@ bool parse_token_is(Parser *p, const CagToken *t, const char *name) {
 #define VAIN_LIMIT ((size_t)1 << 20)
 #define VAIN_LENGTH 64
 
-void parse_probe_end(Parser *p) {
+void cag_parse_probe_end(Parser *p) {
   cag_lexer_release(&p->probe);
   p->probe = (CagLexer){0};
   cag_source_free(p->probe_source);
@@ -140,17 +140,17 @@ static CagTokenKind kind_behind_bracket(Parser *p, uint32_t start) {
   } while (open && ++seen < most && t.kind != CAG_TOKEN_END && t.kind != CAG_TOKEN_ERROR);
   if (open == 0) cag_lexer_next(&p->probe, &t);
   else p->vain += seen;
-  parse_probe_end(p);
+  cag_parse_probe_end(p);
   return open == 0 ? t.kind : CAG_TOKEN_ERROR;
 }
 
-bool parse_at_function(Parser *p) {
+bool cag_parse_at_function(Parser *p) {
   if (parse_kind(p) != CAG_TOKEN_NAME || parse_kind_at(p, 1) != CAG_TOKEN_LEFT_PAREN) return false;
-  const CagToken *paren = parse_peek(p, 1);
+  const CagToken *paren = cag_parse_peek(p, 1);
   return !paren->newline_before && kind_behind_bracket(p, paren->span.start) == CAG_TOKEN_EQUALS;
 }
 
-bool parse_at_tuple(Parser *p) {
+bool cag_parse_at_tuple(Parser *p) {
   CagTokenKind behind = kind_behind_bracket(p, parse_current(p)->span.start);
   return behind != CAG_TOKEN_ARROW && behind != CAG_TOKEN_ERROR;
 }
@@ -160,7 +160,7 @@ static bool in_first_column(Parser *p) {
   return start == 0 || p->module->source->text[start - 1] == '\n';
 }
 
-bool parse_at_statement(Parser *p) {
+bool cag_parse_at_statement(Parser *p) {
   if (p->panic || !in_first_column(p)) return false;
   CagTokenKind next;
   switch (parse_kind(p)) {
@@ -172,8 +172,8 @@ bool parse_at_statement(Parser *p) {
   case CAG_TOKEN_NAME:
     next = parse_kind_at(p, 1);
     if (next == CAG_TOKEN_EQUALS || next == CAG_TOKEN_ASSIGN_OPERATOR) return true;
-    if (next == CAG_TOKEN_NAME) return !parse_peek(p, 1)->newline_before;
-    return parse_at_function(p);
+    if (next == CAG_TOKEN_NAME) return !cag_parse_peek(p, 1)->newline_before;
+    return cag_parse_at_function(p);
   default: return false;
   }
 }
@@ -187,7 +187,7 @@ static CagDiagnostic *add_error(Parser *p, CagErrorId id, CagSpan span, const ch
   return cag_diagnostics_add(p->errors, id, p->module->source, span, "%s", message);
 }
 
-CagDiagnostic *parse_error(Parser *p, CagErrorId id, CagSpan span, const char *format, ...) {
+CagDiagnostic *cag_parse_error(Parser *p, CagErrorId id, CagSpan span, const char *format, ...) {
   if (p->panic) return NULL;
   CagTokenKind kind = parse_current(p)->kind;
   size_t told = p->errors->count + p->errors->dropped - p->first_error;
@@ -202,7 +202,7 @@ CagDiagnostic *parse_error(Parser *p, CagErrorId id, CagSpan span, const char *f
   return d;
 }
 
-CagDiagnostic *parse_mend(Parser *p, CagErrorId id, CagSpan span, const char *format, ...) {
+CagDiagnostic *cag_parse_mend(Parser *p, CagErrorId id, CagSpan span, const char *format, ...) {
   if (p->panic) return NULL;
   va_list args;
   va_start(args, format);
@@ -211,7 +211,7 @@ CagDiagnostic *parse_mend(Parser *p, CagErrorId id, CagSpan span, const char *fo
   return d;
 }
 
-void parse_help(CagDiagnostic *d, const char *format, ...) {
+void cag_parse_help(CagDiagnostic *d, const char *format, ...) {
   if (!d) return;
   va_list args;
   va_start(args, format);
@@ -221,11 +221,12 @@ void parse_help(CagDiagnostic *d, const char *format, ...) {
   cag_diagnostic_set_help(d, "%s", text);
 }
 
-void parse_related(Parser *p, CagDiagnostic *d, CagSpan span, const char *text) {
+void cag_parse_related(Parser *p, CagDiagnostic *d, CagSpan span, const char *text) {
   if (d) cag_diagnostic_add_note(d, CAG_NOTE_RELATED, p->module->source, span, "%s", text);
 }
 
-const char *parse_quote(Parser *p, CagSpan span, char *buffer, size_t size, const char *else_text) {
+const char *cag_parse_quote(Parser *p, CagSpan span, char *buffer, size_t size,
+                            const char *else_text) {
   size_t length = span.end - span.start;
   const char *text = p->module->source->text + span.start;
   if (length == 0 || length >= size || memchr(text, '\n', length)) return else_text;
@@ -234,7 +235,7 @@ const char *parse_quote(Parser *p, CagSpan span, char *buffer, size_t size, cons
   return buffer;
 }
 
-const char *parse_found(Parser *p, char *buffer, size_t size) {
+const char *cag_parse_found(Parser *p, char *buffer, size_t size) {
   const CagToken *t = parse_current(p);
   char word[40];
   switch (t->kind) {
@@ -245,13 +246,13 @@ const char *parse_found(Parser *p, char *buffer, size_t size) {
   case CAG_TOKEN_TEXT_TAIL: return "`}`";
   default: break;
   }
-  if (!parse_quote(p, t->span, word, sizeof word, NULL)) return cag_token_what(t->kind);
+  if (!cag_parse_quote(p, t->span, word, sizeof word, NULL)) return cag_token_what(t->kind);
   if (t->kind >= CAG_TOKEN_FIRST_WORD) snprintf(buffer, size, "the reserved word `%s`", word);
   else snprintf(buffer, size, "`%s`", word);
   return buffer;
 }
 
-CagSpan parse_here(Parser *p) {
+CagSpan cag_parse_here(Parser *p) {
   CagSpan s = parse_current(p)->span;
   if (parse_current(p)->kind == CAG_TOKEN_END) s.start = s.end = p->previous.span.end;
   return s;
@@ -260,155 +261,157 @@ CagSpan parse_here(Parser *p) {
 // Reports the innermost bracket when the text goes on, or ends, as if it were closed.
 static void report_unclosed(Parser *p) {
   if (p->bracket_count == 0) return;
-  if (parse_kind(p) != CAG_TOKEN_END && !parse_at_statement(p)) return;
+  if (parse_kind(p) != CAG_TOKEN_END && !cag_parse_at_statement(p)) return;
   const Bracket *b = &p->brackets[p->bracket_count - 1];
   const char *closer = cag_token_what(b->closer);
   if (parse_kind(p) == CAG_TOKEN_END) {
-    CagDiagnostic *d = parse_error(p, CAG_ERR_bracket_not_closed, b->span,
-                                   "this bracket is never closed: %s is missing", closer);
-    parse_help(d, "opened here");
+    CagDiagnostic *d = cag_parse_error(p, CAG_ERR_bracket_not_closed, b->span,
+                                       "this bracket is never closed: %s is missing", closer);
+    cag_parse_help(d, "opened here");
     return;
   }
   CagSpan next = parse_current(p)->span;
-  CagDiagnostic *d = parse_error(p, CAG_ERR_bracket_not_closed, b->span,
-                                 "this bracket is not closed: %s is missing", closer);
-  parse_help(d, "opened here");
-  parse_related(p, d, next, "still open where the next statement begins");
+  CagDiagnostic *d = cag_parse_error(p, CAG_ERR_bracket_not_closed, b->span,
+                                     "this bracket is not closed: %s is missing", closer);
+  cag_parse_help(d, "opened here");
+  cag_parse_related(p, d, next, "still open where the next statement begins");
 }
 
 static void unexpected_closer(Parser *p, const char *found) {
-  CagSpan here = parse_here(p);
+  CagSpan here = cag_parse_here(p);
   if (p->bracket_count == 0) {
-    parse_help(parse_error(p, CAG_ERR_bracket_stray, here, "%s closes nothing", found),
-               "no bracket is open here");
+    cag_parse_help(cag_parse_error(p, CAG_ERR_bracket_stray, here, "%s closes nothing", found),
+                   "no bracket is open here");
     return;
   }
   const Bracket *b = &p->brackets[p->bracket_count - 1];
   CagSpan opener = b->span;
   const char *wanted = cag_token_what(b->closer);
   CagDiagnostic *d =
-      parse_error(p, CAG_ERR_bracket_mismatch, here, "expected %s, found %s", wanted, found);
-  parse_help(d, "close the inner bracket first");
-  parse_related(p, d, opener, "the open bracket");
+      cag_parse_error(p, CAG_ERR_bracket_mismatch, here, "expected %s, found %s", wanted, found);
+  cag_parse_help(d, "close the inner bracket first");
+  cag_parse_related(p, d, opener, "the open bracket");
 }
 
 // c ? a : b
 static void report_ternary(Parser *p, const CagExpr *condition) {
-  CagSpan here = parse_here(p);
-  parse_advance(p);
-  CagExpr *a = parse_expression(p), *b = NULL;
-  if (parse_accept(p, CAG_TOKEN_COLON)) b = parse_expression(p);
+  CagSpan here = cag_parse_here(p);
+  cag_parse_advance(p);
+  CagExpr *a = cag_parse_expression(p), *b = NULL;
+  if (cag_parse_accept(p, CAG_TOKEN_COLON)) b = cag_parse_expression(p);
   char first[QUOTE_SIZE], second[QUOTE_SIZE], third[QUOTE_SIZE];
-  CagDiagnostic *d = parse_error(p, CAG_ERR_ternary, here, "a choice is not written with `?`");
-  parse_help(d, "write if %s then %s else %s",
-             condition ? parse_quote(p, condition->span, first, sizeof first, "c") : "c",
-             parse_quote(p, a->span, second, sizeof second, "a"),
-             b ? parse_quote(p, b->span, third, sizeof third, "b") : "b");
+  CagDiagnostic *d = cag_parse_error(p, CAG_ERR_ternary, here, "a choice is not written with `?`");
+  cag_parse_help(d, "write if %s then %s else %s",
+                 condition ? cag_parse_quote(p, condition->span, first, sizeof first, "c") : "c",
+                 cag_parse_quote(p, a->span, second, sizeof second, "a"),
+                 b ? cag_parse_quote(p, b->span, third, sizeof third, "b") : "b");
 }
 
 // Reports words that people put behind a value out of habit.
 static void report_habit(Parser *p, const CagExpr *before) {
   char text[QUOTE_SIZE];
-  CagSpan here = parse_here(p);
-  const char *value = before ? parse_quote(p, before->span, text, sizeof text, "a") : "a";
+  CagSpan here = cag_parse_here(p);
+  const char *value = before ? cag_parse_quote(p, before->span, text, sizeof text, "a") : "a";
   CagDiagnostic *d;
   switch (parse_kind(p)) {
   case CAG_TOKEN_QUESTION: report_ternary(p, before); return;
   case CAG_TOKEN_EQUALS:
-    d = parse_error(p, CAG_ERR_equals_in_expression, here,
-                    "`=` defines a name, and cannot stand here");
-    parse_help(d, "to compare write ==");
+    d = cag_parse_error(p, CAG_ERR_equals_in_expression, here,
+                        "`=` defines a name, and cannot stand here");
+    cag_parse_help(d, "to compare write ==");
     return;
   case CAG_TOKEN_ASSIGN_OPERATOR:
-    d = parse_error(p, CAG_ERR_assignment_operator, here,
-                    "nothing changes in cag: no value can be assigned");
-    parse_help(d, "define a new name for the new value");
+    d = cag_parse_error(p, CAG_ERR_assignment_operator, here,
+                        "nothing changes in cag: no value can be assigned");
+    cag_parse_help(d, "define a new name for the new value");
     return;
   case CAG_TOKEN_NOT:
     if (parse_kind_at(p, 1) != CAG_TOKEN_IN) return;
-    here.end = parse_peek(p, 1)->span.end;
-    d = parse_error(p, CAG_ERR_not_in, here, "`not in` is not an operator");
-    parse_help(d, "write not (%s in xs)", value);
+    here.end = cag_parse_peek(p, 1)->span.end;
+    d = cag_parse_error(p, CAG_ERR_not_in, here, "`not in` is not an operator");
+    cag_parse_help(d, "write not (%s in xs)", value);
     return;
   case CAG_TOKEN_IF:
-    d = parse_error(p, CAG_ERR_trailing_if, here, "the condition comes before the value");
-    parse_help(d, "write if c then %s else b", value);
+    d = cag_parse_error(p, CAG_ERR_trailing_if, here, "the condition comes before the value");
+    cag_parse_help(d, "write if c then %s else b", value);
     return;
   case CAG_TOKEN_FOR:
-    d = parse_error(p, CAG_ERR_trailing_for, here, "in a comprehension the loop comes first");
-    parse_help(d, "write [for x in xs: %s]", value);
+    d = cag_parse_error(p, CAG_ERR_trailing_for, here, "in a comprehension the loop comes first");
+    cag_parse_help(d, "write [for x in xs: %s]", value);
     return;
   case CAG_TOKEN_BY:
-    d = parse_error(p, CAG_ERR_by_without_range, here, "`by` needs a range before it");
-    parse_help(d, "write 0..10 by 2");
+    d = cag_parse_error(p, CAG_ERR_by_without_range, here, "`by` needs a range before it");
+    cag_parse_help(d, "write 0..10 by 2");
     return;
   case CAG_TOKEN_ARROW:
-    d = parse_error(p, CAG_ERR_function_parameters, here,
-                    "before `=>` stand the names of the parameters");
-    parse_help(d, "write x => e or (x, y) => e");
+    d = cag_parse_error(p, CAG_ERR_function_parameters, here,
+                        "before `=>` stand the names of the parameters");
+    cag_parse_help(d, "write x => e or (x, y) => e");
     return;
   case CAG_TOKEN_COLON:
     if (p->bracket_count == 0 || p->brackets[p->bracket_count - 1].closer != CAG_TOKEN_TEXT_TAIL)
       return;
-    d = parse_error(p, CAG_ERR_format_spec, here,
-                    "the { } of a text hold an expression and no format");
-    parse_help(d, "write {text(%s, digits: 2)}", value);
+    d = cag_parse_error(p, CAG_ERR_format_spec, here,
+                        "the { } of a text hold an expression and no format");
+    cag_parse_help(d, "write {text(%s, digits: 2)}", value);
     return;
   default: return;
   }
 }
 
-void parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const char *wanted) {
+void cag_parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const char *wanted) {
   if (p->panic) return;
   report_unclosed(p);
-  if (p->panic || parse_foreign_behind(p, before)) return;
+  if (p->panic || cag_parse_foreign_behind(p, before)) return;
   report_habit(p, before);
   if (p->panic) return;
   char word[64];
   CagTokenKind kind = parse_kind(p);
-  const char *found = parse_found(p, word, sizeof word);
+  const char *found = cag_parse_found(p, word, sizeof word);
   if (is_closer(kind) || kind == CAG_TOKEN_TEXT_MIDDLE) {
     unexpected_closer(p, found);
     return;
   }
   bool moved = parse_current(p)->newline_before;
-  CagDiagnostic *d = parse_error(p, id, parse_here(p), "expected %s, found %s", wanted, found);
+  CagDiagnostic *d =
+      cag_parse_error(p, id, cag_parse_here(p), "expected %s, found %s", wanted, found);
   if (kind == CAG_TOKEN_LEFT_PAREN && moved && before)
-    parse_help(
+    cag_parse_help(
         d, "a comma is missing before it, or the `(` of a call is not on the line of the function");
   else if (kind == CAG_TOKEN_LEFT_SQUARE && moved && before)
-    parse_help(
+    cag_parse_help(
         d, "a comma is missing before it, or the `[` of an index is not on the line of the list");
-  else if (id == CAG_ERR_expected_separator && parse_begins_expression(kind))
-    parse_help(d, "a comma or an operator is missing before it");
-  else if (id == CAG_ERR_expected_end && parse_begins_expression(kind))
-    parse_help(d, "an operator is missing before it, or a line break");
-  else if (kind == CAG_TOKEN_SPREAD) parse_help(d, "a range is written 0..3");
-  else if (kind == CAG_TOKEN_SEMICOLON) parse_help(d, "a comma separates what stands in brackets");
+  else if (id == CAG_ERR_expected_separator && cag_parse_begins_expression(kind))
+    cag_parse_help(d, "a comma or an operator is missing before it");
+  else if (id == CAG_ERR_expected_end && cag_parse_begins_expression(kind))
+    cag_parse_help(d, "an operator is missing before it, or a line break");
+  else if (kind == CAG_TOKEN_SPREAD) cag_parse_help(d, "a range is written 0..3");
+  else if (kind == CAG_TOKEN_SEMICOLON)
+    cag_parse_help(d, "a comma separates what stands in brackets");
 }
 
 // ---- brackets ----
 
-Opened parse_open(Parser *p, bool newlines) {
-  Opened o = {parse_here(p), p->newlines};
-  parse_advance(p);
+Opened cag_parse_open(Parser *p, bool newlines) {
+  Opened o = {cag_parse_here(p), p->newlines};
+  cag_parse_advance(p);
   p->newlines = newlines;
   return o;
 }
 
-bool parse_close(Parser *p, Opened o, CagTokenKind closer, const CagExpr *before,
-                 const char *wanted) {
+bool cag_parse_close(Parser *p, Opened o, CagTokenKind closer, const CagExpr *before,
+                     const char *wanted) {
   p->newlines = o.newlines;
-  if (parse_accept(p, closer)) return true;
-  parse_unexpected(p, before, CAG_ERR_expected_separator, wanted);
+  if (cag_parse_accept(p, closer)) return true;
+  cag_parse_unexpected(p, before, CAG_ERR_expected_separator, wanted);
   return false;
 }
 
 // ---- lists under way ----
 
-size_t parse_list_begin(Parser *p) { return p->stack_size; }
+size_t cag_parse_list_begin(Parser *p) { return p->stack_size; }
 
-void parse_list_push(Parser *p, const void *item, size_t size) {
+void cag_parse_list_push(Parser *p, const void *item, size_t size) {
   if (p->stack_size + size > p->stack_capacity) {
     size_t capacity = p->stack_capacity ? 2 * p->stack_capacity : 4096;
     while (capacity < p->stack_size + size) capacity *= 2;
@@ -419,7 +422,7 @@ void parse_list_push(Parser *p, const void *item, size_t size) {
   p->stack_size += size;
 }
 
-void *parse_list_end(Parser *p, size_t begin, size_t size, size_t *count) {
+void *cag_parse_list_end(Parser *p, size_t begin, size_t size, size_t *count) {
   size_t bytes = p->stack_size - begin;
   void *items = cag_arena_alloc(&p->module->arena, bytes);
   if (bytes) memcpy(items, p->stack + begin, bytes);

@@ -61,121 +61,123 @@ typedef struct Parser {
 
 // ---- tokens ----
 
-CagToken *parse_peek(Parser *p, unsigned n); // n = 0: the current one
-void parse_advance(Parser *p);
-void parse_skip(Parser *p); // the same, in panic too
-void parse_probe_end(Parser *p);
+CagToken *cag_parse_peek(Parser *p, unsigned n); // n = 0: the current one
+void cag_parse_advance(Parser *p);
+void cag_parse_skip(Parser *p); // the same, in panic too
+void cag_parse_probe_end(Parser *p);
 
 static inline CagTokenKind parse_kind(Parser *p) {
   return p->panic ? CAG_TOKEN_END : p->ahead[p->first].kind;
 }
 static inline CagToken *parse_current(Parser *p) { return &p->ahead[p->first]; }
 static inline CagTokenKind parse_kind_at(Parser *p, unsigned n) {
-  return p->panic ? CAG_TOKEN_END : parse_peek(p, n)->kind;
+  return p->panic ? CAG_TOKEN_END : cag_parse_peek(p, n)->kind;
 }
-bool parse_accept(Parser *p, CagTokenKind kind);
+bool cag_parse_accept(Parser *p, CagTokenKind kind);
 // A newline stands before the current token, in a place where newlines count.
-bool parse_at_newline(Parser *p);
+bool cag_parse_at_newline(Parser *p);
 // The current token begins a line in its first column, and a statement.
-bool parse_at_statement(Parser *p);
+bool cag_parse_at_statement(Parser *p);
 // A name with parameters and a `=` stands here: a definition and no call.
-bool parse_at_function(Parser *p);
+bool cag_parse_at_function(Parser *p);
 // Here, where `(` opens parameters, stands a list in parentheses instead: no `=>` follows.
-bool parse_at_tuple(Parser *p);
-bool parse_is_word(CagTokenKind kind); // a name or a reserved word
-bool parse_begins_expression(CagTokenKind kind);
-bool parse_token_is(Parser *p, const CagToken *t, const char *name);
+bool cag_parse_at_tuple(Parser *p);
+bool cag_parse_is_word(CagTokenKind kind); // a name or a reserved word
+bool cag_parse_begins_expression(CagTokenKind kind);
+bool cag_parse_token_is(Parser *p, const CagToken *t, const char *name);
 
 // ---- errors ----
 
 // Reports an error and goes into panic. NULL when the parser is in panic already.
-CagDiagnostic *parse_error(Parser *p, CagErrorId id, CagSpan span, const char *format, ...)
+CagDiagnostic *cag_parse_error(Parser *p, CagErrorId id, CagSpan span, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 // Reports an error whose mend is plain enough to go on.
-CagDiagnostic *parse_mend(Parser *p, CagErrorId id, CagSpan span, const char *format, ...)
+CagDiagnostic *cag_parse_mend(Parser *p, CagErrorId id, CagSpan span, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-void parse_help(CagDiagnostic *d, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void parse_related(Parser *p, CagDiagnostic *d, CagSpan span, const char *text);
+void cag_parse_help(CagDiagnostic *d, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+void cag_parse_related(Parser *p, CagDiagnostic *d, CagSpan span, const char *text);
 // How a message calls the current token: "`foo`", "the end of the file".
-const char *parse_found(Parser *p, char *buffer, size_t size);
-CagSpan parse_here(Parser *p); // of the current token; behind the last one at the end
+const char *cag_parse_found(Parser *p, char *buffer, size_t size);
+CagSpan cag_parse_here(Parser *p); // of the current token; behind the last one at the end
 // The text of a span for a hint, `else_text` when it is long or has line breaks.
-const char *parse_quote(Parser *p, CagSpan span, char *buffer, size_t size, const char *else_text);
+const char *cag_parse_quote(Parser *p, CagSpan span, char *buffer, size_t size,
+                            const char *else_text);
 #define QUOTE_SIZE 64
 // Says what is wrong with the token behind a complete expression. `wanted` is what could have stood
 // there.
-void parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const char *wanted);
+void cag_parse_unexpected(Parser *p, const CagExpr *before, CagErrorId id, const char *wanted);
 
 // ---- forms of other languages ----
 
 // What to do where a line that begins with `-` was meant to go on with the line above.
-extern const char parse_minus_help[];
+extern const char cag_parse_minus_help[];
 
 // Each reports the form that stands here, in panic, and gives true; false: none of them is here.
 //
 // Behind a complete expression, which `before` is when it is known; where an expression is missing;
 // in place of the `=` of a definition with parameters; where a `:` divides an index or a list.
-bool parse_foreign_behind(Parser *p, const CagExpr *before);
-bool parse_foreign_value(Parser *p);
-bool parse_foreign_body(Parser *p);
-bool parse_foreign_colon(Parser *p, CagForeignSyntax id);
+bool cag_parse_foreign_behind(Parser *p, const CagExpr *before);
+bool cag_parse_foreign_value(Parser *p);
+bool cag_parse_foreign_body(Parser *p);
+bool cag_parse_foreign_colon(Parser *p, CagForeignSyntax id);
 // A word at the head of a statement; the next word stands on its line.
-bool parse_foreign_word(Parser *p);
+bool cag_parse_foreign_word(Parser *p);
 // Whether an expression goes on with such a form behind it, so that it is not a statement by
 // itself.
-bool parse_foreign_follows(Parser *p);
+bool cag_parse_foreign_follows(Parser *p);
 
 // ---- brackets and lists ----
 
 // Consumes the opening bracket that is the current token; newlines count inside when `newlines`.
-// Gives what parse_close needs.
+// Gives what cag_parse_close needs.
 typedef struct Opened {
   CagSpan span;
   bool newlines; // whether they counted outside
 } Opened;
-Opened parse_open(Parser *p, bool newlines);
+Opened cag_parse_open(Parser *p, bool newlines);
 // Consumes the closing bracket. `wanted` is what else could stand there: "`,` or `)`".
-bool parse_close(Parser *p, Opened o, CagTokenKind closer, const CagExpr *before,
-                 const char *wanted);
+bool cag_parse_close(Parser *p, Opened o, CagTokenKind closer, const CagExpr *before,
+                     const char *wanted);
 
-size_t parse_list_begin(Parser *p);
-void parse_list_push(Parser *p, const void *item, size_t size);
+size_t cag_parse_list_begin(Parser *p);
+void cag_parse_list_push(Parser *p, const void *item, size_t size);
 // The list since `begin` as an array in the arena.
-void *parse_list_end(Parser *p, size_t begin, size_t size, size_t *count);
+void *cag_parse_list_end(Parser *p, size_t begin, size_t size, size_t *count);
 
 // ---- the grammar ----
 
-CagDecl *parse_declare(Parser *p, CagDeclKind kind, const CagToken *name);
-CagExpr *parse_new(Parser *p, CagExprKind kind, uint32_t start);
+CagDecl *cag_parse_declare(Parser *p, CagDeclKind kind, const CagToken *name);
+CagExpr *cag_parse_new(Parser *p, CagExprKind kind, uint32_t start);
 // Ends a node behind the last token.
-CagExpr *parse_finish(Parser *p, CagExpr *e);
+CagExpr *cag_parse_finish(Parser *p, CagExpr *e);
 // Counts `below` into the height of e.
-void parse_stack_on(Parser *p, CagExpr *e, const CagExpr *below);
-CagExpr *parse_error_node(Parser *p);
-CagExpr *parse_binary(Parser *p, CagExprKind kind, CagBinaryOp op, CagSpan op_span, CagExpr *left,
-                      CagExpr *right);
+void cag_parse_stack_on(Parser *p, CagExpr *e, const CagExpr *below);
+CagExpr *cag_parse_error_node(Parser *p);
+CagExpr *cag_parse_binary(Parser *p, CagExprKind kind, CagBinaryOp op, CagSpan op_span,
+                          CagExpr *left, CagExpr *right);
 // Counts recursion that no bracket bounds. Gives false, in panic, when it is too deep.
-bool parse_deeper(Parser *p);
+bool cag_parse_deeper(Parser *p);
 // Consumes a name that is defined here; NULL, in panic, when something else stands here.
-const CagToken *parse_name_to_define(Parser *p, CagToken *name, const char *what);
+const CagToken *cag_parse_name_to_define(Parser *p, CagToken *name, const char *what);
 // Whether a definition begins where the value of the line before should stand.
-bool parse_at_next_definition(Parser *p);
+bool cag_parse_at_next_definition(Parser *p);
 // Says that an expression is missing before the current token.
-CagExpr *parse_missing(Parser *p);
-bool parse_opens_lambda(Parser *p);
-CagExpr *parse_lambda(Parser *p);
-CagExpr *parse_branch(Parser *p);
-CagExpr *parse_negation(Parser *p);
-CagExpr *parse_postfix(Parser *p);
-CagExpr *parse_group(Parser *p);
-CagExpr *parse_expression(Parser *p);
-CagExpr *parse_operand(Parser *p);
-CagFunctionAst *parse_function(Parser *p, const char *name);
-CagStatement *parse_definition(Parser *p, bool top);
-CagStatement *parse_assert(Parser *p);
-const char *parse_doc(Parser *p);
+CagExpr *cag_parse_missing(Parser *p);
+bool cag_parse_opens_lambda(Parser *p);
+CagExpr *cag_parse_lambda(Parser *p);
+CagExpr *cag_parse_branch(Parser *p);
+CagExpr *cag_parse_negation(Parser *p);
+CagExpr *cag_parse_postfix(Parser *p);
+CagExpr *cag_parse_group(Parser *p);
+CagExpr *cag_parse_expression(Parser *p);
+CagExpr *cag_parse_operand(Parser *p);
+CagFunctionAst *cag_parse_function(Parser *p, const char *name);
+CagStatement *cag_parse_definition(Parser *p, bool top);
+CagStatement *cag_parse_assert(Parser *p);
+const char *cag_parse_doc(Parser *p);
 // Reports statements and words that have no place at the head of a statement here. Gives true when
 // it did.
-bool parse_habit(Parser *p, bool in_block);
+bool cag_parse_habit(Parser *p, bool in_block);
 
 #endif

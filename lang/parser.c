@@ -13,7 +13,7 @@ static CagStatement *new_statement(Parser *p, CagStatementKind kind) {
   CagStatement *s = cag_arena_alloc(&p->module->arena, sizeof *s);
   s->kind = kind;
   s->span = parse_current(p)->span;
-  s->doc = parse_doc(p);
+  s->doc = cag_parse_doc(p);
   p->statement_head = s->span;
   p->statement_kind = parse_kind(p);
   return s;
@@ -29,27 +29,27 @@ static void add_doc_line(Parser *p, size_t list, CagSpan span) {
   const char *text = p->module->source->text + span.start + 3;
   size_t length = span.end - span.start - 3;
   if (length && *text == ' ') text++, length--;
-  if (parse_list_begin(p) > list) parse_list_push(p, "\n", 1);
-  if (length) parse_list_push(p, text, length);
+  if (cag_parse_list_begin(p) > list) cag_parse_list_push(p, "\n", 1);
+  if (length) cag_parse_list_push(p, text, length);
 }
 
 // The documentation before the current token: all its /// lines.
-const char *parse_doc(Parser *p) {
+const char *cag_parse_doc(Parser *p) {
   const CagComment *comments = p->lexer.comments;
   size_t end = parse_current(p)->comments, first = end;
   bool any = false;
   while (first > 0 && comments[first - 1].span.start >= p->previous.span.end)
     any |= comments[--first].doc;
   if (!any) return NULL;
-  size_t list = parse_list_begin(p), length;
+  size_t list = cag_parse_list_begin(p), length;
   for (size_t i = first; i < end; i++)
     if (comments[i].doc) add_doc_line(p, list, comments[i].span);
-  parse_list_push(p, "", 1);
-  return parse_list_end(p, list, 1, &length);
+  cag_parse_list_push(p, "", 1);
+  return cag_parse_list_end(p, list, 1, &length);
 }
 
 static CagDecl *declare_top(Parser *p, CagStatement *s, const CagToken *name) {
-  CagDecl *d = parse_declare(p, CAG_DECL_TOP, name);
+  CagDecl *d = cag_parse_declare(p, CAG_DECL_TOP, name);
   d->statement = s;
   d->index = p->top_count;
   d->doc = s->doc;
@@ -65,42 +65,44 @@ static CagDecl *declare_top(Parser *p, CagStatement *s, const CagToken *name) {
 // A name that a statement defines. An error, in panic, for anything else.
 static bool statement_name(Parser *p, CagToken *name, const char *what) {
   *name = *parse_current(p);
-  if (parse_accept(p, CAG_TOKEN_NAME)) return true;
+  if (cag_parse_accept(p, CAG_TOKEN_NAME)) return true;
   char word[64];
-  const char *found = parse_found(p, word, sizeof word);
+  const char *found = cag_parse_found(p, word, sizeof word);
   if (parse_kind(p) >= CAG_TOKEN_FIRST_WORD)
-    parse_help(
-        parse_error(p, CAG_ERR_reserved_name, parse_here(p), "expected %s, found %s", what, found),
-        "choose another name");
-  else parse_error(p, CAG_ERR_expected_name, parse_here(p), "expected %s, found %s", what, found);
+    cag_parse_help(cag_parse_error(p, CAG_ERR_reserved_name, cag_parse_here(p),
+                                   "expected %s, found %s", what, found),
+                   "choose another name");
+  else
+    cag_parse_error(p, CAG_ERR_expected_name, cag_parse_here(p), "expected %s, found %s", what,
+                    found);
   name->as.name = cag_names_intern(&p->names, "_", 1)->bytes;
   return false;
 }
 
 static void expect(Parser *p, CagTokenKind kind, const char *wanted) {
-  if (p->panic || parse_accept(p, kind)) return;
-  parse_unexpected(p, NULL, CAG_ERR_expected_word, wanted);
+  if (p->panic || cag_parse_accept(p, kind)) return;
+  cag_parse_unexpected(p, NULL, CAG_ERR_expected_word, wanted);
 }
 
 // definition = name [ "(" [ parameters ] ")" ] "=" expr
-CagStatement *parse_definition(Parser *p, bool top) {
+CagStatement *cag_parse_definition(Parser *p, bool top) {
   CagStatement *s = new_statement(p, CAG_STATEMENT_DEFINITION);
   CagToken name = *parse_current(p);
-  parse_advance(p);
+  cag_parse_advance(p);
   CagFunctionAst *f = NULL;
-  if (parse_kind(p) == CAG_TOKEN_LEFT_PAREN) f = parse_function(p, name.as.name);
+  if (parse_kind(p) == CAG_TOKEN_LEFT_PAREN) f = cag_parse_function(p, name.as.name);
   if (top) {
     s->as.definition.decl = declare_top(p, s, &name);
   } else {
-    s->as.definition.decl = parse_declare(p, CAG_DECL_BLOCK, &name);
+    s->as.definition.decl = cag_parse_declare(p, CAG_DECL_BLOCK, &name);
     s->as.definition.decl->statement = s;
     s->as.definition.decl->doc = s->doc;
   }
-  if (!f || !parse_foreign_body(p)) expect(p, CAG_TOKEN_EQUALS, "`=`");
-  CagExpr *value = parse_expression(p);
+  if (!f || !cag_parse_foreign_body(p)) expect(p, CAG_TOKEN_EQUALS, "`=`");
+  CagExpr *value = cag_parse_expression(p);
   if (f) {
     f->body = value;
-    CagExpr *e = parse_new(p, CAG_EXPR_LAMBDA, name.span.start);
+    CagExpr *e = cag_parse_new(p, CAG_EXPR_LAMBDA, name.span.start);
     e->span.end = p->previous.span.end;
     e->height = value->height + 1;
     for (size_t i = 0; i < f->parameter_count; i++)
@@ -119,16 +121,16 @@ CagStatement *parse_definition(Parser *p, bool top) {
 static const char *plain_text(Parser *p, const char *what) {
   CagToken *t = parse_current(p);
   if (t->kind == CAG_TOKEN_TEXT_HEAD) {
-    parse_help(parse_error(p, CAG_ERR_text_not_plain, t->span, "%s has no { } in it", what),
-               "a brace itself is written \\{");
+    cag_parse_help(cag_parse_error(p, CAG_ERR_text_not_plain, t->span, "%s has no { } in it", what),
+                   "a brace itself is written \\{");
     return "";
   }
   const char *text = t->as.text.bytes;
   if (strlen(text) != t->as.text.length)
-    parse_help(
-        parse_error(p, CAG_ERR_text_not_plain, t->span, "%s has no character \\u{0} in it", what),
-        "leave the character out");
-  parse_advance(p);
+    cag_parse_help(cag_parse_error(p, CAG_ERR_text_not_plain, t->span,
+                                   "%s has no character \\u{0} in it", what),
+                   "leave the character out");
+  cag_parse_advance(p);
   return text;
 }
 
@@ -139,14 +141,15 @@ static bool at_text(Parser *p) {
 // param = "param" name "=" operand [ "in" expr ] [ text ]
 static CagStatement *param(Parser *p) {
   CagStatement *s = new_statement(p, CAG_STATEMENT_PARAM);
-  parse_advance(p);
+  cag_parse_advance(p);
   CagToken name;
   statement_name(p, &name, "the name of the param");
   s->as.param.decl = declare_top(p, s, &name);
   expect(p, CAG_TOKEN_EQUALS, "`=` and a default");
-  s->as.param.value = parse_operand(p);
-  if (parse_accept(p, CAG_TOKEN_IN)) s->as.param.domain = parse_expression(p);
-  if (at_text(p) && !parse_at_newline(p)) s->as.param.label = plain_text(p, "the label of a param");
+  s->as.param.value = cag_parse_operand(p);
+  if (cag_parse_accept(p, CAG_TOKEN_IN)) s->as.param.domain = cag_parse_expression(p);
+  if (at_text(p) && !cag_parse_at_newline(p))
+    s->as.param.label = plain_text(p, "the label of a param");
   return end_statement(p, s);
 }
 
@@ -166,48 +169,48 @@ static bool word_of_path(Parser *p, const char *path, CagToken *word) {
   cag_lexer_next(&p->probe, &end);
   bool good = word->kind == CAG_TOKEN_NAME && word->span.start == 0 && word->span.end == length &&
               end.kind == CAG_TOKEN_END;
-  parse_probe_end(p);
+  cag_parse_probe_end(p);
   return good;
 }
 
 // name { "." name }: the path, and its last name.
 static const char *module_path(Parser *p, CagToken *last) {
-  size_t list = parse_list_begin(p), length;
+  size_t list = cag_parse_list_begin(p), length;
   do {
     if (!statement_name(p, last, "the name of a module")) break;
-    if (parse_list_begin(p) > list) parse_list_push(p, ".", 1);
-    parse_list_push(p, last->as.name, strlen(last->as.name));
-  } while (parse_accept(p, CAG_TOKEN_DOT));
-  parse_list_push(p, "", 1);
-  return parse_list_end(p, list, 1, &length);
+    if (cag_parse_list_begin(p) > list) cag_parse_list_push(p, ".", 1);
+    cag_parse_list_push(p, last->as.name, strlen(last->as.name));
+  } while (cag_parse_accept(p, CAG_TOKEN_DOT));
+  cag_parse_list_push(p, "", 1);
+  return cag_parse_list_end(p, list, 1, &length);
 }
 
 // ":" name { "," name }
 static void import_names(Parser *p, CagStatement *s) {
-  size_t list = parse_list_begin(p);
+  size_t list = cag_parse_list_begin(p);
   do {
     CagToken name;
     if (parse_kind(p) == CAG_TOKEN_STAR) {
-      parse_help(parse_error(p, CAG_ERR_expected_name, parse_here(p),
-                             "expected a name of the module, found `*`"),
-                 "name what the file uses, or import the module and write module.name");
+      cag_parse_help(cag_parse_error(p, CAG_ERR_expected_name, cag_parse_here(p),
+                                     "expected a name of the module, found `*`"),
+                     "name what the file uses, or import the module and write module.name");
       break;
     }
     if (!statement_name(p, &name, "a name of the module")) break;
-    CagImportName item = {parse_declare(p, CAG_DECL_IMPORTED, &name), name.as.name};
+    CagImportName item = {cag_parse_declare(p, CAG_DECL_IMPORTED, &name), name.as.name};
     item.decl->statement = s;
-    parse_list_push(p, &item, sizeof item);
-  } while (parse_accept(p, CAG_TOKEN_COMMA));
-  s->as.import.names = parse_list_end(p, list, sizeof(CagImportName), &s->as.import.name_count);
+    cag_parse_list_push(p, &item, sizeof item);
+  } while (cag_parse_accept(p, CAG_TOKEN_COMMA));
+  s->as.import.names = cag_parse_list_end(p, list, sizeof(CagImportName), &s->as.import.name_count);
 }
 
 // import = "import" ( name { "." name } | text ) [ "as" name ] [ ":" name { "," name } ]
 static CagStatement *import(Parser *p) {
   CagStatement *s = new_statement(p, CAG_STATEMENT_IMPORT);
-  parse_advance(p);
+  cag_parse_advance(p);
   CagToken word = {0};
   bool has_word = true;
-  CagSpan path = parse_here(p);
+  CagSpan path = cag_parse_here(p);
   if (at_text(p)) {
     s->as.import.is_text = true;
     s->as.import.path = plain_text(p, "the path of an import");
@@ -218,20 +221,21 @@ static CagStatement *import(Parser *p) {
     path.end = p->previous.span.end;
   }
   s->as.import.path_span = path;
-  if (parse_accept(p, CAG_TOKEN_AS)) {
+  if (cag_parse_accept(p, CAG_TOKEN_AS)) {
     has_word = statement_name(p, &word, "the name for the module");
     s->as.import.alias = word.as.name;
   }
-  bool names = parse_accept(p, CAG_TOKEN_COLON);
+  bool names = cag_parse_accept(p, CAG_TOKEN_COLON);
   if (names) import_names(p, s);
   if (names && !s->as.import.alias) return end_statement(p, s);
   if (!has_word && !p->panic) {
-    parse_help(parse_mend(p, CAG_ERR_import_needs_name, path, "this path does not end in a name"),
-               "add a name: as part");
+    cag_parse_help(
+        cag_parse_mend(p, CAG_ERR_import_needs_name, path, "this path does not end in a name"),
+        "add a name: as part");
     return end_statement(p, s);
   }
   if (!p->panic) {
-    s->as.import.decl = parse_declare(p, CAG_DECL_IMPORT, &word);
+    s->as.import.decl = cag_parse_declare(p, CAG_DECL_IMPORT, &word);
     s->as.import.decl->statement = s;
   }
   return end_statement(p, s);
@@ -242,22 +246,22 @@ static CagStatement *import(Parser *p) {
 // ( "show" | "print" ) expr { "," expr }
 static CagStatement *list_statement(Parser *p, CagStatementKind kind) {
   CagStatement *s = new_statement(p, kind);
-  parse_advance(p);
-  size_t list = parse_list_begin(p);
+  cag_parse_advance(p);
+  size_t list = cag_parse_list_begin(p);
   do {
-    CagExpr *e = parse_expression(p);
-    parse_list_push(p, &e, sizeof e);
-  } while (!p->panic && parse_accept(p, CAG_TOKEN_COMMA));
-  s->as.list.items = parse_list_end(p, list, sizeof(CagExpr *), &s->as.list.count);
+    CagExpr *e = cag_parse_expression(p);
+    cag_parse_list_push(p, &e, sizeof e);
+  } while (!p->panic && cag_parse_accept(p, CAG_TOKEN_COMMA));
+  s->as.list.items = cag_parse_list_end(p, list, sizeof(CagExpr *), &s->as.list.count);
   return end_statement(p, s);
 }
 
 // assert = "assert" expr [ "," expr ]
-CagStatement *parse_assert(Parser *p) {
+CagStatement *cag_parse_assert(Parser *p) {
   CagStatement *s = new_statement(p, CAG_STATEMENT_ASSERT);
-  parse_advance(p);
-  s->as.assertion.condition = parse_expression(p);
-  if (parse_accept(p, CAG_TOKEN_COMMA)) s->as.assertion.message = parse_expression(p);
+  cag_parse_advance(p);
+  s->as.assertion.condition = cag_parse_expression(p);
+  if (cag_parse_accept(p, CAG_TOKEN_COMMA)) s->as.assertion.message = cag_parse_expression(p);
   return end_statement(p, s);
 }
 
@@ -276,71 +280,72 @@ static bool is_one_of(const char *name, const char *const *words, size_t count) 
 //
 // A word before a definition is passed over, and the definition read as one.
 static bool name_habit(Parser *p) {
-  CagToken word = *parse_current(p), next = *parse_peek(p, 1);
+  CagToken word = *parse_current(p), next = *cag_parse_peek(p, 1);
   if (next.newline_before) return false;
-  if (parse_foreign_word(p)) return true;
-  bool value_follows = parse_begins_expression(next.kind) && next.kind != CAG_TOKEN_MINUS &&
+  if (cag_parse_foreign_word(p)) return true;
+  bool value_follows = cag_parse_begins_expression(next.kind) && next.kind != CAG_TOKEN_MINUS &&
                        next.kind != CAG_TOKEN_LEFT_SQUARE &&
                        (next.kind != CAG_TOKEN_LEFT_PAREN || next.span.start > word.span.end);
   if (!value_follows) return false;
   if (IS_ONE_OF(word.as.name, "return", "yield")) {
-    parse_help(parse_mend(p, CAG_ERR_return, word.span, "there is no `%s`", word.as.name),
-               "the last expression of a block is its value");
-    parse_advance(p);
+    cag_parse_help(cag_parse_mend(p, CAG_ERR_return, word.span, "there is no `%s`", word.as.name),
+                   "the last expression of a block is its value");
+    cag_parse_advance(p);
     return false;
   }
   if (IS_ONE_OF(word.as.name, "while", "foreach", "repeat", "until", "loop")) {
     if (next.kind == CAG_TOKEN_LEFT_PAREN && strcmp(word.as.name, "repeat") == 0) return false;
-    parse_help(parse_error(p, CAG_ERR_loop, word.span, "there is no `%s`: nothing changes in cag",
-                           word.as.name),
-               "a list is built by [for x in xs: ...], a value by %s",
-               cag_foreign_syntax(CAG_FOREIGN_while_loop));
+    cag_parse_help(cag_parse_error(p, CAG_ERR_loop, word.span,
+                                   "there is no `%s`: nothing changes in cag", word.as.name),
+                   "a list is built by [for x in xs: ...], a value by %s",
+                   cag_foreign_syntax(CAG_FOREIGN_while_loop));
     return true;
   }
   if (next.kind == CAG_TOKEN_NAME &&
       IS_ONE_OF(word.as.name, "let", "var", "val", "const", "def", "define", "fn", "fun", "func",
                 "function", "local", "auto", "int", "float", "double", "string", "bool", "number",
                 "module", "export", "final", "static", "set")) {
-    parse_help(
-        parse_mend(p, CAG_ERR_definition_keyword, word.span, "a definition begins with its name"),
-        "leave `%s` out", word.as.name);
+    cag_parse_help(cag_parse_mend(p, CAG_ERR_definition_keyword, word.span,
+                                  "a definition begins with its name"),
+                   "leave `%s` out", word.as.name);
     p->habit = word.span.start;
-    parse_advance(p);
+    cag_parse_advance(p);
   }
   return false;
 }
 
-bool parse_habit(Parser *p, bool in_block) {
+bool cag_parse_habit(Parser *p, bool in_block) {
   CagTokenKind kind = parse_kind(p);
   if (kind == CAG_TOKEN_NAME) return name_habit(p);
   if (kind < CAG_TOKEN_FIRST_WORD) return false;
   CagTokenKind next = parse_kind_at(p, 1);
-  CagSpan here = parse_here(p);
+  CagSpan here = cag_parse_here(p);
   char word[64];
-  const char *found = parse_quote(p, here, word, sizeof word, "");
+  const char *found = cag_parse_quote(p, here, word, sizeof word, "");
   if (next == CAG_TOKEN_EQUALS ||
       (next == CAG_TOKEN_LEFT_PAREN && in_block && kind == CAG_TOKEN_BY)) {
-    parse_help(parse_error(p, CAG_ERR_reserved_name, here,
-                           "`%s` is a word of the language and cannot be defined", found),
-               "choose another name");
+    cag_parse_help(cag_parse_error(p, CAG_ERR_reserved_name, here,
+                                   "`%s` is a word of the language and cannot be defined", found),
+                   "choose another name");
     return true;
   }
   if (kind == CAG_TOKEN_FOR) {
-    parse_help(parse_error(p, CAG_ERR_loop, here, "`for` is not a statement: it stands in a list"),
-               "write %s", cag_foreign_syntax(CAG_FOREIGN_for_statement));
+    cag_parse_help(
+        cag_parse_error(p, CAG_ERR_loop, here, "`for` is not a statement: it stands in a list"),
+        "write %s", cag_foreign_syntax(CAG_FOREIGN_for_statement));
     return true;
   }
   if (!in_block) return false;
   if (kind == CAG_TOKEN_SHOW || kind == CAG_TOKEN_PRINT || kind == CAG_TOKEN_PARAM ||
       kind == CAG_TOKEN_IMPORT) {
-    if (parse_at_statement(p)) {
-      parse_unexpected(p, NULL, CAG_ERR_bracket_not_closed, "`}`");
+    if (cag_parse_at_statement(p)) {
+      cag_parse_unexpected(p, NULL, CAG_ERR_bracket_not_closed, "`}`");
       return true;
     }
-    CagDiagnostic *d =
-        parse_error(p, CAG_ERR_block_statement, here, "`%s` stands at the top level only", found);
-    parse_help(d, kind == CAG_TOKEN_PRINT ? "write trace(x) to see a value from within"
-                                          : "a block has definitions, asserts and its value");
+    CagDiagnostic *d = cag_parse_error(p, CAG_ERR_block_statement, here,
+                                       "`%s` stands at the top level only", found);
+    cag_parse_help(d, kind == CAG_TOKEN_PRINT ? "write trace(x) to see a value from within"
+                                              : "a block has definitions, asserts and its value");
     return true;
   }
   return false;
@@ -352,40 +357,40 @@ bool parse_habit(Parser *p, bool in_block) {
 static CagStatement *expression_statement(Parser *p) {
   CagStatement *s = new_statement(p, CAG_STATEMENT_EXPRESSION);
   const bool below = p->previous.span.end > 0; // another statement
-  CagExpr *e = parse_expression(p);
+  CagExpr *e = cag_parse_expression(p);
   s->as.expression = e;
   end_statement(p, s);
   if (p->mode == CAG_PARSE_REPL || p->panic) return s;
   if (parse_kind(p) == CAG_TOKEN_ASSIGN_OPERATOR || parse_kind(p) == CAG_TOKEN_QUESTION ||
-      parse_kind(p) == CAG_TOKEN_EQUALS || parse_foreign_follows(p))
+      parse_kind(p) == CAG_TOKEN_EQUALS || cag_parse_foreign_follows(p))
     return s; // reported as what it is
   char text[QUOTE_SIZE];
-  const char *said = parse_quote(p, e->span, text, sizeof text, "...");
-  CagDiagnostic *d = parse_mend(p, CAG_ERR_expression_statement, e->span,
-                                "an expression alone is not a statement");
+  const char *said = cag_parse_quote(p, e->span, text, sizeof text, "...");
+  CagDiagnostic *d = cag_parse_mend(p, CAG_ERR_expression_statement, e->span,
+                                    "an expression alone is not a statement");
   if (e->kind == CAG_EXPR_BINARY && e->as.binary.op == CAG_OP_EQUAL &&
       e->as.binary.left->kind == CAG_EXPR_NAME)
-    parse_help(d, "to define %s write =", e->as.binary.left->as.name.id);
+    cag_parse_help(d, "to define %s write =", e->as.binary.left->as.name.id);
   else if (below && p->module->source->text[e->span.start] == '-')
-    parse_help(d, "%s", parse_minus_help);
-  else parse_help(d, "write print %s, or show it, or give it a name", said);
+    cag_parse_help(d, "%s", cag_parse_minus_help);
+  else cag_parse_help(d, "write print %s, or show it, or give it a name", said);
   return s;
 }
 
 static CagStatement *name_statement(Parser *p) {
-  CagToken *next = parse_peek(p, 1);
+  CagToken *next = cag_parse_peek(p, 1);
   char text[QUOTE_SIZE];
   bool mended = p->previous.kind == CAG_TOKEN_NAME && p->previous.span.start == p->habit;
-  if (next->kind == CAG_TOKEN_EQUALS || parse_at_function(p) ||
+  if (next->kind == CAG_TOKEN_EQUALS || cag_parse_at_function(p) ||
       (mended && next->kind == CAG_TOKEN_LEFT_PAREN))
-    return parse_definition(p, true);
-  next = parse_peek(p, 1);
+    return cag_parse_definition(p, true);
+  next = cag_parse_peek(p, 1);
   if (next->kind == CAG_TOKEN_ASSIGN_OPERATOR) {
     const char *name = parse_current(p)->as.name;
-    const char *op = parse_quote(p, next->span, text, sizeof text, "=");
-    CagDiagnostic *d = parse_error(p, CAG_ERR_assignment_operator, next->span,
-                                   "nothing changes in cag: %s keeps its value", name);
-    parse_help(d, "define a new name: %s2 = %s %.*s ...", name, name, (int)strlen(op) - 1, op);
+    const char *op = cag_parse_quote(p, next->span, text, sizeof text, "=");
+    CagDiagnostic *d = cag_parse_error(p, CAG_ERR_assignment_operator, next->span,
+                                       "nothing changes in cag: %s keeps its value", name);
+    cag_parse_help(d, "define a new name: %s2 = %s %.*s ...", name, name, (int)strlen(op) - 1, op);
     return NULL;
   }
   return expression_statement(p);
@@ -393,26 +398,27 @@ static CagStatement *name_statement(Parser *p) {
 
 // statement = import | param | definition | "show" list | "print" list | assert
 static CagStatement *statement(Parser *p) {
-  if (parse_habit(p, false)) return NULL;
+  if (cag_parse_habit(p, false)) return NULL;
   CagTokenKind kind = parse_kind(p);
   switch (kind) {
   case CAG_TOKEN_IMPORT: return import(p);
   case CAG_TOKEN_PARAM: return param(p);
   case CAG_TOKEN_SHOW: return list_statement(p, CAG_STATEMENT_SHOW);
   case CAG_TOKEN_PRINT: return list_statement(p, CAG_STATEMENT_PRINT);
-  case CAG_TOKEN_ASSERT: return parse_assert(p);
+  case CAG_TOKEN_ASSERT: return cag_parse_assert(p);
   case CAG_TOKEN_NAME: return name_statement(p);
   default: break;
   }
-  if (parse_begins_expression(kind)) return expression_statement(p);
+  if (cag_parse_begins_expression(kind)) return expression_statement(p);
   char word[64];
   if (kind == CAG_TOKEN_RIGHT_PAREN || kind == CAG_TOKEN_RIGHT_SQUARE ||
       kind == CAG_TOKEN_RIGHT_BRACE)
-    parse_unexpected(p, NULL, CAG_ERR_expected_statement, "a statement");
+    cag_parse_unexpected(p, NULL, CAG_ERR_expected_statement, "a statement");
   else
-    parse_help(parse_error(p, CAG_ERR_expected_statement, parse_here(p),
-                           "expected a statement, found %s", parse_found(p, word, sizeof word)),
-               "a line that begins so goes on with nothing before it");
+    cag_parse_help(cag_parse_error(p, CAG_ERR_expected_statement, cag_parse_here(p),
+                                   "expected a statement, found %s",
+                                   cag_parse_found(p, word, sizeof word)),
+                   "a line that begins so goes on with nothing before it");
   return NULL;
 }
 
@@ -421,7 +427,7 @@ static void end_of_statement(Parser *p, const CagStatement *s) {
   if (p->panic) return;
   CagTokenKind kind = parse_kind(p);
   if (kind == CAG_TOKEN_END || kind == CAG_TOKEN_SEMICOLON) return;
-  if (parse_at_newline(p) && (parse_is_word(kind) || parse_begins_expression(kind)) &&
+  if (cag_parse_at_newline(p) && (cag_parse_is_word(kind) || cag_parse_begins_expression(kind)) &&
       kind != CAG_TOKEN_ELSE && kind != CAG_TOKEN_THEN && kind != CAG_TOKEN_BY &&
       kind != CAG_TOKEN_AS)
     return;
@@ -431,14 +437,14 @@ static void end_of_statement(Parser *p, const CagStatement *s) {
   if (s && s->kind == CAG_STATEMENT_EXPRESSION) before = s->as.expression;
   if (s && (s->kind == CAG_STATEMENT_SHOW || s->kind == CAG_STATEMENT_PRINT) && s->as.list.count)
     before = s->as.list.items[s->as.list.count - 1];
-  parse_unexpected(p, before, CAG_ERR_expected_end, "the end of the line or `;`");
+  cag_parse_unexpected(p, before, CAG_ERR_expected_end, "the end of the line or `;`");
 }
 
 // No bracket is open, and a line begins in its first column with a value that the line before does
 // not ask for.
 static bool at_new_line(Parser *p) {
   const CagToken *t = parse_current(p);
-  if (p->bracket_count || p->excess || !t->newline_before || !parse_begins_expression(t->kind))
+  if (p->bracket_count || p->excess || !t->newline_before || !cag_parse_begins_expression(t->kind))
     return false;
   if (t->span.start > 0 && p->module->source->text[t->span.start - 1] != '\n') return false;
   switch (p->previous.kind) {
@@ -451,7 +457,7 @@ static bool at_new_line(Parser *p) {
   case CAG_TOKEN_MINUS:
   case CAG_TOKEN_IF:
   case CAG_TOKEN_NOT: return false;
-  default: return parse_begins_expression(p->previous.kind);
+  default: return cag_parse_begins_expression(p->previous.kind);
   }
 }
 
@@ -463,7 +469,7 @@ static void pass_wrong_closer(Parser *p, CagErrorId told) {
   if (kind >= CAG_TOKEN_COMMA || p->open[kind]) return;
   p->open[p->brackets[--p->bracket_count].closer]--;
   p->panic = true;
-  parse_skip(p);
+  cag_parse_skip(p);
   p->panic = false;
 }
 
@@ -477,9 +483,10 @@ static void recover(Parser *p, uint32_t start) {
   p->panic = false;
   pass_wrong_closer(p, told ? p->errors->items[told - 1].id : CAG_ERR_COUNT);
   while (parse_kind(p) != CAG_TOKEN_END) {
-    if (parse_current(p)->span.start > start && (parse_at_statement(p) || at_new_line(p))) break;
+    if (parse_current(p)->span.start > start && (cag_parse_at_statement(p) || at_new_line(p)))
+      break;
     p->panic = true; // nor are the brackets in it
-    parse_skip(p);
+    cag_parse_skip(p);
     p->panic = false;
   }
   p->lexer.errors = errors;
@@ -488,9 +495,9 @@ static void recover(Parser *p, uint32_t start) {
   if (p->bracket_count && !p->excess && !unclosed_told) {
     const Bracket *b = &p->brackets[p->bracket_count - 1];
     CagDiagnostic *d =
-        parse_mend(p, CAG_ERR_bracket_not_closed, b->span,
-                   "this bracket is not closed: %s is missing", cag_token_what(b->closer));
-    parse_help(d, "opened here");
+        cag_parse_mend(p, CAG_ERR_bracket_not_closed, b->span,
+                       "this bracket is not closed: %s is missing", cag_token_what(b->closer));
+    cag_parse_help(d, "opened here");
   }
   p->bracket_count = p->excess = p->depth = 0;
   memset(p->open, 0, sizeof p->open);
@@ -537,7 +544,7 @@ static void hand_over(Parser *p, const CagStatement *s) {
 
 static void statements(Parser *p) {
   for (;;) {
-    while (parse_accept(p, CAG_TOKEN_SEMICOLON)) {}
+    while (cag_parse_accept(p, CAG_TOKEN_SEMICOLON)) {}
     if (parse_kind(p) == CAG_TOKEN_END) break;
     uint32_t start = parse_current(p)->span.start;
     CagStatement *s = statement(p);
@@ -615,14 +622,14 @@ static void parse_into(Parser *p, CagArena *names) {
   p->habit = UINT32_MAX;
   cag_names_init(&p->names, names);
   cag_lexer_init(&p->lexer, m->source, &m->arena, &p->names, errors);
-  parse_peek(p, 0);
+  cag_parse_peek(p, 0);
   statements(p);
   cag_diagnostics_sort(errors, before); // those of the lexer run a few words ahead
 }
 
 static void release(Parser *p) {
   cag_lexer_release(&p->lexer);
-  parse_probe_end(p);
+  cag_parse_probe_end(p);
   cag_names_release(&p->names);
   cag_free(p->stack);
   cag_free(p->tops);

@@ -11,100 +11,102 @@
 static bool clause_name(Parser *p, size_t *list) {
   CagToken name;
   (void)list;
-  if (!parse_name_to_define(p, &name, "a name")) return false;
-  CagDecl *d = strcmp(name.as.name, "_") == 0 ? NULL : parse_declare(p, CAG_DECL_CLAUSE, &name);
-  parse_list_push(p, &d, sizeof d);
+  if (!cag_parse_name_to_define(p, &name, "a name")) return false;
+  CagDecl *d = strcmp(name.as.name, "_") == 0 ? NULL : cag_parse_declare(p, CAG_DECL_CLAUSE, &name);
+  cag_parse_list_push(p, &d, sizeof d);
   return true;
 }
 
 static CagClause clause(Parser *p) {
-  CagClause c = {.span = parse_here(p)};
-  size_t list = parse_list_begin(p);
+  CagClause c = {.span = cag_parse_here(p)};
+  size_t list = cag_parse_list_begin(p);
   if (parse_kind(p) == CAG_TOKEN_LEFT_SQUARE) {
     c.pattern = true;
-    Opened o = parse_open(p, false);
-    while (clause_name(p, &list) && parse_accept(p, CAG_TOKEN_COMMA) &&
+    Opened o = cag_parse_open(p, false);
+    while (clause_name(p, &list) && cag_parse_accept(p, CAG_TOKEN_COMMA) &&
            parse_kind(p) != CAG_TOKEN_RIGHT_SQUARE) {}
-    parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, NULL, "`,` or `]`");
+    cag_parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, NULL, "`,` or `]`");
   } else {
     if (parse_kind(p) == CAG_TOKEN_LEFT_PAREN)
-      parse_help(parse_error(p, CAG_ERR_foreign_form, parse_here(p),
-                             "the loop of a comprehension stands without parentheses"),
-                 "write %s", cag_foreign_syntax(CAG_FOREIGN_for_parentheses));
+      cag_parse_help(cag_parse_error(p, CAG_ERR_foreign_form, cag_parse_here(p),
+                                     "the loop of a comprehension stands without parentheses"),
+                     "write %s", cag_foreign_syntax(CAG_FOREIGN_for_parentheses));
     clause_name(p, &list);
     if (parse_kind(p) == CAG_TOKEN_COMMA && parse_kind_at(p, 1) == CAG_TOKEN_NAME) {
-      parse_help(parse_error(p, CAG_ERR_expected_word, parse_here(p), "expected `in`, found `,`"),
-                 "to take elements apart write [for [a, b] in xs: ...]");
+      cag_parse_help(
+          cag_parse_error(p, CAG_ERR_expected_word, cag_parse_here(p), "expected `in`, found `,`"),
+          "to take elements apart write [for [a, b] in xs: ...]");
     }
   }
-  c.names = parse_list_end(p, list, sizeof *c.names, &c.name_count);
-  if (!parse_accept(p, CAG_TOKEN_IN)) {
+  c.names = cag_parse_list_end(p, list, sizeof *c.names, &c.name_count);
+  if (!cag_parse_accept(p, CAG_TOKEN_IN)) {
     if (parse_kind(p) == CAG_TOKEN_EQUALS) {
-      parse_help(parse_error(p, CAG_ERR_expected_word, parse_here(p), "expected `in`, found `=`"),
-                 "write for i in 0..10");
+      cag_parse_help(
+          cag_parse_error(p, CAG_ERR_expected_word, cag_parse_here(p), "expected `in`, found `=`"),
+          "write for i in 0..10");
     } else {
-      parse_unexpected(p, NULL, CAG_ERR_expected_word, "`in`");
+      cag_parse_unexpected(p, NULL, CAG_ERR_expected_word, "`in`");
     }
   }
-  c.source = parse_expression(p);
-  if (parse_accept(p, CAG_TOKEN_IF)) c.filter = parse_expression(p);
+  c.source = cag_parse_expression(p);
+  if (cag_parse_accept(p, CAG_TOKEN_IF)) c.filter = cag_parse_expression(p);
   c.span.end = p->previous.span.end;
   return c;
 }
 
 static CagExpr *comprehension(Parser *p, Opened o) {
-  CagExpr *e = parse_new(p, CAG_EXPR_COMPREHENSION, o.span.start);
-  parse_advance(p); // for
-  size_t list = parse_list_begin(p);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_COMPREHENSION, o.span.start);
+  cag_parse_advance(p); // for
+  size_t list = cag_parse_list_begin(p);
   const CagExpr *last;
   do {
     CagClause c = clause(p);
     last = c.filter ? c.filter : c.source;
-    parse_stack_on(p, e, c.source);
-    parse_stack_on(p, e, c.filter);
-    parse_list_push(p, &c, sizeof c);
-  } while (!p->panic && parse_accept(p, CAG_TOKEN_COMMA));
+    cag_parse_stack_on(p, e, c.source);
+    cag_parse_stack_on(p, e, c.filter);
+    cag_parse_list_push(p, &c, sizeof c);
+  } while (!p->panic && cag_parse_accept(p, CAG_TOKEN_COMMA));
   e->as.comprehension.clauses =
-      parse_list_end(p, list, sizeof(CagClause), &e->as.comprehension.count);
-  if (!parse_accept(p, CAG_TOKEN_COLON)) {
+      cag_parse_list_end(p, list, sizeof(CagClause), &e->as.comprehension.count);
+  if (!cag_parse_accept(p, CAG_TOKEN_COLON)) {
     if (parse_kind(p) == CAG_TOKEN_FOR)
-      parse_help(
-          parse_error(p, CAG_ERR_expected_word, parse_here(p), "expected `,` or `:`, found `for`"),
-          "write [for x in xs, y in ys: ...]");
-    else parse_unexpected(p, last, CAG_ERR_expected_word, "`,` or `:`");
+      cag_parse_help(cag_parse_error(p, CAG_ERR_expected_word, cag_parse_here(p),
+                                     "expected `,` or `:`, found `for`"),
+                     "write [for x in xs, y in ys: ...]");
+    else cag_parse_unexpected(p, last, CAG_ERR_expected_word, "`,` or `:`");
   }
-  e->as.comprehension.body = parse_expression(p);
-  parse_stack_on(p, e, e->as.comprehension.body);
-  parse_accept(p, CAG_TOKEN_COMMA);
-  parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, e->as.comprehension.body, "`]`");
-  return parse_finish(p, e);
+  e->as.comprehension.body = cag_parse_expression(p);
+  cag_parse_stack_on(p, e, e->as.comprehension.body);
+  cag_parse_accept(p, CAG_TOKEN_COMMA);
+  cag_parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, e->as.comprehension.body, "`]`");
+  return cag_parse_finish(p, e);
 }
 
 static CagExpr *spread(Parser *p) {
-  CagExpr *e = parse_new(p, CAG_EXPR_SPREAD, parse_here(p).start);
-  parse_advance(p);
-  e->as.unary.operand = parse_expression(p);
-  parse_stack_on(p, e, e->as.unary.operand);
-  return parse_finish(p, e);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_SPREAD, cag_parse_here(p).start);
+  cag_parse_advance(p);
+  e->as.unary.operand = cag_parse_expression(p);
+  cag_parse_stack_on(p, e, e->as.unary.operand);
+  return cag_parse_finish(p, e);
 }
 
 // "[" [ item { "," item } ] "]"  | "[" "for" clause { "," clause } ":" expr "]"      item = expr |
 // "..." expr
 static CagExpr *list_expression(Parser *p) {
-  Opened o = parse_open(p, false);
+  Opened o = cag_parse_open(p, false);
   if (parse_kind(p) == CAG_TOKEN_FOR) return comprehension(p, o);
-  CagExpr *e = parse_new(p, CAG_EXPR_LIST, o.span.start), *item = NULL;
-  size_t list = parse_list_begin(p);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_LIST, o.span.start), *item = NULL;
+  size_t list = cag_parse_list_begin(p);
   while (!p->panic && parse_kind(p) != CAG_TOKEN_RIGHT_SQUARE) {
-    item = parse_kind(p) == CAG_TOKEN_SPREAD ? spread(p) : parse_expression(p);
-    parse_stack_on(p, e, item);
-    parse_list_push(p, &item, sizeof item);
-    if (!parse_accept(p, CAG_TOKEN_COMMA)) break;
+    item = parse_kind(p) == CAG_TOKEN_SPREAD ? spread(p) : cag_parse_expression(p);
+    cag_parse_stack_on(p, e, item);
+    cag_parse_list_push(p, &item, sizeof item);
+    if (!cag_parse_accept(p, CAG_TOKEN_COMMA)) break;
   }
-  parse_foreign_colon(p, CAG_FOREIGN_colon_range);
-  parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, item, "`,` or `]`");
-  e->as.list.items = parse_list_end(p, list, sizeof(CagExpr *), &e->as.list.count);
-  return parse_finish(p, e);
+  cag_parse_foreign_colon(p, CAG_FOREIGN_colon_range);
+  cag_parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, item, "`,` or `]`");
+  e->as.list.items = cag_parse_list_end(p, list, sizeof(CagExpr *), &e->as.list.count);
+  return cag_parse_finish(p, e);
 }
 
 // ---- records and blocks ----
@@ -114,20 +116,20 @@ static bool field_name(Parser *p, CagField *f) {
   CagToken *t = parse_current(p);
   CagTokenKind kind = parse_kind(p);
   f->name_span = t->span;
-  if (parse_is_word(kind)) {
+  if (cag_parse_is_word(kind)) {
     f->name = t->as.name;
   } else if (kind == CAG_TOKEN_TEXT) {
     f->name = cag_names_intern(&p->names, t->as.text.bytes, t->as.text.length)->bytes;
   } else if (kind == CAG_TOKEN_TEXT_HEAD) {
-    parse_help(
-        parse_error(p, CAG_ERR_text_not_plain, t->span, "the name of a field has no { } in it"),
+    cag_parse_help(
+        cag_parse_error(p, CAG_ERR_text_not_plain, t->span, "the name of a field has no { } in it"),
         "a record with computed names is record([[name, value], ...])");
     return false;
   } else {
-    parse_unexpected(p, NULL, CAG_ERR_expected_name, "the name of a field or `}`");
+    cag_parse_unexpected(p, NULL, CAG_ERR_expected_name, "the name of a field or `}`");
     return false;
   }
-  parse_advance(p);
+  cag_parse_advance(p);
   return true;
 }
 
@@ -135,128 +137,129 @@ static bool field_name(Parser *p, CagField *f) {
 static CagField field(Parser *p) {
   CagField f = {0};
   if (parse_kind(p) == CAG_TOKEN_SPREAD) {
-    f.name_span = parse_here(p);
-    parse_advance(p);
-    f.value = parse_expression(p);
+    f.name_span = cag_parse_here(p);
+    cag_parse_advance(p);
+    f.value = cag_parse_expression(p);
     return f;
   }
   if (!field_name(p, &f)) {
-    f.value = parse_error_node(p);
+    f.value = cag_parse_error_node(p);
     return f;
   }
   if (parse_kind(p) == CAG_TOKEN_EQUALS) {
-    parse_help(
-        parse_mend(p, CAG_ERR_argument_equals, parse_here(p), "a field is written with a colon"),
-        "write %s: value", f.name);
-    parse_advance(p);
-  } else if (!parse_accept(p, CAG_TOKEN_COLON)) {
-    parse_unexpected(p, NULL, CAG_ERR_expected_word, "`:` after the name of the field");
+    cag_parse_help(cag_parse_mend(p, CAG_ERR_argument_equals, cag_parse_here(p),
+                                  "a field is written with a colon"),
+                   "write %s: value", f.name);
+    cag_parse_advance(p);
+  } else if (!cag_parse_accept(p, CAG_TOKEN_COLON)) {
+    cag_parse_unexpected(p, NULL, CAG_ERR_expected_word, "`:` after the name of the field");
   }
-  f.value = parse_expression(p);
+  f.value = cag_parse_expression(p);
   return f;
 }
 
 // record = "{" [ field { "," field } ] "}"
 static CagExpr *record(Parser *p) {
-  Opened o = parse_open(p, false);
-  CagExpr *e = parse_new(p, CAG_EXPR_RECORD, o.span.start), *last = NULL;
-  size_t list = parse_list_begin(p);
+  Opened o = cag_parse_open(p, false);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_RECORD, o.span.start), *last = NULL;
+  size_t list = cag_parse_list_begin(p);
   while (!p->panic && parse_kind(p) != CAG_TOKEN_RIGHT_BRACE) {
     // the next statement of the file, where a field should stand, means that the brace is open
-    if (parse_at_statement(p)) break;
+    if (cag_parse_at_statement(p)) break;
     CagField f = field(p);
     last = f.value;
-    parse_stack_on(p, e, last);
-    parse_list_push(p, &f, sizeof f);
-    if (!parse_accept(p, CAG_TOKEN_COMMA)) break;
+    cag_parse_stack_on(p, e, last);
+    cag_parse_list_push(p, &f, sizeof f);
+    if (!cag_parse_accept(p, CAG_TOKEN_COMMA)) break;
   }
-  parse_close(p, o, CAG_TOKEN_RIGHT_BRACE, last, "`,` or `}`");
-  e->as.record.fields = parse_list_end(p, list, sizeof(CagField), &e->as.record.count);
-  return parse_finish(p, e);
+  cag_parse_close(p, o, CAG_TOKEN_RIGHT_BRACE, last, "`,` or `}`");
+  e->as.record.fields = cag_parse_list_end(p, list, sizeof(CagField), &e->as.record.count);
+  return cag_parse_finish(p, e);
 }
 
 static bool at_definition(Parser *p) {
   if (parse_kind(p) != CAG_TOKEN_NAME) return false;
   CagTokenKind next = parse_kind_at(p, 1);
   if (next == CAG_TOKEN_EQUALS) return true;
-  return next == CAG_TOKEN_LEFT_PAREN && parse_at_function(p);
+  return next == CAG_TOKEN_LEFT_PAREN && cag_parse_at_function(p);
 }
 
 // Behind a statement of a block: newline, `;`, or the end of the block.
 static void end_in_block(Parser *p) {
-  if (p->panic || parse_accept(p, CAG_TOKEN_SEMICOLON)) return;
+  if (p->panic || cag_parse_accept(p, CAG_TOKEN_SEMICOLON)) return;
   if (parse_kind(p) == CAG_TOKEN_RIGHT_BRACE) return;
-  if (parse_at_newline(p) && parse_kind(p) != CAG_TOKEN_END &&
-      (parse_is_word(parse_kind(p)) || parse_begins_expression(parse_kind(p))))
+  if (cag_parse_at_newline(p) && parse_kind(p) != CAG_TOKEN_END &&
+      (cag_parse_is_word(parse_kind(p)) || cag_parse_begins_expression(parse_kind(p))))
     return;
-  parse_unexpected(p, NULL, CAG_ERR_expected_end, "the end of the line or `;`");
+  cag_parse_unexpected(p, NULL, CAG_ERR_expected_end, "the end of the line or `;`");
 }
 
 // Behind the value of a block.
 static void close_block(Parser *p, Opened o, const CagExpr *value) {
-  bool ended = parse_accept(p, CAG_TOKEN_SEMICOLON) || parse_at_newline(p);
+  bool ended = cag_parse_accept(p, CAG_TOKEN_SEMICOLON) || cag_parse_at_newline(p);
   CagTokenKind kind = parse_kind(p);
   if (ended && !p->panic && kind != CAG_TOKEN_RIGHT_BRACE && kind != CAG_TOKEN_END &&
-      !parse_at_statement(p) && (parse_is_word(kind) || parse_begins_expression(kind))) {
-    parse_help(parse_error(p, CAG_ERR_expression_statement, value->span,
-                           "this value is not the last thing of its block, so nothing uses it"),
-               "%s",
-               kind == CAG_TOKEN_MINUS ? parse_minus_help : "give it a name, or leave it out");
+      !cag_parse_at_statement(p) &&
+      (cag_parse_is_word(kind) || cag_parse_begins_expression(kind))) {
+    cag_parse_help(
+        cag_parse_error(p, CAG_ERR_expression_statement, value->span,
+                        "this value is not the last thing of its block, so nothing uses it"),
+        "%s", kind == CAG_TOKEN_MINUS ? cag_parse_minus_help : "give it a name, or leave it out");
     return;
   }
   if (kind == CAG_TOKEN_COMMA && !ended)
-    parse_help(
-        parse_error(p, CAG_ERR_tuple, o.span, "this brace opens a block, which has one value"),
+    cag_parse_help(
+        cag_parse_error(p, CAG_ERR_tuple, o.span, "this brace opens a block, which has one value"),
         "a list stands in [ ], the fields of a record have names: { a: 1 }");
   else if (kind == CAG_TOKEN_COLON && value->kind == CAG_EXPR_TEMPLATE)
-    parse_help(
-        parse_error(p, CAG_ERR_text_not_plain, value->span, "the name of a field has no { } in it"),
-        "a record with computed names is record([[name, value], ...])");
-  parse_close(p, o, CAG_TOKEN_RIGHT_BRACE, value, "`}`");
+    cag_parse_help(cag_parse_error(p, CAG_ERR_text_not_plain, value->span,
+                                   "the name of a field has no { } in it"),
+                   "a record with computed names is record([[name, value], ...])");
+  cag_parse_close(p, o, CAG_TOKEN_RIGHT_BRACE, value, "`}`");
 }
 
 // block = "{" { ( definition | assert ) end } expr [ ";" ] "}"
 static CagExpr *block(Parser *p) {
-  Opened o = parse_open(p, true);
-  CagExpr *e = parse_new(p, CAG_EXPR_BLOCK, o.span.start), *value = NULL;
-  size_t list = parse_list_begin(p);
+  Opened o = cag_parse_open(p, true);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_BLOCK, o.span.start), *value = NULL;
+  size_t list = cag_parse_list_begin(p);
   while (!p->panic && !value) {
     CagStatement *s = NULL;
-    while (parse_accept(p, CAG_TOKEN_SEMICOLON)) {}
-    if (parse_habit(p, true)) break;
+    while (cag_parse_accept(p, CAG_TOKEN_SEMICOLON)) {}
+    if (cag_parse_habit(p, true)) break;
     if (parse_kind(p) == CAG_TOKEN_ASSERT) {
-      s = parse_assert(p);
-      parse_stack_on(p, e, s->as.assertion.condition);
-      parse_stack_on(p, e, s->as.assertion.message);
+      s = cag_parse_assert(p);
+      cag_parse_stack_on(p, e, s->as.assertion.condition);
+      cag_parse_stack_on(p, e, s->as.assertion.message);
     } else if (at_definition(p)) {
-      s = parse_definition(p, false);
-      parse_stack_on(p, e, s->as.definition.value);
+      s = cag_parse_definition(p, false);
+      cag_parse_stack_on(p, e, s->as.definition.value);
     } else if (parse_kind(p) == CAG_TOKEN_RIGHT_BRACE) {
-      parse_help(
-          parse_error(p, CAG_ERR_block_without_value, parse_here(p), "this block has no value"),
-          "it ends with an expression");
+      cag_parse_help(cag_parse_error(p, CAG_ERR_block_without_value, cag_parse_here(p),
+                                     "this block has no value"),
+                     "it ends with an expression");
     } else {
-      value = parse_expression(p);
+      value = cag_parse_expression(p);
     }
     if (s) {
-      parse_list_push(p, &s, sizeof s);
+      cag_parse_list_push(p, &s, sizeof s);
       end_in_block(p);
     }
   }
-  if (!value) value = parse_error_node(p);
+  if (!value) value = cag_parse_error_node(p);
   close_block(p, o, value);
   e->as.block.value = value;
-  parse_stack_on(p, e, value);
-  e->as.block.statements = parse_list_end(p, list, sizeof(CagStatement *), &e->as.block.count);
-  return parse_finish(p, e);
+  cag_parse_stack_on(p, e, value);
+  e->as.block.statements = cag_parse_list_end(p, list, sizeof(CagStatement *), &e->as.block.count);
+  return cag_parse_finish(p, e);
 }
 
 // `{` opens a record when `}`, `...`, or a word or text with its `:` follows, else a block.
 static CagExpr *braces(Parser *p) {
   CagTokenKind next = parse_kind_at(p, 1);
-  bool is_record =
-      next == CAG_TOKEN_RIGHT_BRACE || next == CAG_TOKEN_SPREAD ||
-      ((parse_is_word(next) || next == CAG_TOKEN_TEXT) && parse_kind_at(p, 2) == CAG_TOKEN_COLON);
+  bool is_record = next == CAG_TOKEN_RIGHT_BRACE || next == CAG_TOKEN_SPREAD ||
+                   ((cag_parse_is_word(next) || next == CAG_TOKEN_TEXT) &&
+                    parse_kind_at(p, 2) == CAG_TOKEN_COLON);
   return is_record ? record(p) : block(p);
 }
 
@@ -264,7 +267,7 @@ static CagExpr *braces(Parser *p) {
 
 static CagExpr *text_part(Parser *p) {
   CagToken *t = parse_current(p);
-  CagExpr *e = parse_new(p, CAG_EXPR_TEXT, t->span.start);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_TEXT, t->span.start);
   e->as.text.bytes = t->as.text.bytes;
   e->as.text.length = t->as.text.length;
   e->span.end = t->span.end;
@@ -273,36 +276,37 @@ static CagExpr *text_part(Parser *p) {
 
 // A text with { }: head, expression, { middle, expression }, tail.
 static CagExpr *template(Parser *p) {
-  CagExpr *e = parse_new(p, CAG_EXPR_TEMPLATE, parse_here(p).start);
-  size_t list = parse_list_begin(p);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_TEMPLATE, cag_parse_here(p).start);
+  size_t list = cag_parse_list_begin(p);
   CagExpr *part = text_part(p);
-  parse_list_push(p, &part, sizeof part);
-  Opened o = parse_open(p, false);
+  cag_parse_list_push(p, &part, sizeof part);
+  Opened o = cag_parse_open(p, false);
   for (bool last = false; !last && !p->panic;) {
     CagTokenKind kind = parse_kind(p);
     if (kind == CAG_TOKEN_TEXT_MIDDLE || kind == CAG_TOKEN_TEXT_TAIL) {
-      CagSpan span = {p->previous.span.end - 1, parse_here(p).start + 1};
-      parse_help(parse_mend(p, CAG_ERR_empty_interpolation, span, "there is nothing in these { }"),
-                 "%s", cag_lexer_brace_help);
-      part = parse_error_node(p);
+      CagSpan span = {p->previous.span.end - 1, cag_parse_here(p).start + 1};
+      cag_parse_help(
+          cag_parse_mend(p, CAG_ERR_empty_interpolation, span, "there is nothing in these { }"),
+          "%s", cag_lexer_brace_help);
+      part = cag_parse_error_node(p);
     } else {
-      part = parse_expression(p);
+      part = cag_parse_expression(p);
     }
-    parse_stack_on(p, e, part);
-    parse_list_push(p, &part, sizeof part);
+    cag_parse_stack_on(p, e, part);
+    cag_parse_list_push(p, &part, sizeof part);
     kind = parse_kind(p);
     if (kind != CAG_TOKEN_TEXT_MIDDLE && kind != CAG_TOKEN_TEXT_TAIL) {
-      parse_unexpected(p, part, CAG_ERR_expected_separator, "`}`");
+      cag_parse_unexpected(p, part, CAG_ERR_expected_separator, "`}`");
       break;
     }
     CagExpr *text = text_part(p);
-    parse_list_push(p, &text, sizeof text);
+    cag_parse_list_push(p, &text, sizeof text);
     last = kind == CAG_TOKEN_TEXT_TAIL;
-    parse_advance(p);
+    cag_parse_advance(p);
   }
   p->newlines = o.newlines;
-  e->as.list.items = parse_list_end(p, list, sizeof(CagExpr *), &e->as.list.count);
-  return parse_finish(p, e);
+  e->as.list.items = cag_parse_list_end(p, list, sizeof(CagExpr *), &e->as.list.count);
+  return cag_parse_finish(p, e);
 }
 
 // print(a, b), or a list in parentheses.
@@ -318,109 +322,109 @@ static void report_tuple(Parser *p, CagSpan span) {
     const char *word = p->statement_kind == CAG_TOKEN_PRINT  ? "print"
                        : p->statement_kind == CAG_TOKEN_SHOW ? "show"
                                                              : "assert";
-    CagDiagnostic *d = parse_mend(p, CAG_ERR_print_parentheses, span,
-                                  "%s is a statement and takes no parentheses", word);
-    parse_help(d, "write %s %s", word, parse_quote(p, inside, text, sizeof text, "a, b"));
+    CagDiagnostic *d = cag_parse_mend(p, CAG_ERR_print_parentheses, span,
+                                      "%s is a statement and takes no parentheses", word);
+    cag_parse_help(d, "write %s %s", word, cag_parse_quote(p, inside, text, sizeof text, "a, b"));
     return;
   }
   if (inside.end <= inside.start)
-    parse_help(parse_mend(p, CAG_ERR_tuple, span, "there is nothing in these parentheses"),
-               "an empty list is [], a function without parameters () => e");
+    cag_parse_help(cag_parse_mend(p, CAG_ERR_tuple, span, "there is nothing in these parentheses"),
+                   "an empty list is [], a function without parameters () => e");
   else
-    parse_help(parse_mend(p, CAG_ERR_tuple, span, "a list stands in [ ]"), "write [%s]",
-               parse_quote(p, inside, text, sizeof text, "a, b"));
+    cag_parse_help(cag_parse_mend(p, CAG_ERR_tuple, span, "a list stands in [ ]"), "write [%s]",
+                   cag_parse_quote(p, inside, text, sizeof text, "a, b"));
 }
 
 // "(" expr ")"
-CagExpr *parse_group(Parser *p) {
-  Opened o = parse_open(p, false);
-  CagExpr *e = parse_new(p, CAG_EXPR_GROUP, o.span.start);
+CagExpr *cag_parse_group(Parser *p) {
+  Opened o = cag_parse_open(p, false);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_GROUP, o.span.start);
   bool tuple = parse_kind(p) == CAG_TOKEN_RIGHT_PAREN;
-  CagExpr *value = e->as.unary.operand = tuple ? parse_error_node(p) : parse_expression(p);
-  parse_stack_on(p, e, value);
+  CagExpr *value = e->as.unary.operand = tuple ? cag_parse_error_node(p) : cag_parse_expression(p);
+  cag_parse_stack_on(p, e, value);
   tuple |= parse_kind(p) == CAG_TOKEN_COMMA;
-  while (parse_accept(p, CAG_TOKEN_COMMA) && parse_kind(p) != CAG_TOKEN_RIGHT_PAREN)
-    value = parse_expression(p);
-  if (parse_close(p, o, CAG_TOKEN_RIGHT_PAREN, value, "`)`") && tuple) {
+  while (cag_parse_accept(p, CAG_TOKEN_COMMA) && parse_kind(p) != CAG_TOKEN_RIGHT_PAREN)
+    value = cag_parse_expression(p);
+  if (cag_parse_close(p, o, CAG_TOKEN_RIGHT_PAREN, value, "`)`") && tuple) {
     report_tuple(p, (CagSpan){o.span.start, p->previous.span.end});
     e->kind = CAG_EXPR_ERROR;
   }
-  return parse_finish(p, e);
+  return cag_parse_finish(p, e);
 }
 
 // A definition begins where the value of the line before should stand.
-bool parse_at_next_definition(Parser *p) {
+bool cag_parse_at_next_definition(Parser *p) {
   if (!parse_current(p)->newline_before) return false;
   if (p->newlines && parse_kind(p) == CAG_TOKEN_NAME && parse_kind_at(p, 1) == CAG_TOKEN_EQUALS)
     return true;
-  return parse_at_statement(p);
+  return cag_parse_at_statement(p);
 }
 
 // Says that an expression is missing before the current token.
-CagExpr *parse_missing(Parser *p) {
-  if (p->panic) return parse_error_node(p);
-  CagSpan here = parse_here(p);
+CagExpr *cag_parse_missing(Parser *p) {
+  if (p->panic) return cag_parse_error_node(p);
+  CagSpan here = cag_parse_here(p);
   CagTokenKind kind = parse_kind(p);
   char word[64], before[QUOTE_SIZE];
-  const char *found = parse_found(p, word, sizeof word);
+  const char *found = cag_parse_found(p, word, sizeof word);
   CagDiagnostic *d = NULL;
-  if (parse_foreign_value(p)) return parse_error_node(p);
-  if ((p->bracket_count && kind == CAG_TOKEN_END) || (!p->newlines && parse_at_statement(p))) {
-    parse_unexpected(p, NULL, CAG_ERR_expected_expression, "an expression");
+  if (cag_parse_foreign_value(p)) return cag_parse_error_node(p);
+  if ((p->bracket_count && kind == CAG_TOKEN_END) || (!p->newlines && cag_parse_at_statement(p))) {
+    cag_parse_unexpected(p, NULL, CAG_ERR_expected_expression, "an expression");
   } else if (kind == CAG_TOKEN_DOT && parse_kind_at(p, 1) == CAG_TOKEN_NUMBER) {
-    CagSpan number = parse_peek(p, 1)->span;
+    CagSpan number = cag_parse_peek(p, 1)->span;
     here.end = number.end;
-    d = parse_error(p, CAG_ERR_number_point, here,
-                    "a number has digits on both sides of its point");
-    parse_help(d, "write 0.%s", parse_quote(p, number, before, sizeof before, "5"));
+    d = cag_parse_error(p, CAG_ERR_number_point, here,
+                        "a number has digits on both sides of its point");
+    cag_parse_help(d, "write 0.%s", cag_parse_quote(p, number, before, sizeof before, "5"));
   } else if (kind == CAG_TOKEN_RANGE || kind == CAG_TOKEN_RANGE_OPEN) {
-    d = parse_error(p, CAG_ERR_open_range, here, "this range has no start");
-    parse_help(d, "the first element is number 0: 0..3");
+    d = cag_parse_error(p, CAG_ERR_open_range, here, "this range has no start");
+    cag_parse_help(d, "the first element is number 0: 0..3");
   } else if (kind == CAG_TOKEN_SPREAD) {
-    d = parse_error(p, CAG_ERR_spread_misplaced, here, "`...` stands in a list or a record");
-    parse_help(d, "a list is spread into another: [...xs, 4]");
+    d = cag_parse_error(p, CAG_ERR_spread_misplaced, here, "`...` stands in a list or a record");
+    cag_parse_help(d, "a list is spread into another: [...xs, 4]");
   } else if (kind == CAG_TOKEN_FOR) {
-    d = parse_error(p, CAG_ERR_loop, here, "`for` stands in a list");
-    parse_help(d, "write [for x in xs: ...]");
-  } else if (parse_at_next_definition(p) || kind == CAG_TOKEN_END) {
-    const char *after = parse_quote(p, p->previous.span, before, sizeof before, NULL);
+    d = cag_parse_error(p, CAG_ERR_loop, here, "`for` stands in a list");
+    cag_parse_help(d, "write [for x in xs: ...]");
+  } else if (cag_parse_at_next_definition(p) || kind == CAG_TOKEN_END) {
+    const char *after = cag_parse_quote(p, p->previous.span, before, sizeof before, NULL);
     CagSpan place = kind == CAG_TOKEN_END ? here : p->previous.span;
     if (after)
-      d = parse_error(p, CAG_ERR_expected_expression, place, "expected an expression after `%s`",
-                      after);
+      d = cag_parse_error(p, CAG_ERR_expected_expression, place,
+                          "expected an expression after `%s`", after);
     else
-      d = parse_error(p, CAG_ERR_expected_expression, place, "expected an expression, found %s",
-                      found);
+      d = cag_parse_error(p, CAG_ERR_expected_expression, place, "expected an expression, found %s",
+                          found);
   } else {
-    d = parse_error(p, CAG_ERR_expected_expression, here, "expected an expression, found %s",
-                    found);
-    if (kind == CAG_TOKEN_PLUS) parse_help(d, "a number has no + before it");
+    d = cag_parse_error(p, CAG_ERR_expected_expression, here, "expected an expression, found %s",
+                        found);
+    if (kind == CAG_TOKEN_PLUS) cag_parse_help(d, "a number has no + before it");
     else if (kind == CAG_TOKEN_EQUALS && p->previous.kind == CAG_TOKEN_GREATER)
-      parse_help(d, "write >=");
+      cag_parse_help(d, "write >=");
     else if (kind == CAG_TOKEN_SHOW || kind == CAG_TOKEN_PRINT || kind == CAG_TOKEN_ASSERT)
-      parse_help(d, "a statement begins with it, and no value");
+      cag_parse_help(d, "a statement begins with it, and no value");
     else if (kind == CAG_TOKEN_COMMA && p->previous.kind == CAG_TOKEN_COMMA)
-      parse_help(d, "one comma too many");
+      cag_parse_help(d, "one comma too many");
   }
-  return parse_error_node(p);
+  return cag_parse_error_node(p);
 }
 
 // Something that reaches far to the right, inside an operation: read, and reported.
 static CagExpr *in_parentheses(Parser *p, CagExpr *(*read)(Parser *), const char *what) {
-  CagSpan here = parse_here(p);
+  CagSpan here = cag_parse_here(p);
   CagExpr *e = read(p);
   if (e->kind == CAG_EXPR_ERROR) return e;
   char text[QUOTE_SIZE];
-  CagDiagnostic *d =
-      parse_mend(p, CAG_ERR_needs_parentheses, here, "inside an operation %s in parentheses", what);
-  parse_help(d, "write (%s)", parse_quote(p, e->span, text, sizeof text, "..."));
+  CagDiagnostic *d = cag_parse_mend(p, CAG_ERR_needs_parentheses, here,
+                                    "inside an operation %s in parentheses", what);
+  cag_parse_help(d, "write (%s)", cag_parse_quote(p, e->span, text, sizeof text, "..."));
   return e;
 }
 
 static CagExpr *simple(Parser *p, CagExprKind kind) {
-  CagExpr *e = parse_new(p, kind, parse_here(p).start);
-  parse_advance(p);
-  return parse_finish(p, e);
+  CagExpr *e = cag_parse_new(p, kind, cag_parse_here(p).start);
+  cag_parse_advance(p);
+  return cag_parse_finish(p, e);
 }
 
 // primary = number | text | "true" | "false" | "none" | name | "(" expr ")" | "[" ... "]" | record
@@ -431,35 +435,36 @@ static CagExpr *primary(Parser *p) {
   switch (parse_kind(p)) {
   case CAG_TOKEN_NUMBER:
   case CAG_TOKEN_ANGLE:
-    e = parse_new(p, t->kind == CAG_TOKEN_NUMBER ? CAG_EXPR_NUMBER : CAG_EXPR_ANGLE, t->span.start);
+    e = cag_parse_new(p, t->kind == CAG_TOKEN_NUMBER ? CAG_EXPR_NUMBER : CAG_EXPR_ANGLE,
+                      t->span.start);
     e->as.number = t->as.number;
-    parse_advance(p);
-    return parse_finish(p, e);
+    cag_parse_advance(p);
+    return cag_parse_finish(p, e);
   case CAG_TOKEN_NAME:
-    if (t->newline_before && parse_at_next_definition(p)) return parse_missing(p);
+    if (t->newline_before && cag_parse_at_next_definition(p)) return cag_parse_missing(p);
     if (parse_kind_at(p, 1) == CAG_TOKEN_ARROW)
-      return in_parentheses(p, parse_lambda, "a function stands");
+      return in_parentheses(p, cag_parse_lambda, "a function stands");
     t = parse_current(p);
-    e = parse_new(p, CAG_EXPR_NAME, t->span.start);
+    e = cag_parse_new(p, CAG_EXPR_NAME, t->span.start);
     e->as.name.id = t->as.name;
-    parse_advance(p);
-    return parse_finish(p, e);
+    cag_parse_advance(p);
+    return cag_parse_finish(p, e);
   case CAG_TOKEN_TEXT:
     e = text_part(p);
-    parse_advance(p);
+    cag_parse_advance(p);
     return e;
   case CAG_TOKEN_TEXT_HEAD: return template(p);
   case CAG_TOKEN_TRUE: return simple(p, CAG_EXPR_TRUE);
   case CAG_TOKEN_FALSE: return simple(p, CAG_EXPR_FALSE);
   case CAG_TOKEN_NONE: return simple(p, CAG_EXPR_NONE);
   case CAG_TOKEN_LEFT_PAREN:
-    if (parse_opens_lambda(p)) return in_parentheses(p, parse_lambda, "a function stands");
-    return parse_group(p);
+    if (cag_parse_opens_lambda(p)) return in_parentheses(p, cag_parse_lambda, "a function stands");
+    return cag_parse_group(p);
   case CAG_TOKEN_LEFT_SQUARE: return list_expression(p);
   case CAG_TOKEN_LEFT_BRACE: return braces(p);
-  case CAG_TOKEN_IF: return in_parentheses(p, parse_branch, "an `if` stands");
-  case CAG_TOKEN_NOT: return in_parentheses(p, parse_negation, "a `not` stands");
-  default: return parse_missing(p);
+  case CAG_TOKEN_IF: return in_parentheses(p, cag_parse_branch, "an `if` stands");
+  case CAG_TOKEN_NOT: return in_parentheses(p, cag_parse_negation, "a `not` stands");
+  default: return cag_parse_missing(p);
   }
 }
 
@@ -469,100 +474,100 @@ static CagExpr *primary(Parser *p) {
 static CagArgument argument(Parser *p, bool *named) {
   CagArgument a = {0};
   CagToken *t = parse_current(p);
-  CagTokenKind next = parse_is_word(parse_kind(p)) ? parse_kind_at(p, 1) : CAG_TOKEN_END;
-  bool foreign = next == CAG_TOKEN_EQUALS && !parse_at_statement(p);
+  CagTokenKind next = cag_parse_is_word(parse_kind(p)) ? parse_kind_at(p, 1) : CAG_TOKEN_END;
+  bool foreign = next == CAG_TOKEN_EQUALS && !cag_parse_at_statement(p);
   if (next == CAG_TOKEN_COLON || foreign) {
     t = parse_current(p);
     a.name = t->as.name;
     a.name_span = t->span;
-    parse_advance(p);
+    cag_parse_advance(p);
     if (foreign)
-      parse_help(parse_mend(p, CAG_ERR_argument_equals, parse_here(p),
-                            "an argument by name is written with a colon"),
-                 "write %s: value", a.name);
-    parse_advance(p);
+      cag_parse_help(cag_parse_mend(p, CAG_ERR_argument_equals, cag_parse_here(p),
+                                    "an argument by name is written with a colon"),
+                     "write %s: value", a.name);
+    cag_parse_advance(p);
     *named = true;
-    a.value = parse_expression(p);
+    a.value = cag_parse_expression(p);
     return a;
   }
   if (parse_kind(p) == CAG_TOKEN_SPREAD) {
-    parse_help(
-        parse_error(p, CAG_ERR_spread_misplaced, t->span, "`...` stands in a list or a record"),
+    cag_parse_help(
+        cag_parse_error(p, CAG_ERR_spread_misplaced, t->span, "`...` stands in a list or a record"),
         "a call takes each argument by itself");
-    a.value = parse_error_node(p);
+    a.value = cag_parse_error_node(p);
     return a;
   }
-  a.value = parse_expression(p);
+  a.value = cag_parse_expression(p);
   if (*named && !p->panic && a.value->kind != CAG_EXPR_ERROR)
-    parse_help(parse_mend(p, CAG_ERR_position_after_name, a.value->span,
-                          "arguments by position come before those by name"),
-               "give it a name too, or move it to the front");
+    cag_parse_help(cag_parse_mend(p, CAG_ERR_position_after_name, a.value->span,
+                                  "arguments by position come before those by name"),
+                   "give it a name too, or move it to the front");
   return a;
 }
 
 // call = "(" [ argument { "," argument } ] ")"
 static CagExpr *call(Parser *p, CagExpr *callee) {
-  CagExpr *e = parse_new(p, CAG_EXPR_CALL, callee->span.start), *last = NULL;
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_CALL, callee->span.start), *last = NULL;
   e->as.call.callee = callee;
-  parse_stack_on(p, e, callee);
-  Opened o = parse_open(p, false);
-  size_t list = parse_list_begin(p);
+  cag_parse_stack_on(p, e, callee);
+  Opened o = cag_parse_open(p, false);
+  size_t list = cag_parse_list_begin(p);
   bool named = false;
   while (!p->panic && parse_kind(p) != CAG_TOKEN_RIGHT_PAREN) {
     CagArgument a = argument(p, &named);
     last = a.value;
-    parse_stack_on(p, e, last);
-    parse_list_push(p, &a, sizeof a);
-    if (!parse_accept(p, CAG_TOKEN_COMMA)) break;
+    cag_parse_stack_on(p, e, last);
+    cag_parse_list_push(p, &a, sizeof a);
+    if (!cag_parse_accept(p, CAG_TOKEN_COMMA)) break;
   }
-  parse_close(p, o, CAG_TOKEN_RIGHT_PAREN, last, "`,` or `)`");
-  e->as.call.arguments = parse_list_end(p, list, sizeof(CagArgument), &e->as.call.count);
-  return parse_finish(p, e);
+  cag_parse_close(p, o, CAG_TOKEN_RIGHT_PAREN, last, "`,` or `)`");
+  e->as.call.arguments = cag_parse_list_end(p, list, sizeof(CagArgument), &e->as.call.count);
+  return cag_parse_finish(p, e);
 }
 
 static CagExpr *index_expression(Parser *p, CagExpr *object) {
-  CagSpan at = parse_here(p);
-  Opened o = parse_open(p, false);
-  CagExpr *inside = parse_expression(p);
-  parse_foreign_colon(p, CAG_FOREIGN_colon_slice);
-  parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, inside, "`]`");
-  return parse_binary(p, CAG_EXPR_INDEX, CAG_OP_ADD, at, object, inside);
+  CagSpan at = cag_parse_here(p);
+  Opened o = cag_parse_open(p, false);
+  CagExpr *inside = cag_parse_expression(p);
+  cag_parse_foreign_colon(p, CAG_FOREIGN_colon_slice);
+  cag_parse_close(p, o, CAG_TOKEN_RIGHT_SQUARE, inside, "`]`");
+  return cag_parse_binary(p, CAG_EXPR_INDEX, CAG_OP_ADD, at, object, inside);
 }
 
 static CagExpr *member(Parser *p, CagExpr *object) {
-  CagSpan dot = parse_here(p);
-  parse_advance(p);
+  CagSpan dot = cag_parse_here(p);
+  cag_parse_advance(p);
   CagToken *t = parse_current(p);
-  if (!parse_is_word(parse_kind(p))) {
+  if (!cag_parse_is_word(parse_kind(p))) {
     char text[QUOTE_SIZE], word[64];
-    const char *found = parse_found(p, word, sizeof word);
+    const char *found = cag_parse_found(p, word, sizeof word);
     CagSpan span = {object->span.start, dot.end};
     if (object->kind == CAG_EXPR_NUMBER && object->span.end == dot.start)
-      parse_help(parse_error(p, CAG_ERR_number_point, span,
-                             "a number has digits on both sides of its point"),
-                 "write %s.0", parse_quote(p, object->span, text, sizeof text, "1"));
+      cag_parse_help(cag_parse_error(p, CAG_ERR_number_point, span,
+                                     "a number has digits on both sides of its point"),
+                     "write %s.0", cag_parse_quote(p, object->span, text, sizeof text, "1"));
     else if (parse_kind(p) == CAG_TOKEN_NUMBER)
-      parse_help(parse_error(p, CAG_ERR_expected_name, t->span,
-                             "expected a name after `.`, found %s", found),
-                 "an element of a list is xs[0]");
+      cag_parse_help(cag_parse_error(p, CAG_ERR_expected_name, t->span,
+                                     "expected a name after `.`, found %s", found),
+                     "an element of a list is xs[0]");
     else
-      parse_error(p, CAG_ERR_expected_name, parse_here(p), "expected a name after `.`, found %s",
-                  found);
+      cag_parse_error(p, CAG_ERR_expected_name, cag_parse_here(p),
+                      "expected a name after `.`, found %s", found);
     return object;
   }
-  CagExpr *e = parse_new(p, CAG_EXPR_MEMBER, object->span.start);
+  CagExpr *e = cag_parse_new(p, CAG_EXPR_MEMBER, object->span.start);
   e->as.member.object = object;
   e->as.member.name = t->as.name;
   e->as.member.name_span = t->span;
-  parse_stack_on(p, e, object);
-  parse_advance(p);
-  return parse_finish(p, e);
+  cag_parse_stack_on(p, e, object);
+  cag_parse_advance(p);
+  return cag_parse_finish(p, e);
 }
 
 // postfix = primary { call | "[" expr "]" | "." word }
 //
 // The bracket of a call and of an index stands on the line of what it follows, inside brackets too.
-CagExpr *parse_postfix(Parser *p) {
+CagExpr *cag_parse_postfix(Parser *p) {
   CagExpr *e = primary(p);
   for (;;) {
     bool moved = parse_current(p)->newline_before;

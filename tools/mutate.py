@@ -253,7 +253,7 @@ class Reach:
 
 def allocates_more(row, old, new):
     """Whether a larger number after this part of a line is one more element, or byte, of an allocation."""
-    call = row.rfind("alloc(")
+    call = max(row.rfind("alloc("), row.rfind("_array("))
     is_inside = call >= 0 and row.count("(", call) > row.count(")", call)
     return is_inside and old in (" 1)", " 2)") and new > old and row[-1] in "+:,"
 

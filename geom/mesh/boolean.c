@@ -31,7 +31,7 @@ static const char *name_of(const Operand *o, char text[64]) {
   return text;
 }
 
-CagStatus bool_stopped(const BoolWork *w) {
+CagStatus cag_bool_stopped(const BoolWork *w) {
   if ((!w->interrupt || !*w->interrupt) && !cag_stopped()) return CAG_OK;
   return cag_fail(w->err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
                   "the set operation was interrupted");
@@ -51,7 +51,7 @@ static CagStatus read_points(BoolWork *w, const Operand *o, uint32_t *number) {
                       "vertices of operands are at most 1e100 from 0 along each axis: vertex %zu "
                       "of %s is [%g, %g, %g]",
                       i, name_of(o, name), p.x, p.y, p.z);
-    number[i] = bool_points_add(&w->points, p);
+    number[i] = cag_bool_points_add(&w->points, p);
     if (number[i] == BOOL_NONE) return cag_fail_memory(w->err);
     if (cag_stop_check(w->err)) return w->err->status;
   }
@@ -151,7 +151,7 @@ static bool find_axis(BoolWork *w, BoolFace *f) {
   for (int k = 0; k < 3; k++) {
     const int axis = (first + k) % 3;
     f->axis = (signed char)axis;
-    f->sign = (signed char)bool_turn(&w->points, f->v[0], f->v[1], f->v[2], axis);
+    f->sign = (signed char)cag_bool_turn(&w->points, f->v[0], f->v[1], f->v[2], axis);
     if (f->sign) return true;
   }
   return false;
@@ -213,7 +213,7 @@ static bool open_fans(BoolWork *w, int operand, const BoolSource *sources, BoolP
     *p = (BoolPart){.source = {i, i, i}};
     memcpy(p->v, w->faces[i].v, sizeof p->v);
   }
-  return bool_flatten(w, sources, true, parts, n);
+  return cag_bool_flatten(w, sources, true, parts, n);
 }
 
 // No more faces than before: their outlines are the same.
@@ -264,7 +264,7 @@ static void set_plane(BoolWork *w, BoolFace *f, const uint32_t *plane) {
   memcpy(f->plane, f->v, sizeof f->plane);
   if (!plane || plane[0] == BOOL_NONE) return;
   memcpy(f->plane, plane, sizeof f->plane);
-  if (bool_normal_sign(&w->points, f->plane, f->axis) == f->sign) return;
+  if (cag_bool_normal_sign(&w->points, f->plane, f->axis) == f->sign) return;
   f->plane[1] = plane[2];
   f->plane[2] = plane[1];
 }
@@ -282,7 +282,7 @@ static void renumber(BoolWork *w, FaceTable *table, const uint32_t *number, cons
     set_plane(w, &f, plane ? plane + 3 * i : NULL);
     add_face(w, table, &f);
   }
-  bool_forget_pairs(w);
+  cag_bool_forget_pairs(w);
 }
 
 // Faces that cancel out go.
@@ -299,10 +299,10 @@ static CagStatus snap(BoolWork *w, FaceTable *table) {
   bool found;
   CagStatus status = number && plane ? CAG_OK : cag_fail_memory(w->err);
   w->slack = slack_of(w);
-  if (!status) status = bool_find_twins(w, number, &found);
+  if (!status) status = cag_bool_find_twins(w, number, &found);
   if (!status && found) renumber(w, table, number, NULL);
   if (!status && found) drop_faces(w);
-  if (!status) status = bool_find_planes(w, number, plane, &found);
+  if (!status) status = cag_bool_find_planes(w, number, plane, &found);
   if (!status && found) renumber(w, table, number, plane);
   if (!status && found) drop_faces(w);
   cag_free(number);
@@ -322,13 +322,13 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
   table.slots = cag_malloc((table.mask + 1) * sizeof *table.slots);
   w->faces = cag_malloc((triangles + 1) * sizeof *w->faces);
   CagStatus status = CAG_OK;
-  if (!table.slots || !w->faces || !bool_points_start(&w->points, vertices))
+  if (!table.slots || !w->faces || !cag_bool_points_start(&w->points, vertices))
     status = cag_fail_memory(w->err);
   else memset(table.slots, 0xff, (table.mask + 1) * sizeof *table.slots);
   for (int k = 0; !status && k < 2; k++) status = read_operand(w, &o[k], k, &table);
   w->corners = w->points.n;
   if (!status && has_fan(w) && !replace_fans(w, &table)) {
-    status = bool_stopped(w);
+    status = cag_bool_stopped(w);
     if (!status) status = cag_fail_memory(w->err);
   }
   for (size_t f = 0; !status && f < w->face_count; f++) set_plane(w, &w->faces[f], NULL);
@@ -342,9 +342,9 @@ static CagStatus read_operands(BoolWork *w, const Operand o[2]) {
 // --- Operations ---
 
 static void free_work(BoolWork *w) {
-  bool_points_free(&w->points);
+  cag_bool_points_free(&w->points);
   cag_free(w->faces);
-  bool_forget_pairs(w);
+  cag_bool_forget_pairs(w);
   cag_free(w->plane_of);
   cag_free(w->touched);
   cag_free(w->contacts.items);
@@ -353,10 +353,10 @@ static void free_work(BoolWork *w) {
 }
 
 static CagStatus solve(BoolWork *w, CagSetOperation op, CagMesh **out) {
-  CagStatus status = bool_find_contacts(w);
-  if (!status) status = bool_cut_faces(w);
-  if (!status) status = bool_find_windings(w);
-  return status ? status : bool_build(w, op, out);
+  CagStatus status = cag_bool_find_contacts(w);
+  if (!status) status = cag_bool_cut_faces(w);
+  if (!status) status = cag_bool_find_windings(w);
+  return status ? status : cag_bool_build(w, op, out);
 }
 
 static CagStatus operate(CagSetOperation op, const Operand o[2], const CagBooleanHow *how,
@@ -364,7 +364,7 @@ static CagStatus operate(CagSetOperation op, const Operand o[2], const CagBoolea
   BoolWork w = {.meshes = {o[0].mesh, o[1].mesh}, .err = err};
   w.whole = how->keep_flat;
   w.interrupt = how->interrupt;
-  CagStatus status = bool_stopped(&w);
+  CagStatus status = cag_bool_stopped(&w);
   if (!status) status = read_operands(&w, o);
   if (!status) status = solve(&w, op, out);
   free_work(&w);

@@ -68,12 +68,13 @@ static const uint32_t *plane_of(const BoolWork *w, uint32_t piece) {
 // The sign of the sine of the angle from one leaf to the other, about the edge's direction, which
 // both planes contain: their normals' cross product is along it.
 static int sine(BoolWork *w, const Leaf *a, const Leaf *b, int axis, int along) {
-  const int s = bool_normals_cross(&w->points, plane_of(w, a->piece), plane_of(w, b->piece), axis);
+  const int s =
+      cag_bool_normals_cross(&w->points, plane_of(w, a->piece), plane_of(w, b->piece), axis);
   return a->forward == b->forward ? s * along : -s * along;
 }
 
 static int cosine(BoolWork *w, const Leaf *a, const Leaf *b) {
-  const int c = bool_normals_dot(&w->points, plane_of(w, a->piece), plane_of(w, b->piece));
+  const int c = cag_bool_normals_dot(&w->points, plane_of(w, a->piece), plane_of(w, b->piece));
   return a->forward == b->forward ? c : -c;
 }
 
@@ -83,7 +84,7 @@ static int direction(BoolWork *w, uint32_t a, uint32_t b, int *along) {
   const double x = fabs(d.x), y = fabs(d.y), z = fabs(d.z);
   const int first = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
   for (int k = 0; k < 3; k++) {
-    *along = bool_compare(&w->points, a, b, (first + k) % 3);
+    *along = cag_bool_compare(&w->points, a, b, (first + k) % 3);
     if (*along) return (first + k) % 3;
   }
   return first;
@@ -139,7 +140,7 @@ static CagStatus tie_edges(Forest *f, const CagMeshEdge *edges, size_t n) {
   CagStatus status = CAG_OK;
   for (size_t i = 0, uses, edge = 0; !status && i < n; i += uses) {
     uses = uses_of(edges + i, n - i);
-    if (!bool_list_reserve(&leaves, uses, sizeof(Leaf))) {
+    if (!cag_bool_list_reserve(&leaves, uses, sizeof(Leaf))) {
       status = cag_fail_memory(w->err);
       break;
     }
@@ -149,7 +150,7 @@ static CagStatus tie_edges(Forest *f, const CagMeshEdge *edges, size_t n) {
                        cag_mesh_edge_forward(&edges[i + k]), 0};
     if (uses > 2) sort_leaves(w, edges[i].low, edges[i].high, leaf, uses);
     tie_leaves(f, leaf, uses);
-    if (edge++ % STOP_INTERVAL == 0) status = bool_stopped(w);
+    if (edge++ % STOP_INTERVAL == 0) status = cag_bool_stopped(w);
   }
   cag_free(leaves.items);
   return status;
@@ -181,21 +182,21 @@ typedef struct Ray {
 
 // The side of the line a, b, seen along x, on which the moved ray is.
 static int side_of_ray(const Ray *r, uint32_t a, uint32_t b) {
-  const int side = bool_turn(&r->w->points, a, b, r->from, 0);
+  const int side = cag_bool_turn(&r->w->points, a, b, r->from, 0);
   if (side) return side;
-  const int rise = bool_compare(&r->w->points, a, b, 2);
-  return rise ? -rise : bool_compare(&r->w->points, a, b, 1);
+  const int rise = cag_bool_compare(&r->w->points, a, b, 2);
+  return rise ? -rise : cag_bool_compare(&r->w->points, a, b, 1);
 }
 
 static void cross_face(void *context, uint32_t face) {
   Ray *r = context;
   const BoolFace *f = &r->w->faces[face];
-  const int seen = bool_normal_sign(&r->w->points, f->plane, 0);
+  const int seen = cag_bool_normal_sign(&r->w->points, f->plane, 0);
   if (seen == 0) return;
   for (int k = 0; k < 3; k++)
     if (side_of_ray(r, f->v[k], f->v[(k + 1) % 3]) != seen) return;
   // Ahead of the start: the face's front is towards +x and the start behind it, or the reverse.
-  if (bool_side(&r->w->points, f->plane, r->from) * seen >= 0) return;
+  if (cag_bool_side(&r->w->points, f->plane, r->from) * seen >= 0) return;
   for (int k = 0; k < 2; k++) r->sum[k] += seen * f->times[k];
 }
 
@@ -203,12 +204,12 @@ static void cross_face(void *context, uint32_t face) {
 // a piece along x, where the ray is moved to.
 static bool cast_ray(BoolWork *w, uint32_t piece, Winding front) {
   const BoolPiece *p = &bool_pieces(w)[piece];
-  Ray r = {w, bool_points_centroid(&w->points, p->v), {0, 0}};
+  Ray r = {w, cag_bool_points_centroid(&w->points, p->v), {0, 0}};
   if (r.from == BOOL_NONE) return false;
-  bool_visit_ray(w, w->points.at[r.from], cross_face, &r);
+  cag_bool_visit_ray(w, w->points.at[r.from], cross_face, &r);
   int facing = 0;
   for (int axis = 0; axis < 3 && facing == 0; axis++)
-    facing = bool_normal_sign(&w->points, plane_of(w, piece), axis);
+    facing = cag_bool_normal_sign(&w->points, plane_of(w, piece), axis);
   for (int k = 0; k < 2; k++) front[k] = r.sum[k] - (facing > 0 ? 0 : p->times[k]);
   return true;
 }
@@ -219,7 +220,7 @@ static CagStatus wind_pieces(Forest *f) {
   for (uint32_t i = 0; !status && i < w->pieces.n; i++) {
     if (f->parent[i] != i) continue;
     if (!cast_ray(w, i, w->winding[i])) return cag_fail_memory(w->err);
-    status = bool_stopped(w);
+    status = cag_bool_stopped(w);
   }
   for (uint32_t i = 0; !status && i < w->pieces.n; i++) {
     const uint32_t root = find_root(f, i);
@@ -228,7 +229,7 @@ static CagStatus wind_pieces(Forest *f) {
   return status;
 }
 
-CagStatus bool_find_windings(BoolWork *w) {
+CagStatus cag_bool_find_windings(BoolWork *w) {
   const size_t n = w->pieces.n + 1;
   Forest f = {w, cag_malloc(n * sizeof *f.parent), cag_calloc(n, sizeof *f.more)};
   w->winding = cag_malloc(n * sizeof *w->winding);

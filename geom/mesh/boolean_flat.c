@@ -177,7 +177,7 @@ static bool grow(Flat *f, uint32_t seed, uint32_t label) {
       }
       if (!fits) continue;
       f->label[next] = label;
-      if (!bool_list_reserve(&f->stack, f->stack.n + 1, sizeof(uint32_t))) return false;
+      if (!cag_bool_list_reserve(&f->stack, f->stack.n + 1, sizeof(uint32_t))) return false;
       ((uint32_t *)f->stack.items)[f->stack.n++] = next;
     }
     if (f->stack.n == 0) return true;
@@ -327,7 +327,7 @@ static bool find_gone(Flat *f) {
     const Corner *c = &f->corners[i];
     f->gone[i] = !c->kept && (c->count == 0 || runs_straight(f, i));
   }
-  if (!bool_list_reserve(&f->stack, points + 1, sizeof(uint32_t))) return false;
+  if (!cag_bool_list_reserve(&f->stack, points + 1, sizeof(uint32_t))) return false;
   for (uint32_t i = 0; i < points; i++)
     if (f->gone[i] && f->corners[i].count == 2 && !f->corners[i].seen) check_way(f, i);
   return true;
@@ -337,8 +337,8 @@ static bool find_gone(Flat *f) {
 
 static uint32_t local_number(Flat *f, uint32_t point, uint32_t source) {
   if (f->number[point] != BOOL_NONE) return f->number[point];
-  if (!bool_list_reserve(&f->places, f->places.n + 1, sizeof(Place))) return BOOL_NONE;
-  const uint32_t n = bool_points_add_far(&f->local, f->w->points.at[point]);
+  if (!cag_bool_list_reserve(&f->places, f->places.n + 1, sizeof(Place))) return BOOL_NONE;
+  const uint32_t n = cag_bool_points_add_far(&f->local, f->w->points.at[point]);
   if (n == BOOL_NONE) return n;
   ((Place *)f->places.items)[f->places.n++] = (Place){point, source};
   return f->number[point] = n;
@@ -359,7 +359,8 @@ static bool list_segments(Flat *f, uint32_t label) {
         if (pass == 0 || f->gone[p->v[k]]) continue;
         for (size_t steps = 0; f->gone[to] && steps < f->w->points.n; steps++) to = f->after[to];
         const uint32_t a = local_number(f, p->v[k], p->source[k]);
-        if (a == BOOL_NONE || !bool_list_reserve(&f->segments, f->segments.n + 1, sizeof(Segment)))
+        if (a == BOOL_NONE ||
+            !cag_bool_list_reserve(&f->segments, f->segments.n + 1, sizeof(Segment)))
           return false;
         ((Segment *)f->segments.items)[f->segments.n++] = (Segment){a, to};
       }
@@ -385,7 +386,7 @@ static bool start_net(Flat *f, int axis, uint32_t large[3]) {
     double at[3] = {0, 0, 0};
     at[first] = k == 1 ? high[first] + 5 * size : low[first] - 2 * size;
     at[second] = k == 2 ? high[second] + 5 * size : low[second] - 2 * size;
-    large[k] = bool_points_add_far(&f->local, cag_vec3(at[0], at[1], at[2]));
+    large[k] = cag_bool_points_add_far(&f->local, cag_vec3(at[0], at[1], at[2]));
     if (large[k] == BOOL_NONE) return false;
   }
   f->net.points = &f->local;
@@ -393,7 +394,7 @@ static bool start_net(Flat *f, int axis, uint32_t large[3]) {
   f->net.axis = axis;
   f->net.simple = true;
   f->net.spoiled = false;
-  return bool_net_start(&f->net, large);
+  return cag_bool_net_start(&f->net, large);
 }
 
 // Cells inside of the outline: across an edge of it one is in where the other is out. *borders: how
@@ -401,7 +402,8 @@ static bool start_net(Flat *f, int axis, uint32_t large[3]) {
 static bool mark_inside(Flat *f, uint32_t outer, size_t *borders) {
   const size_t n = f->net.cells.n;
   const BoolCell *cells = bool_cells(&f->net);
-  if (!bool_list_reserve(&f->inside, n, 1) || !bool_list_reserve(&f->stack, n, sizeof(uint32_t)))
+  if (!cag_bool_list_reserve(&f->inside, n, 1) ||
+      !cag_bool_list_reserve(&f->stack, n, sizeof(uint32_t)))
     return false;
   signed char *inside = f->inside.items;
   uint32_t *stack = f->stack.items;
@@ -434,7 +436,7 @@ static bool keeps_outline(const Flat *f, int sign) {
     const Segment *s = (Segment *)f->segments.items + i;
     uint32_t cell;
     int e;
-    if (bool_net_step(&f->net, s->a, s->b, &cell, &e) != s->b) return false;
+    if (cag_bool_net_step(&f->net, s->a, s->b, &cell, &e) != s->b) return false;
     const uint32_t other = bool_cells(&f->net)[cell].neighbor[e];
     if (other == BOOL_NONE || inside[cell] != (sign > 0) || inside[other] != (sign < 0))
       return false;
@@ -471,7 +473,7 @@ static bool give_cells(Flat *f, int sign) {
   for (size_t i = 0; i < f->net.cells.n; i++) {
     const BoolCell *c = &bool_cells(&f->net)[i];
     if (((signed char *)f->inside.items)[i] != 1) continue;
-    if (!bool_list_reserve(&f->out, f->out.n + 1, sizeof(BoolPart))) return false;
+    if (!cag_bool_list_reserve(&f->out, f->out.n + 1, sizeof(BoolPart))) return false;
     BoolPart *p = (BoolPart *)f->out.items + f->out.n++;
     for (int k = 0; k < 3; k++) {
       const Place *place = &places[c->v[sign < 0 && k ? 3 - k : k]];
@@ -495,13 +497,13 @@ static bool cut_face(Flat *f, uint32_t label, bool *made) {
   if (f->segments.n < 3) return true;
   if (!start_net(f, axis, large)) return false;
   for (uint32_t i = 0; i < f->places.n; i++)
-    if (!bool_net_add_point(&f->net, i)) return f->net.spoiled;
+    if (!cag_bool_net_add_point(&f->net, i)) return f->net.spoiled;
   for (size_t i = 0; i < f->segments.n; i++) {
     const Segment s = ((Segment *)f->segments.items)[i];
-    if (!bool_net_add_segment(&f->net, s.a, s.b, (BoolCut){s.a, s.b, BOOL_NONE, axis}))
+    if (!cag_bool_net_add_segment(&f->net, s.a, s.b, (BoolCut){s.a, s.b, BOOL_NONE, axis}))
       return f->net.spoiled; // it crosses itself
   }
-  if (!bool_net_improve(&f->net) || !mark_inside(f, large[0], &borders)) return false;
+  if (!cag_bool_net_improve(&f->net) || !mark_inside(f, large[0], &borders)) return false;
   *made = borders == f->segments.n && keeps_outline(f, sign) && keeps_area(f, label, axis, sign);
   return !*made || give_cells(f, sign);
 }
@@ -525,7 +527,7 @@ static bool retriangulate(Flat *f, uint32_t label, bool *made) {
 
 static bool keep_parts(Flat *f, uint32_t label) {
   const size_t n = f->start[label + 1] - f->start[label];
-  if (!bool_list_reserve(&f->out, f->out.n + n, sizeof(BoolPart))) return false;
+  if (!cag_bool_list_reserve(&f->out, f->out.n + n, sizeof(BoolPart))) return false;
   for (uint32_t i = f->start[label]; i < f->start[label + 1]; i++)
     ((BoolPart *)f->out.items)[f->out.n++] = f->parts[f->members[i]];
   return true;
@@ -558,7 +560,7 @@ static bool make_faces(Flat *f, bool *spoiled) {
   *spoiled = false;
   f->out.n = 0;
   for (uint32_t label = 0; label < f->labels; label++) {
-    if (label % STOP_INTERVAL == 0 && bool_stopped(f->w)) return false;
+    if (label % STOP_INTERVAL == 0 && cag_bool_stopped(f->w)) return false;
     bool made = true;
     if (!gains(f, label)) {
       if (!keep_parts(f, label)) return false;
@@ -581,7 +583,7 @@ static bool flatten(Flat *f, bool *done) {
   f->number = cag_malloc(points * sizeof *f->number);
   if (!f->corners || !f->gone || !f->after || !f->number) return false;
   memset(f->number, 0xff, points * sizeof *f->number);
-  if (!bool_points_start(&f->local, 64) || !find_neighbors(f) || !find_labels(f)) return false;
+  if (!cag_bool_points_start(&f->local, 64) || !find_neighbors(f) || !find_labels(f)) return false;
   bool spoiled = true;
   for (int round = 0; round < ROUNDS && spoiled; round++) {
     if (!find_gone(f) || !make_faces(f, &spoiled)) return false;
@@ -602,8 +604,8 @@ static void free_flat(Flat *f) {
   cag_free(f->gone);
   cag_free(f->after);
   cag_free(f->number);
-  bool_points_free(&f->local);
-  bool_net_free(&f->net);
+  cag_bool_points_free(&f->local);
+  cag_bool_net_free(&f->net);
   cag_free(f->places.items);
   cag_free(f->segments.items);
   cag_free(f->inside.items);
@@ -619,8 +621,8 @@ static double slack_of(const BoolWork *w) {
   return FLATNESS * size;
 }
 
-bool bool_flatten(BoolWork *w, const BoolSource *sources, bool only_fans, BoolPart **parts,
-                  size_t *n) {
+bool cag_bool_flatten(BoolWork *w, const BoolSource *sources, bool only_fans, BoolPart **parts,
+                      size_t *n) {
   Flat f = {.w = w, .sources = sources, .parts = *parts, .n = *n, .slack = slack_of(w)};
   f.whole = only_fans;
   bool made = false;

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 
 static int turn(const BoolNet *n, uint32_t a, uint32_t b, uint32_t c) {
-  return bool_turn(n->points, a, b, c, n->axis);
+  return cag_bool_turn(n->points, a, b, c, n->axis);
 }
 
 static int place_in(const BoolCell *c, uint32_t v) {
@@ -31,8 +31,8 @@ static void settle(BoolNet *n, uint32_t cell) {
 
 // Room for one more point, and the cells and the table that go with it.
 static bool reserve(BoolNet *n) {
-  if (!bool_list_reserve(&n->cells, n->cells.n + 2, sizeof(BoolCell))) return false;
-  if (!bool_list_reserve(&n->vertices, n->vertices.n + 3, sizeof(uint32_t))) return false;
+  if (!cag_bool_list_reserve(&n->cells, n->cells.n + 2, sizeof(BoolCell))) return false;
+  if (!cag_bool_list_reserve(&n->vertices, n->vertices.n + 3, sizeof(uint32_t))) return false;
   if (n->points->n <= n->cell_of_room) return true;
   const size_t room = n->points->n + n->points->n / 2;
   uint32_t *cell_of = cag_realloc(n->cell_of, room * sizeof *cell_of);
@@ -47,7 +47,7 @@ static void note_vertex(BoolNet *n, uint32_t v) {
   ((uint32_t *)n->vertices.items)[n->vertices.n++] = v;
 }
 
-bool bool_net_start(BoolNet *n, const uint32_t corners[3]) {
+bool cag_bool_net_start(BoolNet *n, const uint32_t corners[3]) {
   for (size_t i = 0; i < n->vertices.n; i++)
     n->cell_of[((uint32_t *)n->vertices.items)[i]] = BOOL_NONE;
   n->cells.n = n->cuts.n = n->vertices.n = 0;
@@ -62,7 +62,7 @@ bool bool_net_start(BoolNet *n, const uint32_t corners[3]) {
   return true;
 }
 
-void bool_net_free(BoolNet *n) {
+void cag_bool_net_free(BoolNet *n) {
   cag_free(n->cells.items);
   cag_free(n->cuts.items);
   cag_free(n->vertices.items);
@@ -125,7 +125,7 @@ static bool should_flip(const BoolNet *n, uint32_t cell, int e) {
 }
 
 static bool doubt(BoolNet *n, uint32_t cell, int e) {
-  if (!bool_list_reserve(&n->doubtful, n->doubtful.n + 1, sizeof(BoolEdge))) return false;
+  if (!cag_bool_list_reserve(&n->doubtful, n->doubtful.n + 1, sizeof(BoolEdge))) return false;
   const BoolCell *c = &bool_cells(n)[cell];
   ((BoolEdge *)n->doubtful.items)[n->doubtful.n++] =
       (BoolEdge){c->v[(e + 1) % 3], c->v[(e + 2) % 3], cell};
@@ -173,7 +173,7 @@ static bool settle_doubts(BoolNet *n) {
   return true;
 }
 
-bool bool_net_improve(BoolNet *n) {
+bool cag_bool_net_improve(BoolNet *n) {
   for (uint32_t cell = 0; cell < n->cells.n; cell++)
     for (int e = 0; e < 3; e++) {
       const uint32_t other = bool_cells(n)[cell].neighbor[e];
@@ -279,14 +279,14 @@ static bool stands_on_corner(const BoolNet *n, uint32_t cell, uint32_t point) {
   const int first = (n->axis + 1) % 3, second = (n->axis + 2) % 3;
   for (int k = 0; k < 3; k++) {
     const uint32_t v = bool_cells(n)[cell].v[k];
-    if (bool_compare(n->points, v, point, first) == 0 &&
-        bool_compare(n->points, v, point, second) == 0)
+    if (cag_bool_compare(n->points, v, point, first) == 0 &&
+        cag_bool_compare(n->points, v, point, second) == 0)
       return true;
   }
   return false;
 }
 
-bool bool_net_add_point(BoolNet *n, uint32_t point) {
+bool cag_bool_net_add_point(BoolNet *n, uint32_t point) {
   if (!reserve(n)) return false;
   if (n->cell_of[point] != BOOL_NONE) return true;
   int edge;
@@ -312,8 +312,8 @@ typedef struct Exit {
 
 // Two coordinates decide: the third of a far corner says nothing.
 static int order_in_plane(const BoolNet *n, uint32_t a, uint32_t b) {
-  const int order = bool_compare(n->points, a, b, (n->axis + 1) % 3);
-  return order ? order : bool_compare(n->points, a, b, (n->axis + 2) % 3);
+  const int order = cag_bool_compare(n->points, a, b, (n->axis + 1) % 3);
+  return order ? order : cag_bool_compare(n->points, a, b, (n->axis + 2) % 3);
 }
 
 static bool is_ahead(const BoolNet *n, uint32_t from, uint32_t to, uint32_t v, int side) {
@@ -357,7 +357,7 @@ static void fix_edge(BoolNet *n, uint32_t a, uint32_t b, uint32_t hint, uint32_t
 }
 
 static bool push_crossed(BoolNet *n, BoolEdge edge) {
-  if (!bool_list_reserve(&n->crossed, n->crossed.n + 1, sizeof edge)) return false;
+  if (!cag_bool_list_reserve(&n->crossed, n->crossed.n + 1, sizeof edge)) return false;
   ((BoolEdge *)n->crossed.items)[n->crossed.n++] = edge;
   return true;
 }
@@ -370,7 +370,7 @@ static bool split_fixed(BoolNet *n, uint32_t cell, int e, uint32_t cut) {
   }
   const BoolCut *cuts = n->cuts.items;
   const uint32_t fixed = bool_cells(n)[cell].fixed[e];
-  const uint32_t p = bool_points_meet(n->points, n->plane, cuts[cut], cuts[fixed]);
+  const uint32_t p = cag_bool_points_meet(n->points, n->plane, cuts[cut], cuts[fixed]);
   if (p == BOOL_NONE || !reserve(n)) return false;
   note_vertex(n, p);
   split_edge(n, cell, e, p);
@@ -426,9 +426,9 @@ static bool flip_crossed(BoolNet *n, uint32_t from, uint32_t to) {
   return true;
 }
 
-bool bool_net_add_segment(BoolNet *n, uint32_t a, uint32_t b, BoolCut cut) {
+bool cag_bool_net_add_segment(BoolNet *n, uint32_t a, uint32_t b, BoolCut cut) {
   const uint32_t number = (uint32_t)n->cuts.n;
-  if (!bool_list_reserve(&n->cuts, n->cuts.n + 1, sizeof cut)) return false;
+  if (!cag_bool_list_reserve(&n->cuts, n->cuts.n + 1, sizeof cut)) return false;
   ((BoolCut *)n->cuts.items)[n->cuts.n++] = cut;
   while (a != b) {
     const Exit exit = find_exit(n, a, b);
@@ -442,7 +442,7 @@ bool bool_net_add_segment(BoolNet *n, uint32_t a, uint32_t b, BoolCut cut) {
   return true;
 }
 
-uint32_t bool_net_step(const BoolNet *n, uint32_t a, uint32_t b, uint32_t *cell, int *corner) {
+uint32_t cag_bool_net_step(const BoolNet *n, uint32_t a, uint32_t b, uint32_t *cell, int *corner) {
   const Exit exit = find_exit(n, a, b);
   if (exit.target == BOOL_NONE) return BOOL_NONE;
   return find_edge(n, (BoolEdge){a, exit.target, exit.cell}, cell, corner) ? exit.target

@@ -41,14 +41,14 @@ typedef struct BoolEdge {
 static inline BoolCell *bool_cells(const BoolNet *n) { return n->cells.items; }
 
 // Empties the net, then makes it of one cell, which has all the points that will be put in.
-bool bool_net_start(BoolNet *n, const uint32_t corners[3]);
-void bool_net_free(BoolNet *n);
-bool bool_net_add_point(BoolNet *n, uint32_t point);
+bool cag_bool_net_start(BoolNet *n, const uint32_t corners[3]);
+void cag_bool_net_free(BoolNet *n);
+bool cag_bool_net_add_point(BoolNet *n, uint32_t point);
 // Points that are in; where the segment crosses one put in before, the point of both is put in.
-bool bool_net_add_segment(BoolNet *n, uint32_t a, uint32_t b, BoolCut cut);
-bool bool_net_improve(BoolNet *n);
+bool cag_bool_net_add_segment(BoolNet *n, uint32_t a, uint32_t b, BoolCut cut);
+bool cag_bool_net_improve(BoolNet *n);
 // The next point on the way from a to b, along a segment that was put in; the cell to the left of
 // this step, and its corner opposite. BOOL_NONE: there is no such step.
-uint32_t bool_net_step(const BoolNet *n, uint32_t a, uint32_t b, uint32_t *cell, int *corner);
+uint32_t cag_bool_net_step(const BoolNet *n, uint32_t a, uint32_t b, uint32_t *cell, int *corner);
 
 #endif

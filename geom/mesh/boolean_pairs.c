@@ -144,27 +144,27 @@ static void visit_ray(const BoolWork *w, uint32_t at, CagVec3 from, BoolRayVisit
   for (uint32_t i = 0; i < node->count; i++) visit(context, w->order[node->first + i]);
 }
 
-void bool_visit_ray(const BoolWork *w, CagVec3 from, BoolRayVisit *visit, void *context) {
+void cag_bool_visit_ray(const BoolWork *w, CagVec3 from, BoolRayVisit *visit, void *context) {
   visit_ray(w, 0, from, visit, context);
 }
 
 // --- Faces of one plane ---
 
-uint32_t bool_root(uint32_t *parent, uint32_t i) {
+uint32_t cag_bool_root(uint32_t *parent, uint32_t i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
 }
 
 static void join(uint32_t *parent, uint32_t a, uint32_t b) {
-  a = bool_root(parent, a);
-  b = bool_root(parent, b);
+  a = cag_bool_root(parent, a);
+  b = cag_bool_root(parent, b);
   if (a < b) parent[b] = a;
   else parent[a] = b;
 }
 
-bool bool_is_in_face(BoolWork *w, const BoolFace *f, uint32_t v) {
+bool cag_bool_is_in_face(BoolWork *w, const BoolFace *f, uint32_t v) {
   for (int k = 0; k < 3; k++)
-    if (bool_turn(&w->points, f->v[k], f->v[(k + 1) % 3], v, f->axis) == -f->sign) return false;
+    if (cag_bool_turn(&w->points, f->v[k], f->v[(k + 1) % 3], v, f->axis) == -f->sign) return false;
   return true;
 }
 
@@ -173,19 +173,19 @@ static bool has_corner(const BoolFace *f, uint32_t v) {
 }
 
 static bool edges_cross(BoolWork *w, const uint32_t a[2], const uint32_t b[2], int axis) {
-  return bool_turn(&w->points, a[0], a[1], b[0], axis) *
-                 bool_turn(&w->points, a[0], a[1], b[1], axis) <
+  return cag_bool_turn(&w->points, a[0], a[1], b[0], axis) *
+                 cag_bool_turn(&w->points, a[0], a[1], b[1], axis) <
              0 &&
-         bool_turn(&w->points, b[0], b[1], a[0], axis) *
-                 bool_turn(&w->points, b[0], b[1], a[1], axis) <
+         cag_bool_turn(&w->points, b[0], b[1], a[0], axis) *
+                 cag_bool_turn(&w->points, b[0], b[1], a[1], axis) <
              0;
 }
 
 // Do two faces of one plane have more in common than whole edges and corners?
 static bool touch_in_plane(BoolWork *w, const BoolFace *f, const BoolFace *g) {
   for (int k = 0; k < 3; k++) {
-    if (!has_corner(g, f->v[k]) && bool_is_in_face(w, g, f->v[k])) return true;
-    if (!has_corner(f, g->v[k]) && bool_is_in_face(w, f, g->v[k])) return true;
+    if (!has_corner(g, f->v[k]) && cag_bool_is_in_face(w, g, f->v[k])) return true;
+    if (!has_corner(f, g->v[k]) && cag_bool_is_in_face(w, f, g->v[k])) return true;
   }
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) {
@@ -214,7 +214,7 @@ static bool goes_through(BoolWork *w, const BoolFace *g, uint32_t a, uint32_t b)
   int seen = 0;
   for (int k = 0; k < 3; k++) {
     const uint32_t plane[3] = {a, b, g->v[k]};
-    const int side = bool_side(&w->points, plane, g->v[(k + 1) % 3]);
+    const int side = cag_bool_side(&w->points, plane, g->v[(k + 1) % 3]);
     if (side * seen < 0) return false;
     if (side) seen = side;
   }
@@ -226,10 +226,10 @@ static bool meet_from(BoolWork *w, const BoolFace *f, const BoolFace *g, const i
                       Meeting *m) {
   for (int k = 0; k < 3; k++) {
     const uint32_t a = f->v[k], b = f->v[(k + 1) % 3];
-    if (side[k] == 0 && (has_corner(g, a) || bool_is_in_face(w, g, a)) && !add_meeting(m, a))
+    if (side[k] == 0 && (has_corner(g, a) || cag_bool_is_in_face(w, g, a)) && !add_meeting(m, a))
       return false;
     if (side[k] * side[(k + 1) % 3] >= 0 || !goes_through(w, g, a, b)) continue;
-    if (!add_meeting(m, bool_points_cross(&w->points, a, b, g->plane))) return false;
+    if (!add_meeting(m, cag_bool_points_cross(&w->points, a, b, g->plane))) return false;
   }
   return true;
 }
@@ -241,7 +241,7 @@ static bool add_contact(BoolWork *w, uint32_t f, uint32_t a, uint32_t b, const B
       if (face->v[k] != a && face->v[k] != b) w->touched[f] |= (uint8_t)(1u << (k + 1) % 3);
     return true;
   }
-  if (!bool_list_reserve(&w->contacts, w->contacts.n + 1, sizeof(BoolContact))) return false;
+  if (!cag_bool_list_reserve(&w->contacts, w->contacts.n + 1, sizeof(BoolContact))) return false;
   ((BoolContact *)w->contacts.items)[w->contacts.n++] =
       (BoolContact){f, a, b, {other->plane[0], other->plane[1], other->plane[2], 0}};
   return true;
@@ -256,8 +256,8 @@ static bool meet_in_space(BoolWork *w, uint32_t f, uint32_t g, const int side_f[
   if (m.n == 0) return true;
   uint32_t first = m.points[0], last = first;
   for (int i = 1; i < m.n; i++) {
-    if (bool_compare_all(&w->points, m.points[i], first) > 0) first = m.points[i];
-    if (bool_compare_all(&w->points, last, m.points[i]) > 0) last = m.points[i];
+    if (cag_bool_compare_all(&w->points, m.points[i], first) > 0) first = m.points[i];
+    if (cag_bool_compare_all(&w->points, last, m.points[i]) > 0) last = m.points[i];
   }
   return add_contact(w, f, first, last, two) && add_contact(w, g, first, last, one);
 }
@@ -274,7 +274,7 @@ static bool are_beside(BoolWork *w, const BoolFace *f, const BoolFace *g) {
     for (int k = 0; k < 3 && beyond == k; k++) {
       const uint32_t v = g->v[k];
       if (shared[k]) beyond += v == a || v == b;
-      else beyond += bool_turn(&w->points, a, b, v, f->axis) == -f->sign;
+      else beyond += cag_bool_turn(&w->points, a, b, v, f->axis) == -f->sign;
     }
     if (beyond == 3) return true;
   }
@@ -287,7 +287,7 @@ static bool find_sides(BoolWork *w, const BoolFace *f, const BoolFace *g, int si
   int above = 0, below = 0, shared = 0;
   for (int k = 0; k < 3; k++) {
     const bool both = has_corner(g, f->v[k]);
-    side[k] = both ? 0 : bool_side(&w->points, g->plane, f->v[k]);
+    side[k] = both ? 0 : cag_bool_side(&w->points, g->plane, f->v[k]);
     above += side[k] > 0;
     below += side[k] < 0;
     shared += both;
@@ -301,7 +301,8 @@ static bool meet(void *context, uint32_t f, uint32_t g) {
   const BoolFace *one = &w->faces[f], *two = &w->faces[g];
   int side_f[3], side_g[3];
   bool edge;
-  if (bool_root(w->plane_of, f) == bool_root(w->plane_of, g)) return true; // cut together anyway
+  if (cag_bool_root(w->plane_of, f) == cag_bool_root(w->plane_of, g))
+    return true; // cut together anyway
   if (are_beside(w, one, two) || find_sides(w, one, two, side_f, &edge)) return true;
   const bool flat = !side_f[0] && !side_f[1] && !side_f[2];
   if (edge && !flat) return true; // a common edge, and that is all
@@ -324,7 +325,7 @@ typedef struct Search {
 } Search;
 
 static bool goes_on(Search *s) {
-  if (!s->status && s->leaves++ % STOP_INTERVAL == 0) s->status = bool_stopped(s->work);
+  if (!s->status && s->leaves++ % STOP_INTERVAL == 0) s->status = cag_bool_stopped(s->work);
   return !s->status;
 }
 
@@ -369,7 +370,7 @@ static void meet_within(Search *s, uint32_t i) {
   meet_nodes(s, i + 1, a->right);
 }
 
-void bool_forget_pairs(BoolWork *w) {
+void cag_bool_forget_pairs(BoolWork *w) {
   cag_free(w->nodes);
   cag_free(w->order);
   cag_free(w->boxes);
@@ -378,7 +379,7 @@ void bool_forget_pairs(BoolWork *w) {
   w->boxes = NULL;
 }
 
-CagStatus bool_visit_pairs(BoolWork *w, BoolPairVisit *visit, void *context) {
+CagStatus cag_bool_visit_pairs(BoolWork *w, BoolPairVisit *visit, void *context) {
   if (!w->nodes && !build_tree(w)) return cag_fail_memory(w->err);
   if (cag_stop_check(w->err)) return w->err->status;
   Search s = {w, visit, context, 0, CAG_OK};
@@ -386,10 +387,10 @@ CagStatus bool_visit_pairs(BoolWork *w, BoolPairVisit *visit, void *context) {
   return s.status;
 }
 
-CagStatus bool_find_contacts(BoolWork *w) {
+CagStatus cag_bool_find_contacts(BoolWork *w) {
   w->plane_of = cag_malloc((w->face_count + 1) * sizeof *w->plane_of);
   w->touched = cag_calloc(w->face_count + 1, 1);
   if (!w->plane_of || !w->touched) return cag_fail_memory(w->err);
   for (uint32_t f = 0; f < w->face_count; f++) w->plane_of[f] = f;
-  return bool_visit_pairs(w, meet, w);
+  return cag_bool_visit_pairs(w, meet, w);
 }

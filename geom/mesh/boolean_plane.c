@@ -68,7 +68,7 @@ static bool sort_groups(BoolWork *w, size_t n, bool contacts, Groups *g) {
   if (!g->start || !g->items) return false;
   for (int pass = 0; pass < 2; pass++) {
     for (size_t i = 0; i < n; i++) {
-      const uint32_t root = bool_root(w->plane_of, contacts ? contact_face(w, i) : (uint32_t)i);
+      const uint32_t root = cag_bool_root(w->plane_of, contacts ? contact_face(w, i) : (uint32_t)i);
       if (pass == 0) g->start[root + 2]++;
       else g->items[g->start[root + 1]++] = (uint32_t)i;
     }
@@ -79,20 +79,20 @@ static bool sort_groups(BoolWork *w, size_t n, bool contacts, Groups *g) {
 
 static bool add_piece(BoolWork *w, BoolPiece piece) {
   if (piece.times[0] == 0 && piece.times[1] == 0) return true;
-  if (!bool_list_reserve(&w->pieces, w->pieces.n + 1, sizeof piece)) return false;
+  if (!cag_bool_list_reserve(&w->pieces, w->pieces.n + 1, sizeof piece)) return false;
   bool_pieces(w)[w->pieces.n++] = piece;
   return true;
 }
 
 // One group may be large. Steps end with false where the caller wants a stop, as without memory.
 static bool goes_on(const Cutter *c, size_t i) {
-  return i % STOP_INTERVAL != 0 || bool_stopped(c->w) == CAG_OK;
+  return i % STOP_INTERVAL != 0 || cag_bool_stopped(c->w) == CAG_OK;
 }
 
 // --- Points, in an order that keeps walks short ---
 
 static bool note_point(Cutter *c, uint32_t point) {
-  if (!bool_list_reserve(&c->points, c->points.n + 1, sizeof(Spot))) return false;
+  if (!cag_bool_list_reserve(&c->points, c->points.n + 1, sizeof(Spot))) return false;
   const CagVec3 p = c->w->points.at[point];
   const int axis = c->net.axis;
   ((Spot *)c->points.items)[c->points.n++] = (Spot){axis == 0   ? p.y
@@ -127,7 +127,7 @@ static bool add_points(Cutter *c) {
   for (size_t i = 0, k = 0; i < n; i += strip, k++)
     qsort(spots + i, n - i < strip ? n - i : strip, sizeof *spots, k % 2 ? by_y_down : by_y);
   for (size_t i = 0; i < n; i++)
-    if (!goes_on(c, i) || !bool_net_add_point(&c->net, spots[i].point)) return false;
+    if (!goes_on(c, i) || !cag_bool_net_add_point(&c->net, spots[i].point)) return false;
   return true;
 }
 
@@ -149,17 +149,17 @@ static bool start_large(Cutter *c, const BoolFace *rep) {
     double at[3] = {0, 0, 0};
     at[first] = k == 1 ? high[first] + 5 * size : low[first] - 2 * size;
     at[second] = k == 2 ? high[second] + 5 * size : low[second] - 2 * size;
-    corners[k] = bool_points_add_far(&c->w->points, cag_vec3(at[0], at[1], at[2]));
+    corners[k] = cag_bool_points_add_far(&c->w->points, cag_vec3(at[0], at[1], at[2]));
     if (corners[k] == BOOL_NONE) return false;
   }
-  return bool_net_start(&c->net, corners);
+  return cag_bool_net_start(&c->net, corners);
 }
 
 static bool add_contacts(Cutter *c, uint32_t root) {
   for (size_t i = c->contacts.start[root]; i < c->contacts.start[root + 1]; i++) {
     const BoolContact *k = (BoolContact *)c->w->contacts.items + c->contacts.items[i];
     if (!goes_on(c, i)) return false;
-    if (k->a != k->b && !bool_net_add_segment(&c->net, k->a, k->b, k->cut)) return false;
+    if (k->a != k->b && !cag_bool_net_add_segment(&c->net, k->a, k->b, k->cut)) return false;
   }
   return true;
 }
@@ -168,8 +168,8 @@ static bool add_edges(Cutter *c) {
   for (size_t i = 0; i < c->sides.n; i++) {
     const Side *s = (Side *)c->sides.items + i;
     if (!goes_on(c, i)) return false;
-    if (!s->inner && !bool_net_add_segment(&c->net, s->from, s->to,
-                                           (BoolCut){s->from, s->to, BOOL_NONE, c->net.axis}))
+    if (!s->inner && !cag_bool_net_add_segment(&c->net, s->from, s->to,
+                                               (BoolCut){s->from, s->to, BOOL_NONE, c->net.axis}))
       return false;
   }
   return true;
@@ -231,9 +231,10 @@ static bool list_sides(Cutter *c, uint32_t root) {
   for (size_t i = c->faces.start[root]; i < c->faces.start[root + 1]; i++) {
     const uint32_t face = c->faces.items[i];
     const BoolFace *f = &c->w->faces[face];
-    const bool left = bool_turn(&c->w->points, f->v[0], f->v[1], f->v[2], up) > 0;
+    const bool left = cag_bool_turn(&c->w->points, f->v[0], f->v[1], f->v[2], up) > 0;
     c->patch[face] = face;
-    if (!goes_on(c, i) || !bool_list_reserve(&c->sides, c->sides.n + 3, sizeof(Side))) return false;
+    if (!goes_on(c, i) || !cag_bool_list_reserve(&c->sides, c->sides.n + 3, sizeof(Side)))
+      return false;
     for (int k = 0; k < 3; k++) {
       const uint32_t a = f->v[k], b = f->v[(k + 1) % 3];
       ((Side *)c->sides.items)[c->sides.n++] =
@@ -284,12 +285,13 @@ static void find_patches(Cutter *c, bool alone) {
                                    (s[i].from == s[i + same].to && s[i].to == s[i + same].from));)
       same++;
     if (same != 2 || s[i].shared || s[i + 1].shared || !are_one(c->w, &s[i], &s[i + 1])) continue;
-    const uint32_t a = bool_root(c->patch, s[i].face), b = bool_root(c->patch, s[i + 1].face);
+    const uint32_t a = cag_bool_root(c->patch, s[i].face),
+                   b = cag_bool_root(c->patch, s[i + 1].face);
     c->patch[a < b ? b : a] = a < b ? a : b;
     s[i].inner = s[i + 1].inner = true;
   }
   if (alone) return; // three by three
-  for (size_t i = 0; i < c->sides.n; i++) s[i].patch = bool_root(c->patch, s[i].face);
+  for (size_t i = 0; i < c->sides.n; i++) s[i].patch = cag_bool_root(c->patch, s[i].face);
   qsort(s, c->sides.n, sizeof *s, by_patch);
 }
 
@@ -302,7 +304,7 @@ static bool cover(Cutter *c, uint32_t cell, uint32_t face, signed char facing) {
   at->mark = face + 1;
   for (int k = 0; k < 2; k++) at->times[k] += facing * f->times[k];
   if (at->face == BOOL_NONE) at->face = face, at->facing = facing;
-  if (!bool_list_reserve(&c->stack, c->stack.n + 1, sizeof(uint32_t))) return false;
+  if (!cag_bool_list_reserve(&c->stack, c->stack.n + 1, sizeof(uint32_t))) return false;
   ((uint32_t *)c->stack.items)[c->stack.n++] = cell;
   return true;
 }
@@ -315,7 +317,7 @@ static bool cover_sides(Cutter *c, const Side *s, size_t n, uint32_t face, signe
     int e;
     if (s[i].inner) continue;
     for (uint32_t at = s[i].from; at != s[i].to;) {
-      at = bool_net_step(&c->net, at, s[i].to, &cell, &e);
+      at = cag_bool_net_step(&c->net, at, s[i].to, &cell, &e);
       if (at == BOOL_NONE) break; // not reached: the segment is in
       walls[3 * (size_t)cell + (size_t)e] = face + 1;
       if (!cover(c, cell, face, facing)) return false;
@@ -334,7 +336,7 @@ static double cell_area(const Cutter *c, const uint32_t v[3]) {
 static bool cover_patch(Cutter *c, const Side *s, size_t n, const BoolFace *rep, double *covered) {
   const uint32_t face = s->patch;
   const BoolFace *f = &c->w->faces[face];
-  const int seen = bool_turn(&c->w->points, f->v[0], f->v[1], f->v[2], rep->axis);
+  const int seen = cag_bool_turn(&c->w->points, f->v[0], f->v[1], f->v[2], rep->axis);
   const signed char facing = (signed char)(seen * rep->sign);
   if (!cover_sides(c, s, n, face, facing)) return false;
   while (c->stack.n > 0) {
@@ -377,8 +379,8 @@ static bool add_cell(Cutter *c, uint32_t i, uint32_t plane, const Cover *cover) 
 
 static bool cut_alone(Cutter *c, uint32_t root) {
   const BoolFace *f = &c->w->faces[root];
-  if (!note_points(c, root, false) || !bool_net_start(&c->net, f->v) || !add_points(c) ||
-      !add_contacts(c, root) || !bool_net_improve(&c->net))
+  if (!note_points(c, root, false) || !cag_bool_net_start(&c->net, f->v) || !add_points(c) ||
+      !add_contacts(c, root) || !cag_bool_net_improve(&c->net))
     return false;
   const Cover all = {{f->times[0], f->times[1]}, root, 1, 0};
   for (uint32_t i = 0; i < c->net.cells.n; i++)
@@ -390,7 +392,7 @@ static bool triangulate_together(Cutter *c, uint32_t root, bool alone) {
   if (!find_shared(c) || !list_sides(c, root)) return false;
   find_patches(c, alone);
   return note_points(c, root, true) && start_large(c, &c->w->faces[root]) && add_points(c) &&
-         add_edges(c) && add_contacts(c, root) && bool_net_improve(&c->net);
+         add_edges(c) && add_contacts(c, root) && cag_bool_net_improve(&c->net);
 }
 
 // alone: each face is a patch of its own.
@@ -399,8 +401,8 @@ static bool cut_together(Cutter *c, uint32_t root, bool alone) {
   bool overlaps = false;
   if (!triangulate_together(c, root, alone)) return false;
   const size_t n = c->net.cells.n;
-  if (!bool_list_reserve(&c->covers, n, sizeof(Cover)) ||
-      !bool_list_reserve(&c->walls, 3 * n, sizeof(uint32_t)))
+  if (!cag_bool_list_reserve(&c->covers, n, sizeof(Cover)) ||
+      !cag_bool_list_reserve(&c->walls, 3 * n, sizeof(uint32_t)))
     return false;
   Cover *covers = c->covers.items;
   for (size_t i = 0; i < n; i++) covers[i] = (Cover){{0, 0}, BOOL_NONE, 0, 0};
@@ -422,22 +424,22 @@ static bool cut_group(Cutter *c, uint32_t root) {
       c->w, (BoolPiece){{f->v[0], f->v[1], f->v[2]}, root, {f->times[0], f->times[1]}, root, 1});
 }
 
-CagStatus bool_cut_faces(BoolWork *w) {
+CagStatus cag_bool_cut_faces(BoolWork *w) {
   Cutter c = {.w = w, .net = {.points = &w->points}};
   c.patch = cag_malloc((w->face_count + 1) * sizeof *c.patch);
   bool done = c.patch && sort_groups(w, w->face_count, false, &c.faces) &&
               sort_groups(w, w->contacts.n, true, &c.contacts) &&
-              bool_list_reserve(&w->pieces, w->face_count + 1, sizeof(BoolPiece));
+              cag_bool_list_reserve(&w->pieces, w->face_count + 1, sizeof(BoolPiece));
   CagStatus status = done ? CAG_OK : cag_fail_memory(w->err);
   size_t groups = 0;
   for (uint32_t f = 0; !status && f < w->face_count; f++) {
     if (c.faces.start[f + 1] == c.faces.start[f]) continue; // another face speaks for its group
-    if (groups++ % STOP_INTERVAL == 0) status = bool_stopped(w);
+    if (groups++ % STOP_INTERVAL == 0) status = cag_bool_stopped(w);
     if (status || cut_group(&c, f)) continue;
-    status = bool_stopped(w);
+    status = cag_bool_stopped(w);
     if (!status) status = cag_fail_memory(w->err);
   }
-  bool_net_free(&c.net);
+  cag_bool_net_free(&c.net);
   cag_free(c.faces.start);
   cag_free(c.faces.items);
   cag_free(c.contacts.start);

@@ -26,7 +26,7 @@ static CagVec3 seen_along(CagVec3 p, int axis) {
                      : cag_vec3(p.x, p.y, 0);
 }
 
-bool bool_list_reserve(BoolList *l, size_t n, size_t item_size) {
+bool cag_bool_list_reserve(BoolList *l, size_t n, size_t item_size) {
   if (n <= l->room) return true;
   size_t room = l->room ? l->room : 64;
   while (room < n) room += room / 2;
@@ -39,7 +39,7 @@ bool bool_list_reserve(BoolList *l, size_t n, size_t item_size) {
 
 // --- The table ---
 
-bool bool_points_start(BoolPoints *p, size_t expected) {
+bool cag_bool_points_start(BoolPoints *p, size_t expected) {
   *p = (BoolPoints){0};
   p->room = expected + 64;
   size_t slots = 1024;
@@ -56,7 +56,7 @@ bool bool_points_start(BoolPoints *p, size_t expected) {
   return true;
 }
 
-void bool_points_free(BoolPoints *p) {
+void cag_bool_points_free(BoolPoints *p) {
   while (p->blocks) {
     BoolBlock *next = p->blocks->next;
     cag_free(p->blocks);
@@ -114,7 +114,7 @@ static void enter_point(BoolPoints *p, uint32_t i) {
 
 static bool same_place(CagVec3 a, CagVec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-uint32_t bool_points_add(BoolPoints *p, CagVec3 at) {
+uint32_t cag_bool_points_add(BoolPoints *p, CagVec3 at) {
   at = cag_vec3(at.x + 0.0, at.y + 0.0, at.z + 0.0); // one zero for both
   for (uint32_t i = p->heads[slot(p, at)]; i != BOOL_NONE; i = p->next[i])
     if (p->exact[i] == BOOL_NONE && same_place(p->at[i], at)) return i;
@@ -123,14 +123,16 @@ uint32_t bool_points_add(BoolPoints *p, CagVec3 at) {
   return i;
 }
 
-uint32_t bool_points_first(const BoolPoints *p, uint32_t i) {
+uint32_t cag_bool_points_first(const BoolPoints *p, uint32_t i) {
   uint32_t first = i;
   for (uint32_t k = p->heads[slot(p, p->at[i])]; k != BOOL_NONE; k = p->next[k])
     if (k < first && same_place(p->at[k], p->at[i])) first = k;
   return first;
 }
 
-uint32_t bool_points_add_far(BoolPoints *p, CagVec3 at) { return append_point(p, at, BOOL_NONE); }
+uint32_t cag_bool_points_add_far(BoolPoints *p, CagVec3 at) {
+  return append_point(p, at, BOOL_NONE);
+}
 
 // --- Exact coordinates ---
 
@@ -184,7 +186,7 @@ static bool same_exactly(BoolPoints *p, uint32_t i, const BoolHomogeneous *h) {
 
 static uint32_t append_exact(BoolPoints *p, CagVec3 at, BoolHomogeneous h) {
   const size_t k = p->coordinates.n;
-  if (!bool_list_reserve(&p->coordinates, k + 1, sizeof h)) return BOOL_NONE;
+  if (!cag_bool_list_reserve(&p->coordinates, k + 1, sizeof h)) return BOOL_NONE;
   if (!keep(p, &h.x) || !keep(p, &h.y) || !keep(p, &h.z) || !keep(p, &h.w)) return BOOL_NONE;
   const uint32_t i = append_point(p, at, (uint32_t)k);
   if (i == BOOL_NONE) return i;
@@ -218,7 +220,7 @@ static uint32_t add_exact(BoolPoints *p, BoolHomogeneous h) {
 
 // --- Order and turns ---
 
-int bool_compare(BoolPoints *p, uint32_t a, uint32_t b, int axis) {
+int cag_bool_compare(BoolPoints *p, uint32_t a, uint32_t b, int axis) {
   const double x = coordinate(p->at[a], axis), y = coordinate(p->at[b], axis);
   if (x != y) return y > x ? 1 : -1;
   if (a == b || (p->exact[a] == BOOL_NONE && p->exact[b] == BOOL_NONE)) return 0;
@@ -229,9 +231,10 @@ int bool_compare(BoolPoints *p, uint32_t a, uint32_t b, int axis) {
       .sign;
 }
 
-int bool_compare_all(BoolPoints *p, uint32_t a, uint32_t b) {
+int cag_bool_compare_all(BoolPoints *p, uint32_t a, uint32_t b) {
   int order = 0;
-  for (int axis = 0; axis < 3 && order == 0 && a != b; axis++) order = bool_compare(p, a, b, axis);
+  for (int axis = 0; axis < 3 && order == 0 && a != b; axis++)
+    order = cag_bool_compare(p, a, b, axis);
   return order;
 }
 
@@ -250,7 +253,7 @@ static int exact_turn(BoolPoints *p, const uint32_t v[3], int axis) {
   return sum.sign;
 }
 
-int bool_turn(BoolPoints *p, uint32_t a, uint32_t b, uint32_t c, int axis) {
+int cag_bool_turn(BoolPoints *p, uint32_t a, uint32_t b, uint32_t c, int axis) {
   const CagVec3 q = seen_along(p->at[a], axis), r = seen_along(p->at[b], axis);
   const CagVec3 o = seen_along(p->at[c], axis);
   const bool given =
@@ -299,7 +302,7 @@ static void exact_normal(BoolPoints *p, const uint32_t plane[3], CagExact n[3]) 
   }
 }
 
-void bool_normal(BoolPoints *p, const uint32_t plane[3], CagExact normal[3]) {
+void cag_bool_normal(BoolPoints *p, const uint32_t plane[3], CagExact normal[3]) {
   p->space.used = 0;
   exact_normal(p, plane, normal);
 }
@@ -333,11 +336,11 @@ static void near_normal(const BoolPoints *p, const uint32_t plane[3], double n[3
   }
 }
 
-int bool_normal_sign(BoolPoints *p, const uint32_t plane[3], int axis) {
-  return bool_turn(p, plane[0], plane[1], plane[2], axis);
+int cag_bool_normal_sign(BoolPoints *p, const uint32_t plane[3], int axis) {
+  return cag_bool_turn(p, plane[0], plane[1], plane[2], axis);
 }
 
-int bool_normals_dot(BoolPoints *p, const uint32_t m[3], const uint32_t n[3]) {
+int cag_bool_normals_dot(BoolPoints *p, const uint32_t m[3], const uint32_t n[3]) {
   double a[3], b[3], off_a[3], off_b[3], value = 0, bound = DBL_MIN;
   near_normal(p, m, a, off_a);
   near_normal(p, n, b, off_b);
@@ -355,7 +358,7 @@ int bool_normals_dot(BoolPoints *p, const uint32_t m[3], const uint32_t n[3]) {
   return sum.sign;
 }
 
-int bool_normals_cross(BoolPoints *p, const uint32_t m[3], const uint32_t n[3], int axis) {
+int cag_bool_normals_cross(BoolPoints *p, const uint32_t m[3], const uint32_t n[3], int axis) {
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
   double a[3], b[3], off_a[3], off_b[3];
   near_normal(p, m, a, off_a);
@@ -384,7 +387,7 @@ static CagExact exact_side(BoolPoints *p, const CagExact n[3], uint32_t a,
   return sum;
 }
 
-int bool_side(BoolPoints *p, const uint32_t plane[3], uint32_t d) {
+int cag_bool_side(BoolPoints *p, const uint32_t plane[3], uint32_t d) {
   if (is_given(p, d) && are_given(p, plane))
     return cag_side_of_plane(p->at[plane[0]], p->at[plane[1]], p->at[plane[2]], p->at[d]);
   double n[3], off[3], value = 0, bound = DBL_MIN;
@@ -407,7 +410,7 @@ int bool_side(BoolPoints *p, const uint32_t plane[3], uint32_t d) {
 
 // --- New points ---
 
-uint32_t bool_points_cross(BoolPoints *p, uint32_t a, uint32_t b, const uint32_t plane[3]) {
+uint32_t cag_bool_points_cross(BoolPoints *p, uint32_t a, uint32_t b, const uint32_t plane[3]) {
   p->space.used = 0;
   CagExact n[3];
   exact_normal(p, plane, n);
@@ -461,7 +464,7 @@ static uint32_t add_solution(BoolPoints *p, CagExact n[3][3], const CagExact off
   return w.sign ? add_exact(p, (BoolHomogeneous){sum[0], sum[1], sum[2], w}) : BOOL_NONE;
 }
 
-uint32_t bool_points_meet(BoolPoints *p, const uint32_t plane[3], BoolCut one, BoolCut two) {
+uint32_t cag_bool_points_meet(BoolPoints *p, const uint32_t plane[3], BoolCut one, BoolCut two) {
   p->space.used = 0;
   CagExact n[3][3], offset[3];
   exact_cut(p, (BoolCut){plane[0], plane[1], plane[2], 0}, n[0], &offset[0]);
@@ -470,8 +473,8 @@ uint32_t bool_points_meet(BoolPoints *p, const uint32_t plane[3], BoolCut one, B
   return add_solution(p, n, offset);
 }
 
-uint32_t bool_points_put(BoolPoints *p, uint32_t i, const uint32_t (*planes)[3], int n,
-                         const int kept[2]) {
+uint32_t cag_bool_points_put(BoolPoints *p, uint32_t i, const uint32_t (*planes)[3], int n,
+                             const int kept[2]) {
   p->space.used = 0;
   CagExact normal[3][3], offset[3];
   const BoolHomogeneous at = exact_point(p, i);
@@ -485,7 +488,7 @@ uint32_t bool_points_put(BoolPoints *p, uint32_t i, const uint32_t (*planes)[3],
   return add_solution(p, normal, offset);
 }
 
-uint32_t bool_points_centroid(BoolPoints *p, const uint32_t v[3]) {
+uint32_t cag_bool_points_centroid(BoolPoints *p, const uint32_t v[3]) {
   p->space.used = 0;
   BoolHomogeneous h[3], c = {0};
   for (int i = 0; i < 3; i++) h[i] = exact_point(p, v[i]);

@@ -61,7 +61,7 @@ static void take_piece(Builder *b, CagSetOperation op, uint32_t i) {
   BoolPart part = {.source = {source, source, source}};
   b->sources[source] = (BoolSource){p->face, (p->facing > 0) == outer};
   for (int k = 0; k < 3; k++)
-    part.v[k] = bool_points_first(&w->points, p->v[outer && k ? 3 - k : k]);
+    part.v[k] = cag_bool_points_first(&w->points, p->v[outer && k ? 3 - k : k]);
   if (part.v[0] == part.v[1] || part.v[1] == part.v[2] || part.v[2] == part.v[0]) return;
   b->parts[b->n++] = part;
 }
@@ -129,8 +129,8 @@ static void cancel_opposites(Builder *b) {
 // --- Corners ---
 
 static void join(uint32_t *parent, uint32_t a, uint32_t b) {
-  a = bool_root(parent, a);
-  b = bool_root(parent, b);
+  a = cag_bool_root(parent, a);
+  b = cag_bool_root(parent, b);
   if (a < b) parent[b] = a;
   else parent[a] = b;
 }
@@ -183,7 +183,7 @@ static bool join_many(Builder *b, const CagMeshEdge *e, size_t n) {
     spokes[i] = (Spoke){atan2(cag_dot(apex, y), cag_dot(apex, x)), &e[i]};
   }
   const bool done =
-      spokes && open && bool_list_reserve(&b->pairs, b->pairs.n + n / 2, sizeof(Pair));
+      spokes && open && cag_bool_list_reserve(&b->pairs, b->pairs.n + n / 2, sizeof(Pair));
   if (done) qsort(spokes, n, sizeof *spokes, by_angle);
   // Twice around: brackets that open before the start and close after it.
   size_t depth = 0;
@@ -215,7 +215,8 @@ static bool is_pinched(Builder *b, const Pair *p, size_t n) {
     for (size_t k = 0; k < i; k++) {
       bool same = true;
       for (int end = 0; end < 2 && same; end++)
-        same = bool_root(b->corner, p[i].corner[end]) == bool_root(b->corner, p[k].corner[end]);
+        same = cag_bool_root(b->corner, p[i].corner[end]) ==
+               cag_bool_root(b->corner, p[k].corner[end]);
       if (same) return true;
     }
   return false;
@@ -223,11 +224,11 @@ static bool is_pinched(Builder *b, const Pair *p, size_t n) {
 
 // Gives each pair at such an edge a point in the middle of its own.
 static bool part_pairs(Builder *b, const Pair *p, size_t n) {
-  if (!bool_list_reserve(&b->pinched, b->pinched.n + 2 * n, sizeof(Pinch))) return false;
+  if (!cag_bool_list_reserve(&b->pinched, b->pinched.n + 2 * n, sizeof(Pinch))) return false;
   for (size_t i = 0; i < n; i++) {
     const CagVec3 *at = b->w->points.at;
     const CagVec3 half = cag_lerp(at[p[i].low], at[p[i].high], 0.5);
-    const uint32_t middle = bool_points_add_far(&b->w->points, half);
+    const uint32_t middle = cag_bool_points_add_far(&b->w->points, half);
     if (middle == BOOL_NONE) return false;
     for (int k = 0; k < 2; k++)
       ((Pinch *)b->pinched.items)[b->pinched.n++] =
@@ -290,7 +291,7 @@ static bool split_pinched(Builder *b) {
       const Pinch key = {p < q ? p : q, p < q ? q : p, part.origin, 0};
       const Pinch *pinch = bsearch(&key, b->pinched.items, b->pinched.n, sizeof key, by_edge);
       if (!pinch) continue;
-      if (!bool_list_reserve(&parts, parts.n + 1, sizeof part)) return false;
+      if (!cag_bool_list_reserve(&parts, parts.n + 1, sizeof part)) return false;
       b->parts = parts.items;
       BoolPart half = part;
       half.v[k] = pinch->middle;
@@ -350,7 +351,7 @@ static CagVec3 normal_at(const Builder *b, const BoolSource *source, CagVec3 p) 
 static uint32_t vertex_of(Builder *b, uint32_t corner) {
   const double same_direction = 1 - 1e-6; // cosine of 0.08 degrees, as in cag_mesh_weld
   const BoolPart *part = &b->parts[corner / 3];
-  const uint32_t root = bool_root(b->corner, corner), point = part->v[corner % 3];
+  const uint32_t root = cag_bool_root(b->corner, corner), point = part->v[corner % 3];
   const CagVec3 none = {0, 0, 0};
   const BoolSource *source = &b->sources[part->source[corner % 3]];
   const CagVec3 normal = b->normals ? normal_at(b, source, b->w->points.at[point]) : none;
@@ -401,7 +402,7 @@ static bool make_vertices(Builder *b) {
   return true;
 }
 
-CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out) {
+CagStatus cag_bool_build(BoolWork *w, CagSetOperation op, CagMesh **out) {
   Builder b = {.w = w};
   b.normals = w->meshes[0]->normals || w->meshes[1]->normals;
   b.parts = cag_malloc((w->pieces.n + 1) * sizeof *b.parts);
@@ -410,9 +411,9 @@ CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out) {
   if (!status) {
     for (uint32_t i = 0; i < w->pieces.n; i++) take_piece(&b, op, i);
     cancel_opposites(&b);
-    const bool done = (w->whole || bool_flatten(w, b.sources, false, &b.parts, &b.n)) &&
+    const bool done = (w->whole || cag_bool_flatten(w, b.sources, false, &b.parts, &b.n)) &&
                       join_all(&b) && make_vertices(&b);
-    if (!done) status = bool_stopped(w);
+    if (!done) status = cag_bool_stopped(w);
     if (!done && !status) status = cag_fail_memory(w->err);
   }
   if (!status) status = write_mesh(&b, out);

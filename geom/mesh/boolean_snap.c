@@ -59,7 +59,7 @@ static uint32_t find_twin(const Twins *t, CagVec3 p, double slack) {
   return BOOL_NONE;
 }
 
-CagStatus bool_find_twins(BoolWork *w, uint32_t *number, bool *found) {
+CagStatus cag_bool_find_twins(BoolWork *w, uint32_t *number, bool *found) {
   const size_t n = w->points.n;
   Twins t = {.points = &w->points, .cell = 8 * w->slack, .mask = 1023};
   *found = false;
@@ -158,15 +158,15 @@ static bool are_coplanar(const Snap *s, uint32_t f, uint32_t g) {
 }
 
 static void join(uint32_t *parent, uint32_t a, uint32_t b) {
-  a = bool_root(parent, a);
-  b = bool_root(parent, b);
+  a = cag_bool_root(parent, a);
+  b = cag_bool_root(parent, b);
   if (a < b) parent[b] = a;
   else parent[a] = b;
 }
 
 static bool join_pair(void *context, uint32_t f, uint32_t g) {
   Snap *s = context;
-  if (bool_root(s->parent, f) != bool_root(s->parent, g) && are_coplanar(s, f, g))
+  if (cag_bool_root(s->parent, f) != cag_bool_root(s->parent, g) && are_coplanar(s, f, g))
     join(s->parent, f, g);
   return true;
 }
@@ -174,7 +174,7 @@ static bool join_pair(void *context, uint32_t f, uint32_t g) {
 static bool is_shared(const Class *c) { return c->owners == 3; }
 
 static uint32_t class_of(Snap *s, uint32_t face) {
-  const uint32_t root = bool_root(s->parent, face);
+  const uint32_t root = cag_bool_root(s->parent, face);
   return is_shared(&s->classes[root]) ? root : BOOL_NONE;
 }
 
@@ -185,7 +185,7 @@ static void tell_classes(Snap *s, bool *found) {
     s->classes[f] = (Class){f, 0, {BOOL_NONE, BOOL_NONE, BOOL_NONE}};
   for (uint32_t f = 0; f < s->w->face_count; f++) {
     const BoolFace *face = &s->w->faces[f];
-    Class *c = &s->classes[bool_root(s->parent, f)];
+    Class *c = &s->classes[cag_bool_root(s->parent, f)];
     if (s->planes[f].area > s->planes[c->face].area) c->face = f;
     if (!face->times[0] != !face->times[1]) c->owners |= face->times[0] ? 1 : 2;
     *found = *found || is_shared(c);
@@ -228,7 +228,7 @@ static void join_at_corners(Snap *s, const uint32_t *count, bool *joined) {
     for (uint32_t i = 1; i < count[v]; i++)
       for (uint32_t k = 0; k < i; k++) {
         const uint32_t a = s->members[s->start[v] + i], b = s->members[s->start[v] + k];
-        if (bool_root(s->parent, a) == bool_root(s->parent, b) ||
+        if (cag_bool_root(s->parent, a) == cag_bool_root(s->parent, b) ||
             !are_coplanar(s, s->classes[a].face, s->classes[b].face))
           continue;
         join(s->parent, a, b);
@@ -288,9 +288,9 @@ static bool tell_all_points(Snap *s, const uint32_t *count) {
   size_t *start = cag_calloc(n + 2, sizeof *start);
   uint32_t *faces = cag_malloc((n + 1) * sizeof *faces);
   if (start && faces) {
-    for (uint32_t f = 0; f < n; f++) start[bool_root(s->parent, f) + 2]++;
+    for (uint32_t f = 0; f < n; f++) start[cag_bool_root(s->parent, f) + 2]++;
     for (size_t i = 2; i < n + 2; i++) start[i] += start[i - 1];
-    for (uint32_t f = 0; f < n; f++) faces[start[bool_root(s->parent, f) + 1]++] = f;
+    for (uint32_t f = 0; f < n; f++) faces[start[cag_bool_root(s->parent, f) + 1]++] = f;
     for (uint32_t f = 0; f < n; f++)
       if (class_of(s, f) == f) tell_points(s, f, faces + start[f], start[f + 1] - start[f], count);
   }
@@ -342,7 +342,7 @@ static uint32_t moved_onto(Snap *s, uint32_t corner, const uint32_t *classes, in
   bool there = true;
   for (int i = 0; i < n; i++) {
     memcpy(planes[i], s->classes[classes[i]].points, sizeof planes[i]);
-    there = there && bool_side(p, planes[i], corner) == 0;
+    there = there && cag_bool_side(p, planes[i], corner) == 0;
   }
   if (there || n == 0) return corner;
   if (n == 1) {
@@ -352,7 +352,7 @@ static uint32_t moved_onto(Snap *s, uint32_t corner, const uint32_t *classes, in
   } else {
     kept[0] = largest_axis(cag_cross(class_normal(s, classes[0]), class_normal(s, classes[1])));
   }
-  const uint32_t at = bool_points_put(p, corner, (const uint32_t(*)[3])planes, n, kept);
+  const uint32_t at = cag_bool_points_put(p, corner, (const uint32_t(*)[3])planes, n, kept);
   if (at == BOOL_NONE) return at;
   const double most = REACH * s->w->slack / INDEPENDENT;
   return cag_norm(cag_sub(p->at[at], p->at[corner])) <= most
@@ -382,7 +382,7 @@ static void tell_faces(Snap *s, const uint32_t *number, uint32_t *plane) {
     const uint32_t *points = s->classes[class].points;
     bool all = true;
     for (int k = 0; k < 3 && all; k++)
-      all = bool_side(&s->w->points, points, number[s->w->faces[f].v[k]]) == 0;
+      all = cag_bool_side(&s->w->points, points, number[s->w->faces[f].v[k]]) == 0;
     if (all) memcpy(to, points, 3 * sizeof *to);
   }
 }
@@ -395,7 +395,7 @@ static CagStatus find_classes(Snap *s, uint32_t *count, bool *found) {
     s->planes[f] = plane_of(w, &w->faces[f]);
     if (cag_stop_check(w->err)) return w->err->status;
   }
-  CagStatus status = bool_visit_pairs(w, join_pair, s);
+  CagStatus status = cag_bool_visit_pairs(w, join_pair, s);
   if (status) return status;
   tell_classes(s, found);
   while (*found && joined) { // ends: each round leaves fewer classes
@@ -407,7 +407,7 @@ static CagStatus find_classes(Snap *s, uint32_t *count, bool *found) {
   return CAG_OK;
 }
 
-CagStatus bool_find_planes(BoolWork *w, uint32_t *number, uint32_t *plane, bool *found) {
+CagStatus cag_bool_find_planes(BoolWork *w, uint32_t *number, uint32_t *plane, bool *found) {
   const size_t faces = w->face_count + 1, points = w->points.n;
   Snap s = {.w = w};
   uint32_t *count = cag_malloc((points + 1) * sizeof *count);

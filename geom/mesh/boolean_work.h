@@ -29,7 +29,7 @@ typedef struct BoolList {
   size_t n, room;
 } BoolList;
 
-bool bool_list_reserve(BoolList *l, size_t n, size_t item_size); // room for n items in all
+bool cag_bool_list_reserve(BoolList *l, size_t n, size_t item_size); // room for n items in all
 
 // --- Points ---
 
@@ -44,7 +44,7 @@ typedef struct BoolBlock {
   uint64_t limbs[];
 } BoolBlock;
 
-// Points have numbers. No two numbers are one point, except those of bool_points_add_far.
+// Points have numbers. No two numbers are one point, except those of cag_bool_points_add_far.
 typedef struct BoolPoints {
   size_t n, room;
   CagVec3 *at;            // the point, each coordinate rounded to the nearest double
@@ -56,19 +56,19 @@ typedef struct BoolPoints {
   CagExactSpace space; // of one computation
 } BoolPoints;
 
-bool bool_points_start(BoolPoints *p, size_t expected);
-void bool_points_free(BoolPoints *p);
-uint32_t bool_points_add(BoolPoints *p, CagVec3 at);     // BOOL_NONE: no memory; so below
-uint32_t bool_points_add_far(BoolPoints *p, CagVec3 at); // a help of a triangulation
+bool cag_bool_points_start(BoolPoints *p, size_t expected);
+void cag_bool_points_free(BoolPoints *p);
+uint32_t cag_bool_points_add(BoolPoints *p, CagVec3 at);     // BOOL_NONE: no memory; so below
+uint32_t cag_bool_points_add_far(BoolPoints *p, CagVec3 at); // a help of a triangulation
 // The first of the points that are rounded to the same place.
-uint32_t bool_points_first(const BoolPoints *p, uint32_t i);
+uint32_t cag_bool_points_first(const BoolPoints *p, uint32_t i);
 // Signs: of b's coordinate less a's, of the first coordinate in which they differ.
-int bool_compare(BoolPoints *p, uint32_t a, uint32_t b, int axis);
-int bool_compare_all(BoolPoints *p, uint32_t a, uint32_t b);
+int cag_bool_compare(BoolPoints *p, uint32_t a, uint32_t b, int axis);
+int cag_bool_compare_all(BoolPoints *p, uint32_t a, uint32_t b);
 // Positive where a, b, c turn left in the plane that is seen along the axis.
-int bool_turn(BoolPoints *p, uint32_t a, uint32_t b, uint32_t c, int axis);
+int cag_bool_turn(BoolPoints *p, uint32_t a, uint32_t b, uint32_t c, int axis);
 // As cag_side_of_plane, for a plane of three corners of operands.
-int bool_side(BoolPoints *p, const uint32_t plane[3], uint32_t d);
+int cag_bool_side(BoolPoints *p, const uint32_t plane[3], uint32_t d);
 
 // Planes that cut: of a face, or through an edge of a face and along an axis.
 typedef struct BoolCut {
@@ -77,21 +77,21 @@ typedef struct BoolCut {
 } BoolCut;
 
 // The exact normal of a face's plane, and the sign of a coordinate of it.
-void bool_normal(BoolPoints *p, const uint32_t plane[3], CagExact normal[3]);
-int bool_normal_sign(BoolPoints *p, const uint32_t plane[3], int axis);
+void cag_bool_normal(BoolPoints *p, const uint32_t plane[3], CagExact normal[3]);
+int cag_bool_normal_sign(BoolPoints *p, const uint32_t plane[3], int axis);
 // For planes with the normals m, n: signs of m . n and of a coordinate of m x n.
-int bool_normals_dot(BoolPoints *p, const uint32_t m[3], const uint32_t n[3]);
-int bool_normals_cross(BoolPoints *p, const uint32_t m[3], const uint32_t n[3], int axis);
+int cag_bool_normals_dot(BoolPoints *p, const uint32_t m[3], const uint32_t n[3]);
+int cag_bool_normals_cross(BoolPoints *p, const uint32_t m[3], const uint32_t n[3], int axis);
 
 // The point of the line a, b (corners of operands on two sides of the plane) in the plane.
-uint32_t bool_points_cross(BoolPoints *p, uint32_t a, uint32_t b, const uint32_t plane[3]);
+uint32_t cag_bool_points_cross(BoolPoints *p, uint32_t a, uint32_t b, const uint32_t plane[3]);
 // The point in which three planes meet; they do meet in one.
-uint32_t bool_points_meet(BoolPoints *p, const uint32_t plane[3], BoolCut one, BoolCut two);
+uint32_t cag_bool_points_meet(BoolPoints *p, const uint32_t plane[3], BoolCut one, BoolCut two);
 // Point i moved onto n planes (1 to 3), along the axes that are not kept: 3 - n coordinates stay as
 // they are. Planes and kept axes are independent.
-uint32_t bool_points_put(BoolPoints *p, uint32_t i, const uint32_t (*planes)[3], int n,
-                         const int kept[2]);
-uint32_t bool_points_centroid(BoolPoints *p, const uint32_t v[3]);
+uint32_t cag_bool_points_put(BoolPoints *p, uint32_t i, const uint32_t (*planes)[3], int n,
+                             const int kept[2]);
+uint32_t cag_bool_points_centroid(BoolPoints *p, const uint32_t v[3]);
 
 // --- Faces and pieces ---
 
@@ -152,25 +152,25 @@ typedef struct BoolWork {
 
 static inline BoolPiece *bool_pieces(const BoolWork *w) { return w->pieces.items; }
 
-CagStatus bool_stopped(const BoolWork *w); // CAG_E_CALLBACK where the caller wants an end
+CagStatus cag_bool_stopped(const BoolWork *w); // CAG_E_CALLBACK where the caller wants an end
 
 // Calls `visit` with each pair of faces whose boxes are at most twice the slack apart. Returns
 // false if memory ran out.
 typedef bool BoolPairVisit(void *context, uint32_t f, uint32_t g);
-CagStatus bool_visit_pairs(BoolWork *w, BoolPairVisit *visit, void *context);
+CagStatus cag_bool_visit_pairs(BoolWork *w, BoolPairVisit *visit, void *context);
 // Forgets the boxes: faces have changed.
-void bool_forget_pairs(BoolWork *w);
+void cag_bool_forget_pairs(BoolWork *w);
 
 // Finds which points of the operands are one within rounding: number[i] is the first of them.
 // *found: there are some.
-CagStatus bool_find_twins(BoolWork *w, uint32_t *number, bool *found);
+CagStatus cag_bool_find_twins(BoolWork *w, uint32_t *number, bool *found);
 // Finds the planes that faces of both operands have in common within rounding, and gives the
 // numbers of their corners on these planes; the points of planes go to `plane`, 3 for each face,
 // BOOL_NONE where it has no such plane.
-CagStatus bool_find_planes(BoolWork *w, uint32_t *number, uint32_t *plane, bool *found);
-CagStatus bool_find_contacts(BoolWork *w);
-CagStatus bool_cut_faces(BoolWork *w);
-CagStatus bool_find_windings(BoolWork *w);
+CagStatus cag_bool_find_planes(BoolWork *w, uint32_t *number, uint32_t *plane, bool *found);
+CagStatus cag_bool_find_contacts(BoolWork *w);
+CagStatus cag_bool_cut_faces(BoolWork *w);
+CagStatus cag_bool_find_windings(BoolWork *w);
 // Flat faces that so many triangles meet in one point of are given rounder triangles before the
 // cut: two such fans, one on the other, would cross as often as the product of their triangles.
 #define BOOL_FAN 48
@@ -178,15 +178,15 @@ CagStatus bool_find_windings(BoolWork *w);
 // Gives flat faces of the parts few triangles and replaces *parts. If only_fans is set, only fans
 // are triangulated again, and their outlines keep all points. Returns false if memory ran out or
 // the caller canceled.
-bool bool_flatten(BoolWork *w, const BoolSource *sources, bool only_fans, BoolPart **parts,
-                  size_t *n);
-CagStatus bool_build(BoolWork *w, CagSetOperation op, CagMesh **out);
+bool cag_bool_flatten(BoolWork *w, const BoolSource *sources, bool only_fans, BoolPart **parts,
+                      size_t *n);
+CagStatus cag_bool_build(BoolWork *w, CagSetOperation op, CagMesh **out);
 
 // Calls with the faces whose boxes the ray from `from` along +x may meet.
 typedef void BoolRayVisit(void *context, uint32_t face);
-void bool_visit_ray(const BoolWork *w, CagVec3 from, BoolRayVisit *visit, void *context);
+void cag_bool_visit_ray(const BoolWork *w, CagVec3 from, BoolRayVisit *visit, void *context);
 // Is v, in the plane of f, in f or on its edge?
-bool bool_is_in_face(BoolWork *w, const BoolFace *f, uint32_t v);
-uint32_t bool_root(uint32_t *parent, uint32_t i);
+bool cag_bool_is_in_face(BoolWork *w, const BoolFace *f, uint32_t v);
+uint32_t cag_bool_root(uint32_t *parent, uint32_t i);
 
 #endif

@@ -72,7 +72,7 @@ static CagStatus is_crease(const Tessellator *t, const Line *line, const Atom *a
   return CAG_OK;
 }
 
-CagStatus tess_refine_chords(Tessellator *t, Line *line, CagError *err) {
+CagStatus cag_tess_refine_chords(Tessellator *t, Line *line, CagError *err) {
   for (size_t a = 0; a < line->atom_count; a++) {
     Atom *atom = &t->atoms[line->atom + a];
     double n = atom->n, distance;
@@ -87,7 +87,7 @@ CagStatus tess_refine_chords(Tessellator *t, Line *line, CagError *err) {
       double use = distance / t->how.tolerance;
       if (use <= highest_use) break;
       n = ceil(n * fmin(16, fmax(1.05, sqrt(use / aimed_use))));
-      if (n > (double)t->how.max_triangles) return tess_limit(t, n, err);
+      if (n > (double)t->how.max_triangles) return cag_tess_limit(t, n, err);
     }
     if (n <= atom->n) continue;
     atom->n = n < UINT32_MAX / 4 ? (uint32_t)n : UINT32_MAX / 4;

@@ -95,7 +95,7 @@ static CagStatus even_leaf(const Tessellator *t, Leaf *leaf, bool *raised, CagEr
   return CAG_OK;
 }
 
-CagStatus tess_make_even_lines(Tessellator *t, uint32_t face, CagError *err) {
+CagStatus cag_tess_make_even_lines(Tessellator *t, uint32_t face, CagError *err) {
   const Face *f = &t->faces[face];
   const size_t lines = t->line_count, atoms = t->atom_count;
   CagStatus status = CAG_OK;
@@ -108,7 +108,7 @@ CagStatus tess_make_even_lines(Tessellator *t, uint32_t face, CagError *err) {
     t->line_count = lines;
     t->atom_count = atoms;
     raised = false;
-    status = tess_make_lines(t, face, err);
+    status = cag_tess_make_lines(t, face, err);
     if (!(t->how.angle > 0)) break;
     for (size_t k = 0; !status && k < f->leaf_count && round + 1 < ROUNDS; k++)
       status = even_leaf(t, &t->leaves[f->leaf + k], &raised, err);

@@ -35,7 +35,7 @@ typedef struct Chain {
 
 static uint32_t chain_vertex(const Tessellator *t, const Chain *c, size_t k) {
   if (c->nodes)
-    return tess_node_vertex(t, c->line, c->nodes + k, c->after, c->ends && k == c->segments);
+    return cag_tess_node_vertex(t, c->line, c->nodes + k, c->after, c->ends && k == c->segments);
   return c->first + (uint32_t)k * c->stride;
 }
 
@@ -168,7 +168,7 @@ static CagStatus inner_vertices(Fill *f, const Leaf *leaf, uint32_t *first, CagE
     CagVec3 *points = m->positions + f->vertices;
     CagStatus status = cag_surface_eval_frames(s, f->us + done, rows, f->vs, nv, points, NULL, NULL,
                                                m->normals + f->vertices, err);
-    if (status == CAG_OK) status = tess_interrupted(f->t, err);
+    if (status == CAG_OK) status = cag_tess_interrupted(f->t, err);
     if (status != CAG_OK) return status;
     for (size_t i = 0, k = 0; i < rows; i++)
       for (size_t j = 0; j < nv; j++, k++) {
@@ -424,7 +424,7 @@ static size_t triangles_of(const Leaf *leaf) {
 // Vertices of one point take the first's position, and point to it in `weld`.
 static void finish_weld(Tessellator *t) {
   for (uint32_t k = 0; k < t->vertex_count; k++) {
-    uint32_t root = tess_find(t, k);
+    uint32_t root = cag_tess_find(t, k);
     t->weld[k] = root;
     t->positions[k] = t->positions[root];
   }
@@ -502,7 +502,7 @@ static CagStatus begin_fill(Fill *f, CagError *err) {
       if (leaf->n[d] > longest) longest = leaf->n[d];
   }
   for (size_t k = 0; k < t->face_count; k++) triangles += t->faces[k].triangle_count;
-  if (triangles > t->how.max_triangles) return tess_limit(t, (double)triangles, err);
+  if (triangles > t->how.max_triangles) return cag_tess_limit(t, (double)triangles, err);
   CagStatus status = cag_mesh_new(vertices, triangles, true, true, true, &f->mesh, err);
   if (status != CAG_OK) return status;
   f->grid_room = longest > CHUNK ? longest : CHUNK;
@@ -517,7 +517,7 @@ static CagStatus begin_fill(Fill *f, CagError *err) {
   return CAG_OK;
 }
 
-CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
+CagStatus cag_tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
   finish_weld(t);
   Fill f = {.t = t};
   CagStatus status = begin_fill(&f, err);
@@ -542,7 +542,7 @@ CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err) {
   f.mesh->triangle_count = f.triangles;
   drop_shrunk(f.mesh, t->noise);
   if (t->needs_normals) complete_normals(f.mesh);
-  status = tess_turn_edges(t, f.mesh, err);
+  status = cag_tess_turn_edges(t, f.mesh, err);
   if (status == CAG_OK) *out = f.mesh;
   else cag_mesh_release(f.mesh);
   return status;

@@ -104,7 +104,7 @@ static int by_place(const void *a, const void *b) {
 }
 
 static CagStatus add_mark(Marks *m, Mark mark, CagError *err) {
-  const CagStatus status = tess_grow(&m->all, m->count, &m->capacity, sizeof *m->all, err);
+  const CagStatus status = cag_tess_grow(&m->all, m->count, &m->capacity, sizeof *m->all, err);
   if (status == CAG_OK) m->all[m->count++] = mark;
   return status;
 }
@@ -153,7 +153,8 @@ static CagStatus find_marks(Marks *m, const LeafSide *sides, size_t count, CagEr
 }
 
 static CagStatus push_atom(Tessellator *t, double from, double to, CagError *err) {
-  CagStatus status = tess_grow(&t->atoms, t->atom_count, &t->atom_capacity, sizeof *t->atoms, err);
+  CagStatus status =
+      cag_tess_grow(&t->atoms, t->atom_count, &t->atom_capacity, sizeof *t->atoms, err);
   if (status == CAG_OK) t->atoms[t->atom_count++] = (Atom){from, to, 0, 1, true};
   return status;
 }
@@ -226,7 +227,7 @@ static Line new_line(const Face *f, uint32_t face, const LeafSide *first) {
   return line;
 }
 
-CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err) {
+CagStatus cag_tess_make_lines(Tessellator *t, uint32_t face, CagError *err) {
   Face *f = &t->faces[face];
   size_t count = 4 * f->leaf_count;
   LeafSide *sides = collect_sides(t, f);
@@ -237,13 +238,13 @@ CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err) {
     for (next = k + 1; next < count && sides[next].fixed == sides[k].fixed &&
                        sides[next].coordinate == sides[k].coordinate;)
       next++;
-    status = tess_grow(&t->lines, t->line_count, &t->line_capacity, sizeof *t->lines, err);
+    status = cag_tess_grow(&t->lines, t->line_count, &t->line_capacity, sizeof *t->lines, err);
     if (status != CAG_OK) break;
     Line *line = &t->lines[t->line_count++];
     *line = new_line(f, face, &sides[k]);
     status = cut_line(t, line, sides + k, next - k, &marks, err);
     if (status == CAG_OK && (line->border || line->is_break))
-      status = tess_refine_chords(t, line, err);
+      status = cag_tess_refine_chords(t, line, err);
     for (size_t j = k; j < next; j++)
       t->leaves[sides[j].leaf].line[sides[j].side] = (uint32_t)(t->line_count - 1);
   }
@@ -253,7 +254,7 @@ CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err) {
   return status;
 }
 
-uint32_t tess_side_line(const Tessellator *t, uint32_t face, int side) {
+uint32_t cag_tess_side_line(const Tessellator *t, uint32_t face, int side) {
   const Face *f = &t->faces[face];
   if (f->planar || side > SIDE_V1 || closed_in(f->surface, side / 2) || pole_at(f->surface, side))
     return NO_INDEX;
@@ -450,8 +451,8 @@ static CagStatus write_own_parameters(Tessellator *t, const Match *m, uint32_t s
   return CAG_OK;
 }
 
-CagStatus tess_join_lines(Tessellator *t, uint32_t master, uint32_t slave, bool reversed,
-                          CagError *err) {
+CagStatus cag_tess_join_lines(Tessellator *t, uint32_t master, uint32_t slave, bool reversed,
+                              CagError *err) {
   Line before[2] = {t->lines[master], t->lines[slave]};
   Match m = {.t = t, .lines = {&before[0], &before[1]}, .reversed = reversed};
   for (int w = 0; w < 2; w++) {

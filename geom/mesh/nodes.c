@@ -18,7 +18,7 @@ static const double same_normal = 1e-6;
 
 static CagStatus reserve_vertices(Tessellator *t, CagError *err) {
   if (t->vertex_count < t->vertex_capacity) return CAG_OK;
-  if (t->vertex_count >= UINT32_MAX / 2) return tess_limit(t, (double)t->vertex_count, err);
+  if (t->vertex_count >= UINT32_MAX / 2) return cag_tess_limit(t, (double)t->vertex_count, err);
   size_t n = t->vertex_capacity ? 2 * t->vertex_capacity : 1024;
   CagVec3 *positions = cag_realloc(t->positions, n * sizeof *positions);
   if (positions) t->positions = positions;
@@ -33,8 +33,8 @@ static CagStatus reserve_vertices(Tessellator *t, CagError *err) {
   return CAG_OK;
 }
 
-CagStatus tess_new_vertex(Tessellator *t, CagVec3 position, CagVec3 normal, double u, double v,
-                          uint32_t *out, CagError *err) {
+CagStatus cag_tess_new_vertex(Tessellator *t, CagVec3 position, CagVec3 normal, double u, double v,
+                              uint32_t *out, CagError *err) {
   CagStatus status = reserve_vertices(t, err);
   if (status != CAG_OK) return status;
   uint32_t k = (uint32_t)t->vertex_count++;
@@ -48,7 +48,7 @@ CagStatus tess_new_vertex(Tessellator *t, CagVec3 position, CagVec3 normal, doub
   return CAG_OK;
 }
 
-uint32_t tess_find(Tessellator *t, uint32_t vertex) {
+uint32_t cag_tess_find(Tessellator *t, uint32_t vertex) {
   while (t->weld[vertex] != vertex) {
     t->weld[vertex] = t->weld[t->weld[vertex]];
     vertex = t->weld[vertex];
@@ -56,10 +56,10 @@ uint32_t tess_find(Tessellator *t, uint32_t vertex) {
   return vertex;
 }
 
-void tess_unite(Tessellator *t, uint32_t a, uint32_t b) {
+void cag_tess_unite(Tessellator *t, uint32_t a, uint32_t b) {
   if (a == NO_INDEX || b == NO_INDEX) return;
-  a = tess_find(t, a);
-  b = tess_find(t, b);
+  a = cag_tess_find(t, a);
+  b = cag_tess_find(t, b);
   if (a < b) t->weld[b] = a;
   else t->weld[a] = b;
 }
@@ -165,9 +165,9 @@ static CagStatus fill_corner(Tessellator *t, Corner *c, CagError *err) {
       if (t->uv[2 * other] == u && t->uv[2 * other + 1] == v) c->quadrant[q] = other;
     }
     if (c->quadrant[q] != NO_INDEX) continue;
-    status = tess_new_vertex(t, point, normal, u, v, &c->quadrant[q], err);
+    status = cag_tess_new_vertex(t, point, normal, u, v, &c->quadrant[q], err);
     if (status != CAG_OK) return status;
-    tess_unite(t, c->quadrant[3], c->quadrant[q]);
+    cag_tess_unite(t, c->quadrant[3], c->quadrant[q]);
   }
   return CAG_OK;
 }
@@ -185,7 +185,7 @@ static CagStatus corner_at(Tessellator *t, uint32_t face, double u, double v, ui
     return CAG_OK;
   }
   CagStatus status =
-      tess_grow(&t->corners, t->corner_count, &t->corner_capacity, sizeof *t->corners, err);
+      cag_tess_grow(&t->corners, t->corner_count, &t->corner_capacity, sizeof *t->corners, err);
   if (status != CAG_OK) return status;
   Corner c = {u + 0.0, v + 0.0, face, {vertex, vertex, vertex, vertex}};
   if (vertex == NO_INDEX) status = fill_corner(t, &c, err);
@@ -195,8 +195,8 @@ static CagStatus corner_at(Tessellator *t, uint32_t face, double u, double v, ui
   return CAG_OK;
 }
 
-uint32_t tess_node_vertex(const Tessellator *t, const Line *line, const Node *node, bool after,
-                          bool node_is_end) {
+uint32_t cag_tess_node_vertex(const Tessellator *t, const Line *line, const Node *node, bool after,
+                              bool node_is_end) {
   if (node->corner == NO_INDEX) return node->vertex[after];
   // The leaf lies before a node that ends its side, after one that begins it (or lies within it).
   bool after_u = line->fixed == 0 ? after : !node_is_end,
@@ -260,11 +260,11 @@ static CagStatus pole_nodes(Tessellator *t, Line *line, CagError *err) {
       status = sided_vertex(s, in_u, in_v, true, true, &other, &normal, err);
     }
     if (status == CAG_OK && (first == NO_INDEX || !has_limit))
-      status = tess_new_vertex(t, point, normal, u, v, &nodes[k].vertex[0], err);
+      status = cag_tess_new_vertex(t, point, normal, u, v, &nodes[k].vertex[0], err);
     else nodes[k].vertex[0] = first;
     if (status != CAG_OK) return status;
     if (first == NO_INDEX) first = nodes[k].vertex[0];
-    tess_unite(t, first, nodes[k].vertex[0]);
+    cag_tess_unite(t, first, nodes[k].vertex[0]);
     nodes[k].vertex[1] = nodes[k].vertex[0];
     if (nodes[k].corner == NO_INDEX) continue;
     node_parameters(line, nodes[k].t, true, &u, &v);
@@ -313,8 +313,8 @@ static CagStatus row_of_nodes(Tessellator *t, Line *line, bool after, const Row 
       normal = limit_normal(s, u, v, after || line->fixed != 0, after || line->fixed == 0);
     uint32_t other = node->vertex[!after];
     if (other != NO_INDEX && alike(t->normals[other], normal)) normal = t->normals[other];
-    status = tess_new_vertex(t, row->points[k], normal, u, v, &node->vertex[after], err);
-    tess_unite(t, other, node->vertex[after]);
+    status = cag_tess_new_vertex(t, row->points[k], normal, u, v, &node->vertex[after], err);
+    cag_tess_unite(t, other, node->vertex[after]);
   }
   return status;
 }
@@ -342,9 +342,9 @@ static CagStatus crease_nodes(Tessellator *t, Line *line, bool only_look, bool *
     if (alike(normal, t->normals[node->vertex[1]])) continue;
     *found = true;
     if (only_look) return CAG_OK;
-    status = tess_new_vertex(t, point, normal, u, v, &node->vertex[0], err);
+    status = cag_tess_new_vertex(t, point, normal, u, v, &node->vertex[0], err);
     if (status != CAG_OK) return status;
-    tess_unite(t, node->vertex[1], node->vertex[0]);
+    cag_tess_unite(t, node->vertex[1], node->vertex[0]);
   }
   return CAG_OK;
 }
@@ -371,8 +371,8 @@ static void unite_joined(Tessellator *t, const Line *slave) {
   const Line *master = &t->lines[slave->joined];
   for (size_t k = 0; k < slave->node_count; k++) {
     size_t at = slave->joined_reversed ? slave->node_count - 1 - k : k;
-    tess_unite(t, some_vertex(t, &t->nodes[master->node + at]),
-               some_vertex(t, &t->nodes[slave->node + k]));
+    cag_tess_unite(t, some_vertex(t, &t->nodes[master->node + at]),
+                   some_vertex(t, &t->nodes[slave->node + k]));
   }
 }
 
@@ -403,7 +403,7 @@ static CagStatus begin_nodes(Tessellator *t, Row *row, CagError *err) {
   return CAG_OK;
 }
 
-CagStatus tess_make_nodes(Tessellator *t, CagError *err) {
+CagStatus cag_tess_make_nodes(Tessellator *t, CagError *err) {
   Row row = {0};
   CagStatus status = begin_nodes(t, &row, err);
   // Poles first: lines that end there take the pole's vertex for their corner.

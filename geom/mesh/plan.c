@@ -337,7 +337,7 @@ static CagStatus try_distance(const TessTrial *trial, const Needs *needs, double
                               CagError *err) {
   double sine[2];
   for (int d = 0; d < 2; d++) sine[d] = sin(tess_smaller(needs->turn[d] / trial->n[d], M_PI / 2));
-  return tess_try_distance(trial, sine, distance, err);
+  return cag_tess_try_distance(trial, sine, distance, err);
 }
 
 // Finds counts whose measured distance lies under the tolerance and not far under it. `surprise`:
@@ -355,7 +355,7 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
     counts_for(&t->how, &needs, correction, n);
     double quads = n[0] * n[1], distance;
     if (quads >= smallest) break;
-    if (quads > limit) return tess_limit(t, 2 * quads, err);
+    if (quads > limit) return cag_tess_limit(t, 2 * quads, err);
     if (round == 0) told = tess_larger(quads, WORTH_HALVING);
     if (halved && quads > blind * told) {
       *halved = longer_way(&needs);
@@ -365,7 +365,7 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
     if (status != CAG_OK) return status;
     double use = distance / tolerance;
     if (use <= highest_use) {
-      status = tess_try_middles(trial, &distance, err);
+      status = cag_tess_try_middles(trial, &distance, err);
       if (status != CAG_OK) return status;
       use = tess_larger(use, distance / tolerance);
     }
@@ -395,7 +395,7 @@ static CagStatus settle_distance(const Tessellator *t, TessTrial *trial, Needs n
   for (double distance = INFINITY; distance > highest_use * tolerance;) {
     n[0] *= 2;
     n[1] *= 2;
-    if (n[0] * n[1] > limit) return tess_limit(t, 2 * n[0] * n[1], err);
+    if (n[0] * n[1] > limit) return cag_tess_limit(t, 2 * n[0] * n[1], err);
     CagStatus status = try_distance(trial, &needs, &distance, err);
     if (status != CAG_OK) return status;
   }
@@ -422,7 +422,7 @@ static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Need
     if (!turns && !runs) return CAG_OK;
     TessExcess found;
     CagStatus status =
-        tess_try_edges(trial, closely * how->angle, free, how->max_edge, &found, err);
+        cag_tess_try_edges(trial, closely * how->angle, free, how->max_edge, &found, err);
     if (status != CAG_OK) return status;
     double worst = tess_larger(found.diagonal, tess_larger(found.along[0], found.along[1]));
     if (worst <= 1) return CAG_OK;
@@ -440,7 +440,7 @@ static CagStatus settle_edges(const Tessellator *t, TessTrial *trial, const Need
       grown |= by > 1 && more > n[d];
       if (by > 1) n[d] = more;
     }
-    if (n[0] * n[1] > (double)how->max_triangles) return tess_limit(t, 2 * n[0] * n[1], err);
+    if (n[0] * n[1] > (double)how->max_triangles) return cag_tess_limit(t, 2 * n[0] * n[1], err);
     if (!grown) return CAG_OK;
   }
   return CAG_OK;
@@ -455,9 +455,9 @@ static CagStatus settle_counts(const Tessellator *t, const CagSurface *surface, 
   CagStatus status = settle_distance(t, &trial, needs, halved, err);
   if (status == CAG_OK && !(halved && *halved >= 0))
     status = settle_edges(t, &trial, &needs, halved, err);
-  if (status == CAG_OK && halved && *halved < 0 && tess_is_known_by_points(surface)) {
+  if (status == CAG_OK && halved && *halved < 0 && cag_tess_is_known_by_points(surface)) {
     bool missed;
-    status = tess_try_scattered(&trial, t->how.tolerance, &missed, err);
+    status = cag_tess_try_scattered(&trial, t->how.tolerance, &missed, err);
     if (status == CAG_OK && missed) {
       *halved = longer_way(&needs);
       *suspect = true;
@@ -539,7 +539,7 @@ static uint32_t least_steps(const CagSurface *s, int direction, double from, dou
 static CagStatus add_leaf(Tessellator *t, uint32_t face, const Sampled *s, const double n[2],
                           CagError *err) {
   CagStatus status =
-      tess_grow(&t->leaves, t->leaf_count, &t->leaf_capacity, sizeof *t->leaves, err);
+      cag_tess_grow(&t->leaves, t->leaf_count, &t->leaf_capacity, sizeof *t->leaves, err);
   if (status != CAG_OK) return status;
   Leaf *leaf = &t->leaves[t->leaf_count++];
   memset(leaf, 0, sizeof *leaf);
@@ -553,13 +553,13 @@ static CagStatus add_leaf(Tessellator *t, uint32_t face, const Sampled *s, const
   }
   // Those at poles become one triangle, all others two.
   t->quads += n[0] * n[1];
-  return t->quads > (double)t->how.max_triangles ? tess_limit(t, 2 * t->quads, err) : CAG_OK;
+  return t->quads > (double)t->how.max_triangles ? cag_tess_limit(t, 2 * t->quads, err) : CAG_OK;
 }
 
 // The halves of a leaf, lower one first. suspect: see TessTrial.
 static CagStatus plan_leaf(Tessellator *t, uint32_t face, const double from[2], const double to[2],
                            int depth, bool suspect, CagError *err) {
-  CagStatus status = tess_interrupted(t, err);
+  CagStatus status = cag_tess_interrupted(t, err);
   if (status != CAG_OK) return status;
   const CagSurface *surface = t->faces[face].surface;
   Sampled s;
@@ -602,7 +602,7 @@ static CagStatus find_breaks(Face *f, int direction, CagError *err) {
   return CAG_OK;
 }
 
-CagStatus tess_plan_face(Tessellator *t, uint32_t face, CagError *err) {
+CagStatus cag_tess_plan_face(Tessellator *t, uint32_t face, CagError *err) {
   Face *f = &t->faces[face];
   f->leaf = t->leaf_count;
   for (int d = 0; d < 2; d++) {

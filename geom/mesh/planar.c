@@ -45,7 +45,7 @@ static uint32_t node_vertex(const Tessellator *t, size_t at) {
 }
 
 static uint32_t node_root(Tessellator *t, const Line *line, bool last) {
-  return tess_find(t, node_vertex(t, line->node + (last ? line->node_count - 1 : 0)));
+  return cag_tess_find(t, node_vertex(t, line->node + (last ? line->node_count - 1 : 0)));
 }
 
 // --- Loops that are edges of other faces ---
@@ -60,7 +60,7 @@ static CagStatus find_pieces(const Tessellator *t, const CagSolid *solid, uint32
     for (int k = 0; k < 2; k++) {
       const struct CagSolidEdge *edge = &solid->edges[e];
       if (edge->face[k] != face || edge->side[k] != side) continue;
-      uint32_t line = tess_side_line(t, (uint32_t)edge->face[1 - k], edge->side[1 - k]);
+      uint32_t line = cag_tess_side_line(t, (uint32_t)edge->face[1 - k], edge->side[1 - k]);
       if (line != NO_INDEX) pieces[(*n)++] = (Piece){&t->lines[line], false};
     }
   *out = pieces;
@@ -68,7 +68,7 @@ static CagStatus find_pieces(const Tessellator *t, const CagSolid *solid, uint32
 }
 
 static bool is_same(Tessellator *t, uint32_t a, uint32_t b) {
-  return a != NO_INDEX && b != NO_INDEX && tess_find(t, a) == tess_find(t, b);
+  return a != NO_INDEX && b != NO_INDEX && cag_tess_find(t, a) == cag_tess_find(t, b);
 }
 
 // Appends the nodes of a piece, from its start or from its end; the last one is left to the next
@@ -77,7 +77,7 @@ static CagStatus append_piece(Tessellator *t, Outline *o, size_t first, const Li
                               bool backwards, CagError *err) {
   for (size_t k = 0; k < line->node_count; k++) {
     size_t at = line->node + (backwards ? line->node_count - 1 - k : k);
-    const uint32_t v = tess_find(t, node_vertex(t, at));
+    const uint32_t v = cag_tess_find(t, node_vertex(t, at));
     if (o->count > first && is_same(t, o->vertices[o->count - 1], v)) continue;
     CagStatus status = add_point(o, t->positions[v], v, err);
     if (status != CAG_OK) return status;
@@ -109,13 +109,14 @@ static CagStatus outline_of_pieces(Tessellator *t, Outline *o, Piece *pieces, si
         backwards = last;
       }
     pieces[best].used = true;
-    if (least <= rounding * t->size) tess_unite(t, end, node_root(t, pieces[best].line, backwards));
+    if (least <= rounding * t->size)
+      cag_tess_unite(t, end, node_root(t, pieces[best].line, backwards));
     status = append_piece(t, o, first, pieces[best].line, backwards, err);
     end = node_root(t, pieces[best].line, !backwards);
   }
   uint32_t start = node_root(t, pieces[0].line, false);
   if (n > 1 && cag_norm(cag_sub(t->positions[start], t->positions[end])) <= rounding * t->size)
-    tess_unite(t, start, end);
+    cag_tess_unite(t, start, end);
   while (o->count > first + 1 && is_same(t, o->vertices[o->count - 1], o->vertices[first]))
     o->count--;
   return status;
@@ -200,7 +201,7 @@ static CagStatus append_from(Tessellator *t, Outline *o, size_t first, const Pie
                              bool backwards, double slack, CagError *err) {
   const uint32_t from = node_root(t, piece->line, backwards);
   if (o->count > first && cag_norm(cag_sub(o->points[o->count - 1], t->positions[from])) <= slack) {
-    if (o->vertices[o->count - 1] != NO_INDEX) tess_unite(t, o->vertices[o->count - 1], from);
+    if (o->vertices[o->count - 1] != NO_INDEX) cag_tess_unite(t, o->vertices[o->count - 1], from);
     o->count--;
   }
   return append_piece(t, o, first, piece->line, backwards, err);
@@ -232,7 +233,7 @@ static void close_outline(Tessellator *t, Outline *o, size_t first, double slack
     return;
   uint32_t *start = &o->vertices[first], last = o->vertices[o->count - 1];
   if (*start == NO_INDEX) *start = last;
-  else tess_unite(t, *start, last);
+  else cag_tess_unite(t, *start, last);
   o->count--;
 }
 
@@ -263,7 +264,7 @@ static size_t steps_between(const Tessellator *t, CagVec3 p, CagVec3 q) {
 
 static CagStatus check_count(const Tessellator *t, const Outline *o, CagError *err) {
   if ((double)o->count <= (double)t->how.max_triangles + 2) return CAG_OK;
-  return tess_limit(t, (double)o->count, err);
+  return cag_tess_limit(t, (double)o->count, err);
 }
 
 // The straight edge from p to q without its end.
@@ -373,10 +374,10 @@ static CagStatus own_vertices(Tessellator *t, const Outline *o, const CagTransfo
     CagVec3 flat = cag_transform_point(&back, o->points[k]);
     xy[2 * k] = flat.x;
     xy[2 * k + 1] = flat.y;
-    status = tess_new_vertex(t, o->points[k], normal, flat.x, flat.y, &vertices[k], err);
-    if (status == CAG_OK) tess_unite(t, o->vertices[k], vertices[k]);
+    status = cag_tess_new_vertex(t, o->points[k], normal, flat.x, flat.y, &vertices[k], err);
+    if (status == CAG_OK) cag_tess_unite(t, o->vertices[k], vertices[k]);
     if (status == CAG_OK && o->vertices[k] == NO_INDEX)
-      status = tess_grow(&t->own, t->own_count, &t->own_capacity, sizeof *t->own, err);
+      status = cag_tess_grow(&t->own, t->own_count, &t->own_capacity, sizeof *t->own, err);
     if (status == CAG_OK && o->vertices[k] == NO_INDEX) t->own[t->own_count++] = vertices[k];
   }
   return status;
@@ -398,7 +399,8 @@ static CagStatus triangulate_outline(Tessellator *t, Face *f, const Outline *o,
   return status;
 }
 
-CagStatus tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid, CagError *err) {
+CagStatus cag_tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid,
+                               CagError *err) {
   Face *f = &t->faces[face];
   const CagRegion *region;
   CagTransform frame;
@@ -435,7 +437,7 @@ static int by_x(const void *a, const void *b) {
   return p->vertex < q->vertex ? -1 : p->vertex > q->vertex;
 }
 
-CagStatus tess_unite_corners(Tessellator *t, CagError *err) {
+CagStatus cag_tess_unite_corners(Tessellator *t, CagError *err) {
   const double slack = 4e-6 * t->size; // edges of shells gape by 1e-6 at most
   if (t->own_count == 0) return CAG_OK;
   Place *places = cag_malloc((t->own_count + 2 * t->line_count) * sizeof *places);
@@ -450,7 +452,7 @@ CagStatus tess_unite_corners(Tessellator *t, CagError *err) {
   for (size_t i = 0; i < n; i++)
     for (size_t k = i + 1; k < n && places[k].at.x - places[i].at.x <= slack; k++)
       if (cag_norm(cag_sub(places[k].at, places[i].at)) <= slack)
-        tess_unite(t, places[i].vertex, places[k].vertex);
+        cag_tess_unite(t, places[i].vertex, places[k].vertex);
   cag_free(places);
   return CAG_OK;
 }

@@ -220,7 +220,7 @@ static CagStatus cut_cell(Run *r, const Cell *c, double most, bool *possible, Ca
     }
     if (!*possible) break;
     const CagStatus status =
-        tess_grow(&r->strips, r->strip_count, &r->strip_capacity, sizeof *r->strips, err);
+        cag_tess_grow(&r->strips, r->strip_count, &r->strip_capacity, sizeof *r->strips, err);
     if (status != CAG_OK) return status;
     r->strips[r->strip_count++] = strip;
   }
@@ -321,13 +321,13 @@ static CagStatus try_strip(const Run *r, const Strip *strip, double *use, double
   sine[r->along] = sin(fmin(strip->turn[1], M_PI / 2));
   TessExcess found;
   bool missed = false;
-  CagStatus status = tess_try_distance(&trial, sine, &distance[0], err);
-  if (status == CAG_OK) status = tess_try_middles(&trial, &distance[1], err);
+  CagStatus status = cag_tess_try_distance(&trial, sine, &distance[0], err);
+  if (status == CAG_OK) status = cag_tess_try_middles(&trial, &distance[1], err);
   if (status == CAG_OK)
-    status = tess_try_edges(&trial, closely * how->angle, shortest_edge * how->tolerance,
-                            how->max_edge, &found, err);
-  if (status == CAG_OK && tess_is_known_by_points(r->surface))
-    status = tess_try_scattered(&trial, how->tolerance, &missed, err);
+    status = cag_tess_try_edges(&trial, closely * how->angle, shortest_edge * how->tolerance,
+                                how->max_edge, &found, err);
+  if (status == CAG_OK && cag_tess_is_known_by_points(r->surface))
+    status = cag_tess_try_scattered(&trial, how->tolerance, &missed, err);
   if (status != CAG_OK) return status;
   *use = missed ? INFINITY : fmax(distance[0], distance[1]) / how->tolerance;
   *excess = fmax(found.diagonal, fmax(found.along[0], found.along[1]));
@@ -342,7 +342,7 @@ static CagStatus try_run(const Run *r, double *use, double *excess, CagError *er
     status = try_strip(r, &r->strips[k], &u, &e, err);
     if (status == CAG_OK) *use = fmax(*use, u), *excess = fmax(*excess, e);
   }
-  return status == CAG_OK ? tess_interrupted(r->t, err) : status;
+  return status == CAG_OK ? cag_tess_interrupted(r->t, err) : status;
 }
 
 // Finds strips that keep the tolerance and the limits of edges without being much finer than
@@ -417,7 +417,7 @@ static CagStatus replace_leaves(Tessellator *t, uint32_t face, const Run *r, Cag
   for (size_t k = 0; k < r->strip_count; k++) {
     const Strip *strip = &r->strips[k];
     const CagStatus status =
-        tess_grow(&t->leaves, t->leaf_count, &t->leaf_capacity, sizeof *t->leaves, err);
+        cag_tess_grow(&t->leaves, t->leaf_count, &t->leaf_capacity, sizeof *t->leaves, err);
     if (status != CAG_OK) return status;
     Leaf *leaf = &t->leaves[t->leaf_count++];
     *leaf = (Leaf){.face = face, .n = {1, 1}};
@@ -451,11 +451,11 @@ static CagStatus try_cells(Run *r, Plan *plan, CagError *err) {
   }
   r->low = r->cells[0].from;
   r->high = r->cells[r->cell_count - 1].to;
-  CagStatus status = tess_interrupted(r->t, err);
+  CagStatus status = cag_tess_interrupted(r->t, err);
   if (status == CAG_OK && possible) status = settle_run(r, gain * quads, &settled, err);
   cag_free(bends);
   if (status == CAG_OK && settled)
-    status = tess_grow(&plan->runs, plan->count, &plan->capacity, sizeof *plan->runs, err);
+    status = cag_tess_grow(&plan->runs, plan->count, &plan->capacity, sizeof *plan->runs, err);
   if (status == CAG_OK && settled) {
     plan->saved += quads - (double)r->strip_count * r->steps;
     plan->runs[plan->count++] = *r;
@@ -525,7 +525,7 @@ static CagStatus plan_direction(const Tessellator *t, const Face *f, int along, 
   return status;
 }
 
-CagStatus tess_plan_strips(Tessellator *t, uint32_t face, CagError *err) {
+CagStatus cag_tess_plan_strips(Tessellator *t, uint32_t face, CagError *err) {
   const Face *f = &t->faces[face];
   Plan plans[2] = {{0}, {0}};
   double quads = 0;

@@ -13,7 +13,7 @@
 #include "geom/solid/csg.h"
 #include "geom/surface/trimmed.h"
 
-CagStatus tess_grow(void *array, size_t count, size_t *capacity, size_t size, CagError *err) {
+CagStatus cag_tess_grow(void *array, size_t count, size_t *capacity, size_t size, CagError *err) {
   if (count < *capacity) return CAG_OK;
   void **at = array;
   size_t n = *capacity ? 2 * *capacity : 64;
@@ -24,13 +24,13 @@ CagStatus tess_grow(void *array, size_t count, size_t *capacity, size_t size, Ca
   return CAG_OK;
 }
 
-CagStatus tess_interrupted(const Tessellator *t, CagError *err) {
+CagStatus cag_tess_interrupted(const Tessellator *t, CagError *err) {
   if (!t->how.interrupt || !*t->how.interrupt) return CAG_OK;
   return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1,
                   "the tessellation was interrupted");
 }
 
-CagStatus tess_limit(const Tessellator *t, double triangles, CagError *err) {
+CagStatus cag_tess_limit(const Tessellator *t, double triangles, CagError *err) {
   char tolerance[32];
   return cag_fail(err, CAG_E_LIMIT, CAG_ERR_limit_triangles, "tolerance", -1,
                   "a tolerance of %s mm takes more than %.0f triangles, the limit is %zu: use a "
@@ -91,11 +91,11 @@ static CagStatus begin(Tessellator *t, const CagTessellation *how, const CagBoun
 static CagStatus join_edges(Tessellator *t, const CagSolid *solid, CagError *err) {
   for (size_t e = 0; e < solid->edge_count; e++) {
     const struct CagSolidEdge *edge = &solid->edges[e];
-    uint32_t a = tess_side_line(t, (uint32_t)edge->face[0], edge->side[0]),
-             b = tess_side_line(t, (uint32_t)edge->face[1], edge->side[1]);
+    uint32_t a = cag_tess_side_line(t, (uint32_t)edge->face[0], edge->side[0]),
+             b = cag_tess_side_line(t, (uint32_t)edge->face[1], edge->side[1]);
     if (a == NO_INDEX || b == NO_INDEX || a == b) continue;
     if (t->lines[a].joined != NO_INDEX || t->lines[b].joined != NO_INDEX) continue;
-    CagStatus status = tess_join_lines(t, a, b, edge->reversed, err);
+    CagStatus status = cag_tess_join_lines(t, a, b, edge->reversed, err);
     if (status != CAG_OK) return status;
   }
   return CAG_OK;
@@ -105,17 +105,17 @@ static CagStatus run(Tessellator *t, const CagSolid *solid, CagMesh **out, CagEr
   CagStatus status = CAG_OK;
   for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
     if (!t->faces[k].planar) {
-      status = tess_plan_face(t, k, err);
-      if (status == CAG_OK) status = tess_plan_strips(t, k, err);
+      status = cag_tess_plan_face(t, k, err);
+      if (status == CAG_OK) status = cag_tess_plan_strips(t, k, err);
     }
   for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
-    if (!t->faces[k].planar) status = tess_make_even_lines(t, k, err);
+    if (!t->faces[k].planar) status = cag_tess_make_even_lines(t, k, err);
   if (status == CAG_OK && solid) status = join_edges(t, solid, err);
-  if (status == CAG_OK) status = tess_make_nodes(t, err);
+  if (status == CAG_OK) status = cag_tess_make_nodes(t, err);
   for (uint32_t k = 0; status == CAG_OK && k < t->face_count; k++)
-    if (t->faces[k].planar) status = tess_planar_face(t, k, solid, err);
-  if (status == CAG_OK && solid) status = tess_unite_corners(t, err);
-  return status == CAG_OK ? tess_fill(t, out, err) : status;
+    if (t->faces[k].planar) status = cag_tess_planar_face(t, k, solid, err);
+  if (status == CAG_OK && solid) status = cag_tess_unite_corners(t, err);
+  return status == CAG_OK ? cag_tess_fill(t, out, err) : status;
 }
 
 CagStatus cag_surface_tessellate(const CagSurface *s, const CagTessellation *how, CagMesh **out,

@@ -36,7 +36,7 @@ typedef struct Slants {
 typedef struct Leaf {
   double from[2], to[2];     // [0]: u, [1]: v
   Slants slants;             // of a strip; its n are 1
-  uint32_t n[2], planned[2]; // as it is, and before tess_make_even_lines
+  uint32_t n[2], planned[2]; // as it is, and before cag_tess_make_even_lines
   uint32_t face;
   uint32_t line[4];     // by side
   size_t nodes[4];      // index of the side's first node among all nodes
@@ -124,40 +124,40 @@ typedef struct Tessellator {
 } Tessellator;
 
 // Grows an array so that one more element fits.
-CagStatus tess_grow(void *array, size_t count, size_t *capacity, size_t size, CagError *err);
-CagStatus tess_interrupted(const Tessellator *t, CagError *err);
-CagStatus tess_limit(const Tessellator *t, double triangles, CagError *err);
+CagStatus cag_tess_grow(void *array, size_t count, size_t *capacity, size_t size, CagError *err);
+CagStatus cag_tess_interrupted(const Tessellator *t, CagError *err);
+CagStatus cag_tess_limit(const Tessellator *t, double triangles, CagError *err);
 
-CagStatus tess_plan_face(Tessellator *t, uint32_t face, CagError *err);
+CagStatus cag_tess_plan_face(Tessellator *t, uint32_t face, CagError *err);
 // Replaces cells with strips if these take clearly fewer triangles than the leaves found by
-// tess_plan_face.
-CagStatus tess_plan_strips(Tessellator *t, uint32_t face, CagError *err);
-CagStatus tess_make_lines(Tessellator *t, uint32_t face, CagError *err);
-// Lines as tess_make_lines, with the counts of thin leaves raised to those beside them.
-CagStatus tess_make_even_lines(Tessellator *t, uint32_t face, CagError *err);
+// cag_tess_plan_face.
+CagStatus cag_tess_plan_strips(Tessellator *t, uint32_t face, CagError *err);
+CagStatus cag_tess_make_lines(Tessellator *t, uint32_t face, CagError *err);
+// Lines as cag_tess_make_lines, with the counts of thin leaves raised to those beside them.
+CagStatus cag_tess_make_even_lines(Tessellator *t, uint32_t face, CagError *err);
 // Divides the atoms of a line until its chords keep the tolerance, where it is a border or a
 // crease.
-CagStatus tess_refine_chords(Tessellator *t, Line *line, CagError *err);
+CagStatus cag_tess_refine_chords(Tessellator *t, Line *line, CagError *err);
 // Index of the line on a side of a face; NO_INDEX: the face is planar or the side is a pole or
 // seam.
-uint32_t tess_side_line(const Tessellator *t, uint32_t face, int side);
-CagStatus tess_join_lines(Tessellator *t, uint32_t master, uint32_t slave, bool reversed,
-                          CagError *err);
-CagStatus tess_make_nodes(Tessellator *t, CagError *err);
-CagStatus tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid, CagError *err);
+uint32_t cag_tess_side_line(const Tessellator *t, uint32_t face, int side);
+CagStatus cag_tess_join_lines(Tessellator *t, uint32_t master, uint32_t slave, bool reversed,
+                              CagError *err);
+CagStatus cag_tess_make_nodes(Tessellator *t, CagError *err);
+CagStatus cag_tess_planar_face(Tessellator *t, uint32_t face, const CagSolid *solid, CagError *err);
 // Makes one of the corners of planar faces of a solid that lie in one place.
-CagStatus tess_unite_corners(Tessellator *t, CagError *err);
-CagStatus tess_fill(Tessellator *t, CagMesh **out, CagError *err);
+CagStatus cag_tess_unite_corners(Tessellator *t, CagError *err);
+CagStatus cag_tess_fill(Tessellator *t, CagMesh **out, CagError *err);
 // Flips edges of triangles that lean away from the surface.
-CagStatus tess_turn_edges(const Tessellator *t, CagMesh *m, CagError *err);
+CagStatus cag_tess_turn_edges(const Tessellator *t, CagMesh *m, CagError *err);
 
-CagStatus tess_new_vertex(Tessellator *t, CagVec3 position, CagVec3 normal, double u, double v,
-                          uint32_t *out, CagError *err);
-uint32_t tess_find(Tessellator *t, uint32_t vertex);
-void tess_unite(Tessellator *t, uint32_t a, uint32_t b);
+CagStatus cag_tess_new_vertex(Tessellator *t, CagVec3 position, CagVec3 normal, double u, double v,
+                              uint32_t *out, CagError *err);
+uint32_t cag_tess_find(Tessellator *t, uint32_t vertex);
+void cag_tess_unite(Tessellator *t, uint32_t a, uint32_t b);
 // The vertex by which the leaves of its own face after (or before) the line see a node.
-uint32_t tess_node_vertex(const Tessellator *t, const Line *line, const Node *node, bool after,
-                          bool node_is_end);
+uint32_t cag_tess_node_vertex(const Tessellator *t, const Line *line, const Node *node, bool after,
+                              bool node_is_end);
 static inline bool tess_is_strip(const Leaf *leaf) { return leaf->slants.step > 0; }
 
 static inline double tess_mix(double a, double b, size_t k, size_t n) {

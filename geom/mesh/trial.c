@@ -145,8 +145,8 @@ static CagStatus evaluate_places(const TessTrial *t, int most, const double *pla
                   grid->points, NULL, err);
 }
 
-CagStatus tess_try_distance(const TessTrial *trial, const double sine[2], double *distance,
-                            CagError *err) {
+CagStatus cag_tess_try_distance(const TessTrial *trial, const double sine[2], double *distance,
+                                CagError *err) {
   Grid grid;
   CagStatus status = evaluate_places(trial, TRIED, place, PLACES, &grid, err);
   if (status != CAG_OK) return status;
@@ -160,7 +160,7 @@ CagStatus tess_try_distance(const TessTrial *trial, const double sine[2], double
   return CAG_OK;
 }
 
-CagStatus tess_try_middles(const TessTrial *trial, double *distance, CagError *err) {
+CagStatus cag_tess_try_middles(const TessTrial *trial, double *distance, CagError *err) {
   static const double ends_and_middle[3] = {0, 0.5, 1};
   Grid grid;
   *distance = 0;
@@ -222,8 +222,8 @@ static size_t corners_along(const TessTrial *t, int d, double *out, size_t *step
   return n;
 }
 
-CagStatus tess_try_edges(const TessTrial *trial, double angle, double free, double longest,
-                         TessExcess *out, CagError *err) {
+CagStatus cag_tess_try_edges(const TessTrial *trial, double angle, double free, double longest,
+                             TessExcess *out, CagError *err) {
   const EdgeLimits most = {angle, free, longest};
   double ts[2][2 * EDGES];
   CagVec3 p[4 * EDGES * EDGES], q[4 * EDGES * EDGES]; // points and normals
@@ -254,7 +254,7 @@ CagStatus tess_try_edges(const TessTrial *trial, double angle, double free, doub
 
 // --- Scattered points ---
 
-bool tess_is_known_by_points(const CagSurface *s) {
+bool cag_tess_is_known_by_points(const CagSurface *s) {
   CagTransform map;
   while (cag_surface_placed_view(s, &s, &map)) continue;
   return !s->kind->to_nurbs && !cag_surface_trimmed_view(s, NULL, NULL);
@@ -330,8 +330,8 @@ static CagStatus try_row(const Scatter *s, double u, double shift, double tolera
   return status;
 }
 
-CagStatus tess_try_scattered(const TessTrial *trial, double tolerance, bool *missed,
-                             CagError *err) {
+CagStatus cag_tess_try_scattered(const TessTrial *trial, double tolerance, bool *missed,
+                                 CagError *err) {
   const double golden = 0.6180339887498949;
   static const double beside[] = {0.5, 0, 0.25, 0.75}; // of the way from row to row
   const CagSurface *f = trial->surface;

@@ -17,16 +17,16 @@ typedef struct TessTrial {
   double from[2], to[2], n[2];
   int along;
   double slope;
-  bool suspect; // something thin was missed here before: tess_try_scattered looks more closely
+  bool suspect; // something thin was missed here before: cag_tess_try_scattered looks more closely
 } TessTrial;
 
 // Largest distance found from the surface to the triangles, on the middles, thirds and edges of
 // some quadrilaterals. sine: of the angle between neighbors along u and v.
-CagStatus tess_try_distance(const TessTrial *trial, const double sine[2], double *distance,
-                            CagError *err);
+CagStatus cag_tess_try_distance(const TessTrial *trial, const double sine[2], double *distance,
+                                CagError *err);
 // The same on the middles of more quadrilaterals, for leaves too large for the former to see all;
 // of those that are not, it gives 0.
-CagStatus tess_try_middles(const TessTrial *trial, double *distance, CagError *err);
+CagStatus cag_tess_try_middles(const TessTrial *trial, double *distance, CagError *err);
 
 // By how much edges of quadrilaterals exceed what is allowed: 1 where one just does not.
 typedef struct TessExcess {
@@ -34,17 +34,18 @@ typedef struct TessExcess {
 } TessExcess;
 // angle: that the normal may turn along an edge; free: edges shorter than this may turn it more;
 // longest: length of edges; either 0: none.
-CagStatus tess_try_edges(const TessTrial *trial, double angle, double free, double longest,
-                         TessExcess *out, CagError *err);
+CagStatus cag_tess_try_edges(const TessTrial *trial, double angle, double free, double longest,
+                             TessExcess *out, CagError *err);
 
 // Formulas, and what is made of them, may do anything between two samples; what has an exact form
 // is tame within its breaks.
-bool tess_is_known_by_points(const CagSurface *s);
+bool cag_tess_is_known_by_points(const CagSurface *s);
 
 // Is the surface farther from the triangles than the tolerance somewhere on a fixed set of points,
 // which is the same for all leaves of a face? For surfaces of which nothing but points is known:
 // what is wider than a 64th of the domain is met, and lines much thinner than that. Leaves that are
 // finer than the set are not looked at.
-CagStatus tess_try_scattered(const TessTrial *trial, double tolerance, bool *missed, CagError *err);
+CagStatus cag_tess_try_scattered(const TessTrial *trial, double tolerance, bool *missed,
+                                 CagError *err);
 
 #endif

@@ -161,7 +161,7 @@ static CagStatus turn_all(Turner *t, CagError *err) {
   return status;
 }
 
-CagStatus tess_turn_edges(const Tessellator *tess, CagMesh *m, CagError *err) {
+CagStatus cag_tess_turn_edges(const Tessellator *tess, CagMesh *m, CagError *err) {
   Turner t = {.how = &tess->how, .m = m};
   bool any = false;
   if (!(t.how->angle > 0)) return CAG_OK;

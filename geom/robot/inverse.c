@@ -1,6 +1,6 @@
 // Closed-form inverse kinematics: chains as rows, their recognition, and the parts put together.
-// inverse_arm.c solves for three joints that place a point, inverse_parallel.c chains with parallel
-// axes; here are wrists, and chains that the orientation alone gives away.
+// inverse_arm.c solves for three joints that place a point, inverse_parallel.c chains with
+// parallel axes; here are wrists, and chains that the orientation alone gives away.
 
 #include "geom/robot/inverse_parts.h"
 
@@ -87,7 +87,7 @@ static bool chain_of(const CagRobot *r, InverseChain *c) {
   return true;
 }
 
-void inverse_strip_left(const InverseRow *row, double q, CagRobotFrame *f) {
+void cag_inverse_strip_left(const InverseRow *row, double q, CagRobotFrame *f) {
   const double theta = inverse_theta(row, q), s = -sin(theta), c = cos(theta);
   CagVec3 *const columns[] = {&f->x, &f->y, &f->z};
   for (int i = 0; i < 3; i++)
@@ -98,15 +98,15 @@ void inverse_strip_left(const InverseRow *row, double q, CagRobotFrame *f) {
   f->p = inverse_turn_x(p, -row->sine, row->cosine);
 }
 
-void inverse_strip_crank(const InverseRow *row, CagRobotFrame *f) {
+void cag_inverse_strip_crank(const InverseRow *row, CagRobotFrame *f) {
   const CagVec3 y = f->y;
   f->y = cag_madd(cag_scaled(y, row->cosine), -row->sine, f->z);
   f->z = cag_madd(cag_scaled(f->z, row->cosine), row->sine, y);
   f->p = cag_madd(cag_madd(f->p, -row->a, f->x), row->turns ? -row->shift : 0, f->z);
 }
 
-void inverse_strip_right(const InverseRow *row, double q, CagRobotFrame *f) {
-  inverse_strip_crank(row, f);
+void cag_inverse_strip_right(const InverseRow *row, double q, CagRobotFrame *f) {
+  cag_inverse_strip_crank(row, f);
   if (!row->turns) f->p = cag_madd(f->p, -inverse_d(row, q), f->z);
   const double theta = inverse_theta(row, q), s = sin(theta), c = cos(theta);
   const CagVec3 x = f->x;
@@ -114,7 +114,7 @@ void inverse_strip_right(const InverseRow *row, double q, CagRobotFrame *f) {
   f->y = cag_madd(cag_scaled(f->y, c), s, x);
 }
 
-int inverse_trigonometric(double a, double b, double c, double scale, double x[2]) {
+int cag_inverse_trigonometric(double a, double b, double c, double scale, double x[2]) {
   const double h = inverse_length(a, b), nothing = INVERSE_NOTHING * scale;
   if (h < nothing) return fabs(c) < nothing ? -1 : 0;
   if (fabs(c) > h + INVERSE_CLAMP * scale) return 0;
@@ -145,11 +145,11 @@ static CagVec3 placed_point(const InverseChain *c) {
 }
 
 static InverseKind kind_of(const InverseChain *c) {
-  if (inverse_is_plane(c)) return INVERSE_PLANE;
-  if (inverse_is_parallel(c)) return c->n == 6 ? INVERSE_PARALLEL_6 : INVERSE_PARALLEL_5;
-  if (c->n == 6 && inverse_arm_is_solvable(c, placed_point(c)) && axes_meet(c, 3, 3))
+  if (cag_inverse_is_plane(c)) return INVERSE_PLANE;
+  if (cag_inverse_is_parallel(c)) return c->n == 6 ? INVERSE_PARALLEL_6 : INVERSE_PARALLEL_5;
+  if (c->n == 6 && cag_inverse_arm_is_solvable(c, placed_point(c)) && axes_meet(c, 3, 3))
     return INVERSE_ARM_WRIST;
-  if (c->n == 5 && inverse_arm_is_solvable(c, placed_point(c)) && axes_meet(c, 3, 2))
+  if (c->n == 5 && cag_inverse_arm_is_solvable(c, placed_point(c)) && axes_meet(c, 3, 2))
     return INVERSE_ARM_PAIR;
   if (c->n != 3) return INVERSE_NONE;
   const InverseRow *r = c->row;
@@ -157,7 +157,7 @@ static InverseKind kind_of(const InverseChain *c) {
   if (r[0].turns && !r[1].turns && !r[2].turns) return INVERSE_RPP;
   if (r[0].turns && r[1].turns && !r[2].turns && fabs(r[0].sine) > INVERSE_PARALLEL)
     return INVERSE_RRP;
-  return r[2].turns && inverse_arm_is_solvable(c, placed_point(c)) ? INVERSE_RRR : INVERSE_NONE;
+  return r[2].turns && cag_inverse_arm_is_solvable(c, placed_point(c)) ? INVERSE_RRR : INVERSE_NONE;
 }
 
 bool cag_robot_has_inverse(const CagRobot *r) {
@@ -259,8 +259,8 @@ static bool is_same(const InverseChain *c, const double *a, const double *b) {
   return true;
 }
 
-void inverse_keep(InverseTask *t, const double *found, CagConfiguration configuration,
-                  unsigned free) {
+void cag_inverse_keep(InverseTask *t, const double *found, CagConfiguration configuration,
+                      unsigned free) {
   t->placed = true;
   CagInverse *out = t->out;
   double q[CAG_INVERSE_JOINTS_MAX];
@@ -281,14 +281,14 @@ void inverse_keep(InverseTask *t, const double *found, CagConfiguration configur
   out->free |= free;
 }
 
-void inverse_keep_point(InverseTask *t, CagVec3 point, CagVec3 w, const double *q,
-                        CagConfiguration configuration, unsigned free) {
+void cag_inverse_keep_point(InverseTask *t, CagVec3 point, CagVec3 w, const double *q,
+                            CagConfiguration configuration, unsigned free) {
   CagRobotFrame f;
   forward(t->chain, q, &f);
   const CagVec3 at = cag_madd(cag_madd(cag_madd(f.p, point.x, f.x), point.y, f.y), point.z, f.z);
   if (cag_norm(cag_sub(at, w)) > POSE_ERROR * t->chain->reach) return;
   t->target = f;
-  inverse_keep(t, q, configuration, free);
+  cag_inverse_keep(t, q, configuration, free);
 }
 
 // --- Wrists ---
@@ -299,7 +299,7 @@ static void solve_wrist(InverseTask *t, const CagRobotFrame *seen, const Inverse
   CagRobotFrame f = *seen;
   double q[6] = {arm->q[0], arm->q[1], arm->q[2]};
   CagConfiguration label = {arm->shoulder, arm->elbow, 0};
-  inverse_strip_crank(r6, &f);
+  cag_inverse_strip_crank(r6, &f);
   // The last axis against axis 4: cos(alpha4) cos(alpha5) - sin(alpha4) sin(alpha5) cos(theta5).
   const double cosine = (r4->cosine * r5->cosine - f.z.z) / (r4->sine * r5->sine);
   if (fabs(cosine) > 1 + POSE_ERROR) return;
@@ -315,7 +315,7 @@ static void solve_wrist(InverseTask *t, const CagRobotFrame *seen, const Inverse
       q[3] = inverse_wrapped(q[3] + M_PI);
       q[4] = inverse_value(r5, -inverse_theta(r5, q[4]));
       q[5] = inverse_wrapped(q[5] + M_PI);
-      inverse_keep(t, q, label, free);
+      cag_inverse_keep(t, q, label, free);
       break;
     }
     const double theta5 = folded ? (clamped < 0 ? M_PI : 0) : atan2(sign * sine, clamped);
@@ -325,10 +325,10 @@ static void solve_wrist(InverseTask *t, const CagRobotFrame *seen, const Inverse
     q[3] = aligned ? t->near[3] : inverse_value(r4, atan2(f.z.y, f.z.x) - atan2(v.y, v.x));
     q[4] = inverse_value(r5, theta5);
     CagRobotFrame g = f; // joint 6 takes what is left, so that errors near to `aligned` cancel
-    inverse_strip_left(r4, q[3], &g);
-    inverse_strip_left(r5, q[4], &g);
+    cag_inverse_strip_left(r4, q[3], &g);
+    cag_inverse_strip_left(r5, q[4], &g);
     q[5] = inverse_value(r6, atan2(g.x.y, g.x.x));
-    inverse_keep(t, q, label, free);
+    cag_inverse_keep(t, q, label, free);
   }
 }
 
@@ -337,19 +337,19 @@ static void solve_pair(InverseTask *t, const CagRobotFrame *seen, const InverseA
   const InverseRow *r4 = &t->chain->row[3], *r5 = &t->chain->row[4];
   CagRobotFrame f = *seen;
   double q[5] = {arm->q[0], arm->q[1], arm->q[2]};
-  inverse_strip_crank(r5, &f);
+  cag_inverse_strip_crank(r5, &f);
   q[3] = inverse_value(r4, atan2(f.z.x * r4->sine, -f.z.y * r4->sine));
-  inverse_strip_left(r4, q[3], &f);
+  cag_inverse_strip_left(r4, q[3], &f);
   q[4] = inverse_value(r5, atan2(f.x.y, f.x.x));
-  inverse_keep(t, q, (CagConfiguration){arm->shoulder, arm->elbow, 0}, arm->free);
+  cag_inverse_keep(t, q, (CagConfiguration){arm->shoulder, arm->elbow, 0}, arm->free);
 }
 
 static void solve_arm_point(InverseTask *t, CagVec3 point, CagVec3 w) {
   InverseArm arms[INVERSE_ARMS_MAX];
-  const size_t n = inverse_arms(t->chain, point, w, t->near, arms);
+  const size_t n = cag_inverse_arms(t->chain, point, w, t->near, arms);
   for (size_t i = 0; i < n; i++)
-    inverse_keep_point(t, point, w, arms[i].q,
-                       (CagConfiguration){arms[i].shoulder, arms[i].elbow, 0}, arms[i].free);
+    cag_inverse_keep_point(t, point, w, arms[i].q,
+                           (CagConfiguration){arms[i].shoulder, arms[i].elbow, 0}, arms[i].free);
 }
 
 static void solve_arm(InverseTask *t, InverseKind kind) {
@@ -358,18 +358,18 @@ static void solve_arm(InverseTask *t, InverseKind kind) {
   const CagVec3 point = placed_point(c);
   if (kind == INVERSE_RRR)
     f.p = cag_madd(cag_madd(cag_madd(f.p, point.x, f.x), point.y, f.y), point.z, f.z);
-  else inverse_strip_crank(&c->row[c->n - 1], &f);
+  else cag_inverse_strip_crank(&c->row[c->n - 1], &f);
   InverseArm arms[INVERSE_ARMS_MAX];
-  const size_t n = inverse_arms(c, point, f.p, t->near, arms);
+  const size_t n = cag_inverse_arms(c, point, f.p, t->near, arms);
   t->placed = n > 0;
   for (size_t i = 0; i < n; i++) {
     CagRobotFrame seen = t->target;
     if (kind == INVERSE_RRR) {
-      inverse_keep(t, arms[i].q, (CagConfiguration){arms[i].shoulder, arms[i].elbow, 0},
-                   arms[i].free);
+      cag_inverse_keep(t, arms[i].q, (CagConfiguration){arms[i].shoulder, arms[i].elbow, 0},
+                       arms[i].free);
       continue;
     }
-    for (size_t k = 0; k < 3; k++) inverse_strip_left(&c->row[k], arms[i].q[k], &seen);
+    for (size_t k = 0; k < 3; k++) cag_inverse_strip_left(&c->row[k], arms[i].q[k], &seen);
     if (kind == INVERSE_ARM_WRIST) solve_wrist(t, &seen, &arms[i]);
     else solve_pair(t, &seen, &arms[i]);
   }
@@ -414,7 +414,7 @@ static void solve_slides(InverseTask *t, double *q, unsigned free) {
     }
   }
   for (size_t i = 0; i < n; i++) q[joint[i]] = matrix[i][n] / matrix[i][i];
-  inverse_keep(t, q, (CagConfiguration){0}, free);
+  cag_inverse_keep(t, q, (CagConfiguration){0}, free);
 }
 
 // The constant turns of rows from..to, as a frame.
@@ -470,7 +470,7 @@ static void solve_rrp(InverseTask *t) {
   q[0] = inverse_value(r1, atan2(f.z.x * r1->sine, -f.z.y * r1->sine));
   InverseRow turn = *r1;
   turn.a = turn.shift = 0;
-  inverse_strip_left(&turn, q[0], &f);
+  cag_inverse_strip_left(&turn, q[0], &f);
   q[1] = inverse_value(r2, atan2(f.x.y, f.x.x));
   solve_slides(t, q, 0);
 }
@@ -523,14 +523,15 @@ void cag_robot_inverse(const CagRobot *r, const CagTransform *target, const doub
   CagTransform pose = cag_transform_multiply(&before, target);
   pose = cag_transform_multiply(&pose, &after);
   cag_robot_frame_from(&pose, &t.target);
-  t.exact = kind == INVERSE_PARALLEL_6 || (kind == INVERSE_ARM_WRIST && inverse_arm_is_exact(&c));
+  t.exact =
+      kind == INVERSE_PARALLEL_6 || (kind == INVERSE_ARM_WRIST && cag_inverse_arm_is_exact(&c));
   switch (kind) {
   case INVERSE_ARM_WRIST:
   case INVERSE_ARM_PAIR:
   case INVERSE_RRR: solve_arm(&t, kind); break;
   case INVERSE_PARALLEL_6:
-  case INVERSE_PARALLEL_5: inverse_parallel(&t); break;
-  case INVERSE_PLANE: inverse_plane(&t); break;
+  case INVERSE_PARALLEL_5: cag_inverse_parallel(&t); break;
+  case INVERSE_PLANE: cag_inverse_plane(&t); break;
   case INVERSE_RRP: solve_rrp(&t); break;
   case INVERSE_RPP: solve_rpp(&t); break;
   case INVERSE_PPP: solve_slides(&t, (double[CAG_INVERSE_JOINTS_MAX]){0}, 0); break;
@@ -543,7 +544,7 @@ void cag_robot_inverse(const CagRobot *r, const CagTransform *target, const doub
 
 static bool has_point_inverse(const InverseChain *c) {
   const InverseKind kind = kind_of(c);
-  return kind == INVERSE_RRR || (kind == INVERSE_PLANE && inverse_plane_turns(c) <= 2);
+  return kind == INVERSE_RRR || (kind == INVERSE_PLANE && cag_inverse_plane_turns(c) <= 2);
 }
 
 bool cag_robot_has_point_inverse(const CagRobot *r) {
@@ -561,7 +562,7 @@ void cag_robot_inverse_point(const CagRobot *r, CagVec3 point, const double *nea
   const CagVec3 w = cag_transform_point(&before, point);
   const double(*m)[4] = c.after.m;
   const CagVec3 tip = cag_vec3(m[0][3], m[1][3], m[2][3]);
-  if (kind_of(&c) == INVERSE_PLANE) inverse_plane_point(&t, tip, w);
+  if (kind_of(&c) == INVERSE_PLANE) cag_inverse_plane_point(&t, tip, w);
   else solve_arm_point(&t, tip, w);
   end_task(out, CAG_INVERSE_UNREACHABLE);
 }
@@ -574,7 +575,7 @@ CagConfiguration cag_robot_branches(const CagRobot *r) {
   case INVERSE_RRR: return (CagConfiguration){1, c.row[2].turns, 0};
   case INVERSE_PARALLEL_6: return (CagConfiguration){1, 1, 1};
   case INVERSE_PARALLEL_5: return (CagConfiguration){1, 1, 0};
-  case INVERSE_PLANE: return (CagConfiguration){0, inverse_plane_turns(&c) >= 2, 0};
+  case INVERSE_PLANE: return (CagConfiguration){0, cag_inverse_plane_turns(&c) >= 2, 0};
   default: return (CagConfiguration){0};
   }
 }
@@ -588,14 +589,14 @@ bool cag_robot_configuration(const CagRobot *r, const double *q, CagConfiguratio
   case INVERSE_ARM_WRIST:
   case INVERSE_ARM_PAIR:
   case INVERSE_RRR: {
-    inverse_arm_labels(&c, placed_point(&c), q, &out->shoulder, &out->elbow);
+    cag_inverse_arm_labels(&c, placed_point(&c), q, &out->shoulder, &out->elbow);
     const double sine = kind == INVERSE_ARM_WRIST ? sin(inverse_theta(&c.row[4], q[4])) : 0;
     if (kind == INVERSE_ARM_WRIST) out->wrist = sine < 0 ? -1 : 1;
     break;
   }
   case INVERSE_PARALLEL_6:
-  case INVERSE_PARALLEL_5: inverse_parallel_labels(&c, q, out); break;
-  case INVERSE_PLANE: inverse_plane_labels(&c, q, out); break;
+  case INVERSE_PARALLEL_5: cag_inverse_parallel_labels(&c, q, out); break;
+  case INVERSE_PLANE: cag_inverse_plane_labels(&c, q, out); break;
   default: break;
   }
   return true;

@@ -108,7 +108,7 @@ static void parallel23(Arm *a, CagVec3 point) {
   for (int side = 0; side < (root > INVERSE_NOTHING * a->chain->reach ? 2 : 1); side++) {
     const double u = (side ? -root : root) - r1->a;
     const double fx = u * u + v * v - h2 - r2->a * r2->a; // 2 a2 f.x
-    const int n = inverse_trigonometric(2 * r2->a * a->e.x, -2 * r2->a * a->e.y, fx, scale, x);
+    const int n = cag_inverse_trigonometric(2 * r2->a * a->e.x, -2 * r2->a * a->e.y, fx, scale, x);
     for (int i = 0; i < n; i++) {
       const double q3 = x[i] - r3->angle;
       const CagVec3 f = seen_from2(a, q3);
@@ -136,8 +136,9 @@ static void meet12(Arm *a, CagVec3 point) {
     const double fixed = a->e.x * a->e.x + a->e.y * a->e.y + fz * fz + r2->a * r2->a +
                          r2->shift * r2->shift + 2 * r2->shift * r2->cosine * fz;
     double x[2];
-    const int n = inverse_trigonometric(2 * (r2->a * a->e.x + ds * a->e.y),
-                                        2 * (ds * a->e.x - r2->a * a->e.y), w2 - fixed, scale, x);
+    const int n =
+        cag_inverse_trigonometric(2 * (r2->a * a->e.x + ds * a->e.y),
+                                  2 * (ds * a->e.x - r2->a * a->e.y), w2 - fixed, scale, x);
     for (int i = 0; i < n; i++) meet12_at(a, point, x[i] - r3->angle);
     return;
   }
@@ -163,7 +164,7 @@ static void parallel12(Arm *a, CagVec3 point) {
   const double height = r1->cosine * a->w.z - r2->shift - r2->cosine * fz; // sin(alpha2) f.y
   double x[2], root;
   const int n =
-      inverse_trigonometric(r2->sine * a->e.y, r2->sine * a->e.x, height, a->chain->reach, x);
+      cag_inverse_trigonometric(r2->sine * a->e.y, r2->sine * a->e.x, height, a->chain->reach, x);
   for (int i = 0; i < n; i++) {
     const double q3 = x[i] - r3->angle;
     const CagVec3 f = seen_from2(a, q3), k = before_joint2(a, f);
@@ -276,7 +277,7 @@ static bool is_nothing(const InverseChain *c, double length) {
   return fabs(length) < INVERSE_NOTHING * c->reach;
 }
 
-bool inverse_arm_is_solvable(const InverseChain *c, CagVec3 point) {
+bool cag_inverse_arm_is_solvable(const InverseChain *c, CagVec3 point) {
   const InverseRow *r = c->row;
   const CagVec3 e = behind_joint3(c, point);
   if (r[2].turns && is_nothing(c, inverse_length(e.x, e.y))) return false; // joint 3 moves nothing
@@ -289,14 +290,14 @@ bool inverse_arm_is_solvable(const InverseChain *c, CagVec3 point) {
   return !parallel12 && is_nothing(c, r[0].a);
 }
 
-bool inverse_arm_is_exact(const InverseChain *c) {
+bool cag_inverse_arm_is_exact(const InverseChain *c) {
   const InverseRow *r = c->row;
   return fabs(r[0].sine) < INVERSE_PARALLEL || fabs(r[1].sine) < INVERSE_PARALLEL ||
          is_nothing(c, r[0].a);
 }
 
-size_t inverse_arms(const InverseChain *c, CagVec3 point, CagVec3 w, const double *near,
-                    InverseArm arms[INVERSE_ARMS_MAX]) {
+size_t cag_inverse_arms(const InverseChain *c, CagVec3 point, CagVec3 w, const double *near,
+                        InverseArm arms[INVERSE_ARMS_MAX]) {
   Arm a = {.chain = c, .w = w, .e = behind_joint3(c, point), .near = near, .arms = arms};
   a.w.z -= c->row[0].shift;
   if (c->row[2].turns && fabs(c->row[0].sine) < INVERSE_PARALLEL) parallel12(&a, point);
@@ -306,8 +307,8 @@ size_t inverse_arms(const InverseChain *c, CagVec3 point, CagVec3 w, const doubl
   return a.count;
 }
 
-void inverse_arm_labels(const InverseChain *c, CagVec3 point, const double *q, int *shoulder,
-                        int *elbow) {
+void cag_inverse_arm_labels(const InverseChain *c, CagVec3 point, const double *q, int *shoulder,
+                            int *elbow) {
   Arm a = {.chain = c, .e = behind_joint3(c, point)};
   const CagVec3 f = seen_from2(&a, q[2]), k = before_joint2(&a, f);
   const double theta2 = inverse_theta(&c->row[1], q[1]);

@@ -11,7 +11,7 @@ static int sign_of(double x) { return x < 0 ? -1 : 1; }
 static bool is_square(const InverseRow *r) { return fabs(r->cosine) < INVERSE_PARALLEL; }
 static bool is_parallel(const InverseRow *r) { return fabs(r->sine) < INVERSE_PARALLEL; }
 
-bool inverse_is_parallel(const InverseChain *c) {
+bool cag_inverse_is_parallel(const InverseChain *c) {
   const InverseRow *r = c->row;
   if (c->n != 5 && c->n != 6) return false;
   for (size_t i = 0; i < c->n; i++)
@@ -64,7 +64,7 @@ static void solve_plane(InverseTask *t, const CagRobotFrame *f, double *q, CagCo
     q[2] = inverse_value(&r[2], theta3);
     q[3] = inverse_value(&r[3], theta4);
     base.elbow = sign_of(sin(theta3));
-    inverse_keep(t, q, base, free);
+    cag_inverse_keep(t, q, base, free);
   }
   t->placed = t->placed || n > 0;
 }
@@ -81,7 +81,7 @@ static void solve5(InverseTask *t, CagRobotFrame f, double *q, CagConfiguration 
   const double theta5 = atan2(sense * f.x.z, sense * f.y.z);
   q[4] = inverse_value(&r[4], theta5);
   InverseRow turn = {.turns = true, .angle = r[4].angle, .cosine = 1};
-  inverse_strip_right(&turn, q[4], &f);
+  cag_inverse_strip_right(&turn, q[4], &f);
   // Of frame 4 before its twist x is in the plane.
   const double x = f.x.x, y = f.x.y;
   CagRobotFrame g = f;
@@ -93,9 +93,9 @@ static void with_joint1_of5(InverseTask *t, double q1, unsigned free) {
   const InverseChain *c = t->chain;
   double q[CAG_INVERSE_JOINTS_MAX] = {q1};
   CagRobotFrame f = t->target;
-  inverse_strip_left(&c->row[0], q1, &f);
+  cag_inverse_strip_left(&c->row[0], q1, &f);
   const CagConfiguration base = {.shoulder = sign_of(f.p.x + c->row[0].a)};
-  inverse_strip_crank(&c->row[4], &f);
+  cag_inverse_strip_crank(&c->row[4], &f);
   if (fabs(f.z.z) > 1e-6) { // axis 5 leaves the plane
     t->placed = true;
     return;
@@ -132,8 +132,8 @@ static void with_joint5(InverseTask *t, CagRobotFrame f, double *q, double theta
     q[5] = inverse_value(&r[5], atan2(-sense * g.y.z, sense * g.x.z));
   }
   InverseRow turn = {.turns = true, .angle = r[5].angle, .cosine = 1};
-  inverse_strip_right(&turn, q[5], &g);
-  inverse_strip_right(&r[4], q[4], &g);
+  cag_inverse_strip_right(&turn, q[5], &g);
+  cag_inverse_strip_right(&r[4], q[4], &g);
   CagRobotFrame frame4 = g;
   frame4.x = cag_vec3(g.x.x, g.x.y, 0);
   solve_plane(t, &frame4, q, base, free);
@@ -145,8 +145,8 @@ static void with_joint1_of6(InverseTask *t, double q1, unsigned free) {
   double q[CAG_INVERSE_JOINTS_MAX] = {q1}, s[2];
   senses(c, s);
   CagRobotFrame f = t->target;
-  inverse_strip_left(&r[0], q1, &f);
-  inverse_strip_crank(&r[5], &f);
+  cag_inverse_strip_left(&r[0], q1, &f);
+  cag_inverse_strip_crank(&r[5], &f);
   // The last axis against axis 2: -s sin(alpha4) sin(alpha5) cos(theta5).
   const double cosine = -f.z.z * s[1] * r[3].sine * r[4].sine;
   // sin(theta5) is the part of axis 2 across the last axis.
@@ -171,7 +171,7 @@ static int joint1(const InverseTask *t, CagVec3 p, double q1[2], unsigned *free)
   // Height over the plane: of links 2, 3 and 4.
   const double height = r[1].shift + s[0] * r[2].shift + s[1] * r[3].shift;
   // Axis 2 is sin(alpha1) (sin theta1, -cos theta1, 0).
-  const int n = inverse_trigonometric(-r[0].sine * p.y, r[0].sine * p.x, height, c->reach, x);
+  const int n = cag_inverse_trigonometric(-r[0].sine * p.y, r[0].sine * p.x, height, c->reach, x);
   *free = 0;
   if (n >= 0) {
     for (int i = 0; i < n; i++) q1[i] = inverse_value(&r[0], x[i]);
@@ -180,7 +180,7 @@ static int joint1(const InverseTask *t, CagVec3 p, double q1[2], unsigned *free)
   // The point lies on axis 1. With five joints axis 5 lies in the plane.
   if (c->n == 5) {
     CagRobotFrame f = t->target;
-    inverse_strip_crank(&r[4], &f);
+    cag_inverse_strip_crank(&r[4], &f);
     if (inverse_length(f.z.x, f.z.y) > INVERSE_NOTHING) {
       const double theta = atan2(f.z.y, f.z.x);
       q1[0] = inverse_value(&r[0], theta);
@@ -193,13 +193,13 @@ static int joint1(const InverseTask *t, CagVec3 p, double q1[2], unsigned *free)
   return 1;
 }
 
-void inverse_parallel(InverseTask *t) {
+void cag_inverse_parallel(InverseTask *t) {
   const InverseChain *c = t->chain;
   CagRobotFrame f = t->target;
   double q1[2];
   unsigned free;
   // Where link 5 (or 6) begins, behind its turn.
-  inverse_strip_crank(&c->row[c->n - 1], &f);
+  cag_inverse_strip_crank(&c->row[c->n - 1], &f);
   const int n = joint1(t, f.p, q1, &free);
   for (int i = 0; i < n; i++) {
     if (c->n == 5) with_joint1_of5(t, q1[i], free);
@@ -207,7 +207,7 @@ void inverse_parallel(InverseTask *t) {
   }
 }
 
-void inverse_parallel_labels(const InverseChain *c, const double *q, CagConfiguration *out) {
+void cag_inverse_parallel_labels(const InverseChain *c, const double *q, CagConfiguration *out) {
   const InverseRow *r = c->row;
   double s[2];
   senses(c, s);
@@ -222,7 +222,7 @@ void inverse_parallel_labels(const InverseChain *c, const double *q, CagConfigur
 
 // --- All axes parallel ---
 
-bool inverse_is_plane(const InverseChain *c) {
+bool cag_inverse_is_plane(const InverseChain *c) {
   size_t turns = 0, slides = 0;
   for (size_t i = 0; i < c->n; i++) {
     turns += c->row[i].turns;
@@ -279,7 +279,7 @@ static void plane_of(const InverseChain *c, Plane *p) {
   p->lead[p->n - 1] = atan2(y, x);
 }
 
-size_t inverse_plane_turns(const InverseChain *c) {
+size_t cag_inverse_plane_turns(const InverseChain *c) {
   Plane p;
   plane_of(c, &p);
   return p.n;
@@ -308,7 +308,7 @@ static CagConfiguration plane_joints(const InverseChain *c, const Plane *p, cons
   return label;
 }
 
-void inverse_plane_point(InverseTask *t, CagVec3 point, CagVec3 w) {
+void cag_inverse_plane_point(InverseTask *t, CagVec3 point, CagVec3 w) {
   const InverseChain *c = t->chain;
   const InverseRow *end = &c->row[c->n - 1];
   Plane p;
@@ -344,12 +344,12 @@ void inverse_plane_point(InverseTask *t, CagVec3 point, CagVec3 w) {
   for (int i = 0; i < n; i++) {
     const double x_angle[2] = {p1[i] - p.lead[0], p.n == 2 ? p2[i] - p.lead[1] : 0};
     const CagConfiguration label = plane_joints(c, &p, x_angle, q);
-    inverse_keep_point(t, point, w, q, free ? (CagConfiguration){0} : label, free);
+    cag_inverse_keep_point(t, point, w, q, free ? (CagConfiguration){0} : label, free);
   }
 }
 
 // Solves for the angles of the links; `turn` is the whole turn of the tool.
-void inverse_plane(InverseTask *t) {
+void cag_inverse_plane(InverseTask *t) {
   const InverseChain *c = t->chain;
   const CagRobotFrame f = t->target;
   Plane p;
@@ -385,11 +385,11 @@ void inverse_plane(InverseTask *t) {
       free = 1u << first;
     }
     const CagConfiguration label = plane_joints(c, &p, x_angle, q);
-    inverse_keep(t, q, label, free);
+    cag_inverse_keep(t, q, label, free);
   }
 }
 
-void inverse_plane_labels(const InverseChain *c, const double *q, CagConfiguration *out) {
+void cag_inverse_plane_labels(const InverseChain *c, const double *q, CagConfiguration *out) {
   Plane p;
   plane_of(c, &p);
   *out = (CagConfiguration){0};

@@ -79,15 +79,15 @@ static inline CagVec3 inverse_turn_x(CagVec3 v, double s, double c) {
 }
 
 // f = row(q)^-1 f.
-void inverse_strip_left(const InverseRow *row, double q, CagRobotFrame *f);
+void cag_inverse_strip_left(const InverseRow *row, double q, CagRobotFrame *f);
 // f = f row(q)^-1, and the part of it that does not depend on q of a turning joint:
 // f = f (Trans(0, 0, d) Trans(a, 0, 0) Rot(x, alpha))^-1.
-void inverse_strip_right(const InverseRow *row, double q, CagRobotFrame *f);
-void inverse_strip_crank(const InverseRow *row, CagRobotFrame *f);
+void cag_inverse_strip_right(const InverseRow *row, double q, CagRobotFrame *f);
+void cag_inverse_strip_crank(const InverseRow *row, CagRobotFrame *f);
 
 // Solutions x of a cos x + b sin x = c: their number, 0 to 2; -1 where all x are (a = b = c = 0,
 // measured by `scale`).
-int inverse_trigonometric(double a, double b, double c, double scale, double x[2]);
+int cag_inverse_trigonometric(double a, double b, double c, double scale, double x[2]);
 
 // Joint values of three joints that place the point `point` of frame 3 at w.
 typedef struct InverseArm {
@@ -96,30 +96,31 @@ typedef struct InverseArm {
   unsigned free;
 } InverseArm;
 #define INVERSE_ARMS_MAX 8
-size_t inverse_arms(const InverseChain *c, CagVec3 point, CagVec3 w, const double *near,
-                    InverseArm arms[INVERSE_ARMS_MAX]);
-bool inverse_arm_is_solvable(const InverseChain *c, CagVec3 point);
+size_t cag_inverse_arms(const InverseChain *c, CagVec3 point, CagVec3 w, const double *near,
+                        InverseArm arms[INVERSE_ARMS_MAX]);
+bool cag_inverse_arm_is_solvable(const InverseChain *c, CagVec3 point);
 // Whether its steps are exact, and none is found by search.
-bool inverse_arm_is_exact(const InverseChain *c);
+bool cag_inverse_arm_is_exact(const InverseChain *c);
 // The labels of joint values.
-void inverse_arm_labels(const InverseChain *c, CagVec3 point, const double *q, int *shoulder,
-                        int *elbow);
+void cag_inverse_arm_labels(const InverseChain *c, CagVec3 point, const double *q, int *shoulder,
+                            int *elbow);
 
 // Axes 2, 3, 4 parallel; all parallel.
-void inverse_parallel(InverseTask *t);
-void inverse_parallel_labels(const InverseChain *c, const double *q, CagConfiguration *out);
-bool inverse_is_parallel(const InverseChain *c);
-void inverse_plane(InverseTask *t);
-void inverse_plane_labels(const InverseChain *c, const double *q, CagConfiguration *out);
-bool inverse_is_plane(const InverseChain *c);
-size_t inverse_plane_turns(const InverseChain *c);
+void cag_inverse_parallel(InverseTask *t);
+void cag_inverse_parallel_labels(const InverseChain *c, const double *q, CagConfiguration *out);
+bool cag_inverse_is_parallel(const InverseChain *c);
+void cag_inverse_plane(InverseTask *t);
+void cag_inverse_plane_labels(const InverseChain *c, const double *q, CagConfiguration *out);
+bool cag_inverse_is_plane(const InverseChain *c);
+size_t cag_inverse_plane_turns(const InverseChain *c);
 // Of chains of one or two turning joints: all ways to bring `point` of the last frame to w.
-void inverse_plane_point(InverseTask *t, CagVec3 point, CagVec3 w);
+void cag_inverse_plane_point(InverseTask *t, CagVec3 point, CagVec3 w);
 // Keeps a solution that brings `point` of the last frame to w; its own pose becomes the target.
-void inverse_keep_point(InverseTask *t, CagVec3 point, CagVec3 w, const double *q,
-                        CagConfiguration configuration, unsigned free);
+void cag_inverse_keep_point(InverseTask *t, CagVec3 point, CagVec3 w, const double *q,
+                            CagConfiguration configuration, unsigned free);
 
 // Keeps a solution if it is none of those found.
-void inverse_keep(InverseTask *t, const double *q, CagConfiguration configuration, unsigned free);
+void cag_inverse_keep(InverseTask *t, const double *q, CagConfiguration configuration,
+                      unsigned free);
 
 #endif

@@ -340,23 +340,23 @@ static void nurbs_describe(const CagSurface *s, char *buffer, size_t size) {
 
 #define NURBS_TABLE(text)                                                                          \
   {                                                                                                \
-    .name = text, .eval = tensor_eval, .eval_grid = tensor_grid, .to_nurbs = nurbs_to_nurbs,       \
-    .transform = nurbs_transform, .breaks = nurbs_breaks, .describe = nurbs_describe,              \
-    .destroy = nurbs_destroy,                                                                      \
+    .name = text, .eval = cag_tensor_eval, .eval_grid = cag_tensor_grid,                           \
+    .to_nurbs = nurbs_to_nurbs, .transform = nurbs_transform, .breaks = nurbs_breaks,              \
+    .describe = nurbs_describe, .destroy = nurbs_destroy,                                          \
   }
 static const CagSurfaceKind bezier_kind = NURBS_TABLE("bezier");
 static const CagSurfaceKind bspline_kind = NURBS_TABLE("bspline");
 static const CagSurfaceKind nurbs_kind = NURBS_TABLE("nurbs");
 
 static const Nurbs *as_nurbs(const CagSurface *s) {
-  return s->kind->eval == tensor_eval ? (const Nurbs *)s : NULL;
+  return s->kind->eval == cag_tensor_eval ? (const Nurbs *)s : NULL;
 }
 
 bool cag_surface_nurbs_frames(const CagSurface *s, const double *us, size_t nu, const double *vs,
                               size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv,
                               CagVec3 *normals, CagStatus *status, CagError *err) {
   const Nurbs *b = as_nurbs(s);
-  if (b) *status = tensor_frames(b, us, nu, vs, nv, points, du, dv, normals, err);
+  if (b) *status = cag_tensor_frames(b, us, nu, vs, nv, points, du, dv, normals, err);
   return b != NULL;
 }
 

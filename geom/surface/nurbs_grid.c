@@ -181,7 +181,7 @@ INLINE Wide3 wide_sums(double (*a)[4], const Basis *b) {
   return (Wide3){wide_sum(a[0], b), wide_sum(a[1], b), wide_sum(a[2], b)};
 }
 
-// As tensor_basis_first, of several parameters in the same span.
+// As cag_tensor_basis_first, of several parameters in the same span.
 INLINE void basis_wide(const Direction *d, int p, size_t span, Wide t, Wide *values, Wide *slopes) {
   const double *knots = d->knots + span;
   Wide left[4], right[4], lower[4], before = {0};
@@ -336,7 +336,7 @@ static void basis_columns(const Direction *d, size_t span, const double *vs, siz
 #endif
   double value[MAX_DEGREE + 1], slope[MAX_DEGREE + 1];
   for (size_t j = 0; j < n; j++) {
-    tensor_basis_first(d, span, vs[j], value, slope);
+    cag_tensor_basis_first(d, span, vs[j], value, slope);
     for (size_t l = 0; l <= (size_t)d->degree; l++) {
       m[l * stride + j] = value[l];
       slopes[l * stride + j] = slope[l];
@@ -368,7 +368,7 @@ static CagStatus grid_prepare(const Nurbs *b, const double *vs, size_t nv, bool 
   for (size_t j = 0; j < nv; j++) {
     bool at_end = vs[j] >= b->base.v1;
     if (at_end || !tensor_in_span(&b->v, span, vs[j]))
-      span = tensor_span(&b->v, vs[j], at_end ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT);
+      span = cag_tensor_span(&b->v, vs[j], at_end ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT);
     w->span[j] = span;
   }
   for (size_t start = 0, end; start < nv; start = end) {
@@ -409,9 +409,9 @@ WIDEST static void contract_row(const Nurbs *b, size_t span, const double *value
   }
 }
 
-CagStatus tensor_frames(const Nurbs *b, const double *us, size_t nu, const double *vs, size_t nv,
-                        CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagVec3 *normals,
-                        CagError *err) {
+CagStatus cag_tensor_frames(const Nurbs *b, const double *us, size_t nu, const double *vs,
+                            size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagVec3 *normals,
+                            CagError *err) {
   const CagSurface *s = &b->base;
   if (nu == 0 || nv == 0) return CAG_OK;
   bool partials = du || dv, first = partials || normals, positive = true;
@@ -427,8 +427,8 @@ CagStatus tensor_frames(const Nurbs *b, const double *us, size_t nu, const doubl
     if ((status = cag_stop_check(err)) != CAG_OK) break;
     double value[MAX_DEGREE + 1], slope[MAX_DEGREE + 1];
     CagSide side = us[i] >= s->u1 ? CAG_SIDE_LEFT : CAG_SIDE_RIGHT;
-    size_t span = tensor_span(&b->u, us[i], side);
-    tensor_basis_first(&b->u, span, us[i], value, slope);
+    size_t span = cag_tensor_span(&b->u, us[i], side);
+    cag_tensor_basis_first(&b->u, span, us[i], value, slope);
     contract_row(b, span, value, slope, low - q, high + 1, first, w.row);
     for (size_t start = 0, end; start < nv; start = end) {
       end = w.end[start];
@@ -465,7 +465,7 @@ CagStatus tensor_frames(const Nurbs *b, const double *us, size_t nu, const doubl
   return status;
 }
 
-CagStatus tensor_grid(const CagSurface *s, const double *us, size_t nu, const double *vs, size_t nv,
-                      CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err) {
-  return tensor_frames((const Nurbs *)s, us, nu, vs, nv, points, du, dv, NULL, err);
+CagStatus cag_tensor_grid(const CagSurface *s, const double *us, size_t nu, const double *vs,
+                          size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err) {
+  return cag_tensor_frames((const Nurbs *)s, us, nu, vs, nv, points, du, dv, NULL, err);
 }

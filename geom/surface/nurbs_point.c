@@ -6,7 +6,7 @@
 
 // --- Basis ---
 
-size_t tensor_span(const Direction *d, double t, CagSide side) {
+size_t cag_tensor_span(const Direction *d, double t, CagSide side) {
   size_t low = (size_t)d->degree, high = d->count; // knots[low] <= t <= knots[high]
   while (high - low > 1) {
     size_t middle = (low + high) / 2;
@@ -60,7 +60,8 @@ INLINE void basis_first_of(const Direction *d, int p, size_t span, double t, dou
 }
 
 // Values and first derivatives. The loops of the degrees that are met most are unrolled.
-void tensor_basis_first(const Direction *d, size_t span, double t, double *values, double *slopes) {
+void cag_tensor_basis_first(const Direction *d, size_t span, double t, double *values,
+                            double *slopes) {
   switch (d->degree) {
   case 1: basis_first_of(d, 1, span, t, values, slopes); break;
   case 2: basis_first_of(d, 2, span, t, values, slopes); break;
@@ -75,7 +76,7 @@ static void basis_derivatives(const Direction *d, size_t span, double t, int n, 
   int p = d->degree, width = p + 1;
   if (n <= 1) {
     double slopes[MAX_DEGREE + 1];
-    tensor_basis_first(d, span, t, out, n < 1 ? slopes : out + width);
+    cag_tensor_basis_first(d, span, t, out, n < 1 ? slopes : out + width);
     return;
   }
   for (int k = 0; k <= n; k++) {
@@ -155,13 +156,13 @@ INLINE void contract_net(const Nurbs *b, int p, int q, size_t iu, size_t iv, int
   }
 }
 
-CagStatus tensor_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
-                      CagVec3 *out, CagError *err) {
+CagStatus cag_tensor_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
+                          CagVec3 *out, CagError *err) {
   const Nurbs *b = (const Nurbs *)s;
   int p = b->u.degree, q = b->v.degree;
   double bu[(CAG_MAX_PARTIAL + 1) * (MAX_DEGREE + 1)], bv[(CAG_MAX_PARTIAL + 1) * (MAX_DEGREE + 1)];
   double h[(CAG_MAX_PARTIAL + 1) * (CAG_MAX_PARTIAL + 1)][4];
-  size_t iu = tensor_span(&b->u, u, su), iv = tensor_span(&b->v, v, sv);
+  size_t iu = cag_tensor_span(&b->u, u, su), iv = cag_tensor_span(&b->v, v, sv);
   h[0][0] = h[0][1] = h[0][2] = 0;
   h[0][3] = 1;
   basis_derivatives(&b->u, iu, u, n, bu);

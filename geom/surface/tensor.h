@@ -36,7 +36,7 @@ typedef struct Nurbs {
   double noise2[2]; // squares of the lengths below which partials by u and v are rounding
 } Nurbs;
 
-size_t tensor_span(const Direction *d, double t, CagSide side);
+size_t cag_tensor_span(const Direction *d, double t, CagSide side);
 
 // Is it the span of t, from the right? Neighboring parameters mostly share theirs.
 static inline bool tensor_in_span(const Direction *d, size_t span, double t) {
@@ -44,14 +44,16 @@ static inline bool tensor_in_span(const Direction *d, size_t span, double t) {
 }
 
 // Values and first derivatives of the degree + 1 basis functions on the span.
-void tensor_basis_first(const Direction *d, size_t span, double t, double *values, double *slopes);
+void cag_tensor_basis_first(const Direction *d, size_t span, double t, double *values,
+                            double *slopes);
 
-// The kind's functions. tensor_frames gives unit normals as well; all but points may be NULL.
-CagStatus tensor_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
-                      CagVec3 *out, CagError *err);
-CagStatus tensor_grid(const CagSurface *s, const double *us, size_t nu, const double *vs, size_t nv,
-                      CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err);
-CagStatus tensor_frames(const Nurbs *b, const double *us, size_t nu, const double *vs, size_t nv,
-                        CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagVec3 *normals, CagError *err);
+// The kind's functions. cag_tensor_frames gives unit normals as well; all but points may be NULL.
+CagStatus cag_tensor_eval(const CagSurface *s, double u, double v, int n, CagSide su, CagSide sv,
+                          CagVec3 *out, CagError *err);
+CagStatus cag_tensor_grid(const CagSurface *s, const double *us, size_t nu, const double *vs,
+                          size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagError *err);
+CagStatus cag_tensor_frames(const Nurbs *b, const double *us, size_t nu, const double *vs,
+                            size_t nv, CagVec3 *points, CagVec3 *du, CagVec3 *dv, CagVec3 *normals,
+                            CagError *err);
 
 #endif

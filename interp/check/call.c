@@ -72,7 +72,7 @@ static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool t
       const CagExpr *extra = positional_argument(v, f->count);
       snprintf(text, sizeof text, "%s takes %zu argument%s, found %zu", f->name, f->count,
                f->count == 1 ? "" : "s", v->positional);
-      help_call(f, check_report(c, CAG_ERR_arity, extra ? extra->span : v->span, text));
+      help_call(f, cag_check_report(c, CAG_ERR_arity, extra ? extra->span : v->span, text));
     }
     return false;
   }
@@ -89,7 +89,7 @@ static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool t
     snprintf(text, sizeof text,
              k < f->count ? "%s has %s already, by position" : "%s has no parameter %s", f->name,
              a->name);
-    CagDiagnostic *d = check_report(c, CAG_ERR_argument_name, a->name_span, text);
+    CagDiagnostic *d = cag_check_report(c, CAG_ERR_argument_name, a->name_span, text);
     if (k < f->count) return false;
     const char *form = NULL, *meant = cag_foreign_argument(a->name, f->parameters, f->count, &form);
     const char *nearest = cag_nearest_name(a->name, f->parameters, f->count);
@@ -101,7 +101,7 @@ static bool check_arguments(Check *c, const Callee *f, const CallView *v, bool t
     if (given >> k & 1) continue;
     if (tell) {
       snprintf(text, sizeof text, "%s needs an argument for `%s`", f->name, f->parameters[k]);
-      help_call(f, check_report(c, CAG_ERR_arity, v->span, text));
+      help_call(f, cag_check_report(c, CAG_ERR_arity, v->span, text));
     }
     return false;
   }
@@ -173,7 +173,7 @@ static void report_misfit(Check *c, const CagSignature *s, const Misfit *m) {
            named ? s->parameters[m->parameter] : "", named ? "`" : "",
            cag_types_text(m->found, found, sizeof found));
   const CagExpr *e = m->value;
-  CagDiagnostic *d = check_report(c, CAG_ERR_type, e->span, text);
+  CagDiagnostic *d = cag_check_report(c, CAG_ERR_type, e->span, text);
   if (m->taken & CAG_TYPES(ANGLE) && !(m->taken & CAG_TYPES(NUMBER)) &&
       m->found == CAG_TYPES(NUMBER) && e->kind == CAG_EXPR_NUMBER)
     cag_diagnostic_set_help(d, "write %gdeg or %grad", e->as.number, e->as.number);
@@ -245,13 +245,13 @@ static const CagFunctionAst *function_of(const Check *c, const CagExpr *e, const
     const CagDecl *decl = e->as.name.decl;
     *name = decl->name;
     if (decl->kind == CAG_DECL_TOP || decl->kind == CAG_DECL_BLOCK) s = decl->statement;
-    if (decl->kind == CAG_DECL_IMPORTED) s = check_find_public(c, decl->statement, decl->name);
+    if (decl->kind == CAG_DECL_IMPORTED) s = cag_check_find_public(c, decl->statement, decl->name);
   } else if (e->kind == CAG_EXPR_MEMBER && e->as.member.object->kind == CAG_EXPR_NAME) {
     const CagExpr *object = e->as.member.object;
     const CagDecl *decl = object->as.name.binding == CAG_BIND_DECL ? object->as.name.decl : NULL;
     *name = e->as.member.name;
     if (decl && decl->kind == CAG_DECL_IMPORT)
-      s = check_find_public(c, decl->statement, e->as.member.name);
+      s = cag_check_find_public(c, decl->statement, e->as.member.name);
   }
   if (!s || s->kind != CAG_STATEMENT_DEFINITION || s->damage != CAG_SOUND) return NULL;
   const CagExpr *value = s->as.definition.value;
@@ -273,9 +273,9 @@ static void check_shape_call(Check *c, CagTypes called, const CallView *v) {
   const bool curve = called == CAG_TYPES(CURVE), surface = called == CAG_TYPES(SURFACE);
   const bool number = !(first_types(v) & ~(CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE)));
   if (curve && v->positional > 1)
-    check_report(c, CAG_ERR_arity, v->span, "a curve takes one parameter");
+    cag_check_report(c, CAG_ERR_arity, v->span, "a curve takes one parameter");
   if (surface && (v->positional > 2 || (v->positional == 1 && v->named == 0 && number)))
-    check_report(c, CAG_ERR_arity, v->span, "a surface takes two parameters, u and v");
+    cag_check_report(c, CAG_ERR_arity, v->span, "a surface takes two parameters, u and v");
 }
 
 // A call, or a pipe into what is called.
@@ -289,10 +289,10 @@ static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
   if (v->positional + v->named > 16)
     v->types = cag_arena_alloc(&c->memory, (v->positional + v->named) * sizeof *v->types);
   c->unjudged += is_attempt(callee);
-  if (v->piped) v->piped_types = check_infer(c, v->piped);
-  const CagTypes called = check_infer(c, callee);
+  if (v->piped) v->piped_types = cag_check_infer(c, v->piped);
+  const CagTypes called = cag_check_infer(c, callee);
   for (size_t i = 0; v->e && i < v->e->as.call.count; i++)
-    v->types[i] = check_infer(c, v->e->as.call.arguments[i].value);
+    v->types[i] = cag_check_infer(c, v->e->as.call.arguments[i].value);
   c->unjudged -= is_attempt(callee);
   CagTypes result = CAG_TYPES_ANY;
   const char *name = NULL;
@@ -304,7 +304,7 @@ static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
     char found[256], text[320];
     snprintf(text, sizeof text, "a call needs a function, found %s",
              cag_types_text(called, found, sizeof found));
-    CagDiagnostic *d = check_report(c, CAG_ERR_not_function, callee->span, text);
+    CagDiagnostic *d = cag_check_report(c, CAG_ERR_not_function, callee->span, text);
     const size_t hidden =
         callee->kind == CAG_EXPR_NAME ? cag_builtin_find(callee->as.name.id) : (size_t)-1;
     if (hidden != (size_t)-1 && cag_builtin_rows(hidden, &(size_t){0})->function)
@@ -318,24 +318,24 @@ static CagTypes check_call(Check *c, const CagExpr *callee, CallView *v) {
 
 // A call that looks right is tried where all that it is given is written out.
 static void try_call(Check *c, const CagExpr *e, size_t errors_before) {
-  if (!c->unjudged && !c->thunks && check_error_count(c) == errors_before)
+  if (!c->unjudged && !c->thunks && cag_check_error_count(c) == errors_before)
     cag_check_constant(&c->constants, e);
 }
 
-CagTypes check_infer_pipe(Check *c, const CagExpr *e) {
+CagTypes cag_check_infer_pipe(Check *c, const CagExpr *e) {
   const CagExpr *right = e->as.binary.right;
   CallView v = {.e = right->kind == CAG_EXPR_CALL ? right : NULL,
                 .piped = e->as.binary.left,
                 .span = right->span};
-  const size_t before = check_error_count(c);
+  const size_t before = cag_check_error_count(c);
   const CagTypes types = check_call(c, v.e ? right->as.call.callee : right, &v);
   try_call(c, e, before);
   return types;
 }
 
-CagTypes check_infer_call(Check *c, const CagExpr *e) {
+CagTypes cag_check_infer_call(Check *c, const CagExpr *e) {
   CallView v = {.e = e, .span = e->span};
-  const size_t before = check_error_count(c);
+  const size_t before = cag_check_error_count(c);
   const CagTypes types = check_call(c, e->as.call.callee, &v);
   try_call(c, e, before);
   return types;

@@ -41,7 +41,7 @@ static void check_param(Check *c, const CagStatement *s) {
   if (domain && is_elsewhere(s->as.param.value, domain)) {
     snprintf(text, sizeof text, "the default of %s is not in %s", s->as.param.decl->name,
              domain->kind == CAG_EXPR_LIST ? "the list of what it may be" : "its range");
-    check_report(c, CAG_ERR_param_default, s->as.param.value->span, text);
+    cag_check_report(c, CAG_ERR_param_default, s->as.param.value->span, text);
     return;
   }
   if (!domain || domain->kind != CAG_EXPR_RANGE || !literal(s->as.param.value, &value) ||
@@ -50,35 +50,35 @@ static void check_param(Check *c, const CagStatement *s) {
   if (value >= low && (domain->as.range.open ? value < high : value <= high)) return;
   snprintf(text, sizeof text, "the default of %s lies outside of its range",
            s->as.param.decl->name);
-  check_report(c, CAG_ERR_param_default, s->as.param.value->span, text);
+  cag_check_report(c, CAG_ERR_param_default, s->as.param.value->span, text);
 }
 
 static void check_shown(Check *c, const CagExpr *e) {
   const CagTypes unseen = CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE) | CAG_TYPES(BOOL) | CAG_TYPES(TEXT) |
                           CAG_TYPES(NONE) | CAG_TYPES_FUNCTION;
-  const CagTypes types = check_infer(c, e);
+  const CagTypes types = cag_check_infer(c, e);
   if (types & ~unseen) return;
-  check_report_found(c, CAG_ERR_no_image, e->span,
-                     "show expects shapes, lights, cameras or settings of the scene", types);
+  cag_check_report_found(c, CAG_ERR_no_image, e->span,
+                         "show expects shapes, lights, cameras or settings of the scene", types);
 }
 
 static void walk_statement(Check *c, const CagStatement *s) {
   if (s->damage != CAG_SOUND) return;
   switch (s->kind) {
   case CAG_STATEMENT_PARAM:
-    check_types_of_top(c, s->as.param.decl);
+    cag_check_types_of_top(c, s->as.param.decl);
     check_param(c, s);
     break;
-  case CAG_STATEMENT_DEFINITION: check_types_of_top(c, s->as.definition.decl); break;
+  case CAG_STATEMENT_DEFINITION: cag_check_types_of_top(c, s->as.definition.decl); break;
   case CAG_STATEMENT_SHOW:
     for (size_t i = 0; i < s->as.list.count; i++) check_shown(c, s->as.list.items[i]);
     break;
-  case CAG_STATEMENT_PRINT: check_infer_all(c, s->as.list.items, s->as.list.count); break;
+  case CAG_STATEMENT_PRINT: cag_check_infer_all(c, s->as.list.items, s->as.list.count); break;
   case CAG_STATEMENT_ASSERT:
-    check_expect_bool(c, s->as.assertion.condition, "assert");
-    if (s->as.assertion.message) check_infer(c, s->as.assertion.message);
+    cag_check_expect_bool(c, s->as.assertion.condition, "assert");
+    if (s->as.assertion.message) cag_check_infer(c, s->as.assertion.message);
     break;
-  case CAG_STATEMENT_EXPRESSION: check_infer(c, s->as.expression); break;
+  case CAG_STATEMENT_EXPRESSION: cag_check_infer(c, s->as.expression); break;
   case CAG_STATEMENT_IMPORT: break;
   }
 }
@@ -114,20 +114,20 @@ static void warn_unused(Check *c) {
     if (c->reached[i] || (decl->statement->kind == CAG_STATEMENT_PARAM && decl->used)) continue;
     snprintf(text, sizeof text,
              decl->used ? "%s is used only by what nothing uses" : "nothing uses %s", decl->name);
-    check_warn(c, CAG_ERR_unused, decl->span, text);
+    cag_check_warn(c, CAG_ERR_unused, decl->span, text);
   }
   for (size_t i = 0; i < c->ast->count; i++) {
     const CagStatement *s = c->ast->statements[i];
     if (s->kind != CAG_STATEMENT_IMPORT) continue;
     if (s->as.import.decl && !s->as.import.decl->used && s->as.import.name_count == 0) {
       snprintf(text, sizeof text, "nothing uses the module %s", s->as.import.decl->name);
-      check_warn(c, CAG_ERR_unused, s->as.import.path_span, text);
+      cag_check_warn(c, CAG_ERR_unused, s->as.import.path_span, text);
     }
     for (size_t k = 0; k < s->as.import.name_count; k++) {
       const CagDecl *decl = s->as.import.names[k].decl;
       if (decl->used) continue;
       snprintf(text, sizeof text, "nothing uses %s", decl->name);
-      check_warn(c, CAG_ERR_unused, decl->span, text);
+      cag_check_warn(c, CAG_ERR_unused, decl->span, text);
     }
   }
 }

@@ -9,25 +9,26 @@
 
 // ---- expressions ----
 
-void check_expect_bool(Check *c, const CagExpr *e, const char *of) {
+void cag_check_expect_bool(Check *c, const CagExpr *e, const char *of) {
   char found[256], text[320];
-  const CagTypes types = check_infer(c, e);
+  const CagTypes types = cag_check_infer(c, e);
   if (types & CAG_TYPES(BOOL)) return;
   snprintf(text, sizeof text, "%s expects true or false, found %s", of,
            cag_types_text(types, found, sizeof found));
-  check_report(c, CAG_ERR_condition, e->span, text);
+  cag_check_report(c, CAG_ERR_condition, e->span, text);
 }
 
 static CagTypes infer_binary(Check *c, const CagExpr *e) {
   char left[256], right[256], text[600];
-  const CagTypes a = check_infer(c, e->as.binary.left), b = check_infer(c, e->as.binary.right);
+  const CagTypes a = cag_check_infer(c, e->as.binary.left),
+                 b = cag_check_infer(c, e->as.binary.right);
   const CagTypes result = cag_types_joined(e->as.binary.op, a, b);
   if (result) return result;
   const CagSpan op = e->as.binary.op_span;
   snprintf(text, sizeof text, "%.*s does not join %s and %s", (int)(op.end - op.start),
            c->ast->source->text + op.start, cag_types_text(a, left, sizeof left),
            cag_types_text(b, right, sizeof right));
-  CagDiagnostic *d = check_report(c, CAG_ERR_operand, e->span, text);
+  CagDiagnostic *d = cag_check_report(c, CAG_ERR_operand, e->span, text);
   const bool mixed = (a | b) == (CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE));
   if (mixed) cag_diagnostic_set_help(d, "give the number a unit: 30deg");
   return CAG_TYPES_ANY;
@@ -37,16 +38,16 @@ static CagTypes infer_branch(Check *c, const CagExpr *e) {
   CagTypes types = 0;
   for (; e->kind == CAG_EXPR_IF; e = e->as.branch.otherwise) {
     const CagExpr *condition = e->as.branch.condition;
-    check_expect_bool(c, condition, "if");
+    cag_check_expect_bool(c, condition, "if");
     if (condition->kind == CAG_EXPR_TRUE)
-      check_warn(c, CAG_ERR_never_reached, e->as.branch.otherwise->span,
-                 "this is never reached: the condition is always true");
+      cag_check_warn(c, CAG_ERR_never_reached, e->as.branch.otherwise->span,
+                     "this is never reached: the condition is always true");
     if (condition->kind == CAG_EXPR_FALSE)
-      check_warn(c, CAG_ERR_never_reached, e->as.branch.then->span,
-                 "this is never reached: the condition is always false");
-    types |= check_infer(c, e->as.branch.then);
+      cag_check_warn(c, CAG_ERR_never_reached, e->as.branch.then->span,
+                     "this is never reached: the condition is always false");
+    types |= cag_check_infer(c, e->as.branch.then);
   }
-  return types | check_infer(c, e);
+  return types | cag_check_infer(c, e);
 }
 
 // What a list, range or text gives one after the other.
@@ -61,27 +62,28 @@ static CagTypes types_of_elements(const CagExpr *source, CagTypes types) {
 static CagTypes infer_comprehension(Check *c, const CagExpr *e) {
   for (size_t i = 0; i < e->as.comprehension.count; i++) {
     const CagClause *clause = &e->as.comprehension.clauses[i];
-    const CagTypes source = check_infer(c, clause->source),
+    const CagTypes source = cag_check_infer(c, clause->source),
                    types = types_of_elements(clause->source, source);
     if (!(source & CAG_TYPES_LOOPED))
-      check_report_found(c, CAG_ERR_type, clause->source->span,
-                         "a comprehension runs over a list, a range, a text or a record", source);
+      cag_check_report_found(c, CAG_ERR_type, clause->source->span,
+                             "a comprehension runs over a list, a range, a text or a record",
+                             source);
     for (size_t k = 0; k < clause->name_count; k++)
-      check_learn(c, clause->names[k], clause->pattern ? CAG_TYPES_ANY : types);
-    if (clause->filter) check_expect_bool(c, clause->filter, "the condition");
+      cag_check_learn(c, clause->names[k], clause->pattern ? CAG_TYPES_ANY : types);
+    if (clause->filter) cag_check_expect_bool(c, clause->filter, "the condition");
   }
-  check_infer(c, e->as.comprehension.body);
+  cag_check_infer(c, e->as.comprehension.body);
   return CAG_TYPES(LIST);
 }
 
 static void walk_function(Check *c, const CagFunctionAst *fn) {
   for (size_t i = 0; i < fn->parameter_count; i++) {
-    check_learn(c, fn->parameters[i].decl, CAG_TYPES_ANY);
-    if (fn->parameters[i].fallback) check_infer(c, fn->parameters[i].fallback);
+    cag_check_learn(c, fn->parameters[i].decl, CAG_TYPES_ANY);
+    if (fn->parameters[i].fallback) cag_check_infer(c, fn->parameters[i].fallback);
   }
   const bool thunk = fn->parameter_count == 0;
   c->thunks += thunk;
-  check_infer(c, fn->body);
+  cag_check_infer(c, fn->body);
   c->thunks -= thunk;
 }
 
@@ -90,30 +92,30 @@ static CagTypes infer_block(Check *c, const CagExpr *e) {
   for (size_t i = 0; i < e->as.block.count; i++) {
     const CagStatement *s = e->as.block.statements[i];
     if (s->kind == CAG_STATEMENT_ASSERT) {
-      check_expect_bool(c, s->as.assertion.condition, "assert");
-      if (s->as.assertion.message) check_infer(c, s->as.assertion.message);
+      cag_check_expect_bool(c, s->as.assertion.condition, "assert");
+      if (s->as.assertion.message) cag_check_infer(c, s->as.assertion.message);
       continue;
     }
     const CagDecl *decl = s->as.definition.decl;
-    check_learn(c, decl, CAG_TYPES_ANY); // a function sees itself
-    check_learn(c, decl, check_infer(c, s->as.definition.value));
+    cag_check_learn(c, decl, CAG_TYPES_ANY); // a function sees itself
+    cag_check_learn(c, decl, cag_check_infer(c, s->as.definition.value));
     if (decl->used || decl->name[0] == '_') continue;
     snprintf(text, sizeof text, "nothing uses %s", decl->name);
-    check_warn(c, CAG_ERR_unused, decl->span, text);
+    cag_check_warn(c, CAG_ERR_unused, decl->span, text);
   }
-  return check_infer(c, e->as.block.value);
+  return cag_check_infer(c, e->as.block.value);
 }
 
 static CagTypes infer_index(Check *c, const CagExpr *e) {
   const CagTypes indexable =
       CAG_TYPES(LIST) | CAG_TYPES(RANGE) | CAG_TYPES(TEXT) | CAG_TYPES(RECORD);
   char found[256], text[320];
-  const CagTypes types = check_infer(c, e->as.binary.left);
-  check_infer(c, e->as.binary.right);
+  const CagTypes types = cag_check_infer(c, e->as.binary.left);
+  cag_check_infer(c, e->as.binary.right);
   if (types & indexable) return types == CAG_TYPES(TEXT) ? types : CAG_TYPES_ANY;
   snprintf(text, sizeof text, "[ ] expects a list, a range, a text or a record, found %s",
            cag_types_text(types, found, sizeof found));
-  check_report(c, CAG_ERR_type, e->as.binary.left->span, text);
+  cag_check_report(c, CAG_ERR_type, e->as.binary.left->span, text);
   return CAG_TYPES_ANY;
 }
 
@@ -121,10 +123,10 @@ static CagTypes infer_negation(Check *c, const CagExpr *e) {
   const CagTypes wrong =
       CAG_TYPES(TEXT) | CAG_TYPES(BOOL) | CAG_TYPES(NONE) | CAG_TYPES(RECORD) | CAG_TYPES_FUNCTION;
   char found[256], text[320];
-  const CagTypes types = check_infer(c, e->as.unary.operand);
+  const CagTypes types = cag_check_infer(c, e->as.unary.operand);
   if (types & ~wrong) return types & ~wrong;
   snprintf(text, sizeof text, "- does not take %s", cag_types_text(types, found, sizeof found));
-  check_report(c, CAG_ERR_operand, e->span, text);
+  cag_check_report(c, CAG_ERR_operand, e->span, text);
   return CAG_TYPES_ANY;
 }
 
@@ -138,7 +140,7 @@ static void check_mixed_range(Check *c, const CagExpr *e, CagTypes low, CagTypes
   snprintf(text, sizeof text, "a range needs two numbers or two angles, found %s and %s",
            low == CAG_TYPES(NUMBER) ? "a number" : "an angle",
            high == CAG_TYPES(NUMBER) ? "a number" : "an angle");
-  CagDiagnostic *d = check_report(c, CAG_ERR_type, e->span, text);
+  CagDiagnostic *d = cag_check_report(c, CAG_ERR_type, e->span, text);
   if (number->kind == CAG_EXPR_NUMBER)
     cag_diagnostic_set_help(d, "give the number a unit: %.15gdeg", number->as.number);
 }
@@ -149,19 +151,19 @@ static CagTypes infer_range(Check *c, const CagExpr *e) {
   CagTypes types[3] = {0};
   bool known = true;
   for (int i = 0; i < 3 && ends[i]; i++) {
-    types[i] = check_infer(c, ends[i]);
+    types[i] = cag_check_infer(c, ends[i]);
     if (types[i] & (CAG_TYPES(NUMBER) | CAG_TYPES(ANGLE))) continue;
     snprintf(text, sizeof text, "the ends and the step of a range are numbers or angles, found %s",
              cag_types_text(types[i], found, sizeof found));
-    check_report(c, CAG_ERR_type, ends[i]->span, text);
+    cag_check_report(c, CAG_ERR_type, ends[i]->span, text);
     known = false;
   }
   if (known) check_mixed_range(c, e, types[0], types[1]);
   return CAG_TYPES(RANGE);
 }
 
-void check_infer_all(Check *c, CagExpr *const *items, size_t count) {
-  for (size_t i = 0; i < count; i++) check_infer(c, items[i]);
+void cag_check_infer_all(Check *c, CagExpr *const *items, size_t count) {
+  for (size_t i = 0; i < count; i++) cag_check_infer(c, items[i]);
 }
 
 // Members of values that have none, or few: those of a vector and of a range.
@@ -178,57 +180,59 @@ static void check_member(Check *c, const CagExpr *e, CagTypes types) {
   if (known) return;
   snprintf(text, sizeof text, "%s has no member `%s`", cag_types_text(types, found, sizeof found),
            name);
-  CagDiagnostic *d = check_report(c, CAG_ERR_field, e->as.member.name_span, text);
+  CagDiagnostic *d = cag_check_report(c, CAG_ERR_field, e->as.member.name_span, text);
   if (cag_foreign_member(name)) cag_diagnostic_set_help(d, "write %s", cag_foreign_member(name));
   else if (cag_builtin_find(name) != (size_t)-1)
     cag_diagnostic_set_help(d, "a function comes after |>: write x |> %s(...)", name);
 }
 
-CagTypes check_infer(Check *c, const CagExpr *e) {
+CagTypes cag_check_infer(Check *c, const CagExpr *e) {
   switch (e->kind) {
   case CAG_EXPR_NUMBER: return CAG_TYPES(NUMBER);
   case CAG_EXPR_ANGLE: return CAG_TYPES(ANGLE);
   case CAG_EXPR_TEXT: return CAG_TYPES(TEXT);
   case CAG_EXPR_TEMPLATE:
-    check_infer_all(c, e->as.list.items, e->as.list.count);
+    cag_check_infer_all(c, e->as.list.items, e->as.list.count);
     return CAG_TYPES(TEXT);
   case CAG_EXPR_TRUE:
   case CAG_EXPR_FALSE: return CAG_TYPES(BOOL);
   case CAG_EXPR_NONE: return CAG_TYPES(NONE);
-  case CAG_EXPR_NAME: return check_infer_name(c, e);
-  case CAG_EXPR_GROUP: return check_infer(c, e->as.unary.operand);
-  case CAG_EXPR_SPREAD: check_infer(c, e->as.unary.operand); return CAG_TYPES_ANY;
+  case CAG_EXPR_NAME: return cag_check_infer_name(c, e);
+  case CAG_EXPR_GROUP: return cag_check_infer(c, e->as.unary.operand);
+  case CAG_EXPR_SPREAD: cag_check_infer(c, e->as.unary.operand); return CAG_TYPES_ANY;
   case CAG_EXPR_LIST:
-    check_infer_all(c, e->as.list.items, e->as.list.count);
+    cag_check_infer_all(c, e->as.list.items, e->as.list.count);
     return CAG_TYPES(LIST);
   case CAG_EXPR_COMPREHENSION: return infer_comprehension(c, e);
   case CAG_EXPR_RECORD:
-    for (size_t i = 0; i < e->as.record.count; i++) check_infer(c, e->as.record.fields[i].value);
+    for (size_t i = 0; i < e->as.record.count; i++)
+      cag_check_infer(c, e->as.record.fields[i].value);
     return CAG_TYPES(RECORD);
   case CAG_EXPR_BLOCK: return infer_block(c, e);
   case CAG_EXPR_LAMBDA: walk_function(c, e->as.function); return CAG_TYPES(CLOSURE);
   case CAG_EXPR_IF: return infer_branch(c, e);
   case CAG_EXPR_NEGATE: return infer_negation(c, e);
-  case CAG_EXPR_NOT: check_expect_bool(c, e->as.unary.operand, "not"); return CAG_TYPES(BOOL);
+  case CAG_EXPR_NOT: cag_check_expect_bool(c, e->as.unary.operand, "not"); return CAG_TYPES(BOOL);
   case CAG_EXPR_AND:
   case CAG_EXPR_OR: {
     const char *word = e->kind == CAG_EXPR_AND ? "and" : "or";
-    check_expect_bool(c, e->as.binary.left, word);
-    check_expect_bool(c, e->as.binary.right, word);
+    cag_check_expect_bool(c, e->as.binary.left, word);
+    cag_check_expect_bool(c, e->as.binary.right, word);
     return CAG_TYPES(BOOL);
   }
   case CAG_EXPR_BINARY: return infer_binary(c, e);
-  case CAG_EXPR_PIPE: return check_infer_pipe(c, e);
+  case CAG_EXPR_PIPE: return cag_check_infer_pipe(c, e);
   case CAG_EXPR_RANGE: return infer_range(c, e);
-  case CAG_EXPR_CALL: return check_infer_call(c, e);
+  case CAG_EXPR_CALL: return cag_check_infer_call(c, e);
   case CAG_EXPR_INDEX: return infer_index(c, e);
   case CAG_EXPR_MEMBER: {
-    check_member(c, e, check_infer(c, e->as.member.object));
+    check_member(c, e, cag_check_infer(c, e->as.member.object));
     const CagExpr *o = e->as.member.object;
     if (o->kind == CAG_EXPR_NAME && o->as.name.binding == CAG_BIND_DECL && o->as.name.decl &&
         o->as.name.decl->kind == CAG_DECL_IMPORT)
-      check_deprecated(c, check_find_public(c, o->as.name.decl->statement, e->as.member.name),
-                       e->as.member.name, e->as.member.name_span);
+      cag_check_deprecated(c,
+                           cag_check_find_public(c, o->as.name.decl->statement, e->as.member.name),
+                           e->as.member.name, e->as.member.name_span);
     return CAG_TYPES_ANY;
   }
   case CAG_EXPR_ERROR: break;

@@ -9,7 +9,7 @@
 
 // ---- reports ----
 
-CagDiagnostic *check_report(Check *c, CagErrorId id, CagSpan span, const char *message) {
+CagDiagnostic *cag_check_report(Check *c, CagErrorId id, CagSpan span, const char *message) {
   if (c->unjudged) {
     cag_diagnostics_clear(&c->ignored);
     return cag_diagnostics_add(&c->ignored, id, c->ast->source, span, "%s", message);
@@ -17,19 +17,20 @@ CagDiagnostic *check_report(Check *c, CagErrorId id, CagSpan span, const char *m
   return cag_diagnostics_add(&c->vm->errors, id, c->ast->source, span, "%s", message);
 }
 
-CagDiagnostic *check_warn(Check *c, CagErrorId id, CagSpan span, const char *message) {
-  CagDiagnostic *d = check_report(c, id, span, message);
+CagDiagnostic *cag_check_warn(Check *c, CagErrorId id, CagSpan span, const char *message) {
+  CagDiagnostic *d = cag_check_report(c, id, span, message);
   d->severity = CAG_SEVERITY_WARNING;
   return d;
 }
 
-void check_report_found(Check *c, CagErrorId id, CagSpan span, const char *wanted, CagTypes types) {
+void cag_check_report_found(Check *c, CagErrorId id, CagSpan span, const char *wanted,
+                            CagTypes types) {
   char found[256], text[512];
   snprintf(text, sizeof text, "%s, found %s", wanted, cag_types_text(types, found, sizeof found));
-  check_report(c, id, span, text);
+  cag_check_report(c, id, span, text);
 }
 
-size_t check_error_count(const Check *c) { return c->vm->errors.count + c->vm->errors.dropped; }
+size_t cag_check_error_count(const Check *c) { return c->vm->errors.count + c->vm->errors.dropped; }
 
 // ---- names ----
 
@@ -39,7 +40,7 @@ static size_t slot_of(const Check *c, const CagDecl *decl) {
   return i;
 }
 
-void check_learn(Check *c, const CagDecl *decl, CagTypes types) {
+void cag_check_learn(Check *c, const CagDecl *decl, CagTypes types) {
   if (!decl) return;
   if (2 * (c->known_count + 1) > c->known_size) {
     Known *const old = c->known;
@@ -71,28 +72,28 @@ static void use_top(Check *c, size_t used) {
   c->edges[2 * c->edge_count++ + 1] = used;
 }
 
-CagTypes check_types_of_top(Check *c, const CagDecl *decl) {
+CagTypes cag_check_types_of_top(Check *c, const CagDecl *decl) {
   const size_t k = decl->index;
   if (decl->statement->damage != CAG_SOUND) return CAG_TYPES_ANY;
   if (c->top_done[k]) return c->top_types[k];
   if (c->top_busy[k] || c->depth > DEPTH_MAX) return CAG_TYPES_ANY;
-  const size_t outer = c->top, errors = check_error_count(c);
+  const size_t outer = c->top, errors = cag_check_error_count(c);
   const CagStatement *s = decl->statement;
   c->top_busy[k] = true;
   c->depth++;
   c->top = k;
-  c->top_types[k] =
-      check_infer(c, s->kind == CAG_STATEMENT_PARAM ? s->as.param.value : s->as.definition.value);
-  if (s->kind == CAG_STATEMENT_PARAM && s->as.param.domain) check_infer(c, s->as.param.domain);
+  c->top_types[k] = cag_check_infer(c, s->kind == CAG_STATEMENT_PARAM ? s->as.param.value
+                                                                      : s->as.definition.value);
+  if (s->kind == CAG_STATEMENT_PARAM && s->as.param.domain) cag_check_infer(c, s->as.param.domain);
   c->top = outer;
   c->depth--;
   c->top_done[k] = true;
-  if (check_error_count(c) > errors) c->top_bad[k] = true;
+  if (cag_check_error_count(c) > errors) c->top_bad[k] = true;
   return c->top_types[k];
 }
 
-const CagStatement *check_find_public(const Check *c, const CagStatement *import,
-                                      const char *name) {
+const CagStatement *cag_check_find_public(const Check *c, const CagStatement *import,
+                                          const char *name) {
   if (!import || import->kind != CAG_STATEMENT_IMPORT || import->as.import.module == CAG_NO_MODULE)
     return NULL;
   const CagModuleUnit *m = c->vm->modules[import->as.import.module];
@@ -101,7 +102,7 @@ const CagStatement *check_find_public(const Check *c, const CagStatement *import
   return NULL;
 }
 
-void check_deprecated(Check *c, const CagStatement *s, const char *name, CagSpan span) {
+void cag_check_deprecated(Check *c, const CagStatement *s, const char *name, CagSpan span) {
   const char *said = s && s->doc ? strstr(s->doc, "deprecated:") : NULL;
   if (!said) return;
   said += strlen("deprecated:");
@@ -119,18 +120,19 @@ static CagTypes types_of_builtin(size_t index) {
   return row->function ? CAG_TYPES(BUILTIN) : cag_types_of_result(row->result);
 }
 
-CagTypes check_infer_name(Check *c, const CagExpr *e) {
+CagTypes cag_check_infer_name(Check *c, const CagExpr *e) {
   const CagDecl *decl = e->as.name.decl;
   if (e->as.name.binding == CAG_BIND_BUILTIN) return types_of_builtin(e->as.name.index);
   if (e->as.name.binding != CAG_BIND_DECL || !decl) return CAG_TYPES_ANY;
   switch (decl->kind) {
   case CAG_DECL_TOP:
     use_top(c, decl->index);
-    check_deprecated(c, decl->statement, decl->name, e->span);
-    return check_types_of_top(c, decl);
+    cag_check_deprecated(c, decl->statement, decl->name, e->span);
+    return cag_check_types_of_top(c, decl);
   case CAG_DECL_IMPORT: return CAG_TYPES(MODULE);
   case CAG_DECL_IMPORTED:
-    check_deprecated(c, check_find_public(c, decl->statement, decl->name), decl->name, e->span);
+    cag_check_deprecated(c, cag_check_find_public(c, decl->statement, decl->name), decl->name,
+                         e->span);
     return CAG_TYPES_ANY;
   default: return types_known(c, decl);
   }

@@ -45,33 +45,35 @@ typedef struct Check {
 // ---- reports ----
 
 // Adds an error with its message. Errors inside `attempt` are discarded.
-CagDiagnostic *check_report(Check *c, CagErrorId id, CagSpan span, const char *message);
-CagDiagnostic *check_warn(Check *c, CagErrorId id, CagSpan span, const char *message);
+CagDiagnostic *cag_check_report(Check *c, CagErrorId id, CagSpan span, const char *message);
+CagDiagnostic *cag_check_warn(Check *c, CagErrorId id, CagSpan span, const char *message);
 // Reports "WANTED, found a number".
-void check_report_found(Check *c, CagErrorId id, CagSpan span, const char *wanted, CagTypes types);
-size_t check_error_count(const Check *c);
+void cag_check_report_found(Check *c, CagErrorId id, CagSpan span, const char *wanted,
+                            CagTypes types);
+size_t cag_check_error_count(const Check *c);
 
 // ---- names ----
 
 // Records the types of a parameter, or of a name in a block or a comprehension.
-void check_learn(Check *c, const CagDecl *decl, CagTypes types);
+void cag_check_learn(Check *c, const CagDecl *decl, CagTypes types);
 // Returns the types of a top-level definition, and checks the definition first if necessary.
-CagTypes check_types_of_top(Check *c, const CagDecl *decl);
+CagTypes cag_check_types_of_top(Check *c, const CagDecl *decl);
 // The statement that defines an imported name, or the member of an imported module; NULL: unknown.
-const CagStatement *check_find_public(const Check *c, const CagStatement *import, const char *name);
+const CagStatement *cag_check_find_public(const Check *c, const CagStatement *import,
+                                          const char *name);
 // Warns about the use of a definition whose documentation contains `deprecated: ...`.
-void check_deprecated(Check *c, const CagStatement *s, const char *name, CagSpan span);
-CagTypes check_infer_name(Check *c, const CagExpr *e);
+void cag_check_deprecated(Check *c, const CagStatement *s, const char *name, CagSpan span);
+CagTypes cag_check_infer_name(Check *c, const CagExpr *e);
 
 // ---- expressions ----
 
 // Infers the types that an expression may have, and reports errors in it.
-CagTypes check_infer(Check *c, const CagExpr *e);
-void check_infer_all(Check *c, CagExpr *const *items, size_t count);
-CagTypes check_infer_call(Check *c, const CagExpr *e);
-CagTypes check_infer_pipe(Check *c, const CagExpr *e);
+CagTypes cag_check_infer(Check *c, const CagExpr *e);
+void cag_check_infer_all(Check *c, CagExpr *const *items, size_t count);
+CagTypes cag_check_infer_call(Check *c, const CagExpr *e);
+CagTypes cag_check_infer_pipe(Check *c, const CagExpr *e);
 // Reports a condition that can be neither true nor false. `of` names the construct that requires
 // it.
-void check_expect_bool(Check *c, const CagExpr *e, const char *of);
+void cag_check_expect_bool(Check *c, const CagExpr *e, const char *of);
 
 #endif

@@ -10,7 +10,7 @@
 #include "interp/export/pov_write.h"
 
 static void heading(CagPovWriter *w, const char *text) {
-  pov_printf(w, "\n// ---------- %s ----------\n\n", text);
+  cag_pov_printf(w, "\n// ---------- %s ----------\n\n", text);
 }
 
 // --- What is drawn and of what ---
@@ -34,8 +34,8 @@ static CagStatus write_materials(CagPovWriter *w, const bool *closed, CagError *
     for (size_t k = 0; k < s->items[i].label_count; k++)
       used[s->items[i].labels[k].material] |= CLOSED;
   for (size_t i = 0; i < s->material_count; i++) {
-    if (used[i] & CLOSED) pov_material(w, i, true);
-    if (used[i] & THIN) pov_material(w, i, false);
+    if (used[i] & CLOSED) cag_pov_material(w, i, true);
+    if (used[i] & THIN) cag_pov_material(w, i, false);
   }
   cag_free(used);
   return CAG_OK;
@@ -45,42 +45,43 @@ static CagStatus write_materials(CagPovWriter *w, const bool *closed, CagError *
 
 static void write_radiosity(CagPovWriter *w) {
   bool final = w->options->quality == CAG_POV_FINAL;
-  pov_text(w, "  radiosity { // light from everywhere\n");
-  pov_printf(w, "    pretrace_start 0.08 pretrace_end %s\n", final ? "0.01" : "0.02");
-  pov_printf(w, "    count %d nearest_count %d error_bound %s recursion_limit %d\n",
-             final ? 120 : 50, final ? 10 : 6, final ? "0.5" : "0.9", final ? 2 : 1);
-  pov_text(w, "    low_error_factor 0.6 gray_threshold 0 minimum_reuse 0.012 brightness 1\n  }\n");
+  cag_pov_text(w, "  radiosity { // light from everywhere\n");
+  cag_pov_printf(w, "    pretrace_start 0.08 pretrace_end %s\n", final ? "0.01" : "0.02");
+  cag_pov_printf(w, "    count %d nearest_count %d error_bound %s recursion_limit %d\n",
+                 final ? 120 : 50, final ? 10 : 6, final ? "0.5" : "0.9", final ? 2 : 1);
+  cag_pov_text(w,
+               "    low_error_factor 0.6 gray_threshold 0 minimum_reuse 0.012 brightness 1\n  }\n");
 }
 
 static void write_settings(CagPovWriter *w) {
-  pov_text(w, "global_settings {\n  assumed_gamma 1.0 // colors are linear light\n");
-  pov_text(w, "  max_trace_level 12\n");
+  cag_pov_text(w, "global_settings {\n  assumed_gamma 1.0 // colors are linear light\n");
+  cag_pov_text(w, "  max_trace_level 12\n");
   if (w->indirect) {
     write_radiosity(w);
   } else {
-    pov_text(w, "  ambient_light ");
-    pov_color(w, pov_ambient(w->scene));
-    pov_text(w, " // instead of light from everywhere\n");
+    cag_pov_text(w, "  ambient_light ");
+    cag_pov_color(w, cag_pov_ambient(w->scene));
+    cag_pov_text(w, " // instead of light from everywhere\n");
   }
-  pov_text(w, "}\n");
+  cag_pov_text(w, "}\n");
 }
 
 // --- Things ---
 
 static void write_ground(CagPovWriter *w, const CagItem *item) {
   if (isinf(item->ground_size)) {
-    pov_text(w, "plane {\n  z, ");
-    pov_number(w, item->ground_z);
-    pov_text(w, "\n}");
+    cag_pov_text(w, "plane {\n  z, ");
+    cag_pov_number(w, item->ground_z);
+    cag_pov_text(w, "\n}");
     return;
   }
   const double thickness = 1e-3; // of its size: a slab below its level
   double half = item->ground_size / 2;
-  pov_text(w, "box {\n  ");
-  pov_vec(w, cag_vec3(-half, -half, item->ground_z - thickness * item->ground_size));
-  pov_text(w, ", ");
-  pov_vec(w, cag_vec3(half, half, item->ground_z));
-  pov_text(w, "\n}");
+  cag_pov_text(w, "box {\n  ");
+  cag_pov_vec(w, cag_vec3(-half, -half, item->ground_z - thickness * item->ground_size));
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, cag_vec3(half, half, item->ground_z));
+  cag_pov_text(w, "\n}");
 }
 
 static bool is_operation(const CagItem *item) {
@@ -101,10 +102,10 @@ static bool try_native(CagPovWriter *w, const CagItem *item) {
   if (item->kind == CAG_ITEM_GROUND) return write_ground(w, item), true;
   if (is_meshed(w, item)) return false;
   switch (item->kind) {
-  case CAG_ITEM_SOLID: return pov_try_solid(w, item->as.solid);
+  case CAG_ITEM_SOLID: return cag_pov_try_solid(w, item->as.solid);
   case CAG_ITEM_SURFACE:
-    return pov_try_cones(w, item->as.surface) || pov_try_surface(w, item->as.surface);
-  case CAG_ITEM_REGION: return pov_try_polygon(w, item->as.region, &item->placement);
+    return cag_pov_try_cones(w, item->as.surface) || cag_pov_try_surface(w, item->as.surface);
+  case CAG_ITEM_REGION: return cag_pov_try_polygon(w, item->as.region, &item->placement);
   default: return false;
   }
 }
@@ -113,7 +114,7 @@ static CagStatus write_mesh(CagPovWriter *w, const CagItem *item, CagError *err)
   CagMesh *mesh;
   CagStatus status = cag_item_mesh(w->scene, item, &mesh, err);
   if (status) return status;
-  status = pov_mesh(w, mesh, err);
+  status = cag_pov_mesh(w, mesh, err);
   cag_mesh_release(mesh);
   return status;
 }
@@ -149,7 +150,7 @@ static void write_item_comment(CagPovWriter *w, const CagItem *item) {
            : item->kind == CAG_ITEM_CURVE ? " curve"
                                           : "",
            what[0] && item->kind != CAG_ITEM_SOLID ? ", " : "", what);
-  pov_comment(w, "", line);
+  cag_pov_comment(w, "", line);
 }
 
 // Opaque in all of its parts?
@@ -172,9 +173,9 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
   w->see_through = w->scene->materials[item->material].transmission > 0;
   write_item_comment(w, item);
   if (item->kind == CAG_ITEM_CURVE && !w->options->meshes_only) {
-    status = pov_curve(w, item, name, err);
+    status = cag_pov_curve(w, item, name, err);
   } else {
-    pov_printf(w, "#declare %s = ", name);
+    cag_pov_printf(w, "#declare %s = ", name);
     meshed = !try_native(w, item);
     if (meshed) status = write_mesh(w, item, err);
     if (!status && w->failure.status) {
@@ -183,18 +184,18 @@ static CagStatus write_item(CagPovWriter *w, size_t index, bool closed, CagError
     }
   }
   if (status) return status;
-  pov_material_name(w, item->material, closed, material);
-  pov_printf(w, "\nobject {\n  %s\n", name);
+  cag_pov_material_name(w, item->material, closed, material);
+  cag_pov_printf(w, "\nobject {\n  %s\n", name);
   if (item->kind == CAG_ITEM_MESH && item->as.mesh->scale.kind && item->as.mesh->triangle_count)
-    pov_scale_material(w, item->material, &item->as.mesh->scale);
-  else pov_printf(w, "  material { %s }\n", material);
+    cag_pov_scale_material(w, item->material, &item->as.mesh->scale);
+  else cag_pov_printf(w, "  material { %s }\n", material);
   // Where the smooth normals of a mesh look away from a ray, the renderer turns them around, and
   // lights what is behind: black specks. The camera sees no such place (pov_facing.c), but a mirror
   // may. Of an opaque body what is behind lies in its own shadow, so that light from both sides is
   // right.
-  if (meshed && closed && is_opaque(w, item)) pov_text(w, "  double_illuminate\n");
-  pov_placement(w, "  ", &w->placement);
-  pov_text(w, w->unit != 1 ? "  scale unit\n}\n\n" : "}\n\n");
+  if (meshed && closed && is_opaque(w, item)) cag_pov_text(w, "  double_illuminate\n");
+  cag_pov_placement(w, "  ", &w->placement);
+  cag_pov_text(w, w->unit != 1 ? "  scale unit\n}\n\n" : "}\n\n");
   return CAG_OK;
 }
 
@@ -217,9 +218,9 @@ static bool make_names(CagPovWriter *w) {
   const char **names = cag_malloc((n ? n : 1) * sizeof *names);
   if (!names) return false;
   for (size_t i = 0; i < s->item_count; i++) names[i] = s->items[i].name;
-  bool ok = pov_names("", names, s->item_count, &w->item_names);
+  bool ok = cag_pov_names("", names, s->item_count, &w->item_names);
   for (size_t i = 0; i < s->material_count; i++) names[i] = s->materials[i].name;
-  ok = ok && pov_names("M_", names, s->material_count, &w->material_names);
+  ok = ok && cag_pov_names("M_", names, s->material_count, &w->material_names);
   cag_free(names);
   return ok;
 }
@@ -245,19 +246,19 @@ static void measure(CagPovWriter *w) {
 
 static CagStatus write_all(CagPovWriter *w, const bool *closed, CagError *err) {
   const CagScene *s = w->scene;
-  pov_comment(w, "", s->script && s->script[0] ? s->script : "a scene");
-  pov_text(w, "// Written by cag " CAG_VERSION " for POV-Ray 3.7. Millimeters, Z up.\n\n");
-  pov_text(w, "#version 3.7;\n\n");
+  cag_pov_comment(w, "", s->script && s->script[0] ? s->script : "a scene");
+  cag_pov_text(w, "// Written by cag " CAG_VERSION " for POV-Ray 3.7. Millimeters, Z up.\n\n");
+  cag_pov_text(w, "#version 3.7;\n\n");
   write_settings(w);
   if (w->unit != 1) {
-    pov_text(w, "\n// The renderer's tolerances are meant for scenes some 100 units large.\n");
-    pov_printf(w, "#declare unit = %.9g; // a millimeter\n", w->unit);
+    cag_pov_text(w, "\n// The renderer's tolerances are meant for scenes some 100 units large.\n");
+    cag_pov_printf(w, "#declare unit = %.9g; // a millimeter\n", w->unit);
   }
   heading(w, "Camera");
-  pov_camera(w);
+  cag_pov_camera(w);
   heading(w, "Light and sky");
-  pov_lights(w);
-  pov_sky(w);
+  cag_pov_lights(w);
+  cag_pov_sky(w);
   heading(w, "Materials");
   CagStatus status = write_materials(w, closed, err);
   if (status) return status;

@@ -28,7 +28,7 @@ static void write_mesh(CagPovWriter *w, const CagSolid *s) {
   CagError err;
   CagStatus status = cag_item_mesh(w->scene, &item, &m, &err);
   if (!status) {
-    status = pov_mesh(w, m, &err);
+    status = cag_pov_mesh(w, m, &err);
     cag_mesh_release(m);
   }
   if (status && !w->failure.status) w->failure = err;
@@ -38,40 +38,40 @@ static void write_mesh(CagPovWriter *w, const CagSolid *s) {
 static void write_plane(CagPovWriter *w, const CagQuadric *q, int depth) {
   CagVec3 n = cag_vec3(q->c[6], q->c[7], q->c[8]);
   double length = cag_norm(n);
-  pov_text(w, "plane {\n  ");
-  pov_vec(w, cag_scaled(n, 1 / length));
-  pov_text(w, ", ");
-  pov_number(w, -q->c[9] / length + depth * ENLARGED * w->radius);
-  pov_text(w, "\n}");
+  cag_pov_text(w, "plane {\n  ");
+  cag_pov_vec(w, cag_scaled(n, 1 / length));
+  cag_pov_text(w, ", ");
+  cag_pov_number(w, -q->c[9] / length + depth * ENLARGED * w->radius);
+  cag_pov_text(w, "\n}");
 }
 
 // In the order x^2 y^2 z^2, xy xz yz, x y z, 1; negative inside, as here.
 static void write_form(CagPovWriter *w, const CagQuadric *q) {
   const double *c = q->c;
-  pov_text(w, "quadric {\n  ");
-  pov_vec(w, cag_vec3(c[0], c[1], c[2]));
-  pov_text(w, ", ");
-  pov_vec(w, cag_vec3(c[3], c[5], c[4]));
-  pov_text(w, ", ");
-  pov_vec(w, cag_vec3(c[6], c[7], c[8]));
-  pov_text(w, ", ");
-  pov_number(w, c[9]);
-  pov_text(w, "\n}");
+  cag_pov_text(w, "quadric {\n  ");
+  cag_pov_vec(w, cag_vec3(c[0], c[1], c[2]));
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, cag_vec3(c[3], c[5], c[4]));
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, cag_vec3(c[6], c[7], c[8]));
+  cag_pov_text(w, ", ");
+  cag_pov_number(w, c[9]);
+  cag_pov_text(w, "\n}");
 }
 
 // Objects that are bodies to the renderer: clipped quadrics and flat pieces are none.
 static bool try_leaf(CagPovWriter *w, const CagSolid *s) {
   const CagSurface *const *faces = (const CagSurface *const *)s->faces;
   switch (s->kind) {
-  case CAG_SOLID_REVOLUTION: return pov_try_lathe(w, faces, s->face_count);
+  case CAG_SOLID_REVOLUTION: return cag_pov_try_lathe(w, faces, s->face_count);
   case CAG_SOLID_SHELL:
     return s->face_count == 1 && cag_surface_is_closed(faces[0]) &&
-           (pov_try_quadric(w, faces, 1) || pov_try_torus(w, faces[0]));
+           (cag_pov_try_quadric(w, faces, 1) || cag_pov_try_torus(w, faces[0]));
   case CAG_SOLID_TUBE:
   case CAG_SOLID_SWEEP:
   case CAG_SOLID_LOFT:
   case CAG_SOLID_MESH: return false;
-  default: return pov_try_solid(w, s);
+  default: return cag_pov_try_solid(w, s);
   }
 }
 
@@ -88,13 +88,13 @@ static void enlarge(CagPovWriter *w, const CagSolid *s, int depth) {
     t.m[i][i] = k;
     t.m[i][3] = (1 - k) * at[i];
   }
-  pov_placement(w, "  ", &t);
+  cag_pov_placement(w, "  ", &t);
 }
 
 static void write_plain(CagPovWriter *w, const CagSolid *s, int depth) {
   CagQuadric q;
   if (is_operation(s)) {
-    pov_csg(w, s, depth);
+    cag_pov_csg(w, s, depth);
     return;
   }
   if (cag_solid_form(s, &q)) {
@@ -104,14 +104,14 @@ static void write_plain(CagPovWriter *w, const CagSolid *s, int depth) {
   }
   if (depth > 0) {
     w->depth++;
-    pov_text(w, "object {\n");
+    cag_pov_text(w, "object {\n");
   }
   if (!try_leaf(w, s)) write_mesh(w, s);
   if (depth == 0) return;
   w->depth--;
-  pov_text(w, "\n");
+  cag_pov_text(w, "\n");
   enlarge(w, s, depth);
-  pov_text(w, "}");
+  cag_pov_text(w, "}");
 }
 
 // An operand with a material of its own has it inside, where that of the whole does not reach.
@@ -122,14 +122,14 @@ static void write_operand(CagPovWriter *w, const CagSolid *s, int depth) {
     return;
   }
   w->depth++;
-  pov_text(w, "object {\n");
+  cag_pov_text(w, "object {\n");
   write_plain(w, s, depth);
   w->depth--;
-  pov_material_name(w, cag_item_label_material(w->item, s->label), true, material);
-  pov_printf(w, "\n  material { %s }\n}", material);
+  cag_pov_material_name(w, cag_item_label_material(w->item, s->label), true, material);
+  cag_pov_printf(w, "\n  material { %s }\n}", material);
 }
 
-void pov_csg(CagPovWriter *w, const CagSolid *s, int depth) {
+void cag_pov_csg(CagPovWriter *w, const CagSolid *s, int depth) {
   const char *word = s->kind == CAG_SOLID_UNION        ? w->see_through ? "merge" : "union"
                      : s->kind == CAG_SOLID_DIFFERENCE ? "difference"
                                                        : "intersection";
@@ -138,15 +138,15 @@ void pov_csg(CagPovWriter *w, const CagSolid *s, int depth) {
   w->in_operation = true;
   w->outer = cag_transform_multiply(&outer, &s->placement);
   w->depth++;
-  pov_printf(w, "%s {\n", word);
+  cag_pov_printf(w, "%s {\n", word);
   for (size_t i = 0; i < s->core->count && !w->failure.status; i++) {
     bool taken = s->kind == CAG_SOLID_DIFFERENCE && i > 0;
     write_operand(w, s->core->operands[i], depth + taken);
     if (i + 1 == s->core->count) w->depth--; // the line of the closing brace
-    pov_text(w, "\n");
+    cag_pov_text(w, "\n");
   }
   w->in_operation = inside;
   w->outer = outer;
-  pov_placement(w, "  ", &s->placement);
-  pov_text(w, "}");
+  cag_pov_placement(w, "  ", &s->placement);
+  cag_pov_text(w, "}");
 }

@@ -10,9 +10,9 @@
 #define SAG 0.05
 
 static void write_joint(CagPovWriter *w, CagVec3 p) {
-  pov_text(w, "sphere { ");
-  pov_vec(w, p);
-  pov_text(w, ", line_radius }");
+  cag_pov_text(w, "sphere { ");
+  cag_pov_vec(w, p);
+  cag_pov_text(w, ", line_radius }");
 }
 
 // A length that the renderer refuses is seen as its end alone.
@@ -22,11 +22,11 @@ static void write_rod(CagPovWriter *w, CagVec3 p, CagVec3 q) {
     write_joint(w, p);
     return;
   }
-  pov_text(w, "cylinder { ");
-  pov_vec(w, p);
-  pov_text(w, ", ");
-  pov_vec(w, q);
-  pov_text(w, ", line_radius }");
+  cag_pov_text(w, "cylinder { ");
+  cag_pov_vec(w, p);
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, q);
+  cag_pov_text(w, ", line_radius }");
 }
 
 static bool is_circle(const CagCurve *c, double *radius, CagTransform *frame) {
@@ -42,7 +42,7 @@ static bool is_circle(const CagCurve *c, double *radius, CagTransform *frame) {
 // Rods and joints along the points; with dashes only what lies in the first half of each period.
 static void write_chain(CagPovWriter *w, const CagVec3 *p, size_t n, double dash, bool closed) {
   double run = 0; // length so far
-  pov_text(w, "union {\n");
+  cag_pov_text(w, "union {\n");
   for (size_t i = 0; i + 1 < n; i++) {
     double length = cag_norm(cag_sub(p[i + 1], p[i])), done = 0;
     while (done < length) {
@@ -51,25 +51,25 @@ static void write_chain(CagPovWriter *w, const CagVec3 *p, size_t n, double dash
       if (step <= length * 1e-12) step = fmin(dash, length - done); // at a boundary, to rounding
       bool drawn = dash <= 0 || fmod(floor((run + step / 2) / dash), 2) == 0;
       if (drawn) {
-        pov_text(w, "  ");
+        cag_pov_text(w, "  ");
         write_rod(w, cag_lerp(p[i], p[i + 1], done / length),
                   cag_lerp(p[i], p[i + 1], (done + step) / length));
-        pov_text(w, "\n");
+        cag_pov_text(w, "\n");
       }
       done += step;
       run += step;
     }
     if (dash > 0) continue;
-    pov_text(w, "  ");
+    cag_pov_text(w, "  ");
     write_joint(w, p[i]);
-    pov_text(w, "\n");
+    cag_pov_text(w, "\n");
   }
   if (dash <= 0 && !closed && n > 0) {
-    pov_text(w, "  ");
+    cag_pov_text(w, "  ");
     write_joint(w, p[n - 1]);
-    pov_text(w, "\n");
+    cag_pov_text(w, "\n");
   }
-  pov_text(w, "}");
+  cag_pov_text(w, "}");
 }
 
 static CagStatus write_polyline(CagPovWriter *w, const CagItem *item, double radius,
@@ -87,13 +87,13 @@ static CagStatus write_polyline(CagPovWriter *w, const CagItem *item, double rad
   return status;
 }
 
-CagStatus pov_curve(CagPovWriter *w, const CagItem *item, const char *name, CagError *err) {
+CagStatus cag_pov_curve(CagPovWriter *w, const CagItem *item, const char *name, CagError *err) {
   const CagCurve *c = item->as.curve;
   double radius = cag_item_line_radius(w->scene, item), circle;
   CagTransform frame;
-  pov_text(w, "#local line_radius = ");
-  pov_number(w, radius);
-  pov_printf(w, ";\n#declare %s = ", name);
+  cag_pov_text(w, "#local line_radius = ");
+  cag_pov_number(w, radius);
+  cag_pov_printf(w, ";\n#declare %s = ", name);
   bool straight;
   CagStatus status = cag_curve_is_straight(c, &straight, err);
   if (status) return status;
@@ -105,11 +105,11 @@ CagStatus pov_curve(CagPovWriter *w, const CagItem *item, const char *name, CagE
     return status;
   }
   if (item->dash <= 0 && is_circle(c, &circle, &frame)) {
-    pov_text(w, "torus {\n  ");
-    pov_number(w, circle);
-    pov_text(w, ", line_radius\n  rotate 90*x // POV-Ray's own lie about y\n");
-    pov_placement(w, "  ", &frame);
-    pov_text(w, "}");
+    cag_pov_text(w, "torus {\n  ");
+    cag_pov_number(w, circle);
+    cag_pov_text(w, ", line_radius\n  rotate 90*x // POV-Ray's own lie about y\n");
+    cag_pov_placement(w, "  ", &frame);
+    cag_pov_text(w, "}");
     return CAG_OK;
   }
   return write_polyline(w, item, radius, err);

@@ -113,7 +113,8 @@ static void add_corners(CagMesh *m, size_t t, unsigned turned, const CagVec3 p[3
   }
 }
 
-CagStatus pov_facing_mesh(const CagPovWriter *w, const CagMesh *m, CagMesh **out, CagError *err) {
+CagStatus cag_pov_facing_mesh(const CagPovWriter *w, const CagMesh *m, CagMesh **out,
+                              CagError *err) {
   Viewer v;
   CagMesh *facing;
   CagVec3 p[3], n[3];

@@ -72,19 +72,19 @@ static bool add_profile(CagPovOutline *o, Turn *t, const CagSurface *s) {
   CagVec3 axis, through;
   CagTransform map;
   double from, to;
-  s = pov_unplaced(s, &map);
+  s = cag_pov_unplaced(s, &map);
   if (!cag_surface_revolution_view(s, &profile, &axis, &through, &from, &to)) return false;
-  if (fabs(fabs(to - from) - FULL_TURN) > SAME || !pov_takes(&map)) return false;
+  if (fabs(fabs(to - from) - FULL_TURN) > SAME || !cag_pov_takes(&map)) return false;
   if (o->all.count == 0) t->axis = cag_unit(axis), t->through = through, t->map = map;
   else if (!same_map(&t->map, &map) || !same_axis(t, cag_unit(axis), through)) return false;
   CagPovOutline part = CAG_POV_OUTLINE_EMPTY;
   CagCurve *space = NULL;
   CagError err;
-  bool ok = cag_curve_to_space(profile, &space, &err) == CAG_OK && pov_outline_add(&part, space) &&
-            to_half_plane(t, &part.all);
+  bool ok = cag_curve_to_space(profile, &space, &err) == CAG_OK &&
+            cag_pov_outline_add(&part, space) && to_half_plane(t, &part.all);
   cag_curve_release(space);
-  ok = ok && pov_outline_append(o, &part);
-  pov_outline_free(&part);
+  ok = ok && cag_pov_outline_append(o, &part);
+  cag_pov_outline_free(&part);
   return ok;
 }
 
@@ -102,23 +102,23 @@ static CagTransform lathe_placement(const Turn *t) {
   return cag_transform_multiply(&t->map, &m);
 }
 
-bool pov_try_lathe(CagPovWriter *w, const CagSurface *const *s, size_t n) {
+bool cag_pov_try_lathe(CagPovWriter *w, const CagSurface *const *s, size_t n) {
   CagPovOutline o = CAG_POV_OUTLINE_EMPTY;
   Turn turn = {.has_out = false};
   bool ok = n > 0;
   for (size_t i = 0; ok && i < n; i++) ok = add_profile(&o, &turn, s[i]);
   if (ok) {
-    pov_outline_tidy(&o);
-    pov_text(w, "lathe { // points are (radius, height)\n");
-    pov_outline_write(w, &o, "");
+    cag_pov_outline_tidy(&o);
+    cag_pov_text(w, "lathe { // points are (radius, height)\n");
+    cag_pov_outline_write(w, &o, "");
     // Degree 6 is solved by Sturm sequences in any case; pieces that happen to be of degree 2 are
     // solved in closed form without this, which misses points where the profile stands upright.
-    if (!o.linear) pov_text(w, "  sturm\n");
+    if (!o.linear) cag_pov_text(w, "  sturm\n");
     CagTransform placement = lathe_placement(&turn);
-    pov_placement(w, "  ", &placement);
-    pov_text(w, "}");
+    cag_pov_placement(w, "  ", &placement);
+    cag_pov_text(w, "}");
   }
-  pov_outline_free(&o);
+  cag_pov_outline_free(&o);
   return ok;
 }
 
@@ -129,35 +129,35 @@ static void write_straight(CagPovWriter *w, CagVec3 a, CagVec3 b, double size) {
   if (fabs(a.x) <= SAME * size && fabs(b.x) <= SAME * size) return; // on the axis
   if (nearly(a, b, size)) return;
   bool flat = fabs(a.y - b.y) <= SAME * size;
-  pov_text(w, flat ? "  disc { " : "  cone { ");
-  pov_vec(w, cag_vec3(0, a.y, 0));
-  pov_text(w, flat ? ", y, " : ", ");
-  pov_number(w, flat ? fmax(a.x, b.x) : a.x);
-  pov_text(w, ", ");
+  cag_pov_text(w, flat ? "  disc { " : "  cone { ");
+  cag_pov_vec(w, cag_vec3(0, a.y, 0));
+  cag_pov_text(w, flat ? ", y, " : ", ");
+  cag_pov_number(w, flat ? fmax(a.x, b.x) : a.x);
+  cag_pov_text(w, ", ");
   if (!flat) {
-    pov_vec(w, cag_vec3(0, b.y, 0));
-    pov_text(w, ", ");
+    cag_pov_vec(w, cag_vec3(0, b.y, 0));
+    cag_pov_text(w, ", ");
   }
-  pov_number(w, flat ? fmin(a.x, b.x) : b.x);
-  pov_text(w, flat ? " }\n" : " open }\n");
+  cag_pov_number(w, flat ? fmin(a.x, b.x) : b.x);
+  cag_pov_text(w, flat ? " }\n" : " open }\n");
 }
 
-bool pov_try_cones(CagPovWriter *w, const CagSurface *s) {
+bool cag_pov_try_cones(CagPovWriter *w, const CagSurface *s) {
   CagPovOutline o = CAG_POV_OUTLINE_EMPTY;
   Turn turn = {.has_out = false};
   bool ok = add_profile(&o, &turn, s) && o.linear;
   if (ok) {
-    pov_outline_tidy(&o);
+    cag_pov_outline_tidy(&o);
     double size = 0;
     for (size_t i = 0; i < 4 * o.all.count; i++) size = fmax(size, cag_norm(o.all.points[i]));
-    pov_text(w, "union { // along y\n");
+    cag_pov_text(w, "union { // along y\n");
     for (size_t i = 0; i < o.all.count; i++)
       write_straight(w, o.all.points[4 * i], o.all.points[4 * i + 3], size);
     CagTransform placement = lathe_placement(&turn);
-    pov_placement(w, "  ", &placement);
-    pov_text(w, "}");
+    cag_pov_placement(w, "  ", &placement);
+    cag_pov_text(w, "}");
   }
-  pov_outline_free(&o);
+  cag_pov_outline_free(&o);
   return ok;
 }
 
@@ -237,7 +237,7 @@ static bool sides_are_straight(const CagSolid *s, const CagTransform *low, CagVe
   return true;
 }
 
-bool pov_try_prism(CagPovWriter *w, const CagSolid *s) {
+bool cag_pov_try_prism(CagPovWriter *w, const CagSolid *s) {
   const CagRegion *region = NULL;
   CagTransform low, high;
   CagVec3 along;
@@ -246,9 +246,9 @@ bool pov_try_prism(CagPovWriter *w, const CagSolid *s) {
     return false;
   CagPovOutline o = CAG_POV_OUTLINE_EMPTY;
   bool ok = true;
-  for (size_t i = 0; ok && i < region->count; i++) ok = pov_outline_add(&o, region->loops[i]);
+  for (size_t i = 0; ok && i < region->count; i++) ok = cag_pov_outline_add(&o, region->loops[i]);
   if (ok) {
-    pov_outline_tidy(&o);
+    cag_pov_outline_tidy(&o);
     // The outline's x and y stay, and the prism's own y, from 0 to 1, goes along the extrusion.
     CagTransform m = low;
     const CagVec3 columns[3] = {column(&low, 0), along, column(&low, 1)};
@@ -257,13 +257,13 @@ bool pov_try_prism(CagPovWriter *w, const CagSolid *s) {
       m.m[1][j] = columns[j].y;
       m.m[2][j] = columns[j].z;
     }
-    pov_text(w, "prism {\n  linear_sweep\n");
-    pov_outline_write(w, &o, "  0, 1,\n");
-    if (!o.linear) pov_text(w, "  sturm\n");
-    pov_placement(w, "  ", &m);
-    pov_text(w, "}");
+    cag_pov_text(w, "prism {\n  linear_sweep\n");
+    cag_pov_outline_write(w, &o, "  0, 1,\n");
+    if (!o.linear) cag_pov_text(w, "  sturm\n");
+    cag_pov_placement(w, "  ", &m);
+    cag_pov_text(w, "}");
   }
-  pov_outline_free(&o);
+  cag_pov_outline_free(&o);
   return ok;
 }
 
@@ -276,7 +276,7 @@ static bool corners(const CagCurve *loop, const CagVec3 **points, size_t *n) {
   return true;
 }
 
-bool pov_try_polygon(CagPovWriter *w, const CagRegion *r, const CagTransform *placement) {
+bool cag_pov_try_polygon(CagPovWriter *w, const CagRegion *r, const CagTransform *placement) {
   size_t total = 0;
   for (size_t i = 0; i < r->count; i++) {
     const CagVec3 *points;
@@ -285,19 +285,19 @@ bool pov_try_polygon(CagPovWriter *w, const CagRegion *r, const CagTransform *pl
     total += n + 1;
   }
   if (!cag_transform_is_affine(placement)) return false;
-  pov_printf(w, "polygon { // each outline ends where it begins; inner ones are holes\n  %zu",
-             total);
+  cag_pov_printf(w, "polygon { // each outline ends where it begins; inner ones are holes\n  %zu",
+                 total);
   for (size_t i = 0; i < r->count; i++) {
     const CagVec3 *points;
     size_t n;
     corners(r->loops[i], &points, &n);
     for (size_t k = 0; k <= n; k++) {
-      pov_text(w, k % 6 == 0 ? ",\n  " : ", ");
-      pov_vec2(w, points[k % n].x, points[k % n].y);
+      cag_pov_text(w, k % 6 == 0 ? ",\n  " : ", ");
+      cag_pov_vec2(w, points[k % n].x, points[k % n].y);
     }
   }
-  pov_text(w, "\n");
-  pov_placement(w, "  ", placement);
-  pov_text(w, "}");
+  cag_pov_text(w, "\n");
+  cag_pov_placement(w, "  ", placement);
+  cag_pov_text(w, "}");
   return true;
 }

@@ -27,7 +27,7 @@ static CagColor mixed(CagColor a, CagColor b, double t) {
 
 static double brightness(CagColor c) { return fmax(c.r, fmax(c.g, c.b)); }
 
-void pov_material_name(const CagPovWriter *w, size_t index, bool closed, char out[64]) {
+void cag_pov_material_name(const CagPovWriter *w, size_t index, bool closed, char out[64]) {
   bool thin = !closed && w->scene->materials[index].transmission > 0;
   snprintf(out, 64, "%s%s", w->material_names[index], thin ? "_thin" : "");
 }
@@ -78,37 +78,37 @@ static Finish finish_of(const CagMaterial *m) {
 }
 
 static void write_number_line(CagPovWriter *w, const char *word, double x) {
-  pov_printf(w, "      %s %.4g\n", word, x);
+  cag_pov_printf(w, "      %s %.4g\n", word, x);
 }
 
 static void write_mirror(CagPovWriter *w, const Finish *f, bool bends) {
   if (f->mirror < MIRROR_LEAST) return;
-  if (f->metal) pov_printf(w, "      reflection { %.4g metallic }\n", f->mirror);
-  else if (bends) pov_printf(w, "      reflection { 0, %.4g fresnel }\n", f->mirror);
+  if (f->metal) cag_pov_printf(w, "      reflection { %.4g metallic }\n", f->mirror);
+  else if (bends) cag_pov_printf(w, "      reflection { 0, %.4g fresnel }\n", f->mirror);
   else // a thin sheet: Fresnel's law for glass, roughly
-    pov_printf(w, "      reflection { %.4g, %.4g falloff 4 }\n", 0.05 * f->mirror, f->mirror);
-  pov_text(w, "      conserve_energy\n");
+    cag_pov_printf(w, "      reflection { %.4g, %.4g falloff 4 }\n", 0.05 * f->mirror, f->mirror);
+  cag_pov_text(w, "      conserve_energy\n");
 }
 
 // The pigment's color multiplies emission, so it is divided out.
 static void write_emission(CagPovWriter *w, CagColor pigment, CagColor light) {
   if (brightness(light) <= 0) return;
-  pov_text(w, "      emission ");
-  pov_color(w, (CagColor){light.r / pigment.r, light.g / pigment.g, light.b / pigment.b});
-  pov_text(w, "\n");
+  cag_pov_text(w, "      emission ");
+  cag_pov_color(w, (CagColor){light.r / pigment.r, light.g / pigment.g, light.b / pigment.b});
+  cag_pov_text(w, "\n");
 }
 
 static void write_finish(CagPovWriter *w, const CagMaterial *m, CagColor pigment, bool bends) {
   Finish f = finish_of(m);
-  pov_text(w, "    finish {\n");
+  cag_pov_text(w, "    finish {\n");
   write_number_line(w, "ambient", w->indirect ? 0 : f.diffuse);
   write_number_line(w, "diffuse", f.diffuse);
   write_emission(w, pigment, m->emission);
-  pov_printf(w, "      specular albedo %.4g roughness %.4g%s\n", f.specular,
-             specular_roughness(m->roughness), f.metal ? " metallic" : "");
-  if (f.phong > 0) pov_printf(w, "      phong albedo %.4g phong_size 600\n", f.phong);
+  cag_pov_printf(w, "      specular albedo %.4g roughness %.4g%s\n", f.specular,
+                 specular_roughness(m->roughness), f.metal ? " metallic" : "");
+  if (f.phong > 0) cag_pov_printf(w, "      phong albedo %.4g phong_size 600\n", f.phong);
   write_mirror(w, &f, bends);
-  pov_text(w, "    }\n");
+  cag_pov_text(w, "    }\n");
 }
 
 // --- Patterns ---
@@ -118,14 +118,14 @@ typedef struct Stop {
 } Stop;
 
 static void write_color_map(CagPovWriter *w, const CagMaterial *m, const Stop *stops, size_t n) {
-  pov_text(w, "      color_map {\n");
+  cag_pov_text(w, "      color_map {\n");
   for (size_t i = 0; i < n; i++) {
-    pov_printf(w, "        [%.3g ", stops[i].at);
-    pov_color(w, mixed(m->color, m->color2, stops[i].mix));
-    if (stops[i].transmit > 0) pov_printf(w, " transmit %.3g", stops[i].transmit);
-    pov_text(w, "]\n");
+    cag_pov_printf(w, "        [%.3g ", stops[i].at);
+    cag_pov_color(w, mixed(m->color, m->color2, stops[i].mix));
+    if (stops[i].transmit > 0) cag_pov_printf(w, " transmit %.3g", stops[i].transmit);
+    cag_pov_text(w, "]\n");
   }
-  pov_text(w, "      }\n");
+  cag_pov_text(w, "      }\n");
 }
 #define COLOR_MAP(...)                                                                             \
   write_color_map(w, m, (const Stop[]){__VA_ARGS__},                                               \
@@ -134,41 +134,42 @@ static void write_color_map(CagPovWriter *w, const CagMaterial *m, const Stop *s
 // Rings about an axis along X below the ground, slightly bent, and fine fibres over them.
 static void write_wood(CagPovWriter *w, const CagMaterial *m) {
   double s = m->texture_scale;
-  pov_text(w, "    pigment {\n      wood\n      turbulence <0.08, 0.08, 0.4> octaves 4\n");
+  cag_pov_text(w, "    pigment {\n      wood\n      turbulence <0.08, 0.08, 0.4> octaves 4\n");
   COLOR_MAP({0, 0.05, 0}, {0.3, 0, 0}, {0.7, 0.55, 0}, {0.9, 1, 0}, {1, 0.05, 0});
-  pov_printf(w, "      scale <%.4g, %.4g, %.4g>\n", s, s, 6 * s);
-  pov_text(w, "      rotate <0, 90, 0> rotate <0, 2, 3>\n");
-  pov_printf(w, "      translate <0, %.4g, %.4g>\n    }\n", -2.3 * s, -5.1 * s);
+  cag_pov_printf(w, "      scale <%.4g, %.4g, %.4g>\n", s, s, 6 * s);
+  cag_pov_text(w, "      rotate <0, 90, 0> rotate <0, 2, 3>\n");
+  cag_pov_printf(w, "      translate <0, %.4g, %.4g>\n    }\n", -2.3 * s, -5.1 * s);
 }
 
 static void write_fibres(CagPovWriter *w, const CagMaterial *m) {
   double s = m->texture_scale;
-  pov_text(w, "    pigment {\n      granite\n");
+  cag_pov_text(w, "    pigment {\n      granite\n");
   COLOR_MAP({0, 1, 1}, {0.35, 1, 1}, {0.6, 1, 0.6}, {1, 1, 0.45});
-  pov_printf(w, "      scale <%.4g, %.4g, %.4g>\n    }\n", 14 * s, 0.6 * s, 0.6 * s);
+  cag_pov_printf(w, "      scale <%.4g, %.4g, %.4g>\n    }\n", 14 * s, 0.6 * s, 0.6 * s);
 }
 
 static void write_marble(CagPovWriter *w, const CagMaterial *m) {
-  pov_text(w, "    pigment {\n      marble\n      turbulence 1.1 octaves 6 omega 0.6 lambda 2.2\n");
+  cag_pov_text(
+      w, "    pigment {\n      marble\n      turbulence 1.1 octaves 6 omega 0.6 lambda 2.2\n");
   COLOR_MAP({0, 1, 0}, {0.04, 0.6, 0}, {0.14, 0.12, 0}, {0.45, 0, 0}, {0.7, 0.2, 0}, {0.8, 0.04, 0},
             {1, 0, 0});
-  pov_printf(w, "      rotate <25, 15, 40>\n      scale %.4g\n    }\n", m->texture_scale);
+  cag_pov_printf(w, "      rotate <25, 15, 40>\n      scale %.4g\n    }\n", m->texture_scale);
 }
 
 static void write_concrete(CagPovWriter *w, const CagMaterial *m) {
   double s = m->texture_scale;
-  pov_text(w, "    pigment {\n      bozo\n      turbulence 1 octaves 6 omega 0.7\n");
+  cag_pov_text(w, "    pigment {\n      bozo\n      turbulence 1 octaves 6 omega 0.7\n");
   COLOR_MAP({0, 0, 0}, {0.45, 0.3, 0}, {0.75, 0.75, 0}, {1, 1, 0});
-  pov_printf(w, "      scale %.4g\n    }\n", 2 * s);
-  pov_printf(w, "    normal { granite 0.12 scale %.4g }\n", s);
+  cag_pov_printf(w, "      scale %.4g\n    }\n", 2 * s);
+  cag_pov_printf(w, "    normal { granite 0.12 scale %.4g }\n", s);
 }
 
 static void write_clay(CagPovWriter *w, const CagMaterial *m) {
   double s = m->texture_scale;
-  pov_text(w, "    pigment {\n      bozo\n      turbulence 0.8 octaves 5\n");
+  cag_pov_text(w, "    pigment {\n      bozo\n      turbulence 0.8 octaves 5\n");
   COLOR_MAP({0, 0, 0}, {0.5, 0.35, 0}, {1, 1, 0});
-  pov_printf(w, "      scale <%.4g, %.4g, %.4g>\n    }\n", 3 * s, 3 * s, s);
-  pov_printf(w, "    normal { bumps 0.08 scale %.4g }\n", 0.3 * s);
+  cag_pov_printf(w, "      scale <%.4g, %.4g, %.4g>\n    }\n", 3 * s, 3 * s, s);
+  cag_pov_printf(w, "    normal { bumps 0.08 scale %.4g }\n", 0.3 * s);
 }
 
 typedef struct Pattern {
@@ -192,10 +193,10 @@ static const Pattern *find_pattern(const CagMaterial *m) {
 
 static void write_plain_pigment(CagPovWriter *w, const CagMaterial *m, CagColor c) {
   double passed = clamp01(m->transmission) * (1 - clamp01(m->metallic));
-  pov_text(w, "    pigment { color ");
-  pov_color(w, c);
-  if (passed > 0) pov_printf(w, " filter %.4g", passed);
-  pov_text(w, " }\n");
+  cag_pov_text(w, "    pigment { color ");
+  cag_pov_color(w, c);
+  if (passed > 0) cag_pov_printf(w, " filter %.4g", passed);
+  cag_pov_text(w, " }\n");
 }
 
 static void write_texture(CagPovWriter *w, const CagMaterial *m, bool bends) {
@@ -205,24 +206,24 @@ static void write_texture(CagPovWriter *w, const CagMaterial *m, bool bends) {
     const double least = 0.01;
     c = (CagColor){fmax(c.r, least), fmax(c.g, least), fmax(c.b, least)};
   }
-  pov_text(w, "  texture {\n");
+  cag_pov_text(w, "  texture {\n");
   if (pattern) pattern->base(w, m);
   else write_plain_pigment(w, m, c);
   write_finish(w, m, c, bends);
-  pov_text(w, "  }\n");
+  cag_pov_text(w, "  }\n");
   if (!pattern || !pattern->over) return;
-  pov_text(w, "  texture {\n");
+  cag_pov_text(w, "  texture {\n");
   pattern->over(w, m);
   write_finish(w, m, c, bends);
-  pov_text(w, "  }\n");
+  cag_pov_text(w, "  }\n");
 }
 
 // The script's own text: a whole texture, or what stands in one.
 static void write_own_texture(CagPovWriter *w, const char *text) {
   bool whole = strncmp(text + strspn(text, " \t\r\n"), "texture", 7) == 0;
-  pov_text(w, whole ? "  " : "  texture {\n    ");
-  pov_text(w, text);
-  pov_text(w, whole ? "\n" : "\n  }\n");
+  cag_pov_text(w, whole ? "  " : "  texture {\n    ");
+  cag_pov_text(w, text);
+  cag_pov_text(w, whole ? "\n" : "\n  }\n");
 }
 
 // Fresnel's law and refraction ask the interior.
@@ -231,42 +232,42 @@ static bool needs_ior(const CagMaterial *m) {
   return m->pov || m->transmission > 0 || (!f.metal && f.mirror >= MIRROR_LEAST);
 }
 
-void pov_material(CagPovWriter *w, size_t index, bool closed) {
+void cag_pov_material(CagPovWriter *w, size_t index, bool closed) {
   const CagMaterial *m = &w->scene->materials[index];
   char name[64];
-  pov_material_name(w, index, closed, name);
-  pov_comment(w, "", m->name);
-  pov_printf(w, "#declare %s = material {\n", name);
+  cag_pov_material_name(w, index, closed, name);
+  cag_pov_comment(w, "", m->name);
+  cag_pov_printf(w, "#declare %s = material {\n", name);
   bool bends = closed || !(m->transmission > 0);
   if (m->pov) write_own_texture(w, m->pov);
   else write_texture(w, m, bends);
-  if (bends && needs_ior(m)) pov_printf(w, "  interior { ior %.5g }\n", m->ior);
-  pov_text(w, "}\n");
+  if (bends && needs_ior(m)) cag_pov_printf(w, "  interior { ior %.5g }\n", m->ior);
+  cag_pov_text(w, "}\n");
 }
 
-void pov_scale_material(CagPovWriter *w, size_t index, const CagColorScale *scale) {
+void cag_pov_scale_material(CagPovWriter *w, size_t index, const CagColorScale *scale) {
   const CagMaterial *m = &w->scene->materials[index];
   CagColorStop stops[CAG_SCALE_STOPS_MAX];
   size_t n = cag_color_scale_stops(scale, stops);
-  pov_text(w, "  material {\n  texture {\n    uv_mapping\n    pigment {\n      gradient x\n"
-              "      color_map {\n");
+  cag_pov_text(w, "  material {\n  texture {\n    uv_mapping\n    pigment {\n      gradient x\n"
+                  "      color_map {\n");
   for (size_t i = 0; i < n; i++) {
-    pov_printf(w, "        [%.7g ", pov_scale_place(stops[i].at));
-    pov_color(w, stops[i].color);
-    pov_text(w, "]\n");
+    cag_pov_printf(w, "        [%.7g ", pov_scale_place(stops[i].at));
+    cag_pov_color(w, stops[i].color);
+    cag_pov_text(w, "]\n");
   }
-  pov_text(w, "      }\n    }\n");
+  cag_pov_text(w, "      }\n    }\n");
   write_finish(w, m, (CagColor){1, 1, 1}, false);
-  pov_text(w, "  }\n");
-  if (needs_ior(m)) pov_printf(w, "  interior { ior %.5g }\n", m->ior);
-  pov_text(w, "  }\n");
+  cag_pov_text(w, "  }\n");
+  if (needs_ior(m)) cag_pov_printf(w, "  interior { ior %.5g }\n", m->ior);
+  cag_pov_text(w, "  }\n");
 }
 
 // Share of a sky's mean color that stands in for its light: corners see less than all of it.
 #define SKY_SHARE 0.5
 #define DIM_WHITE 0.12
 
-CagColor pov_ambient(const CagScene *s) {
+CagColor cag_pov_ambient(const CagScene *s) {
   CagColor sum = {0, 0, 0};
   size_t n = s->sky.color_count;
   if (n == 0 && s->sky.image) return (CagColor){SKY_SHARE, SKY_SHARE, SKY_SHARE};

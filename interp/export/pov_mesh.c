@@ -56,7 +56,7 @@ static char *put_fixed(char *at, double x, int decimals) {
 
 static void write_vectors(CagPovWriter *w, const char *word, const CagVec3 *v, size_t n,
                           CagVec3 origin, int decimals) {
-  pov_printf(w, "  %s {\n    %zu", word, n);
+  cag_pov_printf(w, "  %s {\n    %zu", word, n);
   for (size_t i = 0; i < n && !cag_stopped(); i++) {
     char *at = cag_atomic_file_reserve(w->file, VECTOR_ROOM);
     *at++ = ',';
@@ -70,11 +70,11 @@ static void write_vectors(CagPovWriter *w, const char *word, const CagVec3 *v, s
     *at++ = '>';
     cag_atomic_file_advance(w->file, at);
   }
-  pov_text(w, "\n  }\n");
+  cag_pov_text(w, "\n  }\n");
 }
 
 static void write_faces(CagPovWriter *w, const CagMesh *m) {
-  pov_printf(w, "  face_indices {\n    %zu", m->triangle_count);
+  cag_pov_printf(w, "  face_indices {\n    %zu", m->triangle_count);
   for (size_t i = 0; i < m->triangle_count && !cag_stopped(); i++) {
     const uint32_t *t = m->triangles + 3 * i;
     char *at = cag_atomic_file_reserve(w->file, VECTOR_ROOM);
@@ -89,7 +89,7 @@ static void write_faces(CagPovWriter *w, const CagMesh *m) {
     *at++ = '>';
     cag_atomic_file_advance(w->file, at);
   }
-  pov_text(w, "\n  }\n");
+  cag_pov_text(w, "\n  }\n");
 }
 
 // Distances from the origin, in radii of the mesh, from which it is written about its middle:
@@ -104,7 +104,8 @@ static CagVec3 mesh_origin(const CagMesh *m) {
   const CagVec3 middle = cag_lerp(b.min, b.max, 0.5);
   if (!(radius > 0) || cag_norm(middle) < FAR_RADII * radius) return cag_vec3(0, 0, 0);
   const double unit = pow(10, floor(log10(radius)));
-  return cag_vec3(pov_round(middle.x, unit), pov_round(middle.y, unit), pov_round(middle.z, unit));
+  return cag_vec3(cag_pov_round(middle.x, unit), cag_pov_round(middle.y, unit),
+                  cag_pov_round(middle.z, unit));
 }
 
 // Decimals that resolve a 10^-8th of the largest coordinate.
@@ -124,7 +125,7 @@ static int position_decimals(const CagMesh *m, CagVec3 origin) {
 static void write_scale_places(CagPovWriter *w, const CagMesh *m) {
   const int decimals = 7;
   const CagColorScale *s = &m->scale;
-  pov_printf(w, "  uv_vectors {\n    %zu", m->vertex_count);
+  cag_pov_printf(w, "  uv_vectors {\n    %zu", m->vertex_count);
   for (size_t i = 0; i < m->vertex_count && !cag_stopped(); i++) {
     char *at = cag_atomic_file_reserve(w->file, VECTOR_ROOM);
     double t = (m->uv[2 * i] - s->from) / (s->to - s->from);
@@ -136,14 +137,14 @@ static void write_scale_places(CagPovWriter *w, const CagMesh *m) {
     memcpy(at, ",0>", 3);
     cag_atomic_file_advance(w->file, at + 3);
   }
-  pov_text(w, "\n  }\n");
+  cag_pov_text(w, "\n  }\n");
 }
 
 // The parts of a mesh of several materials, each with its own.
 static CagStatus write_parts(CagPovWriter *w, const CagMesh *m, CagError *err) {
   size_t *materials, count;
   CagStatus status = cag_item_materials(w->item, &materials, &count, err);
-  pov_text(w, "union {\n");
+  cag_pov_text(w, "union {\n");
   for (size_t i = 0; !status && i < count; i++) {
     CagMesh *part = NULL;
     char material[64];
@@ -152,41 +153,41 @@ static CagStatus write_parts(CagPovWriter *w, const CagMesh *m, CagError *err) {
       cag_mesh_release(part);
       continue;
     }
-    pov_text(w, "object {\n");
-    status = pov_mesh(w, part, err);
+    cag_pov_text(w, "object {\n");
+    status = cag_pov_mesh(w, part, err);
     cag_mesh_release(part);
-    pov_material_name(w, materials[i], true, material);
-    pov_printf(w, "\n  material { %s }\n}\n", material);
+    cag_pov_material_name(w, materials[i], true, material);
+    cag_pov_printf(w, "\n  material { %s }\n}\n", material);
   }
   cag_free(materials);
-  pov_text(w, "}");
+  cag_pov_text(w, "}");
   return status;
 }
 
 static void write_triangles(CagPovWriter *w, const CagMesh *m, CagVec3 origin, int decimals) {
   const CagVec3 none = {0, 0, 0};
-  pov_printf(w, "mesh2 { // %zu triangles\n", m->triangle_count);
+  cag_pov_printf(w, "mesh2 { // %zu triangles\n", m->triangle_count);
   write_vectors(w, "vertex_vectors", m->positions, m->vertex_count, origin, decimals);
   if (m->normals)
     write_vectors(w, "normal_vectors", m->normals, m->vertex_count, none, NORMAL_DECIMALS);
   if (m->scale.kind && m->uv) write_scale_places(w, m);
   write_faces(w, m);
   // Any direction will do that no face is likely to lie along.
-  if (w->in_operation) pov_text(w, "  inside_vector <0.3071, 0.2117, 0.9278>\n");
+  if (w->in_operation) cag_pov_text(w, "  inside_vector <0.3071, 0.2117, 0.9278>\n");
   CagTransform place = cag_transform_identity();
   place.m[0][3] = origin.x;
   place.m[1][3] = origin.y;
   place.m[2][3] = origin.z;
-  pov_placement(w, "  ", &place);
-  pov_text(w, "}");
+  cag_pov_placement(w, "  ", &place);
+  cag_pov_text(w, "}");
 }
 
-CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
+CagStatus cag_pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
   if (m->labels && w->item && w->item->label_count && !w->in_operation)
     return write_parts(w, m, err);
   if (m->triangle_count == 0) { // a shape without area: its name stands for something unseen
-    pov_text(w, "sphere { // nothing is seen of it: it has no area\n  0, 1\n"
-                "  no_image no_shadow no_reflection\n}");
+    cag_pov_text(w, "sphere { // nothing is seen of it: it has no area\n  0, 1\n"
+                    "  no_image no_shadow no_reflection\n}");
     return CAG_OK;
   }
   const CagVec3 origin = mesh_origin(m);
@@ -197,7 +198,7 @@ CagStatus pov_mesh(CagPovWriter *w, const CagMesh *m, CagError *err) {
     return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_mesh_empty, "", -1,
                     "the mesh is too large for the renderer's numbers");
   CagMesh *facing = NULL;
-  CagStatus status = pov_facing_mesh(w, m, &facing, err);
+  CagStatus status = cag_pov_facing_mesh(w, m, &facing, err);
   if (status) return status;
   write_triangles(w, facing, origin, decimals);
   cag_mesh_release(facing);

@@ -12,7 +12,7 @@
 // largest picture (16,384 pixels).
 #define NEAR 2e-6
 
-void pov_outline_free(CagPovOutline *o) { cag_free(o->all.points); }
+void cag_pov_outline_free(CagPovOutline *o) { cag_free(o->all.points); }
 
 static double largest(const CagPieces *p) {
   double size = 0;
@@ -44,7 +44,7 @@ static bool curve_pieces(const CagCurve *c, CagPieces *out) {
   return cag_pieces_of_curve(c, out) || near_pieces(c, out);
 }
 
-bool pov_outline_add(CagPovOutline *o, const CagCurve *c) {
+bool cag_pov_outline_add(CagPovOutline *o, const CagCurve *c) {
   CagPieces p;
   if (!curve_pieces(c, &p)) return false;
   // Separate outlines are told apart by Bezier pieces only.
@@ -54,13 +54,13 @@ bool pov_outline_add(CagPovOutline *o, const CagCurve *c) {
   return ok;
 }
 
-bool pov_outline_append(CagPovOutline *o, const CagPovOutline *part) {
+bool cag_pov_outline_append(CagPovOutline *o, const CagPovOutline *part) {
   if (o->all.count > 0 || !part->linear) o->linear = false;
   return cag_pieces_append(&o->all, &part->all);
 }
 
 // Rounding leaves coordinates such as 3e-17 where 0 is meant: a 10^-13th of the size is no shape.
-void pov_outline_tidy(CagPovOutline *o) {
+void cag_pov_outline_tidy(CagPovOutline *o) {
   double unit = largest(&o->all) * 1e-13;
   for (size_t i = 0; i < 4 * o->all.count; i++) {
     CagVec3 *q = o->all.points + i;
@@ -71,23 +71,23 @@ void pov_outline_tidy(CagPovOutline *o) {
 
 // --- Text ---
 
-void pov_outline_write(CagPovWriter *w, const CagPovOutline *o, const char *between) {
+void cag_pov_outline_write(CagPovWriter *w, const CagPovOutline *o, const char *between) {
   size_t n = o->all.count;
   const CagVec3 *p = o->all.points;
-  pov_text(w, o->linear ? "  linear_spline\n" : "  bezier_spline\n");
-  pov_text(w, between);
-  pov_printf(w, "  %zu", o->linear ? n + 1 : 4 * n);
+  cag_pov_text(w, o->linear ? "  linear_spline\n" : "  bezier_spline\n");
+  cag_pov_text(w, between);
+  cag_pov_printf(w, "  %zu", o->linear ? n + 1 : 4 * n);
   if (o->linear) {
     for (size_t i = 0; i <= n; i++) {
-      pov_text(w, i % 6 == 0 ? ",\n  " : ", ");
+      cag_pov_text(w, i % 6 == 0 ? ",\n  " : ", ");
       CagVec3 at = i < n ? p[4 * i] : p[4 * n - 1];
-      pov_vec2(w, at.x, at.y);
+      cag_pov_vec2(w, at.x, at.y);
     }
   } else {
     for (size_t i = 0; i < 4 * n; i++) {
-      pov_text(w, i % 4 == 0 ? ",\n  " : ", ");
-      pov_vec2(w, p[i].x, p[i].y);
+      cag_pov_text(w, i % 4 == 0 ? ",\n  " : ", ");
+      cag_pov_vec2(w, p[i].x, p[i].y);
     }
   }
-  pov_text(w, "\n");
+  cag_pov_text(w, "\n");
 }

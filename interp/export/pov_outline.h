@@ -14,12 +14,12 @@ typedef struct CagPovOutline {
 
 // Adds a curve behind what is there: exactly where it is a polynomial of degree up to 3, else
 // within a part of its size that no picture shows. False: it cannot be evaluated, or memory is out.
-bool pov_outline_add(CagPovOutline *o, const CagCurve *c);
-bool pov_outline_append(CagPovOutline *o, const CagPovOutline *part);
+bool cag_pov_outline_add(CagPovOutline *o, const CagCurve *c);
+bool cag_pov_outline_append(CagPovOutline *o, const CagPovOutline *part);
 // Coordinates that are rounding of 0 become 0.
-void pov_outline_tidy(CagPovOutline *o);
+void cag_pov_outline_tidy(CagPovOutline *o);
 // "  linear_spline" or "  bezier_spline", `between`, the points.
-void pov_outline_write(CagPovWriter *w, const CagPovOutline *o, const char *between);
-void pov_outline_free(CagPovOutline *o);
+void cag_pov_outline_write(CagPovWriter *w, const CagPovOutline *o, const char *between);
+void cag_pov_outline_free(CagPovOutline *o);
 
 #endif

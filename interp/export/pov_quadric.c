@@ -94,32 +94,32 @@ static bool cuts_anything(const Cut *c) {
 
 static void write_cut(CagPovWriter *w, const Cut *c) {
   double off = CLEARANCE * c->size, unit = pow(10, floor(log10(c->size)) - 11);
-  CagVec3 low = cag_vec3(pov_round(c->box.min.x - (c->cutting[0] ? 0 : off), unit),
-                         pov_round(c->box.min.y - (c->cutting[1] ? 0 : off), unit),
-                         pov_round(c->box.min.z - (c->cutting[2] ? 0 : off), unit));
-  CagVec3 high = cag_vec3(pov_round(c->box.max.x + (c->cutting[3] ? 0 : off), unit),
-                          pov_round(c->box.max.y + (c->cutting[4] ? 0 : off), unit),
-                          pov_round(c->box.max.z + (c->cutting[5] ? 0 : off), unit));
-  pov_text(w, "  clipped_by {\n    box {\n      ");
-  pov_vec(w, low);
-  pov_text(w, ", ");
-  pov_vec(w, high);
-  pov_text(w, "\n");
-  pov_placement(w, "      ", &c->frame);
-  pov_text(w, "    }\n  }\n  bounded_by { clipped_by }\n");
+  CagVec3 low = cag_vec3(cag_pov_round(c->box.min.x - (c->cutting[0] ? 0 : off), unit),
+                         cag_pov_round(c->box.min.y - (c->cutting[1] ? 0 : off), unit),
+                         cag_pov_round(c->box.min.z - (c->cutting[2] ? 0 : off), unit));
+  CagVec3 high = cag_vec3(cag_pov_round(c->box.max.x + (c->cutting[3] ? 0 : off), unit),
+                          cag_pov_round(c->box.max.y + (c->cutting[4] ? 0 : off), unit),
+                          cag_pov_round(c->box.max.z + (c->cutting[5] ? 0 : off), unit));
+  cag_pov_text(w, "  clipped_by {\n    box {\n      ");
+  cag_pov_vec(w, low);
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, high);
+  cag_pov_text(w, "\n");
+  cag_pov_placement(w, "      ", &c->frame);
+  cag_pov_text(w, "    }\n  }\n  bounded_by { clipped_by }\n");
 }
 
 // POV-Ray's order is x^2 y^2 z^2, xy xz yz, x y z, 1.
 static void write_equation(CagPovWriter *w, const double q[10]) {
-  pov_text(w, "quadric {\n  ");
-  pov_vec(w, cag_vec3(q[0], q[1], q[2]));
-  pov_text(w, ", ");
-  pov_vec(w, cag_vec3(q[3], q[5], q[4]));
-  pov_text(w, ", ");
-  pov_vec(w, cag_vec3(q[6], q[7], q[8]));
-  pov_text(w, ", ");
-  pov_number(w, q[9]);
-  pov_text(w, "\n");
+  cag_pov_text(w, "quadric {\n  ");
+  cag_pov_vec(w, cag_vec3(q[0], q[1], q[2]));
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, cag_vec3(q[3], q[5], q[4]));
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, cag_vec3(q[6], q[7], q[8]));
+  cag_pov_text(w, ", ");
+  cag_pov_number(w, q[9]);
+  cag_pov_text(w, "\n");
 }
 
 static bool common_equation(const CagSurface *const *s, size_t n, CagQuadric *q) {
@@ -132,7 +132,7 @@ static bool common_equation(const CagSurface *const *s, size_t n, CagQuadric *q)
   return true;
 }
 
-bool pov_try_quadric(CagPovWriter *w, const CagSurface *const *s, size_t n) {
+bool cag_pov_try_quadric(CagPovWriter *w, const CagSurface *const *s, size_t n) {
   CagQuadric q;
   CagQuadricForm form;
   CagError err;
@@ -145,6 +145,6 @@ bool pov_try_quadric(CagPovWriter *w, const CagSurface *const *s, size_t n) {
     return false;
   write_equation(w, q.c);
   if (cuts_anything(&cut)) write_cut(w, &cut);
-  pov_text(w, "}");
+  cag_pov_text(w, "}");
   return true;
 }

@@ -20,69 +20,69 @@ static bool is_rigid(const CagTransform *t) {
 
 static void place(CagPovWriter *w, const CagTransform *t) {
   if (!w->in_operation && is_rigid(t)) w->placement = *t;
-  else pov_placement(w, "  ", t);
+  else cag_pov_placement(w, "  ", t);
 }
 
 static void write_box(CagPovWriter *w, const CagSolid *s) {
   CagVec3 size = cag_vec3(s->a, s->b, s->c), low = {0, 0, 0};
   if (s->centered) low = cag_scaled(size, -0.5);
-  pov_text(w, "box {\n  ");
-  pov_vec(w, low);
-  pov_text(w, ", ");
-  pov_vec(w, cag_add(low, size));
-  pov_text(w, "\n");
+  cag_pov_text(w, "box {\n  ");
+  cag_pov_vec(w, low);
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, cag_add(low, size));
+  cag_pov_text(w, "\n");
   place(w, &s->placement);
-  pov_text(w, "}");
+  cag_pov_text(w, "}");
 }
 
 static void write_sphere(CagPovWriter *w, const CagSolid *s) {
-  pov_text(w, "sphere {\n  <0, 0, 0>, ");
-  pov_number(w, s->a);
-  pov_text(w, "\n");
+  cag_pov_text(w, "sphere {\n  <0, 0, 0>, ");
+  cag_pov_number(w, s->a);
+  cag_pov_text(w, "\n");
   place(w, &s->placement);
-  pov_text(w, "}");
+  cag_pov_text(w, "}");
 }
 
 static void write_cylinder(CagPovWriter *w, const CagSolid *s) {
   bool straight = s->b == s->c;
-  pov_text(w, straight ? "cylinder {\n  <0, 0, 0>, " : "cone {\n  <0, 0, 0>, ");
+  cag_pov_text(w, straight ? "cylinder {\n  <0, 0, 0>, " : "cone {\n  <0, 0, 0>, ");
   if (!straight) {
-    pov_number(w, s->b);
-    pov_text(w, ", ");
+    cag_pov_number(w, s->b);
+    cag_pov_text(w, ", ");
   }
-  pov_vec(w, cag_vec3(0, 0, s->a));
-  pov_text(w, ", ");
-  pov_number(w, s->c);
-  pov_text(w, "\n");
+  cag_pov_vec(w, cag_vec3(0, 0, s->a));
+  cag_pov_text(w, ", ");
+  cag_pov_number(w, s->c);
+  cag_pov_text(w, "\n");
   place(w, &s->placement);
-  pov_text(w, "}");
+  cag_pov_text(w, "}");
 }
 
 static void write_torus(CagPovWriter *w, const CagSolid *s) {
-  pov_text(w, "torus {\n  ");
-  pov_number(w, s->a);
-  pov_text(w, ", ");
-  pov_number(w, s->b);
-  pov_text(w, "\n  rotate 90*x // POV-Ray's own lie about y\n");
+  cag_pov_text(w, "torus {\n  ");
+  cag_pov_number(w, s->a);
+  cag_pov_text(w, ", ");
+  cag_pov_number(w, s->b);
+  cag_pov_text(w, "\n  rotate 90*x // POV-Ray's own lie about y\n");
   place(w, &s->placement);
-  pov_text(w, "}");
+  cag_pov_text(w, "}");
 }
 
 static bool try_shell(CagPovWriter *w, const CagSolid *s) {
   const CagSurface *const *faces = (const CagSurface *const *)s->faces;
-  return pov_try_quadric(w, faces, s->face_count) ||
-         (s->face_count == 1 && pov_try_surface(w, faces[0])) ||
-         pov_try_lathe(w, faces, s->face_count);
+  return cag_pov_try_quadric(w, faces, s->face_count) ||
+         (s->face_count == 1 && cag_pov_try_surface(w, faces[0])) ||
+         cag_pov_try_lathe(w, faces, s->face_count);
 }
 
-bool pov_try_solid(CagPovWriter *w, const CagSolid *s) {
+bool cag_pov_try_solid(CagPovWriter *w, const CagSolid *s) {
   bool affine = cag_transform_is_affine(&s->placement);
   switch (s->kind) {
   case CAG_SOLID_BOX: return affine && (write_box(w, s), true);
   case CAG_SOLID_SPHERE: return affine && (write_sphere(w, s), true);
   case CAG_SOLID_CYLINDER: return affine && (write_cylinder(w, s), true);
   case CAG_SOLID_TORUS: return affine && (write_torus(w, s), true);
-  case CAG_SOLID_EXTRUSION: return pov_try_prism(w, s);
+  case CAG_SOLID_EXTRUSION: return cag_pov_try_prism(w, s);
   case CAG_SOLID_REVOLUTION:
   case CAG_SOLID_SHELL: return try_shell(w, s);
   case CAG_SOLID_TUBE:
@@ -93,7 +93,7 @@ bool pov_try_solid(CagPovWriter *w, const CagSolid *s) {
   case CAG_SOLID_QUADRIC: return false;
   case CAG_SOLID_UNION:
   case CAG_SOLID_DIFFERENCE:
-  case CAG_SOLID_INTERSECTION: return affine && (pov_csg(w, s, 0), true);
+  case CAG_SOLID_INTERSECTION: return affine && (cag_pov_csg(w, s, 0), true);
   }
   return false;
 }

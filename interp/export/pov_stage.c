@@ -9,19 +9,19 @@ static CagVec3 column(const CagTransform *t, int j) {
 // A unit direction to 12 places: what is behind them is rounding, and 0 looks better than 6e-17.
 static CagVec3 tidy(CagVec3 v) {
   const double unit = 1e-12;
-  return cag_vec3(pov_round(v.x, unit), pov_round(v.y, unit), pov_round(v.z, unit));
+  return cag_vec3(cag_pov_round(v.x, unit), cag_pov_round(v.y, unit), cag_pov_round(v.z, unit));
 }
 
 static void write_axis(CagPovWriter *w, const char *word, CagVec3 axis, double length,
                        bool in_space) {
-  pov_printf(w, "  %-9s ", word);
-  if (in_space && w->unit != 1) pov_text(w, "unit*");
+  cag_pov_printf(w, "  %-9s ", word);
+  if (in_space && w->unit != 1) cag_pov_text(w, "unit*");
   if (length != 1) {
-    pov_number(w, length);
-    pov_text(w, "*");
+    cag_pov_number(w, length);
+    cag_pov_text(w, "*");
   }
-  pov_vec(w, tidy(axis));
-  pov_text(w, "\n");
+  cag_pov_vec(w, tidy(axis));
+  cag_pov_text(w, "\n");
 }
 
 // --- The lens ---
@@ -96,15 +96,16 @@ static CagVec3 lens_shift(const CagPovOptions *o, const CagCamera *c, CagVec3 up
 static void write_focus(CagPovWriter *w, const CagCamera *c, CagVec3 view) {
   if (!cag_camera_has_lens(c)) return;
   const int samples = lens_samples(w->options);
-  pov_text(w, "  aperture ");
-  pov_length(w, pov_aperture(w->options, c->aperture));
-  pov_text(w, "\n  focal_point ");
-  pov_place_vec(w, cag_madd(c->eye, focus_distance(c), view));
-  if (samples < SAMPLES_TO_STOP_EARLY) pov_printf(w, "\n  blur_samples %d, %d\n", samples, samples);
-  else pov_printf(w, "\n  blur_samples %d variance 1/100000 confidence 0.99\n", samples);
+  cag_pov_text(w, "  aperture ");
+  cag_pov_length(w, pov_aperture(w->options, c->aperture));
+  cag_pov_text(w, "\n  focal_point ");
+  cag_pov_place_vec(w, cag_madd(c->eye, focus_distance(c), view));
+  if (samples < SAMPLES_TO_STOP_EARLY)
+    cag_pov_printf(w, "\n  blur_samples %d, %d\n", samples, samples);
+  else cag_pov_printf(w, "\n  blur_samples %d variance 1/100000 confidence 0.99\n", samples);
 }
 
-void pov_camera(CagPovWriter *w) {
+void cag_pov_camera(CagPovWriter *w) {
   const CagCamera *c = w->camera;
   CagTransform frame = cag_camera_frame(c);
   CagVec3 right = column(&frame, 0), up = cag_scaled(column(&frame, 1), -1);
@@ -112,16 +113,16 @@ void pov_camera(CagPovWriter *w) {
   const int *size = w->options->size[0] > 0 && w->options->size[1] > 0 ? w->options->size : c->size;
   double aspect = (double)size[0] / size[1];
 
-  pov_comment(w, "", c->name ? c->name : "camera");
+  cag_pov_comment(w, "", c->name ? c->name : "camera");
   CagVec3 shift = lens_shift(w->options, c, up, view);
-  pov_printf(w,
-             "// For pictures of %d x %d pixels; right, up and direction make it right-handed.\n",
-             size[0], size[1]);
-  pov_text(w, "camera {\n");
-  pov_text(w, c->orthographic ? "  orthographic\n" : "  perspective\n");
-  pov_text(w, "  location  ");
-  pov_place_vec(w, cag_add(eye, shift));
-  pov_text(w, "\n");
+  cag_pov_printf(
+      w, "// For pictures of %d x %d pixels; right, up and direction make it right-handed.\n",
+      size[0], size[1]);
+  cag_pov_text(w, "camera {\n");
+  cag_pov_text(w, c->orthographic ? "  orthographic\n" : "  perspective\n");
+  cag_pov_text(w, "  location  ");
+  cag_pov_place_vec(w, cag_add(eye, shift));
+  cag_pov_text(w, "\n");
   if (c->orthographic) { // right and up span the picture
     write_axis(w, "right", right, c->width, true);
     write_axis(w, "up", up, c->width / aspect, true);
@@ -134,7 +135,7 @@ void pov_camera(CagPovWriter *w) {
     write_axis(w, "direction", middle, aspect / 2 / tan(c->fov / 2), false);
   }
   write_focus(w, c, view);
-  pov_text(w, "}\n");
+  cag_pov_text(w, "}\n");
 }
 
 // --- Lights ---
@@ -156,43 +157,44 @@ static void write_area(CagPovWriter *w, CagVec3 direction, double size, bool rou
   CagVec3 a, b;
   any_perpendicular(direction, &a, &b);
   int n = w->options->quality == CAG_POV_FINAL ? 9 : 5;
-  pov_text(w, "  area_light ");
-  pov_length(w, size);
-  pov_text(w, "*");
-  pov_vec(w, tidy(a));
-  pov_text(w, ", ");
-  pov_length(w, size);
-  pov_text(w, "*");
-  pov_vec(w, tidy(b));
-  pov_printf(w, ", %d, %d adaptive %d jitter%s\n", n, n, n > 5 ? 2 : 1, round ? " circular" : "");
+  cag_pov_text(w, "  area_light ");
+  cag_pov_length(w, size);
+  cag_pov_text(w, "*");
+  cag_pov_vec(w, tidy(a));
+  cag_pov_text(w, ", ");
+  cag_pov_length(w, size);
+  cag_pov_text(w, "*");
+  cag_pov_vec(w, tidy(b));
+  cag_pov_printf(w, ", %d, %d adaptive %d jitter%s\n", n, n, n > 5 ? 2 : 1,
+                 round ? " circular" : "");
 }
 
 static void write_light_head(CagPovWriter *w, const CagLight *l, const char *what, CagVec3 at) {
-  pov_printf(w, "light_source { // %s\n  ", what);
-  pov_place_vec(w, at);
-  pov_text(w, "\n  color ");
-  pov_color(
+  cag_pov_printf(w, "light_source { // %s\n  ", what);
+  cag_pov_place_vec(w, at);
+  cag_pov_text(w, "\n  color ");
+  cag_pov_color(
       w, (CagColor){l->color.r * l->strength, l->color.g * l->strength, l->color.b * l->strength});
-  pov_text(w, "\n");
+  cag_pov_text(w, "\n");
 }
 
 static void write_sun(CagPovWriter *w, const CagLight *l) {
-  double far = pov_round(SUN_DISTANCE * w->radius, 1);
+  double far = cag_pov_round(SUN_DISTANCE * w->radius, 1);
   CagVec3 direction = cag_unit(l->direction);
   write_light_head(w, l, "sun", cag_madd(w->center, -far, direction));
-  write_area(w, direction, pov_round(far * SUN_WIDTH, 1e-3), true);
+  write_area(w, direction, cag_pov_round(far * SUN_WIDTH, 1e-3), true);
 }
 
 static void write_spot(CagPovWriter *w, const CagLight *l) {
   const double soft_edge = 0.8; // the cone's inner part that has the full light
   double half = l->angle / 2 * 180 / 3.14159265358979323846;
   write_light_head(w, l, "spot", l->position);
-  pov_printf(w, "  spotlight radius %.6g falloff %.6g point_at ", soft_edge * half, half);
-  pov_place_vec(w, cag_madd(l->position, w->radius, cag_unit(l->direction)));
-  pov_text(w, "\n");
+  cag_pov_printf(w, "  spotlight radius %.6g falloff %.6g point_at ", soft_edge * half, half);
+  cag_pov_place_vec(w, cag_madd(l->position, w->radius, cag_unit(l->direction)));
+  cag_pov_text(w, "\n");
 }
 
-void pov_lights(CagPovWriter *w) {
+void cag_pov_lights(CagPovWriter *w) {
   for (size_t i = 0; i < w->scene->light_count; i++) {
     const CagLight *l = &w->scene->lights[i];
     switch (l->kind) {
@@ -204,48 +206,48 @@ void pov_lights(CagPovWriter *w) {
       write_area(w, cag_unit(l->direction), l->size, false);
       break;
     }
-    pov_text(w, "}\n");
+    cag_pov_text(w, "}\n");
   }
 }
 
 // --- Sky ---
 
 static void write_quoted(CagPovWriter *w, const char *path) {
-  pov_text(w, "\"");
+  cag_pov_text(w, "\"");
   for (const char *p = path; *p; p++) {
-    if (*p == '"' || *p == '\\') pov_text(w, "\\");
+    if (*p == '"' || *p == '\\') cag_pov_text(w, "\\");
     cag_atomic_file_write(w->file, p, 1);
   }
-  pov_text(w, "\"");
+  cag_pov_text(w, "\"");
 }
 
 // A panorama stands upright about Z and is seen from inside as it is in the file: POV-Ray's own is
 // about Y and left-handed, so y and z change places.
 static void write_sky_image(CagPovWriter *w, const char *path) {
-  pov_text(w, "sky_sphere {\n  pigment {\n    image_map { exr ");
+  cag_pov_text(w, "sky_sphere {\n  pigment {\n    image_map { exr ");
   write_quoted(w, path);
-  pov_text(w, " map_type 1 interpolate 2 }\n");
-  pov_text(w, "    matrix <1, 0, 0,  0, 0, 1,  0, 1, 0,  0, 0, 0>\n  }\n}\n");
+  cag_pov_text(w, " map_type 1 interpolate 2 }\n");
+  cag_pov_text(w, "    matrix <1, 0, 0,  0, 0, 1,  0, 1, 0,  0, 0, 0>\n  }\n}\n");
 }
 
 static void write_sky_colors(CagPovWriter *w, const CagSky *sky) {
-  pov_text(w,
-           "sky_sphere { // from below to above\n  pigment {\n    gradient z\n    color_map {\n");
+  cag_pov_text(
+      w, "sky_sphere { // from below to above\n  pigment {\n    gradient z\n    color_map {\n");
   for (size_t i = 0; i < sky->color_count; i++) {
     size_t steps = sky->color_count > 1 ? sky->color_count - 1 : 1;
-    pov_printf(w, "      [%.6g ", (double)i / (double)steps);
-    pov_color(w, sky->colors[i]);
-    pov_text(w, "]\n");
+    cag_pov_printf(w, "      [%.6g ", (double)i / (double)steps);
+    cag_pov_color(w, sky->colors[i]);
+    cag_pov_text(w, "]\n");
   }
-  pov_text(w, "    }\n    scale 2\n    translate -1\n  }\n}\n");
+  cag_pov_text(w, "    }\n    scale 2\n    translate -1\n  }\n}\n");
 }
 
-void pov_sky(CagPovWriter *w) {
+void cag_pov_sky(CagPovWriter *w) {
   const CagScene *s = w->scene;
   if (s->has_background) {
-    pov_text(w, "background { ");
-    pov_color(w, s->background);
-    pov_text(w, " }\n");
+    cag_pov_text(w, "background { ");
+    cag_pov_color(w, s->background);
+    cag_pov_text(w, " }\n");
   }
   if (s->sky.image) write_sky_image(w, s->sky.image);
   else if (s->sky.color_count > 0) write_sky_colors(w, &s->sky);

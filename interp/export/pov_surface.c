@@ -24,14 +24,14 @@ static bool try_bicubic(CagPovWriter *w, const CagSurface *s) {
   cag_surface_nurbs_view(raised, &v);
   // 2^steps cells each way; normals are exact at their corners.
   int steps = w->options->quality == CAG_POV_DRAFT ? 3 : 5;
-  pov_printf(w, "bicubic_patch {\n  type 1 flatness 0 u_steps %d v_steps %d,\n", steps, steps);
+  cag_pov_printf(w, "bicubic_patch {\n  type 1 flatness 0 u_steps %d v_steps %d,\n", steps, steps);
   for (int i = 0; i < 16; i++) {
     const double *h = v.homogeneous + 4 * i;
-    pov_text(w, i % 4 == 0 ? "  " : " ");
-    pov_vec(w, cag_vec3(h[0], h[1], h[2]));
-    pov_text(w, i == 15 ? "\n" : i % 4 == 3 ? ",\n" : ",");
+    cag_pov_text(w, i % 4 == 0 ? "  " : " ");
+    cag_pov_vec(w, cag_vec3(h[0], h[1], h[2]));
+    cag_pov_text(w, i == 15 ? "\n" : i % 4 == 3 ? ",\n" : ",");
   }
-  pov_text(w, "}");
+  cag_pov_text(w, "}");
   cag_surface_release(raised);
   return true;
 }
@@ -71,10 +71,10 @@ static bool ring_fits(const Ring *r, const CagTransform *frame, double major, do
   return true;
 }
 
-bool pov_try_torus(CagPovWriter *w, const CagSurface *s) {
+bool cag_pov_try_torus(CagPovWriter *w, const CagSurface *s) {
   CagTransform map;
-  s = pov_unplaced(s, &map);
-  if (!pov_takes(&map)) return false;
+  s = cag_pov_unplaced(s, &map);
+  if (!cag_pov_takes(&map)) return false;
   if (fabs(s->u1 - s->u0 - FULL_TURN) > FITS || fabs(s->v1 - s->v0 - FULL_TURN) > FITS)
     return false;
   Ring r = {s, cag_surface_revolution_view(s, NULL, NULL, NULL, NULL, NULL)};
@@ -93,14 +93,14 @@ bool pov_try_torus(CagPovWriter *w, const CagSurface *s) {
                               {x.z, y.z, z.z, center.z},
                               {0, 0, 0, 1}}};
   if (!ring_fits(&r, &frame, major, minor)) return false;
-  pov_text(w, "torus {\n  ");
-  pov_number(w, major);
-  pov_text(w, ", ");
-  pov_number(w, minor);
-  pov_text(w, "\n  rotate 90*x // POV-Ray's own lie about y\n");
+  cag_pov_text(w, "torus {\n  ");
+  cag_pov_number(w, major);
+  cag_pov_text(w, ", ");
+  cag_pov_number(w, minor);
+  cag_pov_text(w, "\n  rotate 90*x // POV-Ray's own lie about y\n");
   CagTransform placed = cag_transform_multiply(&map, &frame);
-  pov_placement(w, "  ", &placed);
-  pov_text(w, "}");
+  cag_pov_placement(w, "  ", &placed);
+  cag_pov_text(w, "}");
   return true;
 }
 
@@ -109,8 +109,8 @@ static bool try_sphere(CagPovWriter *w, const CagSurface *s) {
   const CagCurve *profile;
   double from, to, a, b;
   CagTransform frame, map;
-  s = pov_unplaced(s, &map);
-  if (!pov_takes(&map)) return false;
+  s = cag_pov_unplaced(s, &map);
+  if (!cag_pov_takes(&map)) return false;
   if (!cag_surface_revolution_view(s, &profile, NULL, NULL, &from, &to)) return false;
   if (fabs(fabs(to - from) - FULL_TURN) > FITS) return false;
   if (!cag_curve_arc_view(profile, &a, &b, &frame) || a != b) return false;
@@ -123,24 +123,24 @@ static bool try_sphere(CagPovWriter *w, const CagSurface *s) {
   CagVec3 center = cag_lerp(low, high, 0.5);
   double radius = cag_norm(cag_sub(high, low)) / 2;
   if (fabs(cag_norm(cag_sub(side, center)) - radius) > FITS * radius) return false;
-  pov_text(w, "sphere {\n  ");
-  pov_vec(w, center);
-  pov_text(w, ", ");
-  pov_number(w, radius);
-  pov_text(w, "\n");
-  pov_placement(w, "  ", &map);
-  pov_text(w, "}");
+  cag_pov_text(w, "sphere {\n  ");
+  cag_pov_vec(w, center);
+  cag_pov_text(w, ", ");
+  cag_pov_number(w, radius);
+  cag_pov_text(w, "\n");
+  cag_pov_placement(w, "  ", &map);
+  cag_pov_text(w, "}");
   return true;
 }
 
 static bool try_planar(CagPovWriter *w, const CagSurface *s) {
   const CagRegion *region;
   CagTransform frame;
-  return cag_surface_planar_view(s, &region, &frame) && pov_try_polygon(w, region, &frame);
+  return cag_surface_planar_view(s, &region, &frame) && cag_pov_try_polygon(w, region, &frame);
 }
 
-bool pov_try_surface(CagPovWriter *w, const CagSurface *s) {
+bool cag_pov_try_surface(CagPovWriter *w, const CagSurface *s) {
   const CagSurface *const one[] = {s};
-  return try_bicubic(w, s) || try_planar(w, s) || pov_try_quadric(w, one, 1) || try_sphere(w, s) ||
-         pov_try_torus(w, s) || pov_try_lathe(w, one, 1);
+  return try_bicubic(w, s) || try_planar(w, s) || cag_pov_try_quadric(w, one, 1) ||
+         try_sphere(w, s) || cag_pov_try_torus(w, s) || cag_pov_try_lathe(w, one, 1);
 }

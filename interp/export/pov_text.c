@@ -9,7 +9,7 @@
 #include "base/memory.h"
 #include "interp/export/pov_write.h"
 
-void pov_text(CagPovWriter *w, const char *text) {
+void cag_pov_text(CagPovWriter *w, const char *text) {
   // Lines of what stands within another object are indented.
   for (const char *end; w->depth > 0 && (end = strchr(text, '\n')) != NULL; text = end + 1) {
     cag_atomic_file_write(w->file, text, (size_t)(end + 1 - text));
@@ -18,73 +18,76 @@ void pov_text(CagPovWriter *w, const char *text) {
   cag_atomic_file_text(w->file, text);
 }
 
-void pov_printf(CagPovWriter *w, const char *format, ...) {
+void cag_pov_printf(CagPovWriter *w, const char *format, ...) {
   char text[1024]; // callers format names and short numbers
   va_list args;
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  pov_text(w, text);
+  cag_pov_text(w, text);
 }
 
-void pov_number(CagPovWriter *w, double x) {
+void cag_pov_number(CagPovWriter *w, double x) {
   char text[32];
   if (!isfinite(x) && !w->failure.status)
     cag_fail(&w->failure, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
              "%s has a number in the file that overflows or is undefined",
              w->item ? w->item->name : "the scene");
-  pov_text(w, cag_number_text(x == 0 ? 0 : x, text)); // no -0
+  cag_pov_text(w, cag_number_text(x == 0 ? 0 : x, text)); // no -0
 }
 
 static void list_of_numbers(CagPovWriter *w, const double *x, size_t n) {
-  pov_text(w, "<");
+  cag_pov_text(w, "<");
   for (size_t i = 0; i < n; i++) {
-    if (i > 0) pov_text(w, ", ");
-    pov_number(w, x[i]);
+    if (i > 0) cag_pov_text(w, ", ");
+    cag_pov_number(w, x[i]);
   }
-  pov_text(w, ">");
+  cag_pov_text(w, ">");
 }
 
-void pov_vec(CagPovWriter *w, CagVec3 v) { list_of_numbers(w, (const double[]){v.x, v.y, v.z}, 3); }
+void cag_pov_vec(CagPovWriter *w, CagVec3 v) {
+  list_of_numbers(w, (const double[]){v.x, v.y, v.z}, 3);
+}
 
 static void put_unit(CagPovWriter *w) {
-  if (w->unit != 1) pov_text(w, "unit*");
+  if (w->unit != 1) cag_pov_text(w, "unit*");
 }
 
-void pov_place_vec(CagPovWriter *w, CagVec3 v) {
+void cag_pov_place_vec(CagPovWriter *w, CagVec3 v) {
   put_unit(w);
-  pov_vec(w, v);
+  cag_pov_vec(w, v);
 }
 
-void pov_length(CagPovWriter *w, double x) {
+void cag_pov_length(CagPovWriter *w, double x) {
   put_unit(w);
-  pov_number(w, x);
+  cag_pov_number(w, x);
 }
 
-void pov_vec2(CagPovWriter *w, double x, double y) {
+void cag_pov_vec2(CagPovWriter *w, double x, double y) {
   list_of_numbers(w, (const double[]){x, y}, 2);
 }
 
-double pov_round(double x, double unit) {
+double cag_pov_round(double x, double unit) {
   double rounded = round(x / unit);
   // Dividing by the whole number 1/unit gives the double nearest to the decimal.
   return unit < 1 ? rounded / round(1 / unit) : rounded * unit;
 }
 
-void pov_color(CagPovWriter *w, CagColor c) {
+void cag_pov_color(CagPovWriter *w, CagColor c) {
   const double unit = 1e-5; // finer than any display's step
-  pov_text(w, "rgb ");
-  pov_vec(w, cag_vec3(pov_round(c.r, unit), pov_round(c.g, unit), pov_round(c.b, unit)));
+  cag_pov_text(w, "rgb ");
+  cag_pov_vec(
+      w, cag_vec3(cag_pov_round(c.r, unit), cag_pov_round(c.g, unit), cag_pov_round(c.b, unit)));
 }
 
-void pov_comment(CagPovWriter *w, const char *indent, const char *text) {
-  pov_text(w, indent);
-  pov_text(w, "// ");
+void cag_pov_comment(CagPovWriter *w, const char *indent, const char *text) {
+  cag_pov_text(w, indent);
+  cag_pov_text(w, "// ");
   for (const char *at = text; *at; at++) {
     char c = (unsigned char)*at < ' ' ? ' ' : *at;
     cag_atomic_file_write(w->file, &c, 1);
   }
-  pov_text(w, "\n");
+  cag_pov_text(w, "\n");
 }
 
 static bool is_identity(const CagTransform *t, bool *moved) {
@@ -95,7 +98,7 @@ static bool is_identity(const CagTransform *t, bool *moved) {
   return true;
 }
 
-void pov_placement(CagPovWriter *w, const char *indent, const CagTransform *t) {
+void cag_pov_placement(CagPovWriter *w, const char *indent, const CagTransform *t) {
   double scale = 1 / t->m[3][3]; // affine, but perhaps not normalized
   CagTransform n = *t;
   for (int i = 0; i < 3; i++)
@@ -103,27 +106,27 @@ void pov_placement(CagPovWriter *w, const char *indent, const CagTransform *t) {
   bool moved;
   if (is_identity(&n, &moved)) {
     if (!moved) return;
-    pov_text(w, indent);
-    pov_text(w, "translate ");
-    pov_vec(w, cag_vec3(n.m[0][3], n.m[1][3], n.m[2][3]));
-    pov_text(w, "\n");
+    cag_pov_text(w, indent);
+    cag_pov_text(w, "translate ");
+    cag_pov_vec(w, cag_vec3(n.m[0][3], n.m[1][3], n.m[2][3]));
+    cag_pov_text(w, "\n");
     return;
   }
   // POV-Ray writes the images of x, y, z and the origin, one after the other.
-  pov_text(w, indent);
-  pov_text(w, "matrix <");
+  cag_pov_text(w, indent);
+  cag_pov_text(w, "matrix <");
   for (int j = 0; j < 4; j++)
     for (int i = 0; i < 3; i++) {
-      if (i + j > 0) pov_text(w, i == 0 ? ",  " : ", ");
-      pov_number(w, n.m[i][j]);
+      if (i + j > 0) cag_pov_text(w, i == 0 ? ",  " : ", ");
+      cag_pov_number(w, n.m[i][j]);
     }
-  pov_text(w, ">\n");
+  cag_pov_text(w, ">\n");
 }
 
 // The renderer's own tolerances become those of the stretched body, in its thinnest direction.
 #define FLATTEST 1e-6
 
-bool pov_takes(const CagTransform *map) {
+bool cag_pov_takes(const CagTransform *map) {
   if (!cag_transform_is_affine(map)) return false;
   double largest = 0;
   for (int j = 0; j < 3; j++)
@@ -132,7 +135,7 @@ bool pov_takes(const CagTransform *map) {
   return isfinite(largest) && fabs(volume) > FLATTEST * largest * largest * largest;
 }
 
-const CagSurface *pov_unplaced(const CagSurface *s, CagTransform *map) {
+const CagSurface *cag_pov_unplaced(const CagSurface *s, CagTransform *map) {
   const CagSurface *inner;
   *map = cag_transform_identity();
   map->planar = false;
@@ -181,7 +184,7 @@ static bool is_taken(const CagHashIndex *taken, const CagPovName *names, uint64_
   return false;
 }
 
-bool pov_names(const char *prefix, const char *const *names, size_t n, CagPovName **out) {
+bool cag_pov_names(const char *prefix, const char *const *names, size_t n, CagPovName **out) {
   CagHashIndex taken = {0};
   CagPovName *made = cag_malloc((n ? n : 1) * sizeof *made);
   if (!made || !cag_hash_reserve(&taken, n)) {

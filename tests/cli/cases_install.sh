@@ -26,6 +26,10 @@ for name in $(sed -n 's/^CAG_API.*[ *]\(cag_[a-z_]*\)(.*/\1/p' "$root/include/ca
   nm -D --defined-only "$prefix/lib/libcag.so" | grep -q " $name\$" || wrong "it lacks $name"
 done
 
+it 'the static library has only names that begin with cag_'
+nm -g --defined-only "$prefix/lib/libcag.a" 2> /dev/null | awk 'NF == 3 { print $3 }' | grep -v '^cag_' | grep -v -e '^_' -e asan -e ubsan > others
+[ ! -s others ] || wrong "it also has $(head -n 3 others | tr '\n' ' ')"
+
 # The folders of the file are those of PREFIX, where it will be used; here they are below DESTDIR.
 PKG_CONFIG_PATH=$prefix/lib/pkgconfig PKG_CONFIG_SYSROOT_DIR=
 export PKG_CONFIG_PATH PKG_CONFIG_SYSROOT_DIR

@@ -94,7 +94,7 @@ static size_t count_within(const Trial *t, size_t segment) {
 // --- What a net must be ---
 
 static int turn(Trial *t, uint32_t a, uint32_t b, uint32_t c) {
-  return bool_turn(&t->points, a, b, c, t->axis);
+  return cag_bool_turn(&t->points, a, b, c, t->axis);
 }
 
 static bool is_ahead(const Trial *t, uint32_t a, uint32_t b, uint32_t v) {
@@ -163,7 +163,7 @@ static size_t check_walk(Trial *t, uint32_t a, uint32_t b) {
   for (uint32_t at = a, next; at != b; at = next, steps++) {
     uint32_t cell;
     int e;
-    next = bool_net_step(&t->net, at, b, &cell, &e);
+    next = cag_bool_net_step(&t->net, at, b, &cell, &e);
     assert_true(next != BOOL_NONE && steps < 1000);
     const BoolCell *c = &bool_cells(&t->net)[cell];
     assert_true(c->v[(e + 1) % 3] == at && c->v[(e + 2) % 3] == next);
@@ -193,7 +193,7 @@ static void check_step(Trial *t, uint32_t a, uint32_t b) {
     for (int k = 0; k < 3; k++)
       if (v[k] != a && turn(t, a, b, v[k]) == 0 && is_ahead(t, a, b, v[k])) expected = v[k];
   }
-  const uint32_t found = bool_net_step(&t->net, a, b, &cell, &e);
+  const uint32_t found = cag_bool_net_step(&t->net, a, b, &cell, &e);
   // On the border the net may lie to the right of the step alone.
   bool left = false;
   for (size_t i = 0; i < t->net.cells.n; i++)
@@ -216,10 +216,10 @@ static void start(Trial *t, int side, bool far) {
   for (int k = 0; k < 3; k++) {
     const int from = right ? 2 - k : k;
     const long(*c)[2] = far ? &around[from] : &inner[from];
-    corners[k] = far ? bool_points_add_far(&t->points, lifted(t, (*c)[0], (*c)[1]))
-                     : bool_points_add(&t->points, lifted(t, (*c)[0], (*c)[1]));
+    corners[k] = far ? cag_bool_points_add_far(&t->points, lifted(t, (*c)[0], (*c)[1]))
+                     : cag_bool_points_add(&t->points, lifted(t, (*c)[0], (*c)[1]));
   }
-  assert_true(bool_net_start(&t->net, corners));
+  assert_true(cag_bool_net_start(&t->net, corners));
   t->n = 0;
   for (int k = 0; !far && k < 3; k++) {
     t->x[t->n] = inner[right ? 2 - k : k][0];
@@ -233,8 +233,8 @@ static void add_points(Trial *t, int side, int wanted) {
     const int x = whole(0, side), y = whole(0, side - x);
     t->x[t->n] = x;
     t->y[t->n] = y;
-    t->number[t->n] = bool_points_add(&t->points, lifted(t, x, y));
-    assert_true(bool_net_add_point(&t->net, t->number[t->n]));
+    t->number[t->n] = cag_bool_points_add(&t->points, lifted(t, x, y));
+    assert_true(cag_bool_net_add_point(&t->net, t->number[t->n]));
     t->n++;
   }
 }
@@ -247,7 +247,7 @@ static void add_segments(Trial *t, int wanted) {
     t->from[t->segments] = a;
     t->to[t->segments++] = b;
     const BoolCut cut = {t->number[a], t->number[b], BOOL_NONE, t->axis};
-    assert_true(bool_net_add_segment(&t->net, t->number[a], t->number[b], cut));
+    assert_true(cag_bool_net_add_segment(&t->net, t->number[a], t->number[b], cut));
   }
 }
 
@@ -267,7 +267,7 @@ static void check_trial(Trial *t, int side, bool far) {
   if (t->n > 1) add_segments(t, whole(0, 16));
   note_all(t);
   check_cells(t, corners, false);
-  assert_true(bool_net_improve(&t->net));
+  assert_true(cag_bool_net_improve(&t->net));
   check_cells(t, corners, true);
   assert_int_equal(t->net.vertices.n, t->all_count + (far ? 3 : 0));
   // Each edge that is fixed is part of a segment, so walks meet them all.
@@ -313,24 +313,24 @@ static void random_points_and_segments(void **state) {
     const int side = whole(2, 12);
     if (trial % 8 == 0) {
       if (trial > 0) {
-        bool_points_free(&t->points);
-        bool_net_free(&t->net);
+        cag_bool_points_free(&t->points);
+        cag_bool_net_free(&t->net);
       }
       *t = (Trial){.axis = trial / 8 % 3};
       t->slope[0] = whole(-2, 2);
       t->slope[1] = whole(-2, 2);
-      assert_true(bool_points_start(&t->points, 8));
+      assert_true(cag_bool_points_start(&t->points, 8));
       t->net.points = &t->points;
       t->net.plane = t->plane;
       t->net.axis = t->axis;
-      t->plane[0] = bool_points_add(&t->points, lifted(t, 0, 0));
-      t->plane[1] = bool_points_add(&t->points, lifted(t, 7, 1));
-      t->plane[2] = bool_points_add(&t->points, lifted(t, 2, 5));
+      t->plane[0] = cag_bool_points_add(&t->points, lifted(t, 0, 0));
+      t->plane[1] = cag_bool_points_add(&t->points, lifted(t, 7, 1));
+      t->plane[2] = cag_bool_points_add(&t->points, lifted(t, 2, 5));
     }
     check_trial(t, side, trial % 2);
   }
-  bool_points_free(&t->points);
-  bool_net_free(&t->net);
+  cag_bool_points_free(&t->points);
+  cag_bool_net_free(&t->net);
   free(t);
 }
 
@@ -346,7 +346,7 @@ static void simple_nets(void **state) {
     const int side = whole(4, 9);
     memset(t, 0, sizeof *t);
     t->axis = trial % 3;
-    assert_true(bool_points_start(&t->points, 8));
+    assert_true(cag_bool_points_start(&t->points, 8));
     t->net.points = &t->points;
     t->net.plane = t->plane;
     t->net.axis = t->axis;
@@ -357,8 +357,8 @@ static void simple_nets(void **state) {
       bool there = false;
       for (size_t k = 0; k < t->n; k++) there = there || (t->x[k] == x && t->y[k] == y);
       t->slope[0] = i; // seen in one place, but apart
-      const uint32_t v = bool_points_add_far(&t->points, lifted(t, x, y));
-      assert_int_equal(bool_net_add_point(&t->net, v), !there);
+      const uint32_t v = cag_bool_points_add_far(&t->points, lifted(t, x, y));
+      assert_int_equal(cag_bool_net_add_point(&t->net, v), !there);
       assert_int_equal(t->net.spoiled, there);
       t->net.spoiled = false;
       if (there) continue;
@@ -374,14 +374,15 @@ static void simple_nets(void **state) {
       note_all(t);
       const bool crosses = t->all_count > t->n;
       const BoolCut cut = {t->number[a], t->number[b], BOOL_NONE, t->axis};
-      assert_int_equal(bool_net_add_segment(&t->net, t->number[a], t->number[b], cut), !crosses);
+      assert_int_equal(cag_bool_net_add_segment(&t->net, t->number[a], t->number[b], cut),
+                       !crosses);
       assert_int_equal(t->net.spoiled, crosses);
       if (crosses) refused++;
       else taken++;
       if (crosses) break;
     }
-    bool_points_free(&t->points);
-    bool_net_free(&t->net);
+    cag_bool_points_free(&t->points);
+    cag_bool_net_free(&t->net);
   }
   assert_true(refused > 20 && taken > 100);
   free(t);

@@ -34,22 +34,22 @@ static CagError err;
 
 static void start(size_t n, int side, double slack) {
   work = (BoolWork){.err = &err, .slack = slack};
-  assert_true(bool_points_start(&work.points, 3 * n));
+  assert_true(cag_bool_points_start(&work.points, 3 * n));
   work.faces = calloc(n + 1, sizeof *work.faces);
   work.face_count = n;
   for (size_t i = 0; i < n; i++) {
     const int x = whole(0, side), y = whole(0, side), z = whole(0, side);
     for (int k = 0; k < 3; k++) {
       const int dx = whole(-1, 1), dy = whole(-1, 1), dz = whole(-1, 1);
-      work.faces[i].v[k] = bool_points_add(&work.points, cag_vec3(x + dx, y + dy, z + dz));
+      work.faces[i].v[k] = cag_bool_points_add(&work.points, cag_vec3(x + dx, y + dy, z + dz));
     }
   }
   work.corners = work.points.n;
 }
 
 static void stop(void) {
-  bool_points_free(&work.points);
-  bool_forget_pairs(&work);
+  cag_bool_points_free(&work.points);
+  cag_bool_forget_pairs(&work);
   free(work.faces);
 }
 
@@ -70,7 +70,7 @@ static void pairs_are_those_whose_boxes_are_near(void **state) {
     start(n, whole(1, 12), slack);
     for (int round = 0; round < 2; round++) { // the tree is kept for the second
       memset(&seen, 0, sizeof seen);
-      assert_int_equal(bool_visit_pairs(&work, see_pair, &seen), CAG_OK);
+      assert_int_equal(cag_bool_visit_pairs(&work, see_pair, &seen), CAG_OK);
       for (size_t f = 0; f < n; f++)
         for (size_t g = 0; g <= f; g++) {
           const CagBounds a = box_of(f), b = box_of(g);
@@ -85,7 +85,7 @@ static void pairs_are_those_whose_boxes_are_near(void **state) {
     for (int i = 0; i < 30 && n > 0; i++) {
       const CagVec3 from = {whole(-2, 13), whole(-2, 13), whole(-2, 13)};
       memset(&seen, 0, sizeof seen);
-      bool_visit_ray(&work, from, see_face, &seen);
+      cag_bool_visit_ray(&work, from, see_face, &seen);
       for (size_t f = 0; f < n; f++) {
         const CagBounds b = box_of(f);
         const bool meets = b.max.x >= from.x && b.min.y <= from.y && b.max.y >= from.y &&
@@ -104,11 +104,11 @@ static void far_rays_meet_nothing(void **state) {
   seed = 7;
   start(MOST, 5, 0);
   memset(&seen, 0, sizeof seen);
-  assert_int_equal(bool_visit_pairs(&work, see_pair, &seen), CAG_OK);
+  assert_int_equal(cag_bool_visit_pairs(&work, see_pair, &seen), CAG_OK);
   static const double FROM[5][3] = {
       {6.5, 2, 2}, {-9, -1.5, 2}, {-9, 6.5, 2}, {-9, 2, -1.5}, {-9, 2, 6.5}};
   for (int i = 0; i < 5; i++)
-    bool_visit_ray(&work, cag_vec3(FROM[i][0], FROM[i][1], FROM[i][2]), see_face, &seen);
+    cag_bool_visit_ray(&work, cag_vec3(FROM[i][0], FROM[i][1], FROM[i][2]), see_face, &seen);
   for (int f = 0; f < MOST; f++) assert_int_equal(seen.single[f], 0);
   stop();
 }
@@ -122,13 +122,13 @@ static void searches_end(void **state) {
   for (size_t last = 1; last < 40; last++) {
     memset(&seen, 0, sizeof seen);
     seen.last = last;
-    assert_int_equal(bool_visit_pairs(&work, see_pair, &seen), CAG_E_MEMORY);
+    assert_int_equal(cag_bool_visit_pairs(&work, see_pair, &seen), CAG_E_MEMORY);
     assert_int_equal(seen.calls, last);
   }
   const volatile int now = 1;
   work.interrupt = &now;
   memset(&seen, 0, sizeof seen);
-  assert_int_equal(bool_visit_pairs(&work, see_pair, &seen), CAG_E_CALLBACK);
+  assert_int_equal(cag_bool_visit_pairs(&work, see_pair, &seen), CAG_E_CALLBACK);
   assert_int_equal(seen.calls, 0);
   stop();
 }
@@ -142,7 +142,7 @@ static void points_in_faces(void **state) {
     const int axis = trial % 3;
     BoolFace f = {.axis = (signed char)axis};
     work = (BoolWork){.err = &err};
-    assert_true(bool_points_start(&work.points, 9));
+    assert_true(cag_bool_points_start(&work.points, 9));
     double at[3];
     for (int k = 0; k < 3; k++) {
       p[k][0] = whole(-3, 3);
@@ -150,7 +150,7 @@ static void points_in_faces(void **state) {
       at[axis] = (double)(p[k][0] - p[k][1]);
       at[(axis + 1) % 3] = (double)p[k][0];
       at[(axis + 2) % 3] = (double)p[k][1];
-      f.v[k] = bool_points_add(&work.points, cag_vec3(at[0], at[1], at[2]));
+      f.v[k] = cag_bool_points_add(&work.points, cag_vec3(at[0], at[1], at[2]));
     }
     const long area =
         (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
@@ -165,10 +165,10 @@ static void points_in_faces(void **state) {
         at[axis] = x - y;
         at[(axis + 1) % 3] = x;
         at[(axis + 2) % 3] = y;
-        const uint32_t v = bool_points_add(&work.points, cag_vec3(at[0], at[1], at[2]));
-        assert_int_equal(bool_is_in_face(&work, &f, v), in);
+        const uint32_t v = cag_bool_points_add(&work.points, cag_vec3(at[0], at[1], at[2]));
+        assert_int_equal(cag_bool_is_in_face(&work, &f, v), in);
       }
-    bool_points_free(&work.points);
+    cag_bool_points_free(&work.points);
   }
 }
 

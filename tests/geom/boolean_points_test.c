@@ -133,14 +133,14 @@ static Fraction solution(Equation e[3]) {
 #define GIVEN 14
 
 static void begin(int origin) {
-  assert_true(bool_points_start(&points, 1));
+  assert_true(cag_bool_points_start(&points, 1));
   for (size_t i = 0; points.n < GIVEN; i++) {
     Fraction f = {{origin + whole(-3, 3), whole(-3, 3), whole(-3, 3) - origin}, 1};
     const CagVec3 at = {(double)f.x[0], (double)f.x[1], (double)f.x[2]};
     const size_t n = points.n;
-    const uint32_t number = bool_points_add(&points, at);
+    const uint32_t number = cag_bool_points_add(&points, at);
     enter(number, n, f, false);
-    assert_int_equal(bool_points_add(&points, at), number);
+    assert_int_equal(cag_bool_points_add(&points, at), number);
     assert_int_equal(points.n, n > number ? n : n + 1);
   }
 }
@@ -172,7 +172,7 @@ static void add_crossing(void) {
   Fraction f = {.w = t - s};
   for (int k = 0; k < 3; k++) f.x[k] = known[a].x[k] * t - known[b].x[k] * s;
   const size_t n = points.n;
-  enter(bool_points_cross(&points, a, b, plane), n, f, false);
+  enter(cag_bool_points_cross(&points, a, b, plane), n, f, false);
 }
 
 static BoolCut random_cut(void) {
@@ -190,7 +190,7 @@ static void add_meeting(void) {
   Equation e[3] = {plane_through(plane), cut_of(one), cut_of(two)};
   const Fraction f = solution(e);
   const size_t n = points.n;
-  const uint32_t number = bool_points_meet(&points, plane, one, two);
+  const uint32_t number = cag_bool_points_meet(&points, plane, one, two);
   if (f.w == 0) assert_int_equal(number, BOOL_NONE);
   else enter(number, n, f, false);
 }
@@ -211,7 +211,7 @@ static void add_put(void) {
   }
   const Fraction f = solution(e);
   const size_t count = points.n;
-  const uint32_t number = bool_points_put(&points, from, (const uint32_t(*)[3])planes, n, kept);
+  const uint32_t number = cag_bool_points_put(&points, from, (const uint32_t(*)[3])planes, n, kept);
   if (f.w == 0) assert_int_equal(number, BOOL_NONE);
   else enter(number, count, f, false);
 }
@@ -224,7 +224,7 @@ static void add_centroid(void) {
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) f.x[k] += known[v[i]].x[k] * (f.w / 3 / known[v[i]].w);
   const size_t n = points.n;
-  enter(bool_points_centroid(&points, v), n, f, true);
+  enter(cag_bool_points_centroid(&points, v), n, f, true);
 }
 
 // --- Questions ---
@@ -238,13 +238,13 @@ static void ask_once(void) {
   int all = 0;
   for (int k = 0; k < 3; k++) {
     const int order = sign(b->x[k] * a->w - a->x[k] * b->w);
-    assert_int_equal(bool_compare(&points, v[0], v[1], k), order);
+    assert_int_equal(cag_bool_compare(&points, v[0], v[1], k), order);
     if (all == 0) all = order;
   }
-  assert_int_equal(bool_compare_all(&points, v[0], v[1]), all);
-  assert_int_equal(bool_turn(&points, v[0], v[1], v[2], axis), sign(turned(a, b, c, axis)));
-  assert_int_equal(bool_normal_sign(&points, v, axis), sign(turned(a, b, c, axis)));
-  assert_int_equal(bool_side(&points, v, v[3]), sign(side_of(v, d)));
+  assert_int_equal(cag_bool_compare_all(&points, v[0], v[1]), all);
+  assert_int_equal(cag_bool_turn(&points, v[0], v[1], v[2], axis), sign(turned(a, b, c, axis)));
+  assert_int_equal(cag_bool_normal_sign(&points, v, axis), sign(turned(a, b, c, axis)));
+  assert_int_equal(cag_bool_side(&points, v, v[3]), sign(side_of(v, d)));
   // Of one of the planes all points are given, as planes of operands are for the most part.
   random_plane(m);
   for (int k = 0; k < 3; k++) n[k] = whole(0, 3) ? given() : v[k];
@@ -252,11 +252,11 @@ static void ask_once(void) {
   normal_of(n, q);
   Whole dot = 0;
   for (int k = 0; k < 3; k++) dot += p[k] * q[k];
-  assert_int_equal(bool_normals_dot(&points, m, n), sign(dot));
-  assert_int_equal(bool_normals_dot(&points, n, m), sign(dot));
+  assert_int_equal(cag_bool_normals_dot(&points, m, n), sign(dot));
+  assert_int_equal(cag_bool_normals_dot(&points, n, m), sign(dot));
   const int cross = sign(p[i] * q[j] - p[j] * q[i]);
-  assert_int_equal(bool_normals_cross(&points, m, n, axis), cross);
-  assert_int_equal(bool_normals_cross(&points, n, m, axis), -cross);
+  assert_int_equal(cag_bool_normals_cross(&points, m, n, axis), cross);
+  assert_int_equal(cag_bool_normals_cross(&points, n, m, axis), -cross);
 }
 
 static void check_first(void) {
@@ -269,7 +269,7 @@ static void check_first(void) {
         first = k;
         break;
       }
-    assert_int_equal(bool_points_first(&points, i), first);
+    assert_int_equal(cag_bool_points_first(&points, i), first);
   }
 }
 
@@ -287,21 +287,21 @@ static void points_are_those_of_fractions(void **state) {
     }
     check_first();
     assert_true(points.n > 60);
-    bool_points_free(&points);
+    cag_bool_points_free(&points);
   }
 }
 
 // Zeros of both signs are one point; help points are new ones every time.
 static void zeros_and_far_points(void **state) {
   (void)state;
-  assert_true(bool_points_start(&points, 0));
-  const uint32_t zero = bool_points_add(&points, cag_vec3(0.0, -0.0, 0.0));
-  assert_int_equal(bool_points_add(&points, cag_vec3(-0.0, 0.0, -0.0)), zero);
-  const uint32_t one = bool_points_add_far(&points, cag_vec3(0, 0, 0));
+  assert_true(cag_bool_points_start(&points, 0));
+  const uint32_t zero = cag_bool_points_add(&points, cag_vec3(0.0, -0.0, 0.0));
+  assert_int_equal(cag_bool_points_add(&points, cag_vec3(-0.0, 0.0, -0.0)), zero);
+  const uint32_t one = cag_bool_points_add_far(&points, cag_vec3(0, 0, 0));
   assert_int_not_equal(one, zero);
-  assert_int_not_equal(bool_points_add_far(&points, cag_vec3(0, 0, 0)), one);
-  assert_int_equal(bool_points_add(&points, cag_vec3(0, 0, 0)), zero);
-  bool_points_free(&points);
+  assert_int_not_equal(cag_bool_points_add_far(&points, cag_vec3(0, 0, 0)), one);
+  assert_int_equal(cag_bool_points_add(&points, cag_vec3(0, 0, 0)), zero);
+  cag_bool_points_free(&points);
 }
 
 int main(void) {

@@ -20,8 +20,8 @@ static void begin(Filled *f, double width, double height) {
 
 static void fill(Filled *f) {
   make_lines(&f->cut);
-  OK(tess_make_nodes(&f->cut.t, &err));
-  OK(tess_fill(&f->cut.t, &f->mesh, &err));
+  OK(cag_tess_make_nodes(&f->cut.t, &err));
+  OK(cag_tess_fill(&f->cut.t, &f->mesh, &err));
 }
 
 static void end(Filled *f) {

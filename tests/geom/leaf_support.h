@@ -66,7 +66,7 @@ static inline void make_lines(CutFaces *c) {
                        .leaves = c->leaves,
                        .leaf_count = c->t.leaf_count,
                        .leaf_capacity = MOST_LEAVES};
-  for (uint32_t k = 0; k < c->t.face_count; k++) OK(tess_make_lines(&c->t, k, &err));
+  for (uint32_t k = 0; k < c->t.face_count; k++) OK(cag_tess_make_lines(&c->t, k, &err));
 }
 
 static inline void free_faces(CutFaces *c) {

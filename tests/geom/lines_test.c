@@ -47,11 +47,11 @@ static void begin(Joint *j, int k) {
   }
   make_lines(&j->cut);
   for (int f = 0; f < FACES; f++) {
-    j->line[f] = tess_side_line(&j->cut.t, (uint32_t)f, j->side[f]);
+    j->line[f] = cag_tess_side_line(&j->cut.t, (uint32_t)f, j->side[f]);
     assert_int_not_equal(j->line[f], NO_INDEX);
   }
-  OK(tess_join_lines(&j->cut.t, j->line[0], j->line[1], j->reversed, &err));
-  OK(tess_make_nodes(&j->cut.t, &err));
+  OK(cag_tess_join_lines(&j->cut.t, j->line[0], j->line[1], j->reversed, &err));
+  OK(cag_tess_make_nodes(&j->cut.t, &err));
 }
 
 // --- Steps that the faces need along the edge ---
@@ -125,10 +125,10 @@ static void lines_of_an_edge_have_the_same_nodes(void **state) {
                                  &t->nodes[line[1]->node + (j.reversed ? expected - 1 - i : i)]};
       NEAR(length_at(&j, 0, node[0]->t), length_at(&j, 1, node[1]->t), near);
       const uint32_t v[FACES] = {
-          tess_node_vertex(t, line[0], node[0], j.side[0] % 2 == 0, i == expected - 1),
-          tess_node_vertex(t, line[1], node[1], j.side[1] % 2 == 0,
-                           j.reversed ? i == 0 : i == expected - 1)};
-      assert_int_equal(tess_find(&j.cut.t, v[0]), tess_find(&j.cut.t, v[1]));
+          cag_tess_node_vertex(t, line[0], node[0], j.side[0] % 2 == 0, i == expected - 1),
+          cag_tess_node_vertex(t, line[1], node[1], j.side[1] % 2 == 0,
+                               j.reversed ? i == 0 : i == expected - 1)};
+      assert_int_equal(cag_tess_find(&j.cut.t, v[0]), cag_tess_find(&j.cut.t, v[1]));
       // Between cuts, the steps along the first line are equal.
       if (i > 0 && i + 1 < expected && node[0]->corner == NO_INDEX) {
         const double before = node[0]->t - node[0][-1].t, after = node[0][1].t - node[0]->t;

@@ -15,7 +15,7 @@ typedef struct Planned {
 static void plan(Planned *p, const CagSurface *s, const CagTessellation *how) {
   *p = (Planned){.face = {.surface = s}};
   p->t = (Tessellator){.how = *how, .size = 1, .faces = &p->face, .face_count = 1};
-  OK(tess_plan_face(&p->t, 0, &err));
+  OK(cag_tess_plan_face(&p->t, 0, &err));
 }
 
 static void release(Planned *p) {
@@ -304,7 +304,7 @@ static void check_leaves(const Planned *p, const CagSurface *s, const CagTessell
       for (size_t i = 0; i < p->face.break_count[d]; i++)
         assert_true(p->face.breaks[d][i] <= leaf->from[d] || p->face.breaks[d][i] >= leaf->to[d]);
     }
-    OK(tess_try_distance(&t, sine, &off, &err));
+    OK(cag_tess_try_distance(&t, sine, &off, &err));
     assert_true(off <= 0.9 * how->tolerance);
     area += (leaf->to[0] - leaf->from[0]) * (leaf->to[1] - leaf->from[1]);
     if (!(how->angle > 0 || how->max_edge > 0)) continue;

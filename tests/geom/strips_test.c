@@ -68,8 +68,8 @@ static void plan(Planned *p, Twist *t, const CagTessellation *how) {
   CagSurface *s = twisted(t);
   *p = (Planned){.face = {.surface = s}};
   p->t = (Tessellator){.how = *how, .size = 1, .faces = &p->face, .face_count = 1};
-  OK(tess_plan_face(&p->t, 0, &err));
-  OK(tess_plan_strips(&p->t, 0, &err));
+  OK(cag_tess_plan_face(&p->t, 0, &err));
+  OK(cag_tess_plan_strips(&p->t, 0, &err));
   const Leaf *first = &p->t.leaves[0];
   p->strips = tess_is_strip(first);
   const int along = first->slants.along;

@@ -128,7 +128,7 @@ static void distances_of_small_grids_are_those_of_all_quadrilaterals(void **stat
     const double v = uniform(0, 1);
     const double sine[2] = {u * u, v * v};
     double found;
-    OK(tess_try_distance(&t, sine, &found, &err));
+    OK(cag_tess_try_distance(&t, sine, &found, &err));
     NEAR(found, grid_distance(&t, sine), 1e-12);
     cag_surface_release(s);
   }
@@ -145,7 +145,7 @@ static void distances_are_measured_up_to_poles(void **state) {
     double found;
     if (pole % 2 == 0) t.from[pole / 2] = 0;
     else t.to[pole / 2] = 1;
-    OK(tess_try_distance(&t, sine, &found, &err));
+    OK(cag_tess_try_distance(&t, sine, &found, &err));
     NEAR(found, grid_distance(&t, sine), 1e-9);
     cag_surface_release(s);
   }
@@ -171,7 +171,7 @@ static void distances_of_middles_are_those_of_all_quadrilaterals(void **state) {
     CagSurface *s = patch(uniform(0, 2), -1);
     const TessTrial t = trial_on(s, count[k % 7][0], count[k % 7][1], k / 7);
     double found;
-    OK(tess_try_middles(&t, &found, &err));
+    OK(cag_tess_try_middles(&t, &found, &err));
     NEAR(found, t.n[0] <= 12 && t.n[1] <= 12 ? 0 : middle_distance(&t), 1e-12);
     cag_surface_release(s);
   }
@@ -188,10 +188,10 @@ static void distances_of_large_grids_are_nearly_those_of_all(void **state) {
     CagSurface *s = patch(uniform(1, 2), -1);
     TessTrial t = trial_on(s, count[k % 4][0], count[k % 4][1], k / 4);
     double found, all = grid_distance(&t, sine);
-    OK(tess_try_distance(&t, sine, &found, &err));
+    OK(cag_tess_try_distance(&t, sine, &found, &err));
     assert_true(found <= all * (1 + 1e-9) && found >= 0.85 * all);
     all = middle_distance(&t);
-    OK(tess_try_middles(&t, &found, &err));
+    OK(cag_tess_try_middles(&t, &found, &err));
     if (t.n[0] > 12 || t.n[1] > 12) assert_true(found <= all * (1 + 1e-9) && found >= 0.97 * all);
     cag_surface_release(s);
   }
@@ -252,7 +252,7 @@ static void excess_of_small_grids_is_that_of_all_edges(void **state) {
     const double size = cag_norm(cag_sub(point(&t, 1, 0), point(&t, 0, 0)));
     if (k % 4 > 1) most.free = size * uniform(0.7, 1.6);
     TessExcess found;
-    OK(tess_try_edges(&t, most.angle, most.free, most.longest, &found, &err));
+    OK(cag_tess_try_edges(&t, most.angle, most.free, most.longest, &found, &err));
     const TessExcess all = grid_excess(&t, &most);
     for (int d = 0; d < 2; d++) NEAR(found.along[d], all.along[d], 2e-4 * (1 + all.along[d]));
     NEAR(found.diagonal, all.diagonal, 2e-4 * (1 + all.diagonal));
@@ -269,7 +269,7 @@ static void excess_of_large_grids_is_nearly_that_of_all(void **state) {
     CagSurface *s = patch(uniform(0, 2), -1);
     const TessTrial t = trial_on(s, count[k % 4][0], count[k % 4][1], k / 4);
     TessExcess found;
-    OK(tess_try_edges(&t, most.angle, most.free, most.longest, &found, &err));
+    OK(cag_tess_try_edges(&t, most.angle, most.free, most.longest, &found, &err));
     const TessExcess all = grid_excess(&t, &most);
     for (int d = 0; d < 2; d++)
       assert_true(found.along[d] <= all.along[d] * 1.0002 && found.along[d] >= 0.98 * all.along[d]);
@@ -288,7 +288,7 @@ static void creases_between_leaves_do_not_turn_edges(void **state) {
   for (int k = 0; k < 2; k++) {
     const TessTrial t = {.surface = s, .from = {k, 0}, .to = {k + 1, 1}, .n = {2, 2}};
     TessExcess found;
-    OK(tess_try_edges(&t, 0.1, 0, 0, &found, &err));
+    OK(cag_tess_try_edges(&t, 0.1, 0, 0, &found, &err));
     NEAR(found.along[0] + found.along[1] + found.diagonal, 0, 1e-6);
   }
   cag_surface_release(s);
@@ -336,7 +336,7 @@ static CagSurface *surface_of(Sheet *sheet, double u0, double u1, double v0, dou
 
 static bool is_missed(const TessTrial *t, double tolerance) {
   bool missed;
-  OK(tess_try_scattered(t, tolerance, &missed, &err));
+  OK(cag_tess_try_scattered(t, tolerance, &missed, &err));
   return missed;
 }
 
@@ -470,10 +470,10 @@ static void formulas_are_known_by_points(void **state) {
   Sheet sheet = {0};
   CagSurface *f = surface_of(&sheet, 0, 1, 0, 1), *p = patch(1, -1), *s;
   const CagTransform map = cag_shear(0, 2, 0, 0, 0, 0);
-  assert_true(tess_is_known_by_points(f));
-  assert_false(tess_is_known_by_points(p));
+  assert_true(cag_tess_is_known_by_points(f));
+  assert_false(cag_tess_is_known_by_points(p));
   OK(cag_surface_transform(f, &map, &s, &err));
-  assert_true(tess_is_known_by_points(s));
+  assert_true(cag_tess_is_known_by_points(s));
   cag_surface_release(s);
   cag_surface_release(f);
   cag_surface_release(p);
