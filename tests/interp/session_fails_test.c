@@ -55,8 +55,8 @@ static void options_that_a_picture_cannot_have(void **state) {
       {.path = "/dev/null/a.png", .region = {0, 44, 5, 5}, .reason = "region-outside"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-    CagSession *s = run(cases[i].pov_csg, "show sphere(1), camera([9, 9, 9], size: [64, 48])\n",
-                        CAG_STATUS_OK);
+    CagSession *s =
+        run(cases[i].pov_csg, "show sphere(1), camera([9, 9, 9], size: [64, 48])\n", CAG_STATUS_OK);
     CagRenderOptions o = usual;
     if (cases[i].quality) o.quality = cases[i].quality;
     o.camera = cases[i].camera;
