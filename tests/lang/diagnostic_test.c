@@ -71,9 +71,13 @@ static void tabs_and_wide_characters_keep_the_carets_in_place(void **state) {
   expect_rendered(
       "e\xcc\x81 = y", 6, 7, NULL,
       "error: it \"is\"\twrong\n --> spring.cag:1:6\n  |\n1 | e\xcc\x81 = y\n  |     ^\n");
+  // Bytes that are no text, and control characters, the last of ASCII among them.
   expect_rendered("a\xff\x01 = y", 1, 2, NULL,
                   "error: it \"is\"\twrong\n --> spring.cag:1:2\n  |\n"
                   "1 | a\xef\xbf\xbd\xef\xbf\xbd = y\n  |  ^\n");
+  expect_rendered("a\x7f\x1f~ = y", 3, 4, NULL,
+                  "error: it \"is\"\twrong\n --> spring.cag:1:4\n  |\n"
+                  "1 | a\xef\xbf\xbd\xef\xbf\xbd~ = y\n  |    ^\n");
 }
 
 static void empty_spans_ends_and_many_lines_are_shown(void **state) {
