@@ -102,6 +102,7 @@ if [ -n "${SANITIZED:-}" ]; then
   # Three scripts take 12 s each without sanitizers, and four times that with them.
   language_suites "$SANITIZED" "sanitized " "--no-pictures --max-time 600"
   suite counted "sanitized tests/fuzz" "'$SANITIZED/tests/fuzz/fuzz' 2"
+  suite counted "sanitized tests/fuzz/memory limits" "'$SANITIZED/tests/fuzz/memory' -l -n 3"
   unit_suites "$SANITIZED" "sanitized "
   vector_suites "$SANITIZED" "sanitized "
 fi
