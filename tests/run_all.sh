@@ -70,7 +70,7 @@ suite() { printf '%s\t%s\t%s\n' "$1" "$2" "$3" >> "$work/suites"; }
 unit_suites() {
   for source in tests/base/*_test.c tests/lang/*_test.c tests/geom/*_test.c tests/interp/*_test.c; do
     case $source in
-      *'*'* | tests/interp/interrupt_test.c) ;; # the latter runs alone
+      *'*'* | tests/interp/interrupt_test.c | tests/interp/heavy_test.c) ;; # the latter two run alone
       *) suite unit "$2${source%.c}" "'$1/${source%.c}'" ;;
     esac
   done
@@ -135,7 +135,9 @@ fi
 together=$(wc -l < "$work/suites")
 for name in $alone; do suite counted "tests/cli $name" "sh tests/cli/run.sh $name"; done
 for build in "$BUILD" ${SANITIZED:+"$SANITIZED"}; do
-  suite unit "${build##*/} tests/interp/interrupt_test" "'$build/tests/interp/interrupt_test'"
+  for name in interrupt heavy; do
+    suite unit "${build##*/} tests/interp/${name}_test" "'$build/tests/interp/${name}_test'"
+  done
 done
 all=$(wc -l < "$work/suites")
 

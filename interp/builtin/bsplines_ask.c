@@ -32,7 +32,8 @@ bool cag_bsplines_spans(CagCall *call, CagValue *result) {
   if (!read_nurbs(call, &c)) return false;
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < c->pieces; i++)
-    cag_builder_add(call->vm, list, range_of(call, c, c->cuts[i], c->cuts[i + 1]));
+    if (!cag_builder_add(call->vm, list, range_of(call, c, c->cuts[i], c->cuts[i + 1])))
+      return false;
   *result = cag_builder_finish(call->vm, list);
   return true;
 }
@@ -122,7 +123,8 @@ bool cag_bsplines_straight_spans(CagCall *call, CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = (size_t)c->degree; i < c->count; i++) {
     if (!(c->knots[i] < c->knots[i + 1]) || !collinear(c, i)) continue;
-    cag_builder_add(call->vm, list, range_of(call, c, c->knots[i], c->knots[i + 1]));
+    if (!cag_builder_add(call->vm, list, range_of(call, c, c->knots[i], c->knots[i + 1])))
+      return false;
   }
   *result = cag_builder_finish(call->vm, list);
   return true;
@@ -290,11 +292,11 @@ static bool give_comb(CagCall *call, const CagCurve *c, const Comb *comb, double
     if (cag_norm(cag_sub(tips[i], comb->feet[i])) == 0) continue;
     status = cag_curve_line(comb->feet[i], tips[i], c->dimension, &line, &err);
     if (!cag_geometry_ok(call, status, &err)) return false;
-    cag_builder_add(call->vm, list, cag_curve_value(call->vm, line));
+    if (!cag_builder_add(call->vm, list, cag_curve_value(call->vm, line))) return false;
   }
   status = cag_curve_polyline(tips, comb->n, false, c->dimension, &line, &err);
   if (!cag_geometry_ok(call, status, &err)) return false;
-  cag_builder_add(call->vm, list, cag_curve_value(call->vm, line));
+  if (!cag_builder_add(call->vm, list, cag_curve_value(call->vm, line))) return false;
   *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
   return true;
 }

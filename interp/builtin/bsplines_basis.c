@@ -89,7 +89,7 @@ bool cag_bsplines_classify_knots(CagCall *call, CagValue *result) {
       return cag_fail_geometry(call, &err);
     }
     const double pair[2] = {x[i], (double)run};
-    cag_builder_add(call->vm, list, cag_vector(call->vm, pair, 2));
+    if (!cag_builder_add(call->vm, list, cag_vector(call->vm, pair, 2))) return false;
     segments += i + run < count && x[i] >= x[k] && x[i + run] <= x[n];
   }
   CagValue values[] = {cag_text_c(call->vm, cag_knots_class(x, n, p)),
@@ -223,7 +223,9 @@ bool cag_bsplines_basis_triangle(CagCall *call, CagValue *result) {
   cag_basis_triangle(x, count, p, at, t, rows);
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t q = 0; q <= (size_t)p; q++)
-    cag_builder_add(call->vm, list, cag_vector(call->vm, rows + q * (count - 1), count - 1 - q));
+    if (!cag_builder_add(call->vm, list,
+                         cag_vector(call->vm, rows + q * (count - 1), count - 1 - q)))
+      return false;
   *result = cag_builder_finish(call->vm, list);
   return true;
 }
@@ -267,7 +269,8 @@ bool cag_bsplines_basis_pieces(CagCall *call, CagValue *result) {
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i + 1 < count; i++)
     if (x[i] < x[i + 1])
-      cag_builder_add(call->vm, list, piece_record(call, x, count, p, i, local, table));
+      if (!cag_builder_add(call->vm, list, piece_record(call, x, count, p, i, local, table)))
+        return false;
   *result = cag_builder_finish(call->vm, list);
   return true;
 }
@@ -333,8 +336,9 @@ bool cag_bsplines_oslo(CagCall *call, CagValue *result) {
   for (size_t q = 0; q <= (size_t)p; q++) {
     CagBuilder *rows = cag_builder_new(call->vm);
     for (size_t i = 0; i + q + 1 < count; i++)
-      cag_builder_add(call->vm, rows, cag_vector(call->vm, table + q * block + i * m, m));
-    cag_builder_add(call->vm, list, cag_builder_finish(call->vm, rows));
+      if (!cag_builder_add(call->vm, rows, cag_vector(call->vm, table + q * block + i * m, m)))
+        return false;
+    if (!cag_builder_add(call->vm, list, cag_builder_finish(call->vm, rows))) return false;
   }
   *result = cag_builder_finish(call->vm, list);
   return true;

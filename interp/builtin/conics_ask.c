@@ -294,7 +294,7 @@ bool cag_conics_points_at(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < n; i++) {
     CagValue values[] = {cag_parameter_value(c->angular, meetings[i].t),
                          cag_point(call->vm, meetings[i].point, 2)};
-    cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2));
+    if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2))) return false;
   }
   *result = cag_builder_finish(call->vm, list);
   return true;

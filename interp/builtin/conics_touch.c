@@ -103,7 +103,7 @@ static bool give_lines(CagCall *call, const CagTangentLine *lines, size_t n, Cag
     CagCurve *c = NULL;
     CagStatus status = cag_curve_line(lines[i].p, lines[i].q, 2, &c, &err);
     if (!cag_geometry_ok(call, status, &err)) return false;
-    cag_builder_add(call->vm, list, cag_curve_value(call->vm, c));
+    if (!cag_builder_add(call->vm, list, cag_curve_value(call->vm, c))) return false;
   }
   *result = cag_builder_finish(call->vm, list);
   return true;

@@ -217,7 +217,7 @@ bool cag_curves_points(CagCall *call, CagValue *result) {
     const double *h = nurbs.homogeneous + 4 * i;
     // A point of weight 0 has no place.
     CagValue p = h[3] > 0 ? cag_point(call->vm, cag_project(h), c->dimension) : cag_none();
-    cag_builder_add(call->vm, list, p);
+    if (!cag_builder_add(call->vm, list, p)) return false;
   }
   *result = cag_builder_finish(call->vm, list);
   return true;

@@ -17,7 +17,7 @@ static bool with_curve(CagCall *call, const CagCurve *a, const CagCurve *b, CagB
     CagValue values[] = {
         cag_point(call->vm, found[i].point, dimension), cag_parameter_value(a->angular, found[i].t),
         cag_parameter_value(b->angular, found[i].t2), cag_number(found[i].multiplicity)};
-    cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 4));
+    if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 4))) return false;
   }
   return true;
 }
@@ -34,7 +34,7 @@ static bool with_plane(CagCall *call, const CagCurve *c, const CagPlane *plane, 
     CagValue values[] = {cag_point(call->vm, found[i].point, c->dimension),
                          cag_parameter_value(c->angular, found[i].t),
                          cag_number(found[i].multiplicity)};
-    cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 3));
+    if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 3))) return false;
   }
   return true;
 }
@@ -52,7 +52,7 @@ static bool with_surface(CagCall *call, const CagCurve *c, const CagSurface *s, 
         cag_point(call->vm, found[i].point, 3), cag_parameter_value(c->angular, found[i].t),
         cag_parameter_value(s->angular_u, found[i].u),
         cag_parameter_value(s->angular_v, found[i].v), cag_number(found[i].multiplicity)};
-    cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5));
+    if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5))) return false;
   }
   return true;
 }

@@ -198,7 +198,7 @@ static bool read_lists(Csv *c, CagBuilder *built) {
   bool found = true;
   for (size_t n = 0; found; n++) {
     CagVm *vm = c->r.call->vm;
-    cag_builder_add(vm, built, cag_list_values(vm, c->row, c->count));
+    if (!cag_builder_add(vm, built, cag_list_values(vm, c->row, c->count))) return false;
     if (n % ROWS_BETWEEN_CHECKS == ROWS_BETWEEN_CHECKS - 1 && !cag_keep_going(vm)) return false;
     if (!read_row(c, &found)) return false;
   }
@@ -216,7 +216,7 @@ static bool read_records(Csv *c, CagBuilder *built) {
   for (size_t n = 0; found; n++) {
     CagValue record;
     if (!row_record(c, names, columns, &first, &record)) return false;
-    cag_builder_add(vm, built, record);
+    if (!cag_builder_add(vm, built, record)) return false;
     if (n % ROWS_BETWEEN_CHECKS == ROWS_BETWEEN_CHECKS - 1 && !cag_keep_going(vm)) return false;
     if (!read_row(c, &found)) return false;
   }

@@ -46,7 +46,11 @@ static bool find_shape(CagValue v, CagSeries *like, int depth) {
   return false;
 }
 
+// Without a jet, constants of order 0.
 static void shape_of_call(const CagCall *call, CagSeries *like) {
+  like->variables = 1;
+  like->order = 0;
+  like->level = call->vm->differentiation;
   for (size_t i = 0; i < call->count; i++)
     if (find_shape(call->values[i], like, 0)) return;
 }
@@ -754,7 +758,7 @@ bool cag_jet_transform(CagVm *vm, const CagTransform *t, CagValue v, CagValue *r
     if (l->as.items[i].type == CAG_JET) // no point either: the plain call says what is wrong
       return cag_transform_apply(vm, t, cag_without_jets(vm, v), result);
     if (!cag_jet_transform(vm, t, l->as.items[i], &moved)) return false;
-    cag_builder_add(vm, b, moved);
+    if (!cag_builder_add(vm, b, moved)) return false;
   }
   *result = cag_builder_finish(vm, b);
   return true;

@@ -365,7 +365,7 @@ static bool call_zip(CagCall *call, CagValue *result) {
   }
   for (size_t i = 0; i < s[0].length; i++) {
     for (size_t k = 0; k < n; k++) parts[k] = cag_sequence_element(call->vm, &s[k], i);
-    cag_builder_add(call->vm, built, cag_list_values(call->vm, parts, n));
+    if (!cag_builder_add(call->vm, built, cag_list_values(call->vm, parts, n))) return false;
   }
   *result = cag_builder_finish(call->vm, built);
   return true;

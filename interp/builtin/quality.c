@@ -352,7 +352,9 @@ static CagStatus isophotes_of(CagValue v, CagVec3 direction, double cosine, doub
 static bool give_curves(CagCall *call, const CagCurveList *list, CagValue *result) {
   CagBuilder *out = cag_builder_new(call->vm);
   for (size_t i = 0; i < list->count; i++)
-    cag_builder_add(call->vm, out, cag_curve_value(call->vm, cag_curve_retain(list->items[i])));
+    if (!cag_builder_add(call->vm, out,
+                         cag_curve_value(call->vm, cag_curve_retain(list->items[i]))))
+      return false;
   *result = cag_group_value(call->vm, cag_builder_finish(call->vm, out));
   return true;
 }

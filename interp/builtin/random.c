@@ -94,7 +94,7 @@ static bool call_random(CagCall *call, CagValue *result) {
   Generator g = seeded(bits);
   CagBuilder *built = cag_builder_new(call->vm);
   for (long i = 0; i < n; i++) {
-    cag_builder_add(call->vm, built, draw(&g, &source));
+    if (!cag_builder_add(call->vm, built, draw(&g, &source))) return false;
     if (i % STEPS_BETWEEN_CHECKS == STEPS_BETWEEN_CHECKS - 1 && !cag_keep_going(call->vm))
       return false;
   }

@@ -13,7 +13,7 @@ static bool call_keys(CagCall *call, CagValue *result) {
   if (!cag_arg_record(call, 0, &r)) return false;
   CagBuilder *built = cag_builder_new(call->vm);
   for (size_t i = 0; i < r->layout->count; i++)
-    cag_builder_add(call->vm, built, cag_object(CAG_TEXT, r->layout->names[i]));
+    if (!cag_builder_add(call->vm, built, cag_object(CAG_TEXT, r->layout->names[i]))) return false;
   *result = cag_builder_finish(call->vm, built);
   return true;
 }

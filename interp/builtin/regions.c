@@ -139,7 +139,7 @@ bool cag_curves_boundary(CagCall *call, CagValue *result) {
     CagStatus status =
         cag_curve_transform(shape->as.region->loops[i], &shape->placement, &placed, &err);
     if (!cag_geometry_ok(call, status, &err)) return false;
-    cag_builder_add(call->vm, loops, cag_curve_value(call->vm, placed));
+    if (!cag_builder_add(call->vm, loops, cag_curve_value(call->vm, placed))) return false;
   }
   *result = cag_builder_finish(call->vm, loops);
   return true;

@@ -146,7 +146,7 @@ bool cag_robots_link_frames(CagCall *call, CagValue *result) {
   cag_robot_frames(r, q, frames);
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i <= r->link_count; i++)
-    cag_builder_add(call->vm, list, cag_transform_value(call->vm, &frames[i]));
+    if (!cag_builder_add(call->vm, list, cag_transform_value(call->vm, &frames[i]))) return false;
   *result = cag_builder_finish(call->vm, list);
   return true;
 }
@@ -322,7 +322,7 @@ bool cag_robots_dh_table(CagCall *call, CagValue *result) {
   if (!cag_arg_robot(call, 0, &r)) return false;
   CagBuilder *rows = cag_builder_new(call->vm);
   for (size_t i = 0; i < r->link_count; i++)
-    cag_builder_add(call->vm, rows, table_row(call->vm, &r->links[i]));
+    if (!cag_builder_add(call->vm, rows, table_row(call->vm, &r->links[i]))) return false;
   *result = cag_builder_finish(call->vm, rows);
   return true;
 }

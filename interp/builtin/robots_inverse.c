@@ -66,7 +66,8 @@ static bool ik_all(CagCall *call, CagValue *result) {
   if (all.status == CAG_INVERSE_NO_CLOSED_FORM) return fail_no_closed_form(call, r, point);
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < all.count; i++)
-    cag_builder_add(call->vm, list, solution_value(call->vm, r, &all.solutions[i]));
+    if (!cag_builder_add(call->vm, list, solution_value(call->vm, r, &all.solutions[i])))
+      return false;
   CagValue values[] = {cag_text_c(call->vm, statuses[all.status]),
                        cag_builder_finish(call->vm, list), free_value(call->vm, all.free)};
   *result = cag_record_new(call->vm, names, values, 3);

@@ -187,13 +187,13 @@ static bool give_assignment(CagCall *call, const CagRobotLink *links, const CagT
   CagVm *vm = call->vm;
   CagBuilder *rows = cag_builder_new(vm), *places = cag_builder_new(vm);
   for (size_t i = 0; i <= n; i++) {
-    cag_builder_add(vm, places, cag_transform_value(vm, &frames[i]));
+    if (!cag_builder_add(vm, places, cag_transform_value(vm, &frames[i]))) return false;
     if (i == n) break;
     const CagRobotLink *l = &links[i];
     CagValue row[] = {cag_text_c(vm, l->kind == CAG_JOINT_REVOLUTE ? "revolute" : "prismatic"),
                       cag_angle(cag_degrees_shown(l->theta)), cag_number(l->d), cag_number(l->a),
                       cag_angle(cag_degrees_shown(l->alpha))};
-    cag_builder_add(vm, rows, cag_record_new(vm, columns, row, 5));
+    if (!cag_builder_add(vm, rows, cag_record_new(vm, columns, row, 5))) return false;
   }
   CagValue values[] = {cag_builder_finish(vm, rows), cag_builder_finish(vm, places)};
   *result = cag_record_new(vm, names, values, 2);

@@ -202,7 +202,7 @@ static bool add_bodies(Import *m, const CagUrdfPlaced *placed, CagBuilder *into)
     CagShape *shape = CAG_AS_SHAPE(moved);
     shape->material = material_of(vm, b);
     shape->name = CAG_AS_TEXT(cag_text_c(vm, n->name));
-    cag_builder_add(vm, into, moved);
+    if (!cag_builder_add(vm, into, moved)) return false;
   }
   return true;
 }

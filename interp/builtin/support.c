@@ -236,7 +236,7 @@ static bool mix_lists(CagCall *call, const CagList *a, const CagList *b, double 
     if (!mix_values(call, cag_list_get(call->vm, a, i), cag_list_get(call->vm, b, i), t, depth,
                     &element))
       return false;
-    cag_builder_add(call->vm, built, element);
+    if (!cag_builder_add(call->vm, built, element)) return false;
   }
   *out = cag_builder_finish(call->vm, built);
   return true;

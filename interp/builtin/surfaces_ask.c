@@ -131,7 +131,7 @@ static bool give_net(CagCall *call, const CagSurfaceNurbsView *net, size_t dim, 
       else
         for (size_t k = 0; k < dim; k++) *out++ = h[k] / h[3];
     }
-    cag_builder_add(call->vm, rows, row);
+    if (!cag_builder_add(call->vm, rows, row)) return false;
   }
   *result = cag_builder_finish(call->vm, rows);
   return true;

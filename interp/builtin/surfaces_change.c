@@ -83,7 +83,8 @@ bool cag_surfaces_sample(CagCall *call, CagValue *result) {
   if (!cag_geometry_ok(call, status, &err)) return false;
   CagBuilder *rows = cag_builder_new(call->vm);
   for (size_t i = 0; i < nu; i++)
-    cag_builder_add(call->vm, rows, cag_points_value(call->vm, points + i * nv, nv, 3));
+    if (!cag_builder_add(call->vm, rows, cag_points_value(call->vm, points + i * nv, nv, 3)))
+      return false;
   *result = cag_builder_finish(call->vm, rows);
   return true;
 }

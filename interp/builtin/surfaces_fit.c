@@ -227,7 +227,7 @@ static bool residuals(CagCall *call, const CagSurface *s, const CagGridData *g,
       if (!cag_geometry_ok(call, status, &err)) return false;
       line[j] = cag_sub(line[j], g->points[k]);
     }
-    cag_builder_add(call->vm, rows, cag_points_value(call->vm, line, g->s, 3));
+    if (!cag_builder_add(call->vm, rows, cag_points_value(call->vm, line, g->s, 3))) return false;
   }
   *out = cag_builder_finish(call->vm, rows);
   return true;

@@ -39,7 +39,7 @@ static bool with_curve(CagCall *call, const CagSurface *s, const CagCurve *c, Ca
         cag_point(call->vm, found[i].point, 3), cag_parameter_value(s->angular_u, found[i].u),
         cag_parameter_value(s->angular_v, found[i].v), cag_parameter_value(c->angular, found[i].t),
         cag_number(found[i].multiplicity)};
-    cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5));
+    if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 5))) return false;
   }
   *result = cag_builder_finish(call->vm, list);
   return true;

@@ -169,9 +169,10 @@ static bool acting_points(CagCall *call, CagValue *result) {
   for (size_t i = span[0] - (size_t)n.axis[0].degree; i <= span[0]; i++) {
     CagBuilder *row = cag_builder_new(call->vm);
     for (size_t j = span[1] - (size_t)n.axis[1].degree; j <= span[1]; j++)
-      cag_builder_add(call->vm, row,
-                      point_value(call->vm, n.view.homogeneous + 4 * (i * n.view.nv + j)));
-    cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
+      if (!cag_builder_add(call->vm, row,
+                           point_value(call->vm, n.view.homogeneous + 4 * (i * n.view.nv + j))))
+        return false;
+    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row))) return false;
   }
   values[4] = cag_builder_finish(call->vm, rows);
   *result = cag_record_new(call->vm, names, values, 5);
@@ -212,7 +213,7 @@ static bool basis(CagCall *call, CagValue *result) {
     CagValue row = cag_list_numbers(call->vm, nv, &out);
     for (size_t j = 0; j < nv; j++)
       out[j] = bu[i] * bv[j] * n.view.homogeneous[4 * (i * n.view.nv + j) + 3] / sum;
-    cag_builder_add(call->vm, rows, row);
+    if (!cag_builder_add(call->vm, rows, row)) return false;
   }
   *result = cag_builder_finish(call->vm, rows);
   return true;
@@ -339,8 +340,10 @@ static bool polynomials(CagCall *call, CagValue *result) {
   for (size_t i = 0; i < nu; i++) {
     CagBuilder *row = cag_builder_new(call->vm);
     for (size_t j = 0; j < nv; j++)
-      cag_builder_add(call->vm, row, piece_powers(call, pieces->items[i * nv + j], lu[i], lv[j]));
-    cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
+      if (!cag_builder_add(call->vm, row,
+                           piece_powers(call, pieces->items[i * nv + j], lu[i], lv[j])))
+        return false;
+    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row))) return false;
   }
   *result = cag_builder_finish(call->vm, rows);
   return true;
@@ -482,10 +485,10 @@ static bool bezier_join(CagCall *call, CagValue *result) {
     for (size_t j = 0; j < n; j++) {
       const double *h = lines + 4 * (i * n + j);
       w[j] = h[3];
-      cag_builder_add(call->vm, row, point_value(call->vm, h));
+      if (!cag_builder_add(call->vm, row, point_value(call->vm, h))) return false;
     }
-    cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
-    cag_builder_add(call->vm, weights, list);
+    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row))) return false;
+    if (!cag_builder_add(call->vm, weights, list)) return false;
   }
   CagValue values[] = {cag_builder_finish(call->vm, rows), cag_builder_finish(call->vm, weights)};
   *result = cag_record_new(call->vm, names, values, 2);
@@ -546,7 +549,8 @@ static bool creases(CagCall *call, CagValue *result) {
     for (size_t i = 0; i < n; i++) {
       CagValue values[] = {cag_parameter_value(k == 0 ? s->angular_u : s->angular_v, found[i].at),
                            cag_angle(found[i].angle / CAG_RADIANS_PER_DEGREE)};
-      cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2));
+      if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, names, values, 2)))
+        return false;
     }
     both[k] = cag_builder_finish(call->vm, list);
   }
@@ -597,7 +601,8 @@ static bool flat_spans(CagCall *call, CagValue *result) {
       if (!acting_flat(&n, i, j)) continue;
       CagValue values[] = {range_of(call->vm, u->knots[i], u->knots[i + 1]),
                            range_of(call->vm, v->knots[j], v->knots[j + 1])};
-      cag_builder_add(call->vm, list, cag_record_new(call->vm, directions, values, 2));
+      if (!cag_builder_add(call->vm, list, cag_record_new(call->vm, directions, values, 2)))
+        return false;
     }
   *result = cag_builder_finish(call->vm, list);
   return true;

@@ -43,7 +43,7 @@ static bool give_patches(CagCall *call, const CagQuadric *q, int within, CagValu
   CagBuilder *list = cag_builder_new(call->vm);
   for (size_t i = 0; i < patches->count; i++) {
     *result = cag_surface_value(call->vm, cag_surface_retain(patches->items[i]));
-    cag_builder_add(call->vm, list, *result);
+    if (!cag_builder_add(call->vm, list, *result)) return false;
   }
   if (patches->count != 1) *result = cag_group_value(call->vm, cag_builder_finish(call->vm, list));
   return true;

@@ -169,9 +169,9 @@ bool cag_surfaces_to_bezier(CagCall *call, CagValue *result) {
     for (size_t j = 0; j < nv; j++) {
       CagValue v = cag_surface_value(call->vm, cag_surface_retain(pieces->items[i * nv + j]));
       cag_shape_say_alike(v, call->values[0]);
-      cag_builder_add(call->vm, row, v);
+      if (!cag_builder_add(call->vm, row, v)) return false;
     }
-    cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row));
+    if (!cag_builder_add(call->vm, rows, cag_builder_finish(call->vm, row))) return false;
   }
   *result = cag_builder_finish(call->vm, rows);
   return true;
@@ -218,7 +218,7 @@ bool cag_surfaces_continuity(CagCall *call, CagValue *result) {
   const char *class = !seam.c0 ? "none" : seam.g2 ? "G2" : seam.c1 ? "C1" : seam.g1 ? "G1" : "C0";
   CagBuilder *edges = cag_builder_new(call->vm);
   for (int k = 0; k < 2; k++)
-    cag_builder_add(call->vm, edges, cag_text_c(call->vm, sides[seam.side[k]]));
+    if (!cag_builder_add(call->vm, edges, cag_text_c(call->vm, sides[seam.side[k]]))) return false;
   CagValue values[] = {cag_text_c(call->vm, class),
                        cag_number(seam.gap),
                        cag_angle(seam.angle / CAG_RADIANS_PER_DEGREE),

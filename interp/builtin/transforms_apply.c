@@ -54,7 +54,7 @@ static bool apply_list(CagCall *call, const CagTransform *t, CagValue v, CagValu
   for (size_t i = 0; i < list->length; i++) {
     CagValue moved;
     if (!apply(call, t, cag_list_get(call->vm, list, i), &moved)) return false;
-    cag_builder_add(call->vm, b, moved);
+    if (!cag_builder_add(call->vm, b, moved)) return false;
   }
   *result = cag_builder_finish(call->vm, b);
   return true;

@@ -189,6 +189,9 @@ static void tell_overdue(void *context) {
   s->options.overdue(s, s->options.overdue_context);
 }
 
+static CagErrorId why_stopped(const CagSession *s);
+static int fail_stopped(CagSession *s, CagErrorId id);
+
 int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void *context) {
   CagVm *vm = cag_session_vm(s);
   if (!vm) return CAG_STATUS_LIMIT;
@@ -221,7 +224,9 @@ int cag_session_work(CagSession *s, bool (*work)(CagVm *vm, void *context), void
   cag_diagnostics_move(&s->diagnostics, &vm->errors);
   vm->failed = false;
   if (started && task.ok) return CAG_STATUS_OK;
-  return cag_session_status(s);
+  const int status = cag_session_status(s);
+  // Work that was cut short may have told nothing.
+  return status == CAG_STATUS_OK && vm->stop ? fail_stopped(s, why_stopped(s)) : status;
 }
 
 typedef struct GeometryTask {
@@ -236,9 +241,6 @@ static bool perform_geometry(CagVm *vm, void *context) {
   t->status = t->work(t->session, t->context);
   return t->status == CAG_STATUS_OK && !vm->failed;
 }
-
-static CagErrorId why_stopped(const CagSession *s);
-static int fail_stopped(CagSession *s, CagErrorId id);
 
 int cag_session_geometry(CagSession *s, int (*work)(CagSession *s, void *context), void *context) {
   GeometryTask t = {s, work, context, CAG_STATUS_OK};

@@ -268,7 +268,8 @@ typedef struct CagBuilder {
   void *data;
 } CagBuilder;
 CagBuilder *cag_builder_new(CagVm *vm);
-// Always true, for chains of conditions: if memory runs out, a jump ends the run.
+// Returns false, with the error set, if the run must stop; every so often it is asked. If memory
+// runs out, a jump ends the run.
 bool cag_builder_add(CagVm *vm, CagBuilder *b, CagValue v);
 CagValue cag_builder_finish(CagVm *vm, CagBuilder *b);
 static inline CagValue cag_builder_value(CagBuilder *b) { return cag_object(CAG_INTERNAL, b); }

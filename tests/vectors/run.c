@@ -282,7 +282,7 @@ static bool run_vector(File *f, const cJSON *vector, size_t i, Check *c) {
       text, sizeof text,
       "print if vectors[%zu].kind in kinds.kinds then\n"
       "  attempt(() => json({value: (kinds.kinds[vectors[%zu].kind])(given_of(vectors[%zu]))}),\n"
-      "    err => json({stopped: {reason: cag_error_info(err.id)->reason, message: "
+      "    err => json({stopped: {reason: err.reason, message: "
       "err.message}}))\n"
       "else json({unknown: true})\n",
       i, i, i);
