@@ -110,7 +110,19 @@ static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue
 
 // Loops over packed numbers ask after blocks of so many whether the run must stop.
 #define BLOCK ((size_t)1 << 16)
-static size_t block_end(size_t from, size_t n) { return n - from < BLOCK ? n : from + BLOCK; }
+static size_t block_length(size_t from, size_t n) { return n - from < BLOCK ? n - from : BLOCK; }
+
+// Sums or differences of n numbers. Returns 0, or something else if one is infinite or undefined.
+static inline double sum_of(CagBinaryOp op, const double *x, const double *y, size_t n,
+                            double *out) {
+  double worst = 0;
+  if (op == CAG_OP_ADD) {
+    for (size_t i = 0; i < n; i++) worst += 0 * (out[i] = x[i] + y[i]);
+  } else {
+    for (size_t i = 0; i < n; i++) worst += 0 * (out[i] = x[i] - y[i]);
+  }
+  return worst;
+}
 
 // Element by element of two packed lists of one shape.
 static bool packed_sum(CagVm *vm, CagBinaryOp op, const CagList *a, const CagList *b,
@@ -121,14 +133,13 @@ static bool packed_sum(CagVm *vm, CagBinaryOp op, const CagList *a, const CagLis
   const double *x = a->as.numbers, *y = b->as.numbers;
   const size_t n = a->length * a->dim;
   double worst = 0;
-  for (size_t from = 0; from < n; from += BLOCK) {
-    const size_t to = block_end(from, n);
-    if (op == CAG_OP_ADD) {
-      for (size_t i = from; i < to; i++) worst += 0 * (out[i] = x[i] + y[i]);
-    } else {
-      for (size_t i = from; i < to; i++) worst += 0 * (out[i] = x[i] - y[i]);
+  if (n <= BLOCK) {
+    worst = sum_of(op, x, y, n, out);
+  } else {
+    for (size_t from = 0; from < n; from += BLOCK) {
+      worst += sum_of(op, x + from, y + from, block_length(from, n), out + from);
+      if (!cag_keep_going(vm)) return false;
     }
-    if (!cag_keep_going(vm)) return false;
   }
   if (worst == 0) return true; // no element is infinite or undefined
   for (size_t i = 0; i < n; i++) {
@@ -185,13 +196,13 @@ static bool list_scaled(CagVm *vm, CagBinaryOp op, CagValue list, CagValue facto
     *result = l->dim == 1 ? cag_list_numbers(vm, l->length, &out)
                           : cag_list_vectors(vm, l->length, l->dim, &out);
     for (size_t from = 0; from < n; from += BLOCK) {
-      const size_t to = block_end(from, n);
+      const size_t to = from + block_length(from, n);
       if (op == CAG_OP_MULTIPLY) {
         for (size_t i = from; i < to; i++) worst += 0 * (out[i] = l->as.numbers[i] * k);
       } else {
         for (size_t i = from; i < to; i++) worst += 0 * (out[i] = l->as.numbers[i] / k);
       }
-      if (!cag_keep_going(vm)) return false;
+      if (to < n && !cag_keep_going(vm)) return false;
     }
     if (worst == 0) return true;
     for (size_t i = 0; i < n; i++) {

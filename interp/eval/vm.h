@@ -159,8 +159,9 @@ typedef struct CagHeap {
   CagObject **gray; // marked objects with unmarked references; NULL: gray_first
   size_t gray_count, gray_capacity;
   CagObject *gray_first[CAG_GRAY_FIRST];
-  bool gray_lost;  // memory ran out for the list, so marked objects must be scanned again
-  size_t scans;    // objects scanned in all collections
+  size_t values_marked; // in lists and the like, by the last collection
+  bool gray_lost;       // memory ran out for the list, so marked objects must be scanned again
+  size_t scans;         // objects scanned in all collections
   bool unfinished; // the last collection was stopped: marks are mixed, and some garbage remains
   size_t collections;
 } CagHeap;

@@ -46,12 +46,11 @@ struct CagPage {
 #define MARK_BITS 2
 #define MARK_MASK ((1 << MARK_BITS) - 1)
 
-// Adds to the debt what geometry and lists have allocated since the last object, and the object
-// itself.
-static void add_debt(CagVm *vm, size_t size) {
+// Adds to the debt what geometry and lists have allocated since the last object.
+static void add_debt_of_others(CagVm *vm) {
   CagHeap *h = &vm->heap;
   if (vm->account.used > h->seen) h->debt += vm->account.used - h->seen;
-  h->debt += size;
+  h->seen = vm->account.used;
 }
 
 // Makes a new page of cells for a size class and threads them into its free list.
@@ -75,11 +74,15 @@ static bool add_page(CagHeap *h, size_t size_class) {
 
 void *cag_alloc(CagVm *vm, CagType type, size_t size) {
   CagHeap *h = &vm->heap;
-  add_debt(vm, size);
+  if (vm->account.used != h->seen) add_debt_of_others(vm);
+  h->debt += size;
   CagObject *o;
   if (size <= SMALL_LIMIT) {
     size_t size_class = (size + CAG_SMALL_STEP - 1) / CAG_SMALL_STEP;
-    if (!h->free_lists[size_class] && !add_page(h, size_class)) cag_vm_out_of_memory(vm);
+    if (!h->free_lists[size_class]) {
+      if (!add_page(h, size_class)) cag_vm_out_of_memory(vm);
+      h->seen = vm->account.used;
+    }
     o = h->free_lists[size_class];
     h->free_lists[size_class] = o->next;
     memset(o, 0, size);
@@ -89,8 +92,8 @@ void *cag_alloc(CagVm *vm, CagType type, size_t size) {
     if (!o) cag_vm_out_of_memory(vm);
     o->next = h->large;
     h->large = o;
+    h->seen = vm->account.used;
   }
-  h->seen = vm->account.used;
   h->objects++;
   o->type = (uint8_t)type;
   o->mark = (uint8_t)(h->mark | h->depth << MARK_BITS);
@@ -141,6 +144,7 @@ enum { SCANS_BETWEEN_LOOKS = 1 << 14, PAGES_BETWEEN_LOOKS = 16 };
 
 // Ends early if the run must stop.
 static void mark_values(CagHeap *h, const CagValue *v, size_t n) {
+  h->values_marked += n;
   for (size_t i = 0; i < n; i++) {
     mark_value(h, v[i]);
     if (i % SCANS_BETWEEN_LOOKS == SCANS_BETWEEN_LOOKS - 1 && cag_stopped()) return;
@@ -253,17 +257,16 @@ static bool lives(const CagHeap *h, CagObject *o) {
   return true;
 }
 
-// Frees the dead objects of a page and threads its free cells into their list. Returns whether all
-// cells are free.
-static bool sweep_page(CagHeap *h, CagPage *page) {
+// Frees the dead objects of a page and threads its free cells into their list. Returns their
+// number.
+static size_t sweep_page(CagHeap *h, CagPage *page) {
   const size_t size_class = page->cell / CAG_SMALL_STEP;
-  bool empty = true;
+  size_t live = 0;
   char *cell = (char *)page->cells;
   for (size_t i = 0; i < page->count; i++, cell += page->cell) {
     CagObject *o = (CagObject *)cell;
     if (o->type != CELL_FREE && lives(h, o)) {
-      h->objects++;
-      empty = false;
+      live++;
       continue;
     }
     if (o->type != CELL_FREE) destroy(o);
@@ -271,16 +274,19 @@ static bool sweep_page(CagHeap *h, CagPage *page) {
     o->next = h->free_lists[size_class];
     h->free_lists[size_class] = o;
   }
-  return empty;
+  h->objects += live;
+  return page->count - live;
 }
 
-// Empty pages go back to the system, but for one of each size class. Returns false if the run must
-// stop. Then the pages that were not swept keep their garbage, and their free cells are lost, until
-// the next collection.
-static bool sweep(CagHeap *h) {
+// Where memory is short, empty pages go back to the system, but for one of each size class. Returns
+// false if the run must stop. Then the pages that were not swept keep their garbage, and their free
+// cells are lost, until the next collection. *live, *free_bytes: of the cells in use, and the
+// others.
+static bool sweep(CagHeap *h, bool short_of_memory, size_t *live, size_t *free_bytes) {
   bool kept[CAG_SMALL_CLASSES] = {false};
   size_t swept = 0;
   h->objects = 0;
+  *live = *free_bytes = 0;
   memset(h->free_lists, 0, sizeof h->free_lists);
   CagPage **at = &h->pages;
   while (*at) {
@@ -288,13 +294,16 @@ static bool sweep(CagHeap *h) {
     CagPage *page = *at;
     const size_t size_class = page->cell / CAG_SMALL_STEP;
     CagObject *const before = h->free_lists[size_class];
-    const bool empty = sweep_page(h, page);
-    if (empty && kept[size_class]) {
+    const size_t free_cells = sweep_page(h, page);
+    const bool empty = free_cells == page->count;
+    if (empty && kept[size_class] && short_of_memory) {
       h->free_lists[size_class] = before;
       *at = page->next;
       cag_free(page);
     } else {
       kept[size_class] |= empty;
+      *free_bytes += free_cells * page->cell;
+      *live += (page->count - free_cells) * page->cell;
       at = &page->next;
     }
   }
@@ -344,6 +353,7 @@ static bool mark_all(CagVm *vm) {
   CagHeap *h = &vm->heap;
   h->gray_count = 0;
   h->gray_lost = false;
+  h->values_marked = 0;
   mark_roots(vm);
   bool done = drain(h);
   while (done && h->gray_lost) { // each pass marks more objects
@@ -370,12 +380,16 @@ void cag_collect(CagVm *vm) {
   CagHeap *h = &vm->heap;
   if (h->unfinished) mark_evenly(h);
   h->mark = h->mark == 1 ? 2 : 1;
-  h->unfinished = !mark_all(vm) || !sweep(h);
+  const bool short_of_memory = vm->account.used > vm->account.limit / 4;
+  size_t live = 0, free_bytes = 0;
+  h->unfinished = !mark_all(vm) || !sweep(h, short_of_memory, &live, &free_bytes);
   if (h->unfinished) return; // the run ends
+  // What takes time to mark and sweep: cells, and lists of values.
+  live += h->values_marked * sizeof(CagValue);
   h->debt = 0;
   h->seen = vm->account.used;
-  const size_t room = cag_account_room() / 2;
-  h->threshold = h->seen > DEBT_MIN ? h->seen : DEBT_MIN;
+  const size_t room = (cag_account_room() + free_bytes) / 2;
+  h->threshold = live > DEBT_MIN ? live : DEBT_MIN;
   if (h->threshold > room) h->threshold = room;
   h->collections++;
 }
