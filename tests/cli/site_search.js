@@ -61,7 +61,14 @@ const late = setTimeout(() => finish(new Error("it takes too long")), 60000);
 function finish(error) {
   clearTimeout(late);
   if (error) console.log(`FAILED: ${error.message}`);
-  browser.on("exit", () => { fs.rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 }); process.exit(error ? 1 : 0); });
+  browser.on("exit", () => {
+    try {
+      fs.rmSync(profile, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 });
+    } catch {
+      // A process of the browser still writes there; the folder is a temporary one.
+    }
+    process.exit(error ? 1 : 0);
+  });
   browser.kill();
 }
 main().then(() => finish(), finish);
