@@ -37,7 +37,7 @@ static size_t first_slot(const CagHashIndex *x, uint64_t hash) {
   return (size_t)(hash ^ hash >> 32) & (x->size - 1);
 }
 
-static void put(CagHashIndex *x, CagHashSlot s) {
+static void insert_slot(CagHashIndex *x, CagHashSlot s) {
   size_t at = first_slot(x, s.hash);
   while (x->slots[at].number) at = (at + 1) & (x->size - 1);
   x->slots[at] = s;
@@ -50,7 +50,7 @@ static void move_slots(CagHashIndex *to, const CagHashIndex *from) {
   while (start < from->size && from->slots[start].number) start++;
   for (size_t i = 0; i < from->size; i++) {
     const CagHashSlot *s = &from->slots[(start + i) & (from->size - 1)];
-    if (s->number) put(to, *s);
+    if (s->number) insert_slot(to, *s);
   }
 }
 
@@ -69,7 +69,7 @@ bool cag_hash_reserve(CagHashIndex *x, size_t n) {
 
 bool cag_hash_add(CagHashIndex *x, uint64_t hash, size_t number) {
   if (!cag_hash_reserve(x, x->count + 1)) return false;
-  put(x, (CagHashSlot){hash, number + 1});
+  insert_slot(x, (CagHashSlot){hash, number + 1});
   x->count++;
   return true;
 }

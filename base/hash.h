@@ -53,7 +53,7 @@ typedef struct CagHashWalk {
 } CagHashWalk;
 
 CagHashWalk cag_hash_walk(const CagHashIndex *x, uint64_t hash);
-// The next number. Returns false if there are no more.
+// Writes the next number to *number. Returns false at the end of the walk.
 bool cag_hash_next(CagHashWalk *w, size_t *number);
 
 #endif

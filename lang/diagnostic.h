@@ -1,4 +1,4 @@
-// Diagnostics: what is said about a script, where, and how to mend it.
+// Diagnostics: what is wrong with a script, where, and how to fix it.
 //
 // Every kind of error is a row of errors.def: a stable code, a short name, and its explanation. A
 // diagnostic is plain data; `cag_diagnostic_render` makes the text a person reads, or one line of
@@ -30,8 +30,8 @@ typedef struct CagNote {
 typedef struct CagDiagnostic {
   CagSeverity severity;
   CagErrorId id;
-  char *message;           // "sin expects an angle, found the number 30"
-  char *help;              // the mend, shown behind the carets: "write 30deg or 30rad"; NULL: none
+  char *message; // "sin expects an angle, found the number 30"
+  char *help;    // how to fix it, shown after the carets: "write 30deg or 30rad"; NULL: none
   const CagSource *source; // NULL: the error has no place in a script
   CagSpan span;
   CagNote *notes;

@@ -91,7 +91,7 @@ bool cag_parse_token_is(Parser *p, const CagToken *t, const char *name);
 // Reports an error and goes into panic. NULL when the parser is in panic already.
 CagDiagnostic *cag_parse_error(Parser *p, CagErrorId id, CagSpan span, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-// Reports an error whose mend is plain enough to go on.
+// Reports an error whose fix is obvious, so that parsing can continue.
 CagDiagnostic *cag_parse_mend(Parser *p, CagErrorId id, CagSpan span, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 void cag_parse_help(CagDiagnostic *d, const char *format, ...)

@@ -152,7 +152,7 @@ typedef struct BoolWork {
 
 static inline BoolPiece *bool_pieces(const BoolWork *w) { return w->pieces.items; }
 
-CagStatus cag_bool_stopped(const BoolWork *w); // CAG_E_CALLBACK where the caller wants an end
+CagStatus cag_bool_stopped(const BoolWork *w); // CAG_E_CALLBACK if the work must stop
 
 // Calls `visit` with each pair of faces whose boxes are at most twice the slack apart. Returns
 // false if memory ran out.

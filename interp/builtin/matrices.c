@@ -75,12 +75,12 @@ static bool read_matrix(CagCall *call, int argument, Matrix *out) {
   return read_rows(call, argument, out) && check_finite(call, argument, out);
 }
 
-static bool read_square(CagCall *call, int argument, const char *mend, Matrix *out) {
+static bool read_square(CagCall *call, int argument, const char *help, Matrix *out) {
   if (!read_matrix(call, argument, out)) return false;
   if (out->rows == out->columns) return true;
   cag_fail_call(call, argument, CAG_ERR_length,
                 "expects a square matrix, found %zu rows and %zu columns", out->rows, out->columns);
-  return mend && cag_fail_help(call->vm, "%s", mend);
+  return help && cag_fail_help(call->vm, "%s", help);
 }
 
 // A vector (as one column; *vector is set) or a matrix with so many rows.
@@ -186,7 +186,7 @@ static bool call_solve(CagCall *call, CagValue *result) {
 }
 
 // Copies a matrix to one by columns, or back.
-static bool turn(CagCall *call, const Matrix *m, bool back, double *columns) {
+static bool copy_transposed(CagCall *call, const Matrix *m, bool back, double *columns) {
   for (size_t i = 0; i < m->rows; i++) {
     for (size_t j = 0; j < m->columns; j++) {
       double *row = &m->x[i * m->columns + j], *column = &columns[j * m->rows + i];
@@ -204,10 +204,11 @@ static bool solve_large_least_squares(CagCall *call, const Matrix *a, Matrix *x,
   Matrix turned = matrix_new(call, a->columns, a->rows);
   Matrix sides = matrix_new(call, x->columns, x->rows);
   CagError err = {0};
-  if (!turn(call, a, false, turned.x) || !turn(call, x, false, sides.x)) return false;
+  if (!copy_transposed(call, a, false, turned.x) || !copy_transposed(call, x, false, sides.x))
+    return false;
   if (cag_least_squares(turned.x, a->rows, a->columns, sides.x, x->rows, x->columns, &cut, &err))
     return cag_fail_geometry(call, &err);
-  return turn(call, x, true, sides.x);
+  return copy_transposed(call, x, true, sides.x);
 }
 
 static bool solve_least_squares(CagCall *call, Matrix *a, Matrix *x) {

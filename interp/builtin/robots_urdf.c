@@ -46,10 +46,10 @@ static bool is_gltf(const char *file) {
   return dot && (!strcasecmp(dot, ".gltf") || !strcasecmp(dot, ".glb"));
 }
 
-static bool fail_mesh(const Import *m, const CagUrdfBody *b, const char *why, const char *mend) {
+static bool fail_mesh(const Import *m, const CagUrdfBody *b, const char *why, const char *help) {
   cag_fail_call(m->call, 0, CAG_ERR_urdf_mesh, "cannot read the mesh \"%.120s\" (%s, line %ld): %s",
                 b->file, m->tree.file, b->line, why);
-  return cag_fail_help(m->call->vm, "%s; `shapes: false` reads the chain alone", mend);
+  return cag_fail_help(m->call->vm, "%s; `shapes: false` reads the chain alone", help);
 }
 
 // Reads a mesh at this place. *found is false where there is no such file; the error is set then

@@ -60,7 +60,7 @@ static bool fail_unknown_name(CagVm *vm, const char *function, const char *name,
   return false;
 }
 
-// The mend for too few arguments names the parameters.
+// The help for too few arguments names the parameters.
 static bool fail_closure_arity(CagVm *vm, const CagProto *p, size_t found) {
   fail_arity(vm, p->name, p->required_count, p->parameter_count, false, found);
   CagString s = {0};

@@ -304,7 +304,7 @@ static bool are_bodies(CagVm *vm, CagValue a, CagValue b) {
 }
 
 // What to say to a pair that nothing joins.
-static const char *mend(CagBinaryOp op, CagValue a, CagValue b) {
+static const char *operand_help(CagBinaryOp op, CagValue a, CagValue b) {
   if (op == CAG_OP_MULTIPLY && is_list(a) && is_list(b))
     return "write dot(a, b) or cross(a, b); multiply(A, b) of matrices";
   if (op == CAG_OP_ADD && is_list(a) && is_scalar(b))
@@ -359,7 +359,7 @@ bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue 
     break;
   default: break;
   }
-  return fail_operands(vm, op, a, b, mend(op, a, b));
+  return fail_operands(vm, op, a, b, operand_help(op, a, b));
 }
 
 bool cag_negate(CagVm *vm, CagValue v, CagValue *result) {

@@ -313,7 +313,7 @@ static CagStatus look_into_view(const CagGltf *g, const cJSON *said, size_t acce
                          accessor);
   if (view >= g->views.count)
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
-                         "accessors[%zu] names a view that is not there", accessor);
+                         "accessors[%zu] refers to a view that does not exist", accessor);
   const cJSON *v = g->views.items[view];
   if (!cag_gltf_whole(v, "buffer", SIZE_MAX, &buffer) || !cag_gltf_whole(v, "byteOffset", 0, &at) ||
       !cag_gltf_whole(v, "byteLength", 0, &length) || !cag_gltf_whole(v, "byteStride", 0, stride))
@@ -321,7 +321,7 @@ static CagStatus look_into_view(const CagGltf *g, const cJSON *said, size_t acce
                          view);
   if (buffer >= g->buffer_count)
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
-                         "bufferViews[%zu] names a buffer that is not there", view);
+                         "bufferViews[%zu] refers to a buffer that does not exist", view);
   const CagGltfBuffer *b = &g->buffers[buffer];
   if (at > b->size || length > b->size - at)
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_truncated,
@@ -368,8 +368,9 @@ static CagStatus read_sparse(const CagGltf *g, const cJSON *sparse, size_t numbe
                             &stride, err);
   for (size_t i = 0; status == CAG_OK && i < a->sparse_count; i++)
     if (cag_gltf_index(a->sparse_index, a->sparse_component, i) >= a->count)
-      status = cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
-                             "accessors[%zu].sparse names an element that is not there", number);
+      status =
+          cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
+                        "accessors[%zu].sparse refers to an element that does not exist", number);
   return status;
 }
 
@@ -379,7 +380,7 @@ CagStatus cag_gltf_accessor(const CagGltf *g, size_t number, int width, CagGltfA
   *out = (CagGltfAccessor){.width = width};
   if (number >= g->accessors.count)
     return cag_gltf_fail(g, err, CAG_ERR_mesh_file_index,
-                         "a primitive names an accessor that is not there");
+                         "a primitive refers to an accessor that does not exist");
   const cJSON *a = g->accessors.items[number];
   const cJSON *type = cJSON_GetObjectItemCaseSensitive(a, "type");
   size_t component;

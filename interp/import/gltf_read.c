@@ -120,7 +120,7 @@ static CagStatus push_node(Walk *w, const cJSON *number, const CagTransform *abo
   if (!cag_gltf_whole(node, "mesh", SIZE_MAX, &mesh) ||
       (mesh != SIZE_MAX && mesh >= w->g->meshes.count))
     return cag_gltf_fail(w->g, err, CAG_ERR_mesh_file_index,
-                         "nodes[%zu] names a mesh that is not there", i);
+                         "nodes[%zu] refers to a mesh that does not exist", i);
   CagTransform place = cag_transform_multiply(above, &own);
   return push(w, node, mesh, &place, err);
 }
@@ -135,7 +135,7 @@ static CagStatus push_roots(Walk *w, CagError *err) {
   const cJSON *scenes = cJSON_GetObjectItemCaseSensitive(g->json, "scenes"), *item;
   if (!cag_gltf_whole(g->json, "scene", 0, &which)) which = SIZE_MAX;
   if (scenes && which >= (size_t)cJSON_GetArraySize(scenes))
-    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_index, "it names a scene that is not there");
+    return cag_gltf_fail(g, err, CAG_ERR_mesh_file_index, "the default scene does not exist");
   if (scenes) {
     const cJSON *scene = cJSON_GetArrayItem(scenes, (int)which);
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(scene, "nodes")) {

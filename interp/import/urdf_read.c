@@ -122,8 +122,8 @@ static bool lengths(Reader *r, const xmlNode *node, const char *name, double *ou
   if (!numbers(r, node, name, out, n)) return false;
   for (int i = 0; i < n; i++)
     if (fabs(out[i]) > LENGTH_MOST)
-      fail_at(r, SYNTAX, xmlGetLineNo((xmlNode *)node), "%s of <%.40s> is beyond all measure: %g",
-              name, (const char *)node->name, out[i]);
+      fail_at(r, SYNTAX, xmlGetLineNo((xmlNode *)node), "%s of <%.40s> is out of range: %g", name,
+              (const char *)node->name, out[i]);
   return r->status == CAG_OK;
 }
 

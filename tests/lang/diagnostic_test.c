@@ -71,7 +71,7 @@ static void tabs_and_wide_characters_keep_the_carets_in_place(void **state) {
   expect_rendered(
       "e\xcc\x81 = y", 6, 7, NULL,
       "error: it \"is\"\twrong\n --> spring.cag:1:6\n  |\n1 | e\xcc\x81 = y\n  |     ^\n");
-  // Bytes that are no text, and control characters, the last of ASCII among them.
+  // Invalid UTF-8, and control characters, including DEL.
   expect_rendered("a\xff\x01 = y", 1, 2, NULL,
                   "error: it \"is\"\twrong\n --> spring.cag:1:2\n  |\n"
                   "1 | a\xef\xbf\xbd\xef\xbf\xbd = y\n  |  ^\n");
