@@ -45,9 +45,9 @@ LDLIBS_ALL := $(PKG_LIBS) -lm -lpthread $(SANITIZE) $(LDFLAGS)
 BASE_SRC   := $(shell find base -name '*.c' | sort)
 LANG_SRC   := $(shell find lang -name '*.c' | sort)
 GEOM_SRC   := $(shell find geom -name '*.c' | sort)
-MAIN_SRC   := interp/main.c
-TOOL_SRC   := $(shell find interp/tool -name '*.c' | sort)
-INTERP_SRC := $(filter-out $(MAIN_SRC) $(TOOL_SRC),$(shell find interp -name '*.c' | sort))
+INTERP_SRC := $(shell find interp -name '*.c' | sort)
+MAIN_SRC   := cli/main.c
+CLI_SRC    := $(filter-out $(MAIN_SRC),$(shell find cli -name '*.c' | sort))
 STDLIB     := $(shell find stdlib -name '*.cag' | sort)
 DOCUMENTS  := $(filter-out docs/architecture.md,$(sort $(wildcard docs/*.md docs/cookbook/*.cag docs/site/*)))
 
@@ -56,7 +56,7 @@ BASE_OBJ := $(call obj,$(BASE_SRC))
 LANG_OBJ := $(call obj,$(LANG_SRC))
 GEOM_OBJ := $(call obj,$(GEOM_SRC))
 INTERP_OBJ := $(call obj,$(INTERP_SRC)) $(BUILD)/obj/gen/stdlib.o $(BUILD)/obj/gen/documents.o
-TOOL_OBJ := $(call obj,$(TOOL_SRC) $(MAIN_SRC))
+CLI_OBJ  := $(call obj,$(CLI_SRC) $(MAIN_SRC))
 
 .PHONY: all clean unit unit-base unit-lang unit-geom unit-interp test test-programs test-programs-clang test-sanitize coverage mutate bench format check-format check-layers install deb editors
 .SECONDARY:
@@ -90,11 +90,11 @@ $(BUILD)/obj/gen/%.o: $(BUILD)/gen/%.c
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) -c $< -o $@
 
-$(BUILD)/cag: $(TOOL_OBJ) $(BUILD)/libcag.a
+$(BUILD)/cag: $(CLI_OBJ) $(BUILD)/libcag.a
 	$Q$(CC) $^ -o $@ $(LDLIBS_ALL)
 
 # Writes the program's tables, for what tools/*.sh make of them.
-$(BUILD)/tools/tables: tools/tables.c $(filter-out %/interp/main.o,$(TOOL_OBJ)) $(BUILD)/libcag.a
+$(BUILD)/tools/tables: tools/tables.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
 
@@ -119,7 +119,7 @@ $(BUILD)/tests/geom/%: tests/geom/%.c $(BUILD)/libgeom.a
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $< $(BUILD)/libgeom.a -o $@ -lcmocka $(LDLIBS_ALL)
 # Tests of the parts of the program that the library lacks. Allocations can fail in them.
-$(BUILD)/tests/interp/tool_%: tests/interp/tool_%.c $(filter-out %/interp/main.o,$(TOOL_OBJ)) $(BUILD)/libcag.a
+$(BUILD)/tests/interp/tool_%: tests/interp/tool_%.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	@echo "cc $<"
 	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ -lcmocka $(WRAP) $(LDLIBS_ALL)
@@ -198,13 +198,13 @@ $(BUILD)/tests/bench/occt: tests/bench/occt.cpp
 	$Q$(CXX) -std=c++17 -O3 -isystem $(dir $(OCCT)) $< -o $@ -lTKMesh -lTKTopAlgo -lTKBRep -lTKG3d -lTKGeomBase \
 	  -lTKMath -lTKernel
 # What Tab proposes belongs to the program, not to the library.
-$(BUILD)/tests/bench/complete: tests/bench/complete.c $(filter-out %/interp/main.o,$(TOOL_OBJ)) $(BUILD)/libcag.a
+$(BUILD)/tests/bench/complete: tests/bench/complete.c $(filter-out %/cli/main.o,$(CLI_OBJ)) $(BUILD)/libcag.a
 	@mkdir -p $(@D)
 	$Q$(CC) $(CFLAGS_ALL) $(filter %.c %.o %.a,$^) -o $@ $(LDLIBS_ALL)
 bench: all $(BUILD)/tests/bench/complete $(BUILD)/tests/bench/surfaces $(if $(OCCT),$(BUILD)/tests/bench/occt) $(BUILD)/tests/bench/export $(BUILD)/tests/bench/curves $(BUILD)/tests/bench/robots $(if $(KDL),$(BUILD)/tests/bench/robots_kdl) $(BUILD)/tests/bench/booleans
 	BUILD=$(BUILD) sh tests/bench/run.sh
 
-FORMATTED = $(shell find include base lang geom interp tests tools -name '*.[ch]' | sort)
+FORMATTED = $(shell find include base lang geom interp cli tests tools -name '*.[ch]' | sort)
 format:
 	clang-format -i $(FORMATTED)
 check-format:

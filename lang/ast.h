@@ -7,9 +7,9 @@
 #ifndef CAG_LANG_AST_H
 #define CAG_LANG_AST_H
 
-#include "lang/arena.h"
-#include "lang/diagnostic.h"
-#include "lang/source.h"
+#include "base/arena.h"
+#include "base/diagnostic.h"
+#include "base/source.h"
 
 typedef struct CagExpr CagExpr;
 typedef struct CagDecl CagDecl;

@@ -7,8 +7,8 @@
 #ifndef CAG_LANG_FORMAT_H
 #define CAG_LANG_FORMAT_H
 
-#include "lang/diagnostic.h"
-#include "lang/source.h"
+#include "base/diagnostic.h"
+#include "base/source.h"
 
 // Columns that a line has, where its words allow it.
 #define CAG_FORMAT_WIDTH 100

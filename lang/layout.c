@@ -4,8 +4,8 @@
 
 #include <string.h>
 
+#include "base/arena.h"
 #include "base/memory.h"
-#include "lang/arena.h"
 
 // Comments at the ends of neighboring lines stand one below the other while the code of all of
 // them ends before this column.

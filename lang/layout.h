@@ -7,7 +7,7 @@
 // neighboring lines are set one below the other. Line breaks are lazy: one is printed
 // when the next text comes, so breaks that meet are one, and a comment that stood at the end of a
 // line goes there again. Everything made since the last cag_layout_print lives until the next.
-// If memory runs out, control returns to the guard (lang/memory.h).
+// If memory runs out, control returns to the guard (base/guard.h).
 
 #ifndef CAG_LANG_LAYOUT_H
 #define CAG_LANG_LAYOUT_H
@@ -16,7 +16,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "lang/source.h"
+#include "base/source.h"
 
 typedef enum DocKind {
   DOC_TEXT,

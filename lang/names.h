@@ -7,7 +7,7 @@
 #ifndef CAG_LANG_NAMES_H
 #define CAG_LANG_NAMES_H
 
-#include "lang/arena.h"
+#include "base/arena.h"
 
 #include <stdbool.h>
 #include <stdint.h>

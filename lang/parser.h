@@ -27,7 +27,7 @@ void cag_module_ast_free(CagModuleAst *m);
 // order as long as the text has no errors, and with NULL after the last one; `m` holds the comments
 // up to the next statement. A statement is released when `each` returns, so a long file needs no
 // more memory than its longest statement. Returns whether there was no error; if there was, discard
-// the results of `each`. `each` may abandon the work if memory runs out (lang/memory.h).
+// the results of `each`. `each` may abandon the work if memory runs out (base/guard.h).
 typedef void CagParseEach(void *context, const CagModuleAst *m, const CagStatement *s);
 bool cag_parse_each(const CagSource *source, CagParseEach *each, void *context,
                     CagDiagnostics *errors);

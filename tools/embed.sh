@@ -8,7 +8,7 @@ if [ "${1:-}" = --documents ]; then
   shift
   echo '#include "interp/doc/doc.h"'
 else
-  echo '#include "interp/eval/stdlib.h"'
+  echo '#include "interp/vm/stdlib.h"'
 fi
 i=0
 for f in "$@"; do

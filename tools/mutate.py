@@ -9,7 +9,7 @@ per processor).
 
 Works on a copy of the tree in build-mutate/. First, every suite runs once in a build that counts which lines it reaches. The counts are
 kept in build-mutate/reach/ until the suite or a tenth of the sources change. Each change then replaces one operator or constant on one
-line of base, geom, interp or lang, by the table tools/mutations.txt. A change that does not compile (warnings are errors) or does not change the
+line of base, cli, geom, interp, or lang, by the table tools/mutations.txt. A change that does not compile (warnings are errors) or does not change the
 object file is replaced with another one, and so are those in tools/equivalent_mutations.txt, after which the program computes the same,
 for the reasons given there, and those that only allocate room for more elements than needed.
 
@@ -48,7 +48,7 @@ def option(name, default):
 N = option("N", 100)
 SEED = option("SEED", 1)
 SKIP = option("SKIP", 0)
-FOLDERS = option("FOLDERS", "base geom interp lang").split()
+FOLDERS = option("FOLDERS", "base cli geom interp lang").split()
 LONGEST = option("LONGEST", 1800)
 JOBS = option("JOBS", os.cpu_count())
 
@@ -310,9 +310,9 @@ class Programs:
         self.libraries = [*variable("PKG_LIBS"), "-lm", "-lpthread", "-lcmocka"] + SANITIZERS
         if shutil.which("mold"):
             self.libraries.append("-fuse-ld=mold")
-        self.tool = sorted(glob.glob("interp/tool/**/*.c", recursive=True))
+        self.tool = sorted(set(glob.glob("cli/*.c")) - {"cli/main.c"})
         objects = glob.glob("build/obj/**/*.o", recursive=True)
-        self.objects = sorted(name for name in objects if not re.match("build/obj/interp/(tool/|main[.])", name))
+        self.objects = sorted(name for name in objects if not name.startswith("build/obj/cli/"))
         self.lock = threading.Lock()
 
     def compile(self, source, target, flags=()):
@@ -346,7 +346,7 @@ class Programs:
                 os.makedirs(os.path.dirname(target), exist_ok=True)
                 self.link_library(f"{WORK}/programs")
                 if program == "cag":
-                    objects = [f"build/obj/{name[:-2]}.o" for name in self.tool + ["interp/main.c"]]
+                    objects = [f"build/obj/{name[:-2]}.o" for name in self.tool + ["cli/main.c"]]
                 else:
                     objects = [f"build/checked/{program}.o"]
                 up = "/.." * program.count("/")
@@ -358,7 +358,7 @@ class Programs:
         if program != "cag":
             objects.append(f"build/checked/{program}.o")
         if program == "cag" or program.startswith("tests/interp/tool_"):
-            tool = self.tool + ["interp/main.c"] * (program == "cag")
+            tool = self.tool + ["cli/main.c"] * (program == "cag")
             objects += [f"build/obj/{name[:-2]}.o" for name in tool if name != source]
         if program == "tests/fuzz/memory" or program.startswith("tests/interp/tool_"):
             extra = [f"-Wl,--wrap={name}" for name in WRAPPED]
@@ -373,7 +373,7 @@ class Programs:
         if os.path.exists(target):
             return
         os.makedirs(os.path.dirname(target), exist_ok=True)
-        if source in self.tool + ["interp/main.c"] or re.match("tests/(interp/tool_|geom/memory_|fuzz/memory)", program):
+        if source in self.tool + ["cli/main.c"] or re.match("tests/(interp/tool_|geom/memory_|fuzz/memory)", program):
             self.link_static(program, target, source, changed)
         else:
             self.link_library(folder, source, changed)

@@ -17,8 +17,8 @@
 
 #include <string.h>
 
-#include "interp/tool/cli.h"
-#include "interp/tool/repl.h"
+#include "cli/cli.h"
+#include "cli/repl.h"
 
 // The tables come with what reads the command line, which looks at this.
 volatile int cag_tool_interrupt;

@@ -7,8 +7,8 @@
 #ifndef CAG_GEOM_BERNSTEIN_H
 #define CAG_GEOM_BERNSTEIN_H
 
+#include "base/status.h"
 #include "geom/linalg/vec.h"
-#include "geom/status.h"
 
 // Highest degree of a curve: buffers of one piece live on the stack.
 #define CAG_MAX_DEGREE 1000

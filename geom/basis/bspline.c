@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/stop.h"
+#include "base/stop.h"
 
 void cag_bspline_basis(const double *knots, int p, size_t span, double t, double *out) {
   out[0] = 1;

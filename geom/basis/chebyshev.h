@@ -7,8 +7,8 @@
 #ifndef CAG_GEOM_CHEBYSHEV_H
 #define CAG_GEOM_CHEBYSHEV_H
 
+#include "base/status.h"
 #include "geom/basis/interval.h"
-#include "geom/status.h"
 
 // Writes the function's `parts` numbers at t.
 typedef CagStatus (*CagSampled)(void *context, double t, double *out, CagError *err);

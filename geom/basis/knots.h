@@ -9,8 +9,8 @@
 
 #include <stdbool.h>
 
+#include "base/status.h"
 #include "geom/linalg/vec.h"
-#include "geom/status.h"
 
 // 0, .., 0, 1, 2, .., m, .., m with m = n - p (reference 05b, 1.6).
 void cag_knots_open(size_t n, int p, double *knots);

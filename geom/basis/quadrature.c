@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/stop.h"
+#include "base/stop.h"
 
 // Intervals of one piece, beside which further ones would only follow noise. A cusp takes about 50.
 #define MOST_INTERVALS 4000

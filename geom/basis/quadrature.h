@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-#include "geom/status.h"
+#include "base/status.h"
 
 #define CAG_INTEGRAND_PARTS 10
 

@@ -7,9 +7,9 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "base/sort.h"
+#include "base/stop.h"
 #include "geom/linalg/dense.h"
-#include "geom/sort.h"
-#include "geom/stop.h"
 
 // x closer together than this share of their range are one.
 #define SAME_X 1e-12

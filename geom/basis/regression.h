@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-#include "geom/status.h"
+#include "base/status.h"
 
 typedef enum CagModel {
   CAG_MODEL_POLYNOMIAL, // y = c0 + c1 x + ... + cn x^n

@@ -4,9 +4,9 @@
 // are those of the parabolas there: it is a Hermite segment, and what is stored are Bezier points.
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/curve/cubic.h"
 #include "geom/curve/family.h"
-#include "geom/stop.h"
 
 typedef struct Blend {
   const CagVec3 *points;

@@ -10,8 +10,8 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/curve/family.h"
-#include "geom/stop.h"
 
 // Two places whose distances differ by less than this part of the size count as equally near.
 #define EQUALLY_NEAR 1e-10

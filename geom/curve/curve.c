@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
-#include "geom/stop.h"
 
 // A parameter this many ulps outside the domain is the end: it was computed.
 #define SNAP_ULPS 16

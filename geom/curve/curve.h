@@ -10,9 +10,9 @@
 #ifndef CAG_GEOM_CURVE_H
 #define CAG_GEOM_CURVE_H
 
+#include "base/status.h"
 #include "geom/linalg/transform.h"
 #include "geom/linalg/vec.h"
-#include "geom/status.h"
 
 typedef struct CagCurve CagCurve;
 

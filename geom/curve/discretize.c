@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
-#include "geom/stop.h"
 
 // More points than any picture or part needs: a tolerance that asks for more was mistyped.
 #define MOST_POINTS 5000000

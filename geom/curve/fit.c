@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/basis/bspline.h"
 #include "geom/curve/family.h"
 #include "geom/linalg/dense.h"
-#include "geom/stop.h"
 
 // Evenly spaced knots suit interpolation where each basis function has at least this part of its
 // largest value at its own data point; further off, the curve swings between the points.

@@ -7,8 +7,8 @@
 
 #include <stdio.h>
 
+#include "base/stop.h"
 #include "geom/curve/family.h"
-#include "geom/stop.h"
 
 typedef struct Helix {
   CagCurve base;

@@ -9,11 +9,11 @@
 #include <float.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/curve/contact.h"
 #include "geom/curve/family.h"
 #include "geom/curve/intersect_circles.h"
 #include "geom/curve/intersect_clip.h"
-#include "geom/stop.h"
 
 // Parts of the size of the data: where a curve counts as a chord, where two points are one.
 #define CHORD 1e-11

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/curve/family.h"
-#include "geom/stop.h"
 
 static const CagCurveKind kinds[3];
 

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
-#include "geom/stop.h"
 
 static CagStatus fail_inside(const CagCurve *c, double t, CagError *err) {
   char x[32], a[32], b[32];

@@ -19,10 +19,10 @@
 #include <stdint.h>
 
 #include "base/memory.h"
+#include "base/sort.h"
+#include "base/stop.h"
 #include "geom/curve/family.h"
 #include "geom/curve/region_chain.h"
-#include "geom/sort.h"
-#include "geom/stop.h"
 
 // Points nearer than this part of the size of all are one: what touches count as in intersections.
 #define SAME 1e-9

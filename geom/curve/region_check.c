@@ -10,9 +10,9 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/sort.h"
+#include "base/stop.h"
 #include "geom/curve/region.h"
-#include "geom/sort.h"
-#include "geom/stop.h"
 
 // Chord tolerance of the polygons, as a part of the size.
 #define CROSSING_TOLERANCE 1e-5

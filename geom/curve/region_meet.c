@@ -8,11 +8,11 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "base/sort.h"
+#include "base/stop.h"
 #include "geom/curve/family.h"
 #include "geom/curve/intersect.h"
 #include "geom/curve/region_arrange.h"
-#include "geom/sort.h"
-#include "geom/stop.h"
 
 typedef struct Meetings {
   CagRegionPieces *pieces;

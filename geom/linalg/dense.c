@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/stop.h"
+#include "base/stop.h"
 
 // Pivot rows of a panel.
 #define PANEL ((size_t)32)

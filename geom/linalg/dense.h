@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "geom/status.h"
+#include "base/status.h"
 
 // Most multiplications for which LAPACK is called: some hundredths of a second.
 #define CAG_LAPACK_MOST 2e7

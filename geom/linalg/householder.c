@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/linalg/dense.h"
-#include "geom/stop.h"
 
 // Operations, and rows of a matrix, between two looks at the stop flag.
 #define WORK_BETWEEN_LOOKS ((size_t)1 << 18)

@@ -6,8 +6,8 @@
 #ifndef CAG_GEOM_TRANSFORM_H
 #define CAG_GEOM_TRANSFORM_H
 
+#include "base/status.h"
 #include "geom/linalg/vec.h"
-#include "geom/status.h"
 
 typedef struct CagTransform {
   double m[4][4];

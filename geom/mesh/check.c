@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "base/memory.h"
-#include "geom/sort.h"
+#include "base/sort.h"
 
 // An edge of a face. A corner is a place in the list of indices; low < high are vertices.
 typedef struct Use {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "geom/stop.h"
+#include "base/stop.h"
 
 static int by_high(const void *a, const void *b) {
   const CagMeshEdge *p = a, *q = b;

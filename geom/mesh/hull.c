@@ -13,10 +13,10 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/sort.h"
+#include "base/stop.h"
 #include "geom/curve/family.h"
 #include "geom/mesh/predicates.h"
-#include "geom/sort.h"
-#include "geom/stop.h"
 
 // What rounding of turned points may be, in parts of their largest coordinate: points that near a
 // line or plane are in it.

@@ -5,9 +5,9 @@
 
 #include <stdint.h>
 
+#include "base/status.h"
 #include "geom/linalg/transform.h"
 #include "geom/linalg/vec.h"
-#include "geom/status.h"
 
 // How a mesh shows a value by colors: uv[0] of each vertex is the value, `from` and `to` have the
 // first and last color, values beyond them the same. The colors: interp/scene/color_scale.h.

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/mesh/mesh.h"
-#include "geom/stop.h"
 
 #define NO_VERTEX UINT32_MAX
 

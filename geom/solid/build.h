@@ -14,7 +14,7 @@ CagStatus cag_solid_add_turned(CagSolid *s, CagSurface *face, bool flip, CagErro
 // Adds the region in its frame as a flat face.
 CagStatus cag_solid_add_cap(CagSolid *s, const CagRegion *r, const CagTransform *frame, bool flip,
                             CagError *err);
-// Adds an edge; the sides as in CagSolidEdge.
+// Adds an edge; the sides as in CagFaceEdge.
 CagStatus cag_solid_add_edge(CagSolid *s, size_t face_a, int side_a, size_t face_b, int side_b,
                              bool reversed, CagError *err);
 // Adds all edges that two faces run along with the same fractions of their parameters, either way.

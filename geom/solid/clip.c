@@ -11,9 +11,9 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/mesh/sides.h"
 #include "geom/solid/csg.h"
 #include "geom/solid/inside.h"
+#include "geom/tessellate/sides.h"
 
 // --- Curves ---
 

@@ -3,8 +3,8 @@
 #ifndef CAG_GEOM_SOLID_CLIP_H
 #define CAG_GEOM_SOLID_CLIP_H
 
-#include "geom/mesh/tessellate.h"
 #include "geom/solid/solid.h"
+#include "geom/tessellate/tessellate.h"
 
 // The pieces of the curve within the solid, its boundary included, in order; ends are found to
 // rounding where the solid is of exact primitives, else to its mesh. Pieces outside that are

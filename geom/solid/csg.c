@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/mesh/orient.h"
 #include "geom/solid/build.h"
+#include "geom/tessellate/orient.h"
 
 bool cag_solid_is_compound(const CagSolid *s) { return s->core != NULL; }
 
@@ -338,7 +338,7 @@ static CagStatus copy_solid(const CagSolid *s, CagSolid **out, CagError *err) {
   if (c->core) c->core->references++;
   for (size_t i = 0; i < s->face_count; i++) cag_solid_add(c, cag_surface_retain(s->faces[i]));
   for (size_t i = 0; !status && i < s->edge_count; i++) {
-    const struct CagSolidEdge *e = &s->edges[i];
+    const CagFaceEdge *e = &s->edges[i];
     status =
         cag_solid_add_edge(c, e->face[0], e->side[0], e->face[1], e->side[1], e->reversed, err);
   }

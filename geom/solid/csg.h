@@ -11,9 +11,9 @@
 #ifndef CAG_GEOM_SOLID_CSG_H
 #define CAG_GEOM_SOLID_CSG_H
 
-#include "geom/mesh/boolean.h"
-#include "geom/mesh/tessellate.h"
+#include "geom/boolean/boolean.h"
 #include "geom/solid/solid.h"
+#include "geom/solid/tessellate.h"
 
 // Where a script asked for a solid: a source and a part of it, as they are to the caller.
 typedef struct CagSolidPlace {
@@ -60,16 +60,6 @@ CagStatus cag_solid_quadric(const CagQuadric *form, CagSolid **out, CagError *er
 // The body within a closed mesh, turned outward: "mesh-open" with an open edge, "mesh-flat". That
 // of a mesh without triangles is empty.
 CagStatus cag_solid_from_mesh(const CagMesh *m, CagSolid **out, CagError *err);
-
-// Tests whether the surfaces are pieces of one quadric that bound a body with flat faces: all those
-// that a box or a range of z left, or patches cut perpendicular to the axis.
-bool cag_solid_has_quadric_body(CagSurface *const *pieces, size_t n);
-// Makes this body: the part within the box or range on the side of the quadric that contains its
-// axis. For a hyperbolic paraboloid, it is the side on which its original form is negative. The
-// body is an intersection. It has exact faces too, unless rounding hides in which order the quadric
-// passes the sides of the box.
-CagStatus cag_solid_quadric_body(CagSurface *const *pieces, size_t n, const volatile int *interrupt,
-                                 CagSolid **out, CagError *err);
 
 // Form of a half space or quadric in the world; false: another kind.
 bool cag_solid_form(const CagSolid *s, CagQuadric *out);

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/tessellate.h"
 
 // Meshes for bounds and the first try of a mass: part of the size.
 #define FINE_SHARE 1e-4

@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/tessellate.h"
 
 // Largest distance from mesh to body by default, as part of the size (as tessellate.h says).
 #define DEFAULT_SHARE 1e-3

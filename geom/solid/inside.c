@@ -4,11 +4,12 @@
 // asked further.
 
 #include "geom/solid/inside.h"
+#include "geom/solid/tessellate.h"
 
 #include <math.h>
 
 #include "base/memory.h"
-#include "geom/mesh/separation.h"
+#include "geom/distance/separation.h"
 #include "geom/solid/csg.h"
 
 // A point is on a boundary when it is nearer than this part of the size: rounding of transforms.

@@ -3,8 +3,8 @@
 #ifndef CAG_GEOM_SOLID_INSIDE_H
 #define CAG_GEOM_SOLID_INSIDE_H
 
-#include "geom/mesh/tessellate.h"
 #include "geom/solid/solid.h"
+#include "geom/tessellate/tessellate.h"
 
 typedef struct CagInside CagInside;
 

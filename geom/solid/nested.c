@@ -4,9 +4,9 @@
 #include <math.h>
 
 #include "base/memory.h"
-#include "geom/mesh/separation.h"
-#include "geom/mesh/tessellate.h"
+#include "geom/distance/separation.h"
 #include "geom/solid/build.h"
+#include "geom/tessellate/tessellate.h"
 
 // A connected part of a shell.
 typedef struct Part {

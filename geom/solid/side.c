@@ -12,6 +12,7 @@
 #include "geom/curve/conic.h"
 #include "geom/solid/build.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/tessellate.h"
 
 // Closing faces stand off from the window by this part of its size.
 #define ROOM 0.0625

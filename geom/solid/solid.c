@@ -96,10 +96,10 @@ CagStatus cag_solid_disk(double radius, CagRegion **out, CagError *err) {
 
 CagStatus cag_solid_add_edge(CagSolid *s, size_t face_a, int side_a, size_t face_b, int side_b,
                              bool reversed, CagError *err) {
-  struct CagSolidEdge *grown = cag_realloc(s->edges, (s->edge_count + 1) * sizeof *grown);
+  CagFaceEdge *grown = cag_realloc(s->edges, (s->edge_count + 1) * sizeof *grown);
   if (!grown) return cag_fail_memory(err);
   s->edges = grown;
-  s->edges[s->edge_count++] = (struct CagSolidEdge){{face_a, face_b}, {side_a, side_b}, reversed};
+  s->edges[s->edge_count++] = (CagFaceEdge){{face_a, face_b}, {side_a, side_b}, reversed};
   return CAG_OK;
 }
 
@@ -249,7 +249,7 @@ CagStatus cag_solid_transform(const CagSolid *s, const CagTransform *t, CagSolid
     if (!status) status = cag_solid_add_turned(moved, face, mirror, err);
   }
   for (size_t i = 0; !status && i < s->edge_count; i++) {
-    struct CagSolidEdge e = s->edges[i];
+    CagFaceEdge e = s->edges[i];
     for (int k = 0; mirror && k < 2; k++) flip_edge_end(&e.side[k], &e.reversed);
     status = cag_solid_add_edge(moved, e.face[0], e.side[0], e.face[1], e.side[1], e.reversed, err);
   }

@@ -16,6 +16,7 @@
 #include "geom/surface/quadric.h"
 #include "geom/surface/surface.h"
 #include "geom/surface/swept.h"
+#include "geom/tessellate/tessellate.h"
 
 typedef enum CagSolidKind {
   CAG_SOLID_BOX,        // size: a corner in the origin, or centered
@@ -49,14 +50,9 @@ typedef struct CagSolid {
   CagTransform placement; // from the primitive's own coordinates to the world
   size_t face_count;
   CagSurface **faces; // in the world; normals outward
-  // Edges shared by faces, for the mesh: face f's side (0: u0, 1: u1, 2: v0, 3: v1) or, of a planar
-  // face, its loop number from 4 on.
+  // Edges shared by faces, for the mesh.
   size_t edge_count;
-  struct CagSolidEdge {
-    size_t face[2];
-    int side[2];
-    bool reversed; // the second runs against the first
-  } * edges;
+  CagFaceEdge *edges;
   CagSolidCore *core; // kinds without faces: shared by the copies that were moved; else NULL
 } CagSolid;
 

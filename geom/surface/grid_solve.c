@@ -11,10 +11,10 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/basis/bspline.h"
 #include "geom/basis/knots.h"
 #include "geom/linalg/dense.h"
-#include "geom/stop.h"
 #include "geom/surface/family.h"
 #include "geom/surface/grid_fit.h"
 

@@ -12,7 +12,7 @@
 #include <math.h>
 
 #include "base/memory.h"
-#include "geom/stop.h"
+#include "base/stop.h"
 #include "geom/surface/curve_on.h"
 #include "geom/surface/nearest_cells.h"
 #include "geom/surface/nearest_core.h"

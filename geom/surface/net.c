@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "geom/basis/bspline.h"
 #include "geom/linalg/dense.h"
-#include "geom/stop.h"
 #include "geom/surface/family.h"
 
 // Knots nearer than this part of the range are one knot.

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/stop.h"
+#include "base/stop.h"
 #include "geom/surface/tensor.h"
 
 // What is known of one row u and one run of columns in the same span of v.

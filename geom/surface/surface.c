@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/stop.h"
+#include "base/stop.h"
 #include "geom/surface/family.h"
 #include "geom/surface/frames.h"
 #include "geom/surface/trimmed.h"

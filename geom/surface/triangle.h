@@ -6,8 +6,8 @@
 #ifndef CAG_GEOM_SURFACE_TRIANGLE_H
 #define CAG_GEOM_SURFACE_TRIANGLE_H
 
+#include "base/status.h"
 #include "geom/linalg/vec.h"
-#include "geom/status.h"
 
 static inline size_t cag_triangle_count(int degree) {
   return ((size_t)degree + 1) * ((size_t)degree + 2) / 2;

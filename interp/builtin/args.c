@@ -9,7 +9,7 @@
 
 #include "base/memory.h"
 #include "interp/builtin/support.h"
-#include "interp/value/jet.h"
+#include "interp/vm/jet.h"
 
 const char *cag_parameter_name(const CagCall *call, int argument) {
   const CagSignature *s = cag_builtin_signature_of(call->builtin);

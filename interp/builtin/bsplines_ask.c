@@ -3,10 +3,10 @@
 
 #include <limits.h>
 
+#include "base/stop.h"
 #include "geom/basis/basis_table.h"
 #include "geom/curve/family.h"
 #include "geom/curve/nurbs.h"
-#include "geom/stop.h"
 #include "interp/builtin/bsplines.h"
 #include "interp/builtin/support.h"
 

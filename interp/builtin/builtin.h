@@ -17,10 +17,10 @@
 #ifndef CAG_INTERP_BUILTIN_H
 #define CAG_INTERP_BUILTIN_H
 
+#include "base/diagnostic.h"
 #include "base/memory.h"
-#include "interp/value/heap.h"
-#include "interp/value/value.h"
-#include "lang/diagnostic.h"
+#include "interp/vm/heap.h"
+#include "interp/vm/value.h"
 
 // Arguments of one call. Given ones stand in `values` by parameter order; parameters left out are
 // CAG_UNSET. With `...`, further ones follow: values[parameter_count .. count).

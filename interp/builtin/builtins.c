@@ -10,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/arena.h"
 #include "base/hash.h"
 #include "interp/builtin/jets.h"
 #include "interp/builtin/support.h"
-#include "lang/arena.h"
 
 // All families, in the order in which the documentation lists them.
 // clang-format off

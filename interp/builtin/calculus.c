@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "interp/builtin/support.h"
-#include "interp/value/jet.h"
+#include "interp/vm/jet.h"
 
 static const char FAMILY[] = "Calculus";
 static const double DEGREES_PER_RADIAN = 57.29577951308232;

@@ -1,7 +1,7 @@
 // Errors of the script's own, and what looks at values and errors on their way.
 
 #include "interp/builtin/support.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 static const char FAMILY[] = "Errors";
 

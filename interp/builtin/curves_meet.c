@@ -2,7 +2,7 @@
 
 #include "base/memory.h"
 #include "geom/curve/intersect.h"
-#include "geom/surface/meet_curve.h"
+#include "geom/meet/meet_curve.h"
 #include "interp/builtin/bsplines.h"
 
 static bool with_curve(CagCall *call, const CagCurve *a, const CagCurve *b, CagBuilder *list) {

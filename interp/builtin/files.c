@@ -12,7 +12,7 @@
 
 #include "base/memory.h"
 #include "interp/builtin/support.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 static const char FAMILY[] = "Files";
 

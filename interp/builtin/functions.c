@@ -1,7 +1,7 @@
 // Curves and surfaces by a formula: functions of the script called by geometry.
 //
 // Points alone are asked for with plain numbers. Where derivatives are wanted, the parameters are
-// jets (interp/value/jet.h), and the coordinates that the function gives hold their derivatives.
+// jets (interp/vm/jet.h), and the coordinates that the function gives hold their derivatives.
 
 #include <math.h>
 
@@ -11,8 +11,8 @@
 #include "geom/surface/function.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
-#include "interp/eval/vm.h"
-#include "interp/value/jet.h"
+#include "interp/vm/jet.h"
+#include "interp/vm/vm.h"
 
 #define DEGREES_PER_RADIAN 57.29577951308232
 

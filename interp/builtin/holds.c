@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "interp/builtin/shapes.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // An array is held by the address of its items, in front of which their number stands.
 #define X(Type, name)                                                                              \

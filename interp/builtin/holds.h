@@ -9,7 +9,7 @@
 #ifndef CAG_INTERP_BUILTIN_HOLDS_H
 #define CAG_INTERP_BUILTIN_HOLDS_H
 
-#include "geom/surface/section.h"
+#include "geom/meet/section.h"
 #include "interp/builtin/builtin.h"
 
 // clang-format off

@@ -1,14 +1,14 @@
 // Convex hulls, curves on surfaces, and what is inside of and how far from shapes.
 
 #include "base/memory.h"
+#include "geom/distance/separation.h"
 #include "geom/mesh/hull.h"
-#include "geom/mesh/separation.h"
-#include "geom/mesh/tessellate.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/tessellate.h"
 #include "geom/surface/curve_on.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/surfaces.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // --- Hulls ---
 

@@ -12,8 +12,8 @@
 
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
-#include "interp/eval/vm.h"
-#include "interp/value/jet.h"
+#include "interp/vm/jet.h"
+#include "interp/vm/vm.h"
 
 #define DEGREES_PER_RADIAN 57.29577951308232
 

@@ -1,4 +1,4 @@
-// Built-ins that take jets (interp/value/jet.h): what they do while a function of the script is
+// Built-ins that take jets (interp/vm/jet.h): what they do while a function of the script is
 // differentiated.
 
 #ifndef CAG_INTERP_BUILTIN_JETS_H

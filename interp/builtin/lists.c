@@ -9,7 +9,7 @@
 
 #include "base/memory.h"
 #include "interp/builtin/support.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 static const char FAMILY[] = "Lists";
 #define LISTS (CAG_TYPE_BIT(LIST) | CAG_TYPE_BIT(RANGE))

@@ -14,7 +14,7 @@
 #include "geom/linalg/complex.h"
 #include "geom/linalg/dense.h"
 #include "interp/builtin/support.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 static const char FAMILY[] = "Matrices";
 #define LISTS (CAG_TYPE_BIT(LIST) | CAG_TYPE_BIT(RANGE))

@@ -3,12 +3,12 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/mesh/split.h"
-#include "geom/mesh/tessellate.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/tessellate.h"
+#include "geom/tessellate/split.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/solids.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // `made` is read after the call that fills it: pass its address.
 static bool give(CagCall *call, CagStatus status, const CagError *err, CagMesh **made,

@@ -4,8 +4,8 @@
 
 #include "base/memory.h"
 #include "interp/builtin/shapes.h"
-#include "interp/eval/vm.h"
-#include "interp/import/mesh_read.h"
+#include "interp/formats/mesh_read.h"
+#include "interp/vm/vm.h"
 
 static const char meshes[] = "Meshes";
 

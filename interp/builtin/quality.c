@@ -5,13 +5,14 @@
 // of vertices and material show them as they are.
 
 #include "base/memory.h"
-#include "geom/surface/isophote.h"
-#include "geom/surface/value_map.h"
+#include "geom/meet/isophote.h"
+#include "geom/meet/value_map.h"
+#include "geom/solid/tessellate.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/support.h"
-#include "interp/eval/vm.h"
 #include "interp/scene/color_scale.h"
+#include "interp/vm/vm.h"
 
 // --- Meshes of several faces ---
 

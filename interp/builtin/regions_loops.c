@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "geom/surface/section.h"
+#include "geom/meet/section.h"
 #include "interp/builtin/curves.h"
 
 // Part of the size within which curves lie in a plane.

@@ -3,7 +3,7 @@
 
 #include "interp/builtin/robots.h"
 #include "interp/builtin/solids.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 static const double rod_color[3] = CAG_PLAIN_ROD_COLOR, drum_color[3] = CAG_PLAIN_DRUM_COLOR,
                     foot_color[3] = CAG_PLAIN_FOOT_COLOR;

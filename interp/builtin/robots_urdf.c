@@ -11,8 +11,8 @@
 #include "interp/builtin/robots.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
-#include "interp/eval/vm.h"
-#include "interp/import/urdf_read.h"
+#include "interp/formats/urdf_read.h"
+#include "interp/vm/vm.h"
 
 static const char family[] = "Robots: links";
 

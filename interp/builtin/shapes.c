@@ -12,7 +12,7 @@
 #include "interp/builtin/holds.h"
 #include "interp/builtin/robots.h"
 #include "interp/builtin/support.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // Radians of degrees lose at most half an ulp, so the wanted decimal is within one ulp of the
 // stored double.

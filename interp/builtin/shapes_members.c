@@ -4,7 +4,7 @@
 
 #include "interp/builtin/robots.h"
 #include "interp/builtin/shapes.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // --- Members ---
 

@@ -8,7 +8,7 @@
 #include "interp/builtin/scene.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/surfaces.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // `made` is read after the call that fills it: pass its address.
 static bool give(CagCall *call, CagStatus status, const CagError *err, CagSolid **made,

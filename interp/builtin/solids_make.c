@@ -1,11 +1,12 @@
 // Solids: primitives, prisms, rods and closed shells.
 
+#include "geom/meet/quadric_body.h"
 #include "geom/solid/csg.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/solids.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // `made` is read after the call that fills it: pass its address.
 static bool give(CagCall *call, CagStatus status, const CagError *err, CagSolid **made,

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "interp/value/jet.h"
+#include "interp/vm/jet.h"
 
 // --- Texts ---
 

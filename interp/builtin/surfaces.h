@@ -3,8 +3,8 @@
 #ifndef CAG_INTERP_BUILTIN_SURFACES_H
 #define CAG_INTERP_BUILTIN_SURFACES_H
 
+#include "geom/meet/section.h"
 #include "geom/surface/quadric.h"
-#include "geom/surface/section.h"
 #include "interp/builtin/holds.h"
 #include "interp/builtin/shapes.h"
 

@@ -7,13 +7,13 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/mesh/tessellate.h"
+#include "geom/solid/tessellate.h"
 #include "geom/surface/mapped.h"
 #include "geom/surface/reshape.h"
 #include "geom/surface/trimmed.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // The point over x, y at the height z: `o` is the surface's offset by 1, so that o - s is the
 // normal.

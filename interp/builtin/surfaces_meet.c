@@ -1,11 +1,11 @@
 // Where surfaces meet curves, planes and each other, and where they are nearest to a point.
 
 #include "base/memory.h"
-#include "geom/surface/meet_curve.h"
-#include "geom/surface/meet_surface.h"
+#include "geom/meet/meet_curve.h"
+#include "geom/meet/meet_surface.h"
 #include "geom/surface/nearest.h"
 #include "interp/builtin/surfaces.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 static const char MEETINGS[] = "Surfaces: near and across";
 

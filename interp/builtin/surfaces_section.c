@@ -1,15 +1,15 @@
 // Questions to the equation of a quadric, plane sections, and lines of curvature.
 
-#include "geom/surface/section.h"
+#include "geom/meet/section.h"
 
 #include <string.h>
 
-#include "geom/surface/curvature_contour.h"
-#include "geom/surface/curvature_line.h"
+#include "geom/meet/curvature_contour.h"
+#include "geom/meet/curvature_line.h"
 #include "geom/surface/motion.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 static const char QUADRICS[] = "Quadrics";
 static const char SECTIONS[] = "Surfaces: sections";

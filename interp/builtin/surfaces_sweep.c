@@ -3,7 +3,7 @@
 #include "geom/surface/loft.h"
 #include "interp/builtin/support.h"
 #include "interp/builtin/surfaces.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // Functions of the path's parameter are kept as series to this part of their size.
 #define FIT_TOLERANCE 1e-12

@@ -6,7 +6,7 @@
 #include <utf8proc.h>
 
 #include "interp/builtin/support.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 static const char FAMILY[] = "Text";
 

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "interp/builtin/transforms.h"
-#include "interp/eval/vm.h"
-#include "interp/value/jet.h"
+#include "interp/vm/jet.h"
+#include "interp/vm/vm.h"
 
 static bool apply(CagCall *call, const CagTransform *t, CagValue v, CagValue *result);
 

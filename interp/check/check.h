@@ -7,7 +7,7 @@
 #ifndef CAG_INTERP_CHECK_H
 #define CAG_INTERP_CHECK_H
 
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // Checks a module whose names were resolved, which may have failed for some of them and of its
 // imports. Errors and warnings go to vm->errors; false where there are errors.

@@ -4,8 +4,8 @@
 
 #include <string.h>
 
+#include "base/arena.h"
 #include "interp/check/circle.h"
-#include "lang/arena.h"
 
 typedef struct Edge {
   size_t to;

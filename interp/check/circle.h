@@ -3,7 +3,7 @@
 #ifndef CAG_INTERP_CHECK_CIRCLE_H
 #define CAG_INTERP_CHECK_CIRCLE_H
 
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // Reports each circle of definitions once, at the name that closes it, to `errors`. Only what is
 // evaluated in any case counts: no branch of an `if`, no body of a loop or of a function that is

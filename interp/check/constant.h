@@ -4,7 +4,7 @@
 #ifndef CAG_INTERP_CHECK_CONSTANT_H
 #define CAG_INTERP_CHECK_CONSTANT_H
 
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 // A call or a pipe is constant if it calls quick built-ins that read neither files nor params, with
 // literals, built-in constants, other such calls, and definitions of these. `is_bad` tells whether

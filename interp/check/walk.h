@@ -4,9 +4,9 @@
 #ifndef CAG_INTERP_CHECK_WALK_H
 #define CAG_INTERP_CHECK_WALK_H
 
+#include "base/arena.h"
 #include "interp/check/constant.h"
 #include "interp/check/types.h"
-#include "lang/arena.h"
 
 // What is known of a definition, parameter or name of a comprehension.
 typedef struct Known {

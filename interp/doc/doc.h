@@ -88,7 +88,7 @@ size_t cag_doc_sentence(const char *text);
 void cag_doc_reasons(const char *summary, void (*give)(void *context, CagErrorId id),
                      void *context);
 
-// A text like that of printf, malloc'd. Leaves the work when memory is out (lang/memory.h).
+// A text like that of printf, malloc'd. Leaves the work when memory is out (base/guard.h).
 char *cag_doc_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 // --- Text for a terminal ---

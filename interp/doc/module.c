@@ -4,8 +4,8 @@
 
 #include "base/memory.h"
 #include "interp/doc/doc.h"
-#include "interp/eval/stdlib.h"
 #include "interp/session/session.h"
+#include "interp/vm/stdlib.h"
 
 // --- Texts of the source ---
 

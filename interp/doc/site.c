@@ -7,9 +7,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/atomic_file.h"
 #include "base/memory.h"
 #include "interp/doc/site.h"
-#include "interp/render/atomic_file.h"
 #include "interp/render/povray.h"
 #include "interp/session/session.h"
 

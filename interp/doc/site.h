@@ -7,8 +7,8 @@
 #ifndef CAG_INTERP_DOC_SITE_H
 #define CAG_INTERP_DOC_SITE_H
 
+#include "base/io_error.h"
 #include "interp/doc/doc.h"
-#include "interp/render/io_error.h"
 
 // What pictures of examples measure, in pixels.
 #define CAG_SITE_WIDTH 320

@@ -7,8 +7,8 @@
 
 #include "base/memory.h"
 #include "interp/doc/site.h"
-#include "interp/eval/program.h"
 #include "interp/session/session.h"
+#include "interp/vm/program.h"
 
 // --- Names ---
 

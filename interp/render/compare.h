@@ -18,8 +18,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "base/io_error.h"
 #include "interp/render/image.h"
-#include "interp/render/io_error.h"
 
 typedef struct CagCompareChannel {
   char name[CAG_IMAGE_NAME_MAX + 1];

@@ -20,8 +20,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/io_error.h"
 #include "interp/render/image.h"
-#include "interp/render/io_error.h"
 
 typedef enum { CAG_EXR_TEXT, CAG_EXR_NUMBER, CAG_EXR_MATRIX } CagExrAttributeKind;
 

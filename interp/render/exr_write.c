@@ -8,8 +8,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "base/atomic_file.h"
 #include "base/memory.h"
-#include "interp/render/atomic_file.h"
 #include "interp/render/exr.h"
 #include "interp/render/exr_complaint.h"
 

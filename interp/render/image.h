@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "interp/render/io_error.h"
+#include "base/io_error.h"
 
 // Longest channel name, in bytes: the limit of EXR files with long names.
 #define CAG_IMAGE_NAME_MAX 255

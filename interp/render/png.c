@@ -15,8 +15,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/atomic_file.h"
 #include "base/memory.h"
-#include "interp/render/atomic_file.h"
 
 // The constants of IEC 61966-2-1.
 #define SRGB_LINEAR_END 0.0031308

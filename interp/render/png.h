@@ -19,8 +19,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/io_error.h"
 #include "interp/render/image.h"
-#include "interp/render/io_error.h"
 
 // Where the roll-off of highlights begins, in linear light after exposure.
 #define CAG_PNG_SHOULDER 0.8

@@ -12,8 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
-#include "interp/clock.h"
 #include "interp/render/exr.h"
 #include "interp/render/image.h"
 #include "interp/render/povray_process.h"

@@ -20,7 +20,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "interp/render/io_error.h"
+#include "base/io_error.h"
 
 typedef enum {
   CAG_POVRAY_DRAFT,  // no antialiasing, no media and radiosity

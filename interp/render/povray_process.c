@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "interp/clock.h"
+#include "base/clock.h"
 #include "interp/render/sandbox.h"
 
 // How often the flag, the clock and the process are looked at, in milliseconds.

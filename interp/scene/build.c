@@ -16,7 +16,7 @@
 #include "geom/solid/csg.h"
 #include "interp/builtin/shapes.h"
 #include "interp/builtin/solids.h"
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 typedef struct Build {
   CagVm *vm;

@@ -3,10 +3,10 @@
 #ifndef CAG_INTERP_SCENE_BUILD_H
 #define CAG_INTERP_SCENE_BUILD_H
 
+#include "base/source.h"
 #include "interp/scene/scene.h"
-#include "interp/value/value.h"
+#include "interp/vm/value.h"
 #include "lang/ast.h"
-#include "lang/source.h"
 
 // One value of a `show` statement, in the order of the file.
 typedef struct CagShown {

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/stop.h"
+#include "base/stop.h"
 #include "interp/scene/scene.h"
 
 static const double AUTOMATIC_FOV = 0.52; // radians, about 30 degrees: a calm perspective

@@ -1,12 +1,13 @@
 // Items as meshes: surfaces and solids tessellated, regions flat, curves as tubes.
 
 #include "interp/scene/item_mesh.h"
+#include "geom/solid/tessellate.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/mesh/orient.h"
+#include "geom/tessellate/orient.h"
 
 // Radius of curves that say none, as a part of the diagonal of the scene's bounds.
 #define LINE_PART 0.0025

@@ -11,9 +11,9 @@
 #include "geom/curve/curve.h"
 #include "geom/curve/region.h"
 #include "geom/mesh/mesh.h"
-#include "geom/mesh/tessellate.h"
 #include "geom/solid/solid.h"
 #include "geom/surface/surface.h"
+#include "geom/tessellate/tessellate.h"
 
 typedef struct CagColor {
   double r, g, b; // linear light

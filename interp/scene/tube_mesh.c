@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "geom/stop.h"
+#include "base/stop.h"
 #include "interp/scene/item_mesh.h"
 
 #define SIDES 12

@@ -6,10 +6,10 @@
 
 #include <string.h>
 
+#include "base/guard.h"
 #include "base/memory.h"
-#include "geom/stop.h"
+#include "base/stop.h"
 #include "interp/scene/scene.h"
-#include "lang/memory.h"
 
 // Part of half the picture that stays free on each side.
 #define MARGIN 0.09

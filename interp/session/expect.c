@@ -14,8 +14,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/memory.h"
-#include "interp/clock.h"
 #include "interp/doc/doc.h"
 #include "interp/render/compare.h"
 #include "interp/render/exr.h"

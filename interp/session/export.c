@@ -7,14 +7,14 @@
 #include <unistd.h>
 
 #include "base/memory.h"
-#include "geom/mesh/orient.h"
-#include "interp/export/iges.h"
-#include "interp/export/json.h"
-#include "interp/export/mesh_formats.h"
-#include "interp/export/pov.h"
-#include "interp/export/step.h"
-#include "interp/export/svg.h"
-#include "interp/export/urdf.h"
+#include "geom/tessellate/orient.h"
+#include "interp/formats/iges.h"
+#include "interp/formats/json.h"
+#include "interp/formats/mesh_formats.h"
+#include "interp/formats/pov.h"
+#include "interp/formats/step.h"
+#include "interp/formats/svg.h"
+#include "interp/formats/urdf.h"
 #include "interp/scene/item_mesh.h"
 #include "interp/session/output.h"
 

@@ -3,7 +3,7 @@
 #ifndef CAG_INTERP_SESSION_OUTPUT_H
 #define CAG_INTERP_SESSION_OUTPUT_H
 
-#include "interp/render/atomic_file.h"
+#include "base/atomic_file.h"
 #include "interp/render/image.h"
 #include "interp/session/session.h"
 

@@ -5,7 +5,7 @@
 #include <strings.h>
 
 #include "base/memory.h"
-#include "interp/export/pov.h"
+#include "interp/formats/pov.h"
 #include "interp/render/exr.h"
 #include "interp/render/png.h"
 #include "interp/render/povray.h"

@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
+#include "geom/meet/crossing.h"
 #include "geom/solid/csg.h"
-#include "geom/stop.h"
-#include "geom/surface/crossing.h"
 #include "interp/scene/lead.h"
 #include "interp/session/watch.h"
 

@@ -8,11 +8,11 @@
 
 #include <stdatomic.h>
 
+#include "base/io_error.h"
 #include "cag.h"
-#include "interp/eval/program.h"
-#include "interp/export/pov.h"
-#include "interp/render/io_error.h"
+#include "interp/formats/pov.h"
 #include "interp/scene/scene.h"
+#include "interp/vm/program.h"
 
 struct CagSession {
   CagSessionOptions options;

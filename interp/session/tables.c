@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "interp/eval/stdlib.h"
 #include "interp/session/session.h"
+#include "interp/vm/stdlib.h"
 
 const char *cag_library_module(size_t i) {
   for (size_t k = 0; k < i; k++)

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <time.h>
 
-#include "interp/clock.h"
+#include "base/clock.h"
 
 // Seconds between looks at the interrupt, which a signal handler sets and which wakes nobody.
 static const double LOOK_INTERVAL = 0.02;

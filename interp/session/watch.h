@@ -2,7 +2,7 @@
 //
 // While work runs, a thread of its own looks at the clock and at the caller's interrupt, and sets
 // one flag for both. Everything that runs for long looks at this flag: the machine's loop, the
-// geometry core (geom/stop.h), writers of files, and who waits for a renderer.
+// geometry core (base/stop.h), writers of files, and who waits for a renderer.
 
 #ifndef CAG_INTERP_SESSION_WATCH_H
 #define CAG_INTERP_SESSION_WATCH_H

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "geom/mesh/boolean.h"
+#include "geom/boolean/boolean.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "interp/tool/repl.h"
+#include "cli/repl.h"
 
 volatile int cag_tool_interrupt;
 

@@ -8,8 +8,8 @@
 #include <time.h>
 
 #include "geom/mesh/mesh.h"
-#include "interp/export/mesh_formats.h"
-#include "interp/export/pov.h"
+#include "interp/formats/mesh_formats.h"
+#include "interp/formats/pov.h"
 #include "interp/scene/scene.h"
 
 static double now(void) {

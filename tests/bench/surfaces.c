@@ -23,8 +23,8 @@
 #endif
 
 #include "geom/mesh/distance.h"
-#include "geom/mesh/tessellate.h"
 #include "geom/surface/frames.h"
+#include "geom/tessellate/tessellate.h"
 
 #define ROUNDS 5
 #define SIDE 20

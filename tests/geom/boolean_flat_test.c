@@ -1,8 +1,8 @@
 // What set operations make of faces: flat ones take as few triangles as their outlines need,
 // normals are those of the operands, and parts that touch have vertices of their own.
 
+#include "geom/boolean/boolean.h"
 #include "geom/linalg/transform.h"
-#include "geom/mesh/boolean.h"
 #include "tests/geom/support.h"
 
 static uint64_t seed;

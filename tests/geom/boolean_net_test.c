@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "geom/mesh/boolean_net.h"
+#include "geom/boolean/net.h"
 #include "tests/geom/random.h"
 
 static int whole(int low, int high) { return low + (int)uniform(0, high - low + 1); }

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "geom/mesh/boolean_work.h"
+#include "geom/boolean/work.h"
 #include "tests/geom/random.h"
 
 static int whole(int low, int high) { return low + (int)uniform(0, high - low + 1); }

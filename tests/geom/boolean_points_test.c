@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "geom/mesh/boolean_work.h"
+#include "geom/boolean/work.h"
 #include "tests/geom/random.h"
 
 __extension__ typedef __int128 Whole;

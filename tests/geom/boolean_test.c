@@ -1,7 +1,7 @@
 // Set operations of meshes: closed forms, identities between volumes, and what winds around random
 // points; many small operands on a grid of whole numbers, where everything is degenerate.
 
-#include "geom/mesh/boolean.h"
+#include "geom/boolean/boolean.h"
 
 #include <stdio.h>
 

@@ -3,8 +3,8 @@
 
 #include <stdbool.h>
 
+#include "geom/boolean/boolean.h"
 #include "geom/linalg/transform.h"
-#include "geom/mesh/boolean.h"
 #include "geom/mesh/check.h"
 #include "tests/geom/support.h"
 

@@ -3,8 +3,8 @@
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
-#include "geom/surface/meet_surface.h"
-#include "geom/surface/section.h"
+#include "geom/meet/meet_surface.h"
+#include "geom/meet/section.h"
 
 static double total_length(const CagCurveList *list) {
   double sum = 0, own;

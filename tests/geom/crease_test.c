@@ -4,7 +4,7 @@
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
-#include "geom/surface/meet_surface.h"
+#include "geom/meet/meet_surface.h"
 
 #define NET 5
 #define SEGMENTS 512

@@ -1,7 +1,7 @@
 // Surfaces that cross themselves: found where simple measures of random profiles, paths and tubes
 // tell so, and only there.
 
-#include "geom/surface/crossing.h"
+#include "geom/meet/crossing.h"
 
 #include <stdio.h>
 

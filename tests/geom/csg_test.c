@@ -6,6 +6,7 @@
 #include "geom/solid/clip.h"
 #include "geom/solid/csg.h"
 #include "geom/solid/inside.h"
+#include "geom/solid/tessellate.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

@@ -1,6 +1,6 @@
 // Contour lines of curvature in the core: against closed forms, at jumps, poles and nowhere.
 
-#include "geom/surface/curvature_contour.h"
+#include "geom/meet/curvature_contour.h"
 #include "geom/surface/reshape.h"
 #include "random.h"
 #include "support.h"

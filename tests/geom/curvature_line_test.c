@@ -3,8 +3,8 @@
 #include "tests/geom/random_point.h"
 #include "tests/geom/support.h"
 
+#include "geom/meet/curvature_line.h"
 #include "geom/solid/solid.h"
-#include "geom/surface/curvature_line.h"
 
 // Squares of the semi-axes, descending, and the moved ellipsoid.
 typedef struct Ellipsoid {

@@ -4,7 +4,7 @@
 #include "geom/curve/approximate.h"
 #include "geom/curve/intersect.h"
 #include "geom/curve/nurbs_ops.h"
-#include "geom/surface/meet_curve.h"
+#include "geom/meet/meet_curve.h"
 #include "meet_support.h"
 
 static const CagVec3 zigzag[6] = {{0, 1, 0},  {1, 2, 1}, {2.5, 0, 0.5},

@@ -7,8 +7,8 @@
 #define CAG_TESTS_GEOM_DENSE_SUPPORT_H
 
 #include "geom/mesh/distance.h"
-#include "geom/mesh/tessellate.h"
 #include "geom/surface/trimmed.h"
+#include "geom/tessellate/tessellate.h"
 #include "tests/geom/support.h"
 
 // --- Chance ---

@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "geom/sort.h"
-#include "geom/stop.h"
+#include "base/sort.h"
+#include "base/stop.h"
 #include "tests/geom/random.h"
 
 enum { N = 150 };

@@ -11,7 +11,7 @@
 #ifndef CAG_TESTS_GEOM_FAULTS_H
 #define CAG_TESTS_GEOM_FAULTS_H
 
-#include "geom/stop.h"
+#include "base/stop.h"
 #include "support.h"
 
 void *__real_malloc(size_t size);

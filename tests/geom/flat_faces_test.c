@@ -1,8 +1,8 @@
 // Meshes of flat faces that stand in frames with any columns: outlines keep the tolerance in space
 // with few corners, and vertices have the normal of the plane and their places in the region.
 
-#include "geom/mesh/tessellate.h"
 #include "geom/surface/patches.h"
+#include "geom/tessellate/tessellate.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

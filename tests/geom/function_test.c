@@ -3,8 +3,8 @@
 #include "function_support.h"
 #include "geom/curve/function.h"
 #include "geom/curve/natural.h"
-#include "geom/mesh/tessellate.h"
 #include "geom/solid/solid.h"
+#include "geom/solid/tessellate.h"
 #include "geom/surface/function.h"
 #include "support.h"
 

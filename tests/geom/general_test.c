@@ -3,6 +3,7 @@
 // operations.
 
 #include "geom/solid/general.h"
+#include "geom/solid/tessellate.h"
 
 #include "geom/curve/conic.h"
 #include "geom/curve/region.h"

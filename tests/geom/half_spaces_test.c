@@ -1,9 +1,9 @@
 // Operations on half spaces and quadrics, which may bound a body or not, against its corners and
 // closed forms.
 
-#include "geom/mesh/tessellate.h"
 #include "geom/solid/csg.h"
 #include "geom/solid/solid.h"
+#include "geom/tessellate/tessellate.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

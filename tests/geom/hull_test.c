@@ -1,13 +1,13 @@
 // Convex hulls, side predicates, curves on surfaces and distances of meshes: closed forms.
 
 #include "geom/curve/function.h"
+#include "geom/distance/separation.h"
 #include "geom/mesh/exact.h"
 #include "geom/mesh/hull.h"
 #include "geom/mesh/predicates.h"
-#include "geom/mesh/separation.h"
-#include "geom/mesh/tessellate.h"
 #include "geom/surface/curve_on.h"
 #include "geom/surface/quadric.h"
+#include "geom/tessellate/tessellate.h"
 #include "support.h"
 
 static CagMesh *hull_of(const CagVec3 *points, size_t n) {

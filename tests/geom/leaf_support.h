@@ -3,8 +3,8 @@
 #ifndef CAG_TESTS_GEOM_LEAF_SUPPORT_H
 #define CAG_TESTS_GEOM_LEAF_SUPPORT_H
 
-#include "geom/mesh/tessellation.h"
 #include "geom/surface/surface.h"
+#include "geom/tessellate/tessellation.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

@@ -2,11 +2,11 @@
 // of two surfaces give them, against marching squares in the plane of x and y: as many, as long,
 // and on the places where the function is 0.
 
-#include "geom/surface/curvature_contour.h"
-#include "geom/surface/curvature_line.h"
-#include "geom/surface/isophote.h"
-#include "geom/surface/meet_surface.h"
-#include "geom/surface/section.h"
+#include "geom/meet/curvature_contour.h"
+#include "geom/meet/curvature_line.h"
+#include "geom/meet/isophote.h"
+#include "geom/meet/meet_surface.h"
+#include "geom/meet/section.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

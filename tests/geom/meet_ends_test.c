@@ -3,7 +3,7 @@
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
-#include "geom/surface/meet_surface.h"
+#include "geom/meet/meet_surface.h"
 
 // z = a x^2 + b x y + c y^2 + d over 0..w, 0..h.
 typedef struct Graph {

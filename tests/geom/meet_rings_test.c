@@ -2,7 +2,7 @@
 
 #include "tests/geom/ring_support.h"
 
-#include "geom/surface/meet_surface.h"
+#include "geom/meet/meet_surface.h"
 
 // Upright cylinders and planes meet rings of a plane or a curved graph in arcs and lines over x and
 // y: as many and as long as many samples of these tell, and they end on the outlines.

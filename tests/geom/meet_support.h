@@ -3,7 +3,7 @@
 #ifndef CAG_TESTS_GEOM_MEET_SUPPORT_H
 #define CAG_TESTS_GEOM_MEET_SUPPORT_H
 
-#include "geom/surface/meet_curve.h"
+#include "geom/meet/meet_curve.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

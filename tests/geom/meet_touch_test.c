@@ -3,7 +3,7 @@
 
 #include "tests/geom/polynomial_support.h"
 
-#include "geom/surface/meet_surface.h"
+#include "geom/meet/meet_surface.h"
 
 // Length of the part of a curve of the plane, lifted onto f, within the square.
 typedef struct Path {

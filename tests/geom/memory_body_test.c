@@ -2,14 +2,14 @@
 // interrupted work. Each fault is reported, and nothing leaks.
 
 #include "faults.h"
+#include "geom/boolean/boolean.h"
 #include "geom/curve/region.h"
-#include "geom/mesh/boolean.h"
+#include "geom/distance/separation.h"
+#include "geom/meet/meet_surface.h"
+#include "geom/meet/quadric_body.h"
+#include "geom/meet/section.h"
 #include "geom/mesh/check.h"
 #include "geom/mesh/hull.h"
-#include "geom/mesh/orient.h"
-#include "geom/mesh/separation.h"
-#include "geom/mesh/split.h"
-#include "geom/mesh/tessellate.h"
 #include "geom/robot/path.h"
 #include "geom/robot/robot.h"
 #include "geom/solid/clip.h"
@@ -17,14 +17,15 @@
 #include "geom/solid/general.h"
 #include "geom/solid/inside.h"
 #include "geom/solid/solid.h"
+#include "geom/solid/tessellate.h"
 #include "geom/surface/edit.h"
 #include "geom/surface/loft.h"
-#include "geom/surface/meet_surface.h"
 #include "geom/surface/patches.h"
 #include "geom/surface/quadric.h"
 #include "geom/surface/reshape.h"
-#include "geom/surface/section.h"
 #include "geom/surface/swept.h"
+#include "geom/tessellate/orient.h"
+#include "geom/tessellate/split.h"
 
 #define QUESTION(name) static CagStatus name(const void *given, CagError *e)
 // The releases take the address because the caller evaluates it before the call that makes it.

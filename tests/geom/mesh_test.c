@@ -2,7 +2,7 @@
 
 #include "geom/mesh/mesh.h"
 
-#include "geom/mesh/split.h"
+#include "geom/tessellate/split.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

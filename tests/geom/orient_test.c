@@ -2,8 +2,8 @@
 
 #include "tests/geom/support.h"
 
-#include "geom/mesh/orient.h"
 #include "geom/surface/quadric.h"
+#include "geom/tessellate/orient.h"
 
 static uint32_t state_of_random = 1;
 // Uniform in 0..1 (Numerical Recipes' linear congruence).

@@ -1,8 +1,8 @@
 // How finely the parts of a face are divided, before anything is made of it: compared with the
 // smallest grids that closed forms allow, and with those of the same face in other parameters.
 
-#include "geom/mesh/trial.h"
 #include "geom/surface/function.h"
+#include "geom/tessellate/trial.h"
 #include "tests/geom/function_support.h"
 #include "tests/geom/net_support.h"
 #include "tests/geom/random.h"

@@ -2,7 +2,9 @@
 // integrals over the box.
 
 #include "box_integral.h"
+#include "geom/meet/quadric_body.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/tessellate.h"
 #include "geom/surface/trimmed.h"
 #include "quadric_support.h"
 

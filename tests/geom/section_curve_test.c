@@ -2,7 +2,7 @@
 // and nothing else is.
 
 #include "geom/curve/curve.h"
-#include "geom/surface/section.h"
+#include "geom/meet/section.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

@@ -2,7 +2,7 @@
 // of their edges in order.
 
 #include "geom/curve/region.h"
-#include "geom/surface/section.h"
+#include "geom/meet/section.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

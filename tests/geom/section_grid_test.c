@@ -1,7 +1,7 @@
 // Zeros between two nodes of the grid on which curves are traced: to the last digits, and in far
 // fewer steps than halving takes.
 
-#include "geom/surface/section_grid.h"
+#include "geom/meet/section_grid.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

@@ -2,7 +2,7 @@
 
 #include "tests/geom/polynomial_support.h"
 
-#include "geom/surface/section.h"
+#include "geom/meet/section.h"
 #include "geom/surface/trimmed.h"
 
 // Within a ring about the middle, lines and circles are cut off at its outlines.

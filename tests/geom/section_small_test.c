@@ -4,8 +4,8 @@
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 
+#include "geom/meet/section.h"
 #include "geom/surface/reshape.h"
-#include "geom/surface/section.h"
 
 // f = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 over 0..w, 0..h.
 typedef struct Graph {

@@ -1,9 +1,9 @@
 // Plane sections in the core: meshes whose vertices lie in the plane, hostile ones, traced runs.
 
-#include "geom/surface/curvature_line.h"
+#include "geom/meet/curvature_line.h"
+#include "geom/meet/section.h"
+#include "geom/meet/section_edges.h"
 #include "geom/surface/mapped.h"
-#include "geom/surface/section.h"
-#include "geom/surface/section_edges.h"
 #include "support.h"
 #include "tests/geom/random.h"
 

@@ -1,8 +1,8 @@
 // Sections and outlines of tori of all sizes: the curves keep the tolerance, and without
 // one they are those of a millionth of the size.
 
+#include "geom/meet/section.h"
 #include "geom/solid/solid.h"
-#include "geom/surface/section.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

@@ -3,7 +3,7 @@
 
 #include "tests/geom/polynomial_support.h"
 
-#include "geom/surface/section.h"
+#include "geom/meet/section.h"
 
 typedef struct Zeros {
   const char *name;

@@ -1,9 +1,9 @@
 // Distances of sets of many spheres, pipes and circles, which have closed forms: those of centers
 // and axes, less the radii.
 
-#include "geom/mesh/separation.h"
-#include "geom/mesh/tessellate.h"
+#include "geom/distance/separation.h"
 #include "geom/surface/quadric.h"
+#include "geom/tessellate/tessellate.h"
 #include "random_point.h"
 #include "support.h"
 

@@ -2,8 +2,8 @@
 // that become finer and finer.
 
 #include "geom/curve/function.h"
-#include "geom/mesh/separation.h"
-#include "geom/mesh/tessellate.h"
+#include "geom/distance/separation.h"
+#include "geom/tessellate/tessellate.h"
 #include "tests/geom/random_point.h"
 #include "tests/geom/support.h"
 

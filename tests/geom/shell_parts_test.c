@@ -1,7 +1,7 @@
 // Shells of several bodies beside each other and within each other: each other one is a cavity.
 
-#include "geom/mesh/tessellate.h"
 #include "geom/solid/solid.h"
+#include "geom/solid/tessellate.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

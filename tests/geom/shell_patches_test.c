@@ -2,8 +2,8 @@
 // the edges of their neighbors. Volume, area and meshes are those of the whole body. Its corners
 // have three sides or more.
 
-#include "geom/mesh/tessellate.h"
 #include "geom/solid/solid.h"
+#include "geom/solid/tessellate.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

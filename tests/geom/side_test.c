@@ -1,7 +1,7 @@
 // Meshes of half spaces and of the negative sides of quadrics, against integrals over the window.
 
 #include "box_integral.h"
-#include "geom/mesh/boolean.h"
+#include "geom/boolean/boolean.h"
 #include "geom/solid/csg.h"
 #include "quadric_support.h"
 

@@ -1,6 +1,6 @@
 // Errors as values, and the words and numbers of messages.
 
-#include "geom/status.h"
+#include "base/status.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 // Work ends when the flag of its thread is set: with CAG_E_CALLBACK, "interrupted", and nothing
 // that is left behind.
 
-#include "geom/stop.h"
+#include "base/stop.h"
 
 #include <math.h>
 #include <setjmp.h>

@@ -3,8 +3,8 @@
 
 #include <complex.h>
 
-#include "geom/mesh/tessellation.h"
 #include "geom/surface/function.h"
+#include "geom/tessellate/tessellation.h"
 #include "tests/geom/function_support.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"

@@ -14,8 +14,8 @@
 
 #include <cmocka.h>
 
+#include "base/status.h"
 #include "geom/linalg/vec.h"
-#include "geom/status.h"
 
 static CagError err;
 

@@ -2,7 +2,7 @@
 // meshes.
 
 #include "geom/mesh/mesh.h"
-#include "geom/mesh/tessellate.h"
+#include "geom/solid/tessellate.h"
 #include "geom/surface/loft.h"
 #include "tests/geom/surface_support.h"
 

@@ -1,7 +1,7 @@
 // Solids swept from random regions, against integrals over the region and the way.
 
-#include "geom/mesh/tessellate.h"
 #include "geom/solid/solid.h"
+#include "geom/solid/tessellate.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

@@ -2,8 +2,8 @@
 // are shaded, are not far from their own. At a sharp leading edge steps across are short and those
 // along it are long, and a triangle that is high by the one and bulges by the other stands on edge.
 
-#include "geom/mesh/tessellate.h"
 #include "geom/solid/solid.h"
+#include "geom/solid/tessellate.h"
 #include "geom/surface/loft.h"
 #include "tests/geom/support.h"
 

@@ -2,11 +2,11 @@
 // another no point of many is farther from the mesh than the tolerance, vertices lie on the surface
 // with its normals and their parameters, and the mesh is whole.
 
-#include "geom/mesh/tessellate.h"
 #include "geom/surface/function.h"
 #include "geom/surface/patches.h"
 #include "geom/surface/quadric.h"
 #include "geom/surface/reshape.h"
+#include "geom/tessellate/tessellate.h"
 #include "tests/geom/dense_support.h"
 #include "tests/geom/function_support.h"
 

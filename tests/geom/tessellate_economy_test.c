@@ -1,7 +1,7 @@
 // How many triangles tessellation takes: compared with the fewest that closed forms allow, and
 // alike however the parameters of a surface run.
 
-#include "geom/mesh/tessellate.h"
+#include "geom/tessellate/tessellate.h"
 #include "tests/geom/net_support.h"
 #include "tests/geom/random.h"
 

@@ -2,9 +2,9 @@
 // thousand times its size away, the triangles are as many. Edges that are one point, lines that
 // are doubled and cusps are where rounding could speak, since what vanishes there vanishes no more.
 
-#include "geom/mesh/tessellate.h"
 #include "geom/surface/patches.h"
 #include "geom/surface/quadric.h"
+#include "geom/tessellate/tessellate.h"
 #include "tests/geom/support.h"
 
 static uint64_t chance_state = 1;

@@ -3,8 +3,8 @@
 
 #include "geom/mesh/check.h"
 #include "geom/mesh/distance.h"
-#include "geom/mesh/tessellate.h"
 #include "geom/surface/reshape.h"
+#include "geom/tessellate/tessellate.h"
 #include "tests/geom/random.h"
 #include "tests/geom/support.h"
 

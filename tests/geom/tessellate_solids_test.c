@@ -6,6 +6,7 @@
 #include "geom/mesh/check.h"
 #include "geom/mesh/distance.h"
 #include "geom/solid/csg.h"
+#include "geom/solid/tessellate.h"
 #include "geom/surface/loft.h"
 #include "tests/geom/support.h"
 

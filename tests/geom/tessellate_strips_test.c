@@ -7,6 +7,7 @@
 
 #include "geom/curve/function.h"
 #include "geom/solid/solid.h"
+#include "geom/solid/tessellate.h"
 #include "geom/surface/reshape.h"
 #include "tests/geom/dense_support.h"
 

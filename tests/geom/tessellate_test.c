@@ -5,7 +5,7 @@
 // those that are hard: poles, cusps, extreme weights, many turns without a break.
 
 #include "geom/mesh/distance.h"
-#include "geom/mesh/tessellate.h"
+#include "geom/solid/tessellate.h"
 #include "tests/geom/support.h"
 
 // --- Nearest triangle ---

@@ -1,7 +1,7 @@
 // Grids that are tried out on a surface: what is measured of them is compared with what their
 // definitions give on every quadrilateral.
 
-#include "geom/mesh/trial.h"
+#include "geom/tessellate/trial.h"
 
 #include "geom/mesh/distance.h"
 #include "geom/surface/function.h"

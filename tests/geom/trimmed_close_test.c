@@ -5,10 +5,10 @@
 #include "tests/geom/trimmed_support.h"
 
 #include "geom/linalg/transform.h"
-#include "geom/mesh/orient.h"
-#include "geom/mesh/tessellate.h"
 #include "geom/surface/quadric.h"
 #include "geom/surface/trimmed.h"
+#include "geom/tessellate/orient.h"
+#include "geom/tessellate/tessellate.h"
 
 // Of a quadric, or of a line from (foot, 0, 0) to (1, 0, 1) that turns about the z axis.
 typedef struct Piece {

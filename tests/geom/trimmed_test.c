@@ -1,10 +1,10 @@
 // Trimmed surfaces: measures against closed forms, and meshes against dense samples of the surface.
 
 #include "geom/mesh/distance.h"
-#include "geom/mesh/orient.h"
-#include "geom/mesh/tessellate.h"
 #include "geom/surface/quadric.h"
 #include "geom/surface/trimmed.h"
+#include "geom/tessellate/orient.h"
+#include "geom/tessellate/tessellate.h"
 #include "tests/geom/trimmed_support.h"
 
 // A bicubic surface over 0..5 by 0..5 whose control points are heights of sin i cos j.

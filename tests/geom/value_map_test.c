@@ -1,7 +1,7 @@
 // Values at the vertices of meshes: curvatures and slopes of a graph in closed form, on both sides
 // of a jump; spans of values, and mirrored directions, by their definitions.
 
-#include "geom/surface/value_map.h"
+#include "geom/meet/value_map.h"
 
 #include "geom/surface/function.h"
 #include "geom/surface/reshape.h"

@@ -4,9 +4,9 @@
 #include "surface_support.h"
 #include "tests/geom/random.h"
 
+#include "geom/meet/section_edges.h"
 #include "geom/surface/family.h"
 #include "geom/surface/reshape.h"
-#include "geom/surface/section_edges.h"
 #include "geom/surface/swept.h"
 #include "geom/surface/trimmed.h"
 

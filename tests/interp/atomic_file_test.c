@@ -21,8 +21,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "geom/stop.h"
-#include "interp/render/atomic_file.h"
+#include "base/atomic_file.h"
+#include "base/stop.h"
 
 static char folder[64];
 

@@ -3,7 +3,7 @@
 #include "tests/interp/scene_fixture.h"
 
 #include "geom/surface/function.h"
-#include "interp/export/brep.h"
+#include "interp/formats/brep.h"
 
 typedef struct Failing {
   size_t calls, fails_at; // gives no number at the call of this number

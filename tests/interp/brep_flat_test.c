@@ -1,7 +1,7 @@
 // Which bilinear patches are written as flat faces: those whose corners make a convex quadrangle of
 // a plane, or a triangle, whatever their size and place.
 
-#include "interp/export/brep.h"
+#include "interp/formats/brep.h"
 #include "tests/geom/random_point.h"
 #include "tests/interp/scene_fixture.h"
 

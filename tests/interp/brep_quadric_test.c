@@ -4,8 +4,9 @@
 #include "tests/geom/quadric_support.h"
 #include "tests/interp/scene_fixture.h"
 
+#include "geom/meet/quadric_body.h"
 #include "geom/solid/csg.h"
-#include "interp/export/brep.h"
+#include "interp/formats/brep.h"
 
 #define ROUNDS 3
 // Edges are exact arcs; the form and the box are known to rounding.

@@ -1,7 +1,7 @@
 // Regions as flat faces: their loops have the areas and senses of the outlines, and each face's
 // surface is a rectangle about its own.
 
-#include "interp/export/brep.h"
+#include "interp/formats/brep.h"
 #include "scene_checks.h"
 
 // A point seen in the axes of a face.

@@ -5,9 +5,9 @@
 #include "tests/interp/scene_fixture.h"
 
 #include "geom/solid/build.h"
-#include "interp/export/brep.h"
-#include "interp/export/iges.h"
-#include "interp/export/step.h"
+#include "interp/formats/brep.h"
+#include "interp/formats/iges.h"
+#include "interp/formats/step.h"
 
 static CagBrep boundary_of(const Fixture *f) {
   CagBrep b;

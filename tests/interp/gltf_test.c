@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "interp/import/gltf_document.h"
-#include "interp/import/mesh_read.h"
+#include "interp/formats/gltf_document.h"
+#include "interp/formats/mesh_read.h"
 
 static CagError err;
 static uint64_t seed;

@@ -19,8 +19,8 @@
 
 #include <cmocka.h>
 
+#include "base/clock.h"
 #include "cag.h"
-#include "interp/clock.h"
 
 // Seconds that work has before it must end, that it may go on for, and after which waiting for it
 // has no point.

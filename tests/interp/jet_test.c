@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "cag.h"
-#include "interp/value/jet.h"
+#include "interp/vm/jet.h"
 
 #define NEAR(a, b, tolerance)                                                                      \
   do {                                                                                             \

@@ -4,7 +4,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "interp/export/json.h"
+#include "interp/formats/json.h"
 #include "interp/session/session.h"
 #include "session_support.h"
 

@@ -12,10 +12,10 @@
 
 #include <cmocka.h>
 
-#include "geom/mesh/tessellate.h"
-#include "interp/export/mesh_copies.h"
-#include "interp/export/mesh_formats.h"
-#include "interp/export/mesh_write.h"
+#include "geom/solid/tessellate.h"
+#include "interp/formats/mesh_copies.h"
+#include "interp/formats/mesh_formats.h"
+#include "interp/formats/mesh_write.h"
 #include "tests/interp/bytes.h"
 
 #include <cjson/cJSON.h>

@@ -15,8 +15,8 @@
 #include <cmocka.h>
 
 #include "geom/mesh/check.h"
-#include "interp/export/mesh_formats.h"
-#include "interp/import/mesh_read.h"
+#include "interp/formats/mesh_formats.h"
+#include "interp/formats/mesh_read.h"
 
 static CagError err;
 

@@ -9,9 +9,9 @@
 #include <cjson/cJSON.h>
 #include <zlib.h>
 
-#include "interp/export/mesh_copies.h"
-#include "interp/export/mesh_formats.h"
-#include "interp/import/mesh_read.h"
+#include "interp/formats/mesh_copies.h"
+#include "interp/formats/mesh_formats.h"
+#include "interp/formats/mesh_read.h"
 #include "interp/scene/color_scale.h"
 #include "tests/interp/bytes.h"
 

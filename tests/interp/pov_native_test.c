@@ -3,7 +3,7 @@
 
 #include <ctype.h>
 
-#include "interp/export/pov.h"
+#include "interp/formats/pov.h"
 #include "interp/session/session.h"
 #include "scene_fixture.h"
 #include "session_support.h"

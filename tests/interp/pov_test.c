@@ -3,7 +3,7 @@
 
 #include "tests/interp/scene_fixture.h"
 
-#include "interp/export/pov.h"
+#include "interp/formats/pov.h"
 #include "interp/render/exr.h"
 
 static char folder[64];

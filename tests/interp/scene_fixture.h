@@ -15,7 +15,7 @@
 
 #include <cmocka.h>
 
-#include "interp/render/atomic_file.h"
+#include "base/atomic_file.h"
 #include "interp/scene/scene.h"
 
 #define FIXTURE_MAX 64

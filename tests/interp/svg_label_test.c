@@ -2,7 +2,7 @@
 
 #include "tests/interp/scene_fixture.h"
 
-#include "interp/export/svg_label.h"
+#include "interp/formats/svg_label.h"
 
 // Fractions of the height of a text: the radius of a mark, the space between a text and the point
 // or the mark, the height of capitals, and the width of a letter.

@@ -4,7 +4,7 @@
 #include "tests/geom/random.h"
 #include "tests/interp/scene_fixture.h"
 
-#include "interp/export/svg.h"
+#include "interp/formats/svg.h"
 
 static char folder[64];
 

@@ -2,7 +2,7 @@
 
 #include "tests/interp/scene_fixture.h"
 
-#include "interp/export/svg.h"
+#include "interp/formats/svg.h"
 
 static char folder[64];
 

@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "interp/import/tangle.h"
-#include "interp/import/text_scan.h"
+#include "interp/formats/tangle.h"
+#include "interp/formats/text_scan.h"
 #include "tests/geom/random.h"
 
 static size_t below(size_t n) { return (size_t)uniform(0, (double)n - 1e-9); }

@@ -10,8 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "interp/tool/batch.h"
-#include "interp/tool/frames.h"
+#include "cli/batch.h"
+#include "cli/frames.h"
 #include "tests/fuzz/failing.h"
 
 volatile int cag_tool_interrupt;

@@ -10,8 +10,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "interp/tool/batch_child.h"
-#include "interp/tool/batch_result.h"
+#include "cli/batch_child.h"
+#include "cli/batch_result.h"
 #include "tests/fuzz/failing.h"
 
 volatile int cag_tool_interrupt;

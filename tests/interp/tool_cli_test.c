@@ -13,8 +13,8 @@
 
 #include <cmocka.h>
 
-#include "interp/tool/cli.h"
-#include "interp/tool/tool.h"
+#include "cli/cli.h"
+#include "cli/tool.h"
 #include "tests/fuzz/failing.h"
 
 volatile int cag_tool_interrupt;

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "interp/tool/repl.h"
+#include "cli/repl.h"
 #include "tests/fuzz/failing.h"
 
 volatile int cag_tool_interrupt;

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 #include <string.h>
 
-#include "interp/tool/diff.h"
+#include "cli/diff.h"
 #include "tests/fuzz/failing.h"
 #include "tests/geom/random.h"
 

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 #include <string.h>
 
-#include "interp/tool/jobs.h"
+#include "cli/jobs.h"
 #include "tests/fuzz/failing.h"
 
 volatile int cag_tool_interrupt;

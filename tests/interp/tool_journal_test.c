@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "interp/tool/slurm_plan.h"
+#include "cli/slurm_plan.h"
 #include "tests/fuzz/failing.h"
 #include "tests/geom/random.h"
 

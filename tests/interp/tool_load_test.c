@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "interp/tool/batch_load.h"
+#include "cli/batch_load.h"
 #include "tests/fuzz/failing.h"
 
 volatile int cag_tool_interrupt;

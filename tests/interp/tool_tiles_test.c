@@ -10,10 +10,10 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cli/frames.h"
+#include "cli/tiles.h"
 #include "interp/render/exr.h"
 #include "interp/render/png.h"
-#include "interp/tool/frames.h"
-#include "interp/tool/tiles.h"
 #include "tests/fuzz/failing.h"
 #include "tests/geom/random.h"
 

@@ -1,8 +1,9 @@
 // Parts of URDF: each value that a description has comes out of its reader, chains are found in
 // trees, and masses follow the laws of mechanics.
 
-#include "interp/export/urdf.h"
-#include "interp/import/urdf_read.h"
+#include "geom/solid/tessellate.h"
+#include "interp/formats/urdf.h"
+#include "interp/formats/urdf_read.h"
 #include "tests/geom/random.h"
 #include "tests/interp/scene_fixture.h"
 

@@ -15,7 +15,7 @@
 #include <cmocka.h>
 
 #include "cag.h"
-#include "interp/import/urdf_read.h"
+#include "interp/formats/urdf_read.h"
 
 // Meters.
 #define SAME 1e-9

@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "interp/eval/vm.h"
+#include "interp/vm/vm.h"
 
 static CagVm *new_vm(size_t memory) {
   CagDiagnostics errors = {0};

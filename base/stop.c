@@ -1,0 +1,23 @@
+// Long work is asked to end: the thread's flag.
+
+#include "base/stop.h"
+
+#include <string.h>
+
+_Thread_local const volatile int *cag_stop_flag;
+
+const volatile int *cag_stop_lend(const volatile int *flag) {
+  const volatile int *before = cag_stop_flag;
+  cag_stop_flag = flag;
+  return before;
+}
+
+CagStatus cag_stop_fail(CagError *err) {
+  // Not by cag_fail: loops that pass over failures reach their end soonest.
+  err->status = CAG_E_CALLBACK;
+  err->id = CAG_ERR_interrupted;
+  err->argument[0] = 0;
+  err->index = -1;
+  strcpy(err->message, "it was stopped");
+  return err->status;
+}

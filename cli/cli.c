@@ -1,0 +1,615 @@
+// The command line, read by its tables.
+//
+// Options may stand before, between and behind the operands, up to `--`. The first operand is the
+// command; an option before it waits until the command is known, so reading goes through argv
+// twice: once for the command, once for the rest. Operands are moved to the front of argv.
+
+#include "cli/cli.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "base/diagnostic.h"
+#include "cli/tiles.h"
+#include "interp/render/image.h"
+
+const CagToolCommand cag_tool_commands[CAG_TOOL_COMMAND_COUNT] = {
+#define CAG_COMMAND(name, operands, least, most, summary, story, examples)                         \
+  {#name, operands, summary, story, examples, least, most, cag_tool_##name},
+#include "cli/commands.def"
+#undef CAG_COMMAND
+};
+
+// --- Values of options ---
+
+static bool reject(const CagTool *t, const char *help, const char *option, const char *value,
+                   const char *problem) {
+  if (t->refusal) {
+    snprintf(t->refusal->message, sizeof t->refusal->message, "'%.160s': %s", value, problem);
+    snprintf(t->refusal->help, sizeof t->refusal->help, "%s", help);
+    return false;
+  }
+  cag_tool_fail(t, CAG_STATUS_USAGE, help, "%s '%s': %s", option, value, problem);
+  return false;
+}
+
+// Reads a number that the whole text is, up to a `suffix` that may follow (NULL: none).
+static bool read_number(const char *text, const char *suffix, double *out) {
+  char *end;
+  if (!*text || strchr(" \t\n", *text)) return false;
+  *out = strtod(text, &end);
+  if (end != text && suffix && !strcasecmp(end, suffix)) end += strlen(end);
+  return end != text && !*end && isfinite(*out);
+}
+
+// Reads a whole number of plain digits; `end` is where it ends.
+static bool read_whole(const char *text, const char **end, long *out) {
+  char *stop;
+  if (*text < '0' || *text > '9') return false;
+  errno = 0;
+  *out = strtol(text, &stop, 10);
+  *end = stop;
+  return errno == 0;
+}
+
+// Numbers beyond this are not counts that a double or the machine can hold.
+static const double COUNT_MAX = 1e15;
+
+static bool read_count(const CagTool *t, const char *option, const char *value, size_t *out) {
+  double n;
+  if (!read_number(value, NULL, &n) || n < 1 || n > COUNT_MAX || n != floor(n))
+    return reject(t, "give a whole number from 1 on", option, value, "expected a count");
+  *out = (size_t)n;
+  return true;
+}
+
+static bool one_of(const CagTool *t, const char *option, const char *value,
+                   const char *const *choices, size_t count, const char *help, size_t *index) {
+  for (*index = 0; *index < count; ++*index)
+    if (!strcmp(value, choices[*index])) return true;
+  return reject(t, help, option, value, "there is no such choice");
+}
+
+static bool set_output(CagTool *t, const char *value) {
+  if (t->output) {
+    cag_tool_fail(t, CAG_STATUS_USAGE, "run the command again for another output",
+                  "-o is given twice: '%s' and '%s'", t->output, value);
+    return false;
+  }
+  if (!*value)
+    return reject(t, "name a file, or - for standard output", "-o", value, "expected a name");
+  t->output = value;
+  return true;
+}
+
+static bool set_format(CagTool *t, const char *value) {
+  t->format = *value == '.' ? value + 1 : value;
+  return true;
+}
+
+static bool set_size(CagTool *t, const char *value) {
+  static const char HELP[] = "write width x height in pixels, such as 1280x720";
+  long w, h;
+  const char *at = value;
+  if (!read_whole(at, &at, &w) || *at++ != 'x' || !read_whole(at, &at, &h) || *at)
+    return reject(t, HELP, "--size", value, "expected a size");
+  if (w < 1 || h < 1 || (size_t)w > CAG_IMAGE_SIDE_MAX || (size_t)h > CAG_IMAGE_SIDE_MAX)
+    return reject(t, HELP, "--size", value, "sides are from 1 to 131072 pixels");
+  t->width = (int)w;
+  t->height = (int)h;
+  return true;
+}
+
+static bool set_quality(CagTool *t, const char *value) {
+  static const char *const CHOICES[] = {"draft", "normal", "final"};
+  size_t i;
+  t->quality = value;
+  return one_of(t, "--quality", value, CHOICES, 3, "there are draft, normal and final", &i);
+}
+
+static bool set_camera(CagTool *t, const char *value) {
+  t->camera = value;
+  return true;
+}
+
+static bool set_frames(CagTool *t, const char *value) {
+  static const char HELP[] = "write the first and the last frame, such as 0..47";
+  const char *at = value;
+  if (!read_whole(at, &at, &t->first_frame) || strncmp(at, "..", 2) ||
+      !read_whole(at + 2, &at, &t->last_frame) || *at)
+    return reject(t, HELP, "--frames", value, "these are not frames");
+  if (t->last_frame < t->first_frame)
+    return reject(t, HELP, "--frames", value, "the last frame comes before the first");
+  if (t->last_frame >= INT_MAX) return reject(t, HELP, "--frames", value, "that is too many");
+  t->has_frames = true;
+  return true;
+}
+
+static bool set_exposure(CagTool *t, const char *value) {
+  if (read_number(value, NULL, &t->exposure)) return true;
+  return reject(t, "give a number of stops, such as 0.5 or -1", "--exposure", value,
+                "expected a number");
+}
+
+static bool set_engine(CagTool *t, const char *value) {
+  static const char *const CHOICES[] = {"povray"};
+  size_t i;
+  return one_of(t, "--engine", value, CHOICES, 1, "the renderer that there is: povray", &i);
+}
+
+static bool set_pov_csg(CagTool *t, const char *value) {
+  static const char *const CHOICES[] = {"auto", "native", "mesh"};
+  size_t i;
+  t->session.pov_csg = value;
+  return one_of(t, "--pov-csg", value, CHOICES, 3, "there are auto, native and mesh", &i);
+}
+
+static bool set_threshold(CagTool *t, const char *value) {
+  if (read_number(value, NULL, &t->threshold) && t->threshold >= 0) return true;
+  return reject(t, "give a number from 0 on, such as 0.01", "--threshold", value,
+                "expected a number of at least 0");
+}
+
+static bool set_heatmap(CagTool *t, const char *value) {
+  t->heatmap = value;
+  return true;
+}
+
+static bool set_filter(CagTool *t, const char *value) {
+  t->filter = value;
+  return true;
+}
+
+// Makes room for one more in an array that grows one by one: command lines are short.
+static void *grow(void *array, size_t count, size_t size) {
+  void *larger = realloc(array, (count + 1) * size);
+  if (larger) return larger;
+  fputs("cag: out of memory\n", stderr);
+  exit(CAG_STATUS_LIMIT);
+}
+
+static bool set_define(CagTool *t, const char *value) {
+  const char *equals = strchr(value, '=');
+  if (!equals || equals == value)
+    return reject(t, "write -D name=value, such as -D height=200", "-D", value,
+                  "expected NAME=VALUE");
+  char *name = strndup(value, (size_t)(equals - value));
+  t->defines = grow(t->defines, t->define_count, sizeof *t->defines);
+  if (!name) return false;
+  t->defines[t->define_count++] = (CagToolDefine){name, equals + 1};
+  return true;
+}
+
+static bool set_include(CagTool *t, const char *value) {
+  const char **path = (const char **)(size_t)t->session.module_path;
+  if (!*value) return reject(t, "name a folder", "-I", value, "expected a name");
+  path = grow(path, t->session.module_path_count, sizeof *path);
+  path[t->session.module_path_count++] = value;
+  t->session.module_path = path;
+  return true;
+}
+
+static bool set_tolerance(CagTool *t, const char *value) {
+  if (read_number(value, "mm", &t->session.tolerance) && t->session.tolerance > 0) return true;
+  return reject(t, "give millimeters above 0, such as 0.05", "--tolerance", value,
+                "expected a distance");
+}
+
+static bool set_max_memory(CagTool *t, const char *value) {
+  static const char UNITS[] = "KMGT";
+  char *end;
+  const bool begins = (*value >= '0' && *value <= '9') || *value == '.';
+  double bytes = begins ? strtod(value, &end) : 0;
+  const char *unit = begins && *end ? strchr(UNITS, *end & ~0x20) : NULL;
+  if (unit) {
+    bytes = ldexp(bytes, 10 * (int)(unit - UNITS + 1));
+    end++;
+    if (!strcasecmp(end, "iB") || !strcasecmp(end, "B")) end += strlen(end);
+  }
+  if (!begins || *end || !(bytes >= 1) || bytes > COUNT_MAX)
+    return reject(t, "give bytes, or a number with K, M, G or T: 512M", "--max-memory", value,
+                  "expected a size");
+  t->session.max_memory = (size_t)bytes;
+  return true;
+}
+
+static bool set_max_time(CagTool *t, const char *value) {
+  if (read_number(value, "s", &t->session.max_time) && t->session.max_time > 0) return true;
+  return reject(t, "give seconds above 0, such as 60", "--max-time", value, "expected a time");
+}
+
+static bool set_max_depth(CagTool *t, const char *value) {
+  return read_count(t, "--max-depth", value, &t->session.max_depth);
+}
+
+static bool set_max_triangles(CagTool *t, const char *value) {
+  return read_count(t, "--max-triangles", value, &t->session.max_triangles);
+}
+
+static bool set_diagnostics(CagTool *t, const char *value) {
+  static const char *const CHOICES[] = {"text", "json"};
+  size_t i;
+  if (!one_of(t, "--diagnostics", value, CHOICES, 2, "there are text and json", &i)) return false;
+  t->style = i == 1 ? CAG_STYLE_JSON : CAG_STYLE_TEXT;
+  return true;
+}
+
+static bool set_color(CagTool *t, const char *value) {
+  static const char *const CHOICES[] = {"auto", "always", "never"}; // as CagToolColor
+  size_t i;
+  if (!one_of(t, "--color", value, CHOICES, 3, "there are auto, always and never", &i))
+    return false;
+  t->color = (CagToolColor)i;
+  return true;
+}
+
+// Flags get no value.
+static bool set_update(CagTool *t, const char *value) {
+  (void)value;
+  return t->update = true;
+}
+
+static bool set_jobs(CagTool *t, const char *value) {
+  return read_count(t, "--jobs", value, &t->jobs);
+}
+
+static bool set_report(CagTool *t, const char *value) {
+  t->report = value;
+  return true;
+}
+
+static bool set_region(CagTool *t, const char *value) {
+  static const char HELP[] = "write width x height, and where it begins from the left and the top, "
+                             "such as 640x360+640+0";
+  long n[4];
+  const char *at = value, *between = "x++";
+  for (int i = 0; i < 4; i++) {
+    if (!read_whole(at, &at, &n[i]) || n[i] > (long)CAG_IMAGE_SIDE_MAX || *at != between[i])
+      return reject(t, HELP, "--region", value, "expected a region");
+    at += i < 3;
+  }
+  if (n[0] < 1 || n[1] < 1) return reject(t, HELP, "--region", value, "the region is empty");
+  t->region = (CagRenderRegion){(int)n[2], (int)n[3], (int)n[0], (int)n[1]};
+  return true;
+}
+
+static bool set_threads(CagTool *t, const char *value) {
+  size_t n = 0;
+  if (!read_count(t, "--threads", value, &n)) return false;
+  t->threads = n < INT_MAX ? (int)n : INT_MAX;
+  return true;
+}
+
+static bool set_samples(CagTool *t, const char *value) {
+  size_t n = 0;
+  const size_t most = 10000;
+  if (!read_count(t, "--samples", value, &n)) return false;
+  t->samples = (int)(n < most ? n : most);
+  return true;
+}
+
+static bool set_loop(CagTool *t, const char *value) {
+  (void)value;
+  return t->loop = true;
+}
+
+static bool set_progress(CagTool *t, const char *value) {
+  (void)value;
+  return t->progress = true;
+}
+
+static bool set_retries(CagTool *t, const char *value) {
+  long n;
+  if (!read_whole(value, &value, &n) || *value)
+    return reject(t, "give a whole number, such as 2", "--retries", value, "expected a count");
+  t->retries = (size_t)n;
+  return true;
+}
+
+static bool set_fresh(CagTool *t, const char *value) {
+  (void)value;
+  return t->fresh = true;
+}
+
+static bool set_engine_queue(CagTool *t, const char *value) {
+  static const char *const CHOICES[] = {"slurm"};
+  size_t i;
+  t->queue = value;
+  return one_of(t, "--engine-queue", value, CHOICES, 1, "the queue that there is: slurm", &i);
+}
+
+static bool set_tiles(CagTool *t, const char *value) {
+  int columns, lines;
+  t->tiles = value;
+  return cag_tiles_read(value, &columns, &lines) ||
+         reject(t, "write columns x lines, such as 4x3; at most 64x64", "--tiles", value,
+                "expected tiles");
+}
+
+static bool set_element(CagTool *t, const char *value) {
+  long n;
+  const char *end;
+  t->element = value;
+  return (read_whole(value, &end, &n) && !*end) ||
+         reject(t, "it is the number of the array's task", "--element", value, "expected a number");
+}
+
+static bool set_html(CagTool *t, const char *value) {
+  t->html = value;
+  return true;
+}
+
+static bool set_check(CagTool *t, const char *value) {
+  (void)value;
+  return t->check = true;
+}
+
+static bool set_diff(CagTool *t, const char *value) {
+  (void)value;
+  return t->diff = true;
+}
+
+static bool set_no_pictures(CagTool *t, const char *value) {
+  (void)value;
+  return t->no_pictures = true;
+}
+
+static bool set_quiet(CagTool *t, const char *value) {
+  (void)value;
+  return t->quiet = true;
+}
+
+static bool set_verbose(CagTool *t, const char *value) {
+  (void)value;
+  return t->verbose = true;
+}
+
+static bool set_help(CagTool *t, const char *value) {
+  (void)value;
+  return t->wants_help = true;
+}
+
+static bool set_version(CagTool *t, const char *value) {
+  (void)value;
+  return t->wants_version = true;
+}
+
+#define ON(name) (1u << CAG_TOOL_##name)
+#define ALL (~0u)
+#define SCRIPTS (ON(run) | ON(eval) | ON(export) | ON(render) | ON(test) | ON(repl) | ON(batch))
+const CagToolOption cag_tool_options[] = {
+#define CAG_OPTION(id, letter, name, argument, commands, help)                                     \
+  {#id, letter, name, argument, commands, help, set_##id},
+#include "cli/options.def"
+#undef CAG_OPTION
+};
+const size_t cag_tool_option_count = sizeof cag_tool_options / sizeof *cag_tool_options;
+
+// --- Reading ---
+
+// One option as it stands in argv.
+typedef struct {
+  const CagToolOption *option; // NULL: there is none of this name
+  char shown[64];              // as the user knows it: "--size", "-o"
+  const char *value;           // behind its = or its letter; NULL: none
+} Given;
+
+static bool takes(const CagToolCommand *c, const CagToolOption *o) {
+  return o->commands >> (c - cag_tool_commands) & 1;
+}
+
+static Given find_long(const char *word) {
+  Given g = {0};
+  const size_t n = strcspn(word + 2, "=");
+  snprintf(g.shown, sizeof g.shown, "%.*s", (int)(n + 2), word);
+  if (word[n + 2]) g.value = word + n + 3;
+  for (size_t i = 0; i < cag_tool_option_count; i++) {
+    const char *name = cag_tool_options[i].name;
+    if (name && strlen(name) == n && !strncmp(name, word + 2, n)) g.option = &cag_tool_options[i];
+  }
+  return g;
+}
+
+// The option of the letter at `at`; a value may follow at once: -Dname=value.
+static Given find_short(const char *at) {
+  Given g = {0};
+  snprintf(g.shown, sizeof g.shown, "-%c", *at);
+  for (size_t i = 0; i < cag_tool_option_count; i++)
+    if (cag_tool_options[i].letter == *at) g.option = &cag_tool_options[i];
+  if (g.option && g.option->argument && at[1]) g.value = at + 1 + (at[1] == '=');
+  return g;
+}
+
+// The name of an option of this command that is like what was written, or NULL.
+static const char *nearest_option(const CagToolCommand *command, const char *shown) {
+  const char *names[64];
+  size_t count = 0;
+  for (size_t i = 0; i < cag_tool_option_count; i++)
+    if (cag_tool_options[i].name && takes(command, &cag_tool_options[i]))
+      names[count++] = cag_tool_options[i].name;
+  return strncmp(shown, "--", 2) ? NULL : cag_nearest_name(shown + 2, names, count);
+}
+
+static bool reject_option(const CagTool *t, const Given *g) {
+  const char *nearest = nearest_option(t->command, g->shown);
+  char help[256];
+  const bool expression = t->command->run == cag_tool_eval;
+  if (nearest) snprintf(help, sizeof help, "did you mean --%s?", nearest);
+  else
+    snprintf(help, sizeof help, "`cag %s --help` lists the options%s", t->command->name,
+             expression ? "; an expression that begins with - comes after --" : "");
+  cag_tool_fail(t, CAG_STATUS_USAGE, help,
+                g->option ? "%s is an option of other commands" : "there is no option %s",
+                g->shown);
+  return false;
+}
+
+// Keeps one option; its value may be the next word. Gives back how many further words it took, or
+// -1.
+static int apply(CagTool *t, const Given *g, const char *next) {
+  const CagToolOption *o = g->option;
+  if (!o || !takes(t->command, o)) return reject_option(t, g), -1;
+  if (!o->argument && g->value) {
+    cag_tool_fail(t, CAG_STATUS_USAGE, NULL, "%s takes no value", g->shown);
+    return -1;
+  }
+  // A word like --size is not the value of the option before it, but a sign that one was forgotten.
+  const bool missing = o->argument && !g->value && (!next || !strncmp(next, "--", 2));
+  if (missing) {
+    char help[128];
+    snprintf(help, sizeof help, "write %s %s", g->shown, o->argument);
+    cag_tool_fail(t, CAG_STATUS_USAGE, help, "%s needs a value", g->shown);
+    return -1;
+  }
+  if (!o->set(t, g->value ? g->value : next)) return -1;
+  return o->argument && !g->value;
+}
+
+// Keeps the options of one word, which are several for letters in a row. The count is as above.
+static int apply_word(CagTool *t, char *word, const char *next) {
+  if (word[1] == '-') {
+    const Given g = find_long(word);
+    return apply(t, &g, next);
+  }
+  for (const char *at = word + 1; *at; at++) {
+    const Given g = find_short(at);
+    const int taken = apply(t, &g, next);
+    if (taken != 0 || g.value) return taken;
+  }
+  return 0;
+}
+
+// A lone - is standard input; what has no letter behind its - is an expression: cag eval '-2^2'.
+static bool is_option(const char *word) {
+  const char c = word[0] == '-' ? word[1] : 0;
+  return c == '-' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+// Whether this word is an option whose value is the next word.
+static bool takes_next(const char *word) {
+  if (word[1] == '-') {
+    const Given g = find_long(word);
+    return g.option && g.option->argument && !g.value;
+  }
+  for (const char *at = word + 1; *at; at++) {
+    const Given g = find_short(at);
+    if (g.option && g.option->argument) return !g.value;
+  }
+  return false;
+}
+
+// The index of the first operand, which is the command; argc when there is none.
+static int find_command(int argc, char **argv) {
+  for (int i = 1; i < argc; i++) {
+    if (!strcmp(argv[i], "--")) return i + 1 < argc ? i + 1 : argc;
+    if (!is_option(argv[i])) return i;
+    i += takes_next(argv[i]);
+  }
+  return argc;
+}
+
+bool cag_tool_try(CagTool *t, const char *name, const char *value, CagToolRefusal *why) {
+  for (size_t i = 0; i < cag_tool_option_count; i++) {
+    const CagToolOption *o = &cag_tool_options[i];
+    if (!o->name || strcmp(o->name, name) != 0) continue;
+    *why = (CagToolRefusal){0};
+    t->refusal = why;
+    const bool taken = o->set(t, value);
+    t->refusal = NULL;
+    return taken;
+  }
+  return false;
+}
+
+static bool reject_command(CagTool *t, const char *word) {
+  const char *names[CAG_TOOL_COMMAND_COUNT];
+  char help[300];
+  for (size_t i = 0; i < CAG_TOOL_COMMAND_COUNT; i++) names[i] = cag_tool_commands[i].name;
+  const char *nearest = cag_nearest_name(word, names, CAG_TOOL_COMMAND_COUNT);
+  const size_t n = strlen(word);
+  t->command = NULL;
+  if (n > 4 && !strcmp(word + n - 4, ".cag"))
+    snprintf(help, sizeof help, "to run the script write `cag run %.200s`", word);
+  else if (nearest) snprintf(help, sizeof help, "did you mean `cag %s`?", nearest);
+  else snprintf(help, sizeof help, "`cag --help` lists the commands");
+  cag_tool_fail(t, CAG_STATUS_USAGE, help, "there is no command '%s'", word);
+  return false;
+}
+
+static bool choose_command(CagTool *t, const char *word) {
+  for (size_t i = 0; i < CAG_TOOL_COMMAND_COUNT; i++) {
+    t->command = &cag_tool_commands[i];
+    if (!strcmp(word, t->command->name)) return true;
+  }
+  return reject_command(t, word);
+}
+
+static bool check_operands(const CagTool *t, int count, char **operands) {
+  const CagToolCommand *c = t->command;
+  char help[128];
+  snprintf(help, sizeof help, "write `cag %s %s`; `cag %s --help` shows examples", c->name,
+           c->operands, c->name);
+  if (count < c->least) {
+    if (count)
+      cag_tool_fail(t, CAG_STATUS_USAGE, help, "expected %s, found only '%s'", c->operands,
+                    operands[0]);
+    else cag_tool_fail(t, CAG_STATUS_USAGE, help, "%s is missing", c->operands);
+    return false;
+  }
+  if (count > c->most) {
+    cag_tool_fail(t, CAG_STATUS_USAGE, help, "'%s' is one too many", operands[c->most]);
+    return false;
+  }
+  return true;
+}
+
+// The style that --diagnostics and --color, or the terminal, ask for.
+static void settle_style(CagTool *t) {
+  const char *terminal = getenv("TERM"), *none = getenv("NO_COLOR");
+  const bool colorful =
+      isatty(STDERR_FILENO) && !(none && *none) && terminal && strcmp(terminal, "dumb") != 0;
+  if (t->style == CAG_STYLE_JSON) return;
+  if (t->color == CAG_TOOL_COLOR_ALWAYS || (t->color == CAG_TOOL_COLOR_AUTO && colorful))
+    t->style = CAG_STYLE_COLOR;
+}
+
+bool cag_tool_read(CagTool *t, int argc, char **argv, int *operand_count) {
+  *t = (CagTool){0};
+  cag_session_options_init(&t->session);
+  t->session.interrupt = &cag_tool_interrupt;
+
+  // The command, the REPL without one.
+  const int command_at = find_command(argc, argv);
+  t->command = &cag_tool_commands[CAG_TOOL_repl];
+  if (command_at < argc && !choose_command(t, argv[command_at])) return false;
+
+  // Options, and what is left of argv.
+  int count = 0;
+  bool options = true;
+  for (int i = 1; i < argc; i++) {
+    if (options && !strcmp(argv[i], "--")) {
+      options = false;
+    } else if (options && is_option(argv[i])) {
+      const int taken = apply_word(t, argv[i], i + 1 < argc ? argv[i + 1] : NULL);
+      if (taken < 0) return false;
+      i += taken;
+    } else if (i != command_at) {
+      argv[count++] = argv[i];
+    }
+  }
+  if (command_at == argc && (t->wants_help || t->wants_version)) t->command = NULL;
+  settle_style(t);
+  *operand_count = count;
+  return t->wants_help || t->wants_version || check_operands(t, count, argv);
+}
+
+void cag_tool_release(CagTool *t) {
+  for (size_t i = 0; i < t->define_count; i++) free((char *)(size_t)t->defines[i].name);
+  free(t->defines);
+  free((void *)(size_t)t->session.module_path);
+}

@@ -1,0 +1,64 @@
+// cag export FILE -o OUT: writes what a script shows in the format of the output's ending.
+
+#include <string.h>
+#include <strings.h>
+
+#include "cli/tool.h"
+
+// The ending of a path without its point, or NULL.
+static const char *ending(const char *path) {
+  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+  const char *point = strrchr(name, '.');
+  return point && point[1] ? point + 1 : NULL;
+}
+
+static bool is_format(const char *name) {
+  for (const char *const *f = cag_export_formats(); *f; f++)
+    if (!strcasecmp(name, *f)) return true;
+  return false;
+}
+
+static int reject_format(const CagTool *t, const char *format) {
+  char help[300] = "there are";
+  if (!strcasecmp(format, "exr") || !strcasecmp(format, "png"))
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "write `cag render` for a picture",
+                         "'.%s' is the ending of a picture", format);
+  for (const char *const *f = cag_export_formats(); *f; f++)
+    snprintf(help + strlen(help), sizeof help - strlen(help), " .%s", *f);
+  return cag_tool_fail(t, CAG_STATUS_USAGE, help, "there is no format '.%s'", format);
+}
+
+// Checks the command line before anything runs: 0, or the status after a message.
+static int check(const CagTool *t) {
+  if (!t->output)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "say where to with -o OUT, such as -o vase.stl",
+                         "there is no output");
+  const char *format = t->format ? t->format : ending(t->output);
+  if (!format)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "give it with --format, such as --format stl",
+                         "the output '%s' has no ending that says its format", t->output);
+  if (!is_format(format)) return reject_format(t, format);
+  return cag_tool_check_place(t, t->output);
+}
+
+int cag_tool_export(CagTool *t, int argc, char **argv) {
+  (void)argc;
+  int status = check(t);
+  if (status != CAG_STATUS_OK) return status;
+  if (!strcmp(t->output, "-")) t->session.out = stderr;
+  CagSession *s = cag_tool_session(t);
+  if (!s) return CAG_STATUS_LIMIT;
+  status = cag_session_run_file(s, argv[0]);
+  if (status == CAG_STATUS_OK) {
+    fflush(stdout);
+    cag_tool_make_folder(t->output);
+    status = cag_session_export(s, t->output, t->format);
+  }
+  status = cag_tool_finish(t, s, status);
+  if (status == CAG_STATUS_OK && t->verbose) {
+    cag_session_describe_scene(s, stderr);
+    cag_tool_say(t, "wrote %s", t->output);
+  }
+  cag_session_free(s);
+  return status;
+}

@@ -1,0 +1,227 @@
+// cag render FILE -o OUT: makes a picture, or the pictures of a film.
+//
+// The frames of a film are runs of the script of their own, each with its frame and frames. The
+// first that fails ends the command; those before it are whole.
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "cli/frames.h"
+#include "cli/progress.h"
+#include "cli/tool.h"
+
+// A script that came from standard input is kept: each frame runs it.
+typedef struct {
+  const char *path;
+  char *text; // NULL: read from path
+  size_t length;
+} Script;
+
+typedef struct {
+  CagTool *tool;
+  CagSession *session;
+  Script script;
+  CagRenderOptions options;
+  CagProgress progress;
+  double frames; // length of the film
+} Film;
+
+// --- The command line ---
+
+static bool has_ending(const char *path, const char *ending) {
+  const size_t n = strlen(path), m = strlen(ending);
+  return n > m && path[n - m - 1] != '/' && !strcasecmp(path + n - m, ending);
+}
+
+static int check_ending(const CagTool *t) {
+  static const char HELP[] = "a picture is .exr or .png; `cag export` writes meshes and scenes";
+  const char *format = t->format;
+  if (format && strcasecmp(format, "exr") != 0 && strcasecmp(format, "png") != 0)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP, "there is no picture format '.%s'", format);
+  if (!strcmp(t->output, "-"))
+    return format ? CAG_STATUS_OK
+                  : cag_tool_fail(t, CAG_STATUS_USAGE, "add --format exr or --format png",
+                                  "standard output has no ending that says the format");
+  const char *ending = has_ending(t->output, ".exr")   ? "exr"
+                       : has_ending(t->output, ".png") ? "png"
+                                                       : NULL;
+  if (!ending)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP, "'%s' is not the name of a picture", t->output);
+  if (format && strcasecmp(format, ending) != 0)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "leave --format out, or change the ending",
+                         "--format %s and the output '%s' contradict each other", format,
+                         t->output);
+  return CAG_STATUS_OK;
+}
+
+static int check_pattern(const CagTool *t) {
+  static const char HELP[] = "write the number as %04d, such as film.%04d.png, and a % as %%";
+  const int places = cag_frames_places(t->output);
+  if (!t->has_frames)
+    return places <= 0 ? CAG_STATUS_OK
+                       : cag_tool_fail(t, CAG_STATUS_USAGE, "add --frames, such as --frames 0..47",
+                                       "the output '%s' has a place for a frame's number, but no "
+                                       "frames are asked for",
+                                       t->output);
+  if (places < 0 || places > 1)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP,
+                         places < 0 ? "a %% in the output '%s' is not a place for a frame's number"
+                                    : "the output '%s' has several places for a frame's number",
+                         t->output);
+  if (places == 0 && t->last_frame > t->first_frame)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, HELP,
+                         "all frames would be written to the one output '%s'", t->output);
+  return CAG_STATUS_OK;
+}
+
+// Finds the length of the film: --frames A..B says B+1, unless -D frames=N says more.
+static int find_length(const CagTool *t, double *frames) {
+  *frames = (double)t->last_frame + 1;
+  for (size_t i = 0; i < t->define_count; i++) {
+    const CagToolDefine *d = &t->defines[i];
+    if (!strcmp(d->name, "frame") || !strcmp(d->name, "time"))
+      return cag_tool_fail(t, CAG_STATUS_USAGE, "leave one of them out",
+                           "--frames sets `%s`, and so does -D", d->name);
+    if (strcmp(d->name, "frames") != 0) continue;
+    char *end;
+    *frames = strtod(d->value, &end);
+    if (end == d->value || *end || !(*frames >= 1) || *frames > INT_MAX ||
+        *frames != (double)(long)*frames)
+      return cag_tool_fail(t, CAG_STATUS_USAGE, "with --frames give a whole number, such as 96",
+                           "-D frames=%s: expected the length of a film", d->value);
+  }
+  if (*frames > (double)t->last_frame) return CAG_STATUS_OK;
+  return cag_tool_fail(t, CAG_STATUS_USAGE, "the frames of a film of N are 0..N-1",
+                       "--frames %ld..%ld reaches beyond the film of %.0f frames", t->first_frame,
+                       t->last_frame, *frames);
+}
+
+static int check(const CagTool *t, double *frames) {
+  *frames = 1;
+  if (!t->output)
+    return cag_tool_fail(t, CAG_STATUS_USAGE, "say where to with -o OUT, such as -o out.png",
+                         "there is no output");
+  int status = check_ending(t);
+  if (status == CAG_STATUS_OK) status = check_pattern(t);
+  if (status == CAG_STATUS_OK && t->has_frames) status = find_length(t, frames);
+  if (status == CAG_STATUS_OK && t->loop && !t->has_frames)
+    status = cag_tool_fail(t, CAG_STATUS_USAGE, "add --frames, such as --frames 0..47",
+                           "--loop applies to films, but --frames is missing");
+  return status;
+}
+
+// --- Rendering ---
+
+// Reads a script from standard input, whole.
+static bool read_input(Script *s) {
+  size_t capacity = 0;
+  char *text = NULL;
+  s->length = 0;
+  do {
+    if (s->length == capacity) {
+      capacity = capacity ? 2 * capacity : 65536;
+      char *larger = realloc(text, capacity);
+      if (!larger) break;
+      text = larger;
+    }
+    s->length += fread(text + s->length, 1, capacity - s->length, stdin);
+  } while (!feof(stdin) && !ferror(stdin));
+  s->text = text;
+  return text && feof(stdin);
+}
+
+static int run_script(Film *f) {
+  const Script *s = &f->script;
+  return s->text ? cag_session_run_text(f->session, "standard input", s->text, s->length)
+                 : cag_session_run_file(f->session, s->path);
+}
+
+// Renders what was shown to standard output, by way of a file: the ending of its name says the
+// format.
+static int render_to_output(Film *f) {
+  const char *base = getenv("TMPDIR");
+  char folder[PATH_MAX], path[PATH_MAX + 16], bytes[65536];
+  snprintf(folder, sizeof folder, "%s/cag-output-XXXXXX", base && *base == '/' ? base : "/tmp");
+  if (!mkdtemp(folder))
+    return cag_tool_fail(f->tool, CAG_STATUS_FILE, "set TMPDIR to a folder that you may write to",
+                         "no temporary file '%s' can be made", folder);
+  snprintf(path, sizeof path, "%s/out.%s", folder, f->tool->format);
+  int status = cag_session_render(f->session, &f->options, path);
+  FILE *picture = status == CAG_STATUS_OK ? fopen(path, "rbe") : NULL;
+  size_t n;
+  while (picture && (n = fread(bytes, 1, sizeof bytes, picture)) > 0)
+    if (fwrite(bytes, 1, n, stdout) != n) break; // main.c says so at the end
+  if (picture) fclose(picture);
+  unlink(path);
+  rmdir(folder);
+  return status;
+}
+
+static int render_frame(Film *f, long frame) {
+  const CagTool *t = f->tool;
+  char path[PATH_MAX];
+  const double begun = cag_clock_seconds();
+  snprintf(path, sizeof path, "%s", t->output);
+  if (t->has_frames && !cag_frames_name(t->output, frame, path, sizeof path))
+    return cag_tool_fail(t, CAG_STATUS_FILE, NULL, "the name of frame %ld is too long", frame);
+  int status = cag_tool_check_place(t, path);
+  if (status != CAG_STATUS_OK) return status;
+
+  if (t->has_frames) cag_session_set_frame(f->session, (double)frame, f->frames);
+  f->progress.frame = frame;
+  status = run_script(f);
+  fflush(stdout); // prints stand before what is said of the picture
+  if (status == CAG_STATUS_OK) {
+    cag_tool_make_folder(path);
+    status =
+        strcmp(path, "-") ? cag_session_render(f->session, &f->options, path) : render_to_output(f);
+  }
+  cag_progress_end(&f->progress);
+  status = cag_tool_finish(f->tool, f->session, status);
+  if (status == CAG_STATUS_OK && t->verbose)
+    cag_tool_say(t, "wrote %s in %.1f s", path, cag_clock_seconds() - begun);
+  return status;
+}
+
+static int render_film(Film *f) {
+  const CagTool *t = f->tool;
+  if (!strcmp(f->script.path, "-") && t->last_frame > t->first_frame && !read_input(&f->script))
+    return cag_tool_fail(t, CAG_STATUS_FILE, NULL, "standard input cannot be read");
+  int status = CAG_STATUS_OK;
+  for (long frame = t->first_frame; status == CAG_STATUS_OK && frame <= t->last_frame; frame++) {
+    status = render_frame(f, frame);
+    if (cag_tool_interrupt) status = CAG_STATUS_INTERRUPTED;
+  }
+  return status;
+}
+
+int cag_tool_render(CagTool *t, int argc, char **argv) {
+  (void)argc;
+  Film f = {.tool = t, .script = {.path = argv[0]}};
+  int status = check(t, &f.frames);
+  if (status != CAG_STATUS_OK) return status;
+  if (!strcmp(t->output, "-")) t->session.out = stderr;
+  f.session = cag_tool_session(t);
+  if (!f.session) return CAG_STATUS_LIMIT;
+  cag_progress_begin(&f.progress, t);
+  cag_render_options_init(&f.options);
+  f.options.width = t->width;
+  f.options.height = t->height;
+  f.options.camera = t->camera;
+  f.options.samples = t->samples;
+  cag_session_set_loop(f.session, t->loop);
+  f.options.exposure = t->exposure;
+  f.options.progress = cag_progress_show;
+  f.options.progress_context = &f.progress;
+  if (t->quality) f.options.quality = t->quality;
+  f.options.region = t->region;
+  f.options.threads = t->threads;
+  status = render_film(&f);
+  cag_session_free(f.session);
+  free(f.script.text);
+  return status;
+}

@@ -1,0 +1,665 @@
+// Distances of shapes.
+//
+// Two trees of boxes are walked together for the pairs of chords and triangles that are nearest;
+// from these Newton's method, damped and kept within smooth pieces, finds the nearest points of the
+// exact shapes. A second walk goes to the pairs that may still be nearer: those whose chords and
+// triangles, less what the shapes may leave them by, are nearer than the points found. Parts with
+// cores have bounds without such a margin.
+
+#include "geom/distance/separation.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/stop.h"
+#include "geom/curve/family.h"
+#include "geom/distance/part_pair.h"
+#include "geom/mesh/distance.h"
+
+// Pairs from which the exact search starts: neighbors share their nearest point, so that several
+// are needed for each place.
+#define CANDIDATES 24
+// The search for them ends after this many pairs: the second walk finds what it missed.
+#define MOST_LOOKED 50000
+#define LEAF 4
+// Newton's method starts again so often from the corner of a flat triangle.
+#define CORNER_ROUNDS 8
+// After this many pairs at the same distance, the shapes count as running along each other: the
+// number of such pairs is unlimited.
+#define SAME_PAIRS 4000
+// Pairs are equally near when their distances differ by less than this part of the size.
+#define EQUALLY_NEAR 1e-11
+// Shapes nearer than this part of their size meet.
+#define TOUCHING 1e-10
+
+// --- Parts ---
+
+static CagStatus push(CagParts *parts, CagPart part, CagError *err) {
+  if (parts->n == parts->capacity) {
+    const size_t capacity = parts->capacity ? 2 * parts->capacity : 64;
+    CagPart *grown = cag_realloc(parts->items, capacity * sizeof *grown);
+    if (!grown) return cag_fail_memory(err);
+    parts->items = grown;
+    parts->capacity = capacity;
+  }
+  parts->items[parts->n++] = part;
+  return CAG_OK;
+}
+
+void cag_parts_free(CagParts *parts) {
+  cag_free(parts->items);
+  cag_free(parts->cores);
+}
+
+// Stores the core; *out is one more than its index.
+static CagStatus add_core(CagParts *parts, const CagCore *core, size_t *out, CagError *err) {
+  CagCore *grown = cag_realloc(parts->cores, (parts->core_count + 1) * sizeof *grown);
+  if (!grown) return cag_fail_memory(err);
+  parts->cores = grown;
+  parts->cores[parts->core_count++] = *core;
+  *out = parts->core_count;
+  return CAG_OK;
+}
+
+CagStatus cag_parts_add_point(CagParts *parts, CagVec3 p, CagError *err) {
+  return push(parts, (CagPart){.p = {p, p, p}}, err);
+}
+
+CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double tolerance, CagError *err) {
+  const double turn = 0.3; // radians
+  double *t = NULL;
+  size_t n = 0, core = 0;
+  CagCore last = {.radius = -1}, next;
+  CagVec3 before = {0, 0, 0}, p;
+  CagStatus status = cag_curve_discretize(c, tolerance, turn, &t, &n, err);
+  for (size_t i = 0; !status && i < n; i++) {
+    status = cag_curve_point(c, t[i], &p, err);
+    if (status || i == 0) {
+      before = p;
+      continue;
+    }
+    const double sag = cag_curve_sag(c, t[i - 1], t[i]);
+    if (sag == 0 || !cag_curve_core(c, t[i - 1], t[i], &next)) {
+      core = 0;
+    } else if (core == 0 || memcmp(&last, &next, sizeof next) != 0) {
+      status = add_core(parts, &next, &core, err);
+      last = next;
+    }
+    if (!status)
+      status = push(parts,
+                    (CagPart){.p = {before, p, p},
+                              .curve = c,
+                              .at = {(t[i - 1] + t[i]) / 2, 0},
+                              .low = {t[i - 1], 0},
+                              .high = {t[i], 0},
+                              .sag = sag,
+                              .core = core},
+                    err);
+    before = p;
+  }
+  cag_free(t);
+  return status;
+}
+
+// The smooth pieces of a surface along both directions.
+typedef struct Pieces {
+  double *cuts[2]; // breaks and both ends
+  size_t n[2];
+  bool closed[2];
+  size_t *core;   // of each piece along u, as in CagPart
+  bool *straight; // each piece along u is flat, with straight edges
+} Pieces;
+
+static void pieces_free(Pieces *pieces) {
+  cag_free(pieces->cuts[0]);
+  cag_free(pieces->cuts[1]);
+  cag_free(pieces->core);
+  cag_free(pieces->straight);
+}
+
+static CagStatus find_pieces(CagParts *parts, const CagSurface *s, Pieces *out, CagError *err) {
+  CagStatus status = CAG_OK;
+  for (int k = 0; !status && k < 2; k++) {
+    status = cag_surface_cuts(s, k, &out->cuts[k], &out->n[k], err);
+    out->closed[k] = k ? s->closed_v : s->closed_u;
+  }
+  if (status) return status;
+  const size_t n = out->n[0];
+  out->core = cag_calloc(n, sizeof *out->core);
+  out->straight = cag_calloc(n, sizeof *out->straight);
+  if (!out->core || !out->straight) return cag_fail_memory(err);
+  for (size_t i = 0; !status && i < n; i++) {
+    const double *ends = out->cuts[0] + i;
+    CagCore core;
+    out->straight[i] = cag_surface_is_straight(s, ends[0], ends[1]);
+    if (!out->straight[i] && cag_surface_core(s, ends[0], ends[1], &core))
+      status = add_core(parts, &core, &out->core[i], err);
+  }
+  return status;
+}
+
+// The piece around the part.
+static void limit_part(const Pieces *pieces, CagPart *part) {
+  for (int k = 0; k < 2; k++) {
+    const double *cuts = pieces->cuts[k];
+    size_t low = 0, high = pieces->n[k];
+    while (high - low > 1) {
+      const size_t middle = (low + high) / 2;
+      if (cuts[middle] <= part->at[k]) low = middle;
+      else high = middle;
+    }
+    part->low[k] = cuts[low];
+    part->high[k] = cuts[low + 1];
+    part->ring[k] = pieces->closed[k] && pieces->n[k] == 1;
+    if (k > 0) continue;
+    part->core = pieces->core[low];
+    if (pieces->straight[low]) part->sag = 0;
+  }
+}
+
+CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface *surface,
+                             double tolerance, CagError *err) {
+  const bool exact = surface && m->uv;
+  Pieces pieces = {0};
+  CagStatus status = exact ? find_pieces(parts, surface, &pieces, err) : CAG_OK;
+  for (size_t t = 0; !status && t < m->triangle_count; t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    CagPart part = {.flat = !exact, .at = {0.5, 0.5}, .high = {1, 1}};
+    for (int i = 0; i < 3; i++) part.p[i] = m->positions[k[i]];
+    if (exact) {
+      part.surface = surface;
+      part.sag = tolerance;
+      for (int x = 0; x < 2; x++)
+        part.at[x] = (m->uv[2 * k[0] + x] + m->uv[2 * k[1] + x] + m->uv[2 * k[2] + x]) / 3;
+      limit_part(&pieces, &part);
+    }
+    status = push(parts, part, err);
+    if (!status) status = cag_stop_check(err);
+  }
+  pieces_free(&pieces);
+  return status;
+}
+
+// --- Chords and triangles ---
+
+static double segments(CagVec3 p, CagVec3 q, CagVec3 r, CagVec3 s) {
+  const CagVec3 a = cag_sub(q, p), b = cag_sub(s, r), w = cag_sub(p, r);
+  const double aa = cag_dot(a, a), bb = cag_dot(b, b), ab = cag_dot(a, b);
+  const double det = aa * bb - ab * ab, aw = cag_dot(a, w), bw = cag_dot(b, w);
+  double nearest = fmin(fmin(cag_distance_to_segment(p, r, s), cag_distance_to_segment(q, r, s)),
+                        fmin(cag_distance_to_segment(r, p, q), cag_distance_to_segment(s, p, q)));
+  if (!(det > 0)) return nearest;
+  const double x = (ab * bw - bb * aw) / det, y = (aa * bw - ab * aw) / det;
+  if (x > 0 && x < 1 && y > 0 && y < 1)
+    nearest = fmin(nearest, cag_norm(cag_sub(cag_madd(p, x, a), cag_madd(r, y, b))));
+  return nearest;
+}
+
+static bool pierces(CagVec3 p, CagVec3 q, const CagVec3 t[3]) {
+  const CagVec3 n = cag_cross(cag_sub(t[1], t[0]), cag_sub(t[2], t[0]));
+  const double a = cag_dot(n, cag_sub(p, t[0])), b = cag_dot(n, cag_sub(q, t[0]));
+  if (!((a < 0 && b > 0) || (a > 0 && b < 0))) return false;
+  const CagVec3 x = cag_lerp(p, q, a / (a - b));
+  for (int i = 0; i < 3; i++)
+    if (cag_dot(cag_cross(cag_sub(t[(i + 1) % 3], t[i]), cag_sub(x, t[i])), n) < 0) return false;
+  return true;
+}
+
+static double chord_distance(const CagPart *a, const CagPart *b) {
+  double nearest = INFINITY;
+  for (int i = 0; i < 3; i++) {
+    const int next = (i + 1) % 3;
+    if (pierces(a->p[i], a->p[next], b->p) || pierces(b->p[i], b->p[next], a->p)) return 0;
+    nearest = fmin(nearest, cag_distance_to_triangle(a->p[i], b->p[0], b->p[1], b->p[2]));
+    nearest = fmin(nearest, cag_distance_to_triangle(b->p[i], a->p[0], a->p[1], a->p[2]));
+    for (int k = 0; k < 3; k++)
+      nearest = fmin(nearest, segments(a->p[i], a->p[next], b->p[k], b->p[(k + 1) % 3]));
+  }
+  return nearest;
+}
+
+// Keeps the point q of the second shape if it is the nearest so far to the point p of the first.
+typedef struct Foot {
+  double distance;
+  CagVec3 p;
+} Foot;
+static void offer_foot(Foot *foot, CagVec3 p, CagVec3 q) {
+  const double d = cag_norm(cag_sub(p, q));
+  if (d < foot->distance) *foot = (Foot){d, q};
+}
+
+// The point of b nearest to a, for triangles that do not meet.
+static CagVec3 chord_foot(const CagPart *a, const CagPart *b) {
+  Foot nearest = {INFINITY, b->p[0]};
+  CagVec3 foot;
+  for (int i = 0; i < 3; i++) {
+    const CagVec3 p = a->p[i], q = a->p[(i + 1) % 3];
+    if (cag_foot_in_triangle(p, b->p, &foot)) offer_foot(&nearest, p, foot);
+    if (cag_foot_in_triangle(b->p[i], a->p, &foot)) offer_foot(&nearest, foot, b->p[i]);
+    for (int k = 0; k < 3; k++) {
+      const CagVec3 r = b->p[k], s = b->p[(k + 1) % 3];
+      offer_foot(&nearest, p, cag_nearest_of_segment(p, r, s));
+      offer_foot(&nearest, cag_nearest_of_segment(r, p, q), r);
+      // Where the lines are nearest, if both points are within.
+      const CagVec3 u = cag_sub(q, p), v = cag_sub(s, r), w = cag_sub(p, r);
+      const double uu = cag_dot(u, u), vv = cag_dot(v, v), uv = cag_dot(u, v);
+      const double det = uu * vv - uv * uv, uw = cag_dot(u, w), vw = cag_dot(v, w);
+      const double x = (uv * vw - vv * uw) / det, y = (uu * vw - uv * uw) / det;
+      if (det > 0 && x > 0 && x < 1 && y > 0 && y < 1)
+        offer_foot(&nearest, cag_madd(p, x, u), cag_madd(r, y, v));
+    }
+  }
+  return nearest.p;
+}
+
+// --- Bounds by cores ---
+
+// The hull of up to three points, from which all points of a part have one distance.
+typedef struct Hull {
+  CagPart part; // with the points alone
+  double radius;
+} Hull;
+
+static Hull hull_of_core(const CagCore *core) {
+  return (Hull){{.p = {core->p[0], core->p[1], core->p[1]}}, core->radius};
+}
+
+// False: the part is known to its sag only.
+static bool hull_of_part(const CagParts *parts, const CagPart *part, Hull *out) {
+  if (part->core) *out = hull_of_core(&parts->cores[part->core - 1]);
+  else *out = (Hull){.part = *part};
+  return part->core || part->sag == 0;
+}
+
+// The largest distance of a point of the hull from a core's point or infinite line, which is as far
+// from all of its part as the core is: that of a corner, as the distance is a convex function.
+static double reach(const Hull *from, const Hull *core) {
+  const CagVec3 *to = core->part.p, along = cag_unit(cag_sub(to[1], to[0]));
+  double most = 0;
+  for (int i = 0; i < 3; i++) {
+    const CagVec3 r = cag_sub(from->part.p[i], to[0]);
+    most = fmax(most, cag_norm(cag_madd(r, -cag_dot(r, along), along)));
+  }
+  return most;
+}
+
+// A lower bound of the distance of two parts by their hulls: one is outside the other, or within.
+static double hull_bound(const Hull *a, const Hull *b) {
+  const double beside = chord_distance(&a->part, &b->part) - a->radius - b->radius;
+  const double within = fabs(b->radius - a->radius);
+  if (beside >= within) return beside;
+  const Hull *inner = a->radius < b->radius ? a : b, *outer = inner == a ? b : a;
+  return fmax(beside, within - reach(inner, outer));
+}
+
+// --- Trees of boxes ---
+
+typedef struct Node {
+  CagBounds box;
+  double sag;          // the largest of its parts
+  size_t core;         // that of all parts; 0: none, or several
+  size_t first, count; // parts by `order`
+  size_t left;         // children left and left + 1; 0: a leaf
+} Node;
+
+typedef struct Tree {
+  const CagParts *parts;
+  size_t *order;
+  Node *nodes;
+  size_t n;
+} Tree;
+
+static double coordinate(CagVec3 p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+// The loops over the parts of a node end early if the work is to end, which grow_tree tells.
+static CagBounds box_of(const Tree *t, size_t first, size_t count) {
+  CagBounds box = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; i < count && !cag_stopped(); i++)
+    for (int k = 0; k < 3; k++) cag_bounds_add(&box, t->parts->items[t->order[first + i]].p[k]);
+  return box;
+}
+
+static Node node_of(const Tree *t, size_t first, size_t count) {
+  Node node = {.box = box_of(t, first, count), .first = first, .count = count};
+  node.core = t->parts->items[t->order[first]].core;
+  for (size_t i = 0; i < count && !cag_stopped(); i++) {
+    const CagPart *part = &t->parts->items[t->order[first + i]];
+    node.sag = fmax(node.sag, part->sag);
+    if (part->core != node.core) node.core = 0;
+  }
+  return node;
+}
+
+// Parts below the middle of the box first; halves by number where all are on one side.
+static size_t divide(Tree *t, const Node *node) {
+  const CagVec3 size = cag_sub(node->box.max, node->box.min);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const double middle = (coordinate(node->box.min, axis) + coordinate(node->box.max, axis)) / 2;
+  size_t low = 0;
+  for (size_t i = 0; i < node->count && !cag_stopped(); i++) {
+    size_t *at = t->order + node->first;
+    const CagPart *part = &t->parts->items[at[i]];
+    const double x = (coordinate(part->p[0], axis) + coordinate(part->p[1], axis) +
+                      coordinate(part->p[2], axis)) /
+                     3;
+    if (x >= middle) continue;
+    const size_t swap = at[i];
+    at[i] = at[low];
+    at[low++] = swap;
+  }
+  return low == 0 || low == node->count ? node->count / 2 : low;
+}
+
+static CagStatus grow_tree(const CagParts *parts, Tree *t, CagError *err) {
+  *t = (Tree){.parts = parts, .n = 1};
+  t->order = cag_malloc(parts->n * sizeof *t->order);
+  t->nodes = cag_malloc(2 * parts->n * sizeof *t->nodes);
+  if (!t->order || !t->nodes) return cag_fail_memory(err);
+  for (size_t i = 0; i < parts->n; i++) t->order[i] = i;
+  t->nodes[0] = node_of(t, 0, parts->n);
+  for (size_t i = 0; i < t->n; i++) {
+    if (cag_stop_check(err)) return err->status;
+    Node *node = &t->nodes[i];
+    if (node->count <= LEAF) continue;
+    const size_t low = divide(t, node), rest = node->count - low;
+    node->left = t->n;
+    t->nodes[t->n++] = node_of(t, node->first, low);
+    t->nodes[t->n++] = node_of(t, node->first + low, rest);
+  }
+  return CAG_OK;
+}
+
+static double gap(const CagBounds *a, const CagBounds *b) {
+  const double x = fmax(0, fmax(a->min.x - b->max.x, b->min.x - a->max.x));
+  const double y = fmax(0, fmax(a->min.y - b->max.y, b->min.y - a->max.y));
+  const double z = fmax(0, fmax(a->min.z - b->max.z, b->min.z - a->max.z));
+  return sqrt(x * x + y * y + z * z);
+}
+
+// That of the boxes of two parts, which is far cheaper than that of their chords.
+static double part_gap(const CagPart *a, const CagPart *b) {
+  CagBounds box[2];
+  for (int i = 0; i < 2; i++) {
+    const CagVec3 *p = i ? b->p : a->p;
+    box[i].min = box[i].max = p[0];
+    for (int k = 1; k < 3; k++) {
+      box[i].min = cag_vec3(p[k].x < box[i].min.x ? p[k].x : box[i].min.x,
+                            p[k].y < box[i].min.y ? p[k].y : box[i].min.y,
+                            p[k].z < box[i].min.z ? p[k].z : box[i].min.z);
+      box[i].max = cag_vec3(p[k].x > box[i].max.x ? p[k].x : box[i].max.x,
+                            p[k].y > box[i].max.y ? p[k].y : box[i].max.y,
+                            p[k].z > box[i].max.z ? p[k].z : box[i].max.z);
+    }
+  }
+  return gap(&box[0], &box[1]);
+}
+
+// The nearest pairs so far, ascending.
+typedef struct Nearest {
+  size_t n;
+  double distance[CANDIDATES];
+  const CagPart *a[CANDIDATES], *b[CANDIDATES];
+  size_t looked;                 // pairs of parts compared so far
+  const volatile int *interrupt; // not NULL and not 0: the search ends
+} Nearest;
+
+static double worst(const Nearest *s) {
+  return s->n < CANDIDATES ? INFINITY : s->distance[CANDIDATES - 1];
+}
+
+static void keep(Nearest *s, double d, const CagPart *a, const CagPart *b) {
+  if (d >= worst(s)) return;
+  size_t i = s->n < CANDIDATES ? s->n++ : CANDIDATES - 1;
+  for (; i > 0 && s->distance[i - 1] > d; i--) {
+    s->distance[i] = s->distance[i - 1];
+    s->a[i] = s->a[i - 1];
+    s->b[i] = s->b[i - 1];
+  }
+  s->distance[i] = d;
+  s->a[i] = a;
+  s->b[i] = b;
+}
+
+static void walk(const Tree *a, size_t i, const Tree *b, size_t k, Nearest *s) {
+  const Node *x = &a->nodes[i], *y = &b->nodes[k];
+  if (gap(&x->box, &y->box) >= worst(s)) return;
+  if ((s->interrupt && *s->interrupt) || s->looked >= MOST_LOOKED) return;
+  if (!x->left && !y->left) {
+    s->looked += x->count * y->count;
+    for (size_t m = 0; m < x->count; m++)
+      for (size_t n = 0; n < y->count; n++) {
+        const CagPart *p = &a->parts->items[a->order[x->first + m]];
+        const CagPart *q = &b->parts->items[b->order[y->first + n]];
+        if (part_gap(p, q) < worst(s)) keep(s, chord_distance(p, q), p, q);
+      }
+    return;
+  }
+  const bool first = x->left && (!y->left || x->count >= y->count);
+  const Node *child = first ? &a->nodes[x->left] : &b->nodes[y->left];
+  const CagBounds *other = first ? &y->box : &x->box;
+  const size_t nearer = gap(&child[1].box, other) < gap(&child[0].box, other);
+  for (size_t turn = 0; turn < 2; turn++) {
+    const size_t c = turn ? 1 - nearer : nearer;
+    if (first) walk(a, x->left + c, b, k, s);
+    else walk(a, i, b, y->left + c, s);
+  }
+}
+
+// --- The search ---
+
+// Two nodes with a lower bound of their distance.
+typedef struct Task {
+  double bound;
+  size_t i, k;
+} Task;
+
+typedef struct Search {
+  const Tree *a, *b;
+  double size, best;
+  double farthest; // largest distance found for a pair
+  CagVec3 point;   // on the second shape
+  size_t pairs, most;
+  Task *tasks; // a heap with the lowest bound first
+  size_t count, room;
+  const volatile int *interrupt;
+  CagStatus status;
+  CagError *err;
+} Search;
+
+// Shapes nearer than this meet; what may be nearer than the best by less than this is not looked
+// at.
+static double touching(const Search *s) { return TOUCHING * s->size; }
+
+static double equally_near(const Search *s) { return EQUALLY_NEAR * s->size; }
+
+// A point, a straight piece of a curve, or a flat triangle: it is its own chord.
+static bool is_exact(const CagPart *part) { return part->sag == 0 && !part->core; }
+
+// From the ends of curves, where the search from the middle led to a farther minimum: keeps the
+// nearest.
+static void try_ends(Search *s, const CagPartPair *start, double *d, CagVec3 *p) {
+  for (int side = 0, at = 0; side < 2; at += start->free[side++])
+    for (int last = 0; last < 2 && start->part[side]->curve && !s->status; last++) {
+      CagPartPair pair = *start;
+      double there;
+      CagVec3 foot;
+      pair.x[at] = last ? pair.part[side]->high[0] : pair.part[side]->low[0];
+      s->status = cag_part_pair_refine(&pair, &there, &foot, s->err);
+      if (s->status || there >= *d) continue;
+      *d = there;
+      *p = foot;
+    }
+}
+
+// Lowers the best distance by what the pair leads to; `chords` is that of their chords.
+static void try_pair(Search *s, const CagPart *a, const CagPart *b, double chords) {
+  const CagPartPair start = cag_part_pair(a, b);
+  CagPartPair pair = start;
+  double d = chords;
+  CagVec3 p;
+  const bool exact = is_exact(a) && is_exact(b);
+  if (exact) p = chord_foot(a, b);
+  else s->status = cag_part_pair_refine(&pair, &d, &p, s->err);
+  for (int round = 0; !exact && round < CORNER_ROUNDS && d > touching(s); round++) {
+    if (s->status || !cag_part_pair_leave_corner(&pair, d, &s->status, s->err)) break;
+    s->status = cag_part_pair_refine(&pair, &d, &p, s->err);
+  }
+  if (s->status) return;
+  if (!exact && d > chords + equally_near(s)) try_ends(s, &start, &d, &p);
+  if (s->status) return;
+  s->pairs++;
+  s->farthest = fmax(s->farthest, d);
+  if (d >= s->best) return;
+  s->best = d;
+  s->point = p;
+}
+
+// True if the search can stop: it failed, or the shapes touch or run along each other at a constant
+// distance.
+static bool is_over(const Search *s) {
+  return s->status || s->best <= touching(s) || (s->interrupt && *s->interrupt) ||
+         (s->pairs >= SAME_PAIRS && s->farthest - s->best <= equally_near(s));
+}
+
+static void push_task(Search *s, Task task) {
+  if (s->status || task.bound >= s->best - equally_near(s)) return;
+  if (s->count == s->room) {
+    const size_t room = s->room ? 2 * s->room : 256;
+    Task *grown = cag_realloc(s->tasks, room * sizeof *grown);
+    if (!grown) {
+      s->status = cag_fail_memory(s->err);
+      return;
+    }
+    s->tasks = grown;
+    s->room = room;
+  }
+  size_t i = s->count++;
+  for (; i > 0 && s->tasks[(i - 1) / 2].bound > task.bound; i = (i - 1) / 2)
+    s->tasks[i] = s->tasks[(i - 1) / 2];
+  s->tasks[i] = task;
+}
+
+static Task pop_task(Search *s) {
+  Task *tasks = s->tasks;
+  const Task top = tasks[0], last = tasks[--s->count];
+  size_t i = 0;
+  for (size_t child; (child = 2 * i + 1) < s->count; i = child) {
+    if (child + 1 < s->count && tasks[child + 1].bound < tasks[child].bound) child++;
+    if (!(tasks[child].bound < last.bound)) break;
+    tasks[i] = tasks[child];
+  }
+  tasks[i] = last;
+  return top;
+}
+
+static void push_nodes(Search *s, size_t i, size_t k) {
+  const Node *x = &s->a->nodes[i], *y = &s->b->nodes[k];
+  double bound = gap(&x->box, &y->box) - x->sag - y->sag;
+  if (x->core && y->core && bound < s->best - equally_near(s)) {
+    const Hull p = hull_of_core(&s->a->parts->cores[x->core - 1]);
+    const Hull q = hull_of_core(&s->b->parts->cores[y->core - 1]);
+    bound = fmax(bound, hull_bound(&p, &q));
+  }
+  push_task(s, (Task){bound, i, k});
+}
+
+static void fail_uncertain(Search *s, double bound) {
+  s->status =
+      cag_fail(s->err, CAG_E_LIMIT, CAG_ERR_convergence, "", -1,
+               "more than %zu pairs of points on the shapes are nearly equally close, at %g "
+               "to %g mm; cannot determine which pair is the closest",
+               s->most, fmax(0, bound), s->best);
+}
+
+static void try_parts(Search *s, const Node *x, const Node *y) {
+  for (size_t m = 0; m < x->count; m++)
+    for (size_t n = 0; n < y->count && !is_over(s); n++) {
+      const CagPart *p = &s->a->parts->items[s->a->order[x->first + m]];
+      const CagPart *q = &s->b->parts->items[s->b->order[y->first + n]];
+      const double least = s->best - equally_near(s) + p->sag + q->sag;
+      if (part_gap(p, q) >= least) continue;
+      const double chords = chord_distance(p, q);
+      if (chords >= least) continue;
+      Hull a, b;
+      if (hull_of_part(s->a->parts, p, &a) && hull_of_part(s->b->parts, q, &b) &&
+          hull_bound(&a, &b) >= s->best - equally_near(s))
+        continue;
+      if (s->pairs < s->most) try_pair(s, p, q, chords);
+      else fail_uncertain(s, chords - p->sag - q->sag);
+    }
+}
+
+static void go_on(Search *s, const Task *task) {
+  const Node *x = &s->a->nodes[task->i], *y = &s->b->nodes[task->k];
+  if (!x->left && !y->left) {
+    try_parts(s, x, y);
+    return;
+  }
+  const bool first = x->left && (!y->left || x->count >= y->count);
+  for (size_t half = 0; half < 2; half++)
+    if (first) push_nodes(s, x->left + half, task->k);
+    else push_nodes(s, task->i, y->left + half);
+}
+
+// Tests all pairs that may be closer than the best one, in the order of the bounds of their nodes.
+static void certify(Search *s) {
+  push_nodes(s, 0, 0);
+  while (s->count > 0 && !is_over(s)) {
+    const Task task = pop_task(s);
+    if (task.bound >= s->best - equally_near(s)) break;
+    go_on(s, &task);
+  }
+}
+
+static void find_nearest(Search *s) {
+  Nearest nearest = {.interrupt = s->interrupt};
+  const CagBounds *box[2] = {&s->a->nodes[0].box, &s->b->nodes[0].box};
+  for (int i = 0; i < 2; i++) s->size = fmax(s->size, cag_norm(cag_sub(box[i]->max, box[i]->min)));
+  walk(s->a, 0, s->b, 0, &nearest);
+  for (size_t i = 0; i < nearest.n && !is_over(s); i++)
+    try_pair(s, nearest.a[i], nearest.b[i], nearest.distance[i]);
+  certify(s);
+}
+
+CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, double *out,
+                             CagVec3 *point, const volatile int *interrupt, CagError *err) {
+  if (a->n == 0 || b->n == 0)
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_zero_area, "", -1,
+                    "a surface without area has no triangles to measure from");
+  Tree first = {0}, second = {0};
+  Search s = {&first, &second, .best = INFINITY, .most = most, .interrupt = interrupt, .err = err};
+  CagStatus status = grow_tree(a, &first, err);
+  if (!status) status = grow_tree(b, &second, err);
+  if (!status) {
+    find_nearest(&s);
+    status = s.status;
+  }
+  if (!status && interrupt && *interrupt)
+    status =
+        cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the search was interrupted");
+  cag_free(first.order);
+  cag_free(first.nodes);
+  cag_free(second.order);
+  cag_free(second.nodes);
+  cag_free(s.tasks);
+  if (status) return status;
+  *out = s.best <= touching(&s) ? 0 : s.best;
+  if (point) *point = s.point;
+  return CAG_OK;
+}
+
+// --- Inside ---
+
+// Solid angles (van Oosterom, Strackee 1983), over 4 pi. Ends early if the work is to end.
+double cag_mesh_winding(const CagMesh *m, CagVec3 p) {
+  double sum = 0;
+  for (size_t t = 0; t < m->triangle_count && !cag_stopped(); t++) {
+    const uint32_t *k = m->triangles + 3 * t;
+    const CagVec3 a = cag_sub(m->positions[k[0]], p), b = cag_sub(m->positions[k[1]], p);
+    const CagVec3 c = cag_sub(m->positions[k[2]], p);
+    const double x = cag_norm(a), y = cag_norm(b), z = cag_norm(c);
+    sum += atan2(cag_dot(a, cag_cross(b, c)),
+                 x * y * z + cag_dot(a, b) * z + cag_dot(b, c) * x + cag_dot(c, a) * y);
+  }
+  return sum / (2 * M_PI);
+}

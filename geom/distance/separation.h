@@ -1,0 +1,60 @@
+// How far two shapes are apart, and whether a point is within a closed mesh.
+
+#ifndef CAG_GEOM_DISTANCE_SEPARATION_H
+#define CAG_GEOM_DISTANCE_SEPARATION_H
+
+#include "geom/mesh/mesh.h"
+#include "geom/surface/core.h"
+#include "geom/surface/surface.h"
+
+// Small parts of a shape: points, chords of curves, triangles of exact surfaces, flat triangles.
+typedef struct CagPart {
+  CagVec3 p[3];              // corners; fewer are repeated
+  const CagCurve *curve;     // borrowed; the part over [low[0], high[0]]
+  const CagSurface *surface; // borrowed
+  bool flat;                 // the triangle itself
+  double at[2];              // parameters within the part
+  double low[2], high[2];    // where the search may go: the smooth piece around
+  bool ring[2];              // may go around: a closed direction without breaks
+  double sag;                // how far the exact shape may leave its chord or triangle
+  size_t core;               // one more than the index of its core; 0: none
+} CagPart;
+
+typedef struct CagParts {
+  CagPart *items;
+  size_t n, capacity;
+  CagCore *cores;
+  size_t core_count;
+} CagParts;
+
+CagStatus cag_parts_add_point(CagParts *parts, CagVec3 p, CagError *err);
+CagStatus cag_parts_add_curve(CagParts *parts, const CagCurve *c, double tolerance, CagError *err);
+// The mesh of a surface, which has its parameters, to the tolerance; surface NULL: the mesh is the
+// shape.
+CagStatus cag_parts_add_mesh(CagParts *parts, const CagMesh *m, const CagSurface *surface,
+                             double tolerance, CagError *err);
+void cag_parts_free(CagParts *parts);
+
+// Computes the minimum distance of two sets of parts, or 0 if they meet. Chords and flat triangles
+// are compared first. Then the exact shapes are compared by Newton's method, for every pair that
+// may be closer than the best one given the sag of its parts, in the order of the lower bounds. The
+// cores of spheres, cylinders, circles and straight parts have bounds that are exact: shapes that
+// run along each other at a constant distance, such as concentric spheres, need few pairs. For
+// other shapes at a constant distance the search ends when thousands of pairs lead to that distance
+// and none to another.
+//
+//   most       maximum number of pairs to compare on the exact shapes
+//   point      closest point on b if the shapes do not meet; may be NULL
+//   interrupt  may be NULL; a value other than 0 stops with CAG_E_CALLBACK
+//
+// Fails with "zero-area" if a set is empty, such as the set of a surface that is a single point,
+// and with "convergence" if more than `most` pairs may be the closest and lead to different
+// distances.
+#define CAG_PARTS_PAIRS 100000
+CagStatus cag_parts_distance(const CagParts *a, const CagParts *b, size_t most, double *out,
+                             CagVec3 *point, const volatile int *interrupt, CagError *err);
+
+// How often a closed mesh winds about p: 1 inside, 0 outside, fractions on the boundary only.
+double cag_mesh_winding(const CagMesh *m, CagVec3 p);
+
+#endif

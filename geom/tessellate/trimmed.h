@@ -1,0 +1,13 @@
+// Tessellation of trimmed surfaces.
+
+#ifndef CAG_GEOM_TESSELLATE_TRIMMED_H
+#define CAG_GEOM_TESSELLATE_TRIMMED_H
+
+#include "geom/tessellate/tessellate.h"
+
+// The tolerance is positive. The outline's points depend on the outline alone, and no edge of it is
+// divided further, so that surfaces on both sides of it can share them.
+CagStatus cag_trimmed_tessellate(const CagSurface *s, const CagTessellation *how, CagMesh **out,
+                                 CagError *err);
+
+#endif

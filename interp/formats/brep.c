@@ -1,0 +1,308 @@
+// The things of a scene as shapes of curves, sheets and solids, and their shells.
+
+#include "interp/formats/brep.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "geom/tessellate/orient.h"
+#include "interp/formats/brep_build.h"
+
+// Ends and edges that are meant to meet do so to this part of a shape's size: what the checks of
+// closed solids allow.
+#define SAME 1e-6
+// No file needs less than this: programs take it for the smallest length.
+#define ACCURACY_MIN 1e-7
+
+void cag_brep_free(CagBrep *b) {
+  for (size_t i = 0; i < b->edge_count; i++) cag_curve_release(b->edges[i].curve);
+  for (size_t i = 0; i < b->face_count; i++) cag_surface_release(b->faces[i].surface);
+  for (size_t i = 0; i < b->shape_count; i++) cag_curve_release(b->shapes[i].curve);
+  cag_free(b->vertices);
+  cag_free(b->edges);
+  cag_free(b->uses);
+  cag_free(b->loops);
+  cag_free(b->faces);
+  cag_free(b->shells);
+  cag_free(b->shapes);
+  *b = (CagBrep){0};
+}
+
+// --- Shells ---
+
+static size_t root(size_t *parent, size_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+// Joins faces that share an edge; *open: an edge has one use.
+static CagStatus connect(const CagBrepWork *w, size_t *parent, bool *open, CagError *err) {
+  const CagBrep *b = w->brep;
+  const size_t n = b->face_count - w->first_face, edges = b->edge_count - w->first_edge;
+  size_t *user = cag_malloc((edges + 1) * sizeof *user); // of the shape's own edges
+  if (!user) return cag_fail_memory(err);
+  for (size_t i = 0; i < edges; i++) user[i] = SIZE_MAX;
+  size_t single = 0;
+  for (size_t f = 0; f < n; f++) {
+    const CagBrepFace *face = &b->faces[w->first_face + f];
+    for (size_t l = face->first; l < face->first + face->count; l++)
+      for (size_t u = b->loops[l].first; u < b->loops[l].first + b->loops[l].count; u++) {
+        size_t *first = &user[b->uses[u].edge - w->first_edge];
+        if (*first == SIZE_MAX) *first = f, single++;
+        else parent[root(parent, f)] = root(parent, *first), single--;
+      }
+  }
+  *open = single > 0;
+  cag_free(user);
+  return CAG_OK;
+}
+
+// Numbers the sets by their first faces; gives how many there are.
+static size_t number_sets(size_t *parent, size_t n, size_t *set) {
+  size_t sets = 0;
+  for (size_t f = 0; f < n; f++) set[f] = SIZE_MAX;
+  for (size_t f = 0; f < n; f++) {
+    size_t r = root(parent, f);
+    if (set[r] == SIZE_MAX) set[r] = sets++;
+    set[f] = set[r];
+  }
+  return sets;
+}
+
+// Puts the faces of one set together, and makes a shell of each.
+static CagStatus sort_faces(CagBrep *b, size_t first, const size_t *set, size_t sets, bool closed,
+                            CagError *err) {
+  size_t n = b->face_count - first;
+  CagBrepFace *sorted = cag_malloc((n ? n : 1) * sizeof *sorted);
+  if (!sorted || !cag_brep_reserve((void **)&b->shells, b->shell_count, sets, sizeof *b->shells)) {
+    cag_free(sorted);
+    return cag_fail_memory(err);
+  }
+  size_t *at = cag_calloc(sets + 1, sizeof *at);
+  if (!at) {
+    cag_free(sorted);
+    return cag_fail_memory(err);
+  }
+  for (size_t f = 0; f < n; f++) at[set[f] + 1]++;
+  for (size_t k = 0; k < sets; k++) {
+    b->shells[b->shell_count] = (CagBrepShell){first + at[k], at[k + 1], closed, b->shell_count};
+    b->shell_count++;
+    at[k + 1] += at[k];
+  }
+  for (size_t f = 0; f < n; f++) sorted[at[set[f]]++] = b->faces[first + f];
+  memcpy(b->faces + first, sorted, n * sizeof *sorted);
+  cag_free(at);
+  cag_free(sorted);
+  return CAG_OK;
+}
+
+static CagStatus make_shells(CagBrepWork *w, bool *closed, CagError *err) {
+  size_t n = w->brep->face_count - w->first_face;
+  size_t *parent = cag_malloc((n + 1) * sizeof *parent), *set = cag_malloc((n + 1) * sizeof *set);
+  CagStatus status = parent && set ? CAG_OK : cag_fail_memory(err);
+  bool open = false;
+  for (size_t f = 0; !status && f < n; f++) parent[f] = f;
+  if (!status) status = connect(w, parent, &open, err);
+  if (!status)
+    status = sort_faces(w->brep, w->first_face, set, number_sets(parent, n, set), !open, err);
+  *closed = !open;
+  cag_free(parent);
+  cag_free(set);
+  return status;
+}
+
+// --- Hollows ---
+
+// The volume that a shell of some of the solid's faces bounds, negative where its normals look
+// inwards; and its box.
+static CagStatus shell_volume(const CagBrep *b, const CagBrepShell *shell, const CagSolid *solid,
+                              double *volume, CagBounds *box, CagError *err) {
+  double terms[10] = {0};
+  size_t last = SIZE_MAX;
+  *box = CAG_BOUNDS_EMPTY;
+  for (size_t f = shell->first; f < shell->first + shell->count; f++) {
+    size_t source = b->faces[f].source;
+    if (source == last) continue; // another piece of the same
+    last = source;
+    CagBounds part;
+    CagStatus status = cag_surface_volume_terms(solid->faces[source], terms, err);
+    if (!status) status = cag_surface_bounds(solid->faces[source], &part, err);
+    if (status) return status;
+    cag_bounds_add(box, part.min);
+    cag_bounds_add(box, part.max);
+  }
+  *volume = terms[0];
+  return CAG_OK;
+}
+
+static bool holds(const CagBounds *a, const CagBounds *b) {
+  return a->min.x <= b->min.x && a->min.y <= b->min.y && a->min.z <= b->min.z &&
+         a->max.x >= b->max.x && a->max.y >= b->max.y && a->max.z >= b->max.z;
+}
+
+// Says which shells of a solid are hollows of which others: the smallest box around decides.
+static CagStatus find_hollows(CagBrep *b, size_t first, const CagSolid *solid, CagError *err) {
+  size_t n = b->shell_count - first;
+  if (n < 2) return CAG_OK;
+  double *volume = cag_malloc(n * sizeof *volume);
+  CagBounds *box = cag_malloc(n * sizeof *box);
+  CagStatus status = volume && box ? CAG_OK : cag_fail_memory(err);
+  for (size_t i = 0; !status && i < n; i++)
+    status = shell_volume(b, &b->shells[first + i], solid, &volume[i], &box[i], err);
+  for (size_t i = 0; !status && i < n; i++) {
+    if (!(volume[i] < 0)) continue;
+    double best = INFINITY;
+    for (size_t k = 0; k < n; k++)
+      if (volume[k] > 0 && volume[k] < best && holds(&box[k], &box[i])) {
+        best = volume[k];
+        b->shells[first + i].void_of = first + k;
+      }
+  }
+  cag_free(volume);
+  cag_free(box);
+  return status;
+}
+
+// --- Shapes ---
+
+static double shape_tolerance(const CagScene *s, const CagItem *item) {
+  return item->tolerance > 0 ? item->tolerance : s->tolerance;
+}
+
+static CagStatus fail_operation(const CagItem *item, CagError *err) {
+  return cag_fail(
+      err, CAG_E_UNSUPPORTED, CAG_ERR_export_operation, "", -1,
+      "%s is a union, difference or intersection of solids, whose faces meet in curves "
+      "that are not NURBS: show its parts one by one, or write .stl, .obj, .ply or .glb",
+      item->name);
+}
+
+static CagStatus fail_mesh(const CagItem *item, CagError *err) {
+  return cag_fail(err, CAG_E_UNSUPPORTED, CAG_ERR_export_mesh, "", -1,
+                  "%s is a mesh, and files of exact geometry hold curves and surfaces: show the "
+                  "surfaces that it was made of, or write .stl, .obj, .ply or .glb",
+                  item->name);
+}
+
+// The normals of a closed surface point outward, as those of a solid.
+static CagStatus add_surface(CagBrepWork *w, const CagSurface *s, CagError *err) {
+  CagSurface *outward;
+  CagStatus status = cag_surface_outward(s, &outward, err);
+  if (status) return status;
+  status = cag_brep_add_surface(w, outward, 0, err);
+  cag_surface_release(outward);
+  return status;
+}
+
+static CagStatus add_faces(CagBrepWork *w, CagError *err) {
+  const CagItem *item = w->item;
+  switch (item->kind) {
+  case CAG_ITEM_REGION: return cag_brep_add_region(w, item->as.region, &item->placement, 0, err);
+  case CAG_ITEM_SURFACE: return add_surface(w, item->as.surface, err);
+  case CAG_ITEM_SOLID: {
+    CagStatus status = CAG_OK;
+    const CagSolid *solid = item->as.solid;
+    if (solid->kind == CAG_SOLID_MESH) return fail_mesh(item, err);
+    if (solid->face_count == 0) return fail_operation(item, err);
+    for (size_t i = 0; !status && i < solid->face_count; i++)
+      status = cag_brep_add_surface(w, solid->faces[i], i, err);
+    return status;
+  }
+  default: return fail_mesh(item, err);
+  }
+}
+
+// Size of the sides made so far: what nearness is relative to.
+static CagStatus measure(CagBrepWork *w, CagError *err) {
+  CagBounds box = CAG_BOUNDS_EMPTY;
+  for (size_t i = 0; i < w->side_count; i++) {
+    CagBounds b = w->sides[i].curve->kind->hull(w->sides[i].curve, w->sides[i].curve->start,
+                                                w->sides[i].curve->end);
+    cag_bounds_add(&box, b.min);
+    cag_bounds_add(&box, b.max);
+  }
+  double size = box.min.x <= box.max.x ? cag_norm(cag_sub(box.max, box.min)) : 0;
+  if (!isfinite(size))
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_not_finite, "", -1, "%s is too large",
+                    w->item->name);
+  // Where two sides of an edge were approximated each on its own, they differ by twice the
+  // tolerance.
+  w->same = fmax(SAME * size, w->approximate ? 2 * w->asked : 0);
+  return CAG_OK;
+}
+
+static CagStatus add_bounded(CagBrepWork *w, CagBrepShape *shape, CagError *err) {
+  CagBrep *b = w->brep;
+  w->first_face = b->face_count;
+  w->first_loop = b->loop_count;
+  w->first_edge = b->edge_count;
+  shape->first = b->shell_count;
+  shape->kind = w->item->kind == CAG_ITEM_SOLID ? CAG_BREP_SOLID : CAG_BREP_SHEET;
+  bool closed = false;
+  CagStatus status = add_faces(w, err);
+  if (!status) status = measure(w, err);
+  if (!status) status = cag_brep_join(w, err);
+  if (!status) status = make_shells(w, &closed, err);
+  if (!status && shape->kind == CAG_BREP_SOLID && !closed)
+    status =
+        cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_export_open, "", -1,
+                 "%s does not close within %g mm: some of its faces have an edge that no other "
+                 "shares; show its surfaces instead, or write a mesh",
+                 w->item->name, w->same);
+  // A closed surface is the boundary of a solid.
+  if (!status && closed && w->item->kind == CAG_ITEM_SURFACE &&
+      cag_surface_is_closed(w->item->as.surface))
+    shape->kind = CAG_BREP_SOLID;
+  if (!status && w->item->kind == CAG_ITEM_SOLID)
+    status = find_hollows(b, shape->first, w->item->as.solid, err);
+  shape->count = b->shell_count - shape->first;
+  for (size_t i = 0; i < w->side_count; i++) cag_curve_release(w->sides[i].curve);
+  cag_free(w->sides);
+  return status;
+}
+
+// Errors of the geometry do not know which shape was written.
+static CagStatus name_shape(const CagItem *item, CagStatus status, CagError *err) {
+  char said[sizeof err->message];
+  if (status == CAG_E_CALLBACK || strstr(err->message, item->name)) return status;
+  memcpy(said, err->message, sizeof said);
+  snprintf(err->message, sizeof err->message, "%.80s: %.300s", item->name, said);
+  return status;
+}
+
+static CagStatus add_item(CagBrep *b, const CagScene *scene, const CagItem *item, CagError *err) {
+  CagBrepWork w = {.brep = b, .scene = scene, .item = item, .asked = shape_tolerance(scene, item)};
+  CagBrepShape shape = {.name = item->name, .material = &scene->materials[item->material]};
+  CagStatus status;
+  if (item->kind == CAG_ITEM_CURVE) {
+    shape.kind = CAG_BREP_CURVE;
+    status = cag_brep_curve(&w, item->as.curve, &shape.curve, err);
+  } else {
+    status = add_bounded(&w, &shape, err);
+  }
+  if (status) return name_shape(item, status, err);
+  shape.approximate = w.approximate;
+  shape.tolerance = w.asked;
+  b->shapes[b->shape_count++] = shape;
+  return CAG_OK;
+}
+
+CagStatus cag_brep_of_scene(const CagScene *scene, CagBrep *out, CagError *err) {
+  *out = (CagBrep){.accuracy = ACCURACY_MIN};
+  out->shapes = cag_calloc(scene->item_count + 1, sizeof *out->shapes);
+  if (!out->shapes) return cag_fail_memory(err);
+  for (size_t i = 0; i < scene->item_count; i++) {
+    if (scene->interrupt && *scene->interrupt)
+      return cag_fail(err, CAG_E_CALLBACK, CAG_ERR_interrupted, "", -1, "the export was stopped");
+    if (scene->items[i].kind == CAG_ITEM_GROUND) continue;
+    CagStatus status = add_item(out, scene, &scene->items[i], err);
+    if (status) return status;
+  }
+  if (out->shape_count == 0)
+    return cag_fail(err, CAG_E_ARGUMENT, CAG_ERR_nothing_to_show, "", -1,
+                    "the script shows no shape");
+  return CAG_OK;
+}

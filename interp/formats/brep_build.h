@@ -1,0 +1,64 @@
+// What the parts of the boundary builder share. Not for other files.
+
+#ifndef CAG_INTERP_FORMATS_BREP_BUILD_H
+#define CAG_INTERP_FORMATS_BREP_BUILD_H
+
+#include "interp/formats/brep.h"
+
+// One side of a face before it is known which sides are the same edge.
+typedef struct CagBrepSide {
+  CagCurve *curve;
+  bool reversed; // the loop runs against the curve
+  size_t face, loop;
+  size_t order;    // within the loop
+  size_t from, to; // vertices of the curve's start and end
+  size_t edge;     // SIZE_MAX: not yet
+} CagBrepSide;
+
+// One shape on its way.
+typedef struct CagBrepWork {
+  CagBrep *brep;
+  const CagScene *scene;
+  const CagItem *item;
+  double asked;     // tolerance that the user gave; 0: none
+  bool approximate; // it was made use of
+  double same;      // points nearer than this are one
+  CagBrepSide *sides;
+  size_t side_count, side_room;
+  size_t first_face, first_loop, first_edge;
+} CagBrepWork;
+
+// Grows an array of `size`-byte elements for one more; NULL: memory is out (the array stays).
+void *cag_brep_grow(void *array, size_t count, size_t *room, size_t size);
+
+// Makes room for `more` elements behind the first `count` of an array that grows only by this
+// function: its length is then a power of two. Returns false if memory ran out (the array stays).
+bool cag_brep_reserve(void **array, size_t count, size_t more, size_t size);
+
+// --- Clean NURBS (brep_nurbs.c) ---
+// The exact form, clamped, or one within the tolerance asked for.
+CagStatus cag_brep_curve(CagBrepWork *w, const CagCurve *c, CagCurve **out, CagError *err);
+CagStatus cag_brep_surface(CagBrepWork *w, const CagSurface *s, CagSurface **out, CagError *err);
+// Curve along a side (0: u0, 1: u1, 2: v0, 3: v1) of a clamped surface, from its outermost points.
+CagStatus cag_brep_side_curve(const CagSurface *s, int side, CagCurve **out, CagError *err);
+// Inner knots where the tangent breaks, ascending; malloc'd. Direction 0: u.
+CagStatus cag_brep_curve_corners(const CagCurve *c, double **out, size_t *n, CagError *err);
+CagStatus cag_brep_surface_creases(const CagSurface *s, int direction, double **out, size_t *n,
+                                   CagError *err);
+bool cag_brep_is_straight(const CagCurve *c);
+
+// --- Surfaces within a tolerance (brep_approximate.c) ---
+CagStatus cag_brep_approximate(const CagSurface *s, double tolerance, CagSurface **out,
+                               CagError *err);
+
+// --- Faces (brep_face.c) ---
+// Adds the faces that a surface is made of, with their sides.
+CagStatus cag_brep_add_surface(CagBrepWork *w, const CagSurface *s, size_t source, CagError *err);
+CagStatus cag_brep_add_region(CagBrepWork *w, const CagRegion *r, const CagTransform *frame,
+                              size_t source, CagError *err);
+
+// --- Edges (brep_edge.c) ---
+// Makes vertices and edges of the sides, shared where they meet, and the loops of the faces.
+CagStatus cag_brep_join(CagBrepWork *w, CagError *err);
+
+#endif

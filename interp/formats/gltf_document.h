@@ -1,0 +1,59 @@
+// A glTF document taken apart: its JSON, its buffers, and typed views of them.
+
+#ifndef CAG_INTERP_FORMATS_GLTF_DOCUMENT_H
+#define CAG_INTERP_FORMATS_GLTF_DOCUMENT_H
+
+#include <cjson/cJSON.h>
+
+#include "interp/formats/mesh_draft.h"
+
+// An array of the document, for access by number.
+typedef struct CagGltfArray {
+  const cJSON **items;
+  size_t count;
+} CagGltfArray;
+
+typedef struct CagGltfBuffer {
+  char *bytes;
+  size_t size;
+  bool owned;
+} CagGltfBuffer;
+
+typedef struct CagGltf {
+  CagMeshDraft *draft;
+  cJSON *json;
+  CagGltfArray nodes, meshes, accessors, views;
+  CagGltfBuffer *buffers;
+  size_t buffer_count;
+} CagGltf;
+
+// Elements of `width` numbers of one component type, with those that are said one by one (sparse).
+typedef struct CagGltfAccessor {
+  const unsigned char *data; // NULL: zeros
+  size_t count, stride;
+  int component, width;
+  bool normalized;
+  size_t sparse_count;
+  const unsigned char *sparse_index, *sparse_data;
+  int sparse_component;
+} CagGltfAccessor;
+
+// Reads JSON and buffers. After a failure too, cag_gltf_close is to be called.
+CagStatus cag_gltf_open(CagGltf *g, CagMeshDraft *d, CagError *err);
+void cag_gltf_close(CagGltf *g);
+// Checks accessor `number` against its buffers. width: the numbers an element must have.
+CagStatus cag_gltf_accessor(const CagGltf *g, size_t number, int width, CagGltfAccessor *out,
+                            CagError *err);
+// Number k of element i; sparse elements are another matter.
+double cag_gltf_number(const CagGltfAccessor *a, size_t i, int k);
+uint32_t cag_gltf_index(const unsigned char *data, int component, size_t i);
+// Number k of what sparse element i is replaced with.
+double cag_gltf_sparse_number(const CagGltfAccessor *a, size_t i, int k);
+
+// A whole number of 0 or more under a key: `fallback` where it is missing. False: it is another
+// value.
+bool cag_gltf_whole(const cJSON *object, const char *key, size_t fallback, size_t *out);
+CagStatus cag_gltf_fail(const CagGltf *g, CagError *err, CagErrorId id, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+#endif

@@ -1,0 +1,152 @@
+// Set operations of solids as POV-Ray's own.
+//
+// Each operand is written as the object it is: a primitive, a prism, a lathe, a plane, a quadric,
+// an operation again; what has no object of its own becomes a closed mesh2. Operands may stand
+// anywhere, so their placement is part of them.
+//
+// A face that an operand shares with what is taken away from it is neither inside nor outside to
+// the renderer, which then shows parts of it at random. So what is taken away is enlarged about its
+// middle, by so little that no picture shows it.
+
+#include "interp/formats/pov_write.h"
+
+#include "geom/solid/csg.h"
+
+// How much larger what is taken away is: below a pixel of any picture, and well above the
+// renderer's own tolerance, about 1e-6 of the distance.
+#define ENLARGED 4e-5
+
+static bool is_operation(const CagSolid *s) {
+  return s->kind == CAG_SOLID_UNION || s->kind == CAG_SOLID_DIFFERENCE ||
+         s->kind == CAG_SOLID_INTERSECTION;
+}
+
+// The mesh as fine as the item's would be.
+static void write_mesh(CagPovWriter *w, const CagSolid *s) {
+  CagItem item = {.kind = CAG_ITEM_SOLID, .as.solid = (CagSolid *)s, .tolerance = w->tolerance};
+  CagMesh *m;
+  CagError err;
+  CagStatus status = cag_item_mesh(w->scene, &item, &m, &err);
+  if (!status) {
+    status = cag_pov_mesh(w, m, &err);
+    cag_mesh_release(m);
+  }
+  if (status && !w->failure.status) w->failure = err;
+}
+
+// The plane of a half space: inside is where its normal leaves.
+static void write_plane(CagPovWriter *w, const CagQuadric *q, int depth) {
+  CagVec3 n = cag_vec3(q->c[6], q->c[7], q->c[8]);
+  double length = cag_norm(n);
+  cag_pov_text(w, "plane {\n  ");
+  cag_pov_vec(w, cag_scaled(n, 1 / length));
+  cag_pov_text(w, ", ");
+  cag_pov_number(w, -q->c[9] / length + depth * ENLARGED * w->radius);
+  cag_pov_text(w, "\n}");
+}
+
+// In the order x^2 y^2 z^2, xy xz yz, x y z, 1; negative inside, as here.
+static void write_form(CagPovWriter *w, const CagQuadric *q) {
+  const double *c = q->c;
+  cag_pov_text(w, "quadric {\n  ");
+  cag_pov_vec(w, cag_vec3(c[0], c[1], c[2]));
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, cag_vec3(c[3], c[5], c[4]));
+  cag_pov_text(w, ", ");
+  cag_pov_vec(w, cag_vec3(c[6], c[7], c[8]));
+  cag_pov_text(w, ", ");
+  cag_pov_number(w, c[9]);
+  cag_pov_text(w, "\n}");
+}
+
+// Objects that are bodies to the renderer: clipped quadrics and flat pieces are none.
+static bool try_leaf(CagPovWriter *w, const CagSolid *s) {
+  const CagSurface *const *faces = (const CagSurface *const *)s->faces;
+  switch (s->kind) {
+  case CAG_SOLID_REVOLUTION: return cag_pov_try_lathe(w, faces, s->face_count);
+  case CAG_SOLID_SHELL:
+    return s->face_count == 1 && cag_surface_is_closed(faces[0]) &&
+           (cag_pov_try_quadric(w, faces, 1) || cag_pov_try_torus(w, faces[0]));
+  case CAG_SOLID_TUBE:
+  case CAG_SOLID_SWEEP:
+  case CAG_SOLID_LOFT:
+  case CAG_SOLID_MESH: return false;
+  default: return cag_pov_try_solid(w, s);
+  }
+}
+
+static void enlarge(CagPovWriter *w, const CagSolid *s, int depth) {
+  CagBounds box;
+  CagError err;
+  CagTransform t = cag_transform_identity();
+  if (depth == 0 || cag_solid_reach(s, &box, &err)) return;
+  double k = 1 + depth * ENLARGED;
+  CagVec3 middle = cag_lerp(box.min, box.max, 0.5);
+  const double at[3] = {middle.x, middle.y, middle.z};
+  t.planar = false;
+  for (int i = 0; i < 3; i++) {
+    t.m[i][i] = k;
+    t.m[i][3] = (1 - k) * at[i];
+  }
+  cag_pov_placement(w, "  ", &t);
+}
+
+static void write_plain(CagPovWriter *w, const CagSolid *s, int depth) {
+  CagQuadric q;
+  if (is_operation(s)) {
+    cag_pov_csg(w, s, depth);
+    return;
+  }
+  if (cag_solid_form(s, &q)) {
+    if (s->kind == CAG_SOLID_HALF_SPACE) write_plane(w, &q, depth);
+    else write_form(w, &q);
+    return;
+  }
+  if (depth > 0) {
+    w->depth++;
+    cag_pov_text(w, "object {\n");
+  }
+  if (!try_leaf(w, s)) write_mesh(w, s);
+  if (depth == 0) return;
+  w->depth--;
+  cag_pov_text(w, "\n");
+  enlarge(w, s, depth);
+  cag_pov_text(w, "}");
+}
+
+// An operand with a material of its own has it inside, where that of the whole does not reach.
+static void write_operand(CagPovWriter *w, const CagSolid *s, int depth) {
+  char material[64];
+  if (!s->label || !w->item || !w->item->label_count) {
+    write_plain(w, s, depth);
+    return;
+  }
+  w->depth++;
+  cag_pov_text(w, "object {\n");
+  write_plain(w, s, depth);
+  w->depth--;
+  cag_pov_material_name(w, cag_item_label_material(w->item, s->label), true, material);
+  cag_pov_printf(w, "\n  material { %s }\n}", material);
+}
+
+void cag_pov_csg(CagPovWriter *w, const CagSolid *s, int depth) {
+  const char *word = s->kind == CAG_SOLID_UNION        ? w->see_through ? "merge" : "union"
+                     : s->kind == CAG_SOLID_DIFFERENCE ? "difference"
+                                                       : "intersection";
+  const bool inside = w->in_operation;
+  const CagTransform outer = w->outer;
+  w->in_operation = true;
+  w->outer = cag_transform_multiply(&outer, &s->placement);
+  w->depth++;
+  cag_pov_printf(w, "%s {\n", word);
+  for (size_t i = 0; i < s->core->count && !w->failure.status; i++) {
+    bool taken = s->kind == CAG_SOLID_DIFFERENCE && i > 0;
+    write_operand(w, s->core->operands[i], depth + taken);
+    if (i + 1 == s->core->count) w->depth--; // the line of the closing brace
+    cag_pov_text(w, "\n");
+  }
+  w->in_operation = inside;
+  w->outer = outer;
+  cag_pov_placement(w, "  ", &s->placement);
+  cag_pov_text(w, "}");
+}

@@ -1,0 +1,532 @@
+// The writer of STEP files: one entity a line, each numbered when it is written, what it refers to
+// before it.
+
+#include "interp/formats/step.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+typedef size_t Id; // of an entity; 0: none
+
+typedef struct Writer {
+  const CagBrep *brep;
+  CagAtomicFile *file;
+  Id last;
+  Id context, product_shape, placement;
+  Id *vertex, *edge; // vertex points and edge curves, 0: not yet written
+  Id *styled;
+  size_t styled_count, styled_room;
+  bool failed;    // memory is out
+  bool undefined; // a number was not finite
+} Writer;
+
+// --- Text ---
+
+static void put(Writer *w, const char *text) { cag_atomic_file_text(w->file, text); }
+
+static void put_id(Writer *w, Id id) { cag_atomic_file_printf(w->file, "#%zu", id); }
+
+// Reals have a point, also with an exponent.
+static void put_real(Writer *w, double x) {
+  char text[40];
+  w->undefined |= !isfinite(x);
+  cag_number_text(x == 0 ? 0 : x, text);
+  char *e = strchr(text, 'e');
+  if (e) *e++ = 0;
+  put(w, text);
+  if (!strchr(text, '.')) put(w, ".");
+  if (e) {
+    put(w, "E");
+    put(w, e);
+  }
+}
+
+// Characters beyond printable ASCII are written by their code points.
+static void put_code(Writer *w, unsigned long code) {
+  cag_atomic_file_printf(w->file, code > 0xffff ? "\\X4\\%08lX\\X0\\" : "\\X2\\%04lX\\X0\\", code);
+}
+
+static const unsigned char *next_code(const unsigned char *p, unsigned long *code) {
+  int more = *p < 0x80 ? 0 : *p < 0xe0 ? 1 : *p < 0xf0 ? 2 : 3;
+  *code = more == 0 ? *p : *p & (0x3f >> more);
+  for (p++; more > 0 && (*p & 0xc0) == 0x80; more--) *code = *code << 6 | (*p++ & 0x3f);
+  return p;
+}
+
+static void put_string(Writer *w, const char *text) {
+  put(w, "'");
+  for (const unsigned char *p = (const unsigned char *)text; *p;) {
+    unsigned long code;
+    p = next_code(p, &code);
+    if (code == '\'') put(w, "''");
+    else if (code == '\\') put(w, "\\\\");
+    else if (code >= 0x20 && code < 0x7f) cag_atomic_file_printf(w->file, "%c", (int)code);
+    else put_code(w, code);
+  }
+  put(w, "'");
+}
+
+static Id begin(Writer *w, const char *head) {
+  cag_atomic_file_printf(w->file, "#%zu=%s", ++w->last, head);
+  return w->last;
+}
+
+static void end(Writer *w) { put(w, ");\n"); }
+
+// An entity of fixed text.
+static Id entity(Writer *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static Id entity(Writer *w, const char *format, ...) {
+  char text[512];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, sizeof text, format, args);
+  va_end(args);
+  cag_atomic_file_printf(w->file, "#%zu=%s;\n", ++w->last, text);
+  return w->last;
+}
+
+static void put_ids(Writer *w, const Id *ids, size_t n) {
+  put(w, "(");
+  for (size_t i = 0; i < n; i++) {
+    if (i > 0) put(w, i % 10 == 0 ? ",\n" : ",");
+    put_id(w, ids[i]);
+  }
+  put(w, ")");
+}
+
+static Id *take_ids(Writer *w, size_t n) {
+  Id *ids = cag_calloc(n + 1, sizeof *ids);
+  if (!ids) w->failed = true;
+  return ids;
+}
+
+// --- Points and placements ---
+
+static Id put_triple(Writer *w, const char *head, CagVec3 p) {
+  Id id = begin(w, head);
+  put_real(w, p.x);
+  put(w, ",");
+  put_real(w, p.y);
+  put(w, ",");
+  put_real(w, p.z);
+  put(w, "));\n");
+  return id;
+}
+
+static Id point(Writer *w, CagVec3 p) { return put_triple(w, "CARTESIAN_POINT('',(", p); }
+static Id direction(Writer *w, CagVec3 d) { return put_triple(w, "DIRECTION('',(", d); }
+
+static CagVec3 column(const CagTransform *t, int j) {
+  return cag_vec3(t->m[0][j], t->m[1][j], t->m[2][j]);
+}
+
+static Id placement(Writer *w, const CagTransform *t) {
+  Id at = point(w, column(t, 3)), z = direction(w, column(t, 2)), x = direction(w, column(t, 0));
+  return entity(w, "AXIS2_PLACEMENT_3D('',#%zu,#%zu,#%zu)", at, z, x);
+}
+
+// --- NURBS ---
+
+// Knots as multiplicities and distinct values.
+static void put_multiplicities(Writer *w, const double *knots, size_t n) {
+  put(w, "(");
+  for (size_t i = 0, k; i < n; i = k) {
+    for (k = i + 1; k < n && knots[k] == knots[i];) k++;
+    cag_atomic_file_printf(w->file, i ? ",%zu" : "%zu", k - i);
+  }
+  put(w, ")");
+}
+
+static void put_distinct(Writer *w, const double *knots, size_t n) {
+  put(w, "(");
+  for (size_t i = 0; i < n; i++) {
+    if (i > 0 && knots[i] == knots[i - 1]) continue;
+    if (i > 0) put(w, ",");
+    put_real(w, knots[i]);
+  }
+  put(w, ")");
+}
+
+static Id *put_points(Writer *w, const double *h, size_t n) {
+  Id *ids = take_ids(w, n);
+  for (size_t i = 0; ids && i < n; i++, h += 4)
+    ids[i] = point(w, cag_vec3(h[0] / h[3], h[1] / h[3], h[2] / h[3]));
+  return ids;
+}
+
+static void put_weights(Writer *w, const double *h, size_t n) {
+  put(w, "(");
+  for (size_t i = 0; i < n; i++) {
+    if (i > 0) put(w, ",");
+    put_real(w, h[4 * i + 3]);
+  }
+  put(w, ")");
+}
+
+static const char *logical(bool b) { return b ? ".T." : ".F."; }
+
+static Id nurbs_curve(Writer *w, const CagCurve *c) {
+  CagNurbsView v = {0};
+  cag_curve_nurbs_view(c, &v);
+  Id *ids = put_points(w, v.homogeneous, v.count);
+  if (!ids) return 0;
+  size_t knots = v.count + (size_t)v.degree + 1;
+  Id id =
+      begin(w, v.rational ? "(BOUNDED_CURVE()B_SPLINE_CURVE(" : "B_SPLINE_CURVE_WITH_KNOTS('',");
+  cag_atomic_file_printf(w->file, "%d,", v.degree);
+  put_ids(w, ids, v.count);
+  cag_atomic_file_printf(w->file, ",.UNSPECIFIED.,%s,.F.", logical(c->closed));
+  put(w, v.rational ? ")B_SPLINE_CURVE_WITH_KNOTS(" : ",");
+  put_multiplicities(w, v.knots, knots);
+  put(w, ",");
+  put_distinct(w, v.knots, knots);
+  put(w, ",.UNSPECIFIED.)");
+  if (v.rational) {
+    put(w, "CURVE()GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_CURVE(");
+    put_weights(w, v.homogeneous, v.count);
+    put(w, ")REPRESENTATION_ITEM(''))");
+  }
+  put(w, ";\n");
+  cag_free(ids);
+  return id;
+}
+
+static void put_rows(Writer *w, const CagSurfaceNurbsView *v, const Id *ids) {
+  put(w, "(");
+  for (size_t i = 0; i < v->nu; i++) {
+    if (i > 0) put(w, ",\n");
+    if (ids) put_ids(w, ids + i * v->nv, v->nv);
+    else put_weights(w, v->homogeneous + 4 * i * v->nv, v->nv);
+  }
+  put(w, ")");
+}
+
+static Id nurbs_surface(Writer *w, const CagSurface *s) {
+  CagSurfaceNurbsView v = {0};
+  cag_surface_nurbs_view(s, &v);
+  Id *ids = put_points(w, v.homogeneous, v.nu * v.nv);
+  if (!ids) return 0;
+  size_t knots_u = v.nu + (size_t)v.degree_u + 1, knots_v = v.nv + (size_t)v.degree_v + 1;
+  Id id = begin(w, v.rational ? "(BOUNDED_SURFACE()B_SPLINE_SURFACE("
+                              : "B_SPLINE_SURFACE_WITH_KNOTS('',");
+  cag_atomic_file_printf(w->file, "%d,%d,", v.degree_u, v.degree_v);
+  put_rows(w, &v, ids);
+  cag_atomic_file_printf(w->file, ",.UNSPECIFIED.,%s,%s,.F.", logical(s->closed_u),
+                         logical(s->closed_v));
+  put(w, v.rational ? ")B_SPLINE_SURFACE_WITH_KNOTS(" : ",");
+  put_multiplicities(w, v.knots_u, knots_u);
+  put(w, ",");
+  put_multiplicities(w, v.knots_v, knots_v);
+  put(w, ",");
+  put_distinct(w, v.knots_u, knots_u);
+  put(w, ",");
+  put_distinct(w, v.knots_v, knots_v);
+  put(w, ",.UNSPECIFIED.)");
+  if (v.rational) {
+    put(w, "GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_SURFACE(");
+    put_rows(w, &v, NULL);
+    put(w, ")REPRESENTATION_ITEM('')SURFACE())");
+  }
+  put(w, ";\n");
+  cag_free(ids);
+  return id;
+}
+
+static Id line(Writer *w, const CagCurve *c) {
+  CagNurbsView v = {0};
+  cag_curve_nurbs_view(c, &v);
+  const double *a = v.homogeneous, *b = a + 4 * (v.count - 1);
+  CagVec3 p = cag_vec3(a[0] / a[3], a[1] / a[3], a[2] / a[3]);
+  CagVec3 d = cag_sub(cag_vec3(b[0] / b[3], b[1] / b[3], b[2] / b[3]), p);
+  double length = cag_norm(d);
+  Id at = point(w, p), along = direction(w, cag_unit(d));
+  Id vector = begin(w, "VECTOR('',");
+  put_id(w, along);
+  put(w, ",");
+  put_real(w, length);
+  end(w);
+  return entity(w, "LINE('',#%zu,#%zu)", at, vector);
+}
+
+// --- Topology ---
+
+static Id vertex(Writer *w, size_t index) {
+  if (!w->vertex[index])
+    w->vertex[index] = entity(w, "VERTEX_POINT('',#%zu)", point(w, w->brep->vertices[index]));
+  return w->vertex[index];
+}
+
+static Id edge(Writer *w, size_t index) {
+  if (w->edge[index]) return w->edge[index];
+  const CagBrepEdge *e = &w->brep->edges[index];
+  Id from = vertex(w, e->from), to = vertex(w, e->to);
+  Id curve = e->straight ? line(w, e->curve) : nurbs_curve(w, e->curve);
+  return w->edge[index] = entity(w, "EDGE_CURVE('',#%zu,#%zu,#%zu,.T.)", from, to, curve);
+}
+
+static Id edge_loop(Writer *w, const CagBrepLoop *l) {
+  Id *ids = take_ids(w, l->count);
+  if (!ids) return 0;
+  for (size_t i = 0; i < l->count; i++) {
+    const CagBrepUse *use = &w->brep->uses[l->first + i];
+    ids[i] =
+        entity(w, "ORIENTED_EDGE('',*,*,#%zu,%s)", edge(w, use->edge), logical(!use->reversed));
+  }
+  Id id = begin(w, "EDGE_LOOP('',");
+  put_ids(w, ids, l->count);
+  end(w);
+  cag_free(ids);
+  return id;
+}
+
+static Id face(Writer *w, const CagBrepFace *f) {
+  Id *bounds = take_ids(w, f->count);
+  if (!bounds) return 0;
+  for (size_t i = 0; i < f->count; i++) {
+    Id loop = edge_loop(w, &w->brep->loops[f->first + i]);
+    bounds[i] = entity(w, "%s('',#%zu,.T.)", i == 0 ? "FACE_OUTER_BOUND" : "FACE_BOUND", loop);
+  }
+  Id surface =
+      f->flat ? entity(w, "PLANE('',#%zu)", placement(w, &f->plane)) : nurbs_surface(w, f->surface);
+  Id id = begin(w, "ADVANCED_FACE('',");
+  put_ids(w, bounds, f->count);
+  put(w, ",");
+  put_id(w, surface);
+  put(w, ",.T.);\n");
+  cag_free(bounds);
+  return id;
+}
+
+static Id shell(Writer *w, const CagBrepShell *s, bool closed) {
+  Id *faces = take_ids(w, s->count);
+  if (!faces) return 0;
+  for (size_t i = 0; i < s->count && !cag_atomic_file_failed(w->file); i++)
+    faces[i] = face(w, &w->brep->faces[s->first + i]);
+  Id id = begin(w, closed ? "CLOSED_SHELL(''," : "OPEN_SHELL('',");
+  put_ids(w, faces, s->count);
+  end(w);
+  cag_free(faces);
+  return id;
+}
+
+// A solid of the shell and its hollows, whose normals look away from the material as well.
+static Id solid(Writer *w, const CagBrepShape *shape, size_t outer) {
+  const CagBrep *b = w->brep;
+  Id *hollow = take_ids(w, shape->count);
+  if (!hollow) return 0;
+  size_t n = 0;
+  for (size_t i = shape->first; i < shape->first + shape->count; i++)
+    if (i != outer && b->shells[i].void_of == outer) {
+      Id inner = shell(w, &b->shells[i], true);
+      hollow[n++] = entity(w, "ORIENTED_CLOSED_SHELL('',*,#%zu,.T.)", inner);
+    }
+  Id around = shell(w, &b->shells[outer], true);
+  Id id = begin(w, n ? "BREP_WITH_VOIDS(" : "MANIFOLD_SOLID_BREP(");
+  put_string(w, shape->name);
+  put(w, ",");
+  put_id(w, around);
+  if (n) {
+    put(w, ",");
+    put_ids(w, hollow, n);
+  }
+  end(w);
+  cag_free(hollow);
+  return id;
+}
+
+static Id sheet(Writer *w, const CagBrepShape *shape) {
+  Id *shells = take_ids(w, shape->count);
+  if (!shells) return 0;
+  for (size_t i = 0; i < shape->count; i++)
+    shells[i] = shell(w, &w->brep->shells[shape->first + i], false);
+  Id id = begin(w, "SHELL_BASED_SURFACE_MODEL(");
+  put_string(w, shape->name);
+  put(w, ",");
+  put_ids(w, shells, shape->count);
+  end(w);
+  cag_free(shells);
+  return id;
+}
+
+// A curve set of its own, which can have a name and a color.
+static Id curve_set(Writer *w, const CagBrepShape *shape) {
+  Id curve = nurbs_curve(w, shape->curve);
+  Id id = begin(w, "GEOMETRIC_CURVE_SET(");
+  put_string(w, shape->name);
+  put(w, ",");
+  put_ids(w, &curve, 1);
+  end(w);
+  return id;
+}
+
+// --- Colors ---
+
+// Of sRGB, as viewers take it, to 5 places.
+static void put_share(Writer *w, double linear) {
+  put_real(w, round(1e5 * cag_linear_to_srgb(fmin(fmax(linear, 0), 1))) / 1e5);
+}
+
+static Id color(Writer *w, CagColor c) {
+  Id id = begin(w, "COLOUR_RGB('',");
+  put_share(w, c.r);
+  put(w, ",");
+  put_share(w, c.g);
+  put(w, ",");
+  put_share(w, c.b);
+  end(w);
+  return id;
+}
+
+static void style(Writer *w, Id item, const CagBrepShape *shape) {
+  Id paint = color(w, shape->material->color), use;
+  if (shape->kind == CAG_BREP_CURVE) {
+    Id font = entity(w, "DRAUGHTING_PRE_DEFINED_CURVE_FONT('continuous')");
+    use = entity(w, "CURVE_STYLE('',#%zu,POSITIVE_LENGTH_MEASURE(0.1),#%zu)", font, paint);
+  } else {
+    Id fill = entity(w, "FILL_AREA_STYLE_COLOUR('',#%zu)", paint);
+    Id area = entity(w, "FILL_AREA_STYLE('',(#%zu))", fill);
+    Id side = entity(w, "SURFACE_SIDE_STYLE('',(#%zu))",
+                     entity(w, "SURFACE_STYLE_FILL_AREA(#%zu)", area));
+    use = entity(w, "SURFACE_STYLE_USAGE(.BOTH.,#%zu)", side);
+  }
+  Id assigned = entity(w, "PRESENTATION_STYLE_ASSIGNMENT((#%zu))", use);
+  Id styled = entity(w, "STYLED_ITEM('color',(#%zu),#%zu)", assigned, item);
+  if (w->styled_count < w->styled_room) w->styled[w->styled_count++] = styled;
+}
+
+// --- Representations ---
+
+typedef struct Items {
+  Id *ids;
+  size_t count;
+} Items;
+
+static void add(Writer *w, Items *items, const CagBrepShape *shape, Id id) {
+  items->ids[items->count++] = id;
+  style(w, id, shape);
+}
+
+static void write_shapes(Writer *w, CagBrepKind kind, Items *items) {
+  const CagBrep *b = w->brep;
+  for (size_t i = 0; i < b->shape_count && !cag_atomic_file_failed(w->file); i++) {
+    const CagBrepShape *s = &b->shapes[i];
+    if (s->kind != kind) continue;
+    if (kind == CAG_BREP_CURVE) add(w, items, s, curve_set(w, s));
+    if (kind == CAG_BREP_SHEET) add(w, items, s, sheet(w, s));
+    for (size_t k = s->first; kind == CAG_BREP_SOLID && k < s->first + s->count; k++)
+      if (b->shells[k].void_of == k) add(w, items, s, solid(w, s, k));
+  }
+}
+
+static Id representation(Writer *w, const char *type, const Items *items) {
+  Id id = begin(w, type);
+  put(w, "('',");
+  put_ids(w, items->ids, items->count);
+  cag_atomic_file_printf(w->file, ",#%zu);\n", w->context);
+  return id;
+}
+
+// X(kind, representation): each kind of shape has its own, which the product's refers to.
+#define REPRESENTATIONS(X)                                                                         \
+  X(CAG_BREP_SOLID, "ADVANCED_BREP_SHAPE_REPRESENTATION")                                          \
+  X(CAG_BREP_SHEET, "MANIFOLD_SURFACE_SHAPE_REPRESENTATION")                                       \
+  X(CAG_BREP_CURVE, "GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION")
+
+static void write_representation(Writer *w, CagBrepKind kind, const char *type, Id main) {
+  Items items = {take_ids(w, w->brep->shape_count + w->brep->shell_count + 1), 0};
+  if (!items.ids) return;
+  write_shapes(w, kind, &items);
+  if (items.count > 0) {
+    items.ids[items.count++] = w->placement;
+    Id r = representation(w, type, &items);
+    entity(w, "SHAPE_REPRESENTATION_RELATIONSHIP('','',#%zu,#%zu)", main, r);
+  }
+  cag_free(items.ids);
+}
+
+static void write_product(Writer *w, const char *name) {
+  Id application =
+      entity(w, "APPLICATION_CONTEXT('core data for automotive mechanical design processes')");
+  entity(w,
+         "APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#%zu)",
+         application);
+  Id product_context = entity(w, "PRODUCT_CONTEXT('',#%zu,'mechanical')", application);
+  Id product = begin(w, "PRODUCT(");
+  put_string(w, name);
+  put(w, ",");
+  put_string(w, name);
+  cag_atomic_file_printf(w->file, ",'',(#%zu));\n", product_context);
+  entity(w, "PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,(#%zu))", product);
+  Id formation = entity(w, "PRODUCT_DEFINITION_FORMATION('','',#%zu)", product);
+  Id design = entity(w, "PRODUCT_DEFINITION_CONTEXT('part definition',#%zu,'design')", application);
+  Id definition = entity(w, "PRODUCT_DEFINITION('design','',#%zu,#%zu)", formation, design);
+  w->product_shape = entity(w, "PRODUCT_DEFINITION_SHAPE('','',#%zu)", definition);
+}
+
+static void write_context(Writer *w) {
+  Id length = entity(w, "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))");
+  Id angle = entity(w, "(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))");
+  Id solid_angle = entity(w, "(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())");
+  Id accuracy = begin(w, "UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE(");
+  put_real(w, w->brep->accuracy);
+  cag_atomic_file_printf(w->file, "),#%zu,'distance_accuracy_value','');\n", length);
+  w->context = entity(w,
+                      "(GEOMETRIC_REPRESENTATION_CONTEXT(3)"
+                      "GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#%zu))"
+                      "GLOBAL_UNIT_ASSIGNED_CONTEXT((#%zu,#%zu,#%zu))"
+                      "REPRESENTATION_CONTEXT('',''))",
+                      accuracy, length, angle, solid_angle);
+}
+
+static void write_data(Writer *w, const char *name) {
+  write_product(w, name);
+  write_context(w);
+  CagTransform world = cag_transform_identity();
+  w->placement = placement(w, &world);
+  Items here = {&w->placement, 1};
+  Id main = representation(w, "SHAPE_REPRESENTATION", &here);
+  entity(w, "SHAPE_DEFINITION_REPRESENTATION(#%zu,#%zu)", w->product_shape, main);
+#define X(kind, type) write_representation(w, kind, type, main);
+  REPRESENTATIONS(X)
+#undef X
+  Items styled = {w->styled, w->styled_count};
+  if (styled.count > 0)
+    representation(w, "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION", &styled);
+}
+
+// No date: the same scene gives the same bytes.
+static void write_header(Writer *w, const char *name) {
+  put(w, "ISO-10303-21;\nHEADER;\n");
+  put(w, "FILE_DESCRIPTION(('exact geometry'),'2;1');\nFILE_NAME(");
+  put_string(w, name);
+  put(w, ",'1970-01-01T00:00:00',(''),(''),'cag " CAG_VERSION "','cag " CAG_VERSION "','');\n");
+  put(w, "FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));\nENDSEC;\nDATA;\n");
+}
+
+CagStatus cag_export_step(const CagBrep *brep, const char *script, CagAtomicFile *file,
+                          CagError *err) {
+  Writer w = {.brep = brep, .file = file};
+  w.vertex = cag_calloc(brep->vertex_count + 1, sizeof *w.vertex);
+  w.edge = cag_calloc(brep->edge_count + 1, sizeof *w.edge);
+  w.styled_room = brep->shape_count + brep->shell_count;
+  w.styled = cag_calloc(w.styled_room + 1, sizeof *w.styled);
+  if (!w.vertex || !w.edge || !w.styled) {
+    w.failed = true;
+  } else {
+    const char *name = script && *script ? script : "scene";
+    write_header(&w, name);
+    write_data(&w, name);
+    put(&w, "ENDSEC;\nEND-ISO-10303-21;\n");
+  }
+  cag_free(w.vertex);
+  cag_free(w.edge);
+  cag_free(w.styled);
+  if (w.undefined && !w.failed)
+    return cag_fail(err, CAG_E_DEGENERATE, CAG_ERR_not_finite, "", -1,
+                    "a number in the file overflows or is undefined");
+  return w.failed ? cag_fail_memory(err) : CAG_OK;
+}

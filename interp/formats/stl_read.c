@@ -1,0 +1,168 @@
+// STL, binary and as text.
+//
+// Binary files may begin with "solid" like those of text. A file is binary when its length is
+// exactly what its count of triangles asks for; else it is text when it begins with "solid" and its
+// beginning has "facet" or "endsolid" and no zero byte; else binary, and its length is wrong.
+// Normals and colors of triangles are left: a normal follows from the corners.
+
+#include <string.h>
+
+#include "interp/formats/mesh_draft.h"
+#include "interp/formats/text_scan.h"
+
+enum { HEADER = 80, RECORD = 50 };
+// How far into a file it is looked whether it is text: an 80-byte header with a first facet.
+#define TEXT_LOOK ((size_t)1024)
+
+static uint64_t count_of(const CagMeshFile *f) { return cag_read_u32(f->bytes + HEADER); }
+
+bool cag_stl_is_binary(const CagMeshFile *f) {
+  return f->size >= HEADER + 4 && f->size == HEADER + 4 + RECORD * count_of(f);
+}
+
+static bool is_text(const CagMeshFile *f) {
+  CagTextScan s = {f->bytes, f->bytes + f->size};
+  const char *word;
+  if (!cag_scan_to_word(&s)) return false;
+  size_t n = cag_scan_word(&s, &word);
+  if (!cag_scan_is(word, n, "solid")) return false;
+  size_t look = f->size < TEXT_LOOK ? f->size : TEXT_LOOK;
+  if (memchr(f->bytes, 0, look)) return false;
+  cag_scan_next_line(&s);
+  if (!cag_scan_to_word(&s)) return false;
+  n = cag_scan_word(&s, &word);
+  return cag_scan_is(word, n, "facet") || cag_scan_is(word, n, "endsolid");
+}
+
+// --- Binary ---
+
+static CagStatus read_corner(CagMeshDraft *d, const char *at, size_t triangle, CagError *err) {
+  float x[3];
+  for (int k = 0; k < 3; k++) {
+    uint32_t bits = cag_read_u32(at + 4 * k);
+    memcpy(&x[k], &bits, sizeof bits);
+  }
+  if (!isfinite(x[0]) || !isfinite(x[1]) || !isfinite(x[2]))
+    return cag_mesh_file_fail_byte(d->file, err, CAG_ERR_mesh_file_number, at,
+                                   "triangle %zu has a corner at [%g, %g, %g]", triangle,
+                                   (double)x[0], (double)x[1], (double)x[2]);
+  d->positions[d->vertex_count++] = cag_vec3(x[0], x[1], x[2]);
+  return CAG_OK;
+}
+
+static CagStatus read_binary(CagMeshDraft *d, CagError *err) {
+  const CagMeshFile *f = d->file;
+  if (f->size < HEADER + 4)
+    return cag_mesh_file_fail_byte(f, err, CAG_ERR_mesh_file_truncated, NULL,
+                                   "its %zu bytes are too few for an STL file, which has 84 before "
+                                   "its triangles; write or fetch it again",
+                                   f->size);
+  uint64_t count = count_of(f), there = (f->size - HEADER - 4) / RECORD;
+  if (count > there)
+    return cag_mesh_file_fail_byte(f, err, CAG_ERR_mesh_file_truncated, f->bytes + HEADER,
+                                   "it says it has %llu triangles, and its %zu bytes hold %llu; "
+                                   "write or fetch it again",
+                                   (unsigned long long)count, f->size, (unsigned long long)there);
+  CagStatus status = cag_draft_triangles(d, count, err);
+  if (status == CAG_OK) status = cag_draft_vertices(d, 3 * count, false, false, err);
+  const char *at = f->bytes + HEADER + 4;
+  for (size_t t = 0; status == CAG_OK && t < count; t++, at += RECORD) {
+    uint32_t first = (uint32_t)(3 * t);
+    for (int k = 0; k < 3 && status == CAG_OK; k++)
+      status = read_corner(d, at + 12 * (k + 1), t, err);
+    cag_draft_triangle(d, first, first + 1, first + 2);
+    if (status == CAG_OK && t % CAG_DRAFT_CHECK_STEP == 0) status = cag_draft_check(d, err);
+  }
+  return status;
+}
+
+// --- Text ---
+
+// A word that must come now. *word, *n: what came.
+static bool expect(CagTextScan *s, const char *expected) {
+  const char *word;
+  if (!cag_scan_to_word(s)) return false;
+  const char *before = s->at;
+  size_t n = cag_scan_word(s, &word);
+  if (cag_scan_is(word, n, expected)) return true;
+  s->at = before;
+  return false;
+}
+
+static CagStatus fail_word(const CagMeshDraft *d, CagTextScan *s, const char *expected,
+                           CagError *err) {
+  const char *word;
+  if (!cag_scan_to_word(s))
+    return cag_mesh_file_fail_line(d->file, err, CAG_ERR_mesh_file_truncated, s->at,
+                                   "the file ends where %s must stand; write or fetch it again",
+                                   expected);
+  const char *at = s->at;
+  size_t n = cag_scan_word(s, &word);
+  return cag_mesh_file_fail_line(d->file, err, CAG_ERR_mesh_file_syntax, at,
+                                 "expected %s, found `%.*s`", expected, n < 40 ? (int)n : 40, word);
+}
+
+static CagStatus read_vertex(CagMeshDraft *d, CagTextScan *s, CagError *err) {
+  double x[3];
+  if (!expect(s, "vertex")) return fail_word(d, s, "vertex", err);
+  for (int k = 0; k < 3; k++) {
+    if (!cag_scan_to_word(s) || !cag_scan_number(s, &x[k])) return fail_word(d, s, "a number", err);
+    if (!isfinite(x[k]))
+      return cag_mesh_file_fail_line(d->file, err, CAG_ERR_mesh_file_number, s->at,
+                                     "a coordinate is too large");
+  }
+  d->positions[d->vertex_count++] = cag_vec3(x[0], x[1], x[2]);
+  return CAG_OK;
+}
+
+// facet normal x y z / outer loop / vertex x y z (three) / endloop / endfacet; the word `facet` is
+// read.
+static CagStatus read_facet(CagMeshDraft *d, CagTextScan *s, CagError *err) {
+  // What a facet is written with takes 60 bytes at least: room grows with what was read.
+  CagStatus status = cag_draft_triangles(d, 1, err);
+  if (status == CAG_OK && d->vertex_count + 3 > d->vertex_room)
+    status = cag_draft_vertices(d, 2 * d->vertex_count + 3 * 64, false, false, err);
+  if (status != CAG_OK) return status;
+  // `normal` and its numbers, which may be nan or left out.
+  const int most_words = 4;
+  const char *word;
+  uint32_t first = (uint32_t)d->vertex_count;
+  for (int k = 0; k < most_words && !cag_scan_at_line_end(s); k++) {
+    const char *before = s->at;
+    size_t n = cag_scan_word(s, &word);
+    if (!cag_scan_is(word, n, "outer")) continue;
+    s->at = before;
+    break;
+  }
+  if (!expect(s, "outer")) return fail_word(d, s, "outer", err);
+  if (!expect(s, "loop")) return fail_word(d, s, "loop", err);
+  for (int k = 0; k < 3 && status == CAG_OK; k++) status = read_vertex(d, s, err);
+  if (status != CAG_OK) return status;
+  if (!expect(s, "endloop")) return fail_word(d, s, "endloop", err);
+  if (!expect(s, "endfacet")) return fail_word(d, s, "endfacet", err);
+  cag_draft_triangle(d, first, first + 1, first + 2);
+  return CAG_OK;
+}
+
+static CagStatus read_text(CagMeshDraft *d, CagError *err) {
+  CagTextScan s = {d->file->bytes, d->file->bytes + d->file->size};
+  CagStatus status = CAG_OK;
+  // Files may hold several solids, one after the other.
+  while (status == CAG_OK && cag_scan_to_word(&s)) {
+    if (!expect(&s, "solid")) return fail_word(d, &s, "solid", err);
+    cag_scan_next_line(&s);
+    while (status == CAG_OK && expect(&s, "facet")) {
+      status = read_facet(d, &s, err);
+      if (status == CAG_OK && d->triangle_count % CAG_DRAFT_CHECK_STEP == 0)
+        status = cag_draft_check(d, err);
+    }
+    if (status == CAG_OK && !expect(&s, "endsolid")) return fail_word(d, &s, "endsolid", err);
+    cag_scan_next_line(&s);
+  }
+  return status;
+}
+
+CagStatus cag_read_stl(CagMeshDraft *d, CagError *err) {
+  if (cag_stl_is_binary(d->file) || !is_text(d->file)) return read_binary(d, err);
+  return read_text(d, err);
+}

@@ -1,0 +1,51 @@
+// Calls of the script from geometry: curves and surfaces by a formula.
+//
+// Geometry evaluates them when it likes, from built-ins that hold values in plain variables, and
+// from exporters when the script has long ended. So each call is protected by itself: running out
+// of memory ends in the status of the evaluation, and the collector leaves alone what is older than
+// the call (heap.c).
+
+#include "base/memory.h"
+#include "interp/vm/vm.h"
+
+// Functions that evaluate curves that call functions ... so deep; the depth has six bits.
+#define DEPTH_MOST 60
+
+size_t cag_vm_keep(CagVm *vm, CagValue v) {
+  if (vm->kept_free) {
+    size_t slot = vm->kept_free - 1;
+    vm->kept_free = (size_t)vm->kept[slot].as.number;
+    vm->kept[slot] = v;
+    return slot;
+  }
+  if (vm->kept_count == vm->kept_capacity) {
+    size_t capacity = vm->kept_capacity ? vm->kept_capacity * 2 : 16;
+    CagValue *kept = cag_realloc(vm->kept, capacity * sizeof *kept);
+    if (!kept) cag_vm_out_of_memory(vm);
+    vm->kept = kept;
+    vm->kept_capacity = capacity;
+  }
+  vm->kept[vm->kept_count] = v;
+  return vm->kept_count++;
+}
+
+void cag_vm_let_go(CagVm *vm, size_t slot) {
+  vm->kept[slot] = cag_unset();
+  vm->kept[slot].as.number = (double)vm->kept_free;
+  vm->kept_free = slot + 1;
+}
+
+bool cag_vm_call_back(CagVm *vm, bool (*work)(CagVm *vm, void *context), void *context) {
+  if (vm->failed) return false;
+  if (vm->heap.depth == DEPTH_MOST)
+    return cag_vm_fail(vm, CAG_ERR_limit_depth,
+                       "formulas of curves and surfaces use one another more than %d deep",
+                       DEPTH_MOST);
+  const uint32_t level = vm->differentiation;
+  vm->heap.depth++;
+  const bool ok = cag_vm_protect(vm, work, context) && !vm->failed;
+  if (!ok && vm->native) vm->native->probed = true;
+  vm->heap.depth--;
+  vm->differentiation = level;
+  return ok;
+}

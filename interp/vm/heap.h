@@ -1,0 +1,34 @@
+// The heap: precise mark and sweep.
+//
+// Allocation never collects. It adds to a debt, and the machine collects at safe points (calls of
+// script functions, back edges of loops, between top-level definitions) once the debt is due; so C
+// code between safe points needs no care. Roots are the machine's stack, the modules' globals,
+// constants, interned texts and the root stack. Crossing --max-memory after a collection is the
+// error E0602 (memory-limit).
+//
+// Small objects (up to CAG_SMALL_MAX bytes) come from size-classed pages with free lists; larger
+// ones from cag_malloc. Everything that the run allocates, geometry included, is charged to the
+// machine's account (base/memory.h), whose limit is --max-memory.
+
+#ifndef CAG_INTERP_VM_HEAP_H
+#define CAG_INTERP_VM_HEAP_H
+
+#include "interp/vm/value.h"
+
+// Zeroed except for the header, which is set. Never NULL: if the limit or the system's memory is
+// exceeded, the run ends there with the error of the memory limit (a long jump to where the run
+// began; cleanups release what C code holds, base/guard.h).
+void *cag_alloc(CagVm *vm, CagType type, size_t size);
+void cag_collect(CagVm *vm);
+
+// What objects with the type CAG_INTERNAL are: their head.flags.
+enum { CAG_INTERNAL_BUILDER = 1, CAG_INTERNAL_LAYOUT = 2 };
+
+void cag_heap_init(CagVm *vm);
+void cag_heap_free(CagVm *vm);
+
+// Root stack.
+void cag_root_push(CagVm *vm, CagValue v);
+void cag_root_pop(CagVm *vm, size_t n);
+
+#endif

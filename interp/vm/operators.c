@@ -1,0 +1,789 @@
+// The operators of the language beyond the loop's fast paths.
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "interp/builtin/apply.h"
+#include "interp/builtin/jets.h"
+#include "interp/vm/jet.h"
+#include "interp/vm/vm.h"
+#include "lang/foreign.h"
+
+static const char *symbol(CagBinaryOp op) {
+  static const char *const symbols[] = {"+",  "-",  "*", "/",  "%", "^",  "|", "&",
+                                        "==", "!=", "<", "<=", ">", ">=", "in"};
+  return symbols[op];
+}
+
+static bool fail_operands(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, const char *help) {
+  CagString s = {0};
+  cag_describe_value(vm, &s, a);
+  cag_string_add(&s, " and ", 5);
+  cag_describe_value(vm, &s, b);
+  cag_vm_fail(vm, CAG_ERR_operand, "`%s` does not join %s", symbol(op), s.bytes);
+  cag_string_free(&s);
+  if (help) cag_fail_help(vm, "%s", help);
+  return false;
+}
+
+// --- Numbers and angles ---
+
+// Result that is no finite number: an error, unless an infinite operand was written.
+static bool check_number(CagVm *vm, CagBinaryOp op, double a, double b, double r, CagValue *result,
+                         CagType type) {
+  // The test for NaN comes first because, without traps, GCC 12 evaluates `finite, or infinite and
+  // ...` as true for NaN.
+  if (!isnan(r) &&
+      (fabs(r) <= DBL_MAX || ((isinf(a) || isinf(b)) && !(op == CAG_OP_DIVIDE && b == 0)))) {
+    *result = type == CAG_ANGLE ? cag_angle(r) : cag_number(r);
+    return true;
+  }
+  char x[32], y[32];
+  cag_number_text(a, x);
+  cag_number_text(b, y);
+  if (op == CAG_OP_DIVIDE && b == 0)
+    return cag_vm_fail(vm, CAG_ERR_not_finite, "division of %s by 0", x);
+  if (op == CAG_OP_MODULO && b == 0)
+    return cag_vm_fail(vm, CAG_ERR_not_finite, "%s %% 0 has no value", x);
+  return cag_vm_fail(vm, CAG_ERR_not_finite,
+                     isnan(r) ? "%s %s %s is undefined" : "%s %s %s is too large for a number", x,
+                     symbol(op), y);
+}
+
+// Remainder with the sign of the divisor.
+static double modulo(double a, double b) {
+  double r = fmod(a, b);
+  if (r != 0 && (r < 0) != (b < 0)) r += b;
+  return r;
+}
+
+static double apply(CagBinaryOp op, double a, double b) {
+  switch (op) {
+  case CAG_OP_ADD: return a + b;
+  case CAG_OP_SUBTRACT: return a - b;
+  case CAG_OP_MULTIPLY: return a * b;
+  case CAG_OP_DIVIDE: return a / b;
+  case CAG_OP_MODULO: return modulo(a, b);
+  default: return pow(a, b);
+  }
+}
+
+// Operators between two numbers, two angles, or one of each; false with *known false: not such a
+// pair.
+static bool scalars(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result,
+                    bool *known) {
+  *known = true;
+  double x = a.as.number, y = b.as.number;
+  if (a.type == CAG_NUMBER && b.type == CAG_NUMBER)
+    return check_number(vm, op, x, y, apply(op, x, y), result, CAG_NUMBER);
+  if (a.type == CAG_ANGLE && b.type == CAG_ANGLE) {
+    if (op == CAG_OP_DIVIDE) return check_number(vm, op, x, y, x / y, result, CAG_NUMBER);
+    if (op == CAG_OP_ADD || op == CAG_OP_SUBTRACT || op == CAG_OP_MODULO)
+      return check_number(vm, op, x, y, apply(op, x, y), result, CAG_ANGLE);
+    return fail_operands(vm, op, a, b,
+                         op == CAG_OP_MULTIPLY
+                             ? "an angle times a number is an angle; divide one angle by 1rad"
+                             : NULL);
+  }
+  if (a.type == CAG_ANGLE && b.type == CAG_NUMBER) {
+    if (op == CAG_OP_MULTIPLY || op == CAG_OP_DIVIDE)
+      return check_number(vm, op, x, y, apply(op, x, y), result, CAG_ANGLE);
+  } else if (a.type == CAG_NUMBER && b.type == CAG_ANGLE) {
+    if (op == CAG_OP_MULTIPLY) return check_number(vm, op, x, y, x * y, result, CAG_ANGLE);
+  } else {
+    *known = false;
+    return false;
+  }
+  char n[32], help[96];
+  cag_number_text(a.type == CAG_NUMBER ? x : y, n);
+  snprintf(help, sizeof help, "write %sdeg or %srad", n, n);
+  return fail_operands(vm, op, a, b, op == CAG_OP_ADD || op == CAG_OP_SUBTRACT ? help : NULL);
+}
+
+// --- Lists ---
+
+// Vectors that are no packed numbers (angles, jets) are made without a builder.
+#define SHORT_LIST 4
+
+static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result);
+
+// Loops over packed numbers ask after blocks of so many whether the run must stop.
+#define BLOCK ((size_t)1 << 16)
+static size_t block_length(size_t from, size_t n) { return n - from < BLOCK ? n - from : BLOCK; }
+
+// Sums or differences of n numbers. Returns 0, or something else if one is infinite or undefined.
+static inline double sum_of(CagBinaryOp op, const double *x, const double *y, size_t n,
+                            double *out) {
+  double worst = 0;
+  if (op == CAG_OP_ADD) {
+    for (size_t i = 0; i < n; i++) worst += 0 * (out[i] = x[i] + y[i]);
+  } else {
+    for (size_t i = 0; i < n; i++) worst += 0 * (out[i] = x[i] - y[i]);
+  }
+  return worst;
+}
+
+// Element by element of two packed lists of one shape.
+static bool packed_sum(CagVm *vm, CagBinaryOp op, const CagList *a, const CagList *b,
+                       CagValue *result) {
+  double *out;
+  *result = a->dim == 1 ? cag_list_numbers(vm, a->length, &out)
+                        : cag_list_vectors(vm, a->length, a->dim, &out);
+  const double *x = a->as.numbers, *y = b->as.numbers;
+  const size_t n = a->length * a->dim;
+  double worst = 0;
+  if (n <= BLOCK) {
+    worst = sum_of(op, x, y, n, out);
+  } else {
+    for (size_t from = 0; from < n; from += BLOCK) {
+      worst += sum_of(op, x + from, y + from, block_length(from, n), out + from);
+      if (!cag_keep_going(vm)) return false;
+    }
+  }
+  if (worst == 0) return true; // no element is infinite or undefined
+  for (size_t i = 0; i < n; i++) {
+    CagValue v;
+    if (!check_number(vm, op, x[i], y[i], out[i], &v, CAG_NUMBER)) return false;
+  }
+  return true;
+}
+
+static bool list_sum(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
+  CagValue x, y;
+  if (!cag_may_go_deeper(vm, "added")) return false;
+  if (!cag_as_list(vm, a, &x) || !cag_as_list(vm, b, &y)) return false;
+  const CagList *l = CAG_AS_LIST(x), *m = CAG_AS_LIST(y);
+  if (l->length != m->length) {
+    cag_vm_fail(vm, CAG_ERR_length, "`%s` of a list of %zu and a list of %zu elements", symbol(op),
+                l->length, m->length);
+    if (l->dim == 1 && m->dim == 1 && l->length + m->length == 5)
+      cag_fail_help(vm, "write the 2-D point [x, y] as [x, y, 0]");
+    else if (op == CAG_OP_ADD)
+      cag_fail_help(vm, "to put lists one after the other, write [...a, ...b]");
+    return false;
+  }
+  if (l->dim && l->dim == m->dim) return packed_sum(vm, op, l, m, result);
+  if (l->length <= SHORT_LIST) {
+    CagValue parts[SHORT_LIST];
+    for (size_t i = 0; i < l->length; i++)
+      if (!cag_arithmetic(vm, op, cag_list_get(vm, l, i), cag_list_get(vm, m, i), &parts[i]))
+        return false;
+    *result = cag_list_values(vm, parts, l->length);
+    return true;
+  }
+  CagBuilder *out = cag_builder_new(vm);
+  for (size_t i = 0; i < l->length; i++) {
+    CagValue v;
+    if (!cag_arithmetic(vm, op, cag_list_get(vm, l, i), cag_list_get(vm, m, i), &v) ||
+        !cag_builder_add(vm, out, v))
+      return false;
+  }
+  *result = cag_builder_finish(vm, out);
+  return true;
+}
+
+// A list times, or by, a number; `swapped`: the number stood first.
+static bool list_scaled(CagVm *vm, CagBinaryOp op, CagValue list, CagValue factor, bool swapped,
+                        CagValue *result) {
+  CagValue x;
+  if (!cag_may_go_deeper(vm, "multiplied")) return false;
+  if (!cag_as_list(vm, list, &x)) return false;
+  const CagList *l = CAG_AS_LIST(x);
+  if (l->dim && factor.type == CAG_NUMBER) {
+    double *out, k = factor.as.number, worst = 0;
+    const size_t n = l->length * l->dim;
+    *result = l->dim == 1 ? cag_list_numbers(vm, l->length, &out)
+                          : cag_list_vectors(vm, l->length, l->dim, &out);
+    for (size_t from = 0; from < n; from += BLOCK) {
+      const size_t to = from + block_length(from, n);
+      if (op == CAG_OP_MULTIPLY) {
+        for (size_t i = from; i < to; i++) worst += 0 * (out[i] = l->as.numbers[i] * k);
+      } else {
+        for (size_t i = from; i < to; i++) worst += 0 * (out[i] = l->as.numbers[i] / k);
+      }
+      if (to < n && !cag_keep_going(vm)) return false;
+    }
+    if (worst == 0) return true;
+    for (size_t i = 0; i < n; i++) {
+      CagValue v;
+      if (!check_number(vm, op, l->as.numbers[i], k, out[i], &v, CAG_NUMBER)) return false;
+    }
+    return true;
+  }
+  if (l->length <= SHORT_LIST) {
+    CagValue parts[SHORT_LIST];
+    for (size_t i = 0; i < l->length; i++) {
+      CagValue e = cag_list_get(vm, l, i);
+      if (!cag_arithmetic(vm, op, swapped ? factor : e, swapped ? e : factor, &parts[i]))
+        return false;
+    }
+    *result = cag_list_values(vm, parts, l->length);
+    return true;
+  }
+  CagBuilder *out = cag_builder_new(vm);
+  for (size_t i = 0; i < l->length; i++) {
+    CagValue v, e = cag_list_get(vm, l, i);
+    if (!cag_arithmetic(vm, op, swapped ? factor : e, swapped ? e : factor, &v) ||
+        !cag_builder_add(vm, out, v))
+      return false;
+  }
+  *result = cag_builder_finish(vm, out);
+  return true;
+}
+
+static bool is_list(CagValue v) { return v.type == CAG_LIST || v.type == CAG_RANGE; }
+static bool is_scalar(CagValue v) {
+  return v.type == CAG_NUMBER || v.type == CAG_ANGLE || v.type == CAG_JET;
+}
+
+// Two scalars of which one is a jet: the value as plain numbers give it, and its derivatives.
+static bool jets(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
+  bool known;
+  CagValue value;
+  return scalars(vm, op, cag_plain(a), cag_plain(b), &value, &known) &&
+         cag_jet_arithmetic(vm, (int)op, a, b, value, result);
+}
+
+// --- Others ---
+
+// Puts the top of the stack above the registers of the running frame, which the loop does not see
+// to for operators, and gives the old one: so a built-in may be called, and it the script.
+static CagValue *raise_top(CagVm *vm) {
+  CagValue *top = vm->top;
+  if (vm->frame_count) {
+    const CagFrame *f = &vm->frames[vm->frame_count - 1];
+    if (f->base + f->proto->registers > top) vm->top = f->base + f->proto->registers;
+  }
+  return top;
+}
+
+// Set operations of solids and regions, by the built-in that does them: the rows of its name serve
+// the types of the first operand. A list on the right of `-` and `|` gives its elements as
+// operands; others are the union of their shapes.
+static bool solids(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
+  const char *name = op == CAG_OP_UNION          ? "union"
+                     : op == CAG_OP_INTERSECTION ? "intersection"
+                                                 : "difference";
+  size_t index = cag_builtin_find(name);
+  if (index == (size_t)-1) return fail_operands(vm, op, a, b, NULL);
+  CagValue operands[2] = {a, b};
+  const bool several = b.type == CAG_LIST && op != CAG_OP_INTERSECTION;
+  if (several) { // one list of them
+    const CagList *list = CAG_AS_LIST(b);
+    CagBuilder *builder = cag_builder_new(vm);
+    cag_builder_add(vm, builder, a);
+    for (size_t i = 0; i < list->length; i++)
+      cag_builder_add(vm, builder, cag_list_get(vm, list, i));
+    operands[0] = cag_builder_finish(vm, builder);
+  }
+  CagValue *top = raise_top(vm);
+  bool ok = cag_call(vm, vm->builtin_values[index], operands, several ? 1 : 2, result);
+  vm->top = top;
+  return ok;
+}
+
+static bool is_body(CagValue v) {
+  return v.type == CAG_SOLID || v.type == CAG_REGION || v.type == CAG_MESH ||
+         v.type == CAG_SURFACE || v.type == CAG_GROUP;
+}
+
+// A list of bodies, or of lists of such; an empty one may be.
+static bool is_bodies(CagVm *vm, CagValue v) {
+  while (v.type == CAG_LIST) {
+    const CagList *list = CAG_AS_LIST(v);
+    if (list->length == 0) return true;
+    if (list->dim != 0) return false;
+    v = cag_list_get(vm, list, 0);
+  }
+  return is_body(v);
+}
+
+static bool are_bodies(CagVm *vm, CagValue a, CagValue b) {
+  return (is_body(a) && is_bodies(vm, b)) || (is_bodies(vm, a) && is_body(b));
+}
+
+// What to say to a pair that nothing joins.
+static const char *operand_help(CagBinaryOp op, CagValue a, CagValue b) {
+  if (op == CAG_OP_MULTIPLY && is_list(a) && is_list(b))
+    return "write dot(a, b) or cross(a, b); multiply(A, b) of matrices";
+  if (op == CAG_OP_ADD && is_list(a) && is_scalar(b))
+    return "to add an element, write [...list, x]";
+  if (op == CAG_OP_ADD && (a.type == CAG_TEXT || b.type == CAG_TEXT))
+    return "put the value into the text: \"... {x}\"";
+  if (op == CAG_OP_UNION && a.type == CAG_BOOL) return "write `or`";
+  if (op == CAG_OP_INTERSECTION && a.type == CAG_BOOL) return "write `and`";
+  if (b.type == CAG_TRANSFORM && cag_is_shape(a)) return "the transform comes first: T * shape";
+  return NULL;
+}
+
+// T * v. A curve by a formula is evaluated for that.
+static bool moved(CagVm *vm, const CagTransform *t, CagValue v, CagValue *result) {
+  CagValue *top = raise_top(vm);
+  bool ok = vm->differentiation ? cag_jet_transform(vm, t, v, result)
+                                : cag_transform_apply(vm, t, v, result);
+  vm->top = top;
+  return ok && !vm->failed;
+}
+
+bool cag_arithmetic(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, CagValue *result) {
+  bool known;
+  if (op <= CAG_OP_POWER) {
+    bool ok = scalars(vm, op, a, b, result, &known);
+    if (known) return ok;
+    if (is_scalar(a) && is_scalar(b)) return jets(vm, op, a, b, result);
+  }
+  switch (op) {
+  case CAG_OP_ADD:
+    if (a.type == CAG_TEXT && b.type == CAG_TEXT) {
+      *result = cag_text_joined(vm, CAG_AS_TEXT(a), CAG_AS_TEXT(b));
+      return true;
+    }
+    if (is_list(a) && is_list(b)) return list_sum(vm, op, a, b, result);
+    break;
+  case CAG_OP_SUBTRACT:
+    if (is_list(a) && is_list(b)) return list_sum(vm, op, a, b, result);
+    if (are_bodies(vm, a, b)) return solids(vm, op, a, b, result);
+    break;
+  case CAG_OP_MULTIPLY:
+    if (a.type == CAG_TRANSFORM) return moved(vm, &CAG_AS_TRANSFORM(a)->t, b, result);
+    if (is_list(a) && is_scalar(b)) return list_scaled(vm, op, a, b, false, result);
+    if (is_scalar(a) && is_list(b)) return list_scaled(vm, op, b, a, true, result);
+    break;
+  case CAG_OP_DIVIDE:
+    if (is_list(a) && is_scalar(b)) return list_scaled(vm, op, a, b, false, result);
+    break;
+  case CAG_OP_UNION:
+  case CAG_OP_INTERSECTION:
+    if (are_bodies(vm, a, b)) return solids(vm, op, a, b, result);
+    break;
+  default: break;
+  }
+  return fail_operands(vm, op, a, b, operand_help(op, a, b));
+}
+
+bool cag_negate(CagVm *vm, CagValue v, CagValue *result) {
+  if (v.type == CAG_NUMBER) *result = cag_number(-v.as.number);
+  else if (v.type == CAG_ANGLE) *result = cag_angle(-v.as.number);
+  else if (v.type == CAG_JET) return jets(vm, CAG_OP_MULTIPLY, v, cag_number(-1), result);
+  else if (is_list(v)) return list_scaled(vm, CAG_OP_MULTIPLY, v, cag_number(-1), false, result);
+  else {
+    CagString s = {0};
+    cag_describe_value(vm, &s, v);
+    cag_vm_fail(vm, CAG_ERR_operand, "`-` turns a number, an angle or a vector, found %s", s.bytes);
+    cag_string_free(&s);
+    return false;
+  }
+  return true;
+}
+
+// --- Comparison ---
+
+static int compare_texts(const CagText *a, const CagText *b) {
+  size_t n = a->length < b->length ? a->length : b->length;
+  int c = memcmp(a->bytes, b->bytes, n); // the order of UTF-8 is that of code points
+  return c ? c : (a->length > b->length) - (a->length < b->length);
+}
+
+bool cag_compare(CagVm *vm, CagBinaryOp op, CagValue a, CagValue b, bool *result) {
+  int c;
+  if (a.type == CAG_JET || b.type == CAG_JET) { // by their values
+    a = cag_plain(a);
+    b = cag_plain(b);
+  }
+  if (a.type == b.type && is_scalar(a)) {
+    c = (a.as.number > b.as.number) - (a.as.number < b.as.number);
+  } else if (a.type == CAG_TEXT && b.type == CAG_TEXT) {
+    c = compare_texts(CAG_AS_TEXT(a), CAG_AS_TEXT(b));
+  } else {
+    CagString s = {0};
+    cag_describe_value(vm, &s, a);
+    cag_string_add(&s, " with ", 6);
+    cag_describe_value(vm, &s, b);
+    cag_vm_fail(vm, CAG_ERR_not_comparable, "`%s` cannot compare %s", symbol(op), s.bytes);
+    cag_string_free(&s);
+    if (is_scalar(a) && is_scalar(b)) {
+      char n[32];
+      cag_number_text(a.type == CAG_NUMBER ? a.as.number : b.as.number, n);
+      cag_fail_help(vm, "write %sdeg or %srad", n, n);
+    }
+    return false;
+  }
+  switch (op) {
+  case CAG_OP_LESS: *result = c < 0; break;
+  case CAG_OP_LESS_EQUAL: *result = c <= 0; break;
+  case CAG_OP_GREATER: *result = c > 0; break;
+  default: *result = c >= 0; break;
+  }
+  return true;
+}
+
+static bool in_range(const CagRange *r, double x) {
+  double low = r->start, high = r->end;
+  if (r->stepped && r->step < 0) { // a range that goes down holds the same numbers
+    low = r->end;
+    high = r->start;
+    return r->open ? x > low && x <= high : x >= low && x <= high;
+  }
+  return x >= low && (r->open ? x < high : x <= high);
+}
+
+bool cag_contains(CagVm *vm, CagValue needle, CagValue haystack, bool *result) {
+  needle = cag_plain(needle);
+  switch (haystack.type) {
+  case CAG_RANGE: {
+    const CagRange *r = CAG_AS_RANGE(haystack);
+    if (!is_scalar(needle) || r->angle != (needle.type == CAG_ANGLE)) {
+      if (is_scalar(needle))
+        return fail_operands(vm, CAG_OP_IN, needle, haystack,
+                             "both sides must be numbers, or both angles");
+      *result = false;
+      return true;
+    }
+    *result = in_range(r, needle.as.number);
+    return true;
+  }
+  case CAG_LIST: {
+    const CagList *l = CAG_AS_LIST(haystack);
+    *result = false;
+    for (size_t i = 0; i < l->length && !*result; i++) {
+      if (l->dim == 1) *result = needle.type == CAG_NUMBER && l->as.numbers[i] == needle.as.number;
+      else if (l->dim == 0) *result = cag_equal(vm, needle, l->as.items[i]);
+      else {
+        const double *x;
+        size_t n;
+        *result = cag_as_vector(needle, &x, &n) && n == l->dim;
+        for (size_t k = 0; *result && k < n; k++) *result = x[k] == l->as.numbers[i * l->dim + k];
+      }
+    }
+    return !vm->failed;
+  }
+  case CAG_RECORD:
+    if (needle.type != CAG_TEXT) break;
+    *result =
+        cag_record_get_text(vm, CAG_AS_RECORD(haystack), CAG_AS_TEXT(needle)).type != CAG_UNSET;
+    return true;
+  case CAG_TEXT: {
+    if (needle.type != CAG_TEXT) break;
+    const CagText *t = CAG_AS_TEXT(needle), *h = CAG_AS_TEXT(haystack);
+    *result = t->length == 0 || memmem(h->bytes, h->length, t->bytes, t->length) != NULL;
+    return true;
+  }
+  default: break;
+  }
+  return fail_operands(
+      vm, CAG_OP_IN, needle, haystack,
+      "`in` looks in a range, a list, for a field in a record, for a part in a text");
+}
+
+// --- Ranges ---
+
+// A range from a number to an angle, or back: the number is taken for degrees.
+static bool fail_mixed_range(CagVm *vm, CagValue low, CagValue high) {
+  char a[32], b[32];
+  cag_number_text(low.as.number, a);
+  cag_number_text(high.as.number, b);
+  const char *a_unit = low.type == CAG_ANGLE ? "deg" : "";
+  const char *b_unit = high.type == CAG_ANGLE ? "deg" : "";
+  cag_vm_fail(vm, CAG_ERR_type, "a range needs two numbers or two angles, found %s%s and %s%s", a,
+              a_unit, b, b_unit);
+  return cag_fail_help(vm, "write %sdeg..%sdeg", a, b);
+}
+
+bool cag_make_range(CagVm *vm, CagValue low, CagValue high, CagValue step, bool open,
+                    CagValue *result) {
+  bool angle = low.type == CAG_ANGLE;
+  CagType type = angle ? CAG_ANGLE : CAG_NUMBER;
+  const CagValue parts[] = {low, high, step};
+  for (int i = 0; i < (step.type == CAG_UNSET ? 2 : 3); i++) {
+    if (parts[i].type == type) continue;
+    if (parts[i].type == CAG_JET)
+      return cag_vm_fail(vm, CAG_ERR_not_differentiable, "a range cannot be differentiated");
+    if (i == 1 && is_scalar(parts[i])) return fail_mixed_range(vm, parts[0], parts[1]);
+    CagString s = {0};
+    cag_describe_value(vm, &s, parts[i]);
+    if (i == 0 || !is_scalar(parts[i]))
+      cag_vm_fail(vm, CAG_ERR_type, "a range goes between numbers or between angles, found %s",
+                  s.bytes);
+    else
+      cag_vm_fail(vm, CAG_ERR_type, "the step of a range of %s, found %s",
+                  angle ? "angles must be an angle" : "numbers must be a number", s.bytes);
+    cag_string_free(&s);
+    return false;
+  }
+  double by = step.type == CAG_UNSET ? 1 : step.as.number;
+  if (by == 0 || !isfinite(by))
+    return cag_vm_fail(vm, CAG_ERR_value,
+                       "the step of a range must be a finite number other than 0");
+  *result =
+      cag_range_new(vm, low.as.number, high.as.number, by, angle, open, step.type != CAG_UNSET);
+  return true;
+}
+
+// --- Indices ---
+
+static bool fail_index(CagVm *vm, double at, size_t n, const char *what) {
+  char text[32];
+  cag_number_text(at, text);
+  if (at != rint(at))
+    return cag_vm_fail(vm, CAG_ERR_index, "an index is a whole number, found %s", text);
+  cag_vm_fail(vm, CAG_ERR_index, "index %s lies outside of %s %s of %zu", text, cag_article(what),
+              what, n);
+  if (n) cag_fail_help(vm, "0 to %zu, or -%zu to -1", n - 1, n);
+  return false;
+}
+
+// Place of an index that may count from the end.
+static bool resolve(CagVm *vm, double at, size_t n, const char *what, size_t *out) {
+  double k = at < 0 ? at + (double)n : at;
+  if (!(k >= 0 && k < (double)n && at == rint(at))) return fail_index(vm, at, n, what);
+  *out = (size_t)k;
+  return true;
+}
+
+// Half-open part of n elements that a range of indices means: both ends in, or the upper one out;
+// negative ones count from the end.
+static bool resolve_part(CagVm *vm, const CagRange *r, size_t n, const char *what, size_t *from,
+                         size_t *count) {
+  if (r->angle)
+    return cag_vm_fail(vm, CAG_ERR_index, "indices are numbers, found a range of angles");
+  if (r->start != rint(r->start) || (r->end != rint(r->end)))
+    return cag_vm_fail(vm, CAG_ERR_index, "indices are whole numbers");
+  double a = r->start < 0 ? r->start + (double)n : r->start;
+  double b = isinf(r->end) && r->end > 0
+                 ? (double)n
+                 : (r->end < 0 ? r->end + (double)n : r->end) + (r->open ? 0 : 1);
+  if (a < 0 || a > (double)n) return fail_index(vm, r->start, n, what);
+  if (b > (double)n || b < 0) return fail_index(vm, r->end, n, what);
+  *from = (size_t)a;
+  *count = b > a ? (size_t)(b - a) : 0;
+  return true;
+}
+
+static size_t byte_of_character(const CagText *t, size_t k) {
+  if (t->characters == t->length) return k;
+  size_t i = 0;
+  for (; k; k--) do
+      i++;
+    while (i < t->length && ((unsigned char)t->bytes[i] & 0xc0) == 0x80);
+  return i;
+}
+
+// "abcdef"[0..4 by 2]: the characters one by one.
+static bool text_steps(CagVm *vm, const CagText *t, const CagRange *r, CagValue *result) {
+  CagString s = {0};
+  size_t n, k;
+  bool ok = cag_range_count(vm, r, &n);
+  for (size_t i = 0; ok && i < n; i++) {
+    ok = resolve(vm, cag_range_element(r, i, n), t->characters, "text", &k);
+    if (!ok) break;
+    const size_t a = byte_of_character(t, k), b = byte_of_character(t, k + 1);
+    cag_string_add(&s, t->bytes + a, b - a);
+  }
+  if (ok) *result = cag_text_from_string(vm, &s);
+  else cag_string_free(&s);
+  return ok;
+}
+
+static bool index_text(CagVm *vm, const CagText *t, CagValue index, CagValue *result) {
+  size_t from, count = 1;
+  if (index.type == CAG_RANGE) {
+    const CagRange *r = CAG_AS_RANGE(index);
+    if (r->stepped && r->step != 1) return text_steps(vm, t, r, result);
+    if (!resolve_part(vm, CAG_AS_RANGE(index), t->characters, "text", &from, &count)) return false;
+  } else if (!resolve(vm, index.as.number, t->characters, "text", &from)) {
+    return false;
+  }
+  size_t a = byte_of_character(t, from), b = byte_of_character(t, from + count);
+  *result = cag_text_new(vm, t->bytes + a, b - a);
+  return true;
+}
+
+// xs[0..10 by 2]: the elements one by one.
+static bool index_steps(CagVm *vm, CagValue list, const CagRange *r, CagValue *result) {
+  const CagList *l = CAG_AS_LIST(list);
+  size_t n;
+  if (!cag_range_count(vm, r, &n)) return false;
+  CagBuilder *b = cag_builder_new(vm);
+  for (size_t i = 0; i < n; i++) {
+    size_t k;
+    if (!resolve(vm, cag_range_element(r, i, n), l->length, "list", &k) ||
+        !cag_builder_add(vm, b, cag_list_get(vm, l, k)))
+      return false;
+  }
+  *result = cag_builder_finish(vm, b);
+  return true;
+}
+
+static bool index_list(CagVm *vm, CagValue list, CagValue index, CagValue *result) {
+  const CagList *l = CAG_AS_LIST(list);
+  size_t from, count;
+  if (index.type == CAG_RANGE) {
+    const CagRange *r = CAG_AS_RANGE(index);
+    if (r->stepped && r->step != 1) return index_steps(vm, list, r, result);
+    if (!resolve_part(vm, r, l->length, "list", &from, &count)) return false;
+    *result = cag_list_slice(vm, list, from, count);
+    return true;
+  }
+  if (!resolve(vm, index.as.number, l->length, "list", &from)) return false;
+  *result = cag_list_get(vm, l, from);
+  return true;
+}
+
+static bool fail_field(CagVm *vm, CagValue object, const char *name);
+
+bool cag_index(CagVm *vm, CagValue object, CagValue index, CagValue *result) {
+  if (object.type == CAG_RECORD && index.type == CAG_TEXT) {
+    *result = cag_record_get_text(vm, CAG_AS_RECORD(object), CAG_AS_TEXT(index));
+    if (result->type != CAG_UNSET) return true;
+    return fail_field(vm, object, CAG_AS_TEXT(index)->bytes);
+  }
+  bool listed = object.type == CAG_LIST || object.type == CAG_RANGE || object.type == CAG_TEXT;
+  if (listed && index.type == CAG_JET)
+    return cag_vm_fail(vm, CAG_ERR_not_differentiable, "an index cannot be differentiated");
+  if (!listed || (index.type != CAG_NUMBER && index.type != CAG_RANGE)) {
+    CagString s = {0};
+    cag_describe_value(vm, &s, listed || object.type == CAG_RECORD ? index : object);
+    if (object.type == CAG_RECORD)
+      cag_vm_fail(vm, CAG_ERR_type, "a field of a record is named by a text, found %s", s.bytes);
+    else if (listed)
+      cag_vm_fail(vm, CAG_ERR_type, "an index is a number or a range, found %s", s.bytes);
+    else
+      cag_vm_fail(vm, CAG_ERR_type, "only lists, ranges, texts and records have elements, found %s",
+                  s.bytes);
+    cag_string_free(&s);
+    return false;
+  }
+  if (object.type == CAG_TEXT) return index_text(vm, CAG_AS_TEXT(object), index, result);
+  if (object.type == CAG_RANGE && index.type == CAG_NUMBER) { // one element, without the list
+    const CagRange *r = CAG_AS_RANGE(object);
+    size_t n, k;
+    if (isinf(r->end) && index.as.number >= 0 && index.as.number == rint(index.as.number)) {
+      double x = r->start + index.as.number * r->step;
+      *result = r->angle ? cag_angle(x) : cag_number(x);
+      return true;
+    }
+    if (!cag_range_count(vm, r, &n) || !resolve(vm, index.as.number, n, "range", &k)) return false;
+    double x = cag_range_element(r, k, n);
+    *result = r->angle ? cag_angle(x) : cag_number(x);
+    return true;
+  }
+  CagValue list;
+  if (!cag_as_list(vm, object, &list)) return false;
+  return index_list(vm, list, index, result);
+}
+
+// --- Members ---
+
+static bool fail_field(CagVm *vm, CagValue object, const char *name) {
+  if (object.type == CAG_RECORD) {
+    const CagLayout *l = CAG_AS_RECORD(object)->layout;
+    cag_vm_fail(vm, CAG_ERR_field, "the record has no field `%s`", name);
+    const char *names[256];
+    size_t n = l->count < 256 ? l->count : 256;
+    for (size_t i = 0; i < n; i++) names[i] = l->names[i]->bytes;
+    const char *nearest = cag_nearest_name(name, names, n);
+    if (nearest) return cag_fail_help(vm, "did you mean `%s`?", nearest);
+    if (n && n <= 12) {
+      CagString s = {0};
+      for (size_t i = 0; i < n; i++) cag_string_printf(&s, "%s%s", i ? ", " : "", names[i]);
+      cag_fail_help(vm, "its fields are %s", s.bytes);
+      cag_string_free(&s);
+    }
+    return false;
+  }
+  if (object.type == CAG_MODULE) {
+    const CagModuleUnit *m = vm->modules[CAG_AS_MODULE(object)->module];
+    cag_vm_fail(vm, CAG_ERR_field, "the module %s has no `%s`", m->name, name);
+    const char *nearest = cag_nearest_name(name, m->public_names, m->public_count);
+    return nearest ? cag_fail_help(vm, "did you mean `%s`?", nearest) : false;
+  }
+  cag_vm_fail(vm, CAG_ERR_field, "%s has no member `%s`", cag_type_article(object), name);
+  const char *members[CAG_MEMBERS_MOST];
+  const size_t n = cag_value_members(object, members);
+  const char *nearest = n ? cag_nearest_name(name, members, n) : NULL;
+  if (cag_foreign_member(name)) cag_fail_help(vm, "write %s", cag_foreign_member(name));
+  else if (cag_builtin_find(name) != (size_t)-1)
+    cag_fail_help(vm, "a function comes after |>: write x |> %s(...)", name);
+  else if (nearest) cag_fail_help(vm, "did you mean `%s`?", nearest);
+  else if (object.type == CAG_RANGE) cag_fail_help(vm, "a range has start, end and step");
+  else if (n && n <= 12) {
+    CagString s = {0};
+    for (size_t i = 0; i < n; i++) cag_string_printf(&s, "%s%s", i ? ", " : "", members[i]);
+    cag_fail_help(vm, "it has %s", s.bytes);
+    cag_string_free(&s);
+  }
+  return false;
+}
+
+static bool member_of_list(CagVm *vm, CagValue object, const char *name, CagValue *result) {
+  static const char axes[] = "xyzw";
+  const CagList *l = CAG_AS_LIST(object);
+  const char *axis = name[0] && !name[1] ? strchr(axes, name[0]) : NULL;
+  if (axis && l->dim == 1 && l->length >= 2 && l->length <= 4) {
+    size_t k = (size_t)(axis - axes);
+    if (k < l->length) {
+      *result = cag_number(l->as.numbers[k]);
+      return true;
+    }
+    return cag_vm_fail(vm, CAG_ERR_field, "a vector of %zu numbers has no `%s`", l->length, name);
+  }
+  if (axis && l->dim == 0 && l->length >= 2 && l->length <= 4 && vm->differentiation &&
+      cag_holds_jet(object)) {
+    size_t k = (size_t)(axis - axes);
+    if (k < l->length) {
+      *result = l->as.items[k];
+      return true;
+    }
+    return cag_vm_fail(vm, CAG_ERR_field, "a vector of %zu numbers has no `%s`", l->length, name);
+  }
+  if (axis) {
+    CagString s = {0};
+    cag_describe_value(vm, &s, object);
+    cag_vm_fail(vm, CAG_ERR_field, "`.%s` is of a vector of 2 to 4 numbers, found %s", name,
+                s.bytes);
+    cag_string_free(&s);
+    return false;
+  }
+  return fail_field(vm, object, name);
+}
+
+bool cag_member(CagVm *vm, CagValue object, CagValue name_value, CagValue *result) {
+  const CagText *text = CAG_AS_TEXT(name_value);
+  const char *name = text->bytes;
+  switch (object.type) {
+  case CAG_RECORD: {
+    *result = cag_record_get_text(vm, CAG_AS_RECORD(object), text);
+    if (result->type != CAG_UNSET) return true;
+    break;
+  }
+  case CAG_LIST: return member_of_list(vm, object, name, result);
+  case CAG_RANGE: {
+    const CagRange *r = CAG_AS_RANGE(object);
+    double x = strcmp(name, "start") == 0  ? r->start
+               : strcmp(name, "end") == 0  ? r->end
+               : strcmp(name, "step") == 0 ? r->step
+                                           : NAN;
+    if (isnan(x)) break;
+    *result = r->angle ? cag_angle(x) : cag_number(x);
+    return true;
+  }
+  case CAG_MODULE: {
+    const CagModuleUnit *m = vm->modules[CAG_AS_MODULE(object)->module];
+    for (size_t i = 0; i < m->public_count; i++)
+      if (strcmp(m->publics[i].name, name) == 0)
+        return cag_vm_force(vm, m->publics[i].global, result);
+    break;
+  }
+  case CAG_NONE:
+  case CAG_BOOL:
+  case CAG_NUMBER:
+  case CAG_ANGLE:
+  case CAG_TEXT:
+  case CAG_CLOSURE:
+  case CAG_BUILTIN: break;
+  default:
+    if (cag_value_member(vm, object, name, result)) return true;
+  }
+  return fail_field(vm, object, name);
+}

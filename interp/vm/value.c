@@ -1,0 +1,350 @@
+// Making values: texts, ranges, records, transforms and shapes. Lists have a file of their own.
+
+#include "interp/vm/value.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "interp/vm/vm.h"
+
+static const char *const type_names[] = {
+#define X(tag, name, article) name,
+    CAG_VALUE_TYPES(X)
+#undef X
+};
+static const char *const type_articles[] = {
+#define X(tag, name, article) article,
+    CAG_VALUE_TYPES(X)
+#undef X
+};
+
+const char *cag_type_name(CagValue v) {
+  return v.type < CAG_TYPE_COUNT ? type_names[v.type] : "none";
+}
+const char *cag_type_article(CagValue v) {
+  return v.type < CAG_TYPE_COUNT ? type_articles[v.type] : "nothing";
+}
+
+// --- Text ---
+
+static size_t count_characters(const char *bytes, size_t length) {
+  size_t n = 0;
+  for (size_t i = 0; i < length; i++) n += ((unsigned char)bytes[i] & 0xc0) != 0x80;
+  return n;
+}
+
+// Bytes of a text that are copied between two looks at the stop flag.
+#define BLOCK ((size_t)1 << 20)
+
+// Appends bytes to a text, whose length is how far it has come. The end of a text that is not
+// completed because the run must stop is zeros.
+static void append_bytes(CagVm *vm, CagText *t, const char *bytes, size_t length) {
+  char *to = t->bytes + t->length;
+  t->length += length;
+  for (size_t from = 0; from < length && !vm->stop; from += BLOCK) {
+    const size_t size = length - from < BLOCK ? length - from : BLOCK;
+    t->characters += count_characters(bytes + from, size);
+    memcpy(to + from, bytes + from, size);
+  }
+}
+
+CagValue cag_text_new(CagVm *vm, const char *bytes, size_t length) {
+  CagText *t = cag_alloc(vm, CAG_TEXT, sizeof *t + length + 1);
+  append_bytes(vm, t, bytes, length);
+  return cag_object(CAG_TEXT, t);
+}
+
+CagValue cag_text_joined(CagVm *vm, const CagText *a, const CagText *b) {
+  CagText *t = cag_alloc(vm, CAG_TEXT, sizeof *t + a->length + b->length + 1);
+  append_bytes(vm, t, a->bytes, a->length);
+  append_bytes(vm, t, b->bytes, b->length);
+  return cag_object(CAG_TEXT, t);
+}
+
+CagValue cag_text_c(CagVm *vm, const char *s) { return cag_text_new(vm, s, strlen(s)); }
+
+// FNV-1a (Fowler, Noll, Vo).
+static uint32_t hash_bytes(const char *bytes, size_t length) {
+  uint32_t h = 2166136261u;
+  for (size_t i = 0; i < length; i++) h = (h ^ (unsigned char)bytes[i]) * 16777619u;
+  return h;
+}
+
+static void grow_interned(CagVm *vm) {
+  size_t size = vm->interned_size ? vm->interned_size * 2 : 1024;
+  CagText **table = cag_calloc(size, sizeof *table);
+  if (!table) cag_vm_out_of_memory(vm);
+  for (size_t i = 0; i < vm->interned_size; i++) {
+    CagText *t = vm->interned[i];
+    if (!t) continue;
+    size_t k = t->head.hash & (size - 1);
+    while (table[k]) k = (k + 1) & (size - 1);
+    table[k] = t;
+  }
+  cag_free(vm->interned);
+  vm->interned = table;
+  vm->interned_size = size;
+}
+
+CagText *cag_intern(CagVm *vm, const char *bytes, size_t length) {
+  if (vm->interned_count * 2 >= vm->interned_size) grow_interned(vm);
+  uint32_t h = hash_bytes(bytes, length);
+  size_t k = h & (vm->interned_size - 1);
+  for (; vm->interned[k]; k = (k + 1) & (vm->interned_size - 1)) {
+    CagText *t = vm->interned[k];
+    if (t->head.hash == h && t->length == length && memcmp(t->bytes, bytes, length) == 0) return t;
+  }
+  CagText *t = CAG_AS_TEXT(cag_text_new(vm, bytes, length));
+  t->head.hash = h;
+  t->interned = true;
+  vm->interned[k] = t;
+  vm->interned_count++;
+  return t;
+}
+
+// --- Range ---
+
+CagValue cag_range_new(CagVm *vm, double start, double end, double step, bool angle, bool open,
+                       bool stepped) {
+  CagRange *r = cag_alloc(vm, CAG_RANGE, sizeof *r);
+  r->start = start;
+  r->end = end;
+  r->step = step;
+  r->angle = angle;
+  r->open = open;
+  r->stepped = stepped;
+  return cag_object(CAG_RANGE, r);
+}
+
+// A step ends on the end when it comes so near, in steps (language, section 2).
+#define STEP_SLACK 1e-9
+// More elements than any list can have.
+#define RANGE_MAX 1e15
+
+// Number of steps from start to end, and whether the last one meets the end.
+static double range_steps(const CagRange *r, bool *meets) {
+  double q = (r->end - r->start) / r->step;
+  double whole = floor(q + STEP_SLACK);
+  *meets = fabs(q - whole) <= STEP_SLACK;
+  return whole;
+}
+
+bool cag_range_count(CagVm *vm, const CagRange *r, size_t *count) {
+  if (!isfinite(r->start) || !isfinite(r->end)) {
+    return cag_vm_fail(vm, CAG_ERR_endless, "a range to inf is an interval and no list");
+  }
+  bool meets;
+  double steps = range_steps(r, &meets);
+  if (steps < 0) {
+    *count = 0;
+    return true;
+  }
+  if (steps > RANGE_MAX)
+    return cag_vm_fail(vm, CAG_ERR_endless, "the range has more than 1e15 elements");
+  *count = (size_t)steps + (r->open && meets ? 0 : 1);
+  return true;
+}
+
+double cag_range_element(const CagRange *r, size_t k, size_t count) {
+  (void)count;
+  if (r->step == rint(r->step) && r->start == rint(r->start)) return r->start + (double)k * r->step;
+  bool meets;
+  double steps = range_steps(r, &meets);
+  if (!meets || steps == 0) return r->start + (double)k * r->step;
+  if ((double)k == steps) return r->end;
+  return r->start + (r->end - r->start) * (double)k / steps;
+}
+
+// --- Record ---
+
+#define INDEXED_FROM 9 // layouts with fewer fields are searched one by one
+
+static void index_layout(CagVm *vm, CagLayout *l) {
+  size_t size = 16;
+  while (size < l->count * 2) size *= 2;
+  l->index = cag_calloc(size, sizeof *l->index);
+  if (!l->index) cag_vm_out_of_memory(vm);
+  l->index_size = size;
+  for (size_t i = 0; i < l->count; i++) {
+    size_t k = l->names[i]->head.hash & (size - 1);
+    while (l->index[k]) k = (k + 1) & (size - 1);
+    l->index[k] = (uint32_t)i + 1;
+  }
+}
+
+CagLayout *cag_layout_new(CagVm *vm, CagText *const *names, size_t n) {
+  CagLayout *l = cag_alloc(vm, CAG_INTERNAL, sizeof *l + n * sizeof(CagText *));
+  l->head.flags = CAG_INTERNAL_LAYOUT;
+  l->count = n;
+  if (n) memcpy(l->names, names, n * sizeof *names);
+  if (n >= INDEXED_FROM) index_layout(vm, l);
+  return l;
+}
+
+size_t cag_layout_find(const CagLayout *l, const CagText *interned) {
+  if (!l->index) {
+    for (size_t i = 0; i < l->count; i++)
+      if (l->names[i] == interned) return i;
+    return (size_t)-1;
+  }
+  for (size_t k = interned->head.hash & (l->index_size - 1); l->index[k];
+       k = (k + 1) & (l->index_size - 1))
+    if (l->names[l->index[k] - 1] == interned) return l->index[k] - 1;
+  return (size_t)-1;
+}
+
+CagValue cag_record_with_layout(CagVm *vm, CagLayout *l, const CagValue *values) {
+  CagRecord *r = cag_alloc(vm, CAG_RECORD, sizeof *r + l->count * sizeof(CagValue));
+  r->layout = l;
+  if (l->count) memcpy(r->fields, values, l->count * sizeof *values);
+  return cag_object(CAG_RECORD, r);
+}
+
+CagValue cag_record_from_texts(CagVm *vm, CagText *const *names, const CagValue *values, size_t n) {
+  CagCleanup cleanup;
+  CagText **interned = cag_temporary(&cleanup, n, sizeof *interned);
+  for (size_t i = 0; i < n; i++)
+    interned[i] = names[i]->interned ? names[i] : cag_intern(vm, names[i]->bytes, names[i]->length);
+  CagLayout *l = cag_layout_new(vm, interned, n);
+  cag_cleanup_run(&cleanup);
+  return cag_record_with_layout(vm, l, values);
+}
+
+CagValue cag_record_new(CagVm *vm, const char *const *names, const CagValue *values, size_t n) {
+  CagCleanup cleanup;
+  CagText **texts = cag_temporary(&cleanup, n, sizeof *texts);
+  for (size_t i = 0; i < n; i++) texts[i] = cag_intern(vm, names[i], strlen(names[i]));
+  CagLayout *l = cag_layout_new(vm, texts, n);
+  cag_cleanup_run(&cleanup);
+  return cag_record_with_layout(vm, l, values);
+}
+
+CagValue cag_record_get(const CagRecord *r, const char *name) {
+  for (size_t i = 0; i < r->layout->count; i++)
+    if (strcmp(r->layout->names[i]->bytes, name) == 0) return r->fields[i];
+  return cag_unset();
+}
+
+CagValue cag_record_get_text(CagVm *vm, const CagRecord *r, const CagText *name) {
+  const CagText *t = name->interned ? name : cag_intern(vm, name->bytes, name->length);
+  size_t i = cag_layout_find(r->layout, t);
+  return i == (size_t)-1 ? cag_unset() : r->fields[i];
+}
+
+// --- Geometry ---
+
+CagValue cag_transform_value(CagVm *vm, const CagTransform *t) {
+  CagTransformValue *v = cag_alloc(vm, CAG_TRANSFORM, sizeof *v);
+  v->t = *t;
+  return cag_object(CAG_TRANSFORM, v);
+}
+
+CagValue cag_plane_value(CagVm *vm, const CagPlane *p) {
+  CagPlaneValue *v = cag_alloc(vm, CAG_PLANE, sizeof *v);
+  v->plane = *p;
+  return cag_object(CAG_PLANE, v);
+}
+
+static CagShape *shape_new(CagVm *vm, CagType type) {
+  CagShape *s = cag_alloc(vm, type, sizeof *s);
+  s->placement = cag_transform_identity();
+  return s;
+}
+
+// Makes a shape that takes over its geometry, and releases the geometry if memory runs out.
+static CagShape *shape_of(CagVm *vm, CagType type, void (*release)(void *), void *owned) {
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, release, owned);
+  CagShape *s = shape_new(vm, type);
+  cag_cleanup_pop(&cleanup);
+  return s;
+}
+
+static void release_curve(void *c) { cag_curve_release(c); }
+static void release_region(void *r) { cag_region_release(r); }
+static void release_surface(void *s) { cag_surface_release(s); }
+static void release_solid(void *s) { cag_solid_release(s); }
+static void release_mesh(void *m) { cag_mesh_release(m); }
+static void release_robot(void *r) { cag_robot_release(r); }
+
+CagValue cag_curve_value(CagVm *vm, CagCurve *c) {
+  CagShape *s = shape_of(vm, CAG_CURVE, release_curve, c);
+  s->as.curve = c;
+  return cag_object(CAG_CURVE, s);
+}
+
+CagValue cag_region_value(CagVm *vm, CagRegion *r, const CagTransform *placement) {
+  CagShape *s = shape_of(vm, CAG_REGION, release_region, r);
+  s->as.region = r;
+  if (placement) s->placement = *placement;
+  return cag_object(CAG_REGION, s);
+}
+
+CagValue cag_surface_value(CagVm *vm, CagSurface *surface) {
+  CagShape *s = shape_of(vm, CAG_SURFACE, release_surface, surface);
+  s->as.surface = surface;
+  return cag_object(CAG_SURFACE, s);
+}
+
+CagValue cag_solid_value(CagVm *vm, CagSolid *solid) {
+  CagShape *s = shape_of(vm, CAG_SOLID, release_solid, solid);
+  s->as.solid = solid;
+  return cag_object(CAG_SOLID, s);
+}
+
+CagValue cag_mesh_value(CagVm *vm, CagMesh *m) {
+  CagShape *s = shape_of(vm, CAG_MESH, release_mesh, m);
+  s->as.mesh = m;
+  return cag_object(CAG_MESH, s);
+}
+
+CagValue cag_group_value(CagVm *vm, CagValue list) {
+  CagShape *s = shape_new(vm, CAG_GROUP);
+  s->as.items = CAG_AS_LIST(list);
+  return cag_object(CAG_GROUP, s);
+}
+
+CagValue cag_shape_copy(CagVm *vm, CagValue shape) {
+  const CagShape *from = CAG_AS_SHAPE(shape);
+  CagShape *s = shape_new(vm, shape.type);
+  CagObject head = s->head;
+  *s = *from;
+  s->head = head;
+  switch (shape.type) {
+  case CAG_CURVE: cag_curve_retain(s->as.curve); break;
+  case CAG_REGION: cag_region_retain(s->as.region); break;
+  case CAG_SURFACE: cag_surface_retain(s->as.surface); break;
+  case CAG_SOLID: cag_solid_retain(s->as.solid); break;
+  case CAG_MESH: cag_mesh_retain(s->as.mesh); break;
+  default: break;
+  }
+  return cag_object(shape.type, s);
+}
+
+CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue record) {
+  CagSceneValue *s = cag_alloc(vm, type, sizeof *s);
+  s->kind = kind;
+  s->fields = CAG_AS_RECORD(record);
+  s->mirrored = false;
+  s->placement = cag_transform_identity();
+  return cag_object(type, s);
+}
+
+CagValue cag_link_value(CagVm *vm, const CagRobotLink *link, CagValue shape) {
+  CagLinkValue *v = cag_alloc(vm, CAG_LINK, sizeof *v);
+  v->link = *link;
+  v->shape = shape;
+  return cag_object(CAG_LINK, v);
+}
+
+CagValue cag_robot_value(CagVm *vm, CagRobot *r, CagText *name, CagValue links) {
+  CagCleanup cleanup;
+  cag_cleanup_push(&cleanup, release_robot, r);
+  CagRobotValue *v = cag_alloc(vm, CAG_ROBOT, sizeof *v);
+  cag_cleanup_pop(&cleanup);
+  v->robot = r;
+  v->name = name;
+  v->links = CAG_AS_LIST(links);
+  return cag_object(CAG_ROBOT, v);
+}

@@ -1,0 +1,349 @@
+// Values of the language.
+//
+// A CagValue is a tag and either an immediate (none, bool, number, angle) or a pointer to an object
+// of the heap. Everything is immutable once it is reachable from a script. Objects begin with a
+// CagObject header and are collected (see heap.h): memory is never reclaimed while C code runs
+// between two safe points, so a built-in that does not call back into the script may keep values in
+// plain C variables. One that calls back (cag_call) must keep what it still needs afterwards on the
+// root stack (cag_root_push / cag_root_pop).
+
+#ifndef CAG_INTERP_VM_VALUE_H
+#define CAG_INTERP_VM_VALUE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/guard.h"
+#include "geom/curve/curve.h"
+#include "geom/curve/region.h"
+#include "geom/linalg/transform.h"
+#include "geom/mesh/mesh.h"
+#include "geom/robot/robot.h"
+#include "geom/solid/solid.h"
+#include "geom/surface/surface.h"
+
+typedef struct CagVm CagVm;
+typedef struct CagObject CagObject;
+
+// X(tag, name in type_of and in messages with its article)
+#define CAG_VALUE_TYPES(X)                                                                         \
+  X(NONE, "none", "none")                                                                          \
+  X(BOOL, "bool", "a bool")                                                                        \
+  X(NUMBER, "number", "a number")                                                                  \
+  X(ANGLE, "angle", "an angle")                                                                    \
+  X(JET, "number", "a number") /* a number or angle with its derivatives: jet.h */                 \
+  X(TEXT, "text", "a text")                                                                        \
+  X(LIST, "list", "a list")                                                                        \
+  X(RANGE, "range", "a range")                                                                     \
+  X(RECORD, "record", "a record")                                                                  \
+  X(CLOSURE, "function", "a function")                                                             \
+  X(BUILTIN, "function", "a function")                                                             \
+  X(TRANSFORM, "transform", "a transform")                                                         \
+  X(CURVE, "curve", "a curve")                                                                     \
+  X(REGION, "region", "a region")                                                                  \
+  X(SURFACE, "surface", "a surface")                                                               \
+  X(SOLID, "solid", "a solid")                                                                     \
+  X(MESH, "mesh", "a mesh")                                                                        \
+  X(GROUP, "group", "a group")                                                                     \
+  X(PLANE, "plane", "a plane")                                                                     \
+  X(LINK, "link", "a link")                                                                        \
+  X(ROBOT, "robot", "a robot")                                                                     \
+  X(CAMERA, "camera", "a camera")                                                                  \
+  X(LIGHT, "light", "a light")                                                                     \
+  X(SENSOR, "sensor", "a sensor")                                                                  \
+  X(IMAGE, "image", "an image")                                                                    \
+  X(SETTING, "setting", "a scene setting")                                                         \
+  X(MODULE, "module", "a module")
+
+typedef enum CagType {
+#define X(tag, name, article) CAG_##tag,
+  CAG_VALUE_TYPES(X)
+#undef X
+      CAG_TYPE_COUNT,
+  // Internal tags that no script sees.
+  CAG_UNSET = CAG_TYPE_COUNT, // an argument that was not given
+  CAG_INTERNAL                // an object of the machine (list builder, iterator ...)
+} CagType;
+
+// From here on a value has an object behind it.
+#define CAG_FIRST_OBJECT CAG_JET
+
+typedef struct CagValue {
+  CagType type;
+  union {
+    bool boolean;
+    double number; // also degrees of an angle
+    CagObject *object;
+  } as;
+} CagValue;
+
+struct CagObject {
+  uint8_t type;  // CagType
+  uint8_t mark;  // of the last collection, and how deep in geometry it was made: see heap.c
+  uint8_t small; // size class; 0: from malloc
+  uint8_t flags;
+  uint32_t hash;   // free for the object's use
+  CagObject *next; // list of large objects, or free list
+};
+
+// --- Text: UTF-8, NUL-terminated ---
+typedef struct CagText {
+  CagObject head;
+  size_t length;     // bytes
+  size_t characters; // code points
+  bool interned;
+  char bytes[];
+} CagText;
+
+// --- List ---
+// dim 0: items are CagValues. dim 1: numbers, packed. dim d >= 2: vectors of d numbers each, packed
+// (element k is numbers[k * d .. k * d + d)). An empty list has dim 0. A list of numbers always has
+// dim 1, so a vector is a list with dim 1; a list of number lists of one length 2..16 always has
+// that dim. Data are inline, malloc'd, or a part of another list's (`owner`).
+#define CAG_MAX_PACKED 16
+typedef struct CagList {
+  CagObject head;
+  size_t length;
+  uint32_t dim;
+  bool allocated;        // data are ours and from malloc
+  struct CagList *owner; // whose data these are; NULL: ours
+  union {
+    CagValue *items;
+    double *numbers;
+    void *data;
+  } as;
+} CagList;
+
+// --- Range ---
+typedef struct CagRange {
+  CagObject head;
+  double start, end, step;   // degrees when angle
+  bool angle, open, stepped; // stepped: `by` was written
+} CagRange;
+
+// --- Record: fields keep their order. Layouts (the names) are shared between records made at one
+// place. ---
+typedef struct CagLayout {
+  CagObject head; // CAG_INTERNAL
+  size_t count;
+  uint32_t *index; // open-addressing table when count > 8, else NULL
+  size_t index_size;
+  CagText *names[]; // interned
+} CagLayout;
+typedef struct CagRecord {
+  CagObject head;
+  CagLayout *layout;
+  CagValue fields[];
+} CagRecord;
+
+// --- Functions: a closure holds copies of what it captured (values never change) ---
+struct CagProto;
+typedef struct CagClosure {
+  CagObject head;
+  const struct CagProto *proto;
+  size_t capture_count;
+  CagValue captures[];
+} CagClosure;
+typedef struct CagBuiltinValue {
+  CagObject head;
+  size_t index; // in the table of built-ins
+} CagBuiltinValue;
+
+typedef struct CagTransformValue {
+  CagObject head;
+  CagTransform t;
+} CagTransformValue;
+
+typedef struct CagPlaneValue {
+  CagObject head;
+  CagPlane plane;
+} CagPlaneValue;
+
+// --- Shapes: geometry (one reference held) and what was said about it. Copied when an attribute or
+// placement changes. ---
+typedef struct CagShape {
+  CagObject head;
+  union {
+    CagCurve *curve;
+    CagRegion *region;
+    CagSurface *surface;
+    CagSolid *solid;
+    CagMesh *mesh;
+    CagList *items; // GROUP: list of shapes (dim 0)
+  } as;
+  CagTransform placement; // REGION only: where the plane of the region lies (identity: z = 0);
+                          // others are moved themselves
+  CagRecord *material;    // NULL: none said
+  CagText *name;          // NULL
+  CagRecord *style;       // of curves: radius, dash; NULL
+  double tolerance;       // 0: none said
+  bool hidden;
+} CagShape;
+
+// --- Camera, light, setting (sky, background, ground): plain records with a kind, checked at
+// construction ---
+typedef struct CagSceneValue {
+  CagObject head;
+  const char *kind;  // "perspective", "sun", "point", "spot", "area", "sky", "background", "ground"
+  CagRecord *fields; // all arguments by name, defaults filled in; colors as [r, g, b] linear
+  CagTransform
+      placement; // moved by transforms: applied to eye, target, direction ... by the scene builder
+  bool mirrored; // a camera that an odd number of mirrors has moved: it gives the mirrored picture
+} CagSceneValue;
+
+// --- Robots ---
+typedef struct CagLinkValue {
+  CagObject head;
+  CagRobotLink link;
+  CagValue shape; // drawn in the frame after the link: a shape, a list of shapes, or none
+} CagLinkValue;
+typedef struct CagRobotValue {
+  CagObject head;
+  CagRobot *robot; // one reference held
+  CagText *name;   // may be empty
+  CagList *links;  // of link values
+} CagRobotValue;
+
+typedef struct CagModuleValue {
+  CagObject head;
+  size_t module; // number in the program
+} CagModuleValue;
+
+// --- Constructors of values ---
+static inline CagValue cag_none(void) { return (CagValue){CAG_NONE, {.number = 0}}; }
+static inline CagValue cag_bool(bool b) { return (CagValue){CAG_BOOL, {.boolean = b}}; }
+static inline CagValue cag_number(double x) { return (CagValue){CAG_NUMBER, {.number = x}}; }
+static inline CagValue cag_angle(double degrees) {
+  return (CagValue){CAG_ANGLE, {.number = degrees}};
+}
+static inline CagValue cag_unset(void) { return (CagValue){CAG_UNSET, {.number = 0}}; }
+static inline CagValue cag_object(CagType type, void *o) {
+  return (CagValue){type, {.object = (CagObject *)o}};
+}
+static inline bool cag_is_shape(CagValue v) { return v.type >= CAG_CURVE && v.type <= CAG_GROUP; }
+static inline bool cag_is_function(CagValue v) {
+  return v.type == CAG_CLOSURE || v.type == CAG_BUILTIN;
+}
+#define CAG_AS_TEXT(v) ((CagText *)(v).as.object)
+#define CAG_AS_LIST(v) ((CagList *)(v).as.object)
+#define CAG_AS_RANGE(v) ((CagRange *)(v).as.object)
+#define CAG_AS_RECORD(v) ((CagRecord *)(v).as.object)
+#define CAG_AS_CLOSURE(v) ((CagClosure *)(v).as.object)
+#define CAG_AS_BUILTIN(v) ((CagBuiltinValue *)(v).as.object)
+#define CAG_AS_TRANSFORM(v) ((CagTransformValue *)(v).as.object)
+#define CAG_AS_PLANE(v) ((CagPlaneValue *)(v).as.object)
+#define CAG_AS_SHAPE(v) ((CagShape *)(v).as.object)
+#define CAG_AS_SCENE(v) ((CagSceneValue *)(v).as.object)
+#define CAG_AS_LINK(v) ((CagLinkValue *)(v).as.object)
+#define CAG_AS_ROBOT(v) ((CagRobotValue *)(v).as.object)
+#define CAG_AS_MODULE(v) ((CagModuleValue *)(v).as.object)
+
+CagValue cag_text_new(CagVm *vm, const char *bytes, size_t length); // valid UTF-8; copies
+CagValue cag_text_joined(CagVm *vm, const CagText *a, const CagText *b);
+CagValue cag_text_c(CagVm *vm, const char *s);
+CagText *cag_intern(CagVm *vm, const char *bytes,
+                    size_t length); // the one text of these bytes; lives as long as the machine
+
+// List of n numbers (dim 1); the numbers are unset and to be filled in at once.
+CagValue cag_list_numbers(CagVm *vm, size_t n, double **numbers);
+// List of n vectors of d numbers, d in 2..CAG_MAX_PACKED.
+CagValue cag_list_vectors(CagVm *vm, size_t n, size_t d, double **numbers);
+// List of n values in any representation; packs them when they are all numbers or vectors of one
+// length. Copies.
+CagValue cag_list_values(CagVm *vm, const CagValue *values, size_t n);
+CagValue cag_vector(CagVm *vm, const double *x, size_t n);
+CagValue cag_point(CagVm *vm, CagVec3 p, int dimension);                      // [x, y] or [x, y, z]
+CagValue cag_list_slice(CagVm *vm, CagValue list, size_t from, size_t count); // shares the data
+// Element i (not checked) of a list in any representation.
+CagValue cag_list_get(CagVm *vm, const CagList *l, size_t i);
+
+// Growing list: add values, then finish (packs). Rooted by the caller if the script is called in
+// between (cag_builder_value).
+typedef struct CagBuilder {
+  CagObject head; // CAG_INTERNAL
+  size_t length, capacity;
+  uint32_t dim; // representation so far; 0 and mixed: values
+  bool mixed;
+  void *data;
+} CagBuilder;
+CagBuilder *cag_builder_new(CagVm *vm);
+// Returns false, with the error set, if the run must stop; every so often it is asked. If memory
+// runs out, a jump ends the run.
+bool cag_builder_add(CagVm *vm, CagBuilder *b, CagValue v);
+CagValue cag_builder_finish(CagVm *vm, CagBuilder *b);
+static inline CagValue cag_builder_value(CagBuilder *b) { return cag_object(CAG_INTERNAL, b); }
+
+CagValue cag_range_new(CagVm *vm, double start, double end, double step, bool angle, bool open,
+                       bool stepped);
+// Number of elements as a list; fails (false, error set) for an endless one.
+bool cag_range_count(CagVm *vm, const CagRange *r, size_t *count);
+double cag_range_element(const CagRange *r, size_t k, size_t count);
+
+// Record with these names (C strings) and values.
+CagValue cag_record_new(CagVm *vm, const char *const *names, const CagValue *values, size_t n);
+CagValue cag_record_from_texts(CagVm *vm, CagText *const *names, const CagValue *values,
+                               size_t n); // names distinct
+CagLayout *cag_layout_new(CagVm *vm, CagText *const *names,
+                          size_t n);                                 // names interned and distinct
+size_t cag_layout_find(const CagLayout *l, const CagText *interned); // (size_t)-1: none
+CagValue cag_record_with_layout(CagVm *vm, CagLayout *l, const CagValue *values);
+// Value of a field, or CAG_UNSET.
+CagValue cag_record_get(const CagRecord *r, const char *name);
+CagValue cag_record_get_text(CagVm *vm, const CagRecord *r, const CagText *name);
+
+CagValue cag_transform_value(CagVm *vm, const CagTransform *t);
+CagValue cag_plane_value(CagVm *vm, const CagPlane *p);
+// Shapes take over the reference that is given.
+CagValue cag_curve_value(CagVm *vm, CagCurve *c);
+CagValue cag_region_value(CagVm *vm, CagRegion *r, const CagTransform *placement); // NULL: identity
+CagValue cag_surface_value(CagVm *vm, CagSurface *s);
+CagValue cag_solid_value(CagVm *vm, CagSolid *s);
+CagValue cag_mesh_value(CagVm *vm, CagMesh *m);
+CagValue cag_group_value(CagVm *vm, CagValue list); // list of shapes
+CagValue cag_shape_copy(CagVm *vm, CagValue shape); // same geometry (retained) and attributes, to
+                                                    // be changed before anybody sees it
+CagValue cag_scene_value(CagVm *vm, CagType type, const char *kind, CagValue record);
+CagValue cag_link_value(CagVm *vm, const CagRobotLink *link, CagValue shape);
+// Takes over the reference that is given; `links` is a list of link values.
+CagValue cag_robot_value(CagVm *vm, CagRobot *r, CagText *name, CagValue links);
+
+// --- Questions ---
+const char *cag_type_name(CagValue v);             // "number"
+const char *cag_type_article(CagValue v);          // "a number"
+bool cag_equal(CagVm *vm, CagValue a, CagValue b); // ==
+
+// A list or vector of exactly / at least n numbers as doubles.
+bool cag_as_vector(CagValue v, const double **x, size_t *n); // a list with dim 1 (not empty)
+// A range or list as a list value (materializes ranges; a text or record is not one). False: error
+// set.
+bool cag_as_list(CagVm *vm, CagValue v, CagValue *list);
+
+// --- Printed form (language, section 7) ---
+// A growing string with a terminating NUL. If memory runs out, the string becomes empty, stays
+// empty, and sets `failed`. Callers check `failed` once before they use the bytes. Error messages
+// need not (see `starved` of the machine).
+typedef struct CagString {
+  char *bytes; // NULL if nothing was added
+  size_t length, capacity;
+  size_t most; // where the printing of a value breaks off; 0: nowhere
+  bool failed;
+} CagString;
+void cag_string_add(CagString *s, const char *bytes, size_t n);
+void cag_string_printf(CagString *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void cag_string_free(CagString *s);
+// Leaves the run if the string has failed.
+void cag_string_check(CagVm *vm, CagString *s);
+CagValue cag_text_from_string(CagVm *vm, CagString *s); // frees s
+CagText *cag_intern_string(CagVm *vm, CagString *s);    // frees s
+// Tests whether a text fits in the machine's memory, and sets the error if it does not. Call this
+// while a text grows: the printed form of a value with shared parts may be much longer than it.
+bool cag_string_fits(CagVm *vm, const CagString *s);
+void cag_print_number(CagString *s, double x);
+// quoted: texts in quotes (inside lists and records).
+void cag_print_value(CagVm *vm, CagString *s, CagValue v, bool quoted);
+// For messages: the type and, where short, the value: "the number 30", "the text \"a\"", "a list of
+// 3 elements".
+void cag_describe_value(CagVm *vm, CagString *s, CagValue v);
+
+#endif

@@ -1,0 +1,157 @@
+// The machine's beginning and end.
+
+#include "interp/vm/vm.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include "base/memory.h"
+
+// Values that the stack can hold: reserved address space, of which only what is used costs memory.
+// Frames of ordinary size fit in frame_limit times.
+#define STACK_VALUES_MIN ((size_t)16 << 20)
+#define STACK_VALUES_PER_FRAME 64
+
+static const volatile int never = 0;
+
+static void *reserve_memory(size_t bytes) {
+  void *p =
+      mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return p == MAP_FAILED ? NULL : p;
+}
+
+static size_t stack_values(const CagVm *vm) {
+  size_t n = vm->frame_limit * STACK_VALUES_PER_FRAME;
+  return n > STACK_VALUES_MIN ? n : STACK_VALUES_MIN;
+}
+
+static size_t tail_bytes(const CagVm *vm) {
+  return vm->frame_limit * CAG_TAIL_KEPT * sizeof(CagTailPlace);
+}
+
+// One function value, or the constant, of each built-in name.
+static void make_builtins(CagVm *vm) {
+  size_t n = cag_builtin_count();
+  CagValue *values = cag_calloc(n ? n : 1, sizeof *values);
+  if (!values) cag_vm_out_of_memory(vm);
+  vm->builtin_values = values;
+  for (size_t i = 0; i < n; i++) {
+    CagValue constant = cag_builtin_constant(vm, i);
+    if (constant.type != CAG_UNSET) {
+      values[i] = constant;
+      continue;
+    }
+    CagBuiltinValue *b = cag_alloc(vm, CAG_BUILTIN, sizeof *b);
+    b->index = i;
+    values[i] = cag_object(CAG_BUILTIN, b);
+  }
+}
+
+size_t cag_vm_add_global(CagVm *vm, const char *name) {
+  if (vm->global_count == vm->global_capacity) {
+    size_t capacity = vm->global_capacity ? vm->global_capacity * 2 : 64;
+    CagGlobal *globals = cag_realloc(vm->globals, capacity * sizeof *globals);
+    if (!globals) cag_vm_out_of_memory(vm);
+    vm->globals = globals;
+    vm->global_capacity = capacity;
+  }
+  vm->globals[vm->global_count] = (CagGlobal){.name = name};
+  return vm->global_count++;
+}
+
+static void set_reserved(CagVm *vm, const char *name, double value) {
+  size_t g = cag_vm_add_global(vm, name);
+  vm->globals[g].value = cag_number(value);
+  vm->globals[g].state = CAG_GLOBAL_DONE;
+}
+
+static void set_up(CagVm *vm, const CagVmOptions *options) {
+  vm->account.limit = options->max_memory;
+  cag_heap_init(vm);
+  vm->frame_limit = options->max_depth;
+  vm->max_time = options->max_time;
+  vm->max_triangles = options->max_triangles;
+  vm->out = options->out;
+  vm->trace = options->trace;
+  vm->interrupt = options->interrupt ? options->interrupt : &never;
+}
+
+static bool reserve_stacks(CagVm *vm) {
+  vm->stack = reserve_memory(stack_values(vm) * sizeof *vm->stack);
+  vm->frames = reserve_memory(vm->frame_limit * sizeof *vm->frames);
+  vm->tails = reserve_memory(tail_bytes(vm));
+  if (!vm->stack || !vm->frames || !vm->tails) return false;
+  vm->top = vm->high_water = vm->paid_end = vm->stack;
+  vm->stack_end = vm->stack + stack_values(vm);
+  return true;
+}
+
+static bool start(CagVm *vm, void *context) {
+  (void)context;
+  make_builtins(vm);
+  set_reserved(vm, "time", 0);
+  set_reserved(vm, "frame", 0);
+  set_reserved(vm, "frames", 1);
+  return true;
+}
+
+CagVm *cag_vm_new(const CagVmOptions *options, CagDiagnostics *errors) {
+  CagVm *vm = cag_builtins_ready() ? calloc(1, sizeof *vm) : NULL;
+  bool ready = vm != NULL;
+  if (ready) {
+    set_up(vm, options);
+    CagAccount *before = cag_account_lend(&vm->account);
+    ready = reserve_stacks(vm) && cag_vm_protect(vm, start, NULL);
+    cag_account_lend(before);
+    cag_diagnostics_move(errors, &vm->errors);
+  }
+  if (ready) return vm;
+  if (errors->count == 0)
+    cag_diagnostics_add(errors, CAG_ERR_limit_memory, NULL, (CagSpan){0, 0},
+                        "there is not enough memory to start");
+  cag_vm_free(vm);
+  return NULL;
+}
+void cag_module_free(CagModuleUnit *m) {
+  cag_free(m->name);
+  cag_free(m->path);
+  if (m->ast) cag_module_ast_free(m->ast);
+  cag_source_free(m->source);
+  cag_free(m->tops);
+  cag_free(m->imports);
+  cag_free(m->publics);
+  cag_free(m->public_names);
+  cag_free(m);
+}
+
+void cag_vm_free(CagVm *vm) {
+  if (!vm) return;
+  CagAccount *before = cag_account_lend(&vm->account);
+  cag_heap_free(vm);
+  if (vm->stack) munmap(vm->stack, stack_values(vm) * sizeof *vm->stack);
+  if (vm->tails) munmap(vm->tails, tail_bytes(vm));
+  if (vm->frames) munmap(vm->frames, vm->frame_limit * sizeof *vm->frames);
+  for (CagProto *p = vm->protos, *next; p; p = next) {
+    next = p->next;
+    cag_proto_free(p);
+  }
+  cag_diagnostics_clear(&vm->errors);
+  for (size_t i = 0; i < vm->module_count; i++) cag_module_free(vm->modules[i]);
+  cag_free(vm->modules);
+  cag_free(vm->globals);
+  cag_free(vm->roots);
+  cag_free(vm->kept);
+  cag_free(vm->held);
+  cag_hash_free(&vm->kept_materials);
+  cag_free(vm->interned);
+  cag_free(vm->builtin_values);
+  cag_free(vm->shown);
+  cag_free(vm->outer_names);
+  cag_free(vm->outer_globals);
+  cag_free(vm->root);
+  for (size_t i = 0; i < vm->include_count; i++) cag_free(vm->include[i]);
+  cag_free(vm->include);
+  cag_account_lend(before);
+  free(vm);
+}
