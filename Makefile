@@ -210,7 +210,7 @@ format:
 check-format:
 	clang-format --dry-run -Werror $(FORMATTED)
 check-layers:
-	sh tools/check_layers.sh
+	python3 tools/check_layers.py
 
 # The program, the libraries with their pkg-config file, and what tools/install.sh puts beside them.
 install: all $(BUILD)/tools/tables

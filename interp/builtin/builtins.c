@@ -12,8 +12,8 @@
 
 #include "base/arena.h"
 #include "base/hash.h"
-#include "interp/builtin/jets.h"
 #include "interp/builtin/support.h"
+#include "interp/vm/jet_builtins.h"
 
 // All families, in the order in which the documentation lists them.
 // clang-format off

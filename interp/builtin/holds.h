@@ -10,7 +10,7 @@
 #define CAG_INTERP_BUILTIN_HOLDS_H
 
 #include "geom/meet/section.h"
-#include "interp/builtin/builtin.h"
+#include "interp/vm/builtin.h"
 
 // clang-format off
 #define CAG_HELD_GEOMETRY(X) \

@@ -4,7 +4,7 @@
 // plain numbers, and then the parts above the value by the recurrences of jet.h. Names that are not
 // in the table have no derivative: the readers of arguments say so.
 
-#include "interp/builtin/jets.h"
+#include "interp/vm/jet_builtins.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,8 +4,8 @@
 #ifndef CAG_INTERP_BUILTIN_SHAPES_H
 #define CAG_INTERP_BUILTIN_SHAPES_H
 
-#include "interp/builtin/apply.h"
-#include "interp/builtin/builtin.h"
+#include "interp/vm/apply.h"
+#include "interp/vm/builtin.h"
 
 // Masks for CagBuiltin.first.
 #define CAG_TAKES(tag) ((uint64_t)1 << CAG_##tag)

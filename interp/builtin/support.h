@@ -4,7 +4,7 @@
 #ifndef CAG_INTERP_SUPPORT_H
 #define CAG_INTERP_SUPPORT_H
 
-#include "interp/builtin/builtin.h"
+#include "interp/vm/builtin.h"
 
 #define CAG_TYPE_BIT(tag) (UINT64_C(1) << CAG_##tag)
 
@@ -22,9 +22,6 @@ const char *cag_value_words(CagVm *vm, CagValue v, char *buffer, size_t size);
 
 // Gives x, or the error E0307 when x is no number or infinite though every argument is finite.
 bool cag_give_number(CagCall *call, double x, CagValue *result);
-// Fails where a number that the call made is undefined (NaN), at any depth of its result. Parts of
-// lists that were there before were checked when they were made.
-bool cag_check_defined(CagCall *call, CagValue result);
 bool cag_give_angle(CagCall *call, double degrees, CagValue *result);
 
 // --- Texts ---

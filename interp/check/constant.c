@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "interp/builtin/builtin.h"
 #include "interp/check/constant.h"
+#include "interp/vm/builtin.h"
 
 // Expressions of more nodes are data, which take long and seldom are wrong.
 #define NODES_MAX 400

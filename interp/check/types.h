@@ -3,7 +3,7 @@
 #ifndef CAG_INTERP_CHECK_TYPES_H
 #define CAG_INTERP_CHECK_TYPES_H
 
-#include "interp/builtin/builtin.h"
+#include "interp/vm/builtin.h"
 #include "lang/ast.h"
 
 typedef uint64_t CagTypes; // bits 1 << CagType

@@ -10,7 +10,7 @@
 #include <stdio.h>
 
 #include "cag.h"
-#include "interp/builtin/builtin.h"
+#include "interp/vm/builtin.h"
 #include "lang/ast.h"
 
 // --- Parameters ---
@@ -120,5 +120,11 @@ typedef struct CagDocument {
 
 extern const CagDocument cag_documents[];          // ends with a row of NULLs
 const CagDocument *cag_document(const char *path); // NULL: none
+
+typedef struct CagDocChapter {
+  const char *path, *name, *title, *story; // "docs/batch.md", "batch"
+} CagDocChapter;
+// Chapter i of the manual, in their order. NULL after the last.
+const CagDocChapter *cag_doc_chapter(size_t i);
 
 #endif

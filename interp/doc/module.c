@@ -4,7 +4,6 @@
 
 #include "base/memory.h"
 #include "interp/doc/doc.h"
-#include "interp/session/session.h"
 #include "interp/vm/stdlib.h"
 
 // --- Texts of the source ---

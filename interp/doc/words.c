@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "interp/doc/site.h"
+#include "interp/doc/doc.h"
 
 typedef struct Row {
   bool is_topic;

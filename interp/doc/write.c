@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "base/memory.h"
-#include "interp/doc/site.h"
+#include "interp/doc/doc.h"
 
 // Columns that a line has at most, and those that a narrow terminal is taken to have at least.
 #define WIDTH 92
@@ -230,10 +230,10 @@ void cag_doc_write_overview(const CagDocWriter *w) {
   cag_free(families);
   heading(w, "Library");
   for (size_t i = 0; cag_doc_module_name(i); i++) fprintf(w->out, "  %s\n", cag_doc_module_name(i));
-  const char *name, *title;
+  const CagDocChapter *c;
   heading(w, "Manual");
-  for (size_t i = 0; cag_site_guide(i, &name, &title); i++)
-    fprintf(w->out, "  %-18s %s\n", name, title);
+  for (size_t i = 0; (c = cag_doc_chapter(i)); i++)
+    fprintf(w->out, "  %-18s %s\n", c->name, c->title);
   fputs("\n`cag doc NAME` shows a function, a module, a word of the language such as `if` or "
         "`|>`, a "
         "topic such as\n`gear`, a chapter or an error code, `cag doc FILE.cag` of a script, "

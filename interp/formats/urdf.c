@@ -228,3 +228,9 @@ CagStatus cag_export_urdf_mesh(const CagUrdfShape *s, CagAtomicFile *file, CagEr
   cag_mesh_release(m);
   return status;
 }
+
+void cag_urdf_free(CagUrdf *u) {
+  for (size_t i = 0; i < u->link_count; i++)
+    for (CagUrdfShape *s = u->links[i].shapes; s; s = s->next) cag_mesh_release(s->mesh);
+  cag_arena_free(&u->arena);
+}

@@ -16,7 +16,6 @@
 #include "base/arena.h"
 #include "base/atomic_file.h"
 #include "interp/scene/scene.h"
-#include "interp/vm/value.h"
 
 // Of joints that say none; URDF wants both. Radians or millimeters each second, N m or N.
 #define CAG_URDF_TURN_RATE 3.141592653589793
@@ -77,21 +76,6 @@ typedef struct CagUrdf {
   size_t link_count, joint_count, material_count, material_room;
 } CagUrdf;
 
-// How the shapes of links become meshes.
-typedef struct CagUrdfHow {
-  double tolerance;
-  CagBounds bounds; // of the whole scene, for lines
-  size_t max_triangles;
-  const volatile int *interrupt;
-} CagUrdfHow;
-
-// The robots of the values that are shown, each once; groups made by `posed` remember theirs. Gives
-// how many there are; the first `room` of them are written to `out`.
-size_t cag_urdf_robots(CagVm *vm, const CagValue *shown, size_t n, const CagRobotValue **out,
-                       size_t room);
-// A robot as the file's parts. False: the machine's error is set (a shape that cannot be meshed).
-// To be freed in either case.
-bool cag_urdf_of_robot(CagVm *vm, const CagRobotValue *robot, const CagUrdfHow *how, CagUrdf *out);
 void cag_urdf_free(CagUrdf *u);
 
 // The masses of an item of a scene: none of what is open or flat.

@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "interp/doc/site.h"
 #include "interp/session/session.h"
+#include "interp/session/site.h"
 
 typedef struct Reading {
   const char *name, *text;
@@ -139,9 +139,10 @@ void cag_session_document_names(CagSession *s, void (*give)(void *context, const
       }
     cag_doc_module_free(&m);
   }
-  const char *chapter, *title, *code, *reason, *word;
+  const CagDocChapter *c;
+  const char *code, *reason, *word;
   for (size_t i = 0; cag_doc_word_row(i, &word, NULL, NULL); i++) give(context, word);
-  for (size_t i = 0; cag_site_guide(i, &chapter, &title); i++) give(context, chapter);
+  for (size_t i = 0; (c = cag_doc_chapter(i)); i++) give(context, c->name);
   for (size_t i = 0; cag_error_kind(i, &code, &reason, NULL, NULL); i++) {
     give(context, code);
     give(context, reason);

@@ -14,9 +14,9 @@
 #include "interp/formats/pov.h"
 #include "interp/formats/step.h"
 #include "interp/formats/svg.h"
-#include "interp/formats/urdf.h"
 #include "interp/scene/item_mesh.h"
 #include "interp/session/output.h"
+#include "interp/session/urdf_robot.h"
 
 typedef int (*ExportFunction)(CagSession *s, const char *path);
 

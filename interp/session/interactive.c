@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "interp/builtin/apply.h"
 #include "interp/session/session.h"
+#include "interp/vm/apply.h"
 
 typedef struct Input {
   CagSession *session;

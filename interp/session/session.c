@@ -10,7 +10,8 @@
 #include "base/stop.h"
 #include "geom/meet/crossing.h"
 #include "geom/solid/csg.h"
-#include "interp/scene/lead.h"
+#include "interp/session/lead.h"
+#include "interp/session/scene_build.h"
 #include "interp/session/watch.h"
 
 // The C stack of an evaluation: reserved address space; deep recursion through built-ins needs

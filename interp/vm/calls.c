@@ -5,10 +5,9 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "interp/builtin/apply.h"
-#include "interp/builtin/jets.h"
-#include "interp/builtin/support.h"
+#include "interp/vm/apply.h"
 #include "interp/vm/jet.h"
+#include "interp/vm/jet_builtins.h"
 #include "lang/foreign.h"
 
 static const char *function_name(const char *name) { return name ? name : "this function"; }

@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "interp/builtin/apply.h"
-#include "interp/builtin/jets.h"
+#include "interp/vm/apply.h"
 #include "interp/vm/jet.h"
+#include "interp/vm/jet_builtins.h"
 #include "interp/vm/vm.h"
 #include "lang/foreign.h"
 

@@ -217,6 +217,20 @@ static bool add_shown(CagVm *vm, CagModuleUnit *m, const CagExpr *e, CagValue v)
   return true;
 }
 
+bool cag_value_is_shown(CagVm *vm, CagValue v) {
+  if (!cag_may_go_deeper(vm, "shown")) return false;
+  if (v.type == CAG_LIST) {
+    // Lists of numbers and vectors are packed, and so are no shapes.
+    const CagList *list = CAG_AS_LIST(v);
+    if (list->dim != 0) return false;
+    for (size_t i = 0; i < list->length; i++)
+      if (!cag_value_is_shown(vm, list->as.items[i])) return false;
+    return true;
+  }
+  return cag_is_shape(v) || v.type == CAG_ROBOT || v.type == CAG_CAMERA || v.type == CAG_LIGHT ||
+         v.type == CAG_SETTING;
+}
+
 static bool run_show(CagVm *vm, CagModuleUnit *m, const CagStatement *s) {
   for (size_t i = 0; i < s->as.list.count; i++) {
     const CagExpr *e = s->as.list.items[i];

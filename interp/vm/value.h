@@ -15,6 +15,7 @@
 #include <stdint.h>
 
 #include "base/guard.h"
+#include "base/string.h"
 #include "geom/curve/curve.h"
 #include "geom/curve/region.h"
 #include "geom/linalg/transform.h"
@@ -320,18 +321,6 @@ bool cag_as_vector(CagValue v, const double **x, size_t *n); // a list with dim 
 bool cag_as_list(CagVm *vm, CagValue v, CagValue *list);
 
 // --- Printed form (language, section 7) ---
-// A growing string with a terminating NUL. If memory runs out, the string becomes empty, stays
-// empty, and sets `failed`. Callers check `failed` once before they use the bytes. Error messages
-// need not (see `starved` of the machine).
-typedef struct CagString {
-  char *bytes; // NULL if nothing was added
-  size_t length, capacity;
-  size_t most; // where the printing of a value breaks off; 0: nowhere
-  bool failed;
-} CagString;
-void cag_string_add(CagString *s, const char *bytes, size_t n);
-void cag_string_printf(CagString *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void cag_string_free(CagString *s);
 // Leaves the run if the string has failed.
 void cag_string_check(CagVm *vm, CagString *s);
 CagValue cag_text_from_string(CagVm *vm, CagString *s); // frees s

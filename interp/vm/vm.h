@@ -19,12 +19,19 @@
 
 #include "base/hash.h"
 #include "base/memory.h"
-#include "interp/builtin/builtin.h"
-#include "interp/scene/build.h"
+#include "interp/vm/builtin.h"
 #include "interp/vm/heap.h"
 #include "interp/vm/value.h"
 #include "lang/ast.h"
 #include "lang/parser.h"
+
+// One value of a `show` statement, in the order of the file.
+typedef struct CagShown {
+  CagValue value;
+  const CagExpr *expr; // NULL: not of a script
+  const CagSource *source;
+  CagSpan span;
+} CagShown;
 
 typedef enum CagOpcode {
 #define CAG_OPCODE(name, story) CAG_CODE_##name,
@@ -280,6 +287,8 @@ void cag_pay_for_values(CagVm *vm, const CagValue *end);
 // The same, with an error where there is none, or where the run must stop: values that share their
 // parts take endlessly long to walk. `done` tells what is done to the values.
 bool cag_may_go_deeper(CagVm *vm, const char *done);
+// Whether a value can be shown: a shape, camera, light, setting, robot, or a list of these.
+bool cag_value_is_shown(CagVm *vm, CagValue v);
 
 // Releases what built-ins hold, down to a count.
 void cag_vm_release_held(CagVm *vm, size_t count);

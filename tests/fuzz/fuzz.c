@@ -21,7 +21,7 @@
 #include <unistd.h>
 
 #include "cag.h"
-#include "interp/builtin/builtin.h"
+#include "interp/vm/builtin.h"
 
 // Limits of one script. An error has to come within HANG seconds, which leaves room for sanitizers.
 #define SECONDS 0.5

@@ -11,8 +11,8 @@
 #include <cmocka.h>
 
 #include "interp/doc/doc.h"
-#include "interp/doc/site.h"
 #include "interp/session/expect.h"
+#include "interp/session/site.h"
 
 static CagSession *open_session(void) {
   CagSessionOptions options;

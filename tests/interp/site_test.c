@@ -15,9 +15,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "interp/doc/site.h"
 #include "interp/render/povray.h"
 #include "interp/session/session.h"
+#include "interp/session/site.h"
 
 static char folder[64];
 

@@ -1,10 +1,10 @@
 // Built-ins that take jets (interp/vm/jet.h): what they do while a function of the script is
 // differentiated.
 
-#ifndef CAG_INTERP_BUILTIN_JETS_H
-#define CAG_INTERP_BUILTIN_JETS_H
+#ifndef CAG_INTERP_VM_JET_BUILTINS_H
+#define CAG_INTERP_VM_JET_BUILTINS_H
 
-#include "interp/builtin/builtin.h"
+#include "interp/vm/builtin.h"
 
 // The function to call for built-in `index`: that of its row, or, where arguments hold jets, its
 // differentiated form or one that says that there is none.

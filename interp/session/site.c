@@ -9,17 +9,9 @@
 
 #include "base/atomic_file.h"
 #include "base/memory.h"
-#include "interp/doc/site.h"
 #include "interp/render/povray.h"
 #include "interp/session/session.h"
-
-// --- Documents of the program ---
-
-const CagDocument *cag_document(const char *path) {
-  for (const CagDocument *d = cag_documents; d->path; d++)
-    if (strcmp(d->path, path) == 0) return d;
-  return NULL;
-}
+#include "interp/session/site.h"
 
 // --- Files ---
 

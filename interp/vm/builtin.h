@@ -14,8 +14,8 @@
 // family stand in one file and are declared as an array `const CagBuiltin cag_builtins_NAME[]`
 // ending with an empty row; builtins.c lists the arrays.
 
-#ifndef CAG_INTERP_BUILTIN_H
-#define CAG_INTERP_BUILTIN_H
+#ifndef CAG_INTERP_VM_BUILTIN_H
+#define CAG_INTERP_VM_BUILTIN_H
 
 #include "base/diagnostic.h"
 #include "base/memory.h"
@@ -61,6 +61,10 @@ bool cag_fail_geometry(CagCall *call, const CagError *err);
 // "NAME expects EXPECTED as `PARAMETER`, found FOUND" (of a first or only argument: "sin expects an
 // angle, found the number 30"), code E0301 (type).
 bool cag_fail_type(CagCall *call, int argument, const char *expected);
+
+// Fails where a number that the call made is undefined (NaN), at any depth of its result. Parts of
+// lists that were there before were checked when they were made.
+bool cag_check_defined(CagCall *call, CagValue result);
 
 // "NAME cannot be differentiated", code E0331: an argument is a jet (jet.h). All readers of
 // arguments end here when they meet one, since cag_fail_type and cag_fail_element do.

@@ -4,8 +4,8 @@
 // kept; then all scripts are run, several at once, and their pictures made; the second time the
 // pages are written to files, with what the scripts printed. So a page says but once what it shows.
 
-#ifndef CAG_INTERP_DOC_SITE_H
-#define CAG_INTERP_DOC_SITE_H
+#ifndef CAG_INTERP_SESSION_SITE_H
+#define CAG_INTERP_SESSION_SITE_H
 
 #include "base/io_error.h"
 #include "interp/doc/doc.h"
@@ -119,7 +119,5 @@ void cag_site_scripts_section(const CagSitePage *p);
 void cag_site_errors(CagSite *s);
 void cag_site_guides(CagSite *s);
 void cag_site_cookbook(CagSite *s);
-// The documents of the manual in order: path in docs/ and title; false behind the last.
-bool cag_site_guide(size_t i, const char **name, const char **title);
 
 #endif

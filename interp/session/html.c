@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "interp/doc/site.h"
+#include "interp/session/site.h"
 #include "lang/lexer.h"
 
 void cag_html_text(FILE *out, const char *text, size_t length) {

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "interp/doc/site.h"
 #include "interp/session/session.h"
+#include "interp/session/site.h"
 #include "interp/vm/program.h"
 
 // --- Names ---

@@ -11,10 +11,10 @@
 
 #include "base/hash.h"
 #include "base/memory.h"
-#include "interp/doc/site.h"
 #include "interp/render/povray.h"
 #include "interp/scene/scene.h"
 #include "interp/session/session.h"
+#include "interp/session/site.h"
 
 // The seconds that an example, or its picture, may take.
 #define SECONDS 120.0

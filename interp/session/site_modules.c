@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "interp/doc/site.h"
+#include "interp/session/site.h"
 
 static void write_text(FILE *out, const char *text) { cag_html_text(out, text, strlen(text)); }
 

@@ -10,8 +10,8 @@
 
 #include "base/memory.h"
 #include "interp/builtin/robots.h"
-#include "interp/formats/urdf.h"
-#include "interp/scene/build.h"
+#include "interp/session/scene_build.h"
+#include "interp/session/urdf_robot.h"
 #include "interp/vm/vm.h"
 
 // Bytes of a name; longer ones give way to those of the walk.
@@ -454,10 +454,4 @@ bool cag_urdf_of_robot(CagVm *vm, const CagRobotValue *robot, const CagUrdfHow *
   }
   add_fixed(&w, &r->tool, text_of(out, "tool_joint"), text_of(out, "tool"));
   return true;
-}
-
-void cag_urdf_free(CagUrdf *u) {
-  for (size_t i = 0; i < u->link_count; i++)
-    for (CagUrdfShape *s = u->links[i].shapes; s; s = s->next) cag_mesh_release(s->mesh);
-  cag_arena_free(&u->arena);
 }

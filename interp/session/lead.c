@@ -1,8 +1,8 @@
-#include "interp/scene/lead.h"
+#include "interp/session/lead.h"
 
 #include <string.h>
 
-#include "interp/builtin/builtin.h"
+#include "interp/vm/builtin.h"
 
 // The comprehensions around an expression.
 typedef struct Around {

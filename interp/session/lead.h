@@ -3,8 +3,8 @@
 // `lid`, `lid |> color("red")`, `translate(lid, V)`, `around(lid, 4)`, `m.lid` and `lid(3)` lead to
 // `lid`; `[cup, lid]` and `group(cup, lid) |> scale(2)` do so part by part.
 
-#ifndef CAG_INTERP_SCENE_LEAD_H
-#define CAG_INTERP_SCENE_LEAD_H
+#ifndef CAG_INTERP_SESSION_LEAD_H
+#define CAG_INTERP_SESSION_LEAD_H
 
 #include "lang/ast.h"
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "interp/doc/site.h"
+#include "interp/session/site.h"
 
 static void write_text(FILE *out, const char *text) { cag_html_text(out, text, strlen(text)); }
 
@@ -205,65 +205,34 @@ void cag_site_errors(CagSite *s) {
 
 // --- Guide ---
 
-static const struct {
-  const char *name, *title, *story;
-} guides[] = {
-    {"getting-started", "Getting started", "from nothing to a picture, in ten minutes"},
-    {"language", "The language", "words, values, functions, blocks, params, modules"},
-    {"geometry", "Geometry", "each family of shapes with its formula and picture"},
-    {"robots", "Robots", "chains of links, their motion, and files of others"},
-    {"batch", "Rendering and batch", "pictures, films, many jobs at once"},
-    {"embedding", "Embedding libcag", "scripts within programs in C"},
-    {"manual-additions", "Finer points", "functions by subject, as a reference"},
-};
-#define GUIDE_COUNT (sizeof guides / sizeof *guides)
-
-static const CagDocument *guide_document(const char *name) {
-  char path[128];
-  snprintf(path, sizeof path, "docs/%s.md", name);
-  return cag_document(path);
-}
-
-bool cag_site_guide(size_t i, const char **name, const char **title) {
-  for (size_t k = 0; k < GUIDE_COUNT; k++) {
-    if (!guide_document(guides[k].name) || i-- > 0) continue;
-    *name = guides[k].name;
-    *title = guides[k].title;
-    return true;
-  }
-  return false;
-}
-
-static void guide_page(CagSite *s, size_t at) {
-  const CagDocument *d = guide_document(guides[at].name);
+static void guide_page(CagSite *s, const CagDocChapter *chapter) {
   CagSitePage p;
   char path[128];
-  const char *name, *title;
-  snprintf(path, sizeof path, "guide/%s.html", guides[at].name);
-  cag_site_find(s, guides[at].title, "guide", path, guides[at].story, strlen(guides[at].story));
-  cag_site_begin(s, &p, path, guides[at].title, "Guide");
+  const CagDocChapter *c;
+  snprintf(path, sizeof path, "guide/%s.html", chapter->name);
+  cag_site_find(s, chapter->title, "guide", path, chapter->story, strlen(chapter->story));
+  cag_site_begin(s, &p, path, chapter->title, "Guide");
   fputs("<div class=\"with-aside\">\n<article class=\"guide\">\n", p.out);
-  cag_html_markdown(s, p.out, p.root, guides[at].name, d->text, d->length);
+  const CagDocument *d = cag_document(chapter->path);
+  cag_html_markdown(s, p.out, p.root, chapter->name, d->text, d->length);
   fputs("</article>\n<aside><h2>Guide</h2><ul>\n", p.out);
-  for (size_t i = 0; cag_site_guide(i, &name, &title); i++)
-    fprintf(p.out, "<li%s><a href=\"%s.html\">%s</a></li>\n",
-            strcmp(name, guides[at].name) == 0 ? " class=\"here\"" : "", name, title);
+  for (size_t i = 0; (c = cag_doc_chapter(i)); i++)
+    fprintf(p.out, "<li%s><a href=\"%s.html\">%s</a></li>\n", c == chapter ? " class=\"here\"" : "",
+            c->name, c->title);
   fputs("</ul></aside>\n</div>\n", p.out);
   cag_site_end(&p);
 }
 
 void cag_site_guides(CagSite *s) {
   CagSitePage p;
+  const CagDocChapter *c;
   cag_site_begin(s, &p, "guide/index.html", "Guide", "Guide");
   fputs("<h1>Guide</h1>\n<dl class=\"modules\">\n", p.out);
-  for (size_t i = 0; i < GUIDE_COUNT; i++)
-    if (guide_document(guides[i].name))
-      fprintf(p.out, "<dt><a href=\"%s.html\">%s</a></dt><dd>%s</dd>\n", guides[i].name,
-              guides[i].title, guides[i].story);
+  for (size_t i = 0; (c = cag_doc_chapter(i)); i++)
+    fprintf(p.out, "<dt><a href=\"%s.html\">%s</a></dt><dd>%s</dd>\n", c->name, c->title, c->story);
   fputs("</dl>\n", p.out);
   cag_site_end(&p);
-  for (size_t i = 0; i < GUIDE_COUNT; i++)
-    if (guide_document(guides[i].name)) guide_page(s, i);
+  for (size_t i = 0; (c = cag_doc_chapter(i)); i++) guide_page(s, c);
 }
 
 // --- Cookbook ---

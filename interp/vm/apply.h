@@ -3,10 +3,10 @@
 //
 // Errors are set as by built-ins; the place is the operation that the machine is at.
 
-#ifndef CAG_INTERP_BUILTIN_APPLY_H
-#define CAG_INTERP_BUILTIN_APPLY_H
+#ifndef CAG_INTERP_VM_APPLY_H
+#define CAG_INTERP_VM_APPLY_H
 
-#include "interp/builtin/builtin.h"
+#include "interp/vm/builtin.h"
 
 // `T * v`: of a transform, point ([x, y], [x, y, z]; [x, y, z, w] stays homogeneous), plane, shape,
 // camera, light, or a list of these. False: error set (E0321 where T cannot move such a value).

@@ -3,9 +3,9 @@
 //
 // Nothing here calls back into the script, so values need no roots.
 
-#include "interp/scene/build.h"
+#include "interp/session/scene_build.h"
 #include "interp/builtin/robots.h"
-#include "interp/scene/lead.h"
+#include "interp/session/lead.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -455,20 +455,6 @@ static void add_setting(Build *b, const CagSceneValue *v, const char *name) {
 }
 
 // --- What is shown ---
-
-bool cag_value_is_shown(CagVm *vm, CagValue v) {
-  if (!cag_may_go_deeper(vm, "shown")) return false;
-  if (v.type == CAG_LIST) {
-    // Lists of numbers and vectors are packed, and so are no shapes.
-    const CagList *list = CAG_AS_LIST(v);
-    if (list->dim != 0) return false;
-    for (size_t i = 0; i < list->length; i++)
-      if (!cag_value_is_shown(vm, list->as.items[i])) return false;
-    return true;
-  }
-  return cag_is_shape(v) || v.type == CAG_ROBOT || v.type == CAG_CAMERA || v.type == CAG_LIGHT ||
-         v.type == CAG_SETTING;
-}
 
 // A robot is shown at home.
 static void add_robot(Build *b, CagValue v, CagLead lead) {

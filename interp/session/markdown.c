@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "interp/doc/site.h"
+#include "interp/session/site.h"
 
 typedef struct Document {
   CagSite *site;
@@ -102,11 +102,13 @@ static void anchor_heading(const Document *d, cmark_node *node) {
 // tree of the source has no page, and stays as words.
 static void change_link(const Document *d, cmark_node *node) {
   const char *url = cmark_node_get_url(node);
-  const char *dot = strstr(url, ".md"), *name, *title;
+  const char *dot = strstr(url, ".md");
+  const CagDocChapter *c;
   if (strstr(url, "://") || *url == '#') return;
-  for (size_t i = 0; dot && cag_site_guide(i, &name, &title); i++) {
-    if (strlen(name) != (size_t)(dot - url) || strncmp(url, name, strlen(name)) != 0) continue;
-    char *page = cag_doc_text("%sguide/%s.html%s", d->root, name, dot + 3);
+  for (size_t i = 0; dot && (c = cag_doc_chapter(i)); i++) {
+    if (strlen(c->name) != (size_t)(dot - url) || strncmp(url, c->name, strlen(c->name)) != 0)
+      continue;
+    char *page = cag_doc_text("%sguide/%s.html%s", d->root, c->name, dot + 3);
     cmark_node_set_url(node, page);
     cag_free(page);
     return;
@@ -168,9 +170,9 @@ static void change_all(const Document *d, cmark_node *root) {
 }
 
 static bool is_guide(const char *about) {
-  const char *name, *title;
-  for (size_t i = 0; cag_site_guide(i, &name, &title); i++)
-    if (strcmp(name, about) == 0) return true;
+  const CagDocChapter *c;
+  for (size_t i = 0; (c = cag_doc_chapter(i)); i++)
+    if (strcmp(c->name, about) == 0) return true;
   return false;
 }
 
